@@ -1,0 +1,49 @@
+// Closed forms of motion: what a published motion means at any instant. Pure functions, thread-safe.
+#ifndef OB_MOTION_H
+#define OB_MOTION_H
+
+#include <ob/universe.h>
+
+typedef struct ob_pose {
+	ob_vec3 p; // m
+	ob_quat q; // body to world
+} ob_pose;
+
+typedef struct ob_state {
+	ob_pose pose;
+	ob_vec3 v; // m/s
+	ob_vec3 w; // rad/s, world frame
+} ob_state;
+
+// The state at time t (s): parabola for the centre, torque-free rotation for the attitude.
+// Torque-free rotation of a rigid body in closed form: Jacobi elliptic functions for the body rates
+// (Jacobi 1849; Whittaker 1937, ch. VI), the attitude by theta functions (van Zon and Schofield 2007).
+// inertia = principal moments (kg m^2, body frame); equal moments or w along a principal axis turn at constant w.
+ob_state ob_motion_at(const ob_motion *m, ob_vec3 inertia, double t);
+
+// Attitude and rate after time s (s) of torque-free rotation from (q, w).
+void ob_rotate_free(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out);
+
+// The pose between two publications of one object (prev->t0 <= t <= next->t0): exact where next is marked
+// OB_MOTION_FREE, else linear in position and spherical-linear in attitude, so that a landing body is never
+// drawn inside the ground.
+ob_pose ob_motion_between(const ob_motion *prev, const ob_motion *next, ob_vec3 inertia, double t);
+
+// Tight axis-aligned box (xmin ymin zmin xmax ymax zmax, m) of a shape at a pose; a plane gives an infinite box.
+void ob_shape_bounds(ob_shape shape, ob_vec3 size, ob_pose pose, double bounds[6]);
+
+// Radius (m) of the sphere round the centre of mass that holds the shape; infinity for a plane.
+double ob_shape_radius(ob_shape shape, ob_vec3 size);
+
+// Smallest thickness (m) of a shape: how far it may move before it could pass through something unseen.
+double ob_shape_thickness(ob_shape shape, ob_vec3 size);
+
+// Axis-aligned box that holds the shape over [t0, t0 + s] of its free motion: extremes of the parabola, plus
+// the bounding sphere where it turns.
+void ob_motion_swept_bounds(const ob_motion *m, ob_shape shape, ob_vec3 size, double s, double bounds[6]);
+
+// First time in [0, s] at which a gap (m) with rate v (m/s) and constant acceleration a (m/s^2) closes:
+// gap + v t + a t^2 / 2 = 0 with a closing rate; infinity if it does not. A gap <= 0 that closes gives 0.
+double ob_time_of_closing(double gap, double v, double a, double s);
+
+#endif

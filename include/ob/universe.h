@@ -1,0 +1,139 @@
+// The universe as readers see it: what exists, where it is, how it moves.
+//
+// A universe is one block of POSIX shared memory, made by a host process. It holds, for each object, a
+// passport (what it is; changes rarely) and a motion (how it moves, valid from an instant on). A reader
+// attaches read-only, copies what it needs without locks, and evaluates motions at its own time with the
+// functions of <ob/motion.h>.
+//
+// Thread-safety: any number of threads and processes may read at once; an ob_universe handle itself is
+// immutable after attach and may be shared between threads. Readers never block a writer and never write.
+// Everything that is read is validated; no byte of the table can crash a reader.
+// Units: SI, radians. Frame: right-handed world frame, z up.
+#ifndef OB_UNIVERSE_H
+#define OB_UNIVERSE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <ob/error.h>
+#include <ob/vec.h>
+
+#define OB_NAME_MAX 48 // bytes of a universe's or object's name, with the final 0
+
+typedef enum ob_shape {
+	OB_SHAPE_NONE,
+	OB_SHAPE_SPHERE,   // size.x = radius
+	OB_SHAPE_BOX,      // size = half extents along the body axes
+	OB_SHAPE_PLANE,    // infinite; through the origin of its pose, solid below its +z axis; always static
+	OB_SHAPE_CAPSULE,  // size.x = radius, size.y = half length of the cylinder part; axis = body z
+	OB_SHAPE_CYLINDER, // size.x = radius, size.y = half length; axis = body z
+} ob_shape;
+
+enum { // ob_passport.flags
+	OB_OBJECT_PRESENT = 1 << 0, // exists now; a slot without it is free
+	OB_OBJECT_STATIC = 1 << 1,  // never moves; mass and inertia are 0
+};
+
+// What an object is. 192 bytes.
+typedef struct ob_passport {
+	uint32_t id;          // index of the object in the table, from 0
+	uint32_t generation;  // grows each time the slot is given to another object
+	uint32_t flags;       // OB_OBJECT_*
+	uint32_t shape;       // ob_shape
+	ob_vec3 size;         // m, see ob_shape
+	double mass;          // kg; 0 = static
+	ob_vec3 inertia;      // kg m^2, principal moments in the body frame; 0 = static
+	double friction;      // Coulomb coefficient; a pair uses sqrt(mu_a mu_b)
+	double restitution;   // 0..1; a pair uses the larger of the two
+	float colour[4];      // linear RGB, alpha
+	char name[OB_NAME_MAX];
+	double reserved[1];
+} ob_passport;
+
+enum { // ob_motion.flags
+	OB_MOTION_FREE = 1 << 0,   // in free flight since the previous publication: the closed form is exact
+	OB_MOTION_ASLEEP = 1 << 1, // at rest by consent of its island
+};
+
+// How an object moves from t0 on, unless touched. 256 bytes: the payload of one slot version.
+typedef struct ob_motion {
+	double t0;          // s, the instant of the state below
+	double valid_until; // s, the closed form holds so long, unless another object interferes
+	ob_vec3 p;          // m, centre of mass
+	ob_quat q;          // body to world
+	ob_vec3 v;          // m/s
+	ob_vec3 w;          // rad/s, world frame
+	ob_vec3 a;          // m/s^2, constant while the motion holds (gravity in flight, 0 when supported)
+	ob_vec3 dv, dw;     // m/s, rad/s: change of velocity over the last substep (the contact predictor)
+	double substep;     // s, length of that substep
+	double path;        // m, length of path of the fastest surface point since the run began
+	float bounds[6];    // m, xmin ymin zmin xmax ymax zmax: a box that holds the object until it republishes one
+	uint32_t step;      // the step that published this
+	uint32_t flags;     // OB_MOTION_*
+	float quiet;        // s, how long it has been slow
+	uint32_t island;    // lowest id of the island in which it was solved
+} ob_motion;
+
+typedef enum ob_universe_state {
+	OB_UNIVERSE_STARTING,
+	OB_UNIVERSE_RUNNING,
+	OB_UNIVERSE_FINISHED, // ended as planned; the table stays as it was at the end
+	OB_UNIVERSE_FAILED,
+} ob_universe_state;
+
+// Facts of a run that do not change once it has started, and its clock.
+typedef struct ob_universe_info {
+	char name[OB_NAME_MAX];
+	char isolation[16];   // "thread" or "process"
+	char arch[16];        // "obs" or "monolith"
+	int32_t host_pid;
+	uint32_t capacity;    // slots: ids are 0 .. capacity-1
+	uint32_t objects;     // present objects, static ones included
+	uint32_t workers;
+	ob_vec3 gravity;      // m/s^2
+	double step_length;   // s
+	uint64_t step;        // steps completed
+	double time;          // s, simulated
+	ob_universe_state state;
+	uint32_t awake;       // dynamic objects that are not asleep
+	uint32_t pairs;       // pairs whose bounds overlap
+	uint32_t islands;     // groups that were solved together in the last step
+} ob_universe_info;
+
+typedef struct ob_worker_info {
+	int32_t pid, tid;
+	int32_t cpu;         // pinned to; -1 = not pinned
+	uint32_t objects;    // objects that it ran in the last step
+	uint64_t cpu_ns;     // CPU time used so far, refreshed by the host about twice a second
+} ob_worker_info;
+
+// A point where two objects touch, for overlays.
+typedef struct ob_contact_point {
+	uint32_t a, b;       // ids, a < b
+	ob_vec3 position;    // m, world
+	ob_vec3 normal;      // unit, from b towards a
+	double impulse;      // N s, normal, of the last substep
+} ob_contact_point;
+
+typedef struct ob_universe ob_universe;
+
+// Attaches read-only to the running universe "name" (as `obsim top` shows it). NULL and e on failure: no such
+// universe, or another layout version.
+ob_universe *ob_universe_attach(const char *name, ob_error *e);
+void ob_universe_detach(ob_universe *u); // NULL is allowed
+
+// Names of the universes on this machine, newest first; returns how many there are (may exceed max).
+size_t ob_universe_list(char names[][OB_NAME_MAX], size_t max);
+
+void ob_universe_get_info(const ob_universe *u, ob_universe_info *out);
+// false: no such worker
+bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out);
+// false: no object has this id now
+bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out);
+// The newest published motion; never torn. false: no such object, or its bytes do not make sense.
+bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out);
+// Contact points of the last completed step; returns how many there are (may exceed max).
+size_t ob_universe_get_contacts(const ob_universe *u, ob_contact_point *out, size_t max);
+
+#endif

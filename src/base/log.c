@@ -1,0 +1,40 @@
+#include "base/log.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <unistd.h>
+
+static int notes = 1;
+
+// One write per line, so that lines of several processes do not mix.
+static void put(const char *kind, const char *format, va_list args)
+{
+	char line[1200];
+	int n = snprintf(line, sizeof line, "obsim: %s", kind);
+	n += vsnprintf(line + n, sizeof line - n - 1, format, args);
+	if (n > (int)sizeof line - 2)
+		n = sizeof line - 2;
+	line[n++] = '\n';
+	ssize_t ignored = write(STDERR_FILENO, line, n);
+	(void)ignored;
+}
+
+void ob_log_warn(const char *format, ...)
+{
+	va_list args;
+	va_start(args, format);
+	put("warning: ", format, args);
+	va_end(args);
+}
+
+void ob_log_note(const char *format, ...)
+{
+	if (!notes)
+		return;
+	va_list args;
+	va_start(args, format);
+	put("", format, args);
+	va_end(args);
+}
+
+void ob_log_set_notes(int on) { notes = on; }

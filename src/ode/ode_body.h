@@ -1,0 +1,29 @@
+// One object's own ODE world, body and geom. With ode_world.h and ode_collide.h the only code that includes <ode/ode.h>.
+// Thread-safety: one thread at a time per handle; different handles may be used at once.
+#ifndef OB_ODE_BODY_H
+#define OB_ODE_BODY_H
+
+#include <ob/motion.h>
+
+// Process-wide; call before any other, once per process (after fork in a child). Idempotent, thread-safe.
+void ob_ode_init(void);
+// Once in each thread that uses ODE, and when it ends.
+void ob_ode_thread_init(void);
+void ob_ode_thread_finish(void);
+
+// Mass properties of a homogeneous shape of given mass, by ODE. Returns principal moments (kg m^2).
+ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass);
+// m^3; 0 for a plane
+double ob_ode_volume(ob_shape shape, ob_vec3 size);
+
+typedef struct ob_ode_body ob_ode_body;
+// World (own self-threaded stepper, lean memory reservation), body, geom. Static objects get no world.
+ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity);
+void ob_ode_body_destroy(ob_ode_body *b);
+// Writes the state back to the body (the closed form is the truth, ODE's body follows it).
+void ob_ode_body_set(ob_ode_body *b, const ob_state *s);
+// Advances by ODE's own dWorldStep over h (s) under gravity and the impulse j (N s), angular impulse l (N m s, world
+// frame, about the centre), both spread evenly over h; state in, state out.
+void ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h);
+
+#endif

@@ -1,0 +1,56 @@
+// Scenes: a Lua 5.4 file, run in a sandbox, becomes plain definitions. Nothing here knows how they are run.
+#ifndef OB_SCENE_SCENE_H
+#define OB_SCENE_SCENE_H
+
+#include <ob/motion.h>
+
+typedef struct ob_object_def {
+	ob_passport passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
+	ob_state state;       // at its first instant
+	double born, dies;    // s; born = 0 and dies = infinity: there all the time
+} ob_object_def;
+
+typedef struct ob_camera_def {
+	char name[OB_NAME_MAX];
+	ob_vec3 eye, target;  // m, look-at
+	ob_vec3 velocity;     // m/s, the eye and target travel (translate)
+	double pan, tilt;     // rad/s, turning about the vertical and about the right-hand axis (pan-tilt)
+	double fov;           // rad, vertical
+} ob_camera_def;
+
+typedef struct ob_look_def {
+	float sky_top[3], sky_horizon[3];
+	float ground_colour[3];
+	bool grid;            // lines on the ground each metre, stronger each ten
+	ob_vec3 sun;          // direction towards the sun
+} ob_look_def;
+
+typedef struct ob_scene {
+	char title[128];
+	ob_vec3 gravity;
+	double step, duration;      // s
+	uint32_t substeps, passes;
+	char exchange[16];          // "coloured" | "jacobi"
+	char integrator[16];        // "exact" | "ode"
+	bool sleeping;
+	uint64_t seed;
+	uint32_t objects;
+	ob_object_def *object;      // [objects]; ids are their index
+	uint32_t cameras;
+	ob_camera_def *camera;      // at least one
+	ob_look_def look;
+	uint32_t record_every;      // steps between recorded states; 1 unless the scene says otherwise
+} ob_scene;
+
+typedef struct ob_scene_options {
+	const char *const *defines; // "name=value" of -D
+	uint32_t define_count;
+	bool has_seed;
+	uint64_t seed;              // replaces the scene's
+} ob_scene_options;
+
+// Reads, runs and checks a scene file. NULL and e ("file:line: field: what was expected, what was found") on error.
+ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e);
+void ob_scene_free(ob_scene *s);
+
+#endif

@@ -1,0 +1,33 @@
+// The object simulators that one worker runs, and the step.
+//
+// A worker is a thread or a process; it does not know which. All state that outlives a step lies in the
+// universe, so any worker can run any object. An ob_sim is the worker's private side: scratch memory, and
+// the ODE bodies of the objects that it has run.
+#ifndef OB_SIM_SIM_H
+#define OB_SIM_SIM_H
+
+#include <ob/motion.h>
+
+#include "table/table.h"
+
+typedef struct ob_sim ob_sim;
+
+ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e); // in the worker's own thread
+void ob_sim_destroy(ob_sim *s);
+
+// The worker's share of a phase. Called between ob_gate_wait and ob_gate_arrive.
+void ob_sim_work(ob_sim *s, ob_phase phase);
+// Called by the last to arrive: arranges what comes next and opens the gate (or pauses it).
+void ob_sim_arrange(ob_sim *s, ob_phase finished);
+
+// The whole life of a worker: wait, work, arrive, arrange, until STOP. Returns when the run is over.
+void ob_sim_run(ob_sim *s);
+
+// Host, before the first step and after it has changed passports: puts the object's first motion into its
+// slot and asks for its neighbours. The universe must be starting or paused.
+void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state);
+
+// Host, paused: takes an object away; its neighbours wake. Clears its passport.
+void ob_sim_remove(ob_universe *u, uint32_t id);
+
+#endif

@@ -1,0 +1,89 @@
+// The exchange area: what the object simulators of one universe share within a step. Plain data in shared
+// memory; the gate orders every access: who may touch what is fixed by the phase.
+//
+//   phase MEMBERS   each object: reads its own island's result, writes its own slot; reads the index and all
+//                   bounds, writes its own perceived list
+//   (arrange)       one worker alone: index, pairs, islands
+//   phase ISLANDS   one worker per island: reads its members' slots and its pairs (version step & 1), writes its
+//                   members' results and bounds and its pairs (version (step + 1) & 1)
+#ifndef OB_TABLE_EXCHANGE_H
+#define OB_TABLE_EXCHANGE_H
+
+#include <stdint.h>
+
+#include <ob/universe.h>
+
+enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
+
+// What a pair of touching objects remembers from one step to the next. 384 bytes.
+// a < b are ids; the normal points from b to a. Lever arms run from the centres to the contact point, world frame,
+// as of the last collision test.
+typedef struct ob_pair_state {
+	ob_vec3 normal;
+	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS]; // m
+	double gap[OB_PAIR_POINTS];       // m, separation now; < 0 is penetration
+	double impulse[OB_PAIR_ROWS];     // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
+	double path_limit;                // m: nothing can change before path_a + path_b exceeds this
+	double substep;                   // s, length of the substep of those impulses
+	uint32_t points;                  // 0 .. 4; 0 = not touching
+	uint32_t feature;                 // axis that separated last; 0 = none
+	uint64_t reserved;
+} ob_pair_state;
+
+typedef struct ob_pair_record {
+	ob_pair_state version[2]; // [step & 1] is the state after that step
+	uint64_t stamp[2];        // step of each version + 1; 0 = never written
+} ob_pair_record;
+
+typedef struct ob_pair_key {
+	uint32_t a, b;    // ids, a < b
+	uint32_t record;  // index of its ob_pair_record
+	float limit;      // lower bound of path_a + path_b at which the pair may touch; < 0 = look now
+} ob_pair_key;
+
+typedef struct ob_island {
+	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
+	uint32_t first_pair, pairs;     // range in island_pair[]; sorted by (a, b)
+} ob_island;
+
+typedef struct ob_index_cell {
+	uint32_t next;   // next object in the same bucket; UINT32_MAX ends
+	int32_t level;   // size class of its bounds
+	int32_t x, y, z; // cell at that level
+} ob_index_cell;
+
+// The areas, as pointers into this process's mapping (made once per process by the table module).
+typedef struct ob_exchange {
+	uint32_t objects_max, pairs_max, buckets, perceived_max;
+	struct ob_exchange_counts {
+		uint32_t pairs, islands, chunks, records_used, records_free;
+		uint32_t levels[64]; // objects per size class (+32)
+		uint32_t planes;
+		uint32_t failure;    // ob_exchange_failure; 0 = none
+	} *count;
+	float (*bounds)[6];           // [object]: box that holds it until it asks for another
+	ob_motion *result;            // [object]: what its island's solver found
+	uint32_t *result_island;      // [object]: index of its island in the last arrangement
+	struct { uint32_t offset, count; } *perceived; // [object]: range in perceived_id
+	uint32_t *perceived_id;       // arena
+	ob_index_cell *cell;          // [object]
+	uint32_t *bucket;             // [buckets]: first object
+	uint32_t *plane;              // ids of planes: everyone's neighbours
+	ob_pair_key *pair, *pair_next;// sorted by (a, b); pair_next is the arranger's other buffer
+	ob_pair_record *record;
+	uint32_t *record_free;        // stack of free records
+	ob_island *island;
+	uint32_t *member;             // [object]
+	uint32_t *island_pair;        // indices into pair[]
+	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
+	uint32_t *scratch;            // [4 * objects]: the arranger's
+} ob_exchange;
+
+typedef enum ob_exchange_failure {
+	OB_EXCHANGE_OK,
+	OB_EXCHANGE_PAIRS_FULL,
+	OB_EXCHANGE_PERCEIVED_FULL,
+	OB_EXCHANGE_DIVERGED, // a state became NaN or infinite
+} ob_exchange_failure;
+
+#endif

@@ -1,0 +1,116 @@
+// The universe table, seen by those who write it: creating it, publishing, and the areas of the step.
+//
+// This module is the only one that calls shm_open and mmap, and the only one that names a memory order.
+// Everything in the table is an offset or an id, never a pointer: it is mapped at different addresses.
+//
+//   header | control | gate | worker cells | slots | passports | exchange area (exchange.h)
+//
+// A slot is a ring of 4 versions of one ob_motion with a version word. One writer: the simulator that
+// currently runs the object. (The scheme, with a drawing, stands above the struct in slot.h.)
+#ifndef OB_TABLE_TABLE_H
+#define OB_TABLE_TABLE_H
+
+#include <ob/universe.h>
+
+#include "table/exchange.h"
+
+// How the parts of a step run; what the gate hands out when it opens.
+typedef enum ob_phase {
+	OB_PHASE_NONE,
+	OB_PHASE_MEMBERS, // per object: adopt the island's result, perceive neighbours
+	OB_PHASE_ISLANDS, // per island: solve
+	OB_PHASE_PAUSE,   // the universe stands still at a step boundary for the host to look at
+	OB_PHASE_STOP,    // leave
+} ob_phase;
+
+typedef enum ob_exchange_kind { OB_EXCHANGE_COLOURED, OB_EXCHANGE_JACOBI } ob_exchange_kind;
+typedef enum ob_integrator { OB_INTEGRATOR_EXACT, OB_INTEGRATOR_ODE } ob_integrator;
+
+// What is fixed for a run; lies in the table, so that every process sees the same.
+typedef struct ob_run_settings {
+	ob_vec3 gravity;        // m/s^2
+	double step_length;     // s
+	uint32_t substeps;      // per step, >= 1
+	uint32_t passes;        // exchange rounds per substep, at most
+	uint32_t exchange;      // ob_exchange_kind
+	uint32_t integrator;    // ob_integrator
+	uint32_t sleeping;      // 1 = islands may fall asleep
+	uint32_t one_per_object;// 1 = worker i runs object i and nothing else
+	uint32_t monolith;      // 1 = one ODE world holds all objects
+	uint32_t iterations;    // monolith: QuickStep iterations
+} ob_run_settings;
+
+typedef struct ob_universe_setup {
+	const char *name;       // unique on this machine; NULL = "obsim-<pid>"
+	uint32_t capacity;      // object slots
+	uint32_t workers;       // >= 1
+	const char *isolation;  // "thread" | "process": for readers to show
+	ob_run_settings run;
+} ob_universe_setup;
+
+// Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments whose host is dead.
+// NULL and e on failure (name taken, no memory).
+ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e);
+// Unmaps; unlink = true also removes the name. The creator calls it with true on every exit path.
+void ob_universe_destroy(ob_universe *u, bool unlink);
+// Only the name's removal, by a process that keeps watch over a dying host. Async-signal-safe.
+void ob_universe_unlink(const char *name);
+
+const ob_run_settings *ob_universe_settings(const ob_universe *u);
+uint32_t ob_universe_capacity(const ob_universe *u);
+uint32_t ob_universe_workers(const ob_universe *u);
+const char *ob_universe_name(const ob_universe *u);
+void ob_universe_set_state(ob_universe *u, ob_universe_state s);
+// One past the highest id ever used: loops over objects end here.
+uint32_t ob_universe_ids(const ob_universe *u);
+
+// Writers. One writer per slot at a time; the gate orders a change of writer.
+void ob_publish_motion(ob_universe *u, uint32_t id, const ob_motion *m);
+// The host's, while the universe is paused or starting.
+void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
+// Direct views for the step, which the gate orders: the newest motion, the passport. Never for outside readers.
+const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id);
+const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
+// The exchange area of the step (see exchange.h); ordered by the gate.
+ob_exchange *ob_universe_exchange(const ob_universe *u);
+
+// The clock of the run: advanced by whoever arranges the step.
+uint64_t ob_step_count(const ob_universe *u);
+void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands);
+
+// Worker cells. The worker itself calls announce once; the host refreshes the CPU time.
+void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu);
+void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects);
+void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns);
+
+// ---- claims: indices 0 .. total-1, each handed out once per phase, to whoever asks first
+void ob_claim_reset(ob_universe *u, uint32_t total);
+bool ob_claim_next(ob_universe *u, uint32_t *index);
+// Appends to a list of ids that need the broad phase's attention (any worker, any order).
+void ob_rebound_append(ob_universe *u, uint32_t id);
+// The list so far; reset empties it. Only for the one who arranges.
+const uint32_t *ob_rebound_list(const ob_universe *u, uint32_t *count);
+void ob_rebound_reset(ob_universe *u);
+// Reserves count words in the perceived-neighbours arena; returns the offset, or UINT32_MAX when it is full
+uint32_t ob_perceived_reserve(ob_universe *u, uint32_t count);
+void ob_perceived_reset(ob_universe *u);
+
+// ---- the gate (gate.h explains it with a drawing)
+// A phase ends when every participant has arrived; the last to arrive arranges the next and opens the gate.
+// A worker waits until the gate opens with a phase in which it takes part.
+ob_phase ob_gate_wait(ob_universe *u, uint32_t worker);
+// true: the caller is the last, everyone else waits; it must call ob_gate_open or ob_gate_pause.
+bool ob_gate_arrive(ob_universe *u, uint32_t worker);
+// participants: worker numbers, n of them; NULL = all. n >= 1 unless the phase is STOP.
+void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, uint32_t n);
+// Instead of opening: hands the turn to the host, which sleeps in ob_gate_host_wait.
+void ob_gate_pause(ob_universe *u);
+// Host: the step at which the universe shall pause next (read by the arranger).
+void ob_gate_set_pause_step(ob_universe *u, uint64_t step);
+uint64_t ob_gate_pause_step(const ob_universe *u);
+// Host: waits until paused; false on timeout (s)
+bool ob_gate_host_wait(ob_universe *u, double timeout);
+// Host, any time: opens the gate with STOP for all, for good; also wakes ob_gate_host_wait.
+void ob_gate_stop(ob_universe *u);
+
+#endif
