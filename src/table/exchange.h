@@ -26,8 +26,7 @@ typedef struct ob_pair_state {
 	double path_limit;                // m: nothing can change before path_a + path_b exceeds this
 	double substep;                   // s, length of the substep of those impulses
 	uint32_t points;                  // 0 .. 4; 0 = not touching
-	uint32_t feature;                 // axis that separated last; 0 = none
-	uint64_t reserved;
+	uint32_t reserved[3];
 } ob_pair_state;
 
 typedef struct ob_pair_record {
@@ -38,8 +37,18 @@ typedef struct ob_pair_record {
 typedef struct ob_pair_key {
 	uint32_t a, b;    // ids, a < b
 	uint32_t record;  // index of its ob_pair_record
-	float limit;      // lower bound of path_a + path_b at which the pair may touch; < 0 = look now
+	uint32_t active;  // 1 = touching: its record has points
+	double limit;     // m: the pair cannot touch before path_a + path_b exceeds this
 } ob_pair_key;
+
+// What the arranger needs to know of an object, 16 bytes, so that it need not read the slots.
+typedef struct ob_brief {
+	double path;    // m, as in its motion
+	float reach;    // m, how far any of its points may get in the next step
+	uint32_t state; // OB_BRIEF_*
+} ob_brief;
+
+enum { OB_BRIEF_ABSENT, OB_BRIEF_STATIC, OB_BRIEF_AWAKE, OB_BRIEF_ASLEEP };
 
 typedef struct ob_island {
 	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
@@ -57,14 +66,16 @@ typedef struct ob_exchange {
 	uint32_t objects_max, pairs_max, buckets, perceived_max;
 	struct ob_exchange_counts {
 		uint32_t pairs, islands, chunks, records_used, records_free;
+		uint32_t stage;      // what the running phase belongs to: the arranger's
 		uint32_t levels[64]; // objects per size class (+32)
 		uint32_t planes;
 		uint32_t failure;    // ob_exchange_failure; 0 = none
 	} *count;
+	ob_brief *brief;              // [object]: written by its island's solver
 	float (*bounds)[6];           // [object]: box that holds it until it asks for another
 	ob_motion *result;            // [object]: what its island's solver found
 	uint32_t *result_island;      // [object]: index of its island in the last arrangement
-	struct { uint32_t offset, count; } *perceived; // [object]: range in perceived_id
+	struct ob_perceived { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
 	uint32_t *perceived_id;       // arena
 	ob_index_cell *cell;          // [object]
 	uint32_t *bucket;             // [buckets]: first object
@@ -77,6 +88,7 @@ typedef struct ob_exchange {
 	uint32_t *island_pair;        // indices into pair[]
 	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
 	uint32_t *scratch;            // [4 * objects]: the arranger's
+	float *island_reach;          // [object]: the arranger's
 } ob_exchange;
 
 typedef enum ob_exchange_failure {
