@@ -3,11 +3,15 @@
 #ifndef OB_ERROR_H
 #define OB_ERROR_H
 
+#pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
+
 typedef struct ob_error {
 	char text[1024];
 } ob_error;
 
 // printf into e->text; returns 0, so that "return ob_fail(e, ...)" works for bool, and for pointers as NULL
 int ob_fail(ob_error *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+#pragma GCC visibility pop
 
 #endif

@@ -4,6 +4,8 @@
 
 #include <ob/universe.h>
 
+#pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
+
 typedef struct ob_pose {
 	ob_vec3 p; // m
 	ob_quat q; // body to world
@@ -45,5 +47,7 @@ void ob_motion_swept_bounds(const ob_motion *m, ob_shape shape, ob_vec3 size, do
 // First time in [0, s] at which a gap (m) with rate v (m/s) and constant acceleration a (m/s^2) closes:
 // gap + v t + a t^2 / 2 = 0 with a closing rate; infinity if it does not. A gap <= 0 that closes gives 0.
 double ob_time_of_closing(double gap, double v, double a, double s);
+
+#pragma GCC visibility pop
 
 #endif

@@ -21,6 +21,8 @@
 
 #define OB_NAME_MAX 48 // bytes of a universe's or object's name, with the final 0
 
+#pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
+
 typedef enum ob_shape {
 	OB_SHAPE_NONE,
 	OB_SHAPE_SPHERE,   // size.x = radius
@@ -48,7 +50,7 @@ typedef struct ob_passport {
 	double restitution;   // 0..1; a pair uses the larger of the two
 	float colour[4];      // linear RGB, alpha
 	char name[OB_NAME_MAX];
-	double reserved[1];
+	double reserved[5];
 } ob_passport;
 
 enum { // ob_motion.flags
@@ -73,6 +75,7 @@ typedef struct ob_motion {
 	uint32_t flags;     // OB_MOTION_*
 	float quiet;        // s, how long it has been slow
 	uint32_t island;    // lowest id of the island in which it was solved
+	double reserved;
 } ob_motion;
 
 typedef enum ob_universe_state {
@@ -135,5 +138,7 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out);
 // Contact points of the last completed step; returns how many there are (may exceed max).
 size_t ob_universe_get_contacts(const ob_universe *u, ob_contact_point *out, size_t max);
+
+#pragma GCC visibility pop
 
 #endif
