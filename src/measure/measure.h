@@ -1,5 +1,7 @@
 // What a state is worth: energy, momentum, penetration, and the hash of its bits. Knows neither engine nor
 // architecture: it looks at snapshots alone, so that every architecture is measured by the same code.
+// Thread-safety: one thread at a time per snapshot that is written; any number may measure one that is not.
+// Sums run in the order of the ids, so that equal snapshots give equal bits.
 #ifndef OB_MEASURE_MEASURE_H
 #define OB_MEASURE_MEASURE_H
 
@@ -9,7 +11,7 @@
 typedef struct ob_snapshot {
 	uint64_t step;
 	double time;          // s
-	uint32_t count;       // ids 0 .. count-1; passport[i].flags says whether i is present
+	uint32_t count;       // ids 0 .. count-1; passport[i].flags says whether i is present, all else is 0 if it is not
 	ob_passport *passport;
 	ob_motion *motion;
 	size_t contacts;
@@ -18,15 +20,19 @@ typedef struct ob_snapshot {
 	size_t contacts_max;
 } ob_snapshot;
 
-// Copies the universe (which must stand still for the snapshot to be of one step) into s, growing its memory. s starts zeroed.
+// Copies the universe (which must stand still for the snapshot to be of one step) into s, growing its memory. s starts
+// zeroed. false and e: no memory, or an object's published state does not make sense.
 bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, ob_error *e);
-void ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from);
+// The memory of "to" grows as needed; false (and "to" as it was) when there is none.
+bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from);
 void ob_snapshot_finish(ob_snapshot *s);
+// State of a present object at the snapshot's time: its motion may be older (asleep, static, in flight).
+ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id);
 
 double ob_measure_energy(const ob_snapshot *s, ob_vec3 gravity);  // J: kinetic + potential, dynamic objects
 ob_vec3 ob_measure_momentum(const ob_snapshot *s);                // kg m/s
 ob_vec3 ob_measure_angular_momentum(const ob_snapshot *s);        // kg m^2/s about the origin
-// 64-bit FNV-1a over (id, p, q, v, w) of all present objects
+// 64-bit FNV-1a over (id, p, q, v, w) of all present objects at the snapshot's time
 uint64_t ob_measure_hash(const ob_snapshot *s);
 
 typedef struct ob_penetration {
@@ -34,8 +40,9 @@ typedef struct ob_penetration {
 	size_t pairs;
 	uint32_t worst_a, worst_b;
 } ob_penetration;
-// Depth by the separating axis theorem (box, sphere, plane), exact in closed form; capsules and cylinders by
-// ODE-free support sampling are treated as their core segment / polygon: see the source. Sort and sweep over tight boxes.
+// How deep objects are in each other; pairs of two static objects do not count. Sort and sweep over tight boxes, then
+// the depth of depth.h: closed forms, but for a cylinder with a box, capsule or cylinder (1e-7 m, never too small).
+// max_m and mean_m are NaN when there is no memory.
 void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out);
 
 #endif

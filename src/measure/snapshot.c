@@ -1,0 +1,117 @@
+#include "measure/measure.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool grow_objects(ob_snapshot *s, uint32_t count)
+{
+	if (count <= s->count_max)
+		return true;
+	ob_passport *passport = calloc(count, sizeof *passport);
+	ob_motion *motion = calloc(count, sizeof *motion);
+	if (!passport || !motion) {
+		free(passport);
+		free(motion);
+		return false;
+	}
+	free(s->passport);
+	free(s->motion);
+	s->passport = passport;
+	s->motion = motion;
+	s->count_max = count;
+	s->count = 0;
+	return true;
+}
+
+static bool grow_contacts(ob_snapshot *s, size_t count)
+{
+	if (count <= s->contacts_max)
+		return true;
+	ob_contact_point *contact = calloc(count, sizeof *contact);
+	if (!contact)
+		return false;
+	free(s->contact);
+	s->contact = contact;
+	s->contacts_max = count;
+	s->contacts = 0;
+	return true;
+}
+
+// An object that vanishes between two looks is absent; one that stays without a state is broken.
+static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_error *e)
+{
+	ob_passport *p = &s->passport[id], again;
+	memset(p, 0, sizeof *p);
+	memset(&s->motion[id], 0, sizeof s->motion[id]);
+	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
+		return true;
+	if (ob_universe_get_motion(u, id, &s->motion[id]))
+		return true;
+	bool there = ob_universe_get_passport(u, id, &again) && again.generation == p->generation;
+	if (there)
+		return ob_fail(e, "object %u (%.*s) has published no state that makes sense", id, OB_NAME_MAX, p->name);
+	memset(p, 0, sizeof *p);
+	return true;
+}
+
+static bool take_contacts(ob_snapshot *s, const ob_universe *u, ob_error *e)
+{
+	size_t found = ob_universe_get_contacts(u, s->contact, s->contacts_max);
+	if (found > s->contacts_max) { // some room more: the universe of a viewer goes on meanwhile
+		if (!grow_contacts(s, found + found / 4 + 64))
+			return ob_fail(e, "no memory for %zu contact points", found);
+		found = ob_universe_get_contacts(u, s->contact, s->contacts_max);
+	}
+	s->contacts = found < s->contacts_max ? found : s->contacts_max;
+	return true;
+}
+
+bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, ob_error *e)
+{
+	ob_universe_info info;
+	ob_universe_get_info(u, &info);
+	if (!grow_objects(s, info.capacity))
+		return ob_fail(e, "no memory for a snapshot of %u objects", info.capacity);
+	s->step = info.step;
+	s->time = info.time;
+	s->count = info.capacity;
+	s->contacts = 0;
+	for (uint32_t id = 0; id < s->count; id++)
+		if (!take_object(s, u, id, e))
+			return false;
+	return !with_contacts || take_contacts(s, u, e);
+}
+
+bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
+{
+	if (!grow_objects(to, from->count) || !grow_contacts(to, from->contacts))
+		return false;
+	to->step = from->step;
+	to->time = from->time;
+	to->count = from->count;
+	to->contacts = from->contacts;
+	if (from->count) {
+		memcpy(to->passport, from->passport, from->count * sizeof *to->passport);
+		memcpy(to->motion, from->motion, from->count * sizeof *to->motion);
+	}
+	if (from->contacts)
+		memcpy(to->contact, from->contact, from->contacts * sizeof *to->contact);
+	return true;
+}
+
+void ob_snapshot_finish(ob_snapshot *s)
+{
+	free(s->passport);
+	free(s->motion);
+	free(s->contact);
+	memset(s, 0, sizeof *s);
+}
+
+ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id)
+{
+	const ob_motion *m = &s->motion[id];
+	bool still = m->t0 == s->time || s->passport[id].flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_ASLEEP;
+	if (still) // the bits as published
+		return (ob_state){ { m->p, m->q }, m->v, m->w };
+	return ob_motion_at(m, s->passport[id].inertia, s->time);
+}
