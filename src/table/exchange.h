@@ -26,7 +26,7 @@ typedef struct ob_pair_state {
 	double path_limit;                // m: nothing can change before path_a + path_b exceeds this
 	double substep;                   // s, length of the substep of those impulses
 	uint32_t points;                  // 0 .. 4; 0 = not touching
-	uint32_t reserved[3];
+	uint32_t reserved[15];
 } ob_pair_state;
 
 typedef struct ob_pair_record {

@@ -1,0 +1,209 @@
+#include "table/gate.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <linux/futex.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/cpu.h"
+#include "table/layout.h"
+
+enum { SPIN_NS = 100000, SPINS_PER_LOOK = 32 };
+
+static uint32_t look(const uint32_t *word)
+{
+	return __atomic_load_n(word, __ATOMIC_ACQUIRE);
+}
+
+// Futex words lie in shared memory: never FUTEX_PRIVATE_FLAG. bits: which waiters of the word.
+static void futex_wait(uint32_t *word, uint32_t seen, uint32_t bits, const struct timespec *until)
+{
+	syscall(SYS_futex, word, FUTEX_WAIT_BITSET, seen, until, NULL, bits);
+}
+
+static void futex_wake(uint32_t *word, uint32_t bits)
+{
+	syscall(SYS_futex, word, FUTEX_WAKE_BITSET, INT_MAX, NULL, NULL, bits);
+}
+
+static int64_t now_ns(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
+}
+
+static void relax(void)
+{
+#if defined(__x86_64__) || defined(__i386__)
+	__builtin_ia32_pause();
+#elif defined(__aarch64__)
+	__asm__ volatile("yield");
+#endif
+}
+
+void ob_gate_prepare(ob_gate *g, uint32_t workers)
+{
+	g->workers = workers;
+	g->spin = workers <= (uint32_t)ob_cpu_count();
+	g->phase = OB_PHASE_PAUSE;
+	g->host_turn = 1;
+}
+
+// ---- workers
+
+static bool has_turn(const ob_gate *g, const ob_gate_cell *cell)
+{
+	return look(&cell->turn) != __atomic_load_n(&cell->done, __ATOMIC_RELAXED) || look(&g->stop);
+}
+
+static bool spin_for_turn(const ob_gate *g, const ob_gate_cell *cell)
+{
+	int64_t end = now_ns() + SPIN_NS;
+	do {
+		for (int i = 0; i < SPINS_PER_LOOK; i++) {
+			if (has_turn(g, cell))
+				return true;
+			relax();
+		}
+	} while (now_ns() < end);
+	return false;
+}
+
+ob_phase ob_gate_wait(ob_universe *u, uint32_t worker)
+{
+	ob_gate *g = u->gate;
+	const ob_gate_cell *cell = u->gate_cell + worker;
+	if (!has_turn(g, cell) && !(g->spin && spin_for_turn(g, cell))) {
+		ob_gate_half *half = u->gate_group[worker / 64].half + worker / 32 % 2;
+		uint32_t bit = UINT32_C(1) << worker % 32;
+		for (;;) {
+			uint32_t seen = look(&half->word);
+			if (has_turn(g, cell))
+				break;
+			__atomic_fetch_or(&half->asleep, bit, __ATOMIC_SEQ_CST);
+			if (has_turn(g, cell)) {
+				__atomic_fetch_and(&half->asleep, ~bit, __ATOMIC_SEQ_CST);
+				break;
+			}
+			futex_wait(&half->word, seen, bit, NULL);
+		}
+	}
+	if (look(&g->stop))
+		return OB_PHASE_STOP;
+	return (ob_phase)__atomic_load_n(&g->phase, __ATOMIC_RELAXED);
+}
+
+bool ob_gate_arrive(ob_universe *u, uint32_t worker)
+{
+	ob_gate *g = u->gate;
+	ob_gate_group *group = u->gate_group + worker / 64;
+	ob_gate_cell *cell = u->gate_cell + worker;
+	__atomic_store_n(&cell->done, look(&cell->turn), __ATOMIC_RELAXED);
+	uint64_t bit = UINT64_C(1) << worker % 64;
+	uint64_t expected = __atomic_load_n(&group->expected, __ATOMIC_RELAXED);
+	uint64_t before = __atomic_fetch_or(&group->arrived, bit, __ATOMIC_ACQ_REL);
+	if (before & bit || (before | bit) != expected)
+		return false;
+	return __atomic_sub_fetch(&g->groups_left, 1, __ATOMIC_ACQ_REL) == 0;
+}
+
+// ---- the opener: alone, for everyone else waits
+
+static void expect_all(ob_universe *u, uint32_t groups)
+{
+	uint32_t workers = u->gate->workers;
+	for (uint32_t i = 0; i < groups; i++)
+		u->gate_group[i].expected = workers - 64 * i >= 64 ? UINT64_MAX : (UINT64_C(1) << workers % 64) - 1;
+}
+
+// Writes the turn into the cells of a half's participants, then wakes those of them who sleep.
+static void admit_half(ob_universe *u, uint32_t first, ob_gate_half *half, uint32_t part, uint32_t turn)
+{
+	for (uint32_t rest = part; rest; rest &= rest - 1)
+		__atomic_store_n(&u->gate_cell[first + (uint32_t)__builtin_ctz(rest)].turn, turn, __ATOMIC_RELEASE);
+	__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
+	uint32_t wake = __atomic_fetch_and(&half->asleep, ~part, __ATOMIC_SEQ_CST) & part;
+	if (wake)
+		futex_wake(&half->word, wake);
+}
+
+void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, uint32_t n)
+{
+	ob_gate *g = u->gate;
+	if (phase == OB_PHASE_STOP) {
+		ob_gate_stop(u);
+		return;
+	}
+	uint32_t groups = (g->workers + 63) / 64, taking_part = 0;
+	for (uint32_t i = 0; i < groups; i++)
+		u->gate_group[i].arrived = u->gate_group[i].expected = 0;
+	if (!participants)
+		expect_all(u, groups);
+	for (uint32_t i = 0; participants && i < n; i++)
+		u->gate_group[participants[i] / 64].expected |= UINT64_C(1) << participants[i] % 64;
+	for (uint32_t i = 0; i < groups; i++)
+		taking_part += u->gate_group[i].expected != 0;
+	__atomic_store_n(&g->groups_left, taking_part, __ATOMIC_RELAXED);
+	__atomic_store_n(&g->phase, phase, __ATOMIC_RELAXED);
+	__atomic_store_n(&g->host_turn, 0, __ATOMIC_RELAXED);
+	uint32_t turn = ++g->turn;
+	for (uint32_t i = 0; i < groups && taking_part; i++) {
+		ob_gate_group *group = u->gate_group + i;
+		uint64_t expected = group->expected;
+		taking_part -= expected != 0;
+		for (uint32_t k = 0; k < 2; k++)
+			if ((uint32_t)(expected >> 32 * k))
+				admit_half(u, 64 * i + 32 * k, group->half + k, (uint32_t)(expected >> 32 * k), turn);
+	}
+}
+
+void ob_gate_pause(ob_universe *u)
+{
+	__atomic_store_n(&u->gate->phase, OB_PHASE_PAUSE, __ATOMIC_RELAXED);
+	__atomic_store_n(&u->gate->host_turn, 1, __ATOMIC_RELEASE);
+	futex_wake(&u->gate->host_turn, FUTEX_BITSET_MATCH_ANY);
+}
+
+// ---- the host
+
+void ob_gate_set_pause_step(ob_universe *u, uint64_t step)
+{
+	__atomic_store_n(&u->control->pause_step, step, __ATOMIC_RELEASE);
+}
+
+uint64_t ob_gate_pause_step(const ob_universe *u)
+{
+	return __atomic_load_n(&u->control->pause_step, __ATOMIC_ACQUIRE);
+}
+
+bool ob_gate_host_wait(ob_universe *u, double timeout)
+{
+	ob_gate *g = u->gate;
+	int64_t end = now_ns() + (int64_t)(fmin(timeout, 1e9) * 1e9);
+	struct timespec until = { .tv_sec = end / 1000000000, .tv_nsec = end % 1000000000 };
+	for (;;) {
+		uint32_t seen = look(&g->host_turn);
+		if (seen == 1 || look(&g->stop))
+			return true;
+		if (now_ns() >= end)
+			return false;
+		futex_wait(&g->host_turn, seen, FUTEX_BITSET_MATCH_ANY, &until);
+	}
+}
+
+void ob_gate_stop(ob_universe *u)
+{
+	ob_gate *g = u->gate;
+	__atomic_store_n(&g->stop, 1, __ATOMIC_SEQ_CST);
+	__atomic_fetch_or(&g->host_turn, 2, __ATOMIC_SEQ_CST);
+	futex_wake(&g->host_turn, FUTEX_BITSET_MATCH_ANY);
+	for (uint32_t i = 0; i < g->workers; i += 32) {
+		ob_gate_half *half = u->gate_group[i / 64].half + i / 32 % 2;
+		__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
+		futex_wake(&half->word, FUTEX_BITSET_MATCH_ANY);
+	}
+}

@@ -1,0 +1,122 @@
+// The layout of the shared segment: what lies where. Offsets only, for every process maps it elsewhere.
+//
+//   0        header: written once by the creator, the magic last
+//   area[]   one run of equal elements each, on page borders, in the order of ob_area
+//
+// Capacities are generous, for a page that nobody touches costs nothing. A change of any struct here or in the
+// public headers needs a new OB_LAYOUT_VERSION.
+#ifndef OB_TABLE_LAYOUT_H
+#define OB_TABLE_LAYOUT_H
+
+#include "table/gate.h"
+#include "table/slot.h"
+#include "table/table.h"
+
+#define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
+enum { OB_LAYOUT_VERSION = 1, OB_LAYOUT_PAGE = 4096 };
+
+typedef enum ob_area {
+	OB_AREA_CONTROL,
+	OB_AREA_GATE,
+	OB_AREA_GATE_GROUP, // [workers / 64]
+	OB_AREA_GATE_CELL, // [workers]
+	OB_AREA_WORKER, // [workers]
+	OB_AREA_SLOT, // [capacity]
+	OB_AREA_PASSPORT, // [capacity]
+	OB_AREA_REBOUND, // [capacity] ids
+	OB_AREA_REBOUND_BIT, // [capacity / 64] ids that are on the list
+	OB_AREA_COUNTS, // from here on: ob_exchange
+	OB_AREA_BRIEF,
+	OB_AREA_BOUNDS,
+	OB_AREA_RESULT,
+	OB_AREA_RESULT_ISLAND,
+	OB_AREA_PERCEIVED,
+	OB_AREA_PERCEIVED_ID,
+	OB_AREA_CELL,
+	OB_AREA_BUCKET,
+	OB_AREA_PLANE,
+	OB_AREA_PAIR,
+	OB_AREA_PAIR_NEXT,
+	OB_AREA_RECORD,
+	OB_AREA_RECORD_FREE,
+	OB_AREA_ISLAND,
+	OB_AREA_MEMBER,
+	OB_AREA_ISLAND_PAIR,
+	OB_AREA_CHUNK,
+	OB_AREA_SCRATCH,
+	OB_AREA_ISLAND_REACH,
+	OB_AREAS
+} ob_area;
+
+typedef struct ob_layout_sizes {
+	uint32_t capacity, workers, pairs_max, buckets, perceived_max;
+} ob_layout_sizes;
+
+// The first four fields stay where they are in all versions, so that any obsim can tell a stale segment.
+typedef struct ob_header {
+	uint64_t magic;
+	uint32_t version;
+	int32_t host_pid;
+	uint64_t host_start; // start time of that process, ticks since boot: a pid alone may have been given away
+	uint64_t bytes; // of the whole segment
+	uint64_t created; // ns, CLOCK_REALTIME
+	ob_layout_sizes sizes;
+	uint32_t padding;
+	uint64_t area[OB_AREAS]; // offsets
+	char name[OB_NAME_MAX];
+	char isolation[16];
+	ob_run_settings run;
+} ob_header;
+
+// What changes as the run goes on. Counters that several workers hit have a cache line each.
+typedef struct ob_control {
+	_Alignas(64) uint64_t step;
+	uint64_t pause_step;
+	uint32_t state; // ob_universe_state
+	uint32_t ids, objects;
+	uint32_t awake, pairs, islands;
+	_Alignas(64) uint64_t claim_next;
+	uint64_t claim_total;
+	_Alignas(64) uint64_t rebound_count;
+	_Alignas(64) uint64_t perceived_used;
+} ob_control;
+
+typedef struct ob_worker_cell {
+	_Alignas(64) uint64_t cpu_ns;
+	int32_t pid, tid, cpu;
+	uint32_t objects;
+} ob_worker_cell;
+
+static_assert(sizeof(ob_run_settings) == 64, "run settings");
+static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 64, "header");
+static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
+static_assert(sizeof(ob_control) == 256, "control");
+static_assert(sizeof(ob_worker_cell) == 64, "worker cell");
+static_assert(sizeof(ob_pair_state) == 384, "pair state");
+static_assert(sizeof(ob_pair_record) == 784, "pair record");
+static_assert(sizeof(ob_pair_key) == 24 && sizeof(ob_brief) == 16, "exchange area");
+
+// A process's view of a mapped segment. Immutable once made; forked children may go on using it.
+struct ob_universe {
+	char *base;
+	ob_header header; // private copy, validated: what the table says later cannot lead astray
+	ob_control *control;
+	ob_gate *gate;
+	ob_gate_group *gate_group;
+	ob_gate_cell *gate_cell;
+	ob_worker_cell *worker;
+	ob_slot *slot;
+	ob_passport_slot *passport;
+	uint32_t *rebound;
+	uint64_t *rebound_bit;
+	ob_exchange exchange;
+};
+
+// Fills sizes (from capacity and workers), offsets and bytes.
+void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers);
+// Whether a header that came from outside is one that this program would have planned, in a file of file_bytes.
+bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);
+// Points the view at a mapping of u->header's layout.
+void ob_layout_bind(ob_universe *u, void *base);
+
+#endif

@@ -1,0 +1,84 @@
+// What the workers of a step share beside the slots: the clock, claims, the rebound list, the arena of perceived
+// neighbours, and their own cells. Resets belong to the one who arranges; the gate orders them.
+#include "table/layout.h"
+
+uint64_t ob_step_count(const ob_universe *u)
+{
+	return __atomic_load_n(&u->control->step, __ATOMIC_ACQUIRE);
+}
+
+void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands)
+{
+	ob_control *c = u->control;
+	__atomic_store_n(&c->awake, awake, __ATOMIC_RELAXED);
+	__atomic_store_n(&c->pairs, pairs, __ATOMIC_RELAXED);
+	__atomic_store_n(&c->islands, islands, __ATOMIC_RELAXED);
+	__atomic_store_n(&c->step, c->step + 1, __ATOMIC_RELEASE);
+}
+
+void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu)
+{
+	ob_worker_cell *w = u->worker + worker;
+	__atomic_store_n(&w->tid, tid, __ATOMIC_RELAXED);
+	__atomic_store_n(&w->cpu, cpu, __ATOMIC_RELAXED);
+	__atomic_store_n(&w->pid, pid, __ATOMIC_RELEASE); // last: a cell with a pid is complete
+}
+
+void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects)
+{
+	__atomic_store_n(&u->worker[worker].objects, objects, __ATOMIC_RELAXED);
+}
+
+void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns)
+{
+	__atomic_store_n(&u->worker[worker].cpu_ns, cpu_ns, __ATOMIC_RELAXED);
+}
+
+void ob_claim_reset(ob_universe *u, uint32_t total)
+{
+	__atomic_store_n(&u->control->claim_total, total, __ATOMIC_RELAXED);
+	__atomic_store_n(&u->control->claim_next, 0, __ATOMIC_RELEASE);
+}
+
+bool ob_claim_next(ob_universe *u, uint32_t *index)
+{
+	uint64_t total = __atomic_load_n(&u->control->claim_total, __ATOMIC_RELAXED);
+	uint64_t i = __atomic_fetch_add(&u->control->claim_next, 1, __ATOMIC_RELAXED);
+	*index = (uint32_t)i;
+	return i < total;
+}
+
+// The bits keep an id from being listed twice, so the list has room for all that may come.
+void ob_rebound_append(ob_universe *u, uint32_t id)
+{
+	uint64_t bit = UINT64_C(1) << id % 64;
+	if (__atomic_fetch_or(&u->rebound_bit[id / 64], bit, __ATOMIC_RELAXED) & bit)
+		return;
+	uint64_t i = __atomic_fetch_add(&u->control->rebound_count, 1, __ATOMIC_RELAXED);
+	__atomic_store_n(&u->rebound[i], id, __ATOMIC_RELAXED);
+}
+
+const uint32_t *ob_rebound_list(const ob_universe *u, uint32_t *count)
+{
+	*count = (uint32_t)__atomic_load_n(&u->control->rebound_count, __ATOMIC_ACQUIRE);
+	return u->rebound;
+}
+
+void ob_rebound_reset(ob_universe *u)
+{
+	uint64_t n = __atomic_load_n(&u->control->rebound_count, __ATOMIC_RELAXED);
+	for (uint64_t i = 0; i < n; i++)
+		__atomic_store_n(&u->rebound_bit[u->rebound[i] / 64], 0, __ATOMIC_RELAXED);
+	__atomic_store_n(&u->control->rebound_count, 0, __ATOMIC_RELEASE);
+}
+
+uint32_t ob_perceived_reserve(ob_universe *u, uint32_t count)
+{
+	uint64_t at = __atomic_fetch_add(&u->control->perceived_used, count, __ATOMIC_RELAXED);
+	return at + count <= u->header.sizes.perceived_max ? (uint32_t)at : UINT32_MAX;
+}
+
+void ob_perceived_reset(ob_universe *u)
+{
+	__atomic_store_n(&u->control->perceived_used, 0, __ATOMIC_RELEASE);
+}
