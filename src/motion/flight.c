@@ -1,0 +1,60 @@
+#include <ob/motion.h>
+
+ob_state ob_motion_at(const ob_motion *m, ob_vec3 inertia, double t)
+{
+	double s = t - m->t0;
+	ob_state out;
+	out.pose.p = ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
+	out.v = ob_madd(m->v, s, m->a);
+	ob_rotate_free(m->q, m->w, inertia, s, &out.pose.q, &out.w);
+	return out;
+}
+
+// Shoemake's spherical-linear interpolation (SIGGRAPH 1985) along the shorter way, as the fraction f of the turn that
+// takes a to b: exact for small turns too.
+static ob_quat between(ob_quat a, ob_quat b, double f)
+{
+	ob_quat turn = ob_quat_mul(b, (ob_quat){ a.w, -a.x, -a.y, -a.z });
+	ob_vec3 axis = ob_v3(turn.x, turn.y, turn.z);
+	double sine = ob_norm(axis);
+	if (!(sine > 0))
+		return a;
+	double angle = 2 * atan2(turn.w < 0 ? -sine : sine, fabs(turn.w));
+	return ob_quat_turn(a, ob_scale(axis, f * angle / sine));
+}
+
+ob_pose ob_motion_between(const ob_motion *prev, const ob_motion *next, ob_vec3 inertia, double t)
+{
+	if (t <= prev->t0)
+		return (ob_pose){ prev->p, prev->q };
+	if (!(t < next->t0))
+		return (ob_pose){ next->p, next->q };
+	if (next->flags & OB_MOTION_FREE)
+		return ob_motion_at(prev, inertia, t).pose;
+	double f = (t - prev->t0) / (next->t0 - prev->t0);
+	return (ob_pose){ ob_madd(prev->p, f, ob_sub(next->p, prev->p)), between(prev->q, next->q, f) };
+}
+
+// gap + v t + a t^2 / 2 without loss where the terms cancel (Kahan 2004, "On the cost of floating-point computation
+// without extra-precise arithmetic")
+static double discriminant(double gap, double v, double a)
+{
+	double product = 2 * a * gap;
+	return fma(v, v, -product) + fma(-2 * a, gap, product);
+}
+
+double ob_time_of_closing(double gap, double v, double a, double s)
+{
+	if (!(gap < INFINITY))
+		return INFINITY;
+	if (gap <= 0 && (v < 0 || (v == 0 && a < 0)))
+		return 0;
+	if (v >= 0 && !(a < 0))
+		return INFINITY;
+	double d = discriminant(gap, v, a), t;
+	if (d > 0)
+		t = v < 0 ? 2 * gap / (sqrt(d) - v) : (-v - sqrt(d)) / a;
+	else
+		t = a < 0 ? -v / a : INFINITY; // overlaps throughout, and falls back from then on; or never gets there
+	return t <= s ? t : INFINITY;
+}

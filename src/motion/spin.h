@@ -1,0 +1,43 @@
+// Torque-free rotation of a rigid body in closed form, planned once and evaluated at any time.
+// Pure functions, thread-safe. Units: rad/s, kg m^2, s.
+#ifndef OB_MOTION_SPIN_H
+#define OB_MOTION_SPIN_H
+
+#include <ob/vec.h>
+
+#include "motion/jacobi.h"
+
+typedef enum ob_spin_kind {
+	OB_SPIN_TURNS, // symmetric tops, spin about a principal axis, rest: two turns at constant rates
+	OB_SPIN_THETA, // three different moments
+} ob_spin_kind;
+
+typedef struct ob_spin {
+	ob_spin_kind kind;
+	ob_quat q; // attitude at s = 0, body to world
+
+	// OB_SPIN_TURNS: about a fixed axis of the world, after a turn about a fixed axis of the body
+	ob_vec3 world; // rad/s, world frame
+	ob_vec3 body; // rad/s, body frame
+
+	// OB_SPIN_THETA, in the frame of the sorted axes: component i is sign[i] times component axis[i] of the body
+	int axis[3];
+	double sign[3];
+	ob_vec3 rate; // momentum / moment along each axis of the body for a unit direction, rad/s
+	ob_vec3 amplitude; // of cn, sn, dn in the direction of the momentum
+	double m, mc, root_kc; // parameter of the elliptic functions k^2, 1 - k^2, and sqrt(k')
+	double phase, speed; // rad, rad/s: argument of the theta functions
+	double precession; // rad/s, mean rate of turn about the momentum
+	double side; // +1 or -1: sign of the imaginary shift
+	double cos0, sin0; // direction that the azimuth about the momentum has at s = 0
+	ob_quat lift0; // turn of the momentum's direction at s = 0 to the third axis
+	ob_theta theta;
+} ob_spin;
+
+// q is a unit quaternion, w in the world frame. A moment that is not positive counts as "any": w stays constant.
+void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia);
+
+// Attitude and rate (world frame) at s, which may be negative.
+void ob_spin_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out);
+
+#endif
