@@ -1,0 +1,76 @@
+// Claims, the rebound list and the arena of perceived neighbours, under 8 threads and 8 processes.
+#include "../check.h"
+
+#include <string.h>
+
+#include "crowd.h"
+#include "table/table.h"
+
+enum { WORKERS = 8, OBJECTS = 5000, EACH = 3 };
+
+typedef struct board {
+	ob_universe *u;
+	uint32_t claimed[OBJECTS];
+	uint32_t arena[64 * OBJECTS + 65536]; // who got each word
+	uint32_t refused;
+} board;
+
+static int work(void *shared, uint32_t worker)
+{
+	board *b = shared;
+	for (uint32_t i; ob_claim_next(b->u, &i);) {
+		if (i >= OBJECTS)
+			return 1;
+		__atomic_fetch_add(&b->claimed[i], 1, __ATOMIC_RELAXED);
+		uint32_t at = ob_perceived_reserve(b->u, EACH);
+		if (at == UINT32_MAX)
+			return 2;
+		for (uint32_t k = 0; k < EACH; k++)
+			b->arena[at + k]++; // plain: the place is this worker's alone
+	}
+	for (uint32_t i = worker % 2; i < OBJECTS; i += 2) // each id comes from four workers
+		ob_rebound_append(b->u, i);
+	return 0;
+}
+
+static void run(bool processes)
+{
+	board *b = crowd_memory(sizeof *b);
+	ob_error e;
+	ob_universe_setup setup = { .capacity = OBJECTS, .workers = WORKERS, .isolation = "thread" };
+	b->u = ob_universe_create(&setup, &e);
+	CHECK(b->u);
+	if (!b->u)
+		return;
+	for (uint32_t round = 1; round <= 3; round++) {
+		ob_claim_reset(b->u, OBJECTS);
+		ob_rebound_reset(b->u);
+		ob_perceived_reset(b->u);
+		crowd c = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
+		CHECK(crowd_start(&c) && crowd_join(&c) == 0);
+		uint32_t wrong = 0, count;
+		for (uint32_t i = 0; i < OBJECTS; i++)
+			wrong += b->claimed[i] != round;
+		for (uint32_t i = 0; i < EACH * OBJECTS + 1; i++)
+			wrong += b->arena[i] != (i < EACH * OBJECTS ? round : 0);
+		const uint32_t *list = ob_rebound_list(b->u, &count);
+		CHECK(count == OBJECTS);
+		static uint32_t seen[OBJECTS];
+		memset(seen, 0, sizeof seen);
+		for (uint32_t i = 0; i < count; i++)
+			wrong += list[i] >= OBJECTS || seen[list[i]]++;
+		CHECK(wrong == 0);
+	}
+	CHECK(ob_perceived_reserve(b->u, 64 * OBJECTS + 65536) == UINT32_MAX); // full
+	ob_perceived_reset(b->u);
+	CHECK(ob_perceived_reserve(b->u, 64 * OBJECTS + 65536) == 0);
+	CHECK(ob_perceived_reserve(b->u, 1) == UINT32_MAX);
+	ob_universe_destroy(b->u, true);
+}
+
+int main(void)
+{
+	run(false);
+	run(true);
+	return check_end();
+}

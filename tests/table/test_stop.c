@@ -1,0 +1,62 @@
+// STOP ends every wait, whatever the gate is doing; a host that waits in vain comes back in time.
+#include "../check.h"
+
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "crowd.h"
+#include "table/table.h"
+
+enum { WORKERS = 70 };
+
+typedef struct board {
+	ob_universe *u;
+	uint32_t runs;
+} board;
+
+// Worker 0 never comes back from its phase until the gate is stopped, so the phase cannot end.
+static int work(void *shared, uint32_t worker)
+{
+	board *b = shared;
+	if (ob_gate_wait(b->u, worker) != OB_PHASE_MEMBERS)
+		return 1;
+	__atomic_fetch_add(&b->runs, 1, __ATOMIC_RELAXED);
+	if (worker != 0 && ob_gate_arrive(b->u, worker))
+		return 2;
+	return worker != 0 && ob_gate_wait(b->u, worker) != OB_PHASE_STOP;
+}
+
+static void stop_in_phase(bool processes)
+{
+	board *b = crowd_memory(sizeof *b);
+	ob_error e;
+	ob_universe_setup setup = { .capacity = 1, .workers = WORKERS, .isolation = "thread" };
+	b->u = ob_universe_create(&setup, &e);
+	CHECK(b->u);
+	if (!b->u)
+		return;
+	crowd c = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
+	CHECK(crowd_start(&c));
+	CHECK(ob_gate_host_wait(b->u, 0)); // the host has the first turn
+	ob_gate_open(b->u, OB_PHASE_MEMBERS, NULL, 0);
+	double start = ob_clock_wall();
+	CHECK(!ob_gate_host_wait(b->u, .2));
+	double waited = ob_clock_wall() - start;
+	CHECK(waited >= .2 && waited < 5);
+	while (__atomic_load_n(&b->runs, __ATOMIC_RELAXED) < WORKERS)
+		usleep(1000);
+	usleep(20000); // most now sleep at the gate
+	ob_gate_stop(b->u);
+	CHECK(ob_gate_host_wait(b->u, 0));
+	CHECK(crowd_join(&c) == 0);
+	for (uint32_t i = 0; i < WORKERS; i++)
+		CHECK(ob_gate_wait(b->u, i) == OB_PHASE_STOP);
+	ob_universe_destroy(b->u, true);
+}
+
+int main(void)
+{
+	stop_in_phase(false);
+	stop_in_phase(true);
+	return check_end();
+}
