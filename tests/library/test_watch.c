@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "check.h"
+#include "../check.h"
 #include "table/table.h"
 
 static void place(ob_universe *u, uint32_t id, const char *name, ob_vec3 p, ob_vec3 v)
