@@ -1,4 +1,8 @@
-// The monolith: one ODE world that holds every object, as a usual virtual environment does it.
+// The monolith: one ODE world that holds every object, as a usual virtual environment does it: sweep-and-prune space,
+// up to 4 contact points a pair, friction pyramid, ODE's own parameters throughout.
+//
+// Thread-safety: one thread at a time per world. QuickStep shuffles its rows by a seed of the whole process, which each
+// step sets anew: the same bits in every run, as long as no other world of the process steps at the same time.
 #ifndef OB_ODE_WORLD_H
 #define OB_ODE_WORLD_H
 
@@ -12,14 +16,18 @@ typedef struct ob_ode_world_setup {
 	bool sleeping;       // ODE's auto-disable
 } ob_ode_world_setup;
 
-ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s);
-void ob_ode_world_destroy(ob_ode_world *w);
+ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s); // NULL: no memory
+void ob_ode_world_destroy(ob_ode_world *w);                     // NULL is allowed
+// p->id must be free.
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s);
+// What it touches wakes. Nothing happens if there is no such object.
 void ob_ode_world_remove(ob_ode_world *w, uint32_t id);
-// Collides (sweep-and-prune space) and steps by h (s).
-void ob_ode_world_step(ob_ode_world *w, double h);
+// Collides and steps by h (s). A pair of which neither moves nor is awake is not collided.
+// false: no memory for the contacts; nothing has moved.
+bool ob_ode_world_step(ob_ode_world *w, double h);
+// touching: had a contact when it was last awake.
 void ob_ode_world_get(const ob_ode_world *w, uint32_t id, ob_state *s, bool *asleep, bool *touching);
-// Contact points of the last step; returns how many there are (may exceed max).
-size_t ob_ode_world_contacts(const ob_ode_world *w, ob_contact_point *out, size_t max);
+// Contact points of the last step, sorted by (a, b); depth[i] (m) of each; returns how many there are (may exceed max).
+size_t ob_ode_world_contacts(const ob_ode_world *w, ob_contact_point *out, double *depth, size_t max);
 
 #endif

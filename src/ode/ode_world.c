@@ -1,0 +1,279 @@
+#include "ode/ode_world.h"
+
+#include <stdlib.h>
+
+#include "ode/ode_body.h"
+#include "ode/ode_geom.h"
+
+enum { PAIR_POINTS = 4 };
+
+struct member {
+	dBodyID body; // NULL: static, or no such object
+	dGeomID geom; // its data points to this member; NULL: no shape, or no such object
+	uint32_t id;
+	bool touching;
+	double friction, restitution;
+	ob_state placed; // of static objects
+};
+
+// The two members of a contact, the lower id first, and its points as ODE found them.
+struct contact_pair {
+	struct member *a, *b;
+	int points;
+	dContactGeom point[PAIR_POINTS]; // normals from b to a
+	dJointFeedback force[PAIR_POINTS];
+};
+
+struct ob_ode_world {
+	dThreadingImplementationID threading;
+	dWorldID world;
+	dSpaceID space;
+	dJointGroupID joints;
+	ob_ode_world_setup setup;
+	uint64_t steps;
+	double substep; // s, of the last step
+	struct member *member;
+	struct contact_pair *pair;
+	size_t pairs, pairs_max;
+	bool full;
+};
+
+ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
+{
+	ob_ode_world *w = calloc(1, sizeof *w);
+	struct member *member = calloc(s->objects ? s->objects : 1, sizeof *member);
+	if (!w || !member) {
+		free(w);
+		free(member);
+		return NULL;
+	}
+	ob_ode_init();
+	w->setup = *s;
+	w->member = member;
+	w->world = dWorldCreate();
+	w->threading = dThreadingAllocateSelfThreadedImplementation();
+	w->space = dSweepAndPruneSpaceCreate(0, dSAP_AXES_XYZ);
+	w->joints = dJointGroupCreate(0);
+	dSpaceSetManualCleanup(w->space, 1);
+	dSpaceSetCleanup(w->space, 0); // members own their geometries
+	dWorldSetStepThreadingImplementation(w->world, dThreadingImplementationGetFunctions(w->threading),
+					     w->threading);
+	dWorldSetGravity(w->world, s->gravity.x, s->gravity.y, s->gravity.z);
+	dWorldSetAutoDisableFlag(w->world, s->sleeping);
+	if (s->iterations)
+		dWorldSetQuickStepNumIterations(w->world, (int)s->iterations);
+	return w;
+}
+
+static void clear(struct member *m)
+{
+	if (m->geom)
+		dGeomDestroy(m->geom);
+	if (m->body)
+		dBodyDestroy(m->body);
+	*m = (struct member){ 0 };
+}
+
+void ob_ode_world_destroy(ob_ode_world *w)
+{
+	if (!w)
+		return;
+	for (uint32_t id = 0; id < w->setup.objects; id++)
+		clear(&w->member[id]);
+	dJointGroupDestroy(w->joints);
+	dSpaceDestroy(w->space);
+	dWorldDestroy(w->world);
+	dThreadingFreeImplementation(w->threading);
+	free(w->member);
+	free(w->pair);
+	free(w);
+}
+
+static void add_body(ob_ode_world *w, struct member *m, const ob_passport *p, const ob_state *s)
+{
+	dMass mass;
+	dMassSetParameters(&mass, p->mass, 0, 0, 0, p->inertia.x, p->inertia.y, p->inertia.z, 0, 0, 0);
+	m->body = dBodyCreate(w->world);
+	dBodySetMass(m->body, &mass);
+	dBodySetPosition(m->body, s->pose.p.x, s->pose.p.y, s->pose.p.z);
+	dBodySetQuaternion(m->body, (dQuaternion){ s->pose.q.w, s->pose.q.x, s->pose.q.y, s->pose.q.z });
+	dBodySetLinearVel(m->body, s->v.x, s->v.y, s->v.z);
+	dBodySetAngularVel(m->body, s->w.x, s->w.y, s->w.z);
+}
+
+void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
+{
+	struct member *m = &w->member[p->id];
+	*m = (struct member){
+		.id = p->id,
+		.friction = p->friction,
+		.restitution = p->restitution,
+		.placed = *s,
+	};
+	m->geom = ob_ode_geom_create(w->space, p->shape, p->size);
+	if (m->geom)
+		dGeomSetData(m->geom, m);
+	if (!(p->flags & OB_OBJECT_STATIC) && p->mass > 0) {
+		add_body(w, m, p, s);
+		if (m->geom)
+			dGeomSetBody(m->geom, m->body);
+	} else if (m->geom) {
+		ob_ode_geom_place(m->geom, s->pose);
+	}
+}
+
+// Sleepers that lean on what goes: their boxes overlap.
+static void wake(void *data, dGeomID a, dGeomID b)
+{
+	(void)data;
+	struct member *one = dGeomGetData(a), *other = dGeomGetData(b);
+	if (one->body)
+		dBodyEnable(one->body);
+	if (other->body)
+		dBodyEnable(other->body);
+}
+
+void ob_ode_world_remove(ob_ode_world *w, uint32_t id)
+{
+	struct member *m = &w->member[id];
+	if (m->geom)
+		dSpaceCollide2(m->geom, (dGeomID)w->space, NULL, wake);
+	clear(m);
+	w->pairs = 0; // the last contacts may name it
+}
+
+static struct contact_pair *next_pair(ob_ode_world *w)
+{
+	if (w->pairs == w->pairs_max) {
+		size_t more = w->pairs_max ? 2 * w->pairs_max : 256;
+		struct contact_pair *pair = realloc(w->pair, more * sizeof *pair);
+		if (!pair) {
+			w->full = true;
+			return NULL;
+		}
+		w->pair = pair;
+		w->pairs_max = more;
+	}
+	return &w->pair[w->pairs++];
+}
+
+static bool awake(const struct member *m)
+{
+	return m->body && dBodyIsEnabled(m->body);
+}
+
+static void near(void *data, dGeomID one, dGeomID other)
+{
+	ob_ode_world *w = data;
+	struct member *a = dGeomGetData(one), *b = dGeomGetData(other);
+	if (!awake(a) && !awake(b))
+		return;
+	if (a->id > b->id) {
+		struct member *lower = b;
+		b = a;
+		a = lower;
+	}
+	dContactGeom point[PAIR_POINTS];
+	int n = dCollide(a->geom, b->geom, PAIR_POINTS, point, sizeof *point);
+	struct contact_pair *p = n > 0 ? next_pair(w) : NULL;
+	if (!p)
+		return;
+	p->a = a;
+	p->b = b;
+	p->points = n;
+	for (int i = 0; i < n; i++)
+		p->point[i] = point[i];
+}
+
+// Joints in the order of the ids, whatever the space has made of its lists: a run is repeated bit by bit.
+static int by_ids(const void *x, const void *y)
+{
+	const struct contact_pair *p = x, *q = y;
+	if (p->a->id != q->a->id)
+		return p->a->id < q->a->id ? -1 : 1;
+	return (p->b->id > q->b->id) - (p->b->id < q->b->id);
+}
+
+// ODE's first body must be a dynamic one, and its normals point into the first body.
+static void join(ob_ode_world *w, struct contact_pair *p, double bounce_speed)
+{
+	dContact c = { .surface = {
+			       .mode = dContactApprox1 | dContactBounce,
+			       .mu = sqrt(p->a->friction * p->b->friction),
+			       .bounce = fmax(p->a->restitution, p->b->restitution),
+			       .bounce_vel = bounce_speed,
+		       } };
+	bool turned = !p->a->body;
+	for (int i = 0; i < p->points; i++) {
+		c.geom = p->point[i];
+		for (int k = 0; turned && k < 3; k++)
+			c.geom.normal[k] = -c.geom.normal[k];
+		dJointID joint = dJointCreateContact(w->world, w->joints, &c);
+		dJointAttach(joint, turned ? p->b->body : p->a->body, turned ? NULL : p->b->body);
+		dJointSetFeedback(joint, &p->force[i]);
+	}
+	p->a->touching = p->b->touching = true;
+}
+
+bool ob_ode_world_step(ob_ode_world *w, double h)
+{
+	w->pairs = 0;
+	w->full = false;
+	dSpaceCollide(w->space, w, near);
+	if (w->full) {
+		w->pairs = 0;
+		return false;
+	}
+	if (w->pairs)
+		qsort(w->pair, w->pairs, sizeof *w->pair, by_ids);
+	for (uint32_t id = 0; id < w->setup.objects; id++)
+		if (awake(&w->member[id]))
+			w->member[id].touching = false;
+	// Slower than what gravity adds in two steps is rest, not an impact.
+	double bounce_speed = 2 * h * ob_norm(w->setup.gravity);
+	for (size_t i = 0; i < w->pairs; i++)
+		join(w, &w->pair[i], bounce_speed);
+	dRandSetSeed((unsigned long)(uint32_t)(w->steps++ * 2654435761u + 1));
+	if (w->setup.iterations)
+		dWorldQuickStep(w->world, h);
+	else
+		dWorldStep(w->world, h);
+	dJointGroupEmpty(w->joints);
+	w->substep = h;
+	return true;
+}
+
+void ob_ode_world_get(const ob_ode_world *w, uint32_t id, ob_state *s, bool *asleep, bool *touching)
+{
+	const struct member *m = &w->member[id];
+	*touching = m->touching;
+	*asleep = m->body && !dBodyIsEnabled(m->body);
+	*s = m->placed;
+	if (!m->body)
+		return;
+	const dReal *p = dBodyGetPosition(m->body), *q = dBodyGetQuaternion(m->body);
+	const dReal *v = dBodyGetLinearVel(m->body), *o = dBodyGetAngularVel(m->body);
+	s->pose.p = ob_v3(p[0], p[1], p[2]);
+	s->pose.q = (ob_quat){ q[0], q[1], q[2], q[3] };
+	s->v = *asleep ? ob_v3(0, 0, 0) : ob_v3(v[0], v[1], v[2]);
+	s->w = *asleep ? ob_v3(0, 0, 0) : ob_v3(o[0], o[1], o[2]);
+}
+
+size_t ob_ode_world_contacts(const ob_ode_world *w, ob_contact_point *out, double *depth, size_t max)
+{
+	size_t n = 0;
+	for (size_t i = 0; i < w->pairs; i++) {
+		const struct contact_pair *p = &w->pair[i];
+		for (int k = 0; k < p->points; k++, n++) {
+			if (n >= max)
+				continue;
+			const dReal *x = p->point[k].pos, *f = p->force[k].f1;
+			ob_vec3 normal = ob_v3(p->point[k].normal[0], p->point[k].normal[1], p->point[k].normal[2]);
+			double push = w->substep * ob_dot(ob_v3(f[0], f[1], f[2]), normal);
+			out[n] = (ob_contact_point){ p->a->id, p->b->id, ob_v3(x[0], x[1], x[2]), normal,
+						     p->a->body ? push : -push };
+			depth[n] = p->point[k].depth;
+		}
+	}
+	return n;
+}

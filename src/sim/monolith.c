@@ -1,0 +1,216 @@
+#include "sim/monolith.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+#include <ob/motion.h>
+
+#include "ode/ode_body.h"
+#include "ode/ode_world.h"
+
+enum { STATE_ABSENT, STATE_HELD };
+
+struct held { // what the world holds in place of a slot
+	uint32_t state, generation;
+};
+
+struct ob_monolith {
+	ob_universe *u;
+	const ob_run_settings *run;
+	ob_ode_world *world;
+	struct held *held; // [capacity]
+	ob_contact_point *point;
+	double *depth;
+	size_t points_max;
+	uint32_t awake, pairs;
+};
+
+ob_monolith *ob_monolith_create(ob_universe *u)
+{
+	const ob_run_settings *run = ob_universe_settings(u);
+	uint32_t capacity = ob_universe_capacity(u);
+	ob_ode_world_setup setup = { run->gravity, run->iterations, capacity, run->sleeping };
+	ob_ode_thread_init();
+	ob_monolith *m = calloc(1, sizeof *m);
+	if (!m)
+		return NULL;
+	m->u = u;
+	m->run = run;
+	m->held = calloc(capacity, sizeof *m->held);
+	m->world = ob_ode_world_create(&setup);
+	if (!m->held || !m->world) {
+		ob_monolith_destroy(m);
+		return NULL;
+	}
+	return m;
+}
+
+void ob_monolith_destroy(ob_monolith *m)
+{
+	if (!m)
+		return;
+	ob_ode_world_destroy(m->world);
+	free(m->held);
+	free(m->point);
+	free(m->depth);
+	free(m);
+	ob_ode_thread_finish();
+}
+
+// The passports are the host's, which changes them between steps.
+static void follow_passports(ob_monolith *m)
+{
+	uint32_t ids = ob_universe_ids(m->u);
+	for (uint32_t id = 0; id < ids; id++) {
+		const ob_passport *p = ob_passport_of(m->u, id);
+		struct held *h = &m->held[id];
+		bool present = p->flags & OB_OBJECT_PRESENT;
+		if (h->state == STATE_HELD && (!present || h->generation != p->generation)) {
+			ob_ode_world_remove(m->world, id);
+			h->state = STATE_ABSENT;
+		}
+		if (!present || h->state == STATE_HELD)
+			continue;
+		const ob_motion *first = ob_newest_motion(m->u, id);
+		ob_state s = { { first->p, first->q }, first->v, first->w };
+		ob_ode_world_add(m->world, p, &s);
+		*h = (struct held){ STATE_HELD, p->generation };
+	}
+}
+
+static bool sound(const ob_state *s)
+{
+	return isfinite(ob_norm2(s->pose.p)) && isfinite(ob_norm2(s->v)) && isfinite(ob_norm2(s->w)) &&
+	       isfinite(s->pose.q.w + s->pose.q.x + s->pose.q.y + s->pose.q.z);
+}
+
+// Towards the outside, so that the narrower numbers still hold the object.
+static void widen(const double from[6], double by, float to[6])
+{
+	for (int i = 0; i < 3; i++) {
+		to[i] = nextafterf((float)(from[i] - by), -FLT_MAX);
+		to[i + 3] = nextafterf((float)(from[i + 3] + by), FLT_MAX);
+	}
+}
+
+static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep, bool touching)
+{
+	const ob_passport *p = ob_passport_of(m->u, id);
+	const ob_motion *last = ob_newest_motion(m->u, id);
+	double h = m->run->step_length;
+	uint64_t step = ob_step_count(m->u) + 1;
+	double speed = ob_norm(s->v) + ob_norm(s->w) * ob_shape_radius(p->shape, p->size);
+	ob_motion next = {
+		.t0 = (double)step * h,
+		.valid_until = asleep ? INFINITY : (double)(step + 1) * h,
+		.p = s->pose.p,
+		.q = s->pose.q,
+		.v = s->v,
+		.w = s->w,
+		.a = touching || asleep ? ob_v3(0, 0, 0) : m->run->gravity,
+		.substep = h / m->run->substeps,
+		.path = last->path + speed * h,
+		.step = (uint32_t)step,
+		.flags = asleep ? OB_MOTION_ASLEEP : 0,
+		.quiet = asleep ? last->quiet + (float)h : 0,
+	};
+	double bounds[6];
+	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
+	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(m->run->gravity), next.bounds);
+	ob_publish_motion(m->u, id, &next);
+}
+
+static void publish_all(ob_monolith *m)
+{
+	ob_exchange *x = ob_universe_exchange(m->u);
+	uint32_t ids = ob_universe_ids(m->u);
+	m->awake = 0;
+	for (uint32_t id = 0; id < ids; id++) {
+		if (m->held[id].state != STATE_HELD || ob_passport_of(m->u, id)->flags & OB_OBJECT_STATIC)
+			continue; // what never moves keeps its first motion
+		ob_state s;
+		bool asleep, touching;
+		ob_ode_world_get(m->world, id, &s, &asleep, &touching);
+		if (!sound(&s)) {
+			x->count->failure = OB_EXCHANGE_DIVERGED;
+			return;
+		}
+		m->awake += !asleep;
+		publish(m, id, &s, asleep, touching);
+	}
+}
+
+static bool fetch_contacts(ob_monolith *m, size_t *points)
+{
+	*points = ob_ode_world_contacts(m->world, m->point, m->depth, m->points_max);
+	if (*points <= m->points_max)
+		return true;
+	size_t more = *points + *points / 2;
+	free(m->point);
+	free(m->depth);
+	m->point = calloc(more, sizeof *m->point);
+	m->depth = calloc(more, sizeof *m->depth);
+	m->points_max = m->point && m->depth ? more : 0;
+	return m->points_max && ob_ode_world_contacts(m->world, m->point, m->depth, m->points_max) == *points;
+}
+
+// The points of one pair as a record of the step that is now complete. A record holds the first 4 of them.
+static void write_pair(ob_monolith *m, uint32_t index, size_t from, size_t to)
+{
+	ob_exchange *x = ob_universe_exchange(m->u);
+	uint64_t step = ob_step_count(m->u) + 1;
+	const ob_contact_point *c = &m->point[from];
+	ob_vec3 a = ob_newest_motion(m->u, c->a)->p, b = ob_newest_motion(m->u, c->b)->p;
+	ob_pair_state s = { .normal = c->normal, .substep = m->run->step_length / m->run->substeps };
+	for (size_t i = from; i < to && s.points < OB_PAIR_POINTS; i++, s.points++) {
+		s.arm_a[s.points] = ob_sub(m->point[i].position, a);
+		s.arm_b[s.points] = ob_sub(m->point[i].position, b);
+		s.gap[s.points] = -m->depth[i];
+		s.impulse[s.points] = m->point[i].impulse;
+	}
+	x->record[index].version[step & 1] = s;
+	x->record[index].stamp[step & 1] = step + 1;
+	x->pair[index] = (ob_pair_key){ .a = c->a, .b = c->b, .record = index, .active = 1 };
+}
+
+// For overlays only: pairs beyond the room of the exchange area are left out. ODE's world lists points by pair.
+static void publish_pairs(ob_monolith *m)
+{
+	ob_exchange *x = ob_universe_exchange(m->u);
+	size_t points, to;
+	uint32_t pairs = 0;
+	if (!fetch_contacts(m, &points))
+		points = 0;
+	for (size_t from = 0; from < points; from = to, pairs++) {
+		for (to = from + 1; to < points; to++)
+			if (m->point[to].a != m->point[from].a || m->point[to].b != m->point[from].b)
+				break;
+		if (pairs < x->pairs_max)
+			write_pair(m, pairs, from, to);
+	}
+	m->pairs = pairs;
+	x->count->pairs = pairs < x->pairs_max ? pairs : x->pairs_max;
+	x->count->records_used = x->count->pairs;
+}
+
+void ob_monolith_step(ob_monolith *m)
+{
+	follow_passports(m);
+	for (uint32_t i = 0; i < m->run->substeps; i++) {
+		if (!ob_ode_world_step(m->world, m->run->step_length / m->run->substeps)) {
+			ob_universe_exchange(m->u)->count->failure = OB_EXCHANGE_PAIRS_FULL;
+			return;
+		}
+	}
+	publish_all(m);
+	publish_pairs(m);
+}
+
+uint32_t ob_monolith_awake(const ob_monolith *m)
+{
+	return m->awake;
+}
+uint32_t ob_monolith_pairs(const ob_monolith *m)
+{
+	return m->pairs;
+}

@@ -1,0 +1,24 @@
+// The other architecture: one simulator, an ODE world, owns every object and publishes all their motions each step.
+// It reads passports and first motions from the universe, so that objects come and go as they do for object
+// simulators. Its one worker calls it; no other worker of the universe runs an object.
+#ifndef OB_SIM_MONOLITH_H
+#define OB_SIM_MONOLITH_H
+
+#include "table/table.h"
+
+typedef struct ob_monolith ob_monolith;
+
+// In the worker's own thread, after the objects have been placed. Runs for the settings of the universe. NULL: no
+// memory.
+ob_monolith *ob_monolith_create(ob_universe *u);
+void ob_monolith_destroy(ob_monolith *m); // NULL is allowed
+
+// One step: takes in and drops objects as the passports say, steps, publishes all motions as of step
+// ob_step_count(u) + 1, and writes the touching pairs to the exchange area. Completing the step is left to the caller.
+// What goes wrong stands in the exchange area's count->failure.
+void ob_monolith_step(ob_monolith *m);
+// Of the last step: dynamic objects that are not asleep; pairs that touch.
+uint32_t ob_monolith_awake(const ob_monolith *m);
+uint32_t ob_monolith_pairs(const ob_monolith *m);
+
+#endif
