@@ -1,38 +1,56 @@
 // The host: makes the universe, starts the workers as threads or processes, lets them run to a step, watches
 // over them, and ends them. spawn_thread.c and spawn_process.c are the only files that know which it is.
+//
+//   ob_host_start   universe, keeper process, objects of t = 0, workers; all stand at the gate
+//   ob_host_go      the gate opens; the workers run on by themselves until the step asked for
+//   ob_host_wait    the caller sleeps until they stand there; births, deaths and requests that fall due on the way
+//                   are carried out in pauses that the caller does not see
+//   ob_host_stop    everyone leaves; the universe is removed
+//
+// One per object: worker i runs object i, and a slot that is empty has its (sleeping) worker all the same, so that an
+// object can be born into it.
+//
+// Thread-safety: start, go, wait, get_times and stop are one thread's; the rest may be called by any thread.
+// start forks: call it before other threads take locks that a child could need (EGL, above all).
 #ifndef OB_HOST_HOST_H
 #define OB_HOST_HOST_H
 
+#include "host/roster.h"
 #include "scene/scene.h"
 #include "table/table.h"
 
 typedef enum ob_isolation { OB_ISOLATION_THREAD, OB_ISOLATION_PROCESS } ob_isolation;
 
 typedef struct ob_host_config {
-	const char *name;         // of the universe; NULL = obsim-<pid>
+	const char *name; // of the universe; NULL = obsim-<pid>
 	ob_isolation isolation;
-	uint32_t workers;         // 0 = one per object
-	ob_run_settings run;      // one_per_object is set by the host from workers
+	uint32_t workers; // 0 = one per object; a monolith has one in any case
+	uint32_t spare; // slots for objects added on request; a pool has 64 at least
+	double patience; // s without a completed step after which the run is given up; 0 = 60
+	ob_run_settings run; // one_per_object is set by the host from workers
 } ob_host_config;
 
 typedef struct ob_host_times {
-	double startup_s;         // from the call to start until every worker stood at the gate
-	double wall_s, cpu_s;     // stepping only: wall between go and pause; CPU of the workers in that time
-	double step_p50_s, step_p99_s; // wall per step
-	size_t memory_bytes;      // PSS of the workers' own memory + the table
+	double startup_s; // from the call to start until every worker stood at the gate
+	double wall_s, cpu_s; // stepping only: wall between go and pause; CPU of the workers in that time
+	double step_p50_s, step_p99_s; // wall per step, to 1 %; steps of one go that run on unobserved count as equal
+	size_t memory_bytes; // PSS of host, keeper and workers, and the table's touched pages once
 } ob_host_times;
 
 typedef struct ob_host ob_host;
 
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e);
-// Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there.
+// Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there. The first
+// go may be to step 0: the objects then perceive each other, and nothing moves.
 // wait: false and e when a simulator died, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
 bool ob_host_interrupted(const ob_host *h);
 const ob_universe *ob_host_universe(const ob_host *h);
+const ob_roster *ob_host_roster(const ob_host *h);
 void ob_host_get_times(ob_host *h, ob_host_times *out);
 // Requests, carried out at the next step boundary. id comes back through the roster. Any thread.
+// false: the definition makes no sense, or no memory.
 bool ob_host_request_add(ob_host *h, const ob_object_def *def);
 bool ob_host_request_remove(ob_host *h, uint32_t id);
 // Ends all workers and removes the universe. Always succeeds; NULL is allowed.

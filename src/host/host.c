@@ -1,0 +1,212 @@
+#include "host/host.h"
+
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "host/host_state.h"
+#include "host/interrupt.h"
+#include "host/memory.h"
+#include "host/supervisor.h"
+#include "host/worker.h"
+#include "ode/ode_body.h"
+
+enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
+static const double usual_patience = 60, start_patience = 60, leave_patience = 5; // s
+
+static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
+{
+	const ob_run_settings *r = &c->run;
+	if (!(r->step_length > 0 && isfinite(r->step_length)))
+		return ob_fail(e, "step: must be a positive number of seconds, is %g", r->step_length);
+	if (r->substeps < 1)
+		return ob_fail(e, "substeps: must be at least 1");
+	if (c->workers > WORKERS_MAX || (c->workers == 0 && (uint64_t)scene->objects + c->spare > WORKERS_MAX))
+		return ob_fail(e, "workers: at most %d, asked for %llu", WORKERS_MAX,
+			       c->workers ? (unsigned long long)c->workers
+					  : (unsigned long long)scene->objects + c->spare);
+	for (uint32_t i = 0; i < scene->objects; i++) {
+		if (!ob_object_check(&scene->object[i], e))
+			return false;
+	}
+	return true;
+}
+
+// The soft limit is a default that a program may raise; the hard one is the administrator's.
+static void raise_task_limit(void)
+{
+	struct rlimit r;
+	if (getrlimit(RLIMIT_NPROC, &r) == 0 && r.rlim_cur < r.rlim_max) {
+		r.rlim_cur = r.rlim_max;
+		setrlimit(RLIMIT_NPROC, &r);
+	}
+}
+
+static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c, const ob_spawn *spawn, ob_error *e)
+{
+	bool one_per_object = c->workers == 0 && !c->run.monolith;
+	uint32_t spare = one_per_object || c->spare > POOL_SPARE ? c->spare : POOL_SPARE;
+	uint32_t capacity = scene->objects + spare > 0 ? scene->objects + spare : 1;
+	ob_universe_setup setup = {
+		.name = c->name,
+		.capacity = capacity,
+		.workers = one_per_object    ? capacity
+			   : c->run.monolith ? 1
+					     : c->workers,
+		.isolation = spawn->name,
+		.run = c->run,
+	};
+	setup.run.one_per_object = one_per_object;
+	return ob_universe_create(&setup, e);
+}
+
+static bool settle(ob_host *h, const ob_scene *scene, ob_error *e)
+{
+	ob_ode_init();
+	h->roster = ob_roster_create();
+	h->requests = ob_requests_create();
+	h->population = h->roster ? ob_population_create(scene, h->u, h->roster) : NULL;
+	if (!h->requests || !h->population)
+		return ob_fail(e, "out of memory");
+	ob_population_update(h->population, 0, h->requests);
+	return true;
+}
+
+// Until every worker has announced itself.
+static bool wait_for_workers(ob_host *h, ob_error *e)
+{
+	double until = ob_clock_wall() + start_patience;
+	ob_worker_info info;
+	for (uint32_t w = 0; w < h->workers;) {
+		if (h->interrupted)
+			return ob_fail(e, "interrupted");
+		if (h->failed)
+			return ob_fail(e, "%s", h->failure.text);
+		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0) {
+			w++;
+			continue;
+		}
+		if (ob_clock_wall() > until)
+			return ob_fail(e, "simulator %u of %u was not ready after %g s", w + 1, h->workers,
+				       start_patience);
+		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
+	}
+	return true;
+}
+
+static bool start_workers(ob_host *h, ob_error *e)
+{
+	h->interrupt_fd = ob_interrupt_watch();
+	if (h->interrupt_fd < 0)
+		return ob_fail(e, "cannot watch for signals: too many open files?");
+	h->crew = h->spawn->start(&(ob_crew_order){ .u = h->u, .keeper = h->keeper, .run = ob_worker_live }, e);
+	return h->crew && ob_supervisor_start(h, e) && wait_for_workers(h, e);
+}
+
+ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e)
+{
+	double began = ob_clock_wall();
+	if (!check_config(scene, config, e))
+		return NULL;
+	ob_host *h = calloc(1, sizeof *h);
+	if (!h) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
+	h->wake_fd = h->interrupt_fd = -1;
+	h->patience = config->patience > 0 ? config->patience : usual_patience;
+	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
+	pthread_mutex_init(&h->failure_lock, NULL);
+	pthread_mutex_init(&h->leg.lock, NULL);
+	raise_task_limit();
+	h->u = make_universe(scene, config, h->spawn, e);
+	h->workers = h->u ? ob_universe_workers(h->u) : 0;
+	// the keeper first: it and its children shall inherit as little as possible
+	h->keeper = h->u ? ob_keeper_start(h->u, ob_worker_live, e) : NULL;
+	if (!h->keeper || !settle(h, scene, e) || !start_workers(h, e)) {
+		ob_host_stop(h);
+		return NULL;
+	}
+	h->startup = ob_clock_wall() - began;
+	return h;
+}
+
+bool ob_host_interrupted(const ob_host *h)
+{
+	return h->interrupted;
+}
+const ob_universe *ob_host_universe(const ob_host *h)
+{
+	return h->u;
+}
+const ob_roster *ob_host_roster(const ob_host *h)
+{
+	return h->roster;
+}
+
+void ob_host_get_times(ob_host *h, ob_host_times *out)
+{
+	ob_worker_info info;
+	*out = (ob_host_times){
+		.startup_s = h->startup,
+		.wall_s = h->wall,
+		.cpu_s = h->cpu_counted ? 1e-9 * (double)(ob_host_read_cpu(h) - h->cpu_before) : 0,
+		.step_p50_s = ob_latency_percentile(&h->latency, .5),
+		.step_p99_s = ob_latency_percentile(&h->latency, .99),
+	};
+	out->memory_bytes = ob_memory_of_process(getpid()) + ob_memory_of_process(ob_keeper_pid(h->keeper)) +
+			    ob_memory_of_universe(ob_universe_name(h->u));
+	for (uint32_t w = 0; w < h->workers && h->spawn->own_memory; w++) {
+		if (ob_universe_get_worker(h->u, w, &info))
+			out->memory_bytes += ob_memory_of_process(info.pid);
+	}
+}
+
+static bool request(ob_host *h, const ob_request *r)
+{
+	if (!ob_requests_push(h->requests, r))
+		return false;
+	ob_host_shorten_leg(h);
+	return true;
+}
+
+bool ob_host_request_add(ob_host *h, const ob_object_def *def)
+{
+	return ob_object_check(def, NULL) && request(h, &(ob_request){ .add = true, .def = *def });
+}
+
+bool ob_host_request_remove(ob_host *h, uint32_t id)
+{
+	return request(h, &(ob_request){ .id = id });
+}
+
+void ob_host_stop(ob_host *h)
+{
+	bool left = true;
+	if (!h)
+		return;
+	h->ending = true;
+	if (h->u) {
+		ob_universe_set_state(h->u, h->failed ? OB_UNIVERSE_FAILED : OB_UNIVERSE_FINISHED);
+		ob_gate_stop(h->u);
+	}
+	ob_supervisor_stop(h);
+	if (h->crew)
+		left = h->spawn->join(h->crew, leave_patience);
+	ob_keeper_stop(h->keeper); // removes the universe's name
+	if (h->u && left)
+		ob_universe_destroy(h->u, true);
+	if (!left)
+		ob_log_warn("a simulator's thread does not leave; its memory stays until this program ends");
+	if (h->interrupt_fd >= 0)
+		ob_interrupt_release();
+	ob_population_destroy(h->population);
+	ob_requests_destroy(h->requests);
+	ob_roster_destroy(h->roster);
+	pthread_mutex_destroy(&h->failure_lock);
+	pthread_mutex_destroy(&h->leg.lock);
+	free(h);
+}

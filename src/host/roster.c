@@ -1,0 +1,143 @@
+#include "host/roster.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <urcu/urcu-memb.h>
+
+#include "host/rcu_tsan.h"
+
+typedef struct snapshot {
+	size_t n;
+	ob_roster_entry entry[];
+} snapshot;
+
+struct ob_roster {
+	snapshot *current; // never NULL
+};
+
+// ---- threads make themselves known to RCU, once, and are forgotten when they end
+
+static pthread_key_t thread_end;
+static pthread_once_t thread_end_made = PTHREAD_ONCE_INIT;
+static __thread bool known;
+
+static void forget(void *unused)
+{
+	urcu_memb_unregister_thread();
+}
+static void make_thread_end(void)
+{
+	pthread_key_create(&thread_end, forget);
+}
+
+static void enter(void)
+{
+	if (!known) {
+		pthread_once(&thread_end_made, make_thread_end);
+		urcu_memb_register_thread();
+		pthread_setspecific(thread_end, &known);
+		known = true;
+	}
+	urcu_memb_read_lock();
+}
+
+static const snapshot *enter_and_get(const ob_roster *r)
+{
+	enter();
+	const snapshot *s = rcu_dereference(r->current);
+	OB_ORDER_AFTER(s);
+	return s;
+}
+
+static void leave(const snapshot *s)
+{
+	OB_ORDER_BEFORE(s);
+	urcu_memb_read_unlock();
+}
+
+// ---- the writer
+
+static snapshot *make(const ob_roster_entry *entries, size_t n)
+{
+	snapshot *s = malloc(sizeof *s + n * sizeof *entries);
+	if (!s)
+		return NULL;
+	s->n = n;
+	if (n > 0)
+		memcpy(s->entry, entries, n * sizeof *entries);
+	OB_ORDER_BEFORE(s);
+	return s;
+}
+
+ob_roster *ob_roster_create(void)
+{
+	ob_roster *r = calloc(1, sizeof *r);
+	if (r && !(r->current = make(NULL, 0))) {
+		free(r);
+		return NULL;
+	}
+	return r;
+}
+
+void ob_roster_destroy(ob_roster *r)
+{
+	if (!r)
+		return;
+	OB_ORDER_AFTER(r->current);
+	free(r->current);
+	free(r);
+}
+
+bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n)
+{
+	snapshot *fresh = make(entries, n);
+	if (!fresh)
+		return false;
+	snapshot *old = rcu_xchg_pointer(&r->current, fresh);
+	urcu_memb_synchronize_rcu();
+	OB_ORDER_AFTER(old);
+	free(old);
+	return true;
+}
+
+// ---- readers
+
+size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max)
+{
+	const snapshot *s = enter_and_get(r);
+	size_t n = s->n, copied = n < max ? n : max;
+	if (copied > 0)
+		memcpy(out, s->entry, copied * sizeof *out);
+	leave(s);
+	return n;
+}
+
+static int by_id(const void *key, const void *entry)
+{
+	uint32_t a = *(const uint32_t *)key, b = ((const ob_roster_entry *)entry)->id;
+	return (a > b) - (a < b);
+}
+
+bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out)
+{
+	const snapshot *s = enter_and_get(r);
+	const ob_roster_entry *found = bsearch(&id, s->entry, s->n, sizeof *s->entry, by_id);
+	if (found)
+		*out = *found;
+	leave(s);
+	return found != NULL;
+}
+
+bool ob_roster_find_name(const ob_roster *r, const char *name, ob_roster_entry *out)
+{
+	const snapshot *s = enter_and_get(r);
+	bool found = false;
+	for (size_t i = 0; i < s->n && !found; i++) {
+		found = strncmp(s->entry[i].name, name, OB_NAME_MAX) == 0;
+		if (found)
+			*out = s->entry[i];
+	}
+	leave(s);
+	return found;
+}

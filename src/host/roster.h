@@ -1,0 +1,34 @@
+// The roster: which objects exist now, under which name, and who runs them. For threads of the host's own process
+// (renderer, recorder, command line); other processes read the passports in the universe.
+//
+// A snapshot is immutable; a change publishes a new one under RCU (liburcu, membarrier flavour) and frees the old one
+// when its last reader has left. Readers copy out, never wait, and may be any number of threads: a thread is made
+// known to RCU by its first read, and forgotten when it ends. One writer at a time.
+#ifndef OB_HOST_ROSTER_H
+#define OB_HOST_ROSTER_H
+
+#include <ob/universe.h>
+
+#define OB_ROSTER_ANY_WORKER UINT32_MAX // a pool: whoever claims the object's island
+
+typedef struct ob_roster_entry {
+	uint32_t id, generation;
+	uint32_t worker; // its own worker's number, or OB_ROSTER_ANY_WORKER
+	char name[OB_NAME_MAX];
+} ob_roster_entry;
+
+typedef struct ob_roster ob_roster;
+
+ob_roster *ob_roster_create(void); // empty; NULL: out of memory
+// No reader may be left.
+void ob_roster_destroy(ob_roster *r);
+// Writer: replaces the whole roster by n entries, ascending by id; they are copied. false: out of memory.
+bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n);
+
+// Readers. copy: the first max entries, ascending by id; returns how many there are (may exceed max).
+size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max);
+// false: no object of this id, or name, exists now
+bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out);
+bool ob_roster_find_name(const ob_roster *r, const char *name, ob_roster_entry *out);
+
+#endif

@@ -1,0 +1,162 @@
+// From go to wait: legs between pauses, what happens in the pauses, and the watch over the time they take.
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "host/host_state.h"
+#include "sim/sim.h"
+
+static const double look_interval = .1; // s, between looks at a run that does not pause
+static const double interrupt_grace = 1; // s that a step may still take after Ctrl-C
+
+void ob_host_set_failure(ob_host *h, const char *format, ...)
+{
+	va_list args;
+	pthread_mutex_lock(&h->failure_lock);
+	if (!h->failed) {
+		va_start(args, format);
+		vsnprintf(h->failure.text, sizeof h->failure.text, format, args);
+		va_end(args);
+		h->failed = true;
+	}
+	pthread_mutex_unlock(&h->failure_lock);
+	ob_gate_stop(h->u);
+}
+
+void ob_host_shorten_leg(ob_host *h)
+{
+	ob_leg *leg = &h->leg;
+	pthread_mutex_lock(&leg->lock);
+	uint64_t next = ob_step_count(h->u) + 1;
+	if (leg->running && next < leg->end) {
+		leg->end = next;
+		ob_gate_set_pause_step(h->u, next);
+	}
+	pthread_mutex_unlock(&leg->lock);
+}
+
+// Paused: changes who is there, then opens the gate for the next leg, if the target is still ahead.
+static void begin_leg(ob_host *h)
+{
+	ob_leg *leg = &h->leg;
+	uint64_t step = ob_step_count(h->u);
+	ob_population_update(h->population, step, h->requests);
+	if (h->perceived && step >= h->target)
+		return;
+	uint64_t next = ob_population_next_step(h->population);
+	if (!h->perceived)
+		ob_universe_set_state(h->u, OB_UNIVERSE_RUNNING);
+	h->perceived = true;
+	if (!h->cpu_counted && h->target > step) {
+		h->cpu_before = ob_host_read_cpu(h);
+		h->cpu_counted = true;
+	}
+	pthread_mutex_lock(&leg->lock);
+	leg->running = true;
+	leg->end = next < h->target ? next : h->target;
+	ob_gate_set_pause_step(h->u, leg->end);
+	pthread_mutex_unlock(&leg->lock);
+	h->leg_first = step;
+	h->leg_start = ob_clock_wall();
+	ob_sim_resume(h->u);
+}
+
+static void end_leg(ob_host *h)
+{
+	double wall = ob_clock_wall() - h->leg_start;
+	uint64_t steps = ob_step_count(h->u) - h->leg_first;
+	pthread_mutex_lock(&h->leg.lock);
+	h->leg.running = false;
+	pthread_mutex_unlock(&h->leg.lock);
+	if (steps == 0)
+		return;
+	h->wall += wall;
+	ob_latency_add(&h->latency, wall / (double)steps, steps);
+}
+
+// The step does not end: says who still computes, for that is where to look.
+static void give_up(ob_host *h, uint64_t step)
+{
+	char busy[400] = "";
+	size_t n = 0;
+	uint64_t before[64];
+	uint32_t workers = h->workers < 64 ? h->workers : 64;
+	ob_worker_info info;
+	for (uint32_t w = 0; w < workers; w++)
+		before[w] = ob_universe_get_worker(h->u, w, &info) ? h->spawn->cpu(&info) : 0;
+	nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
+	for (uint32_t w = 0; w < workers && n < sizeof busy - 60; w++) {
+		if (ob_universe_get_worker(h->u, w, &info) && h->spawn->cpu(&info) > before[w] + 10000000)
+			n += (size_t)snprintf(busy + n, sizeof busy - n, " %u (task %d)", w, info.tid);
+	}
+	ob_host_set_failure(h, "step %llu was not complete after %g s; %s%s", (unsigned long long)step + 1, h->patience,
+			    n ? "still computing: simulator" : "none of the first 64 simulators computes", busy);
+}
+
+// Not paused yet. Sees to whoever waits for a pause; false: no use in waiting any longer.
+static bool keep_patience(ob_host *h, uint64_t *seen_step, double *seen_at, double *interrupted_at)
+{
+	double now = ob_clock_wall();
+	uint64_t step = ob_step_count(h->u);
+	if (step != *seen_step) {
+		*seen_step = step;
+		*seen_at = now;
+	}
+	if (now - *seen_at > h->patience)
+		give_up(h, step);
+	if (h->interrupted && *interrupted_at == 0)
+		*interrupted_at = now;
+	if (h->interrupted || ob_requests_waiting(h->requests))
+		ob_host_shorten_leg(h);
+	return !(h->interrupted && now - *interrupted_at > interrupt_grace);
+}
+
+void ob_host_go(ob_host *h, uint64_t step)
+{
+	h->target = step;
+	if (!h->leg.running && !h->failed && !h->interrupted)
+		begin_leg(h);
+}
+
+// A gate that was stopped looks like a pause: the step then falls short of the leg's end.
+static bool at_leg_end(const ob_host *h)
+{
+	return ob_step_count(h->u) >= h->leg.end;
+}
+
+static bool outcome(ob_host *h, ob_error *e)
+{
+	if (h->interrupted)
+		return ob_fail(e, "interrupted after step %llu", (unsigned long long)ob_step_count(h->u));
+	if (!h->failed)
+		return true;
+	pthread_mutex_lock(&h->failure_lock);
+	ob_fail(e, "%s", h->failure.text);
+	pthread_mutex_unlock(&h->failure_lock);
+	return false;
+}
+
+bool ob_host_wait(ob_host *h, ob_error *e)
+{
+	uint64_t seen_step = ob_step_count(h->u);
+	double seen_at = ob_clock_wall(), interrupted_at = 0;
+	while (h->leg.running && !h->failed) {
+		bool turn = ob_gate_host_wait(h->u, look_interval);
+		const char *failure = turn ? ob_sim_failure(h->u) : NULL;
+		if (failure) {
+			ob_host_set_failure(h, "%s", failure);
+		} else if (turn && at_leg_end(h)) {
+			end_leg(h);
+			if (!h->interrupted)
+				begin_leg(h);
+		} else {
+			if (turn)
+				nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL);
+			if (!keep_patience(h, &seen_step, &seen_at, &interrupted_at))
+				break;
+		}
+	}
+	return outcome(h, e);
+}

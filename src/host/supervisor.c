@@ -1,0 +1,139 @@
+#include "host/supervisor.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "host/host_state.h"
+
+enum { REFRESH_MS = 500 };
+
+uint64_t ob_host_read_cpu(ob_host *h)
+{
+	uint64_t sum = 0;
+	for (uint32_t w = 0; w < h->workers; w++) {
+		ob_worker_info info;
+		if (!ob_universe_get_worker(h->u, w, &info) || info.pid == 0)
+			continue;
+		uint64_t ns = h->spawn->cpu(&info);
+		if (ns > info.cpu_ns)
+			ob_worker_set_cpu(h->u, w, ns);
+		sum += ns > info.cpu_ns ? ns : info.cpu_ns;
+	}
+	return sum;
+}
+
+// "simulator 3 (object "crate", process 4242)"
+static void name_worker(const ob_host *h, const ob_worker_end *end, char *text, size_t size)
+{
+	ob_passport p;
+	int n = snprintf(text, size, "simulator %u (", end->worker);
+	if (ob_universe_settings(h->u)->one_per_object && ob_universe_get_passport(h->u, end->worker, &p))
+		n += snprintf(text + n, size - (size_t)n, "object \"%.*s\", ", OB_NAME_MAX, p.name);
+	snprintf(text + n, size - (size_t)n, "process %d)", end->pid);
+}
+
+static void on_end(ob_host *h, const ob_worker_end *end)
+{
+	char who[160];
+	unsigned long long step = ob_step_count(h->u);
+	if (h->ending || h->failed)
+		return;
+	name_worker(h, end, who, sizeof who);
+	if (end->error)
+		ob_host_set_failure(h,
+				    "simulator %u of %u does not start: %s; use fewer workers, or raise the limit on "
+				    "processes (ulimit -u, or pids.max of the container)",
+				    end->worker + 1, h->workers, strerror(end->error));
+	else if (end->signal)
+		ob_host_set_failure(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
+				    strsignal(end->signal), step);
+	else
+		ob_host_set_failure(h, "%s left with exit code %d after step %llu, before the run was over", who,
+				    end->code, step);
+}
+
+static void on_keeper_gone(ob_host *h)
+{
+	if (!h->ending && !h->failed)
+		ob_host_set_failure(h, "the keeper process %d has ended, and with it the watch over this run",
+				    (int)ob_keeper_pid(h->keeper));
+}
+
+// Returns false when the supervisor is to end.
+static bool look(ob_host *h, struct pollfd fds[4])
+{
+	ob_worker_end end;
+	if (fds[0].revents)
+		return false;
+	if (fds[1].revents)
+		while (h->spawn->next_end(h->crew, &end))
+			on_end(h, &end);
+	if (fds[2].revents) { // hung up: it would be reported again and again
+		on_keeper_gone(h);
+		fds[1].fd = fds[1].fd == fds[2].fd ? -1 : fds[1].fd;
+		fds[2].fd = -1;
+	}
+	if (fds[3].revents) {
+		h->interrupted = true;
+		fds[3].fd = -1;
+		ob_host_shorten_leg(h);
+	}
+	return true;
+}
+
+static void *supervise(void *argument)
+{
+	ob_host *h = argument;
+	struct pollfd fds[4] = {
+		{ .fd = h->wake_fd, .events = POLLIN },
+		{ .fd = h->spawn->fd(h->crew), .events = POLLIN },
+		{ .fd = ob_keeper_fd(h->keeper) }, // only its end
+		{ .fd = h->interrupt_fd, .events = POLLIN },
+	};
+	double refreshed = 0;
+	pthread_setname_np(pthread_self(), "supervisor");
+	for (;;) {
+		if (poll(fds, 4, REFRESH_MS) < 0)
+			continue;
+		if (!look(h, fds))
+			return NULL;
+		double now = ob_clock_wall();
+		if (now - refreshed >= 1e-3 * REFRESH_MS) {
+			refreshed = now;
+			ob_host_read_cpu(h);
+		}
+	}
+}
+
+bool ob_supervisor_start(ob_host *h, ob_error *e)
+{
+	sigset_t all, before;
+	h->wake_fd = eventfd(0, EFD_CLOEXEC);
+	if (h->wake_fd < 0)
+		return ob_fail(e, "cannot make an event for the supervisor");
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before); // signals are the main thread's
+	int error = pthread_create(&h->supervisor, NULL, supervise, h);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	h->supervised = error == 0;
+	return h->supervised || ob_fail(e, "cannot start the supervisor thread: %s", strerror(error));
+}
+
+void ob_supervisor_stop(ob_host *h)
+{
+	uint64_t one = 1;
+	if (h->supervised) {
+		ssize_t ignored = write(h->wake_fd, &one, sizeof one);
+		(void)ignored;
+		pthread_join(h->supervisor, NULL);
+		h->supervised = false;
+	}
+	if (h->wake_fd >= 0)
+		close(h->wake_fd);
+	h->wake_fd = -1;
+}

@@ -1,0 +1,82 @@
+// Helpers of the tests that start and lose processes.
+#ifndef OB_TESTS_HOST_CROWD_H
+#define OB_TESTS_HOST_CROWD_H
+
+#include <signal.h>
+#include <stdio.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "table/table.h"
+
+static inline void pause_ms(int ms)
+{
+	nanosleep(&(struct timespec){ ms / 1000, ms % 1000 * 1000000L }, NULL);
+}
+
+// A worker without a simulator: announces itself and works through phases until STOP.
+static inline int idle_worker(ob_universe *u, uint32_t worker)
+{
+	ob_worker_announce(u, worker, getpid(), gettid(), -1);
+	while (ob_gate_wait(u, worker) != OB_PHASE_STOP) {
+		if (ob_gate_arrive(u, worker))
+			ob_gate_pause(u);
+	}
+	return 0;
+}
+
+static inline ob_universe *make_universe(const char *name, uint32_t workers)
+{
+	ob_error e;
+	ob_universe_setup s = { .name = name, .capacity = 4, .workers = workers, .isolation = "test" };
+	s.run.step_length = .01;
+	s.run.substeps = s.run.passes = 1;
+	ob_universe *u = ob_universe_create(&s, &e);
+	if (!u)
+		fprintf(stderr, "%s\n", e.text);
+	return u;
+}
+
+static inline bool segment_exists(const char *name)
+{
+	char path[128];
+	snprintf(path, sizeof path, "/dev/shm/obsim.%s", name);
+	return access(path, F_OK) == 0;
+}
+
+// pid of a worker, waiting for it to announce itself; 0 after 10 s
+static inline pid_t pid_of_worker(const ob_universe *u, uint32_t worker)
+{
+	ob_worker_info info;
+	for (int i = 0; i < 10000; i++) {
+		if (ob_universe_get_worker(u, worker, &info) && info.pid)
+			return info.pid;
+		pause_ms(1);
+	}
+	return 0;
+}
+
+// Orphans of the test's children become its own, so that the test sees them end.
+static inline void adopt_orphans(void)
+{
+	prctl(PR_SET_CHILD_SUBREAPER, 1);
+}
+
+// Waits until no process descends from this one and the segment is gone; seconds it took, or -1 after 5 s.
+static inline double wait_until_nothing_left(const char *segment)
+{
+	double began = ob_clock_wall();
+	while (ob_clock_wall() - began < 5) {
+		while (waitpid(-1, NULL, WNOHANG) > 0)
+			;
+		if (waitpid(-1, NULL, WNOHANG) < 0 && !segment_exists(segment))
+			return ob_clock_wall() - began;
+		pause_ms(1);
+	}
+	return -1;
+}
+
+#endif
