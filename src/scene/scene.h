@@ -19,7 +19,7 @@ typedef struct ob_camera_def {
 } ob_camera_def;
 
 typedef struct ob_look_def {
-	float sky_top[3], sky_horizon[3];
+	float sky_top[3], sky_horizon[3]; // linear RGB, as all colours here
 	float ground_colour[3];
 	bool grid;            // lines on the ground each metre, stronger each ten
 	ob_vec3 sun;          // direction towards the sun
@@ -29,7 +29,7 @@ typedef struct ob_scene {
 	char title[128];
 	ob_vec3 gravity;
 	double step, duration;      // s
-	uint32_t substeps, passes;
+	uint32_t substeps, passes;  // 1 .. 256
 	char exchange[16];          // "coloured" | "jacobi"
 	char integrator[16];        // "exact" | "ode"
 	bool sleeping;
@@ -49,7 +49,8 @@ typedef struct ob_scene_options {
 	uint64_t seed;              // replaces the scene's
 } ob_scene_options;
 
-// Reads, runs and checks a scene file. NULL and e ("file:line: field: what was expected, what was found") on error.
+// Reads, runs and checks a scene file; o may be NULL. NULL and e on error, in one line: "file:line: where.field:
+// expected ..., got ..."; without a line where the file cannot be read or a -D does not fit. Any thread.
 ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e);
 void ob_scene_free(ob_scene *s);
 

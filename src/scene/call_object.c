@@ -1,0 +1,289 @@
+// box, sphere, capsule, cylinder, plane, ground: the objects.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/builder.h"
+#include "scene/colour.h"
+#include "scene/sandbox.h"
+#include "scene/spelling.h"
+#include "scene/text.h"
+
+#define FRICTION .5
+#define DENSITY 1000. // kg/m^3
+
+// What a call may say; NaN = not said.
+typedef struct body {
+	const char *name, *material;
+	ob_vec3 size, at, velocity, spin, normal;
+	double radius, length, height, mass, density, friction, restitution, born, dies;
+	ob_quat q, rotation;
+	float colour[4];
+	bool fixed, grid;
+} body;
+
+#define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
+#define EXTENT(member) F(member, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e6, .required = true)
+#define SURFACE \
+	F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
+		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1000), \
+		F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), F(colour, .kind = OB_FIELD_COLOUR)
+#define PLACE \
+	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
+		F(at, .kind = OB_FIELD_VECTOR, .low = -1e7, .high = 1e7), \
+		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
+		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9)
+#define MOVING \
+	F(mass, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e15), \
+		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
+		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
+		F(velocity, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
+		F(spin, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
+		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
+
+static const ob_field box_fields[] = {
+	F(size, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e6, .required = true),
+	PLACE,
+	MOVING,
+	SURFACE,
+};
+static const ob_field sphere_fields[] = { EXTENT(radius), PLACE, MOVING, SURFACE };
+static const ob_field long_fields[] = { EXTENT(radius), EXTENT(length), PLACE, MOVING, SURFACE };
+static const ob_field plane_fields[] = { F(normal, .kind = OB_FIELD_DIRECTION), PLACE, SURFACE };
+static const ob_field ground_fields[] = {
+	F(height, .kind = OB_FIELD_NUMBER, .low = -1e7, .high = 1e7),
+	F(grid, .kind = OB_FIELD_BOOLEAN),
+	SURFACE,
+};
+#define READ(L, where, fields, to) ob_fields_read(L, 1, where, fields, sizeof fields / sizeof *fields, to)
+
+static const body nothing = {
+	.size = { NAN, NAN, NAN },
+	.normal = { 0, 0, 1 },
+	.radius = NAN,
+	.length = NAN,
+	.mass = NAN,
+	.density = NAN,
+	.friction = NAN,
+	.restitution = NAN,
+	.dies = INFINITY,
+	.q = { .w = NAN },
+	.rotation = { .w = NAN },
+	.colour = { NAN },
+	.grid = true,
+};
+
+// Objects without a colour take these in turn (sRGB).
+static const char *const palette[] = { "#e4572e", "#f3a712", "#29a19c", "#3f7cac", "#a8c686",
+				       "#d1495b", "#edae49", "#66a182", "#8d6a9f", "#c8b8a6" };
+static const char static_colour[] = "#9a9fa5";
+
+// Names are kept in a table of the registry, with the line of the object that bears them.
+static void take_name(lua_State *L, const char *kind, const char *name)
+{
+	if (strchr(name, '#'))
+		ob_sandbox_fail(L, "%s.name: expected text without #, which is for objects without a name, got \"%s\"",
+				kind, name);
+	if (lua_getfield(L, LUA_REGISTRYINDEX, "scene.names") != LUA_TTABLE) {
+		lua_pop(L, 1);
+		lua_newtable(L);
+		lua_pushvalue(L, -1);
+		lua_setfield(L, LUA_REGISTRYINDEX, "scene.names");
+	}
+	if (lua_getfield(L, -1, name) != LUA_TNIL)
+		ob_sandbox_fail(L, "%s.name: expected a name of its own, got \"%s\" as in line %d", kind, name,
+				(int)lua_tointeger(L, -1));
+	lua_pushinteger(L, ob_sandbox_line(L));
+	lua_setfield(L, -3, name);
+	lua_pop(L, 2);
+}
+
+ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, const char *name)
+{
+	ob_scene *s = b->scene;
+	if (s->objects == OB_SCENE_OBJECTS_MAX)
+		ob_sandbox_fail(L, "%s: expected at most %d objects in a scene", kind, OB_SCENE_OBJECTS_MAX);
+	if (name)
+		take_name(L, kind, name);
+	if (s->objects == b->objects_room) {
+		uint32_t room = b->objects_room ? 2 * b->objects_room : 64;
+		ob_object_def *more = realloc(s->object, room * sizeof *more);
+		if (!more)
+			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
+		s->object = more;
+		b->objects_room = room;
+	}
+	ob_object_def *o = &s->object[s->objects];
+	*o = (ob_object_def){ .passport = { .id = s->objects, .flags = OB_OBJECT_PRESENT } };
+	if (name)
+		snprintf(o->passport.name, sizeof o->passport.name, "%s", name);
+	else
+		snprintf(o->passport.name, sizeof o->passport.name, "%s#%u", kind, (unsigned)s->objects);
+	s->objects++;
+	return o;
+}
+
+static _Noreturn void fail_material(lua_State *L, const ob_builder *b, const char *kind, const char *name)
+{
+	ob_spelling spelling = ob_spelling_start(name);
+	for (uint32_t i = 0; i < b->materials; i++)
+		ob_spelling_offer(&spelling, b->material[i].name);
+	if (spelling.best)
+		ob_sandbox_fail(L, "%s.material: unknown material \"%s\", did you mean \"%s\"?", kind, name,
+				spelling.best);
+	ob_sandbox_fail(L, "%s.material: expected a material declared before, got \"%s\"", kind, name);
+}
+
+// What is said at the object comes first, then its material's, then the default.
+static void apply_material(lua_State *L, const ob_builder *b, const char *kind, body *d)
+{
+	static const ob_material none = { .friction = NAN, .restitution = NAN, .density = NAN, .colour = { NAN } };
+	const ob_material *m = d->material ? ob_builder_material(b, d->material) : &none;
+	if (!m)
+		fail_material(L, b, kind, d->material);
+	if (isnan(d->friction))
+		d->friction = isnan(m->friction) ? FRICTION : m->friction;
+	if (isnan(d->restitution))
+		d->restitution = isnan(m->restitution) ? 0 : m->restitution;
+	if (isnan(d->density) && isnan(d->mass))
+		d->density = isnan(m->density) ? DENSITY : m->density;
+	if (isnan(d->colour[0]))
+		memcpy(d->colour, m->colour, sizeof d->colour);
+	if (isnan(d->colour[0])) {
+		size_t i = b->scene->objects % (sizeof palette / sizeof *palette);
+		ob_colour_from_hex(d->fixed ? static_colour : palette[i], d->colour);
+	}
+}
+
+static double volume(ob_shape shape, ob_vec3 size)
+{
+	double disc = M_PI * size.x * size.x;
+	switch (shape) {
+	case OB_SHAPE_BOX:
+		return 8 * size.x * size.y * size.z;
+	case OB_SHAPE_SPHERE:
+		return 4. / 3 * disc * size.x;
+	case OB_SHAPE_CAPSULE:
+		return disc * (2 * size.y + 4. / 3 * size.x);
+	case OB_SHAPE_CYLINDER:
+		return disc * 2 * size.y;
+	default:
+		return 0;
+	}
+}
+
+static void refuse_together(lua_State *L, const char *kind, const char *a, const char *b)
+{
+	ob_sandbox_fail(L, "%s.%s: expected either %s or %s, got both", kind, b, a, b);
+}
+
+static void check_together(lua_State *L, const char *kind, const body *d)
+{
+	if (!isnan(d->mass) && !isnan(d->density))
+		refuse_together(L, kind, "mass", "density");
+	if (!isnan(d->q.w) && !isnan(d->rotation.w))
+		refuse_together(L, kind, "q", "rotation");
+	if (d->fixed && !isnan(d->mass))
+		ob_sandbox_fail(L, "%s.mass: expected none for a static object, got %.10g", kind, d->mass);
+	if (d->fixed && (ob_norm2(d->velocity) > 0 || ob_norm2(d->spin) > 0))
+		ob_sandbox_fail(L, "%s.%s: expected none for a static object", kind,
+				ob_norm2(d->velocity) > 0 ? "velocity" : "spin");
+	if (d->dies <= d->born)
+		ob_sandbox_fail(L, "%s.dies: expected a time after born = %.10g, got %.10g", kind, d->born, d->dies);
+}
+
+static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec3 size, body *d)
+{
+	ob_builder *b = ob_sandbox_user(L);
+	check_together(L, kind, d);
+	apply_material(L, b, kind, d);
+	double mass = d->fixed ? 0 : isnan(d->mass) ? d->density * volume(shape, size) : d->mass;
+	if (!d->fixed && !(mass >= 1e-12 && mass <= 1e15))
+		ob_sandbox_fail(L, "%s.mass: expected from 1e-12 to 1e+15 kg, got %.4g", kind, mass);
+	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
+	ob_passport *p = &o->passport;
+	p->flags |= d->fixed ? OB_OBJECT_STATIC : 0;
+	p->shape = shape;
+	p->size = size;
+	p->mass = mass;
+	p->friction = d->friction;
+	p->restitution = d->restitution;
+	memcpy(p->colour, d->colour, sizeof p->colour);
+	o->state.pose.p = d->at;
+	o->state.pose.q = !isnan(d->q.w) ? d->q : !isnan(d->rotation.w) ? d->rotation : ob_quat_identity();
+	o->state.v = d->velocity;
+	o->state.w = d->spin;
+	o->born = d->born;
+	o->dies = d->dies;
+	return o;
+}
+
+int ob_scene_call_box(lua_State *L)
+{
+	body d = nothing;
+	READ(L, "box", box_fields, &d);
+	add(L, "box", OB_SHAPE_BOX, ob_scale(d.size, .5), &d);
+	return 0;
+}
+
+int ob_scene_call_sphere(lua_State *L)
+{
+	body d = nothing;
+	READ(L, "sphere", sphere_fields, &d);
+	add(L, "sphere", OB_SHAPE_SPHERE, ob_v3(d.radius, 0, 0), &d);
+	return 0;
+}
+
+int ob_scene_call_capsule(lua_State *L)
+{
+	body d = nothing;
+	READ(L, "capsule", long_fields, &d);
+	add(L, "capsule", OB_SHAPE_CAPSULE, ob_v3(d.radius, .5 * d.length, 0), &d);
+	return 0;
+}
+
+int ob_scene_call_cylinder(lua_State *L)
+{
+	body d = nothing;
+	READ(L, "cylinder", long_fields, &d);
+	add(L, "cylinder", OB_SHAPE_CYLINDER, ob_v3(d.radius, .5 * d.length, 0), &d);
+	return 0;
+}
+
+// The shortest turn from +z to the unit vector n.
+static ob_quat turn_to(ob_vec3 n)
+{
+	if (n.z < -1 + 1e-12)
+		return (ob_quat){ 0, 1, 0, 0 };
+	return ob_quat_normalize((ob_quat){ 1 + n.z, -n.y, n.x, 0 });
+}
+
+int ob_scene_call_plane(lua_State *L)
+{
+	body d = nothing;
+	d.fixed = true;
+	READ(L, "plane", plane_fields, &d);
+	d.q = turn_to(d.normal);
+	add(L, "plane", OB_SHAPE_PLANE, ob_v3(0, 0, 0), &d);
+	return 0;
+}
+
+int ob_scene_call_ground(lua_State *L)
+{
+	ob_builder *b = ob_sandbox_user(L);
+	ob_look_def *look = &b->scene->look;
+	body d = nothing;
+	d.name = "ground";
+	d.fixed = true;
+	READ(L, "ground", ground_fields, &d);
+	const ob_material *m = d.material ? ob_builder_material(b, d.material) : NULL;
+	if (isnan(d.colour[0]) && (!m || isnan(m->colour[0])))
+		for (int i = 0; i < 4; i++)
+			d.colour[i] = i < 3 ? look->ground_colour[i] : 1;
+	d.at.z = d.height;
+	const ob_object_def *o = add(L, "ground", OB_SHAPE_PLANE, ob_v3(0, 0, 0), &d);
+	memcpy(look->ground_colour, o->passport.colour, sizeof look->ground_colour);
+	look->grid = d.grid;
+	return 0;
+}

@@ -1,0 +1,168 @@
+// param(name, default [, { min =, max =, choices = }]): a value that the command line may replace (-D name=value).
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+#include "scene/builder.h"
+#include "scene/sandbox.h"
+#include "scene/spelling.h"
+#include "scene/text.h"
+
+typedef struct limits {
+	double min, max; // NaN: none
+} limits;
+
+static const ob_field limit_fields[] = {
+	OB_FIELD(limits, min, .name = "min", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
+	OB_FIELD(limits, max, .name = "max", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
+};
+
+// The text after "name=" in the last -D of that name; NULL where there is none.
+static const char *defined(const ob_scene_options *o, const char *name)
+{
+	size_t n = strlen(name);
+	for (uint32_t i = o->define_count; i-- > 0;)
+		if (strncmp(o->defines[i], name, n) == 0 && o->defines[i][n] == '=')
+			return o->defines[i] + n + 1;
+	return NULL;
+}
+
+static void remember(lua_State *L, ob_builder *b, const char *name)
+{
+	for (uint32_t i = 0; i < b->params; i++)
+		if (strcmp(b->param[i], name) == 0)
+			return;
+	if (b->params == OB_SCENE_PARAMS_MAX)
+		ob_sandbox_fail(L, "param: expected at most %d parameters", OB_SCENE_PARAMS_MAX);
+	snprintf(b->param[b->params++], OB_NAME_MAX, "%s", name);
+}
+
+static const char *check_name(lua_State *L)
+{
+	size_t size;
+	const char *name = lua_type(L, 1) == LUA_TSTRING ? lua_tolstring(L, 1, &size) : NULL;
+	if (!name || size == 0 || size >= OB_NAME_MAX || strchr(name, '=') || !ob_text_is_clean(name, size))
+		ob_sandbox_fail(L, "param: expected a name of 1 to %d bytes as the first value", OB_NAME_MAX - 1);
+	return name;
+}
+
+// Pushes the text of a -D in the type of the default at index 2.
+static void push_defined(lua_State *L, const char *name, const char *text)
+{
+	int type = lua_type(L, 2);
+	bool whole = lua_isinteger(L, 2);
+	if (type == LUA_TSTRING) {
+		lua_pushstring(L, text);
+		return;
+	}
+	if (type == LUA_TBOOLEAN) {
+		if (strcmp(text, "true") != 0 && strcmp(text, "false") != 0)
+			ob_sandbox_fail(L, "param.%s: expected true or false, got -D %s=%.80s", name, name, text);
+		lua_pushboolean(L, text[0] == 't');
+		return;
+	}
+	int is_whole = 0;
+	bool number = lua_stringtonumber(L, text) && isfinite(lua_tonumber(L, -1));
+	lua_Integer i = number ? lua_tointegerx(L, -1, &is_whole) : 0; // "1e3" is a whole number too
+	if (!number || (whole && !is_whole))
+		ob_sandbox_fail(L, "param.%s: expected a %snumber, got -D %s=%.80s", name, whole ? "whole " : "", name,
+				text);
+	if (whole)
+		lua_pushinteger(L, i);
+	else
+		lua_pushnumber(L, lua_tonumber(L, -1));
+}
+
+// The number at the top against { min =, max = } at index 3.
+static void check_number(lua_State *L, const char *name)
+{
+	char where[OB_NAME_MAX + 8];
+	snprintf(where, sizeof where, "param.%s", name);
+	limits l = { NAN, NAN };
+	ob_fields_read(L, 3, where, limit_fields, 2, &l);
+	double x = lua_tonumber(L, -1);
+	if (x < l.min)
+		ob_sandbox_fail(L, "%s: expected a number of at least %.10g, got %.10g", where, l.min, x);
+	if (x > l.max)
+		ob_sandbox_fail(L, "%s: expected a number of at most %.10g, got %.10g", where, l.max, x);
+}
+
+// The text at the top against { "one", "two" } at index 3.
+static void check_choice(lua_State *L, const char *name)
+{
+	char known[160] = "";
+	size_t n = 0, count = lua_istable(L, 3) ? lua_rawlen(L, 3) : 0;
+	const char *text = lua_tostring(L, -1);
+	if (count == 0)
+		ob_sandbox_fail(L, "param.%s: expected a list of choices as the third value", name);
+	for (size_t i = 1; i <= count; i++) {
+		const char *choice = lua_rawgeti(L, 3, (lua_Integer)i) == LUA_TSTRING ? lua_tostring(L, -1) : "";
+		lua_pop(L, 1);
+		if (strcmp(choice, text) == 0)
+			return;
+		if (n < sizeof known)
+			n += (size_t)snprintf(known + n, sizeof known - n, "%s\"%s\"", i > 1 ? " or " : "", choice);
+	}
+	ob_sandbox_fail(L, "param.%s: expected %s, got \"%.80s\"", name, known, text);
+}
+
+int ob_scene_call_param(lua_State *L)
+{
+	ob_builder *b = ob_sandbox_user(L);
+	const char *name = check_name(L);
+	lua_settop(L, 3);
+	int type = lua_type(L, 2);
+	if (type != LUA_TNUMBER && type != LUA_TSTRING && type != LUA_TBOOLEAN)
+		ob_fields_fail(L, "param", name, "a default that is a number, text, true or false", 2);
+	remember(L, b, name);
+	const char *text = defined(b->options, name);
+	if (text)
+		push_defined(L, name, text);
+	else
+		lua_pushvalue(L, 2);
+	if (lua_isnil(L, 3))
+		return 1;
+	if (type == LUA_TNUMBER)
+		check_number(L, name);
+	else if (type == LUA_TSTRING)
+		check_choice(L, name);
+	else
+		ob_sandbox_fail(L, "param.%s: expected no third value for true or false", name);
+	return 1;
+}
+
+static void list_params(const ob_builder *b, char *out, size_t size)
+{
+	size_t n = (size_t)snprintf(out, size, b->params ? "it has " : "it has none");
+	for (uint32_t i = 0; i < b->params && n < size; i++)
+		n += (size_t)snprintf(out + n, size - n, "%s%s", i ? ", " : "", b->param[i]);
+}
+
+static bool check_define(const ob_builder *b, const char *path, const char *define, ob_error *e)
+{
+	char name[OB_NAME_MAX], list[400];
+	const char *equal = strchr(define, '=');
+	if (!equal || equal == define)
+		return ob_fail(e, "-D %.80s: expected name=value", define);
+	snprintf(name, sizeof name, "%.*s", (int)(equal - define), define);
+	ob_spelling spelling = ob_spelling_start(name);
+	for (uint32_t i = 0; i < b->params; i++) {
+		size_t n = strlen(b->param[i]);
+		if (n == (size_t)(equal - define) && strncmp(b->param[i], define, n) == 0)
+			return true;
+		ob_spelling_offer(&spelling, b->param[i]);
+	}
+	list_params(b, list, sizeof list);
+	return ob_fail(e, "%s: -D %.80s: the scene has no parameter %s%s%s; %s", path, define, name,
+		       spelling.best ? ", did you mean " : "", spelling.best ? spelling.best : "", list);
+}
+
+bool ob_builder_check_defines(const ob_builder *b, const char *path, ob_error *e)
+{
+	for (uint32_t i = 0; i < b->options->define_count; i++)
+		if (!check_define(b, path, b->options->defines[i], e))
+			return false;
+	return true;
+}

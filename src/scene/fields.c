@@ -1,0 +1,265 @@
+#include "scene/fields.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <lauxlib.h>
+#include <ob/vec.h>
+
+#include "scene/colour.h"
+#include "scene/sandbox.h"
+#include "scene/spelling.h"
+#include "scene/text.h"
+
+// The value of one field lies at the top of the stack while it is read.
+typedef struct reader {
+	lua_State *L;
+	const char *where;
+	const ob_field *field;
+	void *to; // the field's own place in the target
+} reader;
+
+_Noreturn void ob_fields_fail(lua_State *L, const char *where, const char *field, const char *expected, int index)
+{
+	char got[OB_TEXT_VALUE];
+	ob_text_of_value(L, index, got);
+	ob_sandbox_fail(L, "%s.%s: expected %s, got %s", where, field, expected, got);
+}
+
+static _Noreturn void fail(const reader *r, const char *expected)
+{
+	ob_fields_fail(r->L, r->where, r->field->name, expected, -1);
+}
+
+// "a number from 0 to 1", "three numbers above 0", "a whole number of at least 1"
+static _Noreturn void fail_range(const reader *r, const char *what)
+{
+	const ob_field *f = r->field;
+	char expected[160];
+	if (f->above && f->high == INFINITY)
+		snprintf(expected, sizeof expected, "%s above %.10g", what, f->low);
+	else if (f->above)
+		snprintf(expected, sizeof expected, "%s above %.10g, up to %.10g", what, f->low, f->high);
+	else if (f->high == INFINITY)
+		snprintf(expected, sizeof expected, "%s of at least %.10g", what, f->low);
+	else
+		snprintf(expected, sizeof expected, "%s from %.10g to %.10g", what, f->low, f->high);
+	fail(r, expected);
+}
+
+static bool fits(const ob_field *f, double x)
+{
+	return isfinite(x) && x >= f->low && x <= f->high && !(f->above && x == f->low);
+}
+
+static void read_number(const reader *r)
+{
+	double x = lua_tonumber(r->L, -1);
+	if (lua_type(r->L, -1) != LUA_TNUMBER || !fits(r->field, x))
+		fail_range(r, "a number");
+	*(double *)r->to = x;
+}
+
+static void read_whole(const reader *r)
+{
+	double x = lua_tonumber(r->L, -1);
+	if (lua_type(r->L, -1) != LUA_TNUMBER || !fits(r->field, x) || x != floor(x))
+		fail_range(r, "a whole number");
+	*(uint64_t *)r->to = (uint64_t)x;
+}
+
+static void read_boolean(const reader *r)
+{
+	if (!lua_isboolean(r->L, -1))
+		fail(r, "true or false");
+	*(bool *)r->to = lua_toboolean(r->L, -1);
+}
+
+static _Noreturn void fail_choice(const reader *r)
+{
+	char expected[160];
+	size_t n = 0;
+	for (const char *const *c = r->field->choices; *c; c++)
+		n += (size_t)snprintf(expected + n, sizeof expected - n, "%s\"%s\"",
+				      c == r->field->choices ? "" : " or ", *c);
+	fail(r, expected);
+}
+
+static void read_text(const reader *r)
+{
+	size_t size;
+	const char *text = lua_type(r->L, -1) == LUA_TSTRING ? lua_tolstring(r->L, -1, &size) : NULL;
+	if (r->field->choices) {
+		const char *const *c = r->field->choices;
+		while (text && *c && strcmp(*c, text) != 0)
+			c++;
+		if (!text || !*c)
+			fail_choice(r);
+	} else if (!text || size == 0 || (double)size > r->field->high || !ob_text_is_clean(text, size)) {
+		char expected[80];
+		snprintf(expected, sizeof expected, "text of 1 to %.0f bytes without control characters",
+			 r->field->high);
+		fail(r, expected);
+	}
+	*(const char **)r->to = text;
+}
+
+// Exactly count numbers, nothing else: {1, 2, 3}
+static bool list(lua_State *L, size_t count, double *out)
+{
+	if (!lua_istable(L, -1) || lua_rawlen(L, -1) != count)
+		return false;
+	size_t entries = 0;
+	lua_pushnil(L);
+	while (lua_next(L, -2)) {
+		entries++;
+		lua_pop(L, 1);
+	}
+	bool good = entries == count;
+	for (size_t i = 0; i < count && good; i++) {
+		good = lua_rawgeti(L, -1, (lua_Integer)i + 1) == LUA_TNUMBER;
+		out[i] = lua_tonumber(L, -1);
+		good = good && isfinite(out[i]);
+		lua_pop(L, 1);
+	}
+	return good;
+}
+
+static void read_vector(const reader *r)
+{
+	double x[3];
+	bool good = list(r->L, 3, x);
+	for (int i = 0; i < 3 && good; i++)
+		good = fits(r->field, x[i]);
+	if (!good)
+		fail_range(r, "three numbers {x, y, z}, each");
+	*(ob_vec3 *)r->to = ob_v3(x[0], x[1], x[2]);
+}
+
+// Scaled by its largest part first, so that squares neither vanish nor overflow; false where there is no direction.
+static bool make_unit(double *x, int n)
+{
+	double largest = 0, sum = 0;
+	for (int i = 0; i < n; i++)
+		largest = fmax(largest, fabs(x[i]));
+	if (largest == 0)
+		return false;
+	for (int i = 0; i < n; i++) {
+		x[i] /= largest;
+		sum += x[i] * x[i];
+	}
+	for (int i = 0; i < n; i++)
+		x[i] /= sqrt(sum);
+	return true;
+}
+
+static void read_direction(const reader *r)
+{
+	double x[3];
+	if (!list(r->L, 3, x) || !make_unit(x, 3))
+		fail(r, "a direction {x, y, z} that is not {0, 0, 0}");
+	*(ob_vec3 *)r->to = ob_v3(x[0], x[1], x[2]);
+}
+
+static void read_quaternion(const reader *r)
+{
+	double x[4];
+	if (!list(r->L, 4, x) || !make_unit(x, 4))
+		fail(r, "a quaternion {w, x, y, z} that is not {0, 0, 0, 0}");
+	*(ob_quat *)r->to = (ob_quat){ x[0], x[1], x[2], x[3] };
+}
+
+typedef struct rotation {
+	ob_vec3 axis;
+	double degrees;
+} rotation;
+
+static const ob_field rotation_fields[] = {
+	OB_FIELD(rotation, axis, .name = "axis", .kind = OB_FIELD_DIRECTION, .required = true),
+	OB_FIELD(rotation, degrees, .name = "degrees", .kind = OB_FIELD_NUMBER, .low = -36000, .high = 36000,
+		 .required = true),
+};
+
+static void read_rotation(const reader *r)
+{
+	if (!lua_istable(r->L, -1))
+		fail(r, "{ axis = {x, y, z}, degrees = angle }");
+	char where[64];
+	snprintf(where, sizeof where, "%s.%s", r->where, r->field->name);
+	rotation t;
+	ob_fields_read(r->L, -1, where, rotation_fields, 2, &t);
+	*(ob_quat *)r->to = ob_quat_turn(ob_quat_identity(), ob_scale(t.axis, t.degrees * (M_PI / 180)));
+}
+
+static void read_colour(const reader *r)
+{
+	double rgba[4] = { 0, 0, 0, 1 };
+	if (lua_type(r->L, -1) == LUA_TSTRING && ob_colour_from_hex(lua_tostring(r->L, -1), r->to))
+		return;
+	bool good = list(r->L, 3, rgba) || list(r->L, 4, rgba);
+	for (int i = 0; i < 4 && good; i++)
+		good = rgba[i] >= 0 && rgba[i] <= 1;
+	if (!good)
+		fail(r, "a colour {r, g, b} of numbers from 0 to 1, or \"#rrggbb\"");
+	ob_colour_from_srgb(rgba, r->to);
+}
+
+static void (*const read_kind[])(const reader *r) = {
+	[OB_FIELD_NUMBER] = read_number,         [OB_FIELD_WHOLE] = read_whole,
+	[OB_FIELD_BOOLEAN] = read_boolean,       [OB_FIELD_TEXT] = read_text,
+	[OB_FIELD_VECTOR] = read_vector,         [OB_FIELD_DIRECTION] = read_direction,
+	[OB_FIELD_QUATERNION] = read_quaternion, [OB_FIELD_ROTATION] = read_rotation,
+	[OB_FIELD_COLOUR] = read_colour,
+};
+
+// The key lies at index -2. Positional values cannot be meant: every field has a name.
+static void check_name(lua_State *L, const char *where, const ob_field *field, size_t count)
+{
+	if (lua_type(L, -2) != LUA_TSTRING) {
+		char key[OB_TEXT_VALUE];
+		ob_text_of_value(L, -2, key);
+		ob_sandbox_fail(L, "%s: expected named fields (name = value), got a value without a name at %s", where,
+				key);
+	}
+	const char *name = lua_tostring(L, -2);
+	ob_spelling spelling = ob_spelling_start(name);
+	for (size_t i = 0; i < count; i++) {
+		if (strcmp(field[i].name, name) == 0)
+			return;
+		ob_spelling_offer(&spelling, field[i].name);
+	}
+	if (spelling.best)
+		ob_sandbox_fail(L, "%s.%.40s: unknown field, did you mean %s?", where, name, spelling.best);
+	char known[300];
+	size_t n = 0;
+	known[0] = 0;
+	for (size_t i = 0; i < count && n < sizeof known; i++)
+		n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", i ? ", " : "", field[i].name);
+	ob_sandbox_fail(L, "%s.%.40s: unknown field, expected one of %s", where, name, known);
+}
+
+void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to)
+{
+	index = lua_absindex(L, index);
+	luaL_checkstack(L, 8, "nested too deep");
+	if (!lua_istable(L, index)) {
+		char got[OB_TEXT_VALUE];
+		ob_text_of_value(L, index, got);
+		ob_sandbox_fail(L, "%s: expected a table of fields, as in %s { ... }, got %s", where, where, got);
+	}
+	lua_pushnil(L);
+	while (lua_next(L, index)) {
+		check_name(L, where, field, count);
+		lua_pop(L, 1);
+	}
+	for (size_t i = 0; i < count; i++) {
+		reader r = { L, where, &field[i], (char *)to + field[i].offset };
+		lua_pushstring(L, field[i].name);
+		bool given = lua_rawget(L, index) != LUA_TNIL;
+		if (given || field[i].required)
+			read_kind[field[i].kind](&r);
+		lua_pop(L, 1);
+	}
+}

@@ -1,0 +1,47 @@
+// Reading a Lua table against a list of the fields that it may have. What does not fit raises one error with the
+// place, the field, what was expected and what was found; a name that no field has, with the nearest that one has.
+//
+// The target holds the defaults beforehand; a field that is absent leaves it as it is. NaN is never accepted from a
+// scene, so a NaN default tells afterwards that a number, vector or colour was not given.
+#ifndef OB_SCENE_FIELDS_H
+#define OB_SCENE_FIELDS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <lua.h>
+
+typedef enum ob_field_kind {
+	OB_FIELD_NUMBER, // double, within low..high
+	OB_FIELD_WHOLE, // uint64_t, within low..high
+	OB_FIELD_BOOLEAN, // bool
+	OB_FIELD_TEXT, // const char *, valid while the table is: at most high bytes, or one of choices
+	OB_FIELD_VECTOR, // ob_vec3, each within low..high
+	OB_FIELD_DIRECTION, // ob_vec3 of any length but 0, made a unit vector
+	OB_FIELD_QUATERNION, // ob_quat {w, x, y, z} of any norm but 0, made a unit quaternion
+	OB_FIELD_ROTATION, // ob_quat from { axis = {x, y, z}, degrees = a }
+	OB_FIELD_COLOUR, // float[4], linear, from {r, g, b [, a]} or "#rrggbb[aa]" (sRGB)
+} ob_field_kind;
+
+typedef struct ob_field {
+	const char *name;
+	ob_field_kind kind;
+	size_t offset; // in the target
+	double low, high; // high may be INFINITY; infinite values are refused all the same
+	bool above; // low itself is too small
+	bool required;
+	const char *const *choices; // up to NULL
+} ob_field;
+
+#define OB_FIELD(type, member, ...) \
+	{ \
+		.offset = offsetof(type, member), __VA_ARGS__ \
+	}
+
+// where: the name of the call, for messages ("box"). index: of the table in the stack of L.
+void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to);
+
+// Raises "where.field: expected ..., got <what lies at index>".
+_Noreturn void ob_fields_fail(lua_State *L, const char *where, const char *field, const char *expected, int index);
+
+#endif

@@ -1,0 +1,226 @@
+#include "scene/sandbox.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+#include "base/clock.h"
+#include "scene/library.h"
+
+// Lua shortens long file names in its messages, so it gets this one, and the path is put in its place at the end.
+#define CHUNK "scene"
+// A few long operations between two looks at the clock, each below some milliseconds: well under a second together.
+#define HOOK_EVERY 100
+#define LARGE ((size_t)64 << 10) // bytes: filling such a block takes long enough to look at the clock
+
+struct ob_sandbox {
+	lua_State *L;
+	const char *path;
+	void *user;
+	size_t memory; // bytes held by Lua
+	uint64_t instructions;
+	double deadline; // s, of ob_clock_wall
+	// Why and where memory was refused last: Lua itself reports no place for it.
+	const char *refused;
+	int refused_line;
+	int error_line;
+};
+
+static ob_sandbox *sandbox_of(lua_State *L)
+{
+	return *(ob_sandbox **)lua_getextraspace(L);
+}
+
+void *ob_sandbox_user(lua_State *L)
+{
+	return sandbox_of(L)->user;
+}
+
+int ob_sandbox_line(lua_State *L)
+{
+	lua_Debug d;
+	for (int level = 0; lua_getstack(L, level, &d); level++) {
+		lua_getinfo(L, "l", &d);
+		if (d.currentline > 0)
+			return d.currentline;
+	}
+	return 0;
+}
+
+void ob_sandbox_fail(lua_State *L, const char *format, ...)
+{
+	char text[sizeof((ob_error *)0)->text];
+	int n = snprintf(text, sizeof text, CHUNK ":%d: ", ob_sandbox_line(L));
+	va_list args;
+	va_start(args, format);
+	vsnprintf(text + n, sizeof text - (size_t)n, format, args);
+	va_end(args);
+	lua_pushstring(L, text);
+	lua_error(L);
+	abort(); // lua_error does not return, but is not declared so
+}
+
+static const char too_late[] = "stopped after 10 s: does it compute too much?";
+_Static_assert(OB_SANDBOX_SECONDS == 10, "said in too_late");
+
+void ob_sandbox_spend(lua_State *L, unsigned instructions)
+{
+	ob_sandbox *s = sandbox_of(L);
+	s->instructions += instructions;
+	if (s->instructions > OB_SANDBOX_INSTRUCTIONS)
+		ob_sandbox_fail(L, "stopped after %d million instructions: does a loop never end?",
+				OB_SANDBOX_INSTRUCTIONS / 1000000);
+	if (ob_clock_wall() > s->deadline)
+		ob_sandbox_fail(L, "%s", too_late);
+}
+
+static void hook(lua_State *L, lua_Debug *d)
+{
+	ob_sandbox_spend(L, HOOK_EVERY);
+}
+
+// Asking for the line allocates nothing, so it may be done inside the allocator.
+static void *refuse(ob_sandbox *s, const char *why)
+{
+	s->refused = why;
+	s->refused_line = s->L ? ob_sandbox_line(s->L) : 0;
+	return NULL;
+}
+
+// lua_Alloc. For a new block, old says what kind of thing it is for.
+static void *allocate(void *user, void *block, size_t old, size_t size)
+{
+	ob_sandbox *s = user;
+	size_t had = block ? old : 0;
+	if (size == 0) {
+		free(block);
+		s->memory -= had;
+		return NULL;
+	}
+	if (size > had) {
+		if (!block && old == LUA_TSTRING && size > OB_SANDBOX_STRING)
+			return refuse(s, "a string grew beyond 1 MiB");
+		if (s->memory - had + size > OB_SANDBOX_MEMORY)
+			return refuse(s, "the scene needs more than 64 MiB of memory");
+		if (size > LARGE && ob_clock_wall() > s->deadline)
+			return refuse(s, too_late);
+	}
+	void *moved = realloc(block, size);
+	if (moved)
+		s->memory += size - had;
+	else if (size > had)
+		return refuse(s, "no memory left on this machine");
+	return moved ? moved : block; // Lua relies on shrinking, which then costs nothing but room
+}
+
+// Message handler: notes where it went wrong, for messages that do not say so.
+static int note_line(lua_State *L)
+{
+	sandbox_of(L)->error_line = ob_sandbox_line(L);
+	if (lua_type(L, 1) != LUA_TSTRING)
+		lua_pushfstring(L, "error raised with a %s in place of a message", luaL_typename(L, 1));
+	return 1;
+}
+
+// One line, whatever the message was.
+static void flatten(char *text)
+{
+	for (; *text; text++)
+		if ((unsigned char)*text < ' ' || *text == 127)
+			*text = ' ';
+}
+
+static bool report(ob_sandbox *s, int status, ob_error *e)
+{
+	size_t n = strlen(CHUNK ":");
+	const char *text = lua_tostring(s->L, -1);
+	if (status == LUA_ERRMEM)
+		ob_fail(e, "%s:%d: %s", s->path, s->refused_line, s->refused);
+	else if (strncmp(text, CHUNK ":", n) == 0)
+		ob_fail(e, "%s:%s", s->path, text + n);
+	else
+		ob_fail(e, "%s:%d: %s", s->path, s->error_line, text);
+	if (e)
+		flatten(e->text);
+	lua_settop(s->L, 0);
+	return false;
+}
+
+ob_sandbox *ob_sandbox_create(const char *path, void *user, ob_error *e)
+{
+	ob_sandbox *s = calloc(1, sizeof *s);
+	if (!s)
+		return ob_fail(e, "%s: no memory", path), NULL;
+	s->path = path;
+	s->user = user;
+	s->deadline = ob_clock_wall() + OB_SANDBOX_SECONDS;
+	s->L = lua_newstate(allocate, s);
+	if (!s->L) {
+		free(s);
+		return ob_fail(e, "%s: no memory", path), NULL;
+	}
+	*(ob_sandbox **)lua_getextraspace(s->L) = s;
+	lua_pushcfunction(s->L, ob_library_open);
+	int status = lua_pcall(s->L, 0, 0, 0);
+	if (status != LUA_OK) {
+		report(s, status, e);
+		ob_sandbox_destroy(s);
+		return NULL;
+	}
+	return s;
+}
+
+void ob_sandbox_destroy(ob_sandbox *s)
+{
+	if (!s)
+		return;
+	lua_close(s->L);
+	free(s);
+}
+
+typedef struct offer_args {
+	const char *library, *name;
+	lua_CFunction f;
+} offer_args;
+
+// Called protected, for memory may run out.
+static int offer(lua_State *L)
+{
+	const offer_args *a = lua_touserdata(L, 1);
+	lua_pushglobaltable(L);
+	if (a->library)
+		lua_getfield(L, -1, a->library);
+	lua_pushcfunction(L, a->f);
+	lua_setfield(L, -2, a->name);
+	return 0;
+}
+
+bool ob_sandbox_offer(ob_sandbox *s, const char *library, const char *name, lua_CFunction f, ob_error *e)
+{
+	offer_args a = { library, name, f };
+	lua_pushcfunction(s->L, offer);
+	lua_pushlightuserdata(s->L, &a);
+	int status = lua_pcall(s->L, 1, 0, 0);
+	return status == LUA_OK || report(s, status, e);
+}
+
+bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e)
+{
+	if (size && text[0] == LUA_SIGNATURE[0])
+		return ob_fail(e, "%s:1: expected Lua text, got compiled Lua", s->path);
+	lua_pushcfunction(s->L, note_line);
+	int status = luaL_loadbufferx(s->L, text, size, "=" CHUNK, "t");
+	if (status == LUA_OK) {
+		lua_sethook(s->L, hook, LUA_MASKCOUNT, HOOK_EVERY);
+		status = lua_pcall(s->L, 0, 0, 1);
+		lua_sethook(s->L, NULL, 0, 0);
+	}
+	if (status != LUA_OK)
+		return report(s, status, e);
+	lua_settop(s->L, 0);
+	return true;
+}

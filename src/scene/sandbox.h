@@ -1,0 +1,43 @@
+// The sandbox: a Lua 5.4 state that can compute and call what it is given, and nothing else.
+//
+// No files, no system, no loading of code, no metatables, no coroutines, no protected calls. Bounded in memory,
+// in instructions and in time; everything that runs long inside one instruction is guarded in library.c.
+// The same scene gives the same run on any machine: pairs() has a fixed order (pairs.c), random numbers a seed.
+//
+// Every error is one line, "path:line: text". A sandbox belongs to one thread; several may exist at once.
+#ifndef OB_SCENE_SANDBOX_H
+#define OB_SCENE_SANDBOX_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <lua.h>
+#include <ob/error.h>
+
+#define OB_SANDBOX_MEMORY ((size_t)64 << 20) // bytes, all that Lua holds
+#define OB_SANDBOX_STRING ((size_t)1 << 20) // bytes, one string
+#define OB_SANDBOX_INSTRUCTIONS 50000000 // of the Lua machine
+#define OB_SANDBOX_SECONDS 10 // s, wall clock
+
+typedef struct ob_sandbox ob_sandbox;
+
+// path: for messages; user: what ob_sandbox_user gives to the functions that are called from Lua. Both are kept, not
+// copied. NULL and e when there is no memory.
+ob_sandbox *ob_sandbox_create(const char *path, void *user, ob_error *e);
+void ob_sandbox_destroy(ob_sandbox *s); // NULL is allowed
+
+// Offers f to the scene as a global (library = NULL) or as a field of a library ("math").
+bool ob_sandbox_offer(ob_sandbox *s, const char *library, const char *name, lua_CFunction f, ob_error *e);
+// Runs Lua text (not bytecode); false and e when it fails.
+bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e);
+
+// For functions called from Lua:
+void *ob_sandbox_user(lua_State *L);
+// The line of the scene that is running; 0 where none is.
+int ob_sandbox_line(lua_State *L);
+// Raises "path:line: ..." ; never returns.
+_Noreturn void ob_sandbox_fail(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// Counts work done outside the Lua machine, in instructions; raises an error at a limit.
+void ob_sandbox_spend(lua_State *L, unsigned instructions);
+
+#endif

@@ -1,0 +1,167 @@
+#include "scene/scene.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "scene/builder.h"
+#include "scene/colour.h"
+#include "scene/sandbox.h"
+
+#define FILE_MAX ((size_t)4 << 20) // bytes of a scene file
+
+static char *fail_read(FILE *f, char *text, const char *path, const char *why, ob_error *e)
+{
+	fclose(f);
+	free(text);
+	ob_fail(e, "%s: cannot read the scene: %s", path, why);
+	return NULL;
+}
+
+// The whole file; the caller frees it.
+static char *read_file(const char *path, size_t *size, ob_error *e)
+{
+	struct stat st;
+	FILE *f = fopen(path, "rb");
+	if (!f) {
+		ob_fail(e, "%s: cannot read the scene: %s", path, strerror(errno));
+		return NULL;
+	}
+	if (fstat(fileno(f), &st) == 0 && S_ISDIR(st.st_mode))
+		return fail_read(f, NULL, path, "it is a directory", e);
+	char *text = malloc(FILE_MAX + 1);
+	if (!text)
+		return fail_read(f, NULL, path, "no memory", e);
+	*size = fread(text, 1, FILE_MAX + 1, f);
+	if (ferror(f))
+		return fail_read(f, text, path, strerror(errno), e);
+	if (*size > FILE_MAX)
+		return fail_read(f, text, path, "it is larger than 4 MiB", e);
+	fclose(f);
+	return text;
+}
+
+// What editors and shells put before the first line: a byte order mark, "#!...". Blanks leave the numbers of lines.
+static void blank_start(char *text, size_t size)
+{
+	size_t i = 0;
+	if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
+		for (; i < 3; i++)
+			text[i] = ' ';
+	if (i < size && text[i] == '#')
+		while (i < size && text[i] != '\n')
+			text[i++] = ' ';
+}
+
+static bool offer_calls(ob_sandbox *s, ob_error *e)
+{
+	static const struct {
+		const char *library, *name;
+		lua_CFunction f;
+	} call[] = {
+		{ NULL, "scene", ob_scene_call_scene },
+		{ NULL, "record", ob_scene_call_record },
+		{ NULL, "sky", ob_scene_call_sky },
+		{ NULL, "sun", ob_scene_call_sun },
+		{ NULL, "ground", ob_scene_call_ground },
+		{ NULL, "material", ob_scene_call_material },
+		{ NULL, "camera", ob_scene_call_camera },
+		{ NULL, "box", ob_scene_call_box },
+		{ NULL, "sphere", ob_scene_call_sphere },
+		{ NULL, "capsule", ob_scene_call_capsule },
+		{ NULL, "cylinder", ob_scene_call_cylinder },
+		{ NULL, "plane", ob_scene_call_plane },
+		{ NULL, "param", ob_scene_call_param },
+		{ NULL, "random", ob_scene_call_random },
+		{ NULL, "random_rotation", ob_scene_call_random_rotation },
+		{ "math", "random", ob_scene_call_random_integer },
+	};
+	for (size_t i = 0; i < sizeof call / sizeof *call; i++)
+		if (!ob_sandbox_offer(s, call[i].library, call[i].name, call[i].f, e))
+			return false;
+	return true;
+}
+
+static void set_colour(float to[3], const char *hex)
+{
+	float linear[4];
+	ob_colour_from_hex(hex, linear);
+	memcpy(to, linear, 3 * sizeof *to);
+}
+
+static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *o)
+{
+	const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path;
+	snprintf(s->title, sizeof s->title, "%.*s", (int)strcspn(stem, "."), stem);
+	s->gravity = ob_v3(0, 0, -9.81);
+	s->step = 1. / 60;
+	s->duration = 10;
+	s->substeps = 8;
+	s->passes = 16;
+	snprintf(s->exchange, sizeof s->exchange, "coloured");
+	snprintf(s->integrator, sizeof s->integrator, "exact");
+	s->sleeping = true;
+	s->seed = o->has_seed ? o->seed : 1;
+	s->record_every = 1;
+	set_colour(s->look.sky_top, "#5f93c9");
+	set_colour(s->look.sky_horizon, "#dce8f1");
+	set_colour(s->look.ground_colour, "#b4b9b3");
+	s->look.grid = true;
+	ob_vec3 sun = ob_v3(-.45, -.5, .9);
+	s->look.sun = ob_scale(sun, 1 / ob_norm(sun));
+}
+
+static bool run(ob_builder *b, const char *path, char *text, size_t size, ob_error *e)
+{
+	blank_start(text, size);
+	ob_sandbox *sandbox = ob_sandbox_create(path, b, e);
+	bool good = sandbox && offer_calls(sandbox, e) && ob_sandbox_run(sandbox, text, size, e);
+	ob_sandbox_destroy(sandbox);
+	return good;
+}
+
+static bool build(ob_builder *b, const char *path, ob_error *e)
+{
+	size_t size;
+	char *text = read_file(path, &size, e);
+	bool good = text && run(b, path, text, size, e) && ob_builder_check_defines(b, path, e);
+	free(text);
+	if (!good)
+		return false;
+	if (b->scene->objects == 0)
+		return ob_fail(e, "%s:1: expected at least one object (box, sphere, ground ...)", path);
+	return ob_builder_place_cameras(b) || ob_fail(e, "%s: no memory", path);
+}
+
+ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e)
+{
+	static const ob_scene_options none = { 0 };
+	ob_builder *b = calloc(1, sizeof *b);
+	ob_scene *s = calloc(1, sizeof *s);
+	bool good = false;
+	if (b && s) {
+		b->scene = s;
+		b->options = o ? o : &none;
+		set_defaults(s, path, b->options);
+		ob_random_seed(&b->random, s->seed);
+		good = build(b, path, e);
+	} else {
+		ob_fail(e, "%s: no memory", path);
+	}
+	free(b);
+	if (good)
+		return s;
+	ob_scene_free(s);
+	return NULL;
+}
+
+void ob_scene_free(ob_scene *s)
+{
+	if (!s)
+		return;
+	free(s->object);
+	free(s->camera);
+	free(s);
+}

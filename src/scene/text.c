@@ -1,0 +1,86 @@
+#include "scene/text.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static size_t put_number(double x, char *out, size_t size)
+{
+	// printf shows the sign of a NaN, which differs between machines
+	return (size_t)snprintf(out, size, isnan(x) ? "nan" : "%.10g", x);
+}
+
+// Short lists of numbers are shown whole: most mistakes are in vectors.
+static bool put_list(lua_State *L, int index, char *out)
+{
+	size_t n = lua_rawlen(L, index), used = 1;
+	if (n < 1 || n > 4)
+		return false;
+	out[0] = '{';
+	for (size_t i = 1; i <= n; i++) {
+		bool number = lua_rawgeti(L, index, (lua_Integer)i) == LUA_TNUMBER;
+		if (number) {
+			used += put_number(lua_tonumber(L, -1), out + used, OB_TEXT_VALUE - used);
+			used += (size_t)snprintf(out + used, OB_TEXT_VALUE - used, i < n ? ", " : "}");
+		}
+		lua_pop(L, 1);
+		if (!number)
+			return false;
+	}
+	return true;
+}
+
+void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE])
+{
+	switch (lua_type(L, index)) {
+	case LUA_TNONE:
+	case LUA_TNIL:
+		snprintf(out, OB_TEXT_VALUE, "nothing");
+		break;
+	case LUA_TBOOLEAN:
+		snprintf(out, OB_TEXT_VALUE, lua_toboolean(L, index) ? "true" : "false");
+		break;
+	case LUA_TNUMBER:
+		put_number(lua_tonumber(L, index), out, OB_TEXT_VALUE);
+		break;
+	case LUA_TSTRING:
+		snprintf(out, OB_TEXT_VALUE, "\"%.48s\"%s", lua_tostring(L, index),
+			 lua_rawlen(L, index) > 48 ? " ..." : "");
+		break;
+	case LUA_TTABLE:
+		if (!put_list(L, index, out))
+			snprintf(out, OB_TEXT_VALUE, "a table");
+		break;
+	default:
+		snprintf(out, OB_TEXT_VALUE, "a %s", lua_typename(L, lua_type(L, index)));
+	}
+}
+
+// Length of the UTF-8 sequence at s, 0 = not one (RFC 3629, overlong forms and surrogates left out).
+static size_t sequence(const unsigned char *s, size_t size)
+{
+	size_t n = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : s[0] < 0xf5 ? 4 : 0;
+	if (n == 0 || n > size)
+		return 0;
+	for (size_t i = 1; i < n; i++)
+		if ((s[i] & 0xc0) != 0x80)
+			return 0;
+	if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
+	    (s[0] == 0xf4 && s[1] > 0x8f))
+		return 0;
+	return n;
+}
+
+bool ob_text_is_clean(const char *text, size_t size)
+{
+	const unsigned char *s = (const unsigned char *)text;
+	for (size_t i = 0; i < size;) {
+		size_t n = sequence(s + i, size - i);
+		// C0 and C1 control characters: they could move a terminal's cursor
+		if (n == 0 || s[i] < ' ' || s[i] == 127 || (s[i] == 0xc2 && s[i + 1] < 0xa0))
+			return false;
+		i += n;
+	}
+	return true;
+}
