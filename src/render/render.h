@@ -1,5 +1,6 @@
 // Frames: draws snapshots off-screen through EGL. Reads, never writes, the universe.
-// One renderer belongs to one thread. Without EGL at build time render_null.c stands in: create fails with a clear error.
+// One renderer belongs to one thread. Without EGL at build time render_null.c stands in: create fails with a clear
+// error.
 #ifndef OB_RENDER_RENDER_H
 #define OB_RENDER_RENDER_H
 
@@ -8,8 +9,9 @@
 
 typedef struct ob_render_setup {
 	int width, height;
-	int samples;            // multisampling, 1 = none
-	const char *device;     // NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0", "1", ..
+	int samples; // multisampling, 1 = none
+	const char *device; // NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0",
+			    // "1", ..
 	bool overlay_aabb, overlay_contacts;
 } ob_render_setup;
 
@@ -18,15 +20,15 @@ bool ob_render_available(void);
 // NULL and e (with the list of what was tried) on failure.
 ob_renderer *ob_renderer_create(const ob_render_setup *r, const ob_look_def *look, ob_error *e);
 void ob_renderer_destroy(ob_renderer *r);
-// Draws the snapshot "now" as camera c sees it at time t (s). prev: the snapshot one step earlier, for times between steps
-// (NULL: t is now->time). Fills rgba (width * height * 4 bytes, top row first).
+// Draws the snapshot "now" as camera c sees it at time t (s). prev: the snapshot one step earlier, for times between
+// steps (NULL: t is now->time). Fills rgba (width * height * 4 bytes, top row first).
 bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
 		      uint8_t *rgba, ob_error *e);
 
 // Sinks: where finished frames go. Encoding runs in the sink's own thread; put() blocks when 8 frames wait.
 typedef struct ob_sink ob_sink;
-ob_sink *ob_sink_png(const char *dir, int w, int h, ob_error *e);            // DIR/frame-000000.png ..., tEXt: simulated time
-ob_sink *ob_sink_raw(int fd, int w, int h, ob_error *e);                     // rgb24 to a pipe
+ob_sink *ob_sink_png(const char *dir, int w, int h, ob_error *e); // DIR/frame-000000.png ..., tEXt: simulated time
+ob_sink *ob_sink_raw(int fd, int w, int h, ob_error *e); // rgb24 to a pipe
 ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e); // through ffmpeg
 bool ob_sink_put(ob_sink *s, uint64_t frame, double time, const uint8_t *rgba, ob_error *e);
 // Waits for all frames, closes. false and e if any frame was not written whole. Frees s either way.

@@ -1,0 +1,12 @@
+#version 330 core
+// Seen from below the ground: how near to it something is.
+#include "frame.glsl"
+#include "instance.glsl"
+out float v_height;
+
+void main()
+{
+	vec3 m = (contact_map * vec4(world_position(), 1.)).xyz;
+	v_height = m.z;
+	gl_Position = vec4(m.xy * 2. - 1., 0., 1.);
+}

@@ -1,0 +1,152 @@
+#include "render/mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { VERTICES_MAX = 16384, INDICES_MAX = 65536 };
+
+// Round the axis; multiples of 4, so that a ball has an equator.
+static const int segments_of_level[OB_MESH_LEVELS] = { 12, 24, 48 };
+
+static uint16_t vertex(ob_mesh_set *s, float cx, float cy, float cz, float nx, float ny, float nz)
+{
+	s->vertex[s->vertices] = (ob_vertex){ { cx, cy, cz }, { nx, ny, nz } };
+	return (uint16_t)s->vertices++;
+}
+
+static void triangle(ob_mesh_set *s, uint16_t a, uint16_t b, uint16_t c)
+{
+	s->index[s->indices++] = a;
+	s->index[s->indices++] = b;
+	s->index[s->indices++] = c;
+}
+
+static void quad(ob_mesh_set *s, uint16_t a, uint16_t b, uint16_t c, uint16_t d)
+{
+	triangle(s, a, b, c);
+	triangle(s, a, c, d);
+}
+
+// Index of the box vertex at corner (bits: x, y, z positive) on the face of axis.
+static uint16_t box_at(uint16_t first, int corner, int axis)
+{
+	return (uint16_t)(first + 3 * corner + axis);
+}
+
+// Each corner has three vertices, one a face: six faces, twelve strips along the edges, eight triangles.
+static void build_box(ob_mesh_set *s)
+{
+	uint16_t first = (uint16_t)s->vertices;
+	for (int corner = 0; corner < 8; corner++) {
+		float c[3];
+		for (int k = 0; k < 3; k++)
+			c[k] = corner >> k & 1 ? 1 : -1;
+		for (int axis = 0; axis < 3; axis++)
+			vertex(s, c[0], c[1], c[2], axis == 0 ? c[0] : 0, axis == 1 ? c[1] : 0, axis == 2 ? c[2] : 0);
+	}
+	for (int axis = 0; axis < 3; axis++) {
+		int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, up = 1 << axis;
+		quad(s, box_at(first, up, axis), box_at(first, up | u, axis), box_at(first, up | u | v, axis),
+		     box_at(first, up | v, axis));
+		quad(s, box_at(first, 0, axis), box_at(first, v, axis), box_at(first, u | v, axis),
+		     box_at(first, u, axis));
+		// Strips along this axis, between the faces of the two other axes.
+		int a = (axis + 1) % 3, b = (axis + 2) % 3;
+		for (int side = 0; side < 4; side++) {
+			int corner = (side & 1 ? u : 0) | (side & 2 ? v : 0);
+			int from = side == 0 || side == 3 ? 0 : up, to = up - from;
+			quad(s, box_at(first, corner | to, a), box_at(first, corner | from, a),
+			     box_at(first, corner | from, b), box_at(first, corner | to, b));
+		}
+	}
+	for (int corner = 0; corner < 8; corner++) {
+		int odd = (corner ^ corner >> 1 ^ corner >> 2) & 1;
+		triangle(s, box_at(first, corner, 0), box_at(first, corner, odd ? 1 : 2),
+			 box_at(first, corner, odd ? 2 : 1));
+	}
+}
+
+// Joins two rings of n + 1 vertices each, the lower one first.
+static void belt(ob_mesh_set *s, uint16_t low, uint16_t high, int n)
+{
+	for (int i = 0; i < n; i++)
+		quad(s, (uint16_t)(low + i), (uint16_t)(low + i + 1), (uint16_t)(high + i + 1), (uint16_t)(high + i));
+}
+
+static uint16_t ring_of_ball(ob_mesh_set *s, int n, double latitude, float end)
+{
+	uint16_t first = (uint16_t)s->vertices;
+	for (int i = 0; i <= n; i++) {
+		double turn = 2 * M_PI * (i % n) / n;
+		vertex(s, 0, 0, end, (float)(cos(latitude) * cos(turn)), (float)(cos(latitude) * sin(turn)),
+		       (float)sin(latitude));
+	}
+	return first;
+}
+
+// The ball, cut at its equator: the lower half belongs to the core's lower end, the upper half to its upper end.
+static void build_round(ob_mesh_set *s, int n)
+{
+	int quarter = n / 4;
+	uint16_t last = ring_of_ball(s, n, -.5 * M_PI, -1);
+	for (int ring = 1; ring <= 2 * quarter + 1; ring++) {
+		int step = ring <= quarter ? ring : ring - 1;
+		uint16_t next = ring_of_ball(s, n, .5 * M_PI * (step - quarter) / quarter, ring <= quarter ? -1 : 1);
+		belt(s, last, next, n);
+		last = next;
+	}
+}
+
+static uint16_t ring_of_cylinder(ob_mesh_set *s, int n, float z, float normal_z)
+{
+	uint16_t first = (uint16_t)s->vertices;
+	for (int i = 0; i <= n; i++) {
+		float c = (float)cos(2 * M_PI * (i % n) / n), d = (float)sin(2 * M_PI * (i % n) / n);
+		float side = normal_z == 0;
+		vertex(s, c, d, z, side * c, side * d, normal_z);
+	}
+	return first;
+}
+
+static void build_cylinder(ob_mesh_set *s, int n)
+{
+	uint16_t bottom = ring_of_cylinder(s, n, -1, -1), low = ring_of_cylinder(s, n, -1, 0);
+	uint16_t high = ring_of_cylinder(s, n, 1, 0), top = ring_of_cylinder(s, n, 1, 1);
+	belt(s, bottom, low, n);
+	belt(s, low, high, n);
+	belt(s, high, top, n);
+	for (int i = 1; i + 1 < n; i++) {
+		triangle(s, bottom, (uint16_t)(bottom + i + 1), (uint16_t)(bottom + i));
+		triangle(s, top, (uint16_t)(top + i), (uint16_t)(top + i + 1));
+	}
+}
+
+static void build_one(ob_mesh_set *s, int kind)
+{
+	ob_mesh *m = &s->mesh[kind];
+	m->index_first = s->indices;
+	if (kind == OB_MESH_BOX)
+		build_box(s);
+	else if (kind < OB_MESH_CYLINDER)
+		build_round(s, segments_of_level[kind - OB_MESH_ROUND]);
+	else
+		build_cylinder(s, segments_of_level[kind - OB_MESH_CYLINDER]);
+	m->index_count = s->indices - m->index_first;
+}
+
+bool ob_mesh_set_build(ob_mesh_set *s)
+{
+	*s = (ob_mesh_set){ .vertex = malloc(VERTICES_MAX * sizeof *s->vertex),
+			    .index = malloc(INDICES_MAX * sizeof *s->index) };
+	if (!s->vertex || !s->index)
+		return false;
+	for (int kind = 0; kind < OB_MESHES; kind++)
+		build_one(s, kind);
+	return true;
+}
+
+void ob_mesh_set_finish(ob_mesh_set *s)
+{
+	free(s->vertex);
+	free(s->index);
+}

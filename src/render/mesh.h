@@ -1,0 +1,37 @@
+// Meshes of the shapes. A vertex is a corner of the core (in units of the core's half size) and the normal along
+// which the ball that thickens it is added: position = corner * core + normal * radius. So a box and a cylinder have
+// bevelled edges, and a sphere is a capsule whose core is a point.
+#ifndef OB_RENDER_MESH_H
+#define OB_RENDER_MESH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct ob_vertex {
+	float corner[3], normal[3];
+} ob_vertex;
+
+enum { OB_MESH_LEVELS = 3 }; // of detail, coarse to fine
+typedef enum ob_mesh_kind {
+	OB_MESH_BOX,
+	OB_MESH_ROUND, // sphere, capsule
+	OB_MESH_CYLINDER = OB_MESH_ROUND + OB_MESH_LEVELS,
+	OB_MESHES = OB_MESH_CYLINDER + OB_MESH_LEVELS,
+} ob_mesh_kind;
+
+// Where one mesh lies in the arrays that hold all of them.
+typedef struct ob_mesh {
+	uint32_t index_first, index_count;
+} ob_mesh;
+
+typedef struct ob_mesh_set {
+	ob_vertex *vertex;
+	uint16_t *index;
+	uint32_t vertices, indices;
+	ob_mesh mesh[OB_MESHES];
+} ob_mesh_set;
+
+bool ob_mesh_set_build(ob_mesh_set *s); // counter-clockwise from outside; false: out of memory
+void ob_mesh_set_finish(ob_mesh_set *s);
+
+#endif

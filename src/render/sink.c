@@ -1,0 +1,172 @@
+#include "render/sink.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WAITING_MAX = 8, WORKERS_MAX = 4 };
+
+typedef struct slot {
+	ob_sink_frame frame;
+	uint8_t *rgba;
+} slot;
+
+// Slots travel from free to waiting to a worker and back; all lists are guarded by lock.
+struct ob_sink {
+	const ob_sink_kind *kind;
+	void *state;
+	int width, height, workers;
+	pthread_t worker[WORKERS_MAX];
+	pthread_mutex_t lock;
+	pthread_cond_t has_frame, has_room;
+	slot slot[WAITING_MAX];
+	int unused[WAITING_MAX], unused_count;
+	int waiting[WAITING_MAX], waiting_first, waiting_count;
+	bool closing, failed;
+	ob_error error; // the first one, when failed
+};
+
+// Takes the oldest waiting frame; -1 when the sink closes and none is left. Holds the lock.
+static int take(ob_sink *s)
+{
+	while (!s->waiting_count && !s->closing)
+		pthread_cond_wait(&s->has_frame, &s->lock);
+	if (!s->waiting_count)
+		return -1;
+	int which = s->waiting[s->waiting_first];
+	s->waiting_first = (s->waiting_first + 1) % WAITING_MAX;
+	s->waiting_count--;
+	return which;
+}
+
+static void give_back(ob_sink *s, int which, bool good, const ob_error *e)
+{
+	if (!good && !s->failed) {
+		s->failed = true;
+		s->error = *e;
+	}
+	s->unused[s->unused_count++] = which;
+	pthread_cond_signal(&s->has_room);
+}
+
+// After a failure frames are dropped: close reports it.
+static void *work(void *sink)
+{
+	ob_sink *s = sink;
+	pthread_mutex_lock(&s->lock);
+	for (int which; (which = take(s)) >= 0;) {
+		bool good = !s->failed;
+		ob_error e = { "" };
+		pthread_mutex_unlock(&s->lock);
+		if (good)
+			good = s->kind->write(s->state, s->width, s->height, &s->slot[which].frame, &e);
+		pthread_mutex_lock(&s->lock);
+		give_back(s, which, good, &e);
+	}
+	pthread_mutex_unlock(&s->lock);
+	return NULL;
+}
+
+static void stop(ob_sink *s)
+{
+	pthread_mutex_lock(&s->lock);
+	s->closing = true;
+	pthread_cond_broadcast(&s->has_frame);
+	pthread_mutex_unlock(&s->lock);
+	for (int i = 0; i < s->workers; i++)
+		pthread_join(s->worker[i], NULL);
+}
+
+static void free_sink(ob_sink *s)
+{
+	for (int i = 0; i < WAITING_MAX; i++)
+		free(s->slot[i].rgba);
+	pthread_cond_destroy(&s->has_room);
+	pthread_cond_destroy(&s->has_frame);
+	pthread_mutex_destroy(&s->lock);
+	free(s);
+}
+
+// Workers take no signals: those are for the main thread, and a reader that has gone is an error, not a death.
+static bool start_workers(ob_sink *s, int workers)
+{
+	sigset_t all, before;
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	while (s->workers < workers && pthread_create(&s->worker[s->workers], NULL, work, s) == 0)
+		s->workers++;
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	return s->workers > 0;
+}
+
+static ob_sink *allocate(int w, int h)
+{
+	ob_sink *s = calloc(1, sizeof *s);
+	if (!s)
+		return NULL;
+	pthread_mutex_init(&s->lock, NULL);
+	pthread_cond_init(&s->has_frame, NULL);
+	pthread_cond_init(&s->has_room, NULL);
+	s->width = w;
+	s->height = h;
+	for (int i = 0; i < WAITING_MAX; i++) {
+		s->slot[i].rgba = malloc(4 * (size_t)w * (size_t)h);
+		s->unused[s->unused_count++] = i;
+		if (!s->slot[i].rgba) {
+			free_sink(s);
+			return NULL;
+		}
+	}
+	return s;
+}
+
+ob_sink *ob_sink_start(const ob_sink_kind *kind, void *state, int w, int h, int workers, ob_error *e)
+{
+	ob_sink *s = w > 0 && h > 0 ? allocate(w, h) : NULL;
+	if (!s) {
+		kind->finish(state, false, NULL);
+		ob_fail(e, "frames of %dx%d: no memory for the %d that may wait to be written", w, h, WAITING_MAX);
+		return NULL;
+	}
+	s->kind = kind;
+	s->state = state;
+	if (!start_workers(s, workers < WORKERS_MAX ? workers : WORKERS_MAX)) {
+		kind->finish(state, false, NULL);
+		free_sink(s);
+		ob_fail(e, "no thread could be started to write frames");
+		return NULL;
+	}
+	return s;
+}
+
+bool ob_sink_put(ob_sink *s, uint64_t frame, double time, const uint8_t *rgba, ob_error *e)
+{
+	pthread_mutex_lock(&s->lock);
+	while (!s->unused_count && !s->failed)
+		pthread_cond_wait(&s->has_room, &s->lock);
+	if (s->failed) {
+		pthread_mutex_unlock(&s->lock);
+		return ob_fail(e, "%s", s->error.text); // written once, before failed was set
+	}
+	int which = s->unused[--s->unused_count];
+	pthread_mutex_unlock(&s->lock);
+	memcpy(s->slot[which].rgba, rgba, 4 * (size_t)s->width * (size_t)s->height);
+	s->slot[which].frame = (ob_sink_frame){ frame, time, s->slot[which].rgba };
+	pthread_mutex_lock(&s->lock);
+	s->waiting[(s->waiting_first + s->waiting_count++) % WAITING_MAX] = which;
+	pthread_cond_signal(&s->has_frame);
+	pthread_mutex_unlock(&s->lock);
+	return true;
+}
+
+bool ob_sink_close(ob_sink *s, ob_error *e)
+{
+	stop(s);
+	ob_error last = { "" };
+	bool good = s->kind->finish(s->state, !s->failed, &last) && !s->failed;
+	if (!good)
+		ob_fail(e, "%s", s->failed && !last.text[0] ? s->error.text : last.text);
+	free_sink(s);
+	return good;
+}
