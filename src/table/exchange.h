@@ -56,8 +56,8 @@ typedef struct ob_island {
 } ob_island;
 
 typedef struct ob_index_cell {
-	uint32_t next;   // next object in the same bucket; UINT32_MAX ends
-	int32_t level;   // size class of its bounds
+	uint32_t next;   // 1 + next object in the same bucket; 0 ends
+	int32_t level;   // size class of its bounds, from 1; 0 = not in the index
 	int32_t x, y, z; // cell at that level
 } ob_index_cell;
 
@@ -67,7 +67,7 @@ typedef struct ob_exchange {
 	struct ob_exchange_counts {
 		uint32_t pairs, islands, chunks, records_used, records_free;
 		uint32_t stage;      // what the running phase belongs to: the arranger's
-		uint32_t levels[64]; // objects per size class (+32)
+		uint32_t levels[64]; // objects per size class
 		uint32_t planes;
 		uint32_t failure;    // ob_exchange_failure; 0 = none
 	} *count;
@@ -78,7 +78,7 @@ typedef struct ob_exchange {
 	struct ob_perceived { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
 	uint32_t *perceived_id;       // arena
 	ob_index_cell *cell;          // [object]
-	uint32_t *bucket;             // [buckets]: first object
+	uint32_t *bucket;             // [buckets]: 1 + first object; 0 = empty
 	uint32_t *plane;              // ids of planes: everyone's neighbours
 	ob_pair_key *pair, *pair_next;// sorted by (a, b); pair_next is the arranger's other buffer
 	ob_pair_record *record;

@@ -52,6 +52,7 @@ static inline void ob_ring_publish(uint64_t *version, void *ring, unsigned versi
 	uint64_t next = __atomic_load_n(version, __ATOMIC_ACQUIRE) + 1;
 	ob_word *to = (ob_word *)((char *)ring + next % versions * bytes);
 	const ob_word *from = record;
+#pragma GCC unroll 8
 	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
 		__atomic_store_n(to + i, from[i], __ATOMIC_RELEASE);
 	__atomic_store_n(version, next, __ATOMIC_RELEASE);
@@ -66,6 +67,7 @@ static inline bool ob_ring_read(const uint64_t *version, const void *ring, unsig
 		if (v == 0)
 			return false;
 		const ob_word *from = (const ob_word *)((const char *)ring + v % versions * bytes);
+#pragma GCC unroll 8
 		for (size_t k = 0; k < bytes / sizeof(ob_word); k++)
 			to[k] = __atomic_load_n(from + k, __ATOMIC_ACQUIRE);
 		if (__atomic_load_n(version, __ATOMIC_RELAXED) - v < versions - 1)

@@ -90,14 +90,13 @@ static int work(void *shared, uint32_t worker)
 
 static void lead(board *b)
 {
-	while (b->phase < b->phases) {
+	for (;;) {
 		bool came = ob_gate_host_wait(b->u, 60);
 		CHECK(came);
-		if (!came || b->phase == b->phases)
-			break;
+		if (!came || b->phase == b->phases) // ordered by the turn, or by STOP
+			return;
 		open_next(b);
 	}
-	CHECK(ob_gate_host_wait(b->u, 60));
 }
 
 int main(int argc, char **argv)

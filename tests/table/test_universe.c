@@ -119,10 +119,10 @@ static void test_stale(void)
 	ob_error e;
 	pid_t pid = fork();
 	if (pid == 0)
-		_exit(create(10) == NULL);
+		_exit(create(10) == NULL || access(file, F_OK) != 0);
 	int status;
 	waitpid(pid, &status, 0);
-	CHECK(status == 0 && access(file, F_OK) == 0);
+	CHECK(status == 0); // the file may be gone already, if another program made a universe just now
 	char names[64][OB_NAME_MAX];
 	size_t n = ob_universe_list(names, 64);
 	for (size_t i = 0; i < n && i < 64; i++)
