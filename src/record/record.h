@@ -1,13 +1,29 @@
-// Trajectories to HDF5, summaries to CSV.
+// Trajectories to HDF5.
+//
+// One file, one group of facts and one dataset a quantity; n grows by one with each append:
+//
+//   /time [n]  /step [n]                              s, 1
+//   /position [n][objects][3]                         m, centre of mass, world frame
+//   /attitude [n][objects][4]                         unit quaternion w x y z, body to world
+//   /velocity, /angular_velocity [n][objects][3]      m/s, rad/s, world frame
+//   /asleep [n][objects]                              1 = at rest by consent, 255 = no such object then
+//   /objects/id, name, shape, size, mass, inertia, friction, restitution, static, generation [objects]
+//
+// Each has attributes "units", "frame" and "description"; the file has "obsim_version", "title", "universe", "arch",
+// "isolation", "gravity", "step_length", "workers". The second index is the object's id; where there is no object, NaN.
+//
+// Thread-safety: one thread at a time in the whole process, as HDF5's serial library has it.
 #ifndef OB_RECORD_RECORD_H
 #define OB_RECORD_RECORD_H
 
 #include "measure/measure.h"
 
 typedef struct ob_recorder ob_recorder;
-// Creates an HDF5 file. What is written is readable after every append + flush (also after Ctrl-C).
+// Creates an HDF5 file, or replaces one. NULL and e on failure. The file is whole after each append: a later reader finds
+// all states up to then, also after Ctrl-C or a crash.
 ob_recorder *ob_recorder_create(const char *path, const ob_universe_info *info, const char *scene_title, ob_error *e);
+// One more state. Objects that appear or are replaced are entered in /objects. false and e: the disk is full, ...
 bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e);
-bool ob_recorder_close(ob_recorder *r, ob_error *e); // frees r either way
+bool ob_recorder_close(ob_recorder *r, ob_error *e); // frees r either way; NULL is allowed
 
 #endif

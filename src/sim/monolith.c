@@ -8,10 +8,9 @@
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
 
-enum { STATE_ABSENT, STATE_HELD };
-
-struct held { // what the world holds in place of a slot
-	uint32_t state, generation;
+struct held { // whether the world holds an object for a slot, and which
+	bool there;
+	uint32_t generation;
 };
 
 struct ob_monolith {
@@ -65,16 +64,16 @@ static void follow_passports(ob_monolith *m)
 		const ob_passport *p = ob_passport_of(m->u, id);
 		struct held *h = &m->held[id];
 		bool present = p->flags & OB_OBJECT_PRESENT;
-		if (h->state == STATE_HELD && (!present || h->generation != p->generation)) {
+		if (h->there && (!present || h->generation != p->generation)) {
 			ob_ode_world_remove(m->world, id);
-			h->state = STATE_ABSENT;
+			h->there = false;
 		}
-		if (!present || h->state == STATE_HELD)
+		if (!present || h->there)
 			continue;
 		const ob_motion *first = ob_newest_motion(m->u, id);
 		ob_state s = { { first->p, first->q }, first->v, first->w };
 		ob_ode_world_add(m->world, p, &s);
-		*h = (struct held){ STATE_HELD, p->generation };
+		*h = (struct held){ true, p->generation };
 	}
 }
 
@@ -126,7 +125,7 @@ static void publish_all(ob_monolith *m)
 	uint32_t ids = ob_universe_ids(m->u);
 	m->awake = 0;
 	for (uint32_t id = 0; id < ids; id++) {
-		if (m->held[id].state != STATE_HELD || ob_passport_of(m->u, id)->flags & OB_OBJECT_STATIC)
+		if (!m->held[id].there || ob_passport_of(m->u, id)->flags & OB_OBJECT_STATIC)
 			continue; // what never moves keeps its first motion
 		ob_state s;
 		bool asleep, touching;

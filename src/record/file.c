@@ -1,0 +1,95 @@
+#include "record/file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void ob_file_silence(void)
+{
+	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+// HDF5's drivers quote the system: "..., errno = 28, error message = 'No space left on device', ..."
+static herr_t find_reason(unsigned depth, const H5E_error2_t *error, void *data)
+{
+	(void)depth;
+	char *reason = data;
+	const char *mark = "error message = '";
+	const char *from = error->desc ? strstr(error->desc, mark) : NULL;
+	if (!from)
+		return 0;
+	from += strlen(mark);
+	snprintf(reason, 128, "%.*s", (int)strcspn(from, "'"), from);
+	return 0;
+}
+
+bool ob_file_fail(ob_error *e, const char *path, const char *doing)
+{
+	char reason[128] = "";
+	H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, find_reason, reason);
+	return ob_fail(e, "%s: cannot %s: %s", path, doing, reason[0] ? reason : "HDF5 gives no reason");
+}
+
+hid_t ob_file_string_type(size_t length)
+{
+	hid_t type = H5Tcopy(H5T_C_S1);
+	H5Tset_size(type, length);
+	H5Tset_strpad(type, H5T_STR_NULLPAD);
+	return type;
+}
+
+static bool attribute(hid_t at, const char *name, hid_t type, hid_t space, const void *data)
+{
+	hid_t id = H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+	bool ok = id >= 0 && H5Awrite(id, type, data) >= 0;
+	return (id < 0 || H5Aclose(id) >= 0) && ok;
+}
+
+bool ob_file_attribute_text(hid_t at, const char *name, const char *text)
+{
+	hid_t type = ob_file_string_type(text[0] ? strlen(text) : 1), space = H5Screate(H5S_SCALAR);
+	bool ok = attribute(at, name, type, space, text);
+	H5Sclose(space);
+	H5Tclose(type);
+	return ok;
+}
+
+bool ob_file_attribute_numbers(hid_t at, const char *name, const double *number, size_t numbers)
+{
+	hsize_t n = numbers;
+	hid_t space = numbers > 1 ? H5Screate_simple(1, &n, NULL) : H5Screate(H5S_SCALAR);
+	bool ok = attribute(at, name, H5T_NATIVE_DOUBLE, space, number);
+	H5Sclose(space);
+	return ok;
+}
+
+static bool add_label(hid_t set, const ob_file_label *label)
+{
+	return ob_file_attribute_text(set, "units", label->units) &&
+	       (!label->frame || ob_file_attribute_text(set, "frame", label->frame)) &&
+	       ob_file_attribute_text(set, "description", label->description);
+}
+
+hid_t ob_file_dataset(hid_t in, const ob_file_label *label, hid_t type, int rank, const hsize_t *dims,
+		      hsize_t chunk_rows, const void *fill)
+{
+	hsize_t most[4], chunk[4];
+	memcpy(most, dims, (size_t)rank * sizeof *dims);
+	memcpy(chunk, dims, (size_t)rank * sizeof *dims);
+	hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+	if (fill)
+		H5Pset_fill_value(how, type, fill);
+	if (chunk_rows) {
+		most[0] = H5S_UNLIMITED;
+		chunk[0] = chunk_rows;
+		H5Pset_chunk(how, rank, chunk);
+	}
+	hid_t space = H5Screate_simple(rank, dims, most);
+	hid_t set = H5Dcreate2(in, label->name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
+	H5Sclose(space);
+	H5Pclose(how);
+	if (set >= 0 && !add_label(set, label)) {
+		H5Dclose(set);
+		return H5I_INVALID_HID;
+	}
+	return set;
+}
