@@ -30,4 +30,10 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state);
 // Host, paused: takes an object away; its neighbours wake. Clears its passport.
 void ob_sim_remove(ob_universe *u, uint32_t id);
 
+// Host, at the start and after each pause: opens the right phase. The run then goes on until the next pause step.
+void ob_sim_resume(ob_universe *u);
+
+// Host, paused: why the run cannot go on, as one line; NULL if it can. A failed run pauses at once.
+const char *ob_sim_failure(const ob_universe *u);
+
 #endif

@@ -1,0 +1,35 @@
+// Impacts with restitution, at their own instant inside a substep.
+//
+// Two objects that approach faster than a threshold and will meet within the substep exchange one impulse: Newton's
+// law at every point that hits, -e times the approach speed at the instant of contact, friction inside its cone.
+// One pair at a time, each on what the last one published: an impact travels through a row of touching spheres as it
+// does in Newton's cradle, and no pair ever gains energy.
+#ifndef OB_CONTACT_IMPACT_H
+#define OB_CONTACT_IMPACT_H
+
+#include "contact/batch.h"
+
+typedef struct ob_impact {
+	double h; // s, substep
+	double e; // restitution
+	double threshold; // m/s: slower approaches are left to the contact solver
+	double split_a, split_b; // impacts that each body takes part in at once; 1 when coloured
+} ob_impact;
+
+// The state of all bodies at the substep's start.
+typedef struct ob_impact_rows {
+	const ob_body_row *v; // velocities
+	const ob_body_row
+		*dv; // change of velocity that the substep will bring without the impact: acceleration times h
+	const ob_body_row *d; // displacements since the gaps were measured
+} ob_impact_rows;
+
+// Will lane l of the batch hit within the substep?
+bool ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at);
+
+// Solves it: adds the changes to the rows out_v and, so that the old velocity holds until the instant, to out_d
+// (which may be at->v and at->d themselves). false: nothing hits.
+bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
+		     ob_body_row *out_d);
+
+#endif

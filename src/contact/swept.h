@@ -1,0 +1,16 @@
+// When two moving shapes first meet, so that nothing passes through anything between two looks.
+#ifndef OB_CONTACT_SWEPT_H
+#define OB_CONTACT_SWEPT_H
+
+#include "contact/manifold.h"
+
+// Finds points of two shapes; out->separation must be a lower bound of their distance where there are none.
+typedef bool (*ob_manifold_finder)(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+
+// Conservative advancement (Mirtich 1996): both shapes move at their constant v, w. Returns the first time in [0, h] at
+// which points within tolerance (m) exist, or infinity; then out holds them, with points and gaps as of that time.
+// speed: bound of the closing speed of any two points (m/s).
+double ob_swept_find(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
+		     ob_manifold_finder find, ob_manifold *out);
+
+#endif

@@ -1,0 +1,164 @@
+#include "sim/exchange.h"
+
+#include <string.h>
+
+static const double noticeable = 2e-3; // m/s: a change that makes another round worth while
+static const double jump = .1; // m/s: faster changes are impacts and are not extrapolated
+static const int sweeps = 4;
+static const double slop = 1e-4, share = .3; // m; of the penetration, per substep
+
+static bool is_jacobi(const ob_sim *s)
+{
+	return ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI;
+}
+
+static void add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
+{
+	for (uint32_t i = 1; i <= w->members; i++)
+		for (int c = 0; c < 6; c++)
+			to[i][c] += from[i][c];
+	memset(from, 0, w->rows * sizeof *from);
+}
+
+// ---- impacts
+
+static ob_impact impact_of(const ob_sim *s, const ob_touch *t)
+{
+	double resting =
+		4 * ob_norm(ob_universe_settings(s->u)->gravity) * s->island.h; // m/s: what gravity alone brings
+	return (ob_impact){ s->island.h, t->e, resting + 1e-6, 1, 1 };
+}
+
+static bool elastic(const ob_touch *t)
+{
+	return t->e > 0 && t->lane != OB_NO_LANE;
+}
+
+static ob_impact_rows impact_rows(const ob_island_work *w)
+{
+	return (ob_impact_rows){ w->v, w->dv, w->d };
+}
+
+// Each pair on what the one before it published.
+static bool impacts_in_turn(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_impact_rows at = impact_rows(w);
+	bool any = false;
+	for (uint32_t i = 0; i < w->touches; i++) {
+		const ob_touch *t = &w->touch[i];
+		ob_impact in = impact_of(s, t);
+		if (elastic(t))
+			any |= ob_impact_solve(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at, w->v, w->d);
+	}
+	return any;
+}
+
+// All pairs on the same state, each with its share of the bodies; u is free here and takes the shifts.
+static bool impacts_at_once(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_impact_rows at = impact_rows(w);
+	bool any = false;
+	for (uint32_t i = 0; i < w->rows; i++)
+		w->member[i].waiting = 0;
+	memset(w->u, 0, w->rows * sizeof *w->u);
+	for (int solve = 0; solve < 2; solve++)
+		for (uint32_t i = 0; i < w->touches; i++) {
+			const ob_touch *t = &w->touch[i];
+			ob_impact in = impact_of(s, t);
+			if (!elastic(t))
+				continue;
+			const ob_batch *b = &w->batch[t->lane / OB_LANES];
+			int l = t->lane % OB_LANES;
+			if (solve) {
+				in.split_a = fmax(1, w->member[t->a].waiting);
+				in.split_b = fmax(1, w->member[t->b].waiting);
+				any |= ob_impact_solve(b, l, &in, &at, w->delta, w->u);
+			} else if (ob_impact_pending(b, l, &in, &at)) {
+				w->member[t->a].waiting++;
+				w->member[t->b].waiting++;
+			}
+		}
+	add_rows(w, w->v, w->delta);
+	add_rows(w, w->d, w->u);
+	return any;
+}
+
+bool ob_exchange_impacts(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const int most =
+		400; // rounds; what still approaches then is left to the contact solver, which loses its energy
+	int round = 0;
+	if (!w->elastic)
+		return false;
+	while (round < most && (is_jacobi(s) ? impacts_at_once(s) : impacts_in_turn(s)))
+		round++;
+	return round > 0;
+}
+
+// ---- contacts
+
+void ob_exchange_cap(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const double growth = .3 * ob_norm(ob_universe_settings(s->u)->gravity) * w->h * w->mass; // N s
+	const double cap[OB_LANES] = { growth, growth, growth, growth };
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_cap(&w->batch[i], cap, .5 * jump, w->u);
+}
+
+static bool worth_while(const ob_island_work *w, const ob_batch *b)
+{
+	for (int l = 0; l < OB_LANES; l++)
+		if (w->member[b->body_a[l]].hot + 1 >= w->pass || w->member[b->body_b[l]].hot + 1 >= w->pass)
+			return true;
+	return false;
+}
+
+static bool mark_hot(ob_island_work *w, const ob_batch *b)
+{
+	for (int l = 0; l < OB_LANES; l++)
+		if (b->hot >> l & 1) {
+			if (w->member[b->body_a[l]].inv_mass > 0)
+				w->member[b->body_a[l]].hot = w->pass;
+			if (w->member[b->body_b[l]].inv_mass > 0)
+				w->member[b->body_b[l]].hot = w->pass;
+		}
+	return b->hot != 0;
+}
+
+void ob_exchange_rounds(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	ob_pass pass = { w->h, sweeps, noticeable, jump, true, is_jacobi(s) };
+	bool again = true;
+	for (uint32_t round = 0; round < run->passes && again; round++) {
+		again = false;
+		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep
+		for (uint32_t k = 0; k < w->batches; k++) {
+			ob_batch *b = &w->batch[w->batch_order[k]];
+			if (!b->live || (round > 0 && !worth_while(w, b)))
+				continue;
+			ob_batch_solve(b, &pass, w->u, w->d, w->delta);
+			again |= mark_hot(w, b);
+		}
+		if (pass.jacobi)
+			add_rows(w, w->u, w->delta);
+		pass.first = false;
+	}
+}
+
+void ob_exchange_project(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t k = 0; k < w->batches; k++) {
+		ob_batch *b = &w->batch[w->batch_order[k]];
+		if (b->live)
+			ob_batch_project(b, slop, share, is_jacobi(s), w->d, w->delta);
+	}
+	if (is_jacobi(s))
+		add_rows(w, w->d, w->delta);
+}

@@ -1,0 +1,20 @@
+// Exchanges: how impulses pass between the members of an island within one substep.
+//
+// Coloured: in each colour a body stands in at most one pair, so each pair is solved with true masses on what was
+// published last, and publishes. Jacobi: all pairs are solved on the same published state, each with its share of its
+// bodies' masses (the mass split by the number of contacts), and all changes are published together.
+#ifndef OB_SIM_EXCHANGE_H
+#define OB_SIM_EXCHANGE_H
+
+#include "sim/worker.h"
+
+// Impacts with restitution at their instants: changes v, shifts d. true if there were any.
+bool ob_exchange_impacts(ob_sim *s);
+// Takes back what the prediction made of impacts.
+void ob_exchange_cap(ob_sim *s);
+// Rounds of exchanges on u until no pair changes a velocity noticeably.
+void ob_exchange_rounds(ob_sim *s);
+// Pushes penetrations apart in d.
+void ob_exchange_project(ob_sim *s);
+
+#endif

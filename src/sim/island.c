@@ -1,0 +1,59 @@
+#include "sim/island.h"
+
+#include <stdlib.h>
+
+#include "sim/exchange.h"
+#include "sim/members.h"
+#include "sim/touch.h"
+
+// One substep, in the order in which things happen.
+static void substep(ob_sim *s)
+{
+	ob_members_gyrate(s);
+	ob_touches_refresh(s);
+	ob_touches_prepare(s);
+	while (ob_exchange_impacts(s)) { // what flies off may hit something that was out of reach before
+		ob_members_quicken(s);
+		if (!ob_touches_refresh(s))
+			break;
+		ob_touches_prepare(s);
+	}
+	ob_members_predict(s);
+	ob_exchange_cap(s);
+	ob_exchange_rounds(s);
+	ob_members_advance(s);
+	ob_exchange_project(s);
+}
+
+void ob_island_solve(ob_sim *s, uint32_t i)
+{
+	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
+	if (is->members == 1 && is->pairs == 0) {
+		ob_member_leap(s, ob_universe_exchange(s->u)->member[is->first_member]);
+		return;
+	}
+	ob_members_load(s, is);
+	ob_touches_load(s, is);
+	for (uint32_t k = 0; k < ob_universe_settings(s->u)->substeps; k++)
+		substep(s);
+	for (uint32_t row = 1; row <= s->island.members; row++)
+		ob_member_settle(&s->island, row);
+	ob_touches_store(s);
+	ob_members_publish(s, ob_members_rest(s));
+}
+
+void ob_island_work_finish(ob_island_work *w)
+{
+	free(w->member);
+	free(w->v);
+	free(w->dv);
+	free(w->u);
+	free(w->d);
+	free(w->delta);
+	free(w->touch);
+	free(w->adjacency);
+	free(w->batch);
+	free(w->batch_colour);
+	free(w->batch_order);
+	free(w->row_of);
+}

@@ -1,0 +1,72 @@
+// One island through one step: the working state of its members and pairs, private to the worker that solves it.
+//
+// Velocities live in rows (contact/batch.h): v at the substep's start, dv the change that the last substep brought
+// and the next is predicted to bring, u = v + dv solved to the substep's end, d the displacement since the poses were
+// last brought up to date. Row 0 is everything that does not move.
+#ifndef OB_SIM_ISLAND_H
+#define OB_SIM_ISLAND_H
+
+#include "contact/batch.h"
+#include "contact/impact.h"
+#include "table/table.h"
+
+enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
+
+typedef struct ob_member {
+	uint32_t id;
+	ob_shape shape;
+	ob_vec3 size, p;
+	ob_quat q;
+	ob_mat3 r;
+	double mass, inv_mass;
+	ob_vec3 inertia; // principal
+	double inv_inertia[6]; // world
+	double friction, restitution, radius, thickness;
+	double path, speed; // m; m/s bound of any point
+	float quiet;
+	bool round; // inertia is the same about all axes
+	bool moved_freely; // no impulse touched it in this step
+	uint32_t contacts; // pairs that touch it
+	uint32_t waiting; // impacts that it takes part in at once
+	uint64_t colours; // bit per colour in use
+	uint32_t hot; // last pass in which a velocity changed noticeably
+	uint32_t first_adjacent, adjacent; // range in adjacency
+} ob_member;
+
+typedef struct ob_touch {
+	uint32_t key; // index into the universe's pairs
+	uint32_t a, b; // rows
+	uint32_t lane; // batch * OB_LANES + lane; OB_NO_LANE = apart
+	uint32_t colour;
+	uint32_t points;
+	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
+	double limit, mu, e;
+} ob_touch;
+
+// Grown as needed, never shrunk.
+typedef struct ob_island_work {
+	uint32_t rows, rows_max; // members + fixed bodies + row 0
+	uint32_t members; // rows 1 .. members
+	ob_member *member; // [rows]
+	ob_body_row *v, *dv, *u, *d, *delta;
+	uint32_t touches, touches_max;
+	ob_touch *touch;
+	uint32_t *adjacency; // touches of each member
+	uint32_t batches, batches_max;
+	ob_batch *batch;
+	uint32_t *batch_colour; // [batches]
+	uint32_t *batch_order; // [batches]: sorted by colour
+	bool order_stale, counts_stale, elastic;
+	uint32_t pass; // number of the running pass, ever growing
+	double mass; // of all members, kg
+	double h, t0; // s
+	uint32_t *row_of; // [object]: row in this island
+	uint32_t row_of_max;
+} ob_island_work;
+
+struct ob_sim;
+// Solves island i of the universe through the coming step and publishes what it found.
+void ob_island_solve(struct ob_sim *s, uint32_t i);
+void ob_island_work_finish(ob_island_work *w);
+
+#endif

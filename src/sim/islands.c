@@ -1,0 +1,202 @@
+#include "sim/islands.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <ob/motion.h>
+
+#include "sim/perceive.h"
+
+enum { NONE = UINT32_MAX };
+
+// The arranger's view while it plans. Roots of the union-find forest are the lowest ids of their trees.
+typedef struct plan {
+	ob_universe *u;
+	ob_exchange *ex;
+	uint32_t ids;
+	uint32_t *parent; // [id]
+	uint32_t *island_of; // [root]
+	float *reach; // [root]: of the fastest member, m in the next step
+} plan;
+
+static uint32_t root_of(const plan *p, uint32_t i)
+{
+	while (p->parent[i] != i)
+		i = p->parent[i] = p->parent[p->parent[i]];
+	return i;
+}
+
+static bool dynamic(const plan *p, uint32_t id)
+{
+	return p->ex->brief[id].state >= OB_BRIEF_AWAKE;
+}
+static bool asleep(const plan *p, uint32_t id)
+{
+	return p->ex->brief[id].state == OB_BRIEF_ASLEEP;
+}
+
+// May the pair touch within the step, if its members may get as far as their islands' fastest members?
+static bool may_touch(const plan *p, const ob_pair_key *k)
+{
+	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
+	double reach = (dynamic(p, k->a) ? p->reach[root_of(p, k->a)] : 0) +
+		       (dynamic(p, k->b) ? p->reach[root_of(p, k->b)] : 0);
+	return k->active || a->path + b->path + reach >= k->limit;
+}
+
+static void unite(plan *p, uint32_t a, uint32_t b)
+{
+	uint32_t low = a < b ? a : b, high = a < b ? b : a;
+	p->parent[high] = low;
+	p->reach[low] = fmaxf(p->reach[low], p->reach[high]);
+}
+
+// A body that is hit becomes as fast as what hit it, so reaches spread through an island until nothing changes.
+static void grow_trees(plan *p)
+{
+	for (bool again = true; again;) {
+		again = false;
+		for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
+			const ob_pair_key *k = &p->ex->pair[i];
+			if (!dynamic(p, k->a) || !dynamic(p, k->b))
+				continue;
+			uint32_t a = root_of(p, k->a), b = root_of(p, k->b);
+			if (a == b || !may_touch(p, k))
+				continue;
+			unite(p, a, b);
+			again = true;
+		}
+	}
+}
+
+// Members that may be hit by something faster than what their boxes were claimed for claim larger ones.
+static bool boxes_suffice(plan *p)
+{
+	bool suffice = true;
+	for (uint32_t id = 0; id < p->ids; id++) {
+		if (!dynamic(p, id) || p->reach[root_of(p, id)] <= p->ex->brief[id].reach + .02f)
+			continue;
+		const ob_motion *m = ob_newest_motion(p->u, id);
+		const ob_passport *pass = ob_passport_of(p->u, id);
+		double reach = p->reach[root_of(p, id)];
+		ob_claim_bounds(p->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach);
+		suffice &= !ob_perceive_asked(p->u, id);
+	}
+	return suffice;
+}
+
+// Numbers the awake trees by their lowest id and lists their members in ascending order.
+static void list_members(plan *p)
+{
+	ob_exchange *ex = p->ex;
+	uint32_t n = 0, total = 0;
+	for (uint32_t id = 0; id < p->ids; id++)
+		p->island_of[id] = NONE;
+	for (uint32_t id = 0; id < p->ids; id++) // a tree with one awake member is awake
+		if (dynamic(p, id) && !asleep(p, id))
+			p->island_of[root_of(p, id)] = 0;
+	for (uint32_t id = 0; id < p->ids; id++) {
+		ex->result_island[id] = NONE;
+		if (!dynamic(p, id) || p->island_of[root_of(p, id)] == NONE)
+			continue;
+		uint32_t root = root_of(p, id);
+		if (root == id) {
+			p->island_of[id] = n;
+			ex->island[n++] = (ob_island){ 0, 0, 0, 0 };
+		}
+		ex->result_island[id] = p->island_of[root];
+		ex->island[p->island_of[root]].members++;
+	}
+	for (uint32_t i = 0; i < n; i++) {
+		ex->island[i].first_member = total;
+		total += ex->island[i].members;
+		ex->island[i].members = 0;
+	}
+	for (uint32_t id = 0; id < p->ids; id++)
+		if (ex->result_island[id] != NONE) {
+			ob_island *is = &ex->island[ex->result_island[id]];
+			ex->member[is->first_member + is->members++] = id;
+		}
+	ex->count->islands = n;
+}
+
+static uint32_t island_of_pair(const plan *p, const ob_pair_key *k)
+{
+	uint32_t i = dynamic(p, k->a) ? p->ex->result_island[k->a] : p->ex->result_island[k->b];
+	return i != NONE && may_touch(p, k) ? i : NONE;
+}
+
+static void list_pairs(plan *p)
+{
+	ob_exchange *ex = p->ex;
+	uint32_t total = 0;
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		uint32_t island = island_of_pair(p, &ex->pair[i]);
+		if (island != NONE)
+			ex->island[island].pairs++;
+	}
+	for (uint32_t i = 0; i < ex->count->islands; i++) {
+		ex->island[i].first_pair = total;
+		total += ex->island[i].pairs;
+		ex->island[i].pairs = 0;
+	}
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		uint32_t island = island_of_pair(p, &ex->pair[i]);
+		if (island != NONE)
+			ex->island_pair[ex->island[island].first_pair + ex->island[island].pairs++] = i;
+	}
+}
+
+static uint32_t work_of(const ob_island *i)
+{
+	return 1 + i->members + 8 * i->pairs;
+}
+
+static int by_work(const void *x, const void *y)
+{
+	const ob_island *a = x, *b = y;
+	uint32_t wa = work_of(a), wb = work_of(b);
+	if (wa != wb)
+		return wa < wb ? 1 : -1;
+	return a->first_member < b->first_member ? -1 : 1;
+}
+
+// Largest first, so that no worker starts on a big one when the others are done; small ones in handfuls.
+static void make_chunks(plan *p)
+{
+	ob_exchange *ex = p->ex;
+	uint64_t total = 0, filled = 0;
+	uint32_t n = ex->count->islands, chunks = 0;
+	qsort(ex->island, n, sizeof *ex->island, by_work);
+	for (uint32_t i = 0; i < n; i++) {
+		total += work_of(&ex->island[i]);
+		for (uint32_t m = 0; m < ex->island[i].members; m++)
+			ex->result_island[ex->member[ex->island[i].first_member + m]] = i;
+	}
+	uint64_t share = total / (16 * (uint64_t)ob_universe_workers(p->u)) + 1;
+	for (uint32_t i = 0; i < n; i++) {
+		if (i == 0 || filled >= share)
+			ex->chunk[chunks++] = i, filled = 0;
+		filled += work_of(&ex->island[i]);
+	}
+	ex->chunk[chunks] = n;
+	ex->count->chunks = chunks;
+}
+
+bool ob_islands_plan(ob_universe *u)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t ids = ob_universe_ids(u);
+	plan p = { u, ex, ids, ex->scratch, ex->scratch + ids, ex->island_reach };
+	for (uint32_t id = 0; id < ids; id++) {
+		p.parent[id] = id;
+		p.reach[id] = ex->brief[id].reach;
+	}
+	grow_trees(&p);
+	if (!boxes_suffice(&p))
+		return false;
+	list_members(&p);
+	list_pairs(&p);
+	make_chunks(&p);
+	return true;
+}

@@ -1,0 +1,350 @@
+#include "sim/members.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/perceive.h"
+
+static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
+{
+	r[0] += linear.x, r[1] += linear.y, r[2] += linear.z;
+	r[3] += angular.x, r[4] += angular.y, r[5] += angular.z;
+}
+
+static ob_vec3 linear_of(const double *r)
+{
+	return ob_v3(r[0], r[1], r[2]);
+}
+static ob_vec3 angular_of(const double *r)
+{
+	return ob_v3(r[3], r[4], r[5]);
+}
+
+static void turn_inertia(ob_member *m)
+{
+	if (m->inv_mass == 0)
+		return;
+	ob_vec3 k = ob_v3(1 / m->inertia.x, 1 / m->inertia.y, 1 / m->inertia.z);
+	if (m->round) {
+		memcpy(m->inv_inertia, (double[6]){ k.x, 0, 0, k.x, 0, k.x }, sizeof m->inv_inertia);
+		return;
+	}
+	int c = 0;
+	for (int i = 0; i < 3; i++)
+		for (int j = i; j < 3; j++)
+			m->inv_inertia[c++] = m->r.m[i][0] * m->r.m[j][0] * k.x + m->r.m[i][1] * m->r.m[j][1] * k.y +
+					      m->r.m[i][2] * m->r.m[j][2] * k.z;
+}
+
+static void load(ob_island_work *w, const ob_universe *u, uint32_t row, uint32_t id, bool moves)
+{
+	const ob_passport *pass = ob_passport_of(u, id);
+	const ob_motion *mo = ob_newest_motion(u, id);
+	ob_member *m = &w->member[row];
+	*m = (ob_member){ .id = id,
+			  .shape = pass->shape,
+			  .size = pass->size,
+			  .p = mo->p,
+			  .q = mo->q,
+			  .r = ob_quat_matrix(mo->q),
+			  .mass = moves ? pass->mass : 0,
+			  .inertia = pass->inertia,
+			  .friction = pass->friction,
+			  .restitution = pass->restitution,
+			  .path = mo->path,
+			  .quiet = mo->quiet,
+			  .moved_freely = true };
+	m->inv_mass = moves ? 1 / pass->mass : 0;
+	m->round = pass->inertia.x == pass->inertia.y && pass->inertia.y == pass->inertia.z;
+	m->radius = ob_shape_radius(pass->shape, pass->size);
+	m->thickness = ob_shape_thickness(pass->shape, pass->size);
+	turn_inertia(m);
+	if (!moves)
+		return;
+	add_row(w->v[row], mo->v, mo->w);
+	double scale = mo->substep > 0 ? w->h / mo->substep : 0;
+	add_row(w->dv[row], ob_scale(mo->dv, scale), ob_scale(mo->dw, scale));
+	w->mass += pass->mass;
+	m->speed = ob_surface_speed(mo->v, mo->w, m->shape, m->size);
+}
+
+static void reserve_rows(ob_island_work *w, uint32_t rows)
+{
+	if (rows > w->rows_max) {
+		w->rows_max = rows + rows / 2 + 16;
+		w->member = realloc(w->member, w->rows_max * sizeof *w->member);
+		ob_body_row **all[] = { &w->v, &w->dv, &w->u, &w->d, &w->delta };
+		for (int i = 0; i < 5; i++)
+			*all[i] = realloc(*all[i], w->rows_max * sizeof **all[i]);
+	}
+}
+
+// Members in ascending id, then the fixed bodies that they may touch, each once per pair.
+void ob_members_load(ob_sim *s, const ob_island *is)
+{
+	ob_exchange *ex = ob_universe_exchange(s->u);
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	w->h = run->step_length / run->substeps;
+	w->mass = 0;
+	w->members = is->members;
+	reserve_rows(w, 1 + is->members + is->pairs);
+	ob_body_row *all[] = { w->v, w->dv, w->u, w->d, w->delta };
+	for (int i = 0; i < 5; i++)
+		memset(all[i], 0, (1 + is->members + is->pairs) * sizeof *all[i]);
+	memset(&w->member[0], 0, sizeof w->member[0]);
+	w->rows = 1;
+	for (uint32_t i = 0; i < is->members; i++) {
+		uint32_t id = ex->member[is->first_member + i];
+		w->row_of[id] = w->rows;
+		load(w, s->u, w->rows++, id, true);
+	}
+	for (uint32_t i = 0; i < is->pairs; i++) {
+		const ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
+		uint32_t fixed = ex->brief[k->a].state == OB_BRIEF_STATIC   ? k->a
+				 : ex->brief[k->b].state == OB_BRIEF_STATIC ? k->b
+									    : UINT32_MAX;
+		if (fixed == UINT32_MAX || (w->row_of[fixed] < w->rows && w->row_of[fixed] > w->members &&
+					    w->member[w->row_of[fixed]].id == fixed))
+			continue;
+		w->row_of[fixed] = w->rows;
+		load(w, s->u, w->rows++, fixed, false);
+	}
+}
+
+void ob_member_settle(ob_island_work *w, uint32_t row)
+{
+	ob_member *m = &w->member[row];
+	double *d = w->d[row];
+	if (d[0] == 0 && d[1] == 0 && d[2] == 0 && d[3] == 0 && d[4] == 0 && d[5] == 0)
+		return;
+	for (uint32_t k = 0; k < m->adjacent; k++) {
+		const ob_touch *t = &w->touch[w->adjacency[m->first_adjacent + k]];
+		if (t->lane == OB_NO_LANE)
+			continue;
+		ob_batch *b = &w->batch[t->lane / OB_LANES];
+		int l = t->lane % OB_LANES;
+		double sign = t->a == row ? 1 : -1;
+		for (uint32_t j = 0; j < t->points; j++) {
+			const lanes *arm = t->a == row ? b->ja[j] : b->jb[j];
+			double opened = 0;
+			for (int c = 0; c < 3; c++)
+				opened += b->n[c][l] * d[c] + arm[c][l] * d[3 + c];
+			b->gap[j][l] += sign * opened;
+		}
+	}
+	m->p = ob_add(m->p, linear_of(d));
+	ob_vec3 th = angular_of(d);
+	if (ob_norm2(th) > 0) {
+		m->q = ob_quat_turn(m->q, th);
+		m->r = ob_quat_matrix(m->q);
+		turn_inertia(m);
+	}
+	memset(d, 0, sizeof(ob_body_row));
+}
+
+// Euler's equations over h by the midpoint rule, in the body frame. ODE's stepper does its own.
+void ob_members_gyrate(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	if (ob_universe_settings(s->u)->integrator == OB_INTEGRATOR_ODE)
+		return;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		const ob_member *m = &w->member[i];
+		ob_vec3 now = angular_of(w->v[i]), j = m->inertia;
+		if (m->round || ob_norm2(now) < 1e-12)
+			continue;
+		ob_vec3 b = ob_rotate_back(&m->r, now), mid = b;
+		for (int stage = 0; stage < 2; stage++) {
+			double h = stage ? w->h : .5 * w->h;
+			ob_vec3 rate = ob_v3((j.y - j.z) / j.x * mid.y * mid.z, (j.z - j.x) / j.y * mid.z * mid.x,
+					     (j.x - j.y) / j.z * mid.x * mid.y);
+			mid = ob_madd(b, h, rate);
+		}
+		ob_vec3 next = ob_rotate(&m->r, mid);
+		w->v[i][3] = next.x, w->v[i][4] = next.y, w->v[i][5] = next.z;
+	}
+}
+
+void ob_members_quicken(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		ob_member *m = &w->member[i];
+		m->speed = ob_surface_speed(linear_of(w->v[i]), angular_of(w->v[i]), m->shape, m->size);
+	}
+}
+
+void ob_members_predict(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	ob_vec3 g = ob_scale(ob_universe_settings(s->u)->gravity, w->h);
+	for (uint32_t i = 1; i <= w->members; i++) {
+		if (!w->member[i].contacts) {
+			memset(w->dv[i], 0, sizeof(ob_body_row));
+			add_row(w->dv[i], g, ob_v3(0, 0, 0));
+		}
+		for (int c = 0; c < 6; c++)
+			w->u[i][c] = w->v[i][c] + w->dv[i][c];
+	}
+}
+
+// ODE's own stepper instead of ours: the impulses of the substep go in as a force.
+static void advance_by_ode(ob_sim *s, uint32_t row)
+{
+	ob_island_work *w = &s->island;
+	ob_member *m = &w->member[row];
+	ob_vec3 g = ob_scale(ob_universe_settings(s->u)->gravity, w->h);
+	double change[6];
+	for (int c = 0; c < 6; c++)
+		change[c] = w->u[row][c] - w->v[row][c];
+	ob_vec3 j = ob_scale(ob_sub(linear_of(change), g), m->mass), wl = ob_rotate_back(&m->r, angular_of(change));
+	ob_vec3 l = ob_rotate(&m->r, ob_v3(wl.x * m->inertia.x, wl.y * m->inertia.y, wl.z * m->inertia.z));
+	ob_state state = { { m->p, m->q }, linear_of(w->v[row]), angular_of(w->v[row]) };
+	ob_pose before = state.pose;
+	ob_ode_body_step(ob_sim_ode(s, m->id), &state, j, l, w->h);
+	// The displacement row takes the step, so that the gaps follow; the turn is what ODE made of it.
+	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
+	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+	double angle = 2 * atan2(sin_half, turn.w), scale = sin_half > 1e-12 ? angle / sin_half : 2;
+	add_row(w->d[row], ob_sub(state.pose.p, before.p), ob_scale(ob_v3(turn.x, turn.y, turn.z), scale));
+	memset(w->u[row], 0, sizeof(ob_body_row));
+	add_row(w->u[row], state.v, state.w);
+}
+
+// Where the velocity changed smoothly the trapezoid rule holds (it is exact in flight); where it jumped, the new one.
+static void advance_exactly(ob_island_work *w, uint32_t row, double smooth)
+{
+	const double *v = w->v[row], *u = w->u[row];
+	double *d = w->d[row], change = 0;
+	for (int c = 0; c < 3; c++)
+		change += (u[c] - v[c]) * (u[c] - v[c]);
+	double old = change < smooth ? .5 * w->h : 0;
+	for (int c = 0; c < 3; c++)
+		d[c] += (w->h - old) * u[c] + old * v[c];
+	for (int c = 3; c < 6; c++)
+		d[c] += w->h * u[c];
+}
+
+void ob_members_advance(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	double smooth = 2 * ob_norm2(run->gravity) * w->h * w->h;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		ob_member *m = &w->member[i];
+		if (run->integrator == OB_INTEGRATOR_ODE)
+			advance_by_ode(s, i);
+		else
+			advance_exactly(w, i, smooth);
+		for (int c = 0; c < 6; c++) {
+			w->dv[i][c] = w->u[i][c] - w->v[i][c];
+			w->v[i][c] = w->u[i][c];
+		}
+		m->speed = ob_surface_speed(linear_of(w->u[i]), angular_of(w->u[i]), m->shape, m->size);
+		m->path += w->h * m->speed;
+		m->moved_freely &= !m->contacts;
+		if (ob_norm2(angular_of(w->d[i])) > 4e-4 || ob_norm2(linear_of(w->d[i])) > .01 ||
+		    run->integrator == OB_INTEGRATOR_ODE)
+			ob_member_settle(w, i);
+	}
+}
+
+// Sleep by consent: an island sleeps when its most recently disturbed member has been slow for half a second.
+bool ob_members_rest(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	const double slow = .03, after = .5; // m/s, s
+	bool consent = run->sleeping;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		ob_member *m = &w->member[i];
+		double vv = ob_norm2(linear_of(w->v[i])), ww = ob_norm2(angular_of(w->v[i]));
+		m->quiet = vv < slow * slow && ww < 4 * slow * slow ? m->quiet + (float)run->step_length : 0;
+		consent &= m->quiet >= after && m->contacts > 0;
+	}
+	return consent;
+}
+
+static bool finite_row(const double *r)
+{
+	double sum = 0;
+	for (int c = 0; c < 6; c++)
+		sum += r[c] * 0;
+	return sum == 0;
+}
+
+// Claims bounds, writes what the arranger needs to know, publishes or leaves the result for its owner to adopt.
+static void publish(ob_sim *s, uint32_t id, ob_motion *m, ob_shape shape, ob_vec3 size, bool own)
+{
+	ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	bool asleep = m->flags & OB_MOTION_ASLEEP;
+	double reach = asleep ? 0 : ob_step_reach(run, ob_surface_speed(m->v, m->w, shape, size));
+	ob_claim_bounds(s->u, id, shape, size, (ob_pose){ m->p, m->q }, reach);
+	memcpy(m->bounds, ex->bounds[id], sizeof m->bounds);
+	ex->brief[id] = (ob_brief){ m->path, (float)reach, asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE };
+	if (own)
+		ob_publish_motion(s->u, id, m);
+	else
+		ex->result[id] = *m;
+}
+
+void ob_members_publish(ob_sim *s, bool asleep)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	uint64_t step = ob_step_count(s->u) + 1;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		ob_member *m = &w->member[i];
+		bool free = !m->contacts && m->moved_freely;
+		ob_motion mo = { .t0 = step * run->step_length,
+				 .valid_until = asleep ? INFINITY : (step + 1) * run->step_length,
+				 .p = m->p,
+				 .q = m->q,
+				 .v = linear_of(w->v[i]),
+				 .w = angular_of(w->v[i]),
+				 .dv = linear_of(w->dv[i]),
+				 .dw = angular_of(w->dv[i]),
+				 .substep = w->h,
+				 .path = m->path,
+				 .step = (uint32_t)step,
+				 .quiet = m->quiet,
+				 .island = w->member[1].id,
+				 .flags = (free ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) };
+		if (!m->contacts)
+			mo.a = run->gravity;
+		if (asleep)
+			mo.v = mo.w = ob_v3(0, 0, 0);
+		if (!finite_row(w->v[i]) || !isfinite(m->p.x + m->p.y + m->p.z))
+			ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
+		publish(s, m->id, &mo, m->shape, m->size, i == 1 || !run->one_per_object);
+	}
+}
+
+void ob_member_leap(ob_sim *s, uint32_t id)
+{
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	const ob_passport *pass = ob_passport_of(s->u, id);
+	const ob_motion *before = ob_newest_motion(s->u, id);
+	uint64_t step = ob_step_count(s->u) + 1;
+	double h = run->step_length / run->substeps;
+	ob_motion m = *before;
+	m.a = run->gravity;
+	m.t0 = (step - 1) * run->step_length;
+	ob_state now = ob_motion_at(&m, pass->inertia, step * run->step_length);
+	if (run->integrator == OB_INTEGRATOR_ODE) {
+		now = (ob_state){ { before->p, before->q }, before->v, before->w };
+		for (uint32_t i = 0; i < run->substeps; i++)
+			ob_ode_body_step(ob_sim_ode(s, id), &now, ob_v3(0, 0, 0), ob_v3(0, 0, 0), h);
+	}
+	m.t0 = step * run->step_length;
+	m.valid_until = m.t0 + run->step_length;
+	m.p = now.pose.p, m.q = now.pose.q, m.v = now.v, m.w = now.w;
+	m.dv = ob_scale(run->gravity, h), m.dw = ob_v3(0, 0, 0), m.substep = h;
+	m.path += ob_step_reach(run, ob_surface_speed(before->v, before->w, pass->shape, pass->size));
+	m.step = (uint32_t)step, m.flags = OB_MOTION_FREE, m.quiet = 0, m.island = id;
+	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
+		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
+	publish(s, id, &m, pass->shape, pass->size, true);
+}

@@ -1,0 +1,24 @@
+// Loading an island's members from the universe, moving them, and publishing them.
+#ifndef OB_SIM_MEMBERS_H
+#define OB_SIM_MEMBERS_H
+
+#include "sim/worker.h"
+
+void ob_members_load(ob_sim *s, const ob_island *is);
+// Brings poses up to date with the displacement rows (and the gaps of the touches that know the old poses).
+void ob_member_settle(ob_island_work *w, uint32_t row);
+// Gyroscopic change of the rate over one substep.
+void ob_members_gyrate(ob_sim *s);
+// Speeds anew, after impacts have changed v.
+void ob_members_quicken(ob_sim *s);
+// u = v + dv where touched, v + h g where free.
+void ob_members_predict(ob_sim *s);
+// Displacements over the substep; u becomes the new v.
+void ob_members_advance(ob_sim *s);
+// After the last substep: quiet times, sleep by consent.
+bool ob_members_rest(ob_sim *s);
+void ob_members_publish(ob_sim *s, bool asleep);
+// A lone object that touches nothing: its closed form, no substeps.
+void ob_member_leap(ob_sim *s, uint32_t id);
+
+#endif

@@ -1,0 +1,162 @@
+#include "sim/pairs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <ob/motion.h>
+
+static int newest(const ob_pair_record *r)
+{
+	return r->stamp[1] > r->stamp[0];
+}
+
+const ob_pair_state *ob_pair_newest(const ob_pair_record *r)
+{
+	int k = newest(r);
+	return r->stamp[k] ? &r->version[k] : NULL;
+}
+
+ob_pair_state *ob_pair_writable(ob_pair_record *r)
+{
+	return &r->version[!newest(r)];
+}
+void ob_pair_written(ob_pair_record *r, uint64_t step)
+{
+	r->stamp[!newest(r)] = step + 1;
+}
+
+static int by_key(const void *x, const void *y)
+{
+	uint64_t a = *(const uint64_t *)x, b = *(const uint64_t *)y;
+	return a < b ? -1 : a > b;
+}
+
+static uint64_t key_of(uint32_t a, uint32_t b)
+{
+	return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+static bool immobile(const ob_exchange *ex, uint32_t id)
+{
+	return ex->brief[id].state == OB_BRIEF_STATIC;
+}
+
+// All pairs that the objects of the list have perceived, sorted, each once. The caller frees.
+static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t count, size_t *n)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	size_t total = 0, kept = 0;
+	for (uint32_t k = 0; k < count; k++)
+		total += ex->perceived[list[k]].count;
+	uint64_t *keys = malloc((total + 1) * sizeof *keys);
+	for (uint32_t k = 0; keys && k < count; k++) {
+		const struct ob_perceived *p = &ex->perceived[list[k]];
+		for (uint32_t i = 0; i < p->count; i++) {
+			uint32_t other = ex->perceived_id[p->offset + i];
+			if (!immobile(ex, list[k]) || !immobile(ex, other))
+				keys[kept++] = key_of(list[k], other);
+		}
+	}
+	if (keys)
+		qsort(keys, kept, sizeof *keys, by_key);
+	size_t unique = 0;
+	for (size_t i = 0; keys && i < kept; i++)
+		if (i == 0 || keys[i] != keys[i - 1])
+			keys[unique++] = keys[i];
+	*n = unique;
+	return keys;
+}
+
+// Lower bound of the distance between two objects (m): of their bounding spheres, or of a sphere and a plane.
+static double distance_bound(const ob_universe *u, uint32_t a, uint32_t b)
+{
+	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
+	const ob_motion *ma = ob_newest_motion(u, a), *mb = ob_newest_motion(u, b);
+	if (pa->shape == OB_SHAPE_PLANE || pb->shape == OB_SHAPE_PLANE) {
+		const ob_motion *plane = pa->shape == OB_SHAPE_PLANE ? ma : mb, *other = plane == ma ? mb : ma;
+		const ob_passport *po = plane == ma ? pb : pa;
+		ob_mat3 r = ob_quat_matrix(plane->q);
+		return ob_dot(ob_column(&r, 2), ob_sub(other->p, plane->p)) - ob_shape_radius(po->shape, po->size);
+	}
+	double box_a[6], box_b[6], apart = 0;
+	ob_shape_bounds(pa->shape, pa->size, (ob_pose){ ma->p, ma->q }, box_a);
+	ob_shape_bounds(pb->shape, pb->size, (ob_pose){ mb->p, mb->q }, box_b);
+	for (int c = 0; c < 3; c++)
+		apart = fmax(apart, fmax(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
+	double spheres = ob_norm(ob_sub(ma->p, mb->p)) - ob_shape_radius(pa->shape, pa->size) -
+			 ob_shape_radius(pb->shape, pb->size);
+	return fmax(apart, spheres);
+}
+
+static bool new_pair(ob_universe *u, uint64_t key, ob_pair_key *out)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	struct ob_exchange_counts *n = ex->count;
+	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key, record;
+	if (n->records_free)
+		record = ex->record_free[--n->records_free];
+	else if (n->records_used < ex->pairs_max)
+		record = n->records_used++;
+	else
+		return false;
+	ex->record[record].stamp[0] = ex->record[record].stamp[1] = 0;
+	double apart = distance_bound(u, a, b);
+	*out = (ob_pair_key){ a, b, record, 0, apart > 0 ? ex->brief[a].path + ex->brief[b].path + apart : -1 };
+	return true;
+}
+
+static void release(ob_exchange *ex, const ob_pair_key *p)
+{
+	ex->record_free[ex->count->records_free++] = p->record;
+}
+
+void ob_pairs_merge(ob_universe *u)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t count, *moved = ex->scratch, out = 0;
+	const uint32_t *list = ob_rebound_list(u, &count);
+	size_t fresh, k = 0;
+	if (!count)
+		return;
+	uint64_t *keys = perceived_keys(u, list, count, &fresh);
+	memset(moved, 0, ob_universe_ids(u) * sizeof *moved);
+	for (uint32_t i = 0; i < count; i++)
+		moved[list[i]] = 1;
+	for (uint32_t i = 0; i <= ex->count->pairs && keys; i++) {
+		const ob_pair_key *old = i < ex->count->pairs ? &ex->pair[i] : NULL;
+		uint64_t old_key = old ? (uint64_t)old->a << 32 | old->b : UINT64_MAX;
+		for (; k < fresh && keys[k] < old_key; k++)
+			if (out >= ex->pairs_max || !new_pair(u, keys[k], &ex->pair_next[out++]))
+				ex->count->failure = OB_EXCHANGE_PAIRS_FULL, out -= out > 0;
+		if (!old)
+			break;
+		bool still = k < fresh && keys[k] == old_key;
+		k += still;
+		// A pair that still carries impulses is let go by its island's solver, not here.
+		if (still || old->active || !(moved[old->a] | moved[old->b]))
+			ex->pair_next[out++] = *old;
+		else
+			release(ex, old);
+	}
+	if (keys)
+		memcpy(ex->pair, ex->pair_next, out * sizeof *ex->pair);
+	else
+		ex->count->failure = OB_EXCHANGE_PAIRS_FULL;
+	ex->count->pairs = keys ? out : ex->count->pairs;
+	free(keys);
+	ob_rebound_reset(u);
+	ob_perceived_reset(u);
+}
+
+void ob_pairs_drop(ob_universe *u, uint32_t id)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t out = 0;
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		if (ex->pair[i].a == id || ex->pair[i].b == id)
+			release(ex, &ex->pair[i]);
+		else
+			ex->pair[out++] = ex->pair[i];
+	}
+	ex->count->pairs = out;
+}

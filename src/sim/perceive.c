@@ -1,0 +1,75 @@
+#include "sim/perceive.h"
+
+#include <float.h>
+
+#include "sim/index.h"
+
+static const double lasting = 3; // claimed boxes last about so many steps
+static const double base_margin = .04; // m: of an object at rest
+static const double far_margin = 1.5; // m: fast ones claim only what one step needs beyond this
+
+double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size)
+{
+	return ob_norm(v) + (shape == OB_SHAPE_SPHERE ? 0 : ob_norm(w) * ob_shape_radius(shape, size));
+}
+
+double ob_step_reach(const ob_run_settings *run, double surface_speed)
+{
+	return (surface_speed + ob_norm(run->gravity) * run->step_length) * run->step_length;
+}
+
+static bool holds(const float *box, const double *tight, double margin)
+{
+	for (int c = 0; c < 3; c++)
+		if (tight[c] - margin < box[c] || tight[3 + c] + margin > box[3 + c])
+			return false;
+	return true;
+}
+
+void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+{
+	double tight[6];
+	ob_shape_bounds(shape, size, pose, tight);
+	if (!holds(ob_universe_exchange(u)->bounds[id], tight, reach))
+		ob_claim_bounds_anew(u, id, shape, size, pose, reach);
+}
+
+void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	double tight[6], margin = base_margin + lasting * reach;
+	ob_shape_bounds(shape, size, pose, tight);
+	if (margin > far_margin)
+		margin = fmax(far_margin, 1.2 * reach);
+	for (int c = 0; c < 3; c++) {
+		// Rounded outwards; a plane's box stays infinite.
+		ex->bounds[id][c] = nextafterf((float)(tight[c] - margin), -FLT_MAX);
+		ex->bounds[id][3 + c] = nextafterf((float)(tight[3 + c] + margin), FLT_MAX);
+	}
+	if (!ob_perceive_asked(u, id)) {
+		ex->perceived[id].count = UINT32_MAX;
+		ob_rebound_append(u, id);
+	}
+}
+
+bool ob_perceive_asked(const ob_universe *u, uint32_t id)
+{
+	return ob_universe_exchange(u)->perceived[id].count == UINT32_MAX;
+}
+
+void ob_perceive(ob_universe *u, uint32_t id)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t near[256], n = ob_index_query(u, id, near, 256);
+	uint32_t offset = ob_perceived_reserve(u, n);
+	if (offset == UINT32_MAX) {
+		ex->count->failure = OB_EXCHANGE_PERCEIVED_FULL;
+		n = offset = 0;
+	} else if (n <= 256) {
+		for (uint32_t i = 0; i < n; i++)
+			ex->perceived_id[offset + i] = near[i];
+	} else {
+		ob_index_query(u, id, ex->perceived_id + offset, n);
+	}
+	ex->perceived[id] = (struct ob_perceived){ offset, n };
+}

@@ -1,0 +1,23 @@
+// What an object knows of its surroundings: the box that it claims, and who else's box overlaps it.
+#ifndef OB_SIM_PERCEIVE_H
+#define OB_SIM_PERCEIVE_H
+
+#include <ob/motion.h>
+
+#include "table/table.h"
+
+// Bound of the speed of any point of the object (m/s).
+double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size);
+// How far any point may get in one step (m), under gravity.
+double ob_step_reach(const ob_run_settings *run, double surface_speed);
+// Does the object's claimed box still hold it for its next step? If not, claims a new one, a little larger than needed
+// so that it lasts, and asks for the index and the neighbours to be brought up to date. reach: m, for the next step.
+void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach);
+// Same, with the box always made anew.
+void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach);
+
+// The object looks around: fills its perceived list.
+void ob_perceive(ob_universe *u, uint32_t id);
+bool ob_perceive_asked(const ob_universe *u, uint32_t id);
+
+#endif

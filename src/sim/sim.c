@@ -1,0 +1,128 @@
+#include "sim/sim.h"
+
+#include <stdlib.h>
+
+#include "sim/arrange.h"
+#include "sim/island.h"
+#include "sim/perceive.h"
+#include "sim/worker.h"
+
+ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
+{
+	uint32_t capacity = ob_universe_capacity(u);
+	const ob_run_settings *run = ob_universe_settings(u);
+	ob_sim *s = calloc(1, sizeof *s);
+	if (s) {
+		s->u = u;
+		s->worker = worker;
+		s->ode = calloc(capacity, sizeof *s->ode);
+		s->ode_generation = calloc(capacity, sizeof *s->ode_generation);
+		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
+	}
+	if (!s || !s->ode || !s->ode_generation || !s->island.row_of) {
+		ob_sim_destroy(s);
+		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
+		return NULL;
+	}
+	if (run->monolith) {
+		s->monolith = ob_monolith_create(u);
+	} else if (run->one_per_object && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
+		ob_sim_ode(s, worker); // its own object, for good
+	}
+	return s;
+}
+
+void ob_sim_destroy(ob_sim *s)
+{
+	if (!s)
+		return;
+	for (uint32_t i = 0; s->ode && i < ob_universe_capacity(s->u); i++)
+		ob_ode_body_destroy(s->ode[i]);
+	ob_monolith_destroy(s->monolith);
+	ob_island_work_finish(&s->island);
+	free(s->ode_generation);
+	free(s->ode);
+	free(s);
+}
+
+ob_ode_body *ob_sim_ode(ob_sim *s, uint32_t id)
+{
+	const ob_passport *p = ob_passport_of(s->u, id);
+	if (s->ode[id] && s->ode_generation[id] != p->generation) {
+		ob_ode_body_destroy(s->ode[id]);
+		s->ode[id] = NULL;
+	}
+	if (!s->ode[id]) {
+		s->ode[id] = ob_ode_body_create(p, ob_universe_settings(s->u)->gravity);
+		s->ode_generation[id] = p->generation;
+	}
+	return s->ode[id];
+}
+
+// The worker's share of the islands: those that it claims, or the one that its object leads.
+static void work_islands(ob_sim *s)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	uint32_t chunk, objects = 0;
+	if (ob_universe_settings(s->u)->one_per_object) {
+		ob_island_solve(s, ex->result_island[s->worker]);
+		return;
+	}
+	while (ob_claim_next(s->u, &chunk))
+		for (uint32_t i = ex->chunk[chunk]; i < ex->chunk[chunk + 1]; i++) {
+			ob_island_solve(s, i);
+			objects += ex->island[i].members;
+		}
+	ob_worker_set_objects(s->u, s->worker, objects);
+}
+
+// An object whose island was solved by its leader copies its own state from there; then it looks around if it asked to.
+static void work_own_member(ob_sim *s)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	uint32_t id = s->worker, island = ex->result_island[id];
+	bool solved = island != UINT32_MAX && ex->member[ex->island[island].first_member] != id;
+	if (solved && ex->result[id].step == ob_step_count(s->u) + 1)
+		ob_publish_motion(s->u, id, &ex->result[id]);
+	if (ob_perceive_asked(s->u, id))
+		ob_perceive(s->u, id);
+}
+
+static void work_members(ob_sim *s)
+{
+	uint32_t count, i;
+	const uint32_t *list = ob_rebound_list(s->u, &count);
+	if (ob_universe_settings(s->u)->one_per_object) {
+		work_own_member(s);
+		return;
+	}
+	while (ob_claim_next(s->u, &i))
+		ob_perceive(s->u, list[i]);
+}
+
+void ob_sim_work(ob_sim *s, ob_phase phase)
+{
+	if (s->monolith)
+		ob_monolith_step(s->monolith);
+	else if (phase == OB_PHASE_ISLANDS)
+		work_islands(s);
+	else if (phase == OB_PHASE_MEMBERS)
+		work_members(s);
+}
+
+void ob_sim_arrange(ob_sim *s, ob_phase finished)
+{
+	ob_arrange(s->u, finished);
+}
+
+void ob_sim_run(ob_sim *s)
+{
+	for (;;) {
+		ob_phase phase = ob_gate_wait(s->u, s->worker);
+		if (phase == OB_PHASE_STOP)
+			return;
+		ob_sim_work(s, phase);
+		if (ob_gate_arrive(s->u, s->worker))
+			ob_sim_arrange(s, phase);
+	}
+}

@@ -1,0 +1,14 @@
+// The touches of an island: which pairs are in contact, where, and in which lane of which batch they are solved.
+#ifndef OB_SIM_TOUCH_H
+#define OB_SIM_TOUCH_H
+
+#include "sim/worker.h"
+
+void ob_touches_load(ob_sim *s, const ob_island *is);
+// Looks again at every pair whose members have moved far enough for its geometry to have changed. true: some were.
+bool ob_touches_refresh(ob_sim *s);
+// Batches in order of colour, matrices up to date: ready for exchanges.
+void ob_touches_prepare(ob_sim *s);
+void ob_touches_store(ob_sim *s);
+
+#endif

@@ -1,0 +1,22 @@
+// The private side of a worker (see sim.h).
+#ifndef OB_SIM_WORKER_H
+#define OB_SIM_WORKER_H
+
+#include "ode/ode_body.h"
+#include "sim/island.h"
+#include "sim/monolith.h"
+#include "sim/sim.h"
+
+struct ob_sim {
+	ob_universe *u;
+	uint32_t worker;
+	ob_ode_body **ode; // [object]: ODE's world, body and geom of each object that this worker has run
+	uint32_t *ode_generation;
+	ob_island_work island; // scratch
+	ob_monolith *monolith; // NULL unless one world holds all objects
+};
+
+// The object's ODE body, made when the worker first runs it.
+ob_ode_body *ob_sim_ode(ob_sim *s, uint32_t id);
+
+#endif
