@@ -45,7 +45,8 @@ double ob_shape_thickness(ob_shape shape, ob_vec3 size);
 void ob_motion_swept_bounds(const ob_motion *m, ob_shape shape, ob_vec3 size, double s, double bounds[6]);
 
 // First time in [0, s] at which a gap (m) with rate v (m/s) and constant acceleration a (m/s^2) closes:
-// gap + v t + a t^2 / 2 = 0 with a closing rate; infinity if it does not. A gap <= 0 that closes gives 0.
+// gap + v t + a t^2 / 2 = 0 with a closing rate; infinity if it does not. A gap <= 0 that closes gives 0; one
+// that opens, but not to above 0, closes from its turn on.
 double ob_time_of_closing(double gap, double v, double a, double s);
 
 #pragma GCC visibility pop

@@ -88,10 +88,10 @@ static double height(double p, double v, double a, double t)
 	return a != 0 ? copysign(INFINITY, a) : v != 0 ? copysign(INFINITY, v * t) : p;
 }
 
-// Extremes of the parabola over [0, s], widened by half and by what rounding may hide.
-static void sweep(double p, double v, double a, double s, double half, double *low, double *high)
+// Extremes of the parabola over [t0, t0 + s], widened by half and by what rounding may hide, in the instant too.
+static void sweep(double p, double v, double a, double t0, double s, double half, double *low, double *high)
 {
-	double end = height(p, v, a, s), turn = a != 0 ? -v / a : 0;
+	double end = height(p, v, a, s), turn = a != 0 ? -v / a : 0, slack = 0;
 	*low = fmin(p, end);
 	*high = fmax(p, end);
 	if (turn * (turn - s) < 0) { // the vertex lies between
@@ -99,7 +99,8 @@ static void sweep(double p, double v, double a, double s, double half, double *l
 		*low = fmin(*low, top);
 		*high = fmax(*high, top);
 	}
-	double slack = isfinite(s) ? 4 * DBL_EPSILON * (fabs(p) + fabs(v * s) + fabs(.5 * a * s * s) + half) : 0;
+	if (isfinite(s))
+		slack = 4 * DBL_EPSILON * (fabs(p) + half + (fabs(v) + fabs(a * s)) * (fabs(t0) + fabs(s)));
 	*low -= half + slack;
 	*high += half + slack;
 }
@@ -111,7 +112,7 @@ void ob_motion_swept_bounds(const ob_motion *m, ob_shape shape, ob_vec3 size, do
 		double radius = ob_shape_radius(shape, size);
 		half = ob_v3(radius, radius, radius);
 	}
-	sweep(m->p.x, m->v.x, m->a.x, s, half.x, &bounds[0], &bounds[3]);
-	sweep(m->p.y, m->v.y, m->a.y, s, half.y, &bounds[1], &bounds[4]);
-	sweep(m->p.z, m->v.z, m->a.z, s, half.z, &bounds[2], &bounds[5]);
+	sweep(m->p.x, m->v.x, m->a.x, m->t0, s, half.x, &bounds[0], &bounds[3]);
+	sweep(m->p.y, m->v.y, m->a.y, m->t0, s, half.y, &bounds[1], &bounds[4]);
+	sweep(m->p.z, m->v.z, m->a.z, m->t0, s, half.z, &bounds[2], &bounds[5]);
 }
