@@ -1,0 +1,123 @@
+#include "cli/capture.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SINKS_MAX = 3 };
+
+struct ob_capture {
+	ob_frame_clock clock;
+	ob_renderer *renderer;
+	ob_camera_def camera;
+	ob_sink *sink[SINKS_MAX];
+	int sinks;
+	int raw_fd; // -1 = none
+	uint8_t *rgba;
+};
+
+static bool add(ob_capture *c, ob_sink *s)
+{
+	if (s)
+		c->sink[c->sinks++] = s;
+	return s != NULL;
+}
+
+static bool open_sinks(ob_capture *c, const ob_frames_request *f, ob_error *e)
+{
+	if (f->dir && !add(c, ob_sink_png(f->dir, f->width, f->height, e)))
+		return false;
+	if (f->video && !add(c, ob_sink_video(f->video, f->width, f->height, f->fps, e)))
+		return false;
+	if (!f->raw)
+		return true;
+	if (strcmp(f->raw, "-") == 0)
+		c->raw_fd = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+	else
+		c->raw_fd = open(f->raw, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+	if (c->raw_fd < 0)
+		return ob_fail(e, "--raw %s: %s", f->raw, strerror(errno));
+	return add(c, ob_sink_raw(c->raw_fd, f->width, f->height, e));
+}
+
+static const ob_camera_def *find_camera(const ob_scene *s, const char *name)
+{
+	for (uint32_t i = 0; name && i < s->cameras; i++) {
+		if (strcmp(s->camera[i].name, name) == 0)
+			return &s->camera[i];
+	}
+	return &s->camera[0];
+}
+
+ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, double duration, double step,
+			    ob_error *e)
+{
+	ob_capture *c = calloc(1, sizeof *c);
+	if (!c)
+		return (void *)(intptr_t)ob_fail(e, "out of memory");
+	c->clock = ob_frame_clock_make(duration, f->fps, step);
+	c->camera = *find_camera(scene, f->camera);
+	c->raw_fd = -1;
+	ob_render_setup setup = {
+		.width = f->width,
+		.height = f->height,
+		.samples = f->samples,
+		.device = f->gpu,
+		.overlay_aabb = f->aabb,
+		.overlay_contacts = f->contacts,
+	};
+	c->rgba = malloc((size_t)f->width * (size_t)f->height * 4);
+	if (!c->rgba)
+		ob_fail(e, "out of memory for a frame of %d x %d", f->width, f->height);
+	else
+		c->renderer = ob_renderer_create(&setup, &scene->look, e);
+	if (!c->renderer || !open_sinks(c, f, e)) {
+		ob_capture_close(c, NULL);
+		return NULL;
+	}
+	return c;
+}
+
+uint64_t ob_capture_need(const ob_capture *c, uint64_t now)
+{
+	return ob_frame_clock_need(&c->clock, now);
+}
+uint64_t ob_capture_frames(const ob_capture *c)
+{
+	return c->clock.next;
+}
+
+bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *now, ob_error *e)
+{
+	bool between;
+	while (ob_frame_clock_step(&c->clock, &between) <= now->step) {
+		double t = ob_frame_clock_time(&c->clock);
+		const ob_snapshot *from = between ? prev : NULL;
+		if (!ob_renderer_draw(c->renderer, from, now, between ? t : now->time, &c->camera, c->rgba, e))
+			return false;
+		for (int i = 0; i < c->sinks; i++) {
+			if (!ob_sink_put(c->sink[i], c->clock.next, t, c->rgba, e))
+				return false;
+		}
+		c->clock.next++;
+	}
+	return true;
+}
+
+bool ob_capture_close(ob_capture *c, ob_error *e)
+{
+	bool fine = true;
+	if (!c)
+		return true;
+	for (int i = 0; i < c->sinks; i++)
+		fine &= ob_sink_close(c->sink[i], fine ? e : NULL);
+	if (c->raw_fd >= 0 && close(c->raw_fd) != 0 && fine)
+		fine = ob_fail(e, "--raw: %s", strerror(errno));
+	ob_renderer_destroy(c->renderer);
+	free(c->rgba);
+	free(c);
+	return fine;
+}

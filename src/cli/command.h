@@ -1,0 +1,21 @@
+// The commands of obsim, and what they tell the shell.
+#ifndef OB_CLI_COMMAND_H
+#define OB_CLI_COMMAND_H
+
+#include "cli/options.h"
+
+enum ob_exit {
+	OB_EXIT_OK,
+	OB_EXIT_FAILED, // the run failed, or was interrupted
+	OB_EXIT_USAGE, // the command line or the scene is wrong
+};
+
+// Each takes parsed arguments and returns an ob_exit; errors are already told on standard error.
+int ob_command_run(const ob_arguments *a);
+int ob_command_compare(const ob_arguments *a);
+int ob_command_top(const ob_arguments *a);
+
+// One line on standard error, "obsim: ..."; returns code.
+int ob_command_fail(int code, const char *text);
+
+#endif

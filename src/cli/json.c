@@ -1,0 +1,155 @@
+#include "cli/json.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+// Bytes of the UTF-8 character at s; 0 = not one (RFC 3629: no overlong forms, no surrogates, up to U+10FFFF).
+static int utf8_length(const unsigned char *s)
+{
+	int n = s[0] < 0x80                   ? 1
+		: s[0] >= 0xc2 && s[0] < 0xe0 ? 2
+		: (s[0] & 0xf0) == 0xe0       ? 3
+		: s[0] >= 0xf0 && s[0] < 0xf5 ? 4
+					      : 0;
+	for (int i = 1; i < n; i++) {
+		if ((s[i] & 0xc0) != 0x80)
+			return 0;
+	}
+	if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
+	    (s[0] == 0xf4 && s[1] > 0x8f))
+		return 0;
+	return n;
+}
+
+static void put_string(FILE *f, const char *text)
+{
+	fputc('"', f);
+	for (const unsigned char *s = (const unsigned char *)text; *s;) {
+		int n = utf8_length(s);
+		if (*s == '"' || *s == '\\')
+			fprintf(f, "\\%c", *s);
+		else if (n == 0 || *s < 0x20 || *s == 0x7f)
+			fprintf(f, "\\u%04x", *s);
+		else
+			fwrite(s, 1, (size_t)n, f);
+		s += n ? n : 1;
+	}
+	fputc('"', f);
+}
+
+static void begin(ob_json *j, const char *key)
+{
+	if (j->filled)
+		fputc(',', j->f);
+	if (j->depth > 0)
+		fprintf(j->f, "\n%*s", 2 * j->depth, "");
+	if (key) {
+		put_string(j->f, key);
+		fputs(": ", j->f);
+	}
+	j->filled = true;
+}
+
+void ob_json_open(ob_json *j, const char *key)
+{
+	begin(j, key);
+	fputc('{', j->f);
+	j->depth++;
+	j->filled = false;
+}
+
+void ob_json_close(ob_json *j)
+{
+	j->depth--;
+	if (j->filled)
+		fprintf(j->f, "\n%*s", 2 * j->depth, "");
+	fputc('}', j->f);
+	if (j->depth == 0)
+		fputc('\n', j->f);
+	j->filled = true;
+}
+
+void ob_json_string(ob_json *j, const char *key, const char *value)
+{
+	begin(j, key);
+	put_string(j->f, value);
+}
+
+void ob_json_number(ob_json *j, const char *key, double value)
+{
+	begin(j, key);
+	if (isfinite(value))
+		fprintf(j->f, "%.17g", value);
+	else
+		fputs("null", j->f);
+}
+
+void ob_json_count(ob_json *j, const char *key, uint64_t value)
+{
+	begin(j, key);
+	fprintf(j->f, "%" PRIu64, value);
+}
+
+void ob_json_true(ob_json *j, const char *key, bool value)
+{
+	begin(j, key);
+	fputs(value ? "true" : "false", j->f);
+}
+
+void ob_json_null(ob_json *j, const char *key)
+{
+	begin(j, key);
+	fputs("null", j->f);
+}
+
+// Behind the string that opens at s; NULL if it does not end.
+static const char *skip_string(const char *s)
+{
+	for (s++; *s && *s != '"'; s++) {
+		if (*s == '\\' && s[1])
+			s++;
+	}
+	return *s ? s + 1 : NULL;
+}
+
+const char *ob_json_find(const char *text, const char *key)
+{
+	size_t length = strlen(key);
+	for (const char *s = text; s && *s;) {
+		if (*s != '"') {
+			s++;
+			continue;
+		}
+		const char *name = s + 1;
+		s = skip_string(s);
+		if (!s || *s != ':')
+			continue; // a value, or the end of a torn text
+		s += 1 + strspn(s + 1, " ");
+		if (strncmp(name, key, length) == 0 && name[length] == '"')
+			return s;
+	}
+	return NULL;
+}
+
+bool ob_json_read_string(const char *at, char *out, size_t size)
+{
+	if (!at || *at != '"' || size == 0)
+		return false;
+	size_t n = 0;
+	for (at++; *at && *at != '"'; at++) {
+		unsigned code = (unsigned char)*at;
+		if (*at == '\\') {
+			at++;
+			if (*at == 'u' && sscanf(at + 1, "%4x", &code) == 1)
+				at += 4;
+			else
+				code = (unsigned char)*at;
+		}
+		if (!*at || n + 1 >= size)
+			return false;
+		out[n++] = (char)code;
+	}
+	out[n] = 0;
+	return *at == '"';
+}

@@ -1,0 +1,87 @@
+// obsim: the command line. Finds the command, reads its options, and leaves the rest to it.
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/suggest.h"
+#include "cli/version.h"
+
+static const struct {
+	const char *name;
+	ob_command_bit bit;
+	int (*main)(const ob_arguments *);
+} commands[] = {
+	{ "run", OB_COMMAND_RUN, ob_command_run },
+	{ "compare", OB_COMMAND_COMPARE, ob_command_compare },
+	{ "top", OB_COMMAND_TOP, ob_command_top },
+};
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
+int ob_command_fail(int code, const char *text)
+{
+	fprintf(stderr, "obsim: %s\n", text);
+	return code;
+}
+
+static int find(const char *name)
+{
+	for (int i = 0; i < COMMANDS; i++) {
+		if (strcmp(commands[i].name, name) == 0)
+			return i;
+	}
+	return -1;
+}
+
+static int unknown_command(const char *name)
+{
+	ob_suggestion s = { .word = name };
+	for (int i = 0; i < COMMANDS; i++)
+		ob_suggest_offer(&s, commands[i].name);
+	ob_error e;
+	size_t n = strlen(name);
+	if (s.best)
+		ob_fail(&e, "unknown command '%s': did you mean 'obsim %s'?", name, s.best);
+	else if (n > 4 && strcmp(name + n - 4, ".lua") == 0)
+		ob_fail(&e, "'%s' is a scene, not a command: obsim run %s", name, name);
+	else
+		ob_fail(&e, "unknown command '%s': obsim --help lists the commands", name);
+	return ob_command_fail(OB_EXIT_USAGE, e.text);
+}
+
+int main(int argc, char **argv)
+{
+	const char *word = argc > 1 ? argv[1] : NULL;
+	if (!word) {
+		ob_options_overview(stderr);
+		return OB_EXIT_USAGE;
+	}
+	if (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0) {
+		ob_version_print(stdout);
+		return OB_EXIT_OK;
+	}
+	if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
+		int topic = argc > 2 ? find(argv[2]) : -1;
+		if (topic >= 0)
+			ob_options_help(stdout, commands[topic].bit);
+		else if (argc > 2)
+			return unknown_command(argv[2]);
+		else
+			ob_options_overview(stdout);
+		return OB_EXIT_OK;
+	}
+	int command = find(word);
+	if (command < 0)
+		return unknown_command(word);
+
+	ob_arguments a;
+	ob_error e;
+	int code = OB_EXIT_OK;
+	if (!ob_options_parse(&a, commands[command].bit, argc - 2, argv + 2, &e))
+		code = ob_command_fail(OB_EXIT_USAGE, e.text);
+	else if (a.value[OB_OPTION_HELP])
+		ob_options_help(stdout, commands[command].bit);
+	else
+		code = commands[command].main(&a);
+	ob_options_finish(&a);
+	return code;
+}

@@ -1,0 +1,56 @@
+#include "cli/number.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+bool ob_number_count(const char *option, const char *text, uint64_t least, uint64_t most, uint64_t *out, ob_error *e)
+{
+	if (!text)
+		return true;
+	char *end;
+	errno = 0;
+	uint64_t n = strtoull(text, &end, 10);
+	if (!isdigit((unsigned char)*text) || *end)
+		return ob_fail(e, "--%s %s: expected a whole number", option, text);
+	if (errno || n < least || n > most)
+		return ob_fail(e, "--%s %s: expected %" PRIu64 " to %" PRIu64, option, text, least, most);
+	*out = n;
+	return true;
+}
+
+// A decimal number at *text, which moves behind it; NaN if there is none. No hex, no inf, no blanks.
+static double read_decimal(const char **text)
+{
+	const char *digits = *text + (**text == '-' || **text == '+');
+	if (!isdigit((unsigned char)*digits) && *digits != '.')
+		return NAN;
+	if (digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X'))
+		return NAN;
+	char *end;
+	double x = strtod(*text, &end);
+	if (end == *text)
+		return NAN;
+	*text = end;
+	return x;
+}
+
+bool ob_number_real(const char *option, const char *text, double above, double most, double *out, ob_error *e)
+{
+	if (!text)
+		return true;
+	const char *at = text;
+	double x = read_decimal(&at);
+	if (*at == '/') {
+		at++;
+		x /= read_decimal(&at);
+	}
+	if (isnan(x) || *at)
+		return ob_fail(e, "--%s %s: expected a number, as .5 or 1/60", option, text);
+	if (!(x > above && x <= most))
+		return ob_fail(e, "--%s %s: expected more than %g, at most %g", option, text, above, most);
+	*out = x;
+	return true;
+}

@@ -1,0 +1,104 @@
+#include "cli/observe.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static bool is_closed(const ob_scene *s)
+{
+	if (ob_norm2(s->gravity) > 0)
+		return false;
+	for (uint32_t i = 0; i < s->objects; i++) {
+		const ob_object_def *d = &s->object[i];
+		if ((d->passport.flags & OB_OBJECT_STATIC) || d->born > 0 || isfinite(d->dies))
+			return false;
+	}
+	return true;
+}
+
+bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e)
+{
+	*o = (ob_observer){ .gravity = scene->gravity, .closed = is_closed(scene), .momentum_error = NAN };
+	if (!path)
+		return true;
+	o->series = fopen(path, "we");
+	if (!o->series)
+		return ob_fail(e, "--series %s: %s", path, strerror(errno));
+	fputs("step,time_s,energy_j,momentum_x,momentum_y,momentum_z,penetration_max_m,penetration_mean_m,touching_"
+	      "pairs,"
+	      "asleep\n",
+	      o->series);
+	return true;
+}
+
+static bool moves(const ob_snapshot *s, uint32_t i)
+{
+	return (s->passport[i].flags & OB_OBJECT_PRESENT) && !(s->passport[i].flags & OB_OBJECT_STATIC);
+}
+
+static void write_line(const ob_observer *o, const ob_snapshot *s, ob_vec3 momentum)
+{
+	uint32_t asleep = 0;
+	for (uint32_t i = 0; i < s->count; i++)
+		asleep += moves(s, i) && (s->motion[i].flags & OB_MOTION_ASLEEP);
+	fprintf(o->series, "%" PRIu64 ",%.17g,%.17g,%.17g,%.17g,%.17g,%.9g,%.9g,%zu,%" PRIu32 "\n", s->step, s->time,
+		o->energy, momentum.x, momentum.y, momentum.z, o->now.max_m, o->now.mean_m, o->now.pairs, asleep);
+}
+
+static void start(ob_observer *o, const ob_snapshot *s, ob_vec3 momentum)
+{
+	o->started = true;
+	o->energy_start = o->energy_top = o->energy;
+	o->momentum_start = momentum;
+	for (uint32_t i = 0; i < s->count; i++) {
+		if (moves(s, i))
+			o->momentum_scale += s->passport[i].mass * ob_norm(s->motion[i].v);
+	}
+}
+
+void ob_observer_look(ob_observer *o, const ob_snapshot *s)
+{
+	if (o->started && s->step == o->last_step)
+		return;
+	o->energy = ob_measure_energy(s, o->gravity);
+	ob_vec3 momentum = ob_measure_momentum(s);
+	if (!o->started)
+		start(o, s, momentum);
+	o->last_step = s->step;
+	o->energy_top = fmax(o->energy_top, o->energy);
+	if (o->closed && o->momentum_scale > 0)
+		o->momentum_error =
+			fmax(o->momentum_error, ob_norm(ob_sub(momentum, o->momentum_start)) / o->momentum_scale);
+	ob_measure_penetration(s, &o->now);
+	if (o->now.max_m > o->worst) {
+		o->worst = o->now.max_m;
+		o->worst_time = s->time;
+	}
+	if (o->series)
+		write_line(o, s, momentum);
+}
+
+void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r)
+{
+	// where the scene counts its energy from 0, the gain is in joules
+	double scale = o->energy_start != 0 ? fabs(o->energy_start) : 1;
+	r->energy_start = o->energy_start;
+	r->energy_end = o->energy;
+	r->energy_gain_max = each_step ? (o->energy_top - o->energy_start) / scale : NAN;
+	r->momentum_error = each_step ? o->momentum_error : NAN;
+	r->penetration_max_m = o->now.max_m;
+	r->penetration_mean_m = o->now.mean_m;
+	r->worst_penetration_m = each_step ? o->worst : NAN;
+	r->worst_penetration_time_s = each_step ? o->worst_time : NAN;
+}
+
+bool ob_observer_close(ob_observer *o, ob_error *e)
+{
+	if (!o->series)
+		return true;
+	bool broken = ferror(o->series);
+	broken |= fclose(o->series) != 0;
+	o->series = NULL;
+	return broken ? ob_fail(e, "--series: the file could not be written whole: %s", strerror(errno)) : true;
+}

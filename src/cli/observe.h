@@ -1,0 +1,32 @@
+// What is measured along a run: from one snapshot after the other to the figures of the report.
+#ifndef OB_CLI_OBSERVE_H
+#define OB_CLI_OBSERVE_H
+
+#include <stdio.h>
+
+#include "cli/report.h"
+#include "measure/measure.h"
+#include "scene/scene.h"
+
+typedef struct ob_observer {
+	ob_vec3 gravity;
+	bool started, closed; // closed: nothing from outside acts, so that momentum stays
+	uint64_t last_step;
+	double energy_start, energy, energy_top; // J
+	ob_vec3 momentum_start; // kg m/s
+	double momentum_scale; // kg m/s, sum of the sizes at the start
+	double momentum_error; // largest so far, relative to the scale
+	ob_penetration now;
+	double worst, worst_time; // m, s
+	FILE *series; // a line for each look; NULL = none
+} ob_observer;
+
+// path: of the CSV file; NULL = none
+bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e);
+// Measures a snapshot; the first is the start. One that has been measured already is passed over.
+void ob_observer_look(ob_observer *o, const ob_snapshot *s);
+// Puts the figures into the report; each_step: every step was looked at, so that the largest means something.
+void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r);
+bool ob_observer_close(ob_observer *o, ob_error *e); // once, also after a failed open
+
+#endif

@@ -1,0 +1,199 @@
+#include "cli/options.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/suggest.h"
+
+enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP };
+
+const ob_option ob_option_table[OB_OPTIONS] = {
+	[OB_OPTION_DEFINE] = { "The scene", "define", 'D', "NAME=VALUE", "set a parameter of the scene",
+			       RUN | COMPARE },
+	[OB_OPTION_DURATION] = { NULL, "duration", 0, "S", "simulated seconds (the scene says how many)",
+				 RUN | COMPARE },
+	[OB_OPTION_STEP] = { NULL, "step", 0, "H", "seconds a step, as .01 or 1/60 (the scene's)", RUN | COMPARE },
+	[OB_OPTION_SEED] = { NULL, "seed", 0, "N", "seed of the scene's random numbers (the scene's)", RUN | COMPARE },
+
+	[OB_OPTION_ARCH] = { "How it runs", "arch", 0, "obs|monolith",
+			     "one simulator per object, or one ODE world that holds all (obs)", RUN },
+	[OB_OPTION_ISOLATION] = { NULL, "isolation", 0, "thread|process", "what a worker is (thread)", RUN },
+	[OB_OPTION_WORKERS] = { NULL, "workers", 0, "N|objects",
+				"workers in the pool, or one for each object (one per core)", RUN | COMPARE },
+	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", 0, "N", "substeps a step (the scene's; monolith: 1)",
+				 RUN | COMPARE },
+	[OB_OPTION_PASSES] = { NULL, "passes", 0, "N", "rounds of exchange a substep, at most (the scene's)",
+			       RUN | COMPARE },
+	[OB_OPTION_EXCHANGE] = { NULL, "exchange", 0, "coloured|jacobi", "order of exchanges (the scene's)",
+				 RUN | COMPARE },
+	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", 0, "exact|ode",
+				   "free motion in closed form, or by ODE's stepper (the scene's)", RUN | COMPARE },
+	[OB_OPTION_SLEEPING] = { NULL, "sleeping", 0, "on|off", "whether what rests may sleep (the scene's)",
+				 RUN | COMPARE },
+	[OB_OPTION_ITERATIONS] = { NULL, "iterations", 0, "N",
+				   "monolith: iterations of ODE's QuickStep; 0 = its exact solver (20)",
+				   RUN | COMPARE },
+	[OB_OPTION_NAME] = { NULL, "name", 0, "NAME", "name of the universe, for obsim top (obsim-PID)", RUN },
+
+	[OB_OPTION_FRAMES] = { "Frames", "frames", 0, "DIR", "write DIR/frame-000000.png and so on", RUN },
+	[OB_OPTION_VIDEO] = { NULL, "video", 0, "FILE", "write a video through ffmpeg", RUN },
+	[OB_OPTION_RAW] = { NULL, "raw", 0, "FILE", "write raw rgb24 frames; - = standard output", RUN },
+	[OB_OPTION_FPS] = { NULL, "fps", 0, "F", "frames per simulated second (60)", RUN },
+	[OB_OPTION_SIZE] = { NULL, "size", 0, "WxH", "pixels (1280x720)", RUN },
+	[OB_OPTION_SAMPLES] = { NULL, "samples", 0, "N", "samples a pixel, against jagged edges (4)", RUN },
+	[OB_OPTION_CAMERA] = { NULL, "camera", 0, "NAME", "which of the scene's cameras (the first)", RUN },
+	[OB_OPTION_OVERLAY] = { NULL, "overlay", 0, "LIST", "draw over it: aabb, contacts, or both with a comma", RUN },
+	[OB_OPTION_GPU] = { NULL, "gpu", 0, "WHICH", "surfaceless, or the number of a GPU (the first that works)",
+			    RUN },
+
+	[OB_OPTION_RECORD] = { "What is kept", "record", 0, "FILE", "trajectories, as HDF5", RUN },
+	[OB_OPTION_SERIES] = { NULL, "series", 0, "FILE", "energy, momentum, penetration of each step, as CSV", RUN },
+	[OB_OPTION_SUMMARY] = { NULL, "summary", 0, "FILE", "the report, as CSV", RUN },
+	[OB_OPTION_JSON] = { NULL, "json", 0, "FILE", "the report, as JSON; - = standard output", RUN | COMPARE },
+	[OB_OPTION_MEASURE] = { NULL, "measure", 0, "step|end",
+				"measure each step, or the start and the end alone (step)", RUN },
+
+	[OB_OPTION_ONCE] = { "The view", "once", 0, NULL, "print once, for pipes, and end", TOP },
+	[OB_OPTION_INTERVAL] = { NULL, "interval", 0, "S", "seconds between looks (1)", TOP },
+
+	[OB_OPTION_HELP] = { "Other", "help", 'h', NULL, "print this and end", RUN | COMPARE | TOP },
+};
+
+static int unknown(const ob_arguments *a, const char *name, ob_error *e)
+{
+	ob_suggestion s = { .word = name };
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		if (ob_option_table[i].commands & a->command)
+			ob_suggest_offer(&s, ob_option_table[i].name);
+	}
+	if (s.best)
+		return ob_fail(e, "unknown option --%s: did you mean --%s?", name, s.best);
+	return ob_fail(e, "unknown option --%s: --help lists the options", name);
+}
+
+// The values that an argument like "obs|monolith" allows; upper case in it means that anything may stand there.
+static bool check_choice(const ob_option *o, const char *value, ob_error *e)
+{
+	if (!strchr(o->argument, '|') || strpbrk(o->argument, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
+		return true;
+	char words[64];
+	snprintf(words, sizeof words, "%s", o->argument);
+	ob_suggestion s = { .word = value };
+	char *rest = words;
+	for (char *word; (word = strsep(&rest, "|"));) {
+		if (strcmp(word, value) == 0)
+			return true;
+		ob_suggest_offer(&s, word);
+	}
+	if (s.best)
+		return ob_fail(e, "--%s %s: did you mean %s? (%s)", o->name, value, s.best, o->argument);
+	return ob_fail(e, "--%s %s: expected one of %s", o->name, value, o->argument);
+}
+
+static bool add_define(ob_arguments *a, const char *text, ob_error *e)
+{
+	size_t name = strcspn(text, "=");
+	if (!text[name] || name == 0)
+		return ob_fail(e, "-D %s: expected NAME=VALUE, as in -D n=100", text);
+	for (uint32_t i = 0; i < a->defines; i++) {
+		if (strncmp(a->define[i], text, name + 1) == 0)
+			return ob_fail(e, "-D %.*s is given twice: %s and %s", (int)name, text, a->define[i], text);
+	}
+	a->define[a->defines++] = text;
+	return true;
+}
+
+static bool set(ob_arguments *a, ob_option_id id, const char *value, ob_error *e)
+{
+	const ob_option *o = &ob_option_table[id];
+	if (id == OB_OPTION_DEFINE)
+		return add_define(a, value, e);
+	if (a->value[id])
+		return ob_fail(e, "--%s is given twice", o->name);
+	if (o->argument && !*value)
+		return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
+	if (o->argument && !check_choice(o, value, e))
+		return false;
+	a->value[id] = value;
+	return true;
+}
+
+static int find_long(const ob_arguments *a, const char *name, size_t length)
+{
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		const ob_option *o = &ob_option_table[i];
+		if ((o->commands & a->command) && strncmp(o->name, name, length) == 0 && !o->name[length])
+			return i;
+	}
+	return -1;
+}
+
+static int find_short(const ob_arguments *a, char letter)
+{
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		if ((ob_option_table[i].commands & a->command) && ob_option_table[i].letter == letter)
+			return i;
+	}
+	return -1;
+}
+
+// One option at *at; moves *at over a value that stands by itself.
+static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_error *e)
+{
+	const char *text = argv[*at], *value = NULL;
+	int id;
+	if (text[1] == '-') {
+		size_t length = strcspn(text + 2, "=");
+		id = find_long(a, text + 2, length);
+		char name[64];
+		snprintf(name, sizeof name, "%.*s", (int)(length < 60 ? length : 60), text + 2);
+		if (id < 0)
+			return unknown(a, name, e);
+		value = text[2 + length] ? text + 2 + length + 1 : NULL;
+	} else {
+		id = find_short(a, text[1]);
+		if (id < 0)
+			return find_long(a, text + 1, strlen(text + 1)) >= 0
+				       ? ob_fail(e, "unknown option %s: did you mean -%s?", text, text)
+				       : ob_fail(e, "unknown option %s: --help lists the options", text);
+		value = text[2] ? text + 2 : NULL;
+	}
+	const ob_option *o = &ob_option_table[id];
+	if (!o->argument)
+		return value ? ob_fail(e, "--%s takes no value", o->name) : set(a, id, "", e);
+	if (!value) {
+		if (*at + 1 >= argc || strncmp(argv[*at + 1], "--", 2) == 0)
+			return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
+		value = argv[++*at];
+	}
+	return set(a, id, value, e);
+}
+
+bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **argv, ob_error *e)
+{
+	*a = (ob_arguments){ .command = command };
+	a->define = calloc((size_t)argc + 1, sizeof *a->define);
+	if (!a->define)
+		return ob_fail(e, "out of memory");
+	bool only_operands = false;
+	for (int i = 0; i < argc; i++) {
+		if (!only_operands && strcmp(argv[i], "--") == 0) {
+			only_operands = true;
+		} else if (!only_operands && argv[i][0] == '-' && argv[i][1]) {
+			if (!take_option(a, argc, argv, &i, e))
+				return false;
+		} else if (a->operand) {
+			return ob_fail(e, "unexpected '%s' after '%s': one %s at a time", argv[i], a->operand,
+				       command == OB_COMMAND_TOP ? "universe" : "scene");
+		} else {
+			a->operand = argv[i];
+		}
+	}
+	return true;
+}
+
+void ob_options_finish(ob_arguments *a)
+{
+	free(a->define);
+	*a = (ob_arguments){ 0 };
+}

@@ -1,0 +1,77 @@
+// The options of all commands, as one table: the parser, the help and the checks of the shell completions read it.
+#ifndef OB_CLI_OPTIONS_H
+#define OB_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <ob/error.h>
+
+typedef enum ob_command_bit { OB_COMMAND_RUN = 1, OB_COMMAND_COMPARE = 2, OB_COMMAND_TOP = 4 } ob_command_bit;
+
+// In the order in which help shows them.
+typedef enum ob_option_id {
+	OB_OPTION_DEFINE,
+	OB_OPTION_DURATION,
+	OB_OPTION_STEP,
+	OB_OPTION_SEED,
+	OB_OPTION_ARCH,
+	OB_OPTION_ISOLATION,
+	OB_OPTION_WORKERS,
+	OB_OPTION_SUBSTEPS,
+	OB_OPTION_PASSES,
+	OB_OPTION_EXCHANGE,
+	OB_OPTION_INTEGRATOR,
+	OB_OPTION_SLEEPING,
+	OB_OPTION_ITERATIONS,
+	OB_OPTION_NAME,
+	OB_OPTION_FRAMES,
+	OB_OPTION_VIDEO,
+	OB_OPTION_RAW,
+	OB_OPTION_FPS,
+	OB_OPTION_SIZE,
+	OB_OPTION_SAMPLES,
+	OB_OPTION_CAMERA,
+	OB_OPTION_OVERLAY,
+	OB_OPTION_GPU,
+	OB_OPTION_RECORD,
+	OB_OPTION_SERIES,
+	OB_OPTION_SUMMARY,
+	OB_OPTION_JSON,
+	OB_OPTION_MEASURE,
+	OB_OPTION_ONCE,
+	OB_OPTION_INTERVAL,
+	OB_OPTION_HELP,
+	OB_OPTIONS,
+} ob_option_id;
+
+typedef struct ob_option {
+	const char *group; // heading in the help; NULL = under the one before
+	const char *name; // without the dashes
+	char letter; // short form; 0 = none
+	const char *argument; // NULL = a flag; lower-case words with | between them are the only values allowed
+	const char *help;
+	unsigned commands; // ob_command_bit
+} ob_option;
+
+extern const ob_option ob_option_table[OB_OPTIONS];
+
+typedef struct ob_arguments {
+	ob_command_bit command;
+	const char *value[OB_OPTIONS]; // as on the command line; NULL = not given, "" = a flag that was given
+	const char **define; // every -D, in order
+	uint32_t defines;
+	const char *operand; // the scene file or the universe's name; NULL = none
+} ob_arguments;
+
+// Reads argv[0 .. argc-1] (what follows the command's name). The strings stay argv's. false and e on misuse.
+// Free with ob_options_finish in either case.
+bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **argv, ob_error *e);
+void ob_options_finish(ob_arguments *a);
+
+// Help of one command (a line for each of its options), and of obsim as a whole.
+void ob_options_help(FILE *f, ob_command_bit command);
+void ob_options_overview(FILE *f);
+
+#endif

@@ -1,0 +1,46 @@
+// The report of a run: what people and programs are told at its end. docs/obsim.1 defines each figure.
+#ifndef OB_CLI_REPORT_H
+#define OB_CLI_REPORT_H
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "cli/json.h"
+
+// Numbers that were not measured are NaN.
+typedef struct ob_report {
+	char scene[PATH_MAX];
+	char outcome[16]; // "finished" | "interrupted" | "failed"
+	char arch[16], isolation[16], exchange[16], integrator[16];
+	char commit[64];
+	char state_hash[24]; // 16 hex digits
+	uint64_t objects, bodies; // present at the end: all; those that move
+	uint64_t steps, substeps, passes, seed, workers;
+	uint64_t frames;
+	uint64_t memory_bytes;
+	double step, simulated_s;
+	double wall_s, cpu_s, total_s;
+	double body_step_cpu_us;
+	double startup_s, step_p50_s, step_p99_s;
+	double energy_start, energy_end, energy_gain_max;
+	double momentum_error;
+	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;
+	double fps, frame_rate;
+} ob_report;
+
+void ob_report_write_json(const ob_report *r, FILE *f);
+// false: a member is missing or of another kind. What it holds is then undefined.
+bool ob_report_read_json(ob_report *r, const char *text);
+
+// The same as "quantity,value,unit"; what was not measured is empty.
+void ob_report_write_csv(const ob_report *r, FILE *f);
+
+// Few aligned lines for a person.
+void ob_report_print(const ob_report *r, FILE *f);
+
+// Only the members, for an object that the caller has open.
+void ob_report_write_members(const ob_report *r, ob_json *j);
+
+#endif

@@ -1,0 +1,233 @@
+#include "cli/request.h"
+
+#include <libgen.h>
+#include <limits.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/cpu.h"
+#include "cli/number.h"
+
+enum { WORKERS_MAX = 65536, SUBSTEPS_MAX = 1000, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
+
+static const char *name_of(ob_option_id id)
+{
+	return ob_option_table[id].name;
+}
+
+static bool count(const ob_arguments *a, ob_option_id id, uint32_t least, uint32_t most, uint32_t *out, ob_error *e)
+{
+	uint64_t n = *out;
+	bool fine = ob_number_count(name_of(id), a->value[id], least, most, &n, e);
+	*out = (uint32_t)n;
+	return fine;
+}
+
+static bool real(const ob_arguments *a, ob_option_id id, double most, double *out, ob_error *e)
+{
+	return ob_number_real(name_of(id), a->value[id], 0, most, out, e);
+}
+
+bool ob_request_check_file(const char *option, const char *path, ob_error *e)
+{
+	char copy[PATH_MAX];
+	if (strlen(path) >= sizeof copy)
+		return ob_fail(e, "--%s: the path is too long", option);
+	strcpy(copy, path);
+	const char *dir = dirname(copy);
+	struct stat s;
+	if (stat(dir, &s) != 0 || !S_ISDIR(s.st_mode))
+		return ob_fail(e, "--%s %s: there is no directory %s: make it first", option, path, dir);
+	if (stat(path, &s) == 0) {
+		if (S_ISDIR(s.st_mode))
+			return ob_fail(e, "--%s %s: this is a directory, expected a file", option, path);
+		if (access(path, W_OK) != 0)
+			return ob_fail(e, "--%s %s: may not be written", option, path);
+	} else if (access(dir, W_OK | X_OK) != 0) {
+		return ob_fail(e, "--%s %s: the directory %s may not be written", option, path, dir);
+	}
+	return true;
+}
+
+// A directory for frames: made when it is missing, with all above it.
+static bool check_directory(const char *option, const char *path, ob_error *e)
+{
+	struct stat s;
+	if (stat(path, &s) != 0) {
+		char copy[PATH_MAX];
+		if (strlen(path) >= sizeof copy)
+			return ob_fail(e, "--%s: the path is too long", option);
+		strcpy(copy, path);
+		return check_directory(option, dirname(copy), e);
+	}
+	if (!S_ISDIR(s.st_mode))
+		return ob_fail(e, "--%s %s: this is a file, expected a directory", option, path);
+	if (access(path, W_OK | X_OK) != 0)
+		return ob_fail(e, "--%s %s: the directory may not be written", option, path);
+	return true;
+}
+
+static bool is_stdout(const char *path)
+{
+	return path && strcmp(path, "-") == 0;
+}
+
+static bool check_outputs(const ob_arguments *a, ob_error *e)
+{
+	static const ob_option_id files[] = { OB_OPTION_FRAMES,  OB_OPTION_VIDEO,  OB_OPTION_RAW, OB_OPTION_RECORD,
+					      OB_OPTION_SUMMARY, OB_OPTION_SERIES, OB_OPTION_JSON };
+	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+		const char *path = a->value[files[i]], *option = name_of(files[i]);
+		if (!path)
+			continue;
+		for (size_t j = 0; j < i; j++) {
+			const char *other = a->value[files[j]];
+			if (other && strcmp(other, path) == 0)
+				return ob_fail(e, "--%s and --%s both write %s", name_of(files[j]), option,
+					       is_stdout(path) ? "standard output" : path);
+		}
+		if (is_stdout(path) && (files[i] == OB_OPTION_RAW || files[i] == OB_OPTION_JSON))
+			continue;
+		if (is_stdout(path))
+			return ob_fail(e, "--%s: cannot write to standard output, name a file", option);
+		bool fine = files[i] == OB_OPTION_FRAMES ? check_directory(option, path, e)
+							 : ob_request_check_file(option, path, e);
+		if (!fine)
+			return false;
+	}
+	return true;
+}
+
+static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
+{
+	while (list && *list) {
+		size_t n = strcspn(list, ",");
+		if (n == 4 && strncmp(list, "aabb", n) == 0)
+			f->aabb = true;
+		else if (n == 8 && strncmp(list, "contacts", n) == 0)
+			f->contacts = true;
+		else
+			return ob_fail(e, "--overlay %.*s: expected aabb, contacts, or aabb,contacts", (int)n, list);
+		list += n + (list[n] == ',');
+	}
+	return true;
+}
+
+static bool read_size(ob_frames_request *f, const char *text, ob_error *e)
+{
+	if (!text)
+		return true;
+	int end = 0;
+	if (sscanf(text, "%5dx%5d%n", &f->width, &f->height, &end) != 2 || text[end])
+		return ob_fail(e, "--size %s: expected WIDTHxHEIGHT, as 1280x720", text);
+	if (f->width < SIZE_MIN || f->height < SIZE_MIN || f->width > SIZE_MAX_PIXELS || f->height > SIZE_MAX_PIXELS)
+		return ob_fail(e, "--size %s: expected %d to %d pixels each way", text, SIZE_MIN, SIZE_MAX_PIXELS);
+	return true;
+}
+
+static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e)
+{
+	*f = (ob_frames_request){
+		.dir = a->value[OB_OPTION_FRAMES],
+		.video = a->value[OB_OPTION_VIDEO],
+		.raw = a->value[OB_OPTION_RAW],
+		.gpu = a->value[OB_OPTION_GPU],
+		.camera = a->value[OB_OPTION_CAMERA],
+		.fps = 60,
+		.width = 1280,
+		.height = 720,
+	};
+	f->wanted = f->dir || f->video || f->raw;
+	static const ob_option_id details[] = { OB_OPTION_FPS,    OB_OPTION_SIZE,    OB_OPTION_SAMPLES,
+						OB_OPTION_CAMERA, OB_OPTION_OVERLAY, OB_OPTION_GPU };
+	for (size_t i = 0; i < sizeof details / sizeof *details; i++) {
+		if (a->value[details[i]] && !f->wanted)
+			return ob_fail(e, "--%s needs --frames, --video or --raw", name_of(details[i]));
+	}
+	uint32_t samples = 4;
+	if (!count(a, OB_OPTION_SAMPLES, 1, 32, &samples, e))
+		return false;
+	f->samples = (int)samples;
+	if (!real(a, OB_OPTION_FPS, 1e5, &f->fps, e) || !read_size(f, a->value[OB_OPTION_SIZE], e))
+		return false;
+	if (f->video && (f->width % 2 || f->height % 2))
+		return ob_fail(e, "--size %dx%d: a video needs an even width and height", f->width, f->height);
+	return read_overlay(f, a->value[OB_OPTION_OVERLAY], e);
+}
+
+static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
+{
+	const char *text = a->value[OB_OPTION_WORKERS];
+	bool objects = text && strcmp(text, "objects") == 0;
+	r->workers = r->monolith || objects ? !objects : (uint32_t)ob_cpu_count();
+	if (text && !objects && strspn(text, "0123456789") != strlen(text))
+		return ob_fail(e, "--workers %s: expected a number, or objects", text);
+	if (!objects && !count(a, OB_OPTION_WORKERS, 1, WORKERS_MAX, &r->workers, e))
+		return false;
+	if (r->monolith && r->workers != 1)
+		return ob_fail(e, "--workers %s: the monolith is one world with one worker; leave --workers away",
+			       text);
+	return true;
+}
+
+// What one architecture understands and the other does not.
+static bool check_architecture(const ob_run_request *r, const ob_arguments *a, ob_error *e)
+{
+	static const ob_option_id of_objects[] = { OB_OPTION_PASSES, OB_OPTION_EXCHANGE, OB_OPTION_INTEGRATOR };
+	for (size_t i = 0; r->monolith && i < sizeof of_objects / sizeof *of_objects; i++) {
+		if (a->value[of_objects[i]])
+			return ob_fail(e, "--%s means nothing to --arch monolith", name_of(of_objects[i]));
+	}
+	if (a->command == OB_COMMAND_RUN && !r->monolith && a->value[OB_OPTION_ITERATIONS])
+		return ob_fail(e, "--iterations is for --arch monolith; object simulators have --passes");
+	return true;
+}
+
+static bool check_name(const char *name, ob_error *e)
+{
+	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+	if (!name)
+		return true;
+	size_t n = strlen(name);
+	if (n >= OB_NAME_MAX || strspn(name, allowed) != n || strchr("._-", name[0]))
+		return ob_fail(e, "--name %s: expected at most %d letters, digits, . _ - and a letter or digit first",
+			       name, OB_NAME_MAX - 1);
+	return true;
+}
+
+bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
+{
+	static const char *const verbs[] = { [OB_COMMAND_RUN] = "run", [OB_COMMAND_COMPARE] = "compare" };
+	if (!a->operand)
+		return ob_fail(e, "no scene given: obsim %s scenes/falling_boxes.lua", verbs[a->command]);
+	const char *arch = a->value[OB_OPTION_ARCH], *isolation = a->value[OB_OPTION_ISOLATION];
+	const char *measure = a->value[OB_OPTION_MEASURE];
+	*r = (ob_run_request){
+		.scene = a->operand,
+		.scene_options = { .defines = a->define, .define_count = a->defines },
+		.name = a->value[OB_OPTION_NAME],
+		.monolith = arch && strcmp(arch, "monolith") == 0,
+		.isolation =
+			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
+		.iterations = 20,
+		.exchange = a->value[OB_OPTION_EXCHANGE],
+		.integrator = a->value[OB_OPTION_INTEGRATOR],
+		.sleeping = a->value[OB_OPTION_SLEEPING],
+		.measure_steps = !measure || strcmp(measure, "step") == 0,
+		.record = a->value[OB_OPTION_RECORD],
+		.summary = a->value[OB_OPTION_SUMMARY],
+		.series = a->value[OB_OPTION_SERIES],
+		.json = a->value[OB_OPTION_JSON],
+	};
+	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;
+	if (!r->measure_steps && r->series)
+		return ob_fail(e, "--series has a line for each step: it needs --measure step");
+	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_STEP, 10, &r->step, e) &&
+	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
+	       count(a, OB_OPTION_SUBSTEPS, 1, SUBSTEPS_MAX, &r->substeps, e) &&
+	       count(a, OB_OPTION_PASSES, 1, SUBSTEPS_MAX, &r->passes, e) &&
+	       count(a, OB_OPTION_ITERATIONS, 0, 100000, &r->iterations, e) && read_workers(r, a, e) &&
+	       check_architecture(r, a, e) && check_name(r->name, e) && read_frames(&r->frames, a, e) &&
+	       check_outputs(a, e);
+}

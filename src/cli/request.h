@@ -1,0 +1,48 @@
+// What the command line asks of a run: checked, but not yet joined with what the scene says.
+#ifndef OB_CLI_REQUEST_H
+#define OB_CLI_REQUEST_H
+
+#include "cli/options.h"
+#include "host/host.h"
+#include "scene/scene.h"
+
+typedef struct ob_frames_request {
+	bool wanted; // any of the three below
+	const char *dir, *video, *raw; // NULL = not asked for; raw "-" = standard output
+	const char *gpu, *camera; // NULL = the renderer's choice, the scene's first
+	double fps; // per simulated second
+	int width, height, samples;
+	bool aabb, contacts; // overlays
+} ob_frames_request;
+
+typedef struct ob_run_request {
+	const char *scene; // path
+	ob_scene_options scene_options;
+	const char *name; // of the universe; NULL = the host's choice
+	bool monolith;
+	ob_isolation isolation;
+	uint32_t workers; // 0 = one per object
+	double duration, step; // s; 0 = the scene's
+	uint32_t substeps, passes; // 0 = the scene's
+	uint32_t iterations;
+	const char *exchange, *integrator, *sleeping; // NULL = the scene's
+	bool measure_steps; // else the start and the end alone
+	ob_frames_request frames;
+	const char *record, *summary, *series, *json; // paths; NULL = not asked for; json "-" = standard output
+} ob_run_request;
+
+// false and e on what is no number, out of range, contradictory, or names a directory that is not there.
+// The strings stay those of a.
+bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
+
+// Fills what was left to the scene (duration, step, substeps, ...) and the settings for the host.
+// false and e when the result cannot be run.
+bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_run_settings *run, ob_error *e);
+
+// Steps in a duration: the first step boundary at or after its end.
+uint64_t ob_request_steps(double duration, double step);
+
+// true when path may be written: its directory exists and is writable, and it is no directory itself.
+bool ob_request_check_file(const char *option, const char *path, ob_error *e);
+
+#endif

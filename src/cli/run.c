@@ -1,0 +1,260 @@
+// obsim run: one scene, from its file to frames, records and a report.
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "cli/capture.h"
+#include "cli/command.h"
+#include "cli/observe.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+#include "cli/version.h"
+#include "record/record.h"
+
+typedef struct run {
+	ob_run_request request;
+	ob_scene *scene;
+	ob_host *host;
+	ob_capture *capture; // NULL = no frames
+	ob_recorder *recorder; // NULL = none
+	ob_observer observer;
+	ob_snapshot now, prev; // prev: the last one before now
+	uint64_t steps; // to do
+	uint64_t frames;
+	double begun; // s
+} run;
+
+static uint64_t earlier(uint64_t a, uint64_t b)
+{
+	return a < b ? a : b;
+}
+
+// The next step boundary that somebody wants to see; UINT64_MAX when the run is done.
+static uint64_t next_look(const run *r)
+{
+	uint64_t now = r->now.step, next = r->steps;
+	if (now >= r->steps)
+		return UINT64_MAX;
+	if (r->request.measure_steps)
+		return now + 1;
+	if (r->recorder)
+		next = earlier(next, (now / r->scene->record_every + 1) * r->scene->record_every);
+	if (r->capture)
+		next = earlier(next, ob_capture_need(r->capture, now));
+	return next;
+}
+
+// What is done with the newest snapshot, while the universe steps on.
+static bool look(run *r, ob_error *e)
+{
+	const ob_snapshot *prev = r->now.step > 0 ? &r->prev : NULL;
+	bool ends = r->now.step == 0 || r->now.step >= r->steps;
+	if (r->request.measure_steps || ends)
+		ob_observer_look(&r->observer, &r->now);
+	if (r->recorder && r->now.step % r->scene->record_every == 0 && !ob_recorder_append(r->recorder, &r->now, e))
+		return false;
+	return !r->capture || ob_capture_show(r->capture, prev, &r->now, e);
+}
+
+static bool take(run *r, ob_error *e)
+{
+	ob_snapshot older = r->prev;
+	r->prev = r->now;
+	r->now = older;
+	return ob_snapshot_take(&r->now, ob_host_universe(r->host), r->request.frames.contacts, e);
+}
+
+// Stepping and looking overlap: the snapshot of one boundary is looked at while the universe runs to the next.
+static bool step_through(run *r, ob_error *e)
+{
+	if (!take(r, e))
+		return false;
+	for (;;) {
+		uint64_t next = next_look(r);
+		if (next != UINT64_MAX)
+			ob_host_go(r->host, next);
+		if (!look(r, e))
+			return false;
+		if (next == UINT64_MAX)
+			return true;
+		if (!ob_host_wait(r->host, e)) {
+			// Ctrl-C leaves it at a boundary, from where the report is made
+			if (ob_host_interrupted(r->host))
+				take(r, NULL);
+			return false;
+		}
+		if (!take(r, e))
+			return false;
+	}
+}
+
+// Everything that is written along the run. After the host's start, which forks.
+static bool open_outputs(run *r, ob_error *e)
+{
+	const ob_run_request *q = &r->request;
+	if (!ob_observer_open(&r->observer, r->scene, q->series, e))
+		return false;
+	if (q->frames.wanted) {
+		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->step, e);
+		if (!r->capture)
+			return false;
+	}
+	if (q->record) {
+		ob_universe_info info;
+		ob_universe_get_info(ob_host_universe(r->host), &info);
+		r->recorder = ob_recorder_create(q->record, &info, r->scene->title, e);
+		if (!r->recorder)
+			return false;
+	}
+	return true;
+}
+
+// Closes all, whatever fails; e holds the first failure.
+static bool close_outputs(run *r, ob_error *e)
+{
+	bool fine = true;
+	r->frames = r->capture ? ob_capture_frames(r->capture) : 0;
+	fine &= ob_capture_close(r->capture, e);
+	if (r->recorder)
+		fine &= ob_recorder_close(r->recorder, fine ? e : NULL);
+	fine &= ob_observer_close(&r->observer, fine ? e : NULL);
+	r->capture = NULL;
+	r->recorder = NULL;
+	return fine;
+}
+
+static void count_objects(const ob_snapshot *s, ob_report *p)
+{
+	for (uint32_t i = 0; i < s->count; i++) {
+		bool present = s->passport[i].flags & OB_OBJECT_PRESENT;
+		p->objects += present;
+		p->bodies += present && !(s->passport[i].flags & OB_OBJECT_STATIC);
+	}
+}
+
+static void name_report(const run *r, const char *outcome, ob_report *p)
+{
+	const ob_run_request *q = &r->request;
+	ob_universe_info info;
+	ob_universe_get_info(ob_host_universe(r->host), &info);
+	*p = (ob_report){
+		.workers = info.workers,
+		.steps = r->now.step,
+		.simulated_s = r->now.time,
+		.step = q->step,
+		.substeps = q->substeps,
+		.passes = q->passes,
+		.seed = q->scene_options.has_seed ? q->scene_options.seed : r->scene->seed,
+		.frames = r->frames,
+		.frame_rate = q->frames.wanted ? q->frames.fps : NAN,
+		.total_s = ob_clock_wall() - r->begun,
+	};
+	snprintf(p->scene, sizeof p->scene, "%s", q->scene);
+	snprintf(p->outcome, sizeof p->outcome, "%s", outcome);
+	snprintf(p->arch, sizeof p->arch, "%s", info.arch);
+	snprintf(p->isolation, sizeof p->isolation, "%s", info.isolation);
+	snprintf(p->exchange, sizeof p->exchange, "%s", q->exchange);
+	snprintf(p->integrator, sizeof p->integrator, "%s", q->integrator);
+	snprintf(p->commit, sizeof p->commit, "%s", ob_version_commit);
+	p->fps = r->frames > 0 ? (double)r->frames / p->total_s : NAN;
+}
+
+static void make_report(run *r, const char *outcome, ob_report *p)
+{
+	ob_host_times times;
+	ob_host_get_times(r->host, &times);
+	ob_observer_look(&r->observer, &r->now);
+	name_report(r, outcome, p);
+	count_objects(&r->now, p);
+	ob_observer_report(&r->observer, r->request.measure_steps, p);
+	snprintf(p->state_hash, sizeof p->state_hash, "%016" PRIx64, ob_measure_hash(&r->now));
+	p->wall_s = times.wall_s;
+	p->cpu_s = times.cpu_s;
+	p->startup_s = times.startup_s;
+	p->step_p50_s = times.step_p50_s;
+	p->step_p99_s = times.step_p99_s;
+	p->memory_bytes = times.memory_bytes;
+	p->body_step_cpu_us = 1e6 * times.cpu_s / ((double)p->bodies * (double)p->steps);
+}
+
+static bool write_file(const char *option, const char *path, void (*write)(const ob_report *, FILE *),
+		       const ob_report *p, ob_error *e)
+{
+	bool out = strcmp(path, "-") == 0;
+	FILE *f = out ? stdout : fopen(path, "we");
+	if (!f)
+		return ob_fail(e, "--%s %s: %s", option, path, strerror(errno));
+	write(p, f);
+	bool broken = fflush(f) != 0 || ferror(f);
+	if (!out)
+		broken |= fclose(f) != 0;
+	return broken ? ob_fail(e, "--%s %s: %s", option, path, strerror(errno)) : true;
+}
+
+static bool write_report(const run *r, const ob_report *p, ob_error *e)
+{
+	const ob_run_request *q = &r->request;
+	bool json_out = q->json && strcmp(q->json, "-") == 0,
+	     raw_out = q->frames.raw && strcmp(q->frames.raw, "-") == 0;
+	ob_report_print(p, json_out || raw_out ? stderr : stdout);
+	return (!q->summary || write_file("summary", q->summary, ob_report_write_csv, p, e)) &&
+	       (!q->json || write_file("json", q->json, ob_report_write_json, p, e));
+}
+
+// From the running host to its report. Returns an ob_exit.
+static int carry_out(run *r)
+{
+	ob_error e = { "" }, e_close, e_report;
+	ob_progress *progress = ob_progress_begin(ob_host_universe(r->host), r->steps);
+	bool ready = open_outputs(r, &e);
+	bool done = ready && step_through(r, &e);
+	bool interrupted = !done && ob_host_interrupted(r->host);
+	bool closed = close_outputs(r, &e_close);
+	ob_progress_end(progress);
+
+	int code = OB_EXIT_OK;
+	if (interrupted)
+		code = ob_command_fail(OB_EXIT_FAILED, "interrupted: the files hold what was done so far");
+	else if (!done)
+		code = ob_command_fail(OB_EXIT_FAILED, e.text);
+	// a sink that broke the run tells the same again when it is closed
+	if (!closed && (done || interrupted))
+		code = ob_command_fail(OB_EXIT_FAILED, e_close.text);
+	if (!r->observer.started)
+		return code;
+	ob_report *report = &(ob_report){ 0 };
+	make_report(r, done ? "finished" : interrupted ? "interrupted" : "failed", report);
+	if (!write_report(r, report, &e_report))
+		code = ob_command_fail(OB_EXIT_FAILED, e_report.text);
+	return code;
+}
+
+int ob_command_run(const ob_arguments *a)
+{
+	run r = { .begun = ob_clock_wall() };
+	ob_error e;
+	ob_host_config config = { 0 };
+	if (!ob_request_read(&r.request, a, &e))
+		return ob_command_fail(OB_EXIT_USAGE, e.text);
+	r.scene = ob_scene_load(r.request.scene, &r.request.scene_options, &e);
+	if (!r.scene || !ob_request_settle(&r.request, r.scene, &config.run, &e)) {
+		ob_scene_free(r.scene);
+		return ob_command_fail(OB_EXIT_USAGE, e.text);
+	}
+	r.steps = ob_request_steps(r.request.duration, r.request.step);
+	config.name = r.request.name;
+	config.isolation = r.request.isolation;
+	config.workers = r.request.workers;
+
+	signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message
+	r.host = ob_host_start(r.scene, &config, &e);
+	int code = r.host ? carry_out(&r) : ob_command_fail(OB_EXIT_FAILED, e.text);
+	ob_host_stop(r.host);
+	ob_snapshot_finish(&r.now);
+	ob_snapshot_finish(&r.prev);
+	ob_scene_free(r.scene);
+	return code;
+}

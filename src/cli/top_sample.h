@@ -1,0 +1,43 @@
+// What top knows of a universe at one look, and the rates since the look before.
+#ifndef OB_CLI_TOP_SAMPLE_H
+#define OB_CLI_TOP_SAMPLE_H
+
+#include <ob/universe.h>
+
+// The host refreshes a worker's CPU time about twice a second, at instants of its own. So a rate is taken between
+// two refreshes that were seen, not between two looks.
+typedef struct ob_top_worker {
+	ob_worker_info info;
+	uint64_t mark_ns; // CPU time at the refresh from which the rate is taken
+	double mark_at; // s, wall clock, when that was seen
+	double seen_at; // s, when the newest refresh was seen; 0 = none yet
+	double share; // CPU per wall; NaN = not known yet
+} ob_top_worker;
+
+typedef struct ob_top_object {
+	uint32_t id;
+	bool moving; // has a motion that makes sense
+	ob_passport passport;
+	ob_motion motion;
+	ob_vec3 position; // m, at the universe's time
+	double speed, spin; // m/s, rad/s
+} ob_top_object;
+
+typedef struct ob_top_sample {
+	ob_universe_info info;
+	bool alive; // its host still runs
+	double at; // s, wall clock of this look; 0 = none yet
+	double steps_per_second, pace; // NaN = not known yet; pace: simulated per wall second
+	uint32_t workers, objects;
+	ob_top_worker *worker;
+	ob_top_object *object;
+	uint32_t worker_room, object_room;
+} ob_top_sample;
+
+// Only the workers' clocks: call it some times between two looks, so that refreshes are seen when they come.
+void ob_top_watch(ob_top_sample *s, const ob_universe *u);
+// A whole look. s starts zeroed. false: out of memory.
+bool ob_top_look(ob_top_sample *s, const ob_universe *u);
+void ob_top_finish(ob_top_sample *s);
+
+#endif

@@ -1,0 +1,65 @@
+// Frames fall due exactly once, at their time, however frames and steps lie to each other.
+#include "check.h"
+#include "cli/frame_clock.h"
+
+// Runs as the run loop does, and counts. Every frame must lie within the step that shows it.
+static uint64_t count_frames(double duration, double fps, double step, uint64_t steps, uint64_t *seen_steps)
+{
+	ob_frame_clock c = ob_frame_clock_make(duration, fps, step);
+	uint64_t now = 0, before = 0, shown = 0;
+	*seen_steps = 1;
+	for (;;) {
+		bool between;
+		while (ob_frame_clock_step(&c, &between) <= now) {
+			double t = ob_frame_clock_time(&c), end = (double)now * step;
+			CHECK(t <= end + 1e-9 * step + 1e-12 * end);
+			CHECK(between ? before + 1 == now && t > (double)before * step : fabs(t - end) <= 1e-6 * step);
+			c.next++;
+			shown++;
+		}
+		if (now >= steps)
+			break;
+		uint64_t need = ob_frame_clock_need(&c, now);
+		CHECK(need > now);
+		before = now;
+		now = need < steps ? need : steps;
+		(*seen_steps)++;
+	}
+	CHECK(c.next == c.frames);
+	return shown;
+}
+
+static void test_counts(void)
+{
+	uint64_t seen;
+	CHECK(count_frames(10, 60, 1. / 60, 600, &seen) == 600 && seen == 601);
+	CHECK(count_frames(10, 30, 1. / 60, 600, &seen) == 300 && seen == 301); // the last, at the end, is no frame's
+	CHECK(count_frames(10, 25, 1. / 60, 600, &seen) == 250 && seen == 451);
+	CHECK(count_frames(10, 24, 1. / 60, 600, &seen) == 240);
+	CHECK(count_frames(10, 29.97, 1. / 60, 600, &seen) == 299);
+	CHECK(count_frames(10, 144, 1. / 60, 600, &seen) == 1440 && seen == 601);
+	CHECK(count_frames(10, 1000, 1. / 60, 600, &seen) == 10000);
+	CHECK(count_frames(1, 60, .01, 100, &seen) == 60);
+	CHECK(count_frames(.1, 30, .1, 1, &seen) == 3);
+	CHECK(count_frames(100000, 1. / 3, 1, 100000, &seen) == 33333);
+	CHECK(count_frames(.01, 60, 1. / 60, 1, &seen) == 0);
+}
+
+// Where both are multiples of one another there is never an interpolation.
+static void test_on_steps(void)
+{
+	ob_frame_clock c = ob_frame_clock_make(36000, 60, 1. / 60);
+	for (; c.next < c.frames; c.next += 977) {
+		bool between;
+		CHECK(ob_frame_clock_step(&c, &between) == c.next);
+		CHECK(!between);
+	}
+	CHECK(c.frames == 2160000);
+}
+
+int main(void)
+{
+	test_counts();
+	test_on_steps();
+	return check_end();
+}

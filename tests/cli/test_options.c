@@ -1,0 +1,116 @@
+// The command line, word by word: what is taken, and what each mistake is told.
+#include <string.h>
+
+#include "check.h"
+#include "cli/options.h"
+
+enum { WORDS_MAX = 16 };
+
+// Splits at blanks, in place of a shell
+static int split(char *line, char *words[WORDS_MAX])
+{
+	int n = 0;
+	for (char *w = strtok(line, " "); w && n < WORDS_MAX; w = strtok(NULL, " "))
+		words[n++] = w;
+	return n;
+}
+
+static bool parse(ob_arguments *a, ob_command_bit command, const char *line, char *copy, ob_error *e)
+{
+	char *words[WORDS_MAX];
+	strcpy(copy, line);
+	int n = split(copy, words);
+	e->text[0] = 0;
+	return ob_options_parse(a, command, n, words, e);
+}
+
+static void check_refused(ob_command_bit command, const char *line, const char *part)
+{
+	ob_arguments a;
+	ob_error e;
+	char copy[256];
+	bool taken = parse(&a, command, line, copy, &e);
+	CHECK(!taken);
+	CHECK(strstr(e.text, part));
+	if (taken || !strstr(e.text, part))
+		fprintf(stderr, "  '%s' gave '%s', expected '%s' in it\n", line, e.text, part);
+	CHECK(!strchr(e.text, '\n'));
+	ob_options_finish(&a);
+}
+
+static void test_taken(void)
+{
+	ob_arguments a;
+	ob_error e;
+	char copy[256];
+	CHECK(parse(&a, OB_COMMAND_RUN, "s.lua -D n=3 -Dm=x --arch=monolith --duration 2 --json - --seed -1", copy,
+		    &e));
+	CHECK(strcmp(a.operand, "s.lua") == 0);
+	CHECK(a.defines == 2 && strcmp(a.define[0], "n=3") == 0 && strcmp(a.define[1], "m=x") == 0);
+	CHECK(strcmp(a.value[OB_OPTION_ARCH], "monolith") == 0);
+	CHECK(strcmp(a.value[OB_OPTION_DURATION], "2") == 0);
+	CHECK(strcmp(a.value[OB_OPTION_JSON], "-") == 0);
+	CHECK(strcmp(a.value[OB_OPTION_SEED], "-1") ==
+	      0); // a value; whether it is a good one is for the request to say
+	CHECK(!a.value[OB_OPTION_STEP] && !a.value[OB_OPTION_HELP]);
+	ob_options_finish(&a);
+	CHECK(parse(&a, OB_COMMAND_TOP, "--once -- --odd", copy, &e));
+	CHECK(a.value[OB_OPTION_ONCE] && strcmp(a.operand, "--odd") == 0);
+	ob_options_finish(&a);
+	CHECK(parse(&a, OB_COMMAND_COMPARE, "-h", copy, &e));
+	CHECK(a.value[OB_OPTION_HELP] && !a.operand);
+	ob_options_finish(&a);
+}
+
+static void test_refused(void)
+{
+	check_refused(OB_COMMAND_RUN, "s.lua --durration 3", "did you mean --duration?");
+	check_refused(OB_COMMAND_RUN, "s.lua --work 3", "did you mean --workers?");
+	check_refused(OB_COMMAND_RUN, "s.lua --zzzzzz", "--help lists");
+	check_refused(OB_COMMAND_RUN, "s.lua -x", "unknown option -x");
+	check_refused(OB_COMMAND_RUN, "s.lua -duration 3", "did you mean --duration?");
+	check_refused(OB_COMMAND_RUN, "s.lua --once", "unknown option --once");
+	check_refused(OB_COMMAND_COMPARE, "s.lua --frames d", "unknown option --frames");
+	check_refused(OB_COMMAND_RUN, "s.lua --duration", "--duration needs a value");
+	check_refused(OB_COMMAND_RUN, "s.lua --duration --step 1", "--duration needs a value");
+	check_refused(OB_COMMAND_RUN, "s.lua --json=", "--json needs a value");
+	check_refused(OB_COMMAND_RUN, "s.lua --help=me", "--help takes no value");
+	check_refused(OB_COMMAND_RUN, "s.lua --step 1 --step 1", "--step is given twice");
+	check_refused(OB_COMMAND_RUN, "s.lua -D n=1 -D n=2", "-D n is given twice");
+	check_refused(OB_COMMAND_RUN, "s.lua -D n", "expected NAME=VALUE");
+	check_refused(OB_COMMAND_RUN, "s.lua -D =2", "expected NAME=VALUE");
+	check_refused(OB_COMMAND_RUN, "s.lua --arch monolit", "did you mean monolith?");
+	check_refused(OB_COMMAND_RUN, "s.lua --arch x", "expected one of obs|monolith");
+	check_refused(OB_COMMAND_RUN, "s.lua t.lua", "one scene at a time");
+	check_refused(OB_COMMAND_TOP, "a b", "one universe at a time");
+}
+
+// Names may share their beginning, but -D n=1 -D nn=2 are two.
+static void test_defines_apart(void)
+{
+	ob_arguments a;
+	ob_error e;
+	char copy[256];
+	CHECK(parse(&a, OB_COMMAND_RUN, "s.lua -D n=1 -D nn=2 -D m=1", copy, &e));
+	CHECK(a.defines == 3);
+	ob_options_finish(&a);
+}
+
+static void test_table(void)
+{
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		const ob_option *o = &ob_option_table[i];
+		CHECK(o->name && o->help && o->commands);
+		for (int j = 0; j < i; j++)
+			CHECK(strcmp(o->name, ob_option_table[j].name) != 0);
+	}
+}
+
+int main(void)
+{
+	test_taken();
+	test_refused();
+	test_defines_apart();
+	test_table();
+	return check_end();
+}

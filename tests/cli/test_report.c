@@ -1,0 +1,109 @@
+// Reports as JSON: what is written reads back to the same bits, and is JSON whatever stands in it.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "cli/report.h"
+
+static char *write_text(const ob_report *r)
+{
+	char *text = NULL;
+	size_t length;
+	FILE *f = open_memstream(&text, &length);
+	ob_report_write_json(r, f);
+	fclose(f);
+	return text;
+}
+
+static void test_round_trip(void)
+{
+	static ob_report a, b;
+	strcpy(a.scene, "a \"quoted\"\\path\n\t\x01.lua");
+	strcpy(a.outcome, "finished");
+	strcpy(a.state_hash, "0123456789abcdef");
+	a.steps = 600;
+	a.seed = UINT64_MAX;
+	a.step = 1. / 60;
+	a.wall_s = .1;
+	a.cpu_s = 5e-324;
+	a.energy_end = -1.7976931348623157e308;
+	a.energy_gain_max = NAN;
+	a.momentum_error = INFINITY;
+	char *text = write_text(&a);
+	CHECK(ob_report_read_json(&b, text));
+	CHECK(strcmp(a.scene, b.scene) == 0 && strcmp(a.state_hash, b.state_hash) == 0);
+	CHECK(b.steps == 600 && b.seed == UINT64_MAX && b.step == a.step && b.wall_s == a.wall_s);
+	CHECK(b.cpu_s == a.cpu_s && b.energy_end == a.energy_end);
+	CHECK(isnan(b.energy_gain_max) && isnan(b.momentum_error));
+	CHECK(strstr(text, "\"energy_gain_max\": null") && strstr(text, "\"momentum_error\": null"));
+	CHECK(!strstr(text, "nan") && !strstr(text, "inf"));
+	CHECK(strstr(text, "\\\"quoted\\\"\\\\path\\u000a"));
+	free(text);
+}
+
+// A member's name inside of a string is not that member.
+static void test_find(void)
+{
+	const char *text = "{\n  \"scene\": \"x\\\", \\\"steps\\\": 7\",\n  \"note\": \"steps\",\n  \"steps\": 3\n}\n";
+	const char *at = ob_json_find(text, "steps");
+	CHECK(at && *at == '3');
+	CHECK(!ob_json_find(text, "step"));
+	CHECK(!ob_json_find("{ \"steps", "steps"));
+	CHECK(!ob_json_find("", "steps"));
+	char small[4];
+	CHECK(!ob_json_read_string("\"long text\"", small, sizeof small));
+	CHECK(ob_json_read_string("\"abc\"", small, sizeof small) && strcmp(small, "abc") == 0);
+	CHECK(!ob_json_read_string("\"ab", small, sizeof small) && !ob_json_read_string("7", small, sizeof small));
+}
+
+static void test_torn(void)
+{
+	static ob_report a, b;
+	char *text = write_text(&a);
+	size_t whole = strlen(text);
+	// cut before the last value: something is missing, and it says so
+	for (size_t n = 0; n + 8 < whole; n++) {
+		char *cut = strndup(text, n);
+		CHECK(!ob_report_read_json(&b, cut));
+		free(cut);
+	}
+	free(text);
+}
+
+// Bytes that are no UTF-8 would make the whole file unreadable.
+static void test_utf8(void)
+{
+	static ob_report a;
+	strcpy(a.scene, "k\xc3\xb6ln \xff \xc0\xaf \xed\xa0\x80 \xf0\x9f\x93\xa6");
+	char *text = write_text(&a);
+	CHECK(strstr(text, "k\xc3\xb6ln \\u00ff \\u00c0\\u00af \\u00ed\\u00a0\\u0080 \xf0\x9f\x93\xa6"));
+	free(text);
+}
+
+static void test_csv(void)
+{
+	static ob_report a;
+	char *text = NULL;
+	size_t length;
+	strcpy(a.scene, "a,\"b\".lua");
+	a.wall_s = .5;
+	a.fps = NAN;
+	FILE *f = open_memstream(&text, &length);
+	ob_report_write_csv(&a, f);
+	fclose(f);
+	CHECK(strncmp(text, "quantity,value,unit\n", 20) == 0);
+	CHECK(strstr(text, "\nscene,\"a,\"\"b\"\".lua\",\n"));
+	CHECK(strstr(text, "\nwall_s,0.5,s\n") && strstr(text, "\nfps,,1/s\n"));
+	free(text);
+}
+
+int main(void)
+{
+	test_round_trip();
+	test_find();
+	test_torn();
+	test_utf8();
+	test_csv();
+	return check_end();
+}
