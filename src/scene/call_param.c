@@ -135,7 +135,7 @@ int ob_scene_call_param(lua_State *L)
 
 static void list_params(const ob_builder *b, char *out, size_t size)
 {
-	size_t n = (size_t)snprintf(out, size, b->params ? "it has " : "it has none");
+	size_t n = (size_t)snprintf(out, size, "%s", b->params ? "" : "none");
 	for (uint32_t i = 0; i < b->params && n < size; i++)
 		n += (size_t)snprintf(out + n, size - n, "%s%s", i ? ", " : "", b->param[i]);
 }
@@ -155,8 +155,10 @@ static bool check_define(const ob_builder *b, const char *path, const char *defi
 		ob_spelling_offer(&spelling, b->param[i]);
 	}
 	list_params(b, list, sizeof list);
-	return ob_fail(e, "%s: -D %.80s: the scene has no parameter %s%s%s; %s", path, define, name,
-		       spelling.best ? ", did you mean " : "", spelling.best ? spelling.best : "", list);
+	if (spelling.best)
+		return ob_fail(e, "%s: -D %.80s: unknown parameter, did you mean %s? The scene has %s", path, define,
+			       spelling.best, list);
+	return ob_fail(e, "%s: -D %.80s: unknown parameter; the scene has %s", path, define, list);
 }
 
 bool ob_builder_check_defines(const ob_builder *b, const char *path, ob_error *e)

@@ -65,7 +65,8 @@ static int rep_guarded(lua_State *L)
 	luaL_checklstring(L, 1, &length);
 	lua_Integer n = luaL_checkinteger(L, 2);
 	luaL_optlstring(L, 3, "", &between);
-	if (n > 0 && (double)n * (double)(length + between + 1) > (double)OB_SANDBOX_STRING)
+	size_t each = length + between > 0 ? length + between : 1;
+	if (n > 0 && (double)n * (double)each > (double)OB_SANDBOX_STRING)
 		ob_sandbox_fail(L, "string.rep: a string grew beyond 1 MiB");
 	return lua_tocfunction(L, lua_upvalueindex(1))(L);
 }

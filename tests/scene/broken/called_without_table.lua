@@ -1,0 +1,2 @@
+-- expect: :2: box: expected a table of fields, as in box { ... }, got "big"
+box "big"

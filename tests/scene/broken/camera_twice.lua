@@ -1,0 +1,3 @@
+-- expect: :3: camera "main": exists already
+camera "main" {}
+camera "main" {}

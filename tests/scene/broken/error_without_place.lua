@@ -1,0 +1,2 @@
+-- expect: :2: bare
+error("bare", 0)

@@ -1,0 +1,2 @@
+-- expect: :2: scene.exchange: expected "coloured" or "jacobi", got "colored"
+scene { exchange = "colored" }

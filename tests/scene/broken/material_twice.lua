@@ -1,0 +1,3 @@
+-- expect: :3: material "wood": exists already
+material "wood" {}
+material "wood" {}

@@ -1,0 +1,2 @@
+-- expect: :2: string.rep: a string grew beyond 1 MiB
+local s = ("x"):rep(1e9)

@@ -1,0 +1,2 @@
+-- expect: :1: expected at least one object
+scene {}

@@ -1,0 +1,3 @@
+-- expect: :3: scene: expected once, got a second time
+scene {}
+scene {}

@@ -1,0 +1,2 @@
+-- expect: :2: scene.sleeping: expected true or false, got 1
+scene { sleeping = 1 }

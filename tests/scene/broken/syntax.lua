@@ -1,0 +1,4 @@
+-- expect: :4: unexpected symbol near '}'
+ground {}
+box {
+  size = }

@@ -1,0 +1,3 @@
+-- expect: :3: unfinished string near
+ground {}
+box { name = "half }

@@ -1,0 +1,151 @@
+// What a scene says is what the definitions hold: units, masses, attitudes, colours, defaults.
+#include <stdlib.h>
+
+#include "check.h"
+#include "text.h"
+
+static void check_vec(ob_vec3 a, double x, double y, double z)
+{
+	CHECK_NEAR(a.x, x, 1e-15);
+	CHECK_NEAR(a.y, y, 1e-15);
+	CHECK_NEAR(a.z, z, 1e-15);
+}
+
+static void check_defaults(void)
+{
+	ob_scene *s = load_good("sphere { radius = 1 }");
+	CHECK(s);
+	if (!s)
+		return;
+	check_vec(s->gravity, 0, 0, -9.81);
+	CHECK(s->step == 1. / 60 && s->duration == 10 && s->substeps == 8 && s->passes == 16);
+	CHECK(strcmp(s->exchange, "coloured") == 0 && strcmp(s->integrator, "exact") == 0);
+	CHECK(s->sleeping && s->seed == 1 && s->record_every == 1);
+	CHECK(s->objects == 1 && s->cameras == 1 && strcmp(s->camera[0].name, "main") == 0);
+	const ob_object_def *o = &s->object[0];
+	CHECK(strcmp(o->passport.name, "sphere#0") == 0 && o->passport.id == 0);
+	CHECK(o->passport.flags == OB_OBJECT_PRESENT);
+	CHECK(o->passport.friction == .5 && o->passport.restitution == 0 && o->passport.colour[3] == 1);
+	CHECK(o->born == 0 && o->dies == INFINITY);
+	CHECK(o->state.pose.q.w == 1);
+	ob_scene_free(s);
+}
+
+static void check_settings(void)
+{
+	ob_scene *s = load_good("scene { title = 'T', gravity = { 1, 2, 3 }, step = .01, duration = 5, substeps = 4,\n"
+				"passes = 3, exchange = 'jacobi', integrator = 'ode', sleeping = false, seed = 12 }\n"
+				"record { every = 7 } sun { towards = { 0, 0, 4 } } sky { top = '#ffffff' }\n"
+				"ground { height = 2, grid = false, colour = { 1, 0, 0 } }");
+	CHECK(s);
+	if (!s)
+		return;
+	CHECK(strcmp(s->title, "T") == 0 && s->step == .01 && s->duration == 5 && s->substeps == 4 && s->passes == 3);
+	check_vec(s->gravity, 1, 2, 3);
+	CHECK(strcmp(s->exchange, "jacobi") == 0 && strcmp(s->integrator, "ode") == 0);
+	CHECK(!s->sleeping && s->seed == 12 && s->record_every == 7 && !s->look.grid);
+	check_vec(s->look.sun, 0, 0, 1);
+	CHECK(s->look.sky_top[0] == 1 && s->look.sky_top[2] == 1);
+	CHECK(s->look.ground_colour[0] == 1 && s->look.ground_colour[1] == 0);
+	const ob_object_def *g = &s->object[0];
+	CHECK(strcmp(g->passport.name, "ground") == 0 && g->passport.shape == OB_SHAPE_PLANE);
+	CHECK(g->passport.flags == (OB_OBJECT_PRESENT | OB_OBJECT_STATIC) && g->passport.mass == 0);
+	check_vec(g->state.pose.p, 0, 0, 2);
+	ob_scene_free(s);
+}
+
+static void check_shapes(void)
+{
+	ob_scene *s = load_good("box { size = { 1, 2, 3 }, density = 10 }\n"
+				"sphere { radius = 2, density = 10 }\n"
+				"capsule { radius = 2, length = 3, density = 10 }\n"
+				"cylinder { radius = 2, length = 3, density = 10 }\n"
+				"box { size = { 1, 1, 1 }, mass = 7 }\n"
+				"box { size = { 1, 1, 1 } }\n"
+				"box { size = { 1, 1, 1 }, static = true }");
+	CHECK(s && s->objects == 7);
+	if (!s)
+		return;
+	check_vec(s->object[0].passport.size, .5, 1, 1.5);
+	check_vec(s->object[1].passport.size, 2, 0, 0);
+	check_vec(s->object[2].passport.size, 2, 1.5, 0);
+	check_vec(s->object[3].passport.size, 2, 1.5, 0);
+	const double mass[7] = { 60, 320 * M_PI / 3, 120 * M_PI + 320 * M_PI / 3, 120 * M_PI, 7, 1000, 0 };
+	const ob_shape shape[7] = { OB_SHAPE_BOX, OB_SHAPE_SPHERE, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER,
+				    OB_SHAPE_BOX, OB_SHAPE_BOX,    OB_SHAPE_BOX };
+	for (int i = 0; i < 7; i++) {
+		CHECK_NEAR(s->object[i].passport.mass, mass[i], 1e-12 * mass[i]);
+		CHECK(s->object[i].passport.shape == shape[i] && s->object[i].passport.id == (uint32_t)i);
+	}
+	CHECK(s->object[6].passport.flags & OB_OBJECT_STATIC);
+	ob_scene_free(s);
+}
+
+// Where the body's axis (1, 0, 0) or (0, 0, 1) points in the world.
+static ob_vec3 axis(const ob_object_def *o, int i)
+{
+	ob_mat3 r = ob_quat_matrix(o->state.pose.q);
+	return ob_column(&r, i);
+}
+
+static void check_vec_near(ob_vec3 a, double x, double y, double z)
+{
+	CHECK(ob_norm(ob_sub(a, ob_v3(x, y, z))) < 1e-14);
+}
+
+static void check_states(void)
+{
+	ob_scene *s = load_good(
+		"local function b(f) f.size = { 1, 1, 1 } box(f) end\n"
+		"b { rotation = { axis = { 0, 0, 2 }, degrees = 90 }, at = { 1, 2, 3 }, velocity = { 4, 5, 6 },\n"
+		"    spin = { 7, 8, 9 }, born = 1, dies = 2 }\n"
+		"b { q = { 3, 0, 0, 3 } }\n"
+		"plane { normal = { 0, 3, 4 } }\n"
+		"plane { normal = { 0, 0, -1 } }\n"
+		"b { q = { 1e-300, 0, 0, 1e-300 } }");
+	CHECK(s && s->objects == 5);
+	if (!s)
+		return;
+	const ob_object_def *o = s->object;
+	check_vec_near(axis(&o[0], 0), 0, 1, 0);
+	check_vec(o[0].state.pose.p, 1, 2, 3);
+	check_vec(o[0].state.v, 4, 5, 6);
+	check_vec(o[0].state.w, 7, 8, 9);
+	CHECK(o[0].born == 1 && o[0].dies == 2);
+	check_vec_near(axis(&o[1], 0), 0, 1, 0);
+	check_vec_near(axis(&o[2], 2), 0, .6, .8);
+	check_vec_near(axis(&o[3], 2), 0, 0, -1);
+	check_vec_near(axis(&o[4], 0), 0, 1, 0);
+	ob_scene_free(s);
+}
+
+static void check_materials(void)
+{
+	ob_scene *s = load_good(
+		"material 'wood' { friction = .25, density = 600, colour = '#ff8000' }\n"
+		"box { size = { 1, 1, 1 }, material = 'wood' }\n"
+		"box { size = { 1, 1, 1 }, material = 'wood', density = 1, friction = .75, restitution = .5,\n"
+		"      colour = { 0, 0, 1, .5 } }\n"
+		"box { size = { 1, 1, 1 }, material = 'wood', mass = 3 }");
+	CHECK(s && s->objects == 3);
+	if (!s)
+		return;
+	const ob_passport *a = &s->object[0].passport, *b = &s->object[1].passport;
+	CHECK(a->friction == .25 && a->restitution == 0 && a->mass == 600);
+	CHECK(a->colour[0] == 1 && a->colour[2] == 0 && a->colour[3] == 1);
+	CHECK_NEAR(a->colour[1], .215861, 1e-6); // 128/255 in sRGB, linear (IEC 61966-2-1)
+	CHECK(b->friction == .75 && b->restitution == .5 && b->mass == 1);
+	CHECK(b->colour[2] == 1 && b->colour[3] == .5f);
+	CHECK(s->object[2].passport.mass == 3);
+	ob_scene_free(s);
+}
+
+int main(void)
+{
+	check_defaults();
+	check_settings();
+	check_shapes();
+	check_states();
+	check_materials();
+	return check_end();
+}
