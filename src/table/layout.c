@@ -94,6 +94,18 @@ void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers)
 	h->bytes = at;
 }
 
+uint64_t ob_layout_likely_bytes(const ob_header *h)
+{
+	enum { PAIRS_PER_OBJECT = 4 };
+	ob_layout_sizes likely = h->sizes;
+	likely.pairs_max = PAIRS_PER_OBJECT * likely.capacity;
+	likely.perceived_max = likely.pairs_max;
+	uint64_t sum = OB_LAYOUT_PAGE;
+	for (int i = 0; i < OB_AREAS; i++)
+		sum += area_bytes(&likely, (ob_area)i);
+	return sum;
+}
+
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 {
 	const ob_layout_sizes *s = &h->sizes;

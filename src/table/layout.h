@@ -116,6 +116,8 @@ struct ob_universe {
 void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers);
 // Whether a header that came from outside is one that this program would have planned, in a file of file_bytes.
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);
+// Bytes that a full universe with a few contacts per object will touch: what the memory file system must have free.
+uint64_t ob_layout_likely_bytes(const ob_header *h);
 // Points the view at a mapping of u->header's layout.
 void ob_layout_bind(ob_universe *u, void *base);
 

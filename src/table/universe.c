@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/statvfs.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -21,8 +22,26 @@ static int open_new(const char *path, const char *name, ob_error *e)
 	return fd;
 }
 
-static void *map_new(int fd, uint64_t bytes, ob_error *e)
+// A full memory file system would end the run with SIGBUS in the middle of a step: better not to begin.
+static bool check_room(int fd, uint64_t needed, ob_error *e)
 {
+	struct statvfs s;
+	if (fstatvfs(fd, &s) != 0 || s.f_blocks == 0) // 0 = no limit
+		return true;
+	uint64_t room = (uint64_t)s.f_bavail * s.f_frsize;
+	if (room >= needed)
+		return true;
+	return ob_fail(e,
+		       "/dev/shm has %" PRIu64 " MiB free, this universe needs about %" PRIu64
+		       ": enlarge it (mount -o remount,size=..., docker run --shm-size=...) or take fewer objects",
+		       room >> 20, (needed >> 20) + 1);
+}
+
+static void *map_new(int fd, const ob_header *h, ob_error *e)
+{
+	uint64_t bytes = h->bytes;
+	if (!check_room(fd, ob_layout_likely_bytes(h), e))
+		return NULL;
 	if (ftruncate(fd, (off_t)bytes) != 0) {
 		ob_fail(e, "cannot give shared memory %" PRIu64 " bytes: %s", bytes, strerror(errno));
 		return NULL;
@@ -72,7 +91,7 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 		return NULL;
 	}
 	int fd = open_new(path, name, e);
-	void *base = fd < 0 ? NULL : map_new(fd, u->header.bytes, e);
+	void *base = fd < 0 ? NULL : map_new(fd, &u->header, e);
 	if (fd >= 0)
 		close(fd);
 	if (!base) {

@@ -102,6 +102,11 @@ static void test_names(void)
 	}
 	twin = (ob_universe_setup){ .name = "none", .capacity = 0, .workers = 1, .isolation = "thread" };
 	CHECK(!ob_universe_create(&twin, &e));
+	twin.capacity = 1 << 24; // 40 GB: refused, unless this machine has them
+	ob_universe *huge = ob_universe_create(&twin, &e);
+	CHECK(huge || strstr(e.text, "/dev/shm"));
+	ob_universe_destroy(huge, true);
+	CHECK(access("/dev/shm/obsim.none", F_OK) != 0);
 	twin.capacity = 10;
 	twin.workers = 0;
 	CHECK(!ob_universe_create(&twin, &e));
