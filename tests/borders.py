@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Keeps the borders of the modules: who may include what, who alone may do what, and how long a file or a function
+may be. Prints the place of each violation; exit 1 if there is any.
+
+borders.py ROOT    checks ROOT/src
+First it plants one violation of each kind in a tree of its own, and fails if it does not see it.
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+FILE_LINES = 450
+FUNCTION_LINES = 60
+
+# Arrows: a module's own headers and those of the modules named here may be included. "motion" and "universe" as
+# <ob/...> are public types, open to all.
+ARROWS = {
+    'base': '',
+    'motion': 'base',
+    'table': 'base',
+    'contact': 'motion base',
+    'ode': 'base',
+    'sim': 'contact ode motion table base',
+    'scene': 'base',
+    'host': 'sim scene table ode base',
+    'measure': 'motion base',
+    'render': 'measure scene motion base',
+    'record': 'measure scene motion base',
+    'cli': 'host render record measure scene base',
+}
+BUILT = {'render': ['shaders.h']}  # written by the build, so without a folder
+
+# What only some files may do: (what, pattern, where it may stand, in code without comments and strings?).
+DUTIES = [
+    ('include <ode/...>', r'#\s*include\s*<ode/', r'src/ode/', True),
+    ('include EGL or OpenGL', r'#\s*include\s*<(EGL|GL|GLES\w*)/', r'src/render/', True),
+    ('include Lua', r'#\s*include\s*<(lua[\d.]*/)?(lua|lauxlib|lualib|luaconf)\.h', r'src/scene/', True),
+    ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
+    ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
+    ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
+    ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
+    ('start a thread', r'\b(pthread_create|thrd_create)\s*\(', r'src/(host/spawn_\w+|render/sink\w*)\.c$', True),
+    ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(', r'src/host/spawn_\w+\.c$', True),
+    ('hold a shader in a string', r'#\s*version\b', r'$^', False),
+]
+
+
+def blank(match):
+    return re.sub(r'[^\n]', ' ', match.group())
+
+
+def without_comments(text):
+    return re.sub(r'("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')|//[^\n]*|/\*.*?\*/',
+                  lambda m: m.group() if m.group(1) else blank(m), text, flags=re.S)
+
+
+def without_strings(text):
+    """Includes keep their names: they are no strings."""
+    return '\n'.join(line if re.match(r'\s*#\s*include', line) else
+                     re.sub(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'', blank, line) for line in text.split('\n'))
+
+
+def check_arrows(name, code):
+    module = name.split('/')[1]
+    if module not in ARROWS:
+        yield 1, f'a module without arrows: add {module} to the table in tests/borders.py'
+        return
+    for number, line in enumerate(code, 1):
+        match = re.match(r'\s*#\s*include\s*"([^"]*)"', line)
+        if not match or match.group(1) in BUILT.get(module, []):
+            continue
+        target, slash, _ = match.group(1).partition('/')
+        if not slash or target not in ARROWS:
+            yield number, f'"{match.group(1)}" is not named by its module ("module/file.h")'
+        elif target != module and target not in ARROWS[module].split():
+            yield number, f'{module} may not use {target} (may use: {ARROWS[module] or "nothing"})'
+
+
+def check_duties(name, plain, code):
+    for what, pattern, where, in_code in DUTIES:
+        if re.match(where, name):
+            continue
+        for number, line in enumerate(code if in_code else plain, 1):
+            if re.search(pattern, line):
+                yield number, f'may not {what}'
+
+
+def check_lengths(name, code):
+    if len(code) > FILE_LINES:
+        yield len(code), f'{len(code)} lines in a file, {FILE_LINES} at most'
+    start = None
+    for number, line in enumerate(code, 1):
+        if line.startswith('{'):
+            start = number
+        elif line.startswith('}') and start:
+            if number - start + 1 > FUNCTION_LINES:
+                yield start, f'{number - start + 1} lines in a function, {FUNCTION_LINES} at most'
+            start = None
+
+
+def check(root):
+    """All violations under root/src, as 'path:line: what'."""
+    found = []
+    for path in sorted(root.glob('src/**/*')):
+        if path.suffix not in ('.c', '.h', '.in') or len(path.relative_to(root).parts) < 3:
+            continue
+        name = path.relative_to(root).as_posix()
+        text = path.read_text(encoding='utf-8').removesuffix('\n')
+        plain = without_comments(text)
+        code = without_strings(plain).split('\n')
+        places = [*check_arrows(name, code), *check_duties(name, plain.split('\n'), code), *check_lengths(name, code)]
+        found += [f'{name}:{number}: {what}' for number, what in sorted(places)]
+    return found
+
+
+# One violation of each kind, and where it is seen; then what must not be taken for one.
+PLANTED = [
+    ('src/motion/a.c', '\n#include "sim/sim.h"\n', 2),
+    ('src/measure/a.h', '#include "table/slot.h"\n', 1),
+    ('src/sim/a.c', '#include "sim.h"\n', 1),
+    ('src/misc/a.c', '\n', 1),
+    ('src/sim/b.c', '#include <ode/ode.h>\n', 1),
+    ('src/cli/b.c', '#include <EGL/egl.h>\n', 1),
+    ('src/cli/g.c', '#include <GLES3/gl3.h>\n', 1),
+    ('src/cli/c.c', '#  include <lua.h>\n', 1),
+    ('src/cli/d.c', '#include <hdf5.h>\n', 1),
+    ('src/sim/e.c', '#include <urcu/urcu-memb.h>\n', 1),
+    ('src/host/a.c', 'int f(void)\n{\n\treturn shm_open("x", 0, 0);\n}\n', 3),
+    ('src/host/b.c', '/*\n*/ void *p = mmap (0, 1, 2, 3, 4, 5);\n', 2),
+    ('src/sim/f.c', 'int i = memory_order_acquire;\n', 1),
+    ('src/sim/g.c', 'int i = __atomic_load_n(p, 0);\n', 1),
+    ('src/host/c.c', 'int i = pthread_create(0, 0, 0, 0);\n', 1),
+    ('src/render/spawn_a.c', 'int i = pthread_create(0, 0, 0, 0);\n', 1),
+    ('src/render/sink_a.c', 'int i = fork();\n', 1),
+    ('src/render/a.c', 'const char *s = "#version 330\\n";\n', 1),
+    ('src/base/a.c', 'void f(void)\n{\n' + '\tg();\n' * (FUNCTION_LINES - 1) + '}\n', 2),
+    ('src/base/b.c', '\n' * (FILE_LINES + 1), FILE_LINES + 1),
+]
+ALLOWED = [
+    ('src/sim/y.c', '#include "table/table.h"\n#include "sim/sim.h"\n#include <ob/universe.h>\n'),
+    ('src/ode/y.c', '#include <ode/ode.h>\n#include "ode/ode_body.h"\n'),
+    ('src/table/y.c', 'int i = memory_order_acquire; void *p = mmap(0, 0, 0, 0, 0, 0);\n'),
+    ('src/host/spawn_thread.c', 'int i = pthread_create(0, 0, 0, 0);\n'),
+    ('src/render/sink.c', '#include "shaders.h"\nint i = pthread_create(0, 0, 0, 0);\n'),
+    ('src/cli/y.c', '// fork() and mmap() and "\nconst char *s = "fork()"; int ob_keeper_fork(int);\n/* #version\n*/\n'),
+    ('src/base/y.c', 'void f(void)\n{\n' + '\tg();\n' * (FUNCTION_LINES - 2) + '}\n'),
+    ('src/base/z.c', '\n' * FILE_LINES),
+]
+
+
+def prove():
+    """The violations that this script is blind to, and the innocent lines that it blames."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text, *_ in PLANTED + ALLOWED:
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, encoding='utf-8')
+        seen = [':'.join(line.split(':')[:2]) for line in check(root)]
+    expected = [f'{name}:{number}' for name, _, number in PLANTED]
+    return sorted(set(seen) ^ set(expected)) + sorted({place for place in seen if seen.count(place) > 1})
+
+
+def main():
+    if len(sys.argv) != 2 or not (pathlib.Path(sys.argv[1]) / 'src').is_dir():
+        sys.exit('usage: borders.py ROOT, the folder that holds src/')
+    wrong = prove()
+    for place in wrong:
+        print(f'borders.py itself judges {place} wrongly')
+    found = check(pathlib.Path(sys.argv[1]))
+    print(*found, f'{len(found)} violations', sep='\n')
+    sys.exit(1 if wrong or found else 0)
+
+
+main()
