@@ -152,7 +152,7 @@ int main(void)
 	bench_gate("pool of 2 processes, 1000 objects", true, 2, 1, 3000, .15);
 	bench_gate("1000 threads, one object each", false, OBJECTS, 1, 50, 6);
 	bench_gate("1000 processes, one object each", true, OBJECTS, 1, 50, 8);
-	bench_gate("1000 threads, every 10th takes part", false, OBJECTS, 10, 300, 6);
-	bench_gate("1000 processes, every 10th takes part", true, OBJECTS, 10, 300, 8);
+	bench_gate("1000 threads, every 9th takes part", false, OBJECTS, 9, 300, 6);
+	bench_gate("1000 processes, every 9th takes part", true, OBJECTS, 9, 300, 8);
 	return 0;
 }

@@ -12,72 +12,60 @@ static uint32_t power_of_two_from(uint32_t least)
 	return n;
 }
 
+// How many elements an area has: so many times one of the sizes, and some more.
+typedef struct area_rule {
+	size_t element; // bytes
+	enum { FIXED, PER_OBJECT, PER_64_OBJECTS, PER_WORKER, PER_64_WORKERS, PER_PAIR, PER_BUCKET, PER_PERCEIVED } per;
+	unsigned times, more;
+} area_rule;
+
+#define ELEMENT(field) sizeof(*((ob_exchange *)0)->field)
+static const area_rule rules[OB_AREAS] = {
+	[OB_AREA_CONTROL] = { sizeof(ob_control), FIXED, 0, 1 },
+	[OB_AREA_GATE] = { sizeof(ob_gate), FIXED, 0, 1 },
+	[OB_AREA_GATE_GROUP] = { sizeof(ob_gate_group), PER_64_WORKERS, 1, 0 },
+	[OB_AREA_GATE_CELL] = { sizeof(ob_gate_cell), PER_WORKER, 1, 0 },
+	[OB_AREA_WORKER] = { sizeof(ob_worker_cell), PER_WORKER, 1, 0 },
+	[OB_AREA_SLOT] = { sizeof(ob_slot), PER_OBJECT, 1, 0 },
+	[OB_AREA_PASSPORT] = { sizeof(ob_passport_slot), PER_OBJECT, 1, 0 },
+	[OB_AREA_REBOUND] = { sizeof(uint32_t), PER_OBJECT, 1, 0 },
+	[OB_AREA_REBOUND_BIT] = { sizeof(uint64_t), PER_64_OBJECTS, 1, 0 },
+	[OB_AREA_COUNTS] = { ELEMENT(count), FIXED, 0, 1 },
+	[OB_AREA_BRIEF] = { ELEMENT(brief), PER_OBJECT, 1, 0 },
+	[OB_AREA_BOUNDS] = { ELEMENT(bounds), PER_OBJECT, 1, 0 },
+	[OB_AREA_RESULT] = { ELEMENT(result), PER_OBJECT, 1, 0 },
+	[OB_AREA_RESULT_ISLAND] = { ELEMENT(result_island), PER_OBJECT, 1, 0 },
+	[OB_AREA_PERCEIVED] = { ELEMENT(perceived), PER_OBJECT, 1, 0 },
+	[OB_AREA_PERCEIVED_ID] = { ELEMENT(perceived_id), PER_PERCEIVED, 1, 0 },
+	[OB_AREA_CELL] = { ELEMENT(cell), PER_OBJECT, 1, 0 },
+	[OB_AREA_BUCKET] = { ELEMENT(bucket), PER_BUCKET, 1, 0 },
+	[OB_AREA_PLANE] = { ELEMENT(plane), PER_OBJECT, 1, 0 },
+	[OB_AREA_PAIR] = { ELEMENT(pair), PER_PAIR, 1, 0 },
+	[OB_AREA_PAIR_NEXT] = { ELEMENT(pair_next), PER_PAIR, 1, 0 },
+	[OB_AREA_RECORD] = { ELEMENT(record), PER_PAIR, 1, 0 },
+	[OB_AREA_RECORD_FREE] = { ELEMENT(record_free), PER_PAIR, 1, 0 },
+	[OB_AREA_ISLAND] = { ELEMENT(island), PER_OBJECT, 1, 0 },
+	[OB_AREA_MEMBER] = { ELEMENT(member), PER_OBJECT, 1, 0 },
+	[OB_AREA_ISLAND_PAIR] = { ELEMENT(island_pair), PER_PAIR, 1, 0 },
+	[OB_AREA_CHUNK] = { ELEMENT(chunk), PER_OBJECT, 1, 1 },
+	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
+	[OB_AREA_ISLAND_REACH] = { ELEMENT(island_reach), PER_OBJECT, 1, 0 },
+};
+
 static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 {
-	uint64_t objects = s->capacity, workers = s->workers, pairs = s->pairs_max;
-	const ob_exchange *x = NULL; // only for the sizes of what it points to
-	switch (area) {
-	case OB_AREA_CONTROL:
-		return sizeof(ob_control);
-	case OB_AREA_GATE:
-		return sizeof(ob_gate);
-	case OB_AREA_GATE_GROUP:
-		return (workers + 63) / 64 * sizeof(ob_gate_group);
-	case OB_AREA_GATE_CELL:
-		return workers * sizeof(ob_gate_cell);
-	case OB_AREA_WORKER:
-		return workers * sizeof(ob_worker_cell);
-	case OB_AREA_SLOT:
-		return objects * sizeof(ob_slot);
-	case OB_AREA_PASSPORT:
-		return objects * sizeof(ob_passport_slot);
-	case OB_AREA_REBOUND:
-		return objects * sizeof(uint32_t);
-	case OB_AREA_REBOUND_BIT:
-		return (objects + 63) / 64 * sizeof(uint64_t);
-	case OB_AREA_COUNTS:
-		return sizeof *x->count;
-	case OB_AREA_BRIEF:
-		return objects * sizeof *x->brief;
-	case OB_AREA_BOUNDS:
-		return objects * sizeof *x->bounds;
-	case OB_AREA_RESULT:
-		return objects * sizeof *x->result;
-	case OB_AREA_RESULT_ISLAND:
-		return objects * sizeof *x->result_island;
-	case OB_AREA_PERCEIVED:
-		return objects * sizeof *x->perceived;
-	case OB_AREA_PERCEIVED_ID:
-		return s->perceived_max * sizeof *x->perceived_id;
-	case OB_AREA_CELL:
-		return objects * sizeof *x->cell;
-	case OB_AREA_BUCKET:
-		return s->buckets * sizeof *x->bucket;
-	case OB_AREA_PLANE:
-		return objects * sizeof *x->plane;
-	case OB_AREA_PAIR:
-	case OB_AREA_PAIR_NEXT:
-		return pairs * sizeof *x->pair;
-	case OB_AREA_RECORD:
-		return pairs * sizeof *x->record;
-	case OB_AREA_RECORD_FREE:
-		return pairs * sizeof *x->record_free;
-	case OB_AREA_ISLAND:
-		return objects * sizeof *x->island;
-	case OB_AREA_MEMBER:
-		return objects * sizeof *x->member;
-	case OB_AREA_ISLAND_PAIR:
-		return pairs * sizeof *x->island_pair;
-	case OB_AREA_CHUNK:
-		return (objects + 1) * sizeof *x->chunk;
-	case OB_AREA_SCRATCH:
-		return 4 * objects * sizeof *x->scratch;
-	case OB_AREA_ISLAND_REACH:
-		return objects * sizeof *x->island_reach;
-	case OB_AREAS:
-		break;
-	}
-	return 0;
+	const uint64_t count[] = {
+		[FIXED] = 0,
+		[PER_OBJECT] = s->capacity,
+		[PER_64_OBJECTS] = ((uint64_t)s->capacity + 63) / 64,
+		[PER_WORKER] = s->workers,
+		[PER_64_WORKERS] = ((uint64_t)s->workers + 63) / 64,
+		[PER_PAIR] = s->pairs_max,
+		[PER_BUCKET] = s->buckets,
+		[PER_PERCEIVED] = s->perceived_max,
+	};
+	const area_rule *r = &rules[area];
+	return r->element * (count[r->per] * r->times + r->more);
 }
 
 void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers)

@@ -75,17 +75,23 @@ static void test_reading(void)
 	CHECK(!ob_universe_get_motion(r, 7, &m) && !ob_universe_get_passport(r, 7, &p));
 	ob_universe_get_info(r, &info);
 	CHECK(info.objects == 1);
-	ob_worker_info w;
-	CHECK(ob_universe_get_worker(r, 2, &w) && w.cpu == -1 && !ob_universe_get_worker(r, 3, &w));
-	ob_worker_announce(u, 2, 10, 11, 1);
-	ob_worker_set_objects(u, 2, 5);
-	ob_worker_set_cpu(u, 2, 99);
-	CHECK(ob_universe_get_worker(r, 2, &w) && w.pid == 10 && w.tid == 11 && w.cpu == 1);
-	CHECK(w.objects == 5 && w.cpu_ns == 99);
 	ob_universe_detach(r);
 	ob_universe_destroy(u, true);
 	CHECK(access(file, F_OK) != 0);
 	CHECK(!ob_universe_attach(name, &e) && strstr(e.text, name));
+}
+
+static void test_workers(void)
+{
+	ob_universe *u = create(10);
+	ob_worker_info w;
+	CHECK(ob_universe_get_worker(u, 2, &w) && w.cpu == -1 && !ob_universe_get_worker(u, 3, &w));
+	ob_worker_announce(u, 2, 10, 11, 1);
+	ob_worker_set_objects(u, 2, 5);
+	ob_worker_set_cpu(u, 2, 99);
+	CHECK(ob_universe_get_worker(u, 2, &w) && w.pid == 10 && w.tid == 11 && w.cpu == 1);
+	CHECK(w.objects == 5 && w.cpu_ns == 99);
+	ob_universe_destroy(u, true);
 }
 
 static void test_names(void)
@@ -184,6 +190,7 @@ int main(void)
 	snprintf(name, sizeof name, "test-universe-%d", (int)getpid());
 	snprintf(file, sizeof file, "/dev/shm/obsim.%s", name);
 	test_reading();
+	test_workers();
 	test_names();
 	test_stale();
 	test_sparse();
