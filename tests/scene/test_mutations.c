@@ -68,7 +68,7 @@ static void check_one(ob_random *r, const char *original, size_t size, int *load
 	static char text[ROOM];
 	ob_error e = { "" };
 	memcpy(text, original, size);
-	for (size_t n = 1 + below(r, 4); n > 0; n--)
+	for (size_t n = 1 + below(r, 4); n > 0 && size > 0; n--)
 		size = damage(r, text, size);
 	ob_scene *s = load_bytes(text, size, NULL, &e);
 	bool good = s ? s->objects > 0 && s->cameras > 0 : e.text[0] && !strchr(e.text, '\n');
