@@ -115,6 +115,8 @@ static void test_closing_known(void)
 	CHECK_NEAR(ob_time_of_closing(0, 5, -10, 10), 1, 0); // thrown up from the ground: back at exactly 2 v / g
 	CHECK_NEAR(ob_time_of_closing(0, 3.3, -9.81, 10), 6.6 / 9.81, 1e-16);
 	CHECK_NEAR(ob_time_of_closing(1, -3, 4, 10), .5, 1e-15); // braking, but not enough
+	// v^2 - 2 a gap = 1 exactly, where v^2 alone has 55 binary digits
+	CHECK(ob_time_of_closing(0x1p54 + 0x1p28, -(0x1p27 + 1), .5, 1e9) == 0x1p28);
 	CHECK(ob_time_of_closing(1, -2, 4, 10) == INFINITY); // stops half way
 	CHECK(ob_time_of_closing(1, 1, 0, 10) == INFINITY);
 	CHECK(ob_time_of_closing(1, 0, 0, 10) == INFINITY);

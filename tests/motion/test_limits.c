@@ -111,6 +111,19 @@ static void test_separatrix(void)
 	CHECK_NEAR(worst, 0, 1e-10);
 }
 
+// The momentum circles the largest of two nearly equal moments: close by the axis the azimuth swings round at once.
+static void test_sliver(void)
+{
+	double worst = 0;
+	for (int k = 12; k < 14 * 6; k++) {
+		double apart = pow(10, -k / 6), off = sqrt(apart) * .4;
+		ob_vec3 inertia = permuted(1, 3, 3 * (1 + apart), k), w0 = permuted(off, -off * (k % 6), 3, k);
+		worst = fmax(worst, turn_error(ob_quat_identity(), w0, inertia, 20));
+	}
+	printf("sliver: within %.2g rad\n", worst);
+	CHECK_NEAR(worst, 0, 1e-12);
+}
+
 static void test_slow_and_fast(void)
 {
 	ob_quat start = ob_quat_normalize((ob_quat){ .3, .5, -.4, .2 }), q;
@@ -155,6 +168,7 @@ int main(void)
 	test_principal_axes();
 	test_near_axes();
 	test_separatrix();
+	test_sliver();
 	test_slow_and_fast();
 	test_nonsense();
 	return check_end();
