@@ -109,7 +109,7 @@ double ob_depth_capsule_box(const ob_solid *capsule, const ob_solid *box)
 	double h[3] = { box->size.x, box->size.y, box->size.z };
 	double half = ob_solid_core(capsule);
 	double distance = segment_from_box(c, u, half, h);
-	if (distance > 0)
+	if (distance > 1e-12 * (h[0] + h[1] + h[2])) // else rounding: the nearest point found may be where it enters
 		return capsule->size.x - distance;
 	return capsule->size.x + fmax(segment_in_box(c, u, half, h), 0);
 }

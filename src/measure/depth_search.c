@@ -89,7 +89,7 @@ static void walk_plane(struct search *s, ob_vec3 axis)
 static void descend(struct search *s, ob_vec3 n, double step)
 {
 	double least = overlap(s, n), phase = 0;
-	while (step > 1e-8) {
+	while (step > 1e-5) { // smooth: the overlap is within the square of that
 		ob_vec3 u, v, from = n;
 		across(n, &u, &v);
 		bool better = false;

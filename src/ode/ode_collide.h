@@ -20,7 +20,8 @@ typedef struct ob_ode_point {
 //   capsule  with capsule or cylinder 1, 2 where they lie along each other or flat on a cap
 //   cylinder with cylinder up to 8 where caps meet, 1 elsewhere
 //
-// Box, capsule, cylinder with a cylinder go through libccd: normals to about 1e-4, gaps along them exact to 1e-6 m.
+// With spheres, capsules and planes the gap is exact. Boxes with boxes: along ODE's normal, which is a face's unless an
+// edge is 5 % better. Cylinders with boxes and cylinders: 1e-4 of their size.
 // Pure: thread-safe, the same bits everywhere, after ob_ode_thread_init.
 int ob_ode_collide(ob_shape sa, ob_vec3 size_a, ob_pose pa, ob_shape sb, ob_vec3 size_b, ob_pose pb, double margin,
 		   ob_ode_point *out, int max);

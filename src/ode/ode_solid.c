@@ -32,46 +32,57 @@ ob_vec3 ob_ode_solid_inflate(ob_shape shape, ob_vec3 size, double m)
 	return size;
 }
 
-double ob_ode_solid_inside(const ob_ode_solid *s, ob_vec3 x)
+double ob_ode_solid_radius(const ob_ode_solid *s)
 {
-	ob_vec3 b = into(s, x), h = s->size;
-	double depth = 0;
+	if (s->shape == OB_SHAPE_BOX)
+		return ob_norm(s->size);
+	if (s->shape == OB_SHAPE_CYLINDER)
+		return hypot(s->size.x, s->size.y);
+	return s->shape == OB_SHAPE_CAPSULE ? s->size.x + s->size.y : s->size.x;
+}
+
+double ob_ode_solid_height(const ob_ode_solid *s, ob_vec3 n, ob_vec3 x)
+{
+	ob_vec3 b = ob_rotate_back(&s->r, n), h = s->size;
+	double extent = 0;
 	switch (s->shape) {
 	case OB_SHAPE_SPHERE:
-		depth = h.x - ob_norm(b);
+		extent = h.x;
 		break;
 	case OB_SHAPE_BOX:
-		depth = fmin(fmin(h.x - fabs(b.x), h.y - fabs(b.y)), h.z - fabs(b.z));
-		break;
-	case OB_SHAPE_PLANE:
-		depth = -b.z;
+		extent = fabs(b.x) * h.x + fabs(b.y) * h.y + fabs(b.z) * h.z;
 		break;
 	case OB_SHAPE_CAPSULE:
-		depth = h.x - ob_norm(ob_v3(b.x, b.y, b.z - clamp(b.z, h.y)));
+		extent = h.x + fabs(b.z) * h.y;
 		break;
 	case OB_SHAPE_CYLINDER:
-		depth = fmin(h.x - sqrt(b.x * b.x + b.y * b.y), h.y - fabs(b.z));
+		extent = sqrt(b.x * b.x + b.y * b.y) * h.x + fabs(b.z) * h.y;
 		break;
+	case OB_SHAPE_PLANE: // along its own normal, the only direction that is asked for
 	case OB_SHAPE_NONE:
 		break;
 	}
-	return fmax(depth, 0);
+	return extent - ob_dot(n, ob_sub(x, s->p));
+}
+
+// The nearest point of a ball of radius r round c.
+static ob_vec3 into_ball(ob_vec3 b, ob_vec3 c, double r)
+{
+	double distance = ob_norm(ob_sub(b, c));
+	return distance > r ? ob_madd(c, r / distance, ob_sub(b, c)) : b;
 }
 
 ob_vec3 ob_ode_solid_nearest(const ob_ode_solid *s, ob_vec3 x)
 {
-	ob_vec3 b = into(s, x), h = s->size, core = ob_v3(0, 0, 0);
+	ob_vec3 b = into(s, x), h = s->size;
 	double across = sqrt(b.x * b.x + b.y * b.y);
 	switch (s->shape) {
-	case OB_SHAPE_CAPSULE:
-		core.z = clamp(b.z, h.y);
-		// fall through: a sphere round the nearest point of its core
-	case OB_SHAPE_SPHERE: {
-		double distance = ob_norm(ob_sub(b, core));
-		if (distance > h.x)
-			b = ob_madd(core, h.x / distance, ob_sub(b, core));
+	case OB_SHAPE_SPHERE:
+		b = into_ball(b, ob_v3(0, 0, 0), h.x);
 		break;
-	}
+	case OB_SHAPE_CAPSULE:
+		b = into_ball(b, ob_v3(0, 0, clamp(b.z, h.y)), h.x);
+		break;
 	case OB_SHAPE_BOX:
 		b = ob_v3(clamp(b.x, h.x), clamp(b.y, h.y), clamp(b.z, h.z));
 		break;

@@ -14,8 +14,10 @@ typedef struct ob_ode_solid {
 ob_ode_solid ob_ode_solid_make(ob_shape shape, ob_vec3 size, ob_pose pose);
 // The same shape, thicker by m (m) on every side.
 ob_vec3 ob_ode_solid_inflate(ob_shape shape, ob_vec3 size, double m);
-// How far inside its surface the point x lies (m); 0 outside.
-double ob_ode_solid_inside(const ob_ode_solid *s, ob_vec3 x);
+// Of the sphere round its centre that holds it (m); not for planes.
+double ob_ode_solid_radius(const ob_ode_solid *s);
+// How far the solid reaches beyond x along the unit direction n (m).
+double ob_ode_solid_height(const ob_ode_solid *s, ob_vec3 n, ob_vec3 x);
 // x itself, or the point of the solid nearest to it.
 ob_vec3 ob_ode_solid_nearest(const ob_ode_solid *s, ob_vec3 x);
 // How much the extent along the unit direction n grows (m) when the shape is inflated by m (m).

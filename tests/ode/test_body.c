@@ -1,0 +1,131 @@
+// One object's own world: mass properties, a step, and that worlds of different threads do not disturb each other.
+#include <pthread.h>
+#include <string.h>
+
+#include "ode/ode_body.h"
+
+#include "../check.h"
+
+enum { THREADS = 4, STEPS = 20000 };
+
+static const ob_vec3 G = { 0, 0, -9.81 };
+
+static void test_mass_properties(void)
+{
+	ob_vec3 i = ob_ode_inertia(OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 3);
+	CHECK_NEAR(i.x, .4 * 3 * .25, 1e-15);
+	CHECK_NEAR(i.z, .4 * 3 * .25, 1e-15);
+	i = ob_ode_inertia(OB_SHAPE_BOX, ob_v3(.5, 1, 1.5), 12);
+	CHECK_NEAR(i.x, 4 + 9, 1e-14);
+	CHECK_NEAR(i.y, 1 + 9, 1e-14);
+	CHECK_NEAR(i.z, 1 + 4, 1e-14);
+	i = ob_ode_inertia(OB_SHAPE_CYLINDER, ob_v3(.5, 1, 0), 12);
+	CHECK_NEAR(i.x, 3 * .25 + 4, 1e-14);
+	CHECK_NEAR(i.z, 6 * .25, 1e-14);
+	// a capsule's ends: hemispheres, centres of mass 3/8 r beyond the core's ends (parallel axes)
+	double r = .5, h = 1, mass = 2, sphere = 4 / 3. * M_PI * r * r * r, body = 2 * h * M_PI * r * r;
+	double ms = mass * sphere / (sphere + body), mb = mass - ms;
+	i = ob_ode_inertia(OB_SHAPE_CAPSULE, ob_v3(r, h, 0), mass);
+	CHECK_NEAR(i.z, .4 * ms * r * r + .5 * mb * r * r, 1e-14);
+	CHECK_NEAR(i.x, mb * (r * r / 4 + h * h / 3) + ms * (.4 * r * r + h * h + .75 * r * h), 1e-14);
+	CHECK_NEAR(ob_ode_volume(OB_SHAPE_CAPSULE, ob_v3(r, h, 0)), sphere + body, 1e-14);
+	CHECK_NEAR(ob_ode_volume(OB_SHAPE_SPHERE, ob_v3(r, 0, 0)), sphere, 1e-14);
+	CHECK_NEAR(ob_ode_volume(OB_SHAPE_BOX, ob_v3(.5, 1, 1.5)), 6, 1e-14);
+	CHECK_NEAR(ob_ode_volume(OB_SHAPE_CYLINDER, ob_v3(r, h, 0)), body, 1e-14);
+	CHECK(ob_ode_volume(OB_SHAPE_PLANE, ob_v3(0, 0, 0)) == 0);
+	CHECK(ob_ode_inertia(OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 0).x == 0);
+}
+
+static ob_passport box(void)
+{
+	ob_passport p = { .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_BOX, .size = { .1, .2, .3 }, .mass = 2 };
+	p.inertia = ob_ode_inertia(p.shape, p.size, p.mass);
+	return p;
+}
+
+static ob_state tumbling(void) { return (ob_state){ { { 0, 0, 10 }, { 1, 0, 0, 0 } }, { 1, 2, 3 }, { 3, 2, 1 } }; }
+
+static void test_step(void)
+{
+	ob_passport p = box();
+	ob_ode_body *b = ob_ode_body_create(&p, G);
+	ob_state s = { { { 1, 2, 3 }, { 1, 0, 0, 0 } }, { 0, 0, 0 }, { 0, 0, 0 } };
+	double h = .01;
+	ob_ode_body_step(b, &s, ob_v3(4, 0, 0), ob_v3(0, 0, .03), h);
+	CHECK_NEAR(s.v.x, 4 / p.mass, 1e-14);
+	CHECK_NEAR(s.v.z, G.z * h, 1e-15);
+	CHECK_NEAR(s.w.z, .03 / p.inertia.z, 1e-14);
+	CHECK_NEAR(s.pose.p.x, 1 + h * s.v.x, 1e-14); // semi-implicit, as ODE integrates
+	CHECK_NEAR(s.pose.p.z, 3 + h * s.v.z, 1e-14);
+	ob_vec3 v = s.v;
+	ob_ode_body_step(b, &s, ob_v3(0, 0, 0), ob_v3(0, 0, 0), h);
+	CHECK_NEAR(s.v.x, v.x, 1e-14); // the impulse was of that step alone
+	ob_ode_body_destroy(b);
+	ob_ode_body_destroy(NULL);
+}
+
+// A body made anew for every step goes where one that lives on goes: the state is all there is.
+static void test_bodies_are_replaceable(void)
+{
+	ob_passport p = box();
+	ob_ode_body *one = ob_ode_body_create(&p, G);
+	ob_state a = tumbling(), b = a;
+	for (int i = 0; i < 200; i++) {
+		ob_ode_body *fresh = ob_ode_body_create(&p, G);
+		ob_ode_body_step(one, &a, ob_v3(.1, 0, 0), ob_v3(0, .01, 0), .01);
+		ob_ode_body_step(fresh, &b, ob_v3(.1, 0, 0), ob_v3(0, .01, 0), .01);
+		ob_ode_body_destroy(fresh);
+	}
+	CHECK(memcmp(&a, &b, sizeof a) == 0);
+	CHECK(fabs(a.w.x - 3) > 1e-3);
+	ob_ode_body_destroy(one);
+}
+
+static void test_static_objects_stay(void)
+{
+	ob_passport p = { .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE };
+	ob_ode_body *b = ob_ode_body_create(&p, G);
+	ob_state s = tumbling(), before = s;
+	ob_ode_body_step(b, &s, ob_v3(1, 1, 1), ob_v3(1, 1, 1), .1);
+	CHECK(memcmp(&s, &before, sizeof s) == 0);
+	ob_ode_body_destroy(b);
+}
+
+static void *tumble(void *out)
+{
+	ob_ode_thread_init();
+	ob_passport p = box();
+	ob_ode_body *b = ob_ode_body_create(&p, G);
+	ob_state *s = out;
+	*s = tumbling();
+	for (int i = 0; i < STEPS; i++)
+		ob_ode_body_step(b, s, ob_v3(0, 0, 2 * 9.81 * .001), ob_v3(0, 0, 0), .001);
+	ob_ode_body_destroy(b);
+	ob_ode_thread_finish();
+	return NULL;
+}
+
+static void test_threads(void)
+{
+	pthread_t thread[THREADS];
+	ob_state s[THREADS];
+	for (int i = 0; i < THREADS; i++)
+		CHECK(pthread_create(&thread[i], NULL, tumble, &s[i]) == 0);
+	for (int i = 0; i < THREADS; i++)
+		pthread_join(thread[i], NULL);
+	for (int i = 1; i < THREADS; i++)
+		CHECK(memcmp(&s[i], &s[0], sizeof s[0]) == 0);
+	CHECK_NEAR(s[0].pose.p.x, 20, 1e-9);
+}
+
+int main(void)
+{
+	test_threads(); // first: they race to initialise ODE
+	ob_ode_thread_init();
+	test_mass_properties();
+	test_step();
+	test_bodies_are_replaceable();
+	test_static_objects_stay();
+	ob_ode_thread_finish();
+	return check_end();
+}
