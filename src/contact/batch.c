@@ -3,6 +3,9 @@
 #include <string.h>
 
 static const double no_contact = 1e3; // m: a gap that never closes
+static const double surprise = 1e-4; // m/s: a first sweep that changes more was not foretold by the last substep
+static const double settled = 1e-10; // m/s: a solution that changes by less is done
+static const int most_sweeps = 64;
 
 static void set3(lanes *x, int l, ob_vec3 v)
 {
@@ -79,6 +82,7 @@ void ob_batch_set(ob_batch *b, int l, const ob_lane *in)
 	b->body_a[l] = in->body_a;
 	b->body_b[l] = in->body_b;
 	b->live |= 1u << l;
+	b->elastic = in->e > 0 ? b->elastic | 1u << l : b->elastic & ~(1u << l);
 	b->dirty = 1;
 }
 
@@ -192,11 +196,14 @@ static inline void residual_add(const ob_batch *b, int i, lanes d, lanes *r)
 }
 
 // Projected Gauss-Seidel inside the block: x are impulses, r the residual velocities.
-static inline void sweep(const ob_batch *b, lanes *x, lanes *r)
+// Returns the largest change of a point's normal velocity.
+static inline lanes sweep(const ob_batch *b, lanes *x, lanes *r)
 {
+	lanes largest = lanes_of(0);
 	for (int i = 0; i < 4; i++) {
 		lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), d = next - x[i];
 		x[i] = next;
+		largest = lanes_max(largest, lanes_abs(d) * b->a[OB_SYM(i, i)]);
 		residual_add(b, i, d, r);
 	}
 	lanes bound = b->mu * (x[0] + x[1] + x[2] + x[3]);
@@ -211,6 +218,7 @@ static inline void sweep(const ob_batch *b, lanes *x, lanes *r)
 	lanes f6 = lanes_max(-bound, lanes_min(bound, x[6] - r[6] * b->inv_diag[6])), d6 = f6 - x[6];
 	x[6] = f6;
 	residual_add(b, 6, d6, r);
+	return largest;
 }
 
 static inline void publish(const ob_batch *b, bool jacobi, const lanes *d, lanes *va, lanes *vb, ob_body_row *v,
@@ -231,16 +239,37 @@ static inline void publish(const ob_batch *b, bool jacobi, const lanes *d, lanes
 		}
 }
 
-void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *v, const ob_body_row *d, ob_body_row *delta)
+// How far each gap may close in the substep, as a rate. Restitution is exact in time, so an elastic point must not be
+// stopped early: what falls freely closes less than its final velocity says, by half of what it gains.
+static void set_bias(ob_batch *b, double h, const lanes *ua, const lanes *ub, const ob_body_row *v,
+		     const ob_body_row *d)
+{
+	lanes da[6], db[6], moved[4];
+	gather_both(b, d, da, db);
+	normal_rates(b, da, db, moved);
+	for (int i = 0; i < 4; i++)
+		b->bias[i] = b->gap[i] + moved[i];
+	if (b->elastic) {
+		lanes va[6], vb[6], before[4], after[4];
+		gather_both(b, v, va, vb);
+		normal_rates(b, va, vb, before);
+		normal_rates(b, ua, ub, after);
+		for (int i = 0; i < 4; i++)
+			for (int l = 0; l < OB_LANES; l++)
+				if (b->elastic >> l & 1)
+					b->bias[i][l] += .5 * h * fmax(0, before[i][l] - after[i][l]);
+	}
+	for (int i = 0; i < 4; i++)
+		b->bias[i] = lanes_max(b->bias[i], lanes_of(0)) / h;
+}
+
+void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
+		    ob_body_row *delta)
 {
 	lanes va[6], vb[6], r[7], x[7], change[7], big = lanes_of(0), jump = lanes_of(0);
-	gather_both(b, v, va, vb);
+	gather_both(b, u, va, vb);
 	if (pass->first) {
-		lanes da[6], db[6], moved[4];
-		gather_both(b, d, da, db);
-		normal_rates(b, da, db, moved);
-		for (int i = 0; i < 4; i++)
-			b->bias[i] = lanes_max(b->gap[i] + moved[i], lanes_of(0)) / pass->h;
+		set_bias(b, pass->h, va, vb, v, d);
 		memcpy(b->impulse_start, b->impulse, sizeof b->impulse);
 		b->impact = 0;
 	}
@@ -252,8 +281,13 @@ void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *v, const ob_b
 		r[i] += b->bias[i];
 	}
 	memcpy(x, b->impulse, sizeof x);
-	for (int s = 0; s < pass->sweeps; s++)
-		sweep(b, x, r);
+	// Bodies that touch nothing else have no later round to mend what is left over: solve to the end.
+	lanes moving = sweep(b, x, r);
+	unsigned finish = lanes_bits(moving > surprise) & b->alone;
+	for (int s = 1; s < pass->sweeps || (finish && s < most_sweeps); s++) {
+		moving = sweep(b, x, r);
+		finish &= lanes_bits(moving > settled);
+	}
 	for (int i = 0; i < OB_PAIR_ROWS; i++) {
 		change[i] = x[i] - b->impulse[i];
 		b->impulse[i] = x[i];
@@ -266,7 +300,7 @@ void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *v, const ob_b
 	b->hot = lanes_bits(big > pass->wake) & b->live;
 	b->impact |= lanes_bits(jump > pass->jump);
 	b->impact &= b->live;
-	publish(b, pass->jacobi, change, va, vb, v, delta);
+	publish(b, pass->jacobi, change, va, vb, u, delta);
 }
 
 void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)

@@ -27,6 +27,8 @@ typedef struct ob_batch {
 	unsigned live; // bit per lane in use
 	unsigned dirty; // the Delassus matrices must be made anew
 	unsigned impact; // lanes whose impulses jumped in this substep: not to be extrapolated
+	unsigned elastic; // lanes with restitution
+	unsigned alone; // lanes whose bodies touch nothing else
 	unsigned hot; // lanes that changed a velocity noticeably in the last pass
 	lanes n[3], t1[3], t2[3]; // normal (b to a), tangents
 	lanes ja[4][3], jb[4][3]; // r x n of each point
@@ -58,7 +60,7 @@ typedef struct ob_lane {
 	int points;
 	const ob_vec3 *arm_a, *arm_b;
 	const double *gap;
-	double mu;
+	double mu, e;
 	double inv_mass_a, inv_mass_b;
 	const double *inv_inertia_a, *inv_inertia_b; // [6]
 } ob_lane;
@@ -69,8 +71,10 @@ void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2);
 // Delassus matrices, for the mass splitting in ka, kb.
 void ob_batch_prepare(ob_batch *b);
 
-// One exchange: solves all lanes on the published velocities v and displacements d, publishes the changes.
-void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *v, const ob_body_row *d, ob_body_row *delta);
+// One exchange: solves all lanes on the published velocities u and displacements d, publishes the changes.
+// v: velocities at the substep's start.
+void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
+		    ob_body_row *delta);
 // Pushes penetrations beyond slop (m) apart by the share beta, in the displacements only: velocities never see it.
 void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
 // After an impact the predicted impulses are the impact's: takes back what exceeds the cap.

@@ -16,22 +16,27 @@ static ob_placed moved(const ob_placed *x, double t)
 	return y;
 }
 
-double ob_swept_find(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
+double ob_swept_find(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance, double margin,
 		     ob_manifold_finder find, ob_manifold *out)
 {
-	double t = 0;
+	double t = 0, apart = 0;
 	// A grazing pass takes many small advances; after so many, what is this near counts as touching.
-	for (int tries = 0; tries < 256; tries++) {
+	for (int tries = 0; tries < 256 && t <= h; tries++) {
 		ob_placed at = moved(a, t), bt = moved(b, t);
 		find(&at, &bt, tolerance, out);
+		if (tries == 0)
+			apart = out->separation;
+		if (out->points)
+			break;
+		t += (fmax(out->separation, tolerance) - .5 * tolerance) / speed;
+	}
+	if (t <= h) {
+		ob_placed at = moved(a, t), bt = moved(b, t);
+		find(&at, &bt, margin, out);
 		if (out->points)
 			return t;
-		double advance = (fmax(out->separation, tolerance) - .5 * tolerance) / speed;
-		t += advance;
-		if (t > h)
-			return INFINITY;
 	}
-	ob_placed at = moved(a, t), bt = moved(b, t);
-	find(&at, &bt, 4 * tolerance, out);
-	return out->points ? t : INFINITY;
+	out->points = 0;
+	out->separation = apart;
+	return INFINITY;
 }

@@ -8,9 +8,10 @@
 typedef bool (*ob_manifold_finder)(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 // Conservative advancement (Mirtich 1996): both shapes move at their constant v, w. Returns the first time in [0, h] at
-// which points within tolerance (m) exist, or infinity; then out holds them, with points and gaps as of that time.
-// speed: bound of the closing speed of any two points (m/s).
-double ob_swept_find(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
+// which they are within tolerance (m), and in out the points up to margin (m) as of that time: what turns about the
+// first point to touch brings the next ones down within the same step. Infinity if they do not meet; then out has no
+// points, and separation is as of now. speed: bound of the closing speed of any two points (m/s).
+double ob_swept_find(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance, double margin,
 		     ob_manifold_finder find, ob_manifold *out);
 
 #endif

@@ -103,10 +103,11 @@ bool ob_exchange_impacts(ob_sim *s)
 void ob_exchange_cap(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	const double growth = .3 * ob_norm(ob_universe_settings(s->u)->gravity) * w->h * w->mass; // N s
+	const double brought = ob_norm(ob_universe_settings(s->u)->gravity) * w->h; // m/s, by gravity in a substep
+	const double growth = .3 * brought * w->mass; // N s
 	const double cap[OB_LANES] = { growth, growth, growth, growth };
 	for (uint32_t i = 0; i < w->batches; i++)
-		ob_batch_cap(&w->batch[i], cap, .5 * jump, w->u);
+		ob_batch_cap(&w->batch[i], cap, 2.5 * brought, w->u);
 }
 
 static bool worth_while(const ob_island_work *w, const ob_batch *b)
@@ -142,7 +143,7 @@ void ob_exchange_rounds(ob_sim *s)
 			ob_batch *b = &w->batch[w->batch_order[k]];
 			if (!b->live || (round > 0 && !worth_while(w, b)))
 				continue;
-			ob_batch_solve(b, &pass, w->u, w->d, w->delta);
+			ob_batch_solve(b, &pass, w->u, w->v, w->d, w->delta);
 			again |= mark_hot(w, b);
 		}
 		if (pass.jacobi)

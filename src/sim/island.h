@@ -25,6 +25,7 @@ typedef struct ob_member {
 	double path, speed; // m; m/s bound of any point
 	float quiet;
 	bool round; // inertia is the same about all axes
+	bool loaded; // some touch of it carries an impulse
 	bool moved_freely; // no impulse touched it in this step
 	uint32_t contacts; // pairs that touch it
 	uint32_t waiting; // impacts that it takes part in at once

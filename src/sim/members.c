@@ -175,12 +175,28 @@ void ob_members_quicken(ob_sim *s)
 	}
 }
 
+// Who carries an impulse? A touch that only hangs over a gap predicts nothing: its bodies fall freely, to the last bit.
+static void mark_loaded(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->rows; i++)
+		w->member[i].loaded = false;
+	for (uint32_t i = 0; i < w->touches; i++) {
+		const ob_touch *t = &w->touch[i];
+		bool loaded = false;
+		for (int j = 0; t->lane != OB_NO_LANE && j < OB_PAIR_ROWS; j++)
+			loaded |= w->batch[t->lane / OB_LANES].impulse[j][t->lane % OB_LANES] != 0;
+		w->member[t->a].loaded |= loaded;
+		w->member[t->b].loaded |= loaded;
+	}
+}
+
 void ob_members_predict(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	ob_vec3 g = ob_scale(ob_universe_settings(s->u)->gravity, w->h);
+	mark_loaded(w);
 	for (uint32_t i = 1; i <= w->members; i++) {
-		if (!w->member[i].contacts) {
+		if (!w->member[i].loaded) {
 			memset(w->dv[i], 0, sizeof(ob_body_row));
 			add_row(w->dv[i], g, ob_v3(0, 0, 0));
 		}

@@ -11,7 +11,7 @@ void ob_member_settle(ob_island_work *w, uint32_t row);
 void ob_members_gyrate(ob_sim *s);
 // Speeds anew, after impacts have changed v.
 void ob_members_quicken(ob_sim *s);
-// u = v + dv where touched, v + h g where free.
+// u = v + dv where impulses act, v + h g elsewhere.
 void ob_members_predict(ob_sim *s);
 // Displacements over the substep; u becomes the new v.
 void ob_members_advance(ob_sim *s);

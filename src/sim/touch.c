@@ -132,8 +132,8 @@ static void leave_lane(ob_island_work *w, ob_touch *t)
 static void fill_lane(ob_island_work *w, const ob_touch *t, ob_vec3 normal, const double *gap)
 {
 	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
-	ob_lane lane = { t->a, t->b,  normal,      (int)t->points, t->arm_a,       t->arm_b,
-			 gap,  t->mu, a->inv_mass, b->inv_mass,    a->inv_inertia, b->inv_inertia };
+	ob_lane lane = { t->a,  t->b, normal,      (int)t->points, t->arm_a,       t->arm_b,      gap,
+			 t->mu, t->e, a->inv_mass, b->inv_mass,    a->inv_inertia, b->inv_inertia };
 	ob_batch_set(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &lane);
 }
 
@@ -231,17 +231,11 @@ static void look(ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m,
 		find(&a, &b, fmin(tolerance + 1.5 * travel, fmax(.5 * thin, tolerance + travel)), m);
 		return;
 	}
-	find(&a, &b, tolerance, m);
-	double apart = m->separation;
-	if (m->points)
+	double reach = fmin(w->member[t->a].radius, w->member[t->b].radius);
+	double met = ob_swept_find(&a, &b, speed, w->h, fmin(swept_gap, .25 * thin), reach, find, m);
+	if (isinf(met))
 		return;
-	*when = ob_swept_find(&a, &b, speed, w->h, fmin(swept_gap, .25 * thin), find, m);
-	if (isinf(*when)) {
-		*when = 0;
-		m->points = 0;
-		m->separation = apart;
-		return;
-	}
+	*when = met;
 	wind_back(&a, &b, *when, m);
 }
 
@@ -301,6 +295,22 @@ static int by_colour(const void *x, const void *y, void *colour)
 	return ca != cb ? (ca < cb ? -1 : 1) : a < b ? -1 : 1;
 }
 
+// Each lane learns how many contacts its bodies have.
+static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
+{
+	b->alone = 0;
+	for (int l = 0; l < OB_LANES; l++) {
+		const ob_member *m[2] = { &w->member[b->body_a[l]], &w->member[b->body_b[l]] };
+		bool alone =
+			(m[0]->inv_mass == 0 || m[0]->contacts == 1) && (m[1]->inv_mass == 0 || m[1]->contacts == 1);
+		b->alone |= (unsigned)alone << l & b->live;
+		if (jacobi) {
+			b->ka[l] = fmax(1, m[0]->contacts);
+			b->kb[l] = fmax(1, m[1]->contacts);
+		}
+	}
+}
+
 void ob_touches_prepare(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -313,10 +323,8 @@ void ob_touches_prepare(ob_sim *s)
 	}
 	for (uint32_t i = 0; i < w->batches; i++) {
 		ob_batch *b = &w->batch[i];
-		for (int l = 0; jacobi && w->counts_stale && l < OB_LANES; l++) {
-			b->ka[l] = fmax(1, w->member[b->body_a[l]].contacts);
-			b->kb[l] = fmax(1, w->member[b->body_b[l]].contacts);
-		}
+		if (w->counts_stale)
+			count_contacts(w, b, jacobi);
 		if (b->dirty || (jacobi && w->counts_stale))
 			ob_batch_prepare(b);
 	}
