@@ -40,8 +40,11 @@ DUTIES = [
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
-    ('start a thread', r'\b(pthread_create|thrd_create)\s*\(', r'src/(host/spawn_\w+|render/sink\w*)\.c$', True),
-    ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(', r'src/host/spawn_\w+\.c$', True),
+    # Simulators are started by host/spawn_*.c (processes through its keeper); the rest are helpers of one module each.
+    ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
+     r'src/(host/(spawn_\w+|supervisor)|render/sink\w*|cli/progress)\.c$', True),
+    ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
+     r'src/(host/(spawn_\w+|keeper)|render/sink_video|cli/child)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

@@ -43,7 +43,7 @@ void ob_batch_clear(ob_batch *b, int l)
 	};
 	ob_batch_set(b, l, &empty);
 	b->live &= ~(1u << l);
-	for (int i = 0; i < OB_PAIR_ROWS; i++)
+	for (int i = 0; i < OB_ROWS; i++)
 		b->impulse[i][l] = b->impulse_start[i][l] = 0;
 }
 
@@ -56,7 +56,7 @@ void ob_batch_set(ob_batch *b, int l, const ob_lane *in)
 		ca = ob_madd(ca, 1. / in->points, in->arm_a[j]);
 		cb = ob_madd(cb, 1. / in->points, in->arm_b[j]);
 	}
-	for (int j = 0; j < OB_PAIR_POINTS; j++) {
+	for (int j = 0; j < OB_POINTS; j++) {
 		bool used = j < in->points;
 		set3(b->ja[j], l, used ? ob_cross(in->arm_a[j], n) : ob_v3(0, 0, 0));
 		set3(b->jb[j], l, used ? ob_cross(in->arm_b[j], n) : ob_v3(0, 0, 0));
@@ -103,7 +103,7 @@ void ob_batch_prepare(ob_batch *b)
 	const lanes *ja[7] = { b->ja[0], b->ja[1], b->ja[2], b->ja[3], b->fa1, b->fa2, b->n };
 	const lanes *jb[7] = { b->jb[0], b->jb[1], b->jb[2], b->jb[3], b->fb1, b->fb2, b->n };
 	lanes mass = b->ima * b->ka + b->imb * b->kb;
-	for (int i = 0; i < OB_PAIR_ROWS; i++) {
+	for (int i = 0; i < OB_ROWS; i++) {
 		lanes xa[3], xb[3];
 		sym_mul(b->ia, ja[i], xa);
 		sym_mul(b->ib, jb[i], xb);
@@ -191,7 +191,7 @@ static inline void tangent_rates(const ob_batch *b, const lanes *xa, const lanes
 
 static inline void residual_add(const ob_batch *b, int i, lanes d, lanes *r)
 {
-	for (int j = 0; j < OB_PAIR_ROWS; j++)
+	for (int j = 0; j < OB_ROWS; j++)
 		r[j] += b->a[OB_SYM(i, j)] * d;
 }
 
@@ -212,7 +212,7 @@ static inline lanes sweep(const ob_batch *b, lanes *x, lanes *r)
 	lanes d4 = f4 * shrink - x[4], d5 = f5 * shrink - x[5];
 	x[4] = f4 * shrink;
 	x[5] = f5 * shrink;
-	for (int j = 0; j < OB_PAIR_ROWS; j++)
+	for (int j = 0; j < OB_ROWS; j++)
 		r[j] += b->a[OB_SYM(4, j)] * d4 + b->a[OB_SYM(5, j)] * d5;
 	bound *= b->radius;
 	lanes f6 = lanes_max(-bound, lanes_min(bound, x[6] - r[6] * b->inv_diag[6])), d6 = f6 - x[6];
@@ -288,7 +288,7 @@ void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_b
 		moving = sweep(b, x, r);
 		finish &= lanes_bits(moving > settled);
 	}
-	for (int i = 0; i < OB_PAIR_ROWS; i++) {
+	for (int i = 0; i < OB_ROWS; i++) {
 		change[i] = x[i] - b->impulse[i];
 		b->impulse[i] = x[i];
 		if (i < 6) {
@@ -334,7 +334,7 @@ void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity, o
 	for (int l = 0; l < OB_LANES; l++) {
 		if (!(b->impact >> l & 1))
 			continue;
-		for (int i = 0; i < OB_PAIR_ROWS; i++) {
+		for (int i = 0; i < OB_ROWS; i++) {
 			double cap = fmax(cap_impulse[l], cap_velocity / (b->a[OB_SYM(i, i)][l] + 1e-9));
 			double x = b->impulse[i][l] - b->impulse_start[i][l];
 			if (i == 6)
@@ -352,7 +352,7 @@ void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity, o
 void ob_batch_apply_lane(const ob_batch *b, int l, double s, ob_body_row *v)
 {
 	lanes d[7] = { 0 }, va[6], vb[6];
-	for (int i = 0; i < OB_PAIR_ROWS; i++)
+	for (int i = 0; i < OB_ROWS; i++)
 		d[i][l] = s * b->impulse[i][l];
 	gather_both(b, v, va, vb);
 	apply(b, d, va, vb);

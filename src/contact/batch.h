@@ -15,7 +15,8 @@
 
 #include "contact/lanes.h"
 #include "contact/manifold.h"
-#include "table/exchange.h"
+
+enum { OB_POINTS = 4, OB_ROWS = 7 }; // contact points; rows: their normals, two of friction, one of twist
 
 typedef double ob_body_row[8];
 

@@ -73,11 +73,11 @@ bool ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_i
 
 static void rows_matrix(rows *r, const ob_batch *b, int l, const ob_impact *in)
 {
-	for (int i = 0; i < OB_PAIR_ROWS; i++) {
+	for (int i = 0; i < OB_ROWS; i++) {
 		double xa[6], xb[6];
 		response(r->ja[i], b->ima[l], b->ia, l, xa);
 		response(r->jb[i], b->imb[l], b->ib, l, xb);
-		for (int j = 0; j < OB_PAIR_ROWS; j++)
+		for (int j = 0; j < OB_ROWS; j++)
 			r->a[i][j] = in->split_a * row_dot(r->ja[j], xa) + in->split_b * row_dot(r->jb[j], xb);
 	}
 }
@@ -89,7 +89,7 @@ static void rows_solve(const rows *r, const ob_batch *b, int l, double *x)
 	memcpy(rate, r->rate, sizeof rate);
 	for (int s = 0; s < 200; s++) {
 		double change = 0;
-		for (int i = 0; i < OB_PAIR_ROWS; i++) {
+		for (int i = 0; i < OB_ROWS; i++) {
 			if (i < 4 ? isinf(r->time[i]) : !(r->a[i][i] > 0))
 				continue;
 			double sum = x[0] + x[1] + x[2] + x[3], bound = b->mu[l] * sum, next;
@@ -102,7 +102,7 @@ static void rows_solve(const rows *r, const ob_batch *b, int l, double *x)
 			}
 			double dx = next - x[i];
 			x[i] = next;
-			for (int j = 0; j < OB_PAIR_ROWS; j++)
+			for (int j = 0; j < OB_ROWS; j++)
 				rate[j] += r->a[j][i] * dx;
 			change = fmax(change, fabs(dx) * r->a[i][i]);
 		}
@@ -122,12 +122,12 @@ bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_imp
 	row_set(&r, 5, b->t2, b->fa2, b->fb2, l);
 	row_set(&r, 6, NULL, b->n, b->n, l);
 	const uint32_t ia = b->body_a[l], ib = b->body_b[l];
-	for (int i = 4; i < OB_PAIR_ROWS; i++)
+	for (int i = 4; i < OB_ROWS; i++)
 		r.rate[i] = row_dot(r.ja[i], at->v[ia]) + row_dot(r.jb[i], at->v[ib]);
 	rows_matrix(&r, b, l, in);
 	rows_solve(&r, b, l, x);
 	double ca[6], cb[6], change_a[6] = { 0 }, change_b[6] = { 0 }, shift_a[6] = { 0 }, shift_b[6] = { 0 };
-	for (int i = 0; i < OB_PAIR_ROWS; i++) {
+	for (int i = 0; i < OB_ROWS; i++) {
 		double t = i < 4 ? r.time[i] : r.max_time;
 		if (x[i] == 0)
 			continue;

@@ -6,9 +6,13 @@
 #ifndef OB_SIM_ISLAND_H
 #define OB_SIM_ISLAND_H
 
+#include <assert.h>
+
 #include "contact/batch.h"
 #include "contact/impact.h"
 #include "table/table.h"
+
+static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_PAIR_ROWS, "a pair is stored as it is solved");
 
 enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
 
