@@ -5,13 +5,21 @@
 #include <math.h>
 #include <string.h>
 
+static bool all_stay(const ob_scene *s)
+{
+	for (uint32_t i = 0; i < s->objects; i++) {
+		if (s->object[i].born > 0 || isfinite(s->object[i].dies))
+			return false;
+	}
+	return true;
+}
+
 static bool is_closed(const ob_scene *s)
 {
-	if (ob_norm2(s->gravity) > 0)
+	if (ob_norm2(s->gravity) > 0 || !all_stay(s))
 		return false;
 	for (uint32_t i = 0; i < s->objects; i++) {
-		const ob_object_def *d = &s->object[i];
-		if ((d->passport.flags & OB_OBJECT_STATIC) || d->born > 0 || isfinite(d->dies))
+		if (s->object[i].passport.flags & OB_OBJECT_STATIC)
 			return false;
 	}
 	return true;
@@ -19,7 +27,12 @@ static bool is_closed(const ob_scene *s)
 
 bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e)
 {
-	*o = (ob_observer){ .gravity = scene->gravity, .closed = is_closed(scene), .momentum_error = NAN };
+	*o = (ob_observer){
+		.gravity = scene->gravity,
+		.closed = is_closed(scene),
+		.all_stay = all_stay(scene),
+		.momentum_error = NAN,
+	};
 	if (!path)
 		return true;
 	o->series = fopen(path, "we");
@@ -85,7 +98,7 @@ void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r)
 	double scale = o->energy_start != 0 ? fabs(o->energy_start) : 1;
 	r->energy_start = o->energy_start;
 	r->energy_end = o->energy;
-	r->energy_gain_max = each_step ? (o->energy_top - o->energy_start) / scale : NAN;
+	r->energy_gain_max = each_step && o->all_stay ? (o->energy_top - o->energy_start) / scale : NAN;
 	r->momentum_error = each_step ? o->momentum_error : NAN;
 	r->penetration_max_m = o->now.max_m;
 	r->penetration_mean_m = o->now.mean_m;

@@ -10,7 +10,9 @@
 
 typedef struct ob_observer {
 	ob_vec3 gravity;
-	bool started, closed; // closed: nothing from outside acts, so that momentum stays
+	bool started;
+	bool all_stay; // nobody comes or goes, so that energy only falls
+	bool closed; // nothing from outside acts, so that momentum stays
 	uint64_t last_step;
 	double energy_start, energy, energy_top; // J
 	ob_vec3 momentum_start; // kg m/s

@@ -135,6 +135,19 @@ static void count_objects(const ob_snapshot *s, ob_report *p)
 	}
 }
 
+// Steps times bodies, of those that come and go only while they are there
+static double body_steps(const run *r)
+{
+	double sum = 0;
+	for (uint32_t i = 0; i < r->scene->objects; i++) {
+		const ob_object_def *d = &r->scene->object[i];
+		double there = fmin(d->dies, r->now.time) - fmax(d->born, 0);
+		if (!(d->passport.flags & OB_OBJECT_STATIC) && there > 0)
+			sum += there / r->request.step;
+	}
+	return sum;
+}
+
 static void name_report(const run *r, const char *outcome, ob_report *p)
 {
 	const ob_run_request *q = &r->request;
@@ -177,7 +190,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->step_p50_s = times.step_p50_s;
 	p->step_p99_s = times.step_p99_s;
 	p->memory_bytes = times.memory_bytes;
-	p->body_step_cpu_us = 1e6 * times.cpu_s / ((double)p->bodies * (double)p->steps);
+	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r);
 }
 
 static bool write_file(const char *option, const char *path, void (*write)(const ob_report *, FILE *),

@@ -1,0 +1,114 @@
+"""The built obsim as a program: runs it as a user would, with a limit on time, and looks at what it leaves behind.
+
+Where it lies, and where the scenes lie, comes from the environment (OBSIM, SCENES), which meson sets.
+"""
+
+import glob
+import json
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+
+OBSIM = os.environ["OBSIM"]
+SCENES = os.environ["SCENES"]
+PATIENCE = 120  # s, for one call; a sanitizer slows it down some ten times
+
+
+def scene(name):
+	return os.path.join(SCENES, name + ".lua")
+
+
+def call(*words, timeout=PATIENCE, **more):
+	"""obsim WORDS to its end; text in and out."""
+	more.setdefault("stdout", subprocess.PIPE)
+	more.setdefault("stderr", subprocess.PIPE)
+	return subprocess.run([OBSIM, *map(str, words)], timeout=timeout, text=True, **more)
+
+
+def start(*words, **more):
+	"""obsim WORDS, left running; the caller ends it."""
+	return subprocess.Popen([OBSIM, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+
+
+def report(*words, **more):
+	"""The report of a run that must succeed."""
+	done = call("run", *words, "--json", "-", **more)
+	if done.returncode != 0:
+		raise AssertionError(f"obsim run {' '.join(map(str, words))}: exit {done.returncode}\n{done.stderr}")
+	return json.loads(done.stdout)
+
+
+def segment(name):
+	return "/dev/shm/obsim." + name
+
+
+def processes(parent):
+	"""Ids of all processes that descend from this one now."""
+	children = {}
+	for stat in glob.glob("/proc/[0-9]*/stat"):
+		try:
+			with open(stat) as f:
+				pid, rest = f.read().split(" ", 1)
+		except OSError:
+			continue
+		children.setdefault(int(rest.rpartition(")")[2].split()[1]), []).append(int(pid))
+	found, ahead = [], [parent]
+	while ahead:
+		below = children.get(ahead.pop(), [])
+		found += below
+		ahead += below
+	return found
+
+
+def alive(pid):
+	"""Neither gone nor a zombie."""
+	try:
+		with open(f"/proc/{pid}/stat") as f:
+			return f.read().rpartition(")")[2].split()[0] != "Z"
+	except OSError:
+		return False
+
+
+def wait_until(condition, seconds):
+	"""Whether the condition became true in time."""
+	end = time.monotonic() + seconds
+	while not condition():
+		if time.monotonic() > end:
+			return False
+		time.sleep(.01)
+	return True
+
+
+class Case(unittest.TestCase):
+	"""A test in an empty directory of its own, which must leave no universe behind."""
+
+	def setUp(self):
+		self.directory = tempfile.TemporaryDirectory(prefix="obsim-test-")
+		self.addCleanup(self.directory.cleanup)
+		self.name = f"test-{os.getpid()}-{self._testMethodName}"[:47]
+
+	def tearDown(self):
+		self.assertFalse(os.path.exists(segment(self.name)), "the universe's memory is left behind")
+
+	def path(self, name):
+		return os.path.join(self.directory.name, name)
+
+	def start_universe(self, *words):
+		"""A run under self.name, as soon as it is under way."""
+		run = start("run", *words, "--name", self.name)
+		self.addCleanup(lambda: (run.poll() is None and run.kill(), run.wait(), run.stdout.close(), run.stderr.close()))
+		self.assertTrue(wait_until(lambda: os.path.exists(segment(self.name)) or run.poll() is not None, PATIENCE))
+		self.assertIsNone(run.poll(), "the run ended before it was looked at")
+		return run
+
+	def refuse(self, *words, saying, code=2):
+		"""obsim WORDS must end with this code and one line that holds the text."""
+		done = call(*words, cwd=self.directory.name)
+		self.assertEqual(done.returncode, code, f"{words}: {done.stderr}")
+		self.assertIn(saying, done.stderr, words)
+		self.assertEqual(done.stderr.count("\n"), 1, f"{words}: more than one line: {done.stderr}")
+		self.assertTrue(done.stderr.startswith("obsim: "), done.stderr)
+		self.assertEqual(done.stdout, "")
+		return done

@@ -1,0 +1,45 @@
+"""Broken scenes: one line with the place, exit code 2, and nothing left behind, neither memory nor files."""
+
+import glob
+import os
+import unittest
+
+import program
+
+SCENES = {
+	"syntax": ("scene { title = 'x' \nbox {", ":"),
+	"type": ("ground {}\nbox { size = 'large' }", ":2:"),
+	"unknown field": ("box { sizze = { 1, 1, 1 } }", "size"),
+	"negative size": ("box { size = { 1, -1, 1 }, at = { 0, 0, 1 }, mass = 1 }", ":1:"),
+	"nan": ("box { size = { 1, 1, 1 }, at = { 0, 0/0, 1 }, mass = 1 }", ":1:"),
+	"infinite": ("box { size = { 1, 1, 1 }, at = { 0, 1/0, 1 }, mass = 1 }", ":1:"),
+	"no mass": ("box { size = { 1, 1, 1 }, at = { 0, 0, 1 }, mass = 0 }", "mass"),
+	"endless": ("while true do end", ":"),
+	"memory": ("local t = {} for i = 1, 1e9 do t[i] = ('x'):rep(1e6) .. i end", ":"),
+	"recursion": ("local function f() return f() + 1 end f()", ":"),
+	"files": ("io.open('/etc/passwd')", "io"),
+	"system": ("os.execute('true')", "os"),
+	"require": ("require 'posix'", "require"),
+	"bytecode": ("load('\\27Lua')()", ":"),
+	"error": ("error('no')", "no"),
+	"nothing": ("", "."),
+	"binary": ("\x1bLua\x54\x00", "."),
+}
+
+
+class Broken(program.Case):
+	def test_each(self):
+		before = glob.glob("/dev/shm/obsim.*")
+		for what, (text, saying) in SCENES.items():
+			with self.subTest(what):
+				path = self.path("broken.lua")
+				with open(path, "w") as f:
+					f.write(text)
+				done = self.refuse("run", path, "--json", "out.json", "--frames", "frames", saying=saying)
+				self.assertIn("broken.lua", done.stderr)
+				os.remove(path)
+				self.assertEqual(os.listdir(self.directory.name), [])
+		self.assertEqual([s for s in glob.glob("/dev/shm/obsim.*") if s not in before], [])
+
+
+unittest.main()

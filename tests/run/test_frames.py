@@ -1,0 +1,127 @@
+"""Frames: as many as there should be, each at its time, the same bytes each time, whatever runs the scene."""
+
+import glob
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+import zlib
+
+import program
+
+SIZE = ["--size", "64x48", "--samples", "1"]
+BOXES = [program.scene("falling_boxes"), "-D", "n=12"]
+BYTES = 64 * 48 * 3
+
+
+def stamps(path):
+	"""The texts of a PNG file, whose chunks are whole: each CRC is checked."""
+	texts = {}
+	with open(path, "rb") as f:
+		data = f.read()
+	assert data[:8] == b"\x89PNG\r\n\x1a\n" and data.endswith(b"IEND\xaeB`\x82")
+	at = 8
+	while at < len(data):
+		length, kind = int.from_bytes(data[at:at + 4], "big"), data[at + 4:at + 8]
+		body = data[at + 8:at + 8 + length]
+		assert zlib.crc32(kind + body) == int.from_bytes(data[at + 8 + length:at + 12 + length], "big")
+		if kind == b"tEXt":
+			key, _, value = body.partition(b"\0")
+			texts[key.decode()] = value.decode()
+		at += 12 + length
+	return texts
+
+
+def digest(directory):
+	digests = []
+	for path in sorted(glob.glob(directory + "/*.png")):
+		with open(path, "rb") as f:
+			digests.append(hashlib.sha256(f.read()).hexdigest())
+	return digests
+
+
+class Frames(program.Case):
+	def draw(self, name, *words):
+		report = program.report(*BOXES, *SIZE, "--frames", self.path(name), *words)
+		names = sorted(os.listdir(self.path(name)))
+		self.assertEqual(names, [f"frame-{i:06}.png" for i in range(report["frames"])])
+		return report
+
+	def test_count_and_times(self):
+		r = self.draw("f", "--duration", "1", "--fps", "60")
+		self.assertEqual(r["frames"], 60)
+		self.assertGreater(r["fps"], 0)
+		for i in range(60):
+			text = stamps(self.path(f"f/frame-{i:06}.png"))
+			(value,) = (v for k, v in text.items() if "time" in k.lower())
+			self.assertAlmostEqual(float(value.split()[0]), i / 60, delta=1e-6)
+
+	def test_other_rates(self):
+		for fps, count in ("25", 25), ("144", 144), ("29.97", 29), ("1/2", 0):
+			with self.subTest(fps=fps):
+				self.assertEqual(self.draw("f" + fps.replace("/", "_"), "--duration", "1", "--fps", fps)["frames"], count)
+
+	def test_six_hundred(self):
+		raw = self.path("all.rgb")
+		r = program.report(program.scene("cradle"), "--size", "16x16", "--samples", "1", "--raw", raw, "--duration", "10",
+			"--measure", "end")
+		self.assertEqual(r["frames"], 600)
+		self.assertEqual(os.path.getsize(raw), 600 * 16 * 16 * 3)
+
+	def test_same_bytes(self):
+		"""Twice, and in processes, and without measuring: the same pictures."""
+		expected = None
+		for i, words in enumerate(([], [], ["--isolation", "process", "--workers", "3"], ["--measure", "end"])):
+			self.draw(str(i), "--duration", ".5", "--fps", "50", "--overlay", "aabb,contacts", *words)
+			found = digest(self.path(str(i)))
+			self.assertEqual(len(found), 25)
+			expected = expected or found
+			self.assertEqual(found, expected, words)
+		self.assertGreater(len(set(expected)), 20) # things move
+
+	def test_old_frames_are_replaced(self):
+		self.draw("f", "--duration", ".5")
+		r = self.draw("f", "--duration", ".2")
+		self.assertEqual(r["frames"], 12)
+
+	def test_raw_to_a_pipe(self):
+		done = subprocess.run([program.OBSIM, "run", *BOXES, *SIZE, "--duration", ".5", "--raw", "-"], stdout=subprocess.PIPE,
+			stderr=subprocess.PIPE, timeout=program.PATIENCE)
+		self.assertEqual(done.returncode, 0)
+		self.assertEqual(len(done.stdout), 30 * BYTES)
+		self.assertIn(b"frames", done.stderr) # the report gives way
+
+	def test_reader_leaves(self):
+		"""A pipe that nobody reads any more ends the run with a message, not with silence."""
+		run = program.start("run", *BOXES, *SIZE, "--duration", "1000", "--raw", "-", "--name", self.name)
+		run.stdout.close()
+		self.assertEqual(run.wait(program.PATIENCE), 1)
+		said = run.stderr.read()
+		run.stderr.close()
+		self.assertIn("obsim: ", said)
+
+	@unittest.skipUnless(shutil.which("ffmpeg") and shutil.which("ffprobe"), "ffmpeg is not installed")
+	def test_video(self):
+		video = self.path("v.mp4")
+		r = program.report(*BOXES, *SIZE, "--video", video, "--duration", "1", "--fps", "30")
+		self.assertEqual(r["frames"], 30)
+		probe = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames,width,height",
+			"-of", "csv=p=0", video], stdout=subprocess.PIPE, text=True, check=True, timeout=60)
+		self.assertEqual(probe.stdout.strip(), "64,48,30")
+
+	def test_cameras_differ(self):
+		done = program.call("run", *BOXES, "--raw", self.path("x"), "--camera", "mian")
+		self.assertEqual(done.returncode, 2)
+		self.assertIn("did you mean main?", done.stderr)
+
+	def test_wrong_gpu(self):
+		done = program.call("run", *BOXES, *SIZE, "--raw", self.path("x"), "--gpu", "99", "--name", self.name)
+		self.assertEqual(done.returncode, 1)
+		self.assertIn("99", done.stderr)
+
+
+if "no EGL" in program.call("--version").stdout:
+	sys.exit(77)
+unittest.main()

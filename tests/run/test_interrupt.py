@@ -1,0 +1,90 @@
+"""Ctrl-C and its kin: the run ends at once, its files are whole, its report says so, nothing is left."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+import program
+
+LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "100000"]
+
+
+class Interrupt(program.Case):
+	def interrupt(self, *words, number=signal.SIGINT, after=.7):
+		run = self.start_universe(*LONG, "--json", self.path("r.json"), *words)
+		time.sleep(after)
+		below = program.processes(run.pid)
+		run.send_signal(number)
+		self.assertEqual(run.wait(20), 1)
+		self.assertIn("interrupted", run.stderr.read())
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 1), "processes are left")
+		with open(self.path("r.json")) as f:
+			report = json.load(f)
+		self.assertEqual(report["outcome"], "interrupted")
+		self.assertGreater(report["steps"], 0)
+		return report
+
+	def test_signals(self):
+		for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP:
+			for isolation in "thread", "process":
+				with self.subTest(number=number, isolation=isolation):
+					self.interrupt("--isolation", isolation, number=number)
+
+	def test_one_leg(self):
+		"""Also a run that looks at nothing on its way knows how far it came."""
+		report = self.interrupt("--measure", "end")
+		self.assertGreater(report["simulated_s"], 0)
+
+	def test_at_start(self):
+		run = self.start_universe(*LONG, "--isolation", "process", "--workers", "objects")
+		run.send_signal(signal.SIGINT)
+		self.assertEqual(run.wait(20), 1)
+
+	def test_record(self):
+		report = self.interrupt("--record", self.path("r.h5"), "--series", self.path("s.csv"))
+		if shutil.which("h5dump"):
+			said = subprocess.run(["h5dump", "-H", self.path("r.h5")], stdout=subprocess.PIPE, text=True, check=True).stdout
+			self.assertIn("position", said)
+		with open(self.path("r.h5"), "rb") as f:
+			self.assertEqual(f.read(8), b"\x89HDF\r\n\x1a\n")
+		with open(self.path("s.csv")) as f:
+			lines = f.read().splitlines()
+		self.assertGreaterEqual(len(lines), report["steps"])
+		self.assertTrue(all(line.count(",") == 9 for line in lines))
+
+	def test_frames(self):
+		if "no EGL" in program.call("--version").stdout:
+			self.skipTest("no EGL")
+		video = ["--video", self.path("v.mp4")] if shutil.which("ffmpeg") and shutil.which("ffprobe") else []
+		report = self.interrupt("--frames", self.path("f"), "--size", "64x48", "--samples", "1", *video, after=2)
+		names = sorted(os.listdir(self.path("f")))
+		self.assertEqual(names, [f"frame-{i:06}.png" for i in range(report["frames"])])
+		for name in names:
+			with open(os.path.join(self.path("f"), name), "rb") as f:
+				self.assertTrue(f.read().endswith(b"IEND\xaeB`\x82"))
+		if video:
+			probe = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of",
+				"csv=p=0", self.path("v.mp4")], stdout=subprocess.PIPE, text=True, check=True, timeout=60)
+			self.assertEqual(int(probe.stdout.strip().rstrip(",")), report["frames"])
+
+	def test_terminal(self):
+		"""At a terminal Ctrl-C reaches the whole group: ffmpeg and the simulators, too."""
+		words = ["--isolation", "process"]
+		if shutil.which("ffmpeg") and "no EGL" not in program.call("--version").stdout:
+			words += ["--video", self.path("v.mp4"), "--size", "64x48", "--samples", "1"]
+		run = program.start("run", *LONG, "--name", self.name, *words, start_new_session=True)
+		time.sleep(2)
+		os.killpg(run.pid, signal.SIGINT)
+		self.assertEqual(run.wait(20), 1)
+		self.assertIn("interrupted", run.stderr.read())
+		run.stdout.close()
+		run.stderr.close()
+		if "--video" in words:
+			subprocess.run(["ffmpeg", "-v", "error", "-i", self.path("v.mp4"), "-f", "null", "-"], check=True, timeout=60)
+
+
+unittest.main()

@@ -1,0 +1,78 @@
+"""Kills without warning: of the host, of a simulator, of the keeper. Within a second nothing is left."""
+
+import glob
+import os
+import signal
+import time
+import unittest
+
+import program
+
+LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "100000", "--measure", "end"]
+WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w in ("2", "objects")]
+
+
+class Killed(program.Case):
+	def check_nothing_left(self, below):
+		gone = program.wait_until(lambda: not os.path.exists(program.segment(self.name)) and not any(map(program.alive, below)), 1)
+		self.assertTrue(gone, [p for p in below if program.alive(p)] + glob.glob("/dev/shm/obsim.*"))
+
+	def test_host(self):
+		for way in WAYS:
+			with self.subTest(way=way):
+				run = self.start_universe(*LONG, *way)
+				time.sleep(.5)
+				below = program.processes(run.pid)
+				self.assertGreaterEqual(len(below), 31 if way == WAYS[-1] else 1)
+				run.send_signal(signal.SIGKILL)
+				run.wait(5)
+				self.check_nothing_left(below)
+
+	def test_host_at_any_time(self):
+		"""Also while it starts."""
+		for delay in 0, .001, .002, .005, .01, .02, .05, .1:
+			with self.subTest(delay=delay):
+				run = program.start("run", *LONG, "--isolation", "process", "--workers", "objects", "--name", self.name)
+				time.sleep(delay)
+				below = program.processes(run.pid)
+				run.send_signal(signal.SIGKILL)
+				run.wait(5)
+				run.stdout.close()
+				run.stderr.close()
+				self.check_nothing_left(below)
+
+	def test_simulator(self):
+		"""The run fails, with the name of who died, and ends in order."""
+		run = self.start_universe(*LONG, "--isolation", "process", "--workers", "objects")
+		time.sleep(.5)
+		below = program.processes(run.pid)
+		os.kill(max(below), signal.SIGKILL)
+		self.assertEqual(run.wait(10), 1)
+		self.assertRegex(run.stderr.read(), r"^obsim: simulator \d+ .*killed")
+		self.check_nothing_left(below)
+
+	def test_stale_is_cleared(self):
+		"""What a killed host and keeper leave together, the next run removes."""
+		run = self.start_universe(*LONG)
+		time.sleep(.3)
+		below = program.processes(run.pid)
+		for pid in [run.pid, *below]:
+			os.kill(pid, signal.SIGSTOP)
+		for pid in [run.pid, *below]:
+			os.kill(pid, signal.SIGKILL)
+		run.wait(5)
+		self.assertTrue(os.path.exists(program.segment(self.name)))
+		program.report(program.scene("stack"), "--duration", ".1")
+		self.assertFalse(os.path.exists(program.segment(self.name)))
+
+	def test_name_is_taken(self):
+		run = self.start_universe(*LONG)
+		other = program.call("run", program.scene("stack"), "--name", self.name)
+		self.assertEqual(other.returncode, 1)
+		self.assertIn(self.name, other.stderr)
+		self.assertIsNone(run.poll())
+		run.send_signal(signal.SIGINT)
+		run.wait(10)
+
+
+unittest.main()

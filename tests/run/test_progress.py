@@ -1,0 +1,41 @@
+"""The progress line: on a terminal, for what takes longer than two seconds, and gone at the end."""
+
+import os
+import pty
+import signal
+import subprocess
+import time
+import unittest
+
+import program
+
+
+class Progress(program.Case):
+	def run_on_terminal(self, *words, seconds):
+		leader, terminal = pty.openpty()
+		run = subprocess.Popen([program.OBSIM, "run", *words, "--name", self.name], stdout=subprocess.DEVNULL, stderr=terminal)
+		os.close(terminal)
+		time.sleep(seconds)
+		if run.poll() is None:
+			run.send_signal(signal.SIGINT)
+		run.wait(20)
+		seen = b""
+		try:
+			while chunk := os.read(leader, 65536):
+				seen += chunk
+		except OSError: # the other end is closed
+			pass
+		os.close(leader)
+		return seen.decode()
+
+	def test_long(self):
+		seen = self.run_on_terminal(program.scene("stack"), "--duration", "100000", "--measure", "end", seconds=4)
+		self.assertIn(" steps, ", seen)
+		self.assertIn("left", seen)
+		self.assertTrue(seen.rpartition("left")[2].lstrip().startswith("\r\033[K") or "\r\033[K" in seen.rpartition("left")[2])
+
+	def test_short(self):
+		self.assertEqual(self.run_on_terminal(program.scene("cradle"), "--duration", ".2", seconds=1.5), "")
+
+
+unittest.main()

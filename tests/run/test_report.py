@@ -1,0 +1,111 @@
+"""The report: its keys are a promise, its figures make sense, and the manual names them all."""
+
+import csv
+import json
+import os
+import re
+import unittest
+
+import program
+
+KEYS = """objects steps simulated_s wall_s cpu_s body_step_cpu_us state_hash energy_start energy_end energy_gain_max
+momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps frames workers isolation arch commit scene
+step substeps exchange integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies passes total_s
+frame_rate worst_penetration_time_s""".split()
+
+
+class Report(program.Case):
+	def test_falling_boxes(self):
+		r = program.report(program.scene("falling_boxes"), "-D", "n=20", "--duration", "1", "--workers", "2")
+		self.assertEqual(sorted(r), sorted(KEYS))
+		self.assertEqual((r["steps"], r["objects"], r["bodies"], r["workers"]), (60, 21, 20, 2))
+		self.assertEqual((r["arch"], r["isolation"], r["outcome"]), ("obs", "thread", "finished"))
+		self.assertAlmostEqual(r["simulated_s"], 1, delta=1e-9)
+		self.assertAlmostEqual(r["step"], 1 / 60, delta=1e-15)
+		for key in "wall_s", "cpu_s", "startup_s", "memory_bytes", "step_p50_s", "body_step_cpu_us", "energy_start":
+			self.assertGreater(r[key], 0, key)
+		self.assertLessEqual(r["wall_s"], r["total_s"])
+		self.assertLessEqual(r["step_p50_s"], r["step_p99_s"])
+		self.assertLessEqual(r["penetration_mean_m"], r["penetration_max_m"])
+		self.assertLessEqual(r["penetration_max_m"], r["worst_penetration_m"])
+		self.assertAlmostEqual(r["body_step_cpu_us"], 1e6 * r["cpu_s"] / (20 * 60), delta=1e-6)
+		self.assertLess(r["energy_end"], r["energy_start"])
+		self.assertLess(r["energy_gain_max"], 1e-3)
+		self.assertEqual((r["frames"], r["fps"], r["frame_rate"], r["momentum_error"]), (0, None, None, None))
+
+	def test_energy_is_exact(self):
+		"""Before anything touches, energy is that of free fall: no change beyond rounding."""
+		r = program.report(program.scene("falling_boxes"), "-D", "n=8", "--duration", ".1")
+		self.assertLess(abs(r["energy_end"] / r["energy_start"] - 1), 1e-12)
+		self.assertEqual(r["worst_penetration_m"], 0)
+
+	def test_momentum(self):
+		"""A closed scene has a momentum error, and it is that of rounding."""
+		r = program.report(program.scene("cradle"))
+		self.assertIsNotNone(r["momentum_error"])
+		self.assertLess(r["momentum_error"], 1e-12)
+
+	def test_measure_end(self):
+		words = [program.scene("stack"), "--duration", ".5", "--workers", "1"]
+		every, ends = program.report(*words), program.report(*words, "--measure", "end")
+		for key in "energy_gain_max", "worst_penetration_m", "worst_penetration_time_s":
+			self.assertIsNone(ends[key])
+			self.assertIsNotNone(every[key])
+		for key in "state_hash", "energy_start", "energy_end", "penetration_max_m", "penetration_mean_m", "steps":
+			self.assertEqual(ends[key], every[key], key)
+
+	def test_monolith(self):
+		r = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3")
+		self.assertEqual((r["arch"], r["workers"], r["substeps"], r["bodies"]), ("monolith", 1, 1, 216))
+		again = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3", "--measure", "end")
+		self.assertEqual(r["state_hash"], again["state_hash"])
+		finer = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3", "--substeps", "4")
+		self.assertEqual(finer["substeps"], 4)
+
+	def test_seed(self):
+		words = [program.scene("falling_boxes"), "-D", "n=8", "--duration", ".1", "--measure", "end"]
+		a, b, c = (program.report(*words, "--seed", s) for s in ("5", "6", "5"))
+		self.assertEqual((a["seed"], b["seed"]), (5, 6))
+		self.assertNotEqual(a["state_hash"], b["state_hash"])
+		self.assertEqual(a["state_hash"], c["state_hash"])
+
+	def test_files(self):
+		words = ["run", program.scene("stack"), "--duration", ".25"]
+		done = program.call(*words, "--json", "r.json", "--summary", "r.csv", "--series", "s.csv", cwd=self.directory.name)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		self.assertIn(": 11 objects, ", done.stdout)
+		with open(self.path("r.json")) as f:
+			r = json.load(f)
+		with open(self.path("r.csv"), newline="") as f:
+			rows = {row["quantity"]: row for row in csv.DictReader(f)}
+		self.assertEqual(list(rows), list(r))
+		self.assertEqual(float(rows["wall_s"]["value"]), r["wall_s"])
+		self.assertEqual(rows["wall_s"]["unit"], "s")
+		with open(self.path("s.csv"), newline="") as f:
+			series = list(csv.DictReader(f))
+		self.assertEqual([int(row["step"]) for row in series], list(range(r["steps"] + 1)))
+		self.assertEqual(float(series[0]["energy_j"]), r["energy_start"])
+		self.assertEqual(float(series[-1]["energy_j"]), r["energy_end"])
+		worst = max(float(row["penetration_max_m"]) for row in series)
+		self.assertAlmostEqual(worst, r["worst_penetration_m"], delta=1e-8 * worst)
+
+	def test_no_progress_in_a_pipe(self):
+		done = program.call("run", program.scene("stack"), "--duration", "1")
+		self.assertEqual(done.stderr, "")
+		self.assertNotIn("\r", done.stdout)
+
+	def test_manual(self):
+		manual = os.environ["MANUAL"]
+		with open(manual) as f:
+			text = f.read().replace("\\-", "-")
+		for key in KEYS:
+			self.assertRegex(text, r"\b" + key + r"\b")
+		for command in "run", "compare", "top":
+			options = re.findall(r"^  .{4}(--[a-z]+)", program.call(command, "--help").stdout, re.M)
+			self.assertGreater(len(options), 2)
+			for option in options:
+				if option != "--help":
+					self.assertRegex(text, re.escape(option) + r"\b", option)
+
+
+unittest.main()

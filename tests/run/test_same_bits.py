@@ -1,0 +1,50 @@
+"""One scene ends in the same bits, whatever runs it: threads or processes, any number of workers. One scene a test
+program (the first argument), so that each has its own limit on time."""
+
+import sys
+import unittest
+
+import program
+
+SCENES = {
+	"falling_boxes": ["-D", "n=100", "--duration", "2.5"],
+	"stack": ["--duration", "2"],
+	"pile": ["--duration", "1"],
+	"cradle": ["--duration", "1.5"],
+	"sparse": ["--duration", "2"],
+	"shapes": ["--duration", "2"],
+}
+NAME = sys.argv.pop(1)
+
+
+class SameBits(program.Case):
+	def hash_of(self, *words):
+		found = program.report(program.scene(NAME), *SCENES[NAME], "--measure", "end", *words)
+		self.assertEqual(found["outcome"], "finished")
+		self.assertRegex(found["state_hash"], "^[0-9a-f]{16}$")
+		return found["state_hash"]
+
+	def test_everywhere(self):
+		expected = self.hash_of("--workers", "1")
+		for isolation in "thread", "process":
+			for workers in "1", "2", "3", "8", "objects":
+				with self.subTest(isolation=isolation, workers=workers):
+					self.assertEqual(self.hash_of("--isolation", isolation, "--workers", workers), expected)
+
+	def test_other_bits(self):
+		"""The hash sees a change: another step length is another run."""
+		self.assertNotEqual(self.hash_of("--workers", "1"), self.hash_of("--workers", "1", "--step", "1/61"))
+
+	def test_looking_changes_nothing(self):
+		words = [program.scene(NAME), *SCENES[NAME]]
+		self.assertEqual(program.report(*words, "--measure", "step")["state_hash"], self.hash_of())
+
+	def test_jacobi(self):
+		expected = self.hash_of("--exchange", "jacobi", "--workers", "1")
+		for isolation, workers in ("thread", "3"), ("process", "2"), ("process", "objects"):
+			with self.subTest(isolation=isolation, workers=workers):
+				found = self.hash_of("--exchange", "jacobi", "--isolation", isolation, "--workers", workers)
+				self.assertEqual(found, expected)
+
+
+unittest.main()

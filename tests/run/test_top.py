@@ -1,0 +1,126 @@
+"""obsim top: from another process, once and on a terminal."""
+
+import fcntl
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import termios
+import time
+import unittest
+
+import program
+
+LONG = ["--duration", "100000", "--measure", "end"]
+
+
+def read_screen(fd, until, seconds):
+	"""What a terminal is sent, until the text comes or time is over."""
+	seen, end = "", time.monotonic() + seconds
+	while until not in seen and time.monotonic() < end:
+		if select.select([fd], [], [], .1)[0]:
+			try:
+				seen += os.read(fd, 65536).decode(errors="replace")
+			except OSError:
+				break
+	return seen
+
+
+class Top(program.Case):
+	def run_universe(self, *words):
+		run = self.start_universe(*words, *LONG)
+		self.addCleanup(lambda: program.wait_until(lambda: not os.path.exists(program.segment(self.name)), 2))
+		return run
+
+	def end(self, run):
+		run.send_signal(signal.SIGINT)
+		run.wait(10)
+
+	def test_once(self):
+		run = self.run_universe(program.scene("stack"), "--isolation", "process", "--workers", "2")
+		done = program.call("top", self.name, "--once")
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		self.assertIn(self.name[:18], done.stdout)
+		self.assertIn("running", done.stdout)
+		rate = re.search(r"([0-9.]+) steps/s", done.stdout)
+		self.assertGreater(float(rate[1]), 0)
+		self.assertEqual(len(re.findall(r"^ *\d+ .* box +(awake|free|asleep) ", done.stdout, re.M)), 10)
+		self.assertEqual(len(re.findall(r"^ *\d+ .* plane +static ", done.stdout, re.M)), 1)
+		workers = re.findall(r"^ +(\d) +(\d+) +(\d+) +\S+ +\d+ +([0-9.]+|-) +[0-9.]+$", done.stdout, re.M)
+		self.assertEqual([w[0] for w in workers], ["0", "1"])
+		below = program.processes(run.pid)
+		self.assertTrue(all(int(w[1]) in below for w in workers))
+		self.end(run)
+
+	def test_busy(self):
+		"""A worker that has always something to do is seen to be busy."""
+		run = self.run_universe(program.scene("pile"), "--workers", "1", "--sleeping", "off")
+		done = program.call("top", self.name, "--once", "--interval", "2")
+		share = re.search(r"^ +0 +\d+ +\d+ +\S+ +\d+ +([0-9.]+) ", done.stdout, re.M)
+		self.assertGreater(float(share[1]), 20)
+		self.assertLess(float(share[1]), 140)
+		self.end(run)
+
+	def test_pipe(self):
+		"""No terminal: as --once, with all objects."""
+		run = self.run_universe(program.scene("falling_boxes"), "-D", "n=60")
+		done = program.call("top", self.name, "--interval", ".3")
+		self.assertEqual(len(re.findall(" box ", done.stdout)), 60)
+		self.assertNotIn("\033", done.stdout)
+		self.end(run)
+
+	def test_missing(self):
+		run = self.run_universe(program.scene("stack"))
+		done = program.call("top", "nonesuch")
+		self.assertEqual(done.returncode, 1)
+		self.assertIn(self.name, done.stderr) # which there are
+		near = program.call("top", self.name + "x")
+		self.assertIn("did you mean obsim top " + self.name, near.stderr)
+		self.end(run)
+
+	def test_terminal(self):
+		run = self.run_universe(program.scene("falling_boxes"), "-D", "n=60")
+		leader, terminal = pty.openpty()
+		fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+		before = termios.tcgetattr(terminal)
+		top = subprocess.Popen([program.OBSIM, "top", self.name, "--interval", ".2"], stdin=terminal, stdout=terminal,
+			stderr=terminal)
+		seen = read_screen(leader, "steps/s", 10)
+		self.assertIn("\033[?1049h", seen) # the alternate screen
+		self.assertIn("running", seen)
+		os.write(leader, b"w")
+		self.assertIn("WORKER", read_screen(leader, "WORKER", 5))
+		os.write(leader, b"w\033[6~\033[B")
+		read_screen(leader, "nothing such", .5)
+		fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
+		top.send_signal(signal.SIGWINCH)
+		self.assertIn("objects", read_screen(leader, "objects", 5))
+		os.write(leader, b"q")
+		seen = read_screen(leader, "\033[?1049l", 5)
+		self.assertIn("\033[?1049l", seen)
+		self.assertEqual(top.wait(5), 0)
+		self.assertEqual(termios.tcgetattr(terminal), before)
+		os.close(leader)
+		os.close(terminal)
+		self.end(run)
+
+	def test_universe_ends(self):
+		"""The screen stays, and says that it is over."""
+		run = self.run_universe(program.scene("stack"))
+		leader, terminal = pty.openpty()
+		top = subprocess.Popen([program.OBSIM, "top", self.name, "--interval", ".2"], stdin=terminal, stdout=terminal,
+			stderr=terminal)
+		self.assertIn("running", read_screen(leader, "running", 10))
+		self.end(run)
+		self.assertIn("gone", read_screen(leader, "gone", 5))
+		top.send_signal(signal.SIGTERM)
+		read_screen(leader, "\033[?1049l", 5)
+		self.assertEqual(top.wait(5), 0)
+		os.close(leader)
+		os.close(terminal)
+
+
+unittest.main()

@@ -1,0 +1,75 @@
+"""What a user gets wrong: one line that says what and how to mend it, exit code 2, nothing left behind."""
+
+import os
+import subprocess
+import unittest
+
+import program
+
+STACK = program.scene("stack")
+
+
+class Usage(program.Case):
+	def test_options(self):
+		self.refuse("run", saying="no scene given")
+		self.refuse("run", STACK, "--durration", "1", saying="did you mean --duration?")
+		self.refuse("run", STACK, "--duration", "soon", saying="expected a number")
+		self.refuse("run", STACK, "--duration", saying="needs a value")
+		self.refuse("run", STACK, "--duration", "1", "--duration", "2", saying="given twice")
+		self.refuse("run", STACK, "--arch", "monolith", "--workers", "2", saying="one worker")
+		self.refuse("run", STACK, "--fps", "60", saying="needs --frames")
+		self.refuse("run", STACK, "--json", "/no/such/dir/x.json", saying="no directory /no/such/dir")
+		self.refuse("run", STACK, "--json", "-", "--raw", "-", saying="both write standard output")
+		self.refuse("run", STACK, "--raw", "x.rgb", "--camera", "nowhere", saying="the scene has none of this name")
+		self.refuse("run", STACK, STACK, saying="one scene at a time")
+		self.refuse("run", STACK, "-D", "n=x", saying="n")
+		self.refuse("run", STACK, "-D", "mystery=1", saying="mystery")
+		self.refuse("compare", STACK, "--workers", "objects", saying="--workers objects")
+		self.refuse("compare", STACK, "--frames", "x", saying="unknown option --frames")
+		self.refuse("top", "--interval", "0", saying="more than 0")
+		self.assertEqual(os.listdir(self.directory.name), [])
+
+	def test_commands(self):
+		self.refuse("rnu", saying="did you mean 'obsim run'?")
+		self.refuse("dance", saying="obsim --help")
+		self.refuse(STACK, saying="obsim run " + STACK)
+		self.refuse("--versoin", saying="unknown command")
+		self.assertEqual(program.call().returncode, 2)
+
+	def test_scenes(self):
+		self.refuse("run", "missing.lua", saying="missing.lua")
+		self.refuse("compare", "missing.lua", saying="missing.lua")
+		self.refuse("run", self.directory.name, saying=self.directory.name)
+
+	def test_help(self):
+		for words in ["--help"], ["help"], ["-h"], ["run", "--help"], ["compare", "-h"], ["top", "--help"], ["help", "run"]:
+			with self.subTest(words=words):
+				done = program.call(*words)
+				self.assertEqual((done.returncode, done.stderr), (0, ""))
+				self.assertIn("Usage: obsim", done.stdout)
+				self.assertTrue(all(len(line) <= 120 for line in done.stdout.splitlines()))
+		# help wins over what else is missing
+		self.assertEqual(program.call("run", "--help").returncode, 0)
+
+	def test_version(self):
+		done = program.call("--version")
+		self.assertEqual(done.returncode, 0)
+		self.assertRegex(done.stdout, r"^obsim \d+\.\d+\.\d+ \(commit [0-9a-f]+\+?|unknown\)\n")
+		for library in "ODE", "Lua", "liburcu", "HDF5", "libpng":
+			self.assertIn(library + " ", done.stdout)
+
+	def test_full_disk(self):
+		"""A report that cannot be written is a failed run, not a silent one."""
+		done = program.call("run", STACK, "--duration", ".1", "--json", "/dev/full")
+		self.assertEqual(done.returncode, 1)
+		self.assertIn("No space left", done.stderr)
+
+	def test_closed_pipe(self):
+		with subprocess.Popen(["true"], stdin=subprocess.PIPE) as ended:
+			ended.wait()
+			done = program.call("run", STACK, "--duration", ".1", "--json", "-", stdout=ended.stdin)
+		self.assertEqual(done.returncode, 1)
+		self.assertIn("Broken pipe", done.stderr)
+
+
+unittest.main()

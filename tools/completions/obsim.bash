@@ -1,0 +1,46 @@
+# bash completion for obsim
+# The options come from the program itself, so that they are always those of the version installed.
+
+_obsim_options()
+{
+	"$1" help "$2" 2>/dev/null | sed -n 's/^  .*\(--[a-z][a-z-]*\).*/\1/p' | sed 's/ .*//'
+}
+
+_obsim()
+{
+	local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]}
+	local previous=${COMP_WORDS[COMP_CWORD - 1]}
+	COMPREPLY=()
+	if ((COMP_CWORD == 1)); then
+		mapfile -t COMPREPLY < <(compgen -W 'run compare top help --help --version' -- "$word")
+		return
+	fi
+	case $previous in
+	--arch) mapfile -t COMPREPLY < <(compgen -W 'obs monolith' -- "$word") ;;
+	--isolation) mapfile -t COMPREPLY < <(compgen -W 'thread process' -- "$word") ;;
+	--workers) mapfile -t COMPREPLY < <(compgen -W 'objects 1 2 4 8' -- "$word") ;;
+	--exchange) mapfile -t COMPREPLY < <(compgen -W 'coloured jacobi' -- "$word") ;;
+	--integrator) mapfile -t COMPREPLY < <(compgen -W 'exact ode' -- "$word") ;;
+	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
+	--measure) mapfile -t COMPREPLY < <(compgen -W 'step end' -- "$word") ;;
+	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
+	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
+	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
+	--frames) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+	--video | --raw | --record | --series | --summary | --json) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+	--define | -D | --duration | --step | --seed | --substeps | --passes | --iterations | --name | --fps | --samples | \
+		--camera | --interval) ;;
+	*)
+		case $command:$word in
+		help:*) mapfile -t COMPREPLY < <(compgen -W 'run compare top' -- "$word") ;;
+		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
+		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
+			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
+		*) mapfile -t COMPREPLY < <(compgen -d -S / -- "$word"
+			compgen -f -X '!*.lua' -- "$word") ;;
+		esac
+		;;
+	esac
+}
+
+complete -o filenames -o nosort -F _obsim obsim

@@ -1,0 +1,54 @@
+# fish completion for obsim
+
+function __obsim_universes
+	for path in /dev/shm/obsim.*
+		string replace /dev/shm/obsim. '' -- $path
+	end
+end
+
+complete -c obsim -f
+complete -c obsim -n __fish_use_subcommand -a run -d 'run a scene and report'
+complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in five ways'
+complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
+complete -c obsim -n __fish_use_subcommand -a help -d 'help of a command'
+complete -c obsim -n __fish_use_subcommand -l version -d 'version, commit, libraries'
+complete -c obsim -s h -l help -d 'print help'
+complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run compare top'
+
+set -l both '__fish_seen_subcommand_from run compare'
+complete -c obsim -n $both -a '(__fish_complete_suffix .lua)'
+complete -c obsim -n $both -s D -l define -x -d 'set a parameter of the scene'
+complete -c obsim -n $both -l duration -x -d 'simulated seconds'
+complete -c obsim -n $both -l step -x -d 'seconds a step'
+complete -c obsim -n $both -l seed -x -d 'seed of random numbers'
+complete -c obsim -n $both -l workers -x -a 'objects 1 2 4 8' -d 'workers in the pool, or one for each object'
+complete -c obsim -n $both -l substeps -x -d 'substeps a step'
+complete -c obsim -n $both -l passes -x -d 'rounds of exchange a substep'
+complete -c obsim -n $both -l exchange -x -a 'coloured jacobi' -d 'order of exchanges'
+complete -c obsim -n $both -l integrator -x -a 'exact ode' -d 'free motion'
+complete -c obsim -n $both -l sleeping -x -a 'on off' -d 'whether what rests may sleep'
+complete -c obsim -n $both -l iterations -x -d 'monolith: iterations of QuickStep'
+complete -c obsim -n $both -l json -r -F -d 'the report as JSON'
+
+set -l run '__fish_seen_subcommand_from run'
+complete -c obsim -n $run -l arch -x -a 'obs monolith' -d 'one simulator per object, or one world'
+complete -c obsim -n $run -l isolation -x -a 'thread process' -d 'what a worker is'
+complete -c obsim -n $run -l name -x -d 'name of the universe'
+complete -c obsim -n $run -l frames -x -a '(__fish_complete_directories)' -d 'write PNG files'
+complete -c obsim -n $run -l video -r -F -d 'write a video'
+complete -c obsim -n $run -l raw -r -F -d 'write raw rgb24 frames'
+complete -c obsim -n $run -l fps -x -d 'frames per simulated second'
+complete -c obsim -n $run -l size -x -a '640x480 1280x720 1920x1080' -d pixels
+complete -c obsim -n $run -l samples -x -a '1 2 4 8' -d 'samples a pixel'
+complete -c obsim -n $run -l camera -x -d 'which camera'
+complete -c obsim -n $run -l overlay -x -a 'aabb contacts aabb,contacts' -d 'draw over it'
+complete -c obsim -n $run -l gpu -x -a 'surfaceless 0 1' -d 'which GPU'
+complete -c obsim -n $run -l record -r -F -d 'trajectories as HDF5'
+complete -c obsim -n $run -l series -r -F -d 'figures of each step as CSV'
+complete -c obsim -n $run -l summary -r -F -d 'the report as CSV'
+complete -c obsim -n $run -l measure -x -a 'step end' -d 'when to measure'
+
+set -l top '__fish_seen_subcommand_from top'
+complete -c obsim -n $top -a '(__obsim_universes)'
+complete -c obsim -n $top -l once -d 'print once and end'
+complete -c obsim -n $top -l interval -x -d 'seconds between looks'
