@@ -3,8 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
+// And no cleaning up by HDF5 when the process exits: once a write has failed, that crashes (1.10.8). We close what we
+// open.
 void ob_file_silence(void)
 {
+	H5dont_atexit();
 	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
@@ -27,6 +30,17 @@ bool ob_file_fail(ob_error *e, const char *path, const char *doing)
 	char reason[128] = "";
 	H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, find_reason, reason);
 	return ob_fail(e, "%s: cannot %s: %s", path, doing, reason[0] ? reason : "HDF5 gives no reason");
+}
+
+uint64_t ob_file_length(const char *path)
+{
+	haddr_t end = 0;
+	hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+	if (file < 0 || H5Fget_eoa(file, &end) < 0)
+		end = 0;
+	if (file >= 0)
+		H5Fclose(file);
+	return end;
 }
 
 hid_t ob_file_string_type(size_t length)

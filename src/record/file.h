@@ -16,6 +16,9 @@ void ob_file_silence(void);
 // Says in e that "doing" failed, and the system's reason, as HDF5 noted it in the last call that failed. Returns false.
 bool ob_file_fail(ob_error *e, const char *path, const char *doing);
 
+// What of the closed file HDF5 uses (bytes); 0 if it cannot be read.
+uint64_t ob_file_length(const char *path);
+
 // Strings of fixed length, padded with zeros. The caller closes the type.
 hid_t ob_file_string_type(size_t length);
 bool ob_file_attribute_text(hid_t at, const char *name, const char *text);

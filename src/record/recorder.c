@@ -5,9 +5,11 @@
 
 #include "record/file.h"
 #include "record/objects.h"
+#include "record/room.h"
 
 enum { TIME, STEP, POSITION, ATTITUDE, VELOCITY, ANGULAR_VELOCITY, ASLEEP, COLUMNS };
 enum { CHUNK_BYTES = 1 << 16, ABSENT = 255 };
+enum { INDEX_BYTES = 1 << 18 }; // more than HDF5 adds to its indices of chunks with one append
 
 // A dataset that grows by one row with each append.
 static const struct column {
@@ -31,6 +33,8 @@ struct ob_recorder {
 	char *path;
 	hid_t file, set[COLUMNS]; // negative: not there
 	ob_record_objects objects;
+	ob_room room;
+	uint64_t append_bytes; // at most, of one append
 	uint32_t count; // objects
 	hsize_t rows;
 	double *numbers; // [count * 4], one row of one dataset
@@ -51,11 +55,13 @@ static bool create_column(ob_recorder *r, int i)
 	hsize_t dims[3] = { 0, r->count, (hsize_t)width };
 	hsize_t row = H5Tget_size(type_of(i)) * (width ? dims[1] * dims[2] : 1);
 	hsize_t chunk = row < CHUNK_BYTES ? CHUNK_BYTES / row : 1;
+	if (chunk > 1024)
+		chunk = 1024;
+	r->append_bytes += chunk * row;
 	const double none = NAN;
 	const uint8_t absent = ABSENT;
 	const void *fill = i == ASLEEP ? (const void *)&absent : width ? &none : NULL;
-	r->set[i] =
-		ob_file_dataset(r->file, &columns[i].label, type_of(i), rank, dims, chunk < 1024 ? chunk : 1024, fill);
+	r->set[i] = ob_file_dataset(r->file, &columns[i].label, type_of(i), rank, dims, chunk, fill);
 	return r->set[i] >= 0;
 }
 
@@ -81,7 +87,8 @@ static bool fill(ob_recorder *r, const ob_universe_info *info, const char *title
 	for (int i = 0; i < COLUMNS; i++)
 		if (!create_column(r, i))
 			return false;
-	return H5Fflush(r->file, H5F_SCOPE_GLOBAL) >= 0;
+	r->append_bytes += INDEX_BYTES + (uint64_t)r->count * sizeof(ob_passport);
+	return H5Fflush(r->file, H5F_SCOPE_GLOBAL) >= 0 && ob_room_open(&r->room, r->path);
 }
 
 ob_recorder *ob_recorder_create(const char *path, const ob_universe_info *info, const char *scene_title, ob_error *e)
@@ -93,6 +100,7 @@ ob_recorder *ob_recorder_create(const char *path, const ob_universe_info *info, 
 		return NULL;
 	}
 	r->file = H5I_INVALID_HID;
+	r->room.fd = -1;
 	for (int i = 0; i < COLUMNS; i++)
 		r->set[i] = H5I_INVALID_HID;
 	r->count = info->capacity ? info->capacity : 1;
@@ -170,6 +178,9 @@ bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 {
 	if (s->count > r->count)
 		return ob_fail(e, "%s: the universe has grown from %u to %u objects", r->path, r->count, s->count);
+	haddr_t used = 0;
+	if (H5Fget_eoa(r->file, &used) >= 0 && !ob_room_ensure(&r->room, r->path, used, r->append_bytes, e))
+		return false;
 	bool ok = ob_record_objects_update(&r->objects, s);
 	for (int i = 0; i < COLUMNS && ok; i++)
 		ok = append(r, i, row_of(r, i, s));
@@ -191,6 +202,7 @@ bool ob_recorder_close(ob_recorder *r, ob_error *e)
 		ok &= ob_record_objects_finish(&r->objects);
 	if (r->file >= 0)
 		ok &= H5Fclose(r->file) >= 0;
+	ok &= ob_room_close(&r->room, ob_file_length(r->path));
 	if (!ok)
 		ob_file_fail(e, r->path, "close the record");
 	free(r->path);
