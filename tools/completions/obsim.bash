@@ -22,7 +22,7 @@ _obsim()
 	--exchange) mapfile -t COMPREPLY < <(compgen -W 'coloured jacobi' -- "$word") ;;
 	--integrator) mapfile -t COMPREPLY < <(compgen -W 'exact ode' -- "$word") ;;
 	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
-	--measure) mapfile -t COMPREPLY < <(compgen -W 'step end' -- "$word") ;;
+	--measure) mapfile -t COMPREPLY < <(compgen -W 'step times end' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;

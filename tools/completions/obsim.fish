@@ -46,7 +46,7 @@ complete -c obsim -n $run -l gpu -x -a 'surfaceless 0 1' -d 'which GPU'
 complete -c obsim -n $run -l record -r -F -d 'trajectories as HDF5'
 complete -c obsim -n $run -l series -r -F -d 'figures of each step as CSV'
 complete -c obsim -n $run -l summary -r -F -d 'the report as CSV'
-complete -c obsim -n $run -l measure -x -a 'step end' -d 'when to measure'
+complete -c obsim -n $run -l measure -x -a 'step times end' -d 'when to measure'
 
 set -l top '__fish_seen_subcommand_from top'
 complete -c obsim -n $top -a '(__obsim_universes)'
