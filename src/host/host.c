@@ -15,7 +15,7 @@
 #include "ode/ode_body.h"
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
-static const double usual_patience = 60, start_patience = 60, leave_patience = 5; // s
+static const double usual_patience = 60, start_patience = 60; // s
 
 static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
 {
@@ -191,11 +191,11 @@ void ob_host_stop(ob_host *h)
 	h->ending = true;
 	if (h->u) {
 		ob_universe_set_state(h->u, h->failed ? OB_UNIVERSE_FAILED : OB_UNIVERSE_FINISHED);
-		ob_gate_stop(h->u);
+		ob_host_halt(h);
 	}
 	ob_supervisor_stop(h);
 	if (h->crew)
-		left = h->spawn->join(h->crew, leave_patience);
+		left = h->spawn->join(h->crew, h->spawn->leave_patience);
 	ob_keeper_stop(h->keeper); // removes the universe's name
 	if (h->u && left)
 		ob_universe_destroy(h->u, true);

@@ -32,7 +32,8 @@ typedef struct ob_host_config {
 
 typedef struct ob_host_times {
 	double startup_s; // from the call to start until every worker stood at the gate
-	double wall_s, cpu_s; // stepping only: wall between go and pause; CPU of the workers in that time
+	double wall_s; // stepping only: between go and pause
+	double cpu_s; // CPU of the workers in that time; of processes as of the kernel's last tick, some ms ago
 	double step_p50_s, step_p99_s; // wall per step, to 1 %; steps of one go that run on unobserved count as equal
 	size_t memory_bytes; // PSS of host, keeper and workers, and the table's touched pages once
 } ob_host_times;

@@ -13,7 +13,7 @@
 // A leg: from one opening of the gate to the next pause. Host and supervisor may both shorten it.
 typedef struct ob_leg {
 	pthread_mutex_t lock;
-	bool running;
+	bool running, halted; // halted: there will be no other
 	uint64_t end; // the step at which it pauses
 } ob_leg;
 
@@ -49,6 +49,8 @@ struct ob_host {
 
 // Notes the cause (the first one stays) and stops the gate, so that everyone leaves. Any thread.
 void ob_host_set_failure(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// Tells the workers to leave. Any thread.
+void ob_host_halt(ob_host *h);
 // Makes the running leg end at the next step boundary. Any thread.
 void ob_host_shorten_leg(ob_host *h);
 // Reads the CPU clocks of all workers, for the readers of the universe; returns their sum (ns).

@@ -22,6 +22,15 @@ void ob_host_set_failure(ob_host *h, const char *format, ...)
 		h->failed = true;
 	}
 	pthread_mutex_unlock(&h->failure_lock);
+	ob_host_halt(h);
+}
+
+void ob_host_halt(ob_host *h)
+{
+	pthread_mutex_lock(&h->leg.lock);
+	h->leg.halted = true;
+	ob_gate_set_pause_step(h->u, 0); // where all sleep, steps pass by the thousand without a look at the gate
+	pthread_mutex_unlock(&h->leg.lock);
 	ob_gate_stop(h->u);
 }
 
@@ -56,7 +65,8 @@ static void begin_leg(ob_host *h)
 	pthread_mutex_lock(&leg->lock);
 	leg->running = true;
 	leg->end = next < h->target ? next : h->target;
-	ob_gate_set_pause_step(h->u, leg->end);
+	if (!leg->halted)
+		ob_gate_set_pause_step(h->u, leg->end);
 	pthread_mutex_unlock(&leg->lock);
 	h->leg_first = step;
 	h->leg_start = ob_clock_wall();
@@ -121,9 +131,12 @@ void ob_host_go(ob_host *h, uint64_t step)
 }
 
 // A gate that was stopped looks like a pause: the step then falls short of the leg's end.
-static bool at_leg_end(const ob_host *h)
+static bool at_leg_end(ob_host *h)
 {
-	return ob_step_count(h->u) >= h->leg.end;
+	pthread_mutex_lock(&h->leg.lock);
+	bool there = ob_step_count(h->u) >= h->leg.end;
+	pthread_mutex_unlock(&h->leg.lock);
+	return there;
 }
 
 static bool outcome(ob_host *h, ob_error *e)

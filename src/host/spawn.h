@@ -29,6 +29,7 @@ typedef struct ob_spawn {
 	// After ob_gate_stop: waits until all have left, at most timeout (s), and frees c. false: some have not
 	// left and may still touch the universe.
 	bool (*join)(ob_crew *c, double timeout);
+	double leave_patience; // s to join for: a process that lingers can be killed, a thread cannot
 	bool own_memory; // a worker has a memory of its own, apart from the host's
 } ob_spawn;
 

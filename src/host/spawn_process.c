@@ -72,5 +72,6 @@ const ob_spawn ob_spawn_processes = {
 	.next_end = process_next_end,
 	.cpu = process_cpu,
 	.join = process_join,
+	.leave_patience = 1,
 	.own_memory = true,
 };

@@ -142,5 +142,6 @@ const ob_spawn ob_spawn_threads = {
 	.next_end = thread_next_end,
 	.cpu = thread_cpu,
 	.join = thread_join,
+	.leave_patience = 5,
 	.own_memory = false,
 };

@@ -12,9 +12,14 @@
 #include "base/clock.h"
 #include "table/table.h"
 
+static inline void pause_us(int us)
+{
+	nanosleep(&(struct timespec){ us / 1000000, us % 1000000 * 1000L }, NULL);
+}
+
 static inline void pause_ms(int ms)
 {
-	nanosleep(&(struct timespec){ ms / 1000, ms % 1000 * 1000000L }, NULL);
+	pause_us(1000 * ms);
 }
 
 // A worker without a simulator: announces itself and works through phases until STOP.
