@@ -14,7 +14,7 @@ sky { top = "#4f86c0", horizon = "#e3edf4" }
 sun { towards = { -.5, -.45, .8 } }
 ground { friction = .6, grid = true }
 
-camera "main" { eye = { -9, -13, 7 }, target = { 0, 0, 1 }, fov = 40 }
+camera "main" { eye = { -7.5, -11, 6 }, target = { -.6, 0, 2.4 }, fov = 40 }
 camera "orbit" { eye = { 0, -15, 5 }, target = { 0, 0, 1 }, pan = 6 }
 camera "above" { from = { 0, -.05, 1 } }
 

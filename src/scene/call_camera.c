@@ -11,6 +11,7 @@
 #define RADIANS (M_PI / 180)
 #define ASPECT (16. / 9) // of the picture that a framing camera is placed for
 #define MARGIN 1.06 // air round the objects, as a factor of their size in the picture
+#define SPREAD .2 // m to the side that an object may come to lie, for each metre that it falls
 
 typedef struct camera_fields {
 	ob_vec3 eye, target, from, velocity;
@@ -148,7 +149,7 @@ static double ground_height(const ob_scene *s)
 	return height;
 }
 
-// All objects, and the places on the ground below them.
+// All objects, and the places on the ground where they may come to lie.
 static fit fit_objects(const ob_scene *s, const view *v)
 {
 	fit f = { -INFINITY, -INFINITY, -INFINITY, -INFINITY, INFINITY, -INFINITY };
@@ -160,9 +161,10 @@ static fit fit_objects(const ob_scene *s, const view *v)
 		ob_vec3 p = o->state.pose.p;
 		double r = ob_shape_radius((ob_shape)o->passport.shape, o->passport.size);
 		fit_sphere(&f, v, p, r);
-		p.z = fmin(p.z, ground + r);
+		double fall = fmax(p.z - r - ground, 0);
+		p.z -= fall;
 		if (isfinite(p.z) && !(o->passport.flags & OB_OBJECT_STATIC))
-			fit_sphere(&f, v, p, r);
+			fit_sphere(&f, v, p, r + SPREAD * fall);
 	}
 	if (!isfinite(f.left))
 		fit_sphere(&f, v, ob_v3(0, 0, 0), 5);
