@@ -12,7 +12,9 @@ static void substep(ob_sim *s)
 	ob_members_gyrate(s);
 	ob_touches_refresh(s);
 	ob_touches_prepare(s);
-	while (ob_exchange_impacts(s)) { // what flies off may hit something that was out of reach before
+	// What flies off may hit something that was out of reach before; a rattle is left to the contact solver in the
+	// end.
+	for (int again = 0; again < 4 && ob_exchange_impacts(s); again++) {
 		ob_members_quicken(s);
 		if (!ob_touches_refresh(s))
 			break;
