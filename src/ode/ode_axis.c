@@ -1,6 +1,6 @@
 #include "ode/ode_axis.h"
 
-enum { AXES_MAX = 6, TURNS = 8, PROJECTIONS = 20 };
+enum { AXES_MAX = 6, TURNS = 8, ROUNDS = 100, PROJECTIONS = 20 };
 
 struct search {
 	const ob_ode_solid *a, *b;
@@ -64,21 +64,23 @@ static void climb(struct search *s)
 	ob_vec3 axis[AXES_MAX];
 	int n = axes_of(s->a, axis);
 	n += axes_of(s->b, axis + n);
-	while (step > 1e-5) {
+	// A gain in the last bits would keep the step long for ever: what counts is one of the step's own order.
+	for (int round = 0; round < ROUNDS && step > 1e-5; round++) {
+		double before = s->gap;
 		ob_vec3 from = s->best;
 		ob_vec3 u = unit(ob_cross(from, fabs(from.x) < .6 ? ob_v3(1, 0, 0) : ob_v3(0, 1, 0)));
 		ob_vec3 v = ob_cross(from, u);
-		bool better = false;
 		for (int i = 0; i < TURNS; i++) {
 			double angle = phase + i * (2 * M_PI / TURNS);
-			better |= offer(s, ob_madd(from, step, ob_madd(ob_scale(u, cos(angle)), sin(angle), v)));
+			offer(s, ob_madd(from, step, ob_madd(ob_scale(u, cos(angle)), sin(angle), v)));
 		}
 		for (int i = 0; i < n; i++) {
 			ob_vec3 along = ob_cross(axis[i], from);
-			better |= offer(s, ob_madd(from, step, along)) | offer(s, ob_madd(from, -step, along));
+			offer(s, ob_madd(from, step, along));
+			offer(s, ob_madd(from, -step, along));
 		}
 		phase += 2.399963229728653; // the golden angle
-		step *= better ? 1 : .5;
+		step *= s->gap > before + 1e-3 * step * step ? 1 : .5;
 	}
 }
 
