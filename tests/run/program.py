@@ -6,6 +6,7 @@ Where it lies, and where the scenes lie, comes from the environment (OBSIM, SCEN
 import glob
 import json
 import os
+import pty
 import subprocess
 import tempfile
 import time
@@ -91,6 +92,13 @@ class Case(unittest.TestCase):
 
 	def tearDown(self):
 		self.assertFalse(os.path.exists(segment(self.name)), "the universe's memory is left behind")
+
+	def open_terminal(self):
+		"""The two ends of a terminal. Before anything is started: a bare chroot may have none (no /dev/pts)."""
+		try:
+			return pty.openpty()
+		except OSError as error:
+			self.skipTest(str(error))
 
 	def path(self, name):
 		return os.path.join(self.directory.name, name)

@@ -1,7 +1,6 @@
 """The progress line: on a terminal, for what takes longer than two seconds, and gone at the end."""
 
 import os
-import pty
 import signal
 import subprocess
 import time
@@ -12,7 +11,7 @@ import program
 
 class Progress(program.Case):
 	def run_on_terminal(self, *words, seconds):
-		leader, terminal = pty.openpty()
+		leader, terminal = self.open_terminal()
 		run = subprocess.Popen([program.OBSIM, "run", *words, "--name", self.name], stdout=subprocess.DEVNULL, stderr=terminal)
 		os.close(terminal)
 		time.sleep(seconds)

@@ -2,7 +2,6 @@
 
 import fcntl
 import os
-import pty
 import re
 import select
 import signal
@@ -82,8 +81,8 @@ class Top(program.Case):
 		self.end(run)
 
 	def test_terminal(self):
+		leader, terminal = self.open_terminal()
 		run = self.run_universe(program.scene("falling_boxes"), "-D", "n=60")
-		leader, terminal = pty.openpty()
 		fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
 		before = termios.tcgetattr(terminal)
 		top = subprocess.Popen([program.OBSIM, "top", self.name, "--interval", ".2"], stdin=terminal, stdout=terminal,
@@ -109,8 +108,8 @@ class Top(program.Case):
 
 	def test_universe_ends(self):
 		"""The screen stays, and says that it is over."""
+		leader, terminal = self.open_terminal()
 		run = self.run_universe(program.scene("stack"))
-		leader, terminal = pty.openpty()
 		top = subprocess.Popen([program.OBSIM, "top", self.name, "--interval", ".2"], stdin=terminal, stdout=terminal,
 			stderr=terminal)
 		self.assertIn("running", read_screen(leader, "running", 10))
