@@ -50,8 +50,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_SERIES] = { NULL, "series", 0, "FILE", "energy, momentum, penetration of each step, as CSV", RUN },
 	[OB_OPTION_SUMMARY] = { NULL, "summary", 0, "FILE", "the report, as CSV", RUN },
 	[OB_OPTION_JSON] = { NULL, "json", 0, "FILE", "the report, as JSON; - = standard output", RUN | COMPARE },
-	[OB_OPTION_MEASURE] = { NULL, "measure", 0, "step|end",
-				"measure each step, or the start and the end alone (step)", RUN },
+	[OB_OPTION_MEASURE] = { NULL, "measure", 0, "step|times|end", "each step, only its time, or neither (step)",
+				RUN },
 
 	[OB_OPTION_ONCE] = { "The view", "once", 0, NULL, "print once, for pipes, and end", TOP },
 	[OB_OPTION_INTERVAL] = { NULL, "interval", 0, "S", "seconds between looks (1)", TOP },

@@ -31,9 +31,12 @@ static void print_cost(const ob_report *r, FILE *f)
 	fprintf(f, "\n  CPU          %s, %s per simulated second, %s per body and step\n",
 		ob_quantity_text(&a, r->cpu_s, "s"), ob_quantity_text(&b, r->cpu_s / r->simulated_s, "s"),
 		ob_quantity_text(&c, 1e-6 * r->body_step_cpu_us, "s"));
-	fprintf(f, "  step         %s in the median, %s at the 99th percentile; start-up %s\n",
-		ob_quantity_text(&a, r->step_p50_s, "s"), ob_quantity_text(&b, r->step_p99_s, "s"),
-		ob_quantity_text(&c, r->startup_s, "s"));
+	if (isnan(r->step_p50_s))
+		fprintf(f, "  start-up     %s\n", ob_quantity_text(&c, r->startup_s, "s"));
+	else
+		fprintf(f, "  step         %s in the median, %s at the 99th percentile; start-up %s\n",
+			ob_quantity_text(&a, r->step_p50_s, "s"), ob_quantity_text(&b, r->step_p99_s, "s"),
+			ob_quantity_text(&c, r->startup_s, "s"));
 	fprintf(f, "  memory       %s\n", ob_quantity_text(&a, (double)r->memory_bytes, "B"));
 }
 

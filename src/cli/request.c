@@ -214,14 +214,16 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.exchange = a->value[OB_OPTION_EXCHANGE],
 		.integrator = a->value[OB_OPTION_INTEGRATOR],
 		.sleeping = a->value[OB_OPTION_SLEEPING],
-		.measure_steps = !measure || strcmp(measure, "step") == 0,
+		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
+			   : strcmp(measure, "times") == 0          ? OB_MEASURE_TIMES
+								    : OB_MEASURE_ENDS,
 		.record = a->value[OB_OPTION_RECORD],
 		.summary = a->value[OB_OPTION_SUMMARY],
 		.series = a->value[OB_OPTION_SERIES],
 		.json = a->value[OB_OPTION_JSON],
 	};
 	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;
-	if (!r->measure_steps && r->series)
+	if (r->measure != OB_MEASURE_STEPS && r->series)
 		return ob_fail(e, "--series has a line for each step: it needs --measure step");
 	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_STEP, 10, &r->step, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&

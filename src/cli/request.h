@@ -15,6 +15,12 @@ typedef struct ob_frames_request {
 	bool aabb, contacts; // overlays
 } ob_frames_request;
 
+typedef enum ob_measure_when {
+	OB_MEASURE_STEPS, // each step
+	OB_MEASURE_TIMES, // the start and the end, and how long each step takes
+	OB_MEASURE_ENDS, // the start and the end
+} ob_measure_when;
+
 typedef struct ob_run_request {
 	const char *scene; // path
 	ob_scene_options scene_options;
@@ -26,7 +32,7 @@ typedef struct ob_run_request {
 	uint32_t substeps, passes; // 0 = the scene's
 	uint32_t iterations;
 	const char *exchange, *integrator, *sleeping; // NULL = the scene's
-	bool measure_steps; // else the start and the end alone
+	ob_measure_when measure;
 	ob_frames_request frames;
 	const char *record, *summary, *series, *json; // paths; NULL = not asked for; json "-" = standard output
 } ob_run_request;

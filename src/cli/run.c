@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/version.h"
+#include "host/interrupt.h"
 #include "record/record.h"
 
 typedef struct run {
@@ -38,7 +39,7 @@ static uint64_t next_look(const run *r)
 	uint64_t now = r->now.step, next = r->steps;
 	if (now >= r->steps)
 		return UINT64_MAX;
-	if (r->request.measure_steps)
+	if (r->request.measure == OB_MEASURE_STEPS)
 		return now + 1;
 	if (r->recorder)
 		next = earlier(next, (now / r->scene->record_every + 1) * r->scene->record_every);
@@ -52,7 +53,7 @@ static bool look(run *r, ob_error *e)
 {
 	const ob_snapshot *prev = r->now.step > 0 ? &r->prev : NULL;
 	bool ends = r->now.step == 0 || r->now.step >= r->steps;
-	if (r->request.measure_steps || ends)
+	if (r->request.measure == OB_MEASURE_STEPS || ends)
 		ob_observer_look(&r->observer, &r->now);
 	if (r->recorder && r->now.step % r->scene->record_every == 0 && !ob_recorder_append(r->recorder, &r->now, e))
 		return false;
@@ -67,6 +68,24 @@ static bool take(run *r, ob_error *e)
 	return ob_snapshot_take(&r->now, ob_host_universe(r->host), r->request.frames.contacts, e);
 }
 
+// Where the host has to pause on the way from step "now" to "next", which is looked at
+static uint64_t next_pause(const run *r, uint64_t now, uint64_t next)
+{
+	return r->request.measure == OB_MEASURE_TIMES ? now + 1 : next;
+}
+
+// Waits until the universe stands at step "next", to which it is on its way.
+static bool arrive(run *r, uint64_t next, ob_error *e)
+{
+	for (uint64_t at = next_pause(r, r->now.step, next);; at = next_pause(r, at, next)) {
+		if (!ob_host_wait(r->host, e))
+			return false;
+		if (at >= next)
+			return true;
+		ob_host_go(r->host, next_pause(r, at, next));
+	}
+}
+
 // Stepping and looking overlap: the snapshot of one boundary is looked at while the universe runs to the next.
 static bool step_through(run *r, ob_error *e)
 {
@@ -75,12 +94,12 @@ static bool step_through(run *r, ob_error *e)
 	for (;;) {
 		uint64_t next = next_look(r);
 		if (next != UINT64_MAX)
-			ob_host_go(r->host, next);
+			ob_host_go(r->host, next_pause(r, r->now.step, next));
 		if (!look(r, e))
 			return false;
 		if (next == UINT64_MAX)
 			return true;
-		if (!ob_host_wait(r->host, e)) {
+		if (!arrive(r, next, e)) {
 			// Ctrl-C leaves it at a boundary, from where the report is made
 			if (ob_host_interrupted(r->host))
 				take(r, NULL);
@@ -182,13 +201,14 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	ob_observer_look(&r->observer, &r->now);
 	name_report(r, outcome, p);
 	count_objects(&r->now, p);
-	ob_observer_report(&r->observer, r->request.measure_steps, p);
+	ob_observer_report(&r->observer, r->request.measure == OB_MEASURE_STEPS, p);
 	snprintf(p->state_hash, sizeof p->state_hash, "%016" PRIx64, ob_measure_hash(&r->now));
 	p->wall_s = times.wall_s;
 	p->cpu_s = times.cpu_s;
 	p->startup_s = times.startup_s;
-	p->step_p50_s = times.step_p50_s;
-	p->step_p99_s = times.step_p99_s;
+	bool timed = r->request.measure != OB_MEASURE_ENDS; // else only stretches of many steps were
+	p->step_p50_s = timed ? times.step_p50_s : NAN;
+	p->step_p99_s = timed ? times.step_p99_s : NAN;
 	p->memory_bytes = times.memory_bytes;
 	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r);
 }
@@ -263,9 +283,11 @@ int ob_command_run(const ob_arguments *a)
 	config.workers = r.request.workers;
 
 	signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message
+	ob_interrupt_watch(); // before there is anything that Ctrl-C would leave behind
 	r.host = ob_host_start(r.scene, &config, &e);
 	int code = r.host ? carry_out(&r) : ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_host_stop(r.host);
+	ob_interrupt_release();
 	ob_snapshot_finish(&r.now);
 	ob_snapshot_finish(&r.prev);
 	ob_scene_free(r.scene);

@@ -79,14 +79,15 @@ static void test_taken(void)
 	ob_run_request r;
 	ob_error e;
 	CHECK(read_line("s", &r, &e));
-	CHECK(r.workers == (uint32_t)ob_cpu_count() && r.measure_steps && !r.frames.wanted && !r.monolith);
+	CHECK(r.workers == (uint32_t)ob_cpu_count() && r.measure == OB_MEASURE_STEPS && !r.frames.wanted &&
+	      !r.monolith);
 	CHECK(read_line("s --step 1/60 --duration .5 --workers objects --isolation process", &r, &e));
 	CHECK(r.step == 1. / 60 && r.duration == .5 && r.workers == 0 && r.isolation == OB_ISOLATION_PROCESS);
 	CHECK(read_line("s --arch monolith --workers 1 --iterations 0", &r, &e));
 	CHECK(r.monolith && r.workers == 1 && r.iterations == 0);
 	CHECK(read_line("s --raw - --size 64x48 --overlay contacts,aabb --fps 1/3 --measure end", &r, &e));
 	CHECK(r.frames.wanted && r.frames.width == 64 && r.frames.height == 48 && r.frames.aabb && r.frames.contacts);
-	CHECK(r.frames.fps == 1. / 3 && !r.measure_steps);
+	CHECK(r.frames.fps == 1. / 3 && r.measure == OB_MEASURE_ENDS);
 	CHECK(read_line("s --seed 18446744073709551615", &r, &e));
 	CHECK(r.scene_options.has_seed && r.scene_options.seed == UINT64_MAX);
 }

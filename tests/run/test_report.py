@@ -47,12 +47,17 @@ class Report(program.Case):
 
 	def test_measure_end(self):
 		words = [program.scene("stack"), "--duration", ".5", "--workers", "1"]
-		every, ends = program.report(*words), program.report(*words, "--measure", "end")
+		every, times, ends = (program.report(*words, "--measure", when) for when in ("step", "times", "end"))
 		for key in "energy_gain_max", "worst_penetration_m", "worst_penetration_time_s":
 			self.assertIsNone(ends[key])
+			self.assertIsNone(times[key])
 			self.assertIsNotNone(every[key])
+		for key in "step_p50_s", "step_p99_s":
+			self.assertIsNone(ends[key])
+			self.assertGreater(times[key], 0)
 		for key in "state_hash", "energy_start", "energy_end", "penetration_max_m", "penetration_mean_m", "steps":
 			self.assertEqual(ends[key], every[key], key)
+			self.assertEqual(times[key], every[key], key)
 
 	def test_monolith(self):
 		r = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3")
