@@ -2,10 +2,7 @@
 
 #include <string.h>
 
-static const double no_contact = 1e3; // m: a gap that never closes
-static const double surprise = 1e-4; // m/s: a first sweep that changes more was not foretold by the last substep
-static const double settled = 1e-10; // m/s: a solution that changes by less is done
-static const int most_sweeps = 64;
+#include "contact/kernel.h"
 
 static void set3(lanes *x, int l, ob_vec3 v)
 {
@@ -30,7 +27,7 @@ void ob_batch_init(ob_batch *b)
 {
 	memset(b, 0, sizeof *b);
 	for (int i = 0; i < 4; i++)
-		b->gap[i] = lanes_of(no_contact);
+		b->gap[i] = lanes_of(ob_no_contact);
 	b->ka = b->kb = lanes_of(1);
 }
 
@@ -60,7 +57,7 @@ void ob_batch_set(ob_batch *b, int l, const ob_lane *in)
 		bool used = j < in->points;
 		set3(b->ja[j], l, used ? ob_cross(in->arm_a[j], n) : ob_v3(0, 0, 0));
 		set3(b->jb[j], l, used ? ob_cross(in->arm_b[j], n) : ob_v3(0, 0, 0));
-		b->gap[j][l] = used ? in->gap[j] : no_contact;
+		b->gap[j][l] = used ? in->gap[j] : ob_no_contact;
 		if (used)
 			radius += ob_norm(ob_sub(in->arm_a[j], ca)) / in->points;
 	}
@@ -86,278 +83,39 @@ void ob_batch_set(ob_batch *b, int l, const ob_lane *in)
 	b->dirty = 1;
 }
 
-static inline void sym_mul(const lanes *s, const lanes *x, lanes *o)
-{
-	o[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
-	o[1] = s[1] * x[0] + s[3] * x[1] + s[4] * x[2];
-	o[2] = s[2] * x[0] + s[4] * x[1] + s[5] * x[2];
-}
+// ---- the arithmetic, by the kernel for this processor
 
-static inline lanes dot3(const lanes *a, const lanes *b)
+const ob_kernel *ob_kernel_best(void)
 {
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+#ifdef OB_HAVE_AVX2
+	if (__builtin_cpu_supports("avx2"))
+		return &ob_kernel_avx2;
+#endif
+	return &ob_kernel_portable;
 }
 
 void ob_batch_prepare(ob_batch *b)
 {
-	const lanes *ja[7] = { b->ja[0], b->ja[1], b->ja[2], b->ja[3], b->fa1, b->fa2, b->n };
-	const lanes *jb[7] = { b->jb[0], b->jb[1], b->jb[2], b->jb[3], b->fb1, b->fb2, b->n };
-	lanes mass = b->ima * b->ka + b->imb * b->kb;
-	for (int i = 0; i < OB_ROWS; i++) {
-		lanes xa[3], xb[3];
-		sym_mul(b->ia, ja[i], xa);
-		sym_mul(b->ib, jb[i], xb);
-		for (int j = 0; j <= i; j++) {
-			lanes s = dot3(xa, ja[j]) * b->ka + dot3(xb, jb[j]) * b->kb;
-			if ((i < 4 && j < 4) || (i == j && i < 6))
-				s += mass; // the same direction: normals, and each tangent with itself
-			b->a[OB_SYM(i, j)] = s;
-		}
-		lanes d = b->a[OB_SYM(i, i)];
-		b->inv_diag[i] = lanes_select(d > 0, 1 / d, lanes_of(0));
-	}
-	// A point that is not used has no row.
-	for (int i = 0; i < 4; i++)
-		b->inv_diag[i] = lanes_select(b->gap[i] < .5 * no_contact, b->inv_diag[i], lanes_of(0));
-	b->dirty = 0;
-}
-
-static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes *o)
-{
-	const double *r0 = rows[index[0]], *r1 = rows[index[1]], *r2 = rows[index[2]], *r3 = rows[index[3]];
-	for (int c = 0; c < 6; c++)
-		o[c] = (lanes){ r0[c], r1[c], r2[c], r3[c] };
-}
-
-static inline void scatter(ob_body_row *rows, const uint32_t *index, const lanes *x)
-{
-	for (int l = 0; l < OB_LANES; l++)
-		for (int c = 0; c < 6; c++)
-			rows[index[l]][c] = x[c][l];
-}
-
-// Body 0 and static bodies may stand in several lanes of one batch: their rows stay zero, whoever writes last.
-static inline void gather_both(const ob_batch *b, const ob_body_row *rows, lanes *xa, lanes *xb)
-{
-	gather(rows, b->body_a, xa);
-	gather(rows, b->body_b, xb);
-}
-
-static inline void scatter_both(const ob_batch *b, ob_body_row *rows, const lanes *xa, const lanes *xb)
-{
-	scatter(rows, b->body_a, xa);
-	scatter(rows, b->body_b, xb);
-}
-
-// va += M_a^-1 J_a^T d, vb -= M_b^-1 J_b^T d
-static inline void apply(const ob_batch *b, const lanes *d, lanes *va, lanes *vb)
-{
-	lanes sum = d[0] + d[1] + d[2] + d[3], la[3], lb[3], x[3];
-	for (int c = 0; c < 3; c++) {
-		lanes p = b->n[c] * sum + b->t1[c] * d[4] + b->t2[c] * d[5];
-		lanes twist = b->n[c] * d[6];
-		la[c] = b->ja[0][c] * d[0] + b->ja[1][c] * d[1] + b->ja[2][c] * d[2] + b->ja[3][c] * d[3] +
-			b->fa1[c] * d[4] + b->fa2[c] * d[5] + twist;
-		lb[c] = b->jb[0][c] * d[0] + b->jb[1][c] * d[1] + b->jb[2][c] * d[2] + b->jb[3][c] * d[3] +
-			b->fb1[c] * d[4] + b->fb2[c] * d[5] + twist;
-		va[c] += b->ima * p;
-		vb[c] -= b->imb * p;
-	}
-	sym_mul(b->ia, la, x);
-	for (int c = 0; c < 3; c++)
-		va[3 + c] += x[c];
-	sym_mul(b->ib, lb, x);
-	for (int c = 0; c < 3; c++)
-		vb[3 + c] -= x[c];
-}
-
-// Normal rows of J (xa, xb): rate at which each point's gap opens
-static inline void normal_rates(const ob_batch *b, const lanes *xa, const lanes *xb, lanes *r)
-{
-	lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
-	lanes nd = dot3(b->n, d);
-	for (int i = 0; i < 4; i++)
-		r[i] = nd + dot3(b->ja[i], xa + 3) - dot3(b->jb[i], xb + 3);
-}
-
-static inline void tangent_rates(const ob_batch *b, const lanes *xa, const lanes *xb, lanes *r)
-{
-	lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
-	lanes w[3] = { xa[3] - xb[3], xa[4] - xb[4], xa[5] - xb[5] };
-	r[4] = dot3(b->t1, d) + dot3(b->fa1, xa + 3) - dot3(b->fb1, xb + 3);
-	r[5] = dot3(b->t2, d) + dot3(b->fa2, xa + 3) - dot3(b->fb2, xb + 3);
-	r[6] = dot3(b->n, w);
-}
-
-static inline void residual_add(const ob_batch *b, int i, lanes d, lanes *r)
-{
-	for (int j = 0; j < OB_ROWS; j++)
-		r[j] += b->a[OB_SYM(i, j)] * d;
-}
-
-// Projected Gauss-Seidel inside the block: x are impulses, r the residual velocities.
-// Returns the largest change of a point's normal velocity.
-static inline lanes sweep(const ob_batch *b, lanes *x, lanes *r)
-{
-	lanes largest = lanes_of(0);
-	for (int i = 0; i < 4; i++) {
-		lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), d = next - x[i];
-		x[i] = next;
-		largest = lanes_max(largest, lanes_abs(d) * b->a[OB_SYM(i, i)]);
-		residual_add(b, i, d, r);
-	}
-	lanes bound = b->mu * (x[0] + x[1] + x[2] + x[3]);
-	lanes f4 = x[4] - r[4] * b->inv_diag[4], f5 = x[5] - r[5] * b->inv_diag[5], l2 = f4 * f4 + f5 * f5;
-	lanes shrink = lanes_select(l2 > bound * bound, bound / lanes_sqrt(l2 + 1e-300), lanes_of(1));
-	lanes d4 = f4 * shrink - x[4], d5 = f5 * shrink - x[5];
-	x[4] = f4 * shrink;
-	x[5] = f5 * shrink;
-	for (int j = 0; j < OB_ROWS; j++)
-		r[j] += b->a[OB_SYM(4, j)] * d4 + b->a[OB_SYM(5, j)] * d5;
-	bound *= b->radius;
-	lanes f6 = lanes_max(-bound, lanes_min(bound, x[6] - r[6] * b->inv_diag[6])), d6 = f6 - x[6];
-	x[6] = f6;
-	residual_add(b, 6, d6, r);
-	return largest;
-}
-
-static inline void publish(const ob_batch *b, bool jacobi, const lanes *d, lanes *va, lanes *vb, ob_body_row *v,
-			   ob_body_row *delta)
-{
-	if (!jacobi) {
-		apply(b, d, va, vb);
-		scatter_both(b, v, va, vb);
-		return;
-	}
-	// A body may stand in several lanes: their changes are added one by one, in lane order.
-	lanes da[6] = { 0 }, db[6] = { 0 };
-	apply(b, d, da, db);
-	for (int l = 0; l < OB_LANES; l++)
-		for (int c = 0; c < 6; c++) {
-			delta[b->body_a[l]][c] += da[c][l];
-			delta[b->body_b[l]][c] += db[c][l];
-		}
-}
-
-// How far each gap may close in the substep, as a rate. Restitution is exact in time, so an elastic point must not be
-// stopped early: what falls freely closes less than its final velocity says, by half of what it gains.
-static void set_bias(ob_batch *b, double h, const lanes *ua, const lanes *ub, const ob_body_row *v,
-		     const ob_body_row *d)
-{
-	lanes da[6], db[6], moved[4];
-	gather_both(b, d, da, db);
-	normal_rates(b, da, db, moved);
-	for (int i = 0; i < 4; i++)
-		b->bias[i] = b->gap[i] + moved[i];
-	if (b->elastic) {
-		lanes va[6], vb[6], before[4], after[4];
-		gather_both(b, v, va, vb);
-		normal_rates(b, va, vb, before);
-		normal_rates(b, ua, ub, after);
-		for (int i = 0; i < 4; i++)
-			for (int l = 0; l < OB_LANES; l++)
-				if (b->elastic >> l & 1)
-					b->bias[i][l] += .5 * h * fmax(0, before[i][l] - after[i][l]);
-	}
-	for (int i = 0; i < 4; i++)
-		b->bias[i] = lanes_max(b->bias[i], lanes_of(0)) / h;
+	ob_kernel_best()->prepare(b);
 }
 
 void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
 		    ob_body_row *delta)
 {
-	lanes va[6], vb[6], r[7], x[7], change[7], big = lanes_of(0), jump = lanes_of(0);
-	gather_both(b, u, va, vb);
-	if (pass->first) {
-		set_bias(b, pass->h, va, vb, v, d);
-		memcpy(b->impulse_start, b->impulse, sizeof b->impulse);
-		b->impact = 0;
-	}
-	normal_rates(b, va, vb, r);
-	tangent_rates(b, va, vb, r);
-	for (int i = 0; i < 4; i++) {
-		if (pass->first)
-			b->impact |= lanes_bits((r[i] < -pass->jump) & (r[i] + b->bias[i] < 0));
-		r[i] += b->bias[i];
-	}
-	memcpy(x, b->impulse, sizeof x);
-	// Bodies that touch nothing else have no later round to mend what is left over: solve to the end.
-	lanes moving = sweep(b, x, r);
-	unsigned finish = lanes_bits(moving > surprise) & b->alone;
-	for (int s = 1; s < pass->sweeps || (finish && s < most_sweeps); s++) {
-		moving = sweep(b, x, r);
-		finish &= lanes_bits(moving > settled);
-	}
-	for (int i = 0; i < OB_ROWS; i++) {
-		change[i] = x[i] - b->impulse[i];
-		b->impulse[i] = x[i];
-		if (i < 6) {
-			lanes diag = b->a[OB_SYM(i, i)];
-			big = lanes_max(big, lanes_abs(change[i]) * diag);
-			jump = lanes_max(jump, lanes_abs(x[i] - b->impulse_start[i]) * diag);
-		}
-	}
-	b->hot = lanes_bits(big > pass->wake) & b->live;
-	b->impact |= lanes_bits(jump > pass->jump);
-	b->impact &= b->live;
-	publish(b, pass->jacobi, change, va, vb, u, delta);
+	ob_kernel_best()->solve(b, pass, u, v, d, delta);
 }
 
 void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
 {
-	lanes da[6], db[6], r[7], x[7] = { 0 };
-	lane_mask any = { 0 };
-	gather_both(b, d, da, db);
-	normal_rates(b, da, db, r);
-	for (int i = 0; i < 4; i++) {
-		r[i] += b->gap[i] + slop;
-		any |= r[i] < 0;
-		r[i] = lanes_select(r[i] < 0, r[i] * beta, r[i]);
-	}
-	if (!lanes_bits(any))
-		return;
-	for (int s = 0; s < 4; s++)
-		for (int i = 0; i < 4; i++) {
-			lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), change = next - x[i];
-			x[i] = next;
-			for (int j = 0; j < 4; j++)
-				r[j] += b->a[OB_SYM(i, j)] * change;
-		}
-	publish(b, jacobi, x, da, db, d, delta);
+	ob_kernel_best()->project(b, slop, beta, jacobi, d, delta);
 }
 
 void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v)
 {
-	lanes d[7] = { 0 }, va[6], vb[6];
-	if (!b->impact)
-		return;
-	for (int l = 0; l < OB_LANES; l++) {
-		if (!(b->impact >> l & 1))
-			continue;
-		for (int i = 0; i < OB_ROWS; i++) {
-			double cap = fmax(cap_impulse[l], cap_velocity / (b->a[OB_SYM(i, i)][l] + 1e-9));
-			double x = b->impulse[i][l] - b->impulse_start[i][l];
-			if (i == 6)
-				cap *= b->radius[l];
-			d[i][l] = x > cap ? cap - x : x < -cap && i > 3 ? -cap - x : 0;
-			b->impulse[i][l] += d[i][l];
-		}
-	}
-	gather_both(b, v, va, vb);
-	apply(b, d, va, vb);
-	scatter_both(b, v, va, vb);
-	b->impact = 0;
+	ob_kernel_best()->cap(b, cap_impulse, cap_velocity, v);
 }
 
 void ob_batch_apply_lane(const ob_batch *b, int l, double s, ob_body_row *v)
 {
-	lanes d[7] = { 0 }, va[6], vb[6];
-	for (int i = 0; i < OB_ROWS; i++)
-		d[i][l] = s * b->impulse[i][l];
-	gather_both(b, v, va, vb);
-	apply(b, d, va, vb);
-	for (int c = 0; c < 6; c++) {
-		v[b->body_a[l]][c] = va[c][l];
-		v[b->body_b[l]][c] = vb[c][l];
-	}
+	ob_kernel_best()->apply_lane(b, l, s, v);
 }

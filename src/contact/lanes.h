@@ -4,6 +4,9 @@
 #define OB_CONTACT_LANES_H
 
 #include <stdint.h>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 enum { OB_LANES = 4 };
 
@@ -18,6 +21,17 @@ static inline lanes lanes_select(lane_mask m, lanes yes, lanes no)
 {
 	return (lanes)((m & (lane_mask)yes) | (~m & (lane_mask)no));
 }
+// a > b ? a : b, and a < b ? a : b, as the processor's own instructions define it
+#if defined(__AVX__)
+static inline lanes lanes_max(lanes a, lanes b)
+{
+	return (lanes)_mm256_max_pd((__m256d)a, (__m256d)b);
+}
+static inline lanes lanes_min(lanes a, lanes b)
+{
+	return (lanes)_mm256_min_pd((__m256d)a, (__m256d)b);
+}
+#else
 static inline lanes lanes_max(lanes a, lanes b)
 {
 	return lanes_select(a > b, a, b);
@@ -26,6 +40,7 @@ static inline lanes lanes_min(lanes a, lanes b)
 {
 	return lanes_select(a < b, a, b);
 }
+#endif
 static inline lanes lanes_abs(lanes a)
 {
 	return (lanes)((lane_mask)a & INT64_MAX);
