@@ -5,7 +5,7 @@
 #include "ode/ode_body.h"
 #include "ode/ode_geom.h"
 
-enum { PAIR_POINTS = 4 };
+enum { PAIR_POINTS = 4, CAP_POINTS = 8 }; // on a cap, ODE lists 8 points round its rim: the first 4 lie on one side
 
 struct member {
 	dBodyID body; // NULL: static, or no such object
@@ -20,8 +20,8 @@ struct member {
 struct contact_pair {
 	struct member *a, *b;
 	int points;
-	dContactGeom point[PAIR_POINTS]; // normals from b to a
-	dJointFeedback force[PAIR_POINTS];
+	dContactGeom point[CAP_POINTS]; // normals from b to a
+	dJointFeedback force[CAP_POINTS];
 };
 
 struct ob_ode_world {
@@ -173,8 +173,9 @@ static void near(void *data, dGeomID one, dGeomID other)
 		b = a;
 		a = lower;
 	}
-	dContactGeom point[PAIR_POINTS];
-	int n = dCollide(a->geom, b->geom, PAIR_POINTS, point, sizeof *point);
+	dContactGeom point[CAP_POINTS];
+	bool cap = dGeomGetClass(a->geom) == dCylinderClass || dGeomGetClass(b->geom) == dCylinderClass;
+	int n = dCollide(a->geom, b->geom, cap ? CAP_POINTS : PAIR_POINTS, point, sizeof *point);
 	struct contact_pair *p = n > 0 ? next_pair(w) : NULL;
 	if (!p)
 		return;

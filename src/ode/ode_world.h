@@ -1,5 +1,5 @@
 // The monolith: one ODE world that holds every object, as a usual virtual environment does it: sweep-and-prune space,
-// up to 4 contact points a pair, friction pyramid, ODE's own parameters throughout.
+// up to 4 contact points a pair (8 with a cylinder), friction pyramid, ODE's own parameters throughout.
 //
 // Thread-safety: one thread at a time per world. QuickStep shuffles its rows by a seed of the whole process, which each
 // step sets anew: the same bits in every run, as long as no other world of the process steps at the same time.

@@ -127,6 +127,23 @@ static void test_sleep_and_removal(void)
 	ob_ode_world_destroy(w);
 }
 
+// Each shape stays where it stands, on the ground and on a box.
+static void test_standing(ob_shape shape)
+{
+	ob_ode_world *w = world(20, false);
+	bool asleep, touching;
+	add(w, 1, shape, ob_v3(0, 0, .5), 0);
+	add(w, 2, OB_SHAPE_BOX, ob_v3(3, 0, .5), 0);
+	add(w, 3, shape, ob_v3(3.1, 0, 1.5), 0);
+	run(w, 480);
+	ob_state low = get(w, 1, &asleep, &touching), high = get(w, 3, &asleep, &touching);
+	CHECK_NEAR(low.pose.p.z, .5, .01);
+	CHECK_NEAR(high.pose.p.z, 1.5, .02);
+	CHECK_NEAR(high.pose.p.x, 3.1, .02);
+	CHECK_NEAR(fabs(high.pose.q.w), 1, 1e-3);
+	ob_ode_world_destroy(w);
+}
+
 static void tower(ob_state out[OBJECTS])
 {
 	ob_ode_world *w = world(20, false);
@@ -157,6 +174,9 @@ int main(void)
 	test_contacts(0);
 	test_bounce();
 	test_sleep_and_removal();
+	test_standing(OB_SHAPE_BOX);
+	test_standing(OB_SHAPE_SPHERE);
+	test_standing(OB_SHAPE_CYLINDER);
 	test_same_bits();
 	ob_ode_thread_finish();
 	return check_end();
