@@ -1,13 +1,33 @@
 #version 330 core
+// Lighting is done in the body's own axes: sun and sky are turned into them here, once a vertex, and the pixel's normal
+// needs no turning. A box's edges are rounded by bending its normal near them.
 #include "frame.glsl"
 #include "instance.glsl"
-out vec3 v_position, v_normal;
-flat out vec3 v_colour;
+out vec3 v_local;       // box: position, m; else: normal
+out vec3 v_to_eye;
+out vec3 v_shadow;      // shadow-map coordinates
+out vec2 v_open_haze;   // share of the sky that is seen; haze
+flat out vec4 v_half;   // of v_local; 1 / width of the rounding
+flat out vec3 v_sun, v_up, v_colour;
 
 void main()
 {
-	v_normal = turned(normal);
-	v_position = world_position();
+	vec3 p = world_position(), n = turned(normal);
+	bool box = core.w > 0.;
+	v_local = box ? corner * core.xyz : normal;
+	v_half = box ? vec4(core.xyz, 1. / core.w) : vec4(1.);
+	v_sun = turned_back(sun.xyz);
+	v_up = turned_back(vec3(0., 0., 1.));
+	v_to_eye = turned_back(-p);
 	v_colour = colour.rgb;
-	gl_Position = view_projection * vec4(v_position, 1.);
+
+	// The shadow is looked up off the surface, farther where light grazes: no acne, and contacts stay attached.
+	float facing = clamp(dot(n, sun.xyz), 0., 1.);
+	v_shadow = (sun_map * vec4(p + n * (sun.w * (.6 + 1.4 * sqrt(1. - facing * facing))), 1.)).xyz;
+
+	// Near the ground less of the sky is seen, and what is seen of the ground lies in shadow.
+	float height = (contact_map * vec4(p, 1.)).z;
+	v_open_haze.x = mix(1., .55 + .45 * clamp(1. - exp2(-3.5 * height), 0., 1.), sky_horizon.w);
+	v_open_haze.y = haze(p);
+	gl_Position = view_projection * vec4(p, 1.);
 }

@@ -10,10 +10,14 @@ layout(std140) uniform Frame {
 	vec4 ray_up;
 	vec4 ray_forward;
 	vec4 sun;          // unit, towards the sun; w: texel of the shadow map, m
-	vec4 sun_colour;   // w: distance at which shadows have faded, m
-	vec4 sky_top;      // w: fog distance, m
+	vec4 sun_colour;   
+	vec4 sky_top;      // w: 1 / square of the haze's distance, 1/m2
 	vec4 sky_horizon;  // w: 1 with a ground, 0 without
 	vec4 ambient_up;
 	vec4 ambient_down;
 	vec4 viewport;     // px: width, height; 1 / width, 1 / height
+	vec2 sun_map_texel; // 1 / texels of the shadow map
 };
+
+// How much haze lies between the eye and p.
+float haze(vec3 p) { return 1. - exp2(-dot(p, p) * sky_top.w); }

@@ -1,11 +1,11 @@
-// One vertex of one object. Every shape is a core thickened by a ball: box and cylinder get bevelled edges so,
-// sphere and capsule are exact.
+// One vertex of one object. Every shape is a core thickened by a ball: a sphere's core is a point, a box's ball is one.
 layout(location = 0) in vec3 corner;          // of the core, in units of its half size
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 position_radius; // m, relative to the eye; m, of the ball
 layout(location = 3) in vec4 attitude;        // quaternion x y z w, body to world
-layout(location = 4) in vec4 core;            // m, half size
+layout(location = 4) in vec4 core;            // m, half size; w: width of a box's rounded edges, m; 0 = not a box
 layout(location = 5) in vec4 colour;          // linear
 
 vec3 turned(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) + attitude.w * v); }
+vec3 turned_back(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) - attitude.w * v); }
 vec3 world_position() { return turned(corner * core.xyz + normal * position_radius.w) + position_radius.xyz; }

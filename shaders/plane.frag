@@ -2,40 +2,37 @@
 #include "frame.glsl"
 #include "light.glsl"
 uniform vec3 foot, normal;
-uniform vec3 unit_x, unit_y; // axes of the grid
-uniform vec2 grid_foot;      // m: where the foot lies in the 10 m cell of the grid
-uniform vec4 colour;         // linear; w: 1 with grid
+uniform vec2 grid_foot;         // m: where the foot lies in the 10 m cell of the grid
+uniform vec4 colour;            // linear; w: 1 with grid
+uniform mat3 sun_of, cover_of;  // (along x, along y, 1) to the coordinates of the shadow map and the contact map
+uniform float cover_share;      // how much contacts darken: 0 where the contact map is not of this plane
 uniform sampler2D contact_cover;
+in vec2 v_at;
 out vec4 pixel;
 
-// Share of the pixel covered by lines of the given width (m) every step (m): the pulse train integrated over the
-// pixel's footprint, so that it neither flickers near nor makes moire far away.
-vec2 lines(vec2 at, vec2 footprint, float step, float width)
+// How much of the pixel the nearest line covers, with its footprint as a box. Where footprints are wider than the
+// lines' distance the result is even, and fades: neither flicker near nor moire far away.
+vec2 lines(vec2 at, vec2 sharp, float distance, float width)
 {
-	vec2 w = max(footprint, 1e-4) / step;
-	float share = width / step;
-	vec2 a = (at + .5 * width) / step - .5 * w, b = a + w;
-	vec2 covered = floor(b) * share + min(fract(b), share) - floor(a) * share - min(fract(a), share);
-	return clamp(covered / w, 0., 1.);
+	vec2 cell = at / distance;
+	vec2 off = abs(cell - floor(cell + .5)) * distance;
+	return clamp((.5 * width - off) * sharp + .5, 0., 1.) * min(width * sharp, 1.);
+}
+
+float ink(vec2 at)
+{
+	vec2 sharp = 1. / max(fwidth(at), 1e-4);
+	vec2 thin = lines(at, sharp, 1., .022), strong = lines(at, sharp, 10., .06);
+	return colour.w * max(.42 * max(thin.x, thin.y), .66 * max(strong.x, strong.y));
 }
 
 void main()
 {
-	vec2 screen = gl_FragCoord.xy * viewport.zw * 2. - 1.;
-	vec3 ray = ray_forward.xyz + screen.x * ray_right.xyz + screen.y * ray_up.xyz;
-	vec3 p = ray * (dot(foot, normal) / min(dot(ray, normal), -1e-6));
-
-	vec3 albedo = colour.rgb;
-	vec2 at = vec2(dot(p - foot, unit_x), dot(p - foot, unit_y)) + grid_foot;
-	vec2 footprint = fwidth(at);
-	vec2 thin = lines(at, footprint, 1., .022), strong = lines(at, footprint, 10., .06);
-	float ink = max(.34 * max(thin.x, thin.y), .62 * max(strong.x, strong.y)) * colour.w;
-	albedo *= 1. - ink;
-
-	float facing = max(dot(normal, sun.xyz), 0.);
-	vec3 light = sun_colour.rgb * (facing * sunlight(p, normal, facing));
-	vec3 cover = (contact_map * vec4(p, 1.)).xyz;
-	float open = 1. - .75 * texture(contact_cover, cover.xy).r * step(abs(cover.z), .01);
+	vec3 albedo = colour.rgb * (1. - ink(v_at + grid_foot));
+	vec3 at = vec3(v_at, 1.);
+	float sunny = sunlight(sun_of * at) * max(dot(normal, sun.xyz), 0.);
+	float open = 1. - cover_share * texture(contact_cover, (cover_of * at).xy).r;
 	vec3 ambient = mix(ambient_down.rgb, ambient_up.rgb, .5 + .5 * normal.z) * open;
-	pixel = through_haze(albedo * (light * (.4 + .6 * open) + ambient), p);
+	float hazy = 1. - exp2(-(dot(foot, foot) + dot(v_at, v_at)) * sky_top.w);
+	pixel = shown(albedo * (sun_colour.rgb * (sunny * (.4 + .6 * open)) + ambient), hazy);
 }

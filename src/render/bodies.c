@@ -36,13 +36,29 @@ bool ob_bodies_evaluate(ob_bodies *b, const ob_snapshot *prev, const ob_snapshot
 			continue;
 		ob_pose pose = pose_at(prev, now, i, t);
 		if (p->shape != OB_SHAPE_PLANE) {
-			b->body[b->count++] = (ob_body){ pose, ob_shape_radius(p->shape, p->size), i };
+			b->body[b->count++] = (ob_body){ pose, ob_shape_radius(p->shape, p->size), 0, i };
 		} else if (b->planes < OB_PLANES_MAX) {
 			b->plane_id[b->planes] = i;
 			b->plane[b->planes++] = pose;
 		}
 	}
 	return true;
+}
+
+// Equal distances in the order of ids: the same frame gives the same bytes.
+static int nearer(const void *a, const void *b)
+{
+	const ob_body *x = a, *y = b;
+	if (x->distance != y->distance)
+		return x->distance < y->distance ? -1 : 1;
+	return x->id < y->id ? -1 : 1;
+}
+
+void ob_bodies_sort(ob_bodies *b, ob_vec3 eye)
+{
+	for (uint32_t i = 0; i < b->count; i++)
+		b->body[i].distance = ob_norm2(ob_sub(b->body[i].pose.p, eye));
+	qsort(b->body, b->count, sizeof *b->body, nearer);
 }
 
 void ob_bodies_finish(ob_bodies *b)
@@ -78,11 +94,12 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 {
 	ob_instance i;
 	ob_vec3 at = ob_sub(pose->p, eye), size = p->size;
-	double r = size.x;
+	double r = size.x, rounding = 0;
 	ob_vec3 core = { 0, 0, 0 };
 	if (p->shape == OB_SHAPE_BOX) {
-		r = bevel(fmin(size.x, fmin(size.y, size.z)));
-		core = ob_sub(size, ob_v3(r, r, r));
+		r = 0;
+		core = size;
+		rounding = bevel(fmin(size.x, fmin(size.y, size.z)));
 	} else if (p->shape == OB_SHAPE_CYLINDER) {
 		r = bevel(fmin(size.x, size.y));
 		core = ob_v3(size.x - r, size.x - r, size.y - r);
@@ -91,7 +108,7 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 	}
 	set(i.position_radius, at.x, at.y, at.z, r);
 	set(i.attitude, pose->q.x, pose->q.y, pose->q.z, pose->q.w);
-	set(i.core, core.x, core.y, core.z, 0);
+	set(i.core, core.x, core.y, core.z, rounding);
 	for (int k = 0; k < 4; k++)
 		i.colour[k] = p->colour[k];
 	return i;

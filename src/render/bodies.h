@@ -11,6 +11,7 @@ enum { OB_PLANES_MAX = 16 };
 typedef struct ob_body {
 	ob_pose pose;
 	double radius; // m, of the sphere that holds it
+	double distance; // m, squared, from the eye; set by ob_bodies_sort
 	uint32_t id; // index into the snapshot
 } ob_body;
 
@@ -27,7 +28,7 @@ typedef struct ob_bodies {
 typedef struct ob_instance {
 	float position_radius[4]; // m: centre relative to the eye; radius of the ball that thickens the core
 	float attitude[4]; // x y z w
-	float core[4]; // m, half size; the fourth is unused
+	float core[4]; // m: half size; width of a box's rounded edges, 0 = not a box
 	float colour[4];
 } ob_instance;
 
@@ -40,6 +41,8 @@ typedef struct ob_instances {
 
 // Evaluates all motions at time t (s); prev may be NULL. false: out of memory. b starts zeroed.
 bool ob_bodies_evaluate(ob_bodies *b, const ob_snapshot *prev, const ob_snapshot *now, double t);
+// Nearest to the eye first, so that what is hidden is not shaded.
+void ob_bodies_sort(ob_bodies *b, ob_vec3 eye);
 void ob_bodies_finish(ob_bodies *b);
 
 // Which bodies to take: called with each.

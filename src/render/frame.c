@@ -1,8 +1,8 @@
 #include "render/frame.h"
 
 static const double haze_ranges = 9, haze_least = 150; // camera ranges; m: distance of the haze
-static const float sunshine[3] = { 2.05f, 1.90f, 1.62f }; // irradiance / pi, relative to a white of 1
-static const float from_sky = .62f, from_ground = .42f; // the same, of a sky of 1 and a ground of 1
+static const float sunshine[3] = { 1.72f, 1.60f, 1.36f }; // irradiance / pi, relative to a white of 1
+static const float from_sky = .50f, from_ground = .40f; // the same, of a sky of 1 and a ground of 1
 
 static void set(float to[4], ob_vec3 v, double w)
 {
@@ -34,8 +34,8 @@ static void set_light(ob_frame_block *k, const ob_look_def *look, ob_vec3 sun, c
 	ob_vec3 sky = ob_add(ob_scale(top, .35), ob_scale(horizon, .65));
 	ob_vec3 below = ground ? colour(look->ground_colour) : horizon;
 	set(k->sun, sun, 2 * fmax(m->half_x, m->half_y) / OB_SUN_TEXELS);
-	set(k->sun_colour, colour(sunshine), m->fade);
-	set(k->sky_top, top, haze);
+	set(k->sun_colour, colour(sunshine), 0);
+	set(k->sky_top, top, 1 / (haze * haze));
 	set(k->sky_horizon, horizon, ground);
 	set(k->ambient_up, ob_scale(sky, from_sky), 0);
 	set(k->ambient_down, ob_scale(ob_add(ob_scale(below, .8), ob_scale(sky, .2)), from_ground), 0);
@@ -75,5 +75,6 @@ void ob_frame_set(ob_frame *f, const ob_bodies *b, const ob_look_def *look, cons
 	set(k->ray_up, ob_scale(f->view.up, -f->view.tan_y), 0); // rows run down
 	set(k->ray_forward, f->view.forward, 0);
 	set_light(k, look, sun, &f->sun, fmax(haze_least, haze_ranges * f->view.range), f->ground >= 0);
+	k->sun_map_texel[0] = k->sun_map_texel[1] = 1.f / OB_SUN_TEXELS;
 	set(k->viewport, ob_v3(width, height, 1. / width), 1. / height);
 }

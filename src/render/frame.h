@@ -9,6 +9,7 @@ typedef struct ob_frame_block {
 	float view_projection[16], sun_map[16], contact_map[16];
 	float ray_right[4], ray_up[4], ray_forward[4];
 	float sun[4], sun_colour[4], sky_top[4], sky_horizon[4], ambient_up[4], ambient_down[4], viewport[4];
+	float sun_map_texel[4]; // 2 used
 } ob_frame_block;
 
 enum { OB_SUN_TEXELS = 2048, OB_CONTACT_TEXELS = 256 };

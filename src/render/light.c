@@ -90,7 +90,6 @@ ob_map ob_map_fit(ob_vec3 z, const ob_bodies *b, const ob_view *v, int texels)
 	m.half_y = ladder(.5 * (high_y - low_y), texels);
 	m.centre_x = snapped(.5 * (low_x + high_x), m.half_x, texels);
 	m.centre_y = snapped(.5 * (low_y + high_y), m.half_y, texels);
-	m.fade = depth;
 	return m;
 }
 

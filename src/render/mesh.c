@@ -33,7 +33,7 @@ static uint16_t box_at(uint16_t first, int corner, int axis)
 	return (uint16_t)(first + 3 * corner + axis);
 }
 
-// Each corner has three vertices, one a face: six faces, twelve strips along the edges, eight triangles.
+// Each corner has three vertices, one a face.
 static void build_box(ob_mesh_set *s)
 {
 	uint16_t first = (uint16_t)s->vertices;
@@ -50,19 +50,6 @@ static void build_box(ob_mesh_set *s)
 		     box_at(first, up | v, axis));
 		quad(s, box_at(first, 0, axis), box_at(first, v, axis), box_at(first, u | v, axis),
 		     box_at(first, u, axis));
-		// Strips along this axis, between the faces of the two other axes.
-		int a = (axis + 1) % 3, b = (axis + 2) % 3;
-		for (int side = 0; side < 4; side++) {
-			int corner = (side & 1 ? u : 0) | (side & 2 ? v : 0);
-			int from = side == 0 || side == 3 ? 0 : up, to = up - from;
-			quad(s, box_at(first, corner | to, a), box_at(first, corner | from, a),
-			     box_at(first, corner | from, b), box_at(first, corner | to, b));
-		}
-	}
-	for (int corner = 0; corner < 8; corner++) {
-		int odd = (corner ^ corner >> 1 ^ corner >> 2) & 1;
-		triangle(s, box_at(first, corner, 0), box_at(first, corner, odd ? 1 : 2),
-			 box_at(first, corner, odd ? 2 : 1));
 	}
 }
 

@@ -1,6 +1,6 @@
 // Meshes of the shapes. A vertex is a corner of the core (in units of the core's half size) and the normal along
-// which the ball that thickens it is added: position = corner * core + normal * radius. So a box and a cylinder have
-// bevelled edges, and a sphere is a capsule whose core is a point.
+// which the ball that thickens it is added: position = corner * core + normal * radius. So a cylinder has bevelled
+// edges, and a sphere is a capsule whose core is a point. A box is all core: twelve triangles.
 #ifndef OB_RENDER_MESH_H
 #define OB_RENDER_MESH_H
 

@@ -161,24 +161,39 @@ static void vector(GLuint program, const char *name, ob_vec3 v)
 	glUniform3f(glGetUniformLocation(program, name), (float)v.x, (float)v.y, (float)v.z);
 }
 
+// Coordinates in a map (column-major 4x4, from positions relative to the eye) of points of a plane, from their own.
+static void map_of_plane(GLuint program, const char *name, const float m[16], ob_vec3 foot, ob_vec3 x, ob_vec3 y)
+{
+	const ob_vec3 from[3] = { x, y, foot };
+	float to[9];
+	for (int column = 0; column < 3; column++)
+		for (int row = 0; row < 3; row++)
+			to[3 * column + row] = (float)(m[row] * from[column].x + m[4 + row] * from[column].y +
+						       m[8 + row] * from[column].z + (column == 2 ? m[12 + row] : 0));
+	glUniformMatrix3fv(glGetUniformLocation(program, name), 1, GL_FALSE, to);
+}
+
 // A square round the point of the plane that is nearest to the eye, as large as one can see.
-static void draw_plane(GLuint program, const ob_pose *pose, const ob_view *v, const float colour[3], bool grid)
+static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, const float colour[3], bool ground,
+		       bool grid)
 {
 	ob_mat3 r = ob_quat_matrix(pose->q);
-	ob_vec3 n = ob_column(&r, 2), x = ob_column(&r, 0), y = ob_column(&r, 1), d = ob_sub(pose->p, v->eye);
+	ob_vec3 n = ob_column(&r, 2), x = ob_column(&r, 0), y = ob_column(&r, 1), d = ob_sub(pose->p, f->view.eye);
 	double height = -ob_dot(d, n);
 	if (height <= 0)
 		return; // from below there is nothing to see
 	ob_vec3 foot = ob_scale(n, -height), on_plane = ob_sub(foot, d);
 	vector(program, "foot", foot);
 	vector(program, "normal", n);
-	vector(program, "axis_x", ob_scale(x, v->far_plane));
-	vector(program, "axis_y", ob_scale(y, v->far_plane));
-	vector(program, "unit_x", x);
-	vector(program, "unit_y", y);
+	vector(program, "axis_x", x);
+	vector(program, "axis_y", y);
+	map_of_plane(program, "sun_of", f->block.sun_map, foot, x, y);
+	map_of_plane(program, "cover_of", f->block.contact_map, foot, x, y);
+	glUniform1f(glGetUniformLocation(program, "reach"), (float)f->view.far_plane);
 	glUniform2f(glGetUniformLocation(program, "grid_foot"), (float)remainder(ob_dot(on_plane, x), 10),
 		    (float)remainder(ob_dot(on_plane, y), 10));
 	glUniform4f(glGetUniformLocation(program, "colour"), colour[0], colour[1], colour[2], grid);
+	glUniform1f(glGetUniformLocation(program, "cover_share"), ground ? .75f : 0);
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
@@ -203,8 +218,8 @@ void ob_passes_picture(const ob_passes *p, const ob_targets *t, const ob_instanc
 	glUseProgram(p->program[OB_PROGRAM_PLANE]);
 	for (int i = 0; i < b->planes; i++) {
 		bool ground = i == f->ground;
-		draw_plane(p->program[OB_PROGRAM_PLANE], &b->plane[i], &f->view,
-			   ground ? look->ground_colour : b->now->passport[b->plane_id[i]].colour,
+		draw_plane(p->program[OB_PROGRAM_PLANE], &b->plane[i], f,
+			   ground ? look->ground_colour : b->now->passport[b->plane_id[i]].colour, ground,
 			   ground && look->grid);
 	}
 	glUseProgram(p->program[OB_PROGRAM_SKY]);

@@ -1,6 +1,6 @@
 #include "render/program.h"
 
-#include <stddef.h>
+#include <string.h>
 
 #include "shaders.h"
 
@@ -18,11 +18,22 @@ static const source sources[OB_PROGRAMS] = {
 	[OB_PROGRAM_SEGMENT] = { "segment", shader_segment_vert, shader_segment_frag },
 };
 
+// Mesa without a GPU: shaders then choose what is cheaper.
+static bool software(void)
+{
+	const char *name = (const char *)glGetString(GL_RENDERER);
+	return name && (strstr(name, "llvmpipe") || strstr(name, "softpipe"));
+}
+
 static bool compile(GLuint program, GLenum stage, const char *name, const char *text, ob_error *e)
 {
 	GLuint shader = glCreateShader(stage);
 	GLint good = 0;
-	glShaderSource(shader, 1, &text, NULL);
+	// After #version, which must come first.
+	const char *body = strchr(text, '\n') + 1;
+	const char *const part[] = { text, software() ? "#define OB_SOFTWARE\n" : "", body };
+	const GLint length[] = { (GLint)(body - text), -1, -1 };
+	glShaderSource(shader, 3, part, length);
 	glCompileShader(shader);
 	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
 	if (!good) {

@@ -93,6 +93,7 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 	if (!ob_bodies_evaluate(&r->bodies, prev, now, t))
 		return ob_fail(e, "out of memory");
 	ob_frame_set(&f, &r->bodies, &r->look, c, t, r->setup.width, r->setup.height);
+	ob_bodies_sort(&r->bodies, f.view.eye);
 	if (!ob_instances_fill(&r->casters, &r->bodies, &f.view, r->setup.height, casts, &f.sun) ||
 	    !ob_instances_fill(&r->seen, &r->bodies, &f.view, r->setup.height, is_seen, &f.view))
 		return ob_fail(e, "out of memory");

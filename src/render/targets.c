@@ -14,7 +14,6 @@ static GLuint renderbuffer(GLenum attachment, GLenum format, const ob_targets *t
 
 static GLuint texture(GLenum attachment, GLenum inner, GLenum format, GLenum type, int texels)
 {
-	static const float outside[4] = { 1, 1, 1, 1 };
 	GLuint id;
 	bool depth = attachment == GL_DEPTH_ATTACHMENT;
 	glGenTextures(1, &id);
@@ -22,11 +21,9 @@ static GLuint texture(GLenum attachment, GLenum inner, GLenum format, GLenum typ
 	glTexImage2D(GL_TEXTURE_2D, 0, (GLint)inner, texels, texels, 0, format, type, NULL);
 	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
 	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-	GLint wrap = depth ? GL_CLAMP_TO_BORDER : GL_CLAMP_TO_EDGE; // beyond the shadow map all is lit
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE); // the maps' margins are empty
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 	if (depth) {
-		glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, outside);
 		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
 		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
 	}
