@@ -36,9 +36,9 @@ static double struck(ob_host *h, blow b, ob_error *e)
 	strike_later(&b, &thread);
 	ob_host_go(h, FOR_EVER);
 	CHECK(!ob_host_wait(h, e));
-	double took = ob_clock_wall() - b.when;
+	double ended = ob_clock_wall();
 	pthread_join(thread, NULL);
-	return took;
+	return ended - b.when;
 }
 
 static void test_killed_simulator(uint32_t workers, bool asleep)
@@ -52,7 +52,7 @@ static void test_killed_simulator(uint32_t workers, bool asleep)
 	CHECK(h != NULL);
 	strcpy(name, ob_universe_name(ob_host_universe(h)));
 	double took = struck(h, (blow){ 50, pid_of_worker(ob_host_universe(h), 1), SIGKILL, 0 }, &e);
-	CHECK(took < .1);
+	CHECK(took < .1 * SLOWED);
 	CHECK(strstr(e.text, "simulator 1 ") && strstr(e.text, "SIGKILL") && !ob_host_interrupted(h));
 	CHECK(workers || strstr(e.text, "\"ball 1\""));
 	printf("%s (%.1f ms)\n", e.text, 1e3 * took);
@@ -74,7 +74,7 @@ static void test_lost_keeper(void)
 	FILE *f = fopen(path, "r");
 	CHECK(f && fscanf(f, "%d", &keeper) == 1);
 	fclose(f);
-	CHECK(struck(h, (blow){ 50, keeper, SIGKILL, 0 }, &e) < .1);
+	CHECK(struck(h, (blow){ 50, keeper, SIGKILL, 0 }, &e) < .1 * SLOWED);
 	CHECK(strstr(e.text, "keeper"));
 	ob_host_stop(h);
 	CHECK(wait_until_nothing_left("test-none") >= 0); // its orphans came to this process
@@ -89,7 +89,7 @@ static void test_hanging_simulator(void)
 	c.patience = .5;
 	ob_host *h = ob_host_start(&s, &c, &e);
 	double took = struck(h, (blow){ 50, pid_of_worker(ob_host_universe(h), 1), SIGSTOP, 0 }, &e);
-	CHECK(took > .4 && took < 2);
+	CHECK(took > .4 && took < 2 * SLOWED);
 	CHECK(strstr(e.text, "was not complete"));
 	ob_host_stop(h);
 	CHECK(waitpid(-1, NULL, WNOHANG) < 0);
@@ -107,7 +107,7 @@ static void test_interrupt(ob_isolation isolation, int signal_number, bool aslee
 	signal(signal_number, SIG_DFL);
 	ob_host *h = ob_host_start(&s, &c, &e);
 	double took = struck(h, (blow){ 50, getpid(), signal_number, 0 }, &e);
-	CHECK(took < .2);
+	CHECK(took < .2 * SLOWED);
 	CHECK(ob_host_interrupted(h) && strstr(e.text, "interrupted"));
 	uint64_t step = steps_of(h);
 	pause_ms(20);
@@ -157,7 +157,7 @@ static void test_dying_host(ob_isolation isolation, int signal_number, int blows
 	} while (waitpid(host, NULL, WNOHANG) == 0 && dealt < 50);
 	CHECK(dealt >= blows && dealt < 50);
 	double took = wait_until_nothing_left(name);
-	CHECK(took >= 0 && took < 1);
+	CHECK(took >= 0 && took < SLOWED);
 	printf("host dead by %d x signal %d: nothing left after %.0f ms\n", blows, signal_number, 1e3 * took + 20);
 	close(ready[0]);
 }

@@ -15,7 +15,10 @@ static void test_many(ob_isolation isolation, uint32_t objects, uint32_t workers
 		fprintf(stderr, "%s\n", e.text);
 	for (uint64_t step = 0; h && step <= 5; step++) {
 		ob_host_go(h, step);
-		CHECK(ob_host_wait(h, &e) && steps_of(h) == step);
+		bool there = ob_host_wait(h, &e) && steps_of(h) == step;
+		CHECK(there);
+		if (!there)
+			fprintf(stderr, "step %d: %s\n", (int)step, e.text);
 	}
 	if (h) {
 		ob_host_get_times(h, &t);
