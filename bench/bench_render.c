@@ -41,8 +41,10 @@ int main(int argc, char **argv)
 	scenery_boxes(&s, (uint32_t)objects, 14, 1);
 	int failed = !r || !rgba || measure(r, &s, &setup, rgba);
 	ob_sink *png = !failed && argc > 5 ? ob_sink_png(argv[5], setup.width, setup.height, &e) : NULL;
-	if (png)
-		failed = !ob_sink_put(png, 0, 0, rgba, &e) | !ob_sink_close(png, &e);
+	if (png) {
+		failed = !ob_sink_put(png, 0, 0, rgba, &e);
+		failed |= !ob_sink_close(png, &e);
+	}
 	if (failed)
 		fprintf(stderr, "%s\n", e.text);
 	ob_renderer_destroy(r);

@@ -95,7 +95,7 @@ static void overlays_show(void)
 	canvas_draw(&points, NULL, &s, 0, &camera);
 	int by_boxes = 0, by_points = 0;
 	for (int i = 0; i < 4 * CANVAS_WIDTH * CANVAS_HEIGHT; i += 4) {
-		by_boxes += abs(plain.rgba[i + 1] - boxes.rgba[i + 1]) > 20;
+		by_boxes += abs(plain.rgba[i + 2] - boxes.rgba[i + 2]) > 20; // yellow on grey
 		by_points += abs(plain.rgba[i + 1] - points.rgba[i + 1]) > 20;
 	}
 	CHECK(by_boxes > 150 && by_boxes < 1500);
