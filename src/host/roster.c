@@ -22,8 +22,9 @@ static pthread_key_t thread_end;
 static pthread_once_t thread_end_made = PTHREAD_ONCE_INIT;
 static __thread bool known;
 
-static void forget(void *unused)
+static void forget(void *key)
 {
+	(void)key;
 	urcu_memb_unregister_thread();
 }
 static void make_thread_end(void)
