@@ -117,6 +117,7 @@ static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep,
 	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
 	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(m->run->gravity), next.bounds);
 	ob_publish_motion(m->u, id, &next);
+	ob_universe_exchange(m->u)->brief[id].state = asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE;
 }
 
 static void publish_all(ob_monolith *m)

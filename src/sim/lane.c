@@ -1,0 +1,124 @@
+#include "sim/lane.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static uint32_t add_batch(ob_island_work *w, uint32_t colour)
+{
+	if (w->batches == w->batches_max) {
+		w->batches_max = w->batches_max * 2 + 16;
+		ob_batch *grown = aligned_alloc(64, w->batches_max * ((sizeof *grown + 63) / 64 * 64));
+		if (w->batches)
+			memcpy(grown, w->batch, w->batches * sizeof *grown);
+		free(w->batch);
+		w->batch = grown;
+		w->batch_colour = realloc(w->batch_colour, w->batches_max * sizeof *w->batch_colour);
+		w->batch_order = realloc(w->batch_order, w->batches_max * sizeof *w->batch_order);
+	}
+	ob_batch_init(&w->batch[w->batches]);
+	w->batch_colour[w->batches] = colour;
+	w->order_stale = true;
+	return w->batches++;
+}
+
+// The first colour that neither body uses. Past the last colour each pair gets a batch of its own: a body with so many
+// partners takes them one after the other.
+static uint32_t free_colour(const ob_island_work *w, const ob_touch *t, bool jacobi)
+{
+	uint64_t used = w->member[t->a].colours | w->member[t->b].colours;
+	if (jacobi)
+		return 0;
+	return used == UINT64_MAX ? OB_COLOURS : (uint32_t)__builtin_ctzll(~used);
+}
+
+void ob_lane_take(ob_sim *s, ob_touch *t)
+{
+	ob_island_work *w = &s->island;
+	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI),
+		 batch = UINT32_MAX;
+	for (uint32_t i = 0; i < w->batches && colour < OB_COLOURS; i++)
+		if (w->batch_colour[i] == colour && w->batch[i].live != (1u << OB_LANES) - 1) {
+			batch = i;
+			break;
+		}
+	if (batch == UINT32_MAX)
+		batch = add_batch(w, colour);
+	uint32_t lane = (uint32_t)__builtin_ctz(~w->batch[batch].live);
+	t->colour = colour;
+	t->lane = batch * OB_LANES + lane;
+	for (int side = 0; side < 2; side++) {
+		ob_member *m = &w->member[side ? t->b : t->a];
+		if (m->inv_mass > 0 && colour < OB_COLOURS)
+			m->colours |= UINT64_C(1) << colour;
+		m->contacts++;
+	}
+	w->counts_stale = true;
+}
+
+void ob_lane_leave(ob_island_work *w, ob_touch *t)
+{
+	ob_batch *b = &w->batch[t->lane / OB_LANES];
+	ob_batch_apply_lane(b, t->lane % OB_LANES, -1, w->dv);
+	ob_batch_clear(b, t->lane % OB_LANES);
+	for (int side = 0; side < 2; side++) {
+		ob_member *m = &w->member[side ? t->b : t->a];
+		if (t->colour < OB_COLOURS)
+			m->colours &= ~(UINT64_C(1) << t->colour);
+		m->contacts--;
+	}
+	t->lane = OB_NO_LANE;
+	t->points = 0;
+	w->counts_stale = true;
+}
+
+void ob_lane_fill(ob_island_work *w, const ob_touch *t, ob_vec3 normal, const double *gap)
+{
+	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
+	ob_lane lane = { t->a,  t->b, normal,      (int)t->points, t->arm_a,       t->arm_b,      gap,
+			 t->mu, t->e, a->inv_mass, b->inv_mass,    a->inv_inertia, b->inv_inertia };
+	ob_batch_set(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &lane);
+}
+
+void ob_lane_carry_out(ob_island_work *w, const ob_touch *t, ob_carried *old)
+{
+	const ob_batch *b = &w->batch[t->lane / OB_LANES];
+	int l = t->lane % OB_LANES;
+	ob_batch_apply_lane(b, l, -1, w->dv);
+	for (int i = 0; i < OB_PAIR_ROWS; i++)
+		old->impulse[i] = b->impulse[i][l];
+	old->points = t->points;
+	memcpy(old->arm, t->arm_a, sizeof old->arm);
+	old->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
+	ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]), t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
+	old->friction = ob_add(ob_scale(t1, old->impulse[4]), ob_scale(t2, old->impulse[5]));
+}
+
+void ob_lane_carry_in(ob_island_work *w, const ob_touch *t, ob_carried *old)
+{
+	ob_batch *b = &w->batch[t->lane / OB_LANES];
+	int l = t->lane % OB_LANES;
+	const ob_member *ma = &w->member[t->a], *mb = &w->member[t->b];
+	double thin = fmin(ma->thickness, mb->thickness), near = .04 * thin * thin + 1e-6;
+	ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1, t2;
+	bool same = old->points && ob_dot(n, old->normal) > .9;
+	bool sphere = ma->shape == OB_SHAPE_SPHERE || mb->shape == OB_SHAPE_SPHERE;
+	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
+		double best = sphere ? INFINITY : near;
+		int found = -1;
+		for (uint32_t k = 0; same && j < t->points && k < old->points; k++) {
+			double apart = ob_norm2(ob_sub(t->arm_a[j], old->arm[k]));
+			if (apart < best && old->impulse[k] >= 0)
+				best = apart, found = (int)k;
+		}
+		b->impulse[j][l] = found >= 0 ? old->impulse[found] : 0;
+		if (found >= 0)
+			old->impulse[found] = -1; // taken
+	}
+	ob_tangents(n, &t1, &t2);
+	b->impulse[4][l] = same ? ob_dot(old->friction, t1) : 0;
+	b->impulse[5][l] = same ? ob_dot(old->friction, t2) : 0;
+	b->impulse[6][l] = same ? old->impulse[6] : 0;
+	for (int i = 0; i < OB_PAIR_ROWS; i++)
+		b->impulse_start[i][l] = b->impulse[i][l];
+	ob_batch_apply_lane(b, l, 1, w->dv);
+}
