@@ -43,8 +43,12 @@ static void print_cost(const ob_report *r, FILE *f)
 static void print_worth(const ob_report *r, FILE *f)
 {
 	ob_quantity a, b, c;
-	fprintf(f, "  penetration  %s mean, %s most at the end", ob_quantity_text(&a, r->penetration_mean_m, "m"),
-		ob_quantity_text(&b, r->penetration_max_m, "m"));
+	if (r->penetration_max_m > 0)
+		fprintf(f, "  penetration  %s mean, %s most at the end",
+			ob_quantity_text(&a, r->penetration_mean_m, "m"),
+			ob_quantity_text(&b, r->penetration_max_m, "m"));
+	else
+		fputs("  penetration  none at the end", f);
 	if (!isnan(r->worst_penetration_m)) {
 		fprintf(f, "; worst %s", ob_quantity_text(&c, r->worst_penetration_m, "m"));
 		if (r->worst_penetration_m > 0)

@@ -1,20 +1,24 @@
 #include "cli/top_view.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <wchar.h>
 #include <wctype.h>
 
-enum { LINE_MAX_BYTES = 512, NAME_WIDTH = 18, WORKERS_AT_A_GLANCE = 4 };
+enum { LINE_MAX_BYTES = 512, NAME_WIDTH = 12, WORKERS_AT_A_GLANCE = 4, WORKER_HEADING = 2 };
 
 // One line, cut at the screen's width. What counts is characters, but only names have any beyond ASCII, and those
 // stand in a column of their own that is padded by width.
-static void put_line(const ob_top_view *view, FILE *f, const char *line)
+static void put_line(ob_top_view *view, FILE *f, const char *line)
 {
 	mbstate_t state = { 0 };
 	int width = 0;
+	if (view->lines > 0 && view->written >= view->lines)
+		return;
+	view->written++;
 	for (const char *at = line; *at;) {
 		wchar_t c;
 		size_t n = mbrtowc(&c, at, MB_CUR_MAX, &state);
@@ -30,14 +34,13 @@ static void put_line(const ob_top_view *view, FILE *f, const char *line)
 	fputc('\n', f);
 }
 
-// A name for a terminal: exactly NAME_WIDTH cells, nothing in it that a terminal would obey
-static void clean_name(const char *name, char *out, size_t size)
+// A name for a terminal, cut at max cells, with nothing in it that a terminal would obey. Returns its width.
+static int clean_name(const char *name, int max, char *out, size_t size)
 {
 	mbstate_t state = { 0 };
 	size_t used = 0;
 	int width = 0;
-	for (const char *at = name, *end = name + strnlen(name, OB_NAME_MAX);
-	     at < end && used + 8 + NAME_WIDTH < size;) {
+	for (const char *at = name, *end = name + strnlen(name, OB_NAME_MAX); at < end && used + MB_LEN_MAX < size;) {
 		wchar_t c;
 		size_t n = mbrtowc(&c, at, (size_t)(end - at), &state);
 		bool good = n != (size_t)-1 && n != (size_t)-2 && n > 0;
@@ -46,7 +49,7 @@ static void clean_name(const char *name, char *out, size_t size)
 			state = (mbstate_t){ 0 };
 		}
 		int cells = good && iswprint((wint_t)c) ? wcwidth(c) : 1;
-		if (cells < 0 || width + cells > NAME_WIDTH)
+		if (cells < 0 || width + cells > max)
 			break;
 		if (good && iswprint((wint_t)c))
 			memcpy(out + used, at, n);
@@ -56,9 +59,8 @@ static void clean_name(const char *name, char *out, size_t size)
 		width += cells;
 		at += n;
 	}
-	while (width++ < NAME_WIDTH)
-		out[used++] = ' ';
 	out[used] = 0;
+	return width;
 }
 
 static const char *state_name(const ob_top_sample *s)
@@ -69,12 +71,12 @@ static const char *state_name(const ob_top_sample *s)
 	return s->info.state <= OB_UNIVERSE_FAILED ? names[s->info.state] : "?";
 }
 
-static int put_header(const ob_top_view *view, const ob_top_sample *s, FILE *f)
+static void put_header(ob_top_view *view, const ob_top_sample *s, FILE *f)
 {
 	const ob_universe_info *i = &s->info;
 	char line[LINE_MAX_BYTES], name[128], rate[64] = "";
-	clean_name(i->name, name, sizeof name);
-	snprintf(line, sizeof line, "%s %s, %s in %" PRIu32 " %.8s%s, host %d", name, state_name(s),
+	clean_name(i->name, OB_NAME_MAX, name, sizeof name);
+	snprintf(line, sizeof line, "%s: %s, %s in %" PRIu32 " %.8s%s, host %d", name, state_name(s),
 		 strncmp(i->arch, "monolith", 8) == 0 ? "monolith" : "object simulators", i->workers, i->isolation,
 		 i->workers == 1          ? ""
 		 : i->isolation[0] == 't' ? "s"
@@ -88,10 +90,9 @@ static int put_header(const ob_top_view *view, const ob_top_sample *s, FILE *f)
 	snprintf(line, sizeof line, "objects %" PRIu32 ", awake %" PRIu32 ", near pairs %" PRIu32 ", islands %" PRIu32,
 		 i->objects, i->awake, i->pairs, i->islands);
 	put_line(view, f, line);
-	return 3;
 }
 
-static int put_workers(const ob_top_view *view, const ob_top_sample *s, uint32_t from, uint32_t count, FILE *f)
+static void put_workers(ob_top_view *view, const ob_top_sample *s, uint32_t from, uint32_t count, FILE *f)
 {
 	char line[LINE_MAX_BYTES], share[16], core[16];
 	put_line(view, f, "");
@@ -104,25 +105,23 @@ static int put_workers(const ob_top_view *view, const ob_top_sample *s, uint32_t
 			 (int)w->info.tid, core, w->info.objects, share, 1e-9 * (double)w->info.cpu_ns);
 		put_line(view, f, line);
 	}
-	return (int)count + 2;
 }
 
-static void put_object(const ob_top_view *view, const ob_top_object *o, FILE *f)
+static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 {
 	static const char *const shapes[] = { "-", "sphere", "box", "plane", "capsule", "cylinder" };
 	char line[LINE_MAX_BYTES], name[128];
-	clean_name(o->passport.name, name, sizeof name);
+	int pad = NAME_WIDTH - clean_name(o->passport.name, NAME_WIDTH, name, sizeof name);
 	const char *shape = o->passport.shape < sizeof shapes / sizeof *shapes ? shapes[o->passport.shape] : "?";
 	const char *state = o->passport.flags & OB_OBJECT_STATIC   ? "static"
-			    : !o->moving                           ? "unknown"
+			    : !o->moving                           ? "?"
 			    : (o->motion.flags & OB_MOTION_ASLEEP) ? "asleep"
 			    : (o->motion.flags & OB_MOTION_FREE)   ? "free"
 								   : "awake";
+	int n = snprintf(line, sizeof line, "%5" PRIu32 " %s%*s %-8s %-6s", o->id, name, pad, "", shape, state);
 	if (o->moving)
-		snprintf(line, sizeof line, "%7" PRIu32 " %s %-8s %-7s %10.4g %10.4g %10.4g %9.3g %9.3g", o->id, name,
-			 shape, state, o->position.x, o->position.y, o->position.z, o->speed, o->spin);
-	else
-		snprintf(line, sizeof line, "%7" PRIu32 " %s %-8s %-7s", o->id, name, shape, state);
+		snprintf(line + n, sizeof line - (size_t)n, " %8.4g %8.4g %8.4g %8.3g %8.3g", o->position.x,
+			 o->position.y, o->position.z, o->speed, o->spin);
 	put_line(view, f, line);
 }
 
@@ -138,38 +137,43 @@ static int compare_speed(const void *a, const void *b)
 	return x != y ? (x < y) - (x > y) : compare_id(a, b);
 }
 
-// Where a list of n begins and how much of it fits; room < 0 = all of it
-static uint32_t fit(ob_top_view *view, uint32_t n, int room)
+// Where a list of n begins and how much of it fits below what is written, less some lines
+static uint32_t fit(ob_top_view *view, uint32_t n, int less)
 {
-	uint32_t shown = room < 0 || (uint32_t)room > n ? n : (uint32_t)room;
+	int room = view->lines - view->written - less;
+	uint32_t shown = view->lines == 0 || room > (int64_t)n ? n : room > 0 ? (uint32_t)room : 0;
 	if (view->scroll > n - shown)
 		view->scroll = n - shown;
 	return shown;
 }
 
-void ob_top_view_write(ob_top_view *view, ob_top_sample *s, FILE *f)
+static void write_objects(ob_top_view *view, ob_top_sample *s, FILE *f)
 {
-	int used = put_header(view, s, f);
-	if (view->workers && view->lines > 0) {
-		uint32_t shown = fit(view, s->workers, view->lines > used + 2 ? view->lines - used - 2 : 0);
-		put_workers(view, s, view->scroll, shown, f);
-		return;
-	}
-	bool all = view->lines == 0;
-	uint32_t glance = all || s->workers < WORKERS_AT_A_GLANCE ? s->workers : WORKERS_AT_A_GLANCE;
-	used += put_workers(view, s, 0, glance, f);
-	if (glance < s->workers) {
-		char line[64];
-		snprintf(line, sizeof line, "   ... %" PRIu32 " more: w shows them", s->workers - glance);
-		put_line(view, f, line);
-		used++;
-	}
 	put_line(view, f, "");
-	put_line(view, f,
-		 "     ID NAME               SHAPE    STATE          X m        Y m        Z m SPEED m/s SPIN r/s");
-	uint32_t shown = fit(view, s->objects, all ? -1 : view->lines > used + 2 ? view->lines - used - 2 : 0);
+	put_line(view, f, "   ID NAME         SHAPE    STATE       X m      Y m      Z m SPEED m/s SPIN r/s");
+	uint32_t shown = fit(view, s->objects, 0);
 	if (s->objects > 0)
 		qsort(s->object, s->objects, sizeof *s->object, view->by_speed ? compare_speed : compare_id);
 	for (uint32_t i = 0; i < shown; i++)
 		put_object(view, &s->object[view->scroll + i], f);
+}
+
+void ob_top_view_write(ob_top_view *view, ob_top_sample *s, FILE *f)
+{
+	view->written = 0;
+	put_header(view, s, f);
+	bool all = view->lines == 0;
+	if (view->workers && !all) {
+		uint32_t shown = fit(view, s->workers, WORKER_HEADING);
+		put_workers(view, s, view->scroll, shown, f);
+		return;
+	}
+	uint32_t glance = all || s->workers < WORKERS_AT_A_GLANCE ? s->workers : WORKERS_AT_A_GLANCE;
+	put_workers(view, s, 0, glance, f);
+	if (glance < s->workers) {
+		char line[64];
+		snprintf(line, sizeof line, "   ... %" PRIu32 " more: w shows them", s->workers - glance);
+		put_line(view, f, line);
+	}
+	write_objects(view, s, f);
 }

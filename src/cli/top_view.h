@@ -11,6 +11,7 @@ typedef struct ob_top_view {
 	bool workers; // show the workers at length, else the objects
 	bool by_speed; // fastest objects first, else by id
 	uint32_t scroll; // first record shown
+	int written; // lines, of this look
 } ob_top_view;
 
 // Sorts s's objects as the view wants them, brings scroll into range, and writes at most view->lines lines, each with

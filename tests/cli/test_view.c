@@ -68,14 +68,14 @@ static void test_sizes(void)
 {
 	ob_top_sample s = make_sample();
 	for (int columns = 1; columns < 150; columns += 13) {
-		for (int lines = 16; lines < 100; lines += 7) {
+		for (int lines = 1; lines < 100; lines += lines < 20 ? 1 : 7) {
 			ob_top_view view = {
 				.columns = columns, .lines = lines, .workers = lines % 2, .scroll = 10000
 			};
 			char *text = show(&view, &s);
 			check_fits(text, columns, lines);
 			free(text);
-			CHECK(view.scroll < OBJECTS);
+			CHECK(view.scroll <= (view.workers ? WORKERS : OBJECTS));
 		}
 	}
 }

@@ -10,7 +10,7 @@ import unittest
 
 import program
 
-LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "100000"]
+LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "100000", "--sleeping", "off"]
 
 
 class Interrupt(program.Case):
