@@ -64,9 +64,10 @@ static uint32_t count_awake(const ob_universe *u)
 	return n;
 }
 
+// The host may ask for a pause at a step that has just gone by: then the next one will do.
 static bool must_pause(const ob_universe *u)
 {
-	return ob_step_count(u) == ob_gate_pause_step(u) || ob_universe_exchange(u)->count->failure;
+	return ob_step_count(u) >= ob_gate_pause_step(u) || ob_universe_exchange(u)->count->failure;
 }
 
 static void complete_step(ob_universe *u)

@@ -12,7 +12,8 @@
 #include "contact/impact.h"
 #include "table/table.h"
 
-static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_PAIR_ROWS, "a pair is stored as it is solved");
+static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_PAIR_ROWS,
+	      "a pair is stored as it is solved");
 
 enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
 
@@ -60,6 +61,8 @@ typedef struct ob_island_work {
 	uint32_t batches, batches_max;
 	ob_batch *batch;
 	uint32_t *batch_colour; // [batches]
+	uint32_t *batch_open; // [batches]: next in the stack of its colour
+	uint32_t open[OB_COLOURS]; // top of each colour's stack of batches with a free lane; UINT32_MAX = none
 	uint32_t *batch_order; // [batches]: sorted by colour
 	bool order_stale, counts_stale, elastic;
 	uint32_t pass; // number of the running pass, ever growing

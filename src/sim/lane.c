@@ -3,6 +3,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { FULL = (1 << OB_LANES) - 1, NONE = UINT32_MAX };
+
+// Batches with a free lane form a stack per colour.
+static void open_batch(ob_island_work *w, uint32_t batch)
+{
+	uint32_t colour = w->batch_colour[batch];
+	w->batch_open[batch] = w->open[colour];
+	w->open[colour] = batch;
+}
+
 static uint32_t add_batch(ob_island_work *w, uint32_t colour)
 {
 	if (w->batches == w->batches_max) {
@@ -14,10 +24,13 @@ static uint32_t add_batch(ob_island_work *w, uint32_t colour)
 		w->batch = grown;
 		w->batch_colour = realloc(w->batch_colour, w->batches_max * sizeof *w->batch_colour);
 		w->batch_order = realloc(w->batch_order, w->batches_max * sizeof *w->batch_order);
+		w->batch_open = realloc(w->batch_open, w->batches_max * sizeof *w->batch_open);
 	}
 	ob_batch_init(&w->batch[w->batches]);
 	w->batch_colour[w->batches] = colour;
 	w->order_stale = true;
+	if (colour < OB_COLOURS)
+		open_batch(w, w->batches);
 	return w->batches++;
 }
 
@@ -34,16 +47,15 @@ static uint32_t free_colour(const ob_island_work *w, const ob_touch *t, bool jac
 void ob_lane_take(ob_sim *s, ob_touch *t)
 {
 	ob_island_work *w = &s->island;
-	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI),
-		 batch = UINT32_MAX;
-	for (uint32_t i = 0; i < w->batches && colour < OB_COLOURS; i++)
-		if (w->batch_colour[i] == colour && w->batch[i].live != (1u << OB_LANES) - 1) {
-			batch = i;
-			break;
-		}
-	if (batch == UINT32_MAX)
+	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI), batch = NONE;
+	if (colour < OB_COLOURS)
+		batch = w->open[colour];
+	if (batch == NONE)
 		batch = add_batch(w, colour);
-	uint32_t lane = (uint32_t)__builtin_ctz(~w->batch[batch].live);
+	unsigned live = w->batch[batch].live;
+	uint32_t lane = (uint32_t)__builtin_ctz(~live);
+	if (colour < OB_COLOURS && (live | 1u << lane) == FULL)
+		w->open[colour] = w->batch_open[batch]; // it is the top, and full now
 	t->colour = colour;
 	t->lane = batch * OB_LANES + lane;
 	for (int side = 0; side < 2; side++) {
@@ -58,8 +70,11 @@ void ob_lane_take(ob_sim *s, ob_touch *t)
 void ob_lane_leave(ob_island_work *w, ob_touch *t)
 {
 	ob_batch *b = &w->batch[t->lane / OB_LANES];
+	bool was_full = b->live == FULL;
 	ob_batch_apply_lane(b, t->lane % OB_LANES, -1, w->dv);
 	ob_batch_clear(b, t->lane % OB_LANES);
+	if (was_full && t->colour < OB_COLOURS)
+		open_batch(w, t->lane / OB_LANES);
 	for (int side = 0; side < 2; side++) {
 		ob_member *m = &w->member[side ? t->b : t->a];
 		if (t->colour < OB_COLOURS)

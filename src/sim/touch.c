@@ -86,7 +86,7 @@ void ob_touches_prepare(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	bool jacobi = ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI;
-	if (w->order_stale) {
+	if (w->order_stale && w->batches) {
 		for (uint32_t i = 0; i < w->batches; i++)
 			w->batch_order[i] = i;
 		qsort_r(w->batch_order, w->batches, sizeof *w->batch_order, by_colour, w->batch_colour);
@@ -155,6 +155,7 @@ void ob_touches_load(ob_sim *s, const ob_island *is)
 	}
 	w->touches = is->pairs;
 	w->batches = 0;
+	memset(w->open, 0xff, sizeof w->open);
 	w->order_stale = w->counts_stale = true;
 	w->elastic = false;
 	for (uint32_t i = 0; i < is->pairs; i++) {
