@@ -1,5 +1,5 @@
--- Shapes: everything that a scene can hold. Spheres, boxes, capsules and cylinders rain on a ramp and a bowl of planes;
--- some are born while the others already lie, and one box that blocks the ramp is taken away after three seconds.
+-- Shapes: everything that a scene can hold. Spheres, boxes, capsules and cylinders rain on a ramp before a slope. Some
+-- are born while others already lie, and the gate at the foot of the ramp is taken away after three seconds.
 --   -D n=48    how many fall
 local n = param("n", 48, { min = 0, max = 10000 })
 
@@ -18,7 +18,7 @@ camera "main" { eye = { -7.5, -11, 6 }, target = { -.6, 0, 2.4 }, fov = 40 }
 camera "orbit" { eye = { 0, -15, 5 }, target = { 0, 0, 1 }, pan = 6 }
 camera "above" { from = { 0, -.05, 1 } }
 
--- A ramp with a gate at its foot, and a slope far behind as a wall.
+-- A ramp with a gate at its foot, and a slope far behind.
 box {
 	name = "ramp", static = true, material = "stone", friction = .05,
 	size = { 6, 3, .3 }, at = { -2, 0, 1.6 }, rotation = { axis = { 0, 1, 0 }, degrees = 22 },
