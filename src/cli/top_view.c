@@ -107,6 +107,12 @@ static void put_workers(ob_top_view *view, const ob_top_sample *s, uint32_t from
 	}
 }
 
+// What is nothing but rounding reads as 0.
+static double tidy(double x)
+{
+	return fabs(x) < 1e-6 ? 0 : x;
+}
+
 static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 {
 	static const char *const shapes[] = { "-", "sphere", "box", "plane", "capsule", "cylinder" };
@@ -120,8 +126,8 @@ static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 								   : "awake";
 	int n = snprintf(line, sizeof line, "%5" PRIu32 " %s%*s %-8s %-6s", o->id, name, pad, "", shape, state);
 	if (o->moving)
-		snprintf(line + n, sizeof line - (size_t)n, " %8.4g %8.4g %8.4g %8.3g %8.3g", o->position.x,
-			 o->position.y, o->position.z, o->speed, o->spin);
+		snprintf(line + n, sizeof line - (size_t)n, " %8.4g %8.4g %8.4g %8.3g %8.3g", tidy(o->position.x),
+			 tidy(o->position.y), tidy(o->position.z), tidy(o->speed), tidy(o->spin));
 	put_line(view, f, line);
 }
 
