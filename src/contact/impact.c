@@ -59,7 +59,7 @@ static bool rows_init(rows *r, const ob_batch *b, int l, const ob_impact *in, co
 		}
 		any = true;
 		r->time[i] = t;
-		r->goal[i] = r->rate[i] - (1 + in->e) * approach;
+		r->goal[i] = r->rate[i] - approach;
 		r->max_time = fmax(r->max_time, t);
 	}
 	return any;
@@ -82,33 +82,62 @@ static void rows_matrix(rows *r, const ob_batch *b, int l, const ob_impact *in)
 	}
 }
 
-// Projected Gauss-Seidel on the points that hit, until nothing changes any more.
-static void rows_solve(const rows *r, const ob_batch *b, int l, double *x)
+// Sets one impulse; returns how much that changes its row's velocity (m/s).
+static double set_impulse(const rows *r, int i, double next, double *x, double *rate)
 {
-	double rate[7];
-	memcpy(rate, r->rate, sizeof rate);
-	for (int s = 0; s < 200; s++) {
-		double change = 0;
-		for (int i = 0; i < OB_ROWS; i++) {
-			if (i < 4 ? isinf(r->time[i]) : !(r->a[i][i] > 0))
-				continue;
-			double sum = x[0] + x[1] + x[2] + x[3], bound = b->mu[l] * sum, next;
-			if (i < 4)
-				next = fmax(0, x[i] - (rate[i] - r->goal[i]) / r->a[i][i]);
-			else {
-				double other = i == 4 ? x[5] : i == 5 ? x[4] : 0;
-				bound = i == 6 ? bound * b->radius[l] : sqrt(fmax(0, bound * bound - other * other));
-				next = fmax(-bound, fmin(bound, x[i] - rate[i] / r->a[i][i]));
-			}
-			double dx = next - x[i];
-			x[i] = next;
-			for (int j = 0; j < OB_ROWS; j++)
-				rate[j] += r->a[j][i] * dx;
-			change = fmax(change, fabs(dx) * r->a[i][i]);
+	double dx = next - x[i];
+	x[i] = next;
+	for (int j = 0; j < OB_ROWS; j++)
+		rate[j] += r->a[j][i] * dx;
+	return fabs(dx) * r->a[i][i];
+}
+
+// One sweep over friction, its vector projected on the cone's disc, and the twist.
+static double sweep_friction(const rows *r, const ob_batch *b, int l, double *x, double *rate)
+{
+	double bound = b->mu[l] * (x[0] + x[1] + x[2] + x[3]), change;
+	double f4 = x[4] - rate[4] / r->a[4][4], f5 = x[5] - rate[5] / r->a[5][5];
+	double l2 = f4 * f4 + f5 * f5, shrink = l2 > bound * bound ? bound / sqrt(l2) : 1;
+	change = set_impulse(r, 4, f4 * shrink, x, rate);
+	change = fmax(change, set_impulse(r, 5, f5 * shrink, x, rate));
+	bound *= b->radius[l];
+	if (r->a[6][6] > 0)
+		change = fmax(change,
+			      set_impulse(r, 6, fmax(-bound, fmin(bound, x[6] - rate[6] / r->a[6][6])), x, rate));
+	return change;
+}
+
+static double sweep_normals(const rows *r, double *x, double *rate)
+{
+	double change = 0;
+	for (int i = 0; i < 4; i++)
+		if (!isinf(r->time[i])) {
+			double next = fmax(0, x[i] - (rate[i] - r->goal[i]) / r->a[i][i]);
+			change = fmax(change, set_impulse(r, i, next, x, rate));
 		}
-		if (change < 1e-15)
-			break;
+	return change;
+}
+
+// First the impact without rebound: projected Gauss-Seidel until nothing changes. All impulses times 1 + e then send
+// every point off at e times its approach or faster, and cannot gain energy: the plastic solution x obeys
+// x (J v + A x) <= 0, so the change (1+e) x J v + (1+e)^2/2 x A x is at most -(1+e)(1-e)/2 x A x. Last, friction finds
+// its place under the final normal impulses, which only takes energy.
+static void rows_solve(const rows *r, const ob_batch *b, int l, double e, double *x)
+{
+	double rate[OB_ROWS], largest = 0, change = 1;
+	memcpy(rate, r->rate, sizeof rate);
+	for (int i = 0; i < OB_ROWS; i++)
+		largest = fmax(largest, fabs(rate[i]));
+	const double done = 1e-15 * largest;
+	for (int s = 0; s < 200 && change > done; s++) {
+		change = sweep_normals(r, x, rate);
+		change = fmax(change, sweep_friction(r, b, l, x, rate));
 	}
+	for (int i = 0; i < OB_ROWS; i++)
+		set_impulse(r, i, (1 + e) * x[i], x, rate);
+	change = 1;
+	for (int s = 0; s < 50 && change > done; s++)
+		change = sweep_friction(r, b, l, x, rate);
 }
 
 bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
@@ -125,7 +154,7 @@ bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_imp
 	for (int i = 4; i < OB_ROWS; i++)
 		r.rate[i] = row_dot(r.ja[i], at->v[ia]) + row_dot(r.jb[i], at->v[ib]);
 	rows_matrix(&r, b, l, in);
-	rows_solve(&r, b, l, x);
+	rows_solve(&r, b, l, in->e, x);
 	double ca[6], cb[6], change_a[6] = { 0 }, change_b[6] = { 0 }, shift_a[6] = { 0 }, shift_b[6] = { 0 };
 	for (int i = 0; i < OB_ROWS; i++) {
 		double t = i < 4 ? r.time[i] : r.max_time;

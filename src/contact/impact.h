@@ -1,9 +1,10 @@
 // Impacts with restitution, at their own instant inside a substep.
 //
-// Two objects that approach faster than a threshold and will meet within the substep exchange one impulse: Newton's
-// law at every point that hits, -e times the approach speed at the instant of contact, friction inside its cone.
-// One pair at a time, each on what the last one published: an impact travels through a row of touching spheres as it
-// does in Newton's cradle, and no pair ever gains energy.
+// Two objects that approach faster than a threshold and will meet within the substep exchange one impulse: that of the
+// plastic impact with friction, times 1 + e (Poisson's hypothesis for the whole block), so that each point that hits
+// leaves at e times its approach at the instant of contact, and no pair ever gains energy. Newton's law point by point
+// with friction does gain (Kane and Levinson 1985). One pair at a time, each on what the last one published: an impact
+// travels through a row of touching spheres as it does in Newton's cradle.
 #ifndef OB_CONTACT_IMPACT_H
 #define OB_CONTACT_IMPACT_H
 

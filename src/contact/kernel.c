@@ -143,6 +143,23 @@ static inline lanes sweep(const ob_batch *b, lanes *x, lanes *r)
 	return largest;
 }
 
+// Bodies that touch nothing else have no later round to mend what is left over: their lanes, and only theirs, are
+// solved to the end.
+static inline void finish_alone(const ob_batch *b, lane_mask unfinished, lanes *x, lanes *r)
+{
+	for (int s = 0; s < most_sweeps && lanes_bits(unfinished); s++) {
+		lanes next_x[OB_ROWS], next_r[OB_ROWS];
+		memcpy(next_x, x, sizeof next_x);
+		memcpy(next_r, r, sizeof next_r);
+		lanes moving = sweep(b, next_x, next_r);
+		for (int i = 0; i < OB_ROWS; i++) {
+			x[i] = lanes_select(unfinished, next_x[i], x[i]);
+			r[i] = lanes_select(unfinished, next_r[i], r[i]);
+		}
+		unfinished &= moving > settled;
+	}
+}
+
 static inline void publish(const ob_batch *b, bool jacobi, const lanes *d, lanes *va, lanes *vb, ob_body_row *v,
 			   ob_body_row *delta)
 {
@@ -203,13 +220,14 @@ static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_bod
 		r[i] += b->bias[i];
 	}
 	memcpy(x, b->impulse, sizeof x);
-	// Bodies that touch nothing else have no later round to mend what is left over: solve to the end.
 	lanes moving = sweep(b, x, r);
-	unsigned finish = lanes_bits(moving > surprise) & b->alone;
-	for (int s = 1; s < pass->sweeps || (finish && s < most_sweeps); s++) {
-		moving = sweep(b, x, r);
-		finish &= lanes_bits(moving > settled);
-	}
+	lane_mask alone = { 0 };
+	for (int l = 0; l < OB_LANES; l++)
+		alone[l] = b->alone >> l & 1 ? -1 : 0;
+	lane_mask unfinished = alone & (moving > surprise);
+	for (int s = 1; s < pass->sweeps; s++)
+		unfinished &= sweep(b, x, r) > settled;
+	finish_alone(b, unfinished, x, r);
 	for (int i = 0; i < OB_ROWS; i++) {
 		change[i] = x[i] - b->impulse[i];
 		b->impulse[i] = x[i];
