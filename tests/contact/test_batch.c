@@ -1,0 +1,315 @@
+// The pair kernel: both sides get the same, no lane sees another, impulses stay where they may be.
+#include "contact/batch.h"
+
+#include "check.h"
+#include "scene.h"
+
+static ob_pass pass_of(bool first)
+{
+	return (ob_pass){ .h = substep, .sweeps = 4, .wake = 2e-3, .jump = .1, .first = first };
+}
+
+static void solve(scene *s, int rounds)
+{
+	for (int k = 0; k < rounds; k++) {
+		ob_pass pass = pass_of(k == 0);
+		ob_batch_solve(&s->batch, &pass, s->u, s->v, s->d, s->delta);
+	}
+}
+
+static void check_conserved(const pair *p, const ob_body_row *before, const ob_body_row *after, double tolerance)
+{
+	ob_vec3 m = ob_sub(momentum(&p->a, after[0]), momentum(&p->a, before[0]));
+	ob_vec3 l = ob_sub(angular_momentum(&p->a, after[0]), angular_momentum(&p->a, before[0]));
+	double scale =
+		ob_norm(momentum(&p->a, before[0])) + ob_norm(momentum(&p->b, before[1])) + ob_norm(m) + ob_norm(l);
+	m = ob_add(m, ob_sub(momentum(&p->b, after[1]), momentum(&p->b, before[1])));
+	l = ob_add(l, ob_sub(angular_momentum(&p->b, after[1]), angular_momentum(&p->b, before[1])));
+	CHECK_NEAR(ob_norm(m) / scale, 0, tolerance);
+	CHECK_NEAR(ob_norm(l) / scale, 0, 20 * tolerance);
+}
+
+static void check_cone(const scene *s, int l)
+{
+	const lanes *x = s->batch.impulse;
+	double sum = 0, friction = hypot(x[4][l], x[5][l]), most = s->p[l].mu;
+	for (int i = 0; i < OB_POINTS; i++) {
+		CHECK(x[i][l] >= 0);
+		CHECK(i < s->p[l].points || x[i][l] == 0);
+		sum += x[i][l];
+	}
+	CHECK(friction <= most * sum * (1 + 1e-12));
+	CHECK(fabs(x[6][l]) <= most * sum * s->batch.radius[l] * (1 + 1e-12));
+}
+
+static void test_both_sides(void)
+{
+	uint64_t seed = 1;
+	int pressed = 0;
+	for (int i = 0; i < 2000; i++) {
+		scene s;
+		random_scene(&s, &seed, 1);
+		solve(&s, 5);
+		for (int l = 0; l < OB_LANES; l++) {
+			check_cone(&s, l);
+			pressed += s.batch.impulse[0][l] > 0;
+			if (s.p[l].b.inv_mass > 0)
+				check_conserved(&s.p[l], s.v + row_a(l), s.u + row_a(l), 4e-15);
+			else
+				CHECK(s.u[row_a(l) + 1][0] == 0);
+		}
+		for (int c = 0; c < 6; c++)
+			CHECK(s.u[0][c] == 0); // what does not move
+	}
+	CHECK(pressed > 2000);
+}
+
+// After enough rounds no point closes by more than its gap, and those that carry are at it.
+static void test_solution(void)
+{
+	uint64_t seed = 2;
+	for (int i = 0; i < 300; i++) {
+		scene s;
+		random_scene(&s, &seed, 1);
+		for (int l = 0; l < OB_LANES; l++)
+			s.p[l].mu = 0, put(&s, l);
+		ob_batch_prepare(&s.batch);
+		s.batch.alone = 0xf;
+		solve(&s, 300);
+		for (int l = 0; l < OB_LANES; l++)
+			for (int j = 0; j < s.p[l].points; j++) {
+				double to = fmax(s.p[l].gap[j], 0) / substep;
+				double rate = opening(&s.p[l], j, s.u[row_a(l)], s.u[row_a(l) + 1]);
+				CHECK(rate + to >= -1e-5);
+				CHECK(s.batch.impulse[j][l] * s.batch.a[OB_SYM(j, j)][l] < 1e-5 || rate + to <= 1e-5);
+			}
+	}
+}
+
+// One point pressed on the ground sideways: it sticks below the cone, slides along its own direction on it.
+static void test_friction(void)
+{
+	uint64_t seed = 3;
+	for (int i = 0; i < 500; i++) {
+		double mu = within(&seed, .1, 1), angle = within(&seed, -3, 3), k = .4;
+		scene s;
+		memset(&s, 0, sizeof s);
+		ob_batch_init(&s.batch);
+		pair *p = &s.p[0];
+		*p = (pair){ .normal = { 0, 0, 1 }, .points = 1, .mu = mu, .b = fixed_body() };
+		p->a = (body){ .mass = 1, .inv_mass = 1 };
+		bool ball = i % 2;
+		for (int c = 0; c < 6 && ball; c++)
+			p->a.inv_inertia[c] = c == 0 || c == 3 || c == 5 ? 1 / k : 0;
+		p->arm_a[0] = ob_v3(0, 0, -1);
+		put(&s, 0);
+		ob_batch_prepare(&s.batch);
+		s.batch.alone = 1;
+		double sliding = within(&seed, 0, 3), press = 1,
+		       stick = ball ? 1 + 1 / k : 1; // inverse mass at the point
+		memcpy(s.v[1], (double[3]){ sliding * cos(angle), sliding * sin(angle), -press }, 3 * sizeof(double));
+		memcpy(s.u, s.v, sizeof s.u);
+		solve(&s, 20);
+		double f = fmin(mu * press, sliding / stick);
+		CHECK_NEAR(s.batch.impulse[0][0], press, 1e-12);
+		CHECK_NEAR(hypot(s.batch.impulse[4][0], s.batch.impulse[5][0]), f, 1e-9);
+		CHECK_NEAR(s.u[1][0], (sliding - f) * cos(angle), 1e-9);
+		CHECK_NEAR(s.u[1][1], (sliding - f) * sin(angle), 1e-9);
+		CHECK_NEAR(s.u[1][2], 0, 1e-12);
+	}
+}
+
+static bool same_rows(const ob_body_row *x, const ob_body_row *y)
+{
+	return memcmp(x, y, 2 * sizeof *x) == 0;
+}
+
+// The same pair alone and beside three others, in each lane: the same bits. alone: bodies that touch nothing else are
+// solved to the end, which takes as many sweeps as that pair needs.
+static void check_lanes(uint64_t *seed, unsigned alone)
+{
+	scene s;
+	random_scene(&s, seed, within(seed, 0, 2));
+	scene together = s;
+	together.batch.alone = alone;
+	solve(&together, 3);
+	ob_batch_project(&together.batch, 1e-4, .3, false, together.d, together.delta);
+	for (int l = 0; l < OB_LANES; l++)
+		for (int at = 0; at < OB_LANES; at++) {
+			scene single = s;
+			ob_batch_init(&single.batch);
+			put_pair(&single.batch, at, &s.p[l], row_a(l), row_b(&s, l));
+			ob_batch_prepare(&single.batch);
+			single.batch.alone = alone >> l & 1 ? 1u << at : 0;
+			solve(&single, 3);
+			ob_batch_project(&single.batch, 1e-4, .3, false, single.d, single.delta);
+			CHECK(same_rows(single.u + row_a(l), together.u + row_a(l)));
+			CHECK(same_rows(single.d + row_a(l), together.d + row_a(l)));
+			for (int i = 0; i < OB_ROWS; i++)
+				CHECK(single.batch.impulse[i][at] == together.batch.impulse[i][l]);
+			CHECK((single.batch.hot >> at & 1) == (together.batch.hot >> l & 1));
+			CHECK((single.batch.impact >> at & 1) == (together.batch.impact >> l & 1));
+		}
+}
+
+static void test_lanes(void)
+{
+	uint64_t seed = 4;
+	for (int i = 0; i < 500; i++)
+		check_lanes(&seed, 0);
+}
+
+// One body under four others: all changes come from the same published state, and are published together.
+static void test_jacobi(void)
+{
+	uint64_t seed = 5;
+	for (int i = 0; i < 500; i++) {
+		scene s;
+		memset(&s, 0, sizeof s);
+		ob_batch_init(&s.batch);
+		body hub = random_body(&seed, 3);
+		for (int l = 0; l < OB_LANES; l++) {
+			s.p[l] = random_pair(&seed, 1);
+			s.p[l].b = hub;
+			for (int j = 0; j < s.p[l].points; j++) // the same point seen from both centres
+				s.p[l].arm_b[j] = ob_sub(ob_add(s.p[l].a.p, s.p[l].arm_a[j]), hub.p);
+			put_pair(&s.batch, l, &s.p[l], 2 + (uint32_t)l, 1);
+			random_row(&seed, &s.p[l].a, s.v[2 + l]);
+		}
+		random_row(&seed, &hub, s.v[1]);
+		memcpy(s.u, s.v, sizeof s.u);
+		s.batch.kb = lanes_of(OB_LANES);
+		ob_batch_prepare(&s.batch);
+		ob_pass pass = pass_of(true);
+		pass.jacobi = true;
+		ob_batch_solve(&s.batch, &pass, s.u, s.v, s.d, s.delta);
+		CHECK(memcmp(s.u, s.v, sizeof s.u) == 0);
+		ob_vec3 m = momentum(&hub, s.delta[1]), l = angular_momentum(&hub, s.delta[1]);
+		double scale = 1e-9 + ob_norm(m) + ob_norm(l), energy_before = energy(&hub, s.v[1]), energy_after;
+		for (int c = 0; c < 6; c++)
+			s.u[1][c] += s.delta[1][c];
+		energy_after = energy(&hub, s.u[1]);
+		for (int k = 0; k < OB_LANES; k++) {
+			const body *a = &s.p[k].a;
+			m = ob_add(m, momentum(a, s.delta[2 + k]));
+			l = ob_add(l, angular_momentum(a, s.delta[2 + k]));
+			scale += ob_norm(momentum(a, s.delta[2 + k])) + ob_norm(angular_momentum(a, s.delta[2 + k]));
+			for (int c = 0; c < 6; c++)
+				s.u[2 + k][c] += s.delta[2 + k][c];
+			energy_before += energy(a, s.v[2 + k]);
+			energy_after += energy(a, s.u[2 + k]);
+			check_cone(&s, k);
+		}
+		CHECK_NEAR(ob_norm(m) / scale, 0, 4e-15);
+		CHECK_NEAR(ob_norm(l) / scale, 0, 1e-13);
+		CHECK(energy_after <= energy_before * (1 + 1e-12)); // the split masses together are the body
+	}
+}
+
+// Overlaps are pushed apart in the displacements, by the share asked for; velocities and impulses do not hear of it.
+static void test_project(void)
+{
+	uint64_t seed = 6;
+	const double slop = 1e-4, share = .3;
+	for (int i = 0; i < 500; i++) {
+		scene s;
+		random_scene(&s, &seed, 0);
+		for (int l = 0; l < OB_LANES; l++)
+			s.p[l].points = 1, s.p[l].gap[0] = within(&seed, -1e-2, 1e-3), put(&s, l);
+		ob_batch_prepare(&s.batch);
+		ob_body_row none[2 * OB_LANES + 1] = { 0 };
+		ob_batch before = s.batch;
+		ob_batch_project(&s.batch, slop, share, false, s.d, s.delta);
+		CHECK(memcmp(&before, &s.batch, sizeof before) == 0);
+		for (int l = 0; l < OB_LANES; l++) {
+			const pair *p = &s.p[l];
+			double deep = fmin(0, p->gap[0] + slop),
+			       moved = opening(p, 0, s.d[row_a(l)], s.d[row_a(l) + 1]);
+			CHECK_NEAR(moved, -share * deep, 1e-15);
+			if (p->b.inv_mass > 0 && deep < 0)
+				check_conserved(p, none, s.d + row_a(l), 4e-15);
+		}
+		ob_batch_project(&s.batch, slop, share, true, none, s.delta);
+		CHECK(memcmp(s.d + 1, s.delta + 1, sizeof s.d - sizeof s.d[0]) == 0); // Jacobi: the same, put aside
+	}
+}
+
+// What an impact made of the impulses is taken back to within the cap; pairs without one keep theirs.
+static void test_cap(void)
+{
+	uint64_t seed = 7;
+	int capped = 0;
+	for (int i = 0; i < 500; i++) {
+		scene s;
+		random_scene(&s, &seed, i % 2 ? 3 : -.5);
+		solve(&s, 2);
+		ob_batch solved = s.batch;
+		ob_body_row u[2 * OB_LANES + 1];
+		memcpy(u, s.u, sizeof u);
+		const double cap[OB_LANES] = { .01, .02, .03, .04 };
+		ob_batch_cap(&s.batch, cap, .05, s.u);
+		CHECK(s.batch.impact == 0);
+		for (int l = 0; l < OB_LANES; l++) {
+			bool impact = solved.impact >> l & 1;
+			capped += impact;
+			if (!impact)
+				CHECK(same_rows(u + row_a(l), s.u + row_a(l)));
+			else if (s.p[l].b.inv_mass > 0)
+				check_conserved(&s.p[l], u + row_a(l), s.u + row_a(l), 4e-15);
+			for (int k = 0; k < OB_ROWS; k++) {
+				double most = fmax(cap[l], .05 / (s.batch.a[OB_SYM(k, k)][l] + 1e-9));
+				if (k == 6)
+					most *= s.batch.radius[l];
+				CHECK(impact || s.batch.impulse[k][l] == solved.impulse[k][l]);
+				CHECK(!impact || fabs(s.batch.impulse[k][l]) <= most * (1 + 1e-12));
+			}
+		}
+	}
+	CHECK(capped > 500);
+}
+
+// A pair that is taken out and put back leaves what it found, and pushes its bodies by its impulses.
+static void test_apply_lane(void)
+{
+	uint64_t seed = 8;
+	for (int i = 0; i < 500; i++) {
+		scene s;
+		random_scene(&s, &seed, 2);
+		solve(&s, 3);
+		ob_body_row u[2 * OB_LANES + 1];
+		memcpy(u, s.u, sizeof u);
+		for (int l = 0; l < OB_LANES; l++)
+			ob_batch_apply_lane(&s.batch, l, -1, s.u);
+		for (int k = 0; k < 2 * OB_LANES + 1; k++)
+			for (int c = 0; c < 6; c++)
+				CHECK_NEAR(s.u[k][c], s.v[k][c], 1e-12 * (1 + fabs(u[k][c])));
+	}
+}
+
+static void test_tangents(void)
+{
+	uint64_t seed = 9;
+	for (int i = 0; i < 1000; i++) {
+		ob_vec3 n = i < 6 ? ob_v3(i / 2 == 0, i / 2 == 1, i / 2 == 2) : random_direction(&seed), t1, t2;
+		n = i % 2 ? n : ob_scale(n, -1);
+		ob_tangents(n, &t1, &t2);
+		CHECK_NEAR(ob_norm(t1), 1, 1e-14);
+		CHECK_NEAR(ob_norm(t2), 1, 1e-14);
+		CHECK_NEAR(ob_dot(t1, n), 0, 1e-14);
+		CHECK_NEAR(ob_norm(ob_sub(ob_cross(n, t1), t2)), 0, 1e-14);
+	}
+}
+
+int main(void)
+{
+	test_both_sides();
+	test_solution();
+	test_friction();
+	test_lanes();
+	test_jacobi();
+	test_project();
+	test_cap();
+	test_apply_lane();
+	test_tangents();
+	return check_end();
+}

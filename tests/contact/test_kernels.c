@@ -1,0 +1,48 @@
+// Whatever the processor: the kernels for each instruction set give the same bits.
+#include "contact/kernel.h"
+
+#include "check.h"
+#include "scene.h"
+
+enum { SKIPPED = 77 }; // what meson takes for it
+
+static void run(const ob_kernel *k, scene *s, bool jacobi)
+{
+	static const double cap[OB_LANES] = { .01, .02, .03, .04 };
+	k->prepare(&s->batch);
+	for (int round = 0; round < 4; round++) {
+		ob_pass pass = { substep, 4, 2e-3, .1, round == 0, jacobi };
+		k->solve(&s->batch, &pass, s->u, s->v, s->d, s->delta);
+	}
+	k->project(&s->batch, 1e-4, .3, jacobi, s->d, s->delta);
+	k->cap(&s->batch, cap, .05, s->u);
+	k->apply_lane(&s->batch, 2, -1, s->u);
+}
+
+static void compare(const ob_kernel *x, const ob_kernel *y)
+{
+	uint64_t seed = 1;
+	for (int i = 0; i < 3000; i++) {
+		scene a, b;
+		random_scene(&a, &seed, within(&seed, -1, 3));
+		if (i % 5 == 0)
+			ob_batch_clear(&a.batch, (int)(OB_LANES * uniform(&seed)));
+		a.batch.elastic = (unsigned)(16 * uniform(&seed));
+		a.batch.alone = (unsigned)(16 * uniform(&seed));
+		memcpy(&b, &a, sizeof b); // padding too
+		run(x, &a, i % 2);
+		run(y, &b, i % 2);
+		CHECK(memcmp(&a.batch, &b.batch, sizeof a.batch) == 0);
+		CHECK(memcmp(a.u, b.u, sizeof a.u) == 0);
+		CHECK(memcmp(a.d, b.d, sizeof a.d) == 0);
+		CHECK(memcmp(a.delta, b.delta, sizeof a.delta) == 0);
+	}
+}
+
+int main(void)
+{
+	if (ob_kernel_best() == &ob_kernel_portable)
+		return SKIPPED;
+	compare(ob_kernel_best(), &ob_kernel_portable);
+	return check_end();
+}
