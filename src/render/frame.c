@@ -50,13 +50,14 @@ static void set_contact(ob_frame *f, const ob_bodies *b)
 		up = ob_column(&r, 2);
 		foot = b->plane[f->ground].p;
 	}
+	f->level = ob_dot(foot, up);
 	f->contact = ob_map_fit(up, b, &f->view, OB_CONTACT_TEXELS);
 	float *m = f->block.contact_map;
 	ob_map_matrix(&f->contact, f->view.eye, m);
 	m[2] = (float)up.x;
 	m[6] = (float)up.y;
 	m[10] = (float)up.z;
-	m[14] = (float)ob_dot(ob_sub(f->view.eye, foot), up);
+	m[14] = (float)(ob_dot(f->view.eye, up) - f->level);
 }
 
 void ob_frame_set(ob_frame *f, const ob_bodies *b, const ob_look_def *look, const ob_camera_def *c, double t, int width,

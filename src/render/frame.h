@@ -19,6 +19,7 @@ typedef struct ob_frame {
 	ob_map sun; // shadows
 	ob_map contact; // on the ground, from above
 	int ground; // index of the plane that is the ground; -1 = none
+	double level; // m, height of the ground along contact.z
 	ob_frame_block block;
 } ob_frame;
 

@@ -100,8 +100,9 @@ static void draw_instances(const ob_passes *p, const ob_instances *i)
 	}
 }
 
-static void sun_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters)
+void ob_passes_sun_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters)
 {
+	upload_instances(p, casters);
 	glBindFramebuffer(GL_FRAMEBUFFER, t->sun);
 	glViewport(0, 0, OB_SUN_TEXELS, OB_SUN_TEXELS);
 	glEnable(GL_DEPTH_TEST);
@@ -127,8 +128,9 @@ static void blur(const ob_passes *p, const ob_targets *t, int from, float x, flo
 }
 
 // Seen from below, the nearest thing counts: the greatest cover.
-static void contact_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters)
+void ob_passes_contact_map(const ob_passes *p, const ob_targets *t, const ob_instances *low)
 {
+	upload_instances(p, low);
 	glBindFramebuffer(GL_FRAMEBUFFER, t->cover[0]);
 	glViewport(0, 0, OB_CONTACT_TEXELS, OB_CONTACT_TEXELS);
 	glDisable(GL_DEPTH_TEST);
@@ -138,7 +140,7 @@ static void contact_map(const ob_passes *p, const ob_targets *t, const ob_instan
 	glBlendEquation(GL_MAX);
 	glFrontFace(GL_CW); // undersides
 	glUseProgram(p->program[OB_PROGRAM_COVER]);
-	draw_instances(p, casters);
+	draw_instances(p, low);
 	glBlendEquation(GL_FUNC_ADD);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
@@ -146,14 +148,6 @@ static void contact_map(const ob_passes *p, const ob_targets *t, const ob_instan
 	blur(p, t, 0, 1, 0);
 	blur(p, t, 1, 0, 1);
 	glEnable(GL_CULL_FACE);
-}
-
-void ob_passes_maps(const ob_passes *p, const ob_targets *t, const ob_instances *casters, bool ground)
-{
-	upload_instances(p, casters);
-	sun_map(p, t, casters);
-	if (ground)
-		contact_map(p, t, casters);
 }
 
 static void vector(GLuint program, const char *name, ob_vec3 v)

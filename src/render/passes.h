@@ -20,8 +20,10 @@ bool ob_passes_create(ob_passes *p, ob_error *e);
 void ob_passes_destroy(ob_passes *p);
 
 void ob_passes_begin(const ob_passes *p, const ob_frame_block *block);
-// Shadow map and contact map, from all that casts.
-void ob_passes_maps(const ob_passes *p, const ob_targets *t, const ob_instances *casters, bool ground);
+// The shadow map, from all that casts.
+void ob_passes_sun_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters);
+// The contact map, from what is near the ground.
+void ob_passes_contact_map(const ob_passes *p, const ob_targets *t, const ob_instances *low);
 // The picture, without overlays.
 void ob_passes_picture(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_bodies *b,
 		       const ob_frame *f, const ob_look_def *look);

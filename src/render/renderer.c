@@ -5,6 +5,8 @@
 #include "render/context.h"
 #include "render/passes.h"
 
+static const double contact_reach = .8; // m above the ground: so far a body darkens it
+
 struct ob_renderer {
 	ob_render_setup setup;
 	ob_look_def look;
@@ -12,7 +14,7 @@ struct ob_renderer {
 	ob_targets targets;
 	ob_passes passes;
 	ob_bodies bodies;
-	ob_instances casters, seen;
+	ob_instances casters, low, seen;
 	ob_overlay overlay;
 };
 
@@ -55,6 +57,7 @@ void ob_renderer_destroy(ob_renderer *r)
 	ob_context_destroy(&r->context);
 	ob_bodies_finish(&r->bodies);
 	ob_instances_finish(&r->casters);
+	ob_instances_finish(&r->low);
 	ob_instances_finish(&r->seen);
 	ob_overlay_finish(&r->overlay);
 	free(r);
@@ -64,6 +67,14 @@ static bool casts(const ob_body *body, const void *map)
 {
 	return ob_map_holds(map, body);
 }
+
+static bool is_low(const ob_body *body, const void *frame)
+{
+	const ob_frame *f = frame;
+	return ob_dot(body->pose.p, f->contact.z) - body->radius < f->level + contact_reach &&
+	       ob_map_holds(&f->contact, body);
+}
+
 static bool is_seen(const ob_body *body, const void *view)
 {
 	return ob_view_sees(view, body->pose.p, body->radius);
@@ -95,10 +106,13 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 	ob_frame_set(&f, &r->bodies, &r->look, c, t, r->setup.width, r->setup.height);
 	ob_bodies_sort(&r->bodies, f.view.eye);
 	if (!ob_instances_fill(&r->casters, &r->bodies, &f.view, r->setup.height, casts, &f.sun) ||
+	    (f.ground >= 0 && !ob_instances_fill(&r->low, &r->bodies, &f.view, r->setup.height, is_low, &f)) ||
 	    !ob_instances_fill(&r->seen, &r->bodies, &f.view, r->setup.height, is_seen, &f.view))
 		return ob_fail(e, "out of memory");
 	ob_passes_begin(&r->passes, &f.block);
-	ob_passes_maps(&r->passes, &r->targets, &r->casters, f.ground >= 0);
+	ob_passes_sun_map(&r->passes, &r->targets, &r->casters);
+	if (f.ground >= 0)
+		ob_passes_contact_map(&r->passes, &r->targets, &r->low);
 	ob_passes_picture(&r->passes, &r->targets, &r->seen, &r->bodies, &f, &r->look);
 	if (!draw_overlays(r, now, &f.view))
 		return ob_fail(e, "out of memory");
