@@ -29,7 +29,15 @@ static bool real(const ob_arguments *a, ob_option_id id, double most, double *ou
 	return ob_number_real(name_of(id), a->value[id], 0, most, out, e);
 }
 
-bool ob_request_check_file(const char *option, const char *path, ob_error *e)
+// Whether making the directory "made" makes dir on the way
+static bool is_made(const char *dir, const char *made)
+{
+	size_t n = strlen(dir);
+	return made && strncmp(made, dir, n) == 0 && (made[n] == '/' || !made[n]);
+}
+
+// A file that may be written: its directory is there, or will be when "made" is; NULL = nothing will
+static bool check_file(const char *option, const char *path, const char *made, ob_error *e)
 {
 	char copy[PATH_MAX];
 	if (strlen(path) >= sizeof copy)
@@ -37,6 +45,8 @@ bool ob_request_check_file(const char *option, const char *path, ob_error *e)
 	strcpy(copy, path);
 	const char *dir = dirname(copy);
 	struct stat s;
+	if (stat(dir, &s) != 0 && is_made(dir, made))
+		return true;
 	if (stat(dir, &s) != 0 || !S_ISDIR(s.st_mode))
 		return ob_fail(e, "--%s %s: there is no directory %s: make it first", option, path, dir);
 	if (stat(path, &s) == 0) {
@@ -92,7 +102,7 @@ static bool check_outputs(const ob_arguments *a, ob_error *e)
 		if (is_stdout(path))
 			return ob_fail(e, "--%s: cannot write to standard output, name a file", option);
 		bool fine = files[i] == OB_OPTION_FRAMES ? check_directory(option, path, e)
-							 : ob_request_check_file(option, path, e);
+							 : check_file(option, path, a->value[OB_OPTION_FRAMES], e);
 		if (!fine)
 			return false;
 	}

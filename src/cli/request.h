@@ -48,7 +48,4 @@ bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_run_settings *ru
 // Steps in a duration: the first step boundary at or after its end.
 uint64_t ob_request_steps(double duration, double step);
 
-// true when path may be written: its directory exists and is writable, and it is no directory itself.
-bool ob_request_check_file(const char *option, const char *path, ob_error *e);
-
 #endif

@@ -114,13 +114,14 @@ static bool step_through(run *r, ob_error *e)
 static bool open_outputs(run *r, ob_error *e)
 {
 	const ob_run_request *q = &r->request;
-	if (!ob_observer_open(&r->observer, r->scene, q->series, e))
-		return false;
-	if (q->frames.wanted) {
+	if (q->frames.wanted) { // first, for it makes directories
+
 		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->step, e);
 		if (!r->capture)
 			return false;
 	}
+	if (!ob_observer_open(&r->observer, r->scene, q->series, e))
+		return false;
 	if (q->record) {
 		ob_universe_info info;
 		ob_universe_get_info(ob_host_universe(r->host), &info);

@@ -86,6 +86,14 @@ class Frames(program.Case):
 		r = self.draw("f", "--duration", ".2")
 		self.assertEqual(r["frames"], 12)
 
+	def test_directories_are_made(self):
+		"""Files may lie in what --frames makes."""
+		report = program.report(*BOXES, *SIZE, "--duration", ".1", "--frames", self.path("a/b/c"), "--raw", self.path("a/r"),
+			"--series", self.path("a/b/s.csv"))
+		self.assertEqual(len(os.listdir(self.path("a/b/c"))), report["frames"])
+		self.assertEqual(os.path.getsize(self.path("a/r")), report["frames"] * BYTES)
+		self.assertTrue(os.path.exists(self.path("a/b/s.csv")))
+
 	def test_raw_to_a_pipe(self):
 		done = subprocess.run([program.OBSIM, "run", *BOXES, *SIZE, "--duration", ".5", "--raw", "-"], stdout=subprocess.PIPE,
 			stderr=subprocess.PIPE, timeout=program.PATIENCE)
