@@ -128,7 +128,7 @@ static void rows_solve(const rows *r, const ob_batch *b, int l, double e, double
 	memcpy(rate, r->rate, sizeof rate);
 	for (int i = 0; i < OB_ROWS; i++)
 		largest = fmax(largest, fabs(rate[i]));
-	const double done = 1e-15 * largest;
+	const double done = 1e-14 * largest; // m/s: what rounding leaves
 	for (int s = 0; s < 200 && change > done; s++) {
 		change = sweep_normals(r, x, rate);
 		change = fmax(change, sweep_friction(r, b, l, x, rate));
