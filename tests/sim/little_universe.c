@@ -1,0 +1,156 @@
+#include "little_universe.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "motion/random.h"
+#include "ode/ode_body.h"
+
+static void give_up(const char *what, const char *why)
+{
+	fprintf(stderr, "%s: %s\n", what, why);
+	exit(1);
+}
+
+little_scene *little_scene_new(void)
+{
+	little_scene *s = calloc(1, sizeof *s);
+	if (!s)
+		give_up("scene", "no memory");
+	s->run = (ob_run_settings){ .gravity = { 0, 0, -9.81 }, .step_length = 1. / 60, .substeps = 8, .passes = 16 };
+	return s;
+}
+
+little_object *little_add(little_scene *s, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
+{
+	if (s->objects == LITTLE_MOST)
+		give_up("scene", "too many objects");
+	little_object *o = &s->object[s->objects];
+	o->passport =
+		(ob_passport){ .id = s->objects++, .generation = 1, .shape = shape, .size = size, .friction = .5 };
+	o->passport.flags = OB_OBJECT_PRESENT | (mass > 0 ? 0 : OB_OBJECT_STATIC);
+	o->passport.mass = mass;
+	if (mass > 0)
+		o->passport.inertia = ob_ode_inertia(shape, size, mass);
+	o->state.pose = (ob_pose){ p, ob_quat_identity() };
+	return o;
+}
+
+little_object *little_ground(little_scene *s)
+{
+	return little_add(s, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));
+}
+
+little_object *little_sphere(little_scene *s, double mass, double radius, ob_vec3 p)
+{
+	return little_add(s, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
+}
+
+little_object *little_box(little_scene *s, double mass, ob_vec3 half, ob_vec3 p)
+{
+	return little_add(s, OB_SHAPE_BOX, half, mass, p);
+}
+
+void little_stack(little_scene *s, int n, uint64_t seed)
+{
+	little_ground(s);
+	for (int i = 0; i < n; i++) {
+		double x = within(&seed, -.01, .01), y = within(&seed, -.01, .01);
+		little_box(s, 1000, ob_v3(.5, .5, .5), ob_v3(x, y, .5 + i));
+	}
+}
+
+ob_universe *little_populate(const little_scene *s, uint32_t workers)
+{
+	static int made;
+	char name[OB_NAME_MAX];
+	snprintf(name, sizeof name, "test-sim-%d-%d", (int)getpid(), made++);
+	ob_universe_setup setup = { name, s->capacity ? s->capacity : s->objects, workers, "thread", s->run };
+	ob_error e;
+	ob_ode_init();
+	ob_universe *u = ob_universe_create(&setup, &e);
+	if (!u)
+		give_up("universe", e.text);
+	for (uint32_t i = 0; i < s->objects; i++)
+		ob_write_passport(u, i, &s->object[i].passport);
+	for (uint32_t i = 0; i < s->objects; i++)
+		ob_sim_place(u, i, &s->object[i].state);
+	return u;
+}
+
+void little_open(little_universe *l, const little_scene *s)
+{
+	ob_error e;
+	*l = (little_universe){ .scene = s, .u = little_populate(s, 1) };
+	ob_ode_thread_init();
+	l->sim = ob_sim_create(l->u, 0, &e);
+	if (!l->sim)
+		give_up("simulators", e.text);
+	little_run(l, 0);
+}
+
+void little_close(little_universe *l)
+{
+	ob_sim_destroy(l->sim);
+	ob_ode_thread_finish();
+	ob_snapshot_finish(&l->now);
+	ob_universe_destroy(l->u, true);
+}
+
+// The worker and the host take turns in one thread: the host's comes when the gate pauses.
+void little_run(little_universe *l, uint64_t steps)
+{
+	ob_error e;
+	ob_gate_set_pause_step(l->u, ob_step_count(l->u) + steps);
+	ob_sim_resume(l->u);
+	while (!ob_gate_host_wait(l->u, 0)) {
+		ob_phase phase = ob_gate_wait(l->u, 0);
+		ob_sim_work(l->sim, phase);
+		if (ob_gate_arrive(l->u, 0))
+			ob_sim_arrange(l->sim, phase);
+	}
+	if (ob_sim_failure(l->u))
+		give_up("step", ob_sim_failure(l->u));
+	if (!ob_snapshot_take(&l->now, l->u, false, &e))
+		give_up("snapshot", e.text);
+}
+
+void little_run_to(little_universe *l, double time)
+{
+	little_run(l, (uint64_t)lround(time / l->scene->run.step_length) - ob_step_count(l->u));
+}
+
+void little_put(little_universe *l, uint32_t id)
+{
+	const little_object *o = &l->scene->object[id];
+	ob_write_passport(l->u, id, &o->passport);
+	ob_sim_place(l->u, id, &o->state);
+}
+
+void little_take_away(little_universe *l, uint32_t id)
+{
+	ob_sim_remove(l->u, id);
+}
+
+ob_state little_state(const little_universe *l, uint32_t id)
+{
+	return ob_snapshot_state(&l->now, id);
+}
+
+double little_energy(const little_universe *l)
+{
+	return ob_measure_energy(&l->now, l->scene->run.gravity);
+}
+
+ob_penetration little_penetration(const little_universe *l)
+{
+	ob_penetration p;
+	ob_measure_penetration(&l->now, &p);
+	return p;
+}
+
+bool little_asleep(const little_universe *l, uint32_t id)
+{
+	return l->now.motion[id].flags & OB_MOTION_ASLEEP;
+}
