@@ -9,7 +9,7 @@ enum { FRAMES = 60 };
 
 static int measure(ob_renderer *r, const ob_snapshot *s, const ob_render_setup *setup, uint8_t *rgba)
 {
-	ob_camera_def camera = scenery_camera(ob_v3(-11, -13, 7), ob_v3(0, 0, .8));
+	ob_camera_def camera = scenery_camera(ob_v3(-22, -26, 15), ob_v3(0, 0, 0));
 	camera.velocity = ob_v3(.05, 0, 0);
 	ob_error e;
 	if (!ob_renderer_draw(r, NULL, s, 0, &camera, rgba, &e)) { // the first compiles the shaders
@@ -38,7 +38,7 @@ int main(int argc, char **argv)
 	ob_snapshot s;
 	ob_renderer *r = ob_renderer_create(&setup, &look, &e);
 	uint8_t *rgba = malloc(4 * (size_t)setup.width * (size_t)setup.height);
-	scenery_boxes(&s, (uint32_t)objects, 14, 1);
+	scenery_boxes(&s, (uint32_t)objects, 26, 1);
 	int failed = !r || !rgba || measure(r, &s, &setup, rgba);
 	ob_sink *png = !failed && argc > 5 ? ob_sink_png(argv[5], setup.width, setup.height, &e) : NULL;
 	if (png) {
