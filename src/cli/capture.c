@@ -56,8 +56,10 @@ ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, d
 			    ob_error *e)
 {
 	ob_capture *c = calloc(1, sizeof *c);
-	if (!c)
-		return (void *)(intptr_t)ob_fail(e, "out of memory");
+	if (!c) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
 	c->clock = ob_frame_clock_make(duration, f->fps, step);
 	c->camera = *find_camera(scene, f->camera);
 	c->raw_fd = -1;

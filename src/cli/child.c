@@ -120,12 +120,10 @@ static bool talk(char *const argv[], int pipes[PIPES][2], text texts[PIPES], ob_
 	return child > 0 ? true : ob_fail(e, "cannot start a child process: %s", strerror(failure));
 }
 
-bool ob_child_run(char *const argv[], ob_child_result *r, ob_error *e)
+static bool run_with_pipes(char *const argv[], text texts[PIPES], ob_child_result *r, ob_error *e)
 {
-	*r = (ob_child_result){ 0 };
 	int pipes[PIPES][2] = { { -1, -1 }, { -1, -1 } };
-	text texts[PIPES] = { { calloc(1, TEXT_MAX), 0 }, { calloc(1, TEXT_MAX), 0 } };
-	bool fine = texts[0].bytes && texts[1].bytes ? true : ob_fail(e, "out of memory");
+	bool fine = true;
 	for (int i = 0; fine && i < PIPES; i++) {
 		if (pipe2(pipes[i], O_CLOEXEC) != 0)
 			fine = ob_fail(e, "cannot make a pipe: %s", strerror(errno));
@@ -137,10 +135,23 @@ bool ob_child_run(char *const argv[], ob_child_result *r, ob_error *e)
 				close(pipes[i][end]);
 		}
 	}
-	r->out = texts[0].bytes;
-	r->complaint = texts[1].bytes ? find_complaint(texts[1].bytes) : NULL;
-	free(texts[1].bytes);
-	return fine && r->complaint ? true : fine ? ob_fail(e, "out of memory") : false;
+	return fine;
+}
+
+bool ob_child_run(char *const argv[], ob_child_result *r, ob_error *e)
+{
+	*r = (ob_child_result){ .out = calloc(1, TEXT_MAX) };
+	char *said = calloc(1, TEXT_MAX);
+	bool fine = false;
+	if (r->out && said) {
+		text texts[PIPES] = { { r->out, 0 }, { said, 0 } };
+		fine = run_with_pipes(argv, texts, r, e);
+		r->complaint = find_complaint(said);
+	}
+	if (!r->complaint)
+		fine = ob_fail(e, "out of memory");
+	free(said);
+	return fine;
 }
 
 void ob_child_finish(ob_child_result *r)

@@ -8,55 +8,55 @@
 enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP };
 
 const ob_option ob_option_table[OB_OPTIONS] = {
-	[OB_OPTION_DEFINE] = { "The scene", "define", 'D', "NAME=VALUE", "set a parameter of the scene",
-			       RUN | COMPARE },
-	[OB_OPTION_DURATION] = { NULL, "duration", 0, "S", "simulated seconds (the scene says how many)",
-				 RUN | COMPARE },
-	[OB_OPTION_STEP] = { NULL, "step", 0, "H", "seconds a step, as .01 or 1/60 (the scene's)", RUN | COMPARE },
-	[OB_OPTION_SEED] = { NULL, "seed", 0, "N", "seed of the scene's random numbers (the scene's)", RUN | COMPARE },
+	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene", RUN | COMPARE,
+			       'D' },
+	[OB_OPTION_DURATION] = { NULL, "duration", "S", "simulated seconds (the scene says how many)", RUN | COMPARE,
+				 0 },
+	[OB_OPTION_STEP] = { NULL, "step", "H", "seconds a step, as .01 or 1/60 (the scene's)", RUN | COMPARE, 0 },
+	[OB_OPTION_SEED] = { NULL, "seed", "N", "seed of the scene's random numbers (the scene's)", RUN | COMPARE, 0 },
 
-	[OB_OPTION_ARCH] = { "How it runs", "arch", 0, "obs|monolith",
-			     "one simulator per object, or one ODE world that holds all (obs)", RUN },
-	[OB_OPTION_ISOLATION] = { NULL, "isolation", 0, "thread|process", "what a worker is (thread)", RUN },
-	[OB_OPTION_WORKERS] = { NULL, "workers", 0, "N|objects",
-				"workers in the pool, or one for each object (one per core)", RUN | COMPARE },
-	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", 0, "N", "substeps a step (the scene's; monolith: 1)",
-				 RUN | COMPARE },
-	[OB_OPTION_PASSES] = { NULL, "passes", 0, "N", "rounds of exchange a substep, at most (the scene's)",
-			       RUN | COMPARE },
-	[OB_OPTION_EXCHANGE] = { NULL, "exchange", 0, "coloured|jacobi", "order of exchanges (the scene's)",
-				 RUN | COMPARE },
-	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", 0, "exact|ode",
-				   "free motion in closed form, or by ODE's stepper (the scene's)", RUN | COMPARE },
-	[OB_OPTION_SLEEPING] = { NULL, "sleeping", 0, "on|off", "whether what rests may sleep (the scene's)",
-				 RUN | COMPARE },
-	[OB_OPTION_ITERATIONS] = { NULL, "iterations", 0, "N",
-				   "monolith: iterations of ODE's QuickStep; 0 = its exact solver (20)",
-				   RUN | COMPARE },
-	[OB_OPTION_NAME] = { NULL, "name", 0, "NAME", "name of the universe, for obsim top (obsim-PID)", RUN },
+	[OB_OPTION_ARCH] = { "How it runs", "arch", "obs|monolith",
+			     "one simulator per object, or one ODE world that holds all (obs)", RUN, 0 },
+	[OB_OPTION_ISOLATION] = { NULL, "isolation", "thread|process", "what a worker is (thread)", RUN, 0 },
+	[OB_OPTION_WORKERS] = { NULL, "workers", "N|objects",
+				"workers in the pool, or one for each object (one per core)", RUN | COMPARE, 0 },
+	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)", RUN | COMPARE,
+				 0 },
+	[OB_OPTION_PASSES] = { NULL, "passes", "N", "rounds of exchange a substep, at most (the scene's)",
+			       RUN | COMPARE, 0 },
+	[OB_OPTION_EXCHANGE] = { NULL, "exchange", "coloured|jacobi", "order of exchanges (the scene's)", RUN | COMPARE,
+				 0 },
+	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", "exact|ode",
+				   "free motion in closed form, or by ODE's stepper (the scene's)", RUN | COMPARE, 0 },
+	[OB_OPTION_SLEEPING] = { NULL, "sleeping", "on|off", "whether what rests may sleep (the scene's)",
+				 RUN | COMPARE, 0 },
+	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",
+				   "monolith: iterations of ODE's QuickStep; 0 = its exact solver (20)", RUN | COMPARE,
+				   0 },
+	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", RUN, 0 },
 
-	[OB_OPTION_FRAMES] = { "Frames", "frames", 0, "DIR", "write DIR/frame-000000.png and so on", RUN },
-	[OB_OPTION_VIDEO] = { NULL, "video", 0, "FILE", "write a video through ffmpeg", RUN },
-	[OB_OPTION_RAW] = { NULL, "raw", 0, "FILE", "write raw rgb24 frames; - = standard output", RUN },
-	[OB_OPTION_FPS] = { NULL, "fps", 0, "F", "frames per simulated second (60)", RUN },
-	[OB_OPTION_SIZE] = { NULL, "size", 0, "WxH", "pixels (1280x720)", RUN },
-	[OB_OPTION_SAMPLES] = { NULL, "samples", 0, "N", "samples a pixel, against jagged edges (4)", RUN },
-	[OB_OPTION_CAMERA] = { NULL, "camera", 0, "NAME", "which of the scene's cameras (the first)", RUN },
-	[OB_OPTION_OVERLAY] = { NULL, "overlay", 0, "LIST", "draw over it: aabb, contacts, or both with a comma", RUN },
-	[OB_OPTION_GPU] = { NULL, "gpu", 0, "WHICH", "surfaceless, or the number of a GPU (the first that works)",
-			    RUN },
+	[OB_OPTION_FRAMES] = { "Frames", "frames", "DIR", "write DIR/frame-000000.png and so on", RUN, 0 },
+	[OB_OPTION_VIDEO] = { NULL, "video", "FILE", "write a video through ffmpeg", RUN, 0 },
+	[OB_OPTION_RAW] = { NULL, "raw", "FILE", "write raw rgb24 frames; - = standard output", RUN, 0 },
+	[OB_OPTION_FPS] = { NULL, "fps", "F", "frames per simulated second (60)", RUN, 0 },
+	[OB_OPTION_SIZE] = { NULL, "size", "WxH", "pixels (1280x720)", RUN, 0 },
+	[OB_OPTION_SAMPLES] = { NULL, "samples", "N", "samples a pixel, against jagged edges (4)", RUN, 0 },
+	[OB_OPTION_CAMERA] = { NULL, "camera", "NAME", "which of the scene's cameras (the first)", RUN, 0 },
+	[OB_OPTION_OVERLAY] = { NULL, "overlay", "LIST", "draw over it: aabb, contacts, or both with a comma", RUN, 0 },
+	[OB_OPTION_GPU] = { NULL, "gpu", "WHICH", "surfaceless, or the number of a GPU (the first that works)", RUN,
+			    0 },
 
-	[OB_OPTION_RECORD] = { "What is kept", "record", 0, "FILE", "trajectories, as HDF5", RUN },
-	[OB_OPTION_SERIES] = { NULL, "series", 0, "FILE", "energy, momentum, penetration of each step, as CSV", RUN },
-	[OB_OPTION_SUMMARY] = { NULL, "summary", 0, "FILE", "the report, as CSV", RUN },
-	[OB_OPTION_JSON] = { NULL, "json", 0, "FILE", "the report, as JSON; - = standard output", RUN | COMPARE },
-	[OB_OPTION_MEASURE] = { NULL, "measure", 0, "step|times|end", "each step, only its time, or neither (step)",
-				RUN },
+	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE", "trajectories, as HDF5", RUN, 0 },
+	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
+	[OB_OPTION_SUMMARY] = { NULL, "summary", "FILE", "the report, as CSV", RUN, 0 },
+	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
+	[OB_OPTION_MEASURE] = { NULL, "measure", "step|times|end", "each step, only its time, or neither (step)", RUN,
+				0 },
 
-	[OB_OPTION_ONCE] = { "The view", "once", 0, NULL, "print once, for pipes, and end", TOP },
-	[OB_OPTION_INTERVAL] = { NULL, "interval", 0, "S", "seconds between looks (1)", TOP },
+	[OB_OPTION_ONCE] = { "The view", "once", NULL, "print once, for pipes, and end", TOP, 0 },
+	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
-	[OB_OPTION_HELP] = { "Other", "help", 'h', NULL, "print this and end", RUN | COMPARE | TOP },
+	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end", RUN | COMPARE | TOP, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -74,7 +74,7 @@ static int unknown(const ob_arguments *a, const char *name, ob_error *e)
 // The values that an argument like "obs|monolith" allows; upper case in it means that anything may stand there.
 static bool check_choice(const ob_option *o, const char *value, ob_error *e)
 {
-	if (!strchr(o->argument, '|') || strpbrk(o->argument, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
+	if (!o->argument || !strchr(o->argument, '|') || strpbrk(o->argument, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
 		return true;
 	char words[64];
 	snprintf(words, sizeof words, "%s", o->argument);
@@ -95,9 +95,9 @@ static bool add_define(ob_arguments *a, const char *text, ob_error *e)
 	size_t name = strcspn(text, "=");
 	if (!text[name] || name == 0)
 		return ob_fail(e, "-D %s: expected NAME=VALUE, as in -D n=100", text);
-	for (uint32_t i = 0; i < a->defines; i++) {
-		if (strncmp(a->define[i], text, name + 1) == 0)
-			return ob_fail(e, "-D %.*s is given twice: %s and %s", (int)name, text, a->define[i], text);
+	for (const char **other = a->define; *other; other++) {
+		if (strncmp(*other, text, name + 1) == 0)
+			return ob_fail(e, "-D %.*s is given twice: %s and %s", (int)name, text, *other, text);
 	}
 	a->define[a->defines++] = text;
 	return true;
@@ -112,7 +112,7 @@ static bool set(ob_arguments *a, ob_option_id id, const char *value, ob_error *e
 		return ob_fail(e, "--%s is given twice", o->name);
 	if (o->argument && !*value)
 		return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
-	if (o->argument && !check_choice(o, value, e))
+	if (!check_choice(o, value, e))
 		return false;
 	a->value[id] = value;
 	return true;

@@ -49,10 +49,10 @@ typedef enum ob_option_id {
 typedef struct ob_option {
 	const char *group; // heading in the help; NULL = under the one before
 	const char *name; // without the dashes
-	char letter; // short form; 0 = none
 	const char *argument; // NULL = a flag; lower-case words with | between them are the only values allowed
 	const char *help;
 	unsigned commands; // ob_command_bit
+	char letter; // short form; 0 = none
 } ob_option;
 
 extern const ob_option ob_option_table[OB_OPTIONS];
@@ -60,7 +60,7 @@ extern const ob_option ob_option_table[OB_OPTIONS];
 typedef struct ob_arguments {
 	ob_command_bit command;
 	const char *value[OB_OPTIONS]; // as on the command line; NULL = not given, "" = a flag that was given
-	const char **define; // every -D, in order
+	const char **define; // every -D, in order; NULL ends
 	uint32_t defines;
 	const char *operand; // the scene file or the universe's name; NULL = none
 } ob_arguments;

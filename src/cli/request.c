@@ -29,6 +29,13 @@ static bool real(const ob_arguments *a, ob_option_id id, double most, double *ou
 	return ob_number_real(name_of(id), a->value[id], 0, most, out, e);
 }
 
+// dirname() writes into its argument.
+static bool copy_path(char copy[PATH_MAX], const char *option, const char *path, ob_error *e)
+{
+	int n = snprintf(copy, PATH_MAX, "%s", path);
+	return n < PATH_MAX ? true : ob_fail(e, "--%s: the path is too long", option);
+}
+
 // Whether making the directory "made" makes dir on the way
 static bool is_made(const char *dir, const char *made)
 {
@@ -40,9 +47,8 @@ static bool is_made(const char *dir, const char *made)
 static bool check_file(const char *option, const char *path, const char *made, ob_error *e)
 {
 	char copy[PATH_MAX];
-	if (strlen(path) >= sizeof copy)
-		return ob_fail(e, "--%s: the path is too long", option);
-	strcpy(copy, path);
+	if (!copy_path(copy, option, path, e))
+		return false;
 	const char *dir = dirname(copy);
 	struct stat s;
 	if (stat(dir, &s) != 0 && is_made(dir, made))
@@ -66,10 +72,7 @@ static bool check_directory(const char *option, const char *path, ob_error *e)
 	struct stat s;
 	if (stat(path, &s) != 0) {
 		char copy[PATH_MAX];
-		if (strlen(path) >= sizeof copy)
-			return ob_fail(e, "--%s: the path is too long", option);
-		strcpy(copy, path);
-		return check_directory(option, dirname(copy), e);
+		return copy_path(copy, option, path, e) && check_directory(option, dirname(copy), e);
 	}
 	if (!S_ISDIR(s.st_mode))
 		return ob_fail(e, "--%s %s: this is a file, expected a directory", option, path);
