@@ -80,17 +80,14 @@ ob_phase ob_gate_wait(ob_universe *u, uint32_t worker)
 	if (!has_turn(g, cell) && !(g->spin && spin_for_turn(g, cell))) {
 		ob_gate_half *half = u->gate_group[worker / 64].half + worker / 32 % 2;
 		uint32_t bit = UINT32_C(1) << worker % 32;
+		__atomic_fetch_or(&half->asleep, bit, __ATOMIC_SEQ_CST);
 		for (;;) {
 			uint32_t seen = look(&half->word);
 			if (has_turn(g, cell))
 				break;
-			__atomic_fetch_or(&half->asleep, bit, __ATOMIC_SEQ_CST);
-			if (has_turn(g, cell)) {
-				__atomic_fetch_and(&half->asleep, ~bit, __ATOMIC_SEQ_CST);
-				break;
-			}
 			futex_wait(&half->word, seen, bit, NULL);
 		}
+		__atomic_fetch_and(&half->asleep, ~bit, __ATOMIC_SEQ_CST);
 	}
 	if (look(&g->stop))
 		return OB_PHASE_STOP;
@@ -126,7 +123,8 @@ static void admit_half(ob_universe *u, uint32_t first, ob_gate_half *half, uint3
 	for (uint32_t rest = part; rest; rest &= rest - 1)
 		__atomic_store_n(&u->gate_cell[first + (uint32_t)__builtin_ctz(rest)].turn, turn, __ATOMIC_RELEASE);
 	__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
-	uint32_t wake = __atomic_fetch_and(&half->asleep, ~part, __ATOMIC_SEQ_CST) & part;
+	// An exchange of nothing, not a load: it and the waiter's "or" see each other in one order or the other.
+	uint32_t wake = __atomic_fetch_or(&half->asleep, 0, __ATOMIC_SEQ_CST) & part;
 	if (wake)
 		futex_wake(&half->word, wake);
 }

@@ -21,10 +21,12 @@
 // was written before an arrival before everything that the last one does.
 //
 // Sleep: 32 workers share one futex word, and the wait names the worker's bit (FUTEX_WAIT_BITSET), so that one
-// system call wakes exactly those of the 32 who take part. A waiter raises its bit in asleep, looks at its cell once
-// more, and waits on the word as it was before; the opener writes the cells, then the word, then takes the bits of
-// those who take part out of asleep. Both meet in asleep: whichever comes second sees what the other wrote. Where
-// every worker has a core, it spins on its cell for SPIN_NS before it sleeps (waking a core costs some 30 us).
+// system call wakes exactly those of the 32 who take part. A waiter raises its bit in asleep, reads the word, looks at
+// its cell, and waits on the word as it was; the opener writes the cells, then the word, then looks who is asleep.
+// Both meet in asleep: whichever comes second sees what the other wrote. The bit is the waiter's alone, which takes it
+// down when it has its turn: an opener that takes no part itself may be so late that its turn is long over, and must
+// not take away what a worker raised for the next. All it can do then is wake someone who looks and waits again.
+// Where every worker has a core, it spins on its cell for SPIN_NS before it sleeps (waking a core costs some 30 us).
 //
 // STOP is a flag of its own, set once; it moves every word and wakes everyone.
 #ifndef OB_TABLE_GATE_H
