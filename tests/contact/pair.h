@@ -50,15 +50,17 @@ static inline body random_body(uint64_t *seed, double mass)
 // Points in a plane across a random normal. mass_ratio: of b; infinity makes it fixed.
 static inline pair random_pair(uint64_t *seed, double mass_ratio)
 {
-	pair p = { .normal = random_direction(seed), .points = 1 + (int)(4 * uniform(seed)) };
+	pair p = { .normal = random_direction(seed) };
 	ob_vec3 t1, t2;
+	p.points = 1 + (int)(4 * uniform(seed));
 	p.a = random_body(seed, within(seed, .5, 2));
 	p.b = isinf(mass_ratio) ? fixed_body() : random_body(seed, mass_ratio * p.a.mass);
 	p.mu = within(seed, 0, 1);
 	ob_tangents(p.normal, &t1, &t2);
 	ob_vec3 centre = random_vector(seed, .5);
 	for (int j = 0; j < p.points; j++) {
-		ob_vec3 x = ob_madd(ob_madd(centre, within(seed, -.5, .5), t1), within(seed, -.5, .5), t2);
+		double along = within(seed, -.5, .5), across = within(seed, -.5, .5);
+		ob_vec3 x = ob_madd(ob_madd(centre, along, t1), across, t2);
 		p.arm_a[j] = ob_sub(x, p.a.p);
 		p.arm_b[j] = ob_sub(x, p.b.p);
 	}

@@ -98,7 +98,7 @@ static void test_box_on_plane(void)
 	uint64_t seed = 4;
 	for (int i = 0; i < 2000; i++) {
 		rigid g = random_rigid(&seed);
-		ob_vec3 size = random_size(&seed), local = ob_v3(within(&seed, -3, 3), within(&seed, -3, 3), 0);
+		ob_vec3 size = random_size(&seed), local = random_vector(&seed, 3);
 		ob_quat q = random_attitude(&seed);
 		ob_mat3 r = ob_quat_matrix(q);
 		double height[8], low = INFINITY, margin = within(&seed, 0, 1);
@@ -169,7 +169,8 @@ static void test_boxes_on_corner_and_edge(void)
 		ob_quat upright = ob_quat_turn(ob_quat_turn(ob_quat_identity(), ob_v3(M_PI / 4, 0, 0)),
 					       ob_v3(0, -atan(sqrt(.5)), 0));
 		ob_quat q = ob_quat_turn(upright, ob_v3(0, 0, turn));
-		ob_vec3 tip = ob_v3(within(&seed, -1, 1), within(&seed, -1, 1), 1 + gap);
+		ob_vec3 tip = random_vector(&seed, 1);
+		tip.z = 1 + gap;
 		ob_placed a =
 			rigid_place(&g, OB_SHAPE_BOX, ob_v3(.5, .5, .5), ob_madd(tip, sqrt(.75), ob_v3(0, 0, 1)), q);
 		check_point(&a, &b, rigid_turn(&g, ob_v3(0, 0, 1)), rigid_point(&g, ob_sub(tip, ob_v3(0, 0, .5 * gap))),

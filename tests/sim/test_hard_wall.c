@@ -21,7 +21,8 @@ static shot shoot(uint64_t *seed, double speed)
 	double x = -within(seed, 3, 4), y = within(seed, -.25, .25), z = within(seed, -.25, .25);
 	little_object *o = little_box(s, 1, ob_v3(.1, .1, .1), ob_v3(x, y, z));
 	o->state.pose.q = random_attitude(seed);
-	o->state.v = ob_v3(speed, .1 * speed * within(seed, -1, 1), .1 * speed * within(seed, -1, 1));
+	o->state.v = random_vector(seed, .1 * speed);
+	o->state.v.x = speed;
 	o->state.w = random_vector(seed, 1);
 	little_universe l;
 	little_open(&l, s);
