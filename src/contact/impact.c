@@ -118,6 +118,24 @@ static double sweep_normals(const rows *r, double *x, double *rate)
 	return change;
 }
 
+// Where a long lever jams, the sweeps do not settle. Then all impulses shrink until they bring no energy:
+// x J v + x A x / 2 <= 0, with the rates of the instant of impact.
+static void shrink_to_energy(const rows *r, double *x)
+{
+	double given = 0, spread = 0;
+	for (int i = 0; i < OB_ROWS; i++) {
+		double at_impact = i < 4 ? r->rate[i] - r->goal[i] : r->rate[i];
+		if (x[i] == 0)
+			continue;
+		given += x[i] * at_impact;
+		for (int j = 0; j < OB_ROWS; j++)
+			spread += x[i] * r->a[i][j] * x[j];
+	}
+	double share = spread > 0 ? fmin(1, -2 * given / spread) : 1;
+	for (int i = 0; i < OB_ROWS; i++)
+		x[i] *= fmax(0, share);
+}
+
 // First the impact without rebound: projected Gauss-Seidel until nothing changes. All impulses times 1 + e then send
 // every point off at e times its approach or faster, and cannot gain energy: the plastic solution x obeys
 // x (J v + A x) <= 0, so the change (1+e) x J v + (1+e)^2/2 x A x is at most -(1+e)(1-e)/2 x A x. Last, friction finds
@@ -138,6 +156,7 @@ static void rows_solve(const rows *r, const ob_batch *b, int l, double e, double
 	change = 1;
 	for (int s = 0; s < 50 && change > done; s++)
 		change = sweep_friction(r, b, l, x, rate);
+	shrink_to_energy(r, x);
 }
 
 bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
