@@ -160,22 +160,27 @@ static inline void finish_alone(const ob_batch *b, lane_mask unfinished, lanes *
 	}
 }
 
-static inline void publish(const ob_batch *b, bool jacobi, const lanes *d, lanes *va, lanes *vb, ob_body_row *v,
-			   ob_body_row *delta)
+// Where a body may stand in several lanes its changes are added one by one, in lane order.
+static inline void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
 {
-	if (!jacobi) {
-		apply(b, d, va, vb);
-		scatter_both(b, v, va, vb);
-		return;
-	}
-	// A body may stand in several lanes: their changes are added one by one, in lane order.
 	lanes da[6] = { 0 }, db[6] = { 0 };
 	apply(b, d, da, db);
 	for (int l = 0; l < OB_LANES; l++)
 		for (int c = 0; c < 6; c++) {
-			delta[b->body_a[l]][c] += da[c][l];
-			delta[b->body_b[l]][c] += db[c][l];
+			rows[b->body_a[l]][c] += da[c][l];
+			rows[b->body_b[l]][c] += db[c][l];
 		}
+}
+
+static inline void publish(const ob_batch *b, bool jacobi, const lanes *d, lanes *va, lanes *vb, ob_body_row *v,
+			   ob_body_row *delta)
+{
+	if (jacobi) {
+		add_changes(b, d, delta);
+		return;
+	}
+	apply(b, d, va, vb);
+	scatter_both(b, v, va, vb);
 }
 
 // How far each gap may close in the substep, as a rate. Restitution is exact in time, so an elastic point must not be
@@ -268,7 +273,7 @@ static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 
 static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v)
 {
-	lanes d[7] = { 0 }, va[6], vb[6];
+	lanes d[7] = { 0 };
 	if (!b->impact)
 		return;
 	for (int l = 0; l < OB_LANES; l++) {
@@ -283,9 +288,7 @@ static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_
 			b->impulse[i][l] += d[i][l];
 		}
 	}
-	gather_both(b, v, va, vb);
-	apply(b, d, va, vb);
-	scatter_both(b, v, va, vb);
+	add_changes(b, d, v);
 	b->impact = 0;
 }
 
