@@ -125,6 +125,7 @@ static bool open_outputs(run *r, ob_error *e)
 	if (q->record) {
 		ob_universe_info info;
 		ob_universe_get_info(ob_host_universe(r->host), &info);
+		info.capacity = r->scene->objects; // spare slots stay empty here
 		r->recorder = ob_recorder_create(q->record, &info, r->scene->title, e);
 		if (!r->recorder)
 			return false;

@@ -176,8 +176,9 @@ static bool append(ob_recorder *r, int column, const void *row)
 
 bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 {
-	if (s->count > r->count)
-		return ob_fail(e, "%s: the universe has grown from %u to %u objects", r->path, r->count, s->count);
+	for (uint32_t id = r->count; id < s->count; id++)
+		if (is_present(s, id))
+			return ob_fail(e, "%s: object %u came up, but only %u were to be recorded", r->path, id, r->count);
 	haddr_t used = 0;
 	if (H5Fget_eoa(r->file, &used) >= 0 && !ob_room_ensure(&r->room, r->path, used, r->append_bytes, e))
 		return false;
