@@ -19,7 +19,8 @@
 #include "measure/measure.h"
 
 typedef struct ob_recorder ob_recorder;
-// Creates an HDF5 file, or replaces one. NULL and e on failure. The file is whole after each append: a later reader
+// Creates an HDF5 file, or replaces one, with a column for each of ids 0 .. info->capacity - 1; others must stay absent.
+// NULL and e on failure. The file is whole after each append: a later reader
 // finds all states up to then, also when the process crashes later, and when the disk is full. Killed in the midst of
 // an append it may be unreadable: 1 of 60 kills of a writer that did nothing else.
 ob_recorder *ob_recorder_create(const char *path, const ob_universe_info *info, const char *scene_title, ob_error *e);
