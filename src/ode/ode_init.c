@@ -60,11 +60,11 @@ void ob_ode_thread_finish(void)
 }
 
 #ifdef __SANITIZE_THREAD__
-// ODE hands the memory of a destroyed geometry to the next one, of any thread, by a locked exchange. Debian's library
-// is not built for ThreadSanitizer, which therefore sees the hand-over but not the lock.
+// ODE hands memory that a geometry no longer needs (it is destroyed, or has a body now) to the next one, of any thread,
+// by a locked exchange. Debian's library is not built for ThreadSanitizer, which sees the hand-over but not the lock.
 const char *__tsan_default_suppressions(void);
 __attribute__((visibility("default"))) const char *__tsan_default_suppressions(void)
 {
-	return "race:dxGeom::~dxGeom\n";
+	return "race:dxGeom::~dxGeom\nrace:dGeomSetBody\n";
 }
 #endif
