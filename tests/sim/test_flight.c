@@ -1,0 +1,98 @@
+// Objects that touch nothing: the closed form step by step, and ODE's own stepper with its error of the first order.
+#include <stdlib.h>
+
+#include "check.h"
+#include "little_universe.h"
+
+static const double g = 9.81; // m/s^2
+
+static little_scene *thrown_box(ob_integrator integrator, uint32_t substeps)
+{
+	little_scene *s = little_scene_new();
+	s->run.integrator = integrator;
+	s->run.substeps = substeps;
+	little_object *o = little_box(s, 48, ob_v3(.3, .2, .1), ob_v3(1, 2, 50));
+	o->state.v = ob_v3(3, -2, 4);
+	o->state.w = ob_v3(1, 5, .2);
+	return s;
+}
+
+// m, after 2 s
+static double error_at_two_seconds(ob_integrator integrator, uint32_t substeps)
+{
+	little_scene *s = thrown_box(integrator, substeps);
+	little_universe l;
+	little_open(&l, s);
+	little_run_to(&l, 2);
+	ob_vec3 exact = ob_v3(7, -2, 50 + 8 - .5 * g * 4);
+	double error = ob_norm(ob_sub(little_state(&l, 0).pose.p, exact));
+	little_close(&l);
+	free(s);
+	return error;
+}
+
+// Position, velocity, energy and angular momentum, and the attitude by the motion's closed form in one leap.
+static void test_exact(void)
+{
+	little_scene *s = thrown_box(OB_INTEGRATOR_EXACT, 8);
+	little_universe l;
+	little_open(&l, s);
+	ob_motion thrown = l.now.motion[0];
+	ob_vec3 spin = ob_measure_angular_momentum(&l.now);
+	double energy = little_energy(&l);
+	CHECK(thrown.flags & OB_MOTION_FREE);
+	little_run_to(&l, 2);
+	ob_state at = little_state(&l, 0), leap = ob_motion_at(&thrown, s->object[0].passport.inertia, 2);
+	CHECK_NEAR(ob_norm(ob_sub(at.pose.p, leap.pose.p)), 0, 1e-12);
+	CHECK_NEAR(ob_norm(ob_sub(at.v, ob_v3(3, -2, 4 - 2 * g))), 0, 1e-12);
+	ob_quat p = at.pose.q, q = leap.pose.q;
+	CHECK_NEAR(fabs(p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z), 1, 1e-12);
+	CHECK_NEAR(ob_norm(ob_sub(at.w, leap.w)), 0, 1e-10);
+	CHECK_NEAR(little_energy(&l) / energy, 1, 1e-12);
+	// about the falling centre
+	ob_vec3 centre = at.pose.p, m = ob_scale(at.v, 48);
+	ob_vec3 own = ob_sub(ob_measure_angular_momentum(&l.now), ob_cross(centre, m));
+	ob_vec3 own_before = ob_sub(spin, ob_cross(thrown.p, ob_scale(thrown.v, 48)));
+	CHECK_NEAR(ob_norm(ob_sub(own, own_before)) / ob_norm(own_before), 0, 1e-12);
+	CHECK(l.now.motion[0].flags & OB_MOTION_FREE);
+	little_close(&l);
+	free(s);
+}
+
+// Semi-implicit Euler with step k falls short by g t k / 2.
+static void test_by_ode(void)
+{
+	for (uint32_t substeps = 1; substeps <= 16; substeps *= 4) {
+		double step = 1. / 60 / substeps;
+		CHECK_NEAR(error_at_two_seconds(OB_INTEGRATOR_ODE, substeps) / (.5 * g * 2 * step), 1, .01);
+	}
+	CHECK(error_at_two_seconds(OB_INTEGRATOR_EXACT, 1) < 1e-12);
+}
+
+// An object that touches nothing is nobody's business: others far away change no bit of it.
+static void test_alone_or_not(void)
+{
+	little_scene *s = thrown_box(OB_INTEGRATOR_EXACT, 8);
+	little_universe l;
+	ob_state end[2];
+	for (int k = 0; k < 2; k++) {
+		little_open(&l, s);
+		little_run_to(&l, 2);
+		end[k] = little_state(&l, 0);
+		little_close(&l);
+		little_ground(s)->state.pose.p.z = -100;
+		for (int i = 0; i < 30; i++)
+			little_sphere(s, 1, .5, ob_v3(20 + .9 * i, 0, -99.5));
+	}
+	CHECK(end[0].pose.p.x == end[1].pose.p.x && end[0].pose.p.z == end[1].pose.p.z);
+	CHECK(end[0].pose.q.w == end[1].pose.q.w && end[0].w.x == end[1].w.x);
+	free(s);
+}
+
+int main(void)
+{
+	test_exact();
+	test_by_ode();
+	test_alone_or_not();
+	return check_end();
+}

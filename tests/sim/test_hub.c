@@ -1,0 +1,52 @@
+// One platform under a hundred boxes: a body with more partners than there are colours.
+#include <stdlib.h>
+
+#include "check.h"
+#include "little_universe.h"
+#include "sim/island.h"
+
+enum { SIDE = 10, BOXES = SIDE * SIDE };
+static_assert(BOXES > (int)OB_COLOURS, "more partners than colours");
+
+// platform_mass 0: static.
+// limit: m, of the depth at any moment. Jacobi exchanges, with their split masses, stop a landing late.
+static void stand(ob_exchange_kind exchange, double platform_mass, double limit)
+{
+	little_scene *s = little_scene_new();
+	s->run.exchange = exchange;
+	little_ground(s);
+	little_box(s, platform_mass, ob_v3(6, 6, .5), ob_v3(0, 0, .5));
+	for (int i = 0; i < BOXES; i++)
+		little_box(s, 100, ob_v3(.4, .4, .4), ob_v3(i % SIDE - 4.5, i / SIDE - 4.5, 1.45 + .01 * (i % 7)));
+	little_universe l;
+	little_open(&l, s);
+	double deepest = 0;
+	for (int step = 0; step < 300; step++) {
+		little_run(&l, 1);
+		deepest = fmax(deepest, little_penetration(&l).max_m);
+	}
+	double off = 0, speed = 0;
+	for (uint32_t i = 2; i < 2 + BOXES; i++) {
+		ob_state at = little_state(&l, i);
+		ob_vec3 start = s->object[i].state.pose.p;
+		off = fmax(off, ob_norm(ob_sub(at.pose.p, ob_v3(start.x, start.y, 1.4))));
+		speed = fmax(speed, ob_norm(at.v));
+	}
+	printf("exchange %d, platform %g kg: deepest %.3f mm, boxes off by %.3f mm, at most %.1e m/s\n", exchange,
+	       platform_mass, 1e3 * deepest, 1e3 * off, speed);
+	CHECK(deepest < limit);
+	CHECK(off < 1e-3);
+	CHECK(speed < 1e-3);
+	CHECK(ob_universe_exchange(l.u)->count->islands == (platform_mass > 0 ? 1 : BOXES));
+	little_close(&l);
+	free(s);
+}
+
+int main(void)
+{
+	stand(OB_EXCHANGE_COLOURED, 0, .2e-3);
+	stand(OB_EXCHANGE_COLOURED, 5000, .2e-3);
+	stand(OB_EXCHANGE_JACOBI, 0, .2e-3);
+	stand(OB_EXCHANGE_JACOBI, 5000, 5e-3);
+	return check_end();
+}

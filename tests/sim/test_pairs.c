@@ -1,0 +1,219 @@
+// Pairs are those whose boxes overlap, whoever looked around and in whatever order; each keeps its record while it
+// lasts.
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "little_universe.h"
+#include "sim/index.h"
+#include "sim/pairs.h"
+#include "sim/perceive.h"
+
+#include "motion/random.h"
+
+enum { BODIES = 200, STATICS = 20 };
+
+static little_scene *scene(uint64_t *seed)
+{
+	little_scene *s = little_scene_new();
+	for (int i = 0; i < BODIES; i++) {
+		double r = within(seed, .1, .5);
+		little_sphere(s, i < STATICS ? 0 : 1, r, random_vector(seed, 4));
+	}
+	little_ground(s)->state.pose.p.z = -2;
+	return s;
+}
+
+static void shuffle(uint64_t *seed, uint32_t *id, uint32_t n)
+{
+	for (uint32_t i = n; i > 1; i--) {
+		uint32_t j = (uint32_t)(i * uniform(seed)), t = id[i - 1];
+		id[i - 1] = id[j];
+		id[j] = t;
+	}
+}
+
+// What a MEMBERS phase does: those who asked go into the index and look around, then the arranger merges.
+static void look_around(ob_universe *u)
+{
+	uint32_t count;
+	const uint32_t *list = ob_rebound_list(u, &count);
+	for (uint32_t i = 0; i < count; i++)
+		ob_index_put(u, list[i]);
+	for (uint32_t i = 0; i < count; i++)
+		ob_perceive(u, list[i]);
+	ob_pairs_merge(u);
+	ob_rebound_list(u, &count);
+	CHECK(count == 0);
+}
+
+// These objects move to where the seed says, in this order.
+static void move(ob_universe *u, const uint32_t *id, uint32_t n, uint64_t seed)
+{
+	for (uint32_t i = 0; i < n; i++) {
+		uint64_t own = seed * 1000 + id[i];
+		const ob_passport *p = ob_passport_of(u, id[i]);
+		ob_motion m = *ob_newest_motion(u, id[i]);
+		m.p = random_vector(&own, 4);
+		ob_publish_motion(u, id[i], &m);
+		ob_claim_bounds_anew(u, id[i], p->shape, p->size, (ob_pose){ m.p, m.q }, .01);
+	}
+}
+
+static bool overlap(const ob_universe *u, uint32_t i, uint32_t j)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	const float *a = ex->bounds[i], *b = ex->bounds[j];
+	if (ex->brief[i].state == OB_BRIEF_STATIC && ex->brief[j].state == OB_BRIEF_STATIC)
+		return false;
+	if (j == BODIES) // the ground
+		return a[2] <= -2;
+	for (int c = 0; c < 3; c++)
+		if (a[c] > b[3 + c] || b[c] > a[3 + c])
+			return false;
+	return true;
+}
+
+// Exactly the overlapping ones, sorted, each with a record of its own, none of them lost.
+static void check_pairs(const ob_universe *u)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t k = 0, n = ex->count->pairs;
+	bool *used = calloc(ex->pairs_max, sizeof *used);
+	for (uint32_t i = 0; i <= BODIES; i++)
+		for (uint32_t j = i + 1; j <= BODIES; j++)
+			if (overlap(u, i, j)) {
+				CHECK(k < n && ex->pair[k].a == i && ex->pair[k].b == j);
+				k++;
+			}
+	CHECK(k == n && n > BODIES / 2);
+	for (uint32_t i = 0; i < n; i++) {
+		CHECK(ex->pair[i].record < ex->count->records_used && !used[ex->pair[i].record]);
+		used[ex->pair[i].record] = true;
+	}
+	CHECK(ex->count->records_used - ex->count->records_free == n);
+	CHECK(ex->count->failure == 0);
+	free(used);
+}
+
+// A pair that may touch before its members have moved by the distance between them has a limit that is too high.
+static void check_limits(const ob_universe *u)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	for (uint32_t k = 0; k < ex->count->pairs; k++) {
+		const ob_pair_key *p = &ex->pair[k];
+		const ob_motion *a = ob_newest_motion(u, p->a), *b = ob_newest_motion(u, p->b);
+		double ra = ob_passport_of(u, p->a)->size.x, rb = ob_passport_of(u, p->b)->size.x;
+		double apart = p->b == BODIES ? a->p.z + 2 - ra : ob_norm(ob_sub(a->p, b->p)) - ra - rb;
+		CHECK(p->limit <= fmax(apart, 0) + 1e-12);
+		CHECK(p->limit < 0 || p->limit >= apart - 1e-12); // spheres: the bound is the distance
+	}
+}
+
+static void test_merge(void)
+{
+	uint64_t seed = 1;
+	little_scene *s = scene(&seed);
+	ob_universe *u = little_populate(s, 1);
+	look_around(u);
+	check_pairs(u);
+	check_limits(u);
+	for (uint64_t round = 1; round <= 30; round++) {
+		uint32_t id[BODIES], n = 0;
+		for (uint32_t i = STATICS; i < BODIES; i++)
+			if (uniform(&seed) < .2)
+				id[n++] = i;
+		move(u, id, n, round);
+		look_around(u);
+		check_pairs(u);
+	}
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
+// Two universes, the same moves in another order: the same bytes.
+static void test_order(void)
+{
+	uint64_t seed = 2, other = 3;
+	little_scene *s = scene(&seed);
+	ob_universe *u[2] = { little_populate(s, 1), little_populate(s, 1) };
+	for (uint64_t round = 0; round <= 20; round++) {
+		uint32_t id[BODIES], n = 0;
+		for (uint32_t i = STATICS; i < BODIES && round; i++)
+			if (uniform(&seed) < .3)
+				id[n++] = i;
+		for (int k = 0; k < 2; k++) {
+			shuffle(&other, id, n);
+			move(u[k], id, n, round);
+			look_around(u[k]);
+		}
+		const ob_exchange *x = ob_universe_exchange(u[0]), *y = ob_universe_exchange(u[1]);
+		CHECK(x->count->pairs == y->count->pairs);
+		for (uint32_t i = 0; i < x->count->pairs; i++) {
+			const ob_pair_key *p = &x->pair[i], *q = &y->pair[i];
+			CHECK(p->a == q->a && p->b == q->b && p->record == q->record && p->limit == q->limit);
+		}
+	}
+	ob_universe_destroy(u[0], true);
+	ob_universe_destroy(u[1], true);
+	free(s);
+}
+
+// A pair in touch is let go by its island's solver, not because its members' boxes have parted.
+static void test_active_stays(void)
+{
+	uint64_t seed = 4;
+	little_scene *s = scene(&seed);
+	ob_universe *u = little_populate(s, 1);
+	ob_exchange *ex = ob_universe_exchange(u);
+	look_around(u);
+	uint32_t k = 0;
+	while (ex->pair[k].a < STATICS || ex->pair[k].b == BODIES)
+		k++;
+	uint32_t a = ex->pair[k].a, b = ex->pair[k].b, record = ex->pair[k].record, before = ex->count->pairs;
+	ex->pair[k].active = 1;
+	ob_motion m = *ob_newest_motion(u, a);
+	m.p = ob_v3(100, 0, 100);
+	ob_publish_motion(u, a, &m);
+	ob_claim_bounds_anew(u, a, OB_SHAPE_SPHERE, ob_passport_of(u, a)->size, (ob_pose){ m.p, m.q }, 0);
+	look_around(u);
+	int of_a = 0;
+	for (uint32_t i = 0; i < ex->count->pairs; i++)
+		if (ex->pair[i].a == a || ex->pair[i].b == a) {
+			of_a++;
+			CHECK(ex->pair[i].a == a && ex->pair[i].b == b && ex->pair[i].record == record);
+		}
+	CHECK(of_a == 1 && ex->count->pairs < before);
+	ob_pairs_drop(u, a);
+	CHECK(ex->count->records_used - ex->count->records_free == ex->count->pairs);
+	for (uint32_t i = 0; i < ex->count->pairs; i++)
+		CHECK(ex->pair[i].a != a && ex->pair[i].b != a);
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
+// The newest version is read, the other written, and becomes the newest when it is stamped.
+static void test_versions(void)
+{
+	ob_pair_record r;
+	memset(&r, 0, sizeof r);
+	CHECK(ob_pair_newest(&r) == NULL);
+	for (uint64_t step = 0; step < 5; step++) {
+		const ob_pair_state *before = ob_pair_newest(&r);
+		ob_pair_state *next = ob_pair_writable(&r);
+		CHECK(next != before);
+		next->points = (uint32_t)step + 1;
+		CHECK(ob_pair_newest(&r) == before); // a step that is not finished can be done again
+		ob_pair_written(&r, step);
+		CHECK(ob_pair_newest(&r) == next && ob_pair_newest(&r)->points == step + 1);
+	}
+}
+
+int main(void)
+{
+	test_merge();
+	test_order();
+	test_active_stays();
+	test_versions();
+	return check_end();
+}
