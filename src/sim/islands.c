@@ -9,20 +9,26 @@
 
 enum { NONE = UINT32_MAX };
 
-// The arranger's view while it plans. Roots of the union-find forest are the lowest ids of their trees.
+// The arranger's view while it plans: two union-find forests, whose roots are the lowest ids of their trees.
+//
+// A cluster is what may come to share a speed within the step: what touches, what will hit each other as it moves now.
+// Its reach is that of its fastest member. An island is all clusters that may touch each other, if each gets as far as
+// its reach. So one fast object draws its surroundings into its island, but not the surroundings of its surroundings,
+// unless it is so fast that something could be passed through unseen.
 typedef struct plan {
 	ob_universe *u;
 	ob_exchange *ex;
 	uint32_t ids;
-	uint32_t *parent; // [id]
+	uint32_t *cluster; // [id]: parent
+	uint32_t *parent; // [id]: in the forest of islands
 	uint32_t *island_of; // [root]
-	float *reach; // [root]: of the fastest member, m in the next step
+	float *reach; // [root of a cluster]: m in the next step
 } plan;
 
-static uint32_t root_of(const plan *p, uint32_t i)
+static uint32_t root_of(uint32_t *parent, uint32_t i)
 {
-	while (p->parent[i] != i)
-		i = p->parent[i] = p->parent[p->parent[i]];
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
 	return i;
 }
 
@@ -30,42 +36,77 @@ static bool dynamic(const plan *p, uint32_t id)
 {
 	return p->ex->brief[id].state >= OB_BRIEF_AWAKE;
 }
+
 static bool asleep(const plan *p, uint32_t id)
 {
 	return p->ex->brief[id].state == OB_BRIEF_ASLEEP;
 }
 
-// May the pair touch within the step, if its members may get as far as their islands' fastest members?
+static double reach_of(const plan *p, uint32_t id)
+{
+	return dynamic(p, id) ? p->reach[root_of(p->cluster, id)] : 0;
+}
+
+// Lower bound of the distance (m).
+static double distance(const plan *p, const ob_pair_key *k)
+{
+	return k->limit - p->ex->brief[k->a].path - p->ex->brief[k->b].path;
+}
+
 static bool may_touch(const plan *p, const ob_pair_key *k)
 {
-	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
-	double reach = (dynamic(p, k->a) ? p->reach[root_of(p, k->a)] : 0) +
-		       (dynamic(p, k->b) ? p->reach[root_of(p, k->b)] : 0);
-	return k->active || a->path + b->path + reach >= k->limit;
+	return k->active || reach_of(p, k->a) + reach_of(p, k->b) >= distance(p, k);
 }
 
-static void unite(plan *p, uint32_t a, uint32_t b)
+static uint32_t unite(uint32_t *parent, uint32_t a, uint32_t b)
 {
 	uint32_t low = a < b ? a : b, high = a < b ? b : a;
-	p->parent[high] = low;
-	p->reach[low] = fmaxf(p->reach[low], p->reach[high]);
+	parent[high] = low;
+	return low;
 }
 
-// A body that is hit becomes as fast as what hit it, so reaches spread through an island until nothing changes.
-static void grow_trees(plan *p)
+// Will the two meet within the step if they go on as they do? Or may they, so fast that the slower one, once hit,
+// could pass through a third?
+static bool share_speed(const plan *p, const ob_pair_key *k)
+{
+	const ob_passport *pa = ob_passport_of(p->u, k->a), *pb = ob_passport_of(p->u, k->b);
+	double thin = fmin(ob_shape_thickness(pa->shape, pa->size), ob_shape_thickness(pb->shape, pb->size));
+	if (k->active || fmax(reach_of(p, k->a), reach_of(p, k->b)) > thin)
+		return true;
+	const ob_motion *a = ob_newest_motion(p->u, k->a), *b = ob_newest_motion(p->u, k->b);
+	double speed = ob_norm(ob_sub(a->v, b->v)) + ob_surface_speed(ob_v3(0, 0, 0), a->w, pa->shape, pa->size) +
+		       ob_surface_speed(ob_v3(0, 0, 0), b->w, pb->shape, pb->size);
+	return speed * ob_universe_settings(p->u)->step_length >= distance(p, k);
+}
+
+static void grow_clusters(plan *p)
 {
 	for (bool again = true; again;) {
 		again = false;
 		for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
 			const ob_pair_key *k = &p->ex->pair[i];
-			if (!dynamic(p, k->a) || !dynamic(p, k->b))
+			if (!dynamic(p, k->a) || !dynamic(p, k->b) || !may_touch(p, k))
 				continue;
-			uint32_t a = root_of(p, k->a), b = root_of(p, k->b);
-			if (a == b || !may_touch(p, k))
+			uint32_t a = root_of(p->cluster, k->a), b = root_of(p->cluster, k->b);
+			if (a == b || !share_speed(p, k))
 				continue;
-			unite(p, a, b);
+			p->reach[unite(p->cluster, a, b)] = fmaxf(p->reach[a], p->reach[b]);
 			again = true;
 		}
+	}
+}
+
+static void grow_islands(plan *p)
+{
+	for (uint32_t id = 0; id < p->ids; id++)
+		p->parent[id] = root_of(p->cluster, id);
+	for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
+		const ob_pair_key *k = &p->ex->pair[i];
+		if (!dynamic(p, k->a) || !dynamic(p, k->b) || !may_touch(p, k))
+			continue;
+		uint32_t a = root_of(p->parent, k->a), b = root_of(p->parent, k->b);
+		if (a != b)
+			unite(p->parent, a, b);
 	}
 }
 
@@ -74,12 +115,11 @@ static bool boxes_suffice(plan *p)
 {
 	bool suffice = true;
 	for (uint32_t id = 0; id < p->ids; id++) {
-		if (!dynamic(p, id) || p->reach[root_of(p, id)] <= p->ex->brief[id].reach + .02f)
+		if (!dynamic(p, id) || reach_of(p, id) <= p->ex->brief[id].reach + .02)
 			continue;
 		const ob_motion *m = ob_newest_motion(p->u, id);
 		const ob_passport *pass = ob_passport_of(p->u, id);
-		double reach = p->reach[root_of(p, id)];
-		ob_claim_bounds(p->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach);
+		ob_claim_bounds(p->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach_of(p, id));
 		suffice &= !ob_perceive_asked(p->u, id);
 	}
 	return suffice;
@@ -94,12 +134,12 @@ static void list_members(plan *p)
 		p->island_of[id] = NONE;
 	for (uint32_t id = 0; id < p->ids; id++) // a tree with one awake member is awake
 		if (dynamic(p, id) && !asleep(p, id))
-			p->island_of[root_of(p, id)] = 0;
+			p->island_of[root_of(p->parent, id)] = 0;
 	for (uint32_t id = 0; id < p->ids; id++) {
 		ex->result_island[id] = NONE;
-		if (!dynamic(p, id) || p->island_of[root_of(p, id)] == NONE)
+		if (!dynamic(p, id) || p->island_of[root_of(p->parent, id)] == NONE)
 			continue;
-		uint32_t root = root_of(p, id);
+		uint32_t root = root_of(p->parent, id);
 		if (root == id) {
 			p->island_of[id] = n;
 			ex->island[n++] = (ob_island){ 0, 0, 0, 0 };
@@ -187,14 +227,15 @@ bool ob_islands_plan(ob_universe *u)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t ids = ob_universe_ids(u);
-	plan p = { u, ex, ids, ex->scratch, ex->scratch + ids, ex->island_reach };
+	plan p = { u, ex, ids, ex->scratch, ex->scratch + ids, ex->scratch + 2 * ids, ex->island_reach };
 	for (uint32_t id = 0; id < ids; id++) {
-		p.parent[id] = id;
+		p.cluster[id] = id;
 		p.reach[id] = ex->brief[id].reach;
 	}
-	grow_trees(&p);
+	grow_clusters(&p);
 	if (!boxes_suffice(&p))
 		return false;
+	grow_islands(&p);
 	list_members(&p);
 	list_pairs(&p);
 	make_chunks(&p);

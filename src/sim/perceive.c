@@ -6,6 +6,7 @@
 
 static const double lasting = 3; // claimed boxes last about so many steps
 static const double base_margin = .04; // m: of an object at rest
+static const double generous = 4; // times the margin that a new box would have: too large
 static const double far_margin = 1.5; // m: fast ones claim only what one step needs beyond this
 
 double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size)
@@ -30,7 +31,9 @@ void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, 
 {
 	double tight[6];
 	ob_shape_bounds(shape, size, pose, tight);
-	if (!holds(ob_universe_exchange(u)->bounds[id], tight, reach))
+	const float *box = ob_universe_exchange(u)->bounds[id];
+	// A box claimed when the object was fast is given up when it is not.
+	if (!holds(box, tight, reach) || holds(box, tight, generous * (base_margin + lasting * reach)))
 		ob_claim_bounds_anew(u, id, shape, size, pose, reach);
 }
 
