@@ -140,8 +140,32 @@ static void test_apexes(void)
 	free(s);
 }
 
+// SimBenchmark's bouncing test: 49 elastic spheres, 20 s; mean of the squared error of the energy (J^2).
+static void test_bouncing_spheres(void)
+{
+	little_scene *s = little_scene_new();
+	little_ground(s)->passport.friction = 0;
+	for (int i = 0; i < 49; i++) {
+		little_object *o = little_sphere(s, 10, .1, ob_v3(2 * (i % 7), 2 * (i / 7), 5));
+		o->passport.friction = 0;
+		o->passport.restitution = 1;
+	}
+	little_universe l;
+	little_open(&l, s);
+	double sum = 0;
+	for (int step = 0; step < 1200; step++) {
+		little_run(&l, 1);
+		double error = little_energy(&l) - 49 * 10 * g * 5;
+		sum += error * error;
+	}
+	CHECK_NEAR(sum / 1200, 0, 1e-8);
+	little_close(&l);
+	free(s);
+}
+
 int main(void)
 {
+	test_bouncing_spheres();
 	test_projectile();
 	test_head_on();
 	test_cradle(1);

@@ -81,6 +81,8 @@ static void test_support_removed(bool sleeping)
 	CHECK(little_asleep(&l, 3) == sleeping);
 	double before = little_state(&l, 3).pose.p.z;
 	little_take_away(&l, 1);
+	little_run(&l, 0);
+	CHECK(!little_asleep(&l, 2)); // those that touched it wake at once
 	little_run(&l, 6);
 	double t = .1;
 	CHECK_NEAR(little_state(&l, 2).v.z, -9.81 * t, 1e-3);
