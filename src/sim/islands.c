@@ -119,7 +119,7 @@ static bool boxes_suffice(plan *p)
 			continue;
 		const ob_motion *m = ob_newest_motion(p->u, id);
 		const ob_passport *pass = ob_passport_of(p->u, id);
-		ob_claim_bounds(p->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach_of(p, id));
+		ob_claim_bounds_wider(p->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach_of(p, id));
 		suffice &= !ob_perceive_asked(p->u, id);
 	}
 	return suffice;

@@ -5,8 +5,10 @@
 #include "sim/index.h"
 
 static const double lasting = 3; // claimed boxes last about so many steps
-static const double base_margin = .04; // m: of an object at rest
+static const double base_margin = .04; // m: of an object at rest ..
+static const double base_share = .2; // .. but no more than this share of its radius, for heaps of small things
 static const double generous = 4; // times the margin that a new box would have: too large
+static const uint64_t review_steps = 16;
 static const double far_margin = 1.5; // m: fast ones claim only what one step needs beyond this
 
 double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size)
@@ -27,23 +29,9 @@ static bool holds(const float *box, const double *tight, double margin)
 	return true;
 }
 
-void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
-{
-	double tight[6];
-	ob_shape_bounds(shape, size, pose, tight);
-	const float *box = ob_universe_exchange(u)->bounds[id];
-	// A box claimed when the object was fast is given up when it is not.
-	if (!holds(box, tight, reach) || holds(box, tight, generous * (base_margin + lasting * reach)))
-		ob_claim_bounds_anew(u, id, shape, size, pose, reach);
-}
-
-void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+static void claim(ob_universe *u, uint32_t id, const double *tight, double margin)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
-	double tight[6], margin = base_margin + lasting * reach;
-	ob_shape_bounds(shape, size, pose, tight);
-	if (margin > far_margin)
-		margin = fmax(far_margin, 1.2 * reach);
 	for (int c = 0; c < 3; c++) {
 		// Rounded outwards; a plane's box stays infinite.
 		ex->bounds[id][c] = nextafterf((float)(tight[c] - margin), -FLT_MAX);
@@ -53,6 +41,43 @@ void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 s
 		ex->perceived[id].count = UINT32_MAX;
 		ob_rebound_append(u, id);
 	}
+}
+
+static double resting_margin(ob_shape shape, ob_vec3 size)
+{
+	return fmin(base_margin, base_share * ob_shape_radius(shape, size));
+}
+
+static double lasting_margin(ob_shape shape, ob_vec3 size, double reach)
+{
+	double margin = resting_margin(shape, size) + lasting * reach;
+	return margin > far_margin ? fmax(far_margin, 1.2 * reach) : margin;
+}
+
+void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+{
+	double tight[6];
+	ob_shape_bounds(shape, size, pose, tight);
+	const float *box = ob_universe_exchange(u)->bounds[id];
+	// A box claimed when the object was fast is given up when it is not; looked at now and then, not all at once.
+	bool review = (ob_step_count(u) + id) % review_steps == 0;
+	if (!holds(box, tight, reach) || (review && holds(box, tight, generous * lasting_margin(shape, size, reach))))
+		claim(u, id, tight, lasting_margin(shape, size, reach));
+}
+
+void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+{
+	double tight[6];
+	ob_shape_bounds(shape, size, pose, tight);
+	claim(u, id, tight, lasting_margin(shape, size, reach));
+}
+
+void ob_claim_bounds_wider(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+{
+	double tight[6];
+	ob_shape_bounds(shape, size, pose, tight);
+	if (!holds(ob_universe_exchange(u)->bounds[id], tight, reach))
+		claim(u, id, tight, resting_margin(shape, size) + reach);
 }
 
 bool ob_perceive_asked(const ob_universe *u, uint32_t id)

@@ -71,7 +71,7 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers)
 {
 	h->sizes = (ob_layout_sizes){ .capacity = capacity, .workers = workers };
-	h->sizes.pairs_max = capacity > 128 ? 32 * capacity : 4096;
+	h->sizes.pairs_max = capacity > 128 ? 64 * capacity : 8192;
 	h->sizes.buckets = power_of_two_from(2 * capacity);
 	h->sizes.perceived_max = 64 * capacity + 65536;
 	uint64_t at = OB_LAYOUT_PAGE;
