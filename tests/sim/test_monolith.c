@@ -17,9 +17,16 @@ static ob_universe *universe(uint32_t substeps)
 	static int number;
 	char name[40];
 	snprintf(name, sizeof name, "test-monolith-%d-%d", (int)getpid(), number++);
-	ob_universe_setup setup = { .name = name, .capacity = CAPACITY, .workers = 1, .isolation = "thread",
-				    .run = { .gravity = { 0, 0, -10 }, .step_length = H, .substeps = substeps,
-					     .sleeping = 1, .monolith = 1, .iterations = 20 } };
+	ob_universe_setup setup = { .name = name,
+				    .capacity = CAPACITY,
+				    .workers = 1,
+				    .isolation = "thread",
+				    .run = { .gravity = { 0, 0, -10 },
+					     .step_length = H,
+					     .substeps = substeps,
+					     .sleeping = 1,
+					     .monolith = 1,
+					     .iterations = 20 } };
 	ob_error e = { "" };
 	ob_universe *u = ob_universe_create(&setup, &e);
 	if (!u)
@@ -29,8 +36,13 @@ static ob_universe *universe(uint32_t substeps)
 
 static void put(ob_universe *u, uint32_t id, uint32_t generation, ob_shape shape, double mass, ob_vec3 at)
 {
-	ob_passport p = { .id = id, .generation = generation, .flags = OB_OBJECT_PRESENT, .shape = shape,
-			  .size = { .5, .5, .5 }, .mass = mass, .friction = .5 };
+	ob_passport p = { .id = id,
+			  .generation = generation,
+			  .flags = OB_OBJECT_PRESENT,
+			  .shape = shape,
+			  .size = { .5, .5, .5 },
+			  .mass = mass,
+			  .friction = .5 };
 	if (!(mass > 0))
 		p.flags |= OB_OBJECT_STATIC;
 	else
