@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""figures.py OBSIM [FILE ...]: measures the tables that stand in FILEs between <!-- figures: NAME --> and <!-- end -->, and
+writes them there anew; without a FILE prints all tables. On an otherwise idle machine; times are medians of three runs.
+"""
+import json
+import os
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scenes')
+RUNS = 3
+
+
+def scene(name):
+    return os.path.join(SCENES, name + '.lua')
+
+
+def run(*words, runs=RUNS):
+    """The report of a run; its times are medians."""
+    reports = []
+    for _ in range(runs):
+        done = subprocess.run([OBSIM, 'run', *words, '--json', '-'], capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f'obsim run {" ".join(words)}: {done.stderr}')
+        reports.append(json.loads(done.stdout))
+    for key in ('cpu_s', 'wall_s', 'total_s', 'body_step_cpu_us', 'startup_s', 'memory_bytes'):
+        reports[0][key] = statistics.median(r[key] for r in reports)
+    return reports[0]
+
+
+def row(*cells):
+    return '| ' + ' | '.join(str(c) for c in cells) + ' |\n'
+
+
+def head(*cells):
+    return row(*cells) + row(*['---'] + ['--:'] * (len(cells) - 1))
+
+
+def machine():
+    """Where this was measured."""
+    with open('/proc/cpuinfo', encoding='utf-8') as f:
+        model = re.search(r'model name\s*: (.*)', f.read()).group(1)
+    r = run(scene('cradle'), '--duration', '.1')
+    return f"Measured on {len(os.sched_getaffinity(0))} cores ({model}), commit {r['commit']}.\n"
+
+
+def compare():
+    """What obsim compare says of the falling boxes."""
+    done = subprocess.run([OBSIM, 'compare', 'scenes/falling_boxes.lua'], capture_output=True, text=True, check=True,
+                          cwd=os.path.join(SCENES, '..'))
+    return '```\n' + done.stdout + '```\n'
+
+
+def error_of(name, title):
+    text = head(title, 'CPU, ms per simulated s', 'deepest penetration, mm', 'mean at the end, mm')
+    ways = [(f'object simulators, substeps: {n}', ['--substeps', str(n)]) for n in (1, 2, 4, 8, 16, 32)]
+    ways += [(f'one world, steps of 1/{n} s', ['--arch', 'monolith', '--step', f'1/{n}']) for n in (60, 240, 960)]
+    for what, words in ways:
+        r = run(scene(name), *words)
+        text += row(what, f"{1e3 * r['cpu_s'] / r['simulated_s']:.1f}", f"{1e3 * r['worst_penetration_m']:.3g}",
+                    f"{1e3 * r['penetration_mean_m']:.2g}")
+    return text
+
+
+def error_falling():
+    """Speed against error: more substeps here, shorter steps there."""
+    return error_of('falling_boxes', '100 falling boxes, 10 s')
+
+
+def error_stack():
+    """The same of a stack that stands, all awake."""
+    return error_of('stack', 'stack of 10, 20 s')
+
+
+def bits():
+    """The same bits, whoever computes them."""
+    ways = [[isolation, workers] for isolation in ('thread', 'process') for workers in ('1', '2', '3', '8', 'objects')]
+    text = head('scene', 'duration, s', 'ways to run it', 'state after it', 'equal')
+    for name in ('falling_boxes', 'stack', 'pile', 'cradle', 'sparse'):
+        reports = [run(scene(name), '--isolation', isolation, '--workers', workers, '--measure', 'end', runs=1)
+                   for isolation, workers in ways]
+        hashes = sorted({r['state_hash'] for r in reports})
+        text += row(name, f"{reports[0]['simulated_s']:g}", len(ways), ' '.join(hashes), 'no' if hashes[1:] else 'yes')
+    return text
+
+
+def crowd():
+    """How many simulators a machine bears."""
+    text = head('1 s of falling boxes', 'start-up, s', 'wall per step, ms', 'CPU per body and step, µs', 'memory, MB')
+    for what, words in (('1000 simulators, a pool of 2', ['-D', 'n=1000']),
+                        ('1000, one per process', ['-D', 'n=1000', '--isolation', 'process', '--workers', 'objects']),
+                        ('1000, one per thread', ['-D', 'n=1000', '--workers', 'objects']),
+                        ('4000, one per thread', ['-D', 'n=4000', '--workers', 'objects']),
+                        ('10000, a pool of 2', ['-D', 'n=10000'])):
+        r = run(scene('falling_boxes'), '--duration', '1', '--measure', 'end', *words)
+        text += row(what, f"{r['startup_s']:.2f}", f"{1e3 * r['wall_s'] / r['steps']:.1f}",
+                    f"{r['body_step_cpu_us']:.2f}", f"{r['memory_bytes'] / 1e6:.0f}")
+    return text
+
+
+def capture():
+    """Frames to PNG, four samples a pixel, drawn by whatever EGL finds."""
+    text = head('60 frames of 100 falling boxes to PNG', 'frames per second')
+    for size in ('640x480', '1280x720', '1920x1080'):
+        with tempfile.TemporaryDirectory() as folder:
+            r = run(scene('falling_boxes'), '--duration', '1', '--frames', folder, '--size', size, '--measure', 'end')
+        text += row(size, f"{r['frames'] / r['total_s']:.1f}")
+    return text
+
+
+TABLES = {f.__name__: f for f in (machine, compare, error_falling, error_stack, bits, crowd, capture)}
+
+
+def refresh(path):
+    with open(path, encoding='utf-8') as f:
+        text = f.read()
+    text = re.sub(r'(<!-- figures: (\w+) -->\n).*?(<!-- end -->)',
+                  lambda m: m.group(1) + '\n' + TABLES[m.group(2)]() + '\n' + m.group(3), text, flags=re.S)
+    with open(path, 'w', encoding='utf-8') as f:
+        f.write(text)
+
+
+if len(sys.argv) < 2:
+    sys.exit(__doc__)
+OBSIM = os.path.abspath(sys.argv[1])
+for file in sys.argv[2:]:
+    refresh(file)
+if len(sys.argv) == 2:
+    for table in TABLES.values():
+        print(table())
