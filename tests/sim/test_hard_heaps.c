@@ -41,7 +41,7 @@ static void test_stack_of_twenty(void)
 	outcome o = watch(s, 20);
 	printf("stack of 20: %.3f mm deep, drifts %.3f mm\n", 1e3 * o.deepest, 1e3 * o.drift);
 	CHECK(o.deepest <= .5e-3);
-	CHECK(o.drift <= 2e-3);
+	CHECK(o.drift <= 2e-3); // holds what is reached, 1.1 mm; what is wanted is 1 mm
 	CHECK(o.sunk <= 20 * .1e-3);
 }
 
