@@ -25,9 +25,13 @@ ARROWS = {
     'scene': 'base',
     'host': 'sim scene table ode base',
     'measure': 'motion base',
+    'reference': 'motion base',
+    'plot': 'base',
+    'peer': 'sim ode table measure motion base',
+    'lab': 'reference peer plot measure motion base',
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
-    'cli': 'host render record measure scene base',
+    'cli': 'host render record lab measure scene base',
 }
 BUILT = {'render': ['shaders.h']}  # written by the build, so without a folder
 
@@ -37,6 +41,8 @@ DUTIES = [
     ('include EGL or OpenGL', r'#\s*include\s*<(EGL|GL|GLES\w*)/', r'src/render/', True),
     ('include Lua', r'#\s*include\s*<(lua[\d.]*/)?(lua|lauxlib|lualib|luaconf)\.h', r'src/scene/', True),
     ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
+    ('include cairo', r'#\s*include\s*<cairo', r'src/plot/', True),
+    ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/peer/', True),
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),

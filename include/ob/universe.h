@@ -50,7 +50,8 @@ typedef struct ob_passport {
 	double restitution;   // 0..1; a pair uses the larger of the two
 	float colour[4];      // linear RGB, alpha
 	char name[OB_NAME_MAX];
-	double reserved[5];
+	ob_vec3 force;        // N, world frame: constant, acts at the centre
+	double reserved[2];
 } ob_passport;
 
 enum { // ob_motion.flags

@@ -23,7 +23,12 @@ typedef enum ob_phase {
 	OB_PHASE_STOP,    // leave
 } ob_phase;
 
-typedef enum ob_exchange_kind { OB_EXCHANGE_COLOURED, OB_EXCHANGE_JACOBI } ob_exchange_kind;
+typedef enum ob_exchange_kind {
+	OB_EXCHANGE_COLOURED, // pair after pair, each on what the one before published
+	OB_EXCHANGE_JACOBI,   // all pairs on the same state, bodies split between them
+	OB_EXCHANGE_GHOST,    // each takes its neighbours for infinitely heavy: what must not be done, to show it
+	OB_EXCHANGE_LAGGED,   // each computes the pair's impulse for itself, on a state of its partner that is late
+} ob_exchange_kind;
 typedef enum ob_integrator { OB_INTEGRATOR_EXACT, OB_INTEGRATOR_ODE } ob_integrator;
 
 // What is fixed for a run; lies in the table, so that every process sees the same.
@@ -38,6 +43,8 @@ typedef struct ob_run_settings {
 	uint32_t one_per_object;// 1 = worker i runs object i and nothing else
 	uint32_t monolith;      // 1 = one ODE world holds all objects
 	uint32_t iterations;    // monolith: QuickStep iterations
+	uint32_t lag;           // OB_EXCHANGE_LAGGED: exchanges that a partner's state is late
+	double tolerance;       // m; > 0: each island chooses its substeps so that its error stays below
 } ob_run_settings;
 
 typedef struct ob_universe_setup {

@@ -1,0 +1,64 @@
+// A hard case: worlds to run, what is looked at after each frame, and the figures that come out, each with its target.
+//
+// A case may consist of several runs (100 aims at a wall, three stacks); its figures are the worst over all of them
+// unless the case says otherwise. Cases know no engine: they see states.
+#ifndef OB_LAB_CASE_H
+#define OB_LAB_CASE_H
+
+#include "measure/measure.h"
+#include "peer/peer.h"
+
+enum { OB_FIGURES = 8 }; // per case, at most
+
+typedef struct ob_figure_def {
+	const char *name; // "worst penetration"
+	const char *unit; // "mm", "1" for a ratio, "J", "rad"; as printed
+	double target; // at most this much, in that unit, at 60 Hz; NAN = shown, but not promised
+	const char *reference; // what it is compared with, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
+} ob_figure_def;
+
+// One run of a case with one engine, while it goes on.
+typedef struct ob_trial {
+	const struct ob_case *of;
+	uint32_t run; // which of the case's runs
+	uint64_t frame; // frames gone by: 0 before the first step
+	double time; // s
+	const ob_peer_world *world; // as it began
+	ob_snapshot now; // passports and states now: measure/ takes it
+	double figure[OB_FIGURES]; // start at 0; in the case's units
+	double memory[64]; // the case's own, zeroed before each run
+	double *body_memory; // [objects][8], likewise
+	const char *failed; // why the run counts as failed: "fell", "passed through"; NULL = it did not
+	ob_peer_settings settings;
+} ob_trial;
+
+typedef struct ob_case {
+	int row; // in the table of hard cases
+	const char *name; // as on the command line: "stack-10"
+	const char *title; // "Stack of 10"
+	const char *setup; // one or two sentences for the reader of the report
+	const char *peers; // what other engines were seen to reach
+	bool quick; // belongs to the subset that runs with the tests
+	bool compared; // one of those whose cost at equal error is tabled
+	double duration, step; // s
+	uint32_t runs;
+	uint32_t figures; // the first is the one that plots show
+	ob_figure_def figure[OB_FIGURES];
+	void (*build)(ob_peer_world *w, uint32_t run); // with ob_build_* of build.h
+	void (*observe)(ob_trial *t); // after each frame, and once before the first; NULL = nothing
+	void (*judge)(ob_trial *t); // at the end of each run
+} ob_case;
+
+extern const ob_case *const ob_cases[]; // in the order of their rows; ends with NULL
+const ob_case *ob_case_find(const char *name);
+
+// Runs all of a case's runs with one engine. false and e: the engine could not be made or broke off.
+typedef struct ob_outcome {
+	double figure[OB_FIGURES];
+	double cpu_s, wall_s; // of stepping alone
+	double body_seconds; // dynamic bodies times simulated time
+	char failed[96]; // "" = it did not
+} ob_outcome;
+bool ob_case_run(const ob_case *c, const ob_peer_kind *kind, const ob_peer_settings *s, ob_outcome *out, ob_error *e);
+
+#endif

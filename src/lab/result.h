@@ -1,0 +1,41 @@
+// Results of the lab: one per case, engine and setting, kept in a CSV file, so that a run that was broken off goes on
+// where it stopped.
+#ifndef OB_LAB_RESULT_H
+#define OB_LAB_RESULT_H
+
+#include "lab/case.h"
+
+typedef struct ob_result {
+	const ob_case *of;
+	const ob_peer_kind *engine;
+	ob_peer_settings settings;
+	ob_outcome outcome; // medians of the repeats' times
+	uint32_t repeats;
+	char commit[48]; // of the program that made it
+} ob_result;
+
+typedef struct ob_results {
+	size_t count, max;
+	ob_result *result; // in the order of cases, engines, settings
+	char machine[160]; // processor, cores, kernel
+	char commit[48];
+} ob_results;
+
+// CPU seconds per body and simulated second
+static inline double ob_result_cost(const ob_result *r)
+{
+	return r->outcome.cpu_s / r->outcome.body_seconds;
+}
+
+// Reads what is there (a missing file is empty) / writes all, through a temporary file that replaces the old one.
+bool ob_results_read(ob_results *r, const char *path, ob_error *e);
+bool ob_results_write(const ob_results *r, const char *path, ob_error *e);
+ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_peer_kind *k, const ob_peer_settings *s);
+bool ob_results_add(ob_results *r, const ob_result *one); // false: no memory
+void ob_results_finish(ob_results *r);
+
+// The cheapest cost (s of CPU per body and simulated second) at which an engine keeps figure 0 of a case at or below
+// "error": read off the lower envelope of its curve, between points by straight lines in log-log. NAN: never.
+double ob_cost_at(const ob_results *r, const ob_case *c, const ob_peer_kind *k, double error);
+
+#endif
