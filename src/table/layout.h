@@ -87,8 +87,8 @@ typedef struct ob_worker_cell {
 	uint32_t objects;
 } ob_worker_cell;
 
-static_assert(sizeof(ob_run_settings) == 64, "run settings");
-static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 64, "header");
+static_assert(sizeof(ob_run_settings) == 80, "run settings");
+static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 80, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 256, "control");
 static_assert(sizeof(ob_worker_cell) == 64, "worker cell");
