@@ -1,0 +1,150 @@
+// Balls that bounce off the ground.
+#include "lab/build.h"
+#include "lab/cases/cases.h"
+#include "lab/look.h"
+#include "reference/ballistics.h"
+
+enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // of body 1 in ob_trial.memory
+
+static void build_ball(ob_peer_world *w, double radius, double e)
+{
+	ob_build_ground(w);
+	ob_build_sphere(w, 1, radius, ob_v3(0, 0, 1 + radius));
+	ob_build_material(w, .5, e);
+}
+
+// Counts the times that body 1 turned from falling to rising.
+static int bounces(ob_trial *t)
+{
+	double v = ob_look_at(t, 1).v.z;
+	t->memory[MEMORY_BOUNCES] += t->memory[MEMORY_LAST] < 0 && v > 0;
+	t->memory[MEMORY_LAST] = v;
+	return (int)t->memory[MEMORY_BOUNCES];
+}
+
+static void fail_without_bounces(ob_trial *t)
+{
+	if (ob_look_lowest(t) < 0)
+		t->failed = "fell through the ground";
+	else if (t->memory[MEMORY_BOUNCES] < 1)
+		t->failed = "never bounced";
+}
+
+static void build_bounce(ob_peer_world *w, uint32_t run)
+{
+	build_ball(w, .5, 1);
+}
+
+static void observe_bounce(ob_trial *t)
+{
+	double scale = t->world->passport[1].mass * ob_look_gravity(t); // of a drop of 1 m
+	if (!t->frame)
+		t->memory[MEMORY_APEX] = ob_look_energy(t);
+	bounces(t);
+	ob_look_keep(&t->figure[0], fabs(ob_look_energy(t) - t->memory[MEMORY_APEX]) / scale);
+}
+
+static void judge_bounce(ob_trial *t)
+{
+	t->figure[1] = fabs(t->memory[MEMORY_BOUNCES] - 100);
+	fail_without_bounces(t);
+}
+
+const ob_case ob_case_bounce = {
+	.row = 4,
+	.name = "bounce",
+	.title = "Bouncing ball, e = 1",
+	.setup = "A sphere of radius .5 m is dropped from 1 m on a fixed ground and bounces a hundred times.",
+	.peers = "ODE loses 62 % at 240 Hz",
+	.quick = true,
+	.compared = true,
+	.duration = 90, // the hundredth comes after 199 sqrt(2 h / g) = 89.9 s
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = 2,
+	.figure = { { "error of energy", "1", 1e-12, "energy at the start, over that of the drop" },
+		    { "bounces too many or too few", "1", 0, "drop and rebound take 2 sqrt(2 h / g) (Galilei 1638)" } },
+	.build = build_bounce,
+	.observe = observe_bounce,
+	.judge = judge_bounce,
+};
+
+enum { APEXES = 4 };
+
+static void build_apexes(ob_peer_world *w, uint32_t run)
+{
+	build_ball(w, .1, .8);
+}
+
+// The apex of each flight as its highest frame tells it: the rest of the rise is v^2 / 2 g.
+static void observe_apexes(ob_trial *t)
+{
+	int k = bounces(t);
+	ob_state b = ob_look_at(t, 1);
+	double bottom = b.pose.p.z - t->world->passport[1].size.x;
+	if (k > APEXES || (t->body_memory[k] > 0 && bottom <= t->body_memory[k]))
+		return;
+	t->body_memory[k] = bottom;
+	t->memory[MEMORY_APEX + k] = bottom + b.v.z * b.v.z / (2 * ob_look_gravity(t));
+}
+
+static void judge_apexes(ob_trial *t)
+{
+	for (int k = 1; k <= APEXES; k++)
+		ob_look_keep(&t->figure[0], fabs(t->memory[MEMORY_APEX + k] - ob_reference_apex(1, .8, k)));
+	fail_without_bounces(t);
+}
+
+const ob_case ob_case_apexes = {
+	.row = 5,
+	.name = "apexes",
+	.title = "Heights of a ball, e = .8",
+	.setup = "A sphere of radius .1 m is dropped from 1 m with restitution .8; its next four highest points.",
+	.peers = "-12 % to +81 %",
+	.quick = true,
+	.duration = 2.5, // the fifth impact comes at 2.58 s
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = 1,
+	.figure = { { "worst error of height", "m", 1e-9, "h e^(2 k) (Newton 1687)" } },
+	.build = build_apexes,
+	.observe = observe_apexes,
+	.judge = judge_apexes,
+};
+
+static void build_bouncing_49(ob_peer_world *w, uint32_t run)
+{
+	ob_build_ground(w);
+	for (int i = 0; i < 49; i++)
+		ob_build_sphere(w, 10, .1, ob_v3(2 * (i % 7), 2 * (i / 7), 5));
+	ob_build_material(w, 0, 1);
+}
+
+static void observe_bouncing_49(ob_trial *t)
+{
+	double error = ob_look_energy(t) - 49 * 10 * ob_look_gravity(t) * 5;
+	bounces(t);
+	if (t->frame)
+		t->figure[0] += (error * error - t->figure[0]) / t->frame; // mean over the frames
+	if (ob_look_lowest(t) < 0)
+		t->failed = "fell through the ground";
+}
+
+const ob_case ob_case_bouncing_49 = {
+	.row = 6,
+	.name = "bouncing-49",
+	.title = "SimBenchmark's bouncing test",
+	.setup = "7 x 7 elastic spheres of radius .1 m and 10 kg, 2 m apart, fall from a height of 5 m without "
+		 "friction; "
+		 "20 s.",
+	.peers = "at 1 ms: RaiSim .019 J^2, ODE 185 J^2",
+	.quick = true,
+	.duration = 20,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = 1,
+	.figure = { { "mean squared error of energy", "J^2", 1e-8, "49 m g h (Kang and Hwangbo 2018)" } },
+	.build = build_bouncing_49,
+	.observe = observe_bouncing_49,
+	.judge = fail_without_bounces,
+};

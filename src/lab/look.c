@@ -1,0 +1,57 @@
+#include "lab/look.h"
+
+ob_state ob_look_at(const ob_trial *t, uint32_t id)
+{
+	const ob_motion *m = &t->now.motion[id];
+	return (ob_state){ { m->p, m->q }, m->v, m->w };
+}
+
+ob_vec3 ob_look_moved(const ob_trial *t, uint32_t id)
+{
+	return ob_sub(t->now.motion[id].p, t->world->state[id].pose.p);
+}
+
+bool ob_look_moves(const ob_trial *t, uint32_t id)
+{
+	return !(t->world->passport[id].flags & OB_OBJECT_STATIC);
+}
+
+double ob_look_energy(const ob_trial *t)
+{
+	return ob_measure_energy(&t->now, t->world->gravity);
+}
+
+double ob_look_farthest(const ob_trial *t)
+{
+	double most = 0;
+	for (uint32_t id = 0; id < t->world->objects; id++)
+		if (ob_look_moves(t, id))
+			most = fmax(most, ob_norm(ob_look_moved(t, id)));
+	return most;
+}
+
+double ob_look_lowest(const ob_trial *t)
+{
+	double lowest = INFINITY;
+	for (uint32_t id = 0; id < t->world->objects; id++)
+		if (ob_look_moves(t, id))
+			lowest = fmin(lowest, t->now.motion[id].p.z);
+	return lowest;
+}
+
+double ob_look_gravity(const ob_trial *t)
+{
+	return ob_norm(t->world->gravity);
+}
+
+void ob_look_keep(double *figure, double value)
+{
+	if (!(value <= *figure) && !isnan(*figure))
+		*figure = value;
+}
+
+void ob_look_keep_all(double *figure, const double *value)
+{
+	for (int i = 0; i < OB_FIGURES; i++)
+		ob_look_keep(&figure[i], value[i]);
+}

@@ -1,0 +1,21 @@
+// What cases look at in a trial: bodies now and at the start, the energy, the worst so far. No function but
+// ob_look_keep changes anything.
+#ifndef OB_LAB_LOOK_H
+#define OB_LAB_LOOK_H
+
+#include "lab/case.h"
+
+ob_state ob_look_at(const ob_trial *t, uint32_t id);
+ob_vec3 ob_look_moved(const ob_trial *t, uint32_t id); // m, since the start
+bool ob_look_moves(const ob_trial *t, uint32_t id); // it is not static
+double ob_look_energy(const ob_trial *t); // J; potential energy is 0 at z = 0
+double ob_look_farthest(const ob_trial *t); // m: the farthest that a body is from where it started
+double ob_look_lowest(const ob_trial *t); // m: z of the lowest centre of a body that moves
+double ob_look_gravity(const ob_trial *t); // m/s^2, its size
+
+// Makes the figure the larger of the two. NaN counts as larger than all, and stays.
+void ob_look_keep(double *figure, double value);
+// The same for all figures of two runs.
+void ob_look_keep_all(double *figure, const double *value);
+
+#endif

@@ -1,0 +1,132 @@
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "lab/build.h"
+#include "lab/look.h"
+
+// Faster than anything in any case, and what falls without end, within its time. m/s and rad/s
+static const double absurd = 1e5;
+
+static bool finite_vector(ob_vec3 v)
+{
+	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static const char *insane(const ob_trial *t)
+{
+	for (uint32_t id = 0; id < t->world->objects; id++) {
+		ob_state s = ob_look_at(t, id);
+		ob_quat q = s.pose.q;
+		if (!finite_vector(s.pose.p) || !finite_vector(s.v) || !finite_vector(s.w) ||
+		    !isfinite(q.w + q.x + q.y + q.z))
+			return "became not a number";
+		if (ob_norm(s.v) > absurd || ob_norm(s.w) > absurd)
+			return "exploded";
+	}
+	return NULL;
+}
+
+// The snapshot as an engine without a universe can give it: states at this very time.
+static void take(ob_trial *t, const ob_state *state)
+{
+	t->now.step = t->frame;
+	t->now.time = t->time;
+	for (uint32_t id = 0; id < t->world->objects; id++) {
+		const ob_state *s = &state[id];
+		t->now.motion[id] =
+			(ob_motion){ .t0 = t->time, .valid_until = INFINITY, .p = s->pose.p, .q = s->pose.q };
+		t->now.motion[id].v = s->v;
+		t->now.motion[id].w = s->w;
+	}
+}
+
+// Runs to the end or to the first failure that the case or an insane state shows. Only stepping is timed.
+static void watch(ob_trial *t, ob_peer *peer, const ob_peer_kind *kind, ob_state *state, ob_outcome *out, ob_error *e)
+{
+	const ob_case *c = t->of;
+	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step);
+	bool broken = false;
+	take(t, t->world->state);
+	if (c->observe)
+		c->observe(t);
+	while (!t->failed && t->frame < frames) {
+		double cpu = ob_clock_thread_cpu(), wall = ob_clock_wall();
+		bool on = kind->step(peer, e);
+		out->cpu_s += ob_clock_thread_cpu() - cpu;
+		out->wall_s += ob_clock_wall() - wall;
+		t->frame++;
+		t->time = t->frame * t->settings.step;
+		kind->get(peer, state);
+		take(t, state);
+		t->failed = on ? insane(t) : e->text;
+		broken = t->failed;
+		if (!broken && c->observe)
+			c->observe(t);
+	}
+	if (!broken)
+		c->judge(t);
+	for (uint32_t i = 0; broken && i < c->figures; i++)
+		t->figure[i] = INFINITY;
+}
+
+static double body_seconds(const ob_trial *t)
+{
+	uint32_t bodies = 0;
+	for (uint32_t id = 0; id < t->world->objects; id++)
+		bodies += ob_look_moves(t, id);
+	return bodies * t->time;
+}
+
+typedef struct tally {
+	uint32_t failed; // runs
+	char why[72]; // the first reason
+} tally;
+
+static bool run(const ob_case *c, uint32_t number, const ob_peer_kind *kind, const ob_peer_settings *s, ob_outcome *out,
+		tally *failures, ob_error *e)
+{
+	ob_peer_world w = { .gravity = { 0, 0, -OB_BUILD_GRAVITY } };
+	c->build(&w, number);
+	ob_trial t = { .of = c, .run = number, .world = &w, .settings = *s };
+	t.settings.step = s->step > 0 ? s->step : c->step;
+	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport };
+	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
+	t.body_memory = calloc(w.objects, 8 * sizeof *t.body_memory);
+	ob_state *state = calloc(w.objects, sizeof *state);
+	ob_peer *peer = NULL;
+	bool made = t.now.motion && t.body_memory && state;
+	if (!made)
+		ob_fail(e, "no memory for a world of %u bodies", w.objects);
+	else
+		peer = kind->create(&w, &t.settings, e);
+	made = peer;
+	if (made) {
+		ob_error broke = { "" };
+		watch(&t, peer, kind, state, out, &broke);
+		kind->destroy(peer);
+		ob_look_keep_all(out->figure, t.figure);
+		out->body_seconds += body_seconds(&t);
+		if (t.failed && !failures->failed++)
+			snprintf(failures->why, sizeof failures->why, "%s", t.failed);
+	}
+	free(t.now.motion);
+	free(t.body_memory);
+	free(state);
+	ob_build_finish(&w);
+	return made;
+}
+
+bool ob_case_run(const ob_case *c, const ob_peer_kind *kind, const ob_peer_settings *s, ob_outcome *out, ob_error *e)
+{
+	tally failures = { 0 };
+	*out = (ob_outcome){ 0 };
+	for (uint32_t i = 0; i < c->runs; i++)
+		if (!run(c, i, kind, s, out, &failures, e))
+			return false;
+	if (failures.failed && c->runs > 1)
+		snprintf(out->failed, sizeof out->failed, "%s (%u of %u runs)", failures.why, failures.failed, c->runs);
+	else
+		snprintf(out->failed, sizeof out->failed, "%s", failures.why);
+	return true;
+}

@@ -1,0 +1,107 @@
+#include "fake_engine.h"
+
+#include <stdlib.h>
+
+struct ob_peer {
+	const ob_peer_world *world; // lives as long as the engine in every trial
+	exact_motion motion;
+	double step;
+	int frame, last; // from "last" on something is wrong
+};
+
+static exact_motion in_use;
+
+void exact_engine_use(exact_motion motion)
+{
+	in_use = motion;
+}
+
+ob_state exact_rest(const ob_peer_world *w, uint32_t id, double t)
+{
+	return w->state[id];
+}
+
+ob_state exact_flight(const ob_peer_world *w, uint32_t id, double t)
+{
+	const ob_passport *p = &w->passport[id];
+	ob_state s = w->state[id];
+	if (p->flags & OB_OBJECT_STATIC)
+		return s;
+	ob_vec3 a = ob_madd(w->gravity, 1 / p->mass, p->force);
+	ob_rotate_free(s.pose.q, s.w, p->inertia, t, &s.pose.q, &s.w);
+	s.pose.p = ob_madd(ob_madd(s.pose.p, t, s.v), .5 * t * t, a);
+	s.v = ob_madd(s.v, t, a);
+	return s;
+}
+
+static ob_state bursting(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (!(w->passport[id].flags & OB_OBJECT_STATIC))
+		s.v.x += exp(1e3 * t);
+	return s;
+}
+
+static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, exact_motion motion, int last)
+{
+	ob_peer *p = malloc(sizeof *p);
+	if (p)
+		*p = (ob_peer){ w, motion, s->step, 0, last };
+	return p;
+}
+
+static bool step(ob_peer *p, ob_error *e)
+{
+	p->frame++;
+	return true;
+}
+
+static void get(const ob_peer *p, ob_state *state)
+{
+	for (uint32_t i = 0; i < p->world->objects; i++)
+		state[i] = p->motion(p->world, i, p->frame * p->step);
+}
+
+static void destroy(ob_peer *p)
+{
+	free(p);
+}
+
+static bool step_until_last(ob_peer *p, ob_error *e)
+{
+	return ++p->frame < p->last || ob_fail(e, "the engine gave up");
+}
+
+static void get_until_last(const ob_peer *p, ob_state *state)
+{
+	get(p, state);
+	if (p->frame >= p->last)
+		state[p->world->objects - 1].v.x = NAN;
+}
+
+#define CREATE(name, motion, last) \
+	static ob_peer *create_##name(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e) \
+	{ \
+		return create(w, s, motion, last); \
+	}
+CREATE(exact, in_use, 0)
+CREATE(frozen, exact_rest, 0)
+CREATE(blind, exact_flight, 0)
+CREATE(drunk, in_use, 3)
+CREATE(bursting, bursting, 0)
+CREATE(dying, in_use, 3)
+
+#define ENGINE(kind, step_function, get_function) \
+	const ob_peer_kind kind##_engine = { .name = #kind, \
+					     .title = #kind, \
+					     .version = "", \
+					     .create = create_##kind, \
+					     .step = step_function, \
+					     .get = get_function, \
+					     .destroy = destroy }
+ENGINE(exact, step, get);
+ENGINE(frozen, step, get);
+ENGINE(blind, step, get);
+ENGINE(bursting, step, get);
+ENGINE(drunk, step, get_until_last);
+ENGINE(dying, step_until_last, get);
