@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "sim/ghost.h"
+
 static const double noticeable = 2e-3; // m/s: a change that makes another round worth while
 static const double jump = .1; // m/s: faster changes are impacts and are not extrapolated
 static const int sweeps = 4;
@@ -93,8 +95,10 @@ bool ob_exchange_impacts(ob_sim *s)
 	int round = 0;
 	if (!w->elastic)
 		return false;
-	while (round < most && (is_jacobi(s) ? impacts_at_once(s) : impacts_in_turn(s)))
-		round++;
+	for (bool any = true; any && round < most; round += any) {
+		ob_ghosts_read(s, w->v, (uint32_t)round);
+		any = is_jacobi(s) ? impacts_at_once(s) : impacts_in_turn(s);
+	}
 	return round > 0;
 }
 
@@ -138,6 +142,7 @@ void ob_exchange_rounds(ob_sim *s)
 	bool again = true;
 	for (uint32_t round = 0; round < run->passes && again; round++) {
 		again = false;
+		ob_ghosts_read(s, w->u, round);
 		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep
 		for (uint32_t k = 0; k < w->batches; k++) {
 			ob_batch *b = &w->batch[w->batch_order[k]];

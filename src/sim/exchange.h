@@ -3,6 +3,7 @@
 // Coloured: in each colour a body stands in at most one pair, so each pair is solved with true masses on what was
 // published last, and publishes. Jacobi: all pairs are solved on the same published state, each with its share of its
 // bodies' masses (the mass split by the number of contacts), and all changes are published together.
+// Ghost and lagged: each member of a pair solves for itself (sim/ghost.h).
 #ifndef OB_SIM_EXCHANGE_H
 #define OB_SIM_EXCHANGE_H
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "sim/exchange.h"
+#include "sim/ghost.h"
 #include "sim/members.h"
 #include "sim/touch.h"
 
@@ -10,12 +11,14 @@
 static void substep(ob_sim *s)
 {
 	ob_members_gyrate(s);
+	ob_ghosts_follow(s);
 	ob_touches_refresh(s);
 	ob_touches_prepare(s);
 	// What flies off may hit something that was out of reach before; a rattle is left to the contact solver in the
 	// end.
 	for (int again = 0; again < 4 && ob_exchange_impacts(s); again++) {
 		ob_members_quicken(s);
+		ob_ghosts_follow(s);
 		if (!ob_touches_refresh(s))
 			break;
 		ob_touches_prepare(s);
@@ -24,6 +27,7 @@ static void substep(ob_sim *s)
 	ob_exchange_cap(s);
 	ob_exchange_rounds(s);
 	ob_members_advance(s);
+	ob_ghosts_follow(s);
 	ob_exchange_project(s);
 }
 
@@ -59,4 +63,5 @@ void ob_island_work_finish(ob_island_work *w)
 	free(w->batch_open);
 	free(w->batch_order);
 	free(w->row_of);
+	free(w->history);
 }

@@ -37,6 +37,8 @@ typedef struct ob_member {
 	uint64_t colours; // bit per colour in use
 	uint32_t hot; // last pass in which a velocity changed noticeably
 	uint32_t first_adjacent, adjacent; // range in adjacency
+	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
+	uint32_t ghost_of; // of a ghost: the row that it stands for
 } ob_member;
 
 typedef struct ob_touch {
@@ -47,12 +49,16 @@ typedef struct ob_touch {
 	uint32_t points;
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
 	double limit, mu, e;
+	bool mirror; // the second touch of a pair that is solved for each side apart: its own member is b
 } ob_touch;
 
 // Grown as needed, never shrunk.
 typedef struct ob_island_work {
 	uint32_t rows, rows_max; // members + fixed bodies + row 0
 	uint32_t members; // rows 1 .. members
+	uint32_t first_ghost; // rows from here on are ghosts
+	ob_body_row *history; // what members published in the last exchanges, for ghosts
+	uint32_t history_max;
 	ob_member *member; // [rows]
 	ob_body_row *v, *dv, *u, *d, *delta;
 	uint32_t touches, touches_max;

@@ -88,10 +88,12 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	w->h = run->step_length / run->substeps;
 	w->mass = 0;
 	w->members = is->members;
-	reserve_rows(w, 1 + is->members + is->pairs);
+	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
+	uint32_t most = 1 + is->members + 2 * is->pairs;
+	reserve_rows(w, most);
 	ob_body_row *all[] = { w->v, w->dv, w->u, w->d, w->delta };
 	for (int i = 0; i < 5; i++)
-		memset(all[i], 0, (1 + is->members + is->pairs) * sizeof *all[i]);
+		memset(all[i], 0, most * sizeof *all[i]);
 	memset(&w->member[0], 0, sizeof w->member[0]);
 	w->rows = 1;
 	for (uint32_t i = 0; i < is->members; i++) {
@@ -110,9 +112,10 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 		w->row_of[fixed] = w->rows;
 		load(w, s->u, w->rows++, fixed, false);
 	}
+	w->first_ghost = w->rows;
 }
 
-void ob_member_settle(ob_island_work *w, uint32_t row)
+static void settle_row(ob_island_work *w, uint32_t row)
 {
 	ob_member *m = &w->member[row];
 	double *d = w->d[row];
@@ -141,6 +144,18 @@ void ob_member_settle(ob_island_work *w, uint32_t row)
 		turn_inertia(m);
 	}
 	memset(d, 0, sizeof(ob_body_row));
+}
+
+// A ghost moves when the one moves for whom it stands, and by as much.
+void ob_member_settle(ob_island_work *w, uint32_t row)
+{
+	if (row >= w->first_ghost)
+		row = w->member[row].ghost_of;
+	for (uint32_t g = w->member[row].next_ghost; g; g = w->member[g].next_ghost) {
+		memcpy(w->d[g], w->d[row], sizeof *w->d);
+		settle_row(w, g);
+	}
+	settle_row(w, row);
 }
 
 // Euler's equations over h by the midpoint rule, in the body frame. ODE's stepper does its own.

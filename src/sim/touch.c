@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/ghost.h"
 #include "sim/lane.h"
 #include "sim/look.h"
 #include "sim/members.h"
@@ -104,9 +105,11 @@ void ob_touches_prepare(ob_sim *s)
 
 // ---- between the universe and the island
 
-static void load_touch(ob_sim *s, ob_touch *t, const ob_pair_key *k)
+static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 {
 	ob_island_work *w = &s->island;
+	ob_touch *t = &w->touch[w->touches++];
+	*t = *from;
 	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
 	t->mu = sqrt(a->friction * b->friction);
 	t->e = fmax(a->restitution, b->restitution);
@@ -120,9 +123,21 @@ static void load_touch(ob_sim *s, ob_touch *t, const ob_pair_key *k)
 	ob_lane_take(s, t);
 	ob_lane_fill(w, t, p->normal, p->gap);
 	ob_batch *batch = &w->batch[t->lane / OB_LANES];
+	const double *impulse = t->mirror ? p->impulse_b : p->impulse;
 	for (int i = 0; i < OB_PAIR_ROWS; i++)
 		batch->impulse[i][t->lane % OB_LANES] = batch->impulse_start[i][t->lane % OB_LANES] =
-			p->impulse[i] * (w->h / p->substep);
+			impulse[i] * (w->h / p->substep);
+}
+
+// Each side for itself, on a ghost of the other.
+static void load_apart(ob_sim *s, const ob_touch *t, const ob_pair_key *k)
+{
+	ob_touch own = *t, mirror = *t;
+	own.b = ob_ghost_make(s, t->b);
+	mirror.a = ob_ghost_make(s, t->a);
+	mirror.mirror = true;
+	load_touch(s, &own, k);
+	load_touch(s, &mirror, k);
 }
 
 static void link_adjacent(ob_island_work *w)
@@ -148,12 +163,13 @@ void ob_touches_load(ob_sim *s, const ob_island *is)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	ob_island_work *w = &s->island;
-	if (is->pairs > w->touches_max) {
-		w->touches_max = is->pairs + is->pairs / 2;
+	uint32_t most = ob_ghosts_used(s) ? 2 * is->pairs : is->pairs;
+	if (most > w->touches_max) {
+		w->touches_max = most + most / 2;
 		w->touch = realloc(w->touch, w->touches_max * sizeof *w->touch);
 		w->adjacency = realloc(w->adjacency, 2 * w->touches_max * sizeof *w->adjacency);
 	}
-	w->touches = is->pairs;
+	w->touches = 0;
 	w->batches = 0;
 	memset(w->open, 0xff, sizeof w->open);
 	w->order_stale = w->counts_stale = true;
@@ -161,13 +177,37 @@ void ob_touches_load(ob_sim *s, const ob_island *is)
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		uint32_t key = ex->island_pair[is->first_pair + i];
 		const ob_pair_key *k = &ex->pair[key];
-		ob_touch *t = &w->touch[i];
-		*t = (ob_touch){
+		ob_touch t = {
 			.key = key, .a = w->row_of[k->a], .b = w->row_of[k->b], .lane = OB_NO_LANE, .limit = k->limit
 		};
-		load_touch(s, t, k);
+		if (ob_ghosts_used(s) && t.a <= w->members && t.b <= w->members)
+			load_apart(s, &t, k);
+		else
+			load_touch(s, &t, k);
 	}
 	link_adjacent(w);
+}
+
+// The lane's impulses, or zeros if it has none.
+static void store_impulses(const ob_island_work *w, const ob_touch *t, double *impulse)
+{
+	for (int j = 0; j < OB_PAIR_ROWS && t->lane != OB_NO_LANE; j++)
+		impulse[j] = w->batch[t->lane / OB_LANES].impulse[j][t->lane % OB_LANES];
+}
+
+static void store_touch(const ob_island_work *w, const ob_touch *t, ob_pair_state *p)
+{
+	*p = (ob_pair_state){ .points = t->points, .path_limit = t->limit, .substep = w->h };
+	memcpy(p->arm_a, t->arm_a, sizeof p->arm_a);
+	memcpy(p->arm_b, t->arm_b, sizeof p->arm_b);
+	store_impulses(w, t, p->impulse);
+	if (t->lane == OB_NO_LANE)
+		return;
+	const ob_batch *b = &w->batch[t->lane / OB_LANES];
+	int l = t->lane % OB_LANES;
+	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
+		p->gap[j] = b->gap[j][l];
+	p->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
 }
 
 void ob_touches_store(ob_sim *s)
@@ -175,26 +215,19 @@ void ob_touches_store(ob_sim *s)
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
+		const ob_touch *t = &w->touch[i], *mirror = i + 1 < w->touches && t[1].mirror ? t + 1 : NULL;
 		ob_pair_key *k = &ex->pair[t->key];
 		bool was_active = k->active;
 		k->limit = t->limit;
 		k->active = t->lane != OB_NO_LANE;
-		if (!k->active && !was_active)
-			continue;
-		ob_pair_record *record = &ex->record[k->record];
-		ob_pair_state *p = ob_pair_writable(record);
-		*p = (ob_pair_state){ .points = t->points, .path_limit = t->limit, .substep = w->h };
-		memcpy(p->arm_a, t->arm_a, sizeof p->arm_a);
-		memcpy(p->arm_b, t->arm_b, sizeof p->arm_b);
-		const ob_batch *b = k->active ? &w->batch[t->lane / OB_LANES] : NULL;
-		int l = t->lane % OB_LANES;
-		for (uint32_t j = 0; b && j < OB_PAIR_POINTS; j++)
-			p->gap[j] = b->gap[j][l];
-		for (int j = 0; b && j < OB_PAIR_ROWS; j++)
-			p->impulse[j] = b->impulse[j][l];
-		if (b)
-			p->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
-		ob_pair_written(record, ob_step_count(s->u) + 1);
+		if (k->active || was_active) {
+			ob_pair_record *record = &ex->record[k->record];
+			ob_pair_state *p = ob_pair_writable(record);
+			store_touch(w, t, p);
+			if (mirror)
+				store_impulses(w, mirror, p->impulse_b);
+			ob_pair_written(record, ob_step_count(s->u) + 1);
+		}
+		i += mirror != NULL;
 	}
 }
