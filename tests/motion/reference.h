@@ -15,6 +15,8 @@ typedef struct long_rotation {
 static inline long_rotation long_of(ob_quat q, ob_vec3 w)
 {
 	long double s = q.w, x = q.x, y = q.y, z = q.z, a = w.x, b = w.y, c = w.z;
+	long double size = sqrtl(s * s + x * x + y * y + z * z);
+	s /= size, x /= size, y /= size, z /= size;
 	long_rotation r = { .q = { s, x, y, z } };
 	r.w[0] = (1 - 2 * (y * y + z * z)) * a + 2 * (x * y + s * z) * b + 2 * (x * z - s * y) * c;
 	r.w[1] = 2 * (x * y - s * z) * a + (1 - 2 * (x * x + z * z)) * b + 2 * (y * z + s * x) * c;
