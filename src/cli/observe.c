@@ -19,7 +19,7 @@ static bool is_closed(const ob_scene *s)
 	if (ob_norm2(s->gravity) > 0 || !all_stay(s))
 		return false;
 	for (uint32_t i = 0; i < s->objects; i++) {
-		if (s->object[i].passport.flags & OB_OBJECT_STATIC)
+		if (s->object[i].passport.flags & OB_OBJECT_STATIC || ob_norm2(s->object[i].passport.force) > 0)
 			return false;
 	}
 	return true;

@@ -23,7 +23,7 @@ double ob_measure_energy(const ob_snapshot *s, ob_vec3 gravity)
 		const ob_passport *p = &s->passport[id];
 		ob_state state = ob_snapshot_state(s, id);
 		sum += .5 * p->mass * ob_norm2(state.v) + .5 * ob_dot(state.w, spin(p, &state)) -
-		       p->mass * ob_dot(gravity, state.pose.p);
+		       p->mass * ob_dot(gravity, state.pose.p) - ob_dot(p->force, state.pose.p);
 	}
 	return sum;
 }

@@ -29,7 +29,9 @@ void ob_snapshot_finish(ob_snapshot *s);
 // State of a present object at the snapshot's time: its motion may be older (asleep, static, in flight).
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id);
 
-double ob_measure_energy(const ob_snapshot *s, ob_vec3 gravity);  // J: kinetic + potential, dynamic objects
+// J, of dynamic objects: kinetic, potential, and minus the work that their constant forces have done since they were at
+// the origin. So a force that drives something adds no energy, and contacts can only take it away.
+double ob_measure_energy(const ob_snapshot *s, ob_vec3 gravity);
 ob_vec3 ob_measure_momentum(const ob_snapshot *s);                // kg m/s
 ob_vec3 ob_measure_angular_momentum(const ob_snapshot *s);        // kg m^2/s about the origin
 // 64-bit FNV-1a over (id, p, q, v, w) of all present objects at the snapshot's time

@@ -13,6 +13,7 @@ struct member {
 	uint32_t id;
 	bool touching;
 	double friction, restitution;
+	ob_vec3 force; // N, acts in every step
 	ob_state placed; // of static objects
 };
 
@@ -108,6 +109,7 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 		.id = p->id,
 		.friction = p->friction,
 		.restitution = p->restitution,
+		.force = p->force,
 		.placed = *s,
 	};
 	m->geom = ob_ode_geom_create(w->space, p->shape, p->size);
@@ -227,9 +229,13 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 	}
 	if (w->pairs)
 		qsort(w->pair, w->pairs, sizeof *w->pair, by_ids);
-	for (uint32_t id = 0; id < w->setup.objects; id++)
-		if (awake(&w->member[id]))
-			w->member[id].touching = false;
+	for (uint32_t id = 0; id < w->setup.objects; id++) {
+		struct member *m = &w->member[id];
+		if (!awake(m))
+			continue; // ODE would keep the forces on a sleeper until it wakes
+		m->touching = false;
+		dBodySetForce(m->body, m->force.x, m->force.y, m->force.z);
+	}
 	// Slower than what gravity adds in two steps is rest, not an impact.
 	double bounce_speed = 2 * h * ob_norm(w->setup.gravity);
 	for (size_t i = 0; i < w->pairs; i++)

@@ -16,7 +16,7 @@
 // What a call may say; NaN = not said.
 typedef struct body {
 	const char *name, *material;
-	ob_vec3 size, at, velocity, spin, normal;
+	ob_vec3 size, at, velocity, spin, force, normal;
 	double radius, length, height, mass, density, friction, restitution, born, dies;
 	ob_quat q, rotation;
 	float colour[4];
@@ -40,6 +40,7 @@ typedef struct body {
 		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
 		F(velocity, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
 		F(spin, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
+		F(force, .kind = OB_FIELD_VECTOR, .low = -1e15, .high = 1e15), \
 		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
 
 static const ob_field box_fields[] = {
@@ -186,9 +187,13 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 		refuse_together(L, kind, "q", "rotation");
 	if (d->fixed && !isnan(d->mass))
 		ob_sandbox_fail(L, "%s.mass: expected none for a static object, got %.10g", kind, d->mass);
-	if (d->fixed && (ob_norm2(d->velocity) > 0 || ob_norm2(d->spin) > 0))
-		ob_sandbox_fail(L, "%s.%s: expected none for a static object", kind,
-				ob_norm2(d->velocity) > 0 ? "velocity" : "spin");
+	const struct {
+		const char *name;
+		ob_vec3 value;
+	} moves[] = { { "velocity", d->velocity }, { "spin", d->spin }, { "force", d->force } };
+	for (int i = 0; i < 3; i++)
+		if (d->fixed && ob_norm2(moves[i].value) > 0)
+			ob_sandbox_fail(L, "%s.%s: expected none for a static object", kind, moves[i].name);
 	if (d->dies <= d->born)
 		ob_sandbox_fail(L, "%s.dies: expected a time after born = %.10g, got %.10g", kind, d->born, d->dies);
 }
@@ -207,6 +212,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	p->shape = shape;
 	p->size = size;
 	p->mass = mass;
+	p->force = d->force;
 	p->friction = d->friction;
 	p->restitution = d->restitution;
 	memcpy(p->colour, d->colour, sizeof p->colour);

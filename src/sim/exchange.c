@@ -26,8 +26,7 @@ static void add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
 
 static ob_impact impact_of(const ob_sim *s, const ob_touch *t)
 {
-	double resting =
-		4 * ob_norm(ob_universe_settings(s->u)->gravity) * s->island.h; // m/s: what gravity alone brings
+	double resting = 4 * s->island.pull * s->island.h; // m/s: what comes without impacts
 	return (ob_impact){ s->island.h, t->e, resting + 1e-6, 1, 1 };
 }
 
@@ -107,7 +106,7 @@ bool ob_exchange_impacts(ob_sim *s)
 void ob_exchange_cap(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	const double brought = ob_norm(ob_universe_settings(s->u)->gravity) * w->h; // m/s, by gravity in a substep
+	const double brought = w->pull * w->h; // m/s, without contacts
 	const double growth = .3 * brought * w->mass; // N s
 	const double cap[OB_LANES] = { growth, growth, growth, growth };
 	for (uint32_t i = 0; i < w->batches; i++)

@@ -25,6 +25,7 @@ typedef struct ob_member {
 	ob_mat3 r;
 	double mass, inv_mass;
 	ob_vec3 inertia; // principal
+	ob_vec3 pull; // m/s^2: what moves it where nothing touches it
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
 	double path, speed; // m; m/s bound of any point
@@ -73,6 +74,7 @@ typedef struct ob_island_work {
 	bool order_stale, counts_stale, elastic;
 	uint32_t pass; // number of the running pass, ever growing
 	double mass; // of all members, kg
+	double pull; // m/s^2, the largest of any member
 	double h, t0; // s
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;

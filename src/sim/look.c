@@ -53,7 +53,7 @@ static ob_placed placed(const ob_island_work *w, uint32_t row)
 	return (ob_placed){ m->shape, m->size, m->p, m->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]) };
 }
 
-// Bound of the speed at which any two points of the pair may approach (m/s), with what gravity adds.
+// Bound of the speed at which any two points of the pair may approach (m/s), with what pulls at them.
 static double closing_speed(const ob_sim *s, const ob_touch *t)
 {
 	const ob_island_work *w = &s->island;
@@ -66,7 +66,7 @@ static double closing_speed(const ob_sim *s, const ob_touch *t)
 		if (m->inv_mass > 0 && m->shape != OB_SHAPE_SPHERE)
 			speed += m->radius * ob_norm(ob_v3(v[3], v[4], v[5]));
 	}
-	return speed + ob_norm(ob_universe_settings(s->u)->gravity) * w->h;
+	return speed + w->pull * w->h;
 }
 
 // Points as of the instant of meeting, with gaps wound back to now: what closes at that instant closes then.

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "sim/perceive.h"
+#include "sim/pull.h"
 
 static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
 {
@@ -38,6 +39,7 @@ static void turn_inertia(ob_member *m)
 
 static void load(ob_island_work *w, const ob_universe *u, uint32_t row, uint32_t id, bool moves)
 {
+	const ob_run_settings *run = ob_universe_settings(u);
 	const ob_passport *pass = ob_passport_of(u, id);
 	const ob_motion *mo = ob_newest_motion(u, id);
 	ob_member *m = &w->member[row];
@@ -65,6 +67,8 @@ static void load(ob_island_work *w, const ob_universe *u, uint32_t row, uint32_t
 	double scale = mo->substep > 0 ? w->h / mo->substep : 0;
 	add_row(w->dv[row], ob_scale(mo->dv, scale), ob_scale(mo->dw, scale));
 	w->mass += pass->mass;
+	m->pull = ob_pull(run, pass);
+	w->pull = fmax(w->pull, ob_norm(m->pull));
 	m->speed = ob_surface_speed(mo->v, mo->w, m->shape, m->size);
 }
 
@@ -86,7 +90,7 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	w->h = run->step_length / run->substeps;
-	w->mass = 0;
+	w->mass = w->pull = 0;
 	w->members = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
 	uint32_t most = 1 + is->members + 2 * is->pairs;
@@ -208,12 +212,11 @@ static void mark_loaded(ob_island_work *w)
 void ob_members_predict(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	ob_vec3 g = ob_scale(ob_universe_settings(s->u)->gravity, w->h);
 	mark_loaded(w);
 	for (uint32_t i = 1; i <= w->members; i++) {
 		if (!w->member[i].loaded) {
 			memset(w->dv[i], 0, sizeof(ob_body_row));
-			add_row(w->dv[i], g, ob_v3(0, 0, 0));
+			add_row(w->dv[i], ob_scale(w->member[i].pull, w->h), ob_v3(0, 0, 0));
 		}
 		for (int c = 0; c < 6; c++)
 			w->u[i][c] = w->v[i][c] + w->dv[i][c];
@@ -261,7 +264,7 @@ void ob_members_advance(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
-	double smooth = 2 * ob_norm2(run->gravity) * w->h * w->h;
+	double smooth = 2 * w->pull * w->pull * w->h * w->h;
 	for (uint32_t i = 1; i <= w->members; i++) {
 		ob_member *m = &w->member[i];
 		if (run->integrator == OB_INTEGRATOR_ODE)
@@ -306,13 +309,14 @@ static bool finite_row(const double *r)
 }
 
 // Claims bounds, writes what the arranger needs to know, publishes or leaves the result for its owner to adopt.
-static void publish(ob_sim *s, uint32_t id, ob_motion *m, ob_shape shape, ob_vec3 size, bool own)
+static void publish(ob_sim *s, uint32_t id, ob_motion *m, bool own)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_run_settings *run = ob_universe_settings(s->u);
+	const ob_passport *pass = ob_passport_of(s->u, id);
 	bool asleep = m->flags & OB_MOTION_ASLEEP;
-	double reach = asleep ? 0 : ob_step_reach(run, ob_surface_speed(m->v, m->w, shape, size));
-	ob_claim_bounds(s->u, id, shape, size, (ob_pose){ m->p, m->q }, reach);
+	double reach = asleep ? 0 : ob_step_reach(run, pass, m->v, m->w);
+	ob_claim_bounds(s->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach);
 	memcpy(m->bounds, ex->bounds[id], sizeof m->bounds);
 	ex->brief[id] = (ob_brief){ m->path, (float)reach, asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE };
 	if (own)
@@ -344,12 +348,12 @@ void ob_members_publish(ob_sim *s, bool asleep)
 				 .island = w->member[1].id,
 				 .flags = (free ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) };
 		if (!m->contacts)
-			mo.a = run->gravity;
+			mo.a = m->pull;
 		if (asleep)
 			mo.v = mo.w = ob_v3(0, 0, 0);
 		if (!finite_row(w->v[i]) || !isfinite(m->p.x + m->p.y + m->p.z))
 			ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-		publish(s, m->id, &mo, m->shape, m->size, i == 1 || !run->one_per_object);
+		publish(s, m->id, &mo, i == 1 || !run->one_per_object);
 	}
 }
 
@@ -361,21 +365,21 @@ void ob_member_leap(ob_sim *s, uint32_t id)
 	uint64_t step = ob_step_count(s->u) + 1;
 	double h = run->step_length / run->substeps;
 	ob_motion m = *before;
-	m.a = run->gravity;
+	m.a = ob_pull(run, pass);
 	m.t0 = (step - 1) * run->step_length;
 	ob_state now = ob_motion_at(&m, pass->inertia, step * run->step_length);
 	if (run->integrator == OB_INTEGRATOR_ODE) {
 		now = (ob_state){ { before->p, before->q }, before->v, before->w };
 		for (uint32_t i = 0; i < run->substeps; i++)
-			ob_ode_body_step(ob_sim_ode(s, id), &now, ob_v3(0, 0, 0), ob_v3(0, 0, 0), h);
+			ob_ode_body_step(ob_sim_ode(s, id), &now, ob_scale(pass->force, h), ob_v3(0, 0, 0), h);
 	}
 	m.t0 = step * run->step_length;
 	m.valid_until = m.t0 + run->step_length;
 	m.p = now.pose.p, m.q = now.pose.q, m.v = now.v, m.w = now.w;
-	m.dv = ob_scale(run->gravity, h), m.dw = ob_v3(0, 0, 0), m.substep = h;
-	m.path += ob_step_reach(run, ob_surface_speed(before->v, before->w, pass->shape, pass->size));
+	m.dv = ob_scale(m.a, h), m.dw = ob_v3(0, 0, 0), m.substep = h;
+	m.path += ob_step_reach(run, pass, before->v, before->w);
 	m.step = (uint32_t)step, m.flags = OB_MOTION_FREE, m.quiet = 0, m.island = id;
 	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
 		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-	publish(s, id, &m, pass->shape, pass->size, true);
+	publish(s, id, &m, true);
 }

@@ -7,6 +7,7 @@
 
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
+#include "sim/pull.h"
 
 struct held { // whether the world holds an object for a slot, and which
 	bool there;
@@ -106,7 +107,7 @@ static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep,
 		.q = s->pose.q,
 		.v = s->v,
 		.w = s->w,
-		.a = touching || asleep ? ob_v3(0, 0, 0) : m->run->gravity,
+		.a = touching || asleep ? ob_v3(0, 0, 0) : ob_pull(m->run, p),
 		.substep = h / m->run->substeps,
 		.path = last->path + speed * h,
 		.step = (uint32_t)step,
@@ -115,7 +116,7 @@ static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep,
 	};
 	double bounds[6];
 	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
-	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(m->run->gravity), next.bounds);
+	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_pull(m->run, p)), next.bounds);
 	ob_publish_motion(m->u, id, &next);
 	ob_universe_exchange(m->u)->brief[id].state = asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE;
 }

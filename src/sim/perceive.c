@@ -3,6 +3,7 @@
 #include <float.h>
 
 #include "sim/index.h"
+#include "sim/pull.h"
 
 static const double lasting = 3; // claimed boxes last about so many steps
 static const double base_margin = .04; // m: of an object at rest ..
@@ -16,9 +17,10 @@ double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size)
 	return ob_norm(v) + (shape == OB_SHAPE_SPHERE ? 0 : ob_norm(w) * ob_shape_radius(shape, size));
 }
 
-double ob_step_reach(const ob_run_settings *run, double surface_speed)
+double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v, ob_vec3 w)
 {
-	return (surface_speed + ob_norm(run->gravity) * run->step_length) * run->step_length;
+	double speed = ob_surface_speed(v, w, p->shape, p->size);
+	return (speed + ob_norm(ob_pull(run, p)) * run->step_length) * run->step_length;
 }
 
 static bool holds(const float *box, const double *tight, double margin)

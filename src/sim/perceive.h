@@ -8,8 +8,8 @@
 
 // Bound of the speed of any point of the object (m/s).
 double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size);
-// How far any point may get in one step (m), under gravity.
-double ob_step_reach(const ob_run_settings *run, double surface_speed);
+// How far any point of the object may get in one step from these velocities (m), under what pulls at it.
+double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v, ob_vec3 w);
 // Does the object's claimed box still hold it for its next step? If not, claims a new one, a little larger than needed
 // so that it lasts, and asks for the index and the neighbours to be brought up to date. reach: m, for the next step.
 void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach);

@@ -5,6 +5,7 @@
 #include "sim/index.h"
 #include "sim/pairs.h"
 #include "sim/perceive.h"
+#include "sim/pull.h"
 #include "sim/sim.h"
 
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
@@ -26,8 +27,8 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 	if (fixed)
 		m.v = m.w = ob_v3(0, 0, 0);
 	else
-		m.a = run->gravity, m.dv = ob_scale(run->gravity, h), m.flags = OB_MOTION_FREE;
-	double reach = fixed ? 0 : ob_step_reach(run, ob_surface_speed(m.v, m.w, p->shape, p->size));
+		m.a = ob_pull(run, p), m.dv = ob_scale(m.a, h), m.flags = OB_MOTION_FREE;
+	double reach = fixed ? 0 : ob_step_reach(run, p, m.v, m.w);
 	ob_claim_bounds_anew(u, id, p->shape, p->size, (ob_pose){ m.p, m.q }, reach);
 	memcpy(m.bounds, ex->bounds[id], sizeof m.bounds);
 	ex->brief[id] = (ob_brief){ 0, (float)reach, fixed ? OB_BRIEF_STATIC : OB_BRIEF_AWAKE };
@@ -61,8 +62,7 @@ static void let_go(ob_universe *u, uint32_t id, const ob_pair_state *p, bool is_
 	ob_publish_motion(u, id, &m);
 	ob_brief *brief = &ob_universe_exchange(u)->brief[id];
 	brief->state = OB_BRIEF_AWAKE;
-	brief->reach =
-		(float)ob_step_reach(ob_universe_settings(u), ob_surface_speed(m.v, m.w, pass->shape, pass->size));
+	brief->reach = (float)ob_step_reach(ob_universe_settings(u), pass, m.v, m.w);
 }
 
 void ob_sim_remove(ob_universe *u, uint32_t id)

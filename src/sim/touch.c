@@ -48,7 +48,7 @@ bool ob_touches_refresh(ob_sim *s)
 {
 	bool any = false;
 	ob_island_work *w = &s->island;
-	double gh = ob_norm(ob_universe_settings(s->u)->gravity) * w->h;
+	double gh = w->pull * w->h;
 	for (uint32_t i = 0; i < w->touches; i++) {
 		ob_touch *t = &w->touch[i];
 		const ob_member *a = &w->member[t->a], *b = &w->member[t->b];

@@ -110,7 +110,7 @@ static bool finite3(ob_vec3 v)
 
 static bool passport_makes_sense(const ob_passport *p, uint32_t id)
 {
-	return p->id == id && p->shape <= OB_SHAPE_CYLINDER && finite3(p->size) && finite3(p->inertia) &&
+	return p->id == id && p->shape <= OB_SHAPE_CYLINDER && finite3(p->size) && finite3(p->inertia) && finite3(p->force) &&
 	       isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) && isfinite(p->restitution) &&
 	       memchr(p->name, 0, sizeof p->name);
 }

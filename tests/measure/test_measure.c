@@ -39,6 +39,8 @@ static void test_energy(void)
 	passports[2] = (ob_passport){ .id = 2, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC };
 	motions[2].p.z = 1e6;
 	CHECK_NEAR(ob_measure_energy(&s, g), 25 + 60 + .5 * .7 * 4, 1e-12);
+	passports[0].force = ob_v3(4, 0, -1); // its work from the origin: 4 * 1 - 1 * 3
+	CHECK_NEAR(ob_measure_energy(&s, g), 25 + 60 + .5 * .7 * 4 - 1, 1e-12);
 	passports[0].flags = 0; // gone
 	CHECK_NEAR(ob_measure_energy(&s, g), .5 * .7 * 4, 1e-12);
 }

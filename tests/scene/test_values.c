@@ -98,7 +98,7 @@ static void check_states(void)
 	ob_scene *s = load_good(
 		"local function b(f) f.size = { 1, 1, 1 } box(f) end\n"
 		"b { rotation = { axis = { 0, 0, 2 }, degrees = 90 }, at = { 1, 2, 3 }, velocity = { 4, 5, 6 },\n"
-		"    spin = { 7, 8, 9 }, born = 1, dies = 2 }\n"
+		"    spin = { 7, 8, 9 }, force = { 10, 11, 12 }, born = 1, dies = 2 }\n"
 		"b { q = { 3, 0, 0, 3 } }\n"
 		"plane { normal = { 0, 3, 4 } }\n"
 		"plane { normal = { 0, 0, -1 } }\n"
@@ -111,6 +111,7 @@ static void check_states(void)
 	check_vec(o[0].state.pose.p, 1, 2, 3);
 	check_vec(o[0].state.v, 4, 5, 6);
 	check_vec(o[0].state.w, 7, 8, 9);
+	check_vec(o[0].passport.force, 10, 11, 12);
 	CHECK(o[0].born == 1 && o[0].dies == 2);
 	check_vec_near(axis(&o[1], 0), 0, 1, 0);
 	check_vec_near(axis(&o[2], 2), 0, .6, .8);
