@@ -80,7 +80,7 @@ static double body_seconds(const ob_trial *t)
 
 typedef struct tally {
 	uint32_t failed; // runs
-	char why[72]; // the first reason
+	char why[96]; // the first reason
 } tally;
 
 static bool run(const ob_case *c, uint32_t number, const ob_peer_kind *kind, const ob_peer_settings *s, ob_outcome *out,
@@ -125,7 +125,7 @@ bool ob_case_run(const ob_case *c, const ob_peer_kind *kind, const ob_peer_setti
 		if (!run(c, i, kind, s, out, &failures, e))
 			return false;
 	if (failures.failed && c->runs > 1)
-		snprintf(out->failed, sizeof out->failed, "%s (%u of %u runs)", failures.why, failures.failed, c->runs);
+		snprintf(out->failed, sizeof out->failed, "%.58s (%u of %u runs)", failures.why, failures.failed, c->runs);
 	else
 		snprintf(out->failed, sizeof out->failed, "%s", failures.why);
 	return true;

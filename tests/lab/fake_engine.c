@@ -16,24 +16,6 @@ void exact_engine_use(exact_motion motion)
 	in_use = motion;
 }
 
-ob_state exact_rest(const ob_peer_world *w, uint32_t id, double t)
-{
-	return w->state[id];
-}
-
-ob_state exact_flight(const ob_peer_world *w, uint32_t id, double t)
-{
-	const ob_passport *p = &w->passport[id];
-	ob_state s = w->state[id];
-	if (p->flags & OB_OBJECT_STATIC)
-		return s;
-	ob_vec3 a = ob_madd(w->gravity, 1 / p->mass, p->force);
-	ob_rotate_free(s.pose.q, s.w, p->inertia, t, &s.pose.q, &s.w);
-	s.pose.p = ob_madd(ob_madd(s.pose.p, t, s.v), .5 * t * t, a);
-	s.v = ob_madd(s.v, t, a);
-	return s;
-}
-
 static ob_state bursting(const ob_peer_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];

@@ -2,9 +2,7 @@
 #ifndef OB_TESTS_LAB_FAKE_ENGINE_H
 #define OB_TESTS_LAB_FAKE_ENGINE_H
 
-#include "peer/peer.h"
-
-typedef ob_state (*exact_motion)(const ob_peer_world *w, uint32_t id, double t);
+#include "exact.h"
 
 extern const ob_peer_kind exact_engine;
 void exact_engine_use(exact_motion motion); // from now on, by all of them
@@ -14,8 +12,5 @@ extern const ob_peer_kind blind_engine; // no contacts: all fall as if alone
 extern const ob_peer_kind drunk_engine; // gives NaN from the third frame on
 extern const ob_peer_kind bursting_engine; // ever faster
 extern const ob_peer_kind dying_engine; // breaks off in the third frame
-
-ob_state exact_flight(const ob_peer_world *w, uint32_t id, double t);
-ob_state exact_rest(const ob_peer_world *w, uint32_t id, double t);
 
 #endif

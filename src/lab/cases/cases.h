@@ -11,7 +11,38 @@
 	X(cradle_2) \
 	X(bounce) \
 	X(apexes) \
-	X(bouncing_49)
+	X(bouncing_49) \
+	X(666) \
+	X(elastic_666) \
+	X(rolling_diagonal) \
+	X(rolling_y) \
+	X(incline_stick) \
+	X(incline_slide) \
+	X(sliding) \
+	X(slip_to_roll) \
+	X(sphere_incline_roll) \
+	X(sphere_incline_slip) \
+	X(stack_10) \
+	X(stack_20) \
+	X(stack_40) \
+	X(heavy_100) \
+	X(heavy_1000) \
+	X(heavy_on_stack) \
+	X(pyramid_10) \
+	X(pyramid_15) \
+	X(pile) \
+	X(pile_elastic) \
+	X(falling_100) \
+	X(thin_wall) \
+	X(bullets) \
+	X(spin) \
+	X(overhang) \
+	X(overhang_over) \
+	X(a_frame_stands) \
+	X(a_frame_slides) \
+	X(far_stack) \
+	X(far_head_on) \
+	X(lag)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)

@@ -1,0 +1,103 @@
+// Far from the origin, where positions have fewer digits: the same scene twice in one world, at the origin and 10 km
+// away.
+#include "lab/build.h"
+#include "lab/cases/cases.h"
+#include "lab/cases/head_on.h"
+#include "lab/look.h"
+
+static const ob_vec3 away = { 10e3, 0, 0 }; // m
+
+// m: the farthest apart that body "near" and its double "far" are, less the distance that they started with.
+static double apart(const ob_trial *t, uint32_t near, uint32_t far)
+{
+	return ob_norm(ob_sub(ob_look_moved(t, far), ob_look_moved(t, near)));
+}
+
+// The ground lies between both stacks in the order of ids, so that it makes a range with either.
+enum { STACK = 10 };
+
+static void build_stacks(ob_peer_world *w, uint32_t run)
+{
+	ob_build_stack(w, STACK, ob_v3(0, 0, 0), 14);
+	ob_build_ground(w);
+	ob_build_stack(w, STACK, away, 14);
+}
+
+static double penetration(const ob_trial *t, uint32_t first)
+{
+	ob_snapshot part = { .time = t->now.time, .count = STACK + 1 };
+	part.passport = t->now.passport + first;
+	part.motion = t->now.motion + first;
+	ob_penetration p;
+	ob_measure_penetration(&part, &p);
+	return p.max_m;
+}
+
+enum { FAR_WORST, APART, DEEPER };
+
+static void observe_stacks(ob_trial *t)
+{
+	double near = penetration(t, 0), far = penetration(t, STACK);
+	ob_look_keep(&t->figure[FAR_WORST], 1e3 * far);
+	ob_look_keep(&t->figure[DEEPER], fabs(far - near));
+	for (uint32_t i = 0; i < STACK; i++)
+		ob_look_keep(&t->figure[APART], apart(t, i, STACK + 1 + i));
+	if (ob_look_farthest(t) > .25)
+		t->failed = "fell";
+}
+
+static void judge_stacks(ob_trial *t)
+{
+	if (t->failed)
+		t->figure[FAR_WORST] = INFINITY;
+}
+
+const ob_case ob_case_far_stack = {
+	.row = 23,
+	.name = "far-stack",
+	.title = "Stack of 10 at 10 km",
+	.setup = "The stack of 10 at the origin and the same 10 km away; 20 s.",
+	.peers = "not measured elsewhere",
+	.quick = true,
+	.duration = 20,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = 3,
+	.figure = { { "worst penetration at 10 km", "mm", .5, "no penetration" },
+		    { "difference of ways", "m", 1e-6, "the stack at the origin" },
+		    { "difference of penetrations", "m", 1e-6, "the stack at the origin" } },
+	.build = build_stacks,
+	.observe = observe_stacks,
+	.judge = judge_stacks,
+};
+
+static void build_pairs(ob_peer_world *w, uint32_t run)
+{
+	ob_head_on_build(w, run, ob_v3(0, 0, 0));
+	ob_head_on_build(w, run, away);
+}
+
+static void judge_pairs(ob_trial *t)
+{
+	t->figure[0] = ob_head_on_error(t, 2);
+	t->figure[1] = fmax(apart(t, 0, 2), apart(t, 1, 3));
+	if (ob_head_on_missed(t, 0) || ob_head_on_missed(t, 2))
+		t->failed = "passed through";
+}
+
+const ob_case ob_case_far_head_on = {
+	.row = 23,
+	.name = "far-head-on",
+	.title = "Head-on pair at 10 km",
+	.setup = "The head-on pairs at the origin and the same 10 km away.",
+	.peers = "not measured elsewhere",
+	.quick = true,
+	.duration = 2,
+	.step = 1. / 60,
+	.runs = OB_HEAD_ON_RUNS,
+	.figures = 2,
+	.figure = { { "error of velocities at 10 km", "1", 1e-6, "impact of two bodies (Newton 1687)" },
+		    { "difference of ways", "m", 1e-6, "the pair at the origin" } },
+	.build = build_pairs,
+	.judge = judge_pairs,
+};

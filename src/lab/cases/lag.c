@@ -1,0 +1,45 @@
+// What it costs to read a partner late: the head-on pair, with the lag of the run's settings.
+#include "lab/build.h"
+#include "lab/cases/cases.h"
+#include "lab/cases/head_on.h"
+#include "lab/look.h"
+
+static void build_lag(ob_peer_world *w, uint32_t run)
+{
+	ob_head_on_build(w, run, ob_v3(0, 0, 0));
+}
+
+static void observe_lag(ob_trial *t)
+{
+	double momentum = ob_norm(ob_sub(ob_measure_momentum(&t->now), ob_v3(1, 0, 0)));
+	ob_look_keep(&t->figure[0], momentum);
+	ob_look_keep(&t->figure[2], (ob_look_energy(t) - .5) / .5);
+}
+
+static void judge_lag(ob_trial *t)
+{
+	t->figure[1] = ob_head_on_error(t, 0);
+	if (ob_head_on_missed(t, 0))
+		t->failed = "passed through";
+}
+
+const ob_case ob_case_lag = {
+	.row = 24,
+	.name = "lag",
+	.title = "Partners that read late",
+	.setup = "The head-on pairs, each body a simulator that computes the impulse for itself, on a state of its "
+		 "partner "
+		 "that is so many exchanges late. The target holds without lag.",
+	.peers = "no other engine couples simulators",
+	.quick = true,
+	.duration = 2,
+	.step = 1. / 60,
+	.runs = OB_HEAD_ON_RUNS,
+	.figures = 3,
+	.figure = { { "error of momentum", "1", 1e-15, "momentum at the start" },
+		    { "error of velocities", "1", NAN, "impact of two bodies (Newton 1687)" },
+		    { "gain of energy", "1", NAN, "energy at the start" } },
+	.build = build_lag,
+	.observe = observe_lag,
+	.judge = judge_lag,
+};

@@ -1,0 +1,28 @@
+#include "lab/cases/stand.h"
+
+#include "lab/look.h"
+
+enum { MEMORY_SUM, MEMORY_FRAMES }; // m: of the mean penetrations so far
+
+void ob_stand_observe(ob_trial *t)
+{
+	ob_penetration p;
+	ob_measure_penetration(&t->now, &p);
+	ob_look_keep(&t->figure[OB_STAND_WORST], 1e3 * p.max_m);
+	t->memory[MEMORY_SUM] += p.mean_m;
+	t->memory[MEMORY_FRAMES]++;
+	double fallen = 0;
+	for (uint32_t id = 0; id < t->world->objects; id++) {
+		ob_vec3 moved = ob_look_moved(t, id);
+		ob_look_keep(&t->figure[OB_STAND_DRIFT], 1e3 * hypot(moved.x, moved.y));
+		fallen += ob_norm(moved) > .25;
+	}
+	t->figure[OB_STAND_FALLEN] = fallen;
+	if (fallen > 0)
+		t->failed = "fell";
+}
+
+void ob_stand_judge(ob_trial *t)
+{
+	t->figure[OB_STAND_MEAN] = 1e3 * t->memory[MEMORY_SUM] / t->memory[MEMORY_FRAMES];
+}

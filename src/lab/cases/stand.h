@@ -1,0 +1,20 @@
+// What is measured of anything that shall stand: stacks, pyramids, a heavy body on a light one.
+#ifndef OB_LAB_CASES_STAND_H
+#define OB_LAB_CASES_STAND_H
+
+#include "lab/case.h"
+
+enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_FIGURES }; // ob_trial.figure
+
+// Initialiser of the figures; targets in mm.
+#define OB_STAND_FIGURE(worst, drift) \
+	{ { "worst penetration", "mm", worst, "no penetration" }, \
+	  { "drift", "mm", drift, "it stays: farthest that a body gets aside" }, \
+	  { "bodies that fell", "1", 0, "none: the stack is stable" }, \
+	  { "mean penetration", "mm", NAN, "no penetration; over contacts and time" } }
+
+// Fails the trial when a body is more than a quarter of a metre from its place.
+void ob_stand_observe(ob_trial *t);
+void ob_stand_judge(ob_trial *t);
+
+#endif

@@ -1,0 +1,167 @@
+// On which side of the edge: bricks over a table's rim, two cards that lean on each other.
+#include "lab/build.h"
+#include "lab/cases/cases.h"
+#include "lab/look.h"
+#include "reference/statics.h"
+
+enum { WRONG_SIDE, MOVED, SIDE_FIGURES };
+#define SIDE_FIGURE(reference) \
+	{ \
+		{ "on the wrong side", "1", 0, reference }, \
+		{ \
+			"farthest that a body moved", "mm", NAN, reference \
+		} \
+	}
+static const double fallen = .05; // m
+
+static void observe_side(ob_trial *t)
+{
+	double ground = INFINITY;
+	for (uint32_t id = 0; id < t->world->objects; id++)
+		if (t->world->passport[id].shape == OB_SHAPE_PLANE)
+			ground = t->world->state[id].pose.p.z;
+	ob_look_keep(&t->figure[MOVED], 1e3 * ob_look_farthest(t));
+	if (ob_look_lowest(t) < ground)
+		t->failed = "fell through the ground";
+}
+
+static void judge_stands(ob_trial *t)
+{
+	t->figure[WRONG_SIDE] = t->figure[MOVED] > 1e3 * fallen;
+	if (t->figure[WRONG_SIDE] > 0 && !t->failed)
+		t->failed = "fell";
+}
+
+static void judge_falls(ob_trial *t)
+{
+	t->figure[WRONG_SIDE] = t->failed || t->figure[MOVED] <= 1e3 * fallen;
+	if (t->figure[WRONG_SIDE] > 0 && !t->failed)
+		t->failed = "stands";
+}
+
+enum { BRICKS = 4 };
+
+// "more": share of the reach by which every brick is farther out than balance allows
+static void build_bricks(ob_peer_world *w, double more)
+{
+	ob_build_box(w, 0, ob_v3(2, .5, .5), ob_v3(-2, 0, -.5)); // the table: its edge at x = 0
+	ob_build_ground(w).state->pose.p.z = -4;
+	double x = -.5;
+	for (int i = 0; i < BRICKS; i++) {
+		x += (1 + more) * ob_reference_overhang_shift(BRICKS - i);
+		ob_build_box(w, 1, ob_v3(.5, .25, .1), ob_v3(x, 0, .1 + .2 * i));
+	}
+}
+
+static void build_overhang(ob_peer_world *w, uint32_t run)
+{
+	build_bricks(w, 0);
+}
+
+static void build_overhang_over(ob_peer_world *w, uint32_t run)
+{
+	build_bricks(w, .01);
+}
+
+#define HARMONIC "sum of L / 2 k (Johnson 1955)"
+
+const ob_case ob_case_overhang = {
+	.row = 21,
+	.name = "overhang",
+	.title = "Bricks at the full overhang",
+	.setup = "Four bricks reach 25/24 of their length over a table's edge, the most that can stand; 10 s.",
+	.peers = "not measured elsewhere",
+	.quick = true,
+	.duration = 10,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = SIDE_FIGURES,
+	.figure = SIDE_FIGURE(HARMONIC),
+	.build = build_overhang,
+	.observe = observe_side,
+	.judge = judge_stands,
+};
+
+const ob_case ob_case_overhang_over = {
+	.row = 21,
+	.name = "overhang-over",
+	.title = "Bricks 1 % over the overhang",
+	.setup = "As before, every brick 1 % farther out: they must topple within 10 s.",
+	.peers = "not measured elsewhere",
+	.quick = true,
+	.duration = 10,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = SIDE_FIGURES,
+	.figure = SIDE_FIGURE(HARMONIC),
+	.build = build_overhang_over,
+	.observe = observe_side,
+	.judge = judge_falls,
+};
+
+// Cards of 1 m x 1 m x 20 mm that lean at 30 degrees to the vertical; their inner upper edges touch at x = 0. "share"
+// of the friction that they need with the ground; between themselves they are rough.
+static void build_cards(ob_peer_world *w, double share)
+{
+	const double angle = M_PI / 6, length = 1, thickness = .02, rough = 2;
+	double mu = share * ob_reference_cards_grip(angle, length, thickness);
+	ob_vec3 along = ob_v3(sin(angle), 0, cos(angle)), inner = ob_v3(cos(angle), 0, -sin(angle)); // of the left one
+	ob_vec3 edge = ob_add(ob_scale(along, .5 * length), ob_scale(inner, .5 * thickness));
+	ob_vec3 foot = ob_sub(ob_scale(inner, .5 * thickness), ob_scale(along, .5 * length));
+	ob_build_ground(w);
+	for (int side = -1; side <= 1; side += 2) {
+		ob_vec3 p = ob_v3(side * edge.x, 0, -foot.z);
+		ob_build_body b = ob_build_box(w, 1, ob_v3(.5 * thickness, .5, .5 * length), p);
+		b.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, -side * angle, 0));
+	}
+	ob_build_material(w, rough, 0);
+	w->passport[0].friction = mu * mu / rough; // with a card's: mu
+}
+
+static void build_a_frame_stands(ob_peer_world *w, uint32_t run)
+{
+	build_cards(w, 1.02);
+}
+
+static void build_a_frame_slides(ob_peer_world *w, uint32_t run)
+{
+	build_cards(w, .98);
+}
+
+#define CARDS "mu >= (tan(angle) - d / l) / 2, by the balance of moments"
+
+const ob_case ob_case_a_frame_stands = {
+	.row = 22,
+	.name = "a-frame-stands",
+	.title = "Two cards that lean and stand",
+	.setup = "Two boxes of 1 x 1 x .02 m lean on each other at 30 degrees to the vertical, with 2 % more friction "
+		 "on the "
+		 "ground than they need; 60 s.",
+	.peers = "not measured elsewhere",
+	.quick = true,
+	.duration = 60,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = SIDE_FIGURES,
+	.figure = SIDE_FIGURE(CARDS),
+	.build = build_a_frame_stands,
+	.observe = observe_side,
+	.judge = judge_stands,
+};
+
+const ob_case ob_case_a_frame_slides = {
+	.row = 22,
+	.name = "a-frame-slides",
+	.title = "Two cards that lean and slide",
+	.setup = "As before, with 2 % less friction than they need: they must slide down within 60 s.",
+	.peers = "not measured elsewhere",
+	.quick = true,
+	.duration = 60,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = SIDE_FIGURES,
+	.figure = SIDE_FIGURE(CARDS),
+	.build = build_a_frame_slides,
+	.observe = observe_side,
+	.judge = judge_falls,
+};

@@ -1,0 +1,169 @@
+// What is fast must not pass through what is thin: boxes at a wall, and at each other.
+//
+// A hundred aims share a world, each in a lane of its own, 40 m from the next; a run has one speed. Every box would be
+// at its aim 3 to 4 m from its start.
+#include "lab/build.h"
+#include "lab/cases/cases.h"
+#include "lab/look.h"
+
+enum { AIMS = 100, SIDE = 10 };
+static const double lane = 40; // m
+static const double far_enough = 5; // m of way: by then it has hit
+
+static ob_vec3 middle_of(int aim)
+{
+	return ob_v3(0, lane * (aim % SIDE), lane * (aim / SIDE));
+}
+
+// Turned and spinning at random, up to a tenth off its course, it flies so that its centre would be at "target" after
+// "way" metres.
+static void build_shot(ob_peer_world *w, uint64_t *seed, ob_vec3 target, double speed, double way)
+{
+	ob_vec3 v = ob_build_vector(seed, .1 * fabs(speed));
+	v.x = speed;
+	ob_build_body b = ob_build_box(w, 8, ob_v3(.1, .1, .1), ob_madd(target, -way / fabs(speed), v));
+	b.state->v = v;
+	b.state->w = ob_build_vector(seed, 1);
+	b.state->pose.q = ob_build_attitude(seed);
+}
+
+static bool is_over(const ob_trial *t, double speed)
+{
+	return t->time > far_enough / speed + 4 * t->settings.step;
+}
+
+// ---- row 18: the wall is body 2 i, the box body 2 i + 1
+
+enum { WALL_SPEEDS = 5, MEMORY_HIT = 0, MEMORY_PASSED };
+static const double wall_speed[WALL_SPEEDS] = { 10, 30, 100, 300, 1000 }; // m/s
+static const double wall_half = 4; // m
+
+static void build_thin_wall(ob_peer_world *w, uint32_t run)
+{
+	uint64_t seed = 18 + run;
+	w->gravity = ob_v3(0, 0, 0);
+	for (int i = 0; i < AIMS; i++) {
+		ob_build_box(w, 0, ob_v3(.01, wall_half, wall_half), middle_of(i));
+		ob_vec3 target = ob_build_vector(&seed, .25);
+		target.x = 0;
+		double way = ob_build_within(&seed, 3, 4);
+		build_shot(w, &seed, ob_add(middle_of(i), target), wall_speed[run], way);
+	}
+	ob_build_material(w, .3, 0);
+}
+
+// Half inside is as bad as through. Beyond the wall's rim nothing counts.
+static void observe_thin_wall(ob_trial *t)
+{
+	double speed = wall_speed[t->run];
+	for (uint32_t i = 0; i < AIMS && !is_over(t, speed); i++) {
+		double *memory = &t->body_memory[8 * i];
+		ob_state b = ob_look_at(t, 2 * i + 1);
+		ob_vec3 off = ob_sub(b.pose.p, ob_look_at(t, 2 * i).pose.p);
+		bool beside = fabs(off.y) > wall_half || fabs(off.z) > wall_half;
+		if (b.v.x < .99 * speed)
+			memory[MEMORY_HIT] = 1;
+		if (off.x > -.05 && !beside)
+			memory[MEMORY_PASSED] = 1;
+	}
+}
+
+static double count(const ob_trial *t, int what)
+{
+	double sum = 0;
+	for (uint32_t i = 0; i < AIMS; i++)
+		sum += t->body_memory[8 * i + (uint32_t)what];
+	return sum;
+}
+
+static void judge_thin_wall(ob_trial *t)
+{
+	double passed = count(t, MEMORY_PASSED), missed = AIMS - count(t, MEMORY_HIT);
+	t->figure[t->run] = fmax(passed, missed);
+	if (passed > 0)
+		t->failed = "passed through";
+	else if (missed > 0)
+		t->failed = "never arrived";
+}
+
+#define PASSES(speed) \
+	{ \
+		"passes of 100 at " speed " m/s", "1", 0, "a solid body passes through none" \
+	}
+
+const ob_case ob_case_thin_wall = {
+	.row = 18,
+	.name = "thin-wall",
+	.title = "Thin wall",
+	.setup = "Boxes of .2 m fly at a fixed wall of 20 mm, turned and aimed at random: 100 aims at each of 10, 30, "
+		 "100, 300 "
+		 "and 1000 m/s.",
+	.peers = "ODE 77 to 100 of 100",
+	.quick = true,
+	.duration = .6,
+	.step = 1. / 60,
+	.runs = WALL_SPEEDS,
+	.figures = WALL_SPEEDS,
+	.figure = { PASSES("10"), PASSES("30"), PASSES("100"), PASSES("300"), PASSES("1000") },
+	.build = build_thin_wall,
+	.observe = observe_thin_wall,
+	.judge = judge_thin_wall,
+};
+
+// ---- row 19: the pair is bodies 2 i, from -x, and 2 i + 1
+
+enum { BULLET_SPEEDS = 3 };
+static const double bullet_speed[BULLET_SPEEDS] = { 200, 500, 1000 }; // m/s
+
+static void build_bullets(ob_peer_world *w, uint32_t run)
+{
+	uint64_t seed = 19 + run;
+	double speed = bullet_speed[run];
+	w->gravity = ob_v3(0, 0, 0);
+	for (int i = 0; i < AIMS; i++) {
+		ob_vec3 off = ob_build_vector(&seed, .05);
+		off.x = 0;
+		double way = ob_build_within(&seed, 3, 4);
+		build_shot(w, &seed, middle_of(i), speed, way);
+		build_shot(w, &seed, ob_add(middle_of(i), off), -speed, way);
+	}
+	ob_build_material(w, .3, 0);
+}
+
+// They have passed when they have changed sides. A pair that hits and then slips round each other is slower.
+static void observe_bullets(ob_trial *t)
+{
+	double speed = bullet_speed[t->run];
+	for (uint32_t i = 0; i < AIMS && !is_over(t, speed); i++) {
+		double *memory = &t->body_memory[8 * i];
+		ob_state a = ob_look_at(t, 2 * i), b = ob_look_at(t, 2 * i + 1);
+		bool slower = a.v.x - b.v.x < 1.8 * speed;
+		if (slower)
+			memory[MEMORY_HIT] = 1;
+		else if (a.pose.p.x > b.pose.p.x)
+			memory[MEMORY_PASSED] = 1;
+	}
+}
+
+static void judge_bullets(ob_trial *t)
+{
+	judge_thin_wall(t);
+}
+
+const ob_case ob_case_bullets = {
+	.row = 19,
+	.name = "bullets",
+	.title = "Two bullets head-on",
+	.setup = "Boxes of .2 m fly at each other, turned and aimed at random: 100 pairs at each of +-200, 500 and "
+		 "1000 m/s.",
+	.peers = "Box3D 75 to 100 of 100, Jolt 2 to 100",
+	.quick = true,
+	.duration = .15,
+	.step = 1. / 60,
+	.runs = BULLET_SPEEDS,
+	.figures = BULLET_SPEEDS,
+	.figure = { PASSES("200"), PASSES("500"), PASSES("1000") },
+	.build = build_bullets,
+	.observe = observe_bullets,
+	.judge = judge_bullets,
+};

@@ -1,0 +1,140 @@
+#include "exact.h"
+
+#include "reference/ballistics.h"
+#include "reference/friction.h"
+#include "reference/impact.h"
+
+static bool is_static(const ob_peer_world *w, uint32_t id)
+{
+	return w->passport[id].flags & OB_OBJECT_STATIC;
+}
+
+ob_state exact_rest(const ob_peer_world *w, uint32_t id, double t)
+{
+	return w->state[id];
+}
+
+ob_state exact_flight(const ob_peer_world *w, uint32_t id, double t)
+{
+	const ob_passport *p = &w->passport[id];
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	ob_vec3 a = ob_madd(w->gravity, 1 / p->mass, p->force);
+	ob_rotate_free(s.pose.q, s.w, p->inertia, t, &s.pose.q, &s.w);
+	s.pose.p = ob_madd(ob_madd(s.pose.p, t, s.v), .5 * t * t, a);
+	s.v = ob_madd(s.v, t, a);
+	return s;
+}
+
+ob_state exact_bounces(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	double g = -w->gravity.z, e = w->passport[id].restitution, radius = w->passport[id].size.x;
+	double height = s.pose.p.z - radius, v = 0, since = t, from = height;
+	for (int k = 1; ob_reference_impact_time(height, g, e, k) < t; k++) {
+		from = 0;
+		since = t - ob_reference_impact_time(height, g, e, k);
+		v = sqrt(2 * g * ob_reference_apex(height, e, k));
+	}
+	s.v.z = v - g * since;
+	s.pose.p.z = radius + from + v * since - .5 * g * since * since;
+	return s;
+}
+
+ob_state exact_meeting(const ob_peer_world *w, uint32_t id, double t)
+{
+	uint32_t first = id & ~1u;
+	const ob_passport *a = &w->passport[first], *b = a + 1;
+	const ob_state *sa = &w->state[first], *sb = sa + 1;
+	ob_reference_pair before = { sa->v.x, sb->v.x };
+	ob_reference_pair after = ob_reference_impact(a->mass, b->mass, before, a->restitution);
+	double meets = (sb->pose.p.x - sa->pose.p.x - a->size.x - b->size.x) / (before.a - before.b);
+	ob_state s = w->state[id];
+	s.pose.p.x += s.v.x * fmin(t, meets);
+	if (t > meets) {
+		s.v.x = id == first ? after.a : after.b;
+		s.pose.p.x += s.v.x * (t - meets);
+	}
+	return s;
+}
+
+ob_state exact_cradle(const ob_peer_world *w, uint32_t id, double t)
+{
+	uint32_t incoming = 0;
+	while (w->state[incoming].v.x > 0)
+		incoming++;
+	double v[5], meets = w->state[incoming].pose.p.x - w->state[incoming - 1].pose.p.x - 1;
+	ob_reference_cradle(5, (int)incoming, 1, v);
+	ob_state s = w->state[id];
+	s.pose.p.x += s.v.x * fmin(t, meets) + v[id] * fmax(t - meets, 0);
+	if (t > meets)
+		s.v.x = v[id];
+	return s;
+}
+
+static ob_state accelerated(ob_state s, ob_vec3 a, double t)
+{
+	s.pose.p = ob_madd(s.pose.p, .5 * t * t, a);
+	s.v = ob_scale(a, t);
+	return s;
+}
+
+ob_state exact_push(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_vec3 force = w->passport[1].force;
+	double size = ob_norm(force);
+	ob_reference_rolling r = ob_reference_push(size, .4, 10, 1, 25, -w->gravity.z);
+	return accelerated(w->state[id], ob_scale(force, (id ? id == 1 ? r.box_a : r.ball_a : 0) / size), t);
+}
+
+ob_state exact_slide(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	ob_mat3 r = ob_quat_matrix(w->state[0].pose.q);
+	ob_vec3 down = ob_column(&r, 0);
+	double angle = asin(-down.z), g = -w->gravity.z, mu = w->passport[id].friction;
+	bool ball = w->passport[id].shape == OB_SHAPE_SPHERE;
+	double a = ball ? ob_reference_ball_incline(g, angle, mu) : ob_reference_incline(g, angle, mu);
+	return accelerated(s, ob_scale(down, a), t);
+}
+
+ob_state exact_stop(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	double g = -w->gravity.z, mu = w->passport[id].friction, v = ob_norm(s.v);
+	double since = fmin(t, ob_reference_stop_time(v, mu, g));
+	s.pose.p = ob_madd(s.pose.p, since - .5 * mu * g * since * since / v, s.v);
+	s.v = ob_scale(s.v, 1 - mu * g * since / v);
+	return s;
+}
+
+ob_state exact_slip(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	ob_reference_roll r = ob_reference_slip_to_roll(s.v.x, w->passport[id].friction, -w->gravity.z, t);
+	s.pose.p.x += r.way;
+	s.v.x = r.speed;
+	s.w.y = r.surface / w->passport[id].size.x;
+	return s;
+}
+
+ob_state exact_halt(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	double speed = fabs(s.v.x);
+	if (is_static(w, id))
+		return s;
+	s.pose.p = ob_madd(s.pose.p, fmin(t, 2.5 / speed), s.v);
+	if (t > 2.5 / speed)
+		s.v = ob_v3(0, 0, 0);
+	return s;
+}
