@@ -1,0 +1,214 @@
+#include "plot/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { LANE = 11, BAND_RIM = 8, BAND_GAP = 3 }; // px
+#define LARGEST 1e300 // so that no difference overflows
+
+bool ob_frame_logarithmic(const ob_side *s)
+{
+	return s->axis->scale == OB_SCALE_LOG || s->axis->scale == OB_SCALE_LOG2;
+}
+
+static bool is_low(const ob_side *s, double v)
+{
+	return ob_frame_logarithmic(s) && v <= 0;
+}
+
+static double bounded(double v)
+{
+	return fmin(fmax(v, -LARGEST), LARGEST);
+}
+
+static void include(ob_side *s, double v)
+{
+	if (!isfinite(v)) {
+		s->high.used = true;
+	} else if (is_low(s, v)) {
+		s->low.used = true;
+	} else {
+		s->least = fmin(s->least, bounded(v));
+		s->most = fmax(s->most, bounded(v));
+	}
+}
+
+static bool has_bar(const ob_plot_point *p)
+{
+	return isfinite(p->low) && isfinite(p->high) && (p->low != 0 || p->high != 0);
+}
+
+static void include_points(ob_frame *f)
+{
+	for (size_t i = 0; i < f->spots; i++) {
+		ob_spot *spot = &f->spot[i];
+		const ob_plot_point *p = spot->point;
+		spot->shown = p->failed || (isfinite(p->x) && isfinite(p->y));
+		if (!spot->shown)
+			continue;
+		f->failed |= p->failed;
+		include(&f->x, p->x);
+		include(&f->y, p->y);
+		if (has_bar(p)) {
+			include(&f->y, p->low);
+			include(&f->y, p->high);
+		}
+	}
+}
+
+static void settle_range(ob_side *s)
+{
+	const ob_plot_axis *a = s->axis;
+	s->fixed = isfinite(a->from) && isfinite(a->to) && a->from < a->to && !is_low(s, a->from);
+	if (s->fixed) {
+		s->least = bounded(a->from);
+		s->most = bounded(a->to);
+	} else if (a->scale == OB_SCALE_CATEGORY) {
+		s->least = -.5;
+		s->most = fmax((double)a->categories, 1) - .5;
+		s->fixed = true;
+	} else if (!(s->least <= s->most)) { // nothing on it
+		s->least = ob_frame_logarithmic(s) ? 1 : 0;
+		s->most = ob_frame_logarithmic(s) ? 10 : 1;
+	}
+}
+
+// Not beyond a range that was asked for
+static bool is_within(const ob_side *s, double v)
+{
+	return !isfinite(v) || is_low(s, v) || !s->fixed || (v >= s->least && v <= s->most);
+}
+
+bool ob_frame_begin(ob_frame *f, const ob_plot *p)
+{
+	*f = (ob_frame){ .plot = p };
+	f->x = (ob_side){ .axis = &p->x, .least = INFINITY, .most = -INFINITY };
+	f->y = (ob_side){ .axis = &p->y, .least = INFINITY, .most = -INFINITY, .vertical = true };
+	size_t count = 0;
+	for (size_t i = 0; i < p->series_count; i++)
+		count += p->series[i].count;
+	f->spot = calloc(count + 1, sizeof *f->spot);
+	if (!f->spot)
+		return false;
+	for (size_t i = 0; i < p->series_count; i++)
+		for (size_t j = 0; j < p->series[i].count; j++)
+			f->spot[f->spots++] = (ob_spot){ .series = &p->series[i], .point = &p->series[i].point[j] };
+	include_points(f);
+	for (size_t i = 0; i < p->marks; i++)
+		if (isfinite(p->mark[i].at))
+			include(p->mark[i].vertical ? &f->x : &f->y, p->mark[i].at);
+	settle_range(&f->x);
+	settle_range(&f->y);
+	for (size_t i = 0; i < f->spots; i++)
+		f->spot[i].shown &= is_within(&f->x, f->spot[i].point->x) && is_within(&f->y, f->spot[i].point->y);
+	return true;
+}
+
+void ob_frame_finish(ob_frame *f)
+{
+	free(f->spot);
+	free(f->take);
+	*f = (ob_frame){ 0 };
+}
+
+static double thickness(ob_band b)
+{
+	return b.used ? BAND_RIM + LANE * (b.lanes ? b.lanes : 1) : 0;
+}
+
+void ob_frame_band(const ob_side *s, bool high, double *inner, double *outer)
+{
+	double away = (s->end > s->begin) == high ? 1 : -1;
+	*inner = (high ? s->end : s->begin) + away * BAND_GAP;
+	*outer = *inner + away * thickness(high ? s->high : s->low);
+}
+
+// px of a lane's middle
+static double lane_at(const ob_side *s, bool high, int lane)
+{
+	double inner, outer;
+	ob_frame_band(s, high, &inner, &outer);
+	return inner + (outer > inner ? 1 : -1) * (BAND_RIM / 2. + LANE * (lane + .5));
+}
+
+double ob_frame_at(const ob_side *s, double value)
+{
+	if (!isfinite(value))
+		return lane_at(s, true, 0);
+	if (is_low(s, value))
+		return lane_at(s, false, 0);
+	double along = ob_ticks_along(&s->ticks, bounded(value));
+	if (s->axis->scale == OB_SCALE_CATEGORY && s->vertical)
+		along = 1 - along; // downwards
+	along = fmin(fmax(along, -4), 5); // far beyond a fixed range is beyond it
+	return s->begin + along * (s->end - s->begin);
+}
+
+// Moves points of a band into lanes, so that those which are close along the rim lie beside each other.
+static void spread(ob_frame *f, ob_side *s, bool high)
+{
+	ob_band *band = high ? &s->high : &s->low;
+	int lanes = 1;
+	for (size_t i = 0; band->used && i < f->spots; i++) {
+		ob_spot *one = &f->spot[i];
+		double v = s->vertical ? one->point->y : one->point->x;
+		if (!one->shown || (high ? isfinite(v) : !is_low(s, v)))
+			continue;
+		unsigned busy = 0; // a bit for each lane
+		for (size_t j = 0; j < i; j++) {
+			const ob_spot *other = &f->spot[j];
+			double along = s->vertical ? other->at.x - one->at.x : other->at.y - one->at.y;
+			double across = s->vertical ? other->at.y : other->at.x;
+			for (int lane = 0; other->shown && fabs(along) < LANE && lane < OB_FRAME_LANES; lane++)
+				busy |= (unsigned)(fabs(across - lane_at(s, high, lane)) < 1) << lane;
+		}
+		int lane = 0;
+		while (lane < OB_FRAME_LANES - 1 && busy >> lane & 1)
+			lane++;
+		*(s->vertical ? &one->at.y : &one->at.x) = lane_at(s, high, lane);
+		lanes = lane + 1 > lanes ? lane + 1 : lanes;
+	}
+	band->lanes = lanes;
+}
+
+static void place_side(ob_side *s, double begin, double end)
+{
+	double toward = end > begin ? 1 : -1;
+	s->begin = begin + (s->low.used ? toward * (thickness(s->low) + BAND_GAP) : 0);
+	s->end = end - (s->high.used ? toward * (thickness(s->high) + BAND_GAP) : 0);
+	int wanted = (int)fmin(fmax(fabs(s->end - s->begin) / (s->vertical ? 42 : 74), 2), 12);
+	ob_ticks_choose(&s->ticks, s->axis->scale, s->least, s->most, wanted, s->fixed);
+}
+
+void ob_frame_place(ob_frame *f, ob_rect outer)
+{
+	f->outer = outer;
+	// the second time with as many lanes as the first has found to be needed
+	for (int pass = 0; pass < 2; pass++) {
+		place_side(&f->x, outer.x0, outer.x1);
+		place_side(&f->y, outer.y1, outer.y0);
+		for (size_t i = 0; i < f->spots; i++) {
+			ob_spot *s = &f->spot[i];
+			s->at = (ob_dot){ ob_frame_at(&f->x, s->point->x), ob_frame_at(&f->y, s->point->y) };
+		}
+		for (int high = 0; high < 2; high++) {
+			spread(f, &f->y, high);
+			spread(f, &f->x, high);
+		}
+	}
+	f->area = (ob_rect){ f->x.begin, f->y.end, f->x.end, f->y.begin };
+}
+
+bool ob_frame_take(ob_frame *f, ob_rect r)
+{
+	if (f->taken == f->taken_max) {
+		size_t max = f->taken_max * 2 + 64;
+		ob_rect *grown = realloc(f->take, max * sizeof *grown);
+		if (!grown)
+			return false;
+		f->take = grown;
+		f->taken_max = max;
+	}
+	f->take[f->taken++] = r;
+	return true;
+}

@@ -1,0 +1,71 @@
+// Where things lie in a diagram: the range of each axis, the area of the data, the bands at its rims, and every point
+// in pixels.
+//
+//      +----------------------------------------------+
+//      | high band of y: points whose y is not finite |     Bands are there only if something lies in them; x has
+//      +----------------------------------------------+     its own, left (zero) and right (not finite).
+//      |                                              |
+//      | area                                         |
+//      |                                              |
+//      +----------------------------------------------+
+//      | low band of y: zero, on a logarithmic axis   |
+//      +----------------------------------------------+
+//
+// One thread at a time per frame.
+#ifndef OB_PLOT_FRAME_H
+#define OB_PLOT_FRAME_H
+
+#include "plot/drawing.h"
+#include "plot/plot.h"
+#include "plot/ticks.h"
+
+enum { OB_FRAME_LANES = 6 }; // points that lie beside one another across a band
+
+// A band at a rim: its points lie in lanes, so that they do not cover each other.
+typedef struct ob_band {
+	bool used;
+	int lanes;
+} ob_band;
+
+typedef struct ob_side {
+	const ob_plot_axis *axis;
+	bool vertical;
+	double least, most; // of the data that lie on the axis proper
+	bool fixed; // the plot asks for its range
+	ob_ticks ticks;
+	double begin, end; // px where the range begins and ends, without bands; vertical: begin > end
+	ob_band low, high;
+} ob_side;
+
+typedef struct ob_spot {
+	const ob_plot_series *series;
+	const ob_plot_point *point;
+	ob_dot at;
+	bool shown;
+} ob_spot;
+
+typedef struct ob_frame {
+	const ob_plot *plot;
+	ob_side x, y;
+	ob_rect area, outer; // px: without and with the bands
+	size_t spots; // of all series in their order
+	ob_spot *spot;
+	bool failed; // some point is a cross
+	size_t taken, taken_max; // texts and markers that a label must not cover
+	ob_rect *take;
+} ob_frame;
+
+// Ranges of the axes, and which bands are there. false: no memory.
+bool ob_frame_begin(ob_frame *f, const ob_plot *p);
+void ob_frame_finish(ob_frame *f);
+// Puts the frame with its bands into "outer": ticks, areas, spots.
+void ob_frame_place(ob_frame *f, ob_rect outer);
+
+// px of a value along an axis, in lane 0 of a band where it lies in one; what is beyond a range lies beyond the area
+double ob_frame_at(const ob_side *s, double value);
+// px: the inner and the outer rim of a band
+void ob_frame_band(const ob_side *s, bool high, double *inner, double *outer);
+bool ob_frame_logarithmic(const ob_side *s);
+bool ob_frame_take(ob_frame *f, ob_rect r); // false: no memory
+
+#endif

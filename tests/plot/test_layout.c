@@ -1,0 +1,168 @@
+// What holds for every diagram, however awkward: no text covers another, nothing is cut, every number is finite.
+#include <string.h>
+
+#include "../check.h"
+#include "awkward.h"
+#include "plot/layout.h"
+#include "plot/letters.h"
+
+static const char *text_of(const ob_drawing *d, const ob_item *item)
+{
+	return d->text + item->text;
+}
+
+static void check_texts(const awkward *a, int i, const ob_drawing *d)
+{
+	ob_rect page = { 0, 0, d->width, d->height };
+	int over = 0, cut = 0;
+	for (size_t j = 0; j < d->items; j++) {
+		const ob_item *one = &d->item[j];
+		if (one->kind != OB_ITEM_TEXT)
+			continue;
+		if (!ob_rect_within(one->box, page)) {
+			cut++;
+			fprintf(stderr, "%d %s: cut: %s\n", i, a->name, text_of(d, one));
+		}
+		for (size_t k = 0; k < j; k++) {
+			const ob_item *other = &d->item[k];
+			if (other->kind == OB_ITEM_TEXT && ob_rect_meet(one->box, other->box)) {
+				over++;
+				fprintf(stderr, "%d %s: %s covers %s\n", i, a->name, text_of(d, one),
+					text_of(d, other));
+			}
+		}
+	}
+	CHECK(over == 0);
+	CHECK(cut == 0);
+}
+
+static void check_dots(const awkward *a, int i, const ob_drawing *d)
+{
+	int wrong = 0;
+	for (size_t j = 0; j < d->items; j++) {
+		const ob_item *item = &d->item[j];
+		double rim = item->kind == OB_ITEM_DISC ? item->radius : 0;
+		for (size_t k = item->first; k < item->first + item->count; k++) {
+			ob_dot at = d->dot[k];
+			wrong += !(at.x >= rim - 1 && at.x <= d->width - rim + 1 && at.y >= rim - 1 &&
+				   at.y <= d->height - rim + 1);
+		}
+	}
+	CHECK(wrong == 0);
+	if (wrong)
+		fprintf(stderr, "%d %s: %d dots outside\n", i, a->name, wrong);
+}
+
+static size_t count_text(const ob_drawing *d, const char *text)
+{
+	size_t count = 0;
+	for (size_t i = 0; i < d->items; i++)
+		count += d->item[i].kind == OB_ITEM_TEXT && !strcmp(text_of(d, &d->item[i]), text);
+	return count;
+}
+
+static size_t count_hints(const ob_drawing *d)
+{
+	size_t count = 0;
+	for (size_t i = 0; i < d->items; i++)
+		count += d->item[i].hint != 0;
+	return count;
+}
+
+static void check_awkward(void)
+{
+	static awkward a;
+	int made = 0;
+	for (int i = 0; awkward_make(&a, i); i++) {
+		ob_drawing d = { 0 };
+		ob_error e;
+		CHECK(ob_plot_layout(&a.plot, &d, &e));
+		check_texts(&a, i, &d);
+		check_dots(&a, i, &d);
+		ob_drawing_finish(&d);
+		made++;
+	}
+	CHECK(made == 31);
+}
+
+static ob_plot_point points[] = {
+	{ .x = 1, .y = 3, .label = "first" },
+	{ .x = 2, .y = 0 },
+	{ .x = 4, .y = NAN, .failed = true, .label = "fell" },
+	{ .x = 8, .y = NAN },
+	{ .x = 9, .y = 2, .failed = true },
+};
+static const ob_plot_series curve = { .title = "one", .count = 5, .point = points, .line = true };
+static const ob_plot plot = { .title = "Title",
+			      .x = { .label = "x", .scale = OB_SCALE_LOG },
+			      .y = { .label = "y", .scale = OB_SCALE_LOG },
+			      .series = &curve,
+			      .series_count = 1 };
+
+// What failed and what is zero have bands of their own; what is not a number, and did not fail, is not there.
+static void check_bands(void)
+{
+	ob_drawing d = { 0 };
+	CHECK(ob_plot_layout(&plot, &d, NULL));
+	CHECK(count_text(&d, "0") == 1);
+	CHECK(count_text(&d, "failed") == 2); // the band, and the legend
+	CHECK(count_text(&d, "first") == 1);
+	CHECK(count_text(&d, "fell") == 1);
+	CHECK(count_hints(&d) == 4);
+	ob_drawing_finish(&d);
+
+	ob_plot_series whole = curve;
+	whole.count = 1;
+	ob_plot p = plot;
+	p.series = &whole;
+	CHECK(ob_plot_layout(&p, &d, NULL));
+	CHECK(count_text(&d, "0") == 0);
+	CHECK(count_text(&d, "failed") == 0);
+	ob_drawing_finish(&d);
+}
+
+// A failed point with a value stays where it is; one without lies above all that have one.
+static void check_crosses(void)
+{
+	ob_drawing d = { 0 };
+	double cross = -1, other = -1;
+	CHECK(ob_plot_layout(&plot, &d, NULL));
+	for (size_t i = 0; i < d.items; i++) {
+		const char *hint = d.text + d.item[i].hint;
+		if (strstr(hint, "fell"))
+			cross = d.dot[d.item[i].first].y;
+		else if (strstr(hint, "first"))
+			other = d.dot[d.item[i].first].y;
+	}
+	CHECK(cross > 0 && other > cross + 10);
+	ob_drawing_finish(&d);
+}
+
+static void check_letters(void)
+{
+	CHECK_NEAR(ob_letters_width("Hi", 1000, false), 722 + 222, 1e-9);
+	CHECK_NEAR(ob_letters_width("Hi", 10, true), 10., 1e-9);
+	char line[64];
+	const char *rest = "one two three";
+	CHECK(ob_letters_line(&rest, ob_letters_width("one two", 10, false) + 1, 10, false, false, line, sizeof line));
+	CHECK(!strcmp(line, "one two"));
+	CHECK(ob_letters_line(&rest, 20, 10, false, true, line, sizeof line));
+	CHECK(strstr(line, "\u2026") && ob_letters_width(line, 10, false) <= 20);
+	CHECK(!ob_letters_line(&rest, 20, 10, false, true, line, sizeof line));
+	ob_letters_clean("a\x01"
+			 "b\xff"
+			 "c\u00b5\xc0\x80",
+			 line, sizeof line);
+	CHECK(!strcmp(line, "a b?c\u00b5??"));
+	ob_letters_clean("\u00b5\u00b5", line, 4); // no half letters
+	CHECK(!strcmp(line, "\u00b5"));
+}
+
+int main(void)
+{
+	check_awkward();
+	check_bands();
+	check_crosses();
+	check_letters();
+	return check_end();
+}
