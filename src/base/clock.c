@@ -18,6 +18,7 @@ static uint64_t nanoseconds(clockid_t id)
 }
 
 double ob_clock_wall(void) { return seconds(CLOCK_MONOTONIC); }
+uint64_t ob_clock_ns(void) { return nanoseconds(CLOCK_MONOTONIC); }
 double ob_clock_thread_cpu(void) { return seconds(CLOCK_THREAD_CPUTIME_ID); }
 double ob_clock_process_cpu(void) { return seconds(CLOCK_PROCESS_CPUTIME_ID); }
 

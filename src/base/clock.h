@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 double ob_clock_wall(void);       // s, monotonic
+uint64_t ob_clock_ns(void);        // the same clock, ns
 double ob_clock_thread_cpu(void); // s, CPU of the calling thread
 double ob_clock_process_cpu(void);
 // ns of CPU used by thread tid / process pid of this machine; 0 when it is gone

@@ -49,8 +49,10 @@ static bool impacts_in_turn(ob_sim *s)
 	for (uint32_t i = 0; i < w->touches; i++) {
 		const ob_touch *t = &w->touch[i];
 		ob_impact in = impact_of(s, t);
-		if (elastic(t))
-			any |= ob_impact_solve(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at, w->v, w->d);
+		bool hit = elastic(t) &&
+			   ob_impact_solve(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at, w->v, w->d);
+		s->counters.impacts += hit;
+		any |= hit;
 	}
 	return any;
 }
@@ -75,7 +77,9 @@ static bool impacts_at_once(ob_sim *s)
 			if (solve) {
 				in.split_a = fmax(1, w->member[t->a].waiting);
 				in.split_b = fmax(1, w->member[t->b].waiting);
-				any |= ob_impact_solve(b, l, &in, &at, w->delta, w->u);
+				bool hit = ob_impact_solve(b, l, &in, &at, w->delta, w->u);
+				s->counters.impacts += hit;
+				any |= hit;
 			} else if (ob_impact_pending(b, l, &in, &at)) {
 				w->member[t->a].waiting++;
 				w->member[t->b].waiting++;
@@ -98,6 +102,7 @@ bool ob_exchange_impacts(ob_sim *s)
 		ob_ghosts_read(s, w->v, (uint32_t)round);
 		any = is_jacobi(s) ? impacts_at_once(s) : impacts_in_turn(s);
 	}
+	s->counters.impact_rounds += (unsigned)round;
 	return round > 0;
 }
 
@@ -141,12 +146,14 @@ void ob_exchange_rounds(ob_sim *s)
 	bool again = true;
 	for (uint32_t round = 0; round < run->passes && again; round++) {
 		again = false;
+		s->counters.rounds++;
 		ob_ghosts_read(s, w->u, round);
 		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep
 		for (uint32_t k = 0; k < w->batches; k++) {
 			ob_batch *b = &w->batch[w->batch_order[k]];
 			if (!b->live || (round > 0 && !worth_while(w, b)))
 				continue;
+			s->counters.pair_exchanges += (unsigned)__builtin_popcount(b->live);
 			ob_batch_solve(b, &pass, w->u, w->v, w->d, w->delta);
 			again |= mark_hot(w, b);
 		}

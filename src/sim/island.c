@@ -5,29 +5,44 @@
 #include "sim/exchange.h"
 #include "sim/ghost.h"
 #include "sim/members.h"
+#include "sim/part.h"
 #include "sim/touch.h"
+
+// Who touches whom now? true if that may have changed.
+static bool look(ob_sim *s)
+{
+	ob_part_enter(s, OB_PART_LOOK);
+	bool any = ob_touches_refresh(s);
+	ob_touches_prepare(s);
+	return any;
+}
 
 // One substep, in the order in which things happen.
 static void substep(ob_sim *s)
 {
+	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_gyrate(s);
 	ob_ghosts_follow(s);
-	ob_touches_refresh(s);
-	ob_touches_prepare(s);
+	look(s);
 	// What flies off may hit something that was out of reach before; a rattle is left to the contact solver in the
 	// end.
+	ob_part_enter(s, OB_PART_IMPACTS);
 	for (int again = 0; again < 4 && ob_exchange_impacts(s); again++) {
 		ob_members_quicken(s);
 		ob_ghosts_follow(s);
-		if (!ob_touches_refresh(s))
+		if (!look(s))
 			break;
-		ob_touches_prepare(s);
+		ob_part_enter(s, OB_PART_IMPACTS);
 	}
+	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_predict(s);
+	ob_part_enter(s, OB_PART_SOLVE);
 	ob_exchange_cap(s);
 	ob_exchange_rounds(s);
+	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_advance(s);
 	ob_ghosts_follow(s);
+	ob_part_enter(s, OB_PART_PROJECT);
 	ob_exchange_project(s);
 }
 
@@ -35,16 +50,26 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
 	if (is->members == 1 && is->pairs == 0) {
+		ob_part_enter(s, OB_PART_LEAP);
+		s->counters.leaps++;
 		ob_member_leap(s, ob_universe_exchange(s->u)->member[is->first_member]);
 		return;
 	}
+	ob_part_enter(s, OB_PART_LOAD);
 	ob_members_load(s, is);
 	ob_touches_load(s, is);
-	for (uint32_t k = 0; k < ob_universe_settings(s->u)->substeps; k++)
+	uint32_t substeps = ob_universe_settings(s->u)->substeps;
+	for (uint32_t k = 0; k < substeps; k++)
 		substep(s);
+	ob_part_enter(s, OB_PART_LOAD);
+	s->counters.island_steps++;
+	s->counters.recovered += s->island.recovered;
+	s->counters.member_steps += is->members;
+	s->counters.member_substeps += (uint64_t)is->members * substeps;
 	for (uint32_t row = 1; row <= s->island.members; row++)
 		ob_member_settle(&s->island, row);
 	ob_touches_store(s);
+	ob_part_enter(s, OB_PART_PUBLISH);
 	ob_members_publish(s, ob_members_rest(s));
 }
 

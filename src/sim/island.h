@@ -76,6 +76,7 @@ typedef struct ob_island_work {
 	double mass; // of all members, kg
 	double pull; // m/s^2, the largest of any member
 	double h, t0; // s
+	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;
 } ob_island_work;

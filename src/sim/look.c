@@ -80,7 +80,7 @@ static void wind_back(const ob_placed *a, const ob_placed *b, double t, ob_manif
 	}
 }
 
-void ob_look(const ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, double *when)
+void ob_look(ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, double *when)
 {
 	const ob_island_work *w = &s->island;
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);
@@ -91,6 +91,7 @@ void ob_look(const ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *
 		find(&a, &b, fmin(tolerance + 1.5 * travel, fmax(.5 * thin, tolerance + travel)), m);
 		return;
 	}
+	s->counters.swept_looks++;
 	double reach = fmin(w->member[t->a].radius, w->member[t->b].radius);
 	double met = ob_swept_find(&a, &b, speed, w->h, fmin(swept_gap, .25 * thin), reach, find, m);
 	if (isinf(met))

@@ -7,6 +7,6 @@
 // Fills m with the pair's points, their gaps as of now. Fast pairs are followed through the substep: *when is the time
 // into it at which the points were found (s; 0 otherwise), and their arms run from where the centres are then.
 // tolerance: m, gaps up to it are always found. Both bodies' poses must be up to date (ob_member_settle).
-void ob_look(const ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, double *when);
+void ob_look(ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, double *when);
 
 #endif

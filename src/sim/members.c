@@ -90,7 +90,7 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	w->h = run->step_length / run->substeps;
-	w->mass = w->pull = 0;
+	w->mass = w->pull = w->recovered = 0;
 	w->members = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
 	uint32_t most = 1 + is->members + 2 * is->pairs;
@@ -173,6 +173,7 @@ void ob_members_gyrate(ob_sim *s)
 		ob_vec3 now = angular_of(w->v[i]), j = m->inertia;
 		if (m->round || ob_norm2(now) < 1e-12)
 			continue;
+		s->counters.gyrations++;
 		ob_vec3 b = ob_rotate_back(&m->r, now), mid = b;
 		for (int stage = 0; stage < 2; stage++) {
 			double h = stage ? w->h : .5 * w->h;

@@ -53,6 +53,7 @@ bool ob_touches_refresh(ob_sim *s)
 		ob_touch *t = &w->touch[i];
 		const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
 		if (a->path + b->path + (a->speed + b->speed + 2 * gh) * w->h > t->limit) {
+			s->counters.looks++;
 			refresh(s, t);
 			any = true;
 		}

@@ -14,6 +14,10 @@ struct ob_sim {
 	uint32_t *ode_generation;
 	ob_island_work island; // scratch
 	ob_monolith *monolith; // NULL unless one world holds all objects
+	ob_counters counters; // handed over to the universe at the end of each phase
+	bool timed; // the run wants to know what each part takes (sim/part.h)
+	ob_part part; // that the time counts for; OB_PARTS = none
+	uint64_t since; // ns
 };
 
 // The object's ODE body, made when the worker first runs it.

@@ -85,13 +85,14 @@ typedef struct ob_worker_cell {
 	_Alignas(64) uint64_t cpu_ns;
 	int32_t pid, tid, cpu;
 	uint32_t objects;
+	_Alignas(64) ob_counters counters;
 } ob_worker_cell;
 
-static_assert(sizeof(ob_run_settings) == 80, "run settings");
-static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 80, "header");
+static_assert(sizeof(ob_run_settings) == 88, "run settings");
+static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 88, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 256, "control");
-static_assert(sizeof(ob_worker_cell) == 64, "worker cell");
+static_assert(sizeof(ob_worker_cell) == 384, "worker cell");
 static_assert(sizeof(ob_pair_state) == 384, "pair state");
 static_assert(sizeof(ob_pair_record) == 784, "pair record");
 static_assert(sizeof(ob_pair_key) == 24 && sizeof(ob_brief) == 16, "exchange area");

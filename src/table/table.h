@@ -12,6 +12,7 @@
 
 #include <ob/universe.h>
 
+#include "table/counters.h"
 #include "table/exchange.h"
 
 // How the parts of a step run; what the gate hands out when it opens.
@@ -45,6 +46,8 @@ typedef struct ob_run_settings {
 	uint32_t iterations;    // monolith: QuickStep iterations
 	uint32_t lag;           // OB_EXCHANGE_LAGGED: exchanges that a partner's state is late
 	double tolerance;       // m; > 0: each island chooses its substeps so that its error stays below
+	uint32_t timed;         // 1 = counters tell what each part of the step took
+	uint32_t reserved;
 } ob_run_settings;
 
 typedef struct ob_universe_setup {
@@ -89,6 +92,10 @@ void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t i
 void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu);
 void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects);
 void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns);
+// The worker's own counters; the host's to read while the universe stands still.
+ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker);
+// Sums over all workers, and the largest error of any.
+void ob_universe_count(const ob_universe *u, ob_counters *sum);
 
 // ---- claims: indices 0 .. total-1, each handed out once per phase, to whoever asks first
 void ob_claim_reset(ob_universe *u, uint32_t total);

@@ -1,0 +1,39 @@
+#include <math.h>
+
+#include "table/layout.h"
+
+ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker)
+{
+	return &u->worker[worker].counters;
+}
+
+static void add(ob_counters *to, const ob_counters *c)
+{
+	to->leaps += c->leaps;
+	to->member_steps += c->member_steps;
+	to->member_substeps += c->member_substeps;
+	to->island_steps += c->island_steps;
+	to->islands_redone += c->islands_redone;
+	to->islands_over += c->islands_over;
+	for (int i = 0; i < OB_SUBSTEP_CHOICES; i++)
+		to->chosen[i] += c->chosen[i];
+	to->looks += c->looks;
+	to->swept_looks += c->swept_looks;
+	to->rounds += c->rounds;
+	to->pair_exchanges += c->pair_exchanges;
+	to->impact_rounds += c->impact_rounds;
+	to->impacts += c->impacts;
+	to->direct_solves += c->direct_solves;
+	to->gyrations += c->gyrations;
+	to->recovered += c->recovered;
+	to->error = fmax(to->error, c->error);
+	for (int i = 0; i < OB_PARTS; i++)
+		to->time_ns[i] += c->time_ns[i];
+}
+
+void ob_universe_count(const ob_universe *u, ob_counters *sum)
+{
+	*sum = (ob_counters){ 0 };
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
+		add(sum, &u->worker[w].counters);
+}

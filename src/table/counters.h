@@ -1,0 +1,44 @@
+// What the step has done and what it cost, counted by each worker in its own cell of the universe. Written by the
+// worker alone, read by the host while the universe stands still.
+#ifndef OB_TABLE_COUNTERS_H
+#define OB_TABLE_COUNTERS_H
+
+#include <stdint.h>
+
+// The parts of a step whose time is taken when ob_run_settings.timed says so.
+typedef enum ob_part {
+	OB_PART_PERCEIVE, // boxes against boxes
+	OB_PART_ARRANGE,  // index, pairs, islands: the worker that arrives last
+	OB_PART_LEAP,     // closed forms of what touches nothing
+	OB_PART_LOAD,     // an island's members and pairs out of the universe, and back
+	OB_PART_LOOK,     // where bodies meet: collision tests
+	OB_PART_IMPACTS,  // collisions with restitution
+	OB_PART_SOLVE,    // exchanges of contact impulses
+	OB_PART_MOVE,     // rotation, prediction, displacement
+	OB_PART_PROJECT,  // penetration pushed apart
+	OB_PART_PUBLISH,  // rest, boxes, motions into their slots
+	OB_PARTS
+} ob_part;
+
+enum { OB_SUBSTEP_CHOICES = 8 }; // islands take 1, 2, 4 .. 128 substeps where a tolerance chooses
+
+typedef struct ob_counters {
+	uint64_t leaps;             // steps of objects that touched nothing: their closed form
+	uint64_t member_steps;      // steps of objects in islands
+	uint64_t member_substeps;   // substeps of those, redone ones included
+	uint64_t island_steps;      // islands solved
+	uint64_t islands_redone;    // solutions thrown away because their error was above the tolerance
+	uint64_t islands_over;      // islands whose error stayed above it with the most substeps
+	uint64_t chosen[OB_SUBSTEP_CHOICES]; // island-steps by log2 of the substeps that they kept
+	uint64_t looks, swept_looks;// collision tests; those that followed a pair through its substep
+	uint64_t rounds;            // of exchanges
+	uint64_t pair_exchanges;    // pairs solved in them
+	uint64_t impact_rounds, impacts; // of restitution; pairs that bounced in them
+	uint64_t direct_solves;     // of an island as a whole
+	uint64_t gyrations;         // substeps of bodies whose inertia needed Euler's equations
+	double recovered;           // J, potential energy that pushing penetrations apart has added
+	double error;               // m, the largest that an accepted solution estimated for itself
+	uint64_t time_ns[OB_PARTS]; // as the clock on the wall counts
+} ob_counters;
+
+#endif
