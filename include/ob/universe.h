@@ -76,7 +76,8 @@ typedef struct ob_motion {
 	uint32_t flags;     // OB_MOTION_*
 	float quiet;        // s, how long it has been slow
 	uint32_t island;    // lowest id of the island in which it was solved
-	double reserved;
+	uint32_t flight;    // 1 + the step after which the free flight began that goes on; 0 = none does
+	uint32_t reserved;
 } ob_motion;
 
 typedef enum ob_universe_state {

@@ -4,6 +4,7 @@
 
 #include "sim/exchange.h"
 #include "sim/ghost.h"
+#include "sim/leap.h"
 #include "sim/members.h"
 #include "sim/part.h"
 #include "sim/touch.h"
@@ -52,7 +53,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	if (is->members == 1 && is->pairs == 0) {
 		ob_part_enter(s, OB_PART_LEAP);
 		s->counters.leaps++;
-		ob_member_leap(s, ob_universe_exchange(s->u)->member[is->first_member]);
+		ob_leap(s, ob_universe_exchange(s->u)->member[is->first_member]);
 		return;
 	}
 	ob_part_enter(s, OB_PART_LOAD);

@@ -32,7 +32,7 @@ typedef struct ob_member {
 	float quiet;
 	bool round; // inertia is the same about all axes
 	bool loaded; // some touch of it carries an impulse
-	bool moved_freely; // no impulse touched it in this step
+	bool moved_freely; // it touched nothing in this step, not for a moment
 	uint32_t contacts; // pairs that touch it
 	uint32_t waiting; // impacts that it takes part in at once
 	uint64_t colours; // bit per colour in use

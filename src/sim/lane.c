@@ -63,6 +63,7 @@ void ob_lane_take(ob_sim *s, ob_touch *t)
 		if (m->inv_mass > 0 && colour < OB_COLOURS)
 			m->colours |= UINT64_C(1) << colour;
 		m->contacts++;
+		m->moved_freely = false;
 	}
 	w->counts_stale = true;
 }

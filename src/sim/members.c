@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/leap.h"
 #include "sim/perceive.h"
 #include "sim/pull.h"
 
@@ -278,7 +279,6 @@ void ob_members_advance(ob_sim *s)
 		}
 		m->speed = ob_surface_speed(linear_of(w->u[i]), angular_of(w->u[i]), m->shape, m->size);
 		m->path += w->h * m->speed;
-		m->moved_freely &= !m->contacts;
 		if (ob_norm2(angular_of(w->d[i])) > 4e-4 || ob_norm2(linear_of(w->d[i])) > .01 ||
 		    run->integrator == OB_INTEGRATOR_ODE)
 			ob_member_settle(w, i);
@@ -309,8 +309,7 @@ static bool finite_row(const double *r)
 	return sum == 0;
 }
 
-// Claims bounds, writes what the arranger needs to know, publishes or leaves the result for its owner to adopt.
-static void publish(ob_sim *s, uint32_t id, ob_motion *m, bool own)
+void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, bool own)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_run_settings *run = ob_universe_settings(s->u);
@@ -333,7 +332,6 @@ void ob_members_publish(ob_sim *s, bool asleep)
 	uint64_t step = ob_step_count(s->u) + 1;
 	for (uint32_t i = 1; i <= w->members; i++) {
 		ob_member *m = &w->member[i];
-		bool free = !m->contacts && m->moved_freely;
 		ob_motion mo = { .t0 = step * run->step_length,
 				 .valid_until = asleep ? INFINITY : (step + 1) * run->step_length,
 				 .p = m->p,
@@ -347,40 +345,18 @@ void ob_members_publish(ob_sim *s, bool asleep)
 				 .step = (uint32_t)step,
 				 .quiet = m->quiet,
 				 .island = w->member[1].id,
-				 .flags = (free ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) };
+				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) };
 		if (!m->contacts)
 			mo.a = m->pull;
+		if (m->moved_freely &&
+		    run->integrator == OB_INTEGRATOR_EXACT) { // substeps only looked for what might be hit
+			ob_state end = ob_leap_end(s, m->id, &mo.flight);
+			mo.p = end.pose.p, mo.q = end.pose.q, mo.v = end.v, mo.w = end.w;
+		}
 		if (asleep)
 			mo.v = mo.w = ob_v3(0, 0, 0);
 		if (!finite_row(w->v[i]) || !isfinite(m->p.x + m->p.y + m->p.z))
 			ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-		publish(s, m->id, &mo, i == 1 || !run->one_per_object);
+		ob_member_publish(s, m->id, &mo, i == 1 || !run->one_per_object);
 	}
-}
-
-void ob_member_leap(ob_sim *s, uint32_t id)
-{
-	const ob_run_settings *run = ob_universe_settings(s->u);
-	const ob_passport *pass = ob_passport_of(s->u, id);
-	const ob_motion *before = ob_newest_motion(s->u, id);
-	uint64_t step = ob_step_count(s->u) + 1;
-	double h = run->step_length / run->substeps;
-	ob_motion m = *before;
-	m.a = ob_pull(run, pass);
-	m.t0 = (step - 1) * run->step_length;
-	ob_state now = ob_motion_at(&m, pass->inertia, step * run->step_length);
-	if (run->integrator == OB_INTEGRATOR_ODE) {
-		now = (ob_state){ { before->p, before->q }, before->v, before->w };
-		for (uint32_t i = 0; i < run->substeps; i++)
-			ob_ode_body_step(ob_sim_ode(s, id), &now, ob_scale(pass->force, h), ob_v3(0, 0, 0), h);
-	}
-	m.t0 = step * run->step_length;
-	m.valid_until = m.t0 + run->step_length;
-	m.p = now.pose.p, m.q = now.pose.q, m.v = now.v, m.w = now.w;
-	m.dv = ob_scale(m.a, h), m.dw = ob_v3(0, 0, 0), m.substep = h;
-	m.path += ob_step_reach(run, pass, before->v, before->w);
-	m.step = (uint32_t)step, m.flags = OB_MOTION_FREE, m.quiet = 0, m.island = id;
-	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
-		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-	publish(s, id, &m, true);
 }

@@ -18,7 +18,7 @@ void ob_members_advance(ob_sim *s);
 // After the last substep: quiet times, sleep by consent.
 bool ob_members_rest(ob_sim *s);
 void ob_members_publish(ob_sim *s, bool asleep);
-// A lone object that touches nothing: its closed form, no substeps.
-void ob_member_leap(ob_sim *s, uint32_t id);
+// Claims bounds, writes what the arranger needs to know, publishes m; own = false: leaves it for its owner to adopt.
+void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, bool own);
 
 #endif

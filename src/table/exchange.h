@@ -42,6 +42,18 @@ typedef struct ob_pair_key {
 	double limit;     // m: the pair cannot touch before path_a + path_b exceeds this
 } ob_pair_key;
 
+// Where a free flight began. What is published in each step is evaluated from here, not from the step before: rounding
+// does not build up, and a spin keeps its phase for as long as it is not touched. 144 bytes.
+typedef struct ob_flight {
+	double t0;      // s
+	ob_vec3 p;      // m
+	ob_quat q;
+	ob_vec3 v, w;   // m/s, rad/s
+	ob_vec3 a;      // m/s^2
+	uint32_t since; // as ob_motion.flight of the motions that go on from here
+	uint32_t reserved;
+} ob_flight;
+
 // What the arranger needs to know of an object, 16 bytes, so that it need not read the slots.
 typedef struct ob_brief {
 	double path;    // m, as in its motion
@@ -74,6 +86,7 @@ typedef struct ob_exchange {
 	} *count;
 	ob_brief *brief;              // [object]: written by its island's solver
 	float (*bounds)[6];           // [object]: box that holds it until it asks for another
+	ob_flight *flight;            // [object]: written by its island's solver when a flight begins
 	ob_motion *result;            // [object]: what its island's solver found
 	uint32_t *result_island;      // [object]: index of its island in the last arrangement
 	struct ob_perceived { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
