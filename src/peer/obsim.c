@@ -1,0 +1,181 @@
+// obsim's own object simulators, in the caller's thread: a universe with one worker, and host and worker take turns.
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "peer/engines.h"
+#include "sim/sim.h"
+#include "table/table.h"
+
+struct ob_peer {
+	ob_universe *u;
+	ob_sim *sim;
+	uint32_t objects;
+};
+
+// The worker's turns until the gate pauses.
+static void work(const ob_peer *p)
+{
+	ob_sim_resume(p->u);
+	while (!ob_gate_host_wait(p->u, 0)) {
+		ob_phase phase = ob_gate_wait(p->u, 0);
+		ob_sim_work(p->sim, phase);
+		if (ob_gate_arrive(p->u, 0))
+			ob_sim_arrange(p->sim, phase);
+	}
+}
+
+static bool sound(const ob_peer *p, ob_error *e)
+{
+	const char *failure = ob_sim_failure(p->u);
+	return !failure || ob_fail(e, "%s", failure);
+}
+
+// The universe loses its name at once: nobody else is to see it, and it goes with the process however that ends.
+static ob_universe *open_universe(const ob_peer_world *w, const ob_run_settings *run, ob_error *e)
+{
+	static unsigned made;
+	char name[OB_NAME_MAX];
+	snprintf(name, sizeof name, "peer-%d-%u", (int)getpid(), made++);
+	ob_universe_setup setup = { name, w->objects, 1, "thread", *run };
+	ob_universe *u = ob_universe_create(&setup, e);
+	if (u)
+		ob_universe_unlink(name);
+	return u;
+}
+
+static void destroy(ob_peer *p)
+{
+	if (!p)
+		return;
+	if (p->sim)
+		ob_sim_destroy(p->sim);
+	ob_universe_destroy(p->u, false);
+	free(p);
+	ob_peer_ode_leave();
+}
+
+// The first turn, with no step in it, lets all objects look around: it belongs to setting up.
+static ob_peer *create(const ob_peer_world *w, const ob_run_settings *run, ob_error *e)
+{
+	ob_peer *p = calloc(1, sizeof *p);
+	if (!p) {
+		ob_fail(e, "no memory for an engine");
+		return NULL;
+	}
+	ob_peer_ode_enter();
+	p->objects = w->objects;
+	p->u = open_universe(w, run, e);
+	if (p->u) {
+		for (uint32_t i = 0; i < w->objects; i++)
+			ob_write_passport(p->u, i, &w->passport[i]);
+		for (uint32_t i = 0; i < w->objects; i++)
+			ob_sim_place(p->u, i, &w->state[i]);
+		p->sim = ob_sim_create(p->u, 0, e);
+	}
+	if (p->sim) {
+		work(p);
+		if (sound(p, e))
+			return p;
+	}
+	destroy(p);
+	return NULL;
+}
+
+static bool step(ob_peer *p, ob_error *e)
+{
+	ob_gate_set_pause_step(p->u, ob_step_count(p->u) + 1);
+	work(p);
+	return sound(p, e);
+}
+
+static void get(const ob_peer *p, ob_state *state)
+{
+	double now = ob_step_count(p->u) * ob_universe_settings(p->u)->step_length;
+	for (uint32_t i = 0; i < p->objects; i++) {
+		const ob_motion *m = ob_newest_motion(p->u, i);
+		const ob_passport *who = ob_passport_of(p->u, i);
+		bool still = m->t0 == now || who->flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_ASLEEP;
+		if (still) // the bits as published
+			state[i] = (ob_state){ { m->p, m->q }, m->v, m->w };
+		else
+			state[i] = ob_motion_at(m, who->inertia, now);
+	}
+}
+
+// Without substeps each island chooses its own, by the tolerance.
+static bool settle(const ob_peer_world *w, const ob_peer_settings *s, ob_run_settings *run, ob_error *e)
+{
+	bool chosen = s->substeps == 0;
+	if (!(s->step > 0))
+		return ob_fail(e, "a step of %g s: it must be above 0", s->step);
+	if (chosen && !(s->tolerance > 0))
+		return ob_fail(e, "neither substeps nor a tolerance that they could be chosen from");
+	*run = (ob_run_settings){
+		.gravity = w->gravity,
+		.step_length = s->step,
+		.substeps = chosen ? 1 : s->substeps,
+		.passes = s->iterations,
+		.tolerance = chosen ? s->tolerance : 0,
+		.sleeping = s->sleeping,
+	};
+	return run->passes > 0 || ob_fail(e, "no exchange round: at least one is needed");
+}
+
+static ob_peer *create_as(const ob_peer_world *w, const ob_peer_settings *s, ob_exchange_kind exchange,
+			  ob_integrator integrator, ob_error *e)
+{
+	ob_run_settings run;
+	if (!settle(w, s, &run, e))
+		return NULL;
+	run.exchange = exchange;
+	run.integrator = integrator;
+	run.lag = exchange == OB_EXCHANGE_LAGGED ? s->lag : 0;
+	return create(w, &run, e);
+}
+
+static ob_peer *create_coloured(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create_as(w, s, OB_EXCHANGE_COLOURED, OB_INTEGRATOR_EXACT, e);
+}
+
+static ob_peer *create_jacobi(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create_as(w, s, OB_EXCHANGE_JACOBI, OB_INTEGRATOR_EXACT, e);
+}
+
+static ob_peer *create_ode(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create_as(w, s, OB_EXCHANGE_COLOURED, OB_INTEGRATOR_ODE, e);
+}
+
+static ob_peer *create_ghost(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create_as(w, s, OB_EXCHANGE_GHOST, OB_INTEGRATOR_EXACT, e);
+}
+
+static ob_peer *create_lagged(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create_as(w, s, OB_EXCHANGE_LAGGED, OB_INTEGRATOR_EXACT, e);
+}
+
+// clang-format off
+#define USUAL .step = 1. / 60, .substeps = 8, .iterations = 16 // the program's own
+#define THE_REST \
+	.version = "", .iteration_choice = { 1, 2, 4, 8, 16, 32, 64 }, .step = step, .get = get, .destroy = destroy
+
+const ob_peer_kind ob_peer_obsim = {
+	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL }, THE_REST
+};
+const ob_peer_kind ob_peer_obsim_jacobi = {
+	.name = "obsim-jacobi", .title = "obsim (Jacobi)", .create = create_jacobi, .usual = { USUAL }, THE_REST
+};
+const ob_peer_kind ob_peer_obsim_ode = {
+	.name = "obsim-ode", .title = "obsim (ODE's stepper)", .create = create_ode, .usual = { USUAL }, THE_REST
+};
+const ob_peer_kind ob_peer_obsim_ghost = {
+	.name = "obsim-ghost", .title = "obsim (ghosts)", .create = create_ghost, .usual = { USUAL }, THE_REST
+};
+const ob_peer_kind ob_peer_obsim_lag = {
+	.name = "obsim-lag", .title = "obsim (late neighbours)", .create = create_lagged, .usual = { USUAL, .lag = 1 }, THE_REST
+};

@@ -1,0 +1,96 @@
+// ODE as most of its users have it: one world that holds everything (ode/ode_world.h).
+#include <stdlib.h>
+
+#include "ode/ode_world.h"
+#include "peer/engines.h"
+
+struct ob_peer {
+	ob_ode_world *world;
+	double substep; // s
+	uint32_t substeps, objects;
+};
+
+static void destroy(ob_peer *p)
+{
+	if (!p)
+		return;
+	ob_ode_world_destroy(p->world);
+	free(p);
+	ob_peer_ode_leave();
+}
+
+// iterations: QuickStep's; 0 = dWorldStep
+static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32_t iterations, ob_error *e)
+{
+	if (!(s->step > 0) || !s->substeps) {
+		ob_fail(e, "%u substeps of a step of %g s: ODE must be told what to do", s->substeps, s->step);
+		return NULL;
+	}
+	ob_peer *p = calloc(1, sizeof *p);
+	if (!p) {
+		ob_fail(e, "no memory for an engine");
+		return NULL;
+	}
+	ob_peer_ode_enter();
+	*p = (ob_peer){ .substep = s->step / s->substeps, .substeps = s->substeps, .objects = w->objects };
+	p->world = ob_ode_world_create(&(ob_ode_world_setup){ w->gravity, iterations, w->objects, s->sleeping });
+	if (!p->world) {
+		ob_fail(e, "no memory for a world of %u bodies", w->objects);
+		destroy(p);
+		return NULL;
+	}
+	for (uint32_t i = 0; i < w->objects; i++)
+		ob_ode_world_add(p->world, &w->passport[i], &w->state[i]);
+	return p;
+}
+
+static ob_peer *create_quick(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	if (s->iterations)
+		return create(w, s, s->iterations, e);
+	ob_fail(e, "QuickStep without iterations: at least one is needed");
+	return NULL;
+}
+
+static ob_peer *create_world(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create(w, s, 0, e);
+}
+
+static bool step(ob_peer *p, ob_error *e)
+{
+	for (uint32_t i = 0; i < p->substeps; i++)
+		if (!ob_ode_world_step(p->world, p->substep))
+			return ob_fail(e, "no memory for the contacts");
+	return true;
+}
+
+static void get(const ob_peer *p, ob_state *state)
+{
+	bool asleep, touching;
+	for (uint32_t i = 0; i < p->objects; i++)
+		ob_ode_world_get(p->world, i, &state[i], &asleep, &touching);
+}
+
+const ob_peer_kind ob_peer_ode_quick = {
+	.name = "ode-quick",
+	.title = "ODE QuickStep",
+	.version = OB_ODE_VERSION,
+	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 },
+	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 },
+	.create = create_quick,
+	.step = step,
+	.get = get,
+	.destroy = destroy,
+};
+
+const ob_peer_kind ob_peer_ode_world = {
+	.name = "ode-world",
+	.title = "ODE dWorldStep",
+	.version = OB_ODE_VERSION,
+	.usual = { .step = 1. / 60, .substeps = 1 },
+	.create = create_world,
+	.step = step,
+	.get = get,
+	.destroy = destroy,
+};

@@ -1,0 +1,80 @@
+#include "little_world.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "ode/ode_body.h"
+
+static void give_up(const char *what, const char *why)
+{
+	fprintf(stderr, "%s: %s\n", what, why);
+	exit(1);
+}
+
+little_world *little_world_new(void)
+{
+	little_world *l = calloc(1, sizeof *l);
+	if (!l)
+		give_up("world", "no memory");
+	l->world = (ob_peer_world){ .gravity = { 0, 0, -9.81 }, .passport = l->passport, .state = l->state };
+	l->world.objects_max = LITTLE_MOST;
+	return l;
+}
+
+uint32_t little_add(little_world *l, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
+{
+	uint32_t id = l->world.objects++;
+	if (id == LITTLE_MOST)
+		give_up("world", "too many objects");
+	l->passport[id] = (ob_passport){ .id = id, .generation = 1, .shape = shape, .size = size, .friction = .5 };
+	l->passport[id].flags = OB_OBJECT_PRESENT | (mass > 0 ? 0 : OB_OBJECT_STATIC);
+	l->passport[id].mass = mass;
+	if (mass > 0)
+		l->passport[id].inertia = ob_ode_inertia(shape, size, mass);
+	l->state[id] = (ob_state){ .pose = { p, ob_quat_identity() } };
+	return id;
+}
+
+uint32_t little_ground(little_world *l)
+{
+	return little_add(l, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));
+}
+
+uint32_t little_cube(little_world *l, double mass, double half, ob_vec3 p)
+{
+	return little_add(l, OB_SHAPE_BOX, ob_v3(half, half, half), mass, p);
+}
+
+uint32_t little_sphere(little_world *l, double mass, double radius, ob_vec3 p)
+{
+	return little_add(l, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
+}
+
+ob_peer *little_make(const ob_peer_kind *kind, const little_world *l, uint32_t substeps)
+{
+	ob_error e;
+	ob_peer_settings s = kind->usual;
+	if (substeps)
+		s.substeps = substeps;
+	ob_peer *p = kind->create(&l->world, &s, &e);
+	if (!p)
+		give_up(kind->name, e.text);
+	return p;
+}
+
+void little_step(const ob_peer_kind *kind, ob_peer *p, little_world *l, double seconds)
+{
+	ob_error e;
+	long frames = lround(seconds / kind->usual.step);
+	for (long i = 0; i < frames; i++)
+		if (!kind->step(p, &e))
+			give_up(kind->name, e.text);
+	kind->get(p, l->now);
+}
+
+void little_run(const ob_peer_kind *kind, little_world *l, uint32_t substeps, double seconds)
+{
+	ob_peer *p = little_make(kind, l, substeps);
+	little_step(kind, p, l, seconds);
+	kind->destroy(p);
+}
