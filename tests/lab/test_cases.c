@@ -134,8 +134,112 @@ static void test_mad(const ob_case *c, const ob_peer_kind *kind, const char *why
 	CHECK(out.body_seconds > 0);
 }
 
-int main(void)
+// ---- calibration: errors of a known size must read as such
+
+static ob_state one_millimetre_off(const ob_peer_world *w, uint32_t id, double t)
 {
+	ob_state s = exact_flight(w, id, t);
+	s.pose.p.y += 1e-3;
+	return s;
+}
+
+// Body i sinks by i times .2 mm, so that each touches the one below, and moves aside by 30 um.
+static ob_state sunk(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	s.pose.p.z -= .2e-3 * id;
+	s.pose.p.y += 30e-6;
+	return s;
+}
+
+static ob_state pushed_too_fast(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = exact_push(w, id, t);
+	s.v.z += .01;
+	return s;
+}
+
+static ob_state turned(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = exact_flight(w, id, t);
+	s.pose.q = ob_quat_turn(s.pose.q, ob_v3(0, 1e-3, 0));
+	return s;
+}
+
+static ob_state creeping(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	s.pose.p.y += id * 1e-6 * t;
+	return s;
+}
+
+static ob_state stopping_late(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = exact_stop(w, id, t / 1.002);
+	s.v = ob_scale(s.v, 1 / 1.002);
+	return s;
+}
+
+static ob_state stopping_farther(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = exact_stop(w, id, t);
+	s.pose.p = ob_madd(s.pose.p, .002, ob_sub(s.pose.p, w->state[id].pose.p));
+	return s;
+}
+
+static ob_state bouncing_high(const ob_peer_world *w, uint32_t id, double t)
+{
+	ob_state s = exact_bounces(w, id, t);
+	s.pose.p.z += id ? .01 : 0;
+	return s;
+}
+
+static const struct calibration {
+	const char *name;
+	uint32_t figure;
+	double expected; // in the figure's unit
+	exact_motion motion;
+} calibrations[] = {
+	{ "projectile", 0, 1e-3, one_millimetre_off },
+	{ "stack-10", 0, .2, sunk },
+	{ "stack-10", 1, .03, sunk },
+	{ "stack-10", 3, .2 * 1200 / 1201, sunk }, // the start counts
+	{ "far-stack", 1, 11 * .2e-3, sunk },
+	{ "rolling-y", 0, 2e-4, pushed_too_fast },
+	{ "spin", 2, 1e-3, turned },
+	{ "incline-stick", 0, .01, creeping },
+	{ "sliding", 0, 2e-3, stopping_farther },
+	{ "sliding", 1, 2e-3, stopping_late },
+	{ "apexes", 0, .01, bouncing_high },
+	{ "bouncing-49", 0, 49 * 9.81 * 49 * 9.81 * .01, bouncing_high },
+};
+
+static void test_calibration(const struct calibration *k)
+{
+	const ob_case *c = ob_case_find(k->name);
+	exact_engine_use(k->motion);
+	ob_outcome out = outcome(c, &exact_engine);
+	CHECK_NEAR(out.figure[k->figure] / k->expected, 1, 1e-6);
+}
+
+// The names on the command line are those that run as tests.
+static void test_quick_list(int argc, char **argv)
+{
+	int quick = 0;
+	for (const ob_case *const *c = ob_cases; *c; c++)
+		quick += (*c)->quick;
+	CHECK(argc - 1 == quick);
+	for (int i = 1; i < argc; i++) {
+		const ob_case *c = ob_case_find(argv[i]);
+		CHECK(c && c->quick);
+		for (int k = 1; k < i; k++)
+			CHECK(strcmp(argv[i], argv[k]));
+	}
+}
+
+int main(int argc, char **argv)
+{
+	test_quick_list(argc, argv);
 	for (const ob_case *const *c = ob_cases; *c; c++) {
 		const expectation *x = NULL;
 		for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
@@ -153,6 +257,8 @@ int main(void)
 		test_mad(*c, &bursting_engine, "exploded");
 		test_mad(*c, &dying_engine, "the engine gave up");
 	}
+	for (size_t i = 0; i < sizeof calibrations / sizeof *calibrations; i++)
+		test_calibration(&calibrations[i]);
 	CHECK(!ob_case_find("no-such-case"));
 	return check_end();
 }

@@ -135,8 +135,7 @@ const ob_case ob_case_bouncing_49 = {
 	.name = "bouncing-49",
 	.title = "SimBenchmark's bouncing test",
 	.setup = "7 x 7 elastic spheres of radius .1 m and 10 kg, 2 m apart, fall from a height of 5 m without "
-		 "friction; "
-		 "20 s.",
+		 "friction; 20 s.",
 	.peers = "at 1 ms: RaiSim .019 J^2, ODE 185 J^2",
 	.quick = true,
 	.duration = 20,

@@ -128,13 +128,11 @@ static void judge_cradle(ob_trial *t)
 		ob_look_keep(&t->figure[0], ob_norm(ob_sub(ob_look_at(t, i).v, ob_v3(exact[i], 0, 0))));
 }
 
+// clang-format off
 #define CRADLE_FIGURES \
-	{ \
-		{ "error of velocities", "1", 1e-9, "as many leave as came in (Herrmann and Seitz 1982)" }, \
-		{ \
-			"gain of energy", "1", 1e-9, "energy at the start" \
-		} \
-	}
+	{ { "error of velocities", "1", 1e-9, "as many leave as came in (Herrmann and Seitz 1982)" }, \
+	  { "gain of energy", "1", 1e-9, "energy at the start" } }
+// clang-format on
 
 const ob_case ob_case_cradle_1 = {
 	.row = 3,

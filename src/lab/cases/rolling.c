@@ -54,13 +54,10 @@ static void judge_push(ob_trial *t)
 	"A box of 20 x 20 x 1 m and 10 kg on the ground (friction .4) is pushed by 150 N; 25 spheres of 1 kg roll on " \
 	"it " \
 	"(friction .8); 4 s. The force goes along "
+// clang-format off
 #define PUSH_FIGURE \
-	{ \
-		{ \
-			"mean squared error of velocities", "m^2/s^2", 1e-6, \
-				"SimBenchmark's rolling test (Kang and Hwangbo 2018)" \
-		} \
-	}
+	{ { "mean squared error of velocities", "m^2/s^2", 1e-6, "SimBenchmark's rolling test (Kang and Hwangbo 2018)" } }
+// clang-format on
 
 const ob_case ob_case_rolling_diagonal = {
 	.row = 9,

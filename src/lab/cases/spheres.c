@@ -68,9 +68,8 @@ const ob_case ob_case_666 = {
 	.row = 7,
 	.name = "666",
 	.title = "SimBenchmark's 666 test",
-	.setup = "6 x 6 x 6 spheres of radius .1 m and 10 kg in a grid of .21 m, displaced by up to 1 mm, collapse on "
-		 "the "
-		 "ground without friction or restitution; 10 s.",
+	.setup = "6 x 6 x 6 spheres of radius .1 m and 10 kg in a grid of .21 m, displaced by up to 1 mm, collapse "
+		 "on the ground without friction or restitution; 10 s.",
 	.peers = "at 60 Hz 7e-4 m^2 (Jolt, Bullet)",
 	.quick = true,
 	.compared = true,

@@ -50,10 +50,6 @@ static void build_heavy_on_stack(ob_peer_world *w, uint32_t run)
 	build_heavy(w, 10, 100);
 }
 
-#define STANDING \
-	.duration = 20, .step = 1. / 60, .runs = 1, .figures = OB_STAND_FIGURES, .observe = ob_stand_observe, \
-	.judge = ob_stand_judge
-
 const ob_case ob_case_stack_10 = {
 	.row = 14,
 	.name = "stack-10",
@@ -64,7 +60,7 @@ const ob_case ob_case_stack_10 = {
 	.compared = true,
 	.figure = OB_STAND_FIGURE(.5, NAN),
 	.build = build_stack_10,
-	STANDING,
+	OB_STAND_CASE,
 };
 
 const ob_case ob_case_stack_20 = {
@@ -76,7 +72,7 @@ const ob_case ob_case_stack_20 = {
 	.quick = true,
 	.figure = OB_STAND_FIGURE(.5, 1),
 	.build = build_stack_20,
-	STANDING,
+	OB_STAND_CASE,
 };
 
 const ob_case ob_case_stack_40 = {
@@ -88,7 +84,7 @@ const ob_case ob_case_stack_40 = {
 	.quick = true,
 	.figure = OB_STAND_FIGURE(.5, 10),
 	.build = build_stack_40,
-	STANDING,
+	OB_STAND_CASE,
 };
 
 const ob_case ob_case_heavy_100 = {
@@ -100,7 +96,7 @@ const ob_case ob_case_heavy_100 = {
 	.quick = true,
 	.figure = OB_STAND_FIGURE(.6, NAN),
 	.build = build_heavy_100,
-	STANDING,
+	OB_STAND_CASE,
 };
 
 const ob_case ob_case_heavy_1000 = {
@@ -113,7 +109,7 @@ const ob_case ob_case_heavy_1000 = {
 	.compared = true,
 	.figure = OB_STAND_FIGURE(2, NAN),
 	.build = build_heavy_1000,
-	STANDING,
+	OB_STAND_CASE,
 };
 
 const ob_case ob_case_heavy_on_stack = {
@@ -125,5 +121,5 @@ const ob_case ob_case_heavy_on_stack = {
 	.quick = true,
 	.figure = OB_STAND_FIGURE(NAN, NAN),
 	.build = build_heavy_on_stack,
-	STANDING,
+	OB_STAND_CASE,
 };

@@ -13,6 +13,11 @@ enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_
 	  { "bodies that fell", "1", 0, "none: the stack is stable" }, \
 	  { "mean penetration", "mm", NAN, "no penetration; over contacts and time" } }
 
+// The rest of such a case: 20 s, awake.
+#define OB_STAND_CASE \
+	.duration = 20, .step = 1. / 60, .runs = 1, .figures = OB_STAND_FIGURES, .observe = ob_stand_observe, \
+	.judge = ob_stand_judge
+
 // Fails the trial when a body is more than a quarter of a metre from its place.
 void ob_stand_observe(ob_trial *t);
 void ob_stand_judge(ob_trial *t);

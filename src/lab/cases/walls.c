@@ -86,18 +86,16 @@ static void judge_thin_wall(ob_trial *t)
 		t->failed = "never arrived";
 }
 
-#define PASSES(speed) \
-	{ \
-		"passes of 100 at " speed " m/s", "1", 0, "a solid body passes through none" \
-	}
+// clang-format off
+#define PASSES(speed) { "passes of 100 at " speed " m/s", "1", 0, "a solid body passes through none" }
+// clang-format on
 
 const ob_case ob_case_thin_wall = {
 	.row = 18,
 	.name = "thin-wall",
 	.title = "Thin wall",
-	.setup = "Boxes of .2 m fly at a fixed wall of 20 mm, turned and aimed at random: 100 aims at each of 10, 30, "
-		 "100, 300 "
-		 "and 1000 m/s.",
+	.setup = "Boxes of .2 m fly at a fixed wall of 20 mm, turned and aimed at random: 100 aims at each of 10, "
+		 "30, 100, 300 and 1000 m/s.",
 	.peers = "ODE 77 to 100 of 100",
 	.quick = true,
 	.duration = .6,

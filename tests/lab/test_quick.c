@@ -1,0 +1,37 @@
+// test_quick CASE: obsim at its usual settings keeps every promise of the case. Cost is not looked at.
+#include <string.h>
+
+#include "check.h"
+#include "lab/case.h"
+
+int main(int argc, char **argv)
+{
+	const ob_case *c = argc == 2 ? ob_case_find(argv[1]) : NULL;
+	if (!c) {
+		fprintf(stderr, "usage: test_quick CASE\n");
+		return 2;
+	}
+	// Who reads late is asked what it does without lag.
+	const ob_peer_kind *kind = ob_peer_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
+	ob_outcome out;
+	ob_error e = { "" };
+	if (!ob_case_run(c, kind, &kind->usual, &out, &e)) {
+		fprintf(stderr, "%s\n", e.text);
+		return 1;
+	}
+	printf("row %d, %s: %.2f s of CPU\n", c->row, c->title, out.cpu_s);
+	for (uint32_t i = 0; i < c->figures; i++) {
+		const ob_figure_def *f = &c->figure[i];
+		bool missed = !isnan(f->target) && !(out.figure[i] <= f->target);
+		printf("%s %-36s %.3g %s", missed ? "*" : " ", f->name, out.figure[i], f->unit);
+		if (isnan(f->target))
+			printf("\n");
+		else
+			printf(" (at most %.3g)\n", f->target);
+		CHECK(!missed);
+	}
+	if (*out.failed)
+		printf("* %s\n", out.failed);
+	CHECK(!*out.failed);
+	return check_end();
+}
