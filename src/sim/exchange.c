@@ -26,7 +26,7 @@ static void add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
 
 static ob_impact impact_of(const ob_sim *s, const ob_touch *t)
 {
-	double resting = 4 * s->island.pull * s->island.h; // m/s: what comes without impacts
+	double resting = 4 * s->island.pull * s->island.substep; // m/s: what comes without impacts
 	return (ob_impact){ s->island.h, t->e, resting + 1e-6, 1, 1 };
 }
 
@@ -115,7 +115,7 @@ void ob_exchange_cap(ob_sim *s)
 	const double growth = .3 * brought * w->mass; // N s
 	const double cap[OB_LANES] = { growth, growth, growth, growth };
 	for (uint32_t i = 0; i < w->batches; i++)
-		ob_batch_cap(&w->batch[i], cap, 2.5 * brought, w->u);
+		ob_batch_cap(&w->batch[i], cap, 2.5 * brought, w->dv);
 }
 
 static bool worth_while(const ob_island_work *w, const ob_batch *b)
@@ -142,7 +142,7 @@ void ob_exchange_rounds(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
-	ob_pass pass = { w->h, sweeps, noticeable, jump, true, is_jacobi(s) };
+	ob_pass pass = { w->h, sweeps, noticeable, jump * w->h / w->substep, true, is_jacobi(s) };
 	bool again = true;
 	for (uint32_t round = 0; round < run->passes && again; round++) {
 		again = false;

@@ -6,6 +6,7 @@
 #include "sim/ghost.h"
 #include "sim/leap.h"
 #include "sim/members.h"
+#include "sim/pace.h"
 #include "sim/part.h"
 #include "sim/touch.h"
 
@@ -18,8 +19,8 @@ static bool look(ob_sim *s)
 	return any;
 }
 
-// One substep, in the order in which things happen.
-static void substep(ob_sim *s)
+// A substep or one stride of it, in the order in which things happen.
+static void make_stride(ob_sim *s)
 {
 	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_gyrate(s);
@@ -38,13 +39,25 @@ static void substep(ob_sim *s)
 	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_predict(s);
 	ob_part_enter(s, OB_PART_SOLVE);
-	ob_exchange_cap(s);
 	ob_exchange_rounds(s);
 	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_advance(s);
+	ob_exchange_cap(s);
 	ob_ghosts_follow(s);
 	ob_part_enter(s, OB_PART_PROJECT);
 	ob_exchange_project(s);
+}
+
+static void substep(ob_sim *s)
+{
+	double left = s->island.substep;
+	while (left > 0) {
+		ob_part_enter(s, OB_PART_LOOK);
+		ob_ghosts_follow(s);
+		ob_pace_stride(s, left);
+		make_stride(s);
+		left -= s->island.h;
+	}
 }
 
 void ob_island_solve(ob_sim *s, uint32_t i)

@@ -75,7 +75,8 @@ typedef struct ob_island_work {
 	uint32_t pass; // number of the running pass, ever growing
 	double mass; // of all members, kg
 	double pull; // m/s^2, the largest of any member
-	double h, t0; // s
+	double h, t0; // s; h of the stride that is made now: a substep, or a part of one (sim/pace.h)
+	double substep; // s, the whole
 	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;

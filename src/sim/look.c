@@ -80,20 +80,38 @@ static void wind_back(const ob_placed *a, const ob_placed *b, double t, ob_manif
 	}
 }
 
+static double smaller_thickness(const ob_island_work *w, const ob_touch *t)
+{
+	return fmin(w->member[t->a].thickness, w->member[t->b].thickness);
+}
+
+// The time of meeting (s), and the points up to "reach" (m) then.
+static double meet(ob_sim *s, const ob_touch *t, double horizon, double reach, ob_manifold *m)
+{
+	const ob_island_work *w = &s->island;
+	ob_placed a = placed(w, t->a), b = placed(w, t->b);
+	double near = fmin(swept_gap, .25 * smaller_thickness(w, t));
+	s->counters.swept_looks++;
+	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, find, m);
+}
+
+double ob_look_ahead(ob_sim *s, const ob_touch *t, double horizon)
+{
+	ob_manifold m;
+	return meet(s, t, horizon, fmin(swept_gap, .25 * smaller_thickness(&s->island, t)), &m);
+}
+
 void ob_look(ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, double *when)
 {
 	const ob_island_work *w = &s->island;
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);
-	double thin = fmin(w->member[t->a].thickness, w->member[t->b].thickness);
-	double speed = closing_speed(s, t), travel = speed * w->h;
+	double thin = smaller_thickness(w, t), travel = closing_speed(s, t) * w->h;
 	*when = 0;
 	if (travel < swept_step * thin) {
 		find(&a, &b, fmin(tolerance + 1.5 * travel, fmax(.5 * thin, tolerance + travel)), m);
 		return;
 	}
-	s->counters.swept_looks++;
-	double reach = fmin(w->member[t->a].radius, w->member[t->b].radius);
-	double met = ob_swept_find(&a, &b, speed, w->h, fmin(swept_gap, .25 * thin), reach, find, m);
+	double met = meet(s, t, w->h, fmin(w->member[t->a].radius, w->member[t->b].radius), m);
 	if (isinf(met))
 		return;
 	*when = met;

@@ -9,4 +9,7 @@
 // tolerance: m, gaps up to it are always found. Both bodies' poses must be up to date (ob_member_settle).
 void ob_look(ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, double *when);
 
+// When do the two meet, if they go on as they do (s from now)? Infinity: not before "horizon".
+double ob_look_ahead(ob_sim *s, const ob_touch *t, double horizon);
+
 #endif

@@ -90,7 +90,7 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
-	w->h = run->step_length / run->substeps;
+	w->h = w->substep = run->step_length / run->substeps;
 	w->mass = w->pull = w->recovered = 0;
 	w->members = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.

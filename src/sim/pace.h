@@ -1,0 +1,13 @@
+// How much of a substep is made at once. Where fast bodies touch, and their contact's geometry would not hold to the
+// substep's end, the substep is made in strides; and a stride ends when something fast meets something else, so that the
+// next begins with their contact as it is then.
+#ifndef OB_SIM_PACE_H
+#define OB_SIM_PACE_H
+
+#include "sim/worker.h"
+
+// Chooses the length of the next stride, at most "left" (s), sets it in the island, and scales to it what was predicted
+// for the last one.
+void ob_pace_stride(ob_sim *s, double left);
+
+#endif
