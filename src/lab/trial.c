@@ -125,7 +125,8 @@ bool ob_case_run(const ob_case *c, const ob_peer_kind *kind, const ob_peer_setti
 		if (!run(c, i, kind, s, out, &failures, e))
 			return false;
 	if (failures.failed && c->runs > 1)
-		snprintf(out->failed, sizeof out->failed, "%.58s (%u of %u runs)", failures.why, failures.failed, c->runs);
+		snprintf(out->failed, sizeof out->failed, "%.58s (%u of %u runs)", failures.why, failures.failed,
+			 c->runs);
 	else
 		snprintf(out->failed, sizeof out->failed, "%s", failures.why);
 	return true;
