@@ -1,0 +1,30 @@
+#include "peer/bullet.h"
+
+#include "peer/engines.h"
+
+#ifdef BT_USE_DOUBLE_PRECISION // set by its own pkg-config file
+static const char title[] = "Bullet, double precision";
+#else
+static const char title[] = "Bullet, single precision";
+#endif
+
+static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	if (s->step > 0 && s->substeps && s->iterations)
+		return ob_bullet_create(w, s, e);
+	ob_fail(e, "%u substeps of a step of %g s with %u iterations: Bullet must be told what to do", s->substeps,
+		s->step, s->iterations);
+	return NULL;
+}
+
+const ob_peer_kind ob_peer_bullet = {
+	.name = "bullet",
+	.title = title,
+	.version = OB_BULLET_VERSION,
+	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 10 },
+	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 },
+	.create = create,
+	.step = ob_bullet_step,
+	.get = ob_bullet_get,
+	.destroy = ob_bullet_destroy,
+};
