@@ -11,7 +11,7 @@ static const double font = 12; // px
 static const char *entry_title(const ob_legend *l, size_t i)
 {
 	const ob_plot *p = l->frame->plot;
-	return i == p->series_count ? "failed" : p->series[i].title ? p->series[i].title : "";
+	return i == p->series_count ? "failed" : p->series[i].title;
 }
 
 // Draws (or with d NULL only measures) the lines of one entry; returns how many.
@@ -51,6 +51,8 @@ static double walk(const ob_legend *l, double room, ob_drawing *d, double left, 
 	double x = 0, y = 0;
 	for (size_t i = 0; i < l->entries; i++) {
 		double text = 0;
+		if (!entry_title(l, i))
+			continue;
 		int lines = entry_lines(l, i, room - SAMPLE - GAP, NULL, 0, 0, &text);
 		double width = SAMPLE + GAP + text;
 		if (l->below && x > 0 && x + width > room) {

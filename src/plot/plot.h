@@ -15,16 +15,16 @@
 
 #include <ob/error.h>
 
-typedef enum ob_scale {
+typedef enum ob_plot_scale {
 	OB_SCALE_LINEAR,
 	OB_SCALE_LOG,
 	OB_SCALE_LOG2, // ticks at powers of two
 	OB_SCALE_CATEGORY // y alone: 0, 1, .. are the names of ob_plot_axis.category, downwards
-} ob_scale;
+} ob_plot_scale;
 
 typedef struct ob_plot_axis {
 	const char *label; // with its unit: "CPU per body and simulated second (us)"
-	ob_scale scale;
+	ob_plot_scale scale;
 	double from, to; // both 0: chosen from the data
 	size_t categories; // OB_SCALE_CATEGORY
 	const char *const *category;
@@ -39,7 +39,7 @@ typedef struct ob_plot_point {
 } ob_plot_point;
 
 typedef struct ob_plot_series {
-	const char *title;
+	const char *title; // NULL: not in the legend
 	size_t count;
 	const ob_plot_point *point;
 	int style; // colour, marker and dash of the palette; the same number looks the same in every plot. 0 is drawn

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static double transformed(ob_scale scale, double v)
+static double transformed(ob_plot_scale scale, double v)
 {
 	return scale == OB_SCALE_LOG ? log10(v) : scale == OB_SCALE_LOG2 ? log2(v) : v;
 }
@@ -144,7 +144,7 @@ static void add_powers_of_two(ob_ticks *t, int wanted)
 	}
 }
 
-void ob_ticks_choose(ob_ticks *t, ob_scale scale, double from, double to, int wanted, bool fixed)
+void ob_ticks_choose(ob_ticks *t, ob_plot_scale scale, double from, double to, int wanted, bool fixed)
 {
 	*t = (ob_ticks){ .scale = scale };
 	if (scale == OB_SCALE_LINEAR || scale == OB_SCALE_CATEGORY) {

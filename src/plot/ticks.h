@@ -13,7 +13,7 @@ typedef struct ob_tick {
 } ob_tick;
 
 typedef struct ob_ticks {
-	ob_scale scale;
+	ob_plot_scale scale;
 	double from, to; // transformed: of ob_ticks_along
 	size_t count;
 	ob_tick tick[OB_TICKS_MAX];
@@ -21,7 +21,7 @@ typedef struct ob_ticks {
 
 // Ticks for the values from .. to, about "wanted" of them with labels. With "fixed" the axis begins and ends just
 // there; else it is made wider, so that nothing lies on its rim. Logarithmic: both > 0. from <= to, both finite.
-void ob_ticks_choose(ob_ticks *t, ob_scale scale, double from, double to, int wanted, bool fixed);
+void ob_ticks_choose(ob_ticks *t, ob_plot_scale scale, double from, double to, int wanted, bool fixed);
 
 // Where a value lies: 0 = beginning, 1 = end of the axis. Logarithmic: v > 0.
 double ob_ticks_along(const ob_ticks *t, double v);

@@ -86,7 +86,7 @@ static void make_categories(awkward *a, size_t count)
 
 static const double wild[] = { 0, -1, 1e-300, 1e300, DBL_MAX, INFINITY };
 
-static void make_numbers(awkward *a, int i, ob_scale scale)
+static void make_numbers(awkward *a, int i, ob_plot_scale scale)
 {
 	if (i == 0)
 		scatter(a, wild, 6);
@@ -128,7 +128,7 @@ bool awkward_make(awkward *a, int i)
 		return i < NAMED + NUMBERS + TEXTS;
 	}
 	if (i >= NAMED) {
-		make_numbers(a, (i - NAMED) % 5, (ob_scale)((i - NAMED) / 5));
+		make_numbers(a, (i - NAMED) % 5, (ob_plot_scale)((i - NAMED) / 5));
 		return true;
 	}
 	static const size_t series[NAMED] = { 3, 12, 12, 0, 3, 4, 0, 0, 0, 8 },

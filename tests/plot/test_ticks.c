@@ -16,7 +16,7 @@ static const char *labels(const ob_ticks *t)
 	return all;
 }
 
-static void check(ob_scale scale, double from, double to, int wanted, bool fixed, const char *expected)
+static void check(ob_plot_scale scale, double from, double to, int wanted, bool fixed, const char *expected)
 {
 	ob_ticks t;
 	ob_ticks_choose(&t, scale, from, to, wanted, fixed);
@@ -52,7 +52,7 @@ static void check_ranges(void)
 		for (int i = 0; i < 4000; i++) {
 			double from = pow(10, (i * 7919 % 600) - 300), to = from * pow(10, pow(10, i % 9 - 6));
 			ob_ticks t;
-			ob_ticks_choose(&t, (ob_scale)scale, from, fmin(to, 1e300), 2 + i % 9, false);
+			ob_ticks_choose(&t, (ob_plot_scale)scale, from, fmin(to, 1e300), 2 + i % 9, false);
 			int majors = 0;
 			for (size_t j = 0; j < t.count; j++) {
 				majors += t.tick[j].major;
