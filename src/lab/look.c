@@ -30,13 +30,16 @@ double ob_look_farthest(const ob_trial *t)
 	return most;
 }
 
-double ob_look_lowest(const ob_trial *t)
+bool ob_look_fell_through(const ob_trial *t)
 {
-	double lowest = INFINITY;
-	for (uint32_t id = 0; id < t->world->objects; id++)
-		if (ob_look_moves(t, id))
+	double ground = INFINITY, lowest = INFINITY;
+	for (uint32_t id = 0; id < t->world->objects; id++) {
+		if (t->world->passport[id].shape == OB_SHAPE_PLANE)
+			ground = t->world->state[id].pose.p.z;
+		else if (ob_look_moves(t, id))
 			lowest = fmin(lowest, t->now.motion[id].p.z);
-	return lowest;
+	}
+	return isfinite(ground) && lowest < ground - 1;
 }
 
 double ob_look_gravity(const ob_trial *t)

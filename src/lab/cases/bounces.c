@@ -24,7 +24,7 @@ static int bounces(ob_trial *t)
 
 static void fail_without_bounces(ob_trial *t)
 {
-	if (ob_look_lowest(t) < 0)
+	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 	else if (t->memory[MEMORY_BOUNCES] < 1)
 		t->failed = "never bounced";
@@ -126,7 +126,7 @@ static void observe_bouncing_49(ob_trial *t)
 	bounces(t);
 	if (t->frame)
 		t->figure[0] += (error * error - t->figure[0]) / t->frame; // mean over the frames
-	if (ob_look_lowest(t) < 0)
+	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 

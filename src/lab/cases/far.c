@@ -48,14 +48,12 @@ static void observe_stacks(ob_trial *t)
 	ob_look_keep(&t->figure[DEEPER], fabs(far - near));
 	for (uint32_t i = 1; i <= STACK; i++)
 		ob_look_keep(&t->figure[APART], apart(t, i, FAR_SLAB + i));
-	if (ob_look_farthest(t) > .25)
-		t->failed = "fell";
 }
 
 static void judge_stacks(ob_trial *t)
 {
-	if (t->failed)
-		t->figure[FAR_WORST] = INFINITY;
+	if (ob_look_farthest(t) > .25)
+		t->failed = "fell";
 }
 
 const ob_case ob_case_far_stack = {

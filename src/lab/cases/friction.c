@@ -132,7 +132,7 @@ static void judge_sliding(ob_trial *t)
 		most = fmax(most, went);
 	}
 	t->figure[2] = (most - least) / way;
-	if (ob_look_lowest(t) < 0)
+	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 

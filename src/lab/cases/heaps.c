@@ -107,7 +107,7 @@ static void observe_pile(ob_trial *t)
 		memory[MEMORY_START] = memory[MEMORY_LOWEST] = energy;
 	memory[MEMORY_LOWEST] = fmin(memory[MEMORY_LOWEST], energy);
 	ob_look_keep(&t->figure[GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
-	if (ob_look_lowest(t) < 0)
+	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 

@@ -118,7 +118,7 @@ static void judge_slip_to_roll(ob_trial *t)
 	double g = ob_look_gravity(t);
 	t->figure[0] = fabs(ob_look_at(t, 1).v.x / ob_reference_roll_speed(7) - 1);
 	t->figure[1] = fabs(t->memory[MEMORY_ROLLS] / ob_reference_roll_time(7, .2, g) - 1);
-	if (ob_look_lowest(t) < 0)
+	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 

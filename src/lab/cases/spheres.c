@@ -39,7 +39,7 @@ static double squared_penetration(const ob_trial *t)
 
 static void fail_below_ground(ob_trial *t)
 {
-	if (ob_look_lowest(t) < 0)
+	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 

@@ -13,12 +13,8 @@ static const double fallen = .05; // m
 
 static void observe_side(ob_trial *t)
 {
-	double ground = INFINITY;
-	for (uint32_t id = 0; id < t->world->objects; id++)
-		if (t->world->passport[id].shape == OB_SHAPE_PLANE)
-			ground = t->world->state[id].pose.p.z;
 	ob_look_keep(&t->figure[MOVED], 1e3 * ob_look_farthest(t));
-	if (ob_look_lowest(t) < ground)
+	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 
