@@ -12,6 +12,17 @@ static bool goes_on(const ob_motion *before, const ob_flight *f, ob_vec3 a)
 	return before->flight && before->flight == f->since && a.x == f->a.x && a.y == f->a.y && a.z == f->a.z;
 }
 
+// ob_motion_at, to the last bit, but for the plan of the spin, which is kept.
+static ob_state flown(ob_sim *s, uint32_t id, const ob_flight *f, double time)
+{
+	ob_motion m = { .p = f->p, .q = f->q, .v = f->v, .a = f->a };
+	ob_vec3 inertia = ob_passport_of(s->u, id)->inertia;
+	ob_state end = ob_motion_at(&m, inertia, time);
+	if (ob_norm2(f->w) > 0)
+		ob_spin_at(ob_plans_spin(&s->plans, id, f->q, f->w, inertia), time, &end.pose.q, &end.w);
+	return end;
+}
+
 ob_state ob_leap_end(ob_sim *s, uint32_t id, uint32_t *flight)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
@@ -24,8 +35,7 @@ ob_state ob_leap_end(ob_sim *s, uint32_t id, uint32_t *flight)
 		*f = (ob_flight){ step * run->step_length, before->p, before->q, before->v, before->w, a,
 				  (uint32_t)step + 1,      0 };
 	*flight = f->since;
-	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .w = f->w, .a = f->a };
-	return ob_motion_at(&m, pass->inertia, (step + 1) * run->step_length);
+	return flown(s, id, f, (step + 1) * run->step_length - f->t0);
 }
 
 static ob_state end_by_ode(ob_sim *s, uint32_t id)

@@ -23,7 +23,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->ode_generation = calloc(capacity, sizeof *s->ode_generation);
 		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
 	}
-	if (!s || !s->ode || !s->ode_generation || !s->island.row_of) {
+	if (!s || !s->ode || !s->ode_generation || !s->island.row_of || !ob_plans_create(&s->plans, capacity)) {
 		ob_sim_destroy(s);
 		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
 		return NULL;
@@ -44,6 +44,7 @@ void ob_sim_destroy(ob_sim *s)
 		ob_ode_body_destroy(s->ode[i]);
 	ob_monolith_destroy(s->monolith);
 	ob_island_work_finish(&s->island);
+	ob_plans_finish(&s->plans);
 	free(s->ode_generation);
 	free(s->ode);
 	free(s);

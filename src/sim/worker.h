@@ -5,6 +5,7 @@
 #include "ode/ode_body.h"
 #include "sim/island.h"
 #include "sim/monolith.h"
+#include "sim/plans.h"
 #include "sim/sim.h"
 
 struct ob_sim {
@@ -13,6 +14,7 @@ struct ob_sim {
 	ob_ode_body **ode; // [object]: ODE's world, body and geom of each object that this worker has run
 	uint32_t *ode_generation;
 	ob_island_work island; // scratch
+	ob_plans plans;
 	ob_monolith *monolith; // NULL unless one world holds all objects
 	ob_counters counters; // handed over to the universe at the end of each phase
 	bool timed; // the run wants to know what each part takes (sim/part.h)

@@ -1,0 +1,42 @@
+#include "sim/plans.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SLOTS_MOST = 16384 }; // 14 MB, of which only what is used is there
+
+// What a plan follows from.
+typedef struct start {
+	ob_quat q;
+	ob_vec3 w, inertia;
+} start;
+
+typedef struct ob_plan {
+	start from;
+	ob_spin spin;
+} ob_plan;
+
+bool ob_plans_create(ob_plans *p, uint32_t objects)
+{
+	p->slots = 1;
+	while (p->slots < objects && p->slots < SLOTS_MOST)
+		p->slots *= 2;
+	p->slot = calloc(p->slots, sizeof *p->slot);
+	return p->slot;
+}
+
+void ob_plans_finish(ob_plans *p)
+{
+	free(p->slot);
+}
+
+const ob_spin *ob_plans_spin(ob_plans *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia)
+{
+	ob_plan *plan = &p->slot[id & (p->slots - 1)];
+	start from = { q, w, inertia };
+	if (memcmp(&from, &plan->from, sizeof from)) { // an empty one holds no unit quaternion
+		plan->from = from;
+		ob_spin_plan(&plan->spin, q, w, inertia);
+	}
+	return &plan->spin;
+}

@@ -1,0 +1,23 @@
+// Spins that a worker has planned (motion/spin.h): planning one costs more than evaluating it twice, and a flight goes
+// on for many steps. A plan follows from how the flight began alone, so it is the same whichever worker keeps it.
+// Private to its worker.
+#ifndef OB_SIM_PLANS_H
+#define OB_SIM_PLANS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "motion/spin.h"
+
+typedef struct ob_plans {
+	uint32_t slots; // a power of two
+	struct ob_plan *slot; // [slots], by id: a later one takes an earlier one's place
+} ob_plans;
+
+bool ob_plans_create(ob_plans *p, uint32_t objects); // false: no memory
+void ob_plans_finish(ob_plans *p);
+
+// The plan of object id that turns from (q, w) on. Valid until the next call.
+const ob_spin *ob_plans_spin(ob_plans *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia);
+
+#endif
