@@ -119,3 +119,13 @@ void ob_batch_apply_lane(const ob_batch *b, int l, double s, ob_body_row *v)
 {
 	ob_kernel_best()->apply_lane(b, l, s, v);
 }
+
+void ob_batch_rates(const ob_batch *b, const ob_body_row *rows, lanes *r)
+{
+	ob_kernel_best()->rates(b, rows, r);
+}
+
+void ob_batch_push(const ob_batch *b, const lanes *x, ob_body_row *rows)
+{
+	ob_kernel_best()->push(b, x, rows);
+}

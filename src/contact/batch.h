@@ -41,6 +41,7 @@ typedef struct ob_batch {
 	lanes bias[4]; // m/s
 	lanes mu, radius;
 	lanes impulse[7], impulse_start[7]; // now; when the substep began
+	lanes moved; // m/s: the largest change of a velocity in the last pass
 } ob_batch;
 
 // How a pass treats the pairs, the same for all batches.
@@ -83,5 +84,10 @@ void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_bod
 void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v);
 // Adds s times the lane's impulses to the velocities (taking a pair out, or putting it back).
 void ob_batch_apply_lane(const ob_batch *b, int l, double s, ob_body_row *v);
+
+// How fast each of the seven rows opens or slides at the given rows' velocities.
+void ob_batch_rates(const ob_batch *b, const ob_body_row *rows, lanes *r);
+// Adds what the impulses x of all lanes do to the rows.
+void ob_batch_push(const ob_batch *b, const lanes *x, ob_body_row *rows);
 
 #endif

@@ -161,7 +161,7 @@ static inline void finish_alone(const ob_batch *b, lane_mask unfinished, lanes *
 }
 
 // Where a body may stand in several lanes its changes are added one by one, in lane order.
-static inline void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
+static void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
 {
 	lanes da[6] = { 0 }, db[6] = { 0 };
 	apply(b, d, da, db);
@@ -242,6 +242,7 @@ static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_bod
 			jump = lanes_max(jump, lanes_abs(x[i] - b->impulse_start[i]) * diag);
 		}
 	}
+	b->moved = big;
 	b->hot = lanes_bits(big > pass->wake) & b->live;
 	b->impact |= lanes_bits(jump > pass->jump);
 	b->impact &= b->live;
@@ -305,4 +306,12 @@ static void apply_lane(const ob_batch *b, int l, double s, ob_body_row *v)
 	}
 }
 
-const ob_kernel OB_KERNEL = { prepare, solve, project, cap, apply_lane };
+static void rates(const ob_batch *b, const ob_body_row *rows, lanes *r)
+{
+	lanes xa[6], xb[6];
+	gather_both(b, rows, xa, xb);
+	normal_rates(b, xa, xb, r);
+	tangent_rates(b, xa, xb, r);
+}
+
+const ob_kernel OB_KERNEL = { prepare, solve, project, cap, apply_lane, rates, add_changes };

@@ -13,6 +13,8 @@ typedef struct ob_kernel {
 	void (*project)(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
 	void (*cap)(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v);
 	void (*apply_lane)(const ob_batch *b, int l, double s, ob_body_row *v);
+	void (*rates)(const ob_batch *b, const ob_body_row *rows, lanes *r);
+	void (*push)(const ob_batch *b, const lanes *x, ob_body_row *rows);
 } ob_kernel;
 
 extern const ob_kernel ob_kernel_portable;

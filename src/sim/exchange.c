@@ -138,29 +138,49 @@ static bool mark_hot(ob_island_work *w, const ob_batch *b)
 	return b->hot != 0;
 }
 
+// One round over the pairs that are worth while, colour by colour. Returns the largest change of a velocity (m/s).
+static double make_round(ob_sim *s, const ob_pass *pass, bool *hot)
+{
+	ob_island_work *w = &s->island;
+	lanes moved = lanes_of(0);
+	*hot = false;
+	for (uint32_t k = 0; k < w->batches; k++) {
+		ob_batch *b = &w->batch[w->batch_order[k]];
+		if (!b->live || (!pass->first && !worth_while(w, b)))
+			continue;
+		s->counters.pair_exchanges += (unsigned)__builtin_popcount(b->live);
+		ob_batch_solve(b, pass, w->u, w->v, w->d, w->delta);
+		*hot |= mark_hot(w, b);
+		moved = lanes_max(moved, b->moved);
+	}
+	if (pass->jacobi)
+		add_rows(w, w->u, w->delta);
+	return fmax(fmax(moved[0], moved[1]), fmax(moved[2], moved[3]));
+}
+
 void ob_exchange_rounds(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
+	const int most_direct = 4; // direct solves in a substep
 	ob_pass pass = { w->h, sweeps, noticeable, jump * w->h / w->substep, true, is_jacobi(s) };
 	bool again = true;
+	int direct = 0;
 	for (uint32_t round = 0; round < run->passes && again; round++) {
-		again = false;
 		s->counters.rounds++;
 		ob_ghosts_read(s, w->u, round);
 		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep
-		for (uint32_t k = 0; k < w->batches; k++) {
-			ob_batch *b = &w->batch[w->batch_order[k]];
-			if (!b->live || (round > 0 && !worth_while(w, b)))
-				continue;
-			s->counters.pair_exchanges += (unsigned)__builtin_popcount(b->live);
-			ob_batch_solve(b, &pass, w->u, w->v, w->d, w->delta);
-			again |= mark_hot(w, b);
-		}
-		if (pass.jacobi)
-			add_rows(w, w->u, w->delta);
+		double moved = make_round(s, &pass, &again);
 		pass.first = false;
+		if (direct == most_direct || !ob_forest_asked(s, moved))
+			continue;
+		ob_forest_solve(s);
+		direct++;
+		again = true;
+		for (uint32_t i = 1; i <= w->members; i++)
+			w->member[i].hot = w->pass;
 	}
+	w->forest.recent = direct > 0;
 }
 
 void ob_exchange_project(ob_sim *s)

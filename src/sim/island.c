@@ -72,6 +72,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	ob_part_enter(s, OB_PART_LOAD);
 	ob_members_load(s, is);
 	ob_touches_load(s, is);
+	ob_forest_begin(&s->island.forest);
 	uint32_t substeps = ob_universe_settings(s->u)->substeps;
 	for (uint32_t k = 0; k < substeps; k++)
 		substep(s);
@@ -103,4 +104,5 @@ void ob_island_work_finish(ob_island_work *w)
 	free(w->batch_order);
 	free(w->row_of);
 	free(w->history);
+	ob_forest_finish(&w->forest);
 }

@@ -10,6 +10,7 @@
 
 #include "contact/batch.h"
 #include "contact/impact.h"
+#include "sim/forest.h"
 #include "table/table.h"
 
 static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_PAIR_ROWS,
@@ -80,6 +81,7 @@ typedef struct ob_island_work {
 	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;
+	ob_forest forest;
 } ob_island_work;
 
 struct ob_sim;

@@ -1,0 +1,61 @@
+// The direct solve of an island's contacts, where exchanges from pair to pair would take too long.
+//
+// Exchanges carry an impulse one pair further per round; n bodies on top of each other need about n^2 rounds, a load
+// of n times its carrier's mass about as many. Where the island's contact graph is a forest that stands on fixed
+// bodies, all its contacts that hold are solved at once, at the cost of some rounds (sim/articulated.h).
+//
+//        [3]                 breadth-first from the fixed bodies: 1 is a root (its
+//        [2]    [5]          contact is an anchor), 2 hangs on 1, 3 on 2; 4 is a
+//        [1]    [4]          root, 5 hangs on 4. A contact that closes a cycle stays
+//      ==============        as it is: what it gives is a given of this solve.
+//
+// Which rows hold is read off the last round: normals that press, or are about to (lambda D > r, the active set of a
+// semismooth Newton step: Hintermueller, Ito and Kunisch 2003), friction and twist below their bounds. The solution
+// for these rows is a direction: the impulses go along it, projected on the cones, as far as the residual energy
+// x r + x A x / 2 falls (projected Newton: Bertsekas 1982). Rounds and solves take turns: Silcowitz, Niebe and Erleben
+// 2010 do so with a conjugate gradient on the same rows.
+//
+// Everything is a function of the island's published state: the same bits whoever solves it.
+#ifndef OB_SIM_FOREST_H
+#define OB_SIM_FOREST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "contact/batch.h"
+#include "sim/articulated.h"
+
+// A contact that takes part. parent: row of a fixed body if it is an anchor.
+typedef struct ob_forest_contact {
+	uint32_t touch, child, parent;
+	uint8_t row[OB_JOINT_ROWS]; // of the batch, for each row of the joint
+	ob_joint joint;
+} ob_forest_contact;
+
+// Working state of one island's step; memory grown as needed, never shrunk.
+typedef struct ob_forest {
+	bool planned; // tolerance is that of this step
+	bool recent; // the last substep was solved directly
+	bool hopeless; // a solve of this step led nowhere
+	double tolerance; // m/s: what may be left over; infinity = never solve directly
+	uint32_t rows_max, contacts_max, batches_max;
+	ob_link *link; // [row]
+	uint32_t *order; // rows, parents before children
+	uint32_t *up; // [row]: its contact, or who carries it
+	double *carried; // [row]: kg
+	uint32_t contacts;
+	ob_forest_contact *contact;
+	lanes (*rate)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: residual velocities; changes of impulses
+} ob_forest;
+
+struct ob_sim;
+struct ob_island_work;
+
+// Before the first substep of an island.
+void ob_forest_begin(ob_forest *f);
+// Is a direct solve worth while, if the last round still changed velocities by "left" m/s?
+bool ob_forest_asked(struct ob_sim *s, double left);
+void ob_forest_solve(struct ob_sim *s);
+void ob_forest_finish(ob_forest *f);
+
+#endif
