@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes shader files as C byte arrays: embed.py OUTPUT FILE...; lines #include "x.glsl" are replaced by that file."""
+"""Writes text files as C byte arrays PREFIX_NAME: embed.py OUTPUT PREFIX FILE...; lines #include "x.glsl" are replaced
+by that file."""
 import pathlib
 import re
 import sys
@@ -13,12 +14,13 @@ def expand(path):
     return '\n'.join(text) + '\n'
 
 
-def array(path):
-    name = 'shader_' + path.name.replace('.', '_')
+def array(prefix, path):
+    name = f'{prefix}_' + path.name.replace('.', '_')
     data = ','.join(str(byte) for byte in expand(path).encode() + b'\0')
     return f'static const char {name}[] = {{{data}}};\n'
 
 
 if __name__ == '__main__':
-    output, *sources = map(pathlib.Path, sys.argv[1:])
-    output.write_text(''.join(array(source) for source in sources), encoding='utf-8')
+    output, prefix, *sources = sys.argv[1:]
+    text = ''.join(array(prefix, pathlib.Path(source)) for source in sources)
+    pathlib.Path(output).write_text(text, encoding='utf-8')

@@ -50,7 +50,7 @@ DUTIES = [
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor)|render/sink\w*|cli/progress)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|keeper)|render/sink_video|cli/child)\.c$', True),
+     r'src/(host/(spawn_\w+|keeper)|render/sink_video|lab/attempt|cli/child)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

@@ -6,11 +6,18 @@
 #include "plot/letters.h"
 #include "plot/palette.h"
 
-#ifdef __SANITIZE_ADDRESS__
-const char *__lsan_default_suppressions(void);
-__attribute__((visibility("default"))) const char *__lsan_default_suppressions(void)
+#ifdef __SANITIZE_ADDRESS__ // fontconfig keeps what cairo has asked it for until the process ends
+__attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
+__attribute__((visibility("default"))) const char *__lsan_default_options(void);
+
+const char *__lsan_default_suppressions(void)
 {
-	return "leak:libfontconfig"; // it keeps what cairo has asked it for until the process ends
+	return "leak:libfontconfig";
+}
+
+const char *__lsan_default_options(void)
+{
+	return "print_suppressions=0";
 }
 #endif
 

@@ -1,0 +1,172 @@
+#include "lab/digest.h"
+
+#include <math.h>
+#include <string.h>
+
+bool ob_digest_is_obsim(const ob_peer_kind *k)
+{
+	return !strncmp(k->name, "obsim", 5);
+}
+
+ob_digest ob_digest_make(const ob_results *r)
+{
+	ob_digest d = { .results = r };
+	for (size_t i = 0; i < r->count; i++) {
+		const ob_peer_kind *k = r->result[i].engine;
+		size_t at = 0;
+		while (at < d.engines && d.engine[at] != k)
+			at++;
+		if (at == d.engines && d.engines < OB_DIGEST_ENGINES)
+			d.engine[d.engines++] = k;
+		if (!strcmp(k->name, "obsim"))
+			d.own = k;
+	}
+	return d;
+}
+
+int ob_digest_style(const ob_digest *d, const ob_peer_kind *k)
+{
+	static const char *const known[] = { "obsim",     "obsim-jacobi", "obsim-ode", "obsim-ghost",
+					     "obsim-lag", "ode-quick",    "ode-world", "bullet" };
+	enum { KNOWN = sizeof known / sizeof *known };
+	for (int i = 0; i < KNOWN; i++)
+		if (!strcmp(k->name, known[i]))
+			return i;
+	for (size_t i = 0; i < d->engines; i++)
+		if (d->engine[i] == k)
+			return KNOWN + (int)i;
+	return KNOWN;
+}
+
+static const ob_result *find(const ob_digest *d, const ob_case *c, const ob_peer_kind *k, uint32_t lag)
+{
+	const ob_peer_settings *usual = &k->usual;
+	for (size_t i = 0; i < d->results->count; i++) {
+		const ob_result *r = &d->results->result[i];
+		const ob_peer_settings *s = &r->settings;
+		if (r->of == c && r->engine == k && s->substeps == usual->substeps &&
+		    s->iterations == usual->iterations && s->tolerance == usual->tolerance && s->lag == lag &&
+		    s->sleeping == usual->sleeping)
+			return r;
+	}
+	return NULL;
+}
+
+const ob_result *ob_digest_usual(const ob_digest *d, const ob_case *c, const ob_peer_kind *k)
+{
+	return find(d, c, k, k->usual.lag);
+}
+
+const ob_result *ob_digest_promised(const ob_digest *d, const ob_case *c)
+{
+	const ob_result *r = d->own ? ob_digest_usual(d, c, d->own) : NULL;
+	for (size_t i = 0; !r && i < d->engines; i++)
+		if (!strcmp(d->engine[i]->name,
+			    "obsim-lag")) // the case of late partners is promised for those who are not
+			r = find(d, c, d->engine[i], 0);
+	return r;
+}
+
+bool ob_digest_ran(const ob_digest *d, const ob_case *c)
+{
+	for (size_t i = 0; i < d->results->count; i++)
+		if (d->results->result[i].of == c)
+			return true;
+	return false;
+}
+
+bool ob_digest_has_target(const ob_case *c, uint32_t figure)
+{
+	return isfinite(c->figure[figure].target);
+}
+
+bool ob_digest_meets(const ob_result *r, uint32_t figure)
+{
+	return !r->outcome.failed[0] && r->outcome.figure[figure] <= r->of->figure[figure].target;
+}
+
+bool ob_digest_meets_all(const ob_result *r)
+{
+	for (uint32_t i = 0; i < r->of->figures; i++)
+		if (ob_digest_has_target(r->of, i) && !ob_digest_meets(r, i))
+			return false;
+	return !r->outcome.failed[0];
+}
+
+double ob_digest_ratio(const ob_result *r)
+{
+	double worst = r->outcome.failed[0] ? INFINITY : NAN;
+	for (uint32_t i = 0; i < r->of->figures; i++) {
+		double figure = r->outcome.figure[i], target = r->of->figure[i].target;
+		if (!ob_digest_has_target(r->of, i))
+			continue;
+		double ratio = !isfinite(figure) ? INFINITY : figure <= 0 ? 0 : figure / target;
+		worst = isnan(worst) ? ratio : fmax(worst, ratio);
+	}
+	return worst;
+}
+
+const ob_result *ob_digest_best_other(const ob_digest *d, const ob_case *c, uint32_t figure)
+{
+	const ob_result *best = NULL;
+	for (size_t i = 0; i < d->engines; i++) {
+		const ob_result *r = ob_digest_is_obsim(d->engine[i]) ? NULL : ob_digest_usual(d, c, d->engine[i]);
+		if (!r || r->outcome.failed[0] || !isfinite(r->outcome.figure[figure]))
+			continue;
+		if (!best || r->outcome.figure[figure] < best->outcome.figure[figure])
+			best = r;
+	}
+	return best;
+}
+
+ob_digest_rows ob_digest_count_rows(const ob_digest *d)
+{
+	bool measured[OB_DIGEST_ROWS] = { 0 }, missed[OB_DIGEST_ROWS] = { 0 };
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		const ob_result *r = ob_digest_promised(d, *c);
+		if (!r || (*c)->row <= 0 || (*c)->row >= OB_DIGEST_ROWS)
+			continue;
+		measured[(*c)->row] = true;
+		missed[(*c)->row] |= !ob_digest_meets_all(r);
+	}
+	ob_digest_rows rows = { 0 };
+	for (int i = 0; i < OB_DIGEST_ROWS; i++) {
+		rows.measured += measured[i];
+		rows.met += measured[i] && !missed[i];
+	}
+	return rows;
+}
+
+const ob_result *ob_digest_finest(const ob_digest *d, const ob_case *c, const ob_peer_kind *k)
+{
+	const ob_result *best = NULL;
+	for (size_t i = 0; i < d->results->count; i++) {
+		const ob_result *r = &d->results->result[i];
+		if (r->of != c || r->engine != k || r->outcome.failed[0] || !isfinite(r->outcome.figure[0]))
+			continue;
+		if (!best || r->outcome.figure[0] < best->outcome.figure[0])
+			best = r;
+	}
+	return best;
+}
+
+ob_digest_equal ob_digest_compare(const ob_digest *d, const ob_case *c)
+{
+	const ob_result *finest = d->own ? ob_digest_finest(d, c, d->own) : NULL;
+	ob_digest_equal q = { .error = finest ? finest->outcome.figure[0] : NAN, .own = NAN };
+	for (size_t i = 0; i < d->engines; i++) {
+		const ob_result *r = ob_digest_finest(d, c, d->engine[i]);
+		q.is_target |= r && ob_digest_meets(r, 0);
+	}
+	if (q.is_target)
+		q.error = c->figure[0].target;
+	for (size_t i = 0; i < d->engines; i++)
+		q.cost[i] = isnan(q.error) ? NAN : ob_cost_at(d->results, c, d->engine[i], q.error);
+	for (size_t i = 0; i < d->engines; i++)
+		if (d->engine[i] == d->own)
+			q.own = q.cost[i];
+	q.ahead = isfinite(q.own);
+	for (size_t i = 0; i < d->engines; i++)
+		q.ahead &= ob_digest_is_obsim(d->engine[i]) || !(q.cost[i] < q.own);
+	return q;
+}

@@ -1,0 +1,141 @@
+#include "lab/page.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, size_t slots, const void *with)
+{
+	for (const char *open; (open = strstr(template, "{{"));) {
+		const char *name = open + 2, *close = strstr(name, "}}");
+		if (!close)
+			break;
+		fwrite(template, 1, (size_t)(open - template), p->out);
+		template = close + 2;
+		for (size_t i = 0; i < slots; i++)
+			if (strlen(slot[i].name) == (size_t)(close - name) &&
+			    !strncmp(slot[i].name, name, (size_t)(close - name)))
+				slot[i].write(p, with);
+	}
+	fputs(template, p->out);
+}
+
+void ob_page_markup(ob_page *p, const char *format, ...)
+{
+	va_list args;
+	va_start(args, format);
+	vfprintf(p->out, format, args);
+	va_end(args);
+}
+
+void ob_page_text(ob_page *p, const char *text)
+{
+	for (; *text; text++) {
+		switch (*text) {
+		case '<':
+			fputs("&lt;", p->out);
+			break;
+		case '>':
+			fputs("&gt;", p->out);
+			break;
+		case '&':
+			fputs("&amp;", p->out);
+			break;
+		case '"':
+			fputs("&quot;", p->out);
+			break;
+		default:
+			fputc(*text, p->out);
+		}
+	}
+}
+
+// Is v better read as digits than with an exponent?
+static bool is_plain(double v)
+{
+	return v == 0 || (fabs(v) >= 9.995e-4 && fabs(v) < 99950);
+}
+
+// Three digits, as "0.412", "35.9", "12400"
+static void print_plain(char *to, size_t room, double v)
+{
+	int before = v == 0 ? 1 : (int)floor(log10(fabs(v) * 1.0005)) + 1; // digits before the point
+	int behind = before >= 3 ? 0 : 3 - before;
+	snprintf(to, room, "%.*f", behind, v);
+	char *point = strchr(to, '.');
+	for (char *end = to + strlen(to) - 1; point && (*end == '0' || *end == '.'); end--) {
+		bool was_point = *end == '.';
+		*end = 0;
+		if (was_point)
+			break;
+	}
+}
+
+// v = mantissa times ten to the power, rounded to three digits
+static int split(double v, double *mantissa)
+{
+	char text[40];
+	snprintf(text, sizeof text, "%.2e", v);
+	char *e = strchr(text, 'e');
+	int power = atoi(e + 1);
+	*e = 0;
+	*mantissa = atof(text);
+	return power;
+}
+
+void ob_page_number(ob_page *p, double v)
+{
+	char text[40];
+	double mantissa;
+	if (!isfinite(v)) {
+		fputs(isnan(v) ? "\u2013" : "\u221e", p->out);
+	} else if (is_plain(v)) {
+		print_plain(text, sizeof text, v);
+		fputs(text, p->out);
+	} else {
+		int power = split(v, &mantissa);
+		print_plain(text, sizeof text, mantissa);
+		if (mantissa == 1)
+			text[0] = 0;
+		fprintf(p->out, "%s%s10<sup>%s%d</sup>", text, *text ? "\u00b7" : "", power < 0 ? "\u2212" : "",
+			abs(power));
+	}
+}
+
+void ob_page_print_unit(char *to, size_t room, const char *unit)
+{
+	size_t used = 0;
+	for (to[0] = 0; *unit && used + 4 < room; unit++) {
+		bool raised = *unit == '^' && (unit[1] == '2' || unit[1] == '3');
+		unit += raised;
+		used += (size_t)snprintf(to + used, room - used, "%.*s", raised ? 2 : 1,
+					 !raised        ? unit
+					 : *unit == '2' ? "\u00b2"
+							: "\u00b3");
+	}
+}
+
+void ob_page_quantity(ob_page *p, double v, const char *unit)
+{
+	char printed[40];
+	ob_page_number(p, v);
+	if (!strcmp(unit, "1") || !isfinite(v))
+		return;
+	ob_page_print_unit(printed, sizeof printed, unit);
+	fputs("&nbsp;", p->out);
+	ob_page_text(p, printed);
+}
+
+void ob_page_print_quantity(char *to, size_t room, double v, const char *unit)
+{
+	char text[40], printed[40] = "";
+	if (is_plain(v))
+		print_plain(text, sizeof text, v);
+	else
+		snprintf(text, sizeof text, "%.3g", v);
+	if (strcmp(unit, "1"))
+		ob_page_print_unit(printed, sizeof printed, unit);
+	snprintf(to, room, "%s%s%s", text, *printed ? " " : "", printed);
+}

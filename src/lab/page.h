@@ -1,0 +1,34 @@
+// HTML as it is written: templates with slots, texts with what needs it escaped, numbers as people read them.
+// One thread at a time per page.
+#ifndef OB_LAB_PAGE_H
+#define OB_LAB_PAGE_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+typedef struct ob_page {
+	FILE *out;
+} ob_page;
+
+// What stands in a template as {{name}}
+typedef struct ob_page_slot {
+	const char *name;
+	void (*write)(ob_page *p, const void *with);
+} ob_page_slot;
+
+void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, size_t slots, const void *with);
+
+// printf of markup; the arguments must not need escaping
+void ob_page_markup(ob_page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void ob_page_text(ob_page *p, const char *text);
+// Three digits; a dash for what is not a number
+void ob_page_number(ob_page *p, double v);
+void ob_page_quantity(ob_page *p, double v, const char *unit); // unit "1" = a bare number, "m^2" is raised
+
+// The same as plain text, for diagrams: "0.5 mm²" from "mm^2"
+void ob_page_print_quantity(char *to, size_t room, double v, const char *unit);
+
+// The unit alone, with raised digits
+void ob_page_print_unit(char *to, size_t room, const char *unit);
+
+#endif

@@ -1,0 +1,11 @@
+// The lab's report: diagrams, and one page that explains itself to whoever has never heard of obsim.
+#ifndef OB_LAB_REPORT_H
+#define OB_LAB_REPORT_H
+
+#include "lab/result.h"
+
+// Writes DIR/report.html (self-contained: no script, no network) and DIR/plots/NAME.svg and .png; the folders are made.
+// The same results give the same files. One thread at a time per directory.
+bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e);
+
+#endif
