@@ -15,7 +15,7 @@ enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_
 
 // The rest of such a case: 20 s, awake.
 #define OB_STAND_CASE \
-	.duration = 20, .step = 1. / 60, .runs = 1, .figures = OB_STAND_FIGURES, .observe = ob_stand_observe, \
+	.duration = 20, .step = 1. / 60, .figures = OB_STAND_FIGURES, .observe = ob_stand_observe, \
 	.judge = ob_stand_judge
 
 // Fails the trial when a body is more than a quarter of a metre from its place.
