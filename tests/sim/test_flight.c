@@ -1,8 +1,11 @@
 // Objects that touch nothing: the closed form, and ODE's own stepper with its error of the first order.
 #include <stdlib.h>
+#include <string.h>
 
 #include "check.h"
 #include "little_universe.h"
+#include "motion/random.h"
+#include "sim/plans.h"
 
 static const double g = 9.81; // m/s^2
 
@@ -126,6 +129,32 @@ static void test_long(void)
 	free(s);
 }
 
+// A kept plan, one that another object has pushed out, and one whose object starts anew give the bits of a fresh one.
+static void test_kept_plans(void)
+{
+	enum { OBJECTS = 5, STARTS = 3 };
+	uint64_t seed = 17;
+	ob_plans plans;
+	CHECK(ob_plans_create(&plans, 2));
+	ob_quat q[STARTS];
+	ob_vec3 w[STARTS], inertia[OBJECTS];
+	for (int i = 0; i < STARTS; i++)
+		q[i] = random_attitude(&seed), w[i] = random_vector(&seed, 5);
+	for (int i = 0; i < OBJECTS; i++)
+		inertia[i] = random_inertia(&seed);
+	for (int k = 0; k < 1000; k++) {
+		uint32_t id = (uint32_t)within(&seed, 0, OBJECTS);
+		int i = (int)within(&seed, 0, STARTS);
+		double t = within(&seed, .01, 9);
+		ob_quat kept, fresh;
+		ob_vec3 kept_w, fresh_w;
+		ob_spin_at(ob_plans_spin(&plans, id, q[i], w[i], inertia[id]), t, &kept, &kept_w);
+		ob_rotate_free(q[i], w[i], inertia[id], t, &fresh, &fresh_w);
+		CHECK(!memcmp(&kept, &fresh, sizeof kept) && !memcmp(&kept_w, &fresh_w, sizeof kept_w));
+	}
+	ob_plans_finish(&plans);
+}
+
 int main(void)
 {
 	test_exact();
@@ -133,5 +162,6 @@ int main(void)
 	test_alone_or_not();
 	test_new_flights();
 	test_long();
+	test_kept_plans();
 	return check_end();
 }
