@@ -5,12 +5,15 @@
 
 #include "lab/case.h"
 
+enum { OB_REPEATS = 15 }; // at most
+
 typedef struct ob_result {
 	const ob_case *of;
 	const ob_peer_kind *engine;
 	ob_peer_settings settings;
-	ob_outcome outcome; // medians of the repeats' times
+	ob_outcome outcome; // medians of the repeats' times, and the worst of their figures
 	uint32_t repeats;
+	double cpu_s[OB_REPEATS], wall_s[OB_REPEATS]; // of each repeat
 	char commit[48]; // of the program that made it
 } ob_result;
 
@@ -27,11 +30,14 @@ static inline double ob_result_cost(const ob_result *r)
 	return r->outcome.cpu_s / r->outcome.body_seconds;
 }
 
-// Reads what is there (a missing file is empty) / writes all, through a temporary file that replaces the old one.
+// Reads what is there (a missing file is empty), machine and commit, too / writes all, through a temporary file that
+// replaces the old one. The file is as RFC 4180 has it, a line for each result; numbers read back to the same bits.
 bool ob_results_read(ob_results *r, const char *path, ob_error *e);
 bool ob_results_write(const ob_results *r, const char *path, ob_error *e);
 ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_peer_kind *k, const ob_peer_settings *s);
-bool ob_results_add(ob_results *r, const ob_result *one); // false: no memory
+bool ob_results_add(ob_results *r, const ob_result *one); // at its place in the order; false: no memory
+// One more repeat of the same: medians and worst figures follow. No effect when there are OB_REPEATS already.
+void ob_result_repeat(ob_result *r, const ob_outcome *again);
 void ob_results_finish(ob_results *r);
 
 // The cheapest cost (s of CPU per body and simulated second) at which an engine keeps figure 0 of a case at or below

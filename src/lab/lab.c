@@ -1,0 +1,146 @@
+#include "lab/lab.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "lab/attempt.h"
+
+// What is known of the time that a case takes; "work" is in steps of an engine, whatever that is in seconds.
+typedef struct pace {
+	double seconds, work, ahead;
+} pace;
+
+typedef struct session {
+	const ob_lab_plan *plan;
+	ob_results *results;
+	ob_lab_progress progress;
+	double begun; // of the attempt under way, s
+	pace pace[OB_LIST_CASES]; // by place in the plan
+	size_t at; // the case's place
+	ob_peer_settings settings[OB_SWEEP_SETTINGS];
+} session;
+
+static double work_of(const ob_case *c, const ob_peer_settings *s)
+{
+	return c->duration / s->step * c->runs * (s->substeps ? s->substeps : 16);
+}
+
+// How often this is still to be done. Who ran out of time, or crashed, is not asked again, unless there is more time.
+static uint32_t repeats_left(const session *s, const ob_case *c, const ob_peer_kind *k, const ob_peer_settings *at)
+{
+	const ob_result *r = ob_results_find(s->results, c, k, at);
+	if (!r)
+		return s->plan->repeats;
+	if (isnan(r->outcome.body_seconds))
+		return ob_attempt_ran_out(&r->outcome) && r->outcome.wall_s < s->plan->limit ? 1 : 0;
+	return r->repeats < s->plan->repeats ? s->plan->repeats - r->repeats : 0;
+}
+
+// Calls "with" for each engine and setting of a case, until one says no.
+static bool each(session *s, bool (*with)(session *, const ob_peer_kind *, const ob_peer_settings *, ob_error *),
+		 ob_error *e)
+{
+	const ob_case *c = s->plan->cases.of[s->at];
+	for (size_t i = 0; i < s->plan->engines.count; i++) {
+		const ob_peer_kind *k = s->plan->engines.of[i];
+		size_t count = ob_sweep_settings(&s->plan->sweep, c, k, s->settings);
+		for (size_t j = 0; j < count; j++)
+			if (!with(s, k, &s->settings[j], e))
+				return false;
+	}
+	return true;
+}
+
+static bool count(session *s, const ob_peer_kind *k, const ob_peer_settings *at, ob_error *e)
+{
+	const ob_case *c = s->plan->cases.of[s->at];
+	uint32_t left = repeats_left(s, c, k, at);
+	s->progress.all += left;
+	s->pace[s->at].ahead += left * work_of(c, at);
+	return true;
+}
+
+// A case of which nothing is known takes its time as all others do.
+static double guess_left(const session *s)
+{
+	pace all = { 0 };
+	double left = 0;
+	for (size_t i = 0; i < s->plan->cases.count; i++) {
+		all.seconds += s->pace[i].seconds;
+		all.work += s->pace[i].work;
+	}
+	for (size_t i = 0; i < s->plan->cases.count; i++) {
+		const pace *p = s->pace[i].work > 0 ? &s->pace[i] : &all;
+		left += s->pace[i].ahead > 0 ? s->pace[i].ahead * p->seconds / p->work : 0;
+	}
+	return fmax(left - (ob_clock_wall() - s->begun), 0);
+}
+
+static void tick(void *with)
+{
+	session *s = with;
+	s->progress.left = s->progress.done ? guess_left(s) : NAN;
+	s->plan->tick(&s->progress, s->plan->with);
+}
+
+static bool keep(session *s, const ob_peer_kind *k, const ob_peer_settings *at, const ob_outcome *out, ob_error *e)
+{
+	const ob_case *c = s->plan->cases.of[s->at];
+	ob_result *r = ob_results_find(s->results, c, k, at);
+	if (!r) {
+		ob_result one = { .of = c, .engine = k, .settings = *at };
+		memcpy(one.commit, s->results->commit, sizeof one.commit);
+		if (!ob_results_add(s->results, &one))
+			return ob_fail(e, "no memory for results");
+		r = ob_results_find(s->results, c, k, at);
+	}
+	if (isnan(r->outcome.body_seconds)) // this time it had more time
+		r->repeats = 0;
+	ob_result_repeat(r, out);
+	return ob_results_write(s->results, s->plan->file, e);
+}
+
+static bool attempt(session *s, const ob_peer_kind *k, const ob_peer_settings *at, ob_error *e)
+{
+	const ob_case *c = s->plan->cases.of[s->at];
+	uint32_t left = repeats_left(s, c, k, at);
+	if (left == 0)
+		return true;
+	s->progress.of = c;
+	s->progress.engine = k;
+	s->progress.settings = *at;
+	s->begun = ob_clock_wall();
+	ob_attempt a = { c, k, *at, s->plan->limit, s->plan->tick ? tick : NULL, s };
+	ob_outcome out;
+	if (a.tick)
+		tick(s);
+	if (!ob_attempt_run(&a, &out, e) || !keep(s, k, at, &out, e))
+		return false;
+	uint32_t done = left - repeats_left(s, c, k, at); // all at once, if there is no use in more
+	pace *p = &s->pace[s->at];
+	p->seconds += ob_clock_wall() - s->begun;
+	p->work += work_of(c, at);
+	p->ahead -= done * work_of(c, at);
+	s->progress.done += done;
+	return true;
+}
+
+bool ob_lab_run(const ob_lab_plan *p, ob_results *r, ob_error *e)
+{
+	session *s = calloc(1, sizeof *s);
+	if (!s)
+		return ob_fail(e, "out of memory");
+	*s = (session){ .plan = p, .results = r };
+	for (s->at = 0; s->at < p->cases.count; s->at++)
+		each(s, count, e);
+	ob_attempts_begin();
+	bool fine = true;
+	for (s->at = 0; fine && s->at < p->cases.count; s->at++)
+		for (uint32_t i = 0; fine && i < p->repeats; i++)
+			fine = each(s, attempt, e);
+	ob_attempts_end();
+	free(s);
+	return fine;
+}

@@ -1,0 +1,109 @@
+#include "lab/list.h"
+
+#include <fnmatch.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Adds what is chosen, and keeps the order.
+static bool add(ob_case_list *l, bool (*chosen)(const ob_case *c, const char *word), const char *word)
+{
+	ob_case_list all = { 0 };
+	bool any = false;
+	size_t old = 0;
+	for (const ob_case *const *c = ob_cases; *c && all.count < OB_LIST_CASES; c++) {
+		bool had = old < l->count && l->of[old] == *c, is = chosen(*c, word);
+		old += had;
+		any |= is;
+		if (had || is)
+			all.of[all.count++] = *c;
+	}
+	*l = all;
+	return any;
+}
+
+static bool is_named(const ob_case *c, const char *word)
+{
+	return strcmp(c->name, word) == 0;
+}
+
+static bool is_row(const ob_case *c, const char *word)
+{
+	return strspn(word, "0123456789") == strlen(word) && atoi(word) == c->row;
+}
+
+static bool matches(const ob_case *c, const char *word)
+{
+	return *word && (fnmatch(word, c->name, 0) == 0 || strncmp(word, c->name, strlen(word)) == 0);
+}
+
+bool ob_list_add_cases(ob_case_list *l, const char *word)
+{
+	return add(l, is_named, word) || add(l, is_row, word) || add(l, matches, word);
+}
+
+static bool is_wanted(const ob_case *c, const char *quick)
+{
+	return c->quick || !quick;
+}
+
+void ob_list_add_all(ob_case_list *l, bool quick_only)
+{
+	add(l, is_wanted, quick_only ? "quick" : NULL);
+}
+
+static bool is_in(const char *names, const char *name)
+{
+	size_t n = strlen(name);
+	for (const char *at = names; (at = strstr(at, name)); at += n)
+		if ((at == names || at[-1] == ',') && (!at[n] || at[n] == ','))
+			return true;
+	return false;
+}
+
+bool ob_list_engines(ob_engine_list *l, const char *names, char word[64])
+{
+	bool all = strcmp(names, "all") == 0;
+	*l = (ob_engine_list){ 0 };
+	for (const ob_peer_kind *const *k = ob_peer_kinds; *k && l->count < OB_LIST_ENGINES; k++)
+		if (all || is_in(names, (*k)->name))
+			l->of[l->count++] = *k;
+	for (const char *at = names; !all && at; at = strchr(at, ','), at = at ? at + 1 : NULL) {
+		snprintf(word, 64, "%.*s", (int)strcspn(at, ","), at);
+		if (!ob_peer_find(word))
+			return false;
+	}
+	return true;
+}
+
+static void print_target(FILE *f, const ob_figure_def *def)
+{
+	bool bare = strcmp(def->unit, "1") == 0;
+	fprintf(f, "%s \u2264 %g%s%s", def->name, def->target, bare ? "" : " ", bare ? "" : def->unit);
+}
+
+void ob_list_print(FILE *f, const ob_case_list *l)
+{
+	int name = 4, title = 5;
+	for (size_t i = 0; i < l->count; i++) {
+		int n = (int)strlen(l->of[i]->name), t = (int)strlen(l->of[i]->title);
+		name = n > name ? n : name;
+		title = t > title ? t : title;
+	}
+	fprintf(f, "Row  %-*s    %-*s  Target at 60 Hz\n", name, "Name", title, "Title");
+	for (size_t i = 0; i < l->count; i++) {
+		const ob_case *c = l->of[i];
+		fprintf(f, "%3d  %-*s %c  %-*s", c->row, name, c->name, c->quick ? '*' : ' ', title, c->title);
+		int indent = 2; // of a case's first target; each other has a line of its own
+		for (uint32_t j = 0; j < c->figures; j++) {
+			if (isnan(c->figure[j].target))
+				continue;
+			fprintf(f, "%*s", indent, "");
+			print_target(f, &c->figure[j]);
+			fputs("\n", f);
+			indent = name + title + 11;
+		}
+		if (indent == 2)
+			fputs("  none promised\n", f);
+	}
+	fputs("* quick subset (--quick)\n", f);
+}

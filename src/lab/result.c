@@ -1,0 +1,112 @@
+#include "lab/result.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "lab/look.h"
+
+static size_t place_of_case(const ob_case *c)
+{
+	size_t i = 0;
+	while (ob_cases[i] && ob_cases[i] != c)
+		i++;
+	return i;
+}
+
+static size_t place_of_engine(const ob_peer_kind *k)
+{
+	size_t i = 0;
+	while (ob_peer_kinds[i] && ob_peer_kinds[i] != k)
+		i++;
+	return i;
+}
+
+static int by_number(double a, double b)
+{
+	return (a > b) - (a < b);
+}
+
+// From coarse to fine; chosen by a tolerance behind chosen by hand.
+static int by_settings(const ob_peer_settings *a, const ob_peer_settings *b)
+{
+	int order = (a->tolerance > 0) - (b->tolerance > 0);
+	order = order ? order : by_number(b->tolerance, a->tolerance);
+	order = order ? order : by_number(b->step, a->step);
+	order = order ? order : by_number(a->substeps, b->substeps);
+	order = order ? order : by_number(a->iterations, b->iterations);
+	order = order ? order : by_number(a->lag, b->lag);
+	return order ? order : a->sleeping - b->sleeping;
+}
+
+static int by_place(const ob_result *a, const ob_result *b)
+{
+	int order = by_number((double)place_of_case(a->of), (double)place_of_case(b->of));
+	order = order ? order : by_number((double)place_of_engine(a->engine), (double)place_of_engine(b->engine));
+	return order ? order : by_settings(&a->settings, &b->settings);
+}
+
+ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_peer_kind *k, const ob_peer_settings *s)
+{
+	for (size_t i = 0; i < r->count; i++) {
+		ob_result *one = &r->result[i];
+		if (one->of == c && one->engine == k && by_settings(&one->settings, s) == 0)
+			return one;
+	}
+	return NULL;
+}
+
+bool ob_results_add(ob_results *r, const ob_result *one)
+{
+	if (r->count == r->max) {
+		size_t max = r->max ? 2 * r->max : 64;
+		ob_result *more = reallocarray(r->result, max, sizeof *more);
+		if (!more)
+			return false;
+		r->result = more;
+		r->max = max;
+	}
+	size_t at = r->count++;
+	for (; at > 0 && by_place(&r->result[at - 1], one) > 0; at--)
+		r->result[at] = r->result[at - 1];
+	r->result[at] = *one;
+	return true;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+	return by_number(*(const double *)a, *(const double *)b);
+}
+
+static double median(const double *value, size_t n)
+{
+	double sorted[OB_REPEATS];
+	memcpy(sorted, value, n * sizeof *value);
+	qsort(sorted, n, sizeof *sorted, compare_numbers);
+	return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+}
+
+void ob_result_repeat(ob_result *r, const ob_outcome *again)
+{
+	if (r->repeats == OB_REPEATS)
+		return;
+	ob_outcome *o = &r->outcome;
+	r->cpu_s[r->repeats] = again->cpu_s;
+	r->wall_s[r->repeats++] = again->wall_s;
+	if (r->repeats == 1) {
+		*o = *again;
+		return;
+	}
+	o->cpu_s = median(r->cpu_s, r->repeats);
+	o->wall_s = median(r->wall_s, r->repeats);
+	ob_look_keep_all(o->figure, again->figure);
+	if (!*o->failed)
+		memcpy(o->failed, again->failed, sizeof o->failed);
+	if (isnan(again->body_seconds)) // it did not come to its end
+		o->body_seconds = NAN;
+}
+
+void ob_results_finish(ob_results *r)
+{
+	free(r->result);
+	*r = (ob_results){ 0 };
+}
