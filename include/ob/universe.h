@@ -77,7 +77,7 @@ typedef struct ob_motion {
 	float quiet;        // s, how long it has been slow
 	uint32_t island;    // lowest id of the island in which it was solved
 	uint32_t flight;    // 1 + the step after which the free flight began that goes on; 0 = none does
-	uint32_t reserved;
+	uint32_t substeps;  // that its island asks for in the next step, where a tolerance chooses; 0 = none yet
 } ob_motion;
 
 typedef enum ob_universe_state {

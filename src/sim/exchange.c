@@ -4,14 +4,23 @@
 
 #include "sim/ghost.h"
 
-static const double noticeable = 2e-3; // m/s: a change that makes another round worth while
+static const double noticeable = 2e-3; // m/s: a change that makes another round worth while ..
+static const double noticeable_rate = 1; // 1/s: .. and, of the tolerance, at most
 static const double jump = .1; // m/s: faster changes are impacts and are not extrapolated
 static const int sweeps = 4;
 static const double slop = 1e-4, share = .3; // m; of the penetration, per substep
+static const double slop_share = 1. / 8; // of the tolerance, at most
 
 static bool is_jacobi(const ob_sim *s)
 {
 	return ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI;
+}
+
+// What is small enough: as usual, or less where the run tolerates less.
+static double least(const ob_sim *s, double usual, double of_tolerance)
+{
+	double tolerance = ob_universe_settings(s->u)->tolerance;
+	return tolerance > 0 ? fmin(usual, of_tolerance * tolerance) : usual;
 }
 
 static void add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
@@ -163,7 +172,8 @@ void ob_exchange_rounds(ob_sim *s)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const int most_direct = 4; // direct solves in a substep
-	ob_pass pass = { w->h, sweeps, noticeable, jump * w->h / w->substep, true, is_jacobi(s) };
+	ob_pass pass = { w->h, sweeps,      least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
+			 true, is_jacobi(s) };
 	bool again = true;
 	int direct = 0;
 	for (uint32_t round = 0; round < run->passes && again; round++) {
@@ -189,7 +199,7 @@ void ob_exchange_project(ob_sim *s)
 	for (uint32_t k = 0; k < w->batches; k++) {
 		ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
-			ob_batch_project(b, slop, share, is_jacobi(s), w->d, w->delta);
+			ob_batch_project(b, least(s, slop, slop_share), share, is_jacobi(s), w->d, w->delta);
 	}
 	if (is_jacobi(s))
 		add_rows(w, w->d, w->delta);

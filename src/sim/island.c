@@ -8,24 +8,26 @@
 #include "sim/members.h"
 #include "sim/pace.h"
 #include "sim/part.h"
+#include "sim/tolerance.h"
 #include "sim/touch.h"
 
 // Who touches whom now? true if that may have changed.
 static bool look(ob_sim *s)
 {
 	ob_part_enter(s, OB_PART_LOOK);
-	bool any = ob_touches_refresh(s);
+	bool any = ob_touches_refresh(s, s->island.h);
 	ob_touches_prepare(s);
 	return any;
 }
 
 // A substep or one stride of it, in the order in which things happen.
-static void make_stride(ob_sim *s)
+static void make_stride(ob_sim *s, bool first)
 {
 	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_gyrate(s);
 	ob_ghosts_follow(s);
 	look(s);
+	ob_tolerance_note_depth(s, first);
 	// What flies off may hit something that was out of reach before; a rattle is left to the contact solver in the
 	// end.
 	ob_part_enter(s, OB_PART_IMPACTS);
@@ -36,28 +38,46 @@ static void make_stride(ob_sim *s)
 			break;
 		ob_part_enter(s, OB_PART_IMPACTS);
 	}
+	ob_tolerance_note_bounce(s);
 	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_predict(s);
 	ob_part_enter(s, OB_PART_SOLVE);
 	ob_exchange_rounds(s);
 	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_advance(s);
+	ob_tolerance_note_slip(s);
 	ob_exchange_cap(s);
 	ob_ghosts_follow(s);
 	ob_part_enter(s, OB_PART_PROJECT);
 	ob_exchange_project(s);
 }
 
-static void substep(ob_sim *s)
+static void substep(ob_sim *s, bool first)
 {
-	double left = s->island.substep;
-	while (left > 0) {
+	for (double left = s->island.substep; left > 0; left -= s->island.h) {
 		ob_part_enter(s, OB_PART_LOOK);
 		ob_ghosts_follow(s);
 		ob_pace_stride(s, left);
-		make_stride(s);
-		left -= s->island.h;
+		make_stride(s, first);
+		first = false;
 	}
+}
+
+// The whole step on a private copy, from what is published. true: the solution stands.
+static bool solve(ob_sim *s, const ob_island *is)
+{
+	ob_island_work *w = &s->island;
+	ob_part_enter(s, OB_PART_LOAD);
+	ob_members_load(s, is);
+	ob_touches_load(s, is);
+	ob_forest_begin(&s->island.forest);
+	s->counters.member_substeps += (uint64_t)is->members * w->substeps;
+	for (uint32_t k = 0; k < w->substeps; k++)
+		substep(s, k == 0);
+	ob_part_enter(s, OB_PART_LOOK);
+	for (uint32_t row = 1; row <= w->members; row++)
+		ob_member_settle(w, row);
+	return ob_tolerance_accept(s);
 }
 
 void ob_island_solve(ob_sim *s, uint32_t i)
@@ -69,20 +89,13 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 		ob_leap(s, ob_universe_exchange(s->u)->member[is->first_member]);
 		return;
 	}
-	ob_part_enter(s, OB_PART_LOAD);
-	ob_members_load(s, is);
-	ob_touches_load(s, is);
-	ob_forest_begin(&s->island.forest);
-	uint32_t substeps = ob_universe_settings(s->u)->substeps;
-	for (uint32_t k = 0; k < substeps; k++)
-		substep(s);
+	s->island.substeps = ob_tolerance_start(s, is);
+	while (!solve(s, is))
+		s->counters.islands_redone++;
 	ob_part_enter(s, OB_PART_LOAD);
 	s->counters.island_steps++;
 	s->counters.recovered += s->island.recovered;
 	s->counters.member_steps += is->members;
-	s->counters.member_substeps += (uint64_t)is->members * substeps;
-	for (uint32_t row = 1; row <= s->island.members; row++)
-		ob_member_settle(&s->island, row);
 	ob_touches_store(s);
 	ob_part_enter(s, OB_PART_PUBLISH);
 	ob_members_publish(s, ob_members_rest(s));

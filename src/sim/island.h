@@ -37,6 +37,7 @@ typedef struct ob_member {
 	uint32_t contacts; // pairs that touch it
 	uint32_t waiting; // impacts that it takes part in at once
 	uint64_t colours; // bit per colour in use
+	uint32_t substeps; // that it asks for in the next step (sim/tolerance.h)
 	uint32_t hot; // last pass in which a velocity changed noticeably
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
@@ -51,6 +52,8 @@ typedef struct ob_touch {
 	uint32_t points;
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
 	double limit, mu, e;
+	double depth_given, growth; // m (sim/tolerance.h): when the step began; that it went deeper in the step
+	double slip, creep; // m, in this step; in the last second
 	bool mirror; // the second touch of a pair that is solved for each side apart: its own member is b
 } ob_touch;
 
@@ -76,6 +79,8 @@ typedef struct ob_island_work {
 	uint32_t pass; // number of the running pass, ever growing
 	double mass; // of all members, kg
 	double pull; // m/s^2, the largest of any member
+	uint32_t substeps; // of this step
+	double error, error_new; // m (sim/tolerance.h): of the step; of its own doing
 	double h, t0; // s; h of the stride that is made now: a substep, or a part of one (sim/pace.h)
 	double substep; // s, the whole
 	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)

@@ -90,8 +90,9 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
-	w->h = w->substep = run->step_length / run->substeps;
+	w->h = w->substep = run->step_length / w->substeps;
 	w->mass = w->pull = w->recovered = 0;
+	w->error = w->error_new = 0;
 	w->members = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
 	uint32_t most = 1 + is->members + 2 * is->pairs;
@@ -345,6 +346,7 @@ void ob_members_publish(ob_sim *s, bool asleep)
 				 .step = (uint32_t)step,
 				 .quiet = m->quiet,
 				 .island = w->member[1].id,
+				 .substeps = m->substeps,
 				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) };
 		if (!m->contacts)
 			mo.a = m->pull;

@@ -44,7 +44,7 @@ static void refresh(ob_sim *s, ob_touch *t)
 	ob_lane_carry_in(w, t, &old);
 }
 
-bool ob_touches_refresh(ob_sim *s)
+bool ob_touches_refresh(ob_sim *s, double ahead)
 {
 	bool any = false;
 	ob_island_work *w = &s->island;
@@ -52,7 +52,7 @@ bool ob_touches_refresh(ob_sim *s)
 	for (uint32_t i = 0; i < w->touches; i++) {
 		ob_touch *t = &w->touch[i];
 		const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
-		if (a->path + b->path + (a->speed + b->speed + 2 * gh) * w->h > t->limit) {
+		if (a->path + b->path + (a->speed + b->speed + 2 * gh) * ahead > t->limit) {
 			s->counters.looks++;
 			refresh(s, t);
 			any = true;
@@ -119,6 +119,7 @@ static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 		return;
 	const ob_pair_state *p = ob_pair_newest(&ob_universe_exchange(s->u)->record[k->record]);
 	t->points = p->points;
+	t->creep = p->creep;
 	memcpy(t->arm_a, p->arm_a, sizeof t->arm_a);
 	memcpy(t->arm_b, p->arm_b, sizeof t->arm_b);
 	ob_lane_take(s, t);
@@ -198,7 +199,7 @@ static void store_impulses(const ob_island_work *w, const ob_touch *t, double *i
 
 static void store_touch(const ob_island_work *w, const ob_touch *t, ob_pair_state *p)
 {
-	*p = (ob_pair_state){ .points = t->points, .path_limit = t->limit, .substep = w->h };
+	*p = (ob_pair_state){ .points = t->points, .path_limit = t->limit, .substep = w->h, .creep = (float)t->creep };
 	memcpy(p->arm_a, t->arm_a, sizeof p->arm_a);
 	memcpy(p->arm_b, t->arm_b, sizeof p->arm_b);
 	store_impulses(w, t, p->impulse);

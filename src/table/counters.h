@@ -20,7 +20,7 @@ typedef enum ob_part {
 	OB_PARTS
 } ob_part;
 
-enum { OB_SUBSTEP_CHOICES = 8 }; // islands take 1, 2, 4 .. 128 substeps where a tolerance chooses
+enum { OB_SUBSTEP_CHOICES = 11 }; // islands take 1, 2, 4 .. 1024 substeps where a tolerance chooses
 
 typedef struct ob_counters {
 	uint64_t leaps;             // steps of objects that touched nothing: their closed form

@@ -26,7 +26,7 @@ typedef struct ob_pair_state {
 	double path_limit;                // m: nothing can change before path_a + path_b exceeds this
 	double substep;                   // s, length of the substep of those impulses
 	uint32_t points;                  // 0 .. 4; 0 = not touching
-	uint32_t reserved;
+	float creep;                      // m, what should have stuck has slipped so far in the last second
 	double impulse_b[OB_PAIR_ROWS];   // of member b, where the two do not agree on one impulse (sim/ghost.h)
 } ob_pair_state;
 

@@ -1,0 +1,186 @@
+// A tolerance instead of substeps: what is reached is below it, what is reported covers what can be measured, and what
+// is thrown away leaves no trace.
+#include <stdlib.h>
+
+#include "check.h"
+#include "little_universe.h"
+#include "ode/ode_body.h"
+
+#include "motion/random.h"
+
+static little_scene *tolerant(double tolerance)
+{
+	little_scene *s = little_scene_new();
+	s->run.tolerance = tolerance;
+	s->run.substeps = 1;
+	s->run.passes = 64;
+	return s;
+}
+
+typedef struct outcome {
+	double worst; // m, measured at the step boundaries
+	ob_counters count;
+	ob_state top; // of the last object
+} outcome;
+
+static outcome watch(little_scene *s, double duration)
+{
+	little_universe l;
+	outcome o = { .worst = 0 };
+	little_open(&l, s);
+	for (uint64_t step = 0; step < (uint64_t)lround(60 * duration); step++) {
+		little_run(&l, 1);
+		o.worst = fmax(o.worst, little_penetration(&l).max_m);
+	}
+	ob_universe_count(l.u, &o.count);
+	o.top = little_state(&l, s->objects - 1);
+	little_close(&l);
+	free(s);
+	return o;
+}
+
+// What is reported is no smaller than what can be seen from outside, and below what was asked for.
+static void check_kept(const outcome *o, double tolerance)
+{
+	CHECK(o->count.error <= tolerance);
+	CHECK(o->worst <= o->count.error * 1.05 + 1e-6);
+	CHECK(o->count.islands_over == 0);
+}
+
+static void test_stack(double tolerance)
+{
+	little_scene *s = tolerant(tolerance);
+	little_stack(s, 10, 1);
+	outcome o = watch(s, 5);
+	check_kept(&o, tolerance);
+	CHECK_NEAR(o.top.pose.p.z, 9.5, 10 * tolerance);
+}
+
+static void test_heavy_on_light(double tolerance)
+{
+	little_scene *s = tolerant(tolerance);
+	little_ground(s);
+	little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
+	little_box(s, 100, ob_v3(.5, .5, .5), ob_v3(0, 0, 1.5));
+	outcome o = watch(s, 3);
+	check_kept(&o, tolerance);
+}
+
+// Twelve boxes fall into a heap: steps in which one substep would leave centimetres are solved again with more.
+static outcome heap(double tolerance)
+{
+	uint64_t seed = 3;
+	little_scene *s = tolerant(tolerance);
+	little_ground(s);
+	for (int i = 0; i < 12; i++) {
+		ob_vec3 half = ob_add(ob_v3(.3, .3, .3), random_vector(&seed, .15));
+		little_object *o = little_box(s, 50, half, ob_v3(.3 * (i % 2), .2 * (i % 3), 1.5 + 1.3 * i));
+		o->state.pose.q = random_attitude(&seed);
+	}
+	return watch(s, 4);
+}
+
+static void test_heap(void)
+{
+	outcome coarse = heap(5e-3), fine = heap(.5e-3);
+	check_kept(&coarse, 5e-3);
+	check_kept(&fine, .5e-3);
+	CHECK(fine.count.member_substeps > coarse.count.member_substeps);
+	CHECK(coarse.count.islands_redone > 0 && fine.count.islands_redone > coarse.count.islands_redone);
+	// most steps are easy: not everything pays for the worst
+	uint64_t easy = fine.count.chosen[0] + fine.count.chosen[1];
+	CHECK(easy > fine.count.island_steps / 2);
+}
+
+// A rebound that would go higher than the tolerance is made: the last apexes are where the law has them.
+static void test_rebounds(void)
+{
+	const double tolerance = .5e-3, e = .8, g = 9.81, drop = 1;
+	little_scene *s = tolerant(tolerance);
+	little_ground(s)->passport.restitution = e;
+	little_sphere(s, 1, .1, ob_v3(0, 0, .1 + drop));
+	little_universe l;
+	little_open(&l, s);
+	double fall = sqrt(2 * drop / g), at = fall; // s, of each hit
+	for (int hop = 1; hop <= 14; hop++) {
+		double up = pow(e, hop) * fall; // s, to the apex
+		uint64_t apex = (uint64_t)lround(60 * (at + up));
+		little_run(&l, apex - ob_step_count(l.u));
+		double off = (double)apex / 60 - at - up, height = drop * pow(e, 2 * hop) - .5 * g * off * off;
+		if (fabs(off) < up)
+			CHECK_NEAR(little_state(&l, 1).pose.p.z - .1, height, tolerance);
+		at += 2 * up;
+	}
+	little_close(&l);
+	free(s);
+}
+
+// What comes to rest needs one substep in the end.
+static void test_rest_is_cheap(void)
+{
+	little_scene *s = tolerant(.5e-3);
+	little_ground(s);
+	little_box(s, 10, ob_v3(.5, .4, .3), ob_v3(0, 0, 1))->state.w = ob_v3(1, 2, 0);
+	little_universe l;
+	ob_counters before, after;
+	little_open(&l, s);
+	little_run_to(&l, 4);
+	ob_universe_count(l.u, &before);
+	little_run_to(&l, 6);
+	ob_universe_count(l.u, &after);
+	CHECK(after.chosen[0] - before.chosen[0] == 120);
+	CHECK(after.islands_redone == before.islands_redone);
+	little_close(&l);
+	free(s);
+}
+
+// The hash after 2 s; fresh: each step by a simulator that has run nothing before.
+static uint64_t hash(ob_integrator integrator, bool fresh)
+{
+	uint64_t seed = 5;
+	little_scene *s = tolerant(.5e-3);
+	little_universe l;
+	ob_error e;
+	s->run.integrator = integrator;
+	little_ground(s);
+	for (int i = 0; i < 6; i++)
+		little_box(s, 5 + i, ob_v3(.3, .2, .25), ob_v3(.1 * i, 0, .5 + .7 * i))->state.pose.q =
+			random_attitude(&seed);
+	little_open(&l, s);
+	for (int step = 0; step < 120; step++) {
+		little_run(&l, 1);
+		if (!fresh)
+			continue;
+		ob_sim_destroy(l.sim);
+		l.sim = ob_sim_create(l.u, 0, &e);
+		if (!l.sim)
+			exit(1);
+	}
+	ob_counters count;
+	ob_universe_count(l.u, &count);
+	CHECK(count.islands_redone > 0);
+	uint64_t h = ob_measure_hash(&l.now);
+	little_close(&l);
+	free(s);
+	return h;
+}
+
+// ODE's bodies and the scratch memory keep nothing of a solution that was thrown away.
+static void test_no_trace(void)
+{
+	CHECK(hash(OB_INTEGRATOR_EXACT, true) == hash(OB_INTEGRATOR_EXACT, false));
+	CHECK(hash(OB_INTEGRATOR_ODE, true) == hash(OB_INTEGRATOR_ODE, false));
+}
+
+int main(void)
+{
+	for (double tolerance = 5e-3; tolerance > .04e-3; tolerance /= 10) {
+		test_stack(tolerance);
+		test_heavy_on_light(tolerance);
+	}
+	test_heap();
+	test_rebounds();
+	test_rest_is_cheap();
+	test_no_trace();
+	return check_end();
+}
