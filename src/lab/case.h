@@ -52,7 +52,9 @@ typedef struct ob_case {
 extern const ob_case *const ob_cases[]; // in the order of their rows; ends with NULL
 const ob_case *ob_case_find(const char *name);
 
-// Runs all of a case's runs with one engine. false and e: the engine could not be made or broke off.
+// Runs all of a case's runs with one engine. false and e: the engine could not be made, or there is no memory.
+// A run ends early when it has failed. Where the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or rad/s)
+// all figures are infinite.
 typedef struct ob_outcome {
 	double figure[OB_FIGURES];
 	double cpu_s, wall_s; // of stepping alone
