@@ -23,9 +23,10 @@ void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)
 	*t2 = ob_cross(n, *t1);
 }
 
-void ob_batch_init(ob_batch *b)
+void ob_batch_init(ob_batch *b, ob_kind kind)
 {
 	memset(b, 0, sizeof *b);
+	b->kind = kind;
 	for (int i = 0; i < 4; i++)
 		b->gap[i] = lanes_of(ob_no_contact);
 	b->ka = b->kb = lanes_of(1);

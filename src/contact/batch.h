@@ -18,6 +18,15 @@
 
 enum { OB_POINTS = 4, OB_ROWS = 7 }; // contact points; rows: their normals, two of friction, one of twist
 
+// What a pair has rows for; all pairs of a batch are of one kind.
+typedef enum ob_kind {
+	OB_KIND_FULL = 0,
+	OB_KIND_POINT = 1, // one point at most, so no twist: a sphere against a sphere, a box or a plane
+	OB_KIND_SLICK = 2, // no friction
+	OB_KIND_SLICK_POINT = OB_KIND_POINT | OB_KIND_SLICK,
+	OB_KINDS
+} ob_kind;
+
 typedef double ob_body_row[8];
 
 // Symmetric 7x7: index of row i, column j
@@ -25,6 +34,7 @@ typedef double ob_body_row[8];
 
 typedef struct ob_batch {
 	uint32_t body_a[OB_LANES], body_b[OB_LANES]; // rows of the velocity arrays; 0 in an empty lane
+	ob_kind kind;
 	unsigned live; // bit per lane in use
 	unsigned dirty; // the Delassus matrices must be made anew
 	unsigned impact; // lanes whose impulses jumped in this substep: not to be extrapolated
@@ -54,7 +64,7 @@ typedef struct ob_pass {
 	bool jacobi; // adds the changes to delta instead of the velocities
 } ob_pass;
 
-void ob_batch_init(ob_batch *b);
+void ob_batch_init(ob_batch *b, ob_kind kind);
 // Fills lane l. ra, rb: arms of the points; centroid arms ca, cb; empty points get gap = OB_NO_CONTACT.
 typedef struct ob_lane {
 	uint32_t body_a, body_b;

@@ -8,6 +8,21 @@ static const double surprise = 1e-4; // m/s: a first sweep that changes more was
 static const double settled = 1e-10; // m/s: a solution that changes by less is done
 static const int most_sweeps = 64;
 
+// The rows of a pair depend on its kind alone. Each kind has a kernel of its own, made by the compiler from the same
+// text: where "kind" is a constant, what is not in use falls away.
+#define FOR_KIND static inline __attribute__((always_inline))
+
+FOR_KIND int points_of(ob_kind kind)
+{
+	return kind & OB_KIND_POINT ? 1 : OB_POINTS;
+}
+
+FOR_KIND bool in_use(ob_kind kind, int row)
+{
+	bool rough = !(kind & OB_KIND_SLICK);
+	return row < OB_POINTS ? row < points_of(kind) : row < 6 ? rough : rough && !(kind & OB_KIND_POINT);
+}
+
 static inline void sym_mul(const lanes *s, const lanes *x, lanes *o)
 {
 	o[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
@@ -27,9 +42,13 @@ static void prepare(ob_batch *b)
 	lanes mass = b->ima * b->ka + b->imb * b->kb;
 	for (int i = 0; i < OB_ROWS; i++) {
 		lanes xa[3], xb[3];
+		if (!in_use(b->kind, i))
+			continue;
 		sym_mul(b->ia, ja[i], xa);
 		sym_mul(b->ib, jb[i], xb);
 		for (int j = 0; j <= i; j++) {
+			if (!in_use(b->kind, j))
+				continue;
 			lanes s = dot3(xa, ja[j]) * b->ka + dot3(xb, jb[j]) * b->kb;
 			if ((i < 4 && j < 4) || (i == j && i < 6))
 				s += mass; // the same direction: normals, and each tangent with itself
@@ -72,16 +91,29 @@ static inline void scatter_both(const ob_batch *b, ob_body_row *rows, const lane
 }
 
 // va += M_a^-1 J_a^T d, vb -= M_b^-1 J_b^T d
-static inline void apply(const ob_batch *b, const lanes *d, lanes *va, lanes *vb)
+FOR_KIND void apply(const ob_batch *b, ob_kind kind, const lanes *d, lanes *va, lanes *vb)
 {
-	lanes sum = d[0] + d[1] + d[2] + d[3], la[3], lb[3], x[3];
+	lanes sum = d[0], la[3], lb[3], x[3];
+	for (int i = 1; i < points_of(kind); i++)
+		sum += d[i];
 	for (int c = 0; c < 3; c++) {
-		lanes p = b->n[c] * sum + b->t1[c] * d[4] + b->t2[c] * d[5];
-		lanes twist = b->n[c] * d[6];
-		la[c] = b->ja[0][c] * d[0] + b->ja[1][c] * d[1] + b->ja[2][c] * d[2] + b->ja[3][c] * d[3] +
-			b->fa1[c] * d[4] + b->fa2[c] * d[5] + twist;
-		lb[c] = b->jb[0][c] * d[0] + b->jb[1][c] * d[1] + b->jb[2][c] * d[2] + b->jb[3][c] * d[3] +
-			b->fb1[c] * d[4] + b->fb2[c] * d[5] + twist;
+		lanes p = b->n[c] * sum;
+		la[c] = b->ja[0][c] * d[0];
+		lb[c] = b->jb[0][c] * d[0];
+		for (int i = 1; i < points_of(kind); i++) {
+			la[c] += b->ja[i][c] * d[i];
+			lb[c] += b->jb[i][c] * d[i];
+		}
+		if (in_use(kind, 4)) {
+			p += b->t1[c] * d[4] + b->t2[c] * d[5];
+			la[c] += b->fa1[c] * d[4] + b->fa2[c] * d[5];
+			lb[c] += b->fb1[c] * d[4] + b->fb2[c] * d[5];
+		}
+		if (in_use(kind, 6)) {
+			lanes twist = b->n[c] * d[6];
+			la[c] += twist;
+			lb[c] += twist;
+		}
 		va[c] += b->ima * p;
 		vb[c] -= b->imb * p;
 	}
@@ -94,69 +126,83 @@ static inline void apply(const ob_batch *b, const lanes *d, lanes *va, lanes *vb
 }
 
 // Normal rows of J (xa, xb): rate at which each point's gap opens
-static inline void normal_rates(const ob_batch *b, const lanes *xa, const lanes *xb, lanes *r)
+FOR_KIND void normal_rates(const ob_batch *b, ob_kind kind, const lanes *xa, const lanes *xb, lanes *r)
 {
 	lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
 	lanes nd = dot3(b->n, d);
-	for (int i = 0; i < 4; i++)
+	for (int i = 0; i < points_of(kind); i++)
 		r[i] = nd + dot3(b->ja[i], xa + 3) - dot3(b->jb[i], xb + 3);
 }
 
-static inline void tangent_rates(const ob_batch *b, const lanes *xa, const lanes *xb, lanes *r)
+FOR_KIND void tangent_rates(const ob_batch *b, ob_kind kind, const lanes *xa, const lanes *xb, lanes *r)
 {
-	lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
-	lanes w[3] = { xa[3] - xb[3], xa[4] - xb[4], xa[5] - xb[5] };
-	r[4] = dot3(b->t1, d) + dot3(b->fa1, xa + 3) - dot3(b->fb1, xb + 3);
-	r[5] = dot3(b->t2, d) + dot3(b->fa2, xa + 3) - dot3(b->fb2, xb + 3);
-	r[6] = dot3(b->n, w);
+	if (in_use(kind, 4)) {
+		lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
+		r[4] = dot3(b->t1, d) + dot3(b->fa1, xa + 3) - dot3(b->fb1, xb + 3);
+		r[5] = dot3(b->t2, d) + dot3(b->fa2, xa + 3) - dot3(b->fb2, xb + 3);
+	}
+	if (in_use(kind, 6)) {
+		lanes w[3] = { xa[3] - xb[3], xa[4] - xb[4], xa[5] - xb[5] };
+		r[6] = dot3(b->n, w);
+	}
 }
 
-static inline void residual_add(const ob_batch *b, int i, lanes d, lanes *r)
+FOR_KIND void residual_add(const ob_batch *b, ob_kind kind, int i, lanes d, lanes *r)
 {
 	for (int j = 0; j < OB_ROWS; j++)
-		r[j] += b->a[OB_SYM(i, j)] * d;
+		if (in_use(kind, j))
+			r[j] += b->a[OB_SYM(i, j)] * d;
 }
 
-// Projected Gauss-Seidel inside the block: x are impulses, r the residual velocities.
-// Returns the largest change of a point's normal velocity.
-static inline lanes sweep(const ob_batch *b, lanes *x, lanes *r)
+// Projected Gauss-Seidel inside the block: x are impulses, r the residual velocities. Lanes that are not open keep
+// their impulses. Returns the largest change of a row's velocity.
+FOR_KIND lanes sweep(const ob_batch *b, ob_kind kind, lane_mask open, lanes *x, lanes *r)
 {
-	lanes largest = lanes_of(0);
-	for (int i = 0; i < 4; i++) {
+	lanes largest = lanes_of(0), sum = lanes_of(0);
+	for (int i = 0; i < points_of(kind); i++) {
 		lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), d = next - x[i];
-		x[i] = next;
+		x[i] = lanes_select(open, next, x[i]);
+		sum += x[i];
 		largest = lanes_max(largest, lanes_abs(d) * b->a[OB_SYM(i, i)]);
-		residual_add(b, i, d, r);
+		residual_add(b, kind, i, d, r);
 	}
-	lanes bound = b->mu * (x[0] + x[1] + x[2] + x[3]);
+	if (!in_use(kind, 4))
+		return largest;
+	lanes bound = b->mu * sum;
 	lanes f4 = x[4] - r[4] * b->inv_diag[4], f5 = x[5] - r[5] * b->inv_diag[5], l2 = f4 * f4 + f5 * f5;
 	lanes shrink = lanes_select(l2 > bound * bound, bound / lanes_sqrt(l2 + 1e-300), lanes_of(1));
 	lanes d4 = f4 * shrink - x[4], d5 = f5 * shrink - x[5];
-	x[4] = f4 * shrink;
-	x[5] = f5 * shrink;
-	for (int j = 0; j < OB_ROWS; j++)
-		r[j] += b->a[OB_SYM(4, j)] * d4 + b->a[OB_SYM(5, j)] * d5;
+	x[4] = lanes_select(open, f4 * shrink, x[4]);
+	x[5] = lanes_select(open, f5 * shrink, x[5]);
+	largest = lanes_max(largest, lanes_abs(d4) * b->a[OB_SYM(4, 4)]);
+	largest = lanes_max(largest, lanes_abs(d5) * b->a[OB_SYM(5, 5)]);
+	residual_add(b, kind, 4, d4, r);
+	residual_add(b, kind, 5, d5, r);
+	if (!in_use(kind, 6))
+		return largest;
 	bound *= b->radius;
 	lanes f6 = lanes_max(-bound, lanes_min(bound, x[6] - r[6] * b->inv_diag[6])), d6 = f6 - x[6];
-	x[6] = f6;
-	residual_add(b, 6, d6, r);
+	x[6] = lanes_select(open, f6, x[6]);
+	residual_add(b, kind, 6, d6, r);
 	return largest;
 }
 
-// Bodies that touch nothing else have no later round to mend what is left over: their lanes, and only theirs, are
-// solved to the end.
-static inline void finish_alone(const ob_batch *b, lane_mask unfinished, lanes *x, lanes *r)
+// A lane is done when a sweep changes next to nothing, or after so many; bodies that touch nothing else have no later
+// round to mend what is left over: theirs are solved to the end.
+FOR_KIND void sweeps(const ob_batch *b, ob_kind kind, int usual, lanes *x, lanes *r)
 {
-	for (int s = 0; s < most_sweeps && lanes_bits(unfinished); s++) {
-		lanes next_x[OB_ROWS], next_r[OB_ROWS];
-		memcpy(next_x, x, sizeof next_x);
-		memcpy(next_r, r, sizeof next_r);
-		lanes moving = sweep(b, next_x, next_r);
-		for (int i = 0; i < OB_ROWS; i++) {
-			x[i] = lanes_select(unfinished, next_x[i], x[i]);
-			r[i] = lanes_select(unfinished, next_r[i], r[i]);
-		}
-		unfinished &= moving > settled;
+	lane_mask alone, open;
+	for (int l = 0; l < OB_LANES; l++) {
+		alone[l] = b->alone >> l & 1 ? -1 : 0;
+		open[l] = b->live >> l & 1 ? -1 : 0;
+	}
+	for (int s = 1; s <= most_sweeps && lanes_bits(open); s++) {
+		lanes moving = sweep(b, kind, open, x, r);
+		if (s == 1)
+			alone &= moving > surprise;
+		open &= moving > settled;
+		if (s >= usual)
+			open &= alone;
 	}
 }
 
@@ -164,7 +210,7 @@ static inline void finish_alone(const ob_batch *b, lane_mask unfinished, lanes *
 static void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
 {
 	lanes da[6] = { 0 }, db[6] = { 0 };
-	apply(b, d, da, db);
+	apply(b, OB_KIND_FULL, d, da, db);
 	for (int l = 0; l < OB_LANES; l++)
 		for (int c = 0; c < 6; c++) {
 			rows[b->body_a[l]][c] += da[c][l];
@@ -172,68 +218,63 @@ static void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
 		}
 }
 
-static inline void publish(const ob_batch *b, bool jacobi, const lanes *d, lanes *va, lanes *vb, ob_body_row *v,
-			   ob_body_row *delta)
+FOR_KIND void publish(const ob_batch *b, ob_kind kind, bool jacobi, const lanes *d, lanes *va, lanes *vb,
+		      ob_body_row *v, ob_body_row *delta)
 {
 	if (jacobi) {
 		add_changes(b, d, delta);
 		return;
 	}
-	apply(b, d, va, vb);
+	apply(b, kind, d, va, vb);
 	scatter_both(b, v, va, vb);
 }
 
 // How far each gap may close in the substep, as a rate. Restitution is exact in time, so an elastic point must not be
 // stopped early: what falls freely closes less than its final velocity says, by half of what it gains.
-static void set_bias(ob_batch *b, double h, const lanes *ua, const lanes *ub, const ob_body_row *v,
-		     const ob_body_row *d)
+FOR_KIND void set_bias(ob_batch *b, ob_kind kind, double h, const lanes *ua, const lanes *ub, const ob_body_row *v,
+		       const ob_body_row *d)
 {
 	lanes da[6], db[6], moved[4];
 	gather_both(b, d, da, db);
-	normal_rates(b, da, db, moved);
-	for (int i = 0; i < 4; i++)
+	normal_rates(b, kind, da, db, moved);
+	for (int i = 0; i < points_of(kind); i++)
 		b->bias[i] = b->gap[i] + moved[i];
 	if (b->elastic) {
 		lanes va[6], vb[6], before[4], after[4];
 		gather_both(b, v, va, vb);
-		normal_rates(b, va, vb, before);
-		normal_rates(b, ua, ub, after);
-		for (int i = 0; i < 4; i++)
+		normal_rates(b, kind, va, vb, before);
+		normal_rates(b, kind, ua, ub, after);
+		for (int i = 0; i < points_of(kind); i++)
 			for (int l = 0; l < OB_LANES; l++)
 				if (b->elastic >> l & 1)
 					b->bias[i][l] += .5 * h * fmax(0, before[i][l] - after[i][l]);
 	}
-	for (int i = 0; i < 4; i++)
+	for (int i = 0; i < points_of(kind); i++)
 		b->bias[i] = lanes_max(b->bias[i], lanes_of(0)) / h;
 }
 
-static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
-		  ob_body_row *delta)
+FOR_KIND void solve_kind(ob_batch *b, ob_kind kind, const ob_pass *pass, ob_body_row *u, const ob_body_row *v,
+			 const ob_body_row *d, ob_body_row *delta)
 {
-	lanes va[6], vb[6], r[7], x[7], change[7], big = lanes_of(0), jump = lanes_of(0);
+	lanes va[6], vb[6], r[OB_ROWS], x[OB_ROWS], change[OB_ROWS] = { 0 }, big = lanes_of(0), jump = lanes_of(0);
 	gather_both(b, u, va, vb);
 	if (pass->first) {
-		set_bias(b, pass->h, va, vb, v, d);
+		set_bias(b, kind, pass->h, va, vb, v, d);
 		memcpy(b->impulse_start, b->impulse, sizeof b->impulse);
 		b->impact = 0;
 	}
-	normal_rates(b, va, vb, r);
-	tangent_rates(b, va, vb, r);
-	for (int i = 0; i < 4; i++) {
+	normal_rates(b, kind, va, vb, r);
+	tangent_rates(b, kind, va, vb, r);
+	for (int i = 0; i < points_of(kind); i++) {
 		if (pass->first)
 			b->impact |= lanes_bits((r[i] < -pass->jump) & (r[i] + b->bias[i] < 0));
 		r[i] += b->bias[i];
 	}
 	memcpy(x, b->impulse, sizeof x);
-	lanes moving = sweep(b, x, r);
-	lane_mask alone = { 0 };
-	for (int l = 0; l < OB_LANES; l++)
-		alone[l] = b->alone >> l & 1 ? -1 : 0;
-	lane_mask unfinished = alone & (moving > surprise);
-	for (int s = 1; s < pass->sweeps; s++)
-		unfinished &= sweep(b, x, r) > settled;
-	finish_alone(b, unfinished, x, r);
+	sweeps(b, kind, pass->sweeps, x, r);
 	for (int i = 0; i < OB_ROWS; i++) {
+		if (!in_use(kind, i))
+			continue;
 		change[i] = x[i] - b->impulse[i];
 		b->impulse[i] = x[i];
 		if (i < 6) {
@@ -246,7 +287,25 @@ static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_bod
 	b->hot = lanes_bits(big > pass->wake) & b->live;
 	b->impact |= lanes_bits(jump > pass->jump);
 	b->impact &= b->live;
-	publish(b, pass->jacobi, change, va, vb, u, delta);
+	publish(b, kind, pass->jacobi, change, va, vb, u, delta);
+}
+
+static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
+		  ob_body_row *delta)
+{
+	switch (b->kind) {
+	case OB_KIND_FULL:
+		solve_kind(b, OB_KIND_FULL, pass, u, v, d, delta);
+		break;
+	case OB_KIND_POINT:
+		solve_kind(b, OB_KIND_POINT, pass, u, v, d, delta);
+		break;
+	case OB_KIND_SLICK:
+		solve_kind(b, OB_KIND_SLICK, pass, u, v, d, delta);
+		break;
+	default:
+		solve_kind(b, OB_KIND_SLICK_POINT, pass, u, v, d, delta);
+	}
 }
 
 static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
@@ -254,8 +313,9 @@ static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 	lanes da[6], db[6], r[7], x[7] = { 0 };
 	lane_mask any = { 0 };
 	gather_both(b, d, da, db);
-	normal_rates(b, da, db, r);
-	for (int i = 0; i < 4; i++) {
+	const int points = points_of(b->kind);
+	normal_rates(b, b->kind, da, db, r);
+	for (int i = 0; i < points; i++) {
 		r[i] += b->gap[i] + slop;
 		any |= r[i] < 0;
 		r[i] = lanes_select(r[i] < 0, r[i] * beta, r[i]);
@@ -263,13 +323,13 @@ static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 	if (!lanes_bits(any))
 		return;
 	for (int s = 0; s < 4; s++)
-		for (int i = 0; i < 4; i++) {
+		for (int i = 0; i < points; i++) {
 			lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), change = next - x[i];
 			x[i] = next;
-			for (int j = 0; j < 4; j++)
+			for (int j = 0; j < points; j++)
 				r[j] += b->a[OB_SYM(i, j)] * change;
 		}
-	publish(b, jacobi, x, da, db, d, delta);
+	publish(b, OB_KIND_FULL, jacobi, x, da, db, d, delta);
 }
 
 static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v)
@@ -299,7 +359,7 @@ static void apply_lane(const ob_batch *b, int l, double s, ob_body_row *v)
 	for (int i = 0; i < OB_ROWS; i++)
 		d[i][l] = s * b->impulse[i][l];
 	gather_both(b, v, va, vb);
-	apply(b, d, va, vb);
+	apply(b, OB_KIND_FULL, d, va, vb);
 	for (int c = 0; c < 6; c++) {
 		v[b->body_a[l]][c] = va[c][l];
 		v[b->body_b[l]][c] = vb[c][l];
@@ -310,8 +370,8 @@ static void rates(const ob_batch *b, const ob_body_row *rows, lanes *r)
 {
 	lanes xa[6], xb[6];
 	gather_both(b, rows, xa, xb);
-	normal_rates(b, xa, xb, r);
-	tangent_rates(b, xa, xb, r);
+	normal_rates(b, OB_KIND_FULL, xa, xb, r);
+	tangent_rates(b, OB_KIND_FULL, xa, xb, r);
 }
 
 const ob_kernel OB_KERNEL = { prepare, solve, project, cap, apply_lane, rates, add_changes };

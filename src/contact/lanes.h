@@ -50,9 +50,16 @@ static inline lanes lanes_sqrt(lanes a)
 	return (lanes){ __builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3]) };
 }
 // Bit l is set where lane l of m is true
+#if defined(__AVX__)
+static inline unsigned lanes_bits(lane_mask m)
+{
+	return (unsigned)_mm256_movemask_pd((__m256d)m);
+}
+#else
 static inline unsigned lanes_bits(lane_mask m)
 {
 	return (m[0] ? 1u : 0) | (m[1] ? 2u : 0) | (m[2] ? 4u : 0) | (m[3] ? 8u : 0);
 }
+#endif
 
 #endif

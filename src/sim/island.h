@@ -73,7 +73,7 @@ typedef struct ob_island_work {
 	ob_batch *batch;
 	uint32_t *batch_colour; // [batches]
 	uint32_t *batch_open; // [batches]: next in the stack of its colour
-	uint32_t open[OB_COLOURS]; // top of each colour's stack of batches with a free lane; UINT32_MAX = none
+	uint32_t open[OB_COLOURS][OB_KINDS]; // tops of the stacks of batches with a free lane; UINT32_MAX = none
 	uint32_t *batch_order; // [batches]: sorted by colour
 	bool order_stale, counts_stale, elastic;
 	uint32_t pass; // number of the running pass, ever growing

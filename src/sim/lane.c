@@ -5,15 +5,15 @@
 
 enum { FULL = (1 << OB_LANES) - 1, NONE = UINT32_MAX };
 
-// Batches with a free lane form a stack per colour.
+// Batches with a free lane form a stack per colour and kind.
 static void open_batch(ob_island_work *w, uint32_t batch)
 {
-	uint32_t colour = w->batch_colour[batch];
-	w->batch_open[batch] = w->open[colour];
-	w->open[colour] = batch;
+	uint32_t *top = &w->open[w->batch_colour[batch]][w->batch[batch].kind];
+	w->batch_open[batch] = *top;
+	*top = batch;
 }
 
-static uint32_t add_batch(ob_island_work *w, uint32_t colour)
+static uint32_t add_batch(ob_island_work *w, uint32_t colour, ob_kind kind)
 {
 	if (w->batches == w->batches_max) {
 		w->batches_max = w->batches_max * 2 + 16;
@@ -26,7 +26,7 @@ static uint32_t add_batch(ob_island_work *w, uint32_t colour)
 		w->batch_order = realloc(w->batch_order, w->batches_max * sizeof *w->batch_order);
 		w->batch_open = realloc(w->batch_open, w->batches_max * sizeof *w->batch_open);
 	}
-	ob_batch_init(&w->batch[w->batches]);
+	ob_batch_init(&w->batch[w->batches], kind);
 	w->batch_colour[w->batches] = colour;
 	w->order_stale = true;
 	if (colour < OB_COLOURS)
@@ -44,18 +44,28 @@ static uint32_t free_colour(const ob_island_work *w, const ob_touch *t, bool jac
 	return used == UINT64_MAX ? OB_COLOURS : (uint32_t)__builtin_ctzll(~used);
 }
 
+// What stays true of a pair wherever its bodies are.
+static ob_kind kind_of(const ob_island_work *w, const ob_touch *t)
+{
+	ob_shape a = w->member[t->a].shape, b = w->member[t->b].shape;
+	bool point = (a == OB_SHAPE_SPHERE && (b == OB_SHAPE_SPHERE || b == OB_SHAPE_BOX || b == OB_SHAPE_PLANE)) ||
+		     (b == OB_SHAPE_SPHERE && (a == OB_SHAPE_BOX || a == OB_SHAPE_PLANE));
+	return (point ? OB_KIND_POINT : OB_KIND_FULL) | (t->mu > 0 ? OB_KIND_FULL : OB_KIND_SLICK);
+}
+
 void ob_lane_take(ob_sim *s, ob_touch *t)
 {
 	ob_island_work *w = &s->island;
+	const ob_kind kind = kind_of(w, t);
 	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI), batch = NONE;
 	if (colour < OB_COLOURS)
-		batch = w->open[colour];
+		batch = w->open[colour][kind];
 	if (batch == NONE)
-		batch = add_batch(w, colour);
+		batch = add_batch(w, colour, kind);
 	unsigned live = w->batch[batch].live;
 	uint32_t lane = (uint32_t)__builtin_ctz(~live);
 	if (colour < OB_COLOURS && (live | 1u << lane) == FULL)
-		w->open[colour] = w->batch_open[batch]; // it is the top, and full now
+		w->open[colour][kind] = w->batch_open[batch]; // it is the top, and full now
 	t->colour = colour;
 	t->lane = batch * OB_LANES + lane;
 	for (int side = 0; side < 2; side++) {

@@ -94,7 +94,7 @@ static void test_friction(void)
 		double mu = within(&seed, .1, 1), angle = within(&seed, -3, 3), k = .4;
 		scene s;
 		memset(&s, 0, sizeof s);
-		ob_batch_init(&s.batch);
+		ob_batch_init(&s.batch, OB_KIND_FULL);
 		pair *p = &s.p[0];
 		*p = (pair){ .normal = { 0, 0, 1 }, .points = 1, .mu = mu, .b = fixed_body() };
 		p->a = (body){ .mass = 1, .inv_mass = 1 };
@@ -126,10 +126,10 @@ static bool same_rows(const ob_body_row *x, const ob_body_row *y)
 
 // The same pair alone and beside three others, in each lane: the same bits. alone: bodies that touch nothing else are
 // solved to the end, which takes as many sweeps as that pair needs.
-static void check_lanes(uint64_t *seed, unsigned alone)
+static void check_lanes(uint64_t *seed, unsigned alone, ob_kind kind)
 {
 	scene s;
-	random_scene(&s, seed, within(seed, 0, 2));
+	random_scene_of(&s, seed, within(seed, 0, 2), kind);
 	scene together = s;
 	together.batch.alone = alone;
 	solve(&together, 3);
@@ -137,7 +137,7 @@ static void check_lanes(uint64_t *seed, unsigned alone)
 	for (int l = 0; l < OB_LANES; l++)
 		for (int at = 0; at < OB_LANES; at++) {
 			scene single = s;
-			ob_batch_init(&single.batch);
+			ob_batch_init(&single.batch, kind);
 			put_pair(&single.batch, at, &s.p[l], row_a(l), row_b(&s, l));
 			ob_batch_prepare(&single.batch);
 			single.batch.alone = alone >> l & 1 ? 1u << at : 0;
@@ -155,8 +155,61 @@ static void check_lanes(uint64_t *seed, unsigned alone)
 static void test_lanes(void)
 {
 	uint64_t seed = 4;
-	for (int i = 0; i < 500; i++)
-		check_lanes(&seed, i % 2 ? (unsigned)(16 * uniform(&seed)) : 0);
+	for (int i = 0; i < 1200; i++)
+		check_lanes(&seed, i % 2 ? (unsigned)(16 * uniform(&seed)) : 0, (ob_kind)(i / 2 % OB_KINDS));
+}
+
+// What a kind leaves out is not missed: the same as by the kernel for everything.
+static void test_kinds(void)
+{
+	uint64_t seed = 10;
+	for (int i = 0; i < 800; i++) {
+		scene s;
+		random_scene_of(&s, &seed, within(&seed, -.5, 2), (ob_kind)(i % OB_KINDS));
+		scene full = s;
+		ob_batch_init(&full.batch, OB_KIND_FULL);
+		for (int l = 0; l < OB_LANES; l++)
+			put(&full, l);
+		ob_batch_prepare(&full.batch);
+		s.batch.alone = full.batch.alone = (unsigned)(16 * uniform(&seed));
+		solve(&s, 4);
+		solve(&full, 4);
+		ob_batch_project(&s.batch, 1e-4, .3, false, s.d, s.delta);
+		ob_batch_project(&full.batch, 1e-4, .3, false, full.d, full.delta);
+		for (int k = 0; k < 2 * OB_LANES + 1; k++)
+			for (int c = 0; c < 6; c++) {
+				CHECK_NEAR(s.u[k][c], full.u[k][c], 1e-9 * (1 + fabs(full.u[k][c])));
+				CHECK_NEAR(s.d[k][c], full.d[k][c], 1e-15);
+			}
+		CHECK(s.batch.hot == full.batch.hot && s.batch.impact == full.batch.impact);
+	}
+}
+
+// The rates of the rows are what impulses along them change by A.
+static void test_rates(void)
+{
+	uint64_t seed = 11;
+	for (int i = 0; i < 500; i++) {
+		scene s;
+		lanes x[OB_ROWS], rate[OB_ROWS];
+		random_scene(&s, &seed, 0);
+		memset(s.u, 0, sizeof s.u);
+		for (int k = 0; k < OB_ROWS; k++)
+			for (int l = 0; l < OB_LANES; l++)
+				x[k][l] = within(&seed, -1, 1);
+		ob_batch_push(&s.batch, x, s.u);
+		ob_batch_rates(&s.batch, s.u, rate);
+		for (int k = 0; k < OB_ROWS; k++)
+			for (int l = 0; l < OB_LANES; l++) {
+				double expected = 0, scale = 1;
+				for (int j = 0; j < OB_ROWS; j++) {
+					expected += s.batch.a[OB_SYM(k, j)][l] * x[j][l];
+					scale += fabs(s.batch.a[OB_SYM(k, j)][l]);
+				}
+				if (s.p[l].b.inv_mass > 0 && (k > 3 || k < s.p[l].points))
+					CHECK_NEAR(rate[k][l] / scale, expected / scale, 1e-12);
+			}
+	}
 }
 
 // One body, row 1, between four others, rows 2 to 5, for Jacobi exchanges.
@@ -169,7 +222,7 @@ static void random_star(star *t, uint64_t *seed, double push)
 {
 	memset(t, 0, sizeof *t);
 	scene *s = &t->s;
-	ob_batch_init(&s->batch);
+	ob_batch_init(&s->batch, OB_KIND_FULL);
 	t->hub = random_body(seed, 3);
 	for (int l = 0; l < OB_LANES; l++) {
 		pair *p = &s->p[l];
@@ -341,6 +394,8 @@ int main(void)
 	test_solution();
 	test_friction();
 	test_lanes();
+	test_kinds();
+	test_rates();
 	test_jacobi();
 	test_project();
 	test_cap();

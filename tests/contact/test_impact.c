@@ -15,7 +15,7 @@ typedef struct collision {
 static void collide(collision *c)
 {
 	ob_batch b;
-	ob_batch_init(&b);
+	ob_batch_init(&b, OB_KIND_FULL);
 	put_pair(&b, 1, &c->p, 1, c->p.b.inv_mass > 0 ? 2 : 0);
 	ob_batch_prepare(&b);
 	ob_impact in = { substep, c->p.e, 1e-6, 1, 1 };
@@ -190,7 +190,7 @@ static void test_split(void)
 		c.p.mu = 0;
 		c.p.e = 1;
 		ob_batch b;
-		ob_batch_init(&b);
+		ob_batch_init(&b, OB_KIND_FULL);
 		put_pair(&b, 0, &c.p, 1, 2);
 		ob_batch_prepare(&b);
 		ob_body_row whole[3] = { 0 }, half[3] = { 0 }, d[3] = { 0 };
