@@ -94,12 +94,16 @@ void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 	char *to = c->subtitle;
 	size_t room = sizeof c->subtitle;
 	append(to, room, "%sframes of 1/%.0f s", *to ? " \u00b7 " : "", of ? 1 / of->step : 60);
+	bool obsim = false; // its variants are alike in this
 	for (size_t i = 0; i < d->engines; i++) {
 		const ob_peer_kind *k = d->engine[i];
-		if (!takes_part(c, d, of, k) || !k->usual.iterations)
+		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_digest_is_obsim(k)))
 			continue;
-		append(to, room, " \u00b7 %s: %u %s", k->title, k->usual.iterations,
-		       ob_digest_is_obsim(k) ? "rounds" : "iterations");
+		if (ob_digest_is_obsim(k))
+			append(to, room, " \u00b7 obsim: %u rounds", k->usual.iterations);
+		else
+			append(to, room, " \u00b7 %s: %u iterations", k->title, k->usual.iterations);
+		obsim |= ob_digest_is_obsim(k);
 	}
 	append(to, room, " \u00b7 one worker, a thread \u00b7 sleeping off \u00b7 commit %s", d->results->commit);
 }

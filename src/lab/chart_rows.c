@@ -88,12 +88,17 @@ ob_chart *ob_chart_promises(const ob_digest *d)
 	if (!chart)
 		return NULL;
 	add_engine(chart, d, NULL, NULL, 0);
+	size_t others = 0, done = 0;
+	for (size_t i = 0; i < d->engines; i++)
+		others += !ob_digest_is_obsim(d->engine[i]);
 	for (size_t i = 0; i < d->engines; i++)
 		if (!ob_digest_is_obsim(d->engine[i]))
-			add_engine(chart, d, d->engine[i], NULL, 0);
+			add_engine(chart, d, d->engine[i], NULL, .22 * ((double)done++ - (double)(others - 1) / 2));
 	snprintf(chart->title, sizeof chart->title, "Every case: error against its target, at usual settings");
 	snprintf(chart->subtitle, sizeof chart->subtitle,
-		 "left of the line: the target is met \u00b7 the number is the row of the table below");
+		 "left of the line: the target is met \u00b7 crosses: failed, or misses a target of 0 \u00b7 the "
+		 "number is the row of "
+		 "the table below");
 	return end(chart, d, NULL);
 }
 
@@ -111,8 +116,8 @@ ob_chart *ob_chart_ghost(const ob_digest *d)
 	ob_chart *chart = ghost ? ob_chart_new(OB_CHART_CASES * 2) : NULL;
 	if (!chart)
 		return NULL;
-	add_engine(chart, d, NULL, ghost, 0);
-	add_engine(chart, d, ghost, ghost, 0);
+	add_engine(chart, d, NULL, ghost, -.15);
+	add_engine(chart, d, ghost, ghost, .15);
 	snprintf(chart->title, sizeof chart->title, "Neighbours as ghosts of infinite mass: error against target");
 	return end(chart, d, ghost);
 }

@@ -96,14 +96,16 @@ bool ob_digest_meets_all(const ob_result *r)
 double ob_digest_ratio(const ob_result *r)
 {
 	double worst = r->outcome.failed[0] ? INFINITY : NAN;
+	bool missed = false; // a target of 0
 	for (uint32_t i = 0; i < r->of->figures; i++) {
 		double figure = r->outcome.figure[i], target = r->of->figure[i].target;
 		if (!ob_digest_has_target(r->of, i))
 			continue;
-		double ratio = !isfinite(figure) ? INFINITY : figure <= 0 ? 0 : figure / target;
+		double ratio = !isfinite(figure) ? INFINITY : figure <= 0 || target <= 0 ? 0 : figure / target;
+		missed |= target <= 0 && !(figure <= target);
 		worst = isnan(worst) ? ratio : fmax(worst, ratio);
 	}
-	return worst;
+	return missed && worst <= 1 ? INFINITY : worst;
 }
 
 const ob_result *ob_digest_best_other(const ob_digest *d, const ob_case *c, uint32_t figure)

@@ -28,8 +28,8 @@ bool ob_digest_ran(const ob_digest *d, const ob_case *c); // with any engine
 bool ob_digest_has_target(const ob_case *c, uint32_t figure);
 bool ob_digest_meets(const ob_result *r, uint32_t figure); // false, too, where the run failed
 bool ob_digest_meets_all(const ob_result *r);
-// Worst of figure over target, of those with a target: <= 1 where all are met. Infinite where it failed, or where the
-// target is 0 and missed; NAN without targets.
+// Worst of figure over target, of those with a target: <= 1 where all are met. Infinite where it failed, or where all
+// that is missed is a target of 0; NAN without targets.
 double ob_digest_ratio(const ob_result *r);
 
 // The other engine that has the smallest figure at its usual settings, failed runs left out; NULL: none

@@ -73,7 +73,8 @@ static void write_ghost(ob_page *p, const void *with)
 			   "neighbour as a body "
 			   "that nothing can move. Then both sides answer a hit with the whole of it, momentum is not "
 			   "kept, and energy "
-			   "comes from nowhere. obsim can do so (<code>coupling=ghost</code>) only to show it."))
+			   "comes from nowhere. (Where bodies touch nothing but the ground it makes no difference.) "
+			   "obsim can do so (<code>coupling=ghost</code>) only to show it."))
 		return;
 	ob_page_markup(p, "<figure>\n");
 	write_svg(p, chart);

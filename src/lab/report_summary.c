@@ -100,6 +100,12 @@ static bool is_compared(const ob_digest *d, size_t engine)
 	return false;
 }
 
+// Variants of obsim's coupling are shown, not ranked.
+static bool is_ranked(const ob_digest *d, const ob_peer_kind *k)
+{
+	return k == d->own || !ob_digest_is_obsim(k);
+}
+
 static void write_engine_heads(ob_page *p, const ob_digest *d)
 {
 	for (size_t i = 0; i < d->engines; i++) {
@@ -131,7 +137,7 @@ static void write_never(ob_page *p, const ob_digest *d, const ob_case *c, const 
 
 static void write_cost(ob_page *p, const ob_digest *d, const ob_digest_equal *q, size_t i, double best)
 {
-	ob_page_markup(p, "<td class=\"n%s\">", q->cost[i] <= best ? " best" : "");
+	ob_page_markup(p, "<td class=\"n%s\">", is_ranked(d, d->engine[i]) && q->cost[i] <= best ? " best" : "");
 	ob_page_number(p, q->cost[i] * 1e6);
 	ob_page_markup(p, "&nbsp;\u00b5s");
 	if (d->engine[i] != d->own && isfinite(q->own)) {
@@ -147,7 +153,8 @@ static void write_equal_row(ob_page *p, const ob_digest *d, const ob_case *c)
 	ob_digest_equal q = ob_digest_compare(d, c);
 	double best = INFINITY;
 	for (size_t i = 0; i < d->engines; i++)
-		best = fmin(best, isnan(q.cost[i]) ? INFINITY : q.cost[i]);
+		if (is_ranked(d, d->engine[i]) && q.cost[i] < best)
+			best = q.cost[i];
 	ob_page_markup(p, "<tr><th scope=\"row\"><a href=\"#%s\">", c->name);
 	ob_page_text(p, c->title);
 	ob_page_markup(p, "</a><small>");
@@ -177,7 +184,8 @@ void ob_report_equal(ob_page *p, const void *with)
 		if ((*c)->compared && ob_digest_ran(d, *c))
 			write_equal_row(p, d, *c);
 	ob_page_markup(p, "</tbody></table></div>\n<p class=\"note\">\u00b5s of CPU per body and simulated second. "
-			  "\u201cnever\u201d: no setting that was tried gets there without failing.</p>\n");
+			  "\u201cnever\u201d: no setting that was tried gets there without failing. "
+			  "Variants of obsim\u2019s coupling are shown, but not ranked.</p>\n");
 }
 
 static void write_best_other(ob_page *p, const ob_digest *d, const ob_case *c, uint32_t figure)

@@ -120,6 +120,10 @@ static void check_rows(void)
 	CHECK(ob_digest_meets_all(&results[0]) && !ob_digest_meets_all(&results[1]));
 	CHECK_NEAR(ob_digest_ratio(&results[2]), .5 * 1.6, 1e-12); // its third figure
 	CHECK_NEAR(ob_digest_ratio(&results[1]), 2000, 1e-9);
+	const ob_case *wall = named("thin-wall"); // nothing but targets of 0
+	CHECK(ob_digest_ratio(add(wall, OWN, 8, 0, 1e-6)) == 0);
+	results[--made.count].outcome.figure[1] = 3;
+	CHECK(isinf(ob_digest_ratio(&results[made.count])) && !ob_digest_meets_all(&results[made.count]));
 	strcpy(results[2].outcome.failed, "fell"); // met, but failed
 	rows = ob_digest_count_rows(&d);
 	CHECK(rows.measured == 2 && rows.met == 0);
