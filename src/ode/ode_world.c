@@ -35,6 +35,7 @@ struct ob_ode_world {
 	double substep; // s, of the last step
 	struct member *member;
 	struct contact_pair *pair;
+	struct contact_pair **order; // the pairs by their ids: they themselves are too big to be moved about
 	size_t pairs, pairs_max;
 	bool full;
 };
@@ -87,6 +88,7 @@ void ob_ode_world_destroy(ob_ode_world *w)
 	dThreadingFreeImplementation(w->threading);
 	free(w->member);
 	free(w->pair);
+	free(w->order);
 	free(w);
 }
 
@@ -149,11 +151,13 @@ static struct contact_pair *next_pair(ob_ode_world *w)
 	if (w->pairs == w->pairs_max) {
 		size_t more = w->pairs_max ? 2 * w->pairs_max : 256;
 		struct contact_pair *pair = realloc(w->pair, more * sizeof *pair);
-		if (!pair) {
+		w->pair = pair ? pair : w->pair;
+		struct contact_pair **order = realloc(w->order, more * sizeof *order);
+		w->order = order ? order : w->order;
+		if (!pair || !order) {
 			w->full = true;
 			return NULL;
 		}
-		w->pair = pair;
 		w->pairs_max = more;
 	}
 	return &w->pair[w->pairs++];
@@ -191,7 +195,7 @@ static void near(void *data, dGeomID one, dGeomID other)
 // Joints in the order of the ids, whatever the space has made of its lists: a run is repeated bit by bit.
 static int by_ids(const void *x, const void *y)
 {
-	const struct contact_pair *p = x, *q = y;
+	const struct contact_pair *p = *(struct contact_pair *const *)x, *q = *(struct contact_pair *const *)y;
 	if (p->a->id != q->a->id)
 		return p->a->id < q->a->id ? -1 : 1;
 	return (p->b->id > q->b->id) - (p->b->id < q->b->id);
@@ -227,8 +231,10 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 		w->pairs = 0;
 		return false;
 	}
+	for (size_t i = 0; i < w->pairs; i++)
+		w->order[i] = &w->pair[i];
 	if (w->pairs)
-		qsort(w->pair, w->pairs, sizeof *w->pair, by_ids);
+		qsort(w->order, w->pairs, sizeof *w->order, by_ids);
 	for (uint32_t id = 0; id < w->setup.objects; id++) {
 		struct member *m = &w->member[id];
 		if (!awake(m))
@@ -239,7 +245,7 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 	// Slower than what gravity adds in two steps is rest, not an impact.
 	double bounce_speed = 2 * h * ob_norm(w->setup.gravity);
 	for (size_t i = 0; i < w->pairs; i++)
-		join(w, &w->pair[i], bounce_speed);
+		join(w, w->order[i], bounce_speed);
 	dRandSetSeed((unsigned long)(uint32_t)(w->steps++ * 2654435761u + 1));
 	if (w->setup.iterations)
 		dWorldQuickStep(w->world, h);
@@ -270,7 +276,7 @@ size_t ob_ode_world_contacts(const ob_ode_world *w, ob_contact_point *out, doubl
 {
 	size_t n = 0;
 	for (size_t i = 0; i < w->pairs; i++) {
-		const struct contact_pair *p = &w->pair[i];
+		const struct contact_pair *p = w->order[i];
 		for (int k = 0; k < p->points; k++, n++) {
 			if (n >= max)
 				continue;

@@ -4,7 +4,7 @@
 
 #include "peer/peer.h"
 
-enum { LITTLE_MOST = 128 }; // objects
+enum { LITTLE_MOST = 256 }; // objects
 
 typedef struct little_world {
 	ob_peer_world world;
