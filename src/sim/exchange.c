@@ -193,9 +193,21 @@ void ob_exchange_rounds(ob_sim *s)
 	w->forest.recent = direct > 0;
 }
 
+// J, of all members together, by which their displacements raise them against what pulls at them
+static double raised(const ob_island_work *w)
+{
+	double sum = 0;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		const ob_vec3 a = w->member[i].pull;
+		sum -= w->member[i].mass * (a.x * w->d[i][0] + a.y * w->d[i][1] + a.z * w->d[i][2]);
+	}
+	return sum;
+}
+
 void ob_exchange_project(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
+	double before = raised(w);
 	for (uint32_t k = 0; k < w->batches; k++) {
 		ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
@@ -203,4 +215,5 @@ void ob_exchange_project(ob_sim *s)
 	}
 	if (is_jacobi(s))
 		add_rows(w, w->d, w->delta);
+	w->recovered += raised(w) - before;
 }
