@@ -186,6 +186,7 @@ void ob_exchange_rounds(ob_sim *s)
 			continue;
 		ob_forest_solve(s);
 		direct++;
+		s->counters.direct_solves++;
 		again = true;
 		for (uint32_t i = 1; i <= w->members; i++)
 			w->member[i].hot = w->pass;

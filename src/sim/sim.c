@@ -17,8 +17,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->u = u;
 		s->worker = worker;
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
-		s->timed = run->timed;
-		s->part = OB_PARTS;
+		s->times.wanted = run->timed;
 		s->ode = calloc(capacity, sizeof *s->ode);
 		s->ode_generation = calloc(capacity, sizeof *s->ode_generation);
 		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
@@ -97,7 +96,6 @@ static void work_members(ob_sim *s)
 {
 	uint32_t count, i;
 	const uint32_t *list = ob_rebound_list(s->u, &count);
-	ob_part_enter(s, OB_PART_PERCEIVE);
 	if (ob_universe_settings(s->u)->one_per_object) {
 		work_own_member(s);
 		return;
@@ -108,21 +106,22 @@ static void work_members(ob_sim *s)
 
 void ob_sim_work(ob_sim *s, ob_phase phase)
 {
+	ob_part_begin(s, phase == OB_PHASE_MEMBERS ? OB_PART_PERCEIVE : OB_PART_LOAD);
 	if (s->monolith)
 		ob_monolith_step(s->monolith);
 	else if (phase == OB_PHASE_ISLANDS)
 		work_islands(s);
 	else if (phase == OB_PHASE_MEMBERS)
 		work_members(s);
-	ob_part_enter(s, OB_PARTS);
+	ob_part_end(s);
 	*ob_worker_counters(s->u, s->worker) = s->counters;
 }
 
 void ob_sim_arrange(ob_sim *s, ob_phase finished)
 {
-	ob_part_enter(s, OB_PART_ARRANGE);
+	ob_part_begin(s, OB_PART_ARRANGE);
 	ob_arrange(s->u, finished);
-	ob_part_enter(s, OB_PARTS);
+	ob_part_end(s);
 }
 
 void ob_sim_run(ob_sim *s)

@@ -48,11 +48,11 @@ bool ob_touches_refresh(ob_sim *s, double ahead)
 {
 	bool any = false;
 	ob_island_work *w = &s->island;
-	double gh = w->pull * w->h;
+	double gh = w->pull * w->h; // m/s, that either may gain; on average half of it
 	for (uint32_t i = 0; i < w->touches; i++) {
 		ob_touch *t = &w->touch[i];
 		const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
-		if (a->path + b->path + (a->speed + b->speed + 2 * gh) * ahead > t->limit) {
+		if (a->path + b->path + (a->speed + b->speed + gh) * ahead > t->limit) {
 			s->counters.looks++;
 			refresh(s, t);
 			any = true;

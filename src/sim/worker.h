@@ -17,9 +17,12 @@ struct ob_sim {
 	ob_plans plans;
 	ob_monolith *monolith; // NULL unless one world holds all objects
 	ob_counters counters; // handed over to the universe at the end of each phase
-	bool timed; // the run wants to know what each part takes (sim/part.h)
-	ob_part part; // that the time counts for; OB_PARTS = none
-	uint64_t since; // ns
+	struct { // sim/part.h
+		bool wanted;
+		ob_part part; // that the time counts for
+		uint64_t since, wall[OB_PARTS]; // ns; of the running phase
+		double cpu; // s, when it began
+	} times;
 };
 
 // The object's ODE body, made when the worker first runs it.

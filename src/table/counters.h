@@ -38,7 +38,7 @@ typedef struct ob_counters {
 	uint64_t gyrations;         // substeps of bodies whose inertia needed Euler's equations
 	double recovered;           // J, potential energy that pushing penetrations apart has added
 	double error;               // m, the largest that an accepted solution estimated for itself
-	uint64_t time_ns[OB_PARTS]; // as the clock on the wall counts
+	uint64_t time_ns[OB_PARTS]; // of CPU
 } ob_counters;
 
 #endif
