@@ -45,8 +45,10 @@ static bool passes_on(const ob_variant *v, int id)
 	case OB_OPTION_WORKERS:
 	case OB_OPTION_JSON:
 		return false;
+	case OB_OPTION_TOLERANCE:
 	case OB_OPTION_PASSES:
 	case OB_OPTION_EXCHANGE:
+	case OB_OPTION_LAG:
 	case OB_OPTION_INTEGRATOR:
 		return !is_monolith(v);
 	case OB_OPTION_ITERATIONS:

@@ -5,6 +5,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 bool ob_number_count(const char *option, const char *text, uint64_t least, uint64_t most, uint64_t *out, ob_error *e)
 {
@@ -52,5 +53,26 @@ bool ob_number_real(const char *option, const char *text, double above, double m
 	if (!(x > above && x <= most))
 		return ob_fail(e, "--%s %s: expected more than %g, at most %g", option, text, above, most);
 	*out = x;
+	return true;
+}
+
+bool ob_number_length(const char *option, const char *text, double least, double most, double *out, ob_error *e)
+{
+	static const struct {
+		const char *name;
+		double metres;
+	} units[] = { { "m", 1 }, { "mm", 1e-3 }, { "um", 1e-6 } };
+	const char *at = text;
+	if (!text)
+		return true;
+	double x = read_decimal(&at), metres = NAN;
+	for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+		if (strcmp(at, units[i].name) == 0)
+			metres = units[i].metres;
+	if (isnan(x * metres))
+		return ob_fail(e, "--%s %s: expected a length with its unit (m, mm, um), as .5mm", option, text);
+	if (!(x * metres >= least && x * metres <= most))
+		return ob_fail(e, "--%s %s: expected %gm to %gm", option, text, least, most);
+	*out = x * metres;
 	return true;
 }

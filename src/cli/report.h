@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "cli/json.h"
+#include "table/counters.h"
 
 // Numbers that were not measured are NaN.
 typedef struct ob_report {
@@ -17,9 +18,12 @@ typedef struct ob_report {
 	char commit[64];
 	char state_hash[24]; // 16 hex digits
 	uint64_t objects, bodies; // present at the end: all; those that move
-	uint64_t steps, substeps, passes, seed, workers;
+	uint64_t steps, substeps, passes, lag, seed, workers; // substeps 0: as a tolerance chose
 	uint64_t frames;
 	uint64_t memory_bytes;
+	uint64_t substeps_min, substeps_median, substeps_max; // of island-steps, where a tolerance chose; else 0
+	uint64_t islands_redone, islands_over;
+	double tolerance, error_reached; // m
 	double step, simulated_s;
 	double wall_s, cpu_s, total_s;
 	double body_step_cpu_us;
@@ -42,5 +46,8 @@ void ob_report_print(const ob_report *r, FILE *f);
 
 // Only the members, for an object that the caller has open.
 void ob_report_write_members(const ob_report *r, ob_json *j);
+
+// Fills the figures of the tolerance, from counters summed over all workers.
+void ob_report_count(ob_report *r, const ob_counters *c);
 
 #endif

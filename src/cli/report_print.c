@@ -5,6 +5,33 @@
 #include "cli/quantity.h"
 #include "cli/report.h"
 
+static void print_simulators(const ob_report *r, const char *plural, FILE *f)
+{
+	fprintf(f, "  simulators   one per object in %" PRIu64 " %s%s; ", r->workers, r->isolation, plural);
+	if (r->tolerance > 0)
+		fprintf(f, "substeps as needed, of up to %" PRIu64 " passes", r->passes);
+	else
+		fprintf(f, "%" PRIu64 " substeps of up to %" PRIu64 " passes", r->substeps, r->passes);
+	fprintf(f, ", %s, %s\n", r->exchange, r->integrator);
+}
+
+static void print_tolerance(const ob_report *r, FILE *f)
+{
+	ob_quantity a, b;
+	if (!(r->tolerance > 0))
+		return;
+	fprintf(f, "  tolerance    %s reached of %s allowed; ", ob_quantity_text(&a, r->error_reached, "m"),
+		ob_quantity_text(&b, r->tolerance, "m"));
+	if (r->substeps_max)
+		fprintf(f, "%" PRIu64 " to %" PRIu64 " substeps, %" PRIu64 " in the median; %" PRIu64 " solved again",
+			r->substeps_min, r->substeps_max, r->substeps_median, r->islands_redone);
+	else
+		fputs("nothing touched", f);
+	if (r->islands_over)
+		fprintf(f, ", %" PRIu64 " above it all the same", r->islands_over);
+	fputc('\n', f);
+}
+
 static void print_how(const ob_report *r, FILE *f)
 {
 	const char *plural = r->workers == 1 ? "" : r->isolation[0] == 't' ? "s" : "es";
@@ -15,10 +42,7 @@ static void print_how(const ob_report *r, FILE *f)
 		fprintf(f, "  simulators   one ODE world in a %s, %" PRIu64 " substep%s a step\n", r->isolation,
 			r->substeps, r->substeps == 1 ? "" : "s");
 	else
-		fprintf(f,
-			"  simulators   one per object in %" PRIu64 " %s%s; %" PRIu64 " substeps of up to %" PRIu64
-			" passes, %s, %s\n",
-			r->workers, r->isolation, plural, r->substeps, r->passes, r->exchange, r->integrator);
+		print_simulators(r, plural, f);
 }
 
 static void print_cost(const ob_report *r, FILE *f)
@@ -66,6 +90,7 @@ static void print_worth(const ob_report *r, FILE *f)
 void ob_report_print(const ob_report *r, FILE *f)
 {
 	print_how(r, f);
+	print_tolerance(r, f);
 	if (r->steps > 0)
 		print_cost(r, f);
 	print_worth(r, f);

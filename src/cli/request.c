@@ -9,7 +9,7 @@
 #include "base/cpu.h"
 #include "cli/number.h"
 
-enum { WORKERS_MAX = 65536, SUBSTEPS_MAX = 1000, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
+enum { WORKERS_MAX = 65536, SUBSTEPS_MAX = 1000, LAG_MAX = 256, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
 
 static const char *name_of(ob_option_id id)
 {
@@ -187,7 +187,8 @@ static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
 // What one architecture understands and the other does not.
 static bool check_architecture(const ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id of_objects[] = { OB_OPTION_PASSES, OB_OPTION_EXCHANGE, OB_OPTION_INTEGRATOR };
+	static const ob_option_id of_objects[] = { OB_OPTION_TOLERANCE, OB_OPTION_PASSES,     OB_OPTION_EXCHANGE,
+						   OB_OPTION_LAG,       OB_OPTION_INTEGRATOR, OB_OPTION_EXPLAIN };
 	for (size_t i = 0; r->monolith && i < sizeof of_objects / sizeof *of_objects; i++) {
 		if (a->value[of_objects[i]])
 			return ob_fail(e, "--%s means nothing to --arch monolith", name_of(of_objects[i]));
@@ -195,6 +196,15 @@ static bool check_architecture(const ob_run_request *r, const ob_arguments *a, o
 	if (a->command == OB_COMMAND_RUN && !r->monolith && a->value[OB_OPTION_ITERATIONS])
 		return ob_fail(e, "--iterations is for --arch monolith; object simulators have --passes");
 	return true;
+}
+
+static bool read_tolerance(ob_run_request *r, const ob_arguments *a, ob_error *e)
+{
+	if (a->value[OB_OPTION_TOLERANCE] && a->value[OB_OPTION_SUBSTEPS])
+		return ob_fail(
+			e, "--tolerance and --substeps: expected one of them, for a tolerance chooses the substeps");
+	return ob_number_length(name_of(OB_OPTION_TOLERANCE), a->value[OB_OPTION_TOLERANCE], OB_SCENE_TOLERANCE_LEAST,
+				OB_SCENE_TOLERANCE_MOST, &r->tolerance, e);
 }
 
 static bool check_name(const char *name, ob_error *e)
@@ -225,6 +235,8 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
 		.iterations = 20,
 		.exchange = a->value[OB_OPTION_EXCHANGE],
+		.lag = UINT32_MAX,
+		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.integrator = a->value[OB_OPTION_INTEGRATOR],
 		.sleeping = a->value[OB_OPTION_SLEEPING],
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
@@ -241,7 +253,8 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_STEP, 10, &r->step, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
 	       count(a, OB_OPTION_SUBSTEPS, 1, SUBSTEPS_MAX, &r->substeps, e) &&
-	       count(a, OB_OPTION_PASSES, 1, SUBSTEPS_MAX, &r->passes, e) &&
+	       count(a, OB_OPTION_PASSES, 1, SUBSTEPS_MAX, &r->passes, e) && read_tolerance(r, a, e) &&
+	       (!a->value[OB_OPTION_LAG] || count(a, OB_OPTION_LAG, 0, LAG_MAX, &r->lag, e)) &&
 	       count(a, OB_OPTION_ITERATIONS, 0, 100000, &r->iterations, e) && read_workers(r, a, e) &&
 	       check_architecture(r, a, e) && check_name(r->name, e) && read_frames(&r->frames, a, e) &&
 	       check_outputs(a, e);

@@ -29,9 +29,12 @@ typedef struct ob_run_request {
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object
 	double duration, step; // s; 0 = the scene's
-	uint32_t substeps, passes; // 0 = the scene's
+	double tolerance; // m; 0 = the scene's, or none
+	uint32_t substeps, passes; // 0 = the scene's; after settling, substeps 0 = as the tolerance chooses
 	uint32_t iterations;
 	const char *exchange, *integrator, *sleeping; // NULL = the scene's
+	uint32_t lag; // exchanges; UINT32_MAX = the scene's
+	bool explain;
 	ob_measure_when measure;
 	ob_frames_request frames;
 	const char *record, *summary, *series, *json; // paths; NULL = not asked for; json "-" = standard output

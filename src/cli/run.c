@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "cli/capture.h"
 #include "cli/command.h"
+#include "cli/explain.h"
 #include "cli/observe.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -181,6 +182,8 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.step = q->step,
 		.substeps = q->substeps,
 		.passes = q->passes,
+		.tolerance = q->tolerance > 0 ? q->tolerance : NAN,
+		.lag = ob_universe_settings(ob_host_universe(r->host))->lag,
 		.seed = q->scene_options.has_seed ? q->scene_options.seed : r->scene->seed,
 		.frames = r->frames,
 		.frame_rate = q->frames.wanted ? q->frames.fps : NAN,
@@ -205,6 +208,9 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	count_objects(&r->now, p);
 	ob_observer_report(&r->observer, r->request.measure == OB_MEASURE_STEPS, p);
 	snprintf(p->state_hash, sizeof p->state_hash, "%016" PRIx64, ob_measure_hash(&r->now));
+	ob_counters counters;
+	ob_universe_count(ob_host_universe(r->host), &counters);
+	ob_report_count(p, &counters);
 	p->wall_s = times.wall_s;
 	p->cpu_s = times.cpu_s;
 	p->startup_s = times.startup_s;
@@ -229,12 +235,23 @@ static bool write_file(const char *option, const char *path, void (*write)(const
 	return broken ? ob_fail(e, "--%s %s: %s", option, path, strerror(errno)) : true;
 }
 
+static void explain(const run *r, const ob_report *p, FILE *f)
+{
+	const ob_universe *u = ob_host_universe(r->host);
+	ob_explained x = { &r->request, r->scene, ob_universe_settings(u), { 0 }, body_steps(r), p->cpu_s };
+	ob_universe_count(u, &x.counters);
+	ob_explain_print(&x, f);
+}
+
 static bool write_report(const run *r, const ob_report *p, ob_error *e)
 {
 	const ob_run_request *q = &r->request;
 	bool json_out = q->json && strcmp(q->json, "-") == 0,
 	     raw_out = q->frames.raw && strcmp(q->frames.raw, "-") == 0;
-	ob_report_print(p, json_out || raw_out ? stderr : stdout);
+	FILE *people = json_out || raw_out ? stderr : stdout;
+	ob_report_print(p, people);
+	if (q->explain && p->steps > 0)
+		explain(r, p, people);
 	return (!q->summary || write_file("summary", q->summary, ob_report_write_csv, p, e)) &&
 	       (!q->json || write_file("json", q->json, ob_report_write_json, p, e));
 }

@@ -29,27 +29,75 @@ static bool check_camera(const char *name, const ob_scene *s, ob_error *e)
 	return ob_fail(e, "--camera %s: the scene has none of this name, only: %s", name, all);
 }
 
+static ob_exchange_kind exchange_of(const char *name)
+{
+	static const char *const names[] = {
+		[OB_EXCHANGE_COLOURED] = "coloured",
+		[OB_EXCHANGE_JACOBI] = "jacobi",
+		[OB_EXCHANGE_GHOST] = "ghost",
+		[OB_EXCHANGE_LAGGED] = "lagged",
+	};
+	ob_exchange_kind kind = OB_EXCHANGE_COLOURED;
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+		if (strcmp(names[i], name) == 0)
+			kind = (ob_exchange_kind)i;
+	return kind;
+}
+
+// Numbers on the command line stand above the scene's tolerance, and a tolerance there above the scene's numbers.
+static void settle_exactness(ob_run_request *r, const ob_scene *s, ob_run_settings *run)
+{
+	bool own = r->tolerance > 0;
+	if (r->monolith || (!own && r->substeps))
+		r->tolerance = 0;
+	else if (!own)
+		r->tolerance = s->tolerance;
+	if (!r->passes)
+		r->passes = own && s->tolerance == 0 ? OB_SCENE_TOLERANT_PASSES : s->passes;
+	run->tolerance = r->tolerance;
+	run->passes = r->passes;
+	if (r->tolerance > 0) {
+		run->substeps = 1;
+		// with n substeps ODE's stepper falls short by g H^2 / (2 n) in a step of length H
+		double short_by = .5 * ob_norm(s->gravity) * r->step * r->step;
+		while (run->integrator == OB_INTEGRATOR_ODE && short_by / run->substeps > r->tolerance)
+			run->substeps *= 2;
+		return;
+	}
+	// the monolith steps as a usual environment does: once per step, unless asked otherwise
+	r->substeps = r->substeps ? r->substeps : r->monolith ? 1 : s->substeps;
+	run->substeps = r->substeps;
+}
+
+static bool settle_lag(ob_run_request *r, const ob_scene *s, ob_run_settings *run, ob_error *e)
+{
+	if (run->exchange != OB_EXCHANGE_LAGGED)
+		return r->lag == UINT32_MAX ||
+		       ob_fail(e, "--lag is for --exchange lagged; this run's is %s", r->exchange);
+	run->lag = r->lag == UINT32_MAX ? s->lag : r->lag;
+	return true;
+}
+
 bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_run_settings *run, ob_error *e)
 {
 	r->duration = r->duration > 0 ? r->duration : s->duration;
 	r->step = r->step > 0 ? r->step : s->step;
-	// the monolith steps as a usual environment does: once per step, unless asked otherwise
-	r->substeps = r->substeps ? r->substeps : r->monolith ? 1 : s->substeps;
-	r->passes = r->passes ? r->passes : s->passes;
 	r->exchange = r->exchange ? r->exchange : s->exchange;
 	r->integrator = r->integrator ? r->integrator : s->integrator;
 	r->sleeping = r->sleeping ? r->sleeping : s->sleeping ? "on" : "off";
 	*run = (ob_run_settings){
 		.gravity = s->gravity,
 		.step_length = r->step,
-		.substeps = r->substeps,
-		.passes = r->passes,
-		.exchange = strcmp(r->exchange, "jacobi") == 0 ? OB_EXCHANGE_JACOBI : OB_EXCHANGE_COLOURED,
+		.exchange = exchange_of(r->exchange),
 		.integrator = strcmp(r->integrator, "ode") == 0 ? OB_INTEGRATOR_ODE : OB_INTEGRATOR_EXACT,
 		.sleeping = strcmp(r->sleeping, "on") == 0,
 		.monolith = r->monolith,
 		.iterations = r->iterations,
+		.timed = r->explain,
 	};
+	settle_exactness(r, s, run);
+	if (!settle_lag(r, s, run, e))
+		return false;
 	uint64_t steps = ob_request_steps(r->duration, r->step);
 	// a motion carries its step as 32 bits
 	if (steps > UINT32_MAX - 2)

@@ -9,12 +9,13 @@
 typedef struct scene_fields {
 	const char *title, *exchange, *integrator;
 	ob_vec3 gravity;
-	double step, duration;
-	uint64_t substeps, passes, seed;
+	double step, duration, tolerance;
+	uint64_t substeps, passes, lag, seed; // substeps and passes 0, lag NOT_SAID: not said
 	bool sleeping;
 } scene_fields;
 
-static const char *const exchanges[] = { "coloured", "jacobi", NULL };
+enum { NOT_SAID = 1000 };
+static const char *const exchanges[] = { "coloured", "jacobi", "ghost", "lagged", NULL };
 static const char *const integrators[] = { "exact", "ode", NULL };
 
 #define F(member, ...) OB_FIELD(scene_fields, member, .name = #member, __VA_ARGS__)
@@ -25,6 +26,8 @@ static const ob_field fields[] = {
 	F(duration, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
 	F(substeps, .kind = OB_FIELD_WHOLE, .low = 1, .high = 256),
 	F(passes, .kind = OB_FIELD_WHOLE, .low = 1, .high = 256),
+	F(tolerance, .kind = OB_FIELD_NUMBER, .low = OB_SCENE_TOLERANCE_LEAST, .high = OB_SCENE_TOLERANCE_MOST),
+	F(lag, .kind = OB_FIELD_WHOLE, .low = 0, .high = 256),
 	F(exchange, .kind = OB_FIELD_TEXT, .choices = exchanges),
 	F(integrator, .kind = OB_FIELD_TEXT, .choices = integrators),
 	F(sleeping, .kind = OB_FIELD_BOOLEAN),
@@ -43,6 +46,24 @@ static void set_seed(lua_State *L, ob_builder *b, uint64_t seed)
 	ob_random_seed(&b->random, seed);
 }
 
+// How exactly contacts are solved: by a tolerance, or by numbers.
+static void set_exactness(lua_State *L, ob_scene *s, const scene_fields *f)
+{
+	if (f->tolerance > 0 && f->substeps)
+		ob_sandbox_fail(L, "scene.substeps: expected either tolerance or substeps, got both");
+	if (f->lag != NOT_SAID && strcmp(s->exchange, "lagged") != 0)
+		ob_sandbox_fail(L, "scene.lag: expected with exchange = \"lagged\" only, got \"%s\"", s->exchange);
+	s->tolerance = f->tolerance;
+	if (f->tolerance > 0)
+		s->passes = OB_SCENE_TOLERANT_PASSES;
+	if (f->substeps)
+		s->substeps = (uint32_t)f->substeps;
+	if (f->passes)
+		s->passes = (uint32_t)f->passes;
+	if (f->lag != NOT_SAID)
+		s->lag = (uint32_t)f->lag;
+}
+
 int ob_scene_call_scene(lua_State *L)
 {
 	ob_builder *b = ob_sandbox_user(L);
@@ -50,8 +71,17 @@ int ob_scene_call_scene(lua_State *L)
 	if (b->has_scene)
 		ob_sandbox_fail(L, "scene: expected once, got a second time");
 	b->has_scene = true;
-	scene_fields f = { s->title,    s->exchange, s->integrator, s->gravity, s->step,
-			   s->duration, s->substeps, s->passes,     s->seed,    s->sleeping };
+	scene_fields f = {
+		.title = s->title,
+		.exchange = s->exchange,
+		.integrator = s->integrator,
+		.gravity = s->gravity,
+		.step = s->step,
+		.duration = s->duration,
+		.lag = NOT_SAID,
+		.seed = s->seed,
+		.sleeping = s->sleeping,
+	};
 	ob_fields_read(L, 1, "scene", fields, sizeof fields / sizeof *fields, &f);
 	if (f.duration / f.step > UINT32_MAX)
 		ob_sandbox_fail(L, "scene.duration: expected at most %.0f steps, got %.10g", (double)UINT32_MAX,
@@ -65,8 +95,7 @@ int ob_scene_call_scene(lua_State *L)
 	s->gravity = f.gravity;
 	s->step = f.step;
 	s->duration = f.duration;
-	s->substeps = (uint32_t)f.substeps;
-	s->passes = (uint32_t)f.passes;
+	set_exactness(L, s, &f);
 	s->sleeping = f.sleeping;
 	set_seed(L, b, f.seed);
 	return 0;

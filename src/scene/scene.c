@@ -100,6 +100,7 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 	s->duration = 10;
 	s->substeps = 8;
 	s->passes = 16;
+	s->lag = 1;
 	snprintf(s->exchange, sizeof s->exchange, "coloured");
 	snprintf(s->integrator, sizeof s->integrator, "exact");
 	s->sleeping = true;

@@ -4,6 +4,10 @@
 
 #include <ob/motion.h>
 
+#define OB_SCENE_TOLERANCE_LEAST 1e-6 // m
+#define OB_SCENE_TOLERANCE_MOST 1.
+enum { OB_SCENE_TOLERANT_PASSES = 64 }; // with a tolerance, unless said: rounds end when it is met
+
 typedef struct ob_object_def {
 	ob_passport passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
 	ob_state state;       // at its first instant
@@ -29,8 +33,10 @@ typedef struct ob_scene {
 	char title[128];
 	ob_vec3 gravity;
 	double step, duration;      // s
+	double tolerance;           // m; 0 = the substeps below
 	uint32_t substeps, passes;  // 1 .. 256
-	char exchange[16];          // "coloured" | "jacobi"
+	char exchange[16];          // "coloured" | "jacobi" | "ghost" | "lagged"
+	uint32_t lag;               // of "lagged": exchanges, 0 .. 256
 	char integrator[16];        // "exact" | "ode"
 	bool sleeping;
 	uint64_t seed;

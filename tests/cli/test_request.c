@@ -54,6 +54,16 @@ static void test_refused(void)
 	check_refused("s --arch monolith --workers 2", "one worker");
 	check_refused("s --arch monolith --workers objects", "one worker");
 	check_refused("s --arch monolith --exchange jacobi", "means nothing");
+	check_refused("s --arch monolith --tolerance 1mm", "means nothing");
+	check_refused("s --arch monolith --explain", "means nothing");
+	check_refused("s --tolerance 1", "a length with its unit");
+	check_refused("s --tolerance mm", "a length with its unit");
+	check_refused("s --tolerance 1mmm", "a length with its unit");
+	check_refused("s --tolerance nanm", "a length with its unit");
+	check_refused("s --tolerance 0mm", "expected 1e-06m to 1m");
+	check_refused("s --tolerance 2m", "expected 1e-06m to 1m");
+	check_refused("s --tolerance 1mm --substeps 4", "expected one of them");
+	check_refused("s --lag 257", "expected 0 to 256");
 	check_refused("s --iterations 5", "--arch monolith");
 	check_refused("s --fps 30", "--fps needs --frames, --video or --raw");
 	check_refused("s --overlay aabb", "--overlay needs");
@@ -88,6 +98,12 @@ static void test_taken(void)
 	CHECK(read_line("s --raw - --size 64x48 --overlay contacts,aabb --fps 1/3 --measure end", &r, &e));
 	CHECK(r.frames.wanted && r.frames.width == 64 && r.frames.height == 48 && r.frames.aabb && r.frames.contacts);
 	CHECK(r.frames.fps == 1. / 3 && r.measure == OB_MEASURE_ENDS);
+	CHECK(read_line("s --tolerance .5mm --passes 20 --explain", &r, &e));
+	CHECK_NEAR(r.tolerance, .5e-3, 1e-18);
+	CHECK(r.explain && r.passes == 20 && r.substeps == 0);
+	CHECK(read_line("s --tolerance 1e-3m", &r, &e) && r.tolerance == 1e-3 && !r.explain);
+	CHECK(read_line("s --tolerance 20um", &r, &e));
+	CHECK_NEAR(r.tolerance, 20e-6, 1e-18);
 	CHECK(read_line("s --seed 18446744073709551615", &r, &e));
 	CHECK(r.scene_options.has_seed && r.scene_options.seed == UINT64_MAX);
 }
@@ -126,6 +142,47 @@ static void test_settle(void)
 	CHECK(strstr(e.text, "too many steps"));
 }
 
+// Numbers on the command line stand above the scene's tolerance, and a tolerance there above the scene's numbers.
+static void test_settle_exactness(void)
+{
+	ob_scene s = { .gravity = { 0, 0, -9.81 },
+		       .step = 1. / 60,
+		       .duration = 10,
+		       .substeps = 4,
+		       .passes = 16,
+		       .lag = 1,
+		       .exchange = "coloured",
+		       .integrator = "exact" };
+	ob_run_request r;
+	ob_run_settings run;
+	ob_error e;
+	CHECK(read_line("s --tolerance .5mm", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == .5e-3 && run.substeps == 1 && r.substeps == 0 && run.passes == 64);
+	CHECK(read_line("s --tolerance .5mm --passes 5", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.passes == 5);
+	CHECK(read_line("s --tolerance .5mm --integrator ode", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.substeps == 4); // g H^2 / 2 = 1.36 mm
+	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == 0 && run.substeps == 4 && run.passes == 16 && run.lag == 0 && run.timed == 0);
+	s.tolerance = 2e-3;
+	s.passes = 64;
+	CHECK(read_line("s --explain", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == 2e-3 && run.substeps == 1 && run.passes == 64 && run.timed == 1);
+	CHECK(read_line("s --tolerance 1mm", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == 1e-3);
+	CHECK(read_line("s --substeps 3", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == 0 && run.substeps == 3);
+	CHECK(read_line("s --arch monolith", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == 0 && run.substeps == 1);
+	CHECK(read_line("s --lag 2", &r, &e) && !ob_request_settle(&r, &s, &run, &e));
+	CHECK(strstr(e.text, "--exchange lagged"));
+	CHECK(read_line("s --exchange lagged --lag 0", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.exchange == OB_EXCHANGE_LAGGED && run.lag == 0);
+	CHECK(read_line("s --exchange lagged", &r, &e) && ob_request_settle(&r, &s, &run, &e) && run.lag == 1);
+	CHECK(read_line("s --exchange ghost", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.exchange == OB_EXCHANGE_GHOST);
+}
+
 static void test_steps(void)
 {
 	CHECK(ob_request_steps(10, 1. / 60) == 600);
@@ -145,6 +202,7 @@ int main(void)
 	test_refused();
 	test_taken();
 	test_settle();
+	test_settle_exactness();
 	test_steps();
 	return check_end();
 }

@@ -11,7 +11,8 @@ import program
 KEYS = """objects steps simulated_s wall_s cpu_s body_step_cpu_us state_hash energy_start energy_end energy_gain_max
 momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps frames workers isolation arch commit scene
 step substeps exchange integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies passes total_s
-frame_rate worst_penetration_time_s""".split()
+frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
+islands_over""".split()
 
 
 class Report(program.Case):
@@ -31,7 +32,35 @@ class Report(program.Case):
 		self.assertAlmostEqual(r["body_step_cpu_us"], 1e6 * r["cpu_s"] / (20 * 60), delta=1e-6)
 		self.assertLess(r["energy_end"], r["energy_start"])
 		self.assertLess(r["energy_gain_max"], 1e-3)
+		self.assertEqual((r["tolerance"], r["error_reached"], r["substeps_max"]), (None, None, 0))
 		self.assertEqual((r["frames"], r["fps"], r["frame_rate"], r["momentum_error"]), (0, None, None, None))
+
+	def test_tolerance(self):
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "3"]
+		coarse, fine = (program.report(*words, "--tolerance", t) for t in ("5mm", ".5mm"))
+		for r, tolerance in (coarse, 5e-3), (fine, .5e-3):
+			self.assertAlmostEqual(r["tolerance"], tolerance, delta=1e-15)
+			self.assertLessEqual(r["error_reached"], tolerance)
+			self.assertLessEqual(r["worst_penetration_m"], 1.05 * r["error_reached"])
+			self.assertEqual((r["substeps"], r["passes"], r["islands_over"]), (0, 64, 0))
+			self.assertLessEqual(r["substeps_min"], r["substeps_median"])
+			self.assertLess(r["substeps_median"], r["substeps_max"])
+		self.assertLess(fine["worst_penetration_m"], coarse["worst_penetration_m"])
+		self.assertLess(coarse["islands_redone"], fine["islands_redone"])
+
+	def test_explain(self):
+		cradle = program.call("run", program.scene("cradle"), "--explain")
+		self.assertEqual((cradle.returncode, cradle.stderr), (0, ""))
+		for line in ("gyroscope    none: all are spheres", "friction     none: no object has any", "renderer     none",
+				"recorder     none", "Lua          none", "tolerance    none"):
+			self.assertIn(line, cradle.stdout)
+		self.assertRegex(cradle.stdout, r"restitution  \d+ impacts")
+		boxes = program.call("run", program.scene("falling_boxes"), "-D", "n=8", "--duration", "2", "--explain", "--json=-")
+		for line in "restitution  none: no object has any", "flight       closed form", "collision":
+			self.assertIn(line, boxes.stderr)
+		shares = [float(x) for x in re.findall(r"([\d.]+) %", boxes.stderr)]
+		self.assertEqual(len(shares), 11)
+		self.assertAlmostEqual(sum(shares), 100, delta=2)
 
 	def test_energy_is_exact(self):
 		"""Before anything touches, energy is that of free fall: no change beyond rounding."""

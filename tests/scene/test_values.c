@@ -54,6 +54,19 @@ static void check_settings(void)
 	ob_scene_free(s);
 }
 
+static void check_exactness(void)
+{
+	ob_scene *s = load_good("scene { tolerance = .0005, exchange = 'lagged', lag = 0 }\nground {}");
+	CHECK(s && s->tolerance == .0005 && s->passes == 64 && s->lag == 0 && strcmp(s->exchange, "lagged") == 0);
+	ob_scene_free(s);
+	s = load_good("scene { tolerance = .0005, passes = 9 }\nground {}");
+	CHECK(s && s->passes == 9 && s->lag == 1);
+	ob_scene_free(s);
+	s = load_good("ground {}");
+	CHECK(s && s->tolerance == 0 && s->substeps == 8 && s->passes == 16);
+	ob_scene_free(s);
+}
+
 static void check_shapes(void)
 {
 	ob_scene *s = load_good("box { size = { 1, 2, 3 }, density = 10 }\n"
@@ -145,6 +158,7 @@ int main(void)
 {
 	check_defaults();
 	check_settings();
+	check_exactness();
 	check_shapes();
 	check_states();
 	check_materials();

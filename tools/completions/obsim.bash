@@ -19,7 +19,8 @@ _obsim()
 	--arch) mapfile -t COMPREPLY < <(compgen -W 'obs monolith' -- "$word") ;;
 	--isolation) mapfile -t COMPREPLY < <(compgen -W 'thread process' -- "$word") ;;
 	--workers) mapfile -t COMPREPLY < <(compgen -W 'objects 1 2 4 8' -- "$word") ;;
-	--exchange) mapfile -t COMPREPLY < <(compgen -W 'coloured jacobi' -- "$word") ;;
+	--exchange) mapfile -t COMPREPLY < <(compgen -W 'coloured jacobi ghost lagged' -- "$word") ;;
+	--tolerance) mapfile -t COMPREPLY < <(compgen -W '5mm .5mm .05mm' -- "$word") ;;
 	--integrator) mapfile -t COMPREPLY < <(compgen -W 'exact ode' -- "$word") ;;
 	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
 	--measure) mapfile -t COMPREPLY < <(compgen -W 'step times end' -- "$word") ;;

@@ -1,0 +1,162 @@
+#include "cli/explain.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+
+#include "cli/quantity.h"
+
+// One line: a thing, and what there is to say about it.
+__attribute__((format(printf, 3, 4))) static void line(FILE *f, const char *thing, const char *format, ...)
+{
+	va_list list;
+	va_start(list, format);
+	fprintf(f, "    %-12s ", thing);
+	vfprintf(f, format, list);
+	fputc('\n', f);
+	va_end(list);
+}
+
+// What the scene's objects have that a part of the step would have to model.
+typedef struct traits {
+	uint32_t bodies, round, rough, elastic, forced;
+} traits;
+
+static traits traits_of(const ob_scene *s)
+{
+	traits t = { 0 };
+	for (uint32_t i = 0; i < s->objects; i++) {
+		const ob_passport *p = &s->object[i].passport;
+		bool moves = !(p->flags & OB_OBJECT_STATIC);
+		t.bodies += moves;
+		t.round += moves && p->shape == OB_SHAPE_SPHERE;
+		t.forced += moves && ob_norm2(p->force) > 0;
+		t.rough += p->friction > 0;
+		t.elastic += p->restitution > 0;
+	}
+	return t;
+}
+
+static void explain_motion(const ob_explained *x, const traits *t, FILE *f)
+{
+	const ob_counters *c = &x->counters;
+	uint64_t awake = c->leaps + c->member_steps;
+	double asleep = x->body_steps - (double)awake;
+	bool exact = x->settings->integrator == OB_INTEGRATOR_EXACT;
+	if (c->leaps)
+		line(f, "flight", "%s: %" PRIu64 " steps of objects that touched nothing",
+		     exact ? "closed form, no substeps" : "ODE's stepper", c->leaps);
+	else
+		line(f, "flight", "none: no object was ever alone");
+	if (c->member_steps)
+		line(f, "substeps", "%.3g a step, for %" PRIu64 " steps of objects that touched, or might have",
+		     (double)c->member_substeps / (double)c->member_steps, c->member_steps);
+	else
+		line(f, "substeps", "none: nothing came near anything");
+	if (!x->settings->sleeping)
+		line(f, "sleep", "none: it is switched off");
+	else if (asleep > .5)
+		line(f, "sleep", "%.0f steps of objects were not computed at all", asleep);
+	else
+		line(f, "sleep", "none: no island was ever at rest for long enough");
+	if (c->gyrations)
+		line(f, "gyroscope",
+		     "Euler's equations in %" PRIu64 " substeps of objects that turned while in contact", c->gyrations);
+	else if (!exact)
+		line(f, "gyroscope", "ODE's own");
+	else
+		line(f, "gyroscope", "none: %s",
+		     t->round == t->bodies ? "all are spheres" : "nothing that touched turned");
+	if (t->forced)
+		line(f, "forces", "constant ones on %" PRIu32 " objects", t->forced);
+}
+
+static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
+{
+	const ob_counters *c = &x->counters;
+	if (c->looks)
+		line(f, "collision",
+		     "%" PRIu64 " tests of pairs; %" PRIu64 " of them followed the pair through its substep", c->looks,
+		     c->swept_looks);
+	else
+		line(f, "collision", "none: no two boxes came near each other");
+	if (c->pair_exchanges)
+		line(f, "contact",
+		     "%" PRIu64 " exchanges between pairs in %" PRIu64 " rounds; %" PRIu64 " direct solves",
+		     c->pair_exchanges, c->rounds, c->direct_solves);
+	else
+		line(f, "contact", "none: nothing touched");
+	if (!t->rough)
+		line(f, "friction", "none: no object has any");
+	else if (c->pair_exchanges)
+		line(f, "friction", "Coulomb's cone, where both objects of a pair are rough");
+	else
+		line(f, "friction", "none: nothing touched");
+	if (!t->elastic)
+		line(f, "restitution", "none: no object has any");
+	else
+		line(f, "restitution", "%" PRIu64 " impacts at their own instants, in %" PRIu64 " rounds", c->impacts,
+		     c->impact_rounds);
+	if (x->settings->tolerance > 0)
+		line(f, "tolerance",
+		     "%" PRIu64 " islands were solved, %" PRIu64 " solutions thrown away for being too coarse",
+		     c->island_steps, c->islands_redone);
+	else
+		line(f, "tolerance", "none: every island takes %" PRIu32 " substeps", x->settings->substeps);
+}
+
+static void explain_rest(const ob_run_request *q, FILE *f)
+{
+	line(f, "renderer", q->frames.wanted ? "frames were asked for" : "none: no frames were asked for");
+	line(f, "recorder", q->record ? "--record" : "none: nothing was to be recorded");
+	line(f, "measuring",
+	     q->measure == OB_MEASURE_STEPS ? "energy, momentum and penetration of each step (--measure step)"
+					    : "only of the start and the end (--measure)");
+	line(f, "Lua", "none: it ended when the scene had been read");
+	line(f, "one world", "none: each object is a simulator of its own");
+}
+
+static void print_costs(const ob_explained *x, FILE *f)
+{
+	static const char *const names[OB_PARTS] = {
+		[OB_PART_PERCEIVE] = "perceive", [OB_PART_ARRANGE] = "arrange", [OB_PART_LEAP] = "leap",
+		[OB_PART_LOAD] = "load",         [OB_PART_LOOK] = "look",       [OB_PART_IMPACTS] = "impacts",
+		[OB_PART_SOLVE] = "solve",       [OB_PART_MOVE] = "move",       [OB_PART_PROJECT] = "project",
+		[OB_PART_PUBLISH] = "publish",
+	};
+	static const char *const what[OB_PARTS] = {
+		[OB_PART_PERCEIVE] = "who is near whom",
+		[OB_PART_ARRANGE] = "pairs, islands, and who solves them",
+		[OB_PART_LEAP] = "closed forms of flight",
+		[OB_PART_LOAD] = "islands out of the universe, and back",
+		[OB_PART_LOOK] = "collision tests",
+		[OB_PART_IMPACTS] = "impacts with restitution",
+		[OB_PART_SOLVE] = "exchanges of contact impulses",
+		[OB_PART_MOVE] = "turning, predicting, displacing",
+		[OB_PART_PROJECT] = "penetrations pushed apart",
+		[OB_PART_PUBLISH] = "motions into their slots",
+	};
+	double rest = x->cpu_s;
+	ob_quantity q;
+	for (int i = 0; i < OB_PARTS; i++) {
+		double s = 1e-9 * (double)x->counters.time_ns[i];
+		rest -= s;
+		fprintf(f, "    %-9s %10s %5.1f %%  %s\n", names[i], ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
+			what[i]);
+	}
+	rest = fmax(0, rest);
+	fprintf(f, "    %-9s %10s %5.1f %%  waiting for each other, and what these clocks cost\n", "gate",
+		ob_quantity_text(&q, rest, "s"), 100 * rest / x->cpu_s);
+}
+
+void ob_explain_print(const ob_explained *x, FILE *f)
+{
+	const traits t = traits_of(x->scene);
+	ob_quantity q;
+	fputs("  what was modelled, and what was not\n", f);
+	explain_motion(x, &t, f);
+	explain_contact(x, &t, f);
+	explain_rest(x->request, f);
+	fprintf(f, "  what it cost: %s of CPU\n", ob_quantity_text(&q, x->cpu_s, "s"));
+	print_costs(x, f);
+}

@@ -1,0 +1,28 @@
+#include <math.h>
+
+#include "cli/report.h"
+
+// The smallest number of substeps with which at least this share of the island-steps were solved.
+static uint64_t quantile(const ob_counters *c, double share)
+{
+	uint64_t all = 0, sum = 0;
+	for (int i = 0; i < OB_SUBSTEP_CHOICES; i++)
+		all += c->chosen[i];
+	for (int i = 0; i < OB_SUBSTEP_CHOICES; i++) {
+		sum += c->chosen[i];
+		if (sum > 0 && (double)sum >= share * (double)all)
+			return UINT64_C(1) << i;
+	}
+	return 0;
+}
+
+void ob_report_count(ob_report *r, const ob_counters *c)
+{
+	bool chosen = r->tolerance > 0;
+	r->error_reached = chosen ? c->error : NAN;
+	r->substeps_min = quantile(c, 0);
+	r->substeps_median = quantile(c, .5);
+	r->substeps_max = quantile(c, 1);
+	r->islands_redone = c->islands_redone;
+	r->islands_over = c->islands_over;
+}
