@@ -40,6 +40,22 @@ static void rest(void)
 	free(l);
 }
 
+// A capsule that stands on its end for a moment, and a ball that slips at first: it ends up rolling with 5/7 of its
+// speed, which is its inertia.
+static void upright_and_rolling(void)
+{
+	little_world *l = little_world_new();
+	little_ground(l);
+	uint32_t pill = little_add(l, OB_SHAPE_CAPSULE, ob_v3(.2, .5, 0), 10, ob_v3(0, 0, .7));
+	uint32_t ball = little_sphere(l, 3, .2, ob_v3(5, 0, .2));
+	l->state[ball].v.x = 2;
+	little_run(kind, l, 4, .2);
+	CHECK_NEAR(l->now[pill].pose.p.z, .7, .01);
+	CHECK_NEAR(l->now[ball].v.x, 2 * 5. / 7, .03);
+	CHECK_NEAR(l->now[ball].w.y, 2 * 5. / 7 / .2, .15);
+	free(l);
+}
+
 // Two equal spheres and e = 1: they exchange their velocities, or at least keep what they have together.
 static void meeting(void)
 {
@@ -234,6 +250,7 @@ int main(int argc, char **argv)
 	if (!kind)
 		return 77;
 	rest();
+	upright_and_rolling();
 	meeting();
 	force(1);
 	force(7);

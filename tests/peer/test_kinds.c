@@ -1,12 +1,33 @@
-// The list of engines: found by name, each with all that a legend and a sweep need.
+// The list of engines: found by name, each with all that a legend and a sweep need, and none like another.
+#include <stdlib.h>
 #include <string.h>
 
-#include "peer/peer.h"
+#include "little_world.h"
 
 #include "../check.h"
 
+// What falls into a heap shows any difference between two engines.
+static void differ(void)
+{
+	static ob_state end[16][LITTLE_MOST];
+	little_world *l = little_world_new();
+	little_ground(l);
+	for (int i = 0; i < 6; i++)
+		little_cube(l, 1 + i, .25, ob_v3(.1 * (i % 2), .05 * i, .3 + .55 * i));
+	size_t kinds = 0;
+	for (; ob_peer_kinds[kinds]; kinds++) {
+		little_run(ob_peer_kinds[kinds], l, 0, 1);
+		memcpy(end[kinds], l->now, sizeof l->now);
+		for (size_t other = 0; other < kinds; other++)
+			CHECK(memcmp(end[kinds], end[other], sizeof l->now) != 0);
+	}
+	CHECK(kinds >= 7);
+	free(l);
+}
+
 int main(void)
 {
+	differ();
 	CHECK(!ob_peer_find("no-such-engine"));
 	CHECK(ob_peer_find("obsim") == ob_peer_kinds[0]);
 	for (const ob_peer_kind *const *k = ob_peer_kinds; *k; k++) {
