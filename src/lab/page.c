@@ -128,13 +128,25 @@ void ob_page_quantity(ob_page *p, double v, const char *unit)
 	ob_page_text(p, printed);
 }
 
+// "1e-6", not "1e-06"
+static void print_short(char *to, size_t room, double v)
+{
+	double mantissa;
+	if (isfinite(v)) {
+		int power = split(v, &mantissa);
+		snprintf(to, room, "%.3ge%d", mantissa, power);
+	} else {
+		snprintf(to, room, "%s", isnan(v) ? "\u2013" : "\u221e");
+	}
+}
+
 void ob_page_print_quantity(char *to, size_t room, double v, const char *unit)
 {
 	char text[40], printed[40] = "";
 	if (is_plain(v))
 		print_plain(text, sizeof text, v);
 	else
-		snprintf(text, sizeof text, "%.3g", v);
+		print_short(text, sizeof text, v);
 	if (strcmp(unit, "1"))
 		ob_page_print_unit(printed, sizeof printed, unit);
 	snprintf(to, room, "%s%s%s", text, *printed ? " " : "", printed);

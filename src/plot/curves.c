@@ -38,6 +38,12 @@ static const ob_spot *next_joined(const ob_frame *f, size_t i)
 	return NULL;
 }
 
+// In the band of zeros points lie in lanes, which mean nothing: no line from one to the other
+static bool are_zero(const ob_frame *f, const ob_spot *a, const ob_spot *b)
+{
+	return a->at.y > f->area.y1 && b->at.y > f->area.y1;
+}
+
 static void draw_lines(const ob_frame *f, ob_drawing *d, const ob_plot_series *s)
 {
 	ob_look look = ob_palette_look(s->style, s->hollow);
@@ -50,7 +56,7 @@ static void draw_lines(const ob_frame *f, ob_drawing *d, const ob_plot_series *s
 			continue;
 		const ob_spot *next = next_joined(f, i);
 		ob_dot from = f->spot[i].at, to = next ? next->at : from;
-		bool inside = next && ob_curves_cut(f->outer, &from, &to);
+		bool inside = next && !are_zero(f, &f->spot[i], next) && ob_curves_cut(f->outer, &from, &to);
 		bool follows =
 			inside && length && length < 128 && from.x == run[length - 1].x && from.y == run[length - 1].y;
 		if (length > 1 && !follows)
@@ -118,7 +124,7 @@ static void draw_mark(const ob_frame *f, ob_drawing *d, const ob_plot_mark *m)
 {
 	ob_pen pen = { .stroke = OB_PAINT_GOOD, .width = 1.3, .dash = 1 };
 	ob_rect o = f->outer;
-	double at = isfinite(m->at) ? ob_frame_at(m->vertical ? &f->x : &f->y, m->at) : -1;
+	double at = isfinite(m->at) ? ob_frame_mark(m->vertical ? &f->x : &f->y, m->at) : -1;
 	if (m->vertical && at >= o.x0 && at <= o.x1)
 		ob_draw_line(d, at, o.y0, at, o.y1, pen);
 	else if (!m->vertical && at >= o.y0 && at <= o.y1)
@@ -134,9 +140,9 @@ void ob_curves_tints(const ob_frame *f, ob_drawing *d)
 			continue;
 		ob_rect r = o;
 		if (m->vertical)
-			r.x1 = fmin(fmax(ob_frame_at(&f->x, m->at), o.x0), o.x1);
+			r.x1 = fmin(fmax(ob_frame_mark(&f->x, m->at), o.x0), o.x1);
 		else
-			r.y0 = fmin(fmax(ob_frame_at(&f->y, m->at), o.y0), o.y1);
+			r.y0 = fmin(fmax(ob_frame_mark(&f->y, m->at), o.y0), o.y1);
 		ob_draw_rect(d, r, (ob_pen){ .fill = OB_PAINT_MEADOW });
 	}
 }

@@ -144,6 +144,13 @@ double ob_frame_at(const ob_side *s, double value)
 	return s->begin + along * (s->end - s->begin);
 }
 
+double ob_frame_mark(const ob_side *s, double value)
+{
+	double inner, outer;
+	ob_frame_band(s, false, &inner, &outer);
+	return is_low(s, value) ? inner : ob_frame_at(s, value);
+}
+
 // Moves points of a band into lanes, so that those which are close along the rim lie beside each other.
 static void spread(ob_frame *f, ob_side *s, bool high)
 {

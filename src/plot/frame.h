@@ -63,6 +63,8 @@ void ob_frame_place(ob_frame *f, ob_rect outer);
 
 // px of a value along an axis, in lane 0 of a band where it lies in one; what is beyond a range lies beyond the area
 double ob_frame_at(const ob_side *s, double value);
+// px of a target: at the inner rim of the band where it lies in one, for all of the band is beyond it
+double ob_frame_mark(const ob_side *s, double value);
 // px: the inner and the outer rim of a band
 void ob_frame_band(const ob_side *s, bool high, double *inner, double *outer);
 bool ob_frame_logarithmic(const ob_side *s);

@@ -30,7 +30,7 @@ static int crossings(const ob_frame *f, ob_rect box)
 	}
 	for (size_t i = 0; i < f->plot->marks; i++) {
 		const ob_plot_mark *m = &f->plot->mark[i];
-		double at = isfinite(m->at) ? ob_frame_at(m->vertical ? &f->x : &f->y, m->at) : -1;
+		double at = isfinite(m->at) ? ob_frame_mark(m->vertical ? &f->x : &f->y, m->at) : -1;
 		count += m->vertical ? at > box.x0 && at < box.x1 : at > box.y0 && at < box.y1;
 	}
 	return count;
@@ -48,7 +48,7 @@ static bool label_mark(ob_frame *f, ob_drawing *d, const ob_plot_mark *m)
 	if (!m->label || !*m->label || !isfinite(m->at))
 		return true;
 	ob_rect o = f->outer;
-	double at = ob_frame_at(m->vertical ? &f->x : &f->y, m->at), best_x = 0, best_y = 0, best_anchor = 0;
+	double at = ob_frame_mark(m->vertical ? &f->x : &f->y, m->at), best_x = 0, best_y = 0, best_anchor = 0;
 	double from = m->vertical ? o.y0 : o.x0, to = m->vertical ? o.y1 : o.x1;
 	int least = 1 << 20;
 	char text[160];

@@ -203,6 +203,11 @@ static void check_page(void)
 	CHECK(!strcmp(number(3, "m^2/s^3"), "3&nbsp;m\u00b2/s\u00b3"));
 	CHECK(!strcmp(number(NAN, "mm"), "\u2013"));
 	char text[100] = "";
+	ob_page_print_quantity(text, sizeof text, 1e-6, "m^2/s^2");
+	CHECK(!strcmp(text, "1e-6 m\u00b2/s\u00b2"));
+	ob_page_print_quantity(text, sizeof text, .5, "1");
+	CHECK(!strcmp(text, "0.5"));
+	text[0] = 0;
 	ob_page p = { .out = fmemopen(text, sizeof text, "w") };
 	ob_page_fill(&p, "a {{word}} b{{none}}{{word}}", &(ob_page_slot){ "word", write_word }, 1, "<&>");
 	fclose(p.out);

@@ -138,6 +138,30 @@ static void check_crosses(void)
 	ob_drawing_finish(&d);
 }
 
+// A target of zero has all of the band of zeros on its good side.
+static void check_zero_target(void)
+{
+	ob_drawing d = { 0 };
+	ob_plot_mark mark = { .at = 0, .label = "target 0", .tinted = true };
+	ob_plot p = plot;
+	p.mark = &mark;
+	p.marks = 1;
+	double line = -1, zero = -1, above = -1;
+	CHECK(ob_plot_layout(&p, &d, NULL));
+	for (size_t i = 0; i < d.items; i++) {
+		const ob_item *item = &d.item[i];
+		double y = d.dot[item->first].y;
+		if (item->kind == OB_ITEM_PATH && item->pen.stroke == OB_PAINT_GOOD)
+			line = y;
+		if (strstr(d.text + item->hint, "2, 0"))
+			zero = y;
+		if (strstr(d.text + item->hint, "first"))
+			above = y;
+	}
+	CHECK(above >= 0 && above < line && line < zero);
+	ob_drawing_finish(&d);
+}
+
 static void check_letters(void)
 {
 	CHECK_NEAR(ob_letters_width("Hi", 1000, false), 722 + 222, 1e-9);
@@ -163,6 +187,7 @@ int main(void)
 	check_awkward();
 	check_bands();
 	check_crosses();
+	check_zero_target();
 	check_letters();
 	return check_end();
 }
