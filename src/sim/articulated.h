@@ -6,7 +6,7 @@
 //
 //                                                            J_c dv_c + J_p dv_p + e x = y      for each joint
 //        root      M dv = p + sum of J^T x                                                      for each body
-//       /    \  .
+//       /    \   .
 //      o      o    Leaf by leaf a body's unknowns are eliminated. What a leaf and its joint resist is then
 //     / \      \   a part of the parent's inertia and push, and the parent is a leaf itself:
 //    o   o      o
@@ -30,7 +30,7 @@ typedef struct ob_link {
 	double change[6]; // dv
 } ob_link;
 
-// One element more than rows: where the eighth column holds the child's push, sums over columns carry it along.
+// The child's matrix has a column to spare: its eighth holds the child's push while sums over columns are made.
 typedef struct ob_joint {
 	uint32_t rows;
 	double child[6][8]; // J_c^T, then its image under the inverse root of the child's inertia

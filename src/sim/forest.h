@@ -12,8 +12,8 @@
 // Which rows hold is read off the last round: normals that press, or are about to (lambda D > r, the active set of a
 // semismooth Newton step: Hintermueller, Ito and Kunisch 2003), friction and twist below their bounds. The solution
 // for these rows is a direction: the impulses go along it, projected on the cones, as far as the residual energy
-// x r + x A x / 2 falls (projected Newton: Bertsekas 1982). Rounds and solves take turns: Silcowitz, Niebe and Erleben
-// 2010 do so with a conjugate gradient on the same rows.
+// x r + x A x / 2 falls (projected Newton: Bertsekas 1982). Rounds and solves take turns, as in the projected
+// Gauss-Seidel method with subspace minimisation (Silcowitz, Niebe and Erleben 2010).
 //
 // Everything is a function of the island's published state: the same bits whoever solves it.
 #ifndef OB_SIM_FOREST_H
