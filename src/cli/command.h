@@ -8,12 +8,14 @@ enum ob_exit {
 	OB_EXIT_OK,
 	OB_EXIT_FAILED, // the run failed, or was interrupted
 	OB_EXIT_USAGE, // the command line or the scene is wrong
+	OB_EXIT_MISSED, // lab --check: a target was missed
 };
 
 // Each takes parsed arguments and returns an ob_exit; errors are already told on standard error.
 int ob_command_run(const ob_arguments *a);
 int ob_command_compare(const ob_arguments *a);
 int ob_command_top(const ob_arguments *a);
+int ob_command_lab(const ob_arguments *a);
 
 // One line on standard error, "obsim: ..."; returns code.
 int ob_command_fail(int code, const char *text);

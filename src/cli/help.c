@@ -12,6 +12,8 @@ static const struct {
 	  "Runs a scene as one world, as threads and as processes, and prints one table." },
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
+	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",
+	  "Runs hard cases with several engines: error against target and against cost." },
 };
 
 void ob_options_help(FILE *f, ob_command_bit command)
@@ -38,7 +40,12 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		fputs("\nKeys: q quits, w shows workers or objects, s sorts by id or speed, arrows and page keys "
 		      "scroll.\n",
 		      f);
-	fputs("\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage or scene.\n", f);
+	if (command == OB_COMMAND_LAB)
+		fputs("\nA CASE is a name, a row of the table (14), or the start or pattern of names (stack, '*-10'); "
+		      "without one, all.\nThe same command goes on where it was interrupted.\n",
+		      f);
+	fprintf(f, "\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage%s.\n",
+		command == OB_COMMAND_LAB ? ", 3 a target missed" : " or scene");
 }
 
 void ob_options_overview(FILE *f)

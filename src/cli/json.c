@@ -70,6 +70,23 @@ void ob_json_close(ob_json *j)
 	j->filled = true;
 }
 
+void ob_json_open_list(ob_json *j, const char *key)
+{
+	begin(j, key);
+	fputc('[', j->f);
+	j->depth++;
+	j->filled = false;
+}
+
+void ob_json_close_list(ob_json *j)
+{
+	j->depth--;
+	if (j->filled)
+		fprintf(j->f, "\n%*s", 2 * j->depth, "");
+	fputc(']', j->f);
+	j->filled = true;
+}
+
 void ob_json_string(ob_json *j, const char *key, const char *value)
 {
 	begin(j, key);

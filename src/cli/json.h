@@ -1,4 +1,4 @@
-// JSON, as much as reports need: objects of named strings and numbers. A library for it would be one more package
+// JSON, as much as reports need: objects and lists of strings and numbers. A library for it would be one more package
 // to install for a hundred lines, and none prints a double so that it reads back to the same bits unless told how.
 #ifndef OB_CLI_JSON_H
 #define OB_CLI_JSON_H
@@ -13,9 +13,12 @@ typedef struct ob_json {
 	bool filled; // something stands in the object that is open
 } ob_json;
 
-// key NULL: the outermost object. Two spaces a level, one member a line.
+// key NULL: the outermost object, or a member of a list. Two spaces a level, one member a line.
 void ob_json_open(ob_json *j, const char *key);
 void ob_json_close(ob_json *j); // ends the file's last line, too
+// A list: its members have no key
+void ob_json_open_list(ob_json *j, const char *key);
+void ob_json_close_list(ob_json *j);
 // Control characters are escaped; bytes that are no UTF-8 are taken as Latin-1.
 void ob_json_string(ob_json *j, const char *key, const char *value);
 void ob_json_number(ob_json *j, const char *key, double value); // %.17g; null unless finite

@@ -14,6 +14,7 @@ static const struct {
 	{ "run", OB_COMMAND_RUN, ob_command_run },
 	{ "compare", OB_COMMAND_COMPARE, ob_command_compare },
 	{ "top", OB_COMMAND_TOP, ob_command_top },
+	{ "lab", OB_COMMAND_LAB, ob_command_lab },
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

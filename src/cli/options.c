@@ -5,7 +5,7 @@
 
 #include "cli/suggest.h"
 
-enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP };
+enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP, LAB = OB_COMMAND_LAB };
 
 const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene", RUN | COMPARE,
@@ -59,10 +59,22 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_EXPLAIN] = { NULL, "explain", NULL,
 				"what was modelled, what was left out and why, and what each part cost", RUN, 0 },
 
+	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
+	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only cases of the quick subset", LAB, 0 },
+	[OB_OPTION_ENGINES] = { NULL, "engines", "LIST", "engines by name, with commas (all)", LAB, 0 },
+	[OB_OPTION_SWEEP] = { NULL, "sweep", "LISTS|none",
+			      "as substeps=1,2,4,tolerance=5mm,.5mm (what suits each engine)", LAB, 0 },
+	[OB_OPTION_REPEATS] = { NULL, "repeats", "N", "runs of each; times are their medians (1)", LAB, 0 },
+	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds that a run may take (60)", LAB, 0 },
+	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR", "results, diagrams, report (obsim-lab)", LAB, 0 },
+	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB, 0 },
+	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print the results as JSON instead of tables", LAB, 0 },
+	[OB_OPTION_CHECK] = { NULL, "check", NULL, "exit with 3 when obsim misses a target", LAB, 0 },
+
 	[OB_OPTION_ONCE] = { "The view", "once", NULL, "print once, for pipes, and end", TOP, 0 },
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
-	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end", RUN | COMPARE | TOP, 'h' },
+	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end", RUN | COMPARE | TOP | LAB, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -179,20 +191,23 @@ bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **
 {
 	*a = (ob_arguments){ .command = command };
 	a->define = calloc((size_t)argc + 1, sizeof *a->define);
-	if (!a->define)
+	a->operands = calloc((size_t)argc + 1, sizeof *a->operands);
+	if (!a->define || !a->operands)
 		return ob_fail(e, "out of memory");
 	bool only_operands = false;
+	int operands = 0;
 	for (int i = 0; i < argc; i++) {
 		if (!only_operands && strcmp(argv[i], "--") == 0) {
 			only_operands = true;
 		} else if (!only_operands && argv[i][0] == '-' && argv[i][1]) {
 			if (!take_option(a, argc, argv, &i, e))
 				return false;
-		} else if (a->operand) {
+		} else if (a->operand && command != OB_COMMAND_LAB) {
 			return ob_fail(e, "unexpected '%s' after '%s': one %s at a time", argv[i], a->operand,
 				       command == OB_COMMAND_TOP ? "universe" : "scene");
 		} else {
-			a->operand = argv[i];
+			a->operands[operands++] = argv[i];
+			a->operand = a->operands[0];
 		}
 	}
 	return true;
@@ -201,5 +216,6 @@ bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **
 void ob_options_finish(ob_arguments *a)
 {
 	free(a->define);
+	free(a->operands);
 	*a = (ob_arguments){ 0 };
 }

@@ -8,7 +8,12 @@
 
 #include <ob/error.h>
 
-typedef enum ob_command_bit { OB_COMMAND_RUN = 1, OB_COMMAND_COMPARE = 2, OB_COMMAND_TOP = 4 } ob_command_bit;
+typedef enum ob_command_bit {
+	OB_COMMAND_RUN = 1,
+	OB_COMMAND_COMPARE = 2,
+	OB_COMMAND_TOP = 4,
+	OB_COMMAND_LAB = 8,
+} ob_command_bit;
 
 // In the order in which help shows them.
 typedef enum ob_option_id {
@@ -43,6 +48,16 @@ typedef enum ob_option_id {
 	OB_OPTION_JSON,
 	OB_OPTION_MEASURE,
 	OB_OPTION_EXPLAIN,
+	OB_OPTION_LIST,
+	OB_OPTION_QUICK,
+	OB_OPTION_ENGINES,
+	OB_OPTION_SWEEP,
+	OB_OPTION_REPEATS,
+	OB_OPTION_LIMIT,
+	OB_OPTION_OUT,
+	OB_OPTION_FRESH,
+	OB_OPTION_JSON_OUT,
+	OB_OPTION_CHECK,
 	OB_OPTION_ONCE,
 	OB_OPTION_INTERVAL,
 	OB_OPTION_HELP,
@@ -65,7 +80,8 @@ typedef struct ob_arguments {
 	const char *value[OB_OPTIONS]; // as on the command line; NULL = not given, "" = a flag that was given
 	const char **define; // every -D, in order; NULL ends
 	uint32_t defines;
-	const char *operand; // the scene file or the universe's name; NULL = none
+	const char *operand; // the scene file or the universe's name: the first of all; NULL = none
+	const char **operands; // all, in order: only the lab takes more than one; NULL ends
 } ob_arguments;
 
 // Reads argv[0 .. argc-1] (what follows the command's name). The strings stay argv's. false and e on misuse.

@@ -22,8 +22,7 @@ struct ob_progress {
 	bool over;
 };
 
-// What is left, in the two largest units
-static void print_rest(char *text, size_t size, double s)
+void ob_progress_print_rest(char *text, size_t size, double s)
 {
 	if (s < 100)
 		snprintf(text, size, "%.0f s", s);
@@ -40,7 +39,7 @@ static void show(const ob_progress *p)
 	double wall = ob_clock_wall() - p->begun, rate = (double)info.step / wall;
 	char rest[48] = "-";
 	if (info.step > 0)
-		print_rest(rest, sizeof rest, (double)(p->steps - info.step) / rate);
+		ob_progress_print_rest(rest, sizeof rest, (double)(p->steps - info.step) / rate);
 	fprintf(stderr, "\r\033[K%3.0f %%  %.2f s simulated, %" PRIu64 " of %" PRIu64 " steps, %.0f/s, %s left",
 		100 * (double)info.step / (double)p->steps, info.time, info.step, p->steps, rate, rest);
 	fflush(stderr);

@@ -3,6 +3,8 @@
 #ifndef OB_CLI_PROGRESS_H
 #define OB_CLI_PROGRESS_H
 
+#include <stddef.h>
+
 #include <ob/universe.h>
 
 typedef struct ob_progress ob_progress;
@@ -11,5 +13,8 @@ typedef struct ob_progress ob_progress;
 // u must live until the end is called. steps: of the whole run.
 ob_progress *ob_progress_begin(const ob_universe *u, uint64_t steps);
 void ob_progress_end(ob_progress *p); // takes the line away; NULL is allowed
+
+// Seconds that are left as people say them, in the two largest units
+void ob_progress_print_rest(char *text, size_t size, double s);
 
 #endif

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lab/page.h"
+
 // Adds what is chosen, and keeps the order.
 static bool add(ob_case_list *l, bool (*chosen)(const ob_case *c, const char *word), const char *word)
 {
@@ -77,8 +79,9 @@ bool ob_list_engines(ob_engine_list *l, const char *names, char word[64])
 
 static void print_target(FILE *f, const ob_figure_def *def)
 {
-	bool bare = strcmp(def->unit, "1") == 0;
-	fprintf(f, "%s \u2264 %g%s%s", def->name, def->target, bare ? "" : " ", bare ? "" : def->unit);
+	char target[48];
+	ob_page_print_quantity(target, sizeof target, def->target, def->unit);
+	fprintf(f, "%s \u2264 %s\n", def->name, target);
 }
 
 void ob_list_print(FILE *f, const ob_case_list *l)
@@ -99,7 +102,6 @@ void ob_list_print(FILE *f, const ob_case_list *l)
 				continue;
 			fprintf(f, "%*s", indent, "");
 			print_target(f, &c->figure[j]);
-			fputs("\n", f);
 			indent = name + title + 11;
 		}
 		if (indent == 2)

@@ -54,11 +54,16 @@ static void put_text(FILE *f, const char *text)
 	putc('"', f);
 }
 
-// What is not a number is nothing.
+// As many digits as it takes to read the same bits back. What is not a number is nothing.
 static void put_number(FILE *f, double v)
 {
-	if (!isnan(v))
-		fprintf(f, "%.17g", v);
+	char text[32] = "";
+	for (int digits = 15; digits <= 17 && !isnan(v); digits++) {
+		snprintf(text, sizeof text, "%.*g", digits, v);
+		if (strtod(text, NULL) == v)
+			break;
+	}
+	fputs(text, f);
 }
 
 static void put_numbers(FILE *f, const double *v, uint32_t count)

@@ -1,5 +1,6 @@
 #include "lab/sweep.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -166,4 +167,17 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_peer_kind
 		add(&all, one);
 	}
 	return all.count;
+}
+
+void ob_sweep_print(char *to, size_t room, const ob_peer_settings *s)
+{
+	int n;
+	if (s->tolerance > 0)
+		n = snprintf(to, room, "tolerance %g mm", s->tolerance * 1e3);
+	else
+		n = snprintf(to, room, "%u substep%s", s->substeps, s->substeps == 1 ? "" : "s");
+	if (s->iterations && (size_t)n < room)
+		n += snprintf(to + n, room - (size_t)n, ", %u rounds", s->iterations);
+	if (s->lag && (size_t)n < room)
+		snprintf(to + n, room - (size_t)n, ", late by %u", s->lag);
 }

@@ -96,13 +96,30 @@ static void test_defines_apart(void)
 	ob_options_finish(&a);
 }
 
+// Only the lab takes more than one operand.
+static void test_operands(void)
+{
+	char copy[256];
+	ob_arguments a;
+	ob_error e;
+	CHECK(parse(&a, OB_COMMAND_LAB, "pile --json 14 -- --list", copy, &e));
+	CHECK(strcmp(a.operand, "pile") == 0 && a.value[OB_OPTION_JSON_OUT] && !a.value[OB_OPTION_LIST]);
+	CHECK(strcmp(a.operands[0], "pile") == 0 && strcmp(a.operands[1], "14") == 0 &&
+	      strcmp(a.operands[2], "--list") == 0 && !a.operands[3]);
+	ob_options_finish(&a);
+	CHECK(parse(&a, OB_COMMAND_LAB, "--quick", copy, &e) && !a.operand && !a.operands[0]);
+	ob_options_finish(&a);
+	check_refused(OB_COMMAND_LAB, "pile --json=x", "--json takes no value");
+}
+
 static void test_table(void)
 {
 	for (int i = 0; i < OB_OPTIONS; i++) {
 		const ob_option *o = &ob_option_table[i];
 		CHECK(o->name && o->help && o->commands);
 		for (int j = 0; j < i; j++)
-			CHECK(strcmp(o->name, ob_option_table[j].name) != 0);
+			CHECK(strcmp(o->name, ob_option_table[j].name) != 0 ||
+			      !(o->commands & ob_option_table[j].commands));
 	}
 }
 
@@ -111,6 +128,7 @@ int main(void)
 	test_taken();
 	test_refused();
 	test_defines_apart();
+	test_operands();
 	test_table();
 	return check_end();
 }

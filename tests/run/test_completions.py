@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "compare", "top"]
+COMMANDS = ["run", "compare", "top", "lab"]
 
 
 def options(command):
@@ -46,6 +46,8 @@ class Completions(program.Case):
 		for command in COMMANDS:
 			self.assertEqual(self.bash(command, "--"), options(command))
 		self.assertEqual(self.bash("run", "--arch", "m"), ["monolith"])
+		self.assertEqual(self.bash("lab", "stack-10", "stack-2"), ["stack-20"])
+		self.assertEqual(self.bash("lab", "--json", "--che"), ["--check"])
 		open(self.path("a scene.lua"), "w").close()
 		open(self.path("other.txt"), "w").close()
 		os.mkdir(self.path("dir"))

@@ -11,8 +11,9 @@ _obsim()
 	local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]}
 	local previous=${COMP_WORDS[COMP_CWORD - 1]}
 	COMPREPLY=()
+	[[ $command:$previous == lab:--json ]] && previous= # a flag there
 	if ((COMP_CWORD == 1)); then
-		mapfile -t COMPREPLY < <(compgen -W 'run compare top help --help --version' -- "$word")
+		mapfile -t COMPREPLY < <(compgen -W 'run compare top lab help --help --version' -- "$word")
 		return
 	fi
 	case $previous in
@@ -27,16 +28,21 @@ _obsim()
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
-	--frames) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick ode-world
+		bullet' -- "$word") ;;
+	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
+	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --summary | --json) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--define | -D | --duration | --step | --seed | --substeps | --passes | --iterations | --name | --fps | --samples | \
-		--camera | --interval) ;;
+	--define | -D | --duration | --step | --seed | --substeps | --passes | --lag | --iterations | --name | --fps | --samples | \
+		--camera | --interval | --repeats | --limit) ;;
 	*)
 		case $command:$word in
-		help:*) mapfile -t COMPREPLY < <(compgen -W 'run compare top' -- "$word") ;;
+		help:*) mapfile -t COMPREPLY < <(compgen -W 'run compare top lab' -- "$word") ;;
 		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
 		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
+		lab:*) mapfile -t COMPREPLY < <(compgen -W "$("$program" lab --list 2>/dev/null |
+			sed -n 's/^ *[0-9]* *\([^ ]*\) .*/\1/p')" -- "$word") ;;
 		*) mapfile -t COMPREPLY < <(compgen -d -S / -- "$word"
 			compgen -f -X '!*.lua' -- "$word") ;;
 		esac

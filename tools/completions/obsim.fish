@@ -1,5 +1,9 @@
 # fish completion for obsim
 
+function __obsim_cases
+	obsim lab --list 2>/dev/null | string match -rg '^ *\d+ +(\S+) '
+end
+
 function __obsim_universes
 	for path in /dev/shm/obsim.*
 		string replace /dev/shm/obsim. '' -- $path
@@ -10,10 +14,11 @@ complete -c obsim -f
 complete -c obsim -n __fish_use_subcommand -a run -d 'run a scene and report'
 complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in five ways'
 complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
+complete -c obsim -n __fish_use_subcommand -a lab -d 'run hard cases with several engines'
 complete -c obsim -n __fish_use_subcommand -a help -d 'help of a command'
 complete -c obsim -n __fish_use_subcommand -l version -d 'version, commit, libraries'
 complete -c obsim -s h -l help -d 'print help'
-complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run compare top'
+complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run compare top lab'
 
 set -l both '__fish_seen_subcommand_from run compare'
 complete -c obsim -n $both -a '(__fish_complete_suffix .lua)'
@@ -22,25 +27,25 @@ complete -c obsim -n $both -l duration -x -d 'simulated seconds'
 complete -c obsim -n $both -l step -x -d 'seconds a step'
 complete -c obsim -n $both -l seed -x -d 'seed of random numbers'
 complete -c obsim -n $both -l workers -x -a 'objects 1 2 4 8' -d 'workers in the pool, or one for each object'
+complete -c obsim -n $both -l tolerance -x -a '5mm .5mm .05mm' -d 'error that objects that touch may reach'
 complete -c obsim -n $both -l substeps -x -d 'substeps a step'
 complete -c obsim -n $both -l passes -x -d 'rounds of exchange a substep'
 complete -c obsim -n $both -l exchange -x -a 'coloured jacobi ghost lagged' -d 'how impulses are exchanged'
 complete -c obsim -n $both -l lag -x -d 'lagged: exchanges that a state is late'
 complete -c obsim -n $both -l integrator -x -a 'exact ode' -d 'free motion'
 complete -c obsim -n $both -l sleeping -x -a 'on off' -d 'whether what rests may sleep'
-complete -c obsim -n $both -l tolerance -x -a '5mm .5mm .05mm' -d 'error that objects that touch may reach'
 complete -c obsim -n $both -l iterations -x -d 'monolith: iterations of QuickStep'
 complete -c obsim -n $both -l json -r -F -d 'the report as JSON'
 
 set -l run '__fish_seen_subcommand_from run'
 complete -c obsim -n $run -l arch -x -a 'obs monolith' -d 'one simulator per object, or one world'
 complete -c obsim -n $run -l isolation -x -a 'thread process' -d 'what a worker is'
+complete -c obsim -n $run -l explain -d 'what was modelled, what not, and what it cost'
 complete -c obsim -n $run -l name -x -d 'name of the universe'
 complete -c obsim -n $run -l frames -x -a '(__fish_complete_directories)' -d 'write PNG files'
 complete -c obsim -n $run -l video -r -F -d 'write a video'
 complete -c obsim -n $run -l raw -r -F -d 'write raw rgb24 frames'
 complete -c obsim -n $run -l fps -x -d 'frames per simulated second'
-complete -c obsim -n $run -l explain -d 'what was modelled, what not, and what it cost'
 complete -c obsim -n $run -l size -x -a '640x480 1280x720 1920x1080' -d pixels
 complete -c obsim -n $run -l samples -x -a '1 2 4 8' -d 'samples a pixel'
 complete -c obsim -n $run -l camera -x -d 'which camera'
@@ -55,3 +60,17 @@ set -l top '__fish_seen_subcommand_from top'
 complete -c obsim -n $top -a '(__obsim_universes)'
 complete -c obsim -n $top -l once -d 'print once and end'
 complete -c obsim -n $top -l interval -x -d 'seconds between looks'
+
+set -l lab '__fish_seen_subcommand_from lab'
+complete -c obsim -n $lab -a '(__obsim_cases)'
+complete -c obsim -n $lab -l list -d 'print the cases and end'
+complete -c obsim -n $lab -l quick -d 'only the quick subset'
+complete -c obsim -n $lab -l engines -x -d 'engines, with commas' \
+	-a 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick ode-world bullet'
+complete -c obsim -n $lab -l sweep -x -a 'none substeps= iterations= tolerance= lag=' -d 'settings'
+complete -c obsim -n $lab -l repeats -x -d 'runs of each'
+complete -c obsim -n $lab -l limit -x -d 'seconds that a run may take'
+complete -c obsim -n $lab -l out -x -a '(__fish_complete_directories)' -d 'results, diagrams, report'
+complete -c obsim -n $lab -l fresh -d 'run again what is there already'
+complete -c obsim -n $lab -l json -d 'print the results as JSON'
+complete -c obsim -n $lab -l check -d 'exit with 3 when a target is missed'

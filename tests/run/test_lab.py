@@ -1,0 +1,210 @@
+"""The lab as a program: what it writes, that it goes on where it stopped, and what it tells a script."""
+
+import csv
+import json
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+
+import program
+
+SMALL = ["lab", "projectile", "head-on", "--engines", "obsim,ode-quick", "--sweep", "substeps=1,4"]
+NUMBERS = ["cpu_s", "wall_s", "bodies_times_simulated_s", "cpu_s_per_body_and_simulated_s", "step_s", "substeps", "lag"]
+
+
+class Lab(program.Case):
+	def lab(self, *words, code=0):
+		done = program.call(*words, "--out", self.path("out"))
+		self.assertEqual(done.returncode, code, done.stderr)
+		return done
+
+	def rows(self):
+		with open(self.path("out/results.csv"), newline="") as f:
+			return list(csv.DictReader(f, strict=True))
+
+	def start(self, *words, **more):
+		run = subprocess.Popen([program.OBSIM, *words, "--out", self.path("out")], stdout=subprocess.PIPE, text=True,
+			**{"stderr": subprocess.PIPE, **more})
+		self.addCleanup(lambda: (run.poll() is None and run.kill(), run.wait(), run.stdout.close(),
+			run.stderr and run.stderr.close()))
+		return run
+
+	def test_usage(self):
+		self.refuse("lab", "stack-01", saying="no case 'stack-01': did you mean stack-10?")
+		self.refuse("lab", "zebra", saying="no case 'zebra': obsim lab --list shows all")
+		self.refuse("lab", "99", saying="no case '99'")
+		self.refuse("lab", "--engines", "obsim,oed-quick", saying="no engine 'oed-quick': did you mean ode-quick?")
+		self.refuse("lab", "--engines", "zebra", saying="only: obsim, ")
+		self.refuse("lab", "--sweep", "substeps=0", saying="whole number from 1")
+		self.refuse("lab", "--sweep", "tolerance=1", saying="with its unit")
+		self.refuse("lab", "--repeats", "99", saying="expected 1 to 15")
+		self.refuse("lab", "--limit", "0", saying="more than 0")
+		self.refuse("lab", "--quick", "pile", saying="'pile'")
+		self.refuse("lab", "--engines", "ode-quick", "--check", saying="--check is about obsim")
+		self.refuse("lab", "--list", "--json", saying="leave --json away")
+		self.refuse("lab", "--lst", saying="did you mean --list?")
+		self.assertEqual(os.listdir(self.directory.name), [])
+
+	def test_list(self):
+		done = program.call("lab", "--list", cwd=self.directory.name)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		for name in "projectile", "stack-40", "pile", "lag":
+			self.assertRegex(done.stdout, rf"(?m)^ *\d+  {name} ")
+		some = program.call("lab", "--list", "14", "*-1000", cwd=self.directory.name).stdout
+		self.assertIn("stack-20", some)
+		self.assertIn("heavy-1000", some)
+		self.assertNotIn("pile", some)
+		names = re.findall(r"(?m)^ *\d+  (\S+) +\* ", done.stdout)
+		quick = program.call("lab", "--list", "--quick", cwd=self.directory.name).stdout
+		self.assertEqual(re.findall(r"(?m)^ *\d+  (\S+) ", quick), names)
+		self.assertEqual(os.listdir(self.directory.name), [])
+
+	def test_results(self):
+		done = self.lab(*SMALL, "--json")
+		told = json.loads(done.stdout)
+		rows = self.rows()
+		self.assertEqual(done.stderr, "")
+		# obsim: 8, 1, 4 substeps; ODE: 1, 4
+		self.assertEqual([(r["case"], r["engine"], r["substeps"]) for r in rows],
+			[(case, engine, n) for case in ("projectile", "head-on") for engine, n in
+				[("obsim", "1"), ("obsim", "4"), ("obsim", "8"), ("ode-quick", "1"), ("ode-quick", "4")]])
+		self.assertEqual(len(told["results"]), len(rows))
+		for row, one in zip(rows, told["results"]):
+			self.assertEqual((row["case"], row["engine"], row["failed"]), (one["case"], one["engine"], one["failed"] or ""))
+			for name in NUMBERS:
+				value = one[name] if name in one else one["settings"][name]
+				self.assertEqual(float(row[name] or "nan"), value, name)
+			for i, figure in enumerate(one["figures"], 1):
+				self.assertEqual((row[f"figure{i}_name"], row[f"figure{i}_unit"]), (figure["name"], figure["unit"]))
+				value = float(row[f"figure{i}_value"])
+				self.assertEqual(figure["value"], value if abs(value) < 1e300 else None)
+				if figure["target"] is not None and not one["failed"]:
+					self.assertEqual(figure["met"], value <= figure["target"])
+			self.assertEqual(row["figure8_name"], "")
+			self.assertEqual((row["machine"], row["commit"]), (told["machine"], told["commit"]))
+		self.assertLessEqual(float(rows[0]["figure1_value"]), 1e-12)
+		self.assertGreater(float(rows[3]["figure1_value"]), 1e-3) # ODE's projectile
+		for name in "report.html", "rows.md", "equal.md", "equal.csv", "plots/projectile.svg", "plots/head-on.png":
+			self.assertTrue(os.path.isfile(self.path("out/" + name)), name)
+		self.assertEqual([name for name in os.listdir(self.path("out")) if name.endswith(".new")], [])
+
+	def test_tables(self):
+		said = self.lab("lab", "heavy-1000", "--engines", "obsim,ode-quick", "--sweep", "none").stdout
+		self.assertRegex(said, r"(?m)^Row +Case +Figure +obsim +Target")
+		self.assertRegex(said, r"(?m)^ *15  1000 : 1")
+		self.assertRegex(said, r"(?m)^Case +at an error of +obsim +ode-quick$")
+		with open(self.path("out/rows.md")) as f:
+			lines = f.read().splitlines()
+		self.assertTrue(all(line.startswith("| ") and line.endswith(" |") for line in lines))
+		self.assertEqual(len({line.replace("\\|", "").count("|") for line in lines}), 1)
+
+	def test_goes_on(self):
+		self.lab(*SMALL)
+		first = self.rows()
+		self.assertEqual(self.lab(*SMALL).stderr, "")
+		self.assertEqual(self.rows(), first)
+		self.lab("lab", "projectile", "--engines", "obsim", "--sweep", "substeps=1,2")
+		more = self.rows()
+		self.assertEqual([r for r in more if r["substeps"] != "2"], first)
+		self.assertEqual(len(more), len(first) + 1)
+		self.lab(*SMALL, "--repeats", "3")
+		again = self.rows()
+		for one in again:
+			times = [float(t) for t in one["cpu_s_of_each"].split()]
+			self.assertEqual(len(times), 1 if one["substeps"] == "2" else 3)
+			self.assertEqual(float(one["cpu_s"]), sorted(times)[len(times) // 2])
+		self.assertEqual([r["cpu_s_of_each"].split()[0] for r in again], [r["cpu_s_of_each"] for r in more])
+		self.lab("lab", "projectile", "--engines", "obsim", "--sweep", "none", "--fresh")
+		fresh = self.rows()
+		self.assertEqual([(r["case"], r["engine"]) for r in fresh][:2], [("projectile", "obsim"), ("projectile", "ode-quick")])
+		self.assertNotEqual(fresh[0]["cpu_s"], again[3]["cpu_s"])
+
+	def test_other_program(self):
+		self.lab("lab", "projectile", "--engines", "obsim", "--sweep", "none")
+		with open(self.path("out/results.csv"), newline="") as f:
+			text = f.read()
+		commit = self.rows()[0]["commit"]
+		for number, other in enumerate([text.replace(commit, "0123456789ab"), text[:-100], "stuff", ""], 1):
+			with open(self.path("out/results.csv"), "w", newline="") as f:
+				f.write(other)
+			said = self.lab("lab", "projectile", "--engines", "obsim", "--sweep", "none").stderr
+			self.assertIn(f"results-{number}.csv", said)
+			with open(self.path(f"out/results-{number}.csv"), newline="") as f:
+				self.assertEqual(f.read(), other)
+			self.assertEqual([r["commit"] for r in self.rows()], [commit])
+
+	def test_check(self):
+		self.lab("lab", "projectile", "--engines", "obsim,ode-quick", "--sweep", "none", "--check")
+		# what is out of time has missed its targets
+		words = ["lab", "stack-40", "--engines", "obsim", "--sweep", "none", "--check", "--limit"]
+		done = self.lab(*words, ".01", code=3)
+		self.assertIn("obsim: 3 targets missed", done.stderr)
+		self.assertIn("MISSED: ran longer than 0.01 s", done.stdout)
+		late = self.rows()[-1]
+		self.assertEqual((late["failed"], late["figure1_value"]), ("ran longer than 0.01 s", "inf"))
+		self.assertEqual((late["bodies_times_simulated_s"], late["cpu_s_per_body_and_simulated_s"]), ("", ""))
+		self.lab(*words, ".005", code=3)
+		self.assertEqual(self.rows()[-1], late) # less time is no reason to try again
+		self.lab(*words, ".02", code=3)
+		self.assertEqual(self.rows()[-1]["failed"], "ran longer than 0.02 s")
+
+	def test_interrupted(self):
+		for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP:
+			with self.subTest(number=number):
+				run = self.start("lab", "projectile", "stack-40", "--engines", "obsim", "--sweep", "substeps=1024", "--fresh")
+				self.assertTrue(program.wait_until(lambda: os.path.exists(self.path("out/results.csv")), program.PATIENCE))
+				time.sleep(.3)
+				below = program.processes(run.pid)
+				run.send_signal(number)
+				self.assertEqual(run.wait(20), 1)
+				self.assertIn("interrupted", run.stderr.read())
+				self.assertFalse(any(map(program.alive, below)))
+				before = self.rows()
+				self.assertGreater(len(before), 0)
+				self.lab("lab", "projectile", "--engines", "obsim", "--sweep", "substeps=1024")
+				self.assertEqual([r for r in self.rows() if r["case"] == "projectile"],
+					[r for r in before if r["case"] == "projectile"])
+				os.remove(self.path("out/results.csv"))
+
+	def test_killed(self):
+		"""Nothing is left running, and what was done is there."""
+		run = self.start("lab", "projectile", "stack-40", "--engines", "obsim", "--sweep", "substeps=1024")
+		self.assertTrue(program.wait_until(lambda: os.path.exists(self.path("out/results.csv")), program.PATIENCE))
+		time.sleep(.3)
+		below = program.processes(run.pid)
+		run.kill()
+		run.wait()
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 5))
+		self.assertGreater(len(self.rows()), 0)
+
+	def test_progress(self):
+		leader, terminal = self.open_terminal()
+		run = self.start("lab", "projectile", "stack-40", "--engines", "obsim", "--sweep", "substeps=1024", stderr=terminal)
+		os.close(terminal)
+		time.sleep(2)
+		run.send_signal(signal.SIGINT)
+		run.wait(20)
+		seen = b""
+		try:
+			while chunk := os.read(leader, 65536):
+				seen += chunk
+		except OSError: # the other end is closed
+			pass
+		os.close(leader)
+		self.assertRegex(seen.decode(), r"\[#* *\] \d of 4, .* left: \S+, obsim, \d+ substeps")
+		self.assertIn("\r\033[Kobsim: interrupted", seen.decode())
+
+	def test_unwritable(self):
+		with open(self.path("file"), "w"):
+			pass
+		for folder, why in (self.path("file"), "Not a directory"), (self.path("file/out"), "Not a directory"), ("/proc/obsim", ""):
+			done = program.call("lab", "projectile", "--engines", "obsim", "--sweep", "none", "--out", folder)
+			self.assertEqual(done.returncode, 1, folder)
+			self.assertIn(why, done.stderr)
+			self.assertEqual(done.stderr.count("\n"), 1)
+
+
+unittest.main()
