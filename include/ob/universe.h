@@ -68,8 +68,6 @@ typedef struct ob_motion {
 	ob_vec3 v;          // m/s
 	ob_vec3 w;          // rad/s, world frame
 	ob_vec3 a;          // m/s^2, constant while the motion holds (gravity in flight, 0 when supported)
-	ob_vec3 dv, dw;     // m/s, rad/s: change of velocity over the last substep (the contact predictor)
-	double substep;     // s, length of that substep
 	double path;        // m, length of path of the fastest surface point since the run began
 	float bounds[6];    // m, xmin ymin zmin xmax ymax zmax: a box that holds the object until it republishes one
 	uint32_t step;      // the step that published this
@@ -78,6 +76,7 @@ typedef struct ob_motion {
 	uint32_t island;    // lowest id of the island in which it was solved
 	uint32_t flight;    // 1 + the step after which the free flight began that goes on; 0 = none does
 	uint32_t substeps;  // that its island asks for in the next step, where a tolerance chooses; 0 = none yet
+	double reserved[7];
 } ob_motion;
 
 typedef enum ob_universe_state {

@@ -111,14 +111,9 @@ void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_bod
 	ob_kernel_best()->project(b, slop, beta, jacobi, d, delta);
 }
 
-void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v)
+void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity)
 {
-	ob_kernel_best()->cap(b, cap_impulse, cap_velocity, v);
-}
-
-void ob_batch_apply_lane(const ob_batch *b, int l, double s, ob_body_row *v)
-{
-	ob_kernel_best()->apply_lane(b, l, s, v);
+	ob_kernel_best()->cap(b, cap_impulse, cap_velocity);
 }
 
 void ob_batch_rates(const ob_batch *b, const ob_body_row *rows, lanes *r)

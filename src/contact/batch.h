@@ -91,9 +91,7 @@ void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_b
 void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
 // After an impact the predicted impulses are the impact's: takes back what exceeds the cap.
 // cap (m/s per unit of A): per lane, the largest plausible growth of an impulse (N s).
-void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v);
-// Adds s times the lane's impulses to the velocities (taking a pair out, or putting it back).
-void ob_batch_apply_lane(const ob_batch *b, int l, double s, ob_body_row *v);
+void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity);
 
 // How fast each of the seven rows opens or slides at the given rows' velocities.
 void ob_batch_rates(const ob_batch *b, const ob_body_row *rows, lanes *r);

@@ -332,9 +332,8 @@ static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 	publish(b, OB_KIND_FULL, jacobi, x, da, db, d, delta);
 }
 
-static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_body_row *v)
+static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity)
 {
-	lanes d[7] = { 0 };
 	if (!b->impact)
 		return;
 	for (int l = 0; l < OB_LANES; l++) {
@@ -345,25 +344,10 @@ static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity, ob_
 			double x = b->impulse[i][l] - b->impulse_start[i][l];
 			if (i == 6)
 				cap *= b->radius[l];
-			d[i][l] = x > cap ? cap - x : x < -cap && i > 3 ? -cap - x : 0;
-			b->impulse[i][l] += d[i][l];
+			b->impulse[i][l] += x > cap ? cap - x : x < -cap && i > 3 ? -cap - x : 0;
 		}
 	}
-	add_changes(b, d, v);
 	b->impact = 0;
-}
-
-static void apply_lane(const ob_batch *b, int l, double s, ob_body_row *v)
-{
-	lanes d[7] = { 0 }, va[6], vb[6];
-	for (int i = 0; i < OB_ROWS; i++)
-		d[i][l] = s * b->impulse[i][l];
-	gather_both(b, v, va, vb);
-	apply(b, OB_KIND_FULL, d, va, vb);
-	for (int c = 0; c < 6; c++) {
-		v[b->body_a[l]][c] = va[c][l];
-		v[b->body_b[l]][c] = vb[c][l];
-	}
 }
 
 static void rates(const ob_batch *b, const ob_body_row *rows, lanes *r)
@@ -374,4 +358,4 @@ static void rates(const ob_batch *b, const ob_body_row *rows, lanes *r)
 	tangent_rates(b, OB_KIND_FULL, xa, xb, r);
 }
 
-const ob_kernel OB_KERNEL = { prepare, solve, project, cap, apply_lane, rates, add_changes };
+const ob_kernel OB_KERNEL = { prepare, solve, project, cap, rates, add_changes };

@@ -124,7 +124,7 @@ void ob_exchange_cap(ob_sim *s)
 	const double growth = .3 * brought * w->mass; // N s
 	const double cap[OB_LANES] = { growth, growth, growth, growth };
 	for (uint32_t i = 0; i < w->batches; i++)
-		ob_batch_cap(&w->batch[i], cap, 2.5 * brought, w->dv);
+		ob_batch_cap(&w->batch[i], cap, 2.5 * brought);
 }
 
 static bool worth_while(const ob_island_work *w, const ob_batch *b)

@@ -17,6 +17,7 @@ static bool look(ob_sim *s)
 	ob_part_enter(s, OB_PART_LOOK);
 	bool any = ob_touches_refresh(s, s->island.h);
 	ob_touches_prepare(s);
+	ob_members_foretell(s);
 	return any;
 }
 

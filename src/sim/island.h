@@ -1,8 +1,8 @@
 // One island through one step: the working state of its members and pairs, private to the worker that solves it.
 //
-// Velocities live in rows (contact/batch.h): v at the substep's start, dv the change that the last substep brought
-// and the next is predicted to bring, u = v + dv solved to the substep's end, d the displacement since the poses were
-// last brought up to date. Row 0 is everything that does not move.
+// Velocities live in rows (contact/batch.h): v at the stride's start, dv the change that the pull and the impulses of the
+// last stride would bring where the touches are now, u = v + dv solved to the stride's end, d the displacement since the
+// poses were last brought up to date. Row 0 is everything that does not move.
 #ifndef OB_SIM_ISLAND_H
 #define OB_SIM_ISLAND_H
 

@@ -82,7 +82,6 @@ void ob_lane_leave(ob_island_work *w, ob_touch *t)
 {
 	ob_batch *b = &w->batch[t->lane / OB_LANES];
 	bool was_full = b->live == FULL;
-	ob_batch_apply_lane(b, t->lane % OB_LANES, -1, w->dv);
 	ob_batch_clear(b, t->lane % OB_LANES);
 	if (was_full && t->colour < OB_COLOURS)
 		open_batch(w, t->lane / OB_LANES);
@@ -109,7 +108,6 @@ void ob_lane_carry_out(ob_island_work *w, const ob_touch *t, ob_carried *old)
 {
 	const ob_batch *b = &w->batch[t->lane / OB_LANES];
 	int l = t->lane % OB_LANES;
-	ob_batch_apply_lane(b, l, -1, w->dv);
 	for (int i = 0; i < OB_PAIR_ROWS; i++)
 		old->impulse[i] = b->impulse[i][l];
 	old->points = t->points;
@@ -146,5 +144,4 @@ void ob_lane_carry_in(ob_island_work *w, const ob_touch *t, ob_carried *old)
 	b->impulse[6][l] = same ? old->impulse[6] : 0;
 	for (int i = 0; i < OB_PAIR_ROWS; i++)
 		b->impulse_start[i][l] = b->impulse[i][l];
-	ob_batch_apply_lane(b, l, 1, w->dv);
 }

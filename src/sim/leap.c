@@ -56,7 +56,6 @@ void ob_leap(ob_sim *s, uint32_t id)
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	const ob_motion *before = ob_newest_motion(s->u, id);
 	uint64_t step = ob_step_count(s->u) + 1;
-	double h = run->step_length / run->substeps;
 	uint32_t flight = 0;
 	ob_state now = run->integrator == OB_INTEGRATOR_ODE ? end_by_ode(s, id) : ob_leap_end(s, id, &flight);
 	ob_motion m = { .t0 = step * run->step_length,
@@ -66,13 +65,11 @@ void ob_leap(ob_sim *s, uint32_t id)
 			.v = now.v,
 			.w = now.w,
 			.a = ob_pull(run, pass),
-			.substep = h,
 			.path = before->path + ob_step_reach(run, pass, before->v, before->w),
 			.step = (uint32_t)step,
 			.flags = OB_MOTION_FREE,
 			.island = id,
 			.flight = flight };
-	m.dv = ob_scale(m.a, h);
 	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
 		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
 	ob_member_publish(s, id, &m, true);

@@ -65,8 +65,6 @@ static void load(ob_island_work *w, const ob_universe *u, uint32_t row, uint32_t
 	if (!moves)
 		return;
 	add_row(w->v[row], mo->v, mo->w);
-	double scale = mo->substep > 0 ? w->h / mo->substep : 0;
-	add_row(w->dv[row], ob_scale(mo->dv, scale), ob_scale(mo->dw, scale));
 	w->mass += pass->mass;
 	m->pull = ob_pull(run, pass);
 	w->pull = fmax(w->pull, ob_norm(m->pull));
@@ -197,33 +195,25 @@ void ob_members_quicken(ob_sim *s)
 	}
 }
 
-// Who carries an impulse? A touch that only hangs over a gap predicts nothing: its bodies fall freely, to the last bit.
-static void mark_loaded(ob_island_work *w)
+void ob_members_foretell(ob_sim *s)
 {
-	for (uint32_t i = 0; i < w->rows; i++)
-		w->member[i].loaded = false;
-	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
-		bool loaded = false;
-		for (int j = 0; t->lane != OB_NO_LANE && j < OB_PAIR_ROWS; j++)
-			loaded |= w->batch[t->lane / OB_LANES].impulse[j][t->lane % OB_LANES] != 0;
-		w->member[t->a].loaded |= loaded;
-		w->member[t->b].loaded |= loaded;
+	ob_island_work *w = &s->island;
+	memset(w->dv, 0, w->rows * sizeof *w->dv);
+	for (uint32_t i = 1; i <= w->members; i++)
+		add_row(w->dv[i], ob_scale(w->member[i].pull, w->h), ob_v3(0, 0, 0));
+	for (uint32_t k = 0; k < w->batches; k++) {
+		const ob_batch *b = &w->batch[w->batch_order[k]];
+		if (b->live)
+			ob_batch_push(b, b->impulse, w->dv);
 	}
 }
 
 void ob_members_predict(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	mark_loaded(w);
-	for (uint32_t i = 1; i <= w->members; i++) {
-		if (!w->member[i].loaded) {
-			memset(w->dv[i], 0, sizeof(ob_body_row));
-			add_row(w->dv[i], ob_scale(w->member[i].pull, w->h), ob_v3(0, 0, 0));
-		}
+	for (uint32_t i = 1; i <= w->members; i++)
 		for (int c = 0; c < 6; c++)
 			w->u[i][c] = w->v[i][c] + w->dv[i][c];
-	}
 }
 
 // ODE's own stepper instead of ours: the impulses of the substep go in as a force.
@@ -274,10 +264,7 @@ void ob_members_advance(ob_sim *s)
 			advance_by_ode(s, i);
 		else
 			advance_exactly(w, i, smooth);
-		for (int c = 0; c < 6; c++) {
-			w->dv[i][c] = w->u[i][c] - w->v[i][c];
-			w->v[i][c] = w->u[i][c];
-		}
+		memcpy(w->v[i], w->u[i], sizeof *w->v);
 		m->speed = ob_surface_speed(linear_of(w->u[i]), angular_of(w->u[i]), m->shape, m->size);
 		m->path += w->h * m->speed;
 		if (ob_norm2(angular_of(w->d[i])) > 4e-4 || ob_norm2(linear_of(w->d[i])) > .01 ||
@@ -339,9 +326,6 @@ void ob_members_publish(ob_sim *s, bool asleep)
 				 .q = m->q,
 				 .v = linear_of(w->v[i]),
 				 .w = angular_of(w->v[i]),
-				 .dv = linear_of(w->dv[i]),
-				 .dw = angular_of(w->dv[i]),
-				 .substep = w->h,
 				 .path = m->path,
 				 .step = (uint32_t)step,
 				 .quiet = m->quiet,

@@ -11,7 +11,9 @@ void ob_member_settle(ob_island_work *w, uint32_t row);
 void ob_members_gyrate(ob_sim *s);
 // Speeds anew, after impacts have changed v.
 void ob_members_quicken(ob_sim *s);
-// u = v + dv where impulses act, v + h g elsewhere.
+// dv: what the pull and the last substep's impulses will bring, where the touches are now.
+void ob_members_foretell(ob_sim *s);
+// u = v + dv
 void ob_members_predict(ob_sim *s);
 // Displacements over the substep; u becomes the new v.
 void ob_members_advance(ob_sim *s);

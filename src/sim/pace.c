@@ -60,9 +60,6 @@ static double length_of_stride(ob_sim *s, double left)
 // What the last stride brought, the next is predicted to bring in proportion.
 static void rescale(ob_island_work *w, double factor)
 {
-	for (uint32_t i = 1; i <= w->members; i++)
-		for (int c = 0; c < 6; c++)
-			w->dv[i][c] *= factor;
 	for (uint32_t i = 0; i < w->batches; i++)
 		for (int k = 0; k < OB_ROWS; k++)
 			w->batch[i].impulse[k] *= factor;

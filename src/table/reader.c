@@ -131,7 +131,7 @@ static bool motion_makes_sense(const ob_motion *m)
 	for (int i = 0; i < 3; i++)
 		bounded &= m->bounds[i] <= m->bounds[i + 3]; // false for NaN; infinite for planes
 	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
-	       finite3(m->a) && finite3(m->dv) && finite3(m->dw) && norm > .9 && norm < 1.1 && bounded;
+	       finite3(m->a) && norm > .9 && norm < 1.1 && bounded;
 }
 
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out)

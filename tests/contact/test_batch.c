@@ -286,11 +286,6 @@ static void test_jacobi(void)
 		CHECK(star_energy(&t, s->u) <= star_energy(&t, s->v) * (1 + 1e-12));
 		for (int l = 0; l < OB_LANES; l++)
 			check_cone(s, l);
-		ob_body_row solved[2 * OB_LANES + 1];
-		memcpy(solved, s->u, sizeof solved);
-		const double cap[OB_LANES] = { .01, .02, .03, .04 };
-		ob_batch_cap(&s->batch, cap, .05, s->u);
-		check_star(&t, s->u, solved);
 	}
 }
 
@@ -332,18 +327,12 @@ static void test_cap(void)
 		random_scene(&s, &seed, i % 2 ? 3 : -.5);
 		solve(&s, 2);
 		ob_batch solved = s.batch;
-		ob_body_row u[2 * OB_LANES + 1];
-		memcpy(u, s.u, sizeof u);
 		const double cap[OB_LANES] = { .01, .02, .03, .04 };
-		ob_batch_cap(&s.batch, cap, .05, s.u);
+		ob_batch_cap(&s.batch, cap, .05);
 		CHECK(s.batch.impact == 0);
 		for (int l = 0; l < OB_LANES; l++) {
 			bool impact = solved.impact >> l & 1;
 			capped += impact;
-			if (!impact)
-				CHECK(same_rows(u + row_a(l), s.u + row_a(l)));
-			else if (s.p[l].b.inv_mass > 0)
-				check_conserved(&s.p[l], u + row_a(l), s.u + row_a(l), 4e-15);
 			for (int k = 0; k < OB_ROWS; k++) {
 				double most = fmax(cap[l], .05 / (s.batch.a[OB_SYM(k, k)][l] + 1e-9));
 				if (k == 6)
@@ -356,8 +345,8 @@ static void test_cap(void)
 	CHECK(capped > 500);
 }
 
-// A pair that is taken out and put back leaves what it found, and pushes its bodies by its impulses.
-static void test_apply_lane(void)
+// What the impulses did to the bodies, pushed back, leaves what was there before.
+static void test_push(void)
 {
 	uint64_t seed = 8;
 	for (int i = 0; i < 500; i++) {
@@ -366,8 +355,10 @@ static void test_apply_lane(void)
 		solve(&s, 3);
 		ob_body_row u[2 * OB_LANES + 1];
 		memcpy(u, s.u, sizeof u);
-		for (int l = 0; l < OB_LANES; l++)
-			ob_batch_apply_lane(&s.batch, l, -1, s.u);
+		lanes back[OB_ROWS];
+		for (int k = 0; k < OB_ROWS; k++)
+			back[k] = -s.batch.impulse[k];
+		ob_batch_push(&s.batch, back, s.u);
 		for (int k = 0; k < 2 * OB_LANES + 1; k++)
 			for (int c = 0; c < 6; c++)
 				CHECK_NEAR(s.u[k][c], s.v[k][c], 1e-12 * (1 + fabs(u[k][c])));
@@ -399,7 +390,7 @@ int main(void)
 	test_jacobi();
 	test_project();
 	test_cap();
-	test_apply_lane();
+	test_push();
 	test_tangents();
 	return check_end();
 }

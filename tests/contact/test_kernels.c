@@ -15,8 +15,7 @@ static void run(const ob_kernel *k, scene *s, bool jacobi)
 		k->solve(&s->batch, &pass, s->u, s->v, s->d, s->delta);
 	}
 	k->project(&s->batch, 1e-4, .3, jacobi, s->d, s->delta);
-	k->cap(&s->batch, cap, .05, s->u);
-	k->apply_lane(&s->batch, 2, -1, s->u);
+	k->cap(&s->batch, cap, .05);
 	lanes rate[OB_ROWS];
 	k->rates(&s->batch, s->u, rate);
 	k->push(&s->batch, rate, s->delta);

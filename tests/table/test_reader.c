@@ -31,7 +31,7 @@ static void test_nonsense(void)
 {
 	ob_universe *u = create_filled();
 	ob_motion good = { .q = { 1, 0, 0, 0 }, .bounds = { 0, 0, 0, 1, 1, 1 } }, m;
-	double *field[] = { &m.t0, &m.valid_until, &m.p.x, &m.q.w, &m.q.z, &m.v.y, &m.w.z, &m.a.x, &m.dv.y, &m.dw.z };
+	double *field[] = { &m.t0, &m.valid_until, &m.p.x, &m.q.w, &m.q.z, &m.v.y, &m.w.z, &m.a.x };
 	for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
 		m = good;
 		*field[i] = NAN;
