@@ -1,0 +1,115 @@
+// The lab's tables of made-up results, and the grid that they are printed with.
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "lab/grid.h"
+#include "lab/tables.h"
+
+static char *text;
+static size_t length;
+
+static FILE *begin(void)
+{
+	FILE *f = open_memstream(&text, &length);
+	if (!f)
+		abort();
+	return f;
+}
+
+static void expect(FILE *f, const char *what)
+{
+	fclose(f);
+	if (strcmp(text, what) != 0)
+		fprintf(stderr, "printed:\n%s\ninstead of:\n%s\n", text, what);
+	CHECK(strcmp(text, what) == 0);
+	free(text);
+}
+
+static void expect_in(FILE *f, const char *const *what)
+{
+	fclose(f);
+	for (; *what; what++) {
+		if (!strstr(text, *what))
+			fprintf(stderr, "no '%s' in:\n%s\n", *what, text);
+		CHECK(strstr(text, *what));
+	}
+	free(text);
+}
+
+static void test_grid(void)
+{
+	ob_grid *g = ob_grid_new("lrl");
+	static const char *const cells[] = { "a", "number", "", "longer", "1 \u00b5s", "x", "", "", "end" };
+	for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
+		ob_grid_add(g, "%s", cells[i]);
+	FILE *f = begin();
+	ob_grid_print(g, f, false);
+	expect(f, "a       number\n"
+		  "longer    1 \u00b5s  x\n"
+		  "                end\n");
+	f = begin();
+	ob_grid_print(g, f, true);
+	expect(f, "| a      | number |     |\n"
+		  "| ------ | -----: | --- |\n"
+		  "| longer |   1 \u00b5s | x   |\n"
+		  "|        |        | end |\n");
+	ob_grid_add(g, "%s", "half a row");
+	f = begin();
+	ob_grid_print(g, f, false);
+	fclose(f);
+	CHECK(strstr(text, "half a row\n"));
+	free(text);
+	ob_grid_free(g);
+}
+
+static ob_result make(const char *name, const char *engine, double cost, double error, const char *failed)
+{
+	ob_result r = { .of = ob_case_find(name), .engine = ob_peer_find(engine) };
+	r.settings = r.engine->usual;
+	ob_outcome o = { .cpu_s = cost, .wall_s = cost, .body_seconds = 1 };
+	for (uint32_t i = 0; i < r.of->figures; i++)
+		o.figure[i] = error * r.of->figure[i].target;
+	snprintf(o.failed, sizeof o.failed, "%s", failed);
+	ob_result_repeat(&r, &o);
+	return r;
+}
+
+static void test_tables(void)
+{
+	ob_results r = { 0 };
+	const ob_result list[] = {
+		make("stack-10", "obsim", 2e-6, .5, ""),         make("stack-10", "ode-quick", 4e-6, 1, ""),
+		make("stack-10", "ode-world", 1e-6, .1, "fell"), make("heavy-1000", "obsim", 6e-6, 1, ""),
+		make("heavy-1000", "ode-world", 4e-6, .5, ""),   make("sliding", "obsim", 1, 2, ""),
+		make("sliding", "ode-quick", 1, 2, "fell")
+	};
+	for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+		CHECK(ob_results_add(&r, &list[i]));
+	ob_digest d = ob_digest_make(&r);
+	CHECK(ob_lab_count_missed(&d) == ob_case_find("sliding")->figures);
+	FILE *f = begin();
+	ob_lab_print_rows(f, &d, false);
+	expect_in(f, (const char *[]){ " 14  Stack of 10", "0.25 mm  \u2264 0.5 mm", "met", "0.5 mm (ODE QuickStep)",
+				       " 11  Sliding", "MISSED", "all failed", NULL });
+	f = begin();
+	ob_lab_print_equal(f, &d, false);
+	expect_in(f, (const char *[]){ "Case", "at an error of", "0.5 mm", "4 (2\u00d7)", "never", "4 (0.67\u00d7)",
+				       "obsim is ahead in 1 of 2; at worst it takes 1.5 times as long.", NULL });
+	f = begin();
+	ob_lab_write_equal(f, &d);
+	expect_in(f, (const char *[]){ "case,error,", "\r\nstack-10,0.5,mm,1,obsim,",
+				       "\r\nstack-10,0.5,mm,1,ode-world,,\r\n", NULL });
+	ob_results_finish(&r);
+	d = ob_digest_make(&r);
+	f = begin();
+	ob_lab_print_equal(f, &d, true);
+	expect(f, "");
+}
+
+int main(void)
+{
+	test_grid();
+	test_tables();
+	return check_end();
+}
