@@ -86,9 +86,8 @@ void ob_report_figures(ob_page *p, const void *with)
 	const ob_result *promised = ob_digest_promised(d, c->of);
 	write_heads(p, c->of, "engine, at its usual settings", "steps a frame");
 	for (size_t i = 0; i < d->engines; i++) {
-		const ob_result *r = ob_digest_usual(d, c->of, d->engine[i]);
-		if (!r && promised && promised->engine == d->engine[i])
-			r = promised;
+		bool is_promised = promised && promised->engine == d->engine[i];
+		const ob_result *r = is_promised ? promised : ob_digest_usual(d, c->of, d->engine[i]);
 		if (!r)
 			continue;
 		ob_page_markup(p, "<tr><th scope=\"row\">");
