@@ -34,15 +34,12 @@ typedef struct ob_forest_contact {
 
 // Working state of one island's step; memory grown as needed, never shrunk.
 typedef struct ob_forest {
-	bool planned; // tolerance is that of this step
 	bool recent; // the last substep was solved directly
 	bool hopeless; // a solve of this step led nowhere
-	double tolerance; // m/s: what may be left over; infinity = never solve directly
 	uint32_t rows_max, contacts_max, batches_max;
 	ob_link *link; // [row]
 	uint32_t *order; // rows, parents before children
-	uint32_t *up; // [row]: its contact, or who carries it
-	double *carried; // [row]: kg
+	uint32_t *up; // [row]: its contact
 	uint32_t contacts;
 	ob_forest_contact *contact;
 	lanes (*rate)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: residual velocities; changes of impulses
