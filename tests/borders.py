@@ -27,13 +27,14 @@ ARROWS = {
     'measure': 'motion base',
     'reference': 'motion base',
     'plot': 'base',
+    'page': '',
     'peer': 'sim ode table measure motion base',
-    'lab': 'reference peer plot measure motion base',
+    'lab': 'reference peer plot page measure motion base',
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
     'cli': 'host render record lab measure scene base',
 }
-BUILT = {'render': ['shaders.h'], 'lab': ['report_texts.h']}  # written by the build, so without a folder
+BUILT = {'render': ['shaders.h'], 'lab': ['report_texts.h'], 'page': ['page_texts.h']}  # written by the build, so without a folder
 
 # What only some files may do: (what, pattern, where it may stand, in code without comments and strings?).
 DUTIES = [

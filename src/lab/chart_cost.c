@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "lab/chart.h"
-#include "lab/page.h"
+#include "page/page.h"
 #include "reference/convergence.h"
 
 // How the results of one engine fall into series

@@ -23,7 +23,7 @@ static void write_svg(ob_page *p, ob_chart *chart)
 
 static void write_style(ob_page *p, const void *with)
 {
-	ob_page_markup(p, "%s", text_report_css);
+	ob_page_style(p);
 }
 
 static void write_promises(ob_page *p, const void *with)

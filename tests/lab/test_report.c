@@ -8,7 +8,7 @@
 
 #include "../check.h"
 #include "lab/digest.h"
-#include "lab/page.h"
+#include "page/page.h"
 #include "lab/report.h"
 
 static const ob_peer_kind kinds[] = {

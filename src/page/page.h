@@ -1,7 +1,8 @@
-// HTML as it is written: templates with slots, texts with what needs it escaped, numbers as people read them.
+// HTML as it is written, for all reports: templates with slots, texts with what needs it escaped, numbers as people read
+// them, one style.
 // One thread at a time per page.
-#ifndef OB_LAB_PAGE_H
-#define OB_LAB_PAGE_H
+#ifndef OB_PAGE_PAGE_H
+#define OB_PAGE_PAGE_H
 
 #include <stddef.h>
 #include <stdio.h>
@@ -17,6 +18,8 @@ typedef struct ob_page_slot {
 } ob_page_slot;
 
 void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, size_t slots, const void *with);
+// The style sheet of every report, for between <style> and </style>: light and dark, screen and paper
+void ob_page_style(ob_page *p);
 
 // printf of markup; the arguments must not need escaping
 void ob_page_markup(ob_page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -1,10 +1,12 @@
-#include "lab/page.h"
+#include "page/page.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "page_texts.h"
 
 void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, size_t slots, const void *with)
 {
@@ -20,6 +22,11 @@ void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, si
 				slot[i].write(p, with);
 	}
 	fputs(template, p->out);
+}
+
+void ob_page_style(ob_page *p)
+{
+	fputs(text_page_css, p->out);
 }
 
 void ob_page_markup(ob_page *p, const char *format, ...)
