@@ -124,7 +124,8 @@ static void note_creep(ob_sim *s)
 		ob_touch *t = &w->touch[i];
 		t->creep = t->creep * (1 - fading) + t->slip;
 		w->error = fmax(w->error, t->creep);
-		if (t->creep > tolerance && t->slip > fading * tolerance && w->substeps < most_for_creep)
+		bool goes_on = t->slip > fading * tolerance && w->substeps < most_for_creep;
+		if (t->creep > tolerance && (goes_on || t->slip > .5 * tolerance))
 			w->error_new = fmax(w->error_new, t->creep);
 	}
 }

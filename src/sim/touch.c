@@ -9,7 +9,17 @@
 #include "sim/members.h"
 #include "sim/pairs.h"
 
+static const double look_again_share = 3; // of the tolerance, at most
 static const double look_again = .003; // m: path after which a resting pair's geometry is looked at again
+
+// m; corners that were no points of the contact come down by a share of the way that the bodies have made. Where many
+// substeps did not do, that may be why.
+static double patience(const ob_sim *s)
+{
+	double tolerance = ob_universe_settings(s->u)->tolerance;
+	double share = look_again_share * fmin(1, 16. / s->island.substeps);
+	return tolerance > 0 ? fmin(look_again, share * tolerance) : look_again;
+}
 
 static void refresh(ob_sim *s, ob_touch *t)
 {
@@ -20,7 +30,7 @@ static void refresh(ob_sim *s, ob_touch *t)
 	ob_member_settle(w, t->a);
 	ob_member_settle(w, t->b);
 	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
-	double tolerance = look_again * fmin(1, 2 * fmin(a->thickness, b->thickness)), path = a->path + b->path;
+	double tolerance = patience(s) * fmin(1, 2 * fmin(a->thickness, b->thickness)), path = a->path + b->path;
 	ob_look(s, t, tolerance, &m, &when);
 	if (!m.points) {
 		t->limit = path + fmax(tolerance, m.separation - tolerance);
@@ -44,15 +54,25 @@ static void refresh(ob_sim *s, ob_touch *t)
 	ob_lane_carry_in(w, t, &old);
 }
 
+// m/s, what the two may gain within the substep, on average over it. What touches is expected to go on as it did: at
+// rest it gains nothing.
+static double gain(const ob_island_work *w, const ob_touch *t)
+{
+	double free = w->pull * w->h;
+	const double *a = w->dv[t->a], *b = w->dv[t->b];
+	if (t->lane == OB_NO_LANE)
+		return free;
+	return fmin(free, .5 * (ob_norm(ob_v3(a[0], a[1], a[2])) + ob_norm(ob_v3(b[0], b[1], b[2]))));
+}
+
 bool ob_touches_refresh(ob_sim *s, double ahead)
 {
 	bool any = false;
 	ob_island_work *w = &s->island;
-	double gh = w->pull * w->h; // m/s, that either may gain; on average half of it
 	for (uint32_t i = 0; i < w->touches; i++) {
 		ob_touch *t = &w->touch[i];
 		const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
-		if (a->path + b->path + (a->speed + b->speed + gh) * ahead > t->limit) {
+		if (a->path + b->path + (a->speed + b->speed + gain(w, t)) * ahead > t->limit) {
 			s->counters.looks++;
 			refresh(s, t);
 			any = true;
