@@ -88,15 +88,17 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 		line(f, "contact", "none: nothing touched");
 	if (!t->rough)
 		line(f, "friction", "none: no object has any");
-	else if (c->pair_exchanges)
-		line(f, "friction", "Coulomb's cone, where both objects of a pair are rough");
+	else if (c->pair_exchanges > c->slick_exchanges)
+		line(f, "friction", "Coulomb's cone in %" PRIu64 " exchanges; %" PRIu64 " without rows for it",
+		     c->pair_exchanges - c->slick_exchanges, c->slick_exchanges);
 	else
-		line(f, "friction", "none: nothing touched");
+		line(f, "friction", "none: no two rough objects touched");
 	if (!t->elastic)
 		line(f, "restitution", "none: no object has any");
 	else
 		line(f, "restitution", "%" PRIu64 " impacts at their own instants, in %" PRIu64 " rounds", c->impacts,
 		     c->impact_rounds);
+	line(f, "recovery", "%.3g J of potential energy, from pushing penetrations apart", c->recovered);
 	if (x->settings->tolerance > 0)
 		line(f, "tolerance",
 		     "%" PRIu64 " islands were solved, %" PRIu64 " solutions thrown away for being too coarse",

@@ -52,6 +52,7 @@ static const struct field {
 	FIELD(REAL, energy_start, "J"),
 	FIELD(REAL, energy_end, "J"),
 	FIELD(REAL, energy_gain_max, ""),
+	FIELD(REAL, energy_recovered, "J"),
 	FIELD(REAL, momentum_error, ""),
 	FIELD(REAL, penetration_max_m, "m"),
 	FIELD(REAL, penetration_mean_m, "m"),

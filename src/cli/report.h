@@ -24,6 +24,7 @@ typedef struct ob_report {
 	uint64_t substeps_min, substeps_median, substeps_max; // of island-steps, where a tolerance chose; else 0
 	uint64_t islands_redone, islands_over;
 	double tolerance, error_reached; // m
+	double energy_recovered; // J
 	double step, simulated_s;
 	double wall_s, cpu_s, total_s;
 	double body_step_cpu_us;

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "cli/report.h"
 
@@ -25,4 +26,5 @@ void ob_report_count(ob_report *r, const ob_counters *c)
 	r->substeps_max = quantile(c, 1);
 	r->islands_redone = c->islands_redone;
 	r->islands_over = c->islands_over;
+	r->energy_recovered = strcmp(r->arch, "monolith") == 0 ? NAN : c->recovered;
 }

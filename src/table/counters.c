@@ -21,6 +21,7 @@ static void add(ob_counters *to, const ob_counters *c)
 	to->swept_looks += c->swept_looks;
 	to->rounds += c->rounds;
 	to->pair_exchanges += c->pair_exchanges;
+	to->slick_exchanges += c->slick_exchanges;
 	to->impact_rounds += c->impact_rounds;
 	to->impacts += c->impacts;
 	to->direct_solves += c->direct_solves;

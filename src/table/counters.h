@@ -33,6 +33,7 @@ typedef struct ob_counters {
 	uint64_t looks, swept_looks;// collision tests; those that followed a pair through its substep
 	uint64_t rounds;            // of exchanges
 	uint64_t pair_exchanges;    // pairs solved in them
+	uint64_t slick_exchanges;   // those of them without friction
 	uint64_t impact_rounds, impacts; // of restitution; pairs that bounced in them
 	uint64_t direct_solves;     // of an island as a whole
 	uint64_t gyrations;         // substeps of bodies whose inertia needed Euler's equations

@@ -12,7 +12,7 @@ KEYS = """objects steps simulated_s wall_s cpu_s body_step_cpu_us state_hash ene
 momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps frames workers isolation arch commit scene
 step substeps exchange integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies passes total_s
 frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
-islands_over""".split()
+islands_over energy_recovered""".split()
 
 
 class Report(program.Case):
@@ -56,7 +56,7 @@ class Report(program.Case):
 			self.assertIn(line, cradle.stdout)
 		self.assertRegex(cradle.stdout, r"restitution  \d+ impacts")
 		boxes = program.call("run", program.scene("falling_boxes"), "-D", "n=8", "--duration", "2", "--explain", "--json=-")
-		for line in "restitution  none: no object has any", "flight       closed form", "collision":
+		for line in "restitution  none: no object has any", "flight       closed form", "collision", "Coulomb's cone":
 			self.assertIn(line, boxes.stderr)
 		shares = [float(x) for x in re.findall(r"([\d.]+) %", boxes.stderr)]
 		self.assertEqual(len(shares), 11)
