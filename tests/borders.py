@@ -32,7 +32,7 @@ ARROWS = {
     'lab': 'reference peer plot page measure motion base',
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
-    'cli': 'host render record lab measure scene base',
+    'cli': 'host render record lab measure scene table base',
 }
 BUILT = {'render': ['shaders.h'], 'lab': ['report_texts.h'], 'page': ['page_texts.h']}  # written by the build, so without a folder
 

@@ -27,4 +27,5 @@ void ob_report_count(ob_report *r, const ob_counters *c)
 	r->islands_redone = c->islands_redone;
 	r->islands_over = c->islands_over;
 	r->energy_recovered = strcmp(r->arch, "monolith") == 0 ? NAN : c->recovered;
+	r->box_tests = c->box_tests;
 }

@@ -9,7 +9,14 @@
 #include "base/cpu.h"
 #include "cli/number.h"
 
-enum { WORKERS_MAX = 65536, SUBSTEPS_MAX = 1000, LAG_MAX = 256, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
+enum {
+	WORKERS_MAX = 65536,
+	SUBSTEPS_MAX = 1000,
+	LAG_MAX = 256,
+	LOAD_MAX = 1000000000,
+	SIZE_MIN = 16,
+	SIZE_MAX_PIXELS = 16384
+};
 
 static const char *name_of(ob_option_id id)
 {
@@ -225,7 +232,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	if (!a->operand)
 		return ob_fail(e, "no scene given: obsim %s scenes/falling_boxes.lua", verbs[a->command]);
 	const char *arch = a->value[OB_OPTION_ARCH], *isolation = a->value[OB_OPTION_ISOLATION];
-	const char *measure = a->value[OB_OPTION_MEASURE];
+	const char *measure = a->value[OB_OPTION_MEASURE], *narrow = a->value[OB_OPTION_NARROW];
 	*r = (ob_run_request){
 		.scene = a->operand,
 		.scene_options = { .defines = a->define, .define_count = a->defines },
@@ -236,6 +243,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.iterations = 20,
 		.exchange = a->value[OB_OPTION_EXCHANGE],
 		.lag = UINT32_MAX,
+		.narrow = narrow && strcmp(narrow, "aabb") == 0 ? OB_NARROW_AABB : OB_NARROW_OBB,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.integrator = a->value[OB_OPTION_INTEGRATOR],
 		.sleeping = a->value[OB_OPTION_SLEEPING],
@@ -255,6 +263,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	       count(a, OB_OPTION_SUBSTEPS, 1, SUBSTEPS_MAX, &r->substeps, e) &&
 	       count(a, OB_OPTION_PASSES, 1, SUBSTEPS_MAX, &r->passes, e) && read_tolerance(r, a, e) &&
 	       (!a->value[OB_OPTION_LAG] || count(a, OB_OPTION_LAG, 0, LAG_MAX, &r->lag, e)) &&
+	       count(a, OB_OPTION_LOAD, 0, LOAD_MAX, &r->load, e) &&
 	       count(a, OB_OPTION_ITERATIONS, 0, 100000, &r->iterations, e) && read_workers(r, a, e) &&
 	       check_architecture(r, a, e) && check_name(r->name, e) && read_frames(&r->frames, a, e) &&
 	       check_outputs(a, e);

@@ -33,6 +33,8 @@ typedef struct ob_run_request {
 	uint32_t substeps, passes; // 0 = the scene's; after settling, substeps 0 = as the tolerance chooses
 	uint32_t iterations;
 	const char *exchange, *integrator, *sleeping; // NULL = the scene's
+	ob_narrow_phase narrow;
+	uint32_t load; // numbers added up in each test of two boxes
 	uint32_t lag; // exchanges; UINT32_MAX = the scene's
 	bool explain;
 	ob_measure_when measure;

@@ -184,6 +184,7 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.passes = q->passes,
 		.tolerance = q->tolerance > 0 ? q->tolerance : NAN,
 		.lag = ob_universe_settings(ob_host_universe(r->host))->lag,
+		.load = q->load,
 		.seed = q->scene_options.has_seed ? q->scene_options.seed : r->scene->seed,
 		.frames = r->frames,
 		.frame_rate = q->frames.wanted ? q->frames.fps : NAN,
@@ -195,6 +196,7 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 	snprintf(p->isolation, sizeof p->isolation, "%s", info.isolation);
 	snprintf(p->exchange, sizeof p->exchange, "%s", q->exchange);
 	snprintf(p->integrator, sizeof p->integrator, "%s", q->integrator);
+	snprintf(p->narrow, sizeof p->narrow, "%s", q->narrow == OB_NARROW_AABB ? "aabb" : "obb");
 	snprintf(p->commit, sizeof p->commit, "%s", ob_version_commit);
 	p->fps = r->frames > 0 ? (double)r->frames / p->total_s : NAN;
 }

@@ -93,6 +93,8 @@ bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_run_settings *ru
 		.sleeping = strcmp(r->sleeping, "on") == 0,
 		.monolith = r->monolith,
 		.iterations = r->iterations,
+		.narrow_phase = r->narrow,
+		.load = r->load,
 		.timed = r->explain,
 	};
 	settle_exactness(r, s, run);

@@ -23,7 +23,7 @@ double ob_swept_find(const ob_placed *a, const ob_placed *b, double speed, doubl
 	// A grazing pass takes many small advances; after so many, what is this near counts as touching.
 	for (int tries = 0; tries < 256 && t <= h; tries++) {
 		ob_placed at = moved(a, t), bt = moved(b, t);
-		find(&at, &bt, tolerance, out);
+		find.find(find.with, &at, &bt, tolerance, out);
 		if (tries == 0)
 			apart = out->separation;
 		if (out->points)
@@ -32,7 +32,7 @@ double ob_swept_find(const ob_placed *a, const ob_placed *b, double speed, doubl
 	}
 	if (t <= h) {
 		ob_placed at = moved(a, t), bt = moved(b, t);
-		find(&at, &bt, margin, out);
+		find.find(find.with, &at, &bt, margin, out);
 		if (out->points)
 			return t;
 	}

@@ -5,7 +5,10 @@
 #include "contact/manifold.h"
 
 // Finds points of two shapes; out->separation must be a lower bound of their distance where there are none.
-typedef bool (*ob_manifold_finder)(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+typedef struct ob_manifold_finder {
+	void (*find)(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+	void *with;
+} ob_manifold_finder;
 
 // Conservative advancement (Mirtich 1996): both shapes move at their constant v, w. Returns the first time in [0, h] at
 // which they are within tolerance (m), and in out the points up to margin (m) as of that time: what turns about the

@@ -2,7 +2,9 @@
 
 #include <stdlib.h>
 
+#include "base/burden.h"
 #include "ode/ode_body.h"
+#include "ode/ode_boxed.h"
 #include "ode/ode_geom.h"
 
 enum { PAIR_POINTS = 4, CAP_POINTS = 8 }; // on a cap, ODE lists 8 points round its rim: the first 4 lie on one side
@@ -31,7 +33,7 @@ struct ob_ode_world {
 	dSpaceID space;
 	dJointGroupID joints;
 	ob_ode_world_setup setup;
-	uint64_t steps;
+	uint64_t steps, box_tests;
 	double substep; // s, of the last step
 	struct member *member;
 	struct contact_pair *pair;
@@ -179,9 +181,12 @@ static void near(void *data, dGeomID one, dGeomID other)
 		b = a;
 		a = lower;
 	}
+	w->box_tests++;
+	ob_burden(w->setup.load);
 	dContactGeom point[CAP_POINTS];
 	bool cap = dGeomGetClass(a->geom) == dCylinderClass || dGeomGetClass(b->geom) == dCylinderClass;
-	int n = dCollide(a->geom, b->geom, cap ? CAP_POINTS : PAIR_POINTS, point, sizeof *point);
+	int n = w->setup.boxed ? ob_ode_collide_boxed(a->geom, b->geom, point)
+			       : dCollide(a->geom, b->geom, cap ? CAP_POINTS : PAIR_POINTS, point, sizeof *point);
 	struct contact_pair *p = n > 0 ? next_pair(w) : NULL;
 	if (!p)
 		return;
@@ -270,6 +275,11 @@ void ob_ode_world_get(const ob_ode_world *w, uint32_t id, ob_state *s, bool *asl
 	s->pose.q = (ob_quat){ q[0], q[1], q[2], q[3] };
 	s->v = *asleep ? ob_v3(0, 0, 0) : ob_v3(v[0], v[1], v[2]);
 	s->w = *asleep ? ob_v3(0, 0, 0) : ob_v3(o[0], o[1], o[2]);
+}
+
+uint64_t ob_ode_world_box_tests(const ob_ode_world *w)
+{
+	return w->box_tests;
 }
 
 size_t ob_ode_world_contacts(const ob_ode_world *w, ob_contact_point *out, double *depth, size_t max)

@@ -14,6 +14,8 @@ typedef struct ob_ode_world_setup {
 	uint32_t iterations; // QuickStep; 0 = dWorldStep (the big-matrix solver)
 	uint32_t objects;    // ids are 0 .. objects-1
 	bool sleeping;       // ODE's auto-disable
+	bool boxed;          // objects touch where their axis-aligned boxes do (ode_boxed.h)
+	uint32_t load;       // base/burden.h, at each pair of boxes that the space finds to overlap
 } ob_ode_world_setup;
 
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s); // NULL: no memory
@@ -27,6 +29,8 @@ void ob_ode_world_remove(ob_ode_world *w, uint32_t id);
 bool ob_ode_world_step(ob_ode_world *w, double h);
 // touching: had a contact when it was last awake.
 void ob_ode_world_get(const ob_ode_world *w, uint32_t id, ob_state *s, bool *asleep, bool *touching);
+// Pairs of boxes that the space has found to overlap, of which at least one moves, in all steps.
+uint64_t ob_ode_world_box_tests(const ob_ode_world *w);
 // Contact points of the last step, sorted by (a, b); depth[i] (m) of each; returns how many there are (may exceed max).
 size_t ob_ode_world_contacts(const ob_ode_world *w, ob_contact_point *out, double *depth, size_t max);
 

@@ -33,7 +33,7 @@ static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32
 	}
 	ob_peer_ode_enter();
 	*p = (ob_peer){ .substep = s->step / s->substeps, .substeps = s->substeps, .objects = w->objects };
-	p->world = ob_ode_world_create(&(ob_ode_world_setup){ w->gravity, iterations, w->objects, s->sleeping });
+	p->world = ob_ode_world_create(&(ob_ode_world_setup){ w->gravity, iterations, w->objects, s->sleeping, false, 0 });
 	if (!p->world) {
 		ob_fail(e, "no memory for a world of %u bodies", w->objects);
 		destroy(p);

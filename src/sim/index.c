@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "base/burden.h"
+
 // Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m.
 enum { LEVEL_ZERO = 33, LEVELS = 64 };
 
@@ -101,11 +103,6 @@ void ob_index_remove(ob_universe *u, uint32_t id)
 		unlink_object(ex, id);
 }
 
-static bool overlap(const float *a, const float *b)
-{
-	return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
-}
-
 static bool below_plane(const ob_universe *u, uint32_t plane, const float *b)
 {
 	const ob_motion *m = ob_newest_motion(u, plane);
@@ -118,7 +115,16 @@ static bool below_plane(const ob_universe *u, uint32_t plane, const float *b)
 // A growing answer that counts on when it is full.
 typedef struct answer {
 	uint32_t *id, n, max;
+	uint32_t load; // of each test of two boxes
+	uint64_t tests;
 } answer;
+
+static bool overlap(answer *to, const float *a, const float *b)
+{
+	to->tests++;
+	ob_burden(to->load);
+	return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
+}
 
 static void found(answer *a, uint32_t id)
 {
@@ -130,7 +136,7 @@ static void found(answer *a, uint32_t id)
 static void scan_level(const ob_exchange *ex, uint32_t ids, uint32_t id, int level, answer *a)
 {
 	for (uint32_t j = 0; j < ids; j++)
-		if (j != id && ex->cell[j].level == level && overlap(ex->bounds[id], ex->bounds[j]))
+		if (j != id && ex->cell[j].level == level && overlap(a, ex->bounds[id], ex->bounds[j]))
 			found(a, j);
 }
 
@@ -144,15 +150,15 @@ static void scan_cells(const ob_exchange *ex, uint32_t id, int level, const cell
 					uint32_t j = next - 1;
 					const ob_index_cell *c = &ex->cell[j];
 					if (j != id && c->level == level && c->x == x && c->y == y && c->z == z &&
-					    overlap(ex->bounds[id], ex->bounds[j]))
+					    overlap(a, ex->bounds[id], ex->bounds[j]))
 						found(a, j);
 				}
 }
 
-uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max)
+uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests)
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
-	answer a = { out, 0, max };
+	answer a = { out, 0, max, ob_universe_settings(u)->load, 0 };
 	const float *b = ex->bounds[id];
 	if (is_plane(u, id)) {
 		for (uint32_t j = 0; j < ob_universe_ids(u); j++)
@@ -176,5 +182,6 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 	for (uint32_t k = 0; k < ex->count->planes; k++)
 		if (below_plane(u, ex->plane[k], b))
 			found(&a, ex->plane[k]);
+	*tests += a.tests;
 	return a.n;
 }

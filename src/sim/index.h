@@ -12,7 +12,7 @@
 void ob_index_put(ob_universe *u, uint32_t id);
 void ob_index_remove(ob_universe *u, uint32_t id);
 // All other objects whose bounds overlap those of id, in no particular order. Writes up to max ids, returns how many
-// there are.
-uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max);
+// there are. tests grows by the boxes that were compared.
+uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests);
 
 #endif

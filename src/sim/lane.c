@@ -45,18 +45,20 @@ static uint32_t free_colour(const ob_island_work *w, const ob_touch *t, bool jac
 }
 
 // What stays true of a pair wherever its bodies are.
-static ob_kind kind_of(const ob_island_work *w, const ob_touch *t)
+static ob_kind kind_of(const ob_sim *s, const ob_touch *t)
 {
+	const ob_island_work *w = &s->island;
+	bool boxed = ob_universe_settings(s->u)->narrow_phase == OB_NARROW_AABB; // a sphere's box has four points
 	ob_shape a = w->member[t->a].shape, b = w->member[t->b].shape;
 	bool point = (a == OB_SHAPE_SPHERE && (b == OB_SHAPE_SPHERE || b == OB_SHAPE_BOX || b == OB_SHAPE_PLANE)) ||
 		     (b == OB_SHAPE_SPHERE && (a == OB_SHAPE_BOX || a == OB_SHAPE_PLANE));
-	return (point ? OB_KIND_POINT : OB_KIND_FULL) | (t->mu > 0 ? OB_KIND_FULL : OB_KIND_SLICK);
+	return (point && !boxed ? OB_KIND_POINT : OB_KIND_FULL) | (t->mu > 0 ? OB_KIND_FULL : OB_KIND_SLICK);
 }
 
 void ob_lane_take(ob_sim *s, ob_touch *t)
 {
 	ob_island_work *w = &s->island;
-	const ob_kind kind = kind_of(w, t);
+	const ob_kind kind = kind_of(s, t);
 	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI), batch = NONE;
 	if (colour < OB_COLOURS)
 		batch = w->open[colour][kind];

@@ -1,13 +1,15 @@
 #include "sim/look.h"
 
+#include "base/burden.h"
 #include "contact/swept.h"
 #include "ode/ode_collide.h"
+#include "sim/boxed.h"
 
 static const double swept_step = .4; // of the smaller thickness: faster pairs are followed through the substep
 static const double swept_gap = 1e-3; // m: so near counts as meeting
 
 // The shapes that contact/ does not know go to ODE.
-static bool find_by_ode(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+static void find_by_ode(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	ob_ode_point point[8];
 	ob_quat qa, qb;
@@ -38,12 +40,19 @@ static bool find_by_ode(const ob_placed *a, const ob_placed *b, double margin, o
 		out->gap[k] = point[k].gap;
 		out->separation = fmin(out->separation, point[k].gap);
 	}
-	return true;
 }
 
-static bool find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+static void find(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
-	return ob_manifold_find(a, b, margin, out) || find_by_ode(a, b, margin, out);
+	ob_sim *s = with;
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	if (run->narrow_phase == OB_NARROW_AABB) {
+		s->counters.box_tests++;
+		ob_burden(run->load);
+		ob_boxed_find(a, b, margin, out);
+	} else if (!ob_manifold_find(a, b, margin, out)) {
+		find_by_ode(a, b, margin, out);
+	}
 }
 
 static ob_placed placed(const ob_island_work *w, uint32_t row)
@@ -92,7 +101,7 @@ static double meet(ob_sim *s, const ob_touch *t, double horizon, double reach, o
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);
 	double near = fmin(swept_gap, .25 * smaller_thickness(w, t));
 	s->counters.swept_looks++;
-	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, find, m);
+	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, (ob_manifold_finder){ find, s }, m);
 }
 
 double ob_look_ahead(ob_sim *s, const ob_touch *t, double horizon)
@@ -108,7 +117,7 @@ void ob_look(ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, dou
 	double thin = smaller_thickness(w, t), travel = closing_speed(s, t) * w->h;
 	*when = 0;
 	if (travel < swept_step * thin) {
-		find(&a, &b, fmin(tolerance + 1.5 * travel, fmax(.5 * thin, tolerance + travel)), m);
+		find(s, &a, &b, fmin(tolerance + 1.5 * travel, fmax(.5 * thin, tolerance + travel)), m);
 		return;
 	}
 	double met = meet(s, t, w->h, fmin(w->member[t->a].radius, w->member[t->b].radius), m);

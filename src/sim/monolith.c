@@ -29,7 +29,9 @@ ob_monolith *ob_monolith_create(ob_universe *u)
 {
 	const ob_run_settings *run = ob_universe_settings(u);
 	uint32_t capacity = ob_universe_capacity(u);
-	ob_ode_world_setup setup = { run->gravity, run->iterations, capacity, run->sleeping };
+	ob_ode_world_setup setup = {
+		run->gravity, run->iterations, capacity, run->sleeping, run->narrow_phase == OB_NARROW_AABB, run->load
+	};
 	ob_ode_thread_init();
 	ob_monolith *m = calloc(1, sizeof *m);
 	if (!m)
@@ -213,4 +215,8 @@ uint32_t ob_monolith_awake(const ob_monolith *m)
 uint32_t ob_monolith_pairs(const ob_monolith *m)
 {
 	return m->pairs;
+}
+uint64_t ob_monolith_box_tests(const ob_monolith *m)
+{
+	return ob_ode_world_box_tests(m->world);
 }

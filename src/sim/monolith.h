@@ -20,5 +20,7 @@ void ob_monolith_step(ob_monolith *m);
 // Of the last step: dynamic objects that are not asleep; pairs that touch.
 uint32_t ob_monolith_awake(const ob_monolith *m);
 uint32_t ob_monolith_pairs(const ob_monolith *m);
+// Of all steps: ob_ode_world_box_tests.
+uint64_t ob_monolith_box_tests(const ob_monolith *m);
 
 #endif

@@ -72,17 +72,21 @@ static double distance_bound(const ob_universe *u, uint32_t a, uint32_t b)
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
 	const ob_motion *ma = ob_newest_motion(u, a), *mb = ob_newest_motion(u, b);
+	bool boxed = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // reaches beyond the sphere round it
 	if (pa->shape == OB_SHAPE_PLANE || pb->shape == OB_SHAPE_PLANE) {
 		const ob_motion *plane = pa->shape == OB_SHAPE_PLANE ? ma : mb, *other = plane == ma ? mb : ma;
 		const ob_passport *po = plane == ma ? pb : pa;
 		ob_mat3 r = ob_quat_matrix(plane->q);
-		return ob_dot(ob_column(&r, 2), ob_sub(other->p, plane->p)) - ob_shape_radius(po->shape, po->size);
+		double radius = ob_shape_radius(po->shape, po->size);
+		return ob_dot(ob_column(&r, 2), ob_sub(other->p, plane->p)) - (boxed ? sqrt(3) : 1) * radius;
 	}
 	double box_a[6], box_b[6], apart = 0;
 	ob_shape_bounds(pa->shape, pa->size, (ob_pose){ ma->p, ma->q }, box_a);
 	ob_shape_bounds(pb->shape, pb->size, (ob_pose){ mb->p, mb->q }, box_b);
 	for (int c = 0; c < 3; c++)
 		apart = fmax(apart, fmax(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
+	if (boxed)
+		return apart;
 	double spheres = ob_norm(ob_sub(ma->p, mb->p)) - ob_shape_radius(pa->shape, pa->size) -
 			 ob_shape_radius(pb->shape, pb->size);
 	return fmax(apart, spheres);

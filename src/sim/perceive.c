@@ -87,10 +87,10 @@ bool ob_perceive_asked(const ob_universe *u, uint32_t id)
 	return ob_universe_exchange(u)->perceived[id].count == UINT32_MAX;
 }
 
-void ob_perceive(ob_universe *u, uint32_t id)
+void ob_perceive(ob_universe *u, uint32_t id, uint64_t *box_tests)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
-	uint32_t near[256], n = ob_index_query(u, id, near, 256);
+	uint32_t near[256], n = ob_index_query(u, id, near, 256, box_tests);
 	uint32_t offset = ob_perceived_reserve(u, n);
 	if (offset == UINT32_MAX) {
 		ex->count->failure = OB_EXCHANGE_PERCEIVED_FULL;
@@ -99,7 +99,7 @@ void ob_perceive(ob_universe *u, uint32_t id)
 		for (uint32_t i = 0; i < n; i++)
 			ex->perceived_id[offset + i] = near[i];
 	} else {
-		ob_index_query(u, id, ex->perceived_id + offset, n);
+		ob_index_query(u, id, ex->perceived_id + offset, n, box_tests);
 	}
 	ex->perceived[id] = (struct ob_perceived){ offset, n };
 }

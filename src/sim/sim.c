@@ -89,7 +89,7 @@ static void work_own_member(ob_sim *s)
 	if (solved && ex->result[id].step == ob_step_count(s->u) + 1)
 		ob_publish_motion(s->u, id, &ex->result[id]);
 	if (ob_perceive_asked(s->u, id))
-		ob_perceive(s->u, id);
+		ob_perceive(s->u, id, &s->counters.box_tests);
 }
 
 static void work_members(ob_sim *s)
@@ -101,15 +101,17 @@ static void work_members(ob_sim *s)
 		return;
 	}
 	while (ob_claim_next(s->u, &i))
-		ob_perceive(s->u, list[i]);
+		ob_perceive(s->u, list[i], &s->counters.box_tests);
 }
 
 void ob_sim_work(ob_sim *s, ob_phase phase)
 {
 	ob_part_begin(s, phase == OB_PHASE_MEMBERS ? OB_PART_PERCEIVE : OB_PART_LOAD);
-	if (s->monolith)
+	if (s->monolith) {
+		ob_part_enter(s, OB_PART_SOLVE);
 		ob_monolith_step(s->monolith);
-	else if (phase == OB_PHASE_ISLANDS)
+		s->counters.box_tests = ob_monolith_box_tests(s->monolith);
+	} else if (phase == OB_PHASE_ISLANDS)
 		work_islands(s);
 	else if (phase == OB_PHASE_MEMBERS)
 		work_members(s);

@@ -19,6 +19,7 @@ static void add(ob_counters *to, const ob_counters *c)
 		to->chosen[i] += c->chosen[i];
 	to->looks += c->looks;
 	to->swept_looks += c->swept_looks;
+	to->box_tests += c->box_tests;
 	to->rounds += c->rounds;
 	to->pair_exchanges += c->pair_exchanges;
 	to->slick_exchanges += c->slick_exchanges;

@@ -31,6 +31,7 @@ typedef struct ob_counters {
 	uint64_t islands_over;      // islands whose error stayed above it with the most substeps
 	uint64_t chosen[OB_SUBSTEP_CHOICES]; // island-steps by log2 of the substeps that they kept
 	uint64_t looks, swept_looks;// collision tests; those that followed a pair through its substep
+	uint64_t box_tests;         // of two axis-aligned boxes, in whatever phase
 	uint64_t rounds;            // of exchanges
 	uint64_t pair_exchanges;    // pairs solved in them
 	uint64_t slick_exchanges;   // those of them without friction

@@ -13,7 +13,7 @@
 #include "table/table.h"
 
 #define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 2, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 3, OB_LAYOUT_PAGE = 4096 };
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,

@@ -31,6 +31,10 @@ typedef enum ob_exchange_kind {
 	OB_EXCHANGE_LAGGED,   // each computes the pair's impulse for itself, on a state of its partner that is late
 } ob_exchange_kind;
 typedef enum ob_integrator { OB_INTEGRATOR_EXACT, OB_INTEGRATOR_ODE } ob_integrator;
+typedef enum ob_narrow_phase {
+	OB_NARROW_OBB,  // objects touch where their shapes do, however they are turned
+	OB_NARROW_AABB, // objects touch where the boxes along the world's axes overlap that hold them
+} ob_narrow_phase;
 
 // What is fixed for a run; lies in the table, so that every process sees the same.
 typedef struct ob_run_settings {
@@ -45,9 +49,10 @@ typedef struct ob_run_settings {
 	uint32_t monolith;      // 1 = one ODE world holds all objects
 	uint32_t iterations;    // monolith: QuickStep iterations
 	uint32_t lag;           // OB_EXCHANGE_LAGGED: exchanges that a partner's state is late
+	uint32_t narrow_phase;  // ob_narrow_phase
 	double tolerance;       // m; > 0: each island chooses its substeps so that its error stays below
 	uint32_t timed;         // 1 = counters tell what each part of the step took
-	uint32_t reserved;
+	uint32_t load;          // > 0: 1 + 2 + .. + load is added up at each test of two axis-aligned boxes
 } ob_run_settings;
 
 typedef struct ob_universe_setup {

@@ -12,10 +12,11 @@ static const double H = 1 / 240.;
 
 static ob_ode_world *world(uint32_t iterations, bool sleeping)
 {
-	ob_ode_world_setup setup = { { 0, 0, -10 }, iterations, OBJECTS, sleeping };
+	ob_ode_world_setup setup = { { 0, 0, -10 }, iterations, OBJECTS, sleeping, false, 0 };
 	ob_ode_world *w = ob_ode_world_create(&setup);
-	ob_passport plane = { .id = 0, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE,
-			      .friction = 1 };
+	ob_passport plane = {
+		.id = 0, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .friction = 1
+	};
 	ob_state s = { .pose = { { 0, 0, 0 }, { 1, 0, 0, 0 } } };
 	ob_ode_world_add(w, &plane, &s);
 	return w;
@@ -23,8 +24,13 @@ static ob_ode_world *world(uint32_t iterations, bool sleeping)
 
 static void add(ob_ode_world *w, uint32_t id, ob_shape shape, ob_vec3 p, double restitution)
 {
-	ob_passport o = { .id = id, .flags = OB_OBJECT_PRESENT, .shape = shape, .size = { .5, .5, .5 }, .mass = 2,
-			  .friction = .5, .restitution = restitution };
+	ob_passport o = { .id = id,
+			  .flags = OB_OBJECT_PRESENT,
+			  .shape = shape,
+			  .size = { .5, .5, .5 },
+			  .mass = 2,
+			  .friction = .5,
+			  .restitution = restitution };
 	o.inertia = ob_ode_inertia(shape, o.size, o.mass);
 	ob_state s = { .pose = { p, { 1, 0, 0, 0 } } };
 	ob_ode_world_add(w, &o, &s);
@@ -166,6 +172,39 @@ static void test_same_bits(void)
 	CHECK(a[OBJECTS - 1].pose.p.z < 1.1 * (OBJECTS - 1) - 1); // it came down
 }
 
+// A cube on its edge, held up by the lower face of the box round it; one beside it that touches only its box is pushed
+// away, though there is air between them.
+static void test_boxed(void)
+{
+	ob_ode_world_setup setup = { { 0, 0, -10 }, 20, OBJECTS, false, true, 0 };
+	ob_ode_world *w = ob_ode_world_create(&setup);
+	ob_passport plane = { .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .friction = 1 };
+	ob_ode_world_add(w, &plane, &(ob_state){ .pose = { { 0, 0, 0 }, ob_quat_identity() } });
+	ob_passport p = { .id = 1, .shape = OB_SHAPE_BOX, .size = { .5, .5, .5 }, .mass = 1, .friction = .5 };
+	p.inertia = ob_ode_inertia(p.shape, p.size, p.mass);
+	double half = .5 * (cos(.6) + sin(.6)); // of the box round a cube that has turned by .6 rad
+	ob_quat turned = ob_quat_turn(ob_quat_identity(), ob_v3(.6, 0, 0));
+	ob_ode_world_add(w, &p, &(ob_state){ .pose = { { 0, 0, half + .01 }, turned } });
+	bool asleep, touching;
+	for (int i = 0; i < 120; i++)
+		ob_ode_world_step(w, 1. / 60);
+	ob_state s = get(w, 1, &asleep, &touching);
+	CHECK_NEAR(s.pose.p.z, half, .01);
+	CHECK(touching && ob_norm(s.w) < .05);
+	p.id = 2;
+	ob_ode_world_add(w, &p, &(ob_state){ .pose = { { 0, half + .45, .5 }, ob_quat_identity() } });
+	uint64_t tests = ob_ode_world_box_tests(w);
+	ob_ode_world_step(w, 1. / 60);
+	CHECK(ob_ode_world_box_tests(w) == tests + 3); // each with the ground, and both
+	ob_contact_point point[16];
+	double depth[16];
+	CHECK(ob_ode_world_contacts(w, point, depth, 16) == 12);
+	CHECK(point[8].a == 1 && point[8].b == 2);
+	CHECK_NEAR(point[8].normal.y, -1, 1e-12);
+	CHECK_NEAR(depth[8], .05, .01);
+	ob_ode_world_destroy(w);
+}
+
 int main(void)
 {
 	ob_ode_thread_init();
@@ -178,6 +217,7 @@ int main(void)
 	test_standing(OB_SHAPE_SPHERE);
 	test_standing(OB_SHAPE_CYLINDER);
 	test_same_bits();
+	test_boxed();
 	ob_ode_thread_finish();
 	return check_end();
 }

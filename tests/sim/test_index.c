@@ -57,10 +57,12 @@ static bool neighbours(const ob_universe *u, const little_scene *s, uint32_t i, 
 	return true;
 }
 
+static uint64_t tests; // of boxes, so far
+
 static void check_queries(const ob_universe *u, const little_scene *s, uint32_t *found)
 {
 	for (uint32_t i = 0; i < ALL; i++) {
-		uint32_t out[ALL], count = 0, n = ob_index_query(u, i, out, ALL);
+		uint32_t out[ALL], count = 0, n = ob_index_query(u, i, out, ALL, &tests);
 		bool seen[ALL] = { false };
 		if (!there[i])
 			continue;
@@ -74,7 +76,7 @@ static void check_queries(const ob_universe *u, const little_scene *s, uint32_t 
 		}
 		CHECK(n == count);
 		uint32_t few[2] = { ALL, ALL };
-		CHECK(ob_index_query(u, i, few, 1) == n); // says how many there are
+		CHECK(ob_index_query(u, i, few, 1, &tests) == n); // says how many there are
 		CHECK(few[1] == ALL); // and writes no more than asked for
 		*found += n;
 	}
@@ -141,7 +143,7 @@ static void test_extremes(void)
 		there[i] = true;
 	}
 	for (uint32_t i = 0; i < BOXES; i++) {
-		uint32_t out[BOXES], n = ob_index_query(u, i, out, BOXES), expected = 0;
+		uint32_t out[BOXES], n = ob_index_query(u, i, out, BOXES, &tests), expected = 0;
 		for (uint32_t j = 0; j < BOXES; j++)
 			expected += neighbours(u, s, i, j);
 		CHECK(n == expected);

@@ -41,7 +41,7 @@ static void look_around(ob_universe *u)
 	for (uint32_t i = 0; i < count; i++)
 		ob_index_put(u, list[i]);
 	for (uint32_t i = 0; i < count; i++)
-		ob_perceive(u, list[i]);
+		ob_perceive(u, list[i], &(uint64_t){ 0 });
 	ob_pairs_merge(u);
 	ob_rebound_list(u, &count);
 	CHECK(count == 0);

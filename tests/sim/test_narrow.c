@@ -1,0 +1,131 @@
+// What touches what: the shapes as they are, or the boxes along the axes round them; and what a box test costs.
+#include <stdlib.h>
+
+#include "base/burden.h"
+#include "base/clock.h"
+#include "sim/boxed.h"
+
+#include "../check.h"
+#include "little_universe.h"
+
+static const double diagonal = .7853981633974483; // 45 degrees
+
+// Two unit cubes next to each other, one turned about the vertical: .1 m of air between them, but not between their
+// boxes.
+static little_scene *neighbours(ob_narrow_phase narrow)
+{
+	little_scene *s = little_scene_new();
+	s->run.gravity = ob_v3(0, 0, 0);
+	s->run.narrow_phase = narrow;
+	little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, 0));
+	little_object *turned = little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(.9, .9, 0));
+	turned->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, diagonal));
+	return s;
+}
+
+// How far the boxes round the two objects are apart along the axis that parts them best (m).
+static double air_between_boxes(const little_universe *l)
+{
+	double a[6], b[6], most = -INFINITY;
+	ob_shape_bounds(OB_SHAPE_BOX, ob_v3(.5, .5, .5), little_state(l, 0).pose, a);
+	ob_shape_bounds(OB_SHAPE_BOX, ob_v3(.5, .5, .5), little_state(l, 1).pose, b);
+	for (int k = 0; k < 3; k++)
+		most = fmax(most, fmax(a[k] - b[3 + k], b[k] - a[3 + k]));
+	return most;
+}
+
+static void test_air_between(ob_narrow_phase narrow)
+{
+	little_scene *s = neighbours(narrow);
+	little_universe l;
+	little_open(&l, s);
+	ob_counters before, c;
+	ob_universe_count(l.u, &before);
+	little_run(&l, 120);
+	ob_universe_count(l.u, &c);
+	ob_vec3 apart = ob_sub(little_state(&l, 1).pose.p, little_state(&l, 0).pose.p);
+	if (narrow == OB_NARROW_AABB) {
+		CHECK_NEAR(air_between_boxes(&l), 0, 1e-3); // pushed as far as it had to be
+		CHECK(c.box_tests > before.box_tests);
+	} else {
+		CHECK_NEAR(apart.x, .9, 0);
+		CHECK_NEAR(apart.y, .9, 0);
+		CHECK(c.box_tests == before.box_tests);
+	}
+	CHECK(before.box_tests >= 2); // each has looked at the other
+	little_close(&l);
+	free(s);
+}
+
+// What falls onto the ground comes to lie on its box: a ball on its lowest point, a turned cube on air.
+static void test_on_the_ground(ob_narrow_phase narrow)
+{
+	little_scene *s = little_scene_new();
+	s->run.narrow_phase = narrow;
+	little_ground(s);
+	little_sphere(s, 1, .5, ob_v3(0, 0, 1));
+	little_object *edge = little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(3, 0, 1));
+	edge->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(.3, 0, 0));
+	little_universe l;
+	little_open(&l, s);
+	little_run(&l, 300);
+	CHECK_NEAR(little_state(&l, 1).pose.p.z, .5, 1e-3);
+	double height = little_state(&l, 2).pose.p.z, box = .5 * (cos(.3) + sin(.3));
+	if (narrow == OB_NARROW_AABB)
+		CHECK_NEAR(height, box, 2e-3); // four corners of the box carry it, so nothing turns it
+	else
+		CHECK_NEAR(height, .5, 2e-3);
+	little_close(&l);
+	free(s);
+}
+
+// The separation of the boxes is a lower bound of that of the shapes, and the same as of the boxes by hand.
+static void test_find(void)
+{
+	ob_mat3 turned = ob_quat_matrix(ob_quat_turn(ob_quat_identity(), ob_v3(.4, .7, -.2)));
+	static const ob_shape shapes[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
+	ob_placed wall = { OB_SHAPE_BOX,   ob_v3(.1, 5, 5), ob_v3(2, 0, 0), ob_quat_matrix(ob_quat_identity()),
+			   ob_v3(0, 0, 0), ob_v3(0, 0, 0) };
+	for (int i = 0; i < 4; i++) {
+		ob_placed x = { shapes[i], ob_v3(.3, .5, .2), ob_v3(0, 0, 0), turned, ob_v3(0, 0, 0), ob_v3(0, 0, 0) };
+		double bounds[6];
+		ob_quat q = ob_quat_turn(ob_quat_identity(), ob_v3(.4, .7, -.2));
+		ob_shape_bounds(x.shape, x.size, (ob_pose){ x.p, q }, bounds);
+		ob_manifold m;
+		ob_boxed_find(&x, &wall, 2, &m);
+		CHECK(m.points == 4);
+		CHECK_NEAR(m.normal.x, -1, 1e-15);
+		CHECK_NEAR(m.gap[0], 1.9 - bounds[3], 1e-12);
+		CHECK_NEAR(m.separation, 1.9 - bounds[3], 1e-12);
+	}
+}
+
+static double least_time(uint32_t load)
+{
+	double least = INFINITY;
+	for (int i = 0; i < 20; i++) {
+		double begun = ob_clock_thread_cpu();
+		for (int k = 0; k < 100; k++)
+			ob_burden(load);
+		least = fmin(least, ob_clock_thread_cpu() - begun);
+	}
+	return least;
+}
+
+// A hundred times as many numbers take far longer: the compiler has left the sum alone.
+static void test_burden(void)
+{
+	CHECK(least_time(100000) > 20 * least_time(1000));
+	CHECK(least_time(1000) > 10 * least_time(0));
+}
+
+int main(void)
+{
+	test_air_between(OB_NARROW_OBB);
+	test_air_between(OB_NARROW_AABB);
+	test_on_the_ground(OB_NARROW_OBB);
+	test_on_the_ground(OB_NARROW_AABB);
+	test_find();
+	test_burden();
+	return check_end();
+}
