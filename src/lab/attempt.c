@@ -14,7 +14,8 @@
 
 #include "base/clock.h"
 
-static const double tick_s = .2;
+static const double tick_s = .2, shortest_nap_s = 1e-3;
+static const double wall_for_cpu = 4; // the limits of time
 static const char out_of_time[] = "ran longer than";
 static const int stops[] = { SIGINT, SIGTERM, SIGHUP };
 enum { STOPS = sizeof stops / sizeof *stops };
@@ -35,6 +36,7 @@ typedef struct words {
 typedef struct child {
 	pid_t pid;
 	int exit, result, said; // file descriptors: readable at its exit, its message, its standard error
+	double begun, wall, cpu; // s: when, and what it has taken so far
 } child;
 
 static volatile sig_atomic_t interrupted;
@@ -72,9 +74,10 @@ bool ob_attempts_interrupted(void)
 	return interrupted != 0;
 }
 
-bool ob_attempt_ran_out(const ob_outcome *out)
+bool ob_attempt_had_less(const ob_outcome *out, double limit)
 {
-	return strncmp(out->failed, out_of_time, sizeof out_of_time - 1) == 0;
+	return strncmp(out->failed, out_of_time, sizeof out_of_time - 1) == 0 && out->cpu_s < limit &&
+	       out->wall_s < wall_for_cpu * limit;
 }
 
 static void work(const ob_attempt *a, int result)
@@ -115,7 +118,7 @@ static bool start(const ob_attempt *a, child *c, ob_error *e)
 		return false;
 	}
 	pid_t parent = getpid();
-	*c = (child){ fork(), -1, result[0], said[0] };
+	*c = (child){ .pid = fork(), .exit = -1, .result = result[0], .said = said[0], .begun = ob_clock_wall() };
 	if (c->pid == 0) {
 		begin_child(parent, said[1]);
 		work(a, result[1]);
@@ -156,13 +159,20 @@ static bool listen_to(int fd, words *w)
 	}
 }
 
-// Waits for the child's end; false: its time is over, or the lab's is.
-static bool await(const ob_attempt *a, const child *c, words *w)
+// s until one of the limits may be reached
+static double time_left(const ob_attempt *a, child *c)
 {
-	double end = ob_clock_wall() + a->limit;
+	c->wall = ob_clock_wall() - c->begun;
+	c->cpu = fmax(c->cpu, 1e-9 * (double)ob_clock_cpu_of_process(c->pid)); // which is 0 when it is gone
+	return fmin(a->limit - c->cpu, wall_for_cpu * a->limit - c->wall);
+}
+
+// Waits for the child's end; false: its time is over, or the lab's is.
+static bool await(const ob_attempt *a, child *c, words *w)
+{
 	struct pollfd polls[] = { { .fd = c->exit, .events = POLLIN }, { .fd = c->said, .events = POLLIN } };
 	for (;;) {
-		double left = fmax(end - ob_clock_wall(), 0), nap = fmin(left, tick_s);
+		double left = time_left(a, c), nap = fmax(fmin(left, tick_s), shortest_nap_s);
 		struct timespec t = { .tv_nsec = (long)(nap * 1e9) };
 		int n = ppoll(polls, 2, &t, &mask_before);
 		if (interrupted)
@@ -192,8 +202,10 @@ static void explain(const ob_attempt *a, bool ended, int status, const message *
 {
 	const char *last = last_line(w), *colon = *last ? ": " : "", *name = NULL;
 	size_t room = sizeof out->failed;
-	if (!ended)
-		snprintf(out->failed, room, "%s %g s", out_of_time, a->limit);
+	if (!ended && out->cpu_s >= a->limit)
+		snprintf(out->failed, room, "%s %g s of CPU", out_of_time, a->limit);
+	else if (!ended)
+		snprintf(out->failed, room, "%s %g s", out_of_time, wall_for_cpu * a->limit);
 	else if (WIFSIGNALED(status) && (name = sigabbrev_np(WTERMSIG(status))))
 		snprintf(out->failed, room, "crashed, SIG%s%s%.70s", name, colon, last);
 	else if (!m)
@@ -202,7 +214,7 @@ static void explain(const ob_attempt *a, bool ended, int status, const message *
 		snprintf(out->failed, room, "%.95s", m->why.text);
 }
 
-static void finish(const ob_attempt *a, const child *c, bool ended, double wall, words *w, ob_outcome *out)
+static void finish(const ob_attempt *a, const child *c, bool ended, words *w, ob_outcome *out)
 {
 	struct rusage used = { 0 };
 	int status = 0;
@@ -217,9 +229,9 @@ static void finish(const ob_attempt *a, const child *c, bool ended, double wall,
 		*out = m.outcome;
 		return;
 	}
-	*out = (ob_outcome){ .wall_s = wall, .body_seconds = NAN };
-	out->cpu_s = (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+	double cpu = (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
 		     1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+	*out = (ob_outcome){ .wall_s = c->wall, .cpu_s = fmax(cpu, c->cpu), .body_seconds = NAN };
 	for (int i = 0; i < OB_FIGURES; i++)
 		out->figure[i] = INFINITY;
 	explain(a, ended, status, told ? &m : NULL, w, out);
@@ -231,9 +243,9 @@ bool ob_attempt_run(const ob_attempt *a, ob_outcome *out, ob_error *e)
 	words w = { 0 };
 	if (!start(a, &c, e))
 		return false;
-	double begun = ob_clock_wall();
 	bool ended = await(a, &c, &w);
-	finish(a, &c, ended, ob_clock_wall() - begun, &w, out);
+	c.wall = ob_clock_wall() - c.begun;
+	finish(a, &c, ended, &w, out);
 	close(c.exit);
 	close(c.result);
 	close(c.said);

@@ -10,7 +10,7 @@ typedef struct ob_attempt {
 	const ob_case *of;
 	const ob_peer_kind *engine;
 	ob_peer_settings settings;
-	double limit; // s of wall-clock time
+	double limit; // s of CPU, and four times as many of wall-clock time: a busy machine is not the engine's fault
 	void (*tick)(void *with); // a few times a second while the child runs; NULL = not wanted
 	void *with;
 } ob_attempt;
@@ -23,7 +23,7 @@ bool ob_attempts_interrupted(void);
 // Engines that crash, hang, end or cannot be made give a failed outcome with the reason: figures infinite, bodies times
 // seconds not a number. false and e: no child could be started, or it was interrupted.
 bool ob_attempt_run(const ob_attempt *a, ob_outcome *out, ob_error *e);
-// The outcome of one that a longer limit might let come to its end.
-bool ob_attempt_ran_out(const ob_outcome *out);
+// The outcome of one that this limit, being longer, might let come to its end.
+bool ob_attempt_had_less(const ob_outcome *out, double limit);
 
 #endif

@@ -34,7 +34,7 @@ static uint32_t repeats_left(const session *s, const ob_case *c, const ob_peer_k
 	if (!r)
 		return s->plan->repeats;
 	if (isnan(r->outcome.body_seconds))
-		return ob_attempt_ran_out(&r->outcome) && r->outcome.wall_s < s->plan->limit ? 1 : 0;
+		return ob_attempt_had_less(&r->outcome, s->plan->limit) ? 1 : 0;
 	return r->repeats < s->plan->repeats ? s->plan->repeats - r->repeats : 0;
 }
 

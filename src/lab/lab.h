@@ -20,7 +20,7 @@ typedef struct ob_lab_plan {
 	ob_engine_list engines;
 	ob_sweep sweep;
 	uint32_t repeats; // 1 .. OB_REPEATS
-	double limit; // s, of each attempt
+	double limit; // s, of each attempt: as there
 	const char *file; // written after each attempt
 	void (*tick)(const ob_lab_progress *p, void *with); // a few times a second; NULL = not wanted
 	void *with;
