@@ -207,10 +207,26 @@ static double raised(const ob_island_work *w)
 	return sum;
 }
 
+// What is pushed apart turns, too, and with it its box grows or shrinks: it has to be looked at again.
+static void count_push(ob_island_work *w)
+{
+	for (uint32_t i = 1; i <= w->members; i++) {
+		double *was = w->delta[i];
+		const double *is = w->d[i];
+		ob_vec3 way = ob_v3(is[0] - was[0], is[1] - was[1], is[2] - was[2]);
+		ob_vec3 turn = ob_v3(is[3] - was[3], is[4] - was[4], is[5] - was[5]);
+		w->member[i].path += ob_norm(way) + w->member[i].radius * ob_norm(turn);
+		memset(was, 0, sizeof *w->delta);
+	}
+}
+
 void ob_exchange_project(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
+	bool boxed = ob_universe_settings(s->u)->narrow_phase == OB_NARROW_AABB && !is_jacobi(s);
 	double before = raised(w);
+	if (boxed)
+		memcpy(w->delta + 1, w->d + 1, w->members * sizeof *w->d);
 	for (uint32_t k = 0; k < w->batches; k++) {
 		ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
@@ -218,5 +234,7 @@ void ob_exchange_project(ob_sim *s)
 	}
 	if (is_jacobi(s))
 		add_rows(w, w->d, w->delta);
+	if (boxed)
+		count_push(w);
 	w->recovered += raised(w) - before;
 }
