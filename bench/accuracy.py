@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""accuracy.py OBSIM FILE FOLDER [OPTION ...]: runs obsim lab with these options into FOLDER, and writes what came out into
+FILE: the tables between <!-- lab: NAME --> and <!-- end -->, and the diagrams that FILE shows from images/accuracy/.
+
+What FOLDER has already is not run again. On an otherwise idle machine; the whole lab takes about an hour.
+"""
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+
+def read(name):
+    with open(os.path.join(FOLDER, name), encoding='utf-8', newline='') as f:
+        return f.read()
+
+
+def results():
+    return list(csv.DictReader(read('results.csv').splitlines()))
+
+
+def machine():
+    """What was measured, where."""
+    rows = results()
+    cases, engines = len({r['case'] for r in rows}), len({r['engine'] for r in rows})
+    return f"{len(rows)} runs of {cases} cases with {engines} engines; {rows[0]['machine']}; commit {rows[0]['commit']}.\n"
+
+
+def rows():
+    return read('rows.md')
+
+
+def equal():
+    return read('equal.md')
+
+
+def failed():
+    """Of other engines at their usual settings: what did not come to an end worth measuring."""
+    first, text = {}, ''
+    for r in results():  # each engine's settings stand together; the usual ones of others are the coarsest
+        first.setdefault((r['engine'], r['case']), r)
+    for engine in dict.fromkeys(engine for engine, _ in first if not engine.startswith('obsim')):
+        said = [f"`{case}` {r['failed']}" for (e, case), r in first.items() if e == engine and r['failed']]
+        text += f"- {engine}: {'; '.join(said) or 'none'}\n"
+    return text or '- no other engine took part\n'
+
+
+TABLES = {f.__name__: f for f in (machine, rows, equal, failed)}
+
+
+def refresh(path):
+    with open(path, encoding='utf-8') as f:
+        text = f.read()
+    text = re.sub(r'(<!-- lab: (\w+) -->\n).*?(<!-- end -->)',
+                  lambda m: m.group(1) + '\n' + TABLES[m.group(2)]() + '\n' + m.group(3), text, flags=re.S)
+    with open(path, 'w', encoding='utf-8') as f:
+        f.write(text)
+    for image in sorted(set(re.findall(r'\((images/accuracy/[\w.-]+)\)', text))):
+        target = os.path.join(os.path.dirname(os.path.abspath(path)), image)
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        shutil.copyfile(os.path.join(FOLDER, 'plots', os.path.basename(image)), target)
+
+
+if len(sys.argv) < 4:
+    sys.exit(__doc__)
+FOLDER = sys.argv[3]
+if subprocess.run([os.path.abspath(sys.argv[1]), 'lab', '--out', FOLDER, *sys.argv[4:]],
+                  stdout=subprocess.DEVNULL, check=False).returncode != 0:
+    sys.exit('obsim lab failed; the same command goes on where it stopped')
+refresh(sys.argv[2])
