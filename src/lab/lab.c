@@ -141,6 +141,9 @@ bool ob_lab_run(const ob_lab_plan *p, ob_results *r, ob_error *e)
 		for (uint32_t i = 0; fine && i < p->repeats; i++)
 			fine = each(s, attempt, e);
 	ob_attempts_end();
+	if (!fine && ob_attempts_interrupted())
+		ob_fail(e, "interrupted: %zu of %zu runs are done, and the same command goes on from there",
+			s->progress.done, s->progress.all);
 	free(s);
 	return fine;
 }
