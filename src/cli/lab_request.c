@@ -59,7 +59,7 @@ static bool check(const ob_lab_request *r, const ob_arguments *a, ob_error *e)
 bool ob_lab_request_read(ob_lab_request *r, const ob_arguments *a, ob_error *e)
 {
 	*r = (ob_lab_request){
-		.plan.limit = 60,
+		.plan.limit = 150,
 		.out = a->value[OB_OPTION_OUT] ? a->value[OB_OPTION_OUT] : "obsim-lab",
 		.list = a->value[OB_OPTION_LIST],
 		.fresh = a->value[OB_OPTION_FRESH],

@@ -69,7 +69,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_SWEEP] = { NULL, "sweep", "LISTS|none",
 			      "as substeps=1,2,4,tolerance=5mm,.5mm (what suits each engine)", LAB, 0 },
 	[OB_OPTION_REPEATS] = { NULL, "repeats", "N", "runs of each; times are their medians (1)", LAB, 0 },
-	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds of CPU that a run may take (60)", LAB, 0 },
+	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds of CPU that a run may take (150)", LAB, 0 },
 	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR", "results, diagrams, report (obsim-lab)", LAB, 0 },
 	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB, 0 },
 	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print the results as JSON instead of tables", LAB, 0 },

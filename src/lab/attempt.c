@@ -74,10 +74,14 @@ bool ob_attempts_interrupted(void)
 	return interrupted != 0;
 }
 
+bool ob_attempt_ran_out(const ob_outcome *out)
+{
+	return strncmp(out->failed, out_of_time, sizeof out_of_time - 1) == 0;
+}
+
 bool ob_attempt_had_less(const ob_outcome *out, double limit)
 {
-	return strncmp(out->failed, out_of_time, sizeof out_of_time - 1) == 0 && out->cpu_s < limit &&
-	       out->wall_s < wall_for_cpu * limit;
+	return ob_attempt_ran_out(out) && out->cpu_s < limit && out->wall_s < wall_for_cpu * limit;
 }
 
 static void work(const ob_attempt *a, int result)

@@ -23,6 +23,7 @@ bool ob_attempts_interrupted(void);
 // Engines that crash, hang, end or cannot be made give a failed outcome with the reason: figures infinite, bodies times
 // seconds not a number. false and e: no child could be started, or it was interrupted.
 bool ob_attempt_run(const ob_attempt *a, ob_outcome *out, ob_error *e);
+bool ob_attempt_ran_out(const ob_outcome *out); // of time
 // The outcome of one that this limit, being longer, might let come to its end.
 bool ob_attempt_had_less(const ob_outcome *out, double limit);
 

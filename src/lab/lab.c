@@ -102,6 +102,39 @@ static bool keep(session *s, const ob_peer_kind *k, const ob_peer_settings *at, 
 	return ob_results_write(s->results, s->plan->file, e);
 }
 
+// Is a finer than b, with all else no coarser?
+static bool is_finer(const ob_peer_settings *a, const ob_peer_settings *b)
+{
+	bool by_tolerance = a->tolerance > 0;
+	return by_tolerance == (b->tolerance > 0) && a->iterations >= b->iterations &&
+	       (by_tolerance ? a->tolerance < b->tolerance : a->substeps > b->substeps);
+}
+
+// The outcome of a setting that is finer than one that took too long: to be told without trying. NULL: there is none
+static const ob_result *coarser_that_took_too_long(const session *s, const ob_peer_kind *k, const ob_peer_settings *at)
+{
+	for (size_t i = 0; i < s->results->count; i++) {
+		const ob_result *r = &s->results->result[i];
+		if (r->of == s->plan->cases.of[s->at] && r->engine == k && is_finer(at, &r->settings) &&
+		    ob_attempt_ran_out(&r->outcome) && !ob_attempt_had_less(&r->outcome, s->plan->limit))
+			return r;
+	}
+	return NULL;
+}
+
+static bool try(session *s, const ob_peer_kind *k, const ob_peer_settings *at, ob_outcome *out, ob_error *e)
+{
+	const ob_result *coarser = coarser_that_took_too_long(s, k, at);
+	if (coarser) {
+		*out = coarser->outcome;
+		return true;
+	}
+	ob_attempt a = { s->plan->cases.of[s->at], k, *at, s->plan->limit, s->plan->tick ? tick : NULL, s };
+	if (a.tick)
+		tick(s);
+	return ob_attempt_run(&a, out, e);
+}
+
 static bool attempt(session *s, const ob_peer_kind *k, const ob_peer_settings *at, ob_error *e)
 {
 	const ob_case *c = s->plan->cases.of[s->at];
@@ -112,11 +145,8 @@ static bool attempt(session *s, const ob_peer_kind *k, const ob_peer_settings *a
 	s->progress.engine = k;
 	s->progress.settings = *at;
 	s->begun = ob_clock_wall();
-	ob_attempt a = { c, k, *at, s->plan->limit, s->plan->tick ? tick : NULL, s };
 	ob_outcome out;
-	if (a.tick)
-		tick(s);
-	if (!ob_attempt_run(&a, &out, e) || !keep(s, k, at, &out, e))
+	if (!try(s, k, at, &out, e) || !keep(s, k, at, &out, e))
 		return false;
 	uint32_t done = left - repeats_left(s, c, k, at); // all at once, if there is no use in more
 	pace *p = &s->pace[s->at];

@@ -27,8 +27,8 @@ typedef struct ob_lab_plan {
 } ob_lab_plan;
 
 // Does what r does not have yet. Engines and settings take turns, repeat by repeat, so that a busy minute of the machine
-// hits all of a case alike. false and e: interrupted, or the file cannot be written; what was done until then is in
-// both.
+// hits all of a case alike. What is finer than a setting that ran out of time fails with it, untried. false and e:
+// interrupted, or the file cannot be written; what was done until then is in both.
 bool ob_lab_run(const ob_lab_plan *p, ob_results *r, ob_error *e);
 
 #endif
