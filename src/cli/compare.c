@@ -164,7 +164,7 @@ static void run_all(plan *p, ob_comparison *c, uint32_t objects)
 				 "%" PRIu32 " objects are more than the %" PRIu32 " that are tried", objects,
 				 v->objects_max);
 		else
-			run_variant(p, v, "times", r);
+			run_variant(p, v, "end", r);
 	}
 	if (c->result[0].state == OB_VARIANT_DONE)
 		measure_kind(p, c, 0, 0);

@@ -58,7 +58,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
 	[OB_OPTION_SUMMARY] = { NULL, "summary", "FILE", "the report, as CSV", RUN, 0 },
 	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
-	[OB_OPTION_MEASURE] = { NULL, "measure", "step|times|end", "each step, only its time, or neither (step)", RUN,
+	[OB_OPTION_MEASURE] = { NULL, "measure", "step|parts|end", "each step, where the time goes, or neither (step)", RUN,
 				0 },
 	[OB_OPTION_EXPLAIN] = { NULL, "explain", NULL,
 				"what was modelled, what was left out and why, and what each part cost", RUN, 0 },

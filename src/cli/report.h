@@ -29,10 +29,14 @@ typedef struct ob_report {
 	double step, simulated_s;
 	double wall_s, cpu_s, total_s;
 	double body_step_cpu_us;
-	double startup_s, step_p50_s, step_p99_s;
+	double startup_s, step_p50_s, step_p90_s, step_p99_s, step_max_s;
+	double critical_s, work_s, held_s, gate_s, gate_cpu_s, idle_s, elapsed_s; // of all workers; NaN unless timed
+	double host_cpu_s, renderer_cpu_s;
+	uint64_t switches, worker_memory_bytes;
 	double energy_start, energy_end, energy_gain_max;
 	double momentum_error;
 	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;
+	double air_max_m, air_mean_m;
 	double fps, frame_rate;
 } ob_report;
 
@@ -49,7 +53,7 @@ void ob_report_print(const ob_report *r, FILE *f);
 // Only the members, for an object that the caller has open.
 void ob_report_write_members(const ob_report *r, ob_json *j);
 
-// Fills the figures of the tolerance, from counters summed over all workers.
-void ob_report_count(ob_report *r, const ob_counters *c);
+// Fills the figures of the tolerance, and the workers' time if the run was timed, from counters summed over all workers.
+void ob_report_count(ob_report *r, const ob_counters *c, bool timed);
 
 #endif

@@ -17,7 +17,15 @@ static uint64_t quantile(const ob_counters *c, double share)
 	return 0;
 }
 
-void ob_report_count(ob_report *r, const ob_counters *c)
+static double work_of(const ob_counters *c)
+{
+	double sum = 0;
+	for (int i = 0; i < OB_PARTS; i++)
+		sum += 1e-9 * (double)c->time_ns[i];
+	return sum;
+}
+
+void ob_report_count(ob_report *r, const ob_counters *c, bool timed)
 {
 	bool chosen = r->tolerance > 0;
 	r->error_reached = chosen ? c->error : NAN;
@@ -28,4 +36,7 @@ void ob_report_count(ob_report *r, const ob_counters *c)
 	r->islands_over = c->islands_over;
 	r->energy_recovered = strcmp(r->arch, "monolith") == 0 ? NAN : c->recovered;
 	r->box_tests = c->box_tests;
+	r->work_s = timed ? work_of(c) : NAN;
+	r->held_s = timed ? 1e-9 * (double)c->held_ns : NAN;
+	r->gate_cpu_s = timed ? 1e-9 * (double)c->gate_cpu_ns : NAN;
 }

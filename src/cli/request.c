@@ -248,7 +248,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.integrator = a->value[OB_OPTION_INTEGRATOR],
 		.sleeping = a->value[OB_OPTION_SLEEPING],
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
-			   : strcmp(measure, "times") == 0          ? OB_MEASURE_TIMES
+			   : strcmp(measure, "parts") == 0          ? OB_MEASURE_PARTS
 								    : OB_MEASURE_ENDS,
 		.record = a->value[OB_OPTION_RECORD],
 		.summary = a->value[OB_OPTION_SUMMARY],

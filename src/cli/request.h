@@ -17,8 +17,8 @@ typedef struct ob_frames_request {
 
 typedef enum ob_measure_when {
 	OB_MEASURE_STEPS, // each step
-	OB_MEASURE_TIMES, // the start and the end, and how long each step takes
 	OB_MEASURE_ENDS, // the start and the end
+	OB_MEASURE_PARTS, // these, and where the workers' time goes
 } ob_measure_when;
 
 typedef struct ob_run_request {

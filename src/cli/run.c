@@ -27,6 +27,7 @@ typedef struct run {
 	uint64_t steps; // to do
 	uint64_t frames;
 	double begun; // s
+	double own_cpu, drawing_cpu; // s of this thread: when stepping began; while it drew
 } run;
 
 static uint64_t earlier(uint64_t a, uint64_t b)
@@ -58,7 +59,12 @@ static bool look(run *r, ob_error *e)
 		ob_observer_look(&r->observer, &r->now);
 	if (r->recorder && r->now.step % r->scene->record_every == 0 && !ob_recorder_append(r->recorder, &r->now, e))
 		return false;
-	return !r->capture || ob_capture_show(r->capture, prev, &r->now, e);
+	if (!r->capture)
+		return true;
+	double before = ob_clock_thread_cpu();
+	bool shown = ob_capture_show(r->capture, prev, &r->now, e);
+	r->drawing_cpu += ob_clock_thread_cpu() - before;
+	return shown;
 }
 
 static bool take(run *r, ob_error *e)
@@ -69,38 +75,21 @@ static bool take(run *r, ob_error *e)
 	return ob_snapshot_take(&r->now, ob_host_universe(r->host), r->request.frames.contacts, e);
 }
 
-// Where the host has to pause on the way from step "now" to "next", which is looked at
-static uint64_t next_pause(const run *r, uint64_t now, uint64_t next)
-{
-	return r->request.measure == OB_MEASURE_TIMES ? now + 1 : next;
-}
-
-// Waits until the universe stands at step "next", to which it is on its way.
-static bool arrive(run *r, uint64_t next, ob_error *e)
-{
-	for (uint64_t at = next_pause(r, r->now.step, next);; at = next_pause(r, at, next)) {
-		if (!ob_host_wait(r->host, e))
-			return false;
-		if (at >= next)
-			return true;
-		ob_host_go(r->host, next_pause(r, at, next));
-	}
-}
-
 // Stepping and looking overlap: the snapshot of one boundary is looked at while the universe runs to the next.
 static bool step_through(run *r, ob_error *e)
 {
+	r->own_cpu = ob_clock_thread_cpu();
 	if (!take(r, e))
 		return false;
 	for (;;) {
 		uint64_t next = next_look(r);
 		if (next != UINT64_MAX)
-			ob_host_go(r->host, next_pause(r, r->now.step, next));
+			ob_host_go(r->host, next);
 		if (!look(r, e))
 			return false;
 		if (next == UINT64_MAX)
 			return true;
-		if (!arrive(r, next, e)) {
+		if (!ob_host_wait(r->host, e)) {
 			// Ctrl-C leaves it at a boundary, from where the report is made
 			if (ob_host_interrupted(r->host))
 				take(r, NULL);
@@ -201,6 +190,41 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 	p->fps = r->frames > 0 ? (double)r->frames / p->total_s : NAN;
 }
 
+static void report_time(const run *r, const ob_host_times *times, ob_report *p)
+{
+	ob_counters counters;
+	bool timed = ob_universe_settings(ob_host_universe(r->host))->timed;
+	ob_universe_count(ob_host_universe(r->host), &counters);
+	ob_report_count(p, &counters, timed);
+	p->wall_s = times->wall_s;
+	p->cpu_s = times->cpu_s;
+	p->startup_s = times->startup_s;
+	p->step_p50_s = times->step_p50_s;
+	p->step_p90_s = times->step_p90_s;
+	p->step_p99_s = times->step_p99_s;
+	p->step_max_s = times->step_max_s;
+	p->elapsed_s = times->elapsed_s;
+	// each worker stands at the gate while the host looks at what they have done
+	p->idle_s = timed ? (times->elapsed_s - times->wall_s) * (double)p->workers : NAN;
+	p->gate_s = timed ? times->gate_s - p->idle_s : NAN;
+	p->critical_s = timed ? times->critical_s : NAN;
+	// the renderer and the encoders have threads of their own
+	double beside = ob_clock_thread_cpu() - r->own_cpu - r->drawing_cpu;
+	p->renderer_cpu_s = r->frames > 0 ? fmax(0, times->host_cpu_s - beside) : 0;
+	p->host_cpu_s = times->host_cpu_s - p->renderer_cpu_s;
+}
+
+static void report_air(const run *r, ob_report *p)
+{
+	ob_snapshot s = { 0 };
+	ob_air air = { NAN, NAN, 0 };
+	if (ob_snapshot_take(&s, ob_host_universe(r->host), true, NULL))
+		ob_measure_air(&s, &air);
+	p->air_max_m = air.max_m;
+	p->air_mean_m = air.mean_m;
+	ob_snapshot_finish(&s);
+}
+
 static void make_report(run *r, const char *outcome, ob_report *p)
 {
 	ob_host_times times;
@@ -209,17 +233,12 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	name_report(r, outcome, p);
 	count_objects(&r->now, p);
 	ob_observer_report(&r->observer, r->request.measure == OB_MEASURE_STEPS, p);
+	report_air(r, p);
 	snprintf(p->state_hash, sizeof p->state_hash, "%016" PRIx64, ob_measure_hash(&r->now));
-	ob_counters counters;
-	ob_universe_count(ob_host_universe(r->host), &counters);
-	ob_report_count(p, &counters);
-	p->wall_s = times.wall_s;
-	p->cpu_s = times.cpu_s;
-	p->startup_s = times.startup_s;
-	bool timed = r->request.measure != OB_MEASURE_ENDS; // else only stretches of many steps were
-	p->step_p50_s = timed ? times.step_p50_s : NAN;
-	p->step_p99_s = timed ? times.step_p99_s : NAN;
+	report_time(r, &times, p);
 	p->memory_bytes = times.memory_bytes;
+	p->worker_memory_bytes = times.worker_memory_bytes;
+	p->switches = times.switches;
 	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r);
 }
 

@@ -95,7 +95,7 @@ bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_run_settings *ru
 		.iterations = r->iterations,
 		.narrow_phase = r->narrow,
 		.load = r->load,
-		.timed = r->explain,
+		.timed = r->explain || r->measure == OB_MEASURE_PARTS,
 	};
 	settle_exactness(r, s, run);
 	if (!settle_lag(r, s, run, e))

@@ -11,6 +11,7 @@
 #include "host/interrupt.h"
 #include "host/memory.h"
 #include "host/supervisor.h"
+#include "host/switches.h"
 #include "host/worker.h"
 #include "ode/ode_body.h"
 
@@ -147,22 +148,61 @@ const ob_roster *ob_host_roster(const ob_host *h)
 	return h->roster;
 }
 
-void ob_host_get_times(ob_host *h, ob_host_times *out)
+uint64_t ob_host_count_switches(const ob_host *h)
+{
+	uint64_t sum = 0;
+	ob_worker_info info;
+	for (uint32_t w = 0; w < h->workers; w++)
+		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0)
+			sum += ob_switches_of_task(info.pid, info.tid);
+	return sum;
+}
+
+// s. What waits now has done so since its last phase.
+static double gate_time(const ob_host *h)
+{
+	double sum = 0;
+	for (uint32_t w = 0; w < h->workers; w++) {
+		const ob_counters *c = ob_worker_counters(h->u, w);
+		sum += 1e-9 * (double)c->gate_ns;
+		if (c->since_ns)
+			sum += fmax(0, h->last_end - 1e-9 * (double)c->since_ns);
+	}
+	return sum;
+}
+
+static void get_memory(const ob_host *h, ob_host_times *out)
 {
 	ob_worker_info info;
+	for (uint32_t w = 0; w < h->workers && h->spawn->own_memory; w++) {
+		if (ob_universe_get_worker(h->u, w, &info))
+			out->worker_memory_bytes += ob_memory_of_process(info.pid);
+	}
+	out->memory_bytes = out->worker_memory_bytes + ob_memory_of_process(getpid()) +
+			    ob_memory_of_process(ob_keeper_pid(h->keeper)) +
+			    ob_memory_of_universe(ob_universe_name(h->u));
+}
+
+void ob_host_get_times(ob_host *h, ob_host_times *out)
+{
+	const ob_latency *steps = ob_step_latency(h->u);
 	*out = (ob_host_times){
 		.startup_s = h->startup,
 		.wall_s = h->wall,
-		.cpu_s = h->cpu_counted ? 1e-9 * (double)(ob_host_read_cpu(h) - h->cpu_before) : 0,
-		.step_p50_s = ob_latency_percentile(&h->latency, .5),
-		.step_p99_s = ob_latency_percentile(&h->latency, .99),
+		.step_p50_s = ob_latency_percentile(steps, .5),
+		.step_p90_s = ob_latency_percentile(steps, .9),
+		.step_p99_s = ob_latency_percentile(steps, .99),
+		.step_max_s = ob_latency_percentile(steps, 1),
+		.critical_s = 1e-9 * (double)ob_critical_path(h->u),
 	};
-	out->memory_bytes = ob_memory_of_process(getpid()) + ob_memory_of_process(ob_keeper_pid(h->keeper)) +
-			    ob_memory_of_universe(ob_universe_name(h->u));
-	for (uint32_t w = 0; w < h->workers && h->spawn->own_memory; w++) {
-		if (ob_universe_get_worker(h->u, w, &info))
-			out->memory_bytes += ob_memory_of_process(info.pid);
-	}
+	get_memory(h, out);
+	if (!h->cpu_counted)
+		return;
+	out->cpu_s = 1e-9 * (double)(ob_host_read_cpu(h) - h->cpu_before);
+	out->host_cpu_s = ob_clock_process_cpu() - h->own_cpu_before - (h->spawn->own_memory ? 0 : out->cpu_s);
+	out->switches = ob_host_count_switches(h) - h->switches_before;
+	out->elapsed_s = h->last_end - h->first_start;
+	out->gate_s = gate_time(h);
 }
 
 static bool request(ob_host *h, const ob_request *r)

@@ -34,8 +34,14 @@ typedef struct ob_host_times {
 	double startup_s; // from the call to start until every worker stood at the gate
 	double wall_s; // stepping only: between go and pause
 	double cpu_s; // CPU of the workers in that time; of processes as of the kernel's last tick, some ms ago
-	double step_p50_s, step_p99_s; // wall per step, to 1 %; steps of one go that run on unobserved count as equal
+	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
+	double critical_s; // if timed: of the longest worker in each phase, and arranging, in all steps (CPU)
+	double elapsed_s; // from the first go that stepped to the last pause, pauses included
+	double gate_s; // if timed: all workers' waiting at the gate in that time, pauses included (wall)
+	double host_cpu_s; // CPU of the host's process since then, without its workers: renderer, recorder, measures
+	uint64_t switches; // how often workers were taken off a core since then
 	size_t memory_bytes; // PSS of host, keeper and workers, and the table's touched pages once
+	size_t worker_memory_bytes; // of that, the workers' own: 0 where they are threads
 } ob_host_times;
 
 typedef struct ob_host ob_host;

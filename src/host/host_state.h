@@ -6,7 +6,6 @@
 #include <stdatomic.h>
 
 #include "host/host.h"
-#include "host/latency.h"
 #include "host/population.h"
 #include "host/spawn.h"
 
@@ -43,8 +42,10 @@ struct ob_host {
 	double leg_start; // s, wall
 	bool cpu_counted; // cpu_before holds
 	uint64_t cpu_before; // ns, all workers when stepping began
+	uint64_t switches_before; // of all workers then
+	double own_cpu_before; // s, of the whole process then
+	double first_start, last_end; // s, wall: of the first leg that stepped; of the last one
 	double startup, wall; // s
-	ob_latency latency;
 };
 
 // Notes the cause (the first one stays) and stops the gate, so that everyone leaves. Any thread.
@@ -55,5 +56,7 @@ void ob_host_halt(ob_host *h);
 void ob_host_shorten_leg(ob_host *h);
 // Reads the CPU clocks of all workers, for the readers of the universe; returns their sum (ns).
 uint64_t ob_host_read_cpu(ob_host *h);
+// How often all workers together were switched off a core so far.
+uint64_t ob_host_count_switches(const ob_host *h);
 
 #endif

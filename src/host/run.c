@@ -60,6 +60,9 @@ static void begin_leg(ob_host *h)
 	h->perceived = true;
 	if (!h->cpu_counted && h->target > step) {
 		h->cpu_before = ob_host_read_cpu(h);
+		h->own_cpu_before = ob_clock_process_cpu();
+		h->switches_before = ob_host_count_switches(h);
+		h->first_start = ob_clock_wall();
 		h->cpu_counted = true;
 	}
 	pthread_mutex_lock(&leg->lock);
@@ -83,7 +86,7 @@ static void end_leg(ob_host *h)
 	if (steps == 0)
 		return;
 	h->wall += wall;
-	ob_latency_add(&h->latency, wall / (double)steps, steps);
+	h->last_end = h->leg_start + wall;
 }
 
 // The step does not end: says who still computes, for that is where to look.

@@ -134,6 +134,7 @@ static bool members_needed(const ob_universe *u)
 void ob_arrange(ob_universe *u, ob_phase finished)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
+	ob_phase_close(u);
 	if (finished == OB_PHASE_ISLANDS) {
 		if (!ob_universe_settings(u)->monolith && members_needed(u))
 			open_members(u, STAGE_FINISH);
@@ -151,6 +152,7 @@ void ob_arrange(ob_universe *u, ob_phase finished)
 void ob_sim_resume(ob_universe *u)
 {
 	uint32_t asked;
+	ob_step_begin(u);
 	ob_rebound_list(u, &asked);
 	if (ob_universe_settings(u)->monolith)
 		ob_rebound_reset(u); // one world finds its own neighbours

@@ -19,8 +19,9 @@ static inline void ob_part_enter(ob_sim *s, ob_part part)
 	s->times.since = now;
 }
 
-// Round a phase, or what the worker does between two.
+// Round a phase, or what the worker does between two; between an end and a beginning it waits at the gate. Returns ns of
+// CPU since the beginning, 0 unless the run is timed.
 void ob_part_begin(ob_sim *s, ob_part part);
-void ob_part_end(ob_sim *s);
+uint64_t ob_part_end(ob_sim *s);
 
 #endif

@@ -17,6 +17,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->u = u;
 		s->worker = worker;
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
+		s->counters.since_ns = 0; // what lies between is nobody's waiting
 		s->times.wanted = run->timed;
 		s->ode = calloc(capacity, sizeof *s->ode);
 		s->ode_generation = calloc(capacity, sizeof *s->ode_generation);
@@ -115,7 +116,7 @@ void ob_sim_work(ob_sim *s, ob_phase phase)
 		work_islands(s);
 	else if (phase == OB_PHASE_MEMBERS)
 		work_members(s);
-	ob_part_end(s);
+	ob_phase_worked(s->u, ob_part_end(s));
 	*ob_worker_counters(s->u, s->worker) = s->counters;
 }
 
@@ -123,7 +124,7 @@ void ob_sim_arrange(ob_sim *s, ob_phase finished)
 {
 	ob_part_begin(s, OB_PART_ARRANGE);
 	ob_arrange(s->u, finished);
-	ob_part_end(s);
+	ob_critical_add(s->u, ob_part_end(s));
 }
 
 void ob_sim_run(ob_sim *s)

@@ -21,7 +21,7 @@ struct ob_sim {
 		bool wanted;
 		ob_part part; // that the time counts for
 		uint64_t since, wall[OB_PARTS]; // ns; of the running phase
-		double cpu; // s, when it began
+		double cpu, cpu_end; // s, when it began; when the one before ended
 	} times;
 };
 

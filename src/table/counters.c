@@ -31,6 +31,9 @@ static void add(ob_counters *to, const ob_counters *c)
 	to->error = fmax(to->error, c->error);
 	for (int i = 0; i < OB_PARTS; i++)
 		to->time_ns[i] += c->time_ns[i];
+	to->held_ns += c->held_ns;
+	to->gate_ns += c->gate_ns;
+	to->gate_cpu_ns += c->gate_cpu_ns;
 }
 
 void ob_universe_count(const ob_universe *u, ob_counters *sum)

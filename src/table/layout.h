@@ -9,11 +9,12 @@
 #define OB_TABLE_LAYOUT_H
 
 #include "table/gate.h"
+#include "table/latency.h"
 #include "table/slot.h"
 #include "table/table.h"
 
 #define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 3, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 4, OB_LAYOUT_PAGE = 4096 };
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -23,6 +24,7 @@ typedef enum ob_area {
 	OB_AREA_WORKER, // [workers]
 	OB_AREA_SLOT, // [capacity]
 	OB_AREA_PASSPORT, // [capacity]
+	OB_AREA_STEP_CLOCK,
 	OB_AREA_REBOUND, // [capacity] ids
 	OB_AREA_REBOUND_BIT, // [capacity / 64] ids that are on the list
 	OB_AREA_COUNTS, // from here on: ob_exchange
@@ -82,6 +84,14 @@ typedef struct ob_control {
 	_Alignas(64) uint64_t perceived_used;
 } ob_control;
 
+// How long steps take. The gate orders its writers but for the two marked ones.
+typedef struct ob_step_clock {
+	_Alignas(64) uint64_t begun_ns; // when the running step began, ob_clock_ns
+	uint64_t longest_ns; // CPU of the worker with the most of it in the running phase; any worker raises it
+	uint64_t critical_ns; // sum of these over all phases, and of arranging; the arranger adds after it has opened
+	ob_latency latency;
+} ob_step_clock;
+
 typedef struct ob_worker_cell {
 	_Alignas(64) uint64_t cpu_ns;
 	int32_t pid, tid, cpu;
@@ -93,7 +103,7 @@ static_assert(sizeof(ob_run_settings) == 88, "run settings");
 static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 88, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 256, "control");
-static_assert(sizeof(ob_worker_cell) == 384, "worker cell");
+static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
 static_assert(sizeof(ob_pair_state) == 384, "pair state");
 static_assert(sizeof(ob_pair_record) == 784, "pair record");
 static_assert(sizeof(ob_pair_key) == 24 && sizeof(ob_brief) == 16 && sizeof(ob_flight) == 144, "exchange area");
@@ -107,6 +117,7 @@ struct ob_universe {
 	ob_gate_group *gate_group;
 	ob_gate_cell *gate_cell;
 	ob_worker_cell *worker;
+	ob_step_clock *step_clock;
 	ob_slot *slot;
 	ob_passport_slot *passport;
 	uint32_t *rebound;

@@ -1,5 +1,6 @@
 // What the workers of a step share beside the slots: the clock, claims, the rebound list, the arena of perceived
 // neighbours, and their own cells. Resets belong to the one who arranges; the gate orders them.
+#include "base/clock.h"
 #include "table/layout.h"
 
 uint64_t ob_step_count(const ob_universe *u)
@@ -13,7 +14,43 @@ void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t i
 	__atomic_store_n(&c->awake, awake, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->pairs, pairs, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->islands, islands, __ATOMIC_RELAXED);
+	ob_step_clock *clock = u->step_clock;
+	uint64_t now = ob_clock_ns();
+	ob_latency_add(&clock->latency, 1e-9 * (double)(now - clock->begun_ns), 1);
+	clock->begun_ns = now;
 	__atomic_store_n(&c->step, c->step + 1, __ATOMIC_RELEASE);
+}
+
+void ob_step_begin(ob_universe *u)
+{
+	u->step_clock->begun_ns = ob_clock_ns();
+}
+
+const ob_latency *ob_step_latency(const ob_universe *u)
+{
+	return &u->step_clock->latency;
+}
+
+void ob_phase_worked(ob_universe *u, uint64_t ns)
+{
+	uint64_t *longest = &u->step_clock->longest_ns, seen = __atomic_load_n(longest, __ATOMIC_RELAXED);
+	while (seen < ns && !__atomic_compare_exchange_n(longest, &seen, ns, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+		;
+}
+
+void ob_phase_close(ob_universe *u)
+{
+	ob_critical_add(u, __atomic_exchange_n(&u->step_clock->longest_ns, 0, __ATOMIC_RELAXED));
+}
+
+void ob_critical_add(ob_universe *u, uint64_t ns)
+{
+	__atomic_fetch_add(&u->step_clock->critical_ns, ns, __ATOMIC_RELAXED);
+}
+
+uint64_t ob_critical_path(const ob_universe *u)
+{
+	return __atomic_load_n(&u->step_clock->critical_ns, __ATOMIC_RELAXED);
 }
 
 void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu)

@@ -14,6 +14,7 @@
 
 #include "table/counters.h"
 #include "table/exchange.h"
+#include "table/latency.h"
 
 // How the parts of a step run; what the gate hands out when it opens.
 typedef enum ob_phase {
@@ -92,6 +93,17 @@ ob_exchange *ob_universe_exchange(const ob_universe *u);
 // The clock of the run: advanced by whoever arranges the step.
 uint64_t ob_step_count(const ob_universe *u);
 void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands);
+// Steps are timed from one completion to the next; after a pause, from here.
+void ob_step_begin(ob_universe *u);
+// Wall time of each step so far, pauses left out. To be read while the universe stands still.
+const ob_latency *ob_step_latency(const ob_universe *u);
+// The critical path, if the run is timed: what the steps would take if no worker ever had to wait for a core. Each
+// worker says before it arrives how long it has worked in the phase (ns of CPU); whoever arranges closes the phase before
+// anything else, and adds what arranging took. ob_critical_path: the sum so far (ns).
+void ob_phase_worked(ob_universe *u, uint64_t ns);
+void ob_phase_close(ob_universe *u);
+void ob_critical_add(ob_universe *u, uint64_t ns);
+uint64_t ob_critical_path(const ob_universe *u);
 
 // Worker cells. The worker itself calls announce once; the host refreshes the CPU time.
 void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu);

@@ -12,7 +12,8 @@ KEYS = """objects steps simulated_s wall_s cpu_s body_step_cpu_us state_hash ene
 momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps frames workers isolation arch commit scene
 step substeps exchange integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies passes total_s
 frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
-islands_over energy_recovered""".split()
+islands_over energy_recovered narrow load box_tests step_p90_s step_max_s critical_s work_s held_s gate_s gate_cpu_s idle_s
+elapsed_s host_cpu_s renderer_cpu_s switches worker_memory_bytes air_max_m air_mean_m""".split()
 
 
 class Report(program.Case):
@@ -76,17 +77,31 @@ class Report(program.Case):
 
 	def test_measure_end(self):
 		words = [program.scene("stack"), "--duration", ".5", "--workers", "1"]
-		every, times, ends = (program.report(*words, "--measure", when) for when in ("step", "times", "end"))
+		every, parts, ends = (program.report(*words, "--measure", when) for when in ("step", "parts", "end"))
 		for key in "energy_gain_max", "worst_penetration_m", "worst_penetration_time_s":
 			self.assertIsNone(ends[key])
-			self.assertIsNone(times[key])
+			self.assertIsNone(parts[key])
 			self.assertIsNotNone(every[key])
-		for key in "step_p50_s", "step_p99_s":
-			self.assertIsNone(ends[key])
-			self.assertGreater(times[key], 0)
+		for key in "step_p50_s", "step_p90_s", "step_p99_s", "step_max_s", "switches":
+			self.assertGreater(ends[key], 0, key)
+		self.assertLessEqual(ends["step_p50_s"], ends["step_p90_s"])
+		self.assertLessEqual(ends["step_p99_s"], ends["step_max_s"])
+		for key in "critical_s", "work_s", "held_s", "gate_s", "gate_cpu_s":
+			self.assertIsNone(ends[key], key)
+		self.assertGreater(parts["work_s"], 0)
 		for key in "state_hash", "energy_start", "energy_end", "penetration_max_m", "penetration_mean_m", "steps":
 			self.assertEqual(ends[key], every[key], key)
-			self.assertEqual(times[key], every[key], key)
+			self.assertEqual(parts[key], every[key], key)
+
+	def test_where_the_time_goes(self):
+		"""Working, waiting for a core, waiting at the gate: together it is the time that the workers had."""
+		for way in ["--workers", "2"], ["--workers", "objects"], ["--workers", "2", "--isolation", "process"], ["--arch", "monolith"]:
+			r = program.report(program.scene("falling_boxes"), "-D", "n=60", "--duration", "4", "--measure", "parts", *way)
+			had = r["workers"] * r["elapsed_s"]
+			self.assertGreater((r["work_s"] + r["held_s"] + r["gate_s"] + r["idle_s"]) / had, .95, way)
+			self.assertLess((r["work_s"] + r["held_s"] + r["gate_s"] + r["idle_s"]) / had, 1.05, way)
+			self.assertLessEqual(r["critical_s"], 1.01 * r["work_s"] + .01, way)
+			self.assertGreaterEqual(1.05 * r["critical_s"] + .01, r["work_s"] / r["workers"], way)
 
 	def test_monolith(self):
 		r = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3")

@@ -24,7 +24,8 @@ _obsim()
 	--tolerance) mapfile -t COMPREPLY < <(compgen -W '5mm .5mm .05mm' -- "$word") ;;
 	--integrator) mapfile -t COMPREPLY < <(compgen -W 'exact ode' -- "$word") ;;
 	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
-	--measure) mapfile -t COMPREPLY < <(compgen -W 'step times end' -- "$word") ;;
+	--narrow) mapfile -t COMPREPLY < <(compgen -W 'obb aabb' -- "$word") ;;
+	--measure) mapfile -t COMPREPLY < <(compgen -W 'step parts end' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
@@ -33,7 +34,7 @@ _obsim()
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --summary | --json) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--define | -D | --duration | --step | --seed | --substeps | --passes | --lag | --iterations | --name | --fps | --samples | \
+	--define | -D | --duration | --step | --seed | --substeps | --passes | --lag | --load | --iterations | --name | --fps | --samples | \
 		--camera | --interval | --repeats | --limit) ;;
 	*)
 		case $command:$word in

@@ -1,7 +1,7 @@
 // How long steps took: a histogram of fixed size with bins 2 % wide, so that a run of any length costs 8 kB and a
 // percentile is right to 1 %. One thread at a time.
-#ifndef OB_HOST_LATENCY_H
-#define OB_HOST_LATENCY_H
+#ifndef OB_TABLE_LATENCY_H
+#define OB_TABLE_LATENCY_H
 
 #include <stdint.h>
 

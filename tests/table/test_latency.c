@@ -1,5 +1,5 @@
-#include "check.h"
-#include "host/latency.h"
+#include "../check.h"
+#include "table/latency.h"
 
 int main(void)
 {

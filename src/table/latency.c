@@ -1,4 +1,4 @@
-#include "host/latency.h"
+#include "table/latency.h"
 
 #include <math.h>
 
