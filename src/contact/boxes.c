@@ -20,6 +20,7 @@ typedef struct axis_search {
 } axis_search;
 
 // Separations this close count as equal: faces of a before faces of b, faces before edges.
+static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
 static const double prefer_first = 1e-4, prefer_face = 1e-3;
 
 static void frame_pair_init(frame_pair *f, const ob_placed *a, const ob_placed *b)
@@ -206,6 +207,20 @@ static void incident_face(const ob_placed *ref, const ob_placed *in, ob_vec3 n, 
 	}
 }
 
+// The face whose normal is nearest to that of two edges, if it is near enough: -1 otherwise.
+static int face_along(const ob_placed *a, const ob_placed *b, int edge)
+{
+	ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3));
+	double best = along_face * ob_norm(n);
+	int face = -1;
+	for (int k = 0; k < 6; k++) {
+		double c = fabs(ob_dot(n, ob_column(k < 3 ? &a->r : &b->r, k % 3)));
+		if (c > best)
+			best = c, face = k;
+	}
+	return face;
+}
+
 static void face_manifold(const ob_placed *a, const ob_placed *b, int face, double margin, ob_manifold *m)
 {
 	bool of_b = face >= 3;
@@ -262,8 +277,11 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 		else
 			s.face = s.close_axis;
 	}
-	if (edge)
+	// Edges that meet nearly along a face's normal: the face's points hold them apart, too, and with them what else
+	// is about to meet there.
+	int face = edge ? face_along(a, b, s.edge) : s.face;
+	if (face >= 0)
+		face_manifold(a, b, face, margin, out);
+	if (edge && (face < 0 || !out->points))
 		edge_manifold(a, b, s.edge, out);
-	else
-		face_manifold(a, b, s.face, margin, out);
 }

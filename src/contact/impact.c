@@ -159,13 +159,13 @@ static void rows_solve(const rows *r, const ob_batch *b, int l, double e, double
 	shrink_to_energy(r, x);
 }
 
-bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
-		     ob_body_row *out_d)
+double ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
+		       ob_body_row *out_d)
 {
 	rows r;
 	double x[7] = { 0 };
 	if (!rows_init(&r, b, l, in, at))
-		return false;
+		return -1;
 	row_set(&r, 4, b->t1, b->fa1, b->fb1, l);
 	row_set(&r, 5, b->t2, b->fa2, b->fb2, l);
 	row_set(&r, 6, NULL, b->n, b->n, l);
@@ -194,5 +194,5 @@ bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_imp
 		out_d[ia][c] += shift_a[c];
 		out_d[ib][c] += shift_b[c];
 	}
-	return true;
+	return r.max_time;
 }

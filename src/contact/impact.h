@@ -29,8 +29,8 @@ typedef struct ob_impact_rows {
 bool ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at);
 
 // Solves it: adds the changes to the rows out_v and, so that the old velocity holds until the instant, to out_d
-// (which may be at->v and at->d themselves). false: nothing hits.
-bool ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
+// (which may be at->v and at->d themselves). Returns the instant of the last point's hit (s); < 0: nothing hits.
+double ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
 		     ob_body_row *out_d);
 
 #endif

@@ -7,6 +7,9 @@
 static const double noticeable = 2e-3; // m/s: a change that makes another round worth while ..
 static const double noticeable_rate = 1; // 1/s: .. and, of the tolerance, at most
 static const double jump = .1; // m/s: faster changes are impacts and are not extrapolated
+static const double violent = .05; // m/s: a change that makes rounds beyond the run's number worth while ..
+static const uint32_t more = 8; // .. up to so many times that number
+static const double plausible = 3; // of what pulls at a body: more acceleration is an impact's
 static const int sweeps = 4;
 static const double slop = 1e-4, share = .3; // m; of the penetration, per substep
 static const double slop_share = 1. / 8; // of the tolerance, at most
@@ -46,7 +49,15 @@ static bool elastic(const ob_touch *t)
 
 static ob_impact_rows impact_rows(const ob_island_work *w)
 {
-	return (ob_impact_rows){ w->v, w->dv, w->d };
+	return (ob_impact_rows){ w->v, w->drift, w->d };
+}
+
+// instant: s into the stride; < 0: there was none.
+static bool note_impact(ob_sim *s, double instant)
+{
+	s->counters.impacts += instant >= 0;
+	s->island.last_impact = fmax(s->island.last_impact, instant);
+	return instant >= 0;
 }
 
 // Each pair on what the one before it published.
@@ -58,10 +69,9 @@ static bool impacts_in_turn(ob_sim *s)
 	for (uint32_t i = 0; i < w->touches; i++) {
 		const ob_touch *t = &w->touch[i];
 		ob_impact in = impact_of(s, t);
-		bool hit = elastic(t) &&
-			   ob_impact_solve(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at, w->v, w->d);
-		s->counters.impacts += hit;
-		any |= hit;
+		if (elastic(t))
+			any |= note_impact(s, ob_impact_solve(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in,
+							      &at, w->v, w->d));
 	}
 	return any;
 }
@@ -86,9 +96,7 @@ static bool impacts_at_once(ob_sim *s)
 			if (solve) {
 				in.split_a = fmax(1, w->member[t->a].waiting);
 				in.split_b = fmax(1, w->member[t->b].waiting);
-				bool hit = ob_impact_solve(b, l, &in, &at, w->delta, w->u);
-				s->counters.impacts += hit;
-				any |= hit;
+				any |= note_impact(s, ob_impact_solve(b, l, &in, &at, w->delta, w->u));
 			} else if (ob_impact_pending(b, l, &in, &at)) {
 				w->member[t->a].waiting++;
 				w->member[t->b].waiting++;
@@ -99,6 +107,21 @@ static bool impacts_at_once(ob_sim *s)
 	return any;
 }
 
+// Contacts that were just hit predict what no contact will do again: an impact must not take that for an approach.
+static void set_drift(ob_island_work *w)
+{
+	for (uint32_t i = 1; i <= w->members; i++) {
+		const ob_member *m = &w->member[i];
+		const double *dv = w->dv[i], most = plausible * w->pull * w->h;
+		double linear = ob_norm(ob_v3(dv[0], dv[1], dv[2])), angular = ob_norm(ob_v3(dv[3], dv[4], dv[5]));
+		ob_vec3 pull = ob_scale(m->pull, w->h);
+		if (linear + m->radius * angular <= most)
+			memcpy(w->drift[i], dv, sizeof *w->drift);
+		else
+			memcpy(w->drift[i], (double[8]){ pull.x, pull.y, pull.z }, sizeof *w->drift);
+	}
+}
+
 bool ob_exchange_impacts(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -107,6 +130,7 @@ bool ob_exchange_impacts(ob_sim *s)
 	int round = 0;
 	if (!w->elastic)
 		return false;
+	set_drift(w);
 	for (bool any = true; any && round < most; round += any) {
 		ob_ghosts_read(s, w->v, (uint32_t)round);
 		any = is_jacobi(s) ? impacts_at_once(s) : impacts_in_turn(s);
@@ -178,7 +202,9 @@ void ob_exchange_rounds(ob_sim *s)
 			 true, is_jacobi(s) };
 	bool again = true;
 	int direct = 0;
-	for (uint32_t round = 0; round < run->passes && again; round++) {
+	for (uint32_t round = 0; round < more * run->passes && again; round++) {
+		if (round == run->passes)
+			pass.wake = violent;
 		s->counters.rounds++;
 		ob_ghosts_read(s, w->u, round);
 		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep

@@ -40,11 +40,13 @@ static void make_stride(ob_sim *s, bool first)
 		ob_part_enter(s, OB_PART_IMPACTS);
 	}
 	ob_tolerance_note_bounce(s);
-	ob_part_enter(s, OB_PART_MOVE);
-	ob_members_predict(s);
-	ob_part_enter(s, OB_PART_SOLVE);
-	ob_exchange_rounds(s);
-	ob_part_enter(s, OB_PART_MOVE);
+	do {
+		ob_part_enter(s, OB_PART_MOVE);
+		ob_members_predict(s);
+		ob_part_enter(s, OB_PART_SOLVE);
+		ob_exchange_rounds(s);
+		ob_part_enter(s, OB_PART_MOVE);
+	} while (ob_pace_shorten(s));
 	ob_members_advance(s);
 	ob_tolerance_note_slip(s);
 	ob_exchange_cap(s);
@@ -110,6 +112,7 @@ void ob_island_work_finish(ob_island_work *w)
 	free(w->u);
 	free(w->d);
 	free(w->delta);
+	free(w->drift);
 	free(w->touch);
 	free(w->adjacency);
 	free(w->batch);

@@ -66,6 +66,7 @@ typedef struct ob_island_work {
 	uint32_t history_max;
 	ob_member *member; // [rows]
 	ob_body_row *v, *dv, *u, *d, *delta;
+	ob_body_row *drift; // change of velocity in the stride as impacts see it: dv where that is not an impact's echo
 	uint32_t touches, touches_max;
 	ob_touch *touch;
 	uint32_t *adjacency; // touches of each member
@@ -83,6 +84,7 @@ typedef struct ob_island_work {
 	double error, error_new; // m (sim/tolerance.h): of the step; of its own doing
 	double h, t0; // s; h of the stride that is made now: a substep, or a part of one (sim/pace.h)
 	double substep; // s, the whole
+	double last_impact; // s into the stride: the last one's instant
 	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;

@@ -5,6 +5,7 @@
 
 #include <ob/motion.h>
 
+#include "sim/pairs.h"
 #include "sim/perceive.h"
 
 enum { NONE = UINT32_MAX };
@@ -77,6 +78,20 @@ static bool share_speed(const plan *p, const ob_pair_key *k)
 	double speed = ob_norm(ob_sub(a->v, b->v)) + ob_surface_speed(ob_v3(0, 0, 0), a->w, pa->shape, pa->size) +
 		       ob_surface_speed(ob_v3(0, 0, 0), b->w, pb->shape, pb->size);
 	return speed * ob_universe_settings(p->u)->step_length >= distance(p, k);
+}
+
+// Paths use up what is known of a distance, also those of objects that fly side by side. Where that would join two
+// that are alone, it is measured anew.
+static void measure_distances(plan *p)
+{
+	for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
+		ob_pair_key *k = &p->ex->pair[i];
+		if (k->active || (asleep(p, k->a) && asleep(p, k->b)) || !may_touch(p, k))
+			continue;
+		double apart = ob_pairs_apart(p->u, k->a, k->b);
+		if (apart > 0)
+			k->limit = fmax(k->limit, p->ex->brief[k->a].path + p->ex->brief[k->b].path + apart);
+	}
 }
 
 static void grow_clusters(plan *p)
@@ -232,6 +247,7 @@ bool ob_islands_plan(ob_universe *u)
 		p.cluster[id] = id;
 		p.reach[id] = ex->brief[id].reach;
 	}
+	measure_distances(&p);
 	grow_clusters(&p);
 	if (!boxes_suffice(&p))
 		return false;

@@ -76,8 +76,8 @@ static void reserve_rows(ob_island_work *w, uint32_t rows)
 	if (rows > w->rows_max) {
 		w->rows_max = rows + rows / 2 + 16;
 		w->member = realloc(w->member, w->rows_max * sizeof *w->member);
-		ob_body_row **all[] = { &w->v, &w->dv, &w->u, &w->d, &w->delta };
-		for (int i = 0; i < 5; i++)
+		ob_body_row **all[] = { &w->v, &w->dv, &w->u, &w->d, &w->delta, &w->drift };
+		for (int i = 0; i < 6; i++)
 			*all[i] = realloc(*all[i], w->rows_max * sizeof **all[i]);
 	}
 }
@@ -95,8 +95,8 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
 	uint32_t most = 1 + is->members + 2 * is->pairs;
 	reserve_rows(w, most);
-	ob_body_row *all[] = { w->v, w->dv, w->u, w->d, w->delta };
-	for (int i = 0; i < 5; i++)
+	ob_body_row *all[] = { w->v, w->dv, w->u, w->d, w->delta, w->drift };
+	for (int i = 0; i < 6; i++)
 		memset(all[i], 0, most * sizeof *all[i]);
 	memset(&w->member[0], 0, sizeof w->member[0]);
 	w->rows = 1;

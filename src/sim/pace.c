@@ -1,10 +1,12 @@
 #include "sim/pace.h"
 
+#include <string.h>
+
 #include "sim/look.h"
 #include "sim/members.h"
 
-static const double turning = .05; // rad: so far may two bodies that touch turn in one stride ..
-static const double sliding = .05; // .. and slide, in smaller thicknesses
+static const double turning = .03; // rad: so far may two bodies that touch turn in one stride ..
+static const double sliding = .03; // .. and slide, in smaller thicknesses
 static const double most_strides = 1024; // of a substep
 
 static ob_vec3 linear_of(const double *r)
@@ -12,19 +14,19 @@ static ob_vec3 linear_of(const double *r)
 	return ob_v3(r[0], r[1], r[2]);
 }
 
-static double turn_rate(const ob_island_work *w, uint32_t row)
+static double turn_rate(const ob_island_work *w, const ob_body_row *rows, uint32_t row)
 {
-	const double *v = w->v[row];
+	const double *v = rows[row];
 	return w->member[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(ob_v3(v[3], v[4], v[5]));
 }
 
-// For how long a contact's points and normal are where they are now (s). A sphere's point moves with its centre, and a
-// plane is the same everywhere.
-static double lasting(const ob_island_work *w, const ob_touch *t)
+// For how long a contact's points and normal are where they are now (s), at the velocities in rows. A sphere's point
+// moves with its centre, and a plane is the same everywhere.
+static double lasting(const ob_island_work *w, const ob_body_row *rows, const ob_touch *t)
 {
 	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
-	double turn = turn_rate(w, t->a) + turn_rate(w, t->b);
-	double slide = ob_norm(ob_sub(linear_of(w->v[t->a]), linear_of(w->v[t->b])));
+	double turn = turn_rate(w, rows, t->a) + turn_rate(w, rows, t->b);
+	double slide = ob_norm(ob_sub(linear_of(rows[t->a]), linear_of(rows[t->b])));
 	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
 		slide = 0;
 	return fmin(turning / turn, sliding * fmin(a->thickness, b->thickness) / slide);
@@ -36,14 +38,19 @@ static bool may_be_short(const ob_island_work *w, const ob_touch *t, double h)
 	return (a->speed + b->speed) * h > fmin(turning, sliding) * fmin(a->thickness, b->thickness);
 }
 
+static double shortest(const ob_island_work *w)
+{
+	return w->substep / most_strides;
+}
+
 static double length_of_stride(ob_sim *s, double left)
 {
 	ob_island_work *w = &s->island;
-	const double least = w->substep / most_strides;
+	const double least = shortest(w);
 	double h = left;
 	for (uint32_t i = 0; i < w->touches; i++)
 		if (w->touch[i].lane != OB_NO_LANE && may_be_short(w, &w->touch[i], h))
-			h = fmin(h, fmax(least, lasting(w, &w->touch[i])));
+			h = fmin(h, fmax(least, lasting(w, w->v, &w->touch[i])));
 	for (uint32_t i = 0; i < w->touches; i++) {
 		const ob_touch *t = &w->touch[i];
 		const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
@@ -52,14 +59,18 @@ static double length_of_stride(ob_sim *s, double left)
 			continue;
 		ob_member_settle(w, t->a);
 		ob_member_settle(w, t->b);
-		h = fmin(h, fmax(fmax(least, lasting(w, t)), ob_look_ahead(s, t, h)));
+		h = fmin(h, fmax(fmax(least, lasting(w, w->v, t)), ob_look_ahead(s, t, h)));
 	}
 	return left - h < .5 * h && left < 1.5 * least ? left : h;
 }
 
 // What the last stride brought, the next is predicted to bring in proportion.
-static void rescale(ob_island_work *w, double factor)
+static void rescale(ob_island_work *w, double h)
 {
+	double factor = h / w->h;
+	w->h = h;
+	if (factor == 1)
+		return;
 	for (uint32_t i = 0; i < w->batches; i++)
 		for (int k = 0; k < OB_ROWS; k++)
 			w->batch[i].impulse[k] *= factor;
@@ -67,9 +78,25 @@ static void rescale(ob_island_work *w, double factor)
 
 void ob_pace_stride(ob_sim *s, double left)
 {
+	rescale(&s->island, length_of_stride(s, left));
+	s->island.last_impact = 0;
+}
+
+bool ob_pace_shorten(ob_sim *s)
+{
 	ob_island_work *w = &s->island;
-	double h = length_of_stride(s, left);
-	if (h != w->h)
-		rescale(w, h / w->h);
-	w->h = h;
+	double h = w->h;
+	bool hit = false;
+	for (uint32_t i = 0; i < w->batches; i++)
+		hit |= w->batch[i].impact != 0;
+	for (uint32_t i = 0; hit && i < w->touches; i++)
+		h = fmin(h, lasting(w, w->u, &w->touch[i]));
+	h = fmax(fmax(h, shortest(w)), w->last_impact); // what has bounced must get to where it did
+	if (h > .6 * w->h)
+		return false;
+	for (uint32_t i = 0; i < w->batches; i++)
+		memcpy(w->batch[i].impulse, w->batch[i].impulse_start, sizeof w->batch[i].impulse);
+	rescale(w, h);
+	ob_members_foretell(s);
+	return true;
 }

@@ -9,5 +9,8 @@
 // Chooses the length of the next stride, at most "left" (s), sets it in the island, and scales to it what was predicted
 // for the last one.
 void ob_pace_stride(ob_sim *s, double left);
+// After the exchanges: was something hit so that it is too fast now for the stride? Then the stride is shortened, and
+// everything is as before the exchanges.
+bool ob_pace_shorten(ob_sim *s);
 
 #endif

@@ -67,8 +67,7 @@ static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t c
 	return keys;
 }
 
-// Lower bound of the distance between two objects (m): of their bounding spheres, or of a sphere and a plane.
-static double distance_bound(const ob_universe *u, uint32_t a, uint32_t b)
+double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b)
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
 	const ob_motion *ma = ob_newest_motion(u, a), *mb = ob_newest_motion(u, b);
@@ -104,7 +103,7 @@ static bool new_pair(ob_universe *u, uint64_t key, ob_pair_key *out)
 	else
 		return false;
 	ex->record[record].stamp[0] = ex->record[record].stamp[1] = 0;
-	double apart = distance_bound(u, a, b);
+	double apart = ob_pairs_apart(u, a, b);
 	*out = (ob_pair_key){ a, b, record, 0, apart > 0 ? ex->brief[a].path + ex->brief[b].path + apart : -1 };
 	return true;
 }

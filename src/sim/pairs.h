@@ -14,4 +14,7 @@ const ob_pair_state *ob_pair_newest(const ob_pair_record *r);
 ob_pair_state *ob_pair_writable(ob_pair_record *r);
 void ob_pair_written(ob_pair_record *r, uint64_t step);
 
+// Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
+double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b);
+
 #endif

@@ -95,7 +95,7 @@ void ob_tolerance_note_bounce(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const double tolerance = ob_universe_settings(s->u)->tolerance;
-	const ob_impact_rows at = { w->v, w->dv, w->d };
+	const ob_impact_rows at = { w->v, w->drift, w->d };
 	double lost = 0;
 	for (uint32_t i = 0; is_set(s) && w->elastic && w->pull > 0 && i < w->touches; i++) {
 		const ob_touch *t = &w->touch[i];
