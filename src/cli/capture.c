@@ -7,6 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/clock.h"
+
 enum { SINKS_MAX = 3 };
 
 struct ob_capture {
@@ -17,6 +19,7 @@ struct ob_capture {
 	int sinks;
 	int raw_fd; // -1 = none
 	uint8_t *rgba;
+	ob_host *host; // NULL = none to trace
 };
 
 static bool add(ob_capture *c, ob_sink *s)
@@ -83,6 +86,17 @@ ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, d
 	return c;
 }
 
+void ob_capture_trace(ob_capture *c, ob_host *host)
+{
+	c->host = host;
+}
+
+static void trace(const ob_capture *c, ob_trace_kind kind, uint64_t begin)
+{
+	if (c->host)
+		ob_host_trace(c->host, kind, begin, (uint32_t)c->clock.next);
+}
+
 uint64_t ob_capture_need(const ob_capture *c, uint64_t now)
 {
 	return ob_frame_clock_need(&c->clock, now);
@@ -98,12 +112,16 @@ bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *
 	while (ob_frame_clock_step(&c->clock, &between) <= now->step) {
 		double t = ob_frame_clock_time(&c->clock);
 		const ob_snapshot *from = between ? prev : NULL;
+		uint64_t begin = ob_clock_ns();
 		if (!ob_renderer_draw(c->renderer, from, now, between ? t : now->time, &c->camera, c->rgba, e))
 			return false;
+		trace(c, OB_TRACE_DRAW, begin);
+		begin = ob_clock_ns();
 		for (int i = 0; i < c->sinks; i++) {
 			if (!ob_sink_put(c->sink[i], c->clock.next, t, c->rgba, e))
 				return false;
 		}
+		trace(c, OB_TRACE_ENCODE, begin);
 		c->clock.next++;
 	}
 	return true;

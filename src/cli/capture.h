@@ -11,6 +11,8 @@ typedef struct ob_capture ob_capture;
 // Call after the host has started: processes must be forked before there is a renderer.
 ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, double duration, double step,
 			    ob_error *e);
+// Spans of drawing and handing over go into this host's trace.
+void ob_capture_trace(ob_capture *c, ob_host *host);
 // The first step after "now" that is to be shown; UINT64_MAX = none
 uint64_t ob_capture_need(const ob_capture *c, uint64_t now);
 // Draws all frames up to now->time. prev: one step earlier, or older (then no frame is due between); NULL at the start.

@@ -120,12 +120,6 @@ static void explain_rest(const ob_run_request *q, FILE *f)
 
 static void print_costs(const ob_explained *x, FILE *f)
 {
-	static const char *const names[OB_PARTS] = {
-		[OB_PART_PERCEIVE] = "perceive", [OB_PART_ARRANGE] = "arrange", [OB_PART_LEAP] = "leap",
-		[OB_PART_LOAD] = "load",         [OB_PART_LOOK] = "look",       [OB_PART_IMPACTS] = "impacts",
-		[OB_PART_SOLVE] = "solve",       [OB_PART_MOVE] = "move",       [OB_PART_PROJECT] = "project",
-		[OB_PART_PUBLISH] = "publish",
-	};
 	static const char *const what[OB_PARTS] = {
 		[OB_PART_PERCEIVE] = "who is near whom",
 		[OB_PART_ARRANGE] = "pairs, islands, and who solves them",
@@ -143,7 +137,7 @@ static void print_costs(const ob_explained *x, FILE *f)
 	for (int i = 0; i < OB_PARTS; i++) {
 		double s = 1e-9 * (double)x->counters.time_ns[i];
 		rest -= s;
-		fprintf(f, "    %-9s %10s %5.1f %%  %s\n", names[i], ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
+		fprintf(f, "    %-9s %10s %5.1f %%  %s\n", ob_part_name((uint32_t)i), ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
 			what[i]);
 	}
 	rest = fmax(0, rest);

@@ -4,29 +4,13 @@
 #include <math.h>
 #include <string.h>
 
-// Bytes of the UTF-8 character at s; 0 = not one (RFC 3629: no overlong forms, no surrogates, up to U+10FFFF).
-static int utf8_length(const unsigned char *s)
-{
-	int n = s[0] < 0x80                   ? 1
-		: s[0] >= 0xc2 && s[0] < 0xe0 ? 2
-		: (s[0] & 0xf0) == 0xe0       ? 3
-		: s[0] >= 0xf0 && s[0] < 0xf5 ? 4
-					      : 0;
-	for (int i = 1; i < n; i++) {
-		if ((s[i] & 0xc0) != 0x80)
-			return 0;
-	}
-	if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
-	    (s[0] == 0xf4 && s[1] > 0x8f))
-		return 0;
-	return n;
-}
+#include "base/utf8.h"
 
 static void put_string(FILE *f, const char *text)
 {
 	fputc('"', f);
 	for (const unsigned char *s = (const unsigned char *)text; *s;) {
-		int n = utf8_length(s);
+		int n = ob_utf8_length(s);
 		if (*s == '"' || *s == '\\')
 			fprintf(f, "\\%c", *s);
 		else if (n == 0 || *s < 0x20 || *s == 0x7f)

@@ -62,6 +62,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				0 },
 	[OB_OPTION_EXPLAIN] = { NULL, "explain", NULL,
 				"what was modelled, what was left out and why, and what each part cost", RUN, 0 },
+	[OB_OPTION_TRACE] = { NULL, "trace", "FILE", "what each worker did when, for ui.perfetto.dev", RUN, 0 },
 
 	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
 	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only cases of the quick subset", LAB, 0 },

@@ -79,6 +79,8 @@ static const struct field {
 	FIELD(COUNT, frames, ""),
 	FIELD(REAL, frame_rate, "1/s"),
 	FIELD(REAL, fps, "1/s"),
+	FIELD(COUNT, trace_events, ""),
+	FIELD(COUNT, trace_lost, ""),
 	FIELD(TEXT, commit, ""),
 #undef FIELD
 };

@@ -21,6 +21,7 @@ typedef struct ob_report {
 	uint64_t steps, substeps, passes, lag, seed, workers; // substeps 0: as a tolerance chose
 	uint64_t load, box_tests; // numbers added up in each test of two boxes; how many tests there were
 	uint64_t frames;
+	uint64_t trace_events, trace_lost; // told by all; of them not in the file
 	uint64_t memory_bytes;
 	uint64_t substeps_min, substeps_median, substeps_max; // of island-steps, where a tolerance chose; else 0
 	uint64_t islands_redone, islands_over;

@@ -100,4 +100,11 @@ void ob_report_print(const ob_report *r, FILE *f)
 			fprintf(f, ", %.3g per second", r->fps);
 		fputc('\n', f);
 	}
+	if (r->trace_events > 0) {
+		fprintf(f, "  trace        %" PRIu64 " events", r->trace_events);
+		if (r->trace_lost > 0)
+			fprintf(f, ", %" PRIu64 " of them LOST, for they came faster than they could be written",
+				r->trace_lost);
+		fputc('\n', f);
+	}
 }

@@ -96,7 +96,7 @@ static bool is_stdout(const char *path)
 static bool check_outputs(const ob_arguments *a, ob_error *e)
 {
 	static const ob_option_id files[] = { OB_OPTION_FRAMES,  OB_OPTION_VIDEO,  OB_OPTION_RAW, OB_OPTION_RECORD,
-					      OB_OPTION_SUMMARY, OB_OPTION_SERIES, OB_OPTION_JSON };
+					      OB_OPTION_SUMMARY, OB_OPTION_SERIES, OB_OPTION_JSON, OB_OPTION_TRACE };
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		const char *path = a->value[files[i]], *option = name_of(files[i]);
 		if (!path)
@@ -253,6 +253,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.record = a->value[OB_OPTION_RECORD],
 		.summary = a->value[OB_OPTION_SUMMARY],
 		.series = a->value[OB_OPTION_SERIES],
+		.trace = a->value[OB_OPTION_TRACE],
 		.json = a->value[OB_OPTION_JSON],
 	};
 	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;

@@ -39,7 +39,7 @@ typedef struct ob_run_request {
 	bool explain;
 	ob_measure_when measure;
 	ob_frames_request frames;
-	const char *record, *summary, *series, *json; // paths; NULL = not asked for; json "-" = standard output
+	const char *record, *summary, *series, *trace, *json; // paths; NULL = not asked for; json "-" = standard output
 } ob_run_request;
 
 // false and e on what is no number, out of range, contradictory, or names a directory that is not there.

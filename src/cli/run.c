@@ -28,6 +28,7 @@ typedef struct run {
 	uint64_t frames;
 	double begun; // s
 	double own_cpu, drawing_cpu; // s of this thread: when stepping began; while it drew
+	ob_timeline_sums trace;
 } run;
 
 static uint64_t earlier(uint64_t a, uint64_t b)
@@ -55,10 +56,17 @@ static bool look(run *r, ob_error *e)
 {
 	const ob_snapshot *prev = r->now.step > 0 ? &r->prev : NULL;
 	bool ends = r->now.step == 0 || r->now.step >= r->steps;
-	if (r->request.measure == OB_MEASURE_STEPS || ends)
+	uint64_t begin = ob_clock_ns();
+	if (r->request.measure == OB_MEASURE_STEPS || ends) {
 		ob_observer_look(&r->observer, &r->now);
-	if (r->recorder && r->now.step % r->scene->record_every == 0 && !ob_recorder_append(r->recorder, &r->now, e))
-		return false;
+		ob_host_trace(r->host, OB_TRACE_MEASURE, begin, 0);
+	}
+	begin = ob_clock_ns();
+	if (r->recorder && r->now.step % r->scene->record_every == 0) {
+		if (!ob_recorder_append(r->recorder, &r->now, e))
+			return false;
+		ob_host_trace(r->host, OB_TRACE_RECORD, begin, 0);
+	}
 	if (!r->capture)
 		return true;
 	double before = ob_clock_thread_cpu();
@@ -72,7 +80,10 @@ static bool take(run *r, ob_error *e)
 	ob_snapshot older = r->prev;
 	r->prev = r->now;
 	r->now = older;
-	return ob_snapshot_take(&r->now, ob_host_universe(r->host), r->request.frames.contacts, e);
+	uint64_t begin = ob_clock_ns();
+	bool taken = ob_snapshot_take(&r->now, ob_host_universe(r->host), r->request.frames.contacts, e);
+	ob_host_trace(r->host, OB_TRACE_SNAPSHOT, begin, 0);
+	return taken;
 }
 
 // Stepping and looking overlap: the snapshot of one boundary is looked at while the universe runs to the next.
@@ -109,6 +120,7 @@ static bool open_outputs(run *r, ob_error *e)
 		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->step, e);
 		if (!r->capture)
 			return false;
+		ob_capture_trace(r->capture, r->host);
 	}
 	if (!ob_observer_open(&r->observer, r->scene, q->series, e))
 		return false;
@@ -132,6 +144,7 @@ static bool close_outputs(run *r, ob_error *e)
 	if (r->recorder)
 		fine &= ob_recorder_close(r->recorder, fine ? e : NULL);
 	fine &= ob_observer_close(&r->observer, fine ? e : NULL);
+	fine &= ob_host_end_trace(r->host, &r->trace, fine ? e : NULL);
 	r->capture = NULL;
 	r->recorder = NULL;
 	return fine;
@@ -178,6 +191,8 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.frames = r->frames,
 		.frame_rate = q->frames.wanted ? q->frames.fps : NAN,
 		.total_s = ob_clock_wall() - r->begun,
+		.trace_events = r->trace.events,
+		.trace_lost = r->trace.lost,
 	};
 	snprintf(p->scene, sizeof p->scene, "%s", q->scene);
 	snprintf(p->outcome, sizeof p->outcome, "%s", outcome);
@@ -321,6 +336,7 @@ int ob_command_run(const ob_arguments *a)
 	config.name = r.request.name;
 	config.isolation = r.request.isolation;
 	config.workers = r.request.workers;
+	config.trace = r.request.trace;
 
 	signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message
 	ob_interrupt_watch(); // before there is anything that Ctrl-C would leave behind

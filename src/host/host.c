@@ -58,10 +58,17 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 			   : c->run.monolith ? 1
 					     : c->workers,
 		.isolation = spawn->name,
+		.traced = c->trace != NULL,
 		.run = c->run,
 	};
 	setup.run.one_per_object = one_per_object;
 	return ob_universe_create(&setup, e);
+}
+
+static bool start_timeline(ob_host *h, const char *path, ob_error *e)
+{
+	h->timeline = path ? ob_timeline_start(h->u, path, e) : NULL;
+	return !path || h->timeline;
 }
 
 static bool settle(ob_host *h, const ob_scene *scene, ob_error *e)
@@ -127,7 +134,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
 	// the keeper first: it and its children shall inherit as little as possible
 	h->keeper = h->u ? ob_keeper_start(h->u, ob_worker_live, e) : NULL;
-	if (!h->keeper || !settle(h, scene, e) || !start_workers(h, e)) {
+	if (!h->keeper || !start_timeline(h, config->trace, e) || !settle(h, scene, e) || !start_workers(h, e)) {
 		ob_host_stop(h);
 		return NULL;
 	}
@@ -205,6 +212,19 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 	out->gate_s = gate_time(h);
 }
 
+void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t number)
+{
+	if (h->timeline)
+		ob_trace_span(h->u, ob_trace_host(h->u), kind, begin, number, 0);
+}
+
+bool ob_host_end_trace(ob_host *h, ob_timeline_sums *sums, ob_error *e)
+{
+	ob_timeline *t = h->timeline;
+	h->timeline = NULL;
+	return ob_timeline_finish(t, sums, e);
+}
+
 static bool request(ob_host *h, const ob_request *r)
 {
 	if (!ob_requests_push(h->requests, r))
@@ -236,6 +256,10 @@ void ob_host_stop(ob_host *h)
 	ob_supervisor_stop(h);
 	if (h->crew)
 		left = h->spawn->join(h->crew, h->spawn->leave_patience);
+	ob_timeline_sums sums;
+	ob_error e;
+	if (!ob_host_end_trace(h, &sums, &e))
+		ob_log_warn("%s", e.text);
 	ob_keeper_stop(h->keeper); // removes the universe's name
 	if (h->u && left)
 		ob_universe_destroy(h->u, true);

@@ -16,6 +16,7 @@
 #define OB_HOST_HOST_H
 
 #include "host/roster.h"
+#include "host/timeline.h"
 #include "scene/scene.h"
 #include "table/table.h"
 
@@ -27,6 +28,7 @@ typedef struct ob_host_config {
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
 	double patience; // s without a completed step after which the run is given up; 0 = 60
+	const char *trace; // a file for the timeline of all that happens (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
 } ob_host_config;
 
@@ -60,6 +62,10 @@ void ob_host_get_times(ob_host *h, ob_host_times *out);
 // false: the definition makes no sense, or no memory.
 bool ob_host_request_add(ob_host *h, const ob_object_def *def);
 bool ob_host_request_remove(ob_host *h, uint32_t id);
+// With a trace: what the calling thread, the one that starts and stops the host, has done since begin (ob_clock_ns).
+void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t number);
+// Ends the trace's file; stop does so, too. false and e if it is not whole. Without a trace: true, and no events.
+bool ob_host_end_trace(ob_host *h, ob_timeline_sums *sums, ob_error *e);
 // Ends all workers and removes the universe. Always succeeds; NULL is allowed.
 void ob_host_stop(ob_host *h);
 

@@ -25,6 +25,7 @@ struct ob_host {
 	ob_roster *roster;
 	ob_requests *requests;
 	ob_population *population;
+	ob_timeline *timeline; // NULL = not traced
 
 	pthread_t supervisor;
 	bool supervised;

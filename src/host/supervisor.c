@@ -44,6 +44,9 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 	if (h->ending || h->failed)
 		return;
 	name_worker(h, end, who, sizeof who);
+	if (ob_universe_traced(h->u) && !end->error)
+		ob_trace_span(h->u, ob_trace_supervisor(h->u), OB_TRACE_KILLED, ob_clock_ns(), end->worker,
+			      (uint32_t)end->signal);
 	if (end->error)
 		ob_host_set_failure(h,
 				    "simulator %u of %u does not start: %s; use fewer workers, or raise the limit on "

@@ -37,7 +37,7 @@ static ob_universe *open_universe(const ob_peer_world *w, const ob_run_settings 
 	static unsigned made;
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "peer-%d-%u", (int)getpid(), made++);
-	ob_universe_setup setup = { name, w->objects, 1, "thread", *run };
+	ob_universe_setup setup = { name, w->objects, 1, "thread", *run, false };
 	ob_universe *u = ob_universe_create(&setup, e);
 	if (u)
 		ob_universe_unlink(name);

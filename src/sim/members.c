@@ -304,6 +304,8 @@ void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, bool own)
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	bool asleep = m->flags & OB_MOTION_ASLEEP;
 	double reach = asleep ? 0 : ob_step_reach(run, pass, m->v, m->w);
+	if (s->span.traced)
+		ob_trace_moves(s->u, s->worker, id, ob_newest_motion(s->u, id)->flags, m->flags);
 	ob_claim_bounds(s->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach);
 	memcpy(m->bounds, ex->bounds[id], sizeof m->bounds);
 	ex->brief[id] = (ob_brief){ m->path, (float)reach, asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE };

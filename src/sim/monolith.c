@@ -8,6 +8,7 @@
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
 #include "sim/pull.h"
+#include "table/trace.h"
 
 struct held { // whether the world holds an object for a slot, and which
 	bool there;
@@ -23,6 +24,7 @@ struct ob_monolith {
 	double *depth;
 	size_t points_max;
 	uint32_t awake, pairs;
+	bool traced;
 };
 
 ob_monolith *ob_monolith_create(ob_universe *u)
@@ -38,6 +40,7 @@ ob_monolith *ob_monolith_create(ob_universe *u)
 		return NULL;
 	m->u = u;
 	m->run = run;
+	m->traced = ob_universe_traced(u);
 	m->held = calloc(capacity, sizeof *m->held);
 	m->world = ob_ode_world_create(&setup);
 	if (!m->held || !m->world) {
@@ -118,6 +121,8 @@ static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep,
 	double bounds[6];
 	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
 	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_pull(m->run, p)), next.bounds);
+	if (m->traced)
+		ob_trace_moves(m->u, 0, id, last->flags & OB_MOTION_ASLEEP, next.flags);
 	ob_publish_motion(m->u, id, &next);
 	ob_universe_exchange(m->u)->brief[id].state = asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE;
 }

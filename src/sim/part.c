@@ -2,9 +2,26 @@
 
 #include <string.h>
 
+// The running part's time so far.
+static void count(ob_sim *s)
+{
+	uint64_t since = s->times.since;
+	s->times.since =
+		s->times.shown ? ob_trace_span(s->u, s->worker, OB_TRACE_PART, since, s->times.part, 0) : ob_clock_ns();
+	s->times.wall[s->times.part] += s->times.since - since;
+}
+
+void ob_part_change(ob_sim *s, ob_part part)
+{
+	if (part == s->times.part)
+		return;
+	count(s);
+	s->times.part = part;
+}
+
 void ob_part_begin(ob_sim *s, ob_part part)
 {
-	if (!s->times.wanted)
+	if (!s->times.timed)
 		return;
 	memset(s->times.wall, 0, sizeof s->times.wall);
 	s->times.part = part;
@@ -19,9 +36,9 @@ void ob_part_begin(ob_sim *s, ob_part part)
 uint64_t ob_part_end(ob_sim *s)
 {
 	double wall = 0;
-	if (!s->times.wanted)
+	if (!s->times.timed)
 		return 0;
-	ob_part_enter(s, s->times.part);
+	count(s);
 	s->times.cpu_end = ob_clock_thread_cpu();
 	double cpu = 1e9 * (s->times.cpu_end - s->times.cpu);
 	for (int i = 0; i < OB_PARTS; i++)
@@ -31,4 +48,22 @@ uint64_t ob_part_end(ob_sim *s)
 	s->counters.held_ns += (uint64_t)fmax(0, wall - cpu);
 	s->counters.since_ns = s->times.since;
 	return (uint64_t)cpu;
+}
+
+uint64_t ob_part_show(ob_sim *s)
+{
+	if (s->times.timed)
+		count(s);
+	else
+		s->times.since = ob_clock_ns();
+	s->times.part = OB_PART_LOAD;
+	s->times.shown = s->times.wanted = true;
+	return s->times.since;
+}
+
+void ob_part_hide(ob_sim *s)
+{
+	count(s);
+	s->times.shown = false;
+	s->times.wanted = s->times.timed;
 }

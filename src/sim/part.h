@@ -1,4 +1,4 @@
-// Which part of the step a worker's time goes to; costs nothing unless the run is timed.
+// Which part of the step a worker's time goes to; costs nothing unless the run is timed, or traced in detail.
 //
 // A thread's CPU clock costs a system call, a hundred times as much as the clock on the wall. So parts are told apart by
 // the wall, and the CPU time of the whole phase is shared out among them in proportion.
@@ -9,19 +9,20 @@
 #include "sim/worker.h"
 
 // From now on the worker's time counts for this part.
+void ob_part_change(ob_sim *s, ob_part part);
 static inline void ob_part_enter(ob_sim *s, ob_part part)
 {
-	if (!s->times.wanted)
-		return;
-	uint64_t now = ob_clock_ns();
-	s->times.wall[s->times.part] += now - s->times.since;
-	s->times.part = part;
-	s->times.since = now;
+	if (s->times.wanted)
+		ob_part_change(s, part);
 }
 
 // Round a phase, or what the worker does between two; between an end and a beginning it waits at the gate. Returns ns of
 // CPU since the beginning, 0 unless the run is timed.
 void ob_part_begin(ob_sim *s, ob_part part);
 uint64_t ob_part_end(ob_sim *s);
+
+// From now on, until hide, each part is a span in the trace. The first is LOAD. Returns now.
+uint64_t ob_part_show(ob_sim *s);
+void ob_part_hide(ob_sim *s);
 
 #endif

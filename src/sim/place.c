@@ -7,6 +7,7 @@
 #include "sim/perceive.h"
 #include "sim/pull.h"
 #include "sim/sim.h"
+#include "table/trace.h"
 
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 {
@@ -32,15 +33,20 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 	ex->brief[id] = (ob_brief){ 0, (float)reach, fixed ? OB_BRIEF_STATIC : OB_BRIEF_AWAKE };
 	ex->result_island[id] = UINT32_MAX;
 	ob_publish_motion(u, id, &m);
+	if (ob_universe_traced(u))
+		ob_trace_birth(u, id);
 }
 
 static void wake(ob_universe *u, uint32_t id)
 {
 	const ob_passport *pass = ob_passport_of(u, id);
 	ob_motion m = *ob_newest_motion(u, id);
+	uint32_t flags = m.flags;
 	m.flags &= ~(uint32_t)OB_MOTION_ASLEEP;
 	m.quiet = 0;
 	ob_publish_motion(u, id, &m);
+	if (ob_universe_traced(u))
+		ob_trace_moves(u, ob_trace_host(u), id, flags, m.flags);
 	ob_brief *brief = &ob_universe_exchange(u)->brief[id];
 	brief->state = OB_BRIEF_AWAKE;
 	brief->reach = (float)ob_step_reach(ob_universe_settings(u), pass, m.v, m.w);
@@ -59,6 +65,8 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 	ob_pairs_drop(u, id);
 	ob_index_remove(u, id);
 	ex->brief[id] = (ob_brief){ 0, 0, OB_BRIEF_ABSENT };
+	if (ob_universe_traced(u))
+		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
 	ob_passport none = *ob_passport_of(u, id);
 	none.flags = 0;
 	ob_write_passport(u, id, &none);

@@ -6,6 +6,7 @@
 #include "sim/island.h"
 #include "sim/part.h"
 #include "sim/perceive.h"
+#include "sim/span.h"
 #include "sim/worker.h"
 
 ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
@@ -18,7 +19,8 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->worker = worker;
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
 		s->counters.since_ns = 0; // what lies between is nobody's waiting
-		s->times.wanted = run->timed;
+		s->times.timed = s->times.wanted = run->timed;
+		s->span.traced = ob_universe_traced(u);
 		s->ode = calloc(capacity, sizeof *s->ode);
 		s->ode_generation = calloc(capacity, sizeof *s->ode_generation);
 		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
@@ -64,20 +66,38 @@ ob_ode_body *ob_sim_ode(ob_sim *s, uint32_t id)
 	return s->ode[id];
 }
 
+static void solve(ob_sim *s, uint32_t island, bool first)
+{
+	bool shown = ob_span_island_begin(s, island, first);
+	ob_island_solve(s, island);
+	if (shown)
+		ob_span_island_end(s, island);
+}
+
+static uint32_t solve_chunk(ob_sim *s, uint32_t chunk)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	uint32_t objects = 0;
+	ob_span_chunk_begin(s);
+	for (uint32_t i = ex->chunk[chunk]; i < ex->chunk[chunk + 1]; i++) {
+		solve(s, i, i == ex->chunk[chunk]);
+		objects += ex->island[i].members;
+	}
+	ob_span_chunk_end(s, chunk);
+	return objects;
+}
+
 // The worker's share of the islands: those that it claims, or the one that its object leads.
 static void work_islands(ob_sim *s)
 {
 	const ob_exchange *ex = ob_universe_exchange(s->u);
 	uint32_t chunk, objects = 0;
 	if (ob_universe_settings(s->u)->one_per_object) {
-		ob_island_solve(s, ex->result_island[s->worker]);
+		solve(s, ex->result_island[s->worker], true);
 		return;
 	}
 	while (ob_claim_next(s->u, &chunk))
-		for (uint32_t i = ex->chunk[chunk]; i < ex->chunk[chunk + 1]; i++) {
-			ob_island_solve(s, i);
-			objects += ex->island[i].members;
-		}
+		objects += solve_chunk(s, chunk);
 	ob_worker_set_objects(s->u, s->worker, objects);
 }
 
@@ -130,11 +150,16 @@ void ob_sim_arrange(ob_sim *s, ob_phase finished)
 void ob_sim_run(ob_sim *s)
 {
 	for (;;) {
+		ob_span_turn(s, OB_TRACE_WAIT);
 		ob_phase phase = ob_gate_wait(s->u, s->worker);
 		if (phase == OB_PHASE_STOP)
-			return;
+			break;
+		ob_span_turn(s, phase == OB_PHASE_MEMBERS ? OB_TRACE_MEMBERS : OB_TRACE_SOLVE);
 		ob_sim_work(s, phase);
-		if (ob_gate_arrive(s->u, s->worker))
+		if (ob_gate_arrive(s->u, s->worker)) {
+			ob_span_turn(s, OB_TRACE_ARRANGE);
 			ob_sim_arrange(s, phase);
+		}
 	}
+	ob_span_turn(s, OB_TRACE_NONE);
 }

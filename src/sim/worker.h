@@ -7,6 +7,7 @@
 #include "sim/monolith.h"
 #include "sim/plans.h"
 #include "sim/sim.h"
+#include "table/trace.h"
 
 struct ob_sim {
 	ob_universe *u;
@@ -18,11 +19,18 @@ struct ob_sim {
 	ob_monolith *monolith; // NULL unless one world holds all objects
 	ob_counters counters; // handed over to the universe at the end of each phase
 	struct { // sim/part.h
-		bool wanted;
+		bool timed, shown; // for the counters; for the trace
+		bool wanted; // either
 		ob_part part; // that the time counts for
 		uint64_t since, wall[OB_PARTS]; // ns; of the running phase
 		double cpu, cpu_end; // s, when it began; when the one before ended
 	} times;
+	struct { // sim/span.h
+		bool traced;
+		ob_trace_kind kind; // of level 0, that goes on
+		uint64_t since, chunk, island; // ns, when each level's span began
+		uint32_t islands, members; // counted at "since"
+	} span;
 };
 
 // The object's ODE body, made when the worker first runs it.

@@ -7,6 +7,17 @@ ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker)
 	return &u->worker[worker].counters;
 }
 
+const char *ob_part_name(uint32_t part)
+{
+	static const char *const names[OB_PARTS] = {
+		[OB_PART_PERCEIVE] = "perceive", [OB_PART_ARRANGE] = "arrange", [OB_PART_LEAP] = "leap",
+		[OB_PART_LOAD] = "load",         [OB_PART_LOOK] = "look",       [OB_PART_IMPACTS] = "impacts",
+		[OB_PART_SOLVE] = "solve",       [OB_PART_MOVE] = "move",       [OB_PART_PROJECT] = "project",
+		[OB_PART_PUBLISH] = "publish",
+	};
+	return part < OB_PARTS && names[part] ? names[part] : "?";
+}
+
 static void add(ob_counters *to, const ob_counters *c)
 {
 	to->leaps += c->leaps;

@@ -20,6 +20,9 @@ typedef enum ob_part {
 	OB_PARTS
 } ob_part;
 
+// A word for it; "?" for what is none.
+const char *ob_part_name(uint32_t part);
+
 enum { OB_SUBSTEP_CHOICES = 11 }; // islands take 1, 2, 4 .. 1024 substeps where a tolerance chooses
 
 typedef struct ob_counters {

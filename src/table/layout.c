@@ -15,7 +15,19 @@ static uint32_t power_of_two_from(uint32_t least)
 // How many elements an area has: so many times one of the sizes, and some more.
 typedef struct area_rule {
 	size_t element; // bytes
-	enum { FIXED, PER_OBJECT, PER_64_OBJECTS, PER_WORKER, PER_64_WORKERS, PER_PAIR, PER_BUCKET, PER_PERCEIVED } per;
+	enum {
+		FIXED,
+		PER_OBJECT,
+		PER_64_OBJECTS,
+		PER_WORKER,
+		PER_64_WORKERS,
+		PER_PAIR,
+		PER_BUCKET,
+		PER_PERCEIVED,
+		PER_RING,
+		PER_TRACE_EVENT,
+		PER_TRACED_OBJECT
+	} per;
 	unsigned times, more;
 } area_rule;
 
@@ -52,10 +64,14 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_CHUNK] = { ELEMENT(chunk), PER_OBJECT, 1, 1 },
 	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
 	[OB_AREA_ISLAND_REACH] = { ELEMENT(island_reach), PER_OBJECT, 1, 0 },
+	[OB_AREA_TRACE_RING] = { sizeof(ob_trace_ring), PER_RING, 1, 0 },
+	[OB_AREA_TRACE_EVENT] = { sizeof(ob_trace_event), PER_TRACE_EVENT, 1, 0 },
+	[OB_AREA_TRACE_SINCE] = { sizeof(uint64_t), PER_TRACED_OBJECT, 1, 0 },
 };
 
 static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 {
+	bool traced = s->trace_events > 0;
 	const uint64_t count[] = {
 		[FIXED] = 0,
 		[PER_OBJECT] = s->capacity,
@@ -65,17 +81,33 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 		[PER_PAIR] = s->pairs_max,
 		[PER_BUCKET] = s->buckets,
 		[PER_PERCEIVED] = s->perceived_max,
+		[PER_RING] = traced ? s->workers + OB_TRACE_HOST_RINGS : 0,
+		[PER_TRACE_EVENT] =
+			traced ? (uint64_t)s->workers * s->trace_events + OB_TRACE_HOST_RINGS * OB_TRACE_HOST_EVENTS
+			       : 0,
+		[PER_TRACED_OBJECT] = traced ? s->capacity : 0,
 	};
 	const area_rule *r = &rules[area];
 	return r->element * (count[r->per] * r->times + r->more);
 }
 
-void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers)
+// All rings together hold half a million events, 16 MiB, unless there are so many workers that each has the least.
+static uint32_t ring_events(uint32_t workers)
+{
+	enum { ALL = 1 << 19, LEAST = 256, MOST = 1 << 16 };
+	uint32_t n = MOST;
+	while (n > LEAST && (uint64_t)n * workers > ALL)
+		n /= 2;
+	return n;
+}
+
+void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced)
 {
 	h->sizes = (ob_layout_sizes){ .capacity = capacity, .workers = workers };
 	h->sizes.pairs_max = capacity > 128 ? 64 * capacity : 8192;
 	h->sizes.buckets = power_of_two_from(2 * capacity);
 	h->sizes.perceived_max = 64 * capacity + 65536;
+	h->sizes.trace_events = traced ? ring_events(workers) : 0;
 	uint64_t at = OB_LAYOUT_PAGE;
 	for (int i = 0; i < OB_AREAS; i++) {
 		h->area[i] = at;
@@ -104,7 +136,7 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	if (s->capacity < 1 || s->capacity > CAPACITY_LIMIT || s->workers < 1 || s->workers > WORKERS_LIMIT)
 		return false;
 	ob_header expected;
-	ob_layout_plan(&expected, s->capacity, s->workers);
+	ob_layout_plan(&expected, s->capacity, s->workers, s->trace_events > 0);
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
 	       memchr(h->isolation, 0, sizeof h->isolation);
@@ -157,5 +189,8 @@ void ob_layout_bind(ob_universe *u, void *base)
 	u->passport = (void *)(u->base + area[OB_AREA_PASSPORT]);
 	u->rebound = (void *)(u->base + area[OB_AREA_REBOUND]);
 	u->rebound_bit = (void *)(u->base + area[OB_AREA_REBOUND_BIT]);
+	u->trace_ring = (void *)(u->base + area[OB_AREA_TRACE_RING]);
+	u->trace_event = (void *)(u->base + area[OB_AREA_TRACE_EVENT]);
+	u->trace_since = (void *)(u->base + area[OB_AREA_TRACE_SINCE]);
 	bind_exchange(u);
 }

@@ -12,9 +12,10 @@
 #include "table/latency.h"
 #include "table/slot.h"
 #include "table/table.h"
+#include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 4, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 5, OB_LAYOUT_PAGE = 4096 };
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -48,11 +49,15 @@ typedef enum ob_area {
 	OB_AREA_CHUNK,
 	OB_AREA_SCRATCH,
 	OB_AREA_ISLAND_REACH,
+	OB_AREA_TRACE_RING, // from here on empty unless traced
+	OB_AREA_TRACE_EVENT, // rings of the workers, then of the host
+	OB_AREA_TRACE_SINCE, // [capacity] ns
 	OB_AREAS
 } ob_area;
 
 typedef struct ob_layout_sizes {
 	uint32_t capacity, workers, pairs_max, buckets, perceived_max;
+	uint32_t trace_events; // of each worker's ring, a power of two; 0 = not traced
 } ob_layout_sizes;
 
 // The first four fields stay where they are in all versions, so that any obsim can tell a stale segment.
@@ -64,7 +69,6 @@ typedef struct ob_header {
 	uint64_t bytes; // of the whole segment
 	uint64_t created; // ns, CLOCK_REALTIME
 	ob_layout_sizes sizes;
-	uint32_t padding;
 	uint64_t area[OB_AREAS]; // offsets
 	char name[OB_NAME_MAX];
 	char isolation[16];
@@ -99,6 +103,17 @@ typedef struct ob_worker_cell {
 	_Alignas(64) ob_counters counters;
 } ob_worker_cell;
 
+// The writer's words, the reader's word. trace.h has the drawing.
+typedef struct ob_trace_ring {
+	_Alignas(64) uint64_t written;
+	uint64_t taken_seen, lost, doing;
+	_Alignas(64) uint64_t taken;
+} ob_trace_ring;
+
+// The host's rings are large, for births come by the thousand.
+enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
+
+static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == 128, "trace");
 static_assert(sizeof(ob_run_settings) == 88, "run settings");
 static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 88, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
@@ -123,10 +138,13 @@ struct ob_universe {
 	uint32_t *rebound;
 	uint64_t *rebound_bit;
 	ob_exchange exchange;
+	ob_trace_ring *trace_ring; // these three only if traced
+	ob_trace_event *trace_event;
+	uint64_t *trace_since;
 };
 
-// Fills sizes (from capacity and workers), offsets and bytes.
-void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers);
+// Fills sizes (from what is given), offsets and bytes.
+void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced);
 // Whether a header that came from outside is one that this program would have planned, in a file of file_bytes.
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);
 // Bytes that a full universe with a few contacts per object will touch: what the memory file system must have free.

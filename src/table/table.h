@@ -62,6 +62,7 @@ typedef struct ob_universe_setup {
 	uint32_t workers;       // >= 1
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
+	bool traced;            // with rings for a trace (trace.h)
 } ob_universe_setup;
 
 // Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments whose host is dead.

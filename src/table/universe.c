@@ -57,7 +57,7 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 {
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
-	ob_layout_plan(h, setup->capacity, setup->workers);
+	ob_layout_plan(h, setup->capacity, setup->workers, setup->traced);
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->host_start = ob_segment_process_start(h->host_pid);

@@ -33,7 +33,7 @@ _obsim()
 		bullet' -- "$word") ;;
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
-	--video | --raw | --record | --series | --summary | --json) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+	--video | --raw | --record | --series | --summary | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--define | -D | --duration | --step | --seed | --substeps | --passes | --lag | --load | --iterations | --name | --fps | --samples | \
 		--camera | --interval | --repeats | --limit) ;;
 	*)

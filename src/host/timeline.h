@@ -1,0 +1,23 @@
+// The timeline: a thread that takes the spans out of the universe's rings (table/trace.h) some twenty times a second
+// and writes them to a file, while the run goes on.
+//
+// Thread-safety: start and finish are one thread's.
+#ifndef OB_HOST_TIMELINE_H
+#define OB_HOST_TIMELINE_H
+
+#include "table/trace.h"
+
+typedef struct ob_timeline ob_timeline;
+
+typedef struct ob_timeline_sums {
+	uint64_t events; // that the simulators and the host have told
+	uint64_t lost; // of these, those that found no room; they are missing in the file
+} ob_timeline_sums;
+
+// On a universe that is traced. NULL and e on failure.
+ob_timeline *ob_timeline_start(ob_universe *u, const char *path, ob_error *e);
+// Writes what is there, ends the file, frees t (NULL is allowed). Workers that are still there should stand still: what
+// they do from now on is not in the file. false and e if it is not whole.
+bool ob_timeline_finish(ob_timeline *t, ob_timeline_sums *sums, ob_error *e);
+
+#endif

@@ -1,0 +1,335 @@
+#include "host/trace_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/utf8.h"
+#include "table/table.h"
+
+enum {
+	BUFFER = 1 << 16,
+	LONGEST = 1 << 10, // bytes of one event
+	HOST_PID = 1,
+	WORKERS_PID = 2,
+	OBJECTS_PID = 3,
+	SUPERVISOR_TID = 5,
+	FIRST_TID = 10 // of the workers, and then of the objects: ids of threads are the file's own
+};
+
+struct ob_trace_file {
+	const ob_universe *u;
+	const char *path;
+	int fd, error; // errno of the first write that failed
+	uint32_t workers;
+	bool monolith;
+	uint64_t zero; // ns
+	size_t used;
+	char text[BUFFER];
+};
+
+// ---- text; printf takes ten times as long, and there are a million events
+
+static void flush(ob_trace_file *f)
+{
+	for (size_t done = 0; done < f->used && !f->error;) {
+		ssize_t n = write(f->fd, f->text + done, f->used - done);
+		if (n > 0)
+			done += (size_t)n;
+		else if (errno != EINTR)
+			f->error = n < 0 ? errno : EIO;
+	}
+	f->used = 0;
+}
+
+static void add(ob_trace_file *f, const char *s)
+{
+	size_t n = strlen(s);
+	memcpy(f->text + f->used, s, n);
+	f->used += n;
+}
+
+static void add_number(ob_trace_file *f, uint64_t n)
+{
+	char digits[20];
+	int i = sizeof digits;
+	do
+		digits[--i] = (char)('0' + n % 10);
+	while (n /= 10);
+	memcpy(f->text + f->used, digits + i, sizeof digits - (size_t)i);
+	f->used += sizeof digits - (size_t)i;
+}
+
+static void add_eighths(ob_trace_file *f, uint64_t n)
+{
+	static const char *const parts[8] = { "", ".125", ".25", ".375", ".5", ".625", ".75", ".875" };
+	add_number(f, n / 8);
+	add(f, parts[n % 8]);
+}
+
+// In quotes. Bytes that are no UTF-8 are taken as Latin-1.
+static void add_string(ob_trace_file *f, const char *text)
+{
+	static const char hex[] = "0123456789abcdef";
+	add(f, "\"");
+	for (const unsigned char *s = (const unsigned char *)text; *s;) {
+		int n = ob_utf8_length(s);
+		if (n == 0 || *s < 0x20 || *s == '"' || *s == '\\') {
+			const char escape[] = { '\\', 'u', '0', '0', hex[*s >> 4], hex[*s & 15], 0 };
+			add(f, escape);
+			n = 1;
+		} else {
+			memcpy(f->text + f->used, s, (size_t)n);
+			f->used += (size_t)n;
+		}
+		s += n;
+	}
+	add(f, "\"");
+}
+
+static void add_member(ob_trace_file *f, const char *key, uint64_t value)
+{
+	add(f, key);
+	add_number(f, value);
+}
+
+// ---- events
+
+typedef struct track {
+	uint32_t pid;
+	uint64_t tid;
+} track;
+
+static track of_object(const ob_trace_file *f, uint32_t id)
+{
+	return (track){ OBJECTS_PID, FIRST_TID + (uint64_t)f->workers + id };
+}
+
+static track of_ring(const ob_trace_file *f, uint32_t ring)
+{
+	if (ring < f->workers)
+		return (track){ WORKERS_PID, FIRST_TID + (uint64_t)ring };
+	return (track){ HOST_PID, ring == f->workers ? HOST_PID : SUPERVISOR_TID };
+}
+
+static void begin(ob_trace_file *f, const char *phase, track t)
+{
+	if (f->used > BUFFER - LONGEST)
+		flush(f);
+	add(f, ",\n{\"ph\":\"");
+	add(f, phase);
+	add_member(f, "\",\"pid\":", t.pid);
+	add_member(f, ",\"tid\":", t.tid);
+}
+
+static uint64_t eighths(const ob_trace_file *f, uint64_t ns)
+{
+	return ns > f->zero ? (ns - f->zero) / 125 : 0;
+}
+
+// Leaves the event open for more members.
+static void begin_span(ob_trace_file *f, track t, const char *name, const ob_trace_event *e)
+{
+	uint64_t from = eighths(f, e->begin), to = eighths(f, e->end);
+	begin(f, "X", t);
+	add(f, ",\"ts\":");
+	add_eighths(f, from);
+	add(f, ",\"dur\":");
+	add_eighths(f, to > from ? to - from : 0);
+	add(f, ",\"name\":\"");
+	add(f, name);
+	add(f, "\"");
+}
+
+static void begin_instant(ob_trace_file *f, track t, const char *name, uint64_t when)
+{
+	begin(f, "i", t);
+	add(f, ",\"s\":\"t\",\"ts\":");
+	add_eighths(f, eighths(f, when));
+	add(f, ",\"name\":\"");
+	add(f, name);
+	add(f, "\"");
+}
+
+static void end(ob_trace_file *f)
+{
+	add(f, "}");
+}
+
+static void put_state(ob_trace_file *f, const ob_trace_event *e)
+{
+	static const char *const names[OB_TRACE_MOTIONS] = {
+		[OB_TRACE_ABSENT] = "absent",
+		[OB_TRACE_FLYING] = "flies",
+		[OB_TRACE_TOUCHING] = "touches",
+		[OB_TRACE_ASLEEP] = "asleep",
+	};
+	uint32_t before = e->b & 255, after = e->b >> 8;
+	track t = of_object(f, e->a);
+	if (before >= OB_TRACE_MOTIONS)
+		return;
+	// the one world does not say who touches whom
+	begin_span(f, t, f->monolith && before != OB_TRACE_ASLEEP ? "awake" : names[before], e);
+	end(f);
+	if (after == OB_TRACE_ASLEEP || (before == OB_TRACE_ASLEEP && after != OB_TRACE_ABSENT)) {
+		begin_instant(f, t, after == OB_TRACE_ASLEEP ? "falls asleep" : "wakes", e->end);
+		end(f);
+	}
+}
+
+static void put_killed(ob_trace_file *f, const ob_trace_event *e)
+{
+	const char *signal = e->b ? sigabbrev_np((int)e->b) : NULL;
+	begin_instant(f, of_ring(f, e->a), "dies", e->end);
+	add(f, ",\"args\":{\"signal\":");
+	add_string(f, signal ? signal : e->b ? "unknown" : "none");
+	add(f, "}");
+	end(f);
+}
+
+static const char *name_of(const ob_trace_file *f, const ob_trace_event *e)
+{
+	static const char *const names[OB_TRACE_KINDS] = {
+		[OB_TRACE_WAIT] = "gate",         [OB_TRACE_SOLVE] = "solve",     [OB_TRACE_MEMBERS] = "members",
+		[OB_TRACE_ARRANGE] = "arrange",   [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
+		[OB_TRACE_SNAPSHOT] = "snapshot", [OB_TRACE_MEASURE] = "measure", [OB_TRACE_RECORD] = "record",
+		[OB_TRACE_DRAW] = "draw",         [OB_TRACE_ENCODE] = "encode",
+	};
+	if (e->kind == OB_TRACE_PART)
+		return ob_part_name(e->a);
+	return e->kind == OB_TRACE_SOLVE && f->monolith ? "world" : names[e->kind];
+}
+
+// What the numbers of a kind mean.
+static void add_arguments(ob_trace_file *f, const ob_trace_event *e, bool unfinished)
+{
+	size_t start = f->used;
+	add(f, ",\"args\":{");
+	size_t empty = f->used;
+	if (unfinished)
+		add(f, "\"unfinished\":true");
+	else if (e->kind == OB_TRACE_SOLVE || e->kind == OB_TRACE_MEMBERS)
+		add_member(f, "\"step\":", e->step);
+	if (!unfinished && ((e->kind == OB_TRACE_SOLVE && !f->monolith) || e->kind == OB_TRACE_CHUNK)) {
+		add_member(f, e->kind == OB_TRACE_SOLVE ? ",\"islands\":" : "\"islands\":", e->a);
+		add_member(f, ",\"members\":", e->b);
+	}
+	if (e->kind == OB_TRACE_ISLAND) {
+		add_member(f, "\"first\":", e->a);
+		add_member(f, ",\"members\":", e->b);
+	}
+	if (e->kind == OB_TRACE_DRAW || e->kind == OB_TRACE_ENCODE)
+		add_member(f, "\"frame\":", e->a);
+	if (f->used == empty)
+		f->used = start;
+	else
+		add(f, "}");
+}
+
+void ob_trace_file_put(ob_trace_file *f, uint32_t ring, const ob_trace_event *e, bool unfinished)
+{
+	if (e->kind == OB_TRACE_STATE) {
+		put_state(f, e);
+	} else if (e->kind == OB_TRACE_BIRTH || e->kind == OB_TRACE_DEATH) {
+		begin_instant(f, of_object(f, e->a), e->kind == OB_TRACE_BIRTH ? "birth" : "death", e->end);
+		end(f);
+	} else if (e->kind == OB_TRACE_KILLED) {
+		put_killed(f, e);
+	} else if (e->kind > OB_TRACE_NONE && e->kind < OB_TRACE_KINDS) {
+		begin_span(f, of_ring(f, ring), name_of(f, e), e);
+		add_arguments(f, e, unfinished);
+		end(f);
+	}
+}
+
+void ob_trace_file_put_lost(ob_trace_file *f, uint32_t ring, uint64_t lost, uint64_t when)
+{
+	begin_instant(f, of_ring(f, ring), "events lost", when);
+	add_member(f, ",\"args\":{\"events\":", lost);
+	add(f, "}");
+	end(f);
+}
+
+// ---- names
+
+static void name(ob_trace_file *f, const char *what, track t, const char *text, uint64_t rank)
+{
+	begin(f, "M", t);
+	add(f, ",\"name\":\"");
+	add(f, what);
+	add(f, "_name\",\"args\":{\"name\":");
+	add_string(f, text);
+	add(f, "}");
+	end(f);
+	begin(f, "M", t);
+	add(f, ",\"name\":\"");
+	add(f, what);
+	add_member(f, "_sort_index\",\"args\":{\"sort_index\":", rank);
+	add(f, "}");
+	end(f);
+}
+
+void ob_trace_file_name_object(ob_trace_file *f, uint32_t id)
+{
+	char text[OB_NAME_MAX + 24], known[OB_NAME_MAX] = "";
+	ob_trace_name(f->u, id, known);
+	snprintf(text, sizeof text, "%u %s", id, known);
+	name(f, "thread", of_object(f, id), text, of_object(f, id).tid);
+}
+
+static void name_tracks(ob_trace_file *f)
+{
+	bool own = ob_universe_settings(f->u)->one_per_object;
+	char text[40];
+	name(f, "process", (track){ HOST_PID, HOST_PID }, "host", HOST_PID);
+	name(f, "process", (track){ WORKERS_PID, FIRST_TID }, own ? "workers, one per object" : "workers", WORKERS_PID);
+	name(f, "process", (track){ OBJECTS_PID, FIRST_TID + (uint64_t)f->workers }, "simulators", OBJECTS_PID);
+	name(f, "thread", of_ring(f, f->workers), "main thread", 0);
+	name(f, "thread", of_ring(f, f->workers + 1), "supervisor", 1);
+	for (uint32_t w = 0; w < f->workers; w++) {
+		snprintf(text, sizeof text, "worker %u", w);
+		name(f, "thread", of_ring(f, w), text, of_ring(f, w).tid);
+	}
+}
+
+ob_trace_file *ob_trace_file_open(const char *path, const ob_universe *u, ob_error *e)
+{
+	ob_trace_file *f = calloc(1, sizeof *f);
+	if (!f) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
+	f->u = u;
+	f->path = path;
+	f->workers = ob_universe_workers(u);
+	f->monolith = ob_universe_settings(u)->monolith;
+	f->zero = ob_clock_ns();
+	f->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+	if (f->fd < 0) {
+		ob_fail(e, "%s: %s", path, strerror(errno));
+		free(f);
+		return NULL;
+	}
+	// something must stand before the first comma; an importer shows it nowhere
+	add(f, "{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n");
+	add(f, "{\"ph\":\"M\",\"pid\":1,\"name\":\"process_labels\",\"args\":{\"labels\":\"obsim\"}}");
+	name_tracks(f);
+	return f;
+}
+
+bool ob_trace_file_close(ob_trace_file *f, uint64_t events, uint64_t lost, ob_error *e)
+{
+	add_member(f, "\n],\"otherData\":{\"events\":", events);
+	add_member(f, ",\"lost\":", lost);
+	add(f, "}}\n");
+	flush(f);
+	if (close(f->fd) != 0 && !f->error)
+		f->error = errno;
+	bool fine = !f->error || ob_fail(e, "%s: %s", f->path, strerror(f->error));
+	free(f);
+	return fine;
+}
