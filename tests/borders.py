@@ -32,9 +32,11 @@ ARROWS = {
     'lab': 'reference peer plot page measure motion base',
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
-    'cli': 'host render record lab measure scene table base',
+    'paper': 'host measure render reference plot page scene table base',
+    'cli': 'host render record lab paper measure scene table base',
 }
-BUILT = {'render': ['shaders.h'], 'lab': ['report_texts.h'], 'page': ['page_texts.h']}  # written by the build, so without a folder
+BUILT = {'render': ['shaders.h'], 'lab': ['report_texts.h'], 'page': ['page_texts.h'],
+         'paper': ['paper_texts.h']}  # written by the build, so without a folder
 
 # What only some files may do: (what, pattern, where it may stand, in code without comments and strings?).
 DUTIES = [
@@ -49,9 +51,13 @@ DUTIES = [
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
     # Simulators are started by host/spawn_*.c (processes through its keeper); the rest are helpers of one module each.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
+<<<<<<< theirs
+     r'src/(host/(spawn_\w+|supervisor)|render/sink\w*|cli/progress|paper/viewer)\.c$', True),
+=======
      r'src/(host/(spawn_\w+|supervisor|timeline)|render/sink\w*|cli/progress)\.c$', True),
+>>>>>>> trace
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|keeper)|render/sink_video|lab/attempt|cli/child)\.c$', True),
+     r'src/(host/(spawn_\w+|keeper)|render/sink_video|lab/attempt|paper/attempt|cli/child)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

@@ -16,6 +16,7 @@ int ob_command_run(const ob_arguments *a);
 int ob_command_compare(const ob_arguments *a);
 int ob_command_top(const ob_arguments *a);
 int ob_command_lab(const ob_arguments *a);
+int ob_command_paper(const ob_arguments *a);
 
 // One line on standard error, "obsim: ..."; returns code.
 int ob_command_fail(int code, const char *text);

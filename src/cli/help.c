@@ -14,6 +14,8 @@ static const struct {
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
 	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",
 	  "Runs hard cases with several engines: error against target and against cost." },
+	{ OB_COMMAND_PAPER, "obsim paper [OPTION ...]",
+	  "Repeats the experiment of the paper behind obsim, and judges its claims." },
 };
 
 void ob_options_help(FILE *f, ob_command_bit command)

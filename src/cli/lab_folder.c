@@ -12,8 +12,7 @@
 #include "lab/report.h"
 #include "lab/tables.h"
 
-// Like mkdir -p.
-static bool make_folder(const char *folder, ob_error *e)
+bool ob_lab_folder_make(const char *folder, ob_error *e)
 {
 	char *path = strdup(folder);
 	bool fine = path;
@@ -67,7 +66,7 @@ bool ob_lab_folder_open(const char *folder, ob_results *r, ob_error *e)
 	ob_results now = { 0 };
 	ob_provenance_machine(now.machine, sizeof now.machine);
 	ob_provenance_commit(ob_version_commit, now.commit, sizeof now.commit);
-	if (!make_folder(folder, e))
+	if (!ob_lab_folder_make(folder, e))
 		return false;
 	char *file = ob_lab_folder_path(folder, "results.csv");
 	bool same = ob_results_read(r, file, NULL);

@@ -15,6 +15,7 @@ static const struct {
 	{ "compare", OB_COMMAND_COMPARE, ob_command_compare },
 	{ "top", OB_COMMAND_TOP, ob_command_top },
 	{ "lab", OB_COMMAND_LAB, ob_command_lab },
+	{ "paper", OB_COMMAND_PAPER, ob_command_paper },
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

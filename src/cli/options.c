@@ -5,7 +5,7 @@
 
 #include "cli/suggest.h"
 
-enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP, LAB = OB_COMMAND_LAB };
+enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP, LAB = OB_COMMAND_LAB, PAPER = OB_COMMAND_PAPER };
 
 const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene", RUN | COMPARE,
@@ -65,21 +65,25 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_TRACE] = { NULL, "trace", "FILE", "what each worker did when, for ui.perfetto.dev", RUN, 0 },
 
 	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
-	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only cases of the quick subset", LAB, 0 },
+	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only a quick subset", LAB | PAPER,
+			    0 },
+	[OB_OPTION_OBJECTS] = { NULL, "objects", "N", "boxes in each experiment (64)", PAPER, 0 },
 	[OB_OPTION_ENGINES] = { NULL, "engines", "LIST", "engines by name, with commas (all)", LAB, 0 },
 	[OB_OPTION_SWEEP] = { NULL, "sweep", "LISTS|none",
 			      "as substeps=1,2,4,tolerance=5mm,.5mm (what suits each engine)", LAB, 0 },
 	[OB_OPTION_REPEATS] = { NULL, "repeats", "N", "runs of each; times are their medians (1)", LAB, 0 },
 	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds of CPU that a run may take (150)", LAB, 0 },
-	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR", "results, diagrams, report (obsim-lab)", LAB, 0 },
+	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR", "results, diagrams, report (obsim-lab; obsim-paper)",
+			  LAB | PAPER, 0 },
 	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB, 0 },
-	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print the results as JSON instead of tables", LAB, 0 },
+	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print the results as JSON instead of tables", LAB | PAPER,
+			       0 },
 	[OB_OPTION_CHECK] = { NULL, "check", NULL, "exit with 3 when obsim misses a target", LAB, 0 },
 
 	[OB_OPTION_ONCE] = { "The view", "once", NULL, "print once, for pipes, and end", TOP, 0 },
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
-	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end", RUN | COMPARE | TOP | LAB, 'h' },
+	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end", RUN | COMPARE | TOP | LAB | PAPER, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)

@@ -13,6 +13,7 @@ typedef enum ob_command_bit {
 	OB_COMMAND_COMPARE = 2,
 	OB_COMMAND_TOP = 4,
 	OB_COMMAND_LAB = 8,
+	OB_COMMAND_PAPER = 16,
 } ob_command_bit;
 
 // In the order in which help shows them.
@@ -53,6 +54,7 @@ typedef enum ob_option_id {
 	OB_OPTION_TRACE,
 	OB_OPTION_LIST,
 	OB_OPTION_QUICK,
+	OB_OPTION_OBJECTS,
 	OB_OPTION_ENGINES,
 	OB_OPTION_SWEEP,
 	OB_OPTION_REPEATS,

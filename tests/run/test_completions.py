@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "compare", "top", "lab"]
+COMMANDS = ["run", "compare", "top", "lab", "paper"]
 
 
 def options(command):

@@ -11,9 +11,9 @@ _obsim()
 	local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]}
 	local previous=${COMP_WORDS[COMP_CWORD - 1]}
 	COMPREPLY=()
-	[[ $command:$previous == lab:--json ]] && previous= # a flag there
+	[[ $command:$previous == @(lab|paper):--json ]] && previous= # a flag there
 	if ((COMP_CWORD == 1)); then
-		mapfile -t COMPREPLY < <(compgen -W 'run compare top lab help --help --version' -- "$word")
+		mapfile -t COMPREPLY < <(compgen -W 'run compare top lab paper help --help --version' -- "$word")
 		return
 	fi
 	case $previous in
@@ -35,11 +35,12 @@ _obsim()
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --summary | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--define | -D | --duration | --step | --seed | --substeps | --passes | --lag | --load | --iterations | --name | --fps | --samples | \
-		--camera | --interval | --repeats | --limit) ;;
+		--camera | --interval | --repeats | --limit | --objects) ;;
 	*)
 		case $command:$word in
-		help:*) mapfile -t COMPREPLY < <(compgen -W 'run compare top lab' -- "$word") ;;
+		help:*) mapfile -t COMPREPLY < <(compgen -W 'run compare top lab paper' -- "$word") ;;
 		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
+		paper:*) ;;
 		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
 		lab:*) mapfile -t COMPREPLY < <(compgen -W "$("$program" lab --list 2>/dev/null |

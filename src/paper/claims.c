@@ -1,0 +1,262 @@
+#include "paper/claims.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "paper/words.h"
+
+static const double half = .5, tenfold = 10;
+static const double doubled = 2; // a test that costs an environment this much more is a reason not to use it
+static const double load_far = 10; // times the paper's load: beyond that its figure says nothing about this claim
+static const double in_time = .98; // of reality's pace
+
+const ob_paper_runtime ob_paper_runtimes[OB_PAPER_RUNTIMES] = {
+	{ OB_PAPER_STEP, "the step that everybody waits for" },
+	{ OB_PAPER_TOTAL, "the CPU time of all simulators together" },
+	{ OB_PAPER_ONE, "the CPU time of one simulator" },
+};
+
+const char *ob_paper_verdict_text(ob_paper_verdict v)
+{
+	static const char *const texts[OB_PAPER_VERDICTS] = { "holds", "holds only if", "does not hold",
+							      "cannot be told" };
+	return texts[v];
+}
+
+// Do all of the interval's ratios lie on this side? Not if it is unknown.
+static bool below(const ob_paper_ratio *r, double limit)
+{
+	return r->high < limit;
+}
+
+static bool above(const ob_paper_ratio *r, double limit)
+{
+	return r->low > limit;
+}
+
+static double mean(const ob_paper_results *r, ob_paper_scenario s, ob_paper_quantity q)
+{
+	return ob_paper_summarise(r, s, q).mean;
+}
+
+// "1.2 ms instead of 3.4 ms, 0.35 times (.. to ..)"
+static void say_pair(ob_paper_claim *c, const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b,
+		     ob_paper_quantity q, const ob_paper_ratio *ratio)
+{
+	OB_SAY(c->because, "%s instead of %s, %s", ob_word_value(mean(r, a, q), q).text,
+	       ob_word_value(mean(r, b, q), q).text, ob_word_ratio(ratio).text);
+}
+
+static void say_itself(const ob_paper_case *c, ob_paper_scenario a, ob_paper_scenario b, ob_paper_quantity q)
+{
+	ob_paper_ratio ratio = ob_paper_compare(c->paper, a, b, q);
+	OB_SAY(c->claim->itself, "%s in its tables.", ob_word_ratio(&ratio).text);
+}
+
+static void judge_runtime(const ob_paper_case *c)
+{
+	ob_paper_claim *claim = c->claim;
+	int lower = 0, higher = 0;
+	OB_SAY(claim->because, "With OBS ");
+	for (int i = 0; i < OB_PAPER_RUNTIMES; i++) {
+		const ob_paper_runtime *t = &ob_paper_runtimes[i];
+		ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, t->quantity);
+		if (below(&ratio, 1))
+			OB_SAY(claim->condition, "%s%s", lower++ ? " or " : "runtime means ", t->name);
+		higher += above(&ratio, 1);
+		OB_SAY(claim->because, "%s%s takes ", i ? "; " : "", t->name);
+		say_pair(claim, c->here, OB_PAPER_OBS, OB_PAPER_COMMON, t->quantity, &ratio);
+	}
+	ob_paper_ratio pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	OB_SAY(claim->because,
+	       ". One thread per core that runs all the simulators takes %s the CPU time of the common environment.",
+	       ob_word_ratio(&pool).text);
+	claim->verdict = lower == OB_PAPER_RUNTIMES    ? OB_PAPER_HOLDS
+			 : lower > 0                   ? OB_PAPER_ONLY_IF
+			 : higher == OB_PAPER_RUNTIMES ? OB_PAPER_FAILS
+						       : OB_PAPER_OPEN;
+	say_itself(c, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_STEP);
+}
+
+static uint32_t count_faster(const ob_paper_results *r)
+{
+	uint32_t faster = 0;
+	for (uint32_t k = 0; k < r->experiments; k++) {
+		const ob_paper_sample *obs = ob_paper_find(r, OB_PAPER_OBS, k),
+				      *common = ob_paper_find(r, OB_PAPER_COMMON, k);
+		faster += obs && common && obs->fps > common->fps;
+	}
+	return faster;
+}
+
+static void judge_frames(const ob_paper_case *c)
+{
+	ob_paper_claim *claim = c->claim;
+	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_FPS);
+	ob_paper_ratio pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_FPS);
+	OB_SAY(claim->itself, "Higher in %u of %u experiments, equal in the rest: it looks like a cap at 240.",
+	       count_faster(c->paper), c->paper->experiments);
+	claim->verdict = OB_PAPER_OPEN;
+	if (ratio.n == 0) {
+		OB_SAY(claim->because, "No frames were drawn.");
+		return;
+	}
+	if (above(&ratio, 1)) {
+		claim->verdict = OB_PAPER_HOLDS;
+	} else if (above(&pool, 1)) {
+		claim->verdict = OB_PAPER_ONLY_IF;
+		OB_SAY(claim->condition, "one thread per core runs all the simulators, not a process for each");
+	} else if (below(&ratio, 1)) {
+		claim->verdict = OB_PAPER_FAILS;
+	}
+	OB_SAY(claim->because, "Drawn as fast as they could be, frames a second were ");
+	say_pair(claim, c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_FPS, &ratio);
+	OB_SAY(claim->because, "; with one thread per core for all simulators %s.", ob_word_ratio(&pool).text);
+}
+
+static void judge_cpu(const ob_paper_case *c)
+{
+	ob_paper_claim *claim = c->claim;
+	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU);
+	ob_paper_ratio pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_CPU);
+	ob_paper_ratio one = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_ONE);
+	bool with_pool = below(&pool, half), with_one = below(&one, half);
+	if (with_pool)
+		OB_SAY(claim->condition, "one thread per core runs all the simulators, not a process for each");
+	if (with_one)
+		OB_SAY(claim->condition, "%sthe CPU usage is that of one simulator, set against the whole of the other",
+		       with_pool ? ", or " : "");
+	claim->verdict = below(&ratio, half)     ? OB_PAPER_HOLDS
+			 : with_pool || with_one ? OB_PAPER_ONLY_IF
+			 : above(&ratio, half)   ? OB_PAPER_FAILS
+						 : OB_PAPER_OPEN;
+	OB_SAY(claim->because, "All simulators of OBS together took, of one core, ");
+	say_pair(claim, c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU, &ratio);
+	OB_SAY(claim->because, "; with one thread per core for all of them %s; one simulator alone %s.",
+	       ob_word_ratio(&pool).text, ob_word_ratio(&one).text);
+	say_itself(c, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU);
+}
+
+// By CPU time, which other programs disturb least: where there is one simulator, it is the step's, too.
+static void judge_load(const ob_paper_case *c)
+{
+	ob_paper_claim *claim = c->claim;
+	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	double load = ob_paper_setups[OB_PAPER_COMMON_LOAD].load;
+	double needed = load * (tenfold - 1) / (ratio.mean - 1);
+	double tests = mean(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_TESTS);
+	OB_SAY(claim->because, "The runtime of the common environment became ");
+	say_pair(claim, c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL, &ratio);
+	OB_SAY(claim->because, ". There are %s tests of boxes in a step, and one sum takes %s us.",
+	       ob_word_number(tests).text, ob_word_number(1e6 * c->here->sum_s).text);
+	claim->verdict = OB_PAPER_OPEN;
+	if (above(&ratio, 1) && !below(&ratio, tenfold)) {
+		claim->verdict = OB_PAPER_HOLDS;
+	} else if (above(&ratio, 1)) {
+		bool near = needed <= load_far * load;
+		claim->verdict = near ? OB_PAPER_ONLY_IF : OB_PAPER_FAILS;
+		if (near)
+			OB_SAY(claim->condition, "1 to %.0f are added up instead of 1 to %.0f", needed, load);
+		else
+			OB_SAY(claim->because, " It would take 1 to %.0f to make it ten times longer.", needed);
+	} else if (below(&ratio, tenfold)) {
+		claim->verdict = OB_PAPER_FAILS;
+		OB_SAY(claim->because, " That is no difference that can be told.");
+	}
+	say_itself(c, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_STEP);
+}
+
+static void judge_kept(const ob_paper_case *c)
+{
+	ob_paper_claim *claim = c->claim;
+	ob_paper_ratio better = ob_paper_compare(c->here, OB_PAPER_COMMON_OBB, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	ob_paper_ratio load = ob_paper_compare(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	claim->verdict = above(&better, doubled)   ? OB_PAPER_HOLDS
+			 : below(&better, doubled) ? OB_PAPER_FAILS
+						   : OB_PAPER_OPEN;
+	OB_SAY(claim->because, "With the true shapes (OBB) the runtime of the common environment is ");
+	say_pair(claim, c->here, OB_PAPER_COMMON_OBB, OB_PAPER_COMMON, OB_PAPER_TOTAL, &better);
+	OB_SAY(claim->because, "; the added sum, which stands for a better test, makes it %s. ",
+	       ob_word_ratio(&load).text);
+	OB_SAY(claim->because, "%s",
+	       claim->verdict == OB_PAPER_HOLDS   ? "A better test costs at least as much again."
+	       : claim->verdict == OB_PAPER_FAILS ? "A better test does not double it: its cost is no reason to keep "
+						    "boxes along the axes."
+						  : "Whether it doubles cannot be told.");
+	OB_SAY(claim->itself, "It has no run with another test.");
+}
+
+static void judge_obb(const ob_paper_case *c)
+{
+	ob_paper_claim *claim = c->claim;
+	double obs = mean(c->here, OB_PAPER_OBS_OBB, OB_PAPER_PACE),
+	       common = mean(c->here, OB_PAPER_COMMON_OBB, OB_PAPER_PACE);
+	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS_OBB, OB_PAPER_COMMON_OBB, OB_PAPER_STEP);
+	OB_SAY(claim->itself, "It has no run with OBB: it is a proposal.");
+	claim->verdict = OB_PAPER_OPEN;
+	if (isnan(obs) || isnan(common)) {
+		OB_SAY(claim->because, "It was not measured.");
+		return;
+	}
+	bool obs_fits = obs >= in_time, common_fits = common >= in_time;
+	OB_SAY(claim->because,
+	       "With OBB, OBS keeps %s of reality\xe2\x80\x99s pace, the common environment %s. The step takes ",
+	       ob_word_value(obs, OB_PAPER_PACE).text, ob_word_value(common, OB_PAPER_PACE).text);
+	say_pair(claim, c->here, OB_PAPER_OBS_OBB, OB_PAPER_COMMON_OBB, OB_PAPER_STEP, &ratio);
+	OB_SAY(claim->because, ".");
+	claim->verdict = obs_fits && !common_fits ? OB_PAPER_HOLDS : OB_PAPER_FAILS;
+	if (obs_fits && common_fits && below(&ratio, 1)) {
+		claim->verdict = OB_PAPER_ONLY_IF;
+		OB_SAY(claim->condition, "a shorter step is meant: both keep pace with reality");
+	} else if (common_fits) {
+		OB_SAY(claim->because, " OBB is affordable without OBS.");
+	}
+}
+
+static const struct {
+	ob_paper_claim claim;
+	void (*judge)(const ob_paper_case *c);
+} rules[OB_PAPER_CLAIMS] = {
+	{ { .key = "runtime",
+	    .says = "The runtime of OBS (.001 s) is smaller than that of the common environment (.007 s).",
+	    .where = "Tables 1 and 3, Figure 14" },
+	  judge_runtime },
+	{ { .key = "constant",
+	    .says = "The runtime of OBS is constant: the number of objects does not affect it.",
+	    .where = "Table 3, Figure 14" },
+	  ob_paper_judge_constant },
+	{ { .key = "frames",
+	    .says = "The frame rate of OBS (239 fps) is higher than that of the common environment (234 fps).",
+	    .where = "Tables 1 and 4, Figure 15" },
+	  judge_frames },
+	{ { .key = "cpu",
+	    .says = "The CPU usage of OBS (21 %) is half of that of the common environment (50 %).",
+	    .where = "Tables 1 and 5, Figure 16" },
+	  judge_cpu },
+	{ { .key = "load",
+	    .says = "Adding up 1 to 1000 in each AABB test makes the runtime ten times longer.",
+	    .where = "Tables 1 and 2" },
+	  judge_load },
+	{ { .key = "kept",
+	    .says = "Such added work is why environments keep AABB and leave better tests alone.",
+	    .where = "Sections 4.2 and 5" },
+	  judge_kept },
+	{ { .key = "obb", .says = "OBS makes a better test such as OBB affordable.", .where = "Abstract, Section 5" },
+	  judge_obb },
+	{ { .key = "growth",
+	    .says = "CPU usage grows as O(n) in the common environment, and as O(log n) in OBS.",
+	    .where = "Figure 6" },
+	  ob_paper_judge_growth },
+};
+
+void ob_paper_judge(const ob_paper_results *r, ob_paper_claim claim[OB_PAPER_CLAIMS])
+{
+	ob_paper_results paper = ob_paper_published();
+	for (int i = 0; i < OB_PAPER_CLAIMS; i++) {
+		claim[i] = rules[i].claim;
+		rules[i].judge(&(ob_paper_case){ r, &paper, &claim[i] });
+		if (claim[i].verdict != OB_PAPER_ONLY_IF)
+			claim[i].condition[0] = 0;
+	}
+	ob_paper_results_finish(&paper);
+}

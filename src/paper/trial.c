@@ -1,0 +1,197 @@
+#include "paper/trial.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/cpu.h"
+#include "host/host.h"
+#include "paper/boxes.h"
+#include "paper/viewer.h"
+
+typedef struct course {
+	const ob_paper_trial *trial;
+	const ob_paper_setup *setup;
+	ob_scene scene;
+	ob_host *host;
+	ob_viewer *viewer; // NULL = nobody looks
+	ob_snapshot now;
+	uint64_t steps;
+	double due; // wall time at which the next step begins
+} course;
+
+// What the simulators had used up at a moment
+typedef struct reading {
+	double wall, stepping, total, *worker; // s
+	double own; // CPU of this process: host, viewer, and simulators that are threads
+	uint64_t steps, box_tests;
+} reading;
+
+static double cpu_of_worker(const course *c, uint32_t w)
+{
+	ob_worker_info info;
+	if (!ob_universe_get_worker(ob_host_universe(c->host), w, &info))
+		return 0;
+	return 1e-9 * (double)(c->setup->each ? ob_clock_cpu_of_process(info.pid) : ob_clock_cpu_of_thread(info.tid));
+}
+
+static bool take_reading(const course *c, reading *r, ob_error *e)
+{
+	const ob_universe *u = ob_host_universe(c->host);
+	uint32_t workers = ob_universe_workers(u);
+	ob_counters counters;
+	ob_host_times times;
+	*r = (reading){ .steps = c->steps, .worker = calloc(workers, sizeof *r->worker) };
+	if (!r->worker)
+		return ob_fail(e, "out of memory");
+	for (uint32_t w = 0; w < workers; w++) {
+		r->worker[w] = cpu_of_worker(c, w);
+		r->total += r->worker[w];
+	}
+	ob_universe_count(u, &counters);
+	ob_host_get_times(c->host, &times);
+	r->box_tests = counters.box_tests;
+	r->stepping = times.wall_s;
+	r->own = ob_clock_process_cpu();
+	r->wall = ob_clock_wall();
+	return true;
+}
+
+static void wait_until(double due)
+{
+	struct timespec at = { .tv_sec = (time_t)due, .tv_nsec = (long)((due - floor(due)) * 1e9) };
+	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) == EINTR)
+		;
+}
+
+// One step when its time has come. Who is late begins at once and does not hurry to catch up: the environment is slow.
+static bool step(course *c, ob_error *e)
+{
+	double now = ob_clock_wall();
+	if (now < c->due)
+		wait_until(c->due);
+	else
+		c->due = now;
+	c->due += OB_PAPER_STEP_LENGTH;
+	ob_host_go(c->host, ++c->steps);
+	if (!ob_host_wait(c->host, e))
+		return false;
+	if (!c->viewer)
+		return true;
+	if (!ob_snapshot_take(&c->now, ob_host_universe(c->host), false, e))
+		return false;
+	return ob_viewer_show(c->viewer, &c->now) || ob_fail(e, "out of memory");
+}
+
+static bool steps_for(course *c, double seconds, ob_error *e)
+{
+	double end = ob_clock_wall() + seconds;
+	do {
+		if (!step(c, e))
+			return false;
+	} while (c->due < end);
+	return true;
+}
+
+static void fill_alone(const course *c, const reading *from, const reading *to, double wall, ob_paper_sample *s)
+{
+	double steps = (double)(to->steps - from->steps), most = 0;
+	uint32_t workers = ob_universe_workers(ob_host_universe(c->host));
+	for (uint32_t w = 0; w < workers; w++)
+		most = fmax(most, to->worker[w] - from->worker[w]);
+	double total = to->total - from->total;
+	ob_host_times times;
+	ob_host_get_times(c->host, &times);
+	s->step_s = (to->stepping - from->stepping) / steps;
+	s->total_s = total / steps;
+	s->one_s = s->total_s / (c->setup->monolith ? 1 : c->trial->objects);
+	s->busiest_s = most / steps;
+	s->cpu = total / wall;
+	s->demand = total / (steps * OB_PAPER_STEP_LENGTH);
+	s->pace = steps * OB_PAPER_STEP_LENGTH / wall;
+	s->box_tests = (double)(to->box_tests - from->box_tests) / steps;
+	s->memory_bytes = (double)times.memory_bytes;
+}
+
+static bool measure_alone(course *c, ob_paper_sample *s, ob_error *e)
+{
+	reading from = { 0 }, to = { 0 };
+	c->due = ob_clock_wall();
+	bool fine = take_reading(c, &from, e);
+	c->due = ob_clock_wall();
+	double begun = c->due;
+	fine = fine && steps_for(c, c->trial->alone_s, e);
+	// to the end of the last step's turn
+	double wall = fmax(c->due, ob_clock_wall()) - begun;
+	fine = fine && take_reading(c, &to, e);
+	if (fine)
+		fill_alone(c, &from, &to, wall, s);
+	free(from.worker);
+	free(to.worker);
+	return fine;
+}
+
+// Without a renderer the rest of the trial counts all the same: e then says why there is none.
+static bool measure_watched(course *c, ob_paper_sample *s, ob_error *e)
+{
+	reading from = { 0 }, to = { 0 };
+	if (!ob_snapshot_take(&c->now, ob_host_universe(c->host), false, e))
+		return false;
+	c->viewer = ob_viewer_open(&c->scene, &c->now, e);
+	if (!c->viewer)
+		return true;
+	bool fine = take_reading(c, &from, e);
+	uint64_t frames = ob_viewer_frames(c->viewer);
+	c->due = ob_clock_wall();
+	fine = fine && steps_for(c, c->trial->watched_s, e);
+	frames = ob_viewer_frames(c->viewer) - frames;
+	fine = fine && take_reading(c, &to, e);
+	if (fine) {
+		double wall = to.wall - from.wall;
+		double threads = c->setup->each ? 0 : to.total - from.total;
+		s->fps = (double)frames / wall;
+		s->viewer_cpu = (to.own - from.own - threads) / wall;
+	}
+	free(from.worker);
+	free(to.worker);
+	return ob_viewer_close(c->viewer, fine ? e : NULL) && fine;
+}
+
+static bool run(course *c, ob_paper_sample *s, ob_error *e)
+{
+	const ob_paper_setup *setup = c->setup;
+	ob_host_config config = {
+		.isolation = setup->each ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
+		.workers = setup->each       ? 0
+			   : setup->monolith ? 1
+					     : (uint32_t)ob_cpu_count(),
+		.run = { .gravity = c->scene.gravity,
+			 .step_length = OB_PAPER_STEP_LENGTH,
+			 .substeps = OB_PAPER_SUBSTEPS,
+			 .passes = OB_PAPER_ROUNDS,
+			 .iterations = OB_PAPER_ROUNDS,
+			 .monolith = setup->monolith,
+			 .narrow_phase = setup->oriented ? OB_NARROW_OBB : OB_NARROW_AABB,
+			 .load = setup->load },
+	};
+	c->host = ob_host_start(&c->scene, &config, e);
+	if (!c->host)
+		return false;
+	ob_host_go(c->host, 0);
+	return ob_host_wait(c->host, e) && measure_alone(c, s, e) &&
+	       (c->trial->watched_s <= 0 || measure_watched(c, s, e));
+}
+
+bool ob_paper_trial_run(const ob_paper_trial *t, ob_paper_sample *s, ob_error *e)
+{
+	course c = { .trial = t, .setup = &ob_paper_setups[t->scenario] };
+	e->text[0] = 0;
+	bool fine = ob_paper_boxes(&c.scene, t->objects, t->seed) || ob_fail(e, "out of memory");
+	fine = fine && run(&c, s, e);
+	ob_host_stop(c.host);
+	ob_snapshot_finish(&c.now);
+	ob_paper_boxes_finish(&c.scene);
+	return fine;
+}

@@ -1,0 +1,28 @@
+// One experiment: boxes fall in a universe that runs as fast as reality and no faster. First nobody looks, and the
+// simulators are measured; then a viewer draws, and its frames are counted.
+#ifndef OB_PAPER_TRIAL_H
+#define OB_PAPER_TRIAL_H
+
+#include <ob/error.h>
+
+#include "paper/sample.h"
+
+typedef struct ob_paper_trial {
+	ob_paper_scenario scenario;
+	uint32_t objects;
+	uint64_t seed;
+	double alone_s, watched_s; // real time without and with a viewer; watched 0 = no viewer
+} ob_paper_trial;
+
+// What is the same in every trial
+#define OB_PAPER_STEP_LENGTH (1 / 60.) // s
+enum { OB_PAPER_SUBSTEPS = 1, OB_PAPER_ROUNDS = 20 }; // a step; iterations of QuickStep, rounds of exchange
+
+// Fills what it measures. e: why it failed, or (true) why nothing was drawn; "" else. Forks, maps shared memory and
+// starts threads: for a process of its own.
+bool ob_paper_trial_run(const ob_paper_trial *t, ob_paper_sample *s, ob_error *e);
+
+// The same in a child, whose end is awaited; s and e as there. Ctrl-C reaches the child, and *interrupted is set.
+bool ob_paper_attempt(const ob_paper_trial *t, ob_paper_sample *s, bool *interrupted, ob_error *e);
+
+#endif

@@ -1,0 +1,20 @@
+// Somebody who looks: a thread that draws the newest snapshot that it was given, again and again, as fast as it can.
+#ifndef OB_PAPER_VIEWER_H
+#define OB_PAPER_VIEWER_H
+
+#include "render/render.h"
+
+enum { OB_PAPER_WIDTH = 640, OB_PAPER_HEIGHT = 480 };
+
+typedef struct ob_viewer ob_viewer;
+
+// Returns when the first frame is drawn, which takes longer than others. The scene must outlive it. NULL and e: nothing
+// can be drawn here. Call it after the host has started, which forks.
+ob_viewer *ob_viewer_open(const ob_scene *scene, const ob_snapshot *first, ob_error *e);
+// From now on this is what is looked at; it is copied. false: no memory. One thread.
+bool ob_viewer_show(ob_viewer *v, const ob_snapshot *now);
+uint64_t ob_viewer_frames(ob_viewer *v); // drawn so far
+// false and e: drawing has failed in between. Frees v.
+bool ob_viewer_close(ob_viewer *v, ob_error *e);
+
+#endif

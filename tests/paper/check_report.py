@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""check_report.py WRITER: the report that WRITER writes is whole and well-formed, leads nowhere outside, is the same
+each time, and has the counterparts of the paper's tables and figures."""
+import csv
+import html.parser
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+VOID = {'meta', 'br'}
+
+
+class Checker(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.wrong = [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in VOID:
+            self.open.append(tag)
+        attrs = dict(attrs)
+        self.ids += [attrs['id']] if 'id' in attrs else []
+        self.wrong += [f'{tag} {name}' for name in attrs if name in ('src', 'href') or name.startswith('on')]
+        self.wrong += [tag] if tag in ('script', 'link', 'iframe', 'img') else []
+
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+        if tag not in VOID:
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(f'</{tag}> at {self.getpos()}')
+
+
+def written(writer):
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([writer, folder], check=True)
+        root = pathlib.Path(folder)
+        return {path.relative_to(root).as_posix(): path.read_bytes() for path in root.rglob('*') if path.is_file()}
+
+
+def main():
+    first, second = written(sys.argv[1]), written(sys.argv[1])
+    assert first == second, 'not the same bytes'
+    page = first['report.html'].decode('utf-8')
+    checker = Checker()
+    checker.feed(page)
+    checker.close()
+    assert not checker.open and not checker.wrong, (checker.open, checker.wrong)
+    assert len(set(checker.ids)) == len(checker.ids), 'ids are not unique'
+    figures = ['figure-14', 'figure-15', 'figure-16', 'figure-6-common', 'figure-6-obs', 'figure-6-obs-shown']
+    wanted = figures + [f'table-{i}' for i in range(1, 6)] + ['obs-load', 'obs-obb', 'claim-growth']
+    assert set(wanted) <= set(checker.ids), set(wanted) - set(checker.ids)
+    assert {f'plots/{f}.{kind}' for f in figures for kind in ('svg', 'png')} <= set(first)
+    assert not re.search(r'\{\{|\}\}|url\(|@import', page), 'a slot was left, or something is loaded'
+    bare = re.sub(r'<[^>]*>', ' ', page)
+    assert not re.search(r'\bnan\b|\binf\b', bare), 'a figure is printed raw'
+    assert 'made &lt;up&gt; &amp; &quot;checked&quot;' in page and 'signal&quot; &lt;9&gt;' in page
+
+    rows = list(csv.DictReader(first['results.csv'].decode().splitlines()))
+    assert len(rows) == 15 * 7 + 2 * 18 and rows[3]['failed'] == 'killed by "signal" <9>, alas', len(rows)
+    assert abs(float(rows[0]['fps']) - 100) < 1.1 and rows[-1]['series'] == 'growth'
+    tables = first['tables.md'].decode()
+    assert tables.count('\n## ') == 7 and tables.count('| 15 |') == 7 and '**does not hold**' in tables
+    # the paper's fourth experiment, beside ours
+    assert re.search(r'\| 4 \| 10 \| (1|1\.01|1\.0|0\.99\d?) \| 240 \|', tables), 'table 1 is not the paper\'s'
+
+
+main()

@@ -1,0 +1,27 @@
+// write_report DIR: the report of results that nobody measured, for check_report.py.
+#include <stdio.h>
+#include <string.h>
+
+#include "made.h"
+#include "paper/report.h"
+
+static double line(double n)
+{
+	return .01 * n;
+}
+
+int main(int argc, char **argv)
+{
+	ob_error e = { "" };
+	if (argc != 2)
+		return 2;
+	ob_paper_results r = made_alike();
+	made_growth(&r, OB_PAPER_COMMON, line);
+	made_growth(&r, OB_PAPER_OBS, line);
+	strcpy(r.sample[3].failed, "killed by \"signal\" <9>, alas");
+	bool fine = ob_paper_report(&r, argv[1], &e);
+	ob_paper_results_finish(&r);
+	if (!fine)
+		fprintf(stderr, "%s\n", e.text);
+	return !fine;
+}
