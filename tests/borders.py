@@ -51,11 +51,7 @@ DUTIES = [
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
     # Simulators are started by host/spawn_*.c (processes through its keeper); the rest are helpers of one module each.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
-<<<<<<< theirs
-     r'src/(host/(spawn_\w+|supervisor)|render/sink\w*|cli/progress|paper/viewer)\.c$', True),
-=======
-     r'src/(host/(spawn_\w+|supervisor|timeline)|render/sink\w*|cli/progress)\.c$', True),
->>>>>>> trace
+     r'src/(host/(spawn_\w+|supervisor|timeline)|render/sink\w*|cli/progress|paper/viewer)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
      r'src/(host/(spawn_\w+|keeper)|render/sink_video|lab/attempt|paper/attempt|cli/child)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
