@@ -5,8 +5,9 @@
 #include "sim/look.h"
 #include "sim/members.h"
 
-static const double turning = .03; // rad: so far may two bodies that touch turn in one stride ..
-static const double sliding = .03; // .. and slide, in smaller thicknesses
+static const double followed = .03; // so far may two bodies that touch turn (rad) and slide (smaller thicknesses) ..
+static const double closely =
+	1. / 10; // .. in a stride; of that, where they get farther than their thickness in a substep
 static const double most_strides = 1024; // of a substep
 
 static ob_vec3 linear_of(const double *r)
@@ -29,13 +30,15 @@ static double lasting(const ob_island_work *w, const ob_body_row *rows, const ob
 	double slide = ob_norm(ob_sub(linear_of(rows[t->a]), linear_of(rows[t->b])));
 	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
 		slide = 0;
-	return fmin(turning / turn, sliding * fmin(a->thickness, b->thickness) / slide);
+	double thin = fmin(a->thickness, b->thickness), way = (slide + .5 * thin * turn) * w->substep;
+	double part = followed * fmax(closely, fmin(1, thin / way));
+	return fmin(part / turn, part * thin / slide);
 }
 
 static bool may_be_short(const ob_island_work *w, const ob_touch *t, double h)
 {
 	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
-	return (a->speed + b->speed) * h > fmin(turning, sliding) * fmin(a->thickness, b->thickness);
+	return (a->speed + b->speed) * h > followed * fmin(a->thickness, b->thickness);
 }
 
 static double shortest(const ob_island_work *w)
