@@ -61,6 +61,7 @@ void ob_paper_write_json(const ob_paper_results *r, FILE *f)
 	ob_json_string(&j, "version", ob_version_number);
 	ob_json_string(&j, "commit", r->commit);
 	ob_json_string(&j, "machine", r->machine);
+	ob_json_number(&j, "load_average_before", r->busy);
 	ob_json_open_list(&j, "claims");
 	for (int i = 0; i < OB_PAPER_CLAIMS; i++)
 		put_claim(&j, &claim[i]);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/burden.h"
@@ -115,6 +116,8 @@ bool ob_paper_run(const ob_paper_plan *p, ob_paper_tick *tick, ob_paper_results 
 	r->objects = p->objects;
 	r->experiments = p->experiments;
 	r->sum_s = time_sum();
+	if (getloadavg(&r->busy, 1) != 1)
+		r->busy = NAN;
 	for (uint32_t k = 0; k < p->experiments; k++)
 		if (!run_experiment(&j, k, e))
 			return false;

@@ -55,8 +55,9 @@ static void write_page(const ob_paper_matter *m, FILE *f)
 	static const ob_page_slot slots[] = {
 		{ "style", write_style },
 		{ "cards", ob_paper_part_cards },
+		{ "busy", ob_paper_part_busy },
 		{ "claims", ob_paper_part_claims },
-		{ "means", ob_paper_part_means },
+		{ "medians", ob_paper_part_medians },
 		{ "figures", write_figures },
 		{ "tables", ob_paper_part_tables },
 		{ "never", ob_paper_part_never },

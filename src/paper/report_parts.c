@@ -22,6 +22,19 @@ void ob_paper_part_cards(ob_page *p, const void *with)
 				       texts[v]);
 }
 
+void ob_paper_part_busy(ob_page *p, const void *with)
+{
+	static const double free_enough = .3;
+	const ob_paper_matter *m = with;
+	if (m->here->busy > free_enough)
+		ob_page_markup(
+			p,
+			"<p class=\"warning\"><strong>The machine was busy with other work</strong> before these runs "
+			"began (load average %.1f). The step, the frame rate and the pace suffer from that, CPU "
+			"times much less.</p>\n",
+			m->here->busy);
+}
+
 void ob_paper_part_claims(ob_page *p, const void *with)
 {
 	const ob_paper_matter *m = with;
@@ -43,21 +56,21 @@ void ob_paper_part_claims(ob_page *p, const void *with)
 }
 
 // "1.2" and, small, "1.1 to 1.3"
-static void write_mean(ob_page *p, const ob_statistics *s, double scale)
+static void write_middle(ob_page *p, double middle, double low, double high)
 {
 	ob_page_markup(p, "<td class=\"n\">");
-	ob_page_number(p, s->mean * scale);
-	if (isfinite(s->mean_low)) {
+	ob_page_number(p, middle);
+	if (isfinite(low)) {
 		ob_page_markup(p, "<small>");
-		ob_page_number(p, s->mean_low * scale);
+		ob_page_number(p, low);
 		ob_page_markup(p, " to ");
-		ob_page_number(p, s->mean_high * scale);
+		ob_page_number(p, high);
 		ob_page_markup(p, "</small>");
 	}
 	ob_page_markup(p, "</td>");
 }
 
-void ob_paper_part_means(ob_page *p, const void *with)
+void ob_paper_part_medians(ob_page *p, const void *with)
 {
 	static const ob_paper_quantity shown[] = { OB_PAPER_STEP,  OB_PAPER_TOTAL, OB_PAPER_ONE, OB_PAPER_BUSIEST,
 						   OB_PAPER_CPU,   OB_PAPER_PACE,  OB_PAPER_FPS, OB_PAPER_VIEWER,
@@ -74,7 +87,8 @@ void ob_paper_part_means(ob_page *p, const void *with)
 			       def->unit[0] == '1' && !def->unit[1] ? "" : def->unit);
 		for (int s = 0; s < OB_PAPER_SCENARIOS; s++) {
 			ob_statistics of = ob_paper_summarise(m->here, s, shown[i]);
-			write_mean(p, &of, def->scale);
+			write_middle(p, of.median * def->scale, of.median_low * def->scale,
+				     of.median_high * def->scale);
 		}
 		ob_page_markup(p, "</tr>\n");
 	}
@@ -106,7 +120,7 @@ static void write_table(ob_page *p, const ob_paper_matter *m, const ob_paper_tab
 	ob_page_markup(p, "<tr class=\"foot\"><th scope=\"row\">mean, 95&nbsp;%%</th>");
 	for (size_t i = 0; i < t->columns; i++) {
 		ob_statistics s = ob_paper_foot(m, t, i);
-		write_mean(p, &s, 1);
+		write_middle(p, s.mean, s.mean_low, s.mean_high);
 	}
 	ob_page_markup(p, "</tr>\n</tbody></table></div>\n</section>\n");
 }

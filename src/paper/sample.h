@@ -52,7 +52,8 @@ typedef struct ob_paper_results {
 	char machine[192], commit[64];
 	char no_frames[200]; // why none were drawn; "" = they were
 	uint32_t objects, experiments; // as planned
-	double sum_s; // wall time of adding up 1 to 1000 by itself
+	double busy; // load average of the machine before the first run: 1 = something else kept one core busy
+	double sum_s; // CPU time of adding up 1 to 1000 by itself
 	size_t count, room;
 	ob_paper_sample *sample;
 } ob_paper_results;

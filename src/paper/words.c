@@ -61,6 +61,6 @@ ob_word ob_word_odds(double logarithm)
 	ob_word w = { "more than a million to 1" };
 	double odds = exp(fabs(logarithm));
 	if (odds <= most)
-		snprintf(w.text, sizeof w.text, "%.20s to 1", ob_word_number(odds).text);
+		snprintf(w.text, sizeof w.text, "%.0f to 1", odds);
 	return w;
 }

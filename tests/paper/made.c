@@ -16,7 +16,7 @@ static double *member(ob_paper_sample *s, ob_paper_quantity q)
 
 ob_paper_results made_alike(void)
 {
-	ob_paper_results r = { .objects = 64, .experiments = MADE_EXPERIMENTS, .sum_s = 3e-7 };
+	ob_paper_results r = { .objects = 64, .experiments = MADE_EXPERIMENTS, .sum_s = 3e-7, .busy = .01 };
 	strcpy(r.machine, "made <up> & \"checked\"");
 	strcpy(r.commit, "0123456789ab");
 	for (uint32_t k = 0; k < MADE_EXPERIMENTS; k++) {
