@@ -33,9 +33,9 @@ ARROWS = {
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
     'paper': 'host measure render reference plot page scene table base',
-    'cli': 'host render record lab paper measure scene table base',
+    'cli': 'host render record lab paper measure scene reference plot page table base',
 }
-BUILT = {'render': ['shaders.h'], 'lab': ['report_texts.h'], 'page': ['page_texts.h'],
+BUILT = {'render': ['shaders.h'], 'cli': ['compare_texts.h'], 'lab': ['report_texts.h'], 'page': ['page_texts.h'],
          'paper': ['paper_texts.h']}  # written by the build, so without a folder
 
 # What only some files may do: (what, pattern, where it may stand, in code without comments and strings?).

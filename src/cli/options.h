@@ -19,6 +19,7 @@ typedef enum ob_command_bit {
 // In the order in which help shows them.
 typedef enum ob_option_id {
 	OB_OPTION_DEFINE,
+	OB_OPTION_VARY,
 	OB_OPTION_DURATION,
 	OB_OPTION_STEP,
 	OB_OPTION_SEED,

@@ -165,15 +165,15 @@ uint64_t ob_host_count_switches(const ob_host *h)
 	return sum;
 }
 
-// s. What waits now has done so since its last phase.
-static double gate_time(const ob_host *h)
+// What waits now has done so since its last phase.
+double ob_host_gate_time(const ob_host *h, double now)
 {
 	double sum = 0;
 	for (uint32_t w = 0; w < h->workers; w++) {
 		const ob_counters *c = ob_worker_counters(h->u, w);
 		sum += 1e-9 * (double)c->gate_ns;
 		if (c->since_ns)
-			sum += fmax(0, h->last_end - 1e-9 * (double)c->since_ns);
+			sum += fmax(0, now - 1e-9 * (double)c->since_ns);
 	}
 	return sum;
 }
@@ -209,7 +209,7 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 	out->host_cpu_s = ob_clock_process_cpu() - h->own_cpu_before - (h->spawn->own_memory ? 0 : out->cpu_s);
 	out->switches = ob_host_count_switches(h) - h->switches_before;
 	out->elapsed_s = h->last_end - h->first_start;
-	out->gate_s = gate_time(h);
+	out->gate_s = ob_host_gate_time(h, h->last_end) - h->gate_before;
 }
 
 void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t number)

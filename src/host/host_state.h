@@ -46,6 +46,7 @@ struct ob_host {
 	uint64_t switches_before; // of all workers then
 	double own_cpu_before; // s, of the whole process then
 	double first_start, last_end; // s, wall: of the first leg that stepped; of the last one
+	double gate_before; // s, all workers' waiting when the first leg began
 	double startup, wall; // s
 };
 
@@ -59,5 +60,7 @@ void ob_host_shorten_leg(ob_host *h);
 uint64_t ob_host_read_cpu(ob_host *h);
 // How often all workers together were switched off a core so far.
 uint64_t ob_host_count_switches(const ob_host *h);
+// If timed: for how long all workers together have waited at the gate until "now" (s, wall), while the universe stands.
+double ob_host_gate_time(const ob_host *h, double now);
 
 #endif

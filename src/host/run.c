@@ -63,6 +63,7 @@ static void begin_leg(ob_host *h)
 		h->own_cpu_before = ob_clock_process_cpu();
 		h->switches_before = ob_host_count_switches(h);
 		h->first_start = ob_clock_wall();
+		h->gate_before = ob_host_gate_time(h, h->first_start);
 		h->cpu_counted = true;
 	}
 	pthread_mutex_lock(&leg->lock);

@@ -18,7 +18,6 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->u = u;
 		s->worker = worker;
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
-		s->counters.since_ns = 0; // what lies between is nobody's waiting
 		s->times.timed = s->times.wanted = run->timed;
 		s->span.traced = ob_universe_traced(u);
 		s->ode = calloc(capacity, sizeof *s->ode);
@@ -34,6 +33,11 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->monolith = ob_monolith_create(u);
 	} else if (run->one_per_object && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
 		ob_sim_ode(s, worker); // its own object, for good
+	}
+	if (s->times.timed) { // it waits at the gate from now on; another's waiting ended with it
+		s->counters.since_ns = ob_clock_ns();
+		s->times.cpu_end = ob_clock_thread_cpu();
+		*ob_worker_counters(u, worker) = s->counters;
 	}
 	return s;
 }

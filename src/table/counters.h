@@ -46,7 +46,7 @@ typedef struct ob_counters {
 	uint64_t time_ns[OB_PARTS]; // of CPU
 	// If timed: where the rest of the worker's time went, on the wall but for gate_cpu_ns.
 	uint64_t held_ns;     // it had work, and no core
-	uint64_t gate_ns;     // waiting at the gate, from its first phase to its last one, pauses included
+	uint64_t gate_ns;     // waiting at the gate until its last phase, pauses included
 	uint64_t gate_cpu_ns; // CPU of that waiting: spinning, falling asleep, waking
 	uint64_t since_ns;    // since when it waits now (ob_clock_ns); not for sums
 } ob_counters;

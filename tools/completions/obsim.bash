@@ -34,7 +34,7 @@ _obsim()
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --summary | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--define | -D | --duration | --step | --seed | --substeps | --passes | --lag | --load | --iterations | --name | --fps | --samples | \
+	--define | -D | --vary | --duration | --step | --seed | --substeps | --passes | --lag | --load | --iterations | --name | --fps | --samples | \
 		--camera | --interval | --repeats | --limit | --objects) ;;
 	*)
 		case $command:$word in

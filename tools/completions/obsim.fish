@@ -12,7 +12,7 @@ end
 
 complete -c obsim -f
 complete -c obsim -n __fish_use_subcommand -a run -d 'run a scene and report'
-complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in five ways'
+complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in all ways'
 complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
 complete -c obsim -n __fish_use_subcommand -a lab -d 'run hard cases with several engines'
 complete -c obsim -n __fish_use_subcommand -a paper -d 'run the paper again and judge its claims'
@@ -60,6 +60,7 @@ complete -c obsim -n $run -l series -r -F -d 'figures of each step as CSV'
 complete -c obsim -n $run -l summary -r -F -d 'the report as CSV'
 complete -c obsim -n $run -l measure -x -a 'step parts end' -d 'when to measure'
 
+set -l compare '__fish_seen_subcommand_from compare'
 set -l top '__fish_seen_subcommand_from top'
 complete -c obsim -n $top -a '(__obsim_universes)'
 complete -c obsim -n $top -l once -d 'print once and end'
@@ -72,6 +73,9 @@ complete -c obsim -n $lab -l quick -d 'only the quick subset'
 complete -c obsim -n $lab -l engines -x -d 'engines, with commas' \
 	-a 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick ode-world bullet'
 complete -c obsim -n $lab -l sweep -x -a 'none substeps= iterations= tolerance= lag=' -d 'settings'
+complete -c obsim -n $compare -l vary -x -d 'compare at each of these values'
+complete -c obsim -n $compare -l repeats -x -d 'runs of each'
+complete -c obsim -n $compare -l out -x -a '(__fish_complete_directories)' -d 'results, diagrams, report'
 complete -c obsim -n $lab -l repeats -x -d 'runs of each'
 complete -c obsim -n $lab -l limit -x -d 'seconds that a run may take'
 complete -c obsim -n $lab -l out -x -a '(__fish_complete_directories)' -d 'results, diagrams, report'
