@@ -7,6 +7,7 @@
 #include "cli/compare.h"
 #include "cli/quantity.h"
 
+enum { runs_least = 3 }; // fewer say nothing
 static const double alike = .05; // ratios that reach to within this of 1 count as no difference
 
 __attribute__((format(printf, 3, 4))) static void say(char *to, size_t room, const char *format, ...)
@@ -34,6 +35,10 @@ static void head(char *to, size_t room, const ob_section *s)
 	ob_spread r = cost_over_pool(s, OB_WAY_PROCESSES), each = cost_over_pool(s, OB_WAY_THREADS_EACH);
 	if (isnan(r.median))
 		return;
+	if (r.n < runs_least) {
+		say(to, room, "That cannot be told from so few runs: take --repeats 6.");
+		return;
+	}
 	if (r.low > 1 + alike)
 		say(to, room, "Threads");
 	else if (r.high < 1 - alike)

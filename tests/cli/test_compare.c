@@ -63,6 +63,16 @@ static void check_headline(double processes, double each, const char *begins, bo
 	finish(c);
 }
 
+static void test_too_few(void)
+{
+	ob_comparison *c = comparison(2, 3);
+	c->section->cell[OB_WAY_PROCESSES].samples = 2;
+	ob_verdict v;
+	ob_verdict_make(&v, c, c->section);
+	CHECK(strstr(v.headline, "cannot be told"));
+	finish(c);
+}
+
 static void test_ratio(void)
 {
 	ob_comparison *c = comparison(1.2, 3);
@@ -120,6 +130,7 @@ int main(void)
 	check_headline(1.04, 1, "Either", false);
 	check_headline(1.06, 3, "Threads", true);
 	check_headline(.9, 3, "Processes", true);
+	test_too_few();
 	test_ratio();
 	test_text();
 	test_agreement();
