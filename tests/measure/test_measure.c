@@ -162,6 +162,24 @@ static void test_penetration_of_many(void)
 	CHECK_NEAR(out.mean_m * (double)pairs, sum, 1e-6);
 }
 
+// Air between what is said to touch: spheres of .5 m a distance apart, a pair counted once, penetration as none.
+static void test_air(void)
+{
+	ob_snapshot s = snapshot(3);
+	ob_air air;
+	motions[1].p.x = 1.25;
+	motions[2].p.y = .9;
+	ob_measure_air(&s, &air);
+	CHECK(air.pairs == 0 && air.max_m == 0 && air.mean_m == 0);
+	ob_contact_point point[4] = { { .a = 0, .b = 1 }, { .a = 0, .b = 1 }, { .a = 0, .b = 2 }, { .a = 0, .b = 7 } };
+	s.contact = point;
+	s.contacts = 4;
+	ob_measure_air(&s, &air);
+	CHECK(air.pairs == 2); // the last names what is not there
+	CHECK_NEAR(air.max_m, .25, 1e-12);
+	CHECK_NEAR(air.mean_m, .125, 1e-12);
+}
+
 int main(void)
 {
 	test_energy();
@@ -170,5 +188,6 @@ int main(void)
 	test_hash();
 	test_penetration_by_hand();
 	test_penetration_of_many();
+	test_air();
 	return check_end();
 }
