@@ -44,20 +44,24 @@ static ob_exchange_kind exchange_of(const char *name)
 	return kind;
 }
 
+// Exchanges that are wrong by design keep no tolerance: more substeps would not mend them.
+static bool may_keep_one(const ob_run_request *r, const ob_run_settings *run)
+{
+	return !r->monolith && run->exchange != OB_EXCHANGE_GHOST && run->exchange != OB_EXCHANGE_LAGGED;
+}
+
 // Numbers on the command line stand above the scene's tolerance, and a tolerance there above the scene's numbers.
 static void settle_exactness(ob_run_request *r, const ob_scene *s, ob_run_settings *run)
 {
-	bool own = r->tolerance > 0;
-	if (r->monolith || (!own && r->substeps))
-		r->tolerance = 0;
-	else if (!own)
-		r->tolerance = s->tolerance;
+	bool own = r->tolerance > 0 && !r->monolith;
+	if (!own)
+		r->tolerance = r->substeps || !may_keep_one(r, run) ? 0 : s->tolerance;
 	if (!r->passes)
-		r->passes = own && s->tolerance == 0 ? OB_SCENE_TOLERANT_PASSES : s->passes;
+		r->passes = own ? OB_SCENE_TOLERANT_PASSES : s->passes;
 	run->tolerance = r->tolerance;
 	run->passes = r->passes;
 	if (r->tolerance > 0) {
-		run->substeps = 1;
+		run->substeps = own ? 1 : s->substeps;
 		// with n substeps ODE's stepper falls short by g H^2 / (2 n) in a step of length H
 		double short_by = .5 * ob_norm(s->gravity) * r->step * r->step;
 		while (run->integrator == OB_INTEGRATOR_ODE && short_by / run->substeps > r->tolerance)

@@ -111,7 +111,9 @@ void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 void ob_chart_setting(const ob_result *r, char *to, size_t room)
 {
 	const ob_peer_settings *s = &r->settings;
-	if (s->tolerance > 0)
+	if (s->tolerance > 0 && s->substeps)
+		snprintf(to, room, "usual");
+	else if (s->tolerance > 0)
 		ob_page_print_quantity(to, room, s->tolerance * 1e3, "mm");
 	else if (ob_digest_is_obsim(r->engine))
 		snprintf(to, room, "%u", s->substeps);

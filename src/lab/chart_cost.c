@@ -14,7 +14,7 @@ typedef enum family { FAMILY_STEPS, FAMILY_TOLERANCE, FAMILY_ITERATIONS, FAMILIE
 static family family_of(const ob_result *r)
 {
 	if (r->settings.tolerance > 0)
-		return FAMILY_TOLERANCE;
+		return r->settings.substeps ? FAMILY_ITERATIONS : FAMILY_TOLERANCE;
 	return r->settings.iterations == r->engine->usual.iterations && r->settings.lag == r->engine->usual.lag
 		       ? FAMILY_STEPS
 		       : FAMILY_ITERATIONS;
@@ -57,7 +57,7 @@ static void add_result(ob_chart *chart, const ob_result *r, double x)
 	size_t used = strlen(label);
 	if (r->settings.lag != r->engine->usual.lag)
 		snprintf(label + used, sizeof label - used, ", lag %u", r->settings.lag);
-	else if (family_of(r) == FAMILY_ITERATIONS)
+	else if (family_of(r) == FAMILY_ITERATIONS && !(r->settings.tolerance > 0))
 		snprintf(label + used, sizeof label - used, " \u00d7 %u", r->settings.iterations);
 	ob_page_print_quantity(error, sizeof error, r->outcome.figure[0], def->unit);
 	const char *failed = r->outcome.failed[0] ? r->outcome.failed : "not a number";

@@ -163,6 +163,7 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_peer_kind
 	for (size_t i = 0; i < sweep->tolerances && strcmp(k->name, "obsim") == 0; i++) {
 		ob_peer_settings one = usual;
 		one.substeps = 0;
+		one.iterations = 64; // as the program does
 		one.tolerance = sweep->tolerance_list[i];
 		add(&all, one);
 	}
@@ -172,7 +173,9 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_peer_kind
 void ob_sweep_print(char *to, size_t room, const ob_peer_settings *s)
 {
 	int n;
-	if (s->tolerance > 0)
+	if (s->tolerance > 0 && s->substeps)
+		n = snprintf(to, room, "tolerance %g mm, %u substeps or more", s->tolerance * 1e3, s->substeps);
+	else if (s->tolerance > 0)
 		n = snprintf(to, room, "tolerance %g mm", s->tolerance * 1e3);
 	else
 		n = snprintf(to, room, "%u substep%s", s->substeps, s->substeps == 1 ? "" : "s");

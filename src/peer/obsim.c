@@ -103,7 +103,7 @@ static void get(const ob_peer *p, ob_state *state)
 	}
 }
 
-// Without substeps each island chooses its own, by the tolerance.
+// With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.
 static bool settle(const ob_peer_world *w, const ob_peer_settings *s, ob_run_settings *run, ob_error *e)
 {
 	bool chosen = s->substeps == 0;
@@ -116,7 +116,7 @@ static bool settle(const ob_peer_world *w, const ob_peer_settings *s, ob_run_set
 		.step_length = s->step,
 		.substeps = chosen ? 1 : s->substeps,
 		.passes = s->iterations,
-		.tolerance = chosen ? s->tolerance : 0,
+		.tolerance = s->tolerance,
 		.sleeping = s->sleeping,
 	};
 	return run->passes > 0 || ob_fail(e, "no exchange round: at least one is needed");
@@ -160,12 +160,13 @@ static ob_peer *create_lagged(const ob_peer_world *w, const ob_peer_settings *s,
 }
 
 // clang-format off
-#define USUAL .step = 1. / 60, .substeps = 8, .iterations = 16 // the program's own
+#define USUAL .step = 1. / 60, .substeps = 8, .iterations = 16 // the program's own ..
+#define USUAL_TOLERANCE 1e-3 // m; .. where both sides of a pair agree
 #define THE_REST \
 	.version = "", .iteration_choice = { 1, 2, 4, 8, 16, 32, 64 }, .step = step, .get = get, .destroy = destroy
 
 const ob_peer_kind ob_peer_obsim = {
-	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL }, THE_REST
+	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = USUAL_TOLERANCE }, THE_REST
 };
 const ob_peer_kind ob_peer_obsim_jacobi = {
 	.name = "obsim-jacobi", .title = "obsim (Jacobi)", .create = create_jacobi, .usual = { USUAL }, THE_REST

@@ -19,9 +19,9 @@ typedef struct ob_peer_world {
 
 typedef struct ob_peer_settings {
 	double step; // s, a frame: states are asked for at its end
-	uint32_t substeps; // the engine's own steps per frame; 0 = chosen by obsim from the tolerance
+	uint32_t substeps; // the engine's own steps per frame; 0 = chosen by obsim from the tolerance alone
 	uint32_t iterations; // the engine's own count: exchange rounds, solver iterations
-	double tolerance; // m; obsim alone, with substeps = 0
+	double tolerance; // m; obsim alone: more substeps where the error is above it
 	uint32_t lag; // exchanges that a partner's state is late; engine obsim-lag alone
 	bool sleeping;
 } ob_peer_settings;

@@ -53,11 +53,14 @@ static void set_exactness(lua_State *L, ob_scene *s, const scene_fields *f)
 		ob_sandbox_fail(L, "scene.substeps: expected either tolerance or substeps, got both");
 	if (f->lag != NOT_SAID && strcmp(s->exchange, "lagged") != 0)
 		ob_sandbox_fail(L, "scene.lag: expected with exchange = \"lagged\" only, got \"%s\"", s->exchange);
-	s->tolerance = f->tolerance;
-	if (f->tolerance > 0)
+	if (f->tolerance > 0) {
+		s->tolerance = f->tolerance;
+		s->substeps = 1;
 		s->passes = OB_SCENE_TOLERANT_PASSES;
-	if (f->substeps)
+	} else if (f->substeps) {
+		s->tolerance = 0;
 		s->substeps = (uint32_t)f->substeps;
+	}
 	if (f->passes)
 		s->passes = (uint32_t)f->passes;
 	if (f->lag != NOT_SAID)

@@ -98,6 +98,7 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 	s->gravity = ob_v3(0, 0, -9.81);
 	s->step = 1. / 60;
 	s->duration = 10;
+	s->tolerance = OB_SCENE_TOLERANCE_USUAL;
 	s->substeps = 8;
 	s->passes = 16;
 	s->lag = 1;

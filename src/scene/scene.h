@@ -6,6 +6,7 @@
 
 #define OB_SCENE_TOLERANCE_LEAST 1e-6 // m
 #define OB_SCENE_TOLERANCE_MOST 1.
+#define OB_SCENE_TOLERANCE_USUAL 1e-3 // with 8 substeps at least
 enum { OB_SCENE_TOLERANT_PASSES = 64 }; // with a tolerance, unless said: rounds end when it is met
 
 typedef struct ob_object_def {
@@ -33,7 +34,7 @@ typedef struct ob_scene {
 	char title[128];
 	ob_vec3 gravity;
 	double step, duration;      // s
-	double tolerance;           // m; 0 = the substeps below
+	double tolerance;           // m; 0 = none
 	uint32_t substeps, passes;  // 1 .. 256
 	char exchange[16];          // "coloured" | "jacobi" | "ghost" | "lagged"
 	uint32_t lag;               // of "lagged": exchanges, 0 .. 256

@@ -12,9 +12,9 @@ uint32_t ob_tolerance_start(const ob_sim *s, const ob_island *is)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const uint32_t *id = ob_universe_exchange(s->u)->member + is->first_member;
-	uint32_t most = 1;
+	uint32_t most = run->substeps;
 	if (!(run->tolerance > 0))
-		return run->substeps;
+		return most;
 	for (uint32_t i = 0; i < is->members; i++) {
 		uint32_t asked = ob_newest_motion(s->u, id[i])->substeps;
 		most = asked > most && asked <= most_substeps ? asked : most;
@@ -131,14 +131,15 @@ static void note_creep(ob_sim *s)
 }
 
 // More before the error is too large, so that little is solved twice; fewer where that has room.
-static uint32_t wanted(const ob_island_work *w, const ob_touch *t, double tolerance, double fading)
+static uint32_t wanted(const ob_island_work *w, const ob_touch *t, const ob_run_settings *run)
 {
+	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / memory);
 	double depth = t->depth_given + t->growth, creep = t->slip / fading; // which slipping on like this adds up to
 	double change = fmax(depth, t->creep) > .5 * tolerance ? fmax(t->growth, creep) : t->growth;
 	uint32_t n = w->substeps;
 	if (t->creep > .75 * tolerance && creep > tolerance && n < most_for_creep)
 		n *= 2;
-	for (; n > 1 && change * gain <= tolerance; change *= gain)
+	for (; n >= 2 * run->substeps && change * gain <= tolerance; change *= gain)
 		n /= 2;
 	return n;
 }
@@ -149,10 +150,10 @@ static void ask(ob_sim *s)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	for (uint32_t i = 0; i < w->rows; i++)
-		w->member[i].substeps = 1;
+		w->member[i].substeps = run->substeps;
 	for (uint32_t i = 0; i < w->touches; i++) {
 		const ob_touch *t = &w->touch[i];
-		uint32_t n = wanted(w, t, run->tolerance, fmin(1, run->step_length / memory));
+		uint32_t n = wanted(w, t, run);
 		for (int side = 0; side < 2; side++) {
 			ob_member *m = &w->member[side ? t->b : t->a];
 			m->substeps = n > m->substeps ? n : m->substeps;
@@ -177,6 +178,6 @@ bool ob_tolerance_accept(ob_sim *s)
 	ask(s);
 	s->counters.islands_over += w->error > tolerance;
 	s->counters.error = fmax(s->counters.error, w->error);
-	s->counters.chosen[__builtin_ctz(w->substeps)]++;
+	s->counters.chosen[31 - __builtin_clz(w->substeps)]++;
 	return true;
 }

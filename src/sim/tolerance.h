@@ -2,9 +2,9 @@
 // before it is stored: so it can be solved again, from the start, with more substeps, until its error is below what the
 // run tolerates.
 //
-//   load (1 substep) ── solve ── error? ──> below: store, and tell the members how many will do in the next step
-//     ^                            │
-//     └── load again with 2 x, 4 x ┘ above
+//   load ── solve with the run's substeps ── error? ──> below: store, and tell the members how many will do next time
+//     ^                                        │
+//     └─────────── load again, 2 x, 4 x ───────┘ above
 //
 // The error of a solution, in metres, is the largest of
 //   depth   how deep two bodies are in each other at the end of any substep, where this step has brought them there

@@ -166,6 +166,11 @@ static void test_settle_exactness(void)
 	CHECK(run.tolerance == 0 && run.substeps == 4 && run.passes == 16 && run.lag == 0 && run.timed == 0);
 	s.tolerance = 2e-3;
 	s.passes = 64;
+	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == 2e-3 && run.substeps == 4 && run.passes == 64);
+	CHECK(read_line("s --exchange ghost", &r, &e) && ob_request_settle(&r, &s, &run, &e));
+	CHECK(run.tolerance == 0 && run.substeps == 4);
+	s.substeps = 1;
 	CHECK(read_line("s --explain", &r, &e) && ob_request_settle(&r, &s, &run, &e));
 	CHECK(run.tolerance == 2e-3 && run.substeps == 1 && run.passes == 64 && run.timed == 1);
 	CHECK(read_line("s --tolerance 1mm", &r, &e) && ob_request_settle(&r, &s, &run, &e));

@@ -11,6 +11,7 @@ static ob_result make(const char *name, const char *engine, uint32_t substeps, d
 	ob_result r = { .of = ob_case_find(name), .engine = ob_peer_find(engine), .commit = "c0ffee" };
 	r.settings = r.engine->usual;
 	r.settings.substeps = substeps;
+	r.settings.tolerance = 0;
 	ob_outcome o = { .cpu_s = cost, .wall_s = 2 * cost, .body_seconds = 1 };
 	for (uint32_t i = 0; i < r.of->figures; i++)
 		o.figure[i] = error;

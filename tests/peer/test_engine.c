@@ -174,6 +174,7 @@ static void life(void)
 	kind->destroy(NULL);
 	ob_peer_settings s = kind->usual;
 	s.substeps = 0;
+	s.tolerance = 0;
 	ob_error e = { "" };
 	CHECK(!kind->create(&l->world, &s, &e) && e.text[0]);
 	s = kind->usual;

@@ -57,12 +57,15 @@ static void check_settings(void)
 static void check_exactness(void)
 {
 	ob_scene *s = load_good("scene { tolerance = .0005, exchange = 'lagged', lag = 0 }\nground {}");
-	CHECK(s && s->tolerance == .0005 && s->passes == 64 && s->lag == 0 && strcmp(s->exchange, "lagged") == 0);
+	CHECK(s && s->tolerance == .0005 && s->substeps == 1 && s->passes == 64 && s->lag == 0 && strcmp(s->exchange, "lagged") == 0);
 	ob_scene_free(s);
 	s = load_good("scene { tolerance = .0005, passes = 9 }\nground {}");
 	CHECK(s && s->passes == 9 && s->lag == 1);
 	ob_scene_free(s);
 	s = load_good("ground {}");
+	CHECK(s && s->tolerance == 1e-3 && s->substeps == 8 && s->passes == 16);
+	ob_scene_free(s);
+	s = load_good("scene { substeps = 8 }\nground {}");
 	CHECK(s && s->tolerance == 0 && s->substeps == 8 && s->passes == 16);
 	ob_scene_free(s);
 }
