@@ -11,6 +11,8 @@
 #include "paper/boxes.h"
 #include "paper/viewer.h"
 
+static const double slowest_frame = 10; // s: so long it is waited for one at least
+
 typedef struct course {
 	const ob_paper_trial *trial;
 	const ob_paper_setup *setup;
@@ -145,7 +147,10 @@ static bool measure_watched(course *c, ob_paper_sample *s, ob_error *e)
 	bool fine = take_reading(c, &from, e);
 	uint64_t frames = ob_viewer_frames(c->viewer);
 	c->due = ob_clock_wall();
-	fine = fine && steps_for(c, c->trial->watched_s, e);
+	double limit = c->due + slowest_frame;
+	do
+		fine = fine && steps_for(c, c->trial->watched_s, e);
+	while (fine && ob_viewer_frames(c->viewer) == frames && ob_clock_wall() < limit);
 	frames = ob_viewer_frames(c->viewer) - frames;
 	fine = fine && take_reading(c, &to, e);
 	if (fine) {
