@@ -118,6 +118,68 @@ static double sweep_normals(const rows *r, double *x, double *rate)
 	return change;
 }
 
+// Impulses of the points of a set that bring just these to their goals, by elimination; false: the rows of the set
+// depend on each other.
+static bool solve_set(const rows *r, unsigned set, double *x)
+{
+	int row[4], n = 0;
+	double a[4][5];
+	for (int i = 0; i < 4; i++)
+		if (set >> i & 1)
+			row[n++] = i;
+	for (int i = 0; i < n; i++) {
+		for (int j = 0; j < n; j++)
+			a[i][j] = r->a[row[i]][row[j]];
+		a[i][n] = r->goal[row[i]] - r->rate[row[i]];
+	}
+	for (int k = 0; k < n; k++) { // positive definite: the diagonal serves as pivots
+		if (!(a[k][k] > 1e-13 * r->a[row[k]][row[k]]))
+			return false;
+		for (int i = 0; i < n; i++) {
+			double f = i == k ? 0 : a[i][k] / a[k][k];
+			for (int j = k; j <= n; j++)
+				a[i][j] -= f * a[k][j];
+		}
+	}
+	memset(x, 0, 4 * sizeof *x);
+	for (int k = 0; k < n; k++)
+		x[row[k]] = a[k][n] / a[k][k];
+	return true;
+}
+
+// By how much normal impulses miss what they must do (m/s): no pull, no approach left, and none where a point leaves.
+static double missing(const rows *r, const double *x)
+{
+	double most = 0;
+	for (int i = 0; i < 4; i++) {
+		if (isinf(r->time[i]))
+			continue;
+		double left = r->rate[i] - r->goal[i];
+		for (int j = 0; j < 4; j++)
+			left += r->a[i][j] * x[j];
+		most = fmax(most, fmax(-left, -x[i] * r->a[i][i]));
+		most = fmax(most, x[i] > 0 ? fabs(left) : 0);
+	}
+	return most;
+}
+
+// Points in a row or in one corner share a load that sweeps pass to and fro for long. Without friction there is a
+// solution in which the rows of those that carry it are independent: of the few sets of points, the best.
+static void solve_normals(const rows *r, double *x)
+{
+	double least = missing(r, x), y[4];
+	for (unsigned set = 1; set < 16; set++) {
+		bool hits = true;
+		for (int i = 0; i < 4; i++)
+			hits &= !(set >> i & 1) || !isinf(r->time[i]);
+		if (!hits || !solve_set(r, set, y) || missing(r, y) >= least)
+			continue;
+		least = missing(r, y);
+		for (int i = 0; i < 4; i++)
+			x[i] = fmax(0, y[i]);
+	}
+}
+
 // Where a long lever jams, the sweeps do not settle. Then all impulses shrink until they bring no energy:
 // x J v + x A x / 2 <= 0, with the rates of the instant of impact.
 static void shrink_to_energy(const rows *r, double *x)
@@ -136,6 +198,15 @@ static void shrink_to_energy(const rows *r, double *x)
 		x[i] *= fmax(0, share);
 }
 
+static void set_rates(const rows *r, const double *x, double *rate)
+{
+	for (int i = 0; i < OB_ROWS; i++) {
+		rate[i] = r->rate[i];
+		for (int j = 0; j < OB_ROWS; j++)
+			rate[i] += r->a[i][j] * x[j];
+	}
+}
+
 // First the impact without rebound: projected Gauss-Seidel until nothing changes. All impulses times 1 + e then send
 // every point off at e times its approach or faster, and cannot gain energy: the plastic solution x obeys
 // x (J v + A x) <= 0, so the change (1+e) x J v + (1+e)^2/2 x A x is at most -(1+e)(1-e)/2 x A x. Last, friction finds
@@ -147,12 +218,15 @@ static void rows_solve(const rows *r, const ob_batch *b, int l, double e, double
 	for (int i = 0; i < OB_ROWS; i++)
 		largest = fmax(largest, fabs(rate[i]));
 	const double done = 1e-14 * largest; // m/s: what rounding leaves
-	for (int s = 0; s < 200 && change > done; s++) {
+	for (int s = 0; s < 100 && change > done; s++) {
 		change = sweep_normals(r, x, rate);
 		change = fmax(change, sweep_friction(r, b, l, x, rate));
 	}
+	if (change > done && b->mu[l] == 0)
+		solve_normals(r, x);
 	for (int i = 0; i < OB_ROWS; i++)
-		set_impulse(r, i, (1 + e) * x[i], x, rate);
+		x[i] *= 1 + e;
+	set_rates(r, x, rate);
 	change = 1;
 	for (int s = 0; s < 50 && change > done; s++)
 		change = sweep_friction(r, b, l, x, rate);
