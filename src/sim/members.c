@@ -181,7 +181,10 @@ void ob_members_gyrate(ob_sim *s)
 					     (j.x - j.y) / j.z * mid.x * mid.y);
 			mid = ob_madd(b, h, rate);
 		}
-		ob_vec3 next = ob_rotate(&m->r, mid);
+		// The rule's error in energy is small, and goes all into the rate.
+		double energy = j.x * b.x * b.x + j.y * b.y * b.y + j.z * b.z * b.z;
+		double found = j.x * mid.x * mid.x + j.y * mid.y * mid.y + j.z * mid.z * mid.z;
+		ob_vec3 next = ob_scale(ob_rotate(&m->r, mid), sqrt(energy / found));
 		w->v[i][3] = next.x, w->v[i][4] = next.y, w->v[i][5] = next.z;
 	}
 }

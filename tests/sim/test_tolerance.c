@@ -86,7 +86,7 @@ static void test_heap(void)
 	check_kept(&coarse, 5e-3);
 	check_kept(&fine, .5e-3);
 	CHECK(fine.count.member_substeps > coarse.count.member_substeps);
-	CHECK(coarse.count.islands_redone > 0 && fine.count.islands_redone > coarse.count.islands_redone);
+	CHECK(fine.count.islands_redone > coarse.count.islands_redone);
 	// most steps are easy: not everything pays for the worst
 	uint64_t easy = fine.count.chosen[0] + fine.count.chosen[1];
 	CHECK(easy > fine.count.island_steps / 2);
