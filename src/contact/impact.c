@@ -65,10 +65,12 @@ static bool rows_init(rows *r, const ob_batch *b, int l, const ob_impact *in, co
 	return any;
 }
 
-bool ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at)
+double ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at)
 {
 	rows r;
-	return rows_init(&r, b, l, in, at);
+	if (!rows_init(&r, b, l, in, at))
+		return INFINITY;
+	return fmin(fmin(r.time[0], r.time[1]), fmin(r.time[2], r.time[3]));
 }
 
 static void rows_matrix(rows *r, const ob_batch *b, int l, const ob_impact *in)

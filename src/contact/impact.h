@@ -25,8 +25,8 @@ typedef struct ob_impact_rows {
 	const ob_body_row *d; // displacements since the gaps were measured
 } ob_impact_rows;
 
-// Will lane l of the batch hit within the substep?
-bool ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at);
+// When will the first point of lane l of the batch hit (s)? Infinity: not within the substep.
+double ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at);
 
 // Solves it: adds the changes to the rows out_v and, so that the old velocity holds until the instant, to out_d
 // (which may be at->v and at->d themselves). Returns the instant of the last point's hit (s); < 0: nothing hits.

@@ -9,6 +9,7 @@ static const double noticeable_rate = 1; // 1/s: .. and, of the tolerance, at mo
 static const double jump = .1; // m/s: faster changes are impacts and are not extrapolated
 static const double violent = .05; // m/s: a change that makes rounds beyond the run's number worth while ..
 static const uint32_t more = 8; // .. up to so many times that number
+static const double turned = 1e-3; // rad: who turns by more until it rebounds is taken there first
 static const double plausible = 3; // of what pulls at a body: more acceleration is an impact's
 static const int sweeps = 4;
 static const double slop = 1e-4, share = .3; // m; of the penetration, per substep
@@ -97,7 +98,7 @@ static bool impacts_at_once(ob_sim *s)
 				in.split_a = fmax(1, w->member[t->a].waiting);
 				in.split_b = fmax(1, w->member[t->b].waiting);
 				any |= note_impact(s, ob_impact_solve(b, l, &in, &at, w->delta, w->u));
-			} else if (ob_impact_pending(b, l, &in, &at)) {
+			} else if (ob_impact_pending(b, l, &in, &at) <= in.h) {
 				w->member[t->a].waiting++;
 				w->member[t->b].waiting++;
 			}
@@ -120,6 +121,33 @@ static void set_drift(ob_island_work *w)
 		else
 			memcpy(w->drift[i], (double[8]){ pull.x, pull.y, pull.z }, sizeof *w->drift);
 	}
+}
+
+static double turn_rate(const ob_island_work *w, uint32_t row)
+{
+	const double *v = w->v[row];
+	return w->member[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(ob_v3(v[3], v[4], v[5]));
+}
+
+double ob_exchange_first_rebound(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_impact_rows at = impact_rows(w);
+	double first = INFINITY;
+	if (!w->elastic)
+		return first;
+	set_drift(w);
+	for (uint32_t i = 0; i < w->touches; i++) {
+		ob_touch *t = &w->touch[i];
+		if (!elastic(t) || fmax(turn_rate(w, t->a), turn_rate(w, t->b)) * w->h < turned)
+			continue;
+		ob_impact in = impact_of(s, t);
+		double when = ob_impact_pending(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at);
+		if (when <= w->h)
+			t->limit = -INFINITY;
+		first = fmin(first, when);
+	}
+	return first;
 }
 
 bool ob_exchange_impacts(ob_sim *s)

@@ -11,6 +11,9 @@
 
 // Impacts with restitution at their instants: changes v, shifts d. true if there were any.
 bool ob_exchange_impacts(ob_sim *s);
+// The first instant (s into the stride) at which two bodies rebound of which one turns noticeably until then; infinity:
+// none. Their contacts will be looked at anew.
+double ob_exchange_first_rebound(ob_sim *s);
 // Takes back what the prediction made of impacts.
 void ob_exchange_cap(ob_sim *s);
 // Rounds of exchanges on u until no pair changes a velocity noticeably.

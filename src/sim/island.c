@@ -24,11 +24,9 @@ static bool look(ob_sim *s)
 // A substep or one stride of it, in the order in which things happen.
 static void make_stride(ob_sim *s, bool first)
 {
-	ob_part_enter(s, OB_PART_MOVE);
-	ob_members_gyrate(s);
-	ob_ghosts_follow(s);
 	look(s);
 	ob_tolerance_note_depth(s, first);
+	ob_pace_to_rebound(s);
 	// What flies off may hit something that was out of reach before; a rattle is left to the contact solver in the
 	// end.
 	ob_part_enter(s, OB_PART_IMPACTS);
@@ -40,6 +38,9 @@ static void make_stride(ob_sim *s, bool first)
 		ob_part_enter(s, OB_PART_IMPACTS);
 	}
 	ob_tolerance_note_bounce(s);
+	ob_part_enter(s, OB_PART_MOVE);
+	ob_members_gyrate(s);
+	ob_ghosts_follow(s);
 	do {
 		ob_part_enter(s, OB_PART_MOVE);
 		ob_members_predict(s);

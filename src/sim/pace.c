@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "sim/exchange.h"
 #include "sim/look.h"
 #include "sim/members.h"
 
@@ -83,6 +84,16 @@ void ob_pace_stride(ob_sim *s, double left)
 {
 	rescale(&s->island, length_of_stride(s, left));
 	s->island.last_impact = 0;
+}
+
+void ob_pace_to_rebound(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	double first = ob_exchange_first_rebound(s) * (1 - 1e-9);
+	if (!(first > shortest(w) && first < w->h))
+		return;
+	rescale(w, first);
+	ob_members_foretell(s);
 }
 
 bool ob_pace_shorten(ob_sim *s)

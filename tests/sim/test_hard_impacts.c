@@ -1,9 +1,11 @@
 // Hard cases with an exact answer: the thrown box, the head-on pair, Newton's cradle, the ball that bounces a hundred
-// times, the heights of a ball that loses some each time.
+// times, the heights of a ball that loses some each time; and heaps of spheres, and a flat box that bounces.
 #include <stdlib.h>
 
 #include "check.h"
 #include "little_universe.h"
+
+#include "motion/random.h"
 
 static const double g = 9.81; // m/s^2
 
@@ -163,8 +165,103 @@ static void test_bouncing_spheres(void)
 	free(s);
 }
 
+// A flat box that bounces on its edges and corners turns from each to the next and keeps its energy, or loses some to
+// friction and where it comes to lie.
+static void test_flat_box(double friction, double tilt)
+{
+	little_scene *s = little_scene_new();
+	little_ground(s);
+	little_object *o = little_box(s, 1, ob_v3(.5, .5, .05), ob_v3(0, 0, 1.05));
+	o->passport.restitution = 1;
+	o->passport.friction = friction;
+	o->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(tilt, .02, 0));
+	little_universe l;
+	little_open(&l, s);
+	double before = little_energy(&l), most = 0, deepest = 0;
+	for (int step = 0; step < 1200; step++) {
+		little_run(&l, 1);
+		most = fmax(most, little_energy(&l) / before - 1);
+		deepest = fmax(deepest, little_penetration(&l).max_m);
+	}
+	CHECK(most <= 1e-9);
+	CHECK(deepest <= 1e-3);
+	if (friction == 0)
+		CHECK(little_energy(&l) >= .9 * before);
+	little_close(&l);
+	free(s);
+}
+
+static little_scene *cube_of_spheres(uint64_t seed, double height, double e)
+{
+	little_scene *s = little_scene_new();
+	little_ground(s)->passport.friction = 0;
+	for (int i = 0; i < 216; i++) {
+		ob_vec3 p = ob_scale(ob_v3(i % 6, i / 6 % 6, i / 36), .21);
+		for (double *x = &p.x; x <= &p.z; x++)
+			*x += .001 * uniform(&seed);
+		little_object *o = little_sphere(s, 10, .1, ob_add(p, ob_v3(0, 0, height)));
+		o->passport.friction = 0;
+		o->passport.restitution = e;
+	}
+	return s;
+}
+
+// m^2, squared depths of all touching pairs; spheres stand above the ground and each other
+static double squared_depths(const little_universe *l)
+{
+	double sum = 0;
+	for (uint32_t i = 1; i < l->scene->objects; i++) {
+		ob_vec3 a = little_state(l, i).pose.p;
+		double depth = fmax(0, .1 - a.z);
+		sum += depth * depth;
+		for (uint32_t k = 1; k < i; k++) {
+			depth = fmax(0, .2 - ob_norm(ob_sub(a, little_state(l, k).pose.p)));
+			sum += depth * depth;
+		}
+	}
+	return sum;
+}
+
+// SimBenchmark's 666: 6^3 spheres fall into a heap, plastic or elastic, 10 s.
+static void test_666(void)
+{
+	little_scene *s = cube_of_spheres(7, .101, 0);
+	little_universe l;
+	little_open(&l, s);
+	double sum = 0;
+	for (int step = 0; step < 600; step++) {
+		little_run(&l, 1);
+		sum += squared_depths(&l);
+	}
+	printf("666: %.1e m^2 of squared depths\n", sum / 600);
+	CHECK(sum / 600 <= 1e-5);
+	little_close(&l);
+	free(s);
+}
+
+static void test_elastic_666(void)
+{
+	little_scene *s = cube_of_spheres(8, 1.101, 1);
+	little_universe l;
+	little_open(&l, s);
+	double sum = 0, before = little_energy(&l);
+	for (int step = 0; step < 600; step++) {
+		little_run(&l, 1);
+		sum += pow(little_energy(&l) / before - 1, 2);
+	}
+	printf("elastic 666: energy off by %.1e\n", sqrt(sum / 600));
+	CHECK(sqrt(sum / 600) <= 1e-3);
+	little_close(&l);
+	free(s);
+}
+
 int main(void)
 {
+	test_666();
+	test_elastic_666();
+	test_flat_box(0, .2);
+	test_flat_box(.5, .2);
+	test_flat_box(.5, .001);
 	test_bouncing_spheres();
 	test_projectile();
 	test_head_on();
