@@ -10,20 +10,24 @@
 
 enum { NONE = UINT32_MAX };
 
-// The arranger's view while it plans: two union-find forests, whose roots are the lowest ids of their trees.
+static const double enough = 1e-4; // m: reaches that differ by less are not handed on
+
+// The arranger's view while it plans: a union-find forest of islands, whose roots are the lowest ids of their trees.
 //
-// A cluster is what may come to share a speed within the step: what touches, what will hit each other as it moves now.
-// Its reach is that of its fastest member. An island is all clusters that may touch each other, if each gets as far as
-// its reach. So one fast object draws its surroundings into its island, but not the surroundings of its surroundings,
-// unless it is so fast that something could be passed through unseen.
+// An object gets as far in the step as it is fast, its reach; and what is hit gets as far as what hits it had still to
+// go. So reaches are handed on along pairs, less the distance between the two:
+//
+//   reach .50 ─────.10───── .40 ─────.30───── .10 ─────.20───── what is here is not hit in this step
+//
+// An island is all that may touch each other with these reaches. One fast object draws in what lies in its way, and not
+// the surroundings of its surroundings.
 typedef struct plan {
 	ob_universe *u;
 	ob_exchange *ex;
 	uint32_t ids;
-	uint32_t *cluster; // [id]: parent
-	uint32_t *parent; // [id]: in the forest of islands
+	uint32_t *parent; // [id]
 	uint32_t *island_of; // [root]
-	float *reach; // [root of a cluster]: m in the next step
+	float *reach; // [id]: m in the next step, its own or handed on
 } plan;
 
 static uint32_t root_of(uint32_t *parent, uint32_t i)
@@ -45,7 +49,7 @@ static bool asleep(const plan *p, uint32_t id)
 
 static double reach_of(const plan *p, uint32_t id)
 {
-	return dynamic(p, id) ? p->reach[root_of(p->cluster, id)] : 0;
+	return dynamic(p, id) ? p->reach[id] : 0;
 }
 
 // Lower bound of the distance (m).
@@ -59,25 +63,10 @@ static bool may_touch(const plan *p, const ob_pair_key *k)
 	return k->active || reach_of(p, k->a) + reach_of(p, k->b) >= distance(p, k);
 }
 
-static uint32_t unite(uint32_t *parent, uint32_t a, uint32_t b)
+static void unite(uint32_t *parent, uint32_t a, uint32_t b)
 {
 	uint32_t low = a < b ? a : b, high = a < b ? b : a;
 	parent[high] = low;
-	return low;
-}
-
-// Will the two meet within the step if they go on as they do? Or may they, so fast that the slower one, once hit,
-// could pass through a third?
-static bool share_speed(const plan *p, const ob_pair_key *k)
-{
-	const ob_passport *pa = ob_passport_of(p->u, k->a), *pb = ob_passport_of(p->u, k->b);
-	double thin = fmin(ob_shape_thickness(pa->shape, pa->size), ob_shape_thickness(pb->shape, pb->size));
-	if (k->active || fmax(reach_of(p, k->a), reach_of(p, k->b)) > thin)
-		return true;
-	const ob_motion *a = ob_newest_motion(p->u, k->a), *b = ob_newest_motion(p->u, k->b);
-	double speed = ob_norm(ob_sub(a->v, b->v)) + ob_surface_speed(ob_v3(0, 0, 0), a->w, pa->shape, pa->size) +
-		       ob_surface_speed(ob_v3(0, 0, 0), b->w, pb->shape, pb->size);
-	return speed * ob_universe_settings(p->u)->step_length >= distance(p, k);
 }
 
 // Paths use up what is known of a distance, also those of objects that fly side by side. Where that would join two
@@ -94,19 +83,20 @@ static void measure_distances(plan *p)
 	}
 }
 
-static void grow_clusters(plan *p)
+static void hand_on(plan *p)
 {
 	for (bool again = true; again;) {
 		again = false;
 		for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
 			const ob_pair_key *k = &p->ex->pair[i];
-			if (!dynamic(p, k->a) || !dynamic(p, k->b) || !may_touch(p, k))
+			if (!dynamic(p, k->a) || !dynamic(p, k->b))
 				continue;
-			uint32_t a = root_of(p->cluster, k->a), b = root_of(p->cluster, k->b);
-			if (a == b || !share_speed(p, k))
-				continue;
-			p->reach[unite(p->cluster, a, b)] = fmaxf(p->reach[a], p->reach[b]);
-			again = true;
+			double way = k->active ? 0 : fmax(0, distance(p, k)), least = way + enough;
+			float *a = &p->reach[k->a], *b = &p->reach[k->b];
+			if (*a > *b + least)
+				*b = (float)(*a - way), again = true;
+			else if (*b > *a + least)
+				*a = (float)(*b - way), again = true;
 		}
 	}
 }
@@ -114,7 +104,7 @@ static void grow_clusters(plan *p)
 static void grow_islands(plan *p)
 {
 	for (uint32_t id = 0; id < p->ids; id++)
-		p->parent[id] = root_of(p->cluster, id);
+		p->parent[id] = id;
 	for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
 		const ob_pair_key *k = &p->ex->pair[i];
 		if (!dynamic(p, k->a) || !dynamic(p, k->b) || !may_touch(p, k))
@@ -242,13 +232,11 @@ bool ob_islands_plan(ob_universe *u)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t ids = ob_universe_ids(u);
-	plan p = { u, ex, ids, ex->scratch, ex->scratch + ids, ex->scratch + 2 * ids, ex->island_reach };
-	for (uint32_t id = 0; id < ids; id++) {
-		p.cluster[id] = id;
+	plan p = { u, ex, ids, ex->scratch, ex->scratch + ids, ex->island_reach };
+	for (uint32_t id = 0; id < ids; id++)
 		p.reach[id] = ex->brief[id].reach;
-	}
 	measure_distances(&p);
-	grow_clusters(&p);
+	hand_on(&p);
 	if (!boxes_suffice(&p))
 		return false;
 	grow_islands(&p);

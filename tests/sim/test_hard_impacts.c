@@ -90,6 +90,28 @@ static void test_cradle(int incoming)
 	free(s);
 }
 
+// Balls with a centimetre between them: the impact of the first runs through all of them within a step.
+static void test_spaced_row(double speed)
+{
+	little_scene *s = little_scene_new();
+	s->run.gravity = ob_v3(0, 0, 0);
+	for (int i = 0; i < 8; i++) {
+		little_object *o = little_sphere(s, 1, .1, ob_v3(.21 * i, 0, 0));
+		o->passport.restitution = 1;
+		o->state.v.x = i ? 0 : speed;
+	}
+	little_universe l;
+	little_open(&l, s);
+	for (int step = 0; step < 60; step++) {
+		little_run(&l, 1);
+		CHECK_NEAR(little_penetration(&l).max_m, 0, 1e-9);
+	}
+	for (uint32_t i = 0; i < 8; i++)
+		CHECK_NEAR(little_state(&l, i).v.x, i == 7 ? speed : 0, 1e-9);
+	little_close(&l);
+	free(s);
+}
+
 static void ball_over_ground(little_scene *s, double radius, double e)
 {
 	little_ground(s);
@@ -267,6 +289,9 @@ int main(void)
 	test_head_on();
 	test_cradle(1);
 	test_cradle(2);
+	test_spaced_row(4);
+	test_spaced_row(10);
+	test_spaced_row(40);
 	test_hundred_bounces();
 	test_apexes();
 	return check_end();
