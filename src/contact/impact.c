@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+static const double together = 1e-4; // m: points that are nearer than this when the first one hits, hit with it
+
 // One lane's rows as plain numbers.
 typedef struct rows {
 	double ja[7][6], jb[7][6]; // linear, angular; b's with the opposite sign
@@ -40,28 +42,43 @@ static void response(const double *j, double inv_mass, const lanes *inv_inertia,
 	o[5] = s[2] * j[3] + s[4] * j[4] + s[5] * j[5];
 }
 
+// Points that hit later than the first one are left: what happens to them after the first hit is seen then.
+static void leave_later(rows *r)
+{
+	double first = fmin(fmin(r->time[0], r->time[1]), fmin(r->time[2], r->time[3]));
+	r->max_time = 0;
+	for (int i = 0; i < 4; i++) {
+		if (isinf(r->time[i]))
+			continue;
+		if ((r->time[i] - first) * (r->goal[i] - r->rate[i]) > together)
+			r->time[i] = INFINITY;
+		else
+			r->max_time = fmax(r->max_time, r->time[i]);
+	}
+}
+
 static bool rows_init(rows *r, const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at)
 {
 	const uint32_t ia = b->body_a[l], ib = b->body_b[l];
 	bool any = false;
 	for (int i = 0; i < 4; i++)
 		row_set(r, i, b->n, b->ja[i], b->jb[i], l);
-	r->max_time = 0;
 	for (int i = 0; i < 4; i++) {
 		r->rate[i] = row_dot(r->ja[i], at->v[ia]) + row_dot(r->jb[i], at->v[ib]);
 		r->gap[i] = b->gap[i][l] + row_dot(r->ja[i], at->d[ia]) + row_dot(r->jb[i], at->d[ib]);
 		double a = (row_dot(r->ja[i], at->dv[ia]) + row_dot(r->jb[i], at->dv[ib])) / in->h;
 		double t = b->inv_diag[i][l] > 0 ? ob_time_of_closing(r->gap[i], r->rate[i], a, in->h) : INFINITY;
 		double approach = r->rate[i] + a * t;
-		if (!(t <= in->h) || !(approach < -in->threshold)) {
+		if (!(t <= in->within) || !(approach < -in->threshold)) {
 			r->time[i] = INFINITY;
 			continue;
 		}
 		any = true;
 		r->time[i] = t;
 		r->goal[i] = r->rate[i] - approach;
-		r->max_time = fmax(r->max_time, t);
 	}
+	if (any)
+		leave_later(r);
 	return any;
 }
 

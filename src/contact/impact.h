@@ -12,6 +12,7 @@
 
 typedef struct ob_impact {
 	double h; // s, substep
+	double within; // s: later hits are left; at most h
 	double e; // restitution
 	double threshold; // m/s: slower approaches are left to the contact solver
 	double split_a, split_b; // impacts that each body takes part in at once; 1 when coloured

@@ -3,13 +3,14 @@
 #include <string.h>
 
 #include "sim/ghost.h"
+#include "sim/pace.h"
 
 static const double noticeable = 2e-3; // m/s: a change that makes another round worth while ..
 static const double noticeable_rate = 1; // 1/s: .. and, of the tolerance, at most
 static const double jump = .1; // m/s: faster changes are impacts and are not extrapolated
 static const double violent = .05; // m/s: a change that makes rounds beyond the run's number worth while ..
 static const uint32_t more = 8; // .. up to so many times that number
-static const double turned = 1e-3; // rad: who turns by more until it rebounds is taken there first
+static const double turned = 1e-3; // rad: who turns by more in a stride is taken to where it rebounds
 static const double plausible = 3; // of what pulls at a body: more acceleration is an impact's
 static const int sweeps = 4;
 static const double slop = 1e-4, share = .3; // m; of the penetration, per substep
@@ -37,10 +38,23 @@ static void add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
 
 // ---- impacts
 
+static double turn_rate(const ob_island_work *w, uint32_t row)
+{
+	const double *v = w->v[row];
+	return w->member[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(ob_v3(v[3], v[4], v[5]));
+}
+
+// Does one of the two turn noticeably in the stride? Then it rebounds at the stride's start, or not in this one.
+static bool turns(const ob_island_work *w, const ob_touch *t)
+{
+	return fmax(turn_rate(w, t->a), turn_rate(w, t->b)) * w->h > turned;
+}
+
 static ob_impact impact_of(const ob_sim *s, const ob_touch *t)
 {
-	double resting = 4 * s->island.pull * s->island.substep; // m/s: what comes without impacts
-	return (ob_impact){ s->island.h, t->e, resting + 1e-6, 1, 1 };
+	const ob_island_work *w = &s->island;
+	double resting = 4 * w->pull * w->substep; // m/s: what comes without impacts
+	return (ob_impact){ w->h, turns(w, t) ? ob_pace_shortest(w) : w->h, t->e, resting + 1e-6, 1, 1 };
 }
 
 static bool elastic(const ob_touch *t)
@@ -123,12 +137,6 @@ static void set_drift(ob_island_work *w)
 	}
 }
 
-static double turn_rate(const ob_island_work *w, uint32_t row)
-{
-	const double *v = w->v[row];
-	return w->member[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(ob_v3(v[3], v[4], v[5]));
-}
-
 double ob_exchange_first_rebound(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -139,9 +147,10 @@ double ob_exchange_first_rebound(ob_sim *s)
 	set_drift(w);
 	for (uint32_t i = 0; i < w->touches; i++) {
 		ob_touch *t = &w->touch[i];
-		if (!elastic(t) || fmax(turn_rate(w, t->a), turn_rate(w, t->b)) * w->h < turned)
-			continue;
 		ob_impact in = impact_of(s, t);
+		if (!elastic(t) || !turns(w, t))
+			continue;
+		in.within = w->h;
 		double when = ob_impact_pending(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at);
 		if (when <= w->h)
 			t->limit = -INFINITY;

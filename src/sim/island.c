@@ -37,6 +37,7 @@ static void make_stride(ob_sim *s, bool first)
 			break;
 		ob_part_enter(s, OB_PART_IMPACTS);
 	}
+	ob_pace_to_rebound(s);
 	ob_tolerance_note_bounce(s);
 	ob_part_enter(s, OB_PART_MOVE);
 	ob_members_gyrate(s);

@@ -42,7 +42,7 @@ static bool may_be_short(const ob_island_work *w, const ob_touch *t, double h)
 	return (a->speed + b->speed) * h > followed * fmin(a->thickness, b->thickness);
 }
 
-static double shortest(const ob_island_work *w)
+double ob_pace_shortest(const ob_island_work *w)
 {
 	return w->substep / most_strides;
 }
@@ -50,7 +50,7 @@ static double shortest(const ob_island_work *w)
 static double length_of_stride(ob_sim *s, double left)
 {
 	ob_island_work *w = &s->island;
-	const double least = shortest(w);
+	const double least = ob_pace_shortest(w);
 	double h = left;
 	for (uint32_t i = 0; i < w->touches; i++)
 		if (w->touch[i].lane != OB_NO_LANE && may_be_short(w, &w->touch[i], h))
@@ -89,8 +89,8 @@ void ob_pace_stride(ob_sim *s, double left)
 void ob_pace_to_rebound(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	double first = ob_exchange_first_rebound(s) * (1 - 1e-9);
-	if (!(first > shortest(w) && first < w->h))
+	double first = fmax(ob_exchange_first_rebound(s) * (1 - 1e-9), w->last_impact);
+	if (!(first > ob_pace_shortest(w) && first < w->h))
 		return;
 	rescale(w, first);
 	ob_members_foretell(s);
@@ -105,7 +105,7 @@ bool ob_pace_shorten(ob_sim *s)
 		hit |= w->batch[i].impact != 0;
 	for (uint32_t i = 0; hit && i < w->touches; i++)
 		h = fmin(h, lasting(w, w->u, &w->touch[i]));
-	h = fmax(fmax(h, shortest(w)), w->last_impact); // what has bounced must get to where it did
+	h = fmax(fmax(h, ob_pace_shortest(w)), w->last_impact); // what has bounced must get to where it did
 	if (h > .6 * w->h)
 		return false;
 	for (uint32_t i = 0; i < w->batches; i++)

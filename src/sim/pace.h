@@ -9,7 +9,9 @@
 // Chooses the length of the next stride, at most "left" (s), sets it in the island, and scales to it what was predicted
 // for the last one.
 void ob_pace_stride(ob_sim *s, double left);
-// After a look: ends the stride where something that turns first rebounds, so that the next begins with its impact.
+// s: no stride is shorter, but the last of a substep.
+double ob_pace_shortest(const ob_island_work *w);
+// After a look, and after impacts: ends the stride where something that turns rebounds next, so that another begins with its impact.
 void ob_pace_to_rebound(ob_sim *s);
 // After the exchanges: was something hit so that it is too fast now for the stride? Then the stride is shortened, and
 // everything is as before the exchanges.

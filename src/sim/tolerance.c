@@ -103,7 +103,7 @@ void ob_tolerance_note_bounce(ob_sim *s)
 			continue;
 		// m/s, approaches that would rebound to the tolerance, and those that are resolved at all
 		double tolerable = sqrt(2 * w->pull * tolerance) / t->e, resolved = 4 * w->pull * w->substep;
-		ob_impact slow = { w->h, t->e, tolerable, 1, 1 };
+		ob_impact slow = { w->h, w->h, t->e, tolerable, 1, 1 };
 		if (resolved > tolerable &&
 		    ob_impact_pending(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &slow, &at) <= slow.h)
 			lost = fmax(lost, t->e * t->e * resolved * resolved / (2 * w->pull));

@@ -18,7 +18,7 @@ static void collide(collision *c)
 	ob_batch_init(&b, OB_KIND_FULL);
 	put_pair(&b, 1, &c->p, 1, c->p.b.inv_mass > 0 ? 2 : 0);
 	ob_batch_prepare(&b);
-	ob_impact in = { substep, c->p.e, 1e-6, 1, 1 };
+	ob_impact in = { substep, substep, c->p.e, 1e-6, 1, 1 };
 	ob_impact_rows at = { c->before, c->dv, c->d };
 	memcpy(c->after, c->before, sizeof c->after);
 	memcpy(c->shift, c->d, sizeof c->shift);
@@ -177,6 +177,26 @@ static void test_pending(void)
 	CHECK(!c.hit);
 }
 
+// A rod that falls aslant: its lower end hits, and the other is left until what happens to it is known. Ends that come
+// down together hit together.
+static void test_one_after_another(void)
+{
+	collision c = { .p = { .normal = { 0, 0, 1 }, .points = 2, .e = 1, .gap = { .002, .004 } } };
+	c.p.a = (body){ .mass = 1, .inv_mass = 1, .inv_inertia = { 1, 0, 0, 1, 0, 1 } };
+	c.p.arm_a[0] = ob_v3(-1, 0, 0);
+	c.p.arm_a[1] = ob_v3(1, 0, 0);
+	c.before[1][2] = -8;
+	collide(&c);
+	CHECK(c.hit);
+	CHECK_NEAR(opening(&c.p, 0, c.after[1], c.after[2]), 8, 1e-12);
+	CHECK(c.after[1][4] != 0);
+	CHECK_NEAR(c.shift[1][2], -(c.after[1][2] + 8) * .002 / 8, 1e-15);
+	c.p.gap[1] = .002;
+	collide(&c);
+	CHECK_NEAR(c.after[1][2], 8, 1e-12);
+	CHECK_NEAR(c.after[1][4], 0, 1e-12);
+}
+
 // A body that takes part in k impacts at once has a k-th of its mass in each.
 static void test_split(void)
 {
@@ -192,7 +212,7 @@ static void test_split(void)
 		ob_batch_prepare(&b);
 		ob_body_row whole[3] = { 0 }, half[3] = { 0 }, d[3] = { 0 };
 		ob_impact_rows at = { c.before, c.dv, c.d };
-		ob_impact once = { substep, 1, 1e-6, 1, 1 }, twice = { substep, 1, 1e-6, 2, 2 };
+		ob_impact once = { substep, substep, 1, 1e-6, 1, 1 }, twice = { substep, substep, 1, 1e-6, 2, 2 };
 		bool hit = ob_impact_solve(&b, 0, &once, &at, whole, d) >= 0;
 		CHECK(hit == (ob_impact_solve(&b, 0, &twice, &at, half, d) >= 0));
 		for (int x = 0; x < 6; x++)
@@ -208,5 +228,6 @@ int main(void)
 	test_instant();
 	test_pending();
 	test_split();
+	test_one_after_another();
 	return check_end();
 }
