@@ -174,7 +174,7 @@ void ob_sweep_print(char *to, size_t room, const ob_peer_settings *s)
 {
 	int n;
 	if (s->tolerance > 0 && s->substeps)
-		n = snprintf(to, room, "tolerance %g mm, %u substeps or more", s->tolerance * 1e3, s->substeps);
+		n = snprintf(to, room, "%u substeps or more, tolerance %g mm", s->substeps, s->tolerance * 1e3);
 	else if (s->tolerance > 0)
 		n = snprintf(to, room, "tolerance %g mm", s->tolerance * 1e3);
 	else
