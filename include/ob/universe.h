@@ -37,7 +37,7 @@ enum { // ob_passport.flags
 	OB_OBJECT_STATIC = 1 << 1,  // never moves; mass and inertia are 0
 };
 
-// What an object is. 192 bytes.
+// What an object is. 176 bytes.
 typedef struct ob_passport {
 	uint32_t id;          // index of the object in the table, from 0
 	uint32_t generation;  // grows each time the slot is given to another object
@@ -51,7 +51,6 @@ typedef struct ob_passport {
 	float colour[4];      // linear RGB, alpha
 	char name[OB_NAME_MAX];
 	ob_vec3 force;        // N, world frame: constant, acts at the centre
-	double reserved[2];
 } ob_passport;
 
 enum { // ob_motion.flags
@@ -59,7 +58,7 @@ enum { // ob_motion.flags
 	OB_MOTION_ASLEEP = 1 << 1, // at rest by consent of its island
 };
 
-// How an object moves from t0 on, unless touched. 256 bytes: the payload of one slot version.
+// How an object moves from t0 on, unless touched. 200 bytes: the payload of one slot version.
 typedef struct ob_motion {
 	double t0;          // s, the instant of the state below
 	double valid_until; // s, the closed form holds so long, unless another object interferes
@@ -76,7 +75,6 @@ typedef struct ob_motion {
 	uint32_t island;    // lowest id of the island in which it was solved
 	uint32_t flight;    // 1 + the step after which the free flight began that goes on; 0 = none does
 	uint32_t substeps;  // that its island asks for in the next step, where a tolerance chooses; 0 = none yet
-	double reserved[7];
 } ob_motion;
 
 typedef enum ob_universe_state {

@@ -23,7 +23,7 @@ typedef struct run {
 	ob_capture *capture; // NULL = no frames
 	ob_recorder *recorder; // NULL = none
 	ob_observer observer;
-	ob_snapshot now, prev; // prev: the last one before now
+	ob_snapshot now, prev; // prev: the last one before now, for what is drawn between both
 	uint64_t steps; // to do
 	uint64_t frames;
 	double begun; // s
@@ -77,9 +77,11 @@ static bool look(run *r, ob_error *e)
 
 static bool take(run *r, ob_error *e)
 {
-	ob_snapshot older = r->prev;
-	r->prev = r->now;
-	r->now = older;
+	if (r->capture) {
+		ob_snapshot older = r->prev;
+		r->prev = r->now;
+		r->now = older;
+	}
 	uint64_t begin = ob_clock_ns();
 	bool taken = ob_snapshot_take(&r->now, ob_host_universe(r->host), r->request.frames.contacts, e);
 	ob_host_trace(r->host, OB_TRACE_SNAPSHOT, begin, 0);

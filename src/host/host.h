@@ -48,6 +48,7 @@ typedef struct ob_host_times {
 
 typedef struct ob_host ob_host;
 
+// The scene must outlive the host.
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e);
 // Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there. The first
 // go may be to step 0: the objects then perceive each other, and nothing moves.

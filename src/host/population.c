@@ -10,7 +10,7 @@
 typedef struct event {
 	uint64_t step;
 	uint32_t id;
-	ob_object_def *birth; // NULL: it dies
+	bool birth; // else it dies
 } event;
 
 // Kept: empty, but an event of the timetable is still to come for it.
@@ -25,7 +25,7 @@ typedef struct slot {
 struct ob_population {
 	ob_universe *u;
 	ob_roster *roster;
-	ob_roster_entry *entries; // [capacity], scratch for the roster
+	const ob_scene *scene;
 	slot *slots; // [capacity]
 	event *events; // ascending by step; at one step deaths first
 	size_t event_count, next;
@@ -124,18 +124,20 @@ static void publish_roster(ob_population *p)
 {
 	bool one_per_object = ob_universe_settings(p->u)->one_per_object;
 	uint32_t n = 0, ids = ob_universe_capacity(p->u);
-	for (uint32_t id = 0; id < ids; id++) {
+	ob_roster_entry *entries = malloc(ids * sizeof *entries);
+	for (uint32_t id = 0; entries && id < ids; id++) {
 		if (p->slots[id].use != SLOT_PRESENT)
 			continue;
 		const ob_passport *pass = ob_passport_of(p->u, id);
-		ob_roster_entry *entry = &p->entries[n++];
+		ob_roster_entry *entry = &entries[n++];
 		entry->id = id;
 		entry->generation = pass->generation;
 		entry->worker = one_per_object ? id : OB_ROSTER_ANY_WORKER;
 		memcpy(entry->name, pass->name, sizeof entry->name);
 	}
-	if (!ob_roster_publish(p->roster, p->entries, n))
+	if (!entries || !ob_roster_publish(p->roster, entries, n))
 		ob_log_warn("out of memory: the roster of objects is out of date");
+	free(entries);
 	p->changed = false;
 }
 
@@ -145,7 +147,7 @@ void ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	for (; p->next < p->event_count && p->events[p->next].step <= step; p->next++) {
 		event *due = &p->events[p->next];
 		if (due->birth)
-			put(p, due->id, due->birth);
+			put(p, due->id, &p->scene->object[due->id]);
 		else
 			die(p, due->id);
 	}
@@ -176,49 +178,42 @@ static uint64_t step_at(double t, double step_length)
 static int by_step(const void *pa, const void *pb)
 {
 	const event *a = pa, *b = pb;
-	int alive_a = a->birth != NULL, alive_b = b->birth != NULL;
 	if (a->step != b->step)
 		return a->step < b->step ? -1 : 1;
-	if (alive_a != alive_b)
-		return alive_a - alive_b;
+	if (a->birth != b->birth)
+		return a->birth - b->birth;
 	return (a->id > b->id) - (a->id < b->id);
 }
 
-static bool schedule(ob_population *p, const ob_object_def *def, uint32_t id, double step_length)
+static void schedule(ob_population *p, uint32_t id, double step_length)
 {
+	const ob_object_def *def = &p->scene->object[id];
 	uint64_t born = step_at(def->born, step_length), dies = step_at(def->dies, step_length);
 	if (born >= dies)
-		return true;
-	ob_object_def *copy = malloc(sizeof *copy);
-	if (!copy)
-		return false;
-	*copy = *def;
+		return;
 	p->slots[id] = (slot){ .use = SLOT_KEPT, .mortal = dies < UINT64_MAX };
-	p->events[p->event_count++] = (event){ .step = born, .id = id, .birth = copy };
+	p->events[p->event_count++] = (event){ .step = born, .id = id, .birth = true };
 	if (dies < UINT64_MAX)
 		p->events[p->event_count++] = (event){ .step = dies, .id = id };
-	return true;
 }
 
 ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r)
 {
-	uint32_t capacity = ob_universe_capacity(u);
 	double step_length = ob_universe_settings(u)->step_length;
 	ob_population *p = calloc(1, sizeof *p);
 	if (!p)
 		return NULL;
 	p->u = u;
 	p->roster = r;
-	p->entries = calloc(capacity, sizeof *p->entries);
-	p->slots = calloc(capacity, sizeof *p->slots);
+	p->scene = scene;
+	p->slots = calloc(ob_universe_capacity(u), sizeof *p->slots);
 	p->events = calloc(2 * (size_t)scene->objects + 1, sizeof *p->events);
-	bool ok = p->entries && p->slots && p->events;
-	for (uint32_t i = 0; ok && i < scene->objects; i++)
-		ok = schedule(p, &scene->object[i], i, step_length);
-	if (!ok) {
+	if (!p->slots || !p->events) {
 		ob_population_destroy(p);
 		return NULL;
 	}
+	for (uint32_t i = 0; i < scene->objects; i++)
+		schedule(p, i, step_length);
 	qsort(p->events, p->event_count, sizeof *p->events, by_step);
 	return p;
 }
@@ -227,10 +222,7 @@ void ob_population_destroy(ob_population *p)
 {
 	if (!p)
 		return;
-	for (size_t i = 0; p->events && i < p->event_count; i++)
-		free(p->events[i].birth);
 	free(p->events);
 	free(p->slots);
-	free(p->entries);
 	free(p);
 }

@@ -14,8 +14,8 @@ typedef struct ob_population ob_population;
 // true if the definition makes sense: known shape, finite numbers, mass where it moves. e says what does not.
 bool ob_object_check(const ob_object_def *def, ob_error *e);
 
-// Slots 0 .. scene->objects-1 are the scene's; the rest of the table is for objects added later. Takes what it needs
-// of the scene; u and r must outlive it. NULL: out of memory.
+// Slots 0 .. scene->objects-1 are the scene's; the rest of the table is for objects added later. All three must outlive
+// it. NULL: out of memory.
 ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r);
 void ob_population_destroy(ob_population *p);
 

@@ -40,6 +40,7 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_WORKER] = { sizeof(ob_worker_cell), PER_WORKER, 1, 0 },
 	[OB_AREA_SLOT] = { sizeof(ob_slot), PER_OBJECT, 1, 0 },
 	[OB_AREA_PASSPORT] = { sizeof(ob_passport_slot), PER_OBJECT, 1, 0 },
+	[OB_AREA_PASSPORT_EVEN] = { sizeof(ob_passport), PER_OBJECT, 1, 0 },
 	[OB_AREA_STEP_CLOCK] = { sizeof(ob_step_clock), FIXED, 0, 1 },
 	[OB_AREA_REBOUND] = { sizeof(uint32_t), PER_OBJECT, 1, 0 },
 	[OB_AREA_REBOUND_BIT] = { sizeof(uint64_t), PER_64_OBJECTS, 1, 0 },
@@ -187,6 +188,7 @@ void ob_layout_bind(ob_universe *u, void *base)
 	u->step_clock = (void *)(u->base + area[OB_AREA_STEP_CLOCK]);
 	u->slot = (void *)(u->base + area[OB_AREA_SLOT]);
 	u->passport = (void *)(u->base + area[OB_AREA_PASSPORT]);
+	u->passport_even = (void *)(u->base + area[OB_AREA_PASSPORT_EVEN]);
 	u->rebound = (void *)(u->base + area[OB_AREA_REBOUND]);
 	u->rebound_bit = (void *)(u->base + area[OB_AREA_REBOUND_BIT]);
 	u->trace_ring = (void *)(u->base + area[OB_AREA_TRACE_RING]);

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 5, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 6, OB_LAYOUT_PAGE = 4096 };
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -25,6 +25,7 @@ typedef enum ob_area {
 	OB_AREA_WORKER, // [workers]
 	OB_AREA_SLOT, // [capacity]
 	OB_AREA_PASSPORT, // [capacity]
+	OB_AREA_PASSPORT_EVEN, // [capacity]
 	OB_AREA_STEP_CLOCK,
 	OB_AREA_REBOUND, // [capacity] ids
 	OB_AREA_REBOUND_BIT, // [capacity / 64] ids that are on the list
@@ -135,6 +136,7 @@ struct ob_universe {
 	ob_step_clock *step_clock;
 	ob_slot *slot;
 	ob_passport_slot *passport;
+	ob_passport *passport_even;
 	uint32_t *rebound;
 	uint64_t *rebound_bit;
 	ob_exchange exchange;
@@ -149,6 +151,8 @@ void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool trac
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);
 // Bytes that a full universe with a few contacts per object will touch: what the memory file system must have free.
 uint64_t ob_layout_likely_bytes(const ob_header *h);
+// A copy of the newest passport; false: there has never been one. Any reader.
+bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out);
 // Points the view at a mapping of u->header's layout.
 void ob_layout_bind(ob_universe *u, void *base);
 

@@ -119,9 +119,7 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 {
 	if (id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
-	const ob_passport_slot *s = u->passport + id;
-	return ob_ring_read(&s->version, s->ring, OB_PASSPORT_VERSIONS, sizeof *out, out) &&
-	       (out->flags & OB_OBJECT_PRESENT) && passport_makes_sense(out, id);
+	return ob_passport_read(u, id, out) && (out->flags & OB_OBJECT_PRESENT) && passport_makes_sense(out, id);
 }
 
 static bool motion_makes_sense(const ob_motion *m)

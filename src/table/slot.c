@@ -10,20 +10,32 @@ void ob_publish_motion(ob_universe *u, uint32_t id, const ob_motion *m)
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id)
 {
 	const ob_slot *s = u->slot + id;
-	return s->ring + __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_SLOT_VERSIONS;
+	return s->ring + __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_RING_VERSIONS;
 }
 
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id)
 {
 	const ob_passport_slot *s = u->passport + id;
-	return s->ring + __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_PASSPORT_VERSIONS;
+	return __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_RING_VERSIONS ? &s->odd : u->passport_even + id;
+}
+
+// From an object's even passport to its odd one.
+static ptrdiff_t stride_of(const ob_universe *u, uint32_t id)
+{
+	return (const char *)&u->passport[id].odd - (const char *)(u->passport_even + id);
+}
+
+bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out)
+{
+	return ob_ring_read(&u->passport[id].version, u->passport_even + id, stride_of(u, id), sizeof *out, out);
 }
 
 void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p)
 {
-	ob_passport_slot *s = u->passport + id;
-	uint32_t was = ob_passport_of(u, id)->flags & OB_OBJECT_PRESENT, is = p->flags & OB_OBJECT_PRESENT;
-	ob_ring_publish(&s->version, s->ring, OB_PASSPORT_VERSIONS, sizeof *p, p);
+	// Where there was none, a look at it would touch a page of the even ones.
+	bool known = __atomic_load_n(&u->passport[id].version, __ATOMIC_RELAXED);
+	uint32_t was = known ? ob_passport_of(u, id)->flags & OB_OBJECT_PRESENT : 0, is = p->flags & OB_OBJECT_PRESENT;
+	ob_ring_publish(&u->passport[id].version, u->passport_even + id, stride_of(u, id), sizeof *p, p);
 	ob_control *c = u->control;
 	if (is && !was)
 		__atomic_fetch_add(&c->objects, 1, __ATOMIC_RELAXED);

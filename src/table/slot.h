@@ -1,20 +1,23 @@
 // The slot: how one writer hands whole records to any number of readers without a lock.
 //
-//                 version = 6                           a record's place is its version modulo the ring's length
-//                     |
-//          +-------+-------+-------+-------+
-//   ring   |   4   |   5   |   6   |  (7)  |   the writer fills the place of version 7, and only then sets
-//          +-------+-------+-------+-------+   version = 7: until that instant every reader takes version 6
-//             0       1       2       3
+//            version = 6             a record's place is its version modulo 2
+//                |
+//          +-----------+-----------+
+//   ring   |     6     |    (7)    |   the writer fills the place of version 7, which was that of 5, and only then
+//          +-----------+-----------+   sets version = 7: until that instant every reader takes version 6
 //
 //   writer   next = version + 1;  store-release each word into ring[next];  store-release version = next
-//   reader   v = version;  load-acquire each word of ring[v];  take it if version < v + 3, else again
+//   reader   v = version;  load-acquire each word of ring[v];  take it if version is still v, else again
 //
-// Why a copy is never torn: the place of v is written again for version v + 4, which begins after version v + 3
-// was stored. A reader that met one word of v + 4 has, by acquire and release on that word, also seen v + 3, so
+// Why a copy is never torn: the place of v is written again for version v + 2, which begins after version v + 1
+// was stored. A reader that met one word of v + 2 has, by acquire and release on that word, also seen v + 1, so
 // its second look at the version says so, and it reads again. There is no odd state in between: a writer that is
 // preempted or killed anywhere leaves the last version readable, and its successor fills the same place anew.
 // Every word is atomic by itself, so there is no data race in the sense of C11, and no fence is needed.
+//
+// Why two places do: a reader that is late reads again, and what it then takes is newer. It would starve behind a
+// writer that publishes without pause; simulators publish once a step. Within the step, where the gate orders both, a
+// place is not written while somebody looks at it: what was newest when a phase began stays until the next step's end.
 //
 // One writer at a time; readers in any thread or process.
 #ifndef OB_TABLE_SLOT_H
@@ -25,32 +28,39 @@
 #include <ob/universe.h>
 
 enum {
-	OB_SLOT_VERSIONS = 4, // a reader may be three publications late before it must read again
-	OB_PASSPORT_VERSIONS = 2, // changes rarely
+	OB_RING_VERSIONS = 2,
 	OB_RING_TRIES = 100000, // readers give up then: only a damaged table gets there
 };
 
 typedef struct ob_slot {
-	_Alignas(64) uint64_t version; // 0 = never published
-	_Alignas(64) ob_motion ring[OB_SLOT_VERSIONS];
+	uint64_t version; // 0 = never published
+	ob_motion ring[OB_RING_VERSIONS];
 } ob_slot;
 
+// Odd versions: an object's first passport is also its only one, unless its slot is given to another. The even ones have
+// an area of their own, of which nobody then touches a page.
 typedef struct ob_passport_slot {
-	_Alignas(64) uint64_t version;
-	_Alignas(64) ob_passport ring[OB_PASSPORT_VERSIONS];
+	uint64_t version;
+	ob_passport odd;
 } ob_passport_slot;
 
-static_assert(sizeof(ob_motion) == 256, "payload of a slot");
-static_assert(sizeof(ob_passport) == 192, "passport");
-static_assert(sizeof(ob_slot) == 64 + OB_SLOT_VERSIONS * 256, "slot");
-static_assert(sizeof(ob_passport_slot) == 64 + OB_PASSPORT_VERSIONS * 192, "passport slot");
+static_assert(sizeof(ob_motion) == 200, "payload of a slot");
+static_assert(sizeof(ob_passport) == 176, "passport");
+static_assert(sizeof(ob_slot) == 408, "slot");
+static_assert(sizeof(ob_passport_slot) == 184, "passport slot");
 
 typedef uint64_t __attribute__((may_alias)) ob_word;
 
-static inline void ob_ring_publish(uint64_t *version, void *ring, unsigned versions, size_t bytes, const void *record)
+// The place of a version; even: that of version 0, stride: bytes from there to that of version 1.
+static inline ob_word *ob_ring_place(const void *even, ptrdiff_t stride, uint64_t version)
+{
+	return (ob_word *)((char *)(uintptr_t)even + (ptrdiff_t)(version % OB_RING_VERSIONS) * stride);
+}
+
+static inline void ob_ring_publish(uint64_t *version, void *even, ptrdiff_t stride, size_t bytes, const void *record)
 {
 	uint64_t next = __atomic_load_n(version, __ATOMIC_ACQUIRE) + 1;
-	ob_word *to = (ob_word *)((char *)ring + next % versions * bytes);
+	ob_word *to = ob_ring_place(even, stride, next);
 	const ob_word *from = record;
 #pragma GCC unroll 8
 	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
@@ -59,18 +69,18 @@ static inline void ob_ring_publish(uint64_t *version, void *ring, unsigned versi
 }
 
 // false: never published
-static inline bool ob_ring_read(const uint64_t *version, const void *ring, unsigned versions, size_t bytes, void *out)
+static inline bool ob_ring_read(const uint64_t *version, const void *even, ptrdiff_t stride, size_t bytes, void *out)
 {
 	ob_word *to = out;
 	for (int i = 0; i < OB_RING_TRIES; i++) {
 		uint64_t v = __atomic_load_n(version, __ATOMIC_ACQUIRE);
 		if (v == 0)
 			return false;
-		const ob_word *from = (const ob_word *)((const char *)ring + v % versions * bytes);
+		const ob_word *from = ob_ring_place(even, stride, v);
 #pragma GCC unroll 8
 		for (size_t k = 0; k < bytes / sizeof(ob_word); k++)
 			to[k] = __atomic_load_n(from + k, __ATOMIC_ACQUIRE);
-		if (__atomic_load_n(version, __ATOMIC_RELAXED) - v < versions - 1)
+		if (__atomic_load_n(version, __ATOMIC_RELAXED) == v)
 			return true;
 	}
 	return false;
@@ -78,12 +88,12 @@ static inline bool ob_ring_read(const uint64_t *version, const void *ring, unsig
 
 static inline void ob_slot_publish(ob_slot *s, const ob_motion *m)
 {
-	ob_ring_publish(&s->version, s->ring, OB_SLOT_VERSIONS, sizeof *m, m);
+	ob_ring_publish(&s->version, s->ring, sizeof *m, sizeof *m, m);
 }
 
 static inline bool ob_slot_read(const ob_slot *s, ob_motion *out)
 {
-	return ob_ring_read(&s->version, s->ring, OB_SLOT_VERSIONS, sizeof *out, out);
+	return ob_ring_read(&s->version, s->ring, sizeof *out, sizeof *out, out);
 }
 
 #endif

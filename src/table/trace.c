@@ -137,9 +137,7 @@ uint64_t ob_trace_since(const ob_universe *u, uint32_t id)
 bool ob_trace_name(const ob_universe *u, uint32_t id, char name[OB_NAME_MAX])
 {
 	ob_passport p;
-	const ob_passport_slot *s = u->passport + id;
-	if (!ob_ring_read(&s->version, s->ring, OB_PASSPORT_VERSIONS, sizeof p, &p) ||
-	    !memchr(p.name, 0, sizeof p.name))
+	if (!ob_passport_read(u, id, &p) || !memchr(p.name, 0, sizeof p.name))
 		return false;
 	memcpy(name, p.name, OB_NAME_MAX);
 	return true;
