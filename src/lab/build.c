@@ -64,6 +64,56 @@ void ob_build_stack(ob_peer_world *w, int n, ob_vec3 foot, uint64_t seed)
 	}
 }
 
+static ob_build_body box_of_any_size(ob_peer_world *w, ob_vec3 p, uint64_t *seed)
+{
+	ob_vec3 half = ob_add(ob_v3(.3, .3, .3), ob_build_vector(seed, .2));
+	ob_build_body b = ob_build_box(w, 8000 * half.x * half.y * half.z, half, p);
+	b.state->pose.q = ob_build_attitude(seed);
+	return b;
+}
+
+// The side of the square that n stand in
+static uint32_t side_of(uint32_t n)
+{
+	return (uint32_t)ceil(sqrt(n));
+}
+
+void ob_build_falling(ob_peer_world *w, uint32_t n, uint64_t seed)
+{
+	enum { LEVELS = 4 };
+	uint32_t side = side_of((n + LEVELS - 1) / LEVELS);
+	double z = 0;
+	ob_build_ground(w);
+	for (uint32_t i = 0; i < n; i++) {
+		uint32_t column = i / LEVELS;
+		z = (i % LEVELS ? z : 1) + 1.8 + ob_build_uniform(&seed);
+		box_of_any_size(w, ob_v3(1.8 * (column % side), 1.8 * (column / side), z), &seed);
+	}
+}
+
+void ob_build_sparse(ob_peer_world *w, uint32_t n, uint64_t seed)
+{
+	uint32_t side = side_of(n);
+	ob_build_ground(w);
+	for (uint32_t i = 0; i < n; i++) {
+		ob_vec3 p = ob_v3(4. * (i % side), 4. * (i / side), ob_build_within(&seed, 2, 10));
+		ob_build_body b = box_of_any_size(w, p, &seed);
+		b.state->v = ob_build_vector(&seed, 1);
+		b.state->v.z = ob_build_within(&seed, 0, 4);
+		b.state->w = ob_build_vector(&seed, 1);
+	}
+	ob_build_material(w, .5, .8);
+}
+
+void ob_build_balls(ob_peer_world *w, uint32_t n)
+{
+	uint32_t side = side_of(n);
+	ob_build_ground(w);
+	for (uint32_t i = 0; i < n; i++)
+		ob_build_sphere(w, 10, .1, ob_v3(2. * (i % side), 2. * (i / side), 5));
+	ob_build_material(w, 0, 1);
+}
+
 void ob_build_material(ob_peer_world *w, double friction, double restitution)
 {
 	for (uint32_t i = 0; i < w->objects; i++) {

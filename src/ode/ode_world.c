@@ -56,7 +56,7 @@ ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
 	w->member = member;
 	w->world = dWorldCreate();
 	w->threading = dThreadingAllocateSelfThreadedImplementation();
-	w->space = dSweepAndPruneSpaceCreate(0, dSAP_AXES_XYZ);
+	w->space = s->hashed ? dHashSpaceCreate(0) : dSweepAndPruneSpaceCreate(0, dSAP_AXES_XYZ);
 	w->joints = dJointGroupCreate(0);
 	dSpaceSetManualCleanup(w->space, 1);
 	dSpaceSetCleanup(w->space, 0); // members own their geometries

@@ -16,6 +16,7 @@ typedef struct ob_ode_world_setup {
 	bool sleeping;       // ODE's auto-disable
 	bool boxed;          // objects touch where their axis-aligned boxes do (ode_boxed.h)
 	uint32_t load;       // base/burden.h, at each pair of boxes that the space finds to overlap
+	bool hashed;         // pairs are found by a hash space instead of sweep and prune
 } ob_ode_world_setup;
 
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s); // NULL: no memory

@@ -20,7 +20,7 @@ static void destroy(ob_peer *p)
 }
 
 // iterations: QuickStep's; 0 = dWorldStep
-static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32_t iterations, ob_error *e)
+static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32_t iterations, bool hashed, ob_error *e)
 {
 	if (!(s->step > 0) || !s->substeps) {
 		ob_fail(e, "%u substeps of a step of %g s: ODE must be told what to do", s->substeps, s->step);
@@ -33,7 +33,13 @@ static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32
 	}
 	ob_peer_ode_enter();
 	*p = (ob_peer){ .substep = s->step / s->substeps, .substeps = s->substeps, .objects = w->objects };
-	p->world = ob_ode_world_create(&(ob_ode_world_setup){ w->gravity, iterations, w->objects, s->sleeping, false, 0 });
+	p->world = ob_ode_world_create(&(ob_ode_world_setup){
+		.gravity = w->gravity,
+		.iterations = iterations,
+		.objects = w->objects,
+		.sleeping = s->sleeping,
+		.hashed = hashed,
+	});
 	if (!p->world) {
 		ob_fail(e, "no memory for a world of %u bodies", w->objects);
 		destroy(p);
@@ -44,17 +50,27 @@ static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32
 	return p;
 }
 
-static ob_peer *create_quick(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_peer *create_iterating(const ob_peer_world *w, const ob_peer_settings *s, bool hashed, ob_error *e)
 {
 	if (s->iterations)
-		return create(w, s, s->iterations, e);
+		return create(w, s, s->iterations, hashed, e);
 	ob_fail(e, "QuickStep without iterations: at least one is needed");
 	return NULL;
 }
 
+static ob_peer *create_quick(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create_iterating(w, s, false, e);
+}
+
+static ob_peer *create_hashed(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+{
+	return create_iterating(w, s, true, e);
+}
+
 static ob_peer *create_world(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
 {
-	return create(w, s, 0, e);
+	return create(w, s, 0, false, e);
 }
 
 static bool step(ob_peer *p, ob_error *e)
@@ -79,6 +95,18 @@ const ob_peer_kind ob_peer_ode_quick = {
 	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 },
 	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 },
 	.create = create_quick,
+	.step = step,
+	.get = get,
+	.destroy = destroy,
+};
+
+const ob_peer_kind ob_peer_ode_hash = {
+	.name = "ode-hash",
+	.title = "ODE QuickStep, hash space",
+	.version = OB_ODE_VERSION,
+	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 },
+	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 },
+	.create = create_hashed,
 	.step = step,
 	.get = get,
 	.destroy = destroy,

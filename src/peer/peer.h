@@ -44,4 +44,7 @@ typedef struct ob_peer_kind {
 extern const ob_peer_kind *const ob_peer_kinds[];
 const ob_peer_kind *ob_peer_find(const char *name); // NULL: none of that name
 
+// ODE's QuickStep with another broad phase: it differs in cost alone, so it is none of the list.
+extern const ob_peer_kind ob_peer_ode_hash;
+
 #endif

@@ -32,7 +32,12 @@ ob_monolith *ob_monolith_create(ob_universe *u)
 	const ob_run_settings *run = ob_universe_settings(u);
 	uint32_t capacity = ob_universe_capacity(u);
 	ob_ode_world_setup setup = {
-		run->gravity, run->iterations, capacity, run->sleeping, run->narrow_phase == OB_NARROW_AABB, run->load
+		.gravity = run->gravity,
+		.iterations = run->iterations,
+		.objects = capacity,
+		.sleeping = run->sleeping,
+		.boxed = run->narrow_phase == OB_NARROW_AABB,
+		.load = run->load,
 	};
 	ob_ode_thread_init();
 	ob_monolith *m = calloc(1, sizeof *m);

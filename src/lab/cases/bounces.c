@@ -114,10 +114,7 @@ const ob_case ob_case_apexes = {
 
 static void build_bouncing_49(ob_peer_world *w, uint32_t run)
 {
-	ob_build_ground(w);
-	for (int i = 0; i < 49; i++)
-		ob_build_sphere(w, 10, .1, ob_v3(2 * (i % 7), 2 * (i / 7), 5));
-	ob_build_material(w, 0, 1);
+	ob_build_balls(w, 49);
 }
 
 static void observe_bouncing_49(ob_trial *t)

@@ -76,21 +76,9 @@ static void build_pile_elastic(ob_peer_world *w, uint32_t run)
 	build_pile_of(w, .5, run);
 }
 
-// Columns of four boxes with half extents of .1 to .5 m, turned at random, over a floor.
 static void build_falling(ob_peer_world *w, uint32_t run)
 {
-	enum { COLUMNS = 25, SIDE = 5, LEVELS = 4 };
-	uint64_t seed = 100 + run;
-	ob_build_ground(w);
-	for (int column = 0; column < COLUMNS; column++) {
-		ob_vec3 p = ob_v3(1.8 * (column % SIDE), 1.8 * (column / SIDE), 1);
-		for (int level = 0; level < LEVELS; level++) {
-			p.z += 1.8 + ob_build_uniform(&seed);
-			ob_vec3 half = ob_add(ob_v3(.3, .3, .3), ob_build_vector(&seed, .2));
-			ob_build_body b = ob_build_box(w, 8000 * half.x * half.y * half.z, half, p);
-			b.state->pose.q = ob_build_attitude(&seed);
-		}
-	}
+	ob_build_falling(w, 100, 100 + run);
 }
 
 enum { SETTLED_MEAN, SETTLED_WORST, WORST, GROWTH, PILE_FIGURES };
