@@ -1,0 +1,89 @@
+// One run of one engine in one scene, in a process of its own: what bench/run.py measures with.
+//
+//   bench_engine SCENE ENGINE time|look [KEY=VALUE ...]
+//
+// ENGINE: one of the lab's, "ode-hash", or "host" for obsim through its host. KEY: duration, step (s), substeps,
+// iterations, tolerance (m), sleeping, workers, processes; what is not said is the engine's and the scene's own.
+// Exit: 0 done; 1 the engine failed, which the last line says; 2 it was told something that makes no sense.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine.h"
+
+static bool set(bench_order *o, const char *word)
+{
+	const char *equals = strchr(word, '=');
+	char *end = NULL;
+	double value = equals ? strtod(equals + 1, &end) : NAN;
+	if (!equals || !end || *end || !(value >= 0))
+		return false;
+	struct {
+		const char *key;
+		double *number;
+		uint32_t *count;
+		bool *flag;
+	} known[] = {
+		{ "duration", .number = &o->duration },
+		{ "step", .number = &o->settings.step },
+		{ "substeps", .count = &o->settings.substeps },
+		{ "iterations", .count = &o->settings.iterations },
+		{ "tolerance", .number = &o->settings.tolerance },
+		{ "sleeping", .flag = &o->settings.sleeping },
+		{ "workers", .count = &o->workers },
+		{ "processes", .flag = &o->processes },
+	};
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+		if (strncmp(known[i].key, word, (size_t)(equals - word)) || known[i].key[equals - word])
+			continue;
+		if (known[i].number)
+			*known[i].number = value;
+		else if (known[i].count)
+			*known[i].count = (uint32_t)value;
+		else
+			*known[i].flag = value > 0;
+		return true;
+	}
+	return false;
+}
+
+static const ob_peer_kind *find(const char *name)
+{
+	if (!strcmp(name, ob_peer_ode_hash.name))
+		return &ob_peer_ode_hash;
+	return ob_peer_find(strcmp(name, "host") ? name : "obsim");
+}
+
+static int misused(const char *what, const char *word)
+{
+	fprintf(stderr, "bench_engine: %s \"%s\"\n", what, word);
+	return 2;
+}
+
+int main(int argc, char **argv)
+{
+	if (argc < 4) {
+		fprintf(stderr, "usage: bench_engine SCENE ENGINE time|look [KEY=VALUE ...]\n");
+		return 2;
+	}
+	ob_error e = { "" };
+	const bench_scene *scene = bench_scene_find(argv[1], &e);
+	if (!scene)
+		return misused(e.text, argv[1]);
+	const ob_peer_kind *kind = find(argv[2]);
+	if (!kind)
+		return misused("no engine", argv[2]);
+	bool host = !strcmp(argv[2], "host"), look = !strcmp(argv[3], "look");
+	if ((!look && strcmp(argv[3], "time")) || (host && look))
+		return misused("it is not known how to do", argv[3]);
+	bench_order o = { .scene = scene, .duration = scene->of.duration, .settings = kind->usual, .workers = 1 };
+	o.settings.step = scene->of.step;
+	o.settings.sleeping = scene->sleeping;
+	for (int i = 4; i < argc; i++)
+		if (!set(&o, argv[i]))
+			return misused("not understood:", argv[i]);
+	bool done = host ? bench_time_host(&o, &e) : look ? bench_look(&o, kind, &e) : bench_time(&o, kind, &e);
+	if (!done)
+		printf("failed\t\t%s\n", e.text);
+	return done ? 0 : 1;
+}

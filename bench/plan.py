@@ -1,0 +1,79 @@
+"""What bench/run.py measures: scenes, the sides that are compared in each, and the errors at which they are compared."""
+
+# Sides: the engine that bench_engine knows, and what it is told.
+SIDES = {
+    'obsim': ('obsim', {}),  # in the caller's thread, one worker
+    'obsim, 1 thread': ('host', {'workers': 1}),
+    'obsim, 1 process': ('host', {'workers': 1, 'processes': 1}),
+    'obsim, 2 threads': ('host', {'workers': 2}),
+    'obsim, 2 processes': ('host', {'workers': 2, 'processes': 1}),
+    'obsim, ODE worlds': ('obsim-ode', {}),  # each object with an ODE world of its own
+    'ode-quick': ('ode-quick', {}),
+    'ode-hash': ('ode-hash', {}),
+    'ode-world': ('ode-world', {}),
+    'bullet': ('bullet', {}),
+}
+POOLS = ['obsim, 1 thread', 'obsim, 1 process', 'obsim, 2 threads', 'obsim, 2 processes']
+OTHERS = ['ode-quick', 'bullet']
+
+# Scenes at their usual settings: (scene, sides, knobs for all). Where a scene is run for less than its own duration it
+# says so. "looks": False where looking at every frame would take longer than all else.
+FULL = [
+    ('sparse-10000', ['obsim', *POOLS, 'ode-quick', 'ode-hash', 'bullet'], {}),
+    ('sparse-10000', ['obsim', 'ode-quick', 'ode-hash', 'bullet'], {'duration': 3}),
+    ('balls-49', ['obsim', *OTHERS], {}),
+    ('balls-1000', ['obsim', *POOLS, *OTHERS], {}),
+    ('stack-10', ['obsim', *POOLS, *OTHERS], {}),
+    ('pyramid-15', ['obsim', *POOLS, *OTHERS], {}),
+    ('falling-1000', ['obsim', *POOLS, 'ode-quick', 'ode-hash', 'bullet'], {}),
+    ('falling-4000', ['obsim', *POOLS, *OTHERS], {}),
+    ('pile', ['obsim', *POOLS, *OTHERS], {}),
+    ('heavy-1000', ['obsim', 'ode-world', *OTHERS], {}),
+    ('rolling-diagonal', ['obsim', *OTHERS], {}),
+    ('666', ['obsim', *POOLS, *OTHERS], {}),
+    ('falling-10', ['obsim', *POOLS], {}),
+    ('sparse-10', ['obsim', *POOLS], {}),
+    ('sparse-1000', ['obsim', *OTHERS], {'duration': 3}),
+    ('sparse-100000', ['obsim', *OTHERS], {'duration': 3}),
+    ('sparse-100000', ['obsim', 'obsim, ODE worlds'], {'duration': .5}),
+    ('falling-1000', ['obsim', *OTHERS], {'duration': 2}),
+    ('falling-10000', ['obsim', *OTHERS], {'duration': 2}),
+    ('falling-100000', ['obsim'], {'duration': 2}),
+]
+SHORT = [
+    ('sparse-2000', ['obsim', 'ode-quick', 'bullet'], {'duration': 2}),
+    ('balls-49', ['obsim', *OTHERS], {'duration': 5}),
+    ('stack-10', ['obsim', *OTHERS], {'duration': 5}),
+    ('pyramid-15', ['obsim', *OTHERS], {'duration': 1}),
+    ('falling-200', ['obsim', 'obsim, 2 threads', 'obsim, 2 processes', *OTHERS], {'duration': 2}),
+    ('pile', ['obsim', *OTHERS], {'duration': 1}),
+    ('heavy-1000', ['obsim', 'ode-world'], {'duration': 5}),
+    ('rolling-diagonal', ['obsim', 'bullet'], {'duration': 4}),
+    ('666', ['obsim', *OTHERS], {'duration': 2}),
+]
+TINY = [  # for the tests
+    ('stack-10', ['obsim', 'obsim, 2 processes', 'ode-quick'], {'duration': .2}),
+    ('falling-8', ['obsim'], {'duration': .2}),
+]
+
+# The cheapest setting of each side that keeps an error below a bound: (scene, {side: (error, bound)}). It is looked for
+# among the knobs below, cheapest first, and then measured as the others are.
+EQUAL = [
+    ('stack-10', {'obsim': ('worst penetration', .5), 'bullet': ('worst penetration', 1),
+                  'ode-quick': ('worst penetration', 1)}),
+    ('pyramid-15', {'obsim': ('worst penetration', .5), 'bullet': ('worst penetration', 1),
+                    'ode-quick': ('worst penetration', 1)}),
+    ('pile', {'obsim': ('worst penetration at any moment', 2), 'bullet': ('worst penetration at any moment', 2)}),
+    ('falling-1000', {'obsim': ('worst penetration at any moment', 20)}),
+    ('heavy-1000', {'obsim': ('worst penetration', 2), 'ode-world': ('worst penetration', 2)}),
+    ('rolling-diagonal', {'obsim': ('mean squared error of velocities', 1e-5)}),
+    ('666', {'obsim': ('mean sum of squared penetrations', 1e-5), 'bullet': ('mean sum of squared penetrations', 1e-5),
+             'ode-quick': ('mean sum of squared penetrations', 1e-5)}),
+]
+KNOBS = {
+    'obsim': [{'substeps': n, 'iterations': i, 'tolerance': 0} for n in (1, 2, 4, 8, 16) for i in (4, 16, 64)] +
+             [{'substeps': 1, 'iterations': 64, 'tolerance': t} for t in (.02, .01, .005, .002, .001)],
+    'ode-quick': [{'substeps': n, 'iterations': i} for n in (1, 2, 4, 8, 16, 32) for i in (10, 20, 50)],
+    'ode-world': [{'substeps': n} for n in (1, 2, 4, 8, 16)],
+    'bullet': [{'substeps': n, 'iterations': i} for n in (1, 2, 4, 8, 16, 32) for i in (5, 10, 20, 50)],
+}

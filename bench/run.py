@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Measures obsim against other engines: what a body costs per step, and how far off it is.
+
+run.py BUILD [OPTION ...]
+
+  --mode short|full|tiny   short (the default): the shape of all that counts, in less than three minutes; full: every line
+                           of docs/performance.md; tiny: for the tests
+  --out FILE               results, a line for each quantity (bench.csv)
+  --scenes GLOB,...        only these, as "falling-*"
+  --engines GLOB,...       only these, as "obsim*,bullet"
+  --repeats N              runs of each (5; of what takes longer than 20 s: 2)
+  --no-look                times alone
+  --no-equal               full: no search for settings of equal error
+
+Sides take turns, repeat by repeat, so that a busy minute of the machine hits all alike; each run is a process of its own.
+Times are of stepping alone. Errors are taken from one more run of each, for looking disturbs what is timed; the state at
+the end shows that repeats are the same run. Compare two files with compare.py.
+"""
+import argparse
+import csv
+import datetime
+import fnmatch
+import os
+import re
+import subprocess
+import sys
+
+import plan
+
+COLUMNS = ['date', 'commit', 'machine', 'scene', 'duration', 'engine', 'setting', 'knobs', 'repeat', 'quantity', 'unit',
+           'value']
+LIMIT = 600  # s, of a run
+LONG = 20  # s, from which two repeats have to do
+
+
+def machine():
+    with open('/proc/cpuinfo', encoding='utf-8') as f:
+        model = re.search(r'model name\s*: (.*)', f.read())
+    return f"{len(os.sched_getaffinity(0))} x {model.group(1) if model else 'unknown'}, {os.uname().release}"
+
+
+def commit(build):
+    """Of the program that is measured."""
+    done = subprocess.run([os.path.join(build, 'obsim'), '--version'], capture_output=True, text=True, check=False)
+    found = re.search(r'\b[0-9a-f]{12}\+?', done.stdout)
+    return found.group(0) if found else 'unknown'
+
+
+class Side:
+    """An engine in a scene with its settings, and all that has been measured of it."""
+
+    def __init__(self, scene, name, knobs, setting):
+        self.scene, self.name, self.knobs, self.setting = scene, name, knobs, setting
+        self.failed = False
+
+    def key(self):
+        return (self.scene, self.name, tuple(sorted(self.knobs.items())))
+
+    def words(self):
+        return ' '.join(f'{k}={v:g}' for k, v in sorted(self.knobs.items()))
+
+    def run(self, what):
+        """[(quantity, unit, value)], and how long it took; the last is "failed" where it did."""
+        engine, more = plan.SIDES[self.name]
+        words = [f'{k}={v:.17g}' for k, v in {**self.knobs, **more}.items()]
+        begin = os.times().elapsed
+        try:
+            done = subprocess.run([TOOL, self.scene, engine, what, *words], capture_output=True, text=True, timeout=LIMIT,
+                                  check=False)
+            if 'no engine' in done.stderr:  # Bullet need not be there
+                return [['failed', '', 'not built']], 0.
+            if done.returncode not in (0, 1):
+                sys.exit(f"{self.scene}, {self.name}: {done.stderr.strip() or f'exit {done.returncode}'}")
+            rows = [line.split('\t') for line in done.stdout.splitlines()]
+        except subprocess.TimeoutExpired:
+            rows = [['failed', '', f'took longer than {LIMIT} s']]
+        return rows, os.times().elapsed - begin
+
+
+class Results:
+    """The file: it grows line by line, so that what was measured is there when a run is broken off."""
+
+    def __init__(self, path, build):
+        self.file = open(path, 'w', encoding='utf-8', newline='')
+        self.csv = csv.writer(self.file)
+        self.csv.writerow(COLUMNS)
+        self.head = [datetime.datetime.now(datetime.timezone.utc).strftime('%Y-%m-%dT%H:%M:%SZ'), commit(build), machine()]
+
+    def add(self, side, repeat, rows):
+        for quantity, unit, value in rows:
+            self.csv.writerow([*self.head, side.scene, side.knobs.get('duration', ''), side.name, side.setting, side.words(),
+                               repeat, quantity, unit, value])
+        self.file.flush()
+
+
+def value_of(rows, quantity):
+    return next((float(v) for q, _, v in rows if q == quantity), float('nan'))
+
+
+def wanted(name, globs):
+    return not globs or any(fnmatch.fnmatchcase(name, g) for g in globs.split(','))
+
+
+def say(side, what, rows):
+    failed = next((v for q, _, v in rows if q == 'failed'), None)
+    seen = {'time': 'cpu', 'look': rows[0][0]}[what]
+    text = failed or f'{seen} {value_of(rows, seen):.4g} {next(u for q, u, _ in rows if q == seen)}'
+    print(f'{side.scene:18} {side.name:20} {side.words():40} {text}', flush=True)
+
+
+def measure(sides, options, results):
+    """Repeat by repeat; first of all the errors."""
+    for side in sides:
+        engine, _ = plan.SIDES[side.name]
+        if options.no_look or engine == 'host' or re.search(r'-\d{5,}$', side.scene):
+            continue  # a host ends in the same bits; of ten thousand bodies looking takes longer than stepping
+        rows, _ = side.run('look')
+        results.add(side, 0, rows)
+        say(side, 'look', rows)
+    for repeat in range(1, options.repeats + 1):
+        for side in sides:
+            if side.failed or (repeat > 2 and side.took > LONG):
+                continue
+            rows, side.took = side.run('time')
+            side.failed = any(q == 'failed' for q, _, _ in rows)
+            results.add(side, repeat, rows)
+            say(side, 'time', rows)
+
+
+def cheapest(scene, name, error, bound, results):
+    """The first of the settings, cheapest first, that keeps the error; None: none does."""
+    tried = []
+    for knobs in plan.KNOBS[name]:
+        side = Side(scene, name, knobs, f'{error} <= {bound:g}')
+        rows, _ = side.run('time')
+        if not any(q == 'failed' for q, _, _ in rows):
+            tried.append((value_of(rows, 'cpu'), side))
+    for cost, side in sorted(tried, key=lambda t: t[0]):
+        rows, _ = side.run('look')
+        failed = any(q == 'failed' for q, _, _ in rows)
+        print(f'{scene:18} {name:20} {side.words():40} tried: cpu {cost:.4g}, {error} {value_of(rows, error):.4g}'
+              f"{', failed' if failed else ''}", flush=True)
+        if not failed and value_of(rows, error) <= bound:
+            return side
+    results.add(Side(scene, name, {}, f'{error} <= {bound:g}'), 0, [('failed', '', 'no setting keeps it')])
+    return None
+
+
+def main():
+    global TOOL
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument('build')
+    p.add_argument('--mode', choices=('short', 'full', 'tiny'), default='short')
+    p.add_argument('--out', default='bench.csv')
+    p.add_argument('--scenes', default='')
+    p.add_argument('--engines', default='')
+    p.add_argument('--repeats', type=int, default=5)
+    p.add_argument('--no-look', action='store_true')
+    p.add_argument('--no-equal', action='store_true')
+    options = p.parse_args()
+    TOOL = os.path.join(options.build, 'bench', 'bench_engine')
+    if not os.access(TOOL, os.X_OK):
+        p.error(f'{TOOL} is not there: build it first')
+    if options.repeats < 1:
+        p.error('at least one repeat')
+    results = Results(options.out, options.build)
+    chosen = 0
+    for scene, names, knobs in {'short': plan.SHORT, 'full': plan.FULL, 'tiny': plan.TINY}[options.mode]:
+        sides = [Side(scene, n, knobs, 'usual') for n in names if wanted(n, options.engines)]
+        if wanted(scene, options.scenes) and sides:
+            measure(sides, options, results)
+            chosen += len(sides)
+    for scene, bounds in plan.EQUAL if options.mode == 'full' and not options.no_equal else ():
+        if wanted(scene, options.scenes):
+            sides = [cheapest(scene, n, error, bound, results) for n, (error, bound) in bounds.items()
+                     if wanted(n, options.engines)]
+            measure([s for s in sides if s], options, results)
+            chosen += len(sides)
+    if not chosen:
+        p.error('nothing has this name; see bench/plan.py')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,119 @@
+#include "scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lab/build.h"
+#include "lab/look.h"
+
+enum { MOST = 1000000 }; // bodies
+
+static bench_scene scene;
+
+// ---- worlds of any number of bodies
+
+static void build_falling(ob_peer_world *w, uint32_t run)
+{
+	ob_build_falling(w, scene.bodies, 100 + run);
+}
+
+static void build_sparse(ob_peer_world *w, uint32_t run)
+{
+	ob_build_sparse(w, scene.bodies, 200 + run);
+}
+
+static void build_balls(ob_peer_world *w, uint32_t run)
+{
+	(void)run;
+	ob_build_balls(w, scene.bodies);
+}
+
+enum { WORST, RESTING_MEAN, RESTING_WORST, GROWTH, CROWD_FIGURES };
+enum { MEMORY_SUM, MEMORY_FRAMES, MEMORY_START, MEMORY_LOWEST }; // resting penetrations (m); energies (J)
+
+static void observe_crowd(ob_trial *t)
+{
+	ob_penetration p;
+	double energy = ob_look_energy(t), *memory = t->memory;
+	ob_measure_penetration(&t->now, &p);
+	ob_look_keep(&t->figure[WORST], 1e3 * p.max_m);
+	if (t->time > t->of->duration - 1) {
+		memory[MEMORY_SUM] += p.mean_m;
+		memory[MEMORY_FRAMES]++;
+		ob_look_keep(&t->figure[RESTING_WORST], 1e3 * p.max_m);
+	}
+	if (!t->frame)
+		memory[MEMORY_START] = memory[MEMORY_LOWEST] = energy;
+	memory[MEMORY_LOWEST] = fmin(memory[MEMORY_LOWEST], energy);
+	ob_look_keep(&t->figure[GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
+}
+
+static void judge_crowd(ob_trial *t)
+{
+	t->figure[RESTING_MEAN] = 1e3 * t->memory[MEMORY_SUM] / fmax(t->memory[MEMORY_FRAMES], 1);
+	if (ob_look_fell_through(t))
+		t->failed = "fell through the ground";
+}
+
+static void observe_balls(ob_trial *t)
+{
+	double energy = ob_look_energy(t);
+	if (!t->frame)
+		t->memory[0] = energy;
+	double error = energy - t->memory[0];
+	if (t->frame)
+		t->figure[1] += (error * error - t->figure[1]) / t->frame; // mean over the frames
+	ob_look_keep(&t->figure[0], fabs(error) / t->memory[0]);
+}
+
+static void judge_balls(ob_trial *t)
+{
+	if (ob_look_fell_through(t))
+		t->failed = "fell through the ground";
+}
+
+// clang-format off
+#define CROWD \
+	.step = 1. / 60, .runs = 1, .figures = CROWD_FIGURES, .observe = observe_crowd, .judge = judge_crowd, \
+	.figure = { { .name = "worst penetration at any moment", .unit = "mm" }, \
+		    { .name = "resting mean penetration", .unit = "mm" }, \
+		    { .name = "resting worst penetration", .unit = "mm" }, \
+		    { .name = "growth of energy", .unit = "1" } }
+// clang-format on
+
+static const bench_scene families[] = {
+	{ .of = { .name = "falling-", .duration = 10, .build = build_falling, CROWD } },
+	{ .of = { .name = "sparse-", .duration = 10, .build = build_sparse, CROWD }, .sleeping = true },
+	{ .of = { .name = "balls-",
+		  .duration = 20,
+		  .step = 1. / 60,
+		  .runs = 1,
+		  .figures = 2,
+		  .figure = { { .name = "error of energy", .unit = "1" },
+			      { .name = "mean squared error of energy", .unit = "J^2" } },
+		  .build = build_balls,
+		  .observe = observe_balls,
+		  .judge = judge_balls } },
+};
+
+const bench_scene *bench_scene_find(const char *name, ob_error *e)
+{
+	const ob_case *c = ob_case_find(name);
+	if (c) {
+		scene = (bench_scene){ .of = *c };
+		return &scene;
+	}
+	for (size_t i = 0; i < sizeof families / sizeof *families; i++) {
+		size_t n = strlen(families[i].of.name);
+		char *end = "";
+		long bodies = strncmp(name, families[i].of.name, n) ? 0 : strtol(name + n, &end, 10);
+		if (bodies > 0 && bodies <= MOST && !*end) {
+			scene = families[i];
+			scene.bodies = (uint32_t)bodies;
+			return &scene;
+		}
+	}
+	ob_fail(e, "no scene \"%s\": a case of the lab, or falling-N, sparse-N, balls-N", name);
+	return NULL;
+}
