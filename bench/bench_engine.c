@@ -1,9 +1,10 @@
 // One run of one engine in one scene, in a process of its own: what bench/run.py measures with.
 //
-//   bench_engine SCENE ENGINE time|look [KEY=VALUE ...]
+//   bench_engine SCENE ENGINE time|look|parts [KEY=VALUE ...]
 //
-// ENGINE: one of the lab's, "ode-hash", or "host" for obsim through its host. KEY: duration, step (s), substeps,
-// iterations, tolerance (m), sleeping, workers, processes; what is not said is the engine's and the scene's own.
+// ENGINE: one of the lab's, "ode-hash", or "host" for obsim through its host, which alone can tell of its parts. KEY:
+// duration, step (s), substeps, iterations, tolerance (m), sleeping, workers, processes; from (s), parts alone; what is
+// not said is the engine's and the scene's own.
 // Exit: 0 done; 1 the engine failed, which the last line says; 2 it was told something that makes no sense.
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +25,7 @@ static bool set(bench_order *o, const char *word)
 		uint32_t *count;
 		bool *flag;
 	} known[] = {
+		{ "from", .number = &o->from },
 		{ "duration", .number = &o->duration },
 		{ "step", .number = &o->settings.step },
 		{ "substeps", .count = &o->settings.substeps },
@@ -63,7 +65,7 @@ static int misused(const char *what, const char *word)
 int main(int argc, char **argv)
 {
 	if (argc < 4) {
-		fprintf(stderr, "usage: bench_engine SCENE ENGINE time|look [KEY=VALUE ...]\n");
+		fprintf(stderr, "usage: bench_engine SCENE ENGINE time|look|parts [KEY=VALUE ...]\n");
 		return 2;
 	}
 	ob_error e = { "" };
@@ -73,16 +75,23 @@ int main(int argc, char **argv)
 	const ob_peer_kind *kind = find(argv[2]);
 	if (!kind)
 		return misused("no engine", argv[2]);
-	bool host = !strcmp(argv[2], "host"), look = !strcmp(argv[3], "look");
-	if ((!look && strcmp(argv[3], "time")) || (host && look))
-		return misused("it is not known how to do", argv[3]);
 	bench_order o = { .scene = scene, .duration = scene->of.duration, .settings = kind->usual, .workers = 1 };
 	o.settings.step = scene->of.step;
 	o.settings.sleeping = scene->sleeping;
 	for (int i = 4; i < argc; i++)
 		if (!set(&o, argv[i]))
 			return misused("not understood:", argv[i]);
-	bool done = host ? bench_time_host(&o, &e) : look ? bench_look(&o, kind, &e) : bench_time(&o, kind, &e);
+	bool host = !strcmp(argv[2], "host"), look = !strcmp(argv[3], "look"), parts = !strcmp(argv[3], "parts"), done;
+	if (!look && !parts && strcmp(argv[3], "time"))
+		return misused("not understood:", argv[3]);
+	if (host ? look : parts)
+		return misused("this engine cannot do", argv[3]);
+	if (look)
+		done = bench_look(&o, kind, &e);
+	else if (parts)
+		done = bench_parts(&o, &e);
+	else
+		done = host ? bench_time_host(&o, &e) : bench_time(&o, kind, &e);
 	if (!done)
 		printf("failed\t\t%s\n", e.text);
 	return done ? 0 : 1;

@@ -11,7 +11,7 @@
 
 typedef struct bench_order {
 	const bench_scene *scene;
-	double duration; // s
+	double from, duration; // s: parts are told of what comes after "from"
 	ob_peer_settings settings;
 	uint32_t workers; // through the host: of the pool
 	bool processes; // through the host: workers are processes
@@ -22,6 +22,8 @@ bool bench_time(const bench_order *o, const ob_peer_kind *kind, ob_error *e);
 bool bench_look(const bench_order *o, const ob_peer_kind *kind, ob_error *e);
 // obsim as a user runs it: a host with a pool of workers, nobody looking on.
 bool bench_time_host(const bench_order *o, ob_error *e);
+// Likewise: the share of each part of the step in the CPU time, and how much of what was done.
+bool bench_parts(const bench_order *o, ob_error *e);
 
 void bench_print(const char *quantity, const char *unit, double value);
 void bench_print_state(uint64_t hash); // of the bits of the state at the end: the same run gives the same

@@ -1,3 +1,4 @@
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "engine.h"
@@ -12,7 +13,18 @@ static ob_object_def *define(const ob_peer_world *w)
 	return def;
 }
 
-static ob_run_settings settings_of(const ob_peer_settings *s, ob_vec3 gravity)
+// The host goes by itself from "from" to the end; the first go, to step 0, lets all objects look around.
+typedef struct watched {
+	ob_peer_world w;
+	ob_scene scene;
+	ob_host *h;
+	double bodies;
+	uint64_t from, steps; // until where nothing counts; in all
+	ob_host_times before, after;
+	ob_counters counted_before, counted_after;
+} watched;
+
+static ob_run_settings settings_of(const ob_peer_settings *s, ob_vec3 gravity, bool timed)
 {
 	return (ob_run_settings){
 		.gravity = gravity,
@@ -21,37 +33,62 @@ static ob_run_settings settings_of(const ob_peer_settings *s, ob_vec3 gravity)
 		.passes = s->iterations,
 		.tolerance = s->tolerance,
 		.sleeping = s->sleeping,
+		.timed = timed,
 	};
 }
 
-// The first go, to step 0, lets all objects look around: it belongs to setting up.
-static bool run(ob_host *h, uint64_t steps, ob_host_times *times, ob_error *e)
+static bool start(watched *r, const bench_order *o, bool timed, ob_error *e)
 {
-	ob_host_times first;
-	ob_host_go(h, 0);
-	if (!ob_host_wait(h, e))
+	bench_build(o, &r->w);
+	r->bodies = bench_bodies(&r->w);
+	r->from = (uint64_t)lround(o->from / o->settings.step);
+	r->steps = (uint64_t)lround(o->duration / o->settings.step);
+	r->scene = (ob_scene){ .title = "bench", .gravity = r->w.gravity, .step = o->settings.step };
+	r->scene.objects = r->w.objects;
+	r->scene.object = define(&r->w);
+	ob_host_config config = { .workers = o->workers, .run = settings_of(&o->settings, r->w.gravity, timed) };
+	config.isolation = o->processes ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD;
+	r->h = r->scene.object ? ob_host_start(&r->scene, &config, e) : NULL;
+	return r->h;
+}
+
+static bool go(watched *r, uint64_t step, ob_host_times *times, ob_counters *counted, ob_error *e)
+{
+	ob_host_go(r->h, step);
+	if (!ob_host_wait(r->h, e))
 		return false;
-	ob_host_get_times(h, &first);
-	ob_host_go(h, steps);
-	if (!ob_host_wait(h, e))
-		return false;
-	ob_host_get_times(h, times);
-	times->cpu_s -= first.cpu_s;
-	times->wall_s -= first.wall_s;
+	ob_host_get_times(r->h, times);
+	ob_universe_count(ob_host_universe(r->h), counted);
 	return true;
 }
 
-static bool print(ob_host *h, const ob_host_times *t, double bodies, double steps, double before, ob_error *e)
+static bool run(watched *r, ob_error *e)
 {
+	return go(r, 0, &r->before, &r->counted_before, e) &&
+	       (!r->from || go(r, r->from, &r->before, &r->counted_before, e)) &&
+	       go(r, r->steps, &r->after, &r->counted_after, e);
+}
+
+static void end(watched *r)
+{
+	ob_host_stop(r->h);
+	free(r->scene.object);
+	ob_build_finish(&r->w);
+}
+
+static bool print(const watched *r, double memory_before, ob_error *e)
+{
+	const ob_host_times *t = &r->after;
 	ob_snapshot now = { 0 };
-	bench_print("bodies", "1", bodies);
+	double steps = (double)r->steps;
+	bench_print("bodies", "1", r->bodies);
 	bench_print("steps", "1", steps);
-	bench_print("cpu", "us/body-step", 1e6 * t->cpu_s / (steps * bodies));
-	bench_print("wall", "us/step", 1e6 * t->wall_s / steps);
+	bench_print("cpu", "us/body-step", 1e6 * (t->cpu_s - r->before.cpu_s) / (steps * r->bodies));
+	bench_print("wall", "us/step", 1e6 * (t->wall_s - r->before.wall_s) / steps);
 	bench_print("median step", "us", 1e6 * t->step_p50_s);
-	bench_print("start-up", "us/body", 1e6 * t->startup_s / bodies);
-	bench_print("memory", "B/body", ((double)t->memory_bytes - before) / bodies);
-	bool taken = ob_snapshot_take(&now, ob_host_universe(h), false, e);
+	bench_print("start-up", "us/body", 1e6 * t->startup_s / r->bodies);
+	bench_print("memory", "B/body", ((double)t->memory_bytes - memory_before) / r->bodies);
+	bool taken = ob_snapshot_take(&now, ob_host_universe(r->h), false, e);
 	if (taken)
 		bench_print_state(ob_measure_hash(&now));
 	ob_snapshot_finish(&now);
@@ -60,19 +97,52 @@ static bool print(ob_host *h, const ob_host_times *t, double bodies, double step
 
 bool bench_time_host(const bench_order *o, ob_error *e)
 {
-	ob_peer_world w;
-	bench_build(o, &w);
-	ob_scene scene = { .title = "bench", .gravity = w.gravity, .step = o->settings.step, .objects = w.objects };
-	scene.object = define(&w);
-	ob_host_config config = { .workers = o->workers, .run = settings_of(&o->settings, w.gravity) };
-	config.isolation = o->processes ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD;
-	double before = bench_memory();
-	ob_host *h = scene.object ? ob_host_start(&scene, &config, e) : NULL;
-	uint64_t steps = (uint64_t)lround(o->duration / o->settings.step);
-	ob_host_times times;
-	bool done = h && run(h, steps, &times, e) && print(h, &times, bench_bodies(&w), (double)steps, before, e);
-	ob_host_stop(h);
-	free(scene.object);
-	ob_build_finish(&w);
+	watched r = { 0 };
+	bench_order all = *o;
+	all.from = 0;
+	double memory = bench_memory();
+	bool done = start(&r, &all, false, e) && run(&r, e) && print(&r, memory, e);
+	end(&r);
+	return done;
+}
+
+static void print_parts(const watched *r)
+{
+	const ob_counters *a = &r->counted_before, *b = &r->counted_after;
+	double all = r->bodies * (double)(r->steps - r->from), sum = 0;
+	for (uint32_t part = 0; part < OB_PARTS; part++) {
+		char name[64];
+		double us = 1e-3 * (double)(b->time_ns[part] - a->time_ns[part]) / all;
+		snprintf(name, sizeof name, "part: %s", ob_part_name(part));
+		bench_print(name, "us/body-step", us);
+		sum += us;
+	}
+	double cpu = 1e6 * (r->after.cpu_s - r->before.cpu_s) / all;
+	bench_print("part: gate and the rest", "us/body-step", cpu - sum);
+	bench_print("cpu, timed", "us/body-step", cpu);
+#define COUNT(what) bench_print("count: " #what, "1/body-step", (double)(b->what - a->what) / all)
+	COUNT(leaps);
+	COUNT(member_steps);
+	COUNT(member_substeps);
+	COUNT(island_steps);
+	COUNT(islands_redone);
+	COUNT(looks);
+	COUNT(swept_looks);
+	COUNT(box_tests);
+	COUNT(rounds);
+	COUNT(pair_exchanges);
+	COUNT(impacts);
+	COUNT(direct_solves);
+	COUNT(gyrations);
+#undef COUNT
+}
+
+bool bench_parts(const bench_order *o, ob_error *e)
+{
+	watched r = { 0 };
+	bool done = start(&r, o, true, e) && run(&r, e);
+	if (done)
+		print_parts(&r);
+	end(&r);
 	return done;
 }

@@ -8,7 +8,7 @@ run.py BUILD [OPTION ...]
   --out FILE               results, a line for each quantity (bench.csv)
   --scenes GLOB,...        only these, as "falling-*"
   --engines GLOB,...       only these, as "obsim*,bullet"
-  --repeats N              runs of each (5; of what takes longer than 20 s: 2)
+  --repeats N              runs of each (5; of what takes longer than 6 s: 3, than 20 s: 2)
   --no-look                times alone
   --no-equal               full: no search for settings of equal error
 
@@ -24,13 +24,14 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 
 import plan
 
 COLUMNS = ['date', 'commit', 'machine', 'scene', 'duration', 'engine', 'setting', 'knobs', 'repeat', 'quantity', 'unit',
            'value']
 LIMIT = 600  # s, of a run
-LONG = 20  # s, from which two repeats have to do
+LONG, VERY_LONG = 6, 20  # s, from which three repeats have to do, and two
 
 
 def machine():
@@ -51,10 +52,7 @@ class Side:
 
     def __init__(self, scene, name, knobs, setting):
         self.scene, self.name, self.knobs, self.setting = scene, name, knobs, setting
-        self.failed = False
-
-    def key(self):
-        return (self.scene, self.name, tuple(sorted(self.knobs.items())))
+        self.failed, self.took = False, 0.
 
     def words(self):
         return ' '.join(f'{k}={v:g}' for k, v in sorted(self.knobs.items()))
@@ -119,7 +117,7 @@ def measure(sides, options, results):
         say(side, 'look', rows)
     for repeat in range(1, options.repeats + 1):
         for side in sides:
-            if side.failed or (repeat > 2 and side.took > LONG):
+            if side.failed or (repeat > 2 and side.took > VERY_LONG) or (repeat > 3 and side.took > LONG):
                 continue
             rows, side.took = side.run('time')
             side.failed = any(q == 'failed' for q, _, _ in rows)
@@ -127,23 +125,70 @@ def measure(sides, options, results):
             say(side, 'time', rows)
 
 
-def cheapest(scene, name, error, bound, results):
-    """The first of the settings, cheapest first, that keeps the error; None: none does."""
+def keeps(rows, bounds):
+    return not any(q == 'failed' for q, _, _ in rows) and all(value_of(rows, q) <= most for q, most in bounds.items())
+
+
+def cheapest(scene, seconds, name, bounds, results):
+    """The first of the settings, cheapest first, that keeps all errors; None: none does."""
+    setting = ', '.join(f'{error} <= {most:g}' for error, most in bounds.items())
     tried = []
     for knobs in plan.KNOBS[name]:
-        side = Side(scene, name, knobs, f'{error} <= {bound:g}')
-        rows, _ = side.run('time')
+        rows, _ = Side(scene, name, {**knobs, 'duration': seconds}, setting).run('time')
         if not any(q == 'failed' for q, _, _ in rows):
-            tried.append((value_of(rows, 'cpu'), side))
-    for cost, side in sorted(tried, key=lambda t: t[0]):
+            tried.append((value_of(rows, 'cpu'), Side(scene, name, knobs, setting)))
+    for _, side in sorted(tried, key=lambda t: t[0]):
         rows, _ = side.run('look')
-        failed = any(q == 'failed' for q, _, _ in rows)
-        print(f'{scene:18} {name:20} {side.words():40} tried: cpu {cost:.4g}, {error} {value_of(rows, error):.4g}'
-              f"{', failed' if failed else ''}", flush=True)
-        if not failed and value_of(rows, error) <= bound:
+        found = keeps(rows, bounds)
+        print(f"{scene:18} {name:20} {side.words():40} {'keeps' if found else 'does not keep'} {setting}", flush=True)
+        if found:
             return side
-    results.add(Side(scene, name, {}, f'{error} <= {bound:g}'), 0, [('failed', '', 'no setting keeps it')])
+    results.add(Side(scene, name, {}, setting), 0, [('failed', '', 'no setting keeps it')])
     return None
+
+
+def equal(options, results):
+    """How many sides took part."""
+    count = 0
+    for scene, seconds, sides in plan.EQUAL:
+        if wanted(scene, options.scenes):
+            found = [cheapest(scene, seconds, name, bounds, results) for name, bounds in sides.items()
+                     if wanted(name, options.engines)]
+            measure([s for s in found if s], options, results)
+            count += len(found)
+    return count
+
+
+def profile(options, results):
+    """obsim's parts and functions, and what its pieces cost by themselves."""
+    for scene, begin, end, what in plan.PARTS:
+        if wanted(scene, options.scenes):
+            side = Side(scene, 'obsim, 1 thread', {'from': begin, 'duration': end}, what)
+            results.add(side, 1, side.run('parts')[0])
+            print(f'{scene:18} parts, {what}', flush=True)
+    for scene, seconds in plan.FUNCTIONS:
+        if wanted(scene, options.scenes):
+            side = Side(scene, 'obsim', {'duration': seconds}, 'functions')
+            results.add(side, 1, functions(side))
+            print(f'{scene:18} functions', flush=True)
+    done = subprocess.run([os.path.join(options.build, 'bench', 'bench_step')], capture_output=True, text=True, check=True)
+    results.add(Side('', 'obsim', {}, 'pieces'), 1, [line.split('\t') for line in done.stdout.splitlines()])
+
+
+def functions(side):
+    """Shares of CPU time as perf samples them; none where there is no perf."""
+    with tempfile.TemporaryDirectory() as folder:
+        data = os.path.join(folder, 'perf.data')
+        words = [TOOL, side.scene, side.name, 'time', side.words()]
+        try:
+            subprocess.run(['perf', 'record', '-q', '-e', 'cpu-clock', '-F', '1000', '-o', data, '--', *words],
+                           capture_output=True, check=True)
+            text = subprocess.run(['perf', 'report', '-i', data, '--stdio', '-q', '--no-children', '-F', 'overhead,symbol'],
+                                  capture_output=True, text=True, check=True).stdout
+        except (OSError, subprocess.CalledProcessError):
+            return []
+    found = re.findall(r'^\s*([\d.]+)%\s+\[\S\]\s+(\S+)', text, flags=re.M)
+    return [(f'function: {name}', '%', share) for share, name in found[:15]]
 
 
 def main():
@@ -170,12 +215,9 @@ def main():
         if wanted(scene, options.scenes) and sides:
             measure(sides, options, results)
             chosen += len(sides)
-    for scene, bounds in plan.EQUAL if options.mode == 'full' and not options.no_equal else ():
-        if wanted(scene, options.scenes):
-            sides = [cheapest(scene, n, error, bound, results) for n, (error, bound) in bounds.items()
-                     if wanted(n, options.engines)]
-            measure([s for s in sides if s], options, results)
-            chosen += len(sides)
+    if options.mode == 'full':
+        chosen += 0 if options.no_equal else equal(options, results)
+        profile(options, results)
     if not chosen:
         p.error('nothing has this name; see bench/plan.py')
 

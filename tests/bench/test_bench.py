@@ -1,5 +1,5 @@
 """test_bench.py BENCH BUILD: a tiny run writes the file that it should; compare.py finds a change that was planted, takes
-noise for noise, and says in one line what is wrong with what it cannot read.
+noise for noise, and says in one line what is wrong with what it cannot read; performance.py fills a page.
 """
 import csv
 import os
@@ -48,6 +48,23 @@ def test_run(folder):
     done = call('run.py', BUILD, '--mode', 'tiny', '--out', path, '--scenes', 'fall*', '--engines', 'obsim', '--repeats', '1')
     assert done.returncode == 0 and {r['scene'] for r in rows_of(path)} == {'falling-8'}
     assert call('run.py', folder).returncode == 2
+
+
+def test_document(folder):
+    path, results = os.path.join(folder, 'page.md'), os.path.join(folder, 'tiny.csv')
+    text = 'before\n<!-- performance: usual -->\nold\n<!-- end -->\nafter <!-- performance: promises -->\n<!-- end -->\n'
+    with open(path, 'w', encoding='utf-8') as f:
+        f.write(text)
+    done = call('run.py', BUILD, '--mode', 'tiny', '--repeats', '1', '--out', results)
+    assert done.returncode == 0, done.stderr
+    for _ in range(2):  # written twice, it is the same
+        done = call('performance.py', results, path)
+        assert done.returncode == 0, done.stderr
+        with open(path, encoding='utf-8') as f:
+            page = f.read()
+    assert page.startswith('before') and 'old' not in page and page.count('<!-- end -->') == 2, page
+    assert page.count('| stack-10, 0.2 s | obsim |') == 1 and 'sparse 10,000' in page, page
+    assert call('performance.py').returncode == 1
 
 
 def write(path, seed, changes=(), failing=False):
@@ -120,5 +137,5 @@ def test_p(_):
 
 
 with tempfile.TemporaryDirectory() as place:
-    for test in (test_run, test_compare, test_bad_input, test_p):
+    for test in (test_run, test_document, test_compare, test_bad_input, test_p):
         test(place)
