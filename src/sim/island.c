@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "sim/exchange.h"
+#include "sim/fetch.h"
 #include "sim/ghost.h"
 #include "sim/leap.h"
 #include "sim/members.h"
@@ -88,6 +89,7 @@ static bool solve(ob_sim *s, const ob_island *is)
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
+	ob_fetch_island(s, i + 1);
 	if (is->members == 1 && is->pairs == 0) {
 		ob_part_enter(s, OB_PART_LEAP);
 		s->counters.leaps++;

@@ -1,0 +1,33 @@
+#include "sim/fetch.h"
+
+enum { MOST = 12, LINE = 64 }; // members and pairs of an island; bytes of a cache line
+
+static inline void fetch(const void *from, size_t bytes)
+{
+	for (size_t i = 0; i < bytes; i += LINE)
+		__builtin_prefetch((const char *)from + i);
+}
+
+void ob_fetch_island(ob_sim *s, uint32_t i)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	if (i >= ex->count->islands)
+		return;
+	const ob_island *is = &ex->island[i];
+	for (uint32_t k = 0; k < is->members && k < MOST; k++) {
+		uint32_t id = ex->member[is->first_member + k];
+		fetch(ob_newest_motion(s->u, id), sizeof(ob_motion));
+		fetch(ob_passport_of(s->u, id), sizeof(ob_passport));
+	}
+	// The version that was written in the last step, if the pair was solved then.
+	const uint64_t step = ob_step_count(s->u);
+	for (uint32_t k = 0; k < is->pairs && k < MOST; k++) {
+		const ob_pair_key *key = &ex->pair[ex->island_pair[is->first_pair + k]];
+		const ob_pair_record *r = &ex->record[key->record];
+		if (!key->active)
+			continue;
+		fetch(r->stamp, sizeof r->stamp);
+		fetch(&r->version[step & 1], sizeof r->version[0]);
+		fetch(&r->version[~step & 1], sizeof r->version[0]);
+	}
+}
