@@ -246,6 +246,8 @@ void ob_exchange_rounds(ob_sim *s)
 		ob_ghosts_read(s, w->u, round);
 		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep
 		double moved = make_round(s, &pass, &again);
+		if (pass.first)
+			w->stirred = fmax(w->stirred, moved);
 		pass.first = false;
 		if (direct == most_direct || !ob_forest_asked(s, moved))
 			continue;

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "sim/calm.h"
 #include "sim/exchange.h"
 #include "sim/fetch.h"
 #include "sim/ghost.h"
@@ -86,6 +87,19 @@ static bool solve(ob_sim *s, const ob_island *is)
 	return ob_tolerance_accept(s);
 }
 
+// One substep, where that is enough.
+static bool solve_calm(ob_sim *s, const ob_island *is)
+{
+	const uint32_t substeps = s->island.substeps;
+	if (!ob_calm_likely(s, is))
+		return false;
+	s->island.substeps = 1;
+	if (solve(s, is) && ob_calm_proven(s))
+		return true;
+	s->island.substeps = substeps;
+	return false;
+}
+
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
@@ -97,8 +111,9 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 		return;
 	}
 	s->island.substeps = ob_tolerance_start(s, is);
-	while (!solve(s, is))
-		s->counters.islands_redone++;
+	if (!solve_calm(s, is))
+		while (!solve(s, is))
+			s->counters.islands_redone++;
 	ob_part_enter(s, OB_PART_LOAD);
 	s->counters.island_steps++;
 	s->counters.recovered += s->island.recovered;

@@ -85,6 +85,7 @@ typedef struct ob_island_work {
 	double h, t0; // s; h of the stride that is made now: a substep, or a part of one (sim/pace.h)
 	double substep; // s, the whole
 	double last_impact; // s into the stride: the last one's instant
+	double stirred; // m/s: the most that a first round of exchanges has changed in this step
 	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;

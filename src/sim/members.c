@@ -89,7 +89,7 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	w->h = w->substep = run->step_length / w->substeps;
-	w->mass = w->pull = w->recovered = 0;
+	w->mass = w->pull = w->recovered = w->stirred = 0;
 	w->error = w->error_new = 0;
 	w->members = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
