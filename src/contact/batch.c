@@ -106,9 +106,9 @@ void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_b
 	ob_kernel_best()->solve(b, pass, u, v, d, delta);
 }
 
-void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
+bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
 {
-	ob_kernel_best()->project(b, slop, beta, jacobi, d, delta);
+	return ob_kernel_best()->project(b, slop, beta, jacobi, d, delta);
 }
 
 void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity)

@@ -88,7 +88,8 @@ void ob_batch_prepare(ob_batch *b);
 void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
 		    ob_body_row *delta);
 // Pushes penetrations beyond slop (m) apart by the share beta, in the displacements only: velocities never see it.
-void ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
+// false: there were none.
+bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
 // After an impact the predicted impulses are the impact's: takes back what exceeds the cap.
 // cap (m/s per unit of A): per lane, the largest plausible growth of an impulse (N s).
 void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity);

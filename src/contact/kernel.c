@@ -308,7 +308,7 @@ static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_bod
 	}
 }
 
-static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
+static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
 {
 	lanes da[6], db[6], r[7], x[7] = { 0 };
 	lane_mask any = { 0 };
@@ -321,7 +321,7 @@ static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 		r[i] = lanes_select(r[i] < 0, r[i] * beta, r[i]);
 	}
 	if (!lanes_bits(any))
-		return;
+		return false;
 	for (int s = 0; s < 4; s++)
 		for (int i = 0; i < points; i++) {
 			lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), change = next - x[i];
@@ -330,6 +330,7 @@ static void project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 				r[j] += b->a[OB_SYM(i, j)] * change;
 		}
 	publish(b, OB_KIND_FULL, jacobi, x, da, db, d, delta);
+	return true;
 }
 
 static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity)

@@ -2,8 +2,8 @@
 
 #include "sim/perceive.h"
 
-static const double slow = 2e-3; // m/s, of any point of a member
-static const double stirring = 1e-4; // m/s: a round that changes a velocity by more has found something
+static const double slow = 1e-3; // m/s, of any point of a member
+static const double stirring = 1e-7; // m/s: a round that changes a velocity by more has found something
 
 bool ob_calm_likely(const ob_sim *s, const ob_island *is)
 {
@@ -24,5 +24,5 @@ bool ob_calm_likely(const ob_sim *s, const ob_island *is)
 
 bool ob_calm_proven(const ob_sim *s)
 {
-	return s->island.stirred <= stirring;
+	return s->island.stirred <= stirring && !s->island.pushed;
 }

@@ -1,7 +1,7 @@
 // An island at rest is made in one substep, and looked through for whether that holds.
 //
 // Substeps resolve what changes within a step. Where nothing does, the impulses of the last step, taken for the whole of
-// this one, leave every contact as it is: the first round of exchanges finds nothing to do, and that is the proof. If it
+// this one, leave every contact as it is: the first round of exchanges finds nothing to do, nothing has to be pushed apart, and that is the proof. If it
 // finds more, the island is solved from the step's start with the run's substeps, as if this had not been tried:
 //
 //   all members slow? ── one substep ── first round changed next to nothing? ──> stands

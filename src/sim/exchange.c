@@ -188,23 +188,26 @@ void ob_exchange_cap(ob_sim *s)
 		ob_batch_cap(&w->batch[i], cap, 2.5 * brought);
 }
 
-static bool worth_while(const ob_island_work *w, const ob_batch *b)
+void ob_exchange_heat(ob_island_work *w, uint32_t row, uint32_t pass)
 {
-	for (int l = 0; l < OB_LANES; l++)
-		if (w->member[b->body_a[l]].hot + 1 >= w->pass || w->member[b->body_b[l]].hot + 1 >= w->pass)
-			return true;
-	return false;
+	ob_member *m = &w->member[row];
+	if (m->hot == pass || m->inv_mass == 0)
+		return;
+	m->hot = pass;
+	for (uint32_t k = 0; k < m->adjacent; k++) {
+		uint32_t lane = w->touch[w->adjacency[m->first_adjacent + k]].lane;
+		if (lane != OB_NO_LANE)
+			w->batch_due[lane / OB_LANES] = pass + 1;
+	}
 }
 
-static bool mark_hot(ob_island_work *w, const ob_batch *b)
+static bool heat_bodies(ob_island_work *w, const ob_batch *b)
 {
-	for (int l = 0; l < OB_LANES; l++)
-		if (b->hot >> l & 1) {
-			if (w->member[b->body_a[l]].inv_mass > 0)
-				w->member[b->body_a[l]].hot = w->pass;
-			if (w->member[b->body_b[l]].inv_mass > 0)
-				w->member[b->body_b[l]].hot = w->pass;
-		}
+	for (unsigned left = b->hot; left; left &= left - 1) {
+		int l = __builtin_ctz(left);
+		ob_exchange_heat(w, b->body_a[l], w->pass);
+		ob_exchange_heat(w, b->body_b[l], w->pass);
+	}
 	return b->hot != 0;
 }
 
@@ -215,14 +218,15 @@ static double make_round(ob_sim *s, const ob_pass *pass, bool *hot)
 	lanes moved = lanes_of(0);
 	*hot = false;
 	for (uint32_t k = 0; k < w->batches; k++) {
-		ob_batch *b = &w->batch[w->batch_order[k]];
-		if (!b->live || (!pass->first && !worth_while(w, b)))
+		const uint32_t i = w->batch_order[k];
+		ob_batch *b = &w->batch[i];
+		if (pass->first ? !b->live : w->batch_due[i] < w->pass)
 			continue;
 		unsigned pairs = (unsigned)__builtin_popcount(b->live);
 		s->counters.pair_exchanges += pairs;
 		s->counters.slick_exchanges += b->kind & OB_KIND_SLICK ? pairs : 0;
 		ob_batch_solve(b, pass, w->u, w->v, w->d, w->delta);
-		*hot |= mark_hot(w, b);
+		*hot |= heat_bodies(w, b);
 		moved = lanes_max(moved, b->moved);
 	}
 	if (pass->jacobi)
@@ -238,6 +242,7 @@ void ob_exchange_rounds(ob_sim *s)
 	ob_pass pass = { w->h, sweeps,      least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
 			 true, is_jacobi(s) };
 	bool again = true;
+	w->forest.fit = OB_FOREST_UNKNOWN;
 	int direct = 0;
 	for (uint32_t round = 0; round < more * run->passes && again; round++) {
 		if (round == run->passes)
@@ -256,7 +261,7 @@ void ob_exchange_rounds(ob_sim *s)
 		s->counters.direct_solves++;
 		again = true;
 		for (uint32_t i = 1; i <= w->members; i++)
-			w->member[i].hot = w->pass;
+			ob_exchange_heat(w, i, w->pass);
 	}
 	w->forest.recent = direct > 0;
 }
@@ -295,7 +300,7 @@ void ob_exchange_project(ob_sim *s)
 	for (uint32_t k = 0; k < w->batches; k++) {
 		ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
-			ob_batch_project(b, least(s, slop, slop_share), share, is_jacobi(s), w->d, w->delta);
+			w->pushed |= ob_batch_project(b, least(s, slop, slop_share), share, is_jacobi(s), w->d, w->delta);
 	}
 	if (is_jacobi(s))
 		add_rows(w, w->d, w->delta);

@@ -18,6 +18,9 @@ double ob_exchange_first_rebound(ob_sim *s);
 void ob_exchange_cap(ob_sim *s);
 // Rounds of exchanges on u until no pair changes a velocity noticeably.
 void ob_exchange_rounds(ob_sim *s);
+// A velocity of the row has changed noticeably in that pass: its pairs are due in it, if their turn is still to come, and
+// in the next.
+void ob_exchange_heat(ob_island_work *w, uint32_t row, uint32_t pass);
 // Pushes penetrations apart in d.
 void ob_exchange_project(ob_sim *s);
 

@@ -34,6 +34,7 @@ typedef struct ob_forest_contact {
 
 // Working state of one island's step; memory grown as needed, never shrunk.
 typedef struct ob_forest {
+	enum { OB_FOREST_UNKNOWN, OB_FOREST_UNFIT, OB_FOREST_FIT } fit; // for the running stride: stands still, has no cycles
 	bool recent; // the last substep was solved directly
 	bool hopeless; // a solve of this step led nowhere
 	uint32_t rows_max, contacts_max, batches_max;

@@ -44,11 +44,13 @@ static bool stands_still(const ob_island_work *w)
 	for (uint32_t i = 0; i < w->touches; i++) {
 		const ob_touch *t = &w->touch[i];
 		double speed2 = 0;
+		if (t->lane == OB_NO_LANE)
+			continue;
 		for (int c = 0; c < 3; c++) {
 			double d = w->v[t->a][c] - w->v[t->b][c];
 			speed2 += d * d;
 		}
-		if (t->lane != OB_NO_LANE && speed2 > calm * calm)
+		if (speed2 > calm * calm)
 			return false;
 	}
 	return true;
@@ -69,8 +71,12 @@ bool ob_forest_asked(ob_sim *s, double left)
 {
 	ob_island_work *w = &s->island;
 	ob_forest *f = &w->forest;
-	if (left <= (f->recent ? after_correction : finest) || f->hopeless ||
-	    ob_universe_settings(s->u)->exchange != OB_EXCHANGE_COLOURED || closes_cycles(w) || !stands_still(w))
+	if (left <= (f->recent ? after_correction : finest) || f->hopeless || f->fit == OB_FOREST_UNFIT ||
+	    ob_universe_settings(s->u)->exchange != OB_EXCHANGE_COLOURED)
+		return false;
+	if (f->fit == OB_FOREST_UNKNOWN)
+		f->fit = closes_cycles(w) || !stands_still(w) ? OB_FOREST_UNFIT : OB_FOREST_FIT;
+	if (f->fit == OB_FOREST_UNFIT)
 		return false;
 	reserve(f, w);
 	return true;

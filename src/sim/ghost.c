@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/exchange.h"
+
 bool ob_ghosts_used(const ob_sim *s)
 {
 	uint32_t exchange = ob_universe_settings(s->u)->exchange;
@@ -54,6 +56,6 @@ void ob_ghosts_read(ob_sim *s, ob_body_row *rows, uint32_t round)
 	for (uint32_t g = w->first_ghost; g < w->rows; g++) {
 		uint32_t of = w->member[g].ghost_of;
 		memcpy(rows[g], seen[of], sizeof *rows);
-		w->member[g].hot = w->member[of].hot;
+		ob_exchange_heat(w, g, w->member[of].hot);
 	}
 }

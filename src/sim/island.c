@@ -137,6 +137,7 @@ void ob_island_work_finish(ob_island_work *w)
 	free(w->batch);
 	free(w->batch_colour);
 	free(w->batch_open);
+	free(w->batch_due);
 	free(w->batch_order);
 	free(w->row_of);
 	free(w->history);

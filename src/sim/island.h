@@ -75,6 +75,7 @@ typedef struct ob_island_work {
 	uint32_t *batch_colour; // [batches]
 	uint32_t *batch_open; // [batches]: next in the stack of its colour
 	uint32_t open[OB_COLOURS][OB_KINDS]; // tops of the stacks of batches with a free lane; UINT32_MAX = none
+	uint32_t *batch_due; // [batches]: last pass in which it is to be solved (ob_exchange_heat)
 	uint32_t *batch_order; // [batches]: sorted by colour
 	bool order_stale, counts_stale, elastic;
 	uint32_t pass; // number of the running pass, ever growing
@@ -86,6 +87,7 @@ typedef struct ob_island_work {
 	double substep; // s, the whole
 	double last_impact; // s into the stride: the last one's instant
 	double stirred; // m/s: the most that a first round of exchanges has changed in this step
+	bool pushed; // penetrations were pushed apart
 	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;

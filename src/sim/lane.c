@@ -23,11 +23,13 @@ static uint32_t add_batch(ob_island_work *w, uint32_t colour, ob_kind kind)
 		free(w->batch);
 		w->batch = grown;
 		w->batch_colour = realloc(w->batch_colour, w->batches_max * sizeof *w->batch_colour);
+		w->batch_due = realloc(w->batch_due, w->batches_max * sizeof *w->batch_due);
 		w->batch_order = realloc(w->batch_order, w->batches_max * sizeof *w->batch_order);
 		w->batch_open = realloc(w->batch_open, w->batches_max * sizeof *w->batch_open);
 	}
 	ob_batch_init(&w->batch[w->batches], kind);
 	w->batch_colour[w->batches] = colour;
+	w->batch_due[w->batches] = 0;
 	w->order_stale = true;
 	if (colour < OB_COLOURS)
 		open_batch(w, w->batches);

@@ -90,6 +90,7 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	w->h = w->substep = run->step_length / w->substeps;
 	w->mass = w->pull = w->recovered = w->stirred = 0;
+	w->pushed = false;
 	w->error = w->error_new = 0;
 	w->members = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
