@@ -56,6 +56,7 @@ typedef struct ob_passport {
 enum { // ob_motion.flags
 	OB_MOTION_FREE = 1 << 0,   // in free flight since the previous publication: the closed form is exact
 	OB_MOTION_ASLEEP = 1 << 1, // at rest by consent of its island
+	OB_MOTION_CALM = 1 << 2,   // its contacts hold it, and have found nothing to change in the last step
 };
 
 // How an object moves from t0 on, unless touched. 200 bytes: the payload of one slot version.

@@ -300,7 +300,8 @@ void ob_exchange_project(ob_sim *s)
 	for (uint32_t k = 0; k < w->batches; k++) {
 		ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
-			w->pushed |= ob_batch_project(b, least(s, slop, slop_share), share, is_jacobi(s), w->d, w->delta);
+			w->pushed |=
+				ob_batch_project(b, least(s, slop, slop_share), share, is_jacobi(s), w->d, w->delta);
 	}
 	if (is_jacobi(s))
 		add_rows(w, w->d, w->delta);

@@ -94,7 +94,7 @@ static bool solve_calm(ob_sim *s, const ob_island *is)
 	if (!ob_calm_likely(s, is))
 		return false;
 	s->island.substeps = 1;
-	if (solve(s, is) && ob_calm_proven(s))
+	if (solve(s, is) && ob_calm_proven(&s->island))
 		return true;
 	s->island.substeps = substeps;
 	return false;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/calm.h"
 #include "sim/leap.h"
 #include "sim/perceive.h"
 #include "sim/pull.h"
@@ -324,6 +325,7 @@ void ob_members_publish(ob_sim *s, bool asleep)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	uint64_t step = ob_step_count(s->u) + 1;
+	const bool calm = ob_calm_proven(w);
 	for (uint32_t i = 1; i <= w->members; i++) {
 		ob_member *m = &w->member[i];
 		ob_motion mo = { .t0 = step * run->step_length,
@@ -337,7 +339,8 @@ void ob_members_publish(ob_sim *s, bool asleep)
 				 .quiet = m->quiet,
 				 .island = w->member[1].id,
 				 .substeps = m->substeps,
-				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) };
+				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) |
+					  (calm && ob_calm_member(w, i) ? OB_MOTION_CALM : 0) };
 		if (!m->contacts)
 			mo.a = m->pull;
 		if (m->moved_freely &&
