@@ -5,40 +5,46 @@
 
 #include "sim/index.h"
 #include "sim/islands.h"
+#include "sim/meeting.h"
+#include "sim/outcome.h"
 #include "sim/pairs.h"
 #include "sim/perceive.h"
 #include "sim/sim.h"
-
-// What a MEMBERS phase belongs to.
-enum { STAGE_START, STAGE_FINISH };
 
 static bool own_worker_each(const ob_universe *u)
 {
 	return ob_universe_settings(u)->one_per_object;
 }
 
-// The perceivers, and with one worker per object those whose island was solved by another.
-static void open_members(ob_universe *u, uint32_t stage)
+// Those that have asked look around.
+static void open_perceivers(ob_universe *u, uint32_t stage)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
-	uint32_t count, n = 0, *who = ex->scratch;
+	uint32_t count;
 	const uint32_t *list = ob_rebound_list(u, &count);
 	for (uint32_t i = 0; i < count; i++)
 		ob_index_put(u, list[i]);
 	ex->count->stage = stage;
-	if (!own_worker_each(u)) {
-		ob_claim_reset(u, count);
+	ob_claim_reset(u, count);
+	if (own_worker_each(u))
+		ob_gate_open(u, OB_PHASE_MEMBERS, list, count);
+	else
 		ob_gate_open(u, OB_PHASE_MEMBERS, NULL, 0);
-		return;
-	}
-	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
-		uint32_t island = ex->result_island[id];
-		bool adopts = stage == STAGE_FINISH && island != UINT32_MAX &&
-			      ex->member[ex->island[island].first_member] != id;
-		if (adopts || ob_perceive_asked(u, id))
-			who[n++] = id;
-	}
+}
+
+// With one worker per object: those whose island was solved by another. false: none.
+static bool open_adopters(ob_universe *u)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t n = 0, *who = ex->scratch;
+	for (uint32_t i = 0; i < ex->count->islands; i++)
+		for (uint32_t k = 1; k < ex->island[i].members; k++)
+			who[n++] = ex->member[ex->island[i].first_member + k];
+	if (!own_worker_each(u) || !n)
+		return false;
+	ex->count->stage = OB_STAGE_ADOPT;
 	ob_gate_open(u, OB_PHASE_MEMBERS, who, n);
+	return true;
 }
 
 static void open_islands(ob_universe *u)
@@ -50,7 +56,7 @@ static void open_islands(ob_universe *u)
 		return;
 	}
 	uint32_t n = 0, *who = ex->scratch;
-	for (uint32_t i = 0; i < ex->count->islands; i++)
+	for (uint32_t i = 0; i < ex->chunk[ex->count->chunks]; i++)
 		who[n++] = ex->member[ex->island[i].first_member];
 	ob_gate_open(u, OB_PHASE_ISLANDS, who, n);
 }
@@ -79,18 +85,13 @@ static void complete_step(ob_universe *u)
 // Steps in which nothing is awake are complete as soon as they begin.
 static void begin_step(ob_universe *u)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
-	uint32_t asked;
+	const ob_exchange *ex = ob_universe_exchange(u);
 	if (ob_universe_settings(u)->monolith) {
 		ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
 		return;
 	}
 	for (;;) {
-		ob_rebound_list(u, &asked);
-		if (asked || !ob_islands_plan(u)) {
-			open_members(u, STAGE_START);
-			return;
-		}
+		ob_islands_plan(u);
 		if (ex->count->islands) {
 			open_islands(u);
 			return;
@@ -117,36 +118,63 @@ static void finish_step(ob_universe *u)
 	go_on(u);
 }
 
-// Is there anything to do between the islands' solution and the end of the step?
-static bool members_needed(const ob_universe *u)
+static void after_meetings(ob_sim *s)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
-	uint32_t asked;
-	ob_rebound_list(u, &asked);
-	if (asked || !own_worker_each(u))
-		return asked > 0;
-	for (uint32_t i = 0; i < ex->count->islands; i++)
-		if (ex->island[i].members > 1)
-			return true;
-	return false;
-}
-
-void ob_arrange(ob_universe *u, ob_phase finished)
-{
-	ob_exchange *ex = ob_universe_exchange(u);
-	ob_phase_close(u);
-	if (finished == OB_PHASE_ISLANDS) {
-		if (!ob_universe_settings(u)->monolith && members_needed(u))
-			open_members(u, STAGE_FINISH);
-		else
-			finish_step(u);
+	ob_universe *u = s->u;
+	if (ob_universe_exchange(u)->count->stage == OB_STAGE_START) {
+		go_on(u);
 		return;
 	}
-	ob_pairs_merge(u);
-	if (ex->count->stage == STAGE_FINISH)
+	bool met = ob_meetings_any(u);
+	s->counters.reunions += met;
+	*ob_worker_counters(u, s->worker) = s->counters; // before anybody may look
+	if (met) {
+		ob_islands_unite(u);
+		open_islands(u);
+		return;
+	}
+	ob_outcomes_commit(s);
+	if (!open_adopters(u))
 		finish_step(u);
-	else
-		go_on(u);
+}
+
+static void open_meetings(ob_sim *s, uint32_t stage)
+{
+	enum { MANY = 4 * OB_MEETINGS_HANDFUL }; // pairs: for fewer the gate would cost more
+	ob_universe *u = s->u;
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t pairs = ex->count->pairs;
+	ex->count->stage = stage;
+	if (pairs >= MANY && ob_universe_workers(u) > 1 && !own_worker_each(u)) {
+		ob_claim_reset(u, (pairs + OB_MEETINGS_HANDFUL - 1) / OB_MEETINGS_HANDFUL);
+		ob_gate_open(u, OB_PHASE_MEETINGS, NULL, 0);
+		return;
+	}
+	ob_meetings_check(s, 0, pairs, stage == OB_STAGE_SOLVED);
+	after_meetings(s);
+}
+
+void ob_arrange(ob_sim *s, ob_phase finished)
+{
+	ob_universe *u = s->u;
+	uint32_t asked, stage = ob_universe_exchange(u)->count->stage;
+	ob_phase_close(u);
+	if (finished == OB_PHASE_ISLANDS) {
+		ob_rebound_list(u, &asked);
+		if (ob_universe_settings(u)->monolith)
+			finish_step(u);
+		else if (asked)
+			open_perceivers(u, OB_STAGE_SOLVED);
+		else
+			open_meetings(s, OB_STAGE_SOLVED);
+	} else if (finished == OB_PHASE_MEETINGS) {
+		after_meetings(s);
+	} else if (stage == OB_STAGE_ADOPT) {
+		finish_step(u);
+	} else {
+		ob_pairs_merge(u);
+		open_meetings(s, stage);
+	}
 }
 
 void ob_sim_resume(ob_universe *u)
@@ -157,7 +185,7 @@ void ob_sim_resume(ob_universe *u)
 	if (ob_universe_settings(u)->monolith)
 		ob_rebound_reset(u); // one world finds its own neighbours
 	else if (asked) {
-		open_members(u, STAGE_START);
+		open_perceivers(u, OB_STAGE_START);
 		return;
 	}
 	go_on(u);

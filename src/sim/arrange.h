@@ -1,15 +1,20 @@
 // What the last worker to arrive does before the gate opens again.
 //
-//   a step:      ISLANDS ──> [MEMBERS: adopt, perceive] ──> step complete ──> [pause] ──> plan ──> ISLANDS ...
-//                                                                              ^            │
-//   at start, after requests, or when boxes are too small:      MEMBERS: perceive <─────────┘
+//   ┌─> plan ──> ISLANDS ──> [MEMBERS: perceive] ──> MEETINGS ──> commit ──> [MEMBERS: adopt] ──> step complete ─┐
+//   │              ^                                    │                                                        │
+//   │              └──── unite islands that met <───────┘                                              [pause] <─┘
+//   │                                                                                                     │
+//   └──────────────── MEETINGS: forecast alone <──── [MEMBERS: perceive, at start and after requests] <───┘
 //
-// MEMBERS is skipped where nobody has anything to adopt or to look for. All functions work on the universe alone.
+// Phases in which nobody has anything to do are skipped, and a few pairs are checked by the arranger itself.
 #ifndef OB_SIM_ARRANGE_H
 #define OB_SIM_ARRANGE_H
 
-#include "table/table.h"
+#include "sim/worker.h"
 
-void ob_arrange(ob_universe *u, ob_phase finished);
+// What a MEMBERS or MEETINGS phase belongs to.
+enum { OB_STAGE_START, OB_STAGE_SOLVED, OB_STAGE_ADOPT };
+
+void ob_arrange(ob_sim *s, ob_phase finished);
 
 #endif

@@ -5,29 +5,16 @@
 
 #include <ob/motion.h>
 
-#include "sim/pairs.h"
-#include "sim/perceive.h"
-
 enum { NONE = UINT32_MAX };
 
-static const double enough = 1e-4; // m: reaches that differ by less are not handed on
-
 // The arranger's view while it plans: a union-find forest of islands, whose roots are the lowest ids of their trees.
-//
-// An object gets as far in the step as it is fast, its reach; and what is hit gets as far as what hits it had still to
-// go. So reaches are handed on along pairs, less the distance between the two:
-//
-//   reach .50 ─────.10───── .40 ─────.30───── .10 ─────.20───── what is here is not hit in this step
-//
-// An island is all that may touch each other with these reaches. One fast object draws in what lies in its way, and not
-// the surroundings of its surroundings.
 typedef struct plan {
 	ob_universe *u;
 	ob_exchange *ex;
 	uint32_t ids;
 	uint32_t *parent; // [id]
 	uint32_t *island_of; // [root]
-	float *reach; // [id]: m in the next step, its own or handed on
+	uint32_t *before; // [id]: its island of the plan that is mended; NULL = this is the step's first
 } plan;
 
 static uint32_t root_of(uint32_t *parent, uint32_t i)
@@ -42,92 +29,42 @@ static bool dynamic(const plan *p, uint32_t id)
 	return p->ex->brief[id].state >= OB_BRIEF_AWAKE;
 }
 
+// In no island unless something wakes it. What fell asleep in this very step is not.
 static bool asleep(const plan *p, uint32_t id)
 {
-	return p->ex->brief[id].state == OB_BRIEF_ASLEEP;
+	return p->ex->brief[id].state == OB_BRIEF_ASLEEP && (!p->before || p->before[id] == NONE);
 }
 
-static double reach_of(const plan *p, uint32_t id)
+static bool joins(const plan *p, const ob_pair_key *k)
 {
-	return dynamic(p, id) ? p->reach[id] : 0;
+	if (!dynamic(p, k->a) || !dynamic(p, k->b))
+		return false;
+	if (p->before)
+		return k->met || (k->active && asleep(p, k->a) && asleep(p, k->b));
+	return k->active || k->near;
 }
 
-// Lower bound of the distance (m).
-static double distance(const plan *p, const ob_pair_key *k)
+static void unite(plan *p, uint32_t i, uint32_t j)
 {
-	return k->limit - p->ex->brief[k->a].path - p->ex->brief[k->b].path;
-}
-
-static bool may_touch(const plan *p, const ob_pair_key *k)
-{
-	return k->active || reach_of(p, k->a) + reach_of(p, k->b) >= distance(p, k);
-}
-
-static void unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-	uint32_t low = a < b ? a : b, high = a < b ? b : a;
-	parent[high] = low;
-}
-
-// Paths use up what is known of a distance, also those of objects that fly side by side. Where that would join two
-// that are alone, it is measured anew.
-static void measure_distances(plan *p)
-{
-	for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
-		ob_pair_key *k = &p->ex->pair[i];
-		if (k->active || (asleep(p, k->a) && asleep(p, k->b)) || !may_touch(p, k))
-			continue;
-		double apart = ob_pairs_apart(p->u, k->a, k->b);
-		if (apart > 0)
-			k->limit = fmax(k->limit, p->ex->brief[k->a].path + p->ex->brief[k->b].path + apart);
-	}
-}
-
-static void hand_on(plan *p)
-{
-	for (bool again = true; again;) {
-		again = false;
-		for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
-			const ob_pair_key *k = &p->ex->pair[i];
-			if (!dynamic(p, k->a) || !dynamic(p, k->b))
-				continue;
-			double way = k->active ? 0 : fmax(0, distance(p, k)), least = way + enough;
-			float *a = &p->reach[k->a], *b = &p->reach[k->b];
-			if (*a > *b + least)
-				*b = (float)(*a - way), again = true;
-			else if (*b > *a + least)
-				*a = (float)(*b - way), again = true;
-		}
-	}
+	uint32_t a = root_of(p->parent, i), b = root_of(p->parent, j);
+	if (a < b)
+		p->parent[b] = a;
+	else
+		p->parent[a] = b;
 }
 
 static void grow_islands(plan *p)
 {
 	for (uint32_t id = 0; id < p->ids; id++)
 		p->parent[id] = id;
-	for (uint32_t i = 0; i < p->ex->count->pairs; i++) {
-		const ob_pair_key *k = &p->ex->pair[i];
-		if (!dynamic(p, k->a) || !dynamic(p, k->b) || !may_touch(p, k))
-			continue;
-		uint32_t a = root_of(p->parent, k->a), b = root_of(p->parent, k->b);
-		if (a != b)
-			unite(p->parent, a, b);
+	for (uint32_t i = 0; p->before && i < p->ex->count->islands; i++) {
+		const uint32_t *member = p->ex->member + p->ex->island[i].first_member;
+		for (uint32_t k = 1; k < p->ex->island[i].members; k++)
+			unite(p, member[0], member[k]);
 	}
-}
-
-// Members that may be hit by something faster than what their boxes were claimed for claim larger ones.
-static bool boxes_suffice(plan *p)
-{
-	bool suffice = true;
-	for (uint32_t id = 0; id < p->ids; id++) {
-		if (!dynamic(p, id) || reach_of(p, id) <= p->ex->brief[id].reach + .02)
-			continue;
-		const ob_motion *m = ob_newest_motion(p->u, id);
-		const ob_passport *pass = ob_passport_of(p->u, id);
-		ob_claim_bounds_wider(p->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach_of(p, id));
-		suffice &= !ob_perceive_asked(p->u, id);
-	}
-	return suffice;
+	for (uint32_t i = 0; i < p->ex->count->pairs; i++)
+		if (joins(p, &p->ex->pair[i]))
+			unite(p, p->ex->pair[i].a, p->ex->pair[i].b);
 }
 
 // Numbers the awake trees by their lowest id and lists their members in ascending order.
@@ -147,7 +84,7 @@ static void list_members(plan *p)
 		uint32_t root = root_of(p->parent, id);
 		if (root == id) {
 			p->island_of[id] = n;
-			ex->island[n++] = (ob_island){ 0, 0, 0, 0 };
+			ex->island[n++] = (ob_island){ .first_member = 0 };
 		}
 		ex->result_island[id] = p->island_of[root];
 		ex->island[p->island_of[root]].members++;
@@ -165,10 +102,44 @@ static void list_members(plan *p)
 	ex->count->islands = n;
 }
 
-static uint32_t island_of_pair(const plan *p, const ob_pair_key *k)
+// An island that stands has the members that it had, and none of them met anything.
+static void mark_solved(plan *p)
 {
-	uint32_t i = dynamic(p, k->a) ? p->ex->result_island[k->a] : p->ex->result_island[k->b];
-	return i != NONE && may_touch(p, k) ? i : NONE;
+	ob_exchange *ex = p->ex;
+	for (uint32_t i = 0; i < ex->count->islands; i++)
+		ex->island[i].solved = p->before != NULL;
+	for (uint32_t i = 0; p->before && i < ex->count->islands; i++) {
+		const uint32_t *member = ex->member + ex->island[i].first_member;
+		for (uint32_t k = 0; k < ex->island[i].members; k++)
+			if (p->before[member[k]] == NONE || p->before[member[k]] != p->before[member[0]])
+				ex->island[i].solved = 0;
+	}
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		const ob_pair_key *k = &ex->pair[i];
+		if (k->met)
+			ex->island[ex->result_island[dynamic(p, k->a) ? k->a : k->b]].solved = 0;
+	}
+}
+
+static bool again(const plan *p, uint32_t island)
+{
+	return p->before && island != NONE && !p->ex->island[island].solved;
+}
+
+// Whose solver looks after a pair: what members of one island may touch, and the fixed ones around them. Of what is
+// solved again nothing is known that was found in the step.
+static uint32_t island_of_pair(const plan *p, ob_pair_key *k)
+{
+	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
+	uint32_t ia = dynamic(p, k->a) ? p->ex->result_island[k->a] : NONE;
+	uint32_t ib = dynamic(p, k->b) ? p->ex->result_island[k->b] : NONE, i = ia != NONE ? ia : ib;
+	if (again(p, ia) || again(p, ib))
+		k->limit = -INFINITY;
+	if (i == NONE || (ia != ib && dynamic(p, k->a) && dynamic(p, k->b)))
+		return NONE;
+	if (p->before && p->ex->island[i].solved)
+		return k->listed ? i : NONE;
+	return k->active || a->reach + b->reach >= k->limit - a->path - b->path ? i : NONE;
 }
 
 static void list_pairs(plan *p)
@@ -177,6 +148,7 @@ static void list_pairs(plan *p)
 	uint32_t total = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		uint32_t island = island_of_pair(p, &ex->pair[i]);
+		ex->pair[i].listed = island != NONE;
 		if (island != NONE)
 			ex->island[island].pairs++;
 	}
@@ -186,9 +158,11 @@ static void list_pairs(plan *p)
 		ex->island[i].pairs = 0;
 	}
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
-		uint32_t island = island_of_pair(p, &ex->pair[i]);
-		if (island != NONE)
-			ex->island_pair[ex->island[island].first_pair + ex->island[island].pairs++] = i;
+		const ob_pair_key *k = &ex->pair[i];
+		if (!k->listed)
+			continue;
+		ob_island *is = &ex->island[ex->result_island[dynamic(p, k->a) ? k->a : k->b]];
+		ex->island_pair[is->first_pair + is->pairs++] = i;
 	}
 }
 
@@ -197,10 +171,11 @@ static uint32_t work_of(const ob_island *i)
 	return 1 + i->members + 8 * i->pairs;
 }
 
+// What is to be solved comes first.
 static int by_work(const void *x, const void *y)
 {
 	const ob_island *a = x, *b = y;
-	uint32_t wa = work_of(a), wb = work_of(b);
+	uint32_t wa = a->solved ? 0 : work_of(a), wb = b->solved ? 0 : work_of(b);
 	if (wa != wb)
 		return wa < wb ? 1 : -1;
 	return a->first_member < b->first_member ? -1 : 1;
@@ -211,37 +186,48 @@ static void make_chunks(plan *p)
 {
 	ob_exchange *ex = p->ex;
 	uint64_t total = 0, filled = 0;
-	uint32_t n = ex->count->islands, chunks = 0;
+	uint32_t n = ex->count->islands, unsolved = 0, chunks = 0;
 	qsort(ex->island, n, sizeof *ex->island, by_work);
 	for (uint32_t i = 0; i < n; i++) {
-		total += work_of(&ex->island[i]);
 		for (uint32_t m = 0; m < ex->island[i].members; m++)
 			ex->result_island[ex->member[ex->island[i].first_member + m]] = i;
+		if (ex->island[i].solved)
+			continue;
+		total += work_of(&ex->island[i]);
+		unsolved++;
 	}
 	uint64_t share = total / (16 * (uint64_t)ob_universe_workers(p->u)) + 1;
-	for (uint32_t i = 0; i < n; i++) {
+	for (uint32_t i = 0; i < unsolved; i++) {
 		if (i == 0 || filled >= share)
 			ex->chunk[chunks++] = i, filled = 0;
 		filled += work_of(&ex->island[i]);
 	}
-	ex->chunk[chunks] = n;
+	ex->chunk[chunks] = unsolved;
 	ex->count->chunks = chunks;
 }
 
-bool ob_islands_plan(ob_universe *u)
+static void plan_all(plan *p)
+{
+	grow_islands(p);
+	list_members(p);
+	mark_solved(p);
+	list_pairs(p);
+	make_chunks(p);
+}
+
+void ob_islands_plan(ob_universe *u)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t ids = ob_universe_ids(u);
-	plan p = { u, ex, ids, ex->scratch, ex->scratch + ids, ex->island_reach };
-	for (uint32_t id = 0; id < ids; id++)
-		p.reach[id] = ex->brief[id].reach;
-	measure_distances(&p);
-	hand_on(&p);
-	if (!boxes_suffice(&p))
-		return false;
-	grow_islands(&p);
-	list_members(&p);
-	list_pairs(&p);
-	make_chunks(&p);
-	return true;
+	ex->count->again = 0;
+	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, NULL });
+}
+
+void ob_islands_unite(ob_universe *u)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t ids = ob_universe_ids(u), *before = ex->scratch + 2 * ids;
+	ex->count->again = 1;
+	memcpy(before, ex->result_island, ids * sizeof *before);
+	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, before });
 }

@@ -72,5 +72,5 @@ void ob_leap(ob_sim *s, uint32_t id)
 			.flight = flight };
 	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
 		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-	ob_member_publish(s, id, &m, true);
+	ob_member_publish(s, id, &m);
 }

@@ -1,7 +1,6 @@
 #include "sim/look.h"
 
 #include "base/burden.h"
-#include "contact/swept.h"
 #include "ode/ode_collide.h"
 #include "sim/boxed.h"
 
@@ -55,6 +54,11 @@ static void find(void *with, const ob_placed *a, const ob_placed *b, double marg
 	}
 }
 
+ob_manifold_finder ob_look_finder(ob_sim *s)
+{
+	return (ob_manifold_finder){ find, s };
+}
+
 static ob_placed placed(const ob_island_work *w, uint32_t row)
 {
 	const ob_member *m = &w->member[row];
@@ -101,7 +105,7 @@ static double meet(ob_sim *s, const ob_touch *t, double horizon, double reach, o
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);
 	double near = fmin(swept_gap, .25 * smaller_thickness(w, t));
 	s->counters.swept_looks++;
-	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, (ob_manifold_finder){ find, s }, m);
+	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, ob_look_finder(s), m);
 }
 
 double ob_look_ahead(ob_sim *s, const ob_touch *t, double horizon)

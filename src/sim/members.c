@@ -5,6 +5,7 @@
 
 #include "sim/calm.h"
 #include "sim/leap.h"
+#include "sim/outcome.h"
 #include "sim/perceive.h"
 #include "sim/pull.h"
 
@@ -302,22 +303,17 @@ static bool finite_row(const double *r)
 	return sum == 0;
 }
 
-void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, bool own)
+void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	bool asleep = m->flags & OB_MOTION_ASLEEP;
 	double reach = asleep ? 0 : ob_step_reach(run, pass, m->v, m->w);
-	if (s->span.traced)
-		ob_trace_moves(s->u, s->worker, id, ob_newest_motion(s->u, id)->flags, m->flags);
 	ob_claim_bounds(s->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach);
 	memcpy(m->bounds, ex->bounds[id], sizeof m->bounds);
 	ex->brief[id] = (ob_brief){ m->path, (float)reach, asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE };
-	if (own)
-		ob_publish_motion(s->u, id, m);
-	else
-		ex->result[id] = *m;
+	ob_outcome_stage(s, id, m);
 }
 
 void ob_members_publish(ob_sim *s, bool asleep)
@@ -352,6 +348,6 @@ void ob_members_publish(ob_sim *s, bool asleep)
 			mo.v = mo.w = ob_v3(0, 0, 0);
 		if (!finite_row(w->v[i]) || !isfinite(m->p.x + m->p.y + m->p.z))
 			ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-		ob_member_publish(s, m->id, &mo, i == 1 || !run->one_per_object);
+		ob_member_publish(s, m->id, &mo);
 	}
 }

@@ -20,7 +20,7 @@ void ob_members_advance(ob_sim *s);
 // After the last substep: quiet times, sleep by consent.
 bool ob_members_rest(ob_sim *s);
 void ob_members_publish(ob_sim *s, bool asleep);
-// Claims bounds, writes what the arranger needs to know, publishes m; own = false: leaves it for its owner to adopt.
-void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, bool own);
+// Claims bounds, writes what the arranger needs to know, and stages m.
+void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m);
 
 #endif

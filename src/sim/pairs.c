@@ -5,24 +5,30 @@
 
 #include <ob/motion.h>
 
-static int newest(const ob_pair_record *r)
+#include "sim/outcome.h"
+
+// The newest version of after so many steps, or before; -1: none. What was written in a step that is done again is
+// newer.
+static int before(const ob_pair_record *r, uint64_t steps)
 {
-	return r->stamp[1] > r->stamp[0];
+	int found = -1;
+	for (int k = 0; k < 2; k++)
+		if (r->stamp[k] && r->stamp[k] <= steps + 1 && (found < 0 || r->stamp[k] > r->stamp[found]))
+			found = k;
+	return found;
 }
 
-const ob_pair_state *ob_pair_newest(const ob_pair_record *r)
+const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps)
 {
-	int k = newest(r);
-	return r->stamp[k] ? &r->version[k] : NULL;
+	int k = before(r, steps);
+	return k < 0 ? NULL : &r->version[k];
 }
 
-ob_pair_state *ob_pair_writable(ob_pair_record *r)
+ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 {
-	return &r->version[!newest(r)];
-}
-void ob_pair_written(ob_pair_record *r, uint64_t step)
-{
-	r->stamp[!newest(r)] = step + 1;
+	int k = before(r, steps) == 0;
+	r->stamp[k] = steps + 2;
+	return &r->version[k];
 }
 
 static int by_key(const void *x, const void *y)
@@ -70,7 +76,7 @@ static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t c
 double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b)
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
-	const ob_motion *ma = ob_newest_motion(u, a), *mb = ob_newest_motion(u, b);
+	const ob_motion *ma = ob_outcome_of(u, a), *mb = ob_outcome_of(u, b);
 	bool boxed = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // reaches beyond the sphere round it
 	if (pa->shape == OB_SHAPE_PLANE || pb->shape == OB_SHAPE_PLANE) {
 		const ob_motion *plane = pa->shape == OB_SHAPE_PLANE ? ma : mb, *other = plane == ma ? mb : ma;
@@ -104,7 +110,8 @@ static bool new_pair(ob_universe *u, uint64_t key, ob_pair_key *out)
 		return false;
 	ex->record[record].stamp[0] = ex->record[record].stamp[1] = 0;
 	double apart = ob_pairs_apart(u, a, b);
-	*out = (ob_pair_key){ a, b, record, 0, apart > 0 ? ex->brief[a].path + ex->brief[b].path + apart : -1 };
+	double limit = apart > 0 ? ex->brief[a].path + ex->brief[b].path + apart : -1;
+	*out = (ob_pair_key){ .a = a, .b = b, .record = record, .limit = limit };
 	return true;
 }
 

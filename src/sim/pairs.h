@@ -8,11 +8,10 @@
 void ob_pairs_merge(ob_universe *u);
 // Drops every pair of an object that goes away.
 void ob_pairs_drop(ob_universe *u, uint32_t id);
-// The newest version of a pair's state that belongs to the past; NULL if it was never touched.
-const ob_pair_state *ob_pair_newest(const ob_pair_record *r);
-// The version to write in this step: not the newest, so that a step can be done again.
-ob_pair_state *ob_pair_writable(ob_pair_record *r);
-void ob_pair_written(ob_pair_record *r, uint64_t step);
+// A pair's state when so many steps were complete; NULL if it was never touched until then. A step's solver reads that,
+// and writes the other version, which holds when one more step is complete; so a step can be solved again.
+const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps);
+ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps);
 
 // Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
 double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b);

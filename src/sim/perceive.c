@@ -74,14 +74,6 @@ void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 s
 	claim(u, id, tight, lasting_margin(shape, size, reach));
 }
 
-void ob_claim_bounds_wider(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
-{
-	double tight[6];
-	ob_shape_bounds(shape, size, pose, tight);
-	if (!holds(ob_universe_exchange(u)->bounds[id], tight, reach))
-		claim(u, id, tight, resting_margin(shape, size) + reach);
-}
-
 bool ob_perceive_asked(const ob_universe *u, uint32_t id)
 {
 	return ob_universe_exchange(u)->perceived[id].count == UINT32_MAX;

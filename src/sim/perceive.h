@@ -15,8 +15,6 @@ double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v
 void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach);
 // Same, with the box always made anew.
 void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach);
-// For one step in which something faster may hit the object: a box just large enough, if the present one is not.
-void ob_claim_bounds_wider(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach);
 
 // The object looks around: fills its perceived list. box_tests grows by the boxes that were compared.
 void ob_perceive(ob_universe *u, uint32_t id, uint64_t *box_tests);

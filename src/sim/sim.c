@@ -4,6 +4,8 @@
 
 #include "sim/arrange.h"
 #include "sim/island.h"
+#include "sim/meeting.h"
+#include "sim/outcome.h"
 #include "sim/part.h"
 #include "sim/perceive.h"
 #include "sim/span.h"
@@ -105,15 +107,13 @@ static void work_islands(ob_sim *s)
 	ob_worker_set_objects(s->u, s->worker, objects);
 }
 
-// An object whose island was solved by its leader copies its own state from there; then it looks around if it asked to.
+// An object looks around if it asked to, or it copies its own state from where its island's leader has left it.
 static void work_own_member(ob_sim *s)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
-	uint32_t id = s->worker, island = ex->result_island[id];
-	bool solved = island != UINT32_MAX && ex->member[ex->island[island].first_member] != id;
-	if (solved && ex->result[id].step == ob_step_count(s->u) + 1)
-		ob_publish_motion(s->u, id, &ex->result[id]);
-	if (ob_perceive_asked(s->u, id))
+	uint32_t id = s->worker;
+	if (ob_universe_exchange(s->u)->count->stage == OB_STAGE_ADOPT)
+		ob_outcome_adopt(s, id);
+	else
 		ob_perceive(s->u, id, &s->counters.box_tests);
 }
 
@@ -129,9 +129,20 @@ static void work_members(ob_sim *s)
 		ob_perceive(s->u, list[i], &s->counters.box_tests);
 }
 
+static void work_meetings(ob_sim *s)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	bool solved = ex->count->stage == OB_STAGE_SOLVED;
+	uint32_t i;
+	while (ob_claim_next(s->u, &i)) {
+		uint32_t first = i * OB_MEETINGS_HANDFUL, end = first + OB_MEETINGS_HANDFUL;
+		ob_meetings_check(s, first, end < ex->count->pairs ? end : ex->count->pairs, solved);
+	}
+}
+
 void ob_sim_work(ob_sim *s, ob_phase phase)
 {
-	ob_part_begin(s, phase == OB_PHASE_MEMBERS ? OB_PART_PERCEIVE : OB_PART_LOAD);
+	ob_part_begin(s, phase == OB_PHASE_ISLANDS ? OB_PART_LOAD : OB_PART_PERCEIVE);
 	if (s->monolith) {
 		ob_part_enter(s, OB_PART_SOLVE);
 		ob_monolith_step(s->monolith);
@@ -140,6 +151,8 @@ void ob_sim_work(ob_sim *s, ob_phase phase)
 		work_islands(s);
 	else if (phase == OB_PHASE_MEMBERS)
 		work_members(s);
+	else if (phase == OB_PHASE_MEETINGS)
+		work_meetings(s);
 	ob_phase_worked(s->u, ob_part_end(s));
 	*ob_worker_counters(s->u, s->worker) = s->counters;
 }
@@ -147,7 +160,7 @@ void ob_sim_work(ob_sim *s, ob_phase phase)
 void ob_sim_arrange(ob_sim *s, ob_phase finished)
 {
 	ob_part_begin(s, OB_PART_ARRANGE);
-	ob_arrange(s->u, finished);
+	ob_arrange(s, finished);
 	ob_critical_add(s->u, ob_part_end(s));
 }
 
@@ -158,7 +171,7 @@ void ob_sim_run(ob_sim *s)
 		ob_phase phase = ob_gate_wait(s->u, s->worker);
 		if (phase == OB_PHASE_STOP)
 			break;
-		ob_span_turn(s, phase == OB_PHASE_MEMBERS ? OB_TRACE_MEMBERS : OB_TRACE_SOLVE);
+		ob_span_turn(s, phase == OB_PHASE_ISLANDS ? OB_TRACE_SOLVE : OB_TRACE_MEMBERS);
 		ob_sim_work(s, phase);
 		if (ob_gate_arrive(s->u, s->worker)) {
 			ob_span_turn(s, OB_TRACE_ARRANGE);

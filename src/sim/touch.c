@@ -126,6 +126,16 @@ void ob_touches_prepare(ob_sim *s)
 
 // ---- between the universe and the island
 
+// The pair's state before the step; NULL if it did not touch. What is solved again has overwritten what its key says.
+static const ob_pair_state *touched_before(const ob_sim *s, const ob_pair_key *k)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	if (!k->active && !ex->count->again)
+		return NULL;
+	const ob_pair_state *p = ob_pair_before(&ex->record[k->record], ob_step_count(s->u));
+	return p && p->points ? p : NULL;
+}
+
 static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 {
 	ob_island_work *w = &s->island;
@@ -135,9 +145,9 @@ static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 	t->mu = sqrt(a->friction * b->friction);
 	t->e = fmax(a->restitution, b->restitution);
 	w->elastic |= t->e > 0;
-	if (!k->active)
+	const ob_pair_state *p = touched_before(s, k);
+	if (!p)
 		return;
-	const ob_pair_state *p = ob_pair_newest(&ob_universe_exchange(s->u)->record[k->record]);
 	t->points = p->points;
 	t->creep = p->creep;
 	memcpy(t->arm_a, p->arm_a, sizeof t->arm_a);
@@ -239,16 +249,14 @@ void ob_touches_store(ob_sim *s)
 	for (uint32_t i = 0; i < w->touches; i++) {
 		const ob_touch *t = &w->touch[i], *mirror = i + 1 < w->touches && t[1].mirror ? t + 1 : NULL;
 		ob_pair_key *k = &ex->pair[t->key];
-		bool was_active = k->active;
+		bool was_active = k->active || touched_before(s, k);
 		k->limit = t->limit;
 		k->active = t->lane != OB_NO_LANE;
 		if (k->active || was_active) {
-			ob_pair_record *record = &ex->record[k->record];
-			ob_pair_state *p = ob_pair_writable(record);
+			ob_pair_state *p = ob_pair_write(&ex->record[k->record], ob_step_count(s->u));
 			store_touch(w, t, p);
 			if (mirror)
 				store_impulses(w, mirror, p->impulse_b);
-			ob_pair_written(record, ob_step_count(s->u) + 1);
 		}
 		i += mirror != NULL;
 	}

@@ -18,7 +18,7 @@ static bool newest_version(const ob_universe *u, const ob_pair_key *key, uint64_
 	const ob_pair_record *r = u->exchange.record + key->record;
 	uint64_t stamp[2];
 	copy_words(stamp, r->stamp, sizeof stamp);
-	unsigned newest = step & 1;
+	unsigned newest = stamp[1] == step + 1;
 	if (stamp[newest] != step + 1) {
 		ob_motion a, b;
 		if (!ob_universe_get_motion(u, key->a, &a) || !ob_universe_get_motion(u, key->b, &b))

@@ -25,6 +25,7 @@ static void add(ob_counters *to, const ob_counters *c)
 	to->member_substeps += c->member_substeps;
 	to->island_steps += c->island_steps;
 	to->islands_redone += c->islands_redone;
+	to->reunions += c->reunions;
 	to->islands_over += c->islands_over;
 	for (int i = 0; i < OB_SUBSTEP_CHOICES; i++)
 		to->chosen[i] += c->chosen[i];

@@ -31,6 +31,7 @@ typedef struct ob_counters {
 	uint64_t member_substeps;   // substeps of those, redone ones included
 	uint64_t island_steps;      // islands solved
 	uint64_t islands_redone;    // solutions thrown away because their error was above the tolerance
+	uint64_t reunions;          // times that islands of a step were solved again as one, because they met
 	uint64_t islands_over;      // islands whose error stayed above it with the most substeps
 	uint64_t chosen[OB_SUBSTEP_CHOICES]; // island-steps by log2 of the substeps that they kept
 	uint64_t looks, swept_looks;// collision tests; those that followed a pair through its substep

@@ -4,8 +4,9 @@
 //   phase MEMBERS   each object: reads its own island's result, writes its own slot; reads the index and all
 //                   bounds, writes its own perceived list
 //   (arrange)       one worker alone: index, pairs, islands
-//   phase ISLANDS   one worker per island: reads its members' slots and its pairs (version step & 1), writes its
-//                   members' results and bounds and its pairs (version (step + 1) & 1)
+//   phase ISLANDS   one worker per island: reads its members' slots and its pairs (the version of before the step),
+//                   stages its members' motions, writes their bounds and its pairs (the other version)
+//   phase MEETINGS  one worker per handful of pairs: reads what has been staged, writes those pairs' keys
 #ifndef OB_TABLE_EXCHANGE_H
 #define OB_TABLE_EXCHANGE_H
 
@@ -31,14 +32,17 @@ typedef struct ob_pair_state {
 } ob_pair_state;
 
 typedef struct ob_pair_record {
-	ob_pair_state version[2]; // [step & 1] is the state after that step
-	uint64_t stamp[2];        // step of each version + 1; 0 = never written
+	ob_pair_state version[2];
+	uint64_t stamp[2];        // 1 + steps that are complete when the version holds; 0 = never written
 } ob_pair_record;
 
 typedef struct ob_pair_key {
 	uint32_t a, b;    // ids, a < b
 	uint32_t record;  // index of its ob_pair_record
-	uint32_t active;  // 1 = touching: its record has points
+	uint8_t active;   // 1 = touching: its record has points
+	uint8_t near;     // 1 = apart, and expected to touch in the coming step
+	uint8_t met;      // 1 = touched in this step, which nobody had expected: both islands are solved again, as one
+	uint8_t listed;   // 1 = its island's solver looks after it in this step
 	double limit;     // m: the pair cannot touch before path_a + path_b exceeds this
 } ob_pair_key;
 
@@ -66,6 +70,7 @@ enum { OB_BRIEF_ABSENT, OB_BRIEF_STATIC, OB_BRIEF_AWAKE, OB_BRIEF_ASLEEP };
 typedef struct ob_island {
 	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
 	uint32_t first_pair, pairs;     // range in island_pair[]; sorted by (a, b)
+	uint32_t solved;                // 1 = its solution of this step stands, unless something meets one of its members
 } ob_island;
 
 typedef struct ob_index_cell {
@@ -80,6 +85,7 @@ typedef struct ob_exchange {
 	struct ob_exchange_counts {
 		uint32_t pairs, islands, chunks, records_used, records_free;
 		uint32_t stage;      // what the running phase belongs to: the arranger's
+		uint32_t again;      // 1 = islands are solved that were solved in this step before, in parts
 		uint32_t levels[64]; // objects per size class
 		uint32_t planes;
 		uint32_t failure;    // ob_exchange_failure; 0 = none
@@ -88,7 +94,7 @@ typedef struct ob_exchange {
 	float (*bounds)[6];           // [object]: box that holds it until it asks for another
 	ob_flight *flight;            // [object]: written by its island's solver when a flight begins
 	ob_motion *result;            // [object]: what its island's solver found
-	uint32_t *result_island;      // [object]: index of its island in the last arrangement
+	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none
 	struct ob_perceived { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
 	uint32_t *perceived_id;       // arena
 	ob_index_cell *cell;          // [object]
@@ -102,7 +108,6 @@ typedef struct ob_exchange {
 	uint32_t *island_pair;        // indices into pair[]
 	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
 	uint32_t *scratch;            // [4 * objects]: the arranger's
-	float *island_reach;          // [object]: the arranger's
 } ob_exchange;
 
 typedef enum ob_exchange_failure {

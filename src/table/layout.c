@@ -64,7 +64,6 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_ISLAND_PAIR] = { ELEMENT(island_pair), PER_PAIR, 1, 0 },
 	[OB_AREA_CHUNK] = { ELEMENT(chunk), PER_OBJECT, 1, 1 },
 	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
-	[OB_AREA_ISLAND_REACH] = { ELEMENT(island_reach), PER_OBJECT, 1, 0 },
 	[OB_AREA_TRACE_RING] = { sizeof(ob_trace_ring), PER_RING, 1, 0 },
 	[OB_AREA_TRACE_EVENT] = { sizeof(ob_trace_event), PER_TRACE_EVENT, 1, 0 },
 	[OB_AREA_TRACE_SINCE] = { sizeof(uint64_t), PER_TRACED_OBJECT, 1, 0 },
@@ -102,10 +101,19 @@ static uint32_t ring_events(uint32_t workers)
 	return n;
 }
 
+// All there can be of a few hundred objects; 64 for each of more.
+static uint32_t most_pairs(uint32_t capacity)
+{
+	enum { LEAST = 8192, ALL = 65536 };
+	uint32_t n = capacity < 362 ? capacity * capacity / 2 : ALL;
+	n = n < LEAST ? LEAST : n;
+	return 64 * capacity > n ? 64 * capacity : n;
+}
+
 void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced)
 {
 	h->sizes = (ob_layout_sizes){ .capacity = capacity, .workers = workers };
-	h->sizes.pairs_max = capacity > 128 ? 64 * capacity : 8192;
+	h->sizes.pairs_max = most_pairs(capacity);
 	h->sizes.buckets = power_of_two_from(2 * capacity);
 	h->sizes.perceived_max = 64 * capacity + 65536;
 	h->sizes.trace_events = traced ? ring_events(workers) : 0;
@@ -172,7 +180,6 @@ static void bind_exchange(ob_universe *u)
 		.island_pair = (void *)(base + area[OB_AREA_ISLAND_PAIR]),
 		.chunk = (void *)(base + area[OB_AREA_CHUNK]),
 		.scratch = (void *)(base + area[OB_AREA_SCRATCH]),
-		.island_reach = (void *)(base + area[OB_AREA_ISLAND_REACH]),
 	};
 }
 

@@ -49,7 +49,6 @@ typedef enum ob_area {
 	OB_AREA_ISLAND_PAIR,
 	OB_AREA_CHUNK,
 	OB_AREA_SCRATCH,
-	OB_AREA_ISLAND_REACH,
 	OB_AREA_TRACE_RING, // from here on empty unless traced
 	OB_AREA_TRACE_EVENT, // rings of the workers, then of the host
 	OB_AREA_TRACE_SINCE, // [capacity] ns

@@ -7,6 +7,23 @@ void ob_publish_motion(ob_universe *u, uint32_t id, const ob_motion *m)
 	ob_slot_publish(u->slot + id, m);
 }
 
+void ob_stage_motion(ob_universe *u, uint32_t id, const ob_motion *m)
+{
+	ob_slot *s = u->slot + id;
+	ob_ring_stage(&s->version, s->ring, sizeof *m, sizeof *m, m);
+}
+
+const ob_motion *ob_staged_motion(const ob_universe *u, uint32_t id)
+{
+	const ob_slot *s = u->slot + id;
+	return s->ring + (__atomic_load_n(&s->version, __ATOMIC_ACQUIRE) + 1) % OB_RING_VERSIONS;
+}
+
+void ob_commit_motion(ob_universe *u, uint32_t id)
+{
+	ob_ring_commit(&u->slot[id].version);
+}
+
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id)
 {
 	const ob_slot *s = u->slot + id;

@@ -7,6 +7,7 @@
 //          +-----------+-----------+   sets version = 7: until that instant every reader takes version 6
 //
 //   writer   next = version + 1;  store-release each word into ring[next];  store-release version = next
+//            (the words are staged; that store commits them. Staging again before it overwrites what no reader takes.)
 //   reader   v = version;  load-acquire each word of ring[v];  take it if version is still v, else again
 //
 // Why a copy is never torn: the place of v is written again for version v + 2, which begins after version v + 1
@@ -57,7 +58,8 @@ static inline ob_word *ob_ring_place(const void *even, ptrdiff_t stride, uint64_
 	return (ob_word *)((char *)(uintptr_t)even + (ptrdiff_t)(version % OB_RING_VERSIONS) * stride);
 }
 
-static inline void ob_ring_publish(uint64_t *version, void *even, ptrdiff_t stride, size_t bytes, const void *record)
+static inline void ob_ring_stage(const uint64_t *version, void *even, ptrdiff_t stride, size_t bytes,
+				 const void *record)
 {
 	uint64_t next = __atomic_load_n(version, __ATOMIC_ACQUIRE) + 1;
 	ob_word *to = ob_ring_place(even, stride, next);
@@ -65,7 +67,17 @@ static inline void ob_ring_publish(uint64_t *version, void *even, ptrdiff_t stri
 #pragma GCC unroll 8
 	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
 		__atomic_store_n(to + i, from[i], __ATOMIC_RELEASE);
-	__atomic_store_n(version, next, __ATOMIC_RELEASE);
+}
+
+static inline void ob_ring_commit(uint64_t *version)
+{
+	__atomic_store_n(version, __atomic_load_n(version, __ATOMIC_ACQUIRE) + 1, __ATOMIC_RELEASE);
+}
+
+static inline void ob_ring_publish(uint64_t *version, void *even, ptrdiff_t stride, size_t bytes, const void *record)
+{
+	ob_ring_stage(version, even, stride, bytes, record);
+	ob_ring_commit(version);
 }
 
 // false: never published

@@ -21,6 +21,7 @@ typedef enum ob_phase {
 	OB_PHASE_NONE,
 	OB_PHASE_MEMBERS, // per object: adopt the island's result, perceive neighbours
 	OB_PHASE_ISLANDS, // per island: solve
+	OB_PHASE_MEETINGS,// per handful of pairs: did those of different islands meet?
 	OB_PHASE_PAUSE,   // the universe stands still at a step boundary for the host to look at
 	OB_PHASE_STOP,    // leave
 } ob_phase;
@@ -83,6 +84,11 @@ uint32_t ob_universe_ids(const ob_universe *u);
 
 // Writers. One writer per slot at a time; the gate orders a change of writer.
 void ob_publish_motion(ob_universe *u, uint32_t id, const ob_motion *m);
+// In two parts: what is staged nobody reads as the object's motion, and it may be staged anew, until it is committed.
+// The gate orders a commit by another than the one who staged.
+void ob_stage_motion(ob_universe *u, uint32_t id, const ob_motion *m);
+const ob_motion *ob_staged_motion(const ob_universe *u, uint32_t id);
+void ob_commit_motion(ob_universe *u, uint32_t id);
 // The host's, while the universe is paused or starting.
 void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
 // Direct views for the step, which the gate orders: the newest motion, the passport. Never for outside readers.

@@ -192,20 +192,23 @@ static void test_active_stays(void)
 	free(s);
 }
 
-// The newest version is read, the other written, and becomes the newest when it is stamped.
+// The version before the step is read, the other written, however often the step is done.
 static void test_versions(void)
 {
 	ob_pair_record r;
 	memset(&r, 0, sizeof r);
-	CHECK(ob_pair_newest(&r) == NULL);
-	for (uint64_t step = 0; step < 5; step++) {
-		const ob_pair_state *before = ob_pair_newest(&r);
-		ob_pair_state *next = ob_pair_writable(&r);
-		CHECK(next != before);
-		next->points = (uint32_t)step + 1;
-		CHECK(ob_pair_newest(&r) == before); // a step that is not finished can be done again
-		ob_pair_written(&r, step);
-		CHECK(ob_pair_newest(&r) == next && ob_pair_newest(&r)->points == step + 1);
+	CHECK(ob_pair_before(&r, 0) == NULL);
+	for (uint64_t step = 0; step < 6; step++) {
+		const ob_pair_state *before = ob_pair_before(&r, step);
+		for (uint32_t again = 0; again < 3; again++) {
+			ob_pair_state *next = ob_pair_write(&r, step);
+			CHECK(next != before);
+			next->points = (uint32_t)step + 10 * again;
+			CHECK(ob_pair_before(&r, step) == before);
+		}
+		CHECK(ob_pair_before(&r, step + 1) != before && ob_pair_before(&r, step + 1)->points == step + 20);
+		CHECK(ob_pair_before(&r, step + 7) == ob_pair_before(&r, step + 1)); // kept while nobody writes
+		step += step == 3; // steps may be left out
 	}
 }
 

@@ -160,10 +160,9 @@ static void test_sparse(void)
 		x->record[x->pairs_max - 1].stamp[1] = 1;
 		x->perceived_id[x->perceived_max - 1] = 2;
 		x->scratch[4 * x->objects_max - 1] = 3;
-		x->island_reach[x->objects_max - 1] = 4;
 		x->chunk[x->objects_max] = 5;
 		CHECK(x->record[x->pairs_max - 1].stamp[1] == 1 && x->perceived_id[x->perceived_max - 1] == 2);
-		CHECK(x->scratch[4 * x->objects_max - 1] == 3 && x->island_reach[x->objects_max - 1] == 4);
+		CHECK(x->scratch[4 * x->objects_max - 1] == 3);
 	}
 	ob_universe_destroy(u, true);
 }

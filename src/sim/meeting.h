@@ -1,0 +1,20 @@
+// Which pairs meet that were in different islands, and which will in the coming step.
+//
+// Islands are made of what touches and of what is expected to touch (ob_pair_key.near): a forecast that takes every
+// object to go on as it does. It fails where something is hit and hits something else within the same step. So after
+// the islands are solved each pair that none of them looked after is checked: has the way that both have made used up
+// what was known of their distance, and are they at the step's end, or were they on the way, in touch? Then they have
+// met, and their islands are solved again as one.
+#ifndef OB_SIM_MEETING_H
+#define OB_SIM_MEETING_H
+
+#include "sim/worker.h"
+
+enum { OB_MEETINGS_HANDFUL = 256 }; // pairs that a worker claims at a time
+
+// Pairs first .. end-1: sets near, met and limit. solved: a step has been solved and is not yet committed.
+void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved);
+// Did any pair meet?
+bool ob_meetings_any(const ob_universe *u);
+
+#endif

@@ -1,0 +1,60 @@
+#include "sim/outcome.h"
+
+static uint32_t leader_of(const ob_exchange *ex, uint32_t island)
+{
+	return ex->member[ex->island[island].first_member];
+}
+
+// In the result area, not in its slot?
+static bool left_aside(const ob_universe *u, uint32_t id, uint32_t island)
+{
+	return ob_universe_settings(u)->one_per_object && leader_of(ob_universe_exchange(u), island) != id;
+}
+
+void ob_outcome_stage(ob_sim *s, uint32_t id, const ob_motion *m)
+{
+	ob_exchange *ex = ob_universe_exchange(s->u);
+	if (left_aside(s->u, id, ex->result_island[id]))
+		ex->result[id] = *m;
+	else
+		ob_stage_motion(s->u, id, m);
+}
+
+const ob_motion *ob_outcome_of(const ob_universe *u, uint32_t id)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t island = ex->result_island[id];
+	if (island == UINT32_MAX)
+		return ob_newest_motion(u, id);
+	return left_aside(u, id, island) ? &ex->result[id] : ob_staged_motion(u, id);
+}
+
+static void note_moves(ob_sim *s, uint32_t id, const ob_motion *next)
+{
+	if (s->span.traced)
+		ob_trace_moves(s->u, s->worker, id, ob_newest_motion(s->u, id)->flags, next->flags);
+}
+
+void ob_outcomes_commit(ob_sim *s)
+{
+	ob_exchange *ex = ob_universe_exchange(s->u);
+	bool alone = ob_universe_settings(s->u)->one_per_object;
+	for (uint32_t i = 0; i < ex->count->islands; i++) {
+		const ob_island *is = &ex->island[i];
+		for (uint32_t k = 0; k < is->members; k++) {
+			uint32_t id = ex->member[is->first_member + k];
+			ex->result_island[id] = UINT32_MAX;
+			if (alone && k > 0)
+				continue;
+			note_moves(s, id, ob_staged_motion(s->u, id));
+			ob_commit_motion(s->u, id);
+		}
+	}
+}
+
+void ob_outcome_adopt(ob_sim *s, uint32_t id)
+{
+	const ob_motion *m = &ob_universe_exchange(s->u)->result[id];
+	note_moves(s, id, m);
+	ob_publish_motion(s->u, id, m);
+}
