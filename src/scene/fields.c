@@ -214,6 +214,22 @@ static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_COLOUR] = read_colour,
 };
 
+static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *name, const ob_field *field,
+				   size_t count)
+{
+	ob_spelling spelling = ob_spelling_start(name);
+	for (size_t i = 0; i < count; i++)
+		ob_spelling_offer(&spelling, field[i].name);
+	if (spelling.best)
+		ob_sandbox_fail(L, "%s.%.40s: unknown field, did you mean %s?", where, name, spelling.best);
+	char known[300];
+	size_t n = 0;
+	known[0] = 0;
+	for (size_t i = 0; i < count && n < sizeof known; i++)
+		n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", i ? ", " : "", field[i].name);
+	ob_sandbox_fail(L, "%s.%.40s: unknown field, expected one of %s", where, name, known);
+}
+
 // The key lies at index -2. Positional values cannot be meant: every field has a name.
 static void check_name(lua_State *L, const char *where, const ob_field *field, size_t count)
 {
@@ -224,20 +240,10 @@ static void check_name(lua_State *L, const char *where, const ob_field *field, s
 				key);
 	}
 	const char *name = lua_tostring(L, -2);
-	ob_spelling spelling = ob_spelling_start(name);
-	for (size_t i = 0; i < count; i++) {
+	for (size_t i = 0; i < count; i++)
 		if (strcmp(field[i].name, name) == 0)
 			return;
-		ob_spelling_offer(&spelling, field[i].name);
-	}
-	if (spelling.best)
-		ob_sandbox_fail(L, "%s.%.40s: unknown field, did you mean %s?", where, name, spelling.best);
-	char known[300];
-	size_t n = 0;
-	known[0] = 0;
-	for (size_t i = 0; i < count && n < sizeof known; i++)
-		n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", i ? ", " : "", field[i].name);
-	ob_sandbox_fail(L, "%s.%.40s: unknown field, expected one of %s", where, name, known);
+	fail_unknown(L, where, name, field, count);
 }
 
 void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to)
