@@ -149,6 +149,8 @@ static void list_pairs(plan *p)
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		uint32_t island = island_of_pair(p, &ex->pair[i]);
 		ex->pair[i].listed = island != NONE;
+		if (!p->before && !ex->pair[i].active)
+			ob_pair_let_go(p->u, &ex->pair[i]);
 		if (island != NONE)
 			ex->island[island].pairs++;
 	}

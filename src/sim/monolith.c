@@ -172,11 +172,10 @@ static void write_pair(ob_monolith *m, uint32_t index, size_t from, size_t to)
 	ob_exchange *x = ob_universe_exchange(m->u);
 	uint64_t step = ob_step_count(m->u) + 1;
 	const ob_contact_point *c = &m->point[from];
-	ob_vec3 a = ob_newest_motion(m->u, c->a)->p, b = ob_newest_motion(m->u, c->b)->p;
+	ob_vec3 a = ob_newest_motion(m->u, c->a)->p;
 	ob_pair_state s = { .normal = c->normal, .substep = m->run->step_length / m->run->substeps };
 	for (size_t i = from; i < to && s.points < OB_PAIR_POINTS; i++, s.points++) {
 		s.arm_a[s.points] = ob_sub(m->point[i].position, a);
-		s.arm_b[s.points] = ob_sub(m->point[i].position, b);
 		s.gap[s.points] = -m->depth[i];
 		s.impulse[s.points] = m->point[i].impulse;
 	}

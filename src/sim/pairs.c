@@ -97,62 +97,81 @@ double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b)
 	return fmax(apart, spheres);
 }
 
-static bool new_pair(ob_universe *u, uint64_t key, ob_pair_key *out)
+static ob_pair_key new_pair(const ob_universe *u, uint64_t key)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
-	struct ob_exchange_counts *n = ex->count;
-	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key, record;
-	if (n->records_free)
-		record = ex->record_free[--n->records_free];
-	else if (n->records_used < ex->pairs_max)
-		record = n->records_used++;
-	else
-		return false;
-	ex->record[record].stamp[0] = ex->record[record].stamp[1] = 0;
+	const ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
 	double apart = ob_pairs_apart(u, a, b);
 	double limit = apart > 0 ? ex->brief[a].path + ex->brief[b].path + apart : -1;
-	*out = (ob_pair_key){ .a = a, .b = b, .record = record, .limit = limit };
-	return true;
+	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
 }
 
-static void release(ob_exchange *ex, const ob_pair_key *p)
+static uint64_t key_of_pair(const ob_pair_key *k)
 {
-	ex->record_free[ex->count->records_free++] = p->record;
+	return (uint64_t)k->a << 32 | k->b;
+}
+
+void ob_pair_let_go(ob_universe *u, ob_pair_key *k)
+{
+	if (k->record != OB_NO_RECORD)
+		ob_record_give_back(u, k->record);
+	k->record = OB_NO_RECORD;
+}
+
+// Drops the pairs of what has moved that are no longer perceived, and from the keys those that are there already.
+// Returns how many keys are left.
+static size_t keep_perceived(ob_universe *u, const uint32_t *moved, uint64_t *keys, size_t count)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	size_t k = 0, fresh = 0;
+	uint32_t kept = 0;
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		const ob_pair_key *old = &ex->pair[i];
+		while (k < count && keys[k] < key_of_pair(old))
+			keys[fresh++] = keys[k++];
+		bool still = k < count && keys[k] == key_of_pair(old);
+		k += still;
+		// What has touched in this step is let go when it is over: it may have to be solved again.
+		if (still || old->record != OB_NO_RECORD || !(moved[old->a] | moved[old->b]))
+			ex->pair[kept++] = *old;
+	}
+	while (k < count)
+		keys[fresh++] = keys[k++];
+	ex->count->pairs = kept;
+	return fresh;
+}
+
+// From the back, where there is room.
+static bool insert(ob_universe *u, const uint64_t *keys, size_t fresh)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	size_t old = ex->count->pairs, end = old + fresh;
+	if (end > ex->pairs_max)
+		return false;
+	ex->count->pairs = (uint32_t)end;
+	while (fresh > 0) {
+		if (old > 0 && key_of_pair(&ex->pair[old - 1]) > keys[fresh - 1])
+			ex->pair[--end] = ex->pair[--old];
+		else
+			ex->pair[--end] = new_pair(u, keys[--fresh]);
+	}
+	return true;
 }
 
 void ob_pairs_merge(ob_universe *u)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
-	uint32_t count, *moved = ex->scratch, out = 0;
+	uint32_t count, *moved = ex->scratch;
 	const uint32_t *list = ob_rebound_list(u, &count);
-	size_t fresh, k = 0;
+	size_t fresh;
 	if (!count)
 		return;
 	uint64_t *keys = perceived_keys(u, list, count, &fresh);
 	memset(moved, 0, ob_universe_ids(u) * sizeof *moved);
 	for (uint32_t i = 0; i < count; i++)
 		moved[list[i]] = 1;
-	for (uint32_t i = 0; i <= ex->count->pairs && keys; i++) {
-		const ob_pair_key *old = i < ex->count->pairs ? &ex->pair[i] : NULL;
-		uint64_t old_key = old ? (uint64_t)old->a << 32 | old->b : UINT64_MAX;
-		for (; k < fresh && keys[k] < old_key; k++)
-			if (out >= ex->pairs_max || !new_pair(u, keys[k], &ex->pair_next[out++]))
-				ex->count->failure = OB_EXCHANGE_PAIRS_FULL, out -= out > 0;
-		if (!old)
-			break;
-		bool still = k < fresh && keys[k] == old_key;
-		k += still;
-		// A pair that still carries impulses is let go by its island's solver, not here.
-		if (still || old->active || !(moved[old->a] | moved[old->b]))
-			ex->pair_next[out++] = *old;
-		else
-			release(ex, old);
-	}
-	if (keys)
-		memcpy(ex->pair, ex->pair_next, out * sizeof *ex->pair);
-	else
+	if (!keys || !insert(u, keys, keep_perceived(u, moved, keys, fresh)))
 		ex->count->failure = OB_EXCHANGE_PAIRS_FULL;
-	ex->count->pairs = keys ? out : ex->count->pairs;
 	free(keys);
 	ob_rebound_reset(u);
 	ob_perceived_reset(u);
@@ -164,7 +183,7 @@ void ob_pairs_drop(ob_universe *u, uint32_t id)
 	uint32_t out = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		if (ex->pair[i].a == id || ex->pair[i].b == id)
-			release(ex, &ex->pair[i]);
+			ob_pair_let_go(u, &ex->pair[i]);
 		else
 			ex->pair[out++] = ex->pair[i];
 	}

@@ -1,4 +1,4 @@
-// The pairs of objects whose claimed boxes overlap, sorted by (a, b), each with a record that persists while they do.
+// The pairs of objects whose claimed boxes overlap, sorted by (a, b), each with a record while they touch.
 #ifndef OB_SIM_PAIRS_H
 #define OB_SIM_PAIRS_H
 
@@ -8,6 +8,8 @@
 void ob_pairs_merge(ob_universe *u);
 // Drops every pair of an object that goes away.
 void ob_pairs_drop(ob_universe *u, uint32_t id);
+// Gives its record back, if it has one. The arranger, between steps: what a step has written may be read until its end.
+void ob_pair_let_go(ob_universe *u, ob_pair_key *k);
 // A pair's state when so many steps were complete; NULL if it was never touched until then. A step's solver reads that,
 // and writes the other version, which holds when one more step is complete; so a step can be solved again.
 const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps);

@@ -130,7 +130,7 @@ void ob_touches_prepare(ob_sim *s)
 static const ob_pair_state *touched_before(const ob_sim *s, const ob_pair_key *k)
 {
 	const ob_exchange *ex = ob_universe_exchange(s->u);
-	if (!k->active && !ex->count->again)
+	if (k->record == OB_NO_RECORD || (!k->active && !ex->count->again))
 		return NULL;
 	const ob_pair_state *p = ob_pair_before(&ex->record[k->record], ob_step_count(s->u));
 	return p && p->points ? p : NULL;
@@ -150,12 +150,15 @@ static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 		return;
 	t->points = p->points;
 	t->creep = p->creep;
-	memcpy(t->arm_a, p->arm_a, sizeof t->arm_a);
-	memcpy(t->arm_b, p->arm_b, sizeof t->arm_b);
+	for (uint32_t j = 0; j < p->points; j++) {
+		t->arm_a[j] = p->arm_a[j];
+		t->arm_b[j] = ob_sub(p->arm_a[j], p->between);
+	}
 	ob_lane_take(s, t);
 	ob_lane_fill(w, t, p->normal, p->gap);
 	ob_batch *batch = &w->batch[t->lane / OB_LANES];
-	const double *impulse = t->mirror ? p->impulse_b : p->impulse;
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const double *impulse = t->mirror ? ex->impulse_b[k->record][p - ex->record[k->record].version] : p->impulse;
 	for (int i = 0; i < OB_PAIR_ROWS; i++)
 		batch->impulse[i][t->lane % OB_LANES] = batch->impulse_start[i][t->lane % OB_LANES] =
 			impulse[i] * (w->h / p->substep);
@@ -223,15 +226,15 @@ void ob_touches_load(ob_sim *s, const ob_island *is)
 // The lane's impulses, or zeros if it has none.
 static void store_impulses(const ob_island_work *w, const ob_touch *t, double *impulse)
 {
-	for (int j = 0; j < OB_PAIR_ROWS && t->lane != OB_NO_LANE; j++)
-		impulse[j] = w->batch[t->lane / OB_LANES].impulse[j][t->lane % OB_LANES];
+	for (int j = 0; j < OB_PAIR_ROWS; j++)
+		impulse[j] = t->lane == OB_NO_LANE ? 0 : w->batch[t->lane / OB_LANES].impulse[j][t->lane % OB_LANES];
 }
 
 static void store_touch(const ob_island_work *w, const ob_touch *t, ob_pair_state *p)
 {
-	*p = (ob_pair_state){ .points = t->points, .path_limit = t->limit, .substep = w->h, .creep = (float)t->creep };
+	*p = (ob_pair_state){ .points = t->points, .substep = w->h, .creep = (float)t->creep };
 	memcpy(p->arm_a, t->arm_a, sizeof p->arm_a);
-	memcpy(p->arm_b, t->arm_b, sizeof p->arm_b);
+	p->between = ob_sub(t->arm_a[0], t->arm_b[0]);
 	store_impulses(w, t, p->impulse);
 	if (t->lane == OB_NO_LANE)
 		return;
@@ -253,10 +256,13 @@ void ob_touches_store(ob_sim *s)
 		k->limit = t->limit;
 		k->active = t->lane != OB_NO_LANE;
 		if (k->active || was_active) {
-			ob_pair_state *p = ob_pair_write(&ex->record[k->record], ob_step_count(s->u));
+			if (k->record == OB_NO_RECORD)
+				k->record = ob_record_take(s->u);
+			ob_pair_record *record = &ex->record[k->record];
+			ob_pair_state *p = ob_pair_write(record, ob_step_count(s->u));
 			store_touch(w, t, p);
 			if (mirror)
-				store_impulses(w, mirror, p->impulse_b);
+				store_impulses(w, mirror, ex->impulse_b[k->record][p - record->version]);
 		}
 		i += mirror != NULL;
 	}

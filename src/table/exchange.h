@@ -16,19 +16,18 @@
 
 enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
 
-// What a pair of touching objects remembers from one step to the next. 384 bytes.
+// What a pair of touching objects remembers from one step to the next. 248 bytes.
 // a < b are ids; the normal points from b to a. Lever arms run from the centres to the contact point, world frame,
 // as of the last collision test.
 typedef struct ob_pair_state {
 	ob_vec3 normal;
-	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS]; // m
+	ob_vec3 arm_a[OB_PAIR_POINTS];    // m
+	ob_vec3 between;                  // m, from a's centre to b's: an arm of b is that of a less this
 	double gap[OB_PAIR_POINTS];       // m, separation now; < 0 is penetration
 	double impulse[OB_PAIR_ROWS];     // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
-	double path_limit;                // m: nothing can change before path_a + path_b exceeds this
 	double substep;                   // s, length of the substep of those impulses
 	uint32_t points;                  // 0 .. 4; 0 = not touching
 	float creep;                      // m, what should have stuck has slipped so far in the last second
-	double impulse_b[OB_PAIR_ROWS];   // of member b, where the two do not agree on one impulse (sim/ghost.h)
 } ob_pair_state;
 
 typedef struct ob_pair_record {
@@ -36,9 +35,11 @@ typedef struct ob_pair_record {
 	uint64_t stamp[2];        // 1 + steps that are complete when the version holds; 0 = never written
 } ob_pair_record;
 
+#define OB_NO_RECORD UINT32_MAX
+
 typedef struct ob_pair_key {
 	uint32_t a, b;    // ids, a < b
-	uint32_t record;  // index of its ob_pair_record
+	uint32_t record;  // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
 	uint8_t active;   // 1 = touching: its record has points
 	uint8_t near;     // 1 = apart, and expected to touch in the coming step
 	uint8_t met;      // 1 = touched in this step, which nobody had expected: both islands are solved again, as one
@@ -83,7 +84,8 @@ typedef struct ob_index_cell {
 typedef struct ob_exchange {
 	uint32_t objects_max, pairs_max, buckets, perceived_max;
 	struct ob_exchange_counts {
-		uint32_t pairs, islands, chunks, records_used, records_free;
+		uint32_t pairs, islands, chunks, records_used;
+		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
 		uint32_t stage;      // what the running phase belongs to: the arranger's
 		uint32_t again;      // 1 = islands are solved that were solved in this step before, in parts
 		uint32_t levels[64]; // objects per size class
@@ -100,8 +102,10 @@ typedef struct ob_exchange {
 	ob_index_cell *cell;          // [object]
 	uint32_t *bucket;             // [buckets]: 1 + first object; 0 = empty
 	uint32_t *plane;              // ids of planes: everyone's neighbours
-	ob_pair_key *pair, *pair_next;// sorted by (a, b); pair_next is the arranger's other buffer
-	ob_pair_record *record;
+	ob_pair_key *pair;            // sorted by (a, b)
+	ob_pair_record *record;       // taken when a pair begins to touch
+	double (*impulse_b)[2][OB_PAIR_ROWS]; // [record], of each version: of member b, where the two do not agree on one
+	                              // impulse (sim/ghost.h)
 	uint32_t *record_free;        // stack of free records
 	ob_island *island;
 	uint32_t *member;             // [object]

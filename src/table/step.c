@@ -109,6 +109,25 @@ void ob_rebound_reset(ob_universe *u)
 	__atomic_store_n(&u->control->rebound_count, 0, __ATOMIC_RELEASE);
 }
 
+// In a phase the stack only shrinks, so a number is its taker's alone.
+uint32_t ob_record_take(ob_universe *u)
+{
+	const ob_exchange *ex = &u->exchange;
+	int32_t left = __atomic_fetch_sub(&ex->count->records_free, 1, __ATOMIC_RELAXED);
+	uint32_t record = left > 0 ? ex->record_free[left - 1]
+				   : __atomic_fetch_add(&ex->count->records_used, 1, __ATOMIC_RELAXED);
+	ex->record[record].stamp[0] = ex->record[record].stamp[1] = 0;
+	return record;
+}
+
+void ob_record_give_back(ob_universe *u, uint32_t record)
+{
+	const ob_exchange *ex = &u->exchange;
+	int32_t free = ex->count->records_free > 0 ? ex->count->records_free : 0;
+	ex->record_free[free] = record;
+	ex->count->records_free = free + 1;
+}
+
 uint32_t ob_perceived_reserve(ob_universe *u, uint32_t count)
 {
 	uint64_t at = __atomic_fetch_add(&u->control->perceived_used, count, __ATOMIC_RELAXED);

@@ -129,6 +129,10 @@ void ob_rebound_append(ob_universe *u, uint32_t id);
 // The list so far; reset empties it. Only for the one who arranges.
 const uint32_t *ob_rebound_list(const ob_universe *u, uint32_t *count);
 void ob_rebound_reset(ob_universe *u);
+// A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.
+uint32_t ob_record_take(ob_universe *u);
+// Only for the one who arranges.
+void ob_record_give_back(ob_universe *u, uint32_t record);
 // Reserves count words in the perceived-neighbours arena; returns the offset, or UINT32_MAX when it is full
 uint32_t ob_perceived_reserve(ob_universe *u, uint32_t count);
 void ob_perceived_reset(ob_universe *u);
