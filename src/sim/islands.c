@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <ob/motion.h>
+#include "sim/pairs.h"
 
 enum { NONE = UINT32_MAX };
 
