@@ -57,7 +57,7 @@ typedef struct ob_batch {
 // How a pass treats the pairs, the same for all batches.
 typedef struct ob_pass {
 	double h; // s, substep
-	int sweeps; // inside a block
+	int sweeps; // inside a block, at most
 	double wake; // m/s: a change above it makes both bodies hot
 	double jump; // m/s: an approach or change above it is an impact
 	bool first; // of the substep: sets the bias from the gaps

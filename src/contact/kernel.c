@@ -7,6 +7,7 @@
 static const double surprise = 1e-4; // m/s: a first sweep that changes more was not foretold by the last substep
 static const double settled = 1e-10; // m/s: a solution that changes by less is done
 static const int most_sweeps = 64;
+static const int rough_sweeps = 2; // of what will be solved again in the next round
 
 // The rows of a pair depend on its kind alone. Each kind has a kernel of its own, made by the compiler from the same
 // text: where "kind" is a constant, what is not in use falls away.
@@ -65,16 +66,28 @@ static void prepare(ob_batch *b)
 
 static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes *o)
 {
-	const double *r0 = rows[index[0]], *r1 = rows[index[1]], *r2 = rows[index[2]], *r3 = rows[index[3]];
-	for (int c = 0; c < 6; c++)
-		o[c] = (lanes){ r0[c], r1[c], r2[c], r3[c] };
+	lanes linear[4], rest[4];
+	for (int l = 0; l < OB_LANES; l++) {
+		linear[l] = lanes_load(rows[index[l]]);
+		rest[l] = lanes_load(rows[index[l]] + 4);
+	}
+	lanes_transpose(linear);
+	lanes_transpose(rest);
+	for (int c = 0; c < 4; c++)
+		o[c] = linear[c];
+	o[4] = rest[0];
+	o[5] = rest[1];
 }
 
 static inline void scatter(ob_body_row *rows, const uint32_t *index, const lanes *x)
 {
-	for (int l = 0; l < OB_LANES; l++)
-		for (int c = 0; c < 6; c++)
-			rows[index[l]][c] = x[c][l];
+	lanes linear[4] = { x[0], x[1], x[2], x[3] }, rest[4] = { x[4], x[5], lanes_of(0), lanes_of(0) };
+	lanes_transpose(linear);
+	lanes_transpose(rest);
+	for (int l = 0; l < OB_LANES; l++) {
+		lanes_store(rows[index[l]], linear[l]);
+		lanes_store(rows[index[l]] + 4, rest[l]);
+	}
 }
 
 // Body 0 and static bodies may stand in several lanes of one batch: their rows stay zero, whoever writes last.
@@ -170,10 +183,15 @@ FOR_KIND lanes sweep(const ob_batch *b, ob_kind kind, lane_mask open, lanes *x, 
 		return largest;
 	lanes bound = b->mu * sum;
 	lanes f4 = x[4] - r[4] * b->inv_diag[4], f5 = x[5] - r[5] * b->inv_diag[5], l2 = f4 * f4 + f5 * f5;
-	lanes shrink = lanes_select(l2 > bound * bound, bound / lanes_sqrt(l2 + 1e-300), lanes_of(1));
-	lanes d4 = f4 * shrink - x[4], d5 = f5 * shrink - x[5];
-	x[4] = lanes_select(open, f4 * shrink, x[4]);
-	x[5] = lanes_select(open, f5 * shrink, x[5]);
+	lane_mask slips = l2 > bound * bound;
+	if (lanes_bits(slips)) { // the root and the quotient take as long as all the rest
+		lanes shrink = lanes_select(slips, bound / lanes_sqrt(l2 + 1e-300), lanes_of(1));
+		f4 *= shrink;
+		f5 *= shrink;
+	}
+	lanes d4 = f4 - x[4], d5 = f5 - x[5];
+	x[4] = lanes_select(open, f4, x[4]);
+	x[5] = lanes_select(open, f5, x[5]);
 	largest = lanes_max(largest, lanes_abs(d4) * b->a[OB_SYM(4, 4)]);
 	largest = lanes_max(largest, lanes_abs(d5) * b->a[OB_SYM(5, 5)]);
 	residual_add(b, kind, 4, d4, r);
@@ -187,22 +205,21 @@ FOR_KIND lanes sweep(const ob_batch *b, ob_kind kind, lane_mask open, lanes *x, 
 	return largest;
 }
 
-// A lane is done when a sweep changes next to nothing, or after so many; bodies that touch nothing else have no later
-// round to mend what is left over: theirs are solved to the end.
-FOR_KIND void sweeps(const ob_batch *b, ob_kind kind, int usual, lanes *x, lanes *r)
+// A lane is done when a sweep changes next to nothing, or after so many, or sooner if it changes so much that there
+// will be another round; bodies that touch nothing else have no later round to mend what is left over: theirs are
+// solved to the end.
+FOR_KIND void sweeps(const ob_batch *b, ob_kind kind, const ob_pass *pass, lanes *x, lanes *r)
 {
-	lane_mask alone, open;
-	for (int l = 0; l < OB_LANES; l++) {
-		alone[l] = b->alone >> l & 1 ? -1 : 0;
-		open[l] = b->live >> l & 1 ? -1 : 0;
-	}
+	lane_mask alone = lanes_mask(b->alone), open = lanes_mask(b->live);
 	for (int s = 1; s <= most_sweeps && lanes_bits(open); s++) {
 		lanes moving = sweep(b, kind, open, x, r);
 		if (s == 1)
 			alone &= moving > surprise;
 		open &= moving > settled;
-		if (s >= usual)
+		if (s >= pass->sweeps)
 			open &= alone;
+		else if (s >= rough_sweeps)
+			open &= alone | (moving <= pass->wake);
 	}
 }
 
@@ -256,7 +273,7 @@ FOR_KIND void set_bias(ob_batch *b, ob_kind kind, double h, const lanes *ua, con
 FOR_KIND void solve_kind(ob_batch *b, ob_kind kind, const ob_pass *pass, ob_body_row *u, const ob_body_row *v,
 			 const ob_body_row *d, ob_body_row *delta)
 {
-	lanes va[6], vb[6], r[OB_ROWS], x[OB_ROWS], change[OB_ROWS] = { 0 }, big = lanes_of(0), jump = lanes_of(0);
+	lanes va[6], vb[6], r[OB_ROWS], x[OB_ROWS], change[OB_ROWS], big = lanes_of(0), jump = lanes_of(0);
 	gather_both(b, u, va, vb);
 	if (pass->first) {
 		set_bias(b, kind, pass->h, va, vb, v, d);
@@ -271,8 +288,9 @@ FOR_KIND void solve_kind(ob_batch *b, ob_kind kind, const ob_pass *pass, ob_body
 		r[i] += b->bias[i];
 	}
 	memcpy(x, b->impulse, sizeof x);
-	sweeps(b, kind, pass->sweeps, x, r);
+	sweeps(b, kind, pass, x, r);
 	for (int i = 0; i < OB_ROWS; i++) {
+		change[i] = lanes_of(0);
 		if (!in_use(kind, i))
 			continue;
 		change[i] = x[i] - b->impulse[i];

@@ -49,6 +49,33 @@ static inline lanes lanes_sqrt(lanes a)
 {
 	return (lanes){ __builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3]) };
 }
+// Four numbers that lie side by side, at any address
+static inline lanes lanes_load(const double *from)
+{
+	lanes x;
+	__builtin_memcpy(&x, from, sizeof x);
+	return x;
+}
+static inline void lanes_store(double *to, lanes x)
+{
+	__builtin_memcpy(to, &x, sizeof x);
+}
+// Turns four by four numbers over: x[i][l] becomes x[l][i].
+static inline void lanes_transpose(lanes *x)
+{
+	lanes a = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6), b = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
+	lanes c = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6), d = __builtin_shufflevector(x[2], x[3], 1, 5, 3, 7);
+	x[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+	x[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+	x[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+	x[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+// Lane l is true where bit l is set
+static inline lane_mask lanes_mask(unsigned bits)
+{
+	lane_mask bit = { 1, 2, 4, 8 };
+	return (bit & (int64_t)bits) != 0;
+}
 // Bit l is set where lane l of m is true
 #if defined(__AVX__)
 static inline unsigned lanes_bits(lane_mask m)

@@ -80,7 +80,7 @@ static void reserve_rows(ob_island_work *w, uint32_t rows)
 		w->member = realloc(w->member, w->rows_max * sizeof *w->member);
 		ob_body_row **all[] = { &w->v, &w->dv, &w->u, &w->d, &w->delta, &w->drift };
 		for (int i = 0; i < 6; i++)
-			*all[i] = realloc(*all[i], w->rows_max * sizeof **all[i]);
+			free(*all[i]), *all[i] = aligned_alloc(64, w->rows_max * sizeof **all[i]);
 	}
 }
 
