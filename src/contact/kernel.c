@@ -66,7 +66,7 @@ static void prepare(ob_batch *b)
 
 static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes *o)
 {
-	lanes linear[4], rest[4];
+	lanes linear[OB_LANES], rest[OB_LANES];
 	for (int l = 0; l < OB_LANES; l++) {
 		linear[l] = lanes_load(rows[index[l]]);
 		rest[l] = lanes_load(rows[index[l]] + 4);
@@ -79,11 +79,22 @@ static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes 
 	o[5] = rest[1];
 }
 
-static inline void scatter(ob_body_row *rows, const uint32_t *index, const lanes *x)
+// The rows of four bodies: columns 0..3, and 4..7.
+static inline void turn_back(const lanes *x, lanes *linear, lanes *rest)
 {
-	lanes linear[4] = { x[0], x[1], x[2], x[3] }, rest[4] = { x[4], x[5], lanes_of(0), lanes_of(0) };
+	for (int l = 0; l < OB_LANES; l++)
+		linear[l] = x[l];
+	rest[0] = x[4];
+	rest[1] = x[5];
+	rest[2] = rest[3] = lanes_of(0);
 	lanes_transpose(linear);
 	lanes_transpose(rest);
+}
+
+static inline void scatter(ob_body_row *rows, const uint32_t *index, const lanes *x)
+{
+	lanes linear[OB_LANES], rest[OB_LANES];
+	turn_back(x, linear, rest);
 	for (int l = 0; l < OB_LANES; l++) {
 		lanes_store(rows[index[l]], linear[l]);
 		lanes_store(rows[index[l]] + 4, rest[l]);
@@ -228,10 +239,14 @@ static void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
 {
 	lanes da[6] = { 0 }, db[6] = { 0 };
 	apply(b, OB_KIND_FULL, d, da, db);
+	lanes linear[2][OB_LANES], rest[2][OB_LANES];
+	turn_back(da, linear[0], rest[0]);
+	turn_back(db, linear[1], rest[1]);
 	for (int l = 0; l < OB_LANES; l++)
-		for (int c = 0; c < 6; c++) {
-			rows[b->body_a[l]][c] += da[c][l];
-			rows[b->body_b[l]][c] += db[c][l];
+		for (int side = 0; side < 2; side++) {
+			double *row = rows[side ? b->body_b[l] : b->body_a[l]];
+			lanes_store(row, lanes_load(row) + linear[side][l]);
+			lanes_store(row + 4, lanes_load(row + 4) + rest[side][l]);
 		}
 }
 
