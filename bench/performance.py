@@ -179,6 +179,9 @@ def promises(m):
 def errors_of(m, scene, engine, setting, duration):
     named = {q: v for (s, e, st, d, q), v in m.rows.items() if (s, e, st, d) == (scene, engine, setting, duration)}
     plain = {'cpu', 'wall', 'median step', 'start-up', 'memory', 'bodies', 'steps', 'state', 'failed'}
+    states, ours = (set(m.rows.get((scene, e, setting, duration, 'state'), [])) for e in (engine, 'obsim'))
+    if engine != 'obsim' and states and states == ours:
+        return 'as obsim: it ends in the same bits'
     told = [f'{q} {number(float(v[0]))}' for q, v in named.items() if q not in plain]
     return '; '.join(([f"failed: {m.failed(scene, engine, setting, duration)}"] if 'failed' in named else []) + told)
 
@@ -299,7 +302,12 @@ TABLES = {f.__name__: f for f in (machine, promises, usual, equal, parts, functi
 def main():
     if not 2 <= len(sys.argv) <= 3 or sys.argv[1].startswith('-'):
         sys.exit(__doc__)
-    measured = Measured(sys.argv[1])
+    try:
+        measured = Measured(sys.argv[1])
+    except (OSError, KeyError, TypeError, ValueError, csv.Error) as e:
+        sys.exit(f'{sys.argv[1]}: not a file of bench/run.py: {e}')
+    if not measured.rows:
+        sys.exit(f'{sys.argv[1]}: no results')
     if len(sys.argv) == 2:
         for name, table in TABLES.items():
             print(f'{name}\n\n{table(measured)}')
