@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """compare.py A.csv B.csv: what changed from A to B beyond the noise, of two files that bench/run.py wrote.
 
-A time has changed when the repeats say so (Mann and Whitney 1947, two-sided, at 1 %) and its median differs by more than
-5 %; memory, when its median does by more than 5 %; an error, which is the same in every repeat, when it is more than
-twice as large, or less than half. Times of obsim are held against those of the other engines, which stand for the
-machine: where those have all become slower by a tenth, so may obsim.
+Other engines stand for the machine, for their code is the same: obsim's times are held against the median of what theirs
+have become, and no change counts that is smaller than the largest that one of theirs shows. Of the rest, a time has
+changed when the repeats say so (Mann and Whitney 1947, two-sided, at 1 %) and its median differs by more than 5 %; memory,
+when its median does by more than 5 %; an error, which is the same in every repeat, when it is more than twice as large, or
+less than half.
 
 Exit: 0 nothing became worse, 1 something did, 2 the files cannot be compared.
 """
@@ -16,7 +17,7 @@ import statistics
 import sys
 
 LEVEL, LEAST = .01, .05  # of the test; of the medians
-TIMES = {'cpu', 'wall', 'median step', 'start-up'}
+CONTROL = {'cpu': 'cpu', 'wall': 'wall', 'median step': 'wall', 'start-up': 'wall'}  # times, and what tells of the machine
 NOISELESS = 1e-12  # errors below are round-off
 PLAIN = {'bodies', 'steps', 'state', 'failed'}
 PROFILE = ('part: ', 'count: ', 'function: ', 'cpu, timed')  # taken once, for a look at them
@@ -58,48 +59,50 @@ def mann_whitney(a, b):
     return min(1., 2 * sum(ways(n, m, k) for k in range(least + 1)) / math.comb(n + m, n))
 
 
-def of_machine(a, b):
-    """The factor by which other engines' CPU time has changed; 1 where no other was measured in both."""
-    ratios = [statistics.median(b[k]['cpu']) / statistics.median(a[k]['cpu']) for k in a.keys() & b.keys()
-              if not k[1].startswith('obsim') and a[k].get('cpu') and b[k].get('cpu')]
-    return statistics.median(ratios) if ratios else 1.
+def of_machine(a, b, quantity):
+    """The factor by which other engines' time has changed, and the largest factor by which one of them is off that."""
+    ratios = [statistics.median(b[k][quantity]) / statistics.median(a[k][quantity]) for k in a.keys() & b.keys()
+              if not k[1].startswith('obsim') and a[k].get(quantity) and b[k].get(quantity)]
+    factor = statistics.median(ratios) if ratios else 1.
+    return factor, max((max(r / factor, factor / r) for r in ratios), default=1.)
 
 
-def verdict(quantity, a, b, factor):
+def verdict(quantity, a, b, controls):
     """The ratio of medians, and whether that is a change."""
-    old, new = statistics.median(a), statistics.median(b)
-    if quantity not in TIMES and quantity != 'memory':
-        old, new = abs(old), abs(new)
-        if max(old, new) <= NOISELESS:
-            return 1., False
-        ratio = new / old if old > 0 else math.inf
-        return ratio, not .5 <= ratio <= 2
+    old, new = abs(statistics.median(a)), abs(statistics.median(b))
+    if quantity in CONTROL:
+        factor, noise = controls[CONTROL[quantity]]
+        ratio = new / old / factor if old > 0 else math.inf
+        apart = max(ratio, 1 / ratio) > max(1 + LEAST, noise)
+        return ratio, apart and mann_whitney(a, [v / factor for v in b]) < LEVEL
     ratio = new / old if old > 0 else math.inf
     if quantity == 'memory':
         return ratio, abs(ratio - 1) > LEAST
-    ratio /= factor
-    changed = abs(ratio - 1) > LEAST and mann_whitney(a, [v / factor for v in b]) < LEVEL
-    return ratio, changed
+    if max(old, new) <= NOISELESS:
+        return 1., False
+    return ratio, not .5 <= ratio <= 2
 
 
 def compare(a, b):
     """How many quantities of obsim became worse, and how many were compared."""
-    factor = of_machine(a, b)
-    print(f'machine: other engines take {factor:.3f} times what they took')
+    controls = {q: of_machine(a, b, q) for q in ('cpu', 'wall')}
+    for quantity, (factor, noise) in controls.items():
+        print(f'machine: {quantity} of other engines is {factor:.3f} times what it was, each within a factor of {noise:.3f}')
     counts = collections.Counter()
     for key in sorted(k for k in a.keys() & b.keys() if k[2] != 'pieces'):
-        ours = key[1].startswith('obsim')
+        if not key[1].startswith('obsim'):
+            continue
         name = ' '.join((*key[:2], f'({key[2]}; {key[3]})' if key[3] else f'({key[2]})'))
-        counts['states'] += ours and set(a[key].get('state', [])) != set(b[key].get('state', []))
-        if ours and 'failed' in b[key] and 'failed' not in a[key]:
+        counts['states'] += set(a[key].get('state', [])) != set(b[key].get('state', []))
+        if 'failed' in b[key] and 'failed' not in a[key]:
             print(f"worse   {name} fails: {b[key]['failed'][0]}")
             counts['worse'] += 1
         for quantity in (q for q in a[key] if q in b[key] and q not in PLAIN and not q.startswith(PROFILE)):
             old, new = a[key][quantity], b[key][quantity]
-            ratio, changed = verdict(quantity, old, new, factor)
+            ratio, changed = verdict(quantity, old, new, controls)
             counts['compared'] += 1
             if changed:
-                word = ('worse' if ratio > 1 else 'better') if ours else 'other'
+                word = 'worse' if ratio > 1 else 'better'
                 counts[word] += 1
                 print(f'{word:7} {name} {quantity}: {statistics.median(old):.4g} -> {statistics.median(new):.4g}'
                       f' ({ratio:.3f} x)')

@@ -40,14 +40,15 @@ void bench_build(const bench_order *o, ob_peer_world *w)
 
 double bench_memory(void)
 {
-	size_t kib = 0;
+	size_t kib, sum = 0;
 	char line[128];
 	FILE *f = fopen("/proc/self/smaps_rollup", "re");
-	while (f && fgets(line, sizeof line, f) && sscanf(line, "Pss: %zu kB", &kib) != 1)
-		;
+	while (f && fgets(line, sizeof line, f))
+		if (sscanf(line, "Pss_Anon: %zu kB", &kib) == 1 || sscanf(line, "Pss_Shmem: %zu kB", &kib) == 1)
+			sum += kib;
 	if (f)
 		fclose(f);
-	return 1024. * (double)kib;
+	return 1024. * (double)sum;
 }
 
 static uint64_t hash_of(const ob_peer *p, const ob_peer_kind *kind, const ob_peer_world *w, double time)

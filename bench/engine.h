@@ -30,7 +30,7 @@ void bench_print_state(uint64_t hash); // of the bits of the state at the end: t
 uint32_t bench_bodies(const ob_peer_world *w); // that move
 // Inertia of all bodies as the host computes it: then whoever runs the scene ends in the same bits.
 void bench_build(const bench_order *o, ob_peer_world *w);
-// Bytes of this process's memory now, shared segments included
+// Bytes that this process has written to, shared segments included, programs and libraries not
 double bench_memory(void);
 
 #endif

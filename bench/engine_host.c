@@ -76,7 +76,7 @@ static void end(watched *r)
 	ob_build_finish(&r->w);
 }
 
-static bool print(const watched *r, double memory_before, ob_error *e)
+static bool print(const watched *r, ob_error *e)
 {
 	const ob_host_times *t = &r->after;
 	ob_snapshot now = { 0 };
@@ -87,7 +87,6 @@ static bool print(const watched *r, double memory_before, ob_error *e)
 	bench_print("wall", "us/step", 1e6 * (t->wall_s - r->before.wall_s) / steps);
 	bench_print("median step", "us", 1e6 * t->step_p50_s);
 	bench_print("start-up", "us/body", 1e6 * t->startup_s / r->bodies);
-	bench_print("memory", "B/body", ((double)t->memory_bytes - memory_before) / r->bodies);
 	bool taken = ob_snapshot_take(&now, ob_host_universe(r->h), false, e);
 	if (taken)
 		bench_print_state(ob_measure_hash(&now));
@@ -100,8 +99,7 @@ bool bench_time_host(const bench_order *o, ob_error *e)
 	watched r = { 0 };
 	bench_order all = *o;
 	all.from = 0;
-	double memory = bench_memory();
-	bool done = start(&r, &all, false, e) && run(&r, e) && print(&r, memory, e);
+	bool done = start(&r, &all, false, e) && run(&r, e) && print(&r, e);
 	end(&r);
 	return done;
 }

@@ -106,8 +106,8 @@ def test_compare(folder):
     compare(a, b, 1, 'worst penetration')
     write(b, 4, {(engine, q): 1.3 for engine in ('obsim', 'bullet', 'ode-quick') for q in ('cpu', 'wall')})
     compare(a, b, 0, '0 worse')  # the machine was slower
-    write(b, 5, {('bullet', 'wall'): 2.})
-    compare(a, b, 0, 'other')
+    write(b, 5, {('bullet', 'wall'): 2., ('obsim', 'wall'): 1.3, ('obsim', 'cpu'): 1.15})
+    assert 'wall:' not in compare(a, b, 1, '2 worse').stdout  # of walls the machine allows no word
     write(b, 6, failing=True)
     compare(a, b, 1, 'it fell')
 
