@@ -4,9 +4,13 @@
 
 #include "ode/ode_geom.h"
 
+struct ob_ode_stepper {
+	dWorldID world; // empty: the working memory of all the others is its
+	dThreadingImplementationID threading;
+};
+
 struct ob_ode_body {
-	dThreadingImplementationID threading; // NULL for static objects, as are world and body
-	dWorldID world;
+	dWorldID world; // NULL for static objects, as is body
 	dBodyID body;
 	dGeomID geom; // follows the body; NULL for objects without a shape
 };
@@ -42,20 +46,40 @@ double ob_ode_volume(ob_shape shape, ob_vec3 size)
 	return 0;
 }
 
-// Without a stepper of its own each world would use the process's one, whose job list is not locked: worlds of
-// different threads then corrupt it. And each world would reserve 128 kB for its first step, where a free body needs 1.
-static void make_world(ob_ode_body *b, ob_vec3 gravity)
+// Without this each world would use the process's own, whose job list is not locked: worlds of different threads then
+// corrupt it. And each world would reserve 128 kB for its first step, where a free body needs 1.
+ob_ode_stepper *ob_ode_stepper_create(void)
 {
+	ob_ode_stepper *s = calloc(1, sizeof *s);
+	if (!s)
+		return NULL;
+	ob_ode_init();
+	s->threading = dThreadingAllocateSelfThreadedImplementation();
+	s->world = dWorldCreate();
 	dWorldStepReserveInfo lean = { sizeof lean, 1.2f, 512 };
+	dWorldSetStepMemoryReservationPolicy(s->world, &lean);
+	return s;
+}
+
+void ob_ode_stepper_destroy(ob_ode_stepper *s)
+{
+	if (!s)
+		return;
+	dWorldDestroy(s->world);
+	dThreadingFreeImplementation(s->threading);
+	free(s);
+}
+
+static void make_world(ob_ode_body *b, ob_vec3 gravity, const ob_ode_stepper *s)
+{
 	b->world = dWorldCreate();
-	b->threading = dThreadingAllocateSelfThreadedImplementation();
-	dWorldSetStepThreadingImplementation(b->world, dThreadingImplementationGetFunctions(b->threading),
-					     b->threading);
-	dWorldSetStepMemoryReservationPolicy(b->world, &lean);
+	dWorldSetStepThreadingImplementation(b->world, dThreadingImplementationGetFunctions(s->threading),
+					     s->threading);
+	dWorldUseSharedWorkingMemory(b->world, s->world);
 	dWorldSetGravity(b->world, gravity.x, gravity.y, gravity.z);
 }
 
-ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity)
+ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, const ob_ode_stepper *s)
 {
 	ob_ode_body *b = calloc(1, sizeof *b);
 	if (!b)
@@ -64,7 +88,7 @@ ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity)
 	b->geom = ob_ode_geom_create(0, p->shape, p->size);
 	if (p->flags & OB_OBJECT_STATIC || !(p->mass > 0))
 		return b;
-	make_world(b, gravity);
+	make_world(b, gravity, s);
 	b->body = dBodyCreate(b->world);
 	dMass m;
 	dMassSetParameters(&m, p->mass, 0, 0, 0, p->inertia.x, p->inertia.y, p->inertia.z, 0, 0, 0);
@@ -80,10 +104,8 @@ void ob_ode_body_destroy(ob_ode_body *b)
 		return;
 	if (b->geom)
 		dGeomDestroy(b->geom);
-	if (b->world) {
+	if (b->world)
 		dWorldDestroy(b->world);
-		dThreadingFreeImplementation(b->threading);
-	}
 	free(b);
 }
 

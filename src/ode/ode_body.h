@@ -16,9 +16,15 @@ ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass);
 // m^3; 0 for a plane
 double ob_ode_volume(ob_shape shape, ob_vec3 size);
 
+// What stepping needs beside a world: working memory and a list of jobs. One for each thread that steps bodies; all of
+// its worlds share it, and it goes after them. NULL: no memory.
+typedef struct ob_ode_stepper ob_ode_stepper;
+ob_ode_stepper *ob_ode_stepper_create(void);
+void ob_ode_stepper_destroy(ob_ode_stepper *s);
+
 typedef struct ob_ode_body ob_ode_body;
-// World (own self-threaded stepper, lean memory reservation), body, geom. Static objects get no world.
-ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity);
+// World, body, geom: about 1.4 kB. Static objects get no world.
+ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, const ob_ode_stepper *s);
 void ob_ode_body_destroy(ob_ode_body *b);
 // Writes the state back to the body (the closed form is the truth, ODE's body follows it).
 void ob_ode_body_set(ob_ode_body *b, const ob_state *s);

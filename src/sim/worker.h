@@ -12,6 +12,7 @@
 struct ob_sim {
 	ob_universe *u;
 	uint32_t worker;
+	ob_ode_stepper *stepper; // of all of its bodies
 	ob_ode_body **ode; // [object]: ODE's world, body and geom of each object that this worker has run
 	uint32_t *ode_generation;
 	ob_island_work island; // scratch

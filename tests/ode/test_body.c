@@ -47,8 +47,9 @@ static ob_state tumbling(void) { return (ob_state){ { { 0, 0, 10 }, { 1, 0, 0, 0
 
 static void test_step(void)
 {
+	ob_ode_stepper *stepper = ob_ode_stepper_create();
 	ob_passport p = box();
-	ob_ode_body *b = ob_ode_body_create(&p, G);
+	ob_ode_body *b = ob_ode_body_create(&p, G, stepper);
 	ob_state s = { { { 1, 2, 3 }, { 1, 0, 0, 0 } }, { 0, 0, 0 }, { 0, 0, 0 } };
 	double h = .01;
 	ob_ode_body_step(b, &s, ob_v3(4, 0, 0), ob_v3(0, 0, .03), h);
@@ -62,16 +63,19 @@ static void test_step(void)
 	CHECK_NEAR(s.v.x, v.x, 1e-14); // the impulse was of that step alone
 	ob_ode_body_destroy(b);
 	ob_ode_body_destroy(NULL);
+	ob_ode_stepper_destroy(stepper);
+	ob_ode_stepper_destroy(NULL);
 }
 
 // A body made anew for every step goes where one that lives on goes: the state is all there is.
 static void test_bodies_are_replaceable(void)
 {
+	ob_ode_stepper *stepper = ob_ode_stepper_create();
 	ob_passport p = box();
-	ob_ode_body *one = ob_ode_body_create(&p, G);
+	ob_ode_body *one = ob_ode_body_create(&p, G, stepper);
 	ob_state a = tumbling(), b = a;
 	for (int i = 0; i < 200; i++) {
-		ob_ode_body *fresh = ob_ode_body_create(&p, G);
+		ob_ode_body *fresh = ob_ode_body_create(&p, G, stepper);
 		ob_ode_body_step(one, &a, ob_v3(.1, 0, 0), ob_v3(0, .01, 0), .01);
 		ob_ode_body_step(fresh, &b, ob_v3(.1, 0, 0), ob_v3(0, .01, 0), .01);
 		ob_ode_body_destroy(fresh);
@@ -79,28 +83,33 @@ static void test_bodies_are_replaceable(void)
 	CHECK(memcmp(&a, &b, sizeof a) == 0);
 	CHECK(fabs(a.w.x - 3) > 1e-3);
 	ob_ode_body_destroy(one);
+	ob_ode_stepper_destroy(stepper);
 }
 
 static void test_static_objects_stay(void)
 {
+	ob_ode_stepper *stepper = ob_ode_stepper_create();
 	ob_passport p = { .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE };
-	ob_ode_body *b = ob_ode_body_create(&p, G);
+	ob_ode_body *b = ob_ode_body_create(&p, G, stepper);
 	ob_state s = tumbling(), before = s;
 	ob_ode_body_step(b, &s, ob_v3(1, 1, 1), ob_v3(1, 1, 1), .1);
 	CHECK(memcmp(&s, &before, sizeof s) == 0);
 	ob_ode_body_destroy(b);
+	ob_ode_stepper_destroy(stepper);
 }
 
 static void *tumble(void *out)
 {
 	ob_ode_thread_init();
+	ob_ode_stepper *stepper = ob_ode_stepper_create();
 	ob_passport p = box();
-	ob_ode_body *b = ob_ode_body_create(&p, G);
+	ob_ode_body *b = ob_ode_body_create(&p, G, stepper);
 	ob_state *s = out;
 	*s = tumbling();
 	for (int i = 0; i < STEPS; i++)
 		ob_ode_body_step(b, s, ob_v3(0, 0, 2 * 9.81 * .001), ob_v3(0, 0, 0), .001);
 	ob_ode_body_destroy(b);
+	ob_ode_stepper_destroy(stepper);
 	ob_ode_thread_finish();
 	return NULL;
 }
