@@ -1,0 +1,45 @@
+// What an object costs in memory, all of it: simulators, universe and host, with and without ODE worlds of their own.
+// The run of ten objects is taken off: what every run needs, however small.
+#include "../check.h"
+
+#include "little_scene.h"
+
+enum { FEW = 10, MANY = 20000, STEPS = 30 };
+
+static size_t run(uint32_t objects, ob_isolation isolation, uint32_t workers, uint32_t integrator)
+{
+	ob_error e;
+	ob_scene s = little_scene(objects);
+	ob_host_config c = little_config(&s, isolation, workers);
+	c.run.integrator = integrator;
+	ob_host *h = ob_host_start(&s, &c, &e);
+	CHECK(h);
+	if (h) {
+		ob_host_go(h, STEPS);
+		CHECK(ob_host_wait(h, &e));
+	}
+	ob_host_times t = { 0 };
+	if (h)
+		ob_host_get_times(h, &t);
+	ob_host_stop(h);
+	free(s.object);
+	return t.memory_bytes;
+}
+
+static void check(const char *what, ob_isolation isolation, uint32_t workers, uint32_t integrator, double most)
+{
+	size_t few = run(FEW, isolation, workers, integrator), many = run(MANY, isolation, workers, integrator);
+	double each = (double)(many - few) / (MANY - FEW);
+	printf("%s, %u workers: %.0f bytes each\n", what, workers, each);
+	CHECK(many > few && each < most);
+}
+
+int main(void)
+{
+	check("threads", OB_ISOLATION_THREAD, 1, OB_INTEGRATOR_EXACT, 1500);
+	check("threads", OB_ISOLATION_THREAD, 2, OB_INTEGRATOR_EXACT, 1500);
+	check("processes", OB_ISOLATION_PROCESS, 2, OB_INTEGRATOR_EXACT, 1500);
+	check("threads, ODE worlds", OB_ISOLATION_THREAD, 1, OB_INTEGRATOR_ODE, 4000);
+	check("processes, ODE worlds", OB_ISOLATION_PROCESS, 2, OB_INTEGRATOR_ODE, 4000);
+	return check_end();
+}
