@@ -11,9 +11,29 @@
 #include "sim/perceive.h"
 #include "sim/sim.h"
 
+enum { HANDFUL = 16 }; // perceivers: for fewer the gate would cost more than a second worker gains
+
 static bool own_worker_each(const ob_universe *u)
 {
 	return ob_universe_settings(u)->one_per_object;
+}
+
+// A pool: indices 0 .. total-1 are claimed by as many workers as there is work for. The one who arranges is the first
+// of them, for it need not be woken.
+static void open_pool(ob_universe *u, ob_phase phase, uint32_t total, uint32_t enough)
+{
+	uint32_t workers = ob_universe_workers(u), *who = ob_universe_exchange(u)->scratch;
+	uint32_t first = ob_universe_exchange(u)->count->arranger;
+	ob_claim_reset(u, total);
+	if (enough >= workers) {
+		ob_gate_open(u, phase, NULL, 0);
+		return;
+	}
+	for (uint32_t i = 0; i < enough; i++)
+		who[i] = (first + i) % workers;
+	for (uint32_t i = enough; i < workers && phase == OB_PHASE_ISLANDS; i++)
+		ob_worker_set_objects(u, (first + i) % workers, 0);
+	ob_gate_open(u, phase, who, enough);
 }
 
 // Those that have asked look around.
@@ -25,11 +45,10 @@ static void open_perceivers(ob_universe *u, uint32_t stage)
 	for (uint32_t i = 0; i < count; i++)
 		ob_index_put(u, list[i]);
 	ex->count->stage = stage;
-	ob_claim_reset(u, count);
 	if (own_worker_each(u))
 		ob_gate_open(u, OB_PHASE_MEMBERS, list, count);
 	else
-		ob_gate_open(u, OB_PHASE_MEMBERS, NULL, 0);
+		open_pool(u, OB_PHASE_MEMBERS, count, 1 + count / HANDFUL);
 }
 
 // With one worker per object: those whose island was solved by another. false: none.
@@ -51,8 +70,7 @@ static void open_islands(ob_universe *u)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
 	if (!own_worker_each(u)) {
-		ob_claim_reset(u, ex->count->chunks);
-		ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
+		open_pool(u, OB_PHASE_ISLANDS, ex->count->chunks, ex->count->chunks);
 		return;
 	}
 	uint32_t n = 0, *who = ex->scratch;
@@ -159,6 +177,7 @@ void ob_arrange(ob_sim *s, ob_phase finished)
 	ob_universe *u = s->u;
 	uint32_t asked, stage = ob_universe_exchange(u)->count->stage;
 	ob_phase_close(u);
+	ob_universe_exchange(u)->count->arranger = s->worker;
 	if (finished == OB_PHASE_ISLANDS) {
 		ob_rebound_list(u, &asked);
 		if (ob_universe_settings(u)->monolith)

@@ -6,6 +6,7 @@
 #include "sim/pairs.h"
 
 enum { NONE = UINT32_MAX };
+enum { LEAST_SHARE = 48 }; // work of a chunk, some us: for less the gate would cost more than a second worker gains
 
 // The arranger's view while it plans: a union-find forest of islands, whose roots are the lowest ids of their trees.
 typedef struct plan {
@@ -199,6 +200,7 @@ static void make_chunks(plan *p)
 		unsolved++;
 	}
 	uint64_t share = total / (16 * (uint64_t)ob_universe_workers(p->u)) + 1;
+	share = share > LEAST_SHARE ? share : LEAST_SHARE;
 	for (uint32_t i = 0; i < unsolved; i++) {
 		if (i == 0 || filled >= share)
 			ex->chunk[chunks++] = i, filled = 0;

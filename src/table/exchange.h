@@ -86,6 +86,7 @@ typedef struct ob_exchange {
 	struct ob_exchange_counts {
 		uint32_t pairs, islands, chunks, records_used;
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
+		uint32_t arranger;   // the worker that arranged last
 		uint32_t stage;      // what the running phase belongs to: the arranger's
 		uint32_t again;      // 1 = islands are solved that were solved in this step before, in parts
 		uint32_t levels[64]; // objects per size class
