@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""performance.py RESULTS.csv [FILE]: writes the tables that stand in FILE between <!-- performance: NAME --> and
-<!-- end --> anew, from what bench/run.py --mode full has measured; without FILE prints them all.
+"""performance.py RESULTS.csv ... [FILE]: writes the tables that stand in FILE between <!-- performance: NAME --> and
+<!-- end --> anew, from what bench/run.py --mode full has measured; without FILE prints them all. Of what several results
+tell, the last one counts: so a few scenes can be measured again.
 """
 import collections
 import csv
@@ -9,22 +10,28 @@ import re
 import statistics
 import sys
 
-SAG = 'worst penetration'
-
 
 class Measured:
     """All values of the file, found by what they are of."""
 
-    def __init__(self, path):
-        self.rows = collections.defaultdict(list)
-        self.settings = {}  # (scene, engine, setting): knobs
+    def __init__(self, paths):
+        self.rows = {}  # (scene, engine, setting, duration, quantity): [values]
+        self.settings = {}  # (scene, engine, setting, duration): knobs
+        self.places = []  # [machine, commit, day], each once
+        for path in paths:
+            self.read(path)
+
+    def read(self, path):
+        rows = collections.defaultdict(list)
         with open(path, encoding='utf-8', newline='') as f:
             for line in csv.DictReader(f):
-                duration = float(line['duration'] or 0)
-                key = line['scene'], line['engine'], line['setting'], duration
-                self.rows[(*key, line['quantity'])].append(line['value'])
+                key = line['scene'], line['engine'], line['setting'], float(line['duration'] or 0)
+                rows[(*key, line['quantity'])].append(line['value'])
                 self.settings[key] = line['knobs']
-                self.head = line
+                place = [line['machine'], line['commit'], line['date'][:10]]
+                self.places += [place] if place not in self.places else []
+        again = {key[:4] for key in rows}
+        self.rows = {key: values for key, values in self.rows.items() if key[:4] not in again} | rows
 
     def values(self, scene, engine, quantity, setting='usual', duration=0.):
         found = self.rows.get((scene, engine, setting, duration, quantity), [])
@@ -293,31 +300,33 @@ def floor(m):
 
 
 def machine(m):
-    return f"Measured on {m.head['machine']}, commit {m.head['commit']}, {m.head['date'][:10]}.\n"
+    return ''.join(f'Measured on {where}, commit {commit}, {day}.\n' for where, commit, day in m.places)
 
 
 TABLES = {f.__name__: f for f in (machine, promises, usual, equal, parts, functions, pieces, floor)}
 
 
 def main():
-    if not 2 <= len(sys.argv) <= 3 or sys.argv[1].startswith('-'):
+    paths = [word for word in sys.argv[1:] if word.endswith('.csv')]
+    pages = [word for word in sys.argv[1:] if not word.endswith('.csv')]
+    if not paths or len(pages) > 1 or (pages and pages[0].startswith('-')):
         sys.exit(__doc__)
     try:
-        measured = Measured(sys.argv[1])
+        measured = Measured(paths)
     except (OSError, KeyError, TypeError, ValueError, csv.Error) as e:
-        sys.exit(f'{sys.argv[1]}: not a file of bench/run.py: {e}')
+        sys.exit(f"{', '.join(paths)}: not of bench/run.py: {e}")
     if not measured.rows:
-        sys.exit(f'{sys.argv[1]}: no results')
-    if len(sys.argv) == 2:
+        sys.exit(f"{', '.join(paths)}: no results")
+    if not pages:
         for name, table in TABLES.items():
             print(f'{name}\n\n{table(measured)}')
         return
-    with open(sys.argv[2], encoding='utf-8') as f:
+    with open(pages[0], encoding='utf-8') as f:
         text = f.read()
     text = re.sub(r'(<!-- performance: (\w+) -->\n).*?(<!-- end -->)',
                   lambda found: found.group(1) + '\n' + TABLES[found.group(2)](measured) + '\n' + found.group(3), text,
                   flags=re.S)
-    with open(sys.argv[2], 'w', encoding='utf-8') as f:
+    with open(pages[0], 'w', encoding='utf-8') as f:
         f.write(text)
 
 

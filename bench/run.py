@@ -8,7 +8,8 @@ run.py BUILD [OPTION ...]
   --out FILE               results, a line for each quantity (bench.csv)
   --scenes GLOB,...        only these, as "falling-*"
   --engines GLOB,...       only these, as "obsim*,bullet"
-  --repeats N              runs of each (5; of what takes longer than 6 s: 3, than 20 s: 2)
+  --repeats N              runs of each (5; of what takes longer than 6 s: 3, than 20 s: 2, than
+                           a minute: 1)
   --no-look                times alone
   --no-equal               full: no search for settings of equal error
 
@@ -31,7 +32,7 @@ import plan
 COLUMNS = ['date', 'commit', 'machine', 'scene', 'duration', 'engine', 'setting', 'knobs', 'repeat', 'quantity', 'unit',
            'value']
 LIMIT = 600  # s, of a run
-LONG, VERY_LONG = 6, 20  # s, from which three repeats have to do, and two
+REPEATS = {60: 1, 20: 2, 6: 3}  # of what takes longer than so many s
 
 
 def machine():
@@ -117,7 +118,7 @@ def measure(sides, options, results):
         say(side, 'look', rows)
     for repeat in range(1, options.repeats + 1):
         for side in sides:
-            if side.failed or (repeat > 2 and side.took > VERY_LONG) or (repeat > 3 and side.took > LONG):
+            if side.failed or any(repeat > most and side.took > long for long, most in REPEATS.items()):
                 continue
             rows, side.took = side.run('time')
             side.failed = any(q == 'failed' for q, _, _ in rows)
