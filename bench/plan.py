@@ -71,7 +71,8 @@ EQUAL = [
 ]
 KNOBS = {
     'obsim': [{'substeps': n, 'iterations': i, 'tolerance': 0} for n in (1, 2, 4, 8) for i in (4, 16, 64)] +
-             [{'substeps': 1, 'iterations': i, 'tolerance': t} for i in (16, 64) for t in (.02, .01, .005, .002, .001)],
+             [{'substeps': 1, 'iterations': i, 'tolerance': t} for i in (16, 64) for t in (.02, .01, .005, .002, .001)] +
+             [{'substeps': n, 'iterations': 16, 'tolerance': t} for n in (2, 4) for t in (.02, .005, .002)],
     'ode-quick': [{'substeps': n, 'iterations': i} for n in (1, 2, 4, 8, 16) for i in (10, 20, 50)],
     'ode-world': [{'substeps': n} for n in (1, 2, 4, 8)],
     'bullet': [{'substeps': n, 'iterations': i} for n in (1, 2, 4, 8, 16) for i in (5, 10, 20, 50)],
