@@ -58,6 +58,7 @@ typedef struct ob_batch {
 typedef struct ob_pass {
 	double h; // s, substep
 	int sweeps; // inside a block, at most
+	double fine; // m/s: a block need not be solved finer in this round
 	double wake; // m/s: a change above it makes both bodies hot
 	double jump; // m/s: an approach or change above it is an impact
 	bool first; // of the substep: sets the bias from the gaps

@@ -226,7 +226,7 @@ FOR_KIND void sweeps(const ob_batch *b, ob_kind kind, const ob_pass *pass, lanes
 		lanes moving = sweep(b, kind, open, x, r);
 		if (s == 1)
 			alone &= moving > surprise;
-		open &= moving > settled;
+		open &= (moving > settled) & (alone | (moving > pass->fine));
 		if (s >= pass->sweeps)
 			open &= alone;
 		else if (s >= rough_sweeps)

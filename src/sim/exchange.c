@@ -13,6 +13,7 @@ static const uint32_t more = 8; // .. up to so many times that number
 static const double turned = 1e-3; // rad: who turns by more in a stride is taken to where it rebounds
 static const double plausible = 3; // of what pulls at a body: more acceleration is an impact's
 static const int sweeps = 4;
+static const double rough = .01; // of what the round before has changed: finer than that, a pair need not be solved now
 static const double slop = 1e-4, share = .3; // m; of the penetration, per substep
 static const double slop_share = 1. / 8; // of the tolerance, at most
 
@@ -239,7 +240,7 @@ void ob_exchange_rounds(ob_sim *s)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const int most_direct = 4; // direct solves in a substep
-	ob_pass pass = { w->h, sweeps,      least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
+	ob_pass pass = { w->h, sweeps,      0, least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
 			 true, is_jacobi(s) };
 	bool again = true;
 	w->forest.fit = OB_FOREST_UNKNOWN;
@@ -254,6 +255,7 @@ void ob_exchange_rounds(ob_sim *s)
 		if (pass.first)
 			w->stirred = fmax(w->stirred, moved);
 		pass.first = false;
+		pass.fine = rough * moved;
 		if (direct == most_direct || !ob_forest_asked(s, moved))
 			continue;
 		ob_forest_solve(s);

@@ -4,7 +4,7 @@
 #include "sim/worker.h"
 
 static const double finest = 1e-7, after_correction = 1e-8; // m/s: what may be left over
-static const double calm = .1; // m/s: what moves faster, falls or slides
+static const double calm = .02; // m/s: what moves faster, falls or slides
 
 void ob_forest_begin(ob_forest *f)
 {
