@@ -175,8 +175,11 @@ static void write_pair(ob_monolith *m, uint32_t index, size_t from, size_t to)
 	ob_vec3 a = ob_newest_motion(m->u, c->a)->p;
 	ob_pair_state s = { .normal = c->normal, .substep = m->run->step_length / m->run->substeps };
 	for (size_t i = from; i < to && s.points < OB_PAIR_POINTS; i++, s.points++) {
-		s.arm_a[s.points] = ob_sub(m->point[i].position, a);
-		s.gap[s.points] = -m->depth[i];
+		ob_vec3 arm = ob_sub(m->point[i].position, a);
+		s.arm_a[s.points][0] = (float)arm.x;
+		s.arm_a[s.points][1] = (float)arm.y;
+		s.arm_a[s.points][2] = (float)arm.z;
+		s.gap[s.points] = (float)-m->depth[i];
 		s.impulse[s.points] = m->point[i].impulse;
 	}
 	x->record[index].version[step & 1] = s;

@@ -150,12 +150,14 @@ static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 		return;
 	t->points = p->points;
 	t->creep = p->creep;
-	for (uint32_t j = 0; j < p->points; j++) {
-		t->arm_a[j] = p->arm_a[j];
-		t->arm_b[j] = ob_sub(p->arm_a[j], p->between);
+	double gap[OB_PAIR_POINTS];
+	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
+		t->arm_a[j] = ob_v3(p->arm_a[j][0], p->arm_a[j][1], p->arm_a[j][2]);
+		t->arm_b[j] = ob_sub(t->arm_a[j], p->between);
+		gap[j] = p->gap[j];
 	}
 	ob_lane_take(s, t);
-	ob_lane_fill(w, t, p->normal, p->gap);
+	ob_lane_fill(w, t, p->normal, gap);
 	ob_batch *batch = &w->batch[t->lane / OB_LANES];
 	const ob_exchange *ex = ob_universe_exchange(s->u);
 	const double *impulse = t->mirror ? ex->impulse_b[k->record][p - ex->record[k->record].version] : p->impulse;
@@ -233,7 +235,11 @@ static void store_impulses(const ob_island_work *w, const ob_touch *t, double *i
 static void store_touch(const ob_island_work *w, const ob_touch *t, ob_pair_state *p)
 {
 	*p = (ob_pair_state){ .points = t->points, .substep = w->h, .creep = (float)t->creep };
-	memcpy(p->arm_a, t->arm_a, sizeof p->arm_a);
+	for (int j = 0; j < OB_PAIR_POINTS; j++) {
+		p->arm_a[j][0] = (float)t->arm_a[j].x;
+		p->arm_a[j][1] = (float)t->arm_a[j].y;
+		p->arm_a[j][2] = (float)t->arm_a[j].z;
+	}
 	p->between = ob_sub(t->arm_a[0], t->arm_b[0]);
 	store_impulses(w, t, p->impulse);
 	if (t->lane == OB_NO_LANE)
@@ -241,7 +247,7 @@ static void store_touch(const ob_island_work *w, const ob_touch *t, ob_pair_stat
 	const ob_batch *b = &w->batch[t->lane / OB_LANES];
 	int l = t->lane % OB_LANES;
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
-		p->gap[j] = b->gap[j][l];
+		p->gap[j] = (float)b->gap[j][l];
 	p->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
 }
 

@@ -57,8 +57,8 @@ static size_t collect(const ob_universe *u, uint64_t step, ob_contact_point *out
 		    !newest_version(u, &key, step, &state) || !ob_universe_get_motion(u, key.a, &a))
 			continue;
 		for (uint32_t k = 0; k < state.points && k < OB_PAIR_POINTS; k++) {
-			ob_contact_point c = { key.a, key.b, ob_add(a.p, state.arm_a[k]), state.normal,
-					       state.impulse[k] };
+			ob_vec3 arm = ob_v3(state.arm_a[k][0], state.arm_a[k][1], state.arm_a[k][2]);
+			ob_contact_point c = { key.a, key.b, ob_add(a.p, arm), state.normal, state.impulse[k] };
 			if (!point_makes_sense(&c))
 				continue;
 			if (n < max)

@@ -16,16 +16,17 @@
 
 enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
 
-// What a pair of touching objects remembers from one step to the next. 248 bytes.
+// What a pair of touching objects remembers from one step to the next. 184 bytes.
 // a < b are ids; the normal points from b to a. Lever arms run from the centres to the contact point, world frame,
-// as of the last collision test.
+// as of the last collision test. Arms and gaps are small numbers, so that 24 bits are right to some nm; what two bodies
+// must agree on to the last bit, the difference of their arms, and what they exchange, is kept in full.
 typedef struct ob_pair_state {
 	ob_vec3 normal;
-	ob_vec3 arm_a[OB_PAIR_POINTS];    // m
 	ob_vec3 between;                  // m, from a's centre to b's: an arm of b is that of a less this
-	double gap[OB_PAIR_POINTS];       // m, separation now; < 0 is penetration
 	double impulse[OB_PAIR_ROWS];     // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
 	double substep;                   // s, length of the substep of those impulses
+	float arm_a[OB_PAIR_POINTS][3];   // m
+	float gap[OB_PAIR_POINTS];        // m, separation now; < 0 is penetration
 	uint32_t points;                  // 0 .. 4; 0 = not touching
 	float creep;                      // m, what should have stuck has slipped so far in the last second
 } ob_pair_state;

@@ -119,8 +119,8 @@ static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 88, "h
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 256, "control");
 static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
-static_assert(sizeof(ob_pair_state) == 248, "pair state");
-static_assert(sizeof(ob_pair_record) == 512, "pair record");
+static_assert(sizeof(ob_pair_state) == 184, "pair state");
+static_assert(sizeof(ob_pair_record) == 384, "pair record");
 static_assert(sizeof(ob_pair_key) == 24 && sizeof(ob_brief) == 16 && sizeof(ob_flight) == 144, "exchange area");
 
 // A process's view of a mapped segment. Immutable once made; forked children may go on using it.

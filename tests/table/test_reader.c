@@ -61,8 +61,9 @@ static void touch(ob_universe *u, uint32_t index, uint32_t a, uint32_t b, uint64
 	ob_pair_record *r = x->record + index;
 	ob_pair_state *s = &r->version[(stamp - 1) & 1];
 	*s = (ob_pair_state){ .normal = { 0, 0, 1 }, .points = 2, .impulse = { 1, 2 } };
-	s->arm_a[0] = ob_v3(.5, 0, -1);
-	s->arm_a[1] = ob_v3(-.5, 0, -1);
+	s->arm_a[0][0] = .5f;
+	s->arm_a[1][0] = -.5f;
+	s->arm_a[0][2] = s->arm_a[1][2] = -1;
 	r->stamp[(stamp - 1) & 1] = stamp;
 	x->count->pairs = index + 1;
 }
@@ -84,7 +85,7 @@ static void test_contacts(void)
 	ob_publish_motion(u, 6, &asleep);
 	CHECK(ob_universe_get_contacts(u, c, 8) == 4); // both sleep: what they last felt still holds
 	ob_exchange *x = ob_universe_exchange(u);
-	x->record[0].version[5 & 1].arm_a[0].x = NAN;
+	x->record[0].version[5 & 1].arm_a[0][0] = NAN;
 	CHECK(ob_universe_get_contacts(u, c, 8) == 3);
 	x->record[0].version[5 & 1].points = 1000;
 	CHECK(ob_universe_get_contacts(u, c, 8) <= 2 + OB_PAIR_POINTS);
