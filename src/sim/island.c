@@ -100,6 +100,23 @@ static bool solve_calm(ob_sim *s, const ob_island *is)
 	return false;
 }
 
+// In exchanges of a pair; a collision test costs as much as a few.
+static uint64_t cost_so_far(const ob_sim *s)
+{
+	enum { OF_A_LOOK = 4 };
+	return s->counters.pair_exchanges + OF_A_LOOK * s->counters.looks;
+}
+
+// For the arranger, so that what costs much is begun first.
+static void note_effort(ob_sim *s, const ob_island *is, uint64_t cost)
+{
+	enum { MOST = 1 << 16 }; // so that sums stay within bounds
+	ob_exchange *ex = ob_universe_exchange(s->u);
+	uint64_t share = cost / is->members;
+	for (uint32_t i = 0; i < is->members; i++)
+		ex->effort[ex->member[is->first_member + i]] = (uint32_t)(share < MOST ? share : MOST);
+}
+
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
@@ -110,6 +127,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 		ob_leap(s, ob_universe_exchange(s->u)->member[is->first_member]);
 		return;
 	}
+	const uint64_t before = cost_so_far(s);
 	s->island.substeps = ob_tolerance_start(s, is);
 	if (!solve_calm(s, is))
 		while (!solve(s, is))
@@ -118,6 +136,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	s->counters.island_steps++;
 	s->counters.recovered += s->island.recovered;
 	s->counters.member_steps += is->members;
+	note_effort(s, is, cost_so_far(s) - before);
 	ob_touches_store(s);
 	ob_part_enter(s, OB_PART_PUBLISH);
 	ob_members_publish(s, ob_members_rest(s));

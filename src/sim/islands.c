@@ -169,18 +169,21 @@ static void list_pairs(plan *p)
 	}
 }
 
-static uint32_t work_of(const ob_island *i)
+// What its members have cost in the last step, or at least what islands of such a size do.
+static uint32_t work_of(const plan *p, const ob_island *is)
 {
-	return 1 + i->members + 8 * i->pairs;
+	uint32_t sum = 1 + is->members + 8 * is->pairs;
+	for (uint32_t k = 0; is->pairs && k < is->members; k++)
+		sum += p->ex->effort[p->ex->member[is->first_member + k]];
+	return sum;
 }
 
 // What is to be solved comes first.
 static int by_work(const void *x, const void *y)
 {
 	const ob_island *a = x, *b = y;
-	uint32_t wa = a->solved ? 0 : work_of(a), wb = b->solved ? 0 : work_of(b);
-	if (wa != wb)
-		return wa < wb ? 1 : -1;
+	if (a->work != b->work)
+		return a->work < b->work ? 1 : -1;
 	return a->first_member < b->first_member ? -1 : 1;
 }
 
@@ -190,13 +193,15 @@ static void make_chunks(plan *p)
 	ob_exchange *ex = p->ex;
 	uint64_t total = 0, filled = 0;
 	uint32_t n = ex->count->islands, unsolved = 0, chunks = 0;
+	for (uint32_t i = 0; i < n; i++)
+		ex->island[i].work = ex->island[i].solved ? 0 : work_of(p, &ex->island[i]);
 	qsort(ex->island, n, sizeof *ex->island, by_work);
 	for (uint32_t i = 0; i < n; i++) {
 		for (uint32_t m = 0; m < ex->island[i].members; m++)
 			ex->result_island[ex->member[ex->island[i].first_member + m]] = i;
 		if (ex->island[i].solved)
 			continue;
-		total += work_of(&ex->island[i]);
+		total += ex->island[i].work;
 		unsolved++;
 	}
 	uint64_t share = total / (16 * (uint64_t)ob_universe_workers(p->u)) + 1;
@@ -204,7 +209,7 @@ static void make_chunks(plan *p)
 	for (uint32_t i = 0; i < unsolved; i++) {
 		if (i == 0 || filled >= share)
 			ex->chunk[chunks++] = i, filled = 0;
-		filled += work_of(&ex->island[i]);
+		filled += ex->island[i].work;
 	}
 	ex->chunk[chunks] = unsolved;
 	ex->count->chunks = chunks;

@@ -72,6 +72,7 @@ enum { OB_BRIEF_ABSENT, OB_BRIEF_STATIC, OB_BRIEF_AWAKE, OB_BRIEF_ASLEEP };
 typedef struct ob_island {
 	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
 	uint32_t first_pair, pairs;     // range in island_pair[]; sorted by (a, b)
+	uint32_t work;                  // what solving it may cost, in exchanges of a pair
 	uint32_t solved;                // 1 = its solution of this step stands, unless something meets one of its members
 } ob_island;
 
@@ -98,6 +99,7 @@ typedef struct ob_exchange {
 	float (*bounds)[6];           // [object]: box that holds it until it asks for another
 	ob_flight *flight;            // [object]: written by its island's solver when a flight begins
 	ob_motion *result;            // [object]: what its island's solver found
+	uint32_t *effort;             // [object]: its share of what its island cost when it was solved last, as ob_island.work
 	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none
 	struct ob_perceived { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
 	uint32_t *perceived_id;       // arena
