@@ -1,5 +1,6 @@
 #include "contact/batch.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "contact/kernel.h"
@@ -25,7 +26,7 @@ void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)
 
 void ob_batch_init(ob_batch *b, ob_kind kind)
 {
-	memset(b, 0, sizeof *b);
+	memset(b, 0, offsetof(ob_batch, spread)); // which is made before it is used
 	b->kind = kind;
 	for (int i = 0; i < 4; i++)
 		b->gap[i] = lanes_of(ob_no_contact);

@@ -1,7 +1,7 @@
 // The pair kernel: what passes between two touching objects, for four pairs at a time.
 //
 // A pair is one block of seven rows: the four contact points' normal velocities, two of friction at their centroid,
-// and the twist about the normal. Its 7x7 Delassus matrix A = J M^-1 J^T is kept, and the block is solved by a few
+// and the twist about the normal. Its 7x7 Delassus matrix A = J M^-1 J^T is kept, scaled, and the block is solved by a few
 // Gauss-Seidel sweeps (Moreau's projected form: Jourdan, Alart and Jean 1998) with a true friction cone: the friction
 // vector is projected onto a disc of radius mu * (sum of normal impulses), the twist onto mu * radius * that sum.
 //
@@ -29,9 +29,6 @@ typedef enum ob_kind {
 
 typedef double ob_body_row[8];
 
-// Symmetric 7x7: index of row i, column j
-#define OB_SYM(i, j) ((i) > (j) ? (i) * ((i) + 1) / 2 + (j) : (j) * ((j) + 1) / 2 + (i))
-
 typedef struct ob_batch {
 	uint32_t body_a[OB_LANES], body_b[OB_LANES]; // rows of the velocity arrays; 0 in an empty lane
 	ob_kind kind;
@@ -46,12 +43,13 @@ typedef struct ob_batch {
 	lanes fa1[3], fb1[3], fa2[3], fb2[3]; // r x t at the centroid
 	lanes ia[6], ib[6], ima, imb; // inverse inertia (world: xx xy xz yy yz zz), inverse masses
 	lanes ka, kb; // mass splitting: contacts of each body (1 when coloured)
-	lanes a[28], inv_diag[7];
 	lanes gap[4]; // m, as of the displacement rows' last reset
-	lanes bias[4]; // m/s
 	lanes mu, radius;
 	lanes impulse[7], impulse_start[7]; // now; when the substep began
+	lanes bias[4]; // m/s
 	lanes moved; // m/s: the largest change of a velocity in the last pass
+	lanes diag[7], inv_diag[7]; // of A; the inverse is 0 for a row that is not in use
+	lanes spread[7][7]; // [i][j] = A_ij / A_jj: impulse i does to row j what so much of impulse j does
 } ob_batch;
 
 // How a pass treats the pairs, the same for all batches.

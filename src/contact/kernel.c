@@ -36,32 +36,44 @@ static inline lanes dot3(const lanes *a, const lanes *b)
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void prepare(ob_batch *b)
+FOR_KIND void prepare_kind(ob_batch *b, ob_kind kind)
 {
 	const lanes *ja[7] = { b->ja[0], b->ja[1], b->ja[2], b->ja[3], b->fa1, b->fa2, b->n };
 	const lanes *jb[7] = { b->jb[0], b->jb[1], b->jb[2], b->jb[3], b->fb1, b->fb2, b->n };
-	lanes mass = b->ima * b->ka + b->imb * b->kb;
+	lanes mass = b->ima * b->ka + b->imb * b->kb, a[OB_ROWS][OB_ROWS];
 	for (int i = 0; i < OB_ROWS; i++) {
 		lanes xa[3], xb[3];
-		if (!in_use(b->kind, i))
+		if (!in_use(kind, i))
 			continue;
 		sym_mul(b->ia, ja[i], xa);
 		sym_mul(b->ib, jb[i], xb);
 		for (int j = 0; j <= i; j++) {
-			if (!in_use(b->kind, j))
+			if (!in_use(kind, j))
 				continue;
 			lanes s = dot3(xa, ja[j]) * b->ka + dot3(xb, jb[j]) * b->kb;
 			if ((i < 4 && j < 4) || (i == j && i < 6))
 				s += mass; // the same direction: normals, and each tangent with itself
-			b->a[OB_SYM(i, j)] = s;
+			a[i][j] = a[j][i] = s;
 		}
-		lanes d = b->a[OB_SYM(i, i)];
-		b->inv_diag[i] = lanes_select(d > 0, 1 / d, lanes_of(0));
+		b->diag[i] = a[i][i];
+		lane_mask used = a[i][i] > 0;
+		if (i < OB_POINTS) // a point that is not used has no row
+			used &= b->gap[i] < .5 * ob_no_contact;
+		b->inv_diag[i] = lanes_select(used, 1 / a[i][i], lanes_of(0));
 	}
-	// A point that is not used has no row.
-	for (int i = 0; i < 4; i++)
-		b->inv_diag[i] = lanes_select(b->gap[i] < .5 * ob_no_contact, b->inv_diag[i], lanes_of(0));
+	for (int i = 0; i < OB_ROWS; i++)
+		for (int j = 0; j < OB_ROWS; j++)
+			if (in_use(kind, i) && in_use(kind, j))
+				b->spread[i][j] = a[i][j] * b->inv_diag[j];
 	b->dirty = 0;
+}
+
+static void prepare(ob_batch *b)
+{
+	if (b->kind == OB_KIND_FULL)
+		prepare_kind(b, OB_KIND_FULL);
+	else
+		prepare_kind(b, b->kind);
 }
 
 static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes *o)
@@ -171,59 +183,68 @@ FOR_KIND void tangent_rates(const ob_batch *b, ob_kind kind, const lanes *xa, co
 	}
 }
 
-FOR_KIND void residual_add(const ob_batch *b, ob_kind kind, int i, lanes d, lanes *r)
+FOR_KIND void serve(const ob_batch *b, ob_kind kind, int i, lanes d, lanes *want)
 {
 	for (int j = 0; j < OB_ROWS; j++)
 		if (in_use(kind, j))
-			r[j] += b->a[OB_SYM(i, j)] * d;
+			want[j] -= b->spread[i][j] * d;
 }
 
-// Projected Gauss-Seidel inside the block: x are impulses, r the residual velocities. Lanes that are not open keep
-// their impulses. Returns the largest change of a row's velocity.
-FOR_KIND lanes sweep(const ob_batch *b, ob_kind kind, lane_mask open, lanes *x, lanes *r)
+static inline lanes where(lane_mask m, lanes x)
+{
+	return (lanes)(m & (lane_mask)x);
+}
+
+// Projected Gauss-Seidel inside the block: x are impulses, want what each row would change of its own, -(J v) / A_ii.
+// That way round little stands between one row's change and the next one's: a maximum, a product, a difference.
+// Lanes that are not open keep their impulses. Returns the largest change of a row's velocity.
+FOR_KIND lanes sweep(const ob_batch *b, ob_kind kind, lane_mask open, lanes *x, lanes *want)
 {
 	lanes largest = lanes_of(0), sum = lanes_of(0);
 	for (int i = 0; i < points_of(kind); i++) {
-		lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), d = next - x[i];
-		x[i] = lanes_select(open, next, x[i]);
+		lanes d = lanes_max(-x[i], want[i]);
+		serve(b, kind, i, d, want);
+		x[i] += where(open, d);
 		sum += x[i];
-		largest = lanes_max(largest, lanes_abs(d) * b->a[OB_SYM(i, i)]);
-		residual_add(b, kind, i, d, r);
+		largest = lanes_max(largest, lanes_abs(d) * b->diag[i]);
 	}
 	if (!in_use(kind, 4))
 		return largest;
-	lanes bound = b->mu * sum;
-	lanes f4 = x[4] - r[4] * b->inv_diag[4], f5 = x[5] - r[5] * b->inv_diag[5], l2 = f4 * f4 + f5 * f5;
+	lanes bound = b->mu * sum, d4 = want[4], d5 = want[5];
+	lanes f4 = x[4] + d4, f5 = x[5] + d5, l2 = f4 * f4 + f5 * f5;
 	lane_mask slips = l2 > bound * bound;
 	if (lanes_bits(slips)) { // the root and the quotient take as long as all the rest
-		lanes shrink = lanes_select(slips, bound / lanes_sqrt(l2 + 1e-300), lanes_of(1));
-		f4 *= shrink;
-		f5 *= shrink;
+		lanes shrink = bound / lanes_sqrt(l2 + 1e-300);
+		d4 = lanes_select(slips, f4 * shrink - x[4], d4);
+		d5 = lanes_select(slips, f5 * shrink - x[5], d5);
 	}
-	lanes d4 = f4 - x[4], d5 = f5 - x[5];
-	x[4] = lanes_select(open, f4, x[4]);
-	x[5] = lanes_select(open, f5, x[5]);
-	largest = lanes_max(largest, lanes_abs(d4) * b->a[OB_SYM(4, 4)]);
-	largest = lanes_max(largest, lanes_abs(d5) * b->a[OB_SYM(5, 5)]);
-	residual_add(b, kind, 4, d4, r);
-	residual_add(b, kind, 5, d5, r);
+	serve(b, kind, 4, d4, want);
+	serve(b, kind, 5, d5, want);
+	x[4] += where(open, d4);
+	x[5] += where(open, d5);
+	largest = lanes_max(largest, lanes_abs(d4) * b->diag[4]);
+	largest = lanes_max(largest, lanes_abs(d5) * b->diag[5]);
 	if (!in_use(kind, 6))
 		return largest;
 	bound *= b->radius;
-	lanes f6 = lanes_max(-bound, lanes_min(bound, x[6] - r[6] * b->inv_diag[6])), d6 = f6 - x[6];
-	x[6] = lanes_select(open, f6, x[6]);
-	residual_add(b, kind, 6, d6, r);
+	lanes d6 = lanes_max(-bound - x[6], lanes_min(bound - x[6], want[6]));
+	serve(b, kind, 6, d6, want);
+	x[6] += where(open, d6);
 	return largest;
 }
 
 // A lane is done when a sweep changes next to nothing, or after so many, or sooner if it changes so much that there
 // will be another round; bodies that touch nothing else have no later round to mend what is left over: theirs are
 // solved to the end.
-FOR_KIND void sweeps(const ob_batch *b, ob_kind kind, const ob_pass *pass, lanes *x, lanes *r)
+FOR_KIND void sweeps(const ob_batch *b, ob_kind kind, const ob_pass *pass, lanes *x, const lanes *r)
 {
+	lanes want[OB_ROWS];
+	for (int i = 0; i < OB_ROWS; i++)
+		if (in_use(kind, i))
+			want[i] = -(r[i] * b->inv_diag[i]);
 	lane_mask alone = lanes_mask(b->alone), open = lanes_mask(b->live);
 	for (int s = 1; s <= most_sweeps && lanes_bits(open); s++) {
-		lanes moving = sweep(b, kind, open, x, r);
+		lanes moving = sweep(b, kind, open, x, want);
 		if (s == 1)
 			alone &= moving > surprise;
 		open &= (moving > settled) & (alone | (moving > pass->fine));
@@ -311,9 +332,8 @@ FOR_KIND void solve_kind(ob_batch *b, ob_kind kind, const ob_pass *pass, ob_body
 		change[i] = x[i] - b->impulse[i];
 		b->impulse[i] = x[i];
 		if (i < 6) {
-			lanes diag = b->a[OB_SYM(i, i)];
-			big = lanes_max(big, lanes_abs(change[i]) * diag);
-			jump = lanes_max(jump, lanes_abs(x[i] - b->impulse_start[i]) * diag);
+			big = lanes_max(big, lanes_abs(change[i]) * b->diag[i]);
+			jump = lanes_max(jump, lanes_abs(x[i] - b->impulse_start[i]) * b->diag[i]);
 		}
 	}
 	b->moved = big;
@@ -343,7 +363,7 @@ static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_bod
 
 static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
 {
-	lanes da[6], db[6], r[7], x[7] = { 0 };
+	lanes da[6], db[6], r[OB_POINTS], x[OB_ROWS] = { 0 };
 	lane_mask any = { 0 };
 	gather_both(b, d, da, db);
 	const int points = points_of(b->kind);
@@ -355,12 +375,14 @@ static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 	}
 	if (!lanes_bits(any))
 		return false;
+	for (int i = 0; i < points; i++)
+		r[i] *= -b->inv_diag[i]; // what it wants, as in a sweep
 	for (int s = 0; s < 4; s++)
 		for (int i = 0; i < points; i++) {
-			lanes next = lanes_max(lanes_of(0), x[i] - r[i] * b->inv_diag[i]), change = next - x[i];
-			x[i] = next;
+			lanes change = lanes_max(-x[i], r[i]);
+			x[i] += change;
 			for (int j = 0; j < points; j++)
-				r[j] += b->a[OB_SYM(i, j)] * change;
+				r[j] -= b->spread[i][j] * change;
 		}
 	publish(b, OB_KIND_FULL, jacobi, x, da, db, d, delta);
 	return true;
@@ -374,7 +396,7 @@ static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity)
 		if (!(b->impact >> l & 1))
 			continue;
 		for (int i = 0; i < OB_ROWS; i++) {
-			double cap = fmax(cap_impulse[l], cap_velocity / (b->a[OB_SYM(i, i)][l] + 1e-9));
+			double cap = fmax(cap_impulse[l], cap_velocity / (b->diag[i][l] + 1e-9));
 			double x = b->impulse[i][l] - b->impulse_start[i][l];
 			if (i == 6)
 				cap *= b->radius[l];

@@ -93,7 +93,7 @@ static void fill_joint(const ob_island_work *w, ob_forest_contact *c)
 		int row = c->row[r];
 		fill_row(b, l, row, w->touch[c->touch].a == c->child, r, j);
 		j->parent[r][6] = -w->forest.rate[b - w->batch][row][l];
-		j->compliance[r] = compliance * b->a[OB_SYM(row, row)][l];
+		j->compliance[r] = compliance * b->diag[row][l];
 	}
 	// What four points on a plane cannot do together is not asked of them.
 	if (!has_four_normals(c) || !idle_split(b, l, n))

@@ -81,7 +81,7 @@ static void test_solution(void)
 				double to = fmax(s.p[l].gap[j], 0) / substep;
 				double rate = opening(&s.p[l], j, s.u[row_a(l)], s.u[row_a(l) + 1]);
 				CHECK(rate + to >= -1e-5);
-				CHECK(s.batch.impulse[j][l] * s.batch.a[OB_SYM(j, j)][l] < 1e-5 || rate + to <= 1e-5);
+				CHECK(s.batch.impulse[j][l] * s.batch.diag[j][l] < 1e-5 || rate + to <= 1e-5);
 			}
 	}
 }
@@ -203,8 +203,9 @@ static void test_rates(void)
 			for (int l = 0; l < OB_LANES; l++) {
 				double expected = 0, scale = 1;
 				for (int j = 0; j < OB_ROWS; j++) {
-					expected += s.batch.a[OB_SYM(k, j)][l] * x[j][l];
-					scale += fabs(s.batch.a[OB_SYM(k, j)][l]);
+					double a = s.batch.spread[j][k][l] * s.batch.diag[k][l];
+					expected += a * x[j][l];
+					scale += fabs(a);
 				}
 				if (s.p[l].b.inv_mass > 0 && (k > 3 || k < s.p[l].points))
 					CHECK_NEAR(rate[k][l] / scale, expected / scale, 1e-12);
@@ -334,7 +335,7 @@ static void test_cap(void)
 			bool impact = solved.impact >> l & 1;
 			capped += impact;
 			for (int k = 0; k < OB_ROWS; k++) {
-				double most = fmax(cap[l], .05 / (s.batch.a[OB_SYM(k, k)][l] + 1e-9));
+				double most = fmax(cap[l], .05 / (s.batch.diag[k][l] + 1e-9));
 				if (k == 6)
 					most *= s.batch.radius[l];
 				CHECK(impact || s.batch.impulse[k][l] == solved.impulse[k][l]);
