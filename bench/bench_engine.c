@@ -58,7 +58,7 @@ static const ob_peer_kind *find(const char *name)
 
 static int misused(const char *what, const char *word)
 {
-	fprintf(stderr, "bench_engine: %s \"%s\"\n", what, word);
+	fprintf(stderr, "bench_engine: %s %s\n", what, word);
 	return 2;
 }
 
@@ -71,7 +71,7 @@ int main(int argc, char **argv)
 	ob_error e = { "" };
 	const bench_scene *scene = bench_scene_find(argv[1], &e);
 	if (!scene)
-		return misused(e.text, argv[1]);
+		return misused(e.text, "");
 	const ob_peer_kind *kind = find(argv[2]);
 	if (!kind)
 		return misused("no engine", argv[2]);
