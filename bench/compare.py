@@ -20,7 +20,7 @@ LEVEL, LEAST = .01, .05  # of the test; of the medians
 CONTROL = {'cpu': 'cpu', 'wall': 'wall', 'median step': 'wall', 'start-up': 'wall'}  # times, and what tells of the machine
 NOISELESS = 1e-12  # errors below are round-off
 PLAIN = {'bodies', 'steps', 'state', 'failed'}
-PROFILE = ('part: ', 'count: ', 'function: ', 'cpu, timed')  # taken once, for a look at them
+PROFILE = ('part: ', 'count: ', 'function: ', 'cpu, timed', 'critical path')  # taken once, for a look at them
 
 
 def give_up(why):

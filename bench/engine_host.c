@@ -118,6 +118,8 @@ static void print_parts(const watched *r)
 	double cpu = 1e6 * (r->after.cpu_s - r->before.cpu_s) / all;
 	bench_print("part: gate and the rest", "us/body-step", cpu - sum);
 	bench_print("cpu, timed", "us/body-step", cpu);
+	double critical = r->after.critical_s - r->before.critical_s;
+	bench_print("critical path", "us/step", 1e6 * critical / (double)(r->steps - r->from));
 #define COUNT(what) bench_print("count: " #what, "1/body-step", (double)(b->what - a->what) / all)
 	COUNT(leaps);
 	COUNT(member_steps);

@@ -130,7 +130,10 @@ def heaps(m):
         yield Promise(f'falling {n}: resting mean, mm', m.get(scene, 'obsim', 'resting mean penetration'), .1,
                       note=f"Bullet {number(m.get(scene, 'bullet', 'resting mean penetration'))}")
         one, two = m.get(scene, 'obsim, 1 thread', 'wall'), m.get(scene, 'obsim, 2 threads', 'wall')
-        yield Promise(f'falling {n}: wall of two workers / of one', two / one, .6)
+        path = [m.get(scene, f'obsim, {w}', 'critical path', setting='critical path', duration=10.)
+                for w in ('1 thread', '2 threads')]
+        yield Promise(f'falling {n}: wall of two workers / of one', two / one, .6,
+                      note=f'critical path, with a core for each: {number(path[1] / path[0])}')
         if n == '4000':
             yield Promise(f'falling {n}: wall of two workers / of ODE', two / m.get(scene, 'ode-quick', 'wall'), .35)
     yield Promise('pile of 216, at ≤ 2 mm: us per body-step', m.cost_at_equal('pile', 'obsim'), 3,

@@ -78,7 +78,8 @@ KNOBS = {
     'bullet': [{'substeps': n, 'iterations': i} for n in (1, 2, 4, 8, 16) for i in (5, 10, 20, 50)],
 }
 
-# Where the time goes: (scene, from, to, what that is), one worker, usual settings; and whole runs by function.
+# Where the time goes: (scene, from, to, what that is), one worker, usual settings; whole runs by function; and scenes whose
+# critical path is told for one worker and for two: what their steps would take on cores of their own.
 PARTS = [
     ('falling-1000', 0, 2, 'landing'),
     ('falling-1000', 8, 10, 'at rest'),
@@ -86,4 +87,5 @@ PARTS = [
     ('sparse-10000', 3, 10, 'rattling to rest'),
     ('stack-10', 0, 20, 'standing'),
 ]
+CRITICAL = [('falling-1000', 10), ('falling-4000', 10)]
 FUNCTIONS = [('falling-1000', 3), ('sparse-10000', 5), ('stack-10', 600)]
