@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """compare.py A.csv B.csv: what changed from A to B beyond the noise, of two files that bench/run.py wrote.
 
-Other engines stand for the machine, for their code is the same: obsim's times are held against the median of what theirs
-have become, and no change counts that is smaller than the largest that one of theirs shows. Of the rest, a time has
-changed when the repeats say so (Mann and Whitney 1947, two-sided, at 1 %) and its median differs by more than 5 %; memory,
-when its median does by more than 5 %; an error, which is the same in every repeat, when it is more than twice as large, or
-less than half.
+Other engines stand for the machine, for their code is the same: obsim's times are held against the median of what
+theirs have become, and no change counts that is smaller than the largest that one of theirs shows. Of the rest, a time
+has changed when the repeats say so (Mann and Whitney 1947, two-sided, at 1 %) and its median differs by more than 5 %;
+memory, when its median does by more than 5 %; an error, which is the same in every repeat, when it is more than twice as
+large, or less than half.
 
 Exit: 0 nothing became worse, 1 something did, 2 the files cannot be compared.
 """
@@ -17,7 +17,8 @@ import statistics
 import sys
 
 LEVEL, LEAST = .01, .05  # of the test; of the medians
-CONTROL = {'cpu': 'cpu', 'wall': 'wall', 'median step': 'wall', 'start-up': 'wall'}  # times, and what tells of the machine
+# Times, and what tells of the machine
+CONTROL = {'cpu': 'cpu', 'wall': 'wall', 'median step': 'wall', 'start-up': 'wall'}
 NOISELESS = 1e-12  # errors below are round-off
 PLAIN = {'bodies', 'steps', 'state', 'failed'}
 PROFILE = ('part: ', 'count: ', 'function: ', 'cpu, timed', 'critical path')  # taken once, for a look at them
@@ -87,7 +88,8 @@ def compare(a, b):
     """How many quantities of obsim became worse, and how many were compared."""
     controls = {q: of_machine(a, b, q) for q in ('cpu', 'wall')}
     for quantity, (factor, noise) in controls.items():
-        print(f'machine: {quantity} of other engines is {factor:.3f} times what it was, each within a factor of {noise:.3f}')
+        print(f'machine: {quantity} of other engines is {factor:.3f} times what it was, '
+              f'each within a factor of {noise:.3f}')
     counts = collections.Counter()
     for key in sorted(k for k in a.keys() & b.keys() if k[2] != 'pieces'):
         if not key[1].startswith('obsim'):

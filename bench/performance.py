@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """performance.py RESULTS.csv ... [FILE]: writes the tables that stand in FILE between <!-- performance: NAME --> and
-<!-- end --> anew, from what bench/run.py --mode full has measured; without FILE prints them all. Of what several results
-tell, the last one counts: so a few scenes can be measured again.
+<!-- end --> anew, from what bench/run.py --mode full has measured; without FILE prints them all. Of what several
+results tell, the last one counts: so a few scenes can be measured again.
 """
 import collections
 import csv
@@ -91,7 +91,8 @@ class Promise:
         return 'yes' if (self.value >= self.bound if self.at_least else self.value <= self.bound) else 'no'
 
     def line(self):
-        return row(self.what, f"{'≥' if self.at_least else '≤'} {self.bound:g}", number(self.value), self.kept(), self.note)
+        target = f"{'≥' if self.at_least else '≤'} {self.bound:g}"
+        return row(self.what, target, number(self.value), self.kept(), self.note)
 
 
 def flight(m):
@@ -111,8 +112,9 @@ def standing(m):
     for scene, name in (('stack-10', 'stack of 10'), ('pyramid-15', 'pyramid of 120')):
         ours = m.cost_at_equal(scene, 'obsim')
         for engine, bound in (('bullet', 8), ('ode-quick', 20)):
-            yield Promise(f'{name}: {engine} at ≤ 1 mm / obsim at ≤ .5 mm', m.cost_at_equal(scene, engine) / ours, bound, True,
-                          f'us/body-step: obsim {number(ours)}, {engine} {number(m.cost_at_equal(scene, engine))}')
+            theirs = m.cost_at_equal(scene, engine)
+            yield Promise(f'{name}: {engine} at ≤ 1 mm / obsim at ≤ .5 mm', theirs / ours, bound, True,
+                          f'us/body-step: obsim {number(ours)}, {engine} {number(theirs)}')
 
 
 def heaps(m):
@@ -120,7 +122,8 @@ def heaps(m):
     for n in ('1000', '4000'):
         scene = f'falling-{n}'
         ours, theirs = m.cost(scene, 'obsim'), m.cost(scene, 'bullet')
-        yield Promise(f'falling {n}: obsim / Bullet', ours / theirs, .85, note=f'us/body-step: {number(ours)}, {number(theirs)}')
+        yield Promise(f'falling {n}: obsim / Bullet', ours / theirs, .85,
+                      note=f'us/body-step: {number(ours)}, {number(theirs)}')
         if m.equal(scene, 'obsim'):
             best = m.cost_at_equal(scene, 'obsim')
             yield Promise(f'falling {n}, cheapest setting with ≤ 20 mm and ≤ .1 mm: obsim / Bullet', best / theirs, .85,
@@ -143,7 +146,8 @@ def heaps(m):
 def hard(m):
     ours, theirs = m.cost_at_equal('heavy-1000', 'obsim'), m.cost_at_equal('heavy-1000', 'ode-world')
     yield Promise('1000 : 1 at ≤ 2 mm: obsim / dWorldStep', ours / theirs, 1,
-                  note=f"us/body-step: {number(ours)}, {number(theirs)}; usual setting {number(m.cost('heavy-1000', 'obsim'))}")
+                  note=f"us/body-step: {number(ours)}, {number(theirs)}; "
+                       f"usual setting {number(m.cost('heavy-1000', 'obsim'))}")
     ours, theirs = m.cost_at_equal('rolling-diagonal', 'obsim'), m.cost('rolling-diagonal', 'bullet')
     yield Promise('rolling at ≤ 1e-5: obsim / Bullet at 60 Hz', ours / theirs, 2,
                   note=f"us/body-step: {number(ours)}, {number(theirs)}; "
@@ -167,7 +171,8 @@ def scale(m):
 def pools(m):
     scenes = sorted({s for s, e, _, d in m.settings if e == 'obsim, 2 processes' and not d})
     same = sum(len(set.union(*(m.texts(s, e, 'state') for e in SIDES_OF_OBSIM))) == 1 for s in scenes)
-    yield Promise('scenes whose state differs between workers and isolations', len(scenes) - same, 0, note=f'of {len(scenes)}')
+    yield Promise('scenes whose state differs between workers and isolations', len(scenes) - same, 0,
+                  note=f'of {len(scenes)}')
     for scene in scenes:
         ratio = m.cost(scene, 'obsim, 2 processes') / m.cost(scene, 'obsim, 2 threads')
         yield Promise(f'{scene}: CPU of a process pool / of a thread pool', ratio, 1.2)
@@ -202,8 +207,8 @@ def table_of(m, wanted):
         if not wanted(setting) or not scene:
             continue
         how = {'setting': setting, 'duration': duration}
-        text += row(scene + (f', {duration:g} s' if duration else ''), engine, re.sub(r'duration=\S+ ?', '', knobs) or 'usual',
-                    errors_of(m, scene, engine, setting, duration), spread(m.values(scene, engine, 'cpu', **how)),
+        text += row(scene + (f', {duration:g} s' if duration else ''), engine,
+                    re.sub(r'duration=\S+ ?', '', knobs) or 'usual', errors_of(m, scene, engine, setting, duration), spread(m.values(scene, engine, 'cpu', **how)),
                     spread(m.values(scene, engine, 'wall', **how)))
     return text
 

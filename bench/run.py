@@ -87,8 +87,8 @@ class Results:
 
     def add(self, side, repeat, rows):
         for quantity, unit, value in rows:
-            self.csv.writerow([*self.head, side.scene, side.knobs.get('duration', ''), side.name, side.setting, side.words(),
-                               repeat, quantity, unit, value])
+            self.csv.writerow([*self.head, side.scene, side.knobs.get('duration', ''), side.name, side.setting,
+                               side.words(), repeat, quantity, unit, value])
         self.file.flush()
 
 

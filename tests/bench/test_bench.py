@@ -15,7 +15,8 @@ COLUMNS = ['date', 'commit', 'machine', 'scene', 'duration', 'engine', 'setting'
 
 
 def call(script, *words):
-    return subprocess.run([sys.executable, os.path.join(BENCH, script), *words], capture_output=True, text=True, check=False)
+    words = [sys.executable, os.path.join(BENCH, script), *words]
+    return subprocess.run(words, capture_output=True, text=True, check=False)
 
 
 def rows_of(path):
@@ -45,7 +46,8 @@ def test_run(folder):
     assert any(r['quantity'] == 'worst penetration' and r['unit'] == 'mm' and r['repeat'] == '0' for r in rows)
     done = call('run.py', BUILD, '--mode', 'tiny', '--out', path, '--scenes', 'no-such-scene')
     assert done.returncode == 2 and 'nothing has this name' in done.stderr, done.stderr
-    done = call('run.py', BUILD, '--mode', 'tiny', '--out', path, '--scenes', 'fall*', '--engines', 'obsim', '--repeats', '1')
+    only = ('--scenes', 'fall*', '--engines', 'obsim', '--repeats', '1')
+    done = call('run.py', BUILD, '--mode', 'tiny', '--out', path, *only)
     assert done.returncode == 0 and {r['scene'] for r in rows_of(path)} == {'falling-8'}
     assert call('run.py', folder).returncode == 2
 
