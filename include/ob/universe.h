@@ -54,14 +54,14 @@ typedef struct ob_passport {
 } ob_passport;
 
 enum { // ob_motion.flags
-	OB_MOTION_FREE = 1 << 0,   // in free flight since the previous publication: the closed form is exact
+	OB_MOTION_FREE = 1 << 0,   // in free flight: up to t0, what was published before holds exactly
 	OB_MOTION_ASLEEP = 1 << 1, // at rest by consent of its island
 	OB_MOTION_CALM = 1 << 2,   // its contacts hold it, and have found nothing to change in the last step
 };
 
 // How an object moves from t0 on, unless touched. 200 bytes: the payload of one slot version.
 typedef struct ob_motion {
-	double t0;          // s, the instant of the state below
+	double t0;          // s, the instant of the state below: of a flight, when it began
 	double valid_until; // s, the closed form holds so long, unless another object interferes
 	ob_vec3 p;          // m, centre of mass
 	ob_quat q;          // body to world
@@ -74,7 +74,7 @@ typedef struct ob_motion {
 	uint32_t flags;     // OB_MOTION_*
 	float quiet;        // s, how long it has been slow
 	uint32_t island;    // lowest id of the island in which it was solved
-	uint32_t flight;    // 1 + the step after which the free flight began that goes on; 0 = none does
+	float reach;        // m, how much of that path each step adds at most, until something else is published
 	uint32_t substeps;  // that its island asks for in the next step, where a tolerance chooses; 0 = none yet
 } ob_motion;
 

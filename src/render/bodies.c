@@ -15,7 +15,16 @@ static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t
 		return ob_motion_at(m, inertia, t).pose;
 	bool same = prev && i < prev->count && (prev->passport[i].flags & OB_OBJECT_PRESENT) &&
 		    prev->passport[i].generation == now->passport[i].generation && prev->motion[i].t0 <= t;
-	return same ? ob_motion_between(&prev->motion[i], m, inertia, t) : (ob_pose){ m->p, m->q };
+	if (!same)
+		return (ob_pose){ m->p, m->q };
+	ob_motion before = prev->motion[i];
+	if (before.t0 < prev->time && !(m->flags & OB_MOTION_FREE)) { // it flew so far, and what came then is not known
+		ob_pose then = ob_motion_at(&before, inertia, prev->time).pose;
+		before.p = then.p;
+		before.q = then.q;
+		before.t0 = prev->time;
+	}
+	return ob_motion_between(&before, m, inertia, t);
 }
 
 bool ob_bodies_evaluate(ob_bodies *b, const ob_snapshot *prev, const ob_snapshot *now, double t)

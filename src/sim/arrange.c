@@ -79,13 +79,18 @@ static void open_islands(ob_universe *u)
 	ob_gate_open(u, OB_PHASE_ISLANDS, who, n);
 }
 
-static uint32_t count_awake(const ob_universe *u)
+// Who is awake, and when the first of them is due.
+static void count_awake(ob_universe *u)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
-	uint32_t n = 0;
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t n = 0, due = UINT32_MAX;
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
-		n += ex->brief[id].state == OB_BRIEF_AWAKE;
-	return n;
+		if (ex->brief[id].state == OB_BRIEF_AWAKE) {
+			n++;
+			due = ex->brief[id].due < due ? ex->brief[id].due : due;
+		}
+	ex->count->awake = n;
+	ex->count->next_due = due;
 }
 
 // The host may ask for a pause at a step that has just gone by: then the next one will do.
@@ -97,19 +102,47 @@ static bool must_pause(const ob_universe *u)
 static void complete_step(ob_universe *u)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
-	ob_step_complete(u, count_awake(u), ex->count->pairs, ex->count->islands);
+	ob_step_complete(u, ex->count->awake, ex->count->pairs, ex->count->islands);
 }
 
-// Steps in which nothing is awake are complete as soon as they begin.
-static void begin_step(ob_universe *u)
+// The pairs of one step, by all workers, or by the one that asks, where it has one.
+static void open_checks(ob_universe *u, uint32_t stage)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	ob_exchange *ex = ob_universe_exchange(u);
+	uint32_t first = 0;
+	ex->count->stage = stage;
+	ob_claim_reset(u, (ex->count->pairs + OB_MEETINGS_HANDFUL - 1) / OB_MEETINGS_HANDFUL);
+	if (!own_worker_each(u)) {
+		ob_gate_open(u, OB_PHASE_MEETINGS, NULL, 0);
+		return;
+	}
+	while (ex->brief[first].state != OB_BRIEF_AWAKE) // its worker does it; a pair is checked, so there is one
+		first++;
+	ob_gate_open(u, OB_PHASE_MEETINGS, &first, 1);
+}
+
+// Steps in which nobody is due and no pair comes near are complete as soon as they begin. s: the worker that arranges;
+// NULL where the host does.
+static void begin_step(ob_universe *u, ob_sim *s)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
 	if (ob_universe_settings(u)->monolith) {
 		ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
 		return;
 	}
 	for (;;) {
-		ob_islands_plan(u);
+		uint64_t step = ob_step_count(u);
+		if (ex->count->next_look <= step && ex->count->looked != step) {
+			if (!s) {
+				open_checks(u, OB_STAGE_START);
+				return;
+			}
+			ob_meetings_check(s, 0, ex->count->pairs, false);
+			ob_meetings_any(u, false);
+		}
+		ex->count->islands = 0;
+		if (ex->count->next_look <= step || ex->count->next_due <= step)
+			ob_islands_plan(u);
 		if (ex->count->islands) {
 			open_islands(u);
 			return;
@@ -122,28 +155,29 @@ static void begin_step(ob_universe *u)
 	}
 }
 
-static void go_on(ob_universe *u)
+static void go_on(ob_universe *u, ob_sim *s)
 {
 	if (must_pause(u))
 		ob_gate_pause(u);
 	else
-		begin_step(u);
+		begin_step(u, s);
 }
 
-static void finish_step(ob_universe *u)
+static void finish_step(ob_universe *u, ob_sim *s)
 {
+	count_awake(u);
 	complete_step(u);
-	go_on(u);
+	go_on(u, s);
 }
 
 static void after_meetings(ob_sim *s)
 {
 	ob_universe *u = s->u;
-	if (ob_universe_exchange(u)->count->stage == OB_STAGE_START) {
-		go_on(u);
+	bool solved = ob_universe_exchange(u)->count->stage == OB_STAGE_SOLVED, met = ob_meetings_any(u, solved);
+	if (!solved) {
+		go_on(u, s);
 		return;
 	}
-	bool met = ob_meetings_any(u);
 	s->counters.reunions += met;
 	*ob_worker_counters(u, s->worker) = s->counters; // before anybody may look
 	if (met) {
@@ -153,7 +187,7 @@ static void after_meetings(ob_sim *s)
 	}
 	ob_outcomes_commit(s);
 	if (!open_adopters(u))
-		finish_step(u);
+		finish_step(u, s);
 }
 
 static void open_meetings(ob_sim *s, uint32_t stage)
@@ -162,12 +196,11 @@ static void open_meetings(ob_sim *s, uint32_t stage)
 	ob_universe *u = s->u;
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t pairs = ex->count->pairs;
-	ex->count->stage = stage;
 	if (pairs >= MANY && ob_universe_workers(u) > 1 && !own_worker_each(u)) {
-		ob_claim_reset(u, (pairs + OB_MEETINGS_HANDFUL - 1) / OB_MEETINGS_HANDFUL);
-		ob_gate_open(u, OB_PHASE_MEETINGS, NULL, 0);
+		open_checks(u, stage);
 		return;
 	}
+	ex->count->stage = stage;
 	ob_meetings_check(s, 0, pairs, stage == OB_STAGE_SOLVED);
 	after_meetings(s);
 }
@@ -181,7 +214,7 @@ void ob_arrange(ob_sim *s, ob_phase finished)
 	if (finished == OB_PHASE_ISLANDS) {
 		ob_rebound_list(u, &asked);
 		if (ob_universe_settings(u)->monolith)
-			finish_step(u);
+			finish_step(u, s);
 		else if (asked)
 			open_perceivers(u, OB_STAGE_SOLVED);
 		else
@@ -189,9 +222,9 @@ void ob_arrange(ob_sim *s, ob_phase finished)
 	} else if (finished == OB_PHASE_MEETINGS) {
 		after_meetings(s);
 	} else if (stage == OB_STAGE_ADOPT) {
-		finish_step(u);
+		finish_step(u, s);
 	} else {
-		ob_pairs_merge(u);
+		ob_pairs_merge(u, ob_step_count(u) + (stage == OB_STAGE_SOLVED));
 		open_meetings(s, stage);
 	}
 }
@@ -200,6 +233,8 @@ void ob_sim_resume(ob_universe *u)
 {
 	uint32_t asked;
 	ob_step_begin(u);
+	count_awake(u);
+	ob_universe_exchange(u)->count->next_look = 0; // the host may have changed anything
 	ob_rebound_list(u, &asked);
 	if (ob_universe_settings(u)->monolith)
 		ob_rebound_reset(u); // one world finds its own neighbours
@@ -207,7 +242,7 @@ void ob_sim_resume(ob_universe *u)
 		open_perceivers(u, OB_STAGE_START);
 		return;
 	}
-	go_on(u);
+	go_on(u, NULL);
 }
 
 const char *ob_sim_failure(const ob_universe *u)

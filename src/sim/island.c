@@ -117,15 +117,32 @@ static void note_effort(ob_sim *s, const ob_island *is, uint64_t cost)
 		ex->effort[ex->member[is->first_member + i]] = (uint32_t)(share < MOST ? share : MOST);
 }
 
+// Alone, and near nothing but planes, which it does not touch yet. What has met something in this step is not alone.
+static bool may_leap(const ob_universe *u, const ob_island *is)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	if (is->members > 1 ||
+	    (is->pairs && (ex->count->again || ob_universe_settings(u)->integrator == OB_INTEGRATOR_ODE)))
+		return false;
+	for (uint32_t i = 0; i < is->pairs; i++) {
+		const ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
+		uint32_t other = k->a == ex->member[is->first_member] ? k->b : k->a;
+		if (k->active || ex->brief[other].state != OB_BRIEF_PLANE)
+			return false;
+	}
+	return true;
+}
+
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
 	ob_fetch_island(s, i + 1);
-	if (is->members == 1 && is->pairs == 0) {
+	if (may_leap(s->u, is)) {
 		ob_part_enter(s, OB_PART_LEAP);
-		s->counters.leaps++;
-		ob_leap(s, ob_universe_exchange(s->u)->member[is->first_member]);
-		return;
+		if (ob_leap(s, ob_universe_exchange(s->u)->member[is->first_member])) {
+			s->counters.leaps++;
+			return;
+		}
 	}
 	const uint64_t before = cost_so_far(s);
 	s->island.substeps = ob_tolerance_start(s, is);

@@ -16,6 +16,7 @@ typedef struct plan {
 	uint32_t *parent; // [id]
 	uint32_t *island_of; // [root]
 	uint32_t *before; // [id]: its island of the plan that is mended; NULL = this is the step's first
+	uint64_t step; // that is planned
 } plan;
 
 static uint32_t root_of(uint32_t *parent, uint32_t i)
@@ -34,6 +35,20 @@ static bool dynamic(const plan *p, uint32_t id)
 static bool asleep(const plan *p, uint32_t id)
 {
 	return p->ex->brief[id].state == OB_BRIEF_ASLEEP && (!p->before || p->before[id] == NONE);
+}
+
+// Must the object be looked after in this step, whatever comes near it? What flies by itself need not.
+static bool due(const plan *p, uint32_t id)
+{
+	return p->before ? p->before[id] != NONE : p->ex->brief[id].due <= p->step;
+}
+
+// Does the pair draw both into the step?
+static bool draws(const plan *p, const ob_pair_key *k)
+{
+	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
+	bool awake = a->state == OB_BRIEF_AWAKE || b->state == OB_BRIEF_AWAKE;
+	return p->before ? k->met : awake && (k->near || k->active);
 }
 
 static bool joins(const plan *p, const ob_pair_key *k)
@@ -75,9 +90,12 @@ static void list_members(plan *p)
 	uint32_t n = 0, total = 0;
 	for (uint32_t id = 0; id < p->ids; id++)
 		p->island_of[id] = NONE;
-	for (uint32_t id = 0; id < p->ids; id++) // a tree with one awake member is awake
-		if (dynamic(p, id) && !asleep(p, id))
+	for (uint32_t id = 0; id < p->ids; id++) // a tree with one member that is due is solved
+		if (dynamic(p, id) && due(p, id))
 			p->island_of[root_of(p->parent, id)] = 0;
+	for (uint32_t i = 0; i < ex->count->pairs; i++)
+		if (draws(p, &ex->pair[i]))
+			p->island_of[root_of(p->parent, dynamic(p, ex->pair[i].a) ? ex->pair[i].a : ex->pair[i].b)] = 0;
 	for (uint32_t id = 0; id < p->ids; id++) {
 		ex->result_island[id] = NONE;
 		if (!dynamic(p, id) || p->island_of[root_of(p->parent, id)] == NONE)
@@ -140,7 +158,8 @@ static uint32_t island_of_pair(const plan *p, ob_pair_key *k)
 		return NONE;
 	if (p->before && p->ex->island[i].solved)
 		return k->listed ? i : NONE;
-	return k->active || a->reach + b->reach >= k->limit - a->path - b->path ? i : NONE;
+	double paths = ob_brief_path(a, p->step) + ob_brief_path(b, p->step);
+	return k->active || a->reach + b->reach >= k->limit - paths ? i : NONE;
 }
 
 static void list_pairs(plan *p)
@@ -229,7 +248,7 @@ void ob_islands_plan(ob_universe *u)
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t ids = ob_universe_ids(u);
 	ex->count->again = 0;
-	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, NULL });
+	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, NULL, ob_step_count(u) });
 }
 
 void ob_islands_unite(ob_universe *u)
@@ -238,5 +257,5 @@ void ob_islands_unite(ob_universe *u)
 	uint32_t ids = ob_universe_ids(u), *before = ex->scratch + 2 * ids;
 	ex->count->again = 1;
 	memcpy(before, ex->result_island, ids * sizeof *before);
-	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, before });
+	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, before, ob_step_count(u) });
 }

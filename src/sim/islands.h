@@ -5,8 +5,8 @@
 
 #include "table/table.h"
 
-// Groups the awake objects into islands and the islands into chunks of about equal work, largest first. Islands that
-// an awake object touches, or is expected to, wake up.
+// Groups the objects that are due (ob_brief.due), and what they touch or are expected to, into islands and the islands
+// into chunks of about equal work, largest first. Islands that an awake object touches, or is expected to, wake up.
 void ob_islands_plan(ob_universe *u);
 // Within the step, after some pairs have met across islands (sim/meeting.h): makes one island of those that did. The
 // others stand as they were solved; the chunks are of what must be solved again.

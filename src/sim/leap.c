@@ -1,41 +1,83 @@
 #include "sim/leap.h"
 
-#include <string.h>
-
+#include "motion/landing.h"
+#include "sim/bounce.h"
 #include "sim/members.h"
+#include "sim/now.h"
 #include "sim/perceive.h"
 #include "sim/pull.h"
 
-// Goes on from where the newest motion's flight began, unless something else pulls at the object now.
-static bool goes_on(const ob_motion *before, const ob_flight *f, ob_vec3 a)
+enum { MOST_BOUNCES = 8 }; // in a step: what rattles more is a contact
+
+static const double horizon = 1; // s
+
+static bool equal(ob_vec3 a, ob_vec3 b)
 {
-	return before->flight && before->flight == f->since && a.x == f->a.x && a.y == f->a.y && a.z == f->a.z;
+	return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-// ob_motion_at, to the last bit, but for the plan of the spin, which is kept.
-static ob_state flown(ob_sim *s, uint32_t id, const ob_flight *f, double time)
+ob_motion ob_leap_flight(const ob_sim *s, uint32_t id)
 {
-	ob_motion m = { .p = f->p, .q = f->q, .v = f->v, .a = f->a };
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	uint64_t step = ob_step_count(s->u);
+	ob_motion m = *ob_newest_motion(s->u, id);
+	ob_vec3 a = ob_pull(run, ob_passport_of(s->u, id));
+	double now = (double)step * run->step_length;
+	if (!equal(m.a, a)) {
+		ob_state begin = ob_state_now(s->u, id, &m, step);
+		m.p = begin.pose.p, m.q = begin.pose.q, m.v = begin.v, m.w = begin.w, m.a = a;
+		m.t0 = m.valid_until = now;
+	} else if (!(m.flags & OB_MOTION_FREE)) {
+		m.valid_until = m.t0;
+	}
+	m.flags = 0;
+	return m;
+}
+
+ob_state ob_leap_state(ob_sim *s, uint32_t id, const ob_motion *f, double time)
+{
+	if (time == f->t0 || f->flags & OB_MOTION_ASLEEP || ob_passport_of(s->u, id)->flags & OB_OBJECT_STATIC)
+		return (ob_state){ { f->p, f->q }, f->v, f->w };
 	ob_vec3 inertia = ob_passport_of(s->u, id)->inertia;
-	ob_state end = ob_motion_at(&m, inertia, time);
+	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .a = f->a };
+	ob_state now = ob_motion_at(&m, inertia, time);
 	if (ob_norm2(f->w) > 0)
-		ob_spin_at(ob_plans_spin(&s->plans, id, f->q, f->w, inertia), time, &end.pose.q, &end.w);
-	return end;
+		ob_spin_at(ob_plans_spin(&s->plans, id, f->q, f->w, inertia), time - f->t0, &now.pose.q, &now.w);
+	return now;
 }
 
-ob_state ob_leap_end(ob_sim *s, uint32_t id, uint32_t *flight)
+// Bound of the speed of any point of the object between two instants of the flight (m/s).
+static double fastest(const ob_passport *pass, const ob_motion *f, double from, double until)
+{
+	double begin = ob_norm(ob_madd(f->v, from - f->t0, f->a)), end = ob_norm(ob_madd(f->v, until - f->t0, f->a));
+	bool turns = pass->shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0;
+	return fmax(begin, end) +
+	       (turns ? ob_spin_bound(f->q, f->w, pass->inertia) * ob_shape_radius(pass->shape, pass->size) : 0);
+}
+
+// What holds after the running step: m is the flight then, its path that at the step's end.
+static void publish(ob_sim *s, uint32_t id, ob_motion *m)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const ob_passport *pass = ob_passport_of(s->u, id);
-	const ob_motion *before = ob_newest_motion(s->u, id);
-	ob_flight *f = &ob_universe_exchange(s->u)->flight[id];
-	uint64_t step = ob_step_count(s->u);
-	ob_vec3 a = ob_pull(run, pass);
-	if (!goes_on(before, f, a))
-		*f = (ob_flight){ step * run->step_length, before->p, before->q, before->v, before->w, a,
-				  (uint32_t)step + 1,      0 };
-	*flight = f->since;
-	return flown(s, id, f, (step + 1) * run->step_length - f->t0);
+	const uint64_t step = ob_step_count(s->u) + 1;
+	const double h = run->step_length, end = (double)step * h;
+	ob_state now = ob_leap_state(s, id, m, end);
+	uint64_t due = m->flags & OB_MOTION_FREE ? (uint64_t)(m->valid_until / h) : step;
+	due -= (double)due * h > m->valid_until && due > step; // the quotient may have been rounded up
+	double last = (double)(due + 1) * h, reach = fastest(pass, m, end, last) * h;
+	ob_motion rest = { .t0 = end, .p = now.pose.p, .q = now.pose.q, .v = now.v, .w = now.w, .a = m->a };
+	double box[6];
+	ob_motion_swept_bounds(&rest, pass->shape, pass->size, m->valid_until - end, box);
+	m->step = (uint32_t)step;
+	m->reach = (float)reach;
+	m->island = id;
+	m->substeps = 0;
+	m->quiet = 0;
+	if (!isfinite(now.pose.p.x + now.pose.p.y + now.pose.p.z + now.pose.q.w + now.w.x))
+		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
+	ob_claim_swept(s->u, id, box, reach);
+	ob_member_hand_over(s, id, m, OB_BRIEF_AWAKE, (uint32_t)due);
 }
 
 static ob_state end_by_ode(ob_sim *s, uint32_t id)
@@ -50,27 +92,59 @@ static ob_state end_by_ode(ob_sim *s, uint32_t id)
 	return now;
 }
 
-void ob_leap(ob_sim *s, uint32_t id)
+// ODE's stepper foresees nothing: one step.
+static void step_by_ode(ob_sim *s, uint32_t id)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	const ob_motion *before = ob_newest_motion(s->u, id);
 	uint64_t step = ob_step_count(s->u) + 1;
-	uint32_t flight = 0;
-	ob_state now = run->integrator == OB_INTEGRATOR_ODE ? end_by_ode(s, id) : ob_leap_end(s, id, &flight);
-	ob_motion m = { .t0 = step * run->step_length,
-			.valid_until = (step + 1) * run->step_length,
-			.p = now.pose.p,
-			.q = now.pose.q,
-			.v = now.v,
-			.w = now.w,
+	ob_state end = end_by_ode(s, id);
+	ob_motion m = { .t0 = (double)step * run->step_length,
+			.valid_until = (double)(step + 1) * run->step_length,
+			.p = end.pose.p,
+			.q = end.pose.q,
+			.v = end.v,
+			.w = end.w,
 			.a = ob_pull(run, pass),
 			.path = before->path + ob_step_reach(run, pass, before->v, before->w),
 			.step = (uint32_t)step,
 			.flags = OB_MOTION_FREE,
-			.island = id,
-			.flight = flight };
+			.island = id };
 	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
 		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-	ob_member_publish(s, id, &m);
+	ob_member_publish(s, id, &m, &end);
+}
+
+bool ob_leap(ob_sim *s, uint32_t id)
+{
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	const ob_passport *pass = ob_passport_of(s->u, id);
+	if (run->integrator == OB_INTEGRATOR_ODE) {
+		step_by_ode(s, id);
+		return true;
+	}
+	const uint64_t step = ob_step_count(s->u);
+	const double h = run->step_length, end = (double)(step + 1) * h, far = end + horizon;
+	ob_motion m = ob_leap_flight(s, id);
+	double since = (double)step * h, from = fmax(m.valid_until, since);
+	uint32_t plane, bounces = 0;
+	m.path = ob_path_now(&m, step);
+	for (;;) {
+		m.valid_until = fmin(far, ob_bounce_time(s, id, &m, from, far, &plane));
+		double until = fmin(m.valid_until, end);
+		m.path += fastest(pass, &m, since, until) * (until - since);
+		if (!(m.valid_until < end))
+			break;
+		ob_state at = ob_leap_state(s, id, &m, until);
+		if (bounces++ == MOST_BOUNCES || !ob_bounce(s, id, plane, &at))
+			return false;
+		m.p = at.pose.p, m.q = at.pose.q, m.v = at.v, m.w = at.w;
+		m.t0 = since = from = until;
+	}
+	// After one bounce, what was published before holds up to it; not up to the last of several.
+	m.flags = bounces < 2 ? OB_MOTION_FREE : 0;
+	s->counters.impacts += bounces;
+	publish(s, id, &m);
+	return true;
 }

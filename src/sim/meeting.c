@@ -1,7 +1,9 @@
 #include "sim/meeting.h"
 
 #include "contact/swept.h"
+#include "sim/leap.h"
 #include "sim/look.h"
+#include "sim/now.h"
 #include "sim/outcome.h"
 #include "sim/perceive.h"
 
@@ -23,21 +25,27 @@ static bool moves(const ob_exchange *ex, uint32_t id)
 }
 
 // What each does in the coming step if nothing new touches it: who is in contact goes on as it does.
-static ob_placed placed(const ob_passport *p, const ob_motion *m, double h)
+static ob_placed placed(ob_sim *s, uint32_t id, const ob_motion *m, uint64_t steps)
 {
-	return (ob_placed){ p->shape, p->size, m->p, ob_quat_matrix(m->q), ob_madd(m->v, .5 * h, m->a), m->w };
+	const ob_passport *p = ob_passport_of(s->u, id);
+	const double h = ob_universe_settings(s->u)->step_length;
+	ob_state now = ob_leap_state(s, id, m, (double)steps * h);
+	return (ob_placed){ p->shape, p->size, now.pose.p, ob_quat_matrix(now.pose.q), ob_madd(now.v, .5 * h, m->a),
+			    now.w };
 }
 
-static pair pair_of(const ob_universe *u, const ob_pair_key *k)
+static pair pair_of(ob_sim *s, const ob_pair_key *k, uint64_t steps)
 {
+	const ob_universe *u = s->u;
 	const ob_exchange *ex = ob_universe_exchange(u);
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
-	pair p = { .h = ob_universe_settings(u)->step_length, .path = a->path + b->path, .thin = INFINITY };
+	pair p = { .h = ob_universe_settings(u)->step_length, .thin = INFINITY };
+	p.path = ob_brief_path(a, steps) + ob_brief_path(b, steps);
 	p.reach = (a->state == OB_BRIEF_AWAKE ? a->reach : 0) + (b->state == OB_BRIEF_AWAKE ? b->reach : 0);
 	for (int i = 0; i < 2; i++) {
 		uint32_t id = i ? k->b : k->a;
 		p.passport[i] = ob_passport_of(u, id);
-		p.at[i] = placed(p.passport[i], ob_outcome_of(u, id), p.h);
+		p.at[i] = placed(s, id, ob_outcome_of(u, id), steps);
 		p.thin = fmin(p.thin, ob_shape_thickness(p.passport[i]->shape, p.passport[i]->size));
 	}
 	return p;
@@ -64,14 +72,17 @@ static double first_touch(ob_sim *s, const pair *p, double h, double *apart)
 // The way that both have made since the step began may have led through each other.
 static bool passed(ob_sim *s, const ob_pair_key *k, const pair *end)
 {
-	const ob_motion *from[2] = { ob_newest_motion(s->u, k->a), ob_newest_motion(s->u, k->b) };
-	double apart;
-	if (end->path - from[0]->path - from[1]->path < unseen * end->thin)
-		return false;
+	const uint32_t id[2] = { k->a, k->b };
+	const uint64_t step = ob_step_count(s->u);
 	pair start = *end;
+	double way = end->path, apart;
+	for (int i = 0; i < 2; i++)
+		way -= ob_path_now(ob_newest_motion(s->u, id[i]), step);
+	if (way < unseen * end->thin)
+		return false;
 	for (int i = 0; i < 2; i++) {
-		start.at[i] = placed(start.passport[i], from[i], 0);
-		start.at[i].v = ob_scale(ob_sub(end->at[i].p, from[i]->p), 1 / end->h);
+		start.at[i] = placed(s, id[i], ob_newest_motion(s->u, id[i]), step);
+		start.at[i].v = ob_scale(ob_sub(end->at[i].p, start.at[i].p), 1 / end->h);
 	}
 	return !isinf(first_touch(s, &start, end->h, &apart));
 }
@@ -96,19 +107,27 @@ static bool will_meet(ob_sim *s, ob_pair_key *k, const pair *now)
 	return false;
 }
 
-static void check(ob_sim *s, ob_pair_key *k, bool solved)
+// Who flies past a plane meets it when it is due, and not before.
+static bool foreseen(const ob_brief *a, const ob_brief *b, uint64_t steps)
+{
+	return (a->state == OB_BRIEF_PLANE && b->due > steps) || (b->state == OB_BRIEF_PLANE && a->due > steps);
+}
+
+// steps: that are complete, or solved.
+static void check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 {
 	const ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	k->met = k->near = 0;
-	if (k->active || (!moves(ex, k->a) && !moves(ex, k->b)))
+	if (k->active || (!moves(ex, k->a) && !moves(ex, k->b)) || foreseen(a, b, steps))
 		return;
-	double left = k->limit - a->path - b->path;
+	double left = k->limit - ob_brief_path(a, steps) - ob_brief_path(b, steps);
 	if (left > (moves(ex, k->a) ? a->reach : 0) + (moves(ex, k->b) ? b->reach : 0))
 		return;
-	pair p = pair_of(s->u, k);
+	pair p = pair_of(s, k, steps);
 	k->met = solved && !k->listed && left <= 0 && has_met(s, k, &p);
-	if (!k->met && k->limit - p.path <= p.reach)
+	bool on_plane = a->state == OB_BRIEF_PLANE || b->state == OB_BRIEF_PLANE;
+	if (!k->met && !on_plane && k->limit - p.path <= p.reach)
 		k->near = will_meet(s, k, &p);
 }
 
@@ -116,14 +135,34 @@ void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	for (uint32_t i = first; i < end; i++)
-		check(s, &ex->pair[i], solved);
+		check(s, &ex->pair[i], solved, ob_step_count(s->u) + solved);
 }
 
-bool ob_meetings_any(const ob_universe *u)
+// The first step that begins with so little left of the distance that the two might get through it: they go by
+// themselves until then.
+static double next_look(const ob_exchange *ex, const ob_pair_key *k, uint64_t steps)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
-	for (uint32_t i = 0; i < ex->count->pairs; i++)
-		if (ex->pair[i].met)
-			return true;
-	return false;
+	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	if (k->near || k->active)
+		return (double)steps;
+	double reach = (double)a->reach + (double)b->reach;
+	double left = k->limit - ob_brief_path(a, steps) - ob_brief_path(b, steps);
+	return reach > 0 ? (double)steps + fmax(1, floor(left / reach) - 1) : INFINITY;
+}
+
+bool ob_meetings_any(ob_universe *u, bool solved)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	const uint64_t steps = ob_step_count(u) + solved;
+	double next = UINT32_MAX;
+	bool any = false;
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		const ob_pair_key *k = &ex->pair[i];
+		any |= k->met;
+		if ((moves(ex, k->a) || moves(ex, k->b)) && !foreseen(&ex->brief[k->a], &ex->brief[k->b], steps))
+			next = fmin(next, next_look(ex, k, steps));
+	}
+	ex->count->looked = (uint32_t)steps;
+	ex->count->next_look = (uint32_t)next;
+	return any;
 }

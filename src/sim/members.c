@@ -5,6 +5,7 @@
 
 #include "sim/calm.h"
 #include "sim/leap.h"
+#include "sim/now.h"
 #include "sim/outcome.h"
 #include "sim/perceive.h"
 #include "sim/pull.h"
@@ -40,23 +41,26 @@ static void turn_inertia(ob_member *m)
 					      m->r.m[i][2] * m->r.m[j][2] * k.z;
 }
 
-static void load(ob_island_work *w, const ob_universe *u, uint32_t row, uint32_t id, bool moves)
+static void load(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 {
-	const ob_run_settings *run = ob_universe_settings(u);
-	const ob_passport *pass = ob_passport_of(u, id);
-	const ob_motion *mo = ob_newest_motion(u, id);
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = ob_universe_settings(s->u);
+	const ob_passport *pass = ob_passport_of(s->u, id);
+	const ob_motion *mo = ob_newest_motion(s->u, id);
+	const uint64_t step = ob_step_count(s->u);
+	ob_state now = ob_leap_state(s, id, mo, (double)step * run->step_length);
 	ob_member *m = &w->member[row];
 	*m = (ob_member){ .id = id,
 			  .shape = pass->shape,
 			  .size = pass->size,
-			  .p = mo->p,
-			  .q = mo->q,
-			  .r = ob_quat_matrix(mo->q),
+			  .p = now.pose.p,
+			  .q = now.pose.q,
+			  .r = ob_quat_matrix(now.pose.q),
 			  .mass = moves ? pass->mass : 0,
 			  .inertia = pass->inertia,
 			  .friction = pass->friction,
 			  .restitution = pass->restitution,
-			  .path = mo->path,
+			  .path = ob_path_now(mo, step),
 			  .quiet = mo->quiet,
 			  .moved_freely = true };
 	m->inv_mass = moves ? 1 / pass->mass : 0;
@@ -66,11 +70,11 @@ static void load(ob_island_work *w, const ob_universe *u, uint32_t row, uint32_t
 	turn_inertia(m);
 	if (!moves)
 		return;
-	add_row(w->v[row], mo->v, mo->w);
+	add_row(w->v[row], now.v, now.w);
 	w->mass += pass->mass;
 	m->pull = ob_pull(run, pass);
 	w->pull = fmax(w->pull, ob_norm(m->pull));
-	m->speed = ob_surface_speed(mo->v, mo->w, m->shape, m->size);
+	m->speed = ob_surface_speed(now.v, now.w, m->shape, m->size);
 }
 
 static void reserve_rows(ob_island_work *w, uint32_t rows)
@@ -106,18 +110,18 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	for (uint32_t i = 0; i < is->members; i++) {
 		uint32_t id = ex->member[is->first_member + i];
 		w->row_of[id] = w->rows;
-		load(w, s->u, w->rows++, id, true);
+		load(s, w->rows++, id, true);
 	}
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
-		uint32_t fixed = ex->brief[k->a].state == OB_BRIEF_STATIC   ? k->a
-				 : ex->brief[k->b].state == OB_BRIEF_STATIC ? k->b
-									    : UINT32_MAX;
+		uint32_t fixed = ex->brief[k->a].state < OB_BRIEF_AWAKE   ? k->a
+				 : ex->brief[k->b].state < OB_BRIEF_AWAKE ? k->b
+									  : UINT32_MAX;
 		if (fixed == UINT32_MAX || (w->row_of[fixed] < w->rows && w->row_of[fixed] > w->members &&
 					    w->member[w->row_of[fixed]].id == fixed))
 			continue;
 		w->row_of[fixed] = w->rows;
-		load(w, s->u, w->rows++, fixed, false);
+		load(s, w->rows++, fixed, false);
 	}
 	w->first_ghost = w->rows;
 }
@@ -303,17 +307,23 @@ static bool finite_row(const double *r)
 	return sum == 0;
 }
 
-void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m)
+void ob_member_hand_over(ob_sim *s, uint32_t id, ob_motion *m, uint32_t state, uint32_t due)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
+	memcpy(m->bounds, ex->bounds[id], sizeof m->bounds);
+	ex->brief[id] = (ob_brief){ m->path, m->reach, state, m->step, due };
+	ob_outcome_stage(s, id, m);
+}
+
+void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)
+{
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	bool asleep = m->flags & OB_MOTION_ASLEEP;
-	double reach = asleep ? 0 : ob_step_reach(run, pass, m->v, m->w);
-	ob_claim_bounds(s->u, id, pass->shape, pass->size, (ob_pose){ m->p, m->q }, reach);
-	memcpy(m->bounds, ex->bounds[id], sizeof m->bounds);
-	ex->brief[id] = (ob_brief){ m->path, (float)reach, asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE };
-	ob_outcome_stage(s, id, m);
+	double reach = asleep ? 0 : ob_step_reach(run, pass, end->v, end->w);
+	ob_claim_bounds(s->u, id, pass->shape, pass->size, end->pose, reach);
+	m->reach = (float)reach;
+	ob_member_hand_over(s, id, m, asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE, asleep ? UINT32_MAX : m->step);
 }
 
 void ob_members_publish(ob_sim *s, bool asleep)
@@ -339,15 +349,18 @@ void ob_members_publish(ob_sim *s, bool asleep)
 					  (calm && ob_calm_member(w, i) ? OB_MOTION_CALM : 0) };
 		if (!m->contacts)
 			mo.a = m->pull;
-		if (m->moved_freely &&
-		    run->integrator == OB_INTEGRATOR_EXACT) { // substeps only looked for what might be hit
-			ob_state end = ob_leap_end(s, m->id, &mo.flight);
-			mo.p = end.pose.p, mo.q = end.pose.q, mo.v = end.v, mo.w = end.w;
-		}
 		if (asleep)
 			mo.v = mo.w = ob_v3(0, 0, 0);
+		ob_state end = { { mo.p, mo.q }, mo.v, mo.w };
+		if (m->moved_freely &&
+		    run->integrator == OB_INTEGRATOR_EXACT) { // substeps only looked for what might be hit
+			ob_motion flight = ob_leap_flight(s, m->id);
+			end = ob_leap_state(s, m->id, &flight, mo.t0);
+			mo.t0 = flight.t0, mo.valid_until = flight.valid_until;
+			mo.p = flight.p, mo.q = flight.q, mo.v = flight.v, mo.w = flight.w;
+		}
 		if (!finite_row(w->v[i]) || !isfinite(m->p.x + m->p.y + m->p.z))
 			ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-		ob_member_publish(s, m->id, &mo);
+		ob_member_publish(s, m->id, &mo, &end);
 	}
 }

@@ -20,7 +20,10 @@ void ob_members_advance(ob_sim *s);
 // After the last substep: quiet times, sleep by consent.
 bool ob_members_rest(ob_sim *s);
 void ob_members_publish(ob_sim *s, bool asleep);
-// Claims bounds, writes what the arranger needs to know, and stages m.
-void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m);
+// What holds after the running step, of an object that must be visited in the next: claims bounds for that, from its
+// state at the step's end, and hands m over.
+void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);
+// Writes what the arranger needs to know (ob_brief), and stages m with the claimed bounds.
+void ob_member_hand_over(ob_sim *s, uint32_t id, ob_motion *m, uint32_t state, uint32_t due);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include <ob/motion.h>
 
+#include "sim/now.h"
 #include "sim/outcome.h"
 
 // The newest version of after so many steps, or before; -1: none. What was written in a step that is done again is
@@ -44,7 +45,7 @@ static uint64_t key_of(uint32_t a, uint32_t b)
 
 static bool immobile(const ob_exchange *ex, uint32_t id)
 {
-	return ex->brief[id].state == OB_BRIEF_STATIC;
+	return ex->brief[id].state < OB_BRIEF_AWAKE;
 }
 
 // All pairs that the objects of the list have perceived, sorted, each once. The caller frees.
@@ -73,36 +74,42 @@ static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t c
 	return keys;
 }
 
-double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b)
+static double apart_from_plane(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
+{
+	const ob_motion *m = ob_newest_motion(u, plane);
+	ob_mat3 r = ob_quat_matrix(m->q);
+	return ob_dot(ob_column(&r, 2), ob_sub(at, m->p)) - sphere;
+}
+
+double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
 	const ob_motion *ma = ob_outcome_of(u, a), *mb = ob_outcome_of(u, b);
 	bool boxed = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // reaches beyond the sphere round it
-	if (pa->shape == OB_SHAPE_PLANE || pb->shape == OB_SHAPE_PLANE) {
-		const ob_motion *plane = pa->shape == OB_SHAPE_PLANE ? ma : mb, *other = plane == ma ? mb : ma;
-		const ob_passport *po = plane == ma ? pb : pa;
-		ob_mat3 r = ob_quat_matrix(plane->q);
-		double radius = ob_shape_radius(po->shape, po->size);
-		return ob_dot(ob_column(&r, 2), ob_sub(other->p, plane->p)) - (boxed ? sqrt(3) : 1) * radius;
-	}
+	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
+	ob_vec3 at_a = ob_centre_now(u, a, ma, steps), at_b = ob_centre_now(u, b, mb, steps);
+	if (pa->shape == OB_SHAPE_PLANE)
+		return apart_from_plane(u, a, at_b, (boxed ? sqrt(3) : 1) * rb);
+	if (pb->shape == OB_SHAPE_PLANE)
+		return apart_from_plane(u, b, at_a, (boxed ? sqrt(3) : 1) * ra);
+	double spheres = ob_norm(ob_sub(at_a, at_b)) - ra - rb;
+	if (spheres > fmax(ra, rb) && !boxed) // attitudes would not add much, and cost more
+		return spheres;
 	double box_a[6], box_b[6], apart = 0;
-	ob_shape_bounds(pa->shape, pa->size, (ob_pose){ ma->p, ma->q }, box_a);
-	ob_shape_bounds(pb->shape, pb->size, (ob_pose){ mb->p, mb->q }, box_b);
+	ob_shape_bounds(pa->shape, pa->size, ob_state_now(u, a, ma, steps).pose, box_a);
+	ob_shape_bounds(pb->shape, pb->size, ob_state_now(u, b, mb, steps).pose, box_b);
 	for (int c = 0; c < 3; c++)
 		apart = fmax(apart, fmax(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
-	if (boxed)
-		return apart;
-	double spheres = ob_norm(ob_sub(ma->p, mb->p)) - ob_shape_radius(pa->shape, pa->size) -
-			 ob_shape_radius(pb->shape, pb->size);
-	return fmax(apart, spheres);
+	return boxed ? apart : fmax(apart, spheres);
 }
 
-static ob_pair_key new_pair(const ob_universe *u, uint64_t key)
+static ob_pair_key new_pair(const ob_universe *u, uint64_t key, uint64_t steps)
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
-	double apart = ob_pairs_apart(u, a, b);
-	double limit = apart > 0 ? ex->brief[a].path + ex->brief[b].path + apart : -1;
+	double apart = ob_pairs_apart(u, a, b, steps);
+	double paths = ob_brief_path(&ex->brief[a], steps) + ob_brief_path(&ex->brief[b], steps);
+	double limit = apart > 0 ? paths + apart : -1;
 	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
 }
 
@@ -142,7 +149,7 @@ static size_t keep_perceived(ob_universe *u, const uint32_t *moved, uint64_t *ke
 }
 
 // From the back, where there is room.
-static bool insert(ob_universe *u, const uint64_t *keys, size_t fresh)
+static bool insert(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t steps)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
 	size_t old = ex->count->pairs, end = old + fresh;
@@ -153,12 +160,12 @@ static bool insert(ob_universe *u, const uint64_t *keys, size_t fresh)
 		if (old > 0 && key_of_pair(&ex->pair[old - 1]) > keys[fresh - 1])
 			ex->pair[--end] = ex->pair[--old];
 		else
-			ex->pair[--end] = new_pair(u, keys[--fresh]);
+			ex->pair[--end] = new_pair(u, keys[--fresh], steps);
 	}
 	return true;
 }
 
-void ob_pairs_merge(ob_universe *u)
+void ob_pairs_merge(ob_universe *u, uint64_t steps)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t count, *moved = ex->scratch;
@@ -170,7 +177,7 @@ void ob_pairs_merge(ob_universe *u)
 	memset(moved, 0, ob_universe_ids(u) * sizeof *moved);
 	for (uint32_t i = 0; i < count; i++)
 		moved[list[i]] = 1;
-	if (!keys || !insert(u, keys, keep_perceived(u, moved, keys, fresh)))
+	if (!keys || !insert(u, keys, keep_perceived(u, moved, keys, fresh), steps))
 		ex->count->failure = OB_EXCHANGE_PAIRS_FULL;
 	free(keys);
 	ob_rebound_reset(u);

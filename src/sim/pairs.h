@@ -4,8 +4,9 @@
 
 #include "table/table.h"
 
-// Merges what the objects of the rebound list have perceived into the pairs. The arranger alone.
-void ob_pairs_merge(ob_universe *u);
+// Merges what the objects of the rebound list have perceived into the pairs. The arranger alone. steps: that are complete
+// as far as motions go (sim/now.h).
+void ob_pairs_merge(ob_universe *u, uint64_t steps);
 // Drops every pair of an object that goes away.
 void ob_pairs_drop(ob_universe *u, uint32_t id);
 // Gives its record back, if it has one. The arranger, between steps: what a step has written may be read until its end.
@@ -16,6 +17,6 @@ const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps);
 ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps);
 
 // Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
-double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b);
+double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps);
 
 #endif

@@ -9,6 +9,7 @@ static const double lasting = 3; // claimed boxes last about so many steps
 static const double base_margin = .04; // m: of an object at rest ..
 static const double base_share = .2; // .. but no more than this share of its radius, for heaps of small things
 static const double generous = 4; // times the margin that a new box would have: too large
+static const double roomy = 2; // times as long as a flight's new box: what goes on being used for it, at most
 static const uint64_t review_steps = 16;
 static const double far_margin = 1.5; // m: fast ones claim only what one step needs beyond this
 
@@ -72,6 +73,16 @@ void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 s
 	double tight[6];
 	ob_shape_bounds(shape, size, pose, tight);
 	claim(u, id, tight, lasting_margin(shape, size, reach));
+}
+
+void ob_claim_swept(ob_universe *u, uint32_t id, const double *box, double margin)
+{
+	const float *old = ob_universe_exchange(u)->bounds[id];
+	bool fits = holds(old, box, margin);
+	for (int c = 0; c < 3; c++)
+		fits &= old[3 + c] - old[c] <= roomy * (box[3 + c] - box[c] + 2 * margin);
+	if (!fits)
+		claim(u, id, box, margin);
 }
 
 bool ob_perceive_asked(const ob_universe *u, uint32_t id)

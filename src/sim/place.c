@@ -9,6 +9,20 @@
 #include "sim/sim.h"
 #include "table/trace.h"
 
+// Nobody has foreseen a plane that comes up: all look anew in the next step.
+static void surprise_fliers(ob_universe *u)
+{
+	ob_exchange *ex = ob_universe_exchange(u);
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		if (ex->brief[id].state != OB_BRIEF_AWAKE)
+			continue;
+		ob_motion m = *ob_newest_motion(u, id);
+		m.flags &= ~(uint32_t)OB_MOTION_FREE;
+		ob_publish_motion(u, id, &m);
+		ex->brief[id].due = (uint32_t)ob_step_count(u);
+	}
+}
+
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
@@ -16,7 +30,7 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 	const ob_passport *p = ob_passport_of(u, id);
 	bool fixed = p->flags & OB_OBJECT_STATIC;
 	ob_motion m = { .t0 = ob_step_count(u) * run->step_length,
-			.valid_until = INFINITY,
+			.valid_until = fixed ? INFINITY : (double)ob_step_count(u) * run->step_length,
 			.p = state->pose.p,
 			.q = ob_quat_normalize(state->pose.q),
 			.v = state->v,
@@ -30,9 +44,12 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 	double reach = fixed ? 0 : ob_step_reach(run, p, m.v, m.w);
 	ob_claim_bounds_anew(u, id, p->shape, p->size, (ob_pose){ m.p, m.q }, reach);
 	memcpy(m.bounds, ex->bounds[id], sizeof m.bounds);
-	ex->brief[id] = (ob_brief){ 0, (float)reach, fixed ? OB_BRIEF_STATIC : OB_BRIEF_AWAKE };
+	uint32_t kind = !fixed ? OB_BRIEF_AWAKE : p->shape == OB_SHAPE_PLANE ? OB_BRIEF_PLANE : OB_BRIEF_STATIC;
+	ex->brief[id] = (ob_brief){ 0, (float)reach, kind, m.step, fixed ? UINT32_MAX : m.step };
 	ex->result_island[id] = UINT32_MAX;
 	ob_publish_motion(u, id, &m);
+	if (kind == OB_BRIEF_PLANE)
+		surprise_fliers(u);
 	if (ob_universe_traced(u))
 		ob_trace_birth(u, id);
 }
@@ -48,8 +65,9 @@ static void wake(ob_universe *u, uint32_t id)
 	if (ob_universe_traced(u))
 		ob_trace_moves(u, ob_trace_host(u), id, flags, m.flags);
 	ob_brief *brief = &ob_universe_exchange(u)->brief[id];
-	brief->state = OB_BRIEF_AWAKE;
-	brief->reach = (float)ob_step_reach(ob_universe_settings(u), pass, m.v, m.w);
+	uint32_t steps = (uint32_t)ob_step_count(u);
+	double reach = ob_step_reach(ob_universe_settings(u), pass, m.v, m.w);
+	*brief = (ob_brief){ ob_brief_path(brief, steps), (float)reach, OB_BRIEF_AWAKE, steps, steps };
 }
 
 void ob_sim_remove(ob_universe *u, uint32_t id)
@@ -64,7 +82,7 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 	}
 	ob_pairs_drop(u, id);
 	ob_index_remove(u, id);
-	ex->brief[id] = (ob_brief){ 0, 0, OB_BRIEF_ABSENT };
+	ex->brief[id] = (ob_brief){ .state = OB_BRIEF_ABSENT };
 	if (ob_universe_traced(u))
 		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
 	ob_passport none = *ob_passport_of(u, id);

@@ -48,26 +48,28 @@ typedef struct ob_pair_key {
 	double limit;     // m: the pair cannot touch before path_a + path_b exceeds this
 } ob_pair_key;
 
-// Where a free flight began. What is published in each step is evaluated from here, not from the step before: rounding
-// does not build up, and a spin keeps its phase for as long as it is not touched. 144 bytes.
-typedef struct ob_flight {
-	double t0;      // s
-	ob_vec3 p;      // m
-	ob_quat q;
-	ob_vec3 v, w;   // m/s, rad/s
-	ob_vec3 a;      // m/s^2
-	uint32_t since; // as ob_motion.flight of the motions that go on from here
-	uint32_t reserved;
-} ob_flight;
-
-// What the arranger needs to know of an object, 16 bytes, so that it need not read the slots.
+// What the arranger needs to know of an object, 24 bytes, so that it need not read the slots.
 typedef struct ob_brief {
-	double path;    // m, as in its motion
-	float reach;    // m, how far any of its points may get in the next step
+	double path;    // m, when "since" steps were complete
+	float reach;    // m, how far any of its points may get in a step, until it is visited again
 	uint32_t state; // OB_BRIEF_*
+	uint32_t since;
+	uint32_t due;   // the step (from 0) that must visit it, if nothing comes near before
 } ob_brief;
 
-enum { OB_BRIEF_ABSENT, OB_BRIEF_STATIC, OB_BRIEF_AWAKE, OB_BRIEF_ASLEEP };
+enum {
+	OB_BRIEF_ABSENT,
+	OB_BRIEF_PLANE,  // static; what flies foresees when it meets it
+	OB_BRIEF_STATIC,
+	OB_BRIEF_AWAKE,
+	OB_BRIEF_ASLEEP,
+};
+
+// What goes by itself gets its reach farther in each step. m, when so many are complete.
+static inline double ob_brief_path(const ob_brief *b, uint64_t steps)
+{
+	return b->path + ((double)steps - b->since) * (double)b->reach;
+}
 
 typedef struct ob_island {
 	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
@@ -91,13 +93,16 @@ typedef struct ob_exchange {
 		uint32_t arranger;   // the worker that arranged last
 		uint32_t stage;      // what the running phase belongs to: the arranger's
 		uint32_t again;      // 1 = islands are solved that were solved in this step before, in parts
+		uint32_t awake;      // objects
+		uint32_t looked;     // steps that were complete, or solved, when all pairs were checked last
+		uint32_t next_due;   // before this step nobody is due, if nobody is visited ..
+		uint32_t next_look;  // .. nor has any pair to be checked
 		uint32_t levels[64]; // objects per size class
 		uint32_t planes;
 		uint32_t failure;    // ob_exchange_failure; 0 = none
 	} *count;
 	ob_brief *brief;              // [object]: written by its island's solver
 	float (*bounds)[6];           // [object]: box that holds it until it asks for another
-	ob_flight *flight;            // [object]: written by its island's solver when a flight begins
 	ob_motion *result;            // [object]: what its island's solver found
 	uint32_t *effort;             // [object]: its share of what its island cost when it was solved last, as ob_island.work
 	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none

@@ -32,7 +32,6 @@ typedef enum ob_area {
 	OB_AREA_COUNTS, // from here on: ob_exchange
 	OB_AREA_BRIEF,
 	OB_AREA_BOUNDS,
-	OB_AREA_FLIGHT,
 	OB_AREA_RESULT,
 	OB_AREA_EFFORT,
 	OB_AREA_RESULT_ISLAND,
@@ -122,7 +121,7 @@ static_assert(sizeof(ob_control) == 256, "control");
 static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
 static_assert(sizeof(ob_pair_state) == 184, "pair state");
 static_assert(sizeof(ob_pair_record) == 384, "pair record");
-static_assert(sizeof(ob_pair_key) == 24 && sizeof(ob_brief) == 16 && sizeof(ob_flight) == 144, "exchange area");
+static_assert(sizeof(ob_pair_key) == 24 && sizeof(ob_brief) == 24, "exchange area");
 
 // A process's view of a mapped segment. Immutable once made; forked children may go on using it.
 struct ob_universe {

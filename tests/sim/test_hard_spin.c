@@ -64,6 +64,6 @@ static void spin(double apart, bool watched, const char *what)
 int main(void)
 {
 	spin(100, false, "alone");
-	spin(.85, true, "beside each other, watched for contacts");
+	spin(.75, true, "beside each other, watched for contacts");
 	return check_end();
 }

@@ -19,9 +19,11 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 		double kind = uniform(&seed), path = within(&seed, 0, 10);
 		double reach = uniform(&seed) < .1 ? within(&seed, .1, 1) : within(&seed, 0, .05);
 		ex->perceived[i] = (struct ob_perceived){ 0, 0 }; // nobody has asked
-		ex->brief[i] = (ob_brief){ path, (float)reach, kind < .1 ? OB_BRIEF_STATIC : OB_BRIEF_AWAKE };
+		ex->brief[i] = (ob_brief){ .path = path, .reach = (float)reach, .state = OB_BRIEF_AWAKE };
+		if (kind < .1)
+			ex->brief[i].state = OB_BRIEF_STATIC;
 		if (kind > .6)
-			ex->brief[i].state = OB_BRIEF_ASLEEP, ex->brief[i].reach = 0;
+			ex->brief[i].state = OB_BRIEF_ASLEEP, ex->brief[i].reach = 0, ex->brief[i].due = UINT32_MAX;
 		if (kind > .97)
 			ex->brief[i].state = OB_BRIEF_ABSENT;
 	}

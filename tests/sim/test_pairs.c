@@ -42,7 +42,7 @@ static void look_around(ob_universe *u)
 		ob_index_put(u, list[i]);
 	for (uint32_t i = 0; i < count; i++)
 		ob_perceive(u, list[i], &(uint64_t){ 0 });
-	ob_pairs_merge(u);
+	ob_pairs_merge(u, ob_step_count(u));
 	ob_rebound_list(u, &count);
 	CHECK(count == 0);
 }
@@ -64,7 +64,7 @@ static bool overlap(const ob_universe *u, uint32_t i, uint32_t j)
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
 	const float *a = ex->bounds[i], *b = ex->bounds[j];
-	if (ex->brief[i].state == OB_BRIEF_STATIC && ex->brief[j].state == OB_BRIEF_STATIC)
+	if (ex->brief[i].state < OB_BRIEF_AWAKE && ex->brief[j].state < OB_BRIEF_AWAKE)
 		return false;
 	if (j == BODIES) // the ground
 		return a[2] <= -2;
