@@ -98,6 +98,45 @@ static bool has_met(ob_sim *s, ob_pair_key *k, const pair *end)
 	return false;
 }
 
+// The flights of two bodies that the same pulls at are straight lines to each other: how long the spheres round them
+// stay apart (s).
+static double apart_for(const ob_universe *u, const ob_pair_key *k, uint64_t steps)
+{
+	const ob_motion *a = ob_outcome_of(u, k->a), *b = ob_outcome_of(u, k->b);
+	const ob_passport *pa = ob_passport_of(u, k->a), *pb = ob_passport_of(u, k->b);
+	if (a->a.x != b->a.x || a->a.y != b->a.y || a->a.z != b->a.z)
+		return 0;
+	const double time = (double)steps * ob_universe_settings(u)->step_length;
+	ob_vec3 at = ob_sub(ob_centre_now(u, k->a, a, steps), ob_centre_now(u, k->b, b, steps));
+	ob_vec3 v = ob_sub(ob_madd(a->v, time - a->t0, a->a), ob_madd(b->v, time - b->t0, b->a));
+	double radii = ob_shape_radius(pa->shape, pa->size) + ob_shape_radius(pb->shape, pb->size) + touch_gap;
+	double speed2 = ob_norm2(v), closing = -ob_dot(at, v), far = ob_norm2(at) - radii * radii;
+	if (far <= 0)
+		return 0;
+	double d = closing * closing - speed2 * far;
+	return closing > 0 && d > 0 ? far / (closing + sqrt(d)) : INFINITY;
+}
+
+// Sets until when two that nobody visits stay clear of each other; false: not beyond the coming step.
+static bool stay_clear(const ob_universe *u, ob_pair_key *k, uint64_t steps)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	double until = fmin(a->due, b->due);
+	if (a->state != OB_BRIEF_AWAKE || b->state != OB_BRIEF_AWAKE || until <= (double)steps + 1 ||
+	    ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB)
+		return false;
+	until = fmin(until, (double)steps + floor(apart_for(u, k, steps) / ob_universe_settings(u)->step_length));
+	k->clear = (uint32_t)until;
+	k->clear_as_of = (uint32_t)steps;
+	return k->clear > steps;
+}
+
+static bool is_clear(const ob_exchange *ex, const ob_pair_key *k, uint64_t steps)
+{
+	return k->clear > steps && ex->brief[k->a].since <= k->clear_as_of && ex->brief[k->b].since <= k->clear_as_of;
+}
+
 static bool will_meet(ob_sim *s, ob_pair_key *k, const pair *now)
 {
 	double apart;
@@ -124,6 +163,8 @@ static void check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 	double left = k->limit - ob_brief_path(a, steps) - ob_brief_path(b, steps);
 	if (left > (moves(ex, k->a) ? a->reach : 0) + (moves(ex, k->b) ? b->reach : 0))
 		return;
+	if (is_clear(ex, k, steps) || stay_clear(s->u, k, steps))
+		return;
 	pair p = pair_of(s, k, steps);
 	k->met = solved && !k->listed && left <= 0 && has_met(s, k, &p);
 	bool on_plane = a->state == OB_BRIEF_PLANE || b->state == OB_BRIEF_PLANE;
@@ -145,6 +186,8 @@ static double next_look(const ob_exchange *ex, const ob_pair_key *k, uint64_t st
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	if (k->near || k->active)
 		return (double)steps;
+	if (is_clear(ex, k, steps))
+		return k->clear;
 	double reach = (double)a->reach + (double)b->reach;
 	double left = k->limit - ob_brief_path(a, steps) - ob_brief_path(b, steps);
 	return reach > 0 ? (double)steps + fmax(1, floor(left / reach) - 1) : INFINITY;

@@ -46,6 +46,8 @@ typedef struct ob_pair_key {
 	uint8_t met;      // 1 = touched in this step, which nobody had expected: both islands are solved again, as one
 	uint8_t listed;   // 1 = its island's solver looks after it in this step
 	double limit;     // m: the pair cannot touch before path_a + path_b exceeds this
+	uint32_t clear;   // nor before this step (from 0), while both fly on as they did when so many steps were complete:
+	uint32_t clear_as_of;
 } ob_pair_key;
 
 // What the arranger needs to know of an object, 24 bytes, so that it need not read the slots.

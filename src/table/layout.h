@@ -121,7 +121,7 @@ static_assert(sizeof(ob_control) == 256, "control");
 static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
 static_assert(sizeof(ob_pair_state) == 184, "pair state");
 static_assert(sizeof(ob_pair_record) == 384, "pair record");
-static_assert(sizeof(ob_pair_key) == 24 && sizeof(ob_brief) == 24, "exchange area");
+static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_brief) == 24, "exchange area");
 
 // A process's view of a mapped segment. Immutable once made; forked children may go on using it.
 struct ob_universe {
