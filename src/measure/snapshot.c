@@ -110,7 +110,7 @@ void ob_snapshot_finish(ob_snapshot *s)
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id)
 {
 	const ob_motion *m = &s->motion[id];
-	bool still = m->t0 == s->time || s->passport[id].flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_ASLEEP;
+	bool still = m->t0 == s->time || s->passport[id].flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_RESTS;
 	if (still) // the bits as published
 		return (ob_state){ { m->p, m->q }, m->v, m->w };
 	return ob_motion_at(m, s->passport[id].inertia, s->time);

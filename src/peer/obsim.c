@@ -95,7 +95,7 @@ static void get(const ob_peer *p, ob_state *state)
 	for (uint32_t i = 0; i < p->objects; i++) {
 		const ob_motion *m = ob_newest_motion(p->u, i);
 		const ob_passport *who = ob_passport_of(p->u, i);
-		bool still = m->t0 == now || who->flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_ASLEEP;
+		bool still = m->t0 == now || who->flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_RESTS;
 		if (still) // the bits as published
 			state[i] = (ob_state){ { m->p, m->q }, m->v, m->w };
 		else

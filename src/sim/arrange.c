@@ -85,7 +85,7 @@ static void count_awake(ob_universe *u)
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t n = 0, due = UINT32_MAX;
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
-		if (ex->brief[id].state == OB_BRIEF_AWAKE) {
+		if (ex->brief[id].state == OB_BRIEF_AWAKE || ex->brief[id].state == OB_BRIEF_STILL) {
 			n++;
 			due = ex->brief[id].due < due ? ex->brief[id].due : due;
 		}

@@ -2,6 +2,7 @@
 
 static const double slow = 1e-3; // m/s, of any point of a member
 static const double stirring = 1e-7; // m/s: a round that changes a velocity by more has found something
+static const double lasting = .1; // s, for which what is still has been slow
 
 bool ob_calm_likely(const ob_sim *s, const ob_island *is)
 {
@@ -19,6 +20,18 @@ bool ob_calm_likely(const ob_sim *s, const ob_island *is)
 bool ob_calm_proven(const ob_island_work *w)
 {
 	return w->stirred <= stirring && !w->pushed;
+}
+
+bool ob_calm_still(const ob_island_work *w)
+{
+	if (!ob_calm_proven(w))
+		return false;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		const ob_member *m = &w->member[i];
+		if (m->contacts == 0 || m->speed > stirring || m->quiet < lasting)
+			return false;
+	}
+	return true;
 }
 
 bool ob_calm_member(const ob_island_work *w, uint32_t row)

@@ -133,6 +133,15 @@ static bool may_leap(const ob_universe *u, const ob_island *is)
 	return true;
 }
 
+// The island's rest, as a flag of its members' motions; 0: it goes on.
+static uint32_t rest_of(ob_sim *s)
+{
+	bool slow = ob_members_rest(s), still = ob_calm_still(&s->island);
+	if (slow || (still && ob_universe_settings(s->u)->sleeping))
+		return OB_MOTION_ASLEEP;
+	return still ? OB_MOTION_STILL : 0;
+}
+
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
@@ -156,7 +165,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	note_effort(s, is, cost_so_far(s) - before);
 	ob_touches_store(s);
 	ob_part_enter(s, OB_PART_PUBLISH);
-	ob_members_publish(s, ob_members_rest(s));
+	ob_members_publish(s, rest_of(s));
 }
 
 void ob_island_work_finish(ob_island_work *w)

@@ -34,7 +34,7 @@ static bool dynamic(const plan *p, uint32_t id)
 // In no island unless something wakes it. What fell asleep in this very step is not.
 static bool asleep(const plan *p, uint32_t id)
 {
-	return p->ex->brief[id].state == OB_BRIEF_ASLEEP && (!p->before || p->before[id] == NONE);
+	return p->ex->brief[id].state >= OB_BRIEF_ASLEEP && (!p->before || p->before[id] == NONE);
 }
 
 // Must the object be looked after in this step, whatever comes near it? What flies by itself need not.

@@ -36,7 +36,7 @@ ob_motion ob_leap_flight(const ob_sim *s, uint32_t id)
 
 ob_state ob_leap_state(ob_sim *s, uint32_t id, const ob_motion *f, double time)
 {
-	if (time == f->t0 || f->flags & OB_MOTION_ASLEEP || ob_passport_of(s->u, id)->flags & OB_OBJECT_STATIC)
+	if (time == f->t0 || f->flags & OB_MOTION_RESTS || ob_passport_of(s->u, id)->flags & OB_OBJECT_STATIC)
 		return (ob_state){ { f->p, f->q }, f->v, f->w };
 	ob_vec3 inertia = ob_passport_of(s->u, id)->inertia;
 	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .a = f->a };

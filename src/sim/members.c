@@ -319,14 +319,16 @@ void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const ob_passport *pass = ob_passport_of(s->u, id);
-	bool asleep = m->flags & OB_MOTION_ASLEEP;
-	double reach = asleep ? 0 : ob_step_reach(run, pass, end->v, end->w);
+	uint32_t state = m->flags & OB_MOTION_ASLEEP  ? OB_BRIEF_ASLEEP
+			 : m->flags & OB_MOTION_STILL ? OB_BRIEF_STILL
+						      : OB_BRIEF_AWAKE;
+	double reach = state == OB_BRIEF_AWAKE ? ob_step_reach(run, pass, end->v, end->w) : 0;
 	ob_claim_bounds(s->u, id, pass->shape, pass->size, end->pose, reach);
 	m->reach = (float)reach;
-	ob_member_hand_over(s, id, m, asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE, asleep ? UINT32_MAX : m->step);
+	ob_member_hand_over(s, id, m, state, state == OB_BRIEF_AWAKE ? m->step : UINT32_MAX);
 }
 
-void ob_members_publish(ob_sim *s, bool asleep)
+void ob_members_publish(ob_sim *s, uint32_t rest)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
@@ -335,7 +337,7 @@ void ob_members_publish(ob_sim *s, bool asleep)
 	for (uint32_t i = 1; i <= w->members; i++) {
 		ob_member *m = &w->member[i];
 		ob_motion mo = { .t0 = step * run->step_length,
-				 .valid_until = asleep ? INFINITY : (step + 1) * run->step_length,
+				 .valid_until = rest ? INFINITY : (step + 1) * run->step_length,
 				 .p = m->p,
 				 .q = m->q,
 				 .v = linear_of(w->v[i]),
@@ -345,11 +347,11 @@ void ob_members_publish(ob_sim *s, bool asleep)
 				 .quiet = m->quiet,
 				 .island = w->member[1].id,
 				 .substeps = m->substeps,
-				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | (asleep ? OB_MOTION_ASLEEP : 0) |
+				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | rest |
 					  (calm && ob_calm_member(w, i) ? OB_MOTION_CALM : 0) };
 		if (!m->contacts)
 			mo.a = m->pull;
-		if (asleep)
+		if (rest)
 			mo.v = mo.w = ob_v3(0, 0, 0);
 		ob_state end = { { mo.p, mo.q }, mo.v, mo.w };
 		if (m->moved_freely &&

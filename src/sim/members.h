@@ -19,7 +19,8 @@ void ob_members_predict(ob_sim *s);
 void ob_members_advance(ob_sim *s);
 // After the last substep: quiet times, sleep by consent.
 bool ob_members_rest(ob_sim *s);
-void ob_members_publish(ob_sim *s, bool asleep);
+// rest: OB_MOTION_ASLEEP, OB_MOTION_STILL, or 0
+void ob_members_publish(ob_sim *s, uint32_t rest);
 // What holds after the running step, of an object that must be visited in the next: claims bounds for that, from its
 // state at the step's end, and hands m over.
 void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);

@@ -2,7 +2,7 @@
 
 static bool still(const ob_motion *m, const ob_passport *pass, double time)
 {
-	return m->t0 == time || pass->flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_ASLEEP;
+	return m->t0 == time || pass->flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_RESTS;
 }
 
 ob_state ob_state_now(const ob_universe *u, uint32_t id, const ob_motion *m, uint64_t steps)

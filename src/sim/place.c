@@ -59,7 +59,7 @@ static void wake(ob_universe *u, uint32_t id)
 	const ob_passport *pass = ob_passport_of(u, id);
 	ob_motion m = *ob_newest_motion(u, id);
 	uint32_t flags = m.flags;
-	m.flags &= ~(uint32_t)(OB_MOTION_ASLEEP | OB_MOTION_CALM);
+	m.flags &= ~(uint32_t)(OB_MOTION_RESTS | OB_MOTION_CALM);
 	m.quiet = 0;
 	ob_publish_motion(u, id, &m);
 	if (ob_universe_traced(u))

@@ -24,9 +24,9 @@ static bool newest_version(const ob_universe *u, const ob_pair_key *key, uint64_
 		if (!ob_universe_get_motion(u, key->a, &a) || !ob_universe_get_motion(u, key->b, &b))
 			return false;
 		ob_passport pa, pb;
-		bool rest_a = a.flags & OB_MOTION_ASLEEP ||
+		bool rest_a = a.flags & OB_MOTION_RESTS ||
 			      (ob_universe_get_passport(u, key->a, &pa) && pa.flags & OB_OBJECT_STATIC);
-		bool rest_b = b.flags & OB_MOTION_ASLEEP ||
+		bool rest_b = b.flags & OB_MOTION_RESTS ||
 			      (ob_universe_get_passport(u, key->b, &pb) && pb.flags & OB_OBJECT_STATIC);
 		newest = stamp[1] > stamp[0];
 		if (!rest_a || !rest_b || stamp[newest] == 0 || stamp[newest] > step + 1)

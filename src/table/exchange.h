@@ -64,7 +64,8 @@ enum {
 	OB_BRIEF_PLANE,  // static; what flies foresees when it meets it
 	OB_BRIEF_STATIC,
 	OB_BRIEF_AWAKE,
-	OB_BRIEF_ASLEEP,
+	OB_BRIEF_ASLEEP, // from here on: not solved until something comes near
+	OB_BRIEF_STILL,
 };
 
 // What goes by itself gets its reach farther in each step. m, when so many are complete.

@@ -21,8 +21,14 @@ static void stand(ob_exchange_kind exchange, double platform_mass, double limit)
 	little_universe l;
 	little_open(&l, s);
 	double deepest = 0;
+	uint32_t most = 0,
+		 landed = 0; // islands, at any moment; when all have landed, and nothing is in equilibrium yet
 	for (int step = 0; step < 300; step++) {
 		little_run(&l, 1);
+		uint32_t islands = ob_universe_exchange(l.u)->count->islands;
+		most = islands > most ? islands : most;
+		if (step == 9)
+			landed = islands;
 		deepest = fmax(deepest, little_penetration(&l).max_m);
 	}
 	double off = 0, speed = 0;
@@ -37,7 +43,7 @@ static void stand(ob_exchange_kind exchange, double platform_mass, double limit)
 	CHECK(deepest < limit);
 	CHECK(off < 1e-3);
 	CHECK(speed < 1e-3);
-	CHECK(ob_universe_exchange(l.u)->count->islands == (platform_mass > 0 ? 1 : BOXES));
+	CHECK(platform_mass > 0 ? landed == 1 : most == BOXES);
 	little_close(&l);
 	free(s);
 }

@@ -69,6 +69,34 @@ static void test_no_sleep(void)
 	free(s);
 }
 
+// What is in equilibrium costs nothing, though nothing may sleep, and goes on as soon as it is touched.
+static void test_still(void)
+{
+	little_scene *s = little_scene_new();
+	little_ground(s);
+	for (int i = 0; i < 4; i++)
+		little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(3 * i, 0, .5));
+	little_sphere(s, 1, .2, ob_v3(-1, 0, .5))->state.v = ob_v3(.2, 0, 0); // at the first box after 1.5 s
+	s->object[5].passport.friction = 0;
+	s->object[5].state.pose.p.z = .2;
+	little_universe l;
+	ob_counters before, after;
+	little_open(&l, s);
+	little_run_to(&l, 1);
+	CHECK(awake(&l) == 5 && !all_asleep(&l));
+	CHECK(l.now.motion[1].flags & OB_MOTION_STILL && !(l.now.motion[5].flags & OB_MOTION_STILL));
+	ob_universe_count(l.u, &before);
+	little_run(&l, 20);
+	ob_universe_count(l.u, &after);
+	CHECK(after.member_steps - before.member_steps == 20); // the ball's
+	little_run_to(&l, 3);
+	double p = l.now.passport[1].mass * little_state(&l, 1).v.x;
+	CHECK(p >= 0 && p < .2 && little_state(&l, 5).v.x < .15); // the box has stopped it, or friction the box
+	CHECK(l.now.motion[4].flags & OB_MOTION_STILL);
+	little_close(&l);
+	free(s);
+}
+
 // The lowest of three cubes goes away: the others fall at once, freely, by its height, asleep or not.
 static void test_support_removed(bool sleeping)
 {
@@ -180,6 +208,7 @@ int main(void)
 	test_sleep(OB_EXCHANGE_COLOURED);
 	test_sleep(OB_EXCHANGE_JACOBI);
 	test_no_sleep();
+	test_still();
 	test_support_removed(false);
 	test_support_removed(true);
 	test_added();

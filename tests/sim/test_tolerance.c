@@ -128,7 +128,9 @@ static void test_rest_is_cheap(void)
 	ob_universe_count(l.u, &before);
 	little_run_to(&l, 6);
 	ob_universe_count(l.u, &after);
-	CHECK(after.chosen[0] - before.chosen[0] == 120);
+	CHECK(before.chosen[0] > 0);
+	for (int i = 1; i < OB_SUBSTEP_CHOICES; i++)
+		CHECK(after.chosen[i] == before.chosen[i]);
 	CHECK(after.islands_redone == before.islands_redone);
 	little_close(&l);
 	free(s);
