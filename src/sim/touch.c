@@ -81,11 +81,20 @@ bool ob_touches_refresh(ob_sim *s, double ahead)
 	return any;
 }
 
-static int by_colour(const void *x, const void *y, void *colour)
+// By colour, and by age within a colour.
+static void order_batches(ob_island_work *w)
 {
-	uint32_t a = *(const uint32_t *)x, b = *(const uint32_t *)y, ca = ((uint32_t *)colour)[a],
-		 cb = ((uint32_t *)colour)[b];
-	return ca != cb ? (ca < cb ? -1 : 1) : a < b ? -1 : 1;
+	uint32_t next[OB_COLOURS + 2] = { 0 }, colours = 0;
+	for (uint32_t i = 0; i < w->batches; i++) {
+		uint32_t c = w->batch_colour[i];
+		next[c + 1]++;
+		colours = c > colours ? c : colours;
+	}
+	for (uint32_t c = 0; c < colours; c++)
+		next[c + 1] += next[c];
+	for (uint32_t i = 0; i < w->batches; i++)
+		w->batch_order[next[w->batch_colour[i]]++] = i;
+	w->order_stale = false;
 }
 
 // Each lane learns how many contacts its bodies have.
@@ -108,12 +117,8 @@ void ob_touches_prepare(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	bool jacobi = ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI;
-	if (w->order_stale && w->batches) {
-		for (uint32_t i = 0; i < w->batches; i++)
-			w->batch_order[i] = i;
-		qsort_r(w->batch_order, w->batches, sizeof *w->batch_order, by_colour, w->batch_colour);
-		w->order_stale = false;
-	}
+	if (w->order_stale)
+		order_batches(w);
 	for (uint32_t i = 0; i < w->batches; i++) {
 		ob_batch *b = &w->batch[i];
 		if (w->counts_stale)
