@@ -6,6 +6,7 @@
 #include "sim/pace.h"
 
 static const double noticeable = 2e-3; // m/s: a change that makes another round worth while ..
+static const double most_noticeable = 1e-2; // m/s: .. in a stride that is shorter than the substep
 static const double noticeable_rate = 1; // 1/s: .. and, of the tolerance, at most
 static const double jump = .1; // m/s: faster changes are impacts and are not extrapolated
 static const double violent = .05; // m/s: a change that makes rounds beyond the run's number worth while ..
@@ -243,6 +244,7 @@ void ob_exchange_rounds(ob_sim *s)
 	ob_pass pass = { w->h, sweeps,      0, least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
 			 true, is_jacobi(s) };
 	bool again = true;
+	pass.wake = fmin(most_noticeable, pass.wake * w->substep / w->h); // what lasts shorter, moves less
 	w->forest.fit = OB_FOREST_UNKNOWN;
 	int direct = 0;
 	for (uint32_t round = 0; round < more * run->passes && again; round++) {
