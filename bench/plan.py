@@ -20,8 +20,8 @@ OTHERS = ['ode-quick', 'bullet']
 # says so. "looks": False where looking at every frame would take longer than all else.
 FULL = [
     ('sparse-10000', ['obsim', *POOLS, 'ode-quick', 'ode-hash', 'bullet'], {}),
-    ('sparse-10000', ['obsim', 'ode-quick', 'ode-hash', 'bullet'], {'duration': 3}),
-    ('balls-49', ['obsim', *OTHERS], {}),
+    ('sparse-10000', ['obsim', 'obsim, 1 thread', 'ode-quick', 'ode-hash', 'bullet'], {'duration': 3}),
+    ('balls-49', ['obsim', 'obsim, 1 thread', *OTHERS], {}),
     ('balls-1000', ['obsim', *POOLS, *OTHERS], {}),
     ('stack-10', ['obsim', *POOLS, *OTHERS], {}),
     ('pyramid-15', ['obsim', *POOLS, *OTHERS], {}),
@@ -33,12 +33,12 @@ FULL = [
     ('666', ['obsim', *POOLS, *OTHERS], {}),
     ('falling-10', ['obsim', *POOLS], {}),
     ('sparse-10', ['obsim', *POOLS], {}),
-    ('sparse-1000', ['obsim', *OTHERS], {'duration': 3}),
-    ('sparse-100000', ['obsim', *OTHERS], {'duration': 3}),
+    ('sparse-1000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 3}),
+    ('sparse-100000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 3}),
     ('sparse-100000', ['obsim', 'obsim, ODE worlds'], {'duration': .5}),
-    ('falling-1000', ['obsim', *OTHERS], {'duration': 2}),
-    ('falling-10000', ['obsim', *OTHERS], {'duration': 2}),
-    ('falling-100000', ['obsim'], {'duration': 2}),
+    ('falling-1000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 2}),
+    ('falling-10000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 2}),
+    ('falling-100000', ['obsim', 'obsim, 1 thread'], {'duration': 2}),
 ]
 SHORT = [
     ('sparse-2000', ['obsim', 'ode-quick', 'bullet'], {'duration': 2}),
