@@ -61,6 +61,12 @@ static void unlink_object(ob_exchange *ex, uint32_t id)
 		link = &ex->cell[*link - 1].next;
 	*link = c->next;
 	ex->count->levels[c->level]--;
+	if (c->after)
+		ex->cell[c->after - 1].before = c->before;
+	if (c->before)
+		ex->cell[c->before - 1].after = c->after;
+	else
+		ex->count->level_first[c->level] = c->after;
 	c->level = 0;
 }
 
@@ -88,8 +94,12 @@ void ob_index_put(ob_universe *u, uint32_t id)
 		unlink_object(ex, id);
 	}
 	uint32_t *head = &ex->bucket[bucket_of(ex, to)];
-	*c = (ob_index_cell){ *head, to.level, to.x, to.y, to.z };
+	uint32_t *first = &ex->count->level_first[to.level];
+	*c = (ob_index_cell){ *head, to.level, to.x, to.y, to.z, 0, *first };
 	*head = id + 1;
+	if (*first)
+		ex->cell[*first - 1].before = id + 1;
+	*first = id + 1;
 	ex->count->levels[to.level]++;
 }
 
@@ -133,11 +143,11 @@ static void found(answer *a, uint32_t id)
 	a->n++;
 }
 
-static void scan_level(const ob_exchange *ex, uint32_t ids, uint32_t id, int level, answer *a)
+static void scan_level(const ob_exchange *ex, uint32_t id, int level, answer *a)
 {
-	for (uint32_t j = 0; j < ids; j++)
-		if (j != id && ex->cell[j].level == level && overlap(a, ex->bounds[id], ex->bounds[j]))
-			found(a, j);
+	for (uint32_t j = ex->count->level_first[level]; j; j = ex->cell[j - 1].after)
+		if (j - 1 != id && overlap(a, ex->bounds[id], ex->bounds[j - 1]))
+			found(a, j - 1);
 }
 
 static void scan_cells(const ob_exchange *ex, uint32_t id, int level, const cell *lo, const cell *hi, answer *a)
@@ -174,8 +184,8 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 		cell lo = { level, coordinate(b[0] - h, side), coordinate(b[1] - h, side), coordinate(b[2] - h, side) };
 		cell hi = { level, coordinate(b[3] + h, side), coordinate(b[4] + h, side), coordinate(b[5] + h, side) };
 		double cells = (hi.x - lo.x + 1.) * (hi.y - lo.y + 1.) * (hi.z - lo.z + 1.);
-		if (cells > 64 + there)
-			scan_level(ex, ob_universe_ids(u), id, level, &a);
+		if (cells > there)
+			scan_level(ex, id, level, &a);
 		else
 			scan_cells(ex, id, level, &lo, &hi, &a);
 	}

@@ -7,7 +7,7 @@
 #include "sim/perceive.h"
 #include "sim/pull.h"
 
-enum { MOST_BOUNCES = 8 }; // in a step: what rattles more is a contact
+enum { MOST_BOUNCES = 5 }; // in a step: what rattles more is a contact
 
 static const double horizon = 1; // s
 

@@ -98,35 +98,44 @@ static bool has_met(ob_sim *s, ob_pair_key *k, const pair *end)
 	return false;
 }
 
-// The flights of two bodies that the same pulls at are straight lines to each other: how long the spheres round them
-// stay apart (s).
-static double apart_for(const ob_universe *u, const ob_pair_key *k, uint64_t steps)
+// How the spheres round two bodies lie and move, which is had without attitudes.
+typedef struct spheres {
+	ob_vec3 apart, v; // m, m/s, of the first from the second
+	double gap; // m
+	bool straight; // to each other they go straight on, for the same pulls at them
+} spheres;
+
+static spheres spheres_of(const ob_universe *u, const ob_pair_key *k, uint64_t steps)
 {
 	const ob_motion *a = ob_outcome_of(u, k->a), *b = ob_outcome_of(u, k->b);
 	const ob_passport *pa = ob_passport_of(u, k->a), *pb = ob_passport_of(u, k->b);
-	if (a->a.x != b->a.x || a->a.y != b->a.y || a->a.z != b->a.z)
-		return 0;
 	const double time = (double)steps * ob_universe_settings(u)->step_length;
-	ob_vec3 at = ob_sub(ob_centre_now(u, k->a, a, steps), ob_centre_now(u, k->b, b, steps));
-	ob_vec3 v = ob_sub(ob_madd(a->v, time - a->t0, a->a), ob_madd(b->v, time - b->t0, b->a));
-	double radii = ob_shape_radius(pa->shape, pa->size) + ob_shape_radius(pb->shape, pb->size) + touch_gap;
-	double speed2 = ob_norm2(v), closing = -ob_dot(at, v), far = ob_norm2(at) - radii * radii;
+	spheres out = { .straight = a->a.x == b->a.x && a->a.y == b->a.y && a->a.z == b->a.z };
+	out.apart = ob_sub(ob_centre_now(u, k->a, a, steps), ob_centre_now(u, k->b, b, steps));
+	out.v = ob_sub(ob_madd(a->v, time - a->t0, a->a), ob_madd(b->v, time - b->t0, b->a));
+	out.gap = ob_norm(out.apart) - ob_shape_radius(pa->shape, pa->size) - ob_shape_radius(pb->shape, pb->size);
+	return out;
+}
+
+// For how long they stay apart if they go straight on (s).
+static double apart_for(const spheres *s)
+{
+	double far = s->gap - touch_gap, radii = ob_norm(s->apart) - far, closing = -ob_dot(s->apart, s->v);
+	double square = far * (far + 2 * radii), d = closing * closing - ob_norm2(s->v) * square;
 	if (far <= 0)
 		return 0;
-	double d = closing * closing - speed2 * far;
-	return closing > 0 && d > 0 ? far / (closing + sqrt(d)) : INFINITY;
+	return closing > 0 && d > 0 ? square / (closing + sqrt(d)) : INFINITY;
 }
 
 // Sets until when two that nobody visits stay clear of each other; false: not beyond the coming step.
-static bool stay_clear(const ob_universe *u, ob_pair_key *k, uint64_t steps)
+static bool stay_clear(const ob_universe *u, ob_pair_key *k, const spheres *round, uint64_t steps)
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	double until = fmin(a->due, b->due);
-	if (a->state != OB_BRIEF_AWAKE || b->state != OB_BRIEF_AWAKE || until <= (double)steps + 1 ||
-	    ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB)
+	if (a->state != OB_BRIEF_AWAKE || b->state != OB_BRIEF_AWAKE || until <= (double)steps + 1 || !round->straight)
 		return false;
-	until = fmin(until, (double)steps + floor(apart_for(u, k, steps) / ob_universe_settings(u)->step_length));
+	until = fmin(until, (double)steps + floor(apart_for(round) / ob_universe_settings(u)->step_length));
 	k->clear = (uint32_t)until;
 	k->clear_as_of = (uint32_t)steps;
 	return k->clear > steps;
@@ -152,18 +161,42 @@ static bool foreseen(const ob_brief *a, const ob_brief *b, uint64_t steps)
 	return (a->state == OB_BRIEF_PLANE && b->due > steps) || (b->state == OB_BRIEF_PLANE && a->due > steps);
 }
 
+// m, of both together in the step that was solved, or none was.
+static double way_made(const ob_universe *u, const ob_pair_key *k, double paths, bool solved)
+{
+	const uint64_t step = ob_step_count(u);
+	return solved ? paths - ob_path_now(ob_newest_motion(u, k->a), step) -
+				ob_path_now(ob_newest_motion(u, k->b), step)
+		      : 0;
+}
+
+// Spheres that are too far from each other for anything to have happened, or to happen in the coming step, settle it.
+static bool far_apart(const ob_universe *u, ob_pair_key *k, double paths, double reach, bool solved, uint64_t steps)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	if (a->state == OB_BRIEF_PLANE || b->state == OB_BRIEF_PLANE ||
+	    ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB)
+		return false;
+	spheres round = spheres_of(u, k, steps);
+	if (round.gap <= touch_gap || (paths >= k->limit && way_made(u, k, paths, solved) >= round.gap))
+		return false;
+	k->limit = fmax(k->limit, paths + round.gap);
+	return k->limit - paths > reach || stay_clear(u, k, &round, steps);
+}
+
 // steps: that are complete, or solved.
 static void check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 {
 	const ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	k->met = k->near = 0;
-	if (k->active || (!moves(ex, k->a) && !moves(ex, k->b)) || foreseen(a, b, steps))
+	if (k->active || (!moves(ex, k->a) && !moves(ex, k->b)) || foreseen(a, b, steps) || is_clear(ex, k, steps))
 		return;
-	double left = k->limit - ob_brief_path(a, steps) - ob_brief_path(b, steps);
-	if (left > (moves(ex, k->a) ? a->reach : 0) + (moves(ex, k->b) ? b->reach : 0))
-		return;
-	if (is_clear(ex, k, steps) || stay_clear(s->u, k, steps))
+	solved &= steps == 0 || !is_clear(ex, k, steps - 1); // then they cannot have met in it
+	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), left = k->limit - paths;
+	double reach = (moves(ex, k->a) ? a->reach : 0) + (moves(ex, k->b) ? b->reach : 0);
+	if (left > reach || far_apart(s->u, k, paths, reach, solved, steps))
 		return;
 	pair p = pair_of(s, k, steps);
 	k->met = solved && !k->listed && left <= 0 && has_met(s, k, &p);

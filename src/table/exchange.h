@@ -85,6 +85,7 @@ typedef struct ob_index_cell {
 	uint32_t next;   // 1 + next object in the same bucket; 0 ends
 	int32_t level;   // size class of its bounds, from 1; 0 = not in the index
 	int32_t x, y, z; // cell at that level
+	uint32_t before, after; // 1 + its neighbours in the list of all objects of that class; 0 = none
 } ob_index_cell;
 
 // The areas, as pointers into this process's mapping (made once per process by the table module).
@@ -101,6 +102,7 @@ typedef struct ob_exchange {
 		uint32_t next_due;   // before this step nobody is due, if nobody is visited ..
 		uint32_t next_look;  // .. nor has any pair to be checked
 		uint32_t levels[64]; // objects per size class
+		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		uint32_t planes;
 		uint32_t failure;    // ob_exchange_failure; 0 = none
 	} *count;
