@@ -161,6 +161,14 @@ static bool foreseen(const ob_brief *a, const ob_brief *b, uint64_t steps)
 	return (a->state == OB_BRIEF_PLANE && b->due > steps) || (b->state == OB_BRIEF_PLANE && a->due > steps);
 }
 
+// What is in a flight that began before is on no plane until that ends.
+static bool flies_over(const ob_universe *u, uint32_t id, uint64_t steps)
+{
+	const ob_motion *m = ob_outcome_of(u, id);
+	const double time = (double)steps * ob_universe_settings(u)->step_length;
+	return m->t0 < time && m->valid_until >= time;
+}
+
 // m, of both together in the step that was solved, or none was.
 static double way_made(const ob_universe *u, const ob_pair_key *k, double paths, bool solved)
 {
@@ -175,8 +183,9 @@ static bool far_apart(const ob_universe *u, ob_pair_key *k, double paths, double
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
-	if (a->state == OB_BRIEF_PLANE || b->state == OB_BRIEF_PLANE ||
-	    ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB)
+	if (a->state == OB_BRIEF_PLANE || b->state == OB_BRIEF_PLANE)
+		return flies_over(u, a->state == OB_BRIEF_PLANE ? k->b : k->a, steps);
+	if (ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB)
 		return false;
 	spheres round = spheres_of(u, k, steps);
 	if (round.gap <= touch_gap || (paths >= k->limit && way_made(u, k, paths, solved) >= round.gap))
