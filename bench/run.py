@@ -6,6 +6,7 @@ run.py BUILD [OPTION ...]
   --mode short|full|tiny   short (the default): the shape of all that counts, in less than three minutes; full: every line
                            of docs/performance.md; tiny: for the tests
   --out FILE               results, a line for each quantity (bench.csv)
+  --document FILE          afterwards its tables are written anew, by performance.py
   --scenes GLOB,...        only these, as "falling-*"
   --engines GLOB,...       only these, as "obsim*,bullet"
   --repeats N              runs of each (5; of what takes longer than 6 s: 3, than 20 s: 2, than
@@ -204,6 +205,7 @@ def main():
     p.add_argument('build')
     p.add_argument('--mode', choices=('short', 'full', 'tiny'), default='short')
     p.add_argument('--out', default='bench.csv')
+    p.add_argument('--document')
     p.add_argument('--scenes', default='')
     p.add_argument('--engines', default='')
     p.add_argument('--repeats', type=int, default=5)
@@ -227,6 +229,9 @@ def main():
         profile(options, results)
     if not chosen:
         p.error('nothing has this name; see bench/plan.py')
+    if options.document:
+        performance = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'performance.py')
+        sys.exit(subprocess.run([sys.executable, performance, options.out, options.document], check=False).returncode)
 
 
 if __name__ == '__main__':

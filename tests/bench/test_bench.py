@@ -57,7 +57,7 @@ def test_document(folder):
     text = 'before\n<!-- performance: usual -->\nold\n<!-- end -->\nafter <!-- performance: promises -->\n<!-- end -->\n'
     with open(path, 'w', encoding='utf-8') as f:
         f.write(text)
-    done = call('run.py', BUILD, '--mode', 'tiny', '--repeats', '1', '--out', results)
+    done = call('run.py', BUILD, '--mode', 'tiny', '--repeats', '1', '--out', results, '--document', path)
     assert done.returncode == 0, done.stderr
     for _ in range(2):  # written twice, it is the same
         done = call('performance.py', results, path)
