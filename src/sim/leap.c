@@ -9,7 +9,7 @@
 
 enum { MOST_BOUNCES = 5 }; // in a step: what rattles more is a contact
 
-static const double horizon = 1; // s
+static const double horizon = 2; // s
 
 static bool equal(ob_vec3 a, ob_vec3 b)
 {
