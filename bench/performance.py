@@ -57,7 +57,7 @@ class Measured:
 
     def ours(self, scene, **how):
         """Of obsim as its users run it, or, where that was not measured, as the lab does, which stops at each step."""
-        cost = self.cost(scene, 'obsim, 1 thread', **how)
+        cost = self.cost(scene, 'obsim 1 thread', **how)
         return self.cost(scene, 'obsim', **how) if math.isnan(cost) else cost
 
     def cost_at_equal(self, scene, engine):
@@ -138,8 +138,8 @@ def heaps(m):
                       note=f"Bullet {number(m.get(scene, 'bullet', worst))}")
         yield Promise(f'falling {n}: resting mean, mm', m.get(scene, 'obsim', 'resting mean penetration'), .1,
                       note=f"Bullet {number(m.get(scene, 'bullet', 'resting mean penetration'))}")
-        one, two = m.get(scene, 'obsim, 1 thread', 'wall'), m.get(scene, 'obsim, 2 threads', 'wall')
-        path = [m.get(scene, f'obsim, {w}', 'critical path', setting='critical path', duration=10.)
+        one, two = m.get(scene, 'obsim 1 thread', 'wall'), m.get(scene, 'obsim 2 threads', 'wall')
+        path = [m.get(scene, f'obsim {w}', 'critical path', setting='critical path', duration=10.)
                 for w in ('1 thread', '2 threads')]
         yield Promise(f'falling {n}: wall of two workers / of one', two / one, .6,
                       note=f'critical path, with a core for each: {number(path[1] / path[0])}')
@@ -167,24 +167,24 @@ def scale(m):
                       note=f'us/body-step: {number(few)}, {number(many)}')
     yield Promise('sparse 100,000: bytes per object', m.get('sparse-100000', 'obsim', 'memory', duration=3.), 1500)
     yield Promise('sparse 100,000: bytes per object with an ODE world each',
-                  m.get('sparse-100000', 'obsim, ODE worlds', 'memory', duration=.5), 4000)
-    for engine in ('obsim, 1 thread', 'obsim, 2 threads'):
+                  m.get('sparse-100000', 'obsim ODE worlds', 'memory', duration=.5), 4000)
+    for engine in ('obsim 1 thread', 'obsim 2 threads'):
         for scene in ('falling-10', 'sparse-10', 'stack-10'):
             yield Promise(f'{scene}: median step of {engine}, us wall', m.get(scene, engine, 'median step'), 10,
                           note=f"mean {number(m.get(scene, engine, 'wall'))}")
 
 
 def pools(m):
-    scenes = sorted({s for s, e, _, d in m.settings if e == 'obsim, 2 processes' and not d})
+    scenes = sorted({s for s, e, _, d in m.settings if e == 'obsim 2 processes' and not d})
     same = sum(len(set.union(*(m.texts(s, e, 'state') for e in SIDES_OF_OBSIM))) == 1 for s in scenes)
     yield Promise('scenes whose state differs between workers and isolations', len(scenes) - same, 0,
                   note=f'of {len(scenes)}')
     for scene in scenes:
-        ratio = m.cost(scene, 'obsim, 2 processes') / m.cost(scene, 'obsim, 2 threads')
+        ratio = m.cost(scene, 'obsim 2 processes') / m.cost(scene, 'obsim 2 threads')
         yield Promise(f'{scene}: CPU of a process pool / of a thread pool', ratio, 1.2)
 
 
-SIDES_OF_OBSIM = ['obsim', 'obsim, 1 thread', 'obsim, 1 process', 'obsim, 2 threads', 'obsim, 2 processes']
+SIDES_OF_OBSIM = ['obsim', 'obsim 1 thread', 'obsim 1 process', 'obsim 2 threads', 'obsim 2 processes']
 
 
 def promises(m):
@@ -229,7 +229,7 @@ def equal(m):
 
 def windows(m):
     """[(scene, setting, duration)] of which parts were told."""
-    return [(s, st, d) for s, _, st, d in m.settings if (s, 'obsim, 1 thread', st, d, 'cpu, timed') in m.rows]
+    return [(s, st, d) for s, _, st, d in m.settings if (s, 'obsim 1 thread', st, d, 'cpu, timed') in m.rows]
 
 
 def parts_of(m, window):

@@ -3,25 +3,25 @@
 # Sides: the engine that bench_engine knows, and what it is told.
 SIDES = {
     'obsim': ('obsim', {}),  # in the caller's thread, one worker
-    'obsim, 1 thread': ('host', {'workers': 1}),
-    'obsim, 1 process': ('host', {'workers': 1, 'processes': 1}),
-    'obsim, 2 threads': ('host', {'workers': 2}),
-    'obsim, 2 processes': ('host', {'workers': 2, 'processes': 1}),
-    'obsim, ODE worlds': ('obsim-ode', {}),  # each object with an ODE world of its own
+    'obsim 1 thread': ('host', {'workers': 1}),
+    'obsim 1 process': ('host', {'workers': 1, 'processes': 1}),
+    'obsim 2 threads': ('host', {'workers': 2}),
+    'obsim 2 processes': ('host', {'workers': 2, 'processes': 1}),
+    'obsim ODE worlds': ('obsim-ode', {}),  # each object with an ODE world of its own
     'ode-quick': ('ode-quick', {}),
     'ode-hash': ('ode-hash', {}),
     'ode-world': ('ode-world', {}),
     'bullet': ('bullet', {}),
 }
-POOLS = ['obsim, 1 thread', 'obsim, 1 process', 'obsim, 2 threads', 'obsim, 2 processes']
+POOLS = ['obsim 1 thread', 'obsim 1 process', 'obsim 2 threads', 'obsim 2 processes']
 OTHERS = ['ode-quick', 'bullet']
 
 # Scenes at their usual settings: (scene, sides, knobs for all). Where a scene is run for less than its own duration it
 # says so. "looks": False where looking at every frame would take longer than all else.
 FULL = [
     ('sparse-10000', ['obsim', *POOLS, 'ode-quick', 'ode-hash', 'bullet'], {}),
-    ('sparse-10000', ['obsim', 'obsim, 1 thread', 'ode-quick', 'ode-hash', 'bullet'], {'duration': 3}),
-    ('balls-49', ['obsim', 'obsim, 1 thread', *OTHERS], {}),
+    ('sparse-10000', ['obsim', 'obsim 1 thread', 'ode-quick', 'ode-hash', 'bullet'], {'duration': 3}),
+    ('balls-49', ['obsim', 'obsim 1 thread', *OTHERS], {}),
     ('balls-1000', ['obsim', *POOLS, *OTHERS], {}),
     ('stack-10', ['obsim', *POOLS, *OTHERS], {}),
     ('pyramid-15', ['obsim', *POOLS, *OTHERS], {}),
@@ -33,26 +33,26 @@ FULL = [
     ('666', ['obsim', *POOLS, *OTHERS], {}),
     ('falling-10', ['obsim', *POOLS], {}),
     ('sparse-10', ['obsim', *POOLS], {}),
-    ('sparse-1000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 3}),
-    ('sparse-100000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 3}),
-    ('sparse-100000', ['obsim', 'obsim, ODE worlds'], {'duration': .5}),
-    ('falling-1000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 2}),
-    ('falling-10000', ['obsim', 'obsim, 1 thread', *OTHERS], {'duration': 2}),
-    ('falling-100000', ['obsim', 'obsim, 1 thread'], {'duration': 2}),
+    ('sparse-1000', ['obsim', 'obsim 1 thread', *OTHERS], {'duration': 3}),
+    ('sparse-100000', ['obsim', 'obsim 1 thread', *OTHERS], {'duration': 3}),
+    ('sparse-100000', ['obsim', 'obsim ODE worlds'], {'duration': .5}),
+    ('falling-1000', ['obsim', 'obsim 1 thread', *OTHERS], {'duration': 2}),
+    ('falling-10000', ['obsim', 'obsim 1 thread', *OTHERS], {'duration': 2}),
+    ('falling-100000', ['obsim', 'obsim 1 thread'], {'duration': 2}),
 ]
 SHORT = [
     ('sparse-2000', ['obsim', 'ode-quick', 'bullet'], {'duration': 2}),
     ('balls-49', ['obsim', *OTHERS], {'duration': 5}),
     ('stack-10', ['obsim', *OTHERS], {'duration': 5}),
     ('pyramid-15', ['obsim', *OTHERS], {'duration': 1}),
-    ('falling-200', ['obsim', 'obsim, 2 threads', 'obsim, 2 processes', *OTHERS], {'duration': 2}),
+    ('falling-200', ['obsim', 'obsim 2 threads', 'obsim 2 processes', *OTHERS], {'duration': 2}),
     ('pile', ['obsim', *OTHERS], {'duration': 1}),
     ('heavy-1000', ['obsim', 'ode-world'], {'duration': 5}),
     ('rolling-diagonal', ['obsim', 'bullet'], {'duration': 4}),
     ('666', ['obsim', *OTHERS], {'duration': 2}),
 ]
 TINY = [  # for the tests
-    ('stack-10', ['obsim', 'obsim, 2 processes', 'ode-quick'], {'duration': .2}),
+    ('stack-10', ['obsim', 'obsim 2 processes', 'ode-quick'], {'duration': .2}),
     ('falling-8', ['obsim'], {'duration': .2}),
 ]
 

@@ -165,11 +165,11 @@ def profile(options, results):
     """obsim's parts and functions, and what its pieces cost by themselves."""
     for scene, begin, end, what in plan.PARTS:
         if wanted(scene, options.scenes):
-            side = Side(scene, 'obsim, 1 thread', {'from': begin, 'duration': end}, what)
+            side = Side(scene, 'obsim 1 thread', {'from': begin, 'duration': end}, what)
             results.add(side, 1, side.run('parts')[0])
             print(f'{scene:18} parts, {what}', flush=True)
     for scene, seconds in plan.CRITICAL:
-        for name in ('obsim, 1 thread', 'obsim, 2 threads') if wanted(scene, options.scenes) else ():
+        for name in ('obsim 1 thread', 'obsim 2 threads') if wanted(scene, options.scenes) else ():
             side = Side(scene, name, {'duration': seconds}, 'critical path')
             rows = [r for r in side.run('parts')[0] if r[0] in ('critical path', 'failed')]
             results.add(side, 1, rows)

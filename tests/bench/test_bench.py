@@ -32,7 +32,7 @@ def test_run(folder):
     assert done.returncode == 0, done.stderr
     rows = rows_of(path)
     sides = {(r['scene'], r['engine']) for r in rows}
-    assert sides == {('stack-10', 'obsim'), ('stack-10', 'obsim, 2 processes'), ('stack-10', 'ode-quick'),
+    assert sides == {('stack-10', 'obsim'), ('stack-10', 'obsim 2 processes'), ('stack-10', 'ode-quick'),
                      ('falling-8', 'obsim')}, sides
     for scene, engine in sides:
         own = [r for r in rows if (r['scene'], r['engine']) == (scene, engine)]
