@@ -280,14 +280,16 @@ def pieces(m):
 # - a look at two boxes (contact/boxes.c): nine products of axes 135, fifteen axes of some 22, clipping a face against
 #   four sides some 100; two poses and sizes read, a pair of four points written;
 # - a substep of a body: its turn as a quaternion and a matrix 110, prediction 24; its rows read and written;
-# - a member of an island: its motion and passport in, its motion out; and in flight a rotation in closed form.
+# - a member of an island: its motion and passport in, its motion out;
+# - a visit of what flies: a plan of its rotation 400, ten evaluations of it on the way to the ground, 110 each; its motion,
+#   passport and box, and those of a neighbour.
 UNITS = [
     ('solve', 'pair_exchanges', 448, 1264, 'near'),
     ('look', 'looks', 565, 700, 'near'),
     ('move', 'member_substeps', 134, 600, 'near'),
     ('load', 'member_steps', 100, 448, 'far'),
     ('publish', 'member_steps', 150, 300, 'far'),
-    ('leap', 'leaps', 250, 600, 'far'),
+    ('leap', 'leaps', 1500, 900, 'far'),
     ('perceive', 'box_tests', 6, 24, 'far'),
 ]
 
@@ -306,7 +308,7 @@ def floor(m):
         for part, count, work, size, where in UNITS:
             units = counts.get(count, 0.)
             least = 1e-3 * units * max(work / flops, size / rate[where])
-            if measured.get(part, 0.) > 0 and least > 0:
+            if measured.get(part, 0.) > 0 and units > .01:
                 text += row(f'{window[0]}, {window[1]}', part, number(units), work, size, number(least),
                             number(measured[part]), number(measured[part] / least))
     return text
