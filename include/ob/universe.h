@@ -61,7 +61,7 @@ enum { // ob_motion.flags
 	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_STILL, // either: it stays where it is
 };
 
-// How an object moves from t0 on, unless touched. 200 bytes: the payload of one slot version.
+// How an object moves from t0 on, unless touched. 176 bytes: the payload of one slot version.
 typedef struct ob_motion {
 	double t0;          // s, the instant of the state below: of a flight, when it began
 	double valid_until; // s, the closed form holds so long, unless another object interferes
@@ -71,7 +71,6 @@ typedef struct ob_motion {
 	ob_vec3 w;          // rad/s, world frame
 	ob_vec3 a;          // m/s^2, constant while the motion holds (gravity in flight, 0 when supported)
 	double path;        // m, length of path of the fastest surface point since the run began
-	float bounds[6];    // m, xmin ymin zmin xmax ymax zmax: a box that holds the object until it republishes one
 	uint32_t step;      // the step that published this
 	uint32_t flags;     // OB_MOTION_*
 	float quiet;        // s, how long it has been slow
@@ -138,6 +137,10 @@ bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_inf
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out);
 // The newest published motion; never torn. false: no such object, or its bytes do not make sense.
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out);
+// The box (m, xmin ymin zmin xmax ymax zmax) that holds the object until it claims another; a plane's is infinite. Each
+// number is whole, but while the universe runs a new claim may have reached some of them and not yet the others.
+// false: no such object, or its numbers do not make sense.
+bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6]);
 // Contact points of the last completed step; returns how many there are (may exceed max).
 size_t ob_universe_get_contacts(const ob_universe *u, ob_contact_point *out, size_t max);
 

@@ -310,7 +310,6 @@ static bool finite_row(const double *r)
 void ob_member_hand_over(ob_sim *s, uint32_t id, ob_motion *m, uint32_t state, uint32_t due)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
-	memcpy(m->bounds, ex->bounds[id], sizeof m->bounds);
 	ex->brief[id] = (ob_brief){ m->path, m->reach, state, m->step, due };
 	ob_outcome_stage(s, id, m);
 }

@@ -125,7 +125,8 @@ static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep,
 	};
 	double bounds[6];
 	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
-	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_pull(m->run, p)), next.bounds);
+	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_pull(m->run, p)),
+	      ob_universe_exchange(m->u)->bounds[id]);
 	if (m->traced)
 		ob_trace_moves(m->u, 0, id, last->flags & OB_MOTION_ASLEEP, next.flags);
 	ob_publish_motion(m->u, id, &next);

@@ -110,9 +110,9 @@ static bool finite3(ob_vec3 v)
 
 static bool passport_makes_sense(const ob_passport *p, uint32_t id)
 {
-	return p->id == id && p->shape <= OB_SHAPE_CYLINDER && finite3(p->size) && finite3(p->inertia) && finite3(p->force) &&
-	       isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) && isfinite(p->restitution) &&
-	       memchr(p->name, 0, sizeof p->name);
+	return p->id == id && p->shape <= OB_SHAPE_CYLINDER && finite3(p->size) && finite3(p->inertia) &&
+	       finite3(p->force) && isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) &&
+	       isfinite(p->restitution) && memchr(p->name, 0, sizeof p->name);
 }
 
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out)
@@ -125,11 +125,8 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 static bool motion_makes_sense(const ob_motion *m)
 {
 	double norm = m->q.w * m->q.w + m->q.x * m->q.x + m->q.y * m->q.y + m->q.z * m->q.z;
-	bool bounded = true;
-	for (int i = 0; i < 3; i++)
-		bounded &= m->bounds[i] <= m->bounds[i + 3]; // false for NaN; infinite for planes
 	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
-	       finite3(m->a) && norm > .9 && norm < 1.1 && bounded;
+	       finite3(m->a) && norm > .9 && norm < 1.1;
 }
 
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out)
@@ -138,4 +135,15 @@ bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out)
 		return false;
 	return (read32(&ob_passport_of(u, id)->flags) & OB_OBJECT_PRESENT) && ob_slot_read(u->slot + id, out) &&
 	       motion_makes_sense(out);
+}
+
+bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6])
+{
+	ob_passport p;
+	bool sense = ob_universe_get_passport(u, id, &p);
+	for (int i = 0; i < 6 && sense; i++)
+		__atomic_load(&u->exchange.bounds[id][i], &bounds[i], __ATOMIC_RELAXED);
+	for (int i = 0; i < 3 && sense; i++)
+		sense = bounds[i] <= bounds[i + 3]; // false for NaN
+	return sense;
 }

@@ -45,9 +45,9 @@ typedef struct ob_passport_slot {
 	ob_passport odd;
 } ob_passport_slot;
 
-static_assert(sizeof(ob_motion) == 200, "payload of a slot");
+static_assert(sizeof(ob_motion) == 176, "payload of a slot");
 static_assert(sizeof(ob_passport) == 176, "passport");
-static_assert(sizeof(ob_slot) == 408, "slot");
+static_assert(sizeof(ob_slot) == 360, "slot");
 static_assert(sizeof(ob_passport_slot) == 184, "passport slot");
 
 typedef uint64_t __attribute__((may_alias)) ob_word;

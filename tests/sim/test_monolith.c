@@ -81,7 +81,9 @@ static void test_flight(uint32_t substeps)
 	CHECK_NEAR(now.v.z, -10, 1e-10);
 	CHECK_NEAR(now.p.z, 15 - 5 * H / substeps, 1e-10);
 	CHECK(now.a.z == -10);
-	CHECK(now.bounds[2] < now.p.z - .5 - 10 * H && now.bounds[5] > now.p.z + .5); // until the next step
+	float bounds[6];
+	CHECK(ob_universe_get_bounds(u, 1, bounds));
+	CHECK(bounds[2] < now.p.z - .5 - 10 * H && bounds[5] > now.p.z + .5); // until the next step
 	CHECK_NEAR(now.path, 5 + 5 * H, .01);
 	CHECK(ob_universe_get_motion(u, 0, &now) && now.step == 0); // what is static is left as it was placed
 	CHECK(ob_monolith_awake(m) == 1 && ob_monolith_pairs(m) == 0);

@@ -20,7 +20,7 @@ static ob_universe *create_filled(void)
 	ob_universe *u = ob_universe_create(&setup, &e);
 	for (uint32_t i = 0; u && i < OBJECTS; i++) {
 		ob_passport p = { .id = i, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_BOX, .mass = 1 };
-		ob_motion m = { .p = { i, 0, 1 }, .q = { 1, 0, 0, 0 }, .bounds = { 0, 0, 0, 1, 1, 1 } };
+		ob_motion m = { .p = { i, 0, 1 }, .q = { 1, 0, 0, 0 } };
 		ob_write_passport(u, i, &p);
 		ob_publish_motion(u, i, &m);
 	}
@@ -30,7 +30,7 @@ static ob_universe *create_filled(void)
 static void test_nonsense(void)
 {
 	ob_universe *u = create_filled();
-	ob_motion good = { .q = { 1, 0, 0, 0 }, .bounds = { 0, 0, 0, 1, 1, 1 } }, m;
+	ob_motion good = { .q = { 1, 0, 0, 0 } }, m;
 	double *field[] = { &m.t0, &m.valid_until, &m.p.x, &m.q.w, &m.q.z, &m.v.y, &m.w.z, &m.a.x };
 	for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
 		m = good;
@@ -42,12 +42,15 @@ static void test_nonsense(void)
 	m.q.w = 2;
 	ob_publish_motion(u, 3, &m);
 	CHECK(!ob_universe_get_motion(u, 3, &m));
-	m = good;
-	m.bounds[4] = NAN;
-	ob_publish_motion(u, 3, &m);
-	CHECK(!ob_universe_get_motion(u, 3, &m));
 	ob_publish_motion(u, 3, &good);
 	CHECK(ob_universe_get_motion(u, 3, &m));
+	float *claimed = ob_universe_exchange(u)->bounds[3], bounds[6];
+	memcpy(claimed, (float[6]){ -INFINITY, 0, 1, INFINITY, 0, 2 }, sizeof bounds);
+	CHECK(ob_universe_get_bounds(u, 3, bounds) && memcmp(bounds, claimed, sizeof bounds) == 0);
+	claimed[1] = NAN;
+	CHECK(!ob_universe_get_bounds(u, 3, bounds));
+	claimed[1] = 1;
+	CHECK(!ob_universe_get_bounds(u, 3, bounds) && !ob_universe_get_bounds(u, OBJECTS, bounds));
 	ob_passport p = { .id = 4, .flags = OB_OBJECT_PRESENT, .shape = 77 };
 	ob_write_passport(u, 3, &p); // another's id, an unknown shape
 	CHECK(!ob_universe_get_passport(u, 3, &p));

@@ -27,9 +27,7 @@ static ob_universe *create(uint32_t capacity)
 
 static ob_motion motion_at(double x)
 {
-	return (ob_motion){
-		.valid_until = INFINITY, .p = { x, 2, 3 }, .q = { 1, 0, 0, 0 }, .bounds = { 0, 0, 0, 1, 1, 1 }
-	};
+	return (ob_motion){ .valid_until = INFINITY, .p = { x, 2, 3 }, .q = { 1, 0, 0, 0 } };
 }
 
 static void put(ob_universe *u, uint32_t id, double x)
