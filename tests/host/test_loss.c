@@ -81,14 +81,15 @@ static void test_lost_keeper(void)
 	free(s.object);
 }
 
+// The only one: of several, one that has nothing to do may hang without keeping the others from going on.
 static void test_hanging_simulator(void)
 {
 	ob_scene s = little_scene(6);
-	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 2);
+	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 1);
 	ob_error e = { "" };
 	c.patience = .5;
 	ob_host *h = ob_host_start(&s, &c, &e);
-	double took = struck(h, (blow){ 50, pid_of_worker(ob_host_universe(h), 1), SIGSTOP, 0 }, &e);
+	double took = struck(h, (blow){ 50, pid_of_worker(ob_host_universe(h), 0), SIGSTOP, 0 }, &e);
 	CHECK(took > .4 && took < 2 * SLOWED);
 	CHECK(strstr(e.text, "was not complete"));
 	ob_host_stop(h);
