@@ -54,9 +54,22 @@ static void find(void *with, const ob_placed *a, const ob_placed *b, double marg
 	}
 }
 
+// As find, for one who advances by how far the two are apart: of ODE's shapes that is known only as far as the margin
+// goes, so they are looked at with a wide one first.
+static void find_from_afar(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	const double wide = .5 * fmin(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
+	find(with, a, b, margin, out);
+	if (out->points || out->separation > margin || !(wide > margin))
+		return;
+	ob_manifold far;
+	find(with, a, b, wide, &far);
+	out->separation = fmax(margin, far.separation);
+}
+
 ob_manifold_finder ob_look_finder(ob_sim *s)
 {
-	return (ob_manifold_finder){ find, s };
+	return (ob_manifold_finder){ find_from_afar, s };
 }
 
 static ob_placed placed(const ob_island_work *w, uint32_t row)
