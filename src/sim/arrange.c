@@ -140,6 +140,8 @@ static void begin_step(ob_universe *u, ob_sim *s)
 	}
 	for (;;) {
 		uint64_t step = ob_step_count(u);
+		if (!ex->count->awake || !ex->count->pairs)
+			ex->count->next_look = UINT32_MAX;
 		if (ex->count->next_look <= step && ex->count->looked != step) {
 			if (!s && first_mobile(u) != UINT32_MAX) {
 				open_checks(u, OB_STAGE_START);
