@@ -54,13 +54,18 @@ static void find(void *with, const ob_placed *a, const ob_placed *b, double marg
 	}
 }
 
+static bool is_of_ode(ob_shape s)
+{
+	return s == OB_SHAPE_CAPSULE || s == OB_SHAPE_CYLINDER;
+}
+
 // As find, for one who advances by how far the two are apart: of ODE's shapes that is known only as far as the margin
 // goes, so they are looked at with a wide one first.
 static void find_from_afar(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	const double wide = .5 * fmin(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
 	find(with, a, b, margin, out);
-	if (out->points || out->separation > margin || !(wide > margin))
+	if (out->points || !(is_of_ode(a->shape) || is_of_ode(b->shape)) || !(wide > margin))
 		return;
 	ob_manifold far;
 	find(with, a, b, wide, &far);
