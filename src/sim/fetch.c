@@ -11,8 +11,6 @@ static inline void fetch(const void *from, size_t bytes)
 void ob_fetch_island(ob_sim *s, uint32_t i)
 {
 	const ob_exchange *ex = ob_universe_exchange(s->u);
-	if (i >= ex->count->islands)
-		return;
 	const ob_island *is = &ex->island[i];
 	for (uint32_t k = 0; k < is->members && k < MOST; k++) {
 		uint32_t id = ex->member[is->first_member + k];

@@ -4,7 +4,7 @@
 
 #include "sim/worker.h"
 
-// Island i of the universe will be solved soon. Reads only what the arranger wrote; of large islands the beginning.
+// Island i of the universe will be solved soon, by this worker. Of large ones the beginning.
 void ob_fetch_island(ob_sim *s, uint32_t i);
 
 #endif

@@ -4,7 +4,6 @@
 
 #include "sim/calm.h"
 #include "sim/exchange.h"
-#include "sim/fetch.h"
 #include "sim/ghost.h"
 #include "sim/leap.h"
 #include "sim/members.h"
@@ -145,7 +144,6 @@ static uint32_t rest_of(ob_sim *s)
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &ob_universe_exchange(s->u)->island[i];
-	ob_fetch_island(s, i + 1);
 	if (may_leap(s->u, is)) {
 		ob_part_enter(s, OB_PART_LEAP);
 		if (ob_leap(s, ob_universe_exchange(s->u)->member[is->first_member])) {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "sim/arrange.h"
+#include "sim/fetch.h"
 #include "sim/island.h"
 #include "sim/meeting.h"
 #include "sim/outcome.h"
@@ -89,6 +90,8 @@ static uint32_t solve_chunk(ob_sim *s, uint32_t chunk)
 	uint32_t objects = 0;
 	ob_span_chunk_begin(s);
 	for (uint32_t i = ex->chunk[chunk]; i < ex->chunk[chunk + 1]; i++) {
+		if (i + 1 < ex->chunk[chunk + 1]) // beyond it another worker writes what would be read here
+			ob_fetch_island(s, i + 1);
 		solve(s, i, i == ex->chunk[chunk]);
 		objects += ex->island[i].members;
 	}
