@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "motion/published.h"
+
 static bool grow_objects(ob_snapshot *s, uint32_t count)
 {
 	if (count <= s->count_max)
@@ -109,9 +111,5 @@ void ob_snapshot_finish(ob_snapshot *s)
 
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id)
 {
-	const ob_motion *m = &s->motion[id];
-	bool still = m->t0 == s->time || s->passport[id].flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_RESTS;
-	if (still) // the bits as published
-		return (ob_state){ { m->p, m->q }, m->v, m->w };
-	return ob_motion_at(m, s->passport[id].inertia, s->time);
+	return ob_published_at(&s->motion[id], &s->passport[id], s->time);
 }

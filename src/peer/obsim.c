@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "peer/engines.h"
+#include "sim/now.h"
 #include "sim/sim.h"
 #include "table/table.h"
 
@@ -91,16 +92,8 @@ static bool step(ob_peer *p, ob_error *e)
 
 static void get(const ob_peer *p, ob_state *state)
 {
-	double now = ob_step_count(p->u) * ob_universe_settings(p->u)->step_length;
-	for (uint32_t i = 0; i < p->objects; i++) {
-		const ob_motion *m = ob_newest_motion(p->u, i);
-		const ob_passport *who = ob_passport_of(p->u, i);
-		bool still = m->t0 == now || who->flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_RESTS;
-		if (still) // the bits as published
-			state[i] = (ob_state){ { m->p, m->q }, m->v, m->w };
-		else
-			state[i] = ob_motion_at(m, who->inertia, now);
-	}
+	for (uint32_t i = 0; i < p->objects; i++)
+		state[i] = ob_state_now(p->u, i, ob_newest_motion(p->u, i), ob_step_count(p->u));
 }
 
 // With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.

@@ -1,6 +1,7 @@
 #include "sim/leap.h"
 
 #include "motion/landing.h"
+#include "motion/published.h"
 #include "sim/bounce.h"
 #include "sim/members.h"
 #include "sim/now.h"
@@ -36,13 +37,13 @@ ob_motion ob_leap_flight(const ob_sim *s, uint32_t id)
 
 ob_state ob_leap_state(ob_sim *s, uint32_t id, const ob_motion *f, double time)
 {
-	if (time == f->t0 || f->flags & OB_MOTION_RESTS || ob_passport_of(s->u, id)->flags & OB_OBJECT_STATIC)
+	const ob_passport *pass = ob_passport_of(s->u, id);
+	if (ob_published_stands(f, pass, time))
 		return (ob_state){ { f->p, f->q }, f->v, f->w };
-	ob_vec3 inertia = ob_passport_of(s->u, id)->inertia;
 	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .a = f->a };
-	ob_state now = ob_motion_at(&m, inertia, time);
+	ob_state now = ob_motion_at(&m, pass->inertia, time);
 	if (ob_norm2(f->w) > 0)
-		ob_spin_at(ob_plans_spin(&s->plans, id, f->q, f->w, inertia), time - f->t0, &now.pose.q, &now.w);
+		ob_spin_at(ob_plans_spin(&s->plans, id, f->q, f->w, pass->inertia), time - f->t0, &now.pose.q, &now.w);
 	return now;
 }
 
