@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "contact/relax.h"
+
 static const double together = 1e-4; // m: points that are nearer than this when the first one hits, hit with it
 
 // One lane's rows as plain numbers.
@@ -101,24 +103,16 @@ static void rows_matrix(rows *r, const ob_batch *b, int l, const ob_impact *in)
 	}
 }
 
-// Sets one impulse; returns how much that changes its row's velocity (m/s).
 static double set_impulse(const rows *r, int i, double next, double *x, double *rate)
 {
-	double dx = next - x[i];
-	x[i] = next;
-	for (int j = 0; j < OB_ROWS; j++)
-		rate[j] += r->a[j][i] * dx;
-	return fabs(dx) * r->a[i][i];
+	return ob_relax_set((const double *)r->a, OB_ROWS, i, next, x, rate);
 }
 
 // One sweep over friction, its vector projected on the cone's disc, and the twist.
 static double sweep_friction(const rows *r, const ob_batch *b, int l, double *x, double *rate)
 {
-	double bound = b->mu[l] * (x[0] + x[1] + x[2] + x[3]), change;
-	double f4 = x[4] - rate[4] / r->a[4][4], f5 = x[5] - rate[5] / r->a[5][5];
-	double l2 = f4 * f4 + f5 * f5, shrink = l2 > bound * bound ? bound / sqrt(l2) : 1;
-	change = set_impulse(r, 4, f4 * shrink, x, rate);
-	change = fmax(change, set_impulse(r, 5, f5 * shrink, x, rate));
+	double bound = b->mu[l] * (x[0] + x[1] + x[2] + x[3]);
+	double change = ob_relax_friction((const double *)r->a, OB_ROWS, 4, bound, x, rate);
 	bound *= b->radius[l];
 	if (r->a[6][6] > 0)
 		change = fmax(change,

@@ -1,6 +1,7 @@
 #include "contact/rebound.h"
 
 #include "contact/batch.h"
+#include "contact/relax.h"
 
 enum { ROWS = 3 }; // normal, two of friction
 
@@ -28,23 +29,9 @@ static void rows_init(rows *r, const ob_rebound *in, const ob_mat3 *body, ob_vec
 			r->a[i][k] = (i == k ? in->inv_mass : 0) + ob_dot(r->about[i], r->turn[k]);
 }
 
-static double set_impulse(const rows *r, int i, double next, double *x, double *rate)
-{
-	double dx = next - x[i];
-	x[i] = next;
-	for (int k = 0; k < ROWS; k++)
-		rate[k] += r->a[k][i] * dx;
-	return fabs(dx) * r->a[i][i];
-}
-
-// Friction within the disc that the normal impulse gives it.
 static double sweep_friction(const rows *r, double mu, double *x, double *rate)
 {
-	double bound = mu * x[0];
-	double f1 = x[1] - rate[1] / r->a[1][1], f2 = x[2] - rate[2] / r->a[2][2];
-	double l2 = f1 * f1 + f2 * f2, shrink = l2 > bound * bound ? bound / sqrt(l2) : 1;
-	double change = set_impulse(r, 1, f1 * shrink, x, rate);
-	return fmax(change, set_impulse(r, 2, f2 * shrink, x, rate));
+	return ob_relax_friction((const double *)r->a, ROWS, 1, mu * x[0], x, rate);
 }
 
 // The impulses that would stop the point; true if friction can hold that.
@@ -74,7 +61,8 @@ static void solve(const rows *r, double mu, double e, double *x)
 		for (int i = 0; i < ROWS; i++)
 			rate[i] = r->rate[i];
 		for (int s = 0; s < 100 && change > done; s++) {
-			change = set_impulse(r, 0, fmax(0, x[0] - rate[0] / r->a[0][0]), x, rate);
+			change = ob_relax_set((const double *)r->a, ROWS, 0, fmax(0, x[0] - rate[0] / r->a[0][0]), x,
+					      rate);
 			if (mu > 0)
 				change = fmax(change, sweep_friction(r, mu, x, rate));
 		}
