@@ -1,8 +1,5 @@
 #include "sim/arrange.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "sim/index.h"
 #include "sim/islands.h"
 #include "sim/meeting.h"
@@ -105,27 +102,19 @@ static void complete_step(ob_universe *u)
 	ob_step_complete(u, ex->count->awake, ex->count->pairs, ex->count->islands);
 }
 
-// Whose worker stands for all where each object has its own; UINT32_MAX: there is none that can move, nor a pair to
-// check.
-static uint32_t first_mobile(const ob_universe *u)
-{
-	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
-		if (ob_universe_exchange(u)->brief[id].state >= OB_BRIEF_AWAKE)
-			return id;
-	return UINT32_MAX;
-}
-
 // The pairs of one step, by all workers, or by the one that asks, where it has one.
 static void open_checks(ob_universe *u, uint32_t stage)
 {
 	ob_exchange *ex = ob_universe_exchange(u);
-	uint32_t first = first_mobile(u);
+	uint32_t first = 0;
 	ex->count->stage = stage;
 	ob_claim_reset(u, (ex->count->pairs + OB_MEETINGS_HANDFUL - 1) / OB_MEETINGS_HANDFUL);
 	if (!own_worker_each(u)) {
 		ob_gate_open(u, OB_PHASE_MEETINGS, NULL, 0);
 		return;
 	}
+	while (ex->brief[first].state < OB_BRIEF_AWAKE) // its worker does it; pairs are checked where somebody is awake
+		first++;
 	ob_gate_open(u, OB_PHASE_MEETINGS, &first, 1);
 }
 
@@ -143,12 +132,11 @@ static void begin_step(ob_universe *u, ob_sim *s)
 		if (!ex->count->awake || !ex->count->pairs)
 			ex->count->next_look = UINT32_MAX;
 		if (ex->count->next_look <= step && ex->count->looked != step) {
-			if (!s && first_mobile(u) != UINT32_MAX) {
+			if (!s) {
 				open_checks(u, OB_STAGE_START);
 				return;
 			}
-			if (s)
-				ob_meetings_check(s, 0, ex->count->pairs, false);
+			ob_meetings_check(s, 0, ex->count->pairs, false);
 			ob_meetings_any(u, false);
 		}
 		ex->count->islands = 0;
