@@ -12,7 +12,6 @@ static const double touch_share = .05; // .. and no more than this share of the 
 static const double unseen = .4; // of the thickness: who moves more may have passed through something
 
 typedef struct pair {
-	const ob_passport *passport[2];
 	ob_placed at[2];
 	double path, reach; // m, of both together
 	double thin; // m
@@ -41,20 +40,13 @@ static pair pair_of(ob_sim *s, const ob_pair_key *k, uint64_t steps)
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	pair p = { .h = ob_universe_settings(u)->step_length, .thin = INFINITY };
 	p.path = ob_brief_path(a, steps) + ob_brief_path(b, steps);
-	p.reach = (a->state == OB_BRIEF_AWAKE ? a->reach : 0) + (b->state == OB_BRIEF_AWAKE ? b->reach : 0);
+	p.reach = a->reach + b->reach;
 	for (int i = 0; i < 2; i++) {
 		uint32_t id = i ? k->b : k->a;
-		p.passport[i] = ob_passport_of(u, id);
 		p.at[i] = placed(s, id, ob_outcome_of(u, id), steps);
-		p.thin = fmin(p.thin, ob_shape_thickness(p.passport[i]->shape, p.passport[i]->size));
+		p.thin = fmin(p.thin, ob_shape_thickness(p.at[i].shape, p.at[i].size));
 	}
 	return p;
-}
-
-static double turning(const ob_passport *p, ob_vec3 w)
-{
-	bool same_all_round = p->shape == OB_SHAPE_SPHERE || p->shape == OB_SHAPE_PLANE;
-	return same_all_round ? 0 : ob_norm(w) * ob_shape_radius(p->shape, p->size);
 }
 
 // First time at which the two touch within h (s), going on as they do; how far apart they are now (m).
@@ -62,7 +54,8 @@ static double first_touch(ob_sim *s, const pair *p, double h, double *apart)
 {
 	ob_manifold m;
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
-	double speed = ob_norm(ob_sub(a->v, b->v)) + turning(p->passport[0], a->w) + turning(p->passport[1], b->w);
+	double speed = ob_norm(ob_sub(a->v, b->v)) + ob_turning_speed(a->w, a->shape, a->size) +
+		       ob_turning_speed(b->w, b->shape, b->size);
 	double gap = fmin(touch_gap, touch_share * p->thin);
 	double when = ob_swept_find(a, b, fmax(speed, 1e-9), h, gap, gap, ob_look_finder(s), &m);
 	*apart = m.separation;
@@ -204,7 +197,7 @@ static void check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 		return;
 	solved &= steps == 0 || !is_clear(ex, k, steps - 1); // then they cannot have met in it
 	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), left = k->limit - paths;
-	double reach = (moves(ex, k->a) ? a->reach : 0) + (moves(ex, k->b) ? b->reach : 0);
+	double reach = a->reach + b->reach;
 	if (left > reach || far_apart(s->u, k, paths, reach, solved, steps))
 		return;
 	pair p = pair_of(s, k, steps);

@@ -13,9 +13,15 @@ static const double roomy = 2; // times as long as a flight's new box: what goes
 static const uint64_t review_steps = 16;
 static const double far_margin = 1.5; // m: fast ones claim only what one step needs beyond this
 
+double ob_turning_speed(ob_vec3 w, ob_shape shape, ob_vec3 size)
+{
+	double rate = ob_norm(w);
+	return shape == OB_SHAPE_SPHERE || rate == 0 ? 0 : rate * ob_shape_radius(shape, size);
+}
+
 double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size)
 {
-	return ob_norm(v) + (shape == OB_SHAPE_SPHERE ? 0 : ob_norm(w) * ob_shape_radius(shape, size));
+	return ob_norm(v) + ob_turning_speed(w, shape, size);
 }
 
 double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v, ob_vec3 w)

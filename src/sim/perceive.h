@@ -6,6 +6,8 @@
 
 #include "table/table.h"
 
+// Bound of what turning adds to the speed of any point of the object (m/s); 0 for spheres, and for what does not turn.
+double ob_turning_speed(ob_vec3 w, ob_shape shape, ob_vec3 size);
 // Bound of the speed of any point of the object (m/s).
 double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size);
 // How far any point of the object may get in one step from these velocities (m), under what pulls at it.
