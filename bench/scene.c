@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "lab/build.h"
+#include "lab/heap.h"
 #include "lab/look.h"
 
 enum { MOST = 1000000 }; // bodies
@@ -29,29 +30,9 @@ static void build_balls(ob_peer_world *w, uint32_t run)
 	ob_build_balls(w, scene.bodies);
 }
 
-enum { WORST, RESTING_MEAN, RESTING_WORST, GROWTH, CROWD_FIGURES };
-enum { MEMORY_SUM, MEMORY_FRAMES, MEMORY_START, MEMORY_LOWEST }; // resting penetrations (m); energies (J)
-
-static void observe_crowd(ob_trial *t)
-{
-	ob_penetration p;
-	double energy = ob_look_energy(t), *memory = t->memory;
-	ob_measure_penetration(&t->now, &p);
-	ob_look_keep(&t->figure[WORST], 1e3 * p.max_m);
-	if (t->time > t->of->duration - 1) {
-		memory[MEMORY_SUM] += p.mean_m;
-		memory[MEMORY_FRAMES]++;
-		ob_look_keep(&t->figure[RESTING_WORST], 1e3 * p.max_m);
-	}
-	if (!t->frame)
-		memory[MEMORY_START] = memory[MEMORY_LOWEST] = energy;
-	memory[MEMORY_LOWEST] = fmin(memory[MEMORY_LOWEST], energy);
-	ob_look_keep(&t->figure[GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
-}
-
 static void judge_crowd(ob_trial *t)
 {
-	t->figure[RESTING_MEAN] = 1e3 * t->memory[MEMORY_SUM] / fmax(t->memory[MEMORY_FRAMES], 1);
+	ob_heap_judge(t);
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
@@ -75,10 +56,10 @@ static void judge_balls(ob_trial *t)
 
 // clang-format off
 #define CROWD \
-	.step = 1. / 60, .runs = 1, .figures = CROWD_FIGURES, .observe = observe_crowd, .judge = judge_crowd, \
-	.figure = { { .name = "worst penetration at any moment", .unit = "mm" }, \
-		    { .name = "resting mean penetration", .unit = "mm" }, \
+	.step = 1. / 60, .runs = 1, .figures = OB_HEAP_FIGURES, .observe = ob_heap_observe, .judge = judge_crowd, \
+	.figure = { { .name = "resting mean penetration", .unit = "mm" }, \
 		    { .name = "resting worst penetration", .unit = "mm" }, \
+		    { .name = "worst penetration at any moment", .unit = "mm" }, \
 		    { .name = "growth of energy", .unit = "1" } }
 // clang-format on
 

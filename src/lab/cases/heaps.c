@@ -2,6 +2,7 @@
 #include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/cases/stand.h"
+#include "lab/heap.h"
 #include "lab/look.h"
 
 static void build_pyramid(ob_peer_world *w, int rows)
@@ -81,31 +82,16 @@ static void build_falling(ob_peer_world *w, uint32_t run)
 	ob_build_falling(w, 100, 100 + run);
 }
 
-enum { SETTLED_MEAN, SETTLED_WORST, WORST, GROWTH, PILE_FIGURES };
-enum { MEMORY_SUM, MEMORY_FRAMES, MEMORY_START, MEMORY_LOWEST }; // settled penetrations (m); energies (J)
-
 static void observe_pile(ob_trial *t)
 {
-	ob_penetration p;
-	double energy = ob_look_energy(t), *memory = t->memory;
-	ob_measure_penetration(&t->now, &p);
-	ob_look_keep(&t->figure[WORST], 1e3 * p.max_m);
-	if (t->time > t->of->duration - 1) {
-		memory[MEMORY_SUM] += p.mean_m;
-		memory[MEMORY_FRAMES]++;
-		ob_look_keep(&t->figure[SETTLED_WORST], 1e3 * p.max_m);
-	}
-	if (!t->frame)
-		memory[MEMORY_START] = memory[MEMORY_LOWEST] = energy;
-	memory[MEMORY_LOWEST] = fmin(memory[MEMORY_LOWEST], energy);
-	ob_look_keep(&t->figure[GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
+	ob_heap_observe(t);
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 
 static void judge_pile(ob_trial *t)
 {
-	t->figure[SETTLED_MEAN] = 1e3 * t->memory[MEMORY_SUM] / fmax(t->memory[MEMORY_FRAMES], 1);
+	ob_heap_judge(t);
 	if (!t->failed && ob_look_farthest(t) < .1)
 		t->failed = "nothing moved";
 }
@@ -118,7 +104,7 @@ static void judge_pile(ob_trial *t)
 	  { "growth of energy", "1", gain, "none: largest rise from its lowest so far, over that at the start" } }
 // clang-format on
 #define DROPPING \
-	.duration = 10, .step = 1. / 60, .runs = SEEDS, .figures = PILE_FIGURES, .observe = observe_pile, \
+	.duration = 10, .step = 1. / 60, .runs = SEEDS, .figures = OB_HEAP_FIGURES, .observe = observe_pile, \
 	.judge = judge_pile
 
 const ob_case ob_case_pile = {

@@ -1,0 +1,27 @@
+#include "lab/heap.h"
+
+#include "lab/look.h"
+
+enum { MEMORY_SUM, MEMORY_FRAMES, MEMORY_START, MEMORY_LOWEST }; // resting penetrations (m); energies (J)
+
+void ob_heap_observe(ob_trial *t)
+{
+	ob_penetration p;
+	double energy = ob_look_energy(t), *memory = t->memory;
+	ob_measure_penetration(&t->now, &p);
+	ob_look_keep(&t->figure[OB_HEAP_WORST], 1e3 * p.max_m);
+	if (t->time > t->of->duration - 1) {
+		memory[MEMORY_SUM] += p.mean_m;
+		memory[MEMORY_FRAMES]++;
+		ob_look_keep(&t->figure[OB_HEAP_RESTING_WORST], 1e3 * p.max_m);
+	}
+	if (!t->frame)
+		memory[MEMORY_START] = memory[MEMORY_LOWEST] = energy;
+	memory[MEMORY_LOWEST] = fmin(memory[MEMORY_LOWEST], energy);
+	ob_look_keep(&t->figure[OB_HEAP_GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
+}
+
+void ob_heap_judge(ob_trial *t)
+{
+	t->figure[OB_HEAP_RESTING_MEAN] = 1e3 * t->memory[MEMORY_SUM] / fmax(t->memory[MEMORY_FRAMES], 1);
+}
