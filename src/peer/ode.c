@@ -88,37 +88,31 @@ static void get(const ob_peer *p, ob_state *state)
 		ob_ode_world_get(p->world, i, &state[i], &asleep, &touching);
 }
 
+#define THE_REST .version = OB_ODE_VERSION, .step = step, .get = get, .destroy = destroy
+#define QUICK \
+	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 }, \
+	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 }
+
 const ob_peer_kind ob_peer_ode_quick = {
 	.name = "ode-quick",
 	.title = "ODE QuickStep",
-	.version = OB_ODE_VERSION,
-	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 },
-	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 },
 	.create = create_quick,
-	.step = step,
-	.get = get,
-	.destroy = destroy,
+	QUICK,
+	THE_REST,
 };
 
 const ob_peer_kind ob_peer_ode_hash = {
 	.name = "ode-hash",
 	.title = "ODE QuickStep, hash space",
-	.version = OB_ODE_VERSION,
-	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 },
-	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 },
 	.create = create_hashed,
-	.step = step,
-	.get = get,
-	.destroy = destroy,
+	QUICK,
+	THE_REST,
 };
 
 const ob_peer_kind ob_peer_ode_world = {
 	.name = "ode-world",
 	.title = "ODE dWorldStep",
-	.version = OB_ODE_VERSION,
 	.usual = { .step = 1. / 60, .substeps = 1 },
 	.create = create_world,
-	.step = step,
-	.get = get,
-	.destroy = destroy,
+	THE_REST,
 };
