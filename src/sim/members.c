@@ -322,7 +322,7 @@ void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end
 			 : m->flags & OB_MOTION_STILL ? OB_BRIEF_STILL
 						      : OB_BRIEF_AWAKE;
 	double reach = state == OB_BRIEF_AWAKE ? ob_step_reach(run, pass, end->v, end->w) : 0;
-	ob_claim_bounds(s->u, id, pass->shape, pass->size, end->pose, reach);
+	ob_claim_bounds(s->u, id, end, reach);
 	m->reach = (float)reach;
 	ob_member_hand_over(s, id, m, state, state == OB_BRIEF_AWAKE ? m->step : UINT32_MAX);
 }

@@ -57,28 +57,50 @@ static double resting_margin(ob_shape shape, ob_vec3 size)
 	return fmin(base_margin, base_share * ob_shape_radius(shape, size));
 }
 
-static double lasting_margin(ob_shape shape, ob_vec3 size, double reach)
+// What to claim for some steps: on all sides what the next one needs, in which it may be hit and thrown anywhere, and
+// beyond that where it goes. Returns the margin on all sides (m); box: with the way that it goes, without the margin.
+static double look_ahead(const ob_universe *u, const ob_passport *p, const ob_state *now, double reach, double *box)
 {
-	double margin = resting_margin(shape, size) + lasting * reach;
-	return margin > far_margin ? fmax(far_margin, 1.2 * reach) : margin;
+	const double h = ob_universe_settings(u)->step_length, way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
+	double once = resting_margin(p->shape, p->size) + reach;
+	double more = reach > 0 ? fmax(0, fmin(lasting - 1, (far_margin - once) / reach)) : 0; // steps
+	for (int c = 0; c < 3; c++) {
+		box[c] += fmin(0, more * way[c]);
+		box[3 + c] += fmax(0, more * way[c]);
+	}
+	return once + more * fmax(0, reach - h * ob_norm(now->v));
 }
 
-void ob_claim_bounds(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+static bool much_larger(const float *box, const double *next, double margin)
 {
-	double tight[6];
-	ob_shape_bounds(shape, size, pose, tight);
+	for (int c = 0; c < 3; c++)
+		if ((double)box[3 + c] - box[c] > next[3 + c] - next[c] + 2 * generous * margin)
+			return true;
+	return false;
+}
+
+void ob_claim_bounds(ob_universe *u, uint32_t id, const ob_state *now, double reach)
+{
+	const ob_passport *p = ob_passport_of(u, id);
 	const float *box = ob_universe_exchange(u)->bounds[id];
+	double next[6];
+	ob_shape_bounds(p->shape, p->size, now->pose, next);
+	bool held = holds(box, next, reach);
 	// A box claimed when the object was fast is given up when it is not; looked at now and then, not all at once.
-	bool review = (ob_step_count(u) + id) % review_steps == 0;
-	if (!holds(box, tight, reach) || (review && holds(box, tight, generous * lasting_margin(shape, size, reach))))
-		claim(u, id, tight, lasting_margin(shape, size, reach));
+	if (held && (ob_step_count(u) + id) % review_steps)
+		return;
+	double margin = look_ahead(u, p, now, reach, next);
+	if (!held || much_larger(box, next, margin))
+		claim(u, id, next, margin);
 }
 
-void ob_claim_bounds_anew(ob_universe *u, uint32_t id, ob_shape shape, ob_vec3 size, ob_pose pose, double reach)
+void ob_claim_bounds_anew(ob_universe *u, uint32_t id, const ob_state *now, double reach)
 {
-	double tight[6];
-	ob_shape_bounds(shape, size, pose, tight);
-	claim(u, id, tight, lasting_margin(shape, size, reach));
+	const ob_passport *p = ob_passport_of(u, id);
+	double next[6];
+	ob_shape_bounds(p->shape, p->size, now->pose, next);
+	double margin = look_ahead(u, p, now, reach, next);
+	claim(u, id, next, margin);
 }
 
 void ob_claim_swept(ob_universe *u, uint32_t id, const double *box, double margin)

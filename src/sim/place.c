@@ -42,7 +42,7 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 	else
 		m.a = ob_pull(run, p), m.flags = OB_MOTION_FREE;
 	double reach = fixed ? 0 : ob_step_reach(run, p, m.v, m.w);
-	ob_claim_bounds_anew(u, id, p->shape, p->size, (ob_pose){ m.p, m.q }, reach);
+	ob_claim_bounds_anew(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach);
 	uint32_t kind = !fixed ? OB_BRIEF_AWAKE : p->shape == OB_SHAPE_PLANE ? OB_BRIEF_PLANE : OB_BRIEF_STATIC;
 	ex->brief[id] = (ob_brief){ 0, (float)reach, kind, m.step, fixed ? UINT32_MAX : m.step };
 	ex->result_island[id] = UINT32_MAX;

@@ -52,11 +52,10 @@ static void move(ob_universe *u, const uint32_t *id, uint32_t n, uint64_t seed)
 {
 	for (uint32_t i = 0; i < n; i++) {
 		uint64_t own = seed * 1000 + id[i];
-		const ob_passport *p = ob_passport_of(u, id[i]);
 		ob_motion m = *ob_newest_motion(u, id[i]);
 		m.p = random_vector(&own, 4);
 		ob_publish_motion(u, id[i], &m);
-		ob_claim_bounds_anew(u, id[i], p->shape, p->size, (ob_pose){ m.p, m.q }, .01);
+		ob_claim_bounds_anew(u, id[i], &(ob_state){ .pose = { m.p, m.q } }, .01);
 	}
 }
 
@@ -212,7 +211,7 @@ static void test_active_stays(void)
 	ob_motion m = *ob_newest_motion(u, a);
 	m.p = ob_v3(100, 0, 100);
 	ob_publish_motion(u, a, &m);
-	ob_claim_bounds_anew(u, a, OB_SHAPE_SPHERE, ob_passport_of(u, a)->size, (ob_pose){ m.p, m.q }, 0);
+	ob_claim_bounds_anew(u, a, &(ob_state){ .pose = { m.p, m.q } }, 0);
 	look_around(u);
 	int of_a = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++)
