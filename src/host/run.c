@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "host/hang.h"
 #include "host/host_state.h"
 #include "sim/sim.h"
 
@@ -90,23 +91,12 @@ static void end_leg(ob_host *h)
 	h->last_end = h->leg_start + wall;
 }
 
-// The step does not end: says who still computes, for that is where to look.
 static void give_up(ob_host *h, uint64_t step)
 {
-	char busy[400] = "";
-	size_t n = 0;
-	uint64_t before[64];
-	uint32_t workers = h->workers < 64 ? h->workers : 64;
-	ob_worker_info info;
-	for (uint32_t w = 0; w < workers; w++)
-		before[w] = ob_universe_get_worker(h->u, w, &info) ? h->spawn->cpu(&info) : 0;
-	nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
-	for (uint32_t w = 0; w < workers && n < sizeof busy - 60; w++) {
-		if (ob_universe_get_worker(h->u, w, &info) && h->spawn->cpu(&info) > before[w] + 10000000)
-			n += (size_t)snprintf(busy + n, sizeof busy - n, " %u (task %d)", w, info.tid);
-	}
-	ob_host_set_failure(h, "step %llu was not complete after %g s; %s%s", (unsigned long long)step + 1, h->patience,
-			    n ? "still computing: simulator" : "none of the first 64 simulators computes", busy);
+	char waits_for[400];
+	ob_hang_describe(h, waits_for, sizeof waits_for);
+	ob_host_set_failure(h, "step %llu was not complete after %g s; it waits for %s", (unsigned long long)step + 1,
+			    h->patience, waits_for);
 }
 
 // Not paused yet. Sees to whoever waits for a pause; false: no use in waiting any longer.

@@ -110,11 +110,17 @@ bool ob_gate_arrive(ob_universe *u, uint32_t worker)
 
 // ---- the opener: alone, for everyone else waits
 
+// Atomic only for the host, which may look at any time whom the gate waits for.
+static void expect(ob_gate_group *group, uint64_t who)
+{
+	__atomic_store_n(&group->expected, who, __ATOMIC_RELAXED);
+}
+
 static void expect_all(ob_universe *u, uint32_t groups)
 {
 	uint32_t workers = u->gate->workers;
 	for (uint32_t i = 0; i < groups; i++)
-		u->gate_group[i].expected = workers - 64 * i >= 64 ? UINT64_MAX : (UINT64_C(1) << workers % 64) - 1;
+		expect(u->gate_group + i, workers - 64 * i >= 64 ? UINT64_MAX : (UINT64_C(1) << workers % 64) - 1);
 }
 
 // Writes the turn into the cells of a half's participants, then wakes those of them who sleep.
@@ -137,12 +143,16 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 		return;
 	}
 	uint32_t groups = (g->workers + 63) / 64, taking_part = 0;
-	for (uint32_t i = 0; i < groups; i++)
-		u->gate_group[i].arrived = u->gate_group[i].expected = 0;
+	for (uint32_t i = 0; i < groups; i++) {
+		expect(u->gate_group + i, 0);
+		__atomic_store_n(&u->gate_group[i].arrived, 0, __ATOMIC_RELAXED);
+	}
 	if (!participants)
 		expect_all(u, groups);
-	for (uint32_t i = 0; participants && i < n; i++)
-		u->gate_group[participants[i] / 64].expected |= UINT64_C(1) << participants[i] % 64;
+	for (uint32_t i = 0; participants && i < n; i++) {
+		ob_gate_group *group = u->gate_group + participants[i] / 64;
+		expect(group, group->expected | UINT64_C(1) << participants[i] % 64);
+	}
 	for (uint32_t i = 0; i < groups; i++)
 		taking_part += u->gate_group[i].expected != 0;
 	__atomic_store_n(&g->groups_left, taking_part, __ATOMIC_RELAXED);
@@ -191,6 +201,13 @@ bool ob_gate_host_wait(ob_universe *u, double timeout)
 			return false;
 		futex_wait(&g->host_turn, seen, FUTEX_BITSET_MATCH_ANY, &until);
 	}
+}
+
+bool ob_gate_awaits(const ob_universe *u, uint32_t worker)
+{
+	const ob_gate_group *group = u->gate_group + worker / 64;
+	uint64_t arrived = __atomic_load_n(&group->arrived, __ATOMIC_RELAXED);
+	return (__atomic_load_n(&group->expected, __ATOMIC_RELAXED) & ~arrived) >> worker % 64 & 1;
 }
 
 void ob_gate_stop(ob_universe *u)

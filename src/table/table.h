@@ -147,6 +147,8 @@ bool ob_gate_arrive(ob_universe *u, uint32_t worker);
 void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, uint32_t n);
 // Instead of opening: hands the turn to the host, which sleeps in ob_gate_host_wait.
 void ob_gate_pause(ob_universe *u);
+// Whether the phase that runs still waits for this worker (any thread, as of a moment ago).
+bool ob_gate_awaits(const ob_universe *u, uint32_t worker);
 // Host: the step at which the universe shall pause next (read by the arranger).
 void ob_gate_set_pause_step(ob_universe *u, uint64_t step);
 uint64_t ob_gate_pause_step(const ob_universe *u);
