@@ -8,6 +8,7 @@
 #include "sim/leap.h"
 #include "sim/members.h"
 #include "sim/pace.h"
+#include "sim/pairs.h"
 #include "sim/part.h"
 #include "sim/tolerance.h"
 #include "sim/touch.h"
@@ -116,20 +117,44 @@ static void note_effort(ob_sim *s, const ob_island *is, uint64_t cost)
 		ex->effort[ex->member[is->first_member + i]] = (uint32_t)(share < MOST ? share : MOST);
 }
 
-// Alone, and near nothing but planes, which it does not touch yet. What has met something in this step is not alone.
+// Did the pair's contact hold anything up when the step before ended?
+static bool pressed(const ob_universe *u, const ob_pair_key *k)
+{
+	const ob_pair_state *p = ob_pair_before(&ob_universe_exchange(u)->record[k->record], ob_step_count(u));
+	double sum = 0;
+	for (uint32_t j = 0; p && j < p->points; j++)
+		sum += p->impulse[j];
+	return sum > 0;
+}
+
+// Alone, and near nothing but planes, on which it does not stand: what hops so low that the contact solver has it still
+// goes on as a flight; what has grown slow is left to come to rest. What has met something in this step is not alone.
 static bool may_leap(const ob_universe *u, const ob_island *is)
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
+	const uint32_t id = ex->member[is->first_member];
 	if (is->members > 1 ||
 	    (is->pairs && (ex->count->again || ob_universe_settings(u)->integrator == OB_INTEGRATOR_ODE)))
 		return false;
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
-		uint32_t other = k->a == ex->member[is->first_member] ? k->b : k->a;
-		if (k->active || ex->brief[other].state != OB_BRIEF_PLANE)
+		uint32_t other = k->a == id ? k->b : k->a;
+		if (ex->brief[other].state != OB_BRIEF_PLANE ||
+		    (k->active && (ob_newest_motion(u, id)->quiet > 0 || pressed(u, k))))
 			return false;
 	}
 	return true;
+}
+
+// Its contacts end, and the next solver looks at them anew.
+static void leave_contacts(const ob_universe *u, const ob_island *is)
+{
+	const ob_exchange *ex = ob_universe_exchange(u);
+	for (uint32_t i = 0; i < is->pairs; i++) {
+		ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
+		if (k->active)
+			k->active = 0, k->limit = -INFINITY;
+	}
 }
 
 // The island's rest, as a flag of its members' motions; 0: it goes on.
@@ -147,6 +172,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	if (may_leap(s->u, is)) {
 		ob_part_enter(s, OB_PART_LEAP);
 		if (ob_leap(s, ob_universe_exchange(s->u)->member[is->first_member])) {
+			leave_contacts(s->u, is);
 			s->counters.leaps++;
 			return;
 		}

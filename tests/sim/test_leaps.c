@@ -130,9 +130,46 @@ static void test_new_plane(void)
 	free(s);
 }
 
+// What hops too low for the contact solver to let go of it flies on by itself, and comes to rest as ever.
+static void test_low_hops(void)
+{
+	uint64_t seed = 23, taken_off = 0;
+	for (int k = 0; k < 40; k++) {
+		little_scene *s = little_scene_new();
+		s->run.tolerance = 1e-3;
+		s->run.sleeping = true;
+		little_ground(s)->passport.restitution = .8;
+		little_object *o = little_box(s, 1, ob_v3(within(&seed, .1, .4), .2, .3), ob_v3(0, 0, .7));
+		o->state.pose.q = random_attitude(&seed);
+		o->state.v = random_vector(&seed, 1);
+		little_universe l;
+		little_open(&l, s);
+		const ob_exchange *ex = ob_universe_exchange(l.u);
+		double energy = little_energy(&l), growth = 0;
+		for (int step = 0; step < 600 && ex->brief[1].state == OB_BRIEF_AWAKE; step++) {
+			bool held = ex->count->pairs && ex->pair[0].active;
+			ob_counters before, after;
+			ob_universe_count(l.u, &before);
+			little_run(&l, 1);
+			ob_universe_count(l.u, &after);
+			taken_off += held && after.leaps > before.leaps;
+			double now = little_energy(&l);
+			growth = fmax(growth, now / energy - 1);
+			energy = fmin(energy, now);
+			CHECK(little_penetration(&l).max_m < 1.1e-3);
+		}
+		CHECK(growth < 1e-5);
+		CHECK(ex->brief[1].state == OB_BRIEF_ASLEEP);
+		little_close(&l);
+		free(s);
+	}
+	CHECK(taken_off > 40);
+}
+
 int main(void)
 {
 	test_balls();
+	test_low_hops();
 	test_nothing_missed();
 	test_new_plane();
 	return check_end();
