@@ -53,6 +53,18 @@ static bool indexed(const ob_index_cell *c)
 	return c->level != 0;
 }
 
+// Until the last object of a class has left it, its cells stay between where any of them was.
+static void widen(ob_exchange *ex, cell to)
+{
+	const int32_t at[3] = { to.x, to.y, to.z };
+	int32_t *low = ex->count->level_low[to.level], *high = ex->count->level_high[to.level];
+	const bool first = !ex->count->levels[to.level];
+	for (int c = 0; c < 3; c++) {
+		low[c] = first || at[c] < low[c] ? at[c] : low[c];
+		high[c] = first || at[c] > high[c] ? at[c] : high[c];
+	}
+}
+
 static void unlink_object(ob_exchange *ex, uint32_t id)
 {
 	ob_index_cell *c = &ex->cell[id];
@@ -100,6 +112,7 @@ void ob_index_put(ob_universe *u, uint32_t id)
 	if (*first)
 		ex->cell[*first - 1].before = id + 1;
 	*first = id + 1;
+	widen(ex, to);
 	ex->count->levels[to.level]++;
 }
 
@@ -165,6 +178,24 @@ static void scan_cells(const ob_exchange *ex, uint32_t id, int level, const cell
 				}
 }
 
+// The cells of a class in which the centre of a box may lie that overlaps b; false: there are none.
+static bool cells_around(const ob_exchange *ex, const float *b, int level, cell *lo, cell *hi)
+{
+	const double side = side_of(level), h = .5 * side; // a centre lies at most half a side outside
+	const int32_t *low = ex->count->level_low[level], *high = ex->count->level_high[level];
+	int32_t from[3], to[3];
+	for (int c = 0; c < 3; c++) {
+		from[c] = coordinate(b[c] - h, side), to[c] = coordinate(b[3 + c] + h, side);
+		from[c] = from[c] > low[c] ? from[c] : low[c];
+		to[c] = to[c] < high[c] ? to[c] : high[c];
+		if (from[c] > to[c])
+			return false;
+	}
+	*lo = (cell){ level, from[0], from[1], from[2] };
+	*hi = (cell){ level, to[0], to[1], to[2] };
+	return true;
+}
+
 uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests)
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
@@ -177,12 +208,10 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 		return a.n;
 	}
 	for (int level = 1; level < LEVELS; level++) {
+		cell lo, hi;
 		uint32_t there = ex->count->levels[level];
-		if (!there)
+		if (!there || !cells_around(ex, b, level, &lo, &hi))
 			continue;
-		double side = side_of(level), h = .5 * side; // a centre lies at most half a side outside
-		cell lo = { level, coordinate(b[0] - h, side), coordinate(b[1] - h, side), coordinate(b[2] - h, side) };
-		cell hi = { level, coordinate(b[3] + h, side), coordinate(b[4] + h, side), coordinate(b[5] + h, side) };
 		double cells = (hi.x - lo.x + 1.) * (hi.y - lo.y + 1.) * (hi.z - lo.z + 1.);
 		if (cells > there)
 			scan_level(ex, id, level, &a);

@@ -103,6 +103,7 @@ typedef struct ob_exchange {
 		uint32_t next_look;  // .. nor has any pair to be checked
 		uint32_t levels[64]; // objects per size class
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
+		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
 		uint32_t planes;
 		uint32_t failure;    // ob_exchange_failure; 0 = none
 	} *count;
