@@ -8,6 +8,8 @@ static const double surprise = 1e-4; // m/s: a first sweep that changes more was
 static const double settled = 1e-10; // m/s: a solution that changes by less is done
 static const int most_sweeps = 64;
 static const int rough_sweeps = 2; // of what will be solved again in the next round
+static const double held = 1e-7; // m: a point that presses stays as far from the surface as it is, if that is less
+static const double pushed = .01; // of the slop: what is deeper by less is not pushed, or that would never end
 
 // The rows of a pair depend on its kind alone. Each kind has a kernel of its own, made by the compiler from the same
 // text: where "kind" is a constant, what is not in use falls away.
@@ -282,8 +284,9 @@ FOR_KIND void publish(const ob_batch *b, ob_kind kind, bool jacobi, const lanes 
 	scatter_both(b, v, va, vb);
 }
 
-// How far each gap may close in the substep, as a rate. Restitution is exact in time, so an elastic point must not be
-// stopped early: what falls freely closes less than its final velocity says, by half of what it gains.
+// How far each gap may close in the substep, as a rate. Points of what rests are each where rounding left them, and
+// would take turns for ever to close what is left: they stay. Restitution is exact in time, so an elastic point must
+// not be stopped early: what falls freely closes less than its final velocity says, by half of what it gains.
 FOR_KIND void set_bias(ob_batch *b, ob_kind kind, double h, const lanes *ua, const lanes *ub, const ob_body_row *v,
 		       const ob_body_row *d)
 {
@@ -292,6 +295,8 @@ FOR_KIND void set_bias(ob_batch *b, ob_kind kind, double h, const lanes *ua, con
 	normal_rates(b, kind, da, db, moved);
 	for (int i = 0; i < points_of(kind); i++)
 		b->bias[i] = b->gap[i] + moved[i];
+	for (int i = 0; i < points_of(kind); i++)
+		b->bias[i] = lanes_select((b->impulse[i] > 0) & (b->bias[i] < held), lanes_of(0), b->bias[i]);
 	if (b->elastic) {
 		lanes va[6], vb[6], before[4], after[4];
 		gather_both(b, v, va, vb);
@@ -364,19 +369,19 @@ static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_bod
 static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
 {
 	lanes da[6], db[6], r[OB_POINTS], x[OB_ROWS] = { 0 };
-	lane_mask any = { 0 };
+	lane_mask deep = { 0 };
 	gather_both(b, d, da, db);
 	const int points = points_of(b->kind);
 	normal_rates(b, b->kind, da, db, r);
 	for (int i = 0; i < points; i++) {
 		r[i] += b->gap[i] + slop;
-		any |= r[i] < 0;
+		deep |= r[i] < -pushed * slop;
 		r[i] = lanes_select(r[i] < 0, r[i] * beta, r[i]);
 	}
-	if (!lanes_bits(any))
+	if (!lanes_bits(deep))
 		return false;
 	for (int i = 0; i < points; i++)
-		r[i] *= -b->inv_diag[i]; // what it wants, as in a sweep
+		r[i] = -where(deep, r[i] * b->inv_diag[i]); // what it wants, as in a sweep
 	for (int s = 0; s < 4; s++)
 		for (int i = 0; i < points; i++) {
 			lanes change = lanes_max(-x[i], r[i]);
