@@ -89,7 +89,7 @@ static ob_state end_by_ode(ob_sim *s, uint32_t id)
 	ob_state now = { { before->p, before->q }, before->v, before->w };
 	ob_vec3 force = ob_scale(ob_passport_of(s->u, id)->force, h);
 	for (uint32_t i = 0; i < run->substeps; i++)
-		ob_ode_body_step(ob_sim_ode(s, id), &now, force, ob_v3(0, 0, 0), h);
+		ob_ode_body_step(ob_worlds_body(&s->worlds, s->u, id), &now, force, ob_v3(0, 0, 0), h);
 	return now;
 }
 

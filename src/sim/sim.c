@@ -23,13 +23,9 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
 		s->times.timed = s->times.wanted = run->timed;
 		s->span.traced = ob_universe_traced(u);
-		s->stepper = ob_ode_stepper_create();
-		s->ode = calloc(capacity, sizeof *s->ode);
-		s->ode_generation = calloc(capacity, sizeof *s->ode_generation);
 		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
 	}
-	if (!s || !s->stepper || !s->ode || !s->ode_generation || !s->island.row_of ||
-	    !ob_plans_create(&s->plans, capacity)) {
+	if (!s || !s->island.row_of || !ob_worlds_create(&s->worlds, u) || !ob_plans_create(&s->plans, capacity)) {
 		ob_sim_destroy(s);
 		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
 		return NULL;
@@ -37,7 +33,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 	if (run->monolith) {
 		s->monolith = ob_monolith_create(u);
 	} else if (run->one_per_object && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
-		ob_sim_ode(s, worker); // its own object, for good
+		ob_worlds_body(&s->worlds, u, worker); // its own object
 	}
 	if (s->times.timed) { // it waits at the gate from now on; another's waiting ended with it
 		s->counters.since_ns = ob_clock_ns();
@@ -51,29 +47,11 @@ void ob_sim_destroy(ob_sim *s)
 {
 	if (!s)
 		return;
-	for (uint32_t i = 0; s->ode && i < ob_universe_capacity(s->u); i++)
-		ob_ode_body_destroy(s->ode[i]);
-	ob_ode_stepper_destroy(s->stepper);
+	ob_worlds_finish(&s->worlds);
 	ob_monolith_destroy(s->monolith);
 	ob_island_work_finish(&s->island);
 	ob_plans_finish(&s->plans);
-	free(s->ode_generation);
-	free(s->ode);
 	free(s);
-}
-
-ob_ode_body *ob_sim_ode(ob_sim *s, uint32_t id)
-{
-	const ob_passport *p = ob_passport_of(s->u, id);
-	if (s->ode[id] && s->ode_generation[id] != p->generation) {
-		ob_ode_body_destroy(s->ode[id]);
-		s->ode[id] = NULL;
-	}
-	if (!s->ode[id]) {
-		s->ode[id] = ob_ode_body_create(p, ob_universe_settings(s->u)->gravity, s->stepper);
-		s->ode_generation[id] = p->generation;
-	}
-	return s->ode[id];
 }
 
 static void solve(ob_sim *s, uint32_t island, bool first)

@@ -1,8 +1,8 @@
 // The object simulators that one worker runs, and the step.
 //
 // A worker is a thread or a process; it does not know which. All state that outlives a step lies in the
-// universe, so any worker can run any object. An ob_sim is the worker's private side: scratch memory, and
-// the ODE bodies of the objects that it has run.
+// universe, so any worker can run any object. An ob_sim is the worker's private side: scratch memory, and ODE bodies
+// of some of the objects that it has run.
 #ifndef OB_SIM_SIM_H
 #define OB_SIM_SIM_H
 

@@ -2,19 +2,17 @@
 #ifndef OB_SIM_WORKER_H
 #define OB_SIM_WORKER_H
 
-#include "ode/ode_body.h"
 #include "sim/island.h"
 #include "sim/monolith.h"
 #include "sim/plans.h"
 #include "sim/sim.h"
+#include "sim/worlds.h"
 #include "table/trace.h"
 
 struct ob_sim {
 	ob_universe *u;
 	uint32_t worker;
-	ob_ode_stepper *stepper; // of all of its bodies
-	ob_ode_body **ode; // [object]: ODE's world, body and geom of each object that this worker has run
-	uint32_t *ode_generation;
+	ob_worlds worlds;
 	ob_island_work island; // scratch
 	ob_plans plans;
 	ob_monolith *monolith; // NULL unless one world holds all objects
@@ -33,8 +31,5 @@ struct ob_sim {
 		uint32_t islands, members; // counted at "since"
 	} span;
 };
-
-// The object's ODE body, made when the worker first runs it.
-ob_ode_body *ob_sim_ode(ob_sim *s, uint32_t id);
 
 #endif

@@ -248,11 +248,59 @@ static void test_versions(void)
 	}
 }
 
+// What goes along x claims as far ahead as it gets in three steps, and to the other sides as far as in one.
+static void test_claims(void)
+{
+	const double r = .5, v = 3;
+	little_scene *s = little_scene_new();
+	little_sphere(s, 1, r, ob_v3(0, 0, 0))->state.v.x = v;
+	s->run.gravity = ob_v3(0, 0, 0);
+	ob_universe *u = little_populate(s, 1);
+	const float *box = ob_universe_exchange(u)->bounds[0];
+	const double reach = v * s->run.step_length, margin = .04;
+	CHECK_NEAR(box[0], -r - reach - margin, 1e-6);
+	CHECK_NEAR(box[3], r + 3 * reach + margin, 1e-6);
+	for (int c = 1; c < 3; c++) {
+		CHECK_NEAR(box[c], -r - reach - margin, 1e-6);
+		CHECK_NEAR(box[3 + c], r + reach + margin, 1e-6);
+	}
+	float old[6];
+	memcpy(old, box, sizeof old);
+	ob_state now = { .pose = { { 2 * reach, 0, 0 }, ob_quat_identity() }, .v = { v, 0, 0 } };
+	ob_claim_bounds(u, 0, &now, reach); // still holds it
+	CHECK(!memcmp(old, box, sizeof old));
+	now.v = ob_v3(0, 0, 0);
+	ob_claim_bounds(u, 0, &now, 0); // it stopped, and the box is no larger than a box at rest may be
+	CHECK(!memcmp(old, box, sizeof old));
+	now.pose.p.x = 4 * reach;
+	ob_claim_bounds(u, 0, &now, 0); // it has left it
+	CHECK_NEAR(box[0], now.pose.p.x - r - margin, 1e-6);
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
+// The column in which something fell is given up after a while, though it is no wider than what has fallen.
+static void test_column(void)
+{
+	little_scene *s = little_scene_new();
+	little_sphere(s, 1, .5, ob_v3(0, 0, 0));
+	ob_universe *u = little_populate(s, 1);
+	float *box = ob_universe_exchange(u)->bounds[0];
+	box[5] = 10;
+	const ob_state now = { .pose.q = ob_quat_identity() };
+	ob_claim_bounds(u, 0, &now, 0);
+	CHECK_NEAR(box[5], .54, 1e-6);
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
 int main(void)
 {
 	test_merge();
 	test_order();
 	test_active_stays();
 	test_versions();
+	test_claims();
+	test_column();
 	return check_end();
 }

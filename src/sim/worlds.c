@@ -1,0 +1,41 @@
+#include "sim/worlds.h"
+
+#include <stdlib.h>
+
+enum { SLOTS_LEAST = 256 }; // for the members of an island, whoever leads it: .35 MB
+
+typedef struct ob_world {
+	ob_ode_body *body; // NULL: none yet
+	uint32_t id, generation;
+} ob_world;
+
+bool ob_worlds_create(ob_worlds *w, const ob_universe *u)
+{
+	const uint32_t objects = ob_universe_capacity(u), workers = ob_universe_workers(u);
+	w->slots = objects / workers + (objects % workers != 0);
+	if (w->slots < SLOTS_LEAST)
+		w->slots = objects < SLOTS_LEAST ? objects : SLOTS_LEAST;
+	w->stepper = ob_ode_stepper_create();
+	w->slot = calloc(w->slots, sizeof *w->slot);
+	return w->stepper && w->slot;
+}
+
+void ob_worlds_finish(ob_worlds *w)
+{
+	for (uint32_t i = 0; w->slot && i < w->slots; i++)
+		ob_ode_body_destroy(w->slot[i].body);
+	ob_ode_stepper_destroy(w->stepper);
+	free(w->slot);
+}
+
+ob_ode_body *ob_worlds_body(ob_worlds *w, const ob_universe *u, uint32_t id)
+{
+	const ob_passport *p = ob_passport_of(u, id);
+	ob_world *slot = &w->slot[id % w->slots];
+	if (!slot->body || slot->id != id || slot->generation != p->generation) {
+		ob_ode_body_destroy(slot->body);
+		*slot = (ob_world){ ob_ode_body_create(p, ob_universe_settings(u)->gravity, w->stepper), id,
+				    p->generation };
+	}
+	return slot->body;
+}

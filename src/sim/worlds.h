@@ -1,0 +1,24 @@
+// ODE's bodies, each in a world of its own, that a worker steps objects with. A body's state is set before each step, so
+// it can be made anew at any time and any worker may have one. All workers together keep no more than there are objects,
+// or a few for each: whoever claims islands meets, in the course of a run, every object.
+//
+// Private to its worker.
+#ifndef OB_SIM_WORLDS_H
+#define OB_SIM_WORLDS_H
+
+#include "ode/ode_body.h"
+#include "table/table.h"
+
+typedef struct ob_worlds {
+	ob_ode_stepper *stepper; // of all of them
+	uint32_t slots;
+	struct ob_world *slot; // [slots], by id: a later one takes an earlier one's place
+} ob_worlds;
+
+bool ob_worlds_create(ob_worlds *w, const ob_universe *u); // false: no memory
+void ob_worlds_finish(ob_worlds *w);
+
+// The object's. Valid until the next call.
+ob_ode_body *ob_worlds_body(ob_worlds *w, const ob_universe *u, uint32_t id);
+
+#endif
