@@ -18,6 +18,7 @@ struct ob_capture {
 	ob_sink *sink[SINKS_MAX];
 	int sinks;
 	int raw_fd; // -1 = none
+	char raw_name[300]; // for errors
 	uint8_t *rgba;
 	ob_host *host; // NULL = none to trace
 };
@@ -43,7 +44,8 @@ static bool open_sinks(ob_capture *c, const ob_frames_request *f, ob_error *e)
 		c->raw_fd = open(f->raw, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 	if (c->raw_fd < 0)
 		return ob_fail(e, "--raw %s: %s", f->raw, strerror(errno));
-	return add(c, ob_sink_raw(c->raw_fd, f->width, f->height, e));
+	snprintf(c->raw_name, sizeof c->raw_name, "--raw %s", f->raw);
+	return add(c, ob_sink_raw(c->raw_fd, c->raw_name, f->width, f->height, e));
 }
 
 static const ob_camera_def *find_camera(const ob_scene *s, const char *name)
@@ -135,7 +137,7 @@ bool ob_capture_close(ob_capture *c, ob_error *e)
 	for (int i = 0; i < c->sinks; i++)
 		fine &= ob_sink_close(c->sink[i], fine ? e : NULL);
 	if (c->raw_fd >= 0 && close(c->raw_fd) != 0 && fine)
-		fine = ob_fail(e, "--raw: %s", strerror(errno));
+		fine = ob_fail(e, "%s: %s", c->raw_name, strerror(errno));
 	ob_renderer_destroy(c->renderer);
 	free(c->rgba);
 	free(c);

@@ -1,4 +1,6 @@
 // obsim: the command line. Finds the command, reads its options, and leaves the rest to it.
+#include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,10 +13,8 @@ static const struct {
 	ob_command_bit bit;
 	int (*main)(const ob_arguments *);
 } commands[] = {
-	{ "run", OB_COMMAND_RUN, ob_command_run },
-	{ "compare", OB_COMMAND_COMPARE, ob_command_compare },
-	{ "top", OB_COMMAND_TOP, ob_command_top },
-	{ "lab", OB_COMMAND_LAB, ob_command_lab },
+	{ "run", OB_COMMAND_RUN, ob_command_run },       { "compare", OB_COMMAND_COMPARE, ob_command_compare },
+	{ "top", OB_COMMAND_TOP, ob_command_top },       { "lab", OB_COMMAND_LAB, ob_command_lab },
 	{ "paper", OB_COMMAND_PAPER, ob_command_paper },
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
@@ -50,7 +50,19 @@ static int unknown_command(const char *name)
 	return ob_command_fail(OB_EXIT_USAGE, e.text);
 }
 
-int main(int argc, char **argv)
+// What was printed is what the command was for. A reader that has gone knows why it did.
+static int close_output(int code)
+{
+	ob_error e;
+	bool whole = !ferror(stdout);
+	errno = 0;
+	if ((fclose(stdout) == 0 && whole) || errno == EPIPE)
+		return code;
+	ob_fail(&e, "standard output cannot be written: %s", errno ? strerror(errno) : "some of it was not taken");
+	return code ? code : ob_command_fail(OB_EXIT_FAILED, e.text);
+}
+
+static int carry_out(int argc, char **argv)
 {
 	const char *word = argc > 1 ? argv[1] : NULL;
 	if (!word) {
@@ -86,4 +98,10 @@ int main(int argc, char **argv)
 		code = commands[command].main(&a);
 	ob_options_finish(&a);
 	return code;
+}
+
+int main(int argc, char **argv)
+{
+	signal(SIGXFSZ, SIG_IGN); // a file that may not grow is an error with its name, not a death
+	return close_output(carry_out(argc, argv));
 }

@@ -35,6 +35,7 @@ bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, o
 	};
 	if (!path)
 		return true;
+	o->series_path = path;
 	o->series = fopen(path, "we");
 	if (!o->series)
 		return ob_fail(e, "--series %s: %s", path, strerror(errno));
@@ -113,5 +114,5 @@ bool ob_observer_close(ob_observer *o, ob_error *e)
 	bool broken = ferror(o->series);
 	broken |= fclose(o->series) != 0;
 	o->series = NULL;
-	return broken ? ob_fail(e, "--series: the file could not be written whole: %s", strerror(errno)) : true;
+	return broken ? ob_fail(e, "--series %s: %s", o->series_path, strerror(errno)) : true;
 }

@@ -21,9 +21,10 @@ typedef struct ob_observer {
 	ob_penetration now;
 	double worst, worst_time; // m, s
 	FILE *series; // a line for each look; NULL = none
+	const char *series_path;
 } ob_observer;
 
-// path: of the CSV file; NULL = none
+// path: of the CSV file, which outlives the observer; NULL = none
 bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e);
 // Measures a snapshot; the first is the start. One that has been measured already is passed over.
 void ob_observer_look(ob_observer *o, const ob_snapshot *s);

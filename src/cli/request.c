@@ -95,7 +95,7 @@ static bool is_stdout(const char *path)
 
 static bool check_outputs(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id files[] = { OB_OPTION_FRAMES,  OB_OPTION_VIDEO,  OB_OPTION_RAW, OB_OPTION_RECORD,
+	static const ob_option_id files[] = { OB_OPTION_FRAMES,  OB_OPTION_VIDEO,  OB_OPTION_RAW,  OB_OPTION_RECORD,
 					      OB_OPTION_SUMMARY, OB_OPTION_SERIES, OB_OPTION_JSON, OB_OPTION_TRACE };
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		const char *path = a->value[files[i]], *option = name_of(files[i]);
@@ -165,6 +165,8 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 		if (a->value[details[i]] && !f->wanted)
 			return ob_fail(e, "--%s needs --frames, --video or --raw", name_of(details[i]));
 	}
+	if (f->gpu && strcmp(f->gpu, "surfaceless") != 0 && strspn(f->gpu, "0123456789") != strlen(f->gpu))
+		return ob_fail(e, "--gpu %s: expected surfaceless, or the number of a GPU, from 0", f->gpu);
 	uint32_t samples = 4;
 	if (!count(a, OB_OPTION_SAMPLES, 1, 32, &samples, e))
 		return false;

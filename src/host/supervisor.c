@@ -124,7 +124,9 @@ bool ob_supervisor_start(ob_host *h, ob_error *e)
 	int error = pthread_create(&h->supervisor, NULL, supervise, h);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	h->supervised = error == 0;
-	return h->supervised || ob_fail(e, "cannot start the supervisor thread: %s", strerror(error));
+	return h->supervised ||
+	       ob_fail(e, "cannot start the supervisor thread: %s; raise the limit on processes (ulimit -u)",
+		       strerror(error));
 }
 
 void ob_supervisor_stop(ob_host *h)

@@ -118,7 +118,8 @@ bool ob_context_create(ob_context *c, const char *device, ob_error *e)
 		char *end;
 		long number = strtol(device, &end, 10);
 		if (end == device || *end || number < 0 || number >= DEVICES_MAX)
-			return ob_fail(e, "GPU \"%s\": expected \"surfaceless\" or a number from 0", device);
+			return ob_fail(e, "GPU \"%s\": expected \"surfaceless\" or a number from 0 to %d", device,
+				       DEVICES_MAX - 1);
 		only = (int)number;
 	}
 	if (surfaceless && try_surfaceless(c, &tried))

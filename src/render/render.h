@@ -28,7 +28,8 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 // Sinks: where finished frames go. Encoding runs in the sink's own thread; put() blocks when 8 frames wait.
 typedef struct ob_sink ob_sink;
 ob_sink *ob_sink_png(const char *dir, int w, int h, ob_error *e); // DIR/frame-000000.png ..., tEXt: simulated time
-ob_sink *ob_sink_raw(int fd, int w, int h, ob_error *e); // rgb24 to a pipe
+// rgb24 to a pipe; name: of it, for errors, as long as the sink lives
+ob_sink *ob_sink_raw(int fd, const char *name, int w, int h, ob_error *e);
 ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e); // through ffmpeg
 bool ob_sink_put(ob_sink *s, uint64_t frame, double time, const uint8_t *rgba, ob_error *e);
 // Waits for all frames, closes. false and e if any frame was not written whole. Frees s either way.

@@ -11,6 +11,7 @@ enum { BLOCK_PIXELS = 16384 };
 
 typedef struct raw {
 	int fd; // the caller's: not closed
+	const char *name;
 } raw;
 
 static bool write_all(int fd, const uint8_t *data, size_t size)
@@ -49,7 +50,7 @@ bool ob_pipe_write(int fd, int w, int h, const uint8_t *rgba, const char *what, 
 static bool write_raw(void *state, int w, int h, const ob_sink_frame *frame, ob_error *e)
 {
 	const raw *r = state;
-	return ob_pipe_write(r->fd, w, h, frame->rgba, "raw frames", e);
+	return ob_pipe_write(r->fd, w, h, frame->rgba, r->name, e);
 }
 
 static bool finish_raw(void *state, bool good, ob_error *e)
@@ -58,7 +59,7 @@ static bool finish_raw(void *state, bool good, ob_error *e)
 	return true;
 }
 
-ob_sink *ob_sink_raw(int fd, int w, int h, ob_error *e)
+ob_sink *ob_sink_raw(int fd, const char *name, int w, int h, ob_error *e)
 {
 	static const ob_sink_kind kind = { write_raw, finish_raw };
 	raw *r = malloc(sizeof *r);
@@ -66,6 +67,6 @@ ob_sink *ob_sink_raw(int fd, int w, int h, ob_error *e)
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	r->fd = fd;
+	*r = (raw){ fd, name };
 	return ob_sink_start(&kind, r, w, h, 1, e);
 }

@@ -171,7 +171,7 @@ static void raw_is_ordered(void)
 	fcntl(ends[1], F_SETFL, O_NONBLOCK); // as a shell or an event loop may have left it
 	reader r = { ends[0], 0, 0 };
 	pthread_create(&thread, NULL, read_frames, &r);
-	ob_sink *s = ob_sink_raw(ends[1], W, H, &e);
+	ob_sink *s = ob_sink_raw(ends[1], "the pipe", W, H, &e);
 	CHECK(s && put_frames(s, FRAMES, &e) && ob_sink_close(s, &e));
 	close(ends[1]);
 	pthread_join(thread, NULL);
@@ -186,11 +186,11 @@ static void raw_reader_leaves(void)
 	int ends[2];
 	ob_error e = { "" };
 	CHECK(pipe(ends) == 0);
-	ob_sink *s = ob_sink_raw(ends[1], W, H, &e);
+	ob_sink *s = ob_sink_raw(ends[1], "the pipe", W, H, &e);
 	close(ends[0]);
 	CHECK(s != NULL);
 	put_frames(s, 50, NULL);
-	CHECK(!ob_sink_close(s, &e) && strstr(e.text, "the reader of the frames has gone"));
+	CHECK(!ob_sink_close(s, &e) && strstr(e.text, "the pipe: the reader of the frames has gone"));
 	close(ends[1]);
 }
 

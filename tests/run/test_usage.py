@@ -1,6 +1,7 @@
 """What a user gets wrong: one line that says what and how to mend it, exit code 2, nothing left behind."""
 
 import os
+import resource
 import subprocess
 import unittest
 
@@ -21,6 +22,7 @@ class Usage(program.Case):
 		self.refuse("run", STACK, "--json", "/no/such/dir/x.json", saying="no directory /no/such/dir")
 		self.refuse("run", STACK, "--json", "-", "--raw", "-", saying="both write standard output")
 		self.refuse("run", STACK, "--raw", "x.rgb", "--camera", "nowhere", saying="the scene has none of this name")
+		self.refuse("run", STACK, "--raw", "x.rgb", "--gpu", "big", saying="--gpu big: expected surfaceless")
 		self.refuse("run", STACK, STACK, saying="one scene at a time")
 		self.refuse("run", STACK, "-D", "n=x", saying="n")
 		self.refuse("run", STACK, "-D", "mystery=1", saying="mystery")
@@ -60,9 +62,31 @@ class Usage(program.Case):
 
 	def test_full_disk(self):
 		"""A report that cannot be written is a failed run, not a silent one."""
-		done = program.call("run", STACK, "--duration", ".1", "--json", "/dev/full")
+		short = "run", STACK, "--duration", ".1"
+		for option in "--json", "--series", "--summary", "--trace", "--record":
+			with self.subTest(option=option):
+				done = program.call(*short, option, "/dev/full")
+				self.assertEqual(done.returncode, 1)
+				self.assertRegex(done.stderr, "/dev/full: .*No space left")
+		with open("/dev/full", "w") as full:
+			for words in short, ["--help"], ["lab", "--list"], ["top", "--help"]:
+				with self.subTest(words=words):
+					done = program.call(*words, stdout=full)
+					self.assertEqual(done.returncode, 1)
+					self.assertIn("standard output cannot be written: No space left", done.stderr)
+
+	def test_file_limit(self):
+		"""A limit on the size of files (ulimit -f) is an error with a name, too, and leaves no universe."""
+		limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10240, 10240))
+		done = program.call("run", STACK, "--duration", ".1", "--name", self.name, preexec_fn=limit)
 		self.assertEqual(done.returncode, 1)
-		self.assertIn("No space left", done.stderr)
+		self.assertIn("File too large", done.stderr)
+
+	def test_reader_that_has_seen_enough(self):
+		with subprocess.Popen(["true"], stdin=subprocess.PIPE) as ended:
+			ended.wait()
+			done = program.call("run", STACK, "--duration", ".1", stdout=ended.stdin)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 	def test_closed_pipe(self):
 		with subprocess.Popen(["true"], stdin=subprocess.PIPE) as ended:
