@@ -93,7 +93,7 @@ class Compare(program.Case):
 			self.assertTrue(done.stderr.startswith("obsim: "), done.stderr)
 
 	def test_interrupt(self):
-		run = program.start("compare", program.scene("falling_boxes"), "-D", "n=50", "--duration", "100000")
+		run = program.start("compare", program.scene("falling_boxes"), "-D", "n=50", "--duration", program.FOR_EVER)
 		time.sleep(1)
 		below = program.processes(run.pid)
 		self.assertTrue(below)
@@ -105,7 +105,7 @@ class Compare(program.Case):
 		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 1))
 
 	def test_killed(self):
-		run = program.start("compare", program.scene("falling_boxes"), "-D", "n=50", "--duration", "100000")
+		run = program.start("compare", program.scene("falling_boxes"), "-D", "n=50", "--duration", program.FOR_EVER)
 		time.sleep(1)
 		below = program.processes(run.pid)
 		run.kill()

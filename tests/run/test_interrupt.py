@@ -13,7 +13,7 @@ import program
 # Whoever started the tests may ignore hang-ups (nohup), and obsim would then rightly do so, too.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "100000", "--sleeping", "off"]
+LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_EVER, "--sleeping", "off"]
 
 
 class Interrupt(program.Case):

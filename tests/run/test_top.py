@@ -13,7 +13,7 @@ import unittest
 
 import program
 
-LONG = ["--duration", "100000", "--measure", "end", "--sleeping", "off"]
+LONG = ["--duration", program.FOR_EVER, "--measure", "end", "--sleeping", "off"]
 
 
 def read_screen(fd, until, seconds):

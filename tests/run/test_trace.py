@@ -180,7 +180,7 @@ class Trace(program.Case):
 		for workers in "2", "objects":
 			with self.subTest(workers=workers):
 				path = self.path(workers + ".json")
-				run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", "100000", "--sleeping",
+				run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping",
 					"off", "--isolation", "process", "--workers", workers, "--trace", path)
 				grown = lambda: os.path.exists(path) and os.path.getsize(path) > 100000
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
@@ -196,7 +196,7 @@ class Trace(program.Case):
 				time.sleep(.1)
 
 	def test_interrupted(self):
-		run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", "100000", "--sleeping", "off",
+		run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping", "off",
 			"--trace", self.path("t.json"))
 		time.sleep(.5)
 		run.send_signal(signal.SIGINT)
