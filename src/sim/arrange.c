@@ -108,6 +108,7 @@ static void open_checks(ob_universe *u, uint32_t stage)
 	ob_exchange *ex = ob_universe_exchange(u);
 	uint32_t first = 0;
 	ex->count->stage = stage;
+	ob_meetings_begin(u, stage == OB_STAGE_SOLVED);
 	ob_claim_reset(u, (ex->count->pairs + OB_MEETINGS_HANDFUL - 1) / OB_MEETINGS_HANDFUL);
 	if (!own_worker_each(u)) {
 		ob_gate_open(u, OB_PHASE_MEETINGS, NULL, 0);
@@ -136,8 +137,8 @@ static void begin_step(ob_universe *u, ob_sim *s)
 				open_checks(u, OB_STAGE_START);
 				return;
 			}
+			ob_meetings_begin(u, false);
 			ob_meetings_check(s, 0, ex->count->pairs, false);
-			ob_meetings_any(u, false);
 		}
 		ex->count->islands = 0;
 		if (ex->count->next_look <= step || ex->count->next_due <= step)
@@ -172,8 +173,8 @@ static void finish_step(ob_universe *u, ob_sim *s)
 static void after_meetings(ob_sim *s)
 {
 	ob_universe *u = s->u;
-	bool solved = ob_universe_exchange(u)->count->stage == OB_STAGE_SOLVED, met = ob_meetings_any(u, solved);
-	if (!solved) {
+	const bool met = ob_universe_exchange(u)->count->met;
+	if (ob_universe_exchange(u)->count->stage != OB_STAGE_SOLVED) {
 		go_on(u, s);
 		return;
 	}
@@ -200,6 +201,7 @@ static void open_meetings(ob_sim *s, uint32_t stage)
 		return;
 	}
 	ex->count->stage = stage;
+	ob_meetings_begin(u, stage == OB_STAGE_SOLVED);
 	ob_meetings_check(s, 0, pairs, stage == OB_STAGE_SOLVED);
 	after_meetings(s);
 }

@@ -1,6 +1,5 @@
 #include "sim/islands.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "sim/pairs.h"
@@ -43,21 +42,18 @@ static bool due(const plan *p, uint32_t id)
 	return p->before ? p->before[id] != NONE : p->ex->brief[id].due <= p->step;
 }
 
-// Does the pair draw both into the step?
+// Does what links the two draw both into the step?
 static bool draws(const plan *p, const ob_pair_key *k)
 {
 	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
-	bool awake = a->state == OB_BRIEF_AWAKE || b->state == OB_BRIEF_AWAKE;
-	return p->before ? k->met : awake && (k->near || k->active);
+	return p->before ? k->met : a->state == OB_BRIEF_AWAKE || b->state == OB_BRIEF_AWAKE;
 }
 
 static bool joins(const plan *p, const ob_pair_key *k)
 {
 	if (!dynamic(p, k->a) || !dynamic(p, k->b))
 		return false;
-	if (p->before)
-		return k->met || (k->active && asleep(p, k->a) && asleep(p, k->b));
-	return k->active || k->near;
+	return !p->before || k->met || (k->active && asleep(p, k->a) && asleep(p, k->b));
 }
 
 static void unite(plan *p, uint32_t i, uint32_t j)
@@ -69,18 +65,33 @@ static void unite(plan *p, uint32_t i, uint32_t j)
 		p->parent[a] = b;
 }
 
+// Only pairs that touch or come near link anything: few of all there are, told by their flags alone.
+static bool links(const plan *p, const ob_pair_key *k)
+{
+	return k->active | (p->before ? k->met : k->near);
+}
+
+// Notes whom they draw into the step, too: island_of is 0 there.
 static void grow_islands(plan *p)
 {
+	ob_exchange *ex = p->ex;
 	for (uint32_t id = 0; id < p->ids; id++)
 		p->parent[id] = id;
-	for (uint32_t i = 0; p->before && i < p->ex->count->islands; i++) {
-		const uint32_t *member = p->ex->member + p->ex->island[i].first_member;
-		for (uint32_t k = 1; k < p->ex->island[i].members; k++)
+	memset(p->island_of, 0xff, p->ids * sizeof *p->island_of); // NONE
+	for (uint32_t i = 0; p->before && i < ex->count->islands; i++) {
+		const uint32_t *member = ex->member + ex->island[i].first_member;
+		for (uint32_t k = 1; k < ex->island[i].members; k++)
 			unite(p, member[0], member[k]);
 	}
-	for (uint32_t i = 0; i < p->ex->count->pairs; i++)
-		if (joins(p, &p->ex->pair[i]))
-			unite(p, p->ex->pair[i].a, p->ex->pair[i].b);
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		const ob_pair_key *k = &ex->pair[i];
+		if (!links(p, k))
+			continue;
+		if (draws(p, k))
+			p->island_of[dynamic(p, k->a) ? k->a : k->b] = 0;
+		if (joins(p, k))
+			unite(p, k->a, k->b);
+	}
 }
 
 // Numbers the awake trees by their lowest id and lists their members in ascending order.
@@ -88,19 +99,14 @@ static void list_members(plan *p)
 {
 	ob_exchange *ex = p->ex;
 	uint32_t n = 0, total = 0;
-	for (uint32_t id = 0; id < p->ids; id++)
-		p->island_of[id] = NONE;
-	for (uint32_t id = 0; id < p->ids; id++) // a tree with one member that is due is solved
-		if (dynamic(p, id) && due(p, id))
+	for (uint32_t id = 0; id < p->ids; id++) // a tree with one member that is due, or drawn, is solved
+		if (dynamic(p, id) && (p->island_of[id] != NONE || due(p, id)))
 			p->island_of[root_of(p->parent, id)] = 0;
-	for (uint32_t i = 0; i < ex->count->pairs; i++)
-		if (draws(p, &ex->pair[i]))
-			p->island_of[root_of(p->parent, dynamic(p, ex->pair[i].a) ? ex->pair[i].a : ex->pair[i].b)] = 0;
 	for (uint32_t id = 0; id < p->ids; id++) {
-		ex->result_island[id] = NONE;
-		if (!dynamic(p, id) || p->island_of[root_of(p->parent, id)] == NONE)
-			continue;
 		uint32_t root = root_of(p->parent, id);
+		ex->result_island[id] = NONE;
+		if (p->island_of[root] == NONE || !dynamic(p, id))
+			continue;
 		if (root == id) {
 			p->island_of[id] = n;
 			ex->island[n++] = (ob_island){ .first_member = 0 };
@@ -125,10 +131,9 @@ static void list_members(plan *p)
 static void mark_solved(plan *p)
 {
 	ob_exchange *ex = p->ex;
-	for (uint32_t i = 0; i < ex->count->islands; i++)
-		ex->island[i].solved = p->before != NULL;
-	for (uint32_t i = 0; p->before && i < ex->count->islands; i++) {
+	for (uint32_t i = 0; i < ex->count->islands; i++) {
 		const uint32_t *member = ex->member + ex->island[i].first_member;
+		ex->island[i].solved = 1;
 		for (uint32_t k = 0; k < ex->island[i].members; k++)
 			if (p->before[member[k]] == NONE || p->before[member[k]] != p->before[member[0]])
 				ex->island[i].solved = 0;
@@ -142,24 +147,25 @@ static void mark_solved(plan *p)
 
 static bool again(const plan *p, uint32_t island)
 {
-	return p->before && island != NONE && !p->ex->island[island].solved;
+	return island != NONE && !p->ex->island[island].solved;
 }
 
 // Whose solver looks after a pair: what members of one island may touch, and the fixed ones around them. Of what is
-// solved again nothing is known that was found in the step.
+// solved again nothing is known that was found in the step. What does not move is in no island.
 static uint32_t island_of_pair(const plan *p, ob_pair_key *k)
 {
-	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
-	uint32_t ia = dynamic(p, k->a) ? p->ex->result_island[k->a] : NONE;
-	uint32_t ib = dynamic(p, k->b) ? p->ex->result_island[k->b] : NONE, i = ia != NONE ? ia : ib;
-	if (again(p, ia) || again(p, ib))
+	const uint32_t ia = p->ex->result_island[k->a], ib = p->ex->result_island[k->b], i = ia != NONE ? ia : ib;
+	if (p->before && (again(p, ia) || again(p, ib)))
 		k->limit = -INFINITY;
-	if (i == NONE || (ia != ib && dynamic(p, k->a) && dynamic(p, k->b)))
+	if (i == NONE || (ia != ib && ((ia != NONE && ib != NONE) || (dynamic(p, k->a) && dynamic(p, k->b)))))
 		return NONE;
 	if (p->before && p->ex->island[i].solved)
 		return k->listed ? i : NONE;
+	if (k->active)
+		return i;
+	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
 	double paths = ob_brief_path(a, p->step) + ob_brief_path(b, p->step);
-	return k->active || a->reach + b->reach >= k->limit - paths ? i : NONE;
+	return a->reach + b->reach >= k->limit - paths ? i : NONE;
 }
 
 static void list_pairs(plan *p)
@@ -167,10 +173,12 @@ static void list_pairs(plan *p)
 	ob_exchange *ex = p->ex;
 	uint32_t total = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
-		uint32_t island = island_of_pair(p, &ex->pair[i]);
-		ex->pair[i].listed = island != NONE;
-		if (!p->before && !ex->pair[i].active)
-			ob_pair_let_go(p->u, &ex->pair[i]);
+		ob_pair_key *k = &ex->pair[i];
+		uint32_t island = island_of_pair(p, k);
+		if (k->listed != (island != NONE))
+			k->listed = island != NONE;
+		if (k->record != OB_NO_RECORD && !p->before && !k->active)
+			ob_pair_let_go(p->u, k);
 		if (island != NONE)
 			ex->island[island].pairs++;
 	}
@@ -183,7 +191,8 @@ static void list_pairs(plan *p)
 		const ob_pair_key *k = &ex->pair[i];
 		if (!k->listed)
 			continue;
-		ob_island *is = &ex->island[ex->result_island[dynamic(p, k->a) ? k->a : k->b]];
+		uint32_t ia = ex->result_island[k->a];
+		ob_island *is = &ex->island[ia != NONE ? ia : ex->result_island[k->b]];
 		ex->island_pair[is->first_pair + is->pairs++] = i;
 	}
 }
@@ -197,13 +206,44 @@ static uint32_t work_of(const plan *p, const ob_island *is)
 	return sum;
 }
 
-// What is to be solved comes first.
-static int by_work(const void *x, const void *y)
+// island[i] shall be what now is island[from[i]]. from is used up.
+static void permute(ob_island *island, uint32_t *from, uint32_t n)
 {
-	const ob_island *a = x, *b = y;
-	if (a->work != b->work)
-		return a->work < b->work ? 1 : -1;
-	return a->first_member < b->first_member ? -1 : 1;
+	for (uint32_t i = 0; i < n; i++) {
+		const ob_island first = island[i];
+		uint32_t to = i;
+		for (uint32_t k = from[to]; k != i; to = k, k = from[to]) {
+			island[to] = island[k];
+			from[to] = to;
+		}
+		island[to] = first;
+		from[to] = to;
+	}
+}
+
+// The largest first, and what is equal as it was; what is not to be solved has no work. Digit by digit, from the
+// lowest: islands come by the ten thousand, and there are no more than two or three digits.
+static void sort_by_work(plan *p)
+{
+	enum { BITS = 8, DIGITS = 1 << BITS };
+	const ob_island *island = p->ex->island;
+	uint32_t n = p->ex->count->islands, *from = p->parent, *to = p->island_of, largest = 0; // both have been used
+	for (uint32_t i = 0; i < n; i++) {
+		from[i] = i;
+		largest = island[i].work > largest ? island[i].work : largest;
+	}
+	for (uint32_t shift = 0; shift < 32 && largest >> shift; shift += BITS) {
+		uint32_t first[DIGITS] = { 0 }, *digits = from;
+		for (uint32_t i = 0; i < n; i++)
+			first[island[i].work >> shift & (DIGITS - 1)]++;
+		for (uint32_t d = DIGITS, sum = 0, there; d-- > 0; sum += there)
+			there = first[d], first[d] = sum;
+		for (uint32_t i = 0; i < n; i++)
+			to[first[island[from[i]].work >> shift & (DIGITS - 1)]++] = from[i];
+		from = to;
+		to = digits;
+	}
+	permute(p->ex->island, from, n);
 }
 
 // Largest first, so that no worker starts on a big one when the others are done; small ones in handfuls.
@@ -214,7 +254,7 @@ static void make_chunks(plan *p)
 	uint32_t n = ex->count->islands, unsolved = 0, chunks = 0;
 	for (uint32_t i = 0; i < n; i++)
 		ex->island[i].work = ex->island[i].solved ? 0 : work_of(p, &ex->island[i]);
-	qsort(ex->island, n, sizeof *ex->island, by_work);
+	sort_by_work(p);
 	for (uint32_t i = 0; i < n; i++) {
 		for (uint32_t m = 0; m < ex->island[i].members; m++)
 			ex->result_island[ex->member[ex->island[i].first_member + m]] = i;
@@ -238,7 +278,8 @@ static void plan_all(plan *p)
 {
 	grow_islands(p);
 	list_members(p);
-	mark_solved(p);
+	if (p->before)
+		mark_solved(p);
 	list_pairs(p);
 	make_chunks(p);
 }

@@ -18,11 +18,6 @@ typedef struct pair {
 	double h; // s
 } pair;
 
-static bool moves(const ob_exchange *ex, uint32_t id)
-{
-	return ex->brief[id].state == OB_BRIEF_AWAKE;
-}
-
 // What each does in the coming step if nothing new touches it: who is in contact goes on as it does.
 static ob_placed placed(ob_sim *s, uint32_t id, const ob_motion *m, uint64_t steps)
 {
@@ -187,60 +182,65 @@ static bool far_apart(const ob_universe *u, ob_pair_key *k, double paths, double
 	return k->limit - paths > reach || stay_clear(u, k, &round, steps);
 }
 
-// steps: that are complete, or solved.
-static void check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
+// Will the two touch in the coming step, or have they in this? left: m, of the distance through which they may get.
+static void look_closely(ob_sim *s, ob_pair_key *k, double left, bool solved, uint64_t steps)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	pair p = pair_of(s, k, steps);
+	k->met = solved && !k->listed && left <= 0 && has_met(s, k, &p);
+	bool on_plane = ex->brief[k->a].state == OB_BRIEF_PLANE || ex->brief[k->b].state == OB_BRIEF_PLANE;
+	if (!k->met && !on_plane && k->limit - p.path <= p.reach)
+		k->near = will_meet(s, k, &p);
+}
+
+// The first step that begins with so little left of the distance that the two might get through it: they go by
+// themselves until then.
+static double used_up(const ob_pair_key *k, double paths, double reach, uint64_t steps)
+{
+	return reach > 0 ? (double)steps + fmax(1, floor((k->limit - paths) / reach) - 1) : INFINITY;
+}
+
+// steps: that are complete, or solved. Returns the step (from 0) that the pair must be checked for next.
+static double check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 {
 	const ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
-	k->met = k->near = 0;
-	if (k->active || (!moves(ex, k->a) && !moves(ex, k->b)) || foreseen(a, b, steps) || is_clear(ex, k, steps))
-		return;
+	if (k->met | k->near) // most pairs are left as they are: their memory stays with every worker that has read it
+		k->met = k->near = 0;
+	if ((a->state != OB_BRIEF_AWAKE && b->state != OB_BRIEF_AWAKE) || foreseen(a, b, steps))
+		return INFINITY;
+	if (k->active)
+		return (double)steps;
+	if (is_clear(ex, k, steps))
+		return k->clear;
 	solved &= steps == 0 || !is_clear(ex, k, steps - 1); // then they cannot have met in it
 	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), left = k->limit - paths;
-	double reach = a->reach + b->reach;
-	if (left > reach || far_apart(s->u, k, paths, reach, solved, steps))
-		return;
-	pair p = pair_of(s, k, steps);
-	k->met = solved && !k->listed && left <= 0 && has_met(s, k, &p);
-	bool on_plane = a->state == OB_BRIEF_PLANE || b->state == OB_BRIEF_PLANE;
-	if (!k->met && !on_plane && k->limit - p.path <= p.reach)
-		k->near = will_meet(s, k, &p);
+	double reach = (double)a->reach + (double)b->reach;
+	if (left > reach)
+		return used_up(k, paths, reach, steps);
+	if (!far_apart(s->u, k, paths, reach, solved, steps))
+		look_closely(s, k, left, solved, steps);
+	else if (is_clear(ex, k, steps))
+		return k->clear;
+	return k->near ? (double)steps : used_up(k, paths, reach, steps);
+}
+
+void ob_meetings_begin(ob_universe *u, bool solved)
+{
+	ob_meetings_reset(u);
+	ob_universe_exchange(u)->count->looked = (uint32_t)ob_step_count(u) + solved;
 }
 
 void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
-	for (uint32_t i = first; i < end; i++)
-		check(s, &ex->pair[i], solved, ob_step_count(s->u) + solved);
-}
-
-// The first step that begins with so little left of the distance that the two might get through it: they go by
-// themselves until then.
-static double next_look(const ob_exchange *ex, const ob_pair_key *k, uint64_t steps)
-{
-	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
-	if (k->near || k->active)
-		return (double)steps;
-	if (is_clear(ex, k, steps))
-		return k->clear;
-	double reach = (double)a->reach + (double)b->reach;
-	double left = k->limit - ob_brief_path(a, steps) - ob_brief_path(b, steps);
-	return reach > 0 ? (double)steps + fmax(1, floor(left / reach) - 1) : INFINITY;
-}
-
-bool ob_meetings_any(ob_universe *u, bool solved)
-{
-	ob_exchange *ex = ob_universe_exchange(u);
-	const uint64_t steps = ob_step_count(u) + solved;
+	const uint64_t steps = ob_step_count(s->u) + solved;
 	double next = UINT32_MAX;
-	bool any = false;
-	for (uint32_t i = 0; i < ex->count->pairs; i++) {
-		const ob_pair_key *k = &ex->pair[i];
-		any |= k->met;
-		if ((moves(ex, k->a) || moves(ex, k->b)) && !foreseen(&ex->brief[k->a], &ex->brief[k->b], steps))
-			next = fmin(next, next_look(ex, k, steps));
+	bool met = false;
+	for (uint32_t i = first; i < end; i++) {
+		double due = check(s, &ex->pair[i], solved, steps);
+		next = due < next ? due : next;
+		met |= ex->pair[i].met;
 	}
-	ex->count->looked = (uint32_t)steps;
-	ex->count->next_look = (uint32_t)next;
-	return any;
+	ob_meetings_note(s->u, met, (uint32_t)next);
 }

@@ -12,9 +12,10 @@
 
 enum { OB_MEETINGS_HANDFUL = 256 }; // pairs that a worker claims at a time
 
-// Pairs first .. end-1: sets near, met and limit. solved: a step has been solved and is not yet committed.
+// By the arranger, before all pairs are checked. solved: a step has been solved and is not yet committed.
+void ob_meetings_begin(ob_universe *u, bool solved);
+// Pairs first .. end-1: sets near, met and limit, and notes whether any has met and when pairs must be checked next
+// (ob_exchange.count).
 void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved);
-// After all have been checked. Did any pair meet? Notes when pairs must be checked next (ob_exchange.count).
-bool ob_meetings_any(ob_universe *u, bool solved);
 
 #endif

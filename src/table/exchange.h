@@ -99,8 +99,9 @@ typedef struct ob_exchange {
 		uint32_t again;      // 1 = islands are solved that were solved in this step before, in parts
 		uint32_t awake;      // objects
 		uint32_t looked;     // steps that were complete, or solved, when all pairs were checked last
+		uint32_t met;        // 1 = a pair has then: whoever finds one writes it
 		uint32_t next_due;   // before this step nobody is due, if nobody is visited ..
-		uint32_t next_look;  // .. nor has any pair to be checked
+		uint32_t next_look;  // .. nor has any pair to be checked: the least of what those who check have found
 		uint32_t levels[64]; // objects per size class
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie

@@ -109,6 +109,22 @@ void ob_rebound_reset(ob_universe *u)
 	__atomic_store_n(&u->control->rebound_count, 0, __ATOMIC_RELEASE);
 }
 
+void ob_meetings_reset(ob_universe *u)
+{
+	u->exchange.count->met = 0;
+	u->exchange.count->next_look = UINT32_MAX;
+}
+
+void ob_meetings_note(ob_universe *u, bool met, uint32_t next_look)
+{
+	uint32_t *least = &u->exchange.count->next_look, seen = __atomic_load_n(least, __ATOMIC_RELAXED);
+	while (seen > next_look &&
+	       !__atomic_compare_exchange_n(least, &seen, next_look, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+		;
+	if (met)
+		__atomic_store_n(&u->exchange.count->met, 1, __ATOMIC_RELAXED);
+}
+
 // In a phase the stack only shrinks, so a number is its taker's alone.
 uint32_t ob_record_take(ob_universe *u)
 {

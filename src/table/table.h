@@ -129,6 +129,10 @@ void ob_rebound_append(ob_universe *u, uint32_t id);
 // The list so far; reset empties it. Only for the one who arranges.
 const uint32_t *ob_rebound_list(const ob_universe *u, uint32_t *count);
 void ob_rebound_reset(ob_universe *u);
+// What checking pairs has found: reset by the one who arranges, then noted by any worker, for all that it has claimed:
+// has a pair met? The first step (from 0) at which one must be checked again.
+void ob_meetings_reset(ob_universe *u);
+void ob_meetings_note(ob_universe *u, bool met, uint32_t next_look);
 // A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.
 uint32_t ob_record_take(ob_universe *u);
 // Only for the one who arranges.

@@ -1,4 +1,4 @@
-// Claims, the rebound list and the arena of perceived neighbours, under 8 threads and 8 processes.
+// Claims, what meetings note, the rebound list and the arena of perceived neighbours, under 8 threads and 8 processes.
 #include "../check.h"
 
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "crowd.h"
 #include "table/table.h"
 
-enum { WORKERS = 8, OBJECTS = 5000, EACH = 3 };
+enum { WORKERS = 8, OBJECTS = 5000, EACH = 3, FIRST_LOOK = 77 };
 
 typedef struct board {
 	ob_universe *u;
@@ -28,6 +28,8 @@ static int work(void *shared, uint32_t worker)
 		for (uint32_t k = 0; k < EACH; k++)
 			b->arena[at + k]++; // plain: the place is this worker's alone
 	}
+	for (uint32_t i = worker; i < OBJECTS; i += WORKERS)
+		ob_meetings_note(b->u, i == OBJECTS / 2, FIRST_LOOK + i * 7919 % OBJECTS);
 	for (uint32_t i = worker % 2; i < OBJECTS; i += 2) // each id comes from four workers
 		ob_rebound_append(b->u, i);
 	return 0;
@@ -44,10 +46,14 @@ static void run(bool processes)
 		return;
 	for (uint32_t round = 1; round <= 3; round++) {
 		ob_claim_reset(b->u, OBJECTS);
+		ob_meetings_reset(b->u);
+		CHECK(!ob_universe_exchange(b->u)->count->met);
 		ob_rebound_reset(b->u);
 		ob_perceived_reset(b->u);
 		crowd c = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
 		CHECK(crowd_start(&c) && crowd_join(&c) == 0);
+		CHECK(ob_universe_exchange(b->u)->count->met);
+		CHECK(ob_universe_exchange(b->u)->count->next_look == FIRST_LOOK);
 		uint32_t wrong = 0, count;
 		for (uint32_t i = 0; i < OBJECTS; i++)
 			wrong += b->claimed[i] != round;
