@@ -2,7 +2,11 @@
 """accuracy.py OBSIM FILE FOLDER [OPTION ...]: runs obsim lab with these options into FOLDER, and writes what came out into
 FILE: the tables between <!-- lab: NAME --> and <!-- end -->, and the diagrams that FILE shows from images/accuracy/.
 
-What FOLDER has already is not run again. On an otherwise idle machine; the whole lab takes about an hour.
+All cases are run once at the engines' usual settings: that gives errors against targets, and errors are the same every
+time. Swept, and repeated (--repeats), are the cases whose cost at equal error is tabled, and the one of late partners.
+
+What FOLDER has already is not run again. On an otherwise idle machine; it takes some twenty minutes, and ten more for
+each repeat.
 """
 import csv
 import os
@@ -47,6 +51,12 @@ def failed():
     return text or '- no other engine took part\n'
 
 
+def lab(*words):
+    if subprocess.run([os.path.abspath(sys.argv[1]), 'lab', '--out', FOLDER, *words],
+                      stdout=subprocess.DEVNULL, check=False).returncode != 0:
+        sys.exit('obsim lab failed; the same command goes on where it stopped')
+
+
 TABLES = {f.__name__: f for f in (machine, rows, equal, failed)}
 
 
@@ -66,7 +76,11 @@ def refresh(path):
 if len(sys.argv) < 4:
     sys.exit(__doc__)
 FOLDER = sys.argv[3]
-if subprocess.run([os.path.abspath(sys.argv[1]), 'lab', '--out', FOLDER, *sys.argv[4:]],
-                  stdout=subprocess.DEVNULL, check=False).returncode != 0:
-    sys.exit('obsim lab failed; the same command goes on where it stopped')
+OPTIONS = sys.argv[4:]
+ONCE = OPTIONS[:]
+if '--repeats' in ONCE:
+    at = ONCE.index('--repeats')
+    del ONCE[at:at + 2]
+lab('--sweep', 'none', *ONCE)
+lab(*dict.fromkeys(r['case'] for r in csv.DictReader(read('equal.csv').splitlines())), 'lag', *OPTIONS)
 refresh(sys.argv[2])

@@ -8,6 +8,14 @@ bool ob_digest_is_obsim(const ob_peer_kind *k)
 	return !strncmp(k->name, "obsim", 5);
 }
 
+size_t ob_digest_count_others(const ob_digest *d)
+{
+	size_t n = 0;
+	for (size_t i = 0; i < d->engines; i++)
+		n += !ob_digest_is_obsim(d->engine[i]);
+	return n;
+}
+
 ob_digest ob_digest_make(const ob_results *r)
 {
 	ob_digest d = { .results = r };

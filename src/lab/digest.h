@@ -17,6 +17,7 @@ typedef struct ob_digest {
 ob_digest ob_digest_make(const ob_results *r);
 
 bool ob_digest_is_obsim(const ob_peer_kind *k); // or one of its variants, as opposed to other engines
+size_t ob_digest_count_others(const ob_digest *d); // engines that took part and are not obsim
 int ob_digest_style(const ob_digest *d, const ob_peer_kind *k); // of its curves, the same in every report
 
 // At an engine's usual settings; NULL: was not run

@@ -43,6 +43,8 @@ static void print_sum(FILE *f, const ob_digest *d)
 {
 	int cases = 0, ahead = 0, never = 0;
 	double worst = 0;
+	if (!ob_digest_count_others(d)) // ahead of nobody
+		return;
 	for (const ob_case *const *c = ob_cases; *c; c++) {
 		if (!is_shown(d, *c) || !d->own)
 			continue;

@@ -27,7 +27,8 @@ static double work_of(const ob_case *c, const ob_peer_settings *s)
 	return c->duration / s->step * c->runs * (s->substeps ? s->substeps : 16);
 }
 
-// How often this is still to be done. Who ran out of time, or crashed, is not asked again, unless there is more time.
+// How often this is still to be done. Who ran out of time, or crashed, is not asked again, unless there is more time;
+// nor who failed: errors are the same every time, and repeats are for the times of what succeeds.
 static uint32_t repeats_left(const session *s, const ob_case *c, const ob_peer_kind *k, const ob_peer_settings *at)
 {
 	const ob_result *r = ob_results_find(s->results, c, k, at);
@@ -35,6 +36,8 @@ static uint32_t repeats_left(const session *s, const ob_case *c, const ob_peer_k
 		return s->plan->repeats;
 	if (isnan(r->outcome.body_seconds))
 		return ob_attempt_had_less(&r->outcome, s->plan->limit) ? 1 : 0;
+	if (r->outcome.failed[0])
+		return 0;
 	return r->repeats < s->plan->repeats ? s->plan->repeats - r->repeats : 0;
 }
 

@@ -44,17 +44,15 @@ void ob_report_cards(ob_page *p, const void *with)
 	if (rows.measured)
 		write_card(p, rows.met, rows.measured,
 			   "rows of hard cases: obsim meets every target, at 60 frames a second");
-	if (l.compared)
+	size_t others = ob_digest_count_others(d), failed = 0, runs = 0;
+	if (l.compared && others)
 		write_card(p, l.ahead, l.compared, "cases: no other engine gets to the same error at less cost");
-	size_t others = 0, failed = 0, runs = 0;
-	for (size_t i = 0; i < d->engines; i++)
-		others += !ob_digest_is_obsim(d->engine[i]);
 	for (size_t i = 0; i < d->results->count; i++) {
 		runs++;
 		failed += d->results->result[i].outcome.failed[0] != 0;
 	}
-	ob_page_markup(p, "<li><b>%zu</b><span>other engines, and %zu settings of obsim's coupling</span></li>\n",
-		       others, d->engines - others);
+	ob_page_markup(p, "<li><b>%zu</b><span>other engines, and %zu of obsim's couplings</span></li>\n", others,
+		       d->engines - others);
 	ob_page_markup(p, "<li><b>%zu</b><span>runs measured; %zu of them failed and are shown as such</span></li>\n",
 		       runs, failed);
 }
@@ -83,7 +81,7 @@ void ob_report_verdict(ob_page *p, const void *with)
 		return;
 	}
 	write_missed(p, d);
-	if (l.compared > l.ahead)
+	if (l.compared > l.ahead && ob_digest_count_others(d))
 		ob_page_markup(p,
 			       "Of the %d cases where another engine is cheaper at equal error, obsim is within twice "
 			       "its cost "

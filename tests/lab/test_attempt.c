@@ -241,6 +241,29 @@ static void test_lab(const char *file)
 	ob_results_finish(&r);
 }
 
+static void judge_fallen(ob_trial *t)
+{
+	judge(t);
+	t->failed = "fell";
+}
+
+// What failed is shown as such, whatever its time: that is not taken again.
+static void test_lab_failed_once(const char *file)
+{
+	ob_results r = { 0 };
+	ob_error e = { "" };
+	ob_case fallen = plain;
+	fallen.judge = judge_fallen;
+	ob_lab_plan p = make_plan(&well, &well, file);
+	p.cases.of[0] = p.with = &fallen;
+	p.engines.count = 1;
+	p.repeats = 3;
+	CHECK(ob_lab_run(&p, &r, &e) && r.count == 2);
+	for (size_t i = 0; i < r.count; i++)
+		CHECK(r.result[i].repeats == 1 && strstr(r.result[i].outcome.failed, "fell"));
+	ob_results_finish(&r);
+}
+
 static void test_lab_interrupted(const char *file)
 {
 	ob_results r = { 0 };
@@ -264,6 +287,7 @@ int main(void)
 	test_outcomes();
 	test_interrupted();
 	test_lab(file);
+	test_lab_failed_once(file);
 	test_lab_interrupted(file);
 	close(made);
 	unlink(file);

@@ -96,6 +96,15 @@ static void test_tables(void)
 	ob_lab_print_equal(f, &d, false);
 	expect_in(f, (const char *[]){ "Case", "at an error of", "0.5 mm", "4 (2\u00d7)", "never", "4 (0.67\u00d7)",
 				       "obsim is ahead in 1 of 2; at worst it takes 1.5 times as long.", NULL });
+	ob_results alone = { 0 }; // ahead of nobody
+	CHECK(ob_results_add(&alone, &list[0]));
+	ob_digest own = ob_digest_make(&alone);
+	f = begin();
+	ob_lab_print_equal(f, &own, false);
+	fclose(f);
+	CHECK(strstr(text, "Stack of 10") && !strstr(text, "ahead"));
+	free(text);
+	ob_results_finish(&alone);
 	f = begin();
 	ob_lab_write_equal(f, &d);
 	expect_in(f, (const char *[]){ "case,error,", "\r\nstack-10,0.5,mm,1,obsim,",
