@@ -184,7 +184,7 @@ static void write_pair(ob_monolith *m, uint32_t index, size_t from, size_t to)
 		s.impulse[s.points] = m->point[i].impulse;
 	}
 	x->record[index].version[step & 1] = s;
-	x->record[index].stamp[step & 1] = step + 1;
+	x->record[index].stamp[step & 1] = (uint32_t)(step + 1);
 	x->pair[index] = (ob_pair_key){ .a = c->a, .b = c->b, .record = index, .active = 1 };
 }
 

@@ -28,7 +28,7 @@ const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps)
 ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 {
 	int k = before(r, steps) == 0;
-	r->stamp[k] = steps + 2;
+	r->stamp[k] = (uint32_t)(steps + 2);
 	return &r->version[k];
 }
 
@@ -48,8 +48,9 @@ static bool immobile(const ob_exchange *ex, uint32_t id)
 	return ex->brief[id].state < OB_BRIEF_AWAKE;
 }
 
-// All pairs that the objects of the list have perceived, sorted, each once. The caller frees.
-static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t count, size_t *n)
+// All pairs that the objects of the list have perceived, sorted, each once: of two that have both moved, which have
+// both found their boxes to overlap, the lower one tells. The caller frees.
+static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t count, const uint32_t *moved, size_t *n)
 {
 	const ob_exchange *ex = ob_universe_exchange(u);
 	size_t total = 0, kept = 0;
@@ -60,17 +61,14 @@ static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t c
 		const struct ob_perceived *p = &ex->perceived[list[k]];
 		for (uint32_t i = 0; i < p->count; i++) {
 			uint32_t other = ex->perceived_id[p->offset + i];
-			if (!immobile(ex, list[k]) || !immobile(ex, other))
+			bool told = moved[other] && other < list[k];
+			if (!told && (!immobile(ex, list[k]) || !immobile(ex, other)))
 				keys[kept++] = key_of(list[k], other);
 		}
 	}
 	if (keys)
 		qsort(keys, kept, sizeof *keys, by_key);
-	size_t unique = 0;
-	for (size_t i = 0; keys && i < kept; i++)
-		if (i == 0 || keys[i] != keys[i - 1])
-			keys[unique++] = keys[i];
-	*n = unique;
+	*n = kept;
 	return keys;
 }
 
@@ -173,10 +171,10 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 	size_t fresh;
 	if (!count)
 		return;
-	uint64_t *keys = perceived_keys(u, list, count, &fresh);
 	memset(moved, 0, ob_universe_ids(u) * sizeof *moved);
 	for (uint32_t i = 0; i < count; i++)
 		moved[list[i]] = 1;
+	uint64_t *keys = perceived_keys(u, list, count, moved, &fresh);
 	if (!keys || !insert(u, keys, keep_perceived(u, moved, keys, fresh), steps))
 		ex->count->failure = OB_EXCHANGE_PAIRS_FULL;
 	free(keys);

@@ -5,7 +5,7 @@
 #include "sim/index.h"
 #include "sim/pull.h"
 
-static const double lasting = 3; // claimed boxes last about so many steps
+static const double lasting = 2; // claimed boxes last about so many steps
 static const double base_margin = .04; // m: of an object at rest ..
 static const double base_share = .2; // .. but no more than this share of its radius, for heaps of small things
 static const double generous = 4; // times the margin that a new box would have: too large

@@ -16,7 +16,7 @@ static void copy_words(void *to, const void *from, size_t bytes)
 static bool newest_version(const ob_universe *u, const ob_pair_key *key, uint64_t step, ob_pair_state *out)
 {
 	const ob_pair_record *r = u->exchange.record + key->record;
-	uint64_t stamp[2];
+	_Alignas(ob_word) uint32_t stamp[2];
 	copy_words(stamp, r->stamp, sizeof stamp);
 	unsigned newest = stamp[1] == step + 1;
 	if (stamp[newest] != step + 1) {

@@ -33,7 +33,7 @@ typedef struct ob_pair_state {
 
 typedef struct ob_pair_record {
 	ob_pair_state version[2];
-	uint64_t stamp[2];        // 1 + steps that are complete when the version holds; 0 = never written
+	uint32_t stamp[2];        // 1 + steps that are complete when the version holds; 0 = never written
 } ob_pair_record;
 
 #define OB_NO_RECORD UINT32_MAX

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 7, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 8, OB_LAYOUT_PAGE = 4096 };
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -120,7 +120,7 @@ static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first pag
 static_assert(sizeof(ob_control) == 256, "control");
 static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
 static_assert(sizeof(ob_pair_state) == 184, "pair state");
-static_assert(sizeof(ob_pair_record) == 384, "pair record");
+static_assert(sizeof(ob_pair_record) == 376, "pair record");
 static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_brief) == 24, "exchange area");
 
 // A process's view of a mapped segment. Immutable once made; forked children may go on using it.
