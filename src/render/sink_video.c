@@ -27,12 +27,14 @@ static bool write_video(void *state, int w, int h, const ob_sink_frame *frame, o
 }
 
 // The first line that ffmpeg wrote: with -loglevel error that is its reason.
-static void first_line(FILE *f, char *line, int size)
+static bool first_line(FILE *f, char *line, int size)
 {
 	rewind(f);
-	if (!fgets(line, size, f))
+	bool any = fgets(line, size, f);
+	if (!any)
 		snprintf(line, (size_t)size, "it gave no reason");
 	line[strcspn(line, "\n")] = 0;
+	return any;
 }
 
 static bool finish_video(void *state, bool good, ob_error *e)
@@ -42,12 +44,12 @@ static bool finish_video(void *state, bool good, ob_error *e)
 	close(v->pipe);
 	while (waitpid(v->pid, &status, 0) < 0 && errno == EINTR)
 		;
-	bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-	if (!ended_well) {
-		char line[512];
-		first_line(v->messages, line, sizeof line);
+	char line[512];
+	// It says nothing but errors, and ends with 0 even if the last bytes, which it writes as it closes, find no
+	// room.
+	bool ended_well = !first_line(v->messages, line, sizeof line) && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+	if (!ended_well)
 		ob_fail(e, "%.400s: ffmpeg failed: %s", v->path, line);
-	}
 	fclose(v->messages);
 	free(v);
 	return ended_well;
