@@ -8,15 +8,24 @@ static inline void fetch(const void *from, size_t bytes)
 		__builtin_prefetch((const char *)from + i);
 }
 
+static void fetch_object(ob_sim *s, uint32_t id)
+{
+	fetch(ob_newest_motion(s->u, id), sizeof(ob_motion));
+	fetch(ob_passport_of(s->u, id), sizeof(ob_passport));
+}
+
+void ob_fetch_pair(ob_sim *s, const ob_pair_key *k)
+{
+	fetch_object(s, k->a);
+	fetch_object(s, k->b);
+}
+
 void ob_fetch_island(ob_sim *s, uint32_t i)
 {
 	const ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_island *is = &ex->island[i];
-	for (uint32_t k = 0; k < is->members && k < MOST; k++) {
-		uint32_t id = ex->member[is->first_member + k];
-		fetch(ob_newest_motion(s->u, id), sizeof(ob_motion));
-		fetch(ob_passport_of(s->u, id), sizeof(ob_passport));
-	}
+	for (uint32_t k = 0; k < is->members && k < MOST; k++)
+		fetch_object(s, ex->member[is->first_member + k]);
 	// The version that was written in the last step, if the pair was solved then.
 	const uint64_t step = ob_step_count(s->u);
 	for (uint32_t k = 0; k < is->pairs && k < MOST; k++) {

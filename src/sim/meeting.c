@@ -1,6 +1,7 @@
 #include "sim/meeting.h"
 
 #include "contact/swept.h"
+#include "sim/fetch.h"
 #include "sim/leap.h"
 #include "sim/look.h"
 #include "sim/now.h"
@@ -200,10 +201,10 @@ static double used_up(const ob_pair_key *k, double paths, double reach, uint64_t
 	return reach > 0 ? (double)steps + fmax(1, floor((k->limit - paths) / reach) - 1) : INFINITY;
 }
 
-// steps: that are complete, or solved. Returns the step (from 0) that the pair must be checked for next.
-static double check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
+// steps: that are complete, or solved. Returns the step (from 0) that the pair must be checked for next, as far as the
+// briefs say; < 0: they do not.
+static double due_by_briefs(const ob_exchange *ex, ob_pair_key *k, uint64_t steps)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
 	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	if (k->met | k->near) // most pairs are left as they are: their memory stays with every worker that has read it
 		k->met = k->near = 0;
@@ -213,16 +214,23 @@ static double check(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 		return (double)steps;
 	if (is_clear(ex, k, steps))
 		return k->clear;
+	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), reach = (double)a->reach + (double)b->reach;
+	return k->limit - paths > reach ? used_up(k, paths, reach, steps) : -1;
+}
+
+// Same, by what has been published.
+static double due_by_motions(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
+{
+	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	solved &= steps == 0 || !is_clear(ex, k, steps - 1); // then they cannot have met in it
-	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), left = k->limit - paths;
-	double reach = (double)a->reach + (double)b->reach;
-	if (left > reach)
-		return used_up(k, paths, reach, steps);
+	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), reach = (double)a->reach + (double)b->reach;
+	const double left = k->limit - paths;
 	if (!far_apart(s->u, k, paths, reach, solved, steps))
 		look_closely(s, k, left, solved, steps);
-	else if (is_clear(ex, k, steps))
-		return k->clear;
-	return k->near ? (double)steps : used_up(k, paths, reach, steps);
+	if (k->near)
+		return (double)steps;
+	return is_clear(ex, k, steps) ? k->clear : used_up(k, paths, reach, steps);
 }
 
 void ob_meetings_begin(ob_universe *u, bool solved)
@@ -231,16 +239,39 @@ void ob_meetings_begin(ob_universe *u, bool solved)
 	ob_universe_exchange(u)->count->looked = (uint32_t)ob_step_count(u) + solved;
 }
 
+// What the motions of these say is on its way from memory while those before them are looked at.
+static void look_at_motions(ob_sim *s, const uint32_t *pairs, uint32_t n, bool solved, bool *met, double *next)
+{
+	enum { AHEAD = 4 };
+	const uint64_t steps = ob_step_count(s->u) + solved;
+	ob_pair_key *all = ob_universe_exchange(s->u)->pair;
+	for (uint32_t i = 0; i < n + AHEAD; i++) {
+		if (i < n)
+			ob_fetch_pair(s, &all[pairs[i]]);
+		if (i < AHEAD)
+			continue;
+		ob_pair_key *k = &all[pairs[i - AHEAD]];
+		*next = fmin(*next, due_by_motions(s, k, solved, steps));
+		*met |= k->met;
+	}
+}
+
 void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 {
 	ob_exchange *ex = ob_universe_exchange(s->u);
 	const uint64_t steps = ob_step_count(s->u) + solved;
 	double next = UINT32_MAX;
 	bool met = false;
-	for (uint32_t i = first; i < end; i++) {
-		double due = check(s, &ex->pair[i], solved, steps);
-		next = due < next ? due : next;
-		met |= ex->pair[i].met;
+	while (first < end) {
+		uint32_t closer[OB_MEETINGS_HANDFUL], n = 0;
+		for (uint32_t i = 0; i < OB_MEETINGS_HANDFUL && first < end; i++, first++) {
+			double due = due_by_briefs(ex, &ex->pair[first], steps);
+			if (due < 0)
+				closer[n++] = first;
+			else
+				next = due < next ? due : next;
+		}
+		look_at_motions(s, closer, n, solved, &met, &next);
 	}
 	ob_meetings_note(s->u, met, (uint32_t)next);
 }
