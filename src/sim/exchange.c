@@ -240,13 +240,11 @@ void ob_exchange_rounds(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
-	const int most_direct = 4; // direct solves in a substep
 	ob_pass pass = { w->h, sweeps,      0, least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
 			 true, is_jacobi(s) };
 	bool again = true;
 	pass.wake = fmin(most_noticeable, pass.wake * w->substep / w->h); // what lasts shorter, moves less
-	w->forest.fit = OB_FOREST_UNKNOWN;
-	int direct = 0;
+	ob_forest_stride(&w->forest);
 	for (uint32_t round = 0; round < more * run->passes && again; round++) {
 		if (round == run->passes)
 			pass.wake = violent;
@@ -258,16 +256,15 @@ void ob_exchange_rounds(ob_sim *s)
 			w->stirred = fmax(w->stirred, moved);
 		pass.first = false;
 		pass.fine = rough * moved;
-		if (direct == most_direct || !ob_forest_asked(s, moved))
+		if (!ob_forest_asked(s, moved, again && round + 1 < run->passes))
 			continue;
 		ob_forest_solve(s);
-		direct++;
 		s->counters.direct_solves++;
 		again = true;
 		for (uint32_t i = 1; i <= w->members; i++)
 			ob_exchange_heat(w, i, w->pass);
 	}
-	w->forest.recent = direct > 0;
+	w->forest.recent = w->forest.solved > 0;
 }
 
 // J, of all members together, by which their displacements raise them against what pulls at them

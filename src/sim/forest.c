@@ -7,6 +7,8 @@
 enum { FREE = UINT32_MAX, UNSEEN = FREE - 1 }; // in up[]: a root; not reached yet
 
 static const double compliance = 1e-6; // of a row's own response
+static const double compliance_in_cycles = 1e-5; // .. where several rows may say the same in different words
+static const uint32_t most_products = 64; // of blocks, for each body
 
 static ob_batch *batch_of(const ob_island_work *w, const ob_forest_contact *c)
 {
@@ -86,14 +88,14 @@ static void fill_joint(const ob_island_work *w, ob_forest_contact *c)
 	const ob_batch *b = batch_of(w, c);
 	int l = lane_of(w, c);
 	ob_joint *j = &c->joint;
-	double n[4], idle = 0;
+	double n[4], idle = 0, softness = w->forest.fit == OB_FOREST_CYCLIC ? compliance_in_cycles : compliance;
 	memset(j->child, 0, sizeof j->child);
 	memset(j->parent, 0, sizeof j->parent);
 	for (uint32_t r = 0; r < j->rows; r++) {
 		int row = c->row[r];
 		fill_row(b, l, row, w->touch[c->touch].a == c->child, r, j);
 		j->parent[r][6] = -w->forest.rate[b - w->batch][row][l];
-		j->compliance[r] = compliance * b->diag[row][l];
+		j->compliance[r] = softness * b->diag[row][l];
 	}
 	// What four points on a plane cannot do together is not asked of them.
 	if (!has_four_normals(c) || !idle_split(b, l, n))
@@ -193,6 +195,16 @@ static void grow(ob_island_work *w)
 	}
 }
 
+// All contacts of which some row holds.
+static void gather(ob_island_work *w)
+{
+	w->forest.contacts = 0;
+	for (uint32_t i = 0; i < w->touches; i++) {
+		const ob_touch *t = &w->touch[i];
+		join(w, i, w->member[t->a].inv_mass == 0 ? t->b : t->a);
+	}
+}
+
 // ---- solving
 
 static void find_rates(ob_island_work *w)
@@ -221,6 +233,36 @@ static void solve_trees(ob_island_work *w)
 	for (uint32_t k = 0; k < f->contacts; k++)
 		if (w->member[f->contact[k].parent].inv_mass == 0)
 			ob_link_pull_anchor(&f->link[f->contact[k].child], &f->contact[k].joint);
+}
+
+static uint32_t number_of(const ob_island_work *w, uint32_t row)
+{
+	return w->member[row].inv_mass > 0 ? row - 1 : OB_TRUSS_FIXED;
+}
+
+// false: it would cost too much.
+static bool solve_truss(ob_island_work *w)
+{
+	ob_forest *f = &w->forest;
+	ob_truss_begin(&f->truss, w->members);
+	for (uint32_t k = 0; k < f->contacts; k++)
+		ob_truss_link(&f->truss, f->contact[k].child - 1, number_of(w, f->contact[k].parent));
+	if (!ob_truss_plan(&f->truss, most_products))
+		return false;
+	for (uint32_t i = 1; i <= w->members; i++) {
+		fill_link(&w->member[i], &f->link[i]);
+		ob_truss_inertia(&f->truss, i - 1, f->link[i].m);
+	}
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		const ob_forest_contact *c = &f->contact[k];
+		ob_truss_join(&f->truss, &c->joint, c->child - 1, number_of(w, c->parent));
+	}
+	ob_truss_solve(&f->truss);
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		ob_forest_contact *c = &f->contact[k];
+		ob_truss_pull(&f->truss, &c->joint, c->child - 1, number_of(w, c->parent));
+	}
+	return true;
 }
 
 // A load on four points may be split so that none pulls, as long as it stands between them: x, the four impulses, goes
@@ -302,15 +344,29 @@ static double way_down(const ob_island_work *w)
 	return slope < 0 && curvature > 0 ? fmin(1, -slope / curvature) : 0;
 }
 
+static bool find_solution(ob_island_work *w)
+{
+	if (w->forest.fit == OB_FOREST_CYCLIC) {
+		gather(w);
+		return solve_truss(w);
+	}
+	grow(w);
+	solve_trees(w);
+	return true;
+}
+
 void ob_forest_solve(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	ob_forest *f = &w->forest;
-	const double shorter = .3, shortest = 1e-3, straight = .5; // straight enough: projection bends the way
+	const double shorter = .3, straight = .5; // straight enough: projection bends the way
+	const double shortest = f->fit == OB_FOREST_CYCLIC ? shorter : 1e-3;
 	double alpha = 1, t;
 	find_rates(w);
-	grow(w);
-	solve_trees(w);
+	if (!find_solution(w)) {
+		f->hopeless = true;
+		return;
+	}
 	for (aim(w, alpha); (t = way_down(w)) < straight && alpha > shortest; aim(w, alpha))
 		alpha *= shorter;
 	f->hopeless = t < straight;

@@ -1,13 +1,17 @@
 // The direct solve of an island's contacts, where exchanges from pair to pair would take too long.
 //
 // Exchanges carry an impulse one pair further per round; n bodies on top of each other need about n^2 rounds, a load
-// of n times its carrier's mass about as many. Where the island's contact graph is a forest that stands on fixed
-// bodies, all its contacts that hold are solved at once, at the cost of some rounds (sim/articulated.h).
+// of n times its carrier's mass about as many. Where an island stands, all its contacts that hold are solved at once.
+// Where they form a forest on fixed bodies, that costs no more than some rounds (sim/articulated.h):
 //
 //        [3]                 breadth-first from the fixed bodies: 1 is a root (its
 //        [2]    [5]          contact is an anchor), 2 hangs on 1, 3 on 2; 4 is a
 //        [1]    [4]          root, 5 hangs on 4. A contact that closes a cycle stays
 //      ==============        as it is: what it gives is a given of this solve.
+//
+// Where there are more contacts than bodies (walls, pyramids, heaps), all of them take part (sim/truss.h). That costs
+// as much as many rounds, so it is tried in two steps of eight, after the rounds, and given up where the residual does
+// not halve. What it is for is rest: an island that it brings to equilibrium need not be solved again (sim/calm.h).
 //
 // Which rows hold is read off the last round: normals that press, or are about to (lambda D > r, the active set of a
 // semismooth Newton step: Hintermueller, Ito and Kunisch 2003), friction and twist below their bounds. The solution
@@ -24,6 +28,7 @@
 
 #include "contact/batch.h"
 #include "sim/articulated.h"
+#include "sim/truss.h"
 
 // A contact that takes part. parent: row of a fixed body if it is an anchor.
 typedef struct ob_forest_contact {
@@ -34,15 +39,23 @@ typedef struct ob_forest_contact {
 
 // Working state of one island's step; memory grown as needed, never shrunk.
 typedef struct ob_forest {
-	enum { OB_FOREST_UNKNOWN, OB_FOREST_UNFIT, OB_FOREST_FIT } fit; // for the running stride: stands still, has no cycles
+	enum {
+		OB_FOREST_UNKNOWN,
+		OB_FOREST_UNFIT,
+		OB_FOREST_FIT,
+		OB_FOREST_CYCLIC
+	} fit; // for the running stride: stands still, has no cycles, or has some
 	bool recent; // the last substep was solved directly
 	bool hopeless; // a solve of this step led nowhere
+	int solved; // times in the running stride
+	double left[2]; // m/s, before the last solve and the one before: the most that a round changed
 	uint32_t rows_max, contacts_max, batches_max;
 	ob_link *link; // [row]
 	uint32_t *order; // rows, parents before children
 	uint32_t *up; // [row]: its contact
 	uint32_t contacts;
 	ob_forest_contact *contact;
+	ob_truss truss;
 	lanes (*rate)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: residual velocities; changes of impulses
 } ob_forest;
 
@@ -51,8 +64,10 @@ struct ob_island_work;
 
 // Before the first substep of an island.
 void ob_forest_begin(ob_forest *f);
-// Is a direct solve worth while, if the last round still changed velocities by "left" m/s?
-bool ob_forest_asked(struct ob_sim *s, double left);
+// Before the rounds of a stride.
+void ob_forest_stride(ob_forest *f);
+// Is a direct solve worth while, if the last round still changed velocities by "left" m/s? If so, it has to be made.
+bool ob_forest_asked(struct ob_sim *s, double left, bool rounds_go_on);
 void ob_forest_solve(struct ob_sim *s);
 void ob_forest_finish(ob_forest *f);
 

@@ -112,6 +112,26 @@ static void test_still_stack(void)
 	free(s);
 }
 
+// Nor do cubes that lean on several others need to be solved for ever: a pyramid stands, and where it was built.
+static void test_still_pyramid(uint32_t substeps)
+{
+	little_scene *s = little_scene_new();
+	s->run.substeps = substeps;
+	little_ground(s);
+	for (int row = 0; row < 8; row++)
+		for (int i = 0; i < 8 - row; i++)
+			little_box(s, 1000, ob_v3(.5, .5, .5), ob_v3(0, 1.05 * (i - .5 * (7 - row)), .5 + row));
+	little_universe l;
+	little_open(&l, s);
+	little_run_to(&l, 3);
+	for (uint32_t i = 1; i <= 36; i++) {
+		CHECK(l.now.motion[i].flags & OB_MOTION_STILL);
+		CHECK(ob_norm(ob_sub(little_state(&l, i).pose.p, s->object[i].state.pose.p)) < 2e-5);
+	}
+	little_close(&l);
+	free(s);
+}
+
 // The lowest of three cubes goes away: the others fall at once, freely, by its height, asleep or not.
 static void test_support_removed(bool sleeping)
 {
@@ -225,6 +245,8 @@ int main(void)
 	test_no_sleep();
 	test_still();
 	test_still_stack();
+	test_still_pyramid(1);
+	test_still_pyramid(8);
 	test_support_removed(false);
 	test_support_removed(true);
 	test_added();

@@ -1,0 +1,264 @@
+#include "sim/truss.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BITS = 64 };
+
+void ob_truss_begin(ob_truss *t, uint32_t bodies)
+{
+	if (bodies > t->bodies_max) {
+		ob_truss_finish(t);
+		t->bodies_max = bodies + bodies / 2;
+		size_t n = t->bodies_max, words = (n + BITS - 1) / BITS;
+		t->near = malloc(n * words * sizeof *t->near);
+		t->order = malloc(n * sizeof *t->order);
+		t->place = malloc(n * sizeof *t->place);
+		t->first = malloc((n + 1) * sizeof *t->first);
+		t->at = malloc(n * n * sizeof *t->at);
+		t->own = malloc(n * sizeof *t->own);
+		t->inverse = malloc(n * sizeof *t->inverse);
+		t->change = malloc(n * sizeof *t->change);
+	}
+	t->bodies = bodies;
+	t->words = (bodies + BITS - 1) / BITS;
+	memset(t->near, 0, (size_t)bodies * t->words * sizeof *t->near);
+}
+
+static uint64_t *near_of(const ob_truss *t, uint32_t body)
+{
+	return t->near + (size_t)body * t->words;
+}
+
+void ob_truss_link(ob_truss *t, uint32_t child, uint32_t parent)
+{
+	if (parent == OB_TRUSS_FIXED)
+		return;
+	near_of(t, child)[parent / BITS] |= UINT64_C(1) << parent % BITS;
+	near_of(t, parent)[child / BITS] |= UINT64_C(1) << child % BITS;
+}
+
+static uint32_t degree(const ob_truss *t, uint32_t body)
+{
+	uint32_t n = 0;
+	for (uint32_t k = 0; k < t->words; k++)
+		n += (uint32_t)__builtin_popcountll(near_of(t, body)[k]);
+	return n;
+}
+
+// Its neighbours become each other's, and lose it.
+static void eliminate(ob_truss *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
+{
+	const uint64_t *gone = near_of(t, body);
+	for (uint32_t i = 0; i < n; i++) {
+		uint64_t *near = near_of(t, neighbour[i]);
+		for (uint32_t k = 0; k < t->words; k++)
+			near[k] |= gone[k];
+		near[neighbour[i] / BITS] &= ~(UINT64_C(1) << neighbour[i] % BITS);
+		near[body / BITS] &= ~(UINT64_C(1) << body % BITS);
+	}
+}
+
+static uint32_t *list_neighbours(ob_truss *t, uint32_t body, uint32_t from, uint32_t n)
+{
+	if (from + n > t->below_max) {
+		t->below_max = (from + n) * 2;
+		t->below = realloc(t->below, t->below_max * sizeof *t->below);
+		free(t->block);
+		t->block = malloc(t->below_max * sizeof *t->block);
+	}
+	uint32_t *list = t->below + from;
+	for (uint32_t k = 0; k < t->words; k++)
+		for (uint64_t left = near_of(t, body)[k]; left; left &= left - 1)
+			*list++ = k * BITS + (uint32_t)__builtin_ctzll(left);
+	return t->below + from;
+}
+
+bool ob_truss_plan(ob_truss *t, uint32_t most)
+{
+	uint64_t cost = 0;
+	uint32_t blocks = 0, *left = t->order; // those that are left stand behind those that are gone
+	for (uint32_t i = 0; i < t->bodies; i++)
+		left[i] = i;
+	for (uint32_t k = 0; k < t->bodies; k++) {
+		uint32_t best = k, least = UINT32_MAX;
+		for (uint32_t i = k; i < t->bodies && least > 1; i++) {
+			uint32_t n = degree(t, left[i]);
+			if (n < least)
+				best = i, least = n;
+		}
+		uint32_t body = left[best];
+		left[best] = left[k];
+		left[k] = body;
+		t->place[body] = k;
+		t->first[k] = blocks;
+		const uint32_t *neighbour = list_neighbours(t, body, blocks, least);
+		eliminate(t, body, neighbour, least);
+		for (uint32_t i = 0; i < least; i++) {
+			t->at[(size_t)body * t->bodies + neighbour[i]] = blocks + i;
+			t->at[(size_t)neighbour[i] * t->bodies + body] = blocks + i;
+		}
+		blocks += least;
+		cost += (uint64_t)least * (least + 1) / 2;
+		if (cost > (uint64_t)most * t->bodies)
+			return false;
+	}
+	t->first[t->bodies] = blocks;
+	memset(t->block, 0, blocks * sizeof *t->block);
+	memset(t->change, 0, t->bodies * sizeof *t->change);
+	return true;
+}
+
+// ---- assembling
+
+void ob_truss_inertia(ob_truss *t, uint32_t body, double m[6][8])
+{
+	for (int i = 0; i < 6; i++)
+		for (int k = 0; k < 6; k++)
+			t->own[body][i][k] = m[i][k];
+}
+
+void ob_truss_join(ob_truss *t, const ob_joint *j, uint32_t child, uint32_t parent)
+{
+	for (uint32_t r = 0; r < j->rows; r++) {
+		const double stiff = 1 / j->compliance[r], push = stiff * j->parent[r][6], *p = j->parent[r];
+		for (int i = 0; i < 6; i++) {
+			const double s = stiff * j->child[i][r];
+			for (int k = 0; k < 6; k++)
+				t->own[child][i][k] += s * j->child[k][r];
+			t->change[child][i] += push * j->child[i][r];
+		}
+		if (parent == OB_TRUSS_FIXED)
+			continue;
+		const bool child_first = t->place[child] < t->place[parent];
+		double(*both)[6] = t->block[t->at[(size_t)child * t->bodies + parent]];
+		for (int i = 0; i < 6; i++) {
+			const double s = stiff * p[i];
+			for (int k = 0; k < 6; k++) {
+				t->own[parent][i][k] += s * p[k];
+				both[child_first ? i : k][child_first ? k : i] += s * j->child[k][r];
+			}
+			t->change[parent][i] += push * p[i];
+		}
+	}
+}
+
+// ---- solving
+
+// Lower triangle into its Cholesky root. A direction in which rounding left nothing does not move.
+static void take_root(double (*m)[6], double *inverse)
+{
+	for (int i = 0; i < 6; i++)
+		for (int j = 0; j <= i; j++) {
+			double sum = m[i][j];
+			for (int k = 0; k < j; k++)
+				sum -= m[i][k] * m[j][k];
+			if (i > j) {
+				m[i][j] = sum * inverse[j];
+				continue;
+			}
+			inverse[i] = sum > 0 ? 1 / sqrt(sum) : 0;
+			m[i][i] = sum * inverse[i];
+		}
+}
+
+// x <- L^-1 x
+static void lower_solve(double (*root)[6], const double *inverse, double *x)
+{
+	for (int i = 0; i < 6; i++) {
+		for (int k = 0; k < i; k++)
+			x[i] -= root[i][k] * x[k];
+		x[i] *= inverse[i];
+	}
+}
+
+// x <- L^-T x
+static void upper_solve(double (*root)[6], const double *inverse, double *x)
+{
+	for (int i = 5; i >= 0; i--) {
+		for (int k = i + 1; k < 6; k++)
+			x[i] -= root[k][i] * x[k];
+		x[i] *= inverse[i];
+	}
+}
+
+// m <- m - a b^T, with b^T given
+static void subtract(double (*m)[6], double (*a)[6], double (*bt)[6])
+{
+	for (int i = 0; i < 6; i++)
+		for (int k = 0; k < 6; k++)
+			for (int c = 0; c < 6; c++)
+				m[i][c] -= a[i][k] * bt[k][c];
+}
+
+static void fold(ob_truss *t, uint32_t k)
+{
+	const uint32_t body = t->order[k], from = t->first[k], to = t->first[k + 1];
+	take_root(t->own[body], t->inverse[body]);
+	lower_solve(t->own[body], t->inverse[body], t->change[body]);
+	for (uint32_t i = from; i < to; i++)
+		for (int r = 0; r < 6; r++)
+			lower_solve(t->own[body], t->inverse[body], t->block[i][r]);
+	for (uint32_t i = from; i < to; i++) {
+		const uint32_t sooner = t->below[i];
+		ob_truss_block turned;
+		for (int r = 0; r < 6; r++)
+			for (int c = 0; c < 6; c++)
+				turned[c][r] = t->block[i][r][c];
+		subtract(t->own[sooner], t->block[i], turned);
+		for (int r = 0; r < 6; r++)
+			for (int c = 0; c < 6; c++)
+				t->change[sooner][r] -= t->block[i][r][c] * t->change[body][c];
+		for (uint32_t j = from; j < to; j++) {
+			const uint32_t later = t->below[j];
+			if (t->place[later] > t->place[sooner])
+				subtract(t->block[t->at[(size_t)sooner * t->bodies + later]], t->block[j], turned);
+		}
+	}
+}
+
+static void unfold(ob_truss *t, uint32_t k)
+{
+	const uint32_t body = t->order[k];
+	for (uint32_t i = t->first[k]; i < t->first[k + 1]; i++)
+		for (int r = 0; r < 6; r++)
+			for (int c = 0; c < 6; c++)
+				t->change[body][c] -= t->block[i][r][c] * t->change[t->below[i]][r];
+	upper_solve(t->own[body], t->inverse[body], t->change[body]);
+}
+
+void ob_truss_solve(ob_truss *t)
+{
+	for (uint32_t k = 0; k < t->bodies; k++)
+		fold(t, k);
+	for (uint32_t k = t->bodies; k-- > 0;)
+		unfold(t, k);
+}
+
+void ob_truss_pull(const ob_truss *t, ob_joint *j, uint32_t child, uint32_t parent)
+{
+	for (uint32_t r = 0; r < j->rows; r++) {
+		double left = j->parent[r][6];
+		for (int i = 0; i < 6; i++)
+			left -= j->child[i][r] * t->change[child][i];
+		for (int i = 0; i < 6 && parent != OB_TRUSS_FIXED; i++)
+			left -= j->parent[r][i] * t->change[parent][i];
+		j->x[r] = left / j->compliance[r];
+	}
+}
+
+void ob_truss_finish(ob_truss *t)
+{
+	free(t->near);
+	free(t->order);
+	free(t->place);
+	free(t->first);
+	free(t->below);
+	free(t->at);
+	free(t->block);
+	free(t->own);
+	free(t->inverse);
+	free(t->change);
+	*t = (ob_truss){ 0 };
+}

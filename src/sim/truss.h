@@ -1,0 +1,51 @@
+// The direct solve of bodies whose joints close cycles (walls, pyramids, heaps): the same equations as in
+// sim/articulated.h, with the impulses eliminated first. What is left has one 6 x 6 block for each body and for each
+// two that share a joint,
+//
+//      (M + J^T e^-1 J) dv = J^T e^-1 y,      x = e^-1 (y - J dv)
+//
+// positive definite, and sparse: it is taken apart by block Cholesky elimination, the body with the fewest neighbours
+// left first (Tinney and Walker 1967; George and Liu 1989). Eliminating a body makes neighbours of all its neighbours:
+//
+//        o───o───o             o───o───o         The cost is the sum of squares of the numbers of neighbours. It
+//        │   │   │      ──>    │ ╱ │   │         is known before any arithmetic is done; where it is too high,
+//        x───o───o               ──o───o         as in thick heaps, there is no solve.
+#ifndef OB_SIM_TRUSS_H
+#define OB_SIM_TRUSS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "sim/articulated.h"
+
+enum { OB_TRUSS_FIXED = UINT32_MAX }; // a parent that does not move
+
+typedef double ob_truss_block[6][6];
+
+// Memory grown as needed, never shrunk. Bodies have numbers from 0.
+typedef struct ob_truss {
+	uint32_t bodies, bodies_max, words; // 64 bodies to a word
+	uint64_t *near; // [body][words]: bit per neighbour that is not eliminated yet
+	uint32_t *order, *place; // bodies, as they are eliminated; [body]: its place among them
+	uint32_t *first; // [bodies + 1], by place in the order: range in below
+	uint32_t below_max, *below; // neighbours left when a body is eliminated
+	uint32_t *at; // [body][body]: block of the pair
+	uint32_t blocks_max;
+	ob_truss_block *block; // one for each entry of below: the neighbour's rows, the eliminated body's columns
+	ob_truss_block *own; // [body]
+	double (*inverse)[6]; // [body]: of its root's diagonal
+	double (*change)[6]; // [body]: the push, then dv
+} ob_truss;
+
+void ob_truss_begin(ob_truss *t, uint32_t bodies);
+void ob_truss_link(ob_truss *t, uint32_t child, uint32_t parent);
+// After the links: false if the solve would cost more than "most" block products for each body.
+bool ob_truss_plan(ob_truss *t, uint32_t most);
+void ob_truss_inertia(ob_truss *t, uint32_t body, double m[6][8]);
+void ob_truss_join(ob_truss *t, const ob_joint *j, uint32_t child, uint32_t parent);
+void ob_truss_solve(ob_truss *t);
+// Sets the joint's impulses.
+void ob_truss_pull(const ob_truss *t, ob_joint *j, uint32_t child, uint32_t parent);
+void ob_truss_finish(ob_truss *t);
+
+#endif
