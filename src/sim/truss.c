@@ -62,8 +62,8 @@ static void eliminate(ob_truss *t, uint32_t body, const uint32_t *neighbour, uin
 
 static uint32_t *list_neighbours(ob_truss *t, uint32_t body, uint32_t from, uint32_t n)
 {
-	if (from + n > t->below_max) {
-		t->below_max = (from + n) * 2;
+	if (from + n >= t->below_max) {
+		t->below_max = (from + n + 1) * 2;
 		t->below = realloc(t->below, t->below_max * sizeof *t->below);
 		free(t->block);
 		t->block = malloc(t->below_max * sizeof *t->block);
