@@ -1,0 +1,185 @@
+#include "table/checkpoint.h"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "table/layout.h"
+#include "table/segment.h"
+
+// Bytes of the segment; begin and end on page borders.
+typedef struct range {
+	uint64_t begin, end;
+} range;
+
+struct ob_checkpoint {
+	int fd; // of the segment: it tells which pages are in use
+	ob_control control;
+	ob_motion *motion; // [ids]
+	uint32_t ids, ids_max;
+	range *kept; // ascending
+	size_t ranges, ranges_max;
+	char *bytes; // of all of them, one after the other
+	size_t bytes_max;
+};
+
+ob_checkpoint *ob_checkpoint_create(const ob_universe *u)
+{
+	char path[OB_SEGMENT_PATH_MAX];
+	ob_checkpoint *c = calloc(1, sizeof *c);
+	if (!c)
+		return NULL;
+	c->fd = ob_segment_path(path, u->header.name) ? shm_open(path, O_RDONLY | O_CLOEXEC, 0) : -1;
+	if (c->fd < 0) {
+		ob_checkpoint_destroy(c);
+		return NULL;
+	}
+	return c;
+}
+
+void ob_checkpoint_destroy(ob_checkpoint *c)
+{
+	if (!c)
+		return;
+	if (c->fd >= 0)
+		close(c->fd);
+	free(c->motion);
+	free(c->kept);
+	free(c->bytes);
+	free(c);
+}
+
+uint64_t ob_checkpoint_step(const ob_checkpoint *c)
+{
+	return c->control.step;
+}
+
+static bool grow(void **array, size_t element, size_t needed, size_t *max)
+{
+	if (needed <= *max)
+		return true;
+	size_t next = needed + needed / 2;
+	void *larger = realloc(*array, next * element);
+	if (!larger)
+		return false;
+	*array = larger;
+	*max = next;
+	return true;
+}
+
+// The step's own areas. What the arranger scribbles on in between begins afresh in each step.
+static range step_areas(const ob_universe *u)
+{
+	return (range){ u->header.area[OB_AREA_REBOUND], u->header.area[OB_AREA_SCRATCH] };
+}
+
+// The next pages in use from "from" on; false: there are none before "end".
+static bool next_in_use(int fd, uint64_t from, uint64_t end, range *found)
+{
+	off_t begin = lseek(fd, (off_t)from, SEEK_DATA);
+	if (begin < 0 || (uint64_t)begin >= end)
+		return false;
+	off_t hole = lseek(fd, begin, SEEK_HOLE);
+	found->begin = (uint64_t)begin;
+	found->end = hole < 0 || (uint64_t)hole > end ? end : (uint64_t)hole;
+	return true;
+}
+
+static bool take_areas(ob_checkpoint *c, const ob_universe *u)
+{
+	range all = step_areas(u), r;
+	size_t bytes = 0;
+	c->ranges = 0;
+	for (uint64_t at = all.begin; next_in_use(c->fd, at, all.end, &r); at = r.end) {
+		size_t more = r.end - r.begin;
+		if (!grow((void **)&c->kept, sizeof *c->kept, c->ranges + 1, &c->ranges_max) ||
+		    !grow((void **)&c->bytes, 1, bytes + more, &c->bytes_max))
+			return false;
+		memcpy(c->bytes + bytes, u->base + r.begin, more);
+		c->kept[c->ranges++] = r;
+		bytes += more;
+	}
+	return true;
+}
+
+static bool take_motions(ob_checkpoint *c, const ob_universe *u)
+{
+	size_t max = c->ids_max;
+	if (!grow((void **)&c->motion, sizeof *c->motion, u->control->ids, &max))
+		return false;
+	c->ids_max = (uint32_t)max;
+	c->ids = u->control->ids;
+	for (uint32_t id = 0; id < c->ids; id++)
+		c->motion[id] = *ob_newest_motion(u, id);
+	return true;
+}
+
+bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u)
+{
+	c->control = *u->control;
+	return take_motions(c, u) && take_areas(c, u);
+}
+
+// Word by word, for a reader in another thread or process may look. from NULL = zeros.
+static void put_words(char *to, const char *from, size_t bytes)
+{
+	for (size_t i = 0; i < bytes; i += sizeof(uint64_t)) {
+		uint64_t word = 0;
+		if (from)
+			memcpy(&word, from + i, sizeof word);
+		__atomic_store_n((uint64_t *)(to + i), word, __ATOMIC_RELAXED);
+	}
+}
+
+// Pages do not go out of use, so what was kept lies within what is in use now.
+static void put_areas_back(const ob_checkpoint *c, const ob_universe *u)
+{
+	range all = step_areas(u), r;
+	const char *from = c->bytes;
+	size_t k = 0;
+	for (uint64_t at = all.begin; next_in_use(c->fd, at, all.end, &r); at = r.end) {
+		for (; k < c->ranges && c->kept[k].begin < r.end; k++) {
+			const range *kept = &c->kept[k];
+			put_words(u->base + r.begin, NULL, kept->begin - r.begin);
+			put_words(u->base + kept->begin, from, kept->end - kept->begin);
+			from += kept->end - kept->begin;
+			r.begin = kept->end;
+		}
+		put_words(u->base + r.begin, NULL, r.end - r.begin);
+	}
+}
+
+static void put_control_back(const ob_control *from, ob_control *to)
+{
+	to->claim_next = from->claim_next;
+	to->claim_total = from->claim_total;
+	to->rebound_count = from->rebound_count;
+	to->perceived_used = from->perceived_used;
+	__atomic_store_n(&to->awake, from->awake, __ATOMIC_RELAXED);
+	__atomic_store_n(&to->pairs, from->pairs, __ATOMIC_RELAXED);
+	__atomic_store_n(&to->islands, from->islands, __ATOMIC_RELAXED);
+	__atomic_store_n(&to->step, from->step, __ATOMIC_RELEASE);
+}
+
+static void reset_gate(ob_universe *u)
+{
+	uint32_t workers = u->header.sizes.workers;
+	memset(u->gate, 0, sizeof *u->gate);
+	memset(u->gate_group, 0, (workers + 63) / 64 * sizeof *u->gate_group);
+	memset(u->gate_cell, 0, workers * sizeof *u->gate_cell);
+	ob_gate_prepare(u->gate, workers);
+}
+
+void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
+{
+	put_areas_back(c, u);
+	for (uint32_t id = 0; id < c->ids; id++)
+		if (u->slot[id].version)
+			ob_publish_motion(u, id, &c->motion[id]);
+	put_control_back(&c->control, u->control);
+	reset_gate(u);
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
+		__atomic_store_n(&u->worker[w].pid, 0, __ATOMIC_RELEASE);
+}

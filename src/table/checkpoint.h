@@ -1,0 +1,30 @@
+// A universe as it stood at a step boundary, kept in the host's own memory, and put back when a simulator is lost.
+//
+//                          take                       put back
+//   motions            newest of each slot   -->   published anew: readers see one more version, never a torn one
+//   area of the step   pages in use          -->   the same bytes; pages that came into use since are zeroed
+//   clock, claims      values                -->   the same values
+//   passports          -                     -->   as they are: who is there must be the same as when it was taken
+//   gate               -                     -->   as at the start: the host has the turn, nobody has arrived
+//   worker cells       -                     -->   counters stay; their tasks are gone
+//
+// Everything an object needs from one step to the next lies in these, so the steps that follow are the same to the bit.
+//
+// Thread-safety: one thread, the host's, while the universe is paused (take), or has no worker (put back).
+#ifndef OB_TABLE_CHECKPOINT_H
+#define OB_TABLE_CHECKPOINT_H
+
+#include "table/table.h"
+
+typedef struct ob_checkpoint ob_checkpoint;
+
+// NULL: no memory, or the universe's name is gone.
+ob_checkpoint *ob_checkpoint_create(const ob_universe *u);
+// false: no memory; nothing can then be put back.
+bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u);
+void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u);
+// Steps that were complete.
+uint64_t ob_checkpoint_step(const ob_checkpoint *c);
+void ob_checkpoint_destroy(ob_checkpoint *c); // NULL is allowed
+
+#endif

@@ -1,0 +1,193 @@
+// A universe that is put back is as it was when it was taken, whatever has been done to it in between, and its readers
+// never see a torn motion.
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../check.h"
+#include "table/checkpoint.h"
+#include "table/layout.h"
+
+enum { OBJECTS = 300, WORKERS = 3 };
+
+static ob_universe *make(void)
+{
+	ob_error e = { "" };
+	char name[OB_NAME_MAX];
+	snprintf(name, sizeof name, "test-checkpoint-%d", (int)getpid());
+	ob_universe_setup setup = { .name = name, .capacity = OBJECTS, .workers = WORKERS, .isolation = "process" };
+	setup.run = (ob_run_settings){ .step_length = .01, .substeps = 1 };
+	ob_universe *u = ob_universe_create(&setup, &e);
+	CHECK(u);
+	for (uint32_t id = 0; id < OBJECTS; id++) {
+		ob_passport p = { .id = id, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_SPHERE, .mass = 1 };
+		ob_write_passport(u, id, &p);
+	}
+	return u;
+}
+
+// All numbers of a motion tell the same, so that a torn one shows.
+static ob_motion motion(double x)
+{
+	ob_motion m = { .t0 = x, .p = ob_v3(x, x, x), .v = ob_v3(x, x, x), .w = ob_v3(x, x, x), .a = ob_v3(x, x, x) };
+	m.q = ob_quat_identity();
+	m.path = m.valid_until = x;
+	return m;
+}
+
+static void publish_all(ob_universe *u, double x)
+{
+	for (uint32_t id = 0; id < OBJECTS; id++) {
+		ob_motion m = motion(x + id);
+		ob_publish_motion(u, id, &m);
+	}
+}
+
+// The areas of the step, byte by byte, but for what the arranger scribbles on
+static char *step_bytes(const ob_universe *u, size_t *n)
+{
+	*n = u->header.area[OB_AREA_SCRATCH] - u->header.area[OB_AREA_REBOUND];
+	return u->base + u->header.area[OB_AREA_REBOUND];
+}
+
+static void scatter(ob_universe *u, unsigned seed, int times)
+{
+	size_t n;
+	char *bytes = step_bytes(u, &n);
+	for (int i = 0; i < times; i++) {
+		seed = seed * 1664525u + 1013904223u;
+		bytes[seed % n] = (char)(seed >> 24);
+	}
+}
+
+// Another life: steps, claims, pages that were not in use, and a gate that has been stopped in the middle of a phase.
+static void go_astray(ob_universe *u, unsigned seed)
+{
+	uint32_t index;
+	publish_all(u, 1e6 + seed);
+	ob_motion m = motion(7);
+	ob_stage_motion(u, 5, &m);
+	scatter(u, seed, 2000);
+	ob_claim_reset(u, 100);
+	ob_claim_next(u, &index);
+	ob_rebound_append(u, 17);
+	ob_perceived_reserve(u, 1000);
+	ob_step_complete(u, 1, 2, 3);
+	ob_worker_announce(u, 1, 42, 42, 0);
+	ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
+	ob_gate_arrive(u, 2);
+	ob_gate_stop(u);
+}
+
+static void check_as_taken(ob_universe *u, const char *bytes)
+{
+	size_t n;
+	ob_worker_info info;
+	const char *now = step_bytes(u, &n);
+	CHECK(!memcmp(bytes, now, n));
+	for (uint32_t id = 0; id < OBJECTS; id++) {
+		ob_motion expected = motion(3. + id);
+		CHECK(!memcmp(ob_newest_motion(u, id), &expected, sizeof expected));
+	}
+	CHECK(ob_step_count(u) == 1 && u->control->awake == 9 && u->control->pairs == 8 && u->control->islands == 7);
+	CHECK(u->control->rebound_count == 1 && u->control->perceived_used == 10);
+	CHECK(ob_universe_get_worker(u, 1, &info) && info.pid == 0);
+	CHECK(ob_gate_host_wait(u, 0) && u->gate->stop == 0); // the host has the turn
+	ob_gate_open(u, OB_PHASE_MEMBERS, NULL, 0);
+	for (uint32_t w = 0; w < WORKERS; w++) {
+		CHECK(ob_gate_wait(u, w) == OB_PHASE_MEMBERS);
+		CHECK(ob_gate_arrive(u, w) == (w == WORKERS - 1));
+	}
+}
+
+static void test_put_back(void)
+{
+	size_t n;
+	ob_universe *u = make();
+	ob_checkpoint *c = ob_checkpoint_create(u);
+	CHECK(c);
+	publish_all(u, 3);
+	scatter(u, 1, 500);
+	ob_rebound_append(u, 4);
+	ob_perceived_reserve(u, 10);
+	ob_step_complete(u, 9, 8, 7);
+	char *bytes = step_bytes(u, &n), *kept = malloc(n);
+	memcpy(kept, bytes, n); // by which all pages come into use
+	for (unsigned life = 0; life < 5; life++) {
+		if (life % 2 == 0)
+			CHECK(ob_checkpoint_take(c, u) && ob_checkpoint_step(c) == 1);
+		go_astray(u, life);
+		ob_checkpoint_put_back(c, u);
+		check_as_taken(u, kept);
+	}
+	free(kept);
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(u, true);
+}
+
+// Pages that came into use after it was taken are zero again.
+static void test_new_pages(void)
+{
+	size_t n, set = 0;
+	ob_universe *u = make();
+	ob_checkpoint *c = ob_checkpoint_create(u);
+	CHECK(ob_checkpoint_take(c, u));
+	scatter(u, 5, 20000);
+	ob_checkpoint_put_back(c, u);
+	const char *bytes = step_bytes(u, &n);
+	for (size_t i = 0; i < n; i++)
+		set += bytes[i] != 0;
+	CHECK(set == 0);
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(u, true);
+}
+
+typedef struct look {
+	ob_universe *u;
+	atomic_bool over;
+	atomic_uint looks;
+	unsigned torn;
+} look;
+
+static void *keep_looking(void *argument)
+{
+	look *l = argument;
+	ob_motion m;
+	for (uint32_t id = 0; !l->over; id = (id + 1) % OBJECTS) {
+		bool whole = ob_universe_get_motion(l->u, id, &m);
+		l->torn += !whole || m.p.x != m.t0 || m.w.z != m.t0 || m.path != m.t0;
+		l->looks++;
+	}
+	return NULL;
+}
+
+static void test_readers(void)
+{
+	pthread_t thread;
+	look l = { .u = make() };
+	ob_checkpoint *c = ob_checkpoint_create(l.u);
+	publish_all(l.u, 3);
+	CHECK(ob_checkpoint_take(c, l.u));
+	pthread_create(&thread, NULL, keep_looking, &l);
+	for (int i = 0; i < 300 || l.looks < 100000; i++) {
+		publish_all(l.u, i);
+		ob_checkpoint_put_back(c, l.u);
+	}
+	l.over = true;
+	pthread_join(thread, NULL);
+	CHECK(l.torn == 0);
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(l.u, true);
+}
+
+int main(void)
+{
+	test_put_back();
+	test_new_pages();
+	test_readers();
+	return check_end();
+}
