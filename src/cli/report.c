@@ -62,6 +62,7 @@ static const struct field {
 	FIELD(REAL, host_cpu_s, "s"),
 	FIELD(REAL, renderer_cpu_s, "s"),
 	FIELD(COUNT, switches, ""),
+	FIELD(COUNT, deaths, ""),
 	FIELD(COUNT, worker_memory_bytes, "B"),
 	FIELD(COUNT, memory_bytes, "B"),
 	FIELD(TEXT, state_hash, ""),

@@ -33,7 +33,7 @@ typedef struct ob_report {
 	double startup_s, step_p50_s, step_p90_s, step_p99_s, step_max_s;
 	double critical_s, work_s, held_s, gate_s, gate_cpu_s, idle_s, elapsed_s; // of all workers; NaN unless timed
 	double host_cpu_s, renderer_cpu_s;
-	uint64_t switches, worker_memory_bytes;
+	uint64_t switches, deaths, worker_memory_bytes;
 	double energy_start, energy_end, energy_gain_max;
 	double momentum_error;
 	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;

@@ -62,6 +62,8 @@ static void print_cost(const ob_report *r, FILE *f)
 			ob_quantity_text(&a, r->step_p50_s, "s"), ob_quantity_text(&b, r->step_p99_s, "s"),
 			ob_quantity_text(&c, r->startup_s, "s"));
 	fprintf(f, "  memory       %s\n", ob_quantity_text(&a, (double)r->memory_bytes, "B"));
+	if (r->deaths > 0)
+		fprintf(f, "  deaths       %" PRIu64 "; the state is as it would be without\n", r->deaths);
 }
 
 static void print_worth(const ob_report *r, FILE *f)

@@ -256,6 +256,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->memory_bytes = times.memory_bytes;
 	p->worker_memory_bytes = times.worker_memory_bytes;
 	p->switches = times.switches;
+	p->deaths = times.deaths;
 	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r);
 }
 

@@ -10,6 +10,7 @@
 #include "host/host_state.h"
 #include "host/interrupt.h"
 #include "host/memory.h"
+#include "host/rebirth.h"
 #include "host/supervisor.h"
 #include "host/switches.h"
 #include "host/worker.h"
@@ -80,19 +81,20 @@ static bool settle(ob_host *h, const ob_scene *scene, ob_error *e)
 	if (!h->requests || !h->population)
 		return ob_fail(e, "out of memory");
 	ob_population_update(h->population, 0, h->requests);
+	ob_rebirth_prepare(h);
+	ob_rebirth_keep(h, true);
 	return true;
 }
 
-// Until every worker has announced itself.
-static bool wait_for_workers(ob_host *h, ob_error *e)
+bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 {
 	double until = ob_clock_wall() + start_patience;
 	ob_worker_info info;
 	for (uint32_t w = 0; w < h->workers;) {
 		if (h->interrupted)
 			return ob_fail(e, "interrupted");
-		if (h->failed)
-			return ob_fail(e, "%s", h->failure.text);
+		if (h->failed || h->rebirth.lost)
+			return ob_fail(e, "%s", h->failed ? h->failure.text : h->rebirth.loss.text);
 		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0) {
 			w++;
 			continue;
@@ -105,13 +107,25 @@ static bool wait_for_workers(ob_host *h, ob_error *e)
 	return true;
 }
 
+// Those who die on the way are born again, too.
+static bool get_ready(ob_host *h, ob_error *e)
+{
+	bool ready = ob_host_wait_for_workers(h, e);
+	while (!ready && h->rebirth.lost && !h->failed)
+		ready = ob_rebirth(h);
+	if (!ready && h->failed)
+		ob_fail(e, "%s", h->failure.text);
+	return ready;
+}
+
 static bool start_workers(ob_host *h, ob_error *e)
 {
 	h->interrupt_fd = ob_interrupt_watch();
 	if (h->interrupt_fd < 0)
 		return ob_fail(e, "cannot watch for signals: too many open files?");
+	h->living = h->workers;
 	h->crew = h->spawn->start(&(ob_crew_order){ .u = h->u, .keeper = h->keeper, .run = ob_worker_live }, e);
-	return h->crew && ob_supervisor_start(h, e) && wait_for_workers(h, e);
+	return h->crew && ob_supervisor_start(h, e) && get_ready(h, e);
 }
 
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e)
@@ -207,7 +221,9 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 		return;
 	out->cpu_s = 1e-9 * (double)(ob_host_read_cpu(h) - h->cpu_before);
 	out->host_cpu_s = ob_clock_process_cpu() - h->own_cpu_before - (h->spawn->own_memory ? 0 : out->cpu_s);
-	out->switches = ob_host_count_switches(h) - h->switches_before;
+	uint64_t switches = ob_host_count_switches(h) + h->rebirth.switches;
+	out->switches = switches > h->switches_before ? switches - h->switches_before : 0;
+	out->deaths = h->rebirth.deaths;
 	out->elapsed_s = h->last_end - h->first_start;
 	out->gate_s = ob_host_gate_time(h, h->last_end) - h->gate_before;
 }
@@ -267,6 +283,7 @@ void ob_host_stop(ob_host *h)
 		ob_log_warn("a simulator's thread does not leave; its memory stays until this program ends");
 	if (h->interrupt_fd >= 0)
 		ob_interrupt_release();
+	ob_rebirth_finish(h);
 	ob_population_destroy(h->population);
 	ob_requests_destroy(h->requests);
 	ob_roster_destroy(h->roster);

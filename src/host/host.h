@@ -27,7 +27,7 @@ typedef struct ob_host_config {
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
-	double patience; // s without a completed step after which the run is given up; 0 = 60
+	double patience; // s without a completed step after which the simulators are given up; 0 = 60
 	const char *trace; // a file for the timeline of all that happens (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
 } ob_host_config;
@@ -39,6 +39,7 @@ typedef struct ob_host_times {
 	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
 	double critical_s; // if timed: of the longest worker in each phase, and arranging, in all steps (CPU)
 	double elapsed_s; // from the first go that stepped to the last pause, pauses included
+	uint32_t deaths; // times that simulators were lost and all began again
 	double gate_s; // if timed: all workers' waiting at the gate in that time, pauses included (wall)
 	double host_cpu_s; // CPU of the host's process since then, without its workers: renderer, recorder, measures
 	uint64_t switches; // how often workers were taken off a core since then
@@ -52,7 +53,9 @@ typedef struct ob_host ob_host;
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e);
 // Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there. The first
 // go may be to step 0: the objects then perceive each other, and nothing moves.
-// wait: false and e when a simulator died, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
+// A process that dies or hangs does not end the run: all simulators begin again from where the universe last stood whole,
+// unseen by the caller, and come to the same bits (rebirth.h says where that is not possible).
+// wait: false and e when a simulator died for good, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
 bool ob_host_interrupted(const ob_host *h);

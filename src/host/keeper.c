@@ -18,6 +18,7 @@ struct ob_keeper {
 	int link;
 };
 
+// count 0: kill them all instead
 typedef struct fork_request {
 	uint32_t first, count;
 } fork_request;
@@ -98,6 +99,14 @@ static void fork_simulators(keeper *k, fork_request r)
 	}
 }
 
+static void kill_simulators(const keeper *k)
+{
+	for (uint32_t w = 0; w < k->workers; w++) {
+		if (k->pid[w] > 0)
+			kill(k->pid[w], SIGKILL);
+	}
+}
+
 static void reap(keeper *k)
 {
 	int status;
@@ -120,10 +129,7 @@ static void reap(keeper *k)
 _Noreturn static void tidy_up(const keeper *k)
 {
 	ob_universe_unlink(ob_universe_name(k->u));
-	for (uint32_t w = 0; w < k->workers; w++) {
-		if (k->pid[w] > 0)
-			kill(k->pid[w], SIGKILL);
-	}
+	kill_simulators(k);
 	while (waitpid(-1, NULL, 0) > 0 || errno == EINTR)
 		;
 	_exit(EXIT_SUCCESS);
@@ -143,7 +149,7 @@ _Noreturn static void keep(keeper *k)
 		if (fds[0].revents) {
 			fork_request r;
 			if (recv(k->link, &r, sizeof r, MSG_DONTWAIT) == sizeof r)
-				fork_simulators(k, r);
+				r.count ? fork_simulators(k, r) : kill_simulators(k);
 			else if (fds[0].revents & (POLLHUP | POLLERR))
 				tidy_up(k);
 		}
@@ -203,10 +209,19 @@ int ob_keeper_fd(const ob_keeper *k)
 	return k->link;
 }
 
+static bool ask(ob_keeper *k, fork_request r)
+{
+	return send(k->link, &r, sizeof r, MSG_NOSIGNAL) == sizeof r;
+}
+
 bool ob_keeper_fork(ob_keeper *k, uint32_t first, uint32_t count)
 {
-	fork_request r = { first, count };
-	return send(k->link, &r, sizeof r, MSG_NOSIGNAL) == sizeof r;
+	return ask(k, (fork_request){ first, count });
+}
+
+bool ob_keeper_kill(ob_keeper *k)
+{
+	return ask(k, (fork_request){ 0 });
 }
 
 bool ob_keeper_next_end(ob_keeper *k, ob_worker_end *end)

@@ -5,7 +5,7 @@
 // removes the universe's name, kills the simulators that are left, and ends.
 //
 //   host ----- link (seqpacket) ----- keeper ---fork--> simulator 0, 1, 2 ...   (each dies with the keeper)
-//        workers first .. first+count  >
+//        workers first .. first+count  >                   (count 0: an end to all)
 //        <  ob_worker_end, one per simulator that ended, by whatever cause
 //
 // The keeper is the simulators' parent, so it hears of each death at once (SIGCHLD) and with its exact cause, and the
@@ -40,6 +40,8 @@ pid_t ob_keeper_pid(const ob_keeper *k);
 int ob_keeper_fd(const ob_keeper *k);
 // Asks for simulators first .. first+count-1. false: the keeper is gone.
 bool ob_keeper_fork(ob_keeper *k, uint32_t first, uint32_t count);
+// Kills all simulators that there are. Their ends are reported.
+bool ob_keeper_kill(ob_keeper *k);
 // Fetches one, without waiting; false: none at the moment.
 bool ob_keeper_next_end(ob_keeper *k, ob_worker_end *end);
 // Ends the keeper and with it every simulator that is left, and waits for it. NULL is allowed.

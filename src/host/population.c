@@ -141,7 +141,7 @@ static void publish_roster(ob_population *p)
 	p->changed = false;
 }
 
-void ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
+bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 {
 	ob_request r;
 	for (; p->next < p->event_count && p->events[p->next].step <= step; p->next++) {
@@ -157,8 +157,10 @@ void ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 		else if (r.id < ob_universe_capacity(p->u))
 			take_away(p, r.id);
 	}
-	if (p->changed)
+	bool changed = p->changed;
+	if (changed)
 		publish_roster(p);
+	return changed;
 }
 
 uint64_t ob_population_next_step(const ob_population *p)

@@ -19,8 +19,8 @@ bool ob_object_check(const ob_object_def *def, ob_error *e);
 ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r);
 void ob_population_destroy(ob_population *p);
 
-// Carries out births and deaths that are due at this step or before, then the requests.
-void ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
+// Carries out births and deaths that are due at this step or before, then the requests. true: who is there has changed.
+bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
 // The next step at which something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);
 

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "host/hang.h"
 #include "host/host_state.h"
+#include "host/rebirth.h"
 #include "sim/sim.h"
 
 static const double look_interval = .1; // s, between looks at a run that does not pause
@@ -52,7 +53,7 @@ static void begin_leg(ob_host *h)
 {
 	ob_leg *leg = &h->leg;
 	uint64_t step = ob_step_count(h->u);
-	ob_population_update(h->population, step, h->requests);
+	ob_rebirth_keep(h, ob_population_update(h->population, step, h->requests));
 	if (h->perceived && step >= h->target)
 		return;
 	uint64_t next = ob_population_next_step(h->population);
@@ -91,12 +92,26 @@ static void end_leg(ob_host *h)
 	h->last_end = h->leg_start + wall;
 }
 
+// After a loss. If there is another at once, the leg is still to be gone to its end.
+static void begin_again(ob_host *h)
+{
+	end_leg(h);
+	if (ob_rebirth(h)) {
+		h->perceived = ob_step_count(h->u) > 0;
+		begin_leg(h);
+	} else {
+		pthread_mutex_lock(&h->leg.lock);
+		h->leg.running = true;
+		pthread_mutex_unlock(&h->leg.lock);
+	}
+}
+
 static void give_up(ob_host *h, uint64_t step)
 {
 	char waits_for[400];
 	ob_hang_describe(h, waits_for, sizeof waits_for);
-	ob_host_set_failure(h, "step %llu was not complete after %g s; it waits for %s", (unsigned long long)step + 1,
-			    h->patience, waits_for);
+	ob_rebirth_lose(h, "step %llu was not complete after %g s; it waits for %s", (unsigned long long)step + 1,
+			h->patience, waits_for);
 }
 
 // Not paused yet. Sees to whoever waits for a pause; false: no use in waiting any longer.
@@ -112,7 +127,7 @@ static bool keep_patience(ob_host *h, uint64_t *seen_step, double *seen_at, doub
 		give_up(h, step);
 	if (h->interrupted && *interrupted_at == 0)
 		*interrupted_at = now;
-	if (h->interrupted || ob_requests_waiting(h->requests))
+	if (h->interrupted || ob_requests_waiting(h->requests) || ob_rebirth_due(h))
 		ob_host_shorten_leg(h);
 	return !(h->interrupted && now - *interrupted_at > interrupt_grace);
 }
@@ -152,7 +167,10 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 	while (h->leg.running && !h->failed) {
 		bool turn = ob_gate_host_wait(h->u, look_interval);
 		const char *failure = turn ? ob_sim_failure(h->u) : NULL;
-		if (failure) {
+		if (h->rebirth.lost) { // what looks like a pause is none
+			begin_again(h);
+			seen_at = ob_clock_wall();
+		} else if (failure) {
 			ob_host_set_failure(h, "%s", failure);
 		} else if (turn && at_leg_end(h)) {
 			end_leg(h);

@@ -24,6 +24,10 @@ typedef struct ob_spawn {
 	int (*fd)(const ob_crew *c);
 	// Fetches one worker that has ended, without waiting; false: none at the moment.
 	bool (*next_end)(ob_crew *c, ob_worker_end *end);
+	// Both NULL where a worker cannot be lost alone. kill: puts an end to all. restart: starts all anew, when the ends
+	// of all have been fetched; false: that is not possible any more.
+	void (*kill)(ob_crew *c);
+	bool (*restart)(ob_crew *c);
 	// ns of CPU time that the worker has used; 0 when it is gone.
 	uint64_t (*cpu)(const ob_worker_info *w);
 	// After ob_gate_stop: waits until all have left, at most timeout (s), and frees c. false: some have not

@@ -20,8 +20,20 @@ static int process_fd(const ob_crew *c)
 static bool process_next_end(ob_crew *c, ob_worker_end *end)
 {
 	bool got = ob_keeper_next_end(c->keeper, end);
-	c->ended += got;
+	if (got) // else nothing may be written: a restart may be under way
+		c->ended++;
 	return got;
+}
+
+static void process_kill(ob_crew *c)
+{
+	ob_keeper_kill(c->keeper);
+}
+
+static bool process_restart(ob_crew *c)
+{
+	c->ended = 0;
+	return ob_keeper_fork(c->keeper, 0, c->workers);
 }
 
 static uint64_t process_cpu(const ob_worker_info *w)
@@ -70,6 +82,8 @@ const ob_spawn ob_spawn_processes = {
 	.start = process_start,
 	.fd = process_fd,
 	.next_end = process_next_end,
+	.kill = process_kill,
+	.restart = process_restart,
 	.cpu = process_cpu,
 	.join = process_join,
 	.leave_patience = 1,

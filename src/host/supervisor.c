@@ -9,12 +9,13 @@
 
 #include "base/clock.h"
 #include "host/host_state.h"
+#include "host/rebirth.h"
 
 enum { REFRESH_MS = 500 };
 
 uint64_t ob_host_read_cpu(ob_host *h)
 {
-	uint64_t sum = 0;
+	uint64_t sum = h->rebirth.cpu;
 	for (uint32_t w = 0; w < h->workers; w++) {
 		ob_worker_info info;
 		if (!ob_universe_get_worker(h->u, w, &info) || info.pid == 0)
@@ -41,7 +42,7 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 {
 	char who[160];
 	unsigned long long step = ob_step_count(h->u);
-	if (h->ending || h->failed)
+	if (h->ending || h->failed || h->rebirth.lost)
 		return;
 	name_worker(h, end, who, sizeof who);
 	if (ob_universe_traced(h->u) && !end->error)
@@ -53,8 +54,8 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 				    "processes (ulimit -u, or pids.max of the container)",
 				    end->worker + 1, h->workers, strerror(end->error));
 	else if (end->signal)
-		ob_host_set_failure(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
-				    strsignal(end->signal), step);
+		ob_rebirth_lose(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
+				strsignal(end->signal), step);
 	else
 		ob_host_set_failure(h, "%s left with exit code %d after step %llu, before the run was over", who,
 				    end->code, step);
@@ -74,8 +75,10 @@ static bool look(ob_host *h, struct pollfd fds[4])
 	if (fds[0].revents)
 		return false;
 	if (fds[1].revents)
-		while (h->spawn->next_end(h->crew, &end))
+		while (h->spawn->next_end(h->crew, &end)) {
 			on_end(h, &end);
+			h->living--; // last: when all have ended, the host may begin again
+		}
 	if (fds[2].revents) { // hung up: it would be reported again and again
 		on_keeper_gone(h);
 		fds[1].fd = fds[1].fd == fds[2].fd ? -1 : fds[1].fd;

@@ -7,6 +7,7 @@ import glob
 import json
 import os
 import pty
+import signal
 import subprocess
 import tempfile
 import time
@@ -70,6 +71,28 @@ def alive(pid):
 		with open(f"/proc/{pid}/stat") as f:
 			return f.read().rpartition(")")[2].split()[0] != "Z"
 	except OSError:
+		return False
+
+
+def simulators(parent):
+	"""Ids of all simulators of this run that are processes of their own."""
+	found = []
+	for pid in processes(parent):
+		try:
+			with open(f"/proc/{pid}/comm") as f:
+				if f.read().startswith("sim "):
+					found.append(pid)
+		except OSError:
+			pass
+	return found
+
+
+def end(pid):
+	"""Kills it, if it is still there."""
+	try:
+		os.kill(pid, signal.SIGKILL)
+		return True
+	except ProcessLookupError:
 		return False
 
 

@@ -41,15 +41,29 @@ class Killed(program.Case):
 				run.stderr.close()
 				self.check_nothing_left(below)
 
-	def test_simulator(self):
-		"""The run fails, with the name of who died, and ends in order."""
-		run = self.start_universe(*LONG, "--isolation", "process", "--workers", "objects")
+	def test_simulator_of_a_monolith(self):
+		"""There is nothing to go back to: the run fails, with the name of who died, and ends in order."""
+		run = self.start_universe(*LONG, "--isolation", "process", "--arch", "monolith")
 		time.sleep(.5)
 		below = program.processes(run.pid)
-		os.kill(max(below), signal.SIGKILL)
+		os.kill(program.simulators(run.pid)[0], signal.SIGKILL)
 		self.assertEqual(run.wait(10), 1)
-		self.assertRegex(run.stderr.read(), r"^obsim: simulator \d+ .*killed")
+		self.assertRegex(run.stderr.read(), r"^obsim: simulator 0 .*killed")
 		self.check_nothing_left(below)
+
+	def test_simulators_again_and_again(self):
+		"""Where no simulator lives, the run gives up."""
+		run = self.start_universe(*LONG, "--isolation", "process", "--workers", "2")
+		time.sleep(.5)
+		until = time.time() + 60
+		while run.poll() is None and time.time() < until:
+			for pid in program.simulators(run.pid):
+				program.end(pid)
+			time.sleep(.01)
+		self.assertEqual(run.wait(10), 1)
+		said = run.stderr.read().splitlines()
+		self.assertRegex(said[-1], r"^obsim: simulator \d+ .*killed by SIGKILL.*; that was loss \d+ since step \d+$")
+		self.check_nothing_left([])
 
 	def test_stale_is_cleared(self):
 		"""What a killed host and keeper leave together, the next run removes."""
