@@ -151,6 +151,29 @@ static void put_areas_back(const ob_checkpoint *c, const ob_universe *u)
 	}
 }
 
+static void put_motions_back(const ob_checkpoint *c, ob_universe *u)
+{
+	for (uint32_t id = 0; id < c->ids; id++) {
+		if (!u->slot[id].version)
+			continue;
+		if (ob_universe_traced(u))
+			ob_trace_moves(u, ob_trace_host(u), id, ob_newest_motion(u, id)->flags, c->motion[id].flags);
+		ob_publish_motion(u, id, &c->motion[id]);
+	}
+}
+
+// What the dead were in the middle of ends here, on their own tracks, which their successors go on with.
+static void end_traces(ob_universe *u)
+{
+	for (uint32_t w = 0; ob_universe_traced(u) && w < u->header.sizes.workers; w++) {
+		ob_trace_event doing = ob_trace_unfinished(u, w);
+		if (doing.kind == OB_TRACE_NONE)
+			continue;
+		ob_trace_span(u, w, (ob_trace_kind)doing.kind, doing.begin, 0, 0);
+		ob_trace_doing(u, w, OB_TRACE_NONE, 0);
+	}
+}
+
 static void put_control_back(const ob_control *from, ob_control *to)
 {
 	to->claim_next = from->claim_next;
@@ -174,10 +197,9 @@ static void reset_gate(ob_universe *u)
 
 void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
 {
+	end_traces(u);
 	put_areas_back(c, u);
-	for (uint32_t id = 0; id < c->ids; id++)
-		if (u->slot[id].version)
-			ob_publish_motion(u, id, &c->motion[id]);
+	put_motions_back(c, u);
 	put_control_back(&c->control, u->control);
 	reset_gate(u);
 	for (uint32_t w = 0; w < u->header.sizes.workers; w++)

@@ -6,7 +6,7 @@
 //   clock, claims      values                -->   the same values
 //   passports          -                     -->   as they are: who is there must be the same as when it was taken
 //   gate               -                     -->   as at the start: the host has the turn, nobody has arrived
-//   worker cells       -                     -->   counters stay; their tasks are gone
+//   worker cells, trace -                    -->   what has been counted and told stays; the tasks are gone
 //
 // Everything an object needs from one step to the next lies in these, so the steps that follow are the same to the bit.
 //
