@@ -178,6 +178,30 @@ static void test_interrupted(void)
 	free(s.object);
 }
 
+// Where each simulator that is born dies of the same, the run gives up: here all of a table that says nonsense.
+static void test_again_and_again(void)
+{
+	ob_scene s = heap();
+	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 2);
+	ob_error e = { "" };
+	ob_host *h = ob_host_start(&s, &c, &e);
+	ob_host_go(h, 100);
+	CHECK(ob_host_wait(h, &e));
+	ob_universe_exchange(ob_host_universe(h))->count->pairs = UINT32_MAX;
+	pause_ms(300); // so that it is kept like that
+	double began = ob_clock_wall();
+	ob_host_go(h, 200);
+	CHECK(!ob_host_wait(h, &e) && !ob_host_interrupted(h));
+	printf("%s\n", e.text);
+	if (SLOWED == 1) { // a sanitizer makes a report and an exit code of it, which is the end at once
+		CHECK(strstr(e.text, "killed by SIG") && strstr(e.text, "; that was loss "));
+		CHECK(ob_clock_wall() - began > 9);
+	}
+	ob_host_stop(h);
+	CHECK(waitpid(-1, NULL, WNOHANG) < 0);
+	free(s.object);
+}
+
 int main(void)
 {
 	ob_scene s = heap();
@@ -190,5 +214,6 @@ int main(void)
 	test_visitors();
 	test_killed_in_a_pause();
 	test_interrupted();
+	test_again_and_again();
 	return check_end();
 }

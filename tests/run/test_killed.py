@@ -51,20 +51,6 @@ class Killed(program.Case):
 		self.assertRegex(run.stderr.read(), r"^obsim: simulator 0 .*killed")
 		self.check_nothing_left(below)
 
-	def test_simulators_again_and_again(self):
-		"""Where no simulator lives, the run gives up."""
-		run = self.start_universe(*LONG, "--isolation", "process", "--workers", "2")
-		time.sleep(.5)
-		until = time.time() + 60
-		while run.poll() is None and time.time() < until:
-			for pid in program.simulators(run.pid):
-				program.end(pid)
-			time.sleep(.01)
-		self.assertEqual(run.wait(10), 1)
-		said = run.stderr.read().splitlines()
-		self.assertRegex(said[-1], r"^obsim: simulator \d+ .*killed by SIGKILL.*; that was loss \d+ since step \d+$")
-		self.check_nothing_left([])
-
 	def test_stale_is_cleared(self):
 		"""What a killed host and keeper leave together, the next run removes."""
 		run = self.start_universe(*LONG)
