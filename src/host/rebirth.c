@@ -87,6 +87,13 @@ static bool end_all(ob_host *h)
 	return !h->failed;
 }
 
+// What dies at once need not be tried a thousand times.
+static void rest(const ob_host *h)
+{
+	for (int i = 0; i < 10 && h->rebirth.losses > MOST_LOSSES && !h->interrupted; i++)
+		nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
+}
+
 // What the dead have used counts on.
 static void close_accounts(ob_host *h)
 {
@@ -115,6 +122,7 @@ bool ob_rebirth(ob_host *h)
 		return false;
 	ob_log_warn("%s; all simulators begin again after step %llu", r->loss.text, step);
 	r->deaths++;
+	rest(h);
 	ob_checkpoint_put_back(r->checkpoint, h->u);
 	r->lost = false;
 	h->living = h->workers;
