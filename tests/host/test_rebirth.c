@@ -37,14 +37,13 @@ static uint64_t hash_of(const ob_host *h)
 	return hash;
 }
 
-// Deals blows to the simulators of a host until it is told to stop.
+// Deals blows to the simulators of a host, each at some instant after it was asked for.
 typedef struct killer {
 	ob_host *h;
 	uint32_t workers;
-	unsigned seed, most;
+	unsigned seed;
 	int signal;
-	atomic_bool over;
-	unsigned blows;
+	atomic_bool asked, over;
 } killer;
 
 static unsigned draw(killer *k)
@@ -53,48 +52,53 @@ static unsigned draw(killer *k)
 	return k->seed >> 8;
 }
 
-static void *kill_at_random(void *argument)
+static void strike(killer *k)
+{
+	ob_worker_info info;
+	pause_us((int)(draw(k) % 3000));
+	while (!k->over) { // who is being born has no number yet
+		bool there = ob_universe_get_worker(ob_host_universe(k->h), draw(k) % k->workers, &info) && info.pid;
+		if (there && kill(info.pid, k->signal) == 0)
+			return;
+		pause_us(100);
+	}
+}
+
+static void *kill_when_asked(void *argument)
 {
 	killer *k = argument;
-	while (!k->over && k->blows < k->most) {
-		ob_worker_info info;
-		pause_us((int)(draw(k) % (60000 * SLOWED)));
-		bool there = ob_universe_get_worker(ob_host_universe(k->h), draw(k) % k->workers, &info) && info.pid;
-		if (!k->over && there && kill(info.pid, k->signal) == 0)
-			k->blows++;
-	}
+	for (; !k->over; pause_us(50))
+		if (atomic_exchange(&k->asked, false))
+			strike(k);
 	return NULL;
 }
 
-static uint64_t end_of(const ob_scene *s, const ob_host_config *c, killer *k, bool stepwise, uint32_t *deaths)
+// Runs to the end, and asks for a blow "blows" times on the way.
+static uint64_t end_of(const ob_scene *s, const ob_host_config *c, killer *k, unsigned blows, uint32_t *deaths)
 {
 	ob_error e = { "" };
 	ob_host_times times;
 	pthread_t thread;
 	ob_host *h = ob_host_start(s, c, &e);
 	CHECK(h);
-	ob_host_go(h, 0);
-	CHECK(ob_host_wait(h, &e));
-	if (k) {
-		k->h = h;
-		k->workers = ob_universe_workers(ob_host_universe(h));
-		pthread_create(&thread, NULL, kill_at_random, k);
-	}
-	for (uint64_t step = stepwise ? 1 : STEPS; step <= STEPS; step++) {
+	k->h = h;
+	k->workers = ob_universe_workers(ob_host_universe(h));
+	pthread_create(&thread, NULL, kill_when_asked, k);
+	for (uint64_t step = 0; step <= STEPS; step++) {
+		if (blows && step % (STEPS / (blows + 1)) == 1)
+			k->asked = true;
 		ob_host_go(h, step);
 		bool went = ob_host_wait(h, &e);
 		CHECK(went);
 		CHECK(steps_of(h) == step); // never seen going back
 		if (!went)
 			printf("%s\n", e.text);
-		if (stepwise) // time to strike
-			pause_us(200);
+		if (blows)
+			pause_us(100); // time to strike
 	}
 	uint64_t hash = hash_of(h);
-	if (k) {
-		k->over = true;
-		pthread_join(thread, NULL);
-	}
+	k->over = true;
+	pthread_join(thread, NULL);
 	ob_host_get_times(h, &times);
 	*deaths = times.deaths;
 	ob_host_stop(h);
@@ -104,17 +108,17 @@ static uint64_t end_of(const ob_scene *s, const ob_host_config *c, killer *k, bo
 
 static void test_deaths(const char *what, const ob_scene *s, uint32_t workers, int signal, bool sleeping)
 {
-	uint32_t deaths, sum = 0;
+	uint32_t deaths, sum = 0, blows = signal == SIGSTOP ? 2 : 3;
 	ob_host_config c = little_config(s, OB_ISOLATION_THREAD, 1);
 	c.run.sleeping = sleeping;
-	uint64_t expected = end_of(s, &c, NULL, false, &deaths);
+	uint64_t expected = end_of(s, &c, &(killer){ .seed = 1 }, 0, &deaths);
 	CHECK(deaths == 0);
 	c = little_config(s, OB_ISOLATION_PROCESS, workers);
 	c.run.sleeping = sleeping;
 	c.patience = signal == SIGSTOP ? .3 : 0;
 	for (unsigned seed = 0; seed < (signal == SIGSTOP ? 1 : 2); seed++) {
-		killer k = { .seed = 7 * seed + workers, .most = signal == SIGSTOP ? 2 : 6, .signal = signal };
-		CHECK(end_of(s, &c, &k, true, &deaths) == expected);
+		killer k = { .seed = 7 * seed + workers, .signal = signal };
+		CHECK(end_of(s, &c, &k, blows, &deaths) == expected);
 		sum += deaths;
 	}
 	CHECK(sum > 0);

@@ -172,7 +172,7 @@ class Lab(program.Case):
 
 	def test_killed(self):
 		"""Nothing is left running, and what was done is there."""
-		run = self.start("lab", "projectile", "stack-40", "--engines", "obsim", "--sweep", "substeps=1024")
+		run = self.start("lab", "projectile", "pile", "--engines", "obsim", "--sweep", "substeps=1024")
 		self.assertTrue(program.wait_until(lambda: os.path.exists(self.path("out/results.csv")), program.PATIENCE))
 		time.sleep(.3)
 		below = program.processes(run.pid)
@@ -183,7 +183,7 @@ class Lab(program.Case):
 
 	def test_progress(self):
 		leader, terminal = self.open_terminal()
-		run = self.start("lab", "projectile", "stack-40", "--engines", "obsim", "--sweep", "substeps=1024", stderr=terminal)
+		run = self.start("lab", "projectile", "pile", "--engines", "obsim", "--sweep", "substeps=1024", stderr=terminal)
 		os.close(terminal)
 		time.sleep(2)
 		run.send_signal(signal.SIGINT)
