@@ -12,7 +12,7 @@ enum { FOR_EVER = 100000000 };
 
 typedef struct blow {
 	int after_ms;
-	pid_t victim;
+	pid_t victim, keeper;
 	int signal;
 	double when, waited; // s, wall; s for which host and keeper had stood in line for a core until then
 	atomic_bool over;
@@ -44,9 +44,8 @@ static pid_t keeper_of_this(void)
 static void *strike(void *argument)
 {
 	blow *b = argument;
-	pid_t keeper = keeper_of_this();
 	pause_ms(b->after_ms);
-	b->waited = waited_for_core(getpid()) + (b->victim == keeper ? 0 : waited_for_core(keeper));
+	b->waited = waited_for_core(getpid()) + (b->victim == b->keeper ? 0 : waited_for_core(b->keeper));
 	b->when = ob_clock_wall();
 	kill(b->victim, b->signal);
 	while (!b->over)
@@ -84,9 +83,9 @@ static void run_until_said(ob_host *h, ob_error *e)
 static lapse struck(ob_host *h, int after_ms, pid_t victim, int signal_number, void (*run)(ob_host *, ob_error *),
 		    ob_error *e)
 {
-	blow b = { .after_ms = after_ms, .victim = victim, .signal = signal_number };
-	pthread_t thread;
 	pid_t keeper = keeper_of_this();
+	blow b = { .after_ms = after_ms, .victim = victim, .keeper = keeper, .signal = signal_number };
+	pthread_t thread;
 	pthread_create(&thread, NULL, strike, &b);
 	run(h, e);
 	double ended = ob_clock_wall();
