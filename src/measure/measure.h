@@ -48,10 +48,10 @@ typedef struct ob_penetration {
 void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out);
 
 typedef struct ob_air {
-	double max_m, mean_m; // over pairs in contact; 0 where they do touch, or penetrate
+	double max_m, mean_m; // over pairs that press on each other; 0 where they do touch, or penetrate
 	size_t pairs;
 } ob_air;
-// How far objects are from each other that a snapshot taken with its contacts says are in contact. The distance is that
+// How far objects are from each other that, as a snapshot taken with its contacts says, press on each other. The distance is that
 // of the shapes as they are, along the best of the axes that could part them: never more than it is.
 void ob_measure_air(const ob_snapshot *s, ob_air *out);
 
