@@ -49,11 +49,11 @@ static bool set(bench_order *o, const char *word)
 	return false;
 }
 
-static const ob_peer_kind *find(const char *name)
+static const ob_engine_kind *find(const char *name)
 {
-	if (!strcmp(name, ob_peer_ode_hash.name))
-		return &ob_peer_ode_hash;
-	return ob_peer_find(strcmp(name, "host") ? name : "obsim");
+	if (!strcmp(name, ob_engine_ode_hash.name))
+		return &ob_engine_ode_hash;
+	return ob_engine_find(strcmp(name, "host") ? name : "obsim");
 }
 
 static int misused(const char *what, const char *word)
@@ -72,7 +72,7 @@ int main(int argc, char **argv)
 	const bench_scene *scene = bench_scene_find(argv[1], &e);
 	if (!scene)
 		return misused(e.text, "");
-	const ob_peer_kind *kind = find(argv[2]);
+	const ob_engine_kind *kind = find(argv[2]);
 	if (!kind)
 		return misused("no engine", argv[2]);
 	bench_order o = { .scene = scene, .duration = scene->of.duration, .settings = kind->usual, .workers = 1 };

@@ -12,14 +12,14 @@
 typedef struct bench_order {
 	const bench_scene *scene;
 	double from, duration; // s: parts are told of what comes after "from"
-	ob_peer_settings settings;
+	ob_engine_settings settings;
 	uint32_t workers; // through the host: of the pool
 	bool processes; // through the host: workers are processes
 } bench_order;
 
 // An engine in this thread. false and e: it could not be made, or gave up.
-bool bench_time(const bench_order *o, const ob_peer_kind *kind, ob_error *e);
-bool bench_look(const bench_order *o, const ob_peer_kind *kind, ob_error *e);
+bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e);
+bool bench_look(const bench_order *o, const ob_engine_kind *kind, ob_error *e);
 // obsim as a user runs it: a host with a pool of workers, nobody looking on.
 bool bench_time_host(const bench_order *o, ob_error *e);
 // Likewise: the share of each part of the step in the CPU time, and how much of what was done.
@@ -27,9 +27,9 @@ bool bench_parts(const bench_order *o, ob_error *e);
 
 void bench_print(const char *quantity, const char *unit, double value);
 void bench_print_state(uint64_t hash); // of the bits of the state at the end: the same run gives the same
-uint32_t bench_bodies(const ob_peer_world *w); // that move
+uint32_t bench_bodies(const ob_engine_world *w); // that move
 // Inertia of all bodies as the host computes it: then whoever runs the scene ends in the same bits.
-void bench_build(const bench_order *o, ob_peer_world *w);
+void bench_build(const bench_order *o, ob_engine_world *w);
 // Bytes that this process has written to, shared segments included, programs and libraries not
 double bench_memory(void);
 

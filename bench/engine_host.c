@@ -5,7 +5,7 @@
 #include "host/host.h"
 #include "lab/build.h"
 
-static ob_object_def *define(const ob_peer_world *w)
+static ob_object_def *define(const ob_engine_world *w)
 {
 	ob_object_def *def = calloc(w->objects, sizeof *def);
 	for (uint32_t i = 0; def && i < w->objects; i++)
@@ -15,7 +15,7 @@ static ob_object_def *define(const ob_peer_world *w)
 
 // The host goes by itself from "from" to the end; the first go, to step 0, lets all objects look around.
 typedef struct watched {
-	ob_peer_world w;
+	ob_engine_world w;
 	ob_scene scene;
 	ob_host *h;
 	double bodies;
@@ -24,7 +24,7 @@ typedef struct watched {
 	ob_counters counted_before, counted_after;
 } watched;
 
-static ob_run_settings settings_of(const ob_peer_settings *s, ob_vec3 gravity, bool timed)
+static ob_run_settings settings_of(const ob_engine_settings *s, ob_vec3 gravity, bool timed)
 {
 	return (ob_run_settings){
 		.gravity = gravity,
@@ -108,10 +108,10 @@ static void print_parts(const watched *r)
 {
 	const ob_counters *a = &r->counted_before, *b = &r->counted_after;
 	double all = r->bodies * (double)(r->steps - r->from), sum = 0;
-	for (uint32_t part = 0; part < OB_PARTS; part++) {
+	for (uint32_t part = 0; part < OB_PROFILE_SECTIONS; part++) {
 		char name[64];
 		double us = 1e-3 * (double)(b->time_ns[part] - a->time_ns[part]) / all;
-		snprintf(name, sizeof name, "part: %s", ob_part_name(part));
+		snprintf(name, sizeof name, "part: %s", ob_profile_name(part));
 		bench_print(name, "us/body-step", us);
 		sum += us;
 	}

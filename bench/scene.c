@@ -14,17 +14,17 @@ static bench_scene scene;
 
 // ---- worlds of any number of bodies
 
-static void build_falling(ob_peer_world *w, uint32_t run)
+static void build_falling(ob_engine_world *w, uint32_t run)
 {
 	ob_build_falling(w, scene.bodies, 100 + run);
 }
 
-static void build_sparse(ob_peer_world *w, uint32_t run)
+static void build_sparse(ob_engine_world *w, uint32_t run)
 {
 	ob_build_sparse(w, scene.bodies, 200 + run);
 }
 
-static void build_balls(ob_peer_world *w, uint32_t run)
+static void build_balls(ob_engine_world *w, uint32_t run)
 {
 	(void)run;
 	ob_build_balls(w, scene.bodies);

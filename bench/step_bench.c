@@ -165,7 +165,7 @@ static void bench_index(uint32_t n)
 		fprintf(stderr, "%s\n", e.text);
 		exit(1);
 	}
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t side = (uint32_t)ceil(sqrt(n)), out[16];
 	uint64_t tests = 0;
 	double best = 1e9, found = 0;

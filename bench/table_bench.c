@@ -91,8 +91,8 @@ typedef struct board {
 static void open_next(board *b)
 {
 	uint32_t n = ob_universe_workers(b->u) / b->stride;
-	ob_claim_reset(b->u, OBJECTS);
-	ob_gate_open(b->u, OB_PHASE_MEMBERS, b->stride == 1 ? NULL : b->participants, n);
+	ob_task_reset(b->u, OBJECTS);
+	ob_gate_open(b->u, OB_PHASE_OBJECTS, b->stride == 1 ? NULL : b->participants, n);
 }
 
 static int work(void *shared, uint32_t worker)
@@ -104,7 +104,7 @@ static int work(void *shared, uint32_t worker)
 		uint32_t object = worker;
 		if (!b->pool)
 			ob_publish_motion(b->u, object, &m);
-		while (b->pool && ob_claim_next(b->u, &object))
+		while (b->pool && ob_task_claim(b->u, &object))
 			ob_publish_motion(b->u, object, &m);
 		if (!ob_gate_arrive(b->u, worker))
 			continue;

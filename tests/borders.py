@@ -28,8 +28,8 @@ ARROWS = {
     'reference': 'motion base',
     'plot': 'base',
     'page': '',
-    'peer': 'sim ode table measure motion base',
-    'lab': 'reference peer plot page measure motion base',
+    'engine': 'sim ode table measure motion base',
+    'lab': 'reference engine plot page measure motion base',
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
     'paper': 'host measure render reference plot page scene table base',
@@ -45,15 +45,15 @@ DUTIES = [
     ('include Lua', r'#\s*include\s*<(lua[\d.]*/)?(lua|lauxlib|lualib|luaconf)\.h', r'src/scene/', True),
     ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
     ('include cairo', r'#\s*include\s*<cairo', r'src/plot/', True),
-    ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/peer/', True),
+    ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/engine/', True),
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
-    # Simulators are started by host/spawn_*.c (processes through its keeper); the rest are helpers of one module each.
+    # Simulators are started by host/spawn_*.c (processes through its fork_server); the rest are helpers of one module each.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor|timeline)|render/sink\w*|cli/progress|paper/viewer)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|keeper)|render/sink_video|lab/attempt|paper/attempt|cli/child)\.c$', True),
+     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|lab/attempt|paper/attempt|cli/child)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 
@@ -157,7 +157,7 @@ ALLOWED = [
     ('src/host/spawn_thread.c', 'int i = pthread_create(0, 0, 0, 0);\n'),
     ('src/render/sink.c', '#include "shaders.h"\nint i = pthread_create(0, 0, 0, 0);\n'),
     ('src/lab/attempt.c', 'int i = fork();\n'),
-    ('src/cli/y.c', '// fork() and mmap() and "\nconst char *s = "fork()"; int ob_keeper_fork(int);\n/* #version\n*/\n'),
+    ('src/cli/y.c', '// fork() and mmap() and "\nconst char *s = "fork()"; int ob_fork_server_fork(int);\n/* #version\n*/\n'),
     ('src/base/y.c', 'void f(void)\n{\n' + '\tg();\n' * (FUNCTION_LINES - 2) + '}\n'),
     ('src/base/z.c', '\n' * FILE_LINES),
 ]

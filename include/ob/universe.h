@@ -56,9 +56,9 @@ typedef struct ob_passport {
 enum { // ob_motion.flags
 	OB_MOTION_FREE = 1 << 0,   // in free flight: up to t0, what was published before holds exactly
 	OB_MOTION_ASLEEP = 1 << 1, // at rest by consent of its island
-	OB_MOTION_CALM = 1 << 2,   // its contacts hold it, and have found nothing to change in the last step
-	OB_MOTION_STILL = 1 << 3,  // in equilibrium: nothing is left to compute until something touches it
-	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_STILL, // either: it stays where it is
+	OB_MOTION_STEADY = 1 << 2,   // its contacts hold it, and have found nothing to change in the last step
+	OB_MOTION_EQUILIBRIUM = 1 << 3,  // in equilibrium: nothing is left to compute until something touches it
+	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_EQUILIBRIUM, // either: it stays where it is
 };
 
 // How an object moves from t0 on, unless touched. 176 bytes: the payload of one slot version.

@@ -120,24 +120,24 @@ static void explain_rest(const ob_run_request *q, FILE *f)
 
 static void print_costs(const ob_explained *x, FILE *f)
 {
-	static const char *const what[OB_PARTS] = {
-		[OB_PART_PERCEIVE] = "who is near whom",
-		[OB_PART_ARRANGE] = "pairs, islands, and who solves them",
-		[OB_PART_LEAP] = "closed forms of flight",
-		[OB_PART_LOAD] = "islands out of the universe, and back",
-		[OB_PART_LOOK] = "collision tests",
-		[OB_PART_IMPACTS] = "impacts with restitution",
-		[OB_PART_SOLVE] = "exchanges of contact impulses",
-		[OB_PART_MOVE] = "turning, predicting, displacing",
-		[OB_PART_PROJECT] = "penetrations pushed apart",
-		[OB_PART_PUBLISH] = "motions into their slots",
+	static const char *const what[OB_PROFILE_SECTIONS] = {
+		[OB_PROFILE_BROADPHASE] = "who is near whom",
+		[OB_PROFILE_SCHEDULE] = "pairs, islands, and who solves them",
+		[OB_PROFILE_BALLISTIC] = "closed forms of flight",
+		[OB_PROFILE_LOAD] = "islands out of the universe, and back",
+		[OB_PROFILE_NARROWPHASE] = "collision tests",
+		[OB_PROFILE_IMPACTS] = "impacts with restitution",
+		[OB_PROFILE_SOLVE] = "exchanges of contact impulses",
+		[OB_PROFILE_MOVE] = "turning, predicting, displacing",
+		[OB_PROFILE_PROJECT] = "penetrations pushed apart",
+		[OB_PROFILE_PUBLISH] = "motions into their slots",
 	};
 	double rest = x->cpu_s;
 	ob_quantity q;
-	for (int i = 0; i < OB_PARTS; i++) {
+	for (int i = 0; i < OB_PROFILE_SECTIONS; i++) {
 		double s = 1e-9 * (double)x->counters.time_ns[i];
 		rest -= s;
-		fprintf(f, "    %-9s %10s %5.1f %%  %s\n", ob_part_name((uint32_t)i), ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
+		fprintf(f, "    %-9s %10s %5.1f %%  %s\n", ob_profile_name((uint32_t)i), ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
 			what[i]);
 	}
 	rest = fmax(0, rest);

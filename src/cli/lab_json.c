@@ -4,7 +4,7 @@
 #include "cli/version.h"
 #include "lab/digest.h"
 
-static void put_settings(ob_json *j, const ob_peer_settings *s)
+static void put_settings(ob_json *j, const ob_engine_settings *s)
 {
 	ob_json_open(j, "settings");
 	ob_json_number(j, "step_s", s->step);

@@ -30,7 +30,7 @@ static bool read_engines(ob_engine_list *l, const char *names, ob_error *e)
 	if (ob_list_engines(l, names ? names : "all", word))
 		return true;
 	ob_suggestion s = { .word = word };
-	for (const ob_peer_kind *const *k = ob_peer_kinds; *k; k++) {
+	for (const ob_engine_kind *const *k = ob_engine_kinds; *k; k++) {
 		size_t n = strlen(all);
 		snprintf(all + n, sizeof all - n, "%s%s", n ? ", " : "", (*k)->name);
 		ob_suggest_offer(&s, (*k)->name);

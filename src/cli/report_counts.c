@@ -20,7 +20,7 @@ static uint64_t quantile(const ob_counters *c, double share)
 static double work_of(const ob_counters *c)
 {
 	double sum = 0;
-	for (int i = 0; i < OB_PARTS; i++)
+	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
 		sum += 1e-9 * (double)c->time_ns[i];
 	return sum;
 }

@@ -29,25 +29,25 @@ static bool check_camera(const char *name, const ob_scene *s, ob_error *e)
 	return ob_fail(e, "--camera %s: the scene has none of this name, only: %s", name, all);
 }
 
-static ob_exchange_kind exchange_of(const char *name)
+static ob_solver_kind exchange_of(const char *name)
 {
 	static const char *const names[] = {
-		[OB_EXCHANGE_COLOURED] = "coloured",
-		[OB_EXCHANGE_JACOBI] = "jacobi",
-		[OB_EXCHANGE_GHOST] = "ghost",
-		[OB_EXCHANGE_LAGGED] = "lagged",
+		[OB_SOLVER_COLOURED] = "coloured",
+		[OB_SOLVER_JACOBI] = "jacobi",
+		[OB_SOLVER_GHOST] = "ghost",
+		[OB_SOLVER_LAGGED] = "lagged",
 	};
-	ob_exchange_kind kind = OB_EXCHANGE_COLOURED;
+	ob_solver_kind kind = OB_SOLVER_COLOURED;
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
 		if (strcmp(names[i], name) == 0)
-			kind = (ob_exchange_kind)i;
+			kind = (ob_solver_kind)i;
 	return kind;
 }
 
 // Exchanges that are wrong by design keep no tolerance: more substeps would not mend them.
 static bool may_keep_one(const ob_run_request *r, const ob_run_settings *run)
 {
-	return !r->monolith && run->exchange != OB_EXCHANGE_GHOST && run->exchange != OB_EXCHANGE_LAGGED;
+	return !r->monolith && run->exchange != OB_SOLVER_GHOST && run->exchange != OB_SOLVER_LAGGED;
 }
 
 // Numbers on the command line stand above the scene's tolerance, and a tolerance there above the scene's numbers.
@@ -75,7 +75,7 @@ static void settle_exactness(ob_run_request *r, const ob_scene *s, ob_run_settin
 
 static bool settle_lag(ob_run_request *r, const ob_scene *s, ob_run_settings *run, ob_error *e)
 {
-	if (run->exchange != OB_EXCHANGE_LAGGED)
+	if (run->exchange != OB_SOLVER_LAGGED)
 		return r->lag == UINT32_MAX ||
 		       ob_fail(e, "--lag is for --exchange lagged; this run's is %s", r->exchange);
 	run->lag = r->lag == UINT32_MAX ? s->lag : r->lag;

@@ -10,7 +10,7 @@
 #include "host/host_state.h"
 #include "host/interrupt.h"
 #include "host/memory.h"
-#include "host/rebirth.h"
+#include "host/restart.h"
 #include "host/supervisor.h"
 #include "host/switches.h"
 #include "host/worker.h"
@@ -81,8 +81,8 @@ static bool settle(ob_host *h, const ob_scene *scene, ob_error *e)
 	if (!h->requests || !h->population)
 		return ob_fail(e, "out of memory");
 	ob_population_update(h->population, 0, h->requests);
-	ob_rebirth_prepare(h);
-	ob_rebirth_keep(h, true);
+	ob_restart_prepare(h);
+	ob_restart_checkpoint(h, true);
 	return true;
 }
 
@@ -112,7 +112,7 @@ static bool get_ready(ob_host *h, ob_error *e)
 {
 	bool ready = ob_host_wait_for_workers(h, e);
 	while (!ready && h->rebirth.lost && !h->failed)
-		ready = ob_rebirth(h);
+		ready = ob_restart(h);
 	if (!ready && h->failed)
 		ob_fail(e, "%s", h->failure.text);
 	return ready;
@@ -147,7 +147,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->u = make_universe(scene, config, h->spawn, e);
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
 	// the keeper first: it and its children shall inherit as little as possible
-	h->keeper = h->u ? ob_keeper_start(h->u, ob_worker_live, e) : NULL;
+	h->keeper = h->u ? ob_fork_server_start(h->u, ob_worker_live, e) : NULL;
 	if (!h->keeper || !start_timeline(h, config->trace, e) || !settle(h, scene, e) || !start_workers(h, e)) {
 		ob_host_stop(h);
 		return NULL;
@@ -200,7 +200,7 @@ static void get_memory(const ob_host *h, ob_host_times *out)
 			out->worker_memory_bytes += ob_memory_of_process(info.pid);
 	}
 	out->memory_bytes = out->worker_memory_bytes + ob_memory_of_process(getpid()) +
-			    ob_memory_of_process(ob_keeper_pid(h->keeper)) +
+			    ob_memory_of_process(ob_fork_server_pid(h->keeper)) +
 			    ob_memory_of_universe(ob_universe_name(h->u));
 }
 
@@ -276,14 +276,14 @@ void ob_host_stop(ob_host *h)
 	ob_error e;
 	if (!ob_host_end_trace(h, &sums, &e))
 		ob_log_warn("%s", e.text);
-	ob_keeper_stop(h->keeper); // removes the universe's name
+	ob_fork_server_stop(h->keeper); // removes the universe's name
 	if (h->u && left)
 		ob_universe_destroy(h->u, true);
 	if (!left)
 		ob_log_warn("a simulator's thread does not leave; its memory stays until this program ends");
 	if (h->interrupt_fd >= 0)
 		ob_interrupt_release();
-	ob_rebirth_finish(h);
+	ob_restart_finish(h);
 	ob_population_destroy(h->population);
 	ob_requests_destroy(h->requests);
 	ob_roster_destroy(h->roster);

@@ -18,7 +18,7 @@ typedef struct ob_leg {
 } ob_leg;
 
 // See rebirth.h.
-typedef struct ob_rebirth_state {
+typedef struct ob_restart_state {
 	ob_checkpoint *checkpoint; // NULL: a loss is a failure
 	atomic_bool current; // it holds those objects that are there now
 	atomic_bool lost; // somebody: loss says who
@@ -29,13 +29,13 @@ typedef struct ob_rebirth_state {
 	unsigned losses, deaths; // since then; since the start
 	_Atomic uint64_t cpu; // ns, of those that are gone
 	uint64_t switches; // theirs
-} ob_rebirth_state;
+} ob_restart_state;
 
 struct ob_host {
 	ob_universe *u;
 	uint32_t workers;
 	const ob_spawn *spawn;
-	ob_keeper *keeper;
+	ob_fork_server *keeper;
 	ob_crew *crew;
 	ob_roster *roster;
 	ob_requests *requests;
@@ -50,7 +50,7 @@ struct ob_host {
 	pthread_mutex_t failure_lock;
 	ob_error failure; // the first cause; valid once failed
 
-	ob_rebirth_state rebirth;
+	ob_restart_state rebirth;
 	ob_leg leg;
 	uint64_t target; // the caller's
 	bool perceived; // the gate was opened once

@@ -5,9 +5,9 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "host/hang.h"
+#include "host/stall.h"
 #include "host/host_state.h"
-#include "host/rebirth.h"
+#include "host/restart.h"
 #include "sim/sim.h"
 
 static const double look_interval = .1; // s, between looks at a run that does not pause
@@ -53,7 +53,7 @@ static void begin_leg(ob_host *h)
 {
 	ob_leg *leg = &h->leg;
 	uint64_t step = ob_step_count(h->u);
-	ob_rebirth_keep(h, ob_population_update(h->population, step, h->requests));
+	ob_restart_checkpoint(h, ob_population_update(h->population, step, h->requests));
 	if (h->perceived && step >= h->target)
 		return;
 	uint64_t next = ob_population_next_step(h->population);
@@ -96,7 +96,7 @@ static void end_leg(ob_host *h)
 static void begin_again(ob_host *h)
 {
 	end_leg(h);
-	if (ob_rebirth(h)) {
+	if (ob_restart(h)) {
 		h->perceived = ob_step_count(h->u) > 0;
 		begin_leg(h);
 	} else {
@@ -109,8 +109,8 @@ static void begin_again(ob_host *h)
 static void give_up(ob_host *h, uint64_t step)
 {
 	char waits_for[400];
-	ob_hang_describe(h, waits_for, sizeof waits_for);
-	ob_rebirth_lose(h, "step %llu was not complete after %g s; it waits for %s", (unsigned long long)step + 1,
+	ob_stall_describe(h, waits_for, sizeof waits_for);
+	ob_restart_lose(h, "step %llu was not complete after %g s; it waits for %s", (unsigned long long)step + 1,
 			h->patience, waits_for);
 }
 
@@ -127,7 +127,7 @@ static bool keep_patience(ob_host *h, uint64_t *seen_step, double *seen_at, doub
 		give_up(h, step);
 	if (h->interrupted && *interrupted_at == 0)
 		*interrupted_at = now;
-	if (h->interrupted || ob_requests_waiting(h->requests) || ob_rebirth_due(h))
+	if (h->interrupted || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
 		ob_host_shorten_leg(h);
 	return !(h->interrupted && now - *interrupted_at > interrupt_grace);
 }

@@ -5,13 +5,13 @@
 #ifndef OB_HOST_SPAWN_H
 #define OB_HOST_SPAWN_H
 
-#include "host/keeper.h"
+#include "host/fork_server.h"
 
 typedef struct ob_crew ob_crew; // the workers of one universe
 
 typedef struct ob_crew_order {
 	ob_universe *u;
-	ob_keeper *keeper;
+	ob_fork_server *keeper;
 	ob_worker_run run;
 } ob_crew_order;
 

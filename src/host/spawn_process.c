@@ -8,18 +8,18 @@
 #include "base/clock.h"
 
 struct ob_crew {
-	ob_keeper *keeper;
+	ob_fork_server *keeper;
 	uint32_t workers, ended;
 };
 
 static int process_fd(const ob_crew *c)
 {
-	return ob_keeper_fd(c->keeper);
+	return ob_fork_server_fd(c->keeper);
 }
 
 static bool process_next_end(ob_crew *c, ob_worker_end *end)
 {
-	bool got = ob_keeper_next_end(c->keeper, end);
+	bool got = ob_fork_server_next_end(c->keeper, end);
 	if (got) // else nothing may be written: a restart may be under way
 		c->ended++;
 	return got;
@@ -27,13 +27,13 @@ static bool process_next_end(ob_crew *c, ob_worker_end *end)
 
 static void process_kill(ob_crew *c)
 {
-	ob_keeper_kill(c->keeper);
+	ob_fork_server_kill(c->keeper);
 }
 
 static bool process_restart(ob_crew *c)
 {
 	c->ended = 0;
-	return ob_keeper_fork(c->keeper, 0, c->workers);
+	return ob_fork_server_fork(c->keeper, 0, c->workers);
 }
 
 static uint64_t process_cpu(const ob_worker_info *w)
@@ -47,7 +47,7 @@ static bool process_join(ob_crew *c, double timeout)
 	ob_worker_end end;
 	double until = ob_clock_wall() + timeout;
 	while (c->ended < c->workers) {
-		struct pollfd p = { .fd = ob_keeper_fd(c->keeper), .events = POLLIN };
+		struct pollfd p = { .fd = ob_fork_server_fd(c->keeper), .events = POLLIN };
 		double left = until - ob_clock_wall();
 		if (left <= 0 || (poll(&p, 1, (int)(left * 1000) + 1) < 0 && errno != EINTR))
 			break;
@@ -69,7 +69,7 @@ static ob_crew *process_start(const ob_crew_order *order, ob_error *e)
 	}
 	c->keeper = order->keeper;
 	c->workers = ob_universe_workers(order->u);
-	if (!ob_keeper_fork(c->keeper, 0, c->workers)) {
+	if (!ob_fork_server_fork(c->keeper, 0, c->workers)) {
 		ob_fail(e, "the keeper process has ended: %s", strerror(errno));
 		free(c);
 		return NULL;

@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "host/host_state.h"
-#include "host/rebirth.h"
+#include "host/restart.h"
 
 enum { REFRESH_MS = 500 };
 
@@ -54,7 +54,7 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 				    "processes (ulimit -u, or pids.max of the container)",
 				    end->worker + 1, h->workers, strerror(end->error));
 	else if (end->signal)
-		ob_rebirth_lose(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
+		ob_restart_lose(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
 				strsignal(end->signal), step);
 	else
 		ob_host_set_failure(h, "%s left with exit code %d after step %llu, before the run was over", who,
@@ -65,7 +65,7 @@ static void on_keeper_gone(ob_host *h)
 {
 	if (!h->ending && !h->failed)
 		ob_host_set_failure(h, "the keeper process %d has ended, and with it the watch over this run",
-				    (int)ob_keeper_pid(h->keeper));
+				    (int)ob_fork_server_pid(h->keeper));
 }
 
 // Returns false when the supervisor is to end.
@@ -98,7 +98,7 @@ static void *supervise(void *argument)
 	struct pollfd fds[4] = {
 		{ .fd = h->wake_fd, .events = POLLIN },
 		{ .fd = h->spawn->fd(h->crew), .events = POLLIN },
-		{ .fd = ob_keeper_fd(h->keeper) }, // only its end
+		{ .fd = ob_fork_server_fd(h->keeper) }, // only its end
 		{ .fd = h->interrupt_fd, .events = POLLIN },
 	};
 	double refreshed = 0;

@@ -36,7 +36,7 @@ struct ob_timeline {
 
 static int level(uint32_t kind)
 {
-	return kind == OB_TRACE_CHUNK ? 1 : kind == OB_TRACE_ISLAND ? 2 : kind == OB_TRACE_PART ? 3 : 0;
+	return kind == OB_TRACE_CHUNK ? 1 : kind == OB_TRACE_ISLAND ? 2 : kind == OB_TRACE_PROFILE ? 3 : 0;
 }
 
 static int outer_first(const void *pa, const void *pb)

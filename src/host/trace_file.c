@@ -194,13 +194,13 @@ static void put_killed(ob_trace_file *f, const ob_trace_event *e)
 static const char *name_of(const ob_trace_file *f, const ob_trace_event *e)
 {
 	static const char *const names[OB_TRACE_KINDS] = {
-		[OB_TRACE_WAIT] = "gate",         [OB_TRACE_SOLVE] = "solve",     [OB_TRACE_MEMBERS] = "members",
-		[OB_TRACE_ARRANGE] = "arrange",   [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
+		[OB_TRACE_WAIT] = "gate",         [OB_TRACE_SOLVE] = "solve",     [OB_TRACE_OBJECTS] = "members",
+		[OB_TRACE_SCHEDULE] = "arrange",   [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
 		[OB_TRACE_SNAPSHOT] = "snapshot", [OB_TRACE_MEASURE] = "measure", [OB_TRACE_RECORD] = "record",
 		[OB_TRACE_DRAW] = "draw",         [OB_TRACE_ENCODE] = "encode",
 	};
-	if (e->kind == OB_TRACE_PART)
-		return ob_part_name(e->a);
+	if (e->kind == OB_TRACE_PROFILE)
+		return ob_profile_name(e->a);
 	return e->kind == OB_TRACE_SOLVE && f->monolith ? "world" : names[e->kind];
 }
 
@@ -212,7 +212,7 @@ static void add_arguments(ob_trace_file *f, const ob_trace_event *e, bool unfini
 	size_t empty = f->used;
 	if (unfinished)
 		add(f, "\"unfinished\":true");
-	else if (e->kind == OB_TRACE_SOLVE || e->kind == OB_TRACE_MEMBERS)
+	else if (e->kind == OB_TRACE_SOLVE || e->kind == OB_TRACE_OBJECTS)
 		add_member(f, "\"step\":", e->step);
 	if (!unfinished && ((e->kind == OB_TRACE_SOLVE && !f->monolith) || e->kind == OB_TRACE_CHUNK)) {
 		add_member(f, e->kind == OB_TRACE_SOLVE ? ",\"islands\":" : "\"islands\":", e->a);

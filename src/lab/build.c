@@ -13,7 +13,7 @@ static void *grown(void *old, uint32_t count, size_t size)
 	return more;
 }
 
-static ob_build_body add(ob_peer_world *w, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
+static ob_build_body add(ob_engine_world *w, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
 {
 	if (w->objects == w->objects_max) {
 		w->objects_max = w->objects_max ? 2 * w->objects_max : 16;
@@ -28,7 +28,7 @@ static ob_build_body add(ob_peer_world *w, ob_shape shape, ob_vec3 size, double 
 	return (ob_build_body){ &w->passport[id], &w->state[id] };
 }
 
-ob_build_body ob_build_box(ob_peer_world *w, double mass, ob_vec3 half, ob_vec3 p)
+ob_build_body ob_build_box(ob_engine_world *w, double mass, ob_vec3 half, ob_vec3 p)
 {
 	ob_build_body b = add(w, OB_SHAPE_BOX, half, mass, p);
 	double x = half.x * half.x, y = half.y * half.y, z = half.z * half.z;
@@ -36,7 +36,7 @@ ob_build_body ob_build_box(ob_peer_world *w, double mass, ob_vec3 half, ob_vec3 
 	return b;
 }
 
-ob_build_body ob_build_sphere(ob_peer_world *w, double mass, double radius, ob_vec3 p)
+ob_build_body ob_build_sphere(ob_engine_world *w, double mass, double radius, ob_vec3 p)
 {
 	ob_build_body b = add(w, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
 	double i = .4 * mass * radius * radius;
@@ -44,19 +44,19 @@ ob_build_body ob_build_sphere(ob_peer_world *w, double mass, double radius, ob_v
 	return b;
 }
 
-ob_build_body ob_build_ground(ob_peer_world *w)
+ob_build_body ob_build_ground(ob_engine_world *w)
 {
 	return add(w, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));
 }
 
-ob_build_body ob_build_slope(ob_peer_world *w, double angle)
+ob_build_body ob_build_slope(ob_engine_world *w, double angle)
 {
 	ob_build_body b = ob_build_ground(w);
 	b.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, angle, 0));
 	return b;
 }
 
-void ob_build_stack(ob_peer_world *w, int n, ob_vec3 foot, uint64_t seed)
+void ob_build_stack(ob_engine_world *w, int n, ob_vec3 foot, uint64_t seed)
 {
 	for (int i = 0; i < n; i++) {
 		double x = ob_build_within(&seed, -.01, .01), y = ob_build_within(&seed, -.01, .01);
@@ -64,7 +64,7 @@ void ob_build_stack(ob_peer_world *w, int n, ob_vec3 foot, uint64_t seed)
 	}
 }
 
-static ob_build_body box_of_any_size(ob_peer_world *w, ob_vec3 p, uint64_t *seed)
+static ob_build_body box_of_any_size(ob_engine_world *w, ob_vec3 p, uint64_t *seed)
 {
 	ob_vec3 half = ob_add(ob_v3(.3, .3, .3), ob_build_vector(seed, .2));
 	ob_build_body b = ob_build_box(w, 8000 * half.x * half.y * half.z, half, p);
@@ -78,7 +78,7 @@ static uint32_t side_of(uint32_t n)
 	return (uint32_t)ceil(sqrt(n));
 }
 
-void ob_build_falling(ob_peer_world *w, uint32_t n, uint64_t seed)
+void ob_build_falling(ob_engine_world *w, uint32_t n, uint64_t seed)
 {
 	enum { LEVELS = 4 };
 	uint32_t side = side_of((n + LEVELS - 1) / LEVELS);
@@ -91,7 +91,7 @@ void ob_build_falling(ob_peer_world *w, uint32_t n, uint64_t seed)
 	}
 }
 
-void ob_build_sparse(ob_peer_world *w, uint32_t n, uint64_t seed)
+void ob_build_sparse(ob_engine_world *w, uint32_t n, uint64_t seed)
 {
 	uint32_t side = side_of(n);
 	ob_build_ground(w);
@@ -105,7 +105,7 @@ void ob_build_sparse(ob_peer_world *w, uint32_t n, uint64_t seed)
 	ob_build_material(w, .5, .8);
 }
 
-void ob_build_balls(ob_peer_world *w, uint32_t n)
+void ob_build_balls(ob_engine_world *w, uint32_t n)
 {
 	uint32_t side = side_of(n);
 	ob_build_ground(w);
@@ -114,7 +114,7 @@ void ob_build_balls(ob_peer_world *w, uint32_t n)
 	ob_build_material(w, 0, 1);
 }
 
-void ob_build_material(ob_peer_world *w, double friction, double restitution)
+void ob_build_material(ob_engine_world *w, double friction, double restitution)
 {
 	for (uint32_t i = 0; i < w->objects; i++) {
 		w->passport[i].friction = friction;
@@ -122,11 +122,11 @@ void ob_build_material(ob_peer_world *w, double friction, double restitution)
 	}
 }
 
-void ob_build_finish(ob_peer_world *w)
+void ob_build_finish(ob_engine_world *w)
 {
 	free(w->passport);
 	free(w->state);
-	*w = (ob_peer_world){ 0 };
+	*w = (ob_engine_world){ 0 };
 }
 
 double ob_build_uniform(uint64_t *seed)

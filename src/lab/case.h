@@ -6,7 +6,7 @@
 #define OB_LAB_CASE_H
 
 #include "measure/measure.h"
-#include "peer/peer.h"
+#include "engine/engine.h"
 
 enum { OB_FIGURES = 8 }; // per case, at most
 
@@ -23,13 +23,13 @@ typedef struct ob_trial {
 	uint32_t run; // which of the case's runs
 	uint64_t frame; // frames gone by: 0 before the first step
 	double time; // s
-	const ob_peer_world *world; // as it began
+	const ob_engine_world *world; // as it began
 	ob_snapshot now; // passports and states now: measure/ takes it
 	double figure[OB_FIGURES]; // start at 0; in the case's units
 	double memory[64]; // the case's own, zeroed before each run
 	double *body_memory; // [objects][8], likewise
 	const char *failed; // why the run counts as failed: "fell", "passed through"; NULL = it did not
-	ob_peer_settings settings;
+	ob_engine_settings settings;
 } ob_trial;
 
 typedef struct ob_case {
@@ -44,7 +44,7 @@ typedef struct ob_case {
 	uint32_t runs;
 	uint32_t figures; // the first is the one that plots show
 	ob_figure_def figure[OB_FIGURES];
-	void (*build)(ob_peer_world *w, uint32_t run); // with ob_build_* of build.h
+	void (*build)(ob_engine_world *w, uint32_t run); // with ob_build_* of build.h
 	void (*observe)(ob_trial *t); // after each frame, and once before the first; NULL = nothing
 	void (*judge)(ob_trial *t); // at the end of each run
 } ob_case;
@@ -61,6 +61,6 @@ typedef struct ob_outcome {
 	double body_seconds; // dynamic bodies times simulated time
 	char failed[96]; // "" = it did not
 } ob_outcome;
-bool ob_case_run(const ob_case *c, const ob_peer_kind *kind, const ob_peer_settings *s, ob_outcome *out, ob_error *e);
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_engine_settings *s, ob_outcome *out, ob_error *e);
 
 #endif

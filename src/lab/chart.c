@@ -78,7 +78,7 @@ static void append(char *to, size_t room, const char *format, ...)
 }
 
 // In a case, or, where none is named, in the chart as it is so far
-static bool takes_part(const ob_chart *c, const ob_digest *d, const ob_case *of, const ob_peer_kind *k)
+static bool takes_part(const ob_chart *c, const ob_digest *d, const ob_case *of, const ob_engine_kind *k)
 {
 	for (size_t i = 0; of && i < d->results->count; i++)
 		if (d->results->result[i].of == of && d->results->result[i].engine == k)
@@ -96,7 +96,7 @@ void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 	append(to, room, "%sframes of 1/%.0f s", *to ? " \u00b7 " : "", of ? 1 / of->step : 60);
 	bool obsim = false; // its variants are alike in this
 	for (size_t i = 0; i < d->engines; i++) {
-		const ob_peer_kind *k = d->engine[i];
+		const ob_engine_kind *k = d->engine[i];
 		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_digest_is_obsim(k)))
 			continue;
 		if (ob_digest_is_obsim(k))
@@ -110,7 +110,7 @@ void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 
 void ob_chart_setting(const ob_result *r, char *to, size_t room)
 {
-	const ob_peer_settings *s = &r->settings;
+	const ob_engine_settings *s = &r->settings;
 	if (s->tolerance > 0 && s->substeps)
 		snprintf(to, room, "usual");
 	else if (s->tolerance > 0)

@@ -32,7 +32,7 @@ static int compare(const void *a, const void *b)
 }
 
 // The results of one series in their order; returns how many.
-static size_t gather(const ob_digest *d, const ob_case *c, const ob_peer_kind *k, family f, const ob_result **list)
+static size_t gather(const ob_digest *d, const ob_case *c, const ob_engine_kind *k, family f, const ob_result **list)
 {
 	size_t count = 0;
 	for (size_t i = 0; i < d->results->count; i++) {
@@ -107,7 +107,7 @@ ob_chart *ob_chart_cost(const ob_digest *d, const ob_case *c)
 	ob_chart *chart = ob_chart_new(d->results->count);
 	const ob_result **list = calloc(d->results->count + 1, sizeof *list);
 	for (size_t i = 0; chart && list && i < d->engines; i++) {
-		const ob_peer_kind *k = d->engine[i];
+		const ob_engine_kind *k = d->engine[i];
 		for (int f = 0; f < FAMILIES; f++) {
 			char title[128];
 			size_t count = gather(d, c, k, (family)f, list);
@@ -140,7 +140,7 @@ ob_chart *ob_chart_cost(const ob_digest *d, const ob_case *c)
 }
 
 // Behind an engine's name: the order at which its error falls
-static void name_order(const ob_peer_kind *k, const ob_result *const *list, size_t count, char *to, size_t room)
+static void name_order(const ob_engine_kind *k, const ob_result *const *list, size_t count, char *to, size_t room)
 {
 	double h[64], error[64], largest = 0;
 	size_t n = 0;

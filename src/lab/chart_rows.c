@@ -9,7 +9,7 @@
 static const double row_height = 19; // px
 
 // Is there something to show of a case: a target, and results of obsim (and of "beside", unless it is NULL)?
-static bool has_row(const ob_digest *d, const ob_case *c, const ob_peer_kind *beside)
+static bool has_row(const ob_digest *d, const ob_case *c, const ob_engine_kind *beside)
 {
 	const ob_result *own = ob_digest_promised(d, c);
 	return own && !isnan(ob_digest_ratio(own)) && (!beside || ob_digest_usual(d, c, beside));
@@ -29,7 +29,7 @@ static void add_row(ob_chart *chart, const ob_result *r, double at)
 }
 
 // One series: the results at usual settings of an engine (NULL: what obsim promises), "dodge" rows off its own
-static void add_engine(ob_chart *chart, const ob_digest *d, const ob_peer_kind *k, const ob_peer_kind *beside,
+static void add_engine(ob_chart *chart, const ob_digest *d, const ob_engine_kind *k, const ob_engine_kind *beside,
 		       double dodge)
 {
 	ob_plot_series *s = ob_chart_begin(chart, k ? ob_digest_style(d, k) : 0, k != NULL, k ? k->title : "obsim");
@@ -45,7 +45,7 @@ static void add_engine(ob_chart *chart, const ob_digest *d, const ob_peer_kind *
 	}
 }
 
-static size_t name_rows(ob_chart *chart, const ob_digest *d, const ob_peer_kind *beside)
+static size_t name_rows(ob_chart *chart, const ob_digest *d, const ob_engine_kind *beside)
 {
 	size_t rows = 0;
 	for (const ob_case *const *c = ob_cases; *c && rows < OB_CHART_CASES; c++) {
@@ -62,7 +62,7 @@ static size_t name_rows(ob_chart *chart, const ob_digest *d, const ob_peer_kind 
 	return rows;
 }
 
-static ob_chart *end(ob_chart *chart, const ob_digest *d, const ob_peer_kind *beside)
+static ob_chart *end(ob_chart *chart, const ob_digest *d, const ob_engine_kind *beside)
 {
 	size_t rows = name_rows(chart, d, beside);
 	if (!rows) {
@@ -102,7 +102,7 @@ ob_chart *ob_chart_promises(const ob_digest *d)
 	return end(chart, d, NULL);
 }
 
-static const ob_peer_kind *engine_named(const ob_digest *d, const char *name)
+static const ob_engine_kind *engine_named(const ob_digest *d, const char *name)
 {
 	for (size_t i = 0; i < d->engines; i++)
 		if (!strcmp(d->engine[i]->name, name))
@@ -112,7 +112,7 @@ static const ob_peer_kind *engine_named(const ob_digest *d, const char *name)
 
 ob_chart *ob_chart_ghost(const ob_digest *d)
 {
-	const ob_peer_kind *ghost = engine_named(d, "obsim-ghost");
+	const ob_engine_kind *ghost = engine_named(d, "obsim-ghost");
 	ob_chart *chart = ghost ? ob_chart_new(OB_CHART_CASES * 2) : NULL;
 	if (!chart)
 		return NULL;
@@ -124,7 +124,7 @@ ob_chart *ob_chart_ghost(const ob_digest *d)
 
 ob_chart *ob_chart_lag(const ob_digest *d)
 {
-	const ob_peer_kind *late = engine_named(d, "obsim-lag");
+	const ob_engine_kind *late = engine_named(d, "obsim-lag");
 	const ob_case *c = ob_case_find("lag");
 	ob_chart *chart = late && c ? ob_chart_new(d->results->count * OB_FIGURES) : NULL;
 	if (!chart)

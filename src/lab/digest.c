@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-bool ob_digest_is_obsim(const ob_peer_kind *k)
+bool ob_digest_is_obsim(const ob_engine_kind *k)
 {
 	return !strncmp(k->name, "obsim", 5);
 }
@@ -20,7 +20,7 @@ ob_digest ob_digest_make(const ob_results *r)
 {
 	ob_digest d = { .results = r };
 	for (size_t i = 0; i < r->count; i++) {
-		const ob_peer_kind *k = r->result[i].engine;
+		const ob_engine_kind *k = r->result[i].engine;
 		size_t at = 0;
 		while (at < d.engines && d.engine[at] != k)
 			at++;
@@ -32,7 +32,7 @@ ob_digest ob_digest_make(const ob_results *r)
 	return d;
 }
 
-int ob_digest_style(const ob_digest *d, const ob_peer_kind *k)
+int ob_digest_style(const ob_digest *d, const ob_engine_kind *k)
 {
 	static const char *const known[] = { "obsim",     "obsim-jacobi", "obsim-ode", "obsim-ghost",
 					     "obsim-lag", "ode-quick",    "ode-world", "bullet" };
@@ -46,12 +46,12 @@ int ob_digest_style(const ob_digest *d, const ob_peer_kind *k)
 	return KNOWN;
 }
 
-static const ob_result *find(const ob_digest *d, const ob_case *c, const ob_peer_kind *k, uint32_t lag)
+static const ob_result *find(const ob_digest *d, const ob_case *c, const ob_engine_kind *k, uint32_t lag)
 {
-	const ob_peer_settings *usual = &k->usual;
+	const ob_engine_settings *usual = &k->usual;
 	for (size_t i = 0; i < d->results->count; i++) {
 		const ob_result *r = &d->results->result[i];
-		const ob_peer_settings *s = &r->settings;
+		const ob_engine_settings *s = &r->settings;
 		if (r->of == c && r->engine == k && s->substeps == usual->substeps &&
 		    s->iterations == usual->iterations && s->tolerance == usual->tolerance && s->lag == lag &&
 		    s->sleeping == usual->sleeping)
@@ -60,7 +60,7 @@ static const ob_result *find(const ob_digest *d, const ob_case *c, const ob_peer
 	return NULL;
 }
 
-const ob_result *ob_digest_usual(const ob_digest *d, const ob_case *c, const ob_peer_kind *k)
+const ob_result *ob_digest_usual(const ob_digest *d, const ob_case *c, const ob_engine_kind *k)
 {
 	return find(d, c, k, k->usual.lag);
 }
@@ -147,7 +147,7 @@ ob_digest_rows ob_digest_count_rows(const ob_digest *d)
 	return rows;
 }
 
-const ob_result *ob_digest_finest(const ob_digest *d, const ob_case *c, const ob_peer_kind *k)
+const ob_result *ob_digest_finest(const ob_digest *d, const ob_case *c, const ob_engine_kind *k)
 {
 	const ob_result *best = NULL;
 	for (size_t i = 0; i < d->results->count; i++) {

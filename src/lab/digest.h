@@ -10,18 +10,18 @@ enum { OB_DIGEST_ENGINES = 24, OB_DIGEST_ROWS = 32 };
 typedef struct ob_digest {
 	const ob_results *results;
 	size_t engines;
-	const ob_peer_kind *engine[OB_DIGEST_ENGINES]; // in the order of the results
-	const ob_peer_kind *own; // obsim itself; NULL: it did not take part
+	const ob_engine_kind *engine[OB_DIGEST_ENGINES]; // in the order of the results
+	const ob_engine_kind *own; // obsim itself; NULL: it did not take part
 } ob_digest;
 
 ob_digest ob_digest_make(const ob_results *r);
 
-bool ob_digest_is_obsim(const ob_peer_kind *k); // or one of its variants, as opposed to other engines
+bool ob_digest_is_obsim(const ob_engine_kind *k); // or one of its variants, as opposed to other engines
 size_t ob_digest_count_others(const ob_digest *d); // engines that took part and are not obsim
-int ob_digest_style(const ob_digest *d, const ob_peer_kind *k); // of its curves, the same in every report
+int ob_digest_style(const ob_digest *d, const ob_engine_kind *k); // of its curves, the same in every report
 
 // At an engine's usual settings; NULL: was not run
-const ob_result *ob_digest_usual(const ob_digest *d, const ob_case *c, const ob_peer_kind *k);
+const ob_result *ob_digest_usual(const ob_digest *d, const ob_case *c, const ob_engine_kind *k);
 // The result that a case's targets are promised for; NULL: was not run
 const ob_result *ob_digest_promised(const ob_digest *d, const ob_case *c);
 bool ob_digest_ran(const ob_digest *d, const ob_case *c); // with any engine
@@ -51,6 +51,6 @@ typedef struct ob_digest_equal {
 } ob_digest_equal;
 ob_digest_equal ob_digest_compare(const ob_digest *d, const ob_case *c);
 // The result with which an engine has its least error in a case; NULL: all failed
-const ob_result *ob_digest_finest(const ob_digest *d, const ob_case *c, const ob_peer_kind *k);
+const ob_result *ob_digest_finest(const ob_digest *d, const ob_case *c, const ob_engine_kind *k);
 
 #endif

@@ -17,7 +17,7 @@ static int by_cost(const void *a, const void *b)
 }
 
 // Points of runs that did not fail; returns how many.
-static size_t gather(const ob_results *r, const ob_case *c, const ob_peer_kind *k, point *to)
+static size_t gather(const ob_results *r, const ob_case *c, const ob_engine_kind *k, point *to)
 {
 	size_t count = 0;
 	for (size_t i = 0; i < r->count; i++) {
@@ -40,7 +40,7 @@ static double between(point above, point below, double error)
 	return above.cost * pow(below.cost / above.cost, part);
 }
 
-double ob_cost_at(const ob_results *r, const ob_case *c, const ob_peer_kind *k, double error)
+double ob_cost_at(const ob_results *r, const ob_case *c, const ob_engine_kind *k, double error)
 {
 	point *list = calloc(r->count + 1, sizeof *list);
 	if (!list)

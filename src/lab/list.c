@@ -66,12 +66,12 @@ bool ob_list_engines(ob_engine_list *l, const char *names, char word[64])
 {
 	bool all = strcmp(names, "all") == 0;
 	*l = (ob_engine_list){ 0 };
-	for (const ob_peer_kind *const *k = ob_peer_kinds; *k && l->count < OB_LIST_ENGINES; k++)
+	for (const ob_engine_kind *const *k = ob_engine_kinds; *k && l->count < OB_LIST_ENGINES; k++)
 		if (all || is_in(names, (*k)->name))
 			l->of[l->count++] = *k;
 	for (const char *at = names; !all && at; at = strchr(at, ','), at = at ? at + 1 : NULL) {
 		snprintf(word, 64, "%.*s", (int)strcspn(at, ","), at);
-		if (!ob_peer_find(word))
+		if (!ob_engine_find(word))
 			return false;
 	}
 	return true;

@@ -20,7 +20,7 @@ void ob_list_add_all(ob_case_list *l, bool quick_only);
 
 typedef struct ob_engine_list {
 	size_t count;
-	const ob_peer_kind *of[OB_LIST_ENGINES]; // in the order of ob_peer_kinds, none twice
+	const ob_engine_kind *of[OB_LIST_ENGINES]; // in the order of ob_engine_kinds, none twice
 } ob_engine_list;
 
 // "all", or names with commas. false and *unknown (a copy in "word"): there is no such engine.

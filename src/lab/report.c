@@ -158,7 +158,7 @@ static void write_setting(ob_page *p, const void *with)
 	ob_page_text(p, d->results->commit);
 	ob_page_markup(p, "</code></dd>\n");
 	for (size_t i = 0; i < d->engines; i++) {
-		const ob_peer_kind *k = d->engine[i];
+		const ob_engine_kind *k = d->engine[i];
 		ob_page_markup(p, "<dt>");
 		ob_page_text(p, k->title);
 		ob_page_markup(p, "</dt><dd><code>");

@@ -99,7 +99,7 @@ static bool is_compared(const ob_digest *d, size_t engine)
 }
 
 // Variants of obsim's coupling are shown, not ranked.
-static bool is_ranked(const ob_digest *d, const ob_peer_kind *k)
+static bool is_ranked(const ob_digest *d, const ob_engine_kind *k)
 {
 	return k == d->own || !ob_digest_is_obsim(k);
 }
@@ -116,7 +116,7 @@ static void write_engine_heads(ob_page *p, const ob_digest *d)
 }
 
 // An engine that never gets there: how far it does, and at what cost beside obsim's for the same
-static void write_never(ob_page *p, const ob_digest *d, const ob_case *c, const ob_peer_kind *k)
+static void write_never(ob_page *p, const ob_digest *d, const ob_case *c, const ob_engine_kind *k)
 {
 	const ob_result *finest = ob_digest_finest(d, c, k);
 	if (!finest) {

@@ -13,10 +13,10 @@ static size_t place_of_case(const ob_case *c)
 	return i;
 }
 
-static size_t place_of_engine(const ob_peer_kind *k)
+static size_t place_of_engine(const ob_engine_kind *k)
 {
 	size_t i = 0;
-	while (ob_peer_kinds[i] && ob_peer_kinds[i] != k)
+	while (ob_engine_kinds[i] && ob_engine_kinds[i] != k)
 		i++;
 	return i;
 }
@@ -27,7 +27,7 @@ static int by_number(double a, double b)
 }
 
 // From coarse to fine; chosen by a tolerance behind chosen by hand.
-static int by_settings(const ob_peer_settings *a, const ob_peer_settings *b)
+static int by_settings(const ob_engine_settings *a, const ob_engine_settings *b)
 {
 	int order = (a->tolerance > 0) - (b->tolerance > 0);
 	order = order ? order : by_number(b->tolerance, a->tolerance);
@@ -45,7 +45,7 @@ static int by_place(const ob_result *a, const ob_result *b)
 	return order ? order : by_settings(&a->settings, &b->settings);
 }
 
-ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_peer_kind *k, const ob_peer_settings *s)
+ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_engine_settings *s)
 {
 	for (size_t i = 0; i < r->count; i++) {
 		ob_result *one = &r->result[i];

@@ -103,7 +103,7 @@ static bool repeats(const reader *r, int column, uint32_t n, double *out, ob_err
 	       ob_fail(e, "%s:%d: %s: not %u numbers", r->path, r->line, ob_result_column_name(column, made_up), n);
 }
 
-static bool read_settings(const reader *r, ob_peer_settings *s, ob_error *e)
+static bool read_settings(const reader *r, ob_engine_settings *s, ob_error *e)
 {
 	uint32_t sleeping;
 	if (!number(r, OB_COLUMN_STEP, &s->step, e) || !count(r, OB_COLUMN_SUBSTEPS, &s->substeps, e) ||
@@ -133,7 +133,7 @@ static bool read_outcome(const reader *r, ob_result *one, ob_error *e)
 static bool read_result(const reader *r, ob_results *to, ob_error *e)
 {
 	const char *name = r->cell[OB_COLUMN_CASE], *engine = r->cell[OB_COLUMN_ENGINE];
-	ob_result one = { .of = ob_case_find(name), .engine = ob_peer_find(engine) };
+	ob_result one = { .of = ob_case_find(name), .engine = ob_engine_find(engine) };
 	if (!one.of || !one.engine)
 		return ob_fail(e, "%s:%d: this program has no %s '%s'", r->path, r->line, one.of ? "engine" : "case",
 			       one.of ? engine : name);

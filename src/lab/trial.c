@@ -42,7 +42,7 @@ static void take(ob_trial *t, const ob_state *state)
 }
 
 // Runs to the end or to the first failure that the case or an insane state shows. Only stepping is timed.
-static void watch(ob_trial *t, ob_peer *peer, const ob_peer_kind *kind, ob_state *state, ob_outcome *out, ob_error *e)
+static void watch(ob_trial *t, ob_engine *peer, const ob_engine_kind *kind, ob_state *state, ob_outcome *out, ob_error *e)
 {
 	const ob_case *c = t->of;
 	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step);
@@ -83,10 +83,10 @@ typedef struct tally {
 	char why[96]; // the first reason
 } tally;
 
-static bool run(const ob_case *c, uint32_t number, const ob_peer_kind *kind, const ob_peer_settings *s, ob_outcome *out,
+static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_engine_settings *s, ob_outcome *out,
 		tally *failures, ob_error *e)
 {
-	ob_peer_world w = { .gravity = { 0, 0, -OB_BUILD_GRAVITY } };
+	ob_engine_world w = { .gravity = { 0, 0, -OB_BUILD_GRAVITY } };
 	c->build(&w, number);
 	ob_trial t = { .of = c, .run = number, .world = &w, .settings = *s };
 	t.settings.step = s->step > 0 ? s->step : c->step;
@@ -94,7 +94,7 @@ static bool run(const ob_case *c, uint32_t number, const ob_peer_kind *kind, con
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
 	t.body_memory = calloc(w.objects, 8 * sizeof *t.body_memory);
 	ob_state *state = calloc(w.objects, sizeof *state);
-	ob_peer *peer = NULL;
+	ob_engine *peer = NULL;
 	bool made = t.now.motion && t.body_memory && state;
 	if (!made)
 		ob_fail(e, "no memory for a world of %u bodies", w.objects);
@@ -117,7 +117,7 @@ static bool run(const ob_case *c, uint32_t number, const ob_peer_kind *kind, con
 	return made;
 }
 
-bool ob_case_run(const ob_case *c, const ob_peer_kind *kind, const ob_peer_settings *s, ob_outcome *out, ob_error *e)
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_engine_settings *s, ob_outcome *out, ob_error *e)
 {
 	tally failures = { 0 };
 	*out = (ob_outcome){ 0 };

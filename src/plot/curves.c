@@ -46,7 +46,7 @@ static bool are_zero(const ob_frame *f, const ob_spot *a, const ob_spot *b)
 
 static void draw_lines(const ob_frame *f, ob_drawing *d, const ob_plot_series *s)
 {
-	ob_look look = ob_palette_look(s->style, s->hollow);
+	ob_narrowphase_find look = ob_palette_look(s->style, s->hollow);
 	ob_pen pen = { .stroke = look.paint, .width = look.width, .dash = look.dash };
 	ob_dot run[128]; // pieces that follow one another, so that dashes go on over their joints
 	size_t length = 0;
@@ -101,7 +101,7 @@ static void draw_hint(ob_drawing *d, const ob_spot *s)
 
 static bool draw_markers(ob_frame *f, ob_drawing *d, const ob_plot_series *series)
 {
-	ob_look look = ob_palette_look(series->style, series->hollow);
+	ob_narrowphase_find look = ob_palette_look(series->style, series->hollow);
 	for (size_t i = 0; i < f->spots; i++) {
 		const ob_spot *s = &f->spot[i];
 		if (s->series != series || !s->shown || (series->style < 0 && !s->point->failed))

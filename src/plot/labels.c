@@ -92,7 +92,7 @@ static bool label_spot(ob_frame *f, ob_drawing *d, const ob_spot *s)
 		double x, y, anchor;
 	} places[] = { { 1, -1, 0 }, { 0, -1, .5 }, { 1, 0, 0 },  { 0, 1, .5 },
 		       { 1, 1, 0 },  { -1, -1, 1 }, { -1, 0, 1 }, { -1, 1, 1 } };
-	ob_look look = ob_palette_look(s->series->style, s->series->hollow);
+	ob_narrowphase_find look = ob_palette_look(s->series->style, s->series->hollow);
 	ob_rect room = room_of(f, s);
 	char text[64];
 	const char *rest = s->point->label;

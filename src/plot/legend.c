@@ -35,10 +35,10 @@ static void draw_sample(const ob_legend *l, size_t i, ob_drawing *d, double x, d
 	const ob_plot *p = l->frame->plot;
 	ob_dot middle = { x + SAMPLE / 2., y };
 	if (i == p->series_count) {
-		ob_palette_cross(d, middle, &(ob_look){ .paint = OB_PAINT_INK });
+		ob_palette_cross(d, middle, &(ob_narrowphase_find){ .paint = OB_PAINT_INK });
 		return;
 	}
-	ob_look look = ob_palette_look(p->series[i].style, p->series[i].hollow);
+	ob_narrowphase_find look = ob_palette_look(p->series[i].style, p->series[i].hollow);
 	if (p->series[i].line)
 		ob_draw_line(d, x, y, x + SAMPLE, y,
 			     (ob_pen){ .stroke = look.paint, .width = look.width, .dash = look.dash });

@@ -43,12 +43,12 @@ const double *ob_palette_dash(int dash, int *count)
 	return dashes[dash];
 }
 
-ob_look ob_palette_look(int style, bool hollow)
+ob_narrowphase_find ob_palette_look(int style, bool hollow)
 {
 	if (style < 0)
-		return (ob_look){ .paint = OB_PAINT_MUTED, .marker = -1, .dash = DASH_DASHED, .width = 1 };
+		return (ob_narrowphase_find){ .paint = OB_PAINT_MUTED, .marker = -1, .dash = DASH_DASHED, .width = 1 };
 	int colour = style % COLOURS, round = style / COLOURS;
-	ob_look look = { .paint = OB_PAINT_SERIES + colour, .marker = (style + round) % MARKERS, .hollow = hollow };
+	ob_narrowphase_find look = { .paint = OB_PAINT_SERIES + colour, .marker = (style + round) % MARKERS, .hollow = hollow };
 	look.dash = hollow ? DASH_DOTTED : (style + round) % 2 ? DASH_DASHED : DASH_SOLID;
 	if (!hollow && (style + round) % 4 == 3)
 		look.dash = DASH_DOT_DASHED;
@@ -68,7 +68,7 @@ static void polygon(ob_drawing *d, ob_dot at, int corners, double turn, double r
 	ob_draw_path(d, dot, (size_t)corners, true, pen);
 }
 
-void ob_palette_marker(ob_drawing *d, ob_dot at, const ob_look *look)
+void ob_palette_marker(ob_drawing *d, ob_dot at, const ob_narrowphase_find *look)
 {
 	double r = look->size;
 	ob_pen pen = { .stroke = OB_PAINT_PAPER, .fill = look->paint, .width = .8 };
@@ -104,7 +104,7 @@ void ob_palette_marker(ob_drawing *d, ob_dot at, const ob_look *look)
 	}
 }
 
-void ob_palette_cross(ob_drawing *d, ob_dot at, const ob_look *look)
+void ob_palette_cross(ob_drawing *d, ob_dot at, const ob_narrowphase_find *look)
 {
 	double r = 3.6;
 	ob_pen pen = { .stroke = look->paint, .width = 1.8 };

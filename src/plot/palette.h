@@ -5,19 +5,19 @@
 
 #include "plot/drawing.h"
 
-typedef struct ob_look {
+typedef struct ob_narrowphase_find {
 	ob_paint paint;
 	int marker;
 	int dash;
 	double width; // px, of the line
 	double size; // px, from the marker's middle to its rim
 	bool hollow;
-} ob_look;
+} ob_narrowphase_find;
 
 // Of a style number; see ob_plot_series
-ob_look ob_palette_look(int style, bool hollow);
-void ob_palette_marker(ob_drawing *d, ob_dot at, const ob_look *look);
-void ob_palette_cross(ob_drawing *d, ob_dot at, const ob_look *look);
+ob_narrowphase_find ob_palette_look(int style, bool hollow);
+void ob_palette_marker(ob_drawing *d, ob_dot at, const ob_narrowphase_find *look);
+void ob_palette_cross(ob_drawing *d, ob_dot at, const ob_narrowphase_find *look);
 
 const char *ob_palette_name(ob_paint paint); // "ink", as in the classes of an SVG
 unsigned ob_palette_rgb(ob_paint paint); // 0xrrggbb

@@ -30,7 +30,7 @@ static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t
 bool ob_bodies_evaluate(ob_bodies *b, const ob_snapshot *prev, const ob_snapshot *now, double t)
 {
 	if (now->count > b->capacity) {
-		ob_body *grown = realloc(b->body, now->count * sizeof *grown);
+		ob_render_body *grown = realloc(b->body, now->count * sizeof *grown);
 		if (!grown)
 			return false;
 		b->body = grown;
@@ -45,7 +45,7 @@ bool ob_bodies_evaluate(ob_bodies *b, const ob_snapshot *prev, const ob_snapshot
 			continue;
 		ob_pose pose = pose_at(prev, now, i, t);
 		if (p->shape != OB_SHAPE_PLANE) {
-			b->body[b->count++] = (ob_body){ pose, ob_shape_radius(p->shape, p->size), 0, i };
+			b->body[b->count++] = (ob_render_body){ pose, ob_shape_radius(p->shape, p->size), 0, i };
 		} else if (b->planes < OB_PLANES_MAX) {
 			b->plane_id[b->planes] = i;
 			b->plane[b->planes++] = pose;
@@ -57,7 +57,7 @@ bool ob_bodies_evaluate(ob_bodies *b, const ob_snapshot *prev, const ob_snapshot
 // Equal distances in the order of ids: the same frame gives the same bytes.
 static int nearer(const void *a, const void *b)
 {
-	const ob_body *x = a, *y = b;
+	const ob_render_body *x = a, *y = b;
 	if (x->distance != y->distance)
 		return x->distance < y->distance ? -1 : 1;
 	return x->id < y->id ? -1 : 1;
@@ -76,7 +76,7 @@ void ob_bodies_finish(ob_bodies *b)
 	*b = (ob_bodies){ 0 };
 }
 
-static int mesh_of(const ob_passport *p, const ob_body *body, const ob_view *v, int height)
+static int mesh_of(const ob_passport *p, const ob_render_body *body, const ob_view *v, int height)
 {
 	if (p->shape == OB_SHAPE_BOX)
 		return OB_MESH_BOX;
@@ -138,7 +138,7 @@ bool ob_instances_fill(ob_instances *out, const ob_bodies *b, const ob_view *v, 
 		return false;
 	uint32_t count[OB_MESHES + 1] = { 0 };
 	for (uint32_t i = 0; i < b->count; i++) {
-		const ob_body *body = &b->body[i];
+		const ob_render_body *body = &b->body[i];
 		bool taken = filter(body, context);
 		mesh[i] = taken ? (uint8_t)mesh_of(&b->now->passport[body->id], body, v, height) : OB_MESHES;
 		count[mesh[i]]++;

@@ -8,16 +8,16 @@
 
 enum { OB_PLANES_MAX = 16 };
 
-typedef struct ob_body {
+typedef struct ob_render_body {
 	ob_pose pose;
 	double radius; // m, of the sphere that holds it
 	double distance; // m, squared, from the eye; set by ob_bodies_sort
 	uint32_t id; // index into the snapshot
-} ob_body;
+} ob_render_body;
 
 typedef struct ob_bodies {
 	const ob_snapshot *now;
-	ob_body *body;
+	ob_render_body *body;
 	uint32_t count, capacity;
 	ob_pose plane[OB_PLANES_MAX];
 	uint32_t plane_id[OB_PLANES_MAX];
@@ -46,7 +46,7 @@ void ob_bodies_sort(ob_bodies *b, ob_vec3 eye);
 void ob_bodies_finish(ob_bodies *b);
 
 // Which bodies to take: called with each.
-typedef bool (*ob_body_filter)(const ob_body *body, const void *context);
+typedef bool (*ob_body_filter)(const ob_render_body *body, const void *context);
 // Fills out with the bodies that pass. false: out of memory. out starts zeroed.
 bool ob_instances_fill(ob_instances *out, const ob_bodies *b, const ob_view *v, int height, ob_body_filter filter,
 		       const void *context);

@@ -41,7 +41,7 @@ static double depth_in_sight(const ob_bodies *b, const ob_view *v)
 {
 	double depth = v->range, most = reach_ranges * v->range;
 	for (uint32_t i = 0; i < b->count; i++) {
-		const ob_body *body = &b->body[i];
+		const ob_render_body *body = &b->body[i];
 		double d = ob_dot(ob_sub(body->pose.p, v->eye), v->forward) + body->radius;
 		if (d > depth && ob_view_sees(v, body->pose.p, body->radius))
 			depth = d;
@@ -71,7 +71,7 @@ ob_map ob_map_fit(ob_vec3 z, const ob_bodies *b, const ob_view *v, int texels)
 	double depth = depth_in_sight(b, v);
 	rect frustum = seen(&m, v, depth), cast = nothing;
 	for (uint32_t i = 0; i < b->count; i++) {
-		const ob_body *body = &b->body[i];
+		const ob_render_body *body = &b->body[i];
 		double x = ob_dot(body->pose.p, m.x), y = ob_dot(body->pose.p, m.y), up = ob_dot(body->pose.p, z);
 		if (!overlaps(&frustum, x, y, body->radius))
 			continue;
@@ -93,7 +93,7 @@ ob_map ob_map_fit(ob_vec3 z, const ob_bodies *b, const ob_view *v, int texels)
 	return m;
 }
 
-bool ob_map_holds(const ob_map *m, const ob_body *body)
+bool ob_map_holds(const ob_map *m, const ob_render_body *body)
 {
 	return fabs(ob_dot(body->pose.p, m->x) - m->centre_x) <= m->half_x + body->radius &&
 	       fabs(ob_dot(body->pose.p, m->y) - m->centre_y) <= m->half_y + body->radius;

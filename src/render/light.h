@@ -16,7 +16,7 @@ typedef struct ob_map {
 
 // For light from direction z (unit), over the bodies that can be seen or whose shadow can be seen.
 ob_map ob_map_fit(ob_vec3 z, const ob_bodies *b, const ob_view *v, int texels);
-bool ob_map_holds(const ob_map *m, const ob_body *body);
+bool ob_map_holds(const ob_map *m, const ob_render_body *body);
 // Column-major: positions relative to the eye to 0..1; z grows away from the light.
 void ob_map_matrix(const ob_map *m, ob_vec3 eye, float out[16]);
 

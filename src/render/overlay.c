@@ -52,7 +52,7 @@ bool ob_overlay_boxes(ob_overlay *o, const ob_bodies *b, const ob_view *v)
 	if (!reserve(o, 12 * (size_t)b->count))
 		return false;
 	for (uint32_t i = 0; i < b->count; i++) {
-		const ob_body *body = &b->body[i];
+		const ob_render_body *body = &b->body[i];
 		const ob_passport *p = &b->now->passport[body->id];
 		if (!ob_view_sees(v, body->pose.p, 2 * body->radius))
 			continue;

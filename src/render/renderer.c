@@ -63,19 +63,19 @@ void ob_renderer_destroy(ob_renderer *r)
 	free(r);
 }
 
-static bool casts(const ob_body *body, const void *map)
+static bool casts(const ob_render_body *body, const void *map)
 {
 	return ob_map_holds(map, body);
 }
 
-static bool is_low(const ob_body *body, const void *frame)
+static bool is_low(const ob_render_body *body, const void *frame)
 {
 	const ob_frame *f = frame;
 	return ob_dot(body->pose.p, f->contact.z) - body->radius < f->level + contact_reach &&
 	       ob_map_holds(&f->contact, body);
 }
 
-static bool is_seen(const ob_body *body, const void *view)
+static bool is_seen(const ob_render_body *body, const void *view)
 {
 	return ob_view_sees(view, body->pose.p, body->radius);
 }

@@ -13,8 +13,8 @@
 #include "sim/worker.h"
 
 // What a MEMBERS or MEETINGS phase belongs to.
-enum { OB_STAGE_START, OB_STAGE_SOLVED, OB_STAGE_ADOPT };
+enum { OB_STAGE_START, OB_STAGE_SOLVED, OB_STAGE_COPY };
 
-void ob_arrange(ob_sim *s, ob_phase finished);
+void ob_schedule_next_phase(ob_sim *s, ob_phase finished);
 
 #endif

@@ -55,7 +55,7 @@ void ob_link_anchor(ob_link *child, const ob_joint *j)
 	}
 }
 
-void ob_link_fold(ob_link *child, ob_joint *j, ob_link *parent)
+void ob_link_eliminate(ob_link *child, ob_joint *j, ob_link *parent)
 {
 	take_root(6, 8, child->m[0], 6, child->root[0], child->inverse);
 	double push[6][8] = { 0 }, (*rows)[8] = j ? j->child : push;
@@ -83,7 +83,7 @@ void ob_link_fold(ob_link *child, ob_joint *j, ob_link *parent)
 				parent->m[i][c] += j->parent[r][i] * j->parent[r][c];
 }
 
-void ob_link_unfold(ob_link *child, ob_joint *j, const ob_link *parent)
+void ob_link_substitute(ob_link *child, ob_joint *j, const ob_link *parent)
 {
 	for (int i = 0; i < 6; i++)
 		child->change[i] = child->m[i][6];
@@ -101,7 +101,7 @@ void ob_link_unfold(ob_link *child, ob_joint *j, const ob_link *parent)
 	upper_solve(6, 6, child->root[0], child->inverse, child->change);
 }
 
-void ob_link_pull_anchor(const ob_link *child, ob_joint *j)
+void ob_link_anchor_impulses(const ob_link *child, ob_joint *j)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
 		double left = j->parent[r][6];

@@ -43,10 +43,10 @@ typedef struct ob_joint {
 // A joint to something that does not move: becomes a part of the body.
 void ob_link_anchor(ob_link *child, const ob_joint *j);
 // Eliminates a body that has no children left. No joint and no parent at the root.
-void ob_link_fold(ob_link *child, ob_joint *j, ob_link *parent);
+void ob_link_eliminate(ob_link *child, ob_joint *j, ob_link *parent);
 // The way back: the parent's change is known.
-void ob_link_unfold(ob_link *child, ob_joint *j, const ob_link *parent);
+void ob_link_substitute(ob_link *child, ob_joint *j, const ob_link *parent);
 // The impulses of an anchor, once its body's change is known.
-void ob_link_pull_anchor(const ob_link *child, ob_joint *j);
+void ob_link_anchor_impulses(const ob_link *child, ob_joint *j);
 
 #endif

@@ -25,13 +25,13 @@ static ob_flier flier(ob_sim *s, uint32_t id, const ob_motion *f)
 		out.size = ob_v3(reach, 0, 0);
 	}
 	if (out.shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0)
-		out.spin = ob_plans_spin(&s->plans, id, f->q, f->w, pass->inertia);
+		out.spin = ob_rotation_cache_get(&s->plans, id, f->q, f->w, pass->inertia);
 	return out;
 }
 
-double ob_bounce_time(ob_sim *s, uint32_t id, const ob_motion *flight, double from, double until, uint32_t *plane)
+double ob_plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight, double from, double until, uint32_t *plane)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_step_data *ex = ob_universe_step_data(s->u);
 	ob_flier f = flier(s, id, flight);
 	double first = INFINITY;
 	for (uint32_t i = 0; i < ex->count->planes; i++) {
@@ -66,7 +66,7 @@ static bool striking_point(const ob_passport *pass, const ob_half_space *ground,
 	return found;
 }
 
-bool ob_bounce(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
+bool ob_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
 {
 	const ob_passport *pass = ob_passport_of(s->u, id), *fixed = ob_passport_of(s->u, plane);
 	const ob_half_space ground = half_space(s->u, plane);

@@ -5,9 +5,9 @@
 #include "sim/worker.h"
 
 // When the flight first meets a plane (s), from an instant on; infinity: not until "until". plane: its id.
-double ob_bounce_time(ob_sim *s, uint32_t id, const ob_motion *flight, double from, double until, uint32_t *plane);
+double ob_plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight, double from, double until, uint32_t *plane);
 
 // Changes velocities as the impact of the point that has met the plane does. false: it does not rebound here.
-bool ob_bounce(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state);
+bool ob_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state);
 
 #endif

@@ -29,7 +29,7 @@ static ob_placed boxed(const ob_placed *x)
 			    .v = x->v };
 }
 
-void ob_boxed_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	ob_placed box_a = boxed(a), box_b = boxed(b);
 	ob_manifold_find(&box_a, &box_b, margin, out);

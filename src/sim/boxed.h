@@ -6,6 +6,6 @@
 
 // ob_manifold_find for the boxes round the two shapes, which turn with nothing and grow and shrink as what is inside
 // them turns. A plane's box would be all of space: it stays a plane. Pure function.
-void ob_boxed_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 #endif

@@ -16,13 +16,13 @@
 #include "sim/worker.h"
 
 // Have all members been calm, so that one substep is worth a try?
-bool ob_calm_likely(const ob_sim *s, const ob_island *is);
+bool ob_equilibrium_likely(const ob_sim *s, const ob_island *is);
 // Did the contacts of the step that was just made find nothing to do?
-bool ob_calm_proven(const ob_island_work *w);
+bool ob_equilibrium_confirmed(const ob_island_work *w);
 // Is the island in equilibrium? Its contacts hold what pulls at it and nothing moves, to 1e-7 m/s: the next step would find
 // the same. So there is none, until something comes near; whether or not the run lets what is slow fall asleep.
-bool ob_calm_still(const ob_island_work *w);
+bool ob_equilibrium_reached(const ob_island_work *w);
 // Is a member calm after a step that was?
-bool ob_calm_member(const ob_island_work *w, uint32_t row);
+bool ob_equilibrium_body_steady(const ob_island_work *w, uint32_t row);
 
 #endif

@@ -20,7 +20,7 @@ static const double slop_share = 1. / 8; // of the tolerance, at most
 
 static bool is_jacobi(const ob_sim *s)
 {
-	return ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI;
+	return ob_universe_settings(s->u)->exchange == OB_SOLVER_JACOBI;
 }
 
 // What is small enough: as usual, or less where the run tolerates less.
@@ -47,19 +47,19 @@ static double turn_rate(const ob_island_work *w, uint32_t row)
 }
 
 // Does one of the two turn noticeably in the stride? Then it rebounds at the stride's start, or not in this one.
-static bool turns(const ob_island_work *w, const ob_touch *t)
+static bool turns(const ob_island_work *w, const ob_contact *t)
 {
 	return fmax(turn_rate(w, t->a), turn_rate(w, t->b)) * w->h > turned;
 }
 
-static ob_impact impact_of(const ob_sim *s, const ob_touch *t)
+static ob_impact impact_of(const ob_sim *s, const ob_contact *t)
 {
 	const ob_island_work *w = &s->island;
 	double resting = 4 * w->pull * w->substep; // m/s: what comes without impacts
-	return (ob_impact){ w->h, turns(w, t) ? ob_pace_shortest(w) : w->h, t->e, resting + 1e-6, 1, 1 };
+	return (ob_impact){ w->h, turns(w, t) ? ob_adaptive_shortest(w) : w->h, t->e, resting + 1e-6, 1, 1 };
 }
 
-static bool elastic(const ob_touch *t)
+static bool elastic(const ob_contact *t)
 {
 	return t->e > 0 && t->lane != OB_NO_LANE;
 }
@@ -84,7 +84,7 @@ static bool impacts_in_turn(ob_sim *s)
 	const ob_impact_rows at = impact_rows(w);
 	bool any = false;
 	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
+		const ob_contact *t = &w->touch[i];
 		ob_impact in = impact_of(s, t);
 		if (elastic(t))
 			any |= note_impact(s, ob_impact_solve(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in,
@@ -104,7 +104,7 @@ static bool impacts_at_once(ob_sim *s)
 	memset(w->u, 0, w->rows * sizeof *w->u);
 	for (int solve = 0; solve < 2; solve++)
 		for (uint32_t i = 0; i < w->touches; i++) {
-			const ob_touch *t = &w->touch[i];
+			const ob_contact *t = &w->touch[i];
 			ob_impact in = impact_of(s, t);
 			if (!elastic(t))
 				continue;
@@ -128,7 +128,7 @@ static bool impacts_at_once(ob_sim *s)
 static void set_drift(ob_island_work *w)
 {
 	for (uint32_t i = 1; i <= w->members; i++) {
-		const ob_member *m = &w->member[i];
+		const ob_body *m = &w->member[i];
 		const double *dv = w->dv[i], most = plausible * w->pull * w->h;
 		double linear = ob_norm(ob_v3(dv[0], dv[1], dv[2])), angular = ob_norm(ob_v3(dv[3], dv[4], dv[5]));
 		ob_vec3 pull = ob_scale(m->pull, w->h);
@@ -139,7 +139,7 @@ static void set_drift(ob_island_work *w)
 	}
 }
 
-double ob_exchange_first_rebound(ob_sim *s)
+double ob_solver_first_rebound(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_impact_rows at = impact_rows(w);
@@ -148,7 +148,7 @@ double ob_exchange_first_rebound(ob_sim *s)
 		return first;
 	set_drift(w);
 	for (uint32_t i = 0; i < w->touches; i++) {
-		ob_touch *t = &w->touch[i];
+		ob_contact *t = &w->touch[i];
 		ob_impact in = impact_of(s, t);
 		if (!elastic(t) || !turns(w, t))
 			continue;
@@ -161,7 +161,7 @@ double ob_exchange_first_rebound(ob_sim *s)
 	return first;
 }
 
-bool ob_exchange_impacts(ob_sim *s)
+bool ob_solver_impacts(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const int most =
@@ -180,7 +180,7 @@ bool ob_exchange_impacts(ob_sim *s)
 
 // ---- contacts
 
-void ob_exchange_cap(ob_sim *s)
+void ob_solver_limit_prediction(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const double brought = w->pull * w->h; // m/s, without contacts
@@ -190,9 +190,9 @@ void ob_exchange_cap(ob_sim *s)
 		ob_batch_cap(&w->batch[i], cap, 2.5 * brought);
 }
 
-void ob_exchange_heat(ob_island_work *w, uint32_t row, uint32_t pass)
+void ob_solver_activate(ob_island_work *w, uint32_t row, uint32_t pass)
 {
-	ob_member *m = &w->member[row];
+	ob_body *m = &w->member[row];
 	if (m->hot == pass || m->inv_mass == 0)
 		return;
 	m->hot = pass;
@@ -207,8 +207,8 @@ static bool heat_bodies(ob_island_work *w, const ob_batch *b)
 {
 	for (unsigned left = b->hot; left; left &= left - 1) {
 		int l = __builtin_ctz(left);
-		ob_exchange_heat(w, b->body_a[l], w->pass);
-		ob_exchange_heat(w, b->body_b[l], w->pass);
+		ob_solver_activate(w, b->body_a[l], w->pass);
+		ob_solver_activate(w, b->body_b[l], w->pass);
 	}
 	return b->hot != 0;
 }
@@ -236,7 +236,7 @@ static double make_round(ob_sim *s, const ob_pass *pass, bool *hot)
 	return fmax(fmax(moved[0], moved[1]), fmax(moved[2], moved[3]));
 }
 
-void ob_exchange_rounds(ob_sim *s)
+void ob_solver_iterate(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
@@ -244,7 +244,7 @@ void ob_exchange_rounds(ob_sim *s)
 			 true, is_jacobi(s) };
 	bool again = true;
 	pass.wake = fmin(most_noticeable, pass.wake * w->substep / w->h); // what lasts shorter, moves less
-	ob_forest_stride(&w->forest);
+	ob_direct_begin_partial(&w->forest);
 	for (uint32_t round = 0; round < more * run->passes && again; round++) {
 		if (round == run->passes)
 			pass.wake = violent;
@@ -256,13 +256,13 @@ void ob_exchange_rounds(ob_sim *s)
 			w->stirred = fmax(w->stirred, moved);
 		pass.first = false;
 		pass.fine = rough * moved;
-		if (!ob_forest_asked(s, moved, again && round + 1 < run->passes))
+		if (!ob_direct_wanted(s, moved, again && round + 1 < run->passes))
 			continue;
-		ob_forest_solve(s);
+		ob_direct_solve(s);
 		s->counters.direct_solves++;
 		again = true;
 		for (uint32_t i = 1; i <= w->members; i++)
-			ob_exchange_heat(w, i, w->pass);
+			ob_solver_activate(w, i, w->pass);
 	}
 	w->forest.recent = w->forest.solved > 0;
 }
@@ -291,7 +291,7 @@ static void count_push(ob_island_work *w)
 	}
 }
 
-void ob_exchange_project(ob_sim *s)
+void ob_solver_project_positions(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	bool boxed = ob_universe_settings(s->u)->narrow_phase == OB_NARROW_AABB && !is_jacobi(s);

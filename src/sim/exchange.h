@@ -10,18 +10,18 @@
 #include "sim/worker.h"
 
 // Impacts with restitution at their instants: changes v, shifts d. true if there were any.
-bool ob_exchange_impacts(ob_sim *s);
+bool ob_solver_impacts(ob_sim *s);
 // The first instant (s into the stride) at which two bodies rebound of which one turns noticeably until then; infinity:
 // none. Their contacts will be looked at anew.
-double ob_exchange_first_rebound(ob_sim *s);
+double ob_solver_first_rebound(ob_sim *s);
 // Takes back what the prediction made of impacts.
-void ob_exchange_cap(ob_sim *s);
+void ob_solver_limit_prediction(ob_sim *s);
 // Rounds of exchanges on u until no pair changes a velocity noticeably.
-void ob_exchange_rounds(ob_sim *s);
+void ob_solver_iterate(ob_sim *s);
 // A velocity of the row has changed noticeably in that pass: its pairs are due in it, if their turn is still to come, and
 // in the next.
-void ob_exchange_heat(ob_island_work *w, uint32_t row, uint32_t pass);
+void ob_solver_activate(ob_island_work *w, uint32_t row, uint32_t pass);
 // Pushes penetrations apart in d.
-void ob_exchange_project(ob_sim *s);
+void ob_solver_project_positions(ob_sim *s);
 
 #endif

@@ -14,15 +14,15 @@ static void fetch_object(ob_sim *s, uint32_t id)
 	fetch(ob_passport_of(s->u, id), sizeof(ob_passport));
 }
 
-void ob_fetch_pair(ob_sim *s, const ob_pair_key *k)
+void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k)
 {
 	fetch_object(s, k->a);
 	fetch_object(s, k->b);
 }
 
-void ob_fetch_island(ob_sim *s, uint32_t i)
+void ob_prefetch_island(ob_sim *s, uint32_t i)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_step_data *ex = ob_universe_step_data(s->u);
 	const ob_island *is = &ex->island[i];
 	for (uint32_t k = 0; k < is->members && k < MOST; k++)
 		fetch_object(s, ex->member[is->first_member + k]);

@@ -5,9 +5,9 @@
 #include "sim/worker.h"
 
 // Island i of the universe will be solved soon, by this worker. Of large ones the beginning.
-void ob_fetch_island(ob_sim *s, uint32_t i);
+void ob_prefetch_island(ob_sim *s, uint32_t i);
 
 // The two of a pair will be looked at soon, from outside.
-void ob_fetch_pair(ob_sim *s, const ob_pair_key *k);
+void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k);
 
 #endif

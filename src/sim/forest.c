@@ -10,12 +10,12 @@ static const double compliance = 1e-6; // of a row's own response
 static const double compliance_in_cycles = 1e-5; // .. where several rows may say the same in different words
 static const uint32_t most_products = 64; // of blocks, for each body
 
-static ob_batch *batch_of(const ob_island_work *w, const ob_forest_contact *c)
+static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
 {
 	return &w->batch[w->touch[c->touch].lane / OB_LANES];
 }
 
-static int lane_of(const ob_island_work *w, const ob_forest_contact *c)
+static int lane_of(const ob_island_work *w, const ob_direct_contact *c)
 {
 	return w->touch[c->touch].lane % OB_LANES;
 }
@@ -41,7 +41,7 @@ static bool idle_split(const ob_batch *b, int l, double *n)
 	return length2 > 0;
 }
 
-static bool has_four_normals(const ob_forest_contact *c)
+static bool has_four_normals(const ob_direct_contact *c)
 {
 	return c->joint.rows >= 4 && c->row[3] == 3;
 }
@@ -83,12 +83,12 @@ static void fill_row(const ob_batch *b, int l, int row, bool child_is_a, uint32_
 	}
 }
 
-static void fill_joint(const ob_island_work *w, ob_forest_contact *c)
+static void fill_joint(const ob_island_work *w, ob_direct_contact *c)
 {
 	const ob_batch *b = batch_of(w, c);
 	int l = lane_of(w, c);
 	ob_joint *j = &c->joint;
-	double n[4], idle = 0, softness = w->forest.fit == OB_FOREST_CYCLIC ? compliance_in_cycles : compliance;
+	double n[4], idle = 0, softness = w->forest.fit == OB_DIRECT_CYCLIC ? compliance_in_cycles : compliance;
 	memset(j->child, 0, sizeof j->child);
 	memset(j->parent, 0, sizeof j->parent);
 	for (uint32_t r = 0; r < j->rows; r++) {
@@ -106,7 +106,7 @@ static void fill_joint(const ob_island_work *w, ob_forest_contact *c)
 		j->parent[r][6] -= n[r] * idle;
 }
 
-static void fill_link(const ob_member *m, ob_link *k)
+static void fill_link(const ob_body *m, ob_link *k)
 {
 	memset(k->m, 0, sizeof k->m);
 	for (int i = 0; i < 3; i++) {
@@ -121,11 +121,11 @@ static void fill_link(const ob_member *m, ob_link *k)
 }
 
 // The contact of touch i takes part, if any of its rows holds.
-static ob_forest_contact *join(ob_island_work *w, uint32_t i, uint32_t child)
+static ob_direct_contact *join(ob_island_work *w, uint32_t i, uint32_t child)
 {
-	ob_forest *f = &w->forest;
-	const ob_touch *t = &w->touch[i];
-	ob_forest_contact *c = &f->contact[f->contacts];
+	ob_direct_solver *f = &w->forest;
+	const ob_contact *t = &w->touch[i];
+	ob_direct_contact *c = &f->contact[f->contacts];
 	if (t->lane == OB_NO_LANE)
 		return NULL;
 	uint32_t batch = t->lane / OB_LANES;
@@ -142,15 +142,15 @@ static ob_forest_contact *join(ob_island_work *w, uint32_t i, uint32_t child)
 
 static uint32_t take_roots(ob_island_work *w)
 {
-	ob_forest *f = &w->forest;
+	ob_direct_solver *f = &w->forest;
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
+		const ob_contact *t = &w->touch[i];
 		bool a_fixed = w->member[t->a].inv_mass == 0, b_fixed = w->member[t->b].inv_mass == 0;
 		uint32_t at = a_fixed ? t->b : t->a;
 		if ((!a_fixed && !b_fixed) || f->up[at] != UNSEEN)
 			continue;
-		const ob_forest_contact *c = join(w, i, at);
+		const ob_direct_contact *c = join(w, i, at);
 		if (!c)
 			continue;
 		ob_link_anchor(&f->link[at], &c->joint);
@@ -162,8 +162,8 @@ static uint32_t take_roots(ob_island_work *w)
 
 static uint32_t take_neighbours(ob_island_work *w, uint32_t at, uint32_t n)
 {
-	ob_forest *f = &w->forest;
-	const ob_member *m = &w->member[at];
+	ob_direct_solver *f = &w->forest;
+	const ob_body *m = &w->member[at];
 	for (uint32_t k = 0; k < m->adjacent; k++) {
 		uint32_t i = w->adjacency[m->first_adjacent + k];
 		uint32_t other = w->touch[i].a == at ? w->touch[i].b : w->touch[i].a;
@@ -178,7 +178,7 @@ static uint32_t take_neighbours(ob_island_work *w, uint32_t at, uint32_t n)
 // Every member stands in the order once, those that nothing holds as trees of their own.
 static void grow(ob_island_work *w)
 {
-	ob_forest *f = &w->forest;
+	ob_direct_solver *f = &w->forest;
 	f->contacts = 0;
 	for (uint32_t i = 1; i <= w->members; i++) {
 		f->up[i] = UNSEEN;
@@ -200,7 +200,7 @@ static void gather(ob_island_work *w)
 {
 	w->forest.contacts = 0;
 	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
+		const ob_contact *t = &w->touch[i];
 		join(w, i, w->member[t->a].inv_mass == 0 ? t->b : t->a);
 	}
 }
@@ -219,48 +219,48 @@ static void find_rates(ob_island_work *w)
 
 static void solve_trees(ob_island_work *w)
 {
-	ob_forest *f = &w->forest;
+	ob_direct_solver *f = &w->forest;
 	for (uint32_t k = w->members; k-- > 0;) {
 		uint32_t i = f->order[k];
-		ob_forest_contact *c = f->up[i] == FREE ? NULL : &f->contact[f->up[i]];
-		ob_link_fold(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
+		ob_direct_contact *c = f->up[i] == FREE ? NULL : &f->contact[f->up[i]];
+		ob_link_eliminate(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
 	}
 	for (uint32_t k = 0; k < w->members; k++) {
 		uint32_t i = f->order[k];
-		ob_forest_contact *c = f->up[i] == FREE ? NULL : &f->contact[f->up[i]];
-		ob_link_unfold(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
+		ob_direct_contact *c = f->up[i] == FREE ? NULL : &f->contact[f->up[i]];
+		ob_link_substitute(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
 	}
 	for (uint32_t k = 0; k < f->contacts; k++)
 		if (w->member[f->contact[k].parent].inv_mass == 0)
-			ob_link_pull_anchor(&f->link[f->contact[k].child], &f->contact[k].joint);
+			ob_link_anchor_impulses(&f->link[f->contact[k].child], &f->contact[k].joint);
 }
 
 static uint32_t number_of(const ob_island_work *w, uint32_t row)
 {
-	return w->member[row].inv_mass > 0 ? row - 1 : OB_TRUSS_FIXED;
+	return w->member[row].inv_mass > 0 ? row - 1 : OB_SPARSE_FIXED;
 }
 
 // false: it would cost too much.
 static bool solve_truss(ob_island_work *w)
 {
-	ob_forest *f = &w->forest;
-	ob_truss_begin(&f->truss, w->members);
+	ob_direct_solver *f = &w->forest;
+	ob_sparse_begin(&f->truss, w->members);
 	for (uint32_t k = 0; k < f->contacts; k++)
-		ob_truss_link(&f->truss, f->contact[k].child - 1, number_of(w, f->contact[k].parent));
-	if (!ob_truss_plan(&f->truss, most_products))
+		ob_sparse_link(&f->truss, f->contact[k].child - 1, number_of(w, f->contact[k].parent));
+	if (!ob_sparse_analyse(&f->truss, most_products))
 		return false;
 	for (uint32_t i = 1; i <= w->members; i++) {
 		fill_link(&w->member[i], &f->link[i]);
-		ob_truss_inertia(&f->truss, i - 1, f->link[i].m);
+		ob_sparse_add_inertia(&f->truss, i - 1, f->link[i].m);
 	}
 	for (uint32_t k = 0; k < f->contacts; k++) {
-		const ob_forest_contact *c = &f->contact[k];
-		ob_truss_join(&f->truss, &c->joint, c->child - 1, number_of(w, c->parent));
+		const ob_direct_contact *c = &f->contact[k];
+		ob_sparse_add_joint(&f->truss, &c->joint, c->child - 1, number_of(w, c->parent));
 	}
-	ob_truss_solve(&f->truss);
+	ob_sparse_solve(&f->truss);
 	for (uint32_t k = 0; k < f->contacts; k++) {
-		ob_forest_contact *c = &f->contact[k];
-		ob_truss_pull(&f->truss, &c->joint, c->child - 1, number_of(w, c->parent));
+		ob_direct_contact *c = &f->contact[k];
+		ob_sparse_joint_impulses(&f->truss, &c->joint, c->child - 1, number_of(w, c->parent));
 	}
 	return true;
 }
@@ -300,11 +300,11 @@ static void project_on_cone(const ob_batch *b, int l, double *x)
 // The share alpha of the solution, projected: changes of the impulses, and of the velocities in w->delta.
 static void aim(ob_island_work *w, double alpha)
 {
-	ob_forest *f = &w->forest;
+	ob_direct_solver *f = &w->forest;
 	memset(f->change, 0, w->batches * sizeof *f->change);
 	memset(w->delta, 0, w->rows * sizeof *w->delta);
 	for (uint32_t k = 0; k < f->contacts; k++) {
-		const ob_forest_contact *c = &f->contact[k];
+		const ob_direct_contact *c = &f->contact[k];
 		const ob_batch *b = batch_of(w, c);
 		int l = lane_of(w, c);
 		double x[OB_ROWS];
@@ -327,7 +327,7 @@ static void aim(ob_island_work *w, double alpha)
 // How far along the change the residual energy falls, 1 at most: it is slope t + curvature t^2 / 2.
 static double way_down(const ob_island_work *w)
 {
-	const ob_forest *f = &w->forest;
+	const ob_direct_solver *f = &w->forest;
 	double slope = 0, curvature = 0;
 	for (uint32_t i = 0; i < w->batches; i++) {
 		lanes r[OB_ROWS], s = lanes_of(0), c = lanes_of(0);
@@ -346,7 +346,7 @@ static double way_down(const ob_island_work *w)
 
 static bool find_solution(ob_island_work *w)
 {
-	if (w->forest.fit == OB_FOREST_CYCLIC) {
+	if (w->forest.fit == OB_DIRECT_CYCLIC) {
 		gather(w);
 		return solve_truss(w);
 	}
@@ -355,12 +355,12 @@ static bool find_solution(ob_island_work *w)
 	return true;
 }
 
-void ob_forest_solve(ob_sim *s)
+void ob_direct_solve(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	ob_forest *f = &w->forest;
+	ob_direct_solver *f = &w->forest;
 	const double shorter = .3, straight = .5; // straight enough: projection bends the way
-	const double shortest = f->fit == OB_FOREST_CYCLIC ? shorter : 1e-3;
+	const double shortest = f->fit == OB_DIRECT_CYCLIC ? shorter : 1e-3;
 	double alpha = 1, t;
 	find_rates(w);
 	if (!find_solution(w)) {

@@ -31,19 +31,19 @@
 #include "sim/truss.h"
 
 // A contact that takes part. parent: row of a fixed body if it is an anchor.
-typedef struct ob_forest_contact {
+typedef struct ob_direct_contact {
 	uint32_t touch, child, parent;
 	uint8_t row[OB_JOINT_ROWS]; // of the batch, for each row of the joint
 	ob_joint joint;
-} ob_forest_contact;
+} ob_direct_contact;
 
 // Working state of one island's step; memory grown as needed, never shrunk.
-typedef struct ob_forest {
+typedef struct ob_direct_solver {
 	enum {
-		OB_FOREST_UNKNOWN,
-		OB_FOREST_UNFIT,
-		OB_FOREST_FIT,
-		OB_FOREST_CYCLIC
+		OB_DIRECT_UNKNOWN,
+		OB_DIRECT_UNFIT,
+		OB_DIRECT_FOREST,
+		OB_DIRECT_CYCLIC
 	} fit; // for the running stride: stands still, has no cycles, or has some
 	bool recent; // the last substep was solved directly
 	bool hopeless; // a solve of this step led nowhere
@@ -54,21 +54,21 @@ typedef struct ob_forest {
 	uint32_t *order; // rows, parents before children
 	uint32_t *up; // [row]: its contact
 	uint32_t contacts;
-	ob_forest_contact *contact;
-	ob_truss truss;
+	ob_direct_contact *contact;
+	ob_sparse_solver truss;
 	lanes (*rate)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: residual velocities; changes of impulses
-} ob_forest;
+} ob_direct_solver;
 
 struct ob_sim;
 struct ob_island_work;
 
 // Before the first substep of an island.
-void ob_forest_begin(ob_forest *f);
+void ob_direct_begin(ob_direct_solver *f);
 // Before the rounds of a stride.
-void ob_forest_stride(ob_forest *f);
+void ob_direct_begin_partial(ob_direct_solver *f);
 // Is a direct solve worth while, if the last round still changed velocities by "left" m/s? If so, it has to be made.
-bool ob_forest_asked(struct ob_sim *s, double left, bool rounds_go_on);
-void ob_forest_solve(struct ob_sim *s);
-void ob_forest_finish(ob_forest *f);
+bool ob_direct_wanted(struct ob_sim *s, double left, bool rounds_go_on);
+void ob_direct_solve(struct ob_sim *s);
+void ob_direct_finish(ob_direct_solver *f);
 
 #endif

@@ -8,19 +8,19 @@ static const int most = 4, most_in_cycles = 16; // direct solves in a stride
 static const double creeping = 1e-4; // m/s: whose contacts hold and which is slower, ought to stand
 static const double calm = .02; // m/s: what moves faster, falls or slides
 
-void ob_forest_begin(ob_forest *f)
+void ob_direct_begin(ob_direct_solver *f)
 {
 	f->recent = f->hopeless = false;
 }
 
-void ob_forest_stride(ob_forest *f)
+void ob_direct_begin_partial(ob_direct_solver *f)
 {
-	f->fit = OB_FOREST_UNKNOWN;
+	f->fit = OB_DIRECT_UNKNOWN;
 	f->solved = 0;
 	f->left[0] = f->left[1] = INFINITY;
 }
 
-void ob_forest_finish(ob_forest *f)
+void ob_direct_finish(ob_direct_solver *f)
 {
 	free(f->link);
 	free(f->order);
@@ -28,10 +28,10 @@ void ob_forest_finish(ob_forest *f)
 	free(f->contact);
 	free(f->rate);
 	free(f->change);
-	ob_truss_finish(&f->truss);
+	ob_sparse_finish(&f->truss);
 }
 
-static void reserve(ob_forest *f, const ob_island_work *w)
+static void reserve(ob_direct_solver *f, const ob_island_work *w)
 {
 	if (w->rows > f->rows_max) {
 		f->rows_max = w->rows + w->rows / 2;
@@ -56,7 +56,7 @@ static void reserve(ob_forest *f, const ob_island_work *w)
 static bool stands_still(const ob_island_work *w)
 {
 	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
+		const ob_contact *t = &w->touch[i];
 		double speed2 = 0;
 		if (t->lane == OB_NO_LANE)
 			continue;
@@ -101,28 +101,28 @@ static bool creeps(const ob_island_work *w)
 
 static bool is_worth_while(const ob_sim *s, double left)
 {
-	const ob_forest *f = &s->island.forest;
-	if (f->hopeless || f->fit == OB_FOREST_UNFIT || ob_universe_settings(s->u)->exchange != OB_EXCHANGE_COLOURED)
+	const ob_direct_solver *f = &s->island.forest;
+	if (f->hopeless || f->fit == OB_DIRECT_UNFIT || ob_universe_settings(s->u)->exchange != OB_SOLVER_COLOURED)
 		return false;
 	// After a direct solve the next substep is solved finely, too. The correction of what had gone wrong is a part
 	// of the change of velocity that the prediction repeats: left alone it would go on for ever, to and fro.
-	const double enough = f->recent && f->fit != OB_FOREST_CYCLIC ? after_correction : finest;
+	const double enough = f->recent && f->fit != OB_DIRECT_CYCLIC ? after_correction : finest;
 	return left > enough || (!f->solved && creeps(&s->island));
 }
 
-bool ob_forest_asked(ob_sim *s, double left, bool rounds_go_on)
+bool ob_direct_wanted(ob_sim *s, double left, bool rounds_go_on)
 {
 	ob_island_work *w = &s->island;
-	ob_forest *f = &w->forest;
+	ob_direct_solver *f = &w->forest;
 	if (!is_worth_while(s, left))
 		return false;
-	if (f->fit == OB_FOREST_UNKNOWN)
-		f->fit = !stands_still(w)    ? OB_FOREST_UNFIT
-			 : !closes_cycles(w) ? OB_FOREST_FIT
-			 : worth_a_try(s)    ? OB_FOREST_CYCLIC
-					     : OB_FOREST_UNFIT;
-	const bool cyclic = f->fit == OB_FOREST_CYCLIC;
-	if (f->fit == OB_FOREST_UNFIT || f->solved == (cyclic ? most_in_cycles : most) || (cyclic && rounds_go_on))
+	if (f->fit == OB_DIRECT_UNKNOWN)
+		f->fit = !stands_still(w)    ? OB_DIRECT_UNFIT
+			 : !closes_cycles(w) ? OB_DIRECT_FOREST
+			 : worth_a_try(s)    ? OB_DIRECT_CYCLIC
+					     : OB_DIRECT_UNFIT;
+	const bool cyclic = f->fit == OB_DIRECT_CYCLIC;
+	if (f->fit == OB_DIRECT_UNFIT || f->solved == (cyclic ? most_in_cycles : most) || (cyclic && rounds_go_on))
 		return false;
 	if (cyclic && left > .5 * f->left[1]) {
 		f->hopeless = true;

@@ -8,16 +8,16 @@
 bool ob_ghosts_used(const ob_sim *s)
 {
 	uint32_t exchange = ob_universe_settings(s->u)->exchange;
-	return exchange == OB_EXCHANGE_GHOST || exchange == OB_EXCHANGE_LAGGED;
+	return exchange == OB_SOLVER_GHOST || exchange == OB_SOLVER_LAGGED;
 }
 
 uint32_t ob_ghost_make(ob_sim *s, uint32_t row)
 {
 	ob_island_work *w = &s->island;
 	uint32_t ghost = w->rows++;
-	ob_member *m = &w->member[ghost];
+	ob_body *m = &w->member[ghost];
 	*m = w->member[row];
-	if (ob_universe_settings(s->u)->exchange == OB_EXCHANGE_GHOST) {
+	if (ob_universe_settings(s->u)->exchange == OB_SOLVER_GHOST) {
 		m->mass = m->inv_mass = 0;
 		memset(m->inv_inertia, 0, sizeof m->inv_inertia);
 	}
@@ -32,7 +32,7 @@ void ob_ghosts_follow(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	for (uint32_t g = w->first_ghost; g < w->rows; g++) {
-		const ob_member *m = &w->member[w->member[g].ghost_of];
+		const ob_body *m = &w->member[w->member[g].ghost_of];
 		w->member[g].path = m->path;
 		w->member[g].speed = m->speed;
 		memcpy(w->v[g], w->v[m - w->member], sizeof *w->v);
@@ -46,7 +46,7 @@ void ob_ghosts_read(ob_sim *s, ob_body_row *rows, uint32_t round)
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	if (!ob_ghosts_used(s))
 		return;
-	uint32_t kept = run->exchange == OB_EXCHANGE_LAGGED ? run->lag + 1 : 1, late = kept - 1;
+	uint32_t kept = run->exchange == OB_SOLVER_LAGGED ? run->lag + 1 : 1, late = kept - 1;
 	if (kept * w->rows > w->history_max) {
 		w->history_max = kept * w->rows * 2;
 		w->history = realloc(w->history, w->history_max * sizeof *w->history);
@@ -56,6 +56,6 @@ void ob_ghosts_read(ob_sim *s, ob_body_row *rows, uint32_t round)
 	for (uint32_t g = w->first_ghost; g < w->rows; g++) {
 		uint32_t of = w->member[g].ghost_of;
 		memcpy(rows[g], seen[of], sizeof *rows);
-		ob_exchange_heat(w, g, w->member[of].hot);
+		ob_solver_activate(w, g, w->member[of].hot);
 	}
 }

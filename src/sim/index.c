@@ -11,7 +11,7 @@ typedef struct cell {
 	int32_t level, x, y, z;
 } cell;
 
-static uint32_t bucket_of(const ob_exchange *ex, cell c)
+static uint32_t bucket_of(const ob_step_data *ex, cell c)
 {
 	uint64_t h = (uint64_t)(uint32_t)c.x * 0x9E3779B97F4A7C15u ^ (uint64_t)(uint32_t)c.y * 0xC2B2AE3D27D4EB4Fu ^
 		     (uint64_t)(uint32_t)c.z * 0x165667B19E3779F9u ^ (uint64_t)(uint32_t)c.level << 58;
@@ -54,7 +54,7 @@ static bool indexed(const ob_index_cell *c)
 }
 
 // Until the last object of a class has left it, its cells stay between where any of them was.
-static void widen(ob_exchange *ex, cell to)
+static void widen(ob_step_data *ex, cell to)
 {
 	const int32_t at[3] = { to.x, to.y, to.z };
 	int32_t *low = ex->count->level_low[to.level], *high = ex->count->level_high[to.level];
@@ -65,7 +65,7 @@ static void widen(ob_exchange *ex, cell to)
 	}
 }
 
-static void unlink_object(ob_exchange *ex, uint32_t id)
+static void unlink_object(ob_step_data *ex, uint32_t id)
 {
 	ob_index_cell *c = &ex->cell[id];
 	uint32_t *link = &ex->bucket[bucket_of(ex, (cell){ c->level, c->x, c->y, c->z })];
@@ -82,7 +82,7 @@ static void unlink_object(ob_exchange *ex, uint32_t id)
 	c->level = 0;
 }
 
-static uint32_t plane_at(const ob_exchange *ex, uint32_t id)
+static uint32_t plane_at(const ob_step_data *ex, uint32_t id)
 {
 	uint32_t i = 0;
 	while (i < ex->count->planes && ex->plane[i] != id)
@@ -92,7 +92,7 @@ static uint32_t plane_at(const ob_exchange *ex, uint32_t id)
 
 void ob_index_put(ob_universe *u, uint32_t id)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	if (is_plane(u, id)) {
 		if (plane_at(ex, id) == ex->count->planes)
 			ex->plane[ex->count->planes++] = id;
@@ -118,7 +118,7 @@ void ob_index_put(ob_universe *u, uint32_t id)
 
 void ob_index_remove(ob_universe *u, uint32_t id)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t plane = plane_at(ex, id);
 	if (plane < ex->count->planes)
 		ex->plane[plane] = ex->plane[--ex->count->planes];
@@ -156,14 +156,14 @@ static void found(answer *a, uint32_t id)
 	a->n++;
 }
 
-static void scan_level(const ob_exchange *ex, uint32_t id, int level, answer *a)
+static void scan_level(const ob_step_data *ex, uint32_t id, int level, answer *a)
 {
 	for (uint32_t j = ex->count->level_first[level]; j; j = ex->cell[j - 1].after)
 		if (j - 1 != id && overlap(a, ex->bounds[id], ex->bounds[j - 1]))
 			found(a, j - 1);
 }
 
-static void scan_cells(const ob_exchange *ex, uint32_t id, int level, const cell *lo, const cell *hi, answer *a)
+static void scan_cells(const ob_step_data *ex, uint32_t id, int level, const cell *lo, const cell *hi, answer *a)
 {
 	for (int32_t z = lo->z; z <= hi->z; z++)
 		for (int32_t y = lo->y; y <= hi->y; y++)
@@ -179,7 +179,7 @@ static void scan_cells(const ob_exchange *ex, uint32_t id, int level, const cell
 }
 
 // The cells of a class in which the centre of a box may lie that overlaps b; false: there are none.
-static bool cells_around(const ob_exchange *ex, const float *b, int level, cell *lo, cell *hi)
+static bool cells_around(const ob_step_data *ex, const float *b, int level, cell *lo, cell *hi)
 {
 	const double side = side_of(level), h = .5 * side; // a centre lies at most half a side outside
 	const int32_t *low = ex->count->level_low[level], *high = ex->count->level_high[level];
@@ -198,7 +198,7 @@ static bool cells_around(const ob_exchange *ex, const float *b, int level, cell 
 
 uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	answer a = { out, 0, max, ob_universe_settings(u)->load, 0 };
 	const float *b = ex->bounds[id];
 	if (is_plane(u, id)) {

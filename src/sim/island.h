@@ -18,7 +18,7 @@ static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_P
 
 enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
 
-typedef struct ob_member {
+typedef struct ob_body {
 	uint32_t id;
 	ob_shape shape;
 	ob_vec3 size, p;
@@ -42,9 +42,9 @@ typedef struct ob_member {
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
 	uint32_t ghost_of; // of a ghost: the row that it stands for
-} ob_member;
+} ob_body;
 
-typedef struct ob_touch {
+typedef struct ob_contact {
 	uint32_t key; // index into the universe's pairs
 	uint32_t a, b; // rows
 	uint32_t lane; // batch * OB_LANES + lane; OB_NO_LANE = apart
@@ -55,7 +55,7 @@ typedef struct ob_touch {
 	double depth_given, growth; // m (sim/tolerance.h): when the step began; that it went deeper in the step
 	double slip, creep; // m, in this step; in the last second
 	bool mirror; // the second touch of a pair that is solved for each side apart: its own member is b
-} ob_touch;
+} ob_contact;
 
 // Grown as needed, never shrunk.
 typedef struct ob_island_work {
@@ -64,18 +64,18 @@ typedef struct ob_island_work {
 	uint32_t first_ghost; // rows from here on are ghosts
 	ob_body_row *history; // what members published in the last exchanges, for ghosts
 	uint32_t history_max;
-	ob_member *member; // [rows]
+	ob_body *member; // [rows]
 	ob_body_row *v, *dv, *u, *d, *delta;
 	ob_body_row *drift; // change of velocity in the stride as impacts see it: dv where that is not an impact's echo
 	uint32_t touches, touches_max;
-	ob_touch *touch;
+	ob_contact *touch;
 	uint32_t *adjacency; // touches of each member
 	uint32_t batches, batches_max;
 	ob_batch *batch;
 	uint32_t *batch_colour; // [batches]
 	uint32_t *batch_open; // [batches]: next in the stack of its colour
 	uint32_t open[OB_COLOURS][OB_KINDS]; // tops of the stacks of batches with a free lane; UINT32_MAX = none
-	uint32_t *batch_due; // [batches]: last pass in which it is to be solved (ob_exchange_heat)
+	uint32_t *batch_due; // [batches]: last pass in which it is to be solved (ob_solver_activate)
 	uint32_t *batch_order; // [batches]: sorted by colour
 	bool order_stale, counts_stale, elastic;
 	uint32_t pass; // number of the running pass, ever growing
@@ -88,10 +88,10 @@ typedef struct ob_island_work {
 	double last_impact; // s into the stride: the last one's instant
 	double stirred; // m/s: the most that a first round of exchanges has changed in this step
 	bool pushed; // penetrations were pushed apart
-	double recovered; // J, what pushing penetrations apart has added in this step (ob_exchange_project adds it)
+	double recovered; // J, what pushing penetrations apart has added in this step (ob_solver_project_positions adds it)
 	uint32_t *row_of; // [object]: row in this island
 	uint32_t row_of_max;
-	ob_forest forest;
+	ob_direct_solver forest;
 } ob_island_work;
 
 struct ob_sim;

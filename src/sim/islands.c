@@ -10,7 +10,7 @@ enum { LEAST_SHARE = 48 }; // work of a chunk, some us: for less the gate would 
 // The arranger's view while it plans: a union-find forest of islands, whose roots are the lowest ids of their trees.
 typedef struct plan {
 	ob_universe *u;
-	ob_exchange *ex;
+	ob_step_data *ex;
 	uint32_t ids;
 	uint32_t *parent; // [id]
 	uint32_t *island_of; // [root]
@@ -27,13 +27,13 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
 
 static bool dynamic(const plan *p, uint32_t id)
 {
-	return p->ex->brief[id].state >= OB_BRIEF_AWAKE;
+	return p->ex->brief[id].state >= OB_SCHEDULE_AWAKE;
 }
 
 // In no island unless something wakes it. What fell asleep in this very step is not.
 static bool asleep(const plan *p, uint32_t id)
 {
-	return p->ex->brief[id].state >= OB_BRIEF_ASLEEP && (!p->before || p->before[id] == NONE);
+	return p->ex->brief[id].state >= OB_SCHEDULE_ASLEEP && (!p->before || p->before[id] == NONE);
 }
 
 // Must the object be looked after in this step, whatever comes near it? What flies by itself need not.
@@ -45,8 +45,8 @@ static bool due(const plan *p, uint32_t id)
 // Does what links the two draw both into the step?
 static bool draws(const plan *p, const ob_pair_key *k)
 {
-	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
-	return p->before ? k->met : a->state == OB_BRIEF_AWAKE || b->state == OB_BRIEF_AWAKE;
+	const ob_schedule *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
+	return p->before ? k->met : a->state == OB_SCHEDULE_AWAKE || b->state == OB_SCHEDULE_AWAKE;
 }
 
 static bool joins(const plan *p, const ob_pair_key *k)
@@ -74,7 +74,7 @@ static bool links(const plan *p, const ob_pair_key *k)
 // Notes whom they draw into the step, too: island_of is 0 there.
 static void grow_islands(plan *p)
 {
-	ob_exchange *ex = p->ex;
+	ob_step_data *ex = p->ex;
 	for (uint32_t id = 0; id < p->ids; id++)
 		p->parent[id] = id;
 	memset(p->island_of, 0xff, p->ids * sizeof *p->island_of); // NONE
@@ -97,7 +97,7 @@ static void grow_islands(plan *p)
 // Numbers the awake trees by their lowest id and lists their members in ascending order.
 static void list_members(plan *p)
 {
-	ob_exchange *ex = p->ex;
+	ob_step_data *ex = p->ex;
 	uint32_t n = 0, total = 0;
 	for (uint32_t id = 0; id < p->ids; id++) // a tree with one member that is due, or drawn, is solved
 		if (dynamic(p, id) && (p->island_of[id] != NONE || due(p, id)))
@@ -130,7 +130,7 @@ static void list_members(plan *p)
 // An island that stands has the members that it had, and none of them met anything.
 static void mark_solved(plan *p)
 {
-	ob_exchange *ex = p->ex;
+	ob_step_data *ex = p->ex;
 	for (uint32_t i = 0; i < ex->count->islands; i++) {
 		const uint32_t *member = ex->member + ex->island[i].first_member;
 		ex->island[i].solved = 1;
@@ -163,14 +163,14 @@ static uint32_t island_of_pair(const plan *p, ob_pair_key *k)
 		return k->listed ? i : NONE;
 	if (k->active)
 		return i;
-	const ob_brief *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
-	double paths = ob_brief_path(a, p->step) + ob_brief_path(b, p->step);
+	const ob_schedule *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
+	double paths = ob_schedule_path(a, p->step) + ob_schedule_path(b, p->step);
 	return a->reach + b->reach >= k->limit - paths ? i : NONE;
 }
 
 static void list_pairs(plan *p)
 {
-	ob_exchange *ex = p->ex;
+	ob_step_data *ex = p->ex;
 	uint32_t total = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		ob_pair_key *k = &ex->pair[i];
@@ -249,7 +249,7 @@ static void sort_by_work(plan *p)
 // Largest first, so that no worker starts on a big one when the others are done; small ones in handfuls.
 static void make_chunks(plan *p)
 {
-	ob_exchange *ex = p->ex;
+	ob_step_data *ex = p->ex;
 	uint64_t total = 0, filled = 0;
 	uint32_t n = ex->count->islands, unsolved = 0, chunks = 0;
 	for (uint32_t i = 0; i < n; i++)
@@ -286,15 +286,15 @@ static void plan_all(plan *p)
 
 void ob_islands_plan(ob_universe *u)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t ids = ob_universe_ids(u);
 	ex->count->again = 0;
 	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, NULL, ob_step_count(u) });
 }
 
-void ob_islands_unite(ob_universe *u)
+void ob_islands_merge(ob_universe *u)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t ids = ob_universe_ids(u), *before = ex->scratch + 2 * ids;
 	ex->count->again = 1;
 	memcpy(before, ex->result_island, ids * sizeof *before);

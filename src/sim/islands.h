@@ -5,11 +5,11 @@
 
 #include "table/table.h"
 
-// Groups the objects that are due (ob_brief.due), and what they touch or are expected to, into islands and the islands
+// Groups the objects that are due (ob_schedule.due), and what they touch or are expected to, into islands and the islands
 // into chunks of about equal work, largest first. Islands that an awake object touches, or is expected to, wake up.
 void ob_islands_plan(ob_universe *u);
 // Within the step, after some pairs have met across islands (sim/meeting.h): makes one island of those that did. The
 // others stand as they were solved; the chunks are of what must be solved again.
-void ob_islands_unite(ob_universe *u);
+void ob_islands_merge(ob_universe *u);
 
 #endif

@@ -38,7 +38,7 @@ static uint32_t add_batch(ob_island_work *w, uint32_t colour, ob_kind kind)
 
 // The first colour that neither body uses. Past the last colour each pair gets a batch of its own: a body with so many
 // partners takes them one after the other.
-static uint32_t free_colour(const ob_island_work *w, const ob_touch *t, bool jacobi)
+static uint32_t free_colour(const ob_island_work *w, const ob_contact *t, bool jacobi)
 {
 	uint64_t used = w->member[t->a].colours | w->member[t->b].colours;
 	if (jacobi)
@@ -47,7 +47,7 @@ static uint32_t free_colour(const ob_island_work *w, const ob_touch *t, bool jac
 }
 
 // What stays true of a pair wherever its bodies are.
-static ob_kind kind_of(const ob_sim *s, const ob_touch *t)
+static ob_kind kind_of(const ob_sim *s, const ob_contact *t)
 {
 	const ob_island_work *w = &s->island;
 	bool boxed = ob_universe_settings(s->u)->narrow_phase == OB_NARROW_AABB; // a sphere's box has four points
@@ -57,11 +57,11 @@ static ob_kind kind_of(const ob_sim *s, const ob_touch *t)
 	return (point && !boxed ? OB_KIND_POINT : OB_KIND_FULL) | (t->mu > 0 ? OB_KIND_FULL : OB_KIND_SLICK);
 }
 
-void ob_lane_take(ob_sim *s, ob_touch *t)
+void ob_lane_take(ob_sim *s, ob_contact *t)
 {
 	ob_island_work *w = &s->island;
 	const ob_kind kind = kind_of(s, t);
-	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI), batch = NONE;
+	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_SOLVER_JACOBI), batch = NONE;
 	if (colour < OB_COLOURS)
 		batch = w->open[colour][kind];
 	if (batch == NONE)
@@ -73,7 +73,7 @@ void ob_lane_take(ob_sim *s, ob_touch *t)
 	t->colour = colour;
 	t->lane = batch * OB_LANES + lane;
 	for (int side = 0; side < 2; side++) {
-		ob_member *m = &w->member[side ? t->b : t->a];
+		ob_body *m = &w->member[side ? t->b : t->a];
 		if (m->inv_mass > 0 && colour < OB_COLOURS)
 			m->colours |= UINT64_C(1) << colour;
 		m->contacts++;
@@ -82,7 +82,7 @@ void ob_lane_take(ob_sim *s, ob_touch *t)
 	w->counts_stale = true;
 }
 
-void ob_lane_leave(ob_island_work *w, ob_touch *t)
+void ob_lane_leave(ob_island_work *w, ob_contact *t)
 {
 	ob_batch *b = &w->batch[t->lane / OB_LANES];
 	bool was_full = b->live == FULL;
@@ -90,7 +90,7 @@ void ob_lane_leave(ob_island_work *w, ob_touch *t)
 	if (was_full && t->colour < OB_COLOURS)
 		open_batch(w, t->lane / OB_LANES);
 	for (int side = 0; side < 2; side++) {
-		ob_member *m = &w->member[side ? t->b : t->a];
+		ob_body *m = &w->member[side ? t->b : t->a];
 		if (t->colour < OB_COLOURS)
 			m->colours &= ~(UINT64_C(1) << t->colour);
 		m->contacts--;
@@ -100,15 +100,15 @@ void ob_lane_leave(ob_island_work *w, ob_touch *t)
 	w->counts_stale = true;
 }
 
-void ob_lane_fill(ob_island_work *w, const ob_touch *t, ob_vec3 normal, const double *gap)
+void ob_lane_fill(ob_island_work *w, const ob_contact *t, ob_vec3 normal, const double *gap)
 {
-	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
+	const ob_body *a = &w->member[t->a], *b = &w->member[t->b];
 	ob_lane lane = { t->a,  t->b, normal,      (int)t->points, t->arm_a,       t->arm_b,      gap,
 			 t->mu, t->e, a->inv_mass, b->inv_mass,    a->inv_inertia, b->inv_inertia };
 	ob_batch_set(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &lane);
 }
 
-void ob_lane_carry_out(ob_island_work *w, const ob_touch *t, ob_carried *old)
+void ob_lane_save_impulses(ob_island_work *w, const ob_contact *t, ob_saved_impulses *old)
 {
 	const ob_batch *b = &w->batch[t->lane / OB_LANES];
 	int l = t->lane % OB_LANES;
@@ -121,11 +121,11 @@ void ob_lane_carry_out(ob_island_work *w, const ob_touch *t, ob_carried *old)
 	old->friction = ob_add(ob_scale(t1, old->impulse[4]), ob_scale(t2, old->impulse[5]));
 }
 
-void ob_lane_carry_in(ob_island_work *w, const ob_touch *t, ob_carried *old)
+void ob_lane_warm_start(ob_island_work *w, const ob_contact *t, ob_saved_impulses *old)
 {
 	ob_batch *b = &w->batch[t->lane / OB_LANES];
 	int l = t->lane % OB_LANES;
-	const ob_member *ma = &w->member[t->a], *mb = &w->member[t->b];
+	const ob_body *ma = &w->member[t->a], *mb = &w->member[t->b];
 	double thin = fmin(ma->thickness, mb->thickness), near = .04 * thin * thin + 1e-6;
 	ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1, t2;
 	bool same = old->points && ob_dot(n, old->normal) > .9;

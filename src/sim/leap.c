@@ -17,12 +17,12 @@ static bool equal(ob_vec3 a, ob_vec3 b)
 	return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-ob_motion ob_leap_flight(const ob_sim *s, uint32_t id)
+ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	uint64_t step = ob_step_count(s->u);
 	ob_motion m = *ob_newest_motion(s->u, id);
-	ob_vec3 a = ob_pull(run, ob_passport_of(s->u, id));
+	ob_vec3 a = ob_external_acceleration(run, ob_passport_of(s->u, id));
 	double now = (double)step * run->step_length;
 	if (!equal(m.a, a)) {
 		ob_state begin = ob_state_now(s->u, id, &m, step);
@@ -35,7 +35,7 @@ ob_motion ob_leap_flight(const ob_sim *s, uint32_t id)
 	return m;
 }
 
-ob_state ob_leap_state(ob_sim *s, uint32_t id, const ob_motion *f, double time)
+ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *f, double time)
 {
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	if (ob_published_stands(f, pass, time))
@@ -43,7 +43,7 @@ ob_state ob_leap_state(ob_sim *s, uint32_t id, const ob_motion *f, double time)
 	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .a = f->a };
 	ob_state now = ob_motion_at(&m, pass->inertia, time);
 	if (ob_norm2(f->w) > 0)
-		ob_spin_at(ob_plans_spin(&s->plans, id, f->q, f->w, pass->inertia), time - f->t0, &now.pose.q, &now.w);
+		ob_spin_at(ob_rotation_cache_get(&s->plans, id, f->q, f->w, pass->inertia), time - f->t0, &now.pose.q, &now.w);
 	return now;
 }
 
@@ -63,7 +63,7 @@ static void publish(ob_sim *s, uint32_t id, ob_motion *m)
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	const uint64_t step = ob_step_count(s->u) + 1;
 	const double h = run->step_length, end = (double)step * h;
-	ob_state now = ob_leap_state(s, id, m, end);
+	ob_state now = ob_ballistic_state(s, id, m, end);
 	uint64_t due = m->flags & OB_MOTION_FREE ? (uint64_t)(m->valid_until / h) : step;
 	due -= (double)due * h > m->valid_until && due > step; // the quotient may have been rounded up
 	double last = (double)(due + 1) * h, reach = fastest(pass, m, end, last) * h;
@@ -76,9 +76,9 @@ static void publish(ob_sim *s, uint32_t id, ob_motion *m)
 	m->substeps = 0;
 	m->quiet = 0;
 	if (!isfinite(now.pose.p.x + now.pose.p.y + now.pose.p.z + now.pose.q.w + now.w.x))
-		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-	ob_claim_swept(s->u, id, box, reach);
-	ob_member_hand_over(s, id, m, OB_BRIEF_AWAKE, (uint32_t)due);
+		ob_universe_step_data(s->u)->count->failure = OB_STEP_DIVERGED;
+	ob_fat_aabb_sweep(s->u, id, box, reach);
+	ob_body_stage(s, id, m, OB_SCHEDULE_AWAKE, (uint32_t)due);
 }
 
 static ob_state end_by_ode(ob_sim *s, uint32_t id)
@@ -89,7 +89,7 @@ static ob_state end_by_ode(ob_sim *s, uint32_t id)
 	ob_state now = { { before->p, before->q }, before->v, before->w };
 	ob_vec3 force = ob_scale(ob_passport_of(s->u, id)->force, h);
 	for (uint32_t i = 0; i < run->substeps; i++)
-		ob_ode_body_step(ob_worlds_body(&s->worlds, s->u, id), &now, force, ob_v3(0, 0, 0), h);
+		ob_ode_body_step(ob_ode_bodies_get(&s->worlds, s->u, id), &now, force, ob_v3(0, 0, 0), h);
 	return now;
 }
 
@@ -107,17 +107,17 @@ static void step_by_ode(ob_sim *s, uint32_t id)
 			.q = end.pose.q,
 			.v = end.v,
 			.w = end.w,
-			.a = ob_pull(run, pass),
+			.a = ob_external_acceleration(run, pass),
 			.path = before->path + ob_step_reach(run, pass, before->v, before->w),
 			.step = (uint32_t)step,
 			.flags = OB_MOTION_FREE,
 			.island = id };
 	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
-		ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-	ob_member_publish(s, id, &m, &end);
+		ob_universe_step_data(s->u)->count->failure = OB_STEP_DIVERGED;
+	ob_body_publish(s, id, &m, &end);
 }
 
-bool ob_leap(ob_sim *s, uint32_t id)
+bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const ob_passport *pass = ob_passport_of(s->u, id);
@@ -127,18 +127,18 @@ bool ob_leap(ob_sim *s, uint32_t id)
 	}
 	const uint64_t step = ob_step_count(s->u);
 	const double h = run->step_length, end = (double)(step + 1) * h, far = end + horizon;
-	ob_motion m = ob_leap_flight(s, id);
+	ob_motion m = ob_ballistic_flight(s, id);
 	double since = (double)step * h, from = fmax(m.valid_until, since);
 	uint32_t plane, bounces = 0;
 	m.path = ob_path_now(&m, step);
 	for (;;) {
-		m.valid_until = fmin(far, ob_bounce_time(s, id, &m, from, far, &plane));
+		m.valid_until = fmin(far, ob_plane_impact_time(s, id, &m, from, far, &plane));
 		double until = fmin(m.valid_until, end);
 		m.path += fastest(pass, &m, since, until) * (until - since);
 		if (!(m.valid_until < end))
 			break;
-		ob_state at = ob_leap_state(s, id, &m, until);
-		if (bounces++ == MOST_BOUNCES || !ob_bounce(s, id, plane, &at))
+		ob_state at = ob_ballistic_state(s, id, &m, until);
+		if (bounces++ == MOST_BOUNCES || !ob_plane_impact(s, id, plane, &at))
 			return false;
 		m.p = at.pose.p, m.q = at.pose.q, m.v = at.v, m.w = at.w;
 		m.t0 = since = from = until;

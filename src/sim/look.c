@@ -48,7 +48,7 @@ static void find(void *with, const ob_placed *a, const ob_placed *b, double marg
 	if (run->narrow_phase == OB_NARROW_AABB) {
 		s->counters.box_tests++;
 		ob_burden(run->load);
-		ob_boxed_find(a, b, margin, out);
+		ob_manifold_aabb(a, b, margin, out);
 	} else if (!ob_manifold_find(a, b, margin, out)) {
 		find_by_ode(a, b, margin, out);
 	}
@@ -72,27 +72,27 @@ static void find_from_afar(void *with, const ob_placed *a, const ob_placed *b, d
 	out->separation = fmax(margin, far.separation);
 }
 
-ob_manifold_finder ob_look_finder(ob_sim *s)
+ob_manifold_finder ob_narrowphase_finder(ob_sim *s)
 {
 	return (ob_manifold_finder){ find_from_afar, s };
 }
 
 static ob_placed placed(const ob_island_work *w, uint32_t row)
 {
-	const ob_member *m = &w->member[row];
+	const ob_body *m = &w->member[row];
 	const double *v = w->v[row];
 	return (ob_placed){ m->shape, m->size, m->p, m->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]) };
 }
 
 // Bound of the speed at which any two points of the pair may approach (m/s), with what pulls at them.
-static double closing_speed(const ob_sim *s, const ob_touch *t)
+static double closing_speed(const ob_sim *s, const ob_contact *t)
 {
 	const ob_island_work *w = &s->island;
 	const double *va = w->v[t->a], *vb = w->v[t->b];
 	ob_vec3 rel = ob_v3(va[0] - vb[0], va[1] - vb[1], va[2] - vb[2]);
 	double speed = ob_norm(rel);
 	for (int side = 0; side < 2; side++) {
-		const ob_member *m = &w->member[side ? t->b : t->a];
+		const ob_body *m = &w->member[side ? t->b : t->a];
 		const double *v = side ? vb : va;
 		if (m->inv_mass > 0 && m->shape != OB_SHAPE_SPHERE)
 			speed += m->radius * ob_norm(ob_v3(v[3], v[4], v[5]));
@@ -111,28 +111,28 @@ static void wind_back(const ob_placed *a, const ob_placed *b, double t, ob_manif
 	}
 }
 
-static double smaller_thickness(const ob_island_work *w, const ob_touch *t)
+static double smaller_thickness(const ob_island_work *w, const ob_contact *t)
 {
 	return fmin(w->member[t->a].thickness, w->member[t->b].thickness);
 }
 
 // The time of meeting (s), and the points up to "reach" (m) then.
-static double meet(ob_sim *s, const ob_touch *t, double horizon, double reach, ob_manifold *m)
+static double meet(ob_sim *s, const ob_contact *t, double horizon, double reach, ob_manifold *m)
 {
 	const ob_island_work *w = &s->island;
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);
 	double near = fmin(swept_gap, .25 * smaller_thickness(w, t));
 	s->counters.swept_looks++;
-	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, ob_look_finder(s), m);
+	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, ob_narrowphase_finder(s), m);
 }
 
-double ob_look_ahead(ob_sim *s, const ob_touch *t, double horizon)
+double ob_narrowphase_time_of_contact(ob_sim *s, const ob_contact *t, double horizon)
 {
 	ob_manifold m;
 	return meet(s, t, horizon, fmin(swept_gap, .25 * smaller_thickness(&s->island, t)), &m);
 }
 
-void ob_look(ob_sim *s, const ob_touch *t, double tolerance, ob_manifold *m, double *when)
+void ob_narrowphase_find(ob_sim *s, const ob_contact *t, double tolerance, ob_manifold *m, double *when)
 {
 	const ob_island_work *w = &s->island;
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);

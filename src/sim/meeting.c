@@ -24,7 +24,7 @@ static ob_placed placed(ob_sim *s, uint32_t id, const ob_motion *m, uint64_t ste
 {
 	const ob_passport *p = ob_passport_of(s->u, id);
 	const double h = ob_universe_settings(s->u)->step_length;
-	ob_state now = ob_leap_state(s, id, m, (double)steps * h);
+	ob_state now = ob_ballistic_state(s, id, m, (double)steps * h);
 	return (ob_placed){ p->shape, p->size, now.pose.p, ob_quat_matrix(now.pose.q), ob_madd(now.v, .5 * h, m->a),
 			    now.w };
 }
@@ -32,14 +32,14 @@ static ob_placed placed(ob_sim *s, uint32_t id, const ob_motion *m, uint64_t ste
 static pair pair_of(ob_sim *s, const ob_pair_key *k, uint64_t steps)
 {
 	const ob_universe *u = s->u;
-	const ob_exchange *ex = ob_universe_exchange(u);
-	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_step_data *ex = ob_universe_step_data(u);
+	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	pair p = { .h = ob_universe_settings(u)->step_length, .thin = INFINITY };
-	p.path = ob_brief_path(a, steps) + ob_brief_path(b, steps);
+	p.path = ob_schedule_path(a, steps) + ob_schedule_path(b, steps);
 	p.reach = a->reach + b->reach;
 	for (int i = 0; i < 2; i++) {
 		uint32_t id = i ? k->b : k->a;
-		p.at[i] = placed(s, id, ob_outcome_of(u, id), steps);
+		p.at[i] = placed(s, id, ob_result_of(u, id), steps);
 		p.thin = fmin(p.thin, ob_shape_thickness(p.at[i].shape, p.at[i].size));
 	}
 	return p;
@@ -53,7 +53,7 @@ static double first_touch(ob_sim *s, const pair *p, double h, double *apart)
 	double speed = ob_norm(ob_sub(a->v, b->v)) + ob_turning_speed(a->w, a->shape, a->size) +
 		       ob_turning_speed(b->w, b->shape, b->size);
 	double gap = fmin(touch_gap, touch_share * p->thin);
-	double when = ob_swept_find(a, b, fmax(speed, 1e-9), h, gap, gap, ob_look_finder(s), &m);
+	double when = ob_swept_find(a, b, fmax(speed, 1e-9), h, gap, gap, ob_narrowphase_finder(s), &m);
 	*apart = m.separation;
 	return when;
 }
@@ -79,7 +79,7 @@ static bool passed(ob_sim *s, const ob_pair_key *k, const pair *end)
 static bool has_met(ob_sim *s, ob_pair_key *k, const pair *end)
 {
 	ob_manifold m;
-	ob_manifold_finder finder = ob_look_finder(s);
+	ob_manifold_finder finder = ob_narrowphase_finder(s);
 	finder.find(finder.with, &end->at[0], &end->at[1], fmax(touch_gap, end->reach), &m);
 	if (m.separation <= 0 || passed(s, k, end))
 		return true;
@@ -96,7 +96,7 @@ typedef struct spheres {
 
 static spheres spheres_of(const ob_universe *u, const ob_pair_key *k, uint64_t steps)
 {
-	const ob_motion *a = ob_outcome_of(u, k->a), *b = ob_outcome_of(u, k->b);
+	const ob_motion *a = ob_result_of(u, k->a), *b = ob_result_of(u, k->b);
 	const ob_passport *pa = ob_passport_of(u, k->a), *pb = ob_passport_of(u, k->b);
 	const double time = (double)steps * ob_universe_settings(u)->step_length;
 	spheres out = { .straight = a->a.x == b->a.x && a->a.y == b->a.y && a->a.z == b->a.z };
@@ -119,10 +119,10 @@ static double apart_for(const spheres *s)
 // Sets until when two that nobody visits stay clear of each other; false: not beyond the coming step.
 static bool stay_clear(const ob_universe *u, ob_pair_key *k, const spheres *round, uint64_t steps)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
-	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_step_data *ex = ob_universe_step_data(u);
+	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	double until = fmin(a->due, b->due);
-	if (a->state != OB_BRIEF_AWAKE || b->state != OB_BRIEF_AWAKE || until <= (double)steps + 1 || !round->straight)
+	if (a->state != OB_SCHEDULE_AWAKE || b->state != OB_SCHEDULE_AWAKE || until <= (double)steps + 1 || !round->straight)
 		return false;
 	until = fmin(until, (double)steps + floor(apart_for(round) / ob_universe_settings(u)->step_length));
 	k->clear = (uint32_t)until;
@@ -130,7 +130,7 @@ static bool stay_clear(const ob_universe *u, ob_pair_key *k, const spheres *roun
 	return k->clear > steps;
 }
 
-static bool is_clear(const ob_exchange *ex, const ob_pair_key *k, uint64_t steps)
+static bool is_clear(const ob_step_data *ex, const ob_pair_key *k, uint64_t steps)
 {
 	return k->clear > steps && ex->brief[k->a].since <= k->clear_as_of && ex->brief[k->b].since <= k->clear_as_of;
 }
@@ -145,15 +145,15 @@ static bool will_meet(ob_sim *s, ob_pair_key *k, const pair *now)
 }
 
 // Who flies past a plane meets it when it is due, and not before.
-static bool foreseen(const ob_brief *a, const ob_brief *b, uint64_t steps)
+static bool foreseen(const ob_schedule *a, const ob_schedule *b, uint64_t steps)
 {
-	return (a->state == OB_BRIEF_PLANE && b->due > steps) || (b->state == OB_BRIEF_PLANE && a->due > steps);
+	return (a->state == OB_SCHEDULE_PLANE && b->due > steps) || (b->state == OB_SCHEDULE_PLANE && a->due > steps);
 }
 
 // What is in a flight that began before is on no plane until that ends.
 static bool flies_over(const ob_universe *u, uint32_t id, uint64_t steps)
 {
-	const ob_motion *m = ob_outcome_of(u, id);
+	const ob_motion *m = ob_result_of(u, id);
 	const double time = (double)steps * ob_universe_settings(u)->step_length;
 	return m->t0 < time && m->valid_until >= time;
 }
@@ -170,10 +170,10 @@ static double way_made(const ob_universe *u, const ob_pair_key *k, double paths,
 // Spheres that are too far from each other for anything to have happened, or to happen in the coming step, settle it.
 static bool far_apart(const ob_universe *u, ob_pair_key *k, double paths, double reach, bool solved, uint64_t steps)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
-	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
-	if (a->state == OB_BRIEF_PLANE || b->state == OB_BRIEF_PLANE)
-		return flies_over(u, a->state == OB_BRIEF_PLANE ? k->b : k->a, steps);
+	const ob_step_data *ex = ob_universe_step_data(u);
+	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	if (a->state == OB_SCHEDULE_PLANE || b->state == OB_SCHEDULE_PLANE)
+		return flies_over(u, a->state == OB_SCHEDULE_PLANE ? k->b : k->a, steps);
 	if (ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB)
 		return false;
 	spheres round = spheres_of(u, k, steps);
@@ -186,10 +186,10 @@ static bool far_apart(const ob_universe *u, ob_pair_key *k, double paths, double
 // Will the two touch in the coming step, or have they in this? left: m, of the distance through which they may get.
 static void look_closely(ob_sim *s, ob_pair_key *k, double left, bool solved, uint64_t steps)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_step_data *ex = ob_universe_step_data(s->u);
 	pair p = pair_of(s, k, steps);
 	k->met = solved && !k->listed && left <= 0 && has_met(s, k, &p);
-	bool on_plane = ex->brief[k->a].state == OB_BRIEF_PLANE || ex->brief[k->b].state == OB_BRIEF_PLANE;
+	bool on_plane = ex->brief[k->a].state == OB_SCHEDULE_PLANE || ex->brief[k->b].state == OB_SCHEDULE_PLANE;
 	if (!k->met && !on_plane && k->limit - p.path <= p.reach)
 		k->near = will_meet(s, k, &p);
 }
@@ -203,28 +203,28 @@ static double used_up(const ob_pair_key *k, double paths, double reach, uint64_t
 
 // steps: that are complete, or solved. Returns the step (from 0) that the pair must be checked for next, as far as the
 // briefs say; < 0: they do not.
-static double due_by_briefs(const ob_exchange *ex, ob_pair_key *k, uint64_t steps)
+static double due_by_briefs(const ob_step_data *ex, ob_pair_key *k, uint64_t steps)
 {
-	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	if (k->met | k->near) // most pairs are left as they are: their memory stays with every worker that has read it
 		k->met = k->near = 0;
-	if ((a->state != OB_BRIEF_AWAKE && b->state != OB_BRIEF_AWAKE) || foreseen(a, b, steps))
+	if ((a->state != OB_SCHEDULE_AWAKE && b->state != OB_SCHEDULE_AWAKE) || foreseen(a, b, steps))
 		return INFINITY;
 	if (k->active)
 		return (double)steps;
 	if (is_clear(ex, k, steps))
 		return k->clear;
-	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), reach = (double)a->reach + (double)b->reach;
+	double paths = ob_schedule_path(a, steps) + ob_schedule_path(b, steps), reach = (double)a->reach + (double)b->reach;
 	return k->limit - paths > reach ? used_up(k, paths, reach, steps) : -1;
 }
 
 // Same, by what has been published.
 static double due_by_motions(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
-	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_step_data *ex = ob_universe_step_data(s->u);
+	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	solved &= steps == 0 || !is_clear(ex, k, steps - 1); // then they cannot have met in it
-	double paths = ob_brief_path(a, steps) + ob_brief_path(b, steps), reach = (double)a->reach + (double)b->reach;
+	double paths = ob_schedule_path(a, steps) + ob_schedule_path(b, steps), reach = (double)a->reach + (double)b->reach;
 	const double left = k->limit - paths;
 	if (!far_apart(s->u, k, paths, reach, solved, steps))
 		look_closely(s, k, left, solved, steps);
@@ -233,10 +233,10 @@ static double due_by_motions(ob_sim *s, ob_pair_key *k, bool solved, uint64_t st
 	return is_clear(ex, k, steps) ? k->clear : used_up(k, paths, reach, steps);
 }
 
-void ob_meetings_begin(ob_universe *u, bool solved)
+void ob_late_contacts_begin(ob_universe *u, bool solved)
 {
-	ob_meetings_reset(u);
-	ob_universe_exchange(u)->count->looked = (uint32_t)ob_step_count(u) + solved;
+	ob_late_contacts_reset(u);
+	ob_universe_step_data(u)->count->looked = (uint32_t)ob_step_count(u) + solved;
 }
 
 // What the motions of these say is on its way from memory while those before them are looked at.
@@ -244,10 +244,10 @@ static void look_at_motions(ob_sim *s, const uint32_t *pairs, uint32_t n, bool s
 {
 	enum { AHEAD = 4 };
 	const uint64_t steps = ob_step_count(s->u) + solved;
-	ob_pair_key *all = ob_universe_exchange(s->u)->pair;
+	ob_pair_key *all = ob_universe_step_data(s->u)->pair;
 	for (uint32_t i = 0; i < n + AHEAD; i++) {
 		if (i < n)
-			ob_fetch_pair(s, &all[pairs[i]]);
+			ob_prefetch_pair(s, &all[pairs[i]]);
 		if (i < AHEAD)
 			continue;
 		ob_pair_key *k = &all[pairs[i - AHEAD]];
@@ -256,15 +256,15 @@ static void look_at_motions(ob_sim *s, const uint32_t *pairs, uint32_t n, bool s
 	}
 }
 
-void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
+void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 {
-	ob_exchange *ex = ob_universe_exchange(s->u);
+	ob_step_data *ex = ob_universe_step_data(s->u);
 	const uint64_t steps = ob_step_count(s->u) + solved;
 	double next = UINT32_MAX;
 	bool met = false;
 	while (first < end) {
-		uint32_t closer[OB_MEETINGS_HANDFUL], n = 0;
-		for (uint32_t i = 0; i < OB_MEETINGS_HANDFUL && first < end; i++, first++) {
+		uint32_t closer[OB_LATE_CONTACTS_BATCH], n = 0;
+		for (uint32_t i = 0; i < OB_LATE_CONTACTS_BATCH && first < end; i++, first++) {
 			double due = due_by_briefs(ex, &ex->pair[first], steps);
 			if (due < 0)
 				closer[n++] = first;
@@ -273,5 +273,5 @@ void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 		}
 		look_at_motions(s, closer, n, solved, &met, &next);
 	}
-	ob_meetings_note(s->u, met, (uint32_t)next);
+	ob_late_contacts_note(s->u, met, (uint32_t)next);
 }

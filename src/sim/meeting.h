@@ -10,12 +10,12 @@
 
 #include "sim/worker.h"
 
-enum { OB_MEETINGS_HANDFUL = 256 }; // pairs that a worker claims at a time
+enum { OB_LATE_CONTACTS_BATCH = 256 }; // pairs that a worker claims at a time
 
 // By the arranger, before all pairs are checked. solved: a step has been solved and is not yet committed.
-void ob_meetings_begin(ob_universe *u, bool solved);
+void ob_late_contacts_begin(ob_universe *u, bool solved);
 // Pairs first .. end-1: sets near, met and limit, and notes whether any has met and when pairs must be checked next
-// (ob_exchange.count).
-void ob_meetings_check(ob_sim *s, uint32_t first, uint32_t end, bool solved);
+// (ob_step_data.count).
+void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved);
 
 #endif

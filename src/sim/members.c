@@ -25,7 +25,7 @@ static ob_vec3 angular_of(const double *r)
 	return ob_v3(r[3], r[4], r[5]);
 }
 
-static void turn_inertia(ob_member *m)
+static void turn_inertia(ob_body *m)
 {
 	if (m->inv_mass == 0)
 		return;
@@ -48,9 +48,9 @@ static void load(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	const ob_passport *pass = ob_passport_of(s->u, id);
 	const ob_motion *mo = ob_newest_motion(s->u, id);
 	const uint64_t step = ob_step_count(s->u);
-	ob_state now = ob_leap_state(s, id, mo, (double)step * run->step_length);
-	ob_member *m = &w->member[row];
-	*m = (ob_member){ .id = id,
+	ob_state now = ob_ballistic_state(s, id, mo, (double)step * run->step_length);
+	ob_body *m = &w->member[row];
+	*m = (ob_body){ .id = id,
 			  .shape = pass->shape,
 			  .size = pass->size,
 			  .p = now.pose.p,
@@ -72,7 +72,7 @@ static void load(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 		return;
 	add_row(w->v[row], now.v, now.w);
 	w->mass += pass->mass;
-	m->pull = ob_pull(run, pass);
+	m->pull = ob_external_acceleration(run, pass);
 	w->pull = fmax(w->pull, ob_norm(m->pull));
 	m->speed = ob_surface_speed(now.v, now.w, m->shape, m->size);
 }
@@ -89,9 +89,9 @@ static void reserve_rows(ob_island_work *w, uint32_t rows)
 }
 
 // Members in ascending id, then the fixed bodies that they may touch, each once per pair.
-void ob_members_load(ob_sim *s, const ob_island *is)
+void ob_bodies_load(ob_sim *s, const ob_island *is)
 {
-	ob_exchange *ex = ob_universe_exchange(s->u);
+	ob_step_data *ex = ob_universe_step_data(s->u);
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	w->h = w->substep = run->step_length / w->substeps;
@@ -114,8 +114,8 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 	}
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
-		uint32_t fixed = ex->brief[k->a].state < OB_BRIEF_AWAKE   ? k->a
-				 : ex->brief[k->b].state < OB_BRIEF_AWAKE ? k->b
+		uint32_t fixed = ex->brief[k->a].state < OB_SCHEDULE_AWAKE   ? k->a
+				 : ex->brief[k->b].state < OB_SCHEDULE_AWAKE ? k->b
 									  : UINT32_MAX;
 		if (fixed == UINT32_MAX || (w->row_of[fixed] < w->rows && w->row_of[fixed] > w->members &&
 					    w->member[w->row_of[fixed]].id == fixed))
@@ -128,12 +128,12 @@ void ob_members_load(ob_sim *s, const ob_island *is)
 
 static void settle_row(ob_island_work *w, uint32_t row)
 {
-	ob_member *m = &w->member[row];
+	ob_body *m = &w->member[row];
 	double *d = w->d[row];
 	if (d[0] == 0 && d[1] == 0 && d[2] == 0 && d[3] == 0 && d[4] == 0 && d[5] == 0)
 		return;
 	for (uint32_t k = 0; k < m->adjacent; k++) {
-		const ob_touch *t = &w->touch[w->adjacency[m->first_adjacent + k]];
+		const ob_contact *t = &w->touch[w->adjacency[m->first_adjacent + k]];
 		if (t->lane == OB_NO_LANE)
 			continue;
 		ob_batch *b = &w->batch[t->lane / OB_LANES];
@@ -158,7 +158,7 @@ static void settle_row(ob_island_work *w, uint32_t row)
 }
 
 // A ghost moves when the one moves for whom it stands, and by as much.
-void ob_member_settle(ob_island_work *w, uint32_t row)
+void ob_body_update_pose(ob_island_work *w, uint32_t row)
 {
 	if (row >= w->first_ghost)
 		row = w->member[row].ghost_of;
@@ -170,13 +170,13 @@ void ob_member_settle(ob_island_work *w, uint32_t row)
 }
 
 // Euler's equations over h by the midpoint rule, in the body frame. ODE's stepper does its own.
-void ob_members_gyrate(ob_sim *s)
+void ob_bodies_gyroscopic_step(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	if (ob_universe_settings(s->u)->integrator == OB_INTEGRATOR_ODE)
 		return;
 	for (uint32_t i = 1; i <= w->members; i++) {
-		const ob_member *m = &w->member[i];
+		const ob_body *m = &w->member[i];
 		ob_vec3 now = angular_of(w->v[i]), j = m->inertia;
 		if (m->round || ob_norm2(now) < 1e-12)
 			continue;
@@ -196,16 +196,16 @@ void ob_members_gyrate(ob_sim *s)
 	}
 }
 
-void ob_members_quicken(ob_sim *s)
+void ob_bodies_update_speed_bounds(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 1; i <= w->members; i++) {
-		ob_member *m = &w->member[i];
+		ob_body *m = &w->member[i];
 		m->speed = ob_surface_speed(linear_of(w->v[i]), angular_of(w->v[i]), m->shape, m->size);
 	}
 }
 
-void ob_members_foretell(ob_sim *s)
+void ob_bodies_warm_start(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	memset(w->dv, 0, w->rows * sizeof *w->dv);
@@ -218,7 +218,7 @@ void ob_members_foretell(ob_sim *s)
 	}
 }
 
-void ob_members_predict(ob_sim *s)
+void ob_bodies_predict_velocities(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 1; i <= w->members; i++)
@@ -230,7 +230,7 @@ void ob_members_predict(ob_sim *s)
 static void advance_by_ode(ob_sim *s, uint32_t row)
 {
 	ob_island_work *w = &s->island;
-	ob_member *m = &w->member[row];
+	ob_body *m = &w->member[row];
 	ob_vec3 g = ob_scale(ob_universe_settings(s->u)->gravity, w->h);
 	double change[6];
 	for (int c = 0; c < 6; c++)
@@ -239,7 +239,7 @@ static void advance_by_ode(ob_sim *s, uint32_t row)
 	ob_vec3 l = ob_rotate(&m->r, ob_v3(wl.x * m->inertia.x, wl.y * m->inertia.y, wl.z * m->inertia.z));
 	ob_state state = { { m->p, m->q }, linear_of(w->v[row]), angular_of(w->v[row]) };
 	ob_pose before = state.pose;
-	ob_ode_body_step(ob_worlds_body(&s->worlds, s->u, m->id), &state, j, l, w->h);
+	ob_ode_body_step(ob_ode_bodies_get(&s->worlds, s->u, m->id), &state, j, l, w->h);
 	// The displacement row takes the step, so that the gaps follow; the turn is what ODE made of it.
 	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
 	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
@@ -263,13 +263,13 @@ static void advance_exactly(ob_island_work *w, uint32_t row, double smooth)
 		d[c] += w->h * u[c];
 }
 
-void ob_members_advance(ob_sim *s)
+void ob_bodies_integrate_positions(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	double smooth = 2 * w->pull * w->pull * w->h * w->h;
 	for (uint32_t i = 1; i <= w->members; i++) {
-		ob_member *m = &w->member[i];
+		ob_body *m = &w->member[i];
 		if (run->integrator == OB_INTEGRATOR_ODE)
 			advance_by_ode(s, i);
 		else
@@ -279,19 +279,19 @@ void ob_members_advance(ob_sim *s)
 		m->path += w->h * m->speed;
 		if (ob_norm2(angular_of(w->d[i])) > 4e-4 || ob_norm2(linear_of(w->d[i])) > .01 ||
 		    run->integrator == OB_INTEGRATOR_ODE)
-			ob_member_settle(w, i);
+			ob_body_update_pose(w, i);
 	}
 }
 
 // Sleep by consent: an island sleeps when its most recently disturbed member has been slow for half a second.
-bool ob_members_rest(ob_sim *s)
+bool ob_bodies_update_rest(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const double slow = .03, after = .5; // m/s, s
 	bool consent = run->sleeping;
 	for (uint32_t i = 1; i <= w->members; i++) {
-		ob_member *m = &w->member[i];
+		ob_body *m = &w->member[i];
 		double vv = ob_norm2(linear_of(w->v[i])), ww = ob_norm2(angular_of(w->v[i]));
 		m->quiet = vv < slow * slow && ww < 4 * slow * slow ? m->quiet + (float)run->step_length : 0;
 		consent &= m->quiet >= after && m->contacts > 0;
@@ -307,34 +307,34 @@ static bool finite_row(const double *r)
 	return sum == 0;
 }
 
-void ob_member_hand_over(ob_sim *s, uint32_t id, ob_motion *m, uint32_t state, uint32_t due)
+void ob_body_stage(ob_sim *s, uint32_t id, ob_motion *m, uint32_t state, uint32_t due)
 {
-	ob_exchange *ex = ob_universe_exchange(s->u);
-	ex->brief[id] = (ob_brief){ m->path, m->reach, state, m->step, due };
-	ob_outcome_stage(s, id, m);
+	ob_step_data *ex = ob_universe_step_data(s->u);
+	ex->brief[id] = (ob_schedule){ m->path, m->reach, state, m->step, due };
+	ob_result_stage(s, id, m);
 }
 
-void ob_member_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)
+void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const ob_passport *pass = ob_passport_of(s->u, id);
-	uint32_t state = m->flags & OB_MOTION_ASLEEP  ? OB_BRIEF_ASLEEP
-			 : m->flags & OB_MOTION_STILL ? OB_BRIEF_STILL
-						      : OB_BRIEF_AWAKE;
-	double reach = state == OB_BRIEF_AWAKE ? ob_step_reach(run, pass, end->v, end->w) : 0;
-	ob_claim_bounds(s->u, id, end, reach);
+	uint32_t state = m->flags & OB_MOTION_ASLEEP  ? OB_SCHEDULE_ASLEEP
+			 : m->flags & OB_MOTION_EQUILIBRIUM ? OB_SCHEDULE_EQUILIBRIUM
+						      : OB_SCHEDULE_AWAKE;
+	double reach = state == OB_SCHEDULE_AWAKE ? ob_step_reach(run, pass, end->v, end->w) : 0;
+	ob_fat_aabb_update(s->u, id, end, reach);
 	m->reach = (float)reach;
-	ob_member_hand_over(s, id, m, state, state == OB_BRIEF_AWAKE ? m->step : UINT32_MAX);
+	ob_body_stage(s, id, m, state, state == OB_SCHEDULE_AWAKE ? m->step : UINT32_MAX);
 }
 
-void ob_members_publish(ob_sim *s, uint32_t rest)
+void ob_bodies_publish(ob_sim *s, uint32_t rest)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	uint64_t step = ob_step_count(s->u) + 1;
-	const bool calm = ob_calm_proven(w);
+	const bool calm = ob_equilibrium_confirmed(w);
 	for (uint32_t i = 1; i <= w->members; i++) {
-		ob_member *m = &w->member[i];
+		ob_body *m = &w->member[i];
 		ob_motion mo = { .t0 = step * run->step_length,
 				 .valid_until = rest ? INFINITY : (step + 1) * run->step_length,
 				 .p = m->p,
@@ -347,7 +347,7 @@ void ob_members_publish(ob_sim *s, uint32_t rest)
 				 .island = w->member[1].id,
 				 .substeps = m->substeps,
 				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | rest |
-					  (calm && ob_calm_member(w, i) ? OB_MOTION_CALM : 0) };
+					  (calm && ob_equilibrium_body_steady(w, i) ? OB_MOTION_STEADY : 0) };
 		if (!m->contacts)
 			mo.a = m->pull;
 		if (rest)
@@ -355,13 +355,13 @@ void ob_members_publish(ob_sim *s, uint32_t rest)
 		ob_state end = { { mo.p, mo.q }, mo.v, mo.w };
 		if (m->moved_freely &&
 		    run->integrator == OB_INTEGRATOR_EXACT) { // substeps only looked for what might be hit
-			ob_motion flight = ob_leap_flight(s, m->id);
-			end = ob_leap_state(s, m->id, &flight, mo.t0);
+			ob_motion flight = ob_ballistic_flight(s, m->id);
+			end = ob_ballistic_state(s, m->id, &flight, mo.t0);
 			mo.t0 = flight.t0, mo.valid_until = flight.valid_until;
 			mo.p = flight.p, mo.q = flight.q, mo.v = flight.v, mo.w = flight.w;
 		}
 		if (!finite_row(w->v[i]) || !isfinite(m->p.x + m->p.y + m->p.z))
-			ob_universe_exchange(s->u)->count->failure = OB_EXCHANGE_DIVERGED;
-		ob_member_publish(s, m->id, &mo, &end);
+			ob_universe_step_data(s->u)->count->failure = OB_STEP_DIVERGED;
+		ob_body_publish(s, m->id, &mo, &end);
 	}
 }

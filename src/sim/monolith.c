@@ -15,7 +15,7 @@ struct held { // whether the world holds an object for a slot, and which
 	uint32_t generation;
 };
 
-struct ob_monolith {
+struct ob_ode_baseline {
 	ob_universe *u;
 	const ob_run_settings *run;
 	ob_ode_world *world;
@@ -27,7 +27,7 @@ struct ob_monolith {
 	bool traced;
 };
 
-ob_monolith *ob_monolith_create(ob_universe *u)
+ob_ode_baseline *ob_ode_baseline_create(ob_universe *u)
 {
 	const ob_run_settings *run = ob_universe_settings(u);
 	uint32_t capacity = ob_universe_capacity(u);
@@ -40,7 +40,7 @@ ob_monolith *ob_monolith_create(ob_universe *u)
 		.load = run->load,
 	};
 	ob_ode_thread_init();
-	ob_monolith *m = calloc(1, sizeof *m);
+	ob_ode_baseline *m = calloc(1, sizeof *m);
 	if (!m)
 		return NULL;
 	m->u = u;
@@ -49,13 +49,13 @@ ob_monolith *ob_monolith_create(ob_universe *u)
 	m->held = calloc(capacity, sizeof *m->held);
 	m->world = ob_ode_world_create(&setup);
 	if (!m->held || !m->world) {
-		ob_monolith_destroy(m);
+		ob_ode_baseline_destroy(m);
 		return NULL;
 	}
 	return m;
 }
 
-void ob_monolith_destroy(ob_monolith *m)
+void ob_ode_baseline_destroy(ob_ode_baseline *m)
 {
 	if (!m)
 		return;
@@ -68,7 +68,7 @@ void ob_monolith_destroy(ob_monolith *m)
 }
 
 // The passports are the host's, which changes them between steps.
-static void follow_passports(ob_monolith *m)
+static void follow_passports(ob_ode_baseline *m)
 {
 	uint32_t ids = ob_universe_ids(m->u);
 	for (uint32_t id = 0; id < ids; id++) {
@@ -103,7 +103,7 @@ static void widen(const double from[6], double by, float to[6])
 	}
 }
 
-static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep, bool touching)
+static void publish(ob_ode_baseline *m, uint32_t id, const ob_state *s, bool asleep, bool touching)
 {
 	const ob_passport *p = ob_passport_of(m->u, id);
 	const ob_motion *last = ob_newest_motion(m->u, id);
@@ -117,7 +117,7 @@ static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep,
 		.q = s->pose.q,
 		.v = s->v,
 		.w = s->w,
-		.a = touching || asleep ? ob_v3(0, 0, 0) : ob_pull(m->run, p),
+		.a = touching || asleep ? ob_v3(0, 0, 0) : ob_external_acceleration(m->run, p),
 		.path = last->path + speed * h,
 		.step = (uint32_t)step,
 		.flags = asleep ? OB_MOTION_ASLEEP : 0,
@@ -125,17 +125,17 @@ static void publish(ob_monolith *m, uint32_t id, const ob_state *s, bool asleep,
 	};
 	double bounds[6];
 	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
-	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_pull(m->run, p)),
-	      ob_universe_exchange(m->u)->bounds[id]);
+	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_external_acceleration(m->run, p)),
+	      ob_universe_step_data(m->u)->bounds[id]);
 	if (m->traced)
 		ob_trace_moves(m->u, 0, id, last->flags & OB_MOTION_ASLEEP, next.flags);
 	ob_publish_motion(m->u, id, &next);
-	ob_universe_exchange(m->u)->brief[id].state = asleep ? OB_BRIEF_ASLEEP : OB_BRIEF_AWAKE;
+	ob_universe_step_data(m->u)->brief[id].state = asleep ? OB_SCHEDULE_ASLEEP : OB_SCHEDULE_AWAKE;
 }
 
-static void publish_all(ob_monolith *m)
+static void publish_all(ob_ode_baseline *m)
 {
-	ob_exchange *x = ob_universe_exchange(m->u);
+	ob_step_data *x = ob_universe_step_data(m->u);
 	uint32_t ids = ob_universe_ids(m->u);
 	m->awake = 0;
 	for (uint32_t id = 0; id < ids; id++) {
@@ -145,7 +145,7 @@ static void publish_all(ob_monolith *m)
 		bool asleep, touching;
 		ob_ode_world_get(m->world, id, &s, &asleep, &touching);
 		if (!sound(&s)) {
-			x->count->failure = OB_EXCHANGE_DIVERGED;
+			x->count->failure = OB_STEP_DIVERGED;
 			return;
 		}
 		m->awake += !asleep;
@@ -153,7 +153,7 @@ static void publish_all(ob_monolith *m)
 	}
 }
 
-static bool fetch_contacts(ob_monolith *m, size_t *points)
+static bool fetch_contacts(ob_ode_baseline *m, size_t *points)
 {
 	*points = ob_ode_world_contacts(m->world, m->point, m->depth, m->points_max);
 	if (*points <= m->points_max)
@@ -168,9 +168,9 @@ static bool fetch_contacts(ob_monolith *m, size_t *points)
 }
 
 // The points of one pair as a record of the step that is now complete. A record holds the first 4 of them.
-static void write_pair(ob_monolith *m, uint32_t index, size_t from, size_t to)
+static void write_pair(ob_ode_baseline *m, uint32_t index, size_t from, size_t to)
 {
-	ob_exchange *x = ob_universe_exchange(m->u);
+	ob_step_data *x = ob_universe_step_data(m->u);
 	uint64_t step = ob_step_count(m->u) + 1;
 	const ob_contact_point *c = &m->point[from];
 	ob_vec3 a = ob_newest_motion(m->u, c->a)->p;
@@ -189,9 +189,9 @@ static void write_pair(ob_monolith *m, uint32_t index, size_t from, size_t to)
 }
 
 // For overlays only: pairs beyond the room of the exchange area are left out. ODE's world lists points by pair.
-static void publish_pairs(ob_monolith *m)
+static void publish_pairs(ob_ode_baseline *m)
 {
-	ob_exchange *x = ob_universe_exchange(m->u);
+	ob_step_data *x = ob_universe_step_data(m->u);
 	size_t points, to;
 	uint32_t pairs = 0;
 	if (!fetch_contacts(m, &points))
@@ -208,12 +208,12 @@ static void publish_pairs(ob_monolith *m)
 	x->count->records_used = x->count->pairs;
 }
 
-void ob_monolith_step(ob_monolith *m)
+void ob_ode_baseline_step(ob_ode_baseline *m)
 {
 	follow_passports(m);
 	for (uint32_t i = 0; i < m->run->substeps; i++) {
 		if (!ob_ode_world_step(m->world, m->run->step_length / m->run->substeps)) {
-			ob_universe_exchange(m->u)->count->failure = OB_EXCHANGE_PAIRS_FULL;
+			ob_universe_step_data(m->u)->count->failure = OB_STEP_PAIRS_FULL;
 			return;
 		}
 	}
@@ -221,15 +221,15 @@ void ob_monolith_step(ob_monolith *m)
 	publish_pairs(m);
 }
 
-uint32_t ob_monolith_awake(const ob_monolith *m)
+uint32_t ob_ode_baseline_awake(const ob_ode_baseline *m)
 {
 	return m->awake;
 }
-uint32_t ob_monolith_pairs(const ob_monolith *m)
+uint32_t ob_ode_baseline_pairs(const ob_ode_baseline *m)
 {
 	return m->pairs;
 }
-uint64_t ob_monolith_box_tests(const ob_monolith *m)
+uint64_t ob_ode_baseline_box_tests(const ob_ode_baseline *m)
 {
 	return ob_ode_world_box_tests(m->world);
 }

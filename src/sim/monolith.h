@@ -6,21 +6,21 @@
 
 #include "table/table.h"
 
-typedef struct ob_monolith ob_monolith;
+typedef struct ob_ode_baseline ob_ode_baseline;
 
 // In the worker's own thread, after the objects have been placed. Runs for the settings of the universe. NULL: no
 // memory.
-ob_monolith *ob_monolith_create(ob_universe *u);
-void ob_monolith_destroy(ob_monolith *m); // NULL is allowed
+ob_ode_baseline *ob_ode_baseline_create(ob_universe *u);
+void ob_ode_baseline_destroy(ob_ode_baseline *m); // NULL is allowed
 
 // One step: takes in and drops objects as the passports say, steps, publishes all motions as of step
 // ob_step_count(u) + 1, and writes the touching pairs to the exchange area. Completing the step is left to the caller.
 // What goes wrong stands in the exchange area's count->failure.
-void ob_monolith_step(ob_monolith *m);
+void ob_ode_baseline_step(ob_ode_baseline *m);
 // Of the last step: dynamic objects that are not asleep; pairs that touch.
-uint32_t ob_monolith_awake(const ob_monolith *m);
-uint32_t ob_monolith_pairs(const ob_monolith *m);
+uint32_t ob_ode_baseline_awake(const ob_ode_baseline *m);
+uint32_t ob_ode_baseline_pairs(const ob_ode_baseline *m);
 // Of all steps: ob_ode_world_box_tests.
-uint64_t ob_monolith_box_tests(const ob_monolith *m);
+uint64_t ob_ode_baseline_box_tests(const ob_ode_baseline *m);
 
 #endif

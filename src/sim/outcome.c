@@ -1,6 +1,6 @@
 #include "sim/outcome.h"
 
-static uint32_t leader_of(const ob_exchange *ex, uint32_t island)
+static uint32_t leader_of(const ob_step_data *ex, uint32_t island)
 {
 	return ex->member[ex->island[island].first_member];
 }
@@ -8,21 +8,21 @@ static uint32_t leader_of(const ob_exchange *ex, uint32_t island)
 // In the result area, not in its slot?
 static bool left_aside(const ob_universe *u, uint32_t id, uint32_t island)
 {
-	return ob_universe_settings(u)->one_per_object && leader_of(ob_universe_exchange(u), island) != id;
+	return ob_universe_settings(u)->one_per_object && leader_of(ob_universe_step_data(u), island) != id;
 }
 
-void ob_outcome_stage(ob_sim *s, uint32_t id, const ob_motion *m)
+void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m)
 {
-	ob_exchange *ex = ob_universe_exchange(s->u);
+	ob_step_data *ex = ob_universe_step_data(s->u);
 	if (left_aside(s->u, id, ex->result_island[id]))
 		ex->result[id] = *m;
 	else
 		ob_stage_motion(s->u, id, m);
 }
 
-const ob_motion *ob_outcome_of(const ob_universe *u, uint32_t id)
+const ob_motion *ob_result_of(const ob_universe *u, uint32_t id)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t island = ex->result_island[id];
 	if (island == UINT32_MAX)
 		return ob_newest_motion(u, id);
@@ -35,9 +35,9 @@ static void note_moves(ob_sim *s, uint32_t id, const ob_motion *next)
 		ob_trace_moves(s->u, s->worker, id, ob_newest_motion(s->u, id)->flags, next->flags);
 }
 
-void ob_outcomes_commit(ob_sim *s)
+void ob_results_commit(ob_sim *s)
 {
-	ob_exchange *ex = ob_universe_exchange(s->u);
+	ob_step_data *ex = ob_universe_step_data(s->u);
 	bool alone = ob_universe_settings(s->u)->one_per_object;
 	for (uint32_t i = 0; i < ex->count->islands; i++) {
 		const ob_island *is = &ex->island[i];
@@ -52,9 +52,9 @@ void ob_outcomes_commit(ob_sim *s)
 	}
 }
 
-void ob_outcome_adopt(ob_sim *s, uint32_t id)
+void ob_result_copy(ob_sim *s, uint32_t id)
 {
-	const ob_motion *m = &ob_universe_exchange(s->u)->result[id];
+	const ob_motion *m = &ob_universe_step_data(s->u)->result[id];
 	note_moves(s, id, m);
 	ob_publish_motion(s->u, id, m);
 }

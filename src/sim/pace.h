@@ -8,13 +8,13 @@
 
 // Chooses the length of the next stride, at most "left" (s), sets it in the island, and scales to it what was predicted
 // for the last one.
-void ob_pace_stride(ob_sim *s, double left);
+void ob_adaptive_begin(ob_sim *s, double left);
 // s: no stride is shorter, but the last of a substep.
-double ob_pace_shortest(const ob_island_work *w);
+double ob_adaptive_shortest(const ob_island_work *w);
 // After a look, and after impacts: ends the stride where something that turns rebounds next, so that another begins with its impact.
-void ob_pace_to_rebound(ob_sim *s);
+void ob_adaptive_end_at_rebound(ob_sim *s);
 // After the exchanges: was something hit so that it is too fast now for the stride? Then the stride is shortened, and
 // everything is as before the exchanges.
-bool ob_pace_shorten(ob_sim *s);
+bool ob_adaptive_shorten(ob_sim *s);
 
 #endif

@@ -43,22 +43,22 @@ static uint64_t key_of(uint32_t a, uint32_t b)
 	return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
-static bool immobile(const ob_exchange *ex, uint32_t id)
+static bool immobile(const ob_step_data *ex, uint32_t id)
 {
-	return ex->brief[id].state < OB_BRIEF_AWAKE;
+	return ex->brief[id].state < OB_SCHEDULE_AWAKE;
 }
 
 // All pairs that the objects of the list have perceived, sorted, each once: of two that have both moved, which have
 // both found their boxes to overlap, the lower one tells. The caller frees.
 static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t count, const uint32_t *moved, size_t *n)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	size_t total = 0, kept = 0;
 	for (uint32_t k = 0; k < count; k++)
 		total += ex->perceived[list[k]].count;
 	uint64_t *keys = malloc((total + 1) * sizeof *keys);
 	for (uint32_t k = 0; keys && k < count; k++) {
-		const struct ob_perceived *p = &ex->perceived[list[k]];
+		const struct ob_neighbours *p = &ex->perceived[list[k]];
 		for (uint32_t i = 0; i < p->count; i++) {
 			uint32_t other = ex->perceived_id[p->offset + i];
 			bool told = moved[other] && other < list[k];
@@ -82,7 +82,7 @@ static double apart_from_plane(const ob_universe *u, uint32_t plane, ob_vec3 at,
 double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
-	const ob_motion *ma = ob_outcome_of(u, a), *mb = ob_outcome_of(u, b);
+	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
 	bool boxed = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // reaches beyond the sphere round it
 	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
 	ob_vec3 at_a = ob_centre_now(u, a, ma, steps), at_b = ob_centre_now(u, b, mb, steps);
@@ -103,10 +103,10 @@ double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b, uint64_t ste
 
 static ob_pair_key new_pair(const ob_universe *u, uint64_t key, uint64_t steps)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
 	double apart = ob_pairs_apart(u, a, b, steps);
-	double paths = ob_brief_path(&ex->brief[a], steps) + ob_brief_path(&ex->brief[b], steps);
+	double paths = ob_schedule_path(&ex->brief[a], steps) + ob_schedule_path(&ex->brief[b], steps);
 	double limit = apart > 0 ? paths + apart : -1;
 	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
 }
@@ -127,7 +127,7 @@ void ob_pair_let_go(ob_universe *u, ob_pair_key *k)
 // Returns how many keys are left.
 static size_t keep_perceived(ob_universe *u, const uint32_t *moved, uint64_t *keys, size_t count)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	size_t k = 0, fresh = 0;
 	uint32_t kept = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
@@ -149,7 +149,7 @@ static size_t keep_perceived(ob_universe *u, const uint32_t *moved, uint64_t *ke
 // From the back, where there is room.
 static bool insert(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t steps)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	size_t old = ex->count->pairs, end = old + fresh;
 	if (end > ex->pairs_max)
 		return false;
@@ -165,9 +165,9 @@ static bool insert(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t 
 
 void ob_pairs_merge(ob_universe *u, uint64_t steps)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t count, *moved = ex->scratch;
-	const uint32_t *list = ob_rebound_list(u, &count);
+	const uint32_t *list = ob_requery_list(u, &count);
 	size_t fresh;
 	if (!count)
 		return;
@@ -176,15 +176,15 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 		moved[list[i]] = 1;
 	uint64_t *keys = perceived_keys(u, list, count, moved, &fresh);
 	if (!keys || !insert(u, keys, keep_perceived(u, moved, keys, fresh), steps))
-		ex->count->failure = OB_EXCHANGE_PAIRS_FULL;
+		ex->count->failure = OB_STEP_PAIRS_FULL;
 	free(keys);
-	ob_rebound_reset(u);
-	ob_perceived_reset(u);
+	ob_requery_reset(u);
+	ob_neighbours_reset(u);
 }
 
 void ob_pairs_drop(ob_universe *u, uint32_t id)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t out = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		if (ex->pair[i].a == id || ex->pair[i].b == id)

@@ -9,20 +9,20 @@
 #include "sim/worker.h"
 
 // From now on the worker's time counts for this part.
-void ob_part_change(ob_sim *s, ob_part part);
-static inline void ob_part_enter(ob_sim *s, ob_part part)
+void ob_profile_change(ob_sim *s, ob_profile_section part);
+static inline void ob_profile_enter(ob_sim *s, ob_profile_section part)
 {
 	if (s->times.wanted)
-		ob_part_change(s, part);
+		ob_profile_change(s, part);
 }
 
 // Round a phase, or what the worker does between two; between an end and a beginning it waits at the gate. Returns ns of
 // CPU since the beginning, 0 unless the run is timed.
-void ob_part_begin(ob_sim *s, ob_part part);
-uint64_t ob_part_end(ob_sim *s);
+void ob_profile_begin(ob_sim *s, ob_profile_section part);
+uint64_t ob_profile_end(ob_sim *s);
 
 // From now on, until hide, each part is a span in the trace. The first is LOAD. Returns now.
-uint64_t ob_part_show(ob_sim *s);
-void ob_part_hide(ob_sim *s);
+uint64_t ob_profile_show(ob_sim *s);
+void ob_profile_hide(ob_sim *s);
 
 #endif

@@ -27,7 +27,7 @@ double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size)
 double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v, ob_vec3 w)
 {
 	double speed = ob_surface_speed(v, w, p->shape, p->size);
-	return (speed + ob_norm(ob_pull(run, p)) * run->step_length) * run->step_length;
+	return (speed + ob_norm(ob_external_acceleration(run, p)) * run->step_length) * run->step_length;
 }
 
 static bool holds(const float *box, const double *tight, double margin)
@@ -40,15 +40,15 @@ static bool holds(const float *box, const double *tight, double margin)
 
 static void claim(ob_universe *u, uint32_t id, const double *tight, double margin)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	for (int c = 0; c < 3; c++) {
 		// Rounded outwards; a plane's box stays infinite.
 		ex->bounds[id][c] = nextafterf((float)(tight[c] - margin), -FLT_MAX);
 		ex->bounds[id][3 + c] = nextafterf((float)(tight[3 + c] + margin), FLT_MAX);
 	}
-	if (!ob_perceive_asked(u, id)) {
+	if (!ob_broadphase_query_pending(u, id)) {
 		ex->perceived[id].count = UINT32_MAX;
-		ob_rebound_append(u, id);
+		ob_requery_append(u, id);
 	}
 }
 
@@ -79,10 +79,10 @@ static bool much_larger(const float *box, const double *next, double margin)
 	return false;
 }
 
-void ob_claim_bounds(ob_universe *u, uint32_t id, const ob_state *now, double reach)
+void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double reach)
 {
 	const ob_passport *p = ob_passport_of(u, id);
-	const float *box = ob_universe_exchange(u)->bounds[id];
+	const float *box = ob_universe_step_data(u)->bounds[id];
 	double next[6];
 	ob_shape_bounds(p->shape, p->size, now->pose, next);
 	bool held = holds(box, next, reach);
@@ -94,7 +94,7 @@ void ob_claim_bounds(ob_universe *u, uint32_t id, const ob_state *now, double re
 		claim(u, id, next, margin);
 }
 
-void ob_claim_bounds_anew(ob_universe *u, uint32_t id, const ob_state *now, double reach)
+void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double reach)
 {
 	const ob_passport *p = ob_passport_of(u, id);
 	double next[6];
@@ -103,9 +103,9 @@ void ob_claim_bounds_anew(ob_universe *u, uint32_t id, const ob_state *now, doub
 	claim(u, id, next, margin);
 }
 
-void ob_claim_swept(ob_universe *u, uint32_t id, const double *box, double margin)
+void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double margin)
 {
-	const float *old = ob_universe_exchange(u)->bounds[id];
+	const float *old = ob_universe_step_data(u)->bounds[id];
 	bool fits = holds(old, box, margin);
 	for (int c = 0; c < 3; c++)
 		fits &= old[3 + c] - old[c] <= roomy * (box[3 + c] - box[c] + 2 * margin);
@@ -113,18 +113,18 @@ void ob_claim_swept(ob_universe *u, uint32_t id, const double *box, double margi
 		claim(u, id, box, margin);
 }
 
-bool ob_perceive_asked(const ob_universe *u, uint32_t id)
+bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)
 {
-	return ob_universe_exchange(u)->perceived[id].count == UINT32_MAX;
+	return ob_universe_step_data(u)->perceived[id].count == UINT32_MAX;
 }
 
-void ob_perceive(ob_universe *u, uint32_t id, uint64_t *box_tests)
+void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t near[256], n = ob_index_query(u, id, near, 256, box_tests);
-	uint32_t offset = ob_perceived_reserve(u, n);
+	uint32_t offset = ob_neighbours_reserve(u, n);
 	if (offset == UINT32_MAX) {
-		ex->count->failure = OB_EXCHANGE_PERCEIVED_FULL;
+		ex->count->failure = OB_STEP_NEIGHBOURS_FULL;
 		n = offset = 0;
 	} else if (n <= 256) {
 		for (uint32_t i = 0; i < n; i++)
@@ -132,5 +132,5 @@ void ob_perceive(ob_universe *u, uint32_t id, uint64_t *box_tests)
 	} else {
 		ob_index_query(u, id, ex->perceived_id + offset, n, box_tests);
 	}
-	ex->perceived[id] = (struct ob_perceived){ offset, n };
+	ex->perceived[id] = (struct ob_neighbours){ offset, n };
 }

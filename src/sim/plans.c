@@ -11,12 +11,12 @@ typedef struct start {
 	ob_vec3 w, inertia;
 } start;
 
-typedef struct ob_plan {
+typedef struct ob_cached_rotation {
 	start from;
 	ob_spin spin;
-} ob_plan;
+} ob_cached_rotation;
 
-bool ob_plans_create(ob_plans *p, uint32_t objects)
+bool ob_rotation_cache_create(ob_rotation_cache *p, uint32_t objects)
 {
 	p->slots = 1;
 	while (p->slots < objects && p->slots < SLOTS_MOST)
@@ -25,14 +25,14 @@ bool ob_plans_create(ob_plans *p, uint32_t objects)
 	return p->slot;
 }
 
-void ob_plans_finish(ob_plans *p)
+void ob_rotation_cache_finish(ob_rotation_cache *p)
 {
 	free(p->slot);
 }
 
-const ob_spin *ob_plans_spin(ob_plans *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia)
+const ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {
-	ob_plan *plan = &p->slot[id & (p->slots - 1)];
+	ob_cached_rotation *plan = &p->slot[id & (p->slots - 1)];
 	start from = { q, w, inertia };
 	if (memcmp(&from, &plan->from, sizeof from)) { // an empty one holds no unit quaternion
 		plan->from = from;

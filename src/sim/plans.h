@@ -9,15 +9,15 @@
 
 #include "motion/spin.h"
 
-typedef struct ob_plans {
+typedef struct ob_rotation_cache {
 	uint32_t slots; // a power of two
-	struct ob_plan *slot; // [slots], by id: a later one takes an earlier one's place
-} ob_plans;
+	struct ob_cached_rotation *slot; // [slots], by id: a later one takes an earlier one's place
+} ob_rotation_cache;
 
-bool ob_plans_create(ob_plans *p, uint32_t objects); // false: no memory
-void ob_plans_finish(ob_plans *p);
+bool ob_rotation_cache_create(ob_rotation_cache *p, uint32_t objects); // false: no memory
+void ob_rotation_cache_finish(ob_rotation_cache *p);
 
 // The plan of object id that turns from (q, w) on. Valid until the next call.
-const ob_spin *ob_plans_spin(ob_plans *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia);
+const ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
 #endif

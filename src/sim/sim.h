@@ -18,7 +18,7 @@ void ob_sim_destroy(ob_sim *s);
 // The worker's share of a phase. Called between ob_gate_wait and ob_gate_arrive.
 void ob_sim_work(ob_sim *s, ob_phase phase);
 // Called by the last to arrive: arranges what comes next and opens the gate (or pauses it).
-void ob_sim_arrange(ob_sim *s, ob_phase finished);
+void ob_sim_schedule(ob_sim *s, ob_phase finished);
 
 // The whole life of a worker: wait, work, arrive, arrange, until STOP. Returns when the run is over.
 void ob_sim_run(ob_sim *s);

@@ -37,7 +37,7 @@ void ob_span_chunk_end(ob_sim *s, uint32_t chunk)
 {
 	if (!s->span.traced)
 		return;
-	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_step_data *ex = ob_universe_step_data(s->u);
 	uint32_t first = ex->chunk[chunk], end = ex->chunk[chunk + 1], members = 0;
 	for (uint32_t i = first; i < end; i++)
 		members += ex->island[i].members;
@@ -49,16 +49,16 @@ bool ob_span_island_begin(ob_sim *s, uint32_t i, bool first)
 	if (!s->span.traced)
 		return false;
 	bool sampled = first && ob_step_count(s->u) % SAMPLED_STEPS == 0;
-	if (!sampled && ob_universe_exchange(s->u)->island[i].members < LARGE_ISLAND)
+	if (!sampled && ob_universe_step_data(s->u)->island[i].members < LARGE_ISLAND)
 		return false;
-	s->span.island = ob_part_show(s);
+	s->span.island = ob_profile_show(s);
 	return true;
 }
 
 void ob_span_island_end(ob_sim *s, uint32_t i)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_step_data *ex = ob_universe_step_data(s->u);
 	const ob_island *is = &ex->island[i];
-	ob_part_hide(s);
+	ob_profile_hide(s);
 	ob_trace_span(s->u, s->worker, OB_TRACE_ISLAND, s->span.island, ex->member[is->first_member], is->members);
 }

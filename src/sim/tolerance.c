@@ -8,10 +8,10 @@ static const double memory = 1; // s, for which slip is remembered
 static const double sticking = .999; // of its bound: friction that is smaller holds
 static const double gain = 8; // fewer substeps are tried when they may multiply the error by so much
 
-uint32_t ob_tolerance_start(const ob_sim *s, const ob_island *is)
+uint32_t ob_error_control_substeps(const ob_sim *s, const ob_island *is)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
-	const uint32_t *id = ob_universe_exchange(s->u)->member + is->first_member;
+	const uint32_t *id = ob_universe_step_data(s->u)->member + is->first_member;
 	uint32_t most = run->substeps;
 	if (!(run->tolerance > 0))
 		return most;
@@ -29,7 +29,7 @@ static bool is_set(const ob_sim *s)
 
 // ---- notes
 
-static double depth_of(const ob_island_work *w, const ob_touch *t)
+static double depth_of(const ob_island_work *w, const ob_contact *t)
 {
 	const ob_batch *b = &w->batch[t->lane / OB_LANES];
 	const uint32_t l = t->lane % OB_LANES;
@@ -44,11 +44,11 @@ static double depth_of(const ob_island_work *w, const ob_touch *t)
 	return deepest;
 }
 
-void ob_tolerance_note_depth(ob_sim *s, bool at_start)
+void ob_error_control_note_depth(ob_sim *s, bool at_start)
 {
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 0; is_set(s) && i < w->touches; i++) {
-		ob_touch *t = &w->touch[i];
+		ob_contact *t = &w->touch[i];
 		if (t->lane == OB_NO_LANE)
 			continue;
 		double depth = depth_of(w, t);
@@ -63,7 +63,7 @@ void ob_tolerance_note_depth(ob_sim *s, bool at_start)
 }
 
 // m/s, at the contact's centroid, if friction holds it
-static double slip_of(const ob_island_work *w, const ob_touch *t)
+static double slip_of(const ob_island_work *w, const ob_contact *t)
 {
 	const ob_batch *b = &w->batch[t->lane / OB_LANES];
 	const uint32_t l = t->lane % OB_LANES;
@@ -81,24 +81,24 @@ static double slip_of(const ob_island_work *w, const ob_touch *t)
 	return hypot(rate[0], rate[1]);
 }
 
-void ob_tolerance_note_slip(ob_sim *s)
+void ob_error_control_note_slip(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 0; is_set(s) && i < w->touches; i++) {
-		ob_touch *t = &w->touch[i];
+		ob_contact *t = &w->touch[i];
 		if (t->lane != OB_NO_LANE && t->mu > 0)
 			t->slip += w->h * slip_of(w, t);
 	}
 }
 
-void ob_tolerance_note_bounce(ob_sim *s)
+void ob_error_control_note_bounce(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const double tolerance = ob_universe_settings(s->u)->tolerance;
 	const ob_impact_rows at = { w->v, w->drift, w->d };
 	double lost = 0;
 	for (uint32_t i = 0; is_set(s) && w->elastic && w->pull > 0 && i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
+		const ob_contact *t = &w->touch[i];
 		if (t->lane == OB_NO_LANE || !(t->e > 0))
 			continue;
 		// m/s, approaches that would rebound to the tolerance, and those that are resolved at all
@@ -121,7 +121,7 @@ static void note_creep(ob_sim *s)
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / memory);
 	for (uint32_t i = 0; i < w->touches; i++) {
-		ob_touch *t = &w->touch[i];
+		ob_contact *t = &w->touch[i];
 		t->creep = t->creep * (1 - fading) + t->slip;
 		w->error = fmax(w->error, t->creep);
 		bool goes_on = t->slip > fading * tolerance && w->substeps < most_for_creep;
@@ -131,7 +131,7 @@ static void note_creep(ob_sim *s)
 }
 
 // More before the error is too large, so that little is solved twice; fewer where that has room.
-static uint32_t wanted(const ob_island_work *w, const ob_touch *t, const ob_run_settings *run)
+static uint32_t wanted(const ob_island_work *w, const ob_contact *t, const ob_run_settings *run)
 {
 	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / memory);
 	double depth = t->depth_given + t->growth, creep = t->slip / fading; // which slipping on like this adds up to
@@ -152,23 +152,23 @@ static void ask(ob_sim *s)
 	for (uint32_t i = 0; i < w->rows; i++)
 		w->member[i].substeps = run->substeps;
 	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i];
+		const ob_contact *t = &w->touch[i];
 		uint32_t n = wanted(w, t, run);
 		for (int side = 0; side < 2; side++) {
-			ob_member *m = &w->member[side ? t->b : t->a];
+			ob_body *m = &w->member[side ? t->b : t->a];
 			m->substeps = n > m->substeps ? n : m->substeps;
 		}
 	}
 }
 
-bool ob_tolerance_accept(ob_sim *s)
+bool ob_error_control_accept(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const double tolerance = ob_universe_settings(s->u)->tolerance;
 	if (!is_set(s))
 		return true;
-	ob_touches_refresh(s, 0);
-	ob_tolerance_note_depth(s, false);
+	ob_contacts_update(s, 0);
+	ob_error_control_note_depth(s, false);
 	note_creep(s);
 	if (w->error_new > tolerance && w->substeps < most_substeps) {
 		w->substeps *= w->error_new > 16 * tolerance ? 4 : 2;

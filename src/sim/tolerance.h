@@ -17,14 +17,14 @@
 #include "sim/worker.h"
 
 // Substeps with which the island is solved first: what its members ask for, or the run's own number without tolerance.
-uint32_t ob_tolerance_start(const ob_sim *s, const ob_island *is);
+uint32_t ob_error_control_substeps(const ob_sim *s, const ob_island *is);
 
 // Notes, each while the island is solved; all do nothing without a tolerance.
-void ob_tolerance_note_depth(ob_sim *s, bool at_start); // after a look; at_start: what is there is not this step's doing
-void ob_tolerance_note_slip(ob_sim *s); // after a stride
-void ob_tolerance_note_bounce(ob_sim *s); // after impacts
+void ob_error_control_note_depth(ob_sim *s, bool at_start); // after a look; at_start: what is there is not this step's doing
+void ob_error_control_note_slip(ob_sim *s); // after a stride
+void ob_error_control_note_bounce(ob_sim *s); // after impacts
 
 // After the last substep: true if the solution stands; false: solve again with island.substeps.
-bool ob_tolerance_accept(ob_sim *s);
+bool ob_error_control_accept(ob_sim *s);
 
 #endif

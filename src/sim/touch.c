@@ -21,17 +21,17 @@ static double patience(const ob_sim *s)
 	return tolerance > 0 ? fmin(look_again, share * tolerance) : look_again;
 }
 
-static void refresh(ob_sim *s, ob_touch *t)
+static void refresh(ob_sim *s, ob_contact *t)
 {
 	ob_island_work *w = &s->island;
 	ob_manifold m;
 	double when;
-	ob_carried old = { .points = 0 };
-	ob_member_settle(w, t->a);
-	ob_member_settle(w, t->b);
-	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
+	ob_saved_impulses old = { .points = 0 };
+	ob_body_update_pose(w, t->a);
+	ob_body_update_pose(w, t->b);
+	const ob_body *a = &w->member[t->a], *b = &w->member[t->b];
 	double tolerance = patience(s) * fmin(1, 2 * fmin(a->thickness, b->thickness)), path = a->path + b->path;
-	ob_look(s, t, tolerance, &m, &when);
+	ob_narrowphase_find(s, t, tolerance, &m, &when);
 	if (!m.points) {
 		t->limit = path + fmax(tolerance, m.separation - tolerance);
 		if (t->lane != OB_NO_LANE)
@@ -42,7 +42,7 @@ static void refresh(ob_sim *s, ob_touch *t)
 	if (t->lane == OB_NO_LANE)
 		ob_lane_take(s, t);
 	else
-		ob_lane_carry_out(w, t, &old);
+		ob_lane_save_impulses(w, t, &old);
 	ob_vec3 va = ob_v3(w->v[t->a][0], w->v[t->a][1], w->v[t->a][2]);
 	ob_vec3 vb = ob_v3(w->v[t->b][0], w->v[t->b][1], w->v[t->b][2]);
 	t->points = (uint32_t)m.points;
@@ -51,12 +51,12 @@ static void refresh(ob_sim *s, ob_touch *t)
 		t->arm_b[j] = ob_sub(m.at[j], ob_madd(b->p, when, vb));
 	}
 	ob_lane_fill(w, t, m.normal, m.gap);
-	ob_lane_carry_in(w, t, &old);
+	ob_lane_warm_start(w, t, &old);
 }
 
 // m/s, what the two may gain within the substep, on average over it. What touches is expected to go on as it did: at
 // rest it gains nothing.
-static double gain(const ob_island_work *w, const ob_touch *t)
+static double gain(const ob_island_work *w, const ob_contact *t)
 {
 	double free = w->pull * w->h;
 	const double *a = w->dv[t->a], *b = w->dv[t->b];
@@ -65,13 +65,13 @@ static double gain(const ob_island_work *w, const ob_touch *t)
 	return fmin(free, .5 * (ob_norm(ob_v3(a[0], a[1], a[2])) + ob_norm(ob_v3(b[0], b[1], b[2]))));
 }
 
-bool ob_touches_refresh(ob_sim *s, double ahead)
+bool ob_contacts_update(ob_sim *s, double ahead)
 {
 	bool any = false;
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 0; i < w->touches; i++) {
-		ob_touch *t = &w->touch[i];
-		const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
+		ob_contact *t = &w->touch[i];
+		const ob_body *a = &w->member[t->a], *b = &w->member[t->b];
 		if (a->path + b->path + (a->speed + b->speed + gain(w, t)) * ahead > t->limit) {
 			s->counters.looks++;
 			refresh(s, t);
@@ -102,7 +102,7 @@ static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 {
 	b->alone = 0;
 	for (int l = 0; l < OB_LANES; l++) {
-		const ob_member *m[2] = { &w->member[b->body_a[l]], &w->member[b->body_b[l]] };
+		const ob_body *m[2] = { &w->member[b->body_a[l]], &w->member[b->body_b[l]] };
 		bool alone =
 			(m[0]->inv_mass == 0 || m[0]->contacts == 1) && (m[1]->inv_mass == 0 || m[1]->contacts == 1);
 		b->alone |= (unsigned)alone << l & b->live;
@@ -113,10 +113,10 @@ static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 	}
 }
 
-void ob_touches_prepare(ob_sim *s)
+void ob_contacts_prepare(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	bool jacobi = ob_universe_settings(s->u)->exchange == OB_EXCHANGE_JACOBI;
+	bool jacobi = ob_universe_settings(s->u)->exchange == OB_SOLVER_JACOBI;
 	if (w->order_stale)
 		order_batches(w);
 	for (uint32_t i = 0; i < w->batches; i++) {
@@ -134,19 +134,19 @@ void ob_touches_prepare(ob_sim *s)
 // The pair's state before the step; NULL if it did not touch. What is solved again has overwritten what its key says.
 static const ob_pair_state *touched_before(const ob_sim *s, const ob_pair_key *k)
 {
-	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_step_data *ex = ob_universe_step_data(s->u);
 	if (k->record == OB_NO_RECORD || (!k->active && !ex->count->again))
 		return NULL;
 	const ob_pair_state *p = ob_pair_before(&ex->record[k->record], ob_step_count(s->u));
 	return p && p->points ? p : NULL;
 }
 
-static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
+static void load_touch(ob_sim *s, const ob_contact *from, const ob_pair_key *k)
 {
 	ob_island_work *w = &s->island;
-	ob_touch *t = &w->touch[w->touches++];
+	ob_contact *t = &w->touch[w->touches++];
 	*t = *from;
-	const ob_member *a = &w->member[t->a], *b = &w->member[t->b];
+	const ob_body *a = &w->member[t->a], *b = &w->member[t->b];
 	t->mu = sqrt(a->friction * b->friction);
 	t->e = fmax(a->restitution, b->restitution);
 	w->elastic |= t->e > 0;
@@ -164,7 +164,7 @@ static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 	ob_lane_take(s, t);
 	ob_lane_fill(w, t, p->normal, gap);
 	ob_batch *batch = &w->batch[t->lane / OB_LANES];
-	const ob_exchange *ex = ob_universe_exchange(s->u);
+	const ob_step_data *ex = ob_universe_step_data(s->u);
 	const double *impulse = t->mirror ? ex->impulse_b[k->record][p - ex->record[k->record].version] : p->impulse;
 	for (int i = 0; i < OB_PAIR_ROWS; i++)
 		batch->impulse[i][t->lane % OB_LANES] = batch->impulse_start[i][t->lane % OB_LANES] =
@@ -172,9 +172,9 @@ static void load_touch(ob_sim *s, const ob_touch *from, const ob_pair_key *k)
 }
 
 // Each side for itself, on a ghost of the other.
-static void load_apart(ob_sim *s, const ob_touch *t, const ob_pair_key *k)
+static void load_apart(ob_sim *s, const ob_contact *t, const ob_pair_key *k)
 {
-	ob_touch own = *t, mirror = *t;
+	ob_contact own = *t, mirror = *t;
 	own.b = ob_ghost_make(s, t->b);
 	mirror.a = ob_ghost_make(s, t->a);
 	mirror.mirror = true;
@@ -196,14 +196,14 @@ static void link_adjacent(ob_island_work *w)
 	}
 	for (uint32_t i = 0; i < w->touches; i++)
 		for (int side = 0; side < 2; side++) {
-			ob_member *m = &w->member[side ? w->touch[i].b : w->touch[i].a];
+			ob_body *m = &w->member[side ? w->touch[i].b : w->touch[i].a];
 			w->adjacency[m->first_adjacent + m->adjacent++] = i;
 		}
 }
 
-void ob_touches_load(ob_sim *s, const ob_island *is)
+void ob_contacts_load(ob_sim *s, const ob_island *is)
 {
-	ob_exchange *ex = ob_universe_exchange(s->u);
+	ob_step_data *ex = ob_universe_step_data(s->u);
 	ob_island_work *w = &s->island;
 	uint32_t most = ob_ghosts_used(s) ? 2 * is->pairs : is->pairs;
 	if (most > w->touches_max) {
@@ -219,7 +219,7 @@ void ob_touches_load(ob_sim *s, const ob_island *is)
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		uint32_t key = ex->island_pair[is->first_pair + i];
 		const ob_pair_key *k = &ex->pair[key];
-		ob_touch t = {
+		ob_contact t = {
 			.key = key, .a = w->row_of[k->a], .b = w->row_of[k->b], .lane = OB_NO_LANE, .limit = k->limit
 		};
 		if (ob_ghosts_used(s) && t.a <= w->members && t.b <= w->members)
@@ -231,13 +231,13 @@ void ob_touches_load(ob_sim *s, const ob_island *is)
 }
 
 // The lane's impulses, or zeros if it has none.
-static void store_impulses(const ob_island_work *w, const ob_touch *t, double *impulse)
+static void store_impulses(const ob_island_work *w, const ob_contact *t, double *impulse)
 {
 	for (int j = 0; j < OB_PAIR_ROWS; j++)
 		impulse[j] = t->lane == OB_NO_LANE ? 0 : w->batch[t->lane / OB_LANES].impulse[j][t->lane % OB_LANES];
 }
 
-static void store_touch(const ob_island_work *w, const ob_touch *t, ob_pair_state *p)
+static void store_touch(const ob_island_work *w, const ob_contact *t, ob_pair_state *p)
 {
 	*p = (ob_pair_state){ .points = t->points, .substep = w->h, .creep = (float)t->creep };
 	for (int j = 0; j < OB_PAIR_POINTS; j++) {
@@ -256,12 +256,12 @@ static void store_touch(const ob_island_work *w, const ob_touch *t, ob_pair_stat
 	p->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
 }
 
-void ob_touches_store(ob_sim *s)
+void ob_contacts_store(ob_sim *s)
 {
-	ob_exchange *ex = ob_universe_exchange(s->u);
+	ob_step_data *ex = ob_universe_step_data(s->u);
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 0; i < w->touches; i++) {
-		const ob_touch *t = &w->touch[i], *mirror = i + 1 < w->touches && t[1].mirror ? t + 1 : NULL;
+		const ob_contact *t = &w->touch[i], *mirror = i + 1 < w->touches && t[1].mirror ? t + 1 : NULL;
 		ob_pair_key *k = &ex->pair[t->key];
 		bool was_active = k->active || touched_before(s, k);
 		k->limit = t->limit;

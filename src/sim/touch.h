@@ -4,12 +4,12 @@
 
 #include "sim/worker.h"
 
-void ob_touches_load(ob_sim *s, const ob_island *is);
+void ob_contacts_load(ob_sim *s, const ob_island *is);
 // Looks again at every pair whose geometry may change within the time ahead (s; 0: has changed), by the way that its
 // members have made and will make. true: there were some.
-bool ob_touches_refresh(ob_sim *s, double ahead);
+bool ob_contacts_update(ob_sim *s, double ahead);
 // Batches in order of colour, matrices up to date: ready for exchanges.
-void ob_touches_prepare(ob_sim *s);
-void ob_touches_store(ob_sim *s);
+void ob_contacts_prepare(ob_sim *s);
+void ob_contacts_store(ob_sim *s);
 
 #endif

@@ -6,10 +6,10 @@
 
 enum { BITS = 64 };
 
-void ob_truss_begin(ob_truss *t, uint32_t bodies)
+void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies)
 {
 	if (bodies > t->bodies_max) {
-		ob_truss_finish(t);
+		ob_sparse_finish(t);
 		t->bodies_max = bodies + bodies / 2;
 		size_t n = t->bodies_max, words = (n + BITS - 1) / BITS;
 		t->near = malloc(n * words * sizeof *t->near);
@@ -26,20 +26,20 @@ void ob_truss_begin(ob_truss *t, uint32_t bodies)
 	memset(t->near, 0, (size_t)bodies * t->words * sizeof *t->near);
 }
 
-static uint64_t *near_of(const ob_truss *t, uint32_t body)
+static uint64_t *near_of(const ob_sparse_solver *t, uint32_t body)
 {
 	return t->near + (size_t)body * t->words;
 }
 
-void ob_truss_link(ob_truss *t, uint32_t child, uint32_t parent)
+void ob_sparse_link(ob_sparse_solver *t, uint32_t child, uint32_t parent)
 {
-	if (parent == OB_TRUSS_FIXED)
+	if (parent == OB_SPARSE_FIXED)
 		return;
 	near_of(t, child)[parent / BITS] |= UINT64_C(1) << parent % BITS;
 	near_of(t, parent)[child / BITS] |= UINT64_C(1) << child % BITS;
 }
 
-static uint32_t degree(const ob_truss *t, uint32_t body)
+static uint32_t degree(const ob_sparse_solver *t, uint32_t body)
 {
 	uint32_t n = 0;
 	for (uint32_t k = 0; k < t->words; k++)
@@ -48,7 +48,7 @@ static uint32_t degree(const ob_truss *t, uint32_t body)
 }
 
 // Its neighbours become each other's, and lose it.
-static void eliminate(ob_truss *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
+static void eliminate(ob_sparse_solver *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
 {
 	const uint64_t *gone = near_of(t, body);
 	for (uint32_t i = 0; i < n; i++) {
@@ -60,7 +60,7 @@ static void eliminate(ob_truss *t, uint32_t body, const uint32_t *neighbour, uin
 	}
 }
 
-static uint32_t *list_neighbours(ob_truss *t, uint32_t body, uint32_t from, uint32_t n)
+static uint32_t *list_neighbours(ob_sparse_solver *t, uint32_t body, uint32_t from, uint32_t n)
 {
 	if (from + n >= t->below_max) {
 		t->below_max = (from + n + 1) * 2;
@@ -75,7 +75,7 @@ static uint32_t *list_neighbours(ob_truss *t, uint32_t body, uint32_t from, uint
 	return t->below + from;
 }
 
-bool ob_truss_plan(ob_truss *t, uint32_t most)
+bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most)
 {
 	uint64_t cost = 0;
 	uint32_t blocks = 0, *left = t->order; // those that are left stand behind those that are gone
@@ -112,14 +112,14 @@ bool ob_truss_plan(ob_truss *t, uint32_t most)
 
 // ---- assembling
 
-void ob_truss_inertia(ob_truss *t, uint32_t body, double m[6][8])
+void ob_sparse_add_inertia(ob_sparse_solver *t, uint32_t body, double m[6][8])
 {
 	for (int i = 0; i < 6; i++)
 		for (int k = 0; k < 6; k++)
 			t->own[body][i][k] = m[i][k];
 }
 
-void ob_truss_join(ob_truss *t, const ob_joint *j, uint32_t child, uint32_t parent)
+void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
 		const double stiff = 1 / j->compliance[r], push = stiff * j->parent[r][6], *p = j->parent[r];
@@ -129,7 +129,7 @@ void ob_truss_join(ob_truss *t, const ob_joint *j, uint32_t child, uint32_t pare
 				t->own[child][i][k] += s * j->child[k][r];
 			t->change[child][i] += push * j->child[i][r];
 		}
-		if (parent == OB_TRUSS_FIXED)
+		if (parent == OB_SPARSE_FIXED)
 			continue;
 		const bool child_first = t->place[child] < t->place[parent];
 		double(*both)[6] = t->block[t->at[(size_t)child * t->bodies + parent]];
@@ -192,7 +192,7 @@ static void subtract(double (*m)[6], double (*a)[6], double (*bt)[6])
 				m[i][c] -= a[i][k] * bt[k][c];
 }
 
-static void fold(ob_truss *t, uint32_t k)
+static void fold(ob_sparse_solver *t, uint32_t k)
 {
 	const uint32_t body = t->order[k], from = t->first[k], to = t->first[k + 1];
 	take_root(t->own[body], t->inverse[body]);
@@ -202,7 +202,7 @@ static void fold(ob_truss *t, uint32_t k)
 			lower_solve(t->own[body], t->inverse[body], t->block[i][r]);
 	for (uint32_t i = from; i < to; i++) {
 		const uint32_t sooner = t->below[i];
-		ob_truss_block turned;
+		ob_sparse_block turned;
 		for (int r = 0; r < 6; r++)
 			for (int c = 0; c < 6; c++)
 				turned[c][r] = t->block[i][r][c];
@@ -218,7 +218,7 @@ static void fold(ob_truss *t, uint32_t k)
 	}
 }
 
-static void unfold(ob_truss *t, uint32_t k)
+static void unfold(ob_sparse_solver *t, uint32_t k)
 {
 	const uint32_t body = t->order[k];
 	for (uint32_t i = t->first[k]; i < t->first[k + 1]; i++)
@@ -228,7 +228,7 @@ static void unfold(ob_truss *t, uint32_t k)
 	upper_solve(t->own[body], t->inverse[body], t->change[body]);
 }
 
-void ob_truss_solve(ob_truss *t)
+void ob_sparse_solve(ob_sparse_solver *t)
 {
 	for (uint32_t k = 0; k < t->bodies; k++)
 		fold(t, k);
@@ -236,19 +236,19 @@ void ob_truss_solve(ob_truss *t)
 		unfold(t, k);
 }
 
-void ob_truss_pull(const ob_truss *t, ob_joint *j, uint32_t child, uint32_t parent)
+void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t child, uint32_t parent)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
 		double left = j->parent[r][6];
 		for (int i = 0; i < 6; i++)
 			left -= j->child[i][r] * t->change[child][i];
-		for (int i = 0; i < 6 && parent != OB_TRUSS_FIXED; i++)
+		for (int i = 0; i < 6 && parent != OB_SPARSE_FIXED; i++)
 			left -= j->parent[r][i] * t->change[parent][i];
 		j->x[r] = left / j->compliance[r];
 	}
 }
 
-void ob_truss_finish(ob_truss *t)
+void ob_sparse_finish(ob_sparse_solver *t)
 {
 	free(t->near);
 	free(t->order);
@@ -260,5 +260,5 @@ void ob_truss_finish(ob_truss *t)
 	free(t->own);
 	free(t->inverse);
 	free(t->change);
-	*t = (ob_truss){ 0 };
+	*t = (ob_sparse_solver){ 0 };
 }

@@ -18,12 +18,12 @@
 
 #include "sim/articulated.h"
 
-enum { OB_TRUSS_FIXED = UINT32_MAX }; // a parent that does not move
+enum { OB_SPARSE_FIXED = UINT32_MAX }; // a parent that does not move
 
-typedef double ob_truss_block[6][6];
+typedef double ob_sparse_block[6][6];
 
 // Memory grown as needed, never shrunk. Bodies have numbers from 0.
-typedef struct ob_truss {
+typedef struct ob_sparse_solver {
 	uint32_t bodies, bodies_max, words; // 64 bodies to a word
 	uint64_t *near; // [body][words]: bit per neighbour that is not eliminated yet
 	uint32_t *order, *place; // bodies, as they are eliminated; [body]: its place among them
@@ -31,21 +31,21 @@ typedef struct ob_truss {
 	uint32_t below_max, *below; // neighbours left when a body is eliminated
 	uint32_t *at; // [body][body]: block of the pair
 	uint32_t blocks_max;
-	ob_truss_block *block; // one for each entry of below: the neighbour's rows, the eliminated body's columns
-	ob_truss_block *own; // [body]
+	ob_sparse_block *block; // one for each entry of below: the neighbour's rows, the eliminated body's columns
+	ob_sparse_block *own; // [body]
 	double (*inverse)[6]; // [body]: of its root's diagonal
 	double (*change)[6]; // [body]: the push, then dv
-} ob_truss;
+} ob_sparse_solver;
 
-void ob_truss_begin(ob_truss *t, uint32_t bodies);
-void ob_truss_link(ob_truss *t, uint32_t child, uint32_t parent);
+void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies);
+void ob_sparse_link(ob_sparse_solver *t, uint32_t child, uint32_t parent);
 // After the links: false if the solve would cost more than "most" block products for each body.
-bool ob_truss_plan(ob_truss *t, uint32_t most);
-void ob_truss_inertia(ob_truss *t, uint32_t body, double m[6][8]);
-void ob_truss_join(ob_truss *t, const ob_joint *j, uint32_t child, uint32_t parent);
-void ob_truss_solve(ob_truss *t);
+bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most);
+void ob_sparse_add_inertia(ob_sparse_solver *t, uint32_t body, double m[6][8]);
+void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent);
+void ob_sparse_solve(ob_sparse_solver *t);
 // Sets the joint's impulses.
-void ob_truss_pull(const ob_truss *t, ob_joint *j, uint32_t child, uint32_t parent);
-void ob_truss_finish(ob_truss *t);
+void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t child, uint32_t parent);
+void ob_sparse_finish(ob_sparse_solver *t);
 
 #endif

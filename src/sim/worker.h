@@ -12,16 +12,16 @@
 struct ob_sim {
 	ob_universe *u;
 	uint32_t worker;
-	ob_worlds worlds;
+	ob_ode_bodies worlds;
 	ob_island_work island; // scratch
-	ob_plans plans;
-	ob_monolith *monolith; // NULL unless one world holds all objects
+	ob_rotation_cache plans;
+	ob_ode_baseline *monolith; // NULL unless one world holds all objects
 	ob_counters counters; // handed over to the universe at the end of each phase
 	struct { // sim/part.h
 		bool timed, shown; // for the counters; for the trace
 		bool wanted; // either
-		ob_part part; // that the time counts for
-		uint64_t since, wall[OB_PARTS]; // ns; of the running phase
+		ob_profile_section part; // that the time counts for
+		uint64_t since, wall[OB_PROFILE_SECTIONS]; // ns; of the running phase
 		double cpu, cpu_end; // s, when it began; when the one before ended
 	} times;
 	struct { // sim/span.h

@@ -9,7 +9,7 @@ typedef struct ob_world {
 	uint32_t id, generation;
 } ob_world;
 
-bool ob_worlds_create(ob_worlds *w, const ob_universe *u)
+bool ob_ode_bodies_create(ob_ode_bodies *w, const ob_universe *u)
 {
 	const uint32_t objects = ob_universe_capacity(u), workers = ob_universe_workers(u);
 	w->slots = objects / workers + (objects % workers != 0);
@@ -20,7 +20,7 @@ bool ob_worlds_create(ob_worlds *w, const ob_universe *u)
 	return w->stepper && w->slot;
 }
 
-void ob_worlds_finish(ob_worlds *w)
+void ob_ode_bodies_finish(ob_ode_bodies *w)
 {
 	for (uint32_t i = 0; w->slot && i < w->slots; i++)
 		ob_ode_body_destroy(w->slot[i].body);
@@ -28,7 +28,7 @@ void ob_worlds_finish(ob_worlds *w)
 	free(w->slot);
 }
 
-ob_ode_body *ob_worlds_body(ob_worlds *w, const ob_universe *u, uint32_t id)
+ob_ode_body *ob_ode_bodies_get(ob_ode_bodies *w, const ob_universe *u, uint32_t id)
 {
 	const ob_passport *p = ob_passport_of(u, id);
 	ob_world *slot = &w->slot[id % w->slots];

@@ -9,16 +9,16 @@
 #include "ode/ode_body.h"
 #include "table/table.h"
 
-typedef struct ob_worlds {
+typedef struct ob_ode_bodies {
 	ob_ode_stepper *stepper; // of all of them
 	uint32_t slots;
 	struct ob_world *slot; // [slots], by id: a later one takes an earlier one's place
-} ob_worlds;
+} ob_ode_bodies;
 
-bool ob_worlds_create(ob_worlds *w, const ob_universe *u); // false: no memory
-void ob_worlds_finish(ob_worlds *w);
+bool ob_ode_bodies_create(ob_ode_bodies *w, const ob_universe *u); // false: no memory
+void ob_ode_bodies_finish(ob_ode_bodies *w);
 
 // The object's. Valid until the next call.
-ob_ode_body *ob_worlds_body(ob_worlds *w, const ob_universe *u, uint32_t id);
+ob_ode_body *ob_ode_bodies_get(ob_ode_bodies *w, const ob_universe *u, uint32_t id);
 
 #endif

@@ -72,7 +72,7 @@ static bool grow(void **array, size_t element, size_t needed, size_t *max)
 // The step's own areas. What the arranger scribbles on in between begins afresh in each step.
 static range step_areas(const ob_universe *u)
 {
-	return (range){ u->header.area[OB_AREA_REBOUND], u->header.area[OB_AREA_SCRATCH] };
+	return (range){ u->header.area[OB_AREA_REQUERY], u->header.area[OB_AREA_SCRATCH] };
 }
 
 // The next pages in use from "from" on; false: there are none before "end".

@@ -45,7 +45,7 @@ static bool point_makes_sense(const ob_contact_point *c)
 
 static size_t collect(const ob_universe *u, uint64_t step, ob_contact_point *out, size_t max)
 {
-	const ob_exchange *x = &u->exchange;
+	const ob_step_data *x = &u->exchange;
 	uint32_t pairs = __atomic_load_n(&x->count->pairs, __ATOMIC_RELAXED);
 	size_t n = 0;
 	for (uint32_t i = 0; i < pairs && i < x->pairs_max; i++) {

@@ -7,15 +7,15 @@ ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker)
 	return &u->worker[worker].counters;
 }
 
-const char *ob_part_name(uint32_t part)
+const char *ob_profile_name(uint32_t part)
 {
-	static const char *const names[OB_PARTS] = {
-		[OB_PART_PERCEIVE] = "perceive", [OB_PART_ARRANGE] = "arrange", [OB_PART_LEAP] = "leap",
-		[OB_PART_LOAD] = "load",         [OB_PART_LOOK] = "look",       [OB_PART_IMPACTS] = "impacts",
-		[OB_PART_SOLVE] = "solve",       [OB_PART_MOVE] = "move",       [OB_PART_PROJECT] = "project",
-		[OB_PART_PUBLISH] = "publish",
+	static const char *const names[OB_PROFILE_SECTIONS] = {
+		[OB_PROFILE_BROADPHASE] = "perceive", [OB_PROFILE_SCHEDULE] = "arrange", [OB_PROFILE_BALLISTIC] = "leap",
+		[OB_PROFILE_LOAD] = "load",         [OB_PROFILE_NARROWPHASE] = "look",       [OB_PROFILE_IMPACTS] = "impacts",
+		[OB_PROFILE_SOLVE] = "solve",       [OB_PROFILE_MOVE] = "move",       [OB_PROFILE_PROJECT] = "project",
+		[OB_PROFILE_PUBLISH] = "publish",
 	};
-	return part < OB_PARTS && names[part] ? names[part] : "?";
+	return part < OB_PROFILE_SECTIONS && names[part] ? names[part] : "?";
 }
 
 static void add(ob_counters *to, const ob_counters *c)
@@ -41,7 +41,7 @@ static void add(ob_counters *to, const ob_counters *c)
 	to->gyrations += c->gyrations;
 	to->recovered += c->recovered;
 	to->error = fmax(to->error, c->error);
-	for (int i = 0; i < OB_PARTS; i++)
+	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
 		to->time_ns[i] += c->time_ns[i];
 	to->held_ns += c->held_ns;
 	to->gate_ns += c->gate_ns;

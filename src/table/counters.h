@@ -6,22 +6,22 @@
 #include <stdint.h>
 
 // The parts of a step whose time is taken when ob_run_settings.timed says so.
-typedef enum ob_part {
-	OB_PART_PERCEIVE, // boxes against boxes
-	OB_PART_ARRANGE,  // index, pairs, islands: the worker that arrives last
-	OB_PART_LEAP,     // closed forms of what touches nothing
-	OB_PART_LOAD,     // an island's members and pairs out of the universe, and back
-	OB_PART_LOOK,     // where bodies meet: collision tests
-	OB_PART_IMPACTS,  // collisions with restitution
-	OB_PART_SOLVE,    // exchanges of contact impulses
-	OB_PART_MOVE,     // rotation, prediction, displacement
-	OB_PART_PROJECT,  // penetration pushed apart
-	OB_PART_PUBLISH,  // rest, boxes, motions into their slots
-	OB_PARTS
-} ob_part;
+typedef enum ob_profile_section {
+	OB_PROFILE_BROADPHASE, // boxes against boxes
+	OB_PROFILE_SCHEDULE,  // index, pairs, islands: the worker that arrives last
+	OB_PROFILE_BALLISTIC,     // closed forms of what touches nothing
+	OB_PROFILE_LOAD,     // an island's members and pairs out of the universe, and back
+	OB_PROFILE_NARROWPHASE,     // where bodies meet: collision tests
+	OB_PROFILE_IMPACTS,  // collisions with restitution
+	OB_PROFILE_SOLVE,    // exchanges of contact impulses
+	OB_PROFILE_MOVE,     // rotation, prediction, displacement
+	OB_PROFILE_PROJECT,  // penetration pushed apart
+	OB_PROFILE_PUBLISH,  // rest, boxes, motions into their slots
+	OB_PROFILE_SECTIONS
+} ob_profile_section;
 
 // A word for it; "?" for what is none.
-const char *ob_part_name(uint32_t part);
+const char *ob_profile_name(uint32_t part);
 
 enum { OB_SUBSTEP_CHOICES = 11 }; // islands take 1, 2, 4 .. 1024 substeps where a tolerance chooses
 
@@ -44,7 +44,7 @@ typedef struct ob_counters {
 	uint64_t gyrations;         // substeps of bodies whose inertia needed Euler's equations
 	double recovered;           // J, potential energy that pushing penetrations apart has added
 	double error;               // m, the largest that an accepted solution estimated for itself
-	uint64_t time_ns[OB_PARTS]; // of CPU
+	uint64_t time_ns[OB_PROFILE_SECTIONS]; // of CPU
 	// If timed: where the rest of the worker's time went, on the wall but for gate_cpu_ns.
 	uint64_t held_ns;     // it had work, and no core
 	uint64_t gate_ns;     // waiting at the gate until its last phase, pauses included

@@ -31,7 +31,7 @@ typedef struct area_rule {
 	unsigned times, more;
 } area_rule;
 
-#define ELEMENT(field) sizeof(*((ob_exchange *)0)->field)
+#define ELEMENT(field) sizeof(*((ob_step_data *)0)->field)
 static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_CONTROL] = { sizeof(ob_control), FIXED, 0, 1 },
 	[OB_AREA_GATE] = { sizeof(ob_gate), FIXED, 0, 1 },
@@ -42,16 +42,16 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_PASSPORT] = { sizeof(ob_passport_slot), PER_OBJECT, 1, 0 },
 	[OB_AREA_PASSPORT_EVEN] = { sizeof(ob_passport), PER_OBJECT, 1, 0 },
 	[OB_AREA_STEP_CLOCK] = { sizeof(ob_step_clock), FIXED, 0, 1 },
-	[OB_AREA_REBOUND] = { sizeof(uint32_t), PER_OBJECT, 1, 0 },
-	[OB_AREA_REBOUND_BIT] = { sizeof(uint64_t), PER_64_OBJECTS, 1, 0 },
+	[OB_AREA_REQUERY] = { sizeof(uint32_t), PER_OBJECT, 1, 0 },
+	[OB_AREA_REQUERY_BIT] = { sizeof(uint64_t), PER_64_OBJECTS, 1, 0 },
 	[OB_AREA_COUNTS] = { ELEMENT(count), FIXED, 0, 1 },
-	[OB_AREA_BRIEF] = { ELEMENT(brief), PER_OBJECT, 1, 0 },
+	[OB_AREA_SCHEDULE] = { ELEMENT(brief), PER_OBJECT, 1, 0 },
 	[OB_AREA_BOUNDS] = { ELEMENT(bounds), PER_OBJECT, 1, 0 },
 	[OB_AREA_RESULT] = { ELEMENT(result), PER_OBJECT, 1, 0 },
 	[OB_AREA_EFFORT] = { ELEMENT(effort), PER_OBJECT, 1, 0 },
 	[OB_AREA_RESULT_ISLAND] = { ELEMENT(result_island), PER_OBJECT, 1, 0 },
-	[OB_AREA_PERCEIVED] = { ELEMENT(perceived), PER_OBJECT, 1, 0 },
-	[OB_AREA_PERCEIVED_ID] = { ELEMENT(perceived_id), PER_PERCEIVED, 1, 0 },
+	[OB_AREA_NEIGHBOURS] = { ELEMENT(perceived), PER_OBJECT, 1, 0 },
+	[OB_AREA_NEIGHBOUR_ID] = { ELEMENT(perceived_id), PER_PERCEIVED, 1, 0 },
 	[OB_AREA_CELL] = { ELEMENT(cell), PER_OBJECT, 1, 0 },
 	[OB_AREA_BUCKET] = { ELEMENT(bucket), PER_BUCKET, 1, 0 },
 	[OB_AREA_PLANE] = { ELEMENT(plane), PER_OBJECT, 1, 0 },
@@ -155,19 +155,19 @@ static void bind_exchange(ob_universe *u)
 {
 	const uint64_t *area = u->header.area;
 	char *base = u->base;
-	u->exchange = (ob_exchange){
+	u->exchange = (ob_step_data){
 		.objects_max = u->header.sizes.capacity,
 		.pairs_max = u->header.sizes.pairs_max,
 		.buckets = u->header.sizes.buckets,
 		.perceived_max = u->header.sizes.perceived_max,
 		.count = (void *)(base + area[OB_AREA_COUNTS]),
-		.brief = (void *)(base + area[OB_AREA_BRIEF]),
+		.brief = (void *)(base + area[OB_AREA_SCHEDULE]),
 		.bounds = (void *)(base + area[OB_AREA_BOUNDS]),
 		.result = (void *)(base + area[OB_AREA_RESULT]),
 		.effort = (void *)(base + area[OB_AREA_EFFORT]),
 		.result_island = (void *)(base + area[OB_AREA_RESULT_ISLAND]),
-		.perceived = (void *)(base + area[OB_AREA_PERCEIVED]),
-		.perceived_id = (void *)(base + area[OB_AREA_PERCEIVED_ID]),
+		.perceived = (void *)(base + area[OB_AREA_NEIGHBOURS]),
+		.perceived_id = (void *)(base + area[OB_AREA_NEIGHBOUR_ID]),
 		.cell = (void *)(base + area[OB_AREA_CELL]),
 		.bucket = (void *)(base + area[OB_AREA_BUCKET]),
 		.plane = (void *)(base + area[OB_AREA_PLANE]),
@@ -196,8 +196,8 @@ void ob_layout_bind(ob_universe *u, void *base)
 	u->slot = (void *)(u->base + area[OB_AREA_SLOT]);
 	u->passport = (void *)(u->base + area[OB_AREA_PASSPORT]);
 	u->passport_even = (void *)(u->base + area[OB_AREA_PASSPORT_EVEN]);
-	u->rebound = (void *)(u->base + area[OB_AREA_REBOUND]);
-	u->rebound_bit = (void *)(u->base + area[OB_AREA_REBOUND_BIT]);
+	u->rebound = (void *)(u->base + area[OB_AREA_REQUERY]);
+	u->rebound_bit = (void *)(u->base + area[OB_AREA_REQUERY_BIT]);
 	u->trace_ring = (void *)(u->base + area[OB_AREA_TRACE_RING]);
 	u->trace_event = (void *)(u->base + area[OB_AREA_TRACE_EVENT]);
 	u->trace_since = (void *)(u->base + area[OB_AREA_TRACE_SINCE]);

@@ -27,16 +27,16 @@ typedef enum ob_area {
 	OB_AREA_PASSPORT, // [capacity]
 	OB_AREA_PASSPORT_EVEN, // [capacity]
 	OB_AREA_STEP_CLOCK,
-	OB_AREA_REBOUND, // [capacity] ids
-	OB_AREA_REBOUND_BIT, // [capacity / 64] ids that are on the list
-	OB_AREA_COUNTS, // from here on: ob_exchange
-	OB_AREA_BRIEF,
+	OB_AREA_REQUERY, // [capacity] ids
+	OB_AREA_REQUERY_BIT, // [capacity / 64] ids that are on the list
+	OB_AREA_COUNTS, // from here on: ob_step_data
+	OB_AREA_SCHEDULE,
 	OB_AREA_BOUNDS,
 	OB_AREA_RESULT,
 	OB_AREA_EFFORT,
 	OB_AREA_RESULT_ISLAND,
-	OB_AREA_PERCEIVED,
-	OB_AREA_PERCEIVED_ID,
+	OB_AREA_NEIGHBOURS,
+	OB_AREA_NEIGHBOUR_ID,
 	OB_AREA_CELL,
 	OB_AREA_BUCKET,
 	OB_AREA_PLANE,
@@ -121,7 +121,7 @@ static_assert(sizeof(ob_control) == 256, "control");
 static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
 static_assert(sizeof(ob_pair_state) == 184, "pair state");
 static_assert(sizeof(ob_pair_record) == 376, "pair record");
-static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_brief) == 24, "exchange area");
+static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "exchange area");
 
 // A process's view of a mapped segment. Immutable once made; forked children may go on using it.
 struct ob_universe {
@@ -138,7 +138,7 @@ struct ob_universe {
 	ob_passport *passport_even;
 	uint32_t *rebound;
 	uint64_t *rebound_bit;
-	ob_exchange exchange;
+	ob_step_data exchange;
 	ob_trace_ring *trace_ring; // these three only if traced
 	ob_trace_event *trace_event;
 	uint64_t *trace_since;

@@ -71,13 +71,13 @@ void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns)
 	__atomic_store_n(&u->worker[worker].cpu_ns, cpu_ns, __ATOMIC_RELAXED);
 }
 
-void ob_claim_reset(ob_universe *u, uint32_t total)
+void ob_task_reset(ob_universe *u, uint32_t total)
 {
 	__atomic_store_n(&u->control->claim_total, total, __ATOMIC_RELAXED);
 	__atomic_store_n(&u->control->claim_next, 0, __ATOMIC_RELEASE);
 }
 
-bool ob_claim_next(ob_universe *u, uint32_t *index)
+bool ob_task_claim(ob_universe *u, uint32_t *index)
 {
 	uint64_t total = __atomic_load_n(&u->control->claim_total, __ATOMIC_RELAXED);
 	uint64_t i = __atomic_fetch_add(&u->control->claim_next, 1, __ATOMIC_RELAXED);
@@ -86,7 +86,7 @@ bool ob_claim_next(ob_universe *u, uint32_t *index)
 }
 
 // The bits keep an id from being listed twice, so the list has room for all that may come.
-void ob_rebound_append(ob_universe *u, uint32_t id)
+void ob_requery_append(ob_universe *u, uint32_t id)
 {
 	uint64_t bit = UINT64_C(1) << id % 64;
 	if (__atomic_fetch_or(&u->rebound_bit[id / 64], bit, __ATOMIC_RELAXED) & bit)
@@ -95,13 +95,13 @@ void ob_rebound_append(ob_universe *u, uint32_t id)
 	__atomic_store_n(&u->rebound[i], id, __ATOMIC_RELAXED);
 }
 
-const uint32_t *ob_rebound_list(const ob_universe *u, uint32_t *count)
+const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count)
 {
 	*count = (uint32_t)__atomic_load_n(&u->control->rebound_count, __ATOMIC_ACQUIRE);
 	return u->rebound;
 }
 
-void ob_rebound_reset(ob_universe *u)
+void ob_requery_reset(ob_universe *u)
 {
 	uint64_t n = __atomic_load_n(&u->control->rebound_count, __ATOMIC_RELAXED);
 	for (uint64_t i = 0; i < n; i++)
@@ -109,13 +109,13 @@ void ob_rebound_reset(ob_universe *u)
 	__atomic_store_n(&u->control->rebound_count, 0, __ATOMIC_RELEASE);
 }
 
-void ob_meetings_reset(ob_universe *u)
+void ob_late_contacts_reset(ob_universe *u)
 {
 	u->exchange.count->met = 0;
 	u->exchange.count->next_look = UINT32_MAX;
 }
 
-void ob_meetings_note(ob_universe *u, bool met, uint32_t next_look)
+void ob_late_contacts_note(ob_universe *u, bool met, uint32_t next_look)
 {
 	uint32_t *least = &u->exchange.count->next_look, seen = __atomic_load_n(least, __ATOMIC_RELAXED);
 	while (seen > next_look &&
@@ -128,7 +128,7 @@ void ob_meetings_note(ob_universe *u, bool met, uint32_t next_look)
 // In a phase the stack only shrinks, so a number is its taker's alone.
 uint32_t ob_record_take(ob_universe *u)
 {
-	const ob_exchange *ex = &u->exchange;
+	const ob_step_data *ex = &u->exchange;
 	int32_t left = __atomic_fetch_sub(&ex->count->records_free, 1, __ATOMIC_RELAXED);
 	uint32_t record = left > 0 ? ex->record_free[left - 1]
 				   : __atomic_fetch_add(&ex->count->records_used, 1, __ATOMIC_RELAXED);
@@ -138,19 +138,19 @@ uint32_t ob_record_take(ob_universe *u)
 
 void ob_record_give_back(ob_universe *u, uint32_t record)
 {
-	const ob_exchange *ex = &u->exchange;
+	const ob_step_data *ex = &u->exchange;
 	int32_t free = ex->count->records_free > 0 ? ex->count->records_free : 0;
 	ex->record_free[free] = record;
 	ex->count->records_free = free + 1;
 }
 
-uint32_t ob_perceived_reserve(ob_universe *u, uint32_t count)
+uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t count)
 {
 	uint64_t at = __atomic_fetch_add(&u->control->perceived_used, count, __ATOMIC_RELAXED);
 	return at + count <= u->header.sizes.perceived_max ? (uint32_t)at : UINT32_MAX;
 }
 
-void ob_perceived_reset(ob_universe *u)
+void ob_neighbours_reset(ob_universe *u)
 {
 	__atomic_store_n(&u->control->perceived_used, 0, __ATOMIC_RELEASE);
 }

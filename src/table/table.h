@@ -13,25 +13,25 @@
 #include <ob/universe.h>
 
 #include "table/counters.h"
-#include "table/exchange.h"
+#include "table/step_data.h"
 #include "table/latency.h"
 
 // How the parts of a step run; what the gate hands out when it opens.
 typedef enum ob_phase {
 	OB_PHASE_NONE,
-	OB_PHASE_MEMBERS, // per object: adopt the island's result, perceive neighbours
+	OB_PHASE_OBJECTS, // per object: adopt the island's result, perceive neighbours
 	OB_PHASE_ISLANDS, // per island: solve
-	OB_PHASE_MEETINGS,// per handful of pairs: did those of different islands meet?
+	OB_PHASE_LATE_CONTACTS,// per handful of pairs: did those of different islands meet?
 	OB_PHASE_PAUSE,   // the universe stands still at a step boundary for the host to look at
 	OB_PHASE_STOP,    // leave
 } ob_phase;
 
-typedef enum ob_exchange_kind {
-	OB_EXCHANGE_COLOURED, // pair after pair, each on what the one before published
-	OB_EXCHANGE_JACOBI,   // all pairs on the same state, bodies split between them
-	OB_EXCHANGE_GHOST,    // each takes its neighbours for infinitely heavy: what must not be done, to show it
-	OB_EXCHANGE_LAGGED,   // each computes the pair's impulse for itself, on a state of its partner that is late
-} ob_exchange_kind;
+typedef enum ob_solver_kind {
+	OB_SOLVER_COLOURED, // pair after pair, each on what the one before published
+	OB_SOLVER_JACOBI,   // all pairs on the same state, bodies split between them
+	OB_SOLVER_GHOST,    // each takes its neighbours for infinitely heavy: what must not be done, to show it
+	OB_SOLVER_LAGGED,   // each computes the pair's impulse for itself, on a state of its partner that is late
+} ob_solver_kind;
 typedef enum ob_integrator { OB_INTEGRATOR_EXACT, OB_INTEGRATOR_ODE } ob_integrator;
 typedef enum ob_narrow_phase {
 	OB_NARROW_OBB,  // objects touch where their shapes do, however they are turned
@@ -44,13 +44,13 @@ typedef struct ob_run_settings {
 	double step_length;     // s
 	uint32_t substeps;      // per step, >= 1
 	uint32_t passes;        // exchange rounds per substep, at most
-	uint32_t exchange;      // ob_exchange_kind
+	uint32_t exchange;      // ob_solver_kind
 	uint32_t integrator;    // ob_integrator
 	uint32_t sleeping;      // 1 = islands may fall asleep
 	uint32_t one_per_object;// 1 = worker i runs object i and nothing else
 	uint32_t monolith;      // 1 = one ODE world holds all objects
 	uint32_t iterations;    // monolith: QuickStep iterations
-	uint32_t lag;           // OB_EXCHANGE_LAGGED: exchanges that a partner's state is late
+	uint32_t lag;           // OB_SOLVER_LAGGED: exchanges that a partner's state is late
 	uint32_t narrow_phase;  // ob_narrow_phase
 	double tolerance;       // m; > 0: each island chooses its substeps so that its error stays below
 	uint32_t timed;         // 1 = counters tell what each part of the step took
@@ -95,7 +95,7 @@ void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id);
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
 // The exchange area of the step (see exchange.h); ordered by the gate.
-ob_exchange *ob_universe_exchange(const ob_universe *u);
+ob_step_data *ob_universe_step_data(const ob_universe *u);
 
 // The clock of the run: advanced by whoever arranges the step.
 uint64_t ob_step_count(const ob_universe *u);
@@ -122,24 +122,24 @@ ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker);
 void ob_universe_count(const ob_universe *u, ob_counters *sum);
 
 // ---- claims: indices 0 .. total-1, each handed out once per phase, to whoever asks first
-void ob_claim_reset(ob_universe *u, uint32_t total);
-bool ob_claim_next(ob_universe *u, uint32_t *index);
+void ob_task_reset(ob_universe *u, uint32_t total);
+bool ob_task_claim(ob_universe *u, uint32_t *index);
 // Appends to a list of ids that need the broad phase's attention (any worker, any order).
-void ob_rebound_append(ob_universe *u, uint32_t id);
+void ob_requery_append(ob_universe *u, uint32_t id);
 // The list so far; reset empties it. Only for the one who arranges.
-const uint32_t *ob_rebound_list(const ob_universe *u, uint32_t *count);
-void ob_rebound_reset(ob_universe *u);
+const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count);
+void ob_requery_reset(ob_universe *u);
 // What checking pairs has found: reset by the one who arranges, then noted by any worker, for all that it has claimed:
 // has a pair met? The first step (from 0) at which one must be checked again.
-void ob_meetings_reset(ob_universe *u);
-void ob_meetings_note(ob_universe *u, bool met, uint32_t next_look);
+void ob_late_contacts_reset(ob_universe *u);
+void ob_late_contacts_note(ob_universe *u, bool met, uint32_t next_look);
 // A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.
 uint32_t ob_record_take(ob_universe *u);
 // Only for the one who arranges.
 void ob_record_give_back(ob_universe *u, uint32_t record);
 // Reserves count words in the perceived-neighbours arena; returns the offset, or UINT32_MAX when it is full
-uint32_t ob_perceived_reserve(ob_universe *u, uint32_t count);
-void ob_perceived_reset(ob_universe *u);
+uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t count);
+void ob_neighbours_reset(ob_universe *u);
 
 // ---- the gate (gate.h explains it with a drawing)
 // A phase ends when every participant has arrived; the last to arrive arranges the next and opens the gate.

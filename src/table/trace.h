@@ -21,11 +21,11 @@ typedef enum ob_trace_kind {
 	OB_TRACE_NONE,
 	OB_TRACE_WAIT,     // at the gate
 	OB_TRACE_SOLVE,    // phase ISLANDS; a = islands, b = their members
-	OB_TRACE_MEMBERS,  // phase MEMBERS
-	OB_TRACE_ARRANGE,  // what comes next, for all
+	OB_TRACE_OBJECTS,  // phase MEMBERS
+	OB_TRACE_SCHEDULE,  // what comes next, for all
 	OB_TRACE_CHUNK,    // islands claimed at once; a, b as above
 	OB_TRACE_ISLAND,   // a = lowest id, b = members
-	OB_TRACE_PART,     // a = ob_part
+	OB_TRACE_PROFILE,     // a = ob_profile_section
 	OB_TRACE_STATE,    // object a has been in a state until now; b = ob_trace_state before | state after << 8
 	OB_TRACE_BIRTH,    // of object a
 	OB_TRACE_DEATH,    // of object a

@@ -149,9 +149,9 @@ const char *ob_universe_name(const ob_universe *u)
 {
 	return u->header.name;
 }
-ob_exchange *ob_universe_exchange(const ob_universe *u)
+ob_step_data *ob_universe_step_data(const ob_universe *u)
 {
-	return (ob_exchange *)&u->exchange;
+	return (ob_step_data *)&u->exchange;
 }
 
 void ob_universe_set_state(ob_universe *u, ob_universe_state s)

@@ -126,10 +126,10 @@ static void test_settle(void)
 	ob_error e;
 	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &run, &e));
 	CHECK(run.step_length == 1. / 60 && run.substeps == 4 && run.passes == 16 && run.sleeping == 0);
-	CHECK(run.exchange == OB_EXCHANGE_JACOBI && run.integrator == OB_INTEGRATOR_ODE && r.duration == 10);
+	CHECK(run.exchange == OB_SOLVER_JACOBI && run.integrator == OB_INTEGRATOR_ODE && r.duration == 10);
 	CHECK(read_line("s --exchange coloured --integrator exact --sleeping on --substeps 2 --passes 3", &r, &e));
 	CHECK(ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.exchange == OB_EXCHANGE_COLOURED && run.integrator == OB_INTEGRATOR_EXACT && run.sleeping == 1);
+	CHECK(run.exchange == OB_SOLVER_COLOURED && run.integrator == OB_INTEGRATOR_EXACT && run.sleeping == 1);
 	CHECK(run.substeps == 2 && run.passes == 3);
 	CHECK(read_line("s --arch monolith", &r, &e) && ob_request_settle(&r, &s, &run, &e));
 	CHECK(run.substeps == 1 && run.monolith == 1 && run.iterations == 20);
@@ -182,10 +182,10 @@ static void test_settle_exactness(void)
 	CHECK(read_line("s --lag 2", &r, &e) && !ob_request_settle(&r, &s, &run, &e));
 	CHECK(strstr(e.text, "--exchange lagged"));
 	CHECK(read_line("s --exchange lagged --lag 0", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.exchange == OB_EXCHANGE_LAGGED && run.lag == 0);
+	CHECK(run.exchange == OB_SOLVER_LAGGED && run.lag == 0);
 	CHECK(read_line("s --exchange lagged", &r, &e) && ob_request_settle(&r, &s, &run, &e) && run.lag == 1);
 	CHECK(read_line("s --exchange ghost", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.exchange == OB_EXCHANGE_GHOST);
+	CHECK(run.exchange == OB_SOLVER_GHOST);
 }
 
 static void test_steps(void)

@@ -52,7 +52,7 @@ static void test_lost(void)
 		return;
 	uint32_t size = u->header.sizes.trace_events;
 	for (uint32_t i = 0; i < size + 70; i++)
-		ob_trace_span(u, 1, OB_TRACE_ARRANGE, ob_clock_ns(), 0, 0);
+		ob_trace_span(u, 1, OB_TRACE_SCHEDULE, ob_clock_ns(), 0, 0);
 	ob_timeline *t = ob_timeline_start(u, path, &e);
 	CHECK(t && ob_timeline_finish(t, &sums, &e));
 	CHECK(sums.events == size + 70 && sums.lost == 70);
@@ -72,11 +72,11 @@ static void test_order(void)
 		return;
 	ob_timeline *t = ob_timeline_start(u, path, &e);
 	uint64_t now = ob_clock_ns();
-	ob_trace_span(u, 0, OB_TRACE_PART, now, OB_PART_LOAD, 0);
+	ob_trace_span(u, 0, OB_TRACE_PROFILE, now, OB_PROFILE_LOAD, 0);
 	ob_trace_span(u, 0, OB_TRACE_ISLAND, now, 3, 9);
 	ob_trace_span(u, 0, OB_TRACE_CHUNK, now, 1, 9);
 	ob_trace_span(u, 0, OB_TRACE_SOLVE, now, 1, 9);
-	ob_trace_doing(u, 1, OB_TRACE_MEMBERS, now);
+	ob_trace_doing(u, 1, OB_TRACE_OBJECTS, now);
 	CHECK(t && ob_timeline_finish(t, &sums, &e) && sums.events == 4 && sums.lost == 0);
 	const char *text = file_text();
 	const char *solve = strstr(text, "\"solve\""), *chunk = strstr(text, "\"chunk\"");

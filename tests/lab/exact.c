@@ -4,17 +4,17 @@
 #include "reference/friction.h"
 #include "reference/impact.h"
 
-static bool is_static(const ob_peer_world *w, uint32_t id)
+static bool is_static(const ob_engine_world *w, uint32_t id)
 {
 	return w->passport[id].flags & OB_OBJECT_STATIC;
 }
 
-ob_state exact_rest(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_rest(const ob_engine_world *w, uint32_t id, double t)
 {
 	return w->state[id];
 }
 
-ob_state exact_flight(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_flight(const ob_engine_world *w, uint32_t id, double t)
 {
 	const ob_passport *p = &w->passport[id];
 	ob_state s = w->state[id];
@@ -27,7 +27,7 @@ ob_state exact_flight(const ob_peer_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_bounces(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_bounces(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -44,7 +44,7 @@ ob_state exact_bounces(const ob_peer_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_meeting(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_meeting(const ob_engine_world *w, uint32_t id, double t)
 {
 	uint32_t first = id & ~1u;
 	const ob_passport *a = &w->passport[first], *b = a + 1;
@@ -61,7 +61,7 @@ ob_state exact_meeting(const ob_peer_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_cradle(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_cradle(const ob_engine_world *w, uint32_t id, double t)
 {
 	uint32_t incoming = 0;
 	while (w->state[incoming].v.x > 0)
@@ -82,7 +82,7 @@ static ob_state accelerated(ob_state s, ob_vec3 a, double t)
 	return s;
 }
 
-ob_state exact_push(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_push(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_vec3 force = w->passport[1].force;
 	double size = ob_norm(force);
@@ -90,7 +90,7 @@ ob_state exact_push(const ob_peer_world *w, uint32_t id, double t)
 	return accelerated(w->state[id], ob_scale(force, (id ? id == 1 ? r.box_a : r.ball_a : 0) / size), t);
 }
 
-ob_state exact_slide(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_slide(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -103,7 +103,7 @@ ob_state exact_slide(const ob_peer_world *w, uint32_t id, double t)
 	return accelerated(s, ob_scale(down, a), t);
 }
 
-ob_state exact_stop(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_stop(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -115,7 +115,7 @@ ob_state exact_stop(const ob_peer_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_slip(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_slip(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -127,7 +127,7 @@ ob_state exact_slip(const ob_peer_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_halt(const ob_peer_world *w, uint32_t id, double t)
+ob_state exact_halt(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	double speed = fabs(s.v.x);

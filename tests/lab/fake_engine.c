@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-struct ob_peer {
-	const ob_peer_world *world; // lives as long as the engine in every trial
+struct ob_engine {
+	const ob_engine_world *world; // lives as long as the engine in every trial
 	exact_motion motion;
 	double step;
 	int frame, last; // from "last" on something is wrong
@@ -16,7 +16,7 @@ void exact_engine_use(exact_motion motion)
 	in_use = motion;
 }
 
-static ob_state bursting(const ob_peer_world *w, uint32_t id, double t)
+static ob_state bursting(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (!(w->passport[id].flags & OB_OBJECT_STATIC))
@@ -24,37 +24,37 @@ static ob_state bursting(const ob_peer_world *w, uint32_t id, double t)
 	return s;
 }
 
-static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, exact_motion motion, int last)
+static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, exact_motion motion, int last)
 {
-	ob_peer *p = malloc(sizeof *p);
+	ob_engine *p = malloc(sizeof *p);
 	if (p)
-		*p = (ob_peer){ w, motion, s->step, 0, last };
+		*p = (ob_engine){ w, motion, s->step, 0, last };
 	return p;
 }
 
-static bool step(ob_peer *p, ob_error *e)
+static bool step(ob_engine *p, ob_error *e)
 {
 	p->frame++;
 	return true;
 }
 
-static void get(const ob_peer *p, ob_state *state)
+static void get(const ob_engine *p, ob_state *state)
 {
 	for (uint32_t i = 0; i < p->world->objects; i++)
 		state[i] = p->motion(p->world, i, p->frame * p->step);
 }
 
-static void destroy(ob_peer *p)
+static void destroy(ob_engine *p)
 {
 	free(p);
 }
 
-static bool step_until_last(ob_peer *p, ob_error *e)
+static bool step_until_last(ob_engine *p, ob_error *e)
 {
 	return ++p->frame < p->last || ob_fail(e, "the engine gave up");
 }
 
-static void get_until_last(const ob_peer *p, ob_state *state)
+static void get_until_last(const ob_engine *p, ob_state *state)
 {
 	get(p, state);
 	if (p->frame >= p->last)
@@ -62,7 +62,7 @@ static void get_until_last(const ob_peer *p, ob_state *state)
 }
 
 #define CREATE(name, motion, last) \
-	static ob_peer *create_##name(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e) \
+	static ob_engine *create_##name(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e) \
 	{ \
 		return create(w, s, motion, last); \
 	}
@@ -74,7 +74,7 @@ CREATE(bursting, bursting, 0)
 CREATE(dying, in_use, 3)
 
 #define ENGINE(kind, step_function, get_function) \
-	const ob_peer_kind kind##_engine = { .name = #kind, \
+	const ob_engine_kind kind##_engine = { .name = #kind, \
 					     .title = #kind, \
 					     .version = "", \
 					     .create = create_##kind, \

@@ -4,13 +4,13 @@
 
 #include "exact.h"
 
-extern const ob_peer_kind exact_engine;
+extern const ob_engine_kind exact_engine;
 void exact_engine_use(exact_motion motion); // from now on, by all of them
 
-extern const ob_peer_kind frozen_engine; // nothing ever moves
-extern const ob_peer_kind blind_engine; // no contacts: all fall as if alone
-extern const ob_peer_kind drunk_engine; // gives NaN from the third frame on
-extern const ob_peer_kind bursting_engine; // ever faster
-extern const ob_peer_kind dying_engine; // breaks off in the third frame
+extern const ob_engine_kind frozen_engine; // nothing ever moves
+extern const ob_engine_kind blind_engine; // no contacts: all fall as if alone
+extern const ob_engine_kind drunk_engine; // gives NaN from the third frame on
+extern const ob_engine_kind bursting_engine; // ever faster
+extern const ob_engine_kind dying_engine; // breaks off in the third frame
 
 #endif

@@ -11,7 +11,7 @@
 #include "lab/build.h"
 #include "lab/lab.h"
 
-static void build(ob_peer_world *w, uint32_t run)
+static void build(ob_engine_world *w, uint32_t run)
 {
 	ob_build_sphere(w, 1, .5, ob_v3(0, 0, 1));
 }
@@ -32,44 +32,44 @@ static const ob_case plain = { .name = "plain",
 			       .build = build,
 			       .judge = judge };
 
-static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
 	static int anything;
-	return (ob_peer *)&anything;
+	return (ob_engine *)&anything;
 }
 
-static void get(const ob_peer *p, ob_state *state)
+static void get(const ob_engine *p, ob_state *state)
 {
 	state[0] = (ob_state){ .pose.q = { 1, 0, 0, 0 } };
 }
 
-static void destroy(ob_peer *p) {}
+static void destroy(ob_engine *p) {}
 
-static bool step_well(ob_peer *p, ob_error *e)
+static bool step_well(ob_engine *p, ob_error *e)
 {
 	printf("this is not to be seen\n");
 	return true;
 }
 
-static bool step_abort(ob_peer *p, ob_error *e)
+static bool step_abort(ob_engine *p, ob_error *e)
 {
 	fprintf(stderr, "something else\nbody 3 is no body\n");
 	abort();
 }
 
-static bool step_killed(ob_peer *p, ob_error *e)
+static bool step_killed(ob_engine *p, ob_error *e)
 {
 	return kill(getpid(), SIGKILL) == 0;
 }
 
-static bool step_forever(ob_peer *p, ob_error *e)
+static bool step_forever(ob_engine *p, ob_error *e)
 {
 	while (pause() < 0)
 		;
 	return true;
 }
 
-static bool step_busy(ob_peer *p, ob_error *e)
+static bool step_busy(ob_engine *p, ob_error *e)
 {
 	volatile unsigned i = 0;
 	while (i < 2)
@@ -77,34 +77,34 @@ static bool step_busy(ob_peer *p, ob_error *e)
 	return true;
 }
 
-static bool step_exit(ob_peer *p, ob_error *e)
+static bool step_exit(ob_engine *p, ob_error *e)
 {
 	close(STDERR_FILENO);
 	exit(7);
 }
 
 // More than a pipe holds
-static bool step_talk(ob_peer *p, ob_error *e)
+static bool step_talk(ob_engine *p, ob_error *e)
 {
 	for (int i = 0; i < 5000; i++)
 		fprintf(stderr, "line %d of many, each as boring as the one before\n", i);
 	exit(1);
 }
 
-static bool step_interrupt(ob_peer *p, ob_error *e)
+static bool step_interrupt(ob_engine *p, ob_error *e)
 {
 	kill(getppid(), SIGINT);
 	return step_forever(p, e);
 }
 
-static ob_peer *create_none(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_none(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
 	ob_fail(e, "no such tolerance");
 	return NULL;
 }
 
 #define ENGINE(engine, create_function, step_function) \
-	static const ob_peer_kind engine = { .name = #engine, \
+	static const ob_engine_kind engine = { .name = #engine, \
 					     .title = #engine, \
 					     .version = "", \
 					     .usual = { .substeps = 1 }, \
@@ -129,7 +129,7 @@ static void count_tick(void *with)
 	ticks += *(int *)with;
 }
 
-static ob_outcome run(const ob_peer_kind *k, double limit)
+static ob_outcome run(const ob_engine_kind *k, double limit)
 {
 	int one = 1;
 	ob_attempt a = { &plain, k, { .step = 1. / 60, .substeps = 1 }, limit, count_tick, &one };
@@ -144,7 +144,7 @@ static ob_outcome run(const ob_peer_kind *k, double limit)
 	return out;
 }
 
-static void expect(const ob_peer_kind *k, double limit, const char *reason)
+static void expect(const ob_engine_kind *k, double limit, const char *reason)
 {
 	ob_outcome out = run(k, limit);
 	if (strcmp(out.failed, reason) != 0)
@@ -204,7 +204,7 @@ static void see(const ob_lab_progress *p, void *with)
 	all = p->all;
 }
 
-static ob_lab_plan make_plan(const ob_peer_kind *a, const ob_peer_kind *b, const char *file)
+static ob_lab_plan make_plan(const ob_engine_kind *a, const ob_engine_kind *b, const char *file)
 {
 	ob_lab_plan p = { .repeats = 1, .limit = .05, .file = file, .tick = see, .with = (void *)&plain };
 	p.cases = (ob_case_list){ 1, { &plain } };
@@ -221,7 +221,7 @@ static void test_lab(const char *file)
 	ob_lab_plan p = make_plan(&well, &hanging, file);
 	CHECK(ob_lab_run(&p, &r, &e));
 	CHECK(r.count == 4 && done == 2 && all == 4 && access(file, R_OK) == 0); // no tick while the last is not tried
-	const ob_peer_settings one = { .step = plain.step, .substeps = 1 }, two = { .step = plain.step, .substeps = 2 };
+	const ob_engine_settings one = { .step = plain.step, .substeps = 1 }, two = { .step = plain.step, .substeps = 2 };
 	const ob_result *coarse = ob_results_find(&r, &plain, &hanging, &one);
 	const ob_result *fine = ob_results_find(&r, &plain, &hanging, &two);
 	CHECK(coarse && fine && coarse->wall_s[0] == fine->wall_s[0]);

@@ -32,11 +32,11 @@ static void test_metadata(const ob_case *c)
 	}
 }
 
-static ob_outcome outcome(const ob_case *c, const ob_peer_kind *kind)
+static ob_outcome outcome(const ob_case *c, const ob_engine_kind *kind)
 {
 	ob_outcome out;
 	ob_error e = { "" };
-	ob_peer_settings s = { .step = c->step, .substeps = 1, .iterations = 1 };
+	ob_engine_settings s = { .step = c->step, .substeps = 1, .iterations = 1 };
 	CHECK(ob_case_run(c, kind, &s, &out, &e));
 	return out;
 }
@@ -50,7 +50,7 @@ static bool met(const ob_case *c, const ob_outcome *out)
 	return !*out->failed;
 }
 
-static void print(const ob_case *c, const ob_peer_kind *kind, const ob_outcome *out)
+static void print(const ob_case *c, const ob_engine_kind *kind, const ob_outcome *out)
 {
 	fprintf(stderr, "%s, %s:", c->name, kind->name);
 	for (uint32_t i = 0; i < c->figures; i++)
@@ -116,7 +116,7 @@ static void test_exact(const ob_case *c, const expectation *x)
 	CHECK(out.body_seconds >= c->duration * .99 && out.cpu_s >= 0 && out.wall_s >= 0);
 }
 
-static void test_broken(const ob_case *c, const ob_peer_kind *kind, bool is_right)
+static void test_broken(const ob_case *c, const ob_engine_kind *kind, bool is_right)
 {
 	ob_outcome out = outcome(c, kind);
 	if (met(c, &out) != is_right)
@@ -125,7 +125,7 @@ static void test_broken(const ob_case *c, const ob_peer_kind *kind, bool is_righ
 }
 
 // What an engine itself breaks is said, and no figure looks good.
-static void test_mad(const ob_case *c, const ob_peer_kind *kind, const char *why)
+static void test_mad(const ob_case *c, const ob_engine_kind *kind, const char *why)
 {
 	ob_outcome out = outcome(c, kind);
 	CHECK(!strncmp(out.failed, why, strlen(why)));
@@ -136,7 +136,7 @@ static void test_mad(const ob_case *c, const ob_peer_kind *kind, const char *why
 
 // ---- calibration: errors of a known size must read as such
 
-static ob_state one_millimetre_off(const ob_peer_world *w, uint32_t id, double t)
+static ob_state one_millimetre_off(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_flight(w, id, t);
 	s.pose.p.y += 1e-3;
@@ -144,7 +144,7 @@ static ob_state one_millimetre_off(const ob_peer_world *w, uint32_t id, double t
 }
 
 // Body i sinks by i times .2 mm, so that each touches the one below, and moves aside by 30 um.
-static ob_state sunk(const ob_peer_world *w, uint32_t id, double t)
+static ob_state sunk(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	s.pose.p.z -= .2e-3 * id;
@@ -152,42 +152,42 @@ static ob_state sunk(const ob_peer_world *w, uint32_t id, double t)
 	return s;
 }
 
-static ob_state pushed_too_fast(const ob_peer_world *w, uint32_t id, double t)
+static ob_state pushed_too_fast(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_push(w, id, t);
 	s.v.z += .01;
 	return s;
 }
 
-static ob_state turned(const ob_peer_world *w, uint32_t id, double t)
+static ob_state turned(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_flight(w, id, t);
 	s.pose.q = ob_quat_turn(s.pose.q, ob_v3(0, 1e-3, 0));
 	return s;
 }
 
-static ob_state creeping(const ob_peer_world *w, uint32_t id, double t)
+static ob_state creeping(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	s.pose.p.y += id * 1e-6 * t;
 	return s;
 }
 
-static ob_state stopping_late(const ob_peer_world *w, uint32_t id, double t)
+static ob_state stopping_late(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_stop(w, id, t / 1.002);
 	s.v = ob_scale(s.v, 1 / 1.002);
 	return s;
 }
 
-static ob_state stopping_farther(const ob_peer_world *w, uint32_t id, double t)
+static ob_state stopping_farther(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_stop(w, id, t);
 	s.pose.p = ob_madd(s.pose.p, .002, ob_sub(s.pose.p, w->state[id].pose.p));
 	return s;
 }
 
-static ob_state bouncing_high(const ob_peer_world *w, uint32_t id, double t)
+static ob_state bouncing_high(const ob_engine_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_bounces(w, id, t);
 	s.pose.p.z += id ? .01 : 0;

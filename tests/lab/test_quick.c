@@ -11,8 +11,8 @@ int main(int argc, char **argv)
 		fprintf(stderr, "usage: test_quick CASE\n");
 		return 2;
 	}
-	const ob_peer_kind *kind = ob_peer_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
-	ob_peer_settings settings = kind->usual;
+	const ob_engine_kind *kind = ob_engine_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
+	ob_engine_settings settings = kind->usual;
 	settings.lag = 0; // the promise of those who read late holds for those who do not
 	ob_outcome out;
 	ob_error e = { "" };

@@ -11,7 +11,7 @@
 #include "page/page.h"
 #include "lab/report.h"
 
-static const ob_peer_kind kinds[] = {
+static const ob_engine_kind kinds[] = {
 	{ .name = "obsim", .title = "obsim", .version = "", .usual = { .substeps = 8, .iterations = 16 } },
 	{ .name = "obsim-jacobi",
 	  .title = "obsim, Jacobi",

@@ -8,7 +8,7 @@
 
 static ob_result make(const char *name, const char *engine, uint32_t substeps, double cost, double error)
 {
-	ob_result r = { .of = ob_case_find(name), .engine = ob_peer_find(engine), .commit = "c0ffee" };
+	ob_result r = { .of = ob_case_find(name), .engine = ob_engine_find(engine), .commit = "c0ffee" };
 	r.settings = r.engine->usual;
 	r.settings.substeps = substeps;
 	r.settings.tolerance = 0;
@@ -218,7 +218,7 @@ static void test_broken_file(const char *path)
 
 static double at(const ob_results *r, double error)
 {
-	return ob_cost_at(r, ob_case_find("pile"), ob_peer_find("obsim"), error);
+	return ob_cost_at(r, ob_case_find("pile"), ob_engine_find("obsim"), error);
 }
 
 static void test_equal(void)

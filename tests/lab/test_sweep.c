@@ -5,7 +5,7 @@
 #include "lab/list.h"
 #include "lab/sweep.h"
 
-static ob_peer_settings settings[OB_SWEEP_SETTINGS];
+static ob_engine_settings settings[OB_SWEEP_SETTINGS];
 
 static size_t sweep(const char *text, const char *name, const char *engine)
 {
@@ -15,7 +15,7 @@ static size_t sweep(const char *text, const char *name, const char *engine)
 	if (!fine)
 		fprintf(stderr, "%s\n", e.text);
 	CHECK(fine);
-	return fine ? ob_sweep_settings(&s, ob_case_find(name), ob_peer_find(engine), settings) : 0;
+	return fine ? ob_sweep_settings(&s, ob_case_find(name), ob_engine_find(engine), settings) : 0;
 }
 
 static bool has(size_t n, uint32_t substeps, uint32_t iterations, double tolerance)
@@ -29,7 +29,7 @@ static bool has(size_t n, uint32_t substeps, uint32_t iterations, double toleran
 
 static void test_settings(void)
 {
-	const ob_peer_settings own = ob_peer_find("obsim")->usual, quick = ob_peer_find("ode-quick")->usual;
+	const ob_engine_settings own = ob_engine_find("obsim")->usual, quick = ob_engine_find("ode-quick")->usual;
 	CHECK(sweep("none", "pile", "obsim") == 1);
 	CHECK(settings[0].substeps == own.substeps && settings[0].iterations == own.iterations);
 	CHECK(settings[0].step == ob_case_find("pile")->step);
@@ -48,7 +48,7 @@ static void test_settings(void)
 
 static void test_own(void)
 {
-	const ob_peer_settings own = ob_peer_find("obsim")->usual;
+	const ob_engine_settings own = ob_engine_find("obsim")->usual;
 	size_t n = sweep(NULL, "pile", "obsim");
 	CHECK(has(n, 1, own.iterations, 0) && has(n, 32, own.iterations, 0) && has(n, 0, 64, 5e-4));
 	CHECK(settings[0].substeps == own.substeps && settings[0].tolerance == own.tolerance);

@@ -65,7 +65,7 @@ static void test_grid(void)
 
 static ob_result make(const char *name, const char *engine, double cost, double error, const char *failed)
 {
-	ob_result r = { .of = ob_case_find(name), .engine = ob_peer_find(engine) };
+	ob_result r = { .of = ob_case_find(name), .engine = ob_engine_find(engine) };
 	r.settings = r.engine->usual;
 	ob_outcome o = { .cpu_s = cost, .wall_s = cost, .body_seconds = 1 };
 	for (uint32_t i = 0; i < r.of->figures; i++)

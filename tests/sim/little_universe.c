@@ -108,7 +108,7 @@ void little_run(little_universe *l, uint64_t steps)
 		ob_phase phase = ob_gate_wait(l->u, 0);
 		ob_sim_work(l->sim, phase);
 		if (ob_gate_arrive(l->u, 0))
-			ob_sim_arrange(l->sim, phase);
+			ob_sim_schedule(l->sim, phase);
 	}
 	if (ob_sim_failure(l->u))
 		give_up("step", ob_sim_failure(l->u));

@@ -58,12 +58,12 @@ static void solve(const tree *t, tree *solved, ob_link *link)
 	for (int k = 0; k < 2; k++)
 		ob_link_anchor(&link[anchored[k]], &solved->anchor[k]);
 	for (int k = BODIES - 1; k >= 0; k--)
-		ob_link_fold(&link[k], t->up[k] < 0 ? NULL : &solved->joint[k], t->up[k] < 0 ? NULL : &link[t->up[k]]);
+		ob_link_eliminate(&link[k], t->up[k] < 0 ? NULL : &solved->joint[k], t->up[k] < 0 ? NULL : &link[t->up[k]]);
 	for (int k = 0; k < BODIES; k++)
-		ob_link_unfold(&link[k], t->up[k] < 0 ? NULL : &solved->joint[k],
+		ob_link_substitute(&link[k], t->up[k] < 0 ? NULL : &solved->joint[k],
 			       t->up[k] < 0 ? NULL : &link[t->up[k]]);
 	for (int k = 0; k < 2; k++)
-		ob_link_pull_anchor(&link[anchored[k]], &solved->anchor[k]);
+		ob_link_anchor_impulses(&link[anchored[k]], &solved->anchor[k]);
 }
 
 // M dv = sum of J^T x for each body, and J dv + e x = y for each row.
@@ -120,9 +120,9 @@ static void test_said_twice(void)
 	j.child[2][0] = j.child[2][1] = 1;
 	j.parent[0][6] = j.parent[1][6] = 3;
 	ob_link_anchor(&link, &j);
-	ob_link_fold(&link, NULL, NULL);
-	ob_link_unfold(&link, NULL, NULL);
-	ob_link_pull_anchor(&link, &j);
+	ob_link_eliminate(&link, NULL, NULL);
+	ob_link_substitute(&link, NULL, NULL);
+	ob_link_anchor_impulses(&link, &j);
 	CHECK_NEAR(link.change[2], 3, 1e-6);
 	CHECK_NEAR(j.x[0], 3, 1e-6);
 	CHECK(j.x[0] == j.x[1]);

@@ -22,7 +22,7 @@ static void add_body(little_scene *s, uint64_t *seed, ob_vec3 p, double e)
 }
 
 // Bodies in a loose grid, moving towards its middle.
-static little_scene *closed_scene(uint64_t seed, ob_exchange_kind exchange)
+static little_scene *closed_scene(uint64_t seed, ob_solver_kind exchange)
 {
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
@@ -45,7 +45,7 @@ static double sum_of_momenta(const little_scene *s)
 	return sum;
 }
 
-static void check_scene(uint64_t seed, ob_exchange_kind exchange)
+static void check_scene(uint64_t seed, ob_solver_kind exchange)
 {
 	little_scene *s = closed_scene(seed, exchange);
 	little_universe l;
@@ -77,6 +77,6 @@ int main(int argc, char **argv)
 	uint64_t first = argc > 2 ? strtoull(argv[2], NULL, 10) : 1,
 		 seeds = argc > 3 ? strtoull(argv[3], NULL, 10) : 60;
 	for (uint64_t seed = first; seed < first + seeds; seed++)
-		check_scene(seed, jacobi ? OB_EXCHANGE_JACOBI : OB_EXCHANGE_COLOURED);
+		check_scene(seed, jacobi ? OB_SOLVER_JACOBI : OB_SOLVER_COLOURED);
 	return check_end();
 }

@@ -134,8 +134,8 @@ static void test_kept_plans(void)
 {
 	enum { OBJECTS = 5, STARTS = 3 };
 	uint64_t seed = 17;
-	ob_plans plans;
-	CHECK(ob_plans_create(&plans, 2));
+	ob_rotation_cache plans;
+	CHECK(ob_rotation_cache_create(&plans, 2));
 	ob_quat q[STARTS];
 	ob_vec3 w[STARTS], inertia[OBJECTS];
 	for (int i = 0; i < STARTS; i++)
@@ -148,11 +148,11 @@ static void test_kept_plans(void)
 		double t = within(&seed, .01, 9);
 		ob_quat kept, fresh;
 		ob_vec3 kept_w, fresh_w;
-		ob_spin_at(ob_plans_spin(&plans, id, q[i], w[i], inertia[id]), t, &kept, &kept_w);
+		ob_spin_at(ob_rotation_cache_get(&plans, id, q[i], w[i], inertia[id]), t, &kept, &kept_w);
 		ob_rotate_free(q[i], w[i], inertia[id], t, &fresh, &fresh_w);
 		CHECK(!memcmp(&kept, &fresh, sizeof kept) && !memcmp(&kept_w, &fresh_w, sizeof kept_w));
 	}
-	ob_plans_finish(&plans);
+	ob_rotation_cache_finish(&plans);
 }
 
 int main(void)

@@ -41,7 +41,7 @@ static void in_time_is_exact(void)
 	for (int boxes = 0; boxes < 2; boxes++)
 		for (int i = 0; i < 3; i++)
 			for (double ratio = 1; ratio < 2000; ratio *= 1000) {
-				outcome o = hit(OB_EXCHANGE_LAGGED, 0, boxes, ratio, elasticity[i]);
+				outcome o = hit(OB_SOLVER_LAGGED, 0, boxes, ratio, elasticity[i]);
 				CHECK_NEAR(o.momentum, 0, 1e-15 * ratio);
 				CHECK_NEAR(o.velocity, 0, i ? 1e-12 : 1e-8);
 			}
@@ -51,7 +51,7 @@ static void late_is_wrong(void)
 {
 	double before = 0;
 	for (uint32_t lag = 1; lag <= 8; lag *= 2) {
-		outcome o = hit(OB_EXCHANGE_LAGGED, lag, false, 3, .5);
+		outcome o = hit(OB_SOLVER_LAGGED, lag, false, 3, .5);
 		printf("lag %u: momentum %g, energy %g, velocity %g\n", lag, o.momentum, o.energy, o.velocity);
 		CHECK(o.velocity > .05 && o.momentum > .05);
 		CHECK(o.velocity >= before);
@@ -61,10 +61,10 @@ static void late_is_wrong(void)
 
 static void ghosts_are_wrong(void)
 {
-	outcome o = hit(OB_EXCHANGE_GHOST, 0, false, 1, 1);
+	outcome o = hit(OB_SOLVER_GHOST, 0, false, 1, 1);
 	printf("ghosts: momentum %g, energy %g, velocity %g\n", o.momentum, o.energy, o.velocity);
 	CHECK(o.energy > .1 && o.velocity > .1);
-	o = hit(OB_EXCHANGE_GHOST, 0, true, 1000, 0);
+	o = hit(OB_SOLVER_GHOST, 0, true, 1000, 0);
 	printf("ghosts 1:1000: momentum %g, energy %g, velocity %g\n", o.momentum, o.energy, o.velocity);
 	CHECK(o.velocity > .1);
 }
@@ -72,7 +72,7 @@ static void ghosts_are_wrong(void)
 // Against what does not move both are right: that is why the mistake goes unseen for long.
 static void grounds_are_ghosts(void)
 {
-	for (uint32_t exchange = OB_EXCHANGE_GHOST; exchange <= OB_EXCHANGE_LAGGED; exchange++) {
+	for (uint32_t exchange = OB_SOLVER_GHOST; exchange <= OB_SOLVER_LAGGED; exchange++) {
 		little_scene *s = little_scene_new();
 		s->run.exchange = exchange;
 		little_ground(s);
@@ -89,7 +89,7 @@ static void grounds_are_ghosts(void)
 // A stack comes over many steps: what is kept from one step to the next must be each side's own.
 static void stacks_run_on(void)
 {
-	for (uint32_t exchange = OB_EXCHANGE_GHOST; exchange <= OB_EXCHANGE_LAGGED; exchange++) {
+	for (uint32_t exchange = OB_SOLVER_GHOST; exchange <= OB_SOLVER_LAGGED; exchange++) {
 		little_scene *s = little_scene_new();
 		s->run.exchange = exchange;
 		little_stack(s, 3, 1);

@@ -10,7 +10,7 @@ static_assert(BOXES > (int)OB_COLOURS, "more partners than colours");
 
 // platform_mass 0: static.
 // limit: m, of the depth at any moment. Jacobi exchanges, with their split masses, stop a landing late.
-static void stand(ob_exchange_kind exchange, double platform_mass, double limit)
+static void stand(ob_solver_kind exchange, double platform_mass, double limit)
 {
 	little_scene *s = little_scene_new();
 	s->run.exchange = exchange;
@@ -25,7 +25,7 @@ static void stand(ob_exchange_kind exchange, double platform_mass, double limit)
 		 landed = 0; // islands, at any moment; when all have landed, and nothing is in equilibrium yet
 	for (int step = 0; step < 300; step++) {
 		little_run(&l, 1);
-		uint32_t islands = ob_universe_exchange(l.u)->count->islands;
+		uint32_t islands = ob_universe_step_data(l.u)->count->islands;
 		most = islands > most ? islands : most;
 		if (step == 9)
 			landed = islands;
@@ -50,9 +50,9 @@ static void stand(ob_exchange_kind exchange, double platform_mass, double limit)
 
 int main(void)
 {
-	stand(OB_EXCHANGE_COLOURED, 0, .2e-3);
-	stand(OB_EXCHANGE_COLOURED, 5000, .2e-3);
-	stand(OB_EXCHANGE_JACOBI, 0, .2e-3);
-	stand(OB_EXCHANGE_JACOBI, 5000, 5e-3);
+	stand(OB_SOLVER_COLOURED, 0, .2e-3);
+	stand(OB_SOLVER_COLOURED, 5000, .2e-3);
+	stand(OB_SOLVER_JACOBI, 0, .2e-3);
+	stand(OB_SOLVER_JACOBI, 5000, 5e-3);
 	return check_end();
 }

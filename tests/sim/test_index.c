@@ -43,7 +43,7 @@ static bool reaches_below(const little_object *plane, const float *b)
 
 static bool neighbours(const ob_universe *u, const little_scene *s, uint32_t i, uint32_t j)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	const float *a = ex->bounds[i], *b = ex->bounds[j];
 	if (i == j || !there[i] || !there[j] || (is_plane(i) && is_plane(j)))
 		return false;
@@ -99,7 +99,7 @@ static void test_against_all(uint64_t seed)
 {
 	little_scene *s = scene(&seed);
 	ob_universe *u = little_populate(s, 1);
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t found = 0;
 	memset(there, 0, sizeof there);
 	for (int round = 0; round < 12; round++) {
@@ -138,7 +138,7 @@ static void test_extremes(void)
 	ob_universe *u = little_populate(s, 1);
 	memset(there, 0, sizeof there);
 	for (uint32_t i = 0; i < BOXES; i++) {
-		memcpy(ob_universe_exchange(u)->bounds[i], box[i], sizeof box[i]);
+		memcpy(ob_universe_step_data(u)->bounds[i], box[i], sizeof box[i]);
 		ob_index_put(u, i);
 		there[i] = true;
 	}

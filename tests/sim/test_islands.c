@@ -13,24 +13,24 @@ enum { BODIES = 300 };
 // Bodies and pairs by hand: nothing but briefs and pairs matters to the plan.
 static void random_graph(ob_universe *u, uint64_t seed, double density)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < BODIES; i++) {
 		double kind = uniform(&seed), path = within(&seed, 0, 10);
 		double reach = uniform(&seed) < .1 ? within(&seed, .1, 1) : within(&seed, 0, .05);
-		ex->perceived[i] = (struct ob_perceived){ 0, 0 }; // nobody has asked
-		ex->brief[i] = (ob_brief){ .path = path, .reach = (float)reach, .state = OB_BRIEF_AWAKE };
+		ex->perceived[i] = (struct ob_neighbours){ 0, 0 }; // nobody has asked
+		ex->brief[i] = (ob_schedule){ .path = path, .reach = (float)reach, .state = OB_SCHEDULE_AWAKE };
 		if (kind < .1)
-			ex->brief[i].state = OB_BRIEF_STATIC;
+			ex->brief[i].state = OB_SCHEDULE_STATIC;
 		if (kind > .6)
-			ex->brief[i].state = OB_BRIEF_ASLEEP, ex->brief[i].reach = 0, ex->brief[i].due = UINT32_MAX;
+			ex->brief[i].state = OB_SCHEDULE_ASLEEP, ex->brief[i].reach = 0, ex->brief[i].due = UINT32_MAX;
 		if (kind > .97)
-			ex->brief[i].state = OB_BRIEF_ABSENT;
+			ex->brief[i].state = OB_SCHEDULE_ABSENT;
 	}
 	for (uint32_t a = 0; a < BODIES; a++)
 		for (uint32_t b = a + 1; b < BODIES; b++) {
-			const ob_brief *x = &ex->brief[a], *y = &ex->brief[b];
-			bool fixed = x->state == OB_BRIEF_STATIC && y->state == OB_BRIEF_STATIC;
+			const ob_schedule *x = &ex->brief[a], *y = &ex->brief[b];
+			bool fixed = x->state == OB_SCHEDULE_STATIC && y->state == OB_SCHEDULE_STATIC;
 			if (uniform(&seed) > density / BODIES || fixed || !x->state || !y->state)
 				continue;
 			double limit = x->path + y->path + within(&seed, -.1, .5);
@@ -38,7 +38,7 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 			ex->pair[n] = (ob_pair_key){ .a = a, .b = b, .record = n, .limit = limit };
 			ex->pair[n].active = kind < .2;
 			ex->pair[n].near =
-				kind > .2 && kind < .6 && (x->state == OB_BRIEF_AWAKE || y->state == OB_BRIEF_AWAKE);
+				kind > .2 && kind < .6 && (x->state == OB_SCHEDULE_AWAKE || y->state == OB_SCHEDULE_AWAKE);
 			n++;
 		}
 	ex->count->pairs = n;
@@ -49,14 +49,14 @@ typedef struct flood {
 	bool united[BODIES]; // by lowest id: made of several that had been solved apart, or met something fixed
 } flood;
 
-static bool moves(const ob_exchange *ex, uint32_t id)
+static bool moves(const ob_step_data *ex, uint32_t id)
 {
-	return ex->brief[id].state == OB_BRIEF_AWAKE || ex->brief[id].state == OB_BRIEF_ASLEEP;
+	return ex->brief[id].state == OB_SCHEDULE_AWAKE || ex->brief[id].state == OB_SCHEDULE_ASLEEP;
 }
 
-static bool may_touch(const ob_exchange *ex, const ob_pair_key *k)
+static bool may_touch(const ob_step_data *ex, const ob_pair_key *k)
 {
-	const ob_brief *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
 	return k->active || a->reach + b->reach >= k->limit - a->path - b->path;
 }
 
@@ -67,7 +67,7 @@ static void join(uint32_t *group, uint32_t a, uint32_t b)
 			group[i] = a < b ? a : b;
 }
 
-static void flood_fill(const ob_exchange *ex, flood *f)
+static void flood_fill(const ob_step_data *ex, flood *f)
 {
 	for (uint32_t i = 0; i < BODIES; i++)
 		f->island[i] = i;
@@ -78,15 +78,15 @@ static void flood_fill(const ob_exchange *ex, flood *f)
 	}
 }
 
-static bool awake_group(const ob_exchange *ex, const flood *f, uint32_t group)
+static bool awake_group(const ob_step_data *ex, const flood *f, uint32_t group)
 {
 	for (uint32_t i = 0; i < BODIES; i++)
-		if (f->island[i] == group && ex->brief[i].state == OB_BRIEF_AWAKE)
+		if (f->island[i] == group && ex->brief[i].state == OB_SCHEDULE_AWAKE)
 			return true;
 	return false;
 }
 
-static void check_members(const ob_exchange *ex, const flood *f, const ob_island *is, uint32_t index)
+static void check_members(const ob_step_data *ex, const flood *f, const ob_island *is, uint32_t index)
 {
 	const uint32_t *member = ex->member + is->first_member;
 	uint32_t group = f->island[member[0]], count = 0;
@@ -100,7 +100,7 @@ static void check_members(const ob_exchange *ex, const flood *f, const ob_island
 	CHECK(count == is->members);
 }
 
-static void check_island_pairs(const ob_exchange *ex, const flood *f, const ob_island *is)
+static void check_island_pairs(const ob_step_data *ex, const flood *f, const ob_island *is)
 {
 	uint32_t group = f->island[ex->member[is->first_member]], count = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
@@ -119,7 +119,7 @@ static void check_island_pairs(const ob_exchange *ex, const flood *f, const ob_i
 }
 
 // Chunks of what is to be solved, largest first.
-static void check_order(const ob_exchange *ex, uint32_t solved)
+static void check_order(const ob_step_data *ex, uint32_t solved)
 {
 	uint32_t n = ex->count->islands - solved;
 	CHECK(ex->count->chunks == 0 || ex->chunk[0] == 0);
@@ -134,7 +134,7 @@ static void check_order(const ob_exchange *ex, uint32_t solved)
 		CHECK(ex->island[i].solved == (i >= n));
 }
 
-static void check_plan(const ob_exchange *ex)
+static void check_plan(const ob_step_data *ex)
 {
 	flood f;
 	uint32_t groups = 0;
@@ -156,7 +156,7 @@ static void check_plan(const ob_exchange *ex)
 // of more than one of the old are to be solved, the others stand.
 static void check_reunion(ob_universe *u, uint64_t seed)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	static uint32_t before[BODIES];
 	flood f;
 	memcpy(before, ex->result_island, sizeof before);
@@ -177,10 +177,10 @@ static void check_reunion(ob_universe *u, uint64_t seed)
 	}
 	for (uint32_t i = 0; i < BODIES; i++)
 		if (before[i] != UINT32_MAX && uniform(&seed) < .1)
-			ex->brief[i].state = OB_BRIEF_ASLEEP;
+			ex->brief[i].state = OB_SCHEDULE_ASLEEP;
 	for (uint32_t i = 0; i < BODIES; i++) // a union may have been united again under a lower id
 		f.united[f.island[i]] |= f.united[i];
-	ob_islands_unite(u);
+	ob_islands_merge(u);
 	uint32_t unsolved = 0;
 	for (uint32_t i = 0; i < ex->count->islands; i++) {
 		const ob_island *is = &ex->island[i];
@@ -205,7 +205,7 @@ int main(void)
 	uint32_t largest = 0, smallest = UINT32_MAX;
 	for (uint32_t workers = 1; workers <= 3; workers += 2) {
 		ob_universe *u = little_populate(s, workers);
-		const ob_exchange *ex = ob_universe_exchange(u);
+		const ob_step_data *ex = ob_universe_step_data(u);
 		CHECK(ob_universe_ids(u) == BODIES);
 		for (uint64_t seed = 1; seed <= 60; seed++) {
 			random_graph(u, seed, .5 + .1 * (double)seed);

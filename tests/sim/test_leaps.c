@@ -36,9 +36,9 @@ static little_scene *thrown(uint64_t *seed, bool balls, double room)
 // All that fly are visited in the next step, and foresee from there.
 static void call_all(ob_universe *u)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
-		if (ex->brief[id].state != OB_BRIEF_AWAKE)
+		if (ex->brief[id].state != OB_SCHEDULE_AWAKE)
 			continue;
 		ob_motion m = *ob_newest_motion(u, id);
 		m.valid_until = m.t0;
@@ -144,9 +144,9 @@ static void test_low_hops(void)
 		o->state.v = random_vector(&seed, 1);
 		little_universe l;
 		little_open(&l, s);
-		const ob_exchange *ex = ob_universe_exchange(l.u);
+		const ob_step_data *ex = ob_universe_step_data(l.u);
 		double energy = little_energy(&l), growth = 0;
-		for (int step = 0; step < 600 && ex->brief[1].state == OB_BRIEF_AWAKE; step++) {
+		for (int step = 0; step < 600 && ex->brief[1].state == OB_SCHEDULE_AWAKE; step++) {
 			bool held = ex->count->pairs && ex->pair[0].active;
 			ob_counters before, after;
 			ob_universe_count(l.u, &before);
@@ -159,7 +159,7 @@ static void test_low_hops(void)
 			CHECK(little_penetration(&l).max_m < 1.1e-3);
 		}
 		CHECK(growth < 1e-5);
-		CHECK(ex->brief[1].state == OB_BRIEF_ASLEEP);
+		CHECK(ex->brief[1].state == OB_SCHEDULE_ASLEEP);
 		little_close(&l);
 		free(s);
 	}

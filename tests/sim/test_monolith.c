@@ -59,11 +59,11 @@ static void take(ob_universe *u, uint32_t id)
 	ob_write_passport(u, id, &p);
 }
 
-static void run(ob_monolith *m, ob_universe *u, int steps)
+static void run(ob_ode_baseline *m, ob_universe *u, int steps)
 {
 	for (int i = 0; i < steps; i++) {
-		ob_monolith_step(m);
-		ob_step_complete(u, ob_monolith_awake(m), ob_monolith_pairs(m), 1);
+		ob_ode_baseline_step(m);
+		ob_step_complete(u, ob_ode_baseline_awake(m), ob_ode_baseline_pairs(m), 1);
 	}
 }
 
@@ -72,7 +72,7 @@ static void test_flight(uint32_t substeps)
 	ob_universe *u = universe(substeps);
 	put(u, 0, 1, OB_SHAPE_PLANE, 0, ob_v3(0, 0, 0));
 	put(u, 1, 1, OB_SHAPE_BOX, 2, ob_v3(0, 0, 20));
-	ob_monolith *m = ob_monolith_create(u);
+	ob_ode_baseline *m = ob_ode_baseline_create(u);
 	run(m, u, 60);
 	ob_motion now;
 	CHECK(ob_universe_get_motion(u, 1, &now));
@@ -86,9 +86,9 @@ static void test_flight(uint32_t substeps)
 	CHECK(bounds[2] < now.p.z - .5 - 10 * H && bounds[5] > now.p.z + .5); // until the next step
 	CHECK_NEAR(now.path, 5 + 5 * H, .01);
 	CHECK(ob_universe_get_motion(u, 0, &now) && now.step == 0); // what is static is left as it was placed
-	CHECK(ob_monolith_awake(m) == 1 && ob_monolith_pairs(m) == 0);
-	ob_monolith_destroy(m);
-	ob_monolith_destroy(NULL);
+	CHECK(ob_ode_baseline_awake(m) == 1 && ob_ode_baseline_pairs(m) == 0);
+	ob_ode_baseline_destroy(m);
+	ob_ode_baseline_destroy(NULL);
 	ob_universe_destroy(u, true);
 }
 
@@ -97,7 +97,7 @@ static void test_rest_and_contacts(void)
 	ob_universe *u = universe(1);
 	put(u, 0, 1, OB_SHAPE_PLANE, 0, ob_v3(0, 0, 0));
 	put(u, 1, 1, OB_SHAPE_BOX, 2, ob_v3(0, 0, .501));
-	ob_monolith *m = ob_monolith_create(u);
+	ob_ode_baseline *m = ob_ode_baseline_create(u);
 	run(m, u, 5);
 	ob_contact_point c[16];
 	size_t n = ob_universe_get_contacts(u, c, 16);
@@ -115,9 +115,9 @@ static void test_rest_and_contacts(void)
 	CHECK(ob_universe_get_motion(u, 1, &now) && now.a.z == 0); // held up
 	run(m, u, 300);
 	CHECK(ob_universe_get_motion(u, 1, &now) && now.flags == OB_MOTION_ASLEEP && now.v.z == 0);
-	CHECK(ob_monolith_awake(m) == 0);
+	CHECK(ob_ode_baseline_awake(m) == 0);
 	CHECK(now.valid_until == INFINITY && now.quiet > 1);
-	ob_monolith_destroy(m);
+	ob_ode_baseline_destroy(m);
 	ob_universe_destroy(u, true);
 }
 
@@ -127,7 +127,7 @@ static void test_come_and_go(void)
 	put(u, 0, 1, OB_SHAPE_PLANE, 0, ob_v3(0, 0, 0));
 	put(u, 1, 1, OB_SHAPE_BOX, 2, ob_v3(0, 0, .5));
 	put(u, 2, 1, OB_SHAPE_BOX, 2, ob_v3(0, 0, 1.5));
-	ob_monolith *m = ob_monolith_create(u);
+	ob_ode_baseline *m = ob_ode_baseline_create(u);
 	run(m, u, 200);
 	ob_motion now;
 	CHECK(ob_universe_get_motion(u, 2, &now));
@@ -144,7 +144,7 @@ static void test_come_and_go(void)
 	CHECK_NEAR(now.p.z, .5, .02);
 	CHECK(ob_universe_get_motion(u, 2, &now));
 	CHECK_NEAR(now.p.x, 8, 1e-6);
-	ob_monolith_destroy(m);
+	ob_ode_baseline_destroy(m);
 	ob_universe_destroy(u, true);
 }
 
@@ -155,10 +155,10 @@ static void test_failure_is_told(void)
 	ob_motion broken = *ob_newest_motion(u, 0);
 	broken.v.x = NAN;
 	ob_publish_motion(u, 0, &broken);
-	ob_monolith *m = ob_monolith_create(u);
-	ob_monolith_step(m);
-	CHECK(ob_universe_exchange(u)->count->failure == OB_EXCHANGE_DIVERGED);
-	ob_monolith_destroy(m);
+	ob_ode_baseline *m = ob_ode_baseline_create(u);
+	ob_ode_baseline_step(m);
+	CHECK(ob_universe_step_data(u)->count->failure == OB_STEP_DIVERGED);
+	ob_ode_baseline_destroy(m);
 	ob_universe_destroy(u, true);
 }
 

@@ -92,7 +92,7 @@ static void test_find(void)
 		ob_quat q = ob_quat_turn(ob_quat_identity(), ob_v3(.4, .7, -.2));
 		ob_shape_bounds(x.shape, x.size, (ob_pose){ x.p, q }, bounds);
 		ob_manifold m;
-		ob_boxed_find(&x, &wall, 2, &m);
+		ob_manifold_aabb(&x, &wall, 2, &m);
 		CHECK(m.points == 4);
 		CHECK_NEAR(m.normal.x, -1, 1e-15);
 		CHECK_NEAR(m.gap[0], 1.9 - bounds[3], 1e-12);

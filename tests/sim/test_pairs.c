@@ -37,13 +37,13 @@ static void shuffle(uint64_t *seed, uint32_t *id, uint32_t n)
 static void look_around(ob_universe *u)
 {
 	uint32_t count;
-	const uint32_t *list = ob_rebound_list(u, &count);
+	const uint32_t *list = ob_requery_list(u, &count);
 	for (uint32_t i = 0; i < count; i++)
 		ob_index_put(u, list[i]);
 	for (uint32_t i = 0; i < count; i++)
-		ob_perceive(u, list[i], &(uint64_t){ 0 });
+		ob_broadphase_query(u, list[i], &(uint64_t){ 0 });
 	ob_pairs_merge(u, ob_step_count(u));
-	ob_rebound_list(u, &count);
+	ob_requery_list(u, &count);
 	CHECK(count == 0);
 }
 
@@ -55,15 +55,15 @@ static void move(ob_universe *u, const uint32_t *id, uint32_t n, uint64_t seed)
 		ob_motion m = *ob_newest_motion(u, id[i]);
 		m.p = random_vector(&own, 4);
 		ob_publish_motion(u, id[i], &m);
-		ob_claim_bounds_anew(u, id[i], &(ob_state){ .pose = { m.p, m.q } }, .01);
+		ob_fat_aabb_renew(u, id[i], &(ob_state){ .pose = { m.p, m.q } }, .01);
 	}
 }
 
 static bool overlap(const ob_universe *u, uint32_t i, uint32_t j)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	const float *a = ex->bounds[i], *b = ex->bounds[j];
-	if (ex->brief[i].state < OB_BRIEF_AWAKE && ex->brief[j].state < OB_BRIEF_AWAKE)
+	if (ex->brief[i].state < OB_SCHEDULE_AWAKE && ex->brief[j].state < OB_SCHEDULE_AWAKE)
 		return false;
 	if (j == BODIES) // the ground
 		return a[2] <= -2;
@@ -76,7 +76,7 @@ static bool overlap(const ob_universe *u, uint32_t i, uint32_t j)
 // Exactly the overlapping ones, sorted.
 static void check_pairs(const ob_universe *u)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t k = 0, n = ex->count->pairs;
 	for (uint32_t i = 0; i <= BODIES; i++)
 		for (uint32_t j = i + 1; j <= BODIES; j++)
@@ -91,7 +91,7 @@ static void check_pairs(const ob_universe *u)
 // Each record is one pair's or free: none is lost, none given away twice.
 static void check_records(const ob_universe *u)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	bool *used = calloc(ex->pairs_max, sizeof *used);
 	int32_t taken = 0, free_ones = ex->count->records_free > 0 ? ex->count->records_free : 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
@@ -114,7 +114,7 @@ static void check_records(const ob_universe *u)
 // Between steps the arranger lets go of what does not touch; then some share of the pairs begins to.
 static void touch(ob_universe *u, uint64_t *seed, double share)
 {
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		ob_pair_key *k = &ex->pair[i];
 		k->active = uniform(seed) < share;
@@ -132,7 +132,7 @@ static void touch(ob_universe *u, uint64_t *seed, double share)
 // A pair that may touch before its members have moved by the distance between them has a limit that is too high.
 static void check_limits(const ob_universe *u)
 {
-	const ob_exchange *ex = ob_universe_exchange(u);
+	const ob_step_data *ex = ob_universe_step_data(u);
 	for (uint32_t k = 0; k < ex->count->pairs; k++) {
 		const ob_pair_key *p = &ex->pair[k];
 		const ob_motion *a = ob_newest_motion(u, p->a), *b = ob_newest_motion(u, p->b);
@@ -182,7 +182,7 @@ static void test_order(void)
 			move(u[k], id, n, round);
 			look_around(u[k]);
 		}
-		const ob_exchange *x = ob_universe_exchange(u[0]), *y = ob_universe_exchange(u[1]);
+		const ob_step_data *x = ob_universe_step_data(u[0]), *y = ob_universe_step_data(u[1]);
 		CHECK(x->count->pairs == y->count->pairs);
 		for (uint32_t i = 0; i < x->count->pairs; i++) {
 			const ob_pair_key *p = &x->pair[i], *q = &y->pair[i];
@@ -200,7 +200,7 @@ static void test_active_stays(void)
 	uint64_t seed = 4;
 	little_scene *s = scene(&seed);
 	ob_universe *u = little_populate(s, 1);
-	ob_exchange *ex = ob_universe_exchange(u);
+	ob_step_data *ex = ob_universe_step_data(u);
 	look_around(u);
 	uint32_t k = 0;
 	while (ex->pair[k].a < STATICS || ex->pair[k].b == BODIES)
@@ -211,7 +211,7 @@ static void test_active_stays(void)
 	ob_motion m = *ob_newest_motion(u, a);
 	m.p = ob_v3(100, 0, 100);
 	ob_publish_motion(u, a, &m);
-	ob_claim_bounds_anew(u, a, &(ob_state){ .pose = { m.p, m.q } }, 0);
+	ob_fat_aabb_renew(u, a, &(ob_state){ .pose = { m.p, m.q } }, 0);
 	look_around(u);
 	int of_a = 0;
 	for (uint32_t i = 0; i < ex->count->pairs; i++)
@@ -256,7 +256,7 @@ static void test_claims(void)
 	little_sphere(s, 1, r, ob_v3(0, 0, 0))->state.v.x = v;
 	s->run.gravity = ob_v3(0, 0, 0);
 	ob_universe *u = little_populate(s, 1);
-	const float *box = ob_universe_exchange(u)->bounds[0];
+	const float *box = ob_universe_step_data(u)->bounds[0];
 	const double reach = v * s->run.step_length, margin = .04;
 	CHECK_NEAR(box[0], -r - reach - margin, 1e-6);
 	CHECK_NEAR(box[3], r + 2 * reach + margin, 1e-6);
@@ -267,13 +267,13 @@ static void test_claims(void)
 	float old[6];
 	memcpy(old, box, sizeof old);
 	ob_state now = { .pose = { { reach, 0, 0 }, ob_quat_identity() }, .v = { v, 0, 0 } };
-	ob_claim_bounds(u, 0, &now, reach); // still holds it
+	ob_fat_aabb_update(u, 0, &now, reach); // still holds it
 	CHECK(!memcmp(old, box, sizeof old));
 	now.v = ob_v3(0, 0, 0);
-	ob_claim_bounds(u, 0, &now, 0); // it stopped, and the box is no larger than a box at rest may be
+	ob_fat_aabb_update(u, 0, &now, 0); // it stopped, and the box is no larger than a box at rest may be
 	CHECK(!memcmp(old, box, sizeof old));
 	now.pose.p.x = 4 * reach;
-	ob_claim_bounds(u, 0, &now, 0); // it has left it
+	ob_fat_aabb_update(u, 0, &now, 0); // it has left it
 	CHECK_NEAR(box[0], now.pose.p.x - r - margin, 1e-6);
 	ob_universe_destroy(u, true);
 	free(s);
@@ -285,10 +285,10 @@ static void test_column(void)
 	little_scene *s = little_scene_new();
 	little_sphere(s, 1, .5, ob_v3(0, 0, 0));
 	ob_universe *u = little_populate(s, 1);
-	float *box = ob_universe_exchange(u)->bounds[0];
+	float *box = ob_universe_step_data(u)->bounds[0];
 	box[5] = 10;
 	const ob_state now = { .pose.q = ob_quat_identity() };
-	ob_claim_bounds(u, 0, &now, 0);
+	ob_fat_aabb_update(u, 0, &now, 0);
 	CHECK_NEAR(box[5], .54, 1e-6);
 	ob_universe_destroy(u, true);
 	free(s);

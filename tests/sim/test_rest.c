@@ -20,7 +20,7 @@ static uint32_t awake(const little_universe *l)
 }
 
 // A stack of five falls asleep, sleeps on without moving by a bit, and wakes all through when a box hits its top.
-static void test_sleep(ob_exchange_kind exchange)
+static void test_sleep(ob_solver_kind exchange)
 {
 	little_scene *s = little_scene_new();
 	s->run.sleeping = 1;
@@ -47,7 +47,7 @@ static void test_sleep(ob_exchange_kind exchange)
 	CHECK(woke);
 	little_run_to(&l, 6);
 	CHECK(ob_norm(ob_sub(little_state(&l, 5).pose.p, top.pose.p)) > .005); // it was hit: 18 mm with 512 substeps
-	if (exchange == OB_EXCHANGE_COLOURED) { // by Jacobi exchanges a stack that was hit sways on for long
+	if (exchange == OB_SOLVER_COLOURED) { // by Jacobi exchanges a stack that was hit sways on for long
 		little_run_to(&l, 20);
 		CHECK(all_asleep(&l));
 		CHECK(awake(&l) == 0);
@@ -84,7 +84,7 @@ static void test_still(void)
 	little_open(&l, s);
 	little_run_to(&l, 1);
 	CHECK(awake(&l) == 5 && !all_asleep(&l));
-	CHECK(l.now.motion[1].flags & OB_MOTION_STILL && !(l.now.motion[5].flags & OB_MOTION_STILL));
+	CHECK(l.now.motion[1].flags & OB_MOTION_EQUILIBRIUM && !(l.now.motion[5].flags & OB_MOTION_EQUILIBRIUM));
 	ob_universe_count(l.u, &before);
 	little_run(&l, 20);
 	ob_universe_count(l.u, &after);
@@ -92,7 +92,7 @@ static void test_still(void)
 	little_run_to(&l, 3);
 	double p = l.now.passport[1].mass * little_state(&l, 1).v.x;
 	CHECK(p > -1e-15 && p < .2 && little_state(&l, 5).v.x < .15); // the box has stopped it, or friction the box
-	CHECK(l.now.motion[4].flags & OB_MOTION_STILL);
+	CHECK(l.now.motion[4].flags & OB_MOTION_EQUILIBRIUM);
 	little_close(&l);
 	free(s);
 }
@@ -107,7 +107,7 @@ static void test_still_stack(void)
 	little_open(&l, s);
 	little_run_to(&l, 3);
 	for (uint32_t i = 1; i <= 10; i++)
-		CHECK(l.now.motion[i].flags & OB_MOTION_STILL);
+		CHECK(l.now.motion[i].flags & OB_MOTION_EQUILIBRIUM);
 	little_close(&l);
 	free(s);
 }
@@ -125,7 +125,7 @@ static void test_still_pyramid(uint32_t substeps)
 	little_open(&l, s);
 	little_run_to(&l, 3);
 	for (uint32_t i = 1; i <= 36; i++) {
-		CHECK(l.now.motion[i].flags & OB_MOTION_STILL);
+		CHECK(l.now.motion[i].flags & OB_MOTION_EQUILIBRIUM);
 		CHECK(ob_norm(ob_sub(little_state(&l, i).pose.p, s->object[i].state.pose.p)) < 2e-5);
 	}
 	little_close(&l);
@@ -216,7 +216,7 @@ static void test_round_shapes(void)
 	free(s);
 }
 
-static void check_stack(ob_exchange_kind exchange, ob_integrator integrator, double deepest)
+static void check_stack(ob_solver_kind exchange, ob_integrator integrator, double deepest)
 {
 	little_scene *s = little_scene_new();
 	s->run.exchange = exchange;
@@ -240,8 +240,8 @@ static void check_stack(ob_exchange_kind exchange, ob_integrator integrator, dou
 
 int main(void)
 {
-	test_sleep(OB_EXCHANGE_COLOURED);
-	test_sleep(OB_EXCHANGE_JACOBI);
+	test_sleep(OB_SOLVER_COLOURED);
+	test_sleep(OB_SOLVER_JACOBI);
 	test_no_sleep();
 	test_still();
 	test_still_stack();
@@ -251,8 +251,8 @@ int main(void)
 	test_support_removed(true);
 	test_added();
 	test_round_shapes();
-	check_stack(OB_EXCHANGE_COLOURED, OB_INTEGRATOR_EXACT, 5e-4);
-	check_stack(OB_EXCHANGE_COLOURED, OB_INTEGRATOR_ODE, 5e-4);
-	check_stack(OB_EXCHANGE_JACOBI, OB_INTEGRATOR_EXACT, 2e-3);
+	check_stack(OB_SOLVER_COLOURED, OB_INTEGRATOR_EXACT, 5e-4);
+	check_stack(OB_SOLVER_COLOURED, OB_INTEGRATOR_ODE, 5e-4);
+	check_stack(OB_SOLVER_JACOBI, OB_INTEGRATOR_EXACT, 2e-3);
 	return check_end();
 }

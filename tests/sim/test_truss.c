@@ -49,30 +49,30 @@ static void random_frame(frame *f, uint64_t *seed)
 			f->parent[k] = pick(seed, BODIES);
 		while (f->parent[k] == f->child[k]);
 		if (k % 5 == 0)
-			f->parent[k] = OB_TRUSS_FIXED;
+			f->parent[k] = OB_SPARSE_FIXED;
 		random_joint(&f->joint[k], seed);
 	}
 }
 
-static bool solve(frame *f, ob_truss *t, uint32_t most)
+static bool solve(frame *f, ob_sparse_solver *t, uint32_t most)
 {
-	ob_truss_begin(t, BODIES);
+	ob_sparse_begin(t, BODIES);
 	for (int k = 0; k < JOINTS; k++)
-		ob_truss_link(t, f->child[k], f->parent[k]);
-	if (!ob_truss_plan(t, most))
+		ob_sparse_link(t, f->child[k], f->parent[k]);
+	if (!ob_sparse_analyse(t, most))
 		return false;
 	for (uint32_t k = 0; k < BODIES; k++)
-		ob_truss_inertia(t, k, f->inertia[k]);
+		ob_sparse_add_inertia(t, k, f->inertia[k]);
 	for (int k = 0; k < JOINTS; k++)
-		ob_truss_join(t, &f->joint[k], f->child[k], f->parent[k]);
-	ob_truss_solve(t);
+		ob_sparse_add_joint(t, &f->joint[k], f->child[k], f->parent[k]);
+	ob_sparse_solve(t);
 	for (int k = 0; k < JOINTS; k++)
-		ob_truss_pull(t, &f->joint[k], f->child[k], f->parent[k]);
+		ob_sparse_joint_impulses(t, &f->joint[k], f->child[k], f->parent[k]);
 	return true;
 }
 
 // M dv = sum of J^T x for each body. That J dv + e x = y for each row is how x is made.
-static void check_frame(uint64_t *seed, ob_truss *t)
+static void check_frame(uint64_t *seed, ob_sparse_solver *t)
 {
 	frame f;
 	double force[BODIES][6] = { 0 }, scale = 0;
@@ -82,7 +82,7 @@ static void check_frame(uint64_t *seed, ob_truss *t)
 		for (uint32_t r = 0; r < f.joint[k].rows; r++)
 			for (int i = 0; i < 6; i++) {
 				force[f.child[k]][i] += f.joint[k].child[i][r] * f.joint[k].x[r];
-				if (f.parent[k] != OB_TRUSS_FIXED)
+				if (f.parent[k] != OB_SPARSE_FIXED)
 					force[f.parent[k]][i] += f.joint[k].parent[r][i] * f.joint[k].x[r];
 				scale = fmax(scale, fabs(f.joint[k].x[r]));
 			}
@@ -97,27 +97,27 @@ static void check_frame(uint64_t *seed, ob_truss *t)
 }
 
 // A chain costs one product a body, in whatever order its links are told; where each touches each, it costs too much.
-static void test_cost(ob_truss *t)
+static void test_cost(ob_sparse_solver *t)
 {
-	ob_truss_begin(t, MANY);
+	ob_sparse_begin(t, MANY);
 	for (uint32_t k = 0; k + 1 < MANY; k++)
-		ob_truss_link(t, k * 29 % MANY, (k + 1) * 29 % MANY);
-	CHECK(ob_truss_plan(t, 1));
+		ob_sparse_link(t, k * 29 % MANY, (k + 1) * 29 % MANY);
+	CHECK(ob_sparse_analyse(t, 1));
 	CHECK(t->first[MANY] == MANY - 1);
-	ob_truss_begin(t, MANY);
+	ob_sparse_begin(t, MANY);
 	for (uint32_t k = 0; k < MANY; k++)
 		for (uint32_t i = 0; i < k; i++)
-			ob_truss_link(t, k, i);
-	CHECK(!ob_truss_plan(t, MANY));
+			ob_sparse_link(t, k, i);
+	CHECK(!ob_sparse_analyse(t, MANY));
 }
 
 int main(void)
 {
 	uint64_t seed = 1;
-	ob_truss t = { 0 };
+	ob_sparse_solver t = { 0 };
 	for (int i = 0; i < 1000; i++)
 		check_frame(&seed, &t);
 	test_cost(&t);
-	ob_truss_finish(&t);
+	ob_sparse_finish(&t);
 	return check_end();
 }

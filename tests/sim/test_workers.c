@@ -63,7 +63,7 @@ static uint64_t run(const little_scene *s, uint32_t workers, uint64_t steps)
 }
 
 // Boxes, spheres, a capsule and a cylinder that fall on each other and on a fixed box, some with restitution.
-static little_scene *heap(ob_exchange_kind exchange, ob_integrator integrator)
+static little_scene *heap(ob_solver_kind exchange, ob_integrator integrator)
 {
 	uint64_t seed = 1;
 	little_scene *s = little_scene_new();
@@ -85,7 +85,7 @@ static little_scene *heap(ob_exchange_kind exchange, ob_integrator integrator)
 	return s;
 }
 
-static void compare(ob_exchange_kind exchange, ob_integrator integrator, double tolerance, uint64_t steps)
+static void compare(ob_solver_kind exchange, ob_integrator integrator, double tolerance, uint64_t steps)
 {
 	little_scene *s = heap(exchange, integrator);
 	s->run.tolerance = tolerance;
@@ -105,10 +105,10 @@ static void compare(ob_exchange_kind exchange, ob_integrator integrator, double 
 
 int main(void)
 {
-	compare(OB_EXCHANGE_COLOURED, OB_INTEGRATOR_EXACT, 0, 240);
-	compare(OB_EXCHANGE_JACOBI, OB_INTEGRATOR_EXACT, 0, 240);
-	compare(OB_EXCHANGE_COLOURED, OB_INTEGRATOR_ODE, 0, 60);
-	compare(OB_EXCHANGE_COLOURED, OB_INTEGRATOR_EXACT, .5e-3, 120);
-	compare(OB_EXCHANGE_COLOURED, OB_INTEGRATOR_ODE, .5e-3, 60);
+	compare(OB_SOLVER_COLOURED, OB_INTEGRATOR_EXACT, 0, 240);
+	compare(OB_SOLVER_JACOBI, OB_INTEGRATOR_EXACT, 0, 240);
+	compare(OB_SOLVER_COLOURED, OB_INTEGRATOR_ODE, 0, 60);
+	compare(OB_SOLVER_COLOURED, OB_INTEGRATOR_EXACT, .5e-3, 120);
+	compare(OB_SOLVER_COLOURED, OB_INTEGRATOR_ODE, .5e-3, 60);
 	return check_end();
 }

@@ -8,10 +8,10 @@
 
 enum { OBJECTS = 1500, WORKERS = 3 };
 
-static ob_state stepped(ob_worlds *w, const ob_universe *u, uint32_t id)
+static ob_state stepped(ob_ode_bodies *w, const ob_universe *u, uint32_t id)
 {
 	ob_state s = { { { .5, id, 2 }, ob_quat_identity() }, { 1, 2, 3 }, { .1, .2, .3 } };
-	ob_ode_body_step(ob_worlds_body(w, u, id), &s, ob_v3(1, 0, 0), ob_v3(0, 0, 1), .01);
+	ob_ode_body_step(ob_ode_bodies_get(w, u, id), &s, ob_v3(1, 0, 0), ob_v3(0, 0, 1), .01);
 	return s;
 }
 
@@ -33,8 +33,8 @@ static ob_universe *populate(void)
 static void test_share(void)
 {
 	ob_universe *u = populate();
-	ob_worlds w = { 0 };
-	CHECK(ob_worlds_create(&w, u));
+	ob_ode_bodies w = { 0 };
+	CHECK(ob_ode_bodies_create(&w, u));
 	CHECK(w.slots * WORKERS == OBJECTS);
 	ob_state first[OBJECTS];
 	for (uint32_t id = 0; id < OBJECTS; id++)
@@ -42,8 +42,8 @@ static void test_share(void)
 	for (uint32_t id = OBJECTS; id-- > 0;)
 		CHECK(same(stepped(&w, u, id), first[id]));
 	CHECK(first[1].v.x != first[0].v.x); // of another mass
-	CHECK(ob_worlds_body(&w, u, 7) == ob_worlds_body(&w, u, 7));
-	ob_worlds_finish(&w);
+	CHECK(ob_ode_bodies_get(&w, u, 7) == ob_ode_bodies_get(&w, u, 7));
+	ob_ode_bodies_finish(&w);
 	ob_universe_destroy(u, true);
 }
 
@@ -51,15 +51,15 @@ static void test_share(void)
 static void test_successor(void)
 {
 	ob_universe *u = populate();
-	ob_worlds w = { 0 };
-	CHECK(ob_worlds_create(&w, u));
+	ob_ode_bodies w = { 0 };
+	CHECK(ob_ode_bodies_create(&w, u));
 	ob_state before = stepped(&w, u, 5);
 	ob_passport p = *ob_passport_of(u, 5);
 	p.mass *= 2, p.inertia = ob_scale(p.inertia, 2), p.generation++;
 	ob_write_passport(u, 5, &p);
 	ob_state after = stepped(&w, u, 5);
 	CHECK_NEAR(after.v.x - 1, .5 * (before.v.x - 1), 1e-12);
-	ob_worlds_finish(&w);
+	ob_ode_bodies_finish(&w);
 	ob_universe_destroy(u, true);
 }
 

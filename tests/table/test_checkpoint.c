@@ -50,8 +50,8 @@ static void publish_all(ob_universe *u, double x)
 // The areas of the step, byte by byte, but for what the arranger scribbles on
 static char *step_bytes(const ob_universe *u, size_t *n)
 {
-	*n = u->header.area[OB_AREA_SCRATCH] - u->header.area[OB_AREA_REBOUND];
-	return u->base + u->header.area[OB_AREA_REBOUND];
+	*n = u->header.area[OB_AREA_SCRATCH] - u->header.area[OB_AREA_REQUERY];
+	return u->base + u->header.area[OB_AREA_REQUERY];
 }
 
 static void scatter(ob_universe *u, unsigned seed, int times)
@@ -72,10 +72,10 @@ static void go_astray(ob_universe *u, unsigned seed)
 	ob_motion m = motion(7);
 	ob_stage_motion(u, 5, &m);
 	scatter(u, seed, 2000);
-	ob_claim_reset(u, 100);
-	ob_claim_next(u, &index);
-	ob_rebound_append(u, 17);
-	ob_perceived_reserve(u, 1000);
+	ob_task_reset(u, 100);
+	ob_task_claim(u, &index);
+	ob_requery_append(u, 17);
+	ob_neighbours_reserve(u, 1000);
 	ob_step_complete(u, 1, 2, 3);
 	ob_worker_announce(u, 1, 42, 42, 0);
 	ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
@@ -97,9 +97,9 @@ static void check_as_taken(ob_universe *u, const char *bytes)
 	CHECK(u->control->rebound_count == 1 && u->control->perceived_used == 10);
 	CHECK(ob_universe_get_worker(u, 1, &info) && info.pid == 0);
 	CHECK(ob_gate_host_wait(u, 0) && u->gate->stop == 0); // the host has the turn
-	ob_gate_open(u, OB_PHASE_MEMBERS, NULL, 0);
+	ob_gate_open(u, OB_PHASE_OBJECTS, NULL, 0);
 	for (uint32_t w = 0; w < WORKERS; w++) {
-		CHECK(ob_gate_wait(u, w) == OB_PHASE_MEMBERS);
+		CHECK(ob_gate_wait(u, w) == OB_PHASE_OBJECTS);
 		CHECK(ob_gate_arrive(u, w) == (w == WORKERS - 1));
 	}
 }
@@ -112,8 +112,8 @@ static void test_put_back(void)
 	CHECK(c);
 	publish_all(u, 3);
 	scatter(u, 1, 500);
-	ob_rebound_append(u, 4);
-	ob_perceived_reserve(u, 10);
+	ob_requery_append(u, 4);
+	ob_neighbours_reserve(u, 10);
 	ob_step_complete(u, 9, 8, 7);
 	char *bytes = step_bytes(u, &n), *kept = malloc(n);
 	memcpy(kept, bytes, n); // by which all pages come into use

@@ -44,7 +44,7 @@ static void test_nonsense(void)
 	CHECK(!ob_universe_get_motion(u, 3, &m));
 	ob_publish_motion(u, 3, &good);
 	CHECK(ob_universe_get_motion(u, 3, &m));
-	float *claimed = ob_universe_exchange(u)->bounds[3], bounds[6];
+	float *claimed = ob_universe_step_data(u)->bounds[3], bounds[6];
 	memcpy(claimed, (float[6]){ -INFINITY, 0, 1, INFINITY, 0, 2 }, sizeof bounds);
 	CHECK(ob_universe_get_bounds(u, 3, bounds) && memcmp(bounds, claimed, sizeof bounds) == 0);
 	claimed[1] = NAN;
@@ -59,7 +59,7 @@ static void test_nonsense(void)
 
 static void touch(ob_universe *u, uint32_t index, uint32_t a, uint32_t b, uint64_t stamp)
 {
-	ob_exchange *x = ob_universe_exchange(u);
+	ob_step_data *x = ob_universe_step_data(u);
 	x->pair[index] = (ob_pair_key){ .a = a, .b = b, .record = index, .active = 1 };
 	ob_pair_record *r = x->record + index;
 	ob_pair_state *s = &r->version[(stamp - 1) & 1];
@@ -87,7 +87,7 @@ static void test_contacts(void)
 	CHECK(ob_universe_get_contacts(u, c, 8) == 2);
 	ob_publish_motion(u, 6, &asleep);
 	CHECK(ob_universe_get_contacts(u, c, 8) == 4); // both sleep: what they last felt still holds
-	ob_exchange *x = ob_universe_exchange(u);
+	ob_step_data *x = ob_universe_step_data(u);
 	x->record[0].version[5 & 1].arm_a[0][0] = NAN;
 	CHECK(ob_universe_get_contacts(u, c, 8) == 3);
 	x->record[0].version[5 & 1].points = 1000;
@@ -130,7 +130,7 @@ static void test_damage(void)
 		if (!u || !before)
 			return;
 		size_t start = round % 2 ? OB_LAYOUT_PAGE : 0; // with and without the header
-		size_t end = u->header.area[OB_AREA_REBOUND];
+		size_t end = u->header.area[OB_AREA_REQUERY];
 		for (int i = 0; i < 3000; i++)
 			u->base[start + (size_t)rand() % (end - start)] = (char)(rand() % 3 ? rand() : -1);
 		for (size_t i = 0; i < sizeof *u->exchange.count; i++)

@@ -18,20 +18,20 @@ typedef struct board {
 static int work(void *shared, uint32_t worker)
 {
 	board *b = shared;
-	for (uint32_t i; ob_claim_next(b->u, &i);) {
+	for (uint32_t i; ob_task_claim(b->u, &i);) {
 		if (i >= OBJECTS)
 			return 1;
 		__atomic_fetch_add(&b->claimed[i], 1, __ATOMIC_RELAXED);
-		uint32_t at = ob_perceived_reserve(b->u, EACH);
+		uint32_t at = ob_neighbours_reserve(b->u, EACH);
 		if (at == UINT32_MAX)
 			return 2;
 		for (uint32_t k = 0; k < EACH; k++)
 			b->arena[at + k]++; // plain: the place is this worker's alone
 	}
 	for (uint32_t i = worker; i < OBJECTS; i += WORKERS)
-		ob_meetings_note(b->u, i == OBJECTS / 2, FIRST_LOOK + i * 7919 % OBJECTS);
+		ob_late_contacts_note(b->u, i == OBJECTS / 2, FIRST_LOOK + i * 7919 % OBJECTS);
 	for (uint32_t i = worker % 2; i < OBJECTS; i += 2) // each id comes from four workers
-		ob_rebound_append(b->u, i);
+		ob_requery_append(b->u, i);
 	return 0;
 }
 
@@ -45,21 +45,21 @@ static void run(bool processes)
 	if (!b->u)
 		return;
 	for (uint32_t round = 1; round <= 3; round++) {
-		ob_claim_reset(b->u, OBJECTS);
-		ob_meetings_reset(b->u);
-		CHECK(!ob_universe_exchange(b->u)->count->met);
-		ob_rebound_reset(b->u);
-		ob_perceived_reset(b->u);
+		ob_task_reset(b->u, OBJECTS);
+		ob_late_contacts_reset(b->u);
+		CHECK(!ob_universe_step_data(b->u)->count->met);
+		ob_requery_reset(b->u);
+		ob_neighbours_reset(b->u);
 		crowd c = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
 		CHECK(crowd_start(&c) && crowd_join(&c) == 0);
-		CHECK(ob_universe_exchange(b->u)->count->met);
-		CHECK(ob_universe_exchange(b->u)->count->next_look == FIRST_LOOK);
+		CHECK(ob_universe_step_data(b->u)->count->met);
+		CHECK(ob_universe_step_data(b->u)->count->next_look == FIRST_LOOK);
 		uint32_t wrong = 0, count;
 		for (uint32_t i = 0; i < OBJECTS; i++)
 			wrong += b->claimed[i] != round;
 		for (uint32_t i = 0; i < EACH * OBJECTS + 1; i++)
 			wrong += b->arena[i] != (i < EACH * OBJECTS ? round : 0);
-		const uint32_t *list = ob_rebound_list(b->u, &count);
+		const uint32_t *list = ob_requery_list(b->u, &count);
 		CHECK(count == OBJECTS);
 		static uint32_t seen[OBJECTS];
 		memset(seen, 0, sizeof seen);
@@ -67,10 +67,10 @@ static void run(bool processes)
 			wrong += list[i] >= OBJECTS || seen[list[i]]++;
 		CHECK(wrong == 0);
 	}
-	CHECK(ob_perceived_reserve(b->u, 64 * OBJECTS + 65536) == UINT32_MAX); // full
-	ob_perceived_reset(b->u);
-	CHECK(ob_perceived_reserve(b->u, 64 * OBJECTS + 65536) == 0);
-	CHECK(ob_perceived_reserve(b->u, 1) == UINT32_MAX);
+	CHECK(ob_neighbours_reserve(b->u, 64 * OBJECTS + 65536) == UINT32_MAX); // full
+	ob_neighbours_reset(b->u);
+	CHECK(ob_neighbours_reserve(b->u, 64 * OBJECTS + 65536) == 0);
+	CHECK(ob_neighbours_reserve(b->u, 1) == UINT32_MAX);
 	ob_universe_destroy(b->u, true);
 }
 

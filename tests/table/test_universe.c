@@ -152,7 +152,7 @@ static void test_sparse(void)
 	struct stat s = { 0 };
 	CHECK(stat(file, &s) == 0);
 	CHECK(s.st_size > 1000000000 && s.st_blocks * 512 < 1 << 20);
-	ob_exchange *x = u ? ob_universe_exchange(u) : NULL;
+	ob_step_data *x = u ? ob_universe_step_data(u) : NULL;
 	CHECK(x && x->objects_max == 100000 && x->pairs_max == 6400000 && x->buckets == 262144);
 	if (x) { // the far ends are there, and apart
 		x->record[x->pairs_max - 1].stamp[1] = 1;

@@ -6,7 +6,7 @@
 
 enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // of body 1 in ob_trial.memory
 
-static void build_ball(ob_peer_world *w, double radius, double e)
+static void build_ball(ob_engine_world *w, double radius, double e)
 {
 	ob_build_ground(w);
 	ob_build_sphere(w, 1, radius, ob_v3(0, 0, 1 + radius));
@@ -30,7 +30,7 @@ static void fail_without_bounces(ob_trial *t)
 		t->failed = "never bounced";
 }
 
-static void build_bounce(ob_peer_world *w, uint32_t run)
+static void build_bounce(ob_engine_world *w, uint32_t run)
 {
 	build_ball(w, .5, 1);
 }
@@ -71,7 +71,7 @@ const ob_case ob_case_bounce = {
 
 enum { APEXES = 4 };
 
-static void build_apexes(ob_peer_world *w, uint32_t run)
+static void build_apexes(ob_engine_world *w, uint32_t run)
 {
 	build_ball(w, .1, .8);
 }
@@ -112,7 +112,7 @@ const ob_case ob_case_apexes = {
 	.judge = judge_apexes,
 };
 
-static void build_bouncing_49(ob_peer_world *w, uint32_t run)
+static void build_bouncing_49(ob_engine_world *w, uint32_t run)
 {
 	ob_build_balls(w, 49);
 }

@@ -17,13 +17,13 @@ static double apart(const ob_trial *t, uint32_t near, uint32_t far)
 // same order and differ by nothing but the place.
 enum { STACK = 10, FAR_SLAB = STACK + 1 };
 
-static void build_slab_and_stack(ob_peer_world *w, ob_vec3 foot)
+static void build_slab_and_stack(ob_engine_world *w, ob_vec3 foot)
 {
 	ob_build_box(w, 0, ob_v3(5, 5, .5), ob_add(foot, ob_v3(0, 0, -.5)));
 	ob_build_stack(w, STACK, foot, 14);
 }
 
-static void build_stacks(ob_peer_world *w, uint32_t run)
+static void build_stacks(ob_engine_world *w, uint32_t run)
 {
 	build_slab_and_stack(w, ob_v3(0, 0, 0));
 	build_slab_and_stack(w, away);
@@ -75,7 +75,7 @@ const ob_case ob_case_far_stack = {
 	.judge = judge_stacks,
 };
 
-static void build_pairs(ob_peer_world *w, uint32_t run)
+static void build_pairs(ob_engine_world *w, uint32_t run)
 {
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 	ob_head_on_build(w, run, away);

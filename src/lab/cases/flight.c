@@ -4,7 +4,7 @@
 #include "lab/look.h"
 #include "reference/ballistics.h"
 
-static void build_projectile(ob_peer_world *w, uint32_t run)
+static void build_projectile(ob_engine_world *w, uint32_t run)
 {
 	ob_build_body b = ob_build_box(w, 48, ob_v3(.3, .2, .1), ob_v3(0, 0, 5));
 	b.state->v = ob_v3(10, 0, 10);

@@ -6,7 +6,7 @@
 
 static const double mu = .5;
 
-static void build_block(ob_peer_world *w, double angle)
+static void build_block(ob_engine_world *w, double angle)
 {
 	ob_build_body s = ob_build_slope(w, angle);
 	ob_quat q = s.state->pose.q;
@@ -15,12 +15,12 @@ static void build_block(ob_peer_world *w, double angle)
 	ob_build_material(w, mu, 0);
 }
 
-static void build_stick(ob_peer_world *w, uint32_t run)
+static void build_stick(ob_engine_world *w, uint32_t run)
 {
 	build_block(w, .99 * ob_reference_friction_angle(mu));
 }
 
-static void build_slide(ob_peer_world *w, uint32_t run)
+static void build_slide(ob_engine_world *w, uint32_t run)
 {
 	build_block(w, 1.01 * ob_reference_friction_angle(mu));
 }
@@ -96,7 +96,7 @@ static const double speed = 3; // m/s
 
 // All in one world, 4 m apart. Headings 15 degrees apart, every other one turned round: along both axes and both
 // diagonals, and into every quadrant.
-static void build_sliding(ob_peer_world *w, uint32_t run)
+static void build_sliding(ob_engine_world *w, uint32_t run)
 {
 	ob_build_ground(w);
 	for (int i = 0; i < HEADINGS; i++) {

@@ -5,7 +5,7 @@
 #include "lab/heap.h"
 #include "lab/look.h"
 
-static void build_pyramid(ob_peer_world *w, int rows)
+static void build_pyramid(ob_engine_world *w, int rows)
 {
 	ob_build_ground(w);
 	for (int row = 0; row < rows; row++)
@@ -14,12 +14,12 @@ static void build_pyramid(ob_peer_world *w, int rows)
 				     ob_v3(0, 1.05 * (i - .5 * (rows - row - 1)), .5 + row));
 }
 
-static void build_pyramid_10(ob_peer_world *w, uint32_t run)
+static void build_pyramid_10(ob_engine_world *w, uint32_t run)
 {
 	build_pyramid(w, 10);
 }
 
-static void build_pyramid_15(ob_peer_world *w, uint32_t run)
+static void build_pyramid_15(ob_engine_world *w, uint32_t run)
 {
 	build_pyramid(w, 15);
 }
@@ -54,7 +54,7 @@ enum { SEEDS = 5 }; // what drops is chaotic: a run for each, and the worst coun
 
 // A loose grid: .25 and .3 m between boxes, moved by up to 5 cm and turned by up to .15 rad about each axis; the lowest
 // centres half a metre above where they come to rest.
-static void build_pile_of(ob_peer_world *w, double e, uint32_t run)
+static void build_pile_of(ob_engine_world *w, double e, uint32_t run)
 {
 	uint64_t seed = 17 + run;
 	ob_build_ground(w);
@@ -67,17 +67,17 @@ static void build_pile_of(ob_peer_world *w, double e, uint32_t run)
 	ob_build_material(w, .5, e);
 }
 
-static void build_pile(ob_peer_world *w, uint32_t run)
+static void build_pile(ob_engine_world *w, uint32_t run)
 {
 	build_pile_of(w, 0, run);
 }
 
-static void build_pile_elastic(ob_peer_world *w, uint32_t run)
+static void build_pile_elastic(ob_engine_world *w, uint32_t run)
 {
 	build_pile_of(w, .5, run);
 }
 
-static void build_falling(ob_peer_world *w, uint32_t run)
+static void build_falling(ob_engine_world *w, uint32_t run)
 {
 	ob_build_falling(w, 100, 100 + run);
 }

@@ -15,7 +15,7 @@ ob_head_on ob_head_on_of(uint32_t run)
 	};
 }
 
-void ob_head_on_build(ob_peer_world *w, uint32_t run, ob_vec3 at)
+void ob_head_on_build(ob_engine_world *w, uint32_t run, ob_vec3 at)
 {
 	ob_head_on h = ob_head_on_of(run);
 	w->gravity = ob_v3(0, 0, 0);
@@ -45,7 +45,7 @@ bool ob_head_on_missed(const ob_trial *t, uint32_t first)
 	return a.v.x > .999 || a.pose.p.x > b.pose.p.x;
 }
 
-static void build_head_on(ob_peer_world *w, uint32_t run)
+static void build_head_on(ob_engine_world *w, uint32_t run)
 {
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 }
@@ -90,7 +90,7 @@ const ob_case ob_case_head_on = {
 enum { CRADLE = 5 };
 
 // Those that come in touch each other; those at rest touch each other; .7 m between.
-static void build_cradle(ob_peer_world *w, int incoming)
+static void build_cradle(ob_engine_world *w, int incoming)
 {
 	w->gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < CRADLE; i++) {
@@ -100,12 +100,12 @@ static void build_cradle(ob_peer_world *w, int incoming)
 	ob_build_material(w, 0, 1);
 }
 
-static void build_cradle_1(ob_peer_world *w, uint32_t run)
+static void build_cradle_1(ob_engine_world *w, uint32_t run)
 {
 	build_cradle(w, 1);
 }
 
-static void build_cradle_2(ob_peer_world *w, uint32_t run)
+static void build_cradle_2(ob_engine_world *w, uint32_t run)
 {
 	build_cradle(w, 2);
 }

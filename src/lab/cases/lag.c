@@ -4,7 +4,7 @@
 #include "lab/cases/head_on.h"
 #include "lab/look.h"
 
-static void build_lag(ob_peer_world *w, uint32_t run)
+static void build_lag(ob_engine_world *w, uint32_t run)
 {
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 }

@@ -7,7 +7,7 @@
 enum { BOX = 1, BALL = 2, BALLS = 25 };
 static const double push = 150; // N
 
-static void build_push(ob_peer_world *w, ob_vec3 direction)
+static void build_push(ob_engine_world *w, ob_vec3 direction)
 {
 	ob_build_ground(w).passport->friction = .2; // with the box's .8: .4
 	ob_build_body box = ob_build_box(w, 10, ob_v3(10, 10, .5), ob_v3(0, 0, .5 - 2e-5));
@@ -19,12 +19,12 @@ static void build_push(ob_peer_world *w, ob_vec3 direction)
 	}
 }
 
-static void build_rolling_diagonal(ob_peer_world *w, uint32_t run)
+static void build_rolling_diagonal(ob_engine_world *w, uint32_t run)
 {
 	build_push(w, ob_v3(.5, sqrt(.75), 0));
 }
 
-static void build_rolling_y(ob_peer_world *w, uint32_t run)
+static void build_rolling_y(ob_engine_world *w, uint32_t run)
 {
 	build_push(w, ob_v3(0, 1, 0));
 }
@@ -94,7 +94,7 @@ const ob_case ob_case_rolling_y = {
 	.judge = judge_push,
 };
 
-static void build_slip_to_roll(ob_peer_world *w, uint32_t run)
+static void build_slip_to_roll(ob_engine_world *w, uint32_t run)
 {
 	ob_build_ground(w);
 	ob_build_sphere(w, 10, .5, ob_v3(0, 0, .5)).state->v.x = 7;
@@ -142,7 +142,7 @@ const ob_case ob_case_slip_to_roll = {
 
 static const double slope = 20 * M_PI / 180; // rad
 
-static void build_ball_on_slope(ob_peer_world *w, double mu)
+static void build_ball_on_slope(ob_engine_world *w, double mu)
 {
 	ob_build_body s = ob_build_slope(w, slope);
 	ob_mat3 r = ob_quat_matrix(s.state->pose.q);
@@ -150,12 +150,12 @@ static void build_ball_on_slope(ob_peer_world *w, double mu)
 	ob_build_material(w, mu, 0);
 }
 
-static void build_ball_rolls(ob_peer_world *w, uint32_t run)
+static void build_ball_rolls(ob_engine_world *w, uint32_t run)
 {
 	build_ball_on_slope(w, 1.1 * ob_reference_ball_grip(slope));
 }
 
-static void build_ball_slips(ob_peer_world *w, uint32_t run)
+static void build_ball_slips(ob_engine_world *w, uint32_t run)
 {
 	build_ball_on_slope(w, .9 * ob_reference_ball_grip(slope));
 }

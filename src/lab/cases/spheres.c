@@ -6,7 +6,7 @@
 enum { SIDE = 6 };
 static const double radius = .1; // m
 
-static void build_spheres(ob_peer_world *w, double lift, double e)
+static void build_spheres(ob_engine_world *w, double lift, double e)
 {
 	uint64_t seed = 666;
 	ob_build_ground(w);
@@ -49,7 +49,7 @@ static void judge_spheres(ob_trial *t)
 		t->failed = "nothing moved";
 }
 
-static void build_666(ob_peer_world *w, uint32_t run)
+static void build_666(ob_engine_world *w, uint32_t run)
 {
 	build_spheres(w, .101, 0);
 }
@@ -84,7 +84,7 @@ const ob_case ob_case_666 = {
 	.judge = judge_spheres,
 };
 
-static void build_elastic_666(ob_peer_world *w, uint32_t run)
+static void build_elastic_666(ob_engine_world *w, uint32_t run)
 {
 	build_spheres(w, 1.101, 1);
 }

@@ -36,7 +36,7 @@ enum { BRICKS = 4 };
 
 // They balance on the edge, where what is a rounding error at first grows e-fold three times a second: 3 s are not
 // enough for it to show. "more": share of the reach by which every brick is farther out than balance allows
-static void build_bricks(ob_peer_world *w, double more)
+static void build_bricks(ob_engine_world *w, double more)
 {
 	ob_build_box(w, 0, ob_v3(2, .5, .5), ob_v3(-2, 0, -.5)); // the table: its edge at x = 0
 	ob_build_ground(w).state->pose.p.z = -4;
@@ -47,12 +47,12 @@ static void build_bricks(ob_peer_world *w, double more)
 	}
 }
 
-static void build_overhang(ob_peer_world *w, uint32_t run)
+static void build_overhang(ob_engine_world *w, uint32_t run)
 {
 	build_bricks(w, 0);
 }
 
-static void build_overhang_over(ob_peer_world *w, uint32_t run)
+static void build_overhang_over(ob_engine_world *w, uint32_t run)
 {
 	build_bricks(w, .01);
 }
@@ -95,7 +95,7 @@ const ob_case ob_case_overhang_over = {
 
 // Cards of 1 m x 1 m x 20 mm that lean at 30 degrees to the vertical; their inner upper edges touch at x = 0. "share"
 // of the friction that they need with the ground; between themselves they are rough.
-static void build_cards(ob_peer_world *w, double share)
+static void build_cards(ob_engine_world *w, double share)
 {
 	const double angle = M_PI / 6, length = 1, thickness = .02, rough = 2;
 	double mu = share * ob_reference_cards_grip(angle, length, thickness);
@@ -112,12 +112,12 @@ static void build_cards(ob_peer_world *w, double share)
 	w->passport[0].friction = mu * mu / rough; // with a card's: mu
 }
 
-static void build_a_frame_stands(ob_peer_world *w, uint32_t run)
+static void build_a_frame_stands(ob_engine_world *w, uint32_t run)
 {
 	build_cards(w, 1.02);
 }
 
-static void build_a_frame_slides(ob_peer_world *w, uint32_t run)
+static void build_a_frame_slides(ob_engine_world *w, uint32_t run)
 {
 	build_cards(w, .98);
 }

@@ -17,7 +17,7 @@ static ob_vec3 middle_of(int aim)
 
 // Turned and spinning at random, up to a tenth off its course, it flies so that its centre would be at "target" after
 // "way" metres.
-static void build_shot(ob_peer_world *w, uint64_t *seed, ob_vec3 target, double speed, double way)
+static void build_shot(ob_engine_world *w, uint64_t *seed, ob_vec3 target, double speed, double way)
 {
 	ob_vec3 v = ob_build_vector(seed, .1 * fabs(speed));
 	v.x = speed;
@@ -38,7 +38,7 @@ enum { WALL_SPEEDS = 5, MEMORY_HIT = 0, MEMORY_PASSED };
 static const double wall_speed[WALL_SPEEDS] = { 10, 30, 100, 300, 1000 }; // m/s
 static const double wall_half = 4; // m
 
-static void build_thin_wall(ob_peer_world *w, uint32_t run)
+static void build_thin_wall(ob_engine_world *w, uint32_t run)
 {
 	uint64_t seed = 18 + run;
 	w->gravity = ob_v3(0, 0, 0);
@@ -113,7 +113,7 @@ const ob_case ob_case_thin_wall = {
 enum { BULLET_SPEEDS = 3 };
 static const double bullet_speed[BULLET_SPEEDS] = { 200, 500, 1000 }; // m/s
 
-static void build_bullets(ob_peer_world *w, uint32_t run)
+static void build_bullets(ob_engine_world *w, uint32_t run)
 {
 	uint64_t seed = 19 + run;
 	double speed = bullet_speed[run];

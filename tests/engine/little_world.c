@@ -16,7 +16,7 @@ little_world *little_world_new(void)
 	little_world *l = calloc(1, sizeof *l);
 	if (!l)
 		give_up("world", "no memory");
-	l->world = (ob_peer_world){ .gravity = { 0, 0, -9.81 }, .passport = l->passport, .state = l->state };
+	l->world = (ob_engine_world){ .gravity = { 0, 0, -9.81 }, .passport = l->passport, .state = l->state };
 	l->world.objects_max = LITTLE_MOST;
 	return l;
 }
@@ -50,19 +50,19 @@ uint32_t little_sphere(little_world *l, double mass, double radius, ob_vec3 p)
 	return little_add(l, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
 }
 
-ob_peer *little_make(const ob_peer_kind *kind, const little_world *l, uint32_t substeps)
+ob_engine *little_make(const ob_engine_kind *kind, const little_world *l, uint32_t substeps)
 {
 	ob_error e;
-	ob_peer_settings s = kind->usual;
+	ob_engine_settings s = kind->usual;
 	if (substeps)
 		s.substeps = substeps;
-	ob_peer *p = kind->create(&l->world, &s, &e);
+	ob_engine *p = kind->create(&l->world, &s, &e);
 	if (!p)
 		give_up(kind->name, e.text);
 	return p;
 }
 
-void little_step(const ob_peer_kind *kind, ob_peer *p, little_world *l, double seconds)
+void little_step(const ob_engine_kind *kind, ob_engine *p, little_world *l, double seconds)
 {
 	ob_error e;
 	long frames = lround(seconds / kind->usual.step);
@@ -72,9 +72,9 @@ void little_step(const ob_peer_kind *kind, ob_peer *p, little_world *l, double s
 	kind->get(p, l->now);
 }
 
-void little_run(const ob_peer_kind *kind, little_world *l, uint32_t substeps, double seconds)
+void little_run(const ob_engine_kind *kind, little_world *l, uint32_t substeps, double seconds)
 {
-	ob_peer *p = little_make(kind, l, substeps);
+	ob_engine *p = little_make(kind, l, substeps);
 	little_step(kind, p, l, seconds);
 	kind->destroy(p);
 }

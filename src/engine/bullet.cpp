@@ -21,11 +21,11 @@
 #include <btBulletDynamicsCommon.h>
 
 extern "C" {
-#include "peer/bullet.h"
+#include "engine/bullet.h"
 }
 
 // Declared in the order in which they are made: destroyed the other way round, the bodies by hand before their world.
-struct ob_peer {
+struct ob_engine {
 	btDefaultCollisionConfiguration configuration;
 	btCollisionDispatcher dispatcher;
 	btDbvtBroadphase broadphase;
@@ -37,8 +37,8 @@ struct ob_peer {
 	btScalar substep; // s
 	uint32_t substeps;
 
-	ob_peer() : dispatcher(&configuration), world(&dispatcher, &broadphase, &solver, &configuration) {}
-	~ob_peer()
+	ob_engine() : dispatcher(&configuration), world(&dispatcher, &broadphase, &solver, &configuration) {}
+	~ob_engine()
 	{
 		for (auto &b : body)
 			world.removeRigidBody(b.get());
@@ -85,7 +85,7 @@ static std::unique_ptr<btCollisionShape> make_shape(const ob_passport *p)
 	}
 }
 
-static void add(ob_peer *b, const ob_passport *p, const ob_state *s, bool sleeping)
+static void add(ob_engine *b, const ob_passport *p, const ob_state *s, bool sleeping)
 {
 	b->shape.push_back(make_shape(p));
 	bool moves = !(p->flags & OB_OBJECT_STATIC) && p->mass > 0;
@@ -115,7 +115,7 @@ static void add(ob_peer *b, const ob_passport *p, const ob_state *s, bool sleepi
 	b->world.addRigidBody(body);
 }
 
-static void allow_for_bounces(btContactSolverInfo *info, const ob_peer_world *w)
+static void allow_for_bounces(btContactSolverInfo *info, const ob_engine_world *w)
 {
 	bool any = false, all = true;
 	for (uint32_t i = 0; i < w->objects; i++) {
@@ -128,7 +128,7 @@ static void allow_for_bounces(btContactSolverInfo *info, const ob_peer_world *w)
 		info->m_erp2 = 0;
 }
 
-static void set_up(ob_peer *b, const ob_peer_world *w, const ob_peer_settings *s)
+static void set_up(ob_engine *b, const ob_engine_world *w, const ob_engine_settings *s)
 {
 	gCalculateCombinedFrictionCallback = pair_friction;
 	gCalculateCombinedRestitutionCallback = pair_restitution;
@@ -143,10 +143,10 @@ static void set_up(ob_peer *b, const ob_peer_world *w, const ob_peer_settings *s
 		add(b, &w->passport[i], &w->state[i], s->sleeping);
 }
 
-extern "C" ob_peer *ob_bullet_create(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+extern "C" ob_engine *ob_bullet_create(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
 	try {
-		auto b = std::make_unique<ob_peer>();
+		auto b = std::make_unique<ob_engine>();
 		set_up(b.get(), w, s);
 		return b.release();
 	} catch (const std::bad_alloc &) {
@@ -155,13 +155,13 @@ extern "C" ob_peer *ob_bullet_create(const ob_peer_world *w, const ob_peer_setti
 	}
 }
 
-extern "C" void ob_bullet_destroy(ob_peer *p)
+extern "C" void ob_bullet_destroy(ob_engine *p)
 {
 	delete p;
 }
 
 // Of time that it is not to divide itself, Bullet makes one step.
-extern "C" bool ob_bullet_step(ob_peer *p, ob_error *e)
+extern "C" bool ob_bullet_step(ob_engine *p, ob_error *e)
 {
 	(void)e;
 	for (uint32_t k = 0; k < p->substeps; k++) {
@@ -173,7 +173,7 @@ extern "C" bool ob_bullet_step(ob_peer *p, ob_error *e)
 	return true;
 }
 
-extern "C" void ob_bullet_get(const ob_peer *p, ob_state *state)
+extern "C" void ob_bullet_get(const ob_engine *p, ob_state *state)
 {
 	for (size_t i = 0; i < p->body.size(); i++) {
 		const btRigidBody *b = p->body[i].get();

@@ -3,37 +3,37 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "peer/engines.h"
+#include "engine/engines.h"
 #include "sim/now.h"
 #include "sim/sim.h"
 #include "table/table.h"
 
-struct ob_peer {
+struct ob_engine {
 	ob_universe *u;
 	ob_sim *sim;
 	uint32_t objects;
 };
 
 // The worker's turns until the gate pauses.
-static void work(const ob_peer *p)
+static void work(const ob_engine *p)
 {
 	ob_sim_resume(p->u);
 	while (!ob_gate_host_wait(p->u, 0)) {
 		ob_phase phase = ob_gate_wait(p->u, 0);
 		ob_sim_work(p->sim, phase);
 		if (ob_gate_arrive(p->u, 0))
-			ob_sim_arrange(p->sim, phase);
+			ob_sim_schedule(p->sim, phase);
 	}
 }
 
-static bool sound(const ob_peer *p, ob_error *e)
+static bool sound(const ob_engine *p, ob_error *e)
 {
 	const char *failure = ob_sim_failure(p->u);
 	return !failure || ob_fail(e, "%s", failure);
 }
 
 // The universe loses its name at once: nobody else is to see it, and it goes with the process however that ends.
-static ob_universe *open_universe(const ob_peer_world *w, const ob_run_settings *run, ob_error *e)
+static ob_universe *open_universe(const ob_engine_world *w, const ob_run_settings *run, ob_error *e)
 {
 	static unsigned made;
 	char name[OB_NAME_MAX];
@@ -45,7 +45,7 @@ static ob_universe *open_universe(const ob_peer_world *w, const ob_run_settings 
 	return u;
 }
 
-static void destroy(ob_peer *p)
+static void destroy(ob_engine *p)
 {
 	if (!p)
 		return;
@@ -53,18 +53,18 @@ static void destroy(ob_peer *p)
 		ob_sim_destroy(p->sim);
 	ob_universe_destroy(p->u, false);
 	free(p);
-	ob_peer_ode_leave();
+	ob_engine_ode_leave();
 }
 
 // The first turn, with no step in it, lets all objects look around: it belongs to setting up.
-static ob_peer *create(const ob_peer_world *w, const ob_run_settings *run, ob_error *e)
+static ob_engine *create(const ob_engine_world *w, const ob_run_settings *run, ob_error *e)
 {
-	ob_peer *p = calloc(1, sizeof *p);
+	ob_engine *p = calloc(1, sizeof *p);
 	if (!p) {
 		ob_fail(e, "no memory for an engine");
 		return NULL;
 	}
-	ob_peer_ode_enter();
+	ob_engine_ode_enter();
 	p->objects = w->objects;
 	p->u = open_universe(w, run, e);
 	if (p->u) {
@@ -83,21 +83,21 @@ static ob_peer *create(const ob_peer_world *w, const ob_run_settings *run, ob_er
 	return NULL;
 }
 
-static bool step(ob_peer *p, ob_error *e)
+static bool step(ob_engine *p, ob_error *e)
 {
 	ob_gate_set_pause_step(p->u, ob_step_count(p->u) + 1);
 	work(p);
 	return sound(p, e);
 }
 
-static void get(const ob_peer *p, ob_state *state)
+static void get(const ob_engine *p, ob_state *state)
 {
 	for (uint32_t i = 0; i < p->objects; i++)
 		state[i] = ob_state_now(p->u, i, ob_newest_motion(p->u, i), ob_step_count(p->u));
 }
 
 // With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.
-static bool settle(const ob_peer_world *w, const ob_peer_settings *s, ob_run_settings *run, ob_error *e)
+static bool settle(const ob_engine_world *w, const ob_engine_settings *s, ob_run_settings *run, ob_error *e)
 {
 	bool chosen = s->substeps == 0;
 	if (!(s->step > 0))
@@ -115,7 +115,7 @@ static bool settle(const ob_peer_world *w, const ob_peer_settings *s, ob_run_set
 	return run->passes > 0 || ob_fail(e, "no exchange round: at least one is needed");
 }
 
-static ob_peer *create_as(const ob_peer_world *w, const ob_peer_settings *s, ob_exchange_kind exchange,
+static ob_engine *create_as(const ob_engine_world *w, const ob_engine_settings *s, ob_solver_kind exchange,
 			  ob_integrator integrator, ob_error *e)
 {
 	ob_run_settings run;
@@ -123,33 +123,33 @@ static ob_peer *create_as(const ob_peer_world *w, const ob_peer_settings *s, ob_
 		return NULL;
 	run.exchange = exchange;
 	run.integrator = integrator;
-	run.lag = exchange == OB_EXCHANGE_LAGGED ? s->lag : 0;
+	run.lag = exchange == OB_SOLVER_LAGGED ? s->lag : 0;
 	return create(w, &run, e);
 }
 
-static ob_peer *create_coloured(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_coloured(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
-	return create_as(w, s, OB_EXCHANGE_COLOURED, OB_INTEGRATOR_EXACT, e);
+	return create_as(w, s, OB_SOLVER_COLOURED, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_peer *create_jacobi(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_jacobi(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
-	return create_as(w, s, OB_EXCHANGE_JACOBI, OB_INTEGRATOR_EXACT, e);
+	return create_as(w, s, OB_SOLVER_JACOBI, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_peer *create_ode(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_ode(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
-	return create_as(w, s, OB_EXCHANGE_COLOURED, OB_INTEGRATOR_ODE, e);
+	return create_as(w, s, OB_SOLVER_COLOURED, OB_INTEGRATOR_ODE, e);
 }
 
-static ob_peer *create_ghost(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_ghost(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
-	return create_as(w, s, OB_EXCHANGE_GHOST, OB_INTEGRATOR_EXACT, e);
+	return create_as(w, s, OB_SOLVER_GHOST, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_peer *create_lagged(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_lagged(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
-	return create_as(w, s, OB_EXCHANGE_LAGGED, OB_INTEGRATOR_EXACT, e);
+	return create_as(w, s, OB_SOLVER_LAGGED, OB_INTEGRATOR_EXACT, e);
 }
 
 // clang-format off
@@ -158,18 +158,18 @@ static ob_peer *create_lagged(const ob_peer_world *w, const ob_peer_settings *s,
 #define THE_REST \
 	.version = "", .iteration_choice = { 1, 2, 4, 8, 16, 32, 64 }, .step = step, .get = get, .destroy = destroy
 
-const ob_peer_kind ob_peer_obsim = {
+const ob_engine_kind ob_engine_obsim = {
 	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = USUAL_TOLERANCE }, THE_REST
 };
-const ob_peer_kind ob_peer_obsim_jacobi = {
+const ob_engine_kind ob_engine_obsim_jacobi = {
 	.name = "obsim-jacobi", .title = "obsim (Jacobi)", .create = create_jacobi, .usual = { USUAL }, THE_REST
 };
-const ob_peer_kind ob_peer_obsim_ode = {
+const ob_engine_kind ob_engine_obsim_ode = {
 	.name = "obsim-ode", .title = "obsim (ODE's stepper)", .create = create_ode, .usual = { USUAL }, THE_REST
 };
-const ob_peer_kind ob_peer_obsim_ghost = {
+const ob_engine_kind ob_engine_obsim_ghost = {
 	.name = "obsim-ghost", .title = "obsim (ghosts)", .create = create_ghost, .usual = { USUAL }, THE_REST
 };
-const ob_peer_kind ob_peer_obsim_lag = {
+const ob_engine_kind ob_engine_obsim_lag = {
 	.name = "obsim-lag", .title = "obsim (late neighbours)", .create = create_lagged, .usual = { USUAL, .lag = 1 }, THE_REST
 };

@@ -1,4 +1,4 @@
-#include "host/rebirth.h"
+#include "host/restart.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,21 +15,21 @@ static const double share = .05; // of the time, that checkpoints may take, ..
 static const double allowance = 1; // s, .. but for this much, where objects come and go
 static const double end_patience = 10; // s until killed processes are gone
 
-void ob_rebirth_prepare(ob_host *h)
+void ob_restart_prepare(ob_host *h)
 {
 	if (h->spawn->restart && !ob_universe_settings(h->u)->monolith)
 		h->rebirth.checkpoint = ob_checkpoint_create(h->u);
 	h->rebirth.began = h->rebirth.got_on_at = ob_clock_wall();
 }
 
-void ob_rebirth_finish(ob_host *h)
+void ob_restart_finish(ob_host *h)
 {
 	ob_checkpoint_destroy(h->rebirth.checkpoint);
 }
 
-bool ob_rebirth_due(const ob_host *h)
+bool ob_restart_checkpoint_due(const ob_host *h)
 {
-	const ob_rebirth_state *r = &h->rebirth;
+	const ob_restart_state *r = &h->rebirth;
 	double now = ob_clock_wall();
 	if (!r->checkpoint)
 		return false;
@@ -38,11 +38,11 @@ bool ob_rebirth_due(const ob_host *h)
 	return now - r->taken_at >= fmax(usual_interval, r->cost / share);
 }
 
-void ob_rebirth_keep(ob_host *h, bool changed)
+void ob_restart_checkpoint(ob_host *h, bool changed)
 {
-	ob_rebirth_state *r = &h->rebirth;
+	ob_restart_state *r = &h->rebirth;
 	r->current &= !changed;
-	if (!ob_rebirth_due(h))
+	if (!ob_restart_checkpoint_due(h))
 		return;
 	double began = ob_clock_wall();
 	bool farther = ob_step_count(h->u) > ob_checkpoint_step(r->checkpoint);
@@ -56,9 +56,9 @@ void ob_rebirth_keep(ob_host *h, bool changed)
 	}
 }
 
-void ob_rebirth_lose(ob_host *h, const char *format, ...)
+void ob_restart_lose(ob_host *h, const char *format, ...)
 {
-	ob_rebirth_state *r = &h->rebirth;
+	ob_restart_state *r = &h->rebirth;
 	ob_error loss;
 	va_list args;
 	va_start(args, format);
@@ -97,16 +97,16 @@ static void rest(const ob_host *h)
 // What the dead have used counts on.
 static void close_accounts(ob_host *h)
 {
-	ob_rebirth_state *r = &h->rebirth;
+	ob_restart_state *r = &h->rebirth;
 	r->switches += ob_host_count_switches(h);
 	r->cpu = ob_host_read_cpu(h);
 	for (uint32_t w = 0; w < h->workers; w++)
 		ob_worker_set_cpu(h->u, w, 0);
 }
 
-bool ob_rebirth(ob_host *h)
+bool ob_restart(ob_host *h)
 {
-	ob_rebirth_state *r = &h->rebirth;
+	ob_restart_state *r = &h->rebirth;
 	ob_error e;
 	unsigned long long step = ob_checkpoint_step(r->checkpoint);
 	if (!r->current) {

@@ -2,49 +2,49 @@
 // Bullet. Knows nothing of cases or errors.
 //
 // A peer is stepped in the caller's thread, frame by frame; whoever wants its cost reads the thread's CPU clock around
-// ob_peer_step. Thread-safety: one thread per process at a time (ODE shuffles rows by a seed of the whole process).
-#ifndef OB_PEER_PEER_H
-#define OB_PEER_PEER_H
+// ob_engine_step. Thread-safety: one thread per process at a time (ODE shuffles rows by a seed of the whole process).
+#ifndef OB_ENGINE_PEER_H
+#define OB_ENGINE_PEER_H
 
 #include <ob/motion.h>
 
 // What every engine is given: objects by their passports (id = index, inertia filled, mass 0 and OB_OBJECT_STATIC =
 // does not move), where they start, gravity. Pair friction is sqrt(mu_a mu_b), restitution max(e_a, e_b) in all.
-typedef struct ob_peer_world {
+typedef struct ob_engine_world {
 	ob_vec3 gravity; // m/s^2
 	uint32_t objects, objects_max;
 	ob_passport *passport; // [objects]; passport.force is a constant force at its centre (N, world frame)
 	ob_state *state; // [objects]
-} ob_peer_world;
+} ob_engine_world;
 
-typedef struct ob_peer_settings {
+typedef struct ob_engine_settings {
 	double step; // s, a frame: states are asked for at its end
 	uint32_t substeps; // the engine's own steps per frame; 0 = chosen by obsim from the tolerance alone
 	uint32_t iterations; // the engine's own count: exchange rounds, solver iterations
 	double tolerance; // m; obsim alone: more substeps where the error is above it
 	uint32_t lag; // exchanges that a partner's state is late; engine obsim-lag alone
 	bool sleeping;
-} ob_peer_settings;
+} ob_engine_settings;
 
-typedef struct ob_peer ob_peer;
+typedef struct ob_engine ob_engine;
 
-typedef struct ob_peer_kind {
+typedef struct ob_engine_kind {
 	const char *name; // as on the command line: "obsim", "ode-quick"
 	const char *title; // as in a legend: "obsim (coloured)"
 	const char *version; // of the library; "" for obsim's own
-	ob_peer_settings usual; // what its users run at 60 Hz
+	ob_engine_settings usual; // what its users run at 60 Hz
 	uint32_t iteration_choice[8]; // worth sweeping, ascending; 0 ends
-	ob_peer *(*create)(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e); // NULL and e
-	bool (*step)(ob_peer *p, ob_error *e); // one frame; false and e: it cannot go on
-	void (*get)(const ob_peer *p, ob_state *state); // [objects], at the end of the last frame
-	void (*destroy)(ob_peer *p); // NULL is allowed
-} ob_peer_kind;
+	ob_engine *(*create)(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e); // NULL and e
+	bool (*step)(ob_engine *p, ob_error *e); // one frame; false and e: it cannot go on
+	void (*get)(const ob_engine *p, ob_state *state); // [objects], at the end of the last frame
+	void (*destroy)(ob_engine *p); // NULL is allowed
+} ob_engine_kind;
 
 // All that were built in, in the order of legends; ends with NULL.
-extern const ob_peer_kind *const ob_peer_kinds[];
-const ob_peer_kind *ob_peer_find(const char *name); // NULL: none of that name
+extern const ob_engine_kind *const ob_engine_kinds[];
+const ob_engine_kind *ob_engine_find(const char *name); // NULL: none of that name
 
 // ODE's QuickStep with another broad phase: it differs in cost alone, so it is none of the list.
-extern const ob_peer_kind ob_peer_ode_hash;
+extern const ob_engine_kind ob_engine_ode_hash;
 
 #endif

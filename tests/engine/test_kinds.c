@@ -15,8 +15,8 @@ static void differ(void)
 	for (int i = 0; i < 6; i++)
 		little_cube(l, 1 + i, .25, ob_v3(.1 * (i % 2), .05 * i, .3 + .55 * i));
 	size_t kinds = 0;
-	for (; ob_peer_kinds[kinds]; kinds++) {
-		little_run(ob_peer_kinds[kinds], l, 0, 1);
+	for (; ob_engine_kinds[kinds]; kinds++) {
+		little_run(ob_engine_kinds[kinds], l, 0, 1);
 		memcpy(end[kinds], l->now, sizeof l->now);
 		for (size_t other = 0; other < kinds; other++)
 			CHECK(memcmp(end[kinds], end[other], sizeof l->now) != 0);
@@ -28,10 +28,10 @@ static void differ(void)
 int main(void)
 {
 	differ();
-	CHECK(!ob_peer_find("no-such-engine"));
-	CHECK(ob_peer_find("obsim") == ob_peer_kinds[0]);
-	for (const ob_peer_kind *const *k = ob_peer_kinds; *k; k++) {
-		CHECK(ob_peer_find((*k)->name) == *k);
+	CHECK(!ob_engine_find("no-such-engine"));
+	CHECK(ob_engine_find("obsim") == ob_engine_kinds[0]);
+	for (const ob_engine_kind *const *k = ob_engine_kinds; *k; k++) {
+		CHECK(ob_engine_find((*k)->name) == *k);
 		CHECK((*k)->title && (*k)->title[0] && (*k)->version);
 		CHECK((*k)->usual.step > 0 && (*k)->usual.substeps > 0);
 		bool usual_is_a_choice = !(*k)->usual.iterations;

@@ -22,7 +22,7 @@ static void test_crowd(const ob_spawn *s, uint32_t workers)
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-crowd-%d", (int)getpid());
 	ob_universe *u = make_universe(name, workers);
-	ob_keeper *k = ob_keeper_start(u, idle_worker, &e);
+	ob_fork_server *k = ob_fork_server_start(u, idle_worker, &e);
 	double began = ob_clock_wall();
 	ob_crew *c = s->start(&(ob_crew_order){ .u = u, .keeper = k, .run = idle_worker }, &e);
 	CHECK(c != NULL);
@@ -32,23 +32,23 @@ static void test_crowd(const ob_spawn *s, uint32_t workers)
 	CHECK(there == workers);
 	printf("%u workers (%s) ready in %.1f ms\n", workers, s->name, 1e3 * (ob_clock_wall() - began));
 	for (int turn = 0; turn < 3; turn++) {
-		ob_gate_open(u, OB_PHASE_MEMBERS, NULL, 0);
+		ob_gate_open(u, OB_PHASE_OBJECTS, NULL, 0);
 		CHECK(ob_gate_host_wait(u, 10));
 	}
 	ob_worker_end end;
 	CHECK(!next_end(s, c, 0, &end)); // nobody has left yet
 	ob_gate_stop(u);
 	CHECK(s->join(c, 10));
-	ob_keeper_stop(k);
+	ob_fork_server_stop(k);
 	CHECK(!segment_exists(name));
 	ob_universe_destroy(u, true);
 	CHECK(waitpid(-1, NULL, WNOHANG) < 0); // no child is left
 }
 
 // Of this process and its keeper, s
-static double in_line(const ob_keeper *k)
+static double in_line(const ob_fork_server *k)
 {
-	return waited_for_core(getpid()) + waited_for_core(ob_keeper_pid(k));
+	return waited_for_core(getpid()) + waited_for_core(ob_fork_server_pid(k));
 }
 
 static int misbehave(ob_universe *u, uint32_t worker)
@@ -66,7 +66,7 @@ static void test_deaths(void)
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-deaths-%d", (int)getpid());
 	ob_universe *u = make_universe(name, 4);
-	ob_keeper *k = ob_keeper_start(u, misbehave, &e);
+	ob_fork_server *k = ob_fork_server_start(u, misbehave, &e);
 	const ob_spawn *s = &ob_spawn_processes;
 	ob_crew *c = s->start(&(ob_crew_order){ .u = u, .keeper = k, .run = misbehave }, &e);
 	CHECK(next_end(s, c, PATIENCE_MS, &end) && end.worker == 1 && end.code == 7 && end.signal == 0);
@@ -87,11 +87,11 @@ static void test_deaths(void)
 	ob_gate_stop(u);
 	CHECK(s->join(c, 1));
 	// the keeper itself dies: its link hangs up
-	kill(ob_keeper_pid(k), SIGKILL);
-	struct pollfd p = { .fd = ob_keeper_fd(k) };
+	kill(ob_fork_server_pid(k), SIGKILL);
+	struct pollfd p = { .fd = ob_fork_server_fd(k) };
 	CHECK(poll(&p, 1, PATIENCE_MS) == 1 && p.revents & POLLHUP);
-	CHECK(!ob_keeper_fork(k, 0, 1));
-	ob_keeper_stop(k);
+	CHECK(!ob_fork_server_fork(k, 0, 1));
+	ob_fork_server_stop(k);
 	ob_universe_destroy(u, true);
 }
 
@@ -100,7 +100,7 @@ _Noreturn static void live_as_host(const ob_spawn *s, const char *name, uint32_t
 	prctl(PR_SET_PDEATHSIG, SIGKILL); // should the test be ended
 	ob_error e;
 	ob_universe *u = make_universe(name, workers);
-	ob_keeper *k = ob_keeper_start(u, idle_worker, &e);
+	ob_fork_server *k = ob_fork_server_start(u, idle_worker, &e);
 	ob_crew *c = s->start(&(ob_crew_order){ .u = u, .keeper = k, .run = idle_worker }, &e);
 	for (uint32_t w = 0; c && w < workers; w++)
 		pid_of_worker(u, w);

@@ -1,6 +1,6 @@
-#include "peer/bullet.h"
+#include "engine/bullet.h"
 
-#include "peer/engines.h"
+#include "engine/engines.h"
 
 #ifdef BT_USE_DOUBLE_PRECISION // set by its own pkg-config file
 static const char title[] = "Bullet, double precision";
@@ -8,7 +8,7 @@ static const char title[] = "Bullet, double precision";
 static const char title[] = "Bullet, single precision";
 #endif
 
-static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
 	if (s->step > 0 && s->substeps && s->iterations)
 		return ob_bullet_create(w, s, e);
@@ -17,7 +17,7 @@ static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, ob_err
 	return NULL;
 }
 
-const ob_peer_kind ob_peer_bullet = {
+const ob_engine_kind ob_engine_bullet = {
 	.name = "bullet",
 	.title = title,
 	.version = OB_BULLET_VERSION,

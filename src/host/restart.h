@@ -22,22 +22,22 @@
 // was no time to keep it.
 //
 // Thread-safety: lose may be called by any thread, the rest by the one that goes and waits.
-#ifndef OB_HOST_REBIRTH_H
-#define OB_HOST_REBIRTH_H
+#ifndef OB_HOST_RESTART_H
+#define OB_HOST_RESTART_H
 
 #include "host/host.h"
 
 // Makes ready. Without it, or with no memory for it, a loss is a failure.
-void ob_rebirth_prepare(ob_host *h);
+void ob_restart_prepare(ob_host *h);
 // At a pause: changed = objects came or went.
-void ob_rebirth_keep(ob_host *h, bool changed);
+void ob_restart_checkpoint(ob_host *h, bool changed);
 // Whether it is time for a pause to keep the universe.
-bool ob_rebirth_due(const ob_host *h);
-// A simulator is gone, or of no more use. The first loss counts until ob_rebirth.
-void ob_rebirth_lose(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool ob_restart_checkpoint_due(const ob_host *h);
+// A simulator is gone, or of no more use. The first loss counts until ob_restart.
+void ob_restart_lose(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // After a loss: all simulators begin again, and stand at the gate, the universe at a pause. false: the run has failed, or
 // another was lost in the meantime.
-bool ob_rebirth(ob_host *h);
-void ob_rebirth_finish(ob_host *h);
+bool ob_restart(ob_host *h);
+void ob_restart_finish(ob_host *h);
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "../check.h"
 
-static const ob_peer_kind *kind;
+static const ob_engine_kind *kind;
 
 static bool is(const char *name)
 {
@@ -123,7 +123,7 @@ static void bounce(void)
 	little_ground(l);
 	uint32_t ball = little_sphere(l, 1, .1, ob_v3(0, 0, 1.1));
 	l->passport[ball].restitution = .8;
-	ob_peer *p = little_make(kind, l, 16);
+	ob_engine *p = little_make(kind, l, 16);
 	double apex = 0;
 	little_step(kind, p, l, .6);
 	for (int i = 0; i < 30; i++) {
@@ -165,14 +165,14 @@ static void life(void)
 	little_ground(l);
 	little_cube(l, 1, .5, ob_v3(0, 0, .5));
 	little_cube(l, 1, .5, ob_v3(0, 0, 1.5));
-	ob_peer *one = little_make(kind, l, 0), *other = little_make(kind, l, 0);
+	ob_engine *one = little_make(kind, l, 0), *other = little_make(kind, l, 0);
 	little_step(kind, one, l, .1);
 	kind->destroy(one);
 	little_step(kind, other, l, .1);
 	kind->destroy(other);
 	CHECK_NEAR(l->now[2].pose.p.z, 1.5, .02);
 	kind->destroy(NULL);
-	ob_peer_settings s = kind->usual;
+	ob_engine_settings s = kind->usual;
 	s.substeps = 0;
 	s.tolerance = 0;
 	ob_error e = { "" };
@@ -191,11 +191,11 @@ static void tolerance(void)
 	little_ground(l);
 	for (int i = 0; i < 5; i++)
 		little_cube(l, 1000, .5, ob_v3(.01 * i, 0, .5 + i));
-	ob_peer_settings s = kind->usual;
+	ob_engine_settings s = kind->usual;
 	s.substeps = 0;
 	s.tolerance = 1e-4;
 	ob_error e = { "" };
-	ob_peer *p = kind->create(&l->world, &s, &e);
+	ob_engine *p = kind->create(&l->world, &s, &e);
 	bool can = strncmp(kind->name, "obsim", 5) == 0;
 	CHECK(can == (p != NULL));
 	CHECK(can || e.text[0]);
@@ -231,10 +231,10 @@ static void sleep_on(void)
 	little_world *l = little_world_new();
 	little_ground(l);
 	uint32_t cube = little_cube(l, 1, .5, ob_v3(0, 0, .5));
-	ob_peer_settings s = kind->usual;
+	ob_engine_settings s = kind->usual;
 	s.sleeping = true;
 	ob_error e;
-	ob_peer *p = kind->create(&l->world, &s, &e);
+	ob_engine *p = kind->create(&l->world, &s, &e);
 	CHECK(p);
 	little_step(kind, p, l, 4);
 	ob_state before = l->now[cube];
@@ -247,7 +247,7 @@ static void sleep_on(void)
 
 int main(int argc, char **argv)
 {
-	kind = ob_peer_find(argv[1]);
+	kind = ob_engine_find(argv[1]);
 	if (!kind)
 		return 77;
 	rest();

@@ -2,12 +2,12 @@
 #ifndef OB_TESTS_PEER_LITTLE_WORLD_H
 #define OB_TESTS_PEER_LITTLE_WORLD_H
 
-#include "peer/peer.h"
+#include "engine/engine.h"
 
 enum { LITTLE_MOST = 256 }; // objects
 
 typedef struct little_world {
-	ob_peer_world world;
+	ob_engine_world world;
 	ob_passport passport[LITTLE_MOST];
 	ob_state state[LITTLE_MOST]; // as it began
 	ob_state now[LITTLE_MOST]; // after little_run
@@ -22,10 +22,10 @@ uint32_t little_cube(little_world *l, double mass, double half, ob_vec3 p);
 uint32_t little_sphere(little_world *l, double mass, double radius, ob_vec3 p);
 
 // Makes an engine with its usual settings but for the number of substeps (0: those, too); a failure ends the test.
-ob_peer *little_make(const ob_peer_kind *kind, const little_world *l, uint32_t substeps);
+ob_engine *little_make(const ob_engine_kind *kind, const little_world *l, uint32_t substeps);
 // "seconds" on, then a look at the states.
-void little_step(const ob_peer_kind *kind, ob_peer *p, little_world *l, double seconds);
+void little_step(const ob_engine_kind *kind, ob_engine *p, little_world *l, double seconds);
 // All of it: make, step, destroy.
-void little_run(const ob_peer_kind *kind, little_world *l, uint32_t substeps, double seconds);
+void little_run(const ob_engine_kind *kind, little_world *l, uint32_t substeps, double seconds);
 
 #endif

@@ -191,7 +191,7 @@ static void test_again_and_again(void)
 	ob_host *h = ob_host_start(&s, &c, &e);
 	ob_host_go(h, 100);
 	CHECK(ob_host_wait(h, &e));
-	ob_exchange *ex = ob_universe_exchange(ob_host_universe(h));
+	ob_step_data *ex = ob_universe_step_data(ob_host_universe(h));
 	for (uint32_t i = 0; i < ex->count->pairs; i++)
 		ex->pair[i].record = ex->pair[i].active ? OB_NO_RECORD - 1 : OB_NO_RECORD;
 	pause_ms(300); // so that it is kept like that

@@ -1,4 +1,4 @@
-#include "host/keeper.h"
+#include "host/fork_server.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-struct ob_keeper {
+struct ob_fork_server {
 	pid_t pid;
 	int link;
 };
@@ -177,10 +177,10 @@ _Noreturn static void live_as_keeper(ob_universe *u, ob_worker_run run, int link
 
 // ---- the host's side
 
-ob_keeper *ob_keeper_start(ob_universe *u, ob_worker_run run, ob_error *e)
+ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error *e)
 {
 	int ends[2];
-	ob_keeper *k = calloc(1, sizeof *k);
+	ob_fork_server *k = calloc(1, sizeof *k);
 	if (!k || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
 		free(k);
 		ob_fail(e, "cannot make the link to the keeper process: %s", strerror(errno));
@@ -200,31 +200,31 @@ ob_keeper *ob_keeper_start(ob_universe *u, ob_worker_run run, ob_error *e)
 	return k;
 }
 
-pid_t ob_keeper_pid(const ob_keeper *k)
+pid_t ob_fork_server_pid(const ob_fork_server *k)
 {
 	return k->pid;
 }
-int ob_keeper_fd(const ob_keeper *k)
+int ob_fork_server_fd(const ob_fork_server *k)
 {
 	return k->link;
 }
 
-static bool ask(ob_keeper *k, fork_request r)
+static bool ask(ob_fork_server *k, fork_request r)
 {
 	return send(k->link, &r, sizeof r, MSG_NOSIGNAL) == sizeof r;
 }
 
-bool ob_keeper_fork(ob_keeper *k, uint32_t first, uint32_t count)
+bool ob_fork_server_fork(ob_fork_server *k, uint32_t first, uint32_t count)
 {
 	return ask(k, (fork_request){ first, count });
 }
 
-bool ob_keeper_kill(ob_keeper *k)
+bool ob_fork_server_kill(ob_fork_server *k)
 {
 	return ask(k, (fork_request){ 0 });
 }
 
-bool ob_keeper_next_end(ob_keeper *k, ob_worker_end *end)
+bool ob_fork_server_next_end(ob_fork_server *k, ob_worker_end *end)
 {
 	ssize_t n;
 	do {
@@ -233,7 +233,7 @@ bool ob_keeper_next_end(ob_keeper *k, ob_worker_end *end)
 	return n == sizeof *end;
 }
 
-void ob_keeper_stop(ob_keeper *k)
+void ob_fork_server_stop(ob_fork_server *k)
 {
 	if (!k)
 		return;

@@ -12,9 +12,9 @@
 // host needs neither a file descriptor nor a poll entry per simulator. It has a session of its own: Ctrl-C at the
 // terminal is the host's to handle.
 //
-// Thread-safety: one thread at a time per ob_keeper.
-#ifndef OB_HOST_KEEPER_H
-#define OB_HOST_KEEPER_H
+// Thread-safety: one thread at a time per ob_fork_server.
+#ifndef OB_HOST_FORK_SERVER_H
+#define OB_HOST_FORK_SERVER_H
 
 #include <sys/types.h>
 
@@ -31,20 +31,20 @@ typedef struct ob_worker_end {
 	int32_t code; // with which it left; 0 = as told
 } ob_worker_end;
 
-typedef struct ob_keeper ob_keeper;
+typedef struct ob_fork_server ob_fork_server;
 
 // run is what its simulators will execute, on the universe mapped here. NULL and e on failure.
-ob_keeper *ob_keeper_start(ob_universe *u, ob_worker_run run, ob_error *e);
-pid_t ob_keeper_pid(const ob_keeper *k);
+ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error *e);
+pid_t ob_fork_server_pid(const ob_fork_server *k);
 // Readable when there is an ob_worker_end to fetch; POLLHUP when the keeper is gone.
-int ob_keeper_fd(const ob_keeper *k);
+int ob_fork_server_fd(const ob_fork_server *k);
 // Asks for simulators first .. first+count-1. false: the keeper is gone.
-bool ob_keeper_fork(ob_keeper *k, uint32_t first, uint32_t count);
+bool ob_fork_server_fork(ob_fork_server *k, uint32_t first, uint32_t count);
 // Kills all simulators that there are. Their ends are reported.
-bool ob_keeper_kill(ob_keeper *k);
+bool ob_fork_server_kill(ob_fork_server *k);
 // Fetches one, without waiting; false: none at the moment.
-bool ob_keeper_next_end(ob_keeper *k, ob_worker_end *end);
+bool ob_fork_server_next_end(ob_fork_server *k, ob_worker_end *end);
 // Ends the keeper and with it every simulator that is left, and waits for it. NULL is allowed.
-void ob_keeper_stop(ob_keeper *k);
+void ob_fork_server_stop(ob_fork_server *k);
 
 #endif

@@ -7,8 +7,8 @@
 //   phase ISLANDS   one worker per island: reads its members' slots and its pairs (the version of before the step),
 //                   stages its members' motions, writes their bounds and its pairs (the other version)
 //   phase MEETINGS  one worker per handful of pairs: reads what has been staged, writes those pairs' keys
-#ifndef OB_TABLE_EXCHANGE_H
-#define OB_TABLE_EXCHANGE_H
+#ifndef OB_TABLE_STEP_DATA_H
+#define OB_TABLE_STEP_DATA_H
 
 #include <stdint.h>
 
@@ -51,25 +51,25 @@ typedef struct ob_pair_key {
 } ob_pair_key;
 
 // What the arranger needs to know of an object, 24 bytes, so that it need not read the slots.
-typedef struct ob_brief {
+typedef struct ob_schedule {
 	double path;    // m, when "since" steps were complete
 	float reach;    // m, how far any of its points may get in a step, until it is visited again
 	uint32_t state; // OB_BRIEF_*
 	uint32_t since;
 	uint32_t due;   // the step (from 0) that must visit it, if nothing comes near before
-} ob_brief;
+} ob_schedule;
 
 enum {
-	OB_BRIEF_ABSENT,
-	OB_BRIEF_PLANE,  // static; what flies foresees when it meets it
-	OB_BRIEF_STATIC,
-	OB_BRIEF_AWAKE,
-	OB_BRIEF_ASLEEP, // from here on: not solved until something comes near
-	OB_BRIEF_STILL,
+	OB_SCHEDULE_ABSENT,
+	OB_SCHEDULE_PLANE,  // static; what flies foresees when it meets it
+	OB_SCHEDULE_STATIC,
+	OB_SCHEDULE_AWAKE,
+	OB_SCHEDULE_ASLEEP, // from here on: not solved until something comes near
+	OB_SCHEDULE_EQUILIBRIUM,
 };
 
 // What goes by itself gets its reach farther in each step. m, when so many are complete.
-static inline double ob_brief_path(const ob_brief *b, uint64_t steps)
+static inline double ob_schedule_path(const ob_schedule *b, uint64_t steps)
 {
 	return b->path + ((double)steps - b->since) * (double)b->reach;
 }
@@ -89,9 +89,9 @@ typedef struct ob_index_cell {
 } ob_index_cell;
 
 // The areas, as pointers into this process's mapping (made once per process by the table module).
-typedef struct ob_exchange {
+typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, perceived_max;
-	struct ob_exchange_counts {
+	struct ob_step_counts {
 		uint32_t pairs, islands, chunks, records_used;
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
 		uint32_t arranger;   // the worker that arranged last
@@ -106,14 +106,14 @@ typedef struct ob_exchange {
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
 		uint32_t planes;
-		uint32_t failure;    // ob_exchange_failure; 0 = none
+		uint32_t failure;    // ob_step_failure; 0 = none
 	} *count;
-	ob_brief *brief;              // [object]: written by its island's solver
+	ob_schedule *brief;              // [object]: written by its island's solver
 	float (*bounds)[6];           // [object]: box that holds it until it asks for another
 	ob_motion *result;            // [object]: what its island's solver found
 	uint32_t *effort;             // [object]: its share of what its island cost when it was solved last, as ob_island.work
 	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none
-	struct ob_perceived { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
+	struct ob_neighbours { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
 	uint32_t *perceived_id;       // arena
 	ob_index_cell *cell;          // [object]
 	uint32_t *bucket;             // [buckets]: 1 + first object; 0 = empty
@@ -128,13 +128,13 @@ typedef struct ob_exchange {
 	uint32_t *island_pair;        // indices into pair[]
 	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
 	uint32_t *scratch;            // [4 * objects]: the arranger's
-} ob_exchange;
+} ob_step_data;
 
-typedef enum ob_exchange_failure {
-	OB_EXCHANGE_OK,
-	OB_EXCHANGE_PAIRS_FULL,
-	OB_EXCHANGE_PERCEIVED_FULL,
-	OB_EXCHANGE_DIVERGED, // a state became NaN or infinite
-} ob_exchange_failure;
+typedef enum ob_step_failure {
+	OB_STEP_OK,
+	OB_STEP_PAIRS_FULL,
+	OB_STEP_NEIGHBOURS_FULL,
+	OB_STEP_DIVERGED, // a state became NaN or infinite
+} ob_step_failure;
 
 #endif

@@ -2,37 +2,37 @@
 #include <stdlib.h>
 
 #include "ode/ode_world.h"
-#include "peer/engines.h"
+#include "engine/engines.h"
 
-struct ob_peer {
+struct ob_engine {
 	ob_ode_world *world;
 	double substep; // s
 	uint32_t substeps, objects;
 };
 
-static void destroy(ob_peer *p)
+static void destroy(ob_engine *p)
 {
 	if (!p)
 		return;
 	ob_ode_world_destroy(p->world);
 	free(p);
-	ob_peer_ode_leave();
+	ob_engine_ode_leave();
 }
 
 // iterations: QuickStep's; 0 = dWorldStep
-static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32_t iterations, bool hashed, ob_error *e)
+static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, uint32_t iterations, bool hashed, ob_error *e)
 {
 	if (!(s->step > 0) || !s->substeps) {
 		ob_fail(e, "%u substeps of a step of %g s: ODE must be told what to do", s->substeps, s->step);
 		return NULL;
 	}
-	ob_peer *p = calloc(1, sizeof *p);
+	ob_engine *p = calloc(1, sizeof *p);
 	if (!p) {
 		ob_fail(e, "no memory for an engine");
 		return NULL;
 	}
-	ob_peer_ode_enter();
-	*p = (ob_peer){ .substep = s->step / s->substeps, .substeps = s->substeps, .objects = w->objects };
+	ob_engine_ode_enter();
+	*p = (ob_engine){ .substep = s->step / s->substeps, .substeps = s->substeps, .objects = w->objects };
 	p->world = ob_ode_world_create(&(ob_ode_world_setup){
 		.gravity = w->gravity,
 		.iterations = iterations,
@@ -50,7 +50,7 @@ static ob_peer *create(const ob_peer_world *w, const ob_peer_settings *s, uint32
 	return p;
 }
 
-static ob_peer *create_iterating(const ob_peer_world *w, const ob_peer_settings *s, bool hashed, ob_error *e)
+static ob_engine *create_iterating(const ob_engine_world *w, const ob_engine_settings *s, bool hashed, ob_error *e)
 {
 	if (s->iterations)
 		return create(w, s, s->iterations, hashed, e);
@@ -58,22 +58,22 @@ static ob_peer *create_iterating(const ob_peer_world *w, const ob_peer_settings 
 	return NULL;
 }
 
-static ob_peer *create_quick(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_quick(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
 	return create_iterating(w, s, false, e);
 }
 
-static ob_peer *create_hashed(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_hashed(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
 	return create_iterating(w, s, true, e);
 }
 
-static ob_peer *create_world(const ob_peer_world *w, const ob_peer_settings *s, ob_error *e)
+static ob_engine *create_world(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
 {
 	return create(w, s, 0, false, e);
 }
 
-static bool step(ob_peer *p, ob_error *e)
+static bool step(ob_engine *p, ob_error *e)
 {
 	for (uint32_t i = 0; i < p->substeps; i++)
 		if (!ob_ode_world_step(p->world, p->substep))
@@ -81,7 +81,7 @@ static bool step(ob_peer *p, ob_error *e)
 	return true;
 }
 
-static void get(const ob_peer *p, ob_state *state)
+static void get(const ob_engine *p, ob_state *state)
 {
 	bool asleep, touching;
 	for (uint32_t i = 0; i < p->objects; i++)
@@ -93,7 +93,7 @@ static void get(const ob_peer *p, ob_state *state)
 	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 }, \
 	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 }
 
-const ob_peer_kind ob_peer_ode_quick = {
+const ob_engine_kind ob_engine_ode_quick = {
 	.name = "ode-quick",
 	.title = "ODE QuickStep",
 	.create = create_quick,
@@ -101,7 +101,7 @@ const ob_peer_kind ob_peer_ode_quick = {
 	THE_REST,
 };
 
-const ob_peer_kind ob_peer_ode_hash = {
+const ob_engine_kind ob_engine_ode_hash = {
 	.name = "ode-hash",
 	.title = "ODE QuickStep, hash space",
 	.create = create_hashed,
@@ -109,7 +109,7 @@ const ob_peer_kind ob_peer_ode_hash = {
 	THE_REST,
 };
 
-const ob_peer_kind ob_peer_ode_world = {
+const ob_engine_kind ob_engine_ode_world = {
 	.name = "ode-world",
 	.title = "ODE dWorldStep",
 	.usual = { .step = 1. / 60, .substeps = 1 },

@@ -1,11 +1,11 @@
-#include "host/hang.h"
+#include "host/stall.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 
 #include "host/host_state.h"
-#include "table/exchange.h"
+#include "table/step_data.h"
 
 enum { SHOWN = 4 };
 static const uint64_t busy_ns = 10000000; // CPU within the tenth of a second: it computes
@@ -36,13 +36,13 @@ static const char *doing(const ob_worker_info *w, uint64_t cpu_ns)
 	return state == 'R' || cpu_ns > busy_ns ? "computing" : "asleep";
 }
 
-void ob_hang_describe(const ob_host *h, char *text, size_t size)
+void ob_stall_describe(const ob_host *h, char *text, size_t size)
 {
 	uint32_t who[SHOWN], shown = 0, more = 0;
 	uint64_t before[SHOWN];
 	ob_worker_info info[SHOWN];
 	size_t n = 0;
-	uint32_t arranger = ob_universe_exchange(h->u)->count->arranger;
+	uint32_t arranger = ob_universe_step_data(h->u)->count->arranger;
 	bool awaited = false; // else all have arrived, and the last of them has not opened the gate again
 	for (uint32_t w = 0; w < h->workers; w++)
 		awaited = awaited || ob_gate_awaits(h->u, w);

@@ -1,0 +1,20 @@
+// Inside the module peer only: the engines that kinds.c lists. Each file that makes them has its own struct ob_engine.
+#ifndef OB_ENGINE_ENGINES_H
+#define OB_ENGINE_ENGINES_H
+
+#include "engine/engine.h"
+
+extern const ob_engine_kind ob_engine_obsim; // obsim.c: one engine for each way to exchange, and one with ODE's stepper
+extern const ob_engine_kind ob_engine_obsim_jacobi;
+extern const ob_engine_kind ob_engine_obsim_ode;
+extern const ob_engine_kind ob_engine_obsim_ghost;
+extern const ob_engine_kind ob_engine_obsim_lag;
+extern const ob_engine_kind ob_engine_ode_quick; // ode.c
+extern const ob_engine_kind ob_engine_ode_world;
+extern const ob_engine_kind ob_engine_bullet; // bullet.c
+
+// What ODE keeps for a thread lives as long as any peer of that thread needs it.
+void ob_engine_ode_enter(void);
+void ob_engine_ode_leave(void);
+
+#endif

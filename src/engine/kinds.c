@@ -1,0 +1,25 @@
+#include <string.h>
+
+#include "engine/engines.h"
+
+const ob_engine_kind *const ob_engine_kinds[] = {
+	&ob_engine_obsim,
+	&ob_engine_obsim_jacobi,
+	&ob_engine_obsim_ode,
+	&ob_engine_obsim_ghost,
+	&ob_engine_obsim_lag,
+	&ob_engine_ode_quick,
+	&ob_engine_ode_world,
+#ifdef OB_HAVE_BULLET
+	&ob_engine_bullet,
+#endif
+	NULL,
+};
+
+const ob_engine_kind *ob_engine_find(const char *name)
+{
+	for (const ob_engine_kind *const *k = ob_engine_kinds; *k; k++)
+		if (strcmp((*k)->name, name) == 0)
+			return *k;
+	return NULL;
+}
