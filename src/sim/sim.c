@@ -19,6 +19,8 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 	ob_sim *s = calloc(1, sizeof *s);
 	if (s) {
 		s->u = u;
+		s->data = ob_universe_step_data(u);
+		s->settings = run;
 		s->worker = worker;
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
 		s->times.timed = s->times.wanted = run->timed;

@@ -11,6 +11,8 @@
 
 struct ob_sim {
 	ob_universe *u;
+	ob_step_data *data; // of u, the same for its whole life
+	const ob_run_settings *settings; // of u, constant
 	uint32_t worker;
 	ob_ode_bodies worlds;
 	ob_island_work island; // scratch
