@@ -121,19 +121,19 @@ static void print_parts(const watched *r)
 	double critical = r->after.critical_s - r->before.critical_s;
 	bench_print("critical path", "us/step", 1e6 * critical / (double)(r->steps - r->from));
 #define COUNT(what) bench_print("count: " #what, "1/body-step", (double)(b->what - a->what) / all)
-	COUNT(leaps);
-	COUNT(member_steps);
-	COUNT(member_substeps);
+	COUNT(ballistic_advances);
+	COUNT(body_steps);
+	COUNT(body_substeps);
 	COUNT(island_steps);
 	COUNT(islands_redone);
-	COUNT(looks);
-	COUNT(swept_looks);
+	COUNT(narrowphase_tests);
+	COUNT(swept_tests);
 	COUNT(box_tests);
-	COUNT(rounds);
-	COUNT(pair_exchanges);
+	COUNT(solver_iterations);
+	COUNT(pair_solves);
 	COUNT(impacts);
 	COUNT(direct_solves);
-	COUNT(gyrations);
+	COUNT(gyroscopic_steps);
 #undef COUNT
 }
 

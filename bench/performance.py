@@ -284,13 +284,13 @@ def pieces(m):
 # - a visit of what flies: a plan of its rotation 400, ten evaluations of it on the way to the ground, 110 each; its motion,
 #   passport and box, and those of a neighbour.
 UNITS = [
-    ('solve', 'pair_exchanges', 448, 1264, 'near'),
-    ('look', 'looks', 565, 700, 'near'),
-    ('move', 'member_substeps', 134, 600, 'near'),
-    ('load', 'member_steps', 100, 448, 'far'),
-    ('publish', 'member_steps', 150, 300, 'far'),
-    ('leap', 'leaps', 1500, 900, 'far'),
-    ('perceive', 'box_tests', 6, 24, 'far'),
+    ('solve', 'pair_solves', 448, 1264, 'near'),
+    ('narrowphase', 'narrowphase_tests', 565, 700, 'near'),
+    ('move', 'body_substeps', 134, 600, 'near'),
+    ('load', 'body_steps', 100, 448, 'far'),
+    ('publish', 'body_steps', 150, 300, 'far'),
+    ('ballistic', 'ballistic_advances', 1500, 900, 'far'),
+    ('broadphase', 'box_tests', 6, 24, 'far'),
 ]
 
 

@@ -40,17 +40,17 @@ static traits traits_of(const ob_scene *s)
 static void explain_motion(const ob_explained *x, const traits *t, FILE *f)
 {
 	const ob_counters *c = &x->counters;
-	uint64_t awake = c->leaps + c->member_steps;
+	uint64_t awake = c->ballistic_advances + c->body_steps;
 	double asleep = x->body_steps - (double)awake;
 	bool exact = x->settings->integrator == OB_INTEGRATOR_EXACT;
-	if (c->leaps)
+	if (c->ballistic_advances)
 		line(f, "flight", "%s: %" PRIu64 " steps of objects that touched nothing",
-		     exact ? "closed form, no substeps" : "ODE's stepper", c->leaps);
+		     exact ? "closed form, no substeps" : "ODE's stepper", c->ballistic_advances);
 	else
 		line(f, "flight", "none: no object was ever alone");
-	if (c->member_steps)
+	if (c->body_steps)
 		line(f, "substeps", "%.3g a step, for %" PRIu64 " steps of objects that touched, or might have",
-		     (double)c->member_substeps / (double)c->member_steps, c->member_steps);
+		     (double)c->body_substeps / (double)c->body_steps, c->body_steps);
 	else
 		line(f, "substeps", "none: nothing came near anything");
 	if (!x->settings->sleeping)
@@ -59,9 +59,10 @@ static void explain_motion(const ob_explained *x, const traits *t, FILE *f)
 		line(f, "sleep", "%.0f steps of objects were not computed at all", asleep);
 	else
 		line(f, "sleep", "none: no island was ever at rest for long enough");
-	if (c->gyrations)
+	if (c->gyroscopic_steps)
 		line(f, "gyroscope",
-		     "Euler's equations in %" PRIu64 " substeps of objects that turned while in contact", c->gyrations);
+		     "Euler's equations in %" PRIu64 " substeps of objects that turned while in contact",
+		     c->gyroscopic_steps);
 	else if (!exact)
 		line(f, "gyroscope", "ODE's own");
 	else
@@ -74,23 +75,23 @@ static void explain_motion(const ob_explained *x, const traits *t, FILE *f)
 static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 {
 	const ob_counters *c = &x->counters;
-	if (c->looks)
+	if (c->narrowphase_tests)
 		line(f, "collision",
-		     "%" PRIu64 " tests of pairs; %" PRIu64 " of them followed the pair through its substep", c->looks,
-		     c->swept_looks);
+		     "%" PRIu64 " tests of pairs; %" PRIu64 " of them followed the pair through its substep",
+		     c->narrowphase_tests, c->swept_tests);
 	else
 		line(f, "collision", "none: no two boxes came near each other");
-	if (c->pair_exchanges)
+	if (c->pair_solves)
 		line(f, "contact",
-		     "%" PRIu64 " exchanges between pairs in %" PRIu64 " rounds; %" PRIu64 " direct solves",
-		     c->pair_exchanges, c->rounds, c->direct_solves);
+		     "%" PRIu64 " solves of pairs in %" PRIu64 " iterations; %" PRIu64 " direct solves",
+		     c->pair_solves, c->solver_iterations, c->direct_solves);
 	else
 		line(f, "contact", "none: nothing touched");
 	if (!t->rough)
 		line(f, "friction", "none: no object has any");
-	else if (c->pair_exchanges > c->slick_exchanges)
-		line(f, "friction", "Coulomb's cone in %" PRIu64 " exchanges; %" PRIu64 " without rows for it",
-		     c->pair_exchanges - c->slick_exchanges, c->slick_exchanges);
+	else if (c->pair_solves > c->frictionless_solves)
+		line(f, "friction", "Coulomb's cone in %" PRIu64 " solves; %" PRIu64 " without rows for it",
+		     c->pair_solves - c->frictionless_solves, c->frictionless_solves);
 	else
 		line(f, "friction", "none: no two rough objects touched");
 	if (!t->elastic)
@@ -137,11 +138,11 @@ static void print_costs(const ob_explained *x, FILE *f)
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++) {
 		double s = 1e-9 * (double)x->counters.time_ns[i];
 		rest -= s;
-		fprintf(f, "    %-9s %10s %5.1f %%  %s\n", ob_profile_name((uint32_t)i), ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
+		fprintf(f, "    %-11s %10s %5.1f %%  %s\n", ob_profile_name((uint32_t)i), ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
 			what[i]);
 	}
 	rest = fmax(0, rest);
-	fprintf(f, "    %-9s %10s %5.1f %%  waiting for each other, and what these clocks cost\n", "gate",
+	fprintf(f, "    %-11s %10s %5.1f %%  waiting for each other, and what these clocks cost\n", "gate",
 		ob_quantity_text(&q, rest, "s"), 100 * rest / x->cpu_s);
 }
 

@@ -178,7 +178,7 @@ static void after_meetings(ob_sim *s)
 		go_on(u, s);
 		return;
 	}
-	s->counters.reunions += met;
+	s->counters.island_merges += met;
 	*ob_worker_counters(u, s->worker) = s->counters; // before anybody may look
 	if (met) {
 		ob_islands_merge(u);

@@ -225,8 +225,8 @@ static double make_round(ob_sim *s, const ob_pass *pass, bool *hot)
 		if (pass->first ? !b->live : w->batch_due[i] < w->pass)
 			continue;
 		unsigned pairs = (unsigned)__builtin_popcount(b->live);
-		s->counters.pair_exchanges += pairs;
-		s->counters.slick_exchanges += b->kind & OB_KIND_SLICK ? pairs : 0;
+		s->counters.pair_solves += pairs;
+		s->counters.frictionless_solves += b->kind & OB_KIND_SLICK ? pairs : 0;
 		ob_batch_solve(b, pass, w->u, w->v, w->d, w->delta);
 		*hot |= heat_bodies(w, b);
 		moved = lanes_max(moved, b->moved);
@@ -248,7 +248,7 @@ void ob_solver_iterate(ob_sim *s)
 	for (uint32_t round = 0; round < more * run->passes && again; round++) {
 		if (round == run->passes)
 			pass.wake = violent;
-		s->counters.rounds++;
+		s->counters.solver_iterations++;
 		ob_ghosts_read(s, w->u, round);
 		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep
 		double moved = make_round(s, &pass, &again);

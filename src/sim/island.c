@@ -78,7 +78,7 @@ static bool solve(ob_sim *s, const ob_island *is)
 	ob_bodies_load(s, is);
 	ob_contacts_load(s, is);
 	ob_direct_begin(&s->island.forest);
-	s->counters.member_substeps += (uint64_t)is->members * w->substeps;
+	s->counters.body_substeps += (uint64_t)is->members * w->substeps;
 	for (uint32_t k = 0; k < w->substeps; k++)
 		substep(s, k == 0);
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
@@ -104,7 +104,7 @@ static bool solve_calm(ob_sim *s, const ob_island *is)
 static uint64_t cost_so_far(const ob_sim *s)
 {
 	enum { OF_A_LOOK = 4 };
-	return s->counters.pair_exchanges + OF_A_LOOK * s->counters.looks;
+	return s->counters.pair_solves + OF_A_LOOK * s->counters.narrowphase_tests;
 }
 
 // For the arranger, so that what costs much is begun first.
@@ -173,7 +173,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 		ob_profile_enter(s, OB_PROFILE_BALLISTIC);
 		if (ob_ballistic_advance(s, ob_universe_step_data(s->u)->member[is->first_member])) {
 			leave_contacts(s->u, is);
-			s->counters.leaps++;
+			s->counters.ballistic_advances++;
 			return;
 		}
 	}
@@ -185,7 +185,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	ob_profile_enter(s, OB_PROFILE_LOAD);
 	s->counters.island_steps++;
 	s->counters.recovered += s->island.recovered;
-	s->counters.member_steps += is->members;
+	s->counters.body_steps += is->members;
 	note_effort(s, is, cost_so_far(s) - before);
 	ob_contacts_store(s);
 	ob_profile_enter(s, OB_PROFILE_PUBLISH);

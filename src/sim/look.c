@@ -122,7 +122,7 @@ static double meet(ob_sim *s, const ob_contact *t, double horizon, double reach,
 	const ob_island_work *w = &s->island;
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);
 	double near = fmin(swept_gap, .25 * smaller_thickness(w, t));
-	s->counters.swept_looks++;
+	s->counters.swept_tests++;
 	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, ob_narrowphase_finder(s), m);
 }
 

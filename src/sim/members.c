@@ -180,7 +180,7 @@ void ob_bodies_gyroscopic_step(ob_sim *s)
 		ob_vec3 now = angular_of(w->v[i]), j = m->inertia;
 		if (m->round || ob_norm2(now) < 1e-12)
 			continue;
-		s->counters.gyrations++;
+		s->counters.gyroscopic_steps++;
 		ob_vec3 b = ob_rotate_back(&m->r, now), mid = b;
 		for (int stage = 0; stage < 2; stage++) {
 			double h = stage ? w->h : .5 * w->h;

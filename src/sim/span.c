@@ -6,11 +6,11 @@ enum { LARGE_ISLAND = 64, SAMPLED_STEPS = 16 };
 
 static uint32_t islands_done(const ob_sim *s)
 {
-	return (uint32_t)(s->counters.leaps + s->counters.island_steps);
+	return (uint32_t)(s->counters.ballistic_advances + s->counters.island_steps);
 }
 static uint32_t members_done(const ob_sim *s)
 {
-	return (uint32_t)(s->counters.leaps + s->counters.member_steps);
+	return (uint32_t)(s->counters.ballistic_advances + s->counters.body_steps);
 }
 
 void ob_span_turn_to(ob_sim *s, ob_trace_kind next)

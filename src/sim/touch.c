@@ -73,7 +73,7 @@ bool ob_contacts_update(ob_sim *s, double ahead)
 		ob_contact *t = &w->touch[i];
 		const ob_body *a = &w->member[t->a], *b = &w->member[t->b];
 		if (a->path + b->path + (a->speed + b->speed + gain(w, t)) * ahead > t->limit) {
-			s->counters.looks++;
+			s->counters.narrowphase_tests++;
 			refresh(s, t);
 			any = true;
 		}

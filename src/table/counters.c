@@ -7,38 +7,44 @@ ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker)
 	return &u->worker[worker].counters;
 }
 
-const char *ob_profile_name(uint32_t part)
+const char *ob_profile_name(uint32_t section)
 {
 	static const char *const names[OB_PROFILE_SECTIONS] = {
-		[OB_PROFILE_BROADPHASE] = "perceive", [OB_PROFILE_SCHEDULE] = "arrange", [OB_PROFILE_BALLISTIC] = "leap",
-		[OB_PROFILE_LOAD] = "load",         [OB_PROFILE_NARROWPHASE] = "look",       [OB_PROFILE_IMPACTS] = "impacts",
-		[OB_PROFILE_SOLVE] = "solve",       [OB_PROFILE_MOVE] = "move",       [OB_PROFILE_PROJECT] = "project",
+		[OB_PROFILE_BROADPHASE] = "broadphase",
+		[OB_PROFILE_SCHEDULE] = "schedule",
+		[OB_PROFILE_BALLISTIC] = "ballistic",
+		[OB_PROFILE_LOAD] = "load",
+		[OB_PROFILE_NARROWPHASE] = "narrowphase",
+		[OB_PROFILE_IMPACTS] = "impacts",
+		[OB_PROFILE_SOLVE] = "solve",
+		[OB_PROFILE_MOVE] = "move",
+		[OB_PROFILE_PROJECT] = "project",
 		[OB_PROFILE_PUBLISH] = "publish",
 	};
-	return part < OB_PROFILE_SECTIONS && names[part] ? names[part] : "?";
+	return section < OB_PROFILE_SECTIONS && names[section] ? names[section] : "?";
 }
 
 static void add(ob_counters *to, const ob_counters *c)
 {
-	to->leaps += c->leaps;
-	to->member_steps += c->member_steps;
-	to->member_substeps += c->member_substeps;
+	to->ballistic_advances += c->ballistic_advances;
+	to->body_steps += c->body_steps;
+	to->body_substeps += c->body_substeps;
 	to->island_steps += c->island_steps;
 	to->islands_redone += c->islands_redone;
-	to->reunions += c->reunions;
+	to->island_merges += c->island_merges;
 	to->islands_over += c->islands_over;
 	for (int i = 0; i < OB_SUBSTEP_CHOICES; i++)
 		to->chosen[i] += c->chosen[i];
-	to->looks += c->looks;
-	to->swept_looks += c->swept_looks;
+	to->narrowphase_tests += c->narrowphase_tests;
+	to->swept_tests += c->swept_tests;
 	to->box_tests += c->box_tests;
-	to->rounds += c->rounds;
-	to->pair_exchanges += c->pair_exchanges;
-	to->slick_exchanges += c->slick_exchanges;
+	to->solver_iterations += c->solver_iterations;
+	to->pair_solves += c->pair_solves;
+	to->frictionless_solves += c->frictionless_solves;
 	to->impact_rounds += c->impact_rounds;
 	to->impacts += c->impacts;
 	to->direct_solves += c->direct_solves;
-	to->gyrations += c->gyrations;
+	to->gyroscopic_steps += c->gyroscopic_steps;
 	to->recovered += c->recovered;
 	to->error = fmax(to->error, c->error);
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)

@@ -5,51 +5,52 @@
 
 #include <stdint.h>
 
-// The parts of a step whose time is taken when ob_run_settings.timed says so.
+// The sections of a step whose time is taken when ob_run_settings.timed says so.
 typedef enum ob_profile_section {
 	OB_PROFILE_BROADPHASE, // boxes against boxes
-	OB_PROFILE_SCHEDULE,  // index, pairs, islands: the worker that arrives last
-	OB_PROFILE_BALLISTIC,     // closed forms of what touches nothing
-	OB_PROFILE_LOAD,     // an island's members and pairs out of the universe, and back
-	OB_PROFILE_NARROWPHASE,     // where bodies meet: collision tests
-	OB_PROFILE_IMPACTS,  // collisions with restitution
-	OB_PROFILE_SOLVE,    // exchanges of contact impulses
-	OB_PROFILE_MOVE,     // rotation, prediction, displacement
-	OB_PROFILE_PROJECT,  // penetration pushed apart
-	OB_PROFILE_PUBLISH,  // rest, boxes, motions into their slots
+	OB_PROFILE_SCHEDULE, // index, pairs, islands: the worker that arrives last
+	OB_PROFILE_BALLISTIC, // closed forms of what touches nothing
+	OB_PROFILE_LOAD, // an island's bodies and contacts out of the universe, and back
+	OB_PROFILE_NARROWPHASE, // where bodies touch: collision tests
+	OB_PROFILE_IMPACTS, // collisions with restitution
+	OB_PROFILE_SOLVE, // iterations of the contact solver, direct solves
+	OB_PROFILE_MOVE, // rotation, prediction, integration
+	OB_PROFILE_PROJECT, // penetrations pushed apart
+	OB_PROFILE_PUBLISH, // rest, boxes, motions into their slots
 	OB_PROFILE_SECTIONS
 } ob_profile_section;
 
 // A word for it; "?" for what is none.
-const char *ob_profile_name(uint32_t part);
+const char *ob_profile_name(uint32_t section);
 
 enum { OB_SUBSTEP_CHOICES = 11 }; // islands take 1, 2, 4 .. 1024 substeps where a tolerance chooses
 
 typedef struct ob_counters {
-	uint64_t leaps;             // steps of objects that touched nothing: their closed form
-	uint64_t member_steps;      // steps of objects in islands
-	uint64_t member_substeps;   // substeps of those, redone ones included
-	uint64_t island_steps;      // islands solved
-	uint64_t islands_redone;    // solutions thrown away because their error was above the tolerance
-	uint64_t reunions;          // times that islands of a step were solved again as one, because they met
-	uint64_t islands_over;      // islands whose error stayed above it with the most substeps
+	uint64_t ballistic_advances; // steps of objects that touched nothing: their closed form
+	uint64_t body_steps; // steps of objects in islands
+	uint64_t body_substeps; // substeps of those, redone ones included
+	uint64_t island_steps; // islands solved
+	uint64_t islands_redone; // solutions thrown away because their error was above the tolerance
+	uint64_t island_merges; // times that islands of a step were solved again as one, because of late contacts
+	uint64_t islands_over; // islands whose error stayed above the tolerance with the most substeps
 	uint64_t chosen[OB_SUBSTEP_CHOICES]; // island-steps by log2 of the substeps that they kept
-	uint64_t looks, swept_looks;// collision tests; those that followed a pair through its substep
-	uint64_t box_tests;         // of two axis-aligned boxes, in whatever phase
-	uint64_t rounds;            // of exchanges
-	uint64_t pair_exchanges;    // pairs solved in them
-	uint64_t slick_exchanges;   // those of them without friction
-	uint64_t impact_rounds, impacts; // of restitution; pairs that bounced in them
-	uint64_t direct_solves;     // of an island as a whole
-	uint64_t gyrations;         // substeps of bodies whose inertia needed Euler's equations
-	double recovered;           // J, potential energy that pushing penetrations apart has added
-	double error;               // m, the largest that an accepted solution estimated for itself
+	uint64_t narrowphase_tests; // collision tests of two shapes
+	uint64_t swept_tests; // those that followed the pair through its substep
+	uint64_t box_tests; // of two axis-aligned boxes, in whatever phase
+	uint64_t solver_iterations; // of the contact solver
+	uint64_t pair_solves; // pairs solved in them
+	uint64_t frictionless_solves; // those of them without friction
+	uint64_t impact_rounds, impacts; // passes over elastic contacts; pairs that rebounded in them
+	uint64_t direct_solves; // of an island as a whole
+	uint64_t gyroscopic_steps; // substeps of bodies whose inertia needed Euler's equations
+	double recovered; // J, potential energy that pushing penetrations apart has added
+	double error; // m, the largest that an accepted solution estimated for itself
 	uint64_t time_ns[OB_PROFILE_SECTIONS]; // of CPU
 	// If timed: where the rest of the worker's time went, on the wall but for gate_cpu_ns.
-	uint64_t held_ns;     // it had work, and no core
-	uint64_t gate_ns;     // waiting at the gate until its last phase, pauses included
+	uint64_t held_ns; // it had work, and no core
+	uint64_t gate_ns; // waiting at the gate until its last phase, pauses included
 	uint64_t gate_cpu_ns; // CPU of that waiting: spinning, falling asleep, waking
-	uint64_t since_ns;    // since when it waits now (ob_clock_ns); not for sums
+	uint64_t since_ns; // since when it waits now (ob_clock_ns); not for sums
 } ob_counters;
 
 #endif

@@ -13,7 +13,7 @@ WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w 
 HOST, WORKERS, OBJECTS = 1, 2, 3  # "processes" of the file
 PHASES = {"gate", "solve", "members", "arrange", "world"}
 STATES = {"flies", "touches", "asleep", "awake"}
-PARTS = {"leap", "load", "look", "impacts", "solve", "move", "project", "publish"}
+PARTS = {"ballistic", "load", "narrowphase", "impacts", "solve", "move", "project", "publish"}
 
 
 class Trace(program.Case):

@@ -49,7 +49,7 @@ static void call_all(ob_universe *u)
 
 typedef struct outcome {
 	double deepest, growth; // m; relative
-	uint64_t hash, leaps;
+	uint64_t hash, advances;
 } outcome;
 
 static outcome play(const little_scene *s, bool call)
@@ -69,7 +69,7 @@ static outcome play(const little_scene *s, bool call)
 		out.deepest = fmax(out.deepest, little_penetration(&l).max_m);
 	}
 	ob_universe_count(l.u, &c);
-	out.leaps = c.leaps;
+	out.advances = c.ballistic_advances;
 	out.hash = ob_measure_hash(&l.now);
 	little_close(&l);
 	return out;
@@ -85,8 +85,8 @@ static void test_balls(void)
 			s->object[i].state.pose.p.y = 30 * i;
 		outcome by_itself = play(s, false), each_step = play(s, true);
 		CHECK(by_itself.hash == each_step.hash);
-		visits += by_itself.leaps;
-		called += each_step.leaps;
+		visits += by_itself.advances;
+		called += each_step.advances;
 		free(s);
 	}
 	CHECK(visits * 8 < called);
@@ -104,8 +104,8 @@ static void test_nothing_missed(void)
 		CHECK(a.growth < 1e-5);
 		CHECK(a.deepest < 5e-3);
 		by_itself = fmax(by_itself, a.deepest), each_step = fmax(each_step, b.deepest);
-		visits += a.leaps;
-		called += b.leaps;
+		visits += a.advances;
+		called += b.advances;
 		free(s);
 	}
 	printf("deepest %.2f mm, visited in each step %.2f mm\n", 1e3 * by_itself, 1e3 * each_step);
@@ -152,7 +152,7 @@ static void test_low_hops(void)
 			ob_universe_count(l.u, &before);
 			little_run(&l, 1);
 			ob_universe_count(l.u, &after);
-			taken_off += held && after.leaps > before.leaps;
+			taken_off += held && after.ballistic_advances > before.ballistic_advances;
 			double now = little_energy(&l);
 			growth = fmax(growth, now / energy - 1);
 			energy = fmin(energy, now);

@@ -27,7 +27,7 @@ static void test_row(void)
 	little_universe l;
 	little_open(&l, s);
 	little_run(&l, 6);
-	CHECK(counted(&l).reunions > 0);
+	CHECK(counted(&l).island_merges > 0);
 	for (uint32_t i = 0; i < SPHERES; i++)
 		CHECK_NEAR(little_state(&l, i).v.x, 0, 1e-9);
 	CHECK_NEAR(little_state(&l, SPHERES).v.x, 100, 1e-9);
@@ -58,7 +58,7 @@ static void test_sleepers(void)
 		momentum += little_state(&l, i).v.x;
 	CHECK(!little_asleep(&l, 4) && little_state(&l, 4).v.x > 1);
 	CHECK_NEAR(momentum, 60, 1e-6);
-	CHECK(counted(&l).reunions > 0);
+	CHECK(counted(&l).island_merges > 0);
 	little_close(&l);
 	free(s);
 }
@@ -66,7 +66,7 @@ static void test_sleepers(void)
 // Clouds of fast boxes and spheres in a narrow room: nothing gets through anything, momentum and energy are kept.
 static void test_clouds(void)
 {
-	uint64_t reunions = 0;
+	uint64_t merges = 0;
 	for (uint64_t seed = 1; seed <= 20; seed++) {
 		uint64_t random = seed;
 		little_scene *s = little_scene_new();
@@ -93,11 +93,11 @@ static void test_clouds(void)
 		}
 		CHECK(worst < .01);
 		CHECK(ob_norm(ob_sub(ob_measure_momentum(&l.now), before)) < 1e-8);
-		reunions += counted(&l).reunions;
+		merges += counted(&l).island_merges;
 		little_close(&l);
 		free(s);
 	}
-	CHECK(reunions > 20);
+	CHECK(merges > 20);
 }
 
 int main(void)

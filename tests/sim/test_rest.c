@@ -88,7 +88,7 @@ static void test_still(void)
 	ob_universe_count(l.u, &before);
 	little_run(&l, 20);
 	ob_universe_count(l.u, &after);
-	CHECK(after.member_steps - before.member_steps == 20); // the ball's
+	CHECK(after.body_steps - before.body_steps == 20); // the ball's
 	little_run_to(&l, 3);
 	double p = l.now.passport[1].mass * little_state(&l, 1).v.x;
 	CHECK(p > -1e-15 && p < .2 && little_state(&l, 5).v.x < .15); // the box has stopped it, or friction the box

@@ -85,7 +85,7 @@ static void test_heap(void)
 	outcome coarse = heap(5e-3), fine = heap(.5e-3);
 	check_kept(&coarse, 5e-3);
 	check_kept(&fine, .5e-3);
-	CHECK(fine.count.member_substeps > coarse.count.member_substeps);
+	CHECK(fine.count.body_substeps > coarse.count.body_substeps);
 	CHECK(fine.count.islands_redone > coarse.count.islands_redone);
 	// most steps are easy: not everything pays for the worst
 	uint64_t easy = fine.count.chosen[0] + fine.count.chosen[1];
