@@ -1,18 +1,35 @@
 #include "base/utf8.h"
 
-int ob_utf8_length(const unsigned char *s)
+size_t ob_utf8_length(const char *s)
 {
-	int n = s[0] < 0x80                   ? 1
-		: s[0] >= 0xc2 && s[0] < 0xe0 ? 2
-		: (s[0] & 0xf0) == 0xe0       ? 3
-		: s[0] >= 0xf0 && s[0] < 0xf5 ? 4
-					      : 0;
-	for (int i = 1; i < n; i++) {
-		if ((s[i] & 0xc0) != 0x80)
+	const unsigned char *u = (const unsigned char *)s;
+	size_t n = u[0] < 0x80 ? 1 : u[0] < 0xc2 ? 0 : u[0] < 0xe0 ? 2 : u[0] < 0xf0 ? 3 : u[0] < 0xf5 ? 4 : 0;
+	for (size_t i = 1; i < n; i++)
+		if ((u[i] & 0xc0) != 0x80)
 			return 0;
-	}
-	if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
-	    (s[0] == 0xf4 && s[1] > 0x8f))
+	if ((u[0] == 0xe0 && u[1] < 0xa0) || (u[0] == 0xed && u[1] > 0x9f) || (u[0] == 0xf0 && u[1] < 0x90) ||
+	    (u[0] == 0xf4 && u[1] > 0x8f))
 		return 0;
 	return n;
+}
+
+uint32_t ob_utf8_decode(const char *s, size_t *bytes)
+{
+	static const unsigned char payload[] = { 0, 0x7f, 0x1f, 0x0f, 0x07 }; // of the first byte, by length
+	size_t n = ob_utf8_length(s);
+	*bytes = n ? n : 1;
+	if (!n)
+		return OB_UTF8_REPLACEMENT;
+	uint32_t code = (unsigned char)s[0] & payload[n];
+	for (size_t i = 1; i < n; i++)
+		code = code << 6 | ((unsigned char)s[i] & 0x3f);
+	return code;
+}
+
+size_t ob_utf8_count(const char *s)
+{
+	size_t count = 0;
+	for (size_t bytes; *s; s += bytes, count++)
+		ob_utf8_decode(s, &bytes);
+	return count;
 }

@@ -1,9 +1,18 @@
-// UTF-8, as texts from outside may or may not be.
+// UTF-8 (RFC 3629: no overlong forms, no surrogates, up to U+10FFFF), as texts from outside may or may not be. Texts end
+// with 0. Pure; any thread.
 #ifndef OB_BASE_UTF8_H
 #define OB_BASE_UTF8_H
 
-// Bytes of the character at s, a text that ends with 0; 0 = not one (RFC 3629: no overlong forms, no surrogates, up to
-// U+10FFFF).
-int ob_utf8_length(const unsigned char *s);
+#include <stddef.h>
+#include <stdint.h>
+
+#define OB_UTF8_REPLACEMENT 0xfffdu
+
+// Bytes of the character at s; 1 for the final 0; 0 = not UTF-8.
+size_t ob_utf8_length(const char *s);
+// Code point of the character at s, and its bytes; OB_UTF8_REPLACEMENT and 1 where it is not UTF-8.
+uint32_t ob_utf8_decode(const char *s, size_t *bytes);
+// Characters of a text; a byte that is not UTF-8 counts as one.
+size_t ob_utf8_count(const char *s);
 
 #endif

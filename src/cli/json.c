@@ -9,14 +9,14 @@
 static void put_string(FILE *f, const char *text)
 {
 	fputc('"', f);
-	for (const unsigned char *s = (const unsigned char *)text; *s;) {
-		int n = ob_utf8_length(s);
+	for (const char *s = text; *s;) {
+		size_t n = ob_utf8_length(s);
 		if (*s == '"' || *s == '\\')
 			fprintf(f, "\\%c", *s);
-		else if (n == 0 || *s < 0x20 || *s == 0x7f)
-			fprintf(f, "\\u%04x", *s);
+		else if (n == 0 || (unsigned char)*s < 0x20 || *s == 0x7f)
+			fprintf(f, "\\u%04x", (unsigned char)*s);
 		else
-			fwrite(s, 1, (size_t)n, f);
+			fwrite(s, 1, n, f);
 		s += n ? n : 1;
 	}
 	fputc('"', f);

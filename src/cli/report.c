@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/csv.h"
+
 // One list for the writer and the reader; its names are a promise to scripts.
 static const struct field {
 	const char *key;
@@ -134,34 +136,21 @@ bool ob_report_read_json(ob_report *r, const char *text)
 	return true;
 }
 
-// A field of RFC 4180
-static void put_csv(FILE *f, const char *text)
-{
-	bool plain = !strpbrk(text, ",\"\r\n");
-	if (!plain)
-		fputc('"', f);
-	for (; *text; text++) {
-		if (*text == '"')
-			fputc('"', f);
-		fputc(*text, f);
-	}
-	if (!plain)
-		fputc('"', f);
-}
-
 void ob_report_write_csv(const ob_report *r, FILE *f)
 {
 	fputs("quantity,value,unit\n", f);
+	ob_csv c = { .f = f };
 	for (int i = 0; i < FIELDS; i++) {
 		const struct field *field = &fields[i];
 		const char *at = (const char *)r + field->offset;
-		fprintf(f, "%s,", field->key);
+		ob_csv_text(&c, field->key);
 		if (field->kind == TEXT)
-			put_csv(f, at);
+			ob_csv_text(&c, at);
 		else if (field->kind == COUNT)
-			fprintf(f, "%" PRIu64, *(const uint64_t *)at);
-		else if (isfinite(*(const double *)at))
-			fprintf(f, "%.17g", *(const double *)at);
-		fprintf(f, ",%s\n", field->unit);
+			ob_csv_count(&c, *(const uint64_t *)at);
+		else
+			ob_csv_number(&c, isfinite(*(const double *)at) ? *(const double *)at : NAN);
+		ob_csv_text(&c, field->unit);
+		ob_csv_end(&c);
 	}
 }

@@ -77,14 +77,14 @@ static void add_string(ob_trace_file *f, const char *text)
 	static const char hex[] = "0123456789abcdef";
 	add(f, "\"");
 	for (const unsigned char *s = (const unsigned char *)text; *s;) {
-		int n = ob_utf8_length(s);
+		size_t n = ob_utf8_length((const char *)s);
 		if (n == 0 || *s < 0x20 || *s == '"' || *s == '\\') {
 			const char escape[] = { '\\', 'u', '0', '0', hex[*s >> 4], hex[*s & 15], 0 };
 			add(f, escape);
 			n = 1;
 		} else {
-			memcpy(f->text + f->used, s, (size_t)n);
-			f->used += (size_t)n;
+			memcpy(f->text + f->used, s, n);
+			f->used += n;
 		}
 		s += n;
 	}

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
+
 struct ob_grid {
 	const char *align;
 	size_t columns, count, max;
@@ -49,21 +51,12 @@ static const char *text_of(const ob_grid *g, size_t i)
 	return i < g->count && g->cell[i] ? g->cell[i] : "";
 }
 
-// Characters of UTF-8, each one place wide
-static size_t width_of(const char *text)
-{
-	size_t n = 0;
-	for (; *text; text++)
-		n += (*text & 0xc0) != 0x80;
-	return n;
-}
-
 static void print_row(const ob_grid *g, FILE *f, size_t first, const size_t *width, bool markdown)
 {
 	int trailing = 0; // spaces that nothing has followed yet
 	for (size_t i = 0; i < g->columns; i++) {
 		const char *text = text_of(g, first + i);
-		int room = (int)(width[i] - width_of(text)), before = g->align[i] == 'r' ? room : 0;
+		int room = (int)(width[i] - ob_utf8_count(text)), before = g->align[i] == 'r' ? room : 0;
 		trailing += (i && !markdown ? 2 : 0) + before;
 		if (markdown)
 			fprintf(f, "%s%*s%s%*s", i ? " | " : "| ", before, "", text, room - before, "");
@@ -91,7 +84,7 @@ void ob_grid_print(const ob_grid *g, FILE *f, bool markdown)
 	for (size_t i = 0; width && i < g->columns; i++)
 		width[i] = markdown ? 3 : 0;
 	for (size_t i = 0; width && i < g->count; i++) {
-		size_t w = width_of(text_of(g, i)), *widest = &width[i % g->columns];
+		size_t w = ob_utf8_count(text_of(g, i)), *widest = &width[i % g->columns];
 		*widest = w > *widest ? w : *widest;
 	}
 	for (size_t i = 0; width && i < g->count; i += g->columns) {

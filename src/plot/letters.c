@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/utf8.h"
+
 // Thousandths of the font size, by code point: U+0020 to U+007E, then U+00A0 to U+00FF (Adobe's metrics of Helvetica
 // and Helvetica-Bold, 1985).
 static const unsigned short widths[2][191] = {
@@ -41,37 +43,17 @@ static const struct {
 	{ 0x2192, 1000 }, { 0x2212, 584 },  { 0x221e, 713 }, // arrow, minus, infinity
 	{ 0x2248, 549 },  { 0x2260, 549 },  { 0x2264, 549 }, { 0x2265, 549 }, // about, not equal, <=, >=
 };
-enum { WIDTH_UNKNOWN = 650, REPLACEMENT = 0xfffd };
+enum { WIDTH_UNKNOWN = 650 };
 static const char ellipsis[] = "\u2026";
 
-// The code point at s and its bytes; a byte that does not belong to a well-formed letter is one of its own.
-static unsigned decode(const char *s, size_t *bytes)
+// Of the character at s, as it is drawn: what XML does not allow is replaced, too.
+static uint32_t decode(const char *s, size_t *bytes)
 {
-	const unsigned char *u = (const unsigned char *)s;
-	size_t more = u[0] < 0x80             ? 0
-		      : (u[0] & 0xe0) == 0xc0 ? 1
-		      : (u[0] & 0xf0) == 0xe0 ? 2
-		      : (u[0] & 0xf8) == 0xf0 ? 3
-					      : 9;
-	*bytes = 1;
-	if (more == 0)
-		return u[0];
-	if (more == 9)
-		return REPLACEMENT;
-	unsigned code = u[0] & (0x3f >> more);
-	for (size_t i = 1; i <= more; i++) {
-		if ((u[i] & 0xc0) != 0x80)
-			return REPLACEMENT;
-		code = code << 6 | (u[i] & 0x3f);
-	}
-	static const unsigned least[] = { 0, 0x80, 0x800, 0x10000 };
-	if (code < least[more] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) || (code & 0xfffe) == 0xfffe)
-		return REPLACEMENT;
-	*bytes = more + 1;
-	return code;
+	uint32_t code = ob_utf8_decode(s, bytes);
+	return (code & 0xfffe) == 0xfffe ? OB_UTF8_REPLACEMENT : code;
 }
 
-static double letter_width(unsigned code, bool bold)
+static double letter_width(uint32_t code, bool bold)
 {
 	if (code >= 0x20 && code < 0x7f)
 		return widths[bold][code - 0x20];
@@ -95,8 +77,8 @@ void ob_letters_clean(const char *text, char *to, size_t room)
 {
 	size_t used = 0;
 	for (size_t bytes; *text; text += bytes) {
-		unsigned code = decode(text, &bytes);
-		const char *letter = code == REPLACEMENT                            ? "?"
+		uint32_t code = decode(text, &bytes);
+		const char *letter = code == OB_UTF8_REPLACEMENT                            ? "?"
 				     : code < 0x20 || (code >= 0x7f && code < 0xa0) ? " "
 										    : text;
 		size_t length = letter == text ? bytes : 1;

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/utf8.h"
+
 static size_t put_number(double x, char *out, size_t size)
 {
 	// printf shows the sign of a NaN, which differs between machines
@@ -57,26 +59,11 @@ void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE])
 	}
 }
 
-// Length of the UTF-8 sequence at s, 0 = not one (RFC 3629, overlong forms and surrogates left out).
-static size_t sequence(const unsigned char *s, size_t size)
-{
-	size_t n = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : s[0] < 0xf5 ? 4 : 0;
-	if (n == 0 || n > size)
-		return 0;
-	for (size_t i = 1; i < n; i++)
-		if ((s[i] & 0xc0) != 0x80)
-			return 0;
-	if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
-	    (s[0] == 0xf4 && s[1] > 0x8f))
-		return 0;
-	return n;
-}
-
 bool ob_text_is_clean(const char *text, size_t size)
 {
 	const unsigned char *s = (const unsigned char *)text;
 	for (size_t i = 0; i < size;) {
-		size_t n = sequence(s + i, size - i);
+		size_t n = ob_utf8_length(text + i);
 		// C0 and C1 control characters: they could move a terminal's cursor
 		if (n == 0 || s[i] < ' ' || s[i] == 127 || (s[i] == 0xc2 && s[i + 1] < 0xa0))
 			return false;

@@ -12,7 +12,7 @@
 // "nothing", "-3", "nan", "\"wood\"", "{1, 0, -2}", "a table", "a function"
 void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE]);
 
-// Valid UTF-8 without control characters.
+// Valid UTF-8 without control characters; text[size] is 0.
 bool ob_text_is_clean(const char *text, size_t size);
 
 #endif

@@ -1,0 +1,92 @@
+// Texts that leave the program and come back: CSV cells and UTF-8.
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/csv.h"
+#include "base/utf8.h"
+#include "check.h"
+
+static void test_csv_round_trip(void)
+{
+	static const char *const texts[] = { "plain", "", "a,b", "say \"so\"", "\"", "\"\"", "two\r\nlines", "\n", "," };
+	static const double numbers[] = { 0, .1, 1. / 3, 5e-324, -1.7976931348623157e308, INFINITY };
+	enum { TEXTS = sizeof texts / sizeof *texts, NUMBERS = sizeof numbers / sizeof *numbers };
+	char *text = NULL, *cell[TEXTS];
+	size_t length;
+	FILE *f = open_memstream(&text, &length);
+	ob_csv c = { .f = f };
+	for (int i = 0; i < TEXTS; i++)
+		ob_csv_text(&c, texts[i]);
+	ob_csv_end(&c);
+	ob_csv_count(&c, UINT64_MAX);
+	ob_csv_number(&c, NAN);
+	ob_csv_numbers(&c, numbers, NUMBERS);
+	ob_csv_end(&c);
+	fclose(f);
+	ob_csv_reader r = { .at = text };
+	CHECK(ob_csv_read(&r, cell, TEXTS) == TEXTS && r.record == 1);
+	for (int i = 0; i < TEXTS; i++)
+		CHECK(strcmp(cell[i], texts[i]) == 0);
+	CHECK(*r.at && ob_csv_read(&r, cell, 3) == 3 && r.record == 2 && !*r.at);
+	CHECK(strcmp(cell[0], "18446744073709551615") == 0 && !*cell[1]);
+	char *at = cell[2];
+	for (int i = 0; i < NUMBERS; i++)
+		CHECK(strtod(at, &at) == numbers[i]);
+	CHECK(!*at && strncmp(cell[2], "0 0.1 0.333", 11) == 0); // no digit more than it takes
+	free(text);
+}
+
+static void test_csv_foreign(void)
+{
+	char text[] = "a,\"b\"\r\nc\rd,,\"\"", *cell[2];
+	ob_csv_reader r = { .at = text };
+	CHECK(ob_csv_read(&r, cell, 2) == 2 && strcmp(cell[1], "b") == 0);
+	CHECK(ob_csv_read(&r, cell, 2) == 1 && strcmp(cell[0], "c") == 0);
+	CHECK(ob_csv_read(&r, cell, 2) == 3 && strcmp(cell[0], "d") == 0 && !*cell[1] && !*r.at);
+	static const char *const broken[] = { "\"a", "\"", "\"a\"b", "a,\"\"\"", "\"a\"\"" };
+	for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+		char copy[16];
+		strcpy(copy, broken[i]);
+		ob_csv_reader bad = { .at = copy };
+		CHECK(ob_csv_read(&bad, cell, 2) == 0);
+	}
+}
+
+static void test_utf8(void)
+{
+	static const struct {
+		const char *text;
+		size_t bytes;
+		uint32_t code;
+	} characters[] = {
+		{ "a", 1, 'a' },
+		{ "", 1, 0 },
+		{ "\xc3\xb6", 2, 0xf6 },
+		{ "\xe2\x88\x92", 3, 0x2212 },
+		{ "\xf0\x9f\x93\xa6", 4, 0x1f4e6 },
+		{ "\xf4\x8f\xbf\xbf", 4, 0x10ffff },
+		{ "\xff", 0, OB_UTF8_REPLACEMENT },
+		{ "\x80", 0, OB_UTF8_REPLACEMENT },
+		{ "\xc3", 0, OB_UTF8_REPLACEMENT }, // cut short
+		{ "\xe2\x88", 0, OB_UTF8_REPLACEMENT },
+		{ "\xc0\xaf", 0, OB_UTF8_REPLACEMENT }, // overlong
+		{ "\xe0\x80\xaf", 0, OB_UTF8_REPLACEMENT },
+		{ "\xed\xa0\x80", 0, OB_UTF8_REPLACEMENT }, // a surrogate
+		{ "\xf4\x90\x80\x80", 0, OB_UTF8_REPLACEMENT }, // beyond U+10FFFF
+	};
+	for (size_t i = 0; i < sizeof characters / sizeof *characters; i++) {
+		size_t bytes;
+		CHECK(ob_utf8_length(characters[i].text) == characters[i].bytes);
+		CHECK(ob_utf8_decode(characters[i].text, &bytes) == characters[i].code);
+		CHECK(bytes == (characters[i].bytes ? characters[i].bytes : 1));
+	}
+	CHECK(ob_utf8_count("") == 0 && ob_utf8_count("k\xc3\xb6ln \xff\xe2\x88!") == 9);
+}
+
+int main(void)
+{
+	test_csv_round_trip();
+	test_csv_foreign();
+	test_utf8();
+	return check_end();
+}
