@@ -11,7 +11,7 @@
 #include "contact/kernel.h"
 #include "motion/landing.h"
 #include "motion/spin.h"
-#include "sim/index.h"
+#include "sim/broadphase.h"
 #include "table/table.h"
 #include "../tests/contact/scene.h"
 

@@ -13,7 +13,7 @@
 #ifndef OB_SIM_CALM_H
 #define OB_SIM_CALM_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Have all members been calm, so that one substep is worth a try?
 bool ob_equilibrium_likely(const ob_sim *s, const ob_island *is);

@@ -7,7 +7,7 @@
 #ifndef OB_SIM_EXCHANGE_H
 #define OB_SIM_EXCHANGE_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Impacts with restitution at their instants: changes v, shifts d. true if there were any.
 bool ob_solver_impacts(ob_sim *s);

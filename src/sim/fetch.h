@@ -2,7 +2,7 @@
 #ifndef OB_SIM_FETCH_H
 #define OB_SIM_FETCH_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Island i of the universe will be solved soon, by this worker. Of large ones the beginning.
 void ob_prefetch_island(ob_sim *s, uint32_t i);

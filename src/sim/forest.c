@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 enum { FREE = UINT32_MAX, UNSEEN = FREE - 1 }; // in up[]: a root; not reached yet
 

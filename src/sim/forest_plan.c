@@ -1,7 +1,7 @@
 // When is a direct solve worth its cost?
 #include <stdlib.h>
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 static const double finest = 1e-7, after_correction = 1e-8; // m/s: what may be left over
 static const int most = 4, most_in_cycles = 16; // direct solves in a stride

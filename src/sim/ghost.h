@@ -12,7 +12,7 @@
 #ifndef OB_SIM_GHOST_H
 #define OB_SIM_GHOST_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Does the run's exchange use them?
 bool ob_ghosts_used(const ob_sim *s);

@@ -2,14 +2,14 @@
 
 #include <stdlib.h>
 
+#include "sim/broadphase.h"
 #include "sim/calm.h"
 #include "sim/exchange.h"
+#include "sim/flight.h"
 #include "sim/ghost.h"
-#include "sim/leap.h"
 #include "sim/members.h"
 #include "sim/pace.h"
-#include "sim/pairs.h"
-#include "sim/part.h"
+#include "sim/profile.h"
 #include "sim/tolerance.h"
 #include "sim/touch.h"
 

@@ -2,7 +2,7 @@
 #ifndef OB_SIM_LANE_H
 #define OB_SIM_LANE_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Takes a lane of the first colour that neither body uses, or gives it back (and its impulses with it: what they
 // predicted goes out of dv).

@@ -3,7 +3,7 @@
 #define OB_SIM_LOOK_H
 
 #include "contact/swept.h"
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Fills m with the pair's points, their gaps as of now. Fast pairs are followed through the substep: *when is the time
 // into it at which the points were found (s; 0 otherwise), and their arms run from where the centres are then.

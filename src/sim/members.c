@@ -3,12 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/broadphase.h"
 #include "sim/calm.h"
-#include "sim/leap.h"
-#include "sim/now.h"
-#include "sim/outcome.h"
-#include "sim/perceive.h"
-#include "sim/pull.h"
+#include "sim/flight.h"
+#include "sim/publish.h"
 
 static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
 {
@@ -305,26 +303,6 @@ static bool finite_row(const double *r)
 	for (int c = 0; c < 6; c++)
 		sum += r[c] * 0;
 	return sum == 0;
-}
-
-void ob_body_stage(ob_sim *s, uint32_t id, ob_motion *m, uint32_t state, uint32_t due)
-{
-	ob_step_data *ex = ob_universe_step_data(s->u);
-	ex->brief[id] = (ob_schedule){ m->path, m->reach, state, m->step, due };
-	ob_result_stage(s, id, m);
-}
-
-void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)
-{
-	const ob_run_settings *run = ob_universe_settings(s->u);
-	const ob_passport *pass = ob_passport_of(s->u, id);
-	uint32_t state = m->flags & OB_MOTION_ASLEEP  ? OB_SCHEDULE_ASLEEP
-			 : m->flags & OB_MOTION_EQUILIBRIUM ? OB_SCHEDULE_EQUILIBRIUM
-						      : OB_SCHEDULE_AWAKE;
-	double reach = state == OB_SCHEDULE_AWAKE ? ob_step_reach(run, pass, end->v, end->w) : 0;
-	ob_fat_aabb_update(s->u, id, end, reach);
-	m->reach = (float)reach;
-	ob_body_stage(s, id, m, state, state == OB_SCHEDULE_AWAKE ? m->step : UINT32_MAX);
 }
 
 void ob_bodies_publish(ob_sim *s, uint32_t rest)

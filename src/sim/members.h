@@ -2,7 +2,7 @@
 #ifndef OB_SIM_MEMBERS_H
 #define OB_SIM_MEMBERS_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 void ob_bodies_load(ob_sim *s, const ob_island *is);
 // Brings poses up to date with the displacement rows (and the gaps of the touches that know the old poses).
@@ -21,10 +21,5 @@ void ob_bodies_integrate_positions(ob_sim *s);
 bool ob_bodies_update_rest(ob_sim *s);
 // rest: OB_MOTION_ASLEEP, OB_MOTION_EQUILIBRIUM, or 0
 void ob_bodies_publish(ob_sim *s, uint32_t rest);
-// What holds after the running step, of an object that must be visited in the next: claims bounds for that, from its
-// state at the step's end, and hands m over.
-void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);
-// Writes what the arranger needs to know (ob_schedule), and stages m with the claimed bounds.
-void ob_body_stage(ob_sim *s, uint32_t id, ob_motion *m, uint32_t state, uint32_t due);
 
 #endif

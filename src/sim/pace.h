@@ -4,7 +4,7 @@
 #ifndef OB_SIM_PACE_H
 #define OB_SIM_PACE_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Chooses the length of the next stride, at most "left" (s), sets it in the island, and scales to it what was predicted
 // for the last one.

@@ -14,7 +14,7 @@
 #ifndef OB_SIM_TOLERANCE_H
 #define OB_SIM_TOLERANCE_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // Substeps with which the island is solved first: what its members ask for, or the run's own number without tolerance.
 uint32_t ob_error_control_substeps(const ob_sim *s, const ob_island *is);

@@ -3,11 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/broadphase.h"
 #include "sim/ghost.h"
 #include "sim/lane.h"
 #include "sim/look.h"
 #include "sim/members.h"
-#include "sim/pairs.h"
 
 static const double look_again_share = 3; // of the tolerance, at most
 static const double look_again = .003; // m: path after which a resting pair's geometry is looked at again

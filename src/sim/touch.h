@@ -2,7 +2,7 @@
 #ifndef OB_SIM_TOUCH_H
 #define OB_SIM_TOUCH_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 void ob_contacts_load(ob_sim *s, const ob_island *is);
 // Looks again at every pair whose geometry may change within the time ahead (s; 0: has changed), by the way that its

@@ -5,7 +5,7 @@
 #include "check.h"
 #include "little_universe.h"
 #include "motion/random.h"
-#include "sim/plans.h"
+#include "sim/rotation_cache.h"
 
 static const double g = 9.81; // m/s^2
 

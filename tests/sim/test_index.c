@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "sim/index.h"
+#include "sim/broadphase.h"
 
 #include "motion/random.h"
 

@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "sim/islands.h"
+#include "sim/island_builder.h"
 
 #include "motion/random.h"
 

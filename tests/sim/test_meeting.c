@@ -4,7 +4,7 @@
 #include "check.h"
 #include "little_universe.h"
 #include "motion/random.h"
-#include "sim/worker.h"
+#include "sim/state.h"
 
 static ob_counters counted(const little_universe *l)
 {

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "ode/ode_body.h"
-#include "sim/monolith.h"
+#include "sim/ode_baseline.h"
 
 #include "../check.h"
 

@@ -5,9 +5,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "sim/index.h"
-#include "sim/pairs.h"
-#include "sim/perceive.h"
+#include "sim/broadphase.h"
 
 #include "motion/random.h"
 

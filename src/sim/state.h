@@ -1,12 +1,11 @@
 // The private side of a worker (see sim.h).
-#ifndef OB_SIM_WORKER_H
-#define OB_SIM_WORKER_H
+#ifndef OB_SIM_STATE_H
+#define OB_SIM_STATE_H
 
 #include "sim/island.h"
-#include "sim/monolith.h"
-#include "sim/plans.h"
+#include "sim/ode_bodies.h"
+#include "sim/rotation_cache.h"
 #include "sim/sim.h"
-#include "sim/worlds.h"
 #include "table/trace.h"
 
 struct ob_sim {
@@ -17,16 +16,16 @@ struct ob_sim {
 	ob_ode_bodies worlds;
 	ob_island_work island; // scratch
 	ob_rotation_cache plans;
-	ob_ode_baseline *monolith; // NULL unless one world holds all objects
+	struct ob_ode_baseline *monolith; // NULL unless one world holds all objects
 	ob_counters counters; // handed over to the universe at the end of each phase
-	struct { // sim/part.h
+	struct { // sim/profile.h
 		bool timed, shown; // for the counters; for the trace
 		bool wanted; // either
 		ob_profile_section part; // that the time counts for
 		uint64_t since, wall[OB_PROFILE_SECTIONS]; // ns; of the running phase
 		double cpu, cpu_end; // s, when it began; when the one before ended
 	} times;
-	struct { // sim/span.h
+	struct { // sim/profile.h
 		bool traced;
 		ob_trace_kind kind; // of level 0, that goes on
 		uint64_t since, chunk, island; // ns, when each level's span began

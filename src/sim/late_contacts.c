@@ -1,12 +1,11 @@
-#include "sim/meeting.h"
+#include "sim/late_contacts.h"
 
 #include "contact/swept.h"
+#include "sim/broadphase.h"
 #include "sim/fetch.h"
-#include "sim/leap.h"
+#include "sim/flight.h"
 #include "sim/look.h"
-#include "sim/now.h"
-#include "sim/outcome.h"
-#include "sim/perceive.h"
+#include "sim/publish.h"
 
 static const double touch_gap = 2e-4; // m: so near counts as meeting when looking ahead ..
 static const double touch_share = .05; // .. and no more than this share of the thinner one

@@ -1,4 +1,4 @@
-#include "sim/worlds.h"
+#include "sim/ode_bodies.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
-#include "sim/islands.h"
+#include "sim/island_builder.h"
 
 #include <string.h>
 
-#include "sim/pairs.h"
+#include "sim/broadphase.h"
 
 enum { NONE = UINT32_MAX };
 enum { LEAST_SHARE = 48 }; // work of a chunk, some us: for less the gate would cost more than a second worker gains

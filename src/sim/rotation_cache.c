@@ -1,4 +1,4 @@
-#include "sim/plans.h"
+#include "sim/rotation_cache.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,16 +1,15 @@
-#include "sim/sim.h"
-
 #include <stdlib.h>
 
-#include "sim/arrange.h"
+#include "sim/broadphase.h"
 #include "sim/fetch.h"
 #include "sim/island.h"
-#include "sim/meeting.h"
-#include "sim/outcome.h"
-#include "sim/part.h"
-#include "sim/perceive.h"
-#include "sim/span.h"
-#include "sim/worker.h"
+#include "sim/late_contacts.h"
+#include "sim/ode_baseline.h"
+#include "sim/profile.h"
+#include "sim/publish.h"
+#include "sim/sim.h"
+#include "sim/state.h"
+#include "sim/step.h"
 
 ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 {

@@ -1,4 +1,6 @@
-#include "sim/outcome.h"
+#include "sim/publish.h"
+
+#include "motion/published.h"
 
 static uint32_t leader_of(const ob_step_data *ex, uint32_t island)
 {
@@ -11,9 +13,10 @@ static bool left_aside(const ob_universe *u, uint32_t id, uint32_t island)
 	return ob_universe_settings(u)->one_per_object && leader_of(ob_universe_step_data(u), island) != id;
 }
 
-void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m)
+void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due)
 {
-	ob_step_data *ex = ob_universe_step_data(s->u);
+	ob_step_data *ex = s->data;
+	ex->brief[id] = (ob_schedule){ m->path, m->reach, state, m->step, due };
 	if (left_aside(s->u, id, ex->result_island[id]))
 		ex->result[id] = *m;
 	else
@@ -57,4 +60,27 @@ void ob_result_copy(ob_sim *s, uint32_t id)
 	const ob_motion *m = &ob_universe_step_data(s->u)->result[id];
 	note_moves(s, id, m);
 	ob_publish_motion(s->u, id, m);
+}
+
+static double time_of(const ob_universe *u, uint64_t steps)
+{
+	return (double)steps * ob_universe_settings(u)->step_length;
+}
+
+ob_state ob_state_now(const ob_universe *u, uint32_t id, const ob_motion *m, uint64_t steps)
+{
+	return ob_published_at(m, ob_passport_of(u, id), time_of(u, steps));
+}
+
+ob_vec3 ob_centre_now(const ob_universe *u, uint32_t id, const ob_motion *m, uint64_t steps)
+{
+	double time = time_of(u, steps), s = time - m->t0;
+	if (ob_published_stands(m, ob_passport_of(u, id), time))
+		return m->p;
+	return ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
+}
+
+double ob_path_now(const ob_motion *m, uint64_t steps)
+{
+	return m->path + ((double)steps - m->step) * (double)m->reach;
 }

@@ -1,4 +1,4 @@
-#include "sim/monolith.h"
+#include "sim/ode_baseline.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
-#include "sim/pull.h"
+#include "sim/publish.h"
 #include "table/trace.h"
 
 struct held { // whether the world holds an object for a slot, and which

@@ -1,8 +1,8 @@
 // Spins that a worker has planned (motion/spin.h): planning one costs more than evaluating it twice, and a flight goes
 // on for many steps. A plan follows from how the flight began alone, so it is the same whichever worker keeps it.
 // Private to its worker.
-#ifndef OB_SIM_PLANS_H
-#define OB_SIM_PLANS_H
+#ifndef OB_SIM_ROTATION_CACHE_H
+#define OB_SIM_ROTATION_CACHE_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -3,8 +3,8 @@
 // or a few for each: whoever claims islands meets, in the course of a run, every object.
 //
 // Private to its worker.
-#ifndef OB_SIM_WORLDS_H
-#define OB_SIM_WORLDS_H
+#ifndef OB_SIM_ODE_BODIES_H
+#define OB_SIM_ODE_BODIES_H
 
 #include "ode/ode_body.h"
 #include "table/table.h"

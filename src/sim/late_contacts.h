@@ -5,10 +5,10 @@
 // the islands are solved each pair that none of them looked after is checked: has the way that both have made used up
 // what was known of their distance, and are they at the step's end, or were they on the way, in touch? Then they have
 // met, and their islands are solved again as one.
-#ifndef OB_SIM_MEETING_H
-#define OB_SIM_MEETING_H
+#ifndef OB_SIM_LATE_CONTACTS_H
+#define OB_SIM_LATE_CONTACTS_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 enum { OB_LATE_CONTACTS_BATCH = 256 }; // pairs that a worker claims at a time
 

@@ -1,7 +1,7 @@
 // Islands: the objects that touch each other, directly or through others, or are expected to within the next step. An
 // island is the unit of work and of synchronisation.
-#ifndef OB_SIM_ISLANDS_H
-#define OB_SIM_ISLANDS_H
+#ifndef OB_SIM_ISLAND_BUILDER_H
+#define OB_SIM_ISLAND_BUILDER_H
 
 #include "table/table.h"
 

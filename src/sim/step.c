@@ -1,11 +1,9 @@
-#include "sim/arrange.h"
+#include "sim/step.h"
 
-#include "sim/index.h"
-#include "sim/islands.h"
-#include "sim/meeting.h"
-#include "sim/outcome.h"
-#include "sim/pairs.h"
-#include "sim/perceive.h"
+#include "sim/broadphase.h"
+#include "sim/island_builder.h"
+#include "sim/late_contacts.h"
+#include "sim/publish.h"
 #include "sim/sim.h"
 
 enum { HANDFUL = 16 }; // perceivers: for fewer the gate would cost more than a second worker gains

@@ -7,10 +7,10 @@
 //   └──────────────── MEETINGS: forecast alone <──── [MEMBERS: perceive, at start and after requests] <───┘
 //
 // Phases in which nobody has anything to do are skipped, and a few pairs are checked by the arranger itself.
-#ifndef OB_SIM_ARRANGE_H
-#define OB_SIM_ARRANGE_H
+#ifndef OB_SIM_STEP_H
+#define OB_SIM_STEP_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // What a MEMBERS or MEETINGS phase belongs to.
 enum { OB_STAGE_START, OB_STAGE_SOLVED, OB_STAGE_COPY };

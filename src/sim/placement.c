@@ -2,10 +2,8 @@
 #include <string.h>
 
 #include "contact/batch.h"
-#include "sim/index.h"
-#include "sim/pairs.h"
-#include "sim/perceive.h"
-#include "sim/pull.h"
+#include "sim/broadphase.h"
+#include "sim/publish.h"
 #include "sim/sim.h"
 #include "table/trace.h"
 

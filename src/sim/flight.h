@@ -6,10 +6,10 @@
 //   ──┬───────────────┬───────────── … ──────┬──────────┬──
 //     │ flight, plan  │  (who looks evaluates) │ bounce │      valid_until = the bounce, or the horizon
 //     └─ published ───┴──> valid_until ────────┴─ published
-#ifndef OB_SIM_LEAP_H
-#define OB_SIM_LEAP_H
+#ifndef OB_SIM_FLIGHT_H
+#define OB_SIM_FLIGHT_H
 
-#include "sim/worker.h"
+#include "sim/state.h"
 
 // The flight that a lone object is in after the running step's start: the one published, or, where something else pulls
 // at it than was published, one that begins now. valid_until: it meets no plane before.
@@ -20,5 +20,17 @@ ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *flight, dou
 // A lone object that touches nothing, or bounces off a plane: moves it through the running step and publishes it, to
 // be visited again when it must. false: what happens to it is none of this, and nothing was done.
 bool ob_ballistic_advance(ob_sim *s, uint32_t id);
+
+// Publishes the motion m of an object that must be visited in the next step, or rests until something comes near it:
+// its fat AABB for that step, from its state at the end of this one, its schedule record, and m, which gets its reach.
+void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);
+
+// Bounces off planes at their instants: what happens to a body that flies, between two flights.
+
+// When the flight first meets a plane (s), from an instant on; infinity: not until "until". plane: its id.
+double ob_plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight, double from, double until, uint32_t *plane);
+
+// Changes velocities as the impact of the point that has met the plane does. false: it does not rebound here.
+bool ob_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state);
 
 #endif
