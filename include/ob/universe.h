@@ -55,9 +55,9 @@ typedef struct ob_passport {
 
 enum { // ob_motion.flags
 	OB_MOTION_FREE = 1 << 0,   // in free flight: up to t0, what was published before holds exactly
-	OB_MOTION_ASLEEP = 1 << 1, // at rest by consent of its island
-	OB_MOTION_STEADY = 1 << 2,   // its contacts hold it, and have found nothing to change in the last step
-	OB_MOTION_EQUILIBRIUM = 1 << 3,  // in equilibrium: nothing is left to compute until something touches it
+	OB_MOTION_ASLEEP = 1 << 1, // asleep: every body of its island had been slow for long enough
+	OB_MOTION_STEADY = 1 << 2, // its contacts hold it, and the solver changed nothing about it in the last step
+	OB_MOTION_EQUILIBRIUM = 1 << 3, // in equilibrium: it is not solved again until something touches it
 	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_EQUILIBRIUM, // either: it stays where it is
 };
 
@@ -73,7 +73,7 @@ typedef struct ob_motion {
 	double path;        // m, length of path of the fastest surface point since the run began
 	uint32_t step;      // the step that published this
 	uint32_t flags;     // OB_MOTION_*
-	float quiet;        // s, how long it has been slow
+	float rest_time;    // s, rest timer: how long it has been slower than the sleeping threshold
 	uint32_t island;    // lowest id of the island in which it was solved
 	float reach;        // m, how much of that path each step adds at most, until something else is published
 	uint32_t substeps;  // that its island asks for in the next step, where a tolerance chooses; 0 = none yet
@@ -137,8 +137,8 @@ bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_inf
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out);
 // The newest published motion; never torn. false: no such object, or its bytes do not make sense.
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out);
-// The box (m, xmin ymin zmin xmax ymax zmax) that holds the object until it claims another; a plane's is infinite. Each
-// number is whole, but while the universe runs a new claim may have reached some of them and not yet the others.
+// The fat AABB (m, xmin ymin zmin xmax ymax zmax) that holds the object until it publishes another; a plane's is infinite.
+// Each number is whole, but while the universe runs a reader may find some numbers of a new box beside some of the old.
 // false: no such object, or its numbers do not make sense.
 bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6]);
 // Contact points of the last completed step; returns how many there are (may exceed max).

@@ -42,12 +42,12 @@ void ob_stall_describe(const ob_host *h, char *text, size_t size)
 	uint64_t before[SHOWN];
 	ob_worker_info info[SHOWN];
 	size_t n = 0;
-	uint32_t arranger = ob_universe_step_data(h->u)->count->arranger;
+	uint32_t arranger = ob_universe_step_data(h->u)->count->scheduler;
 	bool awaited = false; // else all have arrived, and the last of them has not opened the gate again
 	for (uint32_t w = 0; w < h->workers; w++)
-		awaited = awaited || ob_gate_awaits(h->u, w);
+		awaited = awaited || ob_gate_waits_for(h->u, w);
 	for (uint32_t w = 0; w < h->workers; w++) {
-		if (awaited ? !ob_gate_awaits(h->u, w) : w != arranger)
+		if (awaited ? !ob_gate_waits_for(h->u, w) : w != arranger)
 			continue;
 		if (shown < SHOWN && ob_universe_get_worker(h->u, w, &info[shown])) {
 			before[shown] = h->spawn->cpu(&info[shown]);

@@ -273,7 +273,7 @@ static void claim(ob_universe *u, uint32_t id, const double *tight, double margi
 		ex->bounds[id][3 + c] = nextafterf((float)(tight[3 + c] + margin), FLT_MAX);
 	}
 	if (!ob_broadphase_query_pending(u, id)) {
-		ex->perceived[id].count = UINT32_MAX;
+		ex->neighbours[id].count = UINT32_MAX;
 		ob_requery_append(u, id);
 	}
 }
@@ -341,7 +341,7 @@ void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double ma
 
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)
 {
-	return ob_universe_step_data(u)->perceived[id].count == UINT32_MAX;
+	return ob_universe_step_data(u)->neighbours[id].count == UINT32_MAX;
 }
 
 void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
@@ -354,11 +354,11 @@ void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
 		n = offset = 0;
 	} else if (n <= 256) {
 		for (uint32_t i = 0; i < n; i++)
-			ex->perceived_id[offset + i] = near[i];
+			ex->neighbour_id[offset + i] = near[i];
 	} else {
-		ob_index_query(u, id, ex->perceived_id + offset, n, box_tests);
+		ob_index_query(u, id, ex->neighbour_id + offset, n, box_tests);
 	}
-	ex->perceived[id] = (struct ob_neighbours){ offset, n };
+	ex->neighbours[id] = (struct ob_neighbours){ offset, n };
 }
 
 // The newest version of after so many steps, or before; -1: none. What was written in a step that is done again is
@@ -398,7 +398,7 @@ static uint64_t key_of(uint32_t a, uint32_t b)
 
 static bool immobile(const ob_step_data *ex, uint32_t id)
 {
-	return ex->brief[id].state < OB_SCHEDULE_AWAKE;
+	return ex->schedule[id].state < OB_SCHEDULE_AWAKE;
 }
 
 // All pairs that the objects of the list have perceived, sorted, each once: of two that have both moved, which have
@@ -408,12 +408,12 @@ static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t c
 	const ob_step_data *ex = ob_universe_step_data(u);
 	size_t total = 0, kept = 0;
 	for (uint32_t k = 0; k < count; k++)
-		total += ex->perceived[list[k]].count;
+		total += ex->neighbours[list[k]].count;
 	uint64_t *keys = malloc((total + 1) * sizeof *keys);
 	for (uint32_t k = 0; keys && k < count; k++) {
-		const struct ob_neighbours *p = &ex->perceived[list[k]];
+		const struct ob_neighbours *p = &ex->neighbours[list[k]];
 		for (uint32_t i = 0; i < p->count; i++) {
-			uint32_t other = ex->perceived_id[p->offset + i];
+			uint32_t other = ex->neighbour_id[p->offset + i];
 			bool told = moved[other] && other < list[k];
 			if (!told && (!immobile(ex, list[k]) || !immobile(ex, other)))
 				keys[kept++] = key_of(list[k], other);
@@ -459,7 +459,7 @@ static ob_pair_key new_pair(const ob_universe *u, uint64_t key, uint64_t steps)
 	const ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
 	double apart = ob_pairs_apart(u, a, b, steps);
-	double paths = ob_schedule_path(&ex->brief[a], steps) + ob_schedule_path(&ex->brief[b], steps);
+	double paths = ob_schedule_path(&ex->schedule[a], steps) + ob_schedule_path(&ex->schedule[b], steps);
 	double limit = apart > 0 ? paths + apart : -1;
 	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
 }

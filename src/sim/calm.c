@@ -28,7 +28,7 @@ bool ob_equilibrium_reached(const ob_island_work *w)
 		return false;
 	for (uint32_t i = 1; i <= w->members; i++) {
 		const ob_body *m = &w->member[i];
-		if (m->contacts == 0 || m->speed > stirring || m->quiet < lasting)
+		if (m->contacts == 0 || m->speed > stirring || m->rest_time < lasting)
 			return false;
 	}
 	return true;

@@ -72,7 +72,7 @@ static void publish(ob_sim *s, uint32_t id, ob_motion *m)
 	m->reach = (float)reach;
 	m->island = id;
 	m->substeps = 0;
-	m->quiet = 0;
+	m->rest_time = 0;
 	if (!isfinite(now.pose.p.x + now.pose.p.y + now.pose.p.z + now.pose.q.w + now.w.x))
 		ob_universe_step_data(s->u)->count->failure = OB_STEP_DIVERGED;
 	ob_fat_aabb_sweep(s->u, id, box, reach);

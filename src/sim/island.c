@@ -134,13 +134,13 @@ static bool may_leap(const ob_universe *u, const ob_island *is)
 	const ob_step_data *ex = ob_universe_step_data(u);
 	const uint32_t id = ex->member[is->first_member];
 	if (is->members > 1 ||
-	    (is->pairs && (ex->count->again || ob_universe_settings(u)->integrator == OB_INTEGRATOR_ODE)))
+	    (is->pairs && (ex->count->merged || ob_universe_settings(u)->integrator == OB_INTEGRATOR_ODE)))
 		return false;
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
 		uint32_t other = k->a == id ? k->b : k->a;
-		if (ex->brief[other].state != OB_SCHEDULE_PLANE ||
-		    (k->active && (ob_newest_motion(u, id)->quiet > 0 || pressed(u, k))))
+		if (ex->schedule[other].state != OB_SCHEDULE_PLANE ||
+		    (k->active && (ob_newest_motion(u, id)->rest_time > 0 || pressed(u, k))))
 			return false;
 	}
 	return true;

@@ -30,7 +30,7 @@ typedef struct ob_body {
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
 	double path, speed; // m; m/s bound of any point
-	float quiet;
+	float rest_time;
 	bool round; // inertia is the same about all axes
 	bool loaded; // some touch of it carries an impulse
 	bool moved_freely; // it touched nothing in this step, not for a moment

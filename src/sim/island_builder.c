@@ -27,33 +27,33 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
 
 static bool dynamic(const plan *p, uint32_t id)
 {
-	return p->ex->brief[id].state >= OB_SCHEDULE_AWAKE;
+	return p->ex->schedule[id].state >= OB_SCHEDULE_AWAKE;
 }
 
 // In no island unless something wakes it. What fell asleep in this very step is not.
 static bool asleep(const plan *p, uint32_t id)
 {
-	return p->ex->brief[id].state >= OB_SCHEDULE_ASLEEP && (!p->before || p->before[id] == NONE);
+	return p->ex->schedule[id].state >= OB_SCHEDULE_ASLEEP && (!p->before || p->before[id] == NONE);
 }
 
 // Must the object be looked after in this step, whatever comes near it? What flies by itself need not.
 static bool due(const plan *p, uint32_t id)
 {
-	return p->before ? p->before[id] != NONE : p->ex->brief[id].due <= p->step;
+	return p->before ? p->before[id] != NONE : p->ex->schedule[id].due <= p->step;
 }
 
 // Does what links the two draw both into the step?
 static bool draws(const plan *p, const ob_pair_key *k)
 {
-	const ob_schedule *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
-	return p->before ? k->met : a->state == OB_SCHEDULE_AWAKE || b->state == OB_SCHEDULE_AWAKE;
+	const ob_schedule *a = &p->ex->schedule[k->a], *b = &p->ex->schedule[k->b];
+	return p->before ? k->late : a->state == OB_SCHEDULE_AWAKE || b->state == OB_SCHEDULE_AWAKE;
 }
 
 static bool joins(const plan *p, const ob_pair_key *k)
 {
 	if (!dynamic(p, k->a) || !dynamic(p, k->b))
 		return false;
-	return !p->before || k->met || (k->active && asleep(p, k->a) && asleep(p, k->b));
+	return !p->before || k->late || (k->active && asleep(p, k->a) && asleep(p, k->b));
 }
 
 static void unite(plan *p, uint32_t i, uint32_t j)
@@ -68,7 +68,7 @@ static void unite(plan *p, uint32_t i, uint32_t j)
 // Only pairs that touch or come near link anything: few of all there are, told by their flags alone.
 static bool links(const plan *p, const ob_pair_key *k)
 {
-	return k->active | (p->before ? k->met : k->near);
+	return k->active | (p->before ? k->late : k->expected);
 }
 
 // Notes whom they draw into the step, too: island_of is 0 there.
@@ -140,7 +140,7 @@ static void mark_solved(plan *p)
 	}
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[i];
-		if (k->met)
+		if (k->late)
 			ex->island[ex->result_island[dynamic(p, k->a) ? k->a : k->b]].solved = 0;
 	}
 }
@@ -160,10 +160,10 @@ static uint32_t island_of_pair(const plan *p, ob_pair_key *k)
 	if (i == NONE || (ia != ib && ((ia != NONE && ib != NONE) || (dynamic(p, k->a) && dynamic(p, k->b)))))
 		return NONE;
 	if (p->before && p->ex->island[i].solved)
-		return k->listed ? i : NONE;
+		return k->in_island ? i : NONE;
 	if (k->active)
 		return i;
-	const ob_schedule *a = &p->ex->brief[k->a], *b = &p->ex->brief[k->b];
+	const ob_schedule *a = &p->ex->schedule[k->a], *b = &p->ex->schedule[k->b];
 	double paths = ob_schedule_path(a, p->step) + ob_schedule_path(b, p->step);
 	return a->reach + b->reach >= k->limit - paths ? i : NONE;
 }
@@ -175,8 +175,8 @@ static void list_pairs(plan *p)
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		ob_pair_key *k = &ex->pair[i];
 		uint32_t island = island_of_pair(p, k);
-		if (k->listed != (island != NONE))
-			k->listed = island != NONE;
+		if (k->in_island != (island != NONE))
+			k->in_island = island != NONE;
 		if (k->record != OB_NO_RECORD && !p->before && !k->active)
 			ob_pair_let_go(p->u, k);
 		if (island != NONE)
@@ -189,7 +189,7 @@ static void list_pairs(plan *p)
 	}
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[i];
-		if (!k->listed)
+		if (!k->in_island)
 			continue;
 		uint32_t ia = ex->result_island[k->a];
 		ob_island *is = &ex->island[ia != NONE ? ia : ex->result_island[k->b]];
@@ -288,7 +288,7 @@ void ob_islands_plan(ob_universe *u)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t ids = ob_universe_ids(u);
-	ex->count->again = 0;
+	ex->count->merged = 0;
 	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, NULL, ob_step_count(u) });
 }
 
@@ -296,7 +296,7 @@ void ob_islands_merge(ob_universe *u)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t ids = ob_universe_ids(u), *before = ex->scratch + 2 * ids;
-	ex->count->again = 1;
+	ex->count->merged = 1;
 	memcpy(before, ex->result_island, ids * sizeof *before);
 	plan_all(&(plan){ u, ex, ids, ex->scratch, ex->scratch + ids, before, ob_step_count(u) });
 }

@@ -32,7 +32,7 @@ static pair pair_of(ob_sim *s, const ob_pair_key *k, uint64_t steps)
 {
 	const ob_universe *u = s->u;
 	const ob_step_data *ex = ob_universe_step_data(u);
-	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_schedule *a = &ex->schedule[k->a], *b = &ex->schedule[k->b];
 	pair p = { .h = ob_universe_settings(u)->step_length, .thin = INFINITY };
 	p.path = ob_schedule_path(a, steps) + ob_schedule_path(b, steps);
 	p.reach = a->reach + b->reach;
@@ -119,19 +119,19 @@ static double apart_for(const spheres *s)
 static bool stay_clear(const ob_universe *u, ob_pair_key *k, const spheres *round, uint64_t steps)
 {
 	const ob_step_data *ex = ob_universe_step_data(u);
-	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_schedule *a = &ex->schedule[k->a], *b = &ex->schedule[k->b];
 	double until = fmin(a->due, b->due);
 	if (a->state != OB_SCHEDULE_AWAKE || b->state != OB_SCHEDULE_AWAKE || until <= (double)steps + 1 || !round->straight)
 		return false;
 	until = fmin(until, (double)steps + floor(apart_for(round) / ob_universe_settings(u)->step_length));
-	k->clear = (uint32_t)until;
+	k->clear_until = (uint32_t)until;
 	k->clear_as_of = (uint32_t)steps;
-	return k->clear > steps;
+	return k->clear_until > steps;
 }
 
 static bool is_clear(const ob_step_data *ex, const ob_pair_key *k, uint64_t steps)
 {
-	return k->clear > steps && ex->brief[k->a].since <= k->clear_as_of && ex->brief[k->b].since <= k->clear_as_of;
+	return k->clear_until > steps && ex->schedule[k->a].since <= k->clear_as_of && ex->schedule[k->b].since <= k->clear_as_of;
 }
 
 static bool will_meet(ob_sim *s, ob_pair_key *k, const pair *now)
@@ -170,7 +170,7 @@ static double way_made(const ob_universe *u, const ob_pair_key *k, double paths,
 static bool far_apart(const ob_universe *u, ob_pair_key *k, double paths, double reach, bool solved, uint64_t steps)
 {
 	const ob_step_data *ex = ob_universe_step_data(u);
-	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_schedule *a = &ex->schedule[k->a], *b = &ex->schedule[k->b];
 	if (a->state == OB_SCHEDULE_PLANE || b->state == OB_SCHEDULE_PLANE)
 		return flies_over(u, a->state == OB_SCHEDULE_PLANE ? k->b : k->a, steps);
 	if (ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB)
@@ -187,10 +187,10 @@ static void look_closely(ob_sim *s, ob_pair_key *k, double left, bool solved, ui
 {
 	const ob_step_data *ex = ob_universe_step_data(s->u);
 	pair p = pair_of(s, k, steps);
-	k->met = solved && !k->listed && left <= 0 && has_met(s, k, &p);
-	bool on_plane = ex->brief[k->a].state == OB_SCHEDULE_PLANE || ex->brief[k->b].state == OB_SCHEDULE_PLANE;
-	if (!k->met && !on_plane && k->limit - p.path <= p.reach)
-		k->near = will_meet(s, k, &p);
+	k->late = solved && !k->in_island && left <= 0 && has_met(s, k, &p);
+	bool on_plane = ex->schedule[k->a].state == OB_SCHEDULE_PLANE || ex->schedule[k->b].state == OB_SCHEDULE_PLANE;
+	if (!k->late && !on_plane && k->limit - p.path <= p.reach)
+		k->expected = will_meet(s, k, &p);
 }
 
 // The first step that begins with so little left of the distance that the two might get through it: they go by
@@ -204,15 +204,15 @@ static double used_up(const ob_pair_key *k, double paths, double reach, uint64_t
 // briefs say; < 0: they do not.
 static double due_by_briefs(const ob_step_data *ex, ob_pair_key *k, uint64_t steps)
 {
-	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
-	if (k->met | k->near) // most pairs are left as they are: their memory stays with every worker that has read it
-		k->met = k->near = 0;
+	const ob_schedule *a = &ex->schedule[k->a], *b = &ex->schedule[k->b];
+	if (k->late | k->expected) // most pairs are left as they are: their memory stays with every worker that has read it
+		k->late = k->expected = 0;
 	if ((a->state != OB_SCHEDULE_AWAKE && b->state != OB_SCHEDULE_AWAKE) || foreseen(a, b, steps))
 		return INFINITY;
 	if (k->active)
 		return (double)steps;
 	if (is_clear(ex, k, steps))
-		return k->clear;
+		return k->clear_until;
 	double paths = ob_schedule_path(a, steps) + ob_schedule_path(b, steps), reach = (double)a->reach + (double)b->reach;
 	return k->limit - paths > reach ? used_up(k, paths, reach, steps) : -1;
 }
@@ -221,21 +221,21 @@ static double due_by_briefs(const ob_step_data *ex, ob_pair_key *k, uint64_t ste
 static double due_by_motions(ob_sim *s, ob_pair_key *k, bool solved, uint64_t steps)
 {
 	const ob_step_data *ex = ob_universe_step_data(s->u);
-	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_schedule *a = &ex->schedule[k->a], *b = &ex->schedule[k->b];
 	solved &= steps == 0 || !is_clear(ex, k, steps - 1); // then they cannot have met in it
 	double paths = ob_schedule_path(a, steps) + ob_schedule_path(b, steps), reach = (double)a->reach + (double)b->reach;
 	const double left = k->limit - paths;
 	if (!far_apart(s->u, k, paths, reach, solved, steps))
 		look_closely(s, k, left, solved, steps);
-	if (k->near)
+	if (k->expected)
 		return (double)steps;
-	return is_clear(ex, k, steps) ? k->clear : used_up(k, paths, reach, steps);
+	return is_clear(ex, k, steps) ? k->clear_until : used_up(k, paths, reach, steps);
 }
 
 void ob_late_contacts_begin(ob_universe *u, bool solved)
 {
 	ob_late_contacts_reset(u);
-	ob_universe_step_data(u)->count->looked = (uint32_t)ob_step_count(u) + solved;
+	ob_universe_step_data(u)->count->checked = (uint32_t)ob_step_count(u) + solved;
 }
 
 // What the motions of these say is on its way from memory while those before them are looked at.
@@ -251,7 +251,7 @@ static void look_at_motions(ob_sim *s, const uint32_t *pairs, uint32_t n, bool s
 			continue;
 		ob_pair_key *k = &all[pairs[i - AHEAD]];
 		*next = fmin(*next, due_by_motions(s, k, solved, steps));
-		*met |= k->met;
+		*met |= k->late;
 	}
 }
 

@@ -1,6 +1,6 @@
 // Which pairs meet that were in different islands, and which will in the coming step.
 //
-// Islands are made of what touches and of what is expected to touch (ob_pair_key.near): a forecast that takes every
+// Islands are made of what touches and of what is expected to touch (ob_pair_key.expected): a forecast that takes every
 // object to go on as it does. It fails where something is hit and hits something else within the same step. So after
 // the islands are solved each pair that none of them looked after is checked: has the way that both have made used up
 // what was known of their distance, and are they at the step's end, or were they on the way, in touch? Then they have

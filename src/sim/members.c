@@ -59,7 +59,7 @@ static void load(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 			  .friction = pass->friction,
 			  .restitution = pass->restitution,
 			  .path = ob_path_now(mo, step),
-			  .quiet = mo->quiet,
+			  .rest_time = mo->rest_time,
 			  .moved_freely = true };
 	m->inv_mass = moves ? 1 / pass->mass : 0;
 	m->round = pass->inertia.x == pass->inertia.y && pass->inertia.y == pass->inertia.z;
@@ -112,8 +112,8 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	}
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[ex->island_pair[is->first_pair + i]];
-		uint32_t fixed = ex->brief[k->a].state < OB_SCHEDULE_AWAKE   ? k->a
-				 : ex->brief[k->b].state < OB_SCHEDULE_AWAKE ? k->b
+		uint32_t fixed = ex->schedule[k->a].state < OB_SCHEDULE_AWAKE   ? k->a
+				 : ex->schedule[k->b].state < OB_SCHEDULE_AWAKE ? k->b
 									  : UINT32_MAX;
 		if (fixed == UINT32_MAX || (w->row_of[fixed] < w->rows && w->row_of[fixed] > w->members &&
 					    w->member[w->row_of[fixed]].id == fixed))
@@ -291,8 +291,8 @@ bool ob_bodies_update_rest(ob_sim *s)
 	for (uint32_t i = 1; i <= w->members; i++) {
 		ob_body *m = &w->member[i];
 		double vv = ob_norm2(linear_of(w->v[i])), ww = ob_norm2(angular_of(w->v[i]));
-		m->quiet = vv < slow * slow && ww < 4 * slow * slow ? m->quiet + (float)run->step_length : 0;
-		consent &= m->quiet >= after && m->contacts > 0;
+		m->rest_time = vv < slow * slow && ww < 4 * slow * slow ? m->rest_time + (float)run->step_length : 0;
+		consent &= m->rest_time >= after && m->contacts > 0;
 	}
 	return consent;
 }
@@ -321,7 +321,7 @@ void ob_bodies_publish(ob_sim *s, uint32_t rest)
 				 .w = angular_of(w->v[i]),
 				 .path = m->path,
 				 .step = (uint32_t)step,
-				 .quiet = m->quiet,
+				 .rest_time = m->rest_time,
 				 .island = w->member[1].id,
 				 .substeps = m->substeps,
 				 .flags = (m->moved_freely ? OB_MOTION_FREE : 0) | rest |

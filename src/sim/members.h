@@ -17,7 +17,7 @@ void ob_bodies_warm_start(ob_sim *s);
 void ob_bodies_predict_velocities(ob_sim *s);
 // Displacements over the substep; u becomes the new v.
 void ob_bodies_integrate_positions(ob_sim *s);
-// After the last substep: quiet times, sleep by consent.
+// After the last substep: rest timers, sleep by consent.
 bool ob_bodies_update_rest(ob_sim *s);
 // rest: OB_MOTION_ASLEEP, OB_MOTION_EQUILIBRIUM, or 0
 void ob_bodies_publish(ob_sim *s, uint32_t rest);

@@ -121,7 +121,7 @@ static void publish(ob_ode_baseline *m, uint32_t id, const ob_state *s, bool asl
 		.path = last->path + speed * h,
 		.step = (uint32_t)step,
 		.flags = asleep ? OB_MOTION_ASLEEP : 0,
-		.quiet = asleep ? last->quiet + (float)h : 0,
+		.rest_time = asleep ? last->rest_time + (float)h : 0,
 	};
 	double bounds[6];
 	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
@@ -130,7 +130,7 @@ static void publish(ob_ode_baseline *m, uint32_t id, const ob_state *s, bool asl
 	if (m->traced)
 		ob_trace_moves(m->u, 0, id, last->flags & OB_MOTION_ASLEEP, next.flags);
 	ob_publish_motion(m->u, id, &next);
-	ob_universe_step_data(m->u)->brief[id].state = asleep ? OB_SCHEDULE_ASLEEP : OB_SCHEDULE_AWAKE;
+	ob_universe_step_data(m->u)->schedule[id].state = asleep ? OB_SCHEDULE_ASLEEP : OB_SCHEDULE_AWAKE;
 }
 
 static void publish_all(ob_ode_baseline *m)

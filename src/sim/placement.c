@@ -12,12 +12,12 @@ static void surprise_fliers(ob_universe *u)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
-		if (ex->brief[id].state != OB_SCHEDULE_AWAKE)
+		if (ex->schedule[id].state != OB_SCHEDULE_AWAKE)
 			continue;
 		ob_motion m = *ob_newest_motion(u, id);
 		m.flags &= ~(uint32_t)OB_MOTION_FREE;
 		ob_publish_motion(u, id, &m);
-		ex->brief[id].due = (uint32_t)ob_step_count(u);
+		ex->schedule[id].due = (uint32_t)ob_step_count(u);
 	}
 }
 
@@ -42,7 +42,7 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 	double reach = fixed ? 0 : ob_step_reach(run, p, m.v, m.w);
 	ob_fat_aabb_renew(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach);
 	uint32_t kind = !fixed ? OB_SCHEDULE_AWAKE : p->shape == OB_SHAPE_PLANE ? OB_SCHEDULE_PLANE : OB_SCHEDULE_STATIC;
-	ex->brief[id] = (ob_schedule){ 0, (float)reach, kind, m.step, fixed ? UINT32_MAX : m.step };
+	ex->schedule[id] = (ob_schedule){ 0, (float)reach, kind, m.step, fixed ? UINT32_MAX : m.step };
 	ex->result_island[id] = UINT32_MAX;
 	ob_publish_motion(u, id, &m);
 	if (kind == OB_SCHEDULE_PLANE)
@@ -57,11 +57,11 @@ static void wake(ob_universe *u, uint32_t id)
 	ob_motion m = *ob_newest_motion(u, id);
 	uint32_t flags = m.flags;
 	m.flags &= ~(uint32_t)(OB_MOTION_RESTS | OB_MOTION_STEADY);
-	m.quiet = 0;
+	m.rest_time = 0;
 	ob_publish_motion(u, id, &m);
 	if (ob_universe_traced(u))
 		ob_trace_moves(u, ob_trace_host(u), id, flags, m.flags);
-	ob_schedule *brief = &ob_universe_step_data(u)->brief[id];
+	ob_schedule *brief = &ob_universe_step_data(u)->schedule[id];
 	uint32_t steps = (uint32_t)ob_step_count(u);
 	double reach = ob_step_reach(ob_universe_settings(u), pass, m.v, m.w);
 	*brief = (ob_schedule){ ob_schedule_path(brief, steps), (float)reach, OB_SCHEDULE_AWAKE, steps, steps };
@@ -73,13 +73,13 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		const ob_pair_key *k = &ex->pair[i];
 		uint32_t other = k->a == id ? k->b : k->a;
-		if ((k->a != id && k->b != id) || !k->active || ex->brief[other].state < OB_SCHEDULE_AWAKE)
+		if ((k->a != id && k->b != id) || !k->active || ex->schedule[other].state < OB_SCHEDULE_AWAKE)
 			continue;
 		wake(u, other);
 	}
 	ob_pairs_drop(u, id);
 	ob_index_remove(u, id);
-	ex->brief[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
+	ex->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
 	if (ob_universe_traced(u))
 		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
 	ob_passport none = *ob_passport_of(u, id);

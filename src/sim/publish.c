@@ -16,7 +16,7 @@ static bool left_aside(const ob_universe *u, uint32_t id, uint32_t island)
 void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due)
 {
 	ob_step_data *ex = s->data;
-	ex->brief[id] = (ob_schedule){ m->path, m->reach, state, m->step, due };
+	ex->schedule[id] = (ob_schedule){ m->path, m->reach, state, m->step, due };
 	if (left_aside(s->u, id, ex->result_island[id]))
 		ex->result[id] = *m;
 	else

@@ -18,7 +18,7 @@ static bool own_worker_each(const ob_universe *u)
 static void open_pool(ob_universe *u, ob_phase phase, uint32_t total, uint32_t enough)
 {
 	uint32_t workers = ob_universe_workers(u), *who = ob_universe_step_data(u)->scratch;
-	uint32_t first = ob_universe_step_data(u)->count->arranger;
+	uint32_t first = ob_universe_step_data(u)->count->scheduler;
 	ob_task_reset(u, total);
 	if (enough >= workers) {
 		ob_gate_open(u, phase, NULL, 0);
@@ -80,9 +80,9 @@ static void count_awake(ob_universe *u)
 	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t n = 0, due = UINT32_MAX;
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
-		if (ex->brief[id].state == OB_SCHEDULE_AWAKE || ex->brief[id].state == OB_SCHEDULE_EQUILIBRIUM) {
+		if (ex->schedule[id].state == OB_SCHEDULE_AWAKE || ex->schedule[id].state == OB_SCHEDULE_EQUILIBRIUM) {
 			n++;
-			due = ex->brief[id].due < due ? ex->brief[id].due : due;
+			due = ex->schedule[id].due < due ? ex->schedule[id].due : due;
 		}
 	ex->count->awake = n;
 	ex->count->next_due = due;
@@ -112,7 +112,7 @@ static void open_checks(ob_universe *u, uint32_t stage)
 		ob_gate_open(u, OB_PHASE_LATE_CONTACTS, NULL, 0);
 		return;
 	}
-	while (ex->brief[first].state < OB_SCHEDULE_AWAKE) // its worker does it; pairs are checked where somebody is awake
+	while (ex->schedule[first].state < OB_SCHEDULE_AWAKE) // its worker does it; pairs are checked where somebody is awake
 		first++;
 	ob_gate_open(u, OB_PHASE_LATE_CONTACTS, &first, 1);
 }
@@ -129,8 +129,8 @@ static void begin_step(ob_universe *u, ob_sim *s)
 	for (;;) {
 		uint64_t step = ob_step_count(u);
 		if (!ex->count->awake || !ex->count->pairs)
-			ex->count->next_look = UINT32_MAX;
-		if (ex->count->next_look <= step && ex->count->looked != step) {
+			ex->count->next_check = UINT32_MAX;
+		if (ex->count->next_check <= step && ex->count->checked != step) {
 			if (!s) {
 				open_checks(u, OB_STAGE_START);
 				return;
@@ -139,7 +139,7 @@ static void begin_step(ob_universe *u, ob_sim *s)
 			ob_late_contacts_check(s, 0, ex->count->pairs, false);
 		}
 		ex->count->islands = 0;
-		if (ex->count->next_look <= step || ex->count->next_due <= step)
+		if (ex->count->next_check <= step || ex->count->next_due <= step)
 			ob_islands_plan(u);
 		if (ex->count->islands) {
 			open_islands(u);
@@ -171,7 +171,7 @@ static void finish_step(ob_universe *u, ob_sim *s)
 static void after_meetings(ob_sim *s)
 {
 	ob_universe *u = s->u;
-	const bool met = ob_universe_step_data(u)->count->met;
+	const bool met = ob_universe_step_data(u)->count->late;
 	if (ob_universe_step_data(u)->count->stage != OB_STAGE_SOLVED) {
 		go_on(u, s);
 		return;
@@ -209,7 +209,7 @@ void ob_schedule_next_phase(ob_sim *s, ob_phase finished)
 	ob_universe *u = s->u;
 	uint32_t asked, stage = ob_universe_step_data(u)->count->stage;
 	ob_phase_close(u);
-	ob_universe_step_data(u)->count->arranger = s->worker;
+	ob_universe_step_data(u)->count->scheduler = s->worker;
 	if (finished == OB_PHASE_ISLANDS) {
 		ob_requery_list(u, &asked);
 		if (ob_universe_settings(u)->monolith)
@@ -233,7 +233,7 @@ void ob_sim_resume(ob_universe *u)
 	uint32_t asked;
 	ob_step_begin(u);
 	count_awake(u);
-	ob_universe_step_data(u)->count->next_look = 0; // the host may have changed anything
+	ob_universe_step_data(u)->count->next_check = 0; // the host may have changed anything
 	ob_requery_list(u, &asked);
 	if (ob_universe_settings(u)->monolith)
 		ob_requery_reset(u); // one world finds its own neighbours

@@ -135,7 +135,7 @@ void ob_contacts_prepare(ob_sim *s)
 static const ob_pair_state *touched_before(const ob_sim *s, const ob_pair_key *k)
 {
 	const ob_step_data *ex = ob_universe_step_data(s->u);
-	if (k->record == OB_NO_RECORD || (!k->active && !ex->count->again))
+	if (k->record == OB_NO_RECORD || (!k->active && !ex->count->merged))
 		return NULL;
 	const ob_pair_state *p = ob_pair_before(&ex->record[k->record], ob_step_count(s->u));
 	return p && p->points ? p : NULL;

@@ -178,8 +178,8 @@ static void put_control_back(const ob_control *from, ob_control *to)
 {
 	to->claim_next = from->claim_next;
 	to->claim_total = from->claim_total;
-	to->rebound_count = from->rebound_count;
-	to->perceived_used = from->perceived_used;
+	to->requery_count = from->requery_count;
+	to->neighbours_used = from->neighbours_used;
 	__atomic_store_n(&to->awake, from->awake, __ATOMIC_RELAXED);
 	__atomic_store_n(&to->pairs, from->pairs, __ATOMIC_RELAXED);
 	__atomic_store_n(&to->islands, from->islands, __ATOMIC_RELAXED);

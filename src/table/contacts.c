@@ -15,7 +15,7 @@ static void copy_words(void *to, const void *from, size_t bytes)
 // The version that holds after "step": it bears that stamp, or, where both objects sleep, the newest stamp before it.
 static bool newest_version(const ob_universe *u, const ob_pair_key *key, uint64_t step, ob_pair_state *out)
 {
-	const ob_pair_record *r = u->exchange.record + key->record;
+	const ob_pair_record *r = u->step_data.record + key->record;
 	_Alignas(ob_word) uint32_t stamp[2];
 	copy_words(stamp, r->stamp, sizeof stamp);
 	unsigned newest = stamp[1] == step + 1;
@@ -45,7 +45,7 @@ static bool point_makes_sense(const ob_contact_point *c)
 
 static size_t collect(const ob_universe *u, uint64_t step, ob_contact_point *out, size_t max)
 {
-	const ob_step_data *x = &u->exchange;
+	const ob_step_data *x = &u->step_data;
 	uint32_t pairs = __atomic_load_n(&x->count->pairs, __ATOMIC_RELAXED);
 	size_t n = 0;
 	for (uint32_t i = 0; i < pairs && i < x->pairs_max; i++) {

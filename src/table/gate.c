@@ -203,7 +203,7 @@ bool ob_gate_host_wait(ob_universe *u, double timeout)
 	}
 }
 
-bool ob_gate_awaits(const ob_universe *u, uint32_t worker)
+bool ob_gate_waits_for(const ob_universe *u, uint32_t worker)
 {
 	const ob_gate_group *group = u->gate_group + worker / 64;
 	uint64_t arrived = __atomic_load_n(&group->arrived, __ATOMIC_RELAXED);

@@ -23,7 +23,7 @@ typedef struct area_rule {
 		PER_64_WORKERS,
 		PER_PAIR,
 		PER_BUCKET,
-		PER_PERCEIVED,
+		PER_NEIGHBOUR,
 		PER_RING,
 		PER_TRACE_EVENT,
 		PER_TRACED_OBJECT
@@ -45,13 +45,13 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_REQUERY] = { sizeof(uint32_t), PER_OBJECT, 1, 0 },
 	[OB_AREA_REQUERY_BIT] = { sizeof(uint64_t), PER_64_OBJECTS, 1, 0 },
 	[OB_AREA_COUNTS] = { ELEMENT(count), FIXED, 0, 1 },
-	[OB_AREA_SCHEDULE] = { ELEMENT(brief), PER_OBJECT, 1, 0 },
+	[OB_AREA_SCHEDULE] = { ELEMENT(schedule), PER_OBJECT, 1, 0 },
 	[OB_AREA_BOUNDS] = { ELEMENT(bounds), PER_OBJECT, 1, 0 },
 	[OB_AREA_RESULT] = { ELEMENT(result), PER_OBJECT, 1, 0 },
 	[OB_AREA_EFFORT] = { ELEMENT(effort), PER_OBJECT, 1, 0 },
 	[OB_AREA_RESULT_ISLAND] = { ELEMENT(result_island), PER_OBJECT, 1, 0 },
-	[OB_AREA_NEIGHBOURS] = { ELEMENT(perceived), PER_OBJECT, 1, 0 },
-	[OB_AREA_NEIGHBOUR_ID] = { ELEMENT(perceived_id), PER_PERCEIVED, 1, 0 },
+	[OB_AREA_NEIGHBOURS] = { ELEMENT(neighbours), PER_OBJECT, 1, 0 },
+	[OB_AREA_NEIGHBOUR_ID] = { ELEMENT(neighbour_id), PER_NEIGHBOUR, 1, 0 },
 	[OB_AREA_CELL] = { ELEMENT(cell), PER_OBJECT, 1, 0 },
 	[OB_AREA_BUCKET] = { ELEMENT(bucket), PER_BUCKET, 1, 0 },
 	[OB_AREA_PLANE] = { ELEMENT(plane), PER_OBJECT, 1, 0 },
@@ -80,7 +80,7 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 		[PER_64_WORKERS] = ((uint64_t)s->workers + 63) / 64,
 		[PER_PAIR] = s->pairs_max,
 		[PER_BUCKET] = s->buckets,
-		[PER_PERCEIVED] = s->perceived_max,
+		[PER_NEIGHBOUR] = s->neighbours_max,
 		[PER_RING] = traced ? s->workers + OB_TRACE_HOST_RINGS : 0,
 		[PER_TRACE_EVENT] =
 			traced ? (uint64_t)s->workers * s->trace_events + OB_TRACE_HOST_RINGS * OB_TRACE_HOST_EVENTS
@@ -115,7 +115,7 @@ void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool trac
 	h->sizes = (ob_layout_sizes){ .capacity = capacity, .workers = workers };
 	h->sizes.pairs_max = most_pairs(capacity);
 	h->sizes.buckets = power_of_two_from(2 * capacity);
-	h->sizes.perceived_max = 64 * capacity + 65536;
+	h->sizes.neighbours_max = 64 * capacity + 65536;
 	h->sizes.trace_events = traced ? ring_events(workers) : 0;
 	uint64_t at = OB_LAYOUT_PAGE;
 	for (int i = 0; i < OB_AREAS; i++) {
@@ -130,7 +130,7 @@ uint64_t ob_layout_likely_bytes(const ob_header *h)
 	enum { PAIRS_PER_OBJECT = 4 };
 	ob_layout_sizes likely = h->sizes;
 	likely.pairs_max = PAIRS_PER_OBJECT * likely.capacity;
-	likely.perceived_max = likely.pairs_max;
+	likely.neighbours_max = likely.pairs_max;
 	uint64_t sum = OB_LAYOUT_PAGE;
 	for (int i = 0; i < OB_AREAS; i++)
 		sum += area_bytes(&likely, (ob_area)i);
@@ -151,23 +151,23 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	       memchr(h->isolation, 0, sizeof h->isolation);
 }
 
-static void bind_exchange(ob_universe *u)
+static void bind_step_data(ob_universe *u)
 {
 	const uint64_t *area = u->header.area;
 	char *base = u->base;
-	u->exchange = (ob_step_data){
+	u->step_data = (ob_step_data){
 		.objects_max = u->header.sizes.capacity,
 		.pairs_max = u->header.sizes.pairs_max,
 		.buckets = u->header.sizes.buckets,
-		.perceived_max = u->header.sizes.perceived_max,
+		.neighbours_max = u->header.sizes.neighbours_max,
 		.count = (void *)(base + area[OB_AREA_COUNTS]),
-		.brief = (void *)(base + area[OB_AREA_SCHEDULE]),
+		.schedule = (void *)(base + area[OB_AREA_SCHEDULE]),
 		.bounds = (void *)(base + area[OB_AREA_BOUNDS]),
 		.result = (void *)(base + area[OB_AREA_RESULT]),
 		.effort = (void *)(base + area[OB_AREA_EFFORT]),
 		.result_island = (void *)(base + area[OB_AREA_RESULT_ISLAND]),
-		.perceived = (void *)(base + area[OB_AREA_NEIGHBOURS]),
-		.perceived_id = (void *)(base + area[OB_AREA_NEIGHBOUR_ID]),
+		.neighbours = (void *)(base + area[OB_AREA_NEIGHBOURS]),
+		.neighbour_id = (void *)(base + area[OB_AREA_NEIGHBOUR_ID]),
 		.cell = (void *)(base + area[OB_AREA_CELL]),
 		.bucket = (void *)(base + area[OB_AREA_BUCKET]),
 		.plane = (void *)(base + area[OB_AREA_PLANE]),
@@ -196,10 +196,10 @@ void ob_layout_bind(ob_universe *u, void *base)
 	u->slot = (void *)(u->base + area[OB_AREA_SLOT]);
 	u->passport = (void *)(u->base + area[OB_AREA_PASSPORT]);
 	u->passport_even = (void *)(u->base + area[OB_AREA_PASSPORT_EVEN]);
-	u->rebound = (void *)(u->base + area[OB_AREA_REQUERY]);
-	u->rebound_bit = (void *)(u->base + area[OB_AREA_REQUERY_BIT]);
+	u->requery = (void *)(u->base + area[OB_AREA_REQUERY]);
+	u->requery_bit = (void *)(u->base + area[OB_AREA_REQUERY_BIT]);
 	u->trace_ring = (void *)(u->base + area[OB_AREA_TRACE_RING]);
 	u->trace_event = (void *)(u->base + area[OB_AREA_TRACE_EVENT]);
 	u->trace_since = (void *)(u->base + area[OB_AREA_TRACE_SINCE]);
-	bind_exchange(u);
+	bind_step_data(u);
 }

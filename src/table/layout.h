@@ -56,7 +56,7 @@ typedef enum ob_area {
 } ob_area;
 
 typedef struct ob_layout_sizes {
-	uint32_t capacity, workers, pairs_max, buckets, perceived_max;
+	uint32_t capacity, workers, pairs_max, buckets, neighbours_max;
 	uint32_t trace_events; // of each worker's ring, a power of two; 0 = not traced
 } ob_layout_sizes;
 
@@ -84,8 +84,8 @@ typedef struct ob_control {
 	uint32_t awake, pairs, islands;
 	_Alignas(64) uint64_t claim_next;
 	uint64_t claim_total;
-	_Alignas(64) uint64_t rebound_count;
-	_Alignas(64) uint64_t perceived_used;
+	_Alignas(64) uint64_t requery_count;
+	_Alignas(64) uint64_t neighbours_used;
 } ob_control;
 
 // How long steps take. The gate orders its writers but for the two marked ones.
@@ -121,7 +121,7 @@ static_assert(sizeof(ob_control) == 256, "control");
 static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
 static_assert(sizeof(ob_pair_state) == 184, "pair state");
 static_assert(sizeof(ob_pair_record) == 376, "pair record");
-static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "exchange area");
+static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "step data");
 
 // A process's view of a mapped segment. Immutable once made; forked children may go on using it.
 struct ob_universe {
@@ -136,9 +136,9 @@ struct ob_universe {
 	ob_slot *slot;
 	ob_passport_slot *passport;
 	ob_passport *passport_even;
-	uint32_t *rebound;
-	uint64_t *rebound_bit;
-	ob_step_data exchange;
+	uint32_t *requery;
+	uint64_t *requery_bit;
+	ob_step_data step_data;
 	ob_trace_ring *trace_ring; // these three only if traced
 	ob_trace_event *trace_event;
 	uint64_t *trace_since;

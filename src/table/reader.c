@@ -142,7 +142,7 @@ bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6])
 	ob_passport p;
 	bool sense = ob_universe_get_passport(u, id, &p);
 	for (int i = 0; i < 6 && sense; i++)
-		__atomic_load(&u->exchange.bounds[id][i], &bounds[i], __ATOMIC_RELAXED);
+		__atomic_load(&u->step_data.bounds[id][i], &bounds[i], __ATOMIC_RELAXED);
 	for (int i = 0; i < 3 && sense; i++)
 		sense = bounds[i] <= bounds[i + 3]; // false for NaN
 	return sense;

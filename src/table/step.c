@@ -89,46 +89,46 @@ bool ob_task_claim(ob_universe *u, uint32_t *index)
 void ob_requery_append(ob_universe *u, uint32_t id)
 {
 	uint64_t bit = UINT64_C(1) << id % 64;
-	if (__atomic_fetch_or(&u->rebound_bit[id / 64], bit, __ATOMIC_RELAXED) & bit)
+	if (__atomic_fetch_or(&u->requery_bit[id / 64], bit, __ATOMIC_RELAXED) & bit)
 		return;
-	uint64_t i = __atomic_fetch_add(&u->control->rebound_count, 1, __ATOMIC_RELAXED);
-	__atomic_store_n(&u->rebound[i], id, __ATOMIC_RELAXED);
+	uint64_t i = __atomic_fetch_add(&u->control->requery_count, 1, __ATOMIC_RELAXED);
+	__atomic_store_n(&u->requery[i], id, __ATOMIC_RELAXED);
 }
 
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count)
 {
-	*count = (uint32_t)__atomic_load_n(&u->control->rebound_count, __ATOMIC_ACQUIRE);
-	return u->rebound;
+	*count = (uint32_t)__atomic_load_n(&u->control->requery_count, __ATOMIC_ACQUIRE);
+	return u->requery;
 }
 
 void ob_requery_reset(ob_universe *u)
 {
-	uint64_t n = __atomic_load_n(&u->control->rebound_count, __ATOMIC_RELAXED);
+	uint64_t n = __atomic_load_n(&u->control->requery_count, __ATOMIC_RELAXED);
 	for (uint64_t i = 0; i < n; i++)
-		__atomic_store_n(&u->rebound_bit[u->rebound[i] / 64], 0, __ATOMIC_RELAXED);
-	__atomic_store_n(&u->control->rebound_count, 0, __ATOMIC_RELEASE);
+		__atomic_store_n(&u->requery_bit[u->requery[i] / 64], 0, __ATOMIC_RELAXED);
+	__atomic_store_n(&u->control->requery_count, 0, __ATOMIC_RELEASE);
 }
 
 void ob_late_contacts_reset(ob_universe *u)
 {
-	u->exchange.count->met = 0;
-	u->exchange.count->next_look = UINT32_MAX;
+	u->step_data.count->late = 0;
+	u->step_data.count->next_check = UINT32_MAX;
 }
 
-void ob_late_contacts_note(ob_universe *u, bool met, uint32_t next_look)
+void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check)
 {
-	uint32_t *least = &u->exchange.count->next_look, seen = __atomic_load_n(least, __ATOMIC_RELAXED);
-	while (seen > next_look &&
-	       !__atomic_compare_exchange_n(least, &seen, next_look, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+	uint32_t *least = &u->step_data.count->next_check, seen = __atomic_load_n(least, __ATOMIC_RELAXED);
+	while (seen > next_check &&
+	       !__atomic_compare_exchange_n(least, &seen, next_check, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
 		;
-	if (met)
-		__atomic_store_n(&u->exchange.count->met, 1, __ATOMIC_RELAXED);
+	if (late)
+		__atomic_store_n(&u->step_data.count->late, 1, __ATOMIC_RELAXED);
 }
 
 // In a phase the stack only shrinks, so a number is its taker's alone.
 uint32_t ob_record_take(ob_universe *u)
 {
-	const ob_step_data *ex = &u->exchange;
+	const ob_step_data *ex = &u->step_data;
 	int32_t left = __atomic_fetch_sub(&ex->count->records_free, 1, __ATOMIC_RELAXED);
 	uint32_t record = left > 0 ? ex->record_free[left - 1]
 				   : __atomic_fetch_add(&ex->count->records_used, 1, __ATOMIC_RELAXED);
@@ -138,7 +138,7 @@ uint32_t ob_record_take(ob_universe *u)
 
 void ob_record_give_back(ob_universe *u, uint32_t record)
 {
-	const ob_step_data *ex = &u->exchange;
+	const ob_step_data *ex = &u->step_data;
 	int32_t free = ex->count->records_free > 0 ? ex->count->records_free : 0;
 	ex->record_free[free] = record;
 	ex->count->records_free = free + 1;
@@ -146,11 +146,11 @@ void ob_record_give_back(ob_universe *u, uint32_t record)
 
 uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t count)
 {
-	uint64_t at = __atomic_fetch_add(&u->control->perceived_used, count, __ATOMIC_RELAXED);
-	return at + count <= u->header.sizes.perceived_max ? (uint32_t)at : UINT32_MAX;
+	uint64_t at = __atomic_fetch_add(&u->control->neighbours_used, count, __ATOMIC_RELAXED);
+	return at + count <= u->header.sizes.neighbours_max ? (uint32_t)at : UINT32_MAX;
 }
 
 void ob_neighbours_reset(ob_universe *u)
 {
-	__atomic_store_n(&u->control->perceived_used, 0, __ATOMIC_RELEASE);
+	__atomic_store_n(&u->control->neighbours_used, 0, __ATOMIC_RELEASE);
 }

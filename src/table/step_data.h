@@ -1,12 +1,12 @@
-// The exchange area: what the object simulators of one universe share within a step. Plain data in shared
-// memory; the gate orders every access: who may touch what is fixed by the phase.
+// What the object simulators of one universe share within a step. Plain data in shared memory; the gate orders every
+// access: the phase fixes who may touch what.
 //
-//   phase MEMBERS   each object: reads its own island's result, writes its own slot; reads the index and all
-//                   bounds, writes its own perceived list
-//   (arrange)       one worker alone: index, pairs, islands
-//   phase ISLANDS   one worker per island: reads its members' slots and its pairs (the version of before the step),
-//                   stages its members' motions, writes their bounds and its pairs (the other version)
-//   phase MEETINGS  one worker per handful of pairs: reads what has been staged, writes those pairs' keys
+//   phase OBJECTS        each object: copies its own motion out of its island's result and publishes it in its slot;
+//                        reads the index and all bounds, writes its own list of neighbours
+//   (scheduling)         one worker alone: index, pairs, islands
+//   phase ISLANDS        one worker per island: reads its bodies' slots and its pairs (the version of before the step),
+//                        stages its bodies' motions, writes their bounds and its pairs (the other version)
+//   phase LATE_CONTACTS  one worker per batch of pairs: reads what has been staged, writes those pairs' keys
 #ifndef OB_TABLE_STEP_DATA_H
 #define OB_TABLE_STEP_DATA_H
 
@@ -16,10 +16,11 @@
 
 enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
 
-// What a pair of touching objects remembers from one step to the next. 184 bytes.
+// What a pair of touching objects keeps from one step to the next: contact points, and the impulses that warm-start the
+// solver. 184 bytes.
 // a < b are ids; the normal points from b to a. Lever arms run from the centres to the contact point, world frame,
 // as of the last collision test. Arms and gaps are small numbers, so that 24 bits are right to some nm; what two bodies
-// must agree on to the last bit, the difference of their arms, and what they exchange, is kept in full.
+// must agree on to the last bit, the difference of their arms and their impulses, is kept in full.
 typedef struct ob_pair_state {
 	ob_vec3 normal;
 	ob_vec3 between;                  // m, from a's centre to b's: an arm of b is that of a less this
@@ -28,7 +29,7 @@ typedef struct ob_pair_state {
 	float arm_a[OB_PAIR_POINTS][3];   // m
 	float gap[OB_PAIR_POINTS];        // m, separation now; < 0 is penetration
 	uint32_t points;                  // 0 .. 4; 0 = not touching
-	float creep;                      // m, what should have stuck has slipped so far in the last second
+	float creep;                      // m, slip of the last second while friction should have held
 } ob_pair_state;
 
 typedef struct ob_pair_record {
@@ -38,47 +39,49 @@ typedef struct ob_pair_record {
 
 #define OB_NO_RECORD UINT32_MAX
 
+// A pair of objects whose fat AABBs overlap.
 typedef struct ob_pair_key {
-	uint32_t a, b;    // ids, a < b
-	uint32_t record;  // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
-	uint8_t active;   // 1 = touching: its record has points
-	uint8_t near;     // 1 = apart, and expected to touch in the coming step
-	uint8_t met;      // 1 = touched in this step, which nobody had expected: both islands are solved again, as one
-	uint8_t listed;   // 1 = its island's solver looks after it in this step
-	double limit;     // m: the pair cannot touch before path_a + path_b exceeds this
-	uint32_t clear;   // nor before this step (from 0), while both fly on as they did when so many steps were complete:
-	uint32_t clear_as_of;
+	uint32_t a, b;      // ids, a < b
+	uint32_t record;    // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
+	uint8_t active;     // 1 = touching: its record has points
+	uint8_t expected;   // 1 = apart, and expected to touch in the coming step
+	uint8_t late;       // 1 = a late contact: it touched in this step unexpectedly; both islands are merged and solved again
+	uint8_t in_island;  // 1 = its island's solver handles it in this step
+	double limit;       // m: the pair cannot touch before path_a + path_b exceeds this
+	uint32_t clear_until; // the pair cannot touch before this step (from 0) either, provided that neither object has
+	uint32_t clear_as_of; // published another motion since so many steps were complete
 } ob_pair_key;
 
-// What the arranger needs to know of an object, 24 bytes, so that it need not read the slots.
+// Schedule record: what the scheduler must know of an object, 24 bytes, so that it need not read the slots.
 typedef struct ob_schedule {
 	double path;    // m, when "since" steps were complete
-	float reach;    // m, how far any of its points may get in a step, until it is visited again
-	uint32_t state; // OB_BRIEF_*
+	float reach;    // m, how far any of its points may get in a step, until it is solved again
+	uint32_t state; // OB_SCHEDULE_*
 	uint32_t since;
-	uint32_t due;   // the step (from 0) that must visit it, if nothing comes near before
+	uint32_t due;   // the step (from 0) that must solve it, if nothing comes near before
 } ob_schedule;
 
 enum {
 	OB_SCHEDULE_ABSENT,
-	OB_SCHEDULE_PLANE,  // static; what flies foresees when it meets it
+	OB_SCHEDULE_PLANE,  // static; a ballistic advance ends before it meets the plane
 	OB_SCHEDULE_STATIC,
 	OB_SCHEDULE_AWAKE,
-	OB_SCHEDULE_ASLEEP, // from here on: not solved until something comes near
+	OB_SCHEDULE_ASLEEP, // this state and the next: not solved until something comes near
 	OB_SCHEDULE_EQUILIBRIUM,
 };
 
-// What goes by itself gets its reach farther in each step. m, when so many are complete.
-static inline double ob_schedule_path(const ob_schedule *b, uint64_t steps)
+// Upper bound of an object's path (m) when "steps" steps are complete: it grows by its reach in each step in which
+// nobody solves it.
+static inline double ob_schedule_path(const ob_schedule *s, uint64_t steps)
 {
-	return b->path + ((double)steps - b->since) * (double)b->reach;
+	return s->path + ((double)steps - s->since) * (double)s->reach;
 }
 
 typedef struct ob_island {
 	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
 	uint32_t first_pair, pairs;     // range in island_pair[]; sorted by (a, b)
-	uint32_t work;                  // what solving it may cost, in exchanges of a pair
-	uint32_t solved;                // 1 = its solution of this step stands, unless something meets one of its members
+	uint32_t work;                  // estimated cost of solving it, in solver iterations of one pair
+	uint32_t solved;                // 1 = its solution of this step stands, unless a late contact involves one of its bodies
 } ob_island;
 
 typedef struct ob_index_cell {
@@ -90,44 +93,46 @@ typedef struct ob_index_cell {
 
 // The areas, as pointers into this process's mapping (made once per process by the table module).
 typedef struct ob_step_data {
-	uint32_t objects_max, pairs_max, buckets, perceived_max;
+	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {
 		uint32_t pairs, islands, chunks, records_used;
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
-		uint32_t arranger;   // the worker that arranged last
-		uint32_t stage;      // what the running phase belongs to: the arranger's
-		uint32_t again;      // 1 = islands are solved that were solved in this step before, in parts
+		uint32_t scheduler;  // the worker that scheduled last
+		uint32_t stage;      // what the running phase belongs to; only the scheduler reads and writes it
+		uint32_t merged;     // 1 = islands that late contacts merged are being solved again
 		uint32_t awake;      // objects
-		uint32_t looked;     // steps that were complete, or solved, when all pairs were checked last
-		uint32_t met;        // 1 = a pair has then: whoever finds one writes it
-		uint32_t next_due;   // before this step nobody is due, if nobody is visited ..
-		uint32_t next_look;  // .. nor has any pair to be checked: the least of what those who check have found
+		uint32_t checked;    // steps that were complete, or solved, when all pairs were checked last
+		uint32_t late;       // 1 = that check found a late contact; any worker may write it
+		uint32_t next_due;   // no object is due before this step, unless one is solved before ..
+		uint32_t next_check; // .. and no pair has to be checked before this one: the least that any check has found
 		uint32_t levels[64]; // objects per size class
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
 		uint32_t planes;
 		uint32_t failure;    // ob_step_failure; 0 = none
 	} *count;
-	ob_schedule *brief;              // [object]: written by its island's solver
-	float (*bounds)[6];           // [object]: box that holds it until it asks for another
+	ob_schedule *schedule;        // [object]: written by its island's solver
+	float (*bounds)[6];           // [object]: fat AABB, which holds it until it asks for another
 	ob_motion *result;            // [object]: what its island's solver found
 	uint32_t *effort;             // [object]: its share of what its island cost when it was solved last, as ob_island.work
 	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none
-	struct ob_neighbours { uint32_t offset, count; } *perceived; // [object]: range in perceived_id; count UINT32_MAX = asked for
-	uint32_t *perceived_id;       // arena
+	struct ob_neighbours {
+		uint32_t offset, count; // range in neighbour_id; count UINT32_MAX = a query is pending
+	} *neighbours;                // [object]
+	uint32_t *neighbour_id;       // arena
 	ob_index_cell *cell;          // [object]
 	uint32_t *bucket;             // [buckets]: 1 + first object; 0 = empty
 	uint32_t *plane;              // ids of planes: everyone's neighbours
 	ob_pair_key *pair;            // sorted by (a, b)
 	ob_pair_record *record;       // taken when a pair begins to touch
-	double (*impulse_b)[2][OB_PAIR_ROWS]; // [record], of each version: of member b, where the two do not agree on one
+	double (*impulse_b)[2][OB_PAIR_ROWS]; // [record], of each version: of body b, where the two do not agree on one
 	                              // impulse (sim/ghost.h)
 	uint32_t *record_free;        // stack of free records
 	ob_island *island;
 	uint32_t *member;             // [object]
 	uint32_t *island_pair;        // indices into pair[]
 	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
-	uint32_t *scratch;            // [4 * objects]: the arranger's
+	uint32_t *scratch;            // [4 * objects]: the scheduler's
 } ob_step_data;
 
 typedef enum ob_step_failure {

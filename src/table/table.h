@@ -132,7 +132,7 @@ void ob_requery_reset(ob_universe *u);
 // What checking pairs has found: reset by the one who arranges, then noted by any worker, for all that it has claimed:
 // has a pair met? The first step (from 0) at which one must be checked again.
 void ob_late_contacts_reset(ob_universe *u);
-void ob_late_contacts_note(ob_universe *u, bool met, uint32_t next_look);
+void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check);
 // A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.
 uint32_t ob_record_take(ob_universe *u);
 // Only for the one who arranges.
@@ -152,7 +152,7 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 // Instead of opening: hands the turn to the host, which sleeps in ob_gate_host_wait.
 void ob_gate_pause(ob_universe *u);
 // Whether the phase that runs still waits for this worker (any thread, as of a moment ago).
-bool ob_gate_awaits(const ob_universe *u, uint32_t worker);
+bool ob_gate_waits_for(const ob_universe *u, uint32_t worker);
 // Host: the step at which the universe shall pause next (read by the arranger).
 void ob_gate_set_pause_step(ob_universe *u, uint64_t step);
 uint64_t ob_gate_pause_step(const ob_universe *u);

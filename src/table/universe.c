@@ -151,7 +151,7 @@ const char *ob_universe_name(const ob_universe *u)
 }
 ob_step_data *ob_universe_step_data(const ob_universe *u)
 {
-	return (ob_step_data *)&u->exchange;
+	return (ob_step_data *)&u->step_data;
 }
 
 void ob_universe_set_state(ob_universe *u, ob_universe_state s)

@@ -99,7 +99,7 @@ static void test_hash(void)
 	CHECK(first != ob_measure_hash(&s));
 	motions[2].q.z = 0;
 	passports[2].friction = .3;
-	motions[2].quiet = 1;
+	motions[2].rest_time = 1;
 	CHECK(first == ob_measure_hash(&s)); // not a matter of the state
 	passports[2].flags = 0;
 	uint64_t two = ob_measure_hash(&s);

@@ -18,18 +18,18 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 	for (uint32_t i = 0; i < BODIES; i++) {
 		double kind = uniform(&seed), path = within(&seed, 0, 10);
 		double reach = uniform(&seed) < .1 ? within(&seed, .1, 1) : within(&seed, 0, .05);
-		ex->perceived[i] = (struct ob_neighbours){ 0, 0 }; // nobody has asked
-		ex->brief[i] = (ob_schedule){ .path = path, .reach = (float)reach, .state = OB_SCHEDULE_AWAKE };
+		ex->neighbours[i] = (struct ob_neighbours){ 0, 0 }; // nobody has asked
+		ex->schedule[i] = (ob_schedule){ .path = path, .reach = (float)reach, .state = OB_SCHEDULE_AWAKE };
 		if (kind < .1)
-			ex->brief[i].state = OB_SCHEDULE_STATIC;
+			ex->schedule[i].state = OB_SCHEDULE_STATIC;
 		if (kind > .6)
-			ex->brief[i].state = OB_SCHEDULE_ASLEEP, ex->brief[i].reach = 0, ex->brief[i].due = UINT32_MAX;
+			ex->schedule[i].state = OB_SCHEDULE_ASLEEP, ex->schedule[i].reach = 0, ex->schedule[i].due = UINT32_MAX;
 		if (kind > .97)
-			ex->brief[i].state = OB_SCHEDULE_ABSENT;
+			ex->schedule[i].state = OB_SCHEDULE_ABSENT;
 	}
 	for (uint32_t a = 0; a < BODIES; a++)
 		for (uint32_t b = a + 1; b < BODIES; b++) {
-			const ob_schedule *x = &ex->brief[a], *y = &ex->brief[b];
+			const ob_schedule *x = &ex->schedule[a], *y = &ex->schedule[b];
 			bool fixed = x->state == OB_SCHEDULE_STATIC && y->state == OB_SCHEDULE_STATIC;
 			if (uniform(&seed) > density / BODIES || fixed || !x->state || !y->state)
 				continue;
@@ -37,7 +37,7 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 			double kind = uniform(&seed);
 			ex->pair[n] = (ob_pair_key){ .a = a, .b = b, .record = n, .limit = limit };
 			ex->pair[n].active = kind < .2;
-			ex->pair[n].near =
+			ex->pair[n].expected =
 				kind > .2 && kind < .6 && (x->state == OB_SCHEDULE_AWAKE || y->state == OB_SCHEDULE_AWAKE);
 			n++;
 		}
@@ -51,12 +51,12 @@ typedef struct flood {
 
 static bool moves(const ob_step_data *ex, uint32_t id)
 {
-	return ex->brief[id].state == OB_SCHEDULE_AWAKE || ex->brief[id].state == OB_SCHEDULE_ASLEEP;
+	return ex->schedule[id].state == OB_SCHEDULE_AWAKE || ex->schedule[id].state == OB_SCHEDULE_ASLEEP;
 }
 
 static bool may_touch(const ob_step_data *ex, const ob_pair_key *k)
 {
-	const ob_schedule *a = &ex->brief[k->a], *b = &ex->brief[k->b];
+	const ob_schedule *a = &ex->schedule[k->a], *b = &ex->schedule[k->b];
 	return k->active || a->reach + b->reach >= k->limit - a->path - b->path;
 }
 
@@ -73,7 +73,7 @@ static void flood_fill(const ob_step_data *ex, flood *f)
 		f->island[i] = i;
 	for (uint32_t i = ex->count->pairs; i > 0; i--) { // another order than the plan's
 		const ob_pair_key *k = &ex->pair[i - 1];
-		if (moves(ex, k->a) && moves(ex, k->b) && f->island[k->a] != f->island[k->b] && (k->active || k->near))
+		if (moves(ex, k->a) && moves(ex, k->b) && f->island[k->a] != f->island[k->b] && (k->active || k->expected))
 			join(f->island, f->island[k->a], f->island[k->b]);
 	}
 }
@@ -81,7 +81,7 @@ static void flood_fill(const ob_step_data *ex, flood *f)
 static bool awake_group(const ob_step_data *ex, const flood *f, uint32_t group)
 {
 	for (uint32_t i = 0; i < BODIES; i++)
-		if (f->island[i] == group && ex->brief[i].state == OB_SCHEDULE_AWAKE)
+		if (f->island[i] == group && ex->schedule[i].state == OB_SCHEDULE_AWAKE)
 			return true;
 	return false;
 }
@@ -109,8 +109,8 @@ static void check_island_pairs(const ob_step_data *ex, const flood *f, const ob_
 		bool inside = (a == group || !moves(ex, k->a)) && (b == group || !moves(ex, k->b));
 		if (!inside)
 			continue;
-		CHECK(k->listed == may_touch(ex, k));
-		if (k->listed) {
+		CHECK(k->in_island == may_touch(ex, k));
+		if (k->in_island) {
 			CHECK(count < is->pairs && ex->island_pair[is->first_pair + count] == i);
 			count++;
 		}
@@ -165,8 +165,8 @@ static void check_reunion(ob_universe *u, uint64_t seed)
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		ob_pair_key *k = &ex->pair[i];
 		bool awake = before[k->a] != UINT32_MAX || before[k->b] != UINT32_MAX;
-		k->met = awake && !k->listed && uniform(&seed) < .05;
-		if (!k->met)
+		k->late = awake && !k->in_island && uniform(&seed) < .05;
+		if (!k->late)
 			continue;
 		if (moves(ex, k->a) && moves(ex, k->b) && f.island[k->a] != f.island[k->b]) {
 			uint32_t x = f.island[k->a], y = f.island[k->b];
@@ -177,7 +177,7 @@ static void check_reunion(ob_universe *u, uint64_t seed)
 	}
 	for (uint32_t i = 0; i < BODIES; i++)
 		if (before[i] != UINT32_MAX && uniform(&seed) < .1)
-			ex->brief[i].state = OB_SCHEDULE_ASLEEP;
+			ex->schedule[i].state = OB_SCHEDULE_ASLEEP;
 	for (uint32_t i = 0; i < BODIES; i++) // a union may have been united again under a lower id
 		f.united[f.island[i]] |= f.united[i];
 	ob_islands_merge(u);

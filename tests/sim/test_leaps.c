@@ -38,12 +38,12 @@ static void call_all(ob_universe *u)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
-		if (ex->brief[id].state != OB_SCHEDULE_AWAKE)
+		if (ex->schedule[id].state != OB_SCHEDULE_AWAKE)
 			continue;
 		ob_motion m = *ob_newest_motion(u, id);
 		m.valid_until = m.t0;
 		ob_publish_motion(u, id, &m);
-		ex->brief[id].due = (uint32_t)ob_step_count(u);
+		ex->schedule[id].due = (uint32_t)ob_step_count(u);
 	}
 }
 
@@ -146,7 +146,7 @@ static void test_low_hops(void)
 		little_open(&l, s);
 		const ob_step_data *ex = ob_universe_step_data(l.u);
 		double energy = little_energy(&l), growth = 0;
-		for (int step = 0; step < 600 && ex->brief[1].state == OB_SCHEDULE_AWAKE; step++) {
+		for (int step = 0; step < 600 && ex->schedule[1].state == OB_SCHEDULE_AWAKE; step++) {
 			bool held = ex->count->pairs && ex->pair[0].active;
 			ob_counters before, after;
 			ob_universe_count(l.u, &before);
@@ -159,7 +159,7 @@ static void test_low_hops(void)
 			CHECK(little_penetration(&l).max_m < 1.1e-3);
 		}
 		CHECK(growth < 1e-5);
-		CHECK(ex->brief[1].state == OB_SCHEDULE_ASLEEP);
+		CHECK(ex->schedule[1].state == OB_SCHEDULE_ASLEEP);
 		little_close(&l);
 		free(s);
 	}

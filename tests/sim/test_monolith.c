@@ -116,7 +116,7 @@ static void test_rest_and_contacts(void)
 	run(m, u, 300);
 	CHECK(ob_universe_get_motion(u, 1, &now) && now.flags == OB_MOTION_ASLEEP && now.v.z == 0);
 	CHECK(ob_ode_baseline_awake(m) == 0);
-	CHECK(now.valid_until == INFINITY && now.quiet > 1);
+	CHECK(now.valid_until == INFINITY && now.rest_time > 1);
 	ob_ode_baseline_destroy(m);
 	ob_universe_destroy(u, true);
 }

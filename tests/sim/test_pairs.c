@@ -61,7 +61,7 @@ static bool overlap(const ob_universe *u, uint32_t i, uint32_t j)
 {
 	const ob_step_data *ex = ob_universe_step_data(u);
 	const float *a = ex->bounds[i], *b = ex->bounds[j];
-	if (ex->brief[i].state < OB_SCHEDULE_AWAKE && ex->brief[j].state < OB_SCHEDULE_AWAKE)
+	if (ex->schedule[i].state < OB_SCHEDULE_AWAKE && ex->schedule[j].state < OB_SCHEDULE_AWAKE)
 		return false;
 	if (j == BODIES) // the ground
 		return a[2] <= -2;

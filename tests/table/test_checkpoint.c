@@ -94,7 +94,7 @@ static void check_as_taken(ob_universe *u, const char *bytes)
 		CHECK(!memcmp(ob_newest_motion(u, id), &expected, sizeof expected));
 	}
 	CHECK(ob_step_count(u) == 1 && u->control->awake == 9 && u->control->pairs == 8 && u->control->islands == 7);
-	CHECK(u->control->rebound_count == 1 && u->control->perceived_used == 10);
+	CHECK(u->control->requery_count == 1 && u->control->neighbours_used == 10);
 	CHECK(ob_universe_get_worker(u, 1, &info) && info.pid == 0);
 	CHECK(ob_gate_host_wait(u, 0) && u->gate->stop == 0); // the host has the turn
 	ob_gate_open(u, OB_PHASE_OBJECTS, NULL, 0);

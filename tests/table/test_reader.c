@@ -133,10 +133,10 @@ static void test_damage(void)
 		size_t end = u->header.area[OB_AREA_REQUERY];
 		for (int i = 0; i < 3000; i++)
 			u->base[start + (size_t)rand() % (end - start)] = (char)(rand() % 3 ? rand() : -1);
-		for (size_t i = 0; i < sizeof *u->exchange.count; i++)
-			((char *)u->exchange.count)[i] = (char)rand();
+		for (size_t i = 0; i < sizeof *u->step_data.count; i++)
+			((char *)u->step_data.count)[i] = (char)rand();
 		for (size_t i = 0; i < 1000 * sizeof(ob_pair_key); i++)
-			((char *)u->exchange.pair)[i] = (char)(rand() % 2 ? 0 : rand());
+			((char *)u->step_data.pair)[i] = (char)(rand() % 2 ? 0 : rand());
 		read_everything(before);
 		ob_universe *after = ob_universe_attach(name, &e);
 		if (after)

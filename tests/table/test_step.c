@@ -47,13 +47,13 @@ static void run(bool processes)
 	for (uint32_t round = 1; round <= 3; round++) {
 		ob_task_reset(b->u, OBJECTS);
 		ob_late_contacts_reset(b->u);
-		CHECK(!ob_universe_step_data(b->u)->count->met);
+		CHECK(!ob_universe_step_data(b->u)->count->late);
 		ob_requery_reset(b->u);
 		ob_neighbours_reset(b->u);
 		crowd c = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
 		CHECK(crowd_start(&c) && crowd_join(&c) == 0);
-		CHECK(ob_universe_step_data(b->u)->count->met);
-		CHECK(ob_universe_step_data(b->u)->count->next_look == FIRST_LOOK);
+		CHECK(ob_universe_step_data(b->u)->count->late);
+		CHECK(ob_universe_step_data(b->u)->count->next_check == FIRST_LOOK);
 		uint32_t wrong = 0, count;
 		for (uint32_t i = 0; i < OBJECTS; i++)
 			wrong += b->claimed[i] != round;

@@ -156,10 +156,10 @@ static void test_sparse(void)
 	CHECK(x && x->objects_max == 100000 && x->pairs_max == 6400000 && x->buckets == 262144);
 	if (x) { // the far ends are there, and apart
 		x->record[x->pairs_max - 1].stamp[1] = 1;
-		x->perceived_id[x->perceived_max - 1] = 2;
+		x->neighbour_id[x->neighbours_max - 1] = 2;
 		x->scratch[4 * x->objects_max - 1] = 3;
 		x->chunk[x->objects_max] = 5;
-		CHECK(x->record[x->pairs_max - 1].stamp[1] == 1 && x->perceived_id[x->perceived_max - 1] == 2);
+		CHECK(x->record[x->pairs_max - 1].stamp[1] == 1 && x->neighbour_id[x->neighbours_max - 1] == 2);
 		CHECK(x->scratch[4 * x->objects_max - 1] == 3);
 	}
 	ob_universe_destroy(u, true);
