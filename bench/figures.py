@@ -12,6 +12,7 @@ import tempfile
 
 SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scenes')
 RUNS = 3
+SEEDS = 12  # of the error tables: one heap is an anecdote
 
 
 def scene(name):
@@ -55,25 +56,50 @@ def compare():
     return '```\n' + '\n\n'.join(panels[:2]) + '\n```\n'
 
 
+def summary():
+    """The verdict of the README: one world, threads and processes in the same scene, five rows."""
+    configurations = [('one ODE world', ['--arch', 'monolith']), ('threads', ['--isolation', 'thread']),
+                      ('processes', ['--isolation', 'process']),
+                      ('a process for each object', ['--isolation', 'process', '--workers', 'objects'])]
+    reports = [run(scene('falling_boxes'), *words, '--measure', 'end') for _, words in configurations]
+    errors = [run(scene('falling_boxes'), *words, runs=1) for _, words in configurations]
+    text = head('100 falling boxes, 10 s', *(title for title, _ in configurations))
+    text += row('CPU per body and step, µs', *(f"{r['body_step_cpu_us']:.2f}" for r in reports))
+    text += row('wall per simulated second, ms', *(f"{1e3 * r['wall_s'] / r['simulated_s']:.1f}" for r in reports))
+    text += row('deepest penetration, mm', *(f"{1e3 * r['worst_penetration_m']:.3g}" for r in errors))
+    text += row('memory, MB', *(f"{r['memory_bytes'] / 1e6:.0f}" for r in reports))
+    text += row('state after it', *(f"`{r['state_hash'][:8]}`" for r in reports))
+    return text
+
+
+def spread(values, digits):
+    """Median, and the least and the most of all seeds."""
+    return f'{statistics.median(values):.{digits}g} ({min(values):.{digits}g}–{max(values):.{digits}g})'
+
+
 def error_of(name, title):
     text = head(title, 'CPU, ms per simulated s', 'deepest penetration, mm', 'mean at the end, mm')
-    ways = [(f'object simulators, substeps: {n}', ['--substeps', str(n)]) for n in (1, 2, 4, 8, 16, 32)]
-    ways += [(f'one world, steps of 1/{n} s', ['--arch', 'monolith', '--step', f'1/{n}']) for n in (60, 240, 960)]
-    for what, words in ways:
-        r = run(scene(name), *words)
-        text += row(what, f"{1e3 * r['cpu_s'] / r['simulated_s']:.1f}", f"{1e3 * r['worst_penetration_m']:.3g}",
-                    f"{1e3 * r['penetration_mean_m']:.2g}")
+    configurations = [(f'object simulators, {n} substep{'s' if n > 1 else ''}', ['--substeps', str(n)]) for n in (1, 2, 4, 8, 16, 32)]
+    configurations += [('object simulators, as they come (1 mm)', [])]
+    configurations += [(f'object simulators, tolerance {t}', ['--tolerance', t]) for t in ('10mm', '.1mm')]
+    configurations += [(f'one ODE world, steps of 1/{n} s', ['--arch', 'monolith', '--step', f'1/{n}'])
+                       for n in (60, 240, 960)]
+    for what, words in configurations:
+        reports = [run(scene(name), *words, '--seed', str(seed), runs=1) for seed in range(1, SEEDS + 1)]
+        cpu = statistics.median(1e3 * r['cpu_s'] / r['simulated_s'] for r in reports)
+        text += row(what, f'{cpu:.1f}', spread([1e3 * r['worst_penetration_m'] for r in reports], 3),
+                    spread([1e3 * r['penetration_mean_m'] for r in reports], 2))
     return text
 
 
 def error_falling():
     """Speed against error: more substeps here, shorter steps there."""
-    return error_of('falling_boxes', '100 falling boxes, 10 s')
+    return error_of('falling_boxes', f'100 falling boxes, 10 s, {SEEDS} seeds')
 
 
 def error_stack():
-    """The same of a stack that stands, all awake."""
-    return error_of('stack', 'stack of 10, 20 s')
+    """The same of a stack that stands, all awake; a seed is another set of offsets."""
+    return error_of('stack', f'stack of 10, 20 s, {SEEDS} seeds')
 
 
 def bits():
@@ -112,7 +138,7 @@ def capture():
     return text
 
 
-TABLES = {f.__name__: f for f in (machine, compare, error_falling, error_stack, bits, crowd, capture)}
+TABLES = {f.__name__: f for f in (machine, summary, compare, error_falling, error_stack, bits, crowd, capture)}
 
 
 def refresh(path):
