@@ -52,8 +52,8 @@ const ob_figure_info ob_figure_table[OB_FIGURE_KINDS] = {
 	[OB_FIGURE_PENETRATION] = { "penetration_mean_m", "penetration, end, mean", "m", "Error",
 				    "of the pairs that penetrate" },
 	[OB_FIGURE_WORST] = { "worst_penetration_m", "penetration, worst", "m", NULL, "at any step" },
-	[OB_FIGURE_AIR] = { "air_mean_m", "air in contacts, mean", "m", NULL,
-			    "how far objects in contact are from touching, at the end" },
+	[OB_FIGURE_SEPARATION] = { "separation_mean_m", "separation, end, mean", "m", NULL,
+			    "of contacts that carry an impulse" },
 	[OB_FIGURE_ENERGY] = { "energy_gain_max", "energy, largest gain", "", NULL,
 			       "over the energy at the start, at any step" },
 	[OB_FIGURE_MOMENTUM] = { "momentum_error", "momentum error", "", NULL, "of closed scenes only" },
@@ -88,8 +88,8 @@ static double other_figure(const ob_report *r, ob_figure f)
 		return r->penetration_mean_m;
 	case OB_FIGURE_WORST:
 		return r->worst_penetration_m;
-	case OB_FIGURE_AIR:
-		return r->air_mean_m;
+	case OB_FIGURE_SEPARATION:
+		return r->separation_mean_m;
 	case OB_FIGURE_ENERGY:
 		return r->energy_gain_max;
 	case OB_FIGURE_MOMENTUM:

@@ -106,11 +106,10 @@ static void compare_narrow(char *to, size_t room, const ob_section *s, ob_way_id
 	if (isnan(r.median))
 		return;
 	say(to, room,
-	    "In the %s boxes along the axes take %.2f times the CPU of true shapes (%.2f to %.2f); they leave %s of "
-	    "air in "
-	    "contacts (%s), penetrate by %s at most (%s). ",
-	    who, r.median, r.low, r.high, ob_quantity_text(&q[0], median(s, aabb, OB_FIGURE_AIR), "m"),
-	    ob_quantity_text(&q[1], median(s, obb, OB_FIGURE_AIR), "m"),
+	    "In the %s boxes along the axes take %.2f times the CPU of true shapes (%.2f to %.2f); they leave contacts "
+	    "%s apart (%s), penetrate by %s at most (%s). ",
+	    who, r.median, r.low, r.high, ob_quantity_text(&q[0], median(s, aabb, OB_FIGURE_SEPARATION), "m"),
+	    ob_quantity_text(&q[1], median(s, obb, OB_FIGURE_SEPARATION), "m"),
 	    ob_quantity_text(&q[2], median(s, aabb, OB_FIGURE_WORST), "m"),
 	    ob_quantity_text(&q[3], median(s, obb, OB_FIGURE_WORST), "m"));
 }

@@ -37,7 +37,7 @@ typedef struct ob_report {
 	double energy_start, energy_end, energy_gain_max;
 	double momentum_error;
 	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;
-	double air_max_m, air_mean_m;
+	double separation_max_m, separation_mean_m;
 	double fps, frame_rate;
 } ob_report;
 

@@ -231,14 +231,14 @@ static void report_time(const run *r, const ob_host_times *times, ob_report *p)
 	p->host_cpu_s = times->host_cpu_s - p->renderer_cpu_s;
 }
 
-static void report_air(const run *r, ob_report *p)
+static void report_separation(const run *r, ob_report *p)
 {
 	ob_snapshot s = { 0 };
-	ob_air air = { NAN, NAN, 0 };
+	ob_separation apart = { NAN, NAN, 0 };
 	if (ob_snapshot_take(&s, ob_host_universe(r->host), true, NULL))
-		ob_measure_air(&s, &air);
-	p->air_max_m = air.max_m;
-	p->air_mean_m = air.mean_m;
+		ob_measure_separation(&s, &apart);
+	p->separation_max_m = apart.max_m;
+	p->separation_mean_m = apart.mean_m;
 	ob_snapshot_finish(&s);
 }
 
@@ -250,7 +250,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	name_report(r, outcome, p);
 	count_objects(&r->now, p);
 	ob_observer_report(&r->observer, r->request.measure == OB_MEASURE_STEPS, p);
-	report_air(r, p);
+	report_separation(r, p);
 	snprintf(p->state_hash, sizeof p->state_hash, "%016" PRIx64, ob_measure_hash(&r->now));
 	report_time(r, &times, p);
 	p->memory_bytes = times.memory_bytes;

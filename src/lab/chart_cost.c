@@ -6,7 +6,7 @@
 
 #include "lab/chart.h"
 #include "page/page.h"
-#include "reference/convergence.h"
+#include "reference/statistics.h"
 
 // How the results of one engine fall into series
 typedef enum family { FAMILY_STEPS, FAMILY_TOLERANCE, FAMILY_ITERATIONS, FAMILIES } family;

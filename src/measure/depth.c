@@ -58,6 +58,288 @@ static double sphere_and_cylinder(const ob_solid *sphere, const ob_solid *cylind
 	return sphere->size.x - distance;
 }
 
+// ---- boxes with boxes and capsules
+
+enum { BREAKS = 8 }; // both ends of a segment, and where it crosses the 6 planes of a box's faces
+
+static void sort_two(double *low, double *high)
+{
+	if (*low > *high) {
+		double x = *low;
+		*low = *high;
+		*high = x;
+	}
+}
+
+double ob_depth_boxes(const ob_solid *a, const ob_solid *b)
+{
+	ob_vec3 d = ob_sub(b->p, a->p);
+	double least = INFINITY;
+	for (int k = 0; k < 15; k++) {
+		ob_vec3 n = k < 3   ? ob_column(&a->r, k)
+			    : k < 6 ? ob_column(&b->r, k - 3)
+				    : ob_cross(ob_column(&a->r, (k - 6) / 3), ob_column(&b->r, (k - 6) % 3));
+		double length = ob_norm(n);
+		if (length < 1e-6) // parallel edges: the faces' normals say the same
+			continue;
+		double overlap = (ob_solid_extent(a, n) + ob_solid_extent(b, n) - fabs(ob_dot(d, n))) / length;
+		if (overlap < least)
+			least = overlap;
+		if (least <= 0)
+			break;
+	}
+	return least;
+}
+
+// Half the slope in s of the squared distance of the point c + s u (box frame) from the box. Grows with s.
+static double distance_slope(const double c[3], const double u[3], const double h[3], double s)
+{
+	double sum = 0;
+	for (int i = 0; i < 3; i++) {
+		double x = c[i] + s * u[i];
+		sum += u[i] * (x - fmin(fmax(x, -h[i]), h[i]));
+	}
+	return sum;
+}
+
+// Distance of the segment c + s u, |s| <= half, from the box. The slope is linear between neighbouring breaks, so
+// the interval in which it changes its sign gives the nearest point exactly.
+static double segment_from_box(const double c[3], const double u[3], double half, const double h[3])
+{
+	double breaks[BREAKS] = { -half, half };
+	for (int i = 0; i < 3; i++) {
+		double inverse = fabs(u[i]) > 1e-300 ? 1 / u[i] : 0;
+		breaks[2 + 2 * i] = fmin(fmax((-h[i] - c[i]) * inverse, -half), half);
+		breaks[3 + 2 * i] = fmin(fmax((h[i] - c[i]) * inverse, -half), half);
+	}
+	for (int i = 1; i < BREAKS; i++)
+		for (int j = i; j > 0; j--)
+			sort_two(&breaks[j - 1], &breaks[j]);
+	double s = -half;
+	for (int i = 0; i + 1 < BREAKS; i++) {
+		double left = distance_slope(c, u, h, breaks[i]), right = distance_slope(c, u, h, breaks[i + 1]);
+		s = breaks[i + 1];
+		if (left >= 0 || right >= 0) {
+			s = left >= 0 ? breaks[i]
+				      : breaks[i] + (breaks[i + 1] - breaks[i]) * fmin(left / (left - right), 1);
+			break;
+		}
+	}
+	double sum = 0;
+	for (int i = 0; i < 3; i++) {
+		double out = fabs(c[i] + s * u[i]) - h[i];
+		sum += out > 0 ? out * out : 0;
+	}
+	return sqrt(sum);
+}
+
+// How deep the segment itself is in the box: the faces of box minus segment lie across the box's axes, and across the
+// products of its edges with the segment.
+static double segment_in_box(const double c[3], const double u[3], double half, const double h[3])
+{
+	double least = INFINITY;
+	for (int k = 0; k < 6; k++) {
+		double n[3] = { 0, 0, 0 };
+		int i = k % 3, j = (k + 1) % 3, l = (k + 2) % 3;
+		n[i] = k < 3;
+		if (k >= 3) {
+			double length = hypot(u[j], u[l]);
+			if (length < 1e-6)
+				continue;
+			n[j] = -u[l] / length;
+			n[l] = u[j] / length;
+		}
+		double reach = 0, along = 0, middle = 0;
+		for (int m = 0; m < 3; m++) {
+			reach += fabs(n[m]) * h[m];
+			along += n[m] * u[m];
+			middle += n[m] * c[m];
+		}
+		least = fmin(least, reach + fabs(along) * half - fabs(middle));
+	}
+	return least;
+}
+
+double ob_depth_capsule_box(const ob_solid *capsule, const ob_solid *box)
+{
+	ob_vec3 centre = ob_rotate_back(&box->r, ob_sub(capsule->p, box->p));
+	ob_vec3 axis = ob_rotate_back(&box->r, ob_column(&capsule->r, 2));
+	double c[3] = { centre.x, centre.y, centre.z }, u[3] = { axis.x, axis.y, axis.z };
+	double h[3] = { box->size.x, box->size.y, box->size.z };
+	double half = ob_solid_core(capsule);
+	double distance = segment_from_box(c, u, half, h);
+	if (distance > 1e-12 * (h[0] + h[1] + h[2])) // else rounding: the nearest point found may be where it enters
+		return capsule->size.x - distance;
+	return capsule->size.x + fmax(segment_in_box(c, u, half, h), 0);
+}
+
+// ---- search
+//
+// Depth of two convex solids as the least overlap of their projections over all directions n:
+//
+//     overlap(n) = extent_a(n) + extent_b(n) - |n . d|,   d from one centre to the other (all solids are symmetric)
+//
+// The function is smooth but for kinks where n lies along an axis of a solid, or in the plane across one (a box's edges
+// and a cylinder's rims and mantle cast their projections there), and its least value often lies in a kink. So the search
+// takes the axes and their products as they are, walks each plane of kinks in one dimension, and looks for smooth
+// minima in two, from an even scatter of starts.
+
+enum { AXES_MAX = 6, PLANE_STARTS = 16, SPHERE_STARTS = 48, TURNS = 8 };
+
+struct search {
+	const ob_solid *a, *b;
+	ob_vec3 d;
+	ob_vec3 axis[AXES_MAX];
+	int axes;
+	double least;
+	ob_vec3 best; // direction of the least overlap so far
+};
+
+static double overlap(const struct search *s, ob_vec3 n)
+{
+	return ob_solid_extent(s->a, n) + ob_solid_extent(s->b, n) - fabs(ob_dot(n, s->d));
+}
+
+static ob_vec3 unit(ob_vec3 n)
+{
+	return ob_scale(n, 1 / ob_norm(n));
+}
+
+static void try_direction(struct search *s, ob_vec3 n)
+{
+	double x = overlap(s, n);
+	if (x < s->least) {
+		s->least = x;
+		s->best = n;
+	}
+}
+
+static void add_axes(struct search *s, const ob_solid *solid)
+{
+	if (solid->shape == OB_SHAPE_BOX)
+		for (int i = 0; i < 3; i++)
+			s->axis[s->axes++] = ob_column(&solid->r, i);
+	if (solid->shape == OB_SHAPE_CAPSULE || solid->shape == OB_SHAPE_CYLINDER)
+		s->axis[s->axes++] = ob_column(&solid->r, 2);
+}
+
+static void span_across(ob_vec3 n, ob_vec3 *u, ob_vec3 *v)
+{
+	*u = unit(ob_cross(n, fabs(n.x) < .6 ? ob_v3(1, 0, 0) : ob_v3(0, 1, 0)));
+	*v = ob_cross(n, *u);
+}
+
+// Golden section (Kiefer 1953) over the angle (rad) in the plane of u and v.
+static void refine_angle(struct search *s, ob_vec3 u, ob_vec3 v, double low, double high)
+{
+	const double golden = .6180339887498949;
+	for (int i = 0; i < 45; i++) { // the angle to 4e-10 of the first bracket
+		double left = high - golden * (high - low), right = low + golden * (high - low);
+		double at_left = overlap(s, ob_madd(ob_scale(u, cos(left)), sin(left), v));
+		double at_right = overlap(s, ob_madd(ob_scale(u, cos(right)), sin(right), v));
+		if (at_left < at_right)
+			high = right;
+		else
+			low = left;
+	}
+	double middle = .5 * (low + high);
+	try_direction(s, unit(ob_madd(ob_scale(u, cos(middle)), sin(middle), v)));
+}
+
+// The directions across one axis: half a circle, since n and -n give one projection.
+static void walk_plane(struct search *s, ob_vec3 axis)
+{
+	const double angle = M_PI / PLANE_STARTS;
+	double at[PLANE_STARTS];
+	ob_vec3 u, v;
+	span_across(axis, &u, &v);
+	for (int i = 0; i < PLANE_STARTS; i++)
+		at[i] = overlap(s, ob_madd(ob_scale(u, cos(i * angle)), sin(i * angle), v));
+	for (int i = 0; i < PLANE_STARTS; i++)
+		if (at[i] <= at[(i + 1) % PLANE_STARTS] && at[i] <= at[(i + PLANE_STARTS - 1) % PLANE_STARTS])
+			refine_angle(s, u, v, (i - 1) * angle, (i + 1) * angle);
+}
+
+// Pattern search (Hooke and Jeeves 1961): TURNS steps round n, turned a little each time so that no descent is missed
+// for good; the step halves when none helps.
+static void descend_from(struct search *s, ob_vec3 n, double step)
+{
+	double least = overlap(s, n), phase = 0;
+	while (step > 1e-5) { // smooth: the overlap is within the square of that
+		ob_vec3 u, v, from = n;
+		span_across(n, &u, &v);
+		bool better = false;
+		for (int i = 0; i < TURNS; i++) {
+			double angle = phase + i * (2 * M_PI / TURNS);
+			ob_vec3 side = ob_madd(ob_scale(u, cos(angle)), sin(angle), v);
+			ob_vec3 m = unit(ob_madd(from, step, side));
+			double x = overlap(s, m);
+			if (x < least) {
+				least = x;
+				n = m;
+				better = true;
+			}
+		}
+		phase += 2.399963229728653; // the golden angle
+		if (!better)
+			step *= .5;
+	}
+	try_direction(s, n);
+}
+
+// The three best of an even scatter over half the sphere (Fibonacci lattice), and the best so far.
+static void search_sphere(struct search *s)
+{
+	ob_vec3 start[3];
+	double value[3] = { INFINITY, INFINITY, INFINITY };
+	for (int i = 0; i < SPHERE_STARTS; i++) {
+		double z = (i + .5) / SPHERE_STARTS, r = sqrt(1 - z * z), angle = i * 2.399963229728653;
+		ob_vec3 n = ob_v3(r * cos(angle), r * sin(angle), z);
+		double x = overlap(s, n);
+		for (int k = 0; k < 3; k++) {
+			if (x >= value[k])
+				continue;
+			for (int l = 2; l > k; l--) {
+				value[l] = value[l - 1];
+				start[l] = start[l - 1];
+			}
+			value[k] = x;
+			start[k] = n;
+			break;
+		}
+	}
+	descend_from(s, s->best, .1);
+	for (int k = 0; k < 3; k++)
+		descend_from(s, start[k], .2);
+}
+
+double ob_depth_search(const ob_solid *a, const ob_solid *b)
+{
+	struct search s = { .a = a, .b = b, .d = ob_sub(b->p, a->p), .least = INFINITY };
+	add_axes(&s, a);
+	add_axes(&s, b);
+	double distance = ob_norm(s.d);
+	try_direction(&s, distance > 0 ? ob_scale(s.d, 1 / distance) : ob_v3(0, 0, 1));
+	for (int i = 0; i < s.axes; i++)
+		try_direction(&s, s.axis[i]);
+	for (int i = 0; i < s.axes; i++) {
+		for (int j = i + 1; j < s.axes; j++) {
+			ob_vec3 n = ob_cross(s.axis[i], s.axis[j]);
+			if (ob_norm(n) > 1e-6)
+				try_direction(&s, unit(n));
+		}
+	}
+	if (s.least <= 0) // one projection apart is enough
+		return s.least;
+	for (int i = 0; i < s.axes; i++)
+		walk_plane(&s, s.axis[i]);
+	if (s.least > 0)
+		search_sphere(&s);
+	return s.least;
+}
+
+// ---- any two solids
+
 double ob_depth(const ob_solid *a, const ob_solid *b)
 {
 	if (a->shape > b->shape)

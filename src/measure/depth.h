@@ -21,11 +21,11 @@ double ob_depth_boxes(const ob_solid *a, const ob_solid *b);
 // The same for a capsule or sphere and a box.
 double ob_depth_capsule_box(const ob_solid *capsule, const ob_solid *box);
 
-// The same for any two solids but planes, by a search over directions for the least overlap of their shadows. Every
+// The same for any two solids but planes, by a search over directions for the least overlap of their projections. Every
 // direction gives an upper bound, so the result is never too small; it is too large by less than 1e-7 of their size.
 double ob_depth_search(const ob_solid *a, const ob_solid *b);
 
-// Half the width of the solid's shadow on the unit direction n (m): its support function. Not for planes.
+// Half the width of the solid's projection on the unit direction n (m): its support function. Not for planes.
 double ob_solid_extent(const ob_solid *s, ob_vec3 n);
 // Half length (m) of the segment inside a capsule; 0 for a sphere.
 static inline double ob_solid_core(const ob_solid *s)

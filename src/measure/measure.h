@@ -47,12 +47,12 @@ typedef struct ob_penetration {
 // max_m and mean_m are NaN when there is no memory.
 void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out);
 
-typedef struct ob_air {
-	double max_m, mean_m; // over pairs that press on each other; 0 where they do touch, or penetrate
+typedef struct ob_separation {
+	double max_m, mean_m; // over contacts that carry an impulse; 0 where they touch or penetrate
 	size_t pairs;
-} ob_air;
-// How far objects are from each other that, as a snapshot taken with its contacts says, press on each other. The distance is that
-// of the shapes as they are, along the best of the axes that could part them: never more than it is.
-void ob_measure_air(const ob_snapshot *s, ob_air *out);
+} ob_separation;
+// Separation of contacts that carry an impulse, in a snapshot taken with its contacts: the distance of the true shapes
+// along the best of the axes that could part them, never more than it is.
+void ob_measure_separation(const ob_snapshot *s, ob_separation *out);
 
 #endif

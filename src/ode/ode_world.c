@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "base/burden.h"
+#include "base/cpu.h"
 #include "ode/ode_body.h"
 #include "ode/ode_boxed.h"
 #include "ode/ode_geom.h"
@@ -182,7 +182,7 @@ static void near(void *data, dGeomID one, dGeomID other)
 		a = lower;
 	}
 	w->box_tests++;
-	ob_burden(w->setup.load);
+	ob_synthetic_load(w->setup.load);
 	dContactGeom point[CAP_POINTS];
 	bool cap = dGeomGetClass(a->geom) == dCylinderClass || dGeomGetClass(b->geom) == dCylinderClass;
 	int n = w->setup.boxed ? ob_ode_collide_boxed(a->geom, b->geom, point)

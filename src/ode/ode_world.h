@@ -15,7 +15,7 @@ typedef struct ob_ode_world_setup {
 	uint32_t objects;    // ids are 0 .. objects-1
 	bool sleeping;       // ODE's auto-disable
 	bool boxed;          // objects touch where their axis-aligned boxes do (ode_boxed.h)
-	uint32_t load;       // base/burden.h, at each pair of boxes that the space finds to overlap
+	uint32_t load;       // base/cpu.h, at each pair of boxes that the space finds to overlap
 	bool hashed;         // pairs are found by a hash space instead of sweep and prune
 } ob_ode_world_setup;
 

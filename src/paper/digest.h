@@ -4,7 +4,6 @@
 #define OB_PAPER_DIGEST_H
 
 #include "paper/sample.h"
-#include "reference/line.h"
 #include "reference/statistics.h"
 
 typedef enum ob_paper_quantity {

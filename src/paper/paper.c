@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/burden.h"
+#include "base/cpu.h"
 #include "base/clock.h"
 #include "paper/trial.h"
 
@@ -100,7 +100,7 @@ static double time_sum(void)
 {
 	double begun = ob_clock_thread_cpu();
 	for (int i = 0; i < SUMS; i++)
-		ob_burden(ob_paper_setups[OB_PAPER_COMMON_LOAD].load);
+		ob_synthetic_load(ob_paper_setups[OB_PAPER_COMMON_LOAD].load);
 	return (ob_clock_thread_cpu() - begun) / SUMS;
 }
 

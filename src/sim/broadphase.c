@@ -7,7 +7,7 @@
 
 #include <ob/motion.h>
 
-#include "base/burden.h"
+#include "base/cpu.h"
 #include "sim/publish.h"
 
 // Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m.
@@ -151,7 +151,7 @@ typedef struct answer {
 static bool overlap(answer *to, const float *a, const float *b)
 {
 	to->tests++;
-	ob_burden(to->load);
+	ob_synthetic_load(to->load);
 	return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
 }
 

@@ -1,6 +1,6 @@
 #include "sim/look.h"
 
-#include "base/burden.h"
+#include "base/cpu.h"
 #include "ode/ode_collide.h"
 #include "sim/boxed.h"
 
@@ -47,7 +47,7 @@ static void find(void *with, const ob_placed *a, const ob_placed *b, double marg
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	if (run->narrow_phase == OB_NARROW_AABB) {
 		s->counters.box_tests++;
-		ob_burden(run->load);
+		ob_synthetic_load(run->load);
 		ob_manifold_aabb(a, b, margin, out);
 	} else if (!ob_manifold_find(a, b, margin, out)) {
 		find_by_ode(a, b, margin, out);

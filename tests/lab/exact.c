@@ -1,8 +1,6 @@
 #include "exact.h"
 
-#include "reference/ballistics.h"
-#include "reference/friction.h"
-#include "reference/impact.h"
+#include "reference/mechanics.h"
 
 static bool is_static(const ob_engine_world *w, uint32_t id)
 {
@@ -121,7 +119,7 @@ ob_state exact_slip(const ob_engine_world *w, uint32_t id, double t)
 	if (is_static(w, id))
 		return s;
 	ob_reference_roll r = ob_reference_slip_to_roll(s.v.x, w->passport[id].friction, -w->gravity.z, t);
-	s.pose.p.x += r.way;
+	s.pose.p.x += r.distance;
 	s.v.x = r.speed;
 	s.w.y = r.surface / w->passport[id].size.x;
 	return s;

@@ -168,16 +168,16 @@ static void test_penetration_of_many(void)
 	CHECK_NEAR(out.mean_m * (double)pairs, sum, 1e-6);
 }
 
-// Air between what is said to press on each other: spheres of .5 m a distance apart, a pair counted once, penetration
-// as none.
-static void test_air(void)
+// Separation of contacts that carry an impulse: spheres of .5 m a distance apart, a pair counted once, penetration as
+// none.
+static void test_separation(void)
 {
 	ob_snapshot s = snapshot(3);
-	ob_air air;
+	ob_separation apart;
 	motions[1].p.x = 1.25;
 	motions[2].p.y = .9;
-	ob_measure_air(&s, &air);
-	CHECK(air.pairs == 0 && air.max_m == 0 && air.mean_m == 0);
+	ob_measure_separation(&s, &apart);
+	CHECK(apart.pairs == 0 && apart.max_m == 0 && apart.mean_m == 0);
 	ob_contact_point point[] = { { .a = 0, .b = 1 },
 				     { .a = 0, .b = 1, .impulse = 1 },
 				     { .a = 0, .b = 2, .impulse = 1 },
@@ -185,10 +185,10 @@ static void test_air(void)
 				     { .a = 1, .b = 2 } };
 	s.contact = point;
 	s.contacts = 5;
-	ob_measure_air(&s, &air);
-	CHECK(air.pairs == 2); // the fourth names what is not there, the last bears nothing
-	CHECK_NEAR(air.max_m, .25, 1e-12);
-	CHECK_NEAR(air.mean_m, .125, 1e-12);
+	ob_measure_separation(&s, &apart);
+	CHECK(apart.pairs == 2); // the fourth names what is not there, the last bears nothing
+	CHECK_NEAR(apart.max_m, .25, 1e-12);
+	CHECK_NEAR(apart.mean_m, .125, 1e-12);
 }
 
 int main(void)
@@ -199,6 +199,6 @@ int main(void)
 	test_hash();
 	test_penetration_by_hand();
 	test_penetration_of_many();
-	test_air();
+	test_separation();
 	return check_end();
 }

@@ -1,4 +1,5 @@
-// Means, medians and their intervals: against tables, and by drawing many samples.
+// Means, medians and their intervals against tables and by drawing many samples; lines against a published example;
+// orders of convergence of quadrature rules, whose own are known.
 #include "reference/statistics.h"
 
 #include "check.h"
@@ -79,11 +80,94 @@ static void test_coverage(void)
 	CHECK((double)median / TRIALS < .99);
 }
 
+// ---- lines
+
+// Anscombe 1973, "Graphs in statistical analysis", first set: slope .500 with a standard error of .118, intercept 3.00,
+// residual sum of squares 13.75
+static void test_anscombe(void)
+{
+	static const double x[] = { 10, 8, 13, 9, 11, 14, 6, 4, 12, 7, 5 };
+	static const double y[] = { 8.04, 6.95, 7.58, 8.81, 8.33, 9.96, 7.24, 4.26, 10.84, 4.82, 5.68 };
+	ob_line l = ob_reference_line(11, x, y);
+	CHECK(l.n == 11);
+	CHECK_NEAR(l.slope, .500, .0005);
+	CHECK_NEAR(l.intercept, 3.00, .005);
+	CHECK_NEAR(l.squares, 13.763, .001);
+	CHECK_NEAR(l.mean_y, 7.5009, 1e-4);
+	// 2.262 = t of 9 degrees of freedom
+	CHECK_NEAR(l.slope_high - l.slope, 2.262 * .1179, 2e-4);
+	CHECK_NEAR(l.slope - l.slope_low, 2.262 * .1179, 2e-4);
+}
+
+static void test_line_exact(void)
+{
+	static const double x[] = { 1, 2, 3, 4 }, y[] = { 5, 3, 1, -1 };
+	ob_line l = ob_reference_line(4, x, y);
+	CHECK_NEAR(l.slope, -2, 1e-14);
+	CHECK_NEAR(l.intercept, 7, 1e-14);
+	CHECK_NEAR(l.squares, 0, 1e-24);
+	CHECK_NEAR(l.slope_low, -2, 1e-11);
+}
+
+static void test_line_too_short(void)
+{
+	static const double x[] = { 2, 2, 2 }, y[] = { 1, 2, 3 };
+	CHECK(isnan(ob_reference_line(3, x, y).slope));
+	CHECK(isnan(ob_reference_line(1, x, y).slope));
+	CHECK(isnan(ob_reference_line(0, x, y).slope));
+	static const double two[] = { 1, 2 };
+	ob_line l = ob_reference_line(2, two, y);
+	CHECK_NEAR(l.slope, 1, 1e-14);
+	CHECK(isnan(l.slope_low) && isnan(l.slope_high));
+}
+
+// ---- orders of convergence
+
+enum { RUNS = 6 };
+
+// The integral of exp over [0, 1] by a rule of order 1, 2 or 4 with n steps.
+static double quadrature(int order, int n)
+{
+	double h = 1. / n, sum = 0;
+	for (int i = 0; i < n; i++) {
+		double left = exp(i * h), middle = exp((i + .5) * h), right = exp((i + 1) * h);
+		sum += h * (order == 1 ? left : order == 2 ? .5 * (left + right) : (left + 4 * middle + right) / 6);
+	}
+	return sum;
+}
+
+static void test_quadrature(void)
+{
+	double exact = exp(1) - 1, h[RUNS], error[RUNS];
+	const int twice[RUNS] = { 4, 8, 16, 32, 64, 128 }, uneven[RUNS] = { 4, 6, 11, 17, 31, 48 };
+	for (int order = 1; order <= 4; order *= 2)
+		for (int k = 0; k < 2; k++) {
+			for (int i = 0; i < RUNS; i++) {
+				h[i] = 1. / (k ? uneven : twice)[i];
+				error[i] = fabs(quadrature(order, (k ? uneven : twice)[i]) - exact);
+			}
+			CHECK_NEAR(ob_reference_order(RUNS, h, error, 1e-14), order, .05);
+		}
+}
+
+// Where rounding rules the error, there is no order.
+static void test_no_order(void)
+{
+	const double h[3] = { 1, .5, .25 }, error[3] = { 2, 2, 2 };
+	CHECK(isnan(ob_reference_order(3, h, error, 5)));
+	CHECK(isnan(ob_reference_order(0, h, error, 0)));
+}
+
 int main(void)
 {
 	test_student();
 	test_small();
 	test_median_interval();
 	test_coverage();
+	test_anscombe();
+	test_line_exact();
+	test_line_too_short();
+	test_quadrature();
+	test_no_order();
 	return check_end();
 }

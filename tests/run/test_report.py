@@ -13,7 +13,7 @@ momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps fram
 step substeps exchange integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies passes total_s
 frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
 islands_over energy_recovered narrow load box_tests step_p90_s step_max_s critical_s work_s held_s gate_s gate_cpu_s idle_s
-elapsed_s host_cpu_s renderer_cpu_s switches deaths worker_memory_bytes air_max_m air_mean_m trace_events
+elapsed_s host_cpu_s renderer_cpu_s switches deaths worker_memory_bytes separation_max_m separation_mean_m trace_events
 trace_lost""".split()
 
 

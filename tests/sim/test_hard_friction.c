@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "reference/friction.h"
+#include "reference/mechanics.h"
 
 static const double g = 9.81; // m/s^2
 

@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "reference/friction.h"
+#include "reference/mechanics.h"
 
 enum { BOX = 1, BALL = 2, BALLS = 25 };
 static const double push = 150; // N

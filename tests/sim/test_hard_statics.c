@@ -3,7 +3,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "reference/statics.h"
+#include "reference/mechanics.h"
 
 // ---- bricks: 1 m long, each shifted by "stretch" times what the harmonic series allows
 

@@ -1,7 +1,7 @@
 // What touches what: the shapes as they are, or the boxes along the axes round them; and what a box test costs.
 #include <stdlib.h>
 
-#include "base/burden.h"
+#include "base/cpu.h"
 #include "base/clock.h"
 #include "sim/boxed.h"
 
@@ -10,7 +10,7 @@
 
 static const double diagonal = .7853981633974483; // 45 degrees
 
-// Two unit cubes next to each other, one turned about the vertical: .1 m of air between them, but not between their
+// Two unit cubes next to each other, one turned about the vertical: .1 m apart, but not between their
 // boxes.
 static little_scene *neighbours(ob_narrow_phase narrow)
 {
@@ -24,7 +24,7 @@ static little_scene *neighbours(ob_narrow_phase narrow)
 }
 
 // How far the boxes round the two objects are apart along the axis that parts them best (m).
-static double air_between_boxes(const little_universe *l)
+static double gap_between_boxes(const little_universe *l)
 {
 	double a[6], b[6], most = -INFINITY;
 	ob_shape_bounds(OB_SHAPE_BOX, ob_v3(.5, .5, .5), little_state(l, 0).pose, a);
@@ -34,7 +34,7 @@ static double air_between_boxes(const little_universe *l)
 	return most;
 }
 
-static void test_air_between(ob_narrow_phase narrow)
+static void test_gap_between(ob_narrow_phase narrow)
 {
 	little_scene *s = neighbours(narrow);
 	little_universe l;
@@ -45,7 +45,7 @@ static void test_air_between(ob_narrow_phase narrow)
 	ob_universe_count(l.u, &c);
 	ob_vec3 apart = ob_sub(little_state(&l, 1).pose.p, little_state(&l, 0).pose.p);
 	if (narrow == OB_NARROW_AABB) {
-		CHECK_NEAR(air_between_boxes(&l), 0, 1e-3); // pushed as far as it had to be
+		CHECK_NEAR(gap_between_boxes(&l), 0, 1e-3); // pushed as far as it had to be
 		CHECK(c.box_tests > before.box_tests);
 	} else {
 		CHECK_NEAR(apart.x, .9, 0);
@@ -57,7 +57,7 @@ static void test_air_between(ob_narrow_phase narrow)
 	free(s);
 }
 
-// What falls onto the ground comes to lie on its box: a ball on its lowest point, a turned cube on air.
+// What falls onto the ground comes to lie on its box: a ball on its lowest point, a turned cube above it.
 static void test_on_the_ground(ob_narrow_phase narrow)
 {
 	little_scene *s = little_scene_new();
@@ -106,14 +106,14 @@ static double least_time(uint32_t load)
 	for (int i = 0; i < 20; i++) {
 		double begun = ob_clock_thread_cpu();
 		for (int k = 0; k < 100; k++)
-			ob_burden(load);
+			ob_synthetic_load(load);
 		least = fmin(least, ob_clock_thread_cpu() - begun);
 	}
 	return least;
 }
 
 // A hundred times as many numbers take far longer: the compiler has left the sum alone.
-static void test_burden(void)
+static void test_synthetic_load(void)
 {
 	CHECK(least_time(100000) > 20 * least_time(1000));
 	CHECK(least_time(1000) > 10 * least_time(0));
@@ -121,11 +121,11 @@ static void test_burden(void)
 
 int main(void)
 {
-	test_air_between(OB_NARROW_OBB);
-	test_air_between(OB_NARROW_AABB);
+	test_gap_between(OB_NARROW_OBB);
+	test_gap_between(OB_NARROW_AABB);
 	test_on_the_ground(OB_NARROW_OBB);
 	test_on_the_ground(OB_NARROW_AABB);
 	test_find();
-	test_burden();
+	test_synthetic_load();
 	return check_end();
 }

@@ -2,7 +2,7 @@
 #include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
-#include "reference/ballistics.h"
+#include "reference/mechanics.h"
 
 enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // of body 1 in ob_trial.memory
 

@@ -2,7 +2,7 @@
 #include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
-#include "reference/ballistics.h"
+#include "reference/mechanics.h"
 
 static void build_projectile(ob_engine_world *w, uint32_t run)
 {

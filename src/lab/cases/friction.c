@@ -2,7 +2,7 @@
 #include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
-#include "reference/friction.h"
+#include "reference/mechanics.h"
 
 static const double mu = .5;
 

@@ -3,7 +3,7 @@
 #include "lab/cases/cases.h"
 #include "lab/cases/head_on.h"
 #include "lab/look.h"
-#include "reference/impact.h"
+#include "reference/mechanics.h"
 
 ob_head_on ob_head_on_of(uint32_t run)
 {

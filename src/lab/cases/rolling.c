@@ -2,7 +2,7 @@
 #include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
-#include "reference/friction.h"
+#include "reference/mechanics.h"
 
 enum { BOX = 1, BALL = 2, BALLS = 25 };
 static const double push = 150; // N

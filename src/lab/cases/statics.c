@@ -2,7 +2,7 @@
 #include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
-#include "reference/statics.h"
+#include "reference/mechanics.h"
 
 enum { WRONG_SIDE, MOVED, SIDE_FIGURES };
 // clang-format off

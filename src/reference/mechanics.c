@@ -1,6 +1,45 @@
-#include "reference/friction.h"
+#include "reference/mechanics.h"
 
 #include <math.h>
+
+ob_vec3 ob_reference_parabola(ob_vec3 p, ob_vec3 v, ob_vec3 a, double t)
+{
+	return ob_madd(ob_madd(p, t, v), .5 * t * t, a);
+}
+
+static double fall_time(double height, double g)
+{
+	return sqrt(2 * height / g);
+}
+
+double ob_reference_apex(double height, double e, int k)
+{
+	return height * pow(e, 2 * k);
+}
+
+double ob_reference_impact_time(double height, double g, double e, int k)
+{
+	double falls = 1, power = 1; // in times of the first fall
+	for (int i = 1; i < k; i++) {
+		power *= e;
+		falls += 2 * power;
+	}
+	return falls * fall_time(height, g);
+}
+
+ob_reference_pair ob_reference_impact(double mass_a, double mass_b, ob_reference_pair before, double e)
+{
+	double share_a = isinf(mass_b) ? 1 : isinf(mass_a) ? 0 : mass_b / (mass_a + mass_b); // of the change
+	double share_b = isinf(mass_b) ? 0 : isinf(mass_a) ? 1 : mass_a / (mass_a + mass_b);
+	double change = (1 + e) * (before.b - before.a);
+	return (ob_reference_pair){ before.a + share_a * change, before.b - share_b * change };
+}
+
+void ob_reference_cradle(int n, int k, double v, double *velocity)
+{
+	for (int i = 0; i < n; i++)
+		velocity[i] = i < n - k ? 0 : v;
+}
 
 double ob_reference_incline(double g, double angle, double mu)
 {
@@ -59,4 +98,22 @@ ob_reference_rolling ob_reference_push(double force, double mu_ground, double bo
 	r.ball_a = r.ball / ball_mass;
 	r.grip = r.ball / (ball_mass * g);
 	return r;
+}
+
+double ob_reference_overhang_shift(int k)
+{
+	return .5 / k;
+}
+
+double ob_reference_overhang(int n)
+{
+	double reach = 0;
+	for (int k = n; k >= 1; k--)
+		reach += ob_reference_overhang_shift(k);
+	return reach;
+}
+
+double ob_reference_cards_grip(double angle, double length, double thickness)
+{
+	return .5 * (tan(angle) - thickness / length);
 }

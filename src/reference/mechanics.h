@@ -1,0 +1,90 @@
+// Closed forms of mechanics with their sources: free fall and bouncing, central impacts, Coulomb friction, statics. Pure
+// functions, thread-safe. SI units.
+#ifndef OB_REFERENCE_MECHANICS_H
+#define OB_REFERENCE_MECHANICS_H
+
+#include <ob/vec.h>
+
+// ---- Free fall and bouncing of a point mass
+
+// p + v t + a t^2 / 2 (Galilei 1638, Discorsi, fourth day): the centre of mass of any body in free flight.
+ob_vec3 ob_reference_parabola(ob_vec3 p, ob_vec3 v, ob_vec3 a, double t);
+
+// A ball dropped from height (m, of its lowest point) onto a fixed ground, with Newton's restitution e: each impact
+// leaves e times the speed (Newton 1687, Principia, scholium to the laws), so it rises to e^2 of the height.
+double ob_reference_apex(double height, double e, int k); // m: height e^(2 k), after the k-th impact; k = 0: height
+double ob_reference_impact_time(double height, double g, double e, int k); // s after the drop, of the k-th, from 1
+
+// ---- Central impacts
+
+typedef struct ob_reference_pair {
+	double a, b; // m/s, along the line of centres
+} ob_reference_pair;
+
+// Velocities after a central impact of masses a and b (kg; INFINITY = fixed) with restitution e: momentum is kept, and
+// b - a after = -e (b - a) before (Newton 1687, Principia, scholium to the laws and corollary 3).
+ob_reference_pair ob_reference_impact(double mass_a, double mass_b, ob_reference_pair before, double e);
+
+// Newton's cradle: n equal spheres in a row that touch, the first k come in together at speed v, e = 1. Pair after pair
+// changes velocities until the last k go on at v and the rest stand still (Herrmann and Seitz 1982, Am. J. Phys. 50,
+// 977). Fills velocity[n].
+void ob_reference_cradle(int n, int k, double v, double *velocity);
+
+// ---- Coulomb friction (Coulomb 1785, Theorie des machines simples) on blocks and solid spheres: angles in rad against
+// the horizontal; one mu for sticking and sliding
+
+// Acceleration down a slope of a block that starts at rest: 0 if mu >= tan(angle), else g (sin - mu cos).
+double ob_reference_incline(double g, double angle, double mu);
+double ob_reference_friction_angle(double mu); // rad: the slope on which it just sticks, atan(mu)
+
+// A block at speed v on level ground comes to rest after v / (mu g), having gone v^2 / (2 mu g).
+double ob_reference_stop_time(double v, double mu, double g);
+double ob_reference_stop_distance(double v, double mu, double g);
+
+// A solid sphere set down at speed v without spin slides at -mu g while mu m g r / (2 m r^2 / 5) spins it up; it rolls
+// from t = 2 v / (7 mu g) on, at 5/7 v (Routh 1905, Dynamics of a System of Rigid Bodies, elementary part, on a sphere
+// that slides and rolls; the speed, for any law of friction, from the angular momentum about the line of contact).
+double ob_reference_roll_time(double v, double mu, double g);
+double ob_reference_roll_speed(double v);
+typedef struct ob_reference_roll {
+	double distance; // m
+	double speed; // m/s
+	double surface; // m/s: radius times rate of turn; = speed while it rolls
+} ob_reference_roll;
+ob_reference_roll ob_reference_slip_to_roll(double v, double mu, double g, double t);
+
+// Acceleration down a slope of a solid sphere that starts at rest: it rolls at 5/7 g sin if mu >= 2/7 tan(angle), else
+// slides at g (sin - mu cos) (Routh 1905, as above).
+double ob_reference_ball_incline(double g, double angle, double mu);
+double ob_reference_ball_grip(double angle); // 2/7 tan(angle): the least mu with which it rolls
+
+// SimBenchmark's rolling test (Kang and Hwangbo 2018): a box of mass M on the ground is pushed by a force along it, n
+// solid spheres of mass m on it roll. The ground takes mu (M + n m) g off the force; a sphere's lowest point, which
+// the friction f accelerates at f / m + f r^2 / (2 m r^2 / 5) = 7 f / (2 m), keeps up with the box:
+// f = (F - f_ground) / M / (3.5 / m + n / M).
+typedef struct ob_reference_rolling {
+	double ground, ball; // N: friction from the ground on the box, from the box on each sphere
+	double box_a, ball_a; // m/s^2, along the force
+	double grip; // least mu between box and sphere for which this holds
+} ob_reference_rolling;
+ob_reference_rolling ob_reference_push(double force, double mu_ground, double box_mass, double ball_mass, int balls,
+				       double g);
+
+// ---- Statics: what stands and what falls
+
+// The farthest that a stack of n equal bricks, one on each level, reaches over the edge of a table, in lengths of a
+// brick: sum of 1 / (2 k), k = 1 .. n (Johnson 1955, Am. J. Phys. 23, 240; Paterson and Zwick 2009, Am. Math.
+// Monthly 116, 19). The k-th brick from the top is shifted by 1 / (2 k) against the one below.
+double ob_reference_overhang(int n);
+double ob_reference_overhang_shift(int k); // in lengths; k from 1, at the top
+
+// Two equal boxes lean against each other at the top, their long sides at "angle" (rad) to the vertical. Each stands
+// on its inner lower edge and touches the other with its inner upper edge, so with length l and thickness d its centre
+// lies (l sin - d cos) / 2 inwards of its foot. The other pushes horizontally, by symmetry, at height l cos:
+//	push l cos = weight (l sin - d cos) / 2,
+// and the ground's friction must hold against the push: mu >= push / weight = (tan(angle) - d / l) / 2, which is
+// tan(angle) / 2 for thin ones. The two boxes must be able to push horizontally where they touch: between themselves,
+// rough enough for the normal that is found there. The least mu between each box and the ground:
+double ob_reference_cards_grip(double angle, double length, double thickness);
+
+#endif
