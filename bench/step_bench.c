@@ -91,7 +91,7 @@ static void bench_machine(void)
 // ---- the pair kernel
 
 // Four pairs, at velocities that the last exchange has not seen: every sweep has something to do.
-static void bench_kernel(const char *what, const ob_kernel *k, ob_kind kind)
+static void bench_kernel(const char *what, const ob_kernel *k, ob_batch_kind kind)
 {
 	enum { SCENES = 8, ROUNDS = 500 };
 	static scene s[SCENES];
@@ -99,13 +99,13 @@ static void bench_kernel(const char *what, const ob_kernel *k, ob_kind kind)
 	double best = 1e9;
 	for (int i = 0; i < SCENES; i++)
 		random_scene_of(&s[i], &seed, .1, kind);
-	ob_pass pass = { .h = substep, .sweeps = 4, .wake = 2e-3, .jump = .1 };
+	ob_solver_iteration iteration = { .h = substep, .block_sweeps = 4, .wake_threshold = 2e-3, .impact_threshold = .1 };
 	for (int b = 0; b < BATCHES; b++) {
 		double start = ob_clock_thread_cpu();
 		for (int r = 0; r < ROUNDS; r++)
 			for (int i = 0; i < SCENES; i++) {
 				memcpy(s[i].u, s[i].v, sizeof s[i].u);
-				k->solve(&s[i].batch, &pass, s[i].u, s[i].v, s[i].d, s[i].delta);
+				k->solve(&s[i].batch, &iteration, s[i].u, s[i].v, s[i].d, s[i].delta);
 				s[i].v[1 + r % 8][r % 3] += r % 2 ? 1e-2 : -1e-2;
 			}
 		best = fmin(best, ob_clock_thread_cpu() - start);
@@ -198,7 +198,7 @@ int main(void)
 	bench_kernel("exchange of a pair, portable", &ob_kernel_portable, OB_KIND_FULL);
 	bench_kernel("exchange of a pair", ob_kernel_best(), OB_KIND_FULL);
 	bench_kernel("exchange of a pair, one point", ob_kernel_best(), OB_KIND_POINT);
-	bench_kernel("exchange of a pair, one point without friction", ob_kernel_best(), OB_KIND_SLICK_POINT);
+	bench_kernel("exchange of a pair, one point without friction", ob_kernel_best(), OB_KIND_FRICTIONLESS_POINT);
 	bench_plans();
 	bench_index(1000);
 	bench_index(100000);

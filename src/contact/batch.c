@@ -24,9 +24,9 @@ void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)
 	*t2 = ob_cross(n, *t1);
 }
 
-void ob_batch_init(ob_batch *b, ob_kind kind)
+void ob_batch_init(ob_batch *b, ob_batch_kind kind)
 {
-	memset(b, 0, offsetof(ob_batch, spread)); // which is made before it is used
+	memset(b, 0, offsetof(ob_batch, coupling)); // which is made before it is used
 	b->kind = kind;
 	for (int i = 0; i < 4; i++)
 		b->gap[i] = lanes_of(ob_no_contact);
@@ -37,7 +37,7 @@ void ob_batch_clear(ob_batch *b, int l)
 {
 	static const ob_vec3 zero;
 	static const double none[6];
-	ob_lane empty = {
+	ob_batch_lane empty = {
 		.normal = { 0, 0, 1 }, .inv_inertia_a = none, .inv_inertia_b = none, .arm_a = &zero, .arm_b = &zero
 	};
 	ob_batch_set(b, l, &empty);
@@ -46,7 +46,7 @@ void ob_batch_clear(ob_batch *b, int l)
 		b->impulse[i][l] = b->impulse_start[i][l] = 0;
 }
 
-void ob_batch_set(ob_batch *b, int l, const ob_lane *in)
+void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 {
 	ob_vec3 n = in->normal, t1, t2, ca = { 0, 0, 0 }, cb = { 0, 0, 0 };
 	ob_tangents(n, &t1, &t2);
@@ -101,10 +101,10 @@ void ob_batch_prepare(ob_batch *b)
 	ob_kernel_best()->prepare(b);
 }
 
-void ob_batch_solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
-		    ob_body_row *delta)
+void ob_batch_solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
+		    const ob_body_row *d, ob_body_row *delta)
 {
-	ob_kernel_best()->solve(b, pass, u, v, d, delta);
+	ob_kernel_best()->solve(b, iteration, u, v, d, delta);
 }
 
 bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
@@ -112,17 +112,17 @@ bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_bod
 	return ob_kernel_best()->project(b, slop, beta, jacobi, d, delta);
 }
 
-void ob_batch_cap(ob_batch *b, const double *cap_impulse, double cap_velocity)
+void ob_batch_limit_prediction(ob_batch *b, const double *cap_impulse, double cap_velocity)
 {
-	ob_kernel_best()->cap(b, cap_impulse, cap_velocity);
+	ob_kernel_best()->limit_prediction(b, cap_impulse, cap_velocity);
 }
 
-void ob_batch_rates(const ob_batch *b, const ob_body_row *rows, lanes *r)
+void ob_batch_row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r)
 {
-	ob_kernel_best()->rates(b, rows, r);
+	ob_kernel_best()->row_velocities(b, rows, r);
 }
 
-void ob_batch_push(const ob_batch *b, const lanes *x, ob_body_row *rows)
+void ob_batch_apply_impulses(const ob_batch *b, const lanes *x, ob_body_row *rows)
 {
-	ob_kernel_best()->push(b, x, rows);
+	ob_kernel_best()->apply_impulses(b, x, rows);
 }

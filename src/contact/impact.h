@@ -1,10 +1,10 @@
-// Impacts with restitution, at their own instant inside a substep.
+// Impacts with restitution, at their own instant inside a substep. Pure functions, thread-safe.
 //
-// Two objects that approach faster than a threshold and will meet within the substep exchange one impulse: that of the
+// Two bodies that approach faster than a threshold and will touch within the substep get one impulse: that of the
 // plastic impact with friction, times 1 + e (Poisson's hypothesis for the whole block), so that each point that hits
 // leaves at e times its approach at the instant of contact, and no pair ever gains energy. Newton's law point by point
-// with friction does gain (Kane and Levinson 1985). One pair at a time, each on what the last one published: an impact
-// travels through a row of touching spheres as it does in Newton's cradle.
+// with friction does gain (Kane and Levinson 1985). One pair at a time, each on the velocities that the pair before has
+// left: an impact travels through a row of touching spheres as it does in Newton's cradle.
 #ifndef OB_CONTACT_IMPACT_H
 #define OB_CONTACT_IMPACT_H
 
@@ -21,17 +21,30 @@ typedef struct ob_impact {
 // The state of all bodies at the substep's start.
 typedef struct ob_impact_rows {
 	const ob_body_row *v; // velocities
-	const ob_body_row
-		*dv; // change of velocity that the substep will bring without the impact: acceleration times h
+	const ob_body_row *dv; // change of velocity in the substep without the impact: acceleration times h
 	const ob_body_row *d; // displacements since the gaps were measured
 } ob_impact_rows;
 
 // When will the first point of lane l of the batch hit (s)? Infinity: not within the substep.
-double ob_impact_pending(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at);
+double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at);
 
 // Solves it: adds the changes to the rows out_v and, so that the old velocity holds until the instant, to out_d
 // (which may be at->v and at->d themselves). Returns the instant of the last point's hit (s); < 0: nothing hits.
 double ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
-		     ob_body_row *out_d);
+		       ob_body_row *out_d);
+
+// ---- an impact at a single point
+
+typedef struct ob_point_impact {
+	double inv_mass; // 1/kg
+	ob_vec3 inertia; // kg m^2, principal
+	double friction, restitution; // of the pair
+} ob_point_impact;
+
+// One point of a body hits what does not move: most of what happens to bodies that fly. Changes state->v and state->w
+// by the impulse on the point at "arm" (m, from the centre, world frame) of a surface with this unit normal. The point
+// must approach. The normal velocity afterwards is -restitution times that before where friction sticks or there is
+// none, and energy never grows.
+void ob_point_impact_solve(const ob_point_impact *r, ob_vec3 arm, ob_vec3 normal, ob_state *state);
 
 #endif

@@ -1,28 +1,29 @@
-// The arithmetic of the batches. Compiled once for each instruction set under the name OB_KERNEL (see meson.build): no
-// lane sees another and nothing is contracted, so the bits are the same.
+// The contact solver's arithmetic on a batch. Compiled once for each instruction set under the name OB_KERNEL (see
+// meson.build): no lane sees another and nothing is contracted, so the bits are the same.
 #include "contact/kernel.h"
 
 #include <string.h>
 
-static const double surprise = 1e-4; // m/s: a first sweep that changes more was not foretold by the last substep
-static const double settled = 1e-10; // m/s: a solution that changes by less is done
-static const int most_sweeps = 64;
-static const int rough_sweeps = 2; // of what will be solved again in the next round
-static const double held = 1e-7; // m: a point that presses stays as far from the surface as it is, if that is less
-static const double pushed = .01; // of the slop: what is deeper by less is not pushed, or that would never end
+static const double unpredicted_change =
+	1e-4; // m/s: a first sweep that changes more was not predicted by warm starting
+static const double converged_change = 1e-10; // m/s: a block whose sweep changes less is solved
+static const int max_block_sweeps = 64;
+static const int coarse_block_sweeps = 2; // of a block that will be solved again in the next iteration
+static const double resting_gap = 1e-7; // m: a point that presses keeps its distance from the surface, if that is less
+static const double min_projection = .01; // of the slop: shallower penetrations are not pushed, or that would never end
 
 // The rows of a pair depend on its kind alone. Each kind has a kernel of its own, made by the compiler from the same
 // text: where "kind" is a constant, what is not in use falls away.
-#define FOR_KIND static inline __attribute__((always_inline))
+#define PER_KIND static inline __attribute__((always_inline))
 
-FOR_KIND int points_of(ob_kind kind)
+PER_KIND int points_of(ob_batch_kind kind)
 {
 	return kind & OB_KIND_POINT ? 1 : OB_POINTS;
 }
 
-FOR_KIND bool in_use(ob_kind kind, int row)
+PER_KIND bool in_use(ob_batch_kind kind, int row)
 {
-	bool rough = !(kind & OB_KIND_SLICK);
+	bool rough = !(kind & OB_KIND_FRICTIONLESS);
 	return row < OB_POINTS ? row < points_of(kind) : row < 6 ? rough : rough && !(kind & OB_KIND_POINT);
 }
 
@@ -38,7 +39,7 @@ static inline lanes dot3(const lanes *a, const lanes *b)
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-FOR_KIND void prepare_kind(ob_batch *b, ob_kind kind)
+PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind)
 {
 	const lanes *ja[7] = { b->ja[0], b->ja[1], b->ja[2], b->ja[3], b->fa1, b->fa2, b->n };
 	const lanes *jb[7] = { b->jb[0], b->jb[1], b->jb[2], b->jb[3], b->fb1, b->fb2, b->n };
@@ -66,7 +67,7 @@ FOR_KIND void prepare_kind(ob_batch *b, ob_kind kind)
 	for (int i = 0; i < OB_ROWS; i++)
 		for (int j = 0; j < OB_ROWS; j++)
 			if (in_use(kind, i) && in_use(kind, j))
-				b->spread[i][j] = a[i][j] * b->inv_diag[j];
+				b->coupling[i][j] = a[i][j] * b->inv_diag[j];
 	b->dirty = 0;
 }
 
@@ -93,8 +94,8 @@ static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes 
 	o[5] = rest[1];
 }
 
-// The rows of four bodies: columns 0..3, and 4..7.
-static inline void turn_back(const lanes *x, lanes *linear, lanes *rest)
+// From components by body to rows by body: columns 0..3 of the four rows, and columns 4..7.
+static inline void transpose_bodies(const lanes *x, lanes *linear, lanes *rest)
 {
 	for (int l = 0; l < OB_LANES; l++)
 		linear[l] = x[l];
@@ -108,7 +109,7 @@ static inline void turn_back(const lanes *x, lanes *linear, lanes *rest)
 static inline void scatter(ob_body_row *rows, const uint32_t *index, const lanes *x)
 {
 	lanes linear[OB_LANES], rest[OB_LANES];
-	turn_back(x, linear, rest);
+	transpose_bodies(x, linear, rest);
 	for (int l = 0; l < OB_LANES; l++) {
 		lanes_store(rows[index[l]], linear[l]);
 		lanes_store(rows[index[l]] + 4, rest[l]);
@@ -129,7 +130,7 @@ static inline void scatter_both(const ob_batch *b, ob_body_row *rows, const lane
 }
 
 // va += M_a^-1 J_a^T d, vb -= M_b^-1 J_b^T d
-FOR_KIND void apply(const ob_batch *b, ob_kind kind, const lanes *d, lanes *va, lanes *vb)
+PER_KIND void apply(const ob_batch *b, ob_batch_kind kind, const lanes *d, lanes *va, lanes *vb)
 {
 	lanes sum = d[0], la[3], lb[3], x[3];
 	for (int i = 1; i < points_of(kind); i++)
@@ -163,8 +164,8 @@ FOR_KIND void apply(const ob_batch *b, ob_kind kind, const lanes *d, lanes *va, 
 		vb[3 + c] -= x[c];
 }
 
-// Normal rows of J (xa, xb): rate at which each point's gap opens
-FOR_KIND void normal_rates(const ob_batch *b, ob_kind kind, const lanes *xa, const lanes *xb, lanes *r)
+// Normal rows of J (xa, xb): how fast each point's gap opens (m/s)
+PER_KIND void normal_velocities(const ob_batch *b, ob_batch_kind kind, const lanes *xa, const lanes *xb, lanes *r)
 {
 	lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
 	lanes nd = dot3(b->n, d);
@@ -172,7 +173,8 @@ FOR_KIND void normal_rates(const ob_batch *b, ob_kind kind, const lanes *xa, con
 		r[i] = nd + dot3(b->ja[i], xa + 3) - dot3(b->jb[i], xb + 3);
 }
 
-FOR_KIND void tangent_rates(const ob_batch *b, ob_kind kind, const lanes *xa, const lanes *xb, lanes *r)
+// Rows of friction and twist of J (xa, xb): how fast the contact slides (m/s) and spins (rad/s).
+PER_KIND void friction_velocities(const ob_batch *b, ob_batch_kind kind, const lanes *xa, const lanes *xb, lanes *r)
 {
 	if (in_use(kind, 4)) {
 		lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
@@ -185,34 +187,36 @@ FOR_KIND void tangent_rates(const ob_batch *b, ob_kind kind, const lanes *xa, co
 	}
 }
 
-FOR_KIND void serve(const ob_batch *b, ob_kind kind, int i, lanes d, lanes *want)
+// Row i's impulse changed by d: what the rows are still short of.
+PER_KIND void couple(const ob_batch *b, ob_batch_kind kind, int i, lanes d, lanes *step)
 {
 	for (int j = 0; j < OB_ROWS; j++)
 		if (in_use(kind, j))
-			want[j] -= b->spread[i][j] * d;
+			step[j] -= b->coupling[i][j] * d;
 }
 
-static inline lanes where(lane_mask m, lanes x)
+static inline lanes lanes_where(lane_mask m, lanes x)
 {
 	return (lanes)(m & (lane_mask)x);
 }
 
-// Projected Gauss-Seidel inside the block: x are impulses, want what each row would change of its own, -(J v) / A_ii.
-// That way round little stands between one row's change and the next one's: a maximum, a product, a difference.
+// A sweep of projected Gauss-Seidel inside the block: x are impulses, step what each row alone would change of its own
+// impulse, -(J v) / A_ii. Kept that way, little stands between one row's change and the next one's: a maximum, a
+// product, a difference.
 // Lanes that are not open keep their impulses. Returns the largest change of a row's velocity.
-FOR_KIND lanes sweep(const ob_batch *b, ob_kind kind, lane_mask open, lanes *x, lanes *want)
+PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, lane_mask open, lanes *x, lanes *step)
 {
 	lanes largest = lanes_of(0), sum = lanes_of(0);
 	for (int i = 0; i < points_of(kind); i++) {
-		lanes d = lanes_max(-x[i], want[i]);
-		serve(b, kind, i, d, want);
-		x[i] += where(open, d);
+		lanes d = lanes_max(-x[i], step[i]);
+		couple(b, kind, i, d, step);
+		x[i] += lanes_where(open, d);
 		sum += x[i];
 		largest = lanes_max(largest, lanes_abs(d) * b->diag[i]);
 	}
 	if (!in_use(kind, 4))
 		return largest;
-	lanes bound = b->mu * sum, d4 = want[4], d5 = want[5];
+	lanes bound = b->mu * sum, d4 = step[4], d5 = step[5];
 	lanes f4 = x[4] + d4, f5 = x[5] + d5, l2 = f4 * f4 + f5 * f5;
 	lane_mask slips = l2 > bound * bound;
 	if (lanes_bits(slips)) { // the root and the quotient take as long as all the rest
@@ -220,51 +224,51 @@ FOR_KIND lanes sweep(const ob_batch *b, ob_kind kind, lane_mask open, lanes *x, 
 		d4 = lanes_select(slips, f4 * shrink - x[4], d4);
 		d5 = lanes_select(slips, f5 * shrink - x[5], d5);
 	}
-	serve(b, kind, 4, d4, want);
-	serve(b, kind, 5, d5, want);
-	x[4] += where(open, d4);
-	x[5] += where(open, d5);
+	couple(b, kind, 4, d4, step);
+	couple(b, kind, 5, d5, step);
+	x[4] += lanes_where(open, d4);
+	x[5] += lanes_where(open, d5);
 	largest = lanes_max(largest, lanes_abs(d4) * b->diag[4]);
 	largest = lanes_max(largest, lanes_abs(d5) * b->diag[5]);
 	if (!in_use(kind, 6))
 		return largest;
 	bound *= b->radius;
-	lanes d6 = lanes_max(-bound - x[6], lanes_min(bound - x[6], want[6]));
-	serve(b, kind, 6, d6, want);
-	x[6] += where(open, d6);
+	lanes d6 = lanes_max(-bound - x[6], lanes_min(bound - x[6], step[6]));
+	couple(b, kind, 6, d6, step);
+	x[6] += lanes_where(open, d6);
 	return largest;
 }
 
-// A lane is done when a sweep changes next to nothing, or after so many, or sooner if it changes so much that there
-// will be another round; bodies that touch nothing else have no later round to mend what is left over: theirs are
-// solved to the end.
-FOR_KIND void sweeps(const ob_batch *b, ob_kind kind, const ob_pass *pass, lanes *x, const lanes *r)
+// Sweeps a block until it is solved, up to the iteration's number of sweeps; fewer if it changes so much that another
+// iteration will follow. An isolated lane has no later iteration to mend what is left over, so it is solved to the end.
+PER_KIND void solve_block(const ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, lanes *x,
+			  const lanes *r)
 {
-	lanes want[OB_ROWS];
+	lanes step[OB_ROWS];
 	for (int i = 0; i < OB_ROWS; i++)
 		if (in_use(kind, i))
-			want[i] = -(r[i] * b->inv_diag[i]);
-	lane_mask alone = lanes_mask(b->alone), open = lanes_mask(b->live);
-	for (int s = 1; s <= most_sweeps && lanes_bits(open); s++) {
-		lanes moving = sweep(b, kind, open, x, want);
+			step[i] = -(r[i] * b->inv_diag[i]);
+	lane_mask isolated = lanes_mask(b->isolated), open = lanes_mask(b->live);
+	for (int s = 1; s <= max_block_sweeps && lanes_bits(open); s++) {
+		lanes moving = sweep_block(b, kind, open, x, step);
 		if (s == 1)
-			alone &= moving > surprise;
-		open &= (moving > settled) & (alone | (moving > pass->fine));
-		if (s >= pass->sweeps)
-			open &= alone;
-		else if (s >= rough_sweeps)
-			open &= alone | (moving <= pass->wake);
+			isolated &= moving > unpredicted_change;
+		open &= (moving > converged_change) & (isolated | (moving > iteration->block_tolerance));
+		if (s >= iteration->block_sweeps)
+			open &= isolated;
+		else if (s >= coarse_block_sweeps)
+			open &= isolated | (moving <= iteration->wake_threshold);
 	}
 }
 
-// Where a body may stand in several lanes its changes are added one by one, in lane order.
-static void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
+// va, vb of apply for rows that may stand in several lanes: their changes are added one by one, in lane order.
+static void apply_impulses(const ob_batch *b, const lanes *d, ob_body_row *rows)
 {
 	lanes da[6] = { 0 }, db[6] = { 0 };
 	apply(b, OB_KIND_FULL, d, da, db);
 	lanes linear[2][OB_LANES], rest[2][OB_LANES];
-	turn_back(da, linear[0], rest[0]);
-	turn_back(db, linear[1], rest[1]);
+	transpose_bodies(da, linear[0], rest[0]);
+	transpose_bodies(db, linear[1], rest[1]);
 	for (int l = 0; l < OB_LANES; l++)
 		for (int side = 0; side < 2; side++) {
 			double *row = rows[side ? b->body_b[l] : b->body_a[l]];
@@ -273,35 +277,36 @@ static void add_changes(const ob_batch *b, const lanes *d, ob_body_row *rows)
 		}
 }
 
-FOR_KIND void publish(const ob_batch *b, ob_kind kind, bool jacobi, const lanes *d, lanes *va, lanes *vb,
-		      ob_body_row *v, ob_body_row *delta)
+PER_KIND void write_changes(const ob_batch *b, ob_batch_kind kind, bool jacobi, const lanes *d, lanes *va, lanes *vb,
+			    ob_body_row *v, ob_body_row *delta)
 {
 	if (jacobi) {
-		add_changes(b, d, delta);
+		apply_impulses(b, d, delta);
 		return;
 	}
 	apply(b, kind, d, va, vb);
 	scatter_both(b, v, va, vb);
 }
 
-// How far each gap may close in the substep, as a rate. Points of what rests are each where rounding left them, and
-// would take turns for ever to close what is left: they stay. Restitution is exact in time, so an elastic point must
-// not be stopped early: what falls freely closes less than its final velocity says, by half of what it gains.
-FOR_KIND void set_bias(ob_batch *b, ob_kind kind, double h, const lanes *ua, const lanes *ub, const ob_body_row *v,
-		       const ob_body_row *d)
+// How far each gap may close in the substep, as a velocity. The points of a resting contact are each where rounding
+// left them, and would take turns for ever to close what is left: they stay. Restitution is exact in time, so an
+// elastic point must not be stopped early: a body that falls freely closes less than its final velocity says, by half
+// of what it gains.
+PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, double h, const lanes *ua, const lanes *ub,
+		       const ob_body_row *v, const ob_body_row *d)
 {
 	lanes da[6], db[6], moved[4];
 	gather_both(b, d, da, db);
-	normal_rates(b, kind, da, db, moved);
+	normal_velocities(b, kind, da, db, moved);
 	for (int i = 0; i < points_of(kind); i++)
 		b->bias[i] = b->gap[i] + moved[i];
 	for (int i = 0; i < points_of(kind); i++)
-		b->bias[i] = lanes_select((b->impulse[i] > 0) & (b->bias[i] < held), lanes_of(0), b->bias[i]);
+		b->bias[i] = lanes_select((b->impulse[i] > 0) & (b->bias[i] < resting_gap), lanes_of(0), b->bias[i]);
 	if (b->elastic) {
 		lanes va[6], vb[6], before[4], after[4];
 		gather_both(b, v, va, vb);
-		normal_rates(b, kind, va, vb, before);
-		normal_rates(b, kind, ua, ub, after);
+		normal_velocities(b, kind, va, vb, before);
+		normal_velocities(b, kind, ua, ub, after);
 		for (int i = 0; i < points_of(kind); i++)
 			for (int l = 0; l < OB_LANES; l++)
 				if (b->elastic >> l & 1)
@@ -311,25 +316,25 @@ FOR_KIND void set_bias(ob_batch *b, ob_kind kind, double h, const lanes *ua, con
 		b->bias[i] = lanes_max(b->bias[i], lanes_of(0)) / h;
 }
 
-FOR_KIND void solve_kind(ob_batch *b, ob_kind kind, const ob_pass *pass, ob_body_row *u, const ob_body_row *v,
-			 const ob_body_row *d, ob_body_row *delta)
+PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, ob_body_row *u,
+			 const ob_body_row *v, const ob_body_row *d, ob_body_row *delta)
 {
 	lanes va[6], vb[6], r[OB_ROWS], x[OB_ROWS], change[OB_ROWS], big = lanes_of(0), jump = lanes_of(0);
 	gather_both(b, u, va, vb);
-	if (pass->first) {
-		set_bias(b, kind, pass->h, va, vb, v, d);
+	if (iteration->first) {
+		set_bias(b, kind, iteration->h, va, vb, v, d);
 		memcpy(b->impulse_start, b->impulse, sizeof b->impulse);
 		b->impact = 0;
 	}
-	normal_rates(b, kind, va, vb, r);
-	tangent_rates(b, kind, va, vb, r);
+	normal_velocities(b, kind, va, vb, r);
+	friction_velocities(b, kind, va, vb, r);
 	for (int i = 0; i < points_of(kind); i++) {
-		if (pass->first)
-			b->impact |= lanes_bits((r[i] < -pass->jump) & (r[i] + b->bias[i] < 0));
+		if (iteration->first)
+			b->impact |= lanes_bits((r[i] < -iteration->impact_threshold) & (r[i] + b->bias[i] < 0));
 		r[i] += b->bias[i];
 	}
 	memcpy(x, b->impulse, sizeof x);
-	sweeps(b, kind, pass, x, r);
+	solve_block(b, kind, iteration, x, r);
 	for (int i = 0; i < OB_ROWS; i++) {
 		change[i] = lanes_of(0);
 		if (!in_use(kind, i))
@@ -341,28 +346,28 @@ FOR_KIND void solve_kind(ob_batch *b, ob_kind kind, const ob_pass *pass, ob_body
 			jump = lanes_max(jump, lanes_abs(x[i] - b->impulse_start[i]) * b->diag[i]);
 		}
 	}
-	b->moved = big;
-	b->hot = lanes_bits(big > pass->wake) & b->live;
-	b->impact |= lanes_bits(jump > pass->jump);
+	b->residual = big;
+	b->active = lanes_bits(big > iteration->wake_threshold) & b->live;
+	b->impact |= lanes_bits(jump > iteration->impact_threshold);
 	b->impact &= b->live;
-	publish(b, kind, pass->jacobi, change, va, vb, u, delta);
+	write_changes(b, kind, iteration->jacobi, change, va, vb, u, delta);
 }
 
-static void solve(ob_batch *b, const ob_pass *pass, ob_body_row *u, const ob_body_row *v, const ob_body_row *d,
-		  ob_body_row *delta)
+static void solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
+		  const ob_body_row *d, ob_body_row *delta)
 {
 	switch (b->kind) {
 	case OB_KIND_FULL:
-		solve_kind(b, OB_KIND_FULL, pass, u, v, d, delta);
+		solve_kind(b, OB_KIND_FULL, iteration, u, v, d, delta);
 		break;
 	case OB_KIND_POINT:
-		solve_kind(b, OB_KIND_POINT, pass, u, v, d, delta);
+		solve_kind(b, OB_KIND_POINT, iteration, u, v, d, delta);
 		break;
-	case OB_KIND_SLICK:
-		solve_kind(b, OB_KIND_SLICK, pass, u, v, d, delta);
+	case OB_KIND_FRICTIONLESS:
+		solve_kind(b, OB_KIND_FRICTIONLESS, iteration, u, v, d, delta);
 		break;
 	default:
-		solve_kind(b, OB_KIND_SLICK_POINT, pass, u, v, d, delta);
+		solve_kind(b, OB_KIND_FRICTIONLESS_POINT, iteration, u, v, d, delta);
 	}
 }
 
@@ -372,28 +377,28 @@ static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 	lane_mask deep = { 0 };
 	gather_both(b, d, da, db);
 	const int points = points_of(b->kind);
-	normal_rates(b, b->kind, da, db, r);
+	normal_velocities(b, b->kind, da, db, r);
 	for (int i = 0; i < points; i++) {
 		r[i] += b->gap[i] + slop;
-		deep |= r[i] < -pushed * slop;
+		deep |= r[i] < -min_projection * slop;
 		r[i] = lanes_select(r[i] < 0, r[i] * beta, r[i]);
 	}
 	if (!lanes_bits(deep))
 		return false;
 	for (int i = 0; i < points; i++)
-		r[i] = -where(deep, r[i] * b->inv_diag[i]); // what it wants, as in a sweep
+		r[i] = -lanes_where(deep, r[i] * b->inv_diag[i]); // what each row alone would change, as in a sweep
 	for (int s = 0; s < 4; s++)
 		for (int i = 0; i < points; i++) {
 			lanes change = lanes_max(-x[i], r[i]);
 			x[i] += change;
 			for (int j = 0; j < points; j++)
-				r[j] -= b->spread[i][j] * change;
+				r[j] -= b->coupling[i][j] * change;
 		}
-	publish(b, OB_KIND_FULL, jacobi, x, da, db, d, delta);
+	write_changes(b, OB_KIND_FULL, jacobi, x, da, db, d, delta);
 	return true;
 }
 
-static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity)
+static void limit_prediction(ob_batch *b, const double *cap_impulse, double cap_velocity)
 {
 	if (!b->impact)
 		return;
@@ -411,12 +416,12 @@ static void cap(ob_batch *b, const double *cap_impulse, double cap_velocity)
 	b->impact = 0;
 }
 
-static void rates(const ob_batch *b, const ob_body_row *rows, lanes *r)
+static void row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r)
 {
 	lanes xa[6], xb[6];
 	gather_both(b, rows, xa, xb);
-	normal_rates(b, OB_KIND_FULL, xa, xb, r);
-	tangent_rates(b, OB_KIND_FULL, xa, xb, r);
+	normal_velocities(b, OB_KIND_FULL, xa, xb, r);
+	friction_velocities(b, OB_KIND_FULL, xa, xb, r);
 }
 
-const ob_kernel OB_KERNEL = { prepare, solve, project, cap, rates, add_changes };
+const ob_kernel OB_KERNEL = { prepare, solve, project, limit_prediction, row_velocities, apply_impulses };

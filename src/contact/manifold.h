@@ -1,4 +1,5 @@
-// Where two shapes touch, or are about to: a normal and up to four points with their gaps. Pure functions.
+// Where two shapes touch, or are about to: a normal and up to four points with their gaps; and when two moving shapes
+// first touch. Pure functions, thread-safe.
 #ifndef OB_CONTACT_MANIFOLD_H
 #define OB_CONTACT_MANIFOLD_H
 
@@ -28,5 +29,19 @@ bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_
 // The two boxes' part of it: separating axes (Gottschalk et al. 1996), the axis chosen by the time at which it
 // closes, face clipping (Sutherland and Hodgman 1974).
 void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+
+// A collision test of two shapes; out->separation must be a lower bound of their distance where there are none.
+typedef struct ob_manifold_finder {
+	void (*find)(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+	void *with;
+} ob_manifold_finder;
+
+// Time of impact by conservative advancement (Mirtich 1996), so that nothing passes through anything between two
+// collision tests: both shapes move at their constant v, w. Returns the first time in [0, h] (s) at which they are
+// within tolerance (m), and in out the points up to margin (m) as of that time: what turns about the first point to
+// touch brings the next ones down within the same step. Infinity if they do not touch; then out has no points, and
+// separation is as of now. speed: bound of the closing speed of any two points (m/s).
+double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
+			 double margin, ob_manifold_finder find, ob_manifold *out);
 
 #endif

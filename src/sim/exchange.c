@@ -114,7 +114,7 @@ static bool impacts_at_once(ob_sim *s)
 				in.split_a = fmax(1, w->member[t->a].waiting);
 				in.split_b = fmax(1, w->member[t->b].waiting);
 				any |= note_impact(s, ob_impact_solve(b, l, &in, &at, w->delta, w->u));
-			} else if (ob_impact_pending(b, l, &in, &at) <= in.h) {
+			} else if (ob_impact_time(b, l, &in, &at) <= in.h) {
 				w->member[t->a].waiting++;
 				w->member[t->b].waiting++;
 			}
@@ -153,7 +153,7 @@ double ob_solver_first_rebound(ob_sim *s)
 		if (!elastic(t) || !turns(w, t))
 			continue;
 		in.within = w->h;
-		double when = ob_impact_pending(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at);
+		double when = ob_impact_time(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &in, &at);
 		if (when <= w->h)
 			t->limit = -INFINITY;
 		first = fmin(first, when);
@@ -187,7 +187,7 @@ void ob_solver_limit_prediction(ob_sim *s)
 	const double growth = .3 * brought * w->mass; // N s
 	const double cap[OB_LANES] = { growth, growth, growth, growth };
 	for (uint32_t i = 0; i < w->batches; i++)
-		ob_batch_cap(&w->batch[i], cap, 2.5 * brought);
+		ob_batch_limit_prediction(&w->batch[i], cap, 2.5 * brought);
 }
 
 void ob_solver_activate(ob_island_work *w, uint32_t row, uint32_t pass)
@@ -205,16 +205,16 @@ void ob_solver_activate(ob_island_work *w, uint32_t row, uint32_t pass)
 
 static bool heat_bodies(ob_island_work *w, const ob_batch *b)
 {
-	for (unsigned left = b->hot; left; left &= left - 1) {
+	for (unsigned left = b->active; left; left &= left - 1) {
 		int l = __builtin_ctz(left);
 		ob_solver_activate(w, b->body_a[l], w->pass);
 		ob_solver_activate(w, b->body_b[l], w->pass);
 	}
-	return b->hot != 0;
+	return b->active != 0;
 }
 
 // One round over the pairs that are worth while, colour by colour. Returns the largest change of a velocity (m/s).
-static double make_round(ob_sim *s, const ob_pass *pass, bool *hot)
+static double make_round(ob_sim *s, const ob_solver_iteration *iteration, bool *hot)
 {
 	ob_island_work *w = &s->island;
 	lanes moved = lanes_of(0);
@@ -222,16 +222,16 @@ static double make_round(ob_sim *s, const ob_pass *pass, bool *hot)
 	for (uint32_t k = 0; k < w->batches; k++) {
 		const uint32_t i = w->batch_order[k];
 		ob_batch *b = &w->batch[i];
-		if (pass->first ? !b->live : w->batch_due[i] < w->pass)
+		if (iteration->first ? !b->live : w->batch_due[i] < w->pass)
 			continue;
 		unsigned pairs = (unsigned)__builtin_popcount(b->live);
 		s->counters.pair_solves += pairs;
-		s->counters.frictionless_solves += b->kind & OB_KIND_SLICK ? pairs : 0;
-		ob_batch_solve(b, pass, w->u, w->v, w->d, w->delta);
+		s->counters.frictionless_solves += b->kind & OB_KIND_FRICTIONLESS ? pairs : 0;
+		ob_batch_solve(b, iteration, w->u, w->v, w->d, w->delta);
 		*hot |= heat_bodies(w, b);
-		moved = lanes_max(moved, b->moved);
+		moved = lanes_max(moved, b->residual);
 	}
-	if (pass->jacobi)
+	if (iteration->jacobi)
 		add_rows(w, w->u, w->delta);
 	return fmax(fmax(moved[0], moved[1]), fmax(moved[2], moved[3]));
 }
@@ -240,22 +240,22 @@ void ob_solver_iterate(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = ob_universe_settings(s->u);
-	ob_pass pass = { w->h, sweeps,      0, least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
+	ob_solver_iteration iteration = { w->h, sweeps,      0, least(s, noticeable, noticeable_rate), jump * w->h / w->substep,
 			 true, is_jacobi(s) };
 	bool again = true;
-	pass.wake = fmin(most_noticeable, pass.wake * w->substep / w->h); // what lasts shorter, moves less
+	iteration.wake_threshold = fmin(most_noticeable, iteration.wake_threshold * w->substep / w->h); // what lasts shorter, moves less
 	ob_direct_begin_partial(&w->forest);
 	for (uint32_t round = 0; round < more * run->passes && again; round++) {
 		if (round == run->passes)
-			pass.wake = violent;
+			iteration.wake_threshold = violent;
 		s->counters.solver_iterations++;
 		ob_ghosts_read(s, w->u, round);
 		w->pass += 1 + (round == 0); // a gap, so that nothing is hot from the last substep
-		double moved = make_round(s, &pass, &again);
-		if (pass.first)
+		double moved = make_round(s, &iteration, &again);
+		if (iteration.first)
 			w->stirred = fmax(w->stirred, moved);
-		pass.first = false;
-		pass.fine = rough * moved;
+		iteration.first = false;
+		iteration.block_tolerance = rough * moved;
 		if (!ob_direct_wanted(s, moved, again && round + 1 < run->passes))
 			continue;
 		ob_direct_solve(s);

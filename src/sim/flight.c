@@ -1,6 +1,6 @@
 #include "sim/flight.h"
 
-#include "contact/rebound.h"
+#include "contact/impact.h"
 #include "motion/landing.h"
 #include "motion/published.h"
 #include "sim/broadphase.h"
@@ -228,12 +228,12 @@ bool ob_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *sta
 {
 	const ob_passport *pass = ob_passport_of(s->u, id), *fixed = ob_passport_of(s->u, plane);
 	const ob_half_space ground = half_space(s->u, plane);
-	ob_rebound r = { 1 / pass->mass, pass->inertia, sqrt(pass->friction * fixed->friction),
+	ob_point_impact r = { 1 / pass->mass, pass->inertia, sqrt(pass->friction * fixed->friction),
 			 fmax(pass->restitution, fixed->restitution) };
 	ob_vec3 arm;
 	if (!(r.restitution > 0) || (pass->shape != OB_SHAPE_SPHERE && pass->shape != OB_SHAPE_BOX) ||
 	    ob_universe_settings(s->u)->narrow_phase != OB_NARROW_OBB || !striking_point(pass, &ground, state, &arm))
 		return false;
-	ob_rebound_solve(&r, arm, ground.normal, state);
+	ob_point_impact_solve(&r, arm, ground.normal, state);
 	return ob_dot(ground.normal, ob_add(state->v, ob_cross(state->w, arm))) > 0;
 }

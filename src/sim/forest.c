@@ -211,7 +211,7 @@ static void find_rates(ob_island_work *w)
 {
 	for (uint32_t i = 0; i < w->batches; i++) {
 		lanes *rate = w->forest.rate[i];
-		ob_batch_rates(&w->batch[i], w->u, rate);
+		ob_batch_row_velocities(&w->batch[i], w->u, rate);
 		for (int j = 0; j < OB_POINTS; j++)
 			rate[j] += w->batch[i].bias[j];
 	}
@@ -321,7 +321,7 @@ static void aim(ob_island_work *w, double alpha)
 			f->change[b - w->batch][i][l] = x[i] - b->impulse[i][l];
 	}
 	for (uint32_t i = 0; i < w->batches; i++)
-		ob_batch_push(&w->batch[i], f->change[i], w->delta);
+		ob_batch_apply_impulses(&w->batch[i], f->change[i], w->delta);
 }
 
 // How far along the change the residual energy falls, 1 at most: it is slope t + curvature t^2 / 2.
@@ -331,7 +331,7 @@ static double way_down(const ob_island_work *w)
 	double slope = 0, curvature = 0;
 	for (uint32_t i = 0; i < w->batches; i++) {
 		lanes r[OB_ROWS], s = lanes_of(0), c = lanes_of(0);
-		ob_batch_rates(&w->batch[i], w->delta, r);
+		ob_batch_row_velocities(&w->batch[i], w->delta, r);
 		for (int k = 0; k < OB_ROWS; k++) {
 			s += f->rate[i][k] * f->change[i][k];
 			c += r[k] * f->change[i][k];

@@ -13,7 +13,7 @@ static void open_batch(ob_island_work *w, uint32_t batch)
 	*top = batch;
 }
 
-static uint32_t add_batch(ob_island_work *w, uint32_t colour, ob_kind kind)
+static uint32_t add_batch(ob_island_work *w, uint32_t colour, ob_batch_kind kind)
 {
 	if (w->batches == w->batches_max) {
 		w->batches_max = w->batches_max * 2 + 16;
@@ -47,20 +47,20 @@ static uint32_t free_colour(const ob_island_work *w, const ob_contact *t, bool j
 }
 
 // What stays true of a pair wherever its bodies are.
-static ob_kind kind_of(const ob_sim *s, const ob_contact *t)
+static ob_batch_kind kind_of(const ob_sim *s, const ob_contact *t)
 {
 	const ob_island_work *w = &s->island;
 	bool boxed = ob_universe_settings(s->u)->narrow_phase == OB_NARROW_AABB; // a sphere's box has four points
 	ob_shape a = w->member[t->a].shape, b = w->member[t->b].shape;
 	bool point = (a == OB_SHAPE_SPHERE && (b == OB_SHAPE_SPHERE || b == OB_SHAPE_BOX || b == OB_SHAPE_PLANE)) ||
 		     (b == OB_SHAPE_SPHERE && (a == OB_SHAPE_BOX || a == OB_SHAPE_PLANE));
-	return (point && !boxed ? OB_KIND_POINT : OB_KIND_FULL) | (t->mu > 0 ? OB_KIND_FULL : OB_KIND_SLICK);
+	return (point && !boxed ? OB_KIND_POINT : OB_KIND_FULL) | (t->mu > 0 ? OB_KIND_FULL : OB_KIND_FRICTIONLESS);
 }
 
 void ob_lane_take(ob_sim *s, ob_contact *t)
 {
 	ob_island_work *w = &s->island;
-	const ob_kind kind = kind_of(s, t);
+	const ob_batch_kind kind = kind_of(s, t);
 	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_SOLVER_JACOBI), batch = NONE;
 	if (colour < OB_COLOURS)
 		batch = w->open[colour][kind];
@@ -103,7 +103,7 @@ void ob_lane_leave(ob_island_work *w, ob_contact *t)
 void ob_lane_fill(ob_island_work *w, const ob_contact *t, ob_vec3 normal, const double *gap)
 {
 	const ob_body *a = &w->member[t->a], *b = &w->member[t->b];
-	ob_lane lane = { t->a,  t->b, normal,      (int)t->points, t->arm_a,       t->arm_b,      gap,
+	ob_batch_lane lane = { t->a,  t->b, normal,      (int)t->points, t->arm_a,       t->arm_b,      gap,
 			 t->mu, t->e, a->inv_mass, b->inv_mass,    a->inv_inertia, b->inv_inertia };
 	ob_batch_set(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &lane);
 }

@@ -1,6 +1,6 @@
 #include "sim/late_contacts.h"
 
-#include "contact/swept.h"
+#include "contact/manifold.h"
 #include "sim/broadphase.h"
 #include "sim/fetch.h"
 #include "sim/flight.h"
@@ -52,7 +52,7 @@ static double first_touch(ob_sim *s, const pair *p, double h, double *apart)
 	double speed = ob_norm(ob_sub(a->v, b->v)) + ob_turning_speed(a->w, a->shape, a->size) +
 		       ob_turning_speed(b->w, b->shape, b->size);
 	double gap = fmin(touch_gap, touch_share * p->thin);
-	double when = ob_swept_find(a, b, fmax(speed, 1e-9), h, gap, gap, ob_narrowphase_finder(s), &m);
+	double when = ob_time_of_impact(a, b, fmax(speed, 1e-9), h, gap, gap, ob_narrowphase_finder(s), &m);
 	*apart = m.separation;
 	return when;
 }

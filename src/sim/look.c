@@ -123,10 +123,10 @@ static double meet(ob_sim *s, const ob_contact *t, double horizon, double reach,
 	ob_placed a = placed(w, t->a), b = placed(w, t->b);
 	double near = fmin(swept_gap, .25 * smaller_thickness(w, t));
 	s->counters.swept_tests++;
-	return ob_swept_find(&a, &b, closing_speed(s, t), horizon, near, reach, ob_narrowphase_finder(s), m);
+	return ob_time_of_impact(&a, &b, closing_speed(s, t), horizon, near, reach, ob_narrowphase_finder(s), m);
 }
 
-double ob_narrowphase_time_of_contact(ob_sim *s, const ob_contact *t, double horizon)
+double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *t, double horizon)
 {
 	ob_manifold m;
 	return meet(s, t, horizon, fmin(swept_gap, .25 * smaller_thickness(&s->island, t)), &m);

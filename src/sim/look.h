@@ -2,7 +2,7 @@
 #ifndef OB_SIM_LOOK_H
 #define OB_SIM_LOOK_H
 
-#include "contact/swept.h"
+#include "contact/manifold.h"
 #include "sim/state.h"
 
 // Fills m with the pair's points, their gaps as of now. Fast pairs are followed through the substep: *when is the time
@@ -14,6 +14,6 @@ void ob_narrowphase_find(ob_sim *s, const ob_contact *t, double tolerance, ob_ma
 ob_manifold_finder ob_narrowphase_finder(ob_sim *s);
 
 // When do the two meet, if they go on as they do (s from now)? Infinity: not before "horizon".
-double ob_narrowphase_time_of_contact(ob_sim *s, const ob_contact *t, double horizon);
+double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *t, double horizon);
 
 #endif

@@ -212,7 +212,7 @@ void ob_bodies_warm_start(ob_sim *s)
 	for (uint32_t k = 0; k < w->batches; k++) {
 		const ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
-			ob_batch_push(b, b->impulse, w->dv);
+			ob_batch_apply_impulses(b, b->impulse, w->dv);
 	}
 }
 

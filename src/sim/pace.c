@@ -63,7 +63,7 @@ static double length_of_stride(ob_sim *s, double left)
 			continue;
 		ob_body_update_pose(w, t->a);
 		ob_body_update_pose(w, t->b);
-		h = fmin(h, fmax(fmax(least, lasting(w, w->v, t)), ob_narrowphase_time_of_contact(s, t, h)));
+		h = fmin(h, fmax(fmax(least, lasting(w, w->v, t)), ob_narrowphase_time_of_impact(s, t, h)));
 	}
 	return left - h < .5 * h && left < 1.5 * least ? left : h;
 }

@@ -105,7 +105,7 @@ void ob_error_control_note_bounce(ob_sim *s)
 		double tolerable = sqrt(2 * w->pull * tolerance) / t->e, resolved = 4 * w->pull * w->substep;
 		ob_impact slow = { w->h, w->h, t->e, tolerable, 1, 1 };
 		if (resolved > tolerable &&
-		    ob_impact_pending(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &slow, &at) <= slow.h)
+		    ob_impact_time(&w->batch[t->lane / OB_LANES], t->lane % OB_LANES, &slow, &at) <= slow.h)
 			lost = fmax(lost, t->e * t->e * resolved * resolved / (2 * w->pull));
 	}
 	w->error = fmax(w->error, lost);

@@ -100,12 +100,12 @@ static void order_batches(ob_island_work *w)
 // Each lane learns how many contacts its bodies have.
 static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 {
-	b->alone = 0;
+	b->isolated = 0;
 	for (int l = 0; l < OB_LANES; l++) {
 		const ob_body *m[2] = { &w->member[b->body_a[l]], &w->member[b->body_b[l]] };
 		bool alone =
 			(m[0]->inv_mass == 0 || m[0]->contacts == 1) && (m[1]->inv_mass == 0 || m[1]->contacts == 1);
-		b->alone |= (unsigned)alone << l & b->live;
+		b->isolated |= (unsigned)alone << l & b->live;
 		if (jacobi) {
 			b->ka[l] = fmax(1, m[0]->contacts);
 			b->kb[l] = fmax(1, m[1]->contacts);

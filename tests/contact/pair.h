@@ -69,8 +69,8 @@ static inline pair random_pair(uint64_t *seed, double mass_ratio)
 
 static inline void put_pair(ob_batch *batch, int lane, const pair *p, uint32_t row_a, uint32_t row_b)
 {
-	ob_lane in = { row_a, row_b, p->normal,     p->points,     p->arm_a,         p->arm_b,        p->gap,
-		       p->mu, p->e,  p->a.inv_mass, p->b.inv_mass, p->a.inv_inertia, p->b.inv_inertia };
+	ob_batch_lane in = { row_a, row_b, p->normal,     p->points,     p->arm_a,         p->arm_b,        p->gap,
+			     p->mu, p->e,  p->a.inv_mass, p->b.inv_mass, p->a.inv_inertia, p->b.inv_inertia };
 	ob_batch_set(batch, lane, &in);
 }
 

@@ -27,7 +27,7 @@ static inline void put(scene *s, int lane)
 }
 
 // Four pairs that touch, overlap or nearly touch, at random velocities, pressed together by "push" m/s.
-static inline void random_scene_of(scene *s, uint64_t *seed, double push, ob_kind kind)
+static inline void random_scene_of(scene *s, uint64_t *seed, double push, ob_batch_kind kind)
 {
 	memset(s, 0, sizeof *s);
 	ob_batch_init(&s->batch, kind);
@@ -35,7 +35,7 @@ static inline void random_scene_of(scene *s, uint64_t *seed, double push, ob_kin
 		pair *p = &s->p[l];
 		*p = random_pair(seed, uniform(seed) < .3 ? INFINITY : pow(10, within(seed, -2, 2)));
 		p->points = kind & OB_KIND_POINT ? 1 : p->points;
-		p->mu = kind & OB_KIND_SLICK ? 0 : p->mu;
+		p->mu = kind & OB_KIND_FRICTIONLESS ? 0 : p->mu;
 		for (int j = 0; j < p->points; j++)
 			p->gap[j] = within(seed, -1e-3, 1e-3);
 		put(s, l);

@@ -4,16 +4,18 @@
 #include "check.h"
 #include "scene.h"
 
-static ob_pass pass_of(bool first)
+static ob_solver_iteration iteration_of(bool first)
 {
-	return (ob_pass){ .h = substep, .sweeps = 4, .wake = 2e-3, .jump = .1, .first = first };
+	return (ob_solver_iteration){
+		.h = substep, .block_sweeps = 4, .wake_threshold = 2e-3, .impact_threshold = .1, .first = first
+	};
 }
 
 static void solve(scene *s, int rounds)
 {
 	for (int k = 0; k < rounds; k++) {
-		ob_pass pass = pass_of(k == 0);
-		ob_batch_solve(&s->batch, &pass, s->u, s->v, s->d, s->delta);
+		ob_solver_iteration iteration = iteration_of(k == 0);
+		ob_batch_solve(&s->batch, &iteration, s->u, s->v, s->d, s->delta);
 	}
 }
 
@@ -74,7 +76,7 @@ static void test_solution(void)
 		for (int l = 0; l < OB_LANES; l++)
 			s.p[l].mu = 0, put(&s, l);
 		ob_batch_prepare(&s.batch);
-		s.batch.alone = 0xf;
+		s.batch.isolated = 0xf;
 		solve(&s, 300);
 		for (int l = 0; l < OB_LANES; l++)
 			for (int j = 0; j < s.p[l].points; j++) {
@@ -104,7 +106,7 @@ static void test_friction(void)
 		p->arm_a[0] = ob_v3(0, 0, -1);
 		put(&s, 0);
 		ob_batch_prepare(&s.batch);
-		s.batch.alone = 1;
+		s.batch.isolated = 1;
 		double sliding = within(&seed, 0, 3), press = 1,
 		       stick = ball ? 1 + 1 / k : 1; // inverse mass at the point
 		memcpy(s.v[1], (double[3]){ sliding * cos(angle), sliding * sin(angle), -press }, 3 * sizeof(double));
@@ -126,12 +128,12 @@ static bool same_rows(const ob_body_row *x, const ob_body_row *y)
 
 // The same pair alone and beside three others, in each lane: the same bits. alone: bodies that touch nothing else are
 // solved to the end, which takes as many sweeps as that pair needs.
-static void check_lanes(uint64_t *seed, unsigned alone, ob_kind kind)
+static void check_lanes(uint64_t *seed, unsigned alone, ob_batch_kind kind)
 {
 	scene s;
 	random_scene_of(&s, seed, within(seed, 0, 2), kind);
 	scene together = s;
-	together.batch.alone = alone;
+	together.batch.isolated = alone;
 	solve(&together, 3);
 	ob_batch_project(&together.batch, 1e-4, .3, false, together.d, together.delta);
 	for (int l = 0; l < OB_LANES; l++)
@@ -140,14 +142,14 @@ static void check_lanes(uint64_t *seed, unsigned alone, ob_kind kind)
 			ob_batch_init(&single.batch, kind);
 			put_pair(&single.batch, at, &s.p[l], row_a(l), row_b(&s, l));
 			ob_batch_prepare(&single.batch);
-			single.batch.alone = alone >> l & 1 ? 1u << at : 0;
+			single.batch.isolated = alone >> l & 1 ? 1u << at : 0;
 			solve(&single, 3);
 			ob_batch_project(&single.batch, 1e-4, .3, false, single.d, single.delta);
 			CHECK(same_rows(single.u + row_a(l), together.u + row_a(l)));
 			CHECK(same_rows(single.d + row_a(l), together.d + row_a(l)));
 			for (int i = 0; i < OB_ROWS; i++)
 				CHECK(single.batch.impulse[i][at] == together.batch.impulse[i][l]);
-			CHECK((single.batch.hot >> at & 1) == (together.batch.hot >> l & 1));
+			CHECK((single.batch.active >> at & 1) == (together.batch.active >> l & 1));
 			CHECK((single.batch.impact >> at & 1) == (together.batch.impact >> l & 1));
 		}
 }
@@ -156,7 +158,7 @@ static void test_lanes(void)
 {
 	uint64_t seed = 4;
 	for (int i = 0; i < 1200; i++)
-		check_lanes(&seed, i % 2 ? (unsigned)(16 * uniform(&seed)) : 0, (ob_kind)(i / 2 % OB_KINDS));
+		check_lanes(&seed, i % 2 ? (unsigned)(16 * uniform(&seed)) : 0, (ob_batch_kind)(i / 2 % OB_KINDS));
 }
 
 // What a kind leaves out is not missed: the same as by the kernel for everything.
@@ -165,13 +167,13 @@ static void test_kinds(void)
 	uint64_t seed = 10;
 	for (int i = 0; i < 800; i++) {
 		scene s;
-		random_scene_of(&s, &seed, within(&seed, -.5, 2), (ob_kind)(i % OB_KINDS));
+		random_scene_of(&s, &seed, within(&seed, -.5, 2), (ob_batch_kind)(i % OB_KINDS));
 		scene full = s;
 		ob_batch_init(&full.batch, OB_KIND_FULL);
 		for (int l = 0; l < OB_LANES; l++)
 			put(&full, l);
 		ob_batch_prepare(&full.batch);
-		s.batch.alone = full.batch.alone = (unsigned)(16 * uniform(&seed));
+		s.batch.isolated = full.batch.isolated = (unsigned)(16 * uniform(&seed));
 		solve(&s, 4);
 		solve(&full, 4);
 		ob_batch_project(&s.batch, 1e-4, .3, false, s.d, s.delta);
@@ -181,7 +183,7 @@ static void test_kinds(void)
 				CHECK_NEAR(s.u[k][c], full.u[k][c], 1e-9 * (1 + fabs(full.u[k][c])));
 				CHECK_NEAR(s.d[k][c], full.d[k][c], 1e-15);
 			}
-		CHECK(s.batch.hot == full.batch.hot && s.batch.impact == full.batch.impact);
+		CHECK(s.batch.active == full.batch.active && s.batch.impact == full.batch.impact);
 	}
 }
 
@@ -197,13 +199,13 @@ static void test_rates(void)
 		for (int k = 0; k < OB_ROWS; k++)
 			for (int l = 0; l < OB_LANES; l++)
 				x[k][l] = within(&seed, -1, 1);
-		ob_batch_push(&s.batch, x, s.u);
-		ob_batch_rates(&s.batch, s.u, rate);
+		ob_batch_apply_impulses(&s.batch, x, s.u);
+		ob_batch_row_velocities(&s.batch, s.u, rate);
 		for (int k = 0; k < OB_ROWS; k++)
 			for (int l = 0; l < OB_LANES; l++) {
 				double expected = 0, scale = 1;
 				for (int j = 0; j < OB_ROWS; j++) {
-					double a = s.batch.spread[j][k][l] * s.batch.diag[k][l];
+					double a = s.batch.coupling[j][k][l] * s.batch.diag[k][l];
 					expected += a * x[j][l];
 					scale += fabs(a);
 				}
@@ -276,9 +278,9 @@ static void test_jacobi(void)
 		star t;
 		random_star(&t, &seed, i % 2 ? 2 : 0);
 		scene *s = &t.s;
-		ob_pass pass = pass_of(true);
-		pass.jacobi = true;
-		ob_batch_solve(&s->batch, &pass, s->u, s->v, s->d, s->delta);
+		ob_solver_iteration iteration = iteration_of(true);
+		iteration.jacobi = true;
+		ob_batch_solve(&s->batch, &iteration, s->u, s->v, s->d, s->delta);
 		CHECK(memcmp(s->u, s->v, sizeof s->u) == 0);
 		for (int k = 1; k <= 1 + OB_LANES; k++)
 			for (int c = 0; c < 6; c++)
@@ -329,7 +331,7 @@ static void test_cap(void)
 		solve(&s, 2);
 		ob_batch solved = s.batch;
 		const double cap[OB_LANES] = { .01, .02, .03, .04 };
-		ob_batch_cap(&s.batch, cap, .05);
+		ob_batch_limit_prediction(&s.batch, cap, .05);
 		CHECK(s.batch.impact == 0);
 		for (int l = 0; l < OB_LANES; l++) {
 			bool impact = solved.impact >> l & 1;
@@ -359,7 +361,7 @@ static void test_push(void)
 		lanes back[OB_ROWS];
 		for (int k = 0; k < OB_ROWS; k++)
 			back[k] = -s.batch.impulse[k];
-		ob_batch_push(&s.batch, back, s.u);
+		ob_batch_apply_impulses(&s.batch, back, s.u);
 		for (int k = 0; k < 2 * OB_LANES + 1; k++)
 			for (int c = 0; c < 6; c++)
 				CHECK_NEAR(s.u[k][c], s.v[k][c], 1e-12 * (1 + fabs(u[k][c])));

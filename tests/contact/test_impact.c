@@ -22,10 +22,10 @@ static void collide(collision *c)
 	ob_impact_rows at = { c->before, c->dv, c->d };
 	memcpy(c->after, c->before, sizeof c->after);
 	memcpy(c->shift, c->d, sizeof c->shift);
-	bool pending = ob_impact_pending(&b, 1, &in, &at) <= substep;
+	bool pending = ob_impact_time(&b, 1, &in, &at) <= substep;
 	c->hit = ob_impact_solve(&b, 1, &in, &at, c->after, c->shift) >= 0;
 	CHECK(c->hit == pending);
-	CHECK(isinf(ob_impact_pending(&b, 0, &in, &at))); // an empty lane
+	CHECK(isinf(ob_impact_time(&b, 0, &in, &at))); // an empty lane
 }
 
 static collision random_collision(uint64_t *seed, double mass_ratio)

@@ -11,14 +11,14 @@ static void run(const ob_kernel *k, scene *s, bool jacobi)
 	static const double cap[OB_LANES] = { .01, .02, .03, .04 };
 	k->prepare(&s->batch);
 	for (int round = 0; round < 4; round++) {
-		ob_pass pass = { substep, 4, 0, 2e-3, .1, round == 0, jacobi };
-		k->solve(&s->batch, &pass, s->u, s->v, s->d, s->delta);
+		ob_solver_iteration iteration = { substep, 4, 0, 2e-3, .1, round == 0, jacobi };
+		k->solve(&s->batch, &iteration, s->u, s->v, s->d, s->delta);
 	}
 	k->project(&s->batch, 1e-4, .3, jacobi, s->d, s->delta);
-	k->cap(&s->batch, cap, .05);
+	k->limit_prediction(&s->batch, cap, .05);
 	lanes rate[OB_ROWS];
-	k->rates(&s->batch, s->u, rate);
-	k->push(&s->batch, rate, s->delta);
+	k->row_velocities(&s->batch, s->u, rate);
+	k->apply_impulses(&s->batch, rate, s->delta);
 }
 
 static void compare(const ob_kernel *x, const ob_kernel *y)
@@ -26,11 +26,11 @@ static void compare(const ob_kernel *x, const ob_kernel *y)
 	uint64_t seed = 1;
 	for (int i = 0; i < 3000; i++) {
 		scene a, b;
-		random_scene_of(&a, &seed, within(&seed, -1, 3), (ob_kind)(i % OB_KINDS));
+		random_scene_of(&a, &seed, within(&seed, -1, 3), (ob_batch_kind)(i % OB_KINDS));
 		if (i % 5 == 0)
 			ob_batch_clear(&a.batch, (int)(OB_LANES * uniform(&seed)));
 		a.batch.elastic = (unsigned)(16 * uniform(&seed));
-		a.batch.alone = (unsigned)(16 * uniform(&seed));
+		a.batch.isolated = (unsigned)(16 * uniform(&seed));
 		memcpy(&b, &a, sizeof b); // padding too
 		run(x, &a, i / OB_KINDS % 2);
 		run(y, &b, i / OB_KINDS % 2);

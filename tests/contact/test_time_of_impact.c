@@ -1,5 +1,5 @@
 // When two moving shapes meet: never later than they do, whatever their speed and spin.
-#include "contact/swept.h"
+#include "contact/manifold.h"
 
 #include "check.h"
 #include "placed.h"
@@ -53,17 +53,17 @@ static void test_bullet(void)
 		double v = speed[i], tolerance = 1e-3, exact = (.5 - .1 - .01) / v;
 		ob_manifold m;
 		ball.v = ob_v3(v, 0, 0);
-		double t = ob_swept_find(&ball, &wall, v, .1, tolerance, .5, shapes, &m);
+		double t = ob_time_of_impact(&ball, &wall, v, .1, tolerance, .5, shapes, &m);
 		CHECK(t <= exact && t >= exact - tolerance / v);
 		CHECK(m.points == 1);
 		CHECK_NEAR(m.normal.x, -1, 1e-12);
 		CHECK_NEAR(m.gap[0], v * (exact - t), 1e-12); // as of the meeting
-		t = ob_swept_find(&ball, &wall, v, .9 * exact, tolerance, .5, shapes, &m);
+		t = ob_time_of_impact(&ball, &wall, v, .9 * exact, tolerance, .5, shapes, &m);
 		CHECK(isinf(t));
 		CHECK(m.points == 0);
 		CHECK_NEAR(m.separation, .5 - .1 - .01, 1e-12); // as of now
 		ball.v = ob_v3(-v, 0, 0);
-		CHECK(isinf(ob_swept_find(&ball, &wall, v, .1, tolerance, .5, shapes, &m)));
+		CHECK(isinf(ob_time_of_impact(&ball, &wall, v, .1, tolerance, .5, shapes, &m)));
 	}
 }
 
@@ -76,7 +76,7 @@ static void test_margin(void)
 	plate.v = ob_v3(0, 0, -300);
 	for (int wide = 0; wide < 2; wide++) {
 		ob_manifold m;
-		double t = ob_swept_find(&plate, &floor, 300, .016, 1e-3, wide ? .15 : .01, shapes, &m);
+		double t = ob_time_of_impact(&plate, &floor, 300, .016, 1e-3, wide ? .15 : .01, shapes, &m);
 		CHECK_NEAR(t, (2 - half_width(&plate, ob_v3(0, 0, 1))) / 300, 1e-3 / 300);
 		CHECK(m.points == (wide ? 4 : 2));
 	}
@@ -89,7 +89,7 @@ static void test_touching_now(void)
 		ob_placed a = random_placed(&seed, OB_SHAPE_BOX, .05), b = random_placed(&seed, OB_SHAPE_SPHERE, .05);
 		ob_manifold m;
 		a.v = random_vector(&seed, 10);
-		CHECK(ob_swept_find(&a, &b, 20, .01, 1e-3, .1, shapes, &m) == 0);
+		CHECK(ob_time_of_impact(&a, &b, 20, .01, 1e-3, .1, shapes, &m) == 0);
 		CHECK(m.points > 0);
 	}
 }
@@ -99,7 +99,7 @@ static void check_meeting(const ob_placed *a, const ob_placed *b, double h, int 
 {
 	ob_manifold m;
 	double tolerance = 1e-3;
-	double t = ob_swept_find(a, b, closing_speed(a, b), h, tolerance, .05, shapes, &m);
+	double t = ob_time_of_impact(a, b, closing_speed(a, b), h, tolerance, .05, shapes, &m);
 	double end = isinf(t) ? h : t;
 	for (int k = 0; k <= 300; k++)
 		CHECK(separation(a, b, end * k / 300) > 0);

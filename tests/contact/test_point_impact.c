@@ -1,12 +1,12 @@
 // One point against what is fixed: what the solver of any pair's impacts makes of it, Newton's law, energy never more.
-#include "contact/rebound.h"
+#include "contact/impact.h"
 
 #include "check.h"
 #include "contact/impact.h"
 #include "pair.h"
 
 typedef struct blow {
-	ob_rebound r;
+	ob_point_impact r;
 	ob_vec3 arm, normal;
 	ob_state before, after;
 } blow;
@@ -66,7 +66,7 @@ static void check_blow(uint64_t *seed, int k)
 	if (in > -1e-3)
 		return;
 	b.after = b.before;
-	ob_rebound_solve(&b.r, b.arm, b.normal, &b.after);
+	ob_point_impact_solve(&b.r, b.arm, b.normal, &b.after);
 	ob_state pairs = by_pairs(&b);
 	double scale = ob_norm(b.before.v) + ob_norm(b.before.w), energy = energy_of(&b, &b.before);
 	double off = (ob_norm(ob_sub(b.after.v, pairs.v)) + ob_norm(ob_sub(b.after.w, pairs.w))) / scale;
