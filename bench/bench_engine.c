@@ -27,11 +27,11 @@ static bool set(bench_order *o, const char *word)
 	} known[] = {
 		{ "from", .number = &o->from },
 		{ "duration", .number = &o->duration },
-		{ "step", .number = &o->settings.step },
+		{ "step", .number = &o->settings.step_length },
 		{ "substeps", .count = &o->settings.substeps },
 		{ "iterations", .count = &o->settings.iterations },
 		{ "tolerance", .number = &o->settings.tolerance },
-		{ "sleeping", .flag = &o->settings.sleeping },
+		{ "sleeping", .count = &o->settings.sleeping },
 		{ "workers", .count = &o->workers },
 		{ "processes", .flag = &o->processes },
 	};
@@ -76,7 +76,7 @@ int main(int argc, char **argv)
 	if (!kind)
 		return misused("no engine", argv[2]);
 	bench_order o = { .scene = scene, .duration = scene->of.duration, .settings = kind->usual, .workers = 1 };
-	o.settings.step = scene->of.step;
+	o.settings.step_length = scene->of.step;
 	o.settings.sleeping = scene->sleeping;
 	for (int i = 4; i < argc; i++)
 		if (!set(&o, argv[i]))

@@ -79,7 +79,7 @@ bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 	ob_engine *p = kind->create(&w, &o->settings, e);
 	if (!p)
 		return ob_build_finish(&w), false;
-	long steps = lround(o->duration / o->settings.step), done = 0;
+	long steps = lround(o->duration / o->settings.step_length), done = 0;
 	double wall = ob_clock_wall(), cpu = ob_clock_thread_cpu();
 	bool on = true;
 	for (; on && done < steps; done++)
@@ -91,7 +91,7 @@ bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 	bench_print("cpu", "us/body-step", 1e6 * cpu / ((double)done * bodies));
 	bench_print("wall", "us/step", 1e6 * wall / (double)done);
 	bench_print("memory", "B/body", (bench_memory() - before) / bodies);
-	bench_print_state(hash_of(p, kind, &w, (double)done * o->settings.step));
+	bench_print_state(hash_of(p, kind, &w, (double)done * o->settings.step_length));
 	kind->destroy(p);
 	ob_build_finish(&w);
 	return on;

@@ -12,7 +12,7 @@
 typedef struct bench_order {
 	const bench_scene *scene;
 	double from, duration; // s: parts are told of what comes after "from"
-	ob_engine_settings settings;
+	ob_run_settings settings;
 	uint32_t workers; // through the host: of the pool
 	bool processes; // through the host: workers are processes
 } bench_order;

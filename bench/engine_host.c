@@ -24,29 +24,19 @@ typedef struct watched {
 	ob_counters counted_before, counted_after;
 } watched;
 
-static ob_run_settings settings_of(const ob_engine_settings *s, ob_vec3 gravity, bool timed)
-{
-	return (ob_run_settings){
-		.gravity = gravity,
-		.step_length = s->step,
-		.substeps = s->substeps,
-		.passes = s->iterations,
-		.tolerance = s->tolerance,
-		.sleeping = s->sleeping,
-		.timed = timed,
-	};
-}
-
 static bool start(watched *r, const bench_order *o, bool timed, ob_error *e)
 {
 	bench_build(o, &r->w);
 	r->bodies = bench_bodies(&r->w);
-	r->from = (uint64_t)lround(o->from / o->settings.step);
-	r->steps = (uint64_t)lround(o->duration / o->settings.step);
-	r->scene = (ob_scene){ .title = "bench", .gravity = r->w.gravity, .step = o->settings.step };
+	r->from = (uint64_t)lround(o->from / o->settings.step_length);
+	r->steps = (uint64_t)lround(o->duration / o->settings.step_length);
+	ob_run_settings settings = o->settings;
+	settings.gravity = r->w.gravity;
+	settings.timed = timed;
+	r->scene = (ob_scene){ .title = "bench", .run = settings };
 	r->scene.objects = r->w.objects;
 	r->scene.object = define(&r->w);
-	ob_host_config config = { .workers = o->workers, .run = settings_of(&o->settings, r->w.gravity, timed) };
+	ob_host_config config = { .workers = o->workers, .run = settings };
 	config.isolation = o->processes ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD;
 	r->h = r->scene.object ? ob_host_start(&r->scene, &config, e) : NULL;
 	return r->h;

@@ -94,12 +94,11 @@ static bool load_section(ob_section *s, const ob_comparison *c, const ob_argumen
 	if (*s->define)
 		own.define[own.defines++] = s->define;
 	ob_run_request request;
-	ob_run_settings settings;
 	ob_scene *scene = NULL;
 	bool fine = ob_request_read(&request, &own, e);
 	if (fine) {
 		scene = ob_scene_load(request.scene, &request.scene_options, e);
-		fine = scene && ob_request_settle(&request, scene, &settings, e);
+		fine = scene && ob_request_settle(&request, scene, e);
 	}
 	s->objects = fine ? scene->objects : 0;
 	ob_scene_free(scene);
@@ -132,9 +131,11 @@ static bool prepare(ob_comparison *c, const ob_arguments *a, ob_error *e)
 	    !ob_comparison_read_sections(c, a->value[OB_OPTION_VARY], e))
 		return false;
 	c->scene = request.scene;
-	c->narrow = request.narrow == OB_NARROW_AABB ? "aabb" : "obb";
-	c->other = request.narrow == OB_NARROW_AABB ? "obb" : "aabb";
-	c->load = request.load;
+	ob_run_settings asked = ob_run_settings_default();
+	ob_run_settings_overlay(&asked, &request.asked);
+	c->narrow = asked.narrow_phase == OB_NARROW_AABB ? "aabb" : "obb";
+	c->other = asked.narrow_phase == OB_NARROW_AABB ? "obb" : "aabb";
+	c->load = asked.load;
 	c->repeats = (uint32_t)repeats;
 	c->pool = request.workers;
 	describe(c, a);

@@ -32,13 +32,10 @@ static bool passes_on(const ob_way *w, int id)
 	case OB_OPTION_OUT:
 		return false;
 	case OB_OPTION_TOLERANCE:
-	case OB_OPTION_PASSES:
-	case OB_OPTION_EXCHANGE:
+	case OB_OPTION_SOLVER:
 	case OB_OPTION_LAG:
 	case OB_OPTION_INTEGRATOR:
 		return !is_monolith(w);
-	case OB_OPTION_ITERATIONS:
-		return is_monolith(w);
 	default:
 		return true;
 	}
@@ -137,7 +134,7 @@ bool ob_crew_run_sample(ob_crew_run *p, ob_section *s, ob_way_id id)
 {
 	ob_cell *c = &s->cell[id];
 	ob_report *r = &c->sample[c->samples], *parts = calloc(1, sizeof *parts);
-	bool fine = parts && run_child(p, s, id, "end", r, c->why) && run_child(p, s, id, "parts", parts, c->why);
+	bool fine = parts && run_child(p, s, id, "end", r, c->why) && run_child(p, s, id, "profile", parts, c->why);
 	if (fine) {
 		take_parts(r, parts);
 		r->renderer_cpu_s = r->fps = NAN; // nothing was drawn

@@ -4,10 +4,10 @@
 #include "cli/version.h"
 #include "lab/digest.h"
 
-static void put_settings(ob_json *j, const ob_engine_settings *s)
+static void put_settings(ob_json *j, const ob_run_settings *s)
 {
 	ob_json_open(j, "settings");
-	ob_json_number(j, "step_s", s->step);
+	ob_json_number(j, "step_s", s->step_length);
 	ob_json_count(j, "substeps", s->substeps);
 	ob_json_count(j, "iterations", s->iterations);
 	ob_json_number(j, "tolerance_m", s->tolerance);

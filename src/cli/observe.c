@@ -16,7 +16,7 @@ static bool all_stay(const ob_scene *s)
 
 static bool is_closed(const ob_scene *s)
 {
-	if (ob_norm2(s->gravity) > 0 || !all_stay(s))
+	if (ob_norm2(s->run.gravity) > 0 || !all_stay(s))
 		return false;
 	for (uint32_t i = 0; i < s->objects; i++) {
 		if (s->object[i].passport.flags & OB_OBJECT_STATIC || ob_norm2(s->object[i].passport.force) > 0)
@@ -28,7 +28,7 @@ static bool is_closed(const ob_scene *s)
 bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e)
 {
 	*o = (ob_observer){
-		.gravity = scene->gravity,
+		.gravity = scene->run.gravity,
 		.closed = is_closed(scene),
 		.all_stay = all_stay(scene),
 		.momentum_error = NAN,

@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "cli/suggest.h"
+#include "settings/settings.h"
 
 enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP, LAB = OB_COMMAND_LAB, PAPER = OB_COMMAND_PAPER };
 
@@ -17,7 +19,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_STEP] = { NULL, "step", "H", "seconds a step, as .01 or 1/60 (the scene's)", RUN | COMPARE, 0 },
 	[OB_OPTION_SEED] = { NULL, "seed", "N", "seed of the scene's random numbers (the scene's)", RUN | COMPARE, 0 },
 
-	[OB_OPTION_ARCH] = { "How it runs", "arch", "obs|monolith",
+	[OB_OPTION_ARCH] = { "How it runs", "arch", OB_ARCHITECTURE_NAMES,
 			     "one simulator per object, or one ODE world that holds all (obs)", RUN, 0 },
 	[OB_OPTION_ISOLATION] = { NULL, "isolation", "thread|process", "what a worker is (thread)", RUN, 0 },
 	[OB_OPTION_WORKERS] = { NULL, "workers", "N|objects",
@@ -27,22 +29,18 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				  RUN | COMPARE, 0 },
 	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)", RUN | COMPARE,
 				 0 },
-	[OB_OPTION_PASSES] = { NULL, "passes", "N", "rounds of exchange a substep, at most (the scene's)",
-			       RUN | COMPARE, 0 },
-	[OB_OPTION_EXCHANGE] = { NULL, "exchange", "coloured|jacobi|ghost|lagged",
-				 "how impulses are exchanged (the scene's)", RUN | COMPARE, 0 },
-	[OB_OPTION_LAG] = { NULL, "lag", "K", "lagged: exchanges that a partner's state is late (1)", RUN | COMPARE,
+	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",
+				   "of the contact solver a substep (the scene's; monolith: 20, 0 = exact)", RUN | COMPARE, 0 },
+	[OB_OPTION_SOLVER] = { NULL, "solver", OB_SOLVER_NAMES, "how contacts are solved (the scene's)", RUN | COMPARE, 0 },
+	[OB_OPTION_LAG] = { NULL, "lag", "K", "lagged: iterations that a partner's state is late (1)", RUN | COMPARE,
 			    0 },
-	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", "exact|ode",
+	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", OB_INTEGRATOR_NAMES,
 				   "free motion in closed form, or by ODE's stepper (the scene's)", RUN | COMPARE, 0 },
-	[OB_OPTION_SLEEPING] = { NULL, "sleeping", "on|off", "whether what rests may sleep (the scene's)",
+	[OB_OPTION_SLEEPING] = { NULL, "sleeping", OB_SWITCH_NAMES, "whether what rests may sleep (the scene's)",
 				 RUN | COMPARE, 0 },
-	[OB_OPTION_NARROW] = { NULL, "narrow", "obb|aabb",
+	[OB_OPTION_NARROW] = { NULL, "narrow", OB_NARROW_PHASE_NAMES,
 			       "objects touch as they are, or as boxes along the axes (obb)", RUN | COMPARE, 0 },
 	[OB_OPTION_LOAD] = { NULL, "load", "N", "add up 1 to N in each test of two boxes (0)", RUN | COMPARE, 0 },
-	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",
-				   "monolith: iterations of ODE's QuickStep; 0 = its exact solver (20)", RUN | COMPARE,
-				   0 },
 	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", RUN, 0 },
 
 	[OB_OPTION_FRAMES] = { "Frames", "frames", "DIR", "write DIR/frame-000000.png and so on", RUN, 0 },
@@ -60,7 +58,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
 	[OB_OPTION_SUMMARY] = { NULL, "summary", "FILE", "the report, as CSV", RUN, 0 },
 	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
-	[OB_OPTION_MEASURE] = { NULL, "measure", "step|parts|end", "each step, where the time goes, or neither (step)", RUN,
+	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end", "each step, where the time goes, or neither (step)", RUN,
 				0 },
 	[OB_OPTION_EXPLAIN] = { NULL, "explain", NULL,
 				"what was modelled, what was left out and why, and what each part cost", RUN, 0 },
@@ -101,23 +99,30 @@ static int unknown(const ob_arguments *a, const char *name, ob_error *e)
 	return ob_fail(e, "unknown option --%s: --help lists the options", name);
 }
 
-// The values that an argument like "obs|monolith" allows; upper case in it means that anything may stand there.
-static bool check_choice(const ob_option *o, const char *value, ob_error *e)
+// The values that an argument like "obs|monolith" allows; upper case in it means that anything may stand there. A word
+// of earlier versions becomes the word of today.
+static bool check_choice(const ob_option *o, const char **value, ob_error *e)
 {
 	if (!o->argument || !strchr(o->argument, '|') || strpbrk(o->argument, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
 		return true;
+	const char *now = ob_setting_renamed(*value);
 	char words[64];
 	snprintf(words, sizeof words, "%s", o->argument);
-	ob_suggestion s = { .word = value };
+	ob_suggestion s = { .word = *value };
 	char *rest = words;
 	for (char *word; (word = strsep(&rest, "|"));) {
-		if (strcmp(word, value) == 0)
+		if (strcmp(word, *value) == 0)
 			return true;
+		if (now && strcmp(word, now) == 0) {
+			ob_log_note("--%s %s is now called --%s %s", o->name, *value, o->name, now);
+			*value = now;
+			return true;
+		}
 		ob_suggest_offer(&s, word);
 	}
 	if (s.best)
-		return ob_fail(e, "--%s %s: did you mean %s? (%s)", o->name, value, s.best, o->argument);
-	return ob_fail(e, "--%s %s: expected one of %s", o->name, value, o->argument);
+		return ob_fail(e, "--%s %s: did you mean %s? (%s)", o->name, *value, s.best, o->argument);
+	return ob_fail(e, "--%s %s: expected one of %s", o->name, *value, o->argument);
 }
 
 static bool add_define(ob_arguments *a, const char *text, ob_error *e)
@@ -142,7 +147,7 @@ static bool set(ob_arguments *a, ob_option_id id, const char *value, ob_error *e
 		return ob_fail(e, "--%s is given twice", o->name);
 	if (o->argument && !*value)
 		return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
-	if (!check_choice(o, value, e))
+	if (!check_choice(o, &value, e))
 		return false;
 	a->value[id] = value;
 	return true;
@@ -174,9 +179,12 @@ static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_erro
 	int id;
 	if (text[1] == '-') {
 		size_t length = strcspn(text + 2, "=");
-		id = find_long(a, text + 2, length);
 		char name[64];
 		snprintf(name, sizeof name, "%.*s", (int)(length < 60 ? length : 60), text + 2);
+		id = find_long(a, text + 2, length);
+		const char *now = id < 0 ? ob_setting_renamed(name) : NULL;
+		if (now && (id = find_long(a, now, strlen(now))) >= 0)
+			ob_log_note("--%s is now called --%s", name, now);
 		if (id < 0)
 			return unknown(a, name, e);
 		value = text[2 + length] ? text + 2 + length + 1 : NULL;

@@ -14,11 +14,11 @@
 typedef struct ob_report {
 	char scene[PATH_MAX];
 	char outcome[16]; // "finished" | "interrupted" | "failed"
-	char arch[16], isolation[16], exchange[16], integrator[16], narrow[16];
+	char arch[16], isolation[16], solver[16], integrator[16], narrow[16];
 	char commit[64];
 	char state_hash[24]; // 16 hex digits
 	uint64_t objects, bodies; // present at the end: all; those that move
-	uint64_t steps, substeps, passes, lag, seed, workers; // substeps 0: as a tolerance chose
+	uint64_t steps, substeps, iterations, lag, seed, workers; // substeps 0: as a tolerance chose
 	uint64_t load, box_tests; // numbers added up in each test of two boxes; how many tests there were
 	uint64_t frames;
 	uint64_t trace_events, trace_lost; // told by all; of them not in the file

@@ -9,10 +9,10 @@ static void print_simulators(const ob_report *r, const char *plural, FILE *f)
 {
 	fprintf(f, "  simulators   one per object in %" PRIu64 " %s%s; ", r->workers, r->isolation, plural);
 	if (r->tolerance > 0)
-		fprintf(f, "substeps as needed, of up to %" PRIu64 " passes", r->passes);
+		fprintf(f, "substeps as needed, of up to %" PRIu64 " iterations", r->iterations);
 	else
-		fprintf(f, "%" PRIu64 " substeps of up to %" PRIu64 " passes", r->substeps, r->passes);
-	fprintf(f, ", %s, %s\n", r->exchange, r->integrator);
+		fprintf(f, "%" PRIu64 " substeps of up to %" PRIu64 " iterations", r->substeps, r->iterations);
+	fprintf(f, ", %s, %s\n", r->solver, r->integrator);
 }
 
 static void print_tolerance(const ob_report *r, FILE *f)

@@ -11,9 +11,6 @@
 
 enum {
 	WORKERS_MAX = 65536,
-	SUBSTEPS_MAX = 1000,
-	LAG_MAX = 256,
-	LOAD_MAX = 1000000000,
 	SIZE_MIN = 16,
 	SIZE_MAX_PIXELS = 16384
 };
@@ -181,39 +178,59 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	const char *text = a->value[OB_OPTION_WORKERS];
-	bool objects = text && strcmp(text, "objects") == 0;
-	r->workers = r->monolith || objects ? !objects : (uint32_t)ob_cpu_count();
+	bool objects = text && strcmp(text, "objects") == 0, monolith = r->asked.monolith == 1;
+	r->workers = monolith || objects ? !objects : (uint32_t)ob_cpu_count();
 	if (text && !objects && strspn(text, "0123456789") != strlen(text))
 		return ob_fail(e, "--workers %s: expected a number, or objects", text);
 	if (!objects && !count(a, OB_OPTION_WORKERS, 1, WORKERS_MAX, &r->workers, e))
 		return false;
-	if (r->monolith && r->workers != 1)
+	if (monolith && r->workers != 1)
 		return ob_fail(e, "--workers %s: the monolith is one world with one worker; leave --workers away",
 			       text);
 	return true;
 }
 
-// What one architecture understands and the other does not.
-static bool check_architecture(const ob_run_request *r, const ob_arguments *a, ob_error *e)
+static bool read_setting(ob_run_settings *to, const ob_setting *s, const char *text, ob_error *e)
 {
-	static const ob_option_id of_objects[] = { OB_OPTION_TOLERANCE, OB_OPTION_PASSES,     OB_OPTION_EXCHANGE,
-						   OB_OPTION_LAG,       OB_OPTION_INTEGRATOR, OB_OPTION_EXPLAIN };
-	for (size_t i = 0; r->monolith && i < sizeof of_objects / sizeof *of_objects; i++) {
-		if (a->value[of_objects[i]])
-			return ob_fail(e, "--%s means nothing to --arch monolith", name_of(of_objects[i]));
+	void *at = (char *)to + s->offset;
+	uint64_t n = 0;
+	switch (s->kind) {
+	case OB_SETTING_REAL:
+		return s->unit[0] == 'm' ? ob_number_length(s->name, text, s->least, s->most, at, e)
+					 : ob_number_real(s->name, text, s->least, s->most, at, e);
+	case OB_SETTING_COUNT:
+		if (!ob_number_count(s->name, text, (uint64_t)s->least, (uint64_t)s->most, &n, e))
+			return false;
+		*(uint32_t *)at = (uint32_t)n;
+		return true;
+	case OB_SETTING_CHOICE:
+	case OB_SETTING_SWITCH:
+		return ob_setting_find(s->names, text, at) ||
+		       ob_fail(e, "--%s %s: expected one of %s", s->name, text, s->names);
 	}
-	if (a->command == OB_COMMAND_RUN && !r->monolith && a->value[OB_OPTION_ITERATIONS])
-		return ob_fail(e, "--iterations is for --arch monolith; object simulators have --passes");
-	return true;
+	return false;
 }
 
-static bool read_tolerance(ob_run_request *r, const ob_arguments *a, ob_error *e)
+static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
+	static const ob_option_id option[OB_SETTINGS] = {
+		[OB_SETTING_ARCHITECTURE] = OB_OPTION_ARCH,     [OB_SETTING_STEP] = OB_OPTION_STEP,
+		[OB_SETTING_TOLERANCE] = OB_OPTION_TOLERANCE,   [OB_SETTING_SUBSTEPS] = OB_OPTION_SUBSTEPS,
+		[OB_SETTING_ITERATIONS] = OB_OPTION_ITERATIONS, [OB_SETTING_SOLVER] = OB_OPTION_SOLVER,
+		[OB_SETTING_LAG] = OB_OPTION_LAG,               [OB_SETTING_INTEGRATOR] = OB_OPTION_INTEGRATOR,
+		[OB_SETTING_SLEEPING] = OB_OPTION_SLEEPING,     [OB_SETTING_NARROW_PHASE] = OB_OPTION_NARROW,
+		[OB_SETTING_LOAD] = OB_OPTION_LOAD,
+	};
+	r->asked = ob_run_settings_unset();
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		const char *text = a->value[option[i]];
+		if (text && !read_setting(&r->asked, &ob_setting_table[i], text, e))
+			return false;
+	}
 	if (a->value[OB_OPTION_TOLERANCE] && a->value[OB_OPTION_SUBSTEPS])
 		return ob_fail(
 			e, "--tolerance and --substeps: expected one of them, for a tolerance chooses the substeps");
-	return ob_number_length(name_of(OB_OPTION_TOLERANCE), a->value[OB_OPTION_TOLERANCE], OB_SCENE_TOLERANCE_LEAST,
-				OB_SCENE_TOLERANCE_MOST, &r->tolerance, e);
+	return true;
 }
 
 static bool check_name(const char *name, ob_error *e)
@@ -233,24 +250,16 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	static const char *const verbs[] = { [OB_COMMAND_RUN] = "run", [OB_COMMAND_COMPARE] = "compare" };
 	if (!a->operand)
 		return ob_fail(e, "no scene given: obsim %s scenes/falling_boxes.lua", verbs[a->command]);
-	const char *arch = a->value[OB_OPTION_ARCH], *isolation = a->value[OB_OPTION_ISOLATION];
-	const char *measure = a->value[OB_OPTION_MEASURE], *narrow = a->value[OB_OPTION_NARROW];
+	const char *isolation = a->value[OB_OPTION_ISOLATION], *measure = a->value[OB_OPTION_MEASURE];
 	*r = (ob_run_request){
 		.scene = a->operand,
 		.scene_options = { .defines = a->define, .define_count = a->defines },
 		.name = a->value[OB_OPTION_NAME],
-		.monolith = arch && strcmp(arch, "monolith") == 0,
 		.isolation =
 			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
-		.iterations = 20,
-		.exchange = a->value[OB_OPTION_EXCHANGE],
-		.lag = UINT32_MAX,
-		.narrow = narrow && strcmp(narrow, "aabb") == 0 ? OB_NARROW_AABB : OB_NARROW_OBB,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
-		.integrator = a->value[OB_OPTION_INTEGRATOR],
-		.sleeping = a->value[OB_OPTION_SLEEPING],
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
-			   : strcmp(measure, "parts") == 0          ? OB_MEASURE_PARTS
+			   : strcmp(measure, "profile") == 0        ? OB_MEASURE_PROFILE
 								    : OB_MEASURE_ENDS,
 		.record = a->value[OB_OPTION_RECORD],
 		.summary = a->value[OB_OPTION_SUMMARY],
@@ -261,13 +270,8 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;
 	if (r->measure != OB_MEASURE_STEPS && r->series)
 		return ob_fail(e, "--series has a line for each step: it needs --measure step");
-	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_STEP, 10, &r->step, e) &&
+	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
-	       count(a, OB_OPTION_SUBSTEPS, 1, SUBSTEPS_MAX, &r->substeps, e) &&
-	       count(a, OB_OPTION_PASSES, 1, SUBSTEPS_MAX, &r->passes, e) && read_tolerance(r, a, e) &&
-	       (!a->value[OB_OPTION_LAG] || count(a, OB_OPTION_LAG, 0, LAG_MAX, &r->lag, e)) &&
-	       count(a, OB_OPTION_LOAD, 0, LOAD_MAX, &r->load, e) &&
-	       count(a, OB_OPTION_ITERATIONS, 0, 100000, &r->iterations, e) && read_workers(r, a, e) &&
-	       check_architecture(r, a, e) && check_name(r->name, e) && read_frames(&r->frames, a, e) &&
-	       check_outputs(a, e);
+	       read_settings(r, a, e) && read_workers(r, a, e) && check_name(r->name, e) &&
+	       read_frames(&r->frames, a, e) && check_outputs(a, e);
 }

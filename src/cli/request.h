@@ -18,24 +18,18 @@ typedef struct ob_frames_request {
 typedef enum ob_measure_when {
 	OB_MEASURE_STEPS, // each step
 	OB_MEASURE_ENDS, // the start and the end
-	OB_MEASURE_PARTS, // these, and where the workers' time goes
+	OB_MEASURE_PROFILE, // these, and where the workers' time goes
 } ob_measure_when;
 
 typedef struct ob_run_request {
 	const char *scene; // path
 	ob_scene_options scene_options;
 	const char *name; // of the universe; NULL = the host's choice
-	bool monolith;
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object
-	double duration, step; // s; 0 = the scene's
-	double tolerance; // m; 0 = the scene's, or none
-	uint32_t substeps, passes; // 0 = the scene's; after settling, substeps 0 = as the tolerance chooses
-	uint32_t iterations;
-	const char *exchange, *integrator, *sleeping; // NULL = the scene's
-	ob_narrow_phase narrow;
-	uint32_t load; // numbers added up in each test of two boxes
-	uint32_t lag; // exchanges; UINT32_MAX = the scene's
+	double duration; // s; 0 = the scene's
+	ob_run_settings asked; // a layer: what the command line leaves alone is unset
+	ob_run_settings run; // after ob_request_settle
 	bool explain;
 	ob_measure_when measure;
 	ob_frames_request frames;
@@ -46,9 +40,9 @@ typedef struct ob_run_request {
 // The strings stay those of a.
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 
-// Fills what was left to the scene (duration, step, substeps, ...) and the settings for the host.
+// Where the command line is silent, the scene decides: fills the duration and the settings of the run.
 // false and e when the result cannot be run.
-bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_run_settings *run, ob_error *e);
+bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_error *e);
 
 // Steps in a duration: the first step boundary at or after its end.
 uint64_t ob_request_steps(double duration, double step);

@@ -119,7 +119,7 @@ static bool open_outputs(run *r, ob_error *e)
 	const ob_run_request *q = &r->request;
 	if (q->frames.wanted) { // first, for it makes directories
 
-		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->step, e);
+		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->run.step_length, e);
 		if (!r->capture)
 			return false;
 		ob_capture_trace(r->capture, r->host);
@@ -169,7 +169,7 @@ static double body_steps(const run *r)
 		const ob_object_def *d = &r->scene->object[i];
 		double there = fmin(d->dies, r->now.time) - fmax(d->born, 0);
 		if (!(d->passport.flags & OB_OBJECT_STATIC) && there > 0)
-			sum += there / r->request.step;
+			sum += there / r->request.run.step_length;
 	}
 	return sum;
 }
@@ -183,12 +183,12 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.workers = info.workers,
 		.steps = r->now.step,
 		.simulated_s = r->now.time,
-		.step = q->step,
-		.substeps = q->substeps,
-		.passes = q->passes,
-		.tolerance = q->tolerance > 0 ? q->tolerance : NAN,
-		.lag = ob_universe_settings(ob_host_universe(r->host))->lag,
-		.load = q->load,
+		.step = q->run.step_length,
+		.substeps = q->run.tolerance > 0 ? 0 : q->run.substeps,
+		.iterations = q->run.iterations,
+		.tolerance = q->run.tolerance > 0 ? q->run.tolerance : NAN,
+		.lag = q->run.lag,
+		.load = q->run.load,
 		.seed = q->scene_options.has_seed ? q->scene_options.seed : r->scene->seed,
 		.frames = r->frames,
 		.frame_rate = q->frames.wanted ? q->frames.fps : NAN,
@@ -198,11 +198,11 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 	};
 	snprintf(p->scene, sizeof p->scene, "%s", q->scene);
 	snprintf(p->outcome, sizeof p->outcome, "%s", outcome);
-	snprintf(p->arch, sizeof p->arch, "%s", info.arch);
+	snprintf(p->arch, sizeof p->arch, "%s", ob_setting_print(&q->run, OB_SETTING_ARCHITECTURE).text);
 	snprintf(p->isolation, sizeof p->isolation, "%s", info.isolation);
-	snprintf(p->exchange, sizeof p->exchange, "%s", q->exchange);
-	snprintf(p->integrator, sizeof p->integrator, "%s", q->integrator);
-	snprintf(p->narrow, sizeof p->narrow, "%s", q->narrow == OB_NARROW_AABB ? "aabb" : "obb");
+	snprintf(p->solver, sizeof p->solver, "%s", ob_setting_print(&q->run, OB_SETTING_SOLVER).text);
+	snprintf(p->integrator, sizeof p->integrator, "%s", ob_setting_print(&q->run, OB_SETTING_INTEGRATOR).text);
+	snprintf(p->narrow, sizeof p->narrow, "%s", ob_setting_print(&q->run, OB_SETTING_NARROW_PHASE).text);
 	snprintf(p->commit, sizeof p->commit, "%s", ob_version_commit);
 	p->fps = r->frames > 0 ? (double)r->frames / p->total_s : NAN;
 }
@@ -331,11 +331,12 @@ int ob_command_run(const ob_arguments *a)
 	if (!ob_request_read(&r.request, a, &e))
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	r.scene = ob_scene_load(r.request.scene, &r.request.scene_options, &e);
-	if (!r.scene || !ob_request_settle(&r.request, r.scene, &config.run, &e)) {
+	if (!r.scene || !ob_request_settle(&r.request, r.scene, &e)) {
 		ob_scene_free(r.scene);
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	}
-	r.steps = ob_request_steps(r.request.duration, r.request.step);
+	r.steps = ob_request_steps(r.request.duration, r.request.run.step_length);
+	config.run = r.request.run;
 	config.name = r.request.name;
 	config.isolation = r.request.isolation;
 	config.workers = r.request.workers;

@@ -8,12 +8,12 @@ static const char title[] = "Bullet, double precision";
 static const char title[] = "Bullet, single precision";
 #endif
 
-static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
-	if (s->step > 0 && s->substeps && s->iterations)
+	if (s->step_length > 0 && s->substeps && s->iterations)
 		return ob_bullet_create(w, s, e);
 	ob_fail(e, "%u substeps of a step of %g s with %u iterations: Bullet must be told what to do", s->substeps,
-		s->step, s->iterations);
+		s->step_length, s->iterations);
 	return NULL;
 }
 
@@ -21,7 +21,7 @@ const ob_engine_kind ob_engine_bullet = {
 	.name = "bullet",
 	.title = title,
 	.version = OB_BULLET_VERSION,
-	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 10 },
+	.usual = { .step_length = OB_DEFAULT_STEP, .substeps = 1, .iterations = 10 },
 	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 },
 	.create = create,
 	.step = ob_bullet_step,

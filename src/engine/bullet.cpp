@@ -128,7 +128,7 @@ static void allow_for_bounces(btContactSolverInfo *info, const ob_engine_world *
 		info->m_erp2 = 0;
 }
 
-static void set_up(ob_engine *b, const ob_engine_world *w, const ob_engine_settings *s)
+static void set_up(ob_engine *b, const ob_engine_world *w, const ob_run_settings *s)
 {
 	gCalculateCombinedFrictionCallback = pair_friction;
 	gCalculateCombinedRestitutionCallback = pair_restitution;
@@ -138,12 +138,12 @@ static void set_up(ob_engine *b, const ob_engine_world *w, const ob_engine_setti
 	b->world.getSolverInfo().m_numIterations = int(s->iterations);
 	allow_for_bounces(&b->world.getSolverInfo(), w);
 	b->substeps = s->substeps;
-	b->substep = btScalar(s->step / s->substeps);
+	b->substep = btScalar(s->step_length / s->substeps);
 	for (uint32_t i = 0; i < w->objects; i++)
 		add(b, &w->passport[i], &w->state[i], s->sleeping);
 }
 
-extern "C" ob_engine *ob_bullet_create(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+extern "C" ob_engine *ob_bullet_create(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	try {
 		auto b = std::make_unique<ob_engine>();

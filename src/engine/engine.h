@@ -8,6 +8,8 @@
 
 #include <ob/motion.h>
 
+#include "settings/settings.h"
+
 // What every engine is given: objects by their passports (id = index, inertia filled, mass 0 and OB_OBJECT_STATIC =
 // does not move), where they start, gravity. Pair friction is sqrt(mu_a mu_b), restitution max(e_a, e_b) in all.
 typedef struct ob_engine_world {
@@ -17,24 +19,17 @@ typedef struct ob_engine_world {
 	ob_state *state; // [objects]
 } ob_engine_world;
 
-typedef struct ob_engine_settings {
-	double step; // s, a frame: states are asked for at its end
-	uint32_t substeps; // the engine's own steps per frame; 0 = chosen by obsim from the tolerance alone
-	uint32_t iterations; // the engine's own count: exchange rounds, solver iterations
-	double tolerance; // m; obsim alone: more substeps where the error is above it
-	uint32_t lag; // exchanges that a partner's state is late; engine obsim-lag alone
-	bool sleeping;
-} ob_engine_settings;
-
 typedef struct ob_engine ob_engine;
 
 typedef struct ob_engine_kind {
 	const char *name; // as on the command line: "obsim", "ode-quick"
 	const char *title; // as in a legend: "obsim (coloured)"
 	const char *version; // of the library; "" for obsim's own
-	ob_engine_settings usual; // what its users run at 60 Hz
+	// What its users run at 60 Hz. A step is a frame, substeps and iterations are the engine's own; gravity is the
+	// world's. obsim alone: substeps 0 = chosen from the tolerance alone; the solver and integrator are the kind's.
+	ob_run_settings usual;
 	uint32_t iteration_choice[8]; // worth sweeping, ascending; 0 ends
-	ob_engine *(*create)(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e); // NULL and e
+	ob_engine *(*create)(const ob_engine_world *w, const ob_run_settings *s, ob_error *e); // NULL and e
 	bool (*step)(ob_engine *p, ob_error *e); // one frame; false and e: it cannot go on
 	void (*get)(const ob_engine *p, ob_state *state); // [objects], at the end of the last frame
 	void (*destroy)(ob_engine *p); // NULL is allowed

@@ -97,69 +97,63 @@ static void get(const ob_engine *p, ob_state *state)
 }
 
 // With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.
-static bool settle(const ob_engine_world *w, const ob_engine_settings *s, ob_run_settings *run, ob_error *e)
+static bool settle(const ob_engine_world *w, const ob_run_settings *s, ob_run_settings *run, ob_error *e)
 {
 	bool chosen = s->substeps == 0;
-	if (!(s->step > 0))
-		return ob_fail(e, "a step of %g s: it must be above 0", s->step);
+	if (!(s->step_length > 0))
+		return ob_fail(e, "a step of %g s: it must be above 0", s->step_length);
 	if (chosen && !(s->tolerance > 0))
 		return ob_fail(e, "neither substeps nor a tolerance that they could be chosen from");
-	*run = (ob_run_settings){
-		.gravity = w->gravity,
-		.step_length = s->step,
-		.substeps = chosen ? 1 : s->substeps,
-		.passes = s->iterations,
-		.tolerance = s->tolerance,
-		.sleeping = s->sleeping,
-	};
-	return run->passes > 0 || ob_fail(e, "no exchange round: at least one is needed");
+	*run = *s;
+	run->gravity = w->gravity;
+	run->substeps = chosen ? 1 : s->substeps;
+	return run->iterations > 0 || ob_fail(e, "no iteration of the contact solver: at least one is needed");
 }
 
-static ob_engine *create_as(const ob_engine_world *w, const ob_engine_settings *s, ob_solver_kind exchange,
+static ob_engine *create_as(const ob_engine_world *w, const ob_run_settings *s, ob_solver_kind solver,
 			  ob_integrator integrator, ob_error *e)
 {
 	ob_run_settings run;
 	if (!settle(w, s, &run, e))
 		return NULL;
-	run.exchange = exchange;
+	run.solver = solver;
 	run.integrator = integrator;
-	run.lag = exchange == OB_SOLVER_LAGGED ? s->lag : 0;
+	run.lag = solver == OB_SOLVER_LAGGED ? s->lag : 0;
 	return create(w, &run, e);
 }
 
-static ob_engine *create_coloured(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_coloured(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_COLOURED, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_engine *create_jacobi(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_jacobi(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_JACOBI, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_engine *create_ode(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_ode(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_COLOURED, OB_INTEGRATOR_ODE, e);
 }
 
-static ob_engine *create_ghost(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_ghost(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_GHOST, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_engine *create_lagged(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_lagged(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_LAGGED, OB_INTEGRATOR_EXACT, e);
 }
 
 // clang-format off
-#define USUAL .step = 1. / 60, .substeps = 8, .iterations = 16 // the program's own ..
-#define USUAL_TOLERANCE 1e-3 // m; .. where both sides of a pair agree
+#define USUAL .step_length = OB_DEFAULT_STEP, .substeps = OB_DEFAULT_SUBSTEPS, .iterations = OB_DEFAULT_ITERATIONS
 #define THE_REST \
 	.version = "", .iteration_choice = { 1, 2, 4, 8, 16, 32, 64 }, .step = step, .get = get, .destroy = destroy
 
 const ob_engine_kind ob_engine_obsim = {
-	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = USUAL_TOLERANCE }, THE_REST
+	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = OB_DEFAULT_TOLERANCE }, THE_REST
 };
 const ob_engine_kind ob_engine_obsim_jacobi = {
 	.name = "obsim-jacobi", .title = "obsim (Jacobi)", .create = create_jacobi, .usual = { USUAL }, THE_REST

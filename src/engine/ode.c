@@ -20,10 +20,10 @@ static void destroy(ob_engine *p)
 }
 
 // iterations: QuickStep's; 0 = dWorldStep
-static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, uint32_t iterations, bool hashed, ob_error *e)
+static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, uint32_t iterations, bool hashed, ob_error *e)
 {
-	if (!(s->step > 0) || !s->substeps) {
-		ob_fail(e, "%u substeps of a step of %g s: ODE must be told what to do", s->substeps, s->step);
+	if (!(s->step_length > 0) || !s->substeps) {
+		ob_fail(e, "%u substeps of a step of %g s: ODE must be told what to do", s->substeps, s->step_length);
 		return NULL;
 	}
 	ob_engine *p = calloc(1, sizeof *p);
@@ -32,7 +32,7 @@ static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, 
 		return NULL;
 	}
 	ob_engine_ode_enter();
-	*p = (ob_engine){ .substep = s->step / s->substeps, .substeps = s->substeps, .objects = w->objects };
+	*p = (ob_engine){ .substep = s->step_length / s->substeps, .substeps = s->substeps, .objects = w->objects };
 	p->world = ob_ode_world_create(&(ob_ode_world_setup){
 		.gravity = w->gravity,
 		.iterations = iterations,
@@ -50,7 +50,7 @@ static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, 
 	return p;
 }
 
-static ob_engine *create_iterating(const ob_engine_world *w, const ob_engine_settings *s, bool hashed, ob_error *e)
+static ob_engine *create_iterating(const ob_engine_world *w, const ob_run_settings *s, bool hashed, ob_error *e)
 {
 	if (s->iterations)
 		return create(w, s, s->iterations, hashed, e);
@@ -58,17 +58,17 @@ static ob_engine *create_iterating(const ob_engine_world *w, const ob_engine_set
 	return NULL;
 }
 
-static ob_engine *create_quick(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_quick(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_iterating(w, s, false, e);
 }
 
-static ob_engine *create_hashed(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_hashed(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_iterating(w, s, true, e);
 }
 
-static ob_engine *create_world(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_world(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create(w, s, 0, false, e);
 }
@@ -90,7 +90,7 @@ static void get(const ob_engine *p, ob_state *state)
 
 #define THE_REST .version = OB_ODE_VERSION, .step = step, .get = get, .destroy = destroy
 #define QUICK \
-	.usual = { .step = 1. / 60, .substeps = 1, .iterations = 20 }, \
+	.usual = { .step_length = OB_DEFAULT_STEP, .substeps = 1, .iterations = OB_DEFAULT_MONOLITH_ITERATIONS }, \
 	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 }
 
 const ob_engine_kind ob_engine_ode_quick = {
@@ -112,7 +112,7 @@ const ob_engine_kind ob_engine_ode_hash = {
 const ob_engine_kind ob_engine_ode_world = {
 	.name = "ode-world",
 	.title = "ODE dWorldStep",
-	.usual = { .step = 1. / 60, .substeps = 1 },
+	.usual = { .step_length = OB_DEFAULT_STEP, .substeps = 1 },
 	.create = create_world,
 	THE_REST,
 };

@@ -9,7 +9,7 @@
 typedef struct ob_attempt {
 	const ob_case *of;
 	const ob_engine_kind *engine;
-	ob_engine_settings settings;
+	ob_run_settings settings;
 	double limit; // s of CPU, and four times as many of wall-clock time: a busy machine is not the engine's fault
 	void (*tick)(void *with); // a few times a second while the child runs; NULL = not wanted
 	void *with;

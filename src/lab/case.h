@@ -29,7 +29,7 @@ typedef struct ob_trial {
 	double memory[64]; // the case's own, zeroed before each run
 	double *body_memory; // [objects][8], likewise
 	const char *failed; // why the run counts as failed: "fell", "passed through"; NULL = it did not
-	ob_engine_settings settings;
+	ob_run_settings settings;
 } ob_trial;
 
 typedef struct ob_case {
@@ -61,6 +61,6 @@ typedef struct ob_outcome {
 	double body_seconds; // dynamic bodies times simulated time
 	char failed[96]; // "" = it did not
 } ob_outcome;
-bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_engine_settings *s, ob_outcome *out, ob_error *e);
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_outcome *out, ob_error *e);
 
 #endif

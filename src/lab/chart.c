@@ -110,7 +110,7 @@ void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 
 void ob_chart_setting(const ob_result *r, char *to, size_t room)
 {
-	const ob_engine_settings *s = &r->settings;
+	const ob_run_settings *s = &r->settings;
 	if (s->tolerance > 0 && s->substeps)
 		snprintf(to, room, "usual");
 	else if (s->tolerance > 0)
@@ -118,5 +118,5 @@ void ob_chart_setting(const ob_result *r, char *to, size_t room)
 	else if (ob_digest_is_obsim(r->engine))
 		snprintf(to, room, "%u", s->substeps);
 	else
-		snprintf(to, room, "%.0f Hz", s->substeps / s->step);
+		snprintf(to, room, "%.0f Hz", s->substeps / s->step_length);
 }

@@ -48,10 +48,10 @@ int ob_digest_style(const ob_digest *d, const ob_engine_kind *k)
 
 static const ob_result *find(const ob_digest *d, const ob_case *c, const ob_engine_kind *k, uint32_t lag)
 {
-	const ob_engine_settings *usual = &k->usual;
+	const ob_run_settings *usual = &k->usual;
 	for (size_t i = 0; i < d->results->count; i++) {
 		const ob_result *r = &d->results->result[i];
-		const ob_engine_settings *s = &r->settings;
+		const ob_run_settings *s = &r->settings;
 		if (r->of == c && r->engine == k && s->substeps == usual->substeps &&
 		    s->iterations == usual->iterations && s->tolerance == usual->tolerance && s->lag == lag &&
 		    s->sleeping == usual->sleeping)

@@ -19,17 +19,17 @@ typedef struct session {
 	double begun; // of the attempt under way, s
 	pace pace[OB_LIST_CASES]; // by place in the plan
 	size_t at; // the case's place
-	ob_engine_settings settings[OB_SWEEP_SETTINGS];
+	ob_run_settings settings[OB_SWEEP_SETTINGS];
 } session;
 
-static double work_of(const ob_case *c, const ob_engine_settings *s)
+static double work_of(const ob_case *c, const ob_run_settings *s)
 {
-	return c->duration / s->step * c->runs * (s->substeps ? s->substeps : 16);
+	return c->duration / s->step_length * c->runs * (s->substeps ? s->substeps : 16);
 }
 
 // How often this is still to be done. Who ran out of time, or crashed, is not asked again, unless there is more time;
 // nor who failed: errors are the same every time, and repeats are for the times of what succeeds.
-static uint32_t repeats_left(const session *s, const ob_case *c, const ob_engine_kind *k, const ob_engine_settings *at)
+static uint32_t repeats_left(const session *s, const ob_case *c, const ob_engine_kind *k, const ob_run_settings *at)
 {
 	const ob_result *r = ob_results_find(s->results, c, k, at);
 	if (!r)
@@ -42,7 +42,7 @@ static uint32_t repeats_left(const session *s, const ob_case *c, const ob_engine
 }
 
 // Calls "with" for each engine and setting of a case, until one says no.
-static bool each(session *s, bool (*with)(session *, const ob_engine_kind *, const ob_engine_settings *, ob_error *),
+static bool each(session *s, bool (*with)(session *, const ob_engine_kind *, const ob_run_settings *, ob_error *),
 		 ob_error *e)
 {
 	const ob_case *c = s->plan->cases.of[s->at];
@@ -56,7 +56,7 @@ static bool each(session *s, bool (*with)(session *, const ob_engine_kind *, con
 	return true;
 }
 
-static bool count(session *s, const ob_engine_kind *k, const ob_engine_settings *at, ob_error *e)
+static bool count(session *s, const ob_engine_kind *k, const ob_run_settings *at, ob_error *e)
 {
 	const ob_case *c = s->plan->cases.of[s->at];
 	uint32_t left = repeats_left(s, c, k, at);
@@ -88,7 +88,7 @@ static void tick(void *with)
 	s->plan->tick(&s->progress, s->plan->with);
 }
 
-static bool keep(session *s, const ob_engine_kind *k, const ob_engine_settings *at, const ob_outcome *out, ob_error *e)
+static bool keep(session *s, const ob_engine_kind *k, const ob_run_settings *at, const ob_outcome *out, ob_error *e)
 {
 	const ob_case *c = s->plan->cases.of[s->at];
 	ob_result *r = ob_results_find(s->results, c, k, at);
@@ -106,7 +106,7 @@ static bool keep(session *s, const ob_engine_kind *k, const ob_engine_settings *
 }
 
 // Is a finer than b, with all else no coarser?
-static bool is_finer(const ob_engine_settings *a, const ob_engine_settings *b)
+static bool is_finer(const ob_run_settings *a, const ob_run_settings *b)
 {
 	bool by_tolerance = a->tolerance > 0;
 	return by_tolerance == (b->tolerance > 0) && a->iterations >= b->iterations &&
@@ -114,7 +114,7 @@ static bool is_finer(const ob_engine_settings *a, const ob_engine_settings *b)
 }
 
 // The outcome of a setting that is finer than one that took too long: to be told without trying. NULL: there is none
-static const ob_result *coarser_that_took_too_long(const session *s, const ob_engine_kind *k, const ob_engine_settings *at)
+static const ob_result *coarser_that_took_too_long(const session *s, const ob_engine_kind *k, const ob_run_settings *at)
 {
 	for (size_t i = 0; i < s->results->count; i++) {
 		const ob_result *r = &s->results->result[i];
@@ -125,7 +125,7 @@ static const ob_result *coarser_that_took_too_long(const session *s, const ob_en
 	return NULL;
 }
 
-static bool try(session *s, const ob_engine_kind *k, const ob_engine_settings *at, ob_outcome *out, ob_error *e)
+static bool try(session *s, const ob_engine_kind *k, const ob_run_settings *at, ob_outcome *out, ob_error *e)
 {
 	const ob_result *coarser = coarser_that_took_too_long(s, k, at);
 	if (coarser) {
@@ -138,7 +138,7 @@ static bool try(session *s, const ob_engine_kind *k, const ob_engine_settings *a
 	return ob_attempt_run(&a, out, e);
 }
 
-static bool attempt(session *s, const ob_engine_kind *k, const ob_engine_settings *at, ob_error *e)
+static bool attempt(session *s, const ob_engine_kind *k, const ob_run_settings *at, ob_error *e)
 {
 	const ob_case *c = s->plan->cases.of[s->at];
 	uint32_t left = repeats_left(s, c, k, at);

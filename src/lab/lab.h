@@ -10,7 +10,7 @@
 typedef struct ob_lab_progress {
 	const ob_case *of;
 	const ob_engine_kind *engine;
-	ob_engine_settings settings;
+	ob_run_settings settings;
 	size_t done, all; // attempts of this call; what an earlier one has left does not count
 	double left; // s, a guess; NAN = none yet
 } ob_lab_progress;

@@ -27,15 +27,15 @@ static int by_number(double a, double b)
 }
 
 // From coarse to fine; chosen by a tolerance behind chosen by hand.
-static int by_settings(const ob_engine_settings *a, const ob_engine_settings *b)
+static int by_settings(const ob_run_settings *a, const ob_run_settings *b)
 {
 	int order = (a->tolerance > 0) - (b->tolerance > 0);
 	order = order ? order : by_number(b->tolerance, a->tolerance);
-	order = order ? order : by_number(b->step, a->step);
+	order = order ? order : by_number(b->step_length, a->step_length);
 	order = order ? order : by_number(a->substeps, b->substeps);
 	order = order ? order : by_number(a->iterations, b->iterations);
 	order = order ? order : by_number(a->lag, b->lag);
-	return order ? order : a->sleeping - b->sleeping;
+	return order ? order : (int)a->sleeping - (int)b->sleeping;
 }
 
 static int by_place(const ob_result *a, const ob_result *b)
@@ -45,7 +45,7 @@ static int by_place(const ob_result *a, const ob_result *b)
 	return order ? order : by_settings(&a->settings, &b->settings);
 }
 
-ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_engine_settings *s)
+ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_run_settings *s)
 {
 	for (size_t i = 0; i < r->count; i++) {
 		ob_result *one = &r->result[i];

@@ -10,7 +10,7 @@ enum { OB_REPEATS = 15 }; // at most
 typedef struct ob_result {
 	const ob_case *of;
 	const ob_engine_kind *engine;
-	ob_engine_settings settings;
+	ob_run_settings settings;
 	ob_outcome outcome; // medians of the repeats' times, and the worst of their figures
 	uint32_t repeats;
 	double cpu_s[OB_REPEATS], wall_s[OB_REPEATS]; // of each repeat
@@ -34,7 +34,7 @@ static inline double ob_result_cost(const ob_result *r)
 // replaces the old one. The file is as RFC 4180 has it, a line for each result; numbers read back to the same bits.
 bool ob_results_read(ob_results *r, const char *path, ob_error *e);
 bool ob_results_write(const ob_results *r, const char *path, ob_error *e);
-ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_engine_settings *s);
+ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_run_settings *s);
 bool ob_results_add(ob_results *r, const ob_result *one); // at its place in the order; false: no memory
 // One more repeat of the same: medians and worst figures follow. No effect when there are OB_REPEATS already.
 void ob_result_repeat(ob_result *r, const ob_outcome *again);

@@ -103,15 +103,11 @@ static bool repeats(const reader *r, int column, uint32_t n, double *out, ob_err
 	       ob_fail(e, "%s:%d: %s: not %u numbers", r->path, r->line, ob_result_column_name(column, made_up), n);
 }
 
-static bool read_settings(const reader *r, ob_engine_settings *s, ob_error *e)
+static bool read_settings(const reader *r, ob_run_settings *s, ob_error *e)
 {
-	uint32_t sleeping;
-	if (!number(r, OB_COLUMN_STEP, &s->step, e) || !count(r, OB_COLUMN_SUBSTEPS, &s->substeps, e) ||
-	    !count(r, OB_COLUMN_ITERATIONS, &s->iterations, e) || !number(r, OB_COLUMN_TOLERANCE, &s->tolerance, e) ||
-	    !count(r, OB_COLUMN_LAG, &s->lag, e) || !count(r, OB_COLUMN_SLEEPING, &sleeping, e))
-		return false;
-	s->sleeping = sleeping;
-	return true;
+	return number(r, OB_COLUMN_STEP, &s->step_length, e) && count(r, OB_COLUMN_SUBSTEPS, &s->substeps, e) &&
+	       count(r, OB_COLUMN_ITERATIONS, &s->iterations, e) && number(r, OB_COLUMN_TOLERANCE, &s->tolerance, e) &&
+	       count(r, OB_COLUMN_LAG, &s->lag, e) && count(r, OB_COLUMN_SLEEPING, &s->sleeping, e);
 }
 
 static bool read_outcome(const reader *r, ob_result *one, ob_error *e)

@@ -100,7 +100,7 @@ static void put_cell(FILE *f, const ob_results *all, const ob_result *r, int col
 {
 	const double number[OB_COLUMNS] = {
 		[OB_COLUMN_ROW] = r->of->row,
-		[OB_COLUMN_STEP] = r->settings.step,
+		[OB_COLUMN_STEP] = r->settings.step_length,
 		[OB_COLUMN_SUBSTEPS] = r->settings.substeps,
 		[OB_COLUMN_ITERATIONS] = r->settings.iterations,
 		[OB_COLUMN_TOLERANCE] = r->settings.tolerance,

@@ -104,14 +104,14 @@ static const ob_sweep *sensible(void)
 }
 
 typedef struct collection {
-	ob_engine_settings *to;
+	ob_run_settings *to;
 	size_t count;
 } collection;
 
-static void add(collection *c, ob_engine_settings s)
+static void add(collection *c, ob_run_settings s)
 {
 	for (size_t i = 0; i < c->count; i++) {
-		const ob_engine_settings *t = &c->to[i];
+		const ob_run_settings *t = &c->to[i];
 		if (t->substeps == s.substeps && t->iterations == s.iterations && t->tolerance == s.tolerance &&
 		    t->lag == s.lag)
 			return;
@@ -120,14 +120,14 @@ static void add(collection *c, ob_engine_settings s)
 		c->to[c->count++] = s;
 }
 
-static void add_products(collection *to, const ob_sweep *s, const ob_engine_settings *usual)
+static void add_products(collection *to, const ob_sweep *s, const ob_run_settings *usual)
 {
 	// of what is not swept, the usual value is the only one; so is 0 iterations, of an engine that has none
 	size_t substeps = s->substeps ? s->substeps : 1;
 	size_t iterations = s->iterations && usual->iterations ? s->iterations : 1;
 	for (size_t i = 0; i < substeps; i++) {
 		for (size_t j = 0; j < iterations; j++) {
-			ob_engine_settings one = *usual;
+			ob_run_settings one = *usual;
 			if (s->substeps) {
 				one.substeps = s->substeps_list[i];
 				one.tolerance = 0;
@@ -140,13 +140,13 @@ static void add_products(collection *to, const ob_sweep *s, const ob_engine_sett
 }
 
 size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_kind *k,
-			 ob_engine_settings to[OB_SWEEP_SETTINGS])
+			 ob_run_settings to[OB_SWEEP_SETTINGS])
 {
 	bool late = k->usual.lag > 0; // an engine whose partners are late: it has a case of its own
 	if (late != (strcmp(c->name, "lag") == 0))
 		return 0;
-	ob_engine_settings usual = k->usual;
-	usual.step = c->step;
+	ob_run_settings usual = k->usual;
+	usual.step_length = c->step;
 	collection all = { to, 0 };
 	const ob_sweep *sweep = s->own ? sensible() : s;
 	if (late) {
@@ -161,16 +161,16 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_ki
 	add(&all, usual);
 	add_products(&all, sweep, &usual);
 	for (size_t i = 0; i < sweep->tolerances && strcmp(k->name, "obsim") == 0; i++) {
-		ob_engine_settings one = usual;
+		ob_run_settings one = usual;
 		one.substeps = 0;
-		one.iterations = 64; // as the program does
+		one.iterations = OB_DEFAULT_TOLERANCE_ITERATIONS;
 		one.tolerance = sweep->tolerance_list[i];
 		add(&all, one);
 	}
 	return all.count;
 }
 
-void ob_sweep_print(char *to, size_t room, const ob_engine_settings *s)
+void ob_sweep_print(char *to, size_t room, const ob_run_settings *s)
 {
 	int n;
 	if (s->tolerance > 0 && s->substeps)

@@ -21,9 +21,9 @@ bool ob_sweep_parse(ob_sweep *s, const char *text, ob_error *e);
 // iterations, then the tolerances. A knob that an engine does not have stays as it is. Returns how many; 0: this
 // engine has nothing to do in this case.
 size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_kind *k,
-			 ob_engine_settings to[OB_SWEEP_SETTINGS]);
+			 ob_run_settings to[OB_SWEEP_SETTINGS]);
 
 // "8 substeps, 16 rounds", "tolerance 0.5 mm"; with "late by 2" where it is
-void ob_sweep_print(char *to, size_t room, const ob_engine_settings *s);
+void ob_sweep_print(char *to, size_t room, const ob_run_settings *s);
 
 #endif

@@ -45,7 +45,7 @@ static void take(ob_trial *t, const ob_state *state)
 static void watch(ob_trial *t, ob_engine *peer, const ob_engine_kind *kind, ob_state *state, ob_outcome *out, ob_error *e)
 {
 	const ob_case *c = t->of;
-	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step);
+	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step_length);
 	bool broken = false;
 	take(t, t->world->state);
 	if (c->observe)
@@ -56,7 +56,7 @@ static void watch(ob_trial *t, ob_engine *peer, const ob_engine_kind *kind, ob_s
 		out->cpu_s += ob_clock_thread_cpu() - cpu;
 		out->wall_s += ob_clock_wall() - wall;
 		t->frame++;
-		t->time = t->frame * t->settings.step;
+		t->time = t->frame * t->settings.step_length;
 		kind->get(peer, state);
 		take(t, state);
 		t->failed = on ? insane(t) : e->text;
@@ -83,13 +83,13 @@ typedef struct tally {
 	char why[96]; // the first reason
 } tally;
 
-static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_engine_settings *s, ob_outcome *out,
+static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_run_settings *s, ob_outcome *out,
 		tally *failures, ob_error *e)
 {
 	ob_engine_world w = { .gravity = { 0, 0, -OB_BUILD_GRAVITY } };
 	c->build(&w, number);
 	ob_trial t = { .of = c, .run = number, .world = &w, .settings = *s };
-	t.settings.step = s->step > 0 ? s->step : c->step;
+	t.settings.step_length = s->step_length > 0 ? s->step_length : c->step;
 	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport };
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
 	t.body_memory = calloc(w.objects, 8 * sizeof *t.body_memory);
@@ -117,7 +117,7 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	return made;
 }
 
-bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_engine_settings *s, ob_outcome *out, ob_error *e)
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_outcome *out, ob_error *e)
 {
 	tally failures = { 0 };
 	*out = (ob_outcome){ 0 };

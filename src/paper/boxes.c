@@ -70,7 +70,7 @@ bool ob_paper_boxes(ob_scene *s, uint32_t boxes, uint64_t seed)
 	double reach = side * spacing;
 	*s = (ob_scene){
 		.title = "falling boxes",
-		.gravity = { 0, 0, -9.81 },
+		.run = { .gravity = { 0, 0, -9.81 } },
 		.seed = seed,
 		.objects = boxes + 1,
 		.object = calloc(boxes + 1, sizeof *s->object),

@@ -172,10 +172,9 @@ static bool run(course *c, ob_paper_sample *s, ob_error *e)
 		.workers = setup->each       ? 0
 			   : setup->monolith ? 1
 					     : (uint32_t)ob_cpu_count(),
-		.run = { .gravity = c->scene.gravity,
+		.run = { .gravity = c->scene.run.gravity,
 			 .step_length = OB_PAPER_STEP_LENGTH,
 			 .substeps = OB_PAPER_SUBSTEPS,
-			 .passes = OB_PAPER_ROUNDS,
 			 .iterations = OB_PAPER_ROUNDS,
 			 .monolith = setup->monolith,
 			 .narrow_phase = setup->oriented ? OB_NARROW_OBB : OB_NARROW_AABB,

@@ -143,7 +143,7 @@ static double ground_height(const ob_scene *s)
 	double height = -INFINITY;
 	for (uint32_t i = 0; i < s->objects; i++) {
 		const ob_object_def *o = &s->object[i];
-		if (o->passport.shape == OB_SHAPE_PLANE && o->state.pose.q.w > .999 && s->gravity.z < 0)
+		if (o->passport.shape == OB_SHAPE_PLANE && o->state.pose.q.w > .999 && s->run.gravity.z < 0)
 			height = fmax(height, o->state.pose.p.z);
 	}
 	return height;

@@ -7,33 +7,55 @@
 #include "scene/sandbox.h"
 
 typedef struct scene_fields {
-	const char *title, *exchange, *integrator;
+	const char *title;
+	double duration;
+	uint64_t seed;
 	ob_vec3 gravity;
-	double step, duration, tolerance;
-	uint64_t substeps, passes, lag, seed; // substeps and passes 0, lag NOT_SAID: not said
-	bool sleeping;
+	ob_run_settings run; // what the scene leaves alone is unset
 } scene_fields;
 
-enum { NOT_SAID = 1000 };
-static const char *const exchanges[] = { "coloured", "jacobi", "ghost", "lagged", NULL };
-static const char *const integrators[] = { "exact", "ode", NULL };
-
 #define F(member, ...) OB_FIELD(scene_fields, member, .name = #member, __VA_ARGS__)
-static const ob_field fields[] = {
+static const ob_field own_fields[] = {
 	F(title, .kind = OB_FIELD_TEXT, .high = sizeof((ob_scene *)0)->title - 1),
 	F(gravity, .kind = OB_FIELD_VECTOR, .low = -1e4, .high = 1e4),
-	F(step, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1),
 	F(duration, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
-	F(substeps, .kind = OB_FIELD_WHOLE, .low = 1, .high = 256),
-	F(passes, .kind = OB_FIELD_WHOLE, .low = 1, .high = 256),
-	F(tolerance, .kind = OB_FIELD_NUMBER, .low = OB_SCENE_TOLERANCE_LEAST, .high = OB_SCENE_TOLERANCE_MOST),
-	F(lag, .kind = OB_FIELD_WHOLE, .low = 0, .high = 256),
-	F(exchange, .kind = OB_FIELD_TEXT, .choices = exchanges),
-	F(integrator, .kind = OB_FIELD_TEXT, .choices = integrators),
-	F(sleeping, .kind = OB_FIELD_BOOLEAN),
 	F(seed, .kind = OB_FIELD_WHOLE, .low = 0, .high = 0x1p53),
 };
 #undef F
+
+// What a run is made of is the command line's choice alone: architecture, narrow phase, load.
+static const ob_setting_id settings[] = { OB_SETTING_STEP,       OB_SETTING_TOLERANCE,  OB_SETTING_SUBSTEPS,
+					  OB_SETTING_ITERATIONS, OB_SETTING_SOLVER,     OB_SETTING_LAG,
+					  OB_SETTING_INTEGRATOR, OB_SETTING_SLEEPING };
+
+enum {
+	OWN_FIELDS = sizeof own_fields / sizeof *own_fields,
+	SETTINGS = sizeof settings / sizeof *settings,
+};
+
+static void list_fields(ob_field field[OWN_FIELDS + SETTINGS])
+{
+	static const ob_field_kind kind[] = {
+		[OB_SETTING_REAL] = OB_FIELD_NUMBER,
+		[OB_SETTING_COUNT] = OB_FIELD_COUNT,
+		[OB_SETTING_CHOICE] = OB_FIELD_CHOICE,
+		[OB_SETTING_SWITCH] = OB_FIELD_SWITCH,
+	};
+	memcpy(field, own_fields, sizeof own_fields);
+	for (int i = 0; i < SETTINGS; i++) {
+		const ob_setting *s = &ob_setting_table[settings[i]];
+		field[OWN_FIELDS + i] = (ob_field){
+			.name = s->name,
+			.kind = kind[s->kind],
+			.offset = offsetof(scene_fields, run) + s->offset,
+			// object simulators need an iteration; 0 is the monolith's exact solver
+			.low = settings[i] == OB_SETTING_ITERATIONS ? 1 : s->least,
+			.high = s->most,
+			.above = s->above,
+			.choices = s->names,
+		};
+	}
+}
 
 // Random numbers drawn before the seed is set would come from another seed.
 static void set_seed(lua_State *L, ob_builder *b, uint64_t seed)
@@ -46,25 +68,16 @@ static void set_seed(lua_State *L, ob_builder *b, uint64_t seed)
 	ob_random_seed(&b->random, seed);
 }
 
-// How exactly contacts are solved: by a tolerance, or by numbers.
-static void set_exactness(lua_State *L, ob_scene *s, const scene_fields *f)
+static void check_settings(lua_State *L, const scene_fields *f, const ob_scene *s)
 {
-	if (f->tolerance > 0 && f->substeps)
+	if (f->duration / s->run.step_length > UINT32_MAX)
+		ob_sandbox_fail(L, "scene.duration: expected at most %.0f steps, got %.10g", (double)UINT32_MAX,
+				f->duration / s->run.step_length);
+	if (ob_setting_is_set(&f->run, OB_SETTING_TOLERANCE) && ob_setting_is_set(&f->run, OB_SETTING_SUBSTEPS))
 		ob_sandbox_fail(L, "scene.substeps: expected either tolerance or substeps, got both");
-	if (f->lag != NOT_SAID && strcmp(s->exchange, "lagged") != 0)
-		ob_sandbox_fail(L, "scene.lag: expected with exchange = \"lagged\" only, got \"%s\"", s->exchange);
-	if (f->tolerance > 0) {
-		s->tolerance = f->tolerance;
-		s->substeps = 1;
-		s->passes = OB_SCENE_TOLERANT_PASSES;
-	} else if (f->substeps) {
-		s->tolerance = 0;
-		s->substeps = (uint32_t)f->substeps;
-	}
-	if (f->passes)
-		s->passes = (uint32_t)f->passes;
-	if (f->lag != NOT_SAID)
-		s->lag = (uint32_t)f->lag;
+	if (ob_setting_is_set(&f->run, OB_SETTING_LAG) && s->run.solver != OB_SOLVER_LAGGED)
+		ob_sandbox_fail(L, "scene.lag: expected with solver = \"lagged\" only, got \"%s\"",
+				ob_setting_print(&s->run, OB_SETTING_SOLVER).text);
 }
 
 int ob_scene_call_scene(lua_State *L)
@@ -74,32 +87,16 @@ int ob_scene_call_scene(lua_State *L)
 	if (b->has_scene)
 		ob_sandbox_fail(L, "scene: expected once, got a second time");
 	b->has_scene = true;
-	scene_fields f = {
-		.title = s->title,
-		.exchange = s->exchange,
-		.integrator = s->integrator,
-		.gravity = s->gravity,
-		.step = s->step,
-		.duration = s->duration,
-		.lag = NOT_SAID,
-		.seed = s->seed,
-		.sleeping = s->sleeping,
-	};
-	ob_fields_read(L, 1, "scene", fields, sizeof fields / sizeof *fields, &f);
-	if (f.duration / f.step > UINT32_MAX)
-		ob_sandbox_fail(L, "scene.duration: expected at most %.0f steps, got %.10g", (double)UINT32_MAX,
-				f.duration / f.step);
+	ob_field fields[OWN_FIELDS + SETTINGS];
+	list_fields(fields);
+	scene_fields f = { s->title, s->duration, s->seed, s->run.gravity, ob_run_settings_unset() };
+	ob_fields_read(L, 1, "scene", fields, OWN_FIELDS + SETTINGS, &f);
 	if (f.title != s->title)
 		snprintf(s->title, sizeof s->title, "%s", f.title);
-	if (f.exchange != s->exchange)
-		snprintf(s->exchange, sizeof s->exchange, "%s", f.exchange);
-	if (f.integrator != s->integrator)
-		snprintf(s->integrator, sizeof s->integrator, "%s", f.integrator);
-	s->gravity = f.gravity;
-	s->step = f.step;
 	s->duration = f.duration;
-	set_exactness(L, s, &f);
-	s->sleeping = f.sleeping;
+	s->run.gravity = f.gravity;
+	ob_run_settings_overlay(&s->run, &f.run);
+	check_settings(L, &f, s);
 	set_seed(L, b, f.seed);
 	return 0;
 }

@@ -8,10 +8,12 @@
 #include <lauxlib.h>
 #include <ob/vec.h>
 
+#include "base/log.h"
 #include "scene/colour.h"
 #include "scene/sandbox.h"
 #include "scene/spelling.h"
 #include "scene/text.h"
+#include "settings/settings.h"
 
 // The value of one field lies at the top of the stack while it is read.
 typedef struct reader {
@@ -62,28 +64,53 @@ static void read_number(const reader *r)
 	*(double *)r->to = x;
 }
 
-static void read_whole(const reader *r)
+static double read_integer(const reader *r)
 {
 	double x = lua_tonumber(r->L, -1);
 	if (lua_type(r->L, -1) != LUA_TNUMBER || !fits(r->field, x) || x != floor(x))
 		fail_range(r, "a whole number");
-	*(uint64_t *)r->to = (uint64_t)x;
+	return x;
+}
+
+static void read_whole(const reader *r)
+{
+	*(uint64_t *)r->to = (uint64_t)read_integer(r);
+}
+
+static void read_count(const reader *r)
+{
+	*(uint32_t *)r->to = (uint32_t)read_integer(r);
+}
+
+static bool is_true(const reader *r)
+{
+	if (!lua_isboolean(r->L, -1))
+		fail(r, "true or false");
+	return lua_toboolean(r->L, -1);
 }
 
 static void read_boolean(const reader *r)
 {
-	if (!lua_isboolean(r->L, -1))
-		fail(r, "true or false");
-	*(bool *)r->to = lua_toboolean(r->L, -1);
+	*(bool *)r->to = is_true(r);
 }
 
-static _Noreturn void fail_choice(const reader *r)
+static void read_switch(const reader *r)
 {
+	*(uint32_t *)r->to = is_true(r);
+}
+
+static void read_choice(const reader *r)
+{
+	const char *text = lua_type(r->L, -1) == LUA_TSTRING ? lua_tostring(r->L, -1) : "";
+	if (ob_setting_find(r->field->choices, text, r->to))
+		return;
 	char expected[160];
 	size_t n = 0;
-	for (const char *const *c = r->field->choices; *c; c++)
-		n += (size_t)snprintf(expected + n, sizeof expected - n, "%s\"%s\"",
-				      c == r->field->choices ? "" : " or ", *c);
+	for (const char *c = r->field->choices; *c; c += *c == '|') {
+		size_t length = strcspn(c, "|");
+		n += (size_t)snprintf(expected + n, sizeof expected - n, "%s\"%.*s\"", n ? " or " : "", (int)length, c);
+		c += length;
+	}
 	fail(r, expected);
 }
 
@@ -91,13 +118,7 @@ static void read_text(const reader *r)
 {
 	size_t size;
 	const char *text = lua_type(r->L, -1) == LUA_TSTRING ? lua_tolstring(r->L, -1, &size) : NULL;
-	if (r->field->choices) {
-		const char *const *c = r->field->choices;
-		while (text && *c && strcmp(*c, text) != 0)
-			c++;
-		if (!text || !*c)
-			fail_choice(r);
-	} else if (!text || size == 0 || (double)size > r->field->high || !ob_text_is_clean(text, size)) {
+	if (!text || size == 0 || (double)size > r->field->high || !ob_text_is_clean(text, size)) {
 		char expected[80];
 		snprintf(expected, sizeof expected, "text of 1 to %.0f bytes without control characters",
 			 r->field->high);
@@ -208,7 +229,9 @@ static void read_colour(const reader *r)
 
 static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_NUMBER] = read_number,         [OB_FIELD_WHOLE] = read_whole,
-	[OB_FIELD_BOOLEAN] = read_boolean,       [OB_FIELD_TEXT] = read_text,
+	[OB_FIELD_COUNT] = read_count,           [OB_FIELD_BOOLEAN] = read_boolean,
+	[OB_FIELD_SWITCH] = read_switch,         [OB_FIELD_TEXT] = read_text,
+	[OB_FIELD_CHOICE] = read_choice,
 	[OB_FIELD_VECTOR] = read_vector,         [OB_FIELD_DIRECTION] = read_direction,
 	[OB_FIELD_QUATERNION] = read_quaternion, [OB_FIELD_ROTATION] = read_rotation,
 	[OB_FIELD_COLOUR] = read_colour,
@@ -240,10 +263,36 @@ static void check_name(lua_State *L, const char *where, const ob_field *field, s
 				key);
 	}
 	const char *name = lua_tostring(L, -2);
-	for (size_t i = 0; i < count; i++)
+	const char *now = ob_setting_renamed(name);
+	for (size_t i = 0; i < count; i++) {
 		if (strcmp(field[i].name, name) == 0)
 			return;
+		if (now && strcmp(field[i].name, now) == 0) {
+			ob_log_note("%s.%s is now called %s.%s", where, name, where, now);
+			return;
+		}
+	}
 	fail_unknown(L, where, name, field, count);
+}
+
+// Pushes the field's value, which may stand under its former name; false: it is not there.
+static bool push_value(lua_State *L, int index, const char *where, const ob_field *field)
+{
+	const char *former = ob_setting_former(field->name);
+	lua_pushstring(L, field->name);
+	bool given = lua_rawget(L, index) != LUA_TNIL;
+	if (!former)
+		return given;
+	lua_pushstring(L, former);
+	if (lua_rawget(L, index) == LUA_TNIL) {
+		lua_pop(L, 1);
+		return given;
+	}
+	if (given)
+		ob_sandbox_fail(L, "%s.%s is now called %s.%s: expected one of them, got both", where, former, where,
+				field->name);
+	lua_remove(L, -2);
+	return true;
 }
 
 void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to)
@@ -262,8 +311,7 @@ void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *
 	}
 	for (size_t i = 0; i < count; i++) {
 		reader r = { L, where, &field[i], (char *)to + field[i].offset };
-		lua_pushstring(L, field[i].name);
-		bool given = lua_rawget(L, index) != LUA_TNIL;
+		bool given = push_value(L, index, where, &field[i]);
 		if (given || field[i].required)
 			read_kind[field[i].kind](&r);
 		lua_pop(L, 1);

@@ -14,8 +14,11 @@
 typedef enum ob_field_kind {
 	OB_FIELD_NUMBER, // double, within low..high
 	OB_FIELD_WHOLE, // uint64_t, within low..high
+	OB_FIELD_COUNT, // uint32_t, within low..high
 	OB_FIELD_BOOLEAN, // bool
-	OB_FIELD_TEXT, // const char *, valid while the table is: at most high bytes, or one of choices
+	OB_FIELD_SWITCH, // uint32_t, 1 for true
+	OB_FIELD_TEXT, // const char *, valid while the table is: at most high bytes
+	OB_FIELD_CHOICE, // uint32_t, the number of one of choices
 	OB_FIELD_VECTOR, // ob_vec3, each within low..high
 	OB_FIELD_DIRECTION, // ob_vec3 of any length but 0, made a unit vector
 	OB_FIELD_QUATERNION, // ob_quat {w, x, y, z} of any norm but 0, made a unit quaternion
@@ -30,7 +33,7 @@ typedef struct ob_field {
 	double low, high; // high may be INFINITY; infinite values are refused all the same
 	bool above; // low itself is too small
 	bool required;
-	const char *const *choices; // up to NULL
+	const char *choices; // "a|b|c"
 } ob_field;
 
 #define OB_FIELD(type, member, ...) \

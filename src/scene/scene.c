@@ -95,16 +95,8 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 {
 	const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path;
 	snprintf(s->title, sizeof s->title, "%.*s", (int)strcspn(stem, "."), stem);
-	s->gravity = ob_v3(0, 0, -9.81);
-	s->step = 1. / 60;
+	s->run = ob_run_settings_default();
 	s->duration = 10;
-	s->tolerance = OB_SCENE_TOLERANCE_USUAL;
-	s->substeps = 8;
-	s->passes = 16;
-	s->lag = 1;
-	snprintf(s->exchange, sizeof s->exchange, "coloured");
-	snprintf(s->integrator, sizeof s->integrator, "exact");
-	s->sleeping = true;
 	s->seed = o->has_seed ? o->seed : 1;
 	s->record_every = 1;
 	set_colour(s->look.sky_top, "#5f93c9");

@@ -4,10 +4,7 @@
 
 #include <ob/motion.h>
 
-#define OB_SCENE_TOLERANCE_LEAST 1e-6 // m
-#define OB_SCENE_TOLERANCE_MOST 1.
-#define OB_SCENE_TOLERANCE_USUAL 1e-3 // with 8 substeps at least
-enum { OB_SCENE_TOLERANT_PASSES = 64 }; // with a tolerance, unless said: rounds end when it is met
+#include "settings/settings.h"
 
 typedef struct ob_object_def {
 	ob_passport passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
@@ -32,14 +29,8 @@ typedef struct ob_look_def {
 
 typedef struct ob_scene {
 	char title[128];
-	ob_vec3 gravity;
-	double step, duration;      // s
-	double tolerance;           // m; 0 = none
-	uint32_t substeps, passes;  // 1 .. 256
-	char exchange[16];          // "coloured" | "jacobi" | "ghost" | "lagged"
-	uint32_t lag;               // of "lagged": exchanges, 0 .. 256
-	char integrator[16];        // "exact" | "ode"
-	bool sleeping;
+	ob_run_settings run;        // before what the command line asks for (ob_run_settings_resolve)
+	double duration;            // s
 	uint64_t seed;
 	uint32_t objects;
 	ob_object_def *object;      // [objects]; ids are their index

@@ -8,7 +8,7 @@ bool ob_equilibrium_likely(const ob_sim *s, const ob_island *is)
 {
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	const uint32_t *id = ob_universe_step_data(s->u)->member + is->first_member;
-	if (run->substeps == 1 || s->island.substeps > run->substeps || run->exchange != OB_SOLVER_COLOURED ||
+	if (run->substeps == 1 || s->island.substeps > run->substeps || run->solver != OB_SOLVER_COLOURED ||
 	    run->integrator != OB_INTEGRATOR_EXACT)
 		return false;
 	for (uint32_t i = 0; i < is->members; i++)

@@ -20,7 +20,7 @@ static const double slop_share = 1. / 8; // of the tolerance, at most
 
 static bool is_jacobi(const ob_sim *s)
 {
-	return ob_universe_settings(s->u)->exchange == OB_SOLVER_JACOBI;
+	return ob_universe_settings(s->u)->solver == OB_SOLVER_JACOBI;
 }
 
 // What is small enough: as usual, or less where the run tolerates less.
@@ -245,8 +245,8 @@ void ob_solver_iterate(ob_sim *s)
 	bool again = true;
 	iteration.wake_threshold = fmin(most_noticeable, iteration.wake_threshold * w->substep / w->h); // what lasts shorter, moves less
 	ob_direct_begin_partial(&w->forest);
-	for (uint32_t round = 0; round < more * run->passes && again; round++) {
-		if (round == run->passes)
+	for (uint32_t round = 0; round < more * run->iterations && again; round++) {
+		if (round == run->iterations)
 			iteration.wake_threshold = violent;
 		s->counters.solver_iterations++;
 		ob_ghosts_read(s, w->u, round);
@@ -256,7 +256,7 @@ void ob_solver_iterate(ob_sim *s)
 			w->stirred = fmax(w->stirred, moved);
 		iteration.first = false;
 		iteration.block_tolerance = rough * moved;
-		if (!ob_direct_wanted(s, moved, again && round + 1 < run->passes))
+		if (!ob_direct_wanted(s, moved, again && round + 1 < run->iterations))
 			continue;
 		ob_direct_solve(s);
 		s->counters.direct_solves++;

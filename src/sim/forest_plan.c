@@ -102,7 +102,7 @@ static bool creeps(const ob_island_work *w)
 static bool is_worth_while(const ob_sim *s, double left)
 {
 	const ob_direct_solver *f = &s->island.forest;
-	if (f->hopeless || f->fit == OB_DIRECT_UNFIT || ob_universe_settings(s->u)->exchange != OB_SOLVER_COLOURED)
+	if (f->hopeless || f->fit == OB_DIRECT_UNFIT || ob_universe_settings(s->u)->solver != OB_SOLVER_COLOURED)
 		return false;
 	// After a direct solve the next substep is solved finely, too. The correction of what had gone wrong is a part
 	// of the change of velocity that the prediction repeats: left alone it would go on for ever, to and fro.

@@ -7,7 +7,7 @@
 
 bool ob_ghosts_used(const ob_sim *s)
 {
-	uint32_t exchange = ob_universe_settings(s->u)->exchange;
+	uint32_t exchange = ob_universe_settings(s->u)->solver;
 	return exchange == OB_SOLVER_GHOST || exchange == OB_SOLVER_LAGGED;
 }
 
@@ -17,7 +17,7 @@ uint32_t ob_ghost_make(ob_sim *s, uint32_t row)
 	uint32_t ghost = w->rows++;
 	ob_body *m = &w->member[ghost];
 	*m = w->member[row];
-	if (ob_universe_settings(s->u)->exchange == OB_SOLVER_GHOST) {
+	if (ob_universe_settings(s->u)->solver == OB_SOLVER_GHOST) {
 		m->mass = m->inv_mass = 0;
 		memset(m->inv_inertia, 0, sizeof m->inv_inertia);
 	}
@@ -46,7 +46,7 @@ void ob_ghosts_read(ob_sim *s, ob_body_row *rows, uint32_t round)
 	const ob_run_settings *run = ob_universe_settings(s->u);
 	if (!ob_ghosts_used(s))
 		return;
-	uint32_t kept = run->exchange == OB_SOLVER_LAGGED ? run->lag + 1 : 1, late = kept - 1;
+	uint32_t kept = run->solver == OB_SOLVER_LAGGED ? run->lag + 1 : 1, late = kept - 1;
 	if (kept * w->rows > w->history_max) {
 		w->history_max = kept * w->rows * 2;
 		w->history = realloc(w->history, w->history_max * sizeof *w->history);

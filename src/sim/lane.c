@@ -61,7 +61,7 @@ void ob_lane_take(ob_sim *s, ob_contact *t)
 {
 	ob_island_work *w = &s->island;
 	const ob_batch_kind kind = kind_of(s, t);
-	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->exchange == OB_SOLVER_JACOBI), batch = NONE;
+	uint32_t colour = free_colour(w, t, ob_universe_settings(s->u)->solver == OB_SOLVER_JACOBI), batch = NONE;
 	if (colour < OB_COLOURS)
 		batch = w->open[colour][kind];
 	if (batch == NONE)

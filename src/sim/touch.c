@@ -116,7 +116,7 @@ static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 void ob_contacts_prepare(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	bool jacobi = ob_universe_settings(s->u)->exchange == OB_SOLVER_JACOBI;
+	bool jacobi = ob_universe_settings(s->u)->solver == OB_SOLVER_JACOBI;
 	if (w->order_stale)
 		order_batches(w);
 	for (uint32_t i = 0; i < w->batches; i++) {

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 8, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 9, OB_LAYOUT_PAGE = 4096 };
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,

@@ -12,6 +12,7 @@
 
 #include <ob/universe.h>
 
+#include "settings/settings.h"
 #include "table/counters.h"
 #include "table/step_data.h"
 #include "table/latency.h"
@@ -25,37 +26,6 @@ typedef enum ob_phase {
 	OB_PHASE_PAUSE,   // the universe stands still at a step boundary for the host to look at
 	OB_PHASE_STOP,    // leave
 } ob_phase;
-
-typedef enum ob_solver_kind {
-	OB_SOLVER_COLOURED, // pair after pair, each on what the one before published
-	OB_SOLVER_JACOBI,   // all pairs on the same state, bodies split between them
-	OB_SOLVER_GHOST,    // each takes its neighbours for infinitely heavy: what must not be done, to show it
-	OB_SOLVER_LAGGED,   // each computes the pair's impulse for itself, on a state of its partner that is late
-} ob_solver_kind;
-typedef enum ob_integrator { OB_INTEGRATOR_EXACT, OB_INTEGRATOR_ODE } ob_integrator;
-typedef enum ob_narrow_phase {
-	OB_NARROW_OBB,  // objects touch where their shapes do, however they are turned
-	OB_NARROW_AABB, // objects touch where the boxes along the world's axes overlap that hold them
-} ob_narrow_phase;
-
-// What is fixed for a run; lies in the table, so that every process sees the same.
-typedef struct ob_run_settings {
-	ob_vec3 gravity;        // m/s^2
-	double step_length;     // s
-	uint32_t substeps;      // per step, >= 1
-	uint32_t passes;        // exchange rounds per substep, at most
-	uint32_t exchange;      // ob_solver_kind
-	uint32_t integrator;    // ob_integrator
-	uint32_t sleeping;      // 1 = islands may fall asleep
-	uint32_t one_per_object;// 1 = worker i runs object i and nothing else
-	uint32_t monolith;      // 1 = one ODE world holds all objects
-	uint32_t iterations;    // monolith: QuickStep iterations
-	uint32_t lag;           // OB_SOLVER_LAGGED: exchanges that a partner's state is late
-	uint32_t narrow_phase;  // ob_narrow_phase
-	double tolerance;       // m; > 0: each island chooses its substeps so that its error stays below
-	uint32_t timed;         // 1 = counters tell what each part of the step took
-	uint32_t load;          // > 0: 1 + 2 + .. + load is added up at each test of two axis-aligned boxes
-} ob_run_settings;
 
 typedef struct ob_universe_setup {
 	const char *name;       // unique on this machine; NULL = "obsim-<pid>"

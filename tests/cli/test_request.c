@@ -53,9 +53,6 @@ static void test_refused(void)
 	check_refused("s --workers 0", "expected 1 to");
 	check_refused("s --arch monolith --workers 2", "one worker");
 	check_refused("s --arch monolith --workers objects", "one worker");
-	check_refused("s --arch monolith --exchange jacobi", "means nothing");
-	check_refused("s --arch monolith --tolerance 1mm", "means nothing");
-	check_refused("s --arch monolith --explain", "means nothing");
 	check_refused("s --tolerance 1", "a length with its unit");
 	check_refused("s --tolerance mm", "a length with its unit");
 	check_refused("s --tolerance 1mmm", "a length with its unit");
@@ -64,7 +61,6 @@ static void test_refused(void)
 	check_refused("s --tolerance 2m", "expected 1e-06m to 1m");
 	check_refused("s --tolerance 1mm --substeps 4", "expected one of them");
 	check_refused("s --lag 257", "expected 0 to 256");
-	check_refused("s --iterations 5", "--arch monolith");
 	check_refused("s --fps 30", "--fps needs --frames, --video or --raw");
 	check_refused("s --overlay aabb", "--overlay needs");
 	check_refused("s --raw - --size 1280", "WIDTHxHEIGHT");
@@ -90,102 +86,57 @@ static void test_taken(void)
 	ob_error e;
 	CHECK(read_line("s", &r, &e));
 	CHECK(r.workers == (uint32_t)ob_cpu_count() && r.measure == OB_MEASURE_STEPS && !r.frames.wanted &&
-	      !r.monolith);
+	      !ob_setting_is_set(&r.asked, OB_SETTING_ARCHITECTURE));
 	CHECK(read_line("s --step 1/60 --duration .5 --workers objects --isolation process", &r, &e));
-	CHECK(r.step == 1. / 60 && r.duration == .5 && r.workers == 0 && r.isolation == OB_ISOLATION_PROCESS);
+	CHECK(r.asked.step_length == 1. / 60 && r.duration == .5 && r.workers == 0 && r.isolation == OB_ISOLATION_PROCESS);
 	CHECK(read_line("s --arch monolith --workers 1 --iterations 0", &r, &e));
-	CHECK(r.monolith && r.workers == 1 && r.iterations == 0);
+	CHECK(r.asked.monolith == 1 && r.workers == 1 && r.asked.iterations == 0);
 	CHECK(read_line("s --raw - --size 64x48 --overlay contacts,aabb --fps 1/3 --measure end", &r, &e));
 	CHECK(r.frames.wanted && r.frames.width == 64 && r.frames.height == 48 && r.frames.aabb && r.frames.contacts);
 	CHECK(r.frames.fps == 1. / 3 && r.measure == OB_MEASURE_ENDS);
-	CHECK(read_line("s --tolerance .5mm --passes 20 --explain", &r, &e));
-	CHECK_NEAR(r.tolerance, .5e-3, 1e-18);
-	CHECK(r.explain && r.passes == 20 && r.substeps == 0);
-	CHECK(read_line("s --tolerance 1e-3m", &r, &e) && r.tolerance == 1e-3 && !r.explain);
+	CHECK(read_line("s --tolerance .5mm --iterations 20 --explain", &r, &e));
+	CHECK_NEAR(r.asked.tolerance, .5e-3, 1e-18);
+	CHECK(r.explain && r.asked.iterations == 20 && !ob_setting_is_set(&r.asked, OB_SETTING_SUBSTEPS));
+	CHECK(read_line("s --tolerance 1e-3m", &r, &e) && r.asked.tolerance == 1e-3 && !r.explain);
 	CHECK(read_line("s --tolerance 20um", &r, &e));
-	CHECK_NEAR(r.tolerance, 20e-6, 1e-18);
+	CHECK_NEAR(r.asked.tolerance, 20e-6, 1e-18);
 	CHECK(read_line("s --seed 18446744073709551615", &r, &e));
 	CHECK(r.scene_options.has_seed && r.scene_options.seed == UINT64_MAX);
+}
+
+// Words of earlier versions
+static void test_former_names(void)
+{
+	ob_run_request r;
+	ob_error e;
+	CHECK(read_line("s --passes 5 --exchange=jacobi --measure parts", &r, &e));
+	CHECK(r.asked.iterations == 5 && r.asked.solver == OB_SOLVER_JACOBI && r.measure == OB_MEASURE_PROFILE);
+	check_refused("s --passes 5 --iterations 5", "--iterations is given twice");
+	check_refused("s --exchange jakobi", "--solver jakobi: did you mean jacobi?");
+	check_refused("s --parts", "unknown option --parts");
 }
 
 static void test_settle(void)
 {
 	ob_camera_def cameras[] = { { .name = "main" }, { .name = "above" } };
-	ob_scene s = {
-		.step = 1. / 60,
-		.duration = 10,
-		.substeps = 4,
-		.passes = 16,
-		.exchange = "jacobi",
-		.integrator = "ode",
-		.cameras = 2,
-		.camera = cameras,
-	};
+	ob_scene s = { .run = ob_run_settings_default(), .duration = 10, .cameras = 2, .camera = cameras };
 	ob_run_request r;
-	ob_run_settings run;
 	ob_error e;
-	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.step_length == 1. / 60 && run.substeps == 4 && run.passes == 16 && run.sleeping == 0);
-	CHECK(run.exchange == OB_SOLVER_JACOBI && run.integrator == OB_INTEGRATOR_ODE && r.duration == 10);
-	CHECK(read_line("s --exchange coloured --integrator exact --sleeping on --substeps 2 --passes 3", &r, &e));
-	CHECK(ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.exchange == OB_SOLVER_COLOURED && run.integrator == OB_INTEGRATOR_EXACT && run.sleeping == 1);
-	CHECK(run.substeps == 2 && run.passes == 3);
-	CHECK(read_line("s --arch monolith", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.substeps == 1 && run.monolith == 1 && run.iterations == 20);
-	CHECK(read_line("s --arch monolith --substeps 3", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.substeps == 3);
-	CHECK(read_line("s --raw - --camera abov", &r, &e) && !ob_request_settle(&r, &s, &run, &e));
+	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &e));
+	CHECK(r.run.substeps == 8 && r.run.tolerance == 1e-3 && r.run.timed == 0 && r.duration == 10);
+	CHECK(read_line("s --solver jacobi --integrator ode --sleeping off --substeps 2 --duration 3", &r, &e));
+	CHECK(ob_request_settle(&r, &s, &e) && r.duration == 3);
+	CHECK(r.run.solver == OB_SOLVER_JACOBI && r.run.integrator == OB_INTEGRATOR_ODE && r.run.sleeping == 0);
+	CHECK(r.run.substeps == 2 && r.run.tolerance == 0);
+	CHECK(read_line("s --explain", &r, &e) && ob_request_settle(&r, &s, &e) && r.run.timed == 1);
+	CHECK(read_line("s --measure profile", &r, &e) && ob_request_settle(&r, &s, &e) && r.run.timed == 1);
+	CHECK(read_line("s --arch monolith --explain", &r, &e) && !ob_request_settle(&r, &s, &e));
+	CHECK(strstr(e.text, "--explain means nothing"));
+	CHECK(read_line("s --raw - --camera abov", &r, &e) && !ob_request_settle(&r, &s, &e));
 	CHECK(strstr(e.text, "did you mean above?"));
-	CHECK(read_line("s --raw - --camera above", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(read_line("s --duration 1e9 --step 1e-9", &r, &e) && !ob_request_settle(&r, &s, &run, &e));
+	CHECK(read_line("s --raw - --camera above", &r, &e) && ob_request_settle(&r, &s, &e));
+	CHECK(read_line("s --duration 1e9 --step 1e-9", &r, &e) && !ob_request_settle(&r, &s, &e));
 	CHECK(strstr(e.text, "too many steps"));
-}
-
-// Numbers on the command line stand above the scene's tolerance, and a tolerance there above the scene's numbers.
-static void test_settle_exactness(void)
-{
-	ob_scene s = { .gravity = { 0, 0, -9.81 },
-		       .step = 1. / 60,
-		       .duration = 10,
-		       .substeps = 4,
-		       .passes = 16,
-		       .lag = 1,
-		       .exchange = "coloured",
-		       .integrator = "exact" };
-	ob_run_request r;
-	ob_run_settings run;
-	ob_error e;
-	CHECK(read_line("s --tolerance .5mm", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == .5e-3 && run.substeps == 1 && r.substeps == 0 && run.passes == 64);
-	CHECK(read_line("s --tolerance .5mm --passes 5", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.passes == 5);
-	CHECK(read_line("s --tolerance .5mm --integrator ode", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.substeps == 4); // g H^2 / 2 = 1.36 mm
-	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == 0 && run.substeps == 4 && run.passes == 16 && run.lag == 0 && run.timed == 0);
-	s.tolerance = 2e-3;
-	s.passes = 64;
-	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == 2e-3 && run.substeps == 4 && run.passes == 64);
-	CHECK(read_line("s --exchange ghost", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == 0 && run.substeps == 4);
-	s.substeps = 1;
-	CHECK(read_line("s --explain", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == 2e-3 && run.substeps == 1 && run.passes == 64 && run.timed == 1);
-	CHECK(read_line("s --tolerance 1mm", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == 1e-3);
-	CHECK(read_line("s --substeps 3", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == 0 && run.substeps == 3);
-	CHECK(read_line("s --arch monolith", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.tolerance == 0 && run.substeps == 1);
-	CHECK(read_line("s --lag 2", &r, &e) && !ob_request_settle(&r, &s, &run, &e));
-	CHECK(strstr(e.text, "--exchange lagged"));
-	CHECK(read_line("s --exchange lagged --lag 0", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.exchange == OB_SOLVER_LAGGED && run.lag == 0);
-	CHECK(read_line("s --exchange lagged", &r, &e) && ob_request_settle(&r, &s, &run, &e) && run.lag == 1);
-	CHECK(read_line("s --exchange ghost", &r, &e) && ob_request_settle(&r, &s, &run, &e));
-	CHECK(run.exchange == OB_SOLVER_GHOST);
 }
 
 static void test_steps(void)
@@ -206,8 +157,8 @@ int main(void)
 {
 	test_refused();
 	test_taken();
+	test_former_names();
 	test_settle();
-	test_settle_exactness();
 	test_steps();
 	return check_end();
 }

@@ -53,7 +53,7 @@ uint32_t little_sphere(little_world *l, double mass, double radius, ob_vec3 p)
 ob_engine *little_make(const ob_engine_kind *kind, const little_world *l, uint32_t substeps)
 {
 	ob_error e;
-	ob_engine_settings s = kind->usual;
+	ob_run_settings s = kind->usual;
 	if (substeps)
 		s.substeps = substeps;
 	ob_engine *p = kind->create(&l->world, &s, &e);
@@ -65,7 +65,7 @@ ob_engine *little_make(const ob_engine_kind *kind, const little_world *l, uint32
 void little_step(const ob_engine_kind *kind, ob_engine *p, little_world *l, double seconds)
 {
 	ob_error e;
-	long frames = lround(seconds / kind->usual.step);
+	long frames = lround(seconds / kind->usual.step_length);
 	for (long i = 0; i < frames; i++)
 		if (!kind->step(p, &e))
 			give_up(kind->name, e.text);

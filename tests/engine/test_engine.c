@@ -172,13 +172,13 @@ static void life(void)
 	kind->destroy(other);
 	CHECK_NEAR(l->now[2].pose.p.z, 1.5, .02);
 	kind->destroy(NULL);
-	ob_engine_settings s = kind->usual;
+	ob_run_settings s = kind->usual;
 	s.substeps = 0;
 	s.tolerance = 0;
 	ob_error e = { "" };
 	CHECK(!kind->create(&l->world, &s, &e) && e.text[0]);
 	s = kind->usual;
-	s.step = 0;
+	s.step_length = 0;
 	e.text[0] = 0;
 	CHECK(!kind->create(&l->world, &s, &e) && e.text[0]);
 	free(l);
@@ -191,7 +191,7 @@ static void tolerance(void)
 	little_ground(l);
 	for (int i = 0; i < 5; i++)
 		little_cube(l, 1000, .5, ob_v3(.01 * i, 0, .5 + i));
-	ob_engine_settings s = kind->usual;
+	ob_run_settings s = kind->usual;
 	s.substeps = 0;
 	s.tolerance = 1e-4;
 	ob_error e = { "" };
@@ -231,7 +231,7 @@ static void sleep_on(void)
 	little_world *l = little_world_new();
 	little_ground(l);
 	uint32_t cube = little_cube(l, 1, .5, ob_v3(0, 0, .5));
-	ob_engine_settings s = kind->usual;
+	ob_run_settings s = kind->usual;
 	s.sleeping = true;
 	ob_error e;
 	ob_engine *p = kind->create(&l->world, &s, &e);

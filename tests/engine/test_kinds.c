@@ -33,7 +33,7 @@ int main(void)
 	for (const ob_engine_kind *const *k = ob_engine_kinds; *k; k++) {
 		CHECK(ob_engine_find((*k)->name) == *k);
 		CHECK((*k)->title && (*k)->title[0] && (*k)->version);
-		CHECK((*k)->usual.step > 0 && (*k)->usual.substeps > 0);
+		CHECK((*k)->usual.step_length > 0 && (*k)->usual.substeps > 0);
 		bool usual_is_a_choice = !(*k)->usual.iterations;
 		for (int i = 0; (*k)->iteration_choice[i]; i++) {
 			CHECK(i < 7); // 0 ends

@@ -48,7 +48,7 @@ static inline ob_universe *make_universe(const char *name, uint32_t workers)
 	ob_error e;
 	ob_universe_setup s = { .name = name, .capacity = 4, .workers = workers, .isolation = "test" };
 	s.run.step_length = .01;
-	s.run.substeps = s.run.passes = 1;
+	s.run.substeps = s.run.iterations = 1;
 	ob_universe *u = ob_universe_create(&s, &e);
 	if (!u)
 		fprintf(stderr, "%s\n", e.text);

@@ -23,7 +23,7 @@ static inline ob_object_def ball(const char *name, double x, double y, double z)
 // The ground is object 0, balls are 1 .. balls, one metre apart in rows of 50. The caller frees object.
 static inline ob_scene little_scene(uint32_t balls)
 {
-	ob_scene s = { .gravity = ob_v3(0, 0, -9.81), .step = .01, .objects = balls + 1 };
+	ob_scene s = { .run = { .gravity = ob_v3(0, 0, -9.81), .step_length = .01 }, .objects = balls + 1 };
 	s.object = calloc(s.objects, sizeof *s.object);
 	s.object[0] = ball("ground", 0, 0, 0);
 	s.object[0].passport.shape = OB_SHAPE_PLANE;
@@ -41,7 +41,7 @@ static inline ob_scene little_scene(uint32_t balls)
 static inline ob_host_config little_config(const ob_scene *s, ob_isolation isolation, uint32_t workers)
 {
 	ob_host_config c = { .isolation = isolation, .workers = workers };
-	c.run = (ob_run_settings){ .gravity = s->gravity, .step_length = s->step, .substeps = 2, .passes = 4 };
+	c.run = (ob_run_settings){ .gravity = s->run.gravity, .step_length = s->run.step_length, .substeps = 2, .iterations = 4 };
 	return c;
 }
 

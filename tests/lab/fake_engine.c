@@ -24,11 +24,11 @@ static ob_state bursting(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, exact_motion motion, int last)
+static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, exact_motion motion, int last)
 {
 	ob_engine *p = malloc(sizeof *p);
 	if (p)
-		*p = (ob_engine){ w, motion, s->step, 0, last };
+		*p = (ob_engine){ w, motion, s->step_length, 0, last };
 	return p;
 }
 
@@ -62,7 +62,7 @@ static void get_until_last(const ob_engine *p, ob_state *state)
 }
 
 #define CREATE(name, motion, last) \
-	static ob_engine *create_##name(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e) \
+	static ob_engine *create_##name(const ob_engine_world *w, const ob_run_settings *s, ob_error *e) \
 	{ \
 		return create(w, s, motion, last); \
 	}

@@ -32,7 +32,7 @@ static const ob_case plain = { .name = "plain",
 			       .build = build,
 			       .judge = judge };
 
-static ob_engine *create(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	static int anything;
 	return (ob_engine *)&anything;
@@ -97,7 +97,7 @@ static bool step_interrupt(ob_engine *p, ob_error *e)
 	return step_forever(p, e);
 }
 
-static ob_engine *create_none(const ob_engine_world *w, const ob_engine_settings *s, ob_error *e)
+static ob_engine *create_none(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
 {
 	ob_fail(e, "no such tolerance");
 	return NULL;
@@ -132,7 +132,7 @@ static void count_tick(void *with)
 static ob_outcome run(const ob_engine_kind *k, double limit)
 {
 	int one = 1;
-	ob_attempt a = { &plain, k, { .step = 1. / 60, .substeps = 1 }, limit, count_tick, &one };
+	ob_attempt a = { &plain, k, { .step_length = 1. / 60, .substeps = 1 }, limit, count_tick, &one };
 	ob_outcome out;
 	ob_error e = { "" };
 	ticks = 0;
@@ -176,7 +176,7 @@ static void test_outcomes(void)
 
 static void test_interrupted(void)
 {
-	ob_attempt a = { &plain, &interrupting, { .step = 1. / 60, .substeps = 1 }, 60, NULL, NULL };
+	ob_attempt a = { &plain, &interrupting, { .step_length = 1. / 60, .substeps = 1 }, 60, NULL, NULL };
 	ob_outcome out;
 	ob_error e = { "" };
 	ob_attempts_begin();
@@ -221,7 +221,7 @@ static void test_lab(const char *file)
 	ob_lab_plan p = make_plan(&well, &hanging, file);
 	CHECK(ob_lab_run(&p, &r, &e));
 	CHECK(r.count == 4 && done == 2 && all == 4 && access(file, R_OK) == 0); // no tick while the last is not tried
-	const ob_engine_settings one = { .step = plain.step, .substeps = 1 }, two = { .step = plain.step, .substeps = 2 };
+	const ob_run_settings one = { .step_length = plain.step, .substeps = 1 }, two = { .step_length = plain.step, .substeps = 2 };
 	const ob_result *coarse = ob_results_find(&r, &plain, &hanging, &one);
 	const ob_result *fine = ob_results_find(&r, &plain, &hanging, &two);
 	CHECK(coarse && fine && coarse->wall_s[0] == fine->wall_s[0]);

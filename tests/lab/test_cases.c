@@ -36,7 +36,7 @@ static ob_outcome outcome(const ob_case *c, const ob_engine_kind *kind)
 {
 	ob_outcome out;
 	ob_error e = { "" };
-	ob_engine_settings s = { .step = c->step, .substeps = 1, .iterations = 1 };
+	ob_run_settings s = { .step_length = c->step, .substeps = 1, .iterations = 1 };
 	CHECK(ob_case_run(c, kind, &s, &out, &e));
 	return out;
 }

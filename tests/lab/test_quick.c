@@ -12,7 +12,7 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	const ob_engine_kind *kind = ob_engine_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
-	ob_engine_settings settings = kind->usual;
+	ob_run_settings settings = kind->usual;
 	settings.lag = 0; // the promise of those who read late holds for those who do not
 	ob_outcome out;
 	ob_error e = { "" };

@@ -5,7 +5,7 @@
 #include "lab/list.h"
 #include "lab/sweep.h"
 
-static ob_engine_settings settings[OB_SWEEP_SETTINGS];
+static ob_run_settings settings[OB_SWEEP_SETTINGS];
 
 static size_t sweep(const char *text, const char *name, const char *engine)
 {
@@ -29,10 +29,10 @@ static bool has(size_t n, uint32_t substeps, uint32_t iterations, double toleran
 
 static void test_settings(void)
 {
-	const ob_engine_settings own = ob_engine_find("obsim")->usual, quick = ob_engine_find("ode-quick")->usual;
+	const ob_run_settings own = ob_engine_find("obsim")->usual, quick = ob_engine_find("ode-quick")->usual;
 	CHECK(sweep("none", "pile", "obsim") == 1);
 	CHECK(settings[0].substeps == own.substeps && settings[0].iterations == own.iterations);
-	CHECK(settings[0].step == ob_case_find("pile")->step);
+	CHECK(settings[0].step_length == ob_case_find("pile")->step);
 
 	size_t n = sweep("substeps=1,2,64", "pile", "ode-quick"); // the usual ones are among them
 	CHECK(n == 3 && settings[0].substeps == quick.substeps && has(n, 64, quick.iterations, 0));
@@ -48,7 +48,7 @@ static void test_settings(void)
 
 static void test_own(void)
 {
-	const ob_engine_settings own = ob_engine_find("obsim")->usual;
+	const ob_run_settings own = ob_engine_find("obsim")->usual;
 	size_t n = sweep(NULL, "pile", "obsim");
 	CHECK(has(n, 1, own.iterations, 0) && has(n, 32, own.iterations, 0) && has(n, 0, 64, 5e-4));
 	CHECK(settings[0].substeps == own.substeps && settings[0].tolerance == own.tolerance);

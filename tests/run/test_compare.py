@@ -54,11 +54,11 @@ class Compare(program.Case):
 		self.assertIn("wall per simulated s", done.stderr)
 
 	def test_options_reach_whom_they_concern(self):
-		_, c = self.compare(program.scene("stack"), "-D", "n=2", "--duration", ".1", "--exchange", "jacobi", "--passes", "3",
-			"--iterations", "7", "--step", "1/120", "--narrow", "aabb", "--load", "5", "--repeats", "1")
+		_, c = self.compare(program.scene("stack"), "-D", "n=2", "--duration", ".1", "--solver", "jacobi", "--iterations", "3",
+			"--step", "1/120", "--narrow", "aabb", "--load", "5", "--repeats", "1")
 		runs = {way: run["samples"][0] for way, run in c["sections"][0]["runs"].items()}
-		self.assertEqual({runs[w]["exchange"] for w in SOLO[1:]}, {"jacobi"})
-		self.assertEqual({runs[w]["passes"] for w in SOLO[1:]}, {3})
+		self.assertEqual({runs[w]["solver"] for w in SOLO[1:]}, {"jacobi"})
+		self.assertEqual({runs[w]["iterations"] for w in SOLO}, {3})
 		self.assertEqual({runs[w]["steps"] for w in SOLO}, {12})
 		self.assertEqual({runs[w]["narrow"] for w in SOLO}, {"aabb"})
 		self.assertEqual({runs[w]["narrow"] for w in OTHER}, {"obb"})

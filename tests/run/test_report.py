@@ -10,7 +10,7 @@ import program
 
 KEYS = """objects steps simulated_s wall_s cpu_s body_step_cpu_us state_hash energy_start energy_end energy_gain_max
 momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps frames workers isolation arch commit scene
-step substeps exchange integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies passes total_s
+step substeps solver integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies iterations total_s
 frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
 islands_over energy_recovered narrow load box_tests step_p90_s step_max_s critical_s work_s held_s gate_s gate_cpu_s idle_s
 elapsed_s host_cpu_s renderer_cpu_s switches deaths worker_memory_bytes separation_max_m separation_mean_m trace_events
@@ -49,7 +49,7 @@ class Report(program.Case):
 			self.assertAlmostEqual(r["tolerance"], tolerance, delta=1e-15)
 			self.assertEqual(r["error_reached"] > tolerance, r["islands_over"] > 0)
 			self.assertLessEqual(r["worst_penetration_m"], tolerance)
-			self.assertEqual((r["substeps"], r["passes"]), (0, 64))
+			self.assertEqual((r["substeps"], r["iterations"]), (0, 64))
 			self.assertLessEqual(r["substeps_min"], r["substeps_median"])
 			self.assertLessEqual(r["substeps_median"], r["substeps_max"])
 		self.assertEqual(coarse["islands_over"], 0)
@@ -85,7 +85,7 @@ class Report(program.Case):
 
 	def test_measure_end(self):
 		words = [program.scene("stack"), "--duration", ".5", "--workers", "1"]
-		every, parts, ends = (program.report(*words, "--measure", when) for when in ("step", "parts", "end"))
+		every, parts, ends = (program.report(*words, "--measure", when) for when in ("step", "profile", "end"))
 		for key in "energy_gain_max", "worst_penetration_m", "worst_penetration_time_s":
 			self.assertIsNone(ends[key])
 			self.assertIsNone(parts[key])
@@ -104,7 +104,7 @@ class Report(program.Case):
 	def test_where_the_time_goes(self):
 		"""Working, waiting for a core, waiting at the gate: together it is the time that the workers had."""
 		for way in ["--workers", "2"], ["--workers", "objects"], ["--workers", "2", "--isolation", "process"], ["--arch", "monolith"]:
-			r = program.report(program.scene("falling_boxes"), "-D", "n=60", "--duration", "4", "--measure", "parts", *way)
+			r = program.report(program.scene("falling_boxes"), "-D", "n=60", "--duration", "4", "--measure", "profile", *way)
 			had = r["workers"] * r["elapsed_s"]
 			self.assertGreater((r["work_s"] + r["held_s"] + r["gate_s"] + r["idle_s"]) / had, .95, way)
 			self.assertLess((r["work_s"] + r["held_s"] + r["gate_s"] + r["idle_s"]) / had, 1.05, way)

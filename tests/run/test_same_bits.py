@@ -40,10 +40,10 @@ class SameBits(program.Case):
 		self.assertEqual(program.report(*words, "--measure", "step")["state_hash"], self.hash_of())
 
 	def test_jacobi(self):
-		expected = self.hash_of("--exchange", "jacobi", "--workers", "1")
+		expected = self.hash_of("--solver", "jacobi", "--workers", "1")
 		for isolation, workers in ("thread", "3"), ("process", "2"), ("process", "objects"):
 			with self.subTest(isolation=isolation, workers=workers):
-				found = self.hash_of("--exchange", "jacobi", "--isolation", isolation, "--workers", workers)
+				found = self.hash_of("--solver", "jacobi", "--isolation", isolation, "--workers", workers)
 				self.assertEqual(found, expected)
 
 

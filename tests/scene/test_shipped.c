@@ -87,14 +87,14 @@ static void check_hard_cases(void)
 		CHECK(o->passport.mass == 1000 && o->passport.size.x == .5 && o->passport.friction == .5);
 		CHECK(fabs(o->state.pose.p.x) <= .01 && o->state.pose.p.z == i - .5);
 	}
-	CHECK(s && !s->sleeping && s->duration == 20);
+	CHECK(s && !s->run.sleeping && s->duration == 20);
 	ob_scene_free(s);
 	s = load("cradle", "incoming=2", 0);
 	for (uint32_t i = 0; s && i < 5; i++) {
 		CHECK(s->object[i].passport.restitution == 1 && s->object[i].passport.size.x == .5);
 		CHECK(s->object[i].state.v.x == (i < 2) && s->object[i].state.pose.p.x == i + (i < 2 ? 0 : .7));
 	}
-	CHECK(s && s->gravity.z == 0);
+	CHECK(s && s->run.gravity.z == 0);
 	ob_scene_free(s);
 	s = load("head_on", "ratio=1000", 0);
 	CHECK(s && s->object[1].passport.mass == 1000 * s->object[0].passport.mass);

@@ -17,10 +17,10 @@ static void check_defaults(void)
 	CHECK(s);
 	if (!s)
 		return;
-	check_vec(s->gravity, 0, 0, -9.81);
-	CHECK(s->step == 1. / 60 && s->duration == 10 && s->substeps == 8 && s->passes == 16);
-	CHECK(strcmp(s->exchange, "coloured") == 0 && strcmp(s->integrator, "exact") == 0);
-	CHECK(s->sleeping && s->seed == 1 && s->record_every == 1);
+	check_vec(s->run.gravity, 0, 0, -9.81);
+	CHECK(s->run.step_length == 1. / 60 && s->duration == 10 && s->run.substeps == 8 && s->run.iterations == 16);
+	CHECK(s->run.solver == OB_SOLVER_COLOURED && s->run.integrator == OB_INTEGRATOR_EXACT);
+	CHECK(s->run.sleeping && s->seed == 1 && s->record_every == 1);
 	CHECK(s->objects == 1 && s->cameras == 1 && strcmp(s->camera[0].name, "main") == 0);
 	const ob_object_def *o = &s->object[0];
 	CHECK(strcmp(o->passport.name, "sphere#0") == 0 && o->passport.id == 0);
@@ -34,16 +34,16 @@ static void check_defaults(void)
 static void check_settings(void)
 {
 	ob_scene *s = load_good("scene { title = 'T', gravity = { 1, 2, 3 }, step = .01, duration = 5, substeps = 4,\n"
-				"passes = 3, exchange = 'jacobi', integrator = 'ode', sleeping = false, seed = 12 }\n"
+				"iterations = 3, solver = 'jacobi', integrator = 'ode', sleeping = false, seed = 12 }\n"
 				"record { every = 7 } sun { towards = { 0, 0, 4 } } sky { top = '#ffffff' }\n"
 				"ground { height = 2, grid = false, colour = { 1, 0, 0 } }");
 	CHECK(s);
 	if (!s)
 		return;
-	CHECK(strcmp(s->title, "T") == 0 && s->step == .01 && s->duration == 5 && s->substeps == 4 && s->passes == 3);
-	check_vec(s->gravity, 1, 2, 3);
-	CHECK(strcmp(s->exchange, "jacobi") == 0 && strcmp(s->integrator, "ode") == 0);
-	CHECK(!s->sleeping && s->seed == 12 && s->record_every == 7 && !s->look.grid);
+	CHECK(strcmp(s->title, "T") == 0 && s->run.step_length == .01 && s->duration == 5 && s->run.substeps == 4 && s->run.iterations == 3);
+	check_vec(s->run.gravity, 1, 2, 3);
+	CHECK(s->run.solver == OB_SOLVER_JACOBI && s->run.integrator == OB_INTEGRATOR_ODE);
+	CHECK(!s->run.sleeping && s->seed == 12 && s->record_every == 7 && !s->look.grid);
 	check_vec(s->look.sun, 0, 0, 1);
 	CHECK(s->look.sky_top[0] == 1 && s->look.sky_top[2] == 1);
 	CHECK(s->look.ground_colour[0] == 1 && s->look.ground_colour[1] == 0);
@@ -56,17 +56,25 @@ static void check_settings(void)
 
 static void check_exactness(void)
 {
-	ob_scene *s = load_good("scene { tolerance = .0005, exchange = 'lagged', lag = 0 }\nground {}");
-	CHECK(s && s->tolerance == .0005 && s->substeps == 1 && s->passes == 64 && s->lag == 0 && strcmp(s->exchange, "lagged") == 0);
+	ob_scene *s = load_good("scene { tolerance = .0005, solver = 'lagged', lag = 0 }\nground {}");
+	CHECK(s && s->run.tolerance == .0005 && s->run.substeps == 1 && s->run.iterations == 64 && s->run.lag == 0 && s->run.solver == OB_SOLVER_LAGGED);
 	ob_scene_free(s);
-	s = load_good("scene { tolerance = .0005, passes = 9 }\nground {}");
-	CHECK(s && s->passes == 9 && s->lag == 1);
+	s = load_good("scene { tolerance = .0005, iterations = 9 }\nground {}");
+	CHECK(s && s->run.iterations == 9 && s->run.lag == 1);
 	ob_scene_free(s);
 	s = load_good("ground {}");
-	CHECK(s && s->tolerance == 1e-3 && s->substeps == 8 && s->passes == 16);
+	CHECK(s && s->run.tolerance == 1e-3 && s->run.substeps == 8 && s->run.iterations == 16);
 	ob_scene_free(s);
 	s = load_good("scene { substeps = 8 }\nground {}");
-	CHECK(s && s->tolerance == 0 && s->substeps == 8 && s->passes == 16);
+	CHECK(s && s->run.tolerance == 0 && s->run.substeps == 8 && s->run.iterations == 16);
+	ob_scene_free(s);
+}
+
+// Words of earlier versions
+static void check_former_names(void)
+{
+	ob_scene *s = load_good("scene { passes = 7, exchange = 'jacobi' }\nground {}");
+	CHECK(s && s->run.iterations == 7 && s->run.solver == OB_SOLVER_JACOBI);
 	ob_scene_free(s);
 }
 
@@ -162,6 +170,7 @@ int main(void)
 	check_defaults();
 	check_settings();
 	check_exactness();
+	check_former_names();
 	check_shapes();
 	check_states();
 	check_materials();

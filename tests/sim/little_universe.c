@@ -18,7 +18,7 @@ little_scene *little_scene_new(void)
 	little_scene *s = calloc(1, sizeof *s);
 	if (!s)
 		give_up("scene", "no memory");
-	s->run = (ob_run_settings){ .gravity = { 0, 0, -9.81 }, .step_length = 1. / 60, .substeps = 8, .passes = 16 };
+	s->run = (ob_run_settings){ .gravity = { 0, 0, -9.81 }, .step_length = 1. / 60, .substeps = 8, .iterations = 16 };
 	return s;
 }
 

@@ -26,7 +26,7 @@ static little_scene *closed_scene(uint64_t seed, ob_solver_kind exchange)
 {
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
-	s->run.exchange = exchange;
+	s->run.solver = exchange;
 	int side = 2 + (int)(2 * uniform(&seed));
 	double e = uniform(&seed) < .3 ? 0 : uniform(&seed) < .3 ? 1 : uniform(&seed);
 	for (int i = 0; i < side * side * side; i++) {

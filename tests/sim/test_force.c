@@ -12,7 +12,8 @@ static double flight_error(ob_integrator integrator, uint32_t monolith)
 	little_scene *s = little_scene_new();
 	s->run.integrator = integrator;
 	s->run.monolith = monolith;
-	s->run.iterations = 20;
+	if (monolith)
+		s->run.iterations = OB_DEFAULT_MONOLITH_ITERATIONS;
 	little_object *o = little_box(s, 4, ob_v3(.3, .2, .1), ob_v3(0, 0, 100));
 	o->passport.force = ob_v3(6, -2, 4 * g + 8);
 	o->state.v = ob_v3(1, 0, 0);
@@ -46,7 +47,8 @@ static ob_state pushed(double force, ob_integrator integrator, uint32_t monolith
 	little_scene *s = little_scene_new();
 	s->run.integrator = integrator;
 	s->run.monolith = monolith;
-	s->run.iterations = 20;
+	if (monolith)
+		s->run.iterations = OB_DEFAULT_MONOLITH_ITERATIONS;
 	s->run.sleeping = 1;
 	little_ground(s);
 	little_box(s, 2, ob_v3(.5, .5, .25), ob_v3(0, 0, .25))->passport.force = ob_v3(.6 * force, .8 * force, 0);

@@ -13,7 +13,7 @@ static outcome hit(uint32_t exchange, uint32_t lag, bool boxes, double ratio, do
 {
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
-	s->run.exchange = exchange;
+	s->run.solver = exchange;
 	s->run.lag = lag;
 	for (int i = 0; i < 2; i++) {
 		ob_vec3 at = ob_v3(1.537 * i, 0, 0);
@@ -74,7 +74,7 @@ static void grounds_are_ghosts(void)
 {
 	for (uint32_t exchange = OB_SOLVER_GHOST; exchange <= OB_SOLVER_LAGGED; exchange++) {
 		little_scene *s = little_scene_new();
-		s->run.exchange = exchange;
+		s->run.solver = exchange;
 		little_ground(s);
 		little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
 		little_universe l;
@@ -91,7 +91,7 @@ static void stacks_run_on(void)
 {
 	for (uint32_t exchange = OB_SOLVER_GHOST; exchange <= OB_SOLVER_LAGGED; exchange++) {
 		little_scene *s = little_scene_new();
-		s->run.exchange = exchange;
+		s->run.solver = exchange;
 		little_stack(s, 3, 1);
 		little_universe l;
 		little_open(&l, s);

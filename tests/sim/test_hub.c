@@ -13,7 +13,7 @@ static_assert(BOXES > (int)OB_COLOURS, "more partners than colours");
 static void stand(ob_solver_kind exchange, double platform_mass, double limit)
 {
 	little_scene *s = little_scene_new();
-	s->run.exchange = exchange;
+	s->run.solver = exchange;
 	little_ground(s);
 	little_box(s, platform_mass, ob_v3(6, 6, .5), ob_v3(0, 0, .5));
 	for (int i = 0; i < BOXES; i++)

@@ -24,7 +24,7 @@ static void test_sleep(ob_solver_kind exchange)
 {
 	little_scene *s = little_scene_new();
 	s->run.sleeping = 1;
-	s->run.exchange = exchange;
+	s->run.solver = exchange;
 	little_stack(s, 5, 3);
 	little_object *thrown = little_box(s, 500, ob_v3(.3, .3, .3), ob_v3(-20, 0, 4.8));
 	thrown->state.v = ob_v3(5, 0, 19.62); // comes down on the top after 4 s
@@ -219,7 +219,7 @@ static void test_round_shapes(void)
 static void check_stack(ob_solver_kind exchange, ob_integrator integrator, double deepest)
 {
 	little_scene *s = little_scene_new();
-	s->run.exchange = exchange;
+	s->run.solver = exchange;
 	s->run.integrator = integrator;
 	little_stack(s, 5, 8);
 	little_universe l;

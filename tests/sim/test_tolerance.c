@@ -13,7 +13,7 @@ static little_scene *tolerant(double tolerance)
 	little_scene *s = little_scene_new();
 	s->run.tolerance = tolerance;
 	s->run.substeps = 1;
-	s->run.passes = 64;
+	s->run.iterations = 64;
 	return s;
 }
 

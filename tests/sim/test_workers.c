@@ -67,7 +67,7 @@ static little_scene *heap(ob_solver_kind exchange, ob_integrator integrator)
 {
 	uint64_t seed = 1;
 	little_scene *s = little_scene_new();
-	s->run.exchange = exchange;
+	s->run.solver = exchange;
 	s->run.integrator = integrator;
 	s->run.sleeping = 1;
 	little_ground(s);

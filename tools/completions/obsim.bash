@@ -20,12 +20,12 @@ _obsim()
 	--arch) mapfile -t COMPREPLY < <(compgen -W 'obs monolith' -- "$word") ;;
 	--isolation) mapfile -t COMPREPLY < <(compgen -W 'thread process' -- "$word") ;;
 	--workers) mapfile -t COMPREPLY < <(compgen -W 'objects 1 2 4 8' -- "$word") ;;
-	--exchange) mapfile -t COMPREPLY < <(compgen -W 'coloured jacobi ghost lagged' -- "$word") ;;
+	--solver) mapfile -t COMPREPLY < <(compgen -W 'coloured jacobi ghost lagged' -- "$word") ;;
 	--tolerance) mapfile -t COMPREPLY < <(compgen -W '5mm .5mm .05mm' -- "$word") ;;
 	--integrator) mapfile -t COMPREPLY < <(compgen -W 'exact ode' -- "$word") ;;
 	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
 	--narrow) mapfile -t COMPREPLY < <(compgen -W 'obb aabb' -- "$word") ;;
-	--measure) mapfile -t COMPREPLY < <(compgen -W 'step parts end' -- "$word") ;;
+	--measure) mapfile -t COMPREPLY < <(compgen -W 'step profile end' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
@@ -34,7 +34,7 @@ _obsim()
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --summary | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--define | -D | --vary | --duration | --step | --seed | --substeps | --passes | --lag | --load | --iterations | --name | --fps | --samples | \
+	--define | -D | --vary | --duration | --step | --seed | --substeps | --iterations | --lag | --load | --name | --fps | --samples | \
 		--camera | --interval | --repeats | --limit | --objects) ;;
 	*)
 		case $command:$word in

@@ -114,7 +114,7 @@ static void observe_sliding(ob_trial *t)
 		double *memory = &t->body_memory[8 * i], v = ob_norm(ob_look_at(t, i).v),
 		       lost = memory[MEMORY_SPEED] - v;
 		if (t->frame && v > .05 * speed && lost > 0)
-			memory[MEMORY_STOPS] = t->time + v / lost * t->settings.step;
+			memory[MEMORY_STOPS] = t->time + v / lost * t->settings.step_length;
 		memory[MEMORY_SPEED] = v;
 	}
 }

@@ -109,7 +109,7 @@ static void observe_slip_to_roll(ob_trial *t)
 	ob_state b = ob_look_at(t, 1);
 	double slip = b.v.x - b.w.y * .5, lost = t->memory[MEMORY_SLIP] - slip;
 	if (t->frame && slip > .05 * 7 && lost > 0)
-		t->memory[MEMORY_ROLLS] = t->time + slip / lost * t->settings.step;
+		t->memory[MEMORY_ROLLS] = t->time + slip / lost * t->settings.step_length;
 	t->memory[MEMORY_SLIP] = slip;
 }
 

@@ -29,7 +29,7 @@ static void build_shot(ob_engine_world *w, uint64_t *seed, ob_vec3 target, doubl
 
 static bool is_over(const ob_trial *t, double speed)
 {
-	return t->time > far_enough / speed + 4 * t->settings.step;
+	return t->time > far_enough / speed + 4 * t->settings.step_length;
 }
 
 // ---- row 18: the wall is body 2 i, the box body 2 i + 1

@@ -1,2 +1,2 @@
--- expect: :2: scene.lag: expected with exchange = "lagged" only, got "coloured"
+-- expect: :2: scene.lag: expected with solver = "lagged" only, got "coloured"
 scene { lag = 2 }

@@ -1,2 +1,2 @@
--- expect: :2: scene.substeps: expected a whole number from 1 to 256, got 2.5
+-- expect: :2: scene.substeps: expected a whole number from 1 to 1000, got 2.5
 scene { substeps = 2.5 }

@@ -1,2 +1,2 @@
--- expect: :2: scene.substeps: expected a whole number from 1 to 256, got 257
-scene { substeps = 257 }
+-- expect: :2: scene.substeps: expected a whole number from 1 to 1000, got 1001
+scene { substeps = 1001 }

@@ -1,0 +1,171 @@
+#include "settings/settings.h"
+
+#include <math.h>
+#include <string.h>
+
+#define UNSET UINT32_MAX // of counts, choices and switches; NaN of reals
+
+#define MEMBER(member) .offset = offsetof(ob_run_settings, member)
+
+const ob_setting ob_setting_table[OB_SETTINGS] = {
+	[OB_SETTING_ARCHITECTURE] = { "arch", OB_SETTING_CHOICE, MEMBER(monolith), .unit = "", .names = OB_ARCHITECTURE_NAMES },
+	[OB_SETTING_STEP] = { "step", OB_SETTING_REAL, MEMBER(step_length), 0, 10, .above = true, .unit = "s" },
+	[OB_SETTING_TOLERANCE] = { "tolerance", OB_SETTING_REAL, MEMBER(tolerance), 1e-6, 1, .unit = "m" },
+	[OB_SETTING_SUBSTEPS] = { "substeps", OB_SETTING_COUNT, MEMBER(substeps), 1, 1000, .unit = "" },
+	[OB_SETTING_ITERATIONS] = { "iterations", OB_SETTING_COUNT, MEMBER(iterations), 0, 100000, .unit = "" },
+	[OB_SETTING_SOLVER] = { "solver", OB_SETTING_CHOICE, MEMBER(solver), .unit = "", .names = OB_SOLVER_NAMES },
+	[OB_SETTING_LAG] = { "lag", OB_SETTING_COUNT, MEMBER(lag), 0, 256, .unit = "" },
+	[OB_SETTING_INTEGRATOR] = { "integrator", OB_SETTING_CHOICE, MEMBER(integrator), .unit = "",
+				    .names = OB_INTEGRATOR_NAMES },
+	[OB_SETTING_SLEEPING] = { "sleeping", OB_SETTING_SWITCH, MEMBER(sleeping), .unit = "", .names = OB_SWITCH_NAMES },
+	[OB_SETTING_NARROW_PHASE] = { "narrow", OB_SETTING_CHOICE, MEMBER(narrow_phase), .unit = "",
+				      .names = OB_NARROW_PHASE_NAMES },
+	[OB_SETTING_LOAD] = { "load", OB_SETTING_COUNT, MEMBER(load), 0, 1e9, .unit = "" },
+};
+
+static const struct {
+	const char *former, *now;
+} renamed[] = { { "passes", "iterations" }, { "exchange", "solver" }, { "parts", "profile" } };
+
+ob_run_settings ob_run_settings_default(void)
+{
+	return (ob_run_settings){
+		.gravity = { 0, 0, -9.81 },
+		.step_length = OB_DEFAULT_STEP,
+		.tolerance = OB_DEFAULT_TOLERANCE,
+		.substeps = OB_DEFAULT_SUBSTEPS,
+		.iterations = OB_DEFAULT_ITERATIONS,
+		.solver = OB_SOLVER_COLOURED,
+		.lag = 1,
+		.integrator = OB_INTEGRATOR_EXACT,
+		.narrow_phase = OB_NARROW_OBB,
+		.sleeping = 1,
+	};
+}
+
+ob_run_settings ob_run_settings_unset(void)
+{
+	ob_run_settings layer = { 0 };
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		char *at = (char *)&layer + ob_setting_table[i].offset;
+		if (ob_setting_table[i].kind == OB_SETTING_REAL)
+			*(double *)at = NAN;
+		else
+			*(uint32_t *)at = UNSET;
+	}
+	return layer;
+}
+
+bool ob_setting_is_set(const ob_run_settings *layer, ob_setting_id id)
+{
+	const char *at = (const char *)layer + ob_setting_table[id].offset;
+	return ob_setting_table[id].kind == OB_SETTING_REAL ? !isnan(*(const double *)at)
+							    : *(const uint32_t *)at != UNSET;
+}
+
+void ob_run_settings_overlay(ob_run_settings *s, const ob_run_settings *layer)
+{
+	if (ob_setting_is_set(layer, OB_SETTING_TOLERANCE)) {
+		s->substeps = 1;
+		s->iterations = OB_DEFAULT_TOLERANCE_ITERATIONS;
+	} else if (ob_setting_is_set(layer, OB_SETTING_SUBSTEPS)) {
+		s->tolerance = 0;
+	}
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		const ob_setting *t = &ob_setting_table[i];
+		if (ob_setting_is_set(layer, i))
+			memcpy((char *)s + t->offset, (const char *)layer + t->offset,
+			       t->kind == OB_SETTING_REAL ? sizeof(double) : sizeof(uint32_t));
+	}
+}
+
+// What a monolith does not have.
+static bool check_monolith(const ob_run_settings *layer, ob_error *e)
+{
+	static const ob_setting_id of_objects[] = { OB_SETTING_TOLERANCE, OB_SETTING_SOLVER, OB_SETTING_LAG,
+						    OB_SETTING_INTEGRATOR };
+	for (size_t i = 0; i < sizeof of_objects / sizeof *of_objects; i++)
+		if (ob_setting_is_set(layer, of_objects[i]))
+			return ob_fail(e, "--%s means nothing to --arch monolith", ob_setting_table[of_objects[i]].name);
+	return true;
+}
+
+bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, ob_error *e)
+{
+	ob_run_settings asked = *s;
+	ob_run_settings_overlay(&asked, layer);
+	if (asked.monolith) {
+		if (!check_monolith(layer, e))
+			return false;
+		// as environments usually step: once a step
+		s->substeps = 1;
+		s->iterations = OB_DEFAULT_MONOLITH_ITERATIONS;
+	}
+	if (asked.monolith || asked.solver == OB_SOLVER_GHOST || asked.solver == OB_SOLVER_LAGGED)
+		s->tolerance = 0;
+	ob_run_settings_overlay(s, layer);
+
+	if (!s->monolith && s->iterations == 0)
+		return ob_fail(e, "--iterations 0 is ODE's exact solver, for --arch monolith; object simulators take "
+				  "1 at least");
+	if (s->solver != OB_SOLVER_LAGGED) {
+		if (ob_setting_is_set(layer, OB_SETTING_LAG))
+			return ob_fail(e, "--lag is for --solver lagged; this run's is %s",
+				       ob_setting_print(s, OB_SETTING_SOLVER).text);
+		s->lag = 0;
+	}
+	if (s->tolerance > 0 && s->integrator == OB_INTEGRATOR_ODE) {
+		// with n substeps ODE's stepper falls short by g H^2 / (2 n) in a step of length H
+		double short_by = .5 * ob_norm(s->gravity) * s->step_length * s->step_length;
+		while (short_by / s->substeps > s->tolerance)
+			s->substeps *= 2;
+	}
+	return true;
+}
+
+bool ob_setting_find(const char *names, const char *word, uint32_t *value)
+{
+	size_t length = strlen(word);
+	for (uint32_t i = 0; *names; i++) {
+		size_t n = strcspn(names, "|");
+		if (n == length && strncmp(names, word, n) == 0) {
+			*value = i;
+			return true;
+		}
+		names += n + (names[n] == '|');
+	}
+	return false;
+}
+
+ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id)
+{
+	const char *names = ob_setting_table[id].names;
+	uint32_t value = *(const uint32_t *)((const char *)s + ob_setting_table[id].offset);
+	ob_setting_word word = { "?" };
+	for (; value > 0 && *names; value--) {
+		names += strcspn(names, "|");
+		names += *names == '|';
+	}
+	size_t n = strcspn(names, "|");
+	if (n > 0 && n < sizeof word.text) {
+		memcpy(word.text, names, n);
+		word.text[n] = 0;
+	}
+	return word;
+}
+
+const char *ob_setting_renamed(const char *former)
+{
+	for (size_t i = 0; i < sizeof renamed / sizeof *renamed; i++)
+		if (strcmp(renamed[i].former, former) == 0)
+			return renamed[i].now;
+	return NULL;
+}
+
+const char *ob_setting_former(const char *name)
+{
+	for (size_t i = 0; i < sizeof renamed / sizeof *renamed; i++)
+		if (strcmp(renamed[i].now, name) == 0)
+			return renamed[i].former;
+	return NULL;
+}

@@ -1,0 +1,131 @@
+// The settings of a run: how it is stepped and solved. One record for scene files, the command line, the host, the
+// shared table, the engines and reports, and one description of its members: names, units, ranges.
+//
+// A layer of settings, as a scene or a command line gives them, is the same record with the members that it leaves
+// alone unset. Pure; any thread.
+#ifndef OB_SETTINGS_SETTINGS_H
+#define OB_SETTINGS_SETTINGS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <ob/error.h>
+#include <ob/vec.h>
+
+typedef enum ob_solver_kind {
+	OB_SOLVER_COLOURED, // contact after contact, each on what the one before published
+	OB_SOLVER_JACOBI,   // all contacts on the same state, masses split between the contacts of a body
+	OB_SOLVER_GHOST,    // each takes its neighbours for infinitely heavy: what must not be done, to show it
+	OB_SOLVER_LAGGED,   // each computes the contact's impulse for itself, on a state of its partner that is late
+} ob_solver_kind;
+
+typedef enum ob_integrator {
+	OB_INTEGRATOR_EXACT, // free motion in closed form
+	OB_INTEGRATOR_ODE,   // by ODE's stepper
+} ob_integrator;
+
+typedef enum ob_narrow_phase {
+	OB_NARROW_OBB,  // objects touch where their shapes do, however they are turned
+	OB_NARROW_AABB, // objects touch where the axis-aligned boxes that hold them overlap
+} ob_narrow_phase;
+
+// The names of the values of an enum or a switch, in the order of their numbers.
+#define OB_ARCHITECTURE_NAMES "obs|monolith"
+#define OB_SOLVER_NAMES "coloured|jacobi|ghost|lagged"
+#define OB_INTEGRATOR_NAMES "exact|ode"
+#define OB_NARROW_PHASE_NAMES "obb|aabb"
+#define OB_SWITCH_NAMES "off|on"
+
+// Fixed for a run; lies in the table, so that every process sees the same: a fixed size, no pointers.
+typedef struct ob_run_settings {
+	ob_vec3 gravity;         // m/s^2
+	double step_length;      // s
+	double tolerance;        // m; > 0: each island chooses its substeps so that its error stays below
+	uint32_t substeps;       // per step, >= 1; with a tolerance: at least
+	uint32_t iterations;     // of the contact solver per substep, at most; of a monolith: QuickStep's, 0 = exact solver
+	uint32_t solver;         // ob_solver_kind
+	uint32_t lag;            // OB_SOLVER_LAGGED: iterations that a partner's state is late
+	uint32_t integrator;     // ob_integrator
+	uint32_t narrow_phase;   // ob_narrow_phase
+	uint32_t sleeping;       // 1 = islands may fall asleep
+	uint32_t monolith;       // 1 = one ODE world holds all objects
+	uint32_t one_per_object; // 1 = worker i runs object i and nothing else; set by the host
+	uint32_t timed;          // 1 = counters tell what each section of the step took
+	uint32_t load;           // > 0: 1 + 2 + .. + load is added up at each test of two axis-aligned boxes
+} ob_run_settings;
+
+// Defaults. A tolerance that is asked for chooses the substeps from 1 up, and ends the iterations when it is met.
+#define OB_DEFAULT_STEP (1. / 60) // s
+#define OB_DEFAULT_TOLERANCE 1e-3 // m
+enum {
+	OB_DEFAULT_SUBSTEPS = 8,
+	OB_DEFAULT_ITERATIONS = 16, // object simulators
+	OB_DEFAULT_TOLERANCE_ITERATIONS = 64, // object simulators whose tolerance was asked for
+	OB_DEFAULT_MONOLITH_ITERATIONS = 20, // ODE's own default
+};
+
+// Coloured solver, exact integrator, 8 substeps at least with the default tolerance, sleeping.
+ob_run_settings ob_run_settings_default(void);
+
+typedef enum ob_setting_id {
+	OB_SETTING_ARCHITECTURE,
+	OB_SETTING_STEP,
+	OB_SETTING_TOLERANCE,
+	OB_SETTING_SUBSTEPS,
+	OB_SETTING_ITERATIONS,
+	OB_SETTING_SOLVER,
+	OB_SETTING_LAG,
+	OB_SETTING_INTEGRATOR,
+	OB_SETTING_SLEEPING,
+	OB_SETTING_NARROW_PHASE,
+	OB_SETTING_LOAD,
+	OB_SETTINGS
+} ob_setting_id;
+
+typedef enum ob_setting_kind {
+	OB_SETTING_REAL,   // double, in its unit
+	OB_SETTING_COUNT,  // uint32_t
+	OB_SETTING_CHOICE, // uint32_t, a number among names
+	OB_SETTING_SWITCH, // uint32_t, 0 or 1; in a scene true or false
+} ob_setting_kind;
+
+typedef struct ob_setting {
+	const char *name;   // of the option, the scene's field and the report's key
+	ob_setting_kind kind;
+	size_t offset;      // in ob_run_settings
+	double least, most; // of numbers
+	bool above;         // least itself is too small
+	const char *unit;   // "" = none
+	const char *names;  // CHOICE, SWITCH: "a|b|c"
+} ob_setting;
+
+extern const ob_setting ob_setting_table[OB_SETTINGS];
+
+// A layer in which nothing is set.
+ob_run_settings ob_run_settings_unset(void);
+bool ob_setting_is_set(const ob_run_settings *layer, ob_setting_id id);
+// Lays over s what is set in layer. A tolerance replaces a number of substeps, and a number of substeps a tolerance.
+// gravity is no part of a layer.
+void ob_run_settings_overlay(ob_run_settings *s, const ob_run_settings *layer);
+
+// The settings of a run: s (a scene's) with the layer that was asked for, after the defaults of the architecture.
+// Solvers that are wrong by design keep no tolerance unless asked to, for more substeps would not mend them; lag is 0
+// unless the solver reads it; where ODE's stepper alone would miss the tolerance, it takes more substeps.
+// false and e: a setting means nothing to the architecture or to the solver.
+bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, ob_error *e);
+
+// The number of a word in "a|b|c"; false: it is none of them.
+bool ob_setting_find(const char *names, const char *word, uint32_t *value);
+// The word of a choice or switch.
+typedef struct ob_setting_word {
+	char text[16];
+} ob_setting_word;
+ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id);
+
+// Words of earlier versions, which command lines and scenes may still use: what an option, a field or a choice is called
+// now, and what it was called before. NULL: it has not changed.
+const char *ob_setting_renamed(const char *former);
+const char *ob_setting_former(const char *name);
+
+#endif

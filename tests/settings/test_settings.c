@@ -1,0 +1,134 @@
+// Settings of a run: defaults, layers on top of each other, what each architecture and solver makes of them.
+#include <string.h>
+
+#include "check.h"
+#include "settings/settings.h"
+
+static ob_run_settings layer;
+
+// A layer with one setting
+static const ob_run_settings *with(ob_setting_id id, double value)
+{
+	const ob_setting *s = &ob_setting_table[id];
+	layer = ob_run_settings_unset();
+	if (s->kind == OB_SETTING_REAL)
+		*(double *)((char *)&layer + s->offset) = value;
+	else
+		*(uint32_t *)((char *)&layer + s->offset) = (uint32_t)value;
+	return &layer;
+}
+
+static const ob_run_settings *nothing(void)
+{
+	layer = ob_run_settings_unset();
+	return &layer;
+}
+
+static bool resolve(ob_run_settings *s, const ob_run_settings *asked)
+{
+	ob_error e;
+	return ob_run_settings_resolve(s, asked, &e);
+}
+
+static void check_refused(ob_run_settings s, const ob_run_settings *asked, const char *part)
+{
+	ob_error e = { "" };
+	CHECK(!ob_run_settings_resolve(&s, asked, &e));
+	CHECK(strstr(e.text, part));
+}
+
+static void test_layers(void)
+{
+	const ob_run_settings unset = ob_run_settings_unset();
+	ob_run_settings s = ob_run_settings_default();
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		CHECK(!ob_setting_is_set(&unset, i) && ob_setting_is_set(&s, i));
+		CHECK(ob_setting_is_set(with(i, 1), i));
+	}
+	ob_run_settings_overlay(&s, &unset);
+	CHECK(s.tolerance == 1e-3 && s.substeps == 8 && s.iterations == 16 && s.step_length == 1. / 60 && s.sleeping);
+	ob_run_settings_overlay(&s, with(OB_SETTING_SUBSTEPS, 4)); // numbers stand above a tolerance
+	CHECK(s.tolerance == 0 && s.substeps == 4 && s.iterations == 16);
+	ob_run_settings_overlay(&s, with(OB_SETTING_TOLERANCE, .5e-3)); // and a tolerance above numbers
+	CHECK(s.tolerance == .5e-3 && s.substeps == 1 && s.iterations == 64);
+	ob_run_settings_overlay(&s, with(OB_SETTING_ITERATIONS, 5));
+	CHECK(s.tolerance == .5e-3 && s.substeps == 1 && s.iterations == 5);
+}
+
+static void test_exactness(void)
+{
+	ob_run_settings s = ob_run_settings_default();
+	CHECK(resolve(&s, nothing()) && s.tolerance == 1e-3 && s.substeps == 8 && s.iterations == 16 && s.lag == 0);
+	s = ob_run_settings_default();
+	with(OB_SETTING_TOLERANCE, .5e-3);
+	layer.integrator = OB_INTEGRATOR_ODE;
+	CHECK(resolve(&s, &layer) && s.substeps == 4); // g H^2 / 2 = 1.36 mm
+	s = ob_run_settings_default();
+	CHECK(resolve(&s, with(OB_SETTING_SOLVER, OB_SOLVER_GHOST)) && s.tolerance == 0 && s.substeps == 8);
+	s = ob_run_settings_default();
+	with(OB_SETTING_SOLVER, OB_SOLVER_GHOST);
+	layer.tolerance = 2e-3; // asked for, so kept
+	CHECK(resolve(&s, &layer) && s.tolerance == 2e-3);
+	check_refused(ob_run_settings_default(), with(OB_SETTING_ITERATIONS, 0), "--arch monolith");
+}
+
+static void test_lag(void)
+{
+	ob_run_settings s = ob_run_settings_default();
+	CHECK(resolve(&s, with(OB_SETTING_SOLVER, OB_SOLVER_LAGGED)) && s.lag == 1);
+	s = ob_run_settings_default();
+	with(OB_SETTING_SOLVER, OB_SOLVER_LAGGED);
+	layer.lag = 0;
+	CHECK(resolve(&s, &layer) && s.lag == 0);
+	check_refused(ob_run_settings_default(), with(OB_SETTING_LAG, 2), "--solver lagged; this run's is coloured");
+}
+
+static void test_monolith(void)
+{
+	ob_run_settings s = ob_run_settings_default();
+	CHECK(resolve(&s, with(OB_SETTING_ARCHITECTURE, 1)));
+	CHECK(s.monolith == 1 && s.tolerance == 0 && s.substeps == 1 && s.iterations == 20);
+	s = ob_run_settings_default();
+	with(OB_SETTING_ARCHITECTURE, 1);
+	layer.substeps = 3;
+	layer.iterations = 0;
+	CHECK(resolve(&s, &layer) && s.substeps == 3 && s.iterations == 0);
+	static const ob_setting_id of_objects[] = { OB_SETTING_TOLERANCE, OB_SETTING_SOLVER, OB_SETTING_LAG,
+						    OB_SETTING_INTEGRATOR };
+	for (size_t i = 0; i < sizeof of_objects / sizeof *of_objects; i++) {
+		with(of_objects[i], 1);
+		layer.monolith = 1;
+		check_refused(ob_run_settings_default(), &layer, "means nothing to --arch monolith");
+	}
+}
+
+static void test_names(void)
+{
+	ob_run_settings s = ob_run_settings_default();
+	uint32_t value = 9;
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		const ob_setting *t = &ob_setting_table[i];
+		if (!t->names)
+			continue;
+		for (uint32_t k = 0; k < 2; k++) {
+			ob_run_settings_overlay(&s, with(i, k));
+			CHECK(ob_setting_find(t->names, ob_setting_print(&s, i).text, &value) && value == k);
+		}
+	}
+	CHECK(ob_setting_find(OB_SOLVER_NAMES, "lagged", &value) && value == OB_SOLVER_LAGGED);
+	CHECK(!ob_setting_find(OB_SOLVER_NAMES, "lag", &value) && !ob_setting_find(OB_SOLVER_NAMES, "", &value));
+	s.solver = 1000;
+	CHECK(strcmp(ob_setting_print(&s, OB_SETTING_SOLVER).text, "?") == 0);
+	CHECK(strcmp(ob_setting_renamed("passes"), "iterations") == 0 && !ob_setting_renamed("iterations"));
+	CHECK(strcmp(ob_setting_former("solver"), "exchange") == 0 && !ob_setting_former("exchange"));
+}
+
+int main(void)
+{
+	test_layers();
+	test_exactness();
+	test_lag();
+	test_monolith();
+	test_names();
+	return check_end();
+}
