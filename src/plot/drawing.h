@@ -1,11 +1,9 @@
 // A diagram as a list of lines, discs and texts in pixels (y downwards): what the layout makes and the painters
-// paint, on paper of this size.
-// One thread at a time per drawing that is written.
+// (svg.c, png.c) paint, on paper of this size; and the palette. One thread at a time per drawing that is written.
 #ifndef OB_PLOT_DRAWING_H
 #define OB_PLOT_DRAWING_H
 
-#include <stdbool.h>
-#include <stddef.h>
+#include "plot/plot.h"
 
 // What a colour is for. Series follow one another from OB_PAINT_SERIES on.
 typedef enum ob_paint {
@@ -54,8 +52,7 @@ typedef struct ob_item {
 	double radius; // disc, px
 	ob_type type; // text
 	size_t text, super; // text: offsets into chars; super = a raised exponent behind the text
-	double width; // text: px, exponent and all
-	ob_rect box; // text: what it covers
+		ob_rect box; // text: what it covers at most
 	size_t hint; // shown by a browser under the pointer: offset into chars
 } ob_item;
 
@@ -65,7 +62,7 @@ typedef struct ob_drawing {
 	ob_item *item;
 	ob_dot *dot;
 	char *text; // chars[0] is "": an offset of 0 means none
-	bool broken; // no memory: what was drawn is not complete
+	bool out_of_memory; // what was drawn is not complete
 } ob_drawing;
 
 void ob_drawing_finish(ob_drawing *d);
@@ -99,5 +96,31 @@ static inline ob_rect ob_rect_grown(ob_rect r, double by)
 {
 	return (ob_rect){ r.x0 - by, r.y0 - by, r.x1 + by, r.y1 + by };
 }
+
+// ---- palette: colours that people with any kind of colour vision tell apart (after Okabe and Ito 2008), markers and
+// dashes, so that a curve is known by three signs
+
+typedef struct ob_series_style {
+	ob_paint paint;
+	int marker;
+	int dash;
+	double width; // px, of the line
+	double size; // px, from the marker's middle to its rim
+	bool hollow;
+} ob_series_style;
+
+// Of a style number; see ob_plot_series
+ob_series_style ob_palette_style(int number, bool hollow);
+void ob_palette_marker(ob_drawing *d, ob_dot at, const ob_series_style *style);
+void ob_palette_cross(ob_drawing *d, ob_dot at, const ob_series_style *style);
+
+const char *ob_palette_name(ob_paint paint); // "ink", as in the classes of an SVG
+unsigned ob_palette_rgb(ob_paint paint); // 0xrrggbb
+const double *ob_palette_dash(int dash, int *count); // px on, off, ..; count 0 = solid
+
+// ---- layout
+
+// From a plot to a drawing. Fills d, which starts zeroed; ob_drawing_finish it in any case. false and e: no memory.
+bool ob_plot_layout(const ob_plot *p, ob_drawing *d, ob_error *e);
 
 #endif

@@ -2,9 +2,8 @@
 #include <cairo.h>
 #include <math.h>
 
-#include "plot/layout.h"
-#include "plot/letters.h"
-#include "plot/palette.h"
+#include "plot/drawing.h"
+#include "plot/font.h"
 
 #ifdef __SANITIZE_ADDRESS__ // fontconfig keeps what cairo has asked it for until the process ends
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
@@ -51,37 +50,34 @@ static void paint_shape(cairo_t *c, const ob_item *item, const ob_dot *dot)
 	}
 }
 
-// At its base line, from "at" on, as wide as the layout has it, whatever font there is; moves "at" behind it.
-static void paint_words(cairo_t *c, const char *text, ob_dot *at, double size, bool bold)
+static double text_advance(cairo_t *c, const char *text, double size)
 {
 	cairo_text_extents_t extents;
-	double width = ob_letters_width(text, size, bold);
 	cairo_set_font_size(c, size);
 	cairo_text_extents(c, text, &extents);
-	cairo_save(c);
-	cairo_translate(c, at->x, at->y);
-	if (extents.x_advance > 0)
-		cairo_scale(c, width / extents.x_advance, 1);
-	cairo_move_to(c, 0, 0);
-	cairo_show_text(c, text);
-	cairo_restore(c);
-	at->x += width;
+	return extents.x_advance;
 }
 
+// In the font that stands in for Liberation Sans here. One that is wider than the layout has it is set smaller, not squeezed.
 static void paint_text(cairo_t *c, const ob_drawing *d, const ob_item *item)
 {
 	const ob_type *t = &item->type;
-	ob_dot at = { -t->anchor * item->width, 0 };
+	const char *text = d->text + item->text, *super = d->text + item->super;
 	cairo_save(c);
 	cairo_translate(c, d->dot[item->first].x, d->dot[item->first].y);
 	cairo_rotate(c, t->turned ? -M_PI / 2 : 0);
 	cairo_select_font_face(c, "Liberation Sans", CAIRO_FONT_SLANT_NORMAL,
 			       t->bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
 	set_paint(c, t->paint);
-	paint_words(c, d->text + item->text, &at, t->size, t->bold);
-	at.y -= t->size * OB_DRAWING_RAISE;
-	if (item->super)
-		paint_words(c, d->text + item->super, &at, t->size * OB_DRAWING_SUPER, t->bold);
+	double width = text_advance(c, super, t->size * OB_DRAWING_SUPER) + text_advance(c, text, t->size);
+	double room = ob_drawing_width(text, super, t->size, t->bold);
+	if (width > room)
+		cairo_scale(c, room / width, room / width);
+	cairo_move_to(c, -t->anchor * width, 0);
+	cairo_show_text(c, text);
+	cairo_rel_move_to(c, 0, -t->size * OB_DRAWING_RAISE);
+	cairo_set_font_size(c, t->size * OB_DRAWING_SUPER);
+	cairo_show_text(c, super);
 	cairo_restore(c);
 }
 

@@ -1,14 +1,13 @@
-// The painter of SVG: texts stay texts (they can be selected, searched for and read aloud), and each carries the width
-// that the layout has counted on, so that another font does not break it.
+// The painter of SVG: texts stay texts (they can be selected, searched for and read aloud), in the reader's font and at
+// its own width, for which the layout has left room.
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "plot/layout.h"
-#include "plot/letters.h"
-#include "plot/palette.h"
+#include "plot/drawing.h"
+#include "plot/font.h"
 
 // A text that grows. Numbers are written by hand: printf's depend on the locale.
 typedef struct paper {
@@ -150,8 +149,6 @@ static void write_words(paper *p, const ob_item *item)
 		write_number(p, at->y);
 		fputs(")\"", p->out);
 	}
-	if (!item->super)
-		write_attribute(p, "textLength", item->width);
 	fprintf(p->out, " class=\"f-%s\" fill=\"#%06x\">", ob_palette_name(t->paint), ob_palette_rgb(t->paint));
 	write_text(p, p->drawing->text + item->text);
 	if (item->super) {
@@ -169,7 +166,7 @@ static void write_drawing(paper *p, const char *title)
 {
 	const ob_drawing *d = p->drawing;
 	char clean[400];
-	ob_letters_clean(title ? title : "", clean, sizeof clean);
+	ob_font_clean_text(title ? title : "", clean, sizeof clean);
 	fputs("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", p->out);
 	write_number(p, d->width);
 	fputc(' ', p->out);
@@ -179,7 +176,7 @@ static void write_drawing(paper *p, const char *title)
 	write_attribute(p, "height", d->height);
 	fputs(" role=\"img\" aria-label=\"", p->out);
 	write_text(p, clean);
-	fputs("\" font-family=\"" OB_LETTERS_FAMILY "\" stroke-linejoin=\"round\">\n", p->out);
+	fputs("\" font-family=\"" OB_FONT_FAMILY "\" stroke-linejoin=\"round\">\n", p->out);
 	fputs("<rect width=\"100%\" height=\"100%\"", p->out);
 	write_pen(p, (ob_pen){ .fill = OB_PAINT_PAPER });
 	fputs("/>\n", p->out);

@@ -21,6 +21,7 @@ def check_svg(name, data):
     assert root.tag == '{http://www.w3.org/2000/svg}svg', name
     for text in root.iter('{http://www.w3.org/2000/svg}text'):
         assert ''.join(text.itertext()).strip() or text.text, name
+        assert not {'textLength', 'lengthAdjust'} & set(text.attrib), f'{name}: a text that another font would squeeze'
     assert b'nan' not in data.lower().replace(b'donau', b'') and b'inf"' not in data, name
 
 

@@ -3,8 +3,10 @@
 
 #include "../check.h"
 #include "awkward.h"
-#include "plot/layout.h"
-#include "plot/letters.h"
+#include <cairo.h>
+
+#include "plot/drawing.h"
+#include "plot/font.h"
 
 static const char *text_of(const ob_drawing *d, const ob_item *item)
 {
@@ -162,24 +164,52 @@ static void check_zero_target(void)
 	ob_drawing_finish(&d);
 }
 
-static void check_letters(void)
+static void check_lines(void)
 {
-	CHECK_NEAR(ob_letters_width("Hi", 1000, false), 722 + 222, 1e-9);
-	CHECK_NEAR(ob_letters_width("Hi", 10, true), 10., 1e-9);
+	CHECK_NEAR(ob_font_width("Hi", 1000, false), 752 + 278, 1e-9);
+	CHECK_NEAR(ob_font_width("Hi", 10, true), 11.8, 1e-9);
 	char line[64];
 	const char *rest = "one two three";
-	CHECK(ob_letters_line(&rest, ob_letters_width("one two", 10, false) + 1, 10, false, false, line, sizeof line));
+	CHECK(ob_font_fit_line(&rest, ob_font_width("one two", 10, false) + 1, 10, false, false, line, sizeof line));
 	CHECK(!strcmp(line, "one two"));
-	CHECK(ob_letters_line(&rest, 20, 10, false, true, line, sizeof line));
-	CHECK(strstr(line, "\u2026") && ob_letters_width(line, 10, false) <= 20);
-	CHECK(!ob_letters_line(&rest, 20, 10, false, true, line, sizeof line));
-	ob_letters_clean("a\x01"
+	CHECK(ob_font_fit_line(&rest, 20, 10, false, true, line, sizeof line));
+	CHECK(strstr(line, "\u2026") && ob_font_width(line, 10, false) <= 20);
+	CHECK(!ob_font_fit_line(&rest, 20, 10, false, true, line, sizeof line));
+	ob_font_clean_text("a\x01"
 			 "b\xff"
 			 "c\u00b5\xc0\x80",
 			 line, sizeof line);
 	CHECK(!strcmp(line, "a b?c\u00b5??"));
-	ob_letters_clean("\u00b5\u00b5", line, 4); // no half letters
+	ob_font_clean_text("\u00b5\u00b5", line, 4); // no half letters
 	CHECK(!strcmp(line, "\u00b5"));
+}
+
+// No font that a text may be shown in is wider than the layout has it: nothing has to be squeezed. Fonts that are not here
+// are stood in for by those that are.
+static void check_fonts(void)
+{
+	static const char *const families[] = { "Liberation Sans", "Arial", "Helvetica", "DejaVu Sans", "sans-serif" };
+	static const char *const texts[] = { "CPU per body and simulated second (\u00b5s)", "\u221210.25 mm \u2264 2\u00d710",
+					     "failed", "stack of 10: obsim, 16 substeps", "f(l) [tj] {!}", "MWQ @ #%&",
+					     "\u2248 \u221e \u2026 \u2014 \u03c0\u03c9\u03b8" };
+	cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
+	cairo_t *c = cairo_create(surface);
+	cairo_font_options_t *options = cairo_font_options_create();
+	cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+	cairo_set_font_options(c, options);
+	cairo_set_font_size(c, 1000);
+	for (size_t i = 0; i < 2 * sizeof families / sizeof *families; i++) {
+		cairo_select_font_face(c, families[i / 2], CAIRO_FONT_SLANT_NORMAL,
+				       i % 2 ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+		for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+			cairo_text_extents_t extents;
+			cairo_text_extents(c, texts[k], &extents);
+			CHECK(extents.x_advance > 0 && extents.x_advance <= ob_font_width(texts[k], 1000, i % 2));
+		}
+	}
+	cairo_font_options_destroy(options);
+	cairo_destroy(c);
+	cairo_surface_destroy(surface);
 }
 
 int main(void)
@@ -188,6 +218,7 @@ int main(void)
 	check_bands();
 	check_crosses();
 	check_zero_target();
-	check_letters();
+	check_lines();
+	check_fonts();
 	return check_end();
 }

@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "../check.h"
-#include "plot/ticks.h"
+#include "plot/frame.h"
 
 // All labels of an axis, in their order, with ^ before an exponent
 static const char *labels(const ob_ticks *t)
