@@ -11,7 +11,7 @@
 #include "cli/quantity.h"
 #include "cli/version.h"
 #include "compare_texts.h"
-#include "page/page.h"
+#include "experiment/page.h"
 
 static void write_style(ob_page *p, const void *with)
 {

@@ -1,6 +1,6 @@
 #include "cli/lab_json.h"
 
-#include "cli/json.h"
+#include "experiment/json.h"
 #include "cli/version.h"
 #include "lab/digest.h"
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "cli/json.h"
+#include "experiment/json.h"
 #include "cli/version.h"
 #include "paper/claims.h"
 

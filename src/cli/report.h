@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "cli/json.h"
+#include "experiment/json.h"
 #include "table/counters.h"
 
 // Numbers that were not measured are NaN.

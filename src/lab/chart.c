@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "page/page.h"
+#include "experiment/page.h"
 
 ob_chart *ob_chart_new(size_t points)
 {

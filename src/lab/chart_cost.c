@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "lab/chart.h"
-#include "page/page.h"
+#include "experiment/page.h"
 #include "reference/statistics.h"
 
 // How the results of one engine fall into series

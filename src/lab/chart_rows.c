@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "lab/chart.h"
-#include "page/page.h"
+#include "experiment/page.h"
 
 static const double row_height = 19; // px
 

@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "lab/grid.h"
-#include "page/page.h"
+#include "experiment/page.h"
 #include "lab/tables.h"
 
 static bool is_shown(const ob_digest *d, const ob_case *c)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "page/page.h"
+#include "experiment/page.h"
 
 // Adds what is chosen, and keeps the order.
 static bool add(ob_case_list *l, bool (*chosen)(const ob_case *c, const char *word), const char *word)

@@ -4,7 +4,7 @@
 #define OB_LAB_REPORT_PARTS_H
 
 #include "lab/digest.h"
-#include "page/page.h"
+#include "experiment/page.h"
 
 typedef struct ob_report_case {
 	const ob_digest *digest;

@@ -1,5 +1,5 @@
 #include "lab/grid.h"
-#include "page/page.h"
+#include "experiment/page.h"
 #include "lab/tables.h"
 
 typedef struct quantity {

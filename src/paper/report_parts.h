@@ -2,7 +2,7 @@
 #ifndef OB_PAPER_REPORT_PARTS_H
 #define OB_PAPER_REPORT_PARTS_H
 
-#include "page/page.h"
+#include "experiment/page.h"
 
 void ob_paper_part_cards(ob_page *p, const void *with);
 void ob_paper_part_busy(ob_page *p, const void *with); // a warning, where the machine was not free

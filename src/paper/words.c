@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "page/page.h"
+#include "experiment/page.h"
 
 void ob_say(char *to, size_t room, const char *format, ...)
 {

@@ -8,7 +8,7 @@
 
 #include "../check.h"
 #include "lab/digest.h"
-#include "page/page.h"
+#include "experiment/page.h"
 #include "lab/report.h"
 
 static const ob_engine_kind kinds[] = {

@@ -1,8 +1,8 @@
 // HTML as it is written, for all reports: templates with slots, texts with what needs it escaped, numbers as people read
 // them, one style.
 // One thread at a time per page.
-#ifndef OB_PAGE_PAGE_H
-#define OB_PAGE_PAGE_H
+#ifndef OB_EXPERIMENT_PAGE_H
+#define OB_EXPERIMENT_PAGE_H
 
 #include <stddef.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "page/page.h"
+#include "experiment/page.h"
 
 #include <math.h>
 #include <stdarg.h>

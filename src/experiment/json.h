@@ -1,7 +1,7 @@
 // JSON, as much as reports need: objects and lists of strings and numbers. A library for it would be one more package
 // to install for a hundred lines, and none prints a double so that it reads back to the same bits unless told how.
-#ifndef OB_CLI_JSON_H
-#define OB_CLI_JSON_H
+#ifndef OB_EXPERIMENT_JSON_H
+#define OB_EXPERIMENT_JSON_H
 
 #include <stdbool.h>
 #include <stdint.h>

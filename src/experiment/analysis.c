@@ -1,0 +1,116 @@
+#include "experiment/analysis.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_of(const ob_record *r, const char *of, const char *configuration)
+{
+	return !strcmp(r->configuration, configuration) && !strcmp(r->of, of);
+}
+
+size_t ob_records_values(const ob_records *r, const char *of, const char *configuration, size_t metric,
+			 double to[OB_SAMPLES])
+{
+	size_t n = 0;
+	for (size_t i = 0; i < r->count && n < OB_SAMPLES; i++) {
+		const ob_record *one = &r->record[i];
+		if (!one->failure && is_of(one, of, configuration) && !isnan(one->metric[metric]))
+			to[n++] = one->metric[metric];
+	}
+	return n;
+}
+
+ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric)
+{
+	double x[OB_SAMPLES];
+	size_t n = ob_records_values(r, of, configuration, metric, x);
+	return ob_reference_summarise(n, x);
+}
+
+double ob_records_combine(const ob_experiment *x, const ob_records *r, const char *of, const char *configuration,
+			  size_t metric)
+{
+	if (x->metric[metric].combine == OB_COMBINE_MEDIAN)
+		return ob_records_summarise(r, of, configuration, metric).median;
+	double worst = NAN;
+	bool any = false;
+	for (size_t i = 0; i < r->count; i++) {
+		double v = r->record[i].metric[metric];
+		if (!is_of(&r->record[i], of, configuration))
+			continue;
+		if (isnan(v))
+			return NAN;
+		worst = any ? fmax(worst, v) : v;
+		any = true;
+	}
+	return worst;
+}
+
+ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric,
+			       bool logarithm)
+{
+	double x[OB_SAMPLES];
+	size_t n = 0;
+	for (size_t i = 0; i < r->count && n < OB_SAMPLES; i++) {
+		const ob_record *one = &r->record[i];
+		if (one->failure || !is_of(one, of, a))
+			continue;
+		const ob_record *other = ob_records_find(r, of, b, one->repeat, one->seed);
+		double ratio = other && !other->failure ? one->metric[metric] / other->metric[metric] : NAN;
+		if (isnan(ratio) || (logarithm && !(isfinite(ratio) && ratio > 0)))
+			continue;
+		x[n++] = logarithm ? log(ratio) : ratio;
+	}
+	return ob_reference_summarise(n, x);
+}
+
+bool ob_records_have(const ob_records *r, const char *of, const char *configuration, const ob_record **failed)
+{
+	bool have = false;
+	if (failed)
+		*failed = NULL;
+	for (size_t i = 0; i < r->count; i++) {
+		if (!is_of(&r->record[i], of, configuration))
+			continue;
+		have = true;
+		if (failed && r->record[i].failure && !*failed)
+			*failed = &r->record[i];
+	}
+	return have;
+}
+
+// ---- cost at equal error. The lower envelope of the points in the plane of cost and error is the chain of those that no
+// other point beats in both: from point to point costlier and more exact.
+
+static int by_cost(const void *a, const void *b)
+{
+	const ob_cost_point *p = a, *q = b;
+	if (p->cost != q->cost)
+		return p->cost < q->cost ? -1 : 1;
+	return (p->error > q->error) - (p->error < q->error);
+}
+
+// Where the straight line between two points in log-log comes down to the error. A point without any error has no
+// logarithm: there the line is a step.
+static double between(ob_cost_point above, ob_cost_point below, double error)
+{
+	if (!(below.error > 0) || !(error > 0))
+		return below.cost;
+	double part = log(above.error / error) / log(above.error / below.error);
+	return above.cost * pow(below.cost / above.cost, part);
+}
+
+double ob_cost_at_error(ob_cost_point *point, size_t count, double error)
+{
+	qsort(point, count, sizeof *point, by_cost);
+	ob_cost_point last = { NAN, INFINITY }; // on the envelope
+	for (size_t i = 0; i < count; i++) {
+		if (point[i].error >= last.error)
+			continue;
+		if (point[i].error <= error)
+			return isinf(last.error) ? point[i].cost : between(last, point[i], error);
+		last = point[i];
+	}
+	return NAN;
+}

@@ -1,0 +1,44 @@
+// A diagram that is made point by point, and written to files and into pages. What it says is copied, so it may come from
+// anywhere. One thread at a time per chart.
+#ifndef OB_EXPERIMENT_CHART_H
+#define OB_EXPERIMENT_CHART_H
+
+#include "experiment/page.h"
+#include "plot/plot.h"
+
+enum { OB_CHART_SERIES = 72, OB_CHART_CATEGORIES = 64 };
+
+typedef struct ob_chart_text {
+	char label[32], hint[192];
+} ob_chart_text;
+
+typedef struct ob_chart {
+	ob_plot plot; // its points are in place after ob_chart_plot
+	size_t points, points_max;
+	ob_plot_point *point; // of all series
+	ob_chart_text *text;
+	size_t first[OB_CHART_SERIES]; // point of each series
+	ob_plot_series series[OB_CHART_SERIES];
+	char series_title[OB_CHART_SERIES][128];
+	ob_plot_mark mark[2];
+	const char *category[OB_CHART_CATEGORIES];
+	char category_text[OB_CHART_CATEGORIES][96];
+	char title[160], subtitle[640], x_label[128], y_label[128], mark_label[64];
+} ob_chart;
+
+ob_chart *ob_chart_new(void); // NULL: no memory
+void ob_chart_free(ob_chart *c);
+// A series of no points yet; points are added to the last one. One that stays empty is left out. title "" = not in the
+// legend
+ob_plot_series *ob_chart_begin(ob_chart *c, int style, bool hollow, const char *title);
+// The point may be changed until the next is added. label, hint "" = none
+ob_plot_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, const char *hint);
+
+// The finished diagram; NULL: there is nothing to show.
+const ob_plot *ob_chart_plot(ob_chart *c);
+// DIR/plots/NAME.svg and .png; the folder is made. Frees c. Nothing to show (NULL, or no points) is no error.
+bool ob_chart_write(ob_chart *c, const char *dir, const char *name, ob_error *e);
+// As SVG, within a page; frees c.
+void ob_chart_html(ob_chart *c, ob_page *p);
+
+#endif

@@ -1,0 +1,234 @@
+#include "experiment/table.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct cell {
+	char *text, *small; // NULL = empty
+	const char *class, *link;
+} cell;
+
+struct ob_table {
+	const char *align;
+	size_t columns, count, max;
+	cell *cell; // row by row
+};
+
+ob_table *ob_table_new(const char *align)
+{
+	ob_table *t = calloc(1, sizeof *t);
+	char *copy = strdup(align);
+	if (!t || !copy) {
+		free(t);
+		free(copy);
+		return NULL;
+	}
+	*t = (ob_table){ .align = copy, .columns = strlen(align) };
+	return t;
+}
+
+void ob_table_free(ob_table *t)
+{
+	if (!t)
+		return;
+	for (size_t i = 0; i < t->count; i++) {
+		free(t->cell[i].text);
+		free(t->cell[i].small);
+	}
+	free(t->cell);
+	free((char *)t->align);
+	free(t);
+}
+
+void ob_table_add(ob_table *t, const char *format, ...)
+{
+	if (t->count == t->max) {
+		size_t max = t->max ? 2 * t->max : 64;
+		cell *more = reallocarray(t->cell, max, sizeof *more);
+		if (!more)
+			return;
+		t->cell = more;
+		t->max = max;
+	}
+	cell *c = &t->cell[t->count++];
+	*c = (cell){ 0 };
+	va_list args;
+	va_start(args, format);
+	if (vasprintf(&c->text, format, args) < 0)
+		c->text = NULL;
+	va_end(args);
+}
+
+void ob_table_small(ob_table *t, const char *format, ...)
+{
+	if (!t->count)
+		return;
+	cell *c = &t->cell[t->count - 1];
+	va_list args;
+	va_start(args, format);
+	free(c->small);
+	if (vasprintf(&c->small, format, args) < 0)
+		c->small = NULL;
+	va_end(args);
+}
+
+void ob_table_class(ob_table *t, const char *class)
+{
+	if (t->count)
+		t->cell[t->count - 1].class = class;
+}
+
+void ob_table_link(ob_table *t, const char *id)
+{
+	if (t->count)
+		t->cell[t->count - 1].link = id;
+}
+
+void ob_table_add_value(ob_table *t, const ob_metric *m, double v)
+{
+	char text[48];
+	ob_page_print_quantity(text, sizeof text, v * m->scale, m->unit);
+	ob_table_add(t, "%s", text);
+}
+
+void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s)
+{
+	char low[48], high[48];
+	ob_table_add_value(t, m, s->median);
+	if (!isfinite(s->median_low) || !isfinite(s->median_high))
+		return;
+	ob_page_print_quantity(low, sizeof low, s->median_low * m->scale, "1");
+	ob_page_print_quantity(high, sizeof high, s->median_high * m->scale, "1");
+	ob_table_small(t, "%s to %s", low, high);
+}
+
+// The cell as one text; malloc'd
+static char *text_of(const ob_table *t, size_t i)
+{
+	char *text = NULL;
+	const cell *c = i < t->count ? &t->cell[i] : NULL;
+	const char *body = c && c->text ? c->text : "";
+	if (asprintf(&text, c && c->small ? "%s (%s)" : "%s", body, c && c->small ? c->small : "") < 0)
+		abort();
+	return text;
+}
+
+// Characters of UTF-8, each one place wide
+static size_t width_of(const char *text)
+{
+	size_t n = 0;
+	for (; *text; text++)
+		n += (*text & 0xc0) != 0x80;
+	return n;
+}
+
+// The first column, and those from "from" up to "to"
+static void print_row(const ob_table *t, FILE *f, size_t row, size_t from, size_t to, const size_t *width)
+{
+	int trailing = 0; // spaces that nothing has followed yet
+	for (size_t i = 0; i < to; i = i + 1 < from ? from : i + 1) {
+		char *text = text_of(t, row + i);
+		int room = (int)(width[i] - width_of(text)), before = t->align[i] == 'r' ? room : 0;
+		trailing += (i ? 2 : 0) + before;
+		if (*text)
+			fprintf(f, "%*s%s", trailing, "", text);
+		trailing = (*text ? 0 : trailing) + room - before;
+		free(text);
+	}
+	putc('\n', f);
+}
+
+static size_t *measure(const ob_table *t, size_t least)
+{
+	size_t *width = calloc(t->columns + 1, sizeof *width);
+	if (!width)
+		abort();
+	for (size_t i = 0; i < t->columns; i++)
+		width[i] = least;
+	for (size_t i = 0; i < t->count; i++) {
+		char *text = text_of(t, i);
+		size_t w = width_of(text), *widest = &width[i % t->columns];
+		*widest = w > *widest ? w : *widest;
+		free(text);
+	}
+	return width;
+}
+
+void ob_table_print(const ob_table *t, FILE *f, size_t limit)
+{
+	size_t *width = measure(t, 0);
+	for (size_t from = 1, to; from == 1 || from < t->columns; from = to) {
+		size_t used = width[0];
+		for (to = from; to < t->columns; to++) {
+			used += 2 + width[to];
+			if (limit && used > limit && to > from)
+				break;
+		}
+		if (from > 1)
+			putc('\n', f);
+		for (size_t row = 0; row < t->count; row += t->columns)
+			print_row(t, f, row, from, to, width);
+		if (to <= from)
+			break;
+	}
+	free(width);
+}
+
+void ob_table_markdown(const ob_table *t, FILE *f)
+{
+	size_t *width = measure(t, 3);
+	for (size_t row = 0; row < t->count; row += t->columns) {
+		for (size_t i = 0; i < t->columns; i++) {
+			char *text = text_of(t, row + i);
+			int room = (int)(width[i] - width_of(text)), before = t->align[i] == 'r' ? room : 0;
+			fprintf(f, "%s%*s%s%*s", i ? " | " : "| ", before, "", text, room - before, "");
+			free(text);
+		}
+		fputs(" |\n", f);
+		for (size_t i = 0; row == 0 && i < t->columns; i++) {
+			fputs(i ? " | " : "| ", f);
+			for (size_t j = 1; j < width[i]; j++)
+				putc('-', f);
+			putc(t->align[i] == 'r' ? ':' : '-', f);
+		}
+		if (row == 0)
+			fputs(" |\n", f);
+	}
+	free(width);
+}
+
+static void write_cell(const ob_table *t, ob_page *p, size_t i)
+{
+	const cell *c = &t->cell[i];
+	bool head = i < t->columns, right = t->align[i % t->columns] == 'r';
+	const char *class = c->class ? c->class : "", *name = head ? "th scope=\"col\"" : "td";
+	if (right || *class)
+		ob_page_markup(p, "<%s class=\"%s%s%s\">", name, right ? "n" : "", right && *class ? " " : "", class);
+	else
+		ob_page_markup(p, "<%s>", name);
+	if (c->link)
+		ob_page_markup(p, "<a href=\"#%s\">", c->link);
+	ob_page_text(p, c->text ? c->text : "");
+	if (c->link)
+		ob_page_markup(p, "</a>");
+	if (c->small) {
+		ob_page_markup(p, "<small>");
+		ob_page_text(p, c->small);
+		ob_page_markup(p, "</small>");
+	}
+	ob_page_markup(p, head ? "</th>" : "</td>");
+}
+
+void ob_table_html(const ob_table *t, ob_page *p)
+{
+	ob_page_markup(p, "<div class=\"scroll\"><table>\n<thead>");
+	for (size_t row = 0; row < t->count; row += t->columns) {
+		ob_page_markup(p, "<tr>");
+		for (size_t i = row; i < row + t->columns && i < t->count; i++)
+			write_cell(t, p, i);
+		ob_page_markup(p, row ? "</tr>\n" : "</tr></thead>\n<tbody>\n");
+	}
+	ob_page_markup(p, "</tbody></table></div>\n");
+}

@@ -1,0 +1,36 @@
+// A table, cell by cell, once for all forms: text on a terminal, Markdown, HTML. One thread at a time per table.
+#ifndef OB_EXPERIMENT_TABLE_H
+#define OB_EXPERIMENT_TABLE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "experiment/experiment.h"
+#include "experiment/page.h"
+#include "reference/statistics.h"
+
+typedef struct ob_table ob_table;
+
+// align: a letter for each column, l or r. NULL: no memory.
+ob_table *ob_table_new(const char *align);
+void ob_table_free(ob_table *t);
+// The next cell; the first row is the head. A cell for which there is no memory stays empty.
+void ob_table_add(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Of the last cell:
+// what stands small below it in HTML, and in brackets behind it elsewhere
+void ob_table_small(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void ob_table_class(ob_table *t, const char *class); // in HTML: "met", "missed", "best"; a string that stays
+void ob_table_link(ob_table *t, const char *id); // in HTML: leads to #id; a string that stays
+
+// Cells made of numbers, in the metric's unit for people: a value; a median with its interval, where there is one
+void ob_table_add_value(ob_table *t, const ob_metric *m, double v);
+void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s);
+
+// width: of a line, in characters; columns that have no room stand in a further panel below, behind the first column
+// again. 0 = no limit
+void ob_table_print(const ob_table *t, FILE *f, size_t width);
+void ob_table_markdown(const ob_table *t, FILE *f);
+void ob_table_html(const ob_table *t, ob_page *p);
+
+#endif

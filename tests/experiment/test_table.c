@@ -1,0 +1,105 @@
+// One description of a table, in all its forms.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "experiment/table.h"
+
+static char *text;
+static size_t length;
+
+static FILE *begin(void)
+{
+	FILE *f = open_memstream(&text, &length);
+	if (!f)
+		abort();
+	return f;
+}
+
+static void expect(FILE *f, const char *what)
+{
+	fclose(f);
+	if (strcmp(text, what) != 0)
+		fprintf(stderr, "printed:\n%s\ninstead of:\n%s\n", text, what);
+	CHECK(strcmp(text, what) == 0);
+	free(text);
+}
+
+static void test_forms(void)
+{
+	ob_table *t = ob_table_new("lrl");
+	static const char *const cells[] = { "a", "number", "", "longer", "1 \u00b5s", "x", "", "", "end" };
+	for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
+		ob_table_add(t, "%s", cells[i]);
+	FILE *f = begin();
+	ob_table_print(t, f, 0);
+	expect(f, "a       number\n"
+		  "longer    1 \u00b5s  x\n"
+		  "                end\n");
+	f = begin();
+	ob_table_markdown(t, f);
+	expect(f, "| a      | number |     |\n"
+		  "| ------ | -----: | --- |\n"
+		  "| longer |   1 \u00b5s | x   |\n"
+		  "|        |        | end |\n");
+	ob_table_add(t, "half a row");
+	f = begin();
+	ob_table_print(t, f, 0);
+	fclose(f);
+	CHECK(strstr(text, "half a row\n"));
+	free(text);
+	ob_table_free(t);
+}
+
+// What does not fit stands below, behind the first column again.
+static void test_panels(void)
+{
+	ob_table *t = ob_table_new("lrrr");
+	static const char *const cells[] = { "", "one", "two", "three", "cost", "1", "22", "333" };
+	for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
+		ob_table_add(t, "%s", cells[i]);
+	FILE *f = begin();
+	ob_table_print(t, f, 15);
+	expect(f, "      one  two\n"
+		  "cost    1   22\n"
+		  "\n"
+		  "      three\n"
+		  "cost    333\n");
+	ob_table_free(t);
+}
+
+static void test_small_and_html(void)
+{
+	static const ob_metric m = { .key = "time_s", .unit = "ms", .scale = 1e3 };
+	ob_table *t = ob_table_new("lr");
+	ob_table_add(t, "case");
+	ob_table_add(t, "time");
+	ob_table_add(t, "a < b");
+	ob_table_link(t, "pile");
+	ob_table_add_median(t, &m, &(ob_statistics){ .median = .0025, .median_low = .002, .median_high = .003 });
+	ob_table_class(t, "met");
+	ob_table_add(t, "once");
+	ob_table_add_median(t, &m, &(ob_statistics){ .median = 1, .median_low = NAN, .median_high = NAN });
+	FILE *f = begin();
+	ob_table_print(t, f, 0);
+	expect(f, "case              time\n"
+		  "a < b  2.5 ms (2 to 3)\n"
+		  "once           1000 ms\n");
+	f = begin();
+	ob_page page = { .out = f };
+	ob_table_html(t, &page);
+	expect(f, "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">case</th><th scope=\"col\" class=\"n\">time"
+		  "</th></tr></thead>\n<tbody>\n"
+		  "<tr><td><a href=\"#pile\">a &lt; b</a></td><td class=\"n met\">2.5 ms<small>2 to 3</small></td></tr>\n"
+		  "<tr><td>once</td><td class=\"n\">1000 ms</td></tr>\n</tbody></table></div>\n");
+	ob_table_free(t);
+}
+
+int main(void)
+{
+	test_forms();
+	test_panels();
+	test_small_and_html();
+	return check_end();
+}
