@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "lab/build.h"
+#include "world/world.h"
 #include "lab/look.h"
 #include "ode/ode_body.h"
 
@@ -19,7 +19,7 @@ void bench_print_state(uint64_t hash)
 	printf("state\tbits\t%016" PRIx64 "\n", hash);
 }
 
-uint32_t bench_bodies(const ob_engine_world *w)
+uint32_t bench_bodies(const ob_world *w)
 {
 	uint32_t bodies = 0;
 	for (uint32_t id = 0; id < w->objects; id++)
@@ -27,9 +27,9 @@ uint32_t bench_bodies(const ob_engine_world *w)
 	return bodies;
 }
 
-void bench_build(const bench_order *o, ob_engine_world *w)
+void bench_build(const bench_order *o, ob_world *w)
 {
-	*w = (ob_engine_world){ .gravity = { 0, 0, -OB_BUILD_GRAVITY } };
+	*w = (ob_world){ .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
 	o->scene->of.build(w, 0);
 	for (uint32_t id = 0; id < w->objects; id++) {
 		ob_passport *p = &w->passport[id];
@@ -51,7 +51,7 @@ double bench_memory(void)
 	return 1024. * (double)sum;
 }
 
-static uint64_t hash_of(const ob_engine *p, const ob_engine_kind *kind, const ob_engine_world *w, double time)
+static uint64_t hash_of(const ob_engine *p, const ob_engine_kind *kind, const ob_world *w, double time)
 {
 	ob_snapshot now = { .time = time, .count = w->objects, .passport = w->passport };
 	ob_state *state = calloc(w->objects, sizeof *state);
@@ -73,12 +73,12 @@ static uint64_t hash_of(const ob_engine *p, const ob_engine_kind *kind, const ob
 
 bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 {
-	ob_engine_world w;
+	ob_world w;
 	bench_build(o, &w);
 	double bodies = bench_bodies(&w), before = bench_memory();
 	ob_engine *p = kind->create(&w, &o->settings, e);
 	if (!p)
-		return ob_build_finish(&w), false;
+		return ob_world_finish(&w), false;
 	long steps = lround(o->duration / o->settings.step_length), done = 0;
 	double wall = ob_clock_wall(), cpu = ob_clock_thread_cpu();
 	bool on = true;
@@ -93,7 +93,7 @@ bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 	bench_print("memory", "B/body", (bench_memory() - before) / bodies);
 	bench_print_state(hash_of(p, kind, &w, (double)done * o->settings.step_length));
 	kind->destroy(p);
-	ob_build_finish(&w);
+	ob_world_finish(&w);
 	return on;
 }
 

@@ -27,9 +27,9 @@ bool bench_parts(const bench_order *o, ob_error *e);
 
 void bench_print(const char *quantity, const char *unit, double value);
 void bench_print_state(uint64_t hash); // of the bits of the state at the end: the same run gives the same
-uint32_t bench_bodies(const ob_engine_world *w); // that move
+uint32_t bench_bodies(const ob_world *w); // that move
 // Inertia of all bodies as the host computes it: then whoever runs the scene ends in the same bits.
-void bench_build(const bench_order *o, ob_engine_world *w);
+void bench_build(const bench_order *o, ob_world *w);
 // Bytes that this process has written to, shared segments included, programs and libraries not
 double bench_memory(void);
 

@@ -3,9 +3,9 @@
 
 #include "engine.h"
 #include "host/host.h"
-#include "lab/build.h"
+#include "world/world.h"
 
-static ob_object_def *define(const ob_engine_world *w)
+static ob_object_def *define(const ob_world *w)
 {
 	ob_object_def *def = calloc(w->objects, sizeof *def);
 	for (uint32_t i = 0; def && i < w->objects; i++)
@@ -15,7 +15,7 @@ static ob_object_def *define(const ob_engine_world *w)
 
 // The host goes by itself from "from" to the end; the first go, to step 0, lets all objects look around.
 typedef struct watched {
-	ob_engine_world w;
+	ob_world w;
 	ob_scene scene;
 	ob_host *h;
 	double bodies;
@@ -63,7 +63,7 @@ static void end(watched *r)
 {
 	ob_host_stop(r->h);
 	free(r->scene.object);
-	ob_build_finish(&r->w);
+	ob_world_finish(&r->w);
 }
 
 static bool print(const watched *r, ob_error *e)

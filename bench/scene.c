@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/build.h"
 #include "lab/heap.h"
 #include "lab/look.h"
+#include "world/world.h"
 
 enum { MOST = 1000000 }; // bodies
 
@@ -14,20 +14,20 @@ static bench_scene scene;
 
 // ---- worlds of any number of bodies
 
-static void build_falling(ob_engine_world *w, uint32_t run)
+static void build_falling(ob_world *w, uint32_t run)
 {
-	ob_build_falling(w, scene.bodies, 100 + run);
+	ob_world_falling(w, scene.bodies, 100 + run);
 }
 
-static void build_sparse(ob_engine_world *w, uint32_t run)
+static void build_sparse(ob_world *w, uint32_t run)
 {
-	ob_build_sparse(w, scene.bodies, 200 + run);
+	ob_world_sparse(w, scene.bodies, 200 + run);
 }
 
-static void build_balls(ob_engine_world *w, uint32_t run)
+static void build_balls(ob_world *w, uint32_t run)
 {
 	(void)run;
-	ob_build_balls(w, scene.bodies);
+	ob_world_balls(w, scene.bodies);
 }
 
 static void judge_crowd(ob_trial *t)

@@ -8,7 +8,7 @@ static const char title[] = "Bullet, double precision";
 static const char title[] = "Bullet, single precision";
 #endif
 
-static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	if (s->step_length > 0 && s->substeps && s->iterations)
 		return ob_bullet_create(w, s, e);

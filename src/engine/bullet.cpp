@@ -115,7 +115,7 @@ static void add(ob_engine *b, const ob_passport *p, const ob_state *s, bool slee
 	b->world.addRigidBody(body);
 }
 
-static void allow_for_bounces(btContactSolverInfo *info, const ob_engine_world *w)
+static void allow_for_bounces(btContactSolverInfo *info, const ob_world *w)
 {
 	bool any = false, all = true;
 	for (uint32_t i = 0; i < w->objects; i++) {
@@ -128,7 +128,7 @@ static void allow_for_bounces(btContactSolverInfo *info, const ob_engine_world *
 		info->m_erp2 = 0;
 }
 
-static void set_up(ob_engine *b, const ob_engine_world *w, const ob_run_settings *s)
+static void set_up(ob_engine *b, const ob_world *w, const ob_run_settings *s)
 {
 	gCalculateCombinedFrictionCallback = pair_friction;
 	gCalculateCombinedRestitutionCallback = pair_restitution;
@@ -143,7 +143,7 @@ static void set_up(ob_engine *b, const ob_engine_world *w, const ob_run_settings
 		add(b, &w->passport[i], &w->state[i], s->sleeping);
 }
 
-extern "C" ob_engine *ob_bullet_create(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+extern "C" ob_engine *ob_bullet_create(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	try {
 		auto b = std::make_unique<ob_engine>();

@@ -1,23 +1,14 @@
 // Physics engines behind one interface, so that the lab treats all of them alike: obsim itself, ODE's single world,
-// Bullet. Knows nothing of cases or errors.
+// Bullet. Knows nothing of cases or errors. Each is given a world; pair friction is sqrt(mu_a mu_b), restitution
+// max(e_a, e_b) in all.
 //
-// A peer is stepped in the caller's thread, frame by frame; whoever wants its cost reads the thread's CPU clock around
+// An engine is stepped in the caller's thread, frame by frame; whoever wants its cost reads the thread's CPU clock around
 // ob_engine_step. Thread-safety: one thread per process at a time (ODE shuffles rows by a seed of the whole process).
-#ifndef OB_ENGINE_PEER_H
-#define OB_ENGINE_PEER_H
-
-#include <ob/motion.h>
+#ifndef OB_ENGINE_ENGINE_H
+#define OB_ENGINE_ENGINE_H
 
 #include "settings/settings.h"
-
-// What every engine is given: objects by their passports (id = index, inertia filled, mass 0 and OB_OBJECT_STATIC =
-// does not move), where they start, gravity. Pair friction is sqrt(mu_a mu_b), restitution max(e_a, e_b) in all.
-typedef struct ob_engine_world {
-	ob_vec3 gravity; // m/s^2
-	uint32_t objects, objects_max;
-	ob_passport *passport; // [objects]; passport.force is a constant force at its centre (N, world frame)
-	ob_state *state; // [objects]
-} ob_engine_world;
+#include "world/world.h"
 
 typedef struct ob_engine ob_engine;
 
@@ -29,7 +20,7 @@ typedef struct ob_engine_kind {
 	// world's. obsim alone: substeps 0 = chosen from the tolerance alone; the solver and integrator are the kind's.
 	ob_run_settings usual;
 	uint32_t iteration_choice[8]; // worth sweeping, ascending; 0 ends
-	ob_engine *(*create)(const ob_engine_world *w, const ob_run_settings *s, ob_error *e); // NULL and e
+	ob_engine *(*create)(const ob_world *w, const ob_run_settings *s, ob_error *e); // NULL and e
 	bool (*step)(ob_engine *p, ob_error *e); // one frame; false and e: it cannot go on
 	void (*get)(const ob_engine *p, ob_state *state); // [objects], at the end of the last frame
 	void (*destroy)(ob_engine *p); // NULL is allowed

@@ -33,7 +33,7 @@ static bool sound(const ob_engine *p, ob_error *e)
 }
 
 // The universe loses its name at once: nobody else is to see it, and it goes with the process however that ends.
-static ob_universe *open_universe(const ob_engine_world *w, const ob_run_settings *run, ob_error *e)
+static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run, ob_error *e)
 {
 	static unsigned made;
 	char name[OB_NAME_MAX];
@@ -57,7 +57,7 @@ static void destroy(ob_engine *p)
 }
 
 // The first turn, with no step in it, lets all objects look around: it belongs to setting up.
-static ob_engine *create(const ob_engine_world *w, const ob_run_settings *run, ob_error *e)
+static ob_engine *create(const ob_world *w, const ob_run_settings *run, ob_error *e)
 {
 	ob_engine *p = calloc(1, sizeof *p);
 	if (!p) {
@@ -97,7 +97,7 @@ static void get(const ob_engine *p, ob_state *state)
 }
 
 // With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.
-static bool settle(const ob_engine_world *w, const ob_run_settings *s, ob_run_settings *run, ob_error *e)
+static bool settle(const ob_world *w, const ob_run_settings *s, ob_run_settings *run, ob_error *e)
 {
 	bool chosen = s->substeps == 0;
 	if (!(s->step_length > 0))
@@ -110,7 +110,7 @@ static bool settle(const ob_engine_world *w, const ob_run_settings *s, ob_run_se
 	return run->iterations > 0 || ob_fail(e, "no iteration of the contact solver: at least one is needed");
 }
 
-static ob_engine *create_as(const ob_engine_world *w, const ob_run_settings *s, ob_solver_kind solver,
+static ob_engine *create_as(const ob_world *w, const ob_run_settings *s, ob_solver_kind solver,
 			  ob_integrator integrator, ob_error *e)
 {
 	ob_run_settings run;
@@ -122,27 +122,27 @@ static ob_engine *create_as(const ob_engine_world *w, const ob_run_settings *s, 
 	return create(w, &run, e);
 }
 
-static ob_engine *create_coloured(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_coloured(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_COLOURED, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_engine *create_jacobi(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_jacobi(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_JACOBI, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_engine *create_ode(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_ode(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_COLOURED, OB_INTEGRATOR_ODE, e);
 }
 
-static ob_engine *create_ghost(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_ghost(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_GHOST, OB_INTEGRATOR_EXACT, e);
 }
 
-static ob_engine *create_lagged(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_lagged(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_as(w, s, OB_SOLVER_LAGGED, OB_INTEGRATOR_EXACT, e);
 }

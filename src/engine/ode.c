@@ -20,7 +20,7 @@ static void destroy(ob_engine *p)
 }
 
 // iterations: QuickStep's; 0 = dWorldStep
-static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, uint32_t iterations, bool hashed, ob_error *e)
+static ob_engine *create(const ob_world *w, const ob_run_settings *s, uint32_t iterations, bool hashed, ob_error *e)
 {
 	if (!(s->step_length > 0) || !s->substeps) {
 		ob_fail(e, "%u substeps of a step of %g s: ODE must be told what to do", s->substeps, s->step_length);
@@ -50,7 +50,7 @@ static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, uin
 	return p;
 }
 
-static ob_engine *create_iterating(const ob_engine_world *w, const ob_run_settings *s, bool hashed, ob_error *e)
+static ob_engine *create_iterating(const ob_world *w, const ob_run_settings *s, bool hashed, ob_error *e)
 {
 	if (s->iterations)
 		return create(w, s, s->iterations, hashed, e);
@@ -58,17 +58,17 @@ static ob_engine *create_iterating(const ob_engine_world *w, const ob_run_settin
 	return NULL;
 }
 
-static ob_engine *create_quick(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_quick(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_iterating(w, s, false, e);
 }
 
-static ob_engine *create_hashed(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_hashed(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create_iterating(w, s, true, e);
 }
 
-static ob_engine *create_world(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_world(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	return create(w, s, 0, false, e);
 }

@@ -5,8 +5,8 @@
 #ifndef OB_LAB_CASE_H
 #define OB_LAB_CASE_H
 
-#include "measure/measure.h"
 #include "engine/engine.h"
+#include "measure/measure.h"
 
 enum { OB_FIGURES = 8 }; // per case, at most
 
@@ -23,7 +23,7 @@ typedef struct ob_trial {
 	uint32_t run; // which of the case's runs
 	uint64_t frame; // frames gone by: 0 before the first step
 	double time; // s
-	const ob_engine_world *world; // as it began
+	const ob_world *world; // as it began
 	ob_snapshot now; // passports and states now: measure/ takes it
 	double figure[OB_FIGURES]; // start at 0; in the case's units
 	double memory[64]; // the case's own, zeroed before each run
@@ -44,7 +44,7 @@ typedef struct ob_case {
 	uint32_t runs;
 	uint32_t figures; // the first is the one that plots show
 	ob_figure_def figure[OB_FIGURES];
-	void (*build)(ob_engine_world *w, uint32_t run); // with ob_build_* of build.h
+	void (*build)(ob_world *w, uint32_t run); // with ob_world_* of world/world.h
 	void (*observe)(ob_trial *t); // after each frame, and once before the first; NULL = nothing
 	void (*judge)(ob_trial *t); // at the end of each run
 } ob_case;

@@ -2,8 +2,8 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "lab/build.h"
 #include "lab/look.h"
+#include "world/world.h"
 
 // Faster than anything in any case, and what falls without end, within its time. m/s and rad/s
 static const double absurd = 1e5;
@@ -86,7 +86,7 @@ typedef struct tally {
 static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_run_settings *s, ob_outcome *out,
 		tally *failures, ob_error *e)
 {
-	ob_engine_world w = { .gravity = { 0, 0, -OB_BUILD_GRAVITY } };
+	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
 	c->build(&w, number);
 	ob_trial t = { .of = c, .run = number, .world = &w, .settings = *s };
 	t.settings.step_length = s->step_length > 0 ? s->step_length : c->step;
@@ -113,7 +113,7 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	free(t.now.motion);
 	free(t.body_memory);
 	free(state);
-	ob_build_finish(&w);
+	ob_world_finish(&w);
 	return made;
 }
 

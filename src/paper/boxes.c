@@ -3,30 +3,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/random.h"
+
 static const double spacing = 1.8; // m: more than the longest diagonal, so that no two boxes start in contact
 static const double lowest = 1.5; // m
 static const double density = 1000, friction = .5;
 static const double least_side = .2, most_side = 1; // m
 enum { LEVELS = 4 };
 
-// SplitMix64 (Steele, Lea and Flood 2014), as a number in [0, 1)
-static double draw(uint64_t *state)
-{
-	uint64_t z = *state += 0x9e3779b97f4a7c15;
-	z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-	z = (z ^ z >> 27) * 0x94d049bb133111eb;
-	return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
-static double draw_side(uint64_t *state)
-{
-	return least_side + (most_side - least_side) * draw(state);
-}
-
 // Evenly over all attitudes (Shoemake 1992)
 static ob_quat draw_attitude(uint64_t *state)
 {
-	double u = draw(state), a = 2 * M_PI * draw(state), b = 2 * M_PI * draw(state);
+	double u = ob_splitmix_real(state), a = 2 * M_PI * ob_splitmix_real(state),
+	       b = 2 * M_PI * ob_splitmix_real(state);
 	return (ob_quat){ sqrt(1 - u) * sin(a), sqrt(1 - u) * cos(a), sqrt(u) * sin(b), sqrt(u) * cos(b) };
 }
 
@@ -46,7 +35,9 @@ static void put_ground(ob_object_def *o)
 static void put_box(ob_object_def *o, uint32_t id, uint32_t side, uint64_t *state)
 {
 	uint32_t column = (id - 1) / LEVELS, level = (id - 1) % LEVELS;
-	double x = draw_side(state), y = draw_side(state), z = draw_side(state), middle = .5 * (side - 1);
+	double x = ob_splitmix_within(state, least_side, most_side),
+	       y = ob_splitmix_within(state, least_side, most_side),
+	       z = ob_splitmix_within(state, least_side, most_side), middle = .5 * (side - 1);
 	o->passport = (ob_passport){
 		.id = id,
 		.flags = OB_OBJECT_PRESENT,
@@ -54,8 +45,8 @@ static void put_box(ob_object_def *o, uint32_t id, uint32_t side, uint64_t *stat
 		.size = ob_v3(x / 2, y / 2, z / 2),
 		.mass = density * x * y * z,
 		.friction = friction,
-		.colour = { (float)(.15 + .7 * draw(state)), (float)(.15 + .5 * draw(state)),
-			    (float)(.1 + .5 * draw(state)), 1 },
+		.colour = { (float)(.15 + .7 * ob_splitmix_real(state)), (float)(.15 + .5 * ob_splitmix_real(state)),
+			    (float)(.1 + .5 * ob_splitmix_real(state)), 1 },
 	};
 	snprintf(o->passport.name, sizeof o->passport.name, "box#%u", id);
 	o->state.pose.p =

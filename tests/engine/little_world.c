@@ -16,7 +16,7 @@ little_world *little_world_new(void)
 	little_world *l = calloc(1, sizeof *l);
 	if (!l)
 		give_up("world", "no memory");
-	l->world = (ob_engine_world){ .gravity = { 0, 0, -9.81 }, .passport = l->passport, .state = l->state };
+	l->world = (ob_world){ .gravity = { 0, 0, -9.81 }, .passport = l->passport, .state = l->state };
 	l->world.objects_max = LITTLE_MOST;
 	return l;
 }

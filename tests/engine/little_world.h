@@ -7,7 +7,7 @@
 enum { LITTLE_MOST = 256 }; // objects
 
 typedef struct little_world {
-	ob_engine_world world;
+	ob_world world;
 	ob_passport passport[LITTLE_MOST];
 	ob_state state[LITTLE_MOST]; // as it began
 	ob_state now[LITTLE_MOST]; // after little_run

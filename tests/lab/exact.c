@@ -2,17 +2,17 @@
 
 #include "reference/mechanics.h"
 
-static bool is_static(const ob_engine_world *w, uint32_t id)
+static bool is_static(const ob_world *w, uint32_t id)
 {
 	return w->passport[id].flags & OB_OBJECT_STATIC;
 }
 
-ob_state exact_rest(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_rest(const ob_world *w, uint32_t id, double t)
 {
 	return w->state[id];
 }
 
-ob_state exact_flight(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_flight(const ob_world *w, uint32_t id, double t)
 {
 	const ob_passport *p = &w->passport[id];
 	ob_state s = w->state[id];
@@ -25,7 +25,7 @@ ob_state exact_flight(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_bounces(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_bounces(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -42,7 +42,7 @@ ob_state exact_bounces(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_meeting(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_meeting(const ob_world *w, uint32_t id, double t)
 {
 	uint32_t first = id & ~1u;
 	const ob_passport *a = &w->passport[first], *b = a + 1;
@@ -59,7 +59,7 @@ ob_state exact_meeting(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_cradle(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_cradle(const ob_world *w, uint32_t id, double t)
 {
 	uint32_t incoming = 0;
 	while (w->state[incoming].v.x > 0)
@@ -80,7 +80,7 @@ static ob_state accelerated(ob_state s, ob_vec3 a, double t)
 	return s;
 }
 
-ob_state exact_push(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_push(const ob_world *w, uint32_t id, double t)
 {
 	ob_vec3 force = w->passport[1].force;
 	double size = ob_norm(force);
@@ -88,7 +88,7 @@ ob_state exact_push(const ob_engine_world *w, uint32_t id, double t)
 	return accelerated(w->state[id], ob_scale(force, (id ? id == 1 ? r.box_a : r.ball_a : 0) / size), t);
 }
 
-ob_state exact_slide(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_slide(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -101,7 +101,7 @@ ob_state exact_slide(const ob_engine_world *w, uint32_t id, double t)
 	return accelerated(s, ob_scale(down, a), t);
 }
 
-ob_state exact_stop(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_stop(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -113,7 +113,7 @@ ob_state exact_stop(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_slip(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_slip(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (is_static(w, id))
@@ -125,7 +125,7 @@ ob_state exact_slip(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-ob_state exact_halt(const ob_engine_world *w, uint32_t id, double t)
+ob_state exact_halt(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	double speed = fabs(s.v.x);

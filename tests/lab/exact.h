@@ -4,17 +4,17 @@
 
 #include "engine/engine.h"
 
-typedef ob_state (*exact_motion)(const ob_engine_world *w, uint32_t id, double t);
+typedef ob_state (*exact_motion)(const ob_world *w, uint32_t id, double t);
 
-ob_state exact_rest(const ob_engine_world *w, uint32_t id, double t);
-ob_state exact_flight(const ob_engine_world *w, uint32_t id, double t); // and spin
-ob_state exact_bounces(const ob_engine_world *w, uint32_t id, double t); // on a plane at z = 0
-ob_state exact_meeting(const ob_engine_world *w, uint32_t id, double t); // pairs along x, in the order of ids
-ob_state exact_cradle(const ob_engine_world *w, uint32_t id, double t);
-ob_state exact_push(const ob_engine_world *w, uint32_t id, double t); // box 1 by its force, the rest roll on it
-ob_state exact_slide(const ob_engine_world *w, uint32_t id, double t); // blocks and spheres down plane 0
-ob_state exact_stop(const ob_engine_world *w, uint32_t id, double t); // blocks on level ground
-ob_state exact_slip(const ob_engine_world *w, uint32_t id, double t); // a sphere on level ground
-ob_state exact_halt(const ob_engine_world *w, uint32_t id, double t); // flies 2.5 m, to stop before what it was aimed at
+ob_state exact_rest(const ob_world *w, uint32_t id, double t);
+ob_state exact_flight(const ob_world *w, uint32_t id, double t); // and spin
+ob_state exact_bounces(const ob_world *w, uint32_t id, double t); // on a plane at z = 0
+ob_state exact_meeting(const ob_world *w, uint32_t id, double t); // pairs along x, in the order of ids
+ob_state exact_cradle(const ob_world *w, uint32_t id, double t);
+ob_state exact_push(const ob_world *w, uint32_t id, double t); // box 1 by its force, the rest roll on it
+ob_state exact_slide(const ob_world *w, uint32_t id, double t); // blocks and spheres down plane 0
+ob_state exact_stop(const ob_world *w, uint32_t id, double t); // blocks on level ground
+ob_state exact_slip(const ob_world *w, uint32_t id, double t); // a sphere on level ground
+ob_state exact_halt(const ob_world *w, uint32_t id, double t); // flies 2.5 m, to stop before what it was aimed at
 
 #endif

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 struct ob_engine {
-	const ob_engine_world *world; // lives as long as the engine in every trial
+	const ob_world *world; // lives as long as the engine in every trial
 	exact_motion motion;
 	double step;
 	int frame, last; // from "last" on something is wrong
@@ -16,7 +16,7 @@ void exact_engine_use(exact_motion motion)
 	in_use = motion;
 }
 
-static ob_state bursting(const ob_engine_world *w, uint32_t id, double t)
+static ob_state bursting(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	if (!(w->passport[id].flags & OB_OBJECT_STATIC))
@@ -24,7 +24,7 @@ static ob_state bursting(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, exact_motion motion, int last)
+static ob_engine *create(const ob_world *w, const ob_run_settings *s, exact_motion motion, int last)
 {
 	ob_engine *p = malloc(sizeof *p);
 	if (p)
@@ -62,7 +62,7 @@ static void get_until_last(const ob_engine *p, ob_state *state)
 }
 
 #define CREATE(name, motion, last) \
-	static ob_engine *create_##name(const ob_engine_world *w, const ob_run_settings *s, ob_error *e) \
+	static ob_engine *create_##name(const ob_world *w, const ob_run_settings *s, ob_error *e) \
 	{ \
 		return create(w, s, motion, last); \
 	}

@@ -8,12 +8,12 @@
 #include "base/clock.h"
 #include "check.h"
 #include "lab/attempt.h"
-#include "lab/build.h"
+#include "world/world.h"
 #include "lab/lab.h"
 
-static void build(ob_engine_world *w, uint32_t run)
+static void build(ob_world *w, uint32_t run)
 {
-	ob_build_sphere(w, 1, .5, ob_v3(0, 0, 1));
+	ob_world_sphere(w, 1, .5, ob_v3(0, 0, 1));
 }
 
 static void judge(ob_trial *t)
@@ -32,7 +32,7 @@ static const ob_case plain = { .name = "plain",
 			       .build = build,
 			       .judge = judge };
 
-static ob_engine *create(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	static int anything;
 	return (ob_engine *)&anything;
@@ -97,7 +97,7 @@ static bool step_interrupt(ob_engine *p, ob_error *e)
 	return step_forever(p, e);
 }
 
-static ob_engine *create_none(const ob_engine_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create_none(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	ob_fail(e, "no such tolerance");
 	return NULL;

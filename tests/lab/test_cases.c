@@ -136,7 +136,7 @@ static void test_mad(const ob_case *c, const ob_engine_kind *kind, const char *w
 
 // ---- calibration: errors of a known size must read as such
 
-static ob_state one_millimetre_off(const ob_engine_world *w, uint32_t id, double t)
+static ob_state one_millimetre_off(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_flight(w, id, t);
 	s.pose.p.y += 1e-3;
@@ -144,7 +144,7 @@ static ob_state one_millimetre_off(const ob_engine_world *w, uint32_t id, double
 }
 
 // Body i sinks by i times .2 mm, so that each touches the one below, and moves aside by 30 um.
-static ob_state sunk(const ob_engine_world *w, uint32_t id, double t)
+static ob_state sunk(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	s.pose.p.z -= .2e-3 * id;
@@ -152,42 +152,42 @@ static ob_state sunk(const ob_engine_world *w, uint32_t id, double t)
 	return s;
 }
 
-static ob_state pushed_too_fast(const ob_engine_world *w, uint32_t id, double t)
+static ob_state pushed_too_fast(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_push(w, id, t);
 	s.v.z += .01;
 	return s;
 }
 
-static ob_state turned(const ob_engine_world *w, uint32_t id, double t)
+static ob_state turned(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_flight(w, id, t);
 	s.pose.q = ob_quat_turn(s.pose.q, ob_v3(0, 1e-3, 0));
 	return s;
 }
 
-static ob_state creeping(const ob_engine_world *w, uint32_t id, double t)
+static ob_state creeping(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
 	s.pose.p.y += id * 1e-6 * t;
 	return s;
 }
 
-static ob_state stopping_late(const ob_engine_world *w, uint32_t id, double t)
+static ob_state stopping_late(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_stop(w, id, t / 1.002);
 	s.v = ob_scale(s.v, 1 / 1.002);
 	return s;
 }
 
-static ob_state stopping_farther(const ob_engine_world *w, uint32_t id, double t)
+static ob_state stopping_farther(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_stop(w, id, t);
 	s.pose.p = ob_madd(s.pose.p, .002, ob_sub(s.pose.p, w->state[id].pose.p));
 	return s;
 }
 
-static ob_state bouncing_high(const ob_engine_world *w, uint32_t id, double t)
+static ob_state bouncing_high(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = exact_bounces(w, id, t);
 	s.pose.p.z += id ? .01 : 0;

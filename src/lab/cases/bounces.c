@@ -1,16 +1,16 @@
 // Balls that bounce off the ground.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
+#include "world/world.h"
 
 enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // of body 1 in ob_trial.memory
 
-static void build_ball(ob_engine_world *w, double radius, double e)
+static void build_ball(ob_world *w, double radius, double e)
 {
-	ob_build_ground(w);
-	ob_build_sphere(w, 1, radius, ob_v3(0, 0, 1 + radius));
-	ob_build_material(w, .5, e);
+	ob_world_ground(w);
+	ob_world_sphere(w, 1, radius, ob_v3(0, 0, 1 + radius));
+	ob_world_material(w, .5, e);
 }
 
 // Counts the times that body 1 turned from falling to rising.
@@ -30,7 +30,7 @@ static void fail_without_bounces(ob_trial *t)
 		t->failed = "never bounced";
 }
 
-static void build_bounce(ob_engine_world *w, uint32_t run)
+static void build_bounce(ob_world *w, uint32_t run)
 {
 	build_ball(w, .5, 1);
 }
@@ -71,7 +71,7 @@ const ob_case ob_case_bounce = {
 
 enum { APEXES = 4 };
 
-static void build_apexes(ob_engine_world *w, uint32_t run)
+static void build_apexes(ob_world *w, uint32_t run)
 {
 	build_ball(w, .1, .8);
 }
@@ -112,9 +112,9 @@ const ob_case ob_case_apexes = {
 	.judge = judge_apexes,
 };
 
-static void build_bouncing_49(ob_engine_world *w, uint32_t run)
+static void build_bouncing_49(ob_world *w, uint32_t run)
 {
-	ob_build_balls(w, 49);
+	ob_world_balls(w, 49);
 }
 
 static void observe_bouncing_49(ob_trial *t)

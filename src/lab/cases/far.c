@@ -1,9 +1,9 @@
 // Far from the origin, where positions have fewer digits: the same scene twice in one world, at the origin and 10 km
 // away.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/cases/head_on.h"
 #include "lab/look.h"
+#include "world/world.h"
 
 static const ob_vec3 away = { 10e3, 0, 0 }; // m
 
@@ -17,13 +17,13 @@ static double apart(const ob_trial *t, uint32_t near, uint32_t far)
 // same order and differ by nothing but the place.
 enum { STACK = 10, FAR_SLAB = STACK + 1 };
 
-static void build_slab_and_stack(ob_engine_world *w, ob_vec3 foot)
+static void build_slab_and_stack(ob_world *w, ob_vec3 foot)
 {
-	ob_build_box(w, 0, ob_v3(5, 5, .5), ob_add(foot, ob_v3(0, 0, -.5)));
-	ob_build_stack(w, STACK, foot, 14);
+	ob_world_box(w, 0, ob_v3(5, 5, .5), ob_add(foot, ob_v3(0, 0, -.5)));
+	ob_world_stack(w, STACK, foot, 14);
 }
 
-static void build_stacks(ob_engine_world *w, uint32_t run)
+static void build_stacks(ob_world *w, uint32_t run)
 {
 	build_slab_and_stack(w, ob_v3(0, 0, 0));
 	build_slab_and_stack(w, away);
@@ -75,7 +75,7 @@ const ob_case ob_case_far_stack = {
 	.judge = judge_stacks,
 };
 
-static void build_pairs(ob_engine_world *w, uint32_t run)
+static void build_pairs(ob_world *w, uint32_t run)
 {
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 	ob_head_on_build(w, run, away);

@@ -1,12 +1,12 @@
 // What flies and touches nothing.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
+#include "world/world.h"
 
-static void build_projectile(ob_engine_world *w, uint32_t run)
+static void build_projectile(ob_world *w, uint32_t run)
 {
-	ob_build_body b = ob_build_box(w, 48, ob_v3(.3, .2, .1), ob_v3(0, 0, 5));
+	ob_world_body b = ob_world_box(w, 48, ob_v3(.3, .2, .1), ob_v3(0, 0, 5));
 	b.state->v = ob_v3(10, 0, 10);
 	b.state->w = ob_v3(1, 2, 3);
 }

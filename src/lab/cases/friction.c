@@ -1,26 +1,26 @@
 // Dry friction on blocks: on a slope just below and above the angle of friction, and sliding in all directions.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
+#include "world/world.h"
 
 static const double mu = .5;
 
-static void build_block(ob_engine_world *w, double angle)
+static void build_block(ob_world *w, double angle)
 {
-	ob_build_body s = ob_build_slope(w, angle);
+	ob_world_body s = ob_world_slope(w, angle);
 	ob_quat q = s.state->pose.q;
 	ob_mat3 r = ob_quat_matrix(q);
-	ob_build_box(w, 500, ob_v3(.5, .5, .25), ob_scale(ob_column(&r, 2), .25)).state->pose.q = q;
-	ob_build_material(w, mu, 0);
+	ob_world_box(w, 500, ob_v3(.5, .5, .25), ob_scale(ob_column(&r, 2), .25)).state->pose.q = q;
+	ob_world_material(w, mu, 0);
 }
 
-static void build_stick(ob_engine_world *w, uint32_t run)
+static void build_stick(ob_world *w, uint32_t run)
 {
 	build_block(w, .99 * ob_reference_friction_angle(mu));
 }
 
-static void build_slide(ob_engine_world *w, uint32_t run)
+static void build_slide(ob_world *w, uint32_t run)
 {
 	build_block(w, 1.01 * ob_reference_friction_angle(mu));
 }
@@ -96,15 +96,15 @@ static const double speed = 3; // m/s
 
 // All in one world, 4 m apart. Headings 15 degrees apart, every other one turned round: along both axes and both
 // diagonals, and into every quadrant.
-static void build_sliding(ob_engine_world *w, uint32_t run)
+static void build_sliding(ob_world *w, uint32_t run)
 {
-	ob_build_ground(w);
+	ob_world_ground(w);
 	for (int i = 0; i < HEADINGS; i++) {
 		double heading = i * M_PI / 12 + (i % 2 ? M_PI : 0);
-		ob_build_body b = ob_build_box(w, 500, ob_v3(.5, .5, .25), ob_v3(4 * i, 0, .25));
+		ob_world_body b = ob_world_box(w, 500, ob_v3(.5, .5, .25), ob_v3(4 * i, 0, .25));
 		b.state->v = ob_v3(speed * cos(heading), speed * sin(heading), 0);
 	}
-	ob_build_material(w, mu, 0);
+	ob_world_material(w, mu, 0);
 }
 
 // A block stops between frames: when what is left of its speed is gone, at the rate at which it goes.

@@ -1,25 +1,26 @@
 // Heaps: pyramids that stand, piles that drop.
-#include "lab/build.h"
+#include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/cases/stand.h"
 #include "lab/heap.h"
 #include "lab/look.h"
+#include "world/world.h"
 
-static void build_pyramid(ob_engine_world *w, int rows)
+static void build_pyramid(ob_world *w, int rows)
 {
-	ob_build_ground(w);
+	ob_world_ground(w);
 	for (int row = 0; row < rows; row++)
 		for (int i = 0; i < rows - row; i++)
-			ob_build_box(w, 1000, ob_v3(.5, .5, .5),
+			ob_world_box(w, 1000, ob_v3(.5, .5, .5),
 				     ob_v3(0, 1.05 * (i - .5 * (rows - row - 1)), .5 + row));
 }
 
-static void build_pyramid_10(ob_engine_world *w, uint32_t run)
+static void build_pyramid_10(ob_world *w, uint32_t run)
 {
 	build_pyramid(w, 10);
 }
 
-static void build_pyramid_15(ob_engine_world *w, uint32_t run)
+static void build_pyramid_15(ob_world *w, uint32_t run)
 {
 	build_pyramid(w, 15);
 }
@@ -54,32 +55,32 @@ enum { SEEDS = 5 }; // what drops is chaotic: a run for each, and the worst coun
 
 // A loose grid: .25 and .3 m between boxes, moved by up to 5 cm and turned by up to .15 rad about each axis; the lowest
 // centres half a metre above where they come to rest.
-static void build_pile_of(ob_engine_world *w, double e, uint32_t run)
+static void build_pile_of(ob_world *w, double e, uint32_t run)
 {
 	uint64_t seed = 17 + run;
-	ob_build_ground(w);
+	ob_world_ground(w);
 	for (int i = 0; i < 216; i++) {
 		ob_vec3 p = ob_v3((i % 6 - 2.5) * .75, (i / 6 % 6 - 2.5) * .75, .75 + .8 * (i / 36));
-		p = ob_add(p, ob_build_vector(&seed, .05));
-		ob_vec3 turn = ob_build_vector(&seed, .15);
-		ob_build_box(w, 125, ob_v3(.25, .25, .25), p).state->pose.q = ob_quat_turn(ob_quat_identity(), turn);
+		p = ob_add(p, ob_splitmix_vector(&seed, .05));
+		ob_vec3 turn = ob_splitmix_vector(&seed, .15);
+		ob_world_box(w, 125, ob_v3(.25, .25, .25), p).state->pose.q = ob_quat_turn(ob_quat_identity(), turn);
 	}
-	ob_build_material(w, .5, e);
+	ob_world_material(w, .5, e);
 }
 
-static void build_pile(ob_engine_world *w, uint32_t run)
+static void build_pile(ob_world *w, uint32_t run)
 {
 	build_pile_of(w, 0, run);
 }
 
-static void build_pile_elastic(ob_engine_world *w, uint32_t run)
+static void build_pile_elastic(ob_world *w, uint32_t run)
 {
 	build_pile_of(w, .5, run);
 }
 
-static void build_falling(ob_engine_world *w, uint32_t run)
+static void build_falling(ob_world *w, uint32_t run)
 {
-	ob_build_falling(w, 100, 100 + run);
+	ob_world_falling(w, 100, 100 + run);
 }
 
 static void observe_pile(ob_trial *t)

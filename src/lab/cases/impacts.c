@@ -1,9 +1,9 @@
 // Impacts in free space: the head-on pair and Newton's cradle.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/cases/head_on.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
+#include "world/world.h"
 
 ob_head_on ob_head_on_of(uint32_t run)
 {
@@ -15,15 +15,15 @@ ob_head_on ob_head_on_of(uint32_t run)
 	};
 }
 
-void ob_head_on_build(ob_engine_world *w, uint32_t run, ob_vec3 at)
+void ob_head_on_build(ob_world *w, uint32_t run, ob_vec3 at)
 {
 	ob_head_on h = ob_head_on_of(run);
 	w->gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < 2; i++) {
 		double mass = i ? h.ratio : 1;
 		ob_vec3 p = ob_madd(at, 1.537 * i, ob_v3(1, 0, 0)); // they meet within a frame, not at its end
-		ob_build_body b = h.shape == OB_SHAPE_BOX ? ob_build_box(w, mass, ob_v3(.5, .5, .5), p)
-							  : ob_build_sphere(w, mass, .5, p);
+		ob_world_body b = h.shape == OB_SHAPE_BOX ? ob_world_box(w, mass, ob_v3(.5, .5, .5), p)
+							  : ob_world_sphere(w, mass, .5, p);
 		b.passport->friction = .3;
 		b.passport->restitution = h.e;
 		b.state->v.x = !i;
@@ -45,7 +45,7 @@ bool ob_head_on_missed(const ob_trial *t, uint32_t first)
 	return a.v.x > .999 || a.pose.p.x > b.pose.p.x;
 }
 
-static void build_head_on(ob_engine_world *w, uint32_t run)
+static void build_head_on(ob_world *w, uint32_t run)
 {
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 }
@@ -90,22 +90,22 @@ const ob_case ob_case_head_on = {
 enum { CRADLE = 5 };
 
 // Those that come in touch each other; those at rest touch each other; .7 m between.
-static void build_cradle(ob_engine_world *w, int incoming)
+static void build_cradle(ob_world *w, int incoming)
 {
 	w->gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < CRADLE; i++) {
-		ob_build_body b = ob_build_sphere(w, 1, .5, ob_v3(i + (i < incoming ? 0 : .7), 0, 0));
+		ob_world_body b = ob_world_sphere(w, 1, .5, ob_v3(i + (i < incoming ? 0 : .7), 0, 0));
 		b.state->v.x = i < incoming;
 	}
-	ob_build_material(w, 0, 1);
+	ob_world_material(w, 0, 1);
 }
 
-static void build_cradle_1(ob_engine_world *w, uint32_t run)
+static void build_cradle_1(ob_world *w, uint32_t run)
 {
 	build_cradle(w, 1);
 }
 
-static void build_cradle_2(ob_engine_world *w, uint32_t run)
+static void build_cradle_2(ob_world *w, uint32_t run)
 {
 	build_cradle(w, 2);
 }

@@ -1,10 +1,10 @@
 // What it costs to read a partner late: the head-on pair, with the lag of the run's settings.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/cases/head_on.h"
 #include "lab/look.h"
+#include "world/world.h"
 
-static void build_lag(ob_engine_world *w, uint32_t run)
+static void build_lag(ob_world *w, uint32_t run)
 {
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 }

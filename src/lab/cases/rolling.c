@@ -1,30 +1,30 @@
 // Spheres that roll: under a box that is pushed, out of a slide, down a slope.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
+#include "world/world.h"
 
 enum { BOX = 1, BALL = 2, BALLS = 25 };
 static const double push = 150; // N
 
-static void build_push(ob_engine_world *w, ob_vec3 direction)
+static void build_push(ob_world *w, ob_vec3 direction)
 {
-	ob_build_ground(w).passport->friction = .2; // with the box's .8: .4
-	ob_build_body box = ob_build_box(w, 10, ob_v3(10, 10, .5), ob_v3(0, 0, .5 - 2e-5));
+	ob_world_ground(w).passport->friction = .2; // with the box's .8: .4
+	ob_world_body box = ob_world_box(w, 10, ob_v3(10, 10, .5), ob_v3(0, 0, .5 - 2e-5));
 	box.passport->friction = .8;
 	box.passport->force = ob_scale(direction, push);
 	for (int i = 0; i < BALLS; i++) {
 		ob_vec3 p = ob_v3(2 * (i / 5) - 4, 2 * (i % 5) - 4, 1.5 - 6e-5);
-		ob_build_sphere(w, 1, .5, p).passport->friction = .8;
+		ob_world_sphere(w, 1, .5, p).passport->friction = .8;
 	}
 }
 
-static void build_rolling_diagonal(ob_engine_world *w, uint32_t run)
+static void build_rolling_diagonal(ob_world *w, uint32_t run)
 {
 	build_push(w, ob_v3(.5, sqrt(.75), 0));
 }
 
-static void build_rolling_y(ob_engine_world *w, uint32_t run)
+static void build_rolling_y(ob_world *w, uint32_t run)
 {
 	build_push(w, ob_v3(0, 1, 0));
 }
@@ -94,11 +94,11 @@ const ob_case ob_case_rolling_y = {
 	.judge = judge_push,
 };
 
-static void build_slip_to_roll(ob_engine_world *w, uint32_t run)
+static void build_slip_to_roll(ob_world *w, uint32_t run)
 {
-	ob_build_ground(w);
-	ob_build_sphere(w, 10, .5, ob_v3(0, 0, .5)).state->v.x = 7;
-	ob_build_material(w, .2, 0);
+	ob_world_ground(w);
+	ob_world_sphere(w, 10, .5, ob_v3(0, 0, .5)).state->v.x = 7;
+	ob_world_material(w, .2, 0);
 }
 
 enum { MEMORY_SLIP, MEMORY_ROLLS }; // m/s in the last frame; s
@@ -142,20 +142,20 @@ const ob_case ob_case_slip_to_roll = {
 
 static const double slope = 20 * M_PI / 180; // rad
 
-static void build_ball_on_slope(ob_engine_world *w, double mu)
+static void build_ball_on_slope(ob_world *w, double mu)
 {
-	ob_build_body s = ob_build_slope(w, slope);
+	ob_world_body s = ob_world_slope(w, slope);
 	ob_mat3 r = ob_quat_matrix(s.state->pose.q);
-	ob_build_sphere(w, 10, .5, ob_scale(ob_column(&r, 2), .5));
-	ob_build_material(w, mu, 0);
+	ob_world_sphere(w, 10, .5, ob_scale(ob_column(&r, 2), .5));
+	ob_world_material(w, mu, 0);
 }
 
-static void build_ball_rolls(ob_engine_world *w, uint32_t run)
+static void build_ball_rolls(ob_world *w, uint32_t run)
 {
 	build_ball_on_slope(w, 1.1 * ob_reference_ball_grip(slope));
 }
 
-static void build_ball_slips(ob_engine_world *w, uint32_t run)
+static void build_ball_slips(ob_world *w, uint32_t run)
 {
 	build_ball_on_slope(w, .9 * ob_reference_ball_grip(slope));
 }

@@ -1,22 +1,23 @@
 // Heaps of frictionless spheres: SimBenchmark's 666 tests.
-#include "lab/build.h"
+#include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
+#include "world/world.h"
 
 enum { SIDE = 6 };
 static const double radius = .1; // m
 
-static void build_spheres(ob_engine_world *w, double lift, double e)
+static void build_spheres(ob_world *w, double lift, double e)
 {
 	uint64_t seed = 666;
-	ob_build_ground(w);
+	ob_world_ground(w);
 	for (int n = 0; n < SIDE * SIDE * SIDE; n++) {
 		ob_vec3 p = ob_v3(n / SIDE / SIDE, n / SIDE % SIDE, n % SIDE);
-		double x = ob_build_uniform(&seed), y = ob_build_uniform(&seed), z = ob_build_uniform(&seed);
+		double x = ob_splitmix_real(&seed), y = ob_splitmix_real(&seed), z = ob_splitmix_real(&seed);
 		p = ob_add(ob_scale(p, .21), ob_scale(ob_v3(x, y, z), .001));
-		ob_build_sphere(w, 10, radius, ob_add(p, ob_v3(0, 0, lift)));
+		ob_world_sphere(w, 10, radius, ob_add(p, ob_v3(0, 0, lift)));
 	}
-	ob_build_material(w, 0, e);
+	ob_world_material(w, 0, e);
 }
 
 static double squared_overlap(double distance, double reach)
@@ -49,7 +50,7 @@ static void judge_spheres(ob_trial *t)
 		t->failed = "nothing moved";
 }
 
-static void build_666(ob_engine_world *w, uint32_t run)
+static void build_666(ob_world *w, uint32_t run)
 {
 	build_spheres(w, .101, 0);
 }
@@ -84,7 +85,7 @@ const ob_case ob_case_666 = {
 	.judge = judge_spheres,
 };
 
-static void build_elastic_666(ob_engine_world *w, uint32_t run)
+static void build_elastic_666(ob_world *w, uint32_t run)
 {
 	build_spheres(w, 1.101, 1);
 }

@@ -1,15 +1,15 @@
 // Free rotation of a body with three different moments.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/spin.h"
+#include "world/world.h"
 
 // A flat box, for a body with moments 1 : 2 : 3 has no thickness; the moments are set exactly. It spins about its
 // middle axis, the unstable one.
-static void build_spin(ob_engine_world *w, uint32_t run)
+static void build_spin(ob_world *w, uint32_t run)
 {
 	w->gravity = ob_v3(0, 0, 0);
-	ob_build_body b = ob_build_box(w, 6, ob_v3(1, sqrt(.5), .01), ob_v3(0, 0, 0));
+	ob_world_body b = ob_world_box(w, 6, ob_v3(1, sqrt(.5), .01), ob_v3(0, 0, 0));
 	b.passport->inertia = ob_v3(1, 2, 3);
 	b.state->w = ob_v3(.05, 5, .02);
 }

@@ -1,33 +1,33 @@
 // Stacks: of equal cubes, and with a heavy one on top.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/cases/stand.h"
+#include "world/world.h"
 
 enum { SEEDS = 5 }; // a run for each
 
-static void build_stack(ob_engine_world *w, int n, uint32_t run)
+static void build_stack(ob_world *w, int n, uint32_t run)
 {
-	ob_build_ground(w);
-	ob_build_stack(w, n, ob_v3(0, 0, 0), 14 + run);
+	ob_world_ground(w);
+	ob_world_stack(w, n, ob_v3(0, 0, 0), 14 + run);
 }
 
-static void build_stack_10(ob_engine_world *w, uint32_t run)
+static void build_stack_10(ob_world *w, uint32_t run)
 {
 	build_stack(w, 10, run);
 }
 
-static void build_stack_20(ob_engine_world *w, uint32_t run)
+static void build_stack_20(ob_world *w, uint32_t run)
 {
 	build_stack(w, 20, run);
 }
 
-static void build_stack_40(ob_engine_world *w, uint32_t run)
+static void build_stack_40(ob_world *w, uint32_t run)
 {
 	build_stack(w, 40, run);
 }
 
 // n cubes of 1000 kg under one that is "ratio" times as heavy
-static void build_heavy(ob_engine_world *w, int n, double ratio, uint32_t run)
+static void build_heavy(ob_world *w, int n, double ratio, uint32_t run)
 {
 	build_stack(w, n + 1, run);
 	ob_passport *top = &w->passport[w->objects - 1];
@@ -35,17 +35,17 @@ static void build_heavy(ob_engine_world *w, int n, double ratio, uint32_t run)
 	top->inertia = ob_scale(top->inertia, ratio);
 }
 
-static void build_heavy_100(ob_engine_world *w, uint32_t run)
+static void build_heavy_100(ob_world *w, uint32_t run)
 {
 	build_heavy(w, 1, 100, run);
 }
 
-static void build_heavy_1000(ob_engine_world *w, uint32_t run)
+static void build_heavy_1000(ob_world *w, uint32_t run)
 {
 	build_heavy(w, 1, 1000, run);
 }
 
-static void build_heavy_on_stack(ob_engine_world *w, uint32_t run)
+static void build_heavy_on_stack(ob_world *w, uint32_t run)
 {
 	build_heavy(w, 10, 100, run);
 }

@@ -1,8 +1,8 @@
 // On which side of the edge: bricks over a table's rim, two cards that lean on each other.
-#include "lab/build.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
+#include "world/world.h"
 
 enum { WRONG_SIDE, MOVED, SIDE_FIGURES };
 // clang-format off
@@ -36,23 +36,23 @@ enum { BRICKS = 4 };
 
 // They balance on the edge, where what is a rounding error at first grows e-fold three times a second: 3 s are not
 // enough for it to show. "more": share of the reach by which every brick is farther out than balance allows
-static void build_bricks(ob_engine_world *w, double more)
+static void build_bricks(ob_world *w, double more)
 {
-	ob_build_box(w, 0, ob_v3(2, .5, .5), ob_v3(-2, 0, -.5)); // the table: its edge at x = 0
-	ob_build_ground(w).state->pose.p.z = -4;
+	ob_world_box(w, 0, ob_v3(2, .5, .5), ob_v3(-2, 0, -.5)); // the table: its edge at x = 0
+	ob_world_ground(w).state->pose.p.z = -4;
 	double x = -.5;
 	for (int i = 0; i < BRICKS; i++) {
 		x += (1 + more) * ob_reference_overhang_shift(BRICKS - i);
-		ob_build_box(w, 1, ob_v3(.5, .25, .1), ob_v3(x, 0, .1 + .2 * i));
+		ob_world_box(w, 1, ob_v3(.5, .25, .1), ob_v3(x, 0, .1 + .2 * i));
 	}
 }
 
-static void build_overhang(ob_engine_world *w, uint32_t run)
+static void build_overhang(ob_world *w, uint32_t run)
 {
 	build_bricks(w, 0);
 }
 
-static void build_overhang_over(ob_engine_world *w, uint32_t run)
+static void build_overhang_over(ob_world *w, uint32_t run)
 {
 	build_bricks(w, .01);
 }
@@ -95,29 +95,29 @@ const ob_case ob_case_overhang_over = {
 
 // Cards of 1 m x 1 m x 20 mm that lean at 30 degrees to the vertical; their inner upper edges touch at x = 0. "share"
 // of the friction that they need with the ground; between themselves they are rough.
-static void build_cards(ob_engine_world *w, double share)
+static void build_cards(ob_world *w, double share)
 {
 	const double angle = M_PI / 6, length = 1, thickness = .02, rough = 2;
 	double mu = share * ob_reference_cards_grip(angle, length, thickness);
 	ob_vec3 along = ob_v3(sin(angle), 0, cos(angle)), inner = ob_v3(cos(angle), 0, -sin(angle)); // of the left one
 	ob_vec3 edge = ob_add(ob_scale(along, .5 * length), ob_scale(inner, .5 * thickness));
 	ob_vec3 foot = ob_sub(ob_scale(inner, .5 * thickness), ob_scale(along, .5 * length));
-	ob_build_ground(w);
+	ob_world_ground(w);
 	for (int side = -1; side <= 1; side += 2) {
 		ob_vec3 p = ob_v3(side * edge.x, 0, -foot.z);
-		ob_build_body b = ob_build_box(w, 1, ob_v3(.5 * thickness, .5, .5 * length), p);
+		ob_world_body b = ob_world_box(w, 1, ob_v3(.5 * thickness, .5, .5 * length), p);
 		b.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, -side * angle, 0));
 	}
-	ob_build_material(w, rough, 0);
+	ob_world_material(w, rough, 0);
 	w->passport[0].friction = mu * mu / rough; // with a card's: mu
 }
 
-static void build_a_frame_stands(ob_engine_world *w, uint32_t run)
+static void build_a_frame_stands(ob_world *w, uint32_t run)
 {
 	build_cards(w, 1.02);
 }
 
-static void build_a_frame_slides(ob_engine_world *w, uint32_t run)
+static void build_a_frame_slides(ob_world *w, uint32_t run)
 {
 	build_cards(w, .98);
 }

@@ -2,9 +2,10 @@
 //
 // A hundred aims share a world, each in a lane of its own, 40 m from the next; a run has one speed. Every box would be
 // at its aim 3 to 4 m from its start.
-#include "lab/build.h"
+#include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
+#include "world/world.h"
 
 enum { AIMS = 100, SIDE = 10 };
 static const double lane = 40; // m
@@ -17,14 +18,14 @@ static ob_vec3 middle_of(int aim)
 
 // Turned and spinning at random, up to a tenth off its course, it flies so that its centre would be at "target" after
 // "way" metres.
-static void build_shot(ob_engine_world *w, uint64_t *seed, ob_vec3 target, double speed, double way)
+static void build_shot(ob_world *w, uint64_t *seed, ob_vec3 target, double speed, double way)
 {
-	ob_vec3 v = ob_build_vector(seed, .1 * fabs(speed));
+	ob_vec3 v = ob_splitmix_vector(seed, .1 * fabs(speed));
 	v.x = speed;
-	ob_build_body b = ob_build_box(w, 8, ob_v3(.1, .1, .1), ob_madd(target, -way / fabs(speed), v));
+	ob_world_body b = ob_world_box(w, 8, ob_v3(.1, .1, .1), ob_madd(target, -way / fabs(speed), v));
 	b.state->v = v;
-	b.state->w = ob_build_vector(seed, 1);
-	b.state->pose.q = ob_build_attitude(seed);
+	b.state->w = ob_splitmix_vector(seed, 1);
+	b.state->pose.q = ob_world_random_attitude(seed);
 }
 
 static bool is_over(const ob_trial *t, double speed)
@@ -38,18 +39,18 @@ enum { WALL_SPEEDS = 5, MEMORY_HIT = 0, MEMORY_PASSED };
 static const double wall_speed[WALL_SPEEDS] = { 10, 30, 100, 300, 1000 }; // m/s
 static const double wall_half = 4; // m
 
-static void build_thin_wall(ob_engine_world *w, uint32_t run)
+static void build_thin_wall(ob_world *w, uint32_t run)
 {
 	uint64_t seed = 18 + run;
 	w->gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < AIMS; i++) {
-		ob_build_box(w, 0, ob_v3(.01, wall_half, wall_half), middle_of(i));
-		ob_vec3 target = ob_build_vector(&seed, .25);
+		ob_world_box(w, 0, ob_v3(.01, wall_half, wall_half), middle_of(i));
+		ob_vec3 target = ob_splitmix_vector(&seed, .25);
 		target.x = 0;
-		double way = ob_build_within(&seed, 3, 4);
+		double way = ob_splitmix_within(&seed, 3, 4);
 		build_shot(w, &seed, ob_add(middle_of(i), target), wall_speed[run], way);
 	}
-	ob_build_material(w, .3, 0);
+	ob_world_material(w, .3, 0);
 }
 
 // Half inside is as bad as through. Beyond the wall's rim nothing counts.
@@ -113,19 +114,19 @@ const ob_case ob_case_thin_wall = {
 enum { BULLET_SPEEDS = 3 };
 static const double bullet_speed[BULLET_SPEEDS] = { 200, 500, 1000 }; // m/s
 
-static void build_bullets(ob_engine_world *w, uint32_t run)
+static void build_bullets(ob_world *w, uint32_t run)
 {
 	uint64_t seed = 19 + run;
 	double speed = bullet_speed[run];
 	w->gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < AIMS; i++) {
-		ob_vec3 off = ob_build_vector(&seed, .05);
+		ob_vec3 off = ob_splitmix_vector(&seed, .05);
 		off.x = 0;
-		double way = ob_build_within(&seed, 3, 4);
+		double way = ob_splitmix_within(&seed, 3, 4);
 		build_shot(w, &seed, middle_of(i), speed, way);
 		build_shot(w, &seed, ob_add(middle_of(i), off), -speed, way);
 	}
-	ob_build_material(w, .3, 0);
+	ob_world_material(w, .3, 0);
 }
 
 // They have passed when they have changed sides. A pair that hits and then slips round each other is slower.

@@ -1,0 +1,162 @@
+#include "world/world.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/random.h"
+
+static void *grown(void *old, uint32_t count, size_t size)
+{
+	void *more = realloc(old, count * size);
+	if (!more) {
+		fprintf(stderr, "no memory for a world of %u bodies\n", count);
+		abort();
+	}
+	return more;
+}
+
+// Principal moments (kg m^2) about the centre of a homogeneous body; axis of a capsule and a cylinder along z.
+static ob_vec3 inertia_of(ob_shape shape, ob_vec3 size, double mass)
+{
+	double r2 = size.x * size.x, h = size.y, across, along;
+	switch (shape) {
+	case OB_SHAPE_BOX: {
+		double x = size.x * size.x, y = size.y * size.y, z = size.z * size.z;
+		return ob_scale(ob_v3(y + z, z + x, x + y), mass / 3);
+	}
+	case OB_SHAPE_SPHERE:
+		along = across = .4 * mass * size.x * size.x;
+		break;
+	case OB_SHAPE_CYLINDER:
+		along = .5 * mass * r2;
+		across = mass * (r2 / 4 + h * h / 3);
+		break;
+	case OB_SHAPE_CAPSULE: { // a cylinder of length 2 h and two half spheres
+		double core = mass * 2 * h / (2 * h + 4. / 3 * size.x), caps = mass - core;
+		along = core * r2 / 2 + caps * .4 * r2;
+		across = core * (r2 / 4 + h * h / 3) + caps * (.4 * r2 + h * h + .75 * size.x * h);
+		break;
+	}
+	default:
+		return ob_v3(0, 0, 0);
+	}
+	return ob_v3(across, across, along);
+}
+
+ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
+{
+	if (w->objects == w->objects_max) {
+		w->objects_max = w->objects_max ? 2 * w->objects_max : 16;
+		w->passport = grown(w->passport, w->objects_max, sizeof *w->passport);
+		w->state = grown(w->state, w->objects_max, sizeof *w->state);
+	}
+	uint32_t id = w->objects++;
+	w->passport[id] = (ob_passport){ .id = id, .generation = 1, .shape = shape, .size = size, .mass = mass };
+	w->passport[id].flags = OB_OBJECT_PRESENT | (mass > 0 ? 0 : OB_OBJECT_STATIC);
+	w->passport[id].inertia = inertia_of(shape, size, mass);
+	w->passport[id].friction = .5;
+	w->state[id] = (ob_state){ .pose = { p, ob_quat_identity() } };
+	return (ob_world_body){ &w->passport[id], &w->state[id] };
+}
+
+ob_world_body ob_world_box(ob_world *w, double mass, ob_vec3 half, ob_vec3 p)
+{
+	return ob_world_add(w, OB_SHAPE_BOX, half, mass, p);
+}
+
+ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p)
+{
+	return ob_world_add(w, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
+}
+
+ob_world_body ob_world_ground(ob_world *w)
+{
+	return ob_world_add(w, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));
+}
+
+ob_world_body ob_world_slope(ob_world *w, double angle)
+{
+	ob_world_body b = ob_world_ground(w);
+	b.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, angle, 0));
+	return b;
+}
+
+void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed)
+{
+	for (int i = 0; i < n; i++) {
+		double x = ob_splitmix_within(&seed, -.01, .01), y = ob_splitmix_within(&seed, -.01, .01);
+		ob_world_box(w, 1000, ob_v3(.5, .5, .5), ob_add(foot, ob_v3(x, y, .5 + i)));
+	}
+}
+
+static ob_world_body box_of_any_size(ob_world *w, ob_vec3 p, uint64_t *seed)
+{
+	ob_vec3 half = ob_add(ob_v3(.3, .3, .3), ob_splitmix_vector(seed, .2));
+	ob_world_body b = ob_world_box(w, 8000 * half.x * half.y * half.z, half, p);
+	b.state->pose.q = ob_world_random_attitude(seed);
+	return b;
+}
+
+// The side of the square that n stand in
+static uint32_t side_of(uint32_t n)
+{
+	return (uint32_t)ceil(sqrt(n));
+}
+
+void ob_world_falling(ob_world *w, uint32_t n, uint64_t seed)
+{
+	enum { LEVELS = 4 };
+	uint32_t side = side_of((n + LEVELS - 1) / LEVELS);
+	double z = 0;
+	ob_world_ground(w);
+	for (uint32_t i = 0; i < n; i++) {
+		uint32_t column = i / LEVELS;
+		z = (i % LEVELS ? z : 1) + 1.8 + ob_splitmix_real(&seed);
+		box_of_any_size(w, ob_v3(1.8 * (column % side), 1.8 * (column / side), z), &seed);
+	}
+}
+
+void ob_world_sparse(ob_world *w, uint32_t n, uint64_t seed)
+{
+	uint32_t side = side_of(n);
+	ob_world_ground(w);
+	for (uint32_t i = 0; i < n; i++) {
+		ob_vec3 p = ob_v3(4. * (i % side), 4. * (i / side), ob_splitmix_within(&seed, 2, 10));
+		ob_world_body b = box_of_any_size(w, p, &seed);
+		b.state->v = ob_splitmix_vector(&seed, 1);
+		b.state->v.z = ob_splitmix_within(&seed, 0, 4);
+		b.state->w = ob_splitmix_vector(&seed, 1);
+	}
+	ob_world_material(w, .5, .8);
+}
+
+void ob_world_balls(ob_world *w, uint32_t n)
+{
+	uint32_t side = side_of(n);
+	ob_world_ground(w);
+	for (uint32_t i = 0; i < n; i++)
+		ob_world_sphere(w, 10, .1, ob_v3(2. * (i % side), 2. * (i / side), 5));
+	ob_world_material(w, 0, 1);
+}
+
+void ob_world_material(ob_world *w, double friction, double restitution)
+{
+	for (uint32_t i = 0; i < w->objects; i++) {
+		w->passport[i].friction = friction;
+		w->passport[i].restitution = restitution;
+	}
+}
+
+void ob_world_finish(ob_world *w)
+{
+	free(w->passport);
+	free(w->state);
+	*w = (ob_world){ 0 };
+}
+
+ob_quat ob_world_random_attitude(uint64_t *seed)
+{
+	double w = ob_splitmix_within(seed, -1, 1);
+	ob_vec3 v = ob_splitmix_vector(seed, 1);
+	return ob_quat_normalize((ob_quat){ w, v.x, v.y, v.z });
+}

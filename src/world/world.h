@@ -1,0 +1,52 @@
+// Worlds: objects by their passports, where they start, and gravity. What engines, cases, benchmarks and tests simulate
+// is built here, body by body or as one of the scenes that several of them share.
+//
+// A body's id is its place in the order of building; friction is .5 and restitution 0 until they are set; it starts at
+// rest and unturned. Running out of memory ends the program. The same seed gives the same bits on every machine.
+// Thread-safety: one thread per world.
+#ifndef OB_WORLD_WORLD_H
+#define OB_WORLD_WORLD_H
+
+#include <ob/motion.h>
+
+#define OB_WORLD_GRAVITY 9.81 // m/s^2
+
+// Start with { .gravity = ... } and nothing else.
+typedef struct ob_world {
+	ob_vec3 gravity; // m/s^2
+	uint32_t objects, objects_max; // there are, there is room for
+	ob_passport *passport; // [objects], id = index, inertia filled; force is constant, at the centre (N, world frame)
+	ob_state *state; // [objects]
+} ob_world;
+
+// To be changed at will; both pointers hold until the next body is built.
+typedef struct ob_world_body {
+	ob_passport *passport;
+	ob_state *state;
+} ob_world_body;
+
+// size as in ob_shape; mass in kg, 0 = never moves; p = centre. The inertia is that of a homogeneous body.
+ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p);
+// Half extents and radius in m.
+ob_world_body ob_world_box(ob_world *w, double mass, ob_vec3 half, ob_vec3 p);
+ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p);
+// The plane z = 0, and the same tilted by a turn "angle" (rad) about y: what lies on it slides towards +x.
+ob_world_body ob_world_ground(ob_world *w);
+ob_world_body ob_world_slope(ob_world *w, double angle);
+// n unit cubes of 1000 kg one on the other, their centres up to 10 mm off the axis in x and in y; no ground.
+void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed);
+// n boxes in columns of four, 1.8 m apart, over a ground: half extents of .1 to .5 m, 1000 kg/m^3, turned at random, the
+// lowest between 2.8 and 3.8 m up.
+void ob_world_falling(ob_world *w, uint32_t n, uint64_t seed);
+// n such boxes 4 m apart, at heights of 2 to 10 m, thrown up at up to 4 m/s, with restitution .8.
+void ob_world_sparse(ob_world *w, uint32_t n, uint64_t seed);
+// n elastic spheres of radius .1 m and 10 kg in a square, 2 m apart, fall from a height of 5 m without friction.
+void ob_world_balls(ob_world *w, uint32_t n);
+// Friction and restitution of all bodies built so far.
+void ob_world_material(ob_world *w, double friction, double restitution);
+void ob_world_finish(ob_world *w);
+
+// Of a random direction in the four components' cube: any.
+ob_quat ob_world_random_attitude(uint64_t *seed);
+
+#endif
