@@ -92,7 +92,7 @@ static void open_next(board *b)
 {
 	uint32_t n = ob_universe_workers(b->u) / b->stride;
 	ob_task_reset(b->u, OBJECTS);
-	ob_gate_open(b->u, OB_PHASE_OBJECTS, b->stride == 1 ? NULL : b->participants, n);
+	ob_gate_open(b->u, OB_PHASE_BROADPHASE, b->stride == 1 ? NULL : b->participants, n);
 }
 
 static int work(void *shared, uint32_t worker)

@@ -18,12 +18,8 @@ struct ob_engine {
 static void work(const ob_engine *p)
 {
 	ob_sim_resume(p->u);
-	while (!ob_gate_host_wait(p->u, 0)) {
-		ob_phase phase = ob_gate_wait(p->u, 0);
-		ob_sim_work(p->sim, phase);
-		if (ob_gate_arrive(p->u, 0))
-			ob_sim_schedule(p->sim, phase);
-	}
+	while (!ob_gate_host_wait(p->u, 0))
+		ob_step(p->sim);
 }
 
 static bool sound(const ob_engine *p, ob_error *e)

@@ -41,7 +41,7 @@ ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *f, double t
 	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .a = f->a };
 	ob_state now = ob_motion_at(&m, pass->inertia, time);
 	if (ob_norm2(f->w) > 0)
-		ob_spin_at(ob_rotation_cache_get(&s->plans, id, f->q, f->w, pass->inertia), time - f->t0, &now.pose.q, &now.w);
+		ob_spin_at(ob_rotation_cache_get(&s->rotations, id, f->q, f->w, pass->inertia), time - f->t0, &now.pose.q, &now.w);
 	return now;
 }
 
@@ -100,7 +100,7 @@ static ob_state end_by_ode(ob_sim *s, uint32_t id)
 	ob_state now = { { before->p, before->q }, before->v, before->w };
 	ob_vec3 force = ob_scale(ob_passport_of(s->u, id)->force, h);
 	for (uint32_t i = 0; i < run->substeps; i++)
-		ob_ode_body_step(ob_ode_bodies_get(&s->worlds, s->u, id), &now, force, ob_v3(0, 0, 0), h);
+		ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, id), &now, force, ob_v3(0, 0, 0), h);
 	return now;
 }
 
@@ -183,7 +183,7 @@ static ob_flier flier(ob_sim *s, uint32_t id, const ob_motion *f)
 		out.size = ob_v3(reach, 0, 0);
 	}
 	if (out.shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0)
-		out.spin = ob_rotation_cache_get(&s->plans, id, f->q, f->w, pass->inertia);
+		out.spin = ob_rotation_cache_get(&s->rotations, id, f->q, f->w, pass->inertia);
 	return out;
 }
 

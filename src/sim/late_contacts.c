@@ -2,7 +2,7 @@
 
 #include "contact/manifold.h"
 #include "sim/broadphase.h"
-#include "sim/fetch.h"
+#include "sim/prefetch.h"
 #include "sim/flight.h"
 #include "sim/look.h"
 #include "sim/publish.h"

@@ -237,7 +237,7 @@ static void advance_by_ode(ob_sim *s, uint32_t row)
 	ob_vec3 l = ob_rotate(&m->r, ob_v3(wl.x * m->inertia.x, wl.y * m->inertia.y, wl.z * m->inertia.z));
 	ob_state state = { { m->p, m->q }, linear_of(w->v[row]), angular_of(w->v[row]) };
 	ob_pose before = state.pose;
-	ob_ode_body_step(ob_ode_bodies_get(&s->worlds, s->u, m->id), &state, j, l, w->h);
+	ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, m->id), &state, j, l, w->h);
 	// The displacement row takes the step, so that the gaps follow; the turn is what ODE made of it.
 	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
 	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);

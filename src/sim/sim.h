@@ -15,12 +15,10 @@ typedef struct ob_sim ob_sim;
 ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e); // in the worker's own thread
 void ob_sim_destroy(ob_sim *s);
 
-// The worker's share of a phase. Called between ob_gate_wait and ob_gate_arrive.
-void ob_sim_work(ob_sim *s, ob_phase phase);
-// Called by the last to arrive: arranges what comes next and opens the gate (or pauses it).
-void ob_sim_schedule(ob_sim *s, ob_phase finished);
-
-// The whole life of a worker: wait, work, arrive, arrange, until STOP. Returns when the run is over.
+// The worker takes part in one phase of the step (step.c shows them all): it waits at the gate until one opens to it,
+// does its share and arrives; the last worker to arrive schedules the next phase, or the pause. false: STOP.
+bool ob_step(ob_sim *s);
+// The whole life of a worker: ob_step until STOP. Returns when the run is over.
 void ob_sim_run(ob_sim *s);
 
 // Host, before the first step and after it has changed passports: puts the object's first motion into its

@@ -13,10 +13,10 @@ struct ob_sim {
 	ob_step_data *data; // of u, the same for its whole life
 	const ob_run_settings *settings; // of u, constant
 	uint32_t worker;
-	ob_ode_bodies worlds;
+	ob_ode_bodies ode_bodies;
 	ob_island_work island; // scratch
-	ob_rotation_cache plans;
-	struct ob_ode_baseline *monolith; // NULL unless one world holds all objects
+	ob_rotation_cache rotations;
+	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects
 	ob_counters counters; // handed over to the universe at the end of each phase
 	struct { // sim/profile.h
 		bool timed, shown; // for the counters; for the trace

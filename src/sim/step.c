@@ -1,247 +1,406 @@
-#include "sim/step.h"
-
+// The step: its phases, in order, and who does each.
+//
+//   host: objects placed or removed
+//     │
+//   BROADPHASE_START       ┌─────────── merge the islands that a late contact joins ───────────┐
+//     │                    v                                                                   │
+//   FORECAST ──(plan)──> ISLANDS ──> BROADPHASE ──(merge pairs)──> LATE_CONTACTS ──(commit)────┤
+//     ^                                                                                        v
+//     └──────(begin)─────────── COMPLETE <──────────────────────────────────────────────── COPY
+//                               │      ^
+//                      host <── PAUSE  └── nobody is due, and no pair comes near: the step is complete as it begins
+//
+// Phases are done in parallel between two openings of the gate (table/gate.h). The last worker to arrive, the scheduling
+// worker, alone does what stands in brackets and says which phase comes next. Several simulators' share of a phase is
+// claimed by whichever worker is free; with a worker per object each does its own.
+//
+//   phase             task of a worker          reads                             writes
+//   BROADPHASE_START  objects whose fat AABB    index, fat AABBs                  their lists of neighbours
+//   BROADPHASE          has changed
+//   FORECAST          256 pairs                 schedule records, motions         near, limit of those pairs
+//   ISLANDS           a chunk of islands        motions and contacts as of        staged motions, fat AABBs, schedule
+//                                                 before the step                   records, contacts of after the step
+//   LATE_CONTACTS     256 pairs                 schedule records, motions         late, limit of those pairs
+//                                                 before the step and staged
+//   COPY              (worker per object) the   result of its island's solver     its own slot
+//                       worker's own object
+//   BASELINE          (ODE's world) all objects all of it                         all of it
+//
+// A phase is skipped where nobody has anything to do, and the scheduling worker checks few pairs by itself: see the open_
+// functions.
 #include "sim/broadphase.h"
+#include "sim/island.h"
 #include "sim/island_builder.h"
 #include "sim/late_contacts.h"
+#include "sim/ode_baseline.h"
+#include "sim/prefetch.h"
+#include "sim/profile.h"
 #include "sim/publish.h"
 #include "sim/sim.h"
+#include "sim/state.h"
 
-enum { HANDFUL = 16 }; // perceivers: for fewer the gate would cost more than a second worker gains
+enum {
+	QUERIES_PER_WORKER = 16, // for fewer the gate would cost more than another worker gains
+	PARALLEL_PAIRS = 4 * OB_LATE_CONTACTS_BATCH, // checked by all workers from here on, for the same reason
+};
 
-static bool own_worker_each(const ob_universe *u)
+// What the serial parts work on.
+typedef struct scheduler {
+	ob_universe *u;
+	ob_sim *sim; // of the scheduling worker; NULL: the host resumes the run
+	ob_step_data *data;
+	const ob_run_settings *settings;
+} scheduler;
+
+typedef struct step_phase {
+	// Opens the gate to those who take part. false: the phase is over already, for nobody had anything to do, or the
+	// scheduling worker has done it. NULL: a serial part alone.
+	bool (*open)(const scheduler *c, ob_phase phase);
+	void (*work)(ob_sim *s); // a participant's share
+	ob_phase (*next)(const scheduler *c); // the serial part after it; which phase comes next
+	ob_profile_section section; // that a participant's time counts for, unless it says otherwise
+	ob_trace_kind span;
+} step_phase;
+
+// ---- who takes part
+
+// Tasks 0 .. tasks-1 are claimed by so many workers, the scheduling worker first: it need not be woken.
+static void open_tasks(const scheduler *c, ob_phase phase, uint32_t tasks, uint32_t workers)
 {
-	return ob_universe_settings(u)->one_per_object;
-}
-
-// A pool: indices 0 .. total-1 are claimed by as many workers as there is work for. The one who arranges is the first
-// of them, for it need not be woken.
-static void open_pool(ob_universe *u, ob_phase phase, uint32_t total, uint32_t enough)
-{
-	uint32_t workers = ob_universe_workers(u), *who = ob_universe_step_data(u)->scratch;
-	uint32_t first = ob_universe_step_data(u)->count->scheduler;
-	ob_task_reset(u, total);
-	if (enough >= workers) {
-		ob_gate_open(u, phase, NULL, 0);
+	const uint32_t all = ob_universe_workers(c->u), first = c->data->count->scheduler;
+	uint32_t *who = c->data->scratch;
+	ob_task_reset(c->u, tasks);
+	if (workers >= all) {
+		ob_gate_open(c->u, phase, NULL, 0);
 		return;
 	}
-	for (uint32_t i = 0; i < enough; i++)
-		who[i] = (first + i) % workers;
-	for (uint32_t i = enough; i < workers && phase == OB_PHASE_ISLANDS; i++)
-		ob_worker_set_objects(u, (first + i) % workers, 0);
-	ob_gate_open(u, phase, who, enough);
+	for (uint32_t i = 0; i < workers; i++)
+		who[i] = (first + i) % all;
+	for (uint32_t i = workers; i < all && phase == OB_PHASE_ISLANDS; i++)
+		ob_worker_set_objects(c->u, (first + i) % all, 0);
+	ob_gate_open(c->u, phase, who, workers);
 }
 
-// Those that have asked look around.
-static void open_perceivers(ob_universe *u, uint32_t stage)
+static bool open_broadphase(const scheduler *c, ob_phase phase)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
 	uint32_t count;
-	const uint32_t *list = ob_requery_list(u, &count);
-	for (uint32_t i = 0; i < count; i++)
-		ob_index_put(u, list[i]);
-	ex->count->stage = stage;
-	if (own_worker_each(u))
-		ob_gate_open(u, OB_PHASE_OBJECTS, list, count);
-	else
-		open_pool(u, OB_PHASE_OBJECTS, count, 1 + count / HANDFUL);
-}
-
-// With one worker per object: those whose island was solved by another. false: none.
-static bool open_adopters(ob_universe *u)
-{
-	ob_step_data *ex = ob_universe_step_data(u);
-	uint32_t n = 0, *who = ex->scratch;
-	for (uint32_t i = 0; i < ex->count->islands; i++)
-		for (uint32_t k = 1; k < ex->island[i].members; k++)
-			who[n++] = ex->member[ex->island[i].first_member + k];
-	if (!own_worker_each(u) || !n)
+	const uint32_t *list = ob_requery_list(c->u, &count);
+	if (!count)
 		return false;
-	ex->count->stage = OB_STAGE_COPY;
-	ob_gate_open(u, OB_PHASE_OBJECTS, who, n);
+	for (uint32_t i = 0; i < count; i++)
+		ob_index_put(c->u, list[i]);
+	if (c->settings->one_per_object)
+		ob_gate_open(c->u, phase, list, count);
+	else
+		open_tasks(c, phase, count, 1 + count / QUERIES_PER_WORKER);
 	return true;
 }
 
-static void open_islands(ob_universe *u)
+static bool open_islands(const scheduler *c, ob_phase phase)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	if (!own_worker_each(u)) {
-		open_pool(u, OB_PHASE_ISLANDS, ex->count->chunks, ex->count->chunks);
-		return;
+	const ob_step_data *data = c->data;
+	uint32_t n = 0;
+	if (!c->settings->one_per_object) {
+		open_tasks(c, phase, data->count->chunks, data->count->chunks);
+		return true;
 	}
-	uint32_t n = 0, *who = ex->scratch;
-	for (uint32_t i = 0; i < ex->chunk[ex->count->chunks]; i++)
-		who[n++] = ex->member[ex->island[i].first_member];
-	ob_gate_open(u, OB_PHASE_ISLANDS, who, n);
+	for (uint32_t i = 0; i < data->chunk[data->count->chunks]; i++) // the worker of the first member solves it
+		data->scratch[n++] = data->member[data->island[i].first_member];
+	ob_gate_open(c->u, phase, data->scratch, n);
+	return true;
 }
 
-// Who is awake, and when the first of them is due.
-static void count_awake(ob_universe *u)
+// Few pairs are checked by the scheduling worker at once.
+static bool open_pairs(const scheduler *c, ob_phase phase)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	uint32_t n = 0, due = UINT32_MAX;
-	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
-		if (ex->schedule[id].state == OB_SCHEDULE_AWAKE || ex->schedule[id].state == OB_SCHEDULE_EQUILIBRIUM) {
-			n++;
-			due = ex->schedule[id].due < due ? ex->schedule[id].due : due;
-		}
-	ex->count->awake = n;
-	ex->count->next_due = due;
+	const bool solved = phase == OB_PHASE_LATE_CONTACTS;
+	const uint32_t pairs = c->data->count->pairs;
+	const bool serial = pairs < PARALLEL_PAIRS || ob_universe_workers(c->u) == 1 || c->settings->one_per_object;
+	ob_late_contacts_begin(c->u, solved);
+	if (serial && c->sim) {
+		ob_late_contacts_check(c->sim, 0, pairs, solved);
+		return false;
+	}
+	ob_task_reset(c->u, (pairs + OB_LATE_CONTACTS_BATCH - 1) / OB_LATE_CONTACTS_BATCH);
+	if (!c->settings->one_per_object) {
+		ob_gate_open(c->u, phase, NULL, 0);
+		return true;
+	}
+	uint32_t first = 0;
+	while (c->data->schedule[first].state < OB_SCHEDULE_AWAKE) // pairs are checked where somebody is awake
+		first++;
+	ob_gate_open(c->u, phase, &first, 1);
+	return true;
 }
+
+// With a worker per object: the objects that another one's worker has solved.
+static bool open_copy(const scheduler *c, ob_phase phase)
+{
+	const ob_step_data *data = c->data;
+	uint32_t n = 0;
+	if (!c->settings->one_per_object)
+		return false;
+	for (uint32_t i = 0; i < data->count->islands; i++)
+		for (uint32_t k = 1; k < data->island[i].members; k++)
+			data->scratch[n++] = data->member[data->island[i].first_member + k];
+	if (n)
+		ob_gate_open(c->u, phase, data->scratch, n);
+	return n;
+}
+
+static bool open_baseline(const scheduler *c, ob_phase phase)
+{
+	ob_gate_open(c->u, phase, NULL, 0);
+	return true;
+}
+
+static bool open_pause(const scheduler *c, ob_phase phase)
+{
+	ob_gate_pause(c->u);
+	return true;
+}
+
+// ---- a participant's share
+
+static void query_neighbours(ob_sim *s)
+{
+	uint32_t count, i;
+	const uint32_t *list = ob_requery_list(s->u, &count);
+	if (s->settings->one_per_object)
+		ob_broadphase_query(s->u, s->worker, &s->counters.box_tests);
+	else
+		while (ob_task_claim(s->u, &i))
+			ob_broadphase_query(s->u, list[i], &s->counters.box_tests);
+}
+
+static void check_pairs(ob_sim *s, bool solved)
+{
+	const uint32_t pairs = s->data->count->pairs;
+	uint32_t i;
+	while (ob_task_claim(s->u, &i)) {
+		uint32_t first = i * OB_LATE_CONTACTS_BATCH, end = first + OB_LATE_CONTACTS_BATCH;
+		ob_late_contacts_check(s, first, end < pairs ? end : pairs, solved);
+	}
+}
+
+static void forecast_contacts(ob_sim *s)
+{
+	check_pairs(s, false);
+}
+
+static void find_late_contacts(ob_sim *s)
+{
+	check_pairs(s, true);
+}
+
+static void solve_island(ob_sim *s, uint32_t island, bool first)
+{
+	bool shown = ob_span_island_begin(s, island, first);
+	ob_island_solve(s, island);
+	if (shown)
+		ob_span_island_end(s, island);
+}
+
+static void solve_islands(ob_sim *s)
+{
+	const ob_step_data *data = s->data;
+	uint32_t chunk, objects = 0;
+	if (s->settings->one_per_object) {
+		solve_island(s, data->result_island[s->worker], true);
+		return;
+	}
+	while (ob_task_claim(s->u, &chunk)) {
+		const uint32_t first = data->chunk[chunk], end = data->chunk[chunk + 1];
+		ob_span_chunk_begin(s);
+		for (uint32_t i = first; i < end; i++) {
+			if (i + 1 < end) // beyond it another worker writes what would be read here
+				ob_prefetch_island(s, i + 1);
+			solve_island(s, i, i == first);
+			objects += data->island[i].members;
+		}
+		ob_span_chunk_end(s, chunk);
+	}
+	ob_worker_set_objects(s->u, s->worker, objects);
+}
+
+static void copy_result(ob_sim *s)
+{
+	ob_result_copy(s, s->worker);
+}
+
+static void step_baseline(ob_sim *s)
+{
+	ob_ode_baseline_step(s->baseline);
+	s->counters.box_tests = ob_ode_baseline_box_tests(s->baseline);
+}
+
+// ---- the serial parts
 
 // The host may ask for a pause at a step that has just gone by: then the next one will do.
-static bool must_pause(const ob_universe *u)
+static bool must_pause(const scheduler *c)
 {
-	return ob_step_count(u) >= ob_gate_pause_step(u) || ob_universe_step_data(u)->count->failure;
+	return ob_step_count(c->u) >= ob_gate_pause_step(c->u) || c->data->count->failure;
 }
 
-static void complete_step(ob_universe *u)
+static ob_phase plan_islands(const scheduler *c)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	ob_step_complete(u, ex->count->awake, ex->count->pairs, ex->count->islands);
+	struct ob_step_counts *count = c->data->count;
+	const uint64_t step = ob_step_count(c->u);
+	count->islands = 0;
+	if (count->next_check <= step || count->next_due <= step)
+		ob_islands_plan(c->u);
+	return count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
 }
 
-// The pairs of one step, by all workers, or by the one that asks, where it has one.
-static void open_checks(ob_universe *u, uint32_t stage)
+static ob_phase begin_step(const scheduler *c)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	uint32_t first = 0;
-	ex->count->stage = stage;
-	ob_late_contacts_begin(u, stage == OB_STAGE_SOLVED);
-	ob_task_reset(u, (ex->count->pairs + OB_LATE_CONTACTS_BATCH - 1) / OB_LATE_CONTACTS_BATCH);
-	if (!own_worker_each(u)) {
-		ob_gate_open(u, OB_PHASE_LATE_CONTACTS, NULL, 0);
-		return;
+	struct ob_step_counts *count = c->data->count;
+	const uint64_t step = ob_step_count(c->u);
+	if (must_pause(c))
+		return OB_PHASE_PAUSE;
+	if (c->settings->monolith)
+		return OB_PHASE_BASELINE;
+	if (!count->awake || !count->pairs)
+		count->next_check = UINT32_MAX;
+	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : plan_islands(c);
+}
+
+static ob_phase after_broadphase_start(const scheduler *c)
+{
+	uint32_t queries;
+	ob_requery_list(c->u, &queries);
+	if (!queries)
+		return begin_step(c);
+	ob_pairs_merge(c->u, ob_step_count(c->u));
+	return OB_PHASE_FORECAST;
+}
+
+static ob_phase after_forecast(const scheduler *c)
+{
+	return must_pause(c) ? OB_PHASE_PAUSE : plan_islands(c);
+}
+
+static ob_phase after_islands(const scheduler *c)
+{
+	return OB_PHASE_BROADPHASE;
+}
+
+static ob_phase after_broadphase(const scheduler *c)
+{
+	ob_pairs_merge(c->u, ob_step_count(c->u) + 1);
+	return OB_PHASE_LATE_CONTACTS;
+}
+
+// How many objects are awake, and when the first of them is due.
+static void count_awake(const scheduler *c)
+{
+	uint32_t n = 0, due = UINT32_MAX;
+	for (uint32_t id = 0; id < ob_universe_ids(c->u); id++) {
+		const ob_schedule *object = &c->data->schedule[id];
+		if (object->state != OB_SCHEDULE_AWAKE && object->state != OB_SCHEDULE_EQUILIBRIUM)
+			continue;
+		n++;
+		due = object->due < due ? object->due : due;
 	}
-	while (ex->schedule[first].state < OB_SCHEDULE_AWAKE) // its worker does it; pairs are checked where somebody is awake
-		first++;
-	ob_gate_open(u, OB_PHASE_LATE_CONTACTS, &first, 1);
+	c->data->count->awake = n;
+	c->data->count->next_due = due;
 }
 
-// Steps in which nobody is due and no pair comes near are complete as soon as they begin. s: the worker that arranges;
-// NULL where the host does.
-static void begin_step(ob_universe *u, ob_sim *s)
+static ob_phase after_late_contacts(const scheduler *c)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	if (ob_universe_settings(u)->monolith) {
-		ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
-		return;
+	const bool late = c->data->count->late;
+	c->sim->counters.island_merges += late;
+	*ob_worker_counters(c->u, c->sim->worker) = c->sim->counters; // before anybody may look
+	if (late) {
+		ob_islands_merge(c->u);
+		return OB_PHASE_ISLANDS;
 	}
-	for (;;) {
-		uint64_t step = ob_step_count(u);
-		if (!ex->count->awake || !ex->count->pairs)
-			ex->count->next_check = UINT32_MAX;
-		if (ex->count->next_check <= step && ex->count->checked != step) {
-			if (!s) {
-				open_checks(u, OB_STAGE_START);
-				return;
-			}
-			ob_late_contacts_begin(u, false);
-			ob_late_contacts_check(s, 0, ex->count->pairs, false);
-		}
-		ex->count->islands = 0;
-		if (ex->count->next_check <= step || ex->count->next_due <= step)
-			ob_islands_plan(u);
-		if (ex->count->islands) {
-			open_islands(u);
-			return;
-		}
-		complete_step(u);
-		if (must_pause(u)) {
-			ob_gate_pause(u);
-			return;
-		}
-	}
+	ob_results_commit(c->sim);
+	count_awake(c);
+	return OB_PHASE_COPY;
 }
 
-static void go_on(ob_universe *u, ob_sim *s)
+static ob_phase after_copy(const scheduler *c)
 {
-	if (must_pause(u))
-		ob_gate_pause(u);
-	else
-		begin_step(u, s);
+	return OB_PHASE_COMPLETE;
 }
 
-static void finish_step(ob_universe *u, ob_sim *s)
+static ob_phase after_baseline(const scheduler *c)
 {
-	count_awake(u);
-	complete_step(u);
-	go_on(u, s);
+	count_awake(c);
+	return OB_PHASE_COMPLETE;
 }
 
-static void after_meetings(ob_sim *s)
+static ob_phase complete_step(const scheduler *c)
 {
-	ob_universe *u = s->u;
-	const bool met = ob_universe_step_data(u)->count->late;
-	if (ob_universe_step_data(u)->count->stage != OB_STAGE_SOLVED) {
-		go_on(u, s);
-		return;
-	}
-	s->counters.island_merges += met;
-	*ob_worker_counters(u, s->worker) = s->counters; // before anybody may look
-	if (met) {
-		ob_islands_merge(u);
-		open_islands(u);
-		return;
-	}
-	ob_results_commit(s);
-	if (!open_adopters(u))
-		finish_step(u, s);
+	const struct ob_step_counts *count = c->data->count;
+	ob_step_complete(c->u, count->awake, count->pairs, count->islands);
+	return begin_step(c);
 }
 
-static void open_meetings(ob_sim *s, uint32_t stage)
+// ---- the step
+
+// clang-format off
+static const step_phase phases[] = {
+	[OB_PHASE_BROADPHASE_START] = { open_broadphase, query_neighbours,   after_broadphase_start, OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
+	[OB_PHASE_FORECAST]         = { open_pairs,      forecast_contacts,  after_forecast,         OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
+	[OB_PHASE_ISLANDS]          = { open_islands,    solve_islands,      after_islands,          OB_PROFILE_LOAD,       OB_TRACE_SOLVE },
+	[OB_PHASE_BROADPHASE]       = { open_broadphase, query_neighbours,   after_broadphase,       OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
+	[OB_PHASE_LATE_CONTACTS]    = { open_pairs,      find_late_contacts, after_late_contacts,    OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
+	[OB_PHASE_COPY]             = { open_copy,       copy_result,        after_copy,             OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
+	[OB_PHASE_COMPLETE]         = { NULL,            NULL,               complete_step,          OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE },
+	[OB_PHASE_BASELINE]         = { open_baseline,   step_baseline,      after_baseline,         OB_PROFILE_SOLVE,      OB_TRACE_SOLVE },
+	[OB_PHASE_PAUSE]            = { open_pause,      NULL,               NULL,                   OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE },
+};
+// clang-format on
+
+// From this phase to the first for which the gate opens, or to a pause.
+static void open_from(const scheduler *c, ob_phase phase)
 {
-	enum { MANY = 4 * OB_LATE_CONTACTS_BATCH }; // pairs: for fewer the gate would cost more
-	ob_universe *u = s->u;
-	ob_step_data *ex = ob_universe_step_data(u);
-	uint32_t pairs = ex->count->pairs;
-	if (pairs >= MANY && ob_universe_workers(u) > 1 && !own_worker_each(u)) {
-		open_checks(u, stage);
-		return;
-	}
-	ex->count->stage = stage;
-	ob_late_contacts_begin(u, stage == OB_STAGE_SOLVED);
-	ob_late_contacts_check(s, 0, pairs, stage == OB_STAGE_SOLVED);
-	after_meetings(s);
+	while (!phases[phase].open || !phases[phase].open(c, phase))
+		phase = phases[phase].next(c);
 }
 
-void ob_schedule_next_phase(ob_sim *s, ob_phase finished)
+// The last to arrive, alone: what comes next.
+static void schedule(ob_sim *s, ob_phase finished)
 {
-	ob_universe *u = s->u;
-	uint32_t asked, stage = ob_universe_step_data(u)->count->stage;
-	ob_phase_close(u);
-	ob_universe_step_data(u)->count->scheduler = s->worker;
-	if (finished == OB_PHASE_ISLANDS) {
-		ob_requery_list(u, &asked);
-		if (ob_universe_settings(u)->monolith)
-			finish_step(u, s);
-		else if (asked)
-			open_perceivers(u, OB_STAGE_SOLVED);
-		else
-			open_meetings(s, OB_STAGE_SOLVED);
-	} else if (finished == OB_PHASE_LATE_CONTACTS) {
-		after_meetings(s);
-	} else if (stage == OB_STAGE_COPY) {
-		finish_step(u, s);
-	} else {
-		ob_pairs_merge(u, ob_step_count(u) + (stage == OB_STAGE_SOLVED));
-		open_meetings(s, stage);
+	const scheduler c = { s->u, s, s->data, s->settings };
+	ob_profile_begin(s, OB_PROFILE_SCHEDULE);
+	ob_phase_close(s->u);
+	s->data->count->scheduler = s->worker;
+	open_from(&c, phases[finished].next(&c));
+	ob_critical_add(s->u, ob_profile_end(s));
+}
+
+bool ob_step(ob_sim *s)
+{
+	ob_span_turn(s, OB_TRACE_WAIT);
+	ob_phase phase = ob_gate_wait(s->u, s->worker);
+	if (phase == OB_PHASE_STOP) {
+		ob_span_turn(s, OB_TRACE_NONE);
+		return false;
 	}
+	ob_span_turn(s, phases[phase].span);
+	ob_profile_begin(s, phases[phase].section);
+	phases[phase].work(s);
+	ob_phase_worked(s->u, ob_profile_end(s));
+	*ob_worker_counters(s->u, s->worker) = s->counters;
+	if (ob_gate_arrive(s->u, s->worker)) {
+		ob_span_turn(s, OB_TRACE_SCHEDULE);
+		schedule(s, phase);
+	}
+	return true;
 }
 
 void ob_sim_resume(ob_universe *u)
 {
-	uint32_t asked;
+	const scheduler c = { u, NULL, ob_universe_step_data(u), ob_universe_settings(u) };
 	ob_step_begin(u);
-	count_awake(u);
-	ob_universe_step_data(u)->count->next_check = 0; // the host may have changed anything
-	ob_requery_list(u, &asked);
-	if (ob_universe_settings(u)->monolith)
-		ob_requery_reset(u); // one world finds its own neighbours
-	else if (asked) {
-		open_perceivers(u, OB_STAGE_START);
-		return;
-	}
-	go_on(u, NULL);
+	count_awake(&c);
+	c.data->count->next_check = 0; // the host may have changed anything
+	if (c.settings->monolith)
+		ob_requery_reset(u); // ODE's world finds its own neighbours
+	open_from(&c, OB_PHASE_BROADPHASE_START);
 }
 
 const char *ob_sim_failure(const ob_universe *u)

@@ -1,12 +1,5 @@
 // What the object simulators of one universe share within a step. Plain data in shared memory; the gate orders every
-// access: the phase fixes who may touch what.
-//
-//   phase OBJECTS        each object: copies its own motion out of its island's result and publishes it in its slot;
-//                        reads the index and all bounds, writes its own list of neighbours
-//   (scheduling)         one worker alone: index, pairs, islands
-//   phase ISLANDS        one worker per island: reads its bodies' slots and its pairs (the version of before the step),
-//                        stages its bodies' motions, writes their bounds and its pairs (the other version)
-//   phase LATE_CONTACTS  one worker per batch of pairs: reads what has been staged, writes those pairs' keys
+// access: the phase fixes who may touch what (the table above sim/step.c).
 #ifndef OB_TABLE_STEP_DATA_H
 #define OB_TABLE_STEP_DATA_H
 
@@ -98,7 +91,6 @@ typedef struct ob_step_data {
 		uint32_t pairs, islands, chunks, records_used;
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
 		uint32_t scheduler;  // the worker that scheduled last
-		uint32_t stage;      // what the running phase belongs to; only the scheduler reads and writes it
 		uint32_t merged;     // 1 = islands that late contacts merged are being solved again
 		uint32_t awake;      // objects
 		uint32_t checked;    // steps that were complete, or solved, when all pairs were checked last

@@ -17,14 +17,19 @@
 #include "table/step_data.h"
 #include "table/latency.h"
 
-// How the parts of a step run; what the gate hands out when it opens.
+// What the gate opens with. The phases of a step in their order; sim/step.c says who does what in each.
 typedef enum ob_phase {
 	OB_PHASE_NONE,
-	OB_PHASE_OBJECTS, // per object: adopt the island's result, perceive neighbours
-	OB_PHASE_ISLANDS, // per island: solve
-	OB_PHASE_LATE_CONTACTS,// per handful of pairs: did those of different islands meet?
-	OB_PHASE_PAUSE,   // the universe stands still at a step boundary for the host to look at
-	OB_PHASE_STOP,    // leave
+	OB_PHASE_BROADPHASE_START, // neighbours of objects that the host has placed or changed
+	OB_PHASE_FORECAST,         // which pairs may touch in the coming step?
+	OB_PHASE_ISLANDS,          // solve
+	OB_PHASE_BROADPHASE,       // neighbours of objects whose fat AABB has changed
+	OB_PHASE_LATE_CONTACTS,    // which pairs touched in this step that were in different islands?
+	OB_PHASE_COPY,             // with a worker per object: take over the result of the island's solver
+	OB_PHASE_COMPLETE,         // serial: the gate never opens with it
+	OB_PHASE_BASELINE,         // one ODE world holds all objects: its whole step
+	OB_PHASE_PAUSE,            // the universe stands still at a step boundary for the host to look at
+	OB_PHASE_STOP,             // leave
 } ob_phase;
 
 typedef struct ob_universe_setup {

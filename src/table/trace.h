@@ -21,7 +21,7 @@ typedef enum ob_trace_kind {
 	OB_TRACE_NONE,
 	OB_TRACE_WAIT,     // at the gate
 	OB_TRACE_SOLVE,    // phase ISLANDS; a = islands, b = their members
-	OB_TRACE_OBJECTS,  // phase MEMBERS
+	OB_TRACE_OBJECTS,  // phases of neighbours, pairs and copies
 	OB_TRACE_SCHEDULE,  // what comes next, for all
 	OB_TRACE_CHUNK,    // islands claimed at once; a, b as above
 	OB_TRACE_ISLAND,   // a = lowest id, b = members

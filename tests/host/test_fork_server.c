@@ -32,7 +32,7 @@ static void test_crowd(const ob_spawn *s, uint32_t workers)
 	CHECK(there == workers);
 	printf("%u workers (%s) ready in %.1f ms\n", workers, s->name, 1e3 * (ob_clock_wall() - began));
 	for (int turn = 0; turn < 3; turn++) {
-		ob_gate_open(u, OB_PHASE_OBJECTS, NULL, 0);
+		ob_gate_open(u, OB_PHASE_BROADPHASE, NULL, 0);
 		CHECK(ob_gate_host_wait(u, 10));
 	}
 	ob_worker_end end;

@@ -104,12 +104,8 @@ void little_run(little_universe *l, uint64_t steps)
 	ob_error e;
 	ob_gate_set_pause_step(l->u, ob_step_count(l->u) + steps);
 	ob_sim_resume(l->u);
-	while (!ob_gate_host_wait(l->u, 0)) {
-		ob_phase phase = ob_gate_wait(l->u, 0);
-		ob_sim_work(l->sim, phase);
-		if (ob_gate_arrive(l->u, 0))
-			ob_sim_schedule(l->sim, phase);
-	}
+	while (!ob_gate_host_wait(l->u, 0))
+		ob_step(l->sim);
 	if (ob_sim_failure(l->u))
 		give_up("step", ob_sim_failure(l->u));
 	if (!ob_snapshot_take(&l->now, l->u, false, &e))

@@ -97,9 +97,9 @@ static void check_as_taken(ob_universe *u, const char *bytes)
 	CHECK(u->control->requery_count == 1 && u->control->neighbours_used == 10);
 	CHECK(ob_universe_get_worker(u, 1, &info) && info.pid == 0);
 	CHECK(ob_gate_host_wait(u, 0) && u->gate->stop == 0); // the host has the turn
-	ob_gate_open(u, OB_PHASE_OBJECTS, NULL, 0);
+	ob_gate_open(u, OB_PHASE_BROADPHASE, NULL, 0);
 	for (uint32_t w = 0; w < WORKERS; w++) {
-		CHECK(ob_gate_wait(u, w) == OB_PHASE_OBJECTS);
+		CHECK(ob_gate_wait(u, w) == OB_PHASE_BROADPHASE);
 		CHECK(ob_gate_arrive(u, w) == (w == WORKERS - 1));
 	}
 }

@@ -55,7 +55,7 @@ static void open_next(board *b)
 {
 	b->phase++;
 	const uint32_t *participants = choose(b, ob_universe_workers(b->u));
-	ob_gate_open(b->u, b->phase % 2 ? OB_PHASE_OBJECTS : OB_PHASE_ISLANDS, participants, b->n);
+	ob_gate_open(b->u, b->phase % 2 ? OB_PHASE_BROADPHASE : OB_PHASE_ISLANDS, participants, b->n);
 }
 
 static void arrange(board *b)
@@ -78,7 +78,7 @@ static int work(void *shared, uint32_t worker)
 		if (phase == OB_PHASE_STOP)
 			return 0;
 		bool invited = b->part_of[worker] == b->phase && b->ran_in[worker] != b->phase &&
-			       phase == (b->phase % 2 ? OB_PHASE_OBJECTS : OB_PHASE_ISLANDS);
+			       phase == (b->phase % 2 ? OB_PHASE_BROADPHASE : OB_PHASE_ISLANDS);
 		if (!invited)
 			__atomic_fetch_add(&b->uninvited, 1, __ATOMIC_RELAXED);
 		b->ran_in[worker] = b->phase;

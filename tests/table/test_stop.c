@@ -18,7 +18,7 @@ typedef struct board {
 static int work(void *shared, uint32_t worker)
 {
 	board *b = shared;
-	if (ob_gate_wait(b->u, worker) != OB_PHASE_OBJECTS)
+	if (ob_gate_wait(b->u, worker) != OB_PHASE_BROADPHASE)
 		return 1;
 	__atomic_fetch_add(&b->runs, 1, __ATOMIC_RELAXED);
 	if (worker != 0 && ob_gate_arrive(b->u, worker))
@@ -38,7 +38,7 @@ static void stop_in_phase(bool processes)
 	crowd c = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
 	CHECK(crowd_start(&c));
 	CHECK(ob_gate_host_wait(b->u, 0)); // the host has the first turn
-	ob_gate_open(b->u, OB_PHASE_OBJECTS, NULL, 0);
+	ob_gate_open(b->u, OB_PHASE_BROADPHASE, NULL, 0);
 	double start = ob_clock_wall();
 	CHECK(!ob_gate_host_wait(b->u, .2));
 	double waited = ob_clock_wall() - start;

@@ -1,4 +1,4 @@
-#include "sim/fetch.h"
+#include "sim/prefetch.h"
 
 enum { MOST = 12, LINE = 64 }; // members and pairs of an island; bytes of a cache line
 

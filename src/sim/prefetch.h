@@ -1,6 +1,6 @@
 // What an island or a pair needs is on its way from memory while the one before it is worked on.
-#ifndef OB_SIM_FETCH_H
-#define OB_SIM_FETCH_H
+#ifndef OB_SIM_PREFETCH_H
+#define OB_SIM_PREFETCH_H
 
 #include "sim/state.h"
 
