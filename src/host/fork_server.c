@@ -23,20 +23,20 @@ typedef struct fork_request {
 	uint32_t first, count;
 } fork_request;
 
-// ---- the keeper's side
+// ---- the fork server's side
 
-typedef struct keeper {
+typedef struct server {
 	ob_universe *u;
 	ob_worker_run run;
 	int link, children_fd; // the host; SIGCHLD
 	uint32_t workers;
 	pid_t *pid; // [workers]; 0 = none
-} keeper;
+} server;
 
 enum { LINK_FD = 3 };
 
-// Nothing of the host's is wanted here: no file of a recorder, no device of a renderer, no terminal input.
-static void shed_inheritance(int link)
+// The fork server needs nothing that the host has open: no file of a recorder, no device of a renderer, no terminal input.
+static void close_inherited_files(int link)
 {
 	int null = open("/dev/null", O_RDWR);
 	if (null >= 0) {
@@ -48,7 +48,7 @@ static void shed_inheritance(int link)
 	close_range(LINK_FD + 1, ~0U, 0);
 }
 
-// Left to their defaults in the keeper, a signal to the whole group would end the one that has to tidy up.
+// With the default actions, a signal to the whole process group would end the fork server, which has to clean up.
 static void set_signals(void (*on_end)(int))
 {
 	static const int ends[] = { SIGINT, SIGTERM, SIGHUP, SIGQUIT };
@@ -56,13 +56,13 @@ static void set_signals(void (*on_end)(int))
 		signal(ends[i], on_end);
 }
 
-_Noreturn static void live_as_simulator(const keeper *k, uint32_t worker, pid_t parent)
+_Noreturn static void run_simulator(const server *s, uint32_t worker, pid_t parent)
 {
 	sigset_t none;
 	char name[16];
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
 	if (getppid() != parent)
-		_exit(EXIT_FAILURE); // the keeper died before the line above took effect
+		_exit(EXIT_FAILURE); // the fork server died before the line above took effect
 	set_signals(SIG_DFL);
 	signal(SIGINT, SIG_IGN);
 	sigemptyset(&none);
@@ -70,109 +70,109 @@ _Noreturn static void live_as_simulator(const keeper *k, uint32_t worker, pid_t 
 	close_range(LINK_FD, ~0U, 0);
 	snprintf(name, sizeof name, "sim %u", worker);
 	prctl(PR_SET_NAME, name);
-	_exit(k->run(k->u, worker));
+	_exit(s->run(s->u, worker));
 }
 
-static bool report(const keeper *k, const ob_worker_end *end)
+static bool report_end(const server *s, const ob_worker_end *end)
 {
 	ssize_t n;
 	do {
-		n = send(k->link, end, sizeof *end, MSG_NOSIGNAL);
+		n = send(s->link, end, sizeof *end, MSG_NOSIGNAL);
 	} while (n < 0 && errno == EINTR);
 	return n == sizeof *end;
 }
 
-static void fork_simulators(keeper *k, fork_request r)
+static void fork_simulators(server *s, fork_request r)
 {
 	pid_t self = getpid();
 	int error = 0; // once a fork has failed, the rest is not tried
-	for (uint32_t w = r.first; w < k->workers && w - r.first < r.count; w++) {
+	for (uint32_t w = r.first; w < s->workers && w - r.first < r.count; w++) {
 		pid_t pid = error ? -1 : fork();
 		if (pid == 0)
-			live_as_simulator(k, w, self);
+			run_simulator(s, w, self);
 		if (pid > 0) {
-			k->pid[w] = pid;
+			s->pid[w] = pid;
 			continue;
 		}
 		error = error ? error : errno;
-		report(k, &(ob_worker_end){ .worker = w, .error = error });
+		report_end(s, &(ob_worker_end){ .worker = w, .error = error });
 	}
 }
 
-static void kill_simulators(const keeper *k)
+static void kill_simulators(const server *s)
 {
-	for (uint32_t w = 0; w < k->workers; w++) {
-		if (k->pid[w] > 0)
-			kill(k->pid[w], SIGKILL);
+	for (uint32_t w = 0; w < s->workers; w++) {
+		if (s->pid[w] > 0)
+			kill(s->pid[w], SIGKILL);
 	}
 }
 
-static void reap(keeper *k)
+static void reap(server *s)
 {
 	int status;
 	pid_t pid;
 	while ((pid = waitpid(-1, &status, WNOHANG)) > 0) {
 		uint32_t w = 0;
-		while (w < k->workers && k->pid[w] != pid)
+		while (w < s->workers && s->pid[w] != pid)
 			w++;
-		if (w == k->workers)
+		if (w == s->workers)
 			continue;
-		k->pid[w] = 0;
-		report(k, &(ob_worker_end){ .worker = w,
+		s->pid[w] = 0;
+		report_end(s, &(ob_worker_end){ .worker = w,
 					    .pid = pid,
 					    .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
 					    .code = WIFEXITED(status) ? WEXITSTATUS(status) : 0 });
 	}
 }
 
-// The host has closed the link or is dead. The name goes first: it is what would outlive us.
-_Noreturn static void tidy_up(const keeper *k)
+// The host has closed the link or is dead. The name is removed first, for it would outlive all processes.
+_Noreturn static void clean_up(const server *s)
 {
-	ob_universe_unlink(ob_universe_name(k->u));
-	kill_simulators(k);
+	ob_universe_unlink(ob_universe_name(s->u));
+	kill_simulators(s);
 	while (waitpid(-1, NULL, 0) > 0 || errno == EINTR)
 		;
 	_exit(EXIT_SUCCESS);
 }
 
-_Noreturn static void keep(keeper *k)
+_Noreturn static void serve(server *s)
 {
-	struct pollfd fds[2] = { { .fd = k->link, .events = POLLIN }, { .fd = k->children_fd, .events = POLLIN } };
+	struct pollfd fds[2] = { { .fd = s->link, .events = POLLIN }, { .fd = s->children_fd, .events = POLLIN } };
 	for (;;) {
 		if (poll(fds, 2, -1) < 0 && errno != EINTR)
-			tidy_up(k);
+			clean_up(s);
 		if (fds[1].revents) {
 			struct signalfd_siginfo drained;
-			if (read(k->children_fd, &drained, sizeof drained) > 0)
-				reap(k);
+			if (read(s->children_fd, &drained, sizeof drained) > 0)
+				reap(s);
 		}
 		if (fds[0].revents) {
 			fork_request r;
-			if (recv(k->link, &r, sizeof r, MSG_DONTWAIT) == sizeof r)
-				r.count ? fork_simulators(k, r) : kill_simulators(k);
+			if (recv(s->link, &r, sizeof r, MSG_DONTWAIT) == sizeof r)
+				r.count ? fork_simulators(s, r) : kill_simulators(s);
 			else if (fds[0].revents & (POLLHUP | POLLERR))
-				tidy_up(k);
+				clean_up(s);
 		}
 	}
 }
 
-_Noreturn static void live_as_keeper(ob_universe *u, ob_worker_run run, int link)
+_Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int link)
 {
-	keeper k = { .u = u, .run = run, .link = LINK_FD, .workers = ob_universe_workers(u) };
+	server s = { .u = u, .run = run, .link = LINK_FD, .workers = ob_universe_workers(u) };
 	sigset_t child;
 	setsid();
-	prctl(PR_SET_NAME, "obsim-keeper");
+	prctl(PR_SET_NAME, "obsim-fork");
 	set_signals(SIG_IGN);
 	signal(SIGCHLD, SIG_DFL);
 	sigemptyset(&child);
 	sigaddset(&child, SIGCHLD);
 	sigprocmask(SIG_SETMASK, &child, NULL);
-	shed_inheritance(link);
-	k.children_fd = signalfd(-1, &child, SFD_CLOEXEC | SFD_NONBLOCK);
-	k.pid = calloc(k.workers, sizeof *k.pid);
-	if (k.children_fd < 0 || !k.pid)
-		tidy_up(&(keeper){ .u = u });
-	keep(&k);
+	close_inherited_files(link);
+	s.children_fd = signalfd(-1, &child, SFD_CLOEXEC | SFD_NONBLOCK);
+	s.pid = calloc(s.workers, sizeof *s.pid);
+	if (s.children_fd < 0 || !s.pid)
+		clean_up(&(server){ .u = u });
+	serve(&s);
 }
 
 // ---- the host's side
@@ -180,65 +180,65 @@ _Noreturn static void live_as_keeper(ob_universe *u, ob_worker_run run, int link
 ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error *e)
 {
 	int ends[2];
-	ob_fork_server *k = calloc(1, sizeof *k);
-	if (!k || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
-		free(k);
-		ob_fail(e, "cannot make the link to the keeper process: %s", strerror(errno));
+	ob_fork_server *s = calloc(1, sizeof *s);
+	if (!s || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
+		free(s);
+		ob_fail(e, "cannot make the link to the fork server: %s", strerror(errno));
 		return NULL;
 	}
-	k->pid = fork();
-	if (k->pid == 0)
-		live_as_keeper(u, run, ends[1]);
+	s->pid = fork();
+	if (s->pid == 0)
+		run_fork_server(u, run, ends[1]);
 	close(ends[1]);
-	if (k->pid < 0) {
-		ob_fail(e, "cannot fork the keeper process: %s", strerror(errno));
+	if (s->pid < 0) {
+		ob_fail(e, "cannot fork the fork server: %s", strerror(errno));
 		close(ends[0]);
-		free(k);
+		free(s);
 		return NULL;
 	}
-	k->link = ends[0];
-	return k;
+	s->link = ends[0];
+	return s;
 }
 
-pid_t ob_fork_server_pid(const ob_fork_server *k)
+pid_t ob_fork_server_pid(const ob_fork_server *s)
 {
-	return k->pid;
+	return s->pid;
 }
-int ob_fork_server_fd(const ob_fork_server *k)
+int ob_fork_server_fd(const ob_fork_server *s)
 {
-	return k->link;
-}
-
-static bool ask(ob_fork_server *k, fork_request r)
-{
-	return send(k->link, &r, sizeof r, MSG_NOSIGNAL) == sizeof r;
+	return s->link;
 }
 
-bool ob_fork_server_fork(ob_fork_server *k, uint32_t first, uint32_t count)
+static bool send_request(ob_fork_server *s, fork_request r)
 {
-	return ask(k, (fork_request){ first, count });
+	return send(s->link, &r, sizeof r, MSG_NOSIGNAL) == sizeof r;
 }
 
-bool ob_fork_server_kill(ob_fork_server *k)
+bool ob_fork_server_fork(ob_fork_server *s, uint32_t first, uint32_t count)
 {
-	return ask(k, (fork_request){ 0 });
+	return send_request(s, (fork_request){ first, count });
 }
 
-bool ob_fork_server_next_end(ob_fork_server *k, ob_worker_end *end)
+bool ob_fork_server_kill(ob_fork_server *s)
+{
+	return send_request(s, (fork_request){ 0 });
+}
+
+bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end)
 {
 	ssize_t n;
 	do {
-		n = recv(k->link, end, sizeof *end, MSG_DONTWAIT);
+		n = recv(s->link, end, sizeof *end, MSG_DONTWAIT);
 	} while (n < 0 && errno == EINTR);
 	return n == sizeof *end;
 }
 
-void ob_fork_server_stop(ob_fork_server *k)
+void ob_fork_server_stop(ob_fork_server *s)
 {
-	if (!k)
+	if (!s)
 		return;
-	close(k->link);
-	while (waitpid(k->pid, NULL, 0) < 0 && errno == EINTR)
+	close(s->link);
+	while (waitpid(s->pid, NULL, 0) < 0 && errno == EINTR)
 		;
-	free(k);
+	free(s);
 }

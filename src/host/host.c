@@ -7,17 +7,14 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "host/accounting.h"
 #include "host/host_state.h"
 #include "host/interrupt.h"
-#include "host/memory.h"
 #include "host/restart.h"
-#include "host/supervisor.h"
-#include "host/switches.h"
-#include "host/worker.h"
 #include "ode/ode_body.h"
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
-static const double usual_patience = 60, start_patience = 60; // s
+static const double default_stall_timeout = 60, start_timeout = 60; // s
 
 static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
 {
@@ -72,7 +69,7 @@ static bool start_timeline(ob_host *h, const char *path, ob_error *e)
 	return !path || h->timeline;
 }
 
-static bool settle(ob_host *h, const ob_scene *scene, ob_error *e)
+static bool place_objects(ob_host *h, const ob_scene *scene, ob_error *e)
 {
 	ob_ode_init();
 	h->roster = ob_roster_create();
@@ -88,30 +85,30 @@ static bool settle(ob_host *h, const ob_scene *scene, ob_error *e)
 
 bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 {
-	double until = ob_clock_wall() + start_patience;
+	double until = ob_clock_wall() + start_timeout;
 	ob_worker_info info;
 	for (uint32_t w = 0; w < h->workers;) {
 		if (h->interrupted)
 			return ob_fail(e, "interrupted");
-		if (h->failed || h->rebirth.lost)
-			return ob_fail(e, "%s", h->failed ? h->failure.text : h->rebirth.loss.text);
+		if (h->failed || h->restart.requested)
+			return ob_fail(e, "%s", h->failed ? h->failure.text : h->restart.reason.text);
 		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0) {
 			w++;
 			continue;
 		}
 		if (ob_clock_wall() > until)
 			return ob_fail(e, "simulator %u of %u was not ready after %g s", w + 1, h->workers,
-				       start_patience);
+				       start_timeout);
 		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
 	}
 	return true;
 }
 
-// Those who die on the way are born again, too.
-static bool get_ready(ob_host *h, ob_error *e)
+// Workers that die before they are ready are restarted, too.
+static bool wait_until_ready(ob_host *h, ob_error *e)
 {
 	bool ready = ob_host_wait_for_workers(h, e);
-	while (!ready && h->rebirth.lost && !h->failed)
+	while (!ready && h->restart.requested && !h->failed)
 		ready = ob_restart(h);
 	if (!ready && h->failed)
 		ob_fail(e, "%s", h->failure.text);
@@ -123,9 +120,9 @@ static bool start_workers(ob_host *h, ob_error *e)
 	h->interrupt_fd = ob_interrupt_watch();
 	if (h->interrupt_fd < 0)
 		return ob_fail(e, "cannot watch for signals: too many open files?");
-	h->living = h->workers;
-	h->crew = h->spawn->start(&(ob_crew_order){ .u = h->u, .keeper = h->keeper, .run = ob_worker_live }, e);
-	return h->crew && ob_supervisor_start(h, e) && get_ready(h, e);
+	h->running_workers = h->workers;
+	h->group = h->spawn->start(&(ob_worker_group_setup){ .u = h->u, .fork_server = h->fork_server, .run = ob_worker_live }, e);
+	return h->group && ob_supervisor_start(h, e) && wait_until_ready(h, e);
 }
 
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e)
@@ -139,16 +136,16 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 		return NULL;
 	}
 	h->wake_fd = h->interrupt_fd = -1;
-	h->patience = config->patience > 0 ? config->patience : usual_patience;
+	h->stall_timeout = config->stall_timeout > 0 ? config->stall_timeout : default_stall_timeout;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
-	pthread_mutex_init(&h->leg.lock, NULL);
+	pthread_mutex_init(&h->interval.lock, NULL);
 	raise_task_limit();
 	h->u = make_universe(scene, config, h->spawn, e);
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
-	// the keeper first: it and its children shall inherit as little as possible
-	h->keeper = h->u ? ob_fork_server_start(h->u, ob_worker_live, e) : NULL;
-	if (!h->keeper || !start_timeline(h, config->trace, e) || !settle(h, scene, e) || !start_workers(h, e)) {
+	// the fork server first: it and its children shall inherit as little as possible
+	h->fork_server = h->u ? ob_fork_server_start(h->u, ob_worker_live, e) : NULL;
+	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, e) || !start_workers(h, e)) {
 		ob_host_stop(h);
 		return NULL;
 	}
@@ -175,11 +172,11 @@ uint64_t ob_host_count_switches(const ob_host *h)
 	ob_worker_info info;
 	for (uint32_t w = 0; w < h->workers; w++)
 		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0)
-			sum += ob_switches_of_task(info.pid, info.tid);
+			sum += ob_switches_of_thread(info.pid, info.tid);
 	return sum;
 }
 
-// What waits now has done so since its last phase.
+// A worker that waits now has waited since its last phase (since_ns).
 double ob_host_gate_time(const ob_host *h, double now)
 {
 	double sum = 0;
@@ -200,7 +197,7 @@ static void get_memory(const ob_host *h, ob_host_times *out)
 			out->worker_memory_bytes += ob_memory_of_process(info.pid);
 	}
 	out->memory_bytes = out->worker_memory_bytes + ob_memory_of_process(getpid()) +
-			    ob_memory_of_process(ob_fork_server_pid(h->keeper)) +
+			    ob_memory_of_process(ob_fork_server_pid(h->fork_server)) +
 			    ob_memory_of_universe(ob_universe_name(h->u));
 }
 
@@ -221,9 +218,9 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 		return;
 	out->cpu_s = 1e-9 * (double)(ob_host_read_cpu(h) - h->cpu_before);
 	out->host_cpu_s = ob_clock_process_cpu() - h->own_cpu_before - (h->spawn->own_memory ? 0 : out->cpu_s);
-	uint64_t switches = ob_host_count_switches(h) + h->rebirth.switches;
+	uint64_t switches = ob_host_count_switches(h) + h->restart.switches;
 	out->switches = switches > h->switches_before ? switches - h->switches_before : 0;
-	out->deaths = h->rebirth.deaths;
+	out->deaths = h->restart.deaths;
 	out->elapsed_s = h->last_end - h->first_start;
 	out->gate_s = ob_host_gate_time(h, h->last_end) - h->gate_before;
 }
@@ -245,7 +242,7 @@ static bool request(ob_host *h, const ob_request *r)
 {
 	if (!ob_requests_push(h->requests, r))
 		return false;
-	ob_host_shorten_leg(h);
+	ob_host_pause_early(h);
 	return true;
 }
 
@@ -270,17 +267,17 @@ void ob_host_stop(ob_host *h)
 		ob_host_halt(h);
 	}
 	ob_supervisor_stop(h);
-	if (h->crew)
-		left = h->spawn->join(h->crew, h->spawn->leave_patience);
+	if (h->group)
+		left = h->spawn->join(h->group, h->spawn->leave_timeout);
 	ob_timeline_sums sums;
 	ob_error e;
 	if (!ob_host_end_trace(h, &sums, &e))
 		ob_log_warn("%s", e.text);
-	ob_fork_server_stop(h->keeper); // removes the universe's name
+	ob_fork_server_stop(h->fork_server); // removes the universe's name
 	if (h->u && left)
 		ob_universe_destroy(h->u, true);
 	if (!left)
-		ob_log_warn("a simulator's thread does not leave; its memory stays until this program ends");
+		ob_log_warn("a simulator's thread does not return; its memory stays until this program ends");
 	if (h->interrupt_fd >= 0)
 		ob_interrupt_release();
 	ob_restart_finish(h);
@@ -288,6 +285,6 @@ void ob_host_stop(ob_host *h)
 	ob_requests_destroy(h->requests);
 	ob_roster_destroy(h->roster);
 	pthread_mutex_destroy(&h->failure_lock);
-	pthread_mutex_destroy(&h->leg.lock);
+	pthread_mutex_destroy(&h->interval.lock);
 	free(h);
 }

@@ -1,14 +1,14 @@
-// The host: makes the universe, starts the workers as threads or processes, lets them run to a step, watches
-// over them, and ends them. spawn_thread.c and spawn_process.c are the only files that know which it is.
+// The host: creates the universe, starts the workers as threads or processes, lets them run to a step, supervises
+// them, and ends them. spawn_thread.c and spawn_process.c are the only files that know which it is.
 //
-//   ob_host_start   universe, keeper process, objects of t = 0, workers; all stand at the gate
+//   ob_host_start   universe, fork server, objects of t = 0, workers; all stand at the gate
 //   ob_host_go      the gate opens; the workers run on by themselves until the step asked for
-//   ob_host_wait    the caller sleeps until they stand there; births, deaths and requests that fall due on the way
-//                   are carried out in pauses that the caller does not see
+//   ob_host_wait    the caller sleeps until they stand there; objects that are to be added or removed on the way, by
+//                   timetable or on request, are so in pauses that the caller does not see
 //   ob_host_stop    everyone leaves; the universe is removed
 //
-// One per object: worker i runs object i, and a slot that is empty has its (sleeping) worker all the same, so that an
-// object can be born into it.
+// One per object: worker i runs object i. A slot that is empty has its (sleeping) worker, too, so that an object can be
+// added in it.
 //
 // Thread-safety: start, go, wait, get_times and stop are one thread's; the rest may be called by any thread.
 // start forks: call it before other threads take locks that a child could need (EGL, above all).
@@ -27,8 +27,8 @@ typedef struct ob_host_config {
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
-	double patience; // s without a completed step after which the simulators are given up; 0 = 60
-	const char *trace; // a file for the timeline of all that happens (timeline.h); NULL = none
+	double stall_timeout; // s without a completed step after which the run counts as stalled; 0 = 60
+	const char *trace; // file for the timeline of what workers and host do (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
 } ob_host_config;
 
@@ -37,13 +37,13 @@ typedef struct ob_host_times {
 	double wall_s; // stepping only: between go and pause
 	double cpu_s; // CPU of the workers in that time; of processes as of the kernel's last tick, some ms ago
 	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
-	double critical_s; // if timed: of the longest worker in each phase, and arranging, in all steps (CPU)
+	double critical_s; // if timed: critical path of all steps: the longest worker in each phase, and scheduling (CPU)
 	double elapsed_s; // from the first go that stepped to the last pause, pauses included
-	uint32_t deaths; // times that simulators were lost and all began again
+	uint32_t deaths; // times that simulators died or stalled and all were restarted
 	double gate_s; // if timed: all workers' waiting at the gate in that time, pauses included (wall)
 	double host_cpu_s; // CPU of the host's process since then, without its workers: renderer, recorder, measures
-	uint64_t switches; // how often workers were taken off a core since then
-	size_t memory_bytes; // PSS of host, keeper and workers, and the table's touched pages once
+	uint64_t switches; // context switches of workers since then
+	size_t memory_bytes; // PSS of host, fork server and workers, and the table's touched pages once
 	size_t worker_memory_bytes; // of that, the workers' own: 0 where they are threads
 } ob_host_times;
 
@@ -52,10 +52,10 @@ typedef struct ob_host ob_host;
 // The scene must outlive the host.
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e);
 // Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there. The first
-// go may be to step 0: the objects then perceive each other, and nothing moves.
-// A process that dies or hangs does not end the run: all simulators begin again from where the universe last stood whole,
-// unseen by the caller, and come to the same bits (rebirth.h says where that is not possible).
-// wait: false and e when a simulator died for good, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
+// go may be to step 0: the first broad phase runs, and nothing moves.
+// A process that dies or stalls does not end the run: all simulators are restarted from the last checkpoint, which the
+// caller does not see, and come to the same bits (restart.h says where that is not possible).
+// wait: false and e when a simulator died and could not be restarted, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
 bool ob_host_interrupted(const ob_host *h);

@@ -1,5 +1,5 @@
 // Ctrl-C and its kin (SIGINT, SIGTERM, SIGHUP): the first asks for a clean end, a second one kills, for the handler
-// stands only once (the keeper then tidies up). A signal that the process ignores stays ignored (nohup, background).
+// is removed by the first signal (the fork server then cleans up). A signal that the process ignores stays ignored (nohup, background).
 // Not thread-safe: called by the thread that starts and stops hosts.
 #ifndef OB_HOST_INTERRUPT_H
 #define OB_HOST_INTERRUPT_H

@@ -2,24 +2,27 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <urcu/wfcqueue.h>
 
 #include "base/log.h"
+#include "host/rcu_tsan.h"
 #include "ode/ode_body.h"
 #include "sim/sim.h"
 
+// An entry of the timetable.
 typedef struct event {
 	uint64_t step;
 	uint32_t id;
-	bool birth; // else it dies
+	bool add; // else remove
 } event;
 
-// Kept: empty, but an event of the timetable is still to come for it.
-typedef enum slot_use { SLOT_FREE, SLOT_KEPT, SLOT_PRESENT } slot_use;
+// Reserved: the slot is empty, but the timetable has another event for it.
+typedef enum slot_use { SLOT_FREE, SLOT_RESERVED, SLOT_PRESENT } slot_use;
 
 typedef struct slot {
 	uint32_t generation; // of its latest object
 	unsigned char use; // slot_use
-	bool mortal; // the timetable holds the death of its object
+	bool removal_scheduled; // the timetable will remove its object
 } slot;
 
 struct ob_population {
@@ -27,10 +30,71 @@ struct ob_population {
 	ob_roster *roster;
 	const ob_scene *scene;
 	slot *slots; // [capacity]
-	event *events; // ascending by step; at one step deaths first
+	event *events; // the timetable: ascending by step; at one step removals first
 	size_t event_count, next;
 	bool changed;
 };
+
+// ---- requests
+
+typedef struct queued_request {
+	struct cds_wfcq_node node;
+	ob_request request;
+} queued_request;
+
+struct ob_requests {
+	struct cds_wfcq_head head;
+	struct cds_wfcq_tail tail;
+};
+
+ob_requests *ob_requests_create(void)
+{
+	ob_requests *q = calloc(1, sizeof *q);
+	if (q)
+		cds_wfcq_init(&q->head, &q->tail);
+	return q;
+}
+
+void ob_requests_destroy(ob_requests *q)
+{
+	ob_request dropped;
+	if (!q)
+		return;
+	while (ob_requests_take(q, &dropped))
+		;
+	cds_wfcq_destroy(&q->head, &q->tail);
+	free(q);
+}
+
+bool ob_requests_push(ob_requests *q, const ob_request *r)
+{
+	queued_request *e = malloc(sizeof *e);
+	if (!e)
+		return false;
+	e->request = *r;
+	cds_wfcq_node_init(&e->node);
+	OB_ORDER_BEFORE(e);
+	cds_wfcq_enqueue(&q->head, &q->tail, &e->node);
+	return true;
+}
+
+bool ob_requests_take(ob_requests *q, ob_request *out)
+{
+	// there is one consumer only, so the queue's lock is not needed
+	struct cds_wfcq_node *node = __cds_wfcq_dequeue_blocking(&q->head, &q->tail);
+	if (!node)
+		return false;
+	queued_request *e = caa_container_of(node, queued_request, node);
+	OB_ORDER_AFTER(e);
+	*out = e->request;
+	free(e);
+	return true;
+}
+
+bool ob_requests_waiting(ob_requests *q)
+{
+	return !cds_wfcq_empty(&q->head, &q->tail);
+}
 
 // ---- checks
 
@@ -73,7 +137,7 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 
 // ---- changes
 
-static void put(ob_population *p, uint32_t id, const ob_object_def *def)
+static void add_object(ob_population *p, uint32_t id, const ob_object_def *def)
 {
 	ob_passport pass = def->passport;
 	pass.id = id;
@@ -91,20 +155,20 @@ static void put(ob_population *p, uint32_t id, const ob_object_def *def)
 	p->changed = true;
 }
 
-static void take_away(ob_population *p, uint32_t id)
+static void remove_object(ob_population *p, uint32_t id)
 {
 	slot *s = &p->slots[id];
 	if (s->use != SLOT_PRESENT)
 		return;
 	ob_sim_remove(p->u, id);
-	s->use = s->mortal ? SLOT_KEPT : SLOT_FREE; // or its death would strike the slot's next object
+	s->use = s->removal_scheduled ? SLOT_RESERVED : SLOT_FREE; // else the timetable would remove the slot's next object
 	p->changed = true;
 }
 
-static void die(ob_population *p, uint32_t id)
+static void remove_scheduled(ob_population *p, uint32_t id)
 {
-	p->slots[id].mortal = false;
-	take_away(p, id);
+	p->slots[id].removal_scheduled = false;
+	remove_object(p, id);
 	p->slots[id].use = SLOT_FREE;
 }
 
@@ -113,7 +177,7 @@ static void add_on_request(ob_population *p, const ob_object_def *def)
 	uint32_t capacity = ob_universe_capacity(p->u);
 	for (uint32_t id = 0; id < capacity; id++) {
 		if (p->slots[id].use == SLOT_FREE) {
-			put(p, id, def);
+			add_object(p, id, def);
 			return;
 		}
 	}
@@ -146,16 +210,16 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	ob_request r;
 	for (; p->next < p->event_count && p->events[p->next].step <= step; p->next++) {
 		event *due = &p->events[p->next];
-		if (due->birth)
-			put(p, due->id, &p->scene->object[due->id]);
+		if (due->add)
+			add_object(p, due->id, &p->scene->object[due->id]);
 		else
-			die(p, due->id);
+			remove_scheduled(p, due->id);
 	}
 	while (ob_requests_take(q, &r)) {
 		if (r.add)
 			add_on_request(p, &r.def);
 		else if (r.id < ob_universe_capacity(p->u))
-			take_away(p, r.id);
+			remove_object(p, r.id);
 	}
 	bool changed = p->changed;
 	if (changed)
@@ -170,7 +234,7 @@ uint64_t ob_population_next_step(const ob_population *p)
 
 // ---- the scene's timetable
 
-// The first step boundary that is not before t (s), but for round-off
+// The first step boundary at or after t (s), round-off aside
 static uint64_t step_at(double t, double step_length)
 {
 	double k = ceil(t / step_length - 1e-6);
@@ -182,19 +246,19 @@ static int by_step(const void *pa, const void *pb)
 	const event *a = pa, *b = pb;
 	if (a->step != b->step)
 		return a->step < b->step ? -1 : 1;
-	if (a->birth != b->birth)
-		return a->birth - b->birth;
+	if (a->add != b->add)
+		return a->add - b->add;
 	return (a->id > b->id) - (a->id < b->id);
 }
 
-static void schedule(ob_population *p, uint32_t id, double step_length)
+static void plan_object(ob_population *p, uint32_t id, double step_length)
 {
 	const ob_object_def *def = &p->scene->object[id];
 	uint64_t born = step_at(def->born, step_length), dies = step_at(def->dies, step_length);
 	if (born >= dies)
 		return;
-	p->slots[id] = (slot){ .use = SLOT_KEPT, .mortal = dies < UINT64_MAX };
-	p->events[p->event_count++] = (event){ .step = born, .id = id, .birth = true };
+	p->slots[id] = (slot){ .use = SLOT_RESERVED, .removal_scheduled = dies < UINT64_MAX };
+	p->events[p->event_count++] = (event){ .step = born, .id = id, .add = true };
 	if (dies < UINT64_MAX)
 		p->events[p->event_count++] = (event){ .step = dies, .id = id };
 }
@@ -215,7 +279,7 @@ ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_ro
 		return NULL;
 	}
 	for (uint32_t i = 0; i < scene->objects; i++)
-		schedule(p, i, step_length);
+		plan_object(p, i, step_length);
 	qsort(p->events, p->event_count, sizeof *p->events, by_step);
 	return p;
 }

@@ -1,17 +1,34 @@
-// Who is in the universe: objects of the scene with their births and deaths, and those added on request. Writes
-// passports, places objects, and keeps the roster up to date.
+// Which objects exist: those of the scene, added and removed by its timetable, and those added and removed on request.
+// Writes passports, places objects, and keeps the roster up to date.
 //
-// Thread-safety: the host's thread only, and only while the universe is starting or paused.
+// Thread-safety: the host's thread only, and only while the universe is starting or paused; but requests may be pushed by
+// any thread at any time.
 #ifndef OB_HOST_POPULATION_H
 #define OB_HOST_POPULATION_H
 
-#include "host/requests.h"
 #include "host/roster.h"
+#include "scene/scene.h"
 #include "table/table.h"
+
+// Requests to add or remove objects, kept until the next step boundary: a wait-free queue of liburcu. Any number of
+// threads push, one takes.
+typedef struct ob_requests ob_requests;
+
+typedef struct ob_request {
+	bool add;
+	uint32_t id; // to remove
+	ob_object_def def; // to add
+} ob_request;
+
+ob_requests *ob_requests_create(void); // NULL: out of memory
+void ob_requests_destroy(ob_requests *q);
+bool ob_requests_push(ob_requests *q, const ob_request *r); // false: out of memory
+bool ob_requests_take(ob_requests *q, ob_request *out); // oldest first; false: none
+bool ob_requests_waiting(ob_requests *q);
 
 typedef struct ob_population ob_population;
 
-// true if the definition makes sense: known shape, finite numbers, mass where it moves. e says what does not.
+// true if the definition is valid: known shape, finite numbers, mass where it moves. e says what is not.
 bool ob_object_check(const ob_object_def *def, ob_error *e);
 
 // Slots 0 .. scene->objects-1 are the scene's; the rest of the table is for objects added later. All three must outlive
@@ -19,7 +36,7 @@ bool ob_object_check(const ob_object_def *def, ob_error *e);
 ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r);
 void ob_population_destroy(ob_population *p);
 
-// Carries out births and deaths that are due at this step or before, then the requests. true: who is there has changed.
+// Carries out what the timetable has due at this step or before, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
 // The next step at which something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);

@@ -8,96 +8,96 @@
 #include "base/log.h"
 #include "host/host_state.h"
 
-enum { MOST_LOSSES = 3 }; // without getting on ..
-static const double most_trying = 10; // s, .. for so long
-static const double usual_interval = .25; // s, between checkpoints
-static const double share = .05; // of the time, that checkpoints may take, ..
-static const double allowance = 1; // s, .. but for this much, where objects come and go
-static const double end_patience = 10; // s until killed processes are gone
+enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once, ..
+static const double attempts_timeout = 10; // s, .. and others for so long
+static const double checkpoint_interval = .25; // s, between checkpoints
+static const double checkpoint_share = .05; // of the time, that checkpoints may take, ..
+static const double allowance = 1; // s, .. this much aside, where objects are added and removed
+static const double kill_timeout = 10; // s to wait until killed processes are gone
 
 void ob_restart_prepare(ob_host *h)
 {
 	if (h->spawn->restart && !ob_universe_settings(h->u)->monolith)
-		h->rebirth.checkpoint = ob_checkpoint_create(h->u);
-	h->rebirth.began = h->rebirth.got_on_at = ob_clock_wall();
+		h->restart.checkpoint = ob_checkpoint_create(h->u);
+	h->restart.began = h->restart.progress_at = ob_clock_wall();
 }
 
 void ob_restart_finish(ob_host *h)
 {
-	ob_checkpoint_destroy(h->rebirth.checkpoint);
+	ob_checkpoint_destroy(h->restart.checkpoint);
 }
 
 bool ob_restart_checkpoint_due(const ob_host *h)
 {
-	const ob_restart_state *r = &h->rebirth;
+	const ob_restart_state *r = &h->restart;
 	double now = ob_clock_wall();
 	if (!r->checkpoint)
 		return false;
 	if (!r->current)
-		return r->spent <= share * (now - r->began) + allowance;
-	return now - r->taken_at >= fmax(usual_interval, r->cost / share);
+		return r->spent <= checkpoint_share * (now - r->began) + allowance;
+	return now - r->taken_at >= fmax(checkpoint_interval, r->cost / checkpoint_share);
 }
 
 void ob_restart_checkpoint(ob_host *h, bool changed)
 {
-	ob_restart_state *r = &h->rebirth;
+	ob_restart_state *r = &h->restart;
 	r->current &= !changed;
 	if (!ob_restart_checkpoint_due(h))
 		return;
 	double began = ob_clock_wall();
-	bool farther = ob_step_count(h->u) > ob_checkpoint_step(r->checkpoint);
+	bool progress = ob_step_count(h->u) > ob_checkpoint_step(r->checkpoint);
 	r->current = ob_checkpoint_take(r->checkpoint, h->u);
 	r->taken_at = ob_clock_wall();
 	r->cost = r->taken_at - began;
 	r->spent += r->cost;
-	if (farther) {
-		r->losses = 0;
-		r->got_on_at = r->taken_at;
+	if (progress) {
+		r->attempts = 0;
+		r->progress_at = r->taken_at;
 	}
 }
 
-void ob_restart_lose(ob_host *h, const char *format, ...)
+void ob_restart_request(ob_host *h, const char *format, ...)
 {
-	ob_restart_state *r = &h->rebirth;
-	ob_error loss;
+	ob_restart_state *r = &h->restart;
+	ob_error reason;
 	va_list args;
 	va_start(args, format);
-	vsnprintf(loss.text, sizeof loss.text, format, args);
+	vsnprintf(reason.text, sizeof reason.text, format, args);
 	va_end(args);
 	if (!r->current) {
-		ob_host_set_failure(h, "%s", loss.text);
+		ob_host_set_failure(h, "%s", reason.text);
 		return;
 	}
 	pthread_mutex_lock(&h->failure_lock);
-	if (!r->lost)
-		r->loss = loss;
-	r->lost = true;
+	if (!r->requested)
+		r->reason = reason;
+	r->requested = true;
 	pthread_mutex_unlock(&h->failure_lock);
 	ob_gate_stop(h->u); // the others leave, and the host wakes
 }
 
-static bool end_all(ob_host *h)
+static bool kill_all_workers(ob_host *h)
 {
-	double until = ob_clock_wall() + end_patience;
-	h->spawn->kill(h->crew);
-	while (h->living > 0 && !h->failed && ob_clock_wall() < until)
+	double until = ob_clock_wall() + kill_timeout;
+	h->spawn->kill(h->group);
+	while (h->running_workers > 0 && !h->failed && ob_clock_wall() < until)
 		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
-	if (h->living > 0)
-		ob_host_set_failure(h, "%s; %u simulators could not be ended", h->rebirth.loss.text, h->living);
+	if (h->running_workers > 0)
+		ob_host_set_failure(h, "%s; %u simulators could not be killed", h->restart.reason.text, h->running_workers);
 	return !h->failed;
 }
 
-// What dies at once need not be tried a thousand times.
-static void rest(const ob_host *h)
+// Simulators that die at once are restarted about once a second.
+static void back_off(const ob_host *h)
 {
-	for (int i = 0; i < 10 && h->rebirth.losses > MOST_LOSSES && !h->interrupted; i++)
+	for (int i = 0; i < 10 && h->restart.attempts > QUICK_ATTEMPTS && !h->interrupted; i++)
 		nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
 }
 
-// What the dead have used counts on.
-static void close_accounts(ob_host *h)
+// Keeps what the dead workers have used, for the sums of the run.
+static void save_accounts(ob_host *h)
 {
-	ob_restart_state *r = &h->rebirth;
+	ob_restart_state *r = &h->restart;
 	r->switches += ob_host_count_switches(h);
 	r->cpu = ob_host_read_cpu(h);
 	for (uint32_t w = 0; w < h->workers; w++)
@@ -106,33 +106,33 @@ static void close_accounts(ob_host *h)
 
 bool ob_restart(ob_host *h)
 {
-	ob_restart_state *r = &h->rebirth;
+	ob_restart_state *r = &h->restart;
 	ob_error e;
 	unsigned long long step = ob_checkpoint_step(r->checkpoint);
 	if (!r->current) {
-		ob_host_set_failure(h, "%s; objects had come or gone since the universe was last kept", r->loss.text);
+		ob_host_set_failure(h, "%s; objects had been added or removed since the last checkpoint", r->reason.text);
 		return false;
 	}
-	if (++r->losses > MOST_LOSSES && ob_clock_wall() - r->got_on_at > most_trying) {
-		ob_host_set_failure(h, "%s; that was loss %u since step %llu", r->loss.text, r->losses, step);
+	if (++r->attempts > QUICK_ATTEMPTS && ob_clock_wall() - r->progress_at > attempts_timeout) {
+		ob_host_set_failure(h, "%s; giving up: simulators failed %u times since the checkpoint of step %llu", r->reason.text, r->attempts, step);
 		return false;
 	}
-	close_accounts(h);
-	if (!end_all(h))
+	save_accounts(h);
+	if (!kill_all_workers(h))
 		return false;
-	ob_log_warn("%s; all simulators begin again after step %llu", r->loss.text, step);
+	ob_log_warn("%s; restarting all simulators from the checkpoint of step %llu", r->reason.text, step);
 	r->deaths++;
-	rest(h);
+	back_off(h);
 	ob_checkpoint_put_back(r->checkpoint, h->u);
-	r->lost = false;
-	h->living = h->workers;
-	if (!h->spawn->restart(h->crew)) {
-		ob_host_set_failure(h, "%s; the keeper process has ended", r->loss.text);
+	r->requested = false;
+	h->running_workers = h->workers;
+	if (!h->spawn->restart(h->group)) {
+		ob_host_set_failure(h, "%s; the fork server has ended", r->reason.text);
 		return false;
 	}
 	if (ob_host_wait_for_workers(h, &e))
 		return true;
-	if (!r->lost && !h->interrupted)
+	if (!r->requested && !h->interrupted)
 		ob_host_set_failure(h, "%s", e.text);
 	return false;
 }

@@ -1,16 +1,15 @@
-// From go to wait: legs between pauses, what happens in the pauses, and the watch over the time they take.
+// From go to wait: run intervals between pauses, what is done in the pauses, and the detection of stalls.
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 
 #include "base/clock.h"
-#include "host/stall.h"
 #include "host/host_state.h"
 #include "host/restart.h"
 #include "sim/sim.h"
 
-static const double look_interval = .1; // s, between looks at a run that does not pause
+static const double poll_interval = .1; // s, between checks of a run that does not pause
 static const double interrupt_grace = 1; // s that a step may still take after Ctrl-C
 
 void ob_host_set_failure(ob_host *h, const char *format, ...)
@@ -29,37 +28,37 @@ void ob_host_set_failure(ob_host *h, const char *format, ...)
 
 void ob_host_halt(ob_host *h)
 {
-	pthread_mutex_lock(&h->leg.lock);
-	h->leg.halted = true;
-	ob_gate_set_pause_step(h->u, 0); // where all sleep, steps pass by the thousand without a look at the gate
-	pthread_mutex_unlock(&h->leg.lock);
+	pthread_mutex_lock(&h->interval.lock);
+	h->interval.halted = true;
+	ob_gate_set_pause_step(h->u, 0); // where all objects sleep, thousands of steps pass without a phase at the gate
+	pthread_mutex_unlock(&h->interval.lock);
 	ob_gate_stop(h->u);
 }
 
-void ob_host_shorten_leg(ob_host *h)
+void ob_host_pause_early(ob_host *h)
 {
-	ob_leg *leg = &h->leg;
-	pthread_mutex_lock(&leg->lock);
+	ob_interval *interval = &h->interval;
+	pthread_mutex_lock(&interval->lock);
 	uint64_t next = ob_step_count(h->u) + 1;
-	if (leg->running && next < leg->end) {
-		leg->end = next;
+	if (interval->running && next < interval->end) {
+		interval->end = next;
 		ob_gate_set_pause_step(h->u, next);
 	}
-	pthread_mutex_unlock(&leg->lock);
+	pthread_mutex_unlock(&interval->lock);
 }
 
-// Paused: changes who is there, then opens the gate for the next leg, if the target is still ahead.
-static void begin_leg(ob_host *h)
+// Paused: adds and removes objects, then opens the gate for the next interval, if the target is still ahead.
+static void begin_interval(ob_host *h)
 {
-	ob_leg *leg = &h->leg;
+	ob_interval *interval = &h->interval;
 	uint64_t step = ob_step_count(h->u);
 	ob_restart_checkpoint(h, ob_population_update(h->population, step, h->requests));
-	if (h->perceived && step >= h->target)
+	if (h->started && step >= h->target)
 		return;
 	uint64_t next = ob_population_next_step(h->population);
-	if (!h->perceived)
+	if (!h->started)
 		ob_universe_set_state(h->u, OB_UNIVERSE_RUNNING);
-	h->perceived = true;
+	h->started = true;
 	if (!h->cpu_counted && h->target > step) {
 		h->cpu_before = ob_host_read_cpu(h);
 		h->own_cpu_before = ob_clock_process_cpu();
@@ -68,54 +67,55 @@ static void begin_leg(ob_host *h)
 		h->gate_before = ob_host_gate_time(h, h->first_start);
 		h->cpu_counted = true;
 	}
-	pthread_mutex_lock(&leg->lock);
-	leg->running = true;
-	leg->end = next < h->target ? next : h->target;
-	if (!leg->halted)
-		ob_gate_set_pause_step(h->u, leg->end);
-	pthread_mutex_unlock(&leg->lock);
-	h->leg_first = step;
-	h->leg_start = ob_clock_wall();
+	pthread_mutex_lock(&interval->lock);
+	interval->running = true;
+	interval->end = next < h->target ? next : h->target;
+	if (!interval->halted)
+		ob_gate_set_pause_step(h->u, interval->end);
+	pthread_mutex_unlock(&interval->lock);
+	h->interval_first_step = step;
+	h->interval_start = ob_clock_wall();
 	ob_sim_resume(h->u);
 }
 
-static void end_leg(ob_host *h)
+static void end_interval(ob_host *h)
 {
-	double wall = ob_clock_wall() - h->leg_start;
-	uint64_t steps = ob_step_count(h->u) - h->leg_first;
-	pthread_mutex_lock(&h->leg.lock);
-	h->leg.running = false;
-	pthread_mutex_unlock(&h->leg.lock);
+	double wall = ob_clock_wall() - h->interval_start;
+	uint64_t steps = ob_step_count(h->u) - h->interval_first_step;
+	pthread_mutex_lock(&h->interval.lock);
+	h->interval.running = false;
+	pthread_mutex_unlock(&h->interval.lock);
 	if (steps == 0)
 		return;
 	h->wall += wall;
-	h->last_end = h->leg_start + wall;
+	h->last_end = h->interval_start + wall;
 }
 
-// After a loss. If there is another at once, the leg is still to be gone to its end.
-static void begin_again(ob_host *h)
+// After a request to restart. If another one comes at once, the interval counts as running, and is restarted again.
+static void restart_interval(ob_host *h)
 {
-	end_leg(h);
+	end_interval(h);
 	if (ob_restart(h)) {
-		h->perceived = ob_step_count(h->u) > 0;
-		begin_leg(h);
+		h->started = ob_step_count(h->u) > 0;
+		begin_interval(h);
 	} else {
-		pthread_mutex_lock(&h->leg.lock);
-		h->leg.running = true;
-		pthread_mutex_unlock(&h->leg.lock);
+		pthread_mutex_lock(&h->interval.lock);
+		h->interval.running = true;
+		pthread_mutex_unlock(&h->interval.lock);
 	}
 }
 
-static void give_up(ob_host *h, uint64_t step)
+static void report_stall(ob_host *h, uint64_t step)
 {
-	char waits_for[400];
-	ob_stall_describe(h, waits_for, sizeof waits_for);
-	ob_restart_lose(h, "step %llu was not complete after %g s; it waits for %s", (unsigned long long)step + 1,
-			h->patience, waits_for);
+	char blocking[400];
+	ob_stall_describe(h, blocking, sizeof blocking);
+	ob_restart_request(h, "step %llu was not complete after %g s; waiting for %s", (unsigned long long)step + 1,
+			h->stall_timeout, blocking);
 }
 
-// Not paused yet. Sees to whoever waits for a pause; false: no use in waiting any longer.
-static bool keep_patience(ob_host *h, uint64_t *seen_step, double *seen_at, double *interrupted_at)
+// Not paused yet: detects a stall, and makes the interval end early if somebody waits for a pause. false: interrupted,
+// and the step does not end.
+static bool check_progress(ob_host *h, uint64_t *seen_step, double *seen_at, double *interrupted_at)
 {
 	double now = ob_clock_wall();
 	uint64_t step = ob_step_count(h->u);
@@ -123,32 +123,32 @@ static bool keep_patience(ob_host *h, uint64_t *seen_step, double *seen_at, doub
 		*seen_step = step;
 		*seen_at = now;
 	}
-	if (now - *seen_at > h->patience)
-		give_up(h, step);
+	if (now - *seen_at > h->stall_timeout)
+		report_stall(h, step);
 	if (h->interrupted && *interrupted_at == 0)
 		*interrupted_at = now;
 	if (h->interrupted || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
-		ob_host_shorten_leg(h);
+		ob_host_pause_early(h);
 	return !(h->interrupted && now - *interrupted_at > interrupt_grace);
 }
 
 void ob_host_go(ob_host *h, uint64_t step)
 {
 	h->target = step;
-	if (!h->leg.running && !h->failed && !h->interrupted)
-		begin_leg(h);
+	if (!h->interval.running && !h->failed && !h->interrupted)
+		begin_interval(h);
 }
 
-// A gate that was stopped looks like a pause: the step then falls short of the leg's end.
-static bool at_leg_end(ob_host *h)
+// A gate that was stopped looks like a pause: the step then falls short of the interval's end.
+static bool at_interval_end(ob_host *h)
 {
-	pthread_mutex_lock(&h->leg.lock);
-	bool there = ob_step_count(h->u) >= h->leg.end;
-	pthread_mutex_unlock(&h->leg.lock);
+	pthread_mutex_lock(&h->interval.lock);
+	bool there = ob_step_count(h->u) >= h->interval.end;
+	pthread_mutex_unlock(&h->interval.lock);
 	return there;
 }
 
-static bool outcome(ob_host *h, ob_error *e)
+static bool result_of_run(ob_host *h, ob_error *e)
 {
 	if (h->interrupted)
 		return ob_fail(e, "interrupted after step %llu", (unsigned long long)ob_step_count(h->u));
@@ -164,24 +164,24 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 {
 	uint64_t seen_step = ob_step_count(h->u);
 	double seen_at = ob_clock_wall(), interrupted_at = 0;
-	while (h->leg.running && !h->failed) {
-		bool turn = ob_gate_host_wait(h->u, look_interval);
+	while (h->interval.running && !h->failed) {
+		bool turn = ob_gate_host_wait(h->u, poll_interval);
 		const char *failure = turn ? ob_sim_failure(h->u) : NULL;
-		if (h->rebirth.lost) { // what looks like a pause is none
-			begin_again(h);
+		if (h->restart.requested) { // the gate was stopped for it: this is not a pause
+			restart_interval(h);
 			seen_at = ob_clock_wall();
 		} else if (failure) {
 			ob_host_set_failure(h, "%s", failure);
-		} else if (turn && at_leg_end(h)) {
-			end_leg(h);
+		} else if (turn && at_interval_end(h)) {
+			end_interval(h);
 			if (!h->interrupted)
-				begin_leg(h);
+				begin_interval(h);
 		} else {
 			if (turn)
 				nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL);
-			if (!keep_patience(h, &seen_step, &seen_at, &interrupted_at))
+			if (!check_progress(h, &seen_step, &seen_at, &interrupted_at))
 				break;
 		}
 	}
-	return outcome(h, e);
+	return result_of_run(h, e);
 }

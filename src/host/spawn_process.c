@@ -7,33 +7,33 @@
 
 #include "base/clock.h"
 
-struct ob_crew {
-	ob_fork_server *keeper;
+struct ob_worker_group {
+	ob_fork_server *fork_server;
 	uint32_t workers, ended;
 };
 
-static int process_fd(const ob_crew *c)
+static int process_fd(const ob_worker_group *g)
 {
-	return ob_fork_server_fd(c->keeper);
+	return ob_fork_server_fd(g->fork_server);
 }
 
-static bool process_next_end(ob_crew *c, ob_worker_end *end)
+static bool process_next_end(ob_worker_group *g, ob_worker_end *end)
 {
-	bool got = ob_fork_server_next_end(c->keeper, end);
+	bool got = ob_fork_server_next_end(g->fork_server, end);
 	if (got) // else nothing may be written: a restart may be under way
-		c->ended++;
+		g->ended++;
 	return got;
 }
 
-static void process_kill(ob_crew *c)
+static void process_kill(ob_worker_group *g)
 {
-	ob_fork_server_kill(c->keeper);
+	ob_fork_server_kill(g->fork_server);
 }
 
-static bool process_restart(ob_crew *c)
+static bool process_restart(ob_worker_group *g)
 {
-	c->ended = 0;
-	return ob_fork_server_fork(c->keeper, 0, c->workers);
+	g->ended = 0;
+	return ob_fork_server_fork(g->fork_server, 0, g->workers);
 }
 
 static uint64_t process_cpu(const ob_worker_info *w)
@@ -41,40 +41,40 @@ static uint64_t process_cpu(const ob_worker_info *w)
 	return ob_clock_cpu_of_process(w->pid);
 }
 
-// Those that do not leave in time are the keeper's to kill, when it is stopped.
-static bool process_join(ob_crew *c, double timeout)
+// The fork server kills those that do not leave in time, when it is stopped.
+static bool process_join(ob_worker_group *g, double timeout)
 {
 	ob_worker_end end;
 	double until = ob_clock_wall() + timeout;
-	while (c->ended < c->workers) {
-		struct pollfd p = { .fd = ob_fork_server_fd(c->keeper), .events = POLLIN };
+	while (g->ended < g->workers) {
+		struct pollfd p = { .fd = ob_fork_server_fd(g->fork_server), .events = POLLIN };
 		double left = until - ob_clock_wall();
 		if (left <= 0 || (poll(&p, 1, (int)(left * 1000) + 1) < 0 && errno != EINTR))
 			break;
-		while (process_next_end(c, &end))
+		while (process_next_end(g, &end))
 			;
 		if (p.revents & POLLHUP)
 			break;
 	}
-	free(c);
+	free(g);
 	return true;
 }
 
-static ob_crew *process_start(const ob_crew_order *order, ob_error *e)
+static ob_worker_group *process_start(const ob_worker_group_setup *setup, ob_error *e)
 {
-	ob_crew *c = calloc(1, sizeof *c);
-	if (!c) {
+	ob_worker_group *g = calloc(1, sizeof *g);
+	if (!g) {
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	c->keeper = order->keeper;
-	c->workers = ob_universe_workers(order->u);
-	if (!ob_fork_server_fork(c->keeper, 0, c->workers)) {
-		ob_fail(e, "the keeper process has ended: %s", strerror(errno));
-		free(c);
+	g->fork_server = setup->fork_server;
+	g->workers = ob_universe_workers(setup->u);
+	if (!ob_fork_server_fork(g->fork_server, 0, g->workers)) {
+		ob_fail(e, "the fork server has ended: %s", strerror(errno));
+		free(g);
 		return NULL;
 	}
-	return c;
+	return g;
 }
 
 const ob_spawn ob_spawn_processes = {
@@ -86,6 +86,6 @@ const ob_spawn ob_spawn_processes = {
 	.restart = process_restart,
 	.cpu = process_cpu,
 	.join = process_join,
-	.leave_patience = 1,
+	.leave_timeout = 1,
 	.own_memory = true,
 };

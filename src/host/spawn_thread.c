@@ -12,45 +12,45 @@
 
 #include "base/clock.h"
 
-// Thousands of threads must fit; a few may be as deep as a usual program's (the single world is one of them).
+// Thousands of threads must fit; a few may be as deep as a usual program's (the monolith is one of them).
 enum { MANY_WORKERS = 64, SMALL_STACK = 256 << 10, USUAL_STACK = 8 << 20 };
 
-typedef struct seat {
-	ob_crew *crew;
+typedef struct worker_thread {
+	ob_worker_group *group;
 	pthread_t thread;
 	uint32_t worker;
-} seat;
+} worker_thread;
 
-struct ob_crew {
+struct ob_worker_group {
 	ob_universe *u;
 	ob_worker_run run;
 	int ends[2]; // pipe: each thread writes an ob_worker_end as its last act
 	uint32_t started, ended;
-	seat seats[];
+	worker_thread threads[];
 };
 
-static void *live(void *argument)
+static void *thread_main(void *argument)
 {
-	seat *s = argument;
+	worker_thread *t = argument;
 	char name[16];
-	snprintf(name, sizeof name, "sim %u", s->worker);
+	snprintf(name, sizeof name, "sim %u", t->worker);
 	pthread_setname_np(pthread_self(), name);
-	ob_worker_end end = { .worker = s->worker, .pid = getpid() };
-	end.code = s->crew->run(s->crew->u, s->worker);
-	while (write(s->crew->ends[1], &end, sizeof end) < 0 && errno == EINTR)
+	ob_worker_end end = { .worker = t->worker, .pid = getpid() };
+	end.code = t->group->run(t->group->u, t->worker);
+	while (write(t->group->ends[1], &end, sizeof end) < 0 && errno == EINTR)
 		;
 	return NULL;
 }
 
-static int thread_fd(const ob_crew *c)
+static int thread_fd(const ob_worker_group *g)
 {
-	return c->ends[0];
+	return g->ends[0];
 }
 
-static bool thread_next_end(ob_crew *c, ob_worker_end *end)
+static bool thread_next_end(ob_worker_group *g, ob_worker_end *end)
 {
-	bool got = read(c->ends[0], end, sizeof *end) == sizeof *end;
-	c->ended += got;
+	bool got = read(g->ends[0], end, sizeof *end) == sizeof *end;
+	g->ended += got;
 	return got;
 }
 
@@ -59,28 +59,28 @@ static uint64_t thread_cpu(const ob_worker_info *w)
 	return ob_clock_cpu_of_thread(w->tid);
 }
 
-static bool thread_join(ob_crew *c, double timeout)
+static bool thread_join(ob_worker_group *g, double timeout)
 {
 	ob_worker_end end;
 	double until = ob_clock_wall() + timeout;
-	while (c->ended < c->started) {
+	while (g->ended < g->started) {
 		double left = until - ob_clock_wall();
 		if (left <= 0)
-			return false; // c must live on: a thread that hangs may come back to it
-		struct pollfd p = { .fd = c->ends[0], .events = POLLIN };
+			return false; // g must live on: a stalled thread may still use it
+		struct pollfd p = { .fd = g->ends[0], .events = POLLIN };
 		poll(&p, 1, (int)(left * 1000) + 1);
-		while (thread_next_end(c, &end))
+		while (thread_next_end(g, &end))
 			;
 	}
-	for (uint32_t i = 0; i < c->started; i++)
-		pthread_join(c->seats[i].thread, NULL);
-	close(c->ends[0]);
-	close(c->ends[1]);
-	free(c);
+	for (uint32_t i = 0; i < g->started; i++)
+		pthread_join(g->threads[i].thread, NULL);
+	close(g->ends[0]);
+	close(g->ends[1]);
+	free(g);
 	return true;
 }
 
-// Signals are the main thread's; only those that a fault of the thread itself raises stay open.
+// The main thread handles signals; only those that a fault of the thread itself raises stay unblocked.
 static void block_signals(sigset_t *before)
 {
 	static const int faults[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS };
@@ -91,7 +91,7 @@ static void block_signals(sigset_t *before)
 	pthread_sigmask(SIG_SETMASK, &all, before);
 }
 
-static int start_seats(ob_crew *c, uint32_t workers)
+static int start_threads(ob_worker_group *g, uint32_t workers)
 {
 	pthread_attr_t attributes;
 	sigset_t before;
@@ -100,39 +100,39 @@ static int start_seats(ob_crew *c, uint32_t workers)
 	pthread_attr_setstacksize(&attributes, workers > MANY_WORKERS ? SMALL_STACK : USUAL_STACK);
 	block_signals(&before);
 	for (uint32_t i = 0; i < workers && !error; i++) {
-		seat *s = &c->seats[i];
-		*s = (seat){ .crew = c, .worker = i };
-		error = pthread_create(&s->thread, &attributes, live, s);
-		c->started += !error;
+		worker_thread *t = &g->threads[i];
+		*t = (worker_thread){ .group = g, .worker = i };
+		error = pthread_create(&t->thread, &attributes, thread_main, t);
+		g->started += !error;
 	}
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	pthread_attr_destroy(&attributes);
 	return error;
 }
 
-static ob_crew *thread_start(const ob_crew_order *order, ob_error *e)
+static ob_worker_group *thread_start(const ob_worker_group_setup *setup, ob_error *e)
 {
-	uint32_t workers = ob_universe_workers(order->u);
-	ob_crew *c = calloc(1, sizeof *c + workers * sizeof *c->seats);
-	if (!c || pipe2(c->ends, O_CLOEXEC) != 0) {
-		free(c);
-		ob_fail(e, "cannot make room for %u workers: %s", workers, strerror(errno));
+	uint32_t workers = ob_universe_workers(setup->u);
+	ob_worker_group *g = calloc(1, sizeof *g + workers * sizeof *g->threads);
+	if (!g || pipe2(g->ends, O_CLOEXEC) != 0) {
+		free(g);
+		ob_fail(e, "cannot allocate %u workers: %s", workers, strerror(errno));
 		return NULL;
 	}
-	fcntl(c->ends[0], F_SETFL, O_NONBLOCK);
-	c->u = order->u;
-	c->run = order->run;
-	int error = start_seats(c, workers);
+	fcntl(g->ends[0], F_SETFL, O_NONBLOCK);
+	g->u = setup->u;
+	g->run = setup->run;
+	int error = start_threads(g, workers);
 	if (error) {
 		ob_fail(e,
 			"thread %u of %u does not start: %s; use fewer workers, or raise the limit on processes "
 			"(ulimit -u, or pids.max of the container)",
-			c->started + 1, workers, strerror(error));
-		ob_gate_stop(order->u);
-		thread_join(c, 5);
+			g->started + 1, workers, strerror(error));
+		ob_gate_stop(setup->u);
+		thread_join(g, 5);
 		return NULL;
 	}
-	return c;
+	return g;
 }
 
 const ob_spawn ob_spawn_threads = {
@@ -142,6 +142,6 @@ const ob_spawn ob_spawn_threads = {
 	.next_end = thread_next_end,
 	.cpu = thread_cpu,
 	.join = thread_join,
-	.leave_patience = 5,
+	.leave_timeout = 5,
 	.own_memory = false,
 };

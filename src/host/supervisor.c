@@ -1,13 +1,13 @@
-#include "host/supervisor.h"
-
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/eventfd.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "host/accounting.h"
 #include "host/host_state.h"
 #include "host/restart.h"
 
@@ -15,7 +15,7 @@ enum { REFRESH_MS = 500 };
 
 uint64_t ob_host_read_cpu(ob_host *h)
 {
-	uint64_t sum = h->rebirth.cpu;
+	uint64_t sum = h->restart.cpu;
 	for (uint32_t w = 0; w < h->workers; w++) {
 		ob_worker_info info;
 		if (!ob_universe_get_worker(h->u, w, &info) || info.pid == 0)
@@ -29,7 +29,7 @@ uint64_t ob_host_read_cpu(ob_host *h)
 }
 
 // "simulator 3 (object "crate", process 4242)"
-static void name_worker(const ob_host *h, const ob_worker_end *end, char *text, size_t size)
+static void describe_worker(const ob_host *h, const ob_worker_end *end, char *text, size_t size)
 {
 	ob_passport p;
 	int n = snprintf(text, size, "simulator %u (", end->worker);
@@ -42,9 +42,9 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 {
 	char who[160];
 	unsigned long long step = ob_step_count(h->u);
-	if (h->ending || h->failed || h->rebirth.lost)
+	if (h->ending || h->failed || h->restart.requested)
 		return;
-	name_worker(h, end, who, sizeof who);
+	describe_worker(h, end, who, sizeof who);
 	if (ob_universe_traced(h->u) && !end->error)
 		ob_trace_span(h->u, ob_trace_supervisor(h->u), OB_TRACE_KILLED, ob_clock_ns(), end->worker,
 			      (uint32_t)end->signal);
@@ -54,40 +54,40 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 				    "processes (ulimit -u, or pids.max of the container)",
 				    end->worker + 1, h->workers, strerror(end->error));
 	else if (end->signal)
-		ob_restart_lose(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
+		ob_restart_request(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
 				strsignal(end->signal), step);
 	else
 		ob_host_set_failure(h, "%s left with exit code %d after step %llu, before the run was over", who,
 				    end->code, step);
 }
 
-static void on_keeper_gone(ob_host *h)
+static void on_fork_server_end(ob_host *h)
 {
 	if (!h->ending && !h->failed)
-		ob_host_set_failure(h, "the keeper process %d has ended, and with it the watch over this run",
-				    (int)ob_fork_server_pid(h->keeper));
+		ob_host_set_failure(h, "the fork server (process %d) has ended, so this run is no longer supervised",
+				    (int)ob_fork_server_pid(h->fork_server));
 }
 
 // Returns false when the supervisor is to end.
-static bool look(ob_host *h, struct pollfd fds[4])
+static bool handle_events(ob_host *h, struct pollfd fds[4])
 {
 	ob_worker_end end;
 	if (fds[0].revents)
 		return false;
 	if (fds[1].revents)
-		while (h->spawn->next_end(h->crew, &end)) {
+		while (h->spawn->next_end(h->group, &end)) {
 			on_end(h, &end);
-			h->living--; // last: when all have ended, the host may begin again
+			h->running_workers--; // last: once all have ended, the host may restart them
 		}
-	if (fds[2].revents) { // hung up: it would be reported again and again
-		on_keeper_gone(h);
+	if (fds[2].revents) { // POLLHUP would be reported again and again
+		on_fork_server_end(h);
 		fds[1].fd = fds[1].fd == fds[2].fd ? -1 : fds[1].fd;
 		fds[2].fd = -1;
 	}
 	if (fds[3].revents) {
 		h->interrupted = true;
 		fds[3].fd = -1;
-		ob_host_shorten_leg(h);
+		ob_host_pause_early(h);
 	}
 	return true;
 }
@@ -97,8 +97,8 @@ static void *supervise(void *argument)
 	ob_host *h = argument;
 	struct pollfd fds[4] = {
 		{ .fd = h->wake_fd, .events = POLLIN },
-		{ .fd = h->spawn->fd(h->crew), .events = POLLIN },
-		{ .fd = ob_fork_server_fd(h->keeper) }, // only its end
+		{ .fd = h->spawn->fd(h->group), .events = POLLIN },
+		{ .fd = ob_fork_server_fd(h->fork_server) }, // only POLLHUP
 		{ .fd = h->interrupt_fd, .events = POLLIN },
 	};
 	double refreshed = 0;
@@ -106,7 +106,7 @@ static void *supervise(void *argument)
 	for (;;) {
 		if (poll(fds, 4, REFRESH_MS) < 0)
 			continue;
-		if (!look(h, fds))
+		if (!handle_events(h, fds))
 			return NULL;
 		double now = ob_clock_wall();
 		if (now - refreshed >= 1e-3 * REFRESH_MS) {
@@ -144,4 +144,48 @@ void ob_supervisor_stop(ob_host *h)
 	if (h->wake_fd >= 0)
 		close(h->wake_fd);
 	h->wake_fd = -1;
+}
+
+// ---- stalls
+
+static const char *activity_of(const ob_worker_info *w, uint64_t cpu_ns)
+{
+	const uint64_t busy_ns = 10000000; // with more CPU time than this within the tenth of a second, it computes
+	char state = ob_state_of_thread(w->pid, w->tid);
+	if (!state)
+		return "gone";
+	if (state == 'T')
+		return "stopped by a signal";
+	if (state == 't')
+		return "held by a debugger";
+	return state == 'R' || cpu_ns > busy_ns ? "computing" : "asleep";
+}
+
+void ob_stall_describe(const ob_host *h, char *text, size_t size)
+{
+	enum { SHOWN = 4 };
+	uint32_t blocking[SHOWN], shown = 0, more = 0;
+	uint64_t cpu_before[SHOWN];
+	ob_worker_info info[SHOWN];
+	size_t n = 0;
+	uint32_t scheduler = ob_universe_step_data(h->u)->count->scheduler;
+	bool waits = false; // else all have arrived, and the last of them has not opened the gate again
+	for (uint32_t w = 0; w < h->workers; w++)
+		waits = waits || ob_gate_waits_for(h->u, w);
+	for (uint32_t w = 0; w < h->workers; w++) {
+		if (waits ? !ob_gate_waits_for(h->u, w) : w != scheduler)
+			continue;
+		if (shown < SHOWN && ob_universe_get_worker(h->u, w, &info[shown])) {
+			cpu_before[shown] = h->spawn->cpu(&info[shown]);
+			blocking[shown++] = w;
+		} else {
+			more++;
+		}
+	}
+	nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
+	for (uint32_t i = 0; i < shown && n < size; i++)
+		n += (size_t)snprintf(text + n, size - n, "%ssimulator %u (task %d, %s)", i ? ", " : "", blocking[i],
+				      (int)info[i].tid, activity_of(&info[i], h->spawn->cpu(&info[i]) - cpu_before[i]));
+	if (more && n < size)
+		snprintf(text + n, size - n, " and %u more", more);
 }

@@ -194,8 +194,8 @@ static void put_killed(ob_trace_file *f, const ob_trace_event *e)
 static const char *name_of(const ob_trace_file *f, const ob_trace_event *e)
 {
 	static const char *const names[OB_TRACE_KINDS] = {
-		[OB_TRACE_WAIT] = "gate",         [OB_TRACE_SOLVE] = "solve",     [OB_TRACE_OBJECTS] = "members",
-		[OB_TRACE_SCHEDULE] = "arrange",   [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
+		[OB_TRACE_WAIT] = "gate",         [OB_TRACE_SOLVE] = "solve",     [OB_TRACE_OBJECTS] = "objects",
+		[OB_TRACE_SCHEDULE] = "schedule",  [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
 		[OB_TRACE_SNAPSHOT] = "snapshot", [OB_TRACE_MEASURE] = "measure", [OB_TRACE_RECORD] = "record",
 		[OB_TRACE_DRAW] = "draw",         [OB_TRACE_ENCODE] = "encode",
 	};
@@ -216,11 +216,11 @@ static void add_arguments(ob_trace_file *f, const ob_trace_event *e, bool unfini
 		add_member(f, "\"step\":", e->step);
 	if (!unfinished && ((e->kind == OB_TRACE_SOLVE && !f->monolith) || e->kind == OB_TRACE_CHUNK)) {
 		add_member(f, e->kind == OB_TRACE_SOLVE ? ",\"islands\":" : "\"islands\":", e->a);
-		add_member(f, ",\"members\":", e->b);
+		add_member(f, ",\"bodies\":", e->b);
 	}
 	if (e->kind == OB_TRACE_ISLAND) {
 		add_member(f, "\"first\":", e->a);
-		add_member(f, ",\"members\":", e->b);
+		add_member(f, ",\"bodies\":", e->b);
 	}
 	if (e->kind == OB_TRACE_DRAW || e->kind == OB_TRACE_ENCODE)
 		add_member(f, "\"frame\":", e->a);

@@ -1,10 +1,21 @@
-// The life of a worker, the same in a thread and in a process.
+// A worker, the same in a thread and in a process: what it runs, and how its end is reported.
 #ifndef OB_HOST_WORKER_H
 #define OB_HOST_WORKER_H
 
 #include "table/table.h"
 
-// An ob_worker_run (keeper.h).
+// What a worker runs, in its own thread or process, from its start to its end. 0 = it left after STOP, as it should.
+typedef int (*ob_worker_run)(ob_universe *u, uint32_t worker);
+
+// The ob_worker_run of all runs: object simulators (or the monolith) until STOP.
 int ob_worker_live(ob_universe *u, uint32_t worker);
+
+typedef struct ob_worker_end {
+	uint32_t worker;
+	int32_t pid; // of its process
+	int32_t error; // errno when it could not be started at all; else 0
+	int32_t signal; // that killed it; else 0
+	int32_t code; // its exit code; 0 = it left after STOP
+} ob_worker_end;
 
 #endif

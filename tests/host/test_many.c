@@ -1,8 +1,8 @@
 // As many as are promised: 1000 simulators one per process, 4000 one per thread (fewer under ThreadSanitizer),
 // 10,000 objects on a pool of 2.
 #include "check.h"
-#include "crowd.h"
 #include "little_scene.h"
+#include "workers.h"
 
 #ifdef __SANITIZE_THREAD__
 enum { MANY_THREADS = 500 }; // each costs it 4 MB

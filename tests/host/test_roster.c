@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "host/requests.h"
+#include "host/population.h"
 #include "host/roster.h"
 
 enum { READERS = 4, ROUNDS = 2000, ENTRIES = 100, PUSHERS = 3, PUSHES = 5000 };

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "check.h"
-#include "crowd.h"
 #include "little_scene.h"
+#include "workers.h"
 
 static ob_host *start(const ob_scene *s, const ob_host_config *c)
 {

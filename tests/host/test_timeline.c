@@ -56,7 +56,7 @@ static void test_lost(void)
 	ob_timeline *t = ob_timeline_start(u, path, &e);
 	CHECK(t && ob_timeline_finish(t, &sums, &e));
 	CHECK(sums.events == size + 70 && sums.lost == 70);
-	CHECK(count("\"name\":\"arrange\"") == size);
+	CHECK(count("\"name\":\"schedule\"") == size);
 	CHECK(count("\"name\":\"events lost\",\"args\":{\"events\":70}") == 1);
 	CHECK(count("\"lost\":70}}\n") == 1);
 	ob_universe_destroy(u, true);
@@ -82,7 +82,7 @@ static void test_order(void)
 	const char *solve = strstr(text, "\"solve\""), *chunk = strstr(text, "\"chunk\"");
 	const char *island = strstr(text, "\"island\""), *load = strstr(text, "\"load\"");
 	CHECK(solve && solve < chunk && chunk < island && island < load);
-	CHECK(count("\"name\":\"members\",\"args\":{\"unfinished\":true}") == 1);
+	CHECK(count("\"name\":\"objects\",\"args\":{\"unfinished\":true}") == 1);
 	ob_universe_destroy(u, true);
 }
 

@@ -18,7 +18,7 @@ BLOWS = 4
 
 class Deaths(program.Case):
 	def struck(self, words, took):
-		"""A run while which simulators die: its report, and how many were struck."""
+		"""A run during which simulators die: its report, and how many were struck."""
 		run = program.start("run", *words, "--isolation", "process", "--json", "-", "--name", self.name)
 		struck = 0
 		for _ in range(BLOWS):
@@ -29,7 +29,7 @@ class Deaths(program.Case):
 		out, said = run.communicate(timeout=program.PATIENCE)
 		self.assertEqual(run.returncode, 0, said)
 		report = json.loads(out)
-		self.assertEqual(said.count("all simulators begin again after step"), report["deaths"])
+		self.assertEqual(said.count("restarting all simulators from the checkpoint of step"), report["deaths"])
 		return report, struck
 
 	def test_same_bits(self):

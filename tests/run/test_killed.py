@@ -1,4 +1,4 @@
-"""Kills without warning: of the host, of a simulator, of the keeper. Within a second nothing is left."""
+"""Kills without warning: of the host, of a simulator, of the fork server. Nothing is left."""
 
 import glob
 import os
@@ -14,7 +14,7 @@ WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w 
 
 class Killed(program.Case):
 	def check_nothing_left(self, below):
-		gone = program.wait_until(lambda: not os.path.exists(program.segment(self.name)) and not any(map(program.alive, below)), 1)
+		gone = program.wait_until(lambda: not os.path.exists(program.segment(self.name)) and not any(map(program.alive, below)), program.PATIENCE)
 		self.assertTrue(gone, [p for p in below if program.alive(p)] + glob.glob("/dev/shm/obsim.*"))
 
 	def test_host(self):
@@ -25,7 +25,7 @@ class Killed(program.Case):
 				below = program.processes(run.pid)
 				self.assertGreaterEqual(len(below), 31 if way == WAYS[-1] else 1)
 				run.send_signal(signal.SIGKILL)
-				run.wait(5)
+				run.wait(program.PATIENCE)
 				self.check_nothing_left(below)
 
 	def test_host_at_any_time(self):
@@ -36,23 +36,23 @@ class Killed(program.Case):
 				time.sleep(delay)
 				below = program.processes(run.pid)
 				run.send_signal(signal.SIGKILL)
-				run.wait(5)
+				run.wait(program.PATIENCE)
 				run.stdout.close()
 				run.stderr.close()
 				self.check_nothing_left(below)
 
 	def test_simulator_of_a_monolith(self):
-		"""There is nothing to go back to: the run fails, with the name of who died, and ends in order."""
+		"""There is nothing to go back to: the run fails, naming the simulator that died, and ends in order."""
 		run = self.start_universe(*LONG, "--isolation", "process", "--arch", "monolith")
 		time.sleep(.5)
 		below = program.processes(run.pid)
 		os.kill(program.simulators(run.pid)[0], signal.SIGKILL)
-		self.assertEqual(run.wait(10), 1)
+		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertRegex(run.stderr.read(), r"^obsim: simulator 0 .*killed")
 		self.check_nothing_left(below)
 
 	def test_stale_is_cleared(self):
-		"""What a killed host and keeper leave together, the next run removes."""
+		"""What a killed host and fork server leave together, the next run removes."""
 		run = self.start_universe(*LONG)
 		time.sleep(.3)
 		below = program.processes(run.pid)
@@ -60,7 +60,7 @@ class Killed(program.Case):
 			os.kill(pid, signal.SIGSTOP)
 		for pid in [run.pid, *below]:
 			os.kill(pid, signal.SIGKILL)
-		run.wait(5)
+		run.wait(program.PATIENCE)
 		self.assertTrue(os.path.exists(program.segment(self.name)))
 		program.report(program.scene("stack"), "--duration", ".1")
 		self.assertFalse(os.path.exists(program.segment(self.name)))
@@ -72,7 +72,7 @@ class Killed(program.Case):
 		self.assertIn(self.name, other.stderr)
 		self.assertIsNone(run.poll())
 		run.send_signal(signal.SIGINT)
-		run.wait(10)
+		run.wait(program.PATIENCE)
 
 
 unittest.main()

@@ -11,7 +11,7 @@ import program
 
 WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w in ("2", "objects")]
 HOST, WORKERS, OBJECTS = 1, 2, 3  # "processes" of the file
-PHASES = {"gate", "solve", "members", "arrange", "world"}
+PHASES = {"gate", "solve", "objects", "schedule", "world"}
 STATES = {"flies", "touches", "asleep", "awake"}
 PARTS = {"ballistic", "load", "narrowphase", "impacts", "solve", "move", "project", "publish"}
 
@@ -98,7 +98,7 @@ class Trace(program.Case):
 			self.check_nesting(events)
 			if pid == WORKERS:
 				self.check_worker(events, deaths)
-				computed |= {e["args"]["step"] for e in events if "step" in e.get("args", {}) and e["name"] != "members"}
+				computed |= {e["args"]["step"] for e in events if "step" in e.get("args", {}) and e["name"] != "objects"}
 			if pid == OBJECTS:
 				self.check_object(events)
 		self.assertGreaterEqual(min(computed), 1)
@@ -121,7 +121,7 @@ class Trace(program.Case):
 				self.assertGreaterEqual(workers, 21 if "objects" in way else 2)
 				self.assertEqual(sum(pid == OBJECTS for pid, _ in tracks), 21)
 				names = collections.Counter(e["name"] for events in tracks.values() for e in events)
-				self.assertLessEqual({"gate", "arrange", "members", "flies", "touches", "snapshot", "measure"} | PARTS,
+				self.assertLessEqual({"gate", "schedule", "objects", "flies", "touches", "snapshot", "measure"} | PARTS,
 					set(names) | {"impacts"})
 				self.assertEqual(names["measure"], r["steps"] + 1)
 

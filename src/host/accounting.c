@@ -1,0 +1,65 @@
+#include "host/accounting.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+size_t ob_memory_of_process(pid_t pid)
+{
+	char path[64], line[128];
+	size_t kib, sum = 0;
+	snprintf(path, sizeof path, "/proc/%d/smaps_rollup", (int)pid);
+	FILE *f = fopen(path, "re");
+	if (!f)
+		return 0;
+	while (fgets(line, sizeof line, f)) {
+		if (sscanf(line, "Pss_Anon: %zu kB", &kib) == 1 || sscanf(line, "Pss_File: %zu kB", &kib) == 1)
+			sum += kib << 10;
+	}
+	fclose(f);
+	return sum;
+}
+
+size_t ob_memory_of_universe(const char *name)
+{
+	char path[128];
+	struct stat s;
+	snprintf(path, sizeof path, "/dev/shm/obsim.%s", name);
+	return stat(path, &s) == 0 ? (size_t)s.st_blocks * 512 : 0;
+}
+
+static FILE *open_thread_file(pid_t pid, pid_t tid, const char *name)
+{
+	char path[64];
+	snprintf(path, sizeof path, "/proc/%d/task/%d/%s", (int)pid, (int)tid, name);
+	return fopen(path, "re");
+}
+
+uint64_t ob_switches_of_thread(pid_t pid, pid_t tid)
+{
+	char line[256];
+	uint64_t n, sum = 0;
+	FILE *f = open_thread_file(pid, tid, "status");
+	if (!f)
+		return 0;
+	while (fgets(line, sizeof line, f)) {
+		if (sscanf(line, "voluntary_ctxt_switches: %" SCNu64, &n) == 1 ||
+		    sscanf(line, "nonvoluntary_ctxt_switches: %" SCNu64, &n) == 1)
+			sum += n;
+	}
+	fclose(f);
+	return sum;
+}
+
+char ob_state_of_thread(pid_t pid, pid_t tid)
+{
+	char line[256], *end = NULL;
+	FILE *f = open_thread_file(pid, tid, "stat");
+	if (!f)
+		return 0;
+	if (fgets(line, sizeof line, f))
+		end = strrchr(line, ')'); // the thread's name stands in brackets and may hold anything
+	fclose(f);
+	return end && end[1] == ' ' ? end[2] : 0;
+}
