@@ -2,8 +2,8 @@
 
 #include <string.h>
 
+#include "base/spelling.h"
 #include "cli/number.h"
-#include "cli/suggest.h"
 
 static bool read_cases(ob_case_list *l, const ob_arguments *a, ob_error *e)
 {
@@ -14,9 +14,9 @@ static bool read_cases(ob_case_list *l, const ob_arguments *a, ob_error *e)
 	for (const char **word = a->operands; *word; word++) {
 		if (ob_list_add_cases(l, *word))
 			continue;
-		ob_suggestion s = { .word = *word };
+		ob_spelling s = ob_spelling_start(*word);
 		for (const ob_case *const *c = ob_cases; *c; c++)
-			ob_suggest_offer(&s, (*c)->name);
+			ob_spelling_offer(&s, (*c)->name);
 		if (s.best)
 			return ob_fail(e, "no case '%s': did you mean %s?", *word, s.best);
 		return ob_fail(e, "no case '%s': obsim lab --list shows all", *word);
@@ -29,11 +29,11 @@ static bool read_engines(ob_engine_list *l, const char *names, ob_error *e)
 	char word[64], all[512] = "";
 	if (ob_list_engines(l, names ? names : "all", word))
 		return true;
-	ob_suggestion s = { .word = word };
+	ob_spelling s = ob_spelling_start(word);
 	for (const ob_engine_kind *const *k = ob_engine_kinds; *k; k++) {
 		size_t n = strlen(all);
 		snprintf(all + n, sizeof all - n, "%s%s", n ? ", " : "", (*k)->name);
-		ob_suggest_offer(&s, (*k)->name);
+		ob_spelling_offer(&s, (*k)->name);
 	}
 	if (s.best)
 		return ob_fail(e, "--engines: no engine '%s': did you mean %s?", word, s.best);

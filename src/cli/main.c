@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/spelling.h"
 #include "cli/command.h"
-#include "cli/suggest.h"
 #include "cli/version.h"
 
 static const struct {
@@ -36,9 +36,9 @@ static int find(const char *name)
 
 static int unknown_command(const char *name)
 {
-	ob_suggestion s = { .word = name };
+	ob_spelling s = ob_spelling_start(name);
 	for (int i = 0; i < COMMANDS; i++)
-		ob_suggest_offer(&s, commands[i].name);
+		ob_spelling_offer(&s, commands[i].name);
 	ob_error e;
 	size_t n = strlen(name);
 	if (s.best)

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/log.h"
-#include "cli/suggest.h"
+#include "base/spelling.h"
 #include "settings/settings.h"
 
 enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP, LAB = OB_COMMAND_LAB, PAPER = OB_COMMAND_PAPER };
@@ -89,10 +89,10 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
 {
-	ob_suggestion s = { .word = name };
+	ob_spelling s = ob_spelling_start(name);
 	for (int i = 0; i < OB_OPTIONS; i++) {
 		if (ob_option_table[i].commands & a->command)
-			ob_suggest_offer(&s, ob_option_table[i].name);
+			ob_spelling_offer(&s, ob_option_table[i].name);
 	}
 	if (s.best)
 		return ob_fail(e, "unknown option --%s: did you mean --%s?", name, s.best);
@@ -108,7 +108,7 @@ static bool check_choice(const ob_option *o, const char **value, ob_error *e)
 	const char *now = ob_setting_renamed(*value);
 	char words[64];
 	snprintf(words, sizeof words, "%s", o->argument);
-	ob_suggestion s = { .word = *value };
+	ob_spelling s = ob_spelling_start(*value);
 	char *rest = words;
 	for (char *word; (word = strsep(&rest, "|"));) {
 		if (strcmp(word, *value) == 0)
@@ -118,7 +118,7 @@ static bool check_choice(const ob_option *o, const char **value, ob_error *e)
 			*value = now;
 			return true;
 		}
-		ob_suggest_offer(&s, word);
+		ob_spelling_offer(&s, word);
 	}
 	if (s.best)
 		return ob_fail(e, "--%s %s: did you mean %s? (%s)", o->name, *value, s.best, o->argument);

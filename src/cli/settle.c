@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/spelling.h"
 #include "cli/request.h"
-#include "cli/suggest.h"
 
 uint64_t ob_request_steps(double duration, double step)
 {
@@ -15,12 +15,12 @@ uint64_t ob_request_steps(double duration, double step)
 
 static bool check_camera(const char *name, const ob_scene *s, ob_error *e)
 {
-	ob_suggestion near = { .word = name };
+	ob_spelling near = ob_spelling_start(name);
 	char all[512] = "";
 	for (uint32_t i = 0; i < s->cameras; i++) {
 		if (strcmp(s->camera[i].name, name) == 0)
 			return true;
-		ob_suggest_offer(&near, s->camera[i].name);
+		ob_spelling_offer(&near, s->camera[i].name);
 		size_t n = strlen(all);
 		snprintf(all + n, sizeof all - n, "%s%s", i ? ", " : "", s->camera[i].name);
 	}

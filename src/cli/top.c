@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/spelling.h"
 #include "cli/command.h"
 #include "cli/number.h"
-#include "cli/suggest.h"
 #include "cli/terminal.h"
 #include "cli/top_view.h"
 
@@ -33,10 +33,10 @@ static ob_universe *attach(const char *name, int *code)
 	if (u)
 		return u;
 	ob_command_fail(*code, e.text);
-	ob_suggestion near = { .word = name ? name : "" };
+	ob_spelling near = ob_spelling_start(name ? name : "");
 	for (size_t i = 0; i < n; i++) {
 		fprintf(stderr, "%s %s\n", i ? "        " : "running:", names[i]);
-		ob_suggest_offer(&near, names[i]);
+		ob_spelling_offer(&near, names[i]);
 	}
 	if (near.best)
 		fprintf(stderr, "did you mean obsim top %s?\n", near.best);

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/colour.h"
 #include "scene/sandbox.h"
-#include "scene/spelling.h"
 #include "scene/text.h"
 
 #define FRICTION .5

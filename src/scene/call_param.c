@@ -5,9 +5,9 @@
 
 #include <lauxlib.h>
 
+#include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
-#include "scene/spelling.h"
 #include "scene/text.h"
 
 typedef struct limits {

@@ -9,9 +9,9 @@
 #include <ob/vec.h>
 
 #include "base/log.h"
+#include "base/spelling.h"
 #include "scene/colour.h"
 #include "scene/sandbox.h"
-#include "scene/spelling.h"
 #include "scene/text.h"
 #include "settings/settings.h"
 
@@ -242,7 +242,7 @@ static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *
 {
 	ob_spelling spelling = ob_spelling_start(name);
 	for (size_t i = 0; i < count; i++)
-		ob_spelling_offer(&spelling, field[i].name);
+		ob_text_offer(&spelling, field[i].name);
 	if (spelling.best)
 		ob_sandbox_fail(L, "%s.%.40s: unknown field, did you mean %s?", where, name, spelling.best);
 	char known[300];

@@ -7,8 +7,9 @@
 #include <lualib.h>
 
 #include "base/log.h"
+#include "base/spelling.h"
 #include "scene/sandbox.h"
-#include "scene/spelling.h"
+#include "scene/text.h"
 
 // Steps that one pattern match may take at most: some 50 ms.
 #define PATTERN_STEPS 1e7
@@ -123,7 +124,7 @@ static int unknown_global(lua_State *L)
 	lua_pushnil(L);
 	while (lua_next(L, 1)) {
 		if (lua_type(L, -2) == LUA_TSTRING)
-			ob_spelling_offer(&spelling, lua_tostring(L, -2));
+			ob_text_offer(&spelling, lua_tostring(L, -2));
 		lua_pop(L, 1);
 	}
 	if (spelling.best)

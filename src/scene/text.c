@@ -59,6 +59,37 @@ void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE])
 	}
 }
 
+static const char *const synonym[][2] = {
+	{ "color", "colour" },
+	{ "position", "at" },
+	{ "pos", "at" },
+	{ "dimensions", "size" },
+	{ "fixed", "static" },
+	{ "omega", "spin" },
+	{ "quaternion", "q" },
+	{ "bounciness", "restitution" },
+	{ "mu", "friction" },
+	{ "timestep", "step" },
+	{ "dt", "step" },
+	{ "sphere_radius", "radius" },
+	{ "height", "length" },
+	{ "orientation", "rotation" },
+	{ "angular_velocity", "spin" },
+	{ "cube", "box" },
+	{ "ball", "sphere" },
+	{ "half_extents", "size" },
+};
+
+void ob_text_offer(ob_spelling *s, const char *known)
+{
+	for (size_t i = 0; i < sizeof synonym / sizeof *synonym; i++)
+		if (strcmp(s->word, synonym[i][0]) == 0 && strcmp(known, synonym[i][1]) == 0) {
+			s->best = known;
+			s->distance = 0;
+		}
+	ob_spelling_offer(s, known);
+}
+
 bool ob_text_is_clean(const char *text, size_t size)
 {
 	const unsigned char *s = (const unsigned char *)text;

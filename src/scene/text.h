@@ -7,10 +7,15 @@
 
 #include <lua.h>
 
+#include "base/spelling.h"
+
 #define OB_TEXT_VALUE 96 // bytes, the longest description of a value with its final 0
 
 // "nothing", "-3", "nan", "\"wood\"", "{1, 0, -2}", "a table", "a function"
 void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE]);
+
+// Offers a word of scenes; American spelling and words of other simulators, far in letters, are near in meaning.
+void ob_text_offer(ob_spelling *s, const char *known);
 
 // Valid UTF-8 without control characters; text[size] is 0.
 bool ob_text_is_clean(const char *text, size_t size);

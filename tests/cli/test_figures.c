@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/spelling.h"
 #include "check.h"
 #include "cli/quantity.h"
-#include "cli/suggest.h"
 
 static void check_text(double value, const char *unit, const char *expected)
 {
@@ -37,26 +37,26 @@ static void test_quantities(void)
 
 static void test_distance(void)
 {
-	CHECK(ob_suggest_distance("", "") == 0);
-	CHECK(ob_suggest_distance("", "abc") == 3);
-	CHECK(ob_suggest_distance("kitten", "sitting") == 3);
-	CHECK(ob_suggest_distance("abcd", "abdc") == 1); // a swap
-	CHECK(ob_suggest_distance("workers", "worker") == 1);
+	CHECK(ob_spelling_distance("", "") == 0);
+	CHECK(ob_spelling_distance("", "abc") == 3);
+	CHECK(ob_spelling_distance("kitten", "sitting") == 3);
+	CHECK(ob_spelling_distance("abcd", "abdc") == 1); // a swap
+	CHECK(ob_spelling_distance("workers", "worker") == 1);
 }
 
 static void test_suggestions(void)
 {
-	ob_suggestion s = { .word = "durration" };
-	ob_suggest_offer(&s, "define");
+	ob_spelling s = ob_spelling_start("durration");
+	ob_spelling_offer(&s, "define");
 	CHECK(!s.best);
-	ob_suggest_offer(&s, "duration");
-	ob_suggest_offer(&s, "step");
+	ob_spelling_offer(&s, "duration");
+	ob_spelling_offer(&s, "step");
 	CHECK(s.best && strcmp(s.best, "duration") == 0);
-	s = (ob_suggestion){ .word = "x" };
-	ob_suggest_offer(&s, "exchange");
+	s = ob_spelling_start("x");
+	ob_spelling_offer(&s, "exchange");
 	CHECK(!s.best);
-	s = (ob_suggestion){ .word = "integ" };
-	ob_suggest_offer(&s, "integrator");
+	s = ob_spelling_start("integ");
+	ob_spelling_offer(&s, "integrator");
 	CHECK(s.best);
 }
 

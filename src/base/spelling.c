@@ -1,0 +1,54 @@
+#include "base/spelling.h"
+
+#include <string.h>
+
+enum { LENGTH_MAX = 63 }; // bytes
+
+static int smaller(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+int ob_spelling_distance(const char *a, const char *b)
+{
+	int rows[3][LENGTH_MAX + 1]; // the last three lines of the table of distances of prefixes
+	int na = (int)strnlen(a, LENGTH_MAX), nb = (int)strnlen(b, LENGTH_MAX);
+	int *before = rows[0], *above = rows[1], *line = rows[2];
+	for (int j = 0; j <= nb; j++)
+		line[j] = j;
+	for (int i = 1; i <= na; i++) {
+		int *oldest = before;
+		before = above;
+		above = line;
+		line = oldest;
+		line[0] = i;
+		for (int j = 1; j <= nb; j++) {
+			int changed = above[j - 1] + (a[i - 1] != b[j - 1]);
+			line[j] = smaller(changed, smaller(above[j], line[j - 1]) + 1);
+			if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+				line[j] = smaller(line[j], before[j - 2] + 1);
+		}
+	}
+	return line[nb];
+}
+
+// distance: from which on a word cannot be a slip of the hand
+ob_spelling ob_spelling_start(const char *word)
+{
+	size_t n = strlen(word);
+	return (ob_spelling){ word, NULL, n > 7 ? 4 : n > 2 ? 3 : 2 };
+}
+
+void ob_spelling_offer(ob_spelling *s, const char *known)
+{
+	int d = ob_spelling_distance(s->word, known);
+	// A word that was cut short ("dur" for "duration") is near, however much is missing.
+	size_t n = strlen(s->word);
+	if (n >= 3 && strncmp(s->word, known, n) == 0)
+		d = smaller(d, 1);
+	// The same number of edits: the first in the order of the alphabet, so that the answer is always the same.
+	if (d < s->distance || (s->best && d == s->distance && strcmp(known, s->best) < 0)) {
+		s->best = known;
+		s->distance = d;
+	}
+}
