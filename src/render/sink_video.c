@@ -20,36 +20,62 @@ typedef struct video {
 	char path[4096];
 } video;
 
-static bool write_video(void *state, int w, int h, const ob_sink_frame *frame, ob_error *e)
-{
-	video *v = state;
-	return ob_pipe_write(v->pipe, w, h, frame->rgba, v->path, e);
-}
-
-// The first line that ffmpeg wrote: with -loglevel error that is its reason.
-static bool first_line(FILE *f, char *line, int size)
+// The first line that ffmpeg wrote: with -loglevel error that is its reason. Without the "[part @ address]" before it.
+static bool read_reason(FILE *f, char *line, int size)
 {
 	rewind(f);
 	bool any = fgets(line, size, f);
 	if (!any)
 		snprintf(line, (size_t)size, "it gave no reason");
 	line[strcspn(line, "\n")] = 0;
+	char *end = line[0] == '[' ? strstr(line, "] ") : NULL;
+	if (end)
+		memmove(line, end + 2, strlen(end + 2) + 1);
 	return any;
+}
+
+static bool fail_with_reason(const video *v, const char *reason, ob_error *e)
+{
+	return ob_fail(e, "%.400s: ffmpeg failed: %s", v->path, reason);
+}
+
+static void close_pipe(video *v)
+{
+	if (v->pipe >= 0)
+		close(v->pipe);
+	v->pipe = -1;
+}
+
+// Where ffmpeg takes no more, it has ended or will, and has said why.
+static bool write_video(void *state, int w, int h, const ob_sink_frame *frame, ob_error *e)
+{
+	video *v = state;
+	if (ob_pipe_write(v->pipe, w, h, frame->rgba, v->path, e))
+		return true;
+	close_pipe(v);
+	siginfo_t ended;
+	while (waitid(P_PID, (id_t)v->pid, &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR)
+		;
+	char reason[512];
+	if (read_reason(v->messages, reason, sizeof reason))
+		fail_with_reason(v, reason, e);
+	return false;
 }
 
 static bool finish_video(void *state, bool good, ob_error *e)
 {
 	video *v = state;
 	int status = 0;
-	close(v->pipe);
+	close_pipe(v);
 	while (waitpid(v->pid, &status, 0) < 0 && errno == EINTR)
 		;
-	char line[512];
+	char reason[512];
 	// It says nothing but errors, and ends with 0 even if the last bytes, which it writes as it closes, find no
 	// room.
-	bool ended_well = !first_line(v->messages, line, sizeof line) && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+	bool ended_well =
+		!read_reason(v->messages, reason, sizeof reason) && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 	if (!ended_well)
-		ob_fail(e, "%.400s: ffmpeg failed: %s", v->path, line);
+		fail_with_reason(v, reason, e);
 	fclose(v->messages);
 	free(v);
 	return ended_well;

@@ -110,6 +110,13 @@ class Frames(program.Case):
 		run.stderr.close()
 		self.assertIn("obsim: ", said)
 
+	@unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+	def test_what_ffmpeg_says(self):
+		done = program.call("run", *BOXES, *SIZE, "--video", self.path("v.xyz"), "--duration", "1")
+		self.assertEqual(done.returncode, 1)
+		self.assertRegex(done.stderr, r"^obsim: \S*v.xyz: ffmpeg failed: .*format")
+		self.assertNotIn("0x", done.stderr)
+
 	@unittest.skipUnless(shutil.which("ffmpeg") and shutil.which("ffprobe"), "ffmpeg is not installed")
 	def test_video(self):
 		video = self.path("v.mp4")
