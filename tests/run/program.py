@@ -96,8 +96,8 @@ def end(pid):
 		return False
 
 
-def wait_until(condition, seconds):
-	"""Whether the condition became true in time."""
+def wait_until(condition, seconds=PATIENCE):
+	"""Whether the condition became true. Patient, for how fast a machine is no business of these tests."""
 	end = time.monotonic() + seconds
 	while not condition():
 		if time.monotonic() > end:
@@ -131,7 +131,7 @@ class Case(unittest.TestCase):
 		"""A run under self.name, as soon as it is under way."""
 		run = start("run", *words, "--name", self.name)
 		self.addCleanup(lambda: (run.poll() is None and run.kill(), run.wait(), run.stdout.close(), run.stderr.close()))
-		self.assertTrue(wait_until(lambda: os.path.exists(segment(self.name)) or run.poll() is not None, PATIENCE))
+		self.assertTrue(wait_until(lambda: os.path.exists(segment(self.name)) or run.poll() is not None))
 		self.assertIsNone(run.poll(), "the run ended before it was looked at")
 		return run
 

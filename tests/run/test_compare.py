@@ -98,21 +98,21 @@ class Compare(program.Case):
 		below = program.processes(run.pid)
 		self.assertTrue(below)
 		os.kill(run.pid, signal.SIGTERM)
-		self.assertEqual(run.wait(20), 1)
+		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertIn("interrupted", run.stderr.read())
 		run.stdout.close()
 		run.stderr.close()
-		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 1))
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
 
 	def test_killed(self):
 		run = program.start("compare", program.scene("falling_boxes"), "-D", "n=50", "--duration", program.FOR_EVER)
 		time.sleep(1)
 		below = program.processes(run.pid)
 		run.kill()
-		run.wait(5)
+		run.wait(program.PATIENCE)
 		run.stdout.close()
 		run.stderr.close()
-		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 3))
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
 
 
 unittest.main()

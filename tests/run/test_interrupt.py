@@ -22,9 +22,9 @@ class Interrupt(program.Case):
 		time.sleep(after)
 		below = program.processes(run.pid)
 		run.send_signal(number)
-		self.assertEqual(run.wait(20), 1)
+		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertIn("interrupted", run.stderr.read())
-		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 1), "processes are left")
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))), "processes are left")
 		with open(self.path("r.json")) as f:
 			report = json.load(f)
 		self.assertEqual(report["outcome"], "interrupted")
@@ -45,7 +45,7 @@ class Interrupt(program.Case):
 	def test_at_start(self):
 		run = self.start_universe(*LONG, "--isolation", "process", "--workers", "objects")
 		run.send_signal(signal.SIGINT)
-		self.assertEqual(run.wait(20), 1)
+		self.assertEqual(run.wait(program.PATIENCE), 1)
 
 	def test_record(self):
 		report = self.interrupt("--record", self.path("r.h5"), "--series", self.path("s.csv"))
@@ -82,7 +82,7 @@ class Interrupt(program.Case):
 		run = program.start("run", *LONG, "--name", self.name, *words, start_new_session=True)
 		time.sleep(2)
 		os.killpg(run.pid, signal.SIGINT)
-		self.assertEqual(run.wait(20), 1)
+		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertIn("interrupted", run.stderr.read())
 		run.stdout.close()
 		run.stderr.close()

@@ -14,7 +14,7 @@ WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w 
 
 class Killed(program.Case):
 	def check_nothing_left(self, below):
-		gone = program.wait_until(lambda: not os.path.exists(program.segment(self.name)) and not any(map(program.alive, below)), program.PATIENCE)
+		gone = program.wait_until(lambda: not os.path.exists(program.segment(self.name)) and not any(map(program.alive, below)))
 		self.assertTrue(gone, [p for p in below if program.alive(p)] + glob.glob("/dev/shm/obsim.*"))
 
 	def test_host(self):

@@ -160,7 +160,7 @@ class Lab(program.Case):
 				time.sleep(.3)
 				below = program.processes(run.pid)
 				run.send_signal(number)
-				self.assertEqual(run.wait(20), 1)
+				self.assertEqual(run.wait(program.PATIENCE), 1)
 				self.assertIn("interrupted", run.stderr.read())
 				self.assertFalse(any(map(program.alive, below)))
 				before = self.rows()
@@ -178,7 +178,7 @@ class Lab(program.Case):
 		below = program.processes(run.pid)
 		run.kill()
 		run.wait()
-		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 5))
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
 		self.assertGreater(len(self.rows()), 0)
 
 	def test_progress(self):
@@ -187,7 +187,7 @@ class Lab(program.Case):
 		os.close(terminal)
 		time.sleep(2)
 		run.send_signal(signal.SIGINT)
-		run.wait(20)
+		run.wait(program.PATIENCE)
 		seen = b""
 		try:
 			while chunk := os.read(leader, 65536):

@@ -69,13 +69,13 @@ class Paper(program.Case):
 		run = subprocess.Popen([program.OBSIM, "paper", "--out", self.path("out")], stdout=subprocess.PIPE,
 			stderr=subprocess.PIPE, text=True)
 		self.addCleanup(lambda: (run.poll() is None and run.kill(), run.wait(), run.stdout.close(), run.stderr.close()))
-		self.assertTrue(program.wait_until(lambda: len(program.processes(run.pid)) > 1, 30))
+		self.assertTrue(program.wait_until(lambda: len(program.processes(run.pid)) > 1))
 		below = program.processes(run.pid)
 		time.sleep(.3)
 		run.send_signal(signal.SIGTERM)
 		_, said = run.communicate(timeout=program.PATIENCE)
 		self.assertEqual((run.returncode, said), (1, "obsim: interrupted\n"))
-		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below)), 10))
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
 		self.assertFalse(os.path.exists(program.segment(f"obsim-{below[0]}")))
 
 

@@ -10,14 +10,15 @@ import program
 
 
 class Progress(program.Case):
-	def run_on_terminal(self, *words, seconds):
+	def run_on_terminal(self, *words, seconds=None):
+		"""What it writes; seconds: after them it is interrupted."""
 		leader, terminal = self.open_terminal()
 		run = subprocess.Popen([program.OBSIM, "run", *words, "--name", self.name], stdout=subprocess.DEVNULL, stderr=terminal)
 		os.close(terminal)
-		time.sleep(seconds)
-		if run.poll() is None:
+		if seconds:
+			time.sleep(seconds)
 			run.send_signal(signal.SIGINT)
-		run.wait(20)
+		run.wait(program.PATIENCE)
 		seen = b""
 		try:
 			while chunk := os.read(leader, 65536):
@@ -34,7 +35,7 @@ class Progress(program.Case):
 		self.assertTrue(seen.rpartition("left")[2].lstrip().startswith("\r\033[K") or "\r\033[K" in seen.rpartition("left")[2])
 
 	def test_short(self):
-		self.assertEqual(self.run_on_terminal(program.scene("cradle"), "--duration", ".2", seconds=1.5), "")
+		self.assertEqual(self.run_on_terminal(program.scene("cradle"), "--duration", ".2"), "")
 
 
 unittest.main()

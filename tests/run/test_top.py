@@ -17,7 +17,7 @@ import program
 LONG = ["--duration", program.FOR_EVER, "--measure", "end", "--sleeping", "off"]
 
 
-def read_screen(fd, until, seconds):
+def read_screen(fd, until, seconds=program.PATIENCE):
 	"""What a terminal is sent, until the text comes or time is over."""
 	seen, end = "", time.monotonic() + seconds
 	while until not in seen and time.monotonic() < end:
@@ -44,12 +44,12 @@ def in_line(pid, thread):
 class Top(program.Case):
 	def run_universe(self, *words):
 		run = self.start_universe(*words, *LONG)
-		self.addCleanup(lambda: program.wait_until(lambda: not os.path.exists(program.segment(self.name)), 2))
+		self.addCleanup(lambda: program.wait_until(lambda: not os.path.exists(program.segment(self.name))))
 		return run
 
 	def end(self, run):
 		run.send_signal(signal.SIGINT)
-		run.wait(10)
+		run.wait(program.PATIENCE)
 
 	def test_once(self):
 		run = self.run_universe(program.scene("stack"), "--isolation", "process", "--workers", "2")
@@ -101,20 +101,20 @@ class Top(program.Case):
 		before = termios.tcgetattr(terminal)
 		top = subprocess.Popen([program.OBSIM, "top", self.name, "--interval", ".2"], stdin=terminal, stdout=terminal,
 			stderr=terminal)
-		seen = read_screen(leader, "steps/s", 10)
+		seen = read_screen(leader, "steps/s")
 		self.assertIn("\033[?1049h", seen) # the alternate screen
 		self.assertIn("running", seen)
 		os.write(leader, b"w")
-		self.assertIn("WORKER", read_screen(leader, "WORKER", 5))
+		self.assertIn("WORKER", read_screen(leader, "WORKER"))
 		os.write(leader, b"w\033[6~\033[B")
 		read_screen(leader, "nothing such", .5)
 		fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
 		top.send_signal(signal.SIGWINCH)
-		self.assertIn("objects", read_screen(leader, "objects", 5))
+		self.assertIn("objects", read_screen(leader, "objects"))
 		os.write(leader, b"q")
-		seen = read_screen(leader, "\033[?1049l", 5)
+		seen = read_screen(leader, "\033[?1049l")
 		self.assertIn("\033[?1049l", seen)
-		self.assertEqual(top.wait(5), 0)
+		self.assertEqual(top.wait(program.PATIENCE), 0)
 		self.assertEqual(termios.tcgetattr(terminal), before)
 		os.close(leader)
 		os.close(terminal)
@@ -126,12 +126,12 @@ class Top(program.Case):
 		run = self.run_universe(program.scene("stack"))
 		top = subprocess.Popen([program.OBSIM, "top", self.name, "--interval", ".2"], stdin=terminal, stdout=terminal,
 			stderr=terminal)
-		self.assertIn("running", read_screen(leader, "running", 10))
+		self.assertIn("running", read_screen(leader, "running"))
 		self.end(run)
-		self.assertIn("gone", read_screen(leader, "gone", 5))
+		self.assertIn("gone", read_screen(leader, "gone"))
 		top.send_signal(signal.SIGTERM)
-		read_screen(leader, "\033[?1049l", 5)
-		self.assertEqual(top.wait(5), 0)
+		read_screen(leader, "\033[?1049l")
+		self.assertEqual(top.wait(program.PATIENCE), 0)
 		os.close(leader)
 		os.close(terminal)
 
