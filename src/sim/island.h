@@ -1,8 +1,10 @@
-// One island through one step: the working state of its members and pairs, private to the worker that solves it.
+// The working state of one island through one step, private to the worker that solves it. Plain data: the files that
+// solve an island (island_solver.c is their table of contents) share it, and say which part of it they write.
 //
-// Velocities live in rows (contact/batch.h): v at the stride's start, dv the change that the pull and the impulses of the
-// last stride would bring where the touches are now, u = v + dv solved to the stride's end, d the displacement since the
-// poses were last brought up to date. Row 0 is everything that does not move.
+// Velocities lie in rows (contact/batch.h): v when the partial substep begins, dv the change that external acceleration
+// and the impulses of the last partial substep would bring where the contacts are now (the warm start), u = v + dv
+// solved to the partial substep's end, d the displacement since the poses were last brought up to date. Row 0 is
+// everything that does not move.
 #ifndef OB_SIM_ISLAND_H
 #define OB_SIM_ISLAND_H
 
@@ -10,7 +12,8 @@
 
 #include "contact/batch.h"
 #include "contact/impact.h"
-#include "sim/forest.h"
+#include "sim/sparse_solver.h"
+#include "sim/tree_solver.h"
 #include "table/table.h"
 
 static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_PAIR_ROWS,
@@ -26,24 +29,24 @@ typedef struct ob_body {
 	ob_mat3 r;
 	double mass, inv_mass;
 	ob_vec3 inertia; // principal
-	ob_vec3 pull; // m/s^2: what moves it where nothing touches it
+	ob_vec3 acceleration; // m/s^2, external
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
-	double path, speed; // m; m/s bound of any point
-	float rest_time;
-	bool round; // inertia is the same about all axes
-	bool loaded; // some touch of it carries an impulse
+	double path, speed; // m, as ob_motion.path; m/s bound of any point
+	float rest_time; // s, as ob_motion.rest_time
+	bool isotropic; // inertia is the same about all axes
 	bool moved_freely; // it touched nothing in this step, not for a moment
-	uint32_t contacts; // pairs that touch it
-	uint32_t waiting; // impacts that it takes part in at once
+	uint32_t contacts; // that touch
+	uint32_t pending_impacts; // that it takes part in at once (Jacobi)
 	uint64_t colours; // bit per colour in use
-	uint32_t substeps; // that it asks for in the next step (sim/tolerance.h)
-	uint32_t hot; // last pass in which a velocity changed noticeably
+	uint32_t next_substeps; // that it asks for in the next step (sim/error_control.h)
+	uint32_t active_iteration; // the last that changed its velocity by more than the wake threshold
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
 	uint32_t ghost_of; // of a ghost: the row that it stands for
 } ob_body;
 
+// A pair that touches, or may in this step.
 typedef struct ob_contact {
 	uint32_t key; // index into the universe's pairs
 	uint32_t a, b; // rows
@@ -51,52 +54,78 @@ typedef struct ob_contact {
 	uint32_t colour;
 	uint32_t points;
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
-	double limit, mu, e;
-	double depth_given, growth; // m (sim/tolerance.h): when the step began; that it went deeper in the step
+	double limit; // m: the geometry holds until path_a + path_b exceeds this
+	double mu, e; // coefficients of friction and of restitution
+	double initial_depth,
+		depth_growth; // m (sim/error_control.h): when the step began; that it has grown by in the step
 	double slip, creep; // m, in this step; in the last second
-	bool mirror; // the second touch of a pair that is solved for each side apart: its own member is b
+	bool mirror; // the second contact of a pair that is solved for each side apart: its own body is b
 } ob_contact;
 
-// Grown as needed, never shrunk.
+// A contact that takes part in a direct solve. parent: row of a fixed body if it is an anchor.
+typedef struct ob_direct_contact {
+	uint32_t contact, child, parent;
+	uint8_t row[OB_JOINT_ROWS]; // of the batch, for each row of the joint
+	ob_joint joint;
+} ob_direct_contact;
+
+// Working state of sim/direct_solver.c; memory grown as needed, never shrunk.
+typedef struct ob_direct_solver {
+	enum {
+		OB_DIRECT_UNKNOWN,
+		OB_DIRECT_UNFIT,
+		OB_DIRECT_TREES,
+		OB_DIRECT_CYCLIC
+	} shape; // of the contacts in the running partial substep: moving too fast, trees, or with cycles
+	bool used_last; // the last partial substep was solved directly
+	bool gave_up; // a solve of this step did not reduce the residual
+	int solves; // in the running partial substep
+	double residual[2]; // m/s, before the last solve and the one before
+	uint32_t rows_max, contacts_max, batches_max;
+	ob_link *link; // [row]
+	uint32_t *order; // rows, parents before children
+	uint32_t *parent_contact; // [row]
+	uint32_t contacts;
+	ob_direct_contact *contact;
+	ob_sparse_solver sparse;
+	lanes (*velocity)[OB_ROWS], (*impulse_change)[OB_ROWS]; // [batch]: of the rows
+} ob_direct_solver;
+
+// Memory grown as needed, never shrunk.
 typedef struct ob_island_work {
-	uint32_t rows, rows_max; // members + fixed bodies + row 0
-	uint32_t members; // rows 1 .. members
+	uint32_t rows, rows_max; // bodies + fixed bodies + row 0
+	uint32_t bodies; // rows 1 .. bodies
 	uint32_t first_ghost; // rows from here on are ghosts
-	ob_body_row *history; // what members published in the last exchanges, for ghosts
+	ob_body_row *history; // velocities after the last iterations, for ghosts
 	uint32_t history_max;
-	ob_body *member; // [rows]
+	ob_body *body; // [rows]
 	ob_body_row *v, *dv, *u, *d, *delta;
-	ob_body_row *drift; // change of velocity in the stride as impacts see it: dv where that is not an impact's echo
-	uint32_t touches, touches_max;
-	ob_contact *touch;
-	uint32_t *adjacency; // touches of each member
+	ob_body_row
+		*drift; // change of velocity in the partial substep as impacts see it: dv without the echo of an impact
+	uint32_t contacts, contacts_max;
+	ob_contact *contact;
+	uint32_t *adjacency; // contacts of each body, touching or not
 	uint32_t batches, batches_max;
 	ob_batch *batch;
 	uint32_t *batch_colour; // [batches]
-	uint32_t *batch_open; // [batches]: next in the stack of its colour
-	uint32_t open[OB_COLOURS][OB_KINDS]; // tops of the stacks of batches with a free lane; UINT32_MAX = none
-	uint32_t *batch_due; // [batches]: last pass in which it is to be solved (ob_solver_activate)
+	uint32_t open_batch[OB_COLOURS][OB_KINDS]; // tops of the stacks of batches with a free lane; UINT32_MAX = none
+	uint32_t *next_open_batch; // [batches]: next in the stack of its colour
+	uint32_t *batch_due; // [batches]: last iteration in which it is to be solved
 	uint32_t *batch_order; // [batches]: sorted by colour
 	bool order_stale, counts_stale, elastic;
-	uint32_t pass; // number of the running pass, ever growing
-	double mass; // of all members, kg
-	double pull; // m/s^2, the largest of any member
+	uint32_t iteration; // number of the running one, ever growing
+	double mass; // of all bodies, kg
+	double max_acceleration; // m/s^2, the largest external acceleration of any body
 	uint32_t substeps; // of this step
-	double error, error_new; // m (sim/tolerance.h): of the step; of its own doing
-	double h, t0; // s; h of the stride that is made now: a substep, or a part of one (sim/pace.h)
+	double error, new_error; // m (sim/error_control.h): of the step; that the step itself has caused
 	double substep; // s, the whole
-	double last_impact; // s into the stride: the last one's instant
-	double stirred; // m/s: the most that a first round of exchanges has changed in this step
-	bool pushed; // penetrations were pushed apart
-	double recovered; // J, what pushing penetrations apart has added in this step (ob_solver_project_positions adds it)
+	double h, h_min; // s (sim/adaptive_substep.h), of the running partial substep; of any but the last of a substep
+	double last_impact; // s into the partial substep: the last one's instant
+	double residual; // m/s: the most that a first iteration has changed a velocity in this step
+	bool projected; // penetrations were pushed apart in this step
+	double recovered; // J, what position projection has added in this step
 	uint32_t *row_of; // [object]: row in this island
-	uint32_t row_of_max;
-	ob_direct_solver forest;
+	ob_direct_solver direct;
 } ob_island_work;
-
-struct ob_sim;
-// Solves island i of the universe through the coming step and publishes what it found.
-void ob_island_solve(struct ob_sim *s, uint32_t i);
-void ob_island_work_finish(ob_island_work *w);
 
 #endif

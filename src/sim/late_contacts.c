@@ -4,7 +4,7 @@
 #include "sim/broadphase.h"
 #include "sim/prefetch.h"
 #include "sim/flight.h"
-#include "sim/look.h"
+#include "sim/narrowphase.h"
 #include "sim/publish.h"
 
 static const double touch_gap = 2e-4; // m: so near counts as meeting when looking ahead ..

@@ -29,7 +29,7 @@
 // A phase is skipped where nobody has anything to do, and the scheduling worker checks few pairs by itself: see the open_
 // functions.
 #include "sim/broadphase.h"
-#include "sim/island.h"
+#include "sim/island_solver.h"
 #include "sim/island_builder.h"
 #include "sim/late_contacts.h"
 #include "sim/ode_baseline.h"

@@ -1,7 +1,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "sim/island.h"
+#include "sim/island_solver.h"
 #include "sim/ode_baseline.h"
 #include "sim/sim.h"
 #include "sim/state.h"

@@ -1,5 +1,5 @@
 // The direct solve of bodies whose joints close cycles (walls, pyramids, heaps): the same equations as in
-// sim/articulated.h, with the impulses eliminated first. What is left has one 6 x 6 block for each body and for each
+// sim/tree_solver.h, with the impulses eliminated first. What is left has one 6 x 6 block for each body and for each
 // two that share a joint,
 //
 //      (M + J^T e^-1 J) dv = J^T e^-1 y,      x = e^-1 (y - J dv)
@@ -10,13 +10,13 @@
 //        o───o───o             o───o───o         The cost is the sum of squares of the numbers of neighbours. It
 //        │   │   │      ──>    │ ╱ │   │         is known before any arithmetic is done; where it is too high,
 //        x───o───o               ──o───o         as in thick heaps, there is no solve.
-#ifndef OB_SIM_TRUSS_H
-#define OB_SIM_TRUSS_H
+#ifndef OB_SIM_SPARSE_SOLVER_H
+#define OB_SIM_SPARSE_SOLVER_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "sim/articulated.h"
+#include "sim/tree_solver.h"
 
 enum { OB_SPARSE_FIXED = UINT32_MAX }; // a parent that does not move
 
@@ -25,7 +25,7 @@ typedef double ob_sparse_block[6][6];
 // Memory grown as needed, never shrunk. Bodies have numbers from 0.
 typedef struct ob_sparse_solver {
 	uint32_t bodies, bodies_max, words; // 64 bodies to a word
-	uint64_t *near; // [body][words]: bit per neighbour that is not eliminated yet
+	uint64_t *adjacent; // [body][words]: bit per neighbour that is not eliminated yet
 	uint32_t *order, *place; // bodies, as they are eliminated; [body]: its place among them
 	uint32_t *first; // [bodies + 1], by place in the order: range in below
 	uint32_t below_max, *below; // neighbours left when a body is eliminated
@@ -34,7 +34,7 @@ typedef struct ob_sparse_solver {
 	ob_sparse_block *block; // one for each entry of below: the neighbour's rows, the eliminated body's columns
 	ob_sparse_block *own; // [body]
 	double (*inverse)[6]; // [body]: of its root's diagonal
-	double (*change)[6]; // [body]: the push, then dv
+	double (*change)[6]; // [body]: the right-hand side, then dv
 } ob_sparse_solver;
 
 void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies);

@@ -1,7 +1,7 @@
-// The direct solve of a tree of bodies: which impulses at its joints bring the joints' rates where they should be?
+// The direct solve of a tree of bodies: which impulses at its joints bring the joints' velocities where they should be?
 //
 // A joint is up to seven rows between a child and its parent: J_c v_c + J_p v_p is how fast they open or slide.
-// Wanted is a change of these rates by y, by impulses x that act on both bodies alike, each row softened by a tiny
+// Wanted is a change of these velocities by y, by impulses x that act on both bodies alike, each row softened by a tiny
 // compliance e, which makes the answer unique where rows say the same twice:
 //
 //                                                            J_c dv_c + J_p dv_p + e x = y      for each joint
@@ -16,8 +16,8 @@
 // and back from the root: x = L^-T (z - Z dv_p), dv_c = M_c^-1 (p_c + J_c^T x). The inertia that gathers in a body is
 // Featherstone's articulated-body inertia (1983); with multipliers for the joints the same elimination is Baraff's
 // (1996). The cost is linear in the number of bodies.
-#ifndef OB_SIM_ARTICULATED_H
-#define OB_SIM_ARTICULATED_H
+#ifndef OB_SIM_TREE_SOLVER_H
+#define OB_SIM_TREE_SOLVER_H
 
 #include <stdint.h>
 

@@ -1,10 +1,10 @@
-#include "sim/articulated.h"
+#include "sim/tree_solver.h"
 
 #include <math.h>
 
-// Lower triangle of a symmetric matrix, row i of width "stride", into its Cholesky root. A direction in which rounding
-// left nothing does not move.
-static void take_root(int n, int stride, const double *m, int root_stride, double *root, double *inverse)
+// Lower triangle of a symmetric matrix, row i of width "stride", into its Cholesky factor. A direction of which
+// rounding left nothing does not move.
+static void cholesky(int n, int stride, const double *m, int root_stride, double *root, double *inverse)
 {
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j <= i; j++) {
@@ -45,9 +45,9 @@ static void upper_solve(int n, int root_stride, const double *root, const double
 void ob_link_anchor(ob_link *child, const ob_joint *j)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
-		double stiff = 1 / j->compliance[r];
+		double stiffness = 1 / j->compliance[r];
 		for (int i = 0; i < 6; i++) {
-			double s = stiff * j->child[i][r];
+			double s = stiffness * j->child[i][r];
 			for (int k = 0; k < 6; k++)
 				child->m[i][k] += s * j->child[k][r];
 			child->m[i][6] += s * j->parent[r][6];
@@ -57,7 +57,7 @@ void ob_link_anchor(ob_link *child, const ob_joint *j)
 
 void ob_link_eliminate(ob_link *child, ob_joint *j, ob_link *parent)
 {
-	take_root(6, 8, child->m[0], 6, child->root[0], child->inverse);
+	cholesky(6, 8, child->m[0], 6, child->root[0], child->inverse);
 	double push[6][8] = { 0 }, (*rows)[8] = j ? j->child : push;
 	for (int i = 0; i < 6; i++)
 		rows[i][7] = child->m[i][6];
@@ -75,7 +75,7 @@ void ob_link_eliminate(ob_link *child, ob_joint *j, ob_link *parent)
 		s[r][r] += j->compliance[r];
 		j->parent[r][6] -= s[r][7];
 	}
-	take_root((int)j->rows, 8, s[0], 8, j->root[0], j->inverse);
+	cholesky((int)j->rows, 8, s[0], 8, j->root[0], j->inverse);
 	lower_solve((int)j->rows, 8, j->root[0], j->inverse, j->parent);
 	for (uint32_t r = 0; r < j->rows; r++)
 		for (int i = 0; i < 6; i++)

@@ -1,5 +1,5 @@
 // The elimination where joints close cycles against the equations that it solves, and what it refuses.
-#include "sim/truss.h"
+#include "sim/sparse_solver.h"
 
 #include <string.h>
 

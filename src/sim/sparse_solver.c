@@ -1,4 +1,4 @@
-#include "sim/truss.h"
+#include "sim/sparse_solver.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@ void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies)
 		ob_sparse_finish(t);
 		t->bodies_max = bodies + bodies / 2;
 		size_t n = t->bodies_max, words = (n + BITS - 1) / BITS;
-		t->near = malloc(n * words * sizeof *t->near);
+		t->adjacent = malloc(n * words * sizeof *t->adjacent);
 		t->order = malloc(n * sizeof *t->order);
 		t->place = malloc(n * sizeof *t->place);
 		t->first = malloc((n + 1) * sizeof *t->first);
@@ -23,40 +23,40 @@ void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies)
 	}
 	t->bodies = bodies;
 	t->words = (bodies + BITS - 1) / BITS;
-	memset(t->near, 0, (size_t)bodies * t->words * sizeof *t->near);
+	memset(t->adjacent, 0, (size_t)bodies * t->words * sizeof *t->adjacent);
 }
 
-static uint64_t *near_of(const ob_sparse_solver *t, uint32_t body)
+static uint64_t *adjacent_to(const ob_sparse_solver *t, uint32_t body)
 {
-	return t->near + (size_t)body * t->words;
+	return t->adjacent + (size_t)body * t->words;
 }
 
 void ob_sparse_link(ob_sparse_solver *t, uint32_t child, uint32_t parent)
 {
 	if (parent == OB_SPARSE_FIXED)
 		return;
-	near_of(t, child)[parent / BITS] |= UINT64_C(1) << parent % BITS;
-	near_of(t, parent)[child / BITS] |= UINT64_C(1) << child % BITS;
+	adjacent_to(t, child)[parent / BITS] |= UINT64_C(1) << parent % BITS;
+	adjacent_to(t, parent)[child / BITS] |= UINT64_C(1) << child % BITS;
 }
 
 static uint32_t degree(const ob_sparse_solver *t, uint32_t body)
 {
 	uint32_t n = 0;
 	for (uint32_t k = 0; k < t->words; k++)
-		n += (uint32_t)__builtin_popcountll(near_of(t, body)[k]);
+		n += (uint32_t)__builtin_popcountll(adjacent_to(t, body)[k]);
 	return n;
 }
 
 // Its neighbours become each other's, and lose it.
-static void eliminate(ob_sparse_solver *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
+static void remove_from_graph(ob_sparse_solver *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
 {
-	const uint64_t *gone = near_of(t, body);
+	const uint64_t *gone = adjacent_to(t, body);
 	for (uint32_t i = 0; i < n; i++) {
-		uint64_t *near = near_of(t, neighbour[i]);
+		uint64_t *row = adjacent_to(t, neighbour[i]);
 		for (uint32_t k = 0; k < t->words; k++)
-			near[k] |= gone[k];
-		near[neighbour[i] / BITS] &= ~(UINT64_C(1) << neighbour[i] % BITS);
-		near[body / BITS] &= ~(UINT64_C(1) << body % BITS);
+			row[k] |= gone[k];
+		row[neighbour[i] / BITS] &= ~(UINT64_C(1) << neighbour[i] % BITS);
+		row[body / BITS] &= ~(UINT64_C(1) << body % BITS);
 	}
 }
 
@@ -70,7 +70,7 @@ static uint32_t *list_neighbours(ob_sparse_solver *t, uint32_t body, uint32_t fr
 	}
 	uint32_t *list = t->below + from;
 	for (uint32_t k = 0; k < t->words; k++)
-		for (uint64_t left = near_of(t, body)[k]; left; left &= left - 1)
+		for (uint64_t left = adjacent_to(t, body)[k]; left; left &= left - 1)
 			*list++ = k * BITS + (uint32_t)__builtin_ctzll(left);
 	return t->below + from;
 }
@@ -94,7 +94,7 @@ bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most)
 		t->place[body] = k;
 		t->first[k] = blocks;
 		const uint32_t *neighbour = list_neighbours(t, body, blocks, least);
-		eliminate(t, body, neighbour, least);
+		remove_from_graph(t, body, neighbour, least);
 		for (uint32_t i = 0; i < least; i++) {
 			t->at[(size_t)body * t->bodies + neighbour[i]] = blocks + i;
 			t->at[(size_t)neighbour[i] * t->bodies + body] = blocks + i;
@@ -122,9 +122,9 @@ void ob_sparse_add_inertia(ob_sparse_solver *t, uint32_t body, double m[6][8])
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
-		const double stiff = 1 / j->compliance[r], push = stiff * j->parent[r][6], *p = j->parent[r];
+		const double stiffness = 1 / j->compliance[r], push = stiffness * j->parent[r][6], *p = j->parent[r];
 		for (int i = 0; i < 6; i++) {
-			const double s = stiff * j->child[i][r];
+			const double s = stiffness * j->child[i][r];
 			for (int k = 0; k < 6; k++)
 				t->own[child][i][k] += s * j->child[k][r];
 			t->change[child][i] += push * j->child[i][r];
@@ -134,7 +134,7 @@ void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child,
 		const bool child_first = t->place[child] < t->place[parent];
 		double(*both)[6] = t->block[t->at[(size_t)child * t->bodies + parent]];
 		for (int i = 0; i < 6; i++) {
-			const double s = stiff * p[i];
+			const double s = stiffness * p[i];
 			for (int k = 0; k < 6; k++) {
 				t->own[parent][i][k] += s * p[k];
 				both[child_first ? i : k][child_first ? k : i] += s * j->child[k][r];
@@ -146,8 +146,8 @@ void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child,
 
 // ---- solving
 
-// Lower triangle into its Cholesky root. A direction in which rounding left nothing does not move.
-static void take_root(double (*m)[6], double *inverse)
+// Lower triangle into its Cholesky factor. A direction of which rounding left nothing does not move.
+static void cholesky(double (*m)[6], double *inverse)
 {
 	for (int i = 0; i < 6; i++)
 		for (int j = 0; j <= i; j++) {
@@ -192,10 +192,10 @@ static void subtract(double (*m)[6], double (*a)[6], double (*bt)[6])
 				m[i][c] -= a[i][k] * bt[k][c];
 }
 
-static void fold(ob_sparse_solver *t, uint32_t k)
+static void eliminate_body(ob_sparse_solver *t, uint32_t k)
 {
 	const uint32_t body = t->order[k], from = t->first[k], to = t->first[k + 1];
-	take_root(t->own[body], t->inverse[body]);
+	cholesky(t->own[body], t->inverse[body]);
 	lower_solve(t->own[body], t->inverse[body], t->change[body]);
 	for (uint32_t i = from; i < to; i++)
 		for (int r = 0; r < 6; r++)
@@ -218,7 +218,7 @@ static void fold(ob_sparse_solver *t, uint32_t k)
 	}
 }
 
-static void unfold(ob_sparse_solver *t, uint32_t k)
+static void back_substitute(ob_sparse_solver *t, uint32_t k)
 {
 	const uint32_t body = t->order[k];
 	for (uint32_t i = t->first[k]; i < t->first[k + 1]; i++)
@@ -231,9 +231,9 @@ static void unfold(ob_sparse_solver *t, uint32_t k)
 void ob_sparse_solve(ob_sparse_solver *t)
 {
 	for (uint32_t k = 0; k < t->bodies; k++)
-		fold(t, k);
+		eliminate_body(t, k);
 	for (uint32_t k = t->bodies; k-- > 0;)
-		unfold(t, k);
+		back_substitute(t, k);
 }
 
 void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t child, uint32_t parent)
@@ -250,7 +250,7 @@ void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t c
 
 void ob_sparse_finish(ob_sparse_solver *t)
 {
-	free(t->near);
+	free(t->adjacent);
 	free(t->order);
 	free(t->place);
 	free(t->first);

@@ -1,0 +1,19 @@
+// The contact constraints of an island: which pairs touch, where, and in which lane of which batch they are solved.
+//
+// Contacts are coloured so that no two of a colour share a moving body: a colour's batches hold each moving body once,
+// and all lanes of a batch can be solved at the same time.
+#ifndef OB_SIM_CONTACTS_H
+#define OB_SIM_CONTACTS_H
+
+#include "sim/state.h"
+
+// The contacts of the island's pairs, with the impulses that they had when the step before ended.
+void ob_contacts_load(ob_sim *s, const ob_island *is);
+// Narrow phase for every pair whose geometry may change within the time ahead (s; 0: has changed), by how far its
+// bodies have moved and will move. Impulses stay with the points that they belong to. true: there were some.
+bool ob_contacts_update(ob_sim *s, double ahead);
+// Batches in order of colour, matrices up to date: ready for the contact solver.
+void ob_contacts_prepare(ob_sim *s);
+void ob_contacts_store(ob_sim *s);
+
+#endif

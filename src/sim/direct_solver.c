@@ -1,0 +1,523 @@
+#include "sim/direct_solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/state.h"
+
+enum { ROOT = UINT32_MAX, UNREACHED = ROOT - 1 }; // in parent_contact[]
+
+static const double compliance = 1e-6; // of a row's own response
+static const double compliance_in_cycles = 1e-5; // .. where several rows may depend on each other
+static const uint32_t max_block_products = 64; // of the sparse factorisation, for each body
+
+// When a direct solve is worth its cost.
+static const double residual_threshold = 1e-7; // m/s
+static const double residual_after_correction = 1e-8; // m/s, where the last partial substep was solved directly
+static const int max_solves = 4, max_solves_in_cycles = 16; // in a partial substep
+static const double creep_speed = 1e-4; // m/s: slower bodies whose contacts hold ought to stand
+static const double standing_speed = .02; // m/s: faster ones fall or slide
+
+static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
+{
+	return &w->batch[w->contact[c->contact].lane / OB_LANES];
+}
+
+static int lane_of(const ob_island_work *w, const ob_direct_contact *c)
+{
+	return w->contact[c->contact].lane % OB_LANES;
+}
+
+// Four normals carry a load in many ways: n is the change of their impulses that changes nothing else (the null space
+// of J^T). On a plane its elements are the areas of the triangles between the other three points, in turn added and
+// taken away.
+static bool normal_null_space(const ob_batch *b, int l, double *n)
+{
+	double at[4][2], length2 = 0;
+	for (int j = 0; j < 4; j++) {
+		const lanes *arm = b->ja[j];
+		at[j][0] = arm[0][l] * b->t1[0][l] + arm[1][l] * b->t1[1][l] + arm[2][l] * b->t1[2][l];
+		at[j][1] = arm[0][l] * b->t2[0][l] + arm[1][l] * b->t2[1][l] + arm[2][l] * b->t2[2][l];
+	}
+	for (int j = 0; j < 4; j++) {
+		const double *p = at[(j + 1) % 4], *q = at[(j + 2) % 4], *r = at[(j + 3) % 4];
+		double area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+		n[j] = j % 2 ? -area : area;
+		length2 += n[j] * n[j];
+	}
+	for (int j = 0; j < 4; j++)
+		n[j] /= sqrt(length2);
+	return length2 > 0;
+}
+
+static bool has_four_normals(const ob_direct_contact *c)
+{
+	return c->joint.rows >= 4 && c->row[3] == 3;
+}
+
+// ---- assembling
+
+// Rows that hold: normals that press or are about to, friction and twist within their bounds. Returns how many.
+static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, uint8_t *row)
+{
+	const double within = .999;
+	uint32_t n = 0;
+	double sum = 0;
+	for (int j = 0; j < OB_POINTS; j++) {
+		sum += b->impulse[j][l];
+		if (b->inv_diag[j][l] > 0 && rate[j][l] * b->inv_diag[j][l] < b->impulse[j][l])
+			row[n++] = (uint8_t)j;
+	}
+	double bound = within * b->mu[l] * sum;
+	if (hypot(b->impulse[4][l], b->impulse[5][l]) < bound)
+		row[n++] = 4, row[n++] = 5;
+	if (fabs(b->impulse[6][l]) < bound * b->radius[l])
+		row[n++] = 6;
+	return n;
+}
+
+// One row for both bodies; a's and b's sides of a batch differ in sign.
+static void fill_row(const ob_batch *b, int l, int row, bool child_is_a, uint32_t r, ob_joint *j)
+{
+	static const lanes none[3];
+	const lanes *along = row < 4 ? b->n : row == 4 ? b->t1 : row == 5 ? b->t2 : none;
+	const lanes *about_a = row < 4 ? b->ja[row] : row == 4 ? b->fa1 : row == 5 ? b->fa2 : b->n;
+	const lanes *about_b = row < 4 ? b->jb[row] : row == 4 ? b->fb1 : row == 5 ? b->fb2 : b->n;
+	for (int c = 0; c < 3; c++) {
+		double n = child_is_a ? along[c][l] : -along[c][l];
+		j->child[c][r] = n;
+		j->parent[r][c] = -n;
+		j->child[3 + c][r] = child_is_a ? about_a[c][l] : -about_b[c][l];
+		j->parent[r][3 + c] = child_is_a ? -about_b[c][l] : about_a[c][l];
+	}
+}
+
+static void fill_joint(const ob_island_work *w, ob_direct_contact *c)
+{
+	const ob_batch *b = batch_of(w, c);
+	int l = lane_of(w, c);
+	ob_joint *j = &c->joint;
+	double n[4], null_part = 0, softness = w->direct.shape == OB_DIRECT_CYCLIC ? compliance_in_cycles : compliance;
+	memset(j->child, 0, sizeof j->child);
+	memset(j->parent, 0, sizeof j->parent);
+	for (uint32_t r = 0; r < j->rows; r++) {
+		int row = c->row[r];
+		fill_row(b, l, row, w->contact[c->contact].a == c->child, r, j);
+		j->parent[r][6] = -w->direct.velocity[b - w->batch][row][l];
+		j->compliance[r] = softness * b->diag[row][l];
+	}
+	// Four points on a plane have no response along the null space: that part is not asked for.
+	if (!has_four_normals(c) || !normal_null_space(b, l, n))
+		return;
+	for (int r = 0; r < 4; r++)
+		null_part += n[r] * j->parent[r][6];
+	for (int r = 0; r < 4; r++)
+		j->parent[r][6] -= n[r] * null_part;
+}
+
+static void fill_link(const ob_body *m, ob_link *k)
+{
+	memset(k->m, 0, sizeof k->m);
+	for (int i = 0; i < 3; i++) {
+		const double *r = m->r.m[i];
+		k->m[i][i] = m->mass;
+		for (int j = 0; j < 3; j++) {
+			const double *q = m->r.m[j];
+			k->m[3 + i][3 + j] =
+				r[0] * q[0] * m->inertia.x + r[1] * q[1] * m->inertia.y + r[2] * q[2] * m->inertia.z;
+		}
+	}
+}
+
+// Contact i takes part, if any of its rows holds.
+static ob_direct_contact *add_contact(ob_island_work *w, uint32_t i, uint32_t child)
+{
+	ob_direct_solver *f = &w->direct;
+	const ob_contact *contact = &w->contact[i];
+	ob_direct_contact *c = &f->contact[f->contacts];
+	if (contact->lane == OB_NO_LANE)
+		return NULL;
+	uint32_t batch = contact->lane / OB_LANES;
+	c->joint.rows = holding_rows(&w->batch[batch], contact->lane % OB_LANES, f->velocity[batch], c->row);
+	if (!c->joint.rows)
+		return NULL;
+	c->contact = i;
+	c->child = child;
+	c->parent = contact->a == child ? contact->b : contact->a;
+	fill_joint(w, c);
+	f->contacts++;
+	return c;
+}
+
+static uint32_t find_roots(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		bool a_fixed = w->body[contact->a].inv_mass == 0, b_fixed = w->body[contact->b].inv_mass == 0;
+		uint32_t at = a_fixed ? contact->b : contact->a;
+		if ((!a_fixed && !b_fixed) || f->parent_contact[at] != UNREACHED)
+			continue;
+		const ob_direct_contact *c = add_contact(w, i, at);
+		if (!c)
+			continue;
+		ob_link_anchor(&f->link[at], &c->joint);
+		f->parent_contact[at] = ROOT;
+		f->order[n++] = at;
+	}
+	return n;
+}
+
+static uint32_t find_children(ob_island_work *w, uint32_t at, uint32_t n)
+{
+	ob_direct_solver *f = &w->direct;
+	const ob_body *body = &w->body[at];
+	for (uint32_t k = 0; k < body->adjacent; k++) {
+		uint32_t i = w->adjacency[body->first_adjacent + k];
+		uint32_t other = w->contact[i].a == at ? w->contact[i].b : w->contact[i].a;
+		if (w->body[other].inv_mass == 0 || f->parent_contact[other] != UNREACHED || !add_contact(w, i, other))
+			continue;
+		f->parent_contact[other] = f->contacts - 1;
+		f->order[n++] = other;
+	}
+	return n;
+}
+
+// Every body stands in the order once, those that nothing holds as trees of their own.
+static void build_trees(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	f->contacts = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		f->parent_contact[i] = UNREACHED;
+		fill_link(&w->body[i], &f->link[i]);
+	}
+	uint32_t n = find_roots(w), root = 1;
+	for (uint32_t done = 0; done < w->bodies; done++) {
+		for (; done == n; root++)
+			if (f->parent_contact[root] == UNREACHED) {
+				f->parent_contact[root] = ROOT;
+				f->order[n++] = root;
+			}
+		n = find_children(w, f->order[done], n);
+	}
+}
+
+// All contacts of which some row holds.
+static void add_all_contacts(ob_island_work *w)
+{
+	w->direct.contacts = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		add_contact(w, i, w->body[contact->a].inv_mass == 0 ? contact->b : contact->a);
+	}
+}
+
+// ---- solving
+
+static void find_row_velocities(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->batches; i++) {
+		lanes *rate = w->direct.velocity[i];
+		ob_batch_row_velocities(&w->batch[i], w->u, rate);
+		for (int j = 0; j < OB_POINTS; j++)
+			rate[j] += w->batch[i].bias[j];
+	}
+}
+
+static void solve_trees(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	for (uint32_t k = w->bodies; k-- > 0;) {
+		uint32_t i = f->order[k];
+		ob_direct_contact *c = f->parent_contact[i] == ROOT ? NULL : &f->contact[f->parent_contact[i]];
+		ob_link_eliminate(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
+	}
+	for (uint32_t k = 0; k < w->bodies; k++) {
+		uint32_t i = f->order[k];
+		ob_direct_contact *c = f->parent_contact[i] == ROOT ? NULL : &f->contact[f->parent_contact[i]];
+		ob_link_substitute(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
+	}
+	for (uint32_t k = 0; k < f->contacts; k++)
+		if (w->body[f->contact[k].parent].inv_mass == 0)
+			ob_link_anchor_impulses(&f->link[f->contact[k].child], &f->contact[k].joint);
+}
+
+static uint32_t sparse_index(const ob_island_work *w, uint32_t row)
+{
+	return w->body[row].inv_mass > 0 ? row - 1 : OB_SPARSE_FIXED;
+}
+
+// false: it would cost too much.
+static bool solve_sparse(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	ob_sparse_begin(&f->sparse, w->bodies);
+	for (uint32_t k = 0; k < f->contacts; k++)
+		ob_sparse_link(&f->sparse, f->contact[k].child - 1, sparse_index(w, f->contact[k].parent));
+	if (!ob_sparse_analyse(&f->sparse, max_block_products))
+		return false;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		fill_link(&w->body[i], &f->link[i]);
+		ob_sparse_add_inertia(&f->sparse, i - 1, f->link[i].m);
+	}
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		const ob_direct_contact *c = &f->contact[k];
+		ob_sparse_add_joint(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
+	}
+	ob_sparse_solve(&f->sparse);
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		ob_direct_contact *c = &f->contact[k];
+		ob_sparse_joint_impulses(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
+	}
+	return true;
+}
+
+// A load on four points can be distributed so that none pulls, as long as it stands between them: x, the four impulses,
+// goes along the null space to the middle of what is allowed.
+static void distribute_load(const ob_batch *b, int l, double *x)
+{
+	double n[4], from = -INFINITY, to = INFINITY;
+	if ((x[0] >= 0 && x[1] >= 0 && x[2] >= 0 && x[3] >= 0) || !normal_null_space(b, l, n))
+		return;
+	for (int j = 0; j < 4; j++) {
+		if (n[j] > 0)
+			from = fmax(from, -x[j] / n[j]);
+		if (n[j] < 0)
+			to = fmin(to, -x[j] / n[j]);
+	}
+	if (isinf(from) || isinf(to))
+		return;
+	for (int j = 0; j < 4; j++)
+		x[j] += n[j] * .5 * (from + to);
+}
+
+static void project_on_cone(const ob_batch *b, int l, double *x)
+{
+	double sum = 0;
+	for (int j = 0; j < OB_POINTS; j++)
+		sum += x[j] = fmax(0, x[j]);
+	double bound = b->mu[l] * sum, friction = hypot(x[4], x[5]);
+	if (friction > bound) {
+		x[4] *= bound / friction;
+		x[5] *= bound / friction;
+	}
+	x[6] = fmax(-bound * b->radius[l], fmin(bound * b->radius[l], x[6]));
+}
+
+// The share alpha of the solution, projected: changes of the impulses, and of the velocities in w->delta.
+static void project_solution(ob_island_work *w, double alpha)
+{
+	ob_direct_solver *f = &w->direct;
+	memset(f->impulse_change, 0, w->batches * sizeof *f->impulse_change);
+	memset(w->delta, 0, w->rows * sizeof *w->delta);
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		const ob_direct_contact *c = &f->contact[k];
+		const ob_batch *b = batch_of(w, c);
+		int l = lane_of(w, c);
+		double x[OB_ROWS];
+		for (int i = 0; i < OB_ROWS; i++)
+			x[i] = b->impulse[i][l];
+		for (uint32_t r = 0; r < c->joint.rows; r++)
+			x[c->row[r]] += c->joint.x[r];
+		if (has_four_normals(c))
+			distribute_load(b, l, x);
+		for (int i = 0; i < OB_ROWS; i++)
+			x[i] = b->impulse[i][l] + alpha * (x[i] - b->impulse[i][l]);
+		project_on_cone(b, l, x);
+		for (int i = 0; i < OB_ROWS; i++)
+			f->impulse_change[b - w->batch][i][l] = x[i] - b->impulse[i][l];
+	}
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_apply_impulses(&w->batch[i], f->impulse_change[i], w->delta);
+}
+
+// How far along the change the residual energy falls, 1 at most: it is slope t + curvature t^2 / 2.
+static double line_search(const ob_island_work *w)
+{
+	const ob_direct_solver *f = &w->direct;
+	double slope = 0, curvature = 0;
+	for (uint32_t i = 0; i < w->batches; i++) {
+		lanes r[OB_ROWS], s = lanes_of(0), c = lanes_of(0);
+		ob_batch_row_velocities(&w->batch[i], w->delta, r);
+		for (int k = 0; k < OB_ROWS; k++) {
+			s += f->velocity[i][k] * f->impulse_change[i][k];
+			c += r[k] * f->impulse_change[i][k];
+		}
+		for (int l = 0; l < OB_LANES; l++) {
+			slope += s[l];
+			curvature += c[l];
+		}
+	}
+	return slope < 0 && curvature > 0 ? fmin(1, -slope / curvature) : 0;
+}
+
+static bool find_direction(ob_island_work *w)
+{
+	if (w->direct.shape == OB_DIRECT_CYCLIC) {
+		add_all_contacts(w);
+		return solve_sparse(w);
+	}
+	build_trees(w);
+	solve_trees(w);
+	return true;
+}
+
+void ob_direct_solve(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	ob_direct_solver *f = &w->direct;
+	const double backtrack = .3, min_step = .5; // projection bends the direction: a smaller share is tried then
+	const double min_alpha = f->shape == OB_DIRECT_CYCLIC ? backtrack : 1e-3;
+	double alpha = 1, t;
+	find_row_velocities(w);
+	if (!find_direction(w)) {
+		f->gave_up = true;
+		return;
+	}
+	for (project_solution(w, alpha); (t = line_search(w)) < min_step && alpha > min_alpha;
+	     project_solution(w, alpha))
+		alpha *= backtrack;
+	f->gave_up = t < min_step;
+	if (f->gave_up)
+		t = 0;
+	for (uint32_t i = 0; i < w->batches; i++)
+		for (int k = 0; k < OB_ROWS; k++)
+			w->batch[i].impulse[k] += t * f->impulse_change[i][k];
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		for (int c = 0; c < 6; c++)
+			w->u[i][c] += t * w->delta[i][c];
+	memset(w->delta, 0, w->rows * sizeof *w->delta);
+}
+
+// ---- when a direct solve is worth its cost
+
+void ob_direct_begin(ob_direct_solver *f)
+{
+	f->used_last = f->gave_up = false;
+}
+
+void ob_direct_begin_partial(ob_direct_solver *f)
+{
+	f->shape = OB_DIRECT_UNKNOWN;
+	f->solves = 0;
+	f->residual[0] = f->residual[1] = INFINITY;
+}
+
+void ob_direct_finish(ob_direct_solver *f)
+{
+	free(f->link);
+	free(f->order);
+	free(f->parent_contact);
+	free(f->contact);
+	free(f->velocity);
+	free(f->impulse_change);
+	ob_sparse_finish(&f->sparse);
+}
+
+static void reserve(ob_direct_solver *f, const ob_island_work *w)
+{
+	if (w->rows > f->rows_max) {
+		f->rows_max = w->rows + w->rows / 2;
+		f->link = realloc(f->link, f->rows_max * sizeof *f->link);
+		f->order = realloc(f->order, f->rows_max * sizeof *f->order);
+		f->parent_contact = realloc(f->parent_contact, f->rows_max * sizeof *f->parent_contact);
+	}
+	if (w->contacts > f->contacts_max) {
+		f->contacts_max = w->contacts + w->contacts / 2;
+		free(f->contact);
+		f->contact = malloc(f->contacts_max * sizeof *f->contact);
+	}
+	if (w->batches > f->batches_max) {
+		f->batches_max = w->batches + w->batches / 2;
+		free(f->velocity);
+		free(f->impulse_change);
+		f->velocity = aligned_alloc(32, f->batches_max * sizeof *f->velocity);
+		f->impulse_change = aligned_alloc(32, f->batches_max * sizeof *f->impulse_change);
+	}
+}
+
+static bool stands_still(const ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		double speed2 = 0;
+		if (contact->lane == OB_NO_LANE)
+			continue;
+		for (int c = 0; c < 3; c++) {
+			double d = w->v[contact->a][c] - w->v[contact->b][c];
+			speed2 += d * d;
+		}
+		if (speed2 > standing_speed * standing_speed)
+			return false;
+	}
+	return true;
+}
+
+// Where contacts close cycles, trees would ask one contact for what several carry.
+static bool closes_cycles(const ob_island_work *w)
+{
+	uint32_t touching = 0;
+	for (uint32_t i = 0; i < w->contacts; i++)
+		touching += w->contact[i].lane != OB_NO_LANE;
+	return touching > w->bodies;
+}
+
+// Seldom, as an island that one solve does not bring to rest the next one seldom does; and in two steps running, as the
+// correction of the first is in the warm start of the second.
+static bool cycles_due(const ob_sim *s)
+{
+	const uint32_t every = 8, max_bodies = 256;
+	return ob_step_count(s->u) % every < 2 && s->island.bodies <= max_bodies;
+}
+
+// True where bodies move that ought to stand. The residual does not show it: an island that sways as a whole changes
+// little from pair to pair.
+static bool creeps(const ob_island_work *w)
+{
+	double fastest2 = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		const double *u = w->u[i];
+		fastest2 = fmax(fastest2, u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+	}
+	return fastest2 > residual_threshold * residual_threshold && fastest2 < creep_speed * creep_speed;
+}
+
+static bool is_worthwhile(const ob_sim *s, double residual)
+{
+	const ob_direct_solver *f = &s->island.direct;
+	if (f->gave_up || f->shape == OB_DIRECT_UNFIT || s->settings->solver != OB_SOLVER_COLOURED)
+		return false;
+	// After a direct solve the next partial substep is solved finely, too: the correction is a part of the impulses
+	// that its warm start repeats, and left alone it would go on for ever, to and fro.
+	const double enough =
+		f->used_last && f->shape != OB_DIRECT_CYCLIC ? residual_after_correction : residual_threshold;
+	return residual > enough || (!f->solves && creeps(&s->island));
+}
+
+bool ob_direct_wanted(ob_sim *s, double residual, bool more_iterations)
+{
+	ob_island_work *w = &s->island;
+	ob_direct_solver *f = &w->direct;
+	if (!is_worthwhile(s, residual))
+		return false;
+	if (f->shape == OB_DIRECT_UNKNOWN)
+		f->shape = !stands_still(w)    ? OB_DIRECT_UNFIT
+			   : !closes_cycles(w) ? OB_DIRECT_TREES
+			   : cycles_due(s)     ? OB_DIRECT_CYCLIC
+					       : OB_DIRECT_UNFIT;
+	const bool cyclic = f->shape == OB_DIRECT_CYCLIC;
+	if (f->shape == OB_DIRECT_UNFIT || f->solves == (cyclic ? max_solves_in_cycles : max_solves) ||
+	    (cyclic && more_iterations))
+		return false;
+	if (cyclic && residual > .5 * f->residual[1]) {
+		f->gave_up = true;
+		return false;
+	}
+	f->residual[1] = f->residual[0];
+	f->residual[0] = residual;
+	f->solves++;
+	reserve(f, w);
+	return true;
+}

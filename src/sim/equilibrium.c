@@ -1,0 +1,40 @@
+#include "sim/equilibrium.h"
+
+static const double steady_speed = 1e-3; // m/s, of any point of a body
+static const double residual_threshold = 1e-7; // m/s: a first iteration that changes a velocity by more has work to do
+static const double min_rest_time = .1; // s
+
+bool ob_equilibrium_likely(const ob_sim *s, const ob_island *is)
+{
+	const ob_run_settings *run = s->settings;
+	const uint32_t *id = s->data->member + is->first_member;
+	if (run->substeps == 1 || s->island.substeps > run->substeps || run->solver != OB_SOLVER_COLOURED ||
+	    run->integrator != OB_INTEGRATOR_EXACT)
+		return false;
+	for (uint32_t i = 0; i < is->members; i++)
+		if (!(ob_newest_motion(s->u, id[i])->flags & OB_MOTION_STEADY))
+			return false;
+	return true;
+}
+
+bool ob_equilibrium_confirmed(const ob_island_work *w)
+{
+	return w->residual <= residual_threshold && !w->projected;
+}
+
+bool ob_equilibrium_reached(const ob_island_work *w)
+{
+	if (!ob_equilibrium_confirmed(w))
+		return false;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		const ob_body *body = &w->body[i];
+		if (body->contacts == 0 || body->speed > residual_threshold || body->rest_time < min_rest_time)
+			return false;
+	}
+	return true;
+}
+
+bool ob_equilibrium_body_steady(const ob_island_work *w, uint32_t row)
+{
+	return w->body[row].contacts > 0 && w->body[row].speed <= steady_speed;
+}

@@ -1,0 +1,187 @@
+#include "sim/error_control.h"
+
+#include "sim/contacts.h"
+
+static const uint32_t max_substeps = 1u << (OB_SUBSTEP_CHOICES - 1);
+static const uint32_t max_substeps_for_creep = 64; // more do not help friction to hold
+static const double creep_time = 1; // s, for which slip is remembered
+static const double sticking_share = .999; // of its bound: a smaller friction impulse holds
+static const double error_ratio = 8; // by so much half as many substeps may multiply the error
+
+uint32_t ob_error_control_substeps(const ob_sim *s, const ob_island *is)
+{
+	const ob_run_settings *run = s->settings;
+	const uint32_t *id = s->data->member + is->first_member;
+	uint32_t most = run->substeps;
+	if (!(run->tolerance > 0))
+		return most;
+	for (uint32_t i = 0; i < is->members; i++) {
+		uint32_t asked = ob_newest_motion(s->u, id[i])->substeps;
+		most = asked > most && asked <= max_substeps ? asked : most;
+	}
+	return most;
+}
+
+static bool has_tolerance(const ob_sim *s)
+{
+	return s->settings->tolerance > 0;
+}
+
+// ---- notes
+
+static double depth_of(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	const double *da = w->d[contact->a], *db = w->d[contact->b];
+	double deepest = 0;
+	for (uint32_t j = 0; j < contact->points; j++) {
+		double gap = b->gap[j][l];
+		for (int c = 0; c < 3; c++)
+			gap += b->n[c][l] * (da[c] - db[c]) + b->ja[j][c][l] * da[3 + c] - b->jb[j][c][l] * db[3 + c];
+		deepest = fmax(deepest, -gap);
+	}
+	return deepest;
+}
+
+void ob_error_control_note_depth(ob_sim *s, bool at_start)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 0; has_tolerance(s) && i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->lane == OB_NO_LANE)
+			continue;
+		double depth = depth_of(w, contact);
+		if (at_start)
+			contact->initial_depth = depth;
+		else if (depth > contact->initial_depth) {
+			w->new_error = fmax(w->new_error, depth);
+			contact->depth_growth = fmax(contact->depth_growth, depth - contact->initial_depth);
+		}
+		w->error = fmax(w->error, depth);
+	}
+}
+
+// m/s, at the contact's centroid, if friction holds it
+static double slip_of(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	const double *va = w->v[contact->a], *vb = w->v[contact->b];
+	double sum = 0, rate[2] = { 0, 0 };
+	for (uint32_t j = 0; j < contact->points; j++)
+		sum += b->impulse[j][l];
+	double bound = sticking_share * contact->mu * sum;
+	if (!(b->impulse[4][l] * b->impulse[4][l] + b->impulse[5][l] * b->impulse[5][l] < bound * bound))
+		return 0;
+	for (int c = 0; c < 3; c++) {
+		rate[0] += b->t1[c][l] * (va[c] - vb[c]) + b->fa1[c][l] * va[3 + c] - b->fb1[c][l] * vb[3 + c];
+		rate[1] += b->t2[c][l] * (va[c] - vb[c]) + b->fa2[c][l] * va[3 + c] - b->fb2[c][l] * vb[3 + c];
+	}
+	return hypot(rate[0], rate[1]);
+}
+
+void ob_error_control_note_slip(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 0; has_tolerance(s) && i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->lane != OB_NO_LANE && contact->mu > 0)
+			contact->slip += w->h * slip_of(w, contact);
+	}
+}
+
+void ob_error_control_note_bounce(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const double tolerance = s->settings->tolerance;
+	const ob_impact_rows at = { w->v, w->drift, w->d };
+	double lost = 0;
+	for (uint32_t i = 0; has_tolerance(s) && w->elastic && w->max_acceleration > 0 && i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		if (contact->lane == OB_NO_LANE || !(contact->e > 0))
+			continue;
+		// m/s: the approach that would rebound to the height of the tolerance, and the slowest that is resolved
+		double tolerable = sqrt(2 * w->max_acceleration * tolerance) / contact->e,
+		       resolved = 4 * w->max_acceleration * w->substep;
+		ob_impact slow = { w->h, w->h, contact->e, tolerable, 1, 1 };
+		if (resolved > tolerable &&
+		    ob_impact_time(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &slow, &at) <= slow.h)
+			lost = fmax(lost, contact->e * contact->e * resolved * resolved / (2 * w->max_acceleration));
+	}
+	w->error = fmax(w->error, lost);
+	w->new_error = fmax(w->new_error, lost);
+}
+
+// ---- accepted, or solved again
+
+// What slipped fades over the creep time.
+static void note_creep(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = s->settings;
+	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / creep_time);
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		contact->creep = contact->creep * (1 - fading) + contact->slip;
+		w->error = fmax(w->error, contact->creep);
+		bool goes_on = contact->slip > fading * tolerance && w->substeps < max_substeps_for_creep;
+		if (contact->creep > tolerance && (goes_on || contact->slip > .5 * tolerance))
+			w->new_error = fmax(w->new_error, contact->creep);
+	}
+}
+
+// The substeps that a contact needs: more already before its error is too large, so that few islands are solved twice;
+// fewer where the error would stay tolerable.
+static uint32_t substeps_for(const ob_island_work *w, const ob_contact *contact, const ob_run_settings *run)
+{
+	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / creep_time);
+	double depth = contact->initial_depth + contact->depth_growth,
+	       creep = contact->slip / fading; // which slipping on like this adds up to
+	double change = fmax(depth, contact->creep) > .5 * tolerance ? fmax(contact->depth_growth, creep)
+								     : contact->depth_growth;
+	uint32_t n = w->substeps;
+	if (contact->creep > .75 * tolerance && creep > tolerance && n < max_substeps_for_creep)
+		n *= 2;
+	for (; n >= 2 * run->substeps && change * error_ratio <= tolerance; change *= error_ratio)
+		n /= 2;
+	return n;
+}
+
+// Each body asks for what its own contacts need.
+static void set_next_substeps(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = s->settings;
+	for (uint32_t i = 0; i < w->rows; i++)
+		w->body[i].next_substeps = run->substeps;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		uint32_t n = substeps_for(w, contact, run);
+		for (int side = 0; side < 2; side++) {
+			ob_body *body = &w->body[side ? contact->b : contact->a];
+			body->next_substeps = n > body->next_substeps ? n : body->next_substeps;
+		}
+	}
+}
+
+bool ob_error_control_accept(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const double tolerance = s->settings->tolerance;
+	if (!has_tolerance(s))
+		return true;
+	ob_contacts_update(s, 0);
+	ob_error_control_note_depth(s, false);
+	note_creep(s);
+	if (w->new_error > tolerance && w->substeps < max_substeps) {
+		w->substeps *= w->new_error > 16 * tolerance ? 4 : 2;
+		w->substeps = w->substeps < max_substeps ? w->substeps : max_substeps;
+		return false;
+	}
+	set_next_substeps(s);
+	s->counters.islands_over += w->error > tolerance;
+	s->counters.error = fmax(s->counters.error, w->error);
+	s->counters.chosen[31 - __builtin_clz(w->substeps)]++;
+	return true;
+}

@@ -1,0 +1,235 @@
+#include "sim/island_solver.h"
+
+#include <stdlib.h>
+
+#include "sim/adaptive_substep.h"
+#include "sim/bodies.h"
+#include "sim/broadphase.h"
+#include "sim/contact_solver.h"
+#include "sim/contacts.h"
+#include "sim/direct_solver.h"
+#include "sim/equilibrium.h"
+#include "sim/error_control.h"
+#include "sim/flight.h"
+#include "sim/ghost.h"
+#include "sim/profile.h"
+
+enum { MAX_IMPACT_ROUNDS = 4 }; // in a partial substep; a body that rattles faster is left to the contact solver
+
+// Contacts as they are now, and what the velocities will be if they go on as before. true: the contacts may have
+// changed.
+static bool update_contacts(ob_sim *s)
+{
+	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
+	bool changed = ob_contacts_update(s, s->island.h);
+	ob_contacts_prepare(s);
+	ob_bodies_warm_start(s);
+	return changed;
+}
+
+// Elastic contacts rebound at their instants; what flies off may hit something that was out of reach before.
+static void resolve_impacts(ob_sim *s)
+{
+	ob_profile_enter(s, OB_PROFILE_IMPACTS);
+	for (int round = 0; round < MAX_IMPACT_ROUNDS && ob_solver_impacts(s); round++) {
+		ob_bodies_update_speed_bounds(s);
+		ob_ghosts_follow(s);
+		if (!update_contacts(s))
+			break;
+		ob_profile_enter(s, OB_PROFILE_IMPACTS);
+	}
+}
+
+// Velocities at the partial substep's end, u, such that no contact is violated; made shorter where something was hit so
+// that it moves too fast now for its length.
+static void solve_velocities(ob_sim *s)
+{
+	do {
+		ob_profile_enter(s, OB_PROFILE_MOVE);
+		ob_bodies_predict_velocities(s);
+		ob_profile_enter(s, OB_PROFILE_SOLVE);
+		ob_solver_iterate(s);
+		ob_profile_enter(s, OB_PROFILE_MOVE);
+	} while (ob_adaptive_shorten(s));
+}
+
+// The table of contents of an island's step: a substep, or a part of one, in the order in which things happen.
+static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
+{
+	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
+	ob_ghosts_follow(s);
+	ob_adaptive_begin(s, left);
+	update_contacts(s);
+	ob_error_control_note_depth(s, first_of_step);
+	ob_adaptive_end_at_rebound(s);
+	resolve_impacts(s);
+	ob_adaptive_end_at_rebound(s);
+	ob_error_control_note_bounce(s);
+	ob_profile_enter(s, OB_PROFILE_MOVE);
+	ob_bodies_gyroscopic_step(s);
+	ob_ghosts_follow(s);
+	solve_velocities(s);
+	ob_bodies_integrate_positions(s);
+	ob_error_control_note_slip(s);
+	ob_solver_limit_prediction(s);
+	ob_ghosts_follow(s);
+	ob_profile_enter(s, OB_PROFILE_PROJECT);
+	ob_solver_project_positions(s);
+}
+
+// The whole step on a private copy, from what is published. true: the solution's error is tolerable.
+static bool solve_step(ob_sim *s, const ob_island *is)
+{
+	ob_island_work *w = &s->island;
+	ob_profile_enter(s, OB_PROFILE_LOAD);
+	ob_bodies_load(s, is);
+	ob_contacts_load(s, is);
+	ob_direct_begin(&w->direct);
+	s->counters.body_substeps += (uint64_t)is->members * w->substeps;
+	for (uint32_t k = 0; k < w->substeps; k++) {
+		bool first = k == 0;
+		for (double left = w->substep; left > 0; left -= w->h, first = false)
+			solve_partial_substep(s, left, first);
+	}
+	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
+	for (uint32_t row = 1; row <= w->bodies; row++)
+		ob_body_update_pose(w, row);
+	return ob_error_control_accept(s);
+}
+
+// One substep, where that is enough: false if the island is not in equilibrium.
+static bool solve_equilibrium(ob_sim *s, const ob_island *is)
+{
+	const uint32_t substeps = s->island.substeps;
+	if (!ob_equilibrium_likely(s, is))
+		return false;
+	s->island.substeps = 1;
+	if (solve_step(s, is) && ob_equilibrium_confirmed(&s->island))
+		return true;
+	s->island.substeps = substeps;
+	return false;
+}
+
+// ---- what it costs
+
+// In solves of a pair; a collision test costs as much as a few.
+static uint64_t cost_so_far(const ob_sim *s)
+{
+	enum { OF_A_TEST = 4 };
+	return s->counters.pair_solves + OF_A_TEST * s->counters.narrowphase_tests;
+}
+
+// For the scheduler, so that what costs much is begun first.
+static void note_effort(ob_sim *s, const ob_island *is, uint64_t cost)
+{
+	enum { MOST = 1 << 16 }; // so that sums stay within bounds
+	ob_step_data *data = s->data;
+	uint64_t share = cost / is->members;
+	for (uint32_t i = 0; i < is->members; i++)
+		data->effort[data->member[is->first_member + i]] = (uint32_t)(share < MOST ? share : MOST);
+}
+
+// ---- ballistic advance
+
+// Did the pair's contact carry a load when the step before ended?
+static bool carried_load(const ob_sim *s, const ob_pair_key *k)
+{
+	const ob_pair_state *p = ob_pair_before(&s->data->record[k->record], ob_step_count(s->u));
+	double sum = 0;
+	for (uint32_t j = 0; p && j < p->points; j++)
+		sum += p->impulse[j];
+	return sum > 0;
+}
+
+// True for a body near planes only, with no resting contact, that has no late contact in this step: a ballistic advance
+// may do. A body that bounces so low that the contact solver has had it goes on as a flight; one that has become slow
+// is left to come to rest.
+static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
+{
+	const ob_step_data *data = s->data;
+	const uint32_t id = data->member[is->first_member];
+	if (is->members > 1 || (is->pairs && (data->count->merged || s->settings->integrator == OB_INTEGRATOR_ODE)))
+		return false;
+	for (uint32_t i = 0; i < is->pairs; i++) {
+		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
+		uint32_t other = k->a == id ? k->b : k->a;
+		if (data->schedule[other].state != OB_SCHEDULE_PLANE ||
+		    (k->active && (ob_newest_motion(s->u, id)->rest_time > 0 || carried_load(s, k))))
+			return false;
+	}
+	return true;
+}
+
+// Its contacts end, and the next solver tests their geometry anew.
+static void end_contacts(const ob_sim *s, const ob_island *is)
+{
+	for (uint32_t i = 0; i < is->pairs; i++) {
+		ob_pair_key *k = &s->data->pair[s->data->island_pair[is->first_pair + i]];
+		if (k->active)
+			k->active = 0, k->limit = -INFINITY;
+	}
+}
+
+static bool advance_ballistically(ob_sim *s, const ob_island *is)
+{
+	if (!may_advance_ballistically(s, is))
+		return false;
+	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
+	if (!ob_ballistic_advance(s, s->data->member[is->first_member]))
+		return false;
+	end_contacts(s, is);
+	s->counters.ballistic_advances++;
+	return true;
+}
+
+// ---- the step
+
+// The island's state of rest, as a flag of its bodies' motions; 0: it moves.
+static uint32_t rest_flag(ob_sim *s)
+{
+	bool asleep = ob_bodies_update_rest(s), equilibrium = ob_equilibrium_reached(&s->island);
+	if (asleep || (equilibrium && s->settings->sleeping))
+		return OB_MOTION_ASLEEP;
+	return equilibrium ? OB_MOTION_EQUILIBRIUM : 0;
+}
+
+void ob_island_solve(ob_sim *s, uint32_t i)
+{
+	const ob_island *is = &s->data->island[i];
+	if (advance_ballistically(s, is))
+		return;
+	const uint64_t before = cost_so_far(s);
+	s->island.substeps = ob_error_control_substeps(s, is);
+	if (!solve_equilibrium(s, is))
+		while (!solve_step(s, is))
+			s->counters.islands_redone++;
+	ob_profile_enter(s, OB_PROFILE_LOAD);
+	s->counters.island_steps++;
+	s->counters.recovered += s->island.recovered;
+	s->counters.body_steps += is->members;
+	note_effort(s, is, cost_so_far(s) - before);
+	ob_contacts_store(s);
+	ob_profile_enter(s, OB_PROFILE_PUBLISH);
+	ob_bodies_publish(s, rest_flag(s));
+}
+
+void ob_island_work_finish(ob_island_work *w)
+{
+	free(w->body);
+	free(w->v);
+	free(w->dv);
+	free(w->u);
+	free(w->d);
+	free(w->delta);
+	free(w->drift);
+	free(w->contact);
+	free(w->adjacency);
+	free(w->batch);
+	free(w->batch_colour);
+	free(w->next_open_batch);
+	free(w->batch_due);
+	free(w->batch_order);
+	free(w->row_of);
+	free(w->history);
+	ob_direct_finish(&w->direct);
+}

@@ -1,0 +1,24 @@
+// The narrow phase: where the two bodies of a pair touch, now or within the coming partial substep.
+#ifndef OB_SIM_NARROWPHASE_H
+#define OB_SIM_NARROWPHASE_H
+
+#include "contact/manifold.h"
+#include "sim/state.h"
+
+// Fills m with the pair's points, their gaps as of now. Fast pairs are followed through the partial substep: *when is
+// the time into it at which the points were found (s; 0 otherwise), and their arms run from where the centres are then.
+// tolerance: m, gaps up to it are always found. Both bodies' poses must be up to date (ob_body_update_pose).
+void ob_narrowphase_find(ob_sim *s, const ob_contact *t, double tolerance, ob_manifold *m, double *when);
+
+// The collision test of any two shapes that the run's settings ask for.
+ob_manifold_finder ob_narrowphase_finder(ob_sim *s);
+
+// Time of impact of the two, if they go on as they do (s from now); infinity: not before "horizon".
+double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *t, double horizon);
+
+// The narrow phase that asks no more than whether boxes overlap: ob_manifold_find for the axis-aligned boxes of the two
+// shapes, which grow and shrink as what is inside them turns. A plane's box would be all of space: it stays a plane.
+// Pure function.
+void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+
+#endif
