@@ -48,6 +48,7 @@ DUTIES = [
     ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
     ('include cairo', r'#\s*include\s*<cairo', r'src/plot/', True),
     ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/engine/', True),
+    ('include MuJoCo', r'#\s*include\s*<mujoco', r'src/engine/', True),
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),

@@ -1,4 +1,4 @@
-// Inside the module peer only: Bullet, whose C++ stays behind these functions (as in ob_engine_kind).
+// Inside the module engine only: Bullet, whose C++ stays behind these functions (as in ob_engine_kind).
 #ifndef OB_ENGINE_BULLET_H
 #define OB_ENGINE_BULLET_H
 

@@ -1,4 +1,4 @@
-// Inside the module peer only: the engines that kinds.c lists. Each file that makes them has its own struct ob_engine.
+// Inside the module engine only: the engines that kinds.c lists. Each file that makes them has its own struct ob_engine.
 #ifndef OB_ENGINE_ENGINES_H
 #define OB_ENGINE_ENGINES_H
 
@@ -11,9 +11,11 @@ extern const ob_engine_kind ob_engine_obsim_ghost;
 extern const ob_engine_kind ob_engine_obsim_lag;
 extern const ob_engine_kind ob_engine_ode_quick; // ode.c
 extern const ob_engine_kind ob_engine_ode_world;
+extern const ob_engine_kind ob_engine_ode_advised;
 extern const ob_engine_kind ob_engine_bullet; // bullet.c
+extern const ob_engine_kind ob_engine_mujoco; // mujoco.c
 
-// What ODE keeps for a thread lives as long as any peer of that thread needs it.
+// What ODE keeps for a thread lives as long as any engine of that thread needs it.
 void ob_engine_ode_enter(void);
 void ob_engine_ode_leave(void);
 

@@ -9,9 +9,13 @@ const ob_engine_kind *const ob_engine_kinds[] = {
 	&ob_engine_obsim_ghost,
 	&ob_engine_obsim_lag,
 	&ob_engine_ode_quick,
+	&ob_engine_ode_advised,
 	&ob_engine_ode_world,
 #ifdef OB_HAVE_BULLET
 	&ob_engine_bullet,
+#endif
+#ifdef OB_HAVE_MUJOCO
+	&ob_engine_mujoco,
 #endif
 	NULL,
 };

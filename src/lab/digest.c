@@ -34,8 +34,8 @@ ob_digest ob_digest_make(const ob_results *r)
 
 int ob_digest_style(const ob_digest *d, const ob_engine_kind *k)
 {
-	static const char *const known[] = { "obsim",     "obsim-jacobi", "obsim-ode", "obsim-ghost",
-					     "obsim-lag", "ode-quick",    "ode-world", "bullet" };
+	static const char *const known[] = { "obsim",     "obsim-jacobi", "obsim-ode", "obsim-ghost", "obsim-lag",
+					     "ode-quick", "ode-world",    "bullet",    "ode-advised", "mujoco" };
 	enum { KNOWN = sizeof known / sizeof *known };
 	for (int i = 0; i < KNOWN; i++)
 		if (!strcmp(k->name, known[i]))

@@ -66,6 +66,12 @@ ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
 	dWorldSetAutoDisableFlag(w->world, s->sleeping);
 	if (s->iterations)
 		dWorldSetQuickStepNumIterations(w->world, (int)s->iterations);
+	if (s->surface_layer > 0)
+		dWorldSetContactSurfaceLayer(w->world, s->surface_layer);
+	if (s->softness > 0)
+		dWorldSetCFM(w->world, s->softness);
+	if (s->correcting_speed > 0)
+		dWorldSetContactMaxCorrectingVel(w->world, s->correcting_speed);
 	return w;
 }
 

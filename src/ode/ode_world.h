@@ -17,6 +17,9 @@ typedef struct ob_ode_world_setup {
 	bool boxed;          // objects touch where their axis-aligned boxes do (ode_boxed.h)
 	uint32_t load;       // base/cpu.h, at each pair of boxes that the space finds to overlap
 	bool hashed;         // pairs are found by a hash space instead of sweep and prune
+	double surface_layer;    // m, that contacts may sink in; 0 = ODE's default, as with those below
+	double softness;         // constraint force mixing (kg^-1) of all constraints
+	double correcting_speed; // m/s, at most, at which penetration is undone
 } ob_ode_world_setup;
 
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s); // NULL: no memory

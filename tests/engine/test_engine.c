@@ -228,6 +228,8 @@ static void again(void)
 // Rests and is asked for rest: the same state to the last bit, frame after frame.
 static void sleep_on(void)
 {
+	if (is("mujoco")) // has no sleeping
+		return;
 	little_world *l = little_world_new();
 	little_ground(l);
 	uint32_t cube = little_cube(l, 1, .5, ob_v3(0, 0, .5));

@@ -12,7 +12,9 @@ static const double H = 1 / 240.;
 
 static ob_ode_world *world(uint32_t iterations, bool sleeping)
 {
-	ob_ode_world_setup setup = { { 0, 0, -10 }, iterations, OBJECTS, sleeping, false, 0, false };
+	ob_ode_world_setup setup = {
+		.gravity = { 0, 0, -10 }, .iterations = iterations, .objects = OBJECTS, .sleeping = sleeping
+	};
 	ob_ode_world *w = ob_ode_world_create(&setup);
 	ob_passport plane = {
 		.id = 0, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .friction = 1
@@ -176,7 +178,7 @@ static void test_same_bits(void)
 // away, though there is air between them.
 static void test_boxed(void)
 {
-	ob_ode_world_setup setup = { { 0, 0, -10 }, 20, OBJECTS, false, true, 0, false };
+	ob_ode_world_setup setup = { .gravity = { 0, 0, -10 }, .iterations = 20, .objects = OBJECTS, .boxed = true };
 	ob_ode_world *w = ob_ode_world_create(&setup);
 	ob_passport plane = { .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .friction = 1 };
 	ob_ode_world_add(w, &plane, &(ob_state){ .pose = { { 0, 0, 0 }, ob_quat_identity() } });

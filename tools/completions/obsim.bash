@@ -29,8 +29,8 @@ _obsim()
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
-	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick ode-world
-		bullet' -- "$word") ;;
+	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick
+		ode-advised ode-world bullet mujoco' -- "$word") ;;
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --summary | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;

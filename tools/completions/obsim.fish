@@ -70,7 +70,7 @@ complete -c obsim -n $lab -a '(__obsim_cases)'
 complete -c obsim -n $lab -l list -d 'print the cases and end'
 complete -c obsim -n $lab -l quick -d 'only the quick subset'
 complete -c obsim -n $lab -l engines -x -d 'engines, with commas' \
-	-a 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick ode-world bullet'
+	-a 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick ode-advised ode-world bullet mujoco'
 complete -c obsim -n $lab -l sweep -x -a 'none substeps= iterations= tolerance= lag=' -d 'settings'
 complete -c obsim -n $compare -l vary -x -d 'compare at each of these values'
 complete -c obsim -n $compare -l repeats -x -d 'runs of each'
