@@ -10,6 +10,8 @@
 #include "base/cpu.h"
 #include "sim/publish.h"
 
+// ---- spatial index
+
 // Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m.
 enum { LEVEL_ZERO = 33, LEVELS = 64 };
 
@@ -17,13 +19,13 @@ typedef struct cell {
 	int32_t level, x, y, z;
 } cell;
 
-static uint32_t bucket_of(const ob_step_data *ex, cell c)
+static uint32_t bucket_of(const ob_step_data *data, cell c)
 {
 	uint64_t h = (uint64_t)(uint32_t)c.x * 0x9E3779B97F4A7C15u ^ (uint64_t)(uint32_t)c.y * 0xC2B2AE3D27D4EB4Fu ^
 		     (uint64_t)(uint32_t)c.z * 0x165667B19E3779F9u ^ (uint64_t)(uint32_t)c.level << 58;
 	h ^= h >> 29;
 	h *= 0xBF58476D1CE4E5B9u;
-	return (uint32_t)(h >> 32) & (ex->buckets - 1);
+	return (uint32_t)(h >> 32) & (data->buckets - 1);
 }
 
 static bool is_plane(const ob_universe *u, uint32_t id)
@@ -59,77 +61,77 @@ static bool indexed(const ob_index_cell *c)
 	return c->level != 0;
 }
 
-// Until the last object of a class has left it, its cells stay between where any of them was.
-static void widen(ob_step_data *ex, cell to)
+// The range of cells of a class only grows, until the last object has left the class.
+static void extend_level(ob_step_data *data, cell to)
 {
 	const int32_t at[3] = { to.x, to.y, to.z };
-	int32_t *low = ex->count->level_low[to.level], *high = ex->count->level_high[to.level];
-	const bool first = !ex->count->levels[to.level];
+	int32_t *low = data->count->level_low[to.level], *high = data->count->level_high[to.level];
+	const bool first = !data->count->levels[to.level];
 	for (int c = 0; c < 3; c++) {
 		low[c] = first || at[c] < low[c] ? at[c] : low[c];
 		high[c] = first || at[c] > high[c] ? at[c] : high[c];
 	}
 }
 
-static void unlink_object(ob_step_data *ex, uint32_t id)
+static void unlink_object(ob_step_data *data, uint32_t id)
 {
-	ob_index_cell *c = &ex->cell[id];
-	uint32_t *link = &ex->bucket[bucket_of(ex, (cell){ c->level, c->x, c->y, c->z })];
+	ob_index_cell *c = &data->cell[id];
+	uint32_t *link = &data->bucket[bucket_of(data, (cell){ c->level, c->x, c->y, c->z })];
 	while (*link != id + 1)
-		link = &ex->cell[*link - 1].next;
+		link = &data->cell[*link - 1].next;
 	*link = c->next;
-	ex->count->levels[c->level]--;
+	data->count->levels[c->level]--;
 	if (c->after)
-		ex->cell[c->after - 1].before = c->before;
+		data->cell[c->after - 1].before = c->before;
 	if (c->before)
-		ex->cell[c->before - 1].after = c->after;
+		data->cell[c->before - 1].after = c->after;
 	else
-		ex->count->level_first[c->level] = c->after;
+		data->count->level_first[c->level] = c->after;
 	c->level = 0;
 }
 
-static uint32_t plane_at(const ob_step_data *ex, uint32_t id)
+static uint32_t plane_at(const ob_step_data *data, uint32_t id)
 {
 	uint32_t i = 0;
-	while (i < ex->count->planes && ex->plane[i] != id)
+	while (i < data->count->planes && data->plane[i] != id)
 		i++;
 	return i;
 }
 
 void ob_index_put(ob_universe *u, uint32_t id)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
+	ob_step_data *data = ob_universe_step_data(u);
 	if (is_plane(u, id)) {
-		if (plane_at(ex, id) == ex->count->planes)
-			ex->plane[ex->count->planes++] = id;
+		if (plane_at(data, id) == data->count->planes)
+			data->plane[data->count->planes++] = id;
 		return;
 	}
-	ob_index_cell *c = &ex->cell[id];
-	cell to = cell_of(ex->bounds[id]);
+	ob_index_cell *c = &data->cell[id];
+	cell to = cell_of(data->bounds[id]);
 	if (indexed(c)) {
 		if (c->level == to.level && c->x == to.x && c->y == to.y && c->z == to.z)
 			return;
-		unlink_object(ex, id);
+		unlink_object(data, id);
 	}
-	uint32_t *head = &ex->bucket[bucket_of(ex, to)];
-	uint32_t *first = &ex->count->level_first[to.level];
+	uint32_t *head = &data->bucket[bucket_of(data, to)];
+	uint32_t *first = &data->count->level_first[to.level];
 	*c = (ob_index_cell){ *head, to.level, to.x, to.y, to.z, 0, *first };
 	*head = id + 1;
 	if (*first)
-		ex->cell[*first - 1].before = id + 1;
+		data->cell[*first - 1].before = id + 1;
 	*first = id + 1;
-	widen(ex, to);
-	ex->count->levels[to.level]++;
+	extend_level(data, to);
+	data->count->levels[to.level]++;
 }
 
 void ob_index_remove(ob_universe *u, uint32_t id)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	uint32_t plane = plane_at(ex, id);
-	if (plane < ex->count->planes)
-		ex->plane[plane] = ex->plane[--ex->count->planes];
-	else if (indexed(&ex->cell[id]))
-		unlink_object(ex, id);
+	ob_step_data *data = ob_universe_step_data(u);
+	uint32_t plane = plane_at(data, id);
+	if (plane < data->count->planes)
+		data->plane[plane] = data->plane[--data->count->planes];
+	else if (indexed(&data->cell[id]))
+		unlink_object(data, id);
 }
 
 static bool below_plane(const ob_universe *u, uint32_t plane, const float *b)
@@ -141,54 +143,54 @@ static bool below_plane(const ob_universe *u, uint32_t plane, const float *b)
 	return ob_dot(n, ob_sub(low, m->p)) <= 0;
 }
 
-// A growing answer that counts on when it is full.
-typedef struct answer {
+// Ids of the objects whose boxes overlap the queried one; counts on when the array is full.
+typedef struct overlaps {
 	uint32_t *id, n, max;
 	uint32_t load; // of each test of two boxes
 	uint64_t tests;
-} answer;
+} overlaps;
 
-static bool overlap(answer *to, const float *a, const float *b)
+static bool test_overlap(overlaps *to, const float *a, const float *b)
 {
 	to->tests++;
 	ob_synthetic_load(to->load);
 	return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
 }
 
-static void found(answer *a, uint32_t id)
+static void add_overlap(overlaps *a, uint32_t id)
 {
 	if (a->n < a->max)
 		a->id[a->n] = id;
 	a->n++;
 }
 
-static void scan_level(const ob_step_data *ex, uint32_t id, int level, answer *a)
+static void scan_level(const ob_step_data *data, uint32_t id, int level, overlaps *a)
 {
-	for (uint32_t j = ex->count->level_first[level]; j; j = ex->cell[j - 1].after)
-		if (j - 1 != id && overlap(a, ex->bounds[id], ex->bounds[j - 1]))
-			found(a, j - 1);
+	for (uint32_t j = data->count->level_first[level]; j; j = data->cell[j - 1].after)
+		if (j - 1 != id && test_overlap(a, data->bounds[id], data->bounds[j - 1]))
+			add_overlap(a, j - 1);
 }
 
-static void scan_cells(const ob_step_data *ex, uint32_t id, int level, const cell *lo, const cell *hi, answer *a)
+static void scan_cells(const ob_step_data *data, uint32_t id, int level, const cell *lo, const cell *hi, overlaps *a)
 {
 	for (int32_t z = lo->z; z <= hi->z; z++)
 		for (int32_t y = lo->y; y <= hi->y; y++)
 			for (int32_t x = lo->x; x <= hi->x; x++)
-				for (uint32_t next = ex->bucket[bucket_of(ex, (cell){ level, x, y, z })]; next;
-				     next = ex->cell[next - 1].next) {
+				for (uint32_t next = data->bucket[bucket_of(data, (cell){ level, x, y, z })]; next;
+				     next = data->cell[next - 1].next) {
 					uint32_t j = next - 1;
-					const ob_index_cell *c = &ex->cell[j];
+					const ob_index_cell *c = &data->cell[j];
 					if (j != id && c->level == level && c->x == x && c->y == y && c->z == z &&
-					    overlap(a, ex->bounds[id], ex->bounds[j]))
-						found(a, j);
+					    test_overlap(a, data->bounds[id], data->bounds[j]))
+						add_overlap(a, j);
 				}
 }
 
 // The cells of a class in which the centre of a box may lie that overlaps b; false: there are none.
-static bool cells_around(const ob_step_data *ex, const float *b, int level, cell *lo, cell *hi)
+static bool cells_around(const ob_step_data *data, const float *b, int level, cell *lo, cell *hi)
 {
 	const double side = side_of(level), h = .5 * side; // a centre lies at most half a side outside
-	const int32_t *low = ex->count->level_low[level], *high = ex->count->level_high[level];
+	const int32_t *low = data->count->level_low[level], *high = data->count->level_high[level];
 	int32_t from[3], to[3];
 	for (int c = 0; c < 3; c++) {
 		from[c] = coordinate(b[c] - h, side), to[c] = coordinate(b[3 + c] + h, side);
@@ -204,40 +206,42 @@ static bool cells_around(const ob_step_data *ex, const float *b, int level, cell
 
 uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests)
 {
-	const ob_step_data *ex = ob_universe_step_data(u);
-	answer a = { out, 0, max, ob_universe_settings(u)->load, 0 };
-	const float *b = ex->bounds[id];
+	const ob_step_data *data = ob_universe_step_data(u);
+	overlaps a = { out, 0, max, ob_universe_settings(u)->load, 0 };
+	const float *b = data->bounds[id];
 	if (is_plane(u, id)) {
 		for (uint32_t j = 0; j < ob_universe_ids(u); j++)
-			if (indexed(&ex->cell[j]) && below_plane(u, id, ex->bounds[j]))
-				found(&a, j);
+			if (indexed(&data->cell[j]) && below_plane(u, id, data->bounds[j]))
+				add_overlap(&a, j);
 		return a.n;
 	}
 	for (int level = 1; level < LEVELS; level++) {
 		cell lo, hi;
-		uint32_t there = ex->count->levels[level];
-		if (!there || !cells_around(ex, b, level, &lo, &hi))
+		uint32_t there = data->count->levels[level];
+		if (!there || !cells_around(data, b, level, &lo, &hi))
 			continue;
 		double cells = (hi.x - lo.x + 1.) * (hi.y - lo.y + 1.) * (hi.z - lo.z + 1.);
 		if (cells > there)
-			scan_level(ex, id, level, &a);
+			scan_level(data, id, level, &a);
 		else
-			scan_cells(ex, id, level, &lo, &hi, &a);
+			scan_cells(data, id, level, &lo, &hi, &a);
 	}
-	for (uint32_t k = 0; k < ex->count->planes; k++)
-		if (below_plane(u, ex->plane[k], b))
-			found(&a, ex->plane[k]);
+	for (uint32_t k = 0; k < data->count->planes; k++)
+		if (below_plane(u, data->plane[k], b))
+			add_overlap(&a, data->plane[k]);
 	*tests += a.tests;
 	return a.n;
 }
 
-static const double lasting = 2; // claimed boxes last about so many steps
-static const double base_margin = .04; // m: of an object at rest ..
-static const double base_share = .2; // .. but no more than this share of its radius, for heaps of small things
-static const double generous = 4; // times the margin that a new box would have: too large
-static const double roomy = 2; // times as long as a flight's new box: what goes on being used for it, at most
-static const uint64_t review_steps = 16;
-static const double far_margin = 1.5; // m: fast ones claim only what one step needs beyond this
+// ---- fat AABBs
+
+static const double fat_aabb_steps = 2; // a new box lasts about so many steps
+static const double rest_margin = .04; // m: of an object at rest ..
+static const double rest_margin_share = .2; // .. but no more than this share of its radius, for heaps of small things
+static const double margin_limit = 1.5; // m: beyond it a fast object's box covers the next step alone
+static const double oversize_margins = 4; // a box larger by so many margins of a new one is replaced ..
+static const uint64_t oversize_check_steps = 16; // .. which is checked every so many steps
+static const double sweep_oversize = 2; // a box so many times as long as a flight's new one is replaced
 
 double ob_turning_speed(ob_vec3 w, ob_shape shape, ob_vec3 size)
 {
@@ -256,7 +260,7 @@ double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v
 	return (speed + ob_norm(ob_external_acceleration(run, p)) * run->step_length) * run->step_length;
 }
 
-static bool holds(const float *box, const double *tight, double margin)
+static bool box_contains(const float *box, const double *tight, double margin)
 {
 	for (int c = 0; c < 3; c++)
 		if (tight[c] - margin < box[c] || tight[3 + c] + margin > box[3 + c])
@@ -264,32 +268,34 @@ static bool holds(const float *box, const double *tight, double margin)
 	return true;
 }
 
-static void claim(ob_universe *u, uint32_t id, const double *tight, double margin)
+static void set_fat_aabb(ob_universe *u, uint32_t id, const double *tight, double margin)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
+	ob_step_data *data = ob_universe_step_data(u);
 	for (int c = 0; c < 3; c++) {
 		// Rounded outwards; a plane's box stays infinite.
-		ex->bounds[id][c] = nextafterf((float)(tight[c] - margin), -FLT_MAX);
-		ex->bounds[id][3 + c] = nextafterf((float)(tight[3 + c] + margin), FLT_MAX);
+		data->bounds[id][c] = nextafterf((float)(tight[c] - margin), -FLT_MAX);
+		data->bounds[id][3 + c] = nextafterf((float)(tight[3 + c] + margin), FLT_MAX);
 	}
 	if (!ob_broadphase_query_pending(u, id)) {
-		ex->neighbours[id].count = UINT32_MAX;
+		data->neighbours[id].count = UINT32_MAX;
 		ob_requery_append(u, id);
 	}
 }
 
-static double resting_margin(ob_shape shape, ob_vec3 size)
+static double margin_at_rest(ob_shape shape, ob_vec3 size)
 {
-	return fmin(base_margin, base_share * ob_shape_radius(shape, size));
+	return fmin(rest_margin, rest_margin_share * ob_shape_radius(shape, size));
 }
 
-// What to claim for some steps: on all sides what the next one needs, in which it may be hit and thrown anywhere, and
-// beyond that where it goes. Returns the margin on all sides (m); box: with the way that it goes, without the margin.
-static double look_ahead(const ob_universe *u, const ob_passport *p, const ob_state *now, double reach, double *box)
+// The fat AABB for some steps: on all sides what the next one needs, in which the object may be hit and thrown
+// anywhere; for those after it, along its velocity. Returns the margin on all sides (m); box: swept along the velocity,
+// without the margin.
+static double predict_fat_aabb(const ob_universe *u, const ob_passport *p, const ob_state *now, double reach,
+			       double *box)
 {
 	const double h = ob_universe_settings(u)->step_length, way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
-	double once = resting_margin(p->shape, p->size) + reach;
-	double more = reach > 0 ? fmax(0, fmin(lasting - 1, (far_margin - once) / reach)) : 0; // steps
+	double once = margin_at_rest(p->shape, p->size) + reach;
+	double more = reach > 0 ? fmax(0, fmin(fat_aabb_steps - 1, (margin_limit - once) / reach)) : 0; // steps
 	for (int c = 0; c < 3; c++) {
 		box[c] += fmin(0, more * way[c]);
 		box[3 + c] += fmax(0, more * way[c]);
@@ -297,10 +303,10 @@ static double look_ahead(const ob_universe *u, const ob_passport *p, const ob_st
 	return once + more * fmax(0, reach - h * ob_norm(now->v));
 }
 
-static bool much_larger(const float *box, const double *next, double margin)
+static bool is_oversized(const float *box, const double *next, double margin)
 {
 	for (int c = 0; c < 3; c++)
-		if ((double)box[3 + c] - box[c] > next[3 + c] - next[c] + 2 * generous * margin)
+		if ((double)box[3 + c] - box[c] > next[3 + c] - next[c] + 2 * oversize_margins * margin)
 			return true;
 	return false;
 }
@@ -311,13 +317,14 @@ void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double
 	const float *box = ob_universe_step_data(u)->bounds[id];
 	double next[6];
 	ob_shape_bounds(p->shape, p->size, now->pose, next);
-	bool held = holds(box, next, reach);
-	// A box claimed when the object was fast is given up when it is not; looked at now and then, not all at once.
-	if (held && (ob_step_count(u) + id) % review_steps)
+	bool held = box_contains(box, next, reach);
+	// A box made when the object was fast is replaced when it is slow; objects are checked in turn, not all at
+	// once.
+	if (held && (ob_step_count(u) + id) % oversize_check_steps)
 		return;
-	double margin = look_ahead(u, p, now, reach, next);
-	if (!held || much_larger(box, next, margin))
-		claim(u, id, next, margin);
+	double margin = predict_fat_aabb(u, p, now, reach, next);
+	if (!held || is_oversized(box, next, margin))
+		set_fat_aabb(u, id, next, margin);
 }
 
 void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double reach)
@@ -325,18 +332,18 @@ void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double 
 	const ob_passport *p = ob_passport_of(u, id);
 	double next[6];
 	ob_shape_bounds(p->shape, p->size, now->pose, next);
-	double margin = look_ahead(u, p, now, reach, next);
-	claim(u, id, next, margin);
+	double margin = predict_fat_aabb(u, p, now, reach, next);
+	set_fat_aabb(u, id, next, margin);
 }
 
 void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double margin)
 {
 	const float *old = ob_universe_step_data(u)->bounds[id];
-	bool fits = holds(old, box, margin);
+	bool fits = box_contains(old, box, margin);
 	for (int c = 0; c < 3; c++)
-		fits &= old[3 + c] - old[c] <= roomy * (box[3 + c] - box[c] + 2 * margin);
+		fits &= old[3 + c] - old[c] <= sweep_oversize * (box[3 + c] - box[c] + 2 * margin);
 	if (!fits)
-		claim(u, id, box, margin);
+		set_fat_aabb(u, id, box, margin);
 }
 
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)
@@ -346,41 +353,43 @@ bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)
 
 void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
+	ob_step_data *data = ob_universe_step_data(u);
 	uint32_t near[256], n = ob_index_query(u, id, near, 256, box_tests);
 	uint32_t offset = ob_neighbours_reserve(u, n);
 	if (offset == UINT32_MAX) {
-		ex->count->failure = OB_STEP_NEIGHBOURS_FULL;
+		data->count->failure = OB_STEP_NEIGHBOURS_FULL;
 		n = offset = 0;
 	} else if (n <= 256) {
 		for (uint32_t i = 0; i < n; i++)
-			ex->neighbour_id[offset + i] = near[i];
+			data->neighbour_id[offset + i] = near[i];
 	} else {
-		ob_index_query(u, id, ex->neighbour_id + offset, n, box_tests);
+		ob_index_query(u, id, data->neighbour_id + offset, n, box_tests);
 	}
-	ex->neighbours[id] = (struct ob_neighbours){ offset, n };
+	data->neighbours[id] = (struct ob_neighbours){ offset, n };
 }
 
-// The newest version of after so many steps, or before; -1: none. What was written in a step that is done again is
-// newer.
-static int before(const ob_pair_record *r, uint64_t steps)
+// ---- pairs
+
+// Index of the newest version that held when so many steps were complete; -1: none. A version written in a step that is
+// being solved again is newer.
+static int newest_version(const ob_pair_record *r, uint64_t steps)
 {
-	int found = -1;
+	int newest = -1;
 	for (int k = 0; k < 2; k++)
-		if (r->stamp[k] && r->stamp[k] <= steps + 1 && (found < 0 || r->stamp[k] > r->stamp[found]))
-			found = k;
-	return found;
+		if (r->stamp[k] && r->stamp[k] <= steps + 1 && (newest < 0 || r->stamp[k] > r->stamp[newest]))
+			newest = k;
+	return newest;
 }
 
 const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps)
 {
-	int k = before(r, steps);
+	int k = newest_version(r, steps);
 	return k < 0 ? NULL : &r->version[k];
 }
 
 ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 {
-	int k = before(r, steps) == 0;
+	int k = newest_version(r, steps) == 0;
 	r->stamp[k] = (uint32_t)(steps + 2);
 	return &r->version[k];
 }
@@ -396,26 +405,27 @@ static uint64_t key_of(uint32_t a, uint32_t b)
 	return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
-static bool immobile(const ob_step_data *ex, uint32_t id)
+static bool immobile(const ob_step_data *data, uint32_t id)
 {
-	return ex->schedule[id].state < OB_SCHEDULE_AWAKE;
+	return data->schedule[id].state < OB_SCHEDULE_AWAKE;
 }
 
-// All pairs that the objects of the list have perceived, sorted, each once: of two that have both moved, which have
-// both found their boxes to overlap, the lower one tells. The caller frees.
-static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t count, const uint32_t *moved, size_t *n)
+// All pairs that the queries of the list have found, sorted, each once: of two objects that were both queried, and have
+// found each other, the lower one lists the pair. The caller frees.
+static uint64_t *collect_pair_keys(ob_universe *u, const uint32_t *list, uint32_t count, const uint32_t *requeried,
+				   size_t *n)
 {
-	const ob_step_data *ex = ob_universe_step_data(u);
+	const ob_step_data *data = ob_universe_step_data(u);
 	size_t total = 0, kept = 0;
 	for (uint32_t k = 0; k < count; k++)
-		total += ex->neighbours[list[k]].count;
+		total += data->neighbours[list[k]].count;
 	uint64_t *keys = malloc((total + 1) * sizeof *keys);
 	for (uint32_t k = 0; keys && k < count; k++) {
-		const struct ob_neighbours *p = &ex->neighbours[list[k]];
+		const struct ob_neighbours *p = &data->neighbours[list[k]];
 		for (uint32_t i = 0; i < p->count; i++) {
-			uint32_t other = ex->neighbour_id[p->offset + i];
-			bool told = moved[other] && other < list[k];
-			if (!told && (!immobile(ex, list[k]) || !immobile(ex, other)))
+			uint32_t other = data->neighbour_id[p->offset + i];
+			bool listed = requeried[other] && other < list[k];
+			if (!listed && (!immobile(data, list[k]) || !immobile(data, other)))
 				keys[kept++] = key_of(list[k], other);
 		}
 	}
@@ -425,42 +435,43 @@ static uint64_t *perceived_keys(ob_universe *u, const uint32_t *list, uint32_t c
 	return keys;
 }
 
-static double apart_from_plane(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
+static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
 {
 	const ob_motion *m = ob_newest_motion(u, plane);
 	ob_mat3 r = ob_quat_matrix(m->q);
 	return ob_dot(ob_column(&r, 2), ob_sub(at, m->p)) - sphere;
 }
 
-double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+// Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
+static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
 	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
-	bool boxed = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // reaches beyond the sphere round it
+	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // which reach beyond the bounding sphere
 	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
-	ob_vec3 at_a = ob_centre_now(u, a, ma, steps), at_b = ob_centre_now(u, b, mb, steps);
+	ob_vec3 centre_a = ob_centre_now(u, a, ma, steps), centre_b = ob_centre_now(u, b, mb, steps);
 	if (pa->shape == OB_SHAPE_PLANE)
-		return apart_from_plane(u, a, at_b, (boxed ? sqrt(3) : 1) * rb);
+		return plane_distance(u, a, centre_b, (aabbs ? sqrt(3) : 1) * rb);
 	if (pb->shape == OB_SHAPE_PLANE)
-		return apart_from_plane(u, b, at_a, (boxed ? sqrt(3) : 1) * ra);
-	double spheres = ob_norm(ob_sub(at_a, at_b)) - ra - rb;
-	if (spheres > fmax(ra, rb) && !boxed) // attitudes would not add much, and cost more
+		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
+	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
+	if (spheres > fmax(ra, rb) && !aabbs) // the boxes would not add much, and cost more
 		return spheres;
-	double box_a[6], box_b[6], apart = 0;
+	double box_a[6], box_b[6], distance = 0;
 	ob_shape_bounds(pa->shape, pa->size, ob_state_now(u, a, ma, steps).pose, box_a);
 	ob_shape_bounds(pb->shape, pb->size, ob_state_now(u, b, mb, steps).pose, box_b);
 	for (int c = 0; c < 3; c++)
-		apart = fmax(apart, fmax(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
-	return boxed ? apart : fmax(apart, spheres);
+		distance = fmax(distance, fmax(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
+	return aabbs ? distance : fmax(distance, spheres);
 }
 
-static ob_pair_key new_pair(const ob_universe *u, uint64_t key, uint64_t steps)
+static ob_pair_key make_pair(const ob_universe *u, uint64_t key, uint64_t steps)
 {
-	const ob_step_data *ex = ob_universe_step_data(u);
+	const ob_step_data *data = ob_universe_step_data(u);
 	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
-	double apart = ob_pairs_apart(u, a, b, steps);
-	double paths = ob_schedule_path(&ex->schedule[a], steps) + ob_schedule_path(&ex->schedule[b], steps);
-	double limit = apart > 0 ? paths + apart : -1;
+	double distance = pair_distance(u, a, b, steps);
+	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
+	double limit = distance > 0 ? paths + distance : -1;
 	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
 }
 
@@ -469,67 +480,67 @@ static uint64_t key_of_pair(const ob_pair_key *k)
 	return (uint64_t)k->a << 32 | k->b;
 }
 
-void ob_pair_let_go(ob_universe *u, ob_pair_key *k)
+void ob_pair_release_record(ob_universe *u, ob_pair_key *k)
 {
 	if (k->record != OB_NO_RECORD)
 		ob_record_give_back(u, k->record);
 	k->record = OB_NO_RECORD;
 }
 
-// Drops the pairs of what has moved that are no longer perceived, and from the keys those that are there already.
+// Drops the pairs of queried objects that no query has found again, and from the keys those of pairs that exist.
 // Returns how many keys are left.
-static size_t keep_perceived(ob_universe *u, const uint32_t *moved, uint64_t *keys, size_t count)
+static size_t drop_separated_pairs(ob_universe *u, const uint32_t *requeried, uint64_t *keys, size_t count)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
+	ob_step_data *data = ob_universe_step_data(u);
 	size_t k = 0, fresh = 0;
 	uint32_t kept = 0;
-	for (uint32_t i = 0; i < ex->count->pairs; i++) {
-		const ob_pair_key *old = &ex->pair[i];
+	for (uint32_t i = 0; i < data->count->pairs; i++) {
+		const ob_pair_key *old = &data->pair[i];
 		while (k < count && keys[k] < key_of_pair(old))
 			keys[fresh++] = keys[k++];
-		bool still = k < count && keys[k] == key_of_pair(old);
-		k += still;
-		// What has touched in this step is let go when it is over: it may have to be solved again.
-		if (still || old->record != OB_NO_RECORD || !(moved[old->a] | moved[old->b]))
-			ex->pair[kept++] = *old;
+		bool kept_pair = k < count && keys[k] == key_of_pair(old);
+		k += kept_pair;
+		// A pair with a record stays until the step is over: it may have to be solved again.
+		if (kept_pair || old->record != OB_NO_RECORD || !(requeried[old->a] | requeried[old->b]))
+			data->pair[kept++] = *old;
 	}
 	while (k < count)
 		keys[fresh++] = keys[k++];
-	ex->count->pairs = kept;
+	data->count->pairs = kept;
 	return fresh;
 }
 
-// From the back, where there is room.
-static bool insert(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t steps)
+// Merges from the back, where there is room.
+static bool insert_pairs(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t steps)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	size_t old = ex->count->pairs, end = old + fresh;
-	if (end > ex->pairs_max)
+	ob_step_data *data = ob_universe_step_data(u);
+	size_t old = data->count->pairs, end = old + fresh;
+	if (end > data->pairs_max)
 		return false;
-	ex->count->pairs = (uint32_t)end;
+	data->count->pairs = (uint32_t)end;
 	while (fresh > 0) {
-		if (old > 0 && key_of_pair(&ex->pair[old - 1]) > keys[fresh - 1])
-			ex->pair[--end] = ex->pair[--old];
+		if (old > 0 && key_of_pair(&data->pair[old - 1]) > keys[fresh - 1])
+			data->pair[--end] = data->pair[--old];
 		else
-			ex->pair[--end] = new_pair(u, keys[--fresh], steps);
+			data->pair[--end] = make_pair(u, keys[--fresh], steps);
 	}
 	return true;
 }
 
 void ob_pairs_merge(ob_universe *u, uint64_t steps)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	uint32_t count, *moved = ex->scratch;
+	ob_step_data *data = ob_universe_step_data(u);
+	uint32_t count, *requeried = data->scratch;
 	const uint32_t *list = ob_requery_list(u, &count);
 	size_t fresh;
 	if (!count)
 		return;
-	memset(moved, 0, ob_universe_ids(u) * sizeof *moved);
+	memset(requeried, 0, ob_universe_ids(u) * sizeof *requeried);
 	for (uint32_t i = 0; i < count; i++)
-		moved[list[i]] = 1;
-	uint64_t *keys = perceived_keys(u, list, count, moved, &fresh);
-	if (!keys || !insert(u, keys, keep_perceived(u, moved, keys, fresh), steps))
-		ex->count->failure = OB_STEP_PAIRS_FULL;
+		requeried[list[i]] = 1;
+	uint64_t *keys = collect_pair_keys(u, list, count, requeried, &fresh);
+	if (!keys || !insert_pairs(u, keys, drop_separated_pairs(u, requeried, keys, fresh), steps))
+		data->count->failure = OB_STEP_PAIRS_FULL;
 	free(keys);
 	ob_requery_reset(u);
 	ob_neighbours_reset(u);
@@ -537,13 +548,13 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 
 void ob_pairs_drop(ob_universe *u, uint32_t id)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
+	ob_step_data *data = ob_universe_step_data(u);
 	uint32_t out = 0;
-	for (uint32_t i = 0; i < ex->count->pairs; i++) {
-		if (ex->pair[i].a == id || ex->pair[i].b == id)
-			ob_pair_let_go(u, &ex->pair[i]);
+	for (uint32_t i = 0; i < data->count->pairs; i++) {
+		if (data->pair[i].a == id || data->pair[i].b == id)
+			ob_pair_release_record(u, &data->pair[i]);
 		else
-			ex->pair[out++] = ex->pair[i];
+			data->pair[out++] = data->pair[i];
 	}
-	ex->count->pairs = out;
+	data->count->pairs = out;
 }

@@ -1,8 +1,10 @@
-// The spatial index of the universe: a hierarchical hash grid (Ericson 2005, ch. 7.2) in the exchange area.
+// The broad phase: which objects may touch.
 //
-// Each object lies in the one cell of its size class that holds the centre of its bounds; a cell's side is the
-// smallest power of two that is not below the bounds' longest side. Whoever asks for the neighbours of a box looks
-// through the cells around it at every class in use. One writer (the arranger), then any number of readers.
+//   fat AABB changes ──> requery list ──> index ──(query, in parallel)──> neighbours ──(merge)──> pairs
+//
+// Each object has a fat AABB, which holds it for some steps. When it no longer does, the object gets a new one and a
+// place on the list of objects to requery. The scheduling worker moves those in the spatial index, workers query it for
+// their neighbours, and the scheduling worker merges the answers into the list of pairs.
 #ifndef OB_SIM_BROADPHASE_H
 #define OB_SIM_BROADPHASE_H
 
@@ -10,48 +12,53 @@
 
 #include "table/table.h"
 
-// Puts the object where its bounds are now (new or moved). Planes go to the list of planes.
-void ob_index_put(ob_universe *u, uint32_t id);
-void ob_index_remove(ob_universe *u, uint32_t id);
-// All other objects whose bounds overlap those of id, in no particular order. Writes up to max ids, returns how many
-// there are. tests grows by the boxes that were compared.
-uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests);
+// ---- fat AABBs
 
-// What an object knows of its surroundings: the box that it claims, and who else's box overlaps it.
-
-// Bound of what turning adds to the speed of any point of the object (m/s); 0 for spheres, and for what does not turn.
+// Bound of what turning adds to the speed of any point of the object (m/s); 0 for spheres, and without rotation.
 double ob_turning_speed(ob_vec3 w, ob_shape shape, ob_vec3 size);
 // Bound of the speed of any point of the object (m/s).
 double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size);
-// How far any point of the object may get in one step from these velocities (m), under what pulls at it.
+// How far any point of the object may get in one step from these velocities (m), under its external acceleration.
 double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v, ob_vec3 w);
-// Does the object's claimed box still hold it for its next step? If not, claims a new one, a little larger than needed
-// so that it lasts, and asks for the index and the neighbours to be brought up to date. reach: m, for the next step.
+// If the object's fat AABB does not hold it for its next step, or is much too large, makes a new one and appends the
+// object to the requery list. now: its state at the end of the step; reach: m, in the next step.
 void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double reach);
-// Same for a box that holds a flight, and the margin (m) around it.
+// The same for a box that holds a whole flight, and the margin (m) around it.
 void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double margin);
-// Same, with the box always made anew.
+// The same, with a new box in any case.
 void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double reach);
 
-// The object looks around: fills its perceived list. box_tests grows by the boxes that were compared.
+// ---- spatial index: a hierarchical hash grid (Ericson, Real-Time Collision Detection, 2005, ch. 7.2)
+//
+// Each object lies in the one cell of its size class that holds the centre of its box; a cell's side is the smallest
+// power of two that is not below the box's longest side. A query searches the cells around its box at every class in
+// use. One writer (the scheduling worker), then any number of readers.
+
+// Puts the object where its fat AABB is now (new or moved). Planes go to the list of planes.
+void ob_index_put(ob_universe *u, uint32_t id);
+void ob_index_remove(ob_universe *u, uint32_t id);
+// All other objects whose boxes overlap that of id, in no particular order. Writes up to max ids, returns how many
+// there are. tests grows by the boxes that were compared.
+uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests);
+
+// Fills the object's list of neighbours. box_tests grows by the boxes that were compared. Any worker, after the
+// scheduling worker has updated the index.
 void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests);
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id);
 
-// The pairs of objects whose claimed boxes overlap, sorted by (a, b), each with a record while they touch.
+// ---- pairs of objects whose fat AABBs overlap, sorted by (a, b), each with a record while they touch
 
-// Merges what the objects of the rebound list have perceived into the pairs. The arranger alone. steps: that are complete
-// as far as motions go (sim/now.h).
+// Merges the neighbours of the objects on the requery list into the pairs, and empties the list. The scheduling worker
+// alone. steps: that are complete, or solved.
 void ob_pairs_merge(ob_universe *u, uint64_t steps);
 // Drops every pair of an object that goes away.
 void ob_pairs_drop(ob_universe *u, uint32_t id);
-// Gives its record back, if it has one. The arranger, between steps: what a step has written may be read until its end.
-void ob_pair_let_go(ob_universe *u, ob_pair_key *k);
+// Gives the pair's record back, if it has one. The scheduling worker, between steps: what a step has written may be
+// read until its end.
+void ob_pair_release_record(ob_universe *u, ob_pair_key *k);
 // A pair's state when so many steps were complete; NULL if it was never touched until then. A step's solver reads that,
 // and writes the other version, which holds when one more step is complete; so a step can be solved again.
 const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps);
 ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps);
-
-// Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
-double ob_pairs_apart(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps);
 
 #endif

@@ -1,36 +1,28 @@
-// Free flight: an object that nothing touches is where its closed form says, from the instant at which its flight
-// began. Its owner foresees when it may come down on a plane, and nobody visits it before; what else may touch it is the
-// arranger's to see (ob_schedule.reach).
+// Free flight. An object that touches nothing follows a closed form from the instant at which its flight began. When it
+// is solved, its next impact on a plane is computed ahead (conservative advancement), and no step solves it before that;
+// what else may touch it, the forecast sees (late_contacts.h).
 //
-//   visited             not visited             visited
+//   solved              not solved              solved
 //   ──┬───────────────┬───────────── … ──────┬──────────┬──
-//     │ flight, plan  │  (who looks evaluates) │ bounce │      valid_until = the bounce, or the horizon
+//     │ flight        │ (readers evaluate it)  │ impact │      valid_until = the impact, or the horizon
 //     └─ published ───┴──> valid_until ────────┴─ published
 #ifndef OB_SIM_FLIGHT_H
 #define OB_SIM_FLIGHT_H
 
 #include "sim/state.h"
 
-// The flight that a lone object is in after the running step's start: the one published, or, where something else pulls
-// at it than was published, one that begins now. valid_until: it meets no plane before.
+// The flight of an object without contacts at the start of the running step: the one published or, where its external
+// acceleration has changed since, one that begins now. It meets no plane before valid_until.
 ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id);
-// ob_state_now for a motion of object id, at an instant (s), to the last bit, but for the plan of the spin, which is kept.
+// As ob_state_now at an instant (s), to the last bit, with the worker's cached rotation.
 ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *flight, double time);
 
-// A lone object that touches nothing, or bounces off a plane: moves it through the running step and publishes it, to
-// be visited again when it must. false: what happens to it is none of this, and nothing was done.
+// Moves an object without contacts through the running step, with its impacts on planes, and publishes its motion. false:
+// the contact solver must do it, and nothing was changed.
 bool ob_ballistic_advance(ob_sim *s, uint32_t id);
 
-// Publishes the motion m of an object that must be visited in the next step, or rests until something comes near it:
-// its fat AABB for that step, from its state at the end of this one, its schedule record, and m, which gets its reach.
+// Publishes the motion m of an object that must be solved in the next step, or rests until something comes near it: its
+// fat AABB for that step, from its state at the end of this one, its schedule record, and m, which gets its reach.
 void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);
-
-// Bounces off planes at their instants: what happens to a body that flies, between two flights.
-
-// When the flight first meets a plane (s), from an instant on; infinity: not until "until". plane: its id.
-double ob_plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight, double from, double until, uint32_t *plane);
-
-// Changes velocities as the impact of the point that has met the plane does. false: it does not rebound here.
-bool ob_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state);
 
 #endif

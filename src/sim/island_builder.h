@@ -5,11 +5,11 @@
 
 #include "table/table.h"
 
-// Groups the objects that are due (ob_schedule.due), and what they touch or are expected to, into islands and the islands
-// into chunks of about equal work, largest first. Islands that an awake object touches, or is expected to, wake up.
-void ob_islands_plan(ob_universe *u);
-// Within the step, after some pairs have met across islands (sim/meeting.h): makes one island of those that did. The
-// others stand as they were solved; the chunks are of what must be solved again.
+// Groups the objects that are due (ob_schedule.due), and those that they touch or are expected to, into islands, and the
+// islands into chunks of about equal work, largest first. Islands that an awake object touches, or is expected to, wake.
+void ob_islands_build(ob_universe *u);
+// Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join. The solutions of the
+// others stand; the chunks hold what must be solved again.
 void ob_islands_merge(ob_universe *u);
 
 #endif

@@ -10,7 +10,7 @@
 #include "sim/publish.h"
 #include "table/trace.h"
 
-struct held { // whether the world holds an object for a slot, and which
+struct held_object { // whether the world holds an object for a slot, and which
 	bool there;
 	uint32_t generation;
 };
@@ -19,7 +19,7 @@ struct ob_ode_baseline {
 	ob_universe *u;
 	const ob_run_settings *run;
 	ob_ode_world *world;
-	struct held *held; // [capacity]
+	struct held_object *held; // [capacity]
 	ob_contact_point *point;
 	double *depth;
 	size_t points_max;
@@ -73,7 +73,7 @@ static void follow_passports(ob_ode_baseline *m)
 	uint32_t ids = ob_universe_ids(m->u);
 	for (uint32_t id = 0; id < ids; id++) {
 		const ob_passport *p = ob_passport_of(m->u, id);
-		struct held *h = &m->held[id];
+		struct held_object *h = &m->held[id];
 		bool present = p->flags & OB_OBJECT_PRESENT;
 		if (h->there && (!present || h->generation != p->generation)) {
 			ob_ode_world_remove(m->world, id);
@@ -84,18 +84,18 @@ static void follow_passports(ob_ode_baseline *m)
 		const ob_motion *first = ob_newest_motion(m->u, id);
 		ob_state s = { { first->p, first->q }, first->v, first->w };
 		ob_ode_world_add(m->world, p, &s);
-		*h = (struct held){ true, p->generation };
+		*h = (struct held_object){ true, p->generation };
 	}
 }
 
-static bool sound(const ob_state *s)
+static bool is_finite(const ob_state *s)
 {
 	return isfinite(ob_norm2(s->pose.p)) && isfinite(ob_norm2(s->v)) && isfinite(ob_norm2(s->w)) &&
 	       isfinite(s->pose.q.w + s->pose.q.x + s->pose.q.y + s->pose.q.z);
 }
 
 // Towards the outside, so that the narrower numbers still hold the object.
-static void widen(const double from[6], double by, float to[6])
+static void round_outwards(const double from[6], double by, float to[6])
 {
 	for (int i = 0; i < 3; i++) {
 		to[i] = nextafterf((float)(from[i] - by), -FLT_MAX);
@@ -103,7 +103,7 @@ static void widen(const double from[6], double by, float to[6])
 	}
 }
 
-static void publish(ob_ode_baseline *m, uint32_t id, const ob_state *s, bool asleep, bool touching)
+static void publish_object(ob_ode_baseline *m, uint32_t id, const ob_state *s, bool asleep, bool touching)
 {
 	const ob_passport *p = ob_passport_of(m->u, id);
 	const ob_motion *last = ob_newest_motion(m->u, id);
@@ -125,8 +125,8 @@ static void publish(ob_ode_baseline *m, uint32_t id, const ob_state *s, bool asl
 	};
 	double bounds[6];
 	ob_shape_bounds(p->shape, p->size, s->pose, bounds);
-	widen(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_external_acceleration(m->run, p)),
-	      ob_universe_step_data(m->u)->bounds[id]);
+	round_outwards(bounds, asleep ? 0 : speed * h + .5 * h * h * ob_norm(ob_external_acceleration(m->run, p)),
+		       ob_universe_step_data(m->u)->bounds[id]);
 	if (m->traced)
 		ob_trace_moves(m->u, 0, id, last->flags & OB_MOTION_ASLEEP, next.flags);
 	ob_publish_motion(m->u, id, &next);
@@ -135,7 +135,7 @@ static void publish(ob_ode_baseline *m, uint32_t id, const ob_state *s, bool asl
 
 static void publish_all(ob_ode_baseline *m)
 {
-	ob_step_data *x = ob_universe_step_data(m->u);
+	ob_step_data *data = ob_universe_step_data(m->u);
 	uint32_t ids = ob_universe_ids(m->u);
 	m->awake = 0;
 	for (uint32_t id = 0; id < ids; id++) {
@@ -144,16 +144,16 @@ static void publish_all(ob_ode_baseline *m)
 		ob_state s;
 		bool asleep, touching;
 		ob_ode_world_get(m->world, id, &s, &asleep, &touching);
-		if (!sound(&s)) {
-			x->count->failure = OB_STEP_DIVERGED;
+		if (!is_finite(&s)) {
+			data->count->failure = OB_STEP_DIVERGED;
 			return;
 		}
 		m->awake += !asleep;
-		publish(m, id, &s, asleep, touching);
+		publish_object(m, id, &s, asleep, touching);
 	}
 }
 
-static bool fetch_contacts(ob_ode_baseline *m, size_t *points)
+static bool read_contacts(ob_ode_baseline *m, size_t *points)
 {
 	*points = ob_ode_world_contacts(m->world, m->point, m->depth, m->points_max);
 	if (*points <= m->points_max)
@@ -170,7 +170,7 @@ static bool fetch_contacts(ob_ode_baseline *m, size_t *points)
 // The points of one pair as a record of the step that is now complete. A record holds the first 4 of them.
 static void write_pair(ob_ode_baseline *m, uint32_t index, size_t from, size_t to)
 {
-	ob_step_data *x = ob_universe_step_data(m->u);
+	ob_step_data *data = ob_universe_step_data(m->u);
 	uint64_t step = ob_step_count(m->u) + 1;
 	const ob_contact_point *c = &m->point[from];
 	ob_vec3 a = ob_newest_motion(m->u, c->a)->p;
@@ -183,29 +183,29 @@ static void write_pair(ob_ode_baseline *m, uint32_t index, size_t from, size_t t
 		s.gap[s.points] = (float)-m->depth[i];
 		s.impulse[s.points] = m->point[i].impulse;
 	}
-	x->record[index].version[step & 1] = s;
-	x->record[index].stamp[step & 1] = (uint32_t)(step + 1);
-	x->pair[index] = (ob_pair_key){ .a = c->a, .b = c->b, .record = index, .active = 1 };
+	data->record[index].version[step & 1] = s;
+	data->record[index].stamp[step & 1] = (uint32_t)(step + 1);
+	data->pair[index] = (ob_pair_key){ .a = c->a, .b = c->b, .record = index, .active = 1 };
 }
 
-// For overlays only: pairs beyond the room of the exchange area are left out. ODE's world lists points by pair.
+// For overlays only: pairs beyond the room of the step data are left out. ODE's world lists points by pair.
 static void publish_pairs(ob_ode_baseline *m)
 {
-	ob_step_data *x = ob_universe_step_data(m->u);
+	ob_step_data *data = ob_universe_step_data(m->u);
 	size_t points, to;
 	uint32_t pairs = 0;
-	if (!fetch_contacts(m, &points))
+	if (!read_contacts(m, &points))
 		points = 0;
 	for (size_t from = 0; from < points; from = to, pairs++) {
 		for (to = from + 1; to < points; to++)
 			if (m->point[to].a != m->point[from].a || m->point[to].b != m->point[from].b)
 				break;
-		if (pairs < x->pairs_max)
+		if (pairs < data->pairs_max)
 			write_pair(m, pairs, from, to);
 	}
 	m->pairs = pairs;
-	x->count->pairs = pairs < x->pairs_max ? pairs : x->pairs_max;
-	x->count->records_used = x->count->pairs;
+	data->count->pairs = pairs < data->pairs_max ? pairs : data->pairs_max;
+	data->count->records_used = data->count->pairs;
 }
 
 void ob_ode_baseline_step(ob_ode_baseline *m)

@@ -1,4 +1,4 @@
-// The other architecture: one simulator, an ODE world, owns every object and publishes all their motions each step.
+// The baseline architecture: one simulator, an ODE world, owns every object and publishes all their motions each step.
 // It reads passports and first motions from the universe, so that objects come and go as they do for object
 // simulators. Its one worker calls it; no other worker of the universe runs an object.
 #ifndef OB_SIM_ODE_BASELINE_H
@@ -14,8 +14,8 @@ ob_ode_baseline *ob_ode_baseline_create(ob_universe *u);
 void ob_ode_baseline_destroy(ob_ode_baseline *m); // NULL is allowed
 
 // One step: takes in and drops objects as the passports say, steps, publishes all motions as of step
-// ob_step_count(u) + 1, and writes the touching pairs to the exchange area. Completing the step is left to the caller.
-// What goes wrong stands in the exchange area's count->failure.
+// ob_step_count(u) + 1, and writes the touching pairs to the step data. Completing the step is left to the caller.
+// What goes wrong stands in the step data's count->failure.
 void ob_ode_baseline_step(ob_ode_baseline *m);
 // Of the last step: dynamic objects that are not asleep; pairs that touch.
 uint32_t ob_ode_baseline_awake(const ob_ode_baseline *m);

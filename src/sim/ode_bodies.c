@@ -2,19 +2,19 @@
 
 #include <stdlib.h>
 
-enum { SLOTS_LEAST = 256 }; // for the members of an island, whoever leads it: .35 MB
+enum { SLOTS_MIN = 256 }; // for the members of an island, whoever leads it: .35 MB
 
-typedef struct ob_world {
+typedef struct ob_ode_slot {
 	ob_ode_body *body; // NULL: none yet
 	uint32_t id, generation;
-} ob_world;
+} ob_ode_slot;
 
 bool ob_ode_bodies_create(ob_ode_bodies *w, const ob_universe *u)
 {
 	const uint32_t objects = ob_universe_capacity(u), workers = ob_universe_workers(u);
 	w->slots = objects / workers + (objects % workers != 0);
-	if (w->slots < SLOTS_LEAST)
-		w->slots = objects < SLOTS_LEAST ? objects : SLOTS_LEAST;
+	if (w->slots < SLOTS_MIN)
+		w->slots = objects < SLOTS_MIN ? objects : SLOTS_MIN;
 	w->stepper = ob_ode_stepper_create();
 	w->slot = calloc(w->slots, sizeof *w->slot);
 	return w->stepper && w->slot;
@@ -31,11 +31,11 @@ void ob_ode_bodies_finish(ob_ode_bodies *w)
 ob_ode_body *ob_ode_bodies_get(ob_ode_bodies *w, const ob_universe *u, uint32_t id)
 {
 	const ob_passport *p = ob_passport_of(u, id);
-	ob_world *slot = &w->slot[id % w->slots];
+	ob_ode_slot *slot = &w->slot[id % w->slots];
 	if (!slot->body || slot->id != id || slot->generation != p->generation) {
 		ob_ode_body_destroy(slot->body);
-		*slot = (ob_world){ ob_ode_body_create(p, ob_universe_settings(u)->gravity, w->stepper), id,
-				    p->generation };
+		*slot = (ob_ode_slot){ ob_ode_body_create(p, ob_universe_settings(u)->gravity, w->stepper), id,
+				       p->generation };
 	}
 	return slot->body;
 }

@@ -1,6 +1,6 @@
 // ODE's bodies, each in a world of its own, that a worker steps objects with. A body's state is set before each step, so
 // it can be made anew at any time and any worker may have one. All workers together keep no more than there are objects,
-// or a few for each: whoever claims islands meets, in the course of a run, every object.
+// or a few for each: a worker that claims islands comes to solve, in the course of a run, every object.
 //
 // Private to its worker.
 #ifndef OB_SIM_ODE_BODIES_H
@@ -12,7 +12,7 @@
 typedef struct ob_ode_bodies {
 	ob_ode_stepper *stepper; // of all of them
 	uint32_t slots;
-	struct ob_world *slot; // [slots], by id: a later one takes an earlier one's place
+	struct ob_ode_slot *slot; // [slots], by id: a later one takes an earlier one's place
 } ob_ode_bodies;
 
 bool ob_ode_bodies_create(ob_ode_bodies *w, const ob_universe *u); // false: no memory

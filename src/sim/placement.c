@@ -7,23 +7,23 @@
 #include "sim/sim.h"
 #include "table/trace.h"
 
-// Nobody has foreseen a plane that comes up: all look anew in the next step.
-static void surprise_fliers(ob_universe *u)
+// No flight has an impact computed on a plane that is new: all are solved in the next step.
+static void end_flights(ob_universe *u)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
+	ob_step_data *data = ob_universe_step_data(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
-		if (ex->schedule[id].state != OB_SCHEDULE_AWAKE)
+		if (data->schedule[id].state != OB_SCHEDULE_AWAKE)
 			continue;
 		ob_motion m = *ob_newest_motion(u, id);
 		m.flags &= ~(uint32_t)OB_MOTION_FREE;
 		ob_publish_motion(u, id, &m);
-		ex->schedule[id].due = (uint32_t)ob_step_count(u);
+		data->schedule[id].due = (uint32_t)ob_step_count(u);
 	}
 }
 
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
+	ob_step_data *data = ob_universe_step_data(u);
 	const ob_run_settings *run = ob_universe_settings(u);
 	const ob_passport *p = ob_passport_of(u, id);
 	bool fixed = p->flags & OB_OBJECT_STATIC;
@@ -41,17 +41,19 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 		m.a = ob_external_acceleration(run, p), m.flags = OB_MOTION_FREE;
 	double reach = fixed ? 0 : ob_step_reach(run, p, m.v, m.w);
 	ob_fat_aabb_renew(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach);
-	uint32_t kind = !fixed ? OB_SCHEDULE_AWAKE : p->shape == OB_SHAPE_PLANE ? OB_SCHEDULE_PLANE : OB_SCHEDULE_STATIC;
-	ex->schedule[id] = (ob_schedule){ 0, (float)reach, kind, m.step, fixed ? UINT32_MAX : m.step };
-	ex->result_island[id] = UINT32_MAX;
+	uint32_t kind = !fixed                       ? OB_SCHEDULE_AWAKE
+			: p->shape == OB_SHAPE_PLANE ? OB_SCHEDULE_PLANE
+						     : OB_SCHEDULE_STATIC;
+	data->schedule[id] = (ob_schedule){ 0, (float)reach, kind, m.step, fixed ? UINT32_MAX : m.step };
+	data->result_island[id] = UINT32_MAX;
 	ob_publish_motion(u, id, &m);
 	if (kind == OB_SCHEDULE_PLANE)
-		surprise_fliers(u);
+		end_flights(u);
 	if (ob_universe_traced(u))
 		ob_trace_birth(u, id);
 }
 
-static void wake(ob_universe *u, uint32_t id)
+static void wake_object(ob_universe *u, uint32_t id)
 {
 	const ob_passport *pass = ob_passport_of(u, id);
 	ob_motion m = *ob_newest_motion(u, id);
@@ -69,17 +71,17 @@ static void wake(ob_universe *u, uint32_t id)
 
 void ob_sim_remove(ob_universe *u, uint32_t id)
 {
-	ob_step_data *ex = ob_universe_step_data(u);
-	for (uint32_t i = 0; i < ex->count->pairs; i++) {
-		const ob_pair_key *k = &ex->pair[i];
+	ob_step_data *data = ob_universe_step_data(u);
+	for (uint32_t i = 0; i < data->count->pairs; i++) {
+		const ob_pair_key *k = &data->pair[i];
 		uint32_t other = k->a == id ? k->b : k->a;
-		if ((k->a != id && k->b != id) || !k->active || ex->schedule[other].state < OB_SCHEDULE_AWAKE)
+		if ((k->a != id && k->b != id) || !k->active || data->schedule[other].state < OB_SCHEDULE_AWAKE)
 			continue;
-		wake(u, other);
+		wake_object(u, other);
 	}
 	ob_pairs_drop(u, id);
 	ob_index_remove(u, id);
-	ex->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
+	data->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
 	if (ob_universe_traced(u))
 		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
 	ob_passport none = *ob_passport_of(u, id);

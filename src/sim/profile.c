@@ -2,29 +2,29 @@
 
 #include <string.h>
 
-// The running part's time so far.
-static void count(ob_sim *s)
+// Adds the time since the last change to the running section.
+static void count_section(ob_sim *s)
 {
 	uint64_t since = s->times.since;
-	s->times.since =
-		s->times.shown ? ob_trace_span(s->u, s->worker, OB_TRACE_PROFILE, since, s->times.part, 0) : ob_clock_ns();
-	s->times.wall[s->times.part] += s->times.since - since;
+	s->times.since = s->times.shown ? ob_trace_span(s->u, s->worker, OB_TRACE_PROFILE, since, s->times.section, 0)
+					: ob_clock_ns();
+	s->times.wall[s->times.section] += s->times.since - since;
 }
 
-void ob_profile_change(ob_sim *s, ob_profile_section part)
+void ob_profile_change(ob_sim *s, ob_profile_section section)
 {
-	if (part == s->times.part)
+	if (section == s->times.section)
 		return;
-	count(s);
-	s->times.part = part;
+	count_section(s);
+	s->times.section = section;
 }
 
-void ob_profile_begin(ob_sim *s, ob_profile_section part)
+void ob_profile_begin(ob_sim *s, ob_profile_section section)
 {
 	if (!s->times.timed)
 		return;
 	memset(s->times.wall, 0, sizeof s->times.wall);
-	s->times.part = part;
+	s->times.section = section;
 	s->times.since = ob_clock_ns();
 	s->times.cpu = ob_clock_thread_cpu();
 	if (!s->counters.since_ns)
@@ -38,7 +38,7 @@ uint64_t ob_profile_end(ob_sim *s)
 	double wall = 0;
 	if (!s->times.timed)
 		return 0;
-	count(s);
+	count_section(s);
 	s->times.cpu_end = ob_clock_thread_cpu();
 	double cpu = 1e9 * (s->times.cpu_end - s->times.cpu);
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
@@ -53,35 +53,35 @@ uint64_t ob_profile_end(ob_sim *s)
 uint64_t ob_profile_show(ob_sim *s)
 {
 	if (s->times.timed)
-		count(s);
+		count_section(s);
 	else
 		s->times.since = ob_clock_ns();
-	s->times.part = OB_PROFILE_LOAD;
+	s->times.section = OB_PROFILE_LOAD;
 	s->times.shown = s->times.wanted = true;
 	return s->times.since;
 }
 
 void ob_profile_hide(ob_sim *s)
 {
-	count(s);
+	count_section(s);
 	s->times.shown = false;
 	s->times.wanted = s->times.timed;
 }
 
 enum { LARGE_ISLAND = 64, SAMPLED_STEPS = 16 };
 
-static uint32_t islands_done(const ob_sim *s)
+static uint32_t islands_solved(const ob_sim *s)
 {
 	return (uint32_t)(s->counters.ballistic_advances + s->counters.island_steps);
 }
-static uint32_t members_done(const ob_sim *s)
+static uint32_t members_solved(const ob_sim *s)
 {
 	return (uint32_t)(s->counters.ballistic_advances + s->counters.body_steps);
 }
 
 void ob_span_turn_to(ob_sim *s, ob_trace_kind next)
 {
-	uint32_t islands = islands_done(s), members = members_done(s);
+	uint32_t islands = islands_solved(s), members = members_solved(s);
 	if (s->span.kind == OB_TRACE_NONE)
 		s->span.since = ob_clock_ns();
 	else
@@ -103,10 +103,10 @@ void ob_span_chunk_end(ob_sim *s, uint32_t chunk)
 {
 	if (!s->span.traced)
 		return;
-	const ob_step_data *ex = ob_universe_step_data(s->u);
-	uint32_t first = ex->chunk[chunk], end = ex->chunk[chunk + 1], members = 0;
+	const ob_step_data *data = s->data;
+	uint32_t first = data->chunk[chunk], end = data->chunk[chunk + 1], members = 0;
 	for (uint32_t i = first; i < end; i++)
-		members += ex->island[i].members;
+		members += data->island[i].members;
 	ob_trace_span(s->u, s->worker, OB_TRACE_CHUNK, s->span.chunk, end - first, members);
 }
 
@@ -115,7 +115,7 @@ bool ob_span_island_begin(ob_sim *s, uint32_t i, bool first)
 	if (!s->span.traced)
 		return false;
 	bool sampled = first && ob_step_count(s->u) % SAMPLED_STEPS == 0;
-	if (!sampled && ob_universe_step_data(s->u)->island[i].members < LARGE_ISLAND)
+	if (!sampled && s->data->island[i].members < LARGE_ISLAND)
 		return false;
 	s->span.island = ob_profile_show(s);
 	return true;
@@ -123,8 +123,8 @@ bool ob_span_island_begin(ob_sim *s, uint32_t i, bool first)
 
 void ob_span_island_end(ob_sim *s, uint32_t i)
 {
-	const ob_step_data *ex = ob_universe_step_data(s->u);
-	const ob_island *is = &ex->island[i];
+	const ob_step_data *data = s->data;
+	const ob_island *is = &data->island[i];
 	ob_profile_hide(s);
-	ob_trace_span(s->u, s->worker, OB_TRACE_ISLAND, s->span.island, ex->member[is->first_member], is->members);
+	ob_trace_span(s->u, s->worker, OB_TRACE_ISLAND, s->span.island, data->member[is->first_member], is->members);
 }

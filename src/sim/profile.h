@@ -1,41 +1,42 @@
-// Which part of the step a worker's time goes to; costs nothing unless the run is timed, or traced in detail.
+// The profile: which section of the step a worker's time goes to; and the spans of the trace. Both cost no more than a
+// look at a flag unless the run is timed, or traced.
 //
-// A thread's CPU clock costs a system call, a hundred times as much as the clock on the wall. So parts are told apart by
-// the wall, and the CPU time of the whole phase is shared out among them in proportion.
+// A thread's CPU clock costs a system call, a hundred times as much as the wall clock. So sections are told apart by the
+// wall clock, and the CPU time of the whole phase is shared out among them in proportion.
 #ifndef OB_SIM_PROFILE_H
 #define OB_SIM_PROFILE_H
 
 #include "base/clock.h"
 #include "sim/state.h"
 
-// From now on the worker's time counts for this part.
-void ob_profile_change(ob_sim *s, ob_profile_section part);
-static inline void ob_profile_enter(ob_sim *s, ob_profile_section part)
+// From now on the worker's time counts for this section.
+void ob_profile_change(ob_sim *s, ob_profile_section section);
+static inline void ob_profile_enter(ob_sim *s, ob_profile_section section)
 {
 	if (s->times.wanted)
-		ob_profile_change(s, part);
+		ob_profile_change(s, section);
 }
 
-// Round a phase, or what the worker does between two; between an end and a beginning it waits at the gate. Returns ns of
-// CPU since the beginning, 0 unless the run is timed.
-void ob_profile_begin(ob_sim *s, ob_profile_section part);
+// Around a worker's share of a phase, or a serial part; between an end and a beginning the worker waits at the gate.
+// Returns ns of CPU since the beginning, 0 unless the run is timed.
+void ob_profile_begin(ob_sim *s, ob_profile_section section);
 uint64_t ob_profile_end(ob_sim *s);
 
-// From now on, until hide, each part is a span in the trace. The first is LOAD. Returns now.
+// From now on, until ob_profile_hide, each section is a span in the trace. The first is LOAD. Returns now (ns).
 uint64_t ob_profile_show(ob_sim *s);
 void ob_profile_hide(ob_sim *s);
 
-// What the worker does, for the trace (table/trace.h); costs nothing but a look at a flag unless the run is traced.
+// ---- spans of the trace (table/trace.h)
 //
-//   level 0   wait | members | solve                                        | arrange | wait ...
+//   level 0   wait | objects | solve                                        | schedule | wait ...
 //         1                    chunk            | chunk
 //         2                    island | island  | island
-//         3                    load look move solve ...
+//         3                    load narrow-phase move solve ...
 //
-// Parts are some ten a substep, and most islands are small: to tell all of them would cost a fifth of the run. Shown in
-// detail are large islands, and of the small ones the first of each chunk in every 16th step.
+// There are some ten sections a substep, and most islands are small: to trace all of them would cost a fifth of the run.
+// Traced in detail are large islands, and of the small ones the first of each chunk in every 16th step.
 
-// Level 0, without gaps: the worker has done this since the last one ended, and now begins with what comes next.
+// Level 0, without gaps: ends the span that goes on, and begins the next.
 void ob_span_turn_to(ob_sim *s, ob_trace_kind next);
 static inline void ob_span_turn(ob_sim *s, ob_trace_kind next)
 {

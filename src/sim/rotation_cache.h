@@ -1,6 +1,6 @@
-// Spins that a worker has planned (motion/spin.h): planning one costs more than evaluating it twice, and a flight goes
-// on for many steps. A plan follows from how the flight began alone, so it is the same whichever worker keeps it.
-// Private to its worker.
+// A worker's cached rotations (motion/spin.h): to compute the closed form of one costs more than to evaluate it twice, and
+// a flight goes on for many steps. It follows from how the flight began alone, so it is the same whichever worker keeps
+// it. Private to its worker.
 #ifndef OB_SIM_ROTATION_CACHE_H
 #define OB_SIM_ROTATION_CACHE_H
 
@@ -17,7 +17,7 @@ typedef struct ob_rotation_cache {
 bool ob_rotation_cache_create(ob_rotation_cache *p, uint32_t objects); // false: no memory
 void ob_rotation_cache_finish(ob_rotation_cache *p);
 
-// The plan of object id that turns from (q, w) on. Valid until the next call.
+// The rotation of object id from (q, w) on. Valid until the next call.
 const ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
 #endif

@@ -21,14 +21,14 @@ bool ob_step(ob_sim *s);
 // The whole life of a worker: ob_step until STOP. Returns when the run is over.
 void ob_sim_run(ob_sim *s);
 
-// Host, before the first step and after it has changed passports: puts the object's first motion into its
-// slot and asks for its neighbours. The universe must be starting or paused.
+// Host, before the first step and after it has changed passports: puts the object's first motion into its slot and the
+// object on the broad phase's requery list. The universe must be starting or paused.
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state);
 
 // Host, paused: takes an object away; its neighbours wake. Clears its passport.
 void ob_sim_remove(ob_universe *u, uint32_t id);
 
-// Host, at the start and after each pause: opens the right phase. The run then goes on until the next pause step.
+// Host, at the start and after each pause: opens the first phase. The run then goes on until the next pause step.
 void ob_sim_resume(ob_universe *u);
 
 // Host, paused: why the run cannot go on, as one line; NULL if it can. A failed run pauses at once.

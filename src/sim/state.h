@@ -1,4 +1,4 @@
-// The private side of a worker (see sim.h).
+// What a worker keeps for itself (see sim.h).
 #ifndef OB_SIM_STATE_H
 #define OB_SIM_STATE_H
 
@@ -21,7 +21,7 @@ struct ob_sim {
 	struct { // sim/profile.h
 		bool timed, shown; // for the counters; for the trace
 		bool wanted; // either
-		ob_profile_section part; // that the time counts for
+		ob_profile_section section; // that the time counts for
 		uint64_t since, wall[OB_PROFILE_SECTIONS]; // ns; of the running phase
 		double cpu, cpu_end; // s, when it began; when the one before ended
 	} times;

@@ -4,7 +4,7 @@
 //     │
 //   BROADPHASE_START       ┌─────────── merge the islands that a late contact joins ───────────┐
 //     │                    v                                                                   │
-//   FORECAST ──(plan)──> ISLANDS ──> BROADPHASE ──(merge pairs)──> LATE_CONTACTS ──(commit)────┤
+//   FORECAST ──(build)─> ISLANDS ──> BROADPHASE ──(merge pairs)──> LATE_CONTACTS ──(commit)────┤
 //     ^                                                                                        v
 //     └──────(begin)─────────── COMPLETE <──────────────────────────────────────────────── COPY
 //                               │      ^
@@ -17,7 +17,7 @@
 //   phase             task of a worker          reads                             writes
 //   BROADPHASE_START  objects whose fat AABB    index, fat AABBs                  their lists of neighbours
 //   BROADPHASE          has changed
-//   FORECAST          256 pairs                 schedule records, motions         near, limit of those pairs
+//   FORECAST          256 pairs                 schedule records, motions         expected, limit of those pairs
 //   ISLANDS           a chunk of islands        motions and contacts as of        staged motions, fat AABBs, schedule
 //                                                 before the step                   records, contacts of after the step
 //   LATE_CONTACTS     256 pairs                 schedule records, motions         late, limit of those pairs
@@ -242,13 +242,13 @@ static bool must_pause(const scheduler *c)
 	return ob_step_count(c->u) >= ob_gate_pause_step(c->u) || c->data->count->failure;
 }
 
-static ob_phase plan_islands(const scheduler *c)
+static ob_phase build_islands(const scheduler *c)
 {
 	struct ob_step_counts *count = c->data->count;
 	const uint64_t step = ob_step_count(c->u);
 	count->islands = 0;
 	if (count->next_check <= step || count->next_due <= step)
-		ob_islands_plan(c->u);
+		ob_islands_build(c->u);
 	return count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
 }
 
@@ -262,7 +262,7 @@ static ob_phase begin_step(const scheduler *c)
 		return OB_PHASE_BASELINE;
 	if (!count->awake || !count->pairs)
 		count->next_check = UINT32_MAX;
-	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : plan_islands(c);
+	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : build_islands(c);
 }
 
 static ob_phase after_broadphase_start(const scheduler *c)
@@ -277,7 +277,7 @@ static ob_phase after_broadphase_start(const scheduler *c)
 
 static ob_phase after_forecast(const scheduler *c)
 {
-	return must_pause(c) ? OB_PHASE_PAUSE : plan_islands(c);
+	return must_pause(c) ? OB_PHASE_PAUSE : build_islands(c);
 }
 
 static ob_phase after_islands(const scheduler *c)

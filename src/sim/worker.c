@@ -21,7 +21,8 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->span.traced = ob_universe_traced(u);
 		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
 	}
-	if (!s || !s->island.row_of || !ob_ode_bodies_create(&s->ode_bodies, u) || !ob_rotation_cache_create(&s->rotations, capacity)) {
+	if (!s || !s->island.row_of || !ob_ode_bodies_create(&s->ode_bodies, u) ||
+	    !ob_rotation_cache_create(&s->rotations, capacity)) {
 		ob_sim_destroy(s);
 		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
 		return NULL;

@@ -209,7 +209,7 @@ int main(void)
 		CHECK(ob_universe_ids(u) == BODIES);
 		for (uint64_t seed = 1; seed <= 60; seed++) {
 			random_graph(u, seed, .5 + .1 * (double)seed);
-			ob_islands_plan(u);
+			ob_islands_build(u);
 			check_plan(ex);
 			largest = ex->island[0].members > largest ? ex->island[0].members : largest;
 			smallest = ex->island[0].members < smallest ? ex->island[0].members : smallest;

@@ -117,7 +117,7 @@ static void touch(ob_universe *u, uint64_t *seed, double share)
 		ob_pair_key *k = &ex->pair[i];
 		k->active = uniform(seed) < share;
 		if (!k->active)
-			ob_pair_let_go(u, k);
+			ob_pair_release_record(u, k);
 	}
 	for (uint32_t i = 0; i < ex->count->pairs; i++) {
 		ob_pair_key *k = &ex->pair[i];
