@@ -73,7 +73,7 @@ static bool impact_point(const ob_passport *body, const ob_half_space *ground, c
 	return found;
 }
 
-// Changes velocities by the impact of the point that has met the plane. false: it does not rebound here.
+// Changes velocities by the impact of the point that is on the plane. false: it does not rebound here.
 static bool apply_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
 {
 	const ob_passport *body = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);

@@ -63,10 +63,10 @@ static void wake_object(ob_universe *u, uint32_t id)
 	ob_publish_motion(u, id, &m);
 	if (ob_universe_traced(u))
 		ob_trace_moves(u, ob_trace_host(u), id, flags, m.flags);
-	ob_schedule *brief = &ob_universe_step_data(u)->schedule[id];
+	ob_schedule *schedule = &ob_universe_step_data(u)->schedule[id];
 	uint32_t steps = (uint32_t)ob_step_count(u);
 	double reach = ob_step_reach(ob_universe_settings(u), pass, m.v, m.w);
-	*brief = (ob_schedule){ ob_schedule_path(brief, steps), (float)reach, OB_SCHEDULE_AWAKE, steps, steps };
+	*schedule = (ob_schedule){ ob_schedule_path(schedule, steps), (float)reach, OB_SCHEDULE_AWAKE, steps, steps };
 }
 
 void ob_sim_remove(ob_universe *u, uint32_t id)

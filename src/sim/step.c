@@ -409,7 +409,7 @@ const char *ob_sim_failure(const ob_universe *u)
 	case OB_STEP_PAIRS_FULL:
 		return "more pairs of neighbours than the universe has room for: the objects lie too close together";
 	case OB_STEP_NEIGHBOURS_FULL:
-		return "objects perceive more neighbours than the universe has room for: they lie too close together";
+		return "objects have more neighbours than the universe has room for: they lie too close together";
 	case OB_STEP_DIVERGED:
 		return "a state is no longer a number: the run diverged; try more substeps or a smaller step";
 	default:
