@@ -10,7 +10,7 @@
 #include "cli/child.h"
 #include "cli/command.h"
 #include "cli/compare_run.h"
-#include "cli/number.h"
+#include "cli/quantity.h"
 #include "cli/request.h"
 #include "lab/provenance.h"
 

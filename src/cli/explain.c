@@ -1,4 +1,4 @@
-#include "cli/explain.h"
+#include "cli/report.h"
 
 #include <inttypes.h>
 #include <math.h>

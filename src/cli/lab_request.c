@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/spelling.h"
-#include "cli/number.h"
+#include "cli/quantity.h"
 
 static bool read_cases(ob_case_list *l, const ob_arguments *a, ob_error *e)
 {

@@ -71,7 +71,7 @@ static void start(ob_observer *o, const ob_snapshot *s, ob_vec3 momentum)
 	}
 }
 
-void ob_observer_look(ob_observer *o, const ob_snapshot *s)
+void ob_observer_measure(ob_observer *o, const ob_snapshot *s)
 {
 	if (o->started && s->step == o->last_step)
 		return;

@@ -20,15 +20,15 @@ typedef struct ob_observer {
 	double momentum_error; // largest so far, relative to the scale
 	ob_penetration now;
 	double worst, worst_time; // m, s
-	FILE *series; // a line for each look; NULL = none
+	FILE *series; // a line for each snapshot; NULL = none
 	const char *series_path;
 } ob_observer;
 
 // path: of the CSV file, which outlives the observer; NULL = none
 bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e);
 // Measures a snapshot; the first is the start. One that has been measured already is passed over.
-void ob_observer_look(ob_observer *o, const ob_snapshot *s);
-// Puts the figures into the report; each_step: every step was looked at, so that the largest means something.
+void ob_observer_measure(ob_observer *o, const ob_snapshot *s);
+// Puts the figures into the report; each_step: every step was measured, so that the largest means something.
 void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r);
 bool ob_observer_close(ob_observer *o, ob_error *e); // once, also after a failed open
 

@@ -27,6 +27,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_TOLERANCE] = { NULL, "tolerance", "LENGTH",
 				  "error that objects that touch may reach, as .5mm: chooses the substeps",
 				  RUN | COMPARE, 0 },
+	[OB_OPTION_STRICT] = { NULL, "strict", NULL, "exit with 1 where the tolerance is missed", RUN, 0 },
 	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)", RUN | COMPARE,
 				 0 },
 	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",
@@ -56,7 +57,6 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 
 	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE", "trajectories, as HDF5", RUN, 0 },
 	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
-	[OB_OPTION_SUMMARY] = { NULL, "summary", "FILE", "the report, as CSV", RUN, 0 },
 	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
 	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end", "each step, where the time goes, or neither (step)", RUN,
 				0 },
@@ -238,4 +238,65 @@ void ob_options_finish(ob_arguments *a)
 	free(a->define);
 	free(a->operands);
 	*a = (ob_arguments){ 0 };
+}
+
+static const struct {
+	ob_command_bit command;
+	const char *usage, *what;
+} commands[] = {
+	{ OB_COMMAND_RUN, "obsim run SCENE.lua [OPTION ...]",
+	  "Runs a scene, each object a simulator of its own, and reports speed and error." },
+	{ OB_COMMAND_COMPARE, "obsim compare SCENE.lua [OPTION ...]",
+	  "Runs a scene as one world, as threads and as processes, and prints one table." },
+	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
+	  "Looks into a running universe (the newest, unless named) from another terminal." },
+	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",
+	  "Runs hard cases with several engines: error against target and against cost." },
+	{ OB_COMMAND_PAPER, "obsim paper [OPTION ...]",
+	  "Repeats the experiment of the paper behind obsim, and judges its claims." },
+};
+
+void ob_options_help(FILE *f, ob_command_bit command)
+{
+	for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+		if (commands[i].command == command)
+			fprintf(f, "Usage: %s\n%s\n", commands[i].usage, commands[i].what);
+	}
+	const char *group = NULL, *shown = NULL;
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		const ob_option *o = &ob_option_table[i];
+		group = o->group ? o->group : group;
+		if (!(o->commands & command))
+			continue;
+		if (group != shown)
+			fprintf(f, "\n%s:\n", group);
+		shown = group;
+		char left[64];
+		snprintf(left, sizeof left, "%s%c%s--%s %s", o->letter ? "-" : " ", o->letter ? o->letter : ' ',
+			 o->letter ? ", " : "  ", o->name, o->argument ? o->argument : "");
+		fprintf(f, "  %-32s %s\n", left, o->help);
+	}
+	if (command == OB_COMMAND_TOP)
+		fputs("\nKeys: q quits, w shows workers or objects, s sorts by id or speed, arrows and page keys "
+		      "scroll.\n",
+		      f);
+	if (command == OB_COMMAND_LAB)
+		fputs("\nA CASE is a name, a row of the table (14), or the start or pattern of names (stack, '*-10'); "
+		      "without one, all.\nThe same command goes on where it was interrupted.\n",
+		      f);
+	fprintf(f, "\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage%s.\n",
+		command == OB_COMMAND_LAB ? ", 3 a target missed" : " or scene");
+}
+
+void ob_options_overview(FILE *f)
+{
+	fputs("Usage: obsim COMMAND [OPTION ...]\n"
+	      "Emulates object-based simulators: every object of a scene is a simulator of its own.\n\n",
+	      f);
+	for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+		fprintf(f, "  %-38s %s\n", commands[i].usage, commands[i].what);
+	fputs("\n  obsim COMMAND --help                   The options of a command.\n"
+	      "  obsim --version                        Version, commit and libraries.\n\n"
+	      "Try: obsim run scenes/falling_boxes.lua -D n=100\n",
+	      f);
 }

@@ -7,7 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/lab_folder.h"
-#include "cli/number.h"
+#include "cli/quantity.h"
 #include "cli/paper_json.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"

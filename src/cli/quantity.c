@@ -1,7 +1,82 @@
 #include "cli/quantity.h"
 
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool ob_number_count(const char *option, const char *text, uint64_t least, uint64_t most, uint64_t *out, ob_error *e)
+{
+	if (!text)
+		return true;
+	char *end;
+	errno = 0;
+	uint64_t n = strtoull(text, &end, 10);
+	if (!isdigit((unsigned char)*text) || *end)
+		return ob_fail(e, "--%s %s: expected a whole number", option, text);
+	if (errno || n < least || n > most)
+		return ob_fail(e, "--%s %s: expected %" PRIu64 " to %" PRIu64, option, text, least, most);
+	*out = n;
+	return true;
+}
+
+// A decimal number at *text, which moves behind it; NaN if there is none. No hex, no inf, no blanks.
+static double read_decimal(const char **text)
+{
+	const char *digits = *text + (**text == '-' || **text == '+');
+	if (!isdigit((unsigned char)*digits) && *digits != '.')
+		return NAN;
+	if (digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X'))
+		return NAN;
+	char *end;
+	double x = strtod(*text, &end);
+	if (end == *text)
+		return NAN;
+	*text = end;
+	return x;
+}
+
+bool ob_number_real(const char *option, const char *text, double above, double most, double *out, ob_error *e)
+{
+	if (!text)
+		return true;
+	const char *at = text;
+	double x = read_decimal(&at);
+	if (*at == '/') {
+		at++;
+		x /= read_decimal(&at);
+	}
+	if (isnan(x) || *at)
+		return ob_fail(e, "--%s %s: expected a number, as .5 or 1/60", option, text);
+	if (!(x > above && x <= most))
+		return ob_fail(e, "--%s %s: expected more than %g, at most %g", option, text, above, most);
+	*out = x;
+	return true;
+}
+
+bool ob_number_length(const char *option, const char *text, double least, double most, double *out, ob_error *e)
+{
+	static const struct {
+		const char *name;
+		double metres;
+	} units[] = { { "m", 1 }, { "mm", 1e-3 }, { "um", 1e-6 } };
+	const char *at = text;
+	if (!text)
+		return true;
+	double x = read_decimal(&at), metres = NAN;
+	for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+		if (strcmp(at, units[i].name) == 0)
+			metres = units[i].metres;
+	if (isnan(x * metres))
+		return ob_fail(e, "--%s %s: expected a length with its unit (m, mm, um), as .5mm", option, text);
+	if (!(x * metres >= least && x * metres <= most))
+		return ob_fail(e, "--%s %s: expected %gm to %gm", option, text, least, most);
+	*out = x * metres;
+	return true;
+}
 
 const char *ob_quantity_text(ob_quantity *q, double value, const char *unit)
 {

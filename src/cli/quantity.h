@@ -1,12 +1,26 @@
-// Figures for people: three digits and the prefix that fits. 1.24e-6 "s" reads "1.24 us".
+// Numbers of the command line, and quantities as people read them.
 #ifndef OB_CLI_QUANTITY_H
 #define OB_CLI_QUANTITY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <ob/error.h>
+
+// A number of the command line: the whole text must be one, within its range; false and e otherwise. text NULL leaves
+// *out as it is. option (without dashes) is for the message.
+bool ob_number_count(const char *option, const char *text, uint64_t least, uint64_t most, uint64_t *out, ob_error *e);
+// Takes fractions, too: "1/60". above < value <= most.
+bool ob_number_real(const char *option, const char *text, double above, double most, double *out, ob_error *e);
+// A length with its unit, m, mm or um, in m. least <= value <= most.
+bool ob_number_length(const char *option, const char *text, double least, double most, double *out, ob_error *e);
 
 typedef struct ob_quantity {
 	char text[32];
 } ob_quantity;
 
-// Returns q->text; "-" for NaN. What is smaller than a pico-unit is 0.
+// Three digits and the prefix that fits: 1.24e-6 "s" reads "1.24 us". Returns q->text; "-" for NaN. What is smaller than
+// a pico-unit is 0.
 const char *ob_quantity_text(ob_quantity *q, double value, const char *unit);
 
 #endif

@@ -1,4 +1,5 @@
 #include "cli/report.h"
+#include "cli/quantity.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -6,85 +7,83 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/csv.h"
 
 // One list for the writer and the reader; its names are a promise to scripts.
 static const struct field {
 	const char *key;
 	enum kind { TEXT, COUNT, REAL } kind;
 	size_t offset, size;
-	const char *unit; // "" = none
 } fields[] = {
 // clang-format off
-#define FIELD(kind, member, unit) \
-	{ #member, kind, offsetof(ob_report, member), sizeof(((ob_report *)0)->member), unit }
+#define FIELD(kind, member) \
+	{ #member, kind, offsetof(ob_report, member), sizeof(((ob_report *)0)->member) }
 	// clang-format on
-	FIELD(TEXT, scene, ""),
-	FIELD(TEXT, outcome, ""),
-	FIELD(TEXT, arch, ""),
-	FIELD(TEXT, isolation, ""),
-	FIELD(COUNT, workers, ""),
-	FIELD(COUNT, objects, ""),
-	FIELD(COUNT, bodies, ""),
-	FIELD(REAL, step, "s"),
-	FIELD(COUNT, steps, ""),
-	FIELD(COUNT, substeps, ""),
-	FIELD(REAL, tolerance, "m"),
-	FIELD(REAL, error_reached, "m"),
-	FIELD(COUNT, substeps_min, ""),
-	FIELD(COUNT, substeps_median, ""),
-	FIELD(COUNT, substeps_max, ""),
-	FIELD(COUNT, islands_redone, ""),
-	FIELD(COUNT, islands_over, ""),
-	FIELD(COUNT, iterations, ""),
-	FIELD(TEXT, solver, ""),
-	FIELD(COUNT, lag, ""),
-	FIELD(TEXT, integrator, ""),
-	FIELD(TEXT, narrow, ""),
-	FIELD(COUNT, load, ""),
-	FIELD(COUNT, box_tests, ""),
-	FIELD(COUNT, seed, ""),
-	FIELD(REAL, simulated_s, "s"),
-	FIELD(REAL, wall_s, "s"),
-	FIELD(REAL, cpu_s, "s"),
-	FIELD(REAL, total_s, "s"),
-	FIELD(REAL, body_step_cpu_us, "us"),
-	FIELD(REAL, startup_s, "s"),
-	FIELD(REAL, step_p50_s, "s"),
-	FIELD(REAL, step_p90_s, "s"),
-	FIELD(REAL, step_p99_s, "s"),
-	FIELD(REAL, step_max_s, "s"),
-	FIELD(REAL, critical_s, "s"),
-	FIELD(REAL, work_s, "s"),
-	FIELD(REAL, held_s, "s"),
-	FIELD(REAL, gate_s, "s"),
-	FIELD(REAL, gate_cpu_s, "s"),
-	FIELD(REAL, idle_s, "s"),
-	FIELD(REAL, elapsed_s, "s"),
-	FIELD(REAL, host_cpu_s, "s"),
-	FIELD(REAL, renderer_cpu_s, "s"),
-	FIELD(COUNT, switches, ""),
-	FIELD(COUNT, deaths, ""),
-	FIELD(COUNT, worker_memory_bytes, "B"),
-	FIELD(COUNT, memory_bytes, "B"),
-	FIELD(TEXT, state_hash, ""),
-	FIELD(REAL, energy_start, "J"),
-	FIELD(REAL, energy_end, "J"),
-	FIELD(REAL, energy_gain_max, ""),
-	FIELD(REAL, energy_recovered, "J"),
-	FIELD(REAL, momentum_error, ""),
-	FIELD(REAL, penetration_max_m, "m"),
-	FIELD(REAL, penetration_mean_m, "m"),
-	FIELD(REAL, worst_penetration_m, "m"),
-	FIELD(REAL, worst_penetration_time_s, "s"),
-	FIELD(REAL, separation_max_m, "m"),
-	FIELD(REAL, separation_mean_m, "m"),
-	FIELD(COUNT, frames, ""),
-	FIELD(REAL, frame_rate, "1/s"),
-	FIELD(REAL, fps, "1/s"),
-	FIELD(COUNT, trace_events, ""),
-	FIELD(COUNT, trace_lost, ""),
-	FIELD(TEXT, commit, ""),
+	FIELD(TEXT, scene),
+	FIELD(TEXT, outcome),
+	FIELD(TEXT, arch),
+	FIELD(TEXT, isolation),
+	FIELD(COUNT, workers),
+	FIELD(COUNT, objects),
+	FIELD(COUNT, bodies),
+	FIELD(REAL, step),
+	FIELD(COUNT, steps),
+	FIELD(COUNT, substeps),
+	FIELD(REAL, tolerance),
+	FIELD(REAL, error_reached),
+	FIELD(COUNT, substeps_min),
+	FIELD(COUNT, substeps_median),
+	FIELD(COUNT, substeps_max),
+	FIELD(COUNT, islands_redone),
+	FIELD(COUNT, islands_over),
+	FIELD(COUNT, iterations),
+	FIELD(TEXT, solver),
+	FIELD(COUNT, lag),
+	FIELD(TEXT, integrator),
+	FIELD(TEXT, narrow),
+	FIELD(COUNT, load),
+	FIELD(COUNT, box_tests),
+	FIELD(COUNT, seed),
+	FIELD(REAL, simulated_s),
+	FIELD(REAL, wall_s),
+	FIELD(REAL, cpu_s),
+	FIELD(REAL, total_s),
+	FIELD(REAL, body_step_cpu_us),
+	FIELD(REAL, startup_s),
+	FIELD(REAL, step_p50_s),
+	FIELD(REAL, step_p90_s),
+	FIELD(REAL, step_p99_s),
+	FIELD(REAL, step_max_s),
+	FIELD(REAL, critical_s),
+	FIELD(REAL, work_s),
+	FIELD(REAL, held_s),
+	FIELD(REAL, gate_s),
+	FIELD(REAL, gate_cpu_s),
+	FIELD(REAL, idle_s),
+	FIELD(REAL, elapsed_s),
+	FIELD(REAL, host_cpu_s),
+	FIELD(REAL, renderer_cpu_s),
+	FIELD(COUNT, switches),
+	FIELD(COUNT, deaths),
+	FIELD(COUNT, worker_memory_bytes),
+	FIELD(COUNT, memory_bytes),
+	FIELD(TEXT, state_hash),
+	FIELD(REAL, energy_start),
+	FIELD(REAL, energy_end),
+	FIELD(REAL, energy_gain_max),
+	FIELD(REAL, energy_recovered),
+	FIELD(REAL, momentum_error),
+	FIELD(REAL, penetration_max_m),
+	FIELD(REAL, penetration_mean_m),
+	FIELD(REAL, worst_penetration_m),
+	FIELD(REAL, worst_penetration_time_s),
+	FIELD(REAL, separation_max_m),
+	FIELD(REAL, separation_mean_m),
+	FIELD(COUNT, frames),
+	FIELD(REAL, frame_rate),
+	FIELD(REAL, fps),
+	FIELD(COUNT, trace_events),
+	FIELD(COUNT, trace_lost),
+	FIELD(TEXT, commit),
 #undef FIELD
 };
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -136,21 +135,154 @@ bool ob_report_read_json(ob_report *r, const char *text)
 	return true;
 }
 
-void ob_report_write_csv(const ob_report *r, FILE *f)
+// The smallest number of substeps with which at least this share of the island-steps were solved.
+static uint64_t quantile(const ob_counters *c, double share)
 {
-	fputs("quantity,value,unit\n", f);
-	ob_csv c = { .f = f };
-	for (int i = 0; i < FIELDS; i++) {
-		const struct field *field = &fields[i];
-		const char *at = (const char *)r + field->offset;
-		ob_csv_text(&c, field->key);
-		if (field->kind == TEXT)
-			ob_csv_text(&c, at);
-		else if (field->kind == COUNT)
-			ob_csv_count(&c, *(const uint64_t *)at);
-		else
-			ob_csv_number(&c, isfinite(*(const double *)at) ? *(const double *)at : NAN);
-		ob_csv_text(&c, field->unit);
-		ob_csv_end(&c);
+	uint64_t all = 0, sum = 0;
+	for (int i = 0; i < OB_SUBSTEP_CHOICES; i++)
+		all += c->chosen[i];
+	for (int i = 0; i < OB_SUBSTEP_CHOICES; i++) {
+		sum += c->chosen[i];
+		if (sum > 0 && (double)sum >= share * (double)all)
+			return UINT64_C(1) << i;
+	}
+	return 0;
+}
+
+static double work_of(const ob_counters *c)
+{
+	double sum = 0;
+	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
+		sum += 1e-9 * (double)c->time_ns[i];
+	return sum;
+}
+
+void ob_report_count(ob_report *r, const ob_counters *c, bool timed)
+{
+	bool chosen = r->tolerance > 0;
+	r->error_reached = chosen ? c->error : NAN;
+	r->substeps_min = quantile(c, 0);
+	r->substeps_median = quantile(c, .5);
+	r->substeps_max = quantile(c, 1);
+	r->islands_redone = c->islands_redone;
+	r->islands_over = c->islands_over;
+	r->energy_recovered = strcmp(r->arch, "monolith") == 0 ? NAN : c->recovered;
+	r->box_tests = c->box_tests;
+	r->work_s = timed ? work_of(c) : NAN;
+	r->held_s = timed ? 1e-9 * (double)c->held_ns : NAN;
+	r->gate_cpu_s = timed ? 1e-9 * (double)c->gate_cpu_ns : NAN;
+}
+
+static void print_simulators(const ob_report *r, const char *plural, FILE *f)
+{
+	fprintf(f, "  simulators   one per object in %" PRIu64 " %s%s; ", r->workers, r->isolation, plural);
+	if (r->tolerance > 0)
+		fprintf(f, "substeps as needed, of up to %" PRIu64 " iterations", r->iterations);
+	else
+		fprintf(f, "%" PRIu64 " substeps of up to %" PRIu64 " iterations", r->substeps, r->iterations);
+	fprintf(f, ", %s, %s\n", r->solver, r->integrator);
+}
+
+bool ob_report_missed_tolerance(const ob_report *r)
+{
+	return r->tolerance > 0 && r->islands_over > 0;
+}
+
+static void print_tolerance(const ob_report *r, FILE *f)
+{
+	ob_quantity a, b;
+	if (!(r->tolerance > 0))
+		return;
+	fprintf(f, "  tolerance    %s %s, the largest error was %s; ", ob_quantity_text(&a, r->tolerance, "m"),
+		ob_report_missed_tolerance(r) ? "MISSED" : "kept", ob_quantity_text(&b, r->error_reached, "m"));
+	if (r->substeps_max)
+		fprintf(f, "%" PRIu64 " to %" PRIu64 " substeps, %" PRIu64 " in the median; %" PRIu64 " solved again",
+			r->substeps_min, r->substeps_max, r->substeps_median, r->islands_redone);
+	else
+		fputs("nothing touched", f);
+	if (r->islands_over)
+		fprintf(f, ", %" PRIu64 " above it all the same", r->islands_over);
+	fputc('\n', f);
+}
+
+static void print_setup(const ob_report *r, FILE *f)
+{
+	const char *plural = r->workers == 1 ? "" : r->isolation[0] == 't' ? "s" : "es";
+	fprintf(f, "%s: %" PRIu64 " objects, %" PRIu64 " steps, %g s simulated", r->scene, r->objects, r->steps,
+		r->simulated_s);
+	fprintf(f, strcmp(r->outcome, "finished") == 0 ? "\n" : " (%s)\n", r->outcome);
+	if (strcmp(r->arch, "monolith") == 0)
+		fprintf(f, "  simulators   one ODE world in a %s, %" PRIu64 " substep%s a step\n", r->isolation,
+			r->substeps, r->substeps == 1 ? "" : "s");
+	else
+		print_simulators(r, plural, f);
+}
+
+static void print_cost(const ob_report *r, FILE *f)
+{
+	ob_quantity a, b, c;
+	fprintf(f, "  wall         %s, %s per simulated second", ob_quantity_text(&a, r->wall_s, "s"),
+		ob_quantity_text(&b, r->wall_s / r->simulated_s, "s"));
+	if (r->wall_s > 0 && r->simulated_s > 0)
+		fprintf(f, " (%.3g x real time)", r->simulated_s / r->wall_s);
+	fprintf(f, "\n  CPU          %s of the simulators, %s per simulated second, %s per body and step",
+		ob_quantity_text(&a, r->cpu_s, "s"), ob_quantity_text(&b, r->cpu_s / r->simulated_s, "s"),
+		ob_quantity_text(&c, 1e-6 * r->body_step_cpu_us, "s"));
+	if (r->frames > 0)
+		fprintf(f, "; drawing took %s besides", ob_quantity_text(&a, r->renderer_cpu_s, "s"));
+	fputc('\n', f);
+	if (isnan(r->step_p50_s))
+		fprintf(f, "  start-up     %s\n", ob_quantity_text(&c, r->startup_s, "s"));
+	else
+		fprintf(f, "  step         %s in the median, %s at the 99th percentile; start-up %s\n",
+			ob_quantity_text(&a, r->step_p50_s, "s"), ob_quantity_text(&b, r->step_p99_s, "s"),
+			ob_quantity_text(&c, r->startup_s, "s"));
+	fprintf(f, "  memory       %s\n", ob_quantity_text(&a, (double)r->memory_bytes, "B"));
+	if (r->deaths > 0)
+		fprintf(f, "  deaths       %" PRIu64 "; the state is as it would be without\n", r->deaths);
+}
+
+static void print_quality(const ob_report *r, FILE *f)
+{
+	ob_quantity a, b, c;
+	if (r->penetration_max_m > 0)
+		fprintf(f, "  penetration  %s mean, %s most at the end",
+			ob_quantity_text(&a, r->penetration_mean_m, "m"),
+			ob_quantity_text(&b, r->penetration_max_m, "m"));
+	else
+		fputs("  penetration  none at the end", f);
+	if (!isnan(r->worst_penetration_m)) {
+		fprintf(f, "; worst %s", ob_quantity_text(&c, r->worst_penetration_m, "m"));
+		if (r->worst_penetration_m > 0)
+			fprintf(f, " at %.4g s", r->worst_penetration_time_s);
+	}
+	fprintf(f, "\n  energy       %s at the start, %s at the end", ob_quantity_text(&a, r->energy_start, "J"),
+		ob_quantity_text(&b, r->energy_end, "J"));
+	if (!isnan(r->energy_gain_max))
+		fprintf(f, "; largest gain %.2g", r->energy_gain_max);
+	if (!isnan(r->momentum_error))
+		fprintf(f, "; momentum error %.2g", r->momentum_error);
+	fprintf(f, "\n  state        %s\n", r->state_hash);
+}
+
+void ob_report_print(const ob_report *r, FILE *f)
+{
+	print_setup(r, f);
+	print_tolerance(r, f);
+	if (r->steps > 0)
+		print_cost(r, f);
+	print_quality(r, f);
+	if (r->frame_rate > 0) {
+		fprintf(f, "  frames       %" PRIu64, r->frames);
+		if (r->fps > 0)
+			fprintf(f, ", %.3g per second", r->fps);
+		fputc('\n', f);
+	}
+	if (r->trace_events > 0) {
+		fprintf(f, "  trace        %" PRIu64 " events", r->trace_events);
+		if (r->trace_lost > 0)
+			fprintf(f, ", %" PRIu64 " of them LOST, for they came faster than they could be written",
+				r->trace_lost);
+		fputc('\n', f);
 	}
 }

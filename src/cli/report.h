@@ -7,8 +7,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "cli/request.h"
 #include "experiment/json.h"
-#include "table/counters.h"
+#include "table/table.h"
 
 // Numbers that were not measured are NaN.
 typedef struct ob_report {
@@ -45,9 +46,6 @@ void ob_report_write_json(const ob_report *r, FILE *f);
 // false: a member is missing or of another kind. What it holds is then undefined.
 bool ob_report_read_json(ob_report *r, const char *text);
 
-// The same as "quantity,value,unit"; what was not measured is empty.
-void ob_report_write_csv(const ob_report *r, FILE *f);
-
 // Few aligned lines for a person.
 void ob_report_print(const ob_report *r, FILE *f);
 
@@ -56,5 +54,20 @@ void ob_report_write_members(const ob_report *r, ob_json *j);
 
 // Fills the figures of the tolerance, and the workers' time if the run was timed, from counters summed over all workers.
 void ob_report_count(ob_report *r, const ob_counters *c, bool timed);
+
+// Whether a tolerance was asked for or is the default, and an island's error stayed above it.
+bool ob_report_missed_tolerance(const ob_report *r);
+
+typedef struct ob_explained {
+	const ob_run_request *request; // settled
+	const ob_scene *scene;
+	const ob_run_settings *settings;
+	ob_counters counters; // of all workers
+	double body_steps; // steps times bodies
+	double cpu_s; // of all workers
+} ob_explained;
+
+// Says what a run modelled, what it left out and why, and what each section of its steps cost.
+void ob_explain_print(const ob_explained *x, FILE *f);
 
 #endif

@@ -1,13 +1,16 @@
 #include "cli/request.h"
 
+#include <inttypes.h>
 #include <libgen.h>
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/cpu.h"
-#include "cli/number.h"
+#include "base/spelling.h"
+#include "cli/quantity.h"
 
 enum {
 	WORKERS_MAX = 65536,
@@ -92,8 +95,8 @@ static bool is_stdout(const char *path)
 
 static bool check_outputs(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id files[] = { OB_OPTION_FRAMES,  OB_OPTION_VIDEO,  OB_OPTION_RAW,  OB_OPTION_RECORD,
-					      OB_OPTION_SUMMARY, OB_OPTION_SERIES, OB_OPTION_JSON, OB_OPTION_TRACE };
+	static const ob_option_id files[] = { OB_OPTION_FRAMES, OB_OPTION_VIDEO,  OB_OPTION_RAW,  OB_OPTION_RECORD,
+					      OB_OPTION_SERIES, OB_OPTION_JSON, OB_OPTION_TRACE };
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		const char *path = a->value[files[i]], *option = name_of(files[i]);
 		if (!path)
@@ -258,11 +261,11 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.isolation =
 			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
+		.strict = a->value[OB_OPTION_STRICT] != NULL,
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
 			   : strcmp(measure, "profile") == 0        ? OB_MEASURE_PROFILE
 								    : OB_MEASURE_ENDS,
 		.record = a->value[OB_OPTION_RECORD],
-		.summary = a->value[OB_OPTION_SUMMARY],
 		.series = a->value[OB_OPTION_SERIES],
 		.trace = a->value[OB_OPTION_TRACE],
 		.json = a->value[OB_OPTION_JSON],
@@ -274,4 +277,46 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
 	       read_settings(r, a, e) && read_workers(r, a, e) && check_name(r->name, e) &&
 	       read_frames(&r->frames, a, e) && check_outputs(a, e);
+}
+
+uint64_t ob_request_steps(double duration, double step)
+{
+	// 10 s at 1/60 s are 600 steps, though the quotient of the doubles may be a little off
+	double n = ceil(duration / step * (1 - 1e-12) - 1e-9);
+	return n < 1 ? 1 : n < 1e18 ? (uint64_t)n : (uint64_t)1e18;
+}
+
+static bool check_camera(const char *name, const ob_scene *s, ob_error *e)
+{
+	ob_spelling near = ob_spelling_start(name);
+	char all[512] = "";
+	for (uint32_t i = 0; i < s->cameras; i++) {
+		if (strcmp(s->camera[i].name, name) == 0)
+			return true;
+		ob_spelling_offer(&near, s->camera[i].name);
+		size_t n = strlen(all);
+		snprintf(all + n, sizeof all - n, "%s%s", i ? ", " : "", s->camera[i].name);
+	}
+	if (near.best)
+		return ob_fail(e, "--camera %s: the scene has none of this name: did you mean %s?", name, near.best);
+	return ob_fail(e, "--camera %s: the scene has none of this name, only: %s", name, all);
+}
+
+bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_error *e)
+{
+	r->duration = r->duration > 0 ? r->duration : s->duration;
+	r->run = s->run;
+	if (!ob_run_settings_resolve(&r->run, &r->asked, e))
+		return false;
+	if (r->run.monolith && r->explain)
+		return ob_fail(e, "--explain means nothing to --arch monolith");
+	if (r->strict && !(r->run.tolerance > 0))
+		return ob_fail(e, "--strict: this run has no tolerance that it could miss; give it one with --tolerance");
+	r->run.timed = r->explain || r->measure == OB_MEASURE_PROFILE;
+	uint64_t steps = ob_request_steps(r->duration, r->run.step_length);
+	// a motion carries its step as 32 bits
+	if (steps > UINT32_MAX - 2)
+		return ob_fail(e, "%g s in steps of %g s are too many steps (at most %" PRIu32 "): shorten --duration",
+			       r->duration, r->run.step_length, UINT32_MAX - 2);
+	return !r->frames.camera || check_camera(r->frames.camera, s, e);
 }

@@ -31,9 +31,10 @@ typedef struct ob_run_request {
 	ob_run_settings asked; // a layer: what the command line leaves alone is unset
 	ob_run_settings run; // after ob_request_settle
 	bool explain;
+	bool strict; // a missed tolerance is a failure
 	ob_measure_when measure;
 	ob_frames_request frames;
-	const char *record, *summary, *series, *trace, *json; // paths; NULL = not asked for; json "-" = standard output
+	const char *record, *series, *trace, *json; // paths; NULL = not asked for; json "-" = standard output
 } ob_run_request;
 
 // false and e on what is no number, out of range, contradictory, or names a directory that is not there.

@@ -6,11 +6,12 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/log.h"
 #include "cli/capture.h"
 #include "cli/command.h"
-#include "cli/explain.h"
 #include "cli/observe.h"
 #include "cli/progress.h"
+#include "cli/quantity.h"
 #include "cli/report.h"
 #include "cli/version.h"
 #include "host/interrupt.h"
@@ -37,7 +38,7 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 }
 
 // The next step boundary that somebody wants to see; UINT64_MAX when the run is done.
-static uint64_t next_look(const run *r)
+static uint64_t next_boundary(const run *r)
 {
 	uint64_t now = r->now.step, next = r->steps;
 	if (now >= r->steps)
@@ -52,13 +53,13 @@ static uint64_t next_look(const run *r)
 }
 
 // What is done with the newest snapshot, while the universe steps on.
-static bool look(run *r, ob_error *e)
+static bool use_snapshot(run *r, ob_error *e)
 {
 	const ob_snapshot *prev = r->now.step > 0 ? &r->prev : NULL;
 	bool ends = r->now.step == 0 || r->now.step >= r->steps;
 	uint64_t begin = ob_clock_ns();
 	if (r->request.measure == OB_MEASURE_STEPS || ends) {
-		ob_observer_look(&r->observer, &r->now);
+		ob_observer_measure(&r->observer, &r->now);
 		ob_host_trace(r->host, OB_TRACE_MEASURE, begin, 0);
 	}
 	begin = ob_clock_ns();
@@ -75,7 +76,7 @@ static bool look(run *r, ob_error *e)
 	return shown;
 }
 
-static bool take(run *r, ob_error *e)
+static bool take_snapshot(run *r, ob_error *e)
 {
 	if (r->capture) {
 		ob_snapshot older = r->prev;
@@ -88,27 +89,27 @@ static bool take(run *r, ob_error *e)
 	return taken;
 }
 
-// Stepping and looking overlap: the snapshot of one boundary is looked at while the universe runs to the next.
+// Stepping and measuring overlap: the snapshot of one boundary is used while the universe runs to the next.
 static bool step_through(run *r, ob_error *e)
 {
 	r->own_cpu = ob_clock_thread_cpu();
-	if (!take(r, e))
+	if (!take_snapshot(r, e))
 		return false;
 	for (;;) {
-		uint64_t next = next_look(r);
+		uint64_t next = next_boundary(r);
 		if (next != UINT64_MAX)
 			ob_host_go(r->host, next);
-		if (!look(r, e))
+		if (!use_snapshot(r, e))
 			return false;
 		if (next == UINT64_MAX)
 			return true;
 		if (!ob_host_wait(r->host, e)) {
 			// Ctrl-C leaves it at a boundary, from where the report is made
 			if (ob_host_interrupted(r->host))
-				take(r, NULL);
+				take_snapshot(r, NULL);
 			return false;
 		}
-		if (!take(r, e))
+		if (!take_snapshot(r, e))
 			return false;
 	}
 }
@@ -246,7 +247,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 {
 	ob_host_times times;
 	ob_host_get_times(r->host, &times);
-	ob_observer_look(&r->observer, &r->now);
+	ob_observer_measure(&r->observer, &r->now);
 	name_report(r, outcome, p);
 	count_objects(&r->now, p);
 	ob_observer_report(&r->observer, r->request.measure == OB_MEASURE_STEPS, p);
@@ -260,18 +261,25 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r);
 }
 
-static bool write_file(const char *option, const char *path, void (*write)(const ob_report *, FILE *),
-		       const ob_report *p, ob_error *e)
+static bool write_json(const char *path, const ob_report *p, ob_error *e)
 {
 	bool out = strcmp(path, "-") == 0;
 	FILE *f = out ? stdout : fopen(path, "we");
 	if (!f)
-		return ob_fail(e, "--%s %s: %s", option, path, strerror(errno));
-	write(p, f);
+		return ob_fail(e, "--json %s: %s", path, strerror(errno));
+	ob_report_write_json(p, f);
 	bool broken = fflush(f) != 0 || ferror(f);
 	if (!out)
 		broken |= fclose(f) != 0;
-	return broken ? ob_fail(e, "--%s %s: %s", option, path, strerror(errno)) : true;
+	return broken ? ob_fail(e, "--json %s: %s", path, strerror(errno)) : true;
+}
+
+static void warn_of_missed_tolerance(const ob_report *p)
+{
+	ob_quantity allowed, error;
+	ob_log_warn("the tolerance of %s was missed in %" PRIu64 " island step%s; the largest error was %s",
+		    ob_quantity_text(&allowed, p->tolerance, "m"), p->islands_over, p->islands_over == 1 ? "" : "s",
+		    ob_quantity_text(&error, p->error_reached, "m"));
 }
 
 static void explain(const run *r, const ob_report *p, FILE *f)
@@ -291,8 +299,7 @@ static bool write_report(const run *r, const ob_report *p, ob_error *e)
 	ob_report_print(p, people);
 	if (q->explain && p->steps > 0)
 		explain(r, p, people);
-	return (!q->summary || write_file("summary", q->summary, ob_report_write_csv, p, e)) &&
-	       (!q->json || write_file("json", q->json, ob_report_write_json, p, e));
+	return !q->json || write_json(q->json, p, e);
 }
 
 // From the running host to its report. Returns an ob_exit.
@@ -320,6 +327,10 @@ static int carry_out(run *r)
 	make_report(r, done ? "finished" : interrupted ? "interrupted" : "failed", report);
 	if (!write_report(r, report, &e_report))
 		code = ob_command_fail(OB_EXIT_FAILED, e_report.text);
+	if (ob_report_missed_tolerance(report)) {
+		warn_of_missed_tolerance(report);
+		code = r->request.strict ? OB_EXIT_FAILED : code;
+	}
 	return code;
 }
 

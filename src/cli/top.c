@@ -10,9 +10,9 @@
 #include "base/clock.h"
 #include "base/spelling.h"
 #include "cli/command.h"
-#include "cli/number.h"
+#include "cli/quantity.h"
 #include "cli/terminal.h"
-#include "cli/top_view.h"
+#include "cli/top.h"
 
 enum { NAMES_MAX = 64 };
 static const double watch_period = .05; // s, between looks at the workers' clocks

@@ -1,4 +1,4 @@
-#include "cli/top_sample.h"
+#include "cli/top.h"
 
 #include <errno.h>
 #include <math.h>

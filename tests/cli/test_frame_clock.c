@@ -1,6 +1,6 @@
 // Frames fall due exactly once, at their time, however frames and steps lie to each other.
 #include "check.h"
-#include "cli/frame_clock.h"
+#include "cli/capture.h"
 
 // Runs as the run loop does, and counts. Every frame must lie within the step that shows it.
 static uint64_t count_frames(double duration, double fps, double step, uint64_t steps, uint64_t *seen_steps)

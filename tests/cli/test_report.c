@@ -81,21 +81,25 @@ static void test_utf8(void)
 	free(text);
 }
 
-static void test_csv(void)
+// A tolerance that was missed is never said to be kept.
+static void test_tolerance_in_words(void)
 {
-	static ob_report a;
+	static ob_report a = { .tolerance = 1e-3, .error_reached = .5e-3, .substeps_max = 8 };
 	char *text = NULL;
 	size_t length;
-	strcpy(a.scene, "a,\"b\".lua");
-	a.wall_s = .5;
-	a.fps = NAN;
-	FILE *f = open_memstream(&text, &length);
-	ob_report_write_csv(&a, f);
-	fclose(f);
-	CHECK(strncmp(text, "quantity,value,unit\n", 20) == 0);
-	CHECK(strstr(text, "\nscene,\"a,\"\"b\"\".lua\",\n"));
-	CHECK(strstr(text, "\nwall_s,0.5,s\n") && strstr(text, "\nfps,,1/s\n"));
-	free(text);
+	for (int missed = 0; missed < 2; missed++) {
+		a.islands_over = (uint64_t)missed;
+		a.error_reached = missed ? 2e-3 : .5e-3;
+		FILE *f = open_memstream(&text, &length);
+		ob_report_print(&a, f);
+		fclose(f);
+		CHECK(ob_report_missed_tolerance(&a) == missed);
+		CHECK(strstr(text, missed ? "1.00 mm MISSED, the largest error was 2.00 mm" :
+					    "1.00 mm kept, the largest error was 500 um"));
+		CHECK(!missed == !strstr(text, "MISSED") && missed == !strstr(text, " kept"));
+		CHECK(!strstr(text, "reached"));
+		free(text);
+	}
 }
 
 int main(void)
@@ -104,6 +108,6 @@ int main(void)
 	test_find();
 	test_torn();
 	test_utf8();
-	test_csv();
+	test_tolerance_in_words();
 	return check_end();
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "cli/top_view.h"
+#include "cli/top.h"
 
 enum { OBJECTS = 50, WORKERS = 30 };
 

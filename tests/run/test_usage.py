@@ -63,7 +63,7 @@ class Usage(program.Case):
 	def test_full_disk(self):
 		"""A report that cannot be written is a failed run, not a silent one."""
 		short = "run", STACK, "--duration", ".1"
-		for option in "--json", "--series", "--summary", "--trace", "--record":
+		for option in "--json", "--series", "--trace", "--record":
 			with self.subTest(option=option):
 				done = program.call(*short, option, "/dev/full")
 				self.assertEqual(done.returncode, 1)

@@ -33,7 +33,7 @@ _obsim()
 		ode-advised ode-world bullet mujoco' -- "$word") ;;
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
-	--video | --raw | --record | --series | --summary | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+	--video | --raw | --record | --series | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--define | -D | --vary | --duration | --step | --seed | --substeps | --iterations | --lag | --load | --name | --fps | --samples | \
 		--camera | --interval | --repeats | --limit | --objects) ;;
 	*)

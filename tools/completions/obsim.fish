@@ -56,7 +56,7 @@ complete -c obsim -n $run -l overlay -x -a 'aabb contacts aabb,contacts' -d 'dra
 complete -c obsim -n $run -l gpu -x -a 'surfaceless 0 1' -d 'which GPU'
 complete -c obsim -n $run -l record -r -F -d 'trajectories as HDF5'
 complete -c obsim -n $run -l series -r -F -d 'figures of each step as CSV'
-complete -c obsim -n $run -l summary -r -F -d 'the report as CSV'
+complete -c obsim -n $run -l strict -d 'fail where the tolerance is missed'
 complete -c obsim -n $run -l measure -x -a 'step profile end' -d 'when to measure'
 
 set -l compare '__fish_seen_subcommand_from compare'

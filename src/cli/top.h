@@ -1,6 +1,9 @@
-// What top knows of a universe at one look, and the rates since the look before.
-#ifndef OB_CLI_TOP_SAMPLE_H
-#define OB_CLI_TOP_SAMPLE_H
+// What top knows of a universe at one instant with the rates since the one before (top_sample.c), and how that reads as
+// lines of text (top_view.c).
+#ifndef OB_CLI_TOP_H
+#define OB_CLI_TOP_H
+
+#include <stdio.h>
 
 #include <ob/universe.h>
 
@@ -39,5 +42,17 @@ void ob_top_watch(ob_top_sample *s, const ob_universe *u);
 // A whole look. s starts zeroed. false: out of memory.
 bool ob_top_look(ob_top_sample *s, const ob_universe *u);
 void ob_top_finish(ob_top_sample *s);
+
+typedef struct ob_top_view {
+	int columns, lines; // of the screen; lines 0 = as many as it takes
+	bool workers; // show the workers at length, else the objects
+	bool by_speed; // fastest objects first, else by id
+	uint32_t scroll; // first record shown
+	int written; // lines, of this look
+} ob_top_view;
+
+// Sorts s's objects as the view wants them, brings scroll into range, and writes at most view->lines lines, each with
+// a final newline, none wider than view->columns. Text from the universe is made harmless to a terminal.
+void ob_top_view_write(ob_top_view *view, ob_top_sample *s, FILE *f);
 
 #endif
