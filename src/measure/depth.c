@@ -180,9 +180,9 @@ double ob_depth_capsule_box(const ob_solid *capsule, const ob_solid *box)
 //     overlap(n) = extent_a(n) + extent_b(n) - |n . d|,   d from one centre to the other (all solids are symmetric)
 //
 // The function is smooth but for kinks where n lies along an axis of a solid, or in the plane across one (a box's edges
-// and a cylinder's rims and mantle cast their projections there), and its least value often lies in a kink. So the search
-// takes the axes and their products as they are, walks each plane of kinks in one dimension, and looks for smooth
-// minima in two, from an even scatter of starts.
+// and a cylinder's rims and mantle cast their projections there), and its least value often lies in a kink. So the
+// search takes the axes and their products as they are, walks each plane of kinks in one dimension, and looks for
+// smooth minima in two, from an even scatter of starts.
 
 enum { AXES_MAX = 6, PLANE_STARTS = 16, SPHERE_STARTS = 48, TURNS = 8 };
 

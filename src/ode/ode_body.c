@@ -1,8 +1,76 @@
 #include "ode/ode_body.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 
+#include "base/log.h"
 #include "ode/ode_geom.h"
+
+// ---- what ODE keeps per process: its initialisation and its message handlers
+
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+
+// ODE repeats itself thousands of times a second ("LCP internal error, s <= 0"): the first one is news.
+static void on_message(int number, const char *format, va_list args)
+{
+	static atomic_flag told = ATOMIC_FLAG_INIT;
+	if (atomic_flag_test_and_set(&told))
+		return;
+	char text[256];
+	vsnprintf(text, sizeof text, format, args);
+	ob_log_warn("ODE: %s (%d); further messages of ODE are left out", text, number);
+}
+
+// ODE's contract: handlers of errors must not return.
+static void on_error(int number, const char *format, va_list args)
+{
+	char text[256];
+	vsnprintf(text, sizeof text, format, args);
+	ob_log_warn("ODE failed: %s (%d)", text, number);
+	abort();
+}
+
+static void init_ode(void)
+{
+	dSetMessageHandler(on_message);
+	dSetErrorHandler(on_error);
+	dSetDebugHandler(on_error);
+	if (!dInitODE2(dInitFlagManualThreadCleanup)) {
+		ob_log_warn("ODE does not start: no memory");
+		abort();
+	}
+}
+
+// A child of fork inherits both the flag and what it stands for.
+void ob_ode_init(void)
+{
+	pthread_once(&once, init_ode);
+}
+
+void ob_ode_thread_init(void)
+{
+	ob_ode_init();
+	dAllocateODEDataForThread(dAllocateMaskAll);
+}
+
+void ob_ode_thread_finish(void)
+{
+	dCleanupODEAllDataForThread();
+}
+
+#ifdef __SANITIZE_THREAD__
+// ODE hands memory that a geometry no longer needs (it is destroyed, or has a body now) to the next one, of any thread,
+// by a locked exchange. Debian's library is not built for ThreadSanitizer, which sees the hand-over but not the lock.
+const char *__tsan_default_suppressions(void);
+__attribute__((visibility("default"))) const char *__tsan_default_suppressions(void)
+{
+	return "race:dxGeom::~dxGeom\nrace:dGeomSetBody\n";
+}
+#endif
+
+// ---- bodies
 
 struct ob_ode_stepper {
 	dWorldID world; // empty: the working memory of all the others is its
@@ -21,29 +89,6 @@ ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass)
 		return ob_v3(0, 0, 0);
 	dMass m = ob_ode_mass(shape, size, mass);
 	return ob_v3(m.I[0], m.I[5], m.I[10]);
-}
-
-double ob_ode_volume(ob_shape shape, ob_vec3 size)
-{
-	dMass m;
-	switch (shape) {
-	case OB_SHAPE_SPHERE:
-		dMassSetSphere(&m, 1, size.x);
-		return m.mass;
-	case OB_SHAPE_BOX:
-		dMassSetBox(&m, 1, 2 * size.x, 2 * size.y, 2 * size.z);
-		return m.mass;
-	case OB_SHAPE_CAPSULE:
-		dMassSetCapsule(&m, 1, 3, size.x, 2 * size.y);
-		return m.mass;
-	case OB_SHAPE_CYLINDER:
-		dMassSetCylinder(&m, 1, 3, size.x, 2 * size.y);
-		return m.mass;
-	case OB_SHAPE_PLANE:
-	case OB_SHAPE_NONE:
-		break;
-	}
-	return 0;
 }
 
 // Without this each world would use the process's own, whose job list is not locked: worlds of different threads then

@@ -13,8 +13,6 @@ void ob_ode_thread_finish(void);
 
 // Mass properties of a homogeneous shape of given mass, by ODE. Returns principal moments (kg m^2).
 ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass);
-// m^3; 0 for a plane
-double ob_ode_volume(ob_shape shape, ob_vec3 size);
 
 // What stepping needs beside a world: working memory and a list of jobs. One for each thread that steps bodies; all of
 // its worlds share it, and it goes after them. NULL: no memory.

@@ -4,14 +4,98 @@
 
 #include "base/cpu.h"
 #include "ode/ode_body.h"
-#include "ode/ode_boxed.h"
 #include "ode/ode_geom.h"
+
+// ---- contacts of axis-aligned boxes
+
+static void set_contact(dContactGeom *c, dGeomID a, dGeomID b, const double *at, const double *normal, double depth)
+{
+	*c = (dContactGeom){ .depth = depth, .g1 = a, .g2 = b, .side1 = -1, .side2 = -1 };
+	for (int k = 0; k < 3; k++) {
+		c->pos[k] = at[k];
+		c->normal[k] = normal[k];
+	}
+}
+
+// The corner of a box (ODE's order: least and most along each axis) that bit k of "which" says for axis k.
+static void corner(const double *box, unsigned which, double *at)
+{
+	for (int k = 0; k < 3; k++)
+		at[k] = box[2 * k + (which >> k & 1)];
+}
+
+// sign: 1 where the box belongs to the pair's a.
+static int box_plane(dGeomID a, dGeomID b, const double *box, dGeomID plane, double sign, dContactGeom *point)
+{
+	dVector4 face; // n . x = d
+	dGeomPlaneGetParams(plane, face);
+	double normal[3] = { sign * face[0], sign * face[1], sign * face[2] }, depth[8], at[8][3];
+	bool used[8] = { false };
+	for (unsigned i = 0; i < 8; i++) {
+		corner(box, i, at[i]);
+		depth[i] = face[3] - (face[0] * at[i][0] + face[1] * at[i][1] + face[2] * at[i][2]);
+	}
+	int n = 0;
+	for (; n < 4; n++) {
+		int deepest = -1;
+		for (int i = 0; i < 8; i++)
+			if (!used[i] && depth[i] >= 0 && (deepest < 0 || depth[i] > depth[deepest]))
+				deepest = i;
+		if (deepest < 0)
+			break;
+		used[deepest] = true;
+		set_contact(&point[n], a, b, at[deepest], normal, depth[deepest]);
+	}
+	return n;
+}
+
+// Where the axis-aligned boxes round two geometries overlap: the four corners of the overlap across the axis along
+// which it is least, with normals along that axis, from b to a. A plane stays a plane: against it, the four lowest
+// corners of the other's box that are below it. Returns how many of the four there are. Normals as dCollide has them.
+static int collide_aabbs(dGeomID a, dGeomID b, dContactGeom point[4])
+{
+	dReal box_a[6], box_b[6];
+	double overlap[6], normal[3] = { 0, 0, 0 }, depth = dInfinity;
+	int axis = 0;
+	dGeomGetAABB(a, box_a);
+	dGeomGetAABB(b, box_b);
+	if (dGeomGetClass(b) == dPlaneClass)
+		return box_plane(a, b, box_a, b, 1, point);
+	if (dGeomGetClass(a) == dPlaneClass)
+		return box_plane(a, b, box_b, a, -1, point);
+	for (int k = 0; k < 3; k++) {
+		overlap[2 * k] = box_a[2 * k] > box_b[2 * k] ? box_a[2 * k] : box_b[2 * k];
+		overlap[2 * k + 1] = box_a[2 * k + 1] < box_b[2 * k + 1] ? box_a[2 * k + 1] : box_b[2 * k + 1];
+		if (overlap[2 * k + 1] < overlap[2 * k])
+			return 0;
+		// the way out for a: up or down along this axis
+		double up = box_b[2 * k + 1] - box_a[2 * k], down = box_a[2 * k + 1] - box_b[2 * k];
+		if ((up < down ? up : down) < depth) {
+			depth = up < down ? up : down;
+			axis = k;
+			normal[0] = normal[1] = normal[2] = 0;
+			normal[k] = up < down ? 1 : -1;
+		}
+	}
+	double middle = .5 * (overlap[2 * axis] + overlap[2 * axis + 1]);
+	overlap[2 * axis] = overlap[2 * axis + 1] = middle;
+	for (unsigned i = 0, n = 0; i < 8; i++) {
+		double at[3];
+		if (i >> axis & 1)
+			continue;
+		corner(overlap, i, at);
+		set_contact(&point[n++], a, b, at, normal, depth);
+	}
+	return 4;
+}
+
+// ---- the world
 
 enum { PAIR_POINTS = 4, CAP_POINTS = 8 }; // on a cap, ODE lists 8 points round its rim: the first 4 lie on one side
 
-struct member {
+struct object {
 	dBodyID body; // NULL: static, or no such object
-	dGeomID geom; // its data points to this member; NULL: no shape, or no such object
+	dGeomID geom; // its data points to this object; NULL: no shape, or no such object
 	uint32_t id;
 	bool touching;
 	double friction, restitution;
@@ -19,9 +103,9 @@ struct member {
 	ob_state placed; // of static objects
 };
 
-// The two members of a contact, the lower id first, and its points as ODE found them.
+// The two objects of a contact, the lower id first, and its points as ODE found them.
 struct contact_pair {
-	struct member *a, *b;
+	struct object *a, *b;
 	int points;
 	dContactGeom point[CAP_POINTS]; // normals from b to a
 	dJointFeedback force[CAP_POINTS];
@@ -35,7 +119,7 @@ struct ob_ode_world {
 	ob_ode_world_setup setup;
 	uint64_t steps, box_tests;
 	double substep; // s, of the last step
-	struct member *member;
+	struct object *object;
 	struct contact_pair *pair;
 	struct contact_pair **order; // the pairs by their ids: they themselves are too big to be moved about
 	size_t pairs, pairs_max;
@@ -45,21 +129,21 @@ struct ob_ode_world {
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
 {
 	ob_ode_world *w = calloc(1, sizeof *w);
-	struct member *member = calloc(s->objects ? s->objects : 1, sizeof *member);
-	if (!w || !member) {
+	struct object *object = calloc(s->objects ? s->objects : 1, sizeof *object);
+	if (!w || !object) {
 		free(w);
-		free(member);
+		free(object);
 		return NULL;
 	}
 	ob_ode_init();
 	w->setup = *s;
-	w->member = member;
+	w->object = object;
 	w->world = dWorldCreate();
 	w->threading = dThreadingAllocateSelfThreadedImplementation();
 	w->space = s->hashed ? dHashSpaceCreate(0) : dSweepAndPruneSpaceCreate(0, dSAP_AXES_XYZ);
 	w->joints = dJointGroupCreate(0);
 	dSpaceSetManualCleanup(w->space, 1);
-	dSpaceSetCleanup(w->space, 0); // members own their geometries
+	dSpaceSetCleanup(w->space, 0); // objects own their geometries
 	dWorldSetStepThreadingImplementation(w->world, dThreadingImplementationGetFunctions(w->threading),
 					     w->threading);
 	dWorldSetGravity(w->world, s->gravity.x, s->gravity.y, s->gravity.z);
@@ -75,13 +159,13 @@ ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
 	return w;
 }
 
-static void clear(struct member *m)
+static void clear_object(struct object *m)
 {
 	if (m->geom)
 		dGeomDestroy(m->geom);
 	if (m->body)
 		dBodyDestroy(m->body);
-	*m = (struct member){ 0 };
+	*m = (struct object){ 0 };
 }
 
 void ob_ode_world_destroy(ob_ode_world *w)
@@ -89,18 +173,18 @@ void ob_ode_world_destroy(ob_ode_world *w)
 	if (!w)
 		return;
 	for (uint32_t id = 0; id < w->setup.objects; id++)
-		clear(&w->member[id]);
+		clear_object(&w->object[id]);
 	dJointGroupDestroy(w->joints);
 	dSpaceDestroy(w->space);
 	dWorldDestroy(w->world);
 	dThreadingFreeImplementation(w->threading);
-	free(w->member);
+	free(w->object);
 	free(w->pair);
 	free(w->order);
 	free(w);
 }
 
-static void add_body(ob_ode_world *w, struct member *m, const ob_passport *p, const ob_state *s)
+static void add_body(ob_ode_world *w, struct object *m, const ob_passport *p, const ob_state *s)
 {
 	dMass mass;
 	dMassSetParameters(&mass, p->mass, 0, 0, 0, p->inertia.x, p->inertia.y, p->inertia.z, 0, 0, 0);
@@ -114,8 +198,8 @@ static void add_body(ob_ode_world *w, struct member *m, const ob_passport *p, co
 
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 {
-	struct member *m = &w->member[p->id];
-	*m = (struct member){
+	struct object *m = &w->object[p->id];
+	*m = (struct object){
 		.id = p->id,
 		.friction = p->friction,
 		.restitution = p->restitution,
@@ -135,10 +219,10 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 }
 
 // Sleepers that lean on what goes: their boxes overlap.
-static void wake(void *data, dGeomID a, dGeomID b)
+static void wake_both(void *data, dGeomID a, dGeomID b)
 {
 	(void)data;
-	struct member *one = dGeomGetData(a), *other = dGeomGetData(b);
+	struct object *one = dGeomGetData(a), *other = dGeomGetData(b);
 	if (one->body)
 		dBodyEnable(one->body);
 	if (other->body)
@@ -147,10 +231,10 @@ static void wake(void *data, dGeomID a, dGeomID b)
 
 void ob_ode_world_remove(ob_ode_world *w, uint32_t id)
 {
-	struct member *m = &w->member[id];
+	struct object *m = &w->object[id];
 	if (m->geom)
-		dSpaceCollide2(m->geom, (dGeomID)w->space, NULL, wake);
-	clear(m);
+		dSpaceCollide2(m->geom, (dGeomID)w->space, NULL, wake_both);
+	clear_object(m);
 	w->pairs = 0; // the last contacts may name it
 }
 
@@ -171,19 +255,19 @@ static struct contact_pair *next_pair(ob_ode_world *w)
 	return &w->pair[w->pairs++];
 }
 
-static bool awake(const struct member *m)
+static bool is_awake(const struct object *m)
 {
 	return m->body && dBodyIsEnabled(m->body);
 }
 
-static void near(void *data, dGeomID one, dGeomID other)
+static void collide_pair(void *data, dGeomID one, dGeomID other)
 {
 	ob_ode_world *w = data;
-	struct member *a = dGeomGetData(one), *b = dGeomGetData(other);
-	if (!awake(a) && !awake(b))
+	struct object *a = dGeomGetData(one), *b = dGeomGetData(other);
+	if (!is_awake(a) && !is_awake(b))
 		return;
 	if (a->id > b->id) {
-		struct member *lower = b;
+		struct object *lower = b;
 		b = a;
 		a = lower;
 	}
@@ -191,7 +275,7 @@ static void near(void *data, dGeomID one, dGeomID other)
 	ob_synthetic_load(w->setup.load);
 	dContactGeom point[CAP_POINTS];
 	bool cap = dGeomGetClass(a->geom) == dCylinderClass || dGeomGetClass(b->geom) == dCylinderClass;
-	int n = w->setup.boxed ? ob_ode_collide_boxed(a->geom, b->geom, point)
+	int n = w->setup.boxed ? collide_aabbs(a->geom, b->geom, point)
 			       : dCollide(a->geom, b->geom, cap ? CAP_POINTS : PAIR_POINTS, point, sizeof *point);
 	struct contact_pair *p = n > 0 ? next_pair(w) : NULL;
 	if (!p)
@@ -213,7 +297,7 @@ static int by_ids(const void *x, const void *y)
 }
 
 // ODE's first body must be a dynamic one, and its normals point into the first body.
-static void join(ob_ode_world *w, struct contact_pair *p, double bounce_speed)
+static void create_contact_joints(ob_ode_world *w, struct contact_pair *p, double bounce_speed)
 {
 	dContact c = { .surface = {
 			       .mode = dContactApprox1 | dContactBounce,
@@ -237,7 +321,7 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 {
 	w->pairs = 0;
 	w->full = false;
-	dSpaceCollide(w->space, w, near);
+	dSpaceCollide(w->space, w, collide_pair);
 	if (w->full) {
 		w->pairs = 0;
 		return false;
@@ -247,8 +331,8 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 	if (w->pairs)
 		qsort(w->order, w->pairs, sizeof *w->order, by_ids);
 	for (uint32_t id = 0; id < w->setup.objects; id++) {
-		struct member *m = &w->member[id];
-		if (!awake(m))
+		struct object *m = &w->object[id];
+		if (!is_awake(m))
 			continue; // ODE would keep the forces on a sleeper until it wakes
 		m->touching = false;
 		dBodySetForce(m->body, m->force.x, m->force.y, m->force.z);
@@ -256,7 +340,7 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 	// Slower than what gravity adds in two steps is rest, not an impact.
 	double bounce_speed = 2 * h * ob_norm(w->setup.gravity);
 	for (size_t i = 0; i < w->pairs; i++)
-		join(w, w->order[i], bounce_speed);
+		create_contact_joints(w, w->order[i], bounce_speed);
 	dRandSetSeed((unsigned long)(uint32_t)(w->steps++ * 2654435761u + 1));
 	if (w->setup.iterations)
 		dWorldQuickStep(w->world, h);
@@ -269,7 +353,7 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 
 void ob_ode_world_get(const ob_ode_world *w, uint32_t id, ob_state *s, bool *asleep, bool *touching)
 {
-	const struct member *m = &w->member[id];
+	const struct object *m = &w->object[id];
 	*touching = m->touching;
 	*asleep = m->body && !dBodyIsEnabled(m->body);
 	*s = m->placed;

@@ -1,4 +1,4 @@
-// The monolith: one ODE world that holds every object, as a usual virtual environment does it: sweep-and-prune space,
+// The baseline: one ODE world that holds every object, as a usual virtual environment does it: sweep-and-prune space,
 // up to 4 contact points a pair (8 with a cylinder), friction pyramid, ODE's own parameters throughout.
 //
 // Thread-safety: one thread at a time per world. QuickStep shuffles its rows by a seed of the whole process, which each
@@ -14,8 +14,8 @@ typedef struct ob_ode_world_setup {
 	uint32_t iterations; // QuickStep; 0 = dWorldStep (the big-matrix solver)
 	uint32_t objects;    // ids are 0 .. objects-1
 	bool sleeping;       // ODE's auto-disable
-	bool boxed;          // objects touch where their axis-aligned boxes do (ode_boxed.h)
-	uint32_t load;       // base/cpu.h, at each pair of boxes that the space finds to overlap
+	bool boxed;          // contacts are those of the axis-aligned boxes round the objects
+	uint32_t load;       // ob_synthetic_load, at each pair of boxes that the space finds to overlap
 	bool hashed;         // pairs are found by a hash space instead of sweep and prune
 	double surface_layer;    // m, that contacts may sink in; 0 = ODE's default, as with those below
 	double softness;         // constraint force mixing (kg^-1) of all constraints

@@ -47,7 +47,8 @@ static bool add_item(ob_drawing *d, ob_item item, const ob_dot *dot, size_t coun
 static size_t keep_text(ob_drawing *d, const char *text)
 {
 	size_t length = strlen(text);
-	if (!length || d->out_of_memory || !reserve_elements(d, (void **)&d->text, 1, d->chars + 1, length + 1, &d->chars_max))
+	if (!length || d->out_of_memory ||
+	    !reserve_elements(d, (void **)&d->text, 1, d->chars + 1, length + 1, &d->chars_max))
 		return 0;
 	if (!d->chars)
 		d->text[d->chars++] = 0;

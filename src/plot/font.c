@@ -41,10 +41,10 @@ static const struct {
 	unsigned code;
 	unsigned short width;
 } others[] = {
-	{ 0x3b8, 688 }, { 0x3bc, 736 }, { 0x3c0, 792 }, { 0x3c9, 870 }, // theta, mu, pi, omega
-	{ 0x2013, 556 }, { 0x2014, 1000 }, { 0x2019, 380 }, { 0x2022, 640 }, // dashes, apostrophe, bullet
+	{ 0x3b8, 688 },   { 0x3bc, 736 },   { 0x3c0, 792 },  { 0x3c9, 870 }, // theta, mu, pi, omega
+	{ 0x2013, 556 },  { 0x2014, 1000 }, { 0x2019, 380 }, { 0x2022, 640 }, // dashes, apostrophe, bullet
 	{ 0x2026, 1000 }, { 0x2192, 1000 }, { 0x2212, 838 }, { 0x221e, 834 }, // ellipsis, arrow, minus, infinity
-	{ 0x2248, 838 }, { 0x2260, 838 }, { 0x2264, 838 }, { 0x2265, 838 }, // about, not equal, <=, >=
+	{ 0x2248, 838 },  { 0x2260, 838 },  { 0x2264, 838 }, { 0x2265, 838 }, // about, not equal, <=, >=
 };
 enum { WIDTH_UNKNOWN = 1000 };
 static const char ellipsis[] = "\u2026";
@@ -81,7 +81,7 @@ void ob_font_clean_text(const char *text, char *to, size_t room)
 	size_t used = 0;
 	for (size_t bytes; *text; text += bytes) {
 		uint32_t code = decode(text, &bytes);
-		const char *letter = code == OB_UTF8_REPLACEMENT                            ? "?"
+		const char *letter = code == OB_UTF8_REPLACEMENT                    ? "?"
 				     : code < 0x20 || (code >= 0x7f && code < 0xa0) ? " "
 										    : text;
 		size_t length = letter == text ? bytes : 1;

@@ -31,7 +31,8 @@ static double widest_tick(const ob_frame *f, double limit)
 	for (size_t i = 0; s->axis->scale == OB_SCALE_CATEGORY && i < s->axis->categories; i++)
 		widest = fmax(widest, ob_font_width(category(s, i), category_font, false));
 	for (size_t i = 0; s->axis->scale != OB_SCALE_CATEGORY && i < s->ticks.count; i++)
-		widest = fmax(widest, ob_drawing_width(s->ticks.tick[i].text, s->ticks.tick[i].super, tick_font, false));
+		widest =
+			fmax(widest, ob_drawing_width(s->ticks.tick[i].text, s->ticks.tick[i].super, tick_font, false));
 	return fmin(widest, limit);
 }
 
@@ -126,7 +127,8 @@ static void draw_ticks(const ob_frame *f, ob_drawing *d, const ob_side *s, ob_re
 static void draw_categories(const ob_frame *f, ob_drawing *d)
 {
 	const ob_side *s = &f->y;
-	double every = ceil(s->axis->categories * CATEGORY_ROW / 1.4 / fmax(s->begin - s->end, 1)); // only where there is room
+	double every =
+		ceil(s->axis->categories * CATEGORY_ROW / 1.4 / fmax(s->begin - s->end, 1)); // only where there is room
 	for (size_t i = 0; i < s->axis->categories; i++) {
 		double at = ob_frame_at(s, (double)i);
 		ob_draw_line(d, f->area.x0, snapped(at), f->area.x1, snapped(at), grid);
@@ -180,7 +182,7 @@ static void draw_axes(const ob_frame *f, ob_drawing *d)
 	ob_draw_line(d, snapped(o.x0), snapped(o.y1), o.x1, snapped(o.y1), rim);
 	draw_axis_label(d, f->plot->x.label, (o.x0 + o.x1) / 2, o.y1 + axes_bottom - 6, o.x1 - o.x0, false);
 	draw_axis_label(d, f->plot->y.label, o.x0 - axes_left(f, d->width) + axis_font * .6, (o.y0 + o.y1) / 2,
-		   o.y1 - o.y0, true);
+			o.y1 - o.y0, true);
 }
 
 // ---- data
@@ -498,7 +500,8 @@ static int entry_lines(const legend *l, size_t i, double width, ob_drawing *d, d
 	const char *rest = entry_title(l, i);
 	char line[160];
 	int lines = 0, most = l->below ? 1 : LINES;
-	while (lines < most && ob_font_fit_line(&rest, width, legend_font, false, lines == most - 1, line, sizeof line)) {
+	while (lines < most &&
+	       ob_font_fit_line(&rest, width, legend_font, false, lines == most - 1, line, sizeof line)) {
 		*widest = fmax(*widest, ob_font_width(line, legend_font, false));
 		if (d)
 			ob_draw_text(d, x, y + lines * LINE, line, "",
@@ -620,7 +623,7 @@ static bool draw_diagram(ob_frame *f, ob_drawing *d)
 		return false;
 	if (l.entries)
 		draw_legend(&l, d, l.below ? RIM : d->width - RIM - l.width,
-			       l.below ? top + height + axes_bottom + GAP : top);
+			    l.below ? top + height + axes_bottom + GAP : top);
 	return !d->out_of_memory;
 }
 

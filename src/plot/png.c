@@ -58,7 +58,8 @@ static double text_advance(cairo_t *c, const char *text, double size)
 	return extents.x_advance;
 }
 
-// In the font that stands in for Liberation Sans here. One that is wider than the layout has it is set smaller, not squeezed.
+// In the font that stands in for Liberation Sans here. One that is wider than the layout has it is set smaller, not
+// squeezed.
 static void paint_text(cairo_t *c, const ob_drawing *d, const ob_item *item)
 {
 	const ob_type *t = &item->type;

@@ -8,7 +8,9 @@
 
 static void test_csv_round_trip(void)
 {
-	static const char *const texts[] = { "plain", "", "a,b", "say \"so\"", "\"", "\"\"", "two\r\nlines", "\n", "," };
+	static const char *const texts[] = {
+		"plain", "", "a,b", "say \"so\"", "\"", "\"\"", "two\r\nlines", "\n", ","
+	};
 	static const double numbers[] = { 0, .1, 1. / 3, 5e-324, -1.7976931348623157e308, INFINITY };
 	enum { TEXTS = sizeof texts / sizeof *texts, NUMBERS = sizeof numbers / sizeof *numbers };
 	char *text = NULL, *cell[TEXTS];

@@ -1,4 +1,4 @@
-// The world of the monolith: fall, rest, bounce, sleep, contacts, objects that come and go, the same bits again.
+// The world of the ODE baseline: fall, rest, bounce, sleep, contacts, objects that come and go, the same bits again.
 #include <string.h>
 
 #include "ode/ode_body.h"

@@ -176,21 +176,25 @@ static void check_lines(void)
 	CHECK(strstr(line, "\u2026") && ob_font_width(line, 10, false) <= 20);
 	CHECK(!ob_font_fit_line(&rest, 20, 10, false, true, line, sizeof line));
 	ob_font_clean_text("a\x01"
-			 "b\xff"
-			 "c\u00b5\xc0\x80",
-			 line, sizeof line);
+			   "b\xff"
+			   "c\u00b5\xc0\x80",
+			   line, sizeof line);
 	CHECK(!strcmp(line, "a b?c\u00b5??"));
 	ob_font_clean_text("\u00b5\u00b5", line, 4); // no half letters
 	CHECK(!strcmp(line, "\u00b5"));
 }
 
-// No font that a text may be shown in is wider than the layout has it: nothing has to be squeezed. Fonts that are not here
-// are stood in for by those that are.
+// No font that a text may be shown in is wider than the layout has it: nothing has to be squeezed. Fonts that are not
+// here are stood in for by those that are.
 static void check_fonts(void)
 {
 	static const char *const families[] = { "Liberation Sans", "Arial", "Helvetica", "DejaVu Sans", "sans-serif" };
-	static const char *const texts[] = { "CPU per body and simulated second (\u00b5s)", "\u221210.25 mm \u2264 2\u00d710",
-					     "failed", "stack of 10: obsim, 16 substeps", "f(l) [tj] {!}", "MWQ @ #%&",
+	static const char *const texts[] = { "CPU per body and simulated second (\u00b5s)",
+					     "\u221210.25 mm \u2264 2\u00d710",
+					     "failed",
+					     "stack of 10: obsim, 16 substeps",
+					     "f(l) [tj] {!}",
+					     "MWQ @ #%&",
 					     "\u2248 \u221e \u2026 \u2014 \u03c0\u03c9\u03b8" };
 	cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
 	cairo_t *c = cairo_create(surface);

@@ -1,31 +1,31 @@
 // Inside the module record only: what we use of HDF5, with errors as one line for a person.
-#ifndef OB_RECORD_FILE_H
-#define OB_RECORD_FILE_H
+#ifndef OB_RECORD_HDF5_FILE_H
+#define OB_RECORD_HDF5_FILE_H
 
 #include <hdf5.h>
 
 #include <ob/universe.h>
 
 // A dataset's meaning, written into it as attributes.
-typedef struct ob_file_label {
+typedef struct ob_hdf5_label {
 	const char *name, *units, *frame, *description; // frame: NULL where it means nothing
-} ob_file_label;
+} ob_hdf5_label;
 
 // No output of HDF5 itself on the terminal from here on (process-wide).
-void ob_file_silence(void);
+void ob_hdf5_silence(void);
 // Says in e that "doing" failed, and the system's reason, as HDF5 noted it in the last call that failed. Returns false.
-bool ob_file_fail(ob_error *e, const char *path, const char *doing);
+bool ob_hdf5_fail(ob_error *e, const char *path, const char *doing);
 
 // What of the closed file HDF5 uses (bytes); 0 if it cannot be read.
-uint64_t ob_file_length(const char *path);
+uint64_t ob_hdf5_length(const char *path);
 
 // Strings of fixed length, padded with zeros. The caller closes the type.
-hid_t ob_file_string_type(size_t length);
-bool ob_file_attribute_text(hid_t at, const char *name, const char *text);
-bool ob_file_attribute_numbers(hid_t at, const char *name, const double *number, size_t numbers);
+hid_t ob_hdf5_string_type(size_t length);
+bool ob_hdf5_attribute_text(hid_t at, const char *name, const char *text);
+bool ob_hdf5_attribute_numbers(hid_t at, const char *name, const double *number, size_t numbers);
 // A dataset of rank dimensions dims[]; the first grows without limit if chunk_rows > 0. NaN or fill where never
 // written. Negative on failure.
-hid_t ob_file_dataset(hid_t in, const ob_file_label *label, hid_t type, int rank, const hsize_t *dims,
+hid_t ob_hdf5_dataset(hid_t in, const ob_hdf5_label *label, hid_t type, int rank, const hsize_t *dims,
 		      hsize_t chunk_rows, const void *fill);
 
 #endif

@@ -1,11 +1,11 @@
-#include "record/file.h"
+#include "record/hdf5_file.h"
 
 #include <stdio.h>
 #include <string.h>
 
 // And no cleaning up by HDF5 when the process exits: once a write has failed, that crashes (1.10.8). We close what we
 // open.
-void ob_file_silence(void)
+void ob_hdf5_silence(void)
 {
 	H5dont_atexit();
 	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
@@ -25,14 +25,14 @@ static herr_t find_reason(unsigned depth, const H5E_error2_t *error, void *data)
 	return 0;
 }
 
-bool ob_file_fail(ob_error *e, const char *path, const char *doing)
+bool ob_hdf5_fail(ob_error *e, const char *path, const char *doing)
 {
 	char reason[128] = "";
 	H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, find_reason, reason);
 	return ob_fail(e, "%s: cannot %s: %s", path, doing, reason[0] ? reason : "HDF5 gives no reason");
 }
 
-uint64_t ob_file_length(const char *path)
+uint64_t ob_hdf5_length(const char *path)
 {
 	haddr_t end = 0;
 	hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -43,7 +43,7 @@ uint64_t ob_file_length(const char *path)
 	return end;
 }
 
-hid_t ob_file_string_type(size_t length)
+hid_t ob_hdf5_string_type(size_t length)
 {
 	hid_t type = H5Tcopy(H5T_C_S1);
 	H5Tset_size(type, length);
@@ -51,39 +51,39 @@ hid_t ob_file_string_type(size_t length)
 	return type;
 }
 
-static bool attribute(hid_t at, const char *name, hid_t type, hid_t space, const void *data)
+static bool write_attribute(hid_t at, const char *name, hid_t type, hid_t space, const void *data)
 {
 	hid_t id = H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
 	bool ok = id >= 0 && H5Awrite(id, type, data) >= 0;
 	return (id < 0 || H5Aclose(id) >= 0) && ok;
 }
 
-bool ob_file_attribute_text(hid_t at, const char *name, const char *text)
+bool ob_hdf5_attribute_text(hid_t at, const char *name, const char *text)
 {
-	hid_t type = ob_file_string_type(text[0] ? strlen(text) : 1), space = H5Screate(H5S_SCALAR);
-	bool ok = attribute(at, name, type, space, text);
+	hid_t type = ob_hdf5_string_type(text[0] ? strlen(text) : 1), space = H5Screate(H5S_SCALAR);
+	bool ok = write_attribute(at, name, type, space, text);
 	H5Sclose(space);
 	H5Tclose(type);
 	return ok;
 }
 
-bool ob_file_attribute_numbers(hid_t at, const char *name, const double *number, size_t numbers)
+bool ob_hdf5_attribute_numbers(hid_t at, const char *name, const double *number, size_t numbers)
 {
 	hsize_t n = numbers;
 	hid_t space = numbers > 1 ? H5Screate_simple(1, &n, NULL) : H5Screate(H5S_SCALAR);
-	bool ok = attribute(at, name, H5T_NATIVE_DOUBLE, space, number);
+	bool ok = write_attribute(at, name, H5T_NATIVE_DOUBLE, space, number);
 	H5Sclose(space);
 	return ok;
 }
 
-static bool add_label(hid_t set, const ob_file_label *label)
+static bool add_label(hid_t set, const ob_hdf5_label *label)
 {
-	return ob_file_attribute_text(set, "units", label->units) &&
-	       (!label->frame || ob_file_attribute_text(set, "frame", label->frame)) &&
-	       ob_file_attribute_text(set, "description", label->description);
+	return ob_hdf5_attribute_text(set, "units", label->units) &&
+	       (!label->frame || ob_hdf5_attribute_text(set, "frame", label->frame)) &&
+	       ob_hdf5_attribute_text(set, "description", label->description);
 }
 
-hid_t ob_file_dataset(hid_t in, const ob_file_label *label, hid_t type, int rank, const hsize_t *dims,
+hid_t ob_hdf5_dataset(hid_t in, const ob_hdf5_label *label, hid_t type, int rank, const hsize_t *dims,
 		      hsize_t chunk_rows, const void *fill)
 {
 	hsize_t most[4], chunk[4];
