@@ -3,13 +3,13 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "scenery.h"
+#include "test_scene.h"
 
 enum { FRAMES = 60 };
 
 static int measure(ob_renderer *r, const ob_snapshot *s, const ob_render_setup *setup, uint8_t *rgba)
 {
-	ob_camera_def camera = scenery_camera(ob_v3(-22, -26, 15), ob_v3(0, 0, 0));
+	ob_camera_def camera = test_scene_camera(ob_v3(-22, -26, 15), ob_v3(0, 0, 0));
 	camera.velocity = ob_v3(.05, 0, 0);
 	ob_error e;
 	if (!ob_renderer_draw(r, NULL, s, 0, &camera, rgba, &e)) { // the first compiles the shaders
@@ -33,12 +33,12 @@ int main(int argc, char **argv)
 	ob_render_setup setup = { .width = argc > 3 ? atoi(argv[2]) : 1280,
 				  .height = argc > 3 ? atoi(argv[3]) : 720,
 				  .samples = argc > 4 ? atoi(argv[4]) : 4 };
-	ob_look_def look = scenery_look();
+	ob_look_def look = test_scene_look();
 	ob_error e = { "" };
 	ob_snapshot s;
 	ob_renderer *r = ob_renderer_create(&setup, &look, &e);
 	uint8_t *rgba = malloc(4 * (size_t)setup.width * (size_t)setup.height);
-	scenery_boxes(&s, (uint32_t)objects, 26, 1);
+	test_scene_boxes(&s, (uint32_t)objects, 26, 1);
 	int failed = !r || !rgba || measure(r, &s, &setup, rgba);
 	ob_sink *png = !failed && argc > 5 ? ob_sink_png(argv[5], setup.width, setup.height, &e) : NULL;
 	if (png) {
@@ -48,7 +48,7 @@ int main(int argc, char **argv)
 	if (failed)
 		fprintf(stderr, "%s\n", e.text);
 	ob_renderer_destroy(r);
-	scenery_finish(&s);
+	test_scene_finish(&s);
 	free(rgba);
 	return failed;
 }

@@ -6,7 +6,7 @@
 out vec3 v_local;       // box: position, m; else: normal
 out vec3 v_to_eye;
 out vec3 v_shadow;      // shadow-map coordinates
-out vec2 v_open_haze;   // share of the sky that is seen; haze
+out vec2 v_open_fog;   // share of the sky that is seen; fog
 flat out vec4 v_half;   // of v_local; 1 / width of the rounding
 flat out vec3 v_sun, v_up, v_colour;
 
@@ -23,11 +23,11 @@ void main()
 
 	// The shadow is looked up off the surface, farther where light grazes: no acne, and contacts stay attached.
 	float facing = clamp(dot(n, sun.xyz), 0., 1.);
-	v_shadow = (sun_map * vec4(p + n * (sun.w * (.6 + 1.4 * sqrt(1. - facing * facing))), 1.)).xyz;
+	v_shadow = (shadow_map * vec4(p + n * (sun.w * (.6 + 1.4 * sqrt(1. - facing * facing))), 1.)).xyz;
 
 	// Near the ground less of the sky is seen, and what is seen of the ground lies in shadow.
-	float height = (contact_map * vec4(p, 1.)).z;
-	v_open_haze.x = mix(1., .55 + .45 * clamp(1. - exp2(-3.5 * height), 0., 1.), sky_horizon.w);
-	v_open_haze.y = haze(p);
+	float height = (occlusion_map * vec4(p, 1.)).z;
+	v_open_fog.x = mix(1., .55 + .45 * clamp(1. - exp2(-3.5 * height), 0., 1.), sky_horizon.w);
+	v_open_fog.y = fog(p);
 	gl_Position = view_projection * vec4(p, 1.);
 }

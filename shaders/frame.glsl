@@ -4,20 +4,20 @@ precision highp float;
 
 layout(std140) uniform Frame {
 	mat4 view_projection;
-	mat4 sun_map;      // to shadow-map coordinates, 0..1 each
-	mat4 contact_map;  // to contact-map coordinates (xy, 0..1) and the height over the ground (z, m)
+	mat4 shadow_map;    // to shadow-map coordinates, 0..1 each
+	mat4 occlusion_map; // to occlusion-map coordinates (xy, 0..1) and the height over the ground (z, m)
 	vec4 ray_right;    // view ray = forward + x right + y up, with x and y in -1..1
 	vec4 ray_up;
 	vec4 ray_forward;
 	vec4 sun;          // unit, towards the sun; w: texel of the shadow map, m
 	vec4 sun_colour;   
-	vec4 sky_top;      // w: 1 / square of the haze's distance, 1/m2
+	vec4 sky_top;      // w: 1 / square of the fog's distance, 1/m2
 	vec4 sky_horizon;  // w: 1 with a ground, 0 without
 	vec4 ambient_up;
 	vec4 ambient_down;
 	vec4 viewport;     // px: width, height; 1 / width, 1 / height
-	vec2 sun_map_texel; // 1 / texels of the shadow map
+	vec2 shadow_texel;   // 1 / texels of the shadow map
 };
 
-// How much haze lies between the eye and p.
-float haze(vec3 p) { return 1. - exp2(-dot(p, p) * sky_top.w); }
+// How much fog lies between the eye and p.
+float fog(vec3 p) { return 1. - exp2(-dot(p, p) * sky_top.w); }

@@ -4,9 +4,9 @@
 uniform vec3 foot, normal;
 uniform vec2 grid_foot;         // m: where the foot lies in the 10 m cell of the grid
 uniform vec4 colour;            // linear; w: 1 with grid
-uniform mat3 sun_of, cover_of;  // (along x, along y, 1) to the coordinates of the shadow map and the contact map
-uniform float cover_share;      // how much contacts darken: 0 where the contact map is not of this plane
-uniform sampler2D contact_cover;
+uniform mat3 shadow_of, occlusion_of; // (along x, along y, 1) to the coordinates of the shadow map and the occlusion map
+uniform float occlusion_share;      // how much contacts darken: 0 where the occlusion map is not of this plane
+uniform sampler2D occlusion;
 in vec2 v_at;
 out vec4 pixel;
 
@@ -30,9 +30,9 @@ void main()
 {
 	vec3 albedo = colour.rgb * (1. - ink(v_at + grid_foot));
 	vec3 at = vec3(v_at, 1.);
-	float sunny = sunlight(sun_of * at) * max(dot(normal, sun.xyz), 0.);
-	float open = 1. - cover_share * texture(contact_cover, (cover_of * at).xy).r;
+	float sunny = sunlight(shadow_of * at) * max(dot(normal, sun.xyz), 0.);
+	float open = 1. - occlusion_share * texture(occlusion, (occlusion_of * at).xy).r;
 	vec3 ambient = mix(ambient_down.rgb, ambient_up.rgb, .5 + .5 * normal.z) * open;
-	float hazy = 1. - exp2(-(dot(foot, foot) + dot(v_at, v_at)) * sky_top.w);
-	pixel = shown(albedo * (sun_colour.rgb * (sunny * (.4 + .6 * open)) + ambient), hazy);
+	float fogged = 1. - exp2(-(dot(foot, foot) + dot(v_at, v_at)) * sky_top.w);
+	pixel = shown(albedo * (sun_colour.rgb * (sunny * (.4 + .6 * open)) + ambient), fogged);
 }

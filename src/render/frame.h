@@ -1,29 +1,45 @@
-// What all shaders of one frame share, and where it comes from: camera, sun, sky, ground.
+// What all shaders of one frame share (camera, sun, sky, ground), and where the shadow map and the occlusion map lie:
+// rectangles fitted to what is seen. Pure functions.
 #ifndef OB_RENDER_FRAME_H
 #define OB_RENDER_FRAME_H
 
-#include "render/light.h"
+#include "render/draw_list.h"
+
+// The orthographic projection of a map: its axes, centre and half sides. Sizes come in steps of 2^(1/4) and the centre
+// in whole texels, so that shadows do not crawl while the scene moves.
+typedef struct ob_ortho {
+	ob_vec3 x, y, z; // unit; z towards the light
+	double centre_x, centre_y;
+	double half_x, half_y; // m
+	double z_low, z_high; // m along z: what casts lies between
+} ob_ortho;
+
+// For light from direction z (unit), over the bodies that can be seen or whose shadow can be seen.
+ob_ortho ob_ortho_fit(ob_vec3 z, const ob_draw_list *b, const ob_view *v, int texels);
+bool ob_ortho_contains(const ob_ortho *m, const ob_draw_item *body);
+// Column-major: positions relative to the eye to 0..1; z grows away from the light.
+void ob_ortho_matrix(const ob_ortho *m, ob_vec3 eye, float out[16]);
 
 // std140 layout of the block Frame in shaders/frame.glsl.
 typedef struct ob_frame_block {
-	float view_projection[16], sun_map[16], contact_map[16];
+	float view_projection[16], shadow_map[16], occlusion_map[16];
 	float ray_right[4], ray_up[4], ray_forward[4];
 	float sun[4], sun_colour[4], sky_top[4], sky_horizon[4], ambient_up[4], ambient_down[4], viewport[4];
-	float sun_map_texel[4]; // 2 used
+	float shadow_texel[4]; // 2 used
 } ob_frame_block;
 
-enum { OB_SUN_TEXELS = 2048, OB_CONTACT_TEXELS = 256 };
+enum { OB_SHADOW_TEXELS = 2048, OB_OCCLUSION_TEXELS = 256 };
 
 typedef struct ob_frame {
 	ob_view view;
-	ob_map sun; // shadows
-	ob_map contact; // on the ground, from above
+	ob_ortho shadow; // seen from the sun
+	ob_ortho occlusion; // of the ground by what is near to it, seen from above
 	int ground; // index of the plane that is the ground; -1 = none
-	double level; // m, height of the ground along contact.z
+	double level; // m, height of the ground along occlusion.z
 	ob_frame_block block;
 } ob_frame;
 
-void ob_frame_set(ob_frame *f, const ob_bodies *b, const ob_look_def *look, const ob_camera_def *c, double t, int width,
-		  int height);
+void ob_frame_set(ob_frame *f, const ob_draw_list *b, const ob_look_def *look, const ob_camera_def *c, double t,
+		  int width, int height);
 
 #endif

@@ -1,10 +1,194 @@
 #include "render/passes.h"
 
 #include <stddef.h>
+#include <string.h>
+
+#include "shaders.h"
+
+// ---- shader programs
+
+typedef struct source {
+	const char *name, *vertex, *fragment;
+} source;
+
+static const source sources[OB_PROGRAMS] = {
+	[OB_PROGRAM_BODY] = { "body", shader_body_vert, shader_body_frag },
+	[OB_PROGRAM_SHADOW] = { "shadow", shader_shadow_vert, shader_shadow_frag },
+	[OB_PROGRAM_OCCLUSION] = { "occlusion", shader_occlusion_vert, shader_occlusion_frag },
+	[OB_PROGRAM_BLUR] = { "blur", shader_sky_vert, shader_blur_frag },
+	[OB_PROGRAM_PLANE] = { "plane", shader_plane_vert, shader_plane_frag },
+	[OB_PROGRAM_SKY] = { "sky", shader_sky_vert, shader_sky_frag },
+	[OB_PROGRAM_SEGMENT] = { "segment", shader_segment_vert, shader_segment_frag },
+};
+
+// Mesa without a GPU: shaders then choose what is cheaper.
+static bool is_software_renderer(void)
+{
+	const char *name = (const char *)glGetString(GL_RENDERER);
+	return name && (strstr(name, "llvmpipe") || strstr(name, "softpipe"));
+}
+
+static bool compile_shader(GLuint program, GLenum stage, const char *name, const char *text, ob_error *e)
+{
+	GLuint shader = glCreateShader(stage);
+	GLint good = 0;
+	// After #version, which must come first.
+	const char *body = strchr(text, '\n') + 1;
+	const char *const part[] = { text, is_software_renderer() ? "#define OB_SOFTWARE\n" : "", body };
+	const GLint length[] = { (GLint)(body - text), -1, -1 };
+	glShaderSource(shader, 3, part, length);
+	glCompileShader(shader);
+	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+	if (!good) {
+		char log[800] = "";
+		glGetShaderInfoLog(shader, sizeof log, NULL, log);
+		ob_fail(e, "shader %s (%s) does not compile: %s", name,
+			stage == GL_VERTEX_SHADER ? "vertex" : "fragment", log);
+	}
+	glAttachShader(program, shader);
+	glDeleteShader(shader); // lives on with the program
+	return good;
+}
+
+static bool link_program(GLuint program, const char *name, ob_error *e)
+{
+	GLint good = 0;
+	glLinkProgram(program);
+	glGetProgramiv(program, GL_LINK_STATUS, &good);
+	if (!good) {
+		char log[800] = "";
+		glGetProgramInfoLog(program, sizeof log, NULL, log);
+		return ob_fail(e, "shader %s does not link: %s", name, log);
+	}
+	GLuint block = glGetUniformBlockIndex(program, "Frame");
+	if (block != GL_INVALID_INDEX)
+		glUniformBlockBinding(program, block, 0);
+	glUseProgram(program);
+	glUniform1i(glGetUniformLocation(program, "shadow_depth"), OB_UNIT_SHADOW);
+	glUniform1i(glGetUniformLocation(program, "occlusion"), OB_UNIT_OCCLUSION);
+	glUniform1i(glGetUniformLocation(program, "source"), OB_UNIT_SOURCE);
+	return true;
+}
+
+bool ob_programs_create(GLuint program[OB_PROGRAMS], ob_error *e)
+{
+	for (int i = 0; i < OB_PROGRAMS; i++) {
+		const source *s = &sources[i];
+		program[i] = glCreateProgram();
+		if (!compile_shader(program[i], GL_VERTEX_SHADER, s->name, s->vertex, e) ||
+		    !compile_shader(program[i], GL_FRAGMENT_SHADER, s->name, s->fragment, e) ||
+		    !link_program(program[i], s->name, e))
+			return false;
+	}
+	return true;
+}
+
+void ob_programs_destroy(GLuint program[OB_PROGRAMS])
+{
+	for (int i = 0; i < OB_PROGRAMS; i++)
+		glDeleteProgram(program[i]); // 0 is ignored
+}
+
+// ---- render targets
+
+static GLuint create_renderbuffer(GLenum attachment, GLenum format, const ob_targets *t, int samples)
+{
+	GLuint id;
+	glGenRenderbuffers(1, &id);
+	glBindRenderbuffer(GL_RENDERBUFFER, id);
+	glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, t->width, t->height);
+	glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, id);
+	return id;
+}
+
+static GLuint create_texture(GLenum attachment, GLenum inner, GLenum format, GLenum type, int texels)
+{
+	GLuint id;
+	bool depth = attachment == GL_DEPTH_ATTACHMENT;
+	glGenTextures(1, &id);
+	glBindTexture(GL_TEXTURE_2D, id);
+	glTexImage2D(GL_TEXTURE_2D, 0, (GLint)inner, texels, texels, 0, format, type, NULL);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE); // the maps' margins are empty
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+	if (depth) {
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+	}
+	glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, id, 0);
+	return id;
+}
+
+static GLuint create_framebuffer(void)
+{
+	GLuint id;
+	glGenFramebuffers(1, &id);
+	glBindFramebuffer(GL_FRAMEBUFFER, id);
+	return id;
+}
+
+static bool is_complete(const char *name, ob_error *e)
+{
+	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
+		return true;
+	return ob_fail(e, "the driver cannot draw into the %s (is there enough graphics memory?)", name);
+}
+
+static bool create_maps(ob_targets *t, ob_error *e)
+{
+	t->shadow = create_framebuffer();
+	t->shadow_depth = create_texture(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+					 OB_SHADOW_TEXELS);
+	glDrawBuffer(GL_NONE);
+	glReadBuffer(GL_NONE);
+	if (!is_complete("shadow map", e))
+		return false;
+	for (int i = 0; i < 2; i++) {
+		t->occlusion[i] = create_framebuffer();
+		t->occlusion_texture[i] =
+			create_texture(GL_COLOR_ATTACHMENT0, GL_R8, GL_RED, GL_UNSIGNED_BYTE, OB_OCCLUSION_TEXELS);
+		if (!is_complete("occlusion map", e))
+			return false;
+	}
+	return true;
+}
+
+bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_error *e)
+{
+	GLint most = 1, widest = 0;
+	glGetIntegerv(GL_MAX_SAMPLES, &most);
+	glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &widest);
+	if (width > widest || height > widest)
+		return ob_fail(e, "frames of %dx%d: this driver draws at most %dx%d", width, height, widest, widest);
+	*t = (ob_targets){ .width = width, .height = height, .samples = samples < most ? samples : most };
+	t->plain = create_framebuffer();
+	t->plain_colour = create_renderbuffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, t, 0);
+	if (t->samples > 1) {
+		if (!is_complete("colour target", e))
+			return false;
+		t->multi = create_framebuffer();
+		t->multi_colour = create_renderbuffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, t, t->samples);
+	}
+	t->depth = create_renderbuffer(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, t, t->samples > 1 ? t->samples : 0);
+	return is_complete("colour target", e) && create_maps(t, e);
+}
+
+void ob_targets_destroy(ob_targets *t)
+{
+	const GLuint framebuffers[] = { t->plain, t->multi, t->shadow, t->occlusion[0], t->occlusion[1] };
+	const GLuint renderbuffers[] = { t->plain_colour, t->multi_colour, t->depth };
+	const GLuint textures[] = { t->shadow_depth, t->occlusion_texture[0], t->occlusion_texture[1] };
+	glDeleteFramebuffers(5, framebuffers); // zeros are ignored
+	glDeleteRenderbuffers(3, renderbuffers);
+	glDeleteTextures(3, textures);
+}
+
+// ---- passes
 
 static const float shadow_slope = 1.6f, shadow_offset = 2; // glPolygonOffset: against acne on slopes
 
-static void attribute(GLuint index, int size, size_t stride, size_t offset, GLuint divisor)
+static void set_attribute(GLuint index, int size, size_t stride, size_t offset, GLuint divisor)
 {
 	glEnableVertexAttribArray(index);
 	glVertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, (GLsizei)stride, (const void *)offset);
@@ -44,15 +228,15 @@ bool ob_passes_create(ob_passes *p, ob_error *e)
 	glBindVertexArray(p->body_array);
 	if (!create_meshes(p, e))
 		return false;
-	attribute(0, 3, sizeof(ob_vertex), offsetof(ob_vertex, corner), 0);
-	attribute(1, 3, sizeof(ob_vertex), offsetof(ob_vertex, normal), 0);
+	set_attribute(0, 3, sizeof(ob_vertex), offsetof(ob_vertex, corner), 0);
+	set_attribute(1, 3, sizeof(ob_vertex), offsetof(ob_vertex, normal), 0);
 	glGenVertexArrays(1, &p->segment_array);
 	glBindVertexArray(p->segment_array);
 	glBindBuffer(GL_ARRAY_BUFFER, p->segments);
-	attribute(0, 3, sizeof(ob_segment), offsetof(ob_segment, from), 1);
-	attribute(1, 3, sizeof(ob_segment), offsetof(ob_segment, to), 1);
-	attribute(2, 4, sizeof(ob_segment), offsetof(ob_segment, colour), 1);
-	attribute(3, 1, sizeof(ob_segment), offsetof(ob_segment, width), 1);
+	set_attribute(0, 3, sizeof(ob_segment), offsetof(ob_segment, from), 1);
+	set_attribute(1, 3, sizeof(ob_segment), offsetof(ob_segment, to), 1);
+	set_attribute(2, 4, sizeof(ob_segment), offsetof(ob_segment, colour), 1);
+	set_attribute(3, 1, sizeof(ob_segment), offsetof(ob_segment, width), 1);
 	return true;
 }
 
@@ -91,72 +275,72 @@ static void draw_instances(const ob_passes *p, const ob_instances *i)
 		size_t at = first * sizeof(ob_instance);
 		if (!count)
 			continue;
-		attribute(2, 4, sizeof(ob_instance), at + offsetof(ob_instance, position_radius), 1);
-		attribute(3, 4, sizeof(ob_instance), at + offsetof(ob_instance, attitude), 1);
-		attribute(4, 4, sizeof(ob_instance), at + offsetof(ob_instance, core), 1);
-		attribute(5, 4, sizeof(ob_instance), at + offsetof(ob_instance, colour), 1);
+		set_attribute(2, 4, sizeof(ob_instance), at + offsetof(ob_instance, position_radius), 1);
+		set_attribute(3, 4, sizeof(ob_instance), at + offsetof(ob_instance, attitude), 1);
+		set_attribute(4, 4, sizeof(ob_instance), at + offsetof(ob_instance, core), 1);
+		set_attribute(5, 4, sizeof(ob_instance), at + offsetof(ob_instance, colour), 1);
 		glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)p->mesh[k].index_count, GL_UNSIGNED_SHORT,
 					(const void *)(p->mesh[k].index_first * sizeof(uint16_t)), (GLsizei)count);
 	}
 }
 
-void ob_passes_sun_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters)
+void ob_passes_shadow_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters)
 {
 	upload_instances(p, casters);
-	glBindFramebuffer(GL_FRAMEBUFFER, t->sun);
-	glViewport(0, 0, OB_SUN_TEXELS, OB_SUN_TEXELS);
+	glBindFramebuffer(GL_FRAMEBUFFER, t->shadow);
+	glViewport(0, 0, OB_SHADOW_TEXELS, OB_SHADOW_TEXELS);
 	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(GL_LESS);
 	glFrontFace(GL_CCW);
 	glClear(GL_DEPTH_BUFFER_BIT);
 	glEnable(GL_POLYGON_OFFSET_FILL);
 	glPolygonOffset(shadow_slope, shadow_offset);
-	glUseProgram(p->program[OB_PROGRAM_SUN]);
+	glUseProgram(p->program[OB_PROGRAM_SHADOW]);
 	draw_instances(p, casters);
 	glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-static void blur(const ob_passes *p, const ob_targets *t, int from, float x, float y)
+static void blur_occlusion(const ob_passes *p, const ob_targets *t, int from, float x, float y)
 {
 	GLuint program = p->program[OB_PROGRAM_BLUR];
-	glBindFramebuffer(GL_FRAMEBUFFER, t->cover[1 - from]);
+	glBindFramebuffer(GL_FRAMEBUFFER, t->occlusion[1 - from]);
 	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SOURCE);
-	glBindTexture(GL_TEXTURE_2D, t->cover_texture[from]);
+	glBindTexture(GL_TEXTURE_2D, t->occlusion_texture[from]);
 	glUseProgram(program);
-	glUniform2f(glGetUniformLocation(program, "direction"), x / OB_CONTACT_TEXELS, y / OB_CONTACT_TEXELS);
+	glUniform2f(glGetUniformLocation(program, "direction"), x / OB_OCCLUSION_TEXELS, y / OB_OCCLUSION_TEXELS);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-// Seen from below, the nearest thing counts: the greatest cover.
-void ob_passes_contact_map(const ob_passes *p, const ob_targets *t, const ob_instances *low)
+// Seen from below, the nearest thing counts: the greatest occlusion.
+void ob_passes_occlusion_map(const ob_passes *p, const ob_targets *t, const ob_instances *low)
 {
 	upload_instances(p, low);
-	glBindFramebuffer(GL_FRAMEBUFFER, t->cover[0]);
-	glViewport(0, 0, OB_CONTACT_TEXELS, OB_CONTACT_TEXELS);
+	glBindFramebuffer(GL_FRAMEBUFFER, t->occlusion[0]);
+	glViewport(0, 0, OB_OCCLUSION_TEXELS, OB_OCCLUSION_TEXELS);
 	glDisable(GL_DEPTH_TEST);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT);
 	glEnable(GL_BLEND);
 	glBlendEquation(GL_MAX);
 	glFrontFace(GL_CW); // undersides
-	glUseProgram(p->program[OB_PROGRAM_COVER]);
+	glUseProgram(p->program[OB_PROGRAM_OCCLUSION]);
 	draw_instances(p, low);
 	glBlendEquation(GL_FUNC_ADD);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
 	glBindVertexArray(p->empty_array);
-	blur(p, t, 0, 1, 0);
-	blur(p, t, 1, 0, 1);
+	blur_occlusion(p, t, 0, 1, 0);
+	blur_occlusion(p, t, 1, 0, 1);
 	glEnable(GL_CULL_FACE);
 }
 
-static void vector(GLuint program, const char *name, ob_vec3 v)
+static void set_vec3_uniform(GLuint program, const char *name, ob_vec3 v)
 {
 	glUniform3f(glGetUniformLocation(program, name), (float)v.x, (float)v.y, (float)v.z);
 }
 
 // Coordinates in a map (column-major 4x4, from positions relative to the eye) of points of a plane, from their own.
-static void map_of_plane(GLuint program, const char *name, const float m[16], ob_vec3 foot, ob_vec3 x, ob_vec3 y)
+static void set_plane_to_map(GLuint program, const char *name, const float m[16], ob_vec3 foot, ob_vec3 x, ob_vec3 y)
 {
 	const ob_vec3 from[3] = { x, y, foot };
 	float to[9];
@@ -177,33 +361,33 @@ static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, c
 	if (height <= 0)
 		return; // from below there is nothing to see
 	ob_vec3 foot = ob_scale(n, -height), on_plane = ob_sub(foot, d);
-	vector(program, "foot", foot);
-	vector(program, "normal", n);
-	vector(program, "axis_x", x);
-	vector(program, "axis_y", y);
-	map_of_plane(program, "sun_of", f->block.sun_map, foot, x, y);
-	map_of_plane(program, "cover_of", f->block.contact_map, foot, x, y);
+	set_vec3_uniform(program, "foot", foot);
+	set_vec3_uniform(program, "normal", n);
+	set_vec3_uniform(program, "axis_x", x);
+	set_vec3_uniform(program, "axis_y", y);
+	set_plane_to_map(program, "shadow_of", f->block.shadow_map, foot, x, y);
+	set_plane_to_map(program, "occlusion_of", f->block.occlusion_map, foot, x, y);
 	glUniform1f(glGetUniformLocation(program, "reach"), (float)f->view.far_plane);
 	glUniform2f(glGetUniformLocation(program, "grid_foot"), (float)remainder(ob_dot(on_plane, x), 10),
 		    (float)remainder(ob_dot(on_plane, y), 10));
 	glUniform4f(glGetUniformLocation(program, "colour"), colour[0], colour[1], colour[2], grid);
-	glUniform1f(glGetUniformLocation(program, "cover_share"), ground ? .75f : 0);
+	glUniform1f(glGetUniformLocation(program, "occlusion_share"), ground ? .75f : 0);
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-void ob_passes_picture(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_bodies *b,
-		       const ob_frame *f, const ob_look_def *look)
+void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
+		      const ob_frame *f, const ob_look_def *look)
 {
 	glBindFramebuffer(GL_FRAMEBUFFER, t->multi ? t->multi : t->plain);
 	glViewport(0, 0, t->width, t->height);
 	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(GL_LEQUAL);
-	glFrontFace(GL_CW); // the picture is upside down: see ob_view_projection
+	glFrontFace(GL_CW); // the image is upside down: see ob_view_projection
 	glClear(GL_DEPTH_BUFFER_BIT);
-	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SUN_DEPTH);
-	glBindTexture(GL_TEXTURE_2D, t->sun_depth);
-	glActiveTexture(GL_TEXTURE0 + OB_UNIT_CONTACT_COVER);
-	glBindTexture(GL_TEXTURE_2D, t->cover_texture[0]);
+	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SHADOW);
+	glBindTexture(GL_TEXTURE_2D, t->shadow_depth);
+	glActiveTexture(GL_TEXTURE0 + OB_UNIT_OCCLUSION);
+	glBindTexture(GL_TEXTURE_2D, t->occlusion_texture[0]);
 	upload_instances(p, seen);
 	glUseProgram(p->program[OB_PROGRAM_BODY]);
 	draw_instances(p, seen);

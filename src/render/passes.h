@@ -1,11 +1,48 @@
-// The passes of a frame on the GL side: buffers, and draws from them. A current context is needed.
+// The OpenGL side of a frame (3.3 core, linked through GLVND: libOpenGL exports every core function): shader programs,
+// whose sources are shaders/*, embedded at build time; render targets; buffers, and the passes that draw from them. A
+// current context is needed.
 #ifndef OB_RENDER_PASSES_H
 #define OB_RENDER_PASSES_H
 
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
 #include "render/frame.h"
-#include "render/overlay.h"
-#include "render/program.h"
-#include "render/targets.h"
+
+// ---- shader programs
+
+typedef enum ob_program {
+	OB_PROGRAM_BODY,
+	OB_PROGRAM_SHADOW,
+	OB_PROGRAM_OCCLUSION,
+	OB_PROGRAM_BLUR,
+	OB_PROGRAM_PLANE,
+	OB_PROGRAM_SKY,
+	OB_PROGRAM_SEGMENT,
+	OB_PROGRAMS,
+} ob_program;
+
+enum { OB_UNIT_SHADOW, OB_UNIT_OCCLUSION, OB_UNIT_SOURCE }; // texture units
+
+// Compiles and links all programs; the frame block is bound to uniform buffer 0. A current context is needed.
+bool ob_programs_create(GLuint program[OB_PROGRAMS], ob_error *e);
+void ob_programs_destroy(GLuint program[OB_PROGRAMS]);
+
+// ---- render targets: colour (multisampled and plain), shadow map, occlusion map
+
+typedef struct ob_targets {
+	int width, height, samples;
+	GLuint plain, multi; // framebuffers; multi = 0: draw into plain
+	GLuint plain_colour, multi_colour, depth; // renderbuffers
+	GLuint shadow, shadow_depth; // shadow map: framebuffer and depth texture
+	GLuint occlusion[2], occlusion_texture[2]; // occlusion map, and what it is blurred through
+} ob_targets;
+
+// samples is lowered to what the driver offers.
+bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_error *e);
+void ob_targets_destroy(ob_targets *t);
+
+// ---- passes
 
 typedef struct ob_passes {
 	GLuint program[OB_PROGRAMS];
@@ -21,11 +58,11 @@ void ob_passes_destroy(ob_passes *p);
 
 void ob_passes_begin(const ob_passes *p, const ob_frame_block *block);
 // The shadow map, from all that casts.
-void ob_passes_sun_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters);
-// The contact map, from what is near the ground.
-void ob_passes_contact_map(const ob_passes *p, const ob_targets *t, const ob_instances *low);
-// The picture, without overlays.
-void ob_passes_picture(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_bodies *b,
+void ob_passes_shadow_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters);
+// The occlusion map, from what is near the ground.
+void ob_passes_occlusion_map(const ob_passes *p, const ob_targets *t, const ob_instances *low);
+// The colour target, without overlays.
+void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
 		       const ob_frame *f, const ob_look_def *look);
 void ob_passes_overlay(const ob_passes *p, const ob_overlay *o, bool hidden_by_bodies);
 // rgba: width * height * 4 bytes, top row first

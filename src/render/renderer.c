@@ -5,7 +5,7 @@
 #include "render/context.h"
 #include "render/passes.h"
 
-static const double contact_reach = .8; // m above the ground: so far a body darkens it
+static const double occlusion_height = .8; // m above the ground, up to which a body occludes it
 
 struct ob_renderer {
 	ob_render_setup setup;
@@ -13,8 +13,8 @@ struct ob_renderer {
 	ob_context context;
 	ob_targets targets;
 	ob_passes passes;
-	ob_bodies bodies;
-	ob_instances casters, low, seen;
+	ob_draw_list list;
+	ob_instances casters, near_ground, visible;
 	ob_overlay overlay;
 };
 
@@ -55,35 +55,35 @@ void ob_renderer_destroy(ob_renderer *r)
 		ob_targets_destroy(&r->targets);
 	}
 	ob_context_destroy(&r->context);
-	ob_bodies_finish(&r->bodies);
+	ob_draw_list_finish(&r->list);
 	ob_instances_finish(&r->casters);
-	ob_instances_finish(&r->low);
-	ob_instances_finish(&r->seen);
+	ob_instances_finish(&r->near_ground);
+	ob_instances_finish(&r->visible);
 	ob_overlay_finish(&r->overlay);
 	free(r);
 }
 
-static bool casts(const ob_render_body *body, const void *map)
+static bool casts_shadow(const ob_draw_item *body, const void *ortho)
 {
-	return ob_map_holds(map, body);
+	return ob_ortho_contains(ortho, body);
 }
 
-static bool is_low(const ob_render_body *body, const void *frame)
+static bool is_near_ground(const ob_draw_item *body, const void *frame)
 {
 	const ob_frame *f = frame;
-	return ob_dot(body->pose.p, f->contact.z) - body->radius < f->level + contact_reach &&
-	       ob_map_holds(&f->contact, body);
+	return ob_dot(body->pose.p, f->occlusion.z) - body->radius < f->level + occlusion_height &&
+	       ob_ortho_contains(&f->occlusion, body);
 }
 
-static bool is_seen(const ob_render_body *body, const void *view)
+static bool is_visible(const ob_draw_item *body, const void *view)
 {
-	return ob_view_sees(view, body->pose.p, body->radius);
+	return ob_view_in_frustum(view, body->pose.p, body->radius);
 }
 
 static bool draw_overlays(ob_renderer *r, const ob_snapshot *now, const ob_view *v)
 {
 	if (r->setup.overlay_aabb) {
-		if (!ob_overlay_boxes(&r->overlay, &r->bodies, v))
+		if (!ob_overlay_boxes(&r->overlay, &r->list, v))
 			return false;
 		ob_passes_overlay(&r->passes, &r->overlay, true);
 	}
@@ -101,19 +101,20 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 	ob_frame f = { 0 };
 	if (!ob_context_make_current(&r->context, e))
 		return false;
-	if (!ob_bodies_evaluate(&r->bodies, prev, now, t))
+	if (!ob_draw_list_fill(&r->list, prev, now, t))
 		return ob_fail(e, "out of memory");
-	ob_frame_set(&f, &r->bodies, &r->look, c, t, r->setup.width, r->setup.height);
-	ob_bodies_sort(&r->bodies, f.view.eye);
-	if (!ob_instances_fill(&r->casters, &r->bodies, &f.view, r->setup.height, casts, &f.sun) ||
-	    (f.ground >= 0 && !ob_instances_fill(&r->low, &r->bodies, &f.view, r->setup.height, is_low, &f)) ||
-	    !ob_instances_fill(&r->seen, &r->bodies, &f.view, r->setup.height, is_seen, &f.view))
+	ob_frame_set(&f, &r->list, &r->look, c, t, r->setup.width, r->setup.height);
+	ob_draw_list_sort(&r->list, f.view.eye);
+	if (!ob_instances_fill(&r->casters, &r->list, &f.view, r->setup.height, casts_shadow, &f.shadow) ||
+	    (f.ground >= 0 &&
+	     !ob_instances_fill(&r->near_ground, &r->list, &f.view, r->setup.height, is_near_ground, &f)) ||
+	    !ob_instances_fill(&r->visible, &r->list, &f.view, r->setup.height, is_visible, &f.view))
 		return ob_fail(e, "out of memory");
 	ob_passes_begin(&r->passes, &f.block);
-	ob_passes_sun_map(&r->passes, &r->targets, &r->casters);
+	ob_passes_shadow_map(&r->passes, &r->targets, &r->casters);
 	if (f.ground >= 0)
-		ob_passes_contact_map(&r->passes, &r->targets, &r->low);
-	ob_passes_picture(&r->passes, &r->targets, &r->seen, &r->bodies, &f, &r->look);
+		ob_passes_occlusion_map(&r->passes, &r->targets, &r->near_ground);
+	ob_passes_colour(&r->passes, &r->targets, &r->visible, &r->list, &f, &r->look);
 	if (!draw_overlays(r, now, &f.view))
 		return ob_fail(e, "out of memory");
 	ob_passes_read(&r->targets, rgba);

@@ -1,9 +1,12 @@
 #include "render/sink.h"
 
+#include <errno.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { WAITING_MAX = 8, WORKERS_MAX = 4 };
 
@@ -28,7 +31,7 @@ struct ob_sink {
 };
 
 // Takes the oldest waiting frame; -1 when the sink closes and none is left. Holds the lock.
-static int take(ob_sink *s)
+static int take_frame(ob_sink *s)
 {
 	while (!s->waiting_count && !s->closing)
 		pthread_cond_wait(&s->has_frame, &s->lock);
@@ -40,7 +43,7 @@ static int take(ob_sink *s)
 	return which;
 }
 
-static void give_back(ob_sink *s, int which, bool good, const ob_error *e)
+static void return_slot(ob_sink *s, int which, bool good, const ob_error *e)
 {
 	if (!good && !s->failed) {
 		s->failed = true;
@@ -51,24 +54,24 @@ static void give_back(ob_sink *s, int which, bool good, const ob_error *e)
 }
 
 // After a failure frames are dropped: close reports it.
-static void *work(void *sink)
+static void *run_worker(void *sink)
 {
 	ob_sink *s = sink;
 	pthread_mutex_lock(&s->lock);
-	for (int which; (which = take(s)) >= 0;) {
+	for (int which; (which = take_frame(s)) >= 0;) {
 		bool good = !s->failed;
 		ob_error e = { "" };
 		pthread_mutex_unlock(&s->lock);
 		if (good)
 			good = s->kind->write(s->state, s->width, s->height, &s->slot[which].frame, &e);
 		pthread_mutex_lock(&s->lock);
-		give_back(s, which, good, &e);
+		return_slot(s, which, good, &e);
 	}
 	pthread_mutex_unlock(&s->lock);
 	return NULL;
 }
 
-static void stop(ob_sink *s)
+static void stop_workers(ob_sink *s)
 {
 	pthread_mutex_lock(&s->lock);
 	s->closing = true;
@@ -94,13 +97,13 @@ static bool start_workers(ob_sink *s, int workers)
 	sigset_t all, before;
 	sigfillset(&all);
 	pthread_sigmask(SIG_SETMASK, &all, &before);
-	while (s->workers < workers && pthread_create(&s->worker[s->workers], NULL, work, s) == 0)
+	while (s->workers < workers && pthread_create(&s->worker[s->workers], NULL, run_worker, s) == 0)
 		s->workers++;
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	return s->workers > 0;
 }
 
-static ob_sink *allocate(int w, int h)
+static ob_sink *allocate_sink(int w, int h)
 {
 	ob_sink *s = calloc(1, sizeof *s);
 	if (!s)
@@ -123,7 +126,7 @@ static ob_sink *allocate(int w, int h)
 
 ob_sink *ob_sink_start(const ob_sink_kind *kind, void *state, int w, int h, int workers, ob_error *e)
 {
-	ob_sink *s = w > 0 && h > 0 ? allocate(w, h) : NULL;
+	ob_sink *s = w > 0 && h > 0 ? allocate_sink(w, h) : NULL;
 	if (!s) {
 		kind->finish(state, false, NULL);
 		ob_fail(e, "frames of %dx%d: no memory for the %d that may wait to be written", w, h, WAITING_MAX);
@@ -162,11 +165,77 @@ bool ob_sink_put(ob_sink *s, uint64_t frame, double time, const uint8_t *rgba, o
 
 bool ob_sink_close(ob_sink *s, ob_error *e)
 {
-	stop(s);
+	stop_workers(s);
 	ob_error last = { "" };
 	bool good = s->kind->finish(s->state, !s->failed, &last) && !s->failed;
 	if (!good)
 		ob_fail(e, "%s", s->failed && !last.text[0] ? s->error.text : last.text);
 	free_sink(s);
 	return good;
+}
+
+// ---- raw frames to a file descriptor, for any program that reads rgb24
+
+enum { BLOCK_PIXELS = 16384 };
+
+typedef struct raw {
+	int fd; // the caller's: not closed
+	const char *name;
+} raw;
+
+static bool write_all(int fd, const uint8_t *data, size_t size)
+{
+	while (size > 0) {
+		ssize_t n = write(fd, data, size);
+		if (n > 0) {
+			data += n;
+			size -= (size_t)n;
+		} else if (n < 0 && errno == EAGAIN) {
+			struct pollfd room = { fd, POLLOUT, 0 };
+			poll(&room, 1, -1);
+		} else if (n < 0 && errno != EINTR) {
+			return false;
+		}
+	}
+	return true;
+}
+
+bool ob_pipe_write(int fd, int w, int h, const uint8_t *rgba, const char *what, ob_error *e)
+{
+	uint8_t rgb[3 * BLOCK_PIXELS];
+	for (size_t left = (size_t)w * (size_t)h; left > 0;) {
+		size_t n = left < BLOCK_PIXELS ? left : BLOCK_PIXELS;
+		for (size_t i = 0; i < n; i++)
+			memcpy(rgb + 3 * i, rgba + 4 * i, 3);
+		if (!write_all(fd, rgb, 3 * n))
+			return ob_fail(e, "%s: %s", what,
+				       errno == EPIPE ? "the reader of the frames has gone" : strerror(errno));
+		rgba += 4 * n;
+		left -= n;
+	}
+	return true;
+}
+
+static bool write_raw(void *state, int w, int h, const ob_sink_frame *frame, ob_error *e)
+{
+	const raw *r = state;
+	return ob_pipe_write(r->fd, w, h, frame->rgba, r->name, e);
+}
+
+static bool finish_raw(void *state, bool good, ob_error *e)
+{
+	free(state);
+	return true;
+}
+
+ob_sink *ob_sink_raw(int fd, const char *name, int w, int h, ob_error *e)
+{
+	static const ob_sink_kind kind = { write_raw, finish_raw };
+	raw *r = malloc(sizeof *r);
+	if (!r) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
+	*r = (raw){ fd, name };
+	return ob_sink_start(&kind, r, w, h, 1, e);
 }

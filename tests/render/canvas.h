@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "../check.h"
-#include "scenery.h"
+#include "test_scene.h"
 
 enum { CANVAS_WIDTH = 320, CANVAS_HEIGHT = 180 };
 
@@ -22,7 +22,7 @@ static inline canvas canvas_open(bool aabb, bool contacts)
 				  .samples = 4,
 				  .overlay_aabb = aabb,
 				  .overlay_contacts = contacts };
-	ob_look_def look = scenery_look();
+	ob_look_def look = test_scene_look();
 	ob_error e = { "" };
 	canvas c = { ob_renderer_create(&setup, &look, &e), malloc(4 * CANVAS_WIDTH * CANVAS_HEIGHT) };
 	if (!c.renderer) {

@@ -7,8 +7,8 @@ static const float red[3] = { .7f, .05f, .04f };
 
 static void box_at(ob_snapshot *s, double t, double x, double v)
 {
-	scenery_start(s, 1);
-	ob_motion *m = scenery_add(s, OB_SHAPE_BOX, ob_v3(.5, .5, .5), ob_v3(x, 0, 1), ob_quat_identity(), red);
+	test_scene_start(s, 1);
+	ob_motion *m = test_scene_add(s, OB_SHAPE_BOX, ob_v3(.5, .5, .5), ob_v3(x, 0, 1), ob_quat_identity(), red);
 	m->t0 = t;
 	m->v = ob_v3(v, 0, 0);
 	s->time = t;
@@ -17,7 +17,7 @@ static void box_at(ob_snapshot *s, double t, double x, double v)
 static double column(canvas *c, const ob_snapshot *prev, const ob_snapshot *now, double t)
 {
 	double x, y;
-	ob_camera_def camera = scenery_camera(ob_v3(0, -9, 1), ob_v3(0, 0, 1));
+	ob_camera_def camera = test_scene_camera(ob_v3(0, -9, 1), ob_v3(0, 0, 1));
 	canvas_draw(c, prev, now, t, &camera);
 	CHECK(canvas_find_red(c, &x, &y) > 100);
 	return x;
@@ -37,12 +37,12 @@ static void between_steps(void)
 	CHECK_NEAR(column(&c, NULL, &after, 1.1), end, .01); // without the earlier one: where the newer begins
 	before.passport[1].generation = 7; // another object had the slot
 	CHECK_NEAR(column(&c, &before, &after, 1.1), end, .01);
-	scenery_finish(&before);
-	scenery_finish(&after);
+	test_scene_finish(&before);
+	test_scene_finish(&after);
 	// A motion that has begun is followed by its closed form.
 	box_at(&after, 1, -2, 4);
 	CHECK_NEAR(column(&c, NULL, &after, 2), end, 1);
-	scenery_finish(&after);
+	test_scene_finish(&after);
 	canvas_close(&c);
 }
 
@@ -58,7 +58,7 @@ static void cameras_move(void)
 	ob_snapshot s;
 	double x, y, moved_x, moved_y;
 	box_at(&s, 0, 0, 0);
-	ob_camera_def still = scenery_camera(ob_v3(0, -9, 1), ob_v3(0, 0, 1)), moving = still;
+	ob_camera_def still = test_scene_camera(ob_v3(0, -9, 1), ob_v3(0, 0, 1)), moving = still;
 	seen_from(&c, &s, still, 5, &x, &y);
 	moving.velocity = ob_v3(1, 0, 0);
 	seen_from(&c, &s, moving, 1, &moved_x, &moved_y);
@@ -73,7 +73,7 @@ static void cameras_move(void)
 	seen_from(&c, &s, moving, 1, &moved_x, &moved_y);
 	CHECK(moved_y > y + 10);
 	CHECK_NEAR(moved_x, x, 2);
-	scenery_finish(&s);
+	test_scene_finish(&s);
 	canvas_close(&c);
 }
 
@@ -85,12 +85,12 @@ static void far_from_the_origin(void)
 	for (int round = 0; round < 2; round++) {
 		ob_snapshot s;
 		ob_vec3 shift = ob_v3(round ? 1e6 : 0, 0, 0); // whole cells of the grid
-		ob_camera_def camera = scenery_camera(ob_add(shift, ob_v3(2, -5, 3)), ob_add(shift, ob_v3(0, 0, 1)));
+		ob_camera_def camera = test_scene_camera(ob_add(shift, ob_v3(2, -5, 3)), ob_add(shift, ob_v3(0, 0, 1)));
 		box_at(&s, 0, shift.x, 0);
 		canvas_draw(&c, NULL, &s, 0, &camera);
 		if (!round)
 			memcpy(near_origin, c.rgba, 4 * CANVAS_WIDTH * CANVAS_HEIGHT);
-		scenery_finish(&s);
+		test_scene_finish(&s);
 	}
 	int different = 0;
 	for (int i = 0; i < 4 * CANVAS_WIDTH * CANVAS_HEIGHT; i++)

@@ -7,14 +7,14 @@ static const float red[3] = { .7f, .05f, .04f };
 
 static void one_box(ob_snapshot *s, ob_shape shape, double lift)
 {
-	scenery_start(s, 1);
-	scenery_add(s, shape, ob_v3(1, 1, 1), ob_v3(0, 0, 1 + lift), ob_quat_identity(), red);
+	test_scene_start(s, 1);
+	test_scene_add(s, shape, ob_v3(1, 1, 1), ob_v3(0, 0, 1 + lift), ob_quat_identity(), red);
 }
 
-// From the south: the sun of scenery_look stands to the right and before the box, so the shadow falls left, behind.
+// From the south: the sun of test_scene_look stands to the right and before the box, so the shadow falls left, behind.
 static ob_camera_def south(void)
 {
-	return scenery_camera(ob_v3(0, -9, 3), ob_v3(0, 0, 1));
+	return test_scene_camera(ob_v3(0, -9, 3), ob_v3(0, 0, 1));
 }
 
 static void sky_body_and_shadow(void)
@@ -36,7 +36,7 @@ static void sky_body_and_shadow(void)
 			CHECK(c.rgba[i] == 255);
 			break;
 		}
-	scenery_finish(&s);
+	test_scene_finish(&s);
 	canvas_close(&c);
 }
 
@@ -53,7 +53,7 @@ static void every_shape_is_drawn(void)
 		canvas_draw(&c, NULL, &s, 0, &camera);
 		area[i] = canvas_find_red(&c, &x, &y);
 		CHECK_NEAR(x, 160, 6);
-		scenery_finish(&s);
+		test_scene_finish(&s);
 	}
 	CHECK(area[1] < area[0] && area[0] < area[3]); // the sphere is inside the box, the capsule is longer
 	CHECK(area[1] < area[2] && area[2] < area[0] + 200);
@@ -65,7 +65,7 @@ static void no_acne(void)
 {
 	canvas c = canvas_open(false, false);
 	ob_snapshot s;
-	ob_camera_def camera = scenery_camera(ob_v3(1, -5, 5), ob_v3(0, 0, 2));
+	ob_camera_def camera = test_scene_camera(ob_v3(1, -5, 5), ob_v3(0, 0, 2));
 	one_box(&s, OB_SHAPE_BOX, 0);
 	canvas_draw(&c, NULL, &s, 0, &camera);
 	// On the lit top no pixel differs from its neighbour by more than shading can.
@@ -77,7 +77,7 @@ static void no_acne(void)
 			worst = step > worst ? step : worst;
 		}
 	CHECK(worst <= 6);
-	scenery_finish(&s);
+	test_scene_finish(&s);
 	canvas_close(&c);
 }
 
@@ -100,7 +100,7 @@ static void overlays_show(void)
 	}
 	CHECK(by_boxes > 150 && by_boxes < 1500);
 	CHECK(by_points > 20 && by_points < 300);
-	scenery_finish(&s);
+	test_scene_finish(&s);
 	canvas_close(&plain);
 	canvas_close(&boxes);
 	canvas_close(&points);
@@ -109,21 +109,21 @@ static void overlays_show(void)
 static void same_bytes(void)
 {
 	canvas a = canvas_open(true, false), b = canvas_open(true, false);
-	ob_camera_def camera = scenery_camera(ob_v3(-8, -9, 5), ob_v3(0, 0, .5));
+	ob_camera_def camera = test_scene_camera(ob_v3(-8, -9, 5), ob_v3(0, 0, .5));
 	ob_snapshot s;
-	scenery_boxes(&s, 150, 10, 3);
+	test_scene_boxes(&s, 150, 10, 3);
 	canvas_draw(&a, NULL, &s, 0, &camera);
 	canvas_draw(&b, NULL, &s, 5, &camera); // another frame between: no state is carried over
 	canvas_draw(&b, NULL, &s, 0, &camera);
 	CHECK(memcmp(a.rgba, b.rgba, 4 * CANVAS_WIDTH * CANVAS_HEIGHT) == 0);
-	scenery_finish(&s);
+	test_scene_finish(&s);
 	canvas_close(&a);
 	canvas_close(&b);
 }
 
 static void errors_are_clear(void)
 {
-	ob_look_def look = scenery_look();
+	ob_look_def look = test_scene_look();
 	ob_error e = { "" };
 	ob_render_setup none = { .width = 0, .height = 10, .samples = 1 };
 	CHECK(!ob_renderer_create(&none, &look, &e) && strstr(e.text, "0x10"));

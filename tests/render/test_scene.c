@@ -1,4 +1,4 @@
-#include "scenery.h"
+#include "test_scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,18 +8,18 @@ static const float palette[][3] = {
 	{ .86f, .80f, .66f }, { .50f, .13f, .20f }, { .32f, .50f, .70f }, { .93f, .72f, .30f },
 };
 
-void scenery_start(ob_snapshot *s, uint32_t count)
+void test_scene_start(ob_snapshot *s, uint32_t count)
 {
 	*s = (ob_snapshot){ .passport = calloc(count + 1, sizeof *s->passport),
 			    .motion = calloc(count + 1, sizeof *s->motion),
 			    .count_max = count + 1 };
 	if (!s->passport || !s->motion)
 		abort();
-	scenery_add(s, OB_SHAPE_PLANE, ob_v3(0, 0, 0), ob_v3(0, 0, 0), ob_quat_identity(), palette[4]);
+	test_scene_add(s, OB_SHAPE_PLANE, ob_v3(0, 0, 0), ob_v3(0, 0, 0), ob_quat_identity(), palette[4]);
 	s->passport[0].flags |= OB_OBJECT_STATIC;
 }
 
-ob_motion *scenery_add(ob_snapshot *s, ob_shape shape, ob_vec3 size, ob_vec3 p, ob_quat q, const float colour[3])
+ob_motion *test_scene_add(ob_snapshot *s, ob_shape shape, ob_vec3 size, ob_vec3 p, ob_quat q, const float colour[3])
 {
 	uint32_t i = s->count++;
 	if (i >= s->count_max)
@@ -35,7 +35,7 @@ ob_motion *scenery_add(ob_snapshot *s, ob_shape shape, ob_vec3 size, ob_vec3 p, 
 	return &s->motion[i];
 }
 
-void scenery_finish(ob_snapshot *s)
+void test_scene_finish(ob_snapshot *s)
 {
 	free(s->passport);
 	free(s->motion);
@@ -47,9 +47,9 @@ static double uniform(unsigned *seed)
 	return rand_r(seed) / (RAND_MAX + 1.);
 }
 
-void scenery_boxes(ob_snapshot *s, uint32_t count, double spread, unsigned seed)
+void test_scene_boxes(ob_snapshot *s, uint32_t count, double spread, unsigned seed)
 {
-	scenery_start(s, count);
+	test_scene_start(s, count);
 	ob_vec3 below = { 0, 0, 0 }, half = { 0, 0, 0 };
 	for (uint32_t i = 0; i < count; i++) {
 		const float *colour = palette[(int)(8 * uniform(&seed))];
@@ -62,7 +62,7 @@ void scenery_boxes(ob_snapshot *s, uint32_t count, double spread, unsigned seed)
 			p.z += 4 * uniform(&seed);
 			turn = ob_v3(uniform(&seed), 2 * uniform(&seed), turn.z);
 		}
-		scenery_add(s, OB_SHAPE_BOX, size, p, ob_quat_turn(ob_quat_identity(), turn), colour);
+		test_scene_add(s, OB_SHAPE_BOX, size, p, ob_quat_turn(ob_quat_identity(), turn), colour);
 		if (kind <= .9) {
 			below = p;
 			half = size;
@@ -70,7 +70,7 @@ void scenery_boxes(ob_snapshot *s, uint32_t count, double spread, unsigned seed)
 	}
 }
 
-ob_look_def scenery_look(void)
+ob_look_def test_scene_look(void)
 {
 	return (ob_look_def){ .sky_top = { .12f, .30f, .62f },
 			      .sky_horizon = { .72f, .82f, .90f },
@@ -79,7 +79,7 @@ ob_look_def scenery_look(void)
 			      .sun = { .5, -.35, .8 } };
 }
 
-ob_camera_def scenery_camera(ob_vec3 eye, ob_vec3 target)
+ob_camera_def test_scene_camera(ob_vec3 eye, ob_vec3 target)
 {
 	return (ob_camera_def){ .name = "test", .eye = eye, .target = target, .fov = 40 * M_PI / 180 };
 }

@@ -1,6 +1,0 @@
-#version 330 core
-precision highp float;
-in float v_height;
-out vec4 cover;
-
-void main() { cover = vec4(exp2(-5. * max(v_height, 0.))); }

@@ -1,4 +1,0 @@
-#version 330 core
-#include "frame.glsl"
-#include "instance.glsl"
-void main() { gl_Position = vec4((sun_map * vec4(world_position(), 1.)).xyz * 2. - 1., 1.); }

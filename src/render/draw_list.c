@@ -1,0 +1,314 @@
+#include "render/draw_list.h"
+
+#include <stdlib.h>
+
+// ---- the view of a camera
+
+// Farther than this nothing is drawn: the fog has hidden it (see fog_ranges in frame.c).
+static const double far_ranges = 60, far_least = 2000; // camera ranges; m
+static const double steepest = 89 * M_PI / 180; // rad: a level horizon needs a direction that is not vertical
+
+// Azimuth and elevation, turned and limited, as a direction.
+static ob_vec3 turned(ob_vec3 direction, double pan, double tilt)
+{
+	double azimuth = atan2(direction.y, direction.x) + pan;
+	double elevation = atan2(direction.z, hypot(direction.x, direction.y)) + tilt;
+	elevation = fmax(-steepest, fmin(steepest, elevation));
+	return ob_v3(cos(azimuth) * cos(elevation), sin(azimuth) * cos(elevation), sin(elevation));
+}
+
+ob_view ob_view_of_camera(const ob_camera_def *c, double t, int width, int height)
+{
+	ob_view v = { .eye = ob_madd(c->eye, t, c->velocity), .range = ob_norm(ob_sub(c->target, c->eye)) };
+	ob_vec3 look = v.range > 0 ? ob_sub(c->target, c->eye) : ob_v3(0, 1, 0);
+	v.forward = turned(look, c->pan * t, c->tilt * t);
+	v.right = ob_cross(v.forward, ob_v3(0, 0, 1));
+	v.right = ob_scale(v.right, 1 / ob_norm(v.right));
+	v.up = ob_cross(v.right, v.forward);
+	v.tan_y = tan(.5 * c->fov);
+	v.tan_x = v.tan_y * width / height;
+	v.near_plane = fmax(.01, fmin(.5, .01 * v.range));
+	v.far_plane = fmax(far_least, far_ranges * v.range);
+	return v;
+}
+
+bool ob_view_in_frustum(const ob_view *v, ob_vec3 centre, double radius)
+{
+	ob_vec3 d = ob_sub(centre, v->eye);
+	double x = ob_dot(d, v->right), y = ob_dot(d, v->up), z = ob_dot(d, v->forward);
+	if (z < -radius || z > v->far_plane + radius)
+		return false;
+	return (fabs(x) - z * v->tan_x) <= radius * hypot(1, v->tan_x) &&
+	       (fabs(y) - z * v->tan_y) <= radius * hypot(1, v->tan_y);
+}
+
+void ob_view_projection(const ob_view *v, float m[16])
+{
+	double n = v->near_plane, f = v->far_plane;
+	double row[4][3] = {
+		{ v->right.x / v->tan_x, v->right.y / v->tan_x, v->right.z / v->tan_x },
+		{ -v->up.x / v->tan_y, -v->up.y / v->tan_y, -v->up.z / v->tan_y },
+		{ v->forward.x, v->forward.y, v->forward.z },
+		{ v->forward.x, v->forward.y, v->forward.z },
+	};
+	for (int i = 0; i < 3; i++) {
+		m[4 * i + 0] = (float)row[0][i];
+		m[4 * i + 1] = (float)row[1][i];
+		m[4 * i + 2] = (float)(row[2][i] * (f + n) / (f - n));
+		m[4 * i + 3] = (float)row[3][i];
+	}
+	m[12] = m[13] = m[15] = 0;
+	m[14] = (float)(-2 * f * n / (f - n));
+}
+
+// ---- bodies
+
+static const double bevel_share = .1, bevel_most = .05; // of the smallest half size; m
+static const double medium_px = 7, fine_px = 45; // radius on the screen from which rounder meshes are used
+
+// Where object i is at t. Between two publications the older one is needed; without it the body stands where the
+// newer one begins.
+static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t i, double t)
+{
+	const ob_motion *m = &now->motion[i];
+	ob_vec3 inertia = now->passport[i].inertia;
+	if (t >= m->t0)
+		return ob_motion_at(m, inertia, t).pose;
+	bool same = prev && i < prev->count && (prev->passport[i].flags & OB_OBJECT_PRESENT) &&
+		    prev->passport[i].generation == now->passport[i].generation && prev->motion[i].t0 <= t;
+	if (!same)
+		return (ob_pose){ m->p, m->q };
+	ob_motion before = prev->motion[i];
+	if (before.t0 < prev->time && !(m->flags & OB_MOTION_FREE)) { // it flew so far, and what came then is not known
+		ob_pose then = ob_motion_at(&before, inertia, prev->time).pose;
+		before.p = then.p;
+		before.q = then.q;
+		before.t0 = prev->time;
+	}
+	return ob_motion_between(&before, m, inertia, t);
+}
+
+bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t)
+{
+	if (now->count > b->capacity) {
+		ob_draw_item *grown = realloc(b->body, now->count * sizeof *grown);
+		if (!grown)
+			return false;
+		b->body = grown;
+		b->capacity = now->count;
+	}
+	b->now = now;
+	b->count = 0;
+	b->planes = 0;
+	for (uint32_t i = 0; i < now->count; i++) {
+		const ob_passport *p = &now->passport[i];
+		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE || p->shape > OB_SHAPE_CYLINDER)
+			continue;
+		ob_pose pose = pose_at(prev, now, i, t);
+		if (p->shape != OB_SHAPE_PLANE) {
+			b->body[b->count++] = (ob_draw_item){ pose, ob_shape_radius(p->shape, p->size), 0, i };
+		} else if (b->planes < OB_PLANES_MAX) {
+			b->plane_id[b->planes] = i;
+			b->plane[b->planes++] = pose;
+		}
+	}
+	return true;
+}
+
+// Equal distances in the order of ids: the same frame gives the same bytes.
+static int by_distance(const void *a, const void *b)
+{
+	const ob_draw_item *x = a, *y = b;
+	if (x->distance != y->distance)
+		return x->distance < y->distance ? -1 : 1;
+	return x->id < y->id ? -1 : 1;
+}
+
+void ob_draw_list_sort(ob_draw_list *b, ob_vec3 eye)
+{
+	for (uint32_t i = 0; i < b->count; i++)
+		b->body[i].distance = ob_norm2(ob_sub(b->body[i].pose.p, eye));
+	qsort(b->body, b->count, sizeof *b->body, by_distance);
+}
+
+void ob_draw_list_finish(ob_draw_list *b)
+{
+	free(b->body);
+	*b = (ob_draw_list){ 0 };
+}
+
+static int mesh_of(const ob_passport *p, const ob_draw_item *body, const ob_view *v, int height)
+{
+	if (p->shape == OB_SHAPE_BOX)
+		return OB_MESH_BOX;
+	double distance = ob_norm(ob_sub(body->pose.p, v->eye));
+	double px = .5 * height * p->size.x / (v->tan_y * fmax(distance, v->near_plane));
+	int level = px < medium_px ? 0 : px < fine_px ? 1 : 2;
+	return (p->shape == OB_SHAPE_CYLINDER ? OB_MESH_CYLINDER : OB_MESH_ROUND) + level;
+}
+
+static double bevel_width(double smallest)
+{
+	return fmin(bevel_share * smallest, bevel_most);
+}
+
+static void set_vec4(float to[4], double x, double y, double z, double w)
+{
+	to[0] = (float)x;
+	to[1] = (float)y;
+	to[2] = (float)z;
+	to[3] = (float)w;
+}
+
+static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec3 eye)
+{
+	ob_instance i;
+	ob_vec3 at = ob_sub(pose->p, eye), size = p->size;
+	double r = size.x, rounding = 0;
+	ob_vec3 core = { 0, 0, 0 };
+	if (p->shape == OB_SHAPE_BOX) {
+		r = 0;
+		core = size;
+		rounding = bevel_width(fmin(size.x, fmin(size.y, size.z)));
+	} else if (p->shape == OB_SHAPE_CYLINDER) {
+		r = bevel_width(fmin(size.x, size.y));
+		core = ob_v3(size.x - r, size.x - r, size.y - r);
+	} else if (p->shape == OB_SHAPE_CAPSULE) {
+		core.z = size.y;
+	}
+	set_vec4(i.position_radius, at.x, at.y, at.z, r);
+	set_vec4(i.attitude, pose->q.x, pose->q.y, pose->q.z, pose->q.w);
+	set_vec4(i.core, core.x, core.y, core.z, rounding);
+	for (int k = 0; k < 4; k++)
+		i.colour[k] = p->colour[k];
+	return i;
+}
+
+bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *v, int height, ob_draw_filter filter,
+		       const void *context)
+{
+	if (b->count > out->capacity) {
+		ob_instance *grown = realloc(out->instance, b->count * sizeof *grown);
+		if (!grown)
+			return false;
+		out->instance = grown;
+		out->capacity = b->count;
+	}
+	uint8_t *mesh = malloc(b->count + 1);
+	if (!mesh)
+		return false;
+	uint32_t count[OB_MESHES + 1] = { 0 };
+	for (uint32_t i = 0; i < b->count; i++) {
+		const ob_draw_item *body = &b->body[i];
+		bool taken = filter(body, context);
+		mesh[i] = taken ? (uint8_t)mesh_of(&b->now->passport[body->id], body, v, height) : OB_MESHES;
+		count[mesh[i]]++;
+	}
+	out->first[0] = 0;
+	for (int k = 0; k < OB_MESHES; k++) {
+		out->first[k + 1] = out->first[k] + count[k];
+		count[k] = out->first[k];
+	}
+	for (uint32_t i = 0; i < b->count; i++)
+		if (mesh[i] < OB_MESHES)
+			out->instance[count[mesh[i]]++] =
+				instance_of(&b->now->passport[b->body[i].id], &b->body[i].pose, v->eye);
+	free(mesh);
+	return true;
+}
+
+void ob_instances_finish(ob_instances *i)
+{
+	free(i->instance);
+	*i = (ob_instances){ 0 };
+}
+
+// ---- overlays
+
+static const float awake[4] = { 1, .86f, .25f, 1 }, flying[4] = { .45f, .95f, 1, 1 };
+static const float asleep[4] = { .62f, .66f, .74f, 1 }, fixed[4] = { .35f, .37f, .42f, 1 };
+static const float rim[4] = { .08f, .02f, .05f, .85f }, dot_colour[4] = { 1, .30f, .20f, 1 };
+static const float normal_colour[4] = { 1, .95f, .55f, 1 };
+static const float edge_px = 1.5f, dot_px = 6, rim_px = 8.5f, normal_px = 2;
+static const double normal_length_px = 26;
+
+static bool reserve_segments(ob_overlay *o, size_t count)
+{
+	o->count = 0;
+	if (count <= o->capacity)
+		return true;
+	ob_segment *grown = realloc(o->segment, count * sizeof *grown);
+	if (!grown)
+		return false;
+	o->segment = grown;
+	o->capacity = count;
+	return true;
+}
+
+static void add_segment(ob_overlay *o, ob_vec3 from, ob_vec3 to, const float colour[4], float width)
+{
+	ob_segment *s = &o->segment[o->count++];
+	*s = (ob_segment){ .from = { (float)from.x, (float)from.y, (float)from.z },
+			   .to = { (float)to.x, (float)to.y, (float)to.z },
+			   .width = width };
+	for (int k = 0; k < 4; k++)
+		s->colour[k] = colour[k];
+}
+
+static const float *colour_of(const ob_passport *p, const ob_motion *m)
+{
+	if (p->flags & OB_OBJECT_STATIC)
+		return fixed;
+	if (m->flags & OB_MOTION_ASLEEP)
+		return asleep;
+	return m->flags & OB_MOTION_FREE ? flying : awake;
+}
+
+static ob_vec3 corner(const double bounds[6], int which, ob_vec3 eye)
+{
+	return ob_v3(bounds[which & 1 ? 3 : 0] - eye.x, bounds[which & 2 ? 4 : 1] - eye.y,
+		     bounds[which & 4 ? 5 : 2] - eye.z);
+}
+
+bool ob_overlay_boxes(ob_overlay *o, const ob_draw_list *b, const ob_view *v)
+{
+	if (!reserve_segments(o, 12 * (size_t)b->count))
+		return false;
+	for (uint32_t i = 0; i < b->count; i++) {
+		const ob_draw_item *body = &b->body[i];
+		const ob_passport *p = &b->now->passport[body->id];
+		if (!ob_view_in_frustum(v, body->pose.p, 2 * body->radius))
+			continue;
+		double bounds[6];
+		ob_shape_bounds(p->shape, p->size, body->pose, bounds);
+		for (int from = 0; from < 8; from++)
+			for (int axis = 1; axis <= 4; axis *= 2)
+				if (!(from & axis))
+					add_segment(o, corner(bounds, from, v->eye),
+						    corner(bounds, from | axis, v->eye),
+						    colour_of(p, &b->now->motion[body->id]), edge_px);
+	}
+	return true;
+}
+
+bool ob_overlay_contacts(ob_overlay *o, const ob_snapshot *s, const ob_view *v, int height)
+{
+	if (!reserve_segments(o, 3 * s->contacts))
+		return false;
+	double metres_per_px = 2 * v->tan_y / height; // at a distance of 1 m
+	for (size_t i = 0; i < s->contacts; i++) {
+		ob_vec3 at = ob_sub(s->contact[i].position, v->eye);
+		double length = normal_length_px * metres_per_px * ob_norm(at);
+		ob_vec3 tip = ob_madd(at, length, s->contact[i].normal);
+		add_segment(o, at, tip, normal_colour, normal_px);
+		add_segment(o, at, at, rim, rim_px);
+		add_segment(o, at, at, dot_colour, dot_px);
+	}
+	return true;
+}
+
+void ob_overlay_finish(ob_overlay *o)
+{
+	free(o->segment);
+	*o = (ob_overlay){ 0 };
+}

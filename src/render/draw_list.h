@@ -1,0 +1,95 @@
+// What is drawn at one instant, without OpenGL: the view of the camera, the bodies where they are then, instances of
+// those that pass a test (frustum culling, say), and the segments of overlays. One thread at a time per list.
+#ifndef OB_RENDER_DRAW_LIST_H
+#define OB_RENDER_DRAW_LIST_H
+
+#include "measure/measure.h"
+#include "render/mesh.h"
+#include "scene/scene.h"
+
+// ---- the view of a camera: its axes and frustum. Double precision; pure functions
+
+typedef struct ob_view {
+	ob_vec3 eye; // m
+	ob_vec3 right, up, forward; // unit
+	double tan_x, tan_y; // of half the angles of view
+	double near_plane, far_plane; // m
+	double range; // m, from the eye to what it looks at: the scale of the picture
+} ob_view;
+
+// The camera at time t (s): travelled, panned and tilted since 0.
+ob_view ob_view_of_camera(const ob_camera_def *c, double t, int width, int height);
+// The ball (centre, radius in m) is at least partly in the frustum.
+bool ob_view_in_frustum(const ob_view *v, ob_vec3 centre, double radius);
+// Column-major: positions relative to the eye to clip coordinates. y points down the picture, so that the first row
+// read back is the top one; triangles that were counter-clockwise come out clockwise.
+void ob_view_projection(const ob_view *v, float m[16]);
+
+// ---- bodies
+
+enum { OB_PLANES_MAX = 16 };
+
+typedef struct ob_draw_item {
+	ob_pose pose;
+	double radius; // m, of the sphere that holds it
+	double distance; // m, squared, from the eye; set by ob_draw_list_sort
+	uint32_t id; // index into the snapshot
+} ob_draw_item;
+
+typedef struct ob_draw_list {
+	const ob_snapshot *now;
+	ob_draw_item *body;
+	uint32_t count, capacity;
+	ob_pose plane[OB_PLANES_MAX];
+	uint32_t plane_id[OB_PLANES_MAX];
+	int planes;
+} ob_draw_list;
+
+// Instance data as the shaders read it (shaders/instance.glsl). 64 bytes.
+typedef struct ob_instance {
+	float position_radius[4]; // m: centre relative to the eye; radius of the ball that thickens the core
+	float attitude[4]; // x y z w
+	float core[4]; // m: half size; width of a box's rounded edges, 0 = not a box
+	float colour[4];
+} ob_instance;
+
+// Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1.
+typedef struct ob_instances {
+	ob_instance *instance;
+	uint32_t first[OB_MESHES + 1];
+	uint32_t capacity;
+} ob_instances;
+
+// Evaluates all motions at time t (s); prev may be NULL. false: out of memory. b starts zeroed.
+bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t);
+// Nearest to the eye first, so that what is hidden is not shaded.
+void ob_draw_list_sort(ob_draw_list *b, ob_vec3 eye);
+void ob_draw_list_finish(ob_draw_list *b);
+
+// Which bodies to take: called with each.
+typedef bool (*ob_draw_filter)(const ob_draw_item *body, const void *context);
+// Fills out with the bodies that pass. false: out of memory. out starts zeroed.
+bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *v, int height, ob_draw_filter filter,
+		       const void *context);
+void ob_instances_finish(ob_instances *i);
+
+// ---- overlays: bounding boxes and contacts, as lines and dots of constant width on the screen
+
+// As shaders/segment.vert reads it. 44 bytes.
+typedef struct ob_segment {
+	float from[3], to[3]; // m, relative to the eye; equal: a dot
+	float colour[4]; // as shown (sRGB), alpha
+	float width; // px
+} ob_segment;
+
+typedef struct ob_overlay {
+	ob_segment *segment;
+	size_t count, capacity;
+} ob_overlay;
+
+// Each replaces what o held; false: out of memory. o starts zeroed.
+bool ob_overlay_boxes(ob_overlay *o, const ob_draw_list *b, const ob_view *v);
+bool ob_overlay_contacts(ob_overlay *o, const ob_snapshot *s, const ob_view *v, int height);
+void ob_overlay_finish(ob_overlay *o);
+
+#endif
