@@ -9,7 +9,7 @@
 #include "base/cpu.h"
 #include "table/slot.h"
 #include "table/table.h"
-#include "../tests/table/crowd.h"
+#include "../tests/table/workers.h"
 
 enum { RUNS = 7, OBJECTS = 1000, SLOT_ROUNDS = 2000000 };
 
@@ -119,14 +119,14 @@ static int work(void *shared, uint32_t worker)
 static void bench_gate(const char *what, bool processes, uint32_t workers, uint32_t stride, uint64_t gates,
 		       double target)
 {
-	board *b = crowd_memory(sizeof *b);
+	board *b = shared_memory(sizeof *b);
 	b->u = create(workers, processes ? "process" : "thread");
 	b->pool = workers < OBJECTS;
 	b->stride = stride;
 	for (uint32_t i = 0; i < workers / stride; i++)
 		b->participants[i] = i * stride;
-	crowd c = { .processes = processes, .count = workers, .run = work, .shared = b };
-	if (!crowd_start(&c))
+	worker_group g = { .processes = processes, .count = workers, .run = work, .shared = b };
+	if (!worker_group_start(&g))
 		exit(1);
 	double run[RUNS];
 	uint32_t objects = b->pool ? OBJECTS : workers / stride;
@@ -140,7 +140,7 @@ static void bench_gate(const char *what, bool processes, uint32_t workers, uint3
 	}
 	report(what, run, "us", target);
 	ob_gate_stop(b->u);
-	crowd_join(&c);
+	worker_group_join(&g);
 	ob_universe_destroy(b->u, true);
 }
 

@@ -69,7 +69,7 @@ static bool grow(void **array, size_t element, size_t needed, size_t *max)
 	return true;
 }
 
-// The step's own areas. What the arranger scribbles on in between begins afresh in each step.
+// The step's own areas, without the scheduler's scratch, which holds nothing from one step to the next.
 static range step_areas(const ob_universe *u)
 {
 	return (range){ u->header.area[OB_AREA_REQUERY], u->header.area[OB_AREA_SCRATCH] };
@@ -122,7 +122,7 @@ bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u)
 	return take_motions(c, u) && take_areas(c, u);
 }
 
-// Word by word, for a reader in another thread or process may look. from NULL = zeros.
+// Word by word, for readers in other threads or processes may read at the same time. from NULL = zeros.
 static void put_words(char *to, const char *from, size_t bytes)
 {
 	for (size_t i = 0; i < bytes; i += sizeof(uint64_t)) {
@@ -162,7 +162,7 @@ static void put_motions_back(const ob_checkpoint *c, ob_universe *u)
 	}
 }
 
-// What the dead were in the middle of ends here, on their own tracks, which their successors go on with.
+// Ends the spans that dead workers had begun, on their own tracks, which their successors continue.
 static void end_traces(ob_universe *u)
 {
 	for (uint32_t w = 0; ob_universe_traced(u) && w < u->header.sizes.workers; w++) {

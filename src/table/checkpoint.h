@@ -1,14 +1,15 @@
-// A universe as it stood at a step boundary, kept in the host's own memory, and put back when a simulator is lost.
+// A checkpoint: the universe as it stood at a step boundary, copied into the host's own memory, and put back when a
+// simulator has died.
 //
 //                          take                       put back
 //   motions            newest of each slot   -->   published anew: readers see one more version, never a torn one
-//   area of the step   pages in use          -->   the same bytes; pages that came into use since are zeroed
-//   clock, claims      values                -->   the same values
-//   passports          -                     -->   as they are: who is there must be the same as when it was taken
-//   gate               -                     -->   as at the start: the host has the turn, nobody has arrived
-//   worker cells, trace -                    -->   what has been counted and told stays; the tasks are gone
+//   step data          pages in use          -->   the same bytes; pages that came into use since are zeroed
+//   clock, tasks       values                -->   the same values
+//   passports          -                     -->   as they are: the objects must be the same as when it was taken
+//   gate               -                     -->   as at the start: the host has the turn, no worker has arrived
+//   worker cells, trace -                    -->   counters and events stay; the pids are cleared
 //
-// Everything an object needs from one step to the next lies in these, so the steps that follow are the same to the bit.
+// These hold everything that an object needs from one step to the next, so the steps that follow are the same to the bit.
 //
 // Thread-safety: one thread, the host's, while the universe is paused (take), or has no worker (put back).
 #ifndef OB_TABLE_CHECKPOINT_H

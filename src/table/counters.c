@@ -24,7 +24,7 @@ const char *ob_profile_name(uint32_t section)
 	return section < OB_PROFILE_SECTIONS && names[section] ? names[section] : "?";
 }
 
-static void add(ob_counters *to, const ob_counters *c)
+static void add_counters(ob_counters *to, const ob_counters *c)
 {
 	to->ballistic_advances += c->ballistic_advances;
 	to->body_steps += c->body_steps;
@@ -58,5 +58,27 @@ void ob_universe_count(const ob_universe *u, ob_counters *sum)
 {
 	*sum = (ob_counters){ 0 };
 	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
-		add(sum, &u->worker[w].counters);
+		add_counters(sum, &u->worker[w].counters);
+}
+
+// ---- latency
+
+static const double shortest = 1e-7, width = 1.02; // s, ratio
+
+void ob_latency_add(ob_latency *l, double seconds)
+{
+	double bin = seconds > shortest ? floor(log(seconds / shortest) / log(width)) : 0;
+	l->count[(int)fmin(bin, OB_LATENCY_BINS - 1)]++;
+	l->total++;
+}
+
+double ob_latency_percentile(const ob_latency *l, double fraction)
+{
+	uint64_t rank = (uint64_t)ceil(fraction * (double)l->total), seen = 0;
+	for (int i = 0; i < OB_LATENCY_BINS; i++) {
+		seen += l->count[i];
+		if (seen > 0 && seen >= rank)
+			return shortest * pow(width, i + .5);
+	}
+	return 0;
 }

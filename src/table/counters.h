@@ -1,5 +1,5 @@
-// What the step has done and what it cost, counted by each worker in its own cell of the universe. Written by the
-// worker alone, read by the host while the universe stands still.
+// What the steps have done and what they cost: counters of each worker, in its own cell of the universe, written by the
+// worker alone and read by the host while the universe stands still; and a histogram of the steps' wall time.
 #ifndef OB_TABLE_COUNTERS_H
 #define OB_TABLE_COUNTERS_H
 
@@ -52,5 +52,18 @@ typedef struct ob_counters {
 	uint64_t gate_cpu_ns; // CPU of that waiting: spinning, falling asleep, waking
 	uint64_t since_ns; // since when it waits now (ob_clock_ns); not for sums
 } ob_counters;
+
+enum { OB_LATENCY_BINS = 1100 }; // 2 % wide each, from .1 us to 290 s
+
+// How long steps took: of fixed size, so that a run of any length takes 9 kB, and a percentile is right to 1 %.
+// One thread at a time.
+typedef struct ob_latency {
+	uint64_t count[OB_LATENCY_BINS], total;
+} ob_latency;
+
+// A step of that wall time (s).
+void ob_latency_add(ob_latency *l, double seconds);
+// The time (s) that the given fraction of the steps did not exceed; 0 when there were none.
+double ob_latency_percentile(const ob_latency *l, double fraction);
 
 #endif

@@ -11,9 +11,9 @@
 #include "base/cpu.h"
 #include "table/layout.h"
 
-enum { SPIN_NS = 100000, SPINS_PER_LOOK = 32 };
+enum { SPIN_NS = 100000, SPINS_PER_CHECK = 32 };
 
-static uint32_t look(const uint32_t *word)
+static uint32_t load_acquire(const uint32_t *word)
 {
 	return __atomic_load_n(word, __ATOMIC_ACQUIRE);
 }
@@ -36,7 +36,7 @@ static int64_t now_ns(void)
 	return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
 }
 
-static void relax(void)
+static void relax_cpu(void)
 {
 #if defined(__x86_64__) || defined(__i386__)
 	__builtin_ia32_pause();
@@ -57,17 +57,17 @@ void ob_gate_prepare(ob_gate *g, uint32_t workers)
 
 static bool has_turn(const ob_gate *g, const ob_gate_cell *cell)
 {
-	return look(&cell->turn) != __atomic_load_n(&cell->done, __ATOMIC_RELAXED) || look(&g->stop);
+	return load_acquire(&cell->turn) != __atomic_load_n(&cell->done, __ATOMIC_RELAXED) || load_acquire(&g->stop);
 }
 
 static bool spin_for_turn(const ob_gate *g, const ob_gate_cell *cell)
 {
 	int64_t end = now_ns() + SPIN_NS;
 	do {
-		for (int i = 0; i < SPINS_PER_LOOK; i++) {
+		for (int i = 0; i < SPINS_PER_CHECK; i++) {
 			if (has_turn(g, cell))
 				return true;
-			relax();
+			relax_cpu();
 		}
 	} while (now_ns() < end);
 	return false;
@@ -82,14 +82,14 @@ ob_phase ob_gate_wait(ob_universe *u, uint32_t worker)
 		uint32_t bit = UINT32_C(1) << worker % 32;
 		__atomic_fetch_or(&half->asleep, bit, __ATOMIC_SEQ_CST);
 		for (;;) {
-			uint32_t seen = look(&half->word);
+			uint32_t seen = load_acquire(&half->word);
 			if (has_turn(g, cell))
 				break;
 			futex_wait(&half->word, seen, bit, NULL);
 		}
 		__atomic_fetch_and(&half->asleep, ~bit, __ATOMIC_SEQ_CST);
 	}
-	if (look(&g->stop))
+	if (load_acquire(&g->stop))
 		return OB_PHASE_STOP;
 	return (ob_phase)__atomic_load_n(&g->phase, __ATOMIC_RELAXED);
 }
@@ -99,7 +99,7 @@ bool ob_gate_arrive(ob_universe *u, uint32_t worker)
 	ob_gate *g = u->gate;
 	ob_gate_group *group = u->gate_group + worker / 64;
 	ob_gate_cell *cell = u->gate_cell + worker;
-	__atomic_store_n(&cell->done, look(&cell->turn), __ATOMIC_RELAXED);
+	__atomic_store_n(&cell->done, load_acquire(&cell->turn), __ATOMIC_RELAXED);
 	uint64_t bit = UINT64_C(1) << worker % 64;
 	uint64_t expected = __atomic_load_n(&group->expected, __ATOMIC_RELAXED);
 	uint64_t before = __atomic_fetch_or(&group->arrived, bit, __ATOMIC_ACQ_REL);
@@ -108,28 +108,28 @@ bool ob_gate_arrive(ob_universe *u, uint32_t worker)
 	return __atomic_sub_fetch(&g->groups_left, 1, __ATOMIC_ACQ_REL) == 0;
 }
 
-// ---- the opener: alone, for everyone else waits
+// ---- the opener: the scheduler or the host, alone, for every worker waits
 
-// Atomic only for the host, which may look at any time whom the gate waits for.
-static void expect(ob_gate_group *group, uint64_t who)
+// Atomic only for ob_gate_waits_for, which the host may call at any time.
+static void set_expected(ob_gate_group *group, uint64_t workers)
 {
-	__atomic_store_n(&group->expected, who, __ATOMIC_RELAXED);
+	__atomic_store_n(&group->expected, workers, __ATOMIC_RELAXED);
 }
 
-static void expect_all(ob_universe *u, uint32_t groups)
+static void set_all_expected(ob_universe *u, uint32_t groups)
 {
 	uint32_t workers = u->gate->workers;
 	for (uint32_t i = 0; i < groups; i++)
-		expect(u->gate_group + i, workers - 64 * i >= 64 ? UINT64_MAX : (UINT64_C(1) << workers % 64) - 1);
+		set_expected(u->gate_group + i, workers - 64 * i >= 64 ? UINT64_MAX : (UINT64_C(1) << workers % 64) - 1);
 }
 
-// Writes the turn into the cells of a half's participants, then wakes those of them who sleep.
-static void admit_half(ob_universe *u, uint32_t first, ob_gate_half *half, uint32_t part, uint32_t turn)
+// Writes the turn into the cells of a half's participants, then wakes those of them that sleep.
+static void open_half(ob_universe *u, uint32_t first, ob_gate_half *half, uint32_t part, uint32_t turn)
 {
 	for (uint32_t rest = part; rest; rest &= rest - 1)
 		__atomic_store_n(&u->gate_cell[first + (uint32_t)__builtin_ctz(rest)].turn, turn, __ATOMIC_RELEASE);
 	__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
-	// An exchange of nothing, not a load: it and the waiter's "or" see each other in one order or the other.
+	// A read-modify-write, not a load: of it and the waiter's "or", the second sees the first.
 	uint32_t wake = __atomic_fetch_or(&half->asleep, 0, __ATOMIC_SEQ_CST) & part;
 	if (wake)
 		futex_wake(&half->word, wake);
@@ -144,14 +144,14 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 	}
 	uint32_t groups = (g->workers + 63) / 64, taking_part = 0;
 	for (uint32_t i = 0; i < groups; i++) {
-		expect(u->gate_group + i, 0);
+		set_expected(u->gate_group + i, 0);
 		__atomic_store_n(&u->gate_group[i].arrived, 0, __ATOMIC_RELAXED);
 	}
 	if (!participants)
-		expect_all(u, groups);
+		set_all_expected(u, groups);
 	for (uint32_t i = 0; participants && i < n; i++) {
 		ob_gate_group *group = u->gate_group + participants[i] / 64;
-		expect(group, group->expected | UINT64_C(1) << participants[i] % 64);
+		set_expected(group, group->expected | UINT64_C(1) << participants[i] % 64);
 	}
 	for (uint32_t i = 0; i < groups; i++)
 		taking_part += u->gate_group[i].expected != 0;
@@ -165,7 +165,7 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 		taking_part -= expected != 0;
 		for (uint32_t k = 0; k < 2; k++)
 			if ((uint32_t)(expected >> 32 * k))
-				admit_half(u, 64 * i + 32 * k, group->half + k, (uint32_t)(expected >> 32 * k), turn);
+				open_half(u, 64 * i + 32 * k, group->half + k, (uint32_t)(expected >> 32 * k), turn);
 	}
 }
 
@@ -194,8 +194,8 @@ bool ob_gate_host_wait(ob_universe *u, double timeout)
 	int64_t end = now_ns() + (int64_t)(fmin(timeout, 1e9) * 1e9);
 	struct timespec until = { .tv_sec = end / 1000000000, .tv_nsec = end % 1000000000 };
 	for (;;) {
-		uint32_t seen = look(&g->host_turn);
-		if (seen == 1 || look(&g->stop))
+		uint32_t seen = load_acquire(&g->host_turn);
+		if (seen == 1 || load_acquire(&g->stop))
 			return true;
 		if (now_ns() >= end)
 			return false;

@@ -9,7 +9,6 @@
 #define OB_TABLE_LAYOUT_H
 
 #include "table/gate.h"
-#include "table/latency.h"
 #include "table/slot.h"
 #include "table/table.h"
 #include "table/trace.h"
@@ -88,11 +87,12 @@ typedef struct ob_control {
 	_Alignas(64) uint64_t neighbours_used;
 } ob_control;
 
-// How long steps take. The gate orders its writers but for the two marked ones.
+// How long steps take. The gate orders its writers, but any worker may raise longest_ns, and critical_ns grows after the
+// gate has opened: these two are atomic.
 typedef struct ob_step_clock {
 	_Alignas(64) uint64_t begun_ns; // when the running step began, ob_clock_ns
-	uint64_t longest_ns; // CPU of the worker with the most of it in the running phase; any worker raises it
-	uint64_t critical_ns; // sum of these over all phases, and of arranging; the arranger adds after it has opened
+	uint64_t longest_ns; // CPU of the worker with the most of it in the running phase; see above
+	uint64_t critical_ns; // sum of these over all phases, and of scheduling; see above
 	ob_latency latency;
 } ob_step_clock;
 
@@ -110,7 +110,7 @@ typedef struct ob_trace_ring {
 	_Alignas(64) uint64_t taken;
 } ob_trace_ring;
 
-// The host's rings are large, for births come by the thousand.
+// The rings of the host are large, for objects may be added by the thousand.
 enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == 128, "trace");
@@ -123,10 +123,10 @@ static_assert(sizeof(ob_pair_state) == 184, "pair state");
 static_assert(sizeof(ob_pair_record) == 376, "pair record");
 static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "step data");
 
-// A process's view of a mapped segment. Immutable once made; forked children may go on using it.
+// A process's view of a mapped segment. Immutable once made; forked children go on using it.
 struct ob_universe {
 	char *base;
-	ob_header header; // private copy, validated: what the table says later cannot lead astray
+	ob_header header; // private copy, validated: later changes to the shared one have no effect
 	ob_control *control;
 	ob_gate *gate;
 	ob_gate_group *gate_group;

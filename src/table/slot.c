@@ -49,7 +49,7 @@ bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out)
 
 void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p)
 {
-	// Where there was none, a look at it would touch a page of the even ones.
+	// Reading a passport that was never written would touch a page of the even ones.
 	bool known = __atomic_load_n(&u->passport[id].version, __ATOMIC_RELAXED);
 	uint32_t was = known ? ob_passport_of(u, id)->flags & OB_OBJECT_PRESENT : 0, is = p->flags & OB_OBJECT_PRESENT;
 	ob_ring_publish(&u->passport[id].version, u->passport_even + id, stride_of(u, id), sizeof *p, p);

@@ -7,18 +7,18 @@
 //          +-----------+-----------+   sets version = 7: until that instant every reader takes version 6
 //
 //   writer   next = version + 1;  store-release each word into ring[next];  store-release version = next
-//            (the words are staged; that store commits them. Staging again before it overwrites what no reader takes.)
+//            (The words are staged; the store of the version commits them. Until then they may be staged again.)
 //   reader   v = version;  load-acquire each word of ring[v];  take it if version is still v, else again
 //
 // Why a copy is never torn: the place of v is written again for version v + 2, which begins after version v + 1
 // was stored. A reader that met one word of v + 2 has, by acquire and release on that word, also seen v + 1, so
-// its second look at the version says so, and it reads again. There is no odd state in between: a writer that is
+// its second load of the version finds that, and it reads again. There is no state in between: a writer that is
 // preempted or killed anywhere leaves the last version readable, and its successor fills the same place anew.
 // Every word is atomic by itself, so there is no data race in the sense of C11, and no fence is needed.
 //
-// Why two places do: a reader that is late reads again, and what it then takes is newer. It would starve behind a
-// writer that publishes without pause; simulators publish once a step. Within the step, where the gate orders both, a
-// place is not written while somebody looks at it: what was newest when a phase began stays until the next step's end.
+// Why two places suffice: a reader that is too late reads again, and what it then takes is newer. It would starve only
+// beside a writer that publishes without pause; simulators publish once a step. Within the step, where the gate orders
+// both, no place is written while a worker reads it: what was newest when a step began is overwritten in the next step at the earliest.
 //
 // One writer at a time; readers in any thread or process.
 #ifndef OB_TABLE_SLOT_H
@@ -39,7 +39,7 @@ typedef struct ob_slot {
 } ob_slot;
 
 // Odd versions: an object's first passport is also its only one, unless its slot is given to another. The even ones have
-// an area of their own, of which nobody then touches a page.
+// an area of their own, of which then no page is ever touched.
 typedef struct ob_passport_slot {
 	uint64_t version;
 	ob_passport odd;

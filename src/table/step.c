@@ -1,5 +1,5 @@
-// What the workers of a step share beside the slots: the clock, claims, the rebound list, the arena of perceived
-// neighbours, and their own cells. Resets belong to the one who arranges; the gate orders them.
+// What the workers of a step share beside the slots: the clock, tasks to claim, the list of bodies to requery, the arena
+// of neighbours, and the workers' own cells. Only the scheduler resets; the gate orders that.
 #include "base/clock.h"
 #include "table/layout.h"
 
@@ -16,7 +16,7 @@ void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t i
 	__atomic_store_n(&c->islands, islands, __ATOMIC_RELAXED);
 	ob_step_clock *clock = u->step_clock;
 	uint64_t now = ob_clock_ns();
-	ob_latency_add(&clock->latency, 1e-9 * (double)(now - clock->begun_ns), 1);
+	ob_latency_add(&clock->latency, 1e-9 * (double)(now - clock->begun_ns));
 	clock->begun_ns = now;
 	__atomic_store_n(&c->step, c->step + 1, __ATOMIC_RELEASE);
 }
@@ -125,7 +125,7 @@ void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check)
 		__atomic_store_n(&u->step_data.count->late, 1, __ATOMIC_RELAXED);
 }
 
-// In a phase the stack only shrinks, so a number is its taker's alone.
+// Within a phase the stack only shrinks, so no other worker gets the same record.
 uint32_t ob_record_take(ob_universe *u)
 {
 	const ob_step_data *ex = &u->step_data;

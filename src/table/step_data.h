@@ -1,5 +1,5 @@
 // What the object simulators of one universe share within a step. Plain data in shared memory; the gate orders every
-// access: the phase fixes who may touch what (the table above sim/step.c).
+// access: the phase fixes which worker may access what (the table above sim/step.c).
 #ifndef OB_TABLE_STEP_DATA_H
 #define OB_TABLE_STEP_DATA_H
 
@@ -64,7 +64,7 @@ enum {
 };
 
 // Upper bound of an object's path (m) when "steps" steps are complete: it grows by its reach in each step in which
-// nobody solves it.
+// it is not solved.
 static inline double ob_schedule_path(const ob_schedule *s, uint64_t steps)
 {
 	return s->path + ((double)steps - s->since) * (double)s->reach;
@@ -114,7 +114,7 @@ typedef struct ob_step_data {
 	uint32_t *neighbour_id;       // arena
 	ob_index_cell *cell;          // [object]
 	uint32_t *bucket;             // [buckets]: 1 + first object; 0 = empty
-	uint32_t *plane;              // ids of planes: everyone's neighbours
+	uint32_t *plane;              // ids of planes: neighbours of every object
 	ob_pair_key *pair;            // sorted by (a, b)
 	ob_pair_record *record;       // taken when a pair begins to touch
 	double (*impulse_b)[2][OB_PAIR_ROWS]; // [record], of each version: of body b, where the two do not agree on one

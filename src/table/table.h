@@ -1,12 +1,14 @@
-// The universe table, seen by those who write it: creating it, publishing, and the areas of the step.
+// The universe table, as its writers see it: creating it, publishing, and the areas of the step.
 //
 // This module is the only one that calls shm_open and mmap, and the only one that names a memory order.
 // Everything in the table is an offset or an id, never a pointer: it is mapped at different addresses.
 //
-//   header | control | gate | worker cells | slots | passports | exchange area (exchange.h)
+//   header | control | gate | worker cells | slots | passports | step data (step_data.h) | trace (trace.h)
 //
-// A slot is a ring of 4 versions of one ob_motion with a version word. One writer: the simulator that
-// currently runs the object. (The scheme, with a drawing, stands above the struct in slot.h.)
+// A slot is a ring of two versions of one ob_motion with a version word (slot.h explains it with a drawing). It has one
+// writer, the simulator that currently runs the object.
+//
+// Below, the scheduler is the worker that arrived last at the gate: it prepares the next phase while all others wait.
 #ifndef OB_TABLE_TABLE_H
 #define OB_TABLE_TABLE_H
 
@@ -15,9 +17,8 @@
 #include "settings/settings.h"
 #include "table/counters.h"
 #include "table/step_data.h"
-#include "table/latency.h"
 
-// What the gate opens with. The phases of a step in their order; sim/step.c says who does what in each.
+// What the gate opens with. The phases of a step in their order; sim/step.c says what the workers do in each.
 typedef enum ob_phase {
 	OB_PHASE_NONE,
 	OB_PHASE_BROADPHASE_START, // neighbours of objects that the host has placed or changed
@@ -46,7 +47,7 @@ typedef struct ob_universe_setup {
 ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e);
 // Unmaps; unlink = true also removes the name. The creator calls it with true on every exit path.
 void ob_universe_destroy(ob_universe *u, bool unlink);
-// Only the name's removal, by a process that keeps watch over a dying host. Async-signal-safe.
+// Removes the name only: for the fork server, after the host's death. Async-signal-safe.
 void ob_universe_unlink(const char *name);
 
 const ob_run_settings *ob_universe_settings(const ob_universe *u);
@@ -59,8 +60,8 @@ uint32_t ob_universe_ids(const ob_universe *u);
 
 // Writers. One writer per slot at a time; the gate orders a change of writer.
 void ob_publish_motion(ob_universe *u, uint32_t id, const ob_motion *m);
-// In two parts: what is staged nobody reads as the object's motion, and it may be staged anew, until it is committed.
-// The gate orders a commit by another than the one who staged.
+// The same in two parts: a staged motion is not yet the object's motion for any reader, and may be staged again, until it
+// is committed. If another worker commits it than the one that staged it, the gate orders the two.
 void ob_stage_motion(ob_universe *u, uint32_t id, const ob_motion *m);
 const ob_motion *ob_staged_motion(const ob_universe *u, uint32_t id);
 void ob_commit_motion(ob_universe *u, uint32_t id);
@@ -69,10 +70,10 @@ void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
 // Direct views for the step, which the gate orders: the newest motion, the passport. Never for outside readers.
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id);
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
-// The exchange area of the step (see exchange.h); ordered by the gate.
+// The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);
 
-// The clock of the run: advanced by whoever arranges the step.
+// The clock of the run: the scheduler advances it.
 uint64_t ob_step_count(const ob_universe *u);
 void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands);
 // Steps are timed from one completion to the next; after a pause, from here.
@@ -80,8 +81,8 @@ void ob_step_begin(ob_universe *u);
 // Wall time of each step so far, pauses left out. To be read while the universe stands still.
 const ob_latency *ob_step_latency(const ob_universe *u);
 // The critical path, if the run is timed: what the steps would take if no worker ever had to wait for a core. Each
-// worker says before it arrives how long it has worked in the phase (ns of CPU); whoever arranges closes the phase before
-// anything else, and adds what arranging took. ob_critical_path: the sum so far (ns).
+// worker says before it arrives how long it has worked in the phase (ns of CPU); the scheduler closes the phase before
+// anything else, and adds the time that scheduling took. ob_critical_path: the sum so far (ns).
 void ob_phase_worked(ob_universe *u, uint64_t ns);
 void ob_phase_close(ob_universe *u);
 void ob_critical_add(ob_universe *u, uint64_t ns);
@@ -96,31 +97,32 @@ ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker);
 // Sums over all workers, and the largest error of any.
 void ob_universe_count(const ob_universe *u, ob_counters *sum);
 
-// ---- claims: indices 0 .. total-1, each handed out once per phase, to whoever asks first
+// ---- tasks: indices 0 .. total-1, each given once per phase, to the worker that asks first
 void ob_task_reset(ob_universe *u, uint32_t total);
 bool ob_task_claim(ob_universe *u, uint32_t *index);
-// Appends to a list of ids that need the broad phase's attention (any worker, any order).
+// Appends to the list of objects whose neighbours the broad phase must query again (any worker, any order).
 void ob_requery_append(ob_universe *u, uint32_t id);
-// The list so far; reset empties it. Only for the one who arranges.
+// The list so far; reset empties it. Only for the scheduler.
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count);
 void ob_requery_reset(ob_universe *u);
-// What checking pairs has found: reset by the one who arranges, then noted by any worker, for all that it has claimed:
-// has a pair met? The first step (from 0) at which one must be checked again.
+// What checking pairs has found. The scheduler resets it; then each worker notes, for all pairs that it has checked,
+// whether one of them is a late contact, and the first step (from 0) at which one must be checked again.
 void ob_late_contacts_reset(ob_universe *u);
 void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check);
 // A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.
 uint32_t ob_record_take(ob_universe *u);
-// Only for the one who arranges.
+// Only for the scheduler.
 void ob_record_give_back(ob_universe *u, uint32_t record);
-// Reserves count words in the perceived-neighbours arena; returns the offset, or UINT32_MAX when it is full
+// Reserves count words in the arena of neighbours; returns the offset, or UINT32_MAX when it is full
 uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t count);
 void ob_neighbours_reset(ob_universe *u);
 
 // ---- the gate (gate.h explains it with a drawing)
-// A phase ends when every participant has arrived; the last to arrive arranges the next and opens the gate.
+// A phase ends when every participant has arrived; the last to arrive, the scheduler, prepares the next and
+// opens the gate.
 // A worker waits until the gate opens with a phase in which it takes part.
 ob_phase ob_gate_wait(ob_universe *u, uint32_t worker);
-// true: the caller is the last, everyone else waits; it must call ob_gate_open or ob_gate_pause.
+// true: the caller is the last, all other workers wait; it must call ob_gate_open or ob_gate_pause.
 bool ob_gate_arrive(ob_universe *u, uint32_t worker);
 // participants: worker numbers, n of them; NULL = all. n >= 1 unless the phase is STOP.
 void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, uint32_t n);
@@ -128,7 +130,7 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 void ob_gate_pause(ob_universe *u);
 // Whether the phase that runs still waits for this worker (any thread, as of a moment ago).
 bool ob_gate_waits_for(const ob_universe *u, uint32_t worker);
-// Host: the step at which the universe shall pause next (read by the arranger).
+// Host: the step at which the universe shall pause next (the scheduler reads it).
 void ob_gate_set_pause_step(ob_universe *u, uint64_t step);
 uint64_t ob_gate_pause_step(const ob_universe *u);
 // Host: waits until paused; false on timeout (s)

@@ -1,5 +1,6 @@
 // The trace: what each worker did when, as spans in a ring of its own in the universe, for the host to write to a file
-// while the run goes on. Only where ob_universe_setup.traced asked for it; then an event costs some 10 ns and a clock.
+// while the run goes on. Only where ob_universe_setup.traced asked for it; an event then costs some 10 ns and the reading
+// of a clock.
 //
 //        worker 0         worker 1              host            supervisor
 //      +----------+     +----------+        +----------+       +----------+
@@ -9,8 +10,8 @@
 //
 // A ring: event[n % size], written = events that are complete, taken = those that the reader has. The writer fills an
 // event and then stores "written" (release); the reader copies events and then stores "taken" (release). Neither
-// waits. What finds the ring full is counted in "lost". A writer that is killed leaves all complete events readable,
-// and in "doing" what it had begun.
+// waits. An event that finds the ring full is counted in "lost". A writer that is killed leaves all complete events
+// readable, and in "doing" the span that it had begun.
 #ifndef OB_TABLE_TRACE_H
 #define OB_TABLE_TRACE_H
 
@@ -20,16 +21,16 @@
 typedef enum ob_trace_kind {
 	OB_TRACE_NONE,
 	OB_TRACE_WAIT,     // at the gate
-	OB_TRACE_SOLVE,    // phase ISLANDS; a = islands, b = their members
+	OB_TRACE_SOLVE,    // phase ISLANDS; a = islands, b = their bodies
 	OB_TRACE_OBJECTS,  // phases of neighbours, pairs and copies
-	OB_TRACE_SCHEDULE,  // what comes next, for all
+	OB_TRACE_SCHEDULE,  // the scheduler, between phases
 	OB_TRACE_CHUNK,    // islands claimed at once; a, b as above
-	OB_TRACE_ISLAND,   // a = lowest id, b = members
+	OB_TRACE_ISLAND,   // a = lowest id, b = bodies
 	OB_TRACE_PROFILE,     // a = ob_profile_section
 	OB_TRACE_STATE,    // object a has been in a state until now; b = ob_trace_state before | state after << 8
 	OB_TRACE_BIRTH,    // of object a
 	OB_TRACE_DEATH,    // of object a
-	OB_TRACE_KILLED,   // worker a ended before it was told to; b = by which signal, 0 = it left
+	OB_TRACE_KILLED,   // worker a ended before STOP; b = by which signal, 0 = it left
 	OB_TRACE_SNAPSHOT, // the host copies all motions
 	OB_TRACE_MEASURE,  // energy, momentum, penetration
 	OB_TRACE_RECORD,   // to HDF5
@@ -55,20 +56,21 @@ typedef struct ob_trace_event {
 
 bool ob_universe_traced(const ob_universe *u);
 
-// Rings 0 .. workers-1 are the workers'; then one of the host's main thread and one of its supervisor.
+// Rings 0 .. workers-1 belong to the workers; then come one of the host's main thread and one of its supervisor.
 uint32_t ob_trace_rings(const ob_universe *u);
 uint32_t ob_trace_host(const ob_universe *u);
 uint32_t ob_trace_supervisor(const ob_universe *u);
 
 // Writers, each on its own ring, and only where the universe is traced.
-// From begin until now; the step is the one after those complete. Returns now.
+// A span from begin until now; its step is the one after those that are complete. Returns now.
 uint64_t ob_trace_span(ob_universe *u, uint32_t ring, ob_trace_kind kind, uint64_t begin, uint32_t a, uint32_t b);
-// What the writer does from now on, should it never come to the end of it. NONE = nothing. Spans leave it as it is.
+// What the writer does from now on, in case that it dies before it can write the span. NONE = nothing. Writing a span does
+// not change it.
 void ob_trace_doing(ob_universe *u, uint32_t ring, ob_trace_kind kind, uint64_t begin);
-// Object id begins to be in another state, as motion flags have it (OB_MOTION_*): one event if they differ. Called by
-// who publishes the object's motion, with the flags of the motion before and of this one.
+// Called by the worker that publishes the motion of object id, with the flags (OB_MOTION_*) of the motion before and of
+// this one: one event if the object's state, as an ob_trace_motion, has changed.
 void ob_trace_moves(ob_universe *u, uint32_t ring, uint32_t id, uint32_t flags_before, uint32_t flags);
-// The host's, while the universe stands still: object id comes or goes; its passport is still, or already, there.
+// Called by the host while the universe stands still: object id is added or removed; its passport is in the table.
 void ob_trace_birth(ob_universe *u, uint32_t id);
 void ob_trace_death(ob_universe *u, uint32_t id, uint32_t flags_before);
 
@@ -80,7 +82,7 @@ ob_trace_event ob_trace_unfinished(const ob_universe *u, uint32_t ring);
 // Since when object id has been as it is (ns).
 uint64_t ob_trace_since(const ob_universe *u, uint32_t id);
 ob_trace_motion ob_trace_motion_of(uint32_t flags);
-// The name of object id, or of who was there last; false: nobody has been.
+// The name of object id, or of the last object that had this id; false: there has been none.
 bool ob_trace_name(const ob_universe *u, uint32_t id, char name[OB_NAME_MAX]);
 
 #endif

@@ -1,12 +1,12 @@
-// The gate: every phase runs in exactly those who take part, once each, and what they wrote is seen by the one who
-// arranges the next. Arguments: threads|processes, workers, phases. Every 500 phases the host has the turn.
+// The gate: every phase runs in exactly those who take part, once each, and the scheduler sees what they wrote
+// before it opens the next. Arguments: threads|processes, workers, phases. Every 500 phases the host has the turn.
 #include "../check.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "crowd.h"
+#include "workers.h"
 #include "table/table.h"
 
 enum { WORKERS_MAX = 1024, PAUSE_EVERY = 500 };
@@ -58,7 +58,7 @@ static void open_next(board *b)
 	ob_gate_open(b->u, b->phase % 2 ? OB_PHASE_BROADPHASE : OB_PHASE_ISLANDS, participants, b->n);
 }
 
-static void arrange(board *b)
+static void schedule(board *b)
 {
 	for (uint32_t i = 0; i < b->n; i++)
 		b->missed += b->ran_in[b->participants[i]] != b->phase;
@@ -84,7 +84,7 @@ static int work(void *shared, uint32_t worker)
 		b->ran_in[worker] = b->phase;
 		b->runs[worker]++;
 		if (ob_gate_arrive(b->u, worker))
-			arrange(b);
+			schedule(b);
 	}
 }
 
@@ -103,7 +103,7 @@ int main(int argc, char **argv)
 {
 	bool processes = argc > 1 && strcmp(argv[1], "processes") == 0;
 	uint32_t workers = argc > 2 ? (uint32_t)atoi(argv[2]) : 2;
-	board *b = crowd_memory(sizeof *b);
+	board *b = shared_memory(sizeof *b);
 	ob_error e;
 	ob_universe_setup setup = { .capacity = 16, .workers = workers, .isolation = argc > 1 ? argv[1] : "threads" };
 	b->u = ob_universe_create(&setup, &e);
@@ -114,10 +114,10 @@ int main(int argc, char **argv)
 	}
 	b->phases = argc > 3 ? (uint64_t)atoi(argv[3]) : 3000;
 	b->random = workers;
-	crowd c = { .processes = processes, .count = workers, .run = work, .shared = b };
-	CHECK(crowd_start(&c));
+	worker_group g = { .processes = processes, .count = workers, .run = work, .shared = b };
+	CHECK(worker_group_start(&g));
 	lead(b);
-	CHECK(crowd_join(&c) == 0);
+	CHECK(worker_group_join(&g) == 0);
 	uint32_t wrong = 0;
 	for (uint32_t w = 0; w < workers; w++)
 		wrong += b->runs[w] != b->due[w];

@@ -1,12 +1,13 @@
-// Claims, what meetings note, the rebound list and the arena of perceived neighbours, under 8 threads and 8 processes.
+// Claims of tasks, what the check for late contacts notes, the requery list and the arena of neighbours, under 8 threads and
+// 8 processes.
 #include "../check.h"
 
 #include <string.h>
 
-#include "crowd.h"
+#include "workers.h"
 #include "table/table.h"
 
-enum { WORKERS = 8, OBJECTS = 5000, EACH = 3, FIRST_LOOK = 77 };
+enum { WORKERS = 8, OBJECTS = 5000, EACH = 3, FIRST_CHECK = 77 };
 
 typedef struct board {
 	ob_universe *u;
@@ -29,7 +30,7 @@ static int work(void *shared, uint32_t worker)
 			b->arena[at + k]++; // plain: the place is this worker's alone
 	}
 	for (uint32_t i = worker; i < OBJECTS; i += WORKERS)
-		ob_late_contacts_note(b->u, i == OBJECTS / 2, FIRST_LOOK + i * 7919 % OBJECTS);
+		ob_late_contacts_note(b->u, i == OBJECTS / 2, FIRST_CHECK + i * 7919 % OBJECTS);
 	for (uint32_t i = worker % 2; i < OBJECTS; i += 2) // each id comes from four workers
 		ob_requery_append(b->u, i);
 	return 0;
@@ -37,7 +38,7 @@ static int work(void *shared, uint32_t worker)
 
 static void run(bool processes)
 {
-	board *b = crowd_memory(sizeof *b);
+	board *b = shared_memory(sizeof *b);
 	ob_error e;
 	ob_universe_setup setup = { .capacity = OBJECTS, .workers = WORKERS, .isolation = "thread" };
 	b->u = ob_universe_create(&setup, &e);
@@ -50,10 +51,10 @@ static void run(bool processes)
 		CHECK(!ob_universe_step_data(b->u)->count->late);
 		ob_requery_reset(b->u);
 		ob_neighbours_reset(b->u);
-		crowd c = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
-		CHECK(crowd_start(&c) && crowd_join(&c) == 0);
+		worker_group g = { .processes = processes, .count = WORKERS, .run = work, .shared = b };
+		CHECK(worker_group_start(&g) && worker_group_join(&g) == 0);
 		CHECK(ob_universe_step_data(b->u)->count->late);
-		CHECK(ob_universe_step_data(b->u)->count->next_check == FIRST_LOOK);
+		CHECK(ob_universe_step_data(b->u)->count->next_check == FIRST_CHECK);
 		uint32_t wrong = 0, count;
 		for (uint32_t i = 0; i < OBJECTS; i++)
 			wrong += b->claimed[i] != round;

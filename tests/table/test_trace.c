@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "crowd.h"
+#include "workers.h"
 #include "table/layout.h"
 #include "table/trace.h"
 
@@ -62,17 +62,17 @@ static uint32_t read_ring(ob_universe *u, uint32_t ring, uint32_t *next, uint32_
 	return n;
 }
 
-static void test_crowd(bool processes)
+static void test_many_writers(bool processes)
 {
-	board *b = crowd_memory(sizeof *b);
+	board *b = shared_memory(sizeof *b);
 	uint32_t next[WORKERS] = { 0 }, wrong = 0;
 	uint64_t read = 0, lost = 0;
 	b->u = create(WORKERS, true);
 	if (!b->u)
 		return;
 	b->running = WORKERS;
-	crowd c = { .processes = processes, .count = WORKERS, .run = write_many, .shared = b };
-	CHECK(crowd_start(&c));
+	worker_group g = { .processes = processes, .count = WORKERS, .run = write_many, .shared = b };
+	CHECK(worker_group_start(&g));
 	for (bool last = false; !last;) {
 		last = __atomic_load_n(&b->running, __ATOMIC_ACQUIRE) == 0;
 		for (uint32_t w = 0; w < WORKERS; w++)
@@ -80,7 +80,7 @@ static void test_crowd(bool processes)
 				read += n;
 		nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL);
 	}
-	CHECK(crowd_join(&c) == 0);
+	CHECK(worker_group_join(&g) == 0);
 	for (uint32_t w = 0; w < WORKERS; w++)
 		lost += ob_trace_lost(b->u, w);
 	CHECK(wrong == 0);
@@ -91,7 +91,7 @@ static void test_crowd(bool processes)
 	ob_universe_destroy(b->u, true);
 }
 
-// A full ring keeps what it has; what comes is lost until somebody reads.
+// A full ring keeps its events; new ones are lost until the reader takes some.
 static void test_full(void)
 {
 	ob_universe *u = create(1, true);
@@ -189,8 +189,8 @@ int main(void)
 	test_layout();
 	test_states();
 	test_full();
-	test_crowd(false);
-	test_crowd(true);
+	test_many_writers(false);
+	test_many_writers(true);
 	test_killed();
 	return check_end();
 }

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "crowd.h"
+#include "workers.h"
 #include "table/slot.h"
 
 enum { WORDS = sizeof(ob_motion) / sizeof(uint64_t) };
@@ -74,10 +74,10 @@ static int reader(void *shared, uint32_t number)
 	return 0;
 }
 
-static bool gather(crowd *readers, arena *a)
+static bool gather(worker_group *readers, arena *a)
 {
 	publish(&a->slot, 1);
-	if (!crowd_start(readers))
+	if (!worker_group_start(readers))
 		return false;
 	while (__atomic_load_n(&a->ready, __ATOMIC_ACQUIRE) < readers->count)
 		usleep(100);
@@ -86,16 +86,16 @@ static bool gather(crowd *readers, arena *a)
 
 torture_result torture_run(bool processes, uint32_t readers, uint64_t publishes)
 {
-	arena *a = crowd_memory(sizeof *a);
-	crowd c = { .processes = processes, .count = readers, .run = reader, .shared = a };
-	if (!gather(&c, a))
+	arena *a = shared_memory(sizeof *a);
+	worker_group g = { .processes = processes, .count = readers, .run = reader, .shared = a };
+	if (!gather(&g, a))
 		return (torture_result){ .failed = readers };
 	double start = ob_clock_wall();
 	for (uint64_t i = 2; i <= publishes; i++)
 		publish(&a->slot, i);
 	double seconds = ob_clock_wall() - start;
 	__atomic_store_n(&a->over, 1, __ATOMIC_RELEASE);
-	uint32_t failed = crowd_join(&c);
+	uint32_t failed = worker_group_join(&g);
 	torture_result r = a->sum;
 	r.failed = failed;
 	r.published = publishes;
@@ -120,10 +120,10 @@ static pid_t start_writer(ob_slot *s)
 
 torture_result torture_run_killed(uint32_t readers, uint32_t kills)
 {
-	arena *a = crowd_memory(sizeof *a);
-	crowd c = { .processes = true, .count = readers, .run = reader, .shared = a };
+	arena *a = shared_memory(sizeof *a);
+	worker_group g = { .processes = true, .count = readers, .run = reader, .shared = a };
 	torture_result r = { .failed = readers };
-	if (!gather(&c, a))
+	if (!gather(&g, a))
 		return r;
 	double start = ob_clock_wall();
 	uint32_t unreadable = 0, stuck = 0;
@@ -139,7 +139,7 @@ torture_result torture_run_killed(uint32_t readers, uint32_t kills)
 	}
 	double seconds = ob_clock_wall() - start;
 	__atomic_store_n(&a->over, 1, __ATOMIC_RELEASE);
-	uint32_t failed = crowd_join(&c);
+	uint32_t failed = worker_group_join(&g);
 	r = a->sum;
 	r.failed = failed + (stuck == kills); // on a busy machine a writer may not get to run before it dies
 	r.refused += unreadable;

@@ -1,4 +1,4 @@
-#include "crowd.h"
+#include "workers.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 
 enum { STACK_BYTES = 256 << 10 };
 
-void *crowd_memory(size_t bytes)
+void *shared_memory(size_t bytes)
 {
 	void *p = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
 	if (p == MAP_FAILED) {
@@ -22,49 +22,49 @@ void *crowd_memory(size_t bytes)
 
 static void *thread_main(void *argument)
 {
-	crowd_member *m = argument;
-	return (void *)(intptr_t)m->crowd->run(m->crowd->shared, m->number);
+	worker_group_member *m = argument;
+	return (void *)(intptr_t)m->group->run(m->group->shared, m->number);
 }
 
-static bool start_process(crowd_member *m)
+static bool start_process(worker_group_member *m)
 {
 	m->pid = fork();
 	if (m->pid == 0) {
 		prctl(PR_SET_PDEATHSIG, SIGKILL); // a test that is timed out leaves no one behind
-		_exit(m->crowd->run(m->crowd->shared, m->number));
+		_exit(m->group->run(m->group->shared, m->number));
 	}
 	return m->pid > 0;
 }
 
-bool crowd_start(crowd *c)
+bool worker_group_start(worker_group *g)
 {
 	pthread_attr_t attributes;
 	pthread_attr_init(&attributes);
 	pthread_attr_setstacksize(&attributes, STACK_BYTES);
-	c->member = calloc(c->count, sizeof *c->member);
-	bool fine = c->member;
-	for (uint32_t i = 0; i < c->count && fine; i++) {
-		crowd_member *m = c->member + i;
-		*m = (crowd_member){ .crowd = c, .number = i };
-		fine = c->processes ? start_process(m) : !pthread_create(&m->thread, &attributes, thread_main, m);
+	g->member = calloc(g->count, sizeof *g->member);
+	bool fine = g->member;
+	for (uint32_t i = 0; i < g->count && fine; i++) {
+		worker_group_member *m = g->member + i;
+		*m = (worker_group_member){ .group = g, .number = i };
+		fine = g->processes ? start_process(m) : !pthread_create(&m->thread, &attributes, thread_main, m);
 	}
 	pthread_attr_destroy(&attributes);
 	return fine;
 }
 
-uint32_t crowd_join(crowd *c)
+uint32_t worker_group_join(worker_group *g)
 {
 	uint32_t failed = 0;
-	for (uint32_t i = 0; i < c->count; i++) {
-		crowd_member *m = c->member + i;
+	for (uint32_t i = 0; i < g->count; i++) {
+		worker_group_member *m = g->member + i;
 		void *result = NULL;
 		int status = 0;
-		if (c->processes)
+		if (g->processes)
 			failed += waitpid(m->pid, &status, 0) != m->pid || status != 0;
 		else
 			failed += pthread_join(m->thread, &result) != 0 || result;
 	}
-	free(c->member);
-	c->member = NULL;
+	free(g->member);
+	g->member = NULL;
 	return failed;
 }
