@@ -9,7 +9,6 @@
 #include <lauxlib.h>
 
 #include "base/clock.h"
-#include "scene/library.h"
 
 // Lua shortens long file names in its messages, so it gets this one, and the path is put in its place at the end.
 #define CHUNK "scene"
@@ -150,7 +149,7 @@ static bool report(ob_sandbox *s, int status, ob_error *e)
 	return false;
 }
 
-ob_sandbox *ob_sandbox_create(const char *path, void *user, ob_error *e)
+ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, ob_error *e)
 {
 	ob_sandbox *s = calloc(1, sizeof *s);
 	if (!s)
@@ -164,7 +163,7 @@ ob_sandbox *ob_sandbox_create(const char *path, void *user, ob_error *e)
 		return ob_fail(e, "%s: no memory", path), NULL;
 	}
 	*(ob_sandbox **)lua_getextraspace(s->L) = s;
-	lua_pushcfunction(s->L, ob_library_open);
+	lua_pushcfunction(s->L, open);
 	int status = lua_pcall(s->L, 0, 0, 0);
 	if (status != LUA_OK) {
 		report(s, status, e);

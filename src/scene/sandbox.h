@@ -21,9 +21,9 @@
 
 typedef struct ob_sandbox ob_sandbox;
 
-// path: for messages; user: what ob_sandbox_user gives to the functions that are called from Lua. Both are kept, not
-// copied. NULL and e when there is no memory.
-ob_sandbox *ob_sandbox_create(const char *path, void *user, ob_error *e);
+// path: for messages; open: builds the globals (ob_library_open); user: what ob_sandbox_user gives to the functions that
+// are called from Lua. Path and user are kept, not copied. NULL and e when there is no memory.
+ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, ob_error *e);
 void ob_sandbox_destroy(ob_sandbox *s); // NULL is allowed
 
 // Offers f to the scene as a global (library = NULL) or as a field of a library ("math").

@@ -8,6 +8,7 @@
 
 #include "scene/builder.h"
 #include "scene/colour.h"
+#include "scene/library.h"
 #include "scene/sandbox.h"
 
 #define FILE_MAX ((size_t)4 << 20) // bytes of a scene file
@@ -110,7 +111,7 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 static bool run(ob_builder *b, const char *path, char *text, size_t size, ob_error *e)
 {
 	blank_start(text, size);
-	ob_sandbox *sandbox = ob_sandbox_create(path, b, e);
+	ob_sandbox *sandbox = ob_sandbox_create(path, ob_library_open, b, e);
 	bool good = sandbox && offer_calls(sandbox, e) && ob_sandbox_run(sandbox, text, size, e);
 	ob_sandbox_destroy(sandbox);
 	return good;
