@@ -1,5 +1,11 @@
 #include "measure/depth.h"
 
+// Half length (m) of the segment inside a capsule; 0 for a sphere.
+static double core_length(const ob_solid *s)
+{
+	return s->shape == OB_SHAPE_CAPSULE ? s->size.y : 0;
+}
+
 static double clamp(double x, double low, double high)
 {
 	return x < low ? low : x > high ? high : x;
@@ -45,8 +51,8 @@ static double between_segments(ob_vec3 d, ob_vec3 u, double hu, ob_vec3 v, doubl
 static double capsules(const ob_solid *a, const ob_solid *b)
 {
 	return a->size.x + b->size.x -
-	       between_segments(ob_sub(b->p, a->p), ob_column(&a->r, 2), ob_solid_core(a), ob_column(&b->r, 2),
-				ob_solid_core(b));
+	       between_segments(ob_sub(b->p, a->p), ob_column(&a->r, 2), core_length(a), ob_column(&b->r, 2),
+				core_length(b));
 }
 
 // In the half plane through the cylinder's axis and the centre, the cylinder is a rectangle.
@@ -71,7 +77,7 @@ static void sort_two(double *low, double *high)
 	}
 }
 
-double ob_depth_boxes(const ob_solid *a, const ob_solid *b)
+static double depth_of_boxes(const ob_solid *a, const ob_solid *b)
 {
 	ob_vec3 d = ob_sub(b->p, a->p);
 	double least = INFINITY;
@@ -160,13 +166,13 @@ static double segment_in_box(const double c[3], const double u[3], double half, 
 	return least;
 }
 
-double ob_depth_capsule_box(const ob_solid *capsule, const ob_solid *box)
+static double depth_of_capsule_and_box(const ob_solid *capsule, const ob_solid *box)
 {
 	ob_vec3 centre = ob_rotate_back(&box->r, ob_sub(capsule->p, box->p));
 	ob_vec3 axis = ob_rotate_back(&box->r, ob_column(&capsule->r, 2));
 	double c[3] = { centre.x, centre.y, centre.z }, u[3] = { axis.x, axis.y, axis.z };
 	double h[3] = { box->size.x, box->size.y, box->size.z };
-	double half = ob_solid_core(capsule);
+	double half = core_length(capsule);
 	double distance = segment_from_box(c, u, half, h);
 	if (distance > 1e-12 * (h[0] + h[1] + h[2])) // else rounding: the nearest point found may be where it enters
 		return capsule->size.x - distance;
@@ -353,8 +359,8 @@ double ob_depth(const ob_solid *a, const ob_solid *b)
 	if (b->shape == OB_SHAPE_CYLINDER)
 		return a->shape == OB_SHAPE_SPHERE ? sphere_and_cylinder(a, b) : ob_depth_search(a, b);
 	if (a->shape == OB_SHAPE_BOX)
-		return b->shape == OB_SHAPE_BOX ? ob_depth_boxes(a, b) : ob_depth_capsule_box(b, a);
+		return b->shape == OB_SHAPE_BOX ? depth_of_boxes(a, b) : depth_of_capsule_and_box(b, a);
 	if (b->shape == OB_SHAPE_BOX)
-		return ob_depth_capsule_box(a, b);
+		return depth_of_capsule_and_box(a, b);
 	return capsules(a, b);
 }

@@ -13,13 +13,9 @@ typedef struct ob_solid {
 
 // m; <= 0: they do not overlap. Its size is then only a lower bound of the distance, negated.
 // Spheres, capsules, planes and boxes in any pair but two planes (-infinity), and cylinders with spheres and planes:
-// closed forms, exact to rounding. Cylinders with boxes, capsules and cylinders: ob_depth_search.
+// closed forms, exact to rounding (boxes by their separating axes: Gottschalk, Lin and Manocha 1996). Cylinders with
+// boxes, capsules and cylinders: ob_depth_search.
 double ob_depth(const ob_solid *a, const ob_solid *b);
-
-// The same for two boxes by the separating axes (Gottschalk, Lin and Manocha 1996).
-double ob_depth_boxes(const ob_solid *a, const ob_solid *b);
-// The same for a capsule or sphere and a box.
-double ob_depth_capsule_box(const ob_solid *capsule, const ob_solid *box);
 
 // The same for any two solids but planes, by a search over directions for the least overlap of their projections. Every
 // direction gives an upper bound, so the result is never too small; it is too large by less than 1e-7 of their size.
@@ -27,10 +23,5 @@ double ob_depth_search(const ob_solid *a, const ob_solid *b);
 
 // Half the width of the solid's projection on the unit direction n (m): its support function. Not for planes.
 double ob_solid_extent(const ob_solid *s, ob_vec3 n);
-// Half length (m) of the segment inside a capsule; 0 for a sphere.
-static inline double ob_solid_core(const ob_solid *s)
-{
-	return s->shape == OB_SHAPE_CAPSULE ? s->size.y : 0;
-}
 
 #endif

@@ -84,7 +84,7 @@ static void paint_text(cairo_t *c, const ob_drawing *d, const ob_item *item)
 
 static void paint(cairo_t *c, const ob_drawing *d)
 {
-	// no grid of pixels for letters, so that they are as wide at every zoom
+	// glyphs are not hinted to the pixel grid, so that they are as wide at every zoom
 	cairo_font_options_t *options = cairo_font_options_create();
 	cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
 	cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

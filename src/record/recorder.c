@@ -235,8 +235,7 @@ static hid_t column_type(int column)
 	return column == STEP ? H5T_NATIVE_UINT64 : column == ASLEEP ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE;
 }
 
-// Chunks of about 64 kB, at least one row and at most as many as one looks at in an instant: a file of few objects
-// does not become one of many chunks. Not compressed: a chunk grows with each append, and packed anew each time it
+// Chunks of about 64 kB, of at least one row and at most 1024: a file of few objects does not become one of many chunks. Not compressed: a chunk grows with each append, and packed anew each time it
 // would leave holes behind.
 static bool create_column(ob_recorder *r, int i)
 {
