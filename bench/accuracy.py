@@ -46,7 +46,7 @@ def failed():
     for r in results():  # each engine's settings stand together; the usual ones of others are the coarsest
         first.setdefault((r['engine'], r['case']), r)
     for engine in dict.fromkeys(engine for engine, _ in first if not engine.startswith('obsim')):
-        said = [f"`{case}` {r['failed']}" for (e, case), r in first.items() if e == engine and r['failed']]
+        said = [f"`{case}` {r['reason']}" for (e, case), r in first.items() if e == engine and r['reason']]
         text += f"- {engine}: {'; '.join(said) or 'none'}\n"
     return text or '- no other engine took part\n'
 

@@ -12,7 +12,7 @@
 #include "cli/compare_run.h"
 #include "cli/quantity.h"
 #include "cli/request.h"
-#include "lab/provenance.h"
+#include "experiment/folder.h"
 
 enum { USUAL_REPEATS = 3 };
 

@@ -7,7 +7,7 @@
 
 #include "cli/compare.h"
 #include "cli/compare_plots.h"
-#include "cli/lab_folder.h"
+#include "experiment/folder.h"
 #include "cli/quantity.h"
 #include "cli/version.h"
 #include "compare_texts.h"
@@ -269,7 +269,7 @@ bool ob_comparison_write_folder(const ob_comparison *c, const char *folder, ob_e
 	snprintf(plots, sizeof plots, "%s/plots", folder);
 	ob_diagram *d = malloc(sizeof *d);
 	bool fine = d ? true : ob_fail(e, "out of memory");
-	fine = fine && ob_lab_folder_make(plots, e) && write_file(c, folder, "report.html", write_page, e) &&
+	fine = fine && ob_folder_make(plots, e) && write_file(c, folder, "report.html", write_page, e) &&
 	       write_file(c, folder, "results.csv", ob_comparison_write_csv, e) &&
 	       write_file(c, folder, "results.json", ob_comparison_write_json, e) && write_plots(c, folder, d, e);
 	free(d);

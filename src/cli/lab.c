@@ -4,15 +4,110 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/spelling.h"
 #include "cli/command.h"
-#include "cli/lab_folder.h"
-#include "cli/lab_json.h"
-#include "cli/lab_request.h"
-#include "cli/progress.h"
-#include "cli/terminal.h"
+#include "cli/quantity.h"
+#include "cli/version.h"
+#include "lab/lab.h"
+#include "lab/report.h"
 #include "lab/tables.h"
+
+// What the command line asks for
+typedef struct request {
+	ob_lab_plan plan;
+	double limit; // s
+	const char *out; // folder
+	bool list, fresh, json, check;
+} request;
+
+// Of "stak" no case is near, but what many begin with is.
+static bool suggest_family(const char *word, ob_error *e)
+{
+	ob_spelling s = ob_spelling_start(word);
+	char families[OB_LIST_CASES][32];
+	size_t i = 0;
+	for (const ob_case *const *c = ob_cases; *c && i < OB_LIST_CASES; c++, i++) {
+		snprintf(families[i], sizeof families[i], "%.*s", (int)strcspn((*c)->name, "-"), (*c)->name);
+		ob_spelling_offer(&s, families[i]);
+	}
+	for (const ob_case *const *c = ob_cases; s.best && *c; c++)
+		if (!strncmp((*c)->name, s.best, strlen(s.best)))
+			return ob_fail(e, "no case '%s': did you mean %s, or all that begin with '%s'?", word,
+				       (*c)->name, s.best);
+	return ob_fail(e, "no case '%s': obsim lab --list shows all", word);
+}
+
+static bool read_cases(ob_case_list *l, const ob_arguments *a, ob_error *e)
+{
+	if (!a->operand)
+		ob_list_add_all(l, a->value[OB_OPTION_QUICK]);
+	else if (a->value[OB_OPTION_QUICK])
+		return ob_fail(e, "--quick is a choice of cases: leave it, or '%s', away", a->operand);
+	for (const char **word = a->operands; *word; word++) {
+		if (ob_list_add_cases(l, *word))
+			continue;
+		ob_spelling s = ob_spelling_start(*word);
+		for (const ob_case *const *c = ob_cases; *c; c++)
+			ob_spelling_offer(&s, (*c)->name);
+		if (s.best)
+			return ob_fail(e, "no case '%s': did you mean %s?", *word, s.best);
+		return suggest_family(*word, e);
+	}
+	return true;
+}
+
+static bool read_engines(ob_engine_list *l, const char *names, ob_error *e)
+{
+	char word[64], all[512] = "";
+	if (ob_list_engines(l, names ? names : "all", word))
+		return true;
+	ob_spelling s = ob_spelling_start(word);
+	for (const ob_engine_kind *const *k = ob_engine_kinds; *k; k++) {
+		size_t n = strlen(all);
+		snprintf(all + n, sizeof all - n, "%s%s", n ? ", " : "", (*k)->name);
+		ob_spelling_offer(&s, (*k)->name);
+	}
+	if (s.best)
+		return ob_fail(e, "--engines: no engine '%s': did you mean %s?", word, s.best);
+	return ob_fail(e, "--engines: no engine '%s', only: %s", word, all);
+}
+
+static bool check(const request *r, const ob_arguments *a, ob_error *e)
+{
+	char word[64];
+	ob_engine_list own;
+	bool has_own = false;
+	ob_list_engines(&own, "obsim,obsim-lag", word); // those who promise something
+	for (size_t i = 0; i < r->plan.engines.count; i++)
+		for (size_t j = 0; j < own.count; j++)
+			has_own |= r->plan.engines.of[i] == own.of[j];
+	if (r->check && !has_own)
+		return ob_fail(e, "--check is about obsim: it must be among --engines %s", a->value[OB_OPTION_ENGINES]);
+	if (r->list && r->json)
+		return ob_fail(e, "--list is text: leave --json away");
+	return true;
+}
+
+static bool read_request(request *r, const ob_arguments *a, ob_error *e)
+{
+	*r = (request){
+		.limit = 150,
+		.out = a->value[OB_OPTION_OUT] ? a->value[OB_OPTION_OUT] : "obsim-lab",
+		.list = a->value[OB_OPTION_LIST],
+		.fresh = a->value[OB_OPTION_FRESH],
+		.json = a->value[OB_OPTION_JSON_OUT],
+		.check = a->value[OB_OPTION_CHECK],
+	};
+	uint64_t repeats = 1;
+	bool fine = read_cases(&r->plan.cases, a, e) &&
+		    read_engines(&r->plan.engines, a->value[OB_OPTION_ENGINES], e) &&
+		    ob_sweep_parse(&r->plan.sweep, a->value[OB_OPTION_SWEEP], e) &&
+		    ob_number_count("repeats", a->value[OB_OPTION_REPEATS], 1, OB_REPEATS, &repeats, e) &&
+		    ob_number_real("limit", a->value[OB_OPTION_LIMIT], 0, 1e6, &r->limit, e);
+	r->plan.repeats = (uint32_t)repeats;
+	return fine && check(r, a, e);
+}
 
 static bool is_asked(const ob_lab_plan *p, const ob_result *r)
 {
@@ -24,40 +119,23 @@ static bool is_asked(const ob_lab_plan *p, const ob_result *r)
 	return of && engine;
 }
 
-// Those with the cases and engines of this call, or all others
-static bool pick(const ob_lab_plan *p, const ob_results *from, bool asked, ob_results *to)
+// The results with the cases and engines of this call
+static bool pick(const ob_lab_plan *p, const ob_results *from, ob_results *to)
 {
-	*to = (ob_results){ 0 };
 	memcpy(to->machine, from->machine, sizeof to->machine);
 	memcpy(to->commit, from->commit, sizeof to->commit);
 	bool fine = true;
 	for (size_t i = 0; fine && i < from->count; i++)
-		fine = is_asked(p, &from->result[i]) != asked || ob_results_add(to, &from->result[i]);
+		fine = !is_asked(p, &from->result[i]) || ob_results_add(to, &from->result[i]);
 	return fine;
 }
 
-static void show(const ob_lab_progress *p, void *with)
-{
-	enum { BAR = 20 };
-	static const char hashes[] = "####################";
-	char line[256], rest[48] = "-", setting[64];
-	int columns, lines, done = (int)(BAR * p->done / p->all);
-	if (!isnan(p->left))
-		ob_progress_print_rest(rest, sizeof rest, p->left);
-	ob_sweep_print(setting, sizeof setting, &p->settings);
-	snprintf(line, sizeof line, "[%.*s%*s] %zu of %zu, %s left: %s, %s, %s", done, hashes, BAR - done, "", p->done,
-		 p->all, rest, p->of->name, p->engine->name, setting);
-	ob_terminal_size(&columns, &lines);
-	fprintf(stderr, "\r\033[K%.*s", columns - 1, line);
-	fflush(stderr);
-}
-
-static int tell(const ob_lab_request *r, const ob_results *asked)
+static int tell(const request *r, const ob_results *asked)
 {
 	ob_digest d = ob_digest_make(asked);
 	ob_error e;
 	if (r->json) {
-		ob_lab_write_json(asked, stdout);
+		ob_lab_write_json(asked, ob_version_number, stdout);
 	} else {
 		ob_lab_print_rows(stdout, &d, false);
 		putchar('\n');
@@ -75,45 +153,33 @@ static int tell(const ob_lab_request *r, const ob_results *asked)
 	return ob_command_fail(OB_EXIT_MISSED, e.text);
 }
 
-// What is there already, without what is to be run afresh
-static bool take_up(const ob_lab_request *r, ob_results *results, ob_error *e)
+static bool measure(const request *r, ob_results *results, ob_error *e)
 {
-	ob_results others;
-	if (!ob_lab_folder_open(r->out, results, e))
-		return false;
-	if (!r->fresh)
-		return true;
-	bool fine = pick(&r->plan, results, false, &others) || ob_fail(e, "out of memory");
-	ob_results_finish(results);
-	*results = others;
-	return fine;
-}
-
-static bool run(ob_lab_request *r, ob_results *results, ob_error *e)
-{
-	char *file = ob_lab_folder_path(r->out, "results.csv");
-	r->plan.file = file;
-	r->plan.tick = isatty(STDERR_FILENO) ? show : NULL;
-	bool fine = ob_lab_run(&r->plan, results, e);
-	if (r->plan.tick)
-		fputs("\r\033[K", stderr);
-	free(file);
+	ob_experiment x = ob_lab_experiment(ob_version_commit, r->limit);
+	ob_trials trials = { 0 };
+	ob_records records = { 0 };
+	bool fine = ob_lab_schedule(&r->plan, &trials, e) && ob_experiment_open(&x, r->out, &records, e);
+	if (fine && r->fresh)
+		ob_records_drop(&records, &trials);
+	fine = fine && ob_experiment_run(&x, &trials, &records, r->out, e) && ob_lab_results(&records, results, e);
+	ob_trials_finish(&trials);
+	ob_records_finish(&records);
 	return fine;
 }
 
 int ob_command_lab(const ob_arguments *a)
 {
-	ob_lab_request *r = calloc(1, sizeof *r);
+	request *r = calloc(1, sizeof *r);
 	ob_results results = { 0 }, asked = { 0 };
 	ob_error e;
 	int code = OB_EXIT_OK;
-	if (!r || !ob_lab_request_read(r, a, &e))
+	if (!r || !read_request(r, a, &e))
 		code = ob_command_fail(OB_EXIT_USAGE, r ? e.text : "out of memory");
 	else if (r->list)
 		ob_list_print(stdout, &r->plan.cases);
-	else if (!take_up(r, &results, &e) || !run(r, &results, &e) || !ob_lab_folder_write(r->out, &results, &e))
+	else if (!measure(r, &results, &e) || !ob_lab_report(&results, r->out, &e))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
-	else if (!pick(&r->plan, &results, true, &asked))
+	else if (!pick(&r->plan, &results, &asked))
 		code = ob_command_fail(OB_EXIT_FAILED, "out of memory");
 	else
 		code = tell(r, &asked);

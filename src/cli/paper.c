@@ -6,13 +6,12 @@
 #include <unistd.h>
 
 #include "cli/command.h"
-#include "cli/lab_folder.h"
 #include "cli/quantity.h"
 #include "cli/paper_json.h"
-#include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
-#include "lab/provenance.h"
+#include "experiment/folder.h"
+#include "experiment/progress.h"
 #include "paper/claims.h"
 #include "paper/paper.h"
 #include "paper/report.h"
@@ -26,7 +25,7 @@ static void show(size_t done, size_t all, double left, const char *what)
 	char line[200], rest[48] = "-";
 	int columns, lines, filled = (int)(BAR * done / all);
 	if (!isnan(left))
-		ob_progress_print_rest(rest, sizeof rest, left);
+		ob_progress_print_time(rest, sizeof rest, left);
 	snprintf(line, sizeof line, "[%.*s%*s] %zu of %zu, %s left: %s", filled, hashes, BAR - filled, "", done, all,
 		 rest, what);
 	ob_terminal_size(&columns, &lines);
@@ -102,7 +101,7 @@ int ob_command_paper(const ob_arguments *a)
 	plan.objects = (uint32_t)objects;
 	int code;
 	// the folder first: ten minutes for nothing would be a pity
-	if (!ob_lab_folder_make(out, &e) || !run(&plan, &r, &e) || !ob_paper_report(&r, out, &e))
+	if (!ob_folder_make(out, &e) || !run(&plan, &r, &e) || !ob_paper_report(&r, out, &e))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	else
 		code = tell(&r, out, a->value[OB_OPTION_JSON_OUT]);

@@ -1,6 +1,6 @@
 #include "cli/progress.h"
 
-#include <inttypes.h>
+#include <math.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "experiment/progress.h"
 
 enum { SILENCE_MS = 2000, PERIOD_MS = 200 };
 
@@ -22,27 +23,15 @@ struct ob_progress {
 	bool over;
 };
 
-void ob_progress_print_rest(char *text, size_t size, double s)
-{
-	if (s < 100)
-		snprintf(text, size, "%.0f s", s);
-	else if (s < 6000)
-		snprintf(text, size, "%d min %d s", (int)s / 60, (int)s % 60);
-	else
-		snprintf(text, size, "%.1f h", s / 3600);
-}
-
 static void show(const ob_progress *p)
 {
 	ob_universe_info info;
 	ob_universe_get_info(p->universe, &info);
 	double wall = ob_clock_wall() - p->begun, rate = (double)info.step / wall;
-	char rest[48] = "-";
-	if (info.step > 0)
-		ob_progress_print_rest(rest, sizeof rest, (double)(p->steps - info.step) / rate);
-	fprintf(stderr, "\r\033[K%3.0f %%  %.2f s simulated, %" PRIu64 " of %" PRIu64 " steps, %.0f/s, %s left",
-		100 * (double)info.step / (double)p->steps, info.time, info.step, p->steps, rate, rest);
-	fflush(stderr);
+	double left = info.step > 0 ? (double)(p->steps - info.step) / rate : NAN;
+	char what[64];
+	snprintf(what, sizeof what, "%.0f steps/s, %.2f s simulated", rate, info.time);
+	ob_progress_show(&(ob_progress_view){ 0 }, (double)info.step, (double)p->steps, left, what);
 }
 
 // true when the end came within ms

@@ -14,7 +14,4 @@ typedef struct ob_progress ob_progress;
 ob_progress *ob_progress_begin(const ob_universe *u, uint64_t steps);
 void ob_progress_end(ob_progress *p); // takes the line away; NULL is allowed
 
-// Seconds that are left as people say them, in the two largest units
-void ob_progress_print_rest(char *text, size_t size, double s);
-
 #endif

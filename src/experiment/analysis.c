@@ -80,8 +80,8 @@ bool ob_records_have(const ob_records *r, const char *of, const char *configurat
 	return have;
 }
 
-// ---- cost at equal error. The lower envelope of the points in the plane of cost and error is the chain of those that no
-// other point beats in both: from point to point costlier and more exact.
+// ---- cost at equal error. The lower envelope of the points in the plane of cost and error is the chain of those that
+// no other point beats in both: from point to point costlier and more exact.
 
 static int by_cost(const void *a, const void *b)
 {

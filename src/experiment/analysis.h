@@ -8,8 +8,8 @@
 
 enum { OB_SAMPLES = 128 }; // of one case and configuration that are looked at
 
-// The values of a metric in trials that came to their end without a failure, and measured it, in the order of the records.
-// Returns how many.
+// The values of a metric in trials that came to their end without a failure, and measured it, in the order of the
+// records. Returns how many.
 size_t ob_records_values(const ob_records *r, const char *of, const char *configuration, size_t metric,
 			 double to[OB_SAMPLES]);
 // Median, mean, and their intervals of 95 %, of these
@@ -18,8 +18,8 @@ ob_statistics ob_records_summarise(const ob_records *r, const char *of, const ch
 double ob_records_combine(const ob_experiment *x, const ob_records *r, const char *of, const char *configuration,
 			  size_t metric);
 
-// Of configuration a over b in the same case, repeat by repeat and seed by seed: what changes from one to the next cancels
-// out. logarithm: of the natural logarithms of the ratios, for a geometric mean.
+// Of configuration a over b in the same case, repeat by repeat and seed by seed: what changes from one to the next
+// cancels out. logarithm: of the natural logarithms of the ratios, for a geometric mean.
 ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric,
 			       bool logarithm);
 
@@ -30,8 +30,8 @@ typedef struct ob_cost_point {
 	double cost, error;
 } ob_cost_point;
 
-// The cheapest cost at which the error is at or below "error": read off the lower envelope of the points (of runs that did
-// not fail; they are sorted on the way), between them by straight lines in log-log. NAN: never
+// The cheapest cost at which the error is at or below "error": read off the lower envelope of the points (of runs that
+// did not fail; they are sorted on the way), between them by straight lines in log-log. NAN: never
 double ob_cost_at_error(ob_cost_point *point, size_t count, double error);
 
 #endif

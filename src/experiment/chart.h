@@ -1,5 +1,5 @@
-// A diagram that is made point by point, and written to files and into pages. What it says is copied, so it may come from
-// anywhere. One thread at a time per chart.
+// A diagram that is made point by point, and written to files and into pages. What it says is copied, so it may come
+// from anywhere. One thread at a time per chart.
 #ifndef OB_EXPERIMENT_CHART_H
 #define OB_EXPERIMENT_CHART_H
 

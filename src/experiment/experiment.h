@@ -129,9 +129,9 @@ typedef enum ob_order {
 	OB_ORDER_ROTATED // each begins one trial later than the one before
 } ob_order;
 
-// Trials from "from" on are one repeat: adds those of the repeats that follow, "repeats" in all, so that a busy minute of
-// the machine meets all configurations alike. seeds: repeat r of a trial has its seed + r; else they have the same seed.
-// false: no memory.
+// Trials from "from" on are one repeat: adds those of the repeats that follow, "repeats" in all, so that a busy minute
+// of the machine meets all configurations alike. seeds: repeat r of a trial has its seed + r; else they have the same
+// seed. false: no memory.
 bool ob_trials_repeat(ob_trials *s, size_t from, uint32_t repeats, ob_order order, bool seeds);
 void ob_trials_finish(ob_trials *s);
 
@@ -145,23 +145,23 @@ const ob_record *ob_records_find(const ob_records *r, const char *of, const char
 void ob_records_drop(ob_records *r, const ob_trials *s);
 void ob_records_finish(ob_records *r);
 
-// A file of CSV (base/csv.h): a line for each record, columns by name; numbers read back to the same bits. A missing file
-// is empty, and a last line without its end is left out: somebody was interrupted while writing it.
+// A file of CSV (base/csv.h): a line for each record, columns by name; numbers read back to the same bits. A missing
+// file is empty, and a last line without its end is left out: somebody was interrupted while writing it.
 bool ob_records_read(ob_records *r, const ob_experiment *x, const char *path, ob_error *e);
 // Replaces the file at once: whoever looks sees the old one or the new one.
 bool ob_records_write(const ob_records *r, const ob_experiment *x, const char *path, ob_error *e);
 
 // ---- running
 
-// Makes the folder, with all above it, and reads its results.csv. Results of another commit or machine, or of what is no
-// results file, get a name of their own, and it is said so. folder NULL: nothing is kept.
+// Makes the folder, with all above it, and reads its results.csv. Results of another commit or machine, or of what is
+// no results file, get a name of their own, and it is said so. folder NULL: nothing is kept.
 bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *r, ob_error *e);
 // Seconds that the trials take that r does not have, as guessed; *trials: how many.
 double ob_experiment_estimate(const ob_experiment *x, const ob_trials *s, const ob_records *r, size_t *trials);
 // Runs what r does not have yet, and keeps it in r and in folder/results.csv (NULL: nowhere). Of the same case,
-// configuration and seed nothing is run again after a failure, but for what had less time than there is now. Says before
-// it begins how long it will take. false and e: interrupted, or the file cannot be written; what was done until then is
-// in both. From a process without other threads.
+// configuration and seed nothing is run again after a failure, but for what had less time than there is now. Says
+// before it begins how long it will take. false and e: interrupted, or the file cannot be written; what was done until
+// then is in both. From a process without other threads.
 bool ob_experiment_run(const ob_experiment *x, const ob_trials *s, ob_records *r, const char *folder, ob_error *e);
 
 #endif

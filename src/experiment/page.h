@@ -1,6 +1,5 @@
-// HTML as it is written, for all reports: templates with slots, texts with what needs it escaped, numbers as people read
-// them, one style.
-// One thread at a time per page.
+// HTML as it is written, for all reports: templates with slots, texts with what needs it escaped, numbers as people
+// read them, one style. One thread at a time per page.
 #ifndef OB_EXPERIMENT_PAGE_H
 #define OB_EXPERIMENT_PAGE_H
 

@@ -169,7 +169,8 @@ static double time_left(const ob_process *p, child *c)
 {
 	double left = INFINITY;
 	c->cost.wall_s = ob_clock_wall() - c->begun;
-	c->cost.cpu_s = fmax(c->cost.cpu_s, 1e-9 * (double)ob_clock_cpu_of_process(c->pid)); // which is 0 when it is gone
+	c->cost.cpu_s =
+		fmax(c->cost.cpu_s, 1e-9 * (double)ob_clock_cpu_of_process(c->pid)); // which is 0 when it is gone
 	if (p->cpu_limit_s > 0)
 		left = p->cpu_limit_s - c->cost.cpu_s;
 	if (p->wall_limit_s > 0)

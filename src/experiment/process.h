@@ -35,8 +35,8 @@ typedef struct ob_process_cost {
 	double wall_s, cpu_s;
 } ob_process_cost;
 
-// answer holds what it begins with, and (only) if answered what the child made of it. e: why, unless answered. All that the
-// child has started is asked to end, and then killed.
+// answer holds what it begins with, and (only) if answered what the child made of it. e: why, unless answered. All that
+// the child has started is asked to end, and then killed.
 ob_process_end ob_process_run(const ob_process *p, void *answer, ob_process_cost *cost, ob_error *e);
 
 // From begin to end SIGINT, SIGTERM and SIGHUP end the process that is under way, or the next one, and nothing else.
@@ -50,8 +50,8 @@ typedef struct ob_program_result {
 	char complaint[256]; // the last line that it wrote to standard error as "obsim: ..."; "" = none
 } ob_program_result;
 
-// Runs this program with other arguments (argv[0] is for show), and collects what it says. From within a process's work:
-// it ends with it. false and e if it could not be started or read. free(r->out).
+// Runs this program with other arguments (argv[0] is for show), and collects what it says. From within a process's
+// work: it ends with it. false and e if it could not be started or read. free(r->out).
 bool ob_program_run(char *const argv[], ob_program_result *r, ob_error *e);
 
 #endif

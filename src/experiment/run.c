@@ -36,7 +36,7 @@ bool ob_trials_repeat(ob_trials *s, size_t from, uint32_t repeats, ob_order orde
 	size_t n = s->count - from;
 	for (uint32_t r = 1; r < repeats; r++) {
 		for (size_t i = 0; i < n; i++) {
-			size_t at = order == OB_ORDER_ROTATED ? (i + r) % n
+			size_t at = order == OB_ORDER_ROTATED               ? (i + r) % n
 				    : order == OB_ORDER_TO_AND_FRO && r % 2 ? n - 1 - i
 									    : i;
 			ob_trial t = s->trial[from + at];
@@ -338,7 +338,8 @@ static bool run_trial(session *s, size_t i, ob_error *e)
 	// a failure makes the repeats that follow needless
 	for (size_t j = i + 1; r.failure && j < s->trials->count; j++) {
 		const ob_trial *later = &s->trials->trial[j];
-		if (later->seed != t->seed || strcmp(later->configuration, t->configuration) || strcmp(later->of, t->of))
+		if (later->seed != t->seed || strcmp(later->configuration, t->configuration) ||
+		    strcmp(later->of, t->of))
 			continue;
 		s->pace[s->pace_of[j]].ahead -= later->guess_s;
 		s->done++;

@@ -18,7 +18,7 @@ typedef struct ob_figure_def {
 } ob_figure_def;
 
 // One run of a case with one engine, while it goes on.
-typedef struct ob_trial {
+typedef struct ob_case_run_state {
 	const struct ob_case *of;
 	uint32_t run; // which of the case's runs
 	uint64_t frame; // frames gone by: 0 before the first step
@@ -30,7 +30,7 @@ typedef struct ob_trial {
 	double *body_memory; // [objects][8], likewise
 	const char *failed; // why the run counts as failed: "fell", "passed through"; NULL = it did not
 	ob_run_settings settings;
-} ob_trial;
+} ob_case_run_state;
 
 typedef struct ob_case {
 	int row; // in the table of hard cases
@@ -45,8 +45,8 @@ typedef struct ob_case {
 	uint32_t figures; // the first is the one that plots show
 	ob_figure_def figure[OB_FIGURES];
 	void (*build)(ob_world *w, uint32_t run); // with ob_world_* of world/world.h
-	void (*observe)(ob_trial *t); // after each frame, and once before the first; NULL = nothing
-	void (*judge)(ob_trial *t); // at the end of each run
+	void (*observe)(ob_case_run_state *t); // after each frame, and once before the first; NULL = nothing
+	void (*judge)(ob_case_run_state *t); // at the end of each run
 } ob_case;
 
 extern const ob_case *const ob_cases[]; // in the order of their rows; ends with NULL

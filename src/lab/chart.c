@@ -6,66 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "experiment/page.h"
-
-ob_chart *ob_chart_new(size_t points)
-{
-	ob_chart *c = calloc(1, sizeof *c);
-	if (!c)
-		return NULL;
-	c->points_max = points;
-	c->point = calloc(points + 1, sizeof *c->point);
-	c->text = calloc(points + 1, sizeof *c->text);
-	if (!c->point || !c->text) {
-		ob_chart_free(c);
-		return NULL;
-	}
-	c->plot.series = c->series;
-	c->plot.mark = c->mark;
-	c->plot.title = c->title;
-	c->plot.subtitle = c->subtitle;
-	c->plot.x.label = c->x_label;
-	c->plot.y.label = c->y_label;
-	return c;
-}
-
-void ob_chart_free(ob_chart *c)
-{
-	if (!c)
-		return;
-	free(c->point);
-	free(c->text);
-	free(c);
-}
-
-ob_plot_series *ob_chart_begin(ob_chart *c, int style, bool hollow, const char *title)
-{
-	ob_plot *p = &c->plot;
-	if (p->series_count && !c->series[p->series_count - 1].count) // the last one has stayed empty
-		p->series_count--;
-	size_t i = p->series_count < OB_CHART_SERIES ? p->series_count++ : OB_CHART_SERIES - 1;
-	snprintf(c->series_title[i], sizeof c->series_title[i], "%s", title);
-	c->series[i] = (ob_plot_series){ .title = *title ? c->series_title[i] : NULL,
-					 .point = c->point + c->points,
-					 .style = style,
-					 .hollow = hollow,
-					 .line = true };
-	return &c->series[i];
-}
-
-ob_plot_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, const char *hint)
-{
-	static ob_plot_point spare;
-	if (c->points == c->points_max)
-		return &spare;
-	ob_chart_point_text *text = &c->text[c->points];
-	snprintf(text->label, sizeof text->label, "%s", label);
-	snprintf(text->hint, sizeof text->hint, "%s", hint);
-	ob_plot_point *p = &c->point[c->points++];
-	*p = (ob_plot_point){ .x = x, .y = y, .label = *label ? text->label : NULL, .hint = *hint ? text->hint : NULL };
-	c->series[c->plot.series_count - 1].count++;
-	return p;
-}
+#include "reference/statistics.h"
 
 static void append(char *to, size_t room, const char *format, ...) __attribute__((format(printf, 3, 4)));
 static void append(char *to, size_t room, const char *format, ...)
@@ -84,12 +25,12 @@ static bool takes_part(const ob_chart *c, const ob_digest *d, const ob_case *of,
 		if (d->results->result[i].of == of && d->results->result[i].engine == k)
 			return true;
 	for (size_t i = 0; !of && i < c->plot.series_count; i++)
-		if (c->series[i].style == ob_digest_style(d, k))
+		if (c->series[i].count && c->series[i].style == ob_digest_style(d, k))
 			return true;
 	return false;
 }
 
-void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
+static void add_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 {
 	char *to = c->subtitle;
 	size_t room = sizeof c->subtitle;
@@ -100,7 +41,7 @@ void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_digest_is_obsim(k)))
 			continue;
 		if (ob_digest_is_obsim(k))
-			append(to, room, " \u00b7 obsim: %u rounds", k->usual.iterations);
+			append(to, room, " \u00b7 obsim: %u iterations", k->usual.iterations);
 		else
 			append(to, room, " \u00b7 %s: %u iterations", k->title, k->usual.iterations);
 		obsim |= ob_digest_is_obsim(k);
@@ -108,7 +49,7 @@ void ob_chart_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
 	append(to, room, " \u00b7 one worker, a thread \u00b7 sleeping off \u00b7 commit %s", d->results->commit);
 }
 
-void ob_chart_setting(const ob_result *r, char *to, size_t room)
+void ob_lab_chart_setting(const ob_result *r, char *to, size_t room)
 {
 	const ob_run_settings *s = &r->settings;
 	if (s->tolerance > 0 && s->substeps)
@@ -119,4 +60,354 @@ void ob_chart_setting(const ob_result *r, char *to, size_t room)
 		snprintf(to, room, "%u", s->substeps);
 	else
 		snprintf(to, room, "%.0f Hz", s->substeps / s->step_length);
+}
+
+// ---- error over cost, and over substeps: a curve an engine
+
+// How the results of one engine fall into series
+typedef enum family { FAMILY_STEPS, FAMILY_TOLERANCE, FAMILY_ITERATIONS, FAMILIES } family;
+
+static family family_of(const ob_result *r)
+{
+	if (r->settings.tolerance > 0)
+		return r->settings.substeps ? FAMILY_ITERATIONS : FAMILY_TOLERANCE;
+	return r->settings.iterations == r->engine->usual.iterations && r->settings.lag == r->engine->usual.lag
+		       ? FAMILY_STEPS
+		       : FAMILY_ITERATIONS;
+}
+
+static double order_of(const ob_result *r) // along a curve: from coarse to fine
+{
+	return r->settings.tolerance > 0 ? -r->settings.tolerance : r->settings.substeps;
+}
+
+static int by_fineness(const void *a, const void *b)
+{
+	double one = order_of(*(const ob_result *const *)a), other = order_of(*(const ob_result *const *)b);
+	return (one > other) - (one < other);
+}
+
+// The results of one series in their order; returns how many.
+static size_t gather(const ob_digest *d, const ob_case *c, const ob_engine_kind *k, family f, const ob_result **list)
+{
+	size_t count = 0;
+	for (size_t i = 0; i < d->results->count; i++) {
+		const ob_result *r = &d->results->result[i];
+		if (r->of == c && r->engine == k && family_of(r) == f)
+			list[count++] = r;
+	}
+	qsort(list, count, sizeof *list, by_fineness);
+	return count;
+}
+
+static bool is_failed(const ob_result *r)
+{
+	return r->outcome.failed[0] || !isfinite(r->outcome.figure[0]);
+}
+
+static void add_result(ob_chart *chart, const ob_result *r, double x)
+{
+	char label[32], hint[192], error[48];
+	const ob_figure_def *def = &r->of->figure[0];
+	ob_lab_chart_setting(r, label, sizeof label);
+	size_t used = strlen(label);
+	if (r->settings.lag != r->engine->usual.lag)
+		snprintf(label + used, sizeof label - used, ", lag %u", r->settings.lag);
+	else if (family_of(r) == FAMILY_ITERATIONS && !(r->settings.tolerance > 0))
+		snprintf(label + used, sizeof label - used, " \u00d7 %u", r->settings.iterations);
+	ob_page_print_quantity(error, sizeof error, r->outcome.figure[0], def->unit);
+	const char *failed = r->outcome.failed[0] ? r->outcome.failed : "not a number";
+	snprintf(hint, sizeof hint, "%s, %s%s, %u iterations: %.3g \u00b5s, %s", r->engine->title, label,
+		 ob_digest_is_obsim(r->engine) && !(r->settings.tolerance > 0) ? " substeps" : "",
+		 r->settings.iterations, ob_result_cost(r) * 1e6, is_failed(r) ? failed : error);
+	ob_plot_point *p = ob_chart_add(chart, x, is_failed(r) ? NAN : r->outcome.figure[0], label, hint);
+	p->failed = is_failed(r);
+}
+
+static void name_axis(const ob_figure_def *def, char *to, size_t room)
+{
+	char unit[40];
+	ob_page_print_unit(unit, sizeof unit, def->unit);
+	if (!strcmp(unit, "1"))
+		snprintf(to, room, "%s", def->name);
+	else
+		snprintf(to, room, "%s (%s)", def->name, unit);
+}
+
+static void mark_target(ob_chart *chart, const ob_case *c)
+{
+	char target[48];
+	if (!ob_digest_has_target(c, 0))
+		return;
+	ob_page_print_quantity(target, sizeof target, c->figure[0].target, c->figure[0].unit);
+	snprintf(chart->mark_label, sizeof chart->mark_label, "target %s", target);
+	chart->mark[0] = (ob_plot_mark){ .at = c->figure[0].target, .label = chart->mark_label, .tinted = true };
+	chart->plot.marks = 1;
+}
+
+// Nothing to show is no chart.
+static ob_chart *end_curves(ob_chart *chart, const ob_result **list)
+{
+	free(list);
+	if (chart && !chart->points) {
+		ob_chart_free(chart);
+		return NULL;
+	}
+	return chart;
+}
+
+ob_chart *ob_lab_chart_cost(const ob_digest *d, const ob_case *c)
+{
+	ob_chart *chart = ob_chart_new();
+	const ob_result **list = calloc(d->results->count + 1, sizeof *list);
+	for (size_t i = 0; chart && list && i < d->engines; i++) {
+		const ob_engine_kind *k = d->engine[i];
+		for (int f = 0; f < FAMILIES; f++) {
+			char title[128];
+			size_t count = gather(d, c, k, (family)f, list);
+			snprintf(title, sizeof title, "%s%s", k->title, f == FAMILY_TOLERANCE ? ", by tolerance" : "");
+			ob_plot_series *s = ob_chart_begin(chart, ob_digest_style(d, k), f != FAMILY_STEPS,
+							   f == FAMILY_ITERATIONS ? "" : title);
+			s->line = f != FAMILY_ITERATIONS;
+			for (size_t j = 0; j < count; j++)
+				add_result(chart, list[j], ob_result_cost(list[j]) * 1e6);
+		}
+	}
+	chart = end_curves(chart, list);
+	if (!chart)
+		return NULL;
+	snprintf(chart->title, sizeof chart->title, "%s: error against cost", c->title);
+	bool others = false; // points off the curves, of other numbers of iterations
+	for (size_t i = 0; i < chart->plot.series_count; i++)
+		others |= chart->series[i].count && !chart->series[i].title;
+	snprintf(chart->subtitle, sizeof chart->subtitle,
+		 "down and left is better \u00b7 at the points: substeps a frame (obsim), steps a second (others)%s",
+		 others ? ", \u00d7 iterations" : "");
+	add_configuration(chart, d, c);
+	snprintf(chart->x_label, sizeof chart->x_label, "CPU per body and simulated second (\u00b5s)");
+	name_axis(&c->figure[0], chart->y_label, sizeof chart->y_label);
+	chart->plot.x.scale = chart->plot.y.scale = OB_SCALE_LOG;
+	mark_target(chart, c);
+	chart->plot.width = 860;
+	chart->plot.height = 500;
+	return chart;
+}
+
+// Behind an engine's name: the order at which its error falls
+static void name_order(const ob_engine_kind *k, const ob_result *const *list, size_t count, char *to, size_t room)
+{
+	double h[64], error[64], largest = 0;
+	size_t n = 0;
+	for (size_t i = 0; i < count && n < 64; i++) {
+		if (is_failed(list[i]))
+			continue;
+		h[n] = 1. / list[i]->settings.substeps;
+		error[n++] = list[i]->outcome.figure[0];
+		largest = fmax(largest, list[i]->outcome.figure[0]);
+	}
+	double order = ob_reference_order(n, h, error, largest * 1e-12);
+	if (isfinite(order))
+		snprintf(to, room, "%s: order %.2f", k->title, order);
+	else
+		snprintf(to, room, "%s", k->title);
+}
+
+// Errors that fall as the first power of the step, from the coarsest one of the first engine's
+static void add_guide(ob_chart *chart)
+{
+	const ob_plot_series *s = chart->series;
+	const ob_plot_point *at = chart->point + chart->first[0], *first = NULL, *last = NULL;
+	for (size_t i = 0; i < s->count; i++) {
+		if (at[i].failed || !(at[i].y > 0))
+			continue;
+		first = first ? first : &at[i];
+		last = &at[i];
+	}
+	if (!first || first == last)
+		return;
+	double x = first->x, y = first->y, end = last->x; // points move as others are added
+	ob_chart_begin(chart, -1, false, "first order");
+	ob_chart_add(chart, x, y, "", "");
+	ob_chart_add(chart, end, y * x / end, "", "");
+}
+
+ob_chart *ob_lab_chart_convergence(const ob_digest *d, const ob_case *c)
+{
+	ob_chart *chart = ob_chart_new();
+	const ob_result **list = calloc(d->results->count + 1, sizeof *list);
+	for (size_t i = 0; chart && list && i < d->engines; i++) {
+		char title[128];
+		size_t count = gather(d, c, d->engine[i], FAMILY_STEPS, list);
+		if (count < 2)
+			continue;
+		name_order(d->engine[i], list, count, title, sizeof title);
+		ob_chart_begin(chart, ob_digest_style(d, d->engine[i]), false, title);
+		for (size_t j = 0; j < count; j++)
+			add_result(chart, list[j], list[j]->settings.substeps);
+	}
+	chart = end_curves(chart, list);
+	if (!chart)
+		return NULL;
+	for (size_t i = 0; i < chart->points; i++)
+		chart->point[i].label = NULL; // the axis says it
+	add_guide(chart);
+	snprintf(chart->title, sizeof chart->title, "%s: order of convergence", c->title);
+	add_configuration(chart, d, c);
+	snprintf(chart->x_label, sizeof chart->x_label, "substeps a frame");
+	name_axis(&c->figure[0], chart->y_label, sizeof chart->y_label);
+	chart->plot.x.scale = OB_SCALE_LOG2;
+	chart->plot.y.scale = OB_SCALE_LOG;
+	mark_target(chart, c);
+	chart->plot.width = 860;
+	chart->plot.height = 440;
+	return chart;
+}
+
+// ---- all cases, one below the other; and what reading late costs
+
+static const double row_height = 19; // px
+
+// Is there something to show of a case: a target, and results of obsim (and of "beside", unless it is NULL)?
+static bool has_row(const ob_digest *d, const ob_case *c, const ob_engine_kind *beside)
+{
+	const ob_result *own = ob_digest_promised(d, c);
+	return own && !isnan(ob_digest_ratio(own)) && (!beside || ob_digest_usual(d, c, beside));
+}
+
+static void add_row(ob_chart *chart, const ob_result *r, double at)
+{
+	double ratio = ob_digest_ratio(r);
+	char hint[192];
+	if (isfinite(ratio))
+		snprintf(hint, sizeof hint, "%s, %s: %.3g of the target", r->of->title, r->engine->title, ratio);
+	else
+		snprintf(hint, sizeof hint, "%s, %s: %s", r->of->title, r->engine->title,
+			 r->outcome.failed[0] ? r->outcome.failed : "missed a target of 0");
+	ob_plot_point *p = ob_chart_add(chart, ratio, at, "", hint);
+	p->failed = !isfinite(ratio);
+}
+
+// One series: the results at usual settings of an engine (NULL: what obsim promises), "dodge" rows off its own
+static void add_engine(ob_chart *chart, const ob_digest *d, const ob_engine_kind *k, const ob_engine_kind *beside,
+		       double dodge)
+{
+	ob_plot_series *s = ob_chart_begin(chart, k ? ob_digest_style(d, k) : 0, k != NULL, k ? k->title : "obsim");
+	s->line = false;
+	int row = 0;
+	for (const ob_case *const *c = ob_cases; *c && row < OB_CHART_CATEGORIES; c++) {
+		if (!has_row(d, *c, beside))
+			continue;
+		const ob_result *r = k ? ob_digest_usual(d, *c, k) : ob_digest_promised(d, *c);
+		if (r && !isnan(ob_digest_ratio(r)))
+			add_row(chart, r, row + dodge);
+		row++;
+	}
+}
+
+static size_t name_rows(ob_chart *chart, const ob_digest *d, const ob_engine_kind *beside)
+{
+	size_t rows = 0;
+	for (const ob_case *const *c = ob_cases; *c && rows < OB_CHART_CATEGORIES; c++) {
+		if (!has_row(d, *c, beside))
+			continue;
+		if ((*c)->row > 0)
+			snprintf(chart->category_text[rows], sizeof *chart->category_text, "%s \u00b7 %d", (*c)->title,
+				 (*c)->row);
+		else
+			snprintf(chart->category_text[rows], sizeof *chart->category_text, "%s", (*c)->title);
+		chart->category[rows] = chart->category_text[rows];
+		rows++;
+	}
+	return rows;
+}
+
+static ob_chart *end_rows(ob_chart *chart, const ob_digest *d, const ob_engine_kind *beside)
+{
+	size_t rows = name_rows(chart, d, beside);
+	if (!rows) {
+		ob_chart_free(chart);
+		return NULL;
+	}
+	add_configuration(chart, d, NULL);
+	snprintf(chart->x_label, sizeof chart->x_label, "worst error of the case, over its target");
+	chart->plot.x.scale = OB_SCALE_LOG;
+	chart->plot.y = (ob_plot_axis){ .scale = OB_SCALE_CATEGORY, .categories = rows, .category = chart->category };
+	chart->mark[0] = (ob_plot_mark){ .at = 1, .vertical = true, .label = "target", .tinted = true };
+	chart->plot.marks = 1;
+	chart->plot.width = 1000;
+	chart->plot.height = 150 + row_height * (double)rows;
+	return chart;
+}
+
+ob_chart *ob_lab_chart_promises(const ob_digest *d)
+{
+	ob_chart *chart = ob_chart_new();
+	if (!chart)
+		return NULL;
+	add_engine(chart, d, NULL, NULL, 0);
+	size_t others = 0, done = 0;
+	for (size_t i = 0; i < d->engines; i++)
+		others += !ob_digest_is_obsim(d->engine[i]);
+	for (size_t i = 0; i < d->engines; i++)
+		if (!ob_digest_is_obsim(d->engine[i]))
+			add_engine(chart, d, d->engine[i], NULL, .22 * ((double)done++ - (double)(others - 1) / 2));
+	snprintf(chart->title, sizeof chart->title, "Every case: error against its target, at usual settings");
+	snprintf(chart->subtitle, sizeof chart->subtitle,
+		 "left of the line: the target is met \u00b7 crosses: failed, or misses a target of 0 \u00b7 the "
+		 "number is the row of "
+		 "the table below");
+	return end_rows(chart, d, NULL);
+}
+
+static const ob_engine_kind *engine_named(const ob_digest *d, const char *name)
+{
+	for (size_t i = 0; i < d->engines; i++)
+		if (!strcmp(d->engine[i]->name, name))
+			return d->engine[i];
+	return NULL;
+}
+
+ob_chart *ob_lab_chart_ghost(const ob_digest *d)
+{
+	const ob_engine_kind *ghost = engine_named(d, "obsim-ghost");
+	ob_chart *chart = ghost ? ob_chart_new() : NULL;
+	if (!chart)
+		return NULL;
+	add_engine(chart, d, NULL, ghost, -.15);
+	add_engine(chart, d, ghost, ghost, .15);
+	snprintf(chart->title, sizeof chart->title, "Neighbours as ghosts of infinite mass: error against target");
+	return end_rows(chart, d, ghost);
+}
+
+ob_chart *ob_lab_chart_lag(const ob_digest *d)
+{
+	const ob_engine_kind *late = engine_named(d, "obsim-lag");
+	const ob_case *c = ob_case_find("lag");
+	ob_chart *chart = late && c ? ob_chart_new() : NULL;
+	if (!chart)
+		return NULL;
+	for (uint32_t figure = 0; figure < c->figures; figure++) {
+		ob_chart_begin(chart, (int)figure, false, c->figure[figure].name);
+		for (size_t i = 0; i < d->results->count; i++) {
+			const ob_result *r = &d->results->result[i];
+			if (r->of != c || r->engine != late)
+				continue;
+			bool failed = r->outcome.failed[0] || !isfinite(r->outcome.figure[figure]);
+			ob_plot_point *p =
+				ob_chart_add(chart, r->settings.lag, failed ? NAN : r->outcome.figure[figure], "", "");
+			p->failed = failed;
+		}
+	}
+	if (!chart->points) {
+		ob_chart_free(chart);
+		return NULL;
+	}
+	snprintf(chart->title, sizeof chart->title, "What it costs to read a partner late");
+	add_configuration(chart, d, c);
+	snprintf(chart->x_label, sizeof chart->x_label, "exchanges that a partner's state is late");
+	snprintf(chart->y_label, sizeof chart->y_label, "relative error");
+	chart->plot.y.scale = OB_SCALE_LOG;
+	chart->plot.width = 760;
+	chart->plot.height = 400;
+	return chart;
 }

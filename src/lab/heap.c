@@ -4,7 +4,7 @@
 
 enum { MEMORY_SUM, MEMORY_FRAMES, MEMORY_START, MEMORY_LOWEST }; // resting penetrations (m); energies (J)
 
-void ob_heap_observe(ob_trial *t)
+void ob_heap_observe(ob_case_run_state *t)
 {
 	ob_penetration p;
 	double energy = ob_look_energy(t), *memory = t->memory;
@@ -21,7 +21,7 @@ void ob_heap_observe(ob_trial *t)
 	ob_look_keep(&t->figure[OB_HEAP_GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
 }
 
-void ob_heap_judge(ob_trial *t)
+void ob_heap_judge(ob_case_run_state *t)
 {
 	t->figure[OB_HEAP_RESTING_MEAN] = 1e3 * t->memory[MEMORY_SUM] / fmax(t->memory[MEMORY_FRAMES], 1);
 }

@@ -8,7 +8,7 @@
 // mm, mm, mm; the last: largest rise of the energy from its lowest so far, over that at the start.
 enum { OB_HEAP_RESTING_MEAN, OB_HEAP_RESTING_WORST, OB_HEAP_WORST, OB_HEAP_GROWTH, OB_HEAP_FIGURES };
 
-void ob_heap_observe(ob_trial *t); // at each frame
-void ob_heap_judge(ob_trial *t); // after the last
+void ob_heap_observe(ob_case_run_state *t); // at each frame
+void ob_heap_judge(ob_case_run_state *t); // after the last
 
 #endif

@@ -4,179 +4,281 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
-#include "lab/attempt.h"
+#include "world/world.h"
 
-// What is known of the time that a case takes; "work" is in steps of an engine, whatever that is in seconds.
-typedef struct pace {
-	double seconds, work, ahead;
-} pace;
+#define FIGURE(n) \
+	{ \
+		.key = "figure" #n, .title = "figure " #n, .unit = "1", .scale = 1, .target = NAN, \
+		.combine = OB_COMBINE_WORST \
+	}
+static const ob_metric metrics[OB_LAB_METRICS] = {
+	[OB_LAB_CPU] = { .key = "cpu_s", .title = "CPU time of stepping", .unit = "s", .scale = 1, .target = NAN },
+	[OB_LAB_WALL] = { .key = "wall_s", .title = "wall time of stepping", .unit = "s", .scale = 1, .target = NAN },
+	[OB_LAB_BODY_SECONDS] = { .key = "bodies_times_simulated_s",
+				  .title = "bodies times simulated time",
+				  .unit = "s",
+				  .scale = 1,
+				  .target = NAN },
+	[OB_LAB_FIGURE] = FIGURE(1),
+	FIGURE(2),
+	FIGURE(3),
+	FIGURE(4),
+	FIGURE(5),
+	FIGURE(6),
+	FIGURE(7),
+	FIGURE(8),
+};
 
-typedef struct session {
-	const ob_lab_plan *plan;
-	ob_results *results;
-	ob_lab_progress progress;
-	double begun; // of the attempt under way, s
-	pace pace[OB_LIST_CASES]; // by place in the plan
-	size_t at; // the case's place
-	ob_run_settings settings[OB_SWEEP_SETTINGS];
-} session;
-
-static double work_of(const ob_case *c, const ob_run_settings *s)
+// A number with as many digits as it takes to read the same bits back
+static int print_exact(char *to, size_t room, const char *name, double v)
 {
-	return c->duration / s->step_length * c->runs * (s->substeps ? s->substeps : 16);
+	char text[32];
+	for (int digits = 6; digits <= 17; digits++) {
+		snprintf(text, sizeof text, "%.*g", digits, v);
+		if (strtod(text, NULL) == v)
+			break;
+	}
+	return snprintf(to, room, " %s=%s", name, text);
 }
 
-// How often this is still to be done. Who ran out of time, or crashed, is not asked again, unless there is more time;
-// nor who failed: errors are the same every time, and repeats are for the times of what succeeds.
-static uint32_t repeats_left(const session *s, const ob_case *c, const ob_engine_kind *k, const ob_run_settings *at)
+void ob_lab_print_configuration(char *to, size_t room, const ob_engine_kind *k, const ob_run_settings *s)
 {
-	const ob_result *r = ob_results_find(s->results, c, k, at);
-	if (!r)
-		return s->plan->repeats;
-	if (isnan(r->outcome.body_seconds))
-		return ob_attempt_had_less(&r->outcome, s->plan->limit) ? 1 : 0;
-	if (r->outcome.failed[0])
-		return 0;
-	return r->repeats < s->plan->repeats ? s->plan->repeats - r->repeats : 0;
+	const struct {
+		const char *name;
+		double value;
+	} parts[] = { { "substeps", s->substeps },
+		      { "iterations", s->iterations },
+		      { "tolerance", s->tolerance },
+		      { "lag", s->lag } };
+	size_t n = (size_t)snprintf(to, room, "%s", k->name);
+	for (size_t i = 0; i < sizeof parts / sizeof *parts && n < room; i++)
+		if (parts[i].value > 0)
+			n += (size_t)print_exact(to + n, room - n, parts[i].name, parts[i].value);
 }
 
-// Calls "with" for each engine and setting of a case, until one says no.
-static bool each(session *s, bool (*with)(session *, const ob_engine_kind *, const ob_run_settings *, ob_error *),
-		 ob_error *e)
+bool ob_lab_read_configuration(const char *text, const ob_case *c, const ob_engine_kind **k, ob_run_settings *s,
+			       ob_error *e)
 {
-	const ob_case *c = s->plan->cases.of[s->at];
-	for (size_t i = 0; i < s->plan->engines.count; i++) {
-		const ob_engine_kind *k = s->plan->engines.of[i];
-		size_t count = ob_sweep_settings(&s->plan->sweep, c, k, s->settings);
-		for (size_t j = 0; j < count; j++)
-			if (!with(s, k, &s->settings[j], e))
-				return false;
+	char copy[OB_CONFIGURATION_KEY];
+	snprintf(copy, sizeof copy, "%s", text);
+	char *rest = copy, *name = strsep(&rest, " ");
+	*k = ob_engine_find(name);
+	if (!*k)
+		return ob_fail(e, "this program has no engine '%s'", name);
+	*s = (*k)->usual;
+	s->step_length = c->step;
+	s->tolerance = 0;
+	s->substeps = s->iterations = s->lag = 0;
+	for (char *word; (word = strsep(&rest, " "));) {
+		char *value = strchr(word, '='), *end;
+		double v = value ? strtod(value + 1, &end) : 0;
+		if (!value || end == value + 1 || *end)
+			return ob_fail(e, "'%s' is no configuration of an engine", text);
+		*value = 0;
+		if (!strcmp(word, "tolerance"))
+			s->tolerance = v;
+		else if (!strcmp(word, "substeps"))
+			s->substeps = (uint32_t)v;
+		else if (!strcmp(word, "iterations"))
+			s->iterations = (uint32_t)v;
+		else if (!strcmp(word, "lag"))
+			s->lag = (uint32_t)v;
+		else
+			return ob_fail(e, "'%s' is no configuration of an engine", text);
 	}
 	return true;
 }
 
-static bool count(session *s, const ob_engine_kind *k, const ob_run_settings *at, ob_error *e)
+// What the keys of a trial or a record mean
+typedef struct meaning {
+	const ob_case *of;
+	const ob_engine_kind *engine;
+	ob_run_settings settings;
+} meaning;
+
+static bool find_meaning(const char *of, const char *configuration, meaning *m, ob_error *e)
 {
-	const ob_case *c = s->plan->cases.of[s->at];
-	uint32_t left = repeats_left(s, c, k, at);
-	s->progress.all += left;
-	s->pace[s->at].ahead += left * work_of(c, at);
-	return true;
+	m->of = ob_case_find(of);
+	if (!m->of)
+		return ob_fail(e, "this program has no case '%s'", of);
+	return ob_lab_read_configuration(configuration, m->of, &m->engine, &m->settings, e);
 }
 
-// A case of which nothing is known takes its time as all others do.
-static double guess_left(const session *s)
+static bool run(const ob_trial *t, ob_record *out, ob_error *e)
 {
-	pace all = { 0 };
-	double left = 0;
-	for (size_t i = 0; i < s->plan->cases.count; i++) {
-		all.seconds += s->pace[i].seconds;
-		all.work += s->pace[i].work;
-	}
-	for (size_t i = 0; i < s->plan->cases.count; i++) {
-		const pace *p = s->pace[i].work > 0 ? &s->pace[i] : &all;
-		left += s->pace[i].ahead > 0 ? s->pace[i].ahead * p->seconds / p->work : 0;
-	}
-	return fmax(left - (ob_clock_wall() - s->begun), 0);
-}
-
-static void tick(void *with)
-{
-	session *s = with;
-	s->progress.left = s->progress.done ? guess_left(s) : NAN;
-	s->plan->tick(&s->progress, s->plan->with);
-}
-
-static bool keep(session *s, const ob_engine_kind *k, const ob_run_settings *at, const ob_outcome *out, ob_error *e)
-{
-	const ob_case *c = s->plan->cases.of[s->at];
-	ob_result *r = ob_results_find(s->results, c, k, at);
-	if (!r) {
-		ob_result one = { .of = c, .engine = k, .settings = *at };
-		memcpy(one.commit, s->results->commit, sizeof one.commit);
-		if (!ob_results_add(s->results, &one))
-			return ob_fail(e, "no memory for results");
-		r = ob_results_find(s->results, c, k, at);
-	}
-	if (isnan(r->outcome.body_seconds)) // this time it had more time
-		r->repeats = 0;
-	ob_result_repeat(r, out);
-	return ob_results_write(s->results, s->plan->file, e);
-}
-
-// Is a finer than b, with all else no coarser?
-static bool is_finer(const ob_run_settings *a, const ob_run_settings *b)
-{
-	bool by_tolerance = a->tolerance > 0;
-	return by_tolerance == (b->tolerance > 0) && a->iterations >= b->iterations &&
-	       (by_tolerance ? a->tolerance < b->tolerance : a->substeps > b->substeps);
-}
-
-// The outcome of a setting that is finer than one that took too long: to be told without trying. NULL: there is none
-static const ob_result *coarser_that_took_too_long(const session *s, const ob_engine_kind *k, const ob_run_settings *at)
-{
-	for (size_t i = 0; i < s->results->count; i++) {
-		const ob_result *r = &s->results->result[i];
-		if (r->of == s->plan->cases.of[s->at] && r->engine == k && is_finer(at, &r->settings) &&
-		    ob_attempt_ran_out(&r->outcome) && !ob_attempt_had_less(&r->outcome, s->plan->limit))
-			return r;
-	}
-	return NULL;
-}
-
-static bool try(session *s, const ob_engine_kind *k, const ob_run_settings *at, ob_outcome *out, ob_error *e)
-{
-	const ob_result *coarser = coarser_that_took_too_long(s, k, at);
-	if (coarser) {
-		*out = coarser->outcome;
-		return true;
-	}
-	ob_attempt a = { s->plan->cases.of[s->at], k, *at, s->plan->limit, s->plan->tick ? tick : NULL, s };
-	if (a.tick)
-		tick(s);
-	return ob_attempt_run(&a, out, e);
-}
-
-static bool attempt(session *s, const ob_engine_kind *k, const ob_run_settings *at, ob_error *e)
-{
-	const ob_case *c = s->plan->cases.of[s->at];
-	uint32_t left = repeats_left(s, c, k, at);
-	if (left == 0)
-		return true;
-	s->progress.of = c;
-	s->progress.engine = k;
-	s->progress.settings = *at;
-	s->begun = ob_clock_wall();
-	ob_outcome out;
-	if (!try(s, k, at, &out, e) || !keep(s, k, at, &out, e))
+	meaning m;
+	ob_outcome o;
+	if (!find_meaning(t->of, t->configuration, &m, e) || !ob_case_run(m.of, m.engine, &m.settings, &o, e))
 		return false;
-	uint32_t done = left - repeats_left(s, c, k, at); // all at once, if there is no use in more
-	pace *p = &s->pace[s->at];
-	p->seconds += ob_clock_wall() - s->begun;
-	p->work += work_of(c, at);
-	p->ahead -= done * work_of(c, at);
-	s->progress.done += done;
+	out->metric[OB_LAB_CPU] = o.cpu_s;
+	out->metric[OB_LAB_WALL] = o.wall_s;
+	out->metric[OB_LAB_BODY_SECONDS] = o.body_seconds;
+	for (uint32_t i = 0; i < m.of->figures; i++)
+		out->metric[OB_LAB_FIGURE + i] = o.figure[i];
+	snprintf(out->reason, sizeof out->reason, "%s", o.failed);
 	return true;
 }
 
-bool ob_lab_run(const ob_lab_plan *p, ob_results *r, ob_error *e)
+// Is it finer, with all else no coarser?
+static bool is_finer(const ob_trial *t, const ob_record *than)
 {
-	session *s = calloc(1, sizeof *s);
-	if (!s)
-		return ob_fail(e, "out of memory");
-	*s = (session){ .plan = p, .results = r };
-	for (s->at = 0; s->at < p->cases.count; s->at++)
-		each(s, count, e);
-	ob_attempts_begin();
-	bool fine = true;
-	for (s->at = 0; fine && s->at < p->cases.count; s->at++)
-		for (uint32_t i = 0; fine && i < p->repeats; i++)
-			fine = each(s, attempt, e);
-	ob_attempts_end();
-	if (!fine && ob_attempts_interrupted())
-		ob_fail(e, "interrupted: %zu of %zu runs are done, and the same command goes on from there",
-			s->progress.done, s->progress.all);
-	free(s);
-	return fine;
+	meaning a, b;
+	if (!find_meaning(t->of, t->configuration, &a, NULL) ||
+	    !find_meaning(than->of, than->configuration, &b, NULL) || a.engine != b.engine)
+		return false;
+	const ob_run_settings *s = &a.settings, *c = &b.settings;
+	bool by_tolerance = s->tolerance > 0;
+	return by_tolerance == (c->tolerance > 0) && s->iterations >= c->iterations &&
+	       (by_tolerance ? s->tolerance < c->tolerance : s->substeps > c->substeps);
+}
+
+static int by_place(const ob_record *a, const ob_record *b)
+{
+	meaning m = { 0 }, n = { 0 };
+	if (!find_meaning(a->of, a->configuration, &m, NULL) || !find_meaning(b->of, b->configuration, &n, NULL))
+		return 0;
+	return ob_result_order(&(ob_result){ .of = m.of, .engine = m.engine, .settings = m.settings },
+			       &(ob_result){ .of = n.of, .engine = n.engine, .settings = n.settings });
+}
+
+// ---- what the file says beside keys and metrics
+
+enum { ROW, ENGINE, VERSION, STEP, SUBSTEPS, ITERATIONS, TOLERANCE, LAG, COST, FIGURES, COLUMNS };
+static const char *const columns[COLUMNS] = { "row",         "engine",   "engine_version",
+					      "step_s",      "substeps", "iterations",
+					      "tolerance_m", "lag",      "cpu_s_per_body_and_simulated_s",
+					      "figures" };
+
+// "1 worst penetration (mm, at most 0.5); 2 drift (mm)"
+static void describe_figures(const ob_case *c, char *to, size_t room)
+{
+	size_t n = 0;
+	for (uint32_t i = 0; i < c->figures && n < room; i++) {
+		const ob_figure_def *def = &c->figure[i];
+		n += (size_t)snprintf(to + n, room - n, "%s%u %s (%s", i ? "; " : "", i + 1, def->name, def->unit);
+		if (n < room && isfinite(def->target))
+			n += (size_t)snprintf(to + n, room - n, ", at most %g", def->target);
+		if (n < room)
+			n += (size_t)snprintf(to + n, room - n, ")");
+	}
+}
+
+static void describe(const ob_record *r, size_t column, char *to, size_t room)
+{
+	meaning m;
+	if (!find_meaning(r->of, r->configuration, &m, NULL))
+		return;
+	double cost = r->metric[OB_LAB_CPU] / r->metric[OB_LAB_BODY_SECONDS];
+	const double number[COLUMNS] = { [ROW] = m.of->row,
+					 [STEP] = m.settings.step_length,
+					 [SUBSTEPS] = m.settings.substeps,
+					 [ITERATIONS] = m.settings.iterations,
+					 [TOLERANCE] = m.settings.tolerance,
+					 [LAG] = m.settings.lag,
+					 [COST] = cost };
+	if (column == ENGINE)
+		snprintf(to, room, "%s", m.engine->name);
+	else if (column == VERSION)
+		snprintf(to, room, "%s", m.engine->version);
+	else if (column == FIGURES)
+		describe_figures(m.of, to, room);
+	else if (!isnan(number[column]))
+		snprintf(to, room, column == STEP || column == COST ? "%.17g" : "%g", number[column]);
+}
+
+ob_experiment ob_lab_experiment(const char *commit, double limit)
+{
+	return (ob_experiment){ .name = "lab",
+				.commit = commit,
+				.metrics = OB_LAB_METRICS,
+				.metric = metrics,
+				.run = run,
+				.limit_s = limit,
+				.columns = COLUMNS,
+				.column = columns,
+				.describe = describe,
+				.is_finer = is_finer,
+				.order = by_place };
+}
+
+// ---- schedule
+
+static uint32_t count_bodies(const ob_case *c)
+{
+	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
+	c->build(&w, 0);
+	uint32_t bodies = w.objects;
+	ob_world_finish(&w);
+	return bodies;
+}
+
+// s that a case takes with an engine that works through a body's substep in two microseconds
+static double guess(const ob_case *c, uint32_t bodies, const ob_run_settings *s)
+{
+	static const double start = .02, body_substep = 2e-6;
+	enum { SUBSTEPS_BY_TOLERANCE = 16 };
+	return start + body_substep * bodies * c->runs * c->duration / s->step_length *
+			       (s->substeps ? s->substeps : SUBSTEPS_BY_TOLERANCE);
+}
+
+bool ob_lab_schedule(const ob_lab_plan *p, ob_trials *to, ob_error *e)
+{
+	ob_run_settings *settings = calloc(OB_SWEEP_SETTINGS, sizeof *settings);
+	bool fine = settings;
+	for (size_t i = 0; fine && i < p->cases.count; i++) {
+		const ob_case *c = p->cases.of[i];
+		uint32_t bodies = count_bodies(c);
+		size_t first = to->count;
+		for (size_t j = 0; j < p->engines.count; j++) {
+			size_t count = ob_sweep_settings(&p->sweep, c, p->engines.of[j], settings);
+			for (size_t k = 0; fine && k < count; k++) {
+				ob_trial t = { .guess_s = guess(c, bodies, &settings[k]) };
+				snprintf(t.of, sizeof t.of, "%s", c->name);
+				ob_lab_print_configuration(t.configuration, sizeof t.configuration, p->engines.of[j],
+							   &settings[k]);
+				fine = ob_trials_add(to, &t);
+			}
+		}
+		fine = fine && ob_trials_repeat(to, first, p->repeats, OB_ORDER_SAME, false);
+	}
+	free(settings);
+	return fine || ob_fail(e, "out of memory");
+}
+
+// ---- results
+
+static ob_outcome outcome_of(const ob_case *c, const ob_record *r)
+{
+	bool measured = r->failure <= OB_FAILURE_OUTCOME;
+	ob_outcome o = { .cpu_s = measured ? r->metric[OB_LAB_CPU] : r->took_cpu_s,
+			 .wall_s = measured ? r->metric[OB_LAB_WALL] : r->took_s,
+			 .body_seconds = r->metric[OB_LAB_BODY_SECONDS] };
+	for (uint32_t i = 0; i < c->figures; i++)
+		o.figure[i] = measured ? r->metric[OB_LAB_FIGURE + i] : INFINITY;
+	snprintf(o.failed, sizeof o.failed, "%.95s", r->reason);
+	return o;
+}
+
+bool ob_lab_results(const ob_records *from, ob_results *to, ob_error *e)
+{
+	*to = (ob_results){ 0 };
+	memcpy(to->machine, from->machine, sizeof to->machine);
+	memcpy(to->commit, from->commit, sizeof to->commit);
+	for (size_t i = 0; i < from->count; i++) {
+		const ob_record *r = &from->record[i];
+		meaning m;
+		if (!find_meaning(r->of, r->configuration, &m, e))
+			return false;
+		ob_outcome o = outcome_of(m.of, r);
+		ob_result one = { .of = m.of, .engine = m.engine, .settings = m.settings };
+		ob_result *of = ob_results_find(to, m.of, m.engine, &m.settings);
+		if (of) {
+			ob_result_repeat(of, &o);
+			continue;
+		}
+		ob_result_repeat(&one, &o);
+		if (!ob_results_add(to, &one))
+			return ob_fail(e, "out of memory");
+	}
+	return true;
 }

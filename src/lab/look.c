@@ -1,27 +1,27 @@
 #include "lab/look.h"
 
-ob_state ob_look_at(const ob_trial *t, uint32_t id)
+ob_state ob_look_at(const ob_case_run_state *t, uint32_t id)
 {
 	const ob_motion *m = &t->now.motion[id];
 	return (ob_state){ { m->p, m->q }, m->v, m->w };
 }
 
-ob_vec3 ob_look_moved(const ob_trial *t, uint32_t id)
+ob_vec3 ob_look_moved(const ob_case_run_state *t, uint32_t id)
 {
 	return ob_sub(t->now.motion[id].p, t->world->state[id].pose.p);
 }
 
-bool ob_look_moves(const ob_trial *t, uint32_t id)
+bool ob_look_moves(const ob_case_run_state *t, uint32_t id)
 {
 	return !(t->world->passport[id].flags & OB_OBJECT_STATIC);
 }
 
-double ob_look_energy(const ob_trial *t)
+double ob_look_energy(const ob_case_run_state *t)
 {
 	return ob_measure_energy(&t->now, t->world->gravity);
 }
 
-double ob_look_farthest(const ob_trial *t)
+double ob_look_farthest(const ob_case_run_state *t)
 {
 	double most = 0;
 	for (uint32_t id = 0; id < t->world->objects; id++)
@@ -30,7 +30,7 @@ double ob_look_farthest(const ob_trial *t)
 	return most;
 }
 
-bool ob_look_fell_through(const ob_trial *t)
+bool ob_look_fell_through(const ob_case_run_state *t)
 {
 	double ground = INFINITY, lowest = INFINITY;
 	for (uint32_t id = 0; id < t->world->objects; id++) {
@@ -42,7 +42,7 @@ bool ob_look_fell_through(const ob_trial *t)
 	return isfinite(ground) && lowest < ground - 1;
 }
 
-double ob_look_gravity(const ob_trial *t)
+double ob_look_gravity(const ob_case_run_state *t)
 {
 	return ob_norm(t->world->gravity);
 }

@@ -5,14 +5,14 @@
 
 #include "lab/case.h"
 
-ob_state ob_look_at(const ob_trial *t, uint32_t id);
-ob_vec3 ob_look_moved(const ob_trial *t, uint32_t id); // m, since the start
-bool ob_look_moves(const ob_trial *t, uint32_t id); // it is not static
-double ob_look_energy(const ob_trial *t); // J; potential energy is 0 at z = 0
-double ob_look_farthest(const ob_trial *t); // m: the farthest that a body is from where it started
+ob_state ob_look_at(const ob_case_run_state *t, uint32_t id);
+ob_vec3 ob_look_moved(const ob_case_run_state *t, uint32_t id); // m, since the start
+bool ob_look_moves(const ob_case_run_state *t, uint32_t id); // it is not static
+double ob_look_energy(const ob_case_run_state *t); // J; potential energy is 0 at z = 0
+double ob_look_farthest(const ob_case_run_state *t); // m: the farthest that a body is from where it started
 // Some centre is a metre below the level ground: through it, not just deep in it.
-bool ob_look_fell_through(const ob_trial *t);
-double ob_look_gravity(const ob_trial *t); // m/s^2, its size
+bool ob_look_fell_through(const ob_case_run_state *t);
+double ob_look_gravity(const ob_case_run_state *t); // m/s^2, its size
 
 // Makes the figure the larger of the two. NaN counts as larger than all, and stays.
 void ob_look_keep(double *figure, double value);

@@ -1,24 +1,119 @@
 #include "lab/report.h"
 
-#include <errno.h>
-#include <stdlib.h>
+#include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "experiment/folder.h"
 #include "lab/chart.h"
-#include "lab/report_parts.h"
+#include "lab/tables.h"
 #include "report_texts.h"
 
-enum { PATH = 4096 };
-#define PNG_ZOOM 2
+// ---- what a hurried reader sees: the verdict, cost at equal error, every promise
 
-static void write_svg(ob_page *p, ob_chart *chart)
+typedef struct lead {
+	int compared, ahead, within; // cases; those where obsim is not ahead, but within twice the cost of the best
+} lead;
+
+static double best_other_cost(const ob_digest *d, const ob_digest_equal *q)
 {
-	char *svg = chart ? ob_plot_svg_text(&chart->plot, NULL) : NULL;
-	if (svg)
-		fputs(svg, p->out);
-	free(svg);
-	ob_chart_free(chart);
+	double best = INFINITY;
+	for (size_t i = 0; i < d->engines; i++)
+		if (!ob_digest_is_obsim(d->engine[i]) && q->cost[i] < best)
+			best = q->cost[i];
+	return best;
+}
+
+static lead measure_lead(const ob_digest *d)
+{
+	lead l = { 0 };
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		if (!(*c)->compared || !ob_digest_ran(d, *c))
+			continue;
+		ob_digest_equal q = ob_digest_compare(d, *c);
+		l.compared++;
+		l.ahead += q.ahead;
+		l.within += !q.ahead && q.own <= 2 * best_other_cost(d, &q);
+	}
+	return l;
+}
+
+static void write_card(ob_page *p, int part, int whole, const char *what)
+{
+	ob_page_markup(p, "<li><b>%d of %d</b><span>%s</span></li>\n", part, whole, what);
+}
+
+static void write_cards(ob_page *p, const void *with)
+{
+	const ob_digest *d = with;
+	ob_digest_rows rows = ob_digest_count_rows(d);
+	lead l = measure_lead(d);
+	if (rows.measured)
+		write_card(p, rows.met, rows.measured,
+			   "rows of hard cases: obsim meets every target, at 60 frames a second");
+	size_t others = ob_digest_count_others(d), failed = 0, runs = 0;
+	if (l.compared && others)
+		write_card(p, l.ahead, l.compared, "cases: no other engine gets to the same error at less cost");
+	for (size_t i = 0; i < d->results->count; i++) {
+		runs++;
+		failed += d->results->result[i].outcome.failed[0] != 0;
+	}
+	ob_page_markup(p, "<li><b>%zu</b><span>other engines, and %zu of obsim's couplings</span></li>\n", others,
+		       d->engines - others);
+	ob_page_markup(p, "<li><b>%zu</b><span>runs measured; %zu of them failed and are shown as such</span></li>\n",
+		       runs, failed);
+}
+
+// Names of the rows that are missed, so that nobody has to look for them
+static void write_missed(ob_page *p, const ob_digest *d)
+{
+	int missed = 0;
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		const ob_result *r = ob_digest_promised(d, *c);
+		if (!r || ob_digest_meets_all(r))
+			continue;
+		ob_page_markup(p, "%s<a href=\"#%s\">", missed++ ? ", " : "<strong>Missed:</strong> ", (*c)->name);
+		ob_page_text(p, (*c)->title);
+		ob_page_markup(p, "</a>");
+	}
+	ob_page_markup(p, "%s", missed ? ". " : "No target is missed. ");
+}
+
+static void write_verdict(ob_page *p, const void *with)
+{
+	const ob_digest *d = with;
+	lead l = measure_lead(d);
+	if (!d->own) {
+		ob_page_markup(p, "obsim itself did not take part in these runs.");
+		return;
+	}
+	write_missed(p, d);
+	if (l.compared > l.ahead && ob_digest_count_others(d))
+		ob_page_markup(p,
+			       "Of the %d cases where another engine is cheaper at equal error, obsim is within twice "
+			       "its cost "
+			       "in %d.",
+			       l.compared - l.ahead, l.within);
+}
+
+static void write_table(ob_page *p, ob_table *t)
+{
+	if (t)
+		ob_table_html(t, p);
+	ob_table_free(t);
+}
+
+static void write_equal(ob_page *p, const void *with)
+{
+	write_table(p, ob_lab_table_equal(with, true, false));
+	ob_page_markup(p, "<p class=\"note\">\u00b5s of CPU per body and simulated second; small: over obsim\u2019s. "
+			  "* No engine gets to the target: the error is obsim\u2019s least. "
+			  "\u201cnever\u201d: no setting that was tried gets there without failing. "
+			  "Variants of obsim\u2019s coupling are shown, but not ranked.</p>\n");
+}
+
+static void write_rows(ob_page *p, const void *with)
+{
+	write_table(p, ob_lab_table_rows(with));
 }
 
 static void write_style(ob_page *p, const void *with)
@@ -28,7 +123,7 @@ static void write_style(ob_page *p, const void *with)
 
 static void write_promises(ob_page *p, const void *with)
 {
-	write_svg(p, ob_chart_promises(with));
+	ob_chart_html(ob_lab_chart_promises(with), p);
 }
 
 static const char *const convergence_cases[] = { "stack-10", "pile", "sliding" };
@@ -37,7 +132,7 @@ enum { CONVERGENCE_CASES = sizeof convergence_cases / sizeof *convergence_cases 
 static ob_chart *convergence_chart(const ob_digest *d, size_t i)
 {
 	const ob_case *c = ob_case_find(convergence_cases[i]);
-	return c ? ob_chart_convergence(d, c) : NULL;
+	return c ? ob_lab_chart_convergence(d, c) : NULL;
 }
 
 // A section that stands only if it has a chart
@@ -59,7 +154,7 @@ static void write_convergence(ob_page *p, const void *with)
 					       "the observed order stands beside each name.");
 		if (chart)
 			ob_page_markup(p, "<figure>\n");
-		write_svg(p, chart);
+		ob_chart_html(chart, p);
 		if (chart)
 			ob_page_markup(p, "</figure>\n");
 	}
@@ -67,7 +162,7 @@ static void write_convergence(ob_page *p, const void *with)
 
 static void write_ghost(ob_page *p, const void *with)
 {
-	ob_chart *chart = ob_chart_ghost(with);
+	ob_chart *chart = ob_lab_chart_ghost(with);
 	if (!begin_section(p, chart, "ghost", "Why neighbours must not be ghosts",
 			   "The first thing that comes to mind when every body is a simulator of its own: treat each "
 			   "neighbour as a body "
@@ -77,20 +172,20 @@ static void write_ghost(ob_page *p, const void *with)
 			   "obsim can do so (<code>coupling=ghost</code>) only to show it."))
 		return;
 	ob_page_markup(p, "<figure>\n");
-	write_svg(p, chart);
+	ob_chart_html(chart, p);
 	ob_page_markup(p, "</figure>\n");
 }
 
 static void write_lag(ob_page *p, const void *with)
 {
-	ob_chart *chart = ob_chart_lag(with);
+	ob_chart *chart = ob_lab_chart_lag(with);
 	if (!begin_section(p, chart, "late", "Why partners must not be read late",
 			   "Two bodies hit each other, each in its own simulator, and each works with a state of the "
 			   "other that is some "
 			   "exchanges old. Momentum is exact only where both sides see the same."))
 		return;
 	ob_page_markup(p, "<figure>\n");
-	write_svg(p, chart);
+	ob_chart_html(chart, p);
 	ob_page_markup(p, "</figure>\n");
 }
 
@@ -105,48 +200,89 @@ static void write_index(ob_page *p, const void *with)
 	}
 }
 
+// ---- one case
+
+typedef struct report_case {
+	const ob_digest *digest;
+	const ob_case *of;
+} report_case;
+
+static void write_title(ob_page *p, const void *with)
+{
+	ob_page_text(p, ((const report_case *)with)->of->title);
+}
+
+static void write_badge(ob_page *p, const void *with)
+{
+	const report_case *c = with;
+	const ob_result *r = ob_digest_promised(c->digest, c->of);
+	if (r)
+		ob_page_markup(p, "<span class=\"badge %s</span>",
+			       ob_digest_meets_all(r) ? "met\">met" : "missed\">missed");
+}
+
+static void write_reference(ob_page *p, const void *with)
+{
+	const report_case *c = with;
+	for (uint32_t i = 0; i < c->of->figures; i++) {
+		const ob_figure_def *def = &c->of->figure[i];
+		ob_page_markup(p, i ? "<br>" : "");
+		ob_page_text(p, def->name);
+		ob_page_markup(p, ": ");
+		ob_page_text(p, def->reference);
+	}
+}
+
+static void write_engines(ob_page *p, const void *with)
+{
+	const report_case *c = with;
+	write_table(p, ob_lab_table_engines(c->digest, c->of));
+}
+
+static void write_runs(ob_page *p, const void *with)
+{
+	const report_case *c = with;
+	write_table(p, ob_lab_table_runs(c->digest, c->of));
+}
+
 static void write_id(ob_page *p, const void *with)
 {
-	ob_page_text(p, ((const ob_report_case *)with)->of->name);
+	ob_page_text(p, ((const report_case *)with)->of->name);
 }
 
 static void write_setup(ob_page *p, const void *with)
 {
-	ob_page_text(p, ((const ob_report_case *)with)->of->setup);
+	ob_page_text(p, ((const report_case *)with)->of->setup);
 }
 
 static void write_peers(ob_page *p, const void *with)
 {
-	ob_page_text(p, ((const ob_report_case *)with)->of->peers);
+	ob_page_text(p, ((const report_case *)with)->of->peers);
 }
 
 // A case's own: over cost, but where it is about reading late
 static ob_chart *case_chart(const ob_digest *d, const ob_case *c)
 {
-	return c == ob_case_find("lag") ? ob_chart_lag(d) : ob_chart_cost(d, c);
+	return c == ob_case_find("lag") ? ob_lab_chart_lag(d) : ob_lab_chart_cost(d, c);
 }
 
 static void write_plot(ob_page *p, const void *with)
 {
-	const ob_report_case *c = with;
-	write_svg(p, case_chart(c->digest, c->of));
+	const report_case *c = with;
+	ob_chart_html(case_chart(c->digest, c->of), p);
 }
 
-static void write_cases(ob_page *p, const void *with)
+static void write_all_cases(ob_page *p, const void *with)
 {
-	static const ob_page_slot slots[] = { { "id", write_id },
-					      { "title", ob_report_title },
-					      { "badge", ob_report_badge },
-					      { "setup", write_setup },
-					      { "reference", ob_report_reference },
-					      { "peers", write_peers },
-					      { "figures", ob_report_figures },
-					      { "plot", write_plot },
-					      { "runs", ob_report_runs } };
+	static const ob_page_slot slots[] = {
+		{ "id", write_id },           { "title", write_title },         { "badge", write_badge },
+		{ "setup", write_setup },     { "reference", write_reference }, { "peers", write_peers },
+		{ "figures", write_engines }, { "plot", write_plot },           { "runs", write_runs }
+	};
 	for (const ob_case *const *c = ob_cases; *c; c++)
 		if (ob_digest_ran(with, *c))
 			ob_page_fill(p, text_case_html, slots, sizeof slots / sizeof *slots,
-				     &(ob_report_case){ .digest = with, .of = *c });
+				     &(report_case){ .digest = with, .of = *c });
 }
 
 static void write_setting(ob_page *p, const void *with)
@@ -168,72 +304,66 @@ static void write_setting(ob_page *p, const void *with)
 		ob_page_markup(p, "; usual: %u step%s a frame", k->usual.substeps, k->usual.substeps == 1 ? "" : "s");
 		if (k->usual.iterations)
 			ob_page_markup(p, ", %u %s", k->usual.iterations,
-				       ob_digest_is_obsim(k) ? "rounds of exchange at most" : "solver iterations");
+				       ob_digest_is_obsim(k) ? "iterations at most" : "solver iterations");
 		ob_page_markup(p, "</dd>\n");
 	}
-}
-
-static bool make_folder(const char *path, ob_error *e)
-{
-	return !mkdir(path, 0777) || errno == EEXIST || ob_fail(e, "cannot make the folder %s: %m", path);
-}
-
-// Takes the chart; none is no error.
-static bool write_chart(ob_chart *chart, const char *dir, const char *name, ob_error *e)
-{
-	char path[PATH];
-	bool ok = true;
-	if (chart) {
-		snprintf(path, sizeof path, "%s/plots/%s.svg", dir, name);
-		ok = ob_plot_svg(&chart->plot, path, e);
-		snprintf(path, sizeof path, "%s/plots/%s.png", dir, name);
-		ok = ok && ob_plot_png(&chart->plot, path, PNG_ZOOM, e);
-	}
-	ob_chart_free(chart);
-	return ok;
 }
 
 static bool write_charts(const ob_digest *d, const char *dir, ob_error *e)
 {
 	char name[80];
 	for (const ob_case *const *c = ob_cases; *c; c++)
-		if (!write_chart(case_chart(d, *c), dir, (*c)->name, e))
+		if (!ob_chart_write(case_chart(d, *c), dir, (*c)->name, e))
 			return false;
 	for (size_t i = 0; i < CONVERGENCE_CASES; i++) {
 		snprintf(name, sizeof name, "order-%s", convergence_cases[i]);
-		if (!write_chart(convergence_chart(d, i), dir, name, e))
+		if (!ob_chart_write(convergence_chart(d, i), dir, name, e))
 			return false;
 	}
-	return write_chart(ob_chart_promises(d), dir, "all-cases", e) &&
-	       write_chart(ob_chart_ghost(d), dir, "all-ghost", e);
+	return ob_chart_write(ob_lab_chart_promises(d), dir, "all-cases", e) &&
+	       ob_chart_write(ob_lab_chart_ghost(d), dir, "all-ghost", e);
 }
 
-bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e)
+// ---- the files
+
+static void write_page(FILE *f, const void *with)
 {
 	static const ob_page_slot slots[] = { { "style", write_style },
-					      { "cards", ob_report_cards },
-					      { "verdict", ob_report_verdict },
+					      { "cards", write_cards },
+					      { "verdict", write_verdict },
 					      { "promises", write_promises },
-					      { "equal", ob_report_equal },
-					      { "rows", ob_report_rows },
+					      { "equal", write_equal },
+					      { "rows", write_rows },
 					      { "convergence", write_convergence },
 					      { "ghost", write_ghost },
 					      { "lag", write_lag },
 					      { "index", write_index },
-					      { "cases", write_cases },
+					      { "cases", write_all_cases },
 					      { "setting", write_setting } };
-	char path[PATH];
+	ob_page page = { .out = f };
+	ob_page_fill(&page, text_page_html, slots, sizeof slots / sizeof *slots, with);
+}
+
+static void write_rows_file(FILE *f, const void *with)
+{
+	ob_lab_print_rows(f, with, true);
+}
+
+static void write_equal_file(FILE *f, const void *with)
+{
+	ob_lab_print_equal(f, with, true);
+}
+
+static void write_equal_csv(FILE *f, const void *with)
+{
+	ob_lab_write_equal(f, with);
+}
+
+bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e)
+{
 	ob_digest d = ob_digest_make(r);
-	if (snprintf(path, sizeof path, "%s/plots", dir) >= PATH - 100)
-		return ob_fail(e, "the name of the folder is too long: %s", dir);
-	if (!make_folder(dir, e) || !make_folder(path, e) || !write_charts(&d, dir, e))
-		return false;
-	snprintf(path, sizeof path, "%s/report.html", dir);
-	ob_page page = { .out = fopen(path, "w") };
-	if (!page.out)
-		return ob_fail(e, "cannot write %s: %m", path);
-	ob_page_fill(&page, text_page_html, slots, sizeof slots / sizeof *slots, &d);
-	bool written = !ferror(page.out);
-	written = !fclose(page.out) && written;
-	return written || ob_fail(e, "cannot write %s: %m", path);
+	return ob_folder_make(dir, e) && ob_folder_write(dir, "rows.md", write_rows_file, &d, e) &&
+	       ob_folder_write(dir, "equal.md", write_equal_file, &d, e) &&
+	       ob_folder_write(dir, "equal.csv", write_equal_csv, &d, e) && write_charts(&d, dir, e) &&
+	       ob_folder_write(dir, "report.html", write_page, &d, e);
 }

@@ -2,10 +2,16 @@
 #ifndef OB_LAB_REPORT_H
 #define OB_LAB_REPORT_H
 
+#include <stdio.h>
+
 #include "lab/result.h"
 
-// Writes DIR/report.html (self-contained: no script, no network) and DIR/plots/NAME.svg and .png; the folders are made.
+// Writes DIR/report.html (self-contained: no script, no network), DIR/plots/NAME.svg and .png, the tables DIR/rows.md,
+// equal.md and equal.csv; the folders are made.
 // The same results give the same files. One thread at a time per directory.
 bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e);
+
+// The results for other programs. version: of this one
+void ob_lab_write_json(const ob_results *r, const char *version, FILE *f);
 
 #endif

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "experiment/analysis.h"
 #include "lab/look.h"
 
 static size_t place_of_case(const ob_case *c)
@@ -38,7 +39,7 @@ static int by_settings(const ob_run_settings *a, const ob_run_settings *b)
 	return order ? order : (int)a->sleeping - (int)b->sleeping;
 }
 
-static int by_place(const ob_result *a, const ob_result *b)
+int ob_result_order(const ob_result *a, const ob_result *b)
 {
 	int order = by_number((double)place_of_case(a->of), (double)place_of_case(b->of));
 	order = order ? order : by_number((double)place_of_engine(a->engine), (double)place_of_engine(b->engine));
@@ -66,7 +67,7 @@ bool ob_results_add(ob_results *r, const ob_result *one)
 		r->max = max;
 	}
 	size_t at = r->count++;
-	for (; at > 0 && by_place(&r->result[at - 1], one) > 0; at--)
+	for (; at > 0 && ob_result_order(&r->result[at - 1], one) > 0; at--)
 		r->result[at] = r->result[at - 1];
 	r->result[at] = *one;
 	return true;
@@ -109,4 +110,20 @@ void ob_results_finish(ob_results *r)
 {
 	free(r->result);
 	*r = (ob_results){ 0 };
+}
+
+double ob_cost_at(const ob_results *r, const ob_case *c, const ob_engine_kind *k, double error)
+{
+	ob_cost_point *list = calloc(r->count + 1, sizeof *list);
+	size_t count = 0;
+	for (size_t i = 0; list && i < r->count; i++) {
+		const ob_result *one = &r->result[i];
+		ob_cost_point p = { ob_result_cost(one), one->outcome.figure[0] };
+		if (one->of == c && one->engine == k && !*one->outcome.failed && isfinite(p.error) && p.cost > 0 &&
+		    isfinite(p.cost))
+			list[count++] = p;
+	}
+	double cost = list ? ob_cost_at_error(list, count, error) : NAN;
+	free(list);
+	return cost;
 }

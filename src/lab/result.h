@@ -1,5 +1,4 @@
-// Results of the lab: one per case, engine and setting, kept in a CSV file, so that a run that was broken off goes on
-// where it stopped.
+// Results of the lab: one per case, engine and setting.
 #ifndef OB_LAB_RESULT_H
 #define OB_LAB_RESULT_H
 
@@ -14,14 +13,13 @@ typedef struct ob_result {
 	ob_outcome outcome; // medians of the repeats' times, and the worst of their figures
 	uint32_t repeats;
 	double cpu_s[OB_REPEATS], wall_s[OB_REPEATS]; // of each repeat
-	char commit[48]; // of the program that made it
 } ob_result;
 
 typedef struct ob_results {
 	size_t count, max;
 	ob_result *result; // in the order of cases, engines, settings
-	char machine[160]; // processor, cores, kernel
-	char commit[48];
+	char machine[192]; // processor, cores, kernel
+	char commit[64];
 } ob_results;
 
 // CPU seconds per body and simulated second
@@ -30,10 +28,8 @@ static inline double ob_result_cost(const ob_result *r)
 	return r->outcome.cpu_s / r->outcome.body_seconds;
 }
 
-// Reads what is there (a missing file is empty), machine and commit, too / writes all, through a temporary file that
-// replaces the old one. The file is as RFC 4180 has it, a line for each result; numbers read back to the same bits.
-bool ob_results_read(ob_results *r, const char *path, ob_error *e);
-bool ob_results_write(const ob_results *r, const char *path, ob_error *e);
+// By case, engine and setting, from coarse to fine; < 0, 0 or > 0
+int ob_result_order(const ob_result *a, const ob_result *b);
 ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_run_settings *s);
 bool ob_results_add(ob_results *r, const ob_result *one); // at its place in the order; false: no memory
 // One more repeat of the same: medians and worst figures follow. No effect when there are OB_REPEATS already.
@@ -41,7 +37,7 @@ void ob_result_repeat(ob_result *r, const ob_outcome *again);
 void ob_results_finish(ob_results *r);
 
 // The cheapest cost (s of CPU per body and simulated second) at which an engine keeps figure 0 of a case at or below
-// "error": read off the lower envelope of its curve, between points by straight lines in log-log. NAN: never.
+// "error" (ob_cost_at_error). NAN: never.
 double ob_cost_at(const ob_results *r, const ob_case *c, const ob_engine_kind *k, double error);
 
 #endif

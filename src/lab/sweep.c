@@ -180,7 +180,7 @@ void ob_sweep_print(char *to, size_t room, const ob_run_settings *s)
 	else
 		n = snprintf(to, room, "%u substep%s", s->substeps, s->substeps == 1 ? "" : "s");
 	if (s->iterations && (size_t)n < room)
-		n += snprintf(to + n, room - (size_t)n, ", %u rounds", s->iterations);
+		n += snprintf(to + n, room - (size_t)n, ", %u iterations", s->iterations);
 	if (s->lag && (size_t)n < room)
 		snprintf(to + n, room - (size_t)n, ", late by %u", s->lag);
 }

@@ -13,7 +13,7 @@ static bool finite_vector(ob_vec3 v)
 	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
 
-static const char *insane(const ob_trial *t)
+static const char *insane(const ob_case_run_state *t)
 {
 	for (uint32_t id = 0; id < t->world->objects; id++) {
 		ob_state s = ob_look_at(t, id);
@@ -28,7 +28,7 @@ static const char *insane(const ob_trial *t)
 }
 
 // The snapshot as an engine without a universe can give it: states at this very time.
-static void take(ob_trial *t, const ob_state *state)
+static void take(ob_case_run_state *t, const ob_state *state)
 {
 	t->now.step = t->frame;
 	t->now.time = t->time;
@@ -42,7 +42,7 @@ static void take(ob_trial *t, const ob_state *state)
 }
 
 // Runs to the end or to the first failure that the case or an insane state shows. Only stepping is timed.
-static void watch(ob_trial *t, ob_engine *peer, const ob_engine_kind *kind, ob_state *state, ob_outcome *out, ob_error *e)
+static void watch(ob_case_run_state *t, ob_engine *peer, const ob_engine_kind *kind, ob_state *state, ob_outcome *out, ob_error *e)
 {
 	const ob_case *c = t->of;
 	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step_length);
@@ -70,7 +70,7 @@ static void watch(ob_trial *t, ob_engine *peer, const ob_engine_kind *kind, ob_s
 		t->figure[i] = INFINITY;
 }
 
-static double body_seconds(const ob_trial *t)
+static double body_seconds(const ob_case_run_state *t)
 {
 	uint32_t bodies = 0;
 	for (uint32_t id = 0; id < t->world->objects; id++)
@@ -88,7 +88,7 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 {
 	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
 	c->build(&w, number);
-	ob_trial t = { .of = c, .run = number, .world = &w, .settings = *s };
+	ob_case_run_state t = { .of = c, .run = number, .world = &w, .settings = *s };
 	t.settings.step_length = s->step_length > 0 ? s->step_length : c->step;
 	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport };
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);

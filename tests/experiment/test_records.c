@@ -85,7 +85,9 @@ static void test_file(const char *path)
 	CHECK(ob_records_write(&in, &x, path, &e));
 	char *second = read_all(path);
 	CHECK(first && second && strcmp(first, second) == 0);
-	CHECK(first && strstr(first, "\ntest,\"stack, 40 high\",1,1,18446744073709551615,\"stack, 40 high, stack, 40 high\",,,"));
+	CHECK(first &&
+	      strstr(first,
+		     "\ntest,\"stack, 40 high\",1,1,18446744073709551615,\"stack, 40 high, stack, 40 high\",,,"));
 	CHECK(first && strstr(first, "\"crashed: \"\"a, b\"\" and more\""));
 	free(first);
 	free(second);

@@ -136,7 +136,8 @@ static void test_resume(const char *folder)
 	CHECK(ob_experiment_estimate(&x, &s, &r, &trials) == 12 && trials == 12);
 	CHECK(ob_experiment_run(&x, &s, &r, folder, &e));
 	CHECK(r.count == 6); // what failed is not asked again
-	const ob_record *coarse = ob_records_find(&r, "hang", "1", 0, 0), *fine = ob_records_find(&r, "hang", "2", 0, 0);
+	const ob_record *coarse = ob_records_find(&r, "hang", "1", 0, 0),
+			*fine = ob_records_find(&r, "hang", "2", 0, 0);
 	CHECK(coarse && fine && coarse->took_s == fine->took_s && fine->failure == OB_FAILURE_TIME); // untried
 	const ob_record *third = ob_records_find(&r, "fine", "1", 2, 0);
 	CHECK(third && third->metric[0] == 3);

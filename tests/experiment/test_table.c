@@ -89,10 +89,11 @@ static void test_small_and_html(void)
 	f = begin();
 	ob_page page = { .out = f };
 	ob_table_html(t, &page);
-	expect(f, "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">case</th><th scope=\"col\" class=\"n\">time"
-		  "</th></tr></thead>\n<tbody>\n"
-		  "<tr><td><a href=\"#pile\">a &lt; b</a></td><td class=\"n met\">2.5 ms<small>2 to 3</small></td></tr>\n"
-		  "<tr><td>once</td><td class=\"n\">1000 ms</td></tr>\n</tbody></table></div>\n");
+	expect(f,
+	       "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">case</th><th scope=\"col\" class=\"n\">time"
+	       "</th></tr></thead>\n<tbody>\n"
+	       "<tr><td><a href=\"#pile\">a &lt; b</a></td><td class=\"n met\">2.5 ms<small>2 to 3</small></td></tr>\n"
+	       "<tr><td>once</td><td class=\"n\">1000 ms</td></tr>\n</tbody></table></div>\n");
 	ob_table_free(t);
 }
 

@@ -1,14 +1,13 @@
-// Results: their order, their file, what is read off them.
+// Results: their order, how they come from records, what is read off them.
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "check.h"
-#include "lab/result.h"
+#include "lab/lab.h"
 
 static ob_result make(const char *name, const char *engine, uint32_t substeps, double cost, double error)
 {
-	ob_result r = { .of = ob_case_find(name), .engine = ob_engine_find(engine), .commit = "c0ffee" };
+	ob_result r = { .of = ob_case_find(name), .engine = ob_engine_find(engine) };
 	r.settings = r.engine->usual;
 	r.settings.substeps = substeps;
 	r.settings.tolerance = 0;
@@ -71,149 +70,71 @@ static void test_repeats(void)
 	CHECK(r.repeats == OB_REPEATS && r.outcome.cpu_s == 1.5);
 }
 
-static bool same(const ob_result *a, const ob_result *b)
+static void add_record(ob_records *to, const char *of, const char *configuration, uint32_t repeat, ob_failure failure)
 {
-	bool same = a->of == b->of && a->engine == b->engine && a->repeats == b->repeats &&
-		    !memcmp(&a->settings, &b->settings, sizeof a->settings) && !strcmp(a->commit, b->commit) &&
-		    !strcmp(a->outcome.failed, b->outcome.failed) && a->outcome.cpu_s == b->outcome.cpu_s &&
-		    a->outcome.wall_s == b->outcome.wall_s;
-	for (uint32_t i = 0; i < a->repeats; i++)
-		same &= a->cpu_s[i] == b->cpu_s[i] && a->wall_s[i] == b->wall_s[i];
-	for (uint32_t i = 0; i < a->of->figures; i++)
-		same &= a->outcome.figure[i] == b->outcome.figure[i] ||
-			(isnan(a->outcome.figure[i]) && isnan(b->outcome.figure[i]));
-	return same && (a->outcome.body_seconds == b->outcome.body_seconds ||
-			(isnan(a->outcome.body_seconds) && isnan(b->outcome.body_seconds)));
+	ob_record r = { .repeat = repeat, .failure = failure, .took_s = 9, .took_cpu_s = 8 };
+	snprintf(r.of, sizeof r.of, "%s", of);
+	snprintf(r.configuration, sizeof r.configuration, "%s", configuration);
+	for (int i = 0; i < OB_LAB_METRICS; i++)
+		r.metric[i] = failure > OB_FAILURE_OUTCOME ? NAN : 1 + repeat;
+	if (failure)
+		strcpy(r.reason, "fell");
+	CHECK(ob_records_add(to, &r));
 }
 
-static void fill(ob_results *r)
+// From the experiment's records to results
+static void test_records(void)
 {
-	add(r, make("pile", "obsim", 8, 1. / 3, 1e-300));
-	add(r, make("stack-40", "ode-world", 1, 1e-9 / 7, INFINITY));
-	ob_result odd = make("stack-10", "obsim-jacobi", 0, .1, NAN);
-	odd.settings.tolerance = 5e-4 / 3;
-	odd.settings.sleeping = true;
-	odd.outcome.body_seconds = NAN;
-	strcpy(odd.outcome.failed, "crashed: \"a, b\"\r\nand more");
-	ob_result_repeat(&odd, &odd.outcome);
-	add(r, odd);
-	strcpy(r->machine, "A processor, \"fast\", 2 cores");
-	strcpy(r->commit, "c0ffee");
-}
-
-static char *read_all(const char *path)
-{
-	FILE *f = fopen(path, "r");
-	char *text = NULL;
-	size_t room = 0;
-	ssize_t n = f ? getdelim(&text, &room, 0, f) : -1;
-	CHECK(n > 0);
-	if (f)
-		fclose(f);
-	return text;
-}
-
-static void test_file(const char *path)
-{
-	ob_results out = { 0 }, in = { 0 };
-	ob_error e;
-	CHECK(ob_results_read(&in, path, &e) && in.count == 0); // there is none
-	fill(&out);
-	CHECK(ob_results_write(&out, path, &e));
-	CHECK(ob_results_read(&in, path, &e));
-	CHECK(in.count == out.count && !strcmp(in.machine, out.machine) && !strcmp(in.commit, out.commit));
-	for (size_t i = 0; i < in.count && i < out.count; i++)
-		CHECK(same(&in.result[i], &out.result[i]));
-	char *first = read_all(path), *second;
-	CHECK(ob_results_write(&in, path, &e));
-	second = read_all(path);
-	CHECK(first && second && strcmp(first, second) == 0);
-	// a line for each result and one for the names, of as many cells
-	CHECK(first && strstr(first, "\r\nstack-10,14,obsim-jacobi,,"));
-	CHECK(first && strstr(first, "\"crashed: \"\"a, b\"\"\r\nand more\""));
-	free(first);
-	free(second);
-	ob_results_finish(&in);
-	ob_results_finish(&out);
-}
-
-static void write_text(const char *path, const char *text, size_t n)
-{
-	FILE *f = fopen(path, "w");
-	CHECK(f && fwrite(text, 1, n, f) == n);
-	if (f)
-		fclose(f);
-}
-
-static void refuse(const char *path, const char *text, size_t n, const char *saying)
-{
+	ob_records from = { .machine = "A processor", .commit = "c0ffee" };
 	ob_results r;
-	ob_error e = { "" };
-	write_text(path, text, n);
-	CHECK(!ob_results_read(&r, path, &e));
-	CHECK(r.count == 0 && !r.result);
-	if (!strstr(e.text, saying)) {
-		fprintf(stderr, "said '%s' instead of '%s'\n", e.text, saying);
-		CHECK(!"the right words");
-	}
-}
-
-// The file with some text replaced by another, which has to be refused
-static void refuse_changed(const char *path, const char *whole, const char *old, const char *new, const char *saying)
-{
-	const char *at = strstr(whole, old);
-	char *changed = NULL;
-	CHECK(at);
-	if (at && asprintf(&changed, "%.*s%s%s", (int)(at - whole), whole, new, at + strlen(old)) > 0)
-		refuse(path, changed, strlen(changed), saying);
-	free(changed);
-}
-
-// What cannot be written whole leaves the old file as it is, and nothing beside it.
-static void test_full_disk(const char *path, const ob_results *r, const char *whole)
-{
-	char beside[80];
-	ob_error e = { "" };
-	snprintf(beside, sizeof beside, "%s.new", path);
-	CHECK(ob_results_write(r, path, &e));
-	CHECK(symlink("/dev/full", beside) == 0);
-	CHECK(!ob_results_write(r, path, &e) && strstr(e.text, "No space left"));
-	CHECK(access(beside, F_OK) != 0);
-	char *after = read_all(path);
-	CHECK(whole && after && strcmp(whole, after) == 0);
-	free(after);
-}
-
-static void test_broken_file(const char *path)
-{
-	ob_results out = { 0 };
 	ob_error e;
-	fill(&out);
-	CHECK(ob_results_write(&out, path, &e));
-	char *whole = read_all(path);
-	refuse(path, "", 0, "is empty");
-	refuse(path, "a,b\n", 4, "2 cells");
-	refuse(path, "\"a", 2, "not CSV");
-	refuse(path, "\"a\"b,", 5, "not CSV");
-	if (whole) {
-		refuse_changed(path, whole, "substeps", "substep", "column 'substep' instead of 'substeps'");
-		refuse_changed(path, whole, "\r\npile,", "\r\npillow,", "no case 'pillow'");
-		refuse_changed(path, whole, ",ode-world,", ",physx,", "no engine 'physx'");
-		refuse_changed(path, whole, "e-300", "e-300x", ":4: figure1_value");
-		refuse_changed(path, whole, ",0.016666666666666666,", ",often,", "'often' is not a number");
-		size_t n = strlen(whole);
-		for (size_t cut = 1; cut < n; cut += 37) {
-			ob_results r = { 0 };
-			write_text(path, whole, n - cut);
-			if (ob_results_read(&r, path, &e)) // cut between two lines, or in the last cell
-				CHECK(r.count <= out.count);
-			ob_results_finish(&r);
-		}
-	}
-	CHECK(!ob_results_write(&out, "/no/such/folder/results.csv", &e) && strstr(e.text, "/no/such/folder"));
-	test_full_disk(path, &out, whole);
-	free(whole);
-	ob_results_finish(&out);
+	add_record(&from, "pile", "obsim substeps=8 iterations=16", 1, OB_FAILURE_NONE);
+	add_record(&from, "pile", "obsim substeps=8 iterations=16", 0, OB_FAILURE_NONE);
+	add_record(&from, "stack-10", "obsim iterations=64 tolerance=5e-05", 0, OB_FAILURE_TIME);
+	CHECK(ob_lab_results(&from, &r, &e) && r.count == 2 && !strcmp(r.commit, "c0ffee"));
+	const ob_result *late = &r.result[0], *pile = &r.result[1];
+	CHECK(late->settings.tolerance == 5e-5 && late->settings.substeps == 0 && late->settings.iterations == 64);
+	CHECK(isinf(late->outcome.figure[0]) && isnan(late->outcome.body_seconds) && late->outcome.cpu_s == 8);
+	CHECK(!strcmp(late->outcome.failed, "fell"));
+	CHECK(pile->repeats == 2 && pile->outcome.cpu_s == 1.5 && pile->outcome.figure[0] == 2 && !*pile->outcome.failed);
+	CHECK(pile->settings.step_length == pile->of->step && pile->settings.substeps == 8);
+	ob_results_finish(&r);
+	add_record(&from, "pillow", "obsim", 0, OB_FAILURE_NONE);
+	CHECK(!ob_lab_results(&from, &r, &e) && strstr(e.text, "no case 'pillow'"));
+	ob_results_finish(&r);
+	ob_records_finish(&from);
+}
+
+static void test_configuration(void)
+{
+	const ob_engine_kind *own = ob_engine_find("obsim"), *k;
+	const ob_case *c = ob_case_find("pile");
+	ob_run_settings s = own->usual, back;
+	char text[OB_CONFIGURATION_KEY];
+	ob_error e;
+	s.step_length = c->step;
+	s.tolerance = 5e-4 / 3;
+	ob_lab_print_configuration(text, sizeof text, own, &s);
+	CHECK(ob_lab_read_configuration(text, c, &k, &back, &e));
+	CHECK(k == own && !memcmp(&s, &back, sizeof s));
+	CHECK(!ob_lab_read_configuration("physx substeps=1", c, &k, &back, &e) && strstr(e.text, "no engine 'physx'"));
+	CHECK(!ob_lab_read_configuration("obsim substeps", c, &k, &back, &e));
+	CHECK(!ob_lab_read_configuration("obsim steps=3", c, &k, &back, &e));
+}
+
+static void test_schedule(void)
+{
+	ob_lab_plan p = { .repeats = 2 };
+	char word[64];
+	ob_error e;
+	ob_trials s = { 0 };
+	CHECK(ob_list_add_cases(&p.cases, "projectile") && ob_list_engines(&p.engines, "obsim,ode-quick", word));
+	CHECK(ob_sweep_parse(&p.sweep, "substeps=1,2", &e) && ob_lab_schedule(&p, &s, &e));
+	// the usual settings of each, and those that are swept; then the same again
+	CHECK(s.count >= 8 && s.count % 2 == 0 && !strcmp(s.trial[0].of, "projectile"));
+	for (size_t i = 0; i < s.count; i++)
+		CHECK(s.trial[i].guess_s > 0 && s.trial[i].repeat == (i >= s.count / 2));
+	ob_trials_finish(&s);
 }
 
 static double at(const ob_results *r, double error)
@@ -256,15 +177,11 @@ static void test_equal(void)
 
 int main(void)
 {
-	char folder[] = "/tmp/obsim-test-XXXXXX", path[64];
-	CHECK(mkdtemp(folder));
-	snprintf(path, sizeof path, "%s/results.csv", folder);
 	test_order();
 	test_repeats();
-	test_file(path);
-	test_broken_file(path);
+	test_records();
+	test_configuration();
+	test_schedule();
 	test_equal();
-	unlink(path);
-	CHECK(rmdir(folder) == 0); // nothing else is left there
 	return check_end();
 }

@@ -1,9 +1,8 @@
-// The lab's tables of made-up results, and the grid that they are printed with.
+// The lab's tables of made-up results.
 #include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
-#include "lab/grid.h"
 #include "lab/tables.h"
 
 static char *text;
@@ -35,32 +34,6 @@ static void expect_in(FILE *f, const char *const *what)
 		CHECK(strstr(text, *what));
 	}
 	free(text);
-}
-
-static void test_grid(void)
-{
-	ob_grid *g = ob_grid_new("lrl");
-	static const char *const cells[] = { "a", "number", "", "longer", "1 \u00b5s", "x", "", "", "end" };
-	for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
-		ob_grid_add(g, "%s", cells[i]);
-	FILE *f = begin();
-	ob_grid_print(g, f, false);
-	expect(f, "a       number\n"
-		  "longer    1 \u00b5s  x\n"
-		  "                end\n");
-	f = begin();
-	ob_grid_print(g, f, true);
-	expect(f, "| a      | number |     |\n"
-		  "| ------ | -----: | --- |\n"
-		  "| longer |   1 \u00b5s | x   |\n"
-		  "|        |        | end |\n");
-	ob_grid_add(g, "%s", "half a row");
-	f = begin();
-	ob_grid_print(g, f, false);
-	fclose(f);
-	CHECK(strstr(text, "half a row\n"));
-	free(text);
-	ob_grid_free(g);
 }
 
 static ob_result make(const char *name, const char *engine, double cost, double error, const char *failed)
@@ -107,8 +80,8 @@ static void test_tables(void)
 	ob_results_finish(&alone);
 	f = begin();
 	ob_lab_write_equal(f, &d);
-	expect_in(f, (const char *[]){ "case,error,", "\r\nstack-10,0.5,mm,1,obsim,",
-				       "\r\nstack-10,0.5,mm,1,ode-world,,\r\n", NULL });
+	expect_in(f, (const char *[]){ "case,error,", "\nstack-10,0.5,mm,1,obsim,",
+				       "\nstack-10,0.5,mm,1,ode-world,,\n", NULL });
 	ob_results_finish(&r);
 	d = ob_digest_make(&r);
 	f = begin();
@@ -118,7 +91,6 @@ static void test_tables(void)
 
 int main(void)
 {
-	test_grid();
 	test_tables();
 	return check_end();
 }

@@ -4,7 +4,7 @@
 #include "reference/mechanics.h"
 #include "world/world.h"
 
-enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // of body 1 in ob_trial.memory
+enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // of body 1 in ob_case_run_state.memory
 
 static void build_ball(ob_world *w, double radius, double e)
 {
@@ -14,7 +14,7 @@ static void build_ball(ob_world *w, double radius, double e)
 }
 
 // Counts the times that body 1 turned from falling to rising.
-static int bounces(ob_trial *t)
+static int bounces(ob_case_run_state *t)
 {
 	double v = ob_look_at(t, 1).v.z;
 	t->memory[MEMORY_BOUNCES] += t->memory[MEMORY_LAST] < 0 && v > 0;
@@ -22,7 +22,7 @@ static int bounces(ob_trial *t)
 	return (int)t->memory[MEMORY_BOUNCES];
 }
 
-static void fail_without_bounces(ob_trial *t)
+static void fail_without_bounces(ob_case_run_state *t)
 {
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
@@ -35,7 +35,7 @@ static void build_bounce(ob_world *w, uint32_t run)
 	build_ball(w, .5, 1);
 }
 
-static void observe_bounce(ob_trial *t)
+static void observe_bounce(ob_case_run_state *t)
 {
 	double scale = t->world->passport[1].mass * ob_look_gravity(t); // of a drop of 1 m
 	if (!t->frame)
@@ -44,7 +44,7 @@ static void observe_bounce(ob_trial *t)
 	ob_look_keep(&t->figure[0], fabs(ob_look_energy(t) - t->memory[MEMORY_APEX]) / scale);
 }
 
-static void judge_bounce(ob_trial *t)
+static void judge_bounce(ob_case_run_state *t)
 {
 	t->figure[1] = fabs(t->memory[MEMORY_BOUNCES] - 100);
 	fail_without_bounces(t);
@@ -77,7 +77,7 @@ static void build_apexes(ob_world *w, uint32_t run)
 }
 
 // The apex of each flight as its highest frame tells it: the rest of the rise is v^2 / 2 g.
-static void observe_apexes(ob_trial *t)
+static void observe_apexes(ob_case_run_state *t)
 {
 	int k = bounces(t);
 	ob_state b = ob_look_at(t, 1);
@@ -88,7 +88,7 @@ static void observe_apexes(ob_trial *t)
 	t->memory[MEMORY_APEX + k] = bottom + b.v.z * b.v.z / (2 * ob_look_gravity(t));
 }
 
-static void judge_apexes(ob_trial *t)
+static void judge_apexes(ob_case_run_state *t)
 {
 	for (int k = 1; k <= APEXES; k++)
 		ob_look_keep(&t->figure[0], fabs(t->memory[MEMORY_APEX + k] - ob_reference_apex(1, .8, k)));
@@ -117,7 +117,7 @@ static void build_bouncing_49(ob_world *w, uint32_t run)
 	ob_world_balls(w, 49);
 }
 
-static void observe_bouncing_49(ob_trial *t)
+static void observe_bouncing_49(ob_case_run_state *t)
 {
 	double error = ob_look_energy(t) - 49 * 10 * ob_look_gravity(t) * 5;
 	bounces(t);

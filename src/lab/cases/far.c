@@ -8,7 +8,7 @@
 static const ob_vec3 away = { 10e3, 0, 0 }; // m
 
 // m: the farthest apart that body "near" and its double "far" are, less the distance that they started with.
-static double apart(const ob_trial *t, uint32_t near, uint32_t far)
+static double apart(const ob_case_run_state *t, uint32_t near, uint32_t far)
 {
 	return ob_norm(ob_sub(ob_look_moved(t, far), ob_look_moved(t, near)));
 }
@@ -29,7 +29,7 @@ static void build_stacks(ob_world *w, uint32_t run)
 	build_slab_and_stack(w, away);
 }
 
-static double penetration(const ob_trial *t, uint32_t first)
+static double penetration(const ob_case_run_state *t, uint32_t first)
 {
 	ob_snapshot part = { .time = t->now.time, .count = STACK + 1 };
 	part.passport = t->now.passport + first;
@@ -41,7 +41,7 @@ static double penetration(const ob_trial *t, uint32_t first)
 
 enum { FAR_WORST, APART, DEEPER };
 
-static void observe_stacks(ob_trial *t)
+static void observe_stacks(ob_case_run_state *t)
 {
 	double near = penetration(t, 0), far = penetration(t, FAR_SLAB);
 	ob_look_keep(&t->figure[FAR_WORST], 1e3 * far);
@@ -50,7 +50,7 @@ static void observe_stacks(ob_trial *t)
 		ob_look_keep(&t->figure[APART], apart(t, i, FAR_SLAB + i));
 }
 
-static void judge_stacks(ob_trial *t)
+static void judge_stacks(ob_case_run_state *t)
 {
 	if (ob_look_farthest(t) > .25)
 		t->failed = "fell";
@@ -81,7 +81,7 @@ static void build_pairs(ob_world *w, uint32_t run)
 	ob_head_on_build(w, run, away);
 }
 
-static void judge_pairs(ob_trial *t)
+static void judge_pairs(ob_case_run_state *t)
 {
 	t->figure[0] = ob_head_on_error(t, 2);
 	t->figure[1] = fmax(apart(t, 0, 2), apart(t, 1, 3));

@@ -11,14 +11,14 @@ static void build_projectile(ob_world *w, uint32_t run)
 	b.state->w = ob_v3(1, 2, 3);
 }
 
-static void observe_projectile(ob_trial *t)
+static void observe_projectile(ob_case_run_state *t)
 {
 	const ob_state *start = t->world->state;
 	ob_vec3 exact = ob_reference_parabola(start->pose.p, start->v, t->world->gravity, t->time);
 	ob_look_keep(&t->figure[0], ob_norm(ob_sub(ob_look_at(t, 0).pose.p, exact)));
 }
 
-static void judge_projectile(ob_trial *t)
+static void judge_projectile(ob_case_run_state *t)
 {
 	if (ob_look_farthest(t) < 1e-6)
 		t->failed = "nothing moved";

@@ -26,7 +26,7 @@ static void build_slide(ob_world *w, uint32_t run)
 }
 
 // m, of the block along the slope, downwards and sideways
-static void crept(const ob_trial *t, double *down, double *aside)
+static void crept(const ob_case_run_state *t, double *down, double *aside)
 {
 	ob_mat3 r = ob_quat_matrix(t->world->state[0].pose.q);
 	ob_vec3 moved = ob_look_moved(t, 1);
@@ -34,14 +34,14 @@ static void crept(const ob_trial *t, double *down, double *aside)
 	*aside = ob_dot(moved, ob_column(&r, 1));
 }
 
-static void observe_stick(ob_trial *t)
+static void observe_stick(ob_case_run_state *t)
 {
 	double down, aside;
 	crept(t, &down, &aside);
 	ob_look_keep(&t->figure[0], 1e3 * hypot(down, aside));
 }
 
-static void judge_stick(ob_trial *t)
+static void judge_stick(ob_case_run_state *t)
 {
 	ob_mat3 r = ob_quat_matrix(t->world->state[0].pose.q);
 	if (fabs(ob_dot(ob_look_moved(t, 1), ob_column(&r, 2))) > .1)
@@ -65,7 +65,7 @@ const ob_case ob_case_incline_stick = {
 	.judge = judge_stick,
 };
 
-static void judge_slide(ob_trial *t)
+static void judge_slide(ob_case_run_state *t)
 {
 	double angle = 1.01 * ob_reference_friction_angle(mu), down, aside;
 	double exact = .5 * ob_reference_incline(ob_look_gravity(t), angle, mu) * t->time * t->time;
@@ -108,7 +108,7 @@ static void build_sliding(ob_world *w, uint32_t run)
 }
 
 // A block stops between frames: when what is left of its speed is gone, at the rate at which it goes.
-static void observe_sliding(ob_trial *t)
+static void observe_sliding(ob_case_run_state *t)
 {
 	for (uint32_t i = 1; i <= HEADINGS; i++) {
 		double *memory = &t->body_memory[8 * i], v = ob_norm(ob_look_at(t, i).v),
@@ -119,7 +119,7 @@ static void observe_sliding(ob_trial *t)
 	}
 }
 
-static void judge_sliding(ob_trial *t)
+static void judge_sliding(ob_case_run_state *t)
 {
 	double g = ob_look_gravity(t), way = ob_reference_stop_distance(speed, mu, g);
 	double least = INFINITY, most = 0;

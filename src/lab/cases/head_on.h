@@ -17,8 +17,8 @@ ob_head_on ob_head_on_of(uint32_t run);
 // Adds the pair to a world without gravity: both 1 m wide, the first comes in at 1 m/s along x.
 void ob_head_on_build(ob_world *w, uint32_t run, ob_vec3 at);
 // m/s, the scene's own scale being 1 m/s: how far both velocities, of bodies "first" and first + 1, are from Newton's.
-double ob_head_on_error(const ob_trial *t, uint32_t first);
+double ob_head_on_error(const ob_case_run_state *t, uint32_t first);
 // They went through each other, or never met.
-bool ob_head_on_missed(const ob_trial *t, uint32_t first);
+bool ob_head_on_missed(const ob_case_run_state *t, uint32_t first);
 
 #endif

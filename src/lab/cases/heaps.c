@@ -83,14 +83,14 @@ static void build_falling(ob_world *w, uint32_t run)
 	ob_world_falling(w, 100, 100 + run);
 }
 
-static void observe_pile(ob_trial *t)
+static void observe_pile(ob_case_run_state *t)
 {
 	ob_heap_observe(t);
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 
-static void judge_pile(ob_trial *t)
+static void judge_pile(ob_case_run_state *t)
 {
 	ob_heap_judge(t);
 	if (!t->failed && ob_look_farthest(t) < .1)

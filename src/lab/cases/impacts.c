@@ -30,7 +30,7 @@ void ob_head_on_build(ob_world *w, uint32_t run, ob_vec3 at)
 	}
 }
 
-double ob_head_on_error(const ob_trial *t, uint32_t first)
+double ob_head_on_error(const ob_case_run_state *t, uint32_t first)
 {
 	ob_head_on h = ob_head_on_of(t->run);
 	ob_reference_pair exact = ob_reference_impact(1, h.ratio, (ob_reference_pair){ 1, 0 }, h.e);
@@ -39,7 +39,7 @@ double ob_head_on_error(const ob_trial *t, uint32_t first)
 	return fmax(a, b);
 }
 
-bool ob_head_on_missed(const ob_trial *t, uint32_t first)
+bool ob_head_on_missed(const ob_case_run_state *t, uint32_t first)
 {
 	ob_state a = ob_look_at(t, first), b = ob_look_at(t, first + 1);
 	return a.v.x > .999 || a.pose.p.x > b.pose.p.x;
@@ -50,14 +50,14 @@ static void build_head_on(ob_world *w, uint32_t run)
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 }
 
-static void observe_head_on(ob_trial *t)
+static void observe_head_on(ob_case_run_state *t)
 {
 	double momentum = ob_norm(ob_sub(ob_measure_momentum(&t->now), ob_v3(1, 0, 0)));
 	ob_look_keep(&t->figure[2], momentum);
 	ob_look_keep(&t->figure[3], (ob_look_energy(t) - .5) / .5);
 }
 
-static void judge_head_on(ob_trial *t)
+static void judge_head_on(ob_case_run_state *t)
 {
 	t->figure[ob_head_on_of(t->run).e > 0 ? 0 : 1] = ob_head_on_error(t, 0);
 	if (ob_head_on_missed(t, 0))
@@ -110,14 +110,14 @@ static void build_cradle_2(ob_world *w, uint32_t run)
 	build_cradle(w, 2);
 }
 
-static void observe_cradle(ob_trial *t)
+static void observe_cradle(ob_case_run_state *t)
 {
 	if (!t->frame)
 		t->memory[0] = ob_look_energy(t);
 	ob_look_keep(&t->figure[1], ob_look_energy(t) / t->memory[0] - 1);
 }
 
-static void judge_cradle(ob_trial *t)
+static void judge_cradle(ob_case_run_state *t)
 {
 	int incoming = 0;
 	for (int i = 0; i < CRADLE; i++)

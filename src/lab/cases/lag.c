@@ -9,14 +9,14 @@ static void build_lag(ob_world *w, uint32_t run)
 	ob_head_on_build(w, run, ob_v3(0, 0, 0));
 }
 
-static void observe_lag(ob_trial *t)
+static void observe_lag(ob_case_run_state *t)
 {
 	double momentum = ob_norm(ob_sub(ob_measure_momentum(&t->now), ob_v3(1, 0, 0)));
 	ob_look_keep(&t->figure[0], momentum);
 	ob_look_keep(&t->figure[2], (ob_look_energy(t) - .5) / .5);
 }
 
-static void judge_lag(ob_trial *t)
+static void judge_lag(ob_case_run_state *t)
 {
 	t->figure[1] = ob_head_on_error(t, 0);
 	if (ob_head_on_missed(t, 0))

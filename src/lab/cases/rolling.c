@@ -29,13 +29,13 @@ static void build_rolling_y(ob_world *w, uint32_t run)
 	build_push(w, ob_v3(0, 1, 0));
 }
 
-static double squared_error(const ob_trial *t, uint32_t id, double acceleration)
+static double squared_error(const ob_case_run_state *t, uint32_t id, double acceleration)
 {
 	ob_vec3 direction = ob_scale(t->world->passport[BOX].force, 1 / push);
 	return ob_norm2(ob_sub(ob_look_at(t, id).v, ob_scale(direction, acceleration * t->time)));
 }
 
-static void observe_push(ob_trial *t)
+static void observe_push(ob_case_run_state *t)
 {
 	ob_reference_rolling exact = ob_reference_push(push, .4, 10, 1, BALLS, ob_look_gravity(t));
 	double error = squared_error(t, BOX, exact.box_a) + squared_error(t, BALL, exact.ball_a);
@@ -43,7 +43,7 @@ static void observe_push(ob_trial *t)
 		t->figure[0] += (error - t->figure[0]) / t->frame; // mean over the frames
 }
 
-static void judge_push(ob_trial *t)
+static void judge_push(ob_case_run_state *t)
 {
 	ob_vec3 moved = ob_look_moved(t, BOX);
 	if (hypot(moved.x, moved.y) < .1)
@@ -104,7 +104,7 @@ static void build_slip_to_roll(ob_world *w, uint32_t run)
 enum { MEMORY_SLIP, MEMORY_ROLLS }; // m/s in the last frame; s
 
 // Rolling begins between frames: where the slip would vanish that is still there, at the rate at which it shrinks.
-static void observe_slip_to_roll(ob_trial *t)
+static void observe_slip_to_roll(ob_case_run_state *t)
 {
 	ob_state b = ob_look_at(t, 1);
 	double slip = b.v.x - b.w.y * .5, lost = t->memory[MEMORY_SLIP] - slip;
@@ -113,7 +113,7 @@ static void observe_slip_to_roll(ob_trial *t)
 	t->memory[MEMORY_SLIP] = slip;
 }
 
-static void judge_slip_to_roll(ob_trial *t)
+static void judge_slip_to_roll(ob_case_run_state *t)
 {
 	double g = ob_look_gravity(t);
 	t->figure[0] = fabs(ob_look_at(t, 1).v.x / ob_reference_roll_speed(7) - 1);
@@ -160,7 +160,7 @@ static void build_ball_slips(ob_world *w, uint32_t run)
 	build_ball_on_slope(w, .9 * ob_reference_ball_grip(slope));
 }
 
-static void judge_ball_on_slope(ob_trial *t)
+static void judge_ball_on_slope(ob_case_run_state *t)
 {
 	ob_mat3 r = ob_quat_matrix(t->world->state[0].pose.q);
 	ob_vec3 down = ob_column(&r, 0);

@@ -26,7 +26,7 @@ static double squared_overlap(double distance, double reach)
 }
 
 // m^2, over all pairs; body 0 is the ground.
-static double squared_penetration(const ob_trial *t)
+static double squared_penetration(const ob_case_run_state *t)
 {
 	double sum = 0;
 	for (uint32_t a = 1; a < t->now.count; a++) {
@@ -38,13 +38,13 @@ static double squared_penetration(const ob_trial *t)
 	return sum;
 }
 
-static void fail_below_ground(ob_trial *t)
+static void fail_below_ground(ob_case_run_state *t)
 {
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 
-static void judge_spheres(ob_trial *t)
+static void judge_spheres(ob_case_run_state *t)
 {
 	if (ob_look_farthest(t) < .05)
 		t->failed = "nothing moved";
@@ -55,7 +55,7 @@ static void build_666(ob_world *w, uint32_t run)
 	build_spheres(w, .101, 0);
 }
 
-static void observe_666(ob_trial *t)
+static void observe_666(ob_case_run_state *t)
 {
 	if (t->frame)
 		t->figure[0] += (squared_penetration(t) - t->figure[0]) / t->frame; // mean over the frames
@@ -90,7 +90,7 @@ static void build_elastic_666(ob_world *w, uint32_t run)
 	build_spheres(w, 1.101, 1);
 }
 
-static void observe_elastic_666(ob_trial *t)
+static void observe_elastic_666(ob_case_run_state *t)
 {
 	double energy = ob_look_energy(t);
 	if (!t->frame)

@@ -16,7 +16,7 @@ static void build_spin(ob_world *w, uint32_t run)
 
 enum { MEMORY_ENERGY, MEMORY_MOMENTUM }; // at the start; the momentum takes three places
 
-static void observe_spin(ob_trial *t)
+static void observe_spin(ob_case_run_state *t)
 {
 	static _Thread_local ob_reference_spin exact; // too large for the trial's memory; planned anew in each run
 	double energy = ob_look_energy(t), *memory = t->memory;
@@ -38,7 +38,7 @@ static void observe_spin(ob_trial *t)
 	ob_look_keep(&t->figure[2], ob_reference_turn_between(q, ob_look_at(t, 0).pose.q));
 }
 
-static void judge_spin(ob_trial *t)
+static void judge_spin(ob_case_run_state *t)
 {
 	ob_quat now = ob_look_at(t, 0).pose.q;
 	if (ob_reference_turn_between(t->world->state->pose.q, now) == 0)

@@ -4,7 +4,7 @@
 
 enum { MEMORY_SUM, MEMORY_FRAMES }; // m: of the mean penetrations so far
 
-void ob_stand_observe(ob_trial *t)
+void ob_stand_observe(ob_case_run_state *t)
 {
 	ob_penetration p;
 	ob_measure_penetration(&t->now, &p);
@@ -22,7 +22,7 @@ void ob_stand_observe(ob_trial *t)
 		t->failed = "fell";
 }
 
-void ob_stand_judge(ob_trial *t)
+void ob_stand_judge(ob_case_run_state *t)
 {
 	t->figure[OB_STAND_MEAN] = 1e3 * t->memory[MEMORY_SUM] / t->memory[MEMORY_FRAMES];
 }

@@ -4,7 +4,7 @@
 
 #include "lab/case.h"
 
-enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_FIGURES }; // ob_trial.figure
+enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_FIGURES }; // ob_case_run_state.figure
 
 // Initialiser of the figures; targets in mm.
 #define OB_STAND_FIGURE(worst, drift) \
@@ -19,7 +19,7 @@ enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_
 	.judge = ob_stand_judge
 
 // Fails the trial when a body is more than a quarter of a metre from its place.
-void ob_stand_observe(ob_trial *t);
-void ob_stand_judge(ob_trial *t);
+void ob_stand_observe(ob_case_run_state *t);
+void ob_stand_judge(ob_case_run_state *t);
 
 #endif

@@ -11,21 +11,21 @@ enum { WRONG_SIDE, MOVED, SIDE_FIGURES };
 // clang-format on
 static const double fallen = .05; // m
 
-static void observe_side(ob_trial *t)
+static void observe_side(ob_case_run_state *t)
 {
 	ob_look_keep(&t->figure[MOVED], 1e3 * ob_look_farthest(t));
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 
-static void judge_stands(ob_trial *t)
+static void judge_stands(ob_case_run_state *t)
 {
 	t->figure[WRONG_SIDE] = t->figure[MOVED] > 1e3 * fallen;
 	if (t->figure[WRONG_SIDE] > 0 && !t->failed)
 		t->failed = "fell";
 }
 
-static void judge_falls(ob_trial *t)
+static void judge_falls(ob_case_run_state *t)
 {
 	t->figure[WRONG_SIDE] = t->failed || t->figure[MOVED] <= 1e3 * fallen;
 	if (t->figure[WRONG_SIDE] > 0 && !t->failed)

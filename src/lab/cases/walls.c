@@ -28,7 +28,7 @@ static void build_shot(ob_world *w, uint64_t *seed, ob_vec3 target, double speed
 	b.state->pose.q = ob_world_random_attitude(seed);
 }
 
-static bool is_over(const ob_trial *t, double speed)
+static bool is_over(const ob_case_run_state *t, double speed)
 {
 	return t->time > far_enough / speed + 4 * t->settings.step_length;
 }
@@ -54,7 +54,7 @@ static void build_thin_wall(ob_world *w, uint32_t run)
 }
 
 // Half inside is as bad as through. Beyond the wall's rim nothing counts.
-static void observe_thin_wall(ob_trial *t)
+static void observe_thin_wall(ob_case_run_state *t)
 {
 	double speed = wall_speed[t->run];
 	for (uint32_t i = 0; i < AIMS && !is_over(t, speed); i++) {
@@ -69,7 +69,7 @@ static void observe_thin_wall(ob_trial *t)
 	}
 }
 
-static double count(const ob_trial *t, int what)
+static double count(const ob_case_run_state *t, int what)
 {
 	double sum = 0;
 	for (uint32_t i = 0; i < AIMS; i++)
@@ -77,7 +77,7 @@ static double count(const ob_trial *t, int what)
 	return sum;
 }
 
-static void judge_thin_wall(ob_trial *t)
+static void judge_thin_wall(ob_case_run_state *t)
 {
 	double passed = count(t, MEMORY_PASSED), missed = AIMS - count(t, MEMORY_HIT);
 	t->figure[t->run] = fmax(passed, missed);
@@ -130,7 +130,7 @@ static void build_bullets(ob_world *w, uint32_t run)
 }
 
 // They have passed when they have changed sides. A pair that hits and then slips round each other is slower.
-static void observe_bullets(ob_trial *t)
+static void observe_bullets(ob_case_run_state *t)
 {
 	double speed = bullet_speed[t->run];
 	for (uint32_t i = 0; i < AIMS && !is_over(t, speed); i++) {
@@ -144,7 +144,7 @@ static void observe_bullets(ob_trial *t)
 	}
 }
 
-static void judge_bullets(ob_trial *t)
+static void judge_bullets(ob_case_run_state *t)
 {
 	judge_thin_wall(t);
 }

@@ -1,7 +1,5 @@
-#include "cli/lab_json.h"
-
 #include "experiment/json.h"
-#include "cli/version.h"
+#include "lab/report.h"
 #include "lab/digest.h"
 
 static void put_settings(ob_json *j, const ob_run_settings *s)
@@ -73,12 +71,12 @@ static void put_equal(ob_json *j, const ob_digest *d, const ob_case *c)
 	ob_json_close(j);
 }
 
-void ob_lab_write_json(const ob_results *r, FILE *f)
+void ob_lab_write_json(const ob_results *r, const char *version, FILE *f)
 {
 	ob_json j = { .f = f };
 	ob_digest d = ob_digest_make(r);
 	ob_json_open(&j, NULL);
-	ob_json_string(&j, "version", ob_version_number);
+	ob_json_string(&j, "version", version);
 	ob_json_string(&j, "commit", r->commit);
 	ob_json_string(&j, "machine", r->machine);
 	ob_json_open_list(&j, "results");
