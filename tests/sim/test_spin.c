@@ -1,4 +1,5 @@
-// Hard case: boxes that spin free of torque for five minutes, through the simulators, step by step.
+// Boxes that spin free of torque for five minutes while they are near others, watched for contacts: step by step
+// through the island solver.
 #include <stdlib.h>
 
 #include "check.h"
@@ -8,12 +9,12 @@
 static const ob_vec3 order[] = { { 1, 2, 3 }, { 1, 3, 2 }, { 2, 1, 3 }, { 2, 3, 1 }, { 3, 1, 2 }, { 3, 2, 1 } };
 enum { BOXES = sizeof order / sizeof *order };
 
-static little_scene *spinning_boxes(double apart)
+static little_scene *spinning_boxes(void)
 {
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < BOXES; i++) {
-		little_object *o = little_box(s, 1, ob_v3(.3, .2, .1), ob_v3(apart * i, 0, 0));
+		little_object *o = little_box(s, 1, ob_v3(.3, .2, .1), ob_v3(.75 * i, 0, 0));
 		o->passport.inertia = order[i];
 		o->state.w = ob_v3(.05, 5, .02);
 	}
@@ -28,10 +29,10 @@ static ob_vec3 momentum_of(const ob_state *b, ob_vec3 inertia)
 }
 
 // Energy and momentum in every step, the attitude every ten seconds.
-static void spin(double apart, bool watched, const char *what)
+int main(void)
 {
 	double energy = 0, momentum = 0, turned = 0;
-	little_scene *s = spinning_boxes(apart);
+	little_scene *s = spinning_boxes();
 	ob_reference_spin exact[BOXES];
 	little_universe l;
 	little_open(&l, s);
@@ -52,18 +53,12 @@ static void spin(double apart, bool watched, const char *what)
 			turned = fmax(turned, ob_reference_turn_between(q, b.pose.q));
 		}
 	}
-	printf("%s: energy within %.1e, momentum %.1e, attitude %.1e rad\n", what, energy, momentum, turned);
+	printf("energy within %.1e, momentum %.1e, attitude %.1e rad\n", energy, momentum, turned);
 	CHECK_NEAR(energy, 0, 1e-9);
 	CHECK_NEAR(momentum, 0, 1e-12);
 	CHECK_NEAR(turned, 0, 1e-8);
-	CHECK((ob_universe_step_data(l.u)->count->pairs > 0) == watched);
+	CHECK(ob_universe_step_data(l.u)->count->pairs > 0);
 	little_close(&l);
 	free(s);
-}
-
-int main(void)
-{
-	spin(100, false, "alone");
-	spin(.75, true, "beside each other, watched for contacts");
 	return check_end();
 }
