@@ -3,8 +3,6 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "contact/kernel.h"
-
 static void set3(lanes *x, int l, ob_vec3 v)
 {
 	x[0][l] = v.x;

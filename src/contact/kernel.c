@@ -1,6 +1,6 @@
 // The contact solver's arithmetic on a batch. Compiled once for each instruction set under the name OB_KERNEL (see
 // meson.build): no lane sees another and nothing is contracted, so the bits are the same.
-#include "contact/kernel.h"
+#include "contact/batch.h"
 
 #include <string.h>
 

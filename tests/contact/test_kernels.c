@@ -1,5 +1,5 @@
 // Whatever the processor: the kernels for each instruction set give the same bits.
-#include "contact/kernel.h"
+#include "contact/batch.h"
 
 #include "check.h"
 #include "scene.h"
