@@ -1,5 +1,6 @@
 #include "scene/fields.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -10,7 +11,6 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
-#include "scene/colour.h"
 #include "scene/sandbox.h"
 #include "scene/text.h"
 #include "settings/settings.h"
@@ -212,6 +212,33 @@ static void read_rotation(const reader *r)
 	rotation t;
 	ob_fields_read(r->L, -1, where, rotation_fields, 2, &t);
 	*(ob_quat *)r->to = ob_quat_turn(ob_quat_identity(), ob_scale(t.axis, t.degrees * (M_PI / 180)));
+}
+
+void ob_colour_from_srgb(const double rgba[4], float linear[4])
+{
+	for (int i = 0; i < 3; i++) // IEC 61966-2-1
+		linear[i] = (float)(rgba[i] <= .04045 ? rgba[i] / 12.92 : pow((rgba[i] + .055) / 1.055, 2.4));
+	linear[3] = (float)rgba[3];
+}
+
+static int hex_digit(char c)
+{
+	return isdigit((unsigned char)c) ? c - '0' : tolower((unsigned char)c) - 'a' + 10;
+}
+
+bool ob_colour_from_hex(const char *text, float linear[4])
+{
+	size_t n = strlen(text);
+	if (text[0] != '#' || (n != 7 && n != 9))
+		return false;
+	double rgba[4] = { 0, 0, 0, 1 };
+	for (size_t i = 1; i < n; i += 2) {
+		if (!isxdigit((unsigned char)text[i]) || !isxdigit((unsigned char)text[i + 1]))
+			return false;
+		rgba[i / 2] = (16 * hex_digit(text[i]) + hex_digit(text[i + 1])) / 255.;
+	}
+	ob_colour_from_srgb(rgba, linear);
+	return true;
 }
 
 static void read_colour(const reader *r)

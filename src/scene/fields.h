@@ -47,4 +47,10 @@ void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *
 // Raises "where.field: expected ..., got <what lies at index>".
 _Noreturn void ob_fields_fail(lua_State *L, const char *where, const char *field, const char *expected, int index);
 
+// Colours as people write them are sRGB; inside they are linear RGB and alpha. sRGB components (0..1) to linear; alpha
+// stays.
+void ob_colour_from_srgb(const double rgba[4], float linear[4]);
+// "#rrggbb" or "#rrggbbaa"; false: it is neither.
+bool ob_colour_from_hex(const char *text, float linear[4]);
+
 #endif

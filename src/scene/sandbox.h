@@ -2,7 +2,7 @@
 //
 // No files, no system, no loading of code, no metatables, no coroutines, no protected calls. Bounded in memory,
 // in instructions and in time; everything that runs long inside one instruction is guarded in library.c.
-// The same scene gives the same run on any machine: pairs() has a fixed order (pairs.c), random numbers a seed.
+// The same scene gives the same run on any machine: pairs() has a fixed order (library.c), random numbers a seed.
 //
 // Every error is one line, "path:line: text". A sandbox belongs to one thread; several may exist at once.
 #ifndef OB_SCENE_SANDBOX_H
@@ -39,5 +39,8 @@ int ob_sandbox_line(lua_State *L);
 _Noreturn void ob_sandbox_fail(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // Counts work done outside the Lua machine, in instructions; raises an error at a limit.
 void ob_sandbox_spend(lua_State *L, unsigned instructions);
+
+// lua_CFunction, no arguments: builds the globals of a fresh state, the harmless part of Lua's libraries (library.c).
+int ob_library_open(lua_State *L);
 
 #endif

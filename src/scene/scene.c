@@ -7,8 +7,6 @@
 #include <sys/stat.h>
 
 #include "scene/builder.h"
-#include "scene/colour.h"
-#include "scene/library.h"
 #include "scene/sandbox.h"
 
 #define FILE_MAX ((size_t)4 << 20) // bytes of a scene file
