@@ -4,7 +4,7 @@
 
 #include "engine/engine.h"
 
-extern const ob_engine_kind ob_engine_obsim; // obsim.c: one engine for each way to exchange, and one with ODE's stepper
+extern const ob_engine_kind ob_engine_obsim; // obsim.c: one engine for each contact solver, and one with ODE's stepper
 extern const ob_engine_kind ob_engine_obsim_jacobi;
 extern const ob_engine_kind ob_engine_obsim_ode;
 extern const ob_engine_kind ob_engine_obsim_ghost;
