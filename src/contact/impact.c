@@ -389,8 +389,8 @@ void ob_point_impact_solve(const ob_point_impact *in, ob_vec3 arm, ob_vec3 norma
 {
 	point_rows r;
 	double x[POINT_ROWS];
-	bool round = in->inertia.x == in->inertia.y && in->inertia.y == in->inertia.z; // any axes do
-	ob_mat3 body = ob_quat_matrix(round ? ob_quat_identity() : s->pose.q);
+	bool isotropic = in->inertia.x == in->inertia.y && in->inertia.y == in->inertia.z; // any axes do
+	ob_mat3 body = ob_quat_matrix(isotropic ? ob_quat_identity() : s->pose.q);
 	point_rows_init(&r, in, &body, arm, normal, s);
 	solve_point(&r, in->friction, in->restitution, x);
 	ob_vec3 push = ob_v3(0, 0, 0), turn = ob_v3(0, 0, 0);

@@ -11,9 +11,9 @@ static ob_solver_iteration iteration_of(bool first)
 	};
 }
 
-static void solve(scene *s, int rounds)
+static void solve(scene *s, int iterations)
 {
-	for (int k = 0; k < rounds; k++) {
+	for (int k = 0; k < iterations; k++) {
 		ob_solver_iteration iteration = iteration_of(k == 0);
 		ob_batch_solve(&s->batch, &iteration, s->u, s->v, s->d, s->delta);
 	}
@@ -66,7 +66,7 @@ static void test_both_sides(void)
 	CHECK(pressed > 2000);
 }
 
-// After enough rounds no point closes by more than its gap, and those that carry are at it.
+// After enough iterations no point closes by more than its gap, and those that carry are at it.
 static void test_solution(void)
 {
 	uint64_t seed = 2;
@@ -215,10 +215,10 @@ static void test_rates(void)
 	}
 }
 
-// One body, row 1, between four others, rows 2 to 5, for Jacobi exchanges.
+// One body, row 1, between four others, rows 2 to 5, for Jacobi iterations.
 typedef struct star {
 	scene s;
-	body hub;
+	body middle;
 } star;
 
 static void random_star(star *t, uint64_t *seed, double push)
@@ -226,20 +226,20 @@ static void random_star(star *t, uint64_t *seed, double push)
 	memset(t, 0, sizeof *t);
 	scene *s = &t->s;
 	ob_batch_init(&s->batch, OB_KIND_FULL);
-	t->hub = random_body(seed, 3);
+	t->middle = random_body(seed, 3);
 	for (int l = 0; l < OB_LANES; l++) {
 		pair *p = &s->p[l];
 		*p = random_pair(seed, 1);
-		p->b = t->hub;
+		p->b = t->middle;
 		for (int j = 0; j < p->points; j++) // the same point seen from both centres
-			p->arm_b[j] = ob_sub(ob_add(p->a.p, p->arm_a[j]), t->hub.p);
+			p->arm_b[j] = ob_sub(ob_add(p->a.p, p->arm_a[j]), t->middle.p);
 		put_pair(&s->batch, l, p, 2 + (uint32_t)l, 1);
 		random_row(seed, &p->a, s->v[2 + l]);
 		double n[3] = { p->normal.x, p->normal.y, p->normal.z };
 		for (int c = 0; c < 3; c++)
 			s->v[2 + l][c] -= push * n[c];
 	}
-	random_row(seed, &t->hub, s->v[1]);
+	random_row(seed, &t->middle, s->v[1]);
 	memcpy(s->u, s->v, sizeof s->u);
 	s->batch.kb = lanes_of(OB_LANES);
 	ob_batch_prepare(&s->batch);
@@ -247,7 +247,7 @@ static void random_star(star *t, uint64_t *seed, double push)
 
 static double star_energy(const star *t, const ob_body_row *rows)
 {
-	double sum = energy(&t->hub, rows[1]);
+	double sum = energy(&t->middle, rows[1]);
 	for (int l = 0; l < OB_LANES; l++)
 		sum += energy(&t->s.p[l].a, rows[2 + l]);
 	return sum;
@@ -259,7 +259,7 @@ static void check_star(const star *t, const ob_body_row *rows, const ob_body_row
 	ob_vec3 m = { 0, 0, 0 }, l = { 0, 0, 0 };
 	double scale = 1e-9;
 	for (int k = 0; k <= OB_LANES; k++) {
-		const body *b = k ? &t->s.p[k - 1].a : &t->hub;
+		const body *b = k ? &t->s.p[k - 1].a : &t->middle;
 		ob_vec3 mk = ob_sub(momentum(b, rows[1 + k]), momentum(b, before[1 + k]));
 		ob_vec3 lk = ob_sub(angular_momentum(b, rows[1 + k]), angular_momentum(b, before[1 + k]));
 		m = ob_add(m, mk);

@@ -22,11 +22,11 @@ static void add_body(little_scene *s, uint64_t *seed, ob_vec3 p, double e)
 }
 
 // Bodies in a loose grid, moving towards its middle.
-static little_scene *closed_scene(uint64_t seed, ob_solver_kind exchange)
+static little_scene *closed_scene(uint64_t seed, ob_solver_kind solver)
 {
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
-	s->run.solver = exchange;
+	s->run.solver = solver;
 	int side = 2 + (int)(2 * uniform(&seed));
 	double e = uniform(&seed) < .3 ? 0 : uniform(&seed) < .3 ? 1 : uniform(&seed);
 	for (int i = 0; i < side * side * side; i++) {
@@ -45,9 +45,9 @@ static double sum_of_momenta(const little_scene *s)
 	return sum;
 }
 
-static void check_scene(uint64_t seed, ob_solver_kind exchange)
+static void check_scene(uint64_t seed, ob_solver_kind solver)
 {
-	little_scene *s = closed_scene(seed, exchange);
+	little_scene *s = closed_scene(seed, solver);
 	little_universe l;
 	little_open(&l, s);
 	ob_vec3 momentum = ob_measure_momentum(&l.now);

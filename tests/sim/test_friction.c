@@ -20,7 +20,7 @@ static slope incline(double angle)
 	return (slope){ q, ob_column(&r, 0), ob_column(&r, 2) };
 }
 
-// When a speed that falls evenly gets to zero, from two looks at it, h apart, the second one at time t.
+// When a speed that falls evenly gets to zero, from two samples of it, h apart, the second one at time t.
 static double zero_of(double before, double now, double h, double t)
 {
 	return t + h * now / (before - now);

@@ -1,4 +1,4 @@
-// The two exchanges that are there to be measured against the right ones: neighbours as ghosts, and read late.
+// The two solvers that are there to be measured against the right ones: neighbours as ghosts, and read late.
 #include <stdlib.h>
 
 #include "check.h"
@@ -9,11 +9,11 @@ typedef struct outcome {
 } outcome;
 
 // A box or sphere of mass 1 at 1 m/s hits one of mass "ratio" at rest.
-static outcome hit(uint32_t exchange, uint32_t lag, bool boxes, double ratio, double e)
+static outcome hit(uint32_t solver, uint32_t lag, bool boxes, double ratio, double e)
 {
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
-	s->run.solver = exchange;
+	s->run.solver = solver;
 	s->run.lag = lag;
 	for (int i = 0; i < 2; i++) {
 		ob_vec3 at = ob_v3(1.537 * i, 0, 0);
@@ -72,9 +72,9 @@ static void ghosts_are_wrong(void)
 // Against what does not move both are right: that is why the mistake goes unseen for long.
 static void grounds_are_ghosts(void)
 {
-	for (uint32_t exchange = OB_SOLVER_GHOST; exchange <= OB_SOLVER_LAGGED; exchange++) {
+	for (uint32_t solver = OB_SOLVER_GHOST; solver <= OB_SOLVER_LAGGED; solver++) {
 		little_scene *s = little_scene_new();
-		s->run.solver = exchange;
+		s->run.solver = solver;
 		little_ground(s);
 		little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
 		little_universe l;
@@ -89,15 +89,15 @@ static void grounds_are_ghosts(void)
 // A stack comes over many steps: what is kept from one step to the next must be each side's own.
 static void stacks_run_on(void)
 {
-	for (uint32_t exchange = OB_SOLVER_GHOST; exchange <= OB_SOLVER_LAGGED; exchange++) {
+	for (uint32_t solver = OB_SOLVER_GHOST; solver <= OB_SOLVER_LAGGED; solver++) {
 		little_scene *s = little_scene_new();
-		s->run.solver = exchange;
+		s->run.solver = solver;
 		little_stack(s, 3, 1);
 		little_universe l;
 		little_open(&l, s);
 		little_run(&l, 120);
 		double worst = little_penetration(&l).max_m;
-		printf("exchange %u: stack of 3 after 2 s: %g mm deep, top at %g m\n", exchange, worst * 1e3,
+		printf("solver %u: stack of 3 after 2 s: %g mm deep, top at %g m\n", solver, worst * 1e3,
 		       little_state(&l, 3).pose.p.z);
 		CHECK(isfinite(worst));
 		little_close(&l);

@@ -9,11 +9,11 @@ enum { SIDE = 10, BOXES = SIDE * SIDE };
 static_assert(BOXES > (int)OB_COLOURS, "more partners than colours");
 
 // platform_mass 0: static.
-// limit: m, of the depth at any moment. Jacobi exchanges, with their split masses, stop a landing late.
-static void stand(ob_solver_kind exchange, double platform_mass, double limit)
+// limit: m, of the depth at any moment. Jacobi iterations, with their split masses, stop a landing late.
+static void stand(ob_solver_kind solver, double platform_mass, double limit)
 {
 	little_scene *s = little_scene_new();
-	s->run.solver = exchange;
+	s->run.solver = solver;
 	little_ground(s);
 	little_box(s, platform_mass, ob_v3(6, 6, .5), ob_v3(0, 0, .5));
 	for (int i = 0; i < BOXES; i++)
@@ -38,7 +38,7 @@ static void stand(ob_solver_kind exchange, double platform_mass, double limit)
 		off = fmax(off, ob_norm(ob_sub(at.pose.p, ob_v3(start.x, start.y, 1.4))));
 		speed = fmax(speed, ob_norm(at.v));
 	}
-	printf("exchange %d, platform %g kg: deepest %.3f mm, boxes off by %.3f mm, at most %.1e m/s\n", exchange,
+	printf("solver %d, platform %g kg: deepest %.3f mm, boxes off by %.3f mm, at most %.1e m/s\n", solver,
 	       platform_mass, 1e3 * deepest, 1e3 * off, speed);
 	CHECK(deepest < limit);
 	CHECK(off < 1e-3);

@@ -135,7 +135,7 @@ int main(int argc, char **argv)
 		free(s);
 		CHECK(c.gross <= 1e-5);
 		CHECK(c.net <= 1e-9);
-		// What rests and is hit loses its support at the stride's start, not at the instant of the impact.
+		// What rests and is hit loses its support at the partial substep's start, not at the instant of the impact.
 		CHECK(c.rise <= 3e-4);
 		if (kind == FREE) {
 			CHECK(c.lost <= 1e-13);

@@ -1,4 +1,4 @@
-// Coming to rest, asleep or awake, by either kind of exchange and either integrator; waking, going away, coming.
+// Coming to rest, asleep or awake, by either kind of solver and either integrator; waking, going away, coming.
 #include <stdlib.h>
 
 #include "check.h"
@@ -20,11 +20,11 @@ static uint32_t awake(const little_universe *l)
 }
 
 // A stack of five falls asleep, sleeps on without moving by a bit, and wakes all through when a box hits its top.
-static void test_sleep(ob_solver_kind exchange)
+static void test_sleep(ob_solver_kind solver)
 {
 	little_scene *s = little_scene_new();
 	s->run.sleeping = 1;
-	s->run.solver = exchange;
+	s->run.solver = solver;
 	little_stack(s, 5, 3);
 	little_object *thrown = little_box(s, 500, ob_v3(.3, .3, .3), ob_v3(-20, 0, 4.8));
 	thrown->state.v = ob_v3(5, 0, 19.62); // comes down on the top after 4 s
@@ -47,7 +47,7 @@ static void test_sleep(ob_solver_kind exchange)
 	CHECK(woke);
 	little_run_to(&l, 6);
 	CHECK(ob_norm(ob_sub(little_state(&l, 5).pose.p, top.pose.p)) > .005); // it was hit: 18 mm with 512 substeps
-	if (exchange == OB_SOLVER_COLOURED) { // by Jacobi exchanges a stack that was hit sways on for long
+	if (solver == OB_SOLVER_COLOURED) { // with Jacobi iterations a stack that was hit sways on for long
 		little_run_to(&l, 20);
 		CHECK(all_asleep(&l));
 		CHECK(awake(&l) == 0);
@@ -216,10 +216,10 @@ static void test_round_shapes(void)
 	free(s);
 }
 
-static void check_stack(ob_solver_kind exchange, ob_integrator integrator, double deepest)
+static void check_stack(ob_solver_kind solver, ob_integrator integrator, double deepest)
 {
 	little_scene *s = little_scene_new();
-	s->run.solver = exchange;
+	s->run.solver = solver;
 	s->run.integrator = integrator;
 	little_stack(s, 5, 8);
 	little_universe l;
@@ -233,7 +233,7 @@ static void check_stack(ob_solver_kind exchange, ob_integrator integrator, doubl
 	CHECK(ob_norm(moved) < .005);
 	CHECK(deep < deepest);
 	if (!(deep < deepest))
-		printf("exchange %d, integrator %d: deepest %.3f mm\n", exchange, integrator, 1e3 * deep);
+		printf("solver %d, integrator %d: deepest %.3f mm\n", solver, integrator, 1e3 * deep);
 	little_close(&l);
 	free(s);
 }

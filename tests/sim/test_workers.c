@@ -63,11 +63,11 @@ static uint64_t run(const little_scene *s, uint32_t workers, uint64_t steps)
 }
 
 // Boxes, spheres, a capsule and a cylinder that fall on each other and on a fixed box, some with restitution.
-static little_scene *heap(ob_solver_kind exchange, ob_integrator integrator)
+static little_scene *heap(ob_solver_kind solver, ob_integrator integrator)
 {
 	uint64_t seed = 1;
 	little_scene *s = little_scene_new();
-	s->run.solver = exchange;
+	s->run.solver = solver;
 	s->run.integrator = integrator;
 	s->run.sleeping = 1;
 	little_ground(s);
@@ -85,9 +85,9 @@ static little_scene *heap(ob_solver_kind exchange, ob_integrator integrator)
 	return s;
 }
 
-static void compare(ob_solver_kind exchange, ob_integrator integrator, double tolerance, uint64_t steps)
+static void compare(ob_solver_kind solver, ob_integrator integrator, double tolerance, uint64_t steps)
 {
-	little_scene *s = heap(exchange, integrator);
+	little_scene *s = heap(solver, integrator);
 	s->run.tolerance = tolerance;
 	s->run.substeps = tolerance > 0 ? 1 : s->run.substeps;
 	uint64_t one = run(s, 1, steps);
