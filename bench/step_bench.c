@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "contact/batch.h"
-#include "motion/landing.h"
+#include "motion/flight.h"
 #include "motion/spin.h"
 #include "sim/broadphase.h"
 #include "table/table.h"

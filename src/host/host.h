@@ -5,7 +5,7 @@
 //   ob_host_go      the gate opens; the workers run on by themselves until the step asked for
 //   ob_host_wait    the caller sleeps until they stand there; objects that are to be added or removed on the way, by
 //                   timetable or on request, are so in pauses that the caller does not see
-//   ob_host_stop    everyone leaves; the universe is removed
+//   ob_host_stop    all workers leave; the universe is removed
 //
 // One per object: worker i runs object i. A slot that is empty has its (sleeping) worker, too, so that an object can be
 // added in it.

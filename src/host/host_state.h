@@ -69,7 +69,7 @@ struct ob_host {
 
 // ---- run.c
 
-// Notes the cause (the first one stays) and stops the gate, so that everyone leaves. Any thread.
+// Notes the cause (the first one stays) and stops the gate, so that all workers leave. Any thread.
 void ob_host_set_failure(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // Tells the workers to leave. Any thread.
 void ob_host_halt(ob_host *h);

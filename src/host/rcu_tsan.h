@@ -1,4 +1,4 @@
-// What liburcu orders with its own assembly and a system call is invisible to ThreadSanitizer; here it is told.
+// liburcu orders memory with its own assembly and a system call, which ThreadSanitizer does not see; these macros tell it.
 // before: everything so far happens before a matching "after" of the same address. Nothing in other builds.
 #ifndef OB_HOST_RCU_TSAN_H
 #define OB_HOST_RCU_TSAN_H

@@ -1,6 +1,6 @@
 // Restart from a checkpoint. A process dies alone, but leaves what it computed with in the universe, perhaps half
 // changed. So all workers are killed, the universe is put back to the last checkpoint, and new workers go on from there;
-// they come to the same bits as if nobody had died.
+// they come to the same bits as if no worker had died.
 //
 //   host, in wait              supervisor                  fork server               workers
 //   pause: checkpoint          .                           .                         ... | ... | ...

@@ -16,42 +16,42 @@ struct ob_roster {
 	snapshot *current; // never NULL
 };
 
-// ---- threads make themselves known to RCU, once, and are forgotten when they end
+// ---- a thread registers with RCU at its first read, and is unregistered when it ends
 
 static pthread_key_t thread_end;
 static pthread_once_t thread_end_made = PTHREAD_ONCE_INIT;
-static __thread bool known;
+static __thread bool registered;
 
-static void forget(void *key)
+static void unregister(void *key)
 {
 	(void)key;
 	urcu_memb_unregister_thread();
 }
-static void make_thread_end(void)
+static void create_thread_end_key(void)
 {
-	pthread_key_create(&thread_end, forget);
+	pthread_key_create(&thread_end, unregister);
 }
 
-static void enter(void)
+static void read_lock(void)
 {
-	if (!known) {
-		pthread_once(&thread_end_made, make_thread_end);
+	if (!registered) {
+		pthread_once(&thread_end_made, create_thread_end_key);
 		urcu_memb_register_thread();
-		pthread_setspecific(thread_end, &known);
-		known = true;
+		pthread_setspecific(thread_end, &registered);
+		registered = true;
 	}
 	urcu_memb_read_lock();
 }
 
-static const snapshot *enter_and_get(const ob_roster *r)
+static const snapshot *lock_snapshot(const ob_roster *r)
 {
-	enter();
+	read_lock();
 	const snapshot *s = rcu_dereference(r->current);
 	OB_ORDER_AFTER(s);
 	return s;
 }
 
-static void leave(const snapshot *s)
+static void unlock_snapshot(const snapshot *s)
 {
 	OB_ORDER_BEFORE(s);
 	urcu_memb_read_unlock();
@@ -59,7 +59,7 @@ static void leave(const snapshot *s)
 
 // ---- the writer
 
-static snapshot *make(const ob_roster_entry *entries, size_t n)
+static snapshot *new_snapshot(const ob_roster_entry *entries, size_t n)
 {
 	snapshot *s = malloc(sizeof *s + n * sizeof *entries);
 	if (!s)
@@ -74,7 +74,7 @@ static snapshot *make(const ob_roster_entry *entries, size_t n)
 ob_roster *ob_roster_create(void)
 {
 	ob_roster *r = calloc(1, sizeof *r);
-	if (r && !(r->current = make(NULL, 0))) {
+	if (r && !(r->current = new_snapshot(NULL, 0))) {
 		free(r);
 		return NULL;
 	}
@@ -92,7 +92,7 @@ void ob_roster_destroy(ob_roster *r)
 
 bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n)
 {
-	snapshot *fresh = make(entries, n);
+	snapshot *fresh = new_snapshot(entries, n);
 	if (!fresh)
 		return false;
 	snapshot *old = rcu_xchg_pointer(&r->current, fresh);
@@ -106,11 +106,11 @@ bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n)
 
 size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max)
 {
-	const snapshot *s = enter_and_get(r);
+	const snapshot *s = lock_snapshot(r);
 	size_t n = s->n, copied = n < max ? n : max;
 	if (copied > 0)
 		memcpy(out, s->entry, copied * sizeof *out);
-	leave(s);
+	unlock_snapshot(s);
 	return n;
 }
 
@@ -122,23 +122,23 @@ static int by_id(const void *key, const void *entry)
 
 bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out)
 {
-	const snapshot *s = enter_and_get(r);
+	const snapshot *s = lock_snapshot(r);
 	const ob_roster_entry *found = bsearch(&id, s->entry, s->n, sizeof *s->entry, by_id);
 	if (found)
 		*out = *found;
-	leave(s);
+	unlock_snapshot(s);
 	return found != NULL;
 }
 
 bool ob_roster_find_name(const ob_roster *r, const char *name, ob_roster_entry *out)
 {
-	const snapshot *s = enter_and_get(r);
+	const snapshot *s = lock_snapshot(r);
 	bool found = false;
 	for (size_t i = 0; i < s->n && !found; i++) {
 		found = strncmp(s->entry[i].name, name, OB_NAME_MAX) == 0;
 		if (found)
 			*out = s->entry[i];
 	}
-	leave(s);
+	unlock_snapshot(s);
 	return found;
 }

@@ -1,4 +1,4 @@
-// The roster: which objects exist now, under which name, and who runs them. For threads of the host's own process
+// The roster: which objects exist now, under which name, and which worker runs them. For threads of the host's own process
 // (renderer, recorder, command line); other processes read the passports in the universe.
 //
 // A snapshot is immutable; a change publishes a new one under RCU (liburcu, membarrier flavour) and frees the old one
@@ -9,7 +9,7 @@
 
 #include <ob/universe.h>
 
-#define OB_ROSTER_ANY_WORKER UINT32_MAX // a pool: whoever claims the object's island
+#define OB_ROSTER_ANY_WORKER UINT32_MAX // a pool: the worker that claims the object's island
 
 typedef struct ob_roster_entry {
 	uint32_t id, generation;

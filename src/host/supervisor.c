@@ -40,11 +40,11 @@ static void describe_worker(const ob_host *h, const ob_worker_end *end, char *te
 
 static void on_end(ob_host *h, const ob_worker_end *end)
 {
-	char who[160];
+	char worker[160];
 	unsigned long long step = ob_step_count(h->u);
 	if (h->ending || h->failed || h->restart.requested)
 		return;
-	describe_worker(h, end, who, sizeof who);
+	describe_worker(h, end, worker, sizeof worker);
 	if (ob_universe_traced(h->u) && !end->error)
 		ob_trace_span(h->u, ob_trace_supervisor(h->u), OB_TRACE_KILLED, ob_clock_ns(), end->worker,
 			      (uint32_t)end->signal);
@@ -54,10 +54,10 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 				    "processes (ulimit -u, or pids.max of the container)",
 				    end->worker + 1, h->workers, strerror(end->error));
 	else if (end->signal)
-		ob_restart_request(h, "%s was killed by SIG%s (%s) after step %llu", who, sigabbrev_np(end->signal),
+		ob_restart_request(h, "%s was killed by SIG%s (%s) after step %llu", worker, sigabbrev_np(end->signal),
 				strsignal(end->signal), step);
 	else
-		ob_host_set_failure(h, "%s left with exit code %d after step %llu, before the run was over", who,
+		ob_host_set_failure(h, "%s left with exit code %d after step %llu, before the run was over", worker,
 				    end->code, step);
 }
 

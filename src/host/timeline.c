@@ -12,13 +12,13 @@
 
 enum { PERIOD_MS = 50, TAKEN_AT_ONCE = 4096 };
 
-// Spans come when they end, inner ones before the outer one, which the file must have first: they wait for it.
+// A span arrives when it ends, so inner ones arrive before the outer one, which the file must have first: they wait for it.
 typedef struct ring_state {
 	ob_trace_event *waiting;
 	uint32_t count, room;
 	uint64_t until; // ns: end of the last span of level 0
-	uint64_t lost; // as of the last look
-	uint64_t died; // ns; 0 = it lives
+	uint64_t lost; // as of the last drain
+	uint64_t died; // ns; 0 = alive
 } ring_state;
 
 struct ob_timeline {
@@ -80,7 +80,7 @@ static void put(ob_timeline *t, uint32_t ring, const ob_trace_event *e)
 	uint32_t capacity = ob_universe_capacity(t->u);
 	bool objects = e->kind == OB_TRACE_STATE || e->kind == OB_TRACE_BIRTH || e->kind == OB_TRACE_DEATH;
 	if (objects ? e->a >= capacity : e->kind == OB_TRACE_KILLED && e->a >= ob_universe_workers(t->u))
-		return; // no writer of this program tells such a thing
+		return; // a damaged event: no writer of this program makes such a one
 	if (objects || e->kind == OB_TRACE_KILLED) {
 		if (e->kind == OB_TRACE_BIRTH)
 			ob_trace_file_name_object(t->file, e->a);
@@ -98,7 +98,7 @@ static void put(ob_timeline *t, uint32_t ring, const ob_trace_event *e)
 	}
 }
 
-// Everything that is in a ring now; what comes in the meantime is left for the next time.
+// Takes all that is in a ring now; events that come in the meantime may be left for the next time.
 static void drain(ob_timeline *t, uint32_t ring)
 {
 	uint32_t n;
@@ -117,7 +117,7 @@ static void drain(ob_timeline *t, uint32_t ring)
 	t->ring[ring].lost = lost;
 }
 
-// The host's first: it tells of births before workers tell what became of the newborn.
+// The host's ring first, so that an object is known as added before workers' events of its states come.
 static void drain_all(ob_timeline *t)
 {
 	for (uint32_t ring = ob_trace_rings(t->u); ring-- > 0;)
@@ -201,7 +201,7 @@ ob_timeline *ob_timeline_start(ob_universe *u, const char *path, ob_error *e)
 	return NULL;
 }
 
-// What nobody has told the end of: what workers are in the middle of, and how objects are now.
+// Writes the spans that have no end yet: what workers are doing, and the states of objects.
 static void put_unfinished(ob_timeline *t, const ob_trace_event *doing, uint64_t now)
 {
 	for (uint32_t ring = 0; ring < ob_universe_workers(t->u); ring++) {
@@ -232,7 +232,7 @@ static void finish_file(ob_timeline *t)
 {
 	uint32_t workers = ob_universe_workers(t->u);
 	ob_trace_event *doing = calloc(workers, sizeof *doing);
-	// first what they are at, then what they have done: what ends in between is told as done
+	// first what workers are doing, then the complete spans: a span that ends in between counts as complete
 	for (uint32_t w = 0; doing && w < workers; w++)
 		doing[w] = ob_trace_unfinished(t->u, w);
 	drain_all(t);

@@ -10,13 +10,13 @@
 typedef struct ob_timeline ob_timeline;
 
 typedef struct ob_timeline_sums {
-	uint64_t events; // that the simulators and the host have told
-	uint64_t lost; // of these, those that found no room; they are missing in the file
+	uint64_t events; // of the simulators and the host
+	uint64_t lost; // of these, those that found their ring full; they are missing in the file
 } ob_timeline_sums;
 
 // On a universe that is traced. NULL and e on failure.
 ob_timeline *ob_timeline_start(ob_universe *u, const char *path, ob_error *e);
-// Writes what is there, ends the file, frees t (NULL is allowed). Workers that are still there should stand still: what
+// Writes what is there, ends the file, frees t (NULL is allowed). Workers that have not left should stand still: what
 // they do from now on is not in the file. false and e if it is not whole.
 bool ob_timeline_finish(ob_timeline *t, ob_timeline_sums *sums, ob_error *e);
 

@@ -172,7 +172,7 @@ static void put_state(ob_trace_file *f, const ob_trace_event *e)
 	track t = of_object(f, e->a);
 	if (before >= OB_TRACE_MOTIONS)
 		return;
-	// the one world does not say who touches whom
+	// the monolith does not say which objects touch
 	begin_span(f, t, f->monolith && before != OB_TRACE_ASLEEP ? "awake" : names[before], e);
 	end(f);
 	if (after == OB_TRACE_ASLEEP || (before == OB_TRACE_ASLEEP && after != OB_TRACE_ABSENT)) {

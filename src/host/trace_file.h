@@ -14,7 +14,7 @@ typedef struct ob_trace_file ob_trace_file;
 
 // Names tracks as the universe has workers. NULL and e on failure.
 ob_trace_file *ob_trace_file_open(const char *path, const ob_universe *u, ob_error *e);
-// An event of a ring, whatever its kind. unfinished: it was still going on when it was told.
+// An event of a ring, whatever its kind. unfinished: it had not ended.
 void ob_trace_file_put(ob_trace_file *f, uint32_t ring, const ob_trace_event *event, bool unfinished);
 // The name of object id's track, as its passport has it now; again when the object is another.
 void ob_trace_file_name_object(ob_trace_file *f, uint32_t id);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/published.h"
+#include "motion/flight.h"
 
 static bool grow_objects(ob_snapshot *s, uint32_t count)
 {

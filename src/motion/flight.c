@@ -1,4 +1,4 @@
-#include <ob/motion.h>
+#include "motion/flight.h"
 
 ob_state ob_motion_at(const ob_motion *m, ob_vec3 inertia, double t)
 {
@@ -57,4 +57,16 @@ double ob_time_of_closing(double gap, double v, double a, double s)
 	else
 		t = a < 0 ? -v / a : INFINITY; // overlaps throughout, and falls back from then on; or never gets there
 	return t <= s ? t : INFINITY;
+}
+
+bool ob_published_stands(const ob_motion *m, const ob_passport *p, double t)
+{
+	return m->t0 == t || p->flags & OB_OBJECT_STATIC || m->flags & OB_MOTION_RESTS;
+}
+
+ob_state ob_published_at(const ob_motion *m, const ob_passport *p, double t)
+{
+	if (ob_published_stands(m, p, t))
+		return (ob_state){ { m->p, m->q }, m->v, m->w };
+	return ob_motion_at(m, p->inertia, t);
 }

@@ -1,9 +1,9 @@
-#include "motion/landing.h"
+#include "motion/flight.h"
 
 #include <float.h>
 
-static const double near = 1e-11; // m: so near counts as touching
-static const int most_advances = 200; // a grazing corner takes many; what is left then is said to land
+static const double near = 1e-11; // m: closer than this counts as touching
+static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
 double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {

@@ -1,8 +1,7 @@
 #include "sim/flight.h"
 
 #include "contact/impact.h"
-#include "motion/landing.h"
-#include "motion/published.h"
+#include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/publish.h"
 
@@ -19,7 +18,7 @@ static ob_half_space half_space(const ob_universe *u, uint32_t plane)
 	return (ob_half_space){ n, ob_dot(n, m->p) };
 }
 
-// The flight as motion/landing.h takes it. Objects that touch as axis-aligned boxes reach beyond their bounding sphere.
+// The flight as motion/flight.h takes it. Objects that touch as axis-aligned boxes reach beyond their bounding sphere.
 static ob_flier landing_body(ob_sim *s, uint32_t id, const ob_motion *f)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);

@@ -1,6 +1,6 @@
 #include "sim/publish.h"
 
-#include "motion/published.h"
+#include "motion/flight.h"
 
 static uint32_t leader_of_island(const ob_step_data *data, uint32_t island)
 {

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "motion/landing.h"
+#include "motion/flight.h"
 #include "random.h"
 
 typedef struct flight {

@@ -1,10 +1,15 @@
-// When a flying shape first touches a plane. Pure functions, thread-safe.
-#ifndef OB_MOTION_LANDING_H
-#define OB_MOTION_LANDING_H
+// What a published motion says of the present, and when a flying shape first touches a plane. Pure functions, thread-safe.
+#ifndef OB_MOTION_FLIGHT_H
+#define OB_MOTION_FLIGHT_H
 
 #include <ob/motion.h>
 
 #include "motion/spin.h"
+
+// Does the object stand at time t (s) where its motion m begins?
+bool ob_published_stands(const ob_motion *m, const ob_passport *p, double t);
+// Its state then: ob_motion_at, but with the bits as published where the object stands.
+ob_state ob_published_at(const ob_motion *m, const ob_passport *p, double t);
 
 typedef struct ob_flier {
 	ob_shape shape;
