@@ -99,10 +99,16 @@ static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 		.json = a->value[OB_OPTION_JSON_OUT],
 		.check = a->value[OB_OPTION_CHECK],
 	};
+	bool quick = a->value[OB_OPTION_QUICK];
+	const char *engines = a->value[OB_OPTION_ENGINES], *sweep = a->value[OB_OPTION_SWEEP];
 	uint64_t repeats = 1;
-	bool fine = read_cases(&r->plan.cases, a, e) &&
-		    read_engines(&r->plan.engines, a->value[OB_OPTION_ENGINES], e) &&
-		    ob_sweep_parse(&r->plan.sweep, a->value[OB_OPTION_SWEEP], e) &&
+	// a minute's look: what obsim promises, beside one other engine, each as its users run it
+	if (quick && !engines)
+		engines = "obsim,obsim-lag,ode-quick";
+	if (quick && !sweep)
+		sweep = "none";
+	bool fine = read_cases(&r->plan.cases, a, e) && read_engines(&r->plan.engines, engines, e) &&
+		    ob_sweep_parse(&r->plan.sweep, sweep, e) &&
 		    ob_number_count("repeats", a->value[OB_OPTION_REPEATS], 1, OB_REPEATS, &repeats, e) &&
 		    ob_number_real("limit", a->value[OB_OPTION_LIMIT], 0, 1e6, &r->limit, e);
 	r->plan.repeats = (uint32_t)repeats;

@@ -157,6 +157,14 @@ class Lab(program.Case):
 		self.lab(*words, ".02", code=3)
 		self.assertRegex(self.rows()[-1]["reason"], r"ran longer than (0.02 s of CPU|0.08 s)$")
 
+	def test_quick(self):
+		"""Quick is a look at the usual settings, beside one other engine: nobody asks for hours in this way."""
+		self.lab("lab", "--quick", "--limit", ".001")
+		rows = self.rows()
+		self.assertEqual({r["engine"] for r in rows}, {"obsim", "obsim-lag", "ode-quick"})
+		self.assertEqual(len({(r["case"], r["engine"]) for r in rows if r["engine"] != "obsim-lag"}),
+			len([r for r in rows if r["engine"] != "obsim-lag"]))
+
 	def test_interrupted(self):
 		for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP:
 			with self.subTest(number=number):
@@ -166,7 +174,9 @@ class Lab(program.Case):
 				below = program.processes(run.pid)
 				run.send_signal(number)
 				self.assertEqual(run.wait(program.PATIENCE), 1)
-				self.assertIn("interrupted", run.stderr.read())
+				said = run.stderr.read()
+				self.assertRegex(said, r"^obsim: 4 runs, about \d+ ") # before it begins
+				self.assertIn("interrupted", said)
 				self.assertFalse(any(map(program.alive, below)))
 				before = self.rows()
 				self.assertGreater(len(before), 0)
