@@ -1,48 +1,16 @@
 // obsim paper: the paper's experiment, its tables and figures, and what becomes of its claims.
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/command.h"
 #include "cli/quantity.h"
-#include "cli/paper_json.h"
-#include "cli/terminal.h"
 #include "cli/version.h"
-#include "experiment/folder.h"
-#include "experiment/progress.h"
 #include "paper/claims.h"
 #include "paper/paper.h"
 #include "paper/report.h"
 
 enum { OBJECTS_MAX = 4096 }; // each is a process
-
-static void show(size_t done, size_t all, double left, const char *what)
-{
-	enum { BAR = 20 };
-	static const char hashes[] = "####################";
-	char line[200], rest[48] = "-";
-	int columns, lines, filled = (int)(BAR * done / all);
-	if (!isnan(left))
-		ob_progress_print_time(rest, sizeof rest, left);
-	snprintf(line, sizeof line, "[%.*s%*s] %zu of %zu, %s left: %s", filled, hashes, BAR - filled, "", done, all,
-		 rest, what);
-	ob_terminal_size(&columns, &lines);
-	fprintf(stderr, "\r\033[K%.*s", columns - 1, line);
-	fflush(stderr);
-}
-
-static bool run(const ob_paper_plan *p, ob_paper_results *r, ob_error *e)
-{
-	bool seen = isatty(STDERR_FILENO);
-	ob_provenance_machine(r->machine, sizeof r->machine);
-	ob_provenance_commit(ob_version_commit, r->commit, sizeof r->commit);
-	bool fine = ob_paper_run(p, seen ? show : NULL, r, e);
-	if (seen)
-		fputs("\r\033[K", stderr);
-	return fine;
-}
 
 // "  " before each line, broken between words
 static void print_folded(const char *text)
@@ -74,7 +42,7 @@ static int tell(const ob_paper_results *r, const char *out, bool json)
 {
 	ob_error e;
 	if (json) {
-		ob_paper_write_json(r, stdout);
+		ob_paper_write_json(r, ob_version_number, stdout);
 	} else {
 		print_claims(r);
 		printf("%s/report.html shows it all; %s/results.csv has every run.\n", out, out);
@@ -91,20 +59,22 @@ int ob_command_paper(const ob_arguments *a)
 	ob_paper_results r = { 0 };
 	ob_paper_plan plan = a->value[OB_OPTION_QUICK] ? ob_paper_plan_quick() : ob_paper_plan_full();
 	const char *out = a->value[OB_OPTION_OUT] ? a->value[OB_OPTION_OUT] : "obsim-paper";
-	uint64_t objects = plan.objects;
+	uint64_t objects = plan.objects, experiments = plan.experiments;
 	if (a->operand) {
 		ob_fail(&e, "unexpected '%s': the paper has one scene of its own", a->operand);
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	}
-	if (!ob_number_count("objects", a->value[OB_OPTION_OBJECTS], 1, OBJECTS_MAX, &objects, &e))
+	if (!ob_number_count("objects", a->value[OB_OPTION_OBJECTS], 1, OBJECTS_MAX, &objects, &e) ||
+	    !ob_number_count("repeats", a->value[OB_OPTION_REPEATS], 1, OB_PAPER_EXPERIMENTS_MAX, &experiments, &e))
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	plan.objects = (uint32_t)objects;
+	plan.experiments = (uint32_t)experiments;
 	int code;
-	// the folder first: ten minutes for nothing would be a pity
-	if (!ob_folder_make(out, &e) || !run(&plan, &r, &e) || !ob_paper_report(&r, out, &e))
+	if (!ob_paper_run(&plan, ob_version_commit, out, a->value[OB_OPTION_FRESH], &r, &e) ||
+	    !ob_paper_report(&r, out, &e))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	else
 		code = tell(&r, out, a->value[OB_OPTION_JSON_OUT]);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 	return code;
 }

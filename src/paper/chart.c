@@ -1,23 +1,15 @@
-#include "paper/chart.h"
-
+// The paper's figures with ours in them.
 #include <math.h>
-#include <stdlib.h>
 
+#include "paper/report.h"
 #include "paper/words.h"
 
-enum { SERIES = 6, POINTS = 256, CURVE = 60 };
+enum { CURVE = 60 }; // points of a fitted line
 enum { STYLE_OBS = 0, STYLE_POOL = 1, STYLE_ONE = 2, STYLE_COMMON = 5, STYLE_GUIDE = -1 };
-
-struct ob_paper_chart {
-	ob_plot plot;
-	ob_plot_series series[SERIES];
-	ob_plot_point point[SERIES][POINTS];
-	char title[160], subtitle[400], y_label[120], guide[2][48];
-};
 
 static const struct {
 	const char *name, *caption;
-	ob_paper_quantity quantity;
+	ob_paper_metric metric;
 	bool growth;
 	ob_paper_scenario scenario; // of growth
 	ob_plot_scale scale;
@@ -38,130 +30,93 @@ const char *ob_paper_chart_name(int chart)
 	return charts[chart].name;
 }
 
-const char *ob_paper_chart_caption(int chart)
-{
-	return charts[chart].caption;
-}
-
-static ob_plot_series *begin(ob_paper_chart *c, const char *title, int style, bool hollow)
-{
-	size_t i = c->plot.series_count++;
-	c->series[i] = (ob_plot_series){
-		.title = title, .point = c->point[i], .style = style, .line = true, .hollow = hollow
-	};
-	return &c->series[i];
-}
-
-static void add(ob_paper_chart *c, double x, double y, const char *label)
-{
-	size_t i = c->plot.series_count - 1;
-	if (c->series[i].count < POINTS && isfinite(y))
-		c->point[i][c->series[i].count++] = (ob_plot_point){ .x = x, .y = y, .label = label };
-}
-
-static void add_experiments(ob_paper_chart *c, const ob_paper_results *r, ob_paper_scenario s, ob_paper_quantity q,
+static void add_experiments(ob_chart *c, const ob_paper_results *r, ob_paper_scenario s, ob_paper_metric m,
 			    const char *title, int style, bool hollow)
 {
-	begin(c, title, style, hollow);
+	ob_chart_begin(c, style, hollow, title);
 	for (uint32_t k = 0; k < r->experiments; k++) {
-		const ob_paper_sample *at = ob_paper_find(r, s, k);
-		if (at)
-			add(c, k + 1, ob_paper_value(at, q) * ob_paper_quantities[q].scale, NULL);
+		const ob_record *at = ob_paper_find(r, s, k);
+		if (at && isfinite(at->metric[m]))
+			ob_chart_add(c, k + 1, at->metric[m] * ob_paper_metrics[m].scale, "", "");
 	}
-	if (c->series[c->plot.series_count - 1].count == 0)
-		c->plot.series_count--;
 }
 
-static void draw_experiments(ob_paper_chart *c, const ob_paper_matter *m, ob_paper_quantity q)
+static void draw_experiments(ob_chart *c, const ob_paper_report_model *model, ob_paper_metric m)
 {
-	const char *common = "common", *obs = "OBS, one process an object";
-	if (q == OB_PAPER_STEP) {
-		common = "common: the step";
-		obs = "OBS, one process an object: the step";
-	}
-	add_experiments(c, m->here, OB_PAPER_COMMON, q, common, STYLE_COMMON, false);
-	add_experiments(c, m->here, OB_PAPER_OBS, q, obs, STYLE_OBS, false);
-	if (q == OB_PAPER_STEP)
-		add_experiments(c, m->here, OB_PAPER_OBS, OB_PAPER_ONE, "OBS: CPU of one simulator", STYLE_ONE, false);
+	const ob_paper_results *here = model->here;
+	const bool step = m == OB_PAPER_STEP;
+	add_experiments(c, here, OB_PAPER_COMMON, m, step ? "common: the step" : "common", STYLE_COMMON, false);
+	add_experiments(c, here, OB_PAPER_OBS, m,
+			step ? "OBS, one process an object: the step" : "OBS, one process an object", STYLE_OBS, false);
+	if (step)
+		add_experiments(c, here, OB_PAPER_OBS, OB_PAPER_ONE, "OBS: CPU of one simulator", STYLE_ONE, false);
 	else
-		add_experiments(c, m->here, OB_PAPER_POOL, q, "OBS, one thread a core", STYLE_POOL, false);
-	add_experiments(c, &m->paper, OB_PAPER_COMMON, q, "common, as printed in the paper", STYLE_COMMON, true);
-	add_experiments(c, &m->paper, OB_PAPER_OBS, q, "OBS, as printed in the paper", STYLE_OBS, true);
-	c->plot.x.label = "experiment";
-	OB_SAY(c->subtitle, "here: %u boxes, other sizes and attitudes in each experiment; %s", m->here->objects,
-	       m->here->machine);
+		add_experiments(c, here, OB_PAPER_POOL, m, "OBS, one thread a core", STYLE_POOL, false);
+	add_experiments(c, &model->paper, OB_PAPER_COMMON, m, "common, as printed in the paper", STYLE_COMMON, true);
+	add_experiments(c, &model->paper, OB_PAPER_OBS, m, "OBS, as printed in the paper", STYLE_OBS, true);
+	OB_SAY(c->x_label, "experiment");
+	OB_SAY(c->subtitle, "here: %u boxes, other sizes and attitudes in each experiment; %s", here->objects,
+	       here->records.machine);
 }
 
-static void draw_fit(ob_paper_chart *c, const ob_line *l, bool logarithmic, double from, double to, const char *label)
+static void draw_fit(ob_chart *c, const ob_line *l, bool logarithmic, double from, double to, double scale,
+		     const char *label)
 {
-	double scale = 100;
-	begin(c, NULL, STYLE_GUIDE, false);
+	ob_chart_begin(c, STYLE_GUIDE, false, "");
 	for (int i = 0; i <= CURVE; i++) {
 		double x = from + (to - from) * i / CURVE;
 		double y = l->intercept + l->slope * (logarithmic ? log(x) : x);
-		add(c, x, y * scale, i == CURVE ? label : NULL);
+		ob_chart_add(c, x, y * scale, i == CURVE ? label : "", "");
 	}
 }
 
-static void draw_growth(ob_paper_chart *c, const ob_paper_matter *m, int chart)
+static void draw_growth(ob_chart *c, const ob_paper_report_model *model, int chart)
 {
-	ob_paper_quantity q = charts[chart].quantity;
-	ob_paper_scenario s = charts[chart].scenario;
+	const ob_paper_metric m = charts[chart].metric;
+	const ob_paper_scenario s = charts[chart].scenario;
+	const double scale = ob_paper_metrics[m].scale;
 	double from = INFINITY, to = 0;
-	begin(c, ob_paper_setups[s].title, s == OB_PAPER_OBS ? STYLE_OBS : STYLE_COMMON, false)->line = false;
-	for (size_t i = 0; i < m->here->count; i++) {
-		const ob_paper_sample *at = &m->here->sample[i];
-		if (!at->growth || at->scenario != s || *at->failed)
+	ob_chart_begin(c, s == OB_PAPER_OBS ? STYLE_OBS : STYLE_COMMON, false, ob_paper_setups[s].title)->line = false;
+	for (size_t i = 0; i < model->here->records.count; i++) {
+		const ob_record *at = &model->here->records.record[i];
+		uint32_t objects;
+		if (!ob_paper_is_growth(at->of, &objects) || ob_paper_scenario_of(at) != s || at->failure ||
+		    !isfinite(at->metric[m]))
 			continue;
-		add(c, at->objects, ob_paper_value(at, q) * ob_paper_quantities[q].scale, NULL);
-		from = fmin(from, at->objects);
-		to = fmax(to, at->objects);
+		ob_chart_add(c, objects, at->metric[m] * scale, "", "");
+		from = fmin(from, objects);
+		to = fmax(to, objects);
 	}
-	ob_paper_growth g = ob_paper_grow(m->here, s, q);
+	ob_paper_growth g = ob_paper_grow(model->here, s, m);
+	OB_SAY(c->x_label, "objects n");
 	if (g.linear.n < 3 || !(to > from))
 		return;
-	draw_fit(c, &g.linear, false, from, to, "line");
-	draw_fit(c, &g.logarithmic, true, from, to, "logarithm");
+	draw_fit(c, &g.linear, false, from, to, scale, "line");
+	draw_fit(c, &g.logarithmic, true, from, to, scale, "logarithm");
 	int prefers = ob_paper_prefers(&g);
 	OB_SAY(c->subtitle, "least squares: a + b n with b = %s (%s to %s) an object, a + b ln n; the data prefer %s",
-	       ob_word_value(g.linear.slope, q).text, ob_word_value(g.linear.slope_low, q).text,
-	       ob_word_value(g.linear.slope_high, q).text,
+	       ob_word_value(g.linear.slope, m).text, ob_word_value(g.linear.slope_low, m).text,
+	       ob_word_value(g.linear.slope_high, m).text,
 	       prefers > 0   ? "the line"
 	       : prefers < 0 ? "the logarithm"
 			     : "neither");
 	if (prefers)
 		OB_SAY(c->subtitle, ", %s", ob_word_odds(g.favour).text);
-	c->plot.x.label = "objects n";
 }
 
-ob_paper_chart *ob_paper_chart_make(const ob_paper_matter *m, int chart)
+ob_chart *ob_paper_chart_make(const ob_paper_report_model *model, int chart)
 {
-	const ob_paper_quantity_def *def = &ob_paper_quantities[charts[chart].quantity];
-	ob_paper_chart *c = calloc(1, sizeof *c);
+	const ob_paper_metric m = charts[chart].metric;
+	ob_chart *c = ob_chart_new();
 	if (!c)
 		return NULL;
 	OB_SAY(c->title, "%s", charts[chart].caption);
-	OB_SAY(c->y_label, "%s (%s)", charts[chart].quantity == OB_PAPER_STEP ? "runtime" : def->title, def->unit);
-	c->plot = (ob_plot){ .title = c->title,
-			     .subtitle = c->subtitle,
-			     .y = { .label = c->y_label, .scale = charts[chart].scale },
-			     .series = c->series };
+	OB_SAY(c->y_label, "%s (%s)", m == OB_PAPER_STEP ? "runtime" : ob_paper_metrics[m].title,
+	       ob_paper_metrics[m].unit);
+	c->plot.y.scale = charts[chart].scale;
 	if (charts[chart].growth)
-		draw_growth(c, m, chart);
+		draw_growth(c, model, chart);
 	else
-		draw_experiments(c, m, charts[chart].quantity);
-	if (c->plot.series_count > 0 && c->plot.x.label)
-		return c;
-	free(c);
-	return NULL;
-}
-
-const ob_plot *ob_paper_chart_plot(const ob_paper_chart *c)
-{
-	return &c->plot;
-}
-
-void ob_paper_chart_free(ob_paper_chart *c)
-{
-	free(c);
+		draw_experiments(c, model, m);
+	return c;
 }

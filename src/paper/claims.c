@@ -6,15 +6,28 @@
 #include "paper/trial.h"
 #include "paper/words.h"
 
-static const double half = .5, tenfold = 10;
-static const double doubled = 2; // a test that costs an environment this much more is a reason not to use it
-static const double load_far = 10; // times the paper's load: beyond that its figure says nothing about this claim
+// What a claim is judged by
+typedef struct evidence {
+	const ob_paper_results *here, *paper; // measured; printed in the paper
+	ob_paper_claim *claim;
+} evidence;
 
-const ob_paper_runtime ob_paper_runtimes[OB_PAPER_RUNTIMES] = {
+// The three things that "runtime" can mean
+enum { RUNTIMES = 3 };
+static const struct {
+	ob_paper_metric metric;
+	const char *name;
+} runtimes[RUNTIMES] = {
 	{ OB_PAPER_STEP, "the step that everybody waits for" },
 	{ OB_PAPER_TOTAL, "the CPU time of all simulators together" },
 	{ OB_PAPER_ONE, "the CPU time of one simulator" },
 };
+
+static const double half = .5, tenfold = 10;
+static const double doubled = 2; // a test that costs an environment this much more is a reason not to use it
+static const double flat = .1; // exponent: what grows less counts as constant
+enum { GROWTH_LEAST = 3 }; // runs, for an interval
+static const double load_far = 10; // times the paper's load: beyond that its figure says nothing about this claim
 
 const char *ob_paper_verdict_text(ob_paper_verdict v)
 {
@@ -35,47 +48,46 @@ static bool above(const ob_paper_ratio *r, double limit)
 }
 
 // One run that something else has disturbed does not move it.
-static double median(const ob_paper_results *r, ob_paper_scenario s, ob_paper_quantity q)
+static double median(const ob_paper_results *r, ob_paper_scenario s, ob_paper_metric m)
 {
-	return ob_paper_summarise(r, s, q).median;
+	return ob_paper_summarise(r, s, m).median;
 }
 
 // "1.2 ms instead of 3.4 ms, 0.35 times (.. to ..)"
 static void say_pair(ob_paper_claim *c, const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b,
-		     ob_paper_quantity q, const ob_paper_ratio *ratio)
+		     ob_paper_metric m, const ob_paper_ratio *ratio)
 {
-	OB_SAY(c->because, "%s instead of %s, %s", ob_word_value(median(r, a, q), q).text,
-	       ob_word_value(median(r, b, q), q).text, ob_word_ratio(ratio).text);
+	OB_SAY(c->because, "%s instead of %s, %s", ob_word_value(median(r, a, m), m).text,
+	       ob_word_value(median(r, b, m), m).text, ob_word_ratio(ratio).text);
 }
 
-static void say_itself(const ob_paper_case *c, ob_paper_scenario a, ob_paper_scenario b, ob_paper_quantity q)
+static void say_itself(const evidence *c, ob_paper_scenario a, ob_paper_scenario b, ob_paper_metric m)
 {
-	ob_paper_ratio ratio = ob_paper_compare(c->paper, a, b, q);
+	ob_paper_ratio ratio = ob_paper_compare(c->paper, a, b, m);
 	OB_SAY(c->claim->itself, "%s in its tables.", ob_word_ratio(&ratio).text);
 }
 
-static void judge_runtime(const ob_paper_case *c)
+static void judge_runtime(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
 	int lower = 0, higher = 0;
 	OB_SAY(claim->because, "With OBS ");
-	for (int i = 0; i < OB_PAPER_RUNTIMES; i++) {
-		const ob_paper_runtime *t = &ob_paper_runtimes[i];
-		ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, t->quantity);
+	for (int i = 0; i < RUNTIMES; i++) {
+		ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, runtimes[i].metric);
 		if (below(&ratio, 1))
-			OB_SAY(claim->condition, "%s%s", lower++ ? " or " : "runtime means ", t->name);
+			OB_SAY(claim->condition, "%s%s", lower++ ? " or " : "runtime means ", runtimes[i].name);
 		higher += above(&ratio, 1);
-		OB_SAY(claim->because, "%s%s takes ", i ? "; " : "", t->name);
-		say_pair(claim, c->here, OB_PAPER_OBS, OB_PAPER_COMMON, t->quantity, &ratio);
+		OB_SAY(claim->because, "%s%s takes ", i ? "; " : "", runtimes[i].name);
+		say_pair(claim, c->here, OB_PAPER_OBS, OB_PAPER_COMMON, runtimes[i].metric, &ratio);
 	}
 	ob_paper_ratio pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_TOTAL);
 	OB_SAY(claim->because,
 	       ". One thread per core that runs all the simulators takes %s the CPU time of the common environment.",
 	       ob_word_ratio(&pool).text);
-	claim->verdict = lower == OB_PAPER_RUNTIMES    ? OB_PAPER_HOLDS
-			 : lower > 0                   ? OB_PAPER_ONLY_IF
-			 : higher == OB_PAPER_RUNTIMES ? OB_PAPER_FAILS
-						       : OB_PAPER_OPEN;
+	claim->verdict = lower == RUNTIMES    ? OB_PAPER_HOLDS
+			 : lower > 0          ? OB_PAPER_ONLY_IF
+			 : higher == RUNTIMES ? OB_PAPER_FAILS
+					      : OB_PAPER_OPEN;
 	say_itself(c, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_STEP);
 }
 
@@ -83,14 +95,14 @@ static uint32_t count_faster(const ob_paper_results *r)
 {
 	uint32_t faster = 0;
 	for (uint32_t k = 0; k < r->experiments; k++) {
-		const ob_paper_sample *obs = ob_paper_find(r, OB_PAPER_OBS, k),
-				      *common = ob_paper_find(r, OB_PAPER_COMMON, k);
-		faster += obs && common && obs->fps > common->fps;
+		const ob_record *obs = ob_paper_find(r, OB_PAPER_OBS, k),
+				*common = ob_paper_find(r, OB_PAPER_COMMON, k);
+		faster += obs && common && obs->metric[OB_PAPER_FPS] > common->metric[OB_PAPER_FPS];
 	}
 	return faster;
 }
 
-static void judge_frames(const ob_paper_case *c)
+static void judge_frames(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
 	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_FPS);
@@ -115,7 +127,7 @@ static void judge_frames(const ob_paper_case *c)
 	OB_SAY(claim->because, "; with one thread per core for all simulators %s.", ob_word_ratio(&pool).text);
 }
 
-static void judge_cpu(const ob_paper_case *c)
+static void judge_cpu(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
 	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU);
@@ -139,7 +151,7 @@ static void judge_cpu(const ob_paper_case *c)
 }
 
 // What the load would be without a structure that sorts space
-static void say_all_pairs(const ob_paper_case *c)
+static void say_all_pairs(const evidence *c)
 {
 	double pairs = .5 * c->here->objects * (c->here->objects - 1.);
 	double alone = median(c->here, OB_PAPER_COMMON, OB_PAPER_TOTAL);
@@ -149,7 +161,7 @@ static void say_all_pairs(const ob_paper_case *c)
 }
 
 // By CPU time, which other programs disturb least: where there is one simulator, it is the step's, too.
-static void judge_load(const ob_paper_case *c)
+static void judge_load(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
 	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL);
@@ -180,7 +192,7 @@ static void judge_load(const ob_paper_case *c)
 	say_itself(c, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_STEP);
 }
 
-static void judge_kept(const ob_paper_case *c)
+static void judge_kept(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
 	ob_paper_ratio better = ob_paper_compare(c->here, OB_PAPER_COMMON_OBB, OB_PAPER_COMMON, OB_PAPER_TOTAL);
@@ -202,7 +214,7 @@ static void judge_kept(const ob_paper_case *c)
 
 // By the CPU time of the busiest simulator, which must get through its step before the next begins. The pace itself
 // would tell more of what else the machine had to do.
-static void judge_obb(const ob_paper_case *c)
+static void judge_obb(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
 	ob_statistics obs = ob_paper_summarise(c->here, OB_PAPER_OBS_OBB, OB_PAPER_BUSIEST),
@@ -235,9 +247,79 @@ static void judge_obb(const ob_paper_case *c)
 	}
 }
 
+static void judge_constant(const evidence *c)
+{
+	ob_paper_claim *claim = c->claim;
+	int constant = 0, growing = 0;
+	ob_statistics s = ob_paper_summarise(c->paper, OB_PAPER_OBS, OB_PAPER_STEP);
+	OB_SAY(claim->itself, "%s to %s, printed to one digit; how many objects there were is not said.",
+	       ob_word_value(s.least, OB_PAPER_STEP).text, ob_word_value(s.most, OB_PAPER_STEP).text);
+	claim->verdict = OB_PAPER_OPEN;
+	if (ob_paper_grow(c->here, OB_PAPER_OBS, OB_PAPER_STEP).power.n < GROWTH_LEAST) {
+		OB_SAY(claim->because, "It was not run with different numbers of objects.");
+		return;
+	}
+	OB_SAY(claim->because, "With n objects in OBS, ");
+	for (int i = 0; i < RUNTIMES; i++) {
+		ob_line power = ob_paper_grow(c->here, OB_PAPER_OBS, runtimes[i].metric).power;
+		if (power.slope_high < flat)
+			OB_SAY(claim->condition, "%s%s", constant++ ? " or " : "runtime means ", runtimes[i].name);
+		growing += power.slope_low > flat;
+		OB_SAY(claim->because, "%s%s goes as %s", i ? "; " : "", runtimes[i].name,
+		       ob_word_exponent(&power).text);
+	}
+	OB_SAY(claim->because, ".");
+	claim->verdict = constant == RUNTIMES ? OB_PAPER_HOLDS
+			 : constant > 0       ? OB_PAPER_ONLY_IF
+			 : growing > 0        ? OB_PAPER_FAILS
+					      : OB_PAPER_OPEN;
+}
+
+static void say_growth(ob_paper_claim *claim, const char *of, const ob_paper_growth *g)
+{
+	int prefers = ob_paper_prefers(g);
+	OB_SAY(claim->because, "%s it goes as %s, and the data prefer %s", of, ob_word_exponent(&g->power).text,
+	       prefers > 0   ? "a line"
+	       : prefers < 0 ? "a logarithm"
+			     : "neither a line nor a logarithm");
+	if (prefers)
+		OB_SAY(claim->because, ", %s", ob_word_odds(g->favour).text);
+}
+
+static void judge_growth(const evidence *c)
+{
+	ob_paper_claim *claim = c->claim;
+	ob_paper_growth common = ob_paper_grow(c->here, OB_PAPER_COMMON, OB_PAPER_DEMAND),
+			obs = ob_paper_grow(c->here, OB_PAPER_OBS, OB_PAPER_DEMAND),
+			common_shown = ob_paper_grow(c->here, OB_PAPER_COMMON, OB_PAPER_CPU),
+			obs_shown = ob_paper_grow(c->here, OB_PAPER_OBS, OB_PAPER_CPU);
+	OB_SAY(claim->itself, "A drawn trend line, no fit; taken from an earlier paper.");
+	claim->verdict = OB_PAPER_OPEN;
+	if (common.linear.n < GROWTH_LEAST || obs.linear.n < GROWTH_LEAST) {
+		OB_SAY(claim->because, "It was not run with different numbers of objects.");
+		return;
+	}
+	OB_SAY(claim->because, "CPU of all simulators for each simulated second: ");
+	say_growth(claim, "in the common environment", &common);
+	say_growth(claim, "; in OBS", &obs);
+	say_growth(claim,
+		   ". As a share of real time, as a system monitor shows it, which ends where the cores are busy: "
+		   "in OBS",
+		   &obs_shown);
+	OB_SAY(claim->because, ".");
+	if (ob_paper_prefers(&common) > 0 && ob_paper_prefers(&obs) < 0) {
+		claim->verdict = OB_PAPER_HOLDS;
+	} else if (ob_paper_prefers(&common_shown) > 0 && ob_paper_prefers(&obs_shown) < 0) {
+		claim->verdict = OB_PAPER_ONLY_IF;
+		OB_SAY(claim->condition, "CPU usage is read off a monitor, where it ends when the cores are busy");
+	} else if (ob_paper_prefers(&common) < 0 || ob_paper_prefers(&obs) > 0) {
+		claim->verdict = OB_PAPER_FAILS;
+	}
+}
+
 static const struct {
 	ob_paper_claim claim;
-	void (*judge)(const ob_paper_case *c);
+	void (*judge)(const evidence *c);
 } rules[OB_PAPER_CLAIMS] = {
 	{ { .key = "runtime",
 	    .says = "The runtime of OBS (.001 s) is smaller than that of the common environment (.007 s).",
@@ -246,7 +328,7 @@ static const struct {
 	{ { .key = "constant",
 	    .says = "The runtime of OBS is constant: the number of objects does not affect it.",
 	    .where = "Table 3, Figure 14" },
-	  ob_paper_judge_constant },
+	  judge_constant },
 	{ { .key = "frames",
 	    .says = "The frame rate of OBS (239 fps) is higher than that of the common environment (234 fps).",
 	    .where = "Tables 1 and 4, Figure 15" },
@@ -268,7 +350,7 @@ static const struct {
 	{ { .key = "growth",
 	    .says = "CPU usage grows as O(n) in the common environment, and as O(log n) in OBS.",
 	    .where = "Figure 6" },
-	  ob_paper_judge_growth },
+	  judge_growth },
 };
 
 void ob_paper_judge(const ob_paper_results *r, ob_paper_claim claim[OB_PAPER_CLAIMS])
@@ -276,9 +358,9 @@ void ob_paper_judge(const ob_paper_results *r, ob_paper_claim claim[OB_PAPER_CLA
 	ob_paper_results paper = ob_paper_published();
 	for (int i = 0; i < OB_PAPER_CLAIMS; i++) {
 		claim[i] = rules[i].claim;
-		rules[i].judge(&(ob_paper_case){ r, &paper, &claim[i] });
+		rules[i].judge(&(evidence){ r, &paper, &claim[i] });
 		if (claim[i].verdict != OB_PAPER_ONLY_IF)
 			claim[i].condition[0] = 0;
 	}
-	ob_paper_results_finish(&paper);
+	ob_records_finish(&paper.records);
 }

@@ -1,9 +1,9 @@
 // The paper's claims, and what the measurements make of them. The verdict and every figure in its text follow from the
-// data by the rules in claims.c and claims_growth.c. Pure functions.
+// data by the rules in claims.c. Pure functions.
 #ifndef OB_PAPER_CLAIMS_H
 #define OB_PAPER_CLAIMS_H
 
-#include "paper/digest.h"
+#include "paper/results.h"
 
 typedef enum ob_paper_verdict {
 	OB_PAPER_HOLDS,
@@ -26,23 +26,5 @@ typedef struct ob_paper_claim {
 // "holds", "holds only if", ..
 const char *ob_paper_verdict_text(ob_paper_verdict v);
 void ob_paper_judge(const ob_paper_results *r, ob_paper_claim claim[OB_PAPER_CLAIMS]);
-
-// What a claim is judged by
-typedef struct ob_paper_case {
-	const ob_paper_results *here, *paper; // measured; printed in the paper
-	ob_paper_claim *claim;
-} ob_paper_case;
-
-// for the files that judge
-void ob_paper_judge_constant(const ob_paper_case *c);
-void ob_paper_judge_growth(const ob_paper_case *c);
-
-// The three things that "runtime" can mean
-enum { OB_PAPER_RUNTIMES = 3 };
-typedef struct ob_paper_runtime {
-	ob_paper_quantity quantity;
-	const char *name;
-} ob_paper_runtime;
-extern const ob_paper_runtime ob_paper_runtimes[OB_PAPER_RUNTIMES];
 
 #endif

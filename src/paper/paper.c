@@ -3,16 +3,17 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "base/cpu.h"
 #include "base/clock.h"
+#include "base/cpu.h"
 #include "paper/trial.h"
 
 enum { PAPER_EXPERIMENTS = 15, GROWING = 2, SUMS = 20000 };
 
 static const uint32_t full_sizes[] = { 8, 16, 32, 64, 128, 256 }, quick_sizes[] = { 4, 8, 16 };
 static const ob_paper_scenario growing[GROWING] = { OB_PAPER_COMMON, OB_PAPER_OBS };
+static const double start_s = .4; // that starting and ending take beside what is measured
+static const double limit_s = 300; // CPU of a trial: many times what the largest takes
 
 ob_paper_plan ob_paper_plan_full(void)
 {
@@ -24,76 +25,69 @@ ob_paper_plan ob_paper_plan_quick(void)
 	return (ob_paper_plan){ 12, 2, .3, .2, sizeof quick_sizes / sizeof *quick_sizes, quick_sizes, 1 };
 }
 
-typedef struct journey {
-	const ob_paper_plan *plan;
-	ob_paper_tick *tick;
-	ob_paper_results *results;
-	size_t done, all, ran;
-	double begun;
-	ob_error last; // of the runs that failed
-} journey;
-
-static void tell(const journey *j, const ob_paper_trial *t)
+static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 {
-	char what[96];
-	snprintf(what, sizeof what, "%s, %u boxes", ob_paper_setups[t->scenario].title, t->objects);
-	double each = j->done ? (ob_clock_wall() - j->begun) / (double)j->done : NAN;
-	if (j->tick)
-		j->tick(j->done, j->all, each * (double)(j->all - j->done), what);
+	const ob_paper_plan *p = t->what;
+	uint32_t objects;
+	bool growth = ob_paper_is_growth(t->of, &objects);
+	ob_paper_trial one = { ob_paper_scenario_of(out), objects, t->seed, p->alone_s, growth ? 0 : p->watched_s };
+	bool fine = ob_paper_trial_run(&one, out->metric, e);
+	if (fine && *e->text) // nothing was drawn
+		snprintf(out->note, sizeof out->note, "%.63s", e->text);
+	return fine;
 }
 
-static bool attempt(journey *j, const ob_paper_trial *t, ob_paper_sample s, ob_error *e)
+static const char *const columns[] = { "series", "objects" };
+
+static void describe(const ob_record *r, size_t column, char *to, size_t room)
 {
-	bool interrupted;
-	ob_error why;
-	tell(j, t);
-	bool fine = ob_paper_attempt(t, &s, &interrupted, &why);
-	if (interrupted)
-		return ob_fail(e, "interrupted");
-	j->done++;
-	j->ran += fine;
-	if (!fine) {
-		snprintf(s.failed, sizeof s.failed, "%.159s", why.text);
-		j->last = why;
-	} else if (why.text[0]) {
-		snprintf(j->results->no_frames, sizeof j->results->no_frames, "%.199s", why.text);
-	}
-	return ob_paper_results_add(j->results, &s) || ob_fail(e, "out of memory");
+	uint32_t objects;
+	bool growth = ob_paper_is_growth(r->of, &objects);
+	if (column == 0)
+		snprintf(to, room, "%s", growth ? "growth" : "experiment");
+	else
+		snprintf(to, room, "%u", objects);
 }
 
-static bool run_experiment(journey *j, uint32_t k, ob_error *e)
+ob_experiment ob_paper_experiment(const char *commit)
 {
-	const ob_paper_plan *p = j->plan;
-	for (uint32_t i = 0; i < OB_PAPER_SCENARIOS; i++) {
-		ob_paper_trial t = { (i + k) % OB_PAPER_SCENARIOS, p->objects, k + 1, p->alone_s, p->watched_s };
-		ob_paper_sample s = ob_paper_sample_unmeasured();
-		s.scenario = t.scenario;
-		s.experiment = k;
-		s.objects = t.objects;
-		s.seed = t.seed;
-		if (!attempt(j, &t, s, e))
-			return false;
-	}
-	return true;
+	return (ob_experiment){ .name = "paper",
+				.commit = commit,
+				.metrics = OB_PAPER_METRICS,
+				.metric = ob_paper_metrics,
+				.run = run_trial,
+				.limit_s = limit_s,
+				.columns = sizeof columns / sizeof *columns,
+				.column = columns,
+				.describe = describe };
 }
 
-// Sizes in an order that is not that of time: a machine that becomes slower does not look like growth.
-static bool run_growth(journey *j, uint32_t repeat, ob_error *e)
+static bool add_trial(const ob_paper_plan *p, ob_trials *s, bool growth, uint32_t objects, ob_paper_scenario scenario,
+		      uint32_t repeat)
 {
-	const ob_paper_plan *p = j->plan;
-	for (uint32_t i = 0; i < p->sizes * GROWING; i++) {
-		uint32_t at = (i / GROWING * 5 + repeat) % (uint32_t)p->sizes;
-		ob_paper_trial t = { growing[(i + repeat) % GROWING], p->size[at], repeat + 1, p->alone_s, 0 };
-		ob_paper_sample s = ob_paper_sample_unmeasured();
-		s.scenario = t.scenario;
-		s.growth = true;
-		s.experiment = repeat;
-		s.objects = t.objects;
-		s.seed = t.seed;
-		if (!attempt(j, &t, s, e))
-			return false;
-	}
-	return true;
+	ob_trial t = { .repeat = repeat,
+		       .seed = repeat + 1,
+		       .guess_s = start_s + p->alone_s + (growth ? 0 : p->watched_s),
+		       .what = p };
+	ob_paper_case_key(t.of, growth, objects);
+	snprintf(t.configuration, sizeof t.configuration, "%s", ob_paper_setups[scenario].key);
+	return ob_trials_add(s, &t);
+}
+
+bool ob_paper_schedule(const ob_paper_plan *p, ob_trials *s, ob_error *e)
+{
+	const size_t from = s->count;
+	bool fine = true;
+	for (int scenario = 0; fine && scenario < OB_PAPER_SCENARIOS; scenario++)
+		fine = add_trial(p, s, false, p->objects, scenario, 0);
+	fine = fine && ob_trials_repeat(s, from, p->experiments, OB_ORDER_ROTATED, true);
+	// Sizes in an order that is not that of time: a machine that becomes slower does not look like growth.
+	for (uint32_t repeat = 0; repeat < p->repeats; repeat++)
+		for (uint32_t i = 0; fine && i < p->sizes * GROWING; i++) {
+			uint32_t at = (i / GROWING * 5 + repeat) % (uint32_t)p->sizes;
+			fine = add_trial(p, s, true, p->size[at], growing[(i + repeat) % GROWING], repeat);
+		}
+	return fine || ob_fail(e, "out of memory");
 }
 
 static double time_sum(void)
@@ -104,25 +98,26 @@ static double time_sum(void)
 	return (ob_clock_thread_cpu() - begun) / SUMS;
 }
 
-bool ob_paper_run(const ob_paper_plan *p, ob_paper_tick *tick, ob_paper_results *r, ob_error *e)
+static bool has_outcome(const ob_records *r, ob_error *e)
 {
-	journey j = {
-		.plan = p,
-		.tick = tick,
-		.results = r,
-		.begun = ob_clock_wall(),
-		.all = (size_t)p->experiments * OB_PAPER_SCENARIOS + p->sizes * GROWING * p->repeats,
-	};
-	r->objects = p->objects;
-	r->experiments = p->experiments;
-	r->sum_s = time_sum();
+	for (size_t i = 0; i < r->count; i++)
+		if (!r->record[i].failure)
+			return true;
+	return ob_fail(e, "%s", r->count ? r->record[r->count - 1].reason : "nothing was run");
+}
+
+bool ob_paper_run(const ob_paper_plan *p, const char *commit, const char *folder, bool fresh, ob_paper_results *r,
+		  ob_error *e)
+{
+	const ob_experiment x = ob_paper_experiment(commit);
+	ob_trials trials = { 0 };
+	*r = (ob_paper_results){ .objects = p->objects, .experiments = p->experiments, .sum_s = time_sum() };
 	if (getloadavg(&r->busy, 1) != 1)
 		r->busy = NAN;
-	for (uint32_t k = 0; k < p->experiments; k++)
-		if (!run_experiment(&j, k, e))
-			return false;
-	for (uint32_t k = 0; k < p->repeats; k++)
-		if (!run_growth(&j, k, e))
-			return false;
-	return j.ran > 0 || ob_fail(e, "%s", j.last.text);
+	bool fine = ob_paper_schedule(p, &trials, e) && ob_experiment_open(&x, folder, &r->records, e);
+	if (fine && fresh)
+		ob_records_drop(&r->records, &trials);
+	fine = fine && ob_experiment_run(&x, &trials, &r->records, folder, e) && has_outcome(&r->records, e);
+	ob_trials_finish(&trials);
+	return fine;
 }

@@ -13,7 +13,7 @@
 
 static const double slowest_frame = 10; // s: so long it is waited for one at least
 
-typedef struct course {
+typedef struct session {
 	const ob_paper_trial *trial;
 	const ob_paper_setup *setup;
 	ob_scene scene;
@@ -22,7 +22,7 @@ typedef struct course {
 	ob_snapshot now;
 	uint64_t steps;
 	double due; // wall time at which the next step begins
-} course;
+} session;
 
 // What the simulators had used up at a moment
 typedef struct reading {
@@ -31,7 +31,7 @@ typedef struct reading {
 	uint64_t steps, box_tests;
 } reading;
 
-static double cpu_of_worker(const course *c, uint32_t w)
+static double cpu_of_worker(const session *c, uint32_t w)
 {
 	ob_worker_info info;
 	if (!ob_universe_get_worker(ob_host_universe(c->host), w, &info))
@@ -39,7 +39,7 @@ static double cpu_of_worker(const course *c, uint32_t w)
 	return 1e-9 * (double)(c->setup->each ? ob_clock_cpu_of_process(info.pid) : ob_clock_cpu_of_thread(info.tid));
 }
 
-static bool take_reading(const course *c, reading *r, ob_error *e)
+static bool take_reading(const session *c, reading *r, ob_error *e)
 {
 	const ob_universe *u = ob_host_universe(c->host);
 	uint32_t workers = ob_universe_workers(u);
@@ -69,7 +69,7 @@ static void wait_until(double due)
 }
 
 // One step when its time has come. Who is late begins at once and does not hurry to catch up: the environment is slow.
-static bool step(course *c, ob_error *e)
+static bool step(session *c, ob_error *e)
 {
 	double now = ob_clock_wall();
 	if (now < c->due)
@@ -87,7 +87,7 @@ static bool step(course *c, ob_error *e)
 	return ob_viewer_show(c->viewer, &c->now) || ob_fail(e, "out of memory");
 }
 
-static bool steps_for(course *c, double seconds, ob_error *e)
+static bool steps_for(session *c, double seconds, ob_error *e)
 {
 	double end = ob_clock_wall() + seconds;
 	do {
@@ -97,7 +97,7 @@ static bool steps_for(course *c, double seconds, ob_error *e)
 	return true;
 }
 
-static void fill_alone(const course *c, const reading *from, const reading *to, double wall, ob_paper_sample *s)
+static void fill_alone(const session *c, const reading *from, const reading *to, double wall, double *metric)
 {
 	double steps = (double)(to->steps - from->steps), most = 0;
 	uint32_t workers = ob_universe_workers(ob_host_universe(c->host));
@@ -106,18 +106,18 @@ static void fill_alone(const course *c, const reading *from, const reading *to, 
 	double total = to->total - from->total;
 	ob_host_times times;
 	ob_host_get_times(c->host, &times);
-	s->step_s = (to->stepping - from->stepping) / steps;
-	s->total_s = total / steps;
-	s->one_s = s->total_s / (c->setup->monolith ? 1 : c->trial->objects);
-	s->busiest_s = most / steps;
-	s->cpu = total / wall;
-	s->demand = total / (steps * OB_PAPER_STEP_LENGTH);
-	s->pace = steps * OB_PAPER_STEP_LENGTH / wall;
-	s->box_tests = (double)(to->box_tests - from->box_tests) / steps;
-	s->memory_bytes = (double)times.memory_bytes;
+	metric[OB_PAPER_STEP] = (to->stepping - from->stepping) / steps;
+	metric[OB_PAPER_TOTAL] = total / steps;
+	metric[OB_PAPER_ONE] = metric[OB_PAPER_TOTAL] / (c->setup->monolith ? 1 : c->trial->objects);
+	metric[OB_PAPER_BUSIEST] = most / steps;
+	metric[OB_PAPER_CPU] = total / wall;
+	metric[OB_PAPER_DEMAND] = total / (steps * OB_PAPER_STEP_LENGTH);
+	metric[OB_PAPER_PACE] = steps * OB_PAPER_STEP_LENGTH / wall;
+	metric[OB_PAPER_TESTS] = (double)(to->box_tests - from->box_tests) / steps;
+	metric[OB_PAPER_MEMORY] = (double)times.memory_bytes;
 }
 
-static bool measure_alone(course *c, ob_paper_sample *s, ob_error *e)
+static bool measure_alone(session *c, double *metric, ob_error *e)
 {
 	reading from = { 0 }, to = { 0 };
 	c->due = ob_clock_wall();
@@ -129,14 +129,14 @@ static bool measure_alone(course *c, ob_paper_sample *s, ob_error *e)
 	double wall = fmax(c->due, ob_clock_wall()) - begun;
 	fine = fine && take_reading(c, &to, e);
 	if (fine)
-		fill_alone(c, &from, &to, wall, s);
+		fill_alone(c, &from, &to, wall, metric);
 	free(from.worker);
 	free(to.worker);
 	return fine;
 }
 
 // Without a renderer the rest of the trial counts all the same: e then says why there is none.
-static bool measure_watched(course *c, ob_paper_sample *s, ob_error *e)
+static bool measure_watched(session *c, double *metric, ob_error *e)
 {
 	reading from = { 0 }, to = { 0 };
 	if (!ob_snapshot_take(&c->now, ob_host_universe(c->host), false, e))
@@ -156,15 +156,15 @@ static bool measure_watched(course *c, ob_paper_sample *s, ob_error *e)
 	if (fine) {
 		double wall = to.wall - from.wall;
 		double threads = c->setup->each ? 0 : to.total - from.total;
-		s->fps = (double)frames / wall;
-		s->viewer_cpu = (to.own - from.own - threads) / wall;
+		metric[OB_PAPER_FPS] = (double)frames / wall;
+		metric[OB_PAPER_VIEWER] = (to.own - from.own - threads) / wall;
 	}
 	free(from.worker);
 	free(to.worker);
 	return ob_viewer_close(c->viewer, fine ? e : NULL) && fine;
 }
 
-static bool run(course *c, ob_paper_sample *s, ob_error *e)
+static bool run(session *c, double *metric, ob_error *e)
 {
 	const ob_paper_setup *setup = c->setup;
 	ob_host_config config = {
@@ -175,7 +175,7 @@ static bool run(course *c, ob_paper_sample *s, ob_error *e)
 		.run = { .gravity = c->scene.run.gravity,
 			 .step_length = OB_PAPER_STEP_LENGTH,
 			 .substeps = OB_PAPER_SUBSTEPS,
-			 .iterations = OB_PAPER_ROUNDS,
+			 .iterations = OB_PAPER_ITERATIONS,
 			 .monolith = setup->monolith,
 			 .narrow_phase = setup->oriented ? OB_NARROW_OBB : OB_NARROW_AABB,
 			 .load = setup->load },
@@ -184,16 +184,16 @@ static bool run(course *c, ob_paper_sample *s, ob_error *e)
 	if (!c->host)
 		return false;
 	ob_host_go(c->host, 0);
-	return ob_host_wait(c->host, e) && measure_alone(c, s, e) &&
-	       (c->trial->watched_s <= 0 || measure_watched(c, s, e));
+	return ob_host_wait(c->host, e) && measure_alone(c, metric, e) &&
+	       (c->trial->watched_s <= 0 || measure_watched(c, metric, e));
 }
 
-bool ob_paper_trial_run(const ob_paper_trial *t, ob_paper_sample *s, ob_error *e)
+bool ob_paper_trial_run(const ob_paper_trial *t, double metric[OB_PAPER_METRICS], ob_error *e)
 {
-	course c = { .trial = t, .setup = &ob_paper_setups[t->scenario] };
+	session c = { .trial = t, .setup = &ob_paper_setups[t->scenario] };
 	e->text[0] = 0;
 	bool fine = ob_paper_boxes(&c.scene, t->objects, t->seed) || ob_fail(e, "out of memory");
-	fine = fine && run(&c, s, e);
+	fine = fine && run(&c, metric, e);
 	ob_host_stop(c.host);
 	ob_snapshot_finish(&c.now);
 	ob_paper_boxes_finish(&c.scene);

@@ -5,7 +5,7 @@
 
 #include <ob/error.h>
 
-#include "paper/sample.h"
+#include "paper/results.h"
 
 typedef struct ob_paper_trial {
 	ob_paper_scenario scenario;
@@ -16,13 +16,10 @@ typedef struct ob_paper_trial {
 
 // What is the same in every trial
 #define OB_PAPER_STEP_LENGTH (1 / 60.) // s
-enum { OB_PAPER_SUBSTEPS = 1, OB_PAPER_ROUNDS = 20 }; // a step; iterations of QuickStep, rounds of exchange
+enum { OB_PAPER_SUBSTEPS = 1, OB_PAPER_ITERATIONS = 20 }; // a step; iterations of the solver, at most
 
 // Fills what it measures. e: why it failed, or (true) why nothing was drawn; "" else. Forks, maps shared memory and
 // starts threads: for a process of its own.
-bool ob_paper_trial_run(const ob_paper_trial *t, ob_paper_sample *s, ob_error *e);
-
-// The same in a child, whose end is awaited; s and e as there. Ctrl-C reaches the child, and *interrupted is set.
-bool ob_paper_attempt(const ob_paper_trial *t, ob_paper_sample *s, bool *interrupted, ob_error *e);
+bool ob_paper_trial_run(const ob_paper_trial *t, double metric[OB_PAPER_METRICS], ob_error *e);
 
 #endif

@@ -23,10 +23,10 @@ ob_word ob_word_number(double v)
 	return w;
 }
 
-ob_word ob_word_value(double v, ob_paper_quantity q)
+ob_word ob_word_value(double v, ob_paper_metric m)
 {
 	ob_word w;
-	const ob_paper_quantity_def *def = &ob_paper_quantities[q];
+	const ob_metric *def = &ob_paper_metrics[m];
 	ob_page_print_quantity(w.text, sizeof w.text, v * def->scale, def->unit);
 	return w;
 }
