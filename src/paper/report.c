@@ -341,24 +341,14 @@ static void write_page(FILE *f, const void *with)
 static void write_markdown(FILE *f, const void *with)
 {
 	const ob_paper_report_model *m = with;
-	ob_table *claims = ob_table_new("llll");
 	fprintf(f, "# The paper's claims, measured\n\n%s; obsim %s; %u experiments with %u boxes.\n\n",
 		m->here->records.machine, m->here->records.commit, m->here->experiments, m->here->objects);
-	if (claims) {
-		static const char *const head[] = { "The paper says", "Verdict", "Measured", "Its own tables" };
-		for (int i = 0; i < 4; i++)
-			ob_table_add(claims, "%s", head[i]);
-		for (int i = 0; i < OB_PAPER_CLAIMS; i++) {
-			const ob_paper_claim *c = &m->claim[i];
-			ob_table_add(claims, "%s (%s)", c->says, c->where);
-			ob_table_add(claims, "**%s**%s%s", ob_paper_verdict_text(c->verdict), *c->condition ? " " : "",
-				     c->condition);
-			ob_table_add(claims, "%s", c->because);
-			ob_table_add(claims, "%s", c->itself);
-		}
-		ob_table_markdown(claims, f);
+	fputs("| The paper says | Verdict | Measured | Its own tables |\n|---|---|---|---|\n", f);
+	for (int i = 0; i < OB_PAPER_CLAIMS; i++) {
+		const ob_paper_claim *c = &m->claim[i];
+		fprintf(f, "| %s (%s) | **%s**%s%s | %s | %s |\n", c->says, c->where, ob_paper_verdict_text(c->verdict),
+			*c->condition ? " " : "", c->condition, c->because, c->itself);
 	}
-	ob_table_free(claims);
 	for (int i = 0; i < OB_PAPER_TABLES; i++) {
 		ob_table *t = ob_paper_table_make(m, i);
 		if (!t)

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """check_report.py WRITER: the report that WRITER writes is whole and well-formed, leads nowhere outside, is the same
 each time, and has the counterparts of the paper's tables and figures."""
-import csv
 import html.parser
 import pathlib
 import re
@@ -60,13 +59,10 @@ def main():
     assert not re.search(r'\bnan\b|\binf\b', bare), 'a figure is printed raw'
     assert 'made &lt;up&gt; &amp; &quot;checked&quot;' in page and 'signal&quot; &lt;9&gt;' in page
 
-    rows = list(csv.DictReader(first['results.csv'].decode().splitlines()))
-    assert len(rows) == 15 * 7 + 2 * 18 and rows[3]['failed'] == 'killed by "signal" <9>, alas', len(rows)
-    assert abs(float(rows[0]['fps']) - 100) < 1.1 and rows[-1]['series'] == 'growth'
     tables = first['tables.md'].decode()
-    assert tables.count('\n## ') == 7 and tables.count('| 15 |') == 7 and '**does not hold**' in tables
+    assert tables.count('\n## ') == 7 and len(re.findall(r'\| 15 +\|', tables)) == 7 and '**does not hold**' in tables
     # the paper's fourth experiment, beside ours
-    assert re.search(r'\| 4 \| 10 \| (1|1\.01|1\.0|0\.99\d?) \| 240 \|', tables), 'table 1 is not the paper\'s'
+    assert re.search(r'\| 4 +\| +10 \| +(1|1\.01|1\.0|0\.99\d?) \| +240 \|', tables), 'table 1 is not the paper\'s'
 
 
 main()

@@ -33,7 +33,7 @@ static void expect(const ob_paper_results *r, const char *key, ob_paper_verdict 
 	CHECK(strlen(c->because) + 1 < sizeof c->because && strlen(c->condition) + 1 < sizeof c->condition);
 }
 
-static const ob_paper_quantity runtimes[] = { OB_PAPER_STEP, OB_PAPER_TOTAL, OB_PAPER_ONE };
+static const ob_paper_metric runtimes[] = { OB_PAPER_STEP, OB_PAPER_TOTAL, OB_PAPER_ONE };
 
 static void test_runtime(void)
 {
@@ -50,7 +50,7 @@ static void test_runtime(void)
 	for (int i = 0; i < 3; i++)
 		made_scale(&r, OB_PAPER_OBS, runtimes[i], 100);
 	expect(&r, "runtime", OB_PAPER_FAILS, NULL);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 static double constant(double n)
@@ -86,7 +86,7 @@ static void test_constant(void)
 	for (int i = 1; i < 3; i++)
 		made_set_growth(&r, OB_PAPER_OBS, runtimes[i], linear);
 	expect(&r, "constant", OB_PAPER_FAILS, NULL);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 static void test_frames(void)
@@ -104,7 +104,7 @@ static void test_frames(void)
 	expect(&r, "frames", OB_PAPER_OPEN, NULL);
 	CHECK(strcmp(judged(&r, "frames")->because, "No frames were drawn.") == 0);
 	CHECK(strncmp(judged(&r, "frames")->itself, "Higher in 10 of 15 experiments", 30) == 0);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 static void test_cpu(void)
@@ -118,11 +118,11 @@ static void test_cpu(void)
 	made_scale(&r, OB_PAPER_OBS, OB_PAPER_CPU, .4);
 	expect(&r, "cpu", OB_PAPER_HOLDS, NULL);
 	CHECK(strstr(judged(&r, "cpu")->itself, "0.416 times") != NULL);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 	r = made_alike();
 	made_scale(&r, OB_PAPER_OBS, OB_PAPER_CPU, .5);
 	expect(&r, "cpu", OB_PAPER_OPEN, NULL);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 static void test_load(void)
@@ -148,7 +148,7 @@ static void test_load(void)
 	expect(&r, "load", OB_PAPER_HOLDS, NULL);
 	made_scatter(&r, OB_PAPER_COMMON_LOAD, OB_PAPER_TOTAL, 5);
 	expect(&r, "load", OB_PAPER_OPEN, NULL);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 static void test_kept(void)
@@ -160,7 +160,7 @@ static void test_kept(void)
 	expect(&r, "kept", OB_PAPER_OPEN, NULL);
 	made_scale(&r, OB_PAPER_COMMON_OBB, OB_PAPER_TOTAL, 2);
 	expect(&r, "kept", OB_PAPER_HOLDS, NULL);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 static void test_obb(void)
@@ -181,7 +181,7 @@ static void test_obb(void)
 	expect(&r, "obb", OB_PAPER_FAILS, NULL);
 	made_scale(&r, OB_PAPER_OBS_OBB, OB_PAPER_BUSIEST, NAN);
 	expect(&r, "obb", OB_PAPER_OPEN, NULL);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 static void test_growth(void)
@@ -201,22 +201,22 @@ static void test_growth(void)
 	made_set_growth(&r, OB_PAPER_OBS, OB_PAPER_CPU, between);
 	int prefers = ob_paper_prefers(&(ob_paper_growth){ .linear.n = 18, .favour = log(9) });
 	CHECK(prefers == 0);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 // A machine that failed some runs must not shift pairs against each other.
 static void test_failed_runs(void)
 {
 	ob_paper_results r = made_alike();
-	for (size_t i = 0; i < r.count; i++)
-		if (r.sample[i].scenario == OB_PAPER_OBS && r.sample[i].experiment % 2) {
-			strcpy(r.sample[i].failed, "killed");
-			r.sample[i].cpu = 1e9;
+	for (size_t i = 0; i < r.records.count; i++)
+		if (ob_paper_scenario_of(&r.records.record[i]) == OB_PAPER_OBS && r.records.record[i].repeat % 2) {
+			r.records.record[i].failure = OB_FAILURE_CRASH;
+			r.records.record[i].metric[OB_PAPER_CPU] = 1e9;
 		}
 	expect(&r, "cpu", OB_PAPER_FAILS, NULL);
 	CHECK_NEAR(ob_paper_compare(&r, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU).mean, 1, .02);
 	CHECK(ob_paper_compare(&r, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU).n == 8);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 }
 
 // Nothing measured, nothing claimed

@@ -18,9 +18,10 @@ int main(int argc, char **argv)
 	ob_paper_results r = made_alike();
 	made_growth(&r, OB_PAPER_COMMON, line);
 	made_growth(&r, OB_PAPER_OBS, line);
-	strcpy(r.sample[3].failed, "killed by \"signal\" <9>, alas");
+	r.records.record[3].failure = OB_FAILURE_CRASH;
+	strcpy(r.records.record[3].reason, "killed by \"signal\" <9>, alas");
 	bool fine = ob_paper_report(&r, argv[1], &e);
-	ob_paper_results_finish(&r);
+	ob_records_finish(&r.records);
 	if (!fine)
 		fprintf(stderr, "%s\n", e.text);
 	return !fine;

@@ -26,7 +26,8 @@ class Paper(program.Case):
 	def test_quick(self):
 		out = self.path("deep/out")
 		done = program.call("paper", "--quick", "--json", "--objects", "5", "--out", out)
-		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		self.assertEqual(done.returncode, 0, done.stderr)
+		self.assertRegex(done.stderr, r"^obsim: \d+ runs, about \d+ s") # said before it begins
 		told = json.loads(done.stdout)
 		self.assertEqual([c["claim"] for c in told["claims"]], CLAIMS)
 		for claim in told["claims"]:
@@ -46,7 +47,16 @@ class Paper(program.Case):
 		for name in "report.html", "tables.md", "plots/figure-14.svg", "plots/figure-6-obs.png":
 			self.assertGreater(os.path.getsize(os.path.join(out, name)), 1000, name)
 		with open(os.path.join(out, "results.csv"), newline="") as f:
-			self.assertEqual(len(list(csv.DictReader(f, strict=True))), len(runs))
+			kept = list(csv.DictReader(f, strict=True))
+		self.assertEqual(len(kept), len(runs))
+		self.assertEqual({row["seed"] for row in kept if row["series"] == "experiment"}, {"1", "2"})
+
+		# what is there is not run again, and one more experiment is that of another seed alone
+		again = program.call("paper", "--quick", "--json", "--objects", "5", "--out", out, "--repeats", "3")
+		self.assertEqual(again.returncode, 0, again.stderr)
+		more = json.loads(again.stdout)["runs"]
+		self.assertEqual(len(more), len(runs) + len(SCENARIOS))
+		self.assertEqual([r for r in more if r["seed"] < 3 and r in runs], runs)
 
 	def check_figures(self, run):
 		"""What must hold of the three runtimes, of CPU and of pace by what they mean."""
@@ -74,7 +84,8 @@ class Paper(program.Case):
 		time.sleep(.3)
 		run.send_signal(signal.SIGTERM)
 		_, said = run.communicate(timeout=program.PATIENCE)
-		self.assertEqual((run.returncode, said), (1, "obsim: interrupted\n"))
+		self.assertEqual(run.returncode, 1)
+		self.assertRegex(said, r"obsim: interrupted: \d+ of \d+ runs are done, and the same command goes on from there\n$")
 		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
 		self.assertFalse(os.path.exists(program.segment(f"obsim-{below[0]}")))
 
