@@ -47,7 +47,7 @@ static void publish_all(ob_universe *u, double x)
 	}
 }
 
-// The areas of the step, byte by byte, but for what the arranger scribbles on
+// The areas of the step, byte by byte, without the scheduler's scratch
 static char *step_bytes(const ob_universe *u, size_t *n)
 {
 	*n = u->header.area[OB_AREA_SCRATCH] - u->header.area[OB_AREA_REQUERY];
