@@ -9,42 +9,16 @@ static bool is_of(const ob_record *r, const char *of, const char *configuration)
 	return !strcmp(r->configuration, configuration) && !strcmp(r->of, of);
 }
 
-size_t ob_records_values(const ob_records *r, const char *of, const char *configuration, size_t metric,
-			 double to[OB_SAMPLES])
+ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric)
 {
+	double x[OB_SAMPLES];
 	size_t n = 0;
 	for (size_t i = 0; i < r->count && n < OB_SAMPLES; i++) {
 		const ob_record *one = &r->record[i];
 		if (!one->failure && is_of(one, of, configuration) && !isnan(one->metric[metric]))
-			to[n++] = one->metric[metric];
+			x[n++] = one->metric[metric];
 	}
-	return n;
-}
-
-ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric)
-{
-	double x[OB_SAMPLES];
-	size_t n = ob_records_values(r, of, configuration, metric, x);
 	return ob_reference_summarise(n, x);
-}
-
-double ob_records_combine(const ob_experiment *x, const ob_records *r, const char *of, const char *configuration,
-			  size_t metric)
-{
-	if (x->metric[metric].combine == OB_COMBINE_MEDIAN)
-		return ob_records_summarise(r, of, configuration, metric).median;
-	double worst = NAN;
-	bool any = false;
-	for (size_t i = 0; i < r->count; i++) {
-		double v = r->record[i].metric[metric];
-		if (!is_of(&r->record[i], of, configuration))
-			continue;
-		if (isnan(v))
-			return NAN;
-		worst = any ? fmax(worst, v) : v;
-		any = true;
-	}
-	return worst;
 }
 
 ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric,

@@ -6,18 +6,11 @@
 #include "experiment/experiment.h"
 #include "reference/statistics.h"
 
-enum { OB_SAMPLES = 128 }; // of one case and configuration that are looked at
+enum { OB_SAMPLES = 128 }; // of one case and configuration, that are looked at
 
-// The values of a metric in trials that came to their end without a failure, and measured it, in the order of the
-// records. Returns how many.
-size_t ob_records_values(const ob_records *r, const char *of, const char *configuration, size_t metric,
-			 double to[OB_SAMPLES]);
-// Median, mean, and their intervals of 95 %, of these
+// Median, mean, and their intervals of 95 %, of a metric in the trials that came to their end without a failure, and
+// measured it; of OB_SAMPLES at most
 ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric);
-// One value, as the metric says how repeats are combined; trials that failed count in what is worst. NAN: none
-double ob_records_combine(const ob_experiment *x, const ob_records *r, const char *of, const char *configuration,
-			  size_t metric);
-
 // Of configuration a over b in the same case, repeat by repeat and seed by seed: what changes from one to the next
 // cancels out. logarithm: of the natural logarithms of the ratios, for a geometric mean.
 ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric,

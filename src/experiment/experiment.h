@@ -40,11 +40,6 @@
 
 enum { OB_METRICS = 48, OB_CASE_KEY = 256, OB_CONFIGURATION_KEY = 128 }; // of an experiment; bytes with the final 0
 
-typedef enum ob_combine {
-	OB_COMBINE_MEDIAN, // of times
-	OB_COMBINE_WORST // the largest; one that is not a number is worse than all
-} ob_combine;
-
 typedef struct ob_metric {
 	const char *key; // in files
 	const char *title; // for people
@@ -53,7 +48,6 @@ typedef struct ob_metric {
 	double target; // at most this much, in the unit of files; NAN = nothing is promised
 	const char *group; // heading above it in a table; NULL = under the one before
 	const char *meaning; // one sentence for the reader of a report
-	ob_combine combine; // how the values of several repeats become one
 } ob_metric;
 
 // Why a trial counts as failed
@@ -156,8 +150,6 @@ bool ob_records_write(const ob_records *r, const ob_experiment *x, const char *p
 // Makes the folder, with all above it, and reads its results.csv. Results of another commit or machine, or of what is
 // no results file, get a name of their own, and it is said so. folder NULL: nothing is kept.
 bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *r, ob_error *e);
-// Seconds that the trials take that r does not have, as guessed; *trials: how many.
-double ob_experiment_estimate(const ob_experiment *x, const ob_trials *s, const ob_records *r, size_t *trials);
 // Runs what r does not have yet, and keeps it in r and in folder/results.csv (NULL: nowhere). Of the same case,
 // configuration and seed nothing is run again after a failure, but for what had less time than there is now. Says
 // before it begins how long it will take. false and e: interrupted, or the file cannot be written; what was done until

@@ -144,19 +144,6 @@ static bool is_done(const ob_experiment *x, const ob_records *records, const ob_
 	return false;
 }
 
-double ob_experiment_estimate(const ob_experiment *x, const ob_trials *s, const ob_records *r, size_t *trials)
-{
-	double sum = 0;
-	*trials = 0;
-	for (size_t i = 0; i < s->count; i++) {
-		if (is_done(x, r, &s->trial[i]))
-			continue;
-		sum += s->trial[i].guess_s;
-		++*trials;
-	}
-	return sum;
-}
-
 static size_t find_pace(session *s, const char *of)
 {
 	for (size_t i = s->paces; i > 0; i--) // a case's trials mostly stand together

@@ -86,17 +86,11 @@ void ob_table_link(ob_table *t, const char *id)
 		t->cell[t->count - 1].link = id;
 }
 
-void ob_table_add_value(ob_table *t, const ob_metric *m, double v)
-{
-	char text[48];
-	ob_page_print_quantity(text, sizeof text, v * m->scale, m->unit);
-	ob_table_add(t, "%s", text);
-}
-
 void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s)
 {
-	char low[48], high[48];
-	ob_table_add_value(t, m, s->median);
+	char text[48], low[48], high[48];
+	ob_page_print_quantity(text, sizeof text, s->median * m->scale, m->unit);
+	ob_table_add(t, "%s", text);
 	if (!isfinite(s->median_low) || !isfinite(s->median_high))
 		return;
 	ob_page_print_quantity(low, sizeof low, s->median_low * m->scale, "1");

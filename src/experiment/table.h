@@ -23,8 +23,7 @@ void ob_table_small(ob_table *t, const char *format, ...) __attribute__((format(
 void ob_table_class(ob_table *t, const char *class); // in HTML: "met", "missed", "best"; a string that stays
 void ob_table_link(ob_table *t, const char *id); // in HTML: leads to #id; a string that stays
 
-// Cells made of numbers, in the metric's unit for people: a value; a median with its interval, where there is one
-void ob_table_add_value(ob_table *t, const ob_metric *m, double v);
+// A median in the metric's unit for people, with its interval, where there is one
 void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s);
 
 // width: of a line, in characters; columns that have no room stand in a further panel below, behind the first column

@@ -8,8 +8,7 @@
 
 #define FIGURE(n) \
 	{ \
-		.key = "figure" #n, .title = "figure " #n, .unit = "1", .scale = 1, .target = NAN, \
-		.combine = OB_COMBINE_WORST \
+		.key = "figure" #n, .title = "figure " #n, .unit = "1", .scale = 1, .target = NAN \
 	}
 static const ob_metric metrics[OB_LAB_METRICS] = {
 	[OB_LAB_CPU] = { .key = "cpu_s", .title = "CPU time of stepping", .unit = "s", .scale = 1, .target = NAN },

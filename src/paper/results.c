@@ -29,7 +29,7 @@ const ob_paper_setup ob_paper_setups[OB_PAPER_SCENARIOS] = {
 
 #define METRIC(key, title, unit, scale) \
 	{ \
-		key, title, unit, scale, NAN, NULL, title, OB_COMBINE_MEDIAN \
+		key, title, unit, scale, NAN, NULL, title \
 	}
 const ob_metric ob_paper_metrics[OB_PAPER_METRICS] = {
 	[OB_PAPER_STEP] = METRIC("step_s", "step, until the last is done", "ms", 1e3),
