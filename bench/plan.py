@@ -9,9 +9,11 @@ SIDES = {
     'obsim 2 processes': ('host', {'workers': 2, 'processes': 1}),
     'obsim ODE worlds': ('obsim-ode', {}),  # each object with an ODE world of its own
     'ode-quick': ('ode-quick', {}),
+    'ode-advised': ('ode-advised', {}),
     'ode-hash': ('ode-hash', {}),
     'ode-world': ('ode-world', {}),
     'bullet': ('bullet', {}),
+    'mujoco': ('mujoco', {}),
 }
 POOLS = ['obsim 1 thread', 'obsim 1 process', 'obsim 2 threads', 'obsim 2 processes']
 OTHERS = ['ode-quick', 'bullet']
@@ -29,6 +31,7 @@ FULL = [
     ('falling-4000', ['obsim', *POOLS, *OTHERS], {}),
     ('pile', ['obsim', *POOLS, *OTHERS], {}),
     ('heavy-1000', ['obsim', 'ode-world', *OTHERS], {}),
+    ('hit-wall', ['obsim', *POOLS, *OTHERS, 'ode-advised', 'mujoco'], {}),
     ('rolling-diagonal', ['obsim', *OTHERS], {}),
     ('666', ['obsim', *POOLS, *OTHERS], {}),
     ('falling-10', ['obsim', *POOLS], {}),
@@ -48,6 +51,7 @@ SHORT = [
     ('falling-200', ['obsim', 'obsim 2 threads', 'obsim 2 processes', *OTHERS], {'duration': 2}),
     ('pile', ['obsim', *OTHERS], {'duration': 1}),
     ('heavy-1000', ['obsim', 'ode-world'], {'duration': 5}),
+    ('hit-wall', ['obsim', *OTHERS, 'mujoco'], {'duration': 1}),
     ('rolling-diagonal', ['obsim', 'bullet'], {'duration': 4}),
     ('666', ['obsim', *OTHERS], {'duration': 2}),
 ]

@@ -30,14 +30,14 @@ static void build_balls(ob_world *w, uint32_t run)
 	ob_world_balls(w, scene.bodies);
 }
 
-static void judge_crowd(ob_trial *t)
+static void judge_crowd(ob_case_run_state *t)
 {
 	ob_heap_judge(t);
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";
 }
 
-static void observe_balls(ob_trial *t)
+static void observe_balls(ob_case_run_state *t)
 {
 	double energy = ob_look_energy(t);
 	if (!t->frame)
@@ -48,7 +48,7 @@ static void observe_balls(ob_trial *t)
 	ob_look_keep(&t->figure[0], fabs(error) / t->memory[0]);
 }
 
-static void judge_balls(ob_trial *t)
+static void judge_balls(ob_case_run_state *t)
 {
 	if (ob_look_fell_through(t))
 		t->failed = "fell through the ground";

@@ -42,7 +42,8 @@
 	X(a_frame_slides) \
 	X(far_stack) \
 	X(far_head_on) \
-	X(lag)
+	X(lag) \
+	X(hit_wall)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)
