@@ -34,7 +34,7 @@ static double error_at_two_seconds(ob_integrator integrator, uint32_t substeps)
 	return error;
 }
 
-// Position, velocity, energy and angular momentum, and the attitude by the motion's closed form in one leap.
+// Position, velocity, energy and angular momentum, and the attitude by the motion's closed form in one evaluation.
 static void test_exact(void)
 {
 	little_scene *s = thrown_box(OB_INTEGRATOR_EXACT, 8);
@@ -45,12 +45,12 @@ static void test_exact(void)
 	double energy = little_energy(&l);
 	CHECK(thrown.flags & OB_MOTION_FREE);
 	little_run_to(&l, 2);
-	ob_state at = little_state(&l, 0), leap = ob_motion_at(&thrown, s->object[0].passport.inertia, 2);
-	CHECK_NEAR(ob_norm(ob_sub(at.pose.p, leap.pose.p)), 0, 1e-12);
+	ob_state at = little_state(&l, 0), closed = ob_motion_at(&thrown, s->object[0].passport.inertia, 2);
+	CHECK_NEAR(ob_norm(ob_sub(at.pose.p, closed.pose.p)), 0, 1e-12);
 	CHECK_NEAR(ob_norm(ob_sub(at.v, ob_v3(3, -2, 4 - 2 * g))), 0, 1e-12);
-	ob_quat p = at.pose.q, q = leap.pose.q;
+	ob_quat p = at.pose.q, q = closed.pose.q;
 	CHECK_NEAR(fabs(p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z), 1, 1e-12);
-	CHECK_NEAR(ob_norm(ob_sub(at.w, leap.w)), 0, 1e-10);
+	CHECK_NEAR(ob_norm(ob_sub(at.w, closed.w)), 0, 1e-10);
 	CHECK_NEAR(little_energy(&l) / energy, 1, 1e-12);
 	// about the falling centre
 	ob_vec3 centre = at.pose.p, m = ob_scale(at.v, 48);
@@ -92,7 +92,7 @@ static void test_alone_or_not(void)
 	free(s);
 }
 
-// A flight ends when the host puts the object elsewhere, in whichever step, or when a bounce turns it round: what comes
+// A flight ends when the host puts the object elsewhere, in whichever step, or when an impact turns it round: what comes
 // after starts from there.
 static void test_new_flights(void)
 {
@@ -122,9 +122,9 @@ static void test_long(void)
 	little_open(&l, s);
 	ob_motion thrown = l.now.motion[0];
 	little_run_to(&l, 600);
-	ob_state at = little_state(&l, 0), leap = ob_motion_at(&thrown, s->object[0].passport.inertia, 600);
-	CHECK_NEAR(ob_norm(ob_sub(at.pose.p, leap.pose.p)), 0, 0);
-	CHECK(at.pose.q.w == leap.pose.q.w && at.pose.q.x == leap.pose.q.x && at.w.y == leap.w.y);
+	ob_state at = little_state(&l, 0), closed = ob_motion_at(&thrown, s->object[0].passport.inertia, 600);
+	CHECK_NEAR(ob_norm(ob_sub(at.pose.p, closed.pose.p)), 0, 0);
+	CHECK(at.pose.q.w == closed.pose.q.w && at.pose.q.x == closed.pose.q.x && at.w.y == closed.w.y);
 	little_close(&l);
 	free(s);
 }

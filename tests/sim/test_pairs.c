@@ -1,5 +1,5 @@
-// Pairs are those whose boxes overlap, whoever looked around and in whatever order; each has a record of its own while
-// it touches.
+// Pairs are those whose boxes overlap, whichever object was queried and in whatever order; each has a record of its own
+// while it touches.
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,7 +31,7 @@ static void shuffle(uint64_t *seed, uint32_t *id, uint32_t n)
 	}
 }
 
-// What a MEMBERS phase does: those who asked go into the index and look around, then the arranger merges.
+// What a BROADPHASE phase does: objects to requery go into the index and are queried, then the pairs are merged.
 static void look_around(ob_universe *u)
 {
 	uint32_t count;
@@ -109,7 +109,7 @@ static void check_records(const ob_universe *u)
 	free(used);
 }
 
-// Between steps the arranger lets go of what does not touch; then some share of the pairs begins to.
+// Between steps the records of pairs that do not touch are released; then some share of the pairs begins to touch.
 static void touch(ob_universe *u, uint64_t *seed, double share)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
@@ -246,8 +246,8 @@ static void test_versions(void)
 	}
 }
 
-// What goes along x claims as far ahead as it gets in two steps, and to the other sides as far as in one.
-static void test_claims(void)
+// The fat AABB of what moves along x reaches as far ahead as it gets in two steps, and to the other sides as in one.
+static void test_fat_aabb(void)
 {
 	const double r = .5, v = 3;
 	little_scene *s = little_scene_new();
@@ -298,7 +298,7 @@ int main(void)
 	test_order();
 	test_active_stays();
 	test_versions();
-	test_claims();
+	test_fat_aabb();
 	test_column();
 	return check_end();
 }

@@ -1,5 +1,5 @@
-// Flights that nobody visits until they end: as good as if everybody were visited in every step, and for balls the same
-// to the last bit.
+// Flights that no step solves until they end: as good as if every object were solved in every step, and for balls the
+// same to the last bit.
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,7 +33,7 @@ static little_scene *thrown(uint64_t *seed, bool balls, double room)
 	return s;
 }
 
-// All that fly are visited in the next step, and foresee from there.
+// All that fly are solved in the next step, and compute their impacts from there.
 static void call_all(ob_universe *u)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
@@ -75,7 +75,7 @@ static outcome play(const little_scene *s, bool call)
 	return out;
 }
 
-// A ball's landing is closed form, from where its flight began: when it was foreseen does not matter.
+// A ball's landing is closed form, from where its flight began: when it was computed does not matter.
 static void test_balls(void)
 {
 	uint64_t seed = 21, visits = 0, called = 0;

@@ -10,7 +10,7 @@
 
 enum { BODIES = 300 };
 
-// Bodies and pairs by hand: nothing but briefs and pairs matters to the plan.
+// Bodies and pairs by hand: nothing but schedule records and pairs matters to the builder.
 static void random_graph(ob_universe *u, uint64_t seed, double density)
 {
 	ob_step_data *ex = ob_universe_step_data(u);

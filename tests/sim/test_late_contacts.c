@@ -1,4 +1,5 @@
-// What is hit within a step and hits something else in the same step: no island's forecast sees it, the check does.
+// Objects that are hit within a step and hit something else in the same step: no forecast sees it, the check for late
+// contacts does.
 #include <stdlib.h>
 
 #include "check.h"

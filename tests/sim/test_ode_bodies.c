@@ -1,4 +1,4 @@
-// However many objects a worker steps, it keeps no more worlds than its share; a world made again steps like the first.
+// However many objects a worker steps, it keeps no more ODE bodies than its share; a body made again steps like the first.
 #include <stdlib.h>
 
 #include "check.h"
