@@ -3,8 +3,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "ode/ode_body.h"
-
 static void give_up(const char *what, const char *why)
 {
 	fprintf(stderr, "%s: %s\n", what, why);
@@ -16,23 +14,21 @@ little_world *little_world_new(void)
 	little_world *l = calloc(1, sizeof *l);
 	if (!l)
 		give_up("world", "no memory");
-	l->world = (ob_world){ .gravity = { 0, 0, -9.81 }, .passport = l->passport, .state = l->state };
-	l->world.objects_max = LITTLE_MOST;
+	l->world.gravity = ob_v3(0, 0, -OB_WORLD_GRAVITY);
 	return l;
+}
+
+void little_world_free(little_world *l)
+{
+	ob_world_finish(&l->world);
+	free(l);
 }
 
 uint32_t little_add(little_world *l, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
 {
-	uint32_t id = l->world.objects++;
-	if (id == LITTLE_MOST)
+	if (l->world.objects == LITTLE_MOST)
 		give_up("world", "too many objects");
-	l->passport[id] = (ob_passport){ .id = id, .generation = 1, .shape = shape, .size = size, .friction = .5 };
-	l->passport[id].flags = OB_OBJECT_PRESENT | (mass > 0 ? 0 : OB_OBJECT_STATIC);
-	l->passport[id].mass = mass;
-	if (mass > 0)
-		l->passport[id].inertia = ob_ode_inertia(shape, size, mass);
-	l->state[id] = (ob_state){ .pose = { p, ob_quat_identity() } };
-	return id;
+	return ob_world_add(&l->world, shape, size, mass, p).passport->id;
 }
 
 uint32_t little_ground(little_world *l)

@@ -7,14 +7,12 @@
 enum { LITTLE_MOST = 256 }; // objects
 
 typedef struct little_world {
-	ob_world world;
-	ob_passport passport[LITTLE_MOST];
-	ob_state state[LITTLE_MOST]; // as it began
+	ob_world world; // as it began
 	ob_state now[LITTLE_MOST]; // after little_run
 } little_world;
 
-// Gravity 9.81 m/s^2 downwards; free() it.
-little_world *little_world_new(void);
+little_world *little_world_new(void); // gravity 9.81 m/s^2 downwards
+void little_world_free(little_world *l);
 // Each returns the new object's id; friction .5, restitution 0, at rest. mass 0 (kg): static. Sizes as in ob_shape.
 uint32_t little_add(little_world *l, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p);
 uint32_t little_ground(little_world *l);

@@ -25,7 +25,7 @@ static void rest(void)
 	uint32_t ball = little_sphere(l, 1, .3, ob_v3(5, 0, .4));
 	uint32_t drum = little_add(l, OB_SHAPE_CYLINDER, ob_v3(.4, .25, 0), 10, ob_v3(10, 0, .35));
 	uint32_t pill = little_add(l, OB_SHAPE_CAPSULE, ob_v3(.2, .5, 0), 10, ob_v3(15, 0, .3));
-	l->state[pill].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, asin(1), 0));
+	l->world.state[pill].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, asin(1), 0));
 	uint32_t shelf = little_cube(l, 0, .5, ob_v3(20, 0, 3));
 	uint32_t top = little_cube(l, 2, .2, ob_v3(20, 0, 3.8));
 	little_run(kind, l, 4, 3);
@@ -35,9 +35,9 @@ static void rest(void)
 		CHECK_NEAR(l->now[id[i]].pose.p.z, height[i], .01);
 		CHECK(ob_norm(l->now[id[i]].v) < .02);
 	}
-	CHECK(memcmp(&l->now[shelf], &l->state[shelf], sizeof(ob_state)) == 0);
+	CHECK(memcmp(&l->now[shelf], &l->world.state[shelf], sizeof(ob_state)) == 0);
 	CHECK_NEAR(l->now[top].pose.p.x, 20, .01);
-	free(l);
+	little_world_free(l);
 }
 
 // A capsule that stands on its end for a moment, and a ball that slips at first: it ends up rolling with 5/7 of its
@@ -48,12 +48,12 @@ static void upright_and_rolling(void)
 	little_ground(l);
 	uint32_t pill = little_add(l, OB_SHAPE_CAPSULE, ob_v3(.2, .5, 0), 10, ob_v3(0, 0, .7));
 	uint32_t ball = little_sphere(l, 3, .2, ob_v3(5, 0, .2));
-	l->state[ball].v.x = 2;
+	l->world.state[ball].v.x = 2;
 	little_run(kind, l, 4, .2);
 	CHECK_NEAR(l->now[pill].pose.p.z, .7, .01);
 	CHECK_NEAR(l->now[ball].v.x, 2 * 5. / 7, .03);
 	CHECK_NEAR(l->now[ball].w.y, 2 * 5. / 7 / .2, .15);
-	free(l);
+	little_world_free(l);
 }
 
 // Two equal spheres and e = 1: they exchange their velocities, or at least keep what they have together.
@@ -62,8 +62,8 @@ static void meeting(void)
 	little_world *l = little_world_new();
 	l->world.gravity = ob_v3(0, 0, 0);
 	uint32_t a = little_sphere(l, 2, .5, ob_v3(0, 0, 0)), b = little_sphere(l, 2, .5, ob_v3(1.51, 0, 0));
-	l->passport[a].restitution = 1;
-	l->state[a].v.x = 3;
+	l->world.passport[a].restitution = 1;
+	l->world.state[a].v.x = 3;
 	little_run(kind, l, 0, 1);
 	double sum = l->now[a].v.x + l->now[b].v.x;
 	if (!is("obsim-lag")) // each computes its own impulse, from what it knows of the other
@@ -76,7 +76,7 @@ static void meeting(void)
 	}
 	CHECK(l->now[b].v.x > 1);
 	CHECK(l->now[b].pose.p.x - l->now[a].pose.p.x > 1);
-	free(l);
+	little_world_free(l);
 }
 
 // Force and mass, and that a frame is a frame however it is divided.
@@ -85,8 +85,8 @@ static void force(uint32_t substeps)
 	little_world *l = little_world_new();
 	l->world.gravity = ob_v3(0, -2, 0);
 	uint32_t pushed = little_sphere(l, 2, .5, ob_v3(0, 0, 0)), fallen = little_cube(l, 2, .5, ob_v3(9, 0, 0));
-	l->passport[pushed].force = ob_v3(6, 0, 0);
-	l->state[pushed].w = ob_v3(0, 0, 1);
+	l->world.passport[pushed].force = ob_v3(6, 0, 0);
+	l->world.state[pushed].w = ob_v3(0, 0, 1);
 	little_run(kind, l, substeps, 1);
 	ob_state s = l->now[pushed], f = l->now[fallen];
 	CHECK_NEAR(s.v.x, 3, 1e-4);
@@ -96,7 +96,7 @@ static void force(uint32_t substeps)
 	CHECK_NEAR(f.v.y, -2, 1e-4);
 	CHECK_NEAR(s.w.z, 1, 1e-4);
 	CHECK_NEAR(2 * atan2(s.pose.q.z, s.pose.q.w), 1, 1e-3);
-	free(l);
+	little_world_free(l);
 }
 
 // sqrt(.16) = .4 for the pair: the product would be .16, the mean .58.
@@ -105,15 +105,15 @@ static void friction(void)
 	little_world *l = little_world_new();
 	uint32_t ground = little_ground(l);
 	uint32_t box = little_add(l, OB_SHAPE_BOX, ob_v3(.5, .5, .1), 5, ob_v3(0, 0, .1));
-	l->passport[ground].friction = .16;
-	l->passport[box].friction = 1;
-	l->state[box].v.x = 3;
+	l->world.passport[ground].friction = .16;
+	l->world.passport[box].friction = 1;
+	l->world.state[box].v.x = 3;
 	little_run(kind, l, 4, 2);
 	double far = 9 / (2 * .4 * 9.81);
 	CHECK_NEAR(l->now[box].pose.p.x, far, .05 * far);
 	CHECK_NEAR(l->now[box].pose.p.y, 0, .01);
 	CHECK(ob_norm(l->now[box].v) < .01);
-	free(l);
+	little_world_free(l);
 }
 
 // The larger of 0 and .8: back to .64 of the height. Looked at over the time about the apex.
@@ -122,7 +122,7 @@ static void bounce(void)
 	little_world *l = little_world_new();
 	little_ground(l);
 	uint32_t ball = little_sphere(l, 1, .1, ob_v3(0, 0, 1.1));
-	l->passport[ball].restitution = .8;
+	l->world.passport[ball].restitution = .8;
 	ob_engine *p = little_make(kind, l, 16);
 	double apex = 0;
 	little_step(kind, p, l, .6);
@@ -132,7 +132,7 @@ static void bounce(void)
 	}
 	kind->destroy(p);
 	CHECK_NEAR(apex, .64, .06);
-	free(l);
+	little_world_free(l);
 }
 
 // A plane is where its pose puts it: a wall at x = 2 that looks back, and a floor at z = 1 that is tilted by less than
@@ -141,21 +141,21 @@ static void planes(void)
 {
 	little_world *l = little_world_new();
 	uint32_t wall = little_add(l, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(2, 0, 0));
-	l->state[wall].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, -asin(1), 0));
+	l->world.state[wall].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, -asin(1), 0));
 	uint32_t floor = little_add(l, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 1));
-	l->state[floor].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(.2, 0, 0));
+	l->world.state[floor].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(.2, 0, 0));
 	uint32_t ball = little_sphere(l, 1, .25, ob_v3(0, 0, 5));
-	l->passport[ball].restitution = 1;
-	l->state[ball].v = ob_v3(8, 0, 2);
+	l->world.passport[ball].restitution = 1;
+	l->world.state[ball].v = ob_v3(8, 0, 2);
 	ob_vec3 up = ob_v3(0, -sin(.2), cos(.2));
 	uint32_t box = little_cube(l, 1, .25, ob_madd(ob_v3(-20, 0, 1), .25, up));
-	l->state[box].pose.q = l->state[floor].pose.q;
+	l->world.state[box].pose.q = l->world.state[floor].pose.q;
 	little_run(kind, l, 8, .5);
 	CHECK_NEAR(l->now[ball].v.x, -8, .3);
 	CHECK_NEAR(l->now[ball].pose.p.x, 1.75 - 8 * (.5 - 1.75 / 8), .2);
-	ob_vec3 creep = ob_sub(l->now[box].pose.p, l->state[box].pose.p);
+	ob_vec3 creep = ob_sub(l->now[box].pose.p, l->world.state[box].pose.p);
 	CHECK(ob_norm(creep) < .01);
-	free(l);
+	little_world_free(l);
 }
 
 // Two at once, in one thread; and what cannot be made says why.
@@ -181,7 +181,7 @@ static void life(void)
 	s.step_length = 0;
 	e.text[0] = 0;
 	CHECK(!kind->create(&l->world, &s, &e) && e.text[0]);
-	free(l);
+	little_world_free(l);
 }
 
 // Substeps by a tolerance, which only obsim can do: a stack may sag by that much.
@@ -205,7 +205,7 @@ static void tolerance(void)
 			CHECK_NEAR(l->now[5].pose.p.z, 4.5, 5e-4);
 	}
 	kind->destroy(p);
-	free(l);
+	little_world_free(l);
 }
 
 // A heap that tumbles, twice: the same bits, whatever ran before in the process.
@@ -215,14 +215,14 @@ static void again(void)
 	little_ground(l);
 	for (int i = 0; i < 20; i++) {
 		uint32_t id = little_cube(l, 1, .25, ob_v3(.2 * (i % 3), .15 * (i % 2), .5 + .6 * i));
-		l->state[id].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(i, .3 * i, 1));
+		l->world.state[id].pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(i, .3 * i, 1));
 	}
 	little_run(kind, l, 0, 2);
 	ob_state first[LITTLE_MOST];
 	memcpy(first, l->now, sizeof first);
 	little_run(kind, l, 0, 2);
 	CHECK(memcmp(first, l->now, sizeof first) == 0);
-	free(l);
+	little_world_free(l);
 }
 
 // Rests and is asked for rest: the same state to the last bit, frame after frame.
@@ -244,7 +244,7 @@ static void sleep_on(void)
 	CHECK(memcmp(&before, &l->now[cube], sizeof before) == 0);
 	CHECK(ob_norm(before.v) == 0);
 	kind->destroy(p);
-	free(l);
+	little_world_free(l);
 }
 
 int main(int argc, char **argv)

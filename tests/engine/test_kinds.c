@@ -4,6 +4,8 @@
 
 #include "little_world.h"
 
+#include "ode/ode_body.h"
+
 #include "../check.h"
 
 // What falls into a heap shows any difference between two engines.
@@ -22,11 +24,27 @@ static void differ(void)
 			CHECK(memcmp(end[kinds], end[other], sizeof l->now) != 0);
 	}
 	CHECK(kinds >= 7);
-	free(l);
+	little_world_free(l);
+}
+
+// A world's bodies have the inertia that the host would give them, but for rounding.
+static void inertia(void)
+{
+	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
+	little_world *l = little_world_new();
+	for (int i = 0; i < 4; i++) {
+		ob_vec3 size = ob_v3(.3, .7, shape[i] == OB_SHAPE_BOX ? .2 : 0);
+		uint32_t id = little_add(l, shape[i], size, 5, ob_v3(0, 0, 0));
+		ob_vec3 off = ob_sub(l->world.passport[id].inertia, ob_ode_inertia(shape[i], size, 5));
+		CHECK(ob_norm(off) < 1e-12);
+		CHECK(ob_norm(l->world.passport[id].inertia) > .1);
+	}
+	little_world_free(l);
 }
 
 int main(void)
 {
+	inertia();
 	differ();
 	CHECK(!ob_engine_find("no-such-engine"));
 	CHECK(ob_engine_find("obsim") == ob_engine_kinds[0]);
