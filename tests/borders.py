@@ -30,15 +30,16 @@ ARROWS = {
     'reference': 'motion base',
     'plot': 'base',
     'experiment': 'plot reference base',
+    'compare': 'experiment plot reference base',
     'world': 'motion base',
     'engine': 'world sim ode table settings measure motion base',
     'lab': 'reference engine world plot experiment settings measure motion base',
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
     'paper': 'host measure render reference plot experiment scene table settings base',
-    'cli': 'host render record lab paper measure scene reference plot experiment table settings base',
+    'cli': 'host render record lab paper compare measure scene reference plot experiment table settings base',
 }
-BUILT = {'render': ['shaders.h'], 'cli': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
+BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h']}  # written by the build, so without a folder
 
 # What only some files may do: (what, pattern, where it may stand, in code without comments and strings?).
@@ -57,7 +58,7 @@ DUTIES = [
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor|timeline)|render/sink\w*|cli/progress|paper/viewer)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|lab/attempt|paper/attempt|cli/child)\.c$', True),
+     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|lab/attempt|paper/attempt)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

@@ -8,6 +8,7 @@
 typedef struct cell {
 	char *text, *small; // NULL = empty
 	const char *class, *link;
+	bool heading; // its row has no other
 } cell;
 
 struct ob_table {
@@ -42,7 +43,7 @@ void ob_table_free(ob_table *t)
 	free(t);
 }
 
-void ob_table_add(ob_table *t, const char *format, ...)
+static void add_cell(ob_table *t, const char *format, va_list args)
 {
 	if (t->count == t->max) {
 		size_t max = t->max ? 2 * t->max : 64;
@@ -54,11 +55,28 @@ void ob_table_add(ob_table *t, const char *format, ...)
 	}
 	cell *c = &t->cell[t->count++];
 	*c = (cell){ 0 };
-	va_list args;
-	va_start(args, format);
 	if (vasprintf(&c->text, format, args) < 0)
 		c->text = NULL;
+}
+
+void ob_table_add(ob_table *t, const char *format, ...)
+{
+	va_list args;
+	va_start(args, format);
+	add_cell(t, format, args);
 	va_end(args);
+}
+
+void ob_table_heading(ob_table *t, const char *format, ...)
+{
+	va_list args;
+	va_start(args, format);
+	add_cell(t, format, args);
+	va_end(args);
+	if (t->count)
+		t->cell[t->count - 1].heading = true;
+	for (size_t i = 1; i < t->columns; i++)
+		ob_table_add(t, "%s", "");
 }
 
 void ob_table_small(ob_table *t, const char *format, ...)
@@ -144,7 +162,7 @@ static size_t *measure(const ob_table *t, size_t least)
 	for (size_t i = 0; i < t->count; i++) {
 		char *text = text_of(t, i);
 		size_t w = width_of(text), *widest = &width[i % t->columns];
-		*widest = w > *widest ? w : *widest;
+		*widest = w > *widest && !t->cell[i].heading ? w : *widest;
 		free(text);
 	}
 	return width;
@@ -219,6 +237,12 @@ void ob_table_html(const ob_table *t, ob_page *p)
 {
 	ob_page_markup(p, "<div class=\"scroll\"><table>\n<thead>");
 	for (size_t row = 0; row < t->count; row += t->columns) {
+		if (t->cell[row].heading) {
+			ob_page_markup(p, "<tr><th colspan=\"%zu\" scope=\"rowgroup\">", t->columns);
+			ob_page_text(p, t->cell[row].text ? t->cell[row].text : "");
+			ob_page_markup(p, "</th></tr>\n");
+			continue;
+		}
 		ob_page_markup(p, "<tr>");
 		for (size_t i = row; i < row + t->columns && i < t->count; i++)
 			write_cell(t, p, i);

@@ -17,6 +17,9 @@ void ob_table_free(ob_table *t);
 // The next cell; the first row is the head. A cell for which there is no memory stays empty.
 void ob_table_add(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// A row that is one heading; between rows that are complete
+void ob_table_heading(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 // Of the last cell:
 // what stands small below it in HTML, and in brackets behind it elsewhere
 void ob_table_small(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -52,6 +52,27 @@ static void test_forms(void)
 	ob_table_free(t);
 }
 
+// A heading goes over all columns, and makes none wider.
+static void test_heading(void)
+{
+	ob_table *t = ob_table_new("lr");
+	ob_table_add(t, "a");
+	ob_table_add(t, "b");
+	ob_table_heading(t, "where it goes");
+	ob_table_add(t, "x");
+	ob_table_add(t, "1");
+	FILE *f = begin();
+	ob_table_print(t, f, 0);
+	expect(f, "a  b\nwhere it goes\nx  1\n");
+	f = begin();
+	ob_page page = { f };
+	ob_table_html(t, &page);
+	fclose(f);
+	CHECK(strstr(text, "<tr><th colspan=\"2\" scope=\"rowgroup\">where it goes</th></tr>\n<tr><td>x</td>"));
+	free(text);
+	ob_table_free(t);
+}
+
 // What does not fit stands below, behind the first column again.
 static void test_panels(void)
 {
@@ -100,6 +121,7 @@ static void test_small_and_html(void)
 int main(void)
 {
 	test_forms();
+	test_heading();
 	test_panels();
 	test_small_and_html();
 	return check_end();

@@ -35,7 +35,7 @@ _obsim()
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--define | -D | --vary | --duration | --step | --seed | --substeps | --iterations | --lag | --load | --name | --fps | --samples | \
-		--camera | --interval | --repeats | --limit | --objects) ;;
+		--camera | --interval | --repeats | --seeds | --limit | --objects) ;;
 	*)
 		case $command:$word in
 		help:*) mapfile -t COMPREPLY < <(compgen -W 'run compare top lab paper' -- "$word") ;;

@@ -12,7 +12,7 @@ end
 
 complete -c obsim -f
 complete -c obsim -n __fish_use_subcommand -a run -d 'run a scene and report'
-complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in all ways'
+complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in all configurations'
 complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
 complete -c obsim -n __fish_use_subcommand -a lab -d 'run hard cases with several engines'
 complete -c obsim -n __fish_use_subcommand -a paper -d 'run the paper again and judge its claims'
@@ -74,6 +74,8 @@ complete -c obsim -n $lab -l engines -x -d 'engines, with commas' \
 complete -c obsim -n $lab -l sweep -x -a 'none substeps= iterations= tolerance= lag=' -d 'settings'
 complete -c obsim -n $compare -l vary -x -d 'compare at each of these values'
 complete -c obsim -n $compare -l repeats -x -d 'runs of each'
+complete -c obsim -n $compare -l seeds -x -d 'seeds, repeats of each'
+complete -c obsim -n $compare -l fresh -d 'run again what is there already'
 complete -c obsim -n $compare -l out -x -a '(__fish_complete_directories)' -d 'results, diagrams, report'
 complete -c obsim -n $lab -l repeats -x -d 'runs of each'
 complete -c obsim -n $lab -l limit -x -d 'seconds that a run may take'

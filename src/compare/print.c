@@ -1,0 +1,288 @@
+// A comparison as a text and as JSON.
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compare/compare.h"
+#include "compare/table.h"
+#include "experiment/json.h"
+
+enum { HASH_DIGITS = 8 };
+
+void ob_comparison_print_runs(const ob_comparison *c, char *to, size_t room)
+{
+	int n = snprintf(to, room, "%" PRIu32 " run%s of each", c->repeats, c->repeats == 1 ? "" : "s");
+	if (c->seeds > 1)
+		snprintf(to + n, room - (size_t)n, " of %" PRIu32 " seeds", c->seeds);
+}
+
+// ---- the table
+
+static void print_number(char to[48], double v, const ob_metric *m)
+{
+	ob_page_print_quantity(to, 48, v * m->scale, "1");
+}
+
+static void add_cell(ob_table *t, const ob_metric *m, ob_spread x, bool interval)
+{
+	char median[48], low[48], high[48];
+	print_number(median, x.median, m);
+	print_number(low, x.low, m);
+	print_number(high, x.high, m);
+	ob_table_add(t, "%s", isnan(x.median) ? "–" : median);
+	if (interval && !isnan(x.low) && strcmp(low, high) != 0)
+		ob_table_small(t, "%s – %s", low, high);
+}
+
+// One line for the configurations listed; nothing where none has it.
+static void add_metric(ob_table *t, const ob_comparison *c, const ob_sweep_point *p, const int *id, int n,
+		       ob_compare_metric metric, bool intervals)
+{
+	const ob_metric *m = &ob_compare_metric_table[metric];
+	bool unit = strcmp(m->unit, "1") != 0;
+	ob_table_add(t, "  %s%s%s", m->title, unit ? ", " : "", unit ? m->unit : "");
+	bool several = false, interval = false;
+	for (int i = 0; i < n; i++) {
+		ob_spread x = ob_comparison_spread(c, p, id[i], metric);
+		add_cell(t, m, x, intervals);
+		several |= x.n > 1;
+		interval |= x.interval;
+	}
+	if (metric != OB_COMPARE_COST || intervals || !several)
+		return;
+	ob_table_add(t, interval ? "    interval of 95 %%" : "    least to most");
+	for (int i = 0; i < n; i++) {
+		ob_spread x = ob_comparison_spread(c, p, id[i], metric);
+		char low[48], high[48];
+		print_number(low, x.low, m);
+		print_number(high, x.high, m);
+		ob_table_add(t, "%s–%s", low, high);
+	}
+}
+
+static bool is_known(const ob_comparison *c, const ob_sweep_point *p, ob_compare_metric m)
+{
+	for (int w = 0; w < OB_CONFIGURATIONS; w++)
+		if (!isnan(ob_comparison_spread(c, p, w, m).median))
+			return true;
+	return false;
+}
+
+// The state that the first seed ends in; "" = it was not run
+static const char *state_of(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id)
+{
+	for (uint32_t r = 0; r < c->repeats; r++) {
+		const ob_record *one = ob_records_find(&c->records, p->key, ob_configuration_table[id].key, r, p->seed);
+		if (one)
+			return one->note;
+	}
+	return "";
+}
+
+ob_table *ob_comparison_table(const ob_comparison *c, const ob_sweep_point *p, bool intervals)
+{
+	char align[OB_CONFIGURATIONS + 2] = "l";
+	int id[OB_CONFIGURATIONS], n = 0;
+	for (int w = 0; w < OB_CONFIGURATIONS; w++)
+		if (ob_comparison_is_done(c, p, w))
+			id[n++] = w;
+	memset(align + 1, 'r', (size_t)n);
+	ob_table *t = n ? ob_table_new(align) : NULL;
+	if (!t)
+		return NULL;
+	ob_table_add(t, "%s", "");
+	for (int i = 0; i < n; i++)
+		ob_table_add(t, "%s", ob_configuration_table[id[i]].title);
+	ob_table_add(t, "  narrow phase");
+	for (int i = 0; i < n; i++)
+		ob_table_add(t, "%s", ob_configuration_table[id[i]].other_narrow ? c->other : c->narrow);
+	ob_table_add(t, "  workers");
+	for (int i = 0; i < n; i++)
+		ob_table_add(t, "%" PRIu32, p->workers[id[i]]);
+	const char *group = NULL, *shown = NULL;
+	for (int m = 0; m < OB_COMPARE_SHOWN; m++) {
+		group = ob_compare_metric_table[m].group ? ob_compare_metric_table[m].group : group;
+		if (!is_known(c, p, m))
+			continue;
+		if (group != shown)
+			ob_table_heading(t, "%s", group);
+		shown = group;
+		add_metric(t, c, p, id, n, m, intervals);
+	}
+	ob_table_add(t, "  state after it");
+	for (int i = 0; i < n; i++)
+		ob_table_add(t, "%.*s", HASH_DIGITS, state_of(c, p, id[i]));
+	return t;
+}
+
+// ---- the text
+
+// In lines of at most this width, unless a word is longer
+static void print_wrapped(FILE *f, const char *text, size_t width)
+{
+	size_t used = 0;
+	while (*(text += strspn(text, " "))) {
+		size_t bytes = strcspn(text, " "), letters = 0;
+		for (size_t i = 0; i < bytes; i++)
+			letters += (text[i] & 0xc0) != 0x80; // UTF-8
+		if (used && used + 1 + letters > width) {
+			fputc('\n', f);
+			used = 0;
+		}
+		fprintf(f, "%s%.*s", used ? " " : "", (int)bytes, text);
+		used += (used ? 1 : 0) + letters;
+		text += bytes;
+	}
+	if (used)
+		fputc('\n', f);
+}
+
+static void print_point(const ob_comparison *c, const ob_sweep_point *p, FILE *f, size_t width)
+{
+	ob_verdict v;
+	char line[640], runs[64];
+	ob_verdict_make(&v, c, p);
+	snprintf(line, sizeof line, "Thread or process? %s", *v.headline ? v.headline : "Not measured.");
+	const char *const said[] = { line,
+				     v.answer,
+				     v.architecture,
+				     v.narrow,
+				     v.sum,
+				     ob_comparison_agrees(c, p) ? "The object simulators end in the same bits."
+								: "The object simulators DIFFER in their last state." };
+	for (size_t i = 0; i < sizeof said / sizeof *said; i++)
+		print_wrapped(f, said[i], width);
+	ob_comparison_print_runs(c, runs, sizeof runs);
+	snprintf(line, sizeof line, "%.300s%s%s: %" PRIu32 " objects, %" PRIu64 " steps of %g s, %g s simulated; %s%s",
+		 c->scene, *p->define ? " " : "", p->define, p->objects, p->steps, p->step, p->simulated, runs,
+		 c->repeats * c->seeds > 1 ? "; medians" : "");
+	fputc('\n', f);
+	print_wrapped(f, line, width);
+	fputc('\n', f);
+	ob_table *t = ob_comparison_table(c, p, false);
+	if (t)
+		ob_table_print(t, f, width);
+	ob_table_free(t);
+	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
+		const char *failed = ob_comparison_failure(c, p, w);
+		if (!failed && !*p->skipped[w])
+			continue;
+		snprintf(line, sizeof line, "%s: %s: %s", ob_configuration_table[w].title,
+			 failed ? "failed" : "skipped", failed ? failed : p->skipped[w]);
+		print_wrapped(f, line, width);
+	}
+}
+
+void ob_comparison_print(const ob_comparison *c, FILE *f, size_t width)
+{
+	for (uint32_t i = 0; i < c->points; i++) {
+		if (i > 0)
+			fputs("\n\n", f);
+		print_point(c, &c->point[i], f, width);
+	}
+}
+
+// ---- JSON
+
+static void write_metrics(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_json *j)
+{
+	ob_json_open(j, "metrics");
+	for (int m = 0; m < OB_COMPARE_SHOWN; m++) {
+		ob_spread x = ob_comparison_spread(c, p, id, m);
+		ob_json_open(j, ob_compare_metric_table[m].key);
+		ob_json_number(j, "median", x.median);
+		ob_json_number(j, "low", x.low);
+		ob_json_number(j, "high", x.high);
+		ob_json_count(j, "runs", x.n);
+		ob_json_close(j);
+	}
+	ob_json_close(j);
+}
+
+static void write_sample(const ob_record *r, ob_json *j)
+{
+	ob_json_open(j, NULL);
+	ob_json_count(j, "repeat", r->repeat);
+	ob_json_count(j, "seed", r->seed);
+	ob_json_string(j, "state_hash", r->note);
+	for (int m = 0; m < OB_COMPARE_METRICS; m++)
+		if (!isnan(r->metric[m]))
+			ob_json_number(j, ob_compare_metric_table[m].key, r->metric[m]);
+	ob_json_close(j);
+}
+
+static void write_command(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_json *j)
+{
+	char **argv = ob_comparison_arguments(c, p, id, OB_COMPARE_SAMPLE, false, p->seed);
+	ob_json_open_list(j, "command");
+	for (char **at = argv; at && *at; at++)
+		ob_json_string(j, NULL, *at);
+	ob_json_close_list(j);
+	ob_comparison_free_arguments(argv);
+}
+
+static void write_configuration(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_json *j)
+{
+	const ob_configuration *w = &ob_configuration_table[id];
+	ob_json_open(j, w->key);
+	ob_json_string(j, "narrow", w->other_narrow ? c->other : c->narrow);
+	ob_json_count(j, "workers", p->workers[id]);
+	write_command(c, p, id, j);
+	write_metrics(c, p, id, j);
+	ob_json_open_list(j, "samples");
+	for (size_t i = 0; i < c->records.count; i++) {
+		const ob_record *r = &c->records.record[i];
+		if (!strcmp(r->of, p->key) && !strcmp(r->configuration, w->key))
+			write_sample(r, j);
+	}
+	ob_json_close_list(j);
+	ob_json_close(j);
+}
+
+static void write_point(const ob_comparison *c, const ob_sweep_point *p, ob_json *j)
+{
+	ob_verdict v;
+	ob_verdict_make(&v, c, p);
+	ob_json_open(j, NULL);
+	ob_json_string(j, "define", p->define);
+	ob_json_count(j, "objects", p->objects);
+	ob_json_count(j, "steps", p->steps);
+	ob_json_count(j, "seed", p->seed);
+	ob_json_true(j, "hashes_agree", ob_comparison_agrees(c, p));
+	ob_json_string(j, "headline", v.headline);
+	ob_json_string(j, "answer", v.answer);
+	ob_json_open(j, "configurations");
+	for (int w = 0; w < OB_CONFIGURATIONS; w++)
+		if (ob_comparison_is_done(c, p, w))
+			write_configuration(c, p, w, j);
+	ob_json_close(j);
+	ob_json_open(j, "skipped");
+	for (int w = 0; w < OB_CONFIGURATIONS; w++)
+		if (*p->skipped[w])
+			ob_json_string(j, ob_configuration_table[w].key, p->skipped[w]);
+	ob_json_close(j);
+	ob_json_open(j, "failed");
+	for (int w = 0; w < OB_CONFIGURATIONS; w++)
+		if (ob_comparison_failure(c, p, w))
+			ob_json_string(j, ob_configuration_table[w].key, ob_comparison_failure(c, p, w));
+	ob_json_close(j);
+	ob_json_close(j);
+}
+
+void ob_comparison_write_json(const ob_comparison *c, FILE *f)
+{
+	ob_json j = { .f = f };
+	ob_json_open(&j, NULL);
+	ob_json_string(&j, "scene", c->scene);
+	ob_json_string(&j, "options", c->options);
+	ob_json_string(&j, "commit", c->records.commit);
+	ob_json_string(&j, "machine", c->records.machine);
+	ob_json_count(&j, "repeats", c->repeats);
+	ob_json_count(&j, "seeds", c->seeds);
+	ob_json_open_list(&j, "points");
+	for (uint32_t i = 0; i < c->points; i++)
+		write_point(c, &c->point[i], &j);
+	ob_json_close_list(&j);
+	ob_json_close(&j);
+}

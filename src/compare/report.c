@@ -1,0 +1,323 @@
+// A comparison as a folder: one page that answers first and explains then, its diagrams, its figures.
+#include <ctype.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "compare/compare.h"
+#include "compare/table.h"
+#include "compare_texts.h"
+#include "experiment/chart.h"
+#include "experiment/folder.h"
+#include "experiment/page.h"
+
+// ---- diagrams
+
+static ob_chart *begin_chart(const ob_comparison *c, const char *define)
+{
+	ob_chart *d = ob_chart_new();
+	char runs[64];
+	ob_comparison_print_runs(c, runs, sizeof runs);
+	if (d)
+		snprintf(d->subtitle, sizeof d->subtitle, "%.150s %s%.150s; %s, medians; %.60s", c->scene, define,
+			 c->options, runs, c->records.commit);
+	return d;
+}
+
+// The configurations that ran, downwards; returns how many.
+static int list_configurations(ob_chart *d, const ob_comparison *c, const ob_sweep_point *p, int id[OB_CONFIGURATIONS])
+{
+	int n = 0;
+	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
+		if (!ob_comparison_is_done(c, p, w))
+			continue;
+		snprintf(d->category_text[n], sizeof *d->category_text, "%s%s%s", ob_configuration_table[w].title,
+			 ob_configuration_table[w].other_narrow ? ", " : "",
+			 ob_configuration_table[w].other_narrow ? c->other : "");
+		d->category[n] = d->category_text[n];
+		id[n++] = w;
+	}
+	d->plot.y.scale = OB_SCALE_CATEGORY;
+	d->plot.y.categories = (size_t)n;
+	d->plot.y.category = d->category;
+	d->plot.height = 130 + 42 * n;
+	return n;
+}
+
+static ob_chart *chart_cost(const ob_comparison *c, const ob_sweep_point *p)
+{
+	int id[OB_CONFIGURATIONS];
+	ob_chart *d = begin_chart(c, p->define);
+	if (!d)
+		return NULL;
+	int n = list_configurations(d, c, p, id);
+	bool interval = false, several = false;
+	snprintf(d->title, sizeof d->title, "What a step of a body costs, %" PRIu32 " objects", p->objects);
+	snprintf(d->x_label, sizeof d->x_label, "CPU per body and step (µs)");
+	d->plot.x.scale = OB_SCALE_LOG;
+	for (int i = 0; i < n; i++) { // the interval as a line behind the marker
+		ob_spread x = ob_comparison_spread(c, p, id[i], OB_COMPARE_COST);
+		interval |= x.interval;
+		if (isnan(x.low))
+			continue;
+		several = true;
+		ob_chart_begin(d, -1, false, "");
+		ob_chart_add(d, 1e6 * x.low, i, "", "");
+		ob_chart_add(d, 1e6 * x.high, i, "", "");
+	}
+	ob_chart_begin(d, 0, false,
+		       interval  ? "median, and its interval of 95 %"
+		       : several ? "median; the line runs from the least to the most"
+				 : "one run")
+		->line = false;
+	for (int i = 0; i < n; i++) {
+		char label[32], hint[192];
+		ob_spread x = ob_comparison_spread(c, p, id[i], OB_COMPARE_COST);
+		snprintf(label, sizeof label, "%.3g", 1e6 * x.median);
+		snprintf(hint, sizeof hint, "%s: %.3g µs", d->category[i], 1e6 * x.median);
+		ob_chart_add(d, 1e6 * x.median, i, label, hint);
+	}
+	return d;
+}
+
+static ob_chart *chart_latency(const ob_comparison *c, const ob_sweep_point *p)
+{
+	static const ob_compare_metric metrics[] = { OB_COMPARE_P50, OB_COMPARE_P90, OB_COMPARE_P99,
+						     OB_COMPARE_LONGEST };
+	int id[OB_CONFIGURATIONS];
+	ob_chart *d = begin_chart(c, p->define);
+	if (!d)
+		return NULL;
+	int n = list_configurations(d, c, p, id);
+	snprintf(d->title, sizeof d->title, "How long a step takes, %" PRIu32 " objects", p->objects);
+	snprintf(d->x_label, sizeof d->x_label, "wall-clock time of a step (ms)");
+	d->plot.x.scale = OB_SCALE_LOG;
+	for (int k = 0; k < 4; k++) {
+		const char *title = ob_compare_metric_table[metrics[k]].title;
+		ob_chart_begin(d, k, false, title)->line = false;
+		for (int i = 0; i < n; i++) {
+			char hint[192];
+			double ms = 1e3 * ob_comparison_spread(c, p, id[i], metrics[k]).median;
+			snprintf(hint, sizeof hint, "%s, %s: %.3g ms", d->category[i], title, ms);
+			ob_chart_add(d, ms, i, "", hint);
+		}
+	}
+	return d;
+}
+
+// Cost over the number of objects; NULL where that does not vary
+static ob_chart *chart_growth(const ob_comparison *c)
+{
+	bool grows = false;
+	for (uint32_t i = 1; i < c->points; i++)
+		grows |= c->point[i].objects != c->point[0].objects;
+	ob_chart *d = grows ? begin_chart(c, "") : NULL;
+	if (!d)
+		return NULL;
+	snprintf(d->title, sizeof d->title, "What a step of a body costs, by the number of objects");
+	snprintf(d->x_label, sizeof d->x_label, "objects");
+	snprintf(d->y_label, sizeof d->y_label, "CPU per body and step (µs)");
+	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
+	for (int w = 0; w < OB_CONFIGURATION_MONOLITH_OTHER; w++) {
+		ob_chart_begin(d, w, false, ob_configuration_table[w].title);
+		for (uint32_t i = 0; i < c->points; i++) {
+			ob_spread x = ob_comparison_spread(c, &c->point[i], w, OB_COMPARE_COST);
+			char hint[192];
+			if (isnan(x.median))
+				continue;
+			snprintf(hint, sizeof hint, "%s, %" PRIu32 " objects: %.3g µs", ob_configuration_table[w].title,
+				 c->point[i].objects, 1e6 * x.median);
+			ob_plot_point *at = ob_chart_add(d, c->point[i].objects, 1e6 * x.median, "", hint);
+			at->low = isnan(x.low) ? 0 : 1e6 * x.low;
+			at->high = isnan(x.low) ? 0 : 1e6 * x.high;
+		}
+	}
+	return d;
+}
+
+// ---- the page
+
+static void write_style(ob_page *p, const void *with)
+{
+	ob_page_style(p);
+}
+
+static void write_paragraph(ob_page *p, const char *text)
+{
+	if (!*text)
+		return;
+	ob_page_markup(p, "<p>");
+	ob_page_text(p, text);
+	ob_page_markup(p, "</p>\n");
+}
+
+static void write_figure(ob_page *p, ob_chart *d)
+{
+	if (!d)
+		return;
+	ob_page_markup(p, "<figure>\n");
+	ob_chart_html(d, p);
+	ob_page_markup(p, "</figure>\n");
+}
+
+static const ob_sweep_point *last_point(const ob_comparison *c)
+{
+	return &c->point[c->points - 1];
+}
+
+static void write_answer(ob_page *p, const void *with)
+{
+	const ob_comparison *c = with;
+	ob_verdict v;
+	ob_verdict_make(&v, c, last_point(c));
+	ob_page_markup(p, "<p class=\"lead\"><strong>");
+	ob_page_text(p, *v.headline ? v.headline : "Not measured.");
+	ob_page_markup(p, "</strong></p>\n");
+	write_paragraph(p, v.answer);
+	write_paragraph(p, v.architecture);
+}
+
+static void write_card(ob_page *p, const ob_comparison *c, ob_configuration_id id, const char *text)
+{
+	ob_spread r = ob_comparison_ratio(c, last_point(c), id, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
+	if (isnan(r.median))
+		return;
+	ob_page_markup(p, "<li><b>%.2f×</b><span>", r.median);
+	ob_page_text(p, text);
+	if (!isnan(r.low))
+		ob_page_markup(p, "<br>%.2f to %.2f, run by run", r.low, r.high);
+	ob_page_markup(p, "</span></li>\n");
+}
+
+static void write_cards(ob_page *p, const void *with)
+{
+	write_card(p, with, OB_CONFIGURATION_PROCESSES, "the CPU of the thread pool: a pool of processes");
+	write_card(p, with, OB_CONFIGURATION_GROUPS, "process groups of 60 objects");
+	write_card(p, with, OB_CONFIGURATION_THREADS_EACH, "a thread for each object");
+	write_card(p, with, OB_CONFIGURATION_PROCESSES_EACH, "a process for each object");
+	write_card(p, with, OB_CONFIGURATION_MONOLITH, "one world for all objects (ODE)");
+}
+
+static void write_setting(ob_page *p, const void *with)
+{
+	const ob_comparison *c = with;
+	const struct {
+		const char *name, *text;
+	} lines[] = { { "Scene", c->scene },
+		      { "Options", c->options },
+		      { "Machine", c->records.machine },
+		      { "Program", c->records.commit } };
+	char runs[64];
+	double took = 0;
+	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+		ob_page_markup(p, "<dt>%s</dt><dd>", lines[i].name);
+		ob_page_text(p, *lines[i].text ? lines[i].text : "–");
+		ob_page_markup(p, "</dd>\n");
+	}
+	for (size_t i = 0; i < c->records.count; i++)
+		took += c->records.record[i].took_s;
+	ob_comparison_print_runs(c, runs, sizeof runs);
+	ob_page_markup(p, "<dt>Runs</dt><dd>%s, by turns, to and fro; %.0f s in all</dd>\n", runs, took);
+}
+
+static void write_growth(ob_page *p, const void *with)
+{
+	write_figure(p, chart_growth(with));
+}
+
+static void write_left_out(ob_page *p, const ob_comparison *c, const ob_sweep_point *at)
+{
+	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
+		const char *failed = ob_comparison_failure(c, at, w);
+		if (!failed && !*at->skipped[w])
+			continue;
+		ob_page_markup(p, "<p class=\"note\">%s: %s: ", ob_configuration_table[w].title,
+			       failed ? "failed" : "left out");
+		ob_page_text(p, failed ? failed : at->skipped[w]);
+		ob_page_markup(p, "</p>\n");
+	}
+}
+
+static void write_point(ob_page *p, const ob_comparison *c, const ob_sweep_point *at)
+{
+	ob_verdict v;
+	ob_verdict_make(&v, c, at);
+	ob_page_markup(p, "<section>\n<h2>%" PRIu32 " objects%s", at->objects, *at->define ? ", " : "");
+	ob_page_text(p, at->define);
+	ob_page_markup(p, "</h2>\n");
+	if (at != last_point(c)) { // whose answer stands at the top
+		write_paragraph(p, v.headline);
+		write_paragraph(p, v.answer);
+		write_paragraph(p, v.architecture);
+	}
+	write_paragraph(p, v.narrow);
+	write_paragraph(p, v.sum);
+	write_paragraph(p, ob_comparison_agrees(c, at)
+				   ? "All object simulators with the same narrow phase ended in the same bits."
+				   : "The object simulators did NOT end in the same bits.");
+	write_figure(p, chart_cost(c, at));
+	write_figure(p, chart_latency(c, at));
+	ob_table *t = ob_comparison_table(c, at, true);
+	if (t)
+		ob_table_html(t, p);
+	ob_table_free(t);
+	write_left_out(p, c, at);
+	ob_page_markup(p, "</section>\n");
+}
+
+static void write_points(ob_page *p, const void *with)
+{
+	const ob_comparison *c = with;
+	for (uint32_t i = c->points; i-- > 0;)
+		write_point(p, c, &c->point[i]);
+}
+
+static void write_meanings(ob_page *p, const void *with)
+{
+	for (int m = 0; m < OB_COMPARE_SHOWN; m++) {
+		const ob_metric *metric = &ob_compare_metric_table[m];
+		if (metric->group)
+			ob_page_markup(p, "%s<h3>%s</h3>\n<dl>\n", m ? "</dl>\n" : "", metric->group);
+		ob_page_markup(p, "<dt>%s</dt><dd>%s</dd>\n", metric->title, metric->meaning);
+	}
+	ob_page_markup(p, "</dl>\n");
+}
+
+static void write_page(FILE *f, const void *with)
+{
+	static const ob_page_slot slots[] = { { "style", write_style },      { "answer", write_answer },
+					      { "cards", write_cards },      { "setting", write_setting },
+					      { "growth", write_growth },    { "points", write_points },
+					      { "meanings", write_meanings } };
+	ob_page page = { f };
+	ob_page_fill(&page, text_compare_html, slots, sizeof slots / sizeof *slots, with);
+}
+
+static void write_json(FILE *f, const void *with)
+{
+	ob_comparison_write_json(with, f);
+}
+
+// "cost", or of one point among several "cost-n-100"
+static const char *name_file(char to[160], const char *of, const char *define)
+{
+	snprintf(to, 160, "%s%s%s", of, *define ? "-" : "", define);
+	for (char *at = to; *at; at++)
+		if (!isalnum((unsigned char)*at) && !strchr(".-", *at))
+			*at = '-';
+	return to;
+}
+
+bool ob_comparison_write_folder(const ob_comparison *c, const char *folder, ob_error *e)
+{
+	char name[160];
+	bool fine = ob_folder_write(folder, "report.html", write_page, c, e) &&
+		    ob_folder_write(folder, "results.json", write_json, c, e) &&
+		    ob_chart_write(chart_growth(c), folder, "growth", e);
+	for (uint32_t i = 0; fine && i < c->points; i++) {
+		const ob_sweep_point *p = &c->point[i];
+		fine = ob_chart_write(chart_cost(c, p), folder, name_file(name, "cost", p->define), e) &&
+		       ob_chart_write(chart_latency(c, p), folder, name_file(name, "latency", p->define), e);
+	}
+	return fine;
+}

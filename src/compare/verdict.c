@@ -1,0 +1,169 @@
+// What a comparison says, by rules: nothing here is known before the runs are.
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "compare/compare.h"
+#include "experiment/page.h"
+
+enum { runs_least = 3 }; // fewer say nothing
+static const double alike = .05; // ratios that reach to within this of 1 count as no difference
+
+__attribute__((format(printf, 3, 4))) static void say(char *to, size_t room, const char *format, ...)
+{
+	size_t used = strlen(to);
+	va_list list;
+	va_start(list, format);
+	vsnprintf(to + used, room - used, format, list);
+	va_end(list);
+}
+
+typedef struct phrase {
+	char text[48];
+} phrase;
+
+// The median of a metric with its unit
+static phrase value(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_compare_metric m)
+{
+	const ob_metric *metric = &ob_compare_metric_table[m];
+	phrase to;
+	ob_page_print_quantity(to.text, sizeof to.text, ob_comparison_spread(c, p, id, m).median * metric->scale,
+			       metric->unit);
+	return to;
+}
+
+// " (0.98 to 1.02)"; nothing for a single run
+static phrase range(ob_spread r)
+{
+	phrase to = { "" };
+	if (!isnan(r.low))
+		snprintf(to.text, sizeof to.text, " (%.2f to %.2f)", r.low, r.high);
+	return to;
+}
+
+static ob_spread cost_over_pool(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id)
+{
+	return ob_comparison_ratio(c, p, id, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
+}
+
+// Which of the two pools is cheaper, if any; and whether the objects should share workers at all.
+static void write_headline(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+{
+	ob_spread r = cost_over_pool(c, p, OB_CONFIGURATION_PROCESSES);
+	ob_spread each = cost_over_pool(c, p, OB_CONFIGURATION_THREADS_EACH);
+	if (isnan(r.median))
+		return;
+	if (r.n < runs_least) {
+		say(to, room, "That cannot be told from so few runs: take --repeats 6.");
+		return;
+	}
+	if (r.low > 1 + alike)
+		say(to, room, "Threads");
+	else if (r.high < 1 - alike)
+		say(to, room, "Processes");
+	else
+		say(to, room, "Either, for they cost the same");
+	if (each.low > 1 + alike)
+		say(to, room, "; but let objects share them: one for each object costs %.1f times as much.",
+		    each.median);
+	else
+		say(to, room, ".");
+}
+
+static void compare_pools(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+{
+	const ob_configuration_id threads = OB_CONFIGURATION_THREADS, processes = OB_CONFIGURATION_PROCESSES;
+	ob_spread r = cost_over_pool(c, p, processes);
+	if (isnan(r.median)) {
+		say(to, room, "One of the two pools did not run. ");
+		return;
+	}
+	say(to, room, "A pool of processes takes %.2f times the CPU of a pool of threads%s. ", r.median, range(r).text);
+	say(to, room, "Threads start in %s and need %s of memory, processes %s and %s. ",
+	    value(c, p, threads, OB_COMPARE_STARTUP).text, value(c, p, threads, OB_COMPARE_MEMORY).text,
+	    value(c, p, processes, OB_COMPARE_STARTUP).text, value(c, p, processes, OB_COMPARE_MEMORY).text);
+}
+
+static void compare_worker_counts(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+{
+	ob_spread groups = cost_over_pool(c, p, OB_CONFIGURATION_GROUPS);
+	ob_spread threads = cost_over_pool(c, p, OB_CONFIGURATION_THREADS_EACH);
+	ob_spread processes = cost_over_pool(c, p, OB_CONFIGURATION_PROCESSES_EACH);
+	if (!isnan(groups.median))
+		say(to, room,
+		    "Where a crash must not take all along: process groups of %d cost %.2f times the thread pool%s. ",
+		    OB_COMPARE_GROUP, groups.median, range(groups).text);
+	if (!isnan(threads.median))
+		say(to, room, "A thread for each object costs %.2f times the thread pool%s. ", threads.median,
+		    range(threads).text);
+	if (!isnan(processes.median))
+		say(to, room, "A process for each object costs %.2f times the thread pool%s. ", processes.median,
+		    range(processes).text);
+}
+
+static void compare_architectures(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+{
+	const ob_configuration_id pool = OB_CONFIGURATION_THREADS, monolith = OB_CONFIGURATION_MONOLITH;
+	ob_spread r = ob_comparison_ratio(c, p, pool, monolith, OB_COMPARE_COST);
+	if (isnan(r.median))
+		return;
+	say(to, room,
+	    "One world or many? Object simulators in the thread pool take %.2f times the CPU of the monolith%s; the "
+	    "deepest "
+	    "penetration is %s, in the monolith %s.",
+	    r.median, range(r).text, value(c, p, pool, OB_COMPARE_WORST).text,
+	    value(c, p, monolith, OB_COMPARE_WORST).text);
+}
+
+static void compare_narrow_phases(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p,
+				  ob_configuration_id aabb, ob_configuration_id obb, const char *who)
+{
+	ob_spread r = ob_comparison_ratio(c, p, aabb, obb, OB_COMPARE_COST);
+	if (isnan(r.median))
+		return;
+	say(to, room,
+	    "In the %s boxes along the axes take %.2f times the CPU of true shapes%s; they leave contacts %s apart "
+	    "(%s), "
+	    "penetrate by %s at most (%s). ",
+	    who, r.median, range(r).text, value(c, p, aabb, OB_COMPARE_SEPARATION).text,
+	    value(c, p, obb, OB_COMPARE_SEPARATION).text, value(c, p, aabb, OB_COMPARE_WORST).text,
+	    value(c, p, obb, OB_COMPARE_WORST).text);
+}
+
+static void explain_time(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+{
+	double least = INFINITY;
+	const char *where = "";
+	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
+		ob_spread r = ob_comparison_spread(c, p, w, OB_COMPARE_EXPLAINED);
+		double share = fmin(r.median, r.low); // low is NaN for a single run
+		if (share < least) {
+			least = share;
+			where = ob_configuration_table[w].title;
+		}
+	}
+	if (isfinite(least))
+		say(to, room,
+		    "Where the time goes: work, waiting for a core, at the gate and for the host are %.1f %% of the "
+		    "workers' time at least (%s).",
+		    100 * least, where);
+}
+
+void ob_verdict_make(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p)
+{
+	static const struct {
+		ob_configuration_id own, other;
+		const char *who;
+	} pairs[] = { { OB_CONFIGURATION_THREADS, OB_CONFIGURATION_THREADS_OTHER, "thread pool" },
+		      { OB_CONFIGURATION_MONOLITH, OB_CONFIGURATION_MONOLITH_OTHER, "monolith" } };
+	bool obb_first = strcmp(c->narrow, "obb") == 0;
+	memset(v, 0, sizeof *v);
+	write_headline(v->headline, sizeof v->headline, c, p);
+	compare_pools(v->answer, sizeof v->answer, c, p);
+	compare_worker_counts(v->answer, sizeof v->answer, c, p);
+	compare_architectures(v->architecture, sizeof v->architecture, c, p);
+	for (int i = 0; i < 2; i++)
+		compare_narrow_phases(v->narrow, sizeof v->narrow, c, p, obb_first ? pairs[i].other : pairs[i].own,
+				      obb_first ? pairs[i].own : pairs[i].other, pairs[i].who);
+	explain_time(v->sum, sizeof v->sum, c, p);
+}
