@@ -79,7 +79,7 @@ static bool load_point(ob_sweep_point *p, const ob_arguments *a, ob_error *e)
 	bool fine = ob_request_read(&request, &own, e);
 	if (fine) {
 		scene = ob_scene_load(request.scene, &request.scene_options, e);
-		fine = scene && ob_request_settle(&request, scene, e);
+		fine = scene && ob_request_resolve(&request, scene, e);
 	}
 	if (fine) {
 		p->objects = scene->objects;

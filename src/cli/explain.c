@@ -97,8 +97,8 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 	if (!t->elastic)
 		line(f, "restitution", "none: no object has any");
 	else
-		line(f, "restitution", "%" PRIu64 " impacts at their own instants, in %" PRIu64 " rounds", c->impacts,
-		     c->impact_rounds);
+		line(f, "restitution", "%" PRIu64 " impacts at their own instants, in %" PRIu64 " iterations", c->impacts,
+		     c->impact_iterations);
 	line(f, "recovery", "%.3g J of potential energy, from pushing penetrations apart", c->recovered);
 	if (x->settings->tolerance > 0)
 		line(f, "tolerance",
@@ -128,7 +128,7 @@ static void print_costs(const ob_explained *x, FILE *f)
 		[OB_PROFILE_LOAD] = "islands out of the universe, and back",
 		[OB_PROFILE_NARROWPHASE] = "collision tests",
 		[OB_PROFILE_IMPACTS] = "impacts with restitution",
-		[OB_PROFILE_SOLVE] = "exchanges of contact impulses",
+		[OB_PROFILE_SOLVE] = "iterations of the contact solver",
 		[OB_PROFILE_MOVE] = "turning, predicting, displacing",
 		[OB_PROFILE_PROJECT] = "penetrations pushed apart",
 		[OB_PROFILE_PUBLISH] = "motions into their slots",

@@ -138,7 +138,7 @@ static bool pick(const ob_lab_plan *p, const ob_results *from, ob_results *to)
 
 static int tell(const request *r, const ob_results *asked)
 {
-	ob_digest d = ob_digest_make(asked);
+	ob_lab_analysis d = ob_lab_analyse(asked);
 	ob_error e;
 	if (r->json) {
 		ob_lab_write_json(asked, ob_version_number, stdout);

@@ -59,7 +59,7 @@ void ob_report_count(ob_report *r, const ob_counters *c, bool timed);
 bool ob_report_missed_tolerance(const ob_report *r);
 
 typedef struct ob_explained {
-	const ob_run_request *request; // settled
+	const ob_run_request *request; // resolved
 	const ob_scene *scene;
 	const ob_run_settings *settings;
 	ob_counters counters; // of all workers

@@ -12,11 +12,7 @@
 #include "base/spelling.h"
 #include "cli/quantity.h"
 
-enum {
-	WORKERS_MAX = 65536,
-	SIZE_MIN = 16,
-	SIZE_MAX_PIXELS = 16384
-};
+enum { WORKERS_MAX = 65536, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
 
 static const char *name_of(ob_option_id id)
 {
@@ -95,8 +91,8 @@ static bool is_stdout(const char *path)
 
 static bool check_outputs(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id files[] = { OB_OPTION_FRAMES, OB_OPTION_VIDEO,  OB_OPTION_RAW,  OB_OPTION_RECORD,
-					      OB_OPTION_SERIES, OB_OPTION_JSON, OB_OPTION_TRACE };
+	static const ob_option_id files[] = { OB_OPTION_FRAMES, OB_OPTION_VIDEO, OB_OPTION_RAW,  OB_OPTION_RECORD,
+					      OB_OPTION_SERIES, OB_OPTION_JSON,  OB_OPTION_TRACE };
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		const char *path = a->value[files[i]], *option = name_of(files[i]);
 		if (!path)
@@ -217,11 +213,16 @@ static bool read_setting(ob_run_settings *to, const ob_setting *s, const char *t
 static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	static const ob_option_id option[OB_SETTINGS] = {
-		[OB_SETTING_ARCHITECTURE] = OB_OPTION_ARCH,     [OB_SETTING_STEP] = OB_OPTION_STEP,
-		[OB_SETTING_TOLERANCE] = OB_OPTION_TOLERANCE,   [OB_SETTING_SUBSTEPS] = OB_OPTION_SUBSTEPS,
-		[OB_SETTING_ITERATIONS] = OB_OPTION_ITERATIONS, [OB_SETTING_SOLVER] = OB_OPTION_SOLVER,
-		[OB_SETTING_LAG] = OB_OPTION_LAG,               [OB_SETTING_INTEGRATOR] = OB_OPTION_INTEGRATOR,
-		[OB_SETTING_SLEEPING] = OB_OPTION_SLEEPING,     [OB_SETTING_NARROW_PHASE] = OB_OPTION_NARROW,
+		[OB_SETTING_ARCHITECTURE] = OB_OPTION_ARCH,
+		[OB_SETTING_STEP] = OB_OPTION_STEP,
+		[OB_SETTING_TOLERANCE] = OB_OPTION_TOLERANCE,
+		[OB_SETTING_SUBSTEPS] = OB_OPTION_SUBSTEPS,
+		[OB_SETTING_ITERATIONS] = OB_OPTION_ITERATIONS,
+		[OB_SETTING_SOLVER] = OB_OPTION_SOLVER,
+		[OB_SETTING_LAG] = OB_OPTION_LAG,
+		[OB_SETTING_INTEGRATOR] = OB_OPTION_INTEGRATOR,
+		[OB_SETTING_SLEEPING] = OB_OPTION_SLEEPING,
+		[OB_SETTING_NARROW_PHASE] = OB_OPTION_NARROW,
 		[OB_SETTING_LOAD] = OB_OPTION_LOAD,
 	};
 	r->asked = ob_run_settings_unset();
@@ -302,7 +303,7 @@ static bool check_camera(const char *name, const ob_scene *s, ob_error *e)
 	return ob_fail(e, "--camera %s: the scene has none of this name, only: %s", name, all);
 }
 
-bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_error *e)
+bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
 	r->duration = r->duration > 0 ? r->duration : s->duration;
 	r->run = s->run;
@@ -311,7 +312,8 @@ bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_error *e)
 	if (r->run.monolith && r->explain)
 		return ob_fail(e, "--explain means nothing to --arch monolith");
 	if (r->strict && !(r->run.tolerance > 0))
-		return ob_fail(e, "--strict: this run has no tolerance that it could miss; give it one with --tolerance");
+		return ob_fail(e,
+			       "--strict: this run has no tolerance that it could miss; give it one with --tolerance");
 	r->run.timed = r->explain || r->measure == OB_MEASURE_PROFILE;
 	uint64_t steps = ob_request_steps(r->duration, r->run.step_length);
 	// a motion carries its step as 32 bits

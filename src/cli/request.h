@@ -29,7 +29,7 @@ typedef struct ob_run_request {
 	uint32_t workers; // 0 = one per object
 	double duration; // s; 0 = the scene's
 	ob_run_settings asked; // a layer: what the command line leaves alone is unset
-	ob_run_settings run; // after ob_request_settle
+	ob_run_settings run; // after ob_request_resolve
 	bool explain;
 	bool strict; // a missed tolerance is a failure
 	ob_measure_when measure;
@@ -43,7 +43,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 
 // Where the command line is silent, the scene decides: fills the duration and the settings of the run.
 // false and e when the result cannot be run.
-bool ob_request_settle(ob_run_request *r, const ob_scene *s, ob_error *e);
+bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e);
 
 // Steps in a duration: the first step boundary at or after its end.
 uint64_t ob_request_steps(double duration, double step);

@@ -342,7 +342,7 @@ int ob_command_run(const ob_arguments *a)
 	if (!ob_request_read(&r.request, a, &e))
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	r.scene = ob_scene_load(r.request.scene, &r.request.scene_options, &e);
-	if (!r.scene || !ob_request_settle(&r.request, r.scene, &e)) {
+	if (!r.scene || !ob_request_resolve(&r.request, r.scene, &e)) {
 		ob_scene_free(r.scene);
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	}

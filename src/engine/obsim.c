@@ -33,7 +33,7 @@ static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run,
 {
 	static unsigned made;
 	char name[OB_NAME_MAX];
-	snprintf(name, sizeof name, "peer-%d-%u", (int)getpid(), made++);
+	snprintf(name, sizeof name, "engine-%d-%u", (int)getpid(), made++);
 	ob_universe_setup setup = { name, w->objects, 1, "thread", *run, false };
 	ob_universe *u = ob_universe_create(&setup, e);
 	if (u)
@@ -93,7 +93,7 @@ static void get(const ob_engine *p, ob_state *state)
 }
 
 // With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.
-static bool settle(const ob_world *w, const ob_run_settings *s, ob_run_settings *run, ob_error *e)
+static bool resolve(const ob_world *w, const ob_run_settings *s, ob_run_settings *run, ob_error *e)
 {
 	bool chosen = s->substeps == 0;
 	if (!(s->step_length > 0))
@@ -107,10 +107,10 @@ static bool settle(const ob_world *w, const ob_run_settings *s, ob_run_settings 
 }
 
 static ob_engine *create_as(const ob_world *w, const ob_run_settings *s, ob_solver_kind solver,
-			  ob_integrator integrator, ob_error *e)
+			    ob_integrator integrator, ob_error *e)
 {
 	ob_run_settings run;
-	if (!settle(w, s, &run, e))
+	if (!resolve(w, s, &run, e))
 		return NULL;
 	run.solver = solver;
 	run.integrator = integrator;

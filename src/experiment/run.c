@@ -98,11 +98,11 @@ bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *
 // ---- what is left to do, and how long it takes
 
 // Trials of one case: what is known of the time that they take
-typedef struct pace {
+typedef struct timing {
 	const char *of;
 	double took, guessed; // s, of those that have run
 	double ahead; // s, as guessed
-} pace;
+} timing;
 
 typedef struct session {
 	const ob_experiment *experiment;
@@ -110,9 +110,9 @@ typedef struct session {
 	ob_records *records;
 	FILE *file; // NULL: nothing is kept
 	const char *path;
-	size_t *pace_of; // [trial]
-	pace *pace;
-	size_t paces;
+	size_t *timing_of; // [trial]
+	timing *timing;
+	size_t timings;
 	size_t done, all;
 	double begun; // of the trial under way, s
 	char what[OB_CASE_KEY + OB_CONFIGURATION_KEY + 32];
@@ -144,28 +144,28 @@ static bool is_done(const ob_experiment *x, const ob_records *records, const ob_
 	return false;
 }
 
-static size_t find_pace(session *s, const char *of)
+static size_t find_timing(session *s, const char *of)
 {
-	for (size_t i = s->paces; i > 0; i--) // a case's trials mostly stand together
-		if (!strcmp(s->pace[i - 1].of, of))
+	for (size_t i = s->timings; i > 0; i--) // a case's trials mostly stand together
+		if (!strcmp(s->timing[i - 1].of, of))
 			return i - 1;
-	s->pace[s->paces].of = of;
-	return s->paces++;
+	s->timing[s->timings].of = of;
+	return s->timings++;
 }
 
 static bool prepare(session *s, ob_error *e)
 {
 	size_t n = s->trials->count;
-	s->pace_of = calloc(n + 1, sizeof *s->pace_of);
-	s->pace = calloc(n + 1, sizeof *s->pace);
-	if (!s->pace_of || !s->pace)
+	s->timing_of = calloc(n + 1, sizeof *s->timing_of);
+	s->timing = calloc(n + 1, sizeof *s->timing);
+	if (!s->timing_of || !s->timing)
 		return ob_fail(e, "out of memory");
 	for (size_t i = 0; i < n; i++) {
 		const ob_trial *t = &s->trials->trial[i];
-		s->pace_of[i] = find_pace(s, t->of);
+		s->timing_of[i] = find_timing(s, t->of);
 		if (is_done(s->experiment, s->records, t))
 			continue;
-		s->pace[s->pace_of[i]].ahead += t->guess_s;
+		s->timing[s->timing_of[i]].ahead += t->guess_s;
 		s->all++;
 	}
 	return true;
@@ -174,15 +174,15 @@ static bool prepare(session *s, ob_error *e)
 // What remains, by how fast each case was so far; one of which nothing is known goes as all others do.
 static double guess_left(const session *s)
 {
-	pace all = { 0 };
+	timing all = { 0 };
 	double left = 0;
-	for (size_t i = 0; i < s->paces; i++) {
-		all.took += s->pace[i].took;
-		all.guessed += s->pace[i].guessed;
+	for (size_t i = 0; i < s->timings; i++) {
+		all.took += s->timing[i].took;
+		all.guessed += s->timing[i].guessed;
 	}
-	for (size_t i = 0; i < s->paces; i++) {
-		const pace *p = s->pace[i].guessed > 0 ? &s->pace[i] : &all;
-		left += s->pace[i].ahead * (p->guessed > 0 ? p->took / p->guessed : 1);
+	for (size_t i = 0; i < s->timings; i++) {
+		const timing *p = s->timing[i].guessed > 0 ? &s->timing[i] : &all;
+		left += s->timing[i].ahead * (p->guessed > 0 ? p->took / p->guessed : 1);
 	}
 	return fmax(left - (ob_clock_wall() - s->begun), 0);
 }
@@ -317,7 +317,7 @@ static bool run_trial(session *s, size_t i, ob_error *e)
 	ob_record r = begin_record(s, t);
 	if (!try(s, t, &r, e) || !keep(s, t, &r, e))
 		return false;
-	pace *p = &s->pace[s->pace_of[i]];
+	timing *p = &s->timing[s->timing_of[i]];
 	p->took += ob_clock_wall() - s->begun;
 	p->guessed += t->guess_s;
 	p->ahead -= t->guess_s;
@@ -328,7 +328,7 @@ static bool run_trial(session *s, size_t i, ob_error *e)
 		if (later->seed != t->seed || strcmp(later->configuration, t->configuration) ||
 		    strcmp(later->of, t->of))
 			continue;
-		s->pace[s->pace_of[j]].ahead -= later->guess_s;
+		s->timing[s->timing_of[j]].ahead -= later->guess_s;
 		s->done++;
 	}
 	return true;
@@ -366,7 +366,7 @@ bool ob_experiment_run(const ob_experiment *x, const ob_trials *trials, ob_recor
 	if (path && s.file && !ob_records_write(r, x, path, fine ? e : NULL))
 		fine = false;
 	free(path);
-	free(s.pace);
-	free(s.pace_of);
+	free(s.timing);
+	free(s.timing_of);
 	return fine;
 }

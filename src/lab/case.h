@@ -14,7 +14,8 @@ typedef struct ob_figure_def {
 	const char *name; // "worst penetration"
 	const char *unit; // "mm", "1" for a ratio, "J", "rad"; as printed
 	double target; // at most this much, in that unit, at 60 Hz; NAN = shown, but not promised
-	const char *reference; // what it is compared with, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
+	const char *
+		reference; // what it is compared with, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
 } ob_figure_def;
 
 // One run of a case with one engine, while it goes on.
@@ -37,7 +38,7 @@ typedef struct ob_case {
 	const char *name; // as on the command line: "stack-10"
 	const char *title; // "Stack of 10"
 	const char *setup; // one or two sentences for the reader of the report
-	const char *peers; // what other engines were seen to reach
+	const char *others; // what other engines were seen to reach
 	bool quick; // belongs to the subset that runs with the tests
 	bool compared; // one of those whose cost at equal error is tabled
 	double duration, step; // s
@@ -53,8 +54,8 @@ extern const ob_case *const ob_cases[]; // in the order of their rows; ends with
 const ob_case *ob_case_find(const char *name);
 
 // Runs all of a case's runs with one engine. false and e: the engine could not be made, or there is no memory.
-// A run ends early when it has failed. Where the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or rad/s)
-// all figures are infinite.
+// A run ends early when it has failed. Where the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or
+// rad/s) all figures are infinite.
 typedef struct ob_outcome {
 	double figure[OB_FIGURES];
 	double cpu_s, wall_s; // of stepping alone

@@ -19,18 +19,18 @@ static void append(char *to, size_t room, const char *format, ...)
 }
 
 // In a case, or, where none is named, in the chart as it is so far
-static bool takes_part(const ob_chart *c, const ob_digest *d, const ob_case *of, const ob_engine_kind *k)
+static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_case *of, const ob_engine_kind *k)
 {
 	for (size_t i = 0; of && i < d->results->count; i++)
 		if (d->results->result[i].of == of && d->results->result[i].engine == k)
 			return true;
 	for (size_t i = 0; !of && i < c->plot.series_count; i++)
-		if (c->series[i].count && c->series[i].style == ob_digest_style(d, k))
+		if (c->series[i].count && c->series[i].style == ob_lab_analysis_style(d, k))
 			return true;
 	return false;
 }
 
-static void add_configuration(ob_chart *c, const ob_digest *d, const ob_case *of)
+static void add_configuration(ob_chart *c, const ob_lab_analysis *d, const ob_case *of)
 {
 	char *to = c->subtitle;
 	size_t room = sizeof c->subtitle;
@@ -38,13 +38,13 @@ static void add_configuration(ob_chart *c, const ob_digest *d, const ob_case *of
 	bool obsim = false; // its variants are alike in this
 	for (size_t i = 0; i < d->engines; i++) {
 		const ob_engine_kind *k = d->engine[i];
-		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_digest_is_obsim(k)))
+		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_lab_analysis_is_obsim(k)))
 			continue;
-		if (ob_digest_is_obsim(k))
+		if (ob_lab_analysis_is_obsim(k))
 			append(to, room, " \u00b7 obsim: %u iterations", k->usual.iterations);
 		else
 			append(to, room, " \u00b7 %s: %u iterations", k->title, k->usual.iterations);
-		obsim |= ob_digest_is_obsim(k);
+		obsim |= ob_lab_analysis_is_obsim(k);
 	}
 	append(to, room, " \u00b7 one worker, a thread \u00b7 sleeping off \u00b7 commit %s", d->results->commit);
 }
@@ -56,7 +56,7 @@ void ob_lab_chart_setting(const ob_result *r, char *to, size_t room)
 		snprintf(to, room, "usual");
 	else if (s->tolerance > 0)
 		ob_page_print_quantity(to, room, s->tolerance * 1e3, "mm");
-	else if (ob_digest_is_obsim(r->engine))
+	else if (ob_lab_analysis_is_obsim(r->engine))
 		snprintf(to, room, "%u", s->substeps);
 	else
 		snprintf(to, room, "%.0f Hz", s->substeps / s->step_length);
@@ -88,7 +88,8 @@ static int by_fineness(const void *a, const void *b)
 }
 
 // The results of one series in their order; returns how many.
-static size_t gather(const ob_digest *d, const ob_case *c, const ob_engine_kind *k, family f, const ob_result **list)
+static size_t gather(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k, family f,
+		     const ob_result **list)
 {
 	size_t count = 0;
 	for (size_t i = 0; i < d->results->count; i++) {
@@ -118,7 +119,7 @@ static void add_result(ob_chart *chart, const ob_result *r, double x)
 	ob_page_print_quantity(error, sizeof error, r->outcome.figure[0], def->unit);
 	const char *failed = r->outcome.failed[0] ? r->outcome.failed : "not a number";
 	snprintf(hint, sizeof hint, "%s, %s%s, %u iterations: %.3g \u00b5s, %s", r->engine->title, label,
-		 ob_digest_is_obsim(r->engine) && !(r->settings.tolerance > 0) ? " substeps" : "",
+		 ob_lab_analysis_is_obsim(r->engine) && !(r->settings.tolerance > 0) ? " substeps" : "",
 		 r->settings.iterations, ob_result_cost(r) * 1e6, is_failed(r) ? failed : error);
 	ob_plot_point *p = ob_chart_add(chart, x, is_failed(r) ? NAN : r->outcome.figure[0], label, hint);
 	p->failed = is_failed(r);
@@ -137,7 +138,7 @@ static void name_axis(const ob_figure_def *def, char *to, size_t room)
 static void mark_target(ob_chart *chart, const ob_case *c)
 {
 	char target[48];
-	if (!ob_digest_has_target(c, 0))
+	if (!ob_lab_analysis_has_target(c, 0))
 		return;
 	ob_page_print_quantity(target, sizeof target, c->figure[0].target, c->figure[0].unit);
 	snprintf(chart->mark_label, sizeof chart->mark_label, "target %s", target);
@@ -156,7 +157,7 @@ static ob_chart *end_curves(ob_chart *chart, const ob_result **list)
 	return chart;
 }
 
-ob_chart *ob_lab_chart_cost(const ob_digest *d, const ob_case *c)
+ob_chart *ob_lab_chart_cost(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_chart *chart = ob_chart_new();
 	const ob_result **list = calloc(d->results->count + 1, sizeof *list);
@@ -166,7 +167,7 @@ ob_chart *ob_lab_chart_cost(const ob_digest *d, const ob_case *c)
 			char title[128];
 			size_t count = gather(d, c, k, (family)f, list);
 			snprintf(title, sizeof title, "%s%s", k->title, f == FAMILY_TOLERANCE ? ", by tolerance" : "");
-			ob_plot_series *s = ob_chart_begin(chart, ob_digest_style(d, k), f != FAMILY_STEPS,
+			ob_plot_series *s = ob_chart_begin(chart, ob_lab_analysis_style(d, k), f != FAMILY_STEPS,
 							   f == FAMILY_ITERATIONS ? "" : title);
 			s->line = f != FAMILY_ITERATIONS;
 			for (size_t j = 0; j < count; j++)
@@ -231,7 +232,7 @@ static void add_guide(ob_chart *chart)
 	ob_chart_add(chart, end, y * x / end, "", "");
 }
 
-ob_chart *ob_lab_chart_convergence(const ob_digest *d, const ob_case *c)
+ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_chart *chart = ob_chart_new();
 	const ob_result **list = calloc(d->results->count + 1, sizeof *list);
@@ -241,7 +242,7 @@ ob_chart *ob_lab_chart_convergence(const ob_digest *d, const ob_case *c)
 		if (count < 2)
 			continue;
 		name_order(d->engine[i], list, count, title, sizeof title);
-		ob_chart_begin(chart, ob_digest_style(d, d->engine[i]), false, title);
+		ob_chart_begin(chart, ob_lab_analysis_style(d, d->engine[i]), false, title);
 		for (size_t j = 0; j < count; j++)
 			add_result(chart, list[j], list[j]->settings.substeps);
 	}
@@ -268,15 +269,15 @@ ob_chart *ob_lab_chart_convergence(const ob_digest *d, const ob_case *c)
 static const double row_height = 19; // px
 
 // Is there something to show of a case: a target, and results of obsim (and of "beside", unless it is NULL)?
-static bool has_row(const ob_digest *d, const ob_case *c, const ob_engine_kind *beside)
+static bool has_row(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *beside)
 {
-	const ob_result *own = ob_digest_promised(d, c);
-	return own && !isnan(ob_digest_ratio(own)) && (!beside || ob_digest_usual(d, c, beside));
+	const ob_result *own = ob_lab_analysis_promised(d, c);
+	return own && !isnan(ob_lab_analysis_ratio(own)) && (!beside || ob_lab_analysis_usual(d, c, beside));
 }
 
 static void add_row(ob_chart *chart, const ob_result *r, double at)
 {
-	double ratio = ob_digest_ratio(r);
+	double ratio = ob_lab_analysis_ratio(r);
 	char hint[192];
 	if (isfinite(ratio))
 		snprintf(hint, sizeof hint, "%s, %s: %.3g of the target", r->of->title, r->engine->title, ratio);
@@ -288,23 +289,24 @@ static void add_row(ob_chart *chart, const ob_result *r, double at)
 }
 
 // One series: the results at usual settings of an engine (NULL: what obsim promises), "dodge" rows off its own
-static void add_engine(ob_chart *chart, const ob_digest *d, const ob_engine_kind *k, const ob_engine_kind *beside,
+static void add_engine(ob_chart *chart, const ob_lab_analysis *d, const ob_engine_kind *k, const ob_engine_kind *beside,
 		       double dodge)
 {
-	ob_plot_series *s = ob_chart_begin(chart, k ? ob_digest_style(d, k) : 0, k != NULL, k ? k->title : "obsim");
+	ob_plot_series *s =
+		ob_chart_begin(chart, k ? ob_lab_analysis_style(d, k) : 0, k != NULL, k ? k->title : "obsim");
 	s->line = false;
 	int row = 0;
 	for (const ob_case *const *c = ob_cases; *c && row < OB_CHART_CATEGORIES; c++) {
 		if (!has_row(d, *c, beside))
 			continue;
-		const ob_result *r = k ? ob_digest_usual(d, *c, k) : ob_digest_promised(d, *c);
-		if (r && !isnan(ob_digest_ratio(r)))
+		const ob_result *r = k ? ob_lab_analysis_usual(d, *c, k) : ob_lab_analysis_promised(d, *c);
+		if (r && !isnan(ob_lab_analysis_ratio(r)))
 			add_row(chart, r, row + dodge);
 		row++;
 	}
 }
 
-static size_t name_rows(ob_chart *chart, const ob_digest *d, const ob_engine_kind *beside)
+static size_t name_rows(ob_chart *chart, const ob_lab_analysis *d, const ob_engine_kind *beside)
 {
 	size_t rows = 0;
 	for (const ob_case *const *c = ob_cases; *c && rows < OB_CHART_CATEGORIES; c++) {
@@ -321,7 +323,7 @@ static size_t name_rows(ob_chart *chart, const ob_digest *d, const ob_engine_kin
 	return rows;
 }
 
-static ob_chart *end_rows(ob_chart *chart, const ob_digest *d, const ob_engine_kind *beside)
+static ob_chart *end_rows(ob_chart *chart, const ob_lab_analysis *d, const ob_engine_kind *beside)
 {
 	size_t rows = name_rows(chart, d, beside);
 	if (!rows) {
@@ -339,7 +341,7 @@ static ob_chart *end_rows(ob_chart *chart, const ob_digest *d, const ob_engine_k
 	return chart;
 }
 
-ob_chart *ob_lab_chart_promises(const ob_digest *d)
+ob_chart *ob_lab_chart_promises(const ob_lab_analysis *d)
 {
 	ob_chart *chart = ob_chart_new();
 	if (!chart)
@@ -347,9 +349,9 @@ ob_chart *ob_lab_chart_promises(const ob_digest *d)
 	add_engine(chart, d, NULL, NULL, 0);
 	size_t others = 0, done = 0;
 	for (size_t i = 0; i < d->engines; i++)
-		others += !ob_digest_is_obsim(d->engine[i]);
+		others += !ob_lab_analysis_is_obsim(d->engine[i]);
 	for (size_t i = 0; i < d->engines; i++)
-		if (!ob_digest_is_obsim(d->engine[i]))
+		if (!ob_lab_analysis_is_obsim(d->engine[i]))
 			add_engine(chart, d, d->engine[i], NULL, .22 * ((double)done++ - (double)(others - 1) / 2));
 	snprintf(chart->title, sizeof chart->title, "Every case: error against its target, at usual settings");
 	snprintf(chart->subtitle, sizeof chart->subtitle,
@@ -359,7 +361,7 @@ ob_chart *ob_lab_chart_promises(const ob_digest *d)
 	return end_rows(chart, d, NULL);
 }
 
-static const ob_engine_kind *engine_named(const ob_digest *d, const char *name)
+static const ob_engine_kind *engine_named(const ob_lab_analysis *d, const char *name)
 {
 	for (size_t i = 0; i < d->engines; i++)
 		if (!strcmp(d->engine[i]->name, name))
@@ -367,7 +369,7 @@ static const ob_engine_kind *engine_named(const ob_digest *d, const char *name)
 	return NULL;
 }
 
-ob_chart *ob_lab_chart_ghost(const ob_digest *d)
+ob_chart *ob_lab_chart_ghost(const ob_lab_analysis *d)
 {
 	const ob_engine_kind *ghost = engine_named(d, "obsim-ghost");
 	ob_chart *chart = ghost ? ob_chart_new() : NULL;
@@ -379,7 +381,7 @@ ob_chart *ob_lab_chart_ghost(const ob_digest *d)
 	return end_rows(chart, d, ghost);
 }
 
-ob_chart *ob_lab_chart_lag(const ob_digest *d)
+ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 {
 	const ob_engine_kind *late = engine_named(d, "obsim-lag");
 	const ob_case *c = ob_case_find("lag");
@@ -404,7 +406,7 @@ ob_chart *ob_lab_chart_lag(const ob_digest *d)
 	}
 	snprintf(chart->title, sizeof chart->title, "What it costs to read a partner late");
 	add_configuration(chart, d, c);
-	snprintf(chart->x_label, sizeof chart->x_label, "exchanges that a partner's state is late");
+	snprintf(chart->x_label, sizeof chart->x_label, "iterations that a partner's state is late");
 	snprintf(chart->y_label, sizeof chart->y_label, "relative error");
 	chart->plot.y.scale = OB_SCALE_LOG;
 	chart->plot.width = 760;

@@ -1,6 +1,6 @@
 #include "experiment/json.h"
 #include "lab/report.h"
-#include "lab/digest.h"
+#include "lab/analysis.h"
 
 static void put_settings(ob_json *j, const ob_run_settings *s)
 {
@@ -24,8 +24,8 @@ static void put_figures(ob_json *j, const ob_result *r)
 		ob_json_number(j, "value", r->outcome.figure[i]);
 		ob_json_string(j, "unit", def->unit);
 		ob_json_number(j, "target", def->target);
-		if (ob_digest_has_target(r->of, i))
-			ob_json_true(j, "met", ob_digest_meets(r, i));
+		if (ob_lab_analysis_has_target(r->of, i))
+			ob_json_true(j, "met", ob_lab_analysis_meets(r, i));
 		else
 			ob_json_null(j, "met");
 		ob_json_close(j);
@@ -55,9 +55,9 @@ static void put_result(ob_json *j, const ob_result *r)
 	ob_json_close(j);
 }
 
-static void put_equal(ob_json *j, const ob_digest *d, const ob_case *c)
+static void put_equal(ob_json *j, const ob_lab_analysis *d, const ob_case *c)
 {
-	ob_digest_equal q = ob_digest_compare(d, c);
+	ob_lab_analysis_equal q = ob_lab_analysis_compare(d, c);
 	ob_json_open(j, NULL);
 	ob_json_string(j, "case", c->name);
 	ob_json_number(j, "error", q.error);
@@ -74,7 +74,7 @@ static void put_equal(ob_json *j, const ob_digest *d, const ob_case *c)
 void ob_lab_write_json(const ob_results *r, const char *version, FILE *f)
 {
 	ob_json j = { .f = f };
-	ob_digest d = ob_digest_make(r);
+	ob_lab_analysis d = ob_lab_analyse(r);
 	ob_json_open(&j, NULL);
 	ob_json_string(&j, "version", version);
 	ob_json_string(&j, "commit", r->commit);
@@ -85,7 +85,7 @@ void ob_lab_write_json(const ob_results *r, const char *version, FILE *f)
 	ob_json_close_list(&j);
 	ob_json_open_list(&j, "cost_at_equal_error");
 	for (const ob_case *const *c = ob_cases; *c; c++)
-		if ((*c)->compared && ob_digest_ran(&d, *c))
+		if ((*c)->compared && ob_lab_analysis_ran(&d, *c))
 			put_equal(&j, &d, *c);
 	ob_json_close_list(&j);
 	ob_json_close(&j);

@@ -14,22 +14,22 @@ typedef struct lead {
 	int compared, ahead, within; // cases; those where obsim is not ahead, but within twice the cost of the best
 } lead;
 
-static double best_other_cost(const ob_digest *d, const ob_digest_equal *q)
+static double best_other_cost(const ob_lab_analysis *d, const ob_lab_analysis_equal *q)
 {
 	double best = INFINITY;
 	for (size_t i = 0; i < d->engines; i++)
-		if (!ob_digest_is_obsim(d->engine[i]) && q->cost[i] < best)
+		if (!ob_lab_analysis_is_obsim(d->engine[i]) && q->cost[i] < best)
 			best = q->cost[i];
 	return best;
 }
 
-static lead measure_lead(const ob_digest *d)
+static lead measure_lead(const ob_lab_analysis *d)
 {
 	lead l = { 0 };
 	for (const ob_case *const *c = ob_cases; *c; c++) {
-		if (!(*c)->compared || !ob_digest_ran(d, *c))
+		if (!(*c)->compared || !ob_lab_analysis_ran(d, *c))
 			continue;
-		ob_digest_equal q = ob_digest_compare(d, *c);
+		ob_lab_analysis_equal q = ob_lab_analysis_compare(d, *c);
 		l.compared++;
 		l.ahead += q.ahead;
 		l.within += !q.ahead && q.own <= 2 * best_other_cost(d, &q);
@@ -44,13 +44,13 @@ static void write_card(ob_page *p, int part, int whole, const char *what)
 
 static void write_cards(ob_page *p, const void *with)
 {
-	const ob_digest *d = with;
-	ob_digest_rows rows = ob_digest_count_rows(d);
+	const ob_lab_analysis *d = with;
+	ob_lab_analysis_rows rows = ob_lab_analysis_count_rows(d);
 	lead l = measure_lead(d);
 	if (rows.measured)
 		write_card(p, rows.met, rows.measured,
 			   "rows of hard cases: obsim meets every target, at 60 frames a second");
-	size_t others = ob_digest_count_others(d), failed = 0, runs = 0;
+	size_t others = ob_lab_analysis_count_others(d), failed = 0, runs = 0;
 	if (l.compared && others)
 		write_card(p, l.ahead, l.compared, "cases: no other engine gets to the same error at less cost");
 	for (size_t i = 0; i < d->results->count; i++) {
@@ -64,12 +64,12 @@ static void write_cards(ob_page *p, const void *with)
 }
 
 // Names of the rows that are missed, so that nobody has to look for them
-static void write_missed(ob_page *p, const ob_digest *d)
+static void write_missed(ob_page *p, const ob_lab_analysis *d)
 {
 	int missed = 0;
 	for (const ob_case *const *c = ob_cases; *c; c++) {
-		const ob_result *r = ob_digest_promised(d, *c);
-		if (!r || ob_digest_meets_all(r))
+		const ob_result *r = ob_lab_analysis_promised(d, *c);
+		if (!r || ob_lab_analysis_meets_all(r))
 			continue;
 		ob_page_markup(p, "%s<a href=\"#%s\">", missed++ ? ", " : "<strong>Missed:</strong> ", (*c)->name);
 		ob_page_text(p, (*c)->title);
@@ -80,14 +80,14 @@ static void write_missed(ob_page *p, const ob_digest *d)
 
 static void write_verdict(ob_page *p, const void *with)
 {
-	const ob_digest *d = with;
+	const ob_lab_analysis *d = with;
 	lead l = measure_lead(d);
 	if (!d->own) {
 		ob_page_markup(p, "obsim itself did not take part in these runs.");
 		return;
 	}
 	write_missed(p, d);
-	if (l.compared > l.ahead && ob_digest_count_others(d))
+	if (l.compared > l.ahead && ob_lab_analysis_count_others(d))
 		ob_page_markup(p,
 			       "Of the %d cases where another engine is cheaper at equal error, obsim is within twice "
 			       "its cost "
@@ -129,7 +129,7 @@ static void write_promises(ob_page *p, const void *with)
 static const char *const convergence_cases[] = { "stack-10", "pile", "sliding" };
 enum { CONVERGENCE_CASES = sizeof convergence_cases / sizeof *convergence_cases };
 
-static ob_chart *convergence_chart(const ob_digest *d, size_t i)
+static ob_chart *convergence_chart(const ob_lab_analysis *d, size_t i)
 {
 	const ob_case *c = ob_case_find(convergence_cases[i]);
 	return c ? ob_lab_chart_convergence(d, c) : NULL;
@@ -182,7 +182,7 @@ static void write_lag(ob_page *p, const void *with)
 	if (!begin_section(p, chart, "late", "Why partners must not be read late",
 			   "Two bodies hit each other, each in its own simulator, and each works with a state of the "
 			   "other that is some "
-			   "exchanges old. Momentum is exact only where both sides see the same."))
+			   "iterations old. Momentum is exact only where both sides see the same."))
 		return;
 	ob_page_markup(p, "<figure>\n");
 	ob_chart_html(chart, p);
@@ -192,7 +192,7 @@ static void write_lag(ob_page *p, const void *with)
 static void write_index(ob_page *p, const void *with)
 {
 	for (const ob_case *const *c = ob_cases; *c; c++) {
-		if (!ob_digest_ran(with, *c))
+		if (!ob_lab_analysis_ran(with, *c))
 			continue;
 		ob_page_markup(p, "<li><a href=\"#%s\">", (*c)->name);
 		ob_page_text(p, (*c)->title);
@@ -203,7 +203,7 @@ static void write_index(ob_page *p, const void *with)
 // ---- one case
 
 typedef struct report_case {
-	const ob_digest *digest;
+	const ob_lab_analysis *analysis;
 	const ob_case *of;
 } report_case;
 
@@ -215,10 +215,10 @@ static void write_title(ob_page *p, const void *with)
 static void write_badge(ob_page *p, const void *with)
 {
 	const report_case *c = with;
-	const ob_result *r = ob_digest_promised(c->digest, c->of);
+	const ob_result *r = ob_lab_analysis_promised(c->analysis, c->of);
 	if (r)
 		ob_page_markup(p, "<span class=\"badge %s</span>",
-			       ob_digest_meets_all(r) ? "met\">met" : "missed\">missed");
+			       ob_lab_analysis_meets_all(r) ? "met\">met" : "missed\">missed");
 }
 
 static void write_reference(ob_page *p, const void *with)
@@ -236,13 +236,13 @@ static void write_reference(ob_page *p, const void *with)
 static void write_engines(ob_page *p, const void *with)
 {
 	const report_case *c = with;
-	write_table(p, ob_lab_table_engines(c->digest, c->of));
+	write_table(p, ob_lab_table_engines(c->analysis, c->of));
 }
 
 static void write_runs(ob_page *p, const void *with)
 {
 	const report_case *c = with;
-	write_table(p, ob_lab_table_runs(c->digest, c->of));
+	write_table(p, ob_lab_table_runs(c->analysis, c->of));
 }
 
 static void write_id(ob_page *p, const void *with)
@@ -255,13 +255,13 @@ static void write_setup(ob_page *p, const void *with)
 	ob_page_text(p, ((const report_case *)with)->of->setup);
 }
 
-static void write_peers(ob_page *p, const void *with)
+static void write_others(ob_page *p, const void *with)
 {
-	ob_page_text(p, ((const report_case *)with)->of->peers);
+	ob_page_text(p, ((const report_case *)with)->of->others);
 }
 
 // A case's own: over cost, but where it is about reading late
-static ob_chart *case_chart(const ob_digest *d, const ob_case *c)
+static ob_chart *case_chart(const ob_lab_analysis *d, const ob_case *c)
 {
 	return c == ob_case_find("lag") ? ob_lab_chart_lag(d) : ob_lab_chart_cost(d, c);
 }
@@ -269,25 +269,25 @@ static ob_chart *case_chart(const ob_digest *d, const ob_case *c)
 static void write_plot(ob_page *p, const void *with)
 {
 	const report_case *c = with;
-	ob_chart_html(case_chart(c->digest, c->of), p);
+	ob_chart_html(case_chart(c->analysis, c->of), p);
 }
 
 static void write_all_cases(ob_page *p, const void *with)
 {
 	static const ob_page_slot slots[] = {
 		{ "id", write_id },           { "title", write_title },         { "badge", write_badge },
-		{ "setup", write_setup },     { "reference", write_reference }, { "peers", write_peers },
+		{ "setup", write_setup },     { "reference", write_reference }, { "others", write_others },
 		{ "figures", write_engines }, { "plot", write_plot },           { "runs", write_runs }
 	};
 	for (const ob_case *const *c = ob_cases; *c; c++)
-		if (ob_digest_ran(with, *c))
+		if (ob_lab_analysis_ran(with, *c))
 			ob_page_fill(p, text_case_html, slots, sizeof slots / sizeof *slots,
-				     &(report_case){ .digest = with, .of = *c });
+				     &(report_case){ .analysis = with, .of = *c });
 }
 
 static void write_setting(ob_page *p, const void *with)
 {
-	const ob_digest *d = with;
+	const ob_lab_analysis *d = with;
 	ob_page_markup(p, "<dt>Machine</dt><dd>");
 	ob_page_text(p, d->results->machine);
 	ob_page_markup(p, "</dd>\n<dt>obsim</dt><dd>commit <code>");
@@ -304,12 +304,12 @@ static void write_setting(ob_page *p, const void *with)
 		ob_page_markup(p, "; usual: %u step%s a frame", k->usual.substeps, k->usual.substeps == 1 ? "" : "s");
 		if (k->usual.iterations)
 			ob_page_markup(p, ", %u %s", k->usual.iterations,
-				       ob_digest_is_obsim(k) ? "iterations at most" : "solver iterations");
+				       ob_lab_analysis_is_obsim(k) ? "iterations at most" : "solver iterations");
 		ob_page_markup(p, "</dd>\n");
 	}
 }
 
-static bool write_charts(const ob_digest *d, const char *dir, ob_error *e)
+static bool write_charts(const ob_lab_analysis *d, const char *dir, ob_error *e)
 {
 	char name[80];
 	for (const ob_case *const *c = ob_cases; *c; c++)
@@ -361,7 +361,7 @@ static void write_equal_csv(FILE *f, const void *with)
 
 bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e)
 {
-	ob_digest d = ob_digest_make(r);
+	ob_lab_analysis d = ob_lab_analyse(r);
 	return ob_folder_make(dir, e) && ob_folder_write(dir, "rows.md", write_rows_file, &d, e) &&
 	       ob_folder_write(dir, "equal.md", write_equal_file, &d, e) &&
 	       ob_folder_write(dir, "equal.csv", write_equal_csv, &d, e) && write_charts(&d, dir, e) &&

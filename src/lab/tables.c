@@ -27,20 +27,20 @@ static ob_table *new_table(const char *align)
 
 // ---- every promised figure
 
-static bool others_ran(const ob_digest *d, const ob_case *c)
+static bool others_ran(const ob_lab_analysis *d, const ob_case *c)
 {
 	for (size_t i = 0; i < d->engines; i++)
-		if (!ob_digest_is_obsim(d->engine[i]) && ob_digest_usual(d, c, d->engine[i]))
+		if (!ob_lab_analysis_is_obsim(d->engine[i]) && ob_lab_analysis_usual(d, c, d->engine[i]))
 			return true;
 	return false;
 }
 
-static void add_promise(ob_table *t, const ob_digest *d, const ob_result *r, uint32_t figure, bool first)
+static void add_promise(ob_table *t, const ob_lab_analysis *d, const ob_result *r, uint32_t figure, bool first)
 {
 	const ob_case *c = r->of;
 	const ob_figure_def *def = &c->figure[figure];
-	const ob_result *other = ob_digest_best_other(d, c, figure);
-	bool met = ob_digest_meets(r, figure);
+	const ob_result *other = ob_lab_analysis_best_other(d, c, figure);
+	bool met = ob_lab_analysis_meets(r, figure);
 	quantity q;
 	if (first && c->row > 0)
 		ob_table_add(t, "%d", c->row);
@@ -68,17 +68,17 @@ static void add_promise(ob_table *t, const ob_digest *d, const ob_result *r, uin
 	}
 }
 
-ob_table *ob_lab_table_rows(const ob_digest *d)
+ob_table *ob_lab_table_rows(const ob_lab_analysis *d)
 {
 	static const char *const heads[] = { "Row", "Case", "Figure", "obsim", "Target", "", "Best other engine" };
 	ob_table *t = new_table("rllrlll");
 	for (size_t i = 0; i < sizeof heads / sizeof *heads; i++)
 		ob_table_add(t, "%s", heads[i]);
 	for (const ob_case *const *c = ob_cases; *c; c++) {
-		const ob_result *r = ob_digest_promised(d, *c);
+		const ob_result *r = ob_lab_analysis_promised(d, *c);
 		bool first = true;
 		for (uint32_t i = 0; r && i < (*c)->figures; i++) {
-			if (!ob_digest_has_target(*c, i))
+			if (!ob_lab_analysis_has_target(*c, i))
 				continue;
 			add_promise(t, d, r, i, first);
 			first = false;
@@ -87,13 +87,13 @@ ob_table *ob_lab_table_rows(const ob_digest *d)
 	return t;
 }
 
-size_t ob_lab_count_missed(const ob_digest *d)
+size_t ob_lab_count_missed(const ob_lab_analysis *d)
 {
 	size_t missed = 0;
 	for (const ob_case *const *c = ob_cases; *c; c++) {
-		const ob_result *r = ob_digest_promised(d, *c);
+		const ob_result *r = ob_lab_analysis_promised(d, *c);
 		for (uint32_t i = 0; r && i < (*c)->figures; i++)
-			missed += ob_digest_has_target(*c, i) && !ob_digest_meets(r, i);
+			missed += ob_lab_analysis_has_target(*c, i) && !ob_lab_analysis_meets(r, i);
 	}
 	return missed;
 }
@@ -107,20 +107,20 @@ static void print_table(FILE *f, ob_table *t, bool markdown)
 	ob_table_free(t);
 }
 
-void ob_lab_print_rows(FILE *f, const ob_digest *d, bool markdown)
+void ob_lab_print_rows(FILE *f, const ob_lab_analysis *d, bool markdown)
 {
 	print_table(f, ob_lab_table_rows(d), markdown);
 }
 
 // ---- cost at equal error
 
-static bool is_shown(const ob_digest *d, const ob_case *c)
+static bool is_shown(const ob_lab_analysis *d, const ob_case *c)
 {
-	return c->compared && ob_digest_ran(d, c);
+	return c->compared && ob_lab_analysis_ran(d, c);
 }
 
 // Whoever took part in a case that is compared; obsim itself comes first.
-static size_t gather(const ob_digest *d, size_t place[OB_DIGEST_ENGINES])
+static size_t gather(const ob_lab_analysis *d, size_t place[OB_LAB_ANALYSIS_ENGINES])
 {
 	size_t count = 0;
 	for (int own = 1; own >= 0; own--) {
@@ -137,16 +137,16 @@ static size_t gather(const ob_digest *d, size_t place[OB_DIGEST_ENGINES])
 }
 
 // Variants of obsim's coupling are shown, not ranked.
-static bool is_ranked(const ob_digest *d, const ob_engine_kind *k)
+static bool is_ranked(const ob_lab_analysis *d, const ob_engine_kind *k)
 {
-	return k == d->own || !ob_digest_is_obsim(k);
+	return k == d->own || !ob_lab_analysis_is_obsim(k);
 }
 
 // An engine that never gets there; in a page: how far it does, and at what cost
-static void add_never(ob_table *t, const ob_digest *d, const ob_case *c, const ob_engine_kind *k, bool in_page)
+static void add_never(ob_table *t, const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k, bool in_page)
 {
 	quantity error, cost;
-	const ob_result *finest = ob_digest_finest(d, c, k);
+	const ob_result *finest = ob_lab_analysis_finest(d, c, k);
 	ob_table_add(t, "never");
 	ob_table_class(t, "never");
 	if (!in_page)
@@ -158,7 +158,7 @@ static void add_never(ob_table *t, const ob_digest *d, const ob_case *c, const o
 		ob_table_small(t, "no run without a failure");
 }
 
-static void add_cost(ob_table *t, const ob_digest *d, const ob_digest_equal *q, size_t engine, double best)
+static void add_cost(ob_table *t, const ob_lab_analysis *d, const ob_lab_analysis_equal *q, size_t engine, double best)
 {
 	quantity text;
 	ob_table_add(t, "%s", print(&text, q->cost[engine] * 1e6, "1"));
@@ -168,10 +168,10 @@ static void add_cost(ob_table *t, const ob_digest *d, const ob_digest_equal *q, 
 		ob_table_class(t, "best");
 }
 
-ob_table *ob_lab_table_equal(const ob_digest *d, bool in_page, bool short_names)
+ob_table *ob_lab_table_equal(const ob_lab_analysis *d, bool in_page, bool short_names)
 {
-	size_t place[OB_DIGEST_ENGINES], engines = gather(d, place);
-	char align[OB_DIGEST_ENGINES + 3] = "lr";
+	size_t place[OB_LAB_ANALYSIS_ENGINES], engines = gather(d, place);
+	char align[OB_LAB_ANALYSIS_ENGINES + 3] = "lr";
 	quantity text;
 	if (!engines)
 		return NULL;
@@ -185,7 +185,7 @@ ob_table *ob_lab_table_equal(const ob_digest *d, bool in_page, bool short_names)
 	for (const ob_case *const *c = ob_cases; *c; c++) {
 		if (!is_shown(d, *c))
 			continue;
-		ob_digest_equal q = ob_digest_compare(d, *c);
+		ob_lab_analysis_equal q = ob_lab_analysis_compare(d, *c);
 		double best = INFINITY;
 		for (size_t i = 0; i < d->engines; i++)
 			if (is_ranked(d, d->engine[i]) && q.cost[i] < best)
@@ -204,21 +204,21 @@ ob_table *ob_lab_table_equal(const ob_digest *d, bool in_page, bool short_names)
 }
 
 // How often obsim is ahead of all other engines, and how far behind at worst
-static void print_sum(FILE *f, const ob_digest *d)
+static void print_sum(FILE *f, const ob_lab_analysis *d)
 {
 	int cases = 0, ahead = 0, never = 0;
 	double worst = 0;
-	if (!ob_digest_count_others(d)) // ahead of nobody
+	if (!ob_lab_analysis_count_others(d)) // ahead of nobody
 		return;
 	for (const ob_case *const *c = ob_cases; *c; c++) {
 		if (!is_shown(d, *c) || !d->own)
 			continue;
-		ob_digest_equal q = ob_digest_compare(d, *c);
+		ob_lab_analysis_equal q = ob_lab_analysis_compare(d, *c);
 		cases++;
 		ahead += q.ahead;
 		never += isnan(q.own);
 		for (size_t i = 0; i < d->engines && !q.ahead; i++)
-			if (!ob_digest_is_obsim(d->engine[i]) && q.cost[i] > 0)
+			if (!ob_lab_analysis_is_obsim(d->engine[i]) && q.cost[i] > 0)
 				worst = fmax(worst, q.own / q.cost[i]);
 	}
 	if (cases)
@@ -229,7 +229,7 @@ static void print_sum(FILE *f, const ob_digest *d)
 		fprintf(f, "%s.\n", never ? "; there are errors that it does not reach" : "");
 }
 
-void ob_lab_print_equal(FILE *f, const ob_digest *d, bool markdown)
+void ob_lab_print_equal(FILE *f, const ob_lab_analysis *d, bool markdown)
 {
 	ob_table *t = ob_lab_table_equal(d, false, !markdown);
 	if (!t)
@@ -241,12 +241,12 @@ void ob_lab_print_equal(FILE *f, const ob_digest *d, bool markdown)
 	print_sum(f, d);
 }
 
-void ob_lab_write_equal(FILE *f, const ob_digest *d)
+void ob_lab_write_equal(FILE *f, const ob_lab_analysis *d)
 {
 	static const char *const heads[] = {
 		"case", "error", "unit", "error_is_target", "engine", "cpu_s_per_body_and_simulated_s", "over_obsim"
 	};
-	size_t place[OB_DIGEST_ENGINES], engines = gather(d, place);
+	size_t place[OB_LAB_ANALYSIS_ENGINES], engines = gather(d, place);
 	ob_csv csv = { .f = f };
 	for (size_t i = 0; i < sizeof heads / sizeof *heads; i++)
 		ob_csv_text(&csv, heads[i]);
@@ -254,7 +254,7 @@ void ob_lab_write_equal(FILE *f, const ob_digest *d)
 	for (const ob_case *const *c = ob_cases; *c; c++) {
 		if (!is_shown(d, *c))
 			continue;
-		ob_digest_equal q = ob_digest_compare(d, *c);
+		ob_lab_analysis_equal q = ob_lab_analysis_compare(d, *c);
 		for (size_t i = 0; i < engines; i++) {
 			double cost = q.cost[place[i]];
 			ob_csv_text(&csv, (*c)->name);
@@ -281,7 +281,7 @@ static ob_table *begin_case(const ob_case *c, const char *first, const char *sec
 	ob_table_add(t, "%s", second);
 	for (uint32_t i = 0; i < c->figures; i++) {
 		ob_table_add(t, "%s", c->figure[i].name);
-		if (ob_digest_has_target(c, i))
+		if (ob_lab_analysis_has_target(c, i))
 			ob_table_small(t, "target %s", print(&q, c->figure[i].target, c->figure[i].unit));
 	}
 	ob_table_add(t, "CPU");
@@ -303,19 +303,19 @@ static void add_figures(ob_table *t, const ob_result *r)
 	quantity q;
 	for (uint32_t i = 0; i < r->of->figures; i++) {
 		ob_table_add(t, "%s", print(&q, r->outcome.figure[i], r->of->figure[i].unit));
-		if (ob_digest_has_target(r->of, i) && !r->outcome.failed[0])
-			ob_table_class(t, ob_digest_meets(r, i) ? "met" : "missed");
+		if (ob_lab_analysis_has_target(r->of, i) && !r->outcome.failed[0])
+			ob_table_class(t, ob_lab_analysis_meets(r, i) ? "met" : "missed");
 	}
 	ob_table_add(t, "%s", print(&q, ob_result_cost(r) * 1e6, "1"));
 }
 
-ob_table *ob_lab_table_engines(const ob_digest *d, const ob_case *c)
+ob_table *ob_lab_table_engines(const ob_lab_analysis *d, const ob_case *c)
 {
-	const ob_result *promised = ob_digest_promised(d, c);
+	const ob_result *promised = ob_lab_analysis_promised(d, c);
 	ob_table *t = begin_case(c, "engine, at its usual settings", "steps a frame");
 	for (size_t i = 0; i < d->engines; i++) {
 		bool is_promised = promised && promised->engine == d->engine[i];
-		const ob_result *r = is_promised ? promised : ob_digest_usual(d, c, d->engine[i]);
+		const ob_result *r = is_promised ? promised : ob_lab_analysis_usual(d, c, d->engine[i]);
 		if (!r)
 			continue;
 		add_name(t, r);
@@ -325,7 +325,7 @@ ob_table *ob_lab_table_engines(const ob_digest *d, const ob_case *c)
 	return t;
 }
 
-ob_table *ob_lab_table_runs(const ob_digest *d, const ob_case *c)
+ob_table *ob_lab_table_runs(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_table *t = begin_case(c, "engine", "setting");
 	for (size_t i = 0; i < d->results->count; i++) {

@@ -6,22 +6,22 @@
 #include <stdio.h>
 
 #include "experiment/table.h"
-#include "lab/digest.h"
+#include "lab/analysis.h"
 
 // Every promised figure at usual settings beside its target, and the best that another engine reached at its own.
-ob_table *ob_lab_table_rows(const ob_digest *d);
+ob_table *ob_lab_table_rows(const ob_lab_analysis *d);
 // Cost at equal error, of the cases that are compared. in_page: with what engines that never get there reach;
 // short_names: of engines, as on the command line. NULL: no engine took part in one.
-ob_table *ob_lab_table_equal(const ob_digest *d, bool in_page, bool short_names);
+ob_table *ob_lab_table_equal(const ob_lab_analysis *d, bool in_page, bool short_names);
 // One case: all engines at their usual settings; all settings
-ob_table *ob_lab_table_engines(const ob_digest *d, const ob_case *c);
-ob_table *ob_lab_table_runs(const ob_digest *d, const ob_case *c);
+ob_table *ob_lab_table_engines(const ob_lab_analysis *d, const ob_case *c);
+ob_table *ob_lab_table_runs(const ob_lab_analysis *d, const ob_case *c);
 
-size_t ob_lab_count_missed(const ob_digest *d); // targets
+size_t ob_lab_count_missed(const ob_lab_analysis *d); // targets
 
 // For a terminal or, as Markdown, for documents
-void ob_lab_print_rows(FILE *f, const ob_digest *d, bool markdown);
-void ob_lab_print_equal(FILE *f, const ob_digest *d, bool markdown);
-void ob_lab_write_equal(FILE *f, const ob_digest *d); // CSV
+void ob_lab_print_rows(FILE *f, const ob_lab_analysis *d, bool markdown);
+void ob_lab_print_equal(FILE *f, const ob_lab_analysis *d, bool markdown);
+void ob_lab_write_equal(FILE *f, const ob_lab_analysis *d); // CSV
 
 #endif

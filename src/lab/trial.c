@@ -42,7 +42,8 @@ static void take(ob_case_run_state *t, const ob_state *state)
 }
 
 // Runs to the end or to the first failure that the case or an insane state shows. Only stepping is timed.
-static void watch(ob_case_run_state *t, ob_engine *peer, const ob_engine_kind *kind, ob_state *state, ob_outcome *out, ob_error *e)
+static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind *kind, ob_state *state, ob_outcome *out,
+		  ob_error *e)
 {
 	const ob_case *c = t->of;
 	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step_length);
@@ -52,12 +53,12 @@ static void watch(ob_case_run_state *t, ob_engine *peer, const ob_engine_kind *k
 		c->observe(t);
 	while (!t->failed && t->frame < frames) {
 		double cpu = ob_clock_thread_cpu(), wall = ob_clock_wall();
-		bool on = kind->step(peer, e);
+		bool on = kind->step(engine, e);
 		out->cpu_s += ob_clock_thread_cpu() - cpu;
 		out->wall_s += ob_clock_wall() - wall;
 		t->frame++;
 		t->time = t->frame * t->settings.step_length;
-		kind->get(peer, state);
+		kind->get(engine, state);
 		take(t, state);
 		t->failed = on ? insane(t) : e->text;
 		broken = t->failed;
@@ -83,8 +84,8 @@ typedef struct tally {
 	char why[96]; // the first reason
 } tally;
 
-static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_run_settings *s, ob_outcome *out,
-		tally *failures, ob_error *e)
+static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_run_settings *s,
+		ob_outcome *out, tally *failures, ob_error *e)
 {
 	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
 	c->build(&w, number);
@@ -94,17 +95,17 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
 	t.body_memory = calloc(w.objects, 8 * sizeof *t.body_memory);
 	ob_state *state = calloc(w.objects, sizeof *state);
-	ob_engine *peer = NULL;
+	ob_engine *engine = NULL;
 	bool made = t.now.motion && t.body_memory && state;
 	if (!made)
 		ob_fail(e, "no memory for a world of %u bodies", w.objects);
 	else
-		peer = kind->create(&w, &t.settings, e);
-	made = peer;
+		engine = kind->create(&w, &t.settings, e);
+	made = engine;
 	if (made) {
 		ob_error broke = { "" };
-		watch(&t, peer, kind, state, out, &broke);
-		kind->destroy(peer);
+		watch(&t, engine, kind, state, out, &broke);
+		kind->destroy(engine);
 		ob_look_keep_all(out->figure, t.figure);
 		out->body_seconds += body_seconds(&t);
 		if (t.failed && !failures->failed++)

@@ -180,7 +180,7 @@ bool ob_solver_impacts(ob_sim *s)
 		ob_ghosts_read(s, w->v, (uint32_t)round);
 		any = is_jacobi(s) ? impacts_jacobi(s) : impacts_gauss_seidel(s);
 	}
-	s->counters.impact_rounds += (unsigned)round;
+	s->counters.impact_iterations += (unsigned)round;
 	return round > 0;
 }
 

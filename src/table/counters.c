@@ -41,7 +41,7 @@ static void add_counters(ob_counters *to, const ob_counters *c)
 	to->solver_iterations += c->solver_iterations;
 	to->pair_solves += c->pair_solves;
 	to->frictionless_solves += c->frictionless_solves;
-	to->impact_rounds += c->impact_rounds;
+	to->impact_iterations += c->impact_iterations;
 	to->impacts += c->impacts;
 	to->direct_solves += c->direct_solves;
 	to->gyroscopic_steps += c->gyroscopic_steps;

@@ -40,7 +40,7 @@ typedef struct ob_counters {
 	uint64_t solver_iterations; // of the contact solver
 	uint64_t pair_solves; // pairs solved in them
 	uint64_t frictionless_solves; // those of them without friction
-	uint64_t impact_rounds, impacts; // passes over elastic contacts; pairs that rebounded in them
+	uint64_t impact_iterations, impacts; // passes over elastic contacts; pairs that rebounded in them
 	uint64_t direct_solves; // of an island as a whole
 	uint64_t gyroscopic_steps; // substeps of bodies whose inertia needed Euler's equations
 	double recovered; // J, potential energy that pushing penetrations apart has added

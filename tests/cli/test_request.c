@@ -122,20 +122,20 @@ static void test_settle(void)
 	ob_scene s = { .run = ob_run_settings_default(), .duration = 10, .cameras = 2, .camera = cameras };
 	ob_run_request r;
 	ob_error e;
-	CHECK(read_line("s", &r, &e) && ob_request_settle(&r, &s, &e));
+	CHECK(read_line("s", &r, &e) && ob_request_resolve(&r, &s, &e));
 	CHECK(r.run.substeps == 8 && r.run.tolerance == 1e-3 && r.run.timed == 0 && r.duration == 10);
 	CHECK(read_line("s --solver jacobi --integrator ode --sleeping off --substeps 2 --duration 3", &r, &e));
-	CHECK(ob_request_settle(&r, &s, &e) && r.duration == 3);
+	CHECK(ob_request_resolve(&r, &s, &e) && r.duration == 3);
 	CHECK(r.run.solver == OB_SOLVER_JACOBI && r.run.integrator == OB_INTEGRATOR_ODE && r.run.sleeping == 0);
 	CHECK(r.run.substeps == 2 && r.run.tolerance == 0);
-	CHECK(read_line("s --explain", &r, &e) && ob_request_settle(&r, &s, &e) && r.run.timed == 1);
-	CHECK(read_line("s --measure profile", &r, &e) && ob_request_settle(&r, &s, &e) && r.run.timed == 1);
-	CHECK(read_line("s --arch monolith --explain", &r, &e) && !ob_request_settle(&r, &s, &e));
+	CHECK(read_line("s --explain", &r, &e) && ob_request_resolve(&r, &s, &e) && r.run.timed == 1);
+	CHECK(read_line("s --measure profile", &r, &e) && ob_request_resolve(&r, &s, &e) && r.run.timed == 1);
+	CHECK(read_line("s --arch monolith --explain", &r, &e) && !ob_request_resolve(&r, &s, &e));
 	CHECK(strstr(e.text, "--explain means nothing"));
-	CHECK(read_line("s --raw - --camera abov", &r, &e) && !ob_request_settle(&r, &s, &e));
+	CHECK(read_line("s --raw - --camera abov", &r, &e) && !ob_request_resolve(&r, &s, &e));
 	CHECK(strstr(e.text, "did you mean above?"));
-	CHECK(read_line("s --raw - --camera above", &r, &e) && ob_request_settle(&r, &s, &e));
-	CHECK(read_line("s --duration 1e9 --step 1e-9", &r, &e) && !ob_request_settle(&r, &s, &e));
+	CHECK(read_line("s --raw - --camera above", &r, &e) && ob_request_resolve(&r, &s, &e));
+	CHECK(read_line("s --duration 1e9 --step 1e-9", &r, &e) && !ob_request_resolve(&r, &s, &e));
 	CHECK(strstr(e.text, "too many steps"));
 }
 

@@ -14,7 +14,7 @@ static void test_metadata(const ob_case *c)
 	CHECK(c->name && *c->name && c->name[strspn(c->name, "abcdefghijklmnopqrstuvwxyz0123456789-")] == 0);
 	CHECK(ob_case_find(c->name) == c);
 	CHECK(strlen(c->title) > 4 && strlen(c->title) < 40);
-	CHECK(strlen(c->setup) > 20 && strlen(c->peers) > 5);
+	CHECK(strlen(c->setup) > 20 && strlen(c->others) > 5);
 	CHECK(c->duration > 0 && c->step == 1. / 60 && c->runs >= 1);
 	CHECK(c->figures >= 1 && c->figures <= OB_FIGURES);
 	CHECK(c->build && c->judge);

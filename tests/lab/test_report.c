@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../check.h"
-#include "lab/digest.h"
+#include "lab/analysis.h"
 #include "experiment/page.h"
 #include "lab/report.h"
 
@@ -114,23 +114,23 @@ static void check_rows(void)
 	add(taller, OWN, 8, .5, 1e-6)->outcome.figure[0] = 1e3; // row 14, as the stack of 10
 	add(spin, OWN, 8, .5, 1e-6);
 	add(spin, OWN, 16, 9, 1e-6); // not at usual settings: does not count
-	ob_digest d = ob_digest_make(&made);
-	ob_digest_rows rows = ob_digest_count_rows(&d);
+	ob_lab_analysis d = ob_lab_analyse(&made);
+	ob_lab_analysis_rows rows = ob_lab_analysis_count_rows(&d);
 	CHECK(rows.measured == 2 && rows.met == 1);
-	CHECK(ob_digest_meets_all(&results[0]) && !ob_digest_meets_all(&results[1]));
-	CHECK_NEAR(ob_digest_ratio(&results[2]), .5 * 1.6, 1e-12); // its third figure
-	CHECK_NEAR(ob_digest_ratio(&results[1]), 2000, 1e-9);
+	CHECK(ob_lab_analysis_meets_all(&results[0]) && !ob_lab_analysis_meets_all(&results[1]));
+	CHECK_NEAR(ob_lab_analysis_ratio(&results[2]), .5 * 1.6, 1e-12); // its third figure
+	CHECK_NEAR(ob_lab_analysis_ratio(&results[1]), 2000, 1e-9);
 	const ob_case *wall = named("thin-wall"); // nothing but targets of 0
-	CHECK(ob_digest_ratio(add(wall, OWN, 8, 0, 1e-6)) == 0);
+	CHECK(ob_lab_analysis_ratio(add(wall, OWN, 8, 0, 1e-6)) == 0);
 	results[--made.count].outcome.figure[1] = 3;
-	CHECK(isinf(ob_digest_ratio(&results[made.count])) && !ob_digest_meets_all(&results[made.count]));
+	CHECK(isinf(ob_lab_analysis_ratio(&results[made.count])) && !ob_lab_analysis_meets_all(&results[made.count]));
 	strcpy(results[2].outcome.failed, "fell"); // met, but failed
-	rows = ob_digest_count_rows(&d);
+	rows = ob_lab_analysis_count_rows(&d);
 	CHECK(rows.measured == 2 && rows.met == 0);
-	CHECK(isinf(ob_digest_ratio(&results[2])));
+	CHECK(isinf(ob_lab_analysis_ratio(&results[2])));
 	results[2].outcome.failed[0] = 0;
 	results[2].outcome.figure[1] = NAN;
-	CHECK(!ob_digest_meets_all(&results[2]));
+	CHECK(!ob_lab_analysis_meets_all(&results[2]));
 }
 
 static void check_best_other(void)
@@ -142,10 +142,10 @@ static void check_best_other(void)
 	add(c, BULLET, 1, 7, 1e-6);
 	add(c, QUICK, 1, 5, 1e-6);
 	strcpy(add(c, WORLD, 1, 2, 1e-6)->outcome.failed, "fell");
-	ob_digest d = ob_digest_make(&made);
+	ob_lab_analysis d = ob_lab_analyse(&made);
 	CHECK(d.engines == 5 && d.own == &kinds[OWN]);
-	CHECK(ob_digest_best_other(&d, c, 0) == &results[3]);
-	CHECK(ob_digest_style(&d, &kinds[OWN]) == 0 && ob_digest_style(&d, &kinds[BULLET]) == 7);
+	CHECK(ob_lab_analysis_best_other(&d, c, 0) == &results[3]);
+	CHECK(ob_lab_analysis_style(&d, &kinds[OWN]) == 0 && ob_lab_analysis_style(&d, &kinds[BULLET]) == 7);
 }
 
 static void check_equal(void)
@@ -155,20 +155,20 @@ static void check_equal(void)
 	add(c, OWN, 8, .5, 1e-6);
 	add(c, QUICK, 1, 100, 1e-6);
 	add(c, QUICK, 32, .9, 7e-6);
-	ob_digest d = ob_digest_make(&made);
-	ob_digest_equal q = ob_digest_compare(&d, c);
+	ob_lab_analysis d = ob_lab_analyse(&made);
+	ob_lab_analysis_equal q = ob_lab_analysis_compare(&d, c);
 	CHECK(q.is_target && q.ahead);
 	CHECK_NEAR(q.error, c->figure[0].target, 0);
 	CHECK_NEAR(q.own, 1e-6, 1e-18);
 	CHECK(q.cost[1] > 1e-6 && q.cost[1] <= 7e-6);
 	results[2].outcome.cpu_s = 5e-6; // now the other one gets there at half the cost
 	results[1].outcome.cpu_s = 1e-6;
-	CHECK(!ob_digest_compare(&d, c).ahead);
+	CHECK(!ob_lab_analysis_compare(&d, c).ahead);
 	results[0].outcome.figure[0] = 3 * c->figure[0].target; // obsim misses what the other one reaches
-	q = ob_digest_compare(&d, c);
+	q = ob_lab_analysis_compare(&d, c);
 	CHECK(q.is_target && !q.ahead && isnan(q.own));
 	results[2].outcome.figure[0] = 9 * c->figure[0].target; // nobody gets there: at obsim's own
-	q = ob_digest_compare(&d, c);
+	q = ob_lab_analysis_compare(&d, c);
 	CHECK(!q.is_target && q.ahead && isnan(q.cost[1]));
 	CHECK_NEAR(q.error, 3 * c->figure[0].target, 0);
 }

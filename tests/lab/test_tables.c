@@ -59,7 +59,7 @@ static void test_tables(void)
 	};
 	for (size_t i = 0; i < sizeof list / sizeof *list; i++)
 		CHECK(ob_results_add(&r, &list[i]));
-	ob_digest d = ob_digest_make(&r);
+	ob_lab_analysis d = ob_lab_analyse(&r);
 	CHECK(ob_lab_count_missed(&d) == ob_case_find("sliding")->figures);
 	FILE *f = begin();
 	ob_lab_print_rows(f, &d, false);
@@ -71,7 +71,7 @@ static void test_tables(void)
 				       "obsim is ahead in 1 of 2; at worst it takes 1.5 times as long.", NULL });
 	ob_results alone = { 0 }; // ahead of nobody
 	CHECK(ob_results_add(&alone, &list[0]));
-	ob_digest own = ob_digest_make(&alone);
+	ob_lab_analysis own = ob_lab_analyse(&alone);
 	f = begin();
 	ob_lab_print_equal(f, &own, false);
 	fclose(f);
@@ -83,7 +83,7 @@ static void test_tables(void)
 	expect_in(f, (const char *[]){ "case,error,", "\nstack-10,0.5,mm,1,obsim,",
 				       "\nstack-10,0.5,mm,1,ode-world,,\n", NULL });
 	ob_results_finish(&r);
-	d = ob_digest_make(&r);
+	d = ob_lab_analyse(&r);
 	f = begin();
 	ob_lab_print_equal(f, &d, true);
 	expect(f, "");

@@ -55,7 +55,7 @@ const ob_case ob_case_bounce = {
 	.name = "bounce",
 	.title = "Bouncing ball, e = 1",
 	.setup = "A sphere of radius .5 m is dropped from 1 m on a fixed ground and bounces a hundred times.",
-	.peers = "ODE loses 62 % at 240 Hz",
+	.others = "ODE loses 62 % at 240 Hz",
 	.quick = true,
 	.compared = true,
 	.duration = 90, // the hundredth comes after 199 sqrt(2 h / g) = 89.9 s
@@ -100,7 +100,7 @@ const ob_case ob_case_apexes = {
 	.name = "apexes",
 	.title = "Heights of a ball, e = .8",
 	.setup = "A sphere of radius .1 m is dropped from 1 m with restitution .8; its next four highest points.",
-	.peers = "-12 % to +81 %",
+	.others = "-12 % to +81 %",
 	.quick = true,
 	.duration = 2.5, // the fifth impact comes at 2.58 s
 	.step = 1. / 60,
@@ -133,7 +133,7 @@ const ob_case ob_case_bouncing_49 = {
 	.title = "SimBenchmark's bouncing test",
 	.setup = "7 x 7 elastic spheres of radius .1 m and 10 kg, 2 m apart, fall from a height of 5 m without "
 		 "friction; 20 s.",
-	.peers = "at 1 ms: RaiSim .019 J^2, ODE 185 J^2",
+	.others = "at 1 ms: RaiSim .019 J^2, ODE 185 J^2",
 	.quick = true,
 	.duration = 20,
 	.step = 1. / 60,

@@ -13,7 +13,7 @@ static double apart(const ob_case_run_state *t, uint32_t near, uint32_t far)
 	return ob_norm(ob_sub(ob_look_moved(t, far), ob_look_moved(t, near)));
 }
 
-// Each stack has a slab of its own to stand on, before it in the order of ids, so that the exchanges of both run in the
+// Each stack has a slab of its own to stand on, before it in the order of ids, so that the iterations of both run in the
 // same order and differ by nothing but the place.
 enum { STACK = 10, FAR_SLAB = STACK + 1 };
 
@@ -61,7 +61,7 @@ const ob_case ob_case_far_stack = {
 	.name = "far-stack",
 	.title = "Stack of 10 at 10 km",
 	.setup = "The stack of 10 at the origin and the same 10 km away; 20 s.",
-	.peers = "not measured elsewhere",
+	.others = "not measured elsewhere",
 	.quick = true,
 	.duration = 20,
 	.step = 1. / 60,
@@ -94,7 +94,7 @@ const ob_case ob_case_far_head_on = {
 	.name = "far-head-on",
 	.title = "Head-on pair at 10 km",
 	.setup = "The head-on pairs at the origin and the same 10 km away.",
-	.peers = "not measured elsewhere",
+	.others = "not measured elsewhere",
 	.quick = true,
 	.duration = 2,
 	.step = 1. / 60,

@@ -30,7 +30,7 @@ const ob_case ob_case_projectile = {
 	.title = "Projectile",
 	.setup = "A box of .6 x .4 x .2 m is thrown at (10, 0, 10) m/s, tumbling at (1, 2, 3) rad/s, and watched for "
 		 "2 s.",
-	.peers = "MuJoCo with Runge-Kutta 4: 1e-10 m; Box3D 41 mm; Jolt, Bullet and ODE 163 mm",
+	.others = "MuJoCo with Runge-Kutta 4: 1e-10 m; Box3D 41 mm; Jolt, Bullet and ODE 163 mm",
 	.quick = true,
 	.duration = 2,
 	.step = 1. / 60,

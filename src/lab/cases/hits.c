@@ -98,7 +98,7 @@ const ob_case ob_case_hit_wall = {
 		 "by a weightless ball of 20 kg at 6 m/s, e = .5, from one side and from the other; 10 s; the worst of "
 		 "five "
 		 "such.",
-	.peers = "not measured by others",
+	.others = "not measured by others",
 	.quick = true,
 	.compared = true,
 	.duration = 10,

@@ -28,8 +28,8 @@ const ob_case ob_case_lag = {
 	.name = "lag",
 	.title = "Partners that read late",
 	.setup = "The head-on pairs, each body a simulator that computes the impulse for itself, on a state of its "
-		 "partner that is so many exchanges late. The target holds without lag.",
-	.peers = "no other engine couples simulators",
+		 "partner that is so many iterations late. The target holds without lag.",
+	.others = "no other engine couples simulators",
 	.quick = true,
 	.duration = 2,
 	.step = 1. / 60,

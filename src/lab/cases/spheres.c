@@ -71,7 +71,7 @@ const ob_case ob_case_666 = {
 	.title = "SimBenchmark's 666 test",
 	.setup = "6 x 6 x 6 spheres of radius .1 m and 10 kg in a grid of .21 m, displaced by up to 1 mm, collapse "
 		 "on the ground without friction or restitution; 10 s.",
-	.peers = "at 60 Hz 7e-4 m^2 (Jolt, Bullet)",
+	.others = "at 60 Hz 7e-4 m^2 (Jolt, Bullet)",
 	.quick = true,
 	.compared = true,
 	.duration = 10,
@@ -107,7 +107,7 @@ const ob_case ob_case_elastic_666 = {
 	.name = "elastic-666",
 	.title = "SimBenchmark's elastic 666 test",
 	.setup = "The spheres of the 666 test, 1 m higher and with restitution 1; 10 s.",
-	.peers = "60 Hz 4 to 47 %; ODE at 1 kHz .03 %; RaiSim 8.4 J^2 at 1 ms",
+	.others = "60 Hz 4 to 47 %; ODE at 1 kHz .03 %; RaiSim 8.4 J^2 at 1 ms",
 	.quick = true,
 	.duration = 10,
 	.step = 1. / 60,

@@ -51,7 +51,7 @@ const ob_case ob_case_spin = {
 	.title = "Torque-free spin",
 	.setup = "A body with moments of inertia 1 : 2 : 3 spins at (.05, 5, .02) rad/s, turning over again and "
 		 "again; 300 s.",
-	.peers = "ODE loses 21 % of its energy; MuJoCo with Runge-Kutta 4 2e-7 in 60 s",
+	.others = "ODE loses 21 % of its energy; MuJoCo with Runge-Kutta 4 2e-7 in 60 s",
 	.quick = true,
 	.compared = true,
 	.duration = 300,

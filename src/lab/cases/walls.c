@@ -97,7 +97,7 @@ const ob_case ob_case_thin_wall = {
 	.title = "Thin wall",
 	.setup = "Boxes of .2 m fly at a fixed wall of 20 mm, turned and aimed at random: 100 aims at each of 10, "
 		 "30, 100, 300 and 1000 m/s.",
-	.peers = "ODE 77 to 100 of 100",
+	.others = "ODE 77 to 100 of 100",
 	.quick = true,
 	.duration = .6,
 	.step = 1. / 60,
@@ -155,7 +155,7 @@ const ob_case ob_case_bullets = {
 	.title = "Two bullets head-on",
 	.setup = "Boxes of .2 m fly at each other, turned and aimed at random: 100 pairs at each of +-200, 500 and "
 		 "1000 m/s.",
-	.peers = "Box3D 75 to 100 of 100, Jolt 2 to 100",
+	.others = "Box3D 75 to 100 of 100, Jolt 2 to 100",
 	.quick = true,
 	.duration = .15,
 	.step = 1. / 60,

@@ -1,30 +1,30 @@
-#include "lab/digest.h"
+#include "lab/analysis.h"
 
 #include <math.h>
 #include <string.h>
 
-bool ob_digest_is_obsim(const ob_engine_kind *k)
+bool ob_lab_analysis_is_obsim(const ob_engine_kind *k)
 {
 	return !strncmp(k->name, "obsim", 5);
 }
 
-size_t ob_digest_count_others(const ob_digest *d)
+size_t ob_lab_analysis_count_others(const ob_lab_analysis *d)
 {
 	size_t n = 0;
 	for (size_t i = 0; i < d->engines; i++)
-		n += !ob_digest_is_obsim(d->engine[i]);
+		n += !ob_lab_analysis_is_obsim(d->engine[i]);
 	return n;
 }
 
-ob_digest ob_digest_make(const ob_results *r)
+ob_lab_analysis ob_lab_analyse(const ob_results *r)
 {
-	ob_digest d = { .results = r };
+	ob_lab_analysis d = { .results = r };
 	for (size_t i = 0; i < r->count; i++) {
 		const ob_engine_kind *k = r->result[i].engine;
 		size_t at = 0;
 		while (at < d.engines && d.engine[at] != k)
 			at++;
-		if (at == d.engines && d.engines < OB_DIGEST_ENGINES)
+		if (at == d.engines && d.engines < OB_LAB_ANALYSIS_ENGINES)
 			d.engine[d.engines++] = k;
 		if (!strcmp(k->name, "obsim"))
 			d.own = k;
@@ -32,7 +32,7 @@ ob_digest ob_digest_make(const ob_results *r)
 	return d;
 }
 
-int ob_digest_style(const ob_digest *d, const ob_engine_kind *k)
+int ob_lab_analysis_style(const ob_lab_analysis *d, const ob_engine_kind *k)
 {
 	static const char *const known[] = { "obsim",     "obsim-jacobi", "obsim-ode", "obsim-ghost", "obsim-lag",
 					     "ode-quick", "ode-world",    "bullet",    "ode-advised", "mujoco" };
@@ -46,7 +46,7 @@ int ob_digest_style(const ob_digest *d, const ob_engine_kind *k)
 	return KNOWN;
 }
 
-static const ob_result *find(const ob_digest *d, const ob_case *c, const ob_engine_kind *k, uint32_t lag)
+static const ob_result *find(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k, uint32_t lag)
 {
 	const ob_run_settings *usual = &k->usual;
 	for (size_t i = 0; i < d->results->count; i++) {
@@ -60,14 +60,14 @@ static const ob_result *find(const ob_digest *d, const ob_case *c, const ob_engi
 	return NULL;
 }
 
-const ob_result *ob_digest_usual(const ob_digest *d, const ob_case *c, const ob_engine_kind *k)
+const ob_result *ob_lab_analysis_usual(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k)
 {
 	return find(d, c, k, k->usual.lag);
 }
 
-const ob_result *ob_digest_promised(const ob_digest *d, const ob_case *c)
+const ob_result *ob_lab_analysis_promised(const ob_lab_analysis *d, const ob_case *c)
 {
-	const ob_result *r = d->own ? ob_digest_usual(d, c, d->own) : NULL;
+	const ob_result *r = d->own ? ob_lab_analysis_usual(d, c, d->own) : NULL;
 	for (size_t i = 0; !r && i < d->engines; i++)
 		if (!strcmp(d->engine[i]->name,
 			    "obsim-lag")) // the case of late partners is promised for those who are not
@@ -75,7 +75,7 @@ const ob_result *ob_digest_promised(const ob_digest *d, const ob_case *c)
 	return r;
 }
 
-bool ob_digest_ran(const ob_digest *d, const ob_case *c)
+bool ob_lab_analysis_ran(const ob_lab_analysis *d, const ob_case *c)
 {
 	for (size_t i = 0; i < d->results->count; i++)
 		if (d->results->result[i].of == c)
@@ -83,31 +83,31 @@ bool ob_digest_ran(const ob_digest *d, const ob_case *c)
 	return false;
 }
 
-bool ob_digest_has_target(const ob_case *c, uint32_t figure)
+bool ob_lab_analysis_has_target(const ob_case *c, uint32_t figure)
 {
 	return isfinite(c->figure[figure].target);
 }
 
-bool ob_digest_meets(const ob_result *r, uint32_t figure)
+bool ob_lab_analysis_meets(const ob_result *r, uint32_t figure)
 {
 	return !r->outcome.failed[0] && r->outcome.figure[figure] <= r->of->figure[figure].target;
 }
 
-bool ob_digest_meets_all(const ob_result *r)
+bool ob_lab_analysis_meets_all(const ob_result *r)
 {
 	for (uint32_t i = 0; i < r->of->figures; i++)
-		if (ob_digest_has_target(r->of, i) && !ob_digest_meets(r, i))
+		if (ob_lab_analysis_has_target(r->of, i) && !ob_lab_analysis_meets(r, i))
 			return false;
 	return !r->outcome.failed[0];
 }
 
-double ob_digest_ratio(const ob_result *r)
+double ob_lab_analysis_ratio(const ob_result *r)
 {
 	double worst = r->outcome.failed[0] ? INFINITY : NAN;
 	bool missed = false; // a target of 0
 	for (uint32_t i = 0; i < r->of->figures; i++) {
 		double figure = r->outcome.figure[i], target = r->of->figure[i].target;
-		if (!ob_digest_has_target(r->of, i))
+		if (!ob_lab_analysis_has_target(r->of, i))
 			continue;
 		double ratio = !isfinite(figure) ? INFINITY : figure <= 0 || target <= 0 ? 0 : figure / target;
 		missed |= target <= 0 && !(figure <= target);
@@ -116,11 +116,12 @@ double ob_digest_ratio(const ob_result *r)
 	return missed && worst <= 1 ? INFINITY : worst;
 }
 
-const ob_result *ob_digest_best_other(const ob_digest *d, const ob_case *c, uint32_t figure)
+const ob_result *ob_lab_analysis_best_other(const ob_lab_analysis *d, const ob_case *c, uint32_t figure)
 {
 	const ob_result *best = NULL;
 	for (size_t i = 0; i < d->engines; i++) {
-		const ob_result *r = ob_digest_is_obsim(d->engine[i]) ? NULL : ob_digest_usual(d, c, d->engine[i]);
+		const ob_result *r =
+			ob_lab_analysis_is_obsim(d->engine[i]) ? NULL : ob_lab_analysis_usual(d, c, d->engine[i]);
 		if (!r || r->outcome.failed[0] || !isfinite(r->outcome.figure[figure]))
 			continue;
 		if (!best || r->outcome.figure[figure] < best->outcome.figure[figure])
@@ -129,25 +130,25 @@ const ob_result *ob_digest_best_other(const ob_digest *d, const ob_case *c, uint
 	return best;
 }
 
-ob_digest_rows ob_digest_count_rows(const ob_digest *d)
+ob_lab_analysis_rows ob_lab_analysis_count_rows(const ob_lab_analysis *d)
 {
-	bool measured[OB_DIGEST_ROWS] = { 0 }, missed[OB_DIGEST_ROWS] = { 0 };
+	bool measured[OB_LAB_ANALYSIS_ROWS] = { 0 }, missed[OB_LAB_ANALYSIS_ROWS] = { 0 };
 	for (const ob_case *const *c = ob_cases; *c; c++) {
-		const ob_result *r = ob_digest_promised(d, *c);
-		if (!r || (*c)->row <= 0 || (*c)->row >= OB_DIGEST_ROWS)
+		const ob_result *r = ob_lab_analysis_promised(d, *c);
+		if (!r || (*c)->row <= 0 || (*c)->row >= OB_LAB_ANALYSIS_ROWS)
 			continue;
 		measured[(*c)->row] = true;
-		missed[(*c)->row] |= !ob_digest_meets_all(r);
+		missed[(*c)->row] |= !ob_lab_analysis_meets_all(r);
 	}
-	ob_digest_rows rows = { 0 };
-	for (int i = 0; i < OB_DIGEST_ROWS; i++) {
+	ob_lab_analysis_rows rows = { 0 };
+	for (int i = 0; i < OB_LAB_ANALYSIS_ROWS; i++) {
 		rows.measured += measured[i];
 		rows.met += measured[i] && !missed[i];
 	}
 	return rows;
 }
 
-const ob_result *ob_digest_finest(const ob_digest *d, const ob_case *c, const ob_engine_kind *k)
+const ob_result *ob_lab_analysis_finest(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k)
 {
 	const ob_result *best = NULL;
 	for (size_t i = 0; i < d->results->count; i++) {
@@ -160,13 +161,13 @@ const ob_result *ob_digest_finest(const ob_digest *d, const ob_case *c, const ob
 	return best;
 }
 
-ob_digest_equal ob_digest_compare(const ob_digest *d, const ob_case *c)
+ob_lab_analysis_equal ob_lab_analysis_compare(const ob_lab_analysis *d, const ob_case *c)
 {
-	const ob_result *finest = d->own ? ob_digest_finest(d, c, d->own) : NULL;
-	ob_digest_equal q = { .error = finest ? finest->outcome.figure[0] : NAN, .own = NAN };
+	const ob_result *finest = d->own ? ob_lab_analysis_finest(d, c, d->own) : NULL;
+	ob_lab_analysis_equal q = { .error = finest ? finest->outcome.figure[0] : NAN, .own = NAN };
 	for (size_t i = 0; i < d->engines; i++) {
-		const ob_result *r = ob_digest_finest(d, c, d->engine[i]);
-		q.is_target |= r && ob_digest_meets(r, 0);
+		const ob_result *r = ob_lab_analysis_finest(d, c, d->engine[i]);
+		q.is_target |= r && ob_lab_analysis_meets(r, 0);
 	}
 	if (q.is_target)
 		q.error = c->figure[0].target;
@@ -177,6 +178,6 @@ ob_digest_equal ob_digest_compare(const ob_digest *d, const ob_case *c)
 			q.own = q.cost[i];
 	q.ahead = isfinite(q.own);
 	for (size_t i = 0; i < d->engines; i++)
-		q.ahead &= ob_digest_is_obsim(d->engine[i]) || !(q.cost[i] < q.own);
+		q.ahead &= ob_lab_analysis_is_obsim(d->engine[i]) || !(q.cost[i] < q.own);
 	return q;
 }
