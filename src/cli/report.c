@@ -110,31 +110,6 @@ void ob_report_write_json(const ob_report *r, FILE *f)
 	ob_json_close(&j);
 }
 
-bool ob_report_read_json(ob_report *r, const char *text)
-{
-	for (int i = 0; i < FIELDS; i++) {
-		const struct field *f = &fields[i];
-		const char *value = ob_json_find(text, f->key);
-		char *to = (char *)r + f->offset, *end = NULL;
-		if (!value)
-			return false;
-		if (f->kind == TEXT) {
-			if (!ob_json_read_string(value, to, f->size))
-				return false;
-			continue;
-		}
-		if (f->kind == COUNT)
-			*(uint64_t *)to = strtoull(value, &end, 10);
-		else if (strncmp(value, "null", 4) == 0)
-			*(double *)to = NAN;
-		else
-			*(double *)to = strtod(value, &end);
-		if (end == value)
-			return false;
-	}
-	return true;
-}
-
 // The smallest number of substeps with which at least this share of the island-steps were solved.
 static uint64_t quantile(const ob_counters *c, double share)
 {

@@ -43,8 +43,6 @@ typedef struct ob_report {
 } ob_report;
 
 void ob_report_write_json(const ob_report *r, FILE *f);
-// false: a member is missing or of another kind. What it holds is then undefined.
-bool ob_report_read_json(ob_report *r, const char *text);
 
 // Few aligned lines for a person.
 void ob_report_print(const ob_report *r, FILE *f);

@@ -92,25 +92,6 @@ static int split(double v, double *mantissa)
 	return power;
 }
 
-void ob_page_number(ob_page *p, double v)
-{
-	char text[40];
-	double mantissa;
-	if (!isfinite(v)) {
-		fputs(isnan(v) ? "\u2013" : "\u221e", p->out);
-	} else if (is_plain(v)) {
-		print_plain(text, sizeof text, v);
-		fputs(text, p->out);
-	} else {
-		int power = split(v, &mantissa);
-		print_plain(text, sizeof text, mantissa);
-		if (mantissa == 1)
-			text[0] = 0;
-		fprintf(p->out, "%s%s10<sup>%s%d</sup>", text, *text ? "\u00b7" : "", power < 0 ? "\u2212" : "",
-			abs(power));
-	}
-}
-
 void ob_page_print_unit(char *to, size_t room, const char *unit)
 {
 	size_t used = 0;
@@ -122,17 +103,6 @@ void ob_page_print_unit(char *to, size_t room, const char *unit)
 					 : *unit == '2' ? "\u00b2"
 							: "\u00b3");
 	}
-}
-
-void ob_page_quantity(ob_page *p, double v, const char *unit)
-{
-	char printed[40];
-	ob_page_number(p, v);
-	if (!strcmp(unit, "1") || !isfinite(v))
-		return;
-	ob_page_print_unit(printed, sizeof printed, unit);
-	fputs("&nbsp;", p->out);
-	ob_page_text(p, printed);
 }
 
 // "1e-6", not "1e-06"

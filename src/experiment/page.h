@@ -23,9 +23,6 @@ void ob_page_style(ob_page *p);
 // printf of markup; the arguments must not need escaping
 void ob_page_markup(ob_page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ob_page_text(ob_page *p, const char *text);
-// Three digits; a dash for what is not a number
-void ob_page_number(ob_page *p, double v);
-void ob_page_quantity(ob_page *p, double v, const char *unit); // unit "1" = a bare number, "m^2" is raised
 
 // The same as plain text, for diagrams: "0.5 mm²" from "mm^2"
 void ob_page_print_quantity(char *to, size_t room, double v, const char *unit);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
+
 typedef struct cell {
 	char *text, *small; // NULL = empty
 	const char *class, *link;
@@ -127,22 +129,13 @@ static char *text_of(const ob_table *t, size_t i)
 	return text;
 }
 
-// Characters of UTF-8, each one place wide
-static size_t width_of(const char *text)
-{
-	size_t n = 0;
-	for (; *text; text++)
-		n += (*text & 0xc0) != 0x80;
-	return n;
-}
-
 // The first column, and those from "from" up to "to"
 static void print_row(const ob_table *t, FILE *f, size_t row, size_t from, size_t to, const size_t *width)
 {
 	int trailing = 0; // spaces that nothing has followed yet
 	for (size_t i = 0; i < to; i = i + 1 < from ? from : i + 1) {
 		char *text = text_of(t, row + i);
-		int room = (int)(width[i] - width_of(text)), before = t->align[i] == 'r' ? room : 0;
+		int room = (int)(width[i] - ob_utf8_count(text)), before = t->align[i] == 'r' ? room : 0;
 		trailing += (i ? 2 : 0) + before;
 		if (*text)
 			fprintf(f, "%*s%s", trailing, "", text);
@@ -161,7 +154,7 @@ static size_t *measure(const ob_table *t, size_t least)
 		width[i] = least;
 	for (size_t i = 0; i < t->count; i++) {
 		char *text = text_of(t, i);
-		size_t w = width_of(text), *widest = &width[i % t->columns];
+		size_t w = ob_utf8_count(text), *widest = &width[i % t->columns];
 		*widest = w > *widest && !t->cell[i].heading ? w : *widest;
 		free(text);
 	}
@@ -194,7 +187,7 @@ void ob_table_markdown(const ob_table *t, FILE *f)
 	for (size_t row = 0; row < t->count; row += t->columns) {
 		for (size_t i = 0; i < t->columns; i++) {
 			char *text = text_of(t, row + i);
-			int room = (int)(width[i] - width_of(text)), before = t->align[i] == 'r' ? room : 0;
+			int room = (int)(width[i] - ob_utf8_count(text)), before = t->align[i] == 'r' ? room : 0;
 			fprintf(f, "%s%*s%s%*s", i ? " | " : "| ", before, "", text, room - before, "");
 			free(text);
 		}

@@ -169,18 +169,3 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_ki
 	}
 	return all.count;
 }
-
-void ob_sweep_print(char *to, size_t room, const ob_run_settings *s)
-{
-	int n;
-	if (s->tolerance > 0 && s->substeps)
-		n = snprintf(to, room, "%u substeps or more, tolerance %g mm", s->substeps, s->tolerance * 1e3);
-	else if (s->tolerance > 0)
-		n = snprintf(to, room, "tolerance %g mm", s->tolerance * 1e3);
-	else
-		n = snprintf(to, room, "%u substep%s", s->substeps, s->substeps == 1 ? "" : "s");
-	if (s->iterations && (size_t)n < room)
-		n += snprintf(to + n, room - (size_t)n, ", %u iterations", s->iterations);
-	if (s->lag && (size_t)n < room)
-		snprintf(to + n, room - (size_t)n, ", late by %u", s->lag);
-}

@@ -23,7 +23,5 @@ bool ob_sweep_parse(ob_sweep *s, const char *text, ob_error *e);
 size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_kind *k,
 			 ob_run_settings to[OB_SWEEP_SETTINGS]);
 
-// "8 substeps, 16 iterations", "tolerance 0.5 mm"; with "late by 2" where it is
-void ob_sweep_print(char *to, size_t room, const ob_run_settings *s);
 
 #endif

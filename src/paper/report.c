@@ -89,11 +89,6 @@ void ob_paper_report_model_finish(ob_paper_report_model *m)
 
 // ---- tables
 
-const char *ob_paper_table_id(int table)
-{
-	return tables[table].id;
-}
-
 static void add_number(ob_table *t, double v, bool printed)
 {
 	ob_table_add(t, "%s", ob_word_number(v).text);

@@ -29,7 +29,6 @@ void ob_paper_report_model_finish(ob_paper_report_model *m);
 
 // Tables 1 to 5 of the paper with ours beside them, then what it never ran
 enum { OB_PAPER_TABLES = 7 };
-const char *ob_paper_table_id(int table);
 // NULL: no memory
 ob_table *ob_paper_table_make(const ob_paper_report_model *m, int table);
 

@@ -18,7 +18,7 @@ static char *write_text(const ob_report *r)
 
 static void test_round_trip(void)
 {
-	static ob_report a, b;
+	static ob_report a;
 	strcpy(a.scene, "a \"quoted\"\\path\n\t\x01.lua");
 	strcpy(a.outcome, "finished");
 	strcpy(a.state_hash, "0123456789abcdef");
@@ -31,11 +31,14 @@ static void test_round_trip(void)
 	a.energy_gain_max = NAN;
 	a.momentum_error = INFINITY;
 	char *text = write_text(&a);
-	CHECK(ob_report_read_json(&b, text));
-	CHECK(strcmp(a.scene, b.scene) == 0 && strcmp(a.state_hash, b.state_hash) == 0);
-	CHECK(b.steps == 600 && b.seed == UINT64_MAX && b.step == a.step && b.wall_s == a.wall_s);
-	CHECK(b.cpu_s == a.cpu_s && b.energy_end == a.energy_end);
-	CHECK(isnan(b.energy_gain_max) && isnan(b.momentum_error));
+	char scene[sizeof a.scene];
+	CHECK(ob_json_read_string(ob_json_find(text, "scene"), scene, sizeof scene) && strcmp(a.scene, scene) == 0);
+	CHECK(strtoull(ob_json_find(text, "steps"), NULL, 10) == 600);
+	CHECK(strtoull(ob_json_find(text, "seed"), NULL, 10) == UINT64_MAX);
+	CHECK(strtod(ob_json_find(text, "step"), NULL) == a.step);
+	CHECK(strtod(ob_json_find(text, "wall_s"), NULL) == a.wall_s);
+	CHECK(strtod(ob_json_find(text, "cpu_s"), NULL) == a.cpu_s);
+	CHECK(strtod(ob_json_find(text, "energy_end"), NULL) == a.energy_end);
 	CHECK(strstr(text, "\"energy_gain_max\": null") && strstr(text, "\"momentum_error\": null"));
 	CHECK(!strstr(text, "nan") && !strstr(text, "inf"));
 	CHECK(strstr(text, "\\\"quoted\\\"\\\\path\\u000a"));
@@ -55,20 +58,6 @@ static void test_find(void)
 	CHECK(!ob_json_read_string("\"long text\"", small, sizeof small));
 	CHECK(ob_json_read_string("\"abc\"", small, sizeof small) && strcmp(small, "abc") == 0);
 	CHECK(!ob_json_read_string("\"ab", small, sizeof small) && !ob_json_read_string("7", small, sizeof small));
-}
-
-static void test_torn(void)
-{
-	static ob_report a, b;
-	char *text = write_text(&a);
-	size_t whole = strlen(text);
-	// cut before the last value: something is missing, and it says so
-	for (size_t n = 0; n + 8 < whole; n++) {
-		char *cut = strndup(text, n);
-		CHECK(!ob_report_read_json(&b, cut));
-		free(cut);
-	}
-	free(text);
 }
 
 // Bytes that are no UTF-8 would make the whole file unreadable.
@@ -106,7 +95,6 @@ int main(void)
 {
 	test_round_trip();
 	test_find();
-	test_torn();
 	test_utf8();
 	test_tolerance_in_words();
 	return check_end();

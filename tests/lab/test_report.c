@@ -173,13 +173,10 @@ static void check_equal(void)
 	CHECK_NEAR(q.error, 3 * c->figure[0].target, 0);
 }
 
-static const char *number(double v, const char *unit)
+static const char *quantity(double v, const char *unit)
 {
 	static char text[200];
-	memset(text, 0, sizeof text);
-	ob_page p = { .out = fmemopen(text, sizeof text - 1, "w") };
-	ob_page_quantity(&p, v, unit);
-	fclose(p.out);
+	ob_page_print_quantity(text, sizeof text, v, unit);
 	return text;
 }
 
@@ -190,18 +187,14 @@ static void write_word(ob_page *p, const void *with)
 
 static void check_page(void)
 {
-	CHECK(!strcmp(number(.5, "mm"), "0.5&nbsp;mm"));
-	CHECK(!strcmp(number(0, "1"), "0"));
-	CHECK(!strcmp(number(100, "1"), "100"));
-	CHECK(!strcmp(number(12345, "1"), "12345"));
-	CHECK(!strcmp(number(9.996, "1"), "10"));
-	CHECK(!strcmp(number(.0123456, "1"), "0.0123"));
-	CHECK(!strcmp(number(-35.94, "1"), "-35.9"));
-	CHECK(!strcmp(number(1e-9, "1"), "10<sup>\u22129</sup>"));
-	CHECK(!strcmp(number(-2.5e7, "J"), "-2.5\u00b710<sup>7</sup>&nbsp;J"));
-	CHECK(!strcmp(number(9.999e-10, "1"), "10<sup>\u22129</sup>"));
-	CHECK(!strcmp(number(3, "m^2/s^3"), "3&nbsp;m\u00b2/s\u00b3"));
-	CHECK(!strcmp(number(NAN, "mm"), "\u2013"));
+	CHECK(!strcmp(quantity(.5, "mm"), "0.5 mm"));
+	CHECK(!strcmp(quantity(0, "1"), "0"));
+	CHECK(!strcmp(quantity(100, "1"), "100"));
+	CHECK(!strcmp(quantity(12345, "1"), "12345"));
+	CHECK(!strcmp(quantity(9.996, "1"), "10"));
+	CHECK(!strcmp(quantity(.0123456, "1"), "0.0123"));
+	CHECK(!strcmp(quantity(-35.94, "1"), "-35.9"));
+	CHECK(!strcmp(quantity(3, "m^2/s^3"), "3 m\u00b2/s\u00b3"));
 	char text[100] = "";
 	ob_page_print_quantity(text, sizeof text, 1e-6, "m^2/s^2");
 	CHECK(!strcmp(text, "1e-6 m\u00b2/s\u00b2"));
