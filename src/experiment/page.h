@@ -24,7 +24,7 @@ void ob_page_style(ob_page *p);
 void ob_page_markup(ob_page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ob_page_text(ob_page *p, const char *text);
 
-// The same as plain text, for diagrams: "0.5 mm²" from "mm^2"
+// A number of three digits with its unit as text: "0.5 mm²" from "mm^2"; unit "1" = a bare number, a dash for NaN
 void ob_page_print_quantity(char *to, size_t room, double v, const char *unit);
 
 // The unit alone, with raised digits
