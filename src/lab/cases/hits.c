@@ -90,7 +90,7 @@ static void judge_hits(ob_case_run_state *t)
 }
 
 const ob_case ob_case_hit_wall = {
-	.row = 25,
+	.row = 26,
 	.name = "hit-wall",
 	.title = "Wall hit every half second",
 	.setup = "A wall of 27 bricks of 1 x .5 x .5 m and 500 kg, six rows in bond, friction .5, is hit every half "
