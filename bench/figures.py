@@ -48,11 +48,21 @@ def machine():
     return f"Measured on {len(os.sched_getaffinity(0))} cores ({model}), commit {r['commit']}.\n"
 
 
-def compare():
+def compared(*words):
     """What obsim compare says of the falling boxes: the verdict, then the table, in at most 100 columns."""
-    done = subprocess.run([OBSIM, 'compare', 'scenes/falling_boxes.lua'], capture_output=True, text=True, check=True,
+    done = subprocess.run([OBSIM, 'compare', 'scenes/falling_boxes.lua', *words], capture_output=True, text=True, check=True,
                           cwd=os.path.join(SCENES, '..'))
     return '```\n' + done.stdout + '```\n'
+
+
+def compare():
+    """The whole of it."""
+    return compared()
+
+
+def varied():
+    """While they fly, land and pile up; a hundred, and a thousand."""
+    return compared('--vary', 'n=100,1000', '--duration', '3')
 
 
 def summary():
@@ -103,17 +113,17 @@ def error_stack():
 
 def bits():
     """The same bits, whoever computes them."""
-    ways = [[isolation, workers] for isolation in ('thread', 'process') for workers in ('1', '2', '3', '8', 'objects')]
-    text = head('scene', 'duration, s', 'ways to run it', 'state after it', 'equal')
+    configurations = [[isolation, workers] for isolation in ('thread', 'process') for workers in ('1', '2', '3', '8', 'objects')]
+    text = head('scene', 'duration, s', 'configurations', 'state after it', 'equal')
     for name in ('falling_boxes', 'stack', 'pile', 'cradle', 'sparse'):
         reports = [run(scene(name), '--isolation', isolation, '--workers', workers, '--measure', 'end', runs=1)
-                   for isolation, workers in ways]
+                   for isolation, workers in configurations]
         hashes = sorted({r['state_hash'] for r in reports})
-        text += row(name, f"{reports[0]['simulated_s']:g}", len(ways), ' '.join(hashes), 'no' if hashes[1:] else 'yes')
+        text += row(name, f"{reports[0]['simulated_s']:g}", len(configurations), ' '.join(hashes), 'no' if hashes[1:] else 'yes')
     return text
 
 
-def crowd():
+def counts():
     """How many simulators a machine bears."""
     text = head('1 s of falling boxes', 'start-up, s', 'wall per step, ms', 'CPU per body and step, µs', 'memory, MB')
     for what, words in (('1000 simulators, a pool of 2', ['-D', 'n=1000']),
@@ -137,7 +147,7 @@ def capture():
     return text
 
 
-TABLES = {f.__name__: f for f in (machine, summary, compare, error_falling, error_stack, bits, crowd, capture)}
+TABLES = {f.__name__: f for f in (machine, summary, compare, varied, error_falling, error_stack, bits, counts, capture)}
 
 
 def refresh(path):

@@ -219,8 +219,37 @@ def table_of(m, wanted):
     return text
 
 
+ENGINES = [('obsim', ''), ('ode-quick', 'ODE QuickStep'), ('bullet', 'Bullet'), ('mujoco', 'MuJoCo')]
+
+
+def first_error(m, scene, engine, duration):
+    """The figure that a scene is about, in its unit, or why there is none."""
+    failed = m.failed(scene, engine, duration=duration)
+    if failed:
+        return failed.split(' (')[0]
+    plain = {'cpu', 'wall', 'median step', 'start-up', 'memory', 'bodies', 'steps', 'state', 'failed'}
+    worst = [(s, e, st, d, q) for s, e, st, d, q in m.rows
+             if (s, e, st, d) == (scene, engine, 'usual', duration) and q not in plain]
+    deepest = [k for k in worst if 'at any moment' in k[4]] or worst
+    return number(float(m.rows[deepest[0]][0])) if deepest else '–'
+
+
 def usual(m):
-    return table_of(m, lambda setting: setting == 'usual')
+    """A row for each scene: cost and error of each engine as it comes."""
+    text = head('scene', *[title or 'obsim' for _, title in ENGINES], 'error')
+    for scene, duration in dict.fromkeys((s, d) for s, _, setting, d in m.settings if setting == 'usual' and s):
+        cells, what = [], ''
+        for engine, _ in ENGINES:
+            how = {'duration': duration}
+            cost = m.ours(scene, **how) if engine == 'obsim' else m.cost(scene, engine, **how)
+            measured = engine == 'obsim' or not math.isnan(cost) or m.failed(scene, engine, **how)
+            cells.append(f'{number(cost)} ({first_error(m, scene, engine, duration)})' if measured else '')
+        errors = [q for s, e, st, d, q in m.rows if (s, e, st, d) == (scene, 'obsim', 'usual', duration)]
+        what = next((q for q in errors if 'at any moment' in q), None) or next(
+            (q for q in errors if q not in {'cpu', 'wall', 'median step', 'start-up', 'memory', 'bodies', 'steps', 'state',
+                                            'failed'}), '–')
+        text += row(scene + (f', {duration:g} s' if duration else ''), *cells, what)
+    return text
 
 
 def equal(m):
