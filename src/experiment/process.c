@@ -5,6 +5,7 @@
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,9 +23,9 @@ static const int grace_ms = 2000; // from SIGTERM to SIGKILL
 static const int stops[] = { SIGINT, SIGTERM, SIGHUP };
 enum { STOPS = sizeof stops / sizeof *stops, PROGRAM_TEXT = 1 << 20 };
 
-// What stands before the answer in the pipe
+// What stands before the answer in the pipe; what follows it may be of any type.
 typedef struct verdict {
-	bool fine;
+	_Alignas(max_align_t) bool fine;
 	ob_error why;
 } verdict;
 
