@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "motion/random.h"
 #include "ode/ode_body.h"
 
 static void give_up(const char *what, const char *why)
@@ -19,46 +18,8 @@ little_scene *little_scene_new(void)
 	if (!s)
 		give_up("scene", "no memory");
 	s->run = (ob_run_settings){ .gravity = { 0, 0, -9.81 }, .step_length = 1. / 60, .substeps = 8, .iterations = 16 };
+	s->world = (ob_world){ s->run.gravity, 0, LITTLE_MOST, s->passport, s->state };
 	return s;
-}
-
-little_object *little_add(little_scene *s, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
-{
-	if (s->objects == LITTLE_MOST)
-		give_up("scene", "too many objects");
-	little_object *o = &s->object[s->objects];
-	o->passport =
-		(ob_passport){ .id = s->objects++, .generation = 1, .shape = shape, .size = size, .friction = .5 };
-	o->passport.flags = OB_OBJECT_PRESENT | (mass > 0 ? 0 : OB_OBJECT_STATIC);
-	o->passport.mass = mass;
-	if (mass > 0)
-		o->passport.inertia = ob_ode_inertia(shape, size, mass);
-	o->state.pose = (ob_pose){ p, ob_quat_identity() };
-	return o;
-}
-
-little_object *little_ground(little_scene *s)
-{
-	return little_add(s, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));
-}
-
-little_object *little_sphere(little_scene *s, double mass, double radius, ob_vec3 p)
-{
-	return little_add(s, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
-}
-
-little_object *little_box(little_scene *s, double mass, ob_vec3 half, ob_vec3 p)
-{
-	return little_add(s, OB_SHAPE_BOX, half, mass, p);
-}
-
-void little_stack(little_scene *s, int n, uint64_t seed)
-{
-	little_ground(s);
-	for (int i = 0; i < n; i++) {
-		double x = within(&seed, -.01, .01), y = within(&seed, -.01, .01);
-		little_box(s, 1000, ob_v3(.5, .5, .5), ob_v3(x, y, .5 + i));
-	}
 }
 
 ob_universe *little_populate(const little_scene *s, uint32_t workers)
@@ -66,16 +27,16 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 	static int made;
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-sim-%d-%d", (int)getpid(), made++);
-	ob_universe_setup setup = { name, s->capacity ? s->capacity : s->objects, workers, "thread", s->run, false };
+	ob_universe_setup setup = { name, s->capacity ? s->capacity : s->world.objects, workers, "thread", s->run, false };
 	ob_error e;
 	ob_ode_init();
 	ob_universe *u = ob_universe_create(&setup, &e);
 	if (!u)
 		give_up("universe", e.text);
-	for (uint32_t i = 0; i < s->objects; i++)
-		ob_write_passport(u, i, &s->object[i].passport);
-	for (uint32_t i = 0; i < s->objects; i++)
-		ob_sim_place(u, i, &s->object[i].state);
+	for (uint32_t i = 0; i < s->world.objects; i++)
+		ob_write_passport(u, i, &s->world.passport[i]);
+	for (uint32_t i = 0; i < s->world.objects; i++)
+		ob_sim_place(u, i, &s->world.state[i]);
 	return u;
 }
 
@@ -119,9 +80,8 @@ void little_run_to(little_universe *l, double time)
 
 void little_put(little_universe *l, uint32_t id)
 {
-	const little_object *o = &l->scene->object[id];
-	ob_write_passport(l->u, id, &o->passport);
-	ob_sim_place(l->u, id, &o->state);
+	ob_write_passport(l->u, id, &l->scene->world.passport[id]);
+	ob_sim_place(l->u, id, &l->scene->world.state[id]);
 }
 
 void little_take_away(little_universe *l, uint32_t id)

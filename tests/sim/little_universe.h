@@ -1,8 +1,8 @@
 // A universe for tests: objects by hand, one worker in the test's own thread.
 //
 //   little_scene *s = little_scene_new();
-//   little_ground(s);
-//   little_sphere(s, 1, .5, ob_v3(0, 0, 2))->passport.restitution = 1;
+//   ob_world_ground(&s->world);
+//   ob_world_sphere(&s->world, 1, .5, ob_v3(0, 0, 2)).passport->restitution = 1;
 //   little_universe l;
 //   little_open(&l, s);
 //   little_run(&l, 120);
@@ -17,29 +17,20 @@
 
 #include "measure/measure.h"
 #include "sim/sim.h"
+#include "world/world.h"
 
 enum { LITTLE_MOST = 2048 }; // objects
 
-typedef struct little_object {
-	ob_passport passport;
-	ob_state state;
-} little_object;
-
+// Bodies are built with ob_world_box(&s->world, ...) and its like, at most LITTLE_MOST: what they return stays valid.
 typedef struct little_scene {
-	ob_run_settings run; // the program's own, but no sleeping
-	uint32_t objects, capacity; // capacity 0: as many as there are objects
-	little_object object[LITTLE_MOST];
+	ob_run_settings run; // the program's own, but no sleeping; its gravity is what counts
+	uint32_t capacity; // 0: as many as there are objects
+	ob_world world;
+	ob_passport passport[LITTLE_MOST]; // the world's
+	ob_state state[LITTLE_MOST];
 } little_scene;
 
 little_scene *little_scene_new(void); // free() it
-
-// Each returns the new object, to be changed at will; friction is .5, restitution 0. mass 0 (kg): static.
-little_object *little_add(little_scene *s, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p);
-little_object *little_ground(little_scene *s);
-little_object *little_sphere(little_scene *s, double mass, double radius, ob_vec3 p);
-little_object *little_box(little_scene *s, double mass, ob_vec3 half, ob_vec3 p);
-// A stack of unit cubes of 1000 kg on a ground, each up to 10 mm off the axis.
-void little_stack(little_scene *s, int n, uint64_t seed);
 
 typedef struct little_universe {
 	const little_scene *scene;

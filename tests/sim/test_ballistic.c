@@ -13,10 +13,10 @@ enum { STEPS = 90 };
 static little_scene *thrown(uint64_t *seed, bool balls, double room)
 {
 	little_scene *s = little_scene_new();
-	little_ground(s);
-	little_object *wall = little_ground(s);
-	wall->state.pose.p.x = -room - 1;
-	wall->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, acos(0), 0));
+	ob_world_ground(&s->world);
+	ob_world_body wall = ob_world_ground(&s->world);
+	wall.state->pose.p.x = -room - 1;
+	wall.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, acos(0), 0));
 	int bodies = 2 + (int)within(seed, 0, 4);
 	double e = uniform(seed) < .3 ? 1 : within(seed, 0, 1);
 	for (int i = 0; i < bodies; i++) {
@@ -24,11 +24,11 @@ static little_scene *thrown(uint64_t *seed, bool balls, double room)
 		double x = within(seed, -room, room), y = within(seed, -room, room);
 		ob_vec3 p = ob_v3(x, y, 1.5 + 1.2 * i);
 		bool ball = balls || uniform(seed) < .3;
-		little_object *o = ball ? little_sphere(s, 1 + a, a, p) : little_box(s, 1 + a, ob_v3(a, b, c), p);
-		o->passport.restitution = e;
-		o->state.v = random_vector(seed, 4);
-		o->state.w = random_vector(seed, 4);
-		o->state.pose.q = random_attitude(seed);
+		ob_world_body o = ball ? ob_world_sphere(&s->world, 1 + a, a, p) : ob_world_box(&s->world, 1 + a, ob_v3(a, b, c), p);
+		o.passport->restitution = e;
+		o.state->v = random_vector(seed, 4);
+		o.state->w = random_vector(seed, 4);
+		o.state->pose.q = random_attitude(seed);
 	}
 	return s;
 }
@@ -81,8 +81,8 @@ static void test_balls(void)
 	uint64_t seed = 21, visits = 0, called = 0;
 	for (int k = 0; k < 60; k++) {
 		little_scene *s = thrown(&seed, true, 1);
-		for (uint32_t i = 2; i < s->objects; i++) // far from each other
-			s->object[i].state.pose.p.y = 30 * i;
+		for (uint32_t i = 2; i < s->world.objects; i++) // far from each other
+			s->world.state[i].pose.p.y = 30 * i;
 		outcome by_itself = play(s, false), each_step = play(s, true);
 		CHECK(by_itself.hash == each_step.hash);
 		visits += by_itself.advances;
@@ -118,11 +118,11 @@ static void test_new_plane(void)
 {
 	little_scene *s = little_scene_new();
 	s->capacity = 2;
-	little_sphere(s, 1, .5, ob_v3(0, 0, 10));
+	ob_world_sphere(&s->world, 1, .5, ob_v3(0, 0, 10));
 	little_universe l;
 	little_open(&l, s);
 	little_run(&l, 5);
-	little_ground(s)->state.pose.p.z = 8;
+	ob_world_ground(&s->world).state->pose.p.z = 8;
 	little_put(&l, 1);
 	little_run(&l, 120);
 	CHECK_NEAR(little_state(&l, 0).pose.p.z, 8.5, 1e-3);
@@ -138,10 +138,10 @@ static void test_low_hops(void)
 		little_scene *s = little_scene_new();
 		s->run.tolerance = 1e-3;
 		s->run.sleeping = true;
-		little_ground(s)->passport.restitution = .8;
-		little_object *o = little_box(s, 1, ob_v3(within(&seed, .1, .4), .2, .3), ob_v3(0, 0, .7));
-		o->state.pose.q = random_attitude(&seed);
-		o->state.v = random_vector(&seed, 1);
+		ob_world_ground(&s->world).passport->restitution = .8;
+		ob_world_body o = ob_world_box(&s->world, 1, ob_v3(within(&seed, .1, .4), .2, .3), ob_v3(0, 0, .7));
+		o.state->pose.q = random_attitude(&seed);
+		o.state->v = random_vector(&seed, 1);
 		little_universe l;
 		little_open(&l, s);
 		const ob_step_data *ex = ob_universe_step_data(l.u);

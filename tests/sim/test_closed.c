@@ -13,12 +13,12 @@ static void add_body(little_scene *s, uint64_t *seed, ob_vec3 p, double e)
 {
 	double mass = pow(10, within(seed, -1, 1)), x = within(seed, .1, .3), y = within(seed, .1, .3);
 	ob_vec3 half = ob_v3(x, y, within(seed, .1, .3));
-	little_object *o = uniform(seed) < .4 ? little_sphere(s, mass, x, p) : little_box(s, mass, half, p);
-	o->passport.friction = within(seed, 0, 1);
-	o->passport.restitution = e;
-	o->state.pose.q = random_attitude(seed);
-	o->state.v = ob_madd(random_vector(seed, .5), -within(seed, .3, 1.5), p);
-	o->state.w = random_vector(seed, 3);
+	ob_world_body o = uniform(seed) < .4 ? ob_world_sphere(&s->world, mass, x, p) : ob_world_box(&s->world, mass, half, p);
+	o.passport->friction = within(seed, 0, 1);
+	o.passport->restitution = e;
+	o.state->pose.q = random_attitude(seed);
+	o.state->v = ob_madd(random_vector(seed, .5), -within(seed, .3, 1.5), p);
+	o.state->w = random_vector(seed, 3);
 }
 
 // Bodies in a loose grid, moving towards its middle.
@@ -40,8 +40,8 @@ static little_scene *closed_scene(uint64_t seed, ob_solver_kind solver)
 static double sum_of_momenta(const little_scene *s)
 {
 	double sum = 0;
-	for (uint32_t i = 0; i < s->objects; i++)
-		sum += s->object[i].passport.mass * ob_norm(s->object[i].state.v);
+	for (uint32_t i = 0; i < s->world.objects; i++)
+		sum += s->world.passport[i].mass * ob_norm(s->world.state[i].v);
 	return sum;
 }
 
@@ -66,7 +66,7 @@ static void check_scene(uint64_t seed, ob_solver_kind solver)
 	CHECK(gained <= 1e-9);
 	if (lost > 1e-12 || gained > 1e-9 || !met)
 		printf("seed %lu: %u bodies, e %g: momentum off by %.1e, energy grows by %.1e in step %d\n",
-		       (unsigned long)seed, s->objects, s->object[0].passport.restitution, lost, gained, when);
+		       (unsigned long)seed, s->world.objects, s->world.passport[0].restitution, lost, gained, when);
 	little_close(&l);
 	free(s);
 }

@@ -38,9 +38,9 @@ static growth watch(little_scene *s, double seconds, double scale)
 static void test_recovery(void)
 {
 	little_scene *s = little_scene_new();
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int i = 0; i < 5; i++)
-		little_box(s, 1000, ob_v3(.5, .5, .5), ob_v3(0, 0, .495 + .995 * i));
+		ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5), ob_v3(0, 0, .495 + .995 * i));
 	double deep = .005 - .0001, raised = 1000 * 9.81 * deep * (1 + 2 + 3 + 4 + 5);
 	growth g = watch(s, 2, 1000 * 9.81 * 12.5);
 	printf("recovery: %.1f J of %.1f J, net growth %.1e\n", g.recovered, raised, g.net);
@@ -55,9 +55,10 @@ static little_scene *stack(int n, double ratio, uint32_t substeps)
 {
 	little_scene *s = little_scene_new();
 	s->run.substeps = substeps;
-	little_stack(s, n, 7);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, n, ob_v3(0, 0, 0), 7);
 	if (ratio > 0)
-		little_box(s, 1000 * ratio, ob_v3(.5, .5, .5), ob_v3(.005, .005, n + .5));
+		ob_world_box(&s->world, 1000 * ratio, ob_v3(.5, .5, .5), ob_v3(.005, .005, n + .5));
 	return s;
 }
 
@@ -65,10 +66,10 @@ static little_scene *pyramid(int rows, uint32_t substeps)
 {
 	little_scene *s = little_scene_new();
 	s->run.substeps = substeps;
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int row = 0; row < rows; row++)
 		for (int i = 0; i < rows - row; i++)
-			little_box(s, 1000, ob_v3(.5, .5, .5), ob_v3(0, 1.05 * (i - .5 * (rows - row - 1)), .5 + row));
+			ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5), ob_v3(0, 1.05 * (i - .5 * (rows - row - 1)), .5 + row));
 	return s;
 }
 

@@ -33,7 +33,7 @@ static outcome watch(little_scene *s, double duration)
 		o.worst = fmax(o.worst, little_penetration(&l).max_m);
 	}
 	ob_universe_count(l.u, &o.count);
-	o.top = little_state(&l, s->objects - 1);
+	o.top = little_state(&l, s->world.objects - 1);
 	little_close(&l);
 	free(s);
 	return o;
@@ -50,7 +50,8 @@ static void check_kept(const outcome *o, double tolerance)
 static void test_stack(double tolerance)
 {
 	little_scene *s = tolerant(tolerance);
-	little_stack(s, 10, 1);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 10, ob_v3(0, 0, 0), 1);
 	outcome o = watch(s, 5);
 	check_kept(&o, tolerance);
 	CHECK_NEAR(o.top.pose.p.z, 9.5, 10 * tolerance);
@@ -59,9 +60,9 @@ static void test_stack(double tolerance)
 static void test_heavy_on_light(double tolerance)
 {
 	little_scene *s = tolerant(tolerance);
-	little_ground(s);
-	little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
-	little_box(s, 100, ob_v3(.5, .5, .5), ob_v3(0, 0, 1.5));
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
+	ob_world_box(&s->world, 100, ob_v3(.5, .5, .5), ob_v3(0, 0, 1.5));
 	outcome o = watch(s, 3);
 	check_kept(&o, tolerance);
 }
@@ -71,11 +72,11 @@ static outcome heap(double tolerance)
 {
 	uint64_t seed = 3;
 	little_scene *s = tolerant(tolerance);
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int i = 0; i < 12; i++) {
 		ob_vec3 half = ob_add(ob_v3(.3, .3, .3), random_vector(&seed, .15));
-		little_object *o = little_box(s, 50, half, ob_v3(.3 * (i % 2), .2 * (i % 3), 1.5 + 1.3 * i));
-		o->state.pose.q = random_attitude(&seed);
+		ob_world_body o = ob_world_box(&s->world, 50, half, ob_v3(.3 * (i % 2), .2 * (i % 3), 1.5 + 1.3 * i));
+		o.state->pose.q = random_attitude(&seed);
 	}
 	return watch(s, 4);
 }
@@ -99,14 +100,14 @@ static void test_columns(void)
 	for (uint64_t seed = 1; seed <= 12; seed++) {
 		uint64_t random = seed;
 		little_scene *s = tolerant(5e-3);
-		little_ground(s);
+		ob_world_ground(&s->world);
 		for (int i = 0; i < 60; i++) {
 			double a = within(&random, .1, .5), b = within(&random, .1, .5), c = within(&random, .1, .5);
 			ob_vec3 p =
 				ob_v3(1.8 * (i / 4 % 4), 1.8 * (i / 16), 3 + 2 * (i % 4) + within(&random, 0, .2));
-			little_object *o = little_box(s, 8000 * a * b * c, ob_v3(a, b, c), p);
+			ob_world_body o = ob_world_box(&s->world, 8000 * a * b * c, ob_v3(a, b, c), p);
 			ob_vec3 turn = random_vector(&random, 2);
-			o->state.pose.q = ob_quat_turn(ob_quat_identity(), turn);
+			o.state->pose.q = ob_quat_turn(ob_quat_identity(), turn);
 		}
 		outcome o = watch(s, 3);
 		CHECK(o.worst <= 5e-3);
@@ -117,8 +118,8 @@ static void test_rebounds(void)
 {
 	const double tolerance = .5e-3, e = .8, g = 9.81, drop = 1;
 	little_scene *s = tolerant(tolerance);
-	little_ground(s)->passport.restitution = e;
-	little_sphere(s, 1, .1, ob_v3(0, 0, .1 + drop));
+	ob_world_ground(&s->world).passport->restitution = e;
+	ob_world_sphere(&s->world, 1, .1, ob_v3(0, 0, .1 + drop));
 	little_universe l;
 	little_open(&l, s);
 	double fall = sqrt(2 * drop / g), at = fall; // s, of each hit
@@ -139,8 +140,8 @@ static void test_rebounds(void)
 static void test_rest_is_cheap(void)
 {
 	little_scene *s = tolerant(.5e-3);
-	little_ground(s);
-	little_box(s, 10, ob_v3(.5, .4, .3), ob_v3(0, 0, 1))->state.w = ob_v3(1, 2, 0);
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, 10, ob_v3(.5, .4, .3), ob_v3(0, 0, 1)).state->w = ob_v3(1, 2, 0);
 	little_universe l;
 	ob_counters before, after;
 	little_open(&l, s);
@@ -164,9 +165,9 @@ static uint64_t hash(ob_integrator integrator, bool fresh)
 	little_universe l;
 	ob_error e;
 	s->run.integrator = integrator;
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int i = 0; i < 6; i++)
-		little_box(s, 5 + i, ob_v3(.3, .2, .25), ob_v3(.1 * i, 0, .5 + .7 * i))->state.pose.q =
+		ob_world_box(&s->world, 5 + i, ob_v3(.3, .2, .25), ob_v3(.1 * i, 0, .5 + .7 * i)).state->pose.q =
 			random_attitude(&seed);
 	little_open(&l, s);
 	for (int step = 0; step < 120; step++) {

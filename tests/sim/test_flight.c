@@ -14,9 +14,9 @@ static little_scene *thrown_box(ob_integrator integrator, uint32_t substeps)
 	little_scene *s = little_scene_new();
 	s->run.integrator = integrator;
 	s->run.substeps = substeps;
-	little_object *o = little_box(s, 48, ob_v3(.3, .2, .1), ob_v3(1, 2, 50));
-	o->state.v = ob_v3(3, -2, 4);
-	o->state.w = ob_v3(1, 5, .2);
+	ob_world_body o = ob_world_box(&s->world, 48, ob_v3(.3, .2, .1), ob_v3(1, 2, 50));
+	o.state->v = ob_v3(3, -2, 4);
+	o.state->w = ob_v3(1, 5, .2);
 	return s;
 }
 
@@ -45,7 +45,7 @@ static void test_exact(void)
 	double energy = little_energy(&l);
 	CHECK(thrown.flags & OB_MOTION_FREE);
 	little_run_to(&l, 2);
-	ob_state at = little_state(&l, 0), closed = ob_motion_at(&thrown, s->object[0].passport.inertia, 2);
+	ob_state at = little_state(&l, 0), closed = ob_motion_at(&thrown, s->world.passport[0].inertia, 2);
 	CHECK_NEAR(ob_norm(ob_sub(at.pose.p, closed.pose.p)), 0, 1e-12);
 	CHECK_NEAR(ob_norm(ob_sub(at.v, ob_v3(3, -2, 4 - 2 * g))), 0, 1e-12);
 	ob_quat p = at.pose.q, q = closed.pose.q;
@@ -83,9 +83,9 @@ static void test_alone_or_not(void)
 		little_run_to(&l, 2);
 		end[k] = little_state(&l, 0);
 		little_close(&l);
-		little_ground(s)->state.pose.p.z = -100;
+		ob_world_ground(&s->world).state->pose.p.z = -100;
 		for (int i = 0; i < 30; i++)
-			little_sphere(s, 1, .5, ob_v3(20 + .9 * i, 0, -99.5));
+			ob_world_sphere(&s->world, 1, .5, ob_v3(20 + .9 * i, 0, -99.5));
 	}
 	CHECK(end[0].pose.p.x == end[1].pose.p.x && end[0].pose.p.z == end[1].pose.p.z);
 	CHECK(end[0].pose.q.w == end[1].pose.q.w && end[0].w.x == end[1].w.x);
@@ -101,8 +101,8 @@ static void test_new_flights(void)
 		little_universe l;
 		little_open(&l, s);
 		little_run(&l, steps);
-		s->object[0].state.v = ob_v3(-1, 1, 9);
-		s->object[0].state.w = ob_v3(0, 0, 2);
+		s->world.state[0].v = ob_v3(-1, 1, 9);
+		s->world.state[0].w = ob_v3(0, 0, 2);
 		little_put(&l, 0);
 		little_run(&l, 60);
 		ob_state at = little_state(&l, 0);
@@ -122,7 +122,7 @@ static void test_long(void)
 	little_open(&l, s);
 	ob_motion thrown = l.now.motion[0];
 	little_run_to(&l, 600);
-	ob_state at = little_state(&l, 0), closed = ob_motion_at(&thrown, s->object[0].passport.inertia, 600);
+	ob_state at = little_state(&l, 0), closed = ob_motion_at(&thrown, s->world.passport[0].inertia, 600);
 	CHECK_NEAR(ob_norm(ob_sub(at.pose.p, closed.pose.p)), 0, 0);
 	CHECK(at.pose.q.w == closed.pose.q.w && at.pose.q.x == closed.pose.q.x && at.w.y == closed.w.y);
 	little_close(&l);

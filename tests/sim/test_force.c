@@ -14,9 +14,9 @@ static double flight_error(ob_integrator integrator, uint32_t monolith)
 	s->run.monolith = monolith;
 	if (monolith)
 		s->run.iterations = OB_DEFAULT_MONOLITH_ITERATIONS;
-	little_object *o = little_box(s, 4, ob_v3(.3, .2, .1), ob_v3(0, 0, 100));
-	o->passport.force = ob_v3(6, -2, 4 * g + 8);
-	o->state.v = ob_v3(1, 0, 0);
+	ob_world_body o = ob_world_box(&s->world, 4, ob_v3(.3, .2, .1), ob_v3(0, 0, 100));
+	o.passport->force = ob_v3(6, -2, 4 * g + 8);
+	o.state->v = ob_v3(1, 0, 0);
 	little_universe l;
 	little_open(&l, s);
 	double energy = little_energy(&l);
@@ -50,8 +50,8 @@ static ob_state pushed(double force, ob_integrator integrator, uint32_t monolith
 	if (monolith)
 		s->run.iterations = OB_DEFAULT_MONOLITH_ITERATIONS;
 	s->run.sleeping = 1;
-	little_ground(s);
-	little_box(s, 2, ob_v3(.5, .5, .25), ob_v3(0, 0, .25))->passport.force = ob_v3(.6 * force, .8 * force, 0);
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, 2, ob_v3(.5, .5, .25), ob_v3(0, 0, .25)).passport->force = ob_v3(.6 * force, .8 * force, 0);
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 2);
@@ -87,8 +87,8 @@ static void test_against_gravity(void)
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
 	s->run.sleeping = 1;
-	little_box(s, 0, ob_v3(5, 5, .5), ob_v3(0, 0, 2));
-	little_box(s, 1, ob_v3(.25, .25, .25), ob_v3(0, 0, 0))->passport.force = ob_v3(0, 0, 50);
+	ob_world_box(&s->world, 0, ob_v3(5, 5, .5), ob_v3(0, 0, 2));
+	ob_world_box(&s->world, 1, ob_v3(.25, .25, .25), ob_v3(0, 0, 0)).passport->force = ob_v3(0, 0, 50);
 	little_universe l;
 	little_open(&l, s);
 	double energy = little_energy(&l);

@@ -31,10 +31,10 @@ static void test_slip_to_roll(void)
 {
 	const double v = 7, mu = .2, h = 1. / 60;
 	little_scene *s = little_scene_new();
-	little_ground(s)->passport.friction = mu;
-	little_object *o = little_sphere(s, 10, .5, ob_v3(0, 0, .5));
-	o->passport.friction = mu;
-	o->state.v.x = v;
+	ob_world_ground(&s->world).passport->friction = mu;
+	ob_world_body o = ob_world_sphere(&s->world, 10, .5, ob_v3(0, 0, .5));
+	o.passport->friction = mu;
+	o.state->v.x = v;
 	little_universe l;
 	little_open(&l, s);
 	double t = 0, slip = v, before = v, now = v;
@@ -69,16 +69,16 @@ static void ball_on_incline(double share)
 	double a = ob_reference_ball_incline(g, angle, mu);
 	little_scene *s = little_scene_new();
 	slope i = incline(angle);
-	little_object *o = little_ground(s);
-	o->state.pose.q = i.q;
-	o->passport.friction = mu;
-	o = little_sphere(s, 10, .5, ob_scale(i.normal, .5));
-	o->passport.friction = mu;
+	ob_world_body o = ob_world_ground(&s->world);
+	o.state->pose.q = i.q;
+	o.passport->friction = mu;
+	o = ob_world_sphere(&s->world, 10, .5, ob_scale(i.normal, .5));
+	o.passport->friction = mu;
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, time);
 	ob_state b = little_state(&l, 1);
-	double v = ob_dot(i.down, b.v), way = ob_dot(i.down, ob_sub(b.pose.p, o->state.pose.p));
+	double v = ob_dot(i.down, b.v), way = ob_dot(i.down, ob_sub(b.pose.p, o.state->pose.p));
 	printf("ball on incline, %g of the friction: speed off by %.2e, way by %.2e\n", share, v / (a * time) - 1,
 	       way / (.5 * a * time * time) - 1);
 	CHECK_NEAR(v / (a * time), 1, .001);
@@ -106,12 +106,12 @@ static little_scene *pushed_box(ob_vec3 direction)
 {
 	little_scene *s = little_scene_new();
 	s->run.substeps = 1;
-	little_ground(s)->passport.friction = .2; // with the box's .8: .4
-	little_object *box = little_box(s, 10, ob_v3(10, 10, .5), ob_v3(0, 0, .5 - 2e-5));
-	box->passport.friction = .8;
-	box->passport.force = ob_scale(direction, push);
+	ob_world_ground(&s->world).passport->friction = .2; // with the box's .8: .4
+	ob_world_body box = ob_world_box(&s->world, 10, ob_v3(10, 10, .5), ob_v3(0, 0, .5 - 2e-5));
+	box.passport->friction = .8;
+	box.passport->force = ob_scale(direction, push);
 	for (int i = 0; i < BALLS; i++)
-		little_sphere(s, 1, .5, ob_v3(2 * (i / 5) - 4, 2 * (i % 5) - 4, 1.5 - 6e-5))->passport.friction = .8;
+		ob_world_sphere(&s->world, 1, .5, ob_v3(2 * (i / 5) - 4, 2 * (i % 5) - 4, 1.5 - 6e-5)).passport->friction = .8;
 	return s;
 }
 

@@ -18,10 +18,10 @@ static outcome hit(uint32_t solver, uint32_t lag, bool boxes, double ratio, doub
 	for (int i = 0; i < 2; i++) {
 		ob_vec3 at = ob_v3(1.537 * i, 0, 0);
 		double mass = i ? ratio : 1;
-		little_object *o = boxes ? little_box(s, mass, ob_v3(.5, .5, .5), at) : little_sphere(s, mass, .5, at);
-		o->passport.restitution = e;
+		ob_world_body o = boxes ? ob_world_box(&s->world, mass, ob_v3(.5, .5, .5), at) : ob_world_sphere(&s->world, mass, .5, at);
+		o.passport->restitution = e;
 	}
-	s->object[0].state.v = ob_v3(1, 0, 0);
+	s->world.state[0].v = ob_v3(1, 0, 0);
 	little_universe l;
 	little_open(&l, s);
 	little_run(&l, 0);
@@ -75,8 +75,8 @@ static void grounds_are_ghosts(void)
 	for (uint32_t solver = OB_SOLVER_GHOST; solver <= OB_SOLVER_LAGGED; solver++) {
 		little_scene *s = little_scene_new();
 		s->run.solver = solver;
-		little_ground(s);
-		little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
+		ob_world_ground(&s->world);
+		ob_world_box(&s->world, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
 		little_universe l;
 		little_open(&l, s);
 		little_run(&l, 60);
@@ -92,7 +92,8 @@ static void stacks_run_on(void)
 	for (uint32_t solver = OB_SOLVER_GHOST; solver <= OB_SOLVER_LAGGED; solver++) {
 		little_scene *s = little_scene_new();
 		s->run.solver = solver;
-		little_stack(s, 3, 1);
+		ob_world_ground(&s->world);
+		ob_world_stack(&s->world, 3, ob_v3(0, 0, 0), 1);
 		little_universe l;
 		little_open(&l, s);
 		little_run(&l, 120);

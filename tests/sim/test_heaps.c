@@ -12,13 +12,13 @@ static void test_pile(double e)
 	uint64_t seed = 1;
 	little_scene *s = little_scene_new();
 	s->run.tolerance = 1e-3; // as the program's own settings have it
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int i = 0; i < 216; i++) {
 		ob_vec3 p = ob_v3((i % 6 - 2.5) * .75, (i / 6 % 6 - 2.5) * .75, .75 + .8 * (i / 36));
 		ob_vec3 off = random_vector(&seed, .05), turn = random_vector(&seed, .15);
-		little_object *o = little_box(s, 1, ob_v3(.25, .25, .25), ob_add(p, off));
-		o->passport.restitution = e;
-		o->state.pose.q = ob_quat_turn(ob_quat_identity(), turn);
+		ob_world_body o = ob_world_box(&s->world, 1, ob_v3(.25, .25, .25), ob_add(p, off));
+		o.passport->restitution = e;
+		o.state->pose.q = ob_quat_turn(ob_quat_identity(), turn);
 	}
 	little_universe l;
 	little_open(&l, s);
@@ -41,7 +41,7 @@ static void test_landings(void)
 {
 	uint64_t seed = 17;
 	little_scene *s = little_scene_new();
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int column = 0; column < 250; column++) {
 		double z = 1;
 		for (int i = 0; i < 4; i++) {
@@ -49,8 +49,8 @@ static void test_landings(void)
 			double x = within(&seed, .1, .5), y = within(&seed, .1, .5);
 			ob_vec3 half = ob_v3(x, y, within(&seed, .1, .5));
 			ob_vec3 p = ob_v3((column % 16 - 7.5) * 1.8, (column / 16 - 7.5) * 1.8, z);
-			little_object *o = little_box(s, 8000 * half.x * half.y * half.z, half, p);
-			o->state.pose.q = random_attitude(&seed);
+			ob_world_body o = ob_world_box(&s->world, 8000 * half.x * half.y * half.z, half, p);
+			o.state->pose.q = random_attitude(&seed);
 		}
 	}
 	little_universe l;

@@ -14,10 +14,10 @@ static void stand(ob_solver_kind solver, double platform_mass, double limit)
 {
 	little_scene *s = little_scene_new();
 	s->run.solver = solver;
-	little_ground(s);
-	little_box(s, platform_mass, ob_v3(6, 6, .5), ob_v3(0, 0, .5));
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, platform_mass, ob_v3(6, 6, .5), ob_v3(0, 0, .5));
 	for (int i = 0; i < BOXES; i++)
-		little_box(s, 100, ob_v3(.4, .4, .4), ob_v3(i % SIDE - 4.5, i / SIDE - 4.5, 1.45 + .01 * (i % 7)));
+		ob_world_box(&s->world, 100, ob_v3(.4, .4, .4), ob_v3(i % SIDE - 4.5, i / SIDE - 4.5, 1.45 + .01 * (i % 7)));
 	little_universe l;
 	little_open(&l, s);
 	double deepest = 0;
@@ -34,7 +34,7 @@ static void stand(ob_solver_kind solver, double platform_mass, double limit)
 	double off = 0, speed = 0;
 	for (uint32_t i = 2; i < 2 + BOXES; i++) {
 		ob_state at = little_state(&l, i);
-		ob_vec3 start = s->object[i].state.pose.p;
+		ob_vec3 start = s->world.state[i].pose.p;
 		off = fmax(off, ob_norm(ob_sub(at.pose.p, ob_v3(start.x, start.y, 1.4))));
 		speed = fmax(speed, ob_norm(at.v));
 	}

@@ -13,9 +13,9 @@ static void test_spaced_row(double speed)
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < 8; i++) {
-		little_object *o = little_sphere(s, 1, .1, ob_v3(.21 * i, 0, 0));
-		o->passport.restitution = 1;
-		o->state.v.x = i ? 0 : speed;
+		ob_world_body o = ob_world_sphere(&s->world, 1, .1, ob_v3(.21 * i, 0, 0));
+		o.passport->restitution = 1;
+		o.state->v.x = i ? 0 : speed;
 	}
 	little_universe l;
 	little_open(&l, s);
@@ -34,11 +34,11 @@ static void test_spaced_row(double speed)
 static void test_flat_box(double friction, double tilt)
 {
 	little_scene *s = little_scene_new();
-	little_ground(s);
-	little_object *o = little_box(s, 1, ob_v3(.5, .5, .05), ob_v3(0, 0, 1.05));
-	o->passport.restitution = 1;
-	o->passport.friction = friction;
-	o->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(tilt, .02, 0));
+	ob_world_ground(&s->world);
+	ob_world_body o = ob_world_box(&s->world, 1, ob_v3(.5, .5, .05), ob_v3(0, 0, 1.05));
+	o.passport->restitution = 1;
+	o.passport->friction = friction;
+	o.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(tilt, .02, 0));
 	little_universe l;
 	little_open(&l, s);
 	double before = little_energy(&l), most = 0, deepest = 0;
@@ -69,11 +69,11 @@ static collision collide(uint64_t *seed, double speed, uint32_t substeps)
 	s->run.substeps = substeps;
 	for (int i = 0; i < 2; i++) {
 		double side = i ? 1 : -1, x = within(seed, 3, 4), y = within(seed, -.025, .025);
-		little_object *o = little_box(s, 1, ob_v3(.1, .1, .1), ob_v3(side * x, y, within(seed, -.025, .025)));
-		o->passport.friction = .3;
-		o->state.pose.q = random_attitude(seed);
-		o->state.w = random_vector(seed, 1);
-		o->state.v.x = -side * speed;
+		ob_world_body o = ob_world_box(&s->world, 1, ob_v3(.1, .1, .1), ob_v3(side * x, y, within(seed, -.025, .025)));
+		o.passport->friction = .3;
+		o.state->pose.q = random_attitude(seed);
+		o.state->w = random_vector(seed, 1);
+		o.state->v.x = -side * speed;
 	}
 	little_universe l;
 	little_open(&l, s);

@@ -30,12 +30,12 @@ static bool is_plane(uint32_t id)
 }
 
 // Some corner of the box lies on or below the plane.
-static bool reaches_below(const little_object *plane, const float *b)
+static bool reaches_below(const ob_state *plane, const float *b)
 {
-	ob_mat3 r = ob_quat_matrix(ob_quat_normalize(plane->state.pose.q));
+	ob_mat3 r = ob_quat_matrix(ob_quat_normalize(plane->pose.q));
 	for (int k = 0; k < 8; k++) {
 		ob_vec3 corner = ob_v3(b[k & 1 ? 3 : 0], b[k & 2 ? 4 : 1], b[k & 4 ? 5 : 2]);
-		if (ob_dot(ob_column(&r, 2), ob_sub(corner, plane->state.pose.p)) <= 0)
+		if (ob_dot(ob_column(&r, 2), ob_sub(corner, plane->pose.p)) <= 0)
 			return true;
 	}
 	return false;
@@ -48,9 +48,9 @@ static bool neighbours(const ob_universe *u, const little_scene *s, uint32_t i, 
 	if (i == j || !there[i] || !there[j] || (is_plane(i) && is_plane(j)))
 		return false;
 	if (is_plane(i))
-		return reaches_below(&s->object[i], b);
+		return reaches_below(&s->world.state[i], b);
 	if (is_plane(j))
-		return reaches_below(&s->object[j], a);
+		return reaches_below(&s->world.state[j], a);
 	for (int c = 0; c < 3; c++)
 		if (a[c] > b[3 + c] || b[c] > a[3 + c])
 			return false;
@@ -86,11 +86,11 @@ static little_scene *scene(uint64_t *seed)
 {
 	little_scene *s = little_scene_new();
 	for (int i = 0; i < BODIES; i++)
-		little_sphere(s, 1, .1, ob_v3(0, 0, 0));
+		ob_world_sphere(&s->world, 1, .1, ob_v3(0, 0, 0));
 	for (int i = 0; i < PLANES; i++) {
-		little_object *o = little_ground(s);
-		o->state.pose.p = random_vector(seed, 1);
-		o->state.pose.q = i ? random_attitude(seed) : ob_quat_identity();
+		ob_world_body o = ob_world_ground(&s->world);
+		o.state->pose.p = random_vector(seed, 1);
+		o.state->pose.q = i ? random_attitude(seed) : ob_quat_identity();
 	}
 	return s;
 }
@@ -134,7 +134,7 @@ static void test_extremes(void)
 	enum { BOXES = sizeof box / sizeof box[0] };
 	little_scene *s = little_scene_new();
 	for (int i = 0; i < BOXES; i++)
-		little_sphere(s, 1, .1, ob_v3(0, 0, 0));
+		ob_world_sphere(&s->world, 1, .1, ob_v3(0, 0, 0));
 	ob_universe *u = little_populate(s, 1);
 	memset(there, 0, sizeof there);
 	for (uint32_t i = 0; i < BOXES; i++) {

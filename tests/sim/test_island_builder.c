@@ -201,7 +201,7 @@ int main(void)
 {
 	little_scene *s = little_scene_new();
 	for (int i = 0; i < BODIES; i++)
-		little_sphere(s, 1, .1, ob_v3(i, 0, 0));
+		ob_world_sphere(&s->world, 1, .1, ob_v3(i, 0, 0));
 	uint32_t largest = 0, smallest = UINT32_MAX;
 	for (uint32_t workers = 1; workers <= 3; workers += 2) {
 		ob_universe *u = little_populate(s, workers);

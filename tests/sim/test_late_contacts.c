@@ -20,11 +20,11 @@ static void test_row(void)
 	enum { SPHERES = 8 };
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
-	little_sphere(s, 1, .1, ob_v3(-3, 0, 0))->state.v = ob_v3(100, 0, 0);
+	ob_world_sphere(&s->world, 1, .1, ob_v3(-3, 0, 0)).state->v = ob_v3(100, 0, 0);
 	for (int i = 0; i < SPHERES; i++)
-		little_sphere(s, 1, .1, ob_v3(.21 * i, 0, 0));
-	for (uint32_t i = 0; i < s->objects; i++)
-		s->object[i].passport.restitution = 1;
+		ob_world_sphere(&s->world, 1, .1, ob_v3(.21 * i, 0, 0));
+	for (uint32_t i = 0; i < s->world.objects; i++)
+		s->world.passport[i].restitution = 1;
 	little_universe l;
 	little_open(&l, s);
 	little_run(&l, 6);
@@ -42,15 +42,15 @@ static void test_sleepers(void)
 {
 	little_scene *s = little_scene_new();
 	s->run.sleeping = 1;
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int i = 0; i < 4; i++)
-		little_sphere(s, 1, .1, ob_v3(.21 * i, 0, .1))->passport.friction = 0;
+		ob_world_sphere(&s->world, 1, .1, ob_v3(.21 * i, 0, .1)).passport->friction = 0;
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 2);
 	CHECK(little_asleep(&l, 1) && little_asleep(&l, 4));
-	s->object[1].state.pose.p = ob_v3(-3, 0, .1);
-	s->object[1].state.v = ob_v3(60, 0, 0);
+	s->world.state[1].pose.p = ob_v3(-3, 0, .1);
+	s->world.state[1].v = ob_v3(60, 0, 0);
 	little_take_away(&l, 1);
 	little_put(&l, 1);
 	little_run(&l, 6);
@@ -74,12 +74,12 @@ static void test_clouds(void)
 		s->run.gravity = ob_v3(0, 0, 0);
 		for (int i = 0; i < 27; i++) {
 			ob_vec3 p = ob_v3(.5 * (i % 3) - .5, .5 * (i / 3 % 3) - .5, .5 * (i / 9) - .5);
-			little_object *o =
-				i % 2 ? little_sphere(s, 1, .12, p) : little_box(s, 1, ob_v3(.12, .1, .08), p);
-			o->state.v = ob_scale(ob_v3(-p.x, -p.y, -p.z), within(&random, 10, 40));
-			o->state.w = ob_v3(within(&random, -9, 9), within(&random, -9, 9), within(&random, -9, 9));
-			o->passport.friction = .3;
-			o->passport.restitution = .3;
+			ob_world_body o =
+				i % 2 ? ob_world_sphere(&s->world, 1, .12, p) : ob_world_box(&s->world, 1, ob_v3(.12, .1, .08), p);
+			o.state->v = ob_scale(ob_v3(-p.x, -p.y, -p.z), within(&random, 10, 40));
+			o.state->w = ob_v3(within(&random, -9, 9), within(&random, -9, 9), within(&random, -9, 9));
+			o.passport->friction = .3;
+			o.passport->restitution = .3;
 		}
 		little_universe l;
 		little_open(&l, s);

@@ -17,9 +17,9 @@ static little_scene *neighbours(ob_narrow_phase narrow)
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
 	s->run.narrow_phase = narrow;
-	little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, 0));
-	little_object *turned = little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(.9, .9, 0));
-	turned->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, diagonal));
+	ob_world_box(&s->world, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, 0));
+	ob_world_body turned = ob_world_box(&s->world, 1, ob_v3(.5, .5, .5), ob_v3(.9, .9, 0));
+	turned.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, diagonal));
 	return s;
 }
 
@@ -62,10 +62,10 @@ static void test_on_the_ground(ob_narrow_phase narrow)
 {
 	little_scene *s = little_scene_new();
 	s->run.narrow_phase = narrow;
-	little_ground(s);
-	little_sphere(s, 1, .5, ob_v3(0, 0, 1));
-	little_object *edge = little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(3, 0, 1));
-	edge->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(.3, 0, 0));
+	ob_world_ground(&s->world);
+	ob_world_sphere(&s->world, 1, .5, ob_v3(0, 0, 1));
+	ob_world_body edge = ob_world_box(&s->world, 1, ob_v3(.5, .5, .5), ob_v3(3, 0, 1));
+	edge.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(.3, 0, 0));
 	little_universe l;
 	little_open(&l, s);
 	little_run(&l, 300);

@@ -24,7 +24,7 @@ static ob_universe *populate(void)
 {
 	little_scene *s = little_scene_new();
 	for (int i = 0; i < OBJECTS; i++)
-		little_box(s, 1 + i, ob_v3(.1, .1, .1), ob_v3(0, i, 1));
+		ob_world_box(&s->world, 1 + i, ob_v3(.1, .1, .1), ob_v3(0, i, 1));
 	ob_universe *u = little_populate(s, WORKERS);
 	free(s);
 	return u;

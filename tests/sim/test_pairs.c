@@ -16,9 +16,9 @@ static little_scene *scene(uint64_t *seed)
 	little_scene *s = little_scene_new();
 	for (int i = 0; i < BODIES; i++) {
 		double r = within(seed, .1, .5);
-		little_sphere(s, i < STATICS ? 0 : 1, r, random_vector(seed, 4));
+		ob_world_sphere(&s->world, i < STATICS ? 0 : 1, r, random_vector(seed, 4));
 	}
-	little_ground(s)->state.pose.p.z = -2;
+	ob_world_ground(&s->world).state->pose.p.z = -2;
 	return s;
 }
 
@@ -251,7 +251,7 @@ static void test_fat_aabb(void)
 {
 	const double r = .5, v = 3;
 	little_scene *s = little_scene_new();
-	little_sphere(s, 1, r, ob_v3(0, 0, 0))->state.v.x = v;
+	ob_world_sphere(&s->world, 1, r, ob_v3(0, 0, 0)).state->v.x = v;
 	s->run.gravity = ob_v3(0, 0, 0);
 	ob_universe *u = little_populate(s, 1);
 	const float *box = ob_universe_step_data(u)->bounds[0];
@@ -281,7 +281,7 @@ static void test_fat_aabb(void)
 static void test_column(void)
 {
 	little_scene *s = little_scene_new();
-	little_sphere(s, 1, .5, ob_v3(0, 0, 0));
+	ob_world_sphere(&s->world, 1, .5, ob_v3(0, 0, 0));
 	ob_universe *u = little_populate(s, 1);
 	float *box = ob_universe_step_data(u)->bounds[0];
 	box[5] = 10;

@@ -23,9 +23,9 @@ static void say_seed(void)
 
 static void add_wall(little_scene *s, ob_vec3 turn, ob_vec3 normal, double e)
 {
-	little_object *o = little_add(s, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_scale(normal, -half_room));
-	o->state.pose.q = ob_quat_turn(ob_quat_identity(), turn);
-	o->passport.restitution = e;
+	ob_world_body o = ob_world_add(&s->world, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_scale(normal, -half_room));
+	o.state->pose.q = ob_quat_turn(ob_quat_identity(), turn);
+	o.passport->restitution = e;
 }
 
 static void add_walls(little_scene *s, double e)
@@ -49,12 +49,12 @@ static void add_body(little_scene *s, uint64_t *seed, ob_vec3 p, double round, d
 {
 	double mass = pow(10, within(seed, -1, 1)), x = within(seed, .05, .25), y = within(seed, .05, .25);
 	ob_vec3 half = ob_v3(x, y, within(seed, .05, .25));
-	little_object *o = uniform(seed) < round ? little_sphere(s, mass, x, p) : little_box(s, mass, half, p);
-	o->passport.friction = within(seed, 0, 1);
-	o->passport.restitution = e;
-	o->state.pose.q = random_attitude(seed);
-	o->state.v = ob_madd(random_vector(seed, 2), -within(seed, 0, 2), p);
-	o->state.w = random_vector(seed, 5);
+	ob_world_body o = uniform(seed) < round ? ob_world_sphere(&s->world, mass, x, p) : ob_world_box(&s->world, mass, half, p);
+	o.passport->friction = within(seed, 0, 1);
+	o.passport->restitution = e;
+	o.state->pose.q = random_attitude(seed);
+	o.state->v = ob_madd(random_vector(seed, 2), -within(seed, 0, 2), p);
+	o.state->w = random_vector(seed, 5);
 }
 
 // Bodies in the cells of a grid
@@ -88,8 +88,8 @@ static double energy_to_lose(const little_universe *l)
 {
 	double sum = 0;
 	ob_vec3 g = l->scene->run.gravity;
-	for (uint32_t i = 0; i < l->scene->objects; i++)
-		sum += l->scene->object[i].passport.mass * ob_norm(g) * half_room;
+	for (uint32_t i = 0; i < l->scene->world.objects; i++)
+		sum += l->scene->world.passport[i].mass * ob_norm(g) * half_room;
 	return little_energy(l) + sum;
 }
 
@@ -101,10 +101,11 @@ static course follow(const little_scene *s)
 	little_open(&l, s);
 	double energy = little_energy(&l), all = 0, spin = 0, least = 0;
 	ob_vec3 p = ob_measure_momentum(&l.now), turn = ob_measure_angular_momentum(&l.now);
-	for (uint32_t i = 0; i < s->objects; i++) {
-		const little_object *o = &s->object[i];
-		all += o->passport.mass * ob_norm(o->state.v);
-		spin += o->passport.mass * ob_norm(o->state.v) * (1 + ob_norm(o->state.pose.p));
+	for (uint32_t i = 0; i < s->world.objects; i++) {
+		const ob_state *o = &s->world.state[i];
+		const double momentum = s->world.passport[i].mass * ob_norm(o->v);
+		all += momentum;
+		spin += momentum * (1 + ob_norm(o->pose.p));
 	}
 	c.scale = energy_to_lose(&l);
 	for (int step = 0; step < STEPS; step++) {

@@ -25,9 +25,10 @@ static void test_sleep(ob_solver_kind solver)
 	little_scene *s = little_scene_new();
 	s->run.sleeping = 1;
 	s->run.solver = solver;
-	little_stack(s, 5, 3);
-	little_object *thrown = little_box(s, 500, ob_v3(.3, .3, .3), ob_v3(-20, 0, 4.8));
-	thrown->state.v = ob_v3(5, 0, 19.62); // comes down on the top after 4 s
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 5, ob_v3(0, 0, 0), 3);
+	ob_world_body thrown = ob_world_box(&s->world, 500, ob_v3(.3, .3, .3), ob_v3(-20, 0, 4.8));
+	thrown.state->v = ob_v3(5, 0, 19.62); // comes down on the top after 4 s
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 3);
@@ -60,7 +61,8 @@ static void test_sleep(ob_solver_kind solver)
 static void test_no_sleep(void)
 {
 	little_scene *s = little_scene_new();
-	little_stack(s, 3, 4);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 3, ob_v3(0, 0, 0), 4);
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 5);
@@ -73,12 +75,12 @@ static void test_no_sleep(void)
 static void test_still(void)
 {
 	little_scene *s = little_scene_new();
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int i = 0; i < 4; i++)
-		little_box(s, 1, ob_v3(.5, .5, .5), ob_v3(3 * i, 0, .5));
-	little_sphere(s, 1, .2, ob_v3(-1, 0, .5))->state.v = ob_v3(.2, 0, 0); // at the first box after 1.5 s
-	s->object[5].passport.friction = 0;
-	s->object[5].state.pose.p.z = .2;
+		ob_world_box(&s->world, 1, ob_v3(.5, .5, .5), ob_v3(3 * i, 0, .5));
+	ob_world_sphere(&s->world, 1, .2, ob_v3(-1, 0, .5)).state->v = ob_v3(.2, 0, 0); // at the first box after 1.5 s
+	s->world.passport[5].friction = 0;
+	s->world.state[5].pose.p.z = .2;
 	little_universe l;
 	ob_counters before, after;
 	little_open(&l, s);
@@ -102,7 +104,8 @@ static void test_still(void)
 static void test_still_stack(void)
 {
 	little_scene *s = little_scene_new();
-	little_stack(s, 10, 4);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 10, ob_v3(0, 0, 0), 4);
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 3);
@@ -117,16 +120,16 @@ static void test_still_pyramid(uint32_t substeps)
 {
 	little_scene *s = little_scene_new();
 	s->run.substeps = substeps;
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int row = 0; row < 8; row++)
 		for (int i = 0; i < 8 - row; i++)
-			little_box(s, 1000, ob_v3(.5, .5, .5), ob_v3(0, 1.05 * (i - .5 * (7 - row)), .5 + row));
+			ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5), ob_v3(0, 1.05 * (i - .5 * (7 - row)), .5 + row));
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 3);
 	for (uint32_t i = 1; i <= 36; i++) {
 		CHECK(l.now.motion[i].flags & OB_MOTION_EQUILIBRIUM);
-		CHECK(ob_norm(ob_sub(little_state(&l, i).pose.p, s->object[i].state.pose.p)) < 2e-5);
+		CHECK(ob_norm(ob_sub(little_state(&l, i).pose.p, s->world.state[i].pose.p)) < 2e-5);
 	}
 	little_close(&l);
 	free(s);
@@ -137,7 +140,8 @@ static void test_support_removed(bool sleeping)
 {
 	little_scene *s = little_scene_new();
 	s->run.sleeping = sleeping;
-	little_stack(s, 3, 5);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 3, ob_v3(0, 0, 0), 5);
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 3);
@@ -162,12 +166,13 @@ static void test_support_removed(bool sleeping)
 static void test_added(void)
 {
 	little_scene *s = little_scene_new();
-	little_stack(s, 2, 6);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 2, ob_v3(0, 0, 0), 6);
 	s->capacity = 5;
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 1);
-	little_object *o = little_box(s, 1000, ob_v3(.5, .5, .5), ob_v3(0, 0, 3));
+	ob_world_body o = ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5), ob_v3(0, 0, 3));
 	little_put(&l, 3);
 	little_run_to(&l, 2);
 	CHECK(l.now.passport[3].flags & OB_OBJECT_PRESENT);
@@ -175,9 +180,9 @@ static void test_added(void)
 	CHECK_NEAR(little_state(&l, 2).pose.p.z, 1.5, .002);
 	little_take_away(&l, 3);
 	little_run_to(&l, 3);
-	o->passport.generation++;
-	o->passport.shape = OB_SHAPE_SPHERE;
-	o->state.pose.p = ob_v3(1.5, 0, 2);
+	o.passport->generation++;
+	o.passport->shape = OB_SHAPE_SPHERE;
+	o.state->pose.p = ob_v3(1.5, 0, 2);
 	little_put(&l, 3);
 	little_run_to(&l, 5);
 	CHECK_NEAR(little_state(&l, 3).pose.p.z, .5, .002);
@@ -198,10 +203,10 @@ static void test_round_shapes(void)
 	};
 	enum { BODIES = sizeof lies / sizeof lies[0] };
 	little_scene *s = little_scene_new();
-	little_ground(s);
+	ob_world_ground(&s->world);
 	for (int i = 0; i < BODIES; i++) {
-		little_object *o = little_add(s, lies[i].shape, ob_v3(.3, .5, 0), 100, ob_v3(0, 4 * i, 1));
-		o->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(lies[i].tilt, 0, 0));
+		ob_world_body o = ob_world_add(&s->world, lies[i].shape, ob_v3(.3, .5, 0), 100, ob_v3(0, 4 * i, 1));
+		o.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(lies[i].tilt, 0, 0));
 	}
 	little_universe l;
 	little_open(&l, s);
@@ -221,7 +226,8 @@ static void check_stack(ob_solver_kind solver, ob_integrator integrator, double 
 	little_scene *s = little_scene_new();
 	s->run.solver = solver;
 	s->run.integrator = integrator;
-	little_stack(s, 5, 8);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 5, ob_v3(0, 0, 0), 8);
 	little_universe l;
 	little_open(&l, s);
 	double deep = 0;
@@ -229,7 +235,7 @@ static void check_stack(ob_solver_kind solver, ob_integrator integrator, double 
 		little_run(&l, 1);
 		deep = fmax(deep, little_penetration(&l).max_m);
 	}
-	ob_vec3 moved = ob_sub(little_state(&l, 5).pose.p, s->object[5].state.pose.p);
+	ob_vec3 moved = ob_sub(little_state(&l, 5).pose.p, s->world.state[5].pose.p);
 	CHECK(ob_norm(moved) < .005);
 	CHECK(deep < deepest);
 	if (!(deep < deepest))

@@ -14,9 +14,9 @@ static little_scene *spinning_boxes(void)
 	little_scene *s = little_scene_new();
 	s->run.gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < BOXES; i++) {
-		little_object *o = little_box(s, 1, ob_v3(.3, .2, .1), ob_v3(.75 * i, 0, 0));
-		o->passport.inertia = order[i];
-		o->state.w = ob_v3(.05, 5, .02);
+		ob_world_body o = ob_world_box(&s->world, 1, ob_v3(.3, .2, .1), ob_v3(.75 * i, 0, 0));
+		o.passport->inertia = order[i];
+		o.state->w = ob_v3(.05, 5, .02);
 	}
 	return s;
 }
@@ -37,11 +37,11 @@ int main(void)
 	little_universe l;
 	little_open(&l, s);
 	for (int i = 0; i < BOXES; i++)
-		ob_reference_spin_plan(&exact[i], ob_quat_identity(), s->object[i].state.w, order[i]);
+		ob_reference_spin_plan(&exact[i], ob_quat_identity(), s->world.state[i].w, order[i]);
 	for (int step = 1; step <= 300 * 60; step++) {
 		little_run(&l, 1);
 		for (uint32_t i = 0; i < BOXES; i++) {
-			ob_state b = little_state(&l, i), start = s->object[i].state;
+			ob_state b = little_state(&l, i), start = s->world.state[i];
 			ob_vec3 m = momentum_of(&b, order[i]), m0 = momentum_of(&start, order[i]);
 			energy = fmax(energy, fabs(ob_dot(b.w, m) / ob_dot(start.w, m0) - 1));
 			momentum = fmax(momentum, ob_norm(ob_sub(m, m0)) / ob_norm(m0));

@@ -24,8 +24,8 @@ static outcome watch(little_scene *s, double seconds)
 		out.deepest = fmax(out.deepest, little_penetration(&l).max_m);
 		out.gained = fmax(out.gained, little_energy(&l) / energy - 1);
 	}
-	for (uint32_t i = 0; i < s->objects; i++) {
-		ob_vec3 moved = ob_sub(little_state(&l, i).pose.p, s->object[i].state.pose.p);
+	for (uint32_t i = 0; i < s->world.objects; i++) {
+		ob_vec3 moved = ob_sub(little_state(&l, i).pose.p, s->world.state[i].pose.p);
 		out.drift = fmax(out.drift, hypot(moved.x, moved.y));
 		out.sunk = fmax(out.sunk, -moved.z);
 		out.asleep |= little_asleep(&l, i);
@@ -39,7 +39,8 @@ static outcome watch(little_scene *s, double seconds)
 static void test_stack(int n)
 {
 	little_scene *s = little_scene_new();
-	little_stack(s, n, 7);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, n, ob_v3(0, 0, 0), 7);
 	outcome o = watch(s, 20);
 	printf("stack of %d: %.3f mm deep, drifts %.3f mm, energy gained %.1e\n", n, 1e3 * o.deepest, 1e3 * o.drift,
 	       o.gained);
@@ -54,8 +55,9 @@ static void test_stack(int n)
 static void test_heavy_on_light(int n, double ratio, double deepest)
 {
 	little_scene *s = little_scene_new();
-	little_stack(s, n, 7);
-	little_box(s, ratio * 1000, ob_v3(.5, .5, .5), ob_v3(.005, .005, n + .5));
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, n, ob_v3(0, 0, 0), 7);
+	ob_world_box(&s->world, ratio * 1000, ob_v3(.5, .5, .5), ob_v3(.005, .005, n + .5));
 	outcome o = watch(s, 10);
 	printf("%g:1 on %d: %.3f mm deep, drifts %.3f mm, energy gained %.1e\n", ratio, n, 1e3 * o.deepest,
 	       1e3 * o.drift, o.gained);
@@ -68,9 +70,10 @@ static void test_heavy_on_light(int n, double ratio, double deepest)
 static void test_rattled_stack(void)
 {
 	little_scene *s = little_scene_new();
-	little_stack(s, 20, 7);
+	ob_world_ground(&s->world);
+	ob_world_stack(&s->world, 20, ob_v3(0, 0, 0), 7);
 	for (uint32_t i = 1; i <= 20; i++)
-		s->object[i].state.pose.p.z += .01 * i;
+		s->world.state[i].pose.p.z += .01 * i;
 	outcome o = watch(s, 10);
 	printf("rattled stack of 20: %.3f mm deep at the end, drifts %.3f mm\n", 1e3 * o.deepest_end, 1e3 * o.drift);
 	CHECK(o.deepest_end <= .5e-3);
@@ -85,11 +88,11 @@ static void lay_bricks(little_scene *s, double stretch)
 {
 	const double height = 3, edge = 0, half = .125;
 	double end = edge;
-	little_ground(s);
-	little_box(s, 0, ob_v3(2, 1, .5 * height), ob_v3(edge - 2, 0, .5 * height));
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, 0, ob_v3(2, 1, .5 * height), ob_v3(edge - 2, 0, .5 * height));
 	for (int level = 0; level < BRICKS; level++) {
 		end += stretch * ob_reference_overhang_shift(BRICKS - level);
-		little_box(s, 100, ob_v3(.5, .25, half), ob_v3(end - .5, 0, height + half * (1 + 2 * level)));
+		ob_world_box(&s->world, 100, ob_v3(.5, .25, half), ob_v3(end - .5, 0, height + half * (1 + 2 * level)));
 	}
 }
 
@@ -102,8 +105,8 @@ static double bricks_moved(double stretch)
 	little_open(&l, s);
 	little_run_to(&l, 20);
 	double moved = 0;
-	for (uint32_t i = 2; i < s->objects; i++)
-		moved = fmax(moved, ob_norm(ob_sub(little_state(&l, i).pose.p, s->object[i].state.pose.p)));
+	for (uint32_t i = 2; i < s->world.objects; i++)
+		moved = fmax(moved, ob_norm(ob_sub(little_state(&l, i).pose.p, s->world.state[i].pose.p)));
 	little_close(&l);
 	free(s);
 	return moved;
@@ -129,7 +132,7 @@ static void lean_card(little_scene *s, double angle)
 	ob_mat3 r = ob_quat_matrix(q);
 	ob_vec3 foot = ob_v3(-side * length * sin(turn), 0, 0); // inner lower edge
 	ob_vec3 from_centre = ob_rotate(&r, ob_v3(.5 * side * thickness, 0, -.5 * length));
-	little_box(s, 1, ob_v3(.5 * thickness, .3, .5 * length), ob_sub(foot, from_centre))->state.pose.q = q;
+	ob_world_box(&s->world, 1, ob_v3(.5 * thickness, .3, .5 * length), ob_sub(foot, from_centre)).state->pose.q = q;
 }
 
 // How far any card has moved in so many seconds (m), with this friction between card and ground.
@@ -137,16 +140,16 @@ static double cards_moved(double angle, double mu, double time)
 {
 	const double rough = 1; // between the cards: holds any push up to 45 degrees
 	little_scene *s = little_scene_new();
-	little_ground(s)->passport.friction = mu * mu / rough;
+	ob_world_ground(&s->world).passport->friction = mu * mu / rough;
 	lean_card(s, angle);
 	lean_card(s, -angle);
-	s->object[1].passport.friction = s->object[2].passport.friction = rough;
+	s->world.passport[1].friction = s->world.passport[2].friction = rough;
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, time);
 	double moved = 0;
 	for (uint32_t i = 1; i <= 2; i++)
-		moved = fmax(moved, ob_norm(ob_sub(little_state(&l, i).pose.p, s->object[i].state.pose.p)));
+		moved = fmax(moved, ob_norm(ob_sub(little_state(&l, i).pose.p, s->world.state[i].pose.p)));
 	little_close(&l);
 	free(s);
 	return moved;

@@ -45,7 +45,7 @@ static uint64_t run(const little_scene *s, uint32_t workers, uint64_t steps)
 	ob_sim_resume(u);
 	CHECK(ob_gate_host_wait(u, 60));
 	CHECK(ob_step_count(u) == steps / 2);
-	ob_sim_remove(u, s->objects - 1);
+	ob_sim_remove(u, s->world.objects - 1);
 	ob_gate_set_pause_step(u, steps);
 	ob_sim_resume(u);
 	CHECK(ob_gate_host_wait(u, 60));
@@ -70,18 +70,18 @@ static little_scene *heap(ob_solver_kind solver, ob_integrator integrator)
 	s->run.solver = solver;
 	s->run.integrator = integrator;
 	s->run.sleeping = 1;
-	little_ground(s);
-	little_box(s, 0, ob_v3(1, 1, .3), ob_v3(0, 0, .3));
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, 0, ob_v3(1, 1, .3), ob_v3(0, 0, .3));
 	for (int i = 0; i < 40; i++) {
 		ob_vec3 p = random_vector(&seed, .1), half = random_vector(&seed, .1);
 		p = ob_add(p, ob_v3(i % 4 * 1.1 - 1.6, i / 4 % 4 * 1.1 - 1.6, 1.2 + i / 16 * 1.1));
-		little_object *o = i % 5 == 0 ? little_sphere(s, 10, .3, p)
-					      : little_box(s, 20, ob_add(ob_v3(.3, .3, .3), half), p);
-		o->passport.restitution = i % 3 ? 0 : .5;
-		o->state.pose.q = random_attitude(&seed);
+		ob_world_body o = i % 5 == 0 ? ob_world_sphere(&s->world, 10, .3, p)
+					      : ob_world_box(&s->world, 20, ob_add(ob_v3(.3, .3, .3), half), p);
+		o.passport->restitution = i % 3 ? 0 : .5;
+		o.state->pose.q = random_attitude(&seed);
 	}
-	little_add(s, OB_SHAPE_CAPSULE, ob_v3(.2, .3, 0), 10, ob_v3(0, 0, 5));
-	little_add(s, OB_SHAPE_CYLINDER, ob_v3(.3, .2, 0), 10, ob_v3(.2, .1, 6));
+	ob_world_add(&s->world, OB_SHAPE_CAPSULE, ob_v3(.2, .3, 0), 10, ob_v3(0, 0, 5));
+	ob_world_add(&s->world, OB_SHAPE_CYLINDER, ob_v3(.3, .2, 0), 10, ob_v3(.2, .1, 6));
 	return s;
 }
 
@@ -95,10 +95,10 @@ static void compare(ob_solver_kind solver, ob_integrator integrator, double tole
 	for (uint32_t workers = 2; workers <= 3; workers++)
 		CHECK(run(s, workers, steps) == one);
 	s->run.one_per_object = 1;
-	CHECK(run(s, s->objects, steps) == one);
+	CHECK(run(s, s->world.objects, steps) == one);
 	s->run.one_per_object = 0;
-	s->object[5].state.v.x += 1e-15; // a hash that does not see this says nothing
-	s->object[5].state.pose.p.x += 1e-15;
+	s->world.state[5].v.x += 1e-15; // a hash that does not see this says nothing
+	s->world.state[5].pose.p.x += 1e-15;
 	CHECK(run(s, 1, steps) != one);
 	free(s);
 }
