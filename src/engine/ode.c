@@ -6,9 +6,8 @@
 // - dWorldSetContactSurfaceLayer .001: the manual's own figure "to prevent jittering problems due to contacts being
 //   repeatedly made and broken";
 // - dWorldSetContactMaxCorrectingVel .1, as in the demonstration, against "popping" of what is deeply embedded;
-// - dWorldSetCFM 1e-5 per kg of the lightest body. The demonstration's 1e-5 is for bodies of about a kilogram, and
-// under
-//   a tonne it would give way by centimetres;
+// - dWorldSetCFM 1e-5 per kg of the lightest body. The demonstration's 1e-5 is for bodies of about a kilogram;
+//   under a tonne it would give way by centimetres;
 // - ERP .2, twenty iterations with an over-relaxation of 1.3, gyroscopic torques, and auto-disabling where sleeping is
 //   asked for: what the manual recommends is the default already.
 // What it recommends, but costs energy that bodies should keep, is left out: damping, and a soft contact. Its warm
