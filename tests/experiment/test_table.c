@@ -4,27 +4,8 @@
 #include <string.h>
 
 #include "check.h"
+#include "printed.h"
 #include "experiment/table.h"
-
-static char *text;
-static size_t length;
-
-static FILE *begin(void)
-{
-	FILE *f = open_memstream(&text, &length);
-	if (!f)
-		abort();
-	return f;
-}
-
-static void expect(FILE *f, const char *what)
-{
-	fclose(f);
-	if (strcmp(text, what) != 0)
-		fprintf(stderr, "printed:\n%s\ninstead of:\n%s\n", text, what);
-	CHECK(strcmp(text, what) == 0);
-	free(text);
-}
 
 static void test_forms(void)
 {

@@ -3,27 +3,8 @@
 #include <string.h>
 
 #include "check.h"
+#include "printed.h"
 #include "lab/tables.h"
-
-static char *text;
-static size_t length;
-
-static FILE *begin(void)
-{
-	FILE *f = open_memstream(&text, &length);
-	if (!f)
-		abort();
-	return f;
-}
-
-static void expect(FILE *f, const char *what)
-{
-	fclose(f);
-	if (strcmp(text, what) != 0)
-		fprintf(stderr, "printed:\n%s\ninstead of:\n%s\n", text, what);
-	CHECK(strcmp(text, what) == 0);
-	free(text);
-}
 
 static void expect_in(FILE *f, const char *const *what)
 {
@@ -40,7 +21,7 @@ static ob_result make(const char *name, const char *engine, double cost, double 
 {
 	ob_result r = { .of = ob_case_find(name), .engine = ob_engine_find(engine) };
 	r.settings = r.engine->usual;
-	ob_outcome o = { .cpu_s = cost, .wall_s = cost, .body_seconds = 1 };
+	ob_case_result o = { .cpu_s = cost, .wall_s = cost, .body_seconds = 1 };
 	for (uint32_t i = 0; i < r.of->figures; i++)
 		o.figure[i] = error * r.of->figure[i].target;
 	snprintf(o.failed, sizeof o.failed, "%s", failed);
