@@ -100,7 +100,7 @@ bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 bool bench_look(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 {
 	ob_case c = o->scene->of;
-	ob_outcome out;
+	ob_case_result out;
 	c.duration = o->duration;
 	if (!ob_case_run(&c, kind, &o->settings, &out, e))
 		return false;

@@ -56,12 +56,12 @@ const ob_case *ob_case_find(const char *name);
 // Runs all of a case's runs with one engine. false and e: the engine could not be made, or there is no memory.
 // A run ends early when it has failed. Where the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or
 // rad/s) all figures are infinite.
-typedef struct ob_outcome {
+typedef struct ob_case_result {
 	double figure[OB_FIGURES];
 	double cpu_s, wall_s; // of stepping alone
 	double body_seconds; // dynamic bodies times simulated time
 	char failed[96]; // "" = it did not
-} ob_outcome;
-bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_outcome *out, ob_error *e);
+} ob_case_result;
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out, ob_error *e);
 
 #endif

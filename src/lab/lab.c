@@ -106,7 +106,7 @@ static bool find_meaning(const char *of, const char *configuration, meaning *m, 
 static bool run(const ob_trial *t, ob_record *out, ob_error *e)
 {
 	meaning m;
-	ob_outcome o;
+	ob_case_result o;
 	if (!find_meaning(t->of, t->configuration, &m, e) || !ob_case_run(m.of, m.engine, &m.settings, &o, e))
 		return false;
 	out->metric[OB_LAB_CPU] = o.cpu_s;
@@ -246,10 +246,10 @@ bool ob_lab_schedule(const ob_lab_plan *p, ob_trials *to, ob_error *e)
 
 // ---- results
 
-static ob_outcome outcome_of(const ob_case *c, const ob_record *r)
+static ob_case_result outcome_of(const ob_case *c, const ob_record *r)
 {
 	bool measured = r->failure <= OB_FAILURE_OUTCOME;
-	ob_outcome o = { .cpu_s = measured ? r->metric[OB_LAB_CPU] : r->took_cpu_s,
+	ob_case_result o = { .cpu_s = measured ? r->metric[OB_LAB_CPU] : r->took_cpu_s,
 			 .wall_s = measured ? r->metric[OB_LAB_WALL] : r->took_s,
 			 .body_seconds = r->metric[OB_LAB_BODY_SECONDS] };
 	for (uint32_t i = 0; i < c->figures; i++)
@@ -268,7 +268,7 @@ bool ob_lab_results(const ob_records *from, ob_results *to, ob_error *e)
 		meaning m;
 		if (!find_meaning(r->of, r->configuration, &m, e))
 			return false;
-		ob_outcome o = outcome_of(m.of, r);
+		ob_case_result o = outcome_of(m.of, r);
 		ob_result one = { .of = m.of, .engine = m.engine, .settings = m.settings };
 		ob_result *of = ob_results_find(to, m.of, m.engine, &m.settings);
 		if (of) {

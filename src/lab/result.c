@@ -86,11 +86,11 @@ static double median(const double *value, size_t n)
 	return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
 }
 
-void ob_result_repeat(ob_result *r, const ob_outcome *again)
+void ob_result_repeat(ob_result *r, const ob_case_result *again)
 {
 	if (r->repeats == OB_REPEATS)
 		return;
-	ob_outcome *o = &r->outcome;
+	ob_case_result *o = &r->outcome;
 	r->cpu_s[r->repeats] = again->cpu_s;
 	r->wall_s[r->repeats++] = again->wall_s;
 	if (r->repeats == 1) {

@@ -10,7 +10,7 @@ typedef struct ob_result {
 	const ob_case *of;
 	const ob_engine_kind *engine;
 	ob_run_settings settings;
-	ob_outcome outcome; // medians of the repeats' times, and the worst of their figures
+	ob_case_result outcome; // medians of the repeats' times, and the worst of their figures
 	uint32_t repeats;
 	double cpu_s[OB_REPEATS], wall_s[OB_REPEATS]; // of each repeat
 } ob_result;
@@ -33,7 +33,7 @@ int ob_result_order(const ob_result *a, const ob_result *b);
 ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_run_settings *s);
 bool ob_results_add(ob_results *r, const ob_result *one); // at its place in the order; false: no memory
 // One more repeat of the same: medians and worst figures follow. No effect when there are OB_REPEATS already.
-void ob_result_repeat(ob_result *r, const ob_outcome *again);
+void ob_result_repeat(ob_result *r, const ob_case_result *again);
 void ob_results_finish(ob_results *r);
 
 // The cheapest cost (s of CPU per body and simulated second) at which an engine keeps figure 0 of a case at or below

@@ -42,7 +42,7 @@ static void take(ob_case_run_state *t, const ob_state *state)
 }
 
 // Runs to the end or to the first failure that the case or an insane state shows. Only stepping is timed.
-static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind *kind, ob_state *state, ob_outcome *out,
+static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind *kind, ob_state *state, ob_case_result *out,
 		  ob_error *e)
 {
 	const ob_case *c = t->of;
@@ -85,7 +85,7 @@ typedef struct tally {
 } tally;
 
 static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_run_settings *s,
-		ob_outcome *out, tally *failures, ob_error *e)
+		ob_case_result *out, tally *failures, ob_error *e)
 {
 	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
 	c->build(&w, number);
@@ -118,10 +118,10 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	return made;
 }
 
-bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_outcome *out, ob_error *e)
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out, ob_error *e)
 {
 	tally failures = { 0 };
-	*out = (ob_outcome){ 0 };
+	*out = (ob_case_result){ 0 };
 	for (uint32_t i = 0; i < c->runs; i++)
 		if (!run(c, i, kind, s, out, &failures, e))
 			return false;

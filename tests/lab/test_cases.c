@@ -32,9 +32,9 @@ static void test_metadata(const ob_case *c)
 	}
 }
 
-static ob_outcome outcome(const ob_case *c, const ob_engine_kind *kind)
+static ob_case_result outcome(const ob_case *c, const ob_engine_kind *kind)
 {
-	ob_outcome out;
+	ob_case_result out;
 	ob_error e = { "" };
 	ob_run_settings s = { .step_length = c->step, .substeps = 1, .iterations = 1 };
 	CHECK(ob_case_run(c, kind, &s, &out, &e));
@@ -42,7 +42,7 @@ static ob_outcome outcome(const ob_case *c, const ob_engine_kind *kind)
 }
 
 // All promised figures within their targets.
-static bool met(const ob_case *c, const ob_outcome *out)
+static bool met(const ob_case *c, const ob_case_result *out)
 {
 	for (uint32_t i = 0; i < c->figures; i++)
 		if (!isnan(c->figure[i].target) && !(out->figure[i] <= c->figure[i].target))
@@ -50,7 +50,7 @@ static bool met(const ob_case *c, const ob_outcome *out)
 	return !*out->failed;
 }
 
-static void print(const ob_case *c, const ob_engine_kind *kind, const ob_outcome *out)
+static void print(const ob_case *c, const ob_engine_kind *kind, const ob_case_result *out)
 {
 	fprintf(stderr, "%s, %s:", c->name, kind->name);
 	for (uint32_t i = 0; i < c->figures; i++)
@@ -110,7 +110,7 @@ static const expectation expected[] = {
 
 static void test_exact(const ob_case *c, const expectation *x)
 {
-	ob_outcome out = outcome(c, &exact_engine);
+	ob_case_result out = outcome(c, &exact_engine);
 	if (x->motion && !met(c, &out))
 		print(c, &exact_engine, &out);
 	CHECK(!x->motion || met(c, &out));
@@ -119,7 +119,7 @@ static void test_exact(const ob_case *c, const expectation *x)
 
 static void test_broken(const ob_case *c, const ob_engine_kind *kind, bool is_right)
 {
-	ob_outcome out = outcome(c, kind);
+	ob_case_result out = outcome(c, kind);
 	if (met(c, &out) != is_right)
 		print(c, kind, &out);
 	CHECK(met(c, &out) == is_right);
@@ -128,7 +128,7 @@ static void test_broken(const ob_case *c, const ob_engine_kind *kind, bool is_ri
 // What an engine itself breaks is said, and no figure looks good.
 static void test_mad(const ob_case *c, const ob_engine_kind *kind, const char *why)
 {
-	ob_outcome out = outcome(c, kind);
+	ob_case_result out = outcome(c, kind);
 	CHECK(!strncmp(out.failed, why, strlen(why)));
 	for (uint32_t i = 0; i < c->figures; i++)
 		CHECK(isinf(out.figure[i]));
@@ -219,7 +219,7 @@ static void test_calibration(const struct calibration *k)
 {
 	const ob_case *c = ob_case_find(k->name);
 	exact_engine_use(k->motion);
-	ob_outcome out = outcome(c, &exact_engine);
+	ob_case_result out = outcome(c, &exact_engine);
 	CHECK_NEAR(out.figure[k->figure] / k->expected, 1, 1e-6);
 }
 

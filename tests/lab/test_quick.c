@@ -14,7 +14,7 @@ int main(int argc, char **argv)
 	const ob_engine_kind *kind = ob_engine_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
 	ob_run_settings settings = kind->usual;
 	settings.lag = 0; // the promise of those who read late holds for those who do not
-	ob_outcome out;
+	ob_case_result out;
 	ob_error e = { "" };
 	if (!ob_case_run(c, kind, &settings, &out, &e)) {
 		fprintf(stderr, "%s\n", e.text);

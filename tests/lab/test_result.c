@@ -11,7 +11,7 @@ static ob_result make(const char *name, const char *engine, uint32_t substeps, d
 	r.settings = r.engine->usual;
 	r.settings.substeps = substeps;
 	r.settings.tolerance = 0;
-	ob_outcome o = { .cpu_s = cost, .wall_s = 2 * cost, .body_seconds = 1 };
+	ob_case_result o = { .cpu_s = cost, .wall_s = 2 * cost, .body_seconds = 1 };
 	for (uint32_t i = 0; i < r.of->figures; i++)
 		o.figure[i] = error;
 	ob_result_repeat(&r, &o);
@@ -52,7 +52,7 @@ static void test_order(void)
 static void test_repeats(void)
 {
 	ob_result r = make("pile", "obsim", 8, 3, .5);
-	ob_outcome again = r.outcome;
+	ob_case_result again = r.outcome;
 	again.cpu_s = 1;
 	again.wall_s = 9;
 	again.figure[1] = .7;
