@@ -3,7 +3,8 @@
 FILE: the tables between <!-- lab: NAME --> and <!-- end -->, and the diagrams that FILE shows from images/accuracy/.
 
 All cases are run once at the engines' usual settings: that gives errors against targets, and errors are the same every
-time. Swept, and repeated (--repeats), are the cases whose cost at equal error is tabled, and the one of late partners.
+time. obsim's are run at all settings of the audit, too. Swept, and repeated (--repeats), are the cases whose cost at equal
+error is tabled, and the one of late partners.
 
 What FOLDER has already is not run again. On an otherwise idle machine; it takes some twenty minutes, and ten more for
 each repeat.
@@ -36,6 +37,14 @@ def rows():
     return read('rows.md')
 
 
+def conserved():
+    return read('conserved.md')
+
+
+def audit():
+    return read('audit.md')
+
+
 def equal():
     return read('equal.md')
 
@@ -57,7 +66,7 @@ def lab(*words):
         sys.exit('obsim lab failed; the same command goes on where it stopped')
 
 
-TABLES = {f.__name__: f for f in (machine, rows, equal, failed)}
+TABLES = {f.__name__: f for f in (machine, rows, conserved, audit, equal, failed)}
 
 
 def refresh(path):
@@ -82,5 +91,6 @@ if '--repeats' in ONCE:
     at = ONCE.index('--repeats')
     del ONCE[at:at + 2]
 lab('--sweep', 'none', *ONCE)
+lab('--audit', *ONCE)
 lab(*dict.fromkeys(r['case'] for r in csv.DictReader(read('equal.csv').splitlines())), 'lag', *OPTIONS)
 refresh(sys.argv[2])

@@ -40,7 +40,7 @@ int main(int argc, char **argv)
 	uint8_t *rgba = malloc(4 * (size_t)setup.width * (size_t)setup.height);
 	test_scene_boxes(&s, (uint32_t)objects, 26, 1);
 	int failed = !r || !rgba || measure(r, &s, &setup, rgba);
-	ob_sink *png = !failed && argc > 5 ? ob_sink_png(argv[5], setup.width, setup.height, &e) : NULL;
+	ob_sink *png = !failed && argc > 5 ? ob_sink_png(argv[5], setup.width, setup.height, 0, &e) : NULL;
 	if (png) {
 		failed = !ob_sink_put(png, 0, 0, rgba, &e);
 		failed |= !ob_sink_close(png, &e);

@@ -99,11 +99,11 @@ static void bench_kernel(const char *what, const ob_kernel *k, ob_batch_kind kin
 	double best = 1e9;
 	for (int i = 0; i < SCENES; i++)
 		random_scene_of(&s[i], &seed, .1, kind);
-	ob_solver_iteration iteration = { .h = substep, .block_sweeps = 4, .wake_threshold = 2e-3, .impact_threshold = .1 };
 	for (int b = 0; b < BATCHES; b++) {
 		double start = ob_clock_thread_cpu();
 		for (int r = 0; r < ROUNDS; r++)
 			for (int i = 0; i < SCENES; i++) {
+				ob_solver_iteration iteration = iteration_on(&s[i], false);
 				memcpy(s[i].u, s[i].v, sizeof s[i].u);
 				k->solve(&s[i].batch, &iteration, s[i].u, s[i].v, s[i].d, s[i].delta);
 				s[i].v[1 + r % 8][r % 3] += r % 2 ? 1e-2 : -1e-2;

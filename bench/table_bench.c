@@ -91,7 +91,7 @@ typedef struct board {
 static void open_next(board *b)
 {
 	uint32_t n = ob_universe_workers(b->u) / b->stride;
-	ob_task_reset(b->u, OBJECTS);
+	ob_task_reset(b->u, OBJECTS, 1);
 	ob_gate_open(b->u, OB_PHASE_BROADPHASE, b->stride == 1 ? NULL : b->participants, n);
 }
 

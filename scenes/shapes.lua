@@ -3,7 +3,7 @@
 --   -D n=48    how many fall
 local n = param("n", 48, { min = 0, max = 10000 })
 
-scene { title = "Shapes", duration = 12, gravity = { 0, 0, -9.81 }, step = 1 / 60, substeps = 8 }
+scene { title = "Shapes", duration = 12, gravity = { 0, 0, -9.81 }, step = 1 / 60 }
 
 material "wood" { friction = .6, density = 600, colour = "#c08a53" }
 material "rubber" { friction = .9, restitution = .7, density = 1100, colour = "#d1495b" }

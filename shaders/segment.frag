@@ -1,6 +1,6 @@
 #version 330 core
 precision highp float;
-noperspective in vec2 v_at;
+in vec2 v_at;
 flat in vec2 v_length_radius;
 flat in vec4 v_colour;
 out vec4 pixel;

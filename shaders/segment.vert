@@ -6,7 +6,7 @@ layout(location = 1) in vec3 to;
 layout(location = 2) in vec4 colour;
 layout(location = 3) in float width; // px
 
-noperspective out vec2 v_at;     // px, along and across
+out vec2 v_at;                   // px, along and across
 flat out vec2 v_length_radius;   // px
 flat out vec4 v_colour;
 
@@ -32,7 +32,8 @@ void main()
 	v_length_radius = vec2(size, radius);
 	v_colour = colour;
 	// A little towards the eye: a box's own edges are not hidden by the box.
-	gl_Position = vec4(end.xy + shift / half_size * end.w, end.z - .0004 * end.w, end.w);
+	// Divided here, so that what lies between the corners is linear on the screen.
+	gl_Position = vec4(end.xy / end.w + shift / half_size, end.z / end.w - .0004, 1.);
 	if (da <= 0. && db <= 0.)
 		gl_Position = vec4(0., 0., 2., 1.);
 }

@@ -26,6 +26,7 @@ ARROWS = {
     'sim': 'contact ode motion table settings base',
     'scene': 'settings base',
     'host': 'sim scene table settings ode base',
+    'checkpoint': 'host scene table settings base',
     'measure': 'motion base',
     'reference': 'motion base',
     'plot': 'base',
@@ -37,16 +38,19 @@ ARROWS = {
     'render': 'measure scene motion base',
     'record': 'measure scene motion base',
     'paper': 'host measure render reference plot experiment scene table settings base',
-    'cli': 'host render record lab paper compare measure scene reference plot experiment table settings base',
+    'serve': 'host scene table settings motion base',
+    'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
-         'paper': ['paper_texts.h']}  # written by the build, so without a folder
+         'paper': ['paper_texts.h'],
+         'serve': ['content_table.h']}  # written by the build, so without a folder
 
 # What only some files may do: (what, pattern, where it may stand, in code without comments and strings?).
 DUTIES = [
     ('include <ode/...>', r'#\s*include\s*<ode/', r'src/ode/', True),
     ('include EGL or OpenGL', r'#\s*include\s*<(EGL|GL|GLES\w*)/', r'src/render/', True),
     ('include Lua', r'#\s*include\s*<(lua[\d.]*/)?(lua|lauxlib|lualib|luaconf)\.h', r'src/scene/', True),
+    ('include libwebsockets', r'#\s*include\s*<libwebsockets', r'src/serve/', True),
     ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
     ('include cairo', r'#\s*include\s*<cairo', r'src/plot/', True),
     ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/engine/', True),
@@ -56,7 +60,7 @@ DUTIES = [
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
     # Simulators are started by host/spawn_*.c (processes through its fork_server); the rest are helpers of one module each.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
-     r'src/(host/(spawn_\w+|supervisor|timeline)|render/sink\w*|cli/progress|paper/viewer)\.c$', True),
+     r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
      r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|lab/attempt|paper/attempt)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),

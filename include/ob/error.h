@@ -9,7 +9,8 @@ typedef struct ob_error {
 	char text[1024];
 } ob_error;
 
-// printf into e->text; returns 0, so that "return ob_fail(e, ...)" works for bool, and for pointers as NULL
+// printf into e->text, one line of UTF-8 in which nothing controls a terminal: names and paths in it may be anybody's.
+// Returns 0, so that "return ob_fail(e, ...)" works for bool, and for pointers as NULL
 int ob_fail(ob_error *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #pragma GCC visibility pop

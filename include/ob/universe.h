@@ -94,7 +94,7 @@ typedef struct ob_universe_info {
 	int32_t host_pid;
 	uint32_t capacity;    // slots: ids are 0 .. capacity-1
 	uint32_t objects;     // present objects, static ones included
-	uint32_t workers;
+	uint32_t workers;     // the last of a hardened run only schedules
 	ob_vec3 gravity;      // m/s^2
 	double step_length;   // s
 	uint64_t step;        // steps completed
@@ -126,6 +126,8 @@ typedef struct ob_universe ob_universe;
 // universe, or another layout version.
 ob_universe *ob_universe_attach(const char *name, ob_error *e);
 void ob_universe_detach(ob_universe *u); // NULL is allowed
+// Whether the host of an attached universe, or what cleans up after it, is still there; otherwise it stays as it is.
+bool ob_universe_is_hosted(const ob_universe *u);
 
 // Names of the universes on this machine, newest first; returns how many there are (may exceed max).
 size_t ob_universe_list(char names[][OB_NAME_MAX], size_t max);

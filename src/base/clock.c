@@ -17,12 +17,44 @@ static uint64_t nanoseconds(clockid_t id)
 	return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
-double ob_clock_wall(void) { return seconds(CLOCK_MONOTONIC); }
-uint64_t ob_clock_ns(void) { return nanoseconds(CLOCK_MONOTONIC); }
-double ob_clock_thread_cpu(void) { return seconds(CLOCK_THREAD_CPUTIME_ID); }
-double ob_clock_process_cpu(void) { return seconds(CLOCK_PROCESS_CPUTIME_ID); }
+double ob_clock_wall(void)
+{
+	return seconds(CLOCK_MONOTONIC);
+}
+uint64_t ob_clock_ns(void)
+{
+	return nanoseconds(CLOCK_MONOTONIC);
+}
+double ob_clock_thread_cpu(void)
+{
+	return seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+double ob_clock_process_cpu(void)
+{
+	return seconds(CLOCK_PROCESS_CPUTIME_ID);
+}
 
 // The kernel's encoding of a CPU clock of another task (include/linux/posix-timers.h):
 // bits 0-1 = 2 (scheduler clock), bit 2 = per thread, the rest = ~id.
-uint64_t ob_clock_cpu_of_thread(pid_t tid) { return nanoseconds((clockid_t)((~(unsigned)tid << 3) | 6)); }
-uint64_t ob_clock_cpu_of_process(pid_t pid) { return nanoseconds((clockid_t)((~(unsigned)pid << 3) | 2)); }
+uint64_t ob_clock_cpu_of_thread(pid_t tid)
+{
+	return nanoseconds((clockid_t)((~(unsigned)tid << 3) | 6));
+}
+uint64_t ob_clock_cpu_of_process(pid_t pid)
+{
+	return nanoseconds((clockid_t)((~(unsigned)pid << 3) | 2));
+}
+
+ob_hang_clock ob_hang_clock_start(void)
+{
+	return (ob_hang_clock){ .seen = ob_clock_wall() };
+}
+
+double ob_hang_clock_tick(ob_hang_clock *c)
+{
+	static const double most = .2; // s from one call to the next
+	double now = ob_clock_wall(), past = now - c->seen;
+	c->seen = now;
+	c->waited += past < most ? past : most;
+	return c->waited;
+}

@@ -3,6 +3,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/utf8.h"
+
 int ob_fail(ob_error *e, const char *format, ...)
 {
 	if (e) {
@@ -10,6 +12,7 @@ int ob_fail(ob_error *e, const char *format, ...)
 		va_start(args, format);
 		vsnprintf(e->text, sizeof e->text, format, args);
 		va_end(args);
+		ob_utf8_make_plain(e->text);
 	}
 	return 0;
 }

@@ -2,7 +2,10 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
+
+#include "base/utf8.h"
 
 static int notes = 1;
 
@@ -11,12 +14,20 @@ static void put(const char *kind, const char *format, va_list args)
 {
 	char line[1200];
 	int n = snprintf(line, sizeof line, "obsim: %s", kind);
-	n += vsnprintf(line + n, sizeof line - n - 1, format, args);
-	if (n > (int)sizeof line - 2)
-		n = sizeof line - 2;
+	vsnprintf(line + n, sizeof line - (size_t)n - 1, format, args);
+	ob_utf8_make_plain(line);
+	n = (int)strlen(line);
 	line[n++] = '\n';
 	ssize_t ignored = write(STDERR_FILENO, line, n);
 	(void)ignored;
+}
+
+void ob_log_error(const char *format, ...)
+{
+	va_list args;
+	va_start(args, format);
+	put("", format, args);
+	va_end(args);
 }
 
 void ob_log_warn(const char *format, ...)
@@ -37,4 +48,7 @@ void ob_log_note(const char *format, ...)
 	va_end(args);
 }
 
-void ob_log_set_notes(int on) { notes = on; }
+void ob_log_set_notes(int on)
+{
+	notes = on;
+}

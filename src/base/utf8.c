@@ -1,5 +1,7 @@
 #include "base/utf8.h"
 
+#include <string.h>
+
 size_t ob_utf8_length(const char *s)
 {
 	const unsigned char *u = (const unsigned char *)s;
@@ -32,4 +34,34 @@ size_t ob_utf8_count(const char *s)
 	for (size_t bytes; *s; s += bytes, count++)
 		ob_utf8_decode(s, &bytes);
 	return count;
+}
+
+bool ob_utf8_is_plain(uint32_t code)
+{
+	static const struct {
+		uint32_t first, last;
+	} active[] = { { 0, 0x1f },        { 0x7f, 0x9f },     { 0x61c, 0x61c },
+		       { 0x200e, 0x200f }, { 0x2028, 0x202e }, { 0x2066, 0x2069 } };
+	for (size_t i = 0; i < sizeof active / sizeof *active; i++)
+		if (code >= active[i].first && code <= active[i].last)
+			return false;
+	return true;
+}
+
+void ob_utf8_make_plain(char *text)
+{
+	while (*text >= ' ' && *text < 0x7f) // as most texts to their end
+		text++;
+	char *to = text;
+	for (const char *from = text; *from;) {
+		size_t n = ob_utf8_length(from), bytes;
+		if (n > 0 && ob_utf8_is_plain(ob_utf8_decode(from, &bytes))) {
+			memmove(to, from, n);
+			to += n;
+		} else {
+			*to++ = (unsigned char)*from < ' ' || *from == 0x7f ? ' ' : '?';
+		}
+		from += n ? n : 1;
+	}
+	*to = 0;
 }

@@ -3,6 +3,7 @@
 #ifndef OB_BASE_UTF8_H
 #define OB_BASE_UTF8_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -14,5 +15,12 @@ size_t ob_utf8_length(const char *s);
 uint32_t ob_utf8_decode(const char *s, size_t *bytes);
 // Characters of a text; a byte that is not UTF-8 counts as one.
 size_t ob_utf8_count(const char *s);
+// Whether a terminal shows the character and does nothing else. Not so: control characters, of ASCII and of Latin-1 (C1),
+// line and paragraph separators, and the marks that turn the direction of text (Unicode's UAX #9), by which a name could
+// make a line read as something that it does not say.
+bool ob_utf8_is_plain(uint32_t code);
+// Makes one line of plain characters of a text, in place: blanks for ASCII's control characters, '?' for whatever else is
+// not plain, or not UTF-8.
+void ob_utf8_make_plain(char *text);
 
 #endif

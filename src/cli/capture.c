@@ -10,10 +10,15 @@
 
 #include "base/clock.h"
 
-ob_frame_clock ob_frame_clock_make(double duration, double fps, double step)
+ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first)
 {
 	// 1e-9 of a frame: products like .1 s * 30 / s may fall short of the whole number that is meant
-	return (ob_frame_clock){ .fps = fps, .step = step, .frames = (uint64_t)floor(duration * fps + 1e-9) };
+	return (ob_frame_clock){
+		.fps = fps,
+		.step = step,
+		.frames = (uint64_t)floor(duration * fps + 1e-9),
+		.next = (uint64_t)ceil((double)first * step * fps * (1 - 1e-12) - 1e-9),
+	};
 }
 
 double ob_frame_clock_time(const ob_frame_clock *c)
@@ -47,6 +52,7 @@ enum { SINKS_MAX = 3 };
 
 struct ob_capture {
 	ob_frame_clock clock;
+	uint64_t first; // frame that is drawn
 	ob_renderer *renderer;
 	ob_camera_def camera;
 	ob_sink *sink[SINKS_MAX];
@@ -66,7 +72,7 @@ static bool add(ob_capture *c, ob_sink *s)
 
 static bool open_sinks(ob_capture *c, const ob_frames_request *f, ob_error *e)
 {
-	if (f->dir && !add(c, ob_sink_png(f->dir, f->width, f->height, e)))
+	if (f->dir && !add(c, ob_sink_png(f->dir, f->width, f->height, c->first, e)))
 		return false;
 	if (f->video && !add(c, ob_sink_video(f->video, f->width, f->height, f->fps, e)))
 		return false;
@@ -92,14 +98,15 @@ static const ob_camera_def *find_camera(const ob_scene *s, const char *name)
 }
 
 ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, double duration, double step,
-			    ob_error *e)
+			    uint64_t first, ob_error *e)
 {
 	ob_capture *c = calloc(1, sizeof *c);
 	if (!c) {
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	c->clock = ob_frame_clock_make(duration, f->fps, step);
+	c->clock = ob_frame_clock_make(duration, f->fps, step, first);
+	c->first = c->clock.next;
 	c->camera = *find_camera(scene, f->camera);
 	c->raw_fd = -1;
 	ob_render_setup setup = {
@@ -139,7 +146,7 @@ uint64_t ob_capture_need(const ob_capture *c, uint64_t now)
 }
 uint64_t ob_capture_frames(const ob_capture *c)
 {
-	return c->clock.next;
+	return c->clock.next - c->first;
 }
 
 bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *now, ob_error *e)

@@ -13,7 +13,8 @@ typedef struct ob_frame_clock {
 } ob_frame_clock;
 
 // A duration has floor(duration * fps) frames: 600 for 10 s at 60, the first at 0, none at the end itself.
-ob_frame_clock ob_frame_clock_make(double duration, double fps, double step);
+// first: the step at which the run begins, from which on there are frames.
+ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first);
 double ob_frame_clock_time(const ob_frame_clock *c); // s, of the next frame
 // The step at or after the next frame; its time lies in (step - 1, step]. UINT64_MAX when all frames are done.
 // *between: it does not fall on that step, so that the step before is needed, too.
@@ -24,8 +25,9 @@ uint64_t ob_frame_clock_need(const ob_frame_clock *c, uint64_t now);
 typedef struct ob_capture ob_capture;
 
 // Call after the host has started: processes must be forked before there is a renderer.
+// first: the step at which the run begins.
 ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, double duration, double step,
-			    ob_error *e);
+			    uint64_t first, ob_error *e);
 // Spans of drawing and handing over go into this host's trace.
 void ob_capture_trace(ob_capture *c, ob_host *host);
 // The first step after "now" that is to be shown; UINT64_MAX = none

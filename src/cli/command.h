@@ -7,7 +7,7 @@
 enum ob_exit {
 	OB_EXIT_OK,
 	OB_EXIT_FAILED, // the run failed, or was interrupted
-	OB_EXIT_USAGE, // the command line or the scene is wrong
+	OB_EXIT_USAGE, // the command line, the scene or the checkpoint is wrong
 	OB_EXIT_MISSED, // lab --check: a target was missed
 };
 
@@ -17,6 +17,8 @@ int ob_command_compare(const ob_arguments *a);
 int ob_command_top(const ob_arguments *a);
 int ob_command_lab(const ob_arguments *a);
 int ob_command_paper(const ob_arguments *a);
+int ob_command_inspect(const ob_arguments *a);
+int ob_command_serve(const ob_arguments *a);
 
 // One line on standard error, "obsim: ..."; returns code.
 int ob_command_fail(int code, const char *text);

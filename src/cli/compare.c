@@ -120,6 +120,7 @@ static bool prepare(ob_comparison *c, const ob_arguments *a, ob_error *e)
 	c->repeats = (uint32_t)repeats;
 	c->seeds = (uint32_t)seeds;
 	c->pool = request.workers;
+	c->hardened = a->value[OB_OPTION_HARDEN] != NULL;
 	c->drawn = a->value[OB_OPTION_OUT] != NULL;
 	bool fine = pass_on(c, a, e);
 	for (uint32_t i = 0; fine && i < c->points; i++)

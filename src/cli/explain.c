@@ -95,7 +95,8 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 	else
 		line(f, "friction", "none: no two rough objects touched");
 	if (!t->elastic)
-		line(f, "restitution", "none: no object has any");
+		line(f, "restitution", "none: no object has any; %" PRIu64 " plastic impacts at their own instants",
+		     c->impacts);
 	else
 		line(f, "restitution", "%" PRIu64 " impacts at their own instants, in %" PRIu64 " iterations", c->impacts,
 		     c->impact_iterations);
@@ -127,7 +128,7 @@ static void print_costs(const ob_explained *x, FILE *f)
 		[OB_PROFILE_BALLISTIC] = "closed forms of flight",
 		[OB_PROFILE_LOAD] = "islands out of the universe, and back",
 		[OB_PROFILE_NARROWPHASE] = "collision tests",
-		[OB_PROFILE_IMPACTS] = "impacts with restitution",
+		[OB_PROFILE_IMPACTS] = "impacts",
 		[OB_PROFILE_SOLVE] = "iterations of the contact solver",
 		[OB_PROFILE_MOVE] = "turning, predicting, displacing",
 		[OB_PROFILE_PROJECT] = "penetrations pushed apart",

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/quantity.h"
 #include "cli/version.h"
+#include "lab/audit.h"
 #include "lab/lab.h"
 #include "lab/report.h"
 #include "lab/tables.h"
@@ -18,7 +19,7 @@ typedef struct request {
 	ob_lab_plan plan;
 	double limit; // s
 	const char *out; // folder
-	bool list, fresh, json, check;
+	bool list, fresh, json, check, audit;
 } request;
 
 // Of "stak" no case is near, but what many begin with is.
@@ -92,16 +93,23 @@ static bool check(const request *r, const ob_arguments *a, ob_error *e)
 static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 {
 	*r = (request){
-		.limit = 150,
+		.limit = a->value[OB_OPTION_AUDIT] ? 20 : 150,
 		.out = a->value[OB_OPTION_OUT] ? a->value[OB_OPTION_OUT] : "obsim-lab",
 		.list = a->value[OB_OPTION_LIST],
 		.fresh = a->value[OB_OPTION_FRESH],
 		.json = a->value[OB_OPTION_JSON_OUT],
 		.check = a->value[OB_OPTION_CHECK],
+		.audit = a->value[OB_OPTION_AUDIT],
 	};
 	bool quick = a->value[OB_OPTION_QUICK];
 	const char *engines = a->value[OB_OPTION_ENGINES], *sweep = a->value[OB_OPTION_SWEEP];
 	uint64_t repeats = 1;
+	if (r->audit && sweep)
+		return ob_fail(e, "--audit is a choice of settings: leave it, or --sweep, away");
+	if (r->audit) {
+		engines = engines ? engines : "obsim";
+		sweep = OB_AUDIT_SWEEP;
+	}
 	// a minute's look: what obsim promises, beside one other engine, each as its users run it
 	if (quick && !engines)
 		engines = "obsim,obsim-lag,ode-quick";
@@ -145,7 +153,12 @@ static int tell(const request *r, const ob_results *asked)
 	} else {
 		ob_lab_print_rows(stdout, &d, false);
 		putchar('\n');
-		ob_lab_print_equal(stdout, &d, false);
+		ob_lab_print_conserved(stdout, &d, false);
+		putchar('\n');
+		if (r->audit)
+			ob_lab_print_audit(stdout, &d, false);
+		else
+			ob_lab_print_equal(stdout, &d, false);
 		printf("\n%s/report.html shows it all; %s/results.csv has every figure.\n", r->out, r->out);
 	}
 	if (fflush(stdout) != 0 || ferror(stdout)) {

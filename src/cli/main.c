@@ -6,6 +6,7 @@
 
 #include "base/spelling.h"
 #include "cli/command.h"
+#include "table/table.h"
 #include "cli/version.h"
 
 static const struct {
@@ -15,7 +16,8 @@ static const struct {
 } commands[] = {
 	{ "run", OB_COMMAND_RUN, ob_command_run },       { "compare", OB_COMMAND_COMPARE, ob_command_compare },
 	{ "top", OB_COMMAND_TOP, ob_command_top },       { "lab", OB_COMMAND_LAB, ob_command_lab },
-	{ "paper", OB_COMMAND_PAPER, ob_command_paper },
+	{ "paper", OB_COMMAND_PAPER, ob_command_paper }, { "inspect", OB_COMMAND_INSPECT, ob_command_inspect },
+	{ "serve", OB_COMMAND_SERVE, ob_command_serve },
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
@@ -102,6 +104,7 @@ static int carry_out(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-	signal(SIGXFSZ, SIG_IGN); // a file that may not grow is an error with its name, not a death
+	ob_pages_guard(NULL); // memory that is not there is an error with the universe's name, ..
+	signal(SIGXFSZ, SIG_IGN); // .. and a file that may not grow is an error with its name, not a death
 	return close_output(carry_out(argc, argv));
 }

@@ -46,6 +46,33 @@ bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, o
 	return true;
 }
 
+void ob_observer_save(const ob_observer *o, ob_saved_figures *out)
+{
+	*out = (ob_saved_figures){
+		.started = o->started,
+		.energy_start = o->energy_start,
+		.energy_top = o->energy_top,
+		.momentum_start = o->momentum_start,
+		.momentum_scale = o->momentum_scale,
+		.momentum_error = o->momentum_error,
+		.worst = o->worst,
+		.worst_time = o->worst_time,
+	};
+}
+
+void ob_observer_resume(ob_observer *o, const ob_saved_figures *from)
+{
+	o->started = from->started;
+	o->last_step = UINT64_MAX;
+	o->energy_start = from->energy_start;
+	o->energy_top = from->energy_top;
+	o->momentum_start = from->momentum_start;
+	o->momentum_scale = from->momentum_scale;
+	o->momentum_error = from->momentum_error;
+	o->worst = from->worst;
+	o->worst_time = from->worst_time;
+}
+
 static bool moves(const ob_snapshot *s, uint32_t i)
 {
 	return (s->passport[i].flags & OB_OBJECT_PRESENT) && !(s->passport[i].flags & OB_OBJECT_STATIC);
@@ -71,10 +98,15 @@ static void start(ob_observer *o, const ob_snapshot *s, ob_vec3 momentum)
 	}
 }
 
-void ob_observer_measure(ob_observer *o, const ob_snapshot *s)
+static bool is_interrupted(void *host)
+{
+	return ob_host_interrupted(host);
+}
+
+bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e)
 {
 	if (o->started && s->step == o->last_step)
-		return;
+		return true;
 	o->energy = ob_measure_energy(s, o->gravity);
 	ob_vec3 momentum = ob_measure_momentum(s);
 	if (!o->started)
@@ -84,13 +116,15 @@ void ob_observer_measure(ob_observer *o, const ob_snapshot *s)
 	if (o->closed && o->momentum_scale > 0)
 		o->momentum_error =
 			fmax(o->momentum_error, ob_norm(ob_sub(momentum, o->momentum_start)) / o->momentum_scale);
-	ob_measure_penetration(s, &o->now);
+	if (!ob_measure_penetration_unless(s, &o->now, is_interrupted, (void *)host, e))
+		return false;
 	if (o->now.max_m > o->worst) {
 		o->worst = o->now.max_m;
 		o->worst_time = s->time;
 	}
 	if (o->series)
 		write_line(o, s, momentum);
+	return true;
 }
 
 void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r)

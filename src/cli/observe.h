@@ -4,7 +4,9 @@
 
 #include <stdio.h>
 
+#include "checkpoint/saved_run.h"
 #include "cli/report.h"
+#include "host/host.h"
 #include "measure/measure.h"
 #include "scene/scene.h"
 
@@ -26,8 +28,12 @@ typedef struct ob_observer {
 
 // path: of the CSV file, which outlives the observer; NULL = none
 bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e);
-// Measures a snapshot; the first is the start. One that has been measured already is passed over.
-void ob_observer_measure(ob_observer *o, const ob_snapshot *s);
+// For a checkpoint of the step of the last snapshot, and of a run that goes on from there, which measures it again.
+void ob_observer_save(const ob_observer *o, ob_saved_figures *out);
+void ob_observer_resume(ob_observer *o, const ob_saved_figures *from);
+// Measures a snapshot; the first is the start. One that has been measured already is passed over. false and e: it cannot
+// be measured, or the host is interrupted.
+bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e);
 // Puts the figures into the report; each_step: every step was measured, so that the largest means something.
 void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r);
 bool ob_observer_close(ob_observer *o, ob_error *e); // once, also after a failed open

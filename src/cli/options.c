@@ -7,42 +7,74 @@
 #include "base/spelling.h"
 #include "settings/settings.h"
 
-enum { RUN = OB_COMMAND_RUN, COMPARE = OB_COMMAND_COMPARE, TOP = OB_COMMAND_TOP, LAB = OB_COMMAND_LAB, PAPER = OB_COMMAND_PAPER };
+enum {
+	RUN = OB_COMMAND_RUN,
+	COMPARE = OB_COMMAND_COMPARE,
+	TOP = OB_COMMAND_TOP,
+	LAB = OB_COMMAND_LAB,
+	PAPER = OB_COMMAND_PAPER,
+	INSPECT = OB_COMMAND_INSPECT,
+	SERVE = OB_COMMAND_SERVE
+};
 
 const ob_option ob_option_table[OB_OPTIONS] = {
-	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene", RUN | COMPARE,
-			       'D' },
+	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene",
+			       RUN | COMPARE | SERVE, 'D' },
 	[OB_OPTION_VARY] = { NULL, "vary", "NAME=VALUE,..", "compare at each of these values of a parameter", COMPARE,
 			     0 },
-	[OB_OPTION_DURATION] = { NULL, "duration", "S", "simulated seconds (the scene says how many)", RUN | COMPARE,
-				 0 },
-	[OB_OPTION_STEP] = { NULL, "step", "H", "seconds a step, as .01 or 1/60 (the scene's)", RUN | COMPARE, 0 },
-	[OB_OPTION_SEED] = { NULL, "seed", "N", "seed of the scene's random numbers (the scene's)", RUN | COMPARE, 0 },
+	[OB_OPTION_DURATION] = { NULL, "duration", "S", "simulated seconds (the scene says how many)",
+				 RUN | COMPARE | SERVE, 0 },
+	[OB_OPTION_STEP] = { NULL, "step", "H", "seconds a step, as .01 or 1/60 (the scene's)", RUN | COMPARE | SERVE,
+			     0 },
+	[OB_OPTION_SEED] = { NULL, "seed", "N", "seed of the scene's random numbers (the scene's)",
+			     RUN | COMPARE | SERVE, 0 },
 
 	[OB_OPTION_ARCH] = { "How it runs", "arch", OB_ARCHITECTURE_NAMES,
-			     "one simulator per object, or one ODE world that holds all (obs)", RUN, 0 },
-	[OB_OPTION_ISOLATION] = { NULL, "isolation", "thread|process", "what a worker is (thread)", RUN, 0 },
+			     "one simulator per object, or one ODE world that holds all (obs)", RUN | SERVE, 0 },
+	[OB_OPTION_ISOLATION] = { NULL, "isolation", "thread|process", "what a worker is (thread)", RUN | SERVE, 0 },
 	[OB_OPTION_WORKERS] = { NULL, "workers", "N|objects",
-				"workers in the pool, or one for each object (one per core)", RUN | COMPARE, 0 },
+				"workers in the pool, or one for each object (one per core)", RUN | COMPARE | SERVE,
+				0 },
+	[OB_OPTION_HARDEN] = { NULL, "harden", NULL,
+			       "processes that can write their own results alone, and do little else",
+			       RUN | COMPARE | SERVE, 0 },
 	[OB_OPTION_TOLERANCE] = { NULL, "tolerance", "LENGTH",
 				  "error that objects that touch may reach, as .5mm: chooses the substeps",
-				  RUN | COMPARE, 0 },
+				  RUN | COMPARE | SERVE, 0 },
 	[OB_OPTION_STRICT] = { NULL, "strict", NULL, "exit with 1 where the tolerance is missed", RUN, 0 },
-	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)", RUN | COMPARE,
-				 0 },
+	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)",
+				 RUN | COMPARE | SERVE, 0 },
 	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",
-				   "of the contact solver a substep (the scene's; monolith: 20, 0 = exact)", RUN | COMPARE, 0 },
-	[OB_OPTION_SOLVER] = { NULL, "solver", OB_SOLVER_NAMES, "how contacts are solved (the scene's)", RUN | COMPARE, 0 },
-	[OB_OPTION_LAG] = { NULL, "lag", "K", "lagged: iterations that a partner's state is late (1)", RUN | COMPARE,
-			    0 },
+				   "of the contact solver a substep (the scene's; monolith: 20, 0 = exact)",
+				   RUN | COMPARE | SERVE, 0 },
+	[OB_OPTION_SOLVER] = { NULL, "solver", OB_SOLVER_NAMES, "how contacts are solved (the scene's)",
+			       RUN | COMPARE | SERVE, 0 },
+	[OB_OPTION_LAG] = { NULL, "lag", "K", "lagged: iterations that a partner's state is late (1)",
+			    RUN | COMPARE | SERVE, 0 },
 	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", OB_INTEGRATOR_NAMES,
-				   "free motion in closed form, or by ODE's stepper (the scene's)", RUN | COMPARE, 0 },
+				   "free motion in closed form, or by ODE's stepper (the scene's)",
+				   RUN | COMPARE | SERVE, 0 },
 	[OB_OPTION_SLEEPING] = { NULL, "sleeping", OB_SWITCH_NAMES, "whether what rests may sleep (the scene's)",
-				 RUN | COMPARE, 0 },
+				 RUN | COMPARE | SERVE, 0 },
 	[OB_OPTION_NARROW] = { NULL, "narrow", OB_NARROW_PHASE_NAMES,
-			       "objects touch as they are, or as boxes along the axes (obb)", RUN | COMPARE, 0 },
-	[OB_OPTION_LOAD] = { NULL, "load", "N", "add up 1 to N in each test of two boxes (0)", RUN | COMPARE, 0 },
-	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", RUN, 0 },
+			       "objects touch as they are, or as boxes along the axes (obb)", RUN | COMPARE | SERVE,
+			       0 },
+	[OB_OPTION_LOAD] = { NULL, "load", "N", "add up 1 to N in each test of two boxes (0)", RUN | COMPARE | SERVE,
+			     0 },
+	[OB_OPTION_PATIENCE] = { NULL, "patience", "S",
+				 "seconds that a step may take before simulators count as stalled (60)", RUN | SERVE,
+				 0 },
+	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", RUN | SERVE, 0 },
+
+	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max",
+			     "simulated seconds a second of the clock (run: max; serve: realtime)", RUN | SERVE, 0 },
+
+	[OB_OPTION_LISTEN] = { "The server", "listen", "ADDR:PORT",
+			       "where viewers come to; port 0 is a free one (127.0.0.1:8080)", SERVE, 0 },
+	[OB_OPTION_PAUSED] = { NULL, "paused", NULL, "stand still until a viewer lets it run", SERVE, 0 },
+	[OB_OPTION_READONLY] = { NULL, "readonly", NULL, "viewers may look, and change nothing", SERVE, 0 },
+	[OB_OPTION_VIEWERS] = { NULL, "viewers", "N", "viewers at a time (64)", SERVE, 0 },
+	[OB_OPTION_ROOM] = { NULL, "room", "N", "objects that viewers may add (1000)", SERVE, 0 },
 
 	[OB_OPTION_FRAMES] = { "Frames", "frames", "DIR", "write DIR/frame-000000.png and so on", RUN, 0 },
 	[OB_OPTION_VIDEO] = { NULL, "video", "FILE", "write a video through ffmpeg", RUN, 0 },
@@ -58,34 +90,44 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE", "trajectories, as HDF5", RUN, 0 },
 	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
 	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
-	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end", "each step, where the time goes, or neither (step)", RUN,
-				0 },
+	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end",
+				"each step, where the time goes, or neither (step)", RUN, 0 },
 	[OB_OPTION_EXPLAIN] = { NULL, "explain", NULL,
 				"what was modelled, what was left out and why, and what each part cost", RUN, 0 },
 	[OB_OPTION_TRACE] = { NULL, "trace", "FILE", "what each worker did when, for ui.perfetto.dev", RUN, 0 },
 
+	[OB_OPTION_CHECKPOINT] = { NULL, "checkpoint", "FILE",
+				   "what the run needs to go on, replaced as it goes, and at its end", RUN, 0 },
+	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
+	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN, 0 },
+
+	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..", "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },
+
 	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
-	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only a quick subset", LAB | PAPER,
-			    0 },
+	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only a quick subset", LAB | PAPER, 0 },
 	[OB_OPTION_OBJECTS] = { NULL, "objects", "N", "boxes in each experiment (64)", PAPER, 0 },
 	[OB_OPTION_ENGINES] = { NULL, "engines", "LIST", "engines by name, with commas (all)", LAB, 0 },
 	[OB_OPTION_SWEEP] = { NULL, "sweep", "LISTS|none",
 			      "as substeps=1,2,4,tolerance=5mm,.5mm (what suits each engine)", LAB, 0 },
-	[OB_OPTION_REPEATS] = { NULL, "repeats", "N", "runs of each; times are their medians (1; compare: 3; paper: 15)",
+	[OB_OPTION_AUDIT] = { NULL, "audit", NULL, "whether obsim's errors fall with its tolerance and its substeps",
+			      LAB, 0 },
+	[OB_OPTION_REPEATS] = { NULL, "repeats", "N",
+				"runs of each; times are their medians (1; compare: 3; paper: 15)",
 				LAB | COMPARE | PAPER, 0 },
 	[OB_OPTION_SEEDS] = { NULL, "seeds", "N", "seeds, from the scene's on; repeats of each (1)", COMPARE, 0 },
 	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds of CPU that a run may take (150)", LAB, 0 },
-	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR", "results, diagrams, report (obsim-lab; obsim-paper; compare: none)",
-			  LAB | PAPER | COMPARE, 0 },
+	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR",
+			    "results, diagrams, report (obsim-lab; obsim-paper; compare: none)", LAB | PAPER | COMPARE,
+			    0 },
 	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB | PAPER | COMPARE, 0 },
-	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print the results as JSON instead of tables", LAB | PAPER,
-			       0 },
+	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print it as JSON", LAB | PAPER | INSPECT, 0 },
 	[OB_OPTION_CHECK] = { NULL, "check", NULL, "exit with 3 when obsim misses a target", LAB, 0 },
 
 	[OB_OPTION_ONCE] = { "The view", "once", NULL, "print once, for pipes, and end", TOP, 0 },
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
-	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end", RUN | COMPARE | TOP | LAB | PAPER, 'h' },
+	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end",
+			     RUN | COMPARE | TOP | LAB | PAPER | INSPECT | SERVE, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -225,7 +267,9 @@ bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **
 				return false;
 		} else if (a->operand && command != OB_COMMAND_LAB) {
 			return ob_fail(e, "unexpected '%s' after '%s': one %s at a time", argv[i], a->operand,
-				       command == OB_COMMAND_TOP ? "universe" : "scene");
+				       command == OB_COMMAND_TOP       ? "universe"
+				       : command == OB_COMMAND_INSPECT ? "checkpoint"
+								       : "scene");
 		} else {
 			a->operands[operands++] = argv[i];
 			a->operand = a->operands[0];
@@ -247,10 +291,14 @@ static const struct {
 } commands[] = {
 	{ OB_COMMAND_RUN, "obsim run SCENE.lua [OPTION ...]",
 	  "Runs a scene, each object a simulator of its own, and reports speed and error." },
+	{ OB_COMMAND_SERVE, "obsim serve SCENE.lua [OPTION ...]",
+	  "Runs a scene that people look at, and change, from their browsers." },
 	{ OB_COMMAND_COMPARE, "obsim compare SCENE.lua [OPTION ...]",
 	  "Runs a scene as one world, as threads and as processes, and prints one table." },
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
+	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",
+	  "Says what a checkpoint holds, and whether it is whole." },
 	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",
 	  "Runs hard cases with several engines: error against target and against cost." },
 	{ OB_COMMAND_PAPER, "obsim paper [OPTION ...]",
@@ -281,12 +329,18 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		fputs("\nKeys: q quits, w shows workers or objects, s sorts by id or speed, arrows and page keys "
 		      "scroll.\n",
 		      f);
+	if (command == OB_COMMAND_RUN)
+		fputs("\nobsim run --resume FILE [OPTION ...] goes on with the scene and the settings of the "
+		      "checkpoint.\n",
+		      f);
 	if (command == OB_COMMAND_LAB)
 		fputs("\nA CASE is a name, a row of the table (14), or the start or pattern of names (stack, '*-10'); "
 		      "without one, all.\nThe same command goes on where it was interrupted.\n",
 		      f);
 	fprintf(f, "\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage%s.\n",
-		command == OB_COMMAND_LAB ? ", 3 a target missed" : " or scene");
+		command == OB_COMMAND_LAB       ? ", 3 a target missed"
+		: command == OB_COMMAND_INSPECT ? ", or no whole checkpoint"
+						: " or scene");
 }
 
 void ob_options_overview(FILE *f)

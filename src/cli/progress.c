@@ -9,13 +9,14 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/interrupt.h"
 #include "experiment/progress.h"
 
 enum { SILENCE_MS = 2000, PERIOD_MS = 200 };
 
 struct ob_progress {
 	const ob_universe *universe;
-	uint64_t steps;
+	uint64_t first, steps; // when it began; of the whole run
 	double begun; // s
 	pthread_t thread;
 	pthread_mutex_t lock; // over over
@@ -27,8 +28,8 @@ static void show(const ob_progress *p)
 {
 	ob_universe_info info;
 	ob_universe_get_info(p->universe, &info);
-	double wall = ob_clock_wall() - p->begun, rate = (double)info.step / wall;
-	double left = info.step > 0 ? (double)(p->steps - info.step) / rate : NAN;
+	double wall = ob_clock_wall() - p->begun, rate = (double)(info.step - p->first) / wall;
+	double left = info.step > p->first ? (double)(p->steps - info.step) / rate : NAN;
 	char what[64];
 	snprintf(what, sizeof what, "%.0f steps/s, %.2f s simulated", rate, info.time);
 	ob_progress_show(&(ob_progress_view){ 0 }, (double)info.step, (double)p->steps, left, what);
@@ -72,6 +73,9 @@ ob_progress *ob_progress_begin(const ob_universe *u, uint64_t steps)
 	if (!p)
 		return NULL;
 	p->universe = u;
+	ob_universe_info info;
+	ob_universe_get_info(u, &info);
+	p->first = info.step;
 	p->steps = steps;
 	p->begun = ob_clock_wall();
 	pthread_mutex_init(&p->lock, NULL);
@@ -82,9 +86,8 @@ ob_progress *ob_progress_begin(const ob_universe *u, uint64_t steps)
 	pthread_condattr_destroy(&monotonic);
 
 	// signals are for the main thread, which knows how to end the run
-	sigset_t all, before;
-	sigfillset(&all);
-	pthread_sigmask(SIG_BLOCK, &all, &before);
+	sigset_t before;
+	ob_interrupt_leave_to_main(&before);
 	int failed = pthread_create(&p->thread, NULL, run, p);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	if (failed) {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
 
 // One list for the writer and the reader; its names are a promise to scripts.
 static const struct field {
@@ -44,6 +45,7 @@ static const struct field {
 	FIELD(COUNT, box_tests),
 	FIELD(COUNT, seed),
 	FIELD(REAL, simulated_s),
+	FIELD(REAL, resumed_s),
 	FIELD(REAL, wall_s),
 	FIELD(REAL, cpu_s),
 	FIELD(REAL, total_s),
@@ -64,6 +66,8 @@ static const struct field {
 	FIELD(REAL, renderer_cpu_s),
 	FIELD(COUNT, switches),
 	FIELD(COUNT, deaths),
+	FIELD(COUNT, faults),
+	FIELD(TEXT, fault_kinds),
 	FIELD(COUNT, worker_memory_bytes),
 	FIELD(COUNT, memory_bytes),
 	FIELD(TEXT, state_hash),
@@ -81,6 +85,9 @@ static const struct field {
 	FIELD(COUNT, frames),
 	FIELD(REAL, frame_rate),
 	FIELD(REAL, fps),
+	FIELD(COUNT, checkpoints),
+	FIELD(COUNT, checkpoint_bytes),
+	FIELD(REAL, checkpoint_s),
 	FIELD(COUNT, trace_events),
 	FIELD(COUNT, trace_lost),
 	FIELD(TEXT, commit),
@@ -130,6 +137,24 @@ static double work_of(const ob_counters *c)
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
 		sum += 1e-9 * (double)c->time_ns[i];
 	return sum;
+}
+
+static void count_fault(ob_report *r, uint32_t kind, uint64_t times)
+{
+	const char *name = OB_FAULT_NAMES;
+	while (kind-- > 0)
+		name += strcspn(name, "|") + 1;
+	size_t n = strlen(r->fault_kinds);
+	if (times > 0)
+		snprintf(r->fault_kinds + n, sizeof r->fault_kinds - n, "%s%.*s %" PRIu64, n ? ", " : "",
+			 (int)strcspn(name, "|"), name, times);
+	r->faults += times;
+}
+
+void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS])
+{
+	for (uint32_t i = 0; i < OB_FAULT_KINDS; i++)
+		count_fault(r, i, faults[i]);
 }
 
 void ob_report_count(ob_report *r, const ob_counters *c, bool timed)
@@ -183,8 +208,13 @@ static void print_tolerance(const ob_report *r, FILE *f)
 static void print_setup(const ob_report *r, FILE *f)
 {
 	const char *plural = r->workers == 1 ? "" : r->isolation[0] == 't' ? "s" : "es";
-	fprintf(f, "%s: %" PRIu64 " objects, %" PRIu64 " steps, %g s simulated", r->scene, r->objects, r->steps,
+	char scene[sizeof r->scene];
+	memcpy(scene, r->scene, sizeof scene);
+	ob_utf8_make_plain(scene); // a file's name may be anybody's
+	fprintf(f, "%s: %" PRIu64 " objects, %" PRIu64 " steps, %g s simulated", scene, r->objects, r->steps,
 		r->simulated_s);
+	if (!isnan(r->resumed_s))
+		fprintf(f, ", resumed at %g s", r->resumed_s);
 	fprintf(f, strcmp(r->outcome, "finished") == 0 ? "\n" : " (%s)\n", r->outcome);
 	if (strcmp(r->arch, "monolith") == 0)
 		fprintf(f, "  simulators   one ODE world in a %s, %" PRIu64 " substep%s a step\n", r->isolation,
@@ -193,15 +223,22 @@ static void print_setup(const ob_report *r, FILE *f)
 		print_simulators(r, plural, f);
 }
 
+// Simulated by this process (s)
+static double own_time(const ob_report *r)
+{
+	return isnan(r->resumed_s) ? r->simulated_s : r->simulated_s - r->resumed_s;
+}
+
 static void print_cost(const ob_report *r, FILE *f)
 {
 	ob_quantity a, b, c;
+	const double simulated = own_time(r);
 	fprintf(f, "  wall         %s, %s per simulated second", ob_quantity_text(&a, r->wall_s, "s"),
-		ob_quantity_text(&b, r->wall_s / r->simulated_s, "s"));
-	if (r->wall_s > 0 && r->simulated_s > 0)
-		fprintf(f, " (%.3g x real time)", r->simulated_s / r->wall_s);
+		ob_quantity_text(&b, r->wall_s / simulated, "s"));
+	if (r->wall_s > 0)
+		fprintf(f, " (%.3g x real time)", simulated / r->wall_s);
 	fprintf(f, "\n  CPU          %s of the simulators, %s per simulated second, %s per body and step",
-		ob_quantity_text(&a, r->cpu_s, "s"), ob_quantity_text(&b, r->cpu_s / r->simulated_s, "s"),
+		ob_quantity_text(&a, r->cpu_s, "s"), ob_quantity_text(&b, r->cpu_s / simulated, "s"),
 		ob_quantity_text(&c, 1e-6 * r->body_step_cpu_us, "s"));
 	if (r->frames > 0)
 		fprintf(f, "; drawing took %s besides", ob_quantity_text(&a, r->renderer_cpu_s, "s"));
@@ -225,7 +262,7 @@ static void print_quality(const ob_report *r, FILE *f)
 			ob_quantity_text(&a, r->penetration_mean_m, "m"),
 			ob_quantity_text(&b, r->penetration_max_m, "m"));
 	else
-		fputs("  penetration  none at the end", f);
+		fprintf(f, "  penetration  %s at the end", isnan(r->penetration_max_m) ? "not measured" : "none");
 	if (!isnan(r->worst_penetration_m)) {
 		fprintf(f, "; worst %s", ob_quantity_text(&c, r->worst_penetration_m, "m"));
 		if (r->worst_penetration_m > 0)
@@ -244,14 +281,22 @@ void ob_report_print(const ob_report *r, FILE *f)
 {
 	print_setup(r, f);
 	print_tolerance(r, f);
-	if (r->steps > 0)
+	if (own_time(r) > 0)
 		print_cost(r, f);
+	if (r->faults > 0)
+		fprintf(f, "  faults       %" PRIu64 " injected: %s\n", r->faults, r->fault_kinds);
 	print_quality(r, f);
 	if (r->frame_rate > 0) {
 		fprintf(f, "  frames       %" PRIu64, r->frames);
 		if (r->fps > 0)
 			fprintf(f, ", %.3g per second", r->fps);
 		fputc('\n', f);
+	}
+	if (r->checkpoints > 0) {
+		ob_quantity bytes, held;
+		fprintf(f, "  checkpoints  %" PRIu64 " of %s; they held the run up for %s\n", r->checkpoints,
+			ob_quantity_text(&bytes, (double)r->checkpoint_bytes, "B"),
+			ob_quantity_text(&held, r->checkpoint_s, "s"));
 	}
 	if (r->trace_events > 0) {
 		fprintf(f, "  trace        %" PRIu64 " events", r->trace_events);

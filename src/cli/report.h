@@ -22,6 +22,7 @@ typedef struct ob_report {
 	uint64_t steps, substeps, iterations, lag, seed, workers; // substeps 0: as a tolerance chose
 	uint64_t load, box_tests; // numbers added up in each test of two boxes; how many tests there were
 	uint64_t frames;
+	uint64_t checkpoints, checkpoint_bytes; // written; of the last
 	uint64_t trace_events, trace_lost; // told by all; of them not in the file
 	uint64_t memory_bytes;
 	uint64_t substeps_min, substeps_median, substeps_max; // of island-steps, where a tolerance chose; else 0
@@ -29,11 +30,15 @@ typedef struct ob_report {
 	double tolerance, error_reached; // m
 	double energy_recovered; // J
 	double step, simulated_s;
+	double resumed_s; // s, simulated: where this process took the run over; NaN = it began it
+	double checkpoint_s; // s, wall: for which checkpoints held the run up; NaN = none asked for
 	double wall_s, cpu_s, total_s;
 	double body_step_cpu_us;
 	double startup_s, step_p50_s, step_p90_s, step_p99_s, step_max_s;
 	double critical_s, work_s, held_s, gate_s, gate_cpu_s, idle_s, elapsed_s; // of all workers; NaN unless timed
 	double host_cpu_s, renderer_cpu_s;
+	char fault_kinds[160]; // "kill 3, exit 1": as many as were injected of each; "" = none
+	uint64_t faults; // of all kinds
 	uint64_t switches, deaths, worker_memory_bytes;
 	double energy_start, energy_end, energy_gain_max;
 	double momentum_error;
@@ -52,6 +57,8 @@ void ob_report_write_members(const ob_report *r, ob_json *j);
 
 // Fills the figures of the tolerance, and the workers' time if the run was timed, from counters summed over all workers.
 void ob_report_count(ob_report *r, const ob_counters *c, bool timed);
+// Fills the figures of faults.
+void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS]);
 
 // Whether a tolerance was asked for or is the default, and an island's error stayed above it.
 bool ob_report_missed_tolerance(const ob_report *r);

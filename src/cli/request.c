@@ -91,8 +91,10 @@ static bool is_stdout(const char *path)
 
 static bool check_outputs(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id files[] = { OB_OPTION_FRAMES, OB_OPTION_VIDEO, OB_OPTION_RAW,  OB_OPTION_RECORD,
-					      OB_OPTION_SERIES, OB_OPTION_JSON,  OB_OPTION_TRACE };
+	static const ob_option_id files[] = {
+		OB_OPTION_FRAMES, OB_OPTION_VIDEO, OB_OPTION_RAW,   OB_OPTION_RECORD,
+		OB_OPTION_SERIES, OB_OPTION_JSON,  OB_OPTION_TRACE, OB_OPTION_CHECKPOINT
+	};
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		const char *path = a->value[files[i]], *option = name_of(files[i]);
 		if (!path)
@@ -113,6 +115,47 @@ static bool check_outputs(const ob_arguments *a, ob_error *e)
 			return false;
 	}
 	return true;
+}
+
+// A checkpoint is written beside its file, which it then replaces: that must be a file, or nothing yet.
+static bool check_checkpoint(const char *path, ob_error *e)
+{
+	struct stat s;
+	char copy[PATH_MAX];
+	if (!path)
+		return true;
+	if (stat(path, &s) == 0 && !S_ISREG(s.st_mode))
+		return ob_fail(e, "--checkpoint %s: this is no file", path);
+	if (!copy_path(copy, name_of(OB_OPTION_CHECKPOINT), path, e))
+		return false;
+	const char *dir = dirname(copy);
+	return access(dir, W_OK | X_OK) == 0 ||
+	       ob_fail(e, "--checkpoint %s: the directory %s may not be written", path, dir);
+}
+
+static bool read_checkpoint(ob_run_request *r, const ob_arguments *a, ob_error *e)
+{
+	r->checkpoint = a->value[OB_OPTION_CHECKPOINT];
+	r->every = 1;
+	if (a->value[OB_OPTION_EVERY] && !r->checkpoint)
+		return ob_fail(e, "--every needs --checkpoint");
+	return real(a, OB_OPTION_EVERY, 1e9, &r->every, e) && check_checkpoint(r->checkpoint, e);
+}
+
+// What belongs to the run that goes on.
+static bool check_resumed(const ob_arguments *a, ob_error *e)
+{
+	static const ob_option_id kept[] = { OB_OPTION_STEP,      OB_OPTION_SEED,     OB_OPTION_ARCH,
+					     OB_OPTION_TOLERANCE, OB_OPTION_SUBSTEPS, OB_OPTION_ITERATIONS,
+					     OB_OPTION_SOLVER,    OB_OPTION_LAG,      OB_OPTION_INTEGRATOR,
+					     OB_OPTION_SLEEPING,  OB_OPTION_NARROW,   OB_OPTION_LOAD };
+	if (a->operand)
+		return ob_fail(e, "--resume and the scene %s: expected one of them, for a checkpoint holds its scene",
+			       a->operand);
+	const char *given = a->defines > 0 ? name_of(OB_OPTION_DEFINE) : NULL;
+	for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+		given = a->value[kept[i]] ? name_of(kept[i]) : given;
+	return !given || ob_fail(e, "--%s: a resumed run keeps the settings that it has; leave this away", given);
 }
 
 static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
@@ -189,6 +232,16 @@ static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
+static bool check_harden(const ob_run_request *r, ob_error *e)
+{
+	if (r->harden && r->asked.monolith == 1)
+		return ob_fail(e,
+			       "--harden: a monolith is one simulator, which writes all; leave --arch monolith away");
+	if (r->harden && r->isolation != OB_ISOLATION_PROCESS)
+		return ob_fail(e, "--harden: threads share all their memory; add --isolation process");
+	return true;
+}
+
 static bool read_setting(ob_run_settings *to, const ob_setting *s, const char *text, ob_error *e)
 {
 	void *at = (char *)to + s->offset;
@@ -237,6 +290,72 @@ static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
+// One of "a+b+c"; moves *at behind it.
+static bool read_fault_kind(ob_fault_plan *f, const char **at, ob_error *e)
+{
+	char word[16];
+	uint32_t kind;
+	const size_t n = strcspn(*at, "+:");
+	snprintf(word, sizeof word, "%.*s", (int)(n < sizeof word ? n : sizeof word - 1), *at);
+	if (!ob_setting_find(OB_FAULT_NAMES, word, &kind))
+		return ob_fail(e, "--fault %s: expected some of %s, with + between them", word, OB_FAULT_NAMES);
+	f->kinds |= 1u << kind;
+	*at += n;
+	return true;
+}
+
+// One "name=value"; moves *at behind it.
+static bool read_fault_number(ob_fault_plan *f, const char **at, ob_error *e)
+{
+	char word[64], *value;
+	uint64_t n = 0;
+	const size_t length = strcspn(*at, ",");
+	snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), *at);
+	*at += length + ((*at)[length] == ',');
+	value = strchr(word, '=');
+	if (!value)
+		return ob_fail(e, "--fault %s: expected p=, seed=, words= or ms=", word);
+	*value++ = 0;
+	if (strcmp(word, "p") == 0)
+		return ob_number_real("fault p", value, 0, 1, &f->probability, e);
+	if (strcmp(word, "seed") == 0)
+		return ob_number_count("fault seed", value, 0, UINT64_MAX, &f->seed, e);
+	const bool words = strcmp(word, "words") == 0;
+	if (!words && strcmp(word, "ms") != 0)
+		return ob_fail(e, "--fault %s: expected p=, seed=, words= or ms=", word);
+	if (!ob_number_count(words ? "fault words" : "fault ms", value, 1, 100000, &n, e))
+		return false;
+	*(words ? &f->words : &f->sleep_ms) = (uint32_t)n;
+	return true;
+}
+
+// "kill+exit:p=.001,seed=7"
+static bool read_fault(ob_run_request *r, const char *text, ob_error *e)
+{
+	ob_fault_plan f = { .seed = 1, .words = 1, .sleep_ms = 20 };
+	if (!text)
+		return true;
+	do
+		if (!read_fault_kind(&f, &text, e))
+			return false;
+	while (*text++ == '+');
+	for (; text[-1] && *text;)
+		if (!read_fault_number(&f, &text, e))
+			return false;
+	if (!(f.probability > 0))
+		return ob_fail(e, "--fault: expected how probable a fault is at each chance, as in kill:p=.001");
+	const uint32_t anywhere = 1u << OB_FAULT_SLOW | 1u << OB_FAULT_NOSPACE;
+	if (f.kinds & ~anywhere && r->isolation != OB_ISOLATION_PROCESS)
+		return ob_fail(
+			e,
+			"--fault: only slow and nospace can happen to a thread; give the simulators processes of their "
+			"own: --isolation process");
+	if (f.kinds & 1u << OB_FAULT_NOSPACE && !r->checkpoint)
+		return ob_fail(e, "--fault nospace is for --checkpoint");
+	r->fault = f;
+	return true;
+}
+
 static bool check_name(const char *name, ob_error *e)
 {
 	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
@@ -249,20 +368,42 @@ static bool check_name(const char *name, ob_error *e)
 	return true;
 }
 
+// What is run runs as fast as it can, and what people look at as they live, unless something else is said.
+static bool read_pace(ob_run_request *r, const ob_arguments *a, ob_error *e)
+{
+	const char *text = a->value[OB_OPTION_PACE];
+	r->pace = a->command == OB_COMMAND_SERVE ? 1 : OB_PACE_MAX;
+	if (text && strcmp(text, "realtime") == 0)
+		r->pace = 1;
+	else if (text && strcmp(text, "max") == 0)
+		r->pace = OB_PACE_MAX;
+	else
+		return real(a, OB_OPTION_PACE, 1e6, &r->pace, e);
+	return true;
+}
+
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
-	static const char *const verbs[] = { [OB_COMMAND_RUN] = "run", [OB_COMMAND_COMPARE] = "compare" };
-	if (!a->operand)
+	static const char *const verbs[] = {
+		[OB_COMMAND_RUN] = "run", [OB_COMMAND_COMPARE] = "compare", [OB_COMMAND_SERVE] = "serve"
+	};
+	const char *resume = a->value[OB_OPTION_RESUME];
+	if (resume && !check_resumed(a, e))
+		return false;
+	if (!a->operand && !resume)
 		return ob_fail(e, "no scene given: obsim %s scenes/falling_boxes.lua", verbs[a->command]);
 	const char *isolation = a->value[OB_OPTION_ISOLATION], *measure = a->value[OB_OPTION_MEASURE];
 	*r = (ob_run_request){
 		.scene = a->operand,
+		.resume = resume,
 		.scene_options = { .defines = a->define, .define_count = a->defines },
 		.name = a->value[OB_OPTION_NAME],
 		.isolation =
 			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.strict = a->value[OB_OPTION_STRICT] != NULL,
+		.harden = a->value[OB_OPTION_HARDEN] &&
+			  a->command != OB_COMMAND_COMPARE, // which has it as configurations
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
 			   : strcmp(measure, "profile") == 0        ? OB_MEASURE_PROFILE
 								    : OB_MEASURE_ENDS,
@@ -274,10 +415,22 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;
 	if (r->measure != OB_MEASURE_STEPS && r->series)
 		return ob_fail(e, "--series has a line for each step: it needs --measure step");
-	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) &&
+	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_PATIENCE, 1e9, &r->patience, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
-	       read_settings(r, a, e) && read_workers(r, a, e) && check_name(r->name, e) &&
-	       read_frames(&r->frames, a, e) && check_outputs(a, e);
+	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && check_harden(r, e) &&
+	       check_name(r->name, e) && read_frames(&r->frames, a, e) && check_outputs(a, e) &&
+	       read_checkpoint(r, a, e) && read_fault(r, a->value[OB_OPTION_FAULT], e);
+}
+
+ob_host_config ob_request_host(const ob_run_request *r)
+{
+	return (ob_host_config){ .run = r->run,
+				 .name = r->name,
+				 .isolation = r->isolation,
+				 .workers = r->workers,
+				 .harden = r->harden,
+				 .trace = r->trace,
+				 .patience = r->patience };
 }
 
 uint64_t ob_request_steps(double duration, double step)
@@ -303,17 +456,19 @@ static bool check_camera(const char *name, const ob_scene *s, ob_error *e)
 	return ob_fail(e, "--camera %s: the scene has none of this name, only: %s", name, all);
 }
 
-bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
+// What the run is now known to be, against what is asked of it.
+static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
-	r->duration = r->duration > 0 ? r->duration : s->duration;
-	r->run = s->run;
-	if (!ob_run_settings_resolve(&r->run, &r->asked, e))
-		return false;
 	if (r->run.monolith && r->explain)
 		return ob_fail(e, "--explain means nothing to --arch monolith");
+	if (r->run.monolith && r->checkpoint)
+		return ob_fail(
+			e,
+			"--checkpoint: a monolith cannot be resumed, for ODE does not show all that its world holds");
 	if (r->strict && !(r->run.tolerance > 0))
 		return ob_fail(e,
 			       "--strict: this run has no tolerance that it could miss; give it one with --tolerance");
+	r->run.fault = r->fault;
 	r->run.timed = r->explain || r->measure == OB_MEASURE_PROFILE;
 	uint64_t steps = ob_request_steps(r->duration, r->run.step_length);
 	// a motion carries its step as 32 bits
@@ -321,4 +476,23 @@ bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(e, "%g s in steps of %g s are too many steps (at most %" PRIu32 "): shorten --duration",
 			       r->duration, r->run.step_length, UINT32_MAX - 2);
 	return !r->frames.camera || check_camera(r->frames.camera, s, e);
+}
+
+bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
+{
+	r->duration = r->duration > 0 ? r->duration : s->duration;
+	r->run = s->run;
+	return ob_run_settings_resolve(&r->run, &r->asked, e) && check_run(r, s, e);
+}
+
+bool ob_request_resume(ob_run_request *r, const ob_saved_run *saved, const ob_scene *s, ob_error *e)
+{
+	const double now = (double)saved->host.universe.step * saved->settings.step_length;
+	r->scene = saved->scene;
+	r->scene_options = saved->options;
+	r->run = saved->settings;
+	if (r->duration > 0 && ob_request_steps(r->duration, r->run.step_length) < saved->host.universe.step)
+		return ob_fail(e, "--duration %g: the run in %s is at %g s already", r->duration, r->resume, now);
+	r->duration = r->duration > 0 ? r->duration : saved->duration;
+	return check_run(r, s, e);
 }

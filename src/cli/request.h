@@ -2,8 +2,10 @@
 #ifndef OB_CLI_REQUEST_H
 #define OB_CLI_REQUEST_H
 
+#include "checkpoint/saved_run.h"
 #include "cli/options.h"
 #include "host/host.h"
+#include "host/pace.h"
 #include "scene/scene.h"
 
 typedef struct ob_frames_request {
@@ -22,19 +24,25 @@ typedef enum ob_measure_when {
 } ob_measure_when;
 
 typedef struct ob_run_request {
-	const char *scene; // path
+	const char *scene; // path; NULL until a resumed run knows it
 	ob_scene_options scene_options;
 	const char *name; // of the universe; NULL = the host's choice
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object
+	bool harden;
 	double duration; // s; 0 = the scene's
+	double patience; // s, for a step; 0 = the host's choice
 	ob_run_settings asked; // a layer: what the command line leaves alone is unset
 	ob_run_settings run; // after ob_request_resolve
 	bool explain;
 	bool strict; // a missed tolerance is a failure
 	ob_measure_when measure;
 	ob_frames_request frames;
+	double pace; // simulated seconds a second; OB_PACE_MAX
 	const char *record, *series, *trace, *json; // paths; NULL = not asked for; json "-" = standard output
+	const char *checkpoint, *resume; // paths; NULL = not asked for
+	double every; // s, simulated, between checkpoints
+	ob_fault_plan fault; // to inject; zeroed = none
 } ob_run_request;
 
 // false and e on what is no number, out of range, contradictory, or names a directory that is not there.
@@ -44,6 +52,13 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 // Where the command line is silent, the scene decides: fills the duration and the settings of the run.
 // false and e when the result cannot be run.
 bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e);
+
+// The same of a run that goes on from a checkpoint, whose settings it keeps; s is the scene of saved, which must
+// outlive r.
+bool ob_request_resume(ob_run_request *r, const ob_saved_run *saved, const ob_scene *s, ob_error *e);
+
+// What it asks of the host; of a resolved one.
+ob_host_config ob_request_host(const ob_run_request *r);
 
 // Steps in a duration: the first step boundary at or after its end.
 uint64_t ob_request_steps(double duration, double step);

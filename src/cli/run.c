@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "checkpoint/writer.h"
 #include "cli/capture.h"
 #include "cli/command.h"
 #include "cli/observe.h"
@@ -14,7 +15,7 @@
 #include "cli/quantity.h"
 #include "cli/report.h"
 #include "cli/version.h"
-#include "host/interrupt.h"
+#include "base/interrupt.h"
 #include "record/record.h"
 
 typedef struct run {
@@ -23,13 +24,20 @@ typedef struct run {
 	ob_host *host;
 	ob_capture *capture; // NULL = no frames
 	ob_recorder *recorder; // NULL = none
+	ob_pace pace;
 	ob_observer observer;
 	ob_snapshot now, prev; // prev: the last one before now, for what is drawn between both
-	uint64_t steps; // to do
+	ob_saved_run saved; // that it goes on from; else zeroed
+	ob_checkpoint_file saved_file; // what saved points into
+	ob_checkpoint_writer *checkpoints; // NULL = none
+	uint64_t first; // step at which this process began
+	uint64_t steps; // to do, from the start of the run
+	uint64_t every, kept; // steps from one checkpoint to the next; that of the last one; UINT64_MAX = none yet
 	uint64_t frames;
 	double begun; // s
 	double own_cpu, drawing_cpu; // s of this thread: when stepping began; while it drew
 	ob_timeline_sums trace;
+	ob_checkpoint_sums checkpoint_sums;
 } run;
 
 static uint64_t earlier(uint64_t a, uint64_t b)
@@ -47,6 +55,8 @@ static uint64_t next_boundary(const run *r)
 		return now + 1;
 	if (r->recorder)
 		next = earlier(next, (now / r->scene->record_every + 1) * r->scene->record_every);
+	if (r->checkpoints)
+		next = earlier(next, (now / r->every + 1) * r->every);
 	if (r->capture)
 		next = earlier(next, ob_capture_need(r->capture, now));
 	return next;
@@ -55,11 +65,12 @@ static uint64_t next_boundary(const run *r)
 // What is done with the newest snapshot, while the universe steps on.
 static bool use_snapshot(run *r, ob_error *e)
 {
-	const ob_snapshot *prev = r->now.step > 0 ? &r->prev : NULL;
+	const ob_snapshot *prev = r->now.step > r->first ? &r->prev : NULL;
 	bool ends = r->now.step == 0 || r->now.step >= r->steps;
 	uint64_t begin = ob_clock_ns();
 	if (r->request.measure == OB_MEASURE_STEPS || ends) {
-		ob_observer_measure(&r->observer, &r->now);
+		if (!ob_observer_measure(&r->observer, &r->now, r->host, e))
+			return false;
 		ob_host_trace(r->host, OB_TRACE_MEASURE, begin, 0);
 	}
 	begin = ob_clock_ns();
@@ -89,6 +100,47 @@ static bool take_snapshot(run *r, ob_error *e)
 	return taken;
 }
 
+static bool measures_all(const run *r)
+{
+	return r->request.measure == OB_MEASURE_STEPS && (!r->request.resume || r->saved.figures.each_step);
+}
+
+// Of the step of the newest snapshot, where the universe stands.
+static void keep_checkpoint(run *r)
+{
+	const ob_run_request *q = &r->request;
+	ob_error e;
+	ob_saved_run now = {
+		.scene = q->scene,
+		.text = r->scene->text,
+		.text_size = r->scene->text_size,
+		.options = q->scene_options,
+		.duration = q->duration,
+		.settings = q->run,
+	};
+	now.settings.timed = 0;
+	now.settings.fault = (ob_fault_plan){ 0 };
+	ob_observer_save(&r->observer, &now.figures);
+	now.figures.each_step = measures_all(r);
+	if (ob_saved_run_make(&now, ob_checkpoint_writer_file(r->checkpoints), r->host, ob_version_words, &e))
+		ob_checkpoint_writer_write(r->checkpoints, r->now.time);
+	else
+		ob_log_warn("--checkpoint %s: no checkpoint of %g s: %s", q->checkpoint, r->now.time, e.text);
+	r->kept = r->now.step;
+}
+
+// How far of the way to the next boundary the clock lets it go
+static uint64_t keep_pace(run *r, uint64_t next)
+{
+	uint64_t due = next;
+	if (isinf(r->request.pace))
+		return next;
+	do
+		due = ob_pace_wait(&r->pace, r->now.step, r->request.run.step_length, .05);
+	while (due <= r->now.step && !ob_host_interrupted(r->host));
+	return earlier(due, next);
+}
+
 // Stepping and measuring overlap: the snapshot of one boundary is used while the universe runs to the next.
 static bool step_through(run *r, ob_error *e)
 {
@@ -97,8 +149,11 @@ static bool step_through(run *r, ob_error *e)
 		return false;
 	for (;;) {
 		uint64_t next = next_boundary(r);
+		if (r->checkpoints && r->now.step % r->every == 0 && r->now.step > r->first && r->now.step != r->kept &&
+		    next != UINT64_MAX)
+			keep_checkpoint(r);
 		if (next != UINT64_MAX)
-			ob_host_go(r->host, next);
+			ob_host_go(r->host, keep_pace(r, next));
 		if (!use_snapshot(r, e))
 			return false;
 		if (next == UINT64_MAX)
@@ -119,14 +174,17 @@ static bool open_outputs(run *r, ob_error *e)
 {
 	const ob_run_request *q = &r->request;
 	if (q->frames.wanted) { // first, for it makes directories
-
-		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->run.step_length, e);
+		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->run.step_length, r->first, e);
 		if (!r->capture)
 			return false;
 		ob_capture_trace(r->capture, r->host);
 	}
 	if (!ob_observer_open(&r->observer, r->scene, q->series, e))
 		return false;
+	if (q->resume)
+		ob_observer_resume(&r->observer, &r->saved.figures);
+	if (q->checkpoint && !(r->checkpoints = ob_checkpoint_writer_create(q->checkpoint, &q->fault)))
+		return ob_fail(e, "no memory for checkpoints");
 	if (q->record) {
 		ob_universe_info info;
 		ob_universe_get_info(ob_host_universe(r->host), &info);
@@ -148,8 +206,10 @@ static bool close_outputs(run *r, ob_error *e)
 		fine &= ob_recorder_close(r->recorder, fine ? e : NULL);
 	fine &= ob_observer_close(&r->observer, fine ? e : NULL);
 	fine &= ob_host_end_trace(r->host, &r->trace, fine ? e : NULL);
+	fine &= ob_checkpoint_writer_close(r->checkpoints, &r->checkpoint_sums, fine ? e : NULL);
 	r->capture = NULL;
 	r->recorder = NULL;
+	r->checkpoints = NULL;
 	return fine;
 }
 
@@ -162,17 +222,23 @@ static void count_objects(const ob_snapshot *s, ob_report *p)
 	}
 }
 
-// Steps times bodies, of those that come and go only while they are there
-static double body_steps(const run *r)
+// Steps times bodies since a time (s), of those that come and go only while they are there
+static double body_steps(const run *r, double since)
 {
 	double sum = 0;
 	for (uint32_t i = 0; i < r->scene->objects; i++) {
 		const ob_object_def *d = &r->scene->object[i];
-		double there = fmin(d->dies, r->now.time) - fmax(d->born, 0);
+		double there = fmin(d->dies, r->now.time) - fmax(d->born, since);
 		if (!(d->passport.flags & OB_OBJECT_STATIC) && there > 0)
 			sum += there / r->request.run.step_length;
 	}
 	return sum;
+}
+
+// Simulated, when this process began (s)
+static double first_time(const run *r)
+{
+	return (double)r->first * r->request.run.step_length;
 }
 
 static void name_report(const run *r, const char *outcome, ob_report *p)
@@ -184,6 +250,7 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.workers = info.workers,
 		.steps = r->now.step,
 		.simulated_s = r->now.time,
+		.resumed_s = q->resume ? first_time(r) : NAN,
 		.step = q->run.step_length,
 		.substeps = q->run.tolerance > 0 ? 0 : q->run.substeps,
 		.iterations = q->run.iterations,
@@ -196,6 +263,9 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.total_s = ob_clock_wall() - r->begun,
 		.trace_events = r->trace.events,
 		.trace_lost = r->trace.lost,
+		.checkpoints = r->checkpoint_sums.written,
+		.checkpoint_bytes = r->checkpoint_sums.bytes,
+		.checkpoint_s = q->checkpoint ? r->checkpoint_sums.held_s : NAN,
 	};
 	snprintf(p->scene, sizeof p->scene, "%s", q->scene);
 	snprintf(p->outcome, sizeof p->outcome, "%s", outcome);
@@ -214,6 +284,10 @@ static void report_time(const run *r, const ob_host_times *times, ob_report *p)
 	bool timed = ob_universe_settings(ob_host_universe(r->host))->timed;
 	ob_universe_count(ob_host_universe(r->host), &counters);
 	ob_report_count(p, &counters, timed);
+	uint64_t faults[OB_FAULT_KINDS];
+	ob_universe_faults(ob_host_universe(r->host), faults);
+	faults[OB_FAULT_NOSPACE] += r->checkpoint_sums.faults;
+	ob_report_faults(p, faults);
 	p->wall_s = times->wall_s;
 	p->cpu_s = times->cpu_s;
 	p->startup_s = times->startup_s;
@@ -247,10 +321,10 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 {
 	ob_host_times times;
 	ob_host_get_times(r->host, &times);
-	ob_observer_measure(&r->observer, &r->now);
+	ob_observer_measure(&r->observer, &r->now, r->host, NULL);
 	name_report(r, outcome, p);
 	count_objects(&r->now, p);
-	ob_observer_report(&r->observer, r->request.measure == OB_MEASURE_STEPS, p);
+	ob_observer_report(&r->observer, measures_all(r), p);
 	report_separation(r, p);
 	snprintf(p->state_hash, sizeof p->state_hash, "%016" PRIx64, ob_measure_hash(&r->now));
 	report_time(r, &times, p);
@@ -258,7 +332,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->worker_memory_bytes = times.worker_memory_bytes;
 	p->switches = times.switches;
 	p->deaths = times.deaths;
-	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r);
+	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r, first_time(r));
 }
 
 static bool write_json(const char *path, const ob_report *p, ob_error *e)
@@ -285,7 +359,7 @@ static void warn_of_missed_tolerance(const ob_report *p)
 static void explain(const run *r, const ob_report *p, FILE *f)
 {
 	const ob_universe *u = ob_host_universe(r->host);
-	ob_explained x = { &r->request, r->scene, ob_universe_settings(u), { 0 }, body_steps(r), p->cpu_s };
+	ob_explained x = { &r->request, r->scene, ob_universe_settings(u), { 0 }, body_steps(r, 0), p->cpu_s };
 	ob_universe_count(u, &x.counters);
 	ob_explain_print(&x, f);
 }
@@ -307,11 +381,15 @@ static int carry_out(run *r)
 {
 	ob_error e = { "" }, e_close, e_report;
 	ob_progress *progress = ob_progress_begin(ob_host_universe(r->host), r->steps);
+	ob_pace_begin(&r->pace, r->request.pace, false);
 	bool ready = open_outputs(r, &e);
 	bool done = ready && step_through(r, &e);
 	bool interrupted = !done && ob_host_interrupted(r->host);
+	if (r->checkpoints && (done || interrupted) && r->kept != r->now.step)
+		keep_checkpoint(r);
 	bool closed = close_outputs(r, &e_close);
 	ob_progress_end(progress);
+	ob_pace_end(&r->pace);
 
 	int code = OB_EXIT_OK;
 	if (interrupted)
@@ -334,24 +412,57 @@ static int carry_out(run *r)
 	return code;
 }
 
+// The scene of the run, and what is asked of it, joined. NULL and e on failure.
+static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
+{
+	ob_run_request *q = &r->request;
+	if (!ob_request_read(q, a, e))
+		return NULL;
+	if (!q->resume) {
+		r->scene = ob_scene_load(q->scene, &q->scene_options, e);
+		return r->scene && ob_request_resolve(q, r->scene, e) ? r->scene : NULL;
+	}
+	ob_saved_run *saved = &r->saved;
+	if (!ob_saved_run_open(saved, &r->saved_file, q->resume, e))
+		return NULL;
+	r->scene = ob_scene_load_text(saved->scene, saved->text, saved->text_size, &saved->options, e);
+	if (!r->scene || !ob_request_resume(q, saved, r->scene, e))
+		return NULL;
+	if (strcmp(r->saved_file.program, ob_version_words) != 0)
+		ob_log_warn("%s was written by obsim %s; this is %s, and may end in other bits", q->resume,
+			    r->saved_file.program, ob_version_words);
+	r->first = saved->host.universe.step;
+	return r->scene;
+}
+
+static void prepare(run *r, ob_host_config *config)
+{
+	const ob_run_request *q = &r->request;
+	r->steps = ob_request_steps(q->duration, q->run.step_length);
+	r->every = ob_request_steps(q->every, q->run.step_length);
+	r->kept = UINT64_MAX;
+	*config = ob_request_host(q);
+	config->from = q->resume ? &r->saved.host : NULL;
+}
+
+static void finish(run *r)
+{
+	ob_snapshot_finish(&r->now);
+	ob_snapshot_finish(&r->prev);
+	ob_scene_free(r->scene);
+	ob_saved_run_close(&r->saved, &r->saved_file);
+}
+
 int ob_command_run(const ob_arguments *a)
 {
 	run r = { .begun = ob_clock_wall() };
 	ob_error e;
 	ob_host_config config = { 0 };
-	if (!ob_request_read(&r.request, a, &e))
-		return ob_command_fail(OB_EXIT_USAGE, e.text);
-	r.scene = ob_scene_load(r.request.scene, &r.request.scene_options, &e);
-	if (!r.scene || !ob_request_resolve(&r.request, r.scene, &e)) {
-		ob_scene_free(r.scene);
+	if (!read_scene(&r, a, &e)) {
+		finish(&r);
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	}
-	r.steps = ob_request_steps(r.request.duration, r.request.run.step_length);
-	config.run = r.request.run;
-	config.name = r.request.name;
-	config.isolation = r.request.isolation;
-	config.workers = r.request.workers;
-	config.trace = r.request.trace;
+	prepare(&r, &config);
 
 	signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message
 	ob_interrupt_watch(); // before there is anything that Ctrl-C would leave behind
@@ -359,8 +470,6 @@ int ob_command_run(const ob_arguments *a)
 	int code = r.host ? carry_out(&r) : ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_host_stop(r.host);
 	ob_interrupt_release();
-	ob_snapshot_finish(&r.now);
-	ob_snapshot_finish(&r.prev);
-	ob_scene_free(r.scene);
+	finish(&r);
 	return code;
 }

@@ -13,6 +13,7 @@
 #include "cli/quantity.h"
 #include "cli/terminal.h"
 #include "cli/top.h"
+#include "table/table.h"
 
 enum { NAMES_MAX = 64 };
 static const double watch_period = .05; // s, between looks at the workers' clocks
@@ -137,7 +138,9 @@ int ob_command_top(const ob_arguments *a)
 	} else if (!isatty(STDIN_FILENO) || !ob_terminal_enter()) {
 		code = ob_command_fail(OB_EXIT_USAGE, "standard input is no terminal for its keys: use --once");
 	} else {
+		ob_pages_guard(ob_terminal_leave);
 		bool fine = watch(u, interval);
+		ob_pages_guard(NULL);
 		ob_terminal_leave();
 		code = fine ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, "out of memory");
 	}

@@ -1,8 +1,6 @@
 #include "cli/top.h"
 
-#include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -115,7 +113,7 @@ bool ob_top_look(ob_top_sample *s, const ob_universe *u)
 	bool first = s->at == 0;
 	ob_universe_get_info(u, &s->info);
 	s->at = at;
-	s->alive = kill(s->info.host_pid, 0) == 0 || errno == EPERM;
+	s->alive = ob_universe_is_hosted(u);
 	s->steps_per_second = first ? NAN : (double)(s->info.step - step) / span;
 	s->pace = first ? NAN : (s->info.time - time) / span;
 	return look_at_workers(s, u) && look_at_objects(s, u);

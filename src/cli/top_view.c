@@ -8,6 +8,8 @@
 #include <wchar.h>
 #include <wctype.h>
 
+#include "base/utf8.h"
+
 enum { LINE_MAX_BYTES = 512, NAME_WIDTH = 12, WORKERS_AT_A_GLANCE = 4, WORKER_HEADING = 2 };
 
 // One line, cut at the screen's width. What counts is characters, but only names have any beyond ASCII, and those
@@ -48,14 +50,15 @@ static int clean_name(const char *name, int max, char *out, size_t size)
 			n = 1;
 			state = (mbstate_t){ 0 };
 		}
-		int cells = good && iswprint((wint_t)c) ? wcwidth(c) : 1;
+		bool shown = good && iswprint((wint_t)c) && ob_utf8_is_plain((uint32_t)c);
+		int cells = shown ? wcwidth(c) : 1;
 		if (cells < 0 || width + cells > max)
 			break;
-		if (good && iswprint((wint_t)c))
+		if (shown)
 			memcpy(out + used, at, n);
 		else
 			out[used] = '?';
-		used += good && iswprint((wint_t)c) ? n : 1;
+		used += shown ? n : 1;
 		width += cells;
 		at += n;
 	}

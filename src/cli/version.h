@@ -6,6 +6,7 @@
 
 extern const char ob_version_number[];
 extern const char ob_version_commit[]; // git commit, with + when files differed from it; "unknown" outside of git
+extern const char ob_version_words[]; // both in one: "0.1.0 (commit ...)"
 void ob_version_print(FILE *f);
 
 #endif

@@ -12,21 +12,27 @@
 #include "experiment/process.h"
 
 const ob_configuration ob_configuration_table[OB_CONFIGURATIONS] = {
-	[OB_CONFIGURATION_MONOLITH] = { "monolith", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0, false },
-	[OB_CONFIGURATION_THREAD] = { "thread_1", "1 thread", "obs", "thread", OB_WORKERS_ONE, 0, false },
-	[OB_CONFIGURATION_THREADS_2] = { "threads_2", "2 threads", "obs", "thread", OB_WORKERS_TWO, 0, false },
-	[OB_CONFIGURATION_THREADS] = { "threads", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, false },
-	[OB_CONFIGURATION_PROCESSES] = { "processes", "process pool", "obs", "process", OB_WORKERS_POOL, 0, false },
-	[OB_CONFIGURATION_GROUPS] = { "process_groups", "groups of 60", "obs", "process", OB_WORKERS_GROUPS, 0, false },
+	[OB_CONFIGURATION_MONOLITH] = { "monolith", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0, false, false },
+	[OB_CONFIGURATION_THREAD] = { "thread_1", "1 thread", "obs", "thread", OB_WORKERS_ONE, 0, false, false },
+	[OB_CONFIGURATION_THREADS_2] = { "threads_2", "2 threads", "obs", "thread", OB_WORKERS_TWO, 0, false, false },
+	[OB_CONFIGURATION_THREADS] = { "threads", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, false, false },
+	[OB_CONFIGURATION_PROCESSES] = { "processes", "process pool", "obs", "process", OB_WORKERS_POOL, 0, false,
+					 false },
+	[OB_CONFIGURATION_GROUPS] = { "process_groups", "groups of 60", "obs", "process", OB_WORKERS_GROUPS, 0, false,
+				      false },
 	// more than these make one workstation wait for its scheduler alone
 	[OB_CONFIGURATION_THREADS_EACH] = { "threads_each", "thread each", "obs", "thread", OB_WORKERS_EACH, 4096,
-					    false },
+					    false, false },
 	[OB_CONFIGURATION_PROCESSES_EACH] = { "processes_each", "process each", "obs", "process", OB_WORKERS_EACH, 1024,
-					      false },
+					      false, false },
+	[OB_CONFIGURATION_HARDENED] = { "processes_hardened", "hardened pool", "obs", "process", OB_WORKERS_POOL, 0,
+					false, true },
+	[OB_CONFIGURATION_HARDENED_EACH] = { "processes_each_hardened", "hardened each", "obs", "process",
+					     OB_WORKERS_EACH, 1024, false, true },
 	[OB_CONFIGURATION_MONOLITH_OTHER] = { "monolith_other", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0,
-					      true },
-	[OB_CONFIGURATION_THREADS_OTHER] = { "threads_other", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0,
-					     true },
+					      true, false },
+	[OB_CONFIGURATION_THREADS_OTHER] = { "threads_other", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, true,
+					     false },
 };
 
 #define METRIC(id, key_, title_, unit_, scale_, group_, meaning_) \
@@ -180,7 +186,7 @@ static void plan_point(const ob_comparison *c, ob_sweep_point *p)
 			snprintf(why, room, "the pool has as many");
 		else if (i == OB_CONFIGURATION_GROUPS && p->workers[i] < 2)
 			snprintf(why, room, "%" PRIu32 " objects are one group", p->objects);
-		else if (w->objects_max && p->objects > w->objects_max)
+		else if (w->objects_max && p->objects > w->objects_max && (!w->hardened || c->hardened))
 			snprintf(why, room, "%" PRIu32 " objects are more than the %" PRIu32 " that are tried",
 				 p->objects, w->objects_max);
 	}
@@ -242,6 +248,8 @@ char **ob_comparison_arguments(const ob_comparison *c, const ob_sweep_point *p, 
 	ADD("--json=-");
 	ADD("--arch=%s", w->arch);
 	ADD("--isolation=%s", w->isolation);
+	if (w->hardened)
+		ADD("--harden");
 	ADD("--narrow=%s", w->other_narrow ? c->other : c->narrow);
 	ADD("--seed=%" PRIu64, seed);
 	ADD("--measure=%s", kind == OB_COMPARE_MEASURED ? "step" : timed ? "profile" : "end");
@@ -393,7 +401,7 @@ static double guess(const job *j)
 static bool add_trial(ob_trials *s, const job *j, uint32_t seed)
 {
 	ob_trial t = { .seed = j->point->seed + seed, .guess_s = guess(j), .what = j };
-	if (*j->point->skipped[j->id])
+	if (*j->point->skipped[j->id] || (ob_configuration_table[j->id].hardened && !j->comparison->hardened))
 		return true;
 	memcpy(t.of, j->point->key, sizeof t.of);
 	ob_configuration_key(j->id, j->kind, t.configuration);

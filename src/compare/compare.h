@@ -25,6 +25,7 @@ typedef struct ob_configuration {
 	ob_worker_count workers;
 	uint32_t objects_max; // with more objects it is not tried; 0 = any number
 	bool other_narrow; // runs with the narrow phase that was not asked for
+	bool hardened; // with --harden; only if asked for
 } ob_configuration;
 
 typedef enum ob_configuration_id {
@@ -36,6 +37,8 @@ typedef enum ob_configuration_id {
 	OB_CONFIGURATION_GROUPS,
 	OB_CONFIGURATION_THREADS_EACH,
 	OB_CONFIGURATION_PROCESSES_EACH,
+	OB_CONFIGURATION_HARDENED,
+	OB_CONFIGURATION_HARDENED_EACH,
 	OB_CONFIGURATION_MONOLITH_OTHER, // from here on: the other narrow phase
 	OB_CONFIGURATION_THREADS_OTHER,
 	OB_CONFIGURATIONS
@@ -108,6 +111,7 @@ typedef struct ob_comparison {
 	const char *scene; // path
 	const char *narrow, *other; // narrow phases
 	uint32_t repeats, seeds, pool;
+	bool hardened; // the hardened configurations, too
 	bool drawn; // each configuration is run once with frames, too
 	char options[512]; // as the command line had them
 	uint32_t passed; // options that each run gets

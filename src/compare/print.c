@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
 #include "compare/compare.h"
 #include "compare/table.h"
 #include "experiment/json.h"
@@ -157,6 +158,7 @@ static void print_point(const ob_comparison *c, const ob_sweep_point *p, FILE *f
 	snprintf(line, sizeof line, "%.300s%s%s: %" PRIu32 " objects, %" PRIu64 " steps of %g s, %g s simulated; %s%s",
 		 c->scene, *p->define ? " " : "", p->define, p->objects, p->steps, p->step, p->simulated, runs,
 		 c->repeats * c->seeds > 1 ? "; medians" : "");
+	ob_utf8_make_plain(line); // a file's name may be anybody's
 	fputc('\n', f);
 	print_wrapped(f, line, width);
 	fputc('\n', f);

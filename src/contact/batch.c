@@ -44,11 +44,108 @@ void ob_batch_clear(ob_batch *b, int l)
 		b->impulse[i][l] = b->impulse_start[i][l] = 0;
 }
 
+// ---- the patch
+
+typedef struct vec2 {
+	double x, y;
+} vec2;
+
+static double cross2(vec2 a, vec2 b)
+{
+	return a.x * b.y - a.y * b.x;
+}
+
+static double length2(vec2 a)
+{
+	return sqrt(a.x * a.x + a.y * a.y);
+}
+
+static vec2 mean2(vec2 a, double f, vec2 b, double g)
+{
+	return (vec2){ f * a.x + g * b.x, f * a.y + g * b.y };
+}
+
+// Half edges of a parallelogram like the four points, which are taken in the order around them: the one that encloses
+// most.
+static void edges_of_four(const vec2 *p, vec2 *e1, vec2 *e2)
+{
+	static const int order[3][4] = { { 0, 1, 2, 3 }, { 0, 2, 1, 3 }, { 0, 1, 3, 2 } };
+	double most = -1;
+	for (int k = 0; k < 3; k++) {
+		vec2 a = p[order[k][0]], b = p[order[k][1]], c = p[order[k][2]], d = p[order[k][3]];
+		vec2 along = mean2(mean2(b, .25, c, .25), 1, mean2(a, .25, d, .25), -1);
+		vec2 across = mean2(mean2(c, .25, d, .25), 1, mean2(a, .25, b, .25), -1);
+		if (fabs(cross2(along, across)) > most)
+			most = fabs(cross2(along, across)), *e1 = along, *e2 = across;
+	}
+}
+
+// .. with the second moment of the triangle's area. One edge is along the longest side.
+static void edges_of_three(const vec2 *p, vec2 *e1, vec2 *e2)
+{
+	double longest = -1;
+	for (int k = 0; k < 3; k++) {
+		vec2 side = mean2(p[(k + 1) % 3], 1, p[(k + 2) % 3], -1);
+		double length = length2(side);
+		if (length > longest) {
+			longest = length;
+			*e1 = mean2(side, sqrt(.5) / 2, p[k], 0);
+			*e2 = mean2(p[k], sqrt(1.5) / 2, side, 0);
+		}
+	}
+}
+
+// Points in a row make an edge: a parallelogram that is thin.
+static void set_thickness(vec2 *e1, vec2 *e2)
+{
+	const double thinnest = .01;
+	double l1 = length2(*e1), l2 = length2(*e2);
+	if (l2 > l1) {
+		vec2 e = *e1;
+		*e1 = *e2, *e2 = e;
+		double l = l1;
+		l1 = l2, l2 = l;
+	}
+	if (fabs(cross2(*e1, *e2)) < thinnest * l1 * l1) {
+		double along = fabs(e1->x * e2->x + e1->y * e2->y) / l1, longer = (l1 + along) / l1;
+		*e1 = mean2(*e1, longer, *e1, 0);
+		*e2 = (vec2){ -thinnest * e1->y, thinnest * e1->x };
+	}
+	if (cross2(*e1, *e2) < 0)
+		*e2 = (vec2){ -e2->x, -e2->y };
+}
+
+// p: the points, about their mean, along the tangents
+static void set_patch(ob_batch *b, int l, const vec2 *p, int points, double disc)
+{
+	vec2 e1 = { 0, 0 }, e2 = { 0, 0 };
+	if (disc > 0)
+		e1.x = e2.y = sqrt(.75) * disc; // its second moment
+	else if (points == 4)
+		edges_of_four(p, &e1, &e2);
+	else if (points == 3)
+		edges_of_three(p, &e1, &e2);
+	else if (points == 2)
+		e1 = mean2(p[1], .5, p[0], -.5);
+	double size2 = e1.x * e1.x + e1.y * e1.y + e2.x * e2.x + e2.y * e2.y;
+	if (size2 > 0)
+		set_thickness(&e1, &e2);
+	for (int j = 0; j < OB_POINTS; j++) {
+		bool used = size2 > 0 && j < points;
+		b->patch_s[j][l] = used ? cross2(p[j], e2) / cross2(e1, e2) : 0;
+		b->patch_t[j][l] = used ? cross2(e1, p[j]) / cross2(e1, e2) : 0;
+	}
+	b->patch_e1[0][l] = e1.x, b->patch_e1[1][l] = e1.y;
+	b->patch_e2[0][l] = e2.x, b->patch_e2[1][l] = e2.y;
+	b->disc[l] = disc;
+}
+
 void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 {
 	ob_vec3 n = in->normal, t1, t2, ca = { 0, 0, 0 }, cb = { 0, 0, 0 };
 	ob_tangents(n, &t1, &t2);
 	double radius = 0;
+	vec2 at[OB_POINTS] = { { 0 } };
 	for (int j = 0; j < in->points; j++) {
 		ca = ob_madd(ca, 1. / in->points, in->arm_a[j]);
 		cb = ob_madd(cb, 1. / in->points, in->arm_b[j]);
@@ -58,8 +155,11 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 		set3(b->ja[j], l, used ? ob_cross(in->arm_a[j], n) : ob_v3(0, 0, 0));
 		set3(b->jb[j], l, used ? ob_cross(in->arm_b[j], n) : ob_v3(0, 0, 0));
 		b->gap[j][l] = used ? in->gap[j] : ob_no_contact;
-		if (used)
-			radius += ob_norm(ob_sub(in->arm_a[j], ca)) / in->points;
+		if (used) {
+			ob_vec3 from = ob_sub(in->arm_a[j], ca);
+			at[j] = (vec2){ ob_dot(from, t1), ob_dot(from, t2) };
+			radius += length2(at[j]) / in->points;
+		}
 	}
 	set3(b->n, l, n);
 	set3(b->t1, l, t1);
@@ -75,10 +175,12 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 	b->ima[l] = in->inv_mass_a;
 	b->imb[l] = in->inv_mass_b;
 	b->mu[l] = in->mu;
-	b->radius[l] = radius;
+	b->radius[l] = in->points > 1 ? radius : 0;
+	set_patch(b, l, at, in->points, in->points > 1 ? in->disc_radius : 0);
 	b->body_a[l] = in->body_a;
 	b->body_b[l] = in->body_b;
 	b->live |= 1u << l;
+	b->model.known &= ~(1u << l);
 	b->elastic = in->e > 0 ? b->elastic | 1u << l : b->elastic & ~(1u << l);
 	b->dirty = 1;
 }

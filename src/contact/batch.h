@@ -2,9 +2,10 @@
 //
 // A pair is one block of seven rows: the four contact points' normal velocities, two of friction at their centroid,
 // and the twist about the normal. Its 7x7 Delassus matrix A = J M^-1 J^T is kept, scaled, and the block is solved by a
-// few Gauss-Seidel sweeps (Moreau's projected form: Jourdan, Alart and Jean 1998) with a true friction cone: the
-// friction vector is projected onto a disc of radius mu * (sum of normal impulses), the twist onto mu * radius * that
-// sum.
+// few Gauss-Seidel sweeps (Moreau's projected form: Jourdan, Alart and Jean 1998). Where the
+// bodies touch nothing else, friction and twist are one row of the sweep: they hold, or slip within the limit surface
+// of the patch (contact/patch.h). Elsewhere the friction vector is projected onto a disc of radius mu * (sum of normal
+// impulses), the twist onto mu * radius * that sum.
 //
 // Both bodies of a pair get the same impulse from the same function, with opposite signs: momentum is exact to
 // rounding, and neither needs to know who computed it.
@@ -32,6 +33,15 @@ typedef enum ob_batch_kind {
 
 typedef double ob_body_row[8];
 
+// An ellipsoid in place of the limit surface of unit load (contact/patch.h): wrenches x with x inverse x <= 1, where
+// "slip" is normal to it. Symmetric: 11 12 13 22 23 33.
+typedef struct ob_patch_model {
+	lanes surface[6], inverse[6], slip[3];
+	lanes pressure[2]; // its centre, in terms of the half edges
+	lanes stretch; // slip over impulse, when the patch slid last
+	unsigned known; // lanes
+} ob_patch_model;
+
 typedef struct ob_batch {
 	uint32_t body_a[OB_LANES], body_b[OB_LANES]; // rows of the velocity arrays; 0 in an empty lane
 	ob_batch_kind kind;
@@ -40,6 +50,9 @@ typedef struct ob_batch {
 	unsigned impact; // lanes whose impulses jumped in this substep: not to be extrapolated
 	unsigned elastic; // lanes with restitution
 	unsigned isolated; // lanes whose bodies are in no other contact
+	unsigned turning; // lanes whose geometry turns within the substep
+	unsigned slides; // lanes whose friction was at its limit in the last iteration
+	unsigned sweeps; // in the last iteration
 	unsigned active; // lanes that changed a velocity by more than the wake threshold in the last iteration
 	lanes n[3], t1[3], t2[3]; // normal (b to a), tangents
 	lanes ja[4][3], jb[4][3]; // angular Jacobian of each normal: r x n
@@ -48,9 +61,18 @@ typedef struct ob_batch {
 	lanes ka, kb; // mass splitting: contacts of each body (1 when coloured)
 	lanes gap[4]; // m, as of the displacement rows' last reset
 	lanes mu, radius;
+	// The patch (contact/patch.h), from the centroid along the tangents: half edges of the parallelogram, the
+	// points in terms of them, radius of a disc (0: it is the parallelogram).
+	lanes patch_e1[2], patch_e2[2], patch_s[4], patch_t[4], disc;
+	ob_patch_model model;
+	lanes friction_mass[6]; // inverse of A's block of friction and twist: 44 45 46 55 56 66
+	// Of friction alone: changes of its impulses that stop the slip, for those that stop each row by itself; the
+	// inverse of the largest eigenvalue; times the rows' own; the eigenvalue's square.
+	lanes hold[4], slide_mass, slide[2], slide_rate2;
 	lanes impulse[7], impulse_start[7]; // now; when the substep began
 	lanes bias[4]; // m/s, at which each gap may close
-	lanes residual; // m/s: the largest change of a velocity in the last iteration
+	lanes turn[7]; // m/s, rad/s: in lanes whose geometry turns, what the rest of the substep will add to each row
+	lanes residual; // (m/s)^2: the square of the largest change of a velocity in the last iteration
 	lanes diag[7], inv_diag[7]; // of A; the inverse is 0 for a row that is not in use
 	lanes coupling[7][7]; // [i][j] = A_ij / A_jj: impulse i does to row j what so much of impulse j does
 } ob_batch;
@@ -60,10 +82,13 @@ typedef struct ob_solver_iteration {
 	double h; // s, substep
 	int block_sweeps; // Gauss-Seidel sweeps inside a block, at most
 	double block_tolerance; // m/s: a block need not be solved more finely in this iteration
+	double converged; // m/s: a block whose sweep changes less is solved to the end
 	double wake_threshold; // m/s: a change above it makes both bodies active
 	double impact_threshold; // m/s: an approach or change above it is an impact
 	bool first; // of the substep: sets the bias from the gaps
 	bool jacobi; // adds the changes to delta instead of the velocities
+	double resting_gap, turning_gap; // m: a point that presses keeps a smaller gap; where the geometry turns
+	const ob_body_row *dv; // change of v that is expected in the substep
 } ob_solver_iteration;
 
 void ob_batch_init(ob_batch *b, ob_batch_kind kind);
@@ -74,6 +99,7 @@ typedef struct ob_batch_lane {
 	int points;
 	const ob_vec3 *arm_a, *arm_b; // m, from each centre to the points
 	const double *gap; // m
+	double disc_radius; // m, of ob_manifold
 	double mu, e;
 	double inv_mass_a, inv_mass_b;
 	const double *inv_inertia_a, *inv_inertia_b; // [6]
@@ -100,7 +126,6 @@ void ob_batch_limit_prediction(ob_batch *b, const double *cap_impulse, double ca
 void ob_batch_row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r);
 // M^-1 J^T x: adds what the impulses x of all lanes do to the velocities.
 void ob_batch_apply_impulses(const ob_batch *b, const lanes *x, ob_body_row *rows);
-
 // ---- the arithmetic, compiled once per instruction set (kernel.c): for the functions above, and for tests of their
 // bits
 

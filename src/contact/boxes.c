@@ -6,92 +6,180 @@
 // Everything that the axis tests need, in a's frame.
 typedef struct frame_pair {
 	double c[3][3], q[3][3]; // b's axes in a's frame; their absolute values
-	double t[3], u[3]; // centre and velocity of b seen from a, a's frame
-	double tb[3], ub[3]; // the same along b's axes
+	double t[3], tb[3]; // centre of b seen from a, a's frame; along b's axes
 	double ha[3], hb[3]; // half extents
+	double thin; // the least thickness of both
 } frame_pair;
 
-// The best axis so far. face: 0..2 of a, 3..5 of b; edge: 3 i + j of the cross products.
-typedef struct axis_search {
-	double face_gap, edge_gap; // the largest separations
-	int face, edge;
-	double close_time; // of the separating axis that closes last; < 0 = none separates
-	int close_axis; // 0..5 faces, 6.. edges
-} axis_search;
+// How it changes with time.
+typedef struct frame_rates {
+	double c[3][3], t[3], tb[3];
+} frame_rates;
 
-// Separations this close count as equal: faces of a before faces of b, faces before edges.
+enum { FACES = 6, AXES = 15 }; // axis 0..2: faces of a; 3..5: of b; 6 + 3 i + j: edge i of a across edge j of b
+
+// The separation along each axis (m), -infinity where edges are nearly parallel: there a face's axis says the same.
+typedef struct axis_gaps {
+	double gap[AXES];
+	double largest_face, largest_edge;
+	int face, edge; // whose they are
+} axis_gaps;
+
 static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
-static const double prefer_first = 1e-4, prefer_face = 1e-3;
+static const double prefer_face = 1e-3; // of the thickness: an edge's axis must separate by so much more than a face's
+static const double prefer_face_when_deep = .02; // of the depth, beside it
+static const double nearby = .05; // of the thickness: boxes farther apart than that need no axes of edges
+static const double parallel_edges = 1e-4; // sin^2 of their angle
+static const double same_axis = .99; // cosine
+static const double same_depth = 1e-4; // of the reference box's least half extent: points that count as equally deep
 
 static void frame_pair_init(frame_pair *f, const ob_placed *a, const ob_placed *b)
 {
-	ob_vec3 t = ob_rotate_back(&a->r, ob_sub(b->p, a->p)), u = ob_rotate_back(&a->r, ob_sub(b->v, a->v));
-	double ts[3] = { t.x, t.y, t.z }, us[3] = { u.x, u.y, u.z };
-	memcpy(f->t, ts, sizeof ts);
-	memcpy(f->u, us, sizeof us);
-	memcpy(f->ha, (double[3]){ a->size.x, a->size.y, a->size.z }, sizeof ts);
-	memcpy(f->hb, (double[3]){ b->size.x, b->size.y, b->size.z }, sizeof ts);
+	ob_vec3 t = ob_rotate_back(&a->r, ob_sub(b->p, a->p));
+	memcpy(f->t, (double[3]){ t.x, t.y, t.z }, sizeof f->t);
+	memcpy(f->ha, (double[3]){ a->size.x, a->size.y, a->size.z }, sizeof f->ha);
+	memcpy(f->hb, (double[3]){ b->size.x, b->size.y, b->size.z }, sizeof f->hb);
+	f->thin = 2 * fmin(fmin(f->ha[0], fmin(f->ha[1], f->ha[2])), fmin(f->hb[0], fmin(f->hb[1], f->hb[2])));
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++) {
 			f->c[i][j] =
 				a->r.m[0][i] * b->r.m[0][j] + a->r.m[1][i] * b->r.m[1][j] + a->r.m[2][i] * b->r.m[2][j];
 			f->q[i][j] = fabs(f->c[i][j]);
 		}
-	for (int j = 0; j < 3; j++) {
+	for (int j = 0; j < 3; j++)
 		f->tb[j] = t.x * f->c[0][j] + t.y * f->c[1][j] + t.z * f->c[2][j];
-		f->ub[j] = u.x * f->c[0][j] + u.y * f->c[1][j] + u.z * f->c[2][j];
-	}
 }
 
-// Of several axes that separate, the one that closes last is the one along which the boxes will meet.
-static void note_closing(axis_search *s, double gap, double rate, int axis)
+// Both boxes move and turn: as a sees it, in its own frame.
+static void frame_rates_init(frame_rates *d, const frame_pair *f, const ob_placed *a, const ob_placed *b)
 {
-	if (gap <= 0)
-		return;
-	double time = rate < -1e-6 ? -gap / rate : 1e9;
-	if (time > s->close_time) {
-		s->close_time = time;
-		s->close_axis = axis;
-	}
-}
-
-static void search_faces(const frame_pair *f, axis_search *s)
-{
-	for (int i = 0; i < 3; i++) {
-		double gap = fabs(f->t[i]) - f->ha[i] -
-			     (f->q[i][0] * f->hb[0] + f->q[i][1] * f->hb[1] + f->q[i][2] * f->hb[2]);
-		note_closing(s, gap, f->t[i] > 0 ? f->u[i] : -f->u[i], i);
-		if (gap > s->face_gap)
-			s->face_gap = gap, s->face = i;
-	}
+	ob_vec3 apart = ob_sub(b->p, a->p), v = ob_sub(ob_sub(b->v, a->v), ob_cross(a->w, apart));
+	ob_vec3 u = ob_rotate_back(&a->r, v), w = ob_rotate_back(&a->r, ob_sub(b->w, a->w));
+	memcpy(d->t, (double[3]){ u.x, u.y, u.z }, sizeof d->t);
 	for (int j = 0; j < 3; j++) {
-		double gap = fabs(f->tb[j]) - f->hb[j] -
-			     (f->q[0][j] * f->ha[0] + f->q[1][j] * f->ha[1] + f->q[2][j] * f->ha[2]);
-		note_closing(s, gap, f->tb[j] > 0 ? f->ub[j] : -f->ub[j], 3 + j);
-		if (gap > s->face_gap + prefer_first)
-			s->face_gap = gap, s->face = 3 + j;
+		ob_vec3 turn = ob_cross(w, ob_v3(f->c[0][j], f->c[1][j], f->c[2][j]));
+		d->c[0][j] = turn.x, d->c[1][j] = turn.y, d->c[2][j] = turn.z;
+		d->tb[j] = 0;
+		for (int i = 0; i < 3; i++)
+			d->tb[j] += d->t[i] * f->c[i][j] + f->t[i] * d->c[i][j];
 	}
 }
 
-static void search_edges(const frame_pair *f, axis_search *s)
+static double face_gap(const frame_pair *f, int axis)
 {
+	int k = axis % 3;
+	return axis < 3 ? fabs(f->t[k]) - f->ha[k] -
+				  (f->q[k][0] * f->hb[0] + f->q[k][1] * f->hb[1] + f->q[k][2] * f->hb[2])
+			: fabs(f->tb[k]) - f->hb[k] -
+				  (f->q[0][k] * f->ha[0] + f->q[1][k] * f->ha[1] + f->q[2][k] * f->ha[2]);
+}
+
+static void find_face_gaps(const frame_pair *f, axis_gaps *s)
+{
+	s->largest_face = -INFINITY;
+	for (int k = 0; k < FACES; k++) {
+		s->gap[k] = face_gap(f, k);
+		if (s->gap[k] > s->largest_face)
+			s->largest_face = s->gap[k], s->face = k;
+	}
+}
+
+static void find_edge_gaps(const frame_pair *f, axis_gaps *s)
+{
+	s->largest_edge = -INFINITY;
 	for (int i = 0; i < 3; i++) {
 		int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
 		for (int j = 0; j < 3; j++) {
-			int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+			int j1 = (j + 1) % 3, j2 = (j + 2) % 3, axis = FACES + 3 * i + j;
 			double l2 = 1 - f->c[i][j] * f->c[i][j];
-			if (l2 < 1e-4)
-				continue; // nearly parallel edges: a face axis says the same
-			double inv = 1 / sqrt(l2), along = f->t[i2] * f->c[i1][j] - f->t[i1] * f->c[i2][j];
-			double rate = (f->u[i2] * f->c[i1][j] - f->u[i1] * f->c[i2][j]) * inv;
+			s->gap[axis] = -INFINITY;
+			if (l2 < parallel_edges)
+				continue;
+			double along = f->t[i2] * f->c[i1][j] - f->t[i1] * f->c[i2][j];
 			double gap = (fabs(along) - (f->ha[i1] * f->q[i2][j] + f->ha[i2] * f->q[i1][j] +
-						     f->hb[j1] * f->q[i][j2] + f->hb[j2] * f->q[i][j1])) *
-				     inv;
-			note_closing(s, gap - prefer_face, along > 0 ? rate : -rate, 6 + 3 * i + j);
-			if (gap > s->edge_gap)
-				s->edge_gap = gap, s->edge = 3 * i + j;
+						     f->hb[j1] * f->q[i][j2] + f->hb[j2] * f->q[i][j1])) /
+				     sqrt(l2);
+			s->gap[axis] = gap;
+			if (gap > s->largest_edge)
+				s->largest_edge = gap, s->edge = 3 * i + j;
 		}
 	}
+}
+
+// d|c|/dt of b's axis j along a's axis i, at the most where it passes 0.
+static double growth(const frame_pair *f, const frame_rates *d, int i, int j)
+{
+	return f->q[i][j] < 1e-9 ? fabs(d->c[i][j]) : f->c[i][j] > 0 ? d->c[i][j] : -d->c[i][j];
+}
+
+// m/s at which the gap along an axis opens
+static double opening_rate(const frame_pair *f, const frame_rates *d, int axis)
+{
+	double rate = 0;
+	if (axis < FACES) {
+		const int k = axis % 3;
+		const double t = axis < 3 ? f->t[k] : f->tb[k], dt = axis < 3 ? d->t[k] : d->tb[k];
+		for (int i = 0; i < 3; i++)
+			rate -= axis < 3 ? f->hb[i] * growth(f, d, k, i) : f->ha[i] * growth(f, d, i, k);
+		return rate + (t > 0 ? dt : -dt);
+	}
+	const int i = (axis - FACES) / 3, j = (axis - FACES) % 3;
+	const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+	const double l2 = 1 - f->c[i][j] * f->c[i][j], inv = 1 / sqrt(l2);
+	double along = f->t[i2] * f->c[i1][j] - f->t[i1] * f->c[i2][j];
+	double sliding =
+		d->t[i2] * f->c[i1][j] + f->t[i2] * d->c[i1][j] - d->t[i1] * f->c[i2][j] - f->t[i1] * d->c[i2][j];
+	double radii =
+		f->ha[i1] * f->q[i2][j] + f->ha[i2] * f->q[i1][j] + f->hb[j1] * f->q[i][j2] + f->hb[j2] * f->q[i][j1];
+	double growing = f->ha[i1] * growth(f, d, i2, j) + f->ha[i2] * growth(f, d, i1, j) +
+			 f->hb[j1] * growth(f, d, i, j2) + f->hb[j2] * growth(f, d, i, j1);
+	rate = (along > 0 ? sliding : -sliding) - growing;
+	return inv * (rate + (fabs(along) - radii) * f->c[i][j] * d->c[i][j] / l2);
+}
+
+// The cosine between the axes of two faces.
+static double face_cosine(const frame_pair *f, int k, int l)
+{
+	if (k / 3 == l / 3)
+		return k == l;
+	return k < 3 ? f->q[k][l - 3] : f->q[l][k - 3];
+}
+
+// Of several axes that separate the boxes, or along which they touch no deeper than at rest, the one that closes last
+// is the one along which they will meet: as long as one stays open, nothing is hit along the others. So what slides
+// over a seam of two coplanar faces is not hit by the side of the next one. Of those that do not close at all, axes of
+// faces that touch count first: something else holds the boxes there. -1: no axis separates; crossing is set where the
+// boxes touch along two axes of faces that do not close: edge to edge, they may go on along either.
+static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair *f, const axis_gaps *s, double rest,
+			bool *crossing)
+{
+	frame_rates d;
+	int open[AXES], n = 0, best = -1, touching = -1;
+	double latest = -1, largest = 0, steadiest = INFINITY;
+	const double never = ob_time_to_close(a, b, 1, 0);
+	*crossing = false;
+	for (int k = 0; k < AXES; k++)
+		if (s->gap[k] - (k < FACES ? 0 : prefer_face * f->thin) > -rest)
+			open[n++] = k;
+	if (n == 0)
+		return -1;
+	if (n == 1)
+		return open[0];
+	frame_rates_init(&d, f, a, b);
+	for (int k = 0; k < n; k++) {
+		const int axis = open[k];
+		double gap = s->gap[axis] - (axis < FACES ? 0 : prefer_face * f->thin);
+		double rate = opening_rate(f, &d, axis);
+		double time = ob_time_to_close(a, b, gap + rest, rate);
+		if (time == never && axis < FACES && fabs(gap) <= rest) {
+			*crossing |= touching >= 0 && face_cosine(f, touching, axis) < same_axis;
+			if (fabs(rate) < steadiest || (fabs(rate) == steadiest && gap > s->gap[touching]))
+				steadiest = fabs(rate), touching = axis;
+		}
+		if (time > latest || (time == latest && gap > largest))
+			latest = time, largest = gap, best = axis;
+	}
+	return touching >= 0 ? touching : best;
 }
 
 // Two edges: the nearest points of the lines that carry them.
@@ -154,34 +242,29 @@ static void clip(polygon *p, int axis, double sign, double limit)
 	*p = out;
 }
 
-// The four points that matter most: the deepest, the farthest from it, and the widest to each side.
-static void reduce_to_four(polygon *p)
+// Keeps the four points that span the largest area with one of the deepest among them.
+static void reduce_to_four(polygon *p, double tie)
 {
-	int k0 = 0, k1 = -1, k2 = -1, k3 = -1;
-	for (int k = 1; k < p->n; k++)
-		if (p->z[k] < p->z[k0] - 1e-5)
-			k0 = k;
-	double far = -1, left = 1e-12, right = -1e-12;
-	for (int k = 0; k < p->n; k++) {
-		double du = p->u[k] - p->u[k0], dw = p->w[k] - p->w[k0];
-		if (du * du + dw * dw > far)
-			far = du * du + dw * dw, k1 = k;
-	}
-	for (int k = 0; k < p->n; k++) {
-		if (k == k0 || k == k1)
-			continue;
-		double area =
-			(p->u[k1] - p->u[k0]) * (p->w[k] - p->w[k0]) - (p->w[k1] - p->w[k0]) * (p->u[k] - p->u[k0]);
-		if (area > left)
-			left = area, k2 = k;
-		if (area < right)
-			right = area, k3 = k;
-	}
-	int keep[4] = { k0, k1, k2, k3 };
+	double deepest = INFINITY, largest = -1;
+	unsigned deep = 0, keep = 0;
+	for (int k = 0; k < p->n; k++)
+		deepest = fmin(deepest, p->z[k]);
+	for (int k = 0; k < p->n; k++)
+		deep |= (unsigned)(p->z[k] <= deepest + tie) << k;
+	for (int i = 0; i < p->n; i++)
+		for (int j = i + 1; j < p->n; j++)
+			for (int k = j + 1; k < p->n; k++)
+				for (int l = k + 1; l < p->n; l++) {
+					const unsigned four = 1u << i | 1u << j | 1u << k | 1u << l;
+					double area = fabs((p->u[k] - p->u[i]) * (p->w[l] - p->w[j]) -
+							   (p->w[k] - p->w[i]) * (p->u[l] - p->u[j]));
+					if ((four & deep) && area > largest)
+						largest = area, keep = four;
+				}
 	polygon out = { .n = 0 };
-	for (int k = 0; k < 4; k++)
-		if (keep[k] >= 0)
-			polygon_put(&out, p->u[keep[k]], p->w[keep[k]], p->z[keep[k]]);
+	for (int k = 0; k < p->n; k++)
+		if (keep >> k & 1)
+			polygon_put(&out, p->u[k], p->w[k], p->z[k]);
 	*p = out;
 }
 
@@ -244,7 +327,7 @@ static void face_manifold(const ob_placed *a, const ob_placed *b, int face, doub
 		}
 	p.n = kept;
 	if (p.n > 4)
-		reduce_to_four(&p);
+		reduce_to_four(&p, same_depth * fmin(ref->size.x, fmin(ref->size.y, ref->size.z)));
 	m->normal = ob_scale(n, of_b ? 1 : -1);
 	m->points = p.n;
 	for (int k = 0; k < p.n; k++) {
@@ -256,32 +339,33 @@ static void face_manifold(const ob_placed *a, const ob_placed *b, int face, doub
 void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	frame_pair f;
-	axis_search s = { .face_gap = -1e30, .edge_gap = -1e30, .close_time = -1, .close_axis = -1 };
+	axis_gaps s;
+	bool crossing;
 	frame_pair_init(&f, a, b);
-	search_faces(&f, &s);
+	find_face_gaps(&f, &s);
 	out->points = 0;
-	out->separation = s.face_gap;
-	if (s.face_gap > margin + .02)
+	out->separation = s.largest_face;
+	if (s.largest_face > margin + nearby * f.thin)
 		return;
-	search_edges(&f, &s);
-	if (s.edge_gap > s.face_gap)
-		out->separation = s.edge_gap;
+	find_edge_gaps(&f, &s);
+	out->separation = fmax(s.largest_face, s.largest_edge);
 	if (out->separation > margin)
 		return;
-	double tolerance = s.face_gap < 0 ? prefer_face - .02 * s.face_gap : prefer_face;
-	bool edge = s.edge_gap > s.face_gap + tolerance;
-	if (s.close_axis >= 0) {
-		edge = s.close_axis >= 6;
-		if (edge)
-			s.edge = s.close_axis - 6;
-		else
-			s.face = s.close_axis;
+	const double rest = fmin(a->rest_depth, b->rest_depth);
+	int axis = closing_last(a, b, &f, &s, rest, &crossing);
+	out->valid_path = crossing ? rest : INFINITY;
+	if (crossing)
+		return;
+	if (axis < 0) {
+		double more = prefer_face * f.thin - prefer_face_when_deep * s.largest_face;
+		axis = s.largest_edge > s.largest_face + more ? FACES + s.edge : s.face;
 	}
+	bool edge = axis >= FACES;
 	// Edges that meet nearly along a face's normal: the face's points hold them apart, too, and with them what else
 	// is about to meet there.
-	int face = edge ? face_along(a, b, s.edge) : s.face;
+	int face = edge ? face_along(a, b, axis - FACES) : axis;
 	if (face >= 0)
 		face_manifold(a, b, face, margin, out);
 	if (edge && (face < 0 || !out->points))
-		edge_manifold(a, b, s.edge, out);
+		edge_manifold(a, b, axis - FACES, out);
 }

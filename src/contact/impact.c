@@ -1,403 +1,538 @@
 #include "contact/impact.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-static const double simultaneous = 1e-4; // m: points that are nearer than this when the first one hits, hit with it
+#include "base/allocate.h"
 
-// ---- projected Gauss-Seidel on a small dense system: impulses x, and the velocities of all rows that they leave. The
-// ---- matrix lies row by row, so many doubles to a row as there are rows.
+enum {
+	MAX_DENSE_ROWS = 3 * OB_IMPACT_MOST_POINTS, // of sets that are solved by Newton's method
+	MAX_CYCLES = 3, // of Newton's method ..
+	CYCLE_ITERATIONS = 60, // .. so many iterations before the second, and three times as many before the third
+	MAX_NEWTON_STEPS = 10,
+	MAX_ITERATIONS = 4000, // of a set that is too large for Newton's method
+};
 
-// Sets one impulse; returns how much that changes its row's velocity (m/s).
-static double set_impulse(const double *a, int rows, int i, double next, double *x, double *rate)
+static const double exact = 2e-15; // of the largest velocity: what rounding leaves
+static const double stalled = 1e-12; // of it: a solution that cannot be improved counts as one
+static const double same_residual = 1e-9; // of a residual: the method has been there before
+static const double proximity = 1e-7; // of a row's own coefficient: keeps rows that depend on each other solvable
+
+// A point's rows: the normal, two tangents.
+typedef struct point_rows {
+	uint32_t a, b;
+	ob_vec3 along[3]; // unit
+	ob_vec3 about_a[3], about_b[3]; // m: arm x along
+	ob_vec3 turn_a[3], turn_b[3]; // of about, by the inverse inertia
+	double mass_a, mass_b; // inverse
+	double before[3]; // J v, m/s
+	double mu, e;
+	double rate; // kg: by which an iteration turns a velocity into an impulse, small enough to converge
+} point_rows;
+
+typedef struct change_of_velocity {
+	ob_vec3 v, w;
+} change_of_velocity;
+
+// The set of points that approach.
+typedef struct impact_set {
+	uint32_t bodies, points;
+	int dims; // rows of a point: 3, or 1 without friction
+	point_rows *point;
+	change_of_velocity *change; // [bodies]
+	double largest; // m/s, of the points
+	double share; // of e: 1, or 0 for the plastic impact
+} impact_set;
+
+static ob_vec3 times(const double *s, ob_vec3 x)
 {
-	double dx = next - x[i];
-	x[i] = next;
-	for (int j = 0; j < rows; j++)
-		rate[j] += a[j * rows + i] * dx;
-	return fabs(dx) * a[i * rows + i];
+	return ob_v3(s[0] * x.x + s[1] * x.y + s[2] * x.z, s[1] * x.x + s[3] * x.y + s[4] * x.z,
+		     s[2] * x.x + s[4] * x.y + s[5] * x.z);
 }
 
-// Friction, rows i and i + 1, projected onto the disc of radius bound (N s); returns the larger change (m/s).
-static double project_friction(const double *a, int rows, int i, double bound, double *x, double *rate)
+void ob_inverse_inertia(ob_vec3 inertia, const ob_mat3 *r, double *out)
 {
-	double f1 = x[i] - rate[i] / a[i * rows + i], f2 = x[i + 1] - rate[i + 1] / a[(i + 1) * rows + i + 1];
-	double l2 = f1 * f1 + f2 * f2, shrink = l2 > bound * bound ? bound / sqrt(l2) : 1;
-	double change = set_impulse(a, rows, i, f1 * shrink, x, rate);
-	return fmax(change, set_impulse(a, rows, i + 1, f2 * shrink, x, rate));
+	const ob_vec3 k = ob_v3(1 / inertia.x, 1 / inertia.y, 1 / inertia.z);
+	if (inertia.x == inertia.y && inertia.y == inertia.z) {
+		memcpy(out, (double[6]){ k.x, 0, 0, k.x, 0, k.x }, 6 * sizeof *out);
+		return;
+	}
+	int c = 0;
+	for (int i = 0; i < 3; i++)
+		for (int j = i; j < 3; j++)
+			out[c++] = r->m[i][0] * r->m[j][0] * k.x + r->m[i][1] * r->m[j][1] * k.y +
+				   r->m[i][2] * r->m[j][2] * k.z;
 }
 
-// ---- an impact of a pair
-
-// One lane's rows as plain numbers.
-typedef struct pair_rows {
-	double ja[7][6], jb[7][6]; // linear, angular; b's with the opposite sign
-	double a[7][7];
-	double rate[7]; // J v
-	double gap[4], time[4]; // now; s until it closes, infinity if not within the substep
-	double goal[4]; // m/s, normal velocity to reach, in terms of the substep's start
-	double max_time;
-} pair_rows;
-
-static void row_set(pair_rows *r, int i, const lanes *lin, const lanes *ang_a, const lanes *ang_b, int l)
+static ob_vec3 relative_velocity(const ob_impact_body *body, const ob_impact_point *p)
 {
-	for (int c = 0; c < 3; c++) {
-		r->ja[i][c] = lin ? lin[c][l] : 0;
-		r->jb[i][c] = -r->ja[i][c];
-		r->ja[i][3 + c] = ang_a[c][l];
-		r->jb[i][3 + c] = -ang_b[c][l];
+	const ob_impact_body *a = &body[p->a], *b = &body[p->b];
+	return ob_sub(ob_add(a->v, ob_cross(a->w, p->arm_a)), ob_add(b->v, ob_cross(b->w, p->arm_b)));
+}
+
+double ob_impact_opening(const ob_impact_body *body, const ob_impact_point *p)
+{
+	return ob_dot(p->normal, relative_velocity(body, p));
+}
+
+static void point_rows_init(point_rows *r, const ob_impact_body *body, const ob_impact_point *p)
+{
+	const ob_impact_body *a = &body[p->a], *b = &body[p->b];
+	const ob_vec3 v = relative_velocity(body, p);
+	*r = (point_rows){ .a = p->a, .b = p->b, .mass_a = a->inv_mass, .mass_b = b->inv_mass, .mu = p->mu, .e = p->e };
+	r->along[0] = p->normal;
+	ob_tangents(p->normal, &r->along[1], &r->along[2]);
+	for (int i = 0; i < 3; i++) {
+		r->about_a[i] = ob_cross(p->arm_a, r->along[i]);
+		r->about_b[i] = ob_cross(p->arm_b, r->along[i]);
+		r->turn_a[i] = times(a->inv_inertia, r->about_a[i]);
+		r->turn_b[i] = times(b->inv_inertia, r->about_b[i]);
+		r->before[i] = ob_dot(r->along[i], v);
 	}
 }
 
-static double dot6(const double *j, const double *x)
+// A body with k points is a k-th of itself in each: so no iteration does too much (mass splitting: Tonge et al. 2012).
+static void set_rates(impact_set *s, uint32_t *count)
 {
-	return j[0] * x[0] + j[1] * x[1] + j[2] * x[2] + j[3] * x[3] + j[4] * x[4] + j[5] * x[5];
-}
-
-// M^-1 j, for a body of the lane
-static void response(const double *j, double inv_mass, const lanes *inv_inertia, int l, double *o)
-{
-	double s[6];
-	for (int c = 0; c < 6; c++)
-		s[c] = inv_inertia[c][l];
-	for (int c = 0; c < 3; c++)
-		o[c] = inv_mass * j[c];
-	o[3] = s[0] * j[3] + s[1] * j[4] + s[2] * j[5];
-	o[4] = s[1] * j[3] + s[3] * j[4] + s[4] * j[5];
-	o[5] = s[2] * j[3] + s[4] * j[4] + s[5] * j[5];
-}
-
-// Points that hit later than the first one are left: what happens to them after the first hit is seen then.
-static void leave_later(pair_rows *r)
-{
-	double first = fmin(fmin(r->time[0], r->time[1]), fmin(r->time[2], r->time[3]));
-	r->max_time = 0;
-	for (int i = 0; i < 4; i++) {
-		if (isinf(r->time[i]))
-			continue;
-		if ((r->time[i] - first) * (r->goal[i] - r->rate[i]) > simultaneous)
-			r->time[i] = INFINITY;
-		else
-			r->max_time = fmax(r->max_time, r->time[i]);
-	}
-}
-
-static bool pair_rows_init(pair_rows *r, const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at)
-{
-	const uint32_t ia = b->body_a[l], ib = b->body_b[l];
-	bool any = false;
-	for (int i = 0; i < 4; i++)
-		row_set(r, i, b->n, b->ja[i], b->jb[i], l);
-	for (int i = 0; i < 4; i++) {
-		r->rate[i] = dot6(r->ja[i], at->v[ia]) + dot6(r->jb[i], at->v[ib]);
-		r->gap[i] = b->gap[i][l] + dot6(r->ja[i], at->d[ia]) + dot6(r->jb[i], at->d[ib]);
-		double a = (dot6(r->ja[i], at->dv[ia]) + dot6(r->jb[i], at->dv[ib])) / in->h;
-		double t = b->inv_diag[i][l] > 0 ? ob_time_of_closing(r->gap[i], r->rate[i], a, in->h) : INFINITY;
-		double approach = r->rate[i] + a * t;
-		if (!(t <= in->within) || !(approach < -in->threshold)) {
-			r->time[i] = INFINITY;
-			continue;
+	memset(count, 0, s->bodies * sizeof *count);
+	for (uint32_t k = 0; k < s->points; k++)
+		count[s->point[k].a]++, count[s->point[k].b]++;
+	for (uint32_t k = 0; k < s->points; k++) {
+		point_rows *r = &s->point[k];
+		double a = 0, b = 0;
+		for (int i = 0; i < s->dims; i++) {
+			a += r->mass_a + ob_dot(r->about_a[i], r->turn_a[i]);
+			b += r->mass_b + ob_dot(r->about_b[i], r->turn_b[i]);
 		}
-		any = true;
-		r->time[i] = t;
-		r->goal[i] = r->rate[i] - approach;
-	}
-	if (any)
-		leave_later(r);
-	return any;
-}
-
-double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at)
-{
-	pair_rows r;
-	if (!pair_rows_init(&r, b, l, in, at))
-		return INFINITY;
-	return fmin(fmin(r.time[0], r.time[1]), fmin(r.time[2], r.time[3]));
-}
-
-static void pair_rows_matrix(pair_rows *r, const ob_batch *b, int l, const ob_impact *in)
-{
-	for (int i = 0; i < OB_ROWS; i++) {
-		double xa[6], xb[6];
-		response(r->ja[i], b->ima[l], b->ia, l, xa);
-		response(r->jb[i], b->imb[l], b->ib, l, xb);
-		for (int j = 0; j < OB_ROWS; j++)
-			r->a[i][j] = in->split_a * dot6(r->ja[j], xa) + in->split_b * dot6(r->jb[j], xb);
+		r->rate = 1 / (a * count[r->a] + b * count[r->b]);
 	}
 }
 
-// One sweep over friction, its vector projected on the cone's disc, and the twist.
-static double sweep_pair_friction(const pair_rows *r, const ob_batch *b, int l, double *x, double *rate)
+static void add_changes(const impact_set *s, const double *x)
 {
-	double bound = b->mu[l] * (x[0] + x[1] + x[2] + x[3]);
-	double change = project_friction((const double *)r->a, OB_ROWS, 4, bound, x, rate);
-	bound *= b->radius[l];
-	if (r->a[6][6] > 0)
-		change = fmax(change, set_impulse((const double *)r->a, OB_ROWS, 6,
-						  fmax(-bound, fmin(bound, x[6] - rate[6] / r->a[6][6])), x, rate));
-	return change;
-}
-
-static double sweep_normals(const pair_rows *r, double *x, double *rate)
-{
-	double change = 0;
-	for (int i = 0; i < 4; i++)
-		if (!isinf(r->time[i])) {
-			double next = fmax(0, x[i] - (rate[i] - r->goal[i]) / r->a[i][i]);
-			change = fmax(change, set_impulse((const double *)r->a, OB_ROWS, i, next, x, rate));
-		}
-	return change;
-}
-
-// Impulses of the points of a set that bring just these to their goals, by elimination; false: the rows of the set
-// depend on each other.
-static bool solve_set(const pair_rows *r, unsigned set, double *x)
-{
-	int row[4], n = 0;
-	double a[4][5];
-	for (int i = 0; i < 4; i++)
-		if (set >> i & 1)
-			row[n++] = i;
-	for (int i = 0; i < n; i++) {
-		for (int j = 0; j < n; j++)
-			a[i][j] = r->a[row[i]][row[j]];
-		a[i][n] = r->goal[row[i]] - r->rate[row[i]];
-	}
-	for (int k = 0; k < n; k++) { // positive definite: the diagonal serves as pivots
-		if (!(a[k][k] > 1e-13 * r->a[row[k]][row[k]]))
-			return false;
-		for (int i = 0; i < n; i++) {
-			double f = i == k ? 0 : a[i][k] / a[k][k];
-			for (int j = k; j <= n; j++)
-				a[i][j] -= f * a[k][j];
+	memset(s->change, 0, s->bodies * sizeof *s->change);
+	for (uint32_t k = 0; k < s->points; k++) {
+		const point_rows *r = &s->point[k];
+		change_of_velocity *a = &s->change[r->a], *b = &s->change[r->b];
+		for (int i = 0; i < s->dims; i++) {
+			const double xi = x[k * (uint32_t)s->dims + (uint32_t)i];
+			a->v = ob_madd(a->v, r->mass_a * xi, r->along[i]);
+			a->w = ob_madd(a->w, xi, r->turn_a[i]);
+			b->v = ob_madd(b->v, -r->mass_b * xi, r->along[i]);
+			b->w = ob_madd(b->w, -xi, r->turn_b[i]);
 		}
 	}
-	memset(x, 0, 4 * sizeof *x);
-	for (int k = 0; k < n; k++)
-		x[row[k]] = a[k][n] / a[k][k];
-	return true;
 }
 
-// By how much normal impulses miss what they must do (m/s): no pull, no approach left, and none where a point leaves.
-static double normal_error(const pair_rows *r, const double *x)
+// What all rows have to reach, u, with the impulses x: the normal velocities are in excess of the law's.
+static void find_velocities(const impact_set *s, const double *x, double *u)
+{
+	add_changes(s, x);
+	for (uint32_t k = 0; k < s->points; k++) {
+		const point_rows *r = &s->point[k];
+		const change_of_velocity *a = &s->change[r->a], *b = &s->change[r->b];
+		for (int i = 0; i < s->dims; i++)
+			u[k * (uint32_t)s->dims + (uint32_t)i] =
+				r->before[i] + ob_dot(r->along[i], ob_sub(a->v, b->v)) + ob_dot(r->about_a[i], a->w) -
+				ob_dot(r->about_b[i], b->w);
+		u[k * (uint32_t)s->dims] += s->share * r->e * r->before[0];
+	}
+}
+
+// Where an iteration would take a point's impulses, at the velocities u: onto its cone.
+typedef struct projection {
+	double x[3];
+	double z[2], length; // of friction, before it is bounded
+	double bound;
+} projection;
+
+static projection project(const impact_set *s, const point_rows *r, const double *x, const double *u)
+{
+	projection p = { { fmax(0, x[0] - r->rate * u[0]), 0, 0 }, { 0, 0 }, 0, 0 };
+	if (s->dims == 1)
+		return p;
+	p.bound = r->mu * p.x[0];
+	p.z[0] = x[1] - r->rate * u[1], p.z[1] = x[2] - r->rate * u[2];
+	p.length = sqrt(p.z[0] * p.z[0] + p.z[1] * p.z[1]);
+	double shrink = p.length > p.bound ? p.bound / p.length : 1;
+	p.x[1] = shrink * p.z[0], p.x[2] = shrink * p.z[1];
+	return p;
+}
+
+// m/s: by how much an iteration would change something
+static double residual(const impact_set *s, const double *x, const double *u)
 {
 	double most = 0;
-	for (int i = 0; i < 4; i++) {
-		if (isinf(r->time[i]))
-			continue;
-		double left = r->rate[i] - r->goal[i];
-		for (int j = 0; j < 4; j++)
-			left += r->a[i][j] * x[j];
-		most = fmax(most, fmax(-left, -x[i] * r->a[i][i]));
-		most = fmax(most, x[i] > 0 ? fabs(left) : 0);
+	for (uint32_t k = 0; k < s->points; k++) {
+		const uint32_t at = k * (uint32_t)s->dims;
+		projection p = project(s, &s->point[k], x + at, u + at);
+		for (int i = 0; i < s->dims; i++)
+			most = fmax(most, fabs(p.x[i] - x[at + (uint32_t)i]) / s->point[k].rate);
 	}
 	return most;
 }
 
-// Points in a row or in one corner share a load that sweeps pass to and fro for long. Without friction there is a
-// solution in which the rows of those that carry it are independent: of the few sets of points, the best.
-static void solve_normals(const pair_rows *r, double *x)
+// All points at once, again and again.
+static void iterate(const impact_set *s, int iterations, double *x, double *u)
 {
-	double least = normal_error(r, x), y[4];
-	for (unsigned set = 1; set < 16; set++) {
-		bool hits = true;
-		for (int i = 0; i < 4; i++)
-			hits &= !(set >> i & 1) || !isinf(r->time[i]);
-		if (!hits || !solve_set(r, set, y) || normal_error(r, y) >= least)
+	double most = INFINITY;
+	for (int n = 0; n < iterations && most > exact * s->largest; n++) {
+		find_velocities(s, x, u);
+		most = 0;
+		for (uint32_t k = 0; k < s->points; k++) {
+			const uint32_t at = k * (uint32_t)s->dims;
+			projection p = project(s, &s->point[k], x + at, u + at);
+			for (int i = 0; i < s->dims; i++) {
+				most = fmax(most, fabs(p.x[i] - x[at + (uint32_t)i]) / s->point[k].rate);
+				x[at + (uint32_t)i] = p.x[i];
+			}
+		}
+	}
+}
+
+// ---- Newton's method on the projections (Alart and Curnier 1991)
+
+typedef struct newton_system {
+	int n;
+	double a[MAX_DENSE_ROWS][MAX_DENSE_ROWS]; // J M^-1 J'
+	double m[MAX_DENSE_ROWS][MAX_DENSE_ROWS], step[MAX_DENSE_ROWS];
+	int open[MAX_DENSE_ROWS], opens; // rows of points that push: the others' impulses go to zero
+} newton_system;
+
+static double coupling(const point_rows *r, int i, const point_rows *q, int j)
+{
+	const double along = ob_dot(r->along[i], q->along[j]);
+	double sum = 0;
+	if (r->a == q->a)
+		sum += r->mass_a * along + ob_dot(r->about_a[i], q->turn_a[j]);
+	if (r->b == q->b)
+		sum += r->mass_b * along + ob_dot(r->about_b[i], q->turn_b[j]);
+	if (r->a == q->b)
+		sum -= r->mass_a * along + ob_dot(r->about_a[i], q->turn_b[j]);
+	if (r->b == q->a)
+		sum -= r->mass_b * along + ob_dot(r->about_b[i], q->turn_a[j]);
+	return sum;
+}
+
+static void fill_matrix(const impact_set *s, newton_system *y)
+{
+	y->n = (int)s->points * s->dims;
+	for (int i = 0; i < y->n; i++)
+		for (int j = 0; j <= i; j++)
+			y->a[i][j] = y->a[j][i] =
+				coupling(&s->point[i / s->dims], i % s->dims, &s->point[j / s->dims], j % s->dims);
+}
+
+// Elimination with row pivots of the first n rows and columns; false: singular.
+static bool eliminate(newton_system *y, int n)
+{
+	for (int k = 0; k < n; k++) {
+		int pivot = k;
+		for (int i = k + 1; i < n; i++)
+			if (fabs(y->m[i][k]) > fabs(y->m[pivot][k]))
+				pivot = i;
+		if (!(fabs(y->m[pivot][k]) > 0))
+			return false;
+		for (int j = k; j < n && pivot != k; j++) {
+			double t = y->m[k][j];
+			y->m[k][j] = y->m[pivot][j], y->m[pivot][j] = t;
+		}
+		double t = y->step[k];
+		y->step[k] = y->step[pivot], y->step[pivot] = t;
+		for (int i = k + 1; i < n; i++) {
+			double f = y->m[i][k] / y->m[k][k];
+			for (int j = k + 1; j < n && f != 0; j++)
+				y->m[i][j] -= f * y->m[k][j];
+			y->step[i] -= f * y->step[k];
+		}
+	}
+	for (int i = n - 1; i >= 0; i--) {
+		for (int j = i + 1; j < n; j++)
+			y->step[i] -= y->m[i][j] * y->step[j];
+		y->step[i] /= y->m[i][i];
+	}
+	return true;
+}
+
+// Row "row" is to reach zero velocity.
+static void put_stop(newton_system *y, int row, double u)
+{
+	memcpy(y->m[row], y->a[row], (unsigned)y->n * sizeof **y->m);
+	y->m[row][row] += proximity * y->a[row][row];
+	y->step[row] = -u;
+}
+
+// Rows "row" and the next: friction of magnitude mu x against z, which turns with the sliding velocity.
+static void put_sliding(newton_system *y, int row, const point_rows *r, const projection *p, const double *x)
+{
+	const double k = p->bound / p->length, d[2] = { p->z[0] / p->length, p->z[1] / p->length };
+	for (int i = 0; i < 2; i++) {
+		double *m = y->m[row + i];
+		memset(m, 0, (unsigned)y->n * sizeof *m);
+		for (int c = 0; c < 2; c++) {
+			const double across = k * ((i == c) - d[i] * d[c]);
+			for (int j = 0; j < y->n; j++)
+				m[j] += across * r->rate * y->a[row + c][j];
+			m[row + c] += (i == c) - across;
+		}
+		for (int j = 0; j < y->n; j++) // the bound is that of the normal impulse after the step
+			m[j] += r->mu * d[i] * r->rate * y->a[row - 1][j];
+		m[row - 1] -= r->mu * d[i];
+		y->step[row + i] = p->x[1 + i] - x[1 + i];
+	}
+}
+
+// Open rows and columns alone, where the others' steps are known.
+static bool eliminate_open(newton_system *y, const double *x)
+{
+	double others[MAX_DENSE_ROWS];
+	bool is_open[MAX_DENSE_ROWS] = { false };
+	for (int k = 0; k < y->opens; k++)
+		is_open[y->open[k]] = true;
+	for (int i = 0; i < y->n; i++)
+		others[i] = is_open[i] ? 0 : -x[i];
+	for (int k = 0; k < y->opens; k++) {
+		const double *from = y->m[y->open[k]];
+		double right = y->step[y->open[k]];
+		for (int j = 0; j < y->n; j++)
+			right -= from[j] * others[j];
+		for (int j = 0; j < y->opens; j++)
+			y->m[k][j] = from[y->open[j]];
+		y->step[k] = right;
+	}
+	if (!eliminate(y, y->opens))
+		return false;
+	for (int i = y->n - 1, k = y->opens; i >= 0; i--)
+		y->step[i] = is_open[i] ? y->step[--k] : others[i];
+	return true;
+}
+
+static bool newton_step(const impact_set *s, newton_system *y, const double *x, const double *u)
+{
+	y->opens = 0;
+	for (uint32_t k = 0; k < s->points; k++) {
+		const point_rows *r = &s->point[k];
+		const int row = (int)k * s->dims;
+		projection p = project(s, r, x + row, u + row);
+		if (!(p.x[0] > 0))
 			continue;
-		least = normal_error(r, y);
-		for (int i = 0; i < 4; i++)
-			x[i] = fmax(0, y[i]);
+		put_stop(y, row, u[row]);
+		for (int i = 0; i < (p.bound > 0 ? 3 : 1); i++)
+			y->open[y->opens++] = row + i;
+		if (p.bound > 0 && p.length <= p.bound) {
+			put_stop(y, row + 1, u[row + 1]);
+			put_stop(y, row + 2, u[row + 2]);
+		} else if (p.bound > 0) {
+			put_sliding(y, row + 1, r, &p, x + row);
+		}
+	}
+	return eliminate_open(y, x);
+}
+
+// A whole step may lead through worse places to the solution, as which points push and which slide is changed; shorter
+// ones lead downhill alone. true: solved to rounding; false as soon as it comes where it has been, too. x: from where,
+// and the solution.
+static bool newton(const impact_set *s, newton_system *y, bool downhill, double *x, double *u)
+{
+	double next[MAX_DENSE_ROWS], seen[MAX_NEWTON_STEPS], then = INFINITY;
+	find_velocities(s, x, u);
+	double now = residual(s, x, u);
+	for (int n = 0; n < MAX_NEWTON_STEPS && now > exact * s->largest; n++) {
+		double share = 1;
+		if (!newton_step(s, y, x, u))
+			return false;
+		for (int tries = 0; tries < 4; tries++, share *= .5) {
+			for (int i = 0; i < y->n; i++)
+				next[i] = x[i] + share * y->step[i];
+			find_velocities(s, next, u);
+			then = residual(s, next, u);
+			if (!downhill || then < now)
+				break;
+		}
+		if (!(then < now) && (downhill || now <= stalled * s->largest))
+			break;
+		for (int k = 0; k < n; k++)
+			if (fabs(then - seen[k]) <= same_residual * then) // it goes round
+				return false;
+		memcpy(x, next, (unsigned)y->n * sizeof *x);
+		seen[n] = now = then;
+	}
+	return now <= stalled * s->largest;
+}
+
+// The impulses x of the law. Newton's method needs to begin where it is already known which points slide; where it does
+// not come to an end, iterations go on from the last place that they had reached.
+static void solve_law(const impact_set *s, double share, double *x, double *u)
+{
+	impact_set set = *s;
+	newton_system y;
+	double start[MAX_DENSE_ROWS];
+	set.share = share;
+	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
+	if (s->points > OB_IMPACT_MOST_POINTS) {
+		iterate(&set, MAX_ITERATIONS, x, u);
+		return;
+	}
+	fill_matrix(&set, &y);
+	for (int cycle = 0; cycle < MAX_CYCLES; cycle++) {
+		iterate(&set, cycle == 0 ? 0 : cycle == 1 ? CYCLE_ITERATIONS : 3 * CYCLE_ITERATIONS, x, u);
+		memcpy(start, x, (unsigned)y.n * sizeof *x);
+		for (int downhill = 0; downhill <= (cycle + 1 == MAX_CYCLES); downhill++) { // which is seldom needed
+			if (newton(&set, &y, downhill, x, u))
+				return;
+			memcpy(x, start, (unsigned)y.n * sizeof *x);
+		}
 	}
 }
 
-// Where a long lever jams, the sweeps do not settle. Then all impulses shrink until they bring no energy:
-// x J v + x A x / 2 <= 0, with the rates of the instant of impact.
-static void shrink_to_energy(const pair_rows *r, double *x)
+// ---- energy
+
+// J: what impulses x do to the kinetic energy that part from u0 and end at u1
+static double gain(uint32_t rows, const double *x, const double *u0, const double *u1)
 {
-	double given = 0, spread = 0;
-	for (int i = 0; i < OB_ROWS; i++) {
-		double at_impact = i < 4 ? r->rate[i] - r->goal[i] : r->rate[i];
-		if (x[i] == 0)
+	double sum = 0;
+	for (uint32_t i = 0; i < rows; i++)
+		sum += .5 * x[i] * (u0[i] + u1[i]);
+	return sum;
+}
+
+// Velocities of the rows themselves.
+static void true_velocities(const impact_set *s, const double *x, double *u)
+{
+	impact_set set = *s;
+	set.share = 0;
+	find_velocities(&set, x, u);
+}
+
+// The largest share of the way from impulses p to x that gains no energy. The gain is a parabola over it, <= 0 at 0.
+static double share_without_gain(uint32_t rows, const double *p, const double *x, const double *u0, const double *up,
+				 const double *ux)
+{
+	const double c0 = gain(rows, p, u0, up);
+	double c1 = 0, c2 = 0;
+	for (uint32_t i = 0; i < rows; i++) {
+		c1 += .5 * (x[i] - p[i]) * (u0[i] + up[i]) + .5 * p[i] * (ux[i] - up[i]);
+		c2 += .5 * (x[i] - p[i]) * (ux[i] - up[i]);
+	}
+	if (!(c0 < 0) || !(c2 > 0))
+		return 0;
+	double root = sqrt(c1 * c1 - 4 * c2 * c0);
+	return fmin(1, c1 > 0 ? -2 * c0 / (c1 + root) : (root - c1) / (2 * c2));
+}
+
+// memory: for four times as many numbers as there are rows
+static void limit_energy(const impact_set *s, double *x, double *memory)
+{
+	const uint32_t rows = s->points * (unsigned)s->dims;
+	double *u0 = memory, *ux = u0 + rows, *p = ux + rows, *up = p + rows, scale = 0;
+	for (uint32_t i = 0; i < rows; i++) {
+		u0[i] = s->point[i / (unsigned)s->dims].before[i % (unsigned)s->dims];
+		scale += fabs(x[i] * u0[i]);
+	}
+	true_velocities(s, x, ux);
+	if (gain(rows, x, u0, ux) <= 1e-15 * scale)
+		return;
+	solve_law(s, 0, p, up);
+	true_velocities(s, p, up);
+	const double share = share_without_gain(rows, p, x, u0, up, ux);
+	for (uint32_t i = 0; i < rows; i++)
+		x[i] = p[i] + share * (x[i] - p[i]);
+	true_velocities(s, x, ux);
+	double given = 0, spread = 0; // a long lever that jams has no solution: less of what there is
+	for (uint32_t i = 0; i < rows; i++) {
+		given += x[i] * u0[i];
+		spread += x[i] * (ux[i] - u0[i]);
+	}
+	const double less = spread > 0 ? fmax(0, fmin(1, -2 * given / spread)) : 1;
+	for (uint32_t i = 0; i < rows; i++)
+		x[i] *= less;
+}
+
+// ---- an impact
+
+static void gather_points(impact_set *s, const ob_impact_body *body, const ob_impact_point *point, uint32_t points)
+{
+	s->dims = 1;
+	for (uint32_t k = 0; k < points; k++) {
+		if (!(ob_impact_opening(body, &point[k]) < 0) && point[k].e > 0)
 			continue;
-		given += x[i] * at_impact;
-		for (int j = 0; j < OB_ROWS; j++)
-			spread += x[i] * r->a[i][j] * x[j];
-	}
-	double share = spread > 0 ? fmin(1, -2 * given / spread) : 1;
-	for (int i = 0; i < OB_ROWS; i++)
-		x[i] *= fmax(0, share);
-}
-
-static void set_rates(const pair_rows *r, const double *x, double *rate)
-{
-	for (int i = 0; i < OB_ROWS; i++) {
-		rate[i] = r->rate[i];
-		for (int j = 0; j < OB_ROWS; j++)
-			rate[i] += r->a[i][j] * x[j];
+		point_rows *r = &s->point[s->points++];
+		point_rows_init(r, body, &point[k]);
+		if (r->mu > 0)
+			s->dims = 3;
+		for (int i = 0; i < 3; i++)
+			s->largest = fmax(s->largest, fabs(r->before[i]));
 	}
 }
 
-// First the impact without rebound: projected Gauss-Seidel until nothing changes. All impulses times 1 + e then send
-// every point off at e times its approach or faster, and cannot gain energy: the plastic solution x obeys
-// x (J v + A x) <= 0, so the change (1+e) x J v + (1+e)^2/2 x A x is at most -(1+e)(1-e)/2 x A x. Last, friction finds
-// its place under the final normal impulses, which only takes energy.
-static void pair_rows_solve(const pair_rows *r, const ob_batch *b, int l, double e, double *x)
+void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points)
 {
-	double rate[OB_ROWS], largest = 0, change = 1;
-	memcpy(rate, r->rate, sizeof rate);
-	for (int i = 0; i < OB_ROWS; i++)
-		largest = fmax(largest, fabs(rate[i]));
-	const double done = 1e-14 * largest; // m/s: what rounding leaves
-	for (int s = 0; s < 100 && change > done; s++) {
-		change = sweep_normals(r, x, rate);
-		change = fmax(change, sweep_pair_friction(r, b, l, x, rate));
+	enum { FEW = 8 };
+	struct {
+		point_rows point[FEW];
+		change_of_velocity change[2 * FEW];
+		double row[6 * 3 * FEW];
+		uint32_t count[2 * FEW];
+	} few;
+	const bool many = points > FEW || bodies > 2 * FEW;
+	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change };
+	double *row = few.row;
+	uint32_t *count = few.count;
+	if (many) {
+		s.point = ob_allocate(points * sizeof *s.point);
+		s.change = ob_allocate(bodies * sizeof *s.change);
+		row = ob_allocate(6 * 3 * points * sizeof *row);
+		count = ob_allocate(bodies * sizeof *count);
 	}
-	if (change > done && b->mu[l] == 0)
-		solve_normals(r, x);
-	for (int i = 0; i < OB_ROWS; i++)
-		x[i] *= 1 + e;
-	set_rates(r, x, rate);
-	change = 1;
-	for (int s = 0; s < 50 && change > done; s++)
-		change = sweep_pair_friction(r, b, l, x, rate);
-	shrink_to_energy(r, x);
+	gather_points(&s, body, point, points);
+	if (s.points) {
+		double *x = row, *u = x + 3 * points;
+		set_rates(&s, count);
+		solve_law(&s, 1, x, u);
+		limit_energy(&s, x, u);
+		add_changes(&s, x);
+		for (uint32_t i = 0; i < bodies; i++) {
+			body[i].v = ob_add(body[i].v, s.change[i].v);
+			body[i].w = ob_add(body[i].w, s.change[i].w);
+		}
+	}
+	if (many) {
+		free(s.point);
+		free(s.change);
+		free(row);
+		free(count);
+	}
 }
 
-double ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
-		       ob_body_row *out_d)
+// ---- a lane of a batch
+
+static double opening_of(const ob_batch *b, int i, int l, const double *xa, const double *xb)
 {
-	pair_rows r;
-	double x[7] = { 0 };
-	if (!pair_rows_init(&r, b, l, in, at))
-		return -1;
-	row_set(&r, 4, b->t1, b->fa1, b->fb1, l);
-	row_set(&r, 5, b->t2, b->fa2, b->fb2, l);
-	row_set(&r, 6, NULL, b->n, b->n, l);
+	double sum = 0;
+	for (int c = 0; c < 3; c++)
+		sum += b->n[c][l] * (xa[c] - xb[c]) + b->ja[i][c][l] * xa[3 + c] - b->jb[i][c][l] * xb[3 + c];
+	return sum;
+}
+
+double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at)
+{
 	const uint32_t ia = b->body_a[l], ib = b->body_b[l];
-	for (int i = 4; i < OB_ROWS; i++)
-		r.rate[i] = dot6(r.ja[i], at->v[ia]) + dot6(r.jb[i], at->v[ib]);
-	pair_rows_matrix(&r, b, l, in);
-	pair_rows_solve(&r, b, l, in->e, x);
-	double ca[6], cb[6], change_a[6] = { 0 }, change_b[6] = { 0 }, shift_a[6] = { 0 }, shift_b[6] = { 0 };
-	for (int i = 0; i < OB_ROWS; i++) {
-		double t = i < 4 ? r.time[i] : r.max_time;
-		if (x[i] == 0)
+	double first = INFINITY;
+	for (int i = 0; i < OB_POINTS; i++) {
+		if (!(b->inv_diag[i][l] > 0) || !(in->points >> i & 1))
 			continue;
-		response(r.ja[i], b->ima[l], b->ia, l, ca);
-		response(r.jb[i], b->imb[l], b->ib, l, cb);
-		for (int c = 0; c < 6; c++) {
-			change_a[c] += x[i] * ca[c];
-			change_b[c] += x[i] * cb[c];
-			shift_a[c] -= t * x[i] * ca[c];
-			shift_b[c] -= t * x[i] * cb[c];
-		}
+		double rate = opening_of(b, i, l, at->v[ia], at->v[ib]);
+		if (rate > in->gain - in->threshold ||
+		    b->gap[i][l] + opening_of(b, i, l, at->d[ia], at->d[ib]) - in->slack > (in->gain - rate) * in->h)
+			continue;
+		double a = opening_of(b, i, l, at->dv[ia], at->dv[ib]) / in->h;
+		const double threshold = in->threshold + in->settling * fmax(0, -a);
+		if (!(rate + fmin(0, a) * in->h < -threshold))
+			continue;
+		double gap = b->gap[i][l] + opening_of(b, i, l, at->d[ia], at->d[ib]);
+		double t = ob_time_of_closing(gap - in->slack, rate, a, in->h);
+		if (t < first && rate + a * t < -threshold)
+			first = t;
 	}
-	for (int c = 0; c < 6; c++) {
-		out_v[ia][c] += change_a[c];
-		out_v[ib][c] += change_b[c];
-		out_d[ia][c] += shift_a[c];
-		out_d[ib][c] += shift_b[c];
-	}
-	return r.max_time;
-}
-
-// ---- an impact at a single point
-
-enum { POINT_ROWS = 3 }; // normal, two of friction
-
-typedef struct point_rows {
-	ob_vec3 along[POINT_ROWS], about[POINT_ROWS]; // body frame: unit direction, arm x direction
-	ob_vec3 turn[POINT_ROWS]; // of about, by the inverse inertia
-	double a[POINT_ROWS][POINT_ROWS], rate[POINT_ROWS];
-} point_rows;
-
-static void point_rows_init(point_rows *r, const ob_point_impact *in, const ob_mat3 *body, ob_vec3 arm, ob_vec3 normal,
-			    const ob_state *s)
-{
-	ob_vec3 t1, t2, at = ob_rotate_back(body, arm);
-	ob_vec3 v = ob_rotate_back(body, s->v), w = ob_rotate_back(body, s->w), j = in->inertia;
-	ob_tangents(normal, &t1, &t2);
-	ob_vec3 world[POINT_ROWS] = { normal, t1, t2 };
-	for (int i = 0; i < POINT_ROWS; i++) {
-		ob_vec3 b = r->along[i] = ob_rotate_back(body, world[i]);
-		r->about[i] = ob_cross(at, b);
-		r->turn[i] = ob_v3(r->about[i].x / j.x, r->about[i].y / j.y, r->about[i].z / j.z);
-		r->rate[i] = ob_dot(b, v) + ob_dot(r->about[i], w);
-	}
-	for (int i = 0; i < POINT_ROWS; i++)
-		for (int k = 0; k < POINT_ROWS; k++)
-			r->a[i][k] = (i == k ? in->inv_mass : 0) + ob_dot(r->about[i], r->turn[k]);
-}
-
-static double sweep_point_friction(const point_rows *r, double mu, double *x, double *rate)
-{
-	return project_friction((const double *)r->a, POINT_ROWS, 1, mu * x[0], x, rate);
-}
-
-// The impulses that would stop the point; true if friction can hold that.
-static bool stop_point(const point_rows *r, double mu, double *x)
-{
-	const double(*a)[POINT_ROWS] = r->a;
-	double c0 = a[1][1] * a[2][2] - a[1][2] * a[2][1], c1 = a[1][2] * a[2][0] - a[1][0] * a[2][2];
-	double c2 = a[1][0] * a[2][1] - a[1][1] * a[2][0], det = a[0][0] * c0 + a[0][1] * c1 + a[0][2] * c2;
-	double b0 = -r->rate[0], b1 = -r->rate[1], b2 = -r->rate[2];
-	x[0] = (b0 * c0 + b1 * (a[0][2] * a[2][1] - a[0][1] * a[2][2]) + b2 * (a[0][1] * a[1][2] - a[0][2] * a[1][1])) /
-	       det;
-	x[1] = (b0 * c1 + b1 * (a[0][0] * a[2][2] - a[0][2] * a[2][0]) + b2 * (a[0][2] * a[1][0] - a[0][0] * a[1][2])) /
-	       det;
-	x[2] = (b0 * c2 + b1 * (a[0][1] * a[2][0] - a[0][0] * a[2][1]) + b2 * (a[0][0] * a[1][1] - a[0][1] * a[1][0])) /
-	       det;
-	return x[0] > 0 && x[1] * x[1] + x[2] * x[2] <= mu * mu * x[0] * x[0];
-}
-
-// As ob_impact_solve has it: the plastic impact, all of it times 1 + e, friction under the final normal impulse, and no
-// more than brings no energy.
-static void solve_point(const point_rows *r, double mu, double e, double *x)
-{
-	double rate[POINT_ROWS], change = 1, largest = fmax(fabs(r->rate[0]), fmax(fabs(r->rate[1]), fabs(r->rate[2])));
-	const double done = 1e-14 * largest; // m/s: what rounding leaves
-	if (mu == 0 || !stop_point(r, mu, x)) {
-		x[0] = x[1] = x[2] = 0;
-		for (int i = 0; i < POINT_ROWS; i++)
-			rate[i] = r->rate[i];
-		for (int s = 0; s < 100 && change > done; s++) {
-			change = set_impulse((const double *)r->a, POINT_ROWS, 0, fmax(0, x[0] - rate[0] / r->a[0][0]),
-					     x, rate);
-			if (mu > 0)
-				change = fmax(change, sweep_point_friction(r, mu, x, rate));
-		}
-	}
-	for (int i = 0; i < POINT_ROWS; i++)
-		x[i] *= 1 + e;
-	for (int i = 0; i < POINT_ROWS; i++)
-		rate[i] = r->rate[i] + r->a[i][0] * x[0] + r->a[i][1] * x[1] + r->a[i][2] * x[2];
-	change = mu > 0 ? 1 : 0;
-	for (int s = 0; s < 50 && change > done; s++)
-		change = sweep_point_friction(r, mu, x, rate);
-	double given = 0, spread = 0;
-	for (int i = 0; i < POINT_ROWS; i++) {
-		given += x[i] * r->rate[i];
-		for (int k = 0; k < POINT_ROWS; k++)
-			spread += x[i] * r->a[i][k] * x[k];
-	}
-	double share = spread > 0 ? fmin(1, -2 * given / spread) : 1;
-	for (int i = 0; i < POINT_ROWS; i++)
-		x[i] *= fmax(0, share);
-}
-
-void ob_point_impact_solve(const ob_point_impact *in, ob_vec3 arm, ob_vec3 normal, ob_state *s)
-{
-	point_rows r;
-	double x[POINT_ROWS];
-	bool isotropic = in->inertia.x == in->inertia.y && in->inertia.y == in->inertia.z; // any axes do
-	ob_mat3 body = ob_quat_matrix(isotropic ? ob_quat_identity() : s->pose.q);
-	point_rows_init(&r, in, &body, arm, normal, s);
-	solve_point(&r, in->friction, in->restitution, x);
-	ob_vec3 push = ob_v3(0, 0, 0), turn = ob_v3(0, 0, 0);
-	for (int i = 0; i < POINT_ROWS; i++) {
-		push = ob_madd(push, x[i], r.along[i]);
-		turn = ob_madd(turn, x[i], r.turn[i]);
-	}
-	s->v = ob_madd(s->v, in->inv_mass, ob_rotate(&body, push));
-	s->w = ob_add(s->w, ob_rotate(&body, turn));
+	return first;
 }

@@ -1,50 +1,73 @@
-// Impacts with restitution, at their own instant inside a substep. Pure functions, thread-safe.
+// Impacts with restitution of any number of bodies at any number of points at one instant. Pure functions, thread-safe.
 //
-// Two bodies that approach faster than a threshold and will touch within the substep get one impulse: that of the
-// plastic impact with friction, times 1 + e (Poisson's hypothesis for the whole block), so that each point that hits
-// leaves at e times its approach at the instant of contact, and no pair ever gains energy. Newton's law point by point
-// with friction does gain (Kane and Levinson 1985). One pair at a time, each on the velocities that the pair before has
-// left: an impact travels through a row of touching spheres as it does in Newton's cradle.
+// The law, for all points of a set at once: a point that approaches at u leaves at -e u or faster (Newton), and pushes
+// only where it leaves at just that; friction has a cone of its own at each point, stops the point's sliding where it
+// can, and opposes what sliding is left afterwards where it cannot (Coulomb; as one law: Moreau 1988). Without friction
+// and with one e this is a generalised reflection (Smith, Kaufman, Vouga, Tamstorf and Grinspun 2012): bodies break
+// away, and what is symmetric stays so, as no point has a turn before another. Repeated while points approach, it
+// passes an impact through touching spheres as Newton's cradle does.
+//
+// Newton's restitution with friction may gain energy (Kane and Levinson 1985), and so may points of different e that
+// hit at once. Then as much of the set's plastic impact (e = 0, which only takes energy) is mixed in as brings the gain
+// to zero.
+//
+// Velocities after an impact are unique wherever Coulomb's law has one solution. Where points share a load in more than
+// one way (four corners of a face), the solution is that of the least change from equal shares: symmetric in what is
+// symmetric.
 #ifndef OB_CONTACT_IMPACT_H
 #define OB_CONTACT_IMPACT_H
 
 #include "contact/batch.h"
 
+// What moves, at the instant; what does not has no inverse mass and inertia.
+typedef struct ob_impact_body {
+	double inv_mass; // 1/kg
+	double inv_inertia[6]; // world: xx xy xz yy yz zz
+	ob_vec3 v, w; // m/s, rad/s
+} ob_impact_body;
+
+typedef struct ob_impact_point {
+	uint32_t a, b; // bodies
+	ob_vec3 normal; // unit, from b to a
+	ob_vec3 arm_a, arm_b; // m, from each centre to one and the same point: angular momentum is kept to rounding
+	double mu, e; // coefficients of friction and of restitution
+} ob_impact_point;
+
+// Inverse inertia in world axes (xx xy xz yy yz zz) of a body with these principal moments (kg m^2) at the attitude r.
+void ob_inverse_inertia(ob_vec3 inertia, const ob_mat3 *r, double *out);
+
+// m/s, at which a point opens
+double ob_impact_opening(const ob_impact_body *body, const ob_impact_point *point);
+
+// Sets of more points take far longer.
+enum { OB_IMPACT_MOST_POINTS = 36 };
+
+// Changes the velocities of the bodies by one impact at all those of the points that approach. Others may approach
+// afterwards. Momentum and angular momentum are kept to rounding, energy does not grow.
+void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points);
+
+// m: points that come within this when the first one hits, hit with it
+#define OB_IMPACT_SIMULTANEOUS 1e-7
+
+// ---- whether a contact of a batch will hit, by its rows alone
+
 typedef struct ob_impact {
-	double h; // s, substep
-	double within; // s: later hits are left; at most h
-	double e; // restitution
-	double threshold; // m/s: slower approaches are left to the contact solver
-	double split_a, split_b; // impacts that each body takes part in at once; 1 when coloured
+	double h; // s, partial substep
+	double slack; // m: by so much the rows may be off within the partial substep
+	double threshold; // m/s: slower approaches are left to the contact solver ..
+	double settling; // s: .. and so are those that build up in this time
+	double gain; // m/s: no point gains more in the partial substep
+	unsigned points; // bit per point that may hit
 } ob_impact;
 
-// The state of all bodies at the substep's start.
+// The state of all bodies at the partial substep's start.
 typedef struct ob_impact_rows {
 	const ob_body_row *v; // velocities
-	const ob_body_row *dv; // change of velocity in the substep without the impact: acceleration times h
+	const ob_body_row *dv; // change of velocity in the partial substep without the impact: acceleration times h
 	const ob_body_row *d; // displacements since the gaps were measured
 } ob_impact_rows;
 
-// When will the first point of lane l of the batch hit (s)? Infinity: not within the substep.
+// When will the first point of lane l of the batch hit (s)? Infinity: not within the partial substep.
 double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at);
-
-// Solves it: adds the changes to the rows out_v and, so that the old velocity holds until the instant, to out_d
-// (which may be at->v and at->d themselves). Returns the instant of the last point's hit (s); < 0: nothing hits.
-double ob_impact_solve(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at, ob_body_row *out_v,
-		       ob_body_row *out_d);
-
-// ---- an impact at a single point
-
-typedef struct ob_point_impact {
-	double inv_mass; // 1/kg
-	ob_vec3 inertia; // kg m^2, principal
-	double friction, restitution; // of the pair
-} ob_point_impact;
-
-// One point of a body hits what does not move: most of what happens to bodies that fly. Changes state->v and state->w
-// by the impulse on the point at "arm" (m, from the centre, world frame) of a surface with this unit normal. The point
-// must approach. The normal velocity afterwards is -restitution times that before where friction sticks or there is
-// none, and energy never grows.
-void ob_point_impact_solve(const ob_point_impact *r, ob_vec3 arm, ob_vec3 normal, ob_state *state);
 
 #endif

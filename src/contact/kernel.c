@@ -4,12 +4,11 @@
 
 #include <string.h>
 
-static const double unpredicted_change =
-	1e-4; // m/s: a first sweep that changes more was not predicted by warm starting
-static const double converged_change = 1e-10; // m/s: a block whose sweep changes less is solved
+#include "contact/patch.h"
+
 static const int max_block_sweeps = 64;
+static const int sweeps_of_a_round = 8; // of a block that is solved to the end: after each it is extrapolated
 static const int coarse_block_sweeps = 2; // of a block that will be solved again in the next iteration
-static const double resting_gap = 1e-7; // m: a point that presses keeps its distance from the surface, if that is less
 static const double min_projection = .01; // of the slop: shallower penetrations are not pushed, or that would never end
 
 // The rows of a pair depend on its kind alone. Each kind has a kernel of its own, made by the compiler from the same
@@ -27,6 +26,11 @@ PER_KIND bool in_use(ob_batch_kind kind, int row)
 	return row < OB_POINTS ? row < points_of(kind) : row < 6 ? rough : rough && !(kind & OB_KIND_POINT);
 }
 
+static inline double square(double x)
+{
+	return x * x;
+}
+
 static inline void sym_mul(const lanes *s, const lanes *x, lanes *o)
 {
 	o[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
@@ -37,6 +41,41 @@ static inline void sym_mul(const lanes *s, const lanes *x, lanes *o)
 static inline lanes dot3(const lanes *a, const lanes *b)
 {
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// The inverse of A's block of friction, for a contact at one point: it has no twist.
+static inline void invert_point(ob_batch *b, lanes a44, lanes a55, lanes a45)
+{
+	const lanes none = lanes_of(0), half = .5 * (a44 - a55);
+	lanes det = a44 * a55 - a45 * a45, inverse = lanes_select(det > 0, 1 / det, none);
+	lanes most = .5 * (a44 + a55) + lanes_sqrt(half * half + a45 * a45); // eigenvalue
+	b->friction_mass[0] = a55 * inverse;
+	b->friction_mass[1] = -a45 * inverse;
+	b->friction_mass[3] = a44 * inverse;
+	b->friction_mass[2] = b->friction_mass[4] = b->friction_mass[5] = none;
+	b->hold[0] = b->friction_mass[0] * a44;
+	b->hold[1] = b->friction_mass[1] * a55;
+	b->hold[2] = b->friction_mass[1] * a44;
+	b->hold[3] = b->friction_mass[3] * a55;
+	b->slide_mass = lanes_select(most > 0, 1 / most, none);
+	b->slide[0] = b->slide_mass * a44;
+	b->slide[1] = b->slide_mass * a55;
+	b->slide_rate2 = most * most;
+}
+
+// Friction and twist. What cannot be turned has a row that changes nothing; here it counts as very heavy.
+static inline void invert_patch(ob_batch *b, lanes a44, lanes a55, lanes a66, lanes a45, lanes a46, lanes a56)
+{
+	const double heavy = 1e-6;
+	lanes least = heavy * (a44 + a55) / lanes_max(b->radius * b->radius, lanes_of(1e-300));
+	a66 = lanes_select(a66 > 0, a66, least);
+	invert_point(b, a44, a55, a45);
+	lanes c44 = a55 * a66 - a56 * a56, c45 = a46 * a56 - a45 * a66, c46 = a45 * a56 - a55 * a46;
+	lanes det = a44 * c44 + a45 * c45 + a46 * c46;
+	lanes m[6] = { c44, c45, c46, a44 * a66 - a46 * a46, a45 * a46 - a44 * a56, a44 * a55 - a45 * a45 };
+	lane_mask patch = (b->radius > 0) & (det > 0);
+	for (int i = 0; i < 6; i++)
+		b->friction_mass[i] = lanes_select(patch, m[i] / det, b->friction_mass[i]);
 }
 
 PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind)
@@ -68,6 +107,10 @@ PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind)
 		for (int j = 0; j < OB_ROWS; j++)
 			if (in_use(kind, i) && in_use(kind, j))
 				b->coupling[i][j] = a[i][j] * b->inv_diag[j];
+	if (in_use(kind, 6))
+		invert_patch(b, a[4][4], a[5][5], a[6][6], a[4][5], a[4][6], a[5][6]);
+	else if (in_use(kind, 4))
+		invert_point(b, a[4][4], a[5][5], a[4][5]);
 	b->dirty = 0;
 }
 
@@ -195,18 +238,139 @@ PER_KIND void couple(const ob_batch *b, ob_batch_kind kind, int i, lanes d, lane
 			step[j] -= b->coupling[i][j] * d;
 }
 
-static inline lanes lanes_where(lane_mask m, lanes x)
+// The square of the most that a change of friction does to the slip, m/s: the same whatever the tangents.
+static inline lanes square_of_slip(const ob_batch *b, lanes d4, lanes d5)
 {
-	return (lanes)(m & (lane_mask)x);
+	return (d4 * d4 + d5 * d5) * b->slide_rate2;
+}
+
+typedef struct friction_state {
+	const ob_body_row *v; // velocities when the substep began
+	ob_patch_model *model;
+	patch_search search;
+} friction_state;
+
+// Impulses that would undo the slip with which the substep began.
+static void begin_search(const ob_batch *b, ob_batch_kind kind, friction_state *f)
+{
+	lanes va[6], vb[6], start[OB_ROWS] = { 0 };
+	gather_both(b, f->v, va, vb);
+	friction_velocities(b, kind, va, vb, start);
+	patch_mul(b->friction_mass, start + 4, f->search.start);
+	memcpy(f->search.slip, start + 4, sizeof f->search.slip);
+	f->search.begun = 1;
+}
+
+// The direction in which lanes slip: that of the slip that there is, unless it is too small to tell; else what the
+// impulses that would hold ask for.
+static void renew_model(const ob_batch *b, const lanes *x, lanes sum, lane_mask due, const lanes *slip,
+			friction_state *f, const lanes *hold)
+{
+	const double telling = 1e-4; // of what friction may change in the substep
+	patch_load load;
+	lanes mean[3], asked[3], stay[3] = { -hold[0], -hold[1], -hold[2] };
+	patch_load_set(b, x, sum, &load);
+	for (int c = 0; c < 3; c++)
+		mean[c] = slip[c] + f->search.slip[c];
+	lanes speed = lanes_abs(mean[0]) + lanes_abs(mean[1]) + b->radius * lanes_abs(mean[2]);
+	lane_mask tells = (speed > telling * b->mu * sum * b->diag[4]) & (patch_dot(mean, stay) > 0);
+	patch_first_slip(&load, stay, asked);
+	for (int c = 0; c < 3; c++)
+		mean[c] = lanes_select(tells, mean[c], asked[c]);
+	patch_model_set(&load, due, mean, f->model);
+}
+
+// Lanes in which "hold" is too much: within the limit surface they slip.
+static __attribute__((noinline)) void let_slip(const ob_batch *b, ob_batch_kind kind, const lanes *x, lanes sum,
+					       lane_mask outside, const lanes *slip, friction_state *f, lanes *hold)
+{
+	const double same_pressure = 1e-9; // half edges: moved by less, its centre stays
+	lanes bound = b->mu * sum, pressure[2];
+	lane_mask none = outside & ~(bound > 0);
+	if (!f->search.begun)
+		begin_search(b, kind, f);
+	for (int c = 0; c < 3; c++)
+		hold[c] = lanes_select(none, lanes_of(0), hold[c]);
+	outside &= ~none;
+	lane_mask moved = patch_pressure(b, x, sum, f->model, pressure) > same_pressure;
+	lane_mask due = outside & (moved | lanes_mask(~f->model->known));
+	if (lanes_bits(due))
+		renew_model(b, x, sum, due, slip, f, hold);
+	f->model->known &=
+		~lanes_bits(patch_project(f->model, pressure, bound, b->friction_mass, outside, &f->search, hold));
+	f->search.slides |= lanes_bits(none);
+}
+
+// Friction and twist of patches, at once: the impulses that hold, or those that the limit surface allows.
+static inline void solve_patch(const ob_batch *b, ob_batch_kind kind, lane_mask patch, const lanes *x, lanes sum,
+			       const lanes *step, friction_state *f, lanes *next)
+{
+	lanes r[3] = { step[4] * b->diag[4], step[5] * b->diag[5], step[6] * b->diag[6] };
+	patch_mul(b->friction_mass, r, next);
+	for (int c = 0; c < 3; c++)
+		next[c] += x[4 + c];
+	lane_mask outside = patch & ~patch_holds(b, x, sum, b->mu * sum, next);
+	f->search.slides &= ~lanes_bits(patch);
+	if (lanes_bits(outside)) {
+		const lanes slip[3] = { -r[0], -r[1], -r[2] };
+		let_slip(b, kind, x, sum, outside, slip, f, next);
+	}
+}
+
+// Friction at a point, x, to the end: the impulse within the disc that leaves the least slip. A point that slides has
+// (A + t) x = load, |x| = bound, t = slip over impulse, by Newton's method in 1/|x|.
+static inline void solve_point(const ob_batch *b, lane_mask outside, lanes bound, const lanes *x, const lanes *step,
+			       lanes *next)
+{
+	enum { MOST = 16 };
+	const double close = 1e-13; // of the bound
+	const lanes a = b->diag[4], c = b->diag[5], m = b->coupling[4][5] * c;
+	const lanes load[2] = { a * (x[4] + step[4]) + m * x[5], m * x[4] + c * (x[5] + step[5]) };
+	lanes t = lanes_of(0);
+	lane_mask goes = outside & (bound > 0);
+	for (int k = 0; k < MOST && lanes_bits(goes); k++) {
+		lanes p = a + t, q = c + t, inverse = 1 / (p * q - m * m);
+		lanes y[2] = { (q * load[0] - m * load[1]) * inverse, (p * load[1] - m * load[0]) * inverse };
+		lanes n2 = y[0] * y[0] + y[1] * y[1], n = lanes_sqrt(n2), off = n / bound - 1;
+		lanes falls = (q * y[0] * y[0] - 2 * m * y[0] * y[1] + p * y[1] * y[1]) * inverse;
+		for (int i = 0; i < 2; i++)
+			next[i] = lanes_select(goes, y[i] * (bound / n), next[i]);
+		t += lanes_where(goes, off * n2 / falls);
+		goes &= lanes_abs(off) > close;
+	}
+	for (int i = 0; i < 2; i++)
+		next[i] = lanes_select(outside & ~(bound > 0), lanes_of(0), next[i]);
+}
+
+// Friction at a point or at the centroid: what holds it; where that is too much, on the disc. The way there is the same
+// in all directions, whatever the masses, or the slip's direction would depend on that of the tangents.
+static inline void solve_disc(const ob_batch *b, lane_mask point, lanes bound, const lanes *x, const lanes *step,
+			      lanes *change)
+{
+	lanes d4 = b->hold[0] * step[4] + b->hold[1] * step[5], d5 = b->hold[2] * step[4] + b->hold[3] * step[5];
+	lanes f4 = x[4] + d4, f5 = x[5] + d5, b2 = bound * bound;
+	const lane_mask slips = f4 * f4 + f5 * f5 > b2;
+	if (lanes_bits(slips)) { // the root and the quotient take as long as all the rest
+		f4 = x[4] + b->slide[0] * step[4], f5 = x[5] + b->slide[1] * step[5];
+		lanes l2 = f4 * f4 + f5 * f5, shrink = bound / lanes_sqrt(lanes_max(l2, b2) + 1e-300);
+		lanes next[2] = { f4 * shrink, f5 * shrink };
+		if (lanes_bits(slips & point))
+			solve_point(b, slips & point, bound, x, step, next);
+		d4 = lanes_select(slips, next[0] - x[4], d4);
+		d5 = lanes_select(slips, next[1] - x[5], d5);
+	}
+	change[0] = d4, change[1] = d5;
 }
 
 // A sweep of projected Gauss-Seidel inside the block: x are impulses, step what each row alone would change of its own
 // impulse, -(J v) / A_ii. Kept that way, little stands between one row's change and the next one's: a maximum, a
-// product, a difference.
-// Lanes that are not open keep their impulses. Returns the largest change of a row's velocity.
-PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, lane_mask open, lanes *x, lanes *step)
+// product, a difference. Where the two bodies touch nothing else, friction and twist are one block of rows.
+// Lanes that are not open keep their impulses. Returns the square of the largest change of a velocity.
+// patches: some lane's two bodies touch nothing else.
+PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, lane_mask open, friction_state *f,
+			   lanes *x, lanes *step)
 {
-	lanes largest = lanes_of(0), sum = lanes_of(0);
+	lanes largest = lanes_of(0), sum = lanes_of(0), next[3] = { sum, sum, sum }, disc[2];
 	for (int i = 0; i < points_of(kind); i++) {
 		lanes d = lanes_max(-x[i], step[i]);
 		couple(b, kind, i, d, step);
@@ -214,51 +378,122 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, lane_mask open
 		sum += x[i];
 		largest = lanes_max(largest, lanes_abs(d) * b->diag[i]);
 	}
+	largest *= largest;
 	if (!in_use(kind, 4))
 		return largest;
-	lanes bound = b->mu * sum, d4 = step[4], d5 = step[5];
-	lanes f4 = x[4] + d4, f5 = x[5] + d5, l2 = f4 * f4 + f5 * f5;
-	lane_mask slips = l2 > bound * bound;
-	if (lanes_bits(slips)) { // the root and the quotient take as long as all the rest
-		lanes shrink = bound / lanes_sqrt(l2 + 1e-300);
-		d4 = lanes_select(slips, f4 * shrink - x[4], d4);
-		d5 = lanes_select(slips, f5 * shrink - x[5], d5);
+	lane_mask isolated = { 0 }, patch = isolated;
+	if (patches) {
+		isolated = open & lanes_mask(b->isolated);
+		patch = isolated & (b->radius > 0);
+	}
+	if (patches && lanes_bits(patch))
+		solve_patch(b, kind, patch, x, sum, step, f, next);
+	lanes bound = b->mu * sum;
+	solve_disc(b, isolated & ~patch, bound, x, step, disc);
+	lanes d4 = disc[0], d5 = disc[1];
+	if (patches) {
+		d4 = lanes_select(patch, next[0] - x[4], d4);
+		d5 = lanes_select(patch, next[1] - x[5], d5);
 	}
 	couple(b, kind, 4, d4, step);
 	couple(b, kind, 5, d5, step);
 	x[4] += lanes_where(open, d4);
 	x[5] += lanes_where(open, d5);
-	largest = lanes_max(largest, lanes_abs(d4) * b->diag[4]);
-	largest = lanes_max(largest, lanes_abs(d5) * b->diag[5]);
+	largest = lanes_max(largest, square_of_slip(b, d4, d5));
 	if (!in_use(kind, 6))
 		return largest;
 	bound *= b->radius;
 	lanes d6 = lanes_max(-bound - x[6], lanes_min(bound - x[6], step[6]));
+	if (patches)
+		d6 = lanes_select(patch, next[2] - x[6], d6);
 	couple(b, kind, 6, d6, step);
 	x[6] += lanes_where(open, d6);
-	return largest;
+	lanes spin = d6 * b->diag[6] * b->radius;
+	return lanes_max(largest, spin * spin);
+}
+
+// What the sweeps over a block that is solved to the end have done to its impulses.
+typedef struct sweep_history {
+	lanes before[OB_ROWS]; // by the last sweep of the round before
+	lanes moving; // (m/s)^2: when it was extrapolated last
+} sweep_history;
+
+// Where one sweep changes the impulses in the same direction as the one before, to where they lead: to the limit of the
+// geometric series (Aitken 1926), but not past the place where the points have done their work, nor past the one where
+// the first lets go. The four points of a face cannot all close what they have left, each as rounding has it, and
+// sweeps would pass a load round for ever. The next sweep sees to the law. Not again where that has not led on.
+static __attribute__((noinline)) void extrapolate(const ob_batch *b, ob_batch_kind kind, lane_mask to, lanes moving,
+						  const lanes *was, sweep_history *h, lanes *x, lanes *step)
+{
+	const double least_ratio = .1, steady = .9, endless = .99; // steady: cos^2 between the two changes
+	const double led_on = .25;
+	lanes d[OB_ROWS], taken[OB_ROWS] = { 0 }, old = lanes_of(0), now = old, both = old, work = old, spent = old;
+	for (int i = 0; i < OB_ROWS; i++)
+		if (in_use(kind, i)) {
+			const lanes weight = i == 4 || i == 5 ? b->slide_rate2 * b->slide_mass : b->diag[i];
+			d[i] = x[i] - was[i];
+			old += h->before[i] * h->before[i] * weight;
+			now += d[i] * d[i] * weight;
+			both += d[i] * h->before[i] * weight;
+			couple(b, kind, i, -d[i], taken);
+		}
+	const lanes ratio = both / lanes_max(old, lanes_of(1e-300));
+	lanes more = lanes_select(ratio < endless, ratio / (1 - ratio), lanes_of(INFINITY));
+	for (int i = 0; i < points_of(kind); i++) {
+		more = lanes_select(d[i] < 0, lanes_min(more, -x[i] / d[i]), more);
+		work += step[i] * b->diag[i] * d[i];
+		spent += taken[i] * b->diag[i] * d[i];
+	}
+	more = lanes_select(more * spent > work, work / spent, more);
+	to &= (ratio > least_ratio) & (both * both > steady * now * old) & (more > 0) & (more < INFINITY) &
+	      (moving < led_on * h->moving);
+	if (!lanes_bits(to))
+		return;
+	h->moving = lanes_select(to, moving, h->moving);
+	more = lanes_where(to, more);
+	for (int i = 0; i < OB_ROWS; i++)
+		if (in_use(kind, i)) {
+			x[i] += more * d[i];
+			step[i] -= more * taken[i];
+		}
 }
 
 // Sweeps a block until it is solved, up to the iteration's number of sweeps; fewer if it changes so much that another
 // iteration will follow. An isolated lane has no later iteration to mend what is left over, so it is solved to the end.
-PER_KIND void solve_block(const ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, lanes *x,
-			  const lanes *r)
+// alone: there is such a lane. Returns the number of sweeps.
+PER_KIND unsigned solve_block(const ob_batch *b, ob_batch_kind kind, bool alone, const ob_solver_iteration *iteration,
+			      friction_state *f, lanes *x, const lanes *r)
 {
-	lanes step[OB_ROWS];
+	const bool patches = alone && in_use(kind, 6);
+	lanes step[OB_ROWS], was[OB_ROWS];
+	sweep_history history;
+	if (alone)
+		history.moving = lanes_of(INFINITY);
 	for (int i = 0; i < OB_ROWS; i++)
 		if (in_use(kind, i))
 			step[i] = -(r[i] * b->inv_diag[i]);
-	lane_mask isolated = lanes_mask(b->isolated), open = lanes_mask(b->live);
-	for (int s = 1; s <= max_block_sweeps && lanes_bits(open); s++) {
-		lanes moving = sweep_block(b, kind, open, x, step);
-		if (s == 1)
-			isolated &= moving > unpredicted_change;
-		open &= (moving > converged_change) & (isolated | (moving > iteration->block_tolerance));
+	const lane_mask isolated = lanes_mask(b->isolated);
+	const double converged = square(iteration->converged), tolerable = square(iteration->block_tolerance),
+		     coarse = square(iteration->wake_threshold);
+	lane_mask open = lanes_mask(b->live);
+	int s = 1;
+	for (; s <= max_block_sweeps && lanes_bits(open); s++) {
+		const int of_round = s % sweeps_of_a_round;
+		if (alone && of_round <= 1)
+			memcpy(was, x, sizeof was);
+		lanes moving = sweep_block(b, kind, patches, open, f, x, step);
+		open &= (moving > converged) & (isolated | (moving > tolerable));
 		if (s >= iteration->block_sweeps)
 			open &= isolated;
 		else if (s >= coarse_block_sweeps)
-			open &= isolated | (moving <= iteration->wake_threshold);
+			open &= isolated | (moving <= coarse);
+		if (alone && of_round == 0)
+			for (int i = 0; i < OB_ROWS; i++)
+				history.before[i] = x[i] - was[i];
+		else if (alone && of_round == 1 && s > 1)
+			extrapolate(b, kind, open & isolated, moving, was, &history, x, step);
 	}
+	return (unsigned)s - 1;
 }
 
 // va, vb of apply for rows that may stand in several lanes: their changes are added one by one, in lane order.
@@ -291,64 +526,99 @@ PER_KIND void write_changes(const ob_batch *b, ob_batch_kind kind, bool jacobi, 
 // How far each gap may close in the substep, as a velocity. The points of a resting contact are each where rounding
 // left them, and would take turns for ever to close what is left: they stay. Restitution is exact in time, so an
 // elastic point must not be stopped early: a body that falls freely closes less than its final velocity says, by half
-// of what it gains.
-PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, double h, const lanes *ua, const lanes *ub,
-		       const ob_body_row *v, const ob_body_row *d)
+// of what it gains. A point at the surface that does not leave has no such way to fall.
+PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, const ob_body_row *v,
+		       const ob_body_row *d)
 {
+	const double h = iteration->h;
 	lanes da[6], db[6], moved[4];
 	gather_both(b, d, da, db);
 	normal_velocities(b, kind, da, db, moved);
 	for (int i = 0; i < points_of(kind); i++)
 		b->bias[i] = b->gap[i] + moved[i];
+	const lane_mask turning = lanes_mask(b->turning);
+	const lanes most = lanes_select(turning, lanes_of(iteration->turning_gap), lanes_of(iteration->resting_gap));
+	lane_mask free[4];
 	for (int i = 0; i < points_of(kind); i++)
-		b->bias[i] = lanes_select((b->impulse[i] > 0) & (b->bias[i] < resting_gap), lanes_of(0), b->bias[i]);
+		free[i] = ~((b->impulse[i] > 0) & (b->bias[i] < most));
 	if (b->elastic) {
-		lanes va[6], vb[6], before[4], after[4];
+		lanes va[6], vb[6], now[4], gained[4];
 		gather_both(b, v, va, vb);
-		normal_velocities(b, kind, va, vb, before);
-		normal_velocities(b, kind, ua, ub, after);
-		for (int i = 0; i < points_of(kind); i++)
-			for (int l = 0; l < OB_LANES; l++)
-				if (b->elastic >> l & 1)
-					b->bias[i][l] += .5 * h * fmax(0, before[i][l] - after[i][l]);
+		normal_velocities(b, kind, va, vb, now);
+		gather_both(b, iteration->dv, va, vb);
+		normal_velocities(b, kind, va, vb, gained);
+		const lane_mask elastic = lanes_mask(b->elastic);
+		for (int i = 0; i < points_of(kind); i++) {
+			lanes fall = lanes_min(-.5 * h * gained[i], b->bias[i] + h * now[i]);
+			b->bias[i] += lanes_where(elastic, lanes_max(fall, lanes_of(0)));
+		}
 	}
 	for (int i = 0; i < points_of(kind); i++)
-		b->bias[i] = lanes_max(b->bias[i], lanes_of(0)) / h;
+		b->bias[i] = (lanes)(free[i] & (lane_mask)lanes_max(b->bias[i], lanes_of(0))) / h +
+			     (lanes)(turning & (lane_mask)b->turn[i]);
+}
+
+// The square of the most that a row's velocity would change (m/s) if its impulse alone did.
+PER_KIND lanes largest_change(const ob_batch *b, ob_batch_kind kind, const lanes *change)
+{
+	lanes most = lanes_of(0);
+	for (int i = 0; i < points_of(kind); i++)
+		most = lanes_max(most, lanes_abs(change[i]) * b->diag[i]);
+	most *= most;
+	if (in_use(kind, 4))
+		most = lanes_max(most, square_of_slip(b, change[4], change[5]));
+	if (in_use(kind, 6)) {
+		lanes spin = change[6] * b->diag[6] * b->radius;
+		most = lanes_max(most, spin * spin);
+	}
+	return most;
 }
 
 PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, ob_body_row *u,
 			 const ob_body_row *v, const ob_body_row *d, ob_body_row *delta)
 {
-	lanes va[6], vb[6], r[OB_ROWS], x[OB_ROWS], change[OB_ROWS], big = lanes_of(0), jump = lanes_of(0);
+	lanes va[6], vb[6], r[OB_ROWS], x[OB_ROWS], change[OB_ROWS], jump[OB_ROWS];
 	gather_both(b, u, va, vb);
 	if (iteration->first) {
-		set_bias(b, kind, iteration->h, va, vb, v, d);
+		set_bias(b, kind, iteration, v, d);
 		memcpy(b->impulse_start, b->impulse, sizeof b->impulse);
 		b->impact = 0;
 	}
 	normal_velocities(b, kind, va, vb, r);
 	friction_velocities(b, kind, va, vb, r);
+	if (b->turning)
+		for (int i = OB_POINTS; i < OB_ROWS; i++)
+			if (in_use(kind, i))
+				r[i] += (lanes)(lanes_mask(b->turning) & (lane_mask)b->turn[i]);
 	for (int i = 0; i < points_of(kind); i++) {
 		if (iteration->first)
 			b->impact |= lanes_bits((r[i] < -iteration->impact_threshold) & (r[i] + b->bias[i] < 0));
 		r[i] += b->bias[i];
 	}
 	memcpy(x, b->impulse, sizeof x);
-	solve_block(b, kind, iteration, x, r);
+	b->slides = 0;
+	if (b->isolated) {
+		friction_state friction = { .v = v, .model = &b->model };
+		b->model.known =
+			iteration->first ? 0 : b->model.known; // once in a substep, unless nothing else will mend it
+		b->sweeps = solve_block(b, kind, true, iteration, &friction, x, r);
+		b->slides = friction.search.slides & b->live;
+	} else {
+		b->sweeps = solve_block(b, kind, false, iteration, NULL, x, r);
+	}
 	for (int i = 0; i < OB_ROWS; i++) {
 		change[i] = lanes_of(0);
 		if (!in_use(kind, i))
 			continue;
 		change[i] = x[i] - b->impulse[i];
 		b->impulse[i] = x[i];
-		if (i < 6) {
-			big = lanes_max(big, lanes_abs(change[i]) * b->diag[i]);
-			jump = lanes_max(jump, lanes_abs(x[i] - b->impulse_start[i]) * b->diag[i]);
-		}
 	}
-	b->residual = big;
-	b->active = lanes_bits(big > iteration->wake_threshold) & b->live;
-	b->impact |= lanes_bits(jump > iteration->impact_threshold);
+	b->residual = largest_change(b, kind, change);
+	b->active = lanes_bits(b->residual > square(iteration->wake_threshold)) & b->live;
+	for (int i = 0; i < OB_ROWS; i++)
+		if (in_use(kind, i))
+			jump[i] = x[i] - b->impulse_start[i];
+	b->impact |= lanes_bits(largest_change(b, kind, jump) > square(iteration->impact_threshold));
 	b->impact &= b->live;
 	write_changes(b, kind, iteration->jacobi, change, va, vb, u, delta);
 }
@@ -405,13 +675,20 @@ static void limit_prediction(ob_batch *b, const double *cap_impulse, double cap_
 	for (int l = 0; l < OB_LANES; l++) {
 		if (!(b->impact >> l & 1))
 			continue;
-		for (int i = 0; i < OB_ROWS; i++) {
-			double cap = fmax(cap_impulse[l], cap_velocity / (b->diag[i][l] + 1e-9));
-			double x = b->impulse[i][l] - b->impulse_start[i][l];
-			if (i == 6)
-				cap *= b->radius[l];
-			b->impulse[i][l] += x > cap ? cap - x : x < -cap && i > 3 ? -cap - x : 0;
-		}
+		double change[OB_ROWS], share = 1;
+		for (int i = 0; i < OB_ROWS; i++)
+			change[i] = b->impulse[i][l] - b->impulse_start[i][l];
+		for (int i = 0; i < OB_POINTS; i++)
+			change[i] = fmin(change[i], fmax(cap_impulse[l], cap_velocity / b->diag[i][l]));
+		const double slip = __builtin_sqrt(change[4] * change[4] + change[5] * change[5]),
+			     most = fmax(cap_impulse[l], cap_velocity * b->slide_mass[l]), arm = b->radius[l];
+		if (slip > most)
+			share = most / slip;
+		change[4] *= share, change[5] *= share;
+		const double twist = fmax(cap_impulse[l] * arm, cap_velocity / (b->diag[6][l] * arm));
+		change[6] = change[6] > twist ? twist : change[6] < -twist ? -twist : change[6];
+		for (int i = 0; i < OB_ROWS; i++)
+			b->impulse[i][l] = b->impulse_start[i][l] + change[i];
 	}
 	b->impact = 0;
 }

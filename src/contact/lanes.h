@@ -41,6 +41,11 @@ static inline lanes lanes_min(lanes a, lanes b)
 	return lanes_select(a < b, a, b);
 }
 #endif
+// x, or 0
+static inline lanes lanes_where(lane_mask m, lanes x)
+{
+	return (lanes)(m & (lane_mask)x);
+}
 static inline lanes lanes_abs(lanes a)
 {
 	return (lanes)((lane_mask)a & INT64_MAX);

@@ -1,5 +1,10 @@
 #include "contact/manifold.h"
 
+#include "contact/capsule.h"
+#include "contact/cylinder.h"
+#include "motion/drift.h"
+#include "motion/spin.h"
+
 static void one_point(ob_manifold *m, ob_vec3 normal, ob_vec3 at, double gap, double margin)
 {
 	m->separation = gap;
@@ -24,33 +29,99 @@ static void sphere_plane(const ob_placed *a, const ob_placed *plane, double marg
 	one_point(m, n, ob_madd(a->p, -(a->size.x + .5 * gap), n), gap, margin);
 }
 
+// Of the depth at rest: gaps that differ by less count as equal; path after which a sphere is looked at again that has
+// left a face.
+static const double same_gap = 1e-3, leaving_share = .1;
+
 static double clamp(double x, double limit)
 {
 	return x < -limit ? -limit : x > limit ? limit : x;
 }
 
-// Sphere a against box b. Inside the box the nearest face pushes out.
+// Sphere a against box b as b sees it: the direction in which it is outside, and how far.
+typedef struct box_side {
+	ob_vec3 n, surface; // unit, and the point of the box's surface that it starts from: both in b's frame
+	double distance; // m, of the centre from there
+} box_side;
+
+static double *component(ob_vec3 *v, int i)
+{
+	return i == 0 ? &v->x : i == 1 ? &v->y : &v->z;
+}
+
+// Along the axis i of the box, on the plane that holds its face.
+static box_side face_side(ob_vec3 l, ob_vec3 size, int i)
+{
+	box_side s = { .surface = l };
+	double at = *component(&l, i), half = *component(&size, i), sign = at < 0 ? -1 : 1;
+	*component(&s.n, i) = sign;
+	*component(&s.surface, i) = sign * half;
+	s.distance = sign * at - half;
+	return s;
+}
+
+// The nearest point of the box; inside it the nearest face pushes out.
+static box_side nearest_side(ob_vec3 l, ob_vec3 size)
+{
+	box_side s = { .surface = { clamp(l.x, size.x), clamp(l.y, size.y), clamp(l.z, size.z) } };
+	ob_vec3 d = ob_sub(l, s.surface);
+	s.distance = ob_norm(d);
+	if (s.distance > 1e-12 * ob_norm(size)) {
+		s.n = ob_scale(d, 1 / s.distance);
+		return s;
+	}
+	double dx = fabs(l.x) - size.x, dy = fabs(l.y) - size.y, dz = fabs(l.z) - size.z;
+	return face_side(l, size, dx >= dy && dx >= dz ? 0 : dy >= dz ? 1 : 2);
+}
+
+double ob_time_to_close(const ob_placed *a, const ob_placed *b, double left, double rate)
+{
+	const double far = fmin(a->far_future, b->far_future), latest = far > 0 ? far : INFINITY;
+	return left <= 0 ? 0 : rate < 0 ? fmin(latest, -left / rate) : latest;
+}
+
+// Beyond a face's border the sphere meets an edge, unless it touches the face's plane and does not close along the
+// face's normal before: it rolls from one coplanar face to the next, and the edge is not hit. So that the next face
+// bears the sphere as soon as it is over it, its plane goes on for "reach" (m) before it; behind it, as far as the edge
+// is no farther away than the plane. v: m/s, of the sphere as b sees it.
+static void find_plane_underfoot(const ob_placed *a, const ob_placed *b, ob_vec3 l, ob_vec3 v, double reach,
+				 box_side *side, bool *leaving)
+{
+	const double radius = a->size.x, rest = fmin(a->rest_depth, b->rest_depth), nearest = side->distance;
+	const double closes_at_edge = ob_time_to_close(a, b, side->distance - radius + rest, ob_dot(side->n, v));
+	double latest = closes_at_edge;
+	bool found = false;
+	for (int i = 0; i < 3; i++) {
+		box_side face = face_side(l, b->size, i);
+		double closes = ob_time_to_close(a, b, face.distance - radius + rest, ob_dot(face.n, v));
+		if (fabs(face.distance - radius) <= rest && closes >= latest)
+			latest = closes, *side = face, found = true;
+	}
+	*leaving = found && latest == closes_at_edge;
+	ob_vec3 s = side->surface;
+	ob_vec3 past = ob_v3(s.x - clamp(s.x, b->size.x), s.y - clamp(s.y, b->size.y), s.z - clamp(s.z, b->size.z));
+	if (found && (*leaving ? nearest - side->distance > same_gap * rest : ob_norm(past) > reach))
+		side->distance = INFINITY;
+}
+
 static void sphere_box(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *m)
 {
-	ob_vec3 l = ob_rotate_back(&b->r, ob_sub(a->p, b->p));
-	ob_vec3 c = ob_v3(clamp(l.x, b->size.x), clamp(l.y, b->size.y), clamp(l.z, b->size.z));
-	ob_vec3 d = ob_sub(l, c), n = { 0, 0, 0 };
-	double distance = ob_norm(d);
-	if (distance > 1e-8) {
-		n = ob_scale(d, 1 / distance);
-	} else {
-		double dx = fabs(l.x) - b->size.x, dy = fabs(l.y) - b->size.y, dz = fabs(l.z) - b->size.z;
-		if (dx >= dy && dx >= dz) {
-			n.x = l.x < 0 ? -1 : 1, distance = dx, c.x = n.x * b->size.x;
-		} else if (dy >= dz) {
-			n.y = l.y < 0 ? -1 : 1, distance = dy, c.y = n.y * b->size.y;
-		} else {
-			n.z = l.z < 0 ? -1 : 1, distance = dz, c.z = n.z * b->size.z;
-		}
+	const ob_vec3 apart = ob_sub(a->p, b->p), l = ob_rotate_back(&b->r, apart);
+	box_side side = nearest_side(l, b->size);
+	const double separation = side.distance - a->size.x;
+	const bool past_border = fmax(fabs(side.n.x), fmax(fabs(side.n.y), fabs(side.n.z))) < 1;
+	m->valid_path = INFINITY;
+	if (past_border && separation <= margin) {
+		ob_vec3 v = ob_rotate_back(&b->r, ob_sub(ob_sub(a->v, b->v), ob_cross(b->w, apart)));
+		bool leaving;
+		find_plane_underfoot(a, b, l, v, margin, &side, &leaving);
+		if (leaving) // and may fall off the edge yet
+			m->valid_path = leaving_share * fmin(a->rest_depth, b->rest_depth);
 	}
-	double gap = distance - a->size.x;
-	ob_vec3 nw = ob_rotate(&b->r, n), surface = ob_add(b->p, ob_rotate(&b->r, c));
-	one_point(m, nw, ob_madd(surface, .5 * gap, nw), gap, margin);
+	double gap = side.distance - a->size.x;
+	ob_vec3 n = ob_rotate(&b->r, side.n), surface = ob_add(b->p, ob_rotate(&b->r, side.surface));
+	one_point(m, n, ob_madd(surface, .5 * gap, n), gap, margin);
+	m->separation = separation;
 }
 
 // Box a against a plane: the four lowest corners within the margin.
@@ -87,42 +158,80 @@ static void flip(ob_manifold *m)
 	m->normal = ob_scale(m->normal, -1);
 }
 
+typedef void pair_function(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+
+// By the shapes of a and b; where there is none the other way round, if any.
+static pair_function *const pair_functions[OB_SHAPE_CYLINDER + 1][OB_SHAPE_CYLINDER + 1] = {
+	[OB_SHAPE_SPHERE] = { [OB_SHAPE_SPHERE] = sphere_sphere,
+			      [OB_SHAPE_PLANE] = sphere_plane,
+			      [OB_SHAPE_BOX] = sphere_box },
+	[OB_SHAPE_BOX] = { [OB_SHAPE_PLANE] = box_plane, [OB_SHAPE_BOX] = ob_manifold_boxes },
+	[OB_SHAPE_CAPSULE] = { [OB_SHAPE_PLANE] = ob_manifold_capsule_plane,
+			       [OB_SHAPE_SPHERE] = ob_manifold_capsule_sphere,
+			       [OB_SHAPE_BOX] = ob_manifold_capsule_box,
+			       [OB_SHAPE_CAPSULE] = ob_manifold_capsules },
+	[OB_SHAPE_CYLINDER] = { [OB_SHAPE_PLANE] = ob_manifold_cylinder_plane,
+				[OB_SHAPE_SPHERE] = ob_manifold_cylinder_sphere,
+				[OB_SHAPE_BOX] = ob_manifold_cylinder_edged,
+				[OB_SHAPE_CAPSULE] = ob_manifold_cylinder_edged,
+				[OB_SHAPE_CYLINDER] = ob_manifold_cylinder_edged },
+};
+
 bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
-	ob_shape sa = a->shape, sb = b->shape;
-	if (sa == OB_SHAPE_SPHERE && sb == OB_SHAPE_SPHERE)
-		sphere_sphere(a, b, margin, out);
-	else if (sa == OB_SHAPE_SPHERE && sb == OB_SHAPE_PLANE)
-		sphere_plane(a, b, margin, out);
-	else if (sa == OB_SHAPE_PLANE && sb == OB_SHAPE_SPHERE)
-		sphere_plane(b, a, margin, out), flip(out);
-	else if (sa == OB_SHAPE_SPHERE && sb == OB_SHAPE_BOX)
-		sphere_box(a, b, margin, out);
-	else if (sa == OB_SHAPE_BOX && sb == OB_SHAPE_SPHERE)
-		sphere_box(b, a, margin, out), flip(out);
-	else if (sa == OB_SHAPE_BOX && sb == OB_SHAPE_PLANE)
-		box_plane(a, b, margin, out);
-	else if (sa == OB_SHAPE_PLANE && sb == OB_SHAPE_BOX)
-		box_plane(b, a, margin, out), flip(out);
-	else if (sa == OB_SHAPE_BOX && sb == OB_SHAPE_BOX)
-		ob_manifold_boxes(a, b, margin, out);
-	else
+	if (pair_functions[a->shape][b->shape]) {
+		pair_functions[a->shape][b->shape](a, b, margin, out);
+	} else if (pair_functions[b->shape][a->shape]) {
+		pair_functions[b->shape][a->shape](b, a, margin, out);
+		flip(out);
+	} else {
 		return false;
+	}
 	return true;
 }
 
 // ---- time of impact
 
-static ob_placed moved(const ob_placed *x, double t)
+static const double longest_short_turn = .2; // rad: off by less than 1e-5 rad
+
+// A shape on its way: v is constant, and it turns freely.
+typedef struct moving_shape {
+	const ob_placed *from; // at t = 0
+	ob_vec3 rate; // rad/s, in the frame of the shape
+	double speed; // rad/s
+	bool planned; // spin: from no attitude on; only long turns need it
+	ob_spin spin;
+} moving_shape;
+
+static void set_off(const ob_placed *x, moving_shape *o)
 {
-	ob_placed y = *x;
-	double th = ob_norm(x->w) * t;
-	y.p = ob_madd(x->p, t, x->v);
-	if (th > 0) {
-		ob_quat turn = ob_quat_turn(ob_quat_identity(), ob_scale(x->w, t));
-		ob_mat3 m = ob_quat_matrix(turn);
+	o->from = x;
+	o->rate = ob_rotate_back(&x->r, x->w);
+	o->speed = x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w); // it looks the same however it is turned
+	o->planned = false;
+}
+
+static ob_quat turn_at(moving_shape *x, double t)
+{
+	ob_quat turn;
+	ob_vec3 rate;
+	if (x->speed * t <= longest_short_turn)
+		return ob_drift_short_turn(x->rate, x->from->inertia, t);
+	if (!x->planned)
+		ob_spin_plan(&x->spin, ob_quat_identity(), x->rate, x->from->inertia);
+	x->planned = true;
+	ob_spin_at(&x->spin, t, &turn, &rate);
+	return turn;
+}
+
+static ob_placed placed_at(moving_shape *x, double t)
+{
+	ob_placed y = *x->from;
+	y.p = ob_madd(y.p, t, y.v);
+	if (t > 0 && x->speed > 0) {
+		const ob_mat3 turn = ob_quat_matrix(turn_at(x, t));
 		for (int c = 0; c < 3; c++) {
-			ob_vec3 axis = ob_rotate(&m, ob_column(&x->r, c));
+			ob_vec3 axis = ob_rotate(&x->from->r, ob_column(&turn, c));
 			y.r.m[0][c] = axis.x, y.r.m[1][c] = axis.y, y.r.m[2][c] = axis.z;
 		}
 	}
@@ -133,18 +242,23 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			 double margin, ob_manifold_finder find, ob_manifold *out)
 {
 	double t = 0, apart = 0;
+	moving_shape am, bm;
+	set_off(a, &am);
+	set_off(b, &bm);
 	// A grazing flight takes many small advances; after so many, what is this near counts as touching.
 	for (int tries = 0; tries < 256 && t <= h; tries++) {
-		ob_placed at = moved(a, t), bt = moved(b, t);
+		ob_placed at = placed_at(&am, t), bt = placed_at(&bm, t);
 		find.find(find.with, &at, &bt, tolerance, out);
 		if (tries == 0)
 			apart = out->separation;
+		if (out->points && margin == tolerance)
+			return t;
 		if (out->points)
 			break;
 		t += (fmax(out->separation, tolerance) - .5 * tolerance) / speed;
 	}
 	if (t <= h) {
-		ob_placed at = moved(a, t), bt = moved(b, t);
+		ob_placed at = placed_at(&am, t), bt = placed_at(&bm, t);
 		find.find(find.with, &at, &bt, margin, out);
 		if (out->points)
 			return t;

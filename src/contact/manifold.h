@@ -12,6 +12,11 @@ typedef struct ob_placed {
 	ob_mat3 r; // body to world
 	ob_vec3 v; // m/s: decides along which of several separating axes the shapes will meet first
 	ob_vec3 w; // rad/s
+	ob_vec3 inertia; // kg m^2, principal: how w goes on (motion/drift.h); all 0: it stays
+	double rest_depth; // m: bodies at rest on each other, or sliding, may be so deep in each other
+	double far_future; // s: what does not close within so long stays open until it is looked at again. Much longer
+			   // than a step, so that rounding does not count as closing; 0: any closing counts
+	ob_vec3 a; // m/s^2, external acceleration: towards where on its rim a standing cylinder is pressed most
 } ob_placed;
 
 typedef struct ob_manifold {
@@ -19,12 +24,21 @@ typedef struct ob_manifold {
 	int points; // 0 .. 4
 	ob_vec3 at[4]; // m, world, midway between the surfaces
 	double gap[4]; // m along the normal; < 0 penetrates
+	// m: they touch all over a disc of this radius about the points' mean, of which the points stand for the rim.
+	// 0: over the points' hull. Whoever finds a manifold sets it only where there is a disc, and is given 0.
+	double disc_radius;
 	double separation; // m, lower bound of the distance when positive; minus the depth otherwise
+	double valid_path; // m, of both together, after which it is to be found anew: set by those who know that it
+			   // changes soon, infinity before
 } ob_manifold;
 
-// Spheres, boxes and planes in any combination but plane-plane; points with a gap up to margin (m).
-// false: the combination has no closed form here (capsules, cylinders), out is untouched.
+// out->disc_radius is 0 and out->valid_path is infinite when a finder is called: see there.
+//
+// Points with a gap up to margin (m). false: two planes, or nothing at all; out is untouched.
 bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+
+// s: until a gap (m) that changes at this rate (m/s) has closed; at most the far future of the two.
+double ob_time_to_close(const ob_placed *a, const ob_placed *b, double gap, double rate);
 
 // The two boxes' part of it: separating axes (Gottschalk et al. 1996), the axis chosen by the time at which it
 // closes, face clipping (Sutherland and Hodgman 1974).
@@ -37,10 +51,10 @@ typedef struct ob_manifold_finder {
 } ob_manifold_finder;
 
 // Time of impact by conservative advancement (Mirtich 1996), so that nothing passes through anything between two
-// collision tests: both shapes move at their constant v, w. Returns the first time in [0, h] (s) at which they are
-// within tolerance (m), and in out the points up to margin (m) as of that time: what turns about the first point to
-// touch brings the next ones down within the same step. Infinity if they do not touch; then out has no points, and
-// separation is as of now. speed: bound of the closing speed of any two points (m/s).
+// collision tests: both shapes move at their constant v and turn freely. Returns the first time in [0, h] (s) at which
+// they are within tolerance (m), and in out the points up to margin (m) as of that time: what turns about the first
+// point to touch brings the next ones down within the same step. Infinity if they do not touch; then out has no points,
+// and separation is as of now. speed: bound of the closing speed of any two points (m/s) until then.
 double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out);
 

@@ -23,6 +23,8 @@ typedef struct ob_engine_kind {
 	ob_engine *(*create)(const ob_world *w, const ob_run_settings *s, ob_error *e); // NULL and e
 	bool (*step)(ob_engine *p, ob_error *e); // one frame; false and e: it cannot go on
 	void (*get)(const ob_engine *p, ob_state *state); // [objects], at the end of the last frame
+	// J since the start: potential energy that pushing penetrations apart has added. NULL = the engine does not tell
+	double (*recovered)(const ob_engine *p);
 	void (*destroy)(ob_engine *p); // NULL is allowed
 } ob_engine_kind;
 

@@ -34,10 +34,12 @@ static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run,
 	static unsigned made;
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "engine-%d-%u", (int)getpid(), made++);
-	ob_universe_setup setup = { name, w->objects, 1, "thread", *run, false };
+	ob_universe_setup setup = {
+		.name = name, .capacity = w->objects, .workers = 1, .isolation = "thread", .run = *run
+	};
 	ob_universe *u = ob_universe_create(&setup, e);
 	if (u)
-		ob_universe_unlink(name);
+		ob_universe_unlink(u);
 	return u;
 }
 
@@ -92,6 +94,13 @@ static void get(const ob_engine *p, ob_state *state)
 		state[i] = ob_state_now(p->u, i, ob_newest_motion(p->u, i), ob_step_count(p->u));
 }
 
+static double recovered(const ob_engine *p)
+{
+	ob_counters sum;
+	ob_universe_count(p->u, &sum);
+	return sum.recovered;
+}
+
 // With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.
 static bool resolve(const ob_world *w, const ob_run_settings *s, ob_run_settings *run, ob_error *e)
 {
@@ -102,7 +111,9 @@ static bool resolve(const ob_world *w, const ob_run_settings *s, ob_run_settings
 		return ob_fail(e, "neither substeps nor a tolerance that they could be chosen from");
 	*run = *s;
 	run->gravity = w->gravity;
-	run->substeps = chosen ? 1 : s->substeps;
+	run->substeps = chosen ? ob_run_settings_least_substeps(s->tolerance) : s->substeps;
+	if (run->tolerance > 0 && run->substeps > OB_MAX_SUBSTEPS)
+		return ob_fail(e, "%u substeps: a tolerance chooses %d at most", run->substeps, OB_MAX_SUBSTEPS);
 	return run->iterations > 0 || ob_fail(e, "no iteration of the contact solver: at least one is needed");
 }
 
@@ -146,7 +157,8 @@ static ob_engine *create_lagged(const ob_world *w, const ob_run_settings *s, ob_
 // clang-format off
 #define USUAL .step_length = OB_DEFAULT_STEP, .substeps = OB_DEFAULT_SUBSTEPS, .iterations = OB_DEFAULT_ITERATIONS
 #define THE_REST \
-	.version = "", .iteration_choice = { 1, 2, 4, 8, 16, 32, 64 }, .step = step, .get = get, .destroy = destroy
+	.version = "", .iteration_choice = { 1, 2, 4, 8, 16, 32, 64 }, .step = step, .get = get, \
+	.recovered = recovered, .destroy = destroy
 
 const ob_engine_kind ob_engine_obsim = {
 	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = OB_DEFAULT_TOLERANCE }, THE_REST

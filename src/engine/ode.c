@@ -114,8 +114,13 @@ static ob_engine *create_world(const ob_world *w, const ob_run_settings *s, ob_e
 static bool step(ob_engine *p, ob_error *e)
 {
 	for (uint32_t i = 0; i < p->substeps; i++)
-		if (!ob_ode_world_step(p->world, p->substep))
-			return ob_fail(e, "no memory for the contacts");
+		if (!ob_ode_world_step(p->world, p->substep)) {
+			bool full;
+			uint32_t culprit = ob_ode_world_culprit(p->world, &full);
+			return ob_fail(e,
+				       full ? "no memory for the contacts; body %u has most" : "ODE gave up at body %u",
+				       culprit);
+		}
 	return true;
 }
 

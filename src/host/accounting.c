@@ -52,6 +52,24 @@ uint64_t ob_switches_of_thread(pid_t pid, pid_t tid)
 	return sum;
 }
 
+const char *ob_state_word(char state)
+{
+	switch (state) {
+	case 0:
+	case 'X':
+	case 'Z':
+		return "gone";
+	case 'T':
+		return "stopped by a signal";
+	case 't':
+		return "held by a debugger";
+	case 'R':
+		return "computing";
+	default:
+		return "asleep";
+	}
+}
+
 char ob_state_of_thread(pid_t pid, pid_t tid)
 {
 	char line[256], *end = NULL;

@@ -15,5 +15,7 @@ size_t ob_memory_of_universe(const char *name);
 uint64_t ob_switches_of_thread(pid_t pid, pid_t tid);
 // The kernel's letter for the state of that thread (proc(5), stat); 0 when it is gone.
 char ob_state_of_thread(pid_t pid, pid_t tid);
+// What such a letter means: "stopped by a signal", say.
+const char *ob_state_word(char state);
 
 #endif

@@ -11,7 +11,12 @@
 #include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "host/accounting.h"
 
 struct ob_fork_server {
 	pid_t pid;
@@ -33,19 +38,24 @@ typedef struct server {
 	pid_t *pid; // [workers]; 0 = none
 } server;
 
-enum { LINK_FD = 3 };
+enum { LINK_FD = 3, SEGMENT_FD = 4 };
 
-// The fork server needs nothing that the host has open: no file of a recorder, no device of a renderer, no terminal input.
-static void close_inherited_files(int link)
+// The fork server needs nothing that the host has open: no file of a recorder, no device of a renderer, no terminal
+// input. It keeps the universe's segment, which it owns beside the host.
+static void close_inherited_files(ob_universe *u, int link)
 {
 	int null = open("/dev/null", O_RDWR);
 	if (null >= 0) {
 		dup2(null, STDIN_FILENO);
 		dup2(null, STDOUT_FILENO);
 	}
-	if (link != LINK_FD)
-		dup2(link, LINK_FD);
-	close_range(LINK_FD + 1, ~0U, 0);
+	// first out of the way of each other
+	link = fcntl(link, F_DUPFD, SEGMENT_FD + 1);
+	int segment = fcntl(ob_universe_fd(u), F_DUPFD, SEGMENT_FD + 1);
+	dup2(link, LINK_FD);
+	dup2(segment, SEGMENT_FD);
+	ob_universe_move_fd(u, SEGMENT_FD);
+	close_range(SEGMENT_FD + 1, ~0U, 0);
 }
 
 // With the default actions, a signal to the whole process group would end the fork server, which has to clean up.
@@ -119,16 +129,16 @@ static void reap(server *s)
 			continue;
 		s->pid[w] = 0;
 		report_end(s, &(ob_worker_end){ .worker = w,
-					    .pid = pid,
-					    .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
-					    .code = WIFEXITED(status) ? WEXITSTATUS(status) : 0 });
+						.pid = pid,
+						.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
+						.code = WIFEXITED(status) ? WEXITSTATUS(status) : 0 });
 	}
 }
 
 // The host has closed the link or is dead. The name is removed first, for it would outlive all processes.
 _Noreturn static void clean_up(const server *s)
 {
-	ob_universe_unlink(ob_universe_name(s->u));
+	ob_universe_unlink(s->u);
 	kill_simulators(s);
 	while (waitpid(-1, NULL, 0) > 0 || errno == EINTR)
 		;
@@ -164,10 +174,11 @@ _Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int lin
 	prctl(PR_SET_NAME, "obsim-fork");
 	set_signals(SIG_IGN);
 	signal(SIGCHLD, SIG_DFL);
+	signal(SIGBUS, SIG_DFL); // of a simulator: the host says what it means
 	sigemptyset(&child);
 	sigaddset(&child, SIGCHLD);
 	sigprocmask(SIG_SETMASK, &child, NULL);
-	close_inherited_files(link);
+	close_inherited_files(u, link);
 	s.children_fd = signalfd(-1, &child, SFD_CLOEXEC | SFD_NONBLOCK);
 	s.pid = calloc(s.workers, sizeof *s.pid);
 	if (s.children_fd < 0 || !s.pid)
@@ -176,6 +187,9 @@ _Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int lin
 }
 
 // ---- the host's side
+
+static const double end_timeout = 5; // s to wait for the fork server's end, before and after it is killed
+static const long longest_pause_ns = 5000000;
 
 ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error *e)
 {
@@ -233,12 +247,33 @@ bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end)
 	return n == sizeof *end;
 }
 
+// Whether the fork server has ended within so many seconds. One that somebody has stopped is not waited for.
+static bool wait_for_end(pid_t pid, double timeout)
+{
+	ob_hang_clock clock = ob_hang_clock_start();
+	for (long pause_ns = 50000; ob_hang_clock_tick(&clock) < timeout; pause_ns += pause_ns / 4) {
+		int status;
+		pid_t found = waitpid(pid, &status, WNOHANG | WUNTRACED);
+		if (found == pid && WIFSTOPPED(status))
+			return false;
+		if (found == pid || (found < 0 && errno != EINTR))
+			return true;
+		nanosleep(&(struct timespec){ .tv_nsec = pause_ns < longest_pause_ns ? pause_ns : longest_pause_ns },
+			  NULL);
+	}
+	return false;
+}
+
 void ob_fork_server_stop(ob_fork_server *s)
 {
 	if (!s)
 		return;
 	close(s->link);
-	while (waitpid(s->pid, NULL, 0) < 0 && errno == EINTR)
-		;
+	if (!wait_for_end(s->pid, end_timeout)) {
+		ob_log_warn("the fork server (process %d, %s) does not end: killed", (int)s->pid,
+			    ob_state_word(ob_state_of_thread(s->pid, s->pid)));
+		kill(s->pid, SIGKILL); // and with it its workers
+		wait_for_end(s->pid, end_timeout);
+	}
 	free(s);
 }

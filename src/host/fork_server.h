@@ -2,7 +2,8 @@
 //
 // It has two duties. It forks the worker processes of an isolated run: a fork from a small process is cheap, and the
 // children inherit nothing but the universe. And it cleans up after a host that was killed: when its link to the host
-// breaks, it removes the universe's name, kills the workers that are left, and exits.
+// breaks, it removes the universe's name, kills the workers that are left, and exits. It owns the universe beside the host
+// (table/segment.h).
 //
 //   host ----- link (seqpacket) ----- fork server ---fork--> worker process 0, 1, 2 ...   (each dies with the fork server)
 //        workers first .. first+count  >                   (count 0: kill all)
@@ -33,7 +34,8 @@ bool ob_fork_server_fork(ob_fork_server *s, uint32_t first, uint32_t count);
 bool ob_fork_server_kill(ob_fork_server *s);
 // Fetches one report, without waiting; false: none at the moment.
 bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end);
-// Ends the fork server and with it every worker that is left, and waits for it. NULL is allowed.
+// Ends the fork server and with it every worker that is left. It is killed if it does not end within some seconds, or at
+// once if it is stopped. NULL is allowed.
 void ob_fork_server_stop(ob_fork_server *s);
 
 #endif

@@ -1,6 +1,8 @@
 #include "host/host.h"
 
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
@@ -9,12 +11,14 @@
 #include "base/log.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
-#include "host/interrupt.h"
+#include "base/interrupt.h"
 #include "host/restart.h"
 #include "ode/ode_body.h"
+#include "sim/sim.h"
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
-static const double default_stall_timeout = 60, start_timeout = 60; // s
+static const double default_patience = 60, least_start_patience = 5; // s
+static const double interrupted_leave_timeout = .05; // s: Ctrl-C does not wait for the end of a long step
 
 static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
 {
@@ -23,10 +27,14 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "step: must be a positive number of seconds, is %g", r->step_length);
 	if (r->substeps < 1)
 		return ob_fail(e, "substeps: must be at least 1");
+	if (r->tolerance > 0 && r->substeps > OB_MAX_SUBSTEPS)
+		return ob_fail(e, "substeps: a tolerance chooses %d at most, not %u", OB_MAX_SUBSTEPS, r->substeps);
 	if (c->workers > WORKERS_MAX || (c->workers == 0 && (uint64_t)scene->objects + c->spare > WORKERS_MAX))
 		return ob_fail(e, "workers: at most %d, asked for %llu", WORKERS_MAX,
 			       c->workers ? (unsigned long long)c->workers
 					  : (unsigned long long)scene->objects + c->spare);
+	if (c->harden && (c->isolation != OB_ISOLATION_PROCESS || r->monolith))
+		return ob_fail(e, "harden: only object simulators in processes can be contained");
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))
 			return false;
@@ -49,6 +57,8 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 	bool one_per_object = c->workers == 0 && !c->run.monolith;
 	uint32_t spare = one_per_object || c->spare > POOL_SPARE ? c->spare : POOL_SPARE;
 	uint32_t capacity = scene->objects + spare > 0 ? scene->objects + spare : 1;
+	if (c->from && c->from->population.count > capacity)
+		capacity = c->from->population.count;
 	ob_universe_setup setup = {
 		.name = c->name,
 		.capacity = capacity,
@@ -57,9 +67,11 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 					     : c->workers,
 		.isolation = spawn->name,
 		.traced = c->trace != NULL,
+		.contained = c->harden,
 		.run = c->run,
 	};
 	setup.run.one_per_object = one_per_object;
+	setup.workers += c->harden; // the arranger
 	return ob_universe_create(&setup, e);
 }
 
@@ -69,23 +81,49 @@ static bool start_timeline(ob_host *h, const char *path, ob_error *e)
 	return !path || h->timeline;
 }
 
-static bool place_objects(ob_host *h, const ob_scene *scene, ob_error *e)
+static bool load(ob_host *h, const ob_saved_host *from, ob_error *e)
 {
+	if (!ob_universe_load(h->u, &from->universe, e) || !ob_population_load(h->population, &from->population, e))
+		return false;
+	ob_sim_restore(h->u);
+	*ob_worker_counters(h->u, 0) = from->counters;
+	return true;
+}
+
+// Those of the scene's start, or of where the run is to go on.
+static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host *from, ob_error *e)
+{
+	if (!ob_universe_reserve(h->u, scene->objects, e))
+		return false;
 	ob_ode_init();
 	h->roster = ob_roster_create();
 	h->requests = ob_requests_create();
 	h->population = h->roster ? ob_population_create(scene, h->u, h->roster) : NULL;
 	if (!h->requests || !h->population)
 		return ob_fail(e, "out of memory");
-	ob_population_update(h->population, 0, h->requests);
+	if (!from)
+		ob_population_update(h->population, 0, h->requests);
+	else if (!load(h, from, e))
+		return false;
 	ob_restart_prepare(h);
 	ob_restart_checkpoint(h, true);
 	return true;
 }
 
+// One that does not get ready is as one that is stalled: all are started again, where that is possible.
+static bool fail_start(ob_host *h, uint32_t worker, double patience, ob_error *e)
+{
+	pid_t server = ob_fork_server_pid(h->fork_server);
+	ob_restart_request(h, "simulator %u of %u was not ready after %g s; the fork server is process %d, %s",
+			   worker + 1, h->workers, patience, (int)server,
+			   ob_state_word(ob_state_of_thread(server, server)));
+	return ob_fail(e, "%s", h->failed ? h->failure.text : h->restart.reason.text);
+}
+
 bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 {
-	double until = ob_clock_wall() + start_timeout;
+	const double patience = fmax(h->patience, least_start_patience);
+	ob_hang_clock clock = ob_hang_clock_start();
 	ob_worker_info info;
 	for (uint32_t w = 0; w < h->workers;) {
 		if (h->interrupted)
@@ -94,11 +132,11 @@ bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 			return ob_fail(e, "%s", h->failed ? h->failure.text : h->restart.reason.text);
 		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0) {
 			w++;
+			clock = ob_hang_clock_start();
 			continue;
 		}
-		if (ob_clock_wall() > until)
-			return ob_fail(e, "simulator %u of %u was not ready after %g s", w + 1, h->workers,
-				       start_timeout);
+		if (ob_hang_clock_tick(&clock) > patience)
+			return fail_start(h, w, patience, e);
 		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
 	}
 	return true;
@@ -119,9 +157,10 @@ static bool start_workers(ob_host *h, ob_error *e)
 {
 	h->interrupt_fd = ob_interrupt_watch();
 	if (h->interrupt_fd < 0)
-		return ob_fail(e, "cannot watch for signals: too many open files?");
+		return ob_fail(e, "cannot watch for signals: %s", strerror(errno));
 	h->running_workers = h->workers;
-	h->group = h->spawn->start(&(ob_worker_group_setup){ .u = h->u, .fork_server = h->fork_server, .run = ob_worker_live }, e);
+	h->group = h->spawn->start(
+		&(ob_worker_group_setup){ .u = h->u, .fork_server = h->fork_server, .run = ob_worker_live }, e);
 	return h->group && ob_supervisor_start(h, e) && wait_until_ready(h, e);
 }
 
@@ -136,7 +175,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 		return NULL;
 	}
 	h->wake_fd = h->interrupt_fd = -1;
-	h->stall_timeout = config->stall_timeout > 0 ? config->stall_timeout : default_stall_timeout;
+	h->patience = config->patience > 0 ? config->patience : default_patience;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
 	pthread_mutex_init(&h->interval.lock, NULL);
@@ -145,7 +184,8 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
 	// the fork server first: it and its children shall inherit as little as possible
 	h->fork_server = h->u ? ob_fork_server_start(h->u, ob_worker_live, e) : NULL;
-	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, e) || !start_workers(h, e)) {
+	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, config->from, e) ||
+	    !start_workers(h, e)) {
 		ob_host_stop(h);
 		return NULL;
 	}
@@ -238,6 +278,25 @@ bool ob_host_end_trace(ob_host *h, ob_timeline_sums *sums, ob_error *e)
 	return ob_timeline_finish(t, sums, e);
 }
 
+bool ob_host_count_saved(ob_host *h, ob_saved_host *out)
+{
+	if (h->interval.running || h->failed || ob_universe_settings(h->u)->monolith)
+		return false;
+	ob_universe_count_saved(h->u, &out->universe);
+	ob_population_count_saved(h->population, &out->population);
+	return true;
+}
+
+// Times are those of the process that took them: they are not saved.
+void ob_host_save(ob_host *h, ob_saved_host *out)
+{
+	ob_universe_save(h->u, &out->universe);
+	ob_population_save(h->population, &out->population);
+	ob_universe_count(h->u, &out->counters);
+	memset(out->counters.time_ns, 0, sizeof out->counters.time_ns);
+	out->counters.held_ns = out->counters.gate_ns = out->counters.gate_cpu_ns = out->counters.since_ns = 0;
+}
+
 static bool request(ob_host *h, const ob_request *r)
 {
 	if (!ob_requests_push(h->requests, r))
@@ -246,14 +305,15 @@ static bool request(ob_host *h, const ob_request *r)
 	return true;
 }
 
-bool ob_host_request_add(ob_host *h, const ob_object_def *def)
+bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e)
 {
-	return ob_object_check(def, NULL) && request(h, &(ob_request){ .add = true, .def = *def });
+	return ob_object_check(def, e) &&
+	       (request(h, &(ob_request){ .add = true, .def = *def }) || ob_fail(e, "out of memory"));
 }
 
-bool ob_host_request_remove(ob_host *h, uint32_t id)
+bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation)
 {
-	return request(h, &(ob_request){ .id = id });
+	return request(h, &(ob_request){ .id = id, .generation = generation });
 }
 
 void ob_host_stop(ob_host *h)
@@ -268,15 +328,17 @@ void ob_host_stop(ob_host *h)
 	}
 	ob_supervisor_stop(h);
 	if (h->group)
-		left = h->spawn->join(h->group, h->spawn->leave_timeout);
+		left = h->spawn->join(h->group, h->interrupted ? interrupted_leave_timeout : h->spawn->leave_timeout);
 	ob_timeline_sums sums;
 	ob_error e;
 	if (!ob_host_end_trace(h, &sums, &e))
 		ob_log_warn("%s", e.text);
-	ob_fork_server_stop(h->fork_server); // removes the universe's name
+	ob_fork_server_stop(h->fork_server);
+	if (h->u)
+		ob_universe_unlink(h->u);
 	if (h->u && left)
 		ob_universe_destroy(h->u, true);
-	if (!left)
+	if (!left && !h->interrupted)
 		ob_log_warn("a simulator's thread does not return; its memory stays until this program ends");
 	if (h->interrupt_fd >= 0)
 		ob_interrupt_release();

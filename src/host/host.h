@@ -15,10 +15,18 @@
 #ifndef OB_HOST_HOST_H
 #define OB_HOST_HOST_H
 
-#include "host/roster.h"
 #include "host/timeline.h"
 #include "scene/scene.h"
-#include "table/table.h"
+#include "host/population.h"
+#include "table/saved.h"
+
+// A run at a step boundary: all that it needs to go on, beside its scene and its settings. The arrays belong to whoever
+// made them.
+typedef struct ob_saved_host {
+	ob_saved_universe universe;
+	ob_saved_population population;
+	ob_counters counters; // of all workers together
+} ob_saved_host;
 
 typedef enum ob_isolation { OB_ISOLATION_THREAD, OB_ISOLATION_PROCESS } ob_isolation;
 
@@ -27,9 +35,11 @@ typedef struct ob_host_config {
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
-	double stall_timeout; // s without a completed step after which the run counts as stalled; 0 = 60
+	double patience; // s without a completed step after which the run counts as stalled (stall.h); 0 = 60
+	bool harden; // processes: simulators cannot write the universe (table/outbox.h), and may do little else (confine.h)
 	const char *trace; // file for the timeline of what workers and host do (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
+	const ob_saved_host *from; // where the run begins, checked (ob_saved_universe_check); NULL = the scene's start
 } ob_host_config;
 
 typedef struct ob_host_times {
@@ -63,13 +73,17 @@ const ob_universe *ob_host_universe(const ob_host *h);
 const ob_roster *ob_host_roster(const ob_host *h);
 void ob_host_get_times(ob_host *h, ob_host_times *out);
 // Requests, carried out at the next step boundary. id comes back through the roster. Any thread.
-// false: the definition makes no sense, or no memory.
-bool ob_host_request_add(ob_host *h, const ob_object_def *def);
-bool ob_host_request_remove(ob_host *h, uint32_t id);
+// false: no memory, or, add, the definition makes no sense, and e says why. remove: nothing happens if another generation has the id by then.
+bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e);
+bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation);
 // With a trace: what the calling thread, the one that starts and stops the host, has done since begin (ob_clock_ns).
 void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t number);
 // Ends the trace's file; stop does so, too. false and e if it is not whole. Without a trace: true, and no events.
 bool ob_host_end_trace(ob_host *h, ob_timeline_sums *sums, ob_error *e);
+// Saves the run as it stands: first the lengths of the arrays, then the arrays. Between a wait and the next go.
+// false: it does not stand at a step boundary, or its world is a monolith's, of which ODE shows too little.
+bool ob_host_count_saved(ob_host *h, ob_saved_host *out);
+void ob_host_save(ob_host *h, ob_saved_host *out);
 // Ends all workers and removes the universe. Always succeeds; NULL is allowed.
 void ob_host_stop(ob_host *h);
 

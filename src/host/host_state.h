@@ -15,6 +15,7 @@ typedef struct ob_interval {
 	pthread_mutex_t lock;
 	bool running, halted; // halted: there will be no other
 	uint64_t end; // the step at which it pauses
+	uint64_t most; // the same when it began: no step goes beyond
 } ob_interval;
 
 // See restart.h.
@@ -27,6 +28,7 @@ typedef struct ob_restart_state {
 	double began, spent; // s, wall: since when checkpoints are possible; the time that all of them have taken
 	double progress_at; // s, wall: when a checkpoint was last farther than the one before
 	unsigned attempts, deaths; // restarts since then; restarts since the start
+	uint64_t half_way; // steps: half of what was made when simulators died last
 	_Atomic uint64_t cpu; // ns, of the workers that are gone
 	uint64_t switches; // theirs
 } ob_restart_state;
@@ -44,6 +46,7 @@ struct ob_host {
 
 	pthread_t supervisor;
 	bool supervised;
+	atomic_bool dismissed; // the supervisor is to end
 	int wake_fd, interrupt_fd; // ends the supervisor; SIGINT and its kin
 	atomic_uint running_workers; // that have not ended
 	atomic_bool interrupted, failed, ending;
@@ -54,7 +57,7 @@ struct ob_host {
 	ob_interval interval;
 	uint64_t target; // the caller's
 	bool started; // the gate was opened once
-	double stall_timeout; // s
+	double patience; // s
 
 	uint64_t interval_first_step;
 	double interval_start; // s, wall
@@ -92,9 +95,5 @@ bool ob_supervisor_start(ob_host *h, ob_error *e);
 void ob_supervisor_stop(ob_host *h); // allowed if it was never started
 // Reads the CPU clocks of all workers, for the readers of the universe; returns their sum (ns). Any thread.
 uint64_t ob_host_read_cpu(ob_host *h);
-// Names the workers that block the step, those that the gate still waits for or, where it waits for none, the one that
-// schedules: "simulator 3 (task 4242, stopped by a signal), simulator 5 (task 4244, computing)". Text may be cut to size.
-// Takes a tenth of a second, to see which of them compute.
-void ob_stall_describe(const ob_host *h, char *text, size_t size);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct event {
 } event;
 
 // Reserved: the slot is empty, but the timetable has another event for it.
-typedef enum slot_use { SLOT_FREE, SLOT_RESERVED, SLOT_PRESENT } slot_use;
+typedef enum slot_use { SLOT_FREE, SLOT_RESERVED, SLOT_PRESENT } slot_use; // saved as these numbers
 
 typedef struct slot {
 	uint32_t generation; // of its latest object
@@ -161,7 +161,8 @@ static void remove_object(ob_population *p, uint32_t id)
 	if (s->use != SLOT_PRESENT)
 		return;
 	ob_sim_remove(p->u, id);
-	s->use = s->removal_scheduled ? SLOT_RESERVED : SLOT_FREE; // else the timetable would remove the slot's next object
+	s->use = s->removal_scheduled ? SLOT_RESERVED
+				      : SLOT_FREE; // else the timetable would remove the slot's next object
 	p->changed = true;
 }
 
@@ -177,7 +178,11 @@ static void add_on_request(ob_population *p, const ob_object_def *def)
 	uint32_t capacity = ob_universe_capacity(p->u);
 	for (uint32_t id = 0; id < capacity; id++) {
 		if (p->slots[id].use == SLOT_FREE) {
-			add_object(p, id, def);
+			ob_error e;
+			if (ob_universe_reserve(p->u, id + 1, &e))
+				add_object(p, id, def);
+			else
+				ob_log_warn("object \"%s\" was not added: %s", def->passport.name, e.text);
 			return;
 		}
 	}
@@ -218,7 +223,7 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	while (ob_requests_take(q, &r)) {
 		if (r.add)
 			add_on_request(p, &r.def);
-		else if (r.id < ob_universe_capacity(p->u))
+		else if (r.id < ob_universe_capacity(p->u) && p->slots[r.id].generation == r.generation)
 			remove_object(p, r.id);
 	}
 	bool changed = p->changed;
@@ -230,6 +235,59 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 uint64_t ob_population_next_step(const ob_population *p)
 {
 	return p->next < p->event_count ? p->events[p->next].step : UINT64_MAX;
+}
+
+// ---- saved
+
+void ob_population_count_saved(const ob_population *p, ob_saved_population *out)
+{
+	uint32_t ids = ob_universe_ids(p->u);
+	*out = (ob_saved_population){ .events = p->next, .count = ids > p->scene->objects ? ids : p->scene->objects };
+}
+
+void ob_population_save(const ob_population *p, ob_saved_population *out)
+{
+	for (uint32_t id = 0; id < out->count; id++) {
+		const slot *s = &p->slots[id];
+		out->slot[id] = (ob_saved_slot){ s->generation, s->use, s->removal_scheduled, { 0 } };
+	}
+}
+
+static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot *s)
+{
+	const ob_passport *pass = ob_passport_of(p->u, id);
+	const bool present = id < ob_universe_ids(p->u) && pass->flags & OB_OBJECT_PRESENT;
+	return s->use <= SLOT_PRESENT && s->removal_scheduled <= 1 && present == (s->use == SLOT_PRESENT) &&
+	       (!present || pass->generation == s->generation);
+}
+
+// What the saved objects are made of is checked as if they were added now.
+static bool check_objects(const ob_population *p, ob_error *e)
+{
+	for (uint32_t id = 0; id < ob_universe_ids(p->u); id++) {
+		const ob_motion *m = ob_newest_motion(p->u, id);
+		ob_object_def def = { .passport = *ob_passport_of(p->u, id), .state = { { m->p, m->q }, m->v, m->w } };
+		if (def.passport.flags & OB_OBJECT_PRESENT && !ob_object_check(&def, e))
+			return false;
+	}
+	return true;
+}
+
+bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error *e)
+{
+	if (s->count > ob_universe_capacity(p->u) || s->count < p->scene->objects || s->events > p->event_count)
+		return ob_fail(e, "its objects are not those of its scene");
+	if (!check_objects(p, e))
+		return false;
+	for (uint32_t id = 0; id < s->count; id++) {
+		const ob_saved_slot *from = &s->slot[id];
+		if (!check_slot(p, id, from))
+			return ob_fail(e, "slot %u makes no sense", id);
+		p->slots[id] = (slot){ from->generation, from->use, from->removal_scheduled };
+	}
+	p->next = s->events;
+	publish_roster(p);
+	return true;
 }
 
 // ---- the scene's timetable

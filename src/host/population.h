@@ -16,7 +16,7 @@ typedef struct ob_requests ob_requests;
 
 typedef struct ob_request {
 	bool add;
-	uint32_t id; // to remove
+	uint32_t id, generation; // to remove
 	ob_object_def def; // to add
 } ob_request;
 
@@ -40,5 +40,25 @@ void ob_population_destroy(ob_population *p);
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
 // The next step at which something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);
+
+// What of it is saved with a universe, beside the scene: 8 bytes a slot.
+typedef struct ob_saved_slot {
+	uint32_t generation; // of its latest object
+	uint8_t use; // 0 = free, 1 = reserved: the timetable has another event for it, 2 = present
+	uint8_t removal_scheduled; // 1 = the timetable will remove its object
+	uint8_t zero[2];
+} ob_saved_slot;
+
+typedef struct ob_saved_population {
+	uint64_t events; // of the timetable, that have been carried out
+	uint32_t count; // slots that were ever used, or will be by the timetable: the scene's at least
+	ob_saved_slot *slot; // [count]
+} ob_saved_population;
+
+// Fills in events and count, for the array to be made; then the array.
+void ob_population_count_saved(const ob_population *p, ob_saved_population *out);
+void ob_population_save(const ob_population *p, ob_saved_population *out);
+// Instead of the first update, after ob_universe_load. false and e: it is not that of this scene and universe.
+bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error *e);
 
 #endif

@@ -14,7 +14,7 @@
 //   they are ready: runs on
 //
 // A checkpoint is taken at a pause: when objects have been added or removed, or else four times a second, but not so
-// often that checkpoints take more than a twentieth of the time. A stall (host.h) asks for a restart, too.
+// often that checkpoints take more than a twentieth of the time; after a restart, half way to where simulators died. A stall (host.h) asks for a restart, too.
 //
 // The run fails where a restart is impossible or of no use:
 //   - with threads, which die with the host;
@@ -33,6 +33,8 @@
 void ob_restart_prepare(ob_host *h);
 // At a pause, takes a checkpoint if one is due; changed = objects were added or removed.
 void ob_restart_checkpoint(ob_host *h, bool changed);
+// The step at which the run pauses for one in any case; UINT64_MAX: none.
+uint64_t ob_restart_next_step(const ob_host *h);
 // Whether it is time for a pause to take a checkpoint.
 bool ob_restart_checkpoint_due(const ob_host *h);
 // A worker has died, or is stalled, for this reason. The first request counts until ob_restart.

@@ -8,6 +8,7 @@
 #include "host/rcu_tsan.h"
 
 typedef struct snapshot {
+	uint64_t number;
 	size_t n;
 	ob_roster_entry entry[];
 } snapshot;
@@ -59,11 +60,12 @@ static void unlock_snapshot(const snapshot *s)
 
 // ---- the writer
 
-static snapshot *new_snapshot(const ob_roster_entry *entries, size_t n)
+static snapshot *new_snapshot(uint64_t number, const ob_roster_entry *entries, size_t n)
 {
 	snapshot *s = malloc(sizeof *s + n * sizeof *entries);
 	if (!s)
 		return NULL;
+	s->number = number;
 	s->n = n;
 	if (n > 0)
 		memcpy(s->entry, entries, n * sizeof *entries);
@@ -74,7 +76,7 @@ static snapshot *new_snapshot(const ob_roster_entry *entries, size_t n)
 ob_roster *ob_roster_create(void)
 {
 	ob_roster *r = calloc(1, sizeof *r);
-	if (r && !(r->current = new_snapshot(NULL, 0))) {
+	if (r && !(r->current = new_snapshot(0, NULL, 0))) {
 		free(r);
 		return NULL;
 	}
@@ -92,7 +94,7 @@ void ob_roster_destroy(ob_roster *r)
 
 bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n)
 {
-	snapshot *fresh = new_snapshot(entries, n);
+	snapshot *fresh = new_snapshot(r->current->number + 1, entries, n);
 	if (!fresh)
 		return false;
 	snapshot *old = rcu_xchg_pointer(&r->current, fresh);
@@ -103,6 +105,14 @@ bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n)
 }
 
 // ---- readers
+
+uint64_t ob_roster_number(const ob_roster *r)
+{
+	const snapshot *s = lock_snapshot(r);
+	uint64_t number = s->number;
+	unlock_snapshot(s);
+	return number;
+}
 
 size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max)
 {

@@ -25,7 +25,9 @@ void ob_roster_destroy(ob_roster *r);
 // Writer: replaces the whole roster by n entries, ascending by id; they are copied. false: out of memory.
 bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n);
 
-// Readers. copy: the first max entries, ascending by id; returns how many there are (may exceed max).
+// Readers. number: grows with each publication, so that who has seen one knows when to look again.
+uint64_t ob_roster_number(const ob_roster *r);
+// copy: the first max entries, ascending by id; returns how many there are (may exceed max).
 size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max);
 // false: no object of this id, or name, exists now
 bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out);

@@ -7,10 +7,11 @@
 #include "base/clock.h"
 #include "host/host_state.h"
 #include "host/restart.h"
+#include "host/stall.h"
 #include "sim/sim.h"
 
-static const double poll_interval = .1; // s, between checks of a run that does not pause
-static const double interrupt_grace = 1; // s that a step may still take after Ctrl-C
+static const double poll_interval = .05; // s, between checks of a run that does not pause
+static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C
 
 void ob_host_set_failure(ob_host *h, const char *format, ...)
 {
@@ -55,7 +56,8 @@ static void begin_interval(ob_host *h)
 	ob_restart_checkpoint(h, ob_population_update(h->population, step, h->requests));
 	if (h->started && step >= h->target)
 		return;
-	uint64_t next = ob_population_next_step(h->population);
+	uint64_t next = ob_population_next_step(h->population), retry = ob_restart_next_step(h);
+	next = next < retry ? next : retry;
 	if (!h->started)
 		ob_universe_set_state(h->u, OB_UNIVERSE_RUNNING);
 	h->started = true;
@@ -69,7 +71,7 @@ static void begin_interval(ob_host *h)
 	}
 	pthread_mutex_lock(&interval->lock);
 	interval->running = true;
-	interval->end = next < h->target ? next : h->target;
+	interval->end = interval->most = next < h->target ? next : h->target;
 	if (!interval->halted)
 		ob_gate_set_pause_step(h->u, interval->end);
 	pthread_mutex_unlock(&interval->lock);
@@ -110,21 +112,16 @@ static void report_stall(ob_host *h, uint64_t step)
 	char blocking[400];
 	ob_stall_describe(h, blocking, sizeof blocking);
 	ob_restart_request(h, "step %llu was not complete after %g s; waiting for %s", (unsigned long long)step + 1,
-			h->stall_timeout, blocking);
+			   h->patience, blocking);
 }
 
 // Not paused yet: detects a stall, and makes the interval end early if somebody waits for a pause. false: interrupted,
 // and the step does not end.
-static bool check_progress(ob_host *h, uint64_t *seen_step, double *seen_at, double *interrupted_at)
+static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupted_at)
 {
 	double now = ob_clock_wall();
-	uint64_t step = ob_step_count(h->u);
-	if (step != *seen_step) {
-		*seen_step = step;
-		*seen_at = now;
-	}
-	if (now - *seen_at > h->stall_timeout)
-		report_stall(h, step);
+	if (ob_stall_watch_look(stall, h))
+		report_stall(h, stall->step);
 	if (h->interrupted && *interrupted_at == 0)
 		*interrupted_at = now;
 	if (h->interrupted || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
@@ -148,6 +145,14 @@ static bool at_interval_end(ob_host *h)
 	return there;
 }
 
+// What simulators have written is not taken for granted: what makes no sense is as if one of them had died.
+static const char *find_damage(const ob_host *h)
+{
+	if (ob_step_count(h->u) > h->interval.most)
+		return "the universe's clock is ahead of the run: a simulator has written where it should not";
+	return ob_sim_damaged(h->u) ? ob_sim_failure(h->u) : NULL;
+}
+
 static bool result_of_run(ob_host *h, ob_error *e)
 {
 	if (h->interrupted)
@@ -162,14 +167,18 @@ static bool result_of_run(ob_host *h, ob_error *e)
 
 bool ob_host_wait(ob_host *h, ob_error *e)
 {
-	uint64_t seen_step = ob_step_count(h->u);
-	double seen_at = ob_clock_wall(), interrupted_at = 0;
+	ob_stall_watch stall = ob_stall_watch_start(h);
+	double interrupted_at = 0;
 	while (h->interval.running && !h->failed) {
 		bool turn = ob_gate_host_wait(h->u, poll_interval);
 		const char *failure = turn ? ob_sim_failure(h->u) : NULL;
 		if (h->restart.requested) { // the gate was stopped for it: this is not a pause
 			restart_interval(h);
-			seen_at = ob_clock_wall();
+			stall = ob_stall_watch_start(h);
+			if (h->interrupted)
+				break;
+		} else if (turn && find_damage(h)) {
+			ob_restart_request(h, "%s", find_damage(h));
 		} else if (failure) {
 			ob_host_set_failure(h, "%s", failure);
 		} else if (turn && at_interval_end(h)) {
@@ -179,7 +188,7 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 		} else {
 			if (turn)
 				nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL);
-			if (!check_progress(h, &seen_step, &seen_at, &interrupted_at))
+			if (!check_progress(h, &stall, &interrupted_at))
 				break;
 		}
 	}

@@ -24,8 +24,8 @@ typedef struct ob_spawn {
 	int (*fd)(const ob_worker_group *g);
 	// Fetches the report of one worker that has ended, without waiting; false: none at the moment.
 	bool (*next_end)(ob_worker_group *g, ob_worker_end *end);
-	// Both NULL where a worker cannot die alone. kill: kills all workers. restart: starts all anew, once the ends of all
-	// have been fetched; false: the fork server is gone.
+	// Both NULL where a worker cannot die alone. kill: kills all workers. restart: starts all anew, once the ends
+	// of all have been fetched; false: the fork server is gone.
 	void (*kill)(ob_worker_group *g);
 	bool (*restart)(ob_worker_group *g);
 	// ns of CPU time that the worker has used; 0 when it is gone.
@@ -36,6 +36,12 @@ typedef struct ob_spawn {
 	double leave_timeout; // s to join for: a process that does not leave can be killed, a thread cannot
 	bool own_memory; // a worker has an address space of its own, apart from the host's
 } ob_spawn;
+
+// What a join may sleep at once (ms) when it has "left" seconds: its hang clock ticks in between (base/clock.h).
+static inline int ob_spawn_poll_ms(double left)
+{
+	return left < .1 ? (int)(1000 * left) + 1 : 100;
+}
 
 extern const ob_spawn ob_spawn_threads, ob_spawn_processes;
 

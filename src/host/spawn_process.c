@@ -45,11 +45,11 @@ static uint64_t process_cpu(const ob_worker_info *w)
 static bool process_join(ob_worker_group *g, double timeout)
 {
 	ob_worker_end end;
-	double until = ob_clock_wall() + timeout;
+	ob_hang_clock clock = ob_hang_clock_start();
 	while (g->ended < g->workers) {
 		struct pollfd p = { .fd = ob_fork_server_fd(g->fork_server), .events = POLLIN };
-		double left = until - ob_clock_wall();
-		if (left <= 0 || (poll(&p, 1, (int)(left * 1000) + 1) < 0 && errno != EINTR))
+		double left = timeout - ob_hang_clock_tick(&clock);
+		if (left <= 0 || (poll(&p, 1, ob_spawn_poll_ms(left)) < 0 && errno != EINTR))
 			break;
 		while (process_next_end(g, &end))
 			;

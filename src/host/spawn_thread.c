@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/interrupt.h"
 
 // Thousands of threads must fit; a few may be as deep as a usual program's (the monolith is one of them).
 enum { MANY_WORKERS = 64, SMALL_STACK = 256 << 10, USUAL_STACK = 8 << 20 };
@@ -62,13 +63,13 @@ static uint64_t thread_cpu(const ob_worker_info *w)
 static bool thread_join(ob_worker_group *g, double timeout)
 {
 	ob_worker_end end;
-	double until = ob_clock_wall() + timeout;
+	ob_hang_clock clock = ob_hang_clock_start();
 	while (g->ended < g->started) {
-		double left = until - ob_clock_wall();
+		double left = timeout - ob_hang_clock_tick(&clock);
 		if (left <= 0)
 			return false; // g must live on: a stalled thread may still use it
 		struct pollfd p = { .fd = g->ends[0], .events = POLLIN };
-		poll(&p, 1, (int)(left * 1000) + 1);
+		poll(&p, 1, ob_spawn_poll_ms(left));
 		while (thread_next_end(g, &end))
 			;
 	}
@@ -80,17 +81,6 @@ static bool thread_join(ob_worker_group *g, double timeout)
 	return true;
 }
 
-// The main thread handles signals; only those that a fault of the thread itself raises stay unblocked.
-static void block_signals(sigset_t *before)
-{
-	static const int faults[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS };
-	sigset_t all;
-	sigfillset(&all);
-	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
-		sigdelset(&all, faults[i]);
-	pthread_sigmask(SIG_SETMASK, &all, before);
-}
-
 static int start_threads(ob_worker_group *g, uint32_t workers)
 {
 	pthread_attr_t attributes;
@@ -98,7 +88,7 @@ static int start_threads(ob_worker_group *g, uint32_t workers)
 	int error = 0;
 	pthread_attr_init(&attributes);
 	pthread_attr_setstacksize(&attributes, workers > MANY_WORKERS ? SMALL_STACK : USUAL_STACK);
-	block_signals(&before);
+	ob_interrupt_leave_to_main(&before);
 	for (uint32_t i = 0; i < workers && !error; i++) {
 		worker_thread *t = &g->threads[i];
 		*t = (worker_thread){ .group = g, .worker = i };

@@ -1,13 +1,13 @@
+#include <errno.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/eventfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "host/accounting.h"
+#include "base/interrupt.h"
 #include "host/host_state.h"
 #include "host/restart.h"
 
@@ -53,12 +53,21 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 				    "simulator %u of %u does not start: %s; use fewer workers, or raise the limit on "
 				    "processes (ulimit -u, or pids.max of the container)",
 				    end->worker + 1, h->workers, strerror(end->error));
+	else if (end->signal == SIGBUS && ob_universe_lost(h->u))
+		ob_host_set_failure(h, "%s ended after step %llu: the memory of universe \"%s\" is not all there: %s", worker,
+				    step, ob_universe_name(h->u), ob_universe_lost(h->u));
+	else if (end->code == OB_WORKER_NO_MEMORY)
+		ob_host_set_failure(
+			h,
+			"%s ran out of memory after step %llu: take fewer objects or workers, or raise the limits "
+			"(ulimit -v, or memory.max of the container)",
+			worker, step);
 	else if (end->signal)
 		ob_restart_request(h, "%s was killed by SIG%s (%s) after step %llu", worker, sigabbrev_np(end->signal),
-				strsignal(end->signal), step);
+				   strsignal(end->signal), step);
 	else
-		ob_host_set_failure(h, "%s left with exit code %d after step %llu, before the run was over", worker,
-				    end->code, step);
+		ob_restart_request(h, "%s left with exit code %d after step %llu, before the run was over", worker,
+				   end->code, step);
 }
 
 static void on_fork_server_end(ob_host *h)
@@ -106,7 +115,7 @@ static void *supervise(void *argument)
 	for (;;) {
 		if (poll(fds, 4, REFRESH_MS) < 0)
 			continue;
-		if (!handle_events(h, fds))
+		if (h->dismissed || !handle_events(h, fds))
 			return NULL;
 		double now = ob_clock_wall();
 		if (now - refreshed >= 1e-3 * REFRESH_MS) {
@@ -118,12 +127,11 @@ static void *supervise(void *argument)
 
 bool ob_supervisor_start(ob_host *h, ob_error *e)
 {
-	sigset_t all, before;
+	sigset_t before;
 	h->wake_fd = eventfd(0, EFD_CLOEXEC);
 	if (h->wake_fd < 0)
-		return ob_fail(e, "cannot make an event for the supervisor");
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before); // signals are the main thread's
+		return ob_fail(e, "cannot make an event for the supervisor: %s", strerror(errno));
+	ob_interrupt_leave_to_main(&before);
 	int error = pthread_create(&h->supervisor, NULL, supervise, h);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	h->supervised = error == 0;
@@ -135,6 +143,7 @@ bool ob_supervisor_start(ob_host *h, ob_error *e)
 void ob_supervisor_stop(ob_host *h)
 {
 	uint64_t one = 1;
+	h->dismissed = true; // which it sees soon enough should it not be woken
 	if (h->supervised) {
 		ssize_t ignored = write(h->wake_fd, &one, sizeof one);
 		(void)ignored;
@@ -144,48 +153,4 @@ void ob_supervisor_stop(ob_host *h)
 	if (h->wake_fd >= 0)
 		close(h->wake_fd);
 	h->wake_fd = -1;
-}
-
-// ---- stalls
-
-static const char *activity_of(const ob_worker_info *w, uint64_t cpu_ns)
-{
-	const uint64_t busy_ns = 10000000; // with more CPU time than this within the tenth of a second, it computes
-	char state = ob_state_of_thread(w->pid, w->tid);
-	if (!state)
-		return "gone";
-	if (state == 'T')
-		return "stopped by a signal";
-	if (state == 't')
-		return "held by a debugger";
-	return state == 'R' || cpu_ns > busy_ns ? "computing" : "asleep";
-}
-
-void ob_stall_describe(const ob_host *h, char *text, size_t size)
-{
-	enum { SHOWN = 4 };
-	uint32_t blocking[SHOWN], shown = 0, more = 0;
-	uint64_t cpu_before[SHOWN];
-	ob_worker_info info[SHOWN];
-	size_t n = 0;
-	uint32_t scheduler = ob_universe_step_data(h->u)->count->scheduler;
-	bool waits = false; // else all have arrived, and the last of them has not opened the gate again
-	for (uint32_t w = 0; w < h->workers; w++)
-		waits = waits || ob_gate_waits_for(h->u, w);
-	for (uint32_t w = 0; w < h->workers; w++) {
-		if (waits ? !ob_gate_waits_for(h->u, w) : w != scheduler)
-			continue;
-		if (shown < SHOWN && ob_universe_get_worker(h->u, w, &info[shown])) {
-			cpu_before[shown] = h->spawn->cpu(&info[shown]);
-			blocking[shown++] = w;
-		} else {
-			more++;
-		}
-	}
-	nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
-	for (uint32_t i = 0; i < shown && n < size; i++)
-		n += (size_t)snprintf(text + n, size - n, "%ssimulator %u (task %d, %s)", i ? ", " : "", blocking[i],
-				      (int)info[i].tid, activity_of(&info[i], h->spawn->cpu(&info[i]) - cpu_before[i]));
-	if (more && n < size)
-		snprintf(text + n, size - n, " and %u more", more);
 }

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/interrupt.h"
 #include "host/trace_file.h"
 #include "table/table.h"
 
@@ -145,23 +146,23 @@ static void *run(void *argument)
 {
 	ob_timeline *t = argument;
 	pthread_setname_np(pthread_self(), "timeline");
-	do
+	do {
 		drain_all(t);
-	while (!wait_for_end(t));
+		ob_trace_file_flush(t->file);
+	} while (!wait_for_end(t));
 	return NULL;
 }
 
 static bool start_thread(ob_timeline *t, ob_error *e)
 {
-	sigset_t all, before;
+	sigset_t before;
 	pthread_condattr_t monotonic;
 	pthread_mutex_init(&t->lock, NULL);
 	pthread_condattr_init(&monotonic);
 	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
 	pthread_cond_init(&t->end, &monotonic);
 	pthread_condattr_destroy(&monotonic);
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before); // signals are the main thread's
+	ob_interrupt_leave_to_main(&before);
 	int error = pthread_create(&t->thread, NULL, run, t);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	if (!error)

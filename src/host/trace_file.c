@@ -12,8 +12,8 @@
 #include "table/table.h"
 
 enum {
-	BUFFER = 1 << 16,
-	LONGEST = 1 << 10, // bytes of one event
+	BUFFER = 1 << 12,
+	LONGEST = 1 << 10, // bytes of one event, or of the file's end
 	HOST_PID = 1,
 	WORKERS_PID = 2,
 	OBJECTS_PID = 3,
@@ -25,6 +25,8 @@ struct ob_trace_file {
 	const ob_universe *u;
 	const char *path;
 	int fd, error; // errno of the first write that failed
+	bool streamed; // a pipe: what is written stays
+	off_t end; // of the events in the file
 	uint32_t workers;
 	bool monolith;
 	uint64_t zero; // ns
@@ -34,15 +36,19 @@ struct ob_trace_file {
 
 // ---- text; printf takes ten times as long, and there are a million events
 
-static void flush(ob_trace_file *f)
+// Of the text, the events stay; what stands behind them is written over by the next events.
+static void write_text(ob_trace_file *f, size_t events)
 {
 	for (size_t done = 0; done < f->used && !f->error;) {
-		ssize_t n = write(f->fd, f->text + done, f->used - done);
+		const char *from = f->text + done;
+		ssize_t n = f->streamed ? write(f->fd, from, f->used - done) :
+					  pwrite(f->fd, from, f->used - done, f->end + (off_t)done);
 		if (n > 0)
 			done += (size_t)n;
 		else if (errno != EINTR)
 			f->error = n < 0 ? errno : EIO;
 	}
+	f->end += (off_t)events;
 	f->used = 0;
 }
 
@@ -51,6 +57,16 @@ static void add(ob_trace_file *f, const char *s)
 	size_t n = strlen(s);
 	memcpy(f->text + f->used, s, n);
 	f->used += n;
+}
+
+void ob_trace_file_flush(ob_trace_file *f)
+{
+	const size_t events = f->used;
+	if (events == 0)
+		return;
+	if (!f->streamed)
+		add(f, "\n],\"otherData\":{\"unfinished\":true}}\n");
+	write_text(f, events);
 }
 
 static void add_number(ob_trace_file *f, uint64_t n)
@@ -119,7 +135,7 @@ static track of_ring(const ob_trace_file *f, uint32_t ring)
 static void begin(ob_trace_file *f, const char *phase, track t)
 {
 	if (f->used > BUFFER - LONGEST)
-		flush(f);
+		ob_trace_file_flush(f);
 	add(f, ",\n{\"ph\":\"");
 	add(f, phase);
 	add_member(f, "\",\"pid\":", t.pid);
@@ -314,10 +330,12 @@ ob_trace_file *ob_trace_file_open(const char *path, const ob_universe *u, ob_err
 		free(f);
 		return NULL;
 	}
+	f->streamed = lseek(f->fd, 0, SEEK_CUR) < 0;
 	// something must stand before the first comma; an importer shows it nowhere
 	add(f, "{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n");
 	add(f, "{\"ph\":\"M\",\"pid\":1,\"name\":\"process_labels\",\"args\":{\"labels\":\"obsim\"}}");
 	name_tracks(f);
+	ob_trace_file_flush(f);
 	return f;
 }
 
@@ -326,7 +344,7 @@ bool ob_trace_file_close(ob_trace_file *f, uint64_t events, uint64_t lost, ob_er
 	add_member(f, "\n],\"otherData\":{\"events\":", events);
 	add_member(f, ",\"lost\":", lost);
 	add(f, "}}\n");
-	flush(f);
+	write_text(f, 0);
 	if (close(f->fd) != 0 && !f->error)
 		f->error = errno;
 	bool fine = !f->error || ob_fail(e, "%s: %s", f->path, strerror(f->error));

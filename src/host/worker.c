@@ -1,28 +1,49 @@
 #include "host/worker.h"
 
+#include <setjmp.h>
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "base/allocate.h"
 #include "base/cpu.h"
 #include "base/log.h"
+#include "host/confine.h"
 #include "ode/ode_body.h"
 #include "sim/sim.h"
 
-int ob_worker_live(ob_universe *u, uint32_t worker)
+static _Thread_local jmp_buf no_memory;
+
+// Out of whatever the worker is in the middle of; what that holds is not given back.
+static void leave_without_memory(void)
+{
+	longjmp(no_memory, 1);
+}
+
+static int live(ob_universe *u, uint32_t worker)
 {
 	ob_error e;
-	int cpu = ob_cpu_pin(worker); // more workers than cores: in turn
+	const bool arranges = ob_universe_contains(u) && worker == ob_universe_simulators(u);
+	int cpu = arranges ? -1
+			   : ob_cpu_pin(worker); // more workers than cores: in turn; the arranger where there is room
 	ob_ode_init();
 	ob_ode_thread_init();
 	ob_sim *s = ob_sim_create(u, worker, &e);
-	if (!s) {
+	if (s)
+		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from here on it is ready for the gate
+	bool ready = s && (!ob_universe_contains(u) || ob_confine(u, worker, !arranges, &e));
+	if (ready)
+		ob_sim_run(s);
+	else if (s)
 		ob_log_warn("worker %u: %s", worker, e.text);
-		ob_ode_thread_finish();
-		return EXIT_FAILURE;
-	}
-	ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from here on it is ready for the gate
-	ob_sim_run(s);
 	ob_sim_destroy(s);
 	ob_ode_thread_finish();
-	return EXIT_SUCCESS;
+	return ready ? EXIT_SUCCESS : s ? EXIT_FAILURE : OB_WORKER_NO_MEMORY;
+}
+
+int ob_worker_live(ob_universe *u, uint32_t worker)
+{
+	if (setjmp(no_memory) != 0)
+		return OB_WORKER_NO_MEMORY;
+	ob_allocate_or_else(leave_without_memory);
+	return live(u, worker);
 }

@@ -4,6 +4,8 @@
 
 #include "table/table.h"
 
+enum { OB_WORKER_NO_MEMORY = 3 }; // the exit code of a worker that could not get the memory that it needs
+
 // What a worker runs, in its own thread or process, from its start to its end. 0 = it left after STOP, as it should.
 typedef int (*ob_worker_run)(ob_universe *u, uint32_t worker);
 

@@ -101,6 +101,11 @@ bool ob_lab_analysis_meets_all(const ob_result *r)
 	return !r->outcome.failed[0];
 }
 
+bool ob_lab_analysis_conserves(const ob_result *r, ob_conserved what)
+{
+	return !(r->outcome.conserved[what] > ob_conserved_kinds[what].bound);
+}
+
 double ob_lab_analysis_ratio(const ob_result *r)
 {
 	double worst = r->outcome.failed[0] ? INFINITY : NAN;

@@ -5,7 +5,7 @@
 
 #include "lab/result.h"
 
-enum { OB_LAB_ANALYSIS_ENGINES = 24, OB_LAB_ANALYSIS_ROWS = 32 };
+enum { OB_LAB_ANALYSIS_ENGINES = 24, OB_LAB_ANALYSIS_ROWS = 64 };
 
 typedef struct ob_lab_analysis {
 	const ob_results *results;
@@ -29,6 +29,8 @@ bool ob_lab_analysis_ran(const ob_lab_analysis *d, const ob_case *c); // with an
 bool ob_lab_analysis_has_target(const ob_case *c, uint32_t figure);
 bool ob_lab_analysis_meets(const ob_result *r, uint32_t figure); // false, too, where the run failed
 bool ob_lab_analysis_meets_all(const ob_result *r);
+// Within its bound, or not kept by the case's worlds. false, too, where the run broke down.
+bool ob_lab_analysis_conserves(const ob_result *r, ob_conserved what);
 // Worst of figure over target, of those with a target: <= 1 where all are met. Infinite where it failed, or where all
 // that is missed is a target of 0; NAN without targets.
 double ob_lab_analysis_ratio(const ob_result *r);

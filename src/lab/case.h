@@ -1,11 +1,12 @@
 // A hard case: worlds to run, what is looked at after each frame, and the figures that come out, each with its target.
 //
-// A case may consist of several runs (100 aims at a wall, three stacks); its figures are the worst over all of them
-// unless the case says otherwise. Cases know no engine: they see states.
+// A case may consist of several runs (100 aims at a wall, three stacks); its figures are the worst over all of them,
+// but for those that are averaged. Cases know no engine: they see states.
 #ifndef OB_LAB_CASE_H
 #define OB_LAB_CASE_H
 
 #include "engine/engine.h"
+#include "lab/conservation.h"
 #include "measure/measure.h"
 
 enum { OB_FIGURES = 8 }; // per case, at most
@@ -41,10 +42,12 @@ typedef struct ob_case {
 	const char *others; // what other engines were seen to reach
 	bool quick; // belongs to the subset that runs with the tests
 	bool compared; // one of those whose cost at equal error is tabled
+	bool sleeps; // what rests may sleep, whatever the settings
 	double duration, step; // s
 	uint32_t runs;
 	uint32_t figures; // the first is the one that plots show
 	ob_figure_def figure[OB_FIGURES];
+	unsigned averaged; // bit per figure: its mean over the runs counts, not the worst of them (a share)
 	void (*build)(ob_world *w, uint32_t run); // with ob_world_* of world/world.h
 	void (*observe)(ob_case_run_state *t); // after each frame, and once before the first; NULL = nothing
 	void (*judge)(ob_case_run_state *t); // at the end of each run
@@ -58,6 +61,7 @@ const ob_case *ob_case_find(const char *name);
 // rad/s) all figures are infinite.
 typedef struct ob_case_result {
 	double figure[OB_FIGURES];
+	double conserved[OB_CONSERVED]; // worst of all runs; NAN: the case's worlds do not keep it
 	double cpu_s, wall_s; // of stepping alone
 	double body_seconds; // dynamic bodies times simulated time
 	char failed[96]; // "" = it did not

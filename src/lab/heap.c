@@ -19,9 +19,13 @@ void ob_heap_observe(ob_case_run_state *t)
 		memory[MEMORY_START] = memory[MEMORY_LOWEST] = energy;
 	memory[MEMORY_LOWEST] = fmin(memory[MEMORY_LOWEST], energy);
 	ob_look_keep(&t->figure[OB_HEAP_GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
+	if (ob_look_fell_through(t))
+		t->failed = "fell through the ground";
 }
 
 void ob_heap_judge(ob_case_run_state *t)
 {
 	t->figure[OB_HEAP_RESTING_MEAN] = 1e3 * t->memory[MEMORY_SUM] / fmax(t->memory[MEMORY_FRAMES], 1);
+	if (!t->failed && ob_look_farthest(t) < .1)
+		t->failed = "nothing moved";
 }

@@ -1,5 +1,6 @@
 // What is watched where bodies fall and come to rest: how deep they ever are in each other, and in the last second, and
-// whether energy grows. The figures of such cases stand in this order.
+// whether energy grows. It fails where something falls through the ground, or nothing falls. The figures of such cases
+// stand in this order.
 #ifndef OB_LAB_HEAP_H
 #define OB_LAB_HEAP_H
 

@@ -33,6 +33,19 @@ static void put_figures(ob_json *j, const ob_result *r)
 	ob_json_close_list(j);
 }
 
+static void put_conserved(ob_json *j, const ob_result *r)
+{
+	ob_json_open_list(j, "conserved");
+	for (ob_conserved i = 0; i < OB_CONSERVED; i++) {
+		ob_json_open(j, NULL);
+		ob_json_string(j, "name", ob_conserved_kinds[i].title);
+		ob_json_number(j, "value", r->outcome.conserved[i]);
+		ob_json_number(j, "bound", ob_conserved_kinds[i].bound);
+		ob_json_close(j);
+	}
+	ob_json_close_list(j);
+}
+
 static void put_result(ob_json *j, const ob_result *r)
 {
 	ob_json_open(j, NULL);
@@ -52,6 +65,7 @@ static void put_result(ob_json *j, const ob_result *r)
 	else
 		ob_json_null(j, "failed");
 	put_figures(j, r);
+	put_conserved(j, r);
 	ob_json_close(j);
 }
 

@@ -6,6 +6,10 @@
 
 #include "world/world.h"
 
+#define CONSERVED(name, text) \
+	{ \
+		.key = name, .title = text, .unit = "1", .scale = 1, .target = NAN \
+	}
 #define FIGURE(n) \
 	{ \
 		.key = "figure" #n, .title = "figure " #n, .unit = "1", .scale = 1, .target = NAN \
@@ -18,6 +22,9 @@ static const ob_metric metrics[OB_LAB_METRICS] = {
 				  .unit = "s",
 				  .scale = 1,
 				  .target = NAN },
+	[OB_LAB_CONSERVED + OB_CONSERVED_MOMENTUM] = CONSERVED("momentum_drift", "drift of momentum"),
+	[OB_LAB_CONSERVED + OB_CONSERVED_ANGULAR] = CONSERVED("angular_momentum_drift", "drift of angular momentum"),
+	[OB_LAB_CONSERVED + OB_CONSERVED_ENERGY] = CONSERVED("energy_gain", "gain of energy, net"),
 	[OB_LAB_FIGURE] = FIGURE(1),
 	FIGURE(2),
 	FIGURE(3),
@@ -112,6 +119,8 @@ static bool run(const ob_trial *t, ob_record *out, ob_error *e)
 	out->metric[OB_LAB_CPU] = o.cpu_s;
 	out->metric[OB_LAB_WALL] = o.wall_s;
 	out->metric[OB_LAB_BODY_SECONDS] = o.body_seconds;
+	for (int i = 0; i < OB_CONSERVED; i++)
+		out->metric[OB_LAB_CONSERVED + i] = o.conserved[i];
 	for (uint32_t i = 0; i < m.of->figures; i++)
 		out->metric[OB_LAB_FIGURE + i] = o.figure[i];
 	snprintf(out->reason, sizeof out->reason, "%s", o.failed);
@@ -254,6 +263,8 @@ static ob_case_result outcome_of(const ob_case *c, const ob_record *r)
 			 .body_seconds = r->metric[OB_LAB_BODY_SECONDS] };
 	for (uint32_t i = 0; i < c->figures; i++)
 		o.figure[i] = measured ? r->metric[OB_LAB_FIGURE + i] : INFINITY;
+	for (int i = 0; i < OB_CONSERVED; i++)
+		o.conserved[i] = r->metric[OB_LAB_CONSERVED + i];
 	snprintf(o.failed, sizeof o.failed, "%.95s", r->reason);
 	return o;
 }

@@ -9,7 +9,14 @@
 #include "lab/sweep.h"
 
 // Metrics of a record; those of figures are in the case's units.
-enum { OB_LAB_CPU, OB_LAB_WALL, OB_LAB_BODY_SECONDS, OB_LAB_FIGURE, OB_LAB_METRICS = OB_LAB_FIGURE + OB_FIGURES };
+enum {
+	OB_LAB_CPU,
+	OB_LAB_WALL,
+	OB_LAB_BODY_SECONDS,
+	OB_LAB_CONSERVED,
+	OB_LAB_FIGURE = OB_LAB_CONSERVED + OB_CONSERVED,
+	OB_LAB_METRICS = OB_LAB_FIGURE + OB_FIGURES
+};
 
 typedef struct ob_lab_plan {
 	ob_case_list cases;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "experiment/folder.h"
+#include "lab/audit.h"
 #include "lab/chart.h"
 #include "lab/tables.h"
 #include "report_texts.h"
@@ -114,6 +115,23 @@ static void write_equal(ob_page *p, const void *with)
 static void write_rows(ob_page *p, const void *with)
 {
 	write_table(p, ob_lab_table_rows(with));
+}
+
+static void write_conserved(ob_page *p, const void *with)
+{
+	write_table(p, ob_lab_table_conserved(with));
+}
+
+static void write_audit(ob_page *p, const void *with)
+{
+	ob_table *t = ob_lab_table_audit(with);
+	if (!t)
+		return;
+	ob_page_markup(p, "<h2 id=\"audit\">Does the error fall?</h2>\n<p>obsim\u2019s errors over their targets, the worst "
+			  "of each case, as its tolerance shrinks and as its substeps grow, and the order at which they "
+			  "fall with the length of a substep. RISES: an error that is above its target is larger at a "
+			  "finer setting; <code>audit.md</code> says which.</p>\n");
+	write_table(p, t);
 }
 
 static void write_style(ob_page *p, const void *with)
@@ -334,6 +352,8 @@ static void write_page(FILE *f, const void *with)
 					      { "promises", write_promises },
 					      { "equal", write_equal },
 					      { "rows", write_rows },
+					      { "conserved", write_conserved },
+					      { "audit", write_audit },
 					      { "convergence", write_convergence },
 					      { "ghost", write_ghost },
 					      { "lag", write_lag },
@@ -347,6 +367,16 @@ static void write_page(FILE *f, const void *with)
 static void write_rows_file(FILE *f, const void *with)
 {
 	ob_lab_print_rows(f, with, true);
+}
+
+static void write_conserved_file(FILE *f, const void *with)
+{
+	ob_lab_print_conserved(f, with, true);
+}
+
+static void write_audit_file(FILE *f, const void *with)
+{
+	ob_lab_print_audit(f, with, true);
 }
 
 static void write_equal_file(FILE *f, const void *with)
@@ -363,6 +393,8 @@ bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e)
 {
 	ob_lab_analysis d = ob_lab_analyse(r);
 	return ob_folder_make(dir, e) && ob_folder_write(dir, "rows.md", write_rows_file, &d, e) &&
+	       ob_folder_write(dir, "conserved.md", write_conserved_file, &d, e) &&
+	       ob_folder_write(dir, "audit.md", write_audit_file, &d, e) &&
 	       ob_folder_write(dir, "equal.md", write_equal_file, &d, e) &&
 	       ob_folder_write(dir, "equal.csv", write_equal_csv, &d, e) && write_charts(&d, dir, e) &&
 	       ob_folder_write(dir, "report.html", write_page, &d, e);

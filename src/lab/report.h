@@ -7,7 +7,7 @@
 #include "lab/result.h"
 
 // Writes DIR/report.html (self-contained: no script, no network), DIR/plots/NAME.svg and .png, the tables DIR/rows.md,
-// equal.md and equal.csv; the folders are made.
+// conserved.md, audit.md, equal.md and equal.csv; the folders are made.
 // The same results give the same files. One thread at a time per directory.
 bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e);
 

@@ -100,6 +100,7 @@ void ob_result_repeat(ob_result *r, const ob_case_result *again)
 	o->cpu_s = median(r->cpu_s, r->repeats);
 	o->wall_s = median(r->wall_s, r->repeats);
 	ob_look_keep_all(o->figure, again->figure);
+	ob_conservation_keep(o->conserved, again->conserved);
 	if (!*o->failed)
 		memcpy(o->failed, again->failed, sizeof o->failed);
 	if (isnan(again->body_seconds)) // it did not come to its end

@@ -112,6 +112,65 @@ void ob_lab_print_rows(FILE *f, const ob_lab_analysis *d, bool markdown)
 	print_table(f, ob_lab_table_rows(d), markdown);
 }
 
+// ---- what is conserved
+
+static bool conserves_all(const ob_result *r)
+{
+	bool all = true;
+	for (ob_conserved i = 0; i < OB_CONSERVED; i++)
+		all &= ob_lab_analysis_conserves(r, i);
+	return all;
+}
+
+ob_table *ob_lab_table_conserved(const ob_lab_analysis *d)
+{
+	ob_table *t = new_table("rlrrrl");
+	quantity q;
+	ob_table_add(t, "Row");
+	ob_table_add(t, "Case");
+	for (int i = 0; i < OB_CONSERVED; i++) {
+		ob_table_add(t, "%s", ob_conserved_kinds[i].title);
+		ob_table_small(t, "\u2264 %s", print(&q, ob_conserved_kinds[i].bound, "1"));
+	}
+	ob_table_add(t, "%s", "");
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		const ob_result *r = ob_lab_analysis_promised(d, *c);
+		if (!r)
+			continue;
+		ob_table_add(t, "%d", (*c)->row);
+		ob_table_add(t, "%s", (*c)->title);
+		ob_table_link(t, (*c)->name);
+		for (ob_conserved i = 0; i < OB_CONSERVED; i++) {
+			ob_table_add(t, "%s", print(&q, r->outcome.conserved[i], "1"));
+			if (!isnan(r->outcome.conserved[i]))
+				ob_table_class(t, ob_lab_analysis_conserves(r, i) ? "met" : "missed");
+		}
+		ob_table_add(t, "%s", conserves_all(r) ? "kept" : "NOT KEPT");
+		ob_table_class(t, conserves_all(r) ? "met" : "missed");
+	}
+	return t;
+}
+
+void ob_lab_print_conserved(FILE *f, const ob_lab_analysis *d, bool markdown)
+{
+	size_t watched = 0, broken = 0, named = 0;
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		const ob_result *r = ob_lab_analysis_promised(d, *c);
+		watched += r != NULL;
+		broken += r && !conserves_all(r);
+	}
+	if (!watched)
+		return;
+	print_table(f, ob_lab_table_conserved(d), markdown);
+	fprintf(f, "\nNot kept in %zu of %zu cases", broken, watched);
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		const ob_result *r = ob_lab_analysis_promised(d, *c);
+		if (r && !conserves_all(r))
+			fprintf(f, "%s%s", named++ ? ", " : ": ", (*c)->name);
+	}
+	fputs(".\n", f);
+}
+
 // ---- cost at equal error
 
 static bool is_shown(const ob_lab_analysis *d, const ob_case *c)

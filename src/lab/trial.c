@@ -48,7 +48,9 @@ static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind 
 	const ob_case *c = t->of;
 	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step_length);
 	bool broken = false;
+	ob_conservation conserved = ob_conservation_begin(t->world);
 	take(t, t->world->state);
+	ob_conservation_look(&conserved, &t->now, 0);
 	if (c->observe)
 		c->observe(t);
 	while (!t->failed && t->frame < frames) {
@@ -62,6 +64,8 @@ static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind 
 		take(t, state);
 		t->failed = on ? insane(t) : e->text;
 		broken = t->failed;
+		if (!broken)
+			ob_conservation_look(&conserved, &t->now, kind->recovered ? kind->recovered(engine) : 0);
 		if (!broken && c->observe)
 			c->observe(t);
 	}
@@ -69,6 +73,9 @@ static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind 
 		c->judge(t);
 	for (uint32_t i = 0; broken && i < c->figures; i++)
 		t->figure[i] = INFINITY;
+	for (int i = 0; broken && i < OB_CONSERVED; i++)
+		conserved.worst[i] = INFINITY;
+	ob_conservation_keep(out->conserved, conserved.worst);
 }
 
 static double body_seconds(const ob_case_run_state *t)
@@ -77,6 +84,17 @@ static double body_seconds(const ob_case_run_state *t)
 	for (uint32_t id = 0; id < t->world->objects; id++)
 		bodies += ob_look_moves(t, id);
 	return bodies * t->time;
+}
+
+// The worst over the runs, or their mean
+static void add_figures(const ob_case *c, double *sum, const double *figure)
+{
+	for (uint32_t i = 0; i < c->figures; i++) {
+		if (c->averaged >> i & 1)
+			sum[i] += figure[i] / c->runs;
+		else
+			ob_look_keep(&sum[i], figure[i]);
+	}
 }
 
 typedef struct tally {
@@ -91,6 +109,7 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	c->build(&w, number);
 	ob_case_run_state t = { .of = c, .run = number, .world = &w, .settings = *s };
 	t.settings.step_length = s->step_length > 0 ? s->step_length : c->step;
+	t.settings.sleeping |= c->sleeps;
 	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport };
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
 	t.body_memory = calloc(w.objects, 8 * sizeof *t.body_memory);
@@ -106,7 +125,7 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 		ob_error broke = { "" };
 		watch(&t, engine, kind, state, out, &broke);
 		kind->destroy(engine);
-		ob_look_keep_all(out->figure, t.figure);
+		add_figures(c, out->figure, t.figure);
 		out->body_seconds += body_seconds(&t);
 		if (t.failed && !failures->failed++)
 			snprintf(failures->why, sizeof failures->why, "%s", t.failed);
@@ -122,6 +141,8 @@ bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_sett
 {
 	tally failures = { 0 };
 	*out = (ob_case_result){ 0 };
+	for (int i = 0; i < OB_CONSERVED; i++)
+		out->conserved[i] = NAN;
 	for (uint32_t i = 0; i < c->runs; i++)
 		if (!run(c, i, kind, s, out, &failures, e))
 			return false;

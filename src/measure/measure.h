@@ -42,10 +42,15 @@ typedef struct ob_penetration {
 	size_t pairs;
 	uint32_t worst_a, worst_b;
 } ob_penetration;
-// How deep objects are in each other; pairs of two static objects do not count. Sort and sweep over tight boxes, then
-// the depth of depth.h: closed forms, but for a cylinder with a box, capsule or cylinder (1e-7 m, never too small).
-// max_m and mean_m are NaN when there is no memory.
+// How deep objects are in each other; pairs of two static objects do not count. A tree of tight boxes finds the pairs,
+// in time proportional to n log n and to the pairs whose boxes overlap; then the depth of depth.h: closed forms, but for a
+// cylinder with a box, capsule or cylinder (1e-7 m, never too small). max_m and mean_m are NaN when there is no memory,
+// or more pairs overlap than can be looked at in some seconds.
 void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out);
+// The same, but false and e, with the object that overlaps most others, where those are NaN; also once stop(context), which
+// is asked every few milliseconds, says so. stop: NULL = never.
+bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bool (*stop)(void *context), void *context,
+				   ob_error *e);
 
 typedef struct ob_separation {
 	double max_m, mean_m; // over contacts that carry an impulse; 0 where they touch or penetrate

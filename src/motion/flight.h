@@ -12,7 +12,7 @@ bool ob_published_stands(const ob_motion *m, const ob_passport *p, double t);
 ob_state ob_published_at(const ob_motion *m, const ob_passport *p, double t);
 
 typedef struct ob_flier {
-	ob_shape shape;
+	ob_shape shape; // OB_SHAPE_NONE: anything within size.x of the centre
 	ob_vec3 size; // m
 	ob_vec3 inertia; // kg m^2, principal; all 0: nothing is known of how it turns
 	ob_vec3 p, v, a; // at s = 0
@@ -27,9 +27,10 @@ typedef struct ob_half_space {
 } ob_half_space;
 
 // The first instant in [from, until] (s) at which a point of the shape is on the plane and closes; infinity: none is.
-// A point that is within rounding of the plane at "from" and closes gives "from" itself. Spheres in closed form; boxes and
-// capsules by conservative advancement of their corners (Mirtich 1996), each with a parabola that bounds its fall: about
-// ten evaluations of the spin, and 1e-11 m. Cylinders: when their bounding sphere does, and at once where it has.
+// A point that is within rounding of the plane at "from" and closes gives "from" itself. Spheres in closed form; boxes,
+// capsules and cylinders by conservative advancement of their corners and rims (Mirtich 1996), each with a curve that bounds
+// its fall: about ten evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does, and at once where
+// it has.
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until);
 
 // Bound of the angular speed (rad/s) of a free body that turns with w at q, at any time.

@@ -2,7 +2,7 @@
 
 #include <float.h>
 
-static const double near = 1e-11; // m: closer than this counts as touching
+static const double near = 1e-11; // of the shape's radius: a point that is closer and comes down lands
 static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
 double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia)
@@ -22,23 +22,27 @@ static double turning_bound(ob_vec3 i, double w)
 	return w * w * (1 + (i.x > 0 && i.y > 0 && i.z > 0 ? k / sqrt(3) : 0));
 }
 
-// A shape is the points around its centre, grown by a radius: a box its corners, a capsule the ends of its axis.
+// A shape is the points around its centre, grown by a radius: a box its corners, a capsule the ends of its axis. A
+// cylinder's are the ends of its axis, with a rim about each.
 typedef struct hull {
 	ob_vec3 half; // m, of the box of the points
 	double radius; // m, of each
 	double reach; // m, of a point from the centre
+	double rim; // m
 } hull;
 
 static bool hull_of(const ob_flier *f, hull *h)
 {
-	*h = (hull){ f->size, 0, 0 };
+	*h = (hull){ f->size, 0, 0, 0 };
 	if (f->shape == OB_SHAPE_SPHERE)
-		*h = (hull){ { 0, 0, 0 }, f->size.x, 0 };
+		*h = (hull){ { 0, 0, 0 }, f->size.x, 0, 0 };
 	else if (f->shape == OB_SHAPE_CAPSULE)
-		*h = (hull){ { 0, 0, f->size.y }, f->size.x, 0 };
+		*h = (hull){ { 0, 0, f->size.y }, f->size.x, 0, 0 };
+	else if (f->shape == OB_SHAPE_CYLINDER)
+		*h = (hull){ { 0, 0, f->size.y }, 0, 0, f->size.x };
 	else if (f->shape != OB_SHAPE_BOX)
 		return false;
-	h->reach = ob_norm(h->half);
+	h->reach = ob_norm(ob_v3(h->half.x + h->rim, h->half.y, h->half.z));
 	return true;
 }
 
@@ -47,31 +51,84 @@ static ob_vec3 component(ob_vec3 half, ob_vec3 n)
 	return ob_v3(half.x * n.x, half.y * n.y, half.z * n.z);
 }
 
-// For how long no point of the hull lands, at least (s); 0: one lands now. height and speed: of the centre over the
-// plane. No point falls faster than with the acceleration "most".
+// When a point lands that is this high and rises at this rate, if it falls with the acceleration "most" (s).
+static double fall_time(double gap, double rate, double most)
+{
+	double root = sqrt(rate * rate + 2 * most * gap);
+	return rate < 0 ? 2 * gap / (root - rate) : most > 0 ? (rate + root) / most : INFINITY;
+}
+
+// A rim: its centre's height and rate of rising; what of the normal is across its axis, and how fast that changes,
+// times its radius (m, m/s). Its lowest point is as far below the centre as the first is long.
+typedef struct rim {
+	double height, rate, most;
+	ob_vec3 lean, lean_rate;
+} rim;
+
+static double lowest_of_rim(const rim *x, double t)
+{
+	return x->height + t * (x->rate - .5 * t * x->most) - ob_norm(ob_madd(x->lean, t, x->lean_rate));
+}
+
+// For how long no point of the rim lands, at least (s). Its lowest point's height is bounded by a concave function of
+// time: between two times below it, so that the chord's zero is early and the tangent's zero is late.
+static double rim_time(rim *x, double tolerance)
+{
+	enum { NARROW = 12 };
+	const double lean = ob_norm(x->lean), turn = ob_norm(x->lean_rate);
+	double gap = x->height - lean;
+	if (gap <= tolerance) {
+		bool all = gap + 2 * lean <= tolerance; // the whole rim is on the plane
+		if (x->rate - (all ? turn : ob_dot(x->lean, x->lean_rate) / fmax(lean, DBL_MIN)) < 0)
+			return 0;
+		x->height = lean, gap = 0;
+	}
+	double low = fall_time(gap, x->rate - turn, x->most), high = fall_time(gap, x->rate + turn, x->most);
+	if (!isfinite(high))
+		return low;
+	double at_low = lowest_of_rim(x, low), at_high = lowest_of_rim(x, high);
+	for (int i = 0; i < NARROW && at_low > 0 && at_high < 0 && at_low > .01 * gap; i++) {
+		low += (high - low) * (at_low / (at_low - at_high));
+		at_low = lowest_of_rim(x, low);
+		ob_vec3 down = ob_madd(x->lean, high, x->lean_rate);
+		double slope = x->rate - high * x->most - ob_dot(down, x->lean_rate) / fmax(ob_norm(down), DBL_MIN);
+		if (slope < 0)
+			high = fmax(low, high - at_high / slope), at_high = lowest_of_rim(x, high);
+	}
+	return low;
+}
+
+// For how long no point of the hull lands, at least (s); *lands: one does then. height and speed: of the centre over
+// the plane. No point falls faster than with the acceleration "most".
 static double advance(const ob_flier *f, const hull *h, ob_vec3 n, double s, double height, double speed, double most,
-		      double tolerance)
+		      double tolerance, bool *lands)
 {
 	ob_quat q = f->q;
 	ob_vec3 w = { 0, 0, 0 };
 	if (f->spin)
 		ob_spin_at(f->spin, s, &q, &w);
 	ob_mat3 r = ob_quat_matrix(q);
-	ob_vec3 up = component(h->half, ob_rotate_back(&r, n));
-	ob_vec3 rise = component(h->half, ob_rotate_back(&r, ob_cross(n, w)));
+	ob_vec3 normal = ob_rotate_back(&r, n), turning = ob_rotate_back(&r, ob_cross(n, w));
+	ob_vec3 up = component(h->half, normal), rise = component(h->half, turning);
 	double least = INFINITY;
+	if (h->rim > 0) {
+		for (int side = -1; side < 2; side += 2) {
+			rim x = { height + side * up.z, speed + side * rise.z, most, { 0, 0, 0 }, { 0, 0, 0 } };
+			x.lean = ob_scale(ob_v3(normal.x, normal.y, 0), h->rim);
+			x.lean_rate = ob_scale(ob_v3(turning.x, turning.y, 0), h->rim);
+			least = fmin(least, rim_time(&x, tolerance));
+		}
+		*lands = least == 0;
+		return least;
+	}
 	for (int k = 0; k < 8; k++) {
 		double x = k & 1 ? 1 : -1, y = k & 2 ? 1 : -1, z = k & 4 ? 1 : -1;
 		double gap = height + x * up.x + y * up.y + z * up.z;
 		double rate = speed + x * rise.x + y * rise.y + z * rise.z;
-		if (gap <= tolerance) {
-			if (rate < 0)
-				return 0;
-			gap = 0;
-		}
-		double root = sqrt(rate * rate + 2 * most * gap);
-		double t = rate < 0 ? 2 * gap / (root - rate) : most > 0 ? (rate + root) / most : INFINITY;
-		least = fmin(least, t);
+		const bool touches = gap <= tolerance;
+		const double t = fall_time(touches && (rate >= 0 || gap < 0) ? 0 : gap, rate, most);
+		if (t < least)
+			least = t, *lands = touches && rate < 0;
 	}
 	return least;
 }
@@ -81,7 +138,7 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 	const ob_vec3 n = plane->normal;
 	hull h;
 	bool known = hull_of(f, &h);
-	const double radius = ob_shape_radius(f->shape, f->size);
+	const double radius = known ? ob_shape_radius(f->shape, f->size) : f->size.x;
 	const double p = ob_dot(n, f->p) - plane->offset, v = ob_dot(n, f->v), a = ob_dot(n, f->a);
 	if (known && h.reach == 0) {
 		double first = ob_time_of_closing(p - radius, v, a, until);
@@ -95,12 +152,13 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 		return s <= until ? s : INFINITY;
 	double spin = f->spin ? ob_spin_bound(f->q, f->w, f->inertia) : 0;
 	double most = fmax(0, -a) + h.reach * turning_bound(f->inertia, spin);
-	double tolerance = near + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
+	double tolerance = near * radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
 	for (int k = 0; k < most_advances && s <= until; k++) {
 		height = p + s * (v + .5 * s * a) - h.radius, speed = v + s * a;
-		double t = advance(f, &h, n, s, height, speed, most, tolerance);
-		if (t == 0)
-			return s;
+		bool lands = false;
+		double t = advance(f, &h, n, s, height, speed, most, tolerance, &lands);
+		if (lands)
+			return s + t;
 		s += fmax(t, DBL_EPSILON * fabs(s));
 	}
 	return s <= until ? s : INFINITY;

@@ -1,10 +1,12 @@
 #include "ode/ode_body.h"
 
 #include <pthread.h>
+#include <setjmp.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/allocate.h"
 #include "base/log.h"
 #include "ode/ode_geom.h"
 
@@ -23,17 +25,54 @@ static void on_message(int number, const char *format, va_list args)
 	ob_log_warn("ODE: %s (%d); further messages of ODE are left out", text, number);
 }
 
+static _Thread_local jmp_buf *way_out; // NULL: ODE must not fail here
+static void *_Atomic abandoned; // the last, which points to the one before
+
+void ob_ode_abandon(void **thing)
+{
+	*thing = atomic_exchange(&abandoned, thing);
+}
+
+bool ob_ode_try(void (*step)(void *context), void *context)
+{
+	jmp_buf here;
+	way_out = &here;
+	if (_setjmp(here)) {
+		way_out = NULL;
+		return false;
+	}
+	step(context);
+	way_out = NULL;
+	return true;
+}
+
+void ob_ode_give_up(void)
+{
+	longjmp(*way_out, 1);
+}
+
 // ODE's contract: handlers of errors must not return.
 static void on_error(int number, const char *format, va_list args)
 {
 	char text[256];
+	if (way_out)
+		ob_ode_give_up();
 	vsnprintf(text, sizeof text, format, args);
 	ob_log_warn("ODE failed: %s (%d)", text, number);
 	abort();
 }
 
+// ODE does not look whether it has got what it asked for.
+static void *reallocate(void *old, dsizeint old_bytes, dsizeint bytes)
+{
+	(void)old_bytes;
+	return ob_reallocate(old, bytes);
+}
+
 static void init_ode(void)
 {
+	dSetAllocHandler(ob_allocate);
+	dSetReallocHandler(reallocate);
 	dSetMessageHandler(on_message);
 	dSetErrorHandler(on_error);
 	dSetDebugHandler(on_error);
@@ -73,11 +112,14 @@ __attribute__((visibility("default"))) const char *__tsan_default_suppressions(v
 // ---- bodies
 
 struct ob_ode_stepper {
+	void *abandoned; // first
+	bool gave_up;
 	dWorldID world; // empty: the working memory of all the others is its
 	dThreadingImplementationID threading;
 };
 
 struct ob_ode_body {
+	ob_ode_stepper *stepper;
 	dWorldID world; // NULL for static objects, as is body
 	dBodyID body;
 	dGeomID geom; // follows the body; NULL for objects without a shape
@@ -95,9 +137,7 @@ ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass)
 // corrupt it. And each world would reserve 128 kB for its first step, where a free body needs 1.
 ob_ode_stepper *ob_ode_stepper_create(void)
 {
-	ob_ode_stepper *s = calloc(1, sizeof *s);
-	if (!s)
-		return NULL;
+	ob_ode_stepper *s = ob_allocate_zeroed(sizeof *s);
 	ob_ode_init();
 	s->threading = dThreadingAllocateSelfThreadedImplementation();
 	s->world = dWorldCreate();
@@ -110,6 +150,10 @@ void ob_ode_stepper_destroy(ob_ode_stepper *s)
 {
 	if (!s)
 		return;
+	if (s->gave_up) {
+		ob_ode_abandon(&s->abandoned);
+		return;
+	}
 	dWorldDestroy(s->world);
 	dThreadingFreeImplementation(s->threading);
 	free(s);
@@ -124,15 +168,14 @@ static void make_world(ob_ode_body *b, ob_vec3 gravity, const ob_ode_stepper *s)
 	dWorldSetGravity(b->world, gravity.x, gravity.y, gravity.z);
 }
 
-ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, const ob_ode_stepper *s)
+ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_stepper *s)
 {
-	ob_ode_body *b = calloc(1, sizeof *b);
-	if (!b)
-		return NULL;
+	ob_ode_body *b = ob_allocate_zeroed(sizeof *b);
 	ob_ode_init();
 	b->geom = ob_ode_geom_create(0, p->shape, p->size);
 	if (p->flags & OB_OBJECT_STATIC || !(p->mass > 0))
 		return b;
+	b->stepper = s;
 	make_world(b, gravity, s);
 	b->body = dBodyCreate(b->world);
 	dMass m;
@@ -167,18 +210,38 @@ void ob_ode_body_set(ob_ode_body *b, const ob_state *s)
 	dBodySetAngularVel(b->body, s->w.x, s->w.y, s->w.z);
 }
 
-void ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h)
+typedef struct body_step {
+	ob_ode_body *body;
+	const ob_state *from;
+	double h; // s
+	ob_vec3 force, torque;
+} body_step;
+
+static void step_body(void *context)
 {
-	ob_ode_body_set(b, s);
-	if (!b->body)
-		return;
-	dBodySetForce(b->body, j.x / h, j.y / h, j.z / h);
-	dBodySetTorque(b->body, l.x / h, l.y / h, l.z / h);
-	dWorldStep(b->world, h);
+	const body_step *x = context;
+	ob_ode_body_set(x->body, x->from);
+	dBodySetForce(x->body->body, x->force.x, x->force.y, x->force.z);
+	dBodySetTorque(x->body->body, x->torque.x, x->torque.y, x->torque.z);
+	dWorldStep(x->body->world, x->h);
+}
+
+bool ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h)
+{
+	body_step x = { b, s, h, ob_v3(j.x / h, j.y / h, j.z / h), ob_v3(l.x / h, l.y / h, l.z / h) };
+	if (!b->body) {
+		ob_ode_body_set(b, s);
+		return true;
+	}
+	if (!ob_ode_try(step_body, &x)) {
+		b->stepper->gave_up = true;
+		return false;
+	}
 	const dReal *p = dBodyGetPosition(b->body), *q = dBodyGetQuaternion(b->body);
 	const dReal *v = dBodyGetLinearVel(b->body), *w = dBodyGetAngularVel(b->body);
 	s->pose.p = ob_v3(p[0], p[1], p[2]);
 	s->pose.q = (ob_quat){ q[0], q[1], q[2], q[3] };
 	s->v = ob_v3(v[0], v[1], v[2]);
 	s->w = ob_v3(w[0], w[1], w[2]);
+	return true;
 }

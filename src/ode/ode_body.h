@@ -1,4 +1,4 @@
-// One object's own ODE world, body and geom. With ode_world.h and ode_collide.h the only code that includes <ode/ode.h>.
+// One object's own ODE world, body and geom. With ode_world.h the only code that includes <ode/ode.h>.
 // Thread-safety: one thread at a time per handle; different handles may be used at once.
 #ifndef OB_ODE_BODY_H
 #define OB_ODE_BODY_H
@@ -20,14 +20,21 @@ typedef struct ob_ode_stepper ob_ode_stepper;
 ob_ode_stepper *ob_ode_stepper_create(void);
 void ob_ode_stepper_destroy(ob_ode_stepper *s);
 
+// Runs step(context), in which ODE may give up: its assertions call what must not return. false: it has. The working
+// memory of that step is then in no state to be freed: its owner begins with a pointer, and abandons itself, so that it
+// is still known. The thread's own; not to be nested.
+bool ob_ode_try(void (*step)(void *context), void *context);
+_Noreturn void ob_ode_give_up(void); // from within step
+void ob_ode_abandon(void **thing);
+
 typedef struct ob_ode_body ob_ode_body;
 // World, body, geom: about 1.4 kB. Static objects get no world.
-ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, const ob_ode_stepper *s);
+ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_stepper *s);
 void ob_ode_body_destroy(ob_ode_body *b);
 // Writes the state back to the body (the closed form is the truth, ODE's body follows it).
 void ob_ode_body_set(ob_ode_body *b, const ob_state *s);
 // Advances by ODE's own dWorldStep over h (s) under gravity and the impulse j (N s), angular impulse l (N m s, world
-// frame, about the centre), both spread evenly over h; state in, state out.
-void ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h);
+// frame, about the centre), both spread evenly over h; state in, state out. false: ODE gave up, and the state stays.
+bool ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h);
 
 #endif

@@ -112,6 +112,7 @@ struct contact_pair {
 };
 
 struct ob_ode_world {
+	void *abandoned; // first
 	dThreadingImplementationID threading;
 	dWorldID world;
 	dSpaceID space;
@@ -123,7 +124,7 @@ struct ob_ode_world {
 	struct contact_pair *pair;
 	struct contact_pair **order; // the pairs by their ids: they themselves are too big to be moved about
 	size_t pairs, pairs_max;
-	bool full;
+	bool full, gave_up; // the last step: no room for its pairs; it did not come to its end
 };
 
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
@@ -172,6 +173,10 @@ void ob_ode_world_destroy(ob_ode_world *w)
 {
 	if (!w)
 		return;
+	if (w->gave_up) {
+		ob_ode_abandon(&w->abandoned);
+		return;
+	}
 	for (uint32_t id = 0; id < w->setup.objects; id++)
 		clear_object(&w->object[id]);
 	dJointGroupDestroy(w->joints);
@@ -238,17 +243,19 @@ void ob_ode_world_remove(ob_ode_world *w, uint32_t id)
 	w->pairs = 0; // the last contacts may name it
 }
 
+// If there is no room, the step ends here: there may be any number of pairs to come.
 static struct contact_pair *next_pair(ob_ode_world *w)
 {
 	if (w->pairs == w->pairs_max) {
 		size_t more = w->pairs_max ? 2 * w->pairs_max : 256;
-		struct contact_pair *pair = realloc(w->pair, more * sizeof *pair);
+		bool allowed = w->setup.pairs_max == 0 || w->pairs < w->setup.pairs_max;
+		struct contact_pair *pair = allowed ? realloc(w->pair, more * sizeof *pair) : NULL;
 		w->pair = pair ? pair : w->pair;
-		struct contact_pair **order = realloc(w->order, more * sizeof *order);
+		struct contact_pair **order = pair ? realloc(w->order, more * sizeof *order) : NULL;
 		w->order = order ? order : w->order;
-		if (!pair || !order) {
+		if (!order) {
 			w->full = true;
-			return NULL;
+			ob_ode_give_up();
 		}
 		w->pairs_max = more;
 	}
@@ -317,15 +324,17 @@ static void create_contact_joints(ob_ode_world *w, struct contact_pair *p, doubl
 	p->a->touching = p->b->touching = true;
 }
 
-bool ob_ode_world_step(ob_ode_world *w, double h)
+// A step of ODE's, with all that may fail in it.
+typedef struct world_step {
+	ob_ode_world *world;
+	double h; // s
+} world_step;
+
+static void collide_and_step(void *context)
 {
-	w->pairs = 0;
-	w->full = false;
+	const world_step *x = context;
+	ob_ode_world *w = x->world;
 	dSpaceCollide(w->space, w, collide_pair);
-	if (w->full) {
-		w->pairs = 0;
-		return false;
-	}
 	for (size_t i = 0; i < w->pairs; i++)
 		w->order[i] = &w->pair[i];
 	if (w->pairs)
@@ -338,17 +347,55 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 		dBodySetForce(m->body, m->force.x, m->force.y, m->force.z);
 	}
 	// Slower than what gravity adds in two steps is rest, not an impact.
-	double bounce_speed = 2 * h * ob_norm(w->setup.gravity);
+	double bounce_speed = 2 * x->h * ob_norm(w->setup.gravity);
 	for (size_t i = 0; i < w->pairs; i++)
 		create_contact_joints(w, w->order[i], bounce_speed);
 	dRandSetSeed((unsigned long)(uint32_t)(w->steps++ * 2654435761u + 1));
 	if (w->setup.iterations)
-		dWorldQuickStep(w->world, h);
+		dWorldQuickStep(w->world, x->h);
 	else
-		dWorldStep(w->world, h);
+		dWorldStep(w->world, x->h);
 	dJointGroupEmpty(w->joints);
+}
+
+bool ob_ode_world_step(ob_ode_world *w, double h)
+{
+	w->pairs = 0;
+	w->gave_up = !ob_ode_try(collide_and_step, &(world_step){ w, h });
 	w->substep = h;
-	return true;
+	return !w->gave_up;
+}
+
+// Infinite where something is no number.
+static double wildness(dBodyID body)
+{
+	const dReal *p = dBodyGetPosition(body), *v = dBodyGetLinearVel(body), *o = dBodyGetAngularVel(body);
+	const dReal *q = dBodyGetQuaternion(body);
+	double most = 0, sum = q[0] + q[1] + q[2] + q[3];
+	for (int k = 0; k < 3; k++) {
+		sum += p[k] + v[k] + o[k];
+		most = fmax(most, fmax(fabs(p[k]), fmax(fabs(v[k]), fabs(o[k]))));
+	}
+	return isfinite(sum) ? most : INFINITY;
+}
+
+uint32_t ob_ode_world_culprit(const ob_ode_world *w, bool *full)
+{
+	uint32_t found = 0;
+	double most = -1;
+	double *contacts = calloc(w->setup.objects, sizeof *contacts);
+	for (size_t i = 0; i < w->pairs && contacts; i++)
+		contacts[w->pair[i].a->id]++, contacts[w->pair[i].b->id]++;
+	for (uint32_t id = 0; id < w->setup.objects; id++) {
+		double blame = w->full              ? contacts ? contacts[id] : 0
+			       : w->object[id].body ? wildness(w->object[id].body)
+						    : -1;
+		if (blame > most)
+			most = blame, found = id;
+	}
+	free(contacts);
+	*full = w->full;
+	return found;
 }
 
 void ob_ode_world_get(const ob_ode_world *w, uint32_t id, ob_state *s, bool *asleep, bool *touching)

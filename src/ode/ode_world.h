@@ -15,6 +15,7 @@ typedef struct ob_ode_world_setup {
 	uint32_t objects;    // ids are 0 .. objects-1
 	bool sleeping;       // ODE's auto-disable
 	bool boxed;          // contacts are those of the axis-aligned boxes round the objects
+	uint32_t pairs_max;  // of objects in contact, in a step; 0 = as many as there is memory for
 	uint32_t load;       // ob_synthetic_load, at each pair of boxes that the space finds to overlap
 	bool hashed;         // pairs are found by a hash space instead of sweep and prune
 	double surface_layer;    // m, that contacts may sink in; 0 = ODE's default, as with those below
@@ -29,8 +30,11 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s);
 // What it touches wakes. Nothing happens if there is no such object.
 void ob_ode_world_remove(ob_ode_world *w, uint32_t id);
 // Collides and steps by h (s). A pair of which neither moves nor is awake is not collided.
-// false: no memory for the contacts; nothing has moved.
+// false: there are more pairs than fit, or ODE gave up; the world may only be destroyed then.
 bool ob_ode_world_step(ob_ode_world *w, double h);
+// After a step that failed, the object to blame. full: it has most contacts, and there are more than fit; else it moves
+// most wildly, and ODE gave up.
+uint32_t ob_ode_world_culprit(const ob_ode_world *w, bool *full);
 // touching: had a contact when it was last awake.
 void ob_ode_world_get(const ob_ode_world *w, uint32_t id, ob_state *s, bool *asleep, bool *touching);
 // Pairs of boxes that the space has found to overlap, of which at least one moves, in all steps.

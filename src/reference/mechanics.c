@@ -89,6 +89,11 @@ double ob_reference_ball_incline(double g, double angle, double mu)
 	return mu >= ob_reference_ball_grip(angle) ? 5 * g * sin(angle) / 7 : ob_reference_incline(g, angle, mu);
 }
 
+double ob_reference_round_incline(double g, double angle, double moment)
+{
+	return g * sin(angle) / (1 + moment);
+}
+
 ob_reference_rolling ob_reference_push(double force, double mu_ground, double box_mass, double ball_mass, int balls,
 				       double g)
 {
@@ -116,4 +121,32 @@ double ob_reference_overhang(int n)
 double ob_reference_cards_grip(double angle, double length, double thickness)
 {
 	return .5 * (tan(angle) - thickness / length);
+}
+
+static ob_vec3 surface_velocity(const ob_reference_sphere *s, ob_vec3 normal)
+{
+	return ob_add(s->v, ob_cross(s->w, ob_scale(normal, s->radius)));
+}
+
+static void push(ob_reference_sphere *s, ob_vec3 normal, ob_vec3 impulse)
+{
+	if (isinf(s->mass))
+		return;
+	double moment = .4 * s->mass * s->radius * s->radius;
+	s->v = ob_madd(s->v, 1 / s->mass, impulse);
+	s->w = ob_madd(s->w, s->radius / moment, ob_cross(normal, impulse));
+}
+
+void ob_reference_oblique(ob_reference_sphere *a, ob_reference_sphere *b, ob_vec3 normal, double e, double mu)
+{
+	ob_vec3 to_b = ob_scale(normal, -1), u = ob_sub(surface_velocity(a, to_b), surface_velocity(b, normal));
+	double mass = 1 / (1 / a->mass + 1 / b->mass), approach = -ob_dot(u, normal);
+	ob_vec3 slip = ob_madd(u, approach, normal);
+	double along = (1 + e) * mass * approach, across = mass / 3.5, speed = ob_norm(slip);
+	double friction = fmin(mu * along, across * speed);
+	ob_vec3 impulse = ob_scale(normal, along);
+	if (speed > 0)
+		impulse = ob_madd(impulse, -friction / speed, slip);
+	push(a, to_b, impulse);
+	push(b, normal, ob_scale(impulse, -1));
 }

@@ -1,5 +1,5 @@
-// Closed forms of mechanics with their sources: free fall and bouncing, central impacts, Coulomb friction, statics. Pure
-// functions, thread-safe. SI units.
+// Closed forms of mechanics with their sources: free fall and bouncing, central impacts, Coulomb friction, statics.
+// Pure functions, thread-safe. SI units.
 #ifndef OB_REFERENCE_MECHANICS_H
 #define OB_REFERENCE_MECHANICS_H
 
@@ -30,6 +30,17 @@ ob_reference_pair ob_reference_impact(double mass_a, double mass_b, ob_reference
 // 977). Fills velocity[n].
 void ob_reference_cradle(int n, int k, double v, double *velocity);
 
+// Two solid spheres, or a solid sphere and what never moves, that hit obliquely: Newton's restitution along the normal,
+// Coulomb's friction across it, which ends the slip or takes mu times the normal impulse. Slip keeps its direction, for
+// a sphere answers a push across the normal the same in all directions (Routh 1905, Dynamics of a System of Rigid
+// Bodies, elementary part, on the impact of rough spheres).
+typedef struct ob_reference_sphere {
+	double mass, radius; // kg, INFINITY = fixed; m
+	ob_vec3 v, w; // before; after
+} ob_reference_sphere;
+// normal: from b to a, of length 1; they approach.
+void ob_reference_oblique(ob_reference_sphere *a, ob_reference_sphere *b, ob_vec3 normal, double e, double mu);
+
 // ---- Coulomb friction (Coulomb 1785, Theorie des machines simples) on blocks and solid spheres: angles in rad against
 // the horizontal; one mu for sticking and sliding
 
@@ -57,6 +68,10 @@ ob_reference_roll ob_reference_slip_to_roll(double v, double mu, double g, doubl
 // slides at g (sin - mu cos) (Routh 1905, as above).
 double ob_reference_ball_incline(double g, double angle, double mu);
 double ob_reference_ball_grip(double angle); // 2/7 tan(angle): the least mu with which it rolls
+
+// The same for any round body with moment of inertia "moment" over mass and radius squared, 1/2 of a solid cylinder:
+// it rolls at g sin / (1 + moment) if mu is large enough.
+double ob_reference_round_incline(double g, double angle, double moment);
 
 // SimBenchmark's rolling test (Kang and Hwangbo 2018): a box of mass M on the ground is pushed by a force along it, n
 // solid spheres of mass m on it roll. The ground takes mu (M + n m) g off the force; a sphere's lowest point, which

@@ -27,7 +27,9 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 
 // Sinks: where finished frames go. Encoding runs in the sink's own thread; put() blocks when 8 frames wait.
 typedef struct ob_sink ob_sink;
-ob_sink *ob_sink_png(const char *dir, int w, int h, ob_error *e); // DIR/frame-000000.png ..., tEXt: simulated time
+// DIR/frame-000000.png ..., tEXt: simulated time. Frames of an earlier run are removed, but for those before "first",
+// the number of the first that will come.
+ob_sink *ob_sink_png(const char *dir, int w, int h, uint64_t first, ob_error *e);
 // rgb24 to a pipe; name: of it, for errors, as long as the sink lives
 ob_sink *ob_sink_raw(int fd, const char *name, int w, int h, ob_error *e);
 ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e); // through ffmpeg

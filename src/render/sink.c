@@ -8,6 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/interrupt.h"
+
 enum { WAITING_MAX = 8, WORKERS_MAX = 4 };
 
 typedef struct slot {
@@ -94,9 +96,8 @@ static void free_sink(ob_sink *s)
 // Workers take no signals: those are for the main thread, and a reader that has gone is an error, not a death.
 static bool start_workers(ob_sink *s, int workers)
 {
-	sigset_t all, before;
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
+	sigset_t before;
+	ob_interrupt_leave_to_main(&before);
 	while (s->workers < workers && pthread_create(&s->worker[s->workers], NULL, run_worker, s) == 0)
 		s->workers++;
 	pthread_sigmask(SIG_SETMASK, &before, NULL);

@@ -126,23 +126,24 @@ static bool make_directory(const char *dir)
 	return false;
 }
 
-// "frame-", six digits or more, ".png", as this sink names them; or what a killed run left of one.
-static bool is_frame(const char *name)
+// "frame-", six digits or more, ".png", as this sink names them, or what a killed run left of one; from "first" on.
+static bool is_frame(const char *name, uint64_t first)
 {
 	if (strncmp(name, "frame-", 6) != 0)
 		return false;
 	size_t digits = strspn(name + 6, "0123456789");
 	const char *end = name + 6 + digits;
-	return digits >= 6 && (strcmp(end, ".png") == 0 || strcmp(end, ".png.part") == 0);
+	return digits >= 6 && strtoull(name + 6, NULL, 10) >= first &&
+	       (strcmp(end, ".png") == 0 || strcmp(end, ".png.part") == 0);
 }
 
 // Frames of an earlier run would mix with the new ones when that run was longer.
-static void remove_old_frames(const char *dir)
+static void remove_old_frames(const char *dir, uint64_t first)
 {
 	DIR *d = opendir(dir);
 	int removed = 0;
 	for (const struct dirent *entry; d && (entry = readdir(d));)
-		if (is_frame(entry->d_name) && unlinkat(dirfd(d), entry->d_name, 0) == 0)
+		if (is_frame(entry->d_name, first) && unlinkat(dirfd(d), entry->d_name, 0) == 0)
 			removed++;
 	if (d)
 		closedir(d);
@@ -150,7 +151,7 @@ static void remove_old_frames(const char *dir)
 		ob_log_note("%s: replacing the %d frames of an earlier run", dir, removed);
 }
 
-ob_sink *ob_sink_png(const char *dir, int w, int h, ob_error *e)
+ob_sink *ob_sink_png(const char *dir, int w, int h, uint64_t first, ob_error *e)
 {
 	static const ob_sink_kind kind = { write_png, finish_png };
 	png_state *s = malloc(sizeof *s);
@@ -165,6 +166,6 @@ ob_sink *ob_sink_png(const char *dir, int w, int h, ob_error *e)
 		free(s);
 		return NULL;
 	}
-	remove_old_frames(dir);
+	remove_old_frames(dir, first);
 	return ob_sink_start(&kind, s, w, h, ob_cpu_count(), e);
 }

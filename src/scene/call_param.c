@@ -1,4 +1,5 @@
-// param(name, default [, { min =, max =, choices = }]): a value that the command line may replace (-D name=value).
+// param(name, default [, { min =, max =, choices = }]): a value that the command line may replace (-D name=value), where
+// it is a number or an expression that gives one (-D name=1/3).
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -48,6 +49,35 @@ static const char *check_name(lua_State *L)
 	return name;
 }
 
+// Pushes a new table of all mathematics, by their names and as "math" (pi/6, math.pi/6), but no random numbers: what a -D
+// says takes none from the scene.
+static void push_mathematics(lua_State *L)
+{
+	lua_newtable(L);
+	lua_getglobal(L, "math");
+	for (lua_pushnil(L); lua_next(L, -2) != 0;) {
+		lua_pushvalue(L, -2);
+		lua_insert(L, -2);
+		lua_rawset(L, -5);
+	}
+	lua_setfield(L, -2, "math");
+	lua_pushnil(L);
+	lua_setfield(L, -2, "random");
+}
+
+// Pushes the number that an expression of Lua gives: 1/3, 2^10, pi/6. false: it gives none, and something else is pushed.
+static bool push_expression(lua_State *L, const char *text)
+{
+	lua_pushfstring(L, "return (%s\n)", text);
+	size_t size;
+	const char *chunk = lua_tolstring(L, -1, &size);
+	if (luaL_loadbufferx(L, chunk, size, "=-D", "t") != LUA_OK)
+		return false;
+	push_mathematics(L);
+	lua_setupvalue(L, -2, 1); // the chunk's globals
+	return lua_pcall(L, 0, 1, 0) == LUA_OK && lua_type(L, -1) == LUA_TNUMBER;
+}
+
 // Pushes the text of a -D in the type of the default at index 2.
 static void push_defined(lua_State *L, const char *name, const char *text)
 {
@@ -64,11 +94,11 @@ static void push_defined(lua_State *L, const char *name, const char *text)
 		return;
 	}
 	int is_whole = 0;
-	bool number = lua_stringtonumber(L, text) && isfinite(lua_tonumber(L, -1));
+	bool number = (lua_stringtonumber(L, text) || push_expression(L, text)) && isfinite(lua_tonumber(L, -1));
 	lua_Integer i = number ? lua_tointegerx(L, -1, &is_whole) : 0; // "1e3" is a whole number too
 	if (!number || (whole && !is_whole))
-		ob_sandbox_fail(L, "param.%s: expected a %snumber, got -D %s=%.80s", name, whole ? "whole " : "", name,
-				text);
+		ob_sandbox_fail(L, "param.%s: expected a %s, got -D %s=%.80s", name,
+				whole ? "whole number (12, 3*4)" : "number (.5, 1/3, pi/6)", name, text);
 	if (whole)
 		lua_pushinteger(L, i);
 	else

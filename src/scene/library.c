@@ -15,7 +15,7 @@
 #define PATTERN_STEPS 1e7
 #define PRINT_COST 1000 // instructions that writing a line is worth
 
-static const char *const base_names[] = { "assert", "error", "ipairs", "select", "tonumber", "tostring", "type", NULL };
+static const char *const base_names[] = { "assert", "error", "ipairs", "select", "tonumber", "type", NULL };
 static const char *const math_names[] = { "abs", "acos",       "asin", "atan", "ceil", "cos", "deg",
 					  "exp", "floor",      "fmod", "huge", "log",  "max", "maxinteger",
 					  "min", "mininteger", "modf", "pi",   "rad",  "sin", "sqrt",
@@ -173,6 +173,52 @@ static int sorted_pairs(lua_State *L)
 	return 1;
 }
 
+// ---- no addresses: where things lie in memory differs from run to run, and a scene could compute with it
+
+// Pushes what tostring gives: of a table or a function the name of its type alone.
+static const char *push_text(lua_State *L, int index, size_t *size)
+{
+	switch (lua_type(L, index)) {
+	case LUA_TNIL:
+	case LUA_TBOOLEAN:
+	case LUA_TNUMBER:
+	case LUA_TSTRING:
+		return luaL_tolstring(L, index, size);
+	default:
+		lua_pushstring(L, luaL_typename(L, index));
+		return lua_tolstring(L, -1, size);
+	}
+}
+
+static int to_string(lua_State *L)
+{
+	luaL_checkany(L, 1);
+	push_text(L, 1, NULL);
+	return 1;
+}
+
+// string.format: upvalue 1 is the original, which gets texts in place of tables and functions.
+static int format_guarded(lua_State *L)
+{
+	size_t size;
+	const char *format = luaL_checklstring(L, 1, &size);
+	for (size_t i = 0; i + 1 < size; i++) {
+		if (format[i] != '%')
+			continue;
+		i += 1 + strspn(format + i + 1, "-+ #0123456789.");
+		if (format[i] == 'p')
+			ob_sandbox_fail(L, "string.format: %%p is an address, and not available in scenes");
+	}
+	for (int i = 2, top = lua_gettop(L); i <= top; i++) {
+		int type = lua_type(L, i);
+		if (type == LUA_TTABLE || type == LUA_TFUNCTION) {
+			push_text(L, i, NULL);
+			lua_replace(L, i);
+		}
+	}
+	return lua_tocfunction(L, lua_upvalueindex(1))(L);
+}
+
 // print: a note on standard error, where it cannot mix with what the run writes.
 static int print(lua_State *L)
 {
@@ -180,12 +226,9 @@ static int print(lua_State *L)
 	size_t n = 0;
 	line[0] = 0;
 	for (int i = 1, top = lua_gettop(L); i <= top && n < sizeof line; i++) {
-		n += (size_t)snprintf(line + n, sizeof line - n, "%s%s", i > 1 ? " " : "", luaL_tolstring(L, i, NULL));
+		n += (size_t)snprintf(line + n, sizeof line - n, "%s%s", i > 1 ? " " : "", push_text(L, i, NULL));
 		lua_pop(L, 1);
 	}
-	for (char *c = line; *c; c++)
-		if ((unsigned char)*c < ' ' || *c == 127)
-			*c = ' ';
 	ob_log_note("%s", line);
 	ob_sandbox_spend(L, PRINT_COST);
 	return 0;
@@ -238,6 +281,7 @@ static void open_string(lua_State *L)
 	for (size_t i = 0; pattern_names[i]; i++)
 		guard(L, pattern_names[i], match_guarded);
 	guard(L, "rep", rep_guarded);
+	guard(L, "format", format_guarded);
 	// Methods of strings, as in s:rep(3), must find the same functions.
 	lua_pushliteral(L, "");
 	lua_getmetatable(L, -1);
@@ -252,6 +296,8 @@ int ob_library_open(lua_State *L)
 	keep(L, base_names);
 	lua_pushcfunction(L, print);
 	lua_setfield(L, -2, "print");
+	lua_pushcfunction(L, to_string);
+	lua_setfield(L, -2, "tostring");
 	luaL_requiref(L, "math", luaopen_math, 0);
 	keep(L, math_names);
 	lua_setfield(L, -2, "math");

@@ -125,14 +125,6 @@ static int note_line(lua_State *L)
 	return 1;
 }
 
-// One line, whatever the message was.
-static void flatten(char *text)
-{
-	for (; *text; text++)
-		if ((unsigned char)*text < ' ' || *text == 127)
-			*text = ' ';
-}
-
 static bool report(ob_sandbox *s, int status, ob_error *e)
 {
 	size_t n = strlen(CHUNK ":");
@@ -143,8 +135,6 @@ static bool report(ob_sandbox *s, int status, ob_error *e)
 		ob_fail(e, "%s:%s", s->path, text + n);
 	else
 		ob_fail(e, "%s:%d: %s", s->path, s->error_line, text);
-	if (e)
-		flatten(e->text);
 	lua_settop(s->L, 0);
 	return false;
 }

@@ -117,30 +117,33 @@ static bool run(ob_builder *b, const char *path, char *text, size_t size, ob_err
 
 static bool build(ob_builder *b, const char *path, ob_error *e)
 {
-	size_t size;
-	char *text = read_file(path, &size, e);
-	bool good = text && run(b, path, text, size, e) && ob_builder_check_defines(b, path, e);
-	free(text);
-	if (!good)
+	ob_scene *s = b->scene;
+	if (!run(b, path, s->text, s->text_size, e) || !ob_builder_check_defines(b, path, e))
 		return false;
 	if (b->scene->objects == 0)
 		return ob_fail(e, "%s:1: expected at least one object (box, sphere, ground ...)", path);
 	return ob_builder_place_cameras(b) || ob_fail(e, "%s: no memory", path);
 }
 
-ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e)
+// The scene of this text, which becomes its own; NULL: reading it has failed, and e says so.
+static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_scene_options *o, ob_error *e)
 {
 	static const ob_scene_options none = { 0 };
+	if (!text)
+		return NULL;
 	ob_builder *b = calloc(1, sizeof *b);
 	ob_scene *s = calloc(1, sizeof *s);
 	bool good = false;
 	if (b && s) {
+		s->text = text;
+		s->text_size = size;
 		b->scene = s;
 		b->options = o ? o : &none;
 		set_defaults(s, path, b->options);
 		ob_random_seed(&b->random, s->seed);
 		good = build(b, path, e);
 	} else {
+		free(text);
 		ob_fail(e, "%s: no memory", path);
 	}
 	free(b);
@@ -150,11 +153,29 @@ ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e
 	return NULL;
 }
 
+ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e)
+{
+	size_t size = 0;
+	char *text = read_file(path, &size, e);
+	return make_scene(path, text, size, o, e);
+}
+
+ob_scene *ob_scene_load_text(const char *path, const char *text, size_t size, const ob_scene_options *o, ob_error *e)
+{
+	char *copy = malloc(size + 1);
+	if (copy)
+		memcpy(copy, text, size);
+	else
+		ob_fail(e, "%s: no memory", path);
+	return make_scene(path, copy, size, o, e);
+}
+
 void ob_scene_free(ob_scene *s)
 {
 	if (!s)
 		return;
 	free(s->object);
 	free(s->camera);
+	free(s->text);
 	free(s);
 }

@@ -38,6 +38,8 @@ typedef struct ob_scene {
 	ob_camera_def *camera;      // at least one
 	ob_look_def look;
 	uint32_t record_every;      // steps between recorded states; 1 unless the scene says otherwise
+	char *text; // of its file: ob_scene_load_text makes the same scene of it
+	size_t text_size;
 } ob_scene;
 
 typedef struct ob_scene_options {
@@ -50,6 +52,8 @@ typedef struct ob_scene_options {
 // Reads, runs and checks a scene file; o may be NULL. NULL and e on error, in one line: "file:line: where.field:
 // expected ..., got ..."; without a line where the file cannot be read or a -D does not fit. Any thread.
 ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e);
+// The same of a text that is no file, or no longer; path is for its title and for messages.
+ob_scene *ob_scene_load_text(const char *path, const char *text, size_t size, const ob_scene_options *o, ob_error *e);
 void ob_scene_free(ob_scene *s);
 
 #endif

@@ -92,11 +92,10 @@ void ob_text_offer(ob_spelling *s, const char *known)
 
 bool ob_text_is_clean(const char *text, size_t size)
 {
-	const unsigned char *s = (const unsigned char *)text;
 	for (size_t i = 0; i < size;) {
 		size_t n = ob_utf8_length(text + i);
-		// C0 and C1 control characters: they could move a terminal's cursor
-		if (n == 0 || s[i] < ' ' || s[i] == 127 || (s[i] == 0xc2 && s[i + 1] < 0xa0))
+		size_t bytes;
+		if (n == 0 || !ob_utf8_is_plain(ob_utf8_decode(text + i, &bytes)))
 			return false;
 		i += n;
 	}

@@ -17,7 +17,7 @@ void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE]);
 // Offers a word of scenes; American spelling and words of other simulators, far in letters, are near in meaning.
 void ob_text_offer(ob_spelling *s, const char *known);
 
-// Valid UTF-8 without control characters; text[size] is 0.
+// Valid UTF-8 of plain characters alone (base/utf8.h); text[size] is 0.
 bool ob_text_is_clean(const char *text, size_t size);
 
 #endif

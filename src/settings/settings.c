@@ -8,7 +8,8 @@
 #define MEMBER(member) .offset = offsetof(ob_run_settings, member)
 
 const ob_setting ob_setting_table[OB_SETTINGS] = {
-	[OB_SETTING_ARCHITECTURE] = { "arch", OB_SETTING_CHOICE, MEMBER(monolith), .unit = "", .names = OB_ARCHITECTURE_NAMES },
+	[OB_SETTING_ARCHITECTURE] = { "arch", OB_SETTING_CHOICE, MEMBER(monolith), .unit = "",
+				      .names = OB_ARCHITECTURE_NAMES },
 	[OB_SETTING_STEP] = { "step", OB_SETTING_REAL, MEMBER(step_length), 0, 10, .above = true, .unit = "s" },
 	[OB_SETTING_TOLERANCE] = { "tolerance", OB_SETTING_REAL, MEMBER(tolerance), 1e-6, 1, .unit = "m" },
 	[OB_SETTING_SUBSTEPS] = { "substeps", OB_SETTING_COUNT, MEMBER(substeps), 1, 1000, .unit = "" },
@@ -17,7 +18,8 @@ const ob_setting ob_setting_table[OB_SETTINGS] = {
 	[OB_SETTING_LAG] = { "lag", OB_SETTING_COUNT, MEMBER(lag), 0, 256, .unit = "" },
 	[OB_SETTING_INTEGRATOR] = { "integrator", OB_SETTING_CHOICE, MEMBER(integrator), .unit = "",
 				    .names = OB_INTEGRATOR_NAMES },
-	[OB_SETTING_SLEEPING] = { "sleeping", OB_SETTING_SWITCH, MEMBER(sleeping), .unit = "", .names = OB_SWITCH_NAMES },
+	[OB_SETTING_SLEEPING] = { "sleeping", OB_SETTING_SWITCH, MEMBER(sleeping), .unit = "",
+				  .names = OB_SWITCH_NAMES },
 	[OB_SETTING_NARROW_PHASE] = { "narrow", OB_SETTING_CHOICE, MEMBER(narrow_phase), .unit = "",
 				      .names = OB_NARROW_PHASE_NAMES },
 	[OB_SETTING_LOAD] = { "load", OB_SETTING_COUNT, MEMBER(load), 0, 1e9, .unit = "" },
@@ -26,6 +28,12 @@ const ob_setting ob_setting_table[OB_SETTINGS] = {
 static const struct {
 	const char *former, *now;
 } renamed[] = { { "passes", "iterations" }, { "exchange", "solver" }, { "parts", "profile" } };
+
+ob_units ob_run_settings_units(const ob_run_settings *s)
+{
+	double length = s->tolerance > 0 ? s->tolerance / OB_DEFAULT_TOLERANCE : 1;
+	return (ob_units){ length, sqrt(length), sqrt(length) };
+}
 
 ob_run_settings ob_run_settings_default(void)
 {
@@ -41,6 +49,14 @@ ob_run_settings ob_run_settings_default(void)
 		.narrow_phase = OB_NARROW_OBB,
 		.sleeping = 1,
 	};
+}
+
+uint32_t ob_run_settings_least_substeps(double tolerance)
+{
+	uint32_t least = OB_DEFAULT_SUBSTEPS;
+	while (least > 1 && least * tolerance >= 2 * OB_DEFAULT_SUBSTEPS * OB_DEFAULT_TOLERANCE)
+		least /= 2;
+	return least;
 }
 
 ob_run_settings ob_run_settings_unset(void)
@@ -66,7 +82,7 @@ bool ob_setting_is_set(const ob_run_settings *layer, ob_setting_id id)
 void ob_run_settings_overlay(ob_run_settings *s, const ob_run_settings *layer)
 {
 	if (ob_setting_is_set(layer, OB_SETTING_TOLERANCE)) {
-		s->substeps = 1;
+		s->substeps = ob_run_settings_least_substeps(layer->tolerance);
 		s->iterations = OB_DEFAULT_TOLERANCE_ITERATIONS;
 	} else if (ob_setting_is_set(layer, OB_SETTING_SUBSTEPS)) {
 		s->tolerance = 0;
@@ -86,7 +102,8 @@ static bool check_monolith(const ob_run_settings *layer, ob_error *e)
 						    OB_SETTING_INTEGRATOR };
 	for (size_t i = 0; i < sizeof of_objects / sizeof *of_objects; i++)
 		if (ob_setting_is_set(layer, of_objects[i]))
-			return ob_fail(e, "--%s means nothing to --arch monolith", ob_setting_table[of_objects[i]].name);
+			return ob_fail(e, "--%s means nothing to --arch monolith",
+				       ob_setting_table[of_objects[i]].name);
 	return true;
 }
 
@@ -117,9 +134,55 @@ bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, o
 	if (s->tolerance > 0 && s->integrator == OB_INTEGRATOR_ODE) {
 		// with n substeps ODE's stepper falls short by g H^2 / (2 n) in a step of length H
 		double short_by = .5 * ob_norm(s->gravity) * s->step_length * s->step_length;
-		while (short_by / s->substeps > s->tolerance)
+		while (short_by / s->substeps > s->tolerance && 2 * s->substeps <= OB_MAX_SUBSTEPS)
 			s->substeps *= 2;
+		if (short_by / s->substeps > s->tolerance)
+			return ob_fail(
+				e,
+				"--integrator ode would need %.3g substeps to keep the tolerance of %g m, and there "
+				"are %d at most: take a smaller --step or a larger --tolerance, or fix --substeps",
+				short_by / s->tolerance, s->tolerance, OB_MAX_SUBSTEPS);
 	}
+	return true;
+}
+
+static uint32_t names_in(const char *names)
+{
+	uint32_t n = 1;
+	for (; *names; names++)
+		n += *names == '|';
+	return n;
+}
+
+static bool in_range(const ob_run_settings *s, const ob_setting *t)
+{
+	const char *at = (const char *)s + t->offset;
+	const double real = t->kind == OB_SETTING_REAL ? *(const double *)at : 0;
+	const uint32_t count = t->kind == OB_SETTING_REAL ? 0 : *(const uint32_t *)at;
+	switch (t->kind) {
+	case OB_SETTING_REAL:
+		if (t->offset == offsetof(ob_run_settings, tolerance) && real == 0) // none
+			return true;
+		return real >= t->least && real <= t->most && !(t->above && real == t->least);
+	case OB_SETTING_COUNT: // more substeps than one may ask for are what ODE's stepper may need
+		return count >= t->least &&
+		       count <= (t->offset == offsetof(ob_run_settings, substeps) ? OB_MAX_SUBSTEPS : t->most);
+	case OB_SETTING_CHOICE:
+	case OB_SETTING_SWITCH:
+		return count < names_in(t->names);
+	}
+	return false;
+}
+
+bool ob_run_settings_check(const ob_run_settings *s, ob_error *e)
+{
+	if (!isfinite(ob_norm2(s->gravity)))
+		return ob_fail(e, "gravity is not finite");
+	if (s->fault.probability != 0) // that is asked for anew
+		return ob_fail(e, "a fault is asked for");
+	for (int i = 0; i < OB_SETTINGS; i++)
+		if (!in_range(s, &ob_setting_table[i]))
+			return ob_fail(e, "%s is out of its range", ob_setting_table[i].name);
 	return true;
 }
 

@@ -37,6 +37,35 @@ typedef enum ob_narrow_phase {
 #define OB_NARROW_PHASE_NAMES "obb|aabb"
 #define OB_SWITCH_NAMES "off|on"
 
+// Faults that are injected into a run, to see how it survives them (--fault).
+typedef enum ob_fault_kind {
+	OB_FAULT_KILL, // a simulator's process kills itself
+	OB_FAULT_SEGV, // .. reads where there is nothing
+	OB_FAULT_EXIT, // .. leaves in the middle of its work
+	OB_FAULT_STOP, // .. stops (SIGSTOP) and does nothing any more
+	OB_FAULT_SLOW, // a simulator sleeps
+	OB_FAULT_SCRIBBLE, // .. stores random words anywhere in the universe where it can write
+	OB_FAULT_NOSPACE, // a checkpoint cannot be written, as on a full disk
+	OB_FAULT_KINDS
+} ob_fault_kind;
+#define OB_FAULT_NAMES "kill|segv|exit|stop|slow|scribble|nospace"
+
+// A simulator has a chance to fail after each island that it has solved, at the end of each phase, and when it has
+// scheduled the next. Whether it does is drawn from the seed, its worker's number, how often all were restarted, and how many
+// chances it has had since.
+typedef struct ob_fault_plan {
+	double probability; // at each chance; 0 = no faults
+	uint64_t seed;
+	uint32_t kinds; // bits, 1 << ob_fault_kind: one of them is drawn
+	uint32_t words; // SCRIBBLE: so many
+	uint32_t sleep_ms; // SLOW: for so long
+	uint32_t zero;
+} ob_fault_plan;
+
+// Draws what happens at a chance (from 0) of a worker; OB_FAULT_KINDS: nothing. among: the kinds that can happen there.
+// random: for more draws.
+ob_fault_kind ob_fault_draw(const ob_fault_plan *p, uint32_t among, uint32_t worker, uint64_t chance, uint64_t *random);
+
 // Fixed for a run; lies in the table, so that every process sees the same: a fixed size, no pointers.
 typedef struct ob_run_settings {
 	ob_vec3 gravity;         // m/s^2
@@ -53,9 +82,17 @@ typedef struct ob_run_settings {
 	uint32_t one_per_object; // 1 = worker i runs object i and nothing else; set by the host
 	uint32_t timed;          // 1 = counters tell what each section of the step took
 	uint32_t load;           // > 0: 1 + 2 + .. + load is added up at each test of two axis-aligned boxes
+	ob_fault_plan fault;
 } ob_run_settings;
 
-// Defaults. A tolerance that is asked for chooses the substeps from 1 up, and ends the iterations when it is met.
+// What thresholds that have a unit are multiplied by: 1 at the default tolerance, or without one. So a run whose lengths,
+// tolerance, and times (as the square root of lengths: gravity stays) are all scaled goes on as before.
+typedef struct ob_units {
+	double length, time, speed;
+} ob_units;
+ob_units ob_run_settings_units(const ob_run_settings *s);
+
+// Defaults. A tolerance that is asked for chooses the substeps from ob_run_settings_least_substeps() up.
 #define OB_DEFAULT_STEP (1. / 60) // s
 #define OB_DEFAULT_TOLERANCE 1e-3 // m
 enum {
@@ -64,6 +101,13 @@ enum {
 	OB_DEFAULT_TOLERANCE_ITERATIONS = 64, // object simulators whose tolerance was asked for
 	OB_DEFAULT_MONOLITH_ITERATIONS = 20, // ODE's own default
 };
+
+// The most substeps that a tolerance chooses.
+#define OB_MAX_SUBSTEPS 1024
+
+// The fewest substeps that a tolerance (m) chooses from: 8, and fewer only where it is coarser than the default. What a
+// solution errs by is not all of it seen (a pivot's energy, a slow creep): a smaller tolerance never starts from less.
+uint32_t ob_run_settings_least_substeps(double tolerance);
 
 // Coloured solver, exact integrator, 8 substeps at least with the default tolerance, sleeping.
 ob_run_settings ob_run_settings_default(void);
@@ -114,6 +158,10 @@ void ob_run_settings_overlay(ob_run_settings *s, const ob_run_settings *layer);
 // unless the solver reads it; where ODE's stepper alone would miss the tolerance, it takes more substeps.
 // false and e: a setting means nothing to the architecture or to the solver.
 bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, ob_error *e);
+
+// Whether settings that came from outside could be those of a run: numbers in their ranges, choices among their names.
+// false and e names the one that could not.
+bool ob_run_settings_check(const ob_run_settings *s, ob_error *e);
 
 // The number of a word in "a|b|c"; false: it is none of them.
 bool ob_setting_find(const char *names, const char *word, uint32_t *value);

@@ -3,8 +3,9 @@
 #include <string.h>
 
 #include "sim/bodies.h"
-#include "sim/contact_solver.h"
+#include "sim/midpoint.h"
 #include "sim/narrowphase.h"
+#include "sim/relative_speed.h"
 
 // How far two bodies that touch may turn (rad) and slide (of the smaller thickness) in a partial substep ..
 static const double max_motion = .03;
@@ -16,18 +17,12 @@ static ob_vec3 linear_of(const double *r)
 	return ob_v3(r[0], r[1], r[2]);
 }
 
-static double turn_rate(const ob_island_work *w, const ob_body_row *rows, uint32_t row)
-{
-	const double *v = rows[row];
-	return w->body[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(ob_v3(v[3], v[4], v[5]));
-}
-
 // For how long a contact's points and normal are where they are now (s), at the velocities in rows. A sphere's point
 // moves with its centre, and a plane is the same everywhere.
 static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	double turn = turn_rate(w, rows, contact->a) + turn_rate(w, rows, contact->b);
+	double turn = ob_body_turn_rate(w, rows, contact->a) + ob_body_turn_rate(w, rows, contact->b);
 	double slide = ob_norm(ob_sub(linear_of(rows[contact->a]), linear_of(rows[contact->b])));
 	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
 		slide = 0;
@@ -40,7 +35,7 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 static bool may_outrun_geometry(const ob_island_work *w, const ob_contact *contact, double h)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	return (a->speed + b->speed) * h > max_motion * fmin(a->thickness, b->thickness);
+	return ob_contact_speed(w, contact) * h > max_motion * fmin(a->thickness, b->thickness);
 }
 
 static double partial_length(ob_sim *s, double left)
@@ -52,9 +47,8 @@ static double partial_length(ob_sim *s, double left)
 			h = fmin(h, fmax(w->h_min, geometry_lifetime(w, w->v, &w->contact[i])));
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
-		const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 		if (contact->lane != OB_NO_LANE || !may_outrun_geometry(w, contact, h) ||
-		    a->path + b->path + (a->speed + b->speed) * h <= contact->limit)
+		    contact->path + ob_contact_speed(w, contact) * (h + w->unpaced) <= contact->limit)
 			continue;
 		ob_body_update_pose(w, contact->a);
 		ob_body_update_pose(w, contact->b);
@@ -80,17 +74,6 @@ void ob_adaptive_begin(ob_sim *s, double left)
 {
 	s->island.h_min = s->island.substep / max_partial_substeps;
 	set_length(&s->island, partial_length(s, left));
-	s->island.last_impact = 0;
-}
-
-void ob_adaptive_end_at_rebound(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	double first = fmax(ob_solver_first_rebound(s) * (1 - 1e-9), w->last_impact);
-	if (!(first > w->h_min && first < w->h))
-		return;
-	set_length(w, first);
-	ob_bodies_warm_start(s);
 }
 
 bool ob_adaptive_shorten(ob_sim *s)
@@ -105,6 +88,7 @@ bool ob_adaptive_shorten(ob_sim *s)
 	h = fmax(fmax(h, w->h_min), w->last_impact); // past the impacts that were made in it
 	if (h > .6 * w->h)
 		return false;
+	ob_midpoint_undo(s);
 	for (uint32_t i = 0; i < w->batches; i++)
 		memcpy(w->batch[i].impulse, w->batch[i].impulse_start, sizeof w->batch[i].impulse);
 	set_length(w, h);

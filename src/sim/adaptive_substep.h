@@ -9,9 +9,6 @@
 // Chooses the length of the next partial substep, at most "left" (s), sets it in the island (h, h_min), and scales to
 // it the impulses that are the warm start.
 void ob_adaptive_begin(ob_sim *s, double left);
-// After the narrow phase, and after impacts: ends the partial substep where a turning body rebounds next, so that
-// another begins with its impact.
-void ob_adaptive_end_at_rebound(ob_sim *s);
 // After the iterations: true if something was hit so that it is too fast now for the partial substep. Then that is made
 // shorter, and everything is as before the iterations.
 bool ob_adaptive_shorten(ob_sim *s);

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
+#include "motion/drift.h"
 #include "sim/broadphase.h"
 #include "sim/equilibrium.h"
 #include "sim/flight.h"
@@ -22,23 +24,27 @@ static ob_vec3 angular_of(const double *r)
 {
 	return ob_v3(r[3], r[4], r[5]);
 }
+static bool same_vector(ob_vec3 a, ob_vec3 b)
+{
+	return a.x == b.x && a.y == b.y && a.z == b.z;
+}
 
-// The inverse inertia in world axes, for the pose that the body has.
+// For the pose that the body has.
 static void update_inertia(ob_body *body)
 {
-	if (body->inv_mass == 0)
-		return;
-	ob_vec3 k = ob_v3(1 / body->inertia.x, 1 / body->inertia.y, 1 / body->inertia.z);
-	if (body->isotropic) {
-		memcpy(body->inv_inertia, (double[6]){ k.x, 0, 0, k.x, 0, k.x }, sizeof body->inv_inertia);
-		return;
-	}
-	int c = 0;
-	for (int i = 0; i < 3; i++)
-		for (int j = i; j < 3; j++)
-			body->inv_inertia[c++] = body->r.m[i][0] * body->r.m[j][0] * k.x +
-						 body->r.m[i][1] * body->r.m[j][1] * k.y +
-						 body->r.m[i][2] * body->r.m[j][2] * k.z;
+	if (body->inv_mass > 0)
+		ob_inverse_inertia(body->inertia, &body->r, body->inv_inertia);
+}
+
+// Of any point of the body, while it turns freely through a partial substep.
+static void set_speed_bound(ob_island_work *w, uint32_t row)
+{
+	ob_body *body = &w->body[row];
+	body->turning = 0;
+	if (body->shape != OB_SHAPE_SPHERE)
+		body->turning = body->radius *
+				ob_drift_bound(ob_rotate_back(&body->r, angular_of(w->v[row])), body->inertia, w->h);
+	body->speed = ob_norm(linear_of(w->v[row])) + body->turning;
 }
 
 static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
@@ -74,17 +80,17 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	w->mass += pass->mass;
 	body->acceleration = ob_external_acceleration(run, pass);
 	w->max_acceleration = fmax(w->max_acceleration, ob_norm(body->acceleration));
-	body->speed = ob_surface_speed(now.v, now.w, body->shape, body->size);
+	set_speed_bound(w, row);
 }
 
 static void reserve_rows(ob_island_work *w, uint32_t rows)
 {
 	if (rows > w->rows_max) {
 		w->rows_max = rows + rows / 2 + 16;
-		w->body = realloc(w->body, w->rows_max * sizeof *w->body);
+		w->body = ob_reallocate(w->body, w->rows_max * sizeof *w->body);
 		ob_body_row **all[] = { &w->v, &w->dv, &w->u, &w->d, &w->delta, &w->drift };
 		for (int i = 0; i < 6; i++)
-			free(*all[i]), *all[i] = aligned_alloc(64, w->rows_max * sizeof **all[i]);
+			free(*all[i]), *all[i] = ob_allocate_aligned(64, w->rows_max * sizeof **all[i]);
 	}
 }
 
@@ -96,6 +102,7 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	w->h = w->substep = run->step_length / w->substeps;
 	w->mass = w->max_acceleration = w->recovered = w->residual = 0;
 	w->projected = false;
+	w->unpaced = 0;
 	w->error = w->new_error = 0;
 	w->bodies = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
@@ -125,12 +132,19 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	w->first_ghost = w->rows;
 }
 
-static void update_row_pose(ob_island_work *w, uint32_t row)
+// ---- attitudes
+
+// A body that contacts hold may turn this little (rad) in a partial substep before Euler's equations are solved for it
+// ..
+static const double unnoticed_turn = 1e-5;
+static const double deferred_turn = 1e-4; // .. and so much in all before its attitude is brought up to date
+static const double deferred_turn_isotropic = .02;
+
+// The gaps of the row's contacts follow its displacement, to first order.
+static void update_gaps(ob_island_work *w, uint32_t row)
 {
-	ob_body *body = &w->body[row];
-	double *d = w->d[row];
-	if (d[0] == 0 && d[1] == 0 && d[2] == 0 && d[3] == 0 && d[4] == 0 && d[5] == 0)
-		return;
+	const ob_body *body = &w->body[row];
+	const double *d = w->d[row];
 	for (uint32_t k = 0; k < body->adjacent; k++) {
 		const ob_contact *contact = &w->contact[w->adjacency[body->first_adjacent + k]];
 		if (contact->lane == OB_NO_LANE)
@@ -146,12 +160,42 @@ static void update_row_pose(ob_island_work *w, uint32_t row)
 			b->gap[j][l] += sign * opened;
 		}
 	}
+}
+
+static void set_rate(double *row, ob_vec3 rate)
+{
+	row[3] = rate.x, row[4] = rate.y, row[5] = rate.z;
+}
+
+static void set_attitude(ob_body *body, ob_quat q)
+{
+	body->q = q;
+	body->r = ob_quat_matrix(q);
+	update_inertia(body);
+}
+
+void ob_body_place(ob_body *body, ob_vec3 p, ob_quat q)
+{
+	body->p = p;
+	set_attitude(body, q);
+}
+
+// The pose takes the displacement row. Where that turns a body whose rate is not free of its attitude, the rate turns
+// with it: so the energy stays.
+static void update_row_pose(ob_island_work *w, uint32_t row)
+{
+	ob_body *body = &w->body[row];
+	double *d = w->d[row];
+	if (d[0] == 0 && d[1] == 0 && d[2] == 0 && d[3] == 0 && d[4] == 0 && d[5] == 0)
+		return;
+	update_gaps(w, row);
 	body->p = ob_add(body->p, linear_of(d));
 	ob_vec3 th = angular_of(d);
 	if (ob_norm2(th) > 0) {
-		body->q = ob_quat_turn(body->q, th);
-		body->r = ob_quat_matrix(body->q);
-		update_inertia(body);
+		ob_vec3 rate = ob_rotate_back(&body->r, angular_of(w->v[row]));
+		set_attitude(body, ob_quat_turn(body->q, th));
+		if (!body->isotropic)
+			set_rate(w->v[row], ob_rotate(&body->r, rate));
 	}
 	memset(d, 0, sizeof(ob_body_row));
 }
@@ -168,40 +212,94 @@ void ob_body_update_pose(ob_island_work *w, uint32_t row)
 	update_row_pose(w, row);
 }
 
-// Euler's equations over h by the midpoint rule, in the body frame. ODE's integrator does its own gyroscopic step.
-void ob_bodies_gyroscopic_step(ob_sim *s)
+// The row's pose takes its displacement, and turns freely for h (s).
+static void drift_row(ob_island_work *w, uint32_t row, double h)
+{
+	ob_body *body = &w->body[row];
+	double *d = w->d[row];
+	ob_quat q;
+	ob_vec3 rate;
+	if (ob_norm2(angular_of(d)) > 0)
+		update_row_pose(w, row);
+	ob_drift(body->q, angular_of(w->v[row]), body->inertia, h, &q, &rate);
+	add_row(d, ob_v3(0, 0, 0), ob_small_turn(body->q, q));
+	update_gaps(w, row);
+	ob_body_place(body, ob_add(body->p, linear_of(d)), q);
+	set_rate(w->v[row], rate);
+	memset(d, 0, sizeof *w->d);
+}
+
+static void drift_body(ob_island_work *w, uint32_t row, double h)
+{
+	for (uint32_t g = w->body[row].next_ghost; g; g = w->body[g].next_ghost) {
+		memcpy(w->d[g], w->d[row], sizeof *w->d);
+		drift_row(w, g, h);
+	}
+	drift_row(w, row, h);
+}
+
+// From the midpoint (sim/midpoint.h) to the partial substep's end. Where the velocity jumped, as if it had jumped at
+// the start.
+static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
+{
+	ob_body *body = &w->body[row];
+	double *v = w->v[row], *d = w->d[row];
+	const double *u = w->u[row], h = .5 * w->h;
+	ob_vec3 jump = ob_sub(linear_of(u), linear_of(v)), jump_turn = ob_sub(angular_of(u), angular_of(v)), rate;
+	const bool jumped = ob_norm2(jump) >= smooth || body->radius * body->radius * ob_norm2(jump_turn) >= 9 * smooth;
+	ob_vec3 way = ob_scale(linear_of(u), h);
+	ob_quat q;
+	if (jumped)
+		way = ob_madd(way, h, jump);
+	ob_drift(body->q, angular_of(u), body->inertia, h, &q, &rate);
+	if (jumped) {
+		ob_quat turned = ob_quat_turn(q, ob_scale(jump_turn, h));
+		ob_mat3 from = ob_quat_matrix(q), to = ob_quat_matrix(turned);
+		rate = ob_rotate(&to, ob_rotate_back(&from, rate));
+		q = turned;
+	}
+	memcpy(v, u, sizeof *w->v);
+	set_rate(v, rate);
+	memset(d, 0, sizeof *w->d);
+	add_row(d, ob_add(way, linear_of(body->first_half)), ob_small_turn(body->start_q, q));
+	update_gaps(w, row);
+	memset(d, 0, sizeof *w->d);
+	ob_body_place(body, ob_add(body->p, way), q);
+}
+
+// Brings a body's attitude to the partial substep's end: at once where it turns noticeably or nothing holds it, so that
+// it turns as it would in free flight; else by the displacement row. held: contacts have changed its rate.
+static void turn_body(ob_sim *s, uint32_t row, bool held)
 {
 	ob_island_work *w = &s->island;
-	if (s->settings->integrator == OB_INTEGRATOR_ODE)
+	const ob_body *body = &w->body[row];
+	double *d = w->d[row];
+	const ob_vec3 turn = ob_scale(angular_of(w->v[row]), w->h);
+	const double turned = ob_norm2(turn);
+	if (body->isotropic || turned == 0 || (held && turned < unnoticed_turn * unnoticed_turn)) {
+		add_row(d, ob_v3(0, 0, 0), turn);
+		const double most = body->isotropic ? deferred_turn_isotropic : deferred_turn;
+		if (ob_norm2(angular_of(d)) > most * most)
+			ob_body_update_pose(w, row);
 		return;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		const ob_body *body = &w->body[i];
-		ob_vec3 now = angular_of(w->v[i]), j = body->inertia;
-		if (body->isotropic || ob_norm2(now) < 1e-12)
-			continue;
-		s->counters.gyroscopic_steps++;
-		ob_vec3 b = ob_rotate_back(&body->r, now), mid = b;
-		for (int stage = 0; stage < 2; stage++) {
-			double h = stage ? w->h : .5 * w->h;
-			ob_vec3 rate = ob_v3((j.y - j.z) / j.x * mid.y * mid.z, (j.z - j.x) / j.y * mid.z * mid.x,
-					     (j.x - j.y) / j.z * mid.x * mid.y);
-			mid = ob_madd(b, h, rate);
-		}
-		// The rule's error in energy is small; scaling the angular velocity takes it out.
-		double energy = j.x * b.x * b.x + j.y * b.y * b.y + j.z * b.z * b.z;
-		double found = j.x * mid.x * mid.x + j.y * mid.y * mid.y + j.z * mid.z * mid.z;
-		ob_vec3 next = ob_scale(ob_rotate(&body->r, mid), sqrt(energy / found));
-		w->v[i][3] = next.x, w->v[i][4] = next.y, w->v[i][5] = next.z;
 	}
+	s->counters.gyroscopic_steps++;
+	drift_body(w, row, w->h);
+}
+
+// ---- velocities
+
+double ob_body_turn_rate(const ob_island_work *w, const ob_body_row *rows, uint32_t row)
+{
+	return w->body[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(angular_of(rows[row]));
 }
 
 void ob_bodies_update_speed_bounds(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		ob_body *body = &w->body[i];
-		body->speed = ob_surface_speed(linear_of(w->v[i]), angular_of(w->v[i]), body->shape, body->size);
-	}
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		if (w->body[i].hit > 0)
+			set_speed_bound(w, i);
 }
 
 void ob_bodies_warm_start(ob_sim *s)
@@ -239,7 +337,8 @@ static void integrate_by_ode(ob_sim *s, uint32_t row)
 	ob_vec3 l = ob_rotate(&body->r, ob_v3(wl.x * body->inertia.x, wl.y * body->inertia.y, wl.z * body->inertia.z));
 	ob_state state = { { body->p, body->q }, linear_of(w->v[row]), angular_of(w->v[row]) };
 	ob_pose before = state.pose;
-	ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, body->id), &state, j, l, w->h);
+	if (!ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, body->id), &state, j, l, w->h))
+		ob_step_fail(s->u, OB_STEP_ENGINE, body->id);
 	// The displacement row takes the step, so that the gaps follow; the turn is what ODE made of it.
 	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
 	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
@@ -260,53 +359,43 @@ static void integrate_exactly(ob_island_work *w, uint32_t row, double smooth)
 	double old = change < smooth ? .5 * w->h : 0;
 	for (int c = 0; c < 3; c++)
 		d[c] += (w->h - old) * u[c] + old * v[c];
-	for (int c = 3; c < 6; c++)
-		d[c] += w->h * u[c];
 }
 
 void ob_bodies_integrate_positions(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
+	w->unpaced += w->h;
 	double smooth = 2 * w->max_acceleration * w->max_acceleration * w->h * w->h;
 	for (uint32_t i = 1; i <= w->bodies; i++) {
-		ob_body *body = &w->body[i];
-		if (run->integrator == OB_INTEGRATOR_ODE)
+		if (run->integrator == OB_INTEGRATOR_ODE) {
 			integrate_by_ode(s, i);
-		else
-			integrate_exactly(w, i, smooth);
-		memcpy(w->v[i], w->u[i], sizeof *w->v);
-		body->speed = ob_surface_speed(linear_of(w->u[i]), angular_of(w->u[i]), body->shape, body->size);
-		body->path += w->h * body->speed;
-		if (ob_norm2(angular_of(w->d[i])) > 4e-4 || ob_norm2(linear_of(w->d[i])) > .01 ||
-		    run->integrator == OB_INTEGRATOR_ODE)
 			ob_body_update_pose(w, i);
+			memcpy(w->v[i], w->u[i], sizeof *w->v);
+		} else if (w->body[i].halved) {
+			finish_halved(w, i, smooth);
+		} else {
+			bool held = !same_vector(angular_of(w->u[i]), angular_of(w->v[i]));
+			integrate_exactly(w, i, smooth);
+			memcpy(w->v[i], w->u[i], sizeof *w->v);
+			turn_body(s, i, held);
+		}
+		set_speed_bound(w, i);
+		w->body[i].path += w->h * w->body[i].speed;
 	}
 }
 
-bool ob_bodies_update_rest(ob_sim *s)
+double ob_bodies_update_rest(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	const ob_run_settings *run = s->settings;
-	const double sleep_speed = .03, sleep_delay = .5; // m/s, s
-	bool asleep = run->sleeping;
+	const double rest_speed = .03 * w->unit.speed; // m/s, of any point
+	double since = INFINITY;
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		ob_body *body = &w->body[i];
-		double vv = ob_norm2(linear_of(w->v[i])), ww = ob_norm2(angular_of(w->v[i]));
-		body->rest_time = vv < sleep_speed * sleep_speed && ww < 4 * sleep_speed * sleep_speed
-					  ? body->rest_time + (float)run->step_length
-					  : 0;
-		asleep &= body->rest_time >= sleep_delay && body->contacts > 0;
+		body->rest_time = body->speed < rest_speed ? body->rest_time + (float)s->settings->step_length : 0;
+		since = fmin(since, body->contacts > 0 ? body->rest_time : 0);
 	}
-	return asleep;
-}
-
-static bool finite_row(const double *r)
-{
-	double sum = 0;
-	for (int c = 0; c < 6; c++)
-		sum += r[c] * 0;
-	return sum == 0;
+	return since;
 }
 
 void ob_bodies_publish(ob_sim *s, uint32_t rest)
@@ -342,8 +431,6 @@ void ob_bodies_publish(ob_sim *s, uint32_t rest)
 			mo.t0 = flight.t0, mo.valid_until = flight.valid_until;
 			mo.p = flight.p, mo.q = flight.q, mo.v = flight.v, mo.w = flight.w;
 		}
-		if (!finite_row(w->v[i]) || !isfinite(body->p.x + body->p.y + body->p.z))
-			s->data->count->failure = OB_STEP_DIVERGED;
 		ob_body_publish(s, body->id, &mo, &end);
 	}
 }

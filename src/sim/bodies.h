@@ -6,21 +6,23 @@
 
 // Rows of the island's bodies in ascending id, then those of the fixed bodies that they may touch.
 void ob_bodies_load(ob_sim *s, const ob_island *is);
-// Brings a pose up to date with its displacement row, and the gaps of the contacts that know the old pose.
+// Brings a pose up to date with its displacement row, and the gaps of the contacts that know the old pose. Its rate
+// turns with it, so its energy stays.
 void ob_body_update_pose(ob_island_work *w, uint32_t row);
-// Gyroscopic change of the angular velocities v over a partial substep.
-void ob_bodies_gyroscopic_step(ob_sim *s);
-// Speed bounds anew, after impacts have changed v.
+// Sets the pose, without a change of gaps.
+void ob_body_place(ob_body *body, ob_vec3 p, ob_quat q);
+// rad/s, of what changes the body's contacts by turning; 0 for spheres.
+double ob_body_turn_rate(const ob_island_work *w, const ob_body_row *rows, uint32_t row);
+// Speed bounds anew of bodies that were hit in the partial substep.
 void ob_bodies_update_speed_bounds(ob_sim *s);
 // dv: what external acceleration and the last impulses will bring, where the contacts are now.
 void ob_bodies_warm_start(ob_sim *s);
 // u = v + dv
 void ob_bodies_predict_velocities(ob_sim *s);
-// Displacements over the partial substep; u becomes the new v.
+// Moves the bodies through the partial substep: between impulses each turns as in free flight. u becomes the new v.
 void ob_bodies_integrate_positions(ob_sim *s);
-// After the last substep: rest timers. true: the island falls asleep, as each of its bodies has been slow for long
-// enough.
-bool ob_bodies_update_rest(ob_sim *s);
+// After the last substep: rest timers. Returns for how long (s) all bodies have been slow and touched something.
+double ob_bodies_update_rest(ob_sim *s);
 // rest: OB_MOTION_ASLEEP, OB_MOTION_EQUILIBRIUM, or 0
 void ob_bodies_publish(ob_sim *s, uint32_t rest);
 

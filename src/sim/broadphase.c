@@ -7,7 +7,10 @@
 
 #include <ob/motion.h>
 
+#include "base/allocate.h"
 #include "base/cpu.h"
+#include "motion/drift.h"
+#include "sim/commit.h"
 #include "sim/publish.h"
 
 // ---- spatial index
@@ -73,17 +76,31 @@ static void extend_level(ob_step_data *data, cell to)
 	}
 }
 
+// One of the index's links, as id + 1, or 0: what leads out of it is damage.
+static uint32_t checked_link(ob_step_data *data, uint32_t link)
+{
+	if (link <= data->objects_max)
+		return link;
+	data->count->failure = OB_STEP_DAMAGED;
+	return 0;
+}
+
+// The host calls it, too: links are followed no farther than there are objects.
 static void unlink_object(ob_step_data *data, uint32_t id)
 {
 	ob_index_cell *c = &data->cell[id];
 	uint32_t *link = &data->bucket[bucket_of(data, (cell){ c->level, c->x, c->y, c->z })];
-	while (*link != id + 1)
+	for (uint32_t i = 0; *link && *link != id + 1 && i < data->objects_max && checked_link(data, *link); i++)
 		link = &data->cell[*link - 1].next;
+	if (*link != id + 1 || c->level < 1 || c->level >= LEVELS) {
+		data->count->failure = OB_STEP_DAMAGED;
+		return;
+	}
 	*link = c->next;
 	data->count->levels[c->level]--;
-	if (c->after)
+	if (checked_link(data, c->after))
 		data->cell[c->after - 1].before = c->before;
-	if (c->before)
+	if (checked_link(data, c->before))
 		data->cell[c->before - 1].after = c->after;
 	else
 		data->count->level_first[c->level] = c->after;
@@ -93,7 +110,7 @@ static void unlink_object(ob_step_data *data, uint32_t id)
 static uint32_t plane_at(const ob_step_data *data, uint32_t id)
 {
 	uint32_t i = 0;
-	while (i < data->count->planes && data->plane[i] != id)
+	while (i < data->count->planes && i < data->objects_max && data->plane[i] != id)
 		i++;
 	return i;
 }
@@ -102,7 +119,7 @@ void ob_index_put(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	if (is_plane(u, id)) {
-		if (plane_at(data, id) == data->count->planes)
+		if (plane_at(data, id) == data->count->planes && ob_object_in_range(data, data->count->planes))
 			data->plane[data->count->planes++] = id;
 		return;
 	}
@@ -117,7 +134,7 @@ void ob_index_put(ob_universe *u, uint32_t id)
 	uint32_t *first = &data->count->level_first[to.level];
 	*c = (ob_index_cell){ *head, to.level, to.x, to.y, to.z, 0, *first };
 	*head = id + 1;
-	if (*first)
+	if (checked_link(data, *first))
 		data->cell[*first - 1].before = id + 1;
 	*first = id + 1;
 	extend_level(data, to);
@@ -128,7 +145,7 @@ void ob_index_remove(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	uint32_t plane = plane_at(data, id);
-	if (plane < data->count->planes)
+	if (plane < data->count->planes && data->count->planes <= data->objects_max)
 		data->plane[plane] = data->plane[--data->count->planes];
 	else if (indexed(&data->cell[id]))
 		unlink_object(data, id);
@@ -243,20 +260,17 @@ static const double oversize_margins = 4; // a box larger by so many margins of 
 static const uint64_t oversize_check_steps = 16; // .. which is checked every so many steps
 static const double sweep_oversize = 2; // a box so many times as long as a flight's new one is replaced
 
-double ob_turning_speed(ob_vec3 w, ob_shape shape, ob_vec3 size)
+double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s)
 {
-	double rate = ob_norm(w);
-	return shape == OB_SHAPE_SPHERE || rate == 0 ? 0 : rate * ob_shape_radius(shape, size);
+	double rate = shape == OB_SHAPE_SPHERE ? 0 : ob_drift_bound(w, inertia, s);
+	return rate == 0 ? 0 : rate * ob_shape_radius(shape, size);
 }
 
-double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size)
+double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_quat q, ob_vec3 v, ob_vec3 w)
 {
-	return ob_norm(v) + ob_turning_speed(w, shape, size);
-}
-
-double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v, ob_vec3 w)
-{
-	double speed = ob_surface_speed(v, w, p->shape, p->size);
+	ob_mat3 r = ob_quat_matrix(q);
+	double speed =
+		ob_norm(v) + ob_turning_speed(p->shape, p->size, p->inertia, ob_rotate_back(&r, w), run->step_length);
 	return (speed + ob_norm(ob_external_acceleration(run, p)) * run->step_length) * run->step_length;
 }
 
@@ -270,37 +284,58 @@ static bool box_contains(const float *box, const double *tight, double margin)
 
 static void set_fat_aabb(ob_universe *u, uint32_t id, const double *tight, double margin)
 {
-	ob_step_data *data = ob_universe_step_data(u);
+	float box[6];
 	for (int c = 0; c < 3; c++) {
 		// Rounded outwards; a plane's box stays infinite.
-		data->bounds[id][c] = nextafterf((float)(tight[c] - margin), -FLT_MAX);
-		data->bounds[id][3 + c] = nextafterf((float)(tight[3 + c] + margin), FLT_MAX);
+		box[c] = nextafterf((float)(tight[c] - margin), -FLT_MAX);
+		box[3 + c] = nextafterf((float)(tight[3 + c] + margin), FLT_MAX);
 	}
-	if (!ob_broadphase_query_pending(u, id)) {
-		data->neighbours[id].count = UINT32_MAX;
-		ob_requery_append(u, id);
-	}
+	ob_commit_bounds(u, id, box);
 }
 
-static double margin_at_rest(ob_shape shape, ob_vec3 size)
+double ob_fat_aabb_margin(const ob_run_settings *run, ob_shape shape, ob_vec3 size)
 {
-	return fmin(rest_margin, rest_margin_share * ob_shape_radius(shape, size));
+	return fmin(rest_margin * ob_run_settings_units(run).length, rest_margin_share * ob_shape_radius(shape, size));
 }
 
-// The fat AABB for some steps: on all sides what the next one needs, in which the object may be hit and thrown
-// anywhere; for those after it, along its velocity. Returns the margin on all sides (m); box: swept along the velocity,
-// without the margin.
+// What a step leaves behind: the object was nowhere but between where it was and where it is, or no farther than
+// "bulge" (m) from there. path: m, of any of its points, in that step.
+typedef struct wake {
+	double back[3]; // m, from where it is to where it was
+	double bulge;
+} wake;
+
+static wake wake_of(const ob_universe *u, uint32_t id, const ob_state *now, double path)
+{
+	const uint64_t step = ob_step_count(u);
+	ob_vec3 back = ob_sub(ob_centre_now(u, id, ob_newest_motion(u, id), step), now->pose.p);
+	double straight = ob_norm(back), more = fmax(0, path - straight);
+	return (wake){ { back.x, back.y, back.z }, more + .5 * sqrt(more * (path + straight)) };
+}
+
+// Makes the box hold itself moved by so much, and all between.
+static void sweep_box(double *box, const double *by, double times)
+{
+	for (int c = 0; c < 3; c++) {
+		box[c] += fmin(0, times * by[c]);
+		box[3 + c] += fmax(0, times * by[c]);
+	}
+}
+
+// The fat AABB for some steps: along the velocity the way of those steps, and on all sides what the object may gain by
+// turning and falling. If something throws it off its way, that step makes it a new one, which holds what it left
+// behind. Returns the margin on all sides (m); box: swept, without the margin.
 static double predict_fat_aabb(const ob_universe *u, const ob_passport *p, const ob_state *now, double reach,
 			       double *box)
 {
-	const double h = ob_universe_settings(u)->step_length, way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
-	double once = margin_at_rest(p->shape, p->size) + reach;
-	double more = reach > 0 ? fmax(0, fmin(fat_aabb_steps - 1, (margin_limit - once) / reach)) : 0; // steps
-	for (int c = 0; c < 3; c++) {
-		box[c] += fmin(0, more * way[c]);
-		box[3 + c] += fmax(0, more * way[c]);
-	}
-	return once + more * fmax(0, reach - h * ob_norm(now->v));
+	const ob_run_settings *run = ob_universe_settings(u);
+	const double h = run->step_length, margin = ob_fat_aabb_margin(run, p->shape, p->size),
+		     limit = margin_limit * ob_run_settings_units(run).length,
+		     way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
+	const double once = margin + reach, aside = fmax(0, reach - h * ob_norm(now->v));
+	double more = reach > 0 ? fmax(0, fmin(fat_aabb_steps - 1, (limit - once) / reach)) : 0; // steps
+	sweep_box(box, way, 1 + more);
+	return margin + (1 + more) * aside;
 }
 
 static bool is_oversized(const float *box, const double *next, double margin)
@@ -311,18 +346,26 @@ static bool is_oversized(const float *box, const double *next, double margin)
 	return false;
 }
 
-void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double reach)
+void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double reach, double path)
 {
 	const ob_passport *p = ob_passport_of(u, id);
 	const float *box = ob_universe_step_data(u)->bounds[id];
-	double next[6];
+	const double h = ob_universe_settings(u)->step_length, way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
+	const wake w = wake_of(u, id, now, path);
+	double next[6], behind[6], ahead[6];
 	ob_shape_bounds(p->shape, p->size, now->pose, next);
-	bool held = box_contains(box, next, reach);
+	memcpy(behind, next, sizeof next);
+	memcpy(ahead, next, sizeof next);
+	sweep_box(behind, w.back, 1);
+	sweep_box(ahead, way, 1);
+	bool held =
+		box_contains(box, behind, w.bulge) && box_contains(box, ahead, fmax(0, reach - h * ob_norm(now->v)));
 	// A box made when the object was fast is replaced when it is slow; objects are checked in turn, not all at
 	// once.
 	if (held && (ob_step_count(u) + id) % oversize_check_steps)
 		return;
-	double margin = predict_fat_aabb(u, p, now, reach, next);
+	double margin = fmax(predict_fat_aabb(u, p, now, reach, next), w.bulge);
+	sweep_box(next, w.back, 1);
 	if (!held || is_oversized(box, next, margin))
 		set_fat_aabb(u, id, next, margin);
 }
@@ -353,46 +396,17 @@ bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)
 
 void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
 {
-	ob_step_data *data = ob_universe_step_data(u);
-	uint32_t near[256], n = ob_index_query(u, id, near, 256, box_tests);
-	uint32_t offset = ob_neighbours_reserve(u, n);
-	if (offset == UINT32_MAX) {
-		data->count->failure = OB_STEP_NEIGHBOURS_FULL;
-		n = offset = 0;
-	} else if (n <= 256) {
-		for (uint32_t i = 0; i < n; i++)
-			data->neighbour_id[offset + i] = near[i];
-	} else {
-		ob_index_query(u, id, data->neighbour_id + offset, n, box_tests);
-	}
-	data->neighbours[id] = (struct ob_neighbours){ offset, n };
+	enum { USUALLY = 256 };
+	uint32_t near[USUALLY], n = ob_index_query(u, id, near, USUALLY, box_tests);
+	uint32_t *all = n <= USUALLY ? near : ob_allocate(n * sizeof *all);
+	if (all != near)
+		ob_index_query(u, id, all, n, box_tests);
+	ob_commit_neighbours(u, id, all, n);
+	if (all != near)
+		free(all);
 }
 
 // ---- pairs
-
-// Index of the newest version that held when so many steps were complete; -1: none. A version written in a step that is
-// being solved again is newer.
-static int newest_version(const ob_pair_record *r, uint64_t steps)
-{
-	int newest = -1;
-	for (int k = 0; k < 2; k++)
-		if (r->stamp[k] && r->stamp[k] <= steps + 1 && (newest < 0 || r->stamp[k] > r->stamp[newest]))
-			newest = k;
-	return newest;
-}
-
-const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps)
-{
-	int k = newest_version(r, steps);
-	return k < 0 ? NULL : &r->version[k];
-}
-
-ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
-{
-	int k = newest_version(r, steps) == 0;
-	r->stamp[k] = (uint32_t)(steps + 2);
-	return &r->version[k];
-}
 
 static int by_key(const void *x, const void *y)
 {
@@ -410,6 +424,16 @@ static bool immobile(const ob_step_data *data, uint32_t id)
 	return data->schedule[id].state < OB_SCHEDULE_AWAKE;
 }
 
+// How many neighbours a query has found; 0 where the range is none.
+static uint32_t neighbours_found(const ob_step_data *data, uint32_t id)
+{
+	const struct ob_neighbours *p = &data->neighbours[id];
+	if ((uint64_t)p->offset + p->count <= data->neighbours_max)
+		return p->count;
+	data->count->failure = OB_STEP_DAMAGED;
+	return 0;
+}
+
 // All pairs that the queries of the list have found, sorted, each once: of two objects that were both queried, and have
 // found each other, the lower one lists the pair. The caller frees.
 static uint64_t *collect_pair_keys(ob_universe *u, const uint32_t *list, uint32_t count, const uint32_t *requeried,
@@ -418,19 +442,21 @@ static uint64_t *collect_pair_keys(ob_universe *u, const uint32_t *list, uint32_
 	const ob_step_data *data = ob_universe_step_data(u);
 	size_t total = 0, kept = 0;
 	for (uint32_t k = 0; k < count; k++)
-		total += data->neighbours[list[k]].count;
-	uint64_t *keys = malloc((total + 1) * sizeof *keys);
-	for (uint32_t k = 0; keys && k < count; k++) {
+		total += ob_object_in_range(data, list[k]) ? neighbours_found(data, list[k]) : 0;
+	uint64_t *keys = ob_allocate((total + 1) * sizeof *keys);
+	for (uint32_t k = 0; k < count && ob_object_in_range(data, list[k]); k++) {
 		const struct ob_neighbours *p = &data->neighbours[list[k]];
-		for (uint32_t i = 0; i < p->count; i++) {
+		const uint32_t found = neighbours_found(data, list[k]);
+		for (uint32_t i = 0; i < found && kept < total; i++) {
 			uint32_t other = data->neighbour_id[p->offset + i];
+			if (!ob_object_in_range(data, other))
+				continue;
 			bool listed = requeried[other] && other < list[k];
 			if (!listed && (!immobile(data, list[k]) || !immobile(data, other)))
 				keys[kept++] = key_of(list[k], other);
 		}
 	}
-	if (keys)
-		qsort(keys, kept, sizeof *keys, by_key);
+	qsort(keys, kept, sizeof *keys, by_key);
 	*n = kept;
 	return keys;
 }
@@ -465,13 +491,23 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 	return aabbs ? distance : fmax(distance, spheres);
 }
 
+// Path of both together in the step that was solved, if one was (m).
+static double path_in_step(const ob_universe *u, uint32_t a, uint32_t b, double paths, uint64_t steps)
+{
+	const uint64_t step = ob_step_count(u);
+	return steps > step
+		       ? paths - ob_path_now(ob_newest_motion(u, a), step) - ob_path_now(ob_newest_motion(u, b), step)
+		       : 0;
+}
+
 static ob_pair_key make_pair(const ob_universe *u, uint64_t key, uint64_t steps)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
 	double distance = pair_distance(u, a, b, steps);
 	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
-	double limit = distance > 0 ? paths + distance : -1;
+	// Nearer than they have moved in the step that was solved: they may have touched in it.
+	double limit = distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
 	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
 }
 
@@ -494,8 +530,11 @@ static size_t drop_separated_pairs(ob_universe *u, const uint32_t *requeried, ui
 	ob_step_data *data = ob_universe_step_data(u);
 	size_t k = 0, fresh = 0;
 	uint32_t kept = 0;
-	for (uint32_t i = 0; i < data->count->pairs; i++) {
+	const uint32_t pairs = ob_pairs_count(data);
+	for (uint32_t i = 0; i < pairs; i++) {
 		const ob_pair_key *old = &data->pair[i];
+		if (!ob_object_in_range(data, old->a) || !ob_object_in_range(data, old->b))
+			continue;
 		while (k < count && keys[k] < key_of_pair(old))
 			keys[fresh++] = keys[k++];
 		bool kept_pair = k < count && keys[k] == key_of_pair(old);
@@ -511,12 +550,18 @@ static size_t drop_separated_pairs(ob_universe *u, const uint32_t *requeried, ui
 }
 
 // Merges from the back, where there is room.
-static bool insert_pairs(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t steps)
+static void insert_pairs(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	size_t old = data->count->pairs, end = old + fresh;
-	if (end > data->pairs_max)
-		return false;
+	if (end > data->pairs_max) {
+		ob_step_fail(u, OB_STEP_PAIRS_FULL, 0);
+		return;
+	}
+	if (!ob_reserve_pairs(u, (uint32_t)old, (uint32_t)fresh)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return;
+	}
 	data->count->pairs = (uint32_t)end;
 	while (fresh > 0) {
 		if (old > 0 && key_of_pair(&data->pair[old - 1]) > keys[fresh - 1])
@@ -524,7 +569,6 @@ static bool insert_pairs(ob_universe *u, const uint64_t *keys, size_t fresh, uin
 		else
 			data->pair[--end] = make_pair(u, keys[--fresh], steps);
 	}
-	return true;
 }
 
 void ob_pairs_merge(ob_universe *u, uint64_t steps)
@@ -537,10 +581,10 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 		return;
 	memset(requeried, 0, ob_universe_ids(u) * sizeof *requeried);
 	for (uint32_t i = 0; i < count; i++)
-		requeried[list[i]] = 1;
+		if (ob_object_in_range(data, list[i]))
+			requeried[list[i]] = 1;
 	uint64_t *keys = collect_pair_keys(u, list, count, requeried, &fresh);
-	if (!keys || !insert_pairs(u, keys, drop_separated_pairs(u, requeried, keys, fresh), steps))
-		data->count->failure = OB_STEP_PAIRS_FULL;
+	insert_pairs(u, keys, drop_separated_pairs(u, requeried, keys, fresh), steps);
 	free(keys);
 	ob_requery_reset(u);
 	ob_neighbours_reset(u);
@@ -550,7 +594,7 @@ void ob_pairs_drop(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	uint32_t out = 0;
-	for (uint32_t i = 0; i < data->count->pairs; i++) {
+	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
 		if (data->pair[i].a == id || data->pair[i].b == id)
 			ob_pair_release_record(u, &data->pair[i]);
 		else

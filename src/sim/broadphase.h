@@ -14,16 +14,19 @@
 
 // ---- fat AABBs
 
-// Bound of what turning adds to the speed of any point of the object (m/s); 0 for spheres, and without rotation.
-double ob_turning_speed(ob_vec3 w, ob_shape shape, ob_vec3 size);
-// Bound of the speed of any point of the object (m/s).
-double ob_surface_speed(ob_vec3 v, ob_vec3 w, ob_shape shape, ob_vec3 size);
-// How far any point of the object may get in one step from these velocities (m), under its external acceleration.
-double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_vec3 v, ob_vec3 w);
+// Bound of what turning adds to the speed of any point of an object (m/s) within s from the rate w (rad/s, frame of the
+// object); 0 for spheres, and without rotation.
+double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s);
+// How far any point of the object may get in one step from this attitude and these velocities (m), under its external
+// acceleration.
+double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_quat q, ob_vec3 v, ob_vec3 w);
 // If the object's fat AABB does not hold it for its next step, or is much too large, makes a new one and appends the
-// object to the requery list. now: its state at the end of the step; reach: m, in the next step.
-void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double reach);
-// The same for a box that holds a whole flight, and the margin (m) around it.
+// object to the requery list. now: its state at the end of the step; reach: m, in the next step; path: m, of any of its
+// points in the step that was solved, which a new one holds, too.
+void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double reach, double path);
+// m: what a fat AABB leaves on all sides of an object that rests or flies on as it does.
+double ob_fat_aabb_margin(const ob_run_settings *run, ob_shape shape, ob_vec3 size);
+// As ob_fat_aabb_update, for a box that holds a whole flight, and the margin (m) around it.
 void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double margin);
 // The same, with a new box in any case.
 void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double reach);
@@ -56,9 +59,5 @@ void ob_pairs_drop(ob_universe *u, uint32_t id);
 // Gives the pair's record back, if it has one. The scheduling worker, between steps: what a step has written may be
 // read until its end.
 void ob_pair_release_record(ob_universe *u, ob_pair_key *k);
-// A pair's state when so many steps were complete; NULL if it was never touched until then. A step's solver reads that,
-// and writes the other version, which holds when one more step is complete; so a step can be solved again.
-const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps);
-ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps);
 
 #endif

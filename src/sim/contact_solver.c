@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "sim/budget.h"
+#include "sim/conjugate.h"
 #include "sim/direct_solver.h"
 #include "sim/ghost.h"
 
@@ -13,14 +15,22 @@ static const uint32_t max_extra_iterations = 8; // times the run's number; only 
 static const double extra_iteration_threshold = .05; // m/s
 static const int block_sweeps = 4;
 static const double block_tolerance = .01; // of the residual: a block need not be solved more finely in an iteration
+static const int fine_block_sweeps = 8; // where the solution is wanted to the end
+static const double converged = 1e-12; // m/s: a block whose sweep changes less is solved
 
-// Impacts.
+// Bodies that stand.
+static const double settled = 1e-10, nearly_settled = 1e-6; // m/s: smaller changes are nothing; worth to go on
+static const int max_settling_rounds = 32; // in a partial substep
+static const uint32_t max_settling_iterations = 512, max_failures = 4; // .. and of direct solves
+
+static const double resting_gap = 1e-7; // m: a point that presses keeps its distance from the surface, if that is less
+static const double turning_gap = 1e-5; // m: the same where the geometry turns
+
 static const double impact_threshold = .1; // m/s: faster changes are impacts and not extrapolated by the warm start
-static const double rebound_turn = 1e-3; // rad: a body that turns by more in a partial substep is taken to its rebound
-static const double max_smooth_acceleration = 3; // of the largest external one: more is the echo of an impact
 
 // Position projection.
 static const double slop = 1e-4, projected_share = .3; // m; of the penetration, per partial substep
+static const double unpressed_slop = 1e-3; // m, where nothing external acts: what is pushed changes angular momentum
 static const double max_slop_share = 1. / 8; // of the tolerance
 
 static bool is_jacobi(const ob_sim *s)
@@ -35,153 +45,17 @@ static double within_tolerance(const ob_sim *s, double usual, double of_toleranc
 	return tolerance > 0 ? fmin(usual, of_tolerance * tolerance) : usual;
 }
 
+double ob_solver_slop(const ob_sim *s)
+{
+	return within_tolerance(s, slop * s->island.unit.length, max_slop_share);
+}
+
 static void add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
 {
 	for (uint32_t i = 1; i <= w->bodies; i++)
 		for (int c = 0; c < 6; c++)
 			to[i][c] += from[i][c];
 	memset(from, 0, w->rows * sizeof *from);
-}
-
-// ---- impacts
-
-// rad/s, of what changes the contact's geometry by turning
-static double turn_rate(const ob_island_work *w, uint32_t row)
-{
-	const double *v = w->v[row];
-	return w->body[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(ob_v3(v[3], v[4], v[5]));
-}
-
-// True where a body turns by more than the threshold: it rebounds at the partial substep's start, or not in this one.
-static bool turns(const ob_island_work *w, const ob_contact *contact)
-{
-	return fmax(turn_rate(w, contact->a), turn_rate(w, contact->b)) * w->h > rebound_turn;
-}
-
-static ob_impact impact_of(const ob_sim *s, const ob_contact *contact)
-{
-	const ob_island_work *w = &s->island;
-	double resting = 4 * w->max_acceleration * w->substep; // m/s, of contacts that do not rebound
-	return (ob_impact){ w->h, turns(w, contact) ? w->h_min : w->h, contact->e, resting + 1e-6, 1, 1 };
-}
-
-static bool is_elastic(const ob_contact *contact)
-{
-	return contact->e > 0 && contact->lane != OB_NO_LANE;
-}
-
-static ob_impact_rows impact_rows(const ob_island_work *w)
-{
-	return (ob_impact_rows){ w->v, w->drift, w->d };
-}
-
-// instant: s into the partial substep; < 0: there was no impact.
-static bool note_impact(ob_sim *s, double instant)
-{
-	s->counters.impacts += instant >= 0;
-	s->island.last_impact = fmax(s->island.last_impact, instant);
-	return instant >= 0;
-}
-
-// Each pair on the velocities that the one before it has left.
-static bool impacts_gauss_seidel(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	const ob_impact_rows at = impact_rows(w);
-	bool any = false;
-	for (uint32_t i = 0; i < w->contacts; i++) {
-		const ob_contact *contact = &w->contact[i];
-		ob_impact in = impact_of(s, contact);
-		if (is_elastic(contact))
-			any |= note_impact(s, ob_impact_solve(&w->batch[contact->lane / OB_LANES],
-							      contact->lane % OB_LANES, &in, &at, w->v, w->d));
-	}
-	return any;
-}
-
-// All pairs on the same velocities, each with its share of the bodies; u is free here and takes the shifts.
-static bool impacts_jacobi(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	const ob_impact_rows at = impact_rows(w);
-	bool any = false;
-	for (uint32_t i = 0; i < w->rows; i++)
-		w->body[i].pending_impacts = 0;
-	memset(w->u, 0, w->rows * sizeof *w->u);
-	for (int solve = 0; solve < 2; solve++)
-		for (uint32_t i = 0; i < w->contacts; i++) {
-			const ob_contact *contact = &w->contact[i];
-			ob_impact in = impact_of(s, contact);
-			if (!is_elastic(contact))
-				continue;
-			const ob_batch *b = &w->batch[contact->lane / OB_LANES];
-			int l = contact->lane % OB_LANES;
-			if (solve) {
-				in.split_a = fmax(1, w->body[contact->a].pending_impacts);
-				in.split_b = fmax(1, w->body[contact->b].pending_impacts);
-				any |= note_impact(s, ob_impact_solve(b, l, &in, &at, w->delta, w->u));
-			} else if (ob_impact_time(b, l, &in, &at) <= in.h) {
-				w->body[contact->a].pending_impacts++;
-				w->body[contact->b].pending_impacts++;
-			}
-		}
-	add_rows(w, w->v, w->delta);
-	add_rows(w, w->d, w->u);
-	return any;
-}
-
-// The warm start of contacts that were just hit repeats their impact: another must not take that for an approach.
-static void set_drift(ob_island_work *w)
-{
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		const ob_body *body = &w->body[i];
-		const double *dv = w->dv[i], most = max_smooth_acceleration * w->max_acceleration * w->h;
-		double linear = ob_norm(ob_v3(dv[0], dv[1], dv[2])), angular = ob_norm(ob_v3(dv[3], dv[4], dv[5]));
-		ob_vec3 external = ob_scale(body->acceleration, w->h);
-		if (linear + body->radius * angular <= most)
-			memcpy(w->drift[i], dv, sizeof *w->drift);
-		else
-			memcpy(w->drift[i], (double[8]){ external.x, external.y, external.z }, sizeof *w->drift);
-	}
-}
-
-double ob_solver_first_rebound(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	const ob_impact_rows at = impact_rows(w);
-	double first = INFINITY;
-	if (!w->elastic)
-		return first;
-	set_drift(w);
-	for (uint32_t i = 0; i < w->contacts; i++) {
-		ob_contact *contact = &w->contact[i];
-		ob_impact in = impact_of(s, contact);
-		if (!is_elastic(contact) || !turns(w, contact))
-			continue;
-		in.within = w->h;
-		double when = ob_impact_time(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &in, &at);
-		if (when <= w->h)
-			contact->limit = -INFINITY;
-		first = fmin(first, when);
-	}
-	return first;
-}
-
-bool ob_solver_impacts(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	const int max_rounds =
-		400; // pairs that still approach then are left to the iterations, which lose their energy
-	int round = 0;
-	if (!w->elastic)
-		return false;
-	set_drift(w);
-	for (bool any = true; any && round < max_rounds; round += any) {
-		ob_ghosts_read(s, w->v, (uint32_t)round);
-		any = is_jacobi(s) ? impacts_jacobi(s) : impacts_gauss_seidel(s);
-	}
-	s->counters.impact_iterations += (unsigned)round;
-	return round > 0;
 }
 
 // ---- iterations
@@ -244,50 +118,124 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 		s->counters.pair_solves += pairs;
 		s->counters.frictionless_solves += b->kind & OB_KIND_FRICTIONLESS ? pairs : 0;
 		ob_batch_solve(b, iteration, w->u, w->v, w->d, w->delta);
+		enum { SWEEP_WORK = 16 }; // of a patch, at most
+		ob_budget_note(s, b->isolated ? SWEEP_WORK * b->sweeps : 0);
 		*any_active |= activate_bodies(w, b);
 		residual = lanes_max(residual, b->residual);
 	}
 	if (iteration->jacobi)
 		add_rows(w, w->u, w->delta);
-	return fmax(fmax(residual[0], residual[1]), fmax(residual[2], residual[3]));
+	return sqrt(fmax(fmax(residual[0], residual[1]), fmax(residual[2], residual[3])));
+}
+
+// Conjugate iterations on u, over all contacts, until none changes a velocity by more than the wake threshold. Returns
+// the largest change (m/s) in the last.
+static double converge(ob_sim *s, ob_solver_iteration *iteration, uint32_t max_iterations)
+{
+	ob_island_work *w = &s->island;
+	double residual = INFINITY;
+	bool any_active = true;
+	ob_conjugate_begin(w);
+	for (uint32_t k = 0; k < max_iterations && any_active; k++) {
+		if (k)
+			ob_conjugate_go_on(w);
+		s->counters.solver_iterations++;
+		ob_ghosts_read(s, w->u, k);
+		for (uint32_t i = 0; i < w->batches; i++)
+			w->batch_due[i] = w->iteration;
+		ob_conjugate_note(w);
+		residual = solve_contacts(s, iteration, &any_active);
+		iteration->first = false;
+	}
+	return residual;
+}
+
+void ob_solver_converge(ob_sim *s, double enough, uint32_t max_iterations)
+{
+	ob_solver_iteration iteration = {
+		.h = s->island.h,
+		.block_sweeps = fine_block_sweeps,
+		.converged = converged * s->island.unit.speed,
+		.wake_threshold = enough,
+		.impact_threshold = INFINITY,
+		.first = true,
+		.jacobi = is_jacobi(s),
+		.resting_gap = resting_gap * s->island.unit.length,
+		.turning_gap = turning_gap * s->island.unit.length,
+		.dv = s->island.dv,
+	};
+	converge(s, &iteration, max_iterations);
+}
+
+// Bodies that stand, with cycles of contacts: direct solves, and where they do not lead down, more and more conjugate
+// iterations, until nothing is left to do. Given up, for this step, where that does not come into sight.
+static void settle(ob_sim *s, const ob_solver_iteration *last)
+{
+	ob_solver_iteration iteration = *last;
+	uint32_t iterations = 1, made = 0, failures = 0;
+	double residual = INFINITY;
+	iteration.block_sweeps = fine_block_sweeps;
+	iteration.block_tolerance = 0;
+	iteration.wake_threshold = settled * s->island.unit.speed;
+	for (int round = 0; round < max_settling_rounds && made < max_settling_iterations && !ob_budget_spent(s);
+	     round++) {
+		made += iterations;
+		residual = converge(s, &iteration, iterations);
+		if (residual <= iteration.wake_threshold)
+			return;
+		if (failures == max_failures || !ob_direct_solve(s)) {
+			failures += failures < max_failures;
+			iterations = 2 * iterations + 6;
+		} else {
+			iterations = 1;
+		}
+	}
+	s->island.direct.gave_up = residual > nearly_settled * s->island.unit.speed;
 }
 
 void ob_solver_iterate(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
-	const double wake = within_tolerance(s, wake_threshold, max_wake_rate);
+	const double wake = within_tolerance(s, wake_threshold * w->unit.speed, max_wake_rate / w->unit.time);
 	ob_solver_iteration iteration = {
 		.h = w->h,
 		.block_sweeps = block_sweeps,
-		.wake_threshold = fmin(max_wake_threshold, wake * w->substep / w->h), // what lasts shorter, moves less
-		.impact_threshold = impact_threshold * w->h / w->substep,
+		.converged = converged * w->unit.speed,
+		.wake_threshold = fmin(max_wake_threshold * w->unit.speed,
+				       wake * w->substep / w->h), // what lasts shorter, moves less
+		.impact_threshold = impact_threshold * w->unit.speed * w->h / w->substep,
 		.first = true,
 		.jacobi = is_jacobi(s),
+		.resting_gap = resting_gap * w->unit.length,
+		.turning_gap = turning_gap * w->unit.length,
+		.dv = w->dv,
 	};
 	bool any_active = true;
+	double residual = 0;
 	ob_direct_begin_partial(&w->direct);
-	for (uint32_t k = 0; k < max_extra_iterations * run->iterations && any_active; k++) {
+	for (uint32_t k = 0; k < max_extra_iterations * run->iterations && any_active && !ob_budget_spent(s); k++) {
 		if (k == run->iterations)
-			iteration.wake_threshold = extra_iteration_threshold;
+			iteration.wake_threshold = extra_iteration_threshold * w->unit.speed;
 		s->counters.solver_iterations++;
 		ob_ghosts_read(s, w->u, k);
 		activate_ghosts(w);
 		w->iteration += 1 + (k == 0); // a gap, so that no body is active from the last partial substep
-		double residual = solve_contacts(s, &iteration, &any_active);
+		residual = solve_contacts(s, &iteration, &any_active);
 		if (iteration.first)
 			w->residual = fmax(w->residual, residual);
 		iteration.first = false;
 		iteration.block_tolerance = block_tolerance * residual;
-		if (!ob_direct_wanted(s, residual, any_active && k + 1 < run->iterations))
+		if (!ob_direct_wanted(s, residual))
 			continue;
 		ob_direct_solve(s);
-		s->counters.direct_solves++;
 		any_active = true;
 		for (uint32_t i = 1; i <= w->bodies; i++)
 			activate_body(w, i, w->iteration);
 	}
 	w->direct.used_last = w->direct.solves > 0;
+	if (ob_direct_settles(s, residual))
+		settle(s, &iteration);
 }
 
 // ---- position projection
@@ -311,7 +259,10 @@ static void add_projection_to_paths(ob_island_work *w)
 		const double *is = w->d[i];
 		ob_vec3 shift = ob_v3(is[0] - was[0], is[1] - was[1], is[2] - was[2]);
 		ob_vec3 turn = ob_v3(is[3] - was[3], is[4] - was[4], is[5] - was[5]);
-		w->body[i].path += ob_norm(shift) + w->body[i].radius * ob_norm(turn);
+		const double path = ob_norm(shift) + w->body[i].radius * ob_norm(turn);
+		w->body[i].path += path;
+		for (uint32_t k = 0; k < w->body[i].adjacent; k++)
+			w->contact[w->adjacency[w->body[i].first_adjacent + k]].path += path;
 		memset(was, 0, sizeof *w->delta);
 	}
 }
@@ -319,6 +270,8 @@ static void add_projection_to_paths(ob_island_work *w)
 void ob_solver_project_positions(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
+	const double left =
+		w->plastic && w->max_acceleration == 0 ? unpressed_slop * w->unit.length : ob_solver_slop(s);
 	bool aabb = s->settings->narrow_phase == OB_NARROW_AABB && !is_jacobi(s);
 	double before = potential_energy(w);
 	if (aabb)
@@ -326,8 +279,7 @@ void ob_solver_project_positions(ob_sim *s)
 	for (uint32_t k = 0; k < w->batches; k++) {
 		ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
-			w->projected |= ob_batch_project(b, within_tolerance(s, slop, max_slop_share), projected_share,
-							 is_jacobi(s), w->d, w->delta);
+			w->projected |= ob_batch_project(b, left, projected_share, is_jacobi(s), w->d, w->delta);
 	}
 	if (is_jacobi(s))
 		add_rows(w, w->d, w->delta);

@@ -1,4 +1,4 @@
-// The contact solver: impacts with restitution, contact impulses by iterations over the pairs, position projection.
+// The contact solver: contact impulses by iterations over the pairs, position projection.
 //
 // Coloured: of the contacts of one colour no two share a body, so each pair is solved with true masses on the
 // velocities that the colours before have left (Gauss-Seidel). Jacobi: all pairs are solved on the same velocities,
@@ -9,16 +9,16 @@
 
 #include "sim/state.h"
 
-// Impacts with restitution at their instants: changes v, shifts d. true if there were any.
-bool ob_solver_impacts(ob_sim *s);
-// The first instant (s into the partial substep) at which two bodies rebound of which one turns by more than the
-// threshold until then; infinity: none. The narrow phase will test their contacts anew.
-double ob_solver_first_rebound(ob_sim *s);
 // Contact impulses: iterations on u until none changes a velocity by more than the wake threshold.
 void ob_solver_iterate(ob_sim *s);
 // After that: what impacts have added to impulses is no part of the next warm start.
 void ob_solver_limit_prediction(ob_sim *s);
-// Position projection: pushes penetrations apart in d.
+// Contact impulses to the end: conjugate iterations (sim/conjugate.h) over all contacts until none changes a velocity
+// by more than "enough" (m/s), or so many have been made.
+void ob_solver_converge(ob_sim *s, double enough, uint32_t max_iterations);
+// m: penetrations up to it are left as they are.
+double ob_solver_slop(const ob_sim *s);
+// Position projection: pushes penetrations beyond the slop apart in d.
 void ob_solver_project_positions(ob_sim *s);
 
 #endif

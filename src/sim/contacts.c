@@ -3,17 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "sim/bodies.h"
 #include "sim/broadphase.h"
+#include "sim/commit.h"
+#include "sim/contact_order.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
+#include "sim/relative_speed.h"
 
 // ---- lanes and graph colouring
 
 // Impulses that go over from an old manifold to a new one (warm starting).
 typedef struct saved_impulses {
 	double impulse[OB_PAIR_ROWS];
-	ob_vec3 arm[OB_PAIR_POINTS], friction, normal;
+	ob_vec3 arm[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS], friction, normal;
 	uint32_t points;
 } saved_impulses;
 
@@ -31,15 +35,15 @@ static uint32_t add_batch(ob_island_work *w, uint32_t colour, ob_batch_kind kind
 {
 	if (w->batches == w->batches_max) {
 		w->batches_max = w->batches_max * 2 + 16;
-		ob_batch *grown = aligned_alloc(64, w->batches_max * ((sizeof *grown + 63) / 64 * 64));
+		ob_batch *grown = ob_allocate_aligned(64, w->batches_max * ((sizeof *grown + 63) / 64 * 64));
 		if (w->batches)
 			memcpy(grown, w->batch, w->batches * sizeof *grown);
 		free(w->batch);
 		w->batch = grown;
-		w->batch_colour = realloc(w->batch_colour, w->batches_max * sizeof *w->batch_colour);
-		w->batch_due = realloc(w->batch_due, w->batches_max * sizeof *w->batch_due);
-		w->batch_order = realloc(w->batch_order, w->batches_max * sizeof *w->batch_order);
-		w->next_open_batch = realloc(w->next_open_batch, w->batches_max * sizeof *w->next_open_batch);
+		w->batch_colour = ob_reallocate(w->batch_colour, w->batches_max * sizeof *w->batch_colour);
+		w->batch_due = ob_reallocate(w->batch_due, w->batches_max * sizeof *w->batch_due);
+		w->batch_order = ob_reallocate(w->batch_order, w->batches_max * sizeof *w->batch_order);
+		w->next_open_batch = ob_reallocate(w->next_open_batch, w->batches_max * sizeof *w->next_open_batch);
 	}
 	ob_batch_init(&w->batch[w->batches], kind);
 	w->batch_colour[w->batches] = colour;
@@ -66,8 +70,7 @@ static ob_batch_kind kind_of(const ob_sim *s, const ob_contact *contact)
 	const ob_island_work *w = &s->island;
 	bool aabb = s->settings->narrow_phase == OB_NARROW_AABB; // a sphere's box has four points
 	ob_shape a = w->body[contact->a].shape, b = w->body[contact->b].shape;
-	bool point = (a == OB_SHAPE_SPHERE && (b == OB_SHAPE_SPHERE || b == OB_SHAPE_BOX || b == OB_SHAPE_PLANE)) ||
-		     (b == OB_SHAPE_SPHERE && (a == OB_SHAPE_BOX || a == OB_SHAPE_PLANE));
+	bool point = a == OB_SHAPE_SPHERE || b == OB_SHAPE_SPHERE;
 	return (point && !aabb ? OB_KIND_POINT : OB_KIND_FULL) |
 	       (contact->mu > 0 ? OB_KIND_FULL : OB_KIND_FRICTIONLESS);
 }
@@ -121,10 +124,20 @@ static void leave_lane(ob_island_work *w, ob_contact *contact)
 static void fill_lane(ob_island_work *w, const ob_contact *contact, ob_vec3 normal, const double *gap)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	ob_batch_lane lane = { contact->a,     contact->b,     normal,      (int)contact->points,
-			       contact->arm_a, contact->arm_b, gap,         contact->mu,
-			       contact->e,     a->inv_mass,    b->inv_mass, a->inv_inertia,
-			       b->inv_inertia };
+	ob_batch_lane lane = { .body_a = contact->a,
+			       .body_b = contact->b,
+			       .normal = normal,
+			       .points = (int)contact->points,
+			       .arm_a = contact->arm_a,
+			       .arm_b = contact->arm_b,
+			       .gap = gap,
+			       .disc_radius = contact->disc_radius,
+			       .mu = contact->mu,
+			       .e = contact->e,
+			       .inv_mass_a = a->inv_mass,
+			       .inv_mass_b = b->inv_mass,
+			       .inv_inertia_a = a->inv_inertia,
+			       .inv_inertia_b = b->inv_inertia };
 	ob_batch_set(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &lane);
 }
 
@@ -137,34 +150,92 @@ static void save_impulses(ob_island_work *w, const ob_contact *contact, saved_im
 		old->impulse[i] = b->impulse[i][l];
 	old->points = contact->points;
 	memcpy(old->arm, contact->arm_a, sizeof old->arm);
+	memcpy(old->arm_b, contact->arm_b, sizeof old->arm_b);
 	old->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
 	ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]), t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
 	old->friction = ob_add(ob_scale(t1, old->impulse[4]), ob_scale(t2, old->impulse[5]));
 }
 
-// Into the new geometry: points near an old one inherit its impulse, the friction force keeps its direction in the
-// world.
-static void warm_start_lane(ob_island_work *w, const ob_contact *contact, saved_impulses *old)
+static const double same_place = .2; // of the smaller thickness: a point that has moved by less is the same
+static const double same_normal = .9; // cosine: where the normal has turned by more, no point is the same
+static const double same_rim = .5; // of the radius: so far may a rim roll on while the geometry is that of before
+
+// The one old point that carries a load; -1: there is none, or several.
+static int only_loaded(const saved_impulses *old)
 {
+	int found = -1;
+	for (uint32_t k = 0; k < old->points; k++)
+		if (old->impulse[k] > 0) {
+			if (found >= 0)
+				return -1;
+			found = (int)k;
+		}
+	return found;
+}
+
+// moved: m, of the point, which is at "arm" now.
+static bool on_same_rim(const ob_body *body, ob_vec3 arm, ob_vec3 moved)
+{
+	const ob_vec3 axis = ob_column(&body->r, 2);
+	return body->shape == OB_SHAPE_CYLINDER && ob_dot(axis, arm) * ob_dot(axis, ob_sub(arm, moved)) > 0 &&
+	       ob_norm(moved) < same_rim * body->size.x;
+}
+
+// Pairs points with old points, the nearest to each other first, so that the order of neither matters. A point is near
+// an old one if it is on either body. limit: m^2, of their distance. Returns a bit per old point that was found again.
+static unsigned match_nearest(ob_contact *contact, const saved_impulses *old, double limit)
+{
+	double apart2[OB_PAIR_POINTS][OB_PAIR_POINTS];
+	unsigned taken = 0;
+	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
+		contact->was[j] = -1;
+		for (uint32_t k = 0; j < contact->points && k < old->points; k++)
+			apart2[j][k] = fmin(ob_norm2(ob_sub(contact->arm_a[j], old->arm[k])),
+					    ob_norm2(ob_sub(contact->arm_b[j], old->arm_b[k])));
+	}
+	for (uint32_t n = 0; n < contact->points && n < old->points; n++) {
+		double best = limit;
+		uint32_t at = OB_PAIR_POINTS, to = 0;
+		for (uint32_t j = 0; j < contact->points; j++)
+			for (uint32_t k = 0; k < old->points && contact->was[j] < 0; k++)
+				if (!(taken >> k & 1) && apart2[j][k] < best)
+					best = apart2[j][k], at = j, to = k;
+		if (at == OB_PAIR_POINTS)
+			break;
+		contact->was[at] = (int8_t)to;
+		taken |= 1u << to;
+	}
+	return taken;
+}
+
+// Which of the old points each point is: one near it. Where a body rolls on its rim, the point that carries it is a new
+// place of the rim each time: it is the lowest still, which comes first.
+static void match_points(const ob_island_work *w, ob_contact *contact, const saved_impulses *old)
+{
+	const ob_body *ma = &w->body[contact->a], *mb = &w->body[contact->b];
+	const bool sphere = ma->shape == OB_SHAPE_SPHERE || mb->shape == OB_SHAPE_SPHERE;
+	const double near = same_place * fmin(ma->thickness, mb->thickness);
+	const unsigned taken = match_nearest(contact, old, sphere ? INFINITY : near * near);
+	if (contact->was[0] >= 0 || (ma->shape != OB_SHAPE_CYLINDER && mb->shape != OB_SHAPE_CYLINDER))
+		return;
+	const int k = only_loaded(old);
+	if (k < 0 || taken >> k & 1)
+		return;
+	const ob_vec3 moved = ob_sub(contact->arm_a[0], old->arm[k]);
+	if (on_same_rim(ma, contact->arm_a[0], moved) || on_same_rim(mb, contact->arm_b[0], moved))
+		contact->was[0] = (int8_t)k;
+}
+
+// Into the new geometry: points inherit the impulses of those that they were, the friction force keeps its direction in
+// the world.
+static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const saved_impulses *old)
+{
+	const bool same = old->points > 0;
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	int l = contact->lane % OB_LANES;
-	const ob_body *ma = &w->body[contact->a], *mb = &w->body[contact->b];
-	double thin = fmin(ma->thickness, mb->thickness), near = .04 * thin * thin + 1e-6;
 	ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1, t2;
-	bool same = old->points && ob_dot(n, old->normal) > .9;
-	bool sphere = ma->shape == OB_SHAPE_SPHERE || mb->shape == OB_SHAPE_SPHERE;
-	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
-		double best = sphere ? INFINITY : near;
-		int found = -1;
-		for (uint32_t k = 0; same && j < contact->points && k < old->points; k++) {
-			double apart = ob_norm2(ob_sub(contact->arm_a[j], old->arm[k]));
-			if (apart < best && old->impulse[k] >= 0)
-				best = apart, found = (int)k;
-		}
-		b->impulse[j][l] = found >= 0 ? old->impulse[found] : 0;
-		if (found >= 0)
-			old->impulse[found] = -1; // taken
-	}
+	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
+		b->impulse[j][l] = contact->was[j] >= 0 ? old->impulse[contact->was[j]] : 0;
 	ob_tangents(n, &t1, &t2);
 	b->impulse[4][l] = same ? ob_dot(old->friction, t1) : 0;
 	b->impulse[5][l] = same ? ob_dot(old->friction, t2) : 0;
@@ -176,7 +247,7 @@ static void warm_start_lane(ob_island_work *w, const ob_contact *contact, saved_
 // ---- geometry
 
 static const double max_retest_share = 3; // of the tolerance
-static const double retest_path = .003; // m: after which the geometry of a resting pair is tested again
+static const double retest_path = .0015; // m: after which the geometry of a resting pair is tested again
 
 // m: path after which a pair is tested again. Corners that were no points of the contact come down by a share of the
 // path of the bodies; where many substeps did not reach the tolerance, that may be why.
@@ -184,10 +255,60 @@ static double retest_distance(const ob_sim *s)
 {
 	double tolerance = s->settings->tolerance;
 	double share = max_retest_share * fmin(1, 16. / s->island.substeps);
-	return tolerance > 0 ? fmin(retest_path, share * tolerance) : retest_path;
+	const double usual = retest_path * s->island.unit.length;
+	return tolerance > 0 ? fmin(usual, share * tolerance) : usual;
 }
 
-static void update_contact(ob_sim *s, ob_contact *contact)
+// By how far the points are from the bodies' centres, which is the same however the scene is seen: a sweep over the
+// rows of a block takes them in turn. A rim's points have roles, and come as they are.
+static void order_points(const ob_island_work *w, ob_contact *contact, double *gap)
+{
+	double far[OB_PAIR_POINTS];
+	if (w->body[contact->a].shape == OB_SHAPE_CYLINDER || w->body[contact->b].shape == OB_SHAPE_CYLINDER)
+		return;
+	for (uint32_t i = 0; i < contact->points; i++) {
+		const ob_vec3 a = contact->arm_a[i], b = contact->arm_b[i];
+		const double g = gap[i], f = ob_norm2(a) + ob_norm2(b);
+		uint32_t at = i;
+		for (; at > 0 && far[at - 1] > f; at--) {
+			far[at] = far[at - 1], gap[at] = gap[at - 1];
+			contact->arm_a[at] = contact->arm_a[at - 1], contact->arm_b[at] = contact->arm_b[at - 1];
+		}
+		far[at] = f, gap[at] = g, contact->arm_a[at] = a, contact->arm_b[at] = b;
+	}
+}
+
+static void put_points(ob_island_work *w, ob_contact *contact, const ob_manifold *m, ob_vec3 pa, ob_vec3 pb,
+		       saved_impulses *old)
+{
+	double gap[OB_PAIR_POINTS];
+	contact->points = (uint32_t)m->points;
+	contact->disc_radius = m->disc_radius;
+	for (int j = 0; j < m->points; j++) {
+		contact->arm_a[j] = ob_sub(m->at[j], pa);
+		contact->arm_b[j] = ob_sub(m->at[j], pb);
+		gap[j] = m->gap[j];
+	}
+	order_points(w, contact, gap);
+	fill_lane(w, contact, m->normal, gap);
+	if (!(ob_dot(m->normal, old->normal) > same_normal))
+		old->points = 0;
+	match_points(w, contact, old);
+	warm_start_lane(w, contact, old);
+}
+
+void ob_contact_set_geometry(ob_sim *s, ob_contact *contact, const ob_manifold *m, ob_vec3 pa, ob_vec3 pb)
+{
+	ob_island_work *w = &s->island;
+	saved_impulses old = { .points = 0 };
+	save_impulses(w, contact, &old);
+	put_points(w, contact, m, pa, pb, &old);
+	ob_batch_prepare(&w->batch[contact->lane / OB_LANES]);
+	contact->as_of_instant = true;
+	contact->limit = -INFINITY;
+}
+
+void ob_contact_find(ob_sim *s, ob_contact *contact)
 {
 	ob_island_work *w = &s->island;
 	ob_manifold m;
@@ -196,28 +317,23 @@ static void update_contact(ob_sim *s, ob_contact *contact)
 	ob_body_update_pose(w, contact->a);
 	ob_body_update_pose(w, contact->b);
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	double tolerance = retest_distance(s) * fmin(1, 2 * fmin(a->thickness, b->thickness)), path = a->path + b->path;
+	double tolerance = retest_distance(s) * fmin(1, 2 * fmin(a->thickness, b->thickness) / w->unit.length);
 	ob_narrowphase_find(s, contact, tolerance, &m, &when);
 	if (!m.points) {
-		contact->limit = path + fmax(tolerance, m.separation - tolerance);
+		contact->limit = contact->path + fmin(fmax(tolerance, m.separation - tolerance), m.valid_path);
 		if (contact->lane != OB_NO_LANE)
 			leave_lane(w, contact);
 		return;
 	}
-	contact->limit = path + tolerance;
+	contact->limit = contact->path + fmin(tolerance, m.valid_path);
+	contact->since = when > 0 ? INFINITY : 0;
 	if (contact->lane == OB_NO_LANE)
 		take_lane(s, contact);
 	else
 		save_impulses(w, contact, &old);
 	ob_vec3 va = ob_v3(w->v[contact->a][0], w->v[contact->a][1], w->v[contact->a][2]);
 	ob_vec3 vb = ob_v3(w->v[contact->b][0], w->v[contact->b][1], w->v[contact->b][2]);
-	contact->points = (uint32_t)m.points;
-	for (int j = 0; j < m.points; j++) {
-		contact->arm_a[j] = ob_sub(m.at[j], ob_madd(a->p, when, va));
-		contact->arm_b[j] = ob_sub(m.at[j], ob_madd(b->p, when, vb));
-	}
-	fill_lane(w, contact, m.normal, m.gap);
-	warm_start_lane(w, contact, &old);
+	put_points(w, contact, &m, ob_madd(a->p, when, va), ob_madd(b->p, when, vb), &old);
 }
 
 // m/s, bound of the speed that the two may gain within the partial substep, on average over it. Bodies that touch are
@@ -231,19 +347,38 @@ static double speed_gain(const ob_island_work *w, const ob_contact *contact)
 	return fmin(free, .5 * (ob_norm(ob_v3(a[0], a[1], a[2])) + ob_norm(ob_v3(b[0], b[1], b[2]))));
 }
 
+// true: its geometry was found anew
+static bool update_contact(ob_sim *s, ob_contact *contact, double since, double ahead)
+{
+	const ob_island_work *w = &s->island;
+	const double speed = ob_contact_speed(w, contact);
+	contact->path += since * speed;
+	if (((contact->as_of_instant || contact->turns) && ahead > 0) ||
+	    !(contact->path + (speed + speed_gain(w, contact)) * ahead > contact->limit))
+		return false;
+	s->counters.narrowphase_tests++;
+	ob_contact_find(s, contact);
+	return true;
+}
+
 bool ob_contacts_update(ob_sim *s, double ahead)
 {
 	bool any = false;
 	ob_island_work *w = &s->island;
-	for (uint32_t i = 0; i < w->contacts; i++) {
-		ob_contact *contact = &w->contact[i];
-		const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-		if (a->path + b->path + (a->speed + b->speed + speed_gain(w, contact)) * ahead > contact->limit) {
-			s->counters.narrowphase_tests++;
-			update_contact(s, contact);
-			any = true;
-		}
-	}
+	const double since = w->unpaced;
+	w->unpaced = 0;
+	for (uint32_t i = 0; i < w->contacts; i++)
+		any |= update_contact(s, &w->contact[i], since, ahead);
+	return any;
+}
+
+bool ob_contacts_update_hit(ob_sim *s, double ahead)
+{
+	bool any = false;
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 0; i < w->contacts; i++)
+		if (ob_contact_was_hit(w, &w->contact[i]) || ob_ghosts_used(s))
+			any |= update_contact(s, &w->contact[i], 0, ahead);
 	return any;
 }
 
@@ -322,14 +457,13 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 		return;
 	contact->points = p->points;
 	contact->creep = p->creep;
-	double gap[OB_PAIR_POINTS];
+	contact->disc_radius = p->disc_radius;
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
-		contact->arm_a[j] = ob_v3(p->arm_a[j][0], p->arm_a[j][1], p->arm_a[j][2]);
+		contact->arm_a[j] = p->arm_a[j];
 		contact->arm_b[j] = ob_sub(contact->arm_a[j], p->between);
-		gap[j] = p->gap[j];
 	}
 	take_lane(s, contact);
-	fill_lane(w, contact, p->normal, gap);
+	fill_lane(w, contact, p->normal, p->gap);
 	ob_batch *batch = &w->batch[contact->lane / OB_LANES];
 	const ob_step_data *data = s->data;
 	const double *impulse =
@@ -376,20 +510,24 @@ void ob_contacts_load(ob_sim *s, const ob_island *is)
 	uint32_t most = ob_ghosts_used(s) ? 2 * is->pairs : is->pairs;
 	if (most > w->contacts_max) {
 		w->contacts_max = most + most / 2;
-		w->contact = realloc(w->contact, w->contacts_max * sizeof *w->contact);
-		w->adjacency = realloc(w->adjacency, 2 * w->contacts_max * sizeof *w->adjacency);
+		w->contact = ob_reallocate(w->contact, w->contacts_max * sizeof *w->contact);
+		w->adjacency = ob_reallocate(w->adjacency, 2 * w->contacts_max * sizeof *w->adjacency);
+		w->contact_key = ob_reallocate(w->contact_key, 2 * w->contacts_max * sizeof *w->contact_key);
+		w->contact_order = ob_reallocate(w->contact_order, w->contacts_max * sizeof *w->contact_order);
 	}
 	w->contacts = 0;
 	w->batches = 0;
 	memset(w->open_batch, 0xff, sizeof w->open_batch);
 	w->order_stale = w->counts_stale = true;
 	w->elastic = false;
+	ob_contact_order(s, is, w->contact_order);
 	for (uint32_t i = 0; i < is->pairs; i++) {
-		uint32_t key = data->island_pair[is->first_pair + i];
+		uint32_t key = data->island_pair[is->first_pair + w->contact_order[i]];
 		const ob_pair_key *k = &data->pair[key];
 		ob_contact t = {
-			.key = key, .a = w->row_of[k->a], .b = w->row_of[k->b], .lane = OB_NO_LANE, .limit = k->limit
+			.key = key, .a = w->row_of[k->a], .b = w->row_of[k->b], .lane = OB_NO_LANE, .since = INFINITY
 		};
+		t.limit = k->limit - w->body[t.a].path - w->body[t.b].path;
 		if (ob_ghosts_used(s) && t.a <= w->bodies && t.b <= w->bodies)
 			load_with_ghosts(s, &t, k);
 		else
@@ -409,12 +547,12 @@ static void store_impulses(const ob_island_work *w, const ob_contact *contact, d
 
 static void store_contact(const ob_island_work *w, const ob_contact *contact, ob_pair_state *p)
 {
-	*p = (ob_pair_state){ .points = contact->points, .substep = w->h, .creep = (float)contact->creep };
-	for (int j = 0; j < OB_PAIR_POINTS; j++) {
-		p->arm_a[j][0] = (float)contact->arm_a[j].x;
-		p->arm_a[j][1] = (float)contact->arm_a[j].y;
-		p->arm_a[j][2] = (float)contact->arm_a[j].z;
-	}
+	*p = (ob_pair_state){ .points = contact->points,
+			      .substep = w->h,
+			      .creep = (float)contact->creep,
+			      .disc_radius = contact->disc_radius };
+	for (int j = 0; j < OB_PAIR_POINTS; j++)
+		p->arm_a[j] = contact->arm_a[j];
 	p->between = ob_sub(contact->arm_a[0], contact->arm_b[0]);
 	store_impulses(w, contact, p->impulse);
 	if (contact->lane == OB_NO_LANE)
@@ -422,30 +560,31 @@ static void store_contact(const ob_island_work *w, const ob_contact *contact, ob
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	int l = contact->lane % OB_LANES;
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
-		p->gap[j] = (float)b->gap[j][l];
+		p->gap[j] = b->gap[j][l];
 	p->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
 }
 
 void ob_contacts_store(ob_sim *s)
 {
-	ob_step_data *data = s->data;
+	const ob_step_data *data = s->data;
 	ob_island_work *w = &s->island;
+	ob_found_contact found = { 0 };
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i],
 				 *mirror = i + 1 < w->contacts && contact[1].mirror ? contact + 1 : NULL;
-		ob_pair_key *k = &data->pair[contact->key];
-		bool was_active = k->active || state_before(s, k);
-		k->limit = contact->limit;
-		k->active = contact->lane != OB_NO_LANE;
-		if (k->active || was_active) {
-			if (k->record == OB_NO_RECORD)
-				k->record = ob_record_take(s->u);
-			ob_pair_record *record = &data->record[k->record];
-			ob_pair_state *p = ob_pair_write(record, ob_step_count(s->u));
-			store_contact(w, contact, p);
-			if (mirror)
-				store_impulses(w, mirror, data->impulse_b[k->record][p - record->version]);
-		}
+		const ob_pair_key *k = &data->pair[contact->key];
+		const double path = contact->path + w->unpaced * ob_contact_speed(w, contact);
+		const bool active = contact->lane != OB_NO_LANE;
+		found.pair = contact->key;
+		found.limit = contact->limit - path + w->body[contact->a].path + w->body[contact->b].path;
+		found.active = active;
+		found.kept = active || k->active || state_before(s, k);
+		found.two_sided = mirror != NULL;
+		if (found.kept)
+			store_contact(w, contact, &found.state);
+		if (found.kept && mirror)
+			store_impulses(w, mirror, found.impulse_b);
+		ob_commit_contact(s, &found);
 		i += mirror != NULL;
 	}
 }

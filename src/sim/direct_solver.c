@@ -3,20 +3,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/state.h"
+#include "base/allocate.h"
+#include "sim/budget.h"
+#include "sim/relative_speed.h"
 
 enum { ROOT = UINT32_MAX, UNREACHED = ROOT - 1 }; // in parent_contact[]
 
 static const double compliance = 1e-6; // of a row's own response
 static const double compliance_in_cycles = 1e-5; // .. where several rows may depend on each other
-static const uint32_t max_block_products = 64; // of the sparse factorisation, for each body
+static const uint32_t max_block_products = 64; // of the sparse factorisation, for each body ..
+static const uint32_t max_cyclic_bodies = 512; // .. of which there are no more
 
 // When a direct solve is worth its cost.
 static const double residual_threshold = 1e-7; // m/s
 static const double residual_after_correction = 1e-8; // m/s, where the last partial substep was solved directly
-static const int max_solves = 4, max_solves_in_cycles = 16; // in a partial substep
+static const int max_solves = 4; // in a partial substep
 static const double creep_speed = 1e-4; // m/s: slower bodies whose contacts hold ought to stand
+static const double neutral_speed = 1e-9; // m/s: what neither presses nor opens holds
 static const double standing_speed = .02; // m/s: faster ones fall or slide
+static const double rest_speed = 1e-3, min_rest_time = .25; // m/s, s: what has come to rest ..
+static const double unmoved_path = 2e-4; // m: .. what has not moved yet
 
 static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
 {
@@ -58,20 +64,20 @@ static bool has_four_normals(const ob_direct_contact *c)
 // ---- assembling
 
 // Rows that hold: normals that press or are about to, friction and twist within their bounds. Returns how many.
-static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, uint8_t *row)
+static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double neutral, uint8_t *row)
 {
 	const double within = .999;
 	uint32_t n = 0;
 	double sum = 0;
 	for (int j = 0; j < OB_POINTS; j++) {
 		sum += b->impulse[j][l];
-		if (b->inv_diag[j][l] > 0 && rate[j][l] * b->inv_diag[j][l] < b->impulse[j][l])
+		if (b->inv_diag[j][l] > 0 && (rate[j][l] - neutral) * b->inv_diag[j][l] < b->impulse[j][l])
 			row[n++] = (uint8_t)j;
 	}
 	double bound = within * b->mu[l] * sum;
-	if (hypot(b->impulse[4][l], b->impulse[5][l]) < bound)
+	if (n && b->mu[l] > 0 && hypot(b->impulse[4][l], b->impulse[5][l]) <= bound)
 		row[n++] = 4, row[n++] = 5;
-	if (fabs(b->impulse[6][l]) < bound * b->radius[l])
+	if (n && b->mu[l] > 0 && b->radius[l] > 0 && fabs(b->impulse[6][l]) <= bound * b->radius[l])
 		row[n++] = 6;
 	return n;
 }
@@ -138,7 +144,8 @@ static ob_direct_contact *add_contact(ob_island_work *w, uint32_t i, uint32_t ch
 	if (contact->lane == OB_NO_LANE)
 		return NULL;
 	uint32_t batch = contact->lane / OB_LANES;
-	c->joint.rows = holding_rows(&w->batch[batch], contact->lane % OB_LANES, f->velocity[batch], c->row);
+	c->joint.rows = holding_rows(&w->batch[batch], contact->lane % OB_LANES, f->velocity[batch],
+				     neutral_speed * w->unit.speed, c->row);
 	if (!c->joint.rows)
 		return NULL;
 	c->contact = i;
@@ -223,6 +230,8 @@ static void find_row_velocities(ob_island_work *w)
 		ob_batch_row_velocities(&w->batch[i], w->u, rate);
 		for (int j = 0; j < OB_POINTS; j++)
 			rate[j] += w->batch[i].bias[j];
+		for (int j = OB_POINTS; w->batch[i].turning && j < OB_ROWS; j++)
+			rate[j] += (lanes)(lanes_mask(w->batch[i].turning) & (lane_mask)w->batch[i].turn[j]);
 	}
 }
 
@@ -356,6 +365,8 @@ static double line_search(const ob_island_work *w)
 static bool find_direction(ob_island_work *w)
 {
 	if (w->direct.shape == OB_DIRECT_CYCLIC) {
+		if (w->bodies > max_cyclic_bodies)
+			return false;
 		add_all_contacts(w);
 		return solve_sparse(w);
 	}
@@ -364,7 +375,7 @@ static bool find_direction(ob_island_work *w)
 	return true;
 }
 
-void ob_direct_solve(ob_sim *s)
+bool ob_direct_solve(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
@@ -372,16 +383,17 @@ void ob_direct_solve(ob_sim *s)
 	const double min_alpha = f->shape == OB_DIRECT_CYCLIC ? backtrack : 1e-3;
 	double alpha = 1, t;
 	find_row_velocities(w);
-	if (!find_direction(w)) {
-		f->gave_up = true;
-		return;
-	}
+	s->counters.direct_solves++;
+	enum { WORK_PER_BODY = 64 }; // of trees; a sparse solve costs up to ten times as much
+	ob_budget_note(s, (uint64_t)WORK_PER_BODY * w->bodies);
+	if (!find_direction(w))
+		return false;
 	for (project_solution(w, alpha); (t = line_search(w)) < min_step && alpha > min_alpha;
 	     project_solution(w, alpha))
 		alpha *= backtrack;
 	f->gave_up = t < min_step;
 	if (f->gave_up)
-		t = 0;
+		return false;
 	for (uint32_t i = 0; i < w->batches; i++)
 		for (int k = 0; k < OB_ROWS; k++)
 			w->batch[i].impulse[k] += t * f->impulse_change[i][k];
@@ -389,6 +401,7 @@ void ob_direct_solve(ob_sim *s)
 		for (int c = 0; c < 6; c++)
 			w->u[i][c] += t * w->delta[i][c];
 	memset(w->delta, 0, w->rows * sizeof *w->delta);
+	return true;
 }
 
 // ---- when a direct solve is worth its cost
@@ -402,7 +415,6 @@ void ob_direct_begin_partial(ob_direct_solver *f)
 {
 	f->shape = OB_DIRECT_UNKNOWN;
 	f->solves = 0;
-	f->residual[0] = f->residual[1] = INFINITY;
 }
 
 void ob_direct_finish(ob_direct_solver *f)
@@ -420,39 +432,48 @@ static void reserve(ob_direct_solver *f, const ob_island_work *w)
 {
 	if (w->rows > f->rows_max) {
 		f->rows_max = w->rows + w->rows / 2;
-		f->link = realloc(f->link, f->rows_max * sizeof *f->link);
-		f->order = realloc(f->order, f->rows_max * sizeof *f->order);
-		f->parent_contact = realloc(f->parent_contact, f->rows_max * sizeof *f->parent_contact);
+		f->link = ob_reallocate(f->link, f->rows_max * sizeof *f->link);
+		f->order = ob_reallocate(f->order, f->rows_max * sizeof *f->order);
+		f->parent_contact = ob_reallocate(f->parent_contact, f->rows_max * sizeof *f->parent_contact);
 	}
 	if (w->contacts > f->contacts_max) {
 		f->contacts_max = w->contacts + w->contacts / 2;
 		free(f->contact);
-		f->contact = malloc(f->contacts_max * sizeof *f->contact);
+		f->contact = ob_allocate(f->contacts_max * sizeof *f->contact);
 	}
 	if (w->batches > f->batches_max) {
 		f->batches_max = w->batches + w->batches / 2;
 		free(f->velocity);
 		free(f->impulse_change);
-		f->velocity = aligned_alloc(32, f->batches_max * sizeof *f->velocity);
-		f->impulse_change = aligned_alloc(32, f->batches_max * sizeof *f->impulse_change);
+		f->velocity = ob_allocate_aligned(32, f->batches_max * sizeof *f->velocity);
+		f->impulse_change = ob_allocate_aligned(32, f->batches_max * sizeof *f->impulse_change);
 	}
+}
+
+// m/s, at the velocities in rows, of two bodies that touch, one's against the other's: the largest, and the sum of all.
+// How fast a body slides along a plane without friction does not matter.
+static double fastest_contact(const ob_island_work *w, const ob_body_row *rows, double *sum)
+{
+	double most = 0;
+	*sum = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+		const double *va = rows[contact->a], *vb = rows[contact->b];
+		ob_vec3 v = ob_v3(va[0] - vb[0], va[1] - vb[1], va[2] - vb[2]);
+		if (contact->lane == OB_NO_LANE)
+			continue;
+		double speed = contact->mu > 0 ? ob_norm(v) : ob_relative_speed(a->shape, &a->r, b->shape, &b->r, v);
+		most = fmax(most, speed);
+		*sum += speed;
+	}
+	return most;
 }
 
 static bool stands_still(const ob_island_work *w)
 {
-	for (uint32_t i = 0; i < w->contacts; i++) {
-		const ob_contact *contact = &w->contact[i];
-		double speed2 = 0;
-		if (contact->lane == OB_NO_LANE)
-			continue;
-		for (int c = 0; c < 3; c++) {
-			double d = w->v[contact->a][c] - w->v[contact->b][c];
-			speed2 += d * d;
-		}
-		if (speed2 > standing_speed * standing_speed)
-			return false;
-	}
-	return true;
+	double sum;
+	return fastest_contact(w, w->v, &sum) <= standing_speed * w->unit.speed;
 }
 
 // Where contacts close cycles, trees would ask one contact for what several carry.
@@ -464,24 +485,28 @@ static bool closes_cycles(const ob_island_work *w)
 	return touching > w->bodies;
 }
 
-// Seldom, as an island that one solve does not bring to rest the next one seldom does; and in two steps running, as the
-// correction of the first is in the warm start of the second.
-static bool cycles_due(const ob_sim *s)
+// True of a body that has been slow for some time, or has not moved yet. One that was hit is slow for a moment as often
+// as it turns back, and what it touches is not in equilibrium then.
+static bool rests(const ob_island_work *w, const ob_body *body)
 {
-	const uint32_t every = 8, max_bodies = 256;
-	return ob_step_count(s->u) % every < 2 && s->island.bodies <= max_bodies;
+	return body->speed <= rest_speed * w->unit.speed &&
+	       (body->rest_time >= min_rest_time * w->unit.time || body->path <= unmoved_path * w->unit.length);
+}
+
+static bool has_come_to_rest(const ob_island_work *w)
+{
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		if (!rests(w, &w->body[i]))
+			return false;
+	return true;
 }
 
 // True where bodies move that ought to stand. The residual does not show it: an island that sways as a whole changes
-// little from pair to pair.
+// little from pair to pair. No body moves faster against the ground than all pairs together.
 static bool creeps(const ob_island_work *w)
 {
-	double fastest2 = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		const double *u = w->u[i];
-		fastest2 = fmax(fastest2, u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-	}
-	return fastest2 > residual_threshold * residual_threshold && fastest2 < creep_speed * creep_speed;
+	double sum, fastest = fastest_contact(w, w->u, &sum);
+	return sum > residual_threshold * w->unit.speed && fastest < creep_speed * w->unit.speed;
 }
 
 static bool is_worthwhile(const ob_sim *s, double residual)
@@ -493,31 +518,38 @@ static bool is_worthwhile(const ob_sim *s, double residual)
 	// that its warm start repeats, and left alone it would go on for ever, to and fro.
 	const double enough =
 		f->used_last && f->shape != OB_DIRECT_CYCLIC ? residual_after_correction : residual_threshold;
-	return residual > enough || (!f->solves && creeps(&s->island));
+	return residual > enough * s->island.unit.speed || (!f->solves && creeps(&s->island));
 }
 
-bool ob_direct_wanted(ob_sim *s, double residual, bool more_iterations)
+static void find_shape(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
+	if (f->shape == OB_DIRECT_UNKNOWN)
+		f->shape = !stands_still(w)      ? OB_DIRECT_UNFIT
+			   : !closes_cycles(w)   ? OB_DIRECT_TREES
+			   : has_come_to_rest(w) ? OB_DIRECT_CYCLIC
+						 : OB_DIRECT_UNFIT;
+	if (f->shape != OB_DIRECT_UNFIT)
+		reserve(f, w);
+}
+
+bool ob_direct_wanted(ob_sim *s, double residual)
+{
+	ob_direct_solver *f = &s->island.direct;
 	if (!is_worthwhile(s, residual))
 		return false;
-	if (f->shape == OB_DIRECT_UNKNOWN)
-		f->shape = !stands_still(w)    ? OB_DIRECT_UNFIT
-			   : !closes_cycles(w) ? OB_DIRECT_TREES
-			   : cycles_due(s)     ? OB_DIRECT_CYCLIC
-					       : OB_DIRECT_UNFIT;
-	const bool cyclic = f->shape == OB_DIRECT_CYCLIC;
-	if (f->shape == OB_DIRECT_UNFIT || f->solves == (cyclic ? max_solves_in_cycles : max_solves) ||
-	    (cyclic && more_iterations))
+	find_shape(s);
+	if (f->shape != OB_DIRECT_TREES || f->solves == max_solves)
 		return false;
-	if (cyclic && residual > .5 * f->residual[1]) {
-		f->gave_up = true;
-		return false;
-	}
-	f->residual[1] = f->residual[0];
-	f->residual[0] = residual;
 	f->solves++;
-	reserve(f, w);
 	return true;
+}
+
+bool ob_direct_settles(ob_sim *s, double residual)
+{
+	if (!is_worthwhile(s, residual))
+		return false;
+	find_shape(s);
+	return s->island.direct.shape == OB_DIRECT_CYCLIC;
 }

@@ -9,13 +9,16 @@
 //        [1]    [4]          root, 5 a child of 4. A contact that closes a cycle keeps
 //      ==============        its impulses, which this solve takes as given.
 //
-// Where there are more contacts than bodies (walls, pyramids, heaps), all of them take part (sim/sparse_solver.h). That
-// costs as much as many iterations, so it is tried in two steps of eight, after the iterations, and given up where the
-// residual does not halve. It serves rest: an island that it brings to equilibrium need not be solved again
-// (sim/equilibrium.h).
+// Where there are more contacts than bodies (walls, pyramids, towers of planks), all of them take part
+// (sim/sparse_solver.h), after the iterations, in islands that have come to rest or do not move yet. There the solution
+// has to be found to the end: each contact's error adds to a sway of the whole, in which no contact has a residual that
+// an iteration would see, and a tower of planks of 16 layers creeps on what iterations leave. So direct solves go on
+// for as long as they lead down; where one does not, conjugate iterations (sim/conjugate.h) bring the impulses nearer.
+// While anything sways from a hit, there is no equilibrium to be found, and iterations do.
 //
 // Which rows hold follows from the last iteration: normals that press, or are about to (lambda D > r, the active set of
-// a semismooth Newton step: Hintermueller, Ito and Kunisch 2003), friction and twist below their bounds. The solution
+// a semismooth Newton step: Hintermueller, Ito and Kunisch 2003), those that neither press nor open (before the first
+// impulses nothing presses, and what stands holds everywhere), friction and twist within their bounds. The solution
 // for these rows is a direction: the impulses go along it, projected on the cones, as far as the residual energy
 // x r + x A x / 2 falls (projected Newton: Bertsekas 1982). Iterations and direct solves take turns, as in the
 // projected Gauss-Seidel method with subspace minimisation (Silcowitz, Niebe and Erleben 2010).
@@ -30,10 +33,13 @@
 void ob_direct_begin(ob_direct_solver *f);
 // Before the iterations of a partial substep.
 void ob_direct_begin_partial(ob_direct_solver *f);
-// True where a direct solve is worth its cost, if the last iteration still changed velocities by "residual" m/s; then
-// it has to be made. more_iterations: others will follow anyway.
-bool ob_direct_wanted(ob_sim *s, double residual, bool more_iterations);
-void ob_direct_solve(ob_sim *s);
+// True where a direct solve of trees is worth its cost, if the last iteration still changed velocities by "residual"
+// m/s; then it has to be made.
+bool ob_direct_wanted(ob_sim *s, double residual);
+// True where the island stands, closes cycles, and is to be solved to the end.
+bool ob_direct_settles(ob_sim *s, double residual);
+// false: the solution does not lead down, or would cost too much; nothing has changed.
+bool ob_direct_solve(ob_sim *s);
 void ob_direct_finish(ob_direct_solver *f);
 
 #endif

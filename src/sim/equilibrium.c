@@ -1,6 +1,8 @@
 #include "sim/equilibrium.h"
 
-static const double steady_speed = 1e-3; // m/s, of any point of a body
+#include "sim/relative_speed.h"
+
+static const double steady_speed = 1e-3; // m/s, of any point of a body against what touches it
 static const double residual_threshold = 1e-7; // m/s: a first iteration that changes a velocity by more has work to do
 static const double min_rest_time = .1; // s
 
@@ -19,7 +21,7 @@ bool ob_equilibrium_likely(const ob_sim *s, const ob_island *is)
 
 bool ob_equilibrium_confirmed(const ob_island_work *w)
 {
-	return w->residual <= residual_threshold && !w->projected;
+	return w->residual <= residual_threshold * w->unit.speed && !w->projected;
 }
 
 bool ob_equilibrium_reached(const ob_island_work *w)
@@ -28,7 +30,8 @@ bool ob_equilibrium_reached(const ob_island_work *w)
 		return false;
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		const ob_body *body = &w->body[i];
-		if (body->contacts == 0 || body->speed > residual_threshold || body->rest_time < min_rest_time)
+		if (body->contacts == 0 || body->speed > residual_threshold * w->unit.speed ||
+		    body->rest_time < min_rest_time * w->unit.time)
 			return false;
 	}
 	return true;
@@ -36,5 +39,12 @@ bool ob_equilibrium_reached(const ob_island_work *w)
 
 bool ob_equilibrium_body_steady(const ob_island_work *w, uint32_t row)
 {
-	return w->body[row].contacts > 0 && w->body[row].speed <= steady_speed;
+	const ob_body *body = &w->body[row];
+	double speed = 0; // against what it touches: a structure may travel as a whole
+	for (uint32_t k = 0; k < body->adjacent; k++) {
+		const ob_contact *contact = &w->contact[w->adjacency[body->first_adjacent + k]];
+		if (contact->lane != OB_NO_LANE)
+			speed = fmax(speed, ob_contact_speed(w, contact));
+	}
+	return body->contacts > 0 && speed <= steady_speed * w->unit.speed;
 }

@@ -2,7 +2,8 @@
 
 #include "sim/contacts.h"
 
-static const uint32_t max_substeps = 1u << (OB_SUBSTEP_CHOICES - 1);
+static const uint32_t max_substeps = OB_MAX_SUBSTEPS;
+static_assert(1 << (OB_SUBSTEP_CHOICES - 1) == OB_MAX_SUBSTEPS, "each number of substeps has its place");
 static const uint32_t max_substeps_for_creep = 64; // more do not help friction to hold
 static const double creep_time = 1; // s, for which slip is remembered
 static const double sticking_share = .999; // of its bound: a smaller friction impulse holds
@@ -62,22 +63,25 @@ void ob_error_control_note_depth(ob_sim *s, bool at_start)
 	}
 }
 
-// m/s, at the contact's centroid, if friction holds it
+// m/s, at the contact's centroid, as it was solved, if friction holds it
 static double slip_of(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES;
-	const double *va = w->v[contact->a], *vb = w->v[contact->b];
+	const double *va = w->u[contact->a], *vb = w->u[contact->b];
 	double sum = 0, rate[2] = { 0, 0 };
 	for (uint32_t j = 0; j < contact->points; j++)
 		sum += b->impulse[j][l];
 	double bound = sticking_share * contact->mu * sum;
-	if (!(b->impulse[4][l] * b->impulse[4][l] + b->impulse[5][l] * b->impulse[5][l] < bound * bound))
+	if (b->slides >> l & 1 ||
+	    !(b->impulse[4][l] * b->impulse[4][l] + b->impulse[5][l] * b->impulse[5][l] < bound * bound))
 		return 0;
 	for (int c = 0; c < 3; c++) {
 		rate[0] += b->t1[c][l] * (va[c] - vb[c]) + b->fa1[c][l] * va[3 + c] - b->fb1[c][l] * vb[3 + c];
 		rate[1] += b->t2[c][l] * (va[c] - vb[c]) + b->fa2[c][l] * va[3 + c] - b->fb2[c][l] * vb[3 + c];
 	}
+	for (int k = 0; k < 2 && b->turning >> l & 1; k++)
+		rate[k] += b->turn[4 + k][l];
 	return hypot(rate[0], rate[1]);
 }
 
@@ -104,7 +108,7 @@ void ob_error_control_note_bounce(ob_sim *s)
 		// m/s: the approach that would rebound to the height of the tolerance, and the slowest that is resolved
 		double tolerable = sqrt(2 * w->max_acceleration * tolerance) / contact->e,
 		       resolved = 4 * w->max_acceleration * w->substep;
-		ob_impact slow = { w->h, w->h, contact->e, tolerable, 1, 1 };
+		ob_impact slow = { .h = w->h, .threshold = tolerable, .gain = INFINITY, .points = ~0u };
 		if (resolved > tolerable &&
 		    ob_impact_time(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &slow, &at) <= slow.h)
 			lost = fmax(lost, contact->e * contact->e * resolved * resolved / (2 * w->max_acceleration));
@@ -120,7 +124,7 @@ static void note_creep(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
-	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / creep_time);
+	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / (creep_time * w->unit.time));
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		ob_contact *contact = &w->contact[i];
 		contact->creep = contact->creep * (1 - fading) + contact->slip;
@@ -135,7 +139,7 @@ static void note_creep(ob_sim *s)
 // fewer where the error would stay tolerable.
 static uint32_t substeps_for(const ob_island_work *w, const ob_contact *contact, const ob_run_settings *run)
 {
-	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / creep_time);
+	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / (creep_time * w->unit.time));
 	double depth = contact->initial_depth + contact->depth_growth,
 	       creep = contact->slip / fading; // which slipping on like this adds up to
 	double change = fmax(depth, contact->creep) > .5 * tolerance ? fmax(contact->depth_growth, creep)

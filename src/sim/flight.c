@@ -1,5 +1,6 @@
 #include "sim/flight.h"
 
+#include "contact/facets.h"
 #include "contact/impact.h"
 #include "motion/flight.h"
 #include "sim/broadphase.h"
@@ -8,6 +9,7 @@
 // ---- impacts on planes
 
 static const double contact_approach = 1e-4; // m/s: a slower approach is left to the contact solver
+static const double reflected = 1e-12; // of the approach: so much that is left is rounding
 static const double on_plane_gap = 1e-9; // m, and more where coordinates are rounded: a point so near is on the plane
 
 static ob_half_space half_space(const ob_universe *u, uint32_t plane)
@@ -25,7 +27,7 @@ static ob_flier landing_body(ob_sim *s, uint32_t id, const ob_motion *f)
 	ob_flier out = { body->shape, body->size, body->inertia, f->p, f->v, f->a, f->q, f->w, NULL };
 	if (s->settings->narrow_phase == OB_NARROW_AABB) {
 		double reach = sqrt(3) * ob_shape_radius(body->shape, body->size);
-		out.shape = OB_SHAPE_CYLINDER; // of which only the impact of the bounding sphere is computed
+		out.shape = OB_SHAPE_NONE;
 		out.size = ob_v3(reach, 0, 0);
 	}
 	if (out.shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0)
@@ -49,49 +51,102 @@ static double plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight,
 	return fmax(first, from);
 }
 
-// The arm (m, world) of the lowest point that is on the plane and approaches it; false: none.
-static bool impact_point(const ob_passport *body, const ob_half_space *ground, const ob_state *s, ob_vec3 *arm)
+enum { SUPPORT_POINTS = 8, REFLECTIONS = 32 }; // at an instant; a body that needs more is left to the contact solver
+
+// The points by which a body can stand on a plane with this normal: arms (m, world) from its centre. Returns how many.
+static int support_points(const ob_passport *body, ob_vec3 n, const ob_mat3 *r, ob_vec3 *arm)
 {
-	const ob_vec3 n = ground->normal;
-	const double height = ob_dot(n, s->pose.p) - ground->offset, speed = ob_dot(n, s->v);
-	double lowest = on_plane_gap + 1e-14 * (ob_norm(s->pose.p) + fabs(ground->offset));
-	if (body->shape == OB_SHAPE_SPHERE) {
-		*arm = ob_scale(n, -body->size.x);
-		return height - body->size.x < lowest && speed < -contact_approach;
+	switch (body->shape) {
+	case OB_SHAPE_SPHERE:
+		arm[0] = ob_scale(n, -body->size.x);
+		return 1;
+	case OB_SHAPE_BOX:
+		for (int k = 0; k < 8; k++)
+			arm[k] = ob_rotate(r, ob_v3(k & 1 ? body->size.x : -body->size.x,
+						    k & 2 ? body->size.y : -body->size.y,
+						    k & 4 ? body->size.z : -body->size.z));
+		return 8;
+	case OB_SHAPE_CAPSULE:
+		for (int k = 0; k < 2; k++)
+			arm[k] = ob_madd(ob_scale(n, -body->size.x), k ? body->size.y : -body->size.y, ob_column(r, 2));
+		return 2;
+	case OB_SHAPE_CYLINDER: {
+		const ob_placed cylinder = { .shape = body->shape, .size = body->size, .r = *r };
+		const ob_placed plane = { .shape = OB_SHAPE_PLANE };
+		ob_vec3 rim[4];
+		ob_rim_directions(&cylinder, &plane, ob_scale(n, -1), rim);
+		for (int k = 0; k < 8; k++)
+			arm[k] = ob_madd(ob_scale(rim[k & 3], body->size.x), k & 4 ? body->size.y : -body->size.y,
+					 ob_column(r, 2));
+		return 8;
 	}
-	bool found = false;
-	ob_mat3 r = ob_quat_matrix(s->pose.q);
-	for (int k = 0; k < 8; k++) {
-		ob_vec3 h = { k & 1 ? body->size.x : -body->size.x, k & 2 ? body->size.y : -body->size.y,
-			      k & 4 ? body->size.z : -body->size.z };
-		ob_vec3 at = ob_rotate(&r, h);
-		double gap = height + ob_dot(n, at);
-		if (gap < lowest && speed + ob_dot(n, ob_cross(s->w, at)) < -contact_approach)
-			lowest = gap, *arm = at, found = true;
+	default:
+		return 0;
 	}
-	return found;
 }
 
-// Changes velocities by the impact of the point that is on the plane. false: it does not rebound here.
+// The points that are on the plane: those within rounding of it, and what touches at the same time with them.
+static uint32_t points_on_plane(ob_units unit, const ob_passport *body, const ob_half_space *ground, const ob_state *s,
+				ob_impact_point *point)
+{
+	const ob_vec3 n = ground->normal;
+	const ob_mat3 r = ob_quat_matrix(s->pose.q);
+	const double rounding = on_plane_gap * unit.length + 1e-14 * (ob_norm(s->pose.p) + fabs(ground->offset));
+	const double height = ob_dot(n, s->pose.p) - ground->offset;
+	ob_vec3 arm[SUPPORT_POINTS];
+	const int points = support_points(body, n, &r, arm);
+	uint32_t found = 0;
+	double lowest = INFINITY;
+	for (int k = 0; k < points; k++) {
+		const double gap = height + ob_dot(n, arm[k]);
+		lowest = fmin(lowest, gap);
+		if (gap <= OB_IMPACT_SIMULTANEOUS * unit.length)
+			point[found++] = (ob_impact_point){ .normal = n, .arm_a = arm[k], .b = 1 };
+	}
+	return lowest <= rounding ? found : 0;
+}
+
+// m/s: how fast the points approach at most
+static double fastest_approach(const ob_impact_body *body, const ob_impact_point *point, uint32_t points)
+{
+	double most = 0;
+	for (uint32_t k = 0; k < points; k++)
+		most = fmax(most, -ob_impact_opening(body, &point[k]));
+	return most;
+}
+
+// Changes velocities by the impact of all points that are on the plane. false: it does not rebound here.
 static bool apply_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
 {
-	const ob_passport *body = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);
+	const ob_passport *passport = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);
 	const ob_half_space ground = half_space(s->u, plane);
-	ob_point_impact r = { 1 / body->mass, body->inertia, sqrt(body->friction * other->friction),
-			      fmax(body->restitution, other->restitution) };
-	ob_vec3 arm;
-	if (!(r.restitution > 0) || (body->shape != OB_SHAPE_SPHERE && body->shape != OB_SHAPE_BOX) ||
-	    s->settings->narrow_phase != OB_NARROW_OBB || !impact_point(body, &ground, state, &arm))
+	const double mu = sqrt(passport->friction * other->friction),
+		     e = fmax(passport->restitution, other->restitution);
+	ob_impact_point point[SUPPORT_POINTS];
+	ob_impact_body body[2] = { { .inv_mass = 1 / passport->mass, .v = state->v, .w = state->w } };
+	if (!(e > 0) || s->settings->narrow_phase != OB_NARROW_OBB)
 		return false;
-	ob_point_impact_solve(&r, arm, ground.normal, state);
-	return ob_dot(ground.normal, ob_add(state->v, ob_cross(state->w, arm))) > 0;
+	const ob_mat3 r = ob_quat_matrix(state->pose.q);
+	ob_inverse_inertia(passport->inertia, &r, body[0].inv_inertia);
+	const uint32_t points = points_on_plane(s->island.unit, passport, &ground, state, point);
+	for (uint32_t k = 0; k < points; k++)
+		point[k].mu = mu, point[k].e = e;
+	const double approach = fastest_approach(body, point, points);
+	if (!(approach > contact_approach * s->island.unit.speed))
+		return false;
+	for (int k = 0; k < REFLECTIONS && fastest_approach(body, point, points) > reflected * approach; k++)
+		ob_impact_solve(body, 2, point, points);
+	state->v = body[0].v, state->w = body[0].w;
+	return fastest_approach(body, point, points) <= reflected * approach;
 }
 
 // ---- flight
 
 enum { IMPACTS_PER_STEP = 5 }; // at most; a body that hits planes more often is left to the contact solver
 
-static const double flight_horizon = 2; // s: impacts are computed so far ahead
+static const double max_horizon = 2; // s: impacts are computed so far ahead at most ..
+static const double least_sweep = 8; // radii: .. and if a flight's fat AABB may be longer than that ..
+static const double most_neighbours = 32; // .. no farther than brings it so many neighbours
 
 static bool same_vector(ob_vec3 a, ob_vec3 b)
 {
@@ -138,8 +193,10 @@ static double flight_speed_bound(const ob_passport *body, const ob_motion *f, do
 	       (turns ? ob_spin_bound(f->q, f->w, body->inertia) * ob_shape_radius(body->shape, body->size) : 0);
 }
 
-// Publishes the flight m that holds after the running step; m->path is that at the step's end.
-static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m)
+// Publishes the flight m that holds after the running step; m->path is that at the step's end. straight: it held from
+// the step's start on. Then its fat AABB need hold no more than the path, from that start to the end of the step that
+// visits it next: whatever throws it off its path makes a new one. After an impact it holds wherever the body was.
+static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, bool straight)
 {
 	const ob_run_settings *run = s->settings;
 	const ob_passport *body = ob_passport_of(s->u, id);
@@ -149,17 +206,19 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m)
 	uint64_t due = m->flags & OB_MOTION_FREE ? (uint64_t)(m->valid_until / h) : step;
 	due -= (double)due * h > m->valid_until && due > step; // the quotient may have been rounded up
 	double last = (double)(due + 1) * h, reach = flight_speed_bound(body, m, end, last) * h;
-	ob_motion rest = { .t0 = end, .p = now.pose.p, .q = now.pose.q, .v = now.v, .w = now.w, .a = m->a };
+	const double from = straight ? end - h : end;
+	ob_state begin = straight ? ob_ballistic_state(s, id, m, from) : now;
+	ob_motion rest = { .p = begin.pose.p, .q = begin.pose.q, .v = begin.v, .w = begin.w, .a = m->a };
 	double box[6];
-	ob_motion_swept_bounds(&rest, body->shape, body->size, m->valid_until - end, box);
+	ob_motion_swept_bounds(&rest, body->shape, body->size, last - from, box);
 	m->step = (uint32_t)step;
 	m->reach = (float)reach;
 	m->island = id;
 	m->substeps = 0;
 	m->rest_time = 0;
-	if (!isfinite(now.pose.p.x + now.pose.p.y + now.pose.p.z + now.pose.q.w + now.w.x))
-		s->data->count->failure = OB_STEP_DIVERGED;
-	ob_fat_aabb_sweep(s->u, id, box, reach);
+	if (!ob_state_is_sane(&now))
+		ob_step_fail(s->u, OB_STEP_DIVERGED, id);
+	ob_fat_aabb_sweep(s->u, id, box, straight ? ob_fat_aabb_margin(run, body->shape, body->size) : reach);
 	ob_result_stage(s, id, m, OB_SCHEDULE_AWAKE, (uint32_t)due);
 }
 
@@ -170,8 +229,9 @@ void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)
 	uint32_t state = m->flags & OB_MOTION_ASLEEP        ? OB_SCHEDULE_ASLEEP
 			 : m->flags & OB_MOTION_EQUILIBRIUM ? OB_SCHEDULE_EQUILIBRIUM
 							    : OB_SCHEDULE_AWAKE;
-	double reach = state == OB_SCHEDULE_AWAKE ? ob_step_reach(run, body, end->v, end->w) : 0;
-	ob_fat_aabb_update(s->u, id, end, reach);
+	double reach = state == OB_SCHEDULE_AWAKE ? ob_step_reach(run, body, end->pose.q, end->v, end->w) : 0;
+	const double path = m->path - ob_path_now(ob_newest_motion(s->u, id), ob_step_count(s->u));
+	ob_fat_aabb_update(s->u, id, end, reach, path);
 	m->reach = (float)reach;
 	ob_result_stage(s, id, m, state, state == OB_SCHEDULE_AWAKE ? m->step : UINT32_MAX);
 }
@@ -183,8 +243,11 @@ static ob_state state_by_ode(ob_sim *s, uint32_t id)
 	double h = run->step_length / run->substeps;
 	ob_state now = { { before->p, before->q }, before->v, before->w };
 	ob_vec3 force = ob_scale(ob_passport_of(s->u, id)->force, h);
-	for (uint32_t i = 0; i < run->substeps; i++)
-		ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, id), &now, force, ob_v3(0, 0, 0), h);
+	bool done = true;
+	for (uint32_t i = 0; i < run->substeps && done; i++)
+		done = ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, id), &now, force, ob_v3(0, 0, 0), h);
+	if (!done)
+		ob_step_fail(s->u, OB_STEP_ENGINE, id);
 	return now;
 }
 
@@ -203,13 +266,27 @@ static void step_by_ode(ob_sim *s, uint32_t id)
 			.v = end.v,
 			.w = end.w,
 			.a = ob_external_acceleration(run, body),
-			.path = before->path + ob_step_reach(run, body, before->v, before->w),
+			.path = before->path + ob_step_reach(run, body, before->q, before->v, before->w),
 			.step = (uint32_t)step,
 			.flags = OB_MOTION_FREE,
 			.island = id };
-	if (!isfinite(m.p.x + m.p.y + m.p.z + m.q.w + m.w.x))
-		s->data->count->failure = OB_STEP_DIVERGED;
 	ob_body_publish(s, id, &m, &end);
+}
+
+// For how long a flight is computed from this state on (s). Its fat AABB holds all of it, and overlaps that of whatever
+// is in its column: where many fly close together, as long as is expected to bring no more than the most neighbours,
+// judged by those that the object's box has now. What flies alone is computed far ahead.
+static double flight_horizon(const ob_sim *s, uint32_t id, const ob_state *from, ob_vec3 a)
+{
+	const ob_passport *body = ob_passport_of(s->u, id);
+	const float *box = s->data->bounds[id];
+	const uint32_t neighbours = s->data->neighbours[id].count;
+	const double side = fmax(box[3] - box[0], fmax(box[4] - box[1], box[5] - box[2]));
+	double length = least_sweep * ob_shape_radius(body->shape, body->size);
+	if (neighbours != UINT32_MAX)
+		length = fmax(length, side * most_neighbours / fmax(1, neighbours));
+	double speed = ob_norm(from->v), fall = sqrt(speed * speed + 2 * ob_norm(a) * length);
+	return fmin(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // for which it moves so far
 }
 
 bool ob_ballistic_advance(ob_sim *s, uint32_t id)
@@ -221,8 +298,10 @@ bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 		return true;
 	}
 	const uint64_t step = ob_step_count(s->u);
-	const double h = run->step_length, end = (double)(step + 1) * h, horizon = end + flight_horizon;
+	const double h = run->step_length, end = (double)(step + 1) * h;
 	ob_motion m = ob_ballistic_flight(s, id);
+	const ob_state now = ob_ballistic_state(s, id, &m, (double)step * h);
+	const double horizon = end + flight_horizon(s, id, &now, m.a);
 	double since = (double)step * h, from = fmax(m.valid_until, since);
 	uint32_t plane = 0, impacts = 0;
 	m.path = ob_path_now(&m, step);
@@ -241,6 +320,6 @@ bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 	// After one impact, what was published before holds up to it; not up to the last of several.
 	m.flags = impacts < 2 ? OB_MOTION_FREE : 0;
 	s->counters.impacts += impacts;
-	publish_flight(s, id, &m);
+	publish_flight(s, id, &m, impacts == 0);
 	return true;
 }

@@ -1,5 +1,7 @@
 #include "sim/ghost.h"
 
+#include "base/allocate.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,6 +35,7 @@ void ob_ghosts_follow(ob_sim *s)
 		const ob_body *body = &w->body[w->body[g].ghost_of];
 		w->body[g].path = body->path;
 		w->body[g].speed = body->speed;
+		w->body[g].turning = body->turning;
 		memcpy(w->v[g], w->v[body - w->body], sizeof *w->v);
 		memcpy(w->d[g], w->d[body - w->body], sizeof *w->d);
 	}
@@ -47,7 +50,7 @@ void ob_ghosts_read(ob_sim *s, ob_body_row *rows, uint32_t iteration)
 	uint32_t kept = run->solver == OB_SOLVER_LAGGED ? run->lag + 1 : 1, late = kept - 1;
 	if (kept * w->rows > w->history_max) {
 		w->history_max = kept * w->rows * 2;
-		w->history = realloc(w->history, w->history_max * sizeof *w->history);
+		w->history = ob_reallocate(w->history, w->history_max * sizeof *w->history);
 	}
 	memcpy(w->history + iteration % kept * w->rows, rows, w->rows * sizeof *rows);
 	const ob_body_row *seen = w->history + (iteration > late ? iteration - late : 0) % kept * w->rows;

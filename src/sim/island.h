@@ -33,17 +33,25 @@ typedef struct ob_body {
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
 	double path, speed; // m, as ob_motion.path; m/s bound of any point
+	double turning; // m/s, what of that speed comes from turning
 	float rest_time; // s, as ob_motion.rest_time
 	bool isotropic; // inertia is the same about all axes
 	bool moved_freely; // it touched nothing in this step, not for a moment
 	uint32_t contacts; // that touch
-	uint32_t pending_impacts; // that it takes part in at once (Jacobi)
+	bool loaded; // its flights within the partial substep are those of the last one's contact forces, too
+	double hit; // s into the partial substep: its last impact; 0: none
 	uint64_t colours; // bit per colour in use
 	uint32_t next_substeps; // that it asks for in the next step (sim/error_control.h)
 	uint32_t active_iteration; // the last that changed its velocity by more than the wake threshold
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
 	uint32_t ghost_of; // of a ghost: the row that it stands for
+	bool among_others; // it touches bodies that move
+	bool turns; // it has a contact whose geometry turns
+	bool halved; // it is at the midpoint of the partial substep (sim/midpoint.h), where it came by first_half ..
+	ob_body_row first_half; // m, rad
+	ob_vec3 start_p, start_w; // .. from this
+	ob_quat start_q;
 } ob_body;
 
 // A pair that touches, or may in this step.
@@ -54,11 +62,19 @@ typedef struct ob_contact {
 	uint32_t colour;
 	uint32_t points;
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
-	double limit; // m: the geometry holds until path_a + path_b exceeds this
+	int8_t was[OB_PAIR_POINTS]; // of each point: which one it was when the geometry was found before; -1: none
+	double disc_radius; // m, of the manifold
+	double path,
+		limit; // m: how far the two have moved, one from the other, in this step; until when the geometry holds
+	double since; // s, from when the geometry was found to the partial substep's start; infinity: unknown
+	bool turns; // its geometry turns noticeably within the partial substep (sim/midpoint.h)
 	double mu, e; // coefficients of friction and of restitution
 	double initial_depth,
 		depth_growth; // m (sim/error_control.h): when the step began; that it has grown by in the step
 	double slip, creep; // m, in this step; in the last second
+	uint32_t rebounds; // in the partial substep
+	bool left_to_solver; // its hits in the partial substep are those of too many points
+	bool as_of_instant; // its geometry is that of an instant in the running partial substep
 	bool mirror; // the second contact of a pair that is solved for each side apart: its own body is b
 } ob_contact;
 
@@ -80,7 +96,6 @@ typedef struct ob_direct_solver {
 	bool used_last; // the last partial substep was solved directly
 	bool gave_up; // a solve of this step did not reduce the residual
 	int solves; // in the running partial substep
-	double residual[2]; // m/s, before the last solve and the one before
 	uint32_t rows_max, contacts_max, batches_max;
 	ob_link *link; // [row]
 	uint32_t *order; // rows, parents before children
@@ -91,8 +106,51 @@ typedef struct ob_direct_solver {
 	lanes (*velocity)[OB_ROWS], (*impulse_change)[OB_ROWS]; // [batch]: of the rows
 } ob_direct_solver;
 
+// Working state of sim/conjugate.c; memory grown as needed, never shrunk.
+typedef struct ob_conjugate {
+	uint32_t batches_max;
+	lanes (*direction)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: of the impulses; the last iteration's own
+	double last; // J, the square of the change of the iteration before
+} ob_conjugate;
+
+// A contact that hits within the partial substep.
+typedef struct ob_impact_instant {
+	uint32_t contact;
+	double time, approach; // s into the partial substep; m/s
+	bool joined; // it takes part in the impact that is solved
+	uint32_t first_point, set_points; // of the set that it is solved with
+	ob_manifold m; // then
+} ob_impact_instant;
+
+// A body at an instant within the partial substep: m, m/s, rad/s.
+typedef struct ob_body_at {
+	ob_vec3 p, v, w;
+	ob_quat q;
+	ob_mat3 r;
+} ob_body_at;
+
+// Working state of sim/impacts.c; memory grown as needed, never shrunk.
+typedef struct ob_impacts {
+	uint32_t count; // of pending impacts
+	uint32_t contacts_max, rows_max;
+	ob_impact_instant *pending; // [2 contacts]: what touches a hit, too
+	uint32_t *next; // [contacts]: chains of pending impacts that are one set
+	uint32_t *seen; // [contacts]: the round that has looked at it
+	uint32_t *set; // [contacts]: roots of the sets of a round
+	uint32_t *root, *head; // [rows]: union-find over bodies; first pending impact of a set
+	double *first; // [rows], s: of the body's pending impacts
+	uint32_t changes, *changed; // [rows]: bodies that were hit in a round
+	uint32_t *slot; // [rows]: place in the set that is solved
+	uint32_t bodies, points; // of that set
+	uint32_t *row; // [bodies]
+	ob_body_at *at; // [bodies]
+	ob_impact_body *body, *before; // [bodies]
+	ob_impact_point *point;
+} ob_impacts;
+
 // Memory grown as needed, never shrunk.
 typedef struct ob_island_work {
+	ob_units unit; // of the run, for thresholds
 	uint32_t rows, rows_max; // bodies + fixed bodies + row 0
 	uint32_t bodies; // rows 1 .. bodies
 	uint32_t first_ghost; // rows from here on are ghosts
@@ -104,6 +162,8 @@ typedef struct ob_island_work {
 		*drift; // change of velocity in the partial substep as impacts see it: dv without the echo of an impact
 	uint32_t contacts, contacts_max;
 	ob_contact *contact;
+	uint64_t *contact_key; // of sim/contact_order.c
+	uint32_t *contact_order; // indices of the island's pairs, as they are loaded
 	uint32_t *adjacency; // contacts of each body, touching or not
 	uint32_t batches, batches_max;
 	ob_batch *batch;
@@ -112,7 +172,8 @@ typedef struct ob_island_work {
 	uint32_t *next_open_batch; // [batches]: next in the stack of its colour
 	uint32_t *batch_due; // [batches]: last iteration in which it is to be solved
 	uint32_t *batch_order; // [batches]: sorted by colour
-	bool order_stale, counts_stale, elastic;
+	bool order_stale, counts_stale;
+	bool elastic, plastic; // hits with restitution, and without, are solved at their instants (sim/impacts.h)
 	uint32_t iteration; // number of the running one, ever growing
 	double mass; // of all bodies, kg
 	double max_acceleration; // m/s^2, the largest external acceleration of any body
@@ -120,12 +181,21 @@ typedef struct ob_island_work {
 	double error, new_error; // m (sim/error_control.h): of the step; that the step itself has caused
 	double substep; // s, the whole
 	double h, h_min; // s (sim/adaptive_substep.h), of the running partial substep; of any but the last of a substep
+	double unpaced; // s: of which the contacts' paths do not know yet
 	double last_impact; // s into the partial substep: the last one's instant
 	double residual; // m/s: the most that a first iteration has changed a velocity in this step
 	bool projected; // penetrations were pushed apart in this step
 	double recovered; // J, what position projection has added in this step
 	uint32_t *row_of; // [object]: row in this island
 	ob_direct_solver direct;
+	ob_conjugate conjugate;
+	ob_impacts impacts;
 } ob_island_work;
+
+// In the running partial substep
+static inline bool ob_contact_was_hit(const ob_island_work *w, const ob_contact *c)
+{
+	return w->body[c->a].hit > 0 || w->body[c->b].hit > 0;
+}
 
 #endif

@@ -18,9 +18,10 @@ typedef struct builder {
 	uint64_t step; // that they are for
 } builder;
 
+// A parent is below its child, so this ends, whatever somebody has written there.
 static uint32_t root_of(uint32_t *parent, uint32_t i)
 {
-	while (parent[i] != i)
+	while (parent[i] < i)
 		i = parent[i] = parent[parent[i]];
 	return i;
 }
@@ -65,10 +66,15 @@ static void union_trees(builder *p, uint32_t i, uint32_t j)
 		p->parent[a] = b;
 }
 
+static bool is_in_range(const builder *p, const ob_pair_key *k)
+{
+	return ob_object_in_range(p->data, k->a) && ob_object_in_range(p->data, k->b);
+}
+
 // Only pairs that touch or are expected to link anything: few of all pairs, told by their flags alone.
 static bool is_link(const builder *p, const ob_pair_key *k)
 {
-	return k->active | (p->previous ? k->late : k->expected);
+	return (k->active | (p->previous ? k->late : k->expected)) && is_in_range(p, k);
 }
 
 // Also notes which objects the links involve: island_of is 0 there.
@@ -83,7 +89,7 @@ static void join_islands(builder *p)
 		for (uint32_t k = 1; k < data->island[i].members; k++)
 			union_trees(p, member[0], member[k]);
 	}
-	for (uint32_t i = 0; i < data->count->pairs; i++) {
+	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (!is_link(p, k))
 			continue;
@@ -138,7 +144,7 @@ static void mark_solved(builder *p)
 			if (p->previous[member[k]] == NONE || p->previous[member[k]] != p->previous[member[0]])
 				data->island[i].solved = 0;
 	}
-	for (uint32_t i = 0; i < data->count->pairs; i++) {
+	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (k->late)
 			data->island[data->result_island[is_dynamic(p, k->a) ? k->a : k->b]].solved = 0;
@@ -172,9 +178,9 @@ static void list_pairs(builder *p)
 {
 	ob_step_data *data = p->data;
 	uint32_t total = 0;
-	for (uint32_t i = 0; i < data->count->pairs; i++) {
+	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
 		ob_pair_key *k = &data->pair[i];
-		uint32_t island = island_of_pair(p, k);
+		uint32_t island = is_in_range(p, k) ? island_of_pair(p, k) : NONE;
 		if (k->in_island != (island != NONE))
 			k->in_island = island != NONE;
 		if (k->record != OB_NO_RECORD && !p->previous && !k->active)
@@ -187,7 +193,7 @@ static void list_pairs(builder *p)
 		total += data->island[i].pairs;
 		data->island[i].pairs = 0;
 	}
-	for (uint32_t i = 0; i < data->count->pairs; i++) {
+	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (!k->in_island)
 			continue;

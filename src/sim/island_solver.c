@@ -3,8 +3,12 @@
 #include <stdlib.h>
 
 #include "sim/adaptive_substep.h"
+#include "sim/balance.h"
 #include "sim/bodies.h"
+#include "sim/budget.h"
 #include "sim/broadphase.h"
+#include "sim/commit.h"
+#include "sim/conjugate.h"
 #include "sim/contact_solver.h"
 #include "sim/contacts.h"
 #include "sim/direct_solver.h"
@@ -12,29 +16,39 @@
 #include "sim/error_control.h"
 #include "sim/flight.h"
 #include "sim/ghost.h"
+#include "sim/impacts.h"
+#include "sim/midpoint.h"
 #include "sim/profile.h"
 
 enum { MAX_IMPACT_ROUNDS = 4 }; // in a partial substep; a body that rattles faster is left to the contact solver
 
-// Contacts as they are now, and what the velocities will be if they go on as before. true: the contacts may have
-// changed.
-static bool update_contacts(ob_sim *s)
+// Contacts as they are now, and what the velocities will be if they go on as before.
+static void update_contacts(ob_sim *s)
 {
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
-	bool changed = ob_contacts_update(s, s->island.h);
+	ob_contacts_update(s, s->island.h);
+	ob_contacts_prepare(s);
+	ob_bodies_warm_start(s);
+}
+
+// The same for what was hit. true: its contacts may have changed.
+static bool update_hit_contacts(ob_sim *s)
+{
+	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
+	bool changed = ob_contacts_update_hit(s, s->island.h);
 	ob_contacts_prepare(s);
 	ob_bodies_warm_start(s);
 	return changed;
 }
 
-// Elastic contacts rebound at their instants; what flies off may hit something that was out of reach before.
+// Contacts hit at their instants; what flies off may hit something that was out of reach before.
 static void resolve_impacts(ob_sim *s)
 {
 	ob_profile_enter(s, OB_PROFILE_IMPACTS);
-	for (int round = 0; round < MAX_IMPACT_ROUNDS && ob_solver_impacts(s); round++) {
+	for (int round = 0; round < MAX_IMPACT_ROUNDS && ob_impacts_resolve(s, round == 0); round++) {
 		ob_bodies_update_speed_bounds(s);
 		ob_ghosts_follow(s);
-		if (!update_contacts(s))
+		if (!update_hit_contacts(s))
 			break;
 		ob_profile_enter(s, OB_PROFILE_IMPACTS);
 	}
@@ -56,21 +70,21 @@ static void solve_velocities(ob_sim *s)
 // The table of contents of an island's step: a substep, or a part of one, in the order in which things happen.
 static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 {
+	ob_budget_note(s, s->island.rows + s->island.contacts);
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
 	ob_ghosts_follow(s);
 	ob_adaptive_begin(s, left);
+	ob_impacts_begin(s);
+	ob_midpoint_mark(s);
 	update_contacts(s);
 	ob_error_control_note_depth(s, first_of_step);
-	ob_adaptive_end_at_rebound(s);
 	resolve_impacts(s);
-	ob_adaptive_end_at_rebound(s);
 	ob_error_control_note_bounce(s);
-	ob_profile_enter(s, OB_PROFILE_MOVE);
-	ob_bodies_gyroscopic_step(s);
-	ob_ghosts_follow(s);
+	ob_midpoint_begin(s);
 	solve_velocities(s);
 	ob_bodies_integrate_positions(s);
 	ob_error_control_note_slip(s);
+	ob_midpoint_end(s);
 	ob_solver_limit_prediction(s);
 	ob_ghosts_follow(s);
 	ob_profile_enter(s, OB_PROFILE_PROJECT);
@@ -88,13 +102,13 @@ static bool solve_step(ob_sim *s, const ob_island *is)
 	s->counters.body_substeps += (uint64_t)is->members * w->substeps;
 	for (uint32_t k = 0; k < w->substeps; k++) {
 		bool first = k == 0;
-		for (double left = w->substep; left > 0; left -= w->h, first = false)
+		for (double left = w->substep; left > 0 && !ob_budget_spent(s); left -= w->h, first = false)
 			solve_partial_substep(s, left, first);
 	}
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		ob_body_update_pose(w, row);
-	return ob_error_control_accept(s);
+	return ob_error_control_accept(s) || ob_budget_spent(s);
 }
 
 // One substep, where that is enough: false if the island is not in equilibrium.
@@ -120,13 +134,10 @@ static uint64_t cost_so_far(const ob_sim *s)
 }
 
 // For the scheduler, so that what costs much is begun first.
-static void note_effort(ob_sim *s, const ob_island *is, uint64_t cost)
+static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 {
-	enum { MOST = 1 << 16 }; // so that sums stay within bounds
-	ob_step_data *data = s->data;
-	uint64_t share = cost / is->members;
-	for (uint32_t i = 0; i < is->members; i++)
-		data->effort[data->member[is->first_member + i]] = (uint32_t)(share < MOST ? share : MOST);
+	const uint64_t share = cost / s->data->island[island].members;
+	ob_commit_effort(s, island, (uint32_t)(share < UINT32_MAX ? share : UINT32_MAX));
 }
 
 // ---- ballistic advance
@@ -161,12 +172,12 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 }
 
 // Its contacts end, and the next solver tests their geometry anew.
-static void end_contacts(const ob_sim *s, const ob_island *is)
+static void end_contacts(ob_sim *s, const ob_island *is)
 {
 	for (uint32_t i = 0; i < is->pairs; i++) {
-		ob_pair_key *k = &s->data->pair[s->data->island_pair[is->first_pair + i]];
-		if (k->active)
-			k->active = 0, k->limit = -INFINITY;
+		const uint32_t pair = s->data->island_pair[is->first_pair + i];
+		if (s->data->pair[pair].active)
+			ob_commit_contact(s, &(ob_found_contact){ .pair = pair, .limit = -INFINITY });
 	}
 }
 
@@ -187,10 +198,10 @@ static bool advance_ballistically(ob_sim *s, const ob_island *is)
 // The island's state of rest, as a flag of its bodies' motions; 0: it moves.
 static uint32_t rest_flag(ob_sim *s)
 {
-	bool asleep = ob_bodies_update_rest(s), equilibrium = ob_equilibrium_reached(&s->island);
-	if (asleep || (equilibrium && s->settings->sleeping))
-		return OB_MOTION_ASLEEP;
-	return equilibrium ? OB_MOTION_EQUILIBRIUM : 0;
+	const double rest_time = ob_bodies_update_rest(s);
+	if (ob_equilibrium_reached(&s->island))
+		return s->settings->sleeping ? OB_MOTION_ASLEEP : OB_MOTION_EQUILIBRIUM;
+	return ob_balance_may_sleep(s, rest_time) ? OB_MOTION_ASLEEP : 0;
 }
 
 void ob_island_solve(ob_sim *s, uint32_t i)
@@ -199,6 +210,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	if (advance_ballistically(s, is))
 		return;
 	const uint64_t before = cost_so_far(s);
+	ob_budget_begin_share(s, s->data->member[is->first_member]);
 	s->island.substeps = ob_error_control_substeps(s, is);
 	if (!solve_equilibrium(s, is))
 		while (!solve_step(s, is))
@@ -207,10 +219,11 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	s->counters.island_steps++;
 	s->counters.recovered += s->island.recovered;
 	s->counters.body_steps += is->members;
-	note_effort(s, is, cost_so_far(s) - before);
+	note_effort(s, i, cost_so_far(s) - before);
+	const uint32_t rest = rest_flag(s);
 	ob_contacts_store(s);
 	ob_profile_enter(s, OB_PROFILE_PUBLISH);
-	ob_bodies_publish(s, rest_flag(s));
+	ob_bodies_publish(s, rest);
 }
 
 void ob_island_work_finish(ob_island_work *w)
@@ -224,6 +237,8 @@ void ob_island_work_finish(ob_island_work *w)
 	free(w->drift);
 	free(w->contact);
 	free(w->adjacency);
+	free(w->contact_key);
+	free(w->contact_order);
 	free(w->batch);
 	free(w->batch_colour);
 	free(w->next_open_batch);
@@ -232,4 +247,6 @@ void ob_island_work_finish(ob_island_work *w)
 	free(w->row_of);
 	free(w->history);
 	ob_direct_finish(&w->direct);
+	ob_conjugate_finish(&w->conjugate);
+	ob_impacts_finish(&w->impacts);
 }

@@ -5,7 +5,7 @@
 //     └── substeps, of equal length: as many as the run says, as the tolerance needs (sim/error_control.h), or one in
 //     │   equilibrium (sim/equilibrium.h)
 //     │     └── partial substeps, where fast bodies touch (sim/adaptive_substep.h)
-//     │           narrow phase, warm start, impacts, gyroscopic step, contact solver, integration, position projection
+//     │           narrow phase, warm start, impacts, contact solver, free motion to the end, position projection
 //     └── store contacts, publish bodies
 #ifndef OB_SIM_ISLAND_SOLVER_H
 #define OB_SIM_ISLAND_SOLVER_H

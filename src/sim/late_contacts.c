@@ -1,11 +1,16 @@
 #include "sim/late_contacts.h"
 
+#include <string.h>
+
 #include "contact/manifold.h"
 #include "sim/broadphase.h"
+#include "sim/budget.h"
+#include "sim/commit.h"
 #include "sim/prefetch.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
 #include "sim/publish.h"
+#include "sim/relative_speed.h"
 
 static const double contact_gap = 2e-4; // m: a forecast takes bodies so near for touching ..
 static const double contact_gap_share = .05; // .. and no nearer than this share of the thinner one's thickness
@@ -19,6 +24,7 @@ typedef struct pair_check {
 	double h; // s, length of a step
 	uint64_t steps; // that are complete, or solved
 	bool solved; // one has been solved and is not committed
+	bool contained; // what changes is handed over
 } pair_check;
 
 typedef struct moving_pair {
@@ -34,8 +40,16 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, 
 	const ob_passport *p = ob_passport_of(c->u, id);
 	const double h = c->h;
 	ob_state now = ob_ballistic_state(c->s, id, m, (double)steps * h);
-	return (ob_placed){ p->shape, p->size, now.pose.p, ob_quat_matrix(now.pose.q), ob_madd(now.v, .5 * h, m->a),
-			    now.w };
+	ob_placed out = { .shape = p->shape,
+			  .size = p->size,
+			  .p = now.pose.p,
+			  .r = ob_quat_matrix(now.pose.q),
+			  .v = ob_madd(now.v, .5 * h, m->a),
+			  .w = now.w,
+			  .inertia = p->inertia,
+			  .a = m->a };
+	ob_narrowphase_set_rest(c->s, &out);
+	return out;
 }
 
 static moving_pair moving_pair_of(const pair_check *c, const ob_pair_key *k)
@@ -52,14 +66,21 @@ static moving_pair moving_pair_of(const pair_check *c, const ob_pair_key *k)
 	return p;
 }
 
-// First time at which the two touch within h (s) at constant velocities; apart: m, their distance now.
+// Bound of the speed (m/s) at which any two points of them part or approach within h (s).
+static double relative_speed(const ob_placed *a, const ob_placed *b, double h)
+{
+	return ob_relative_speed(a->shape, &a->r, b->shape, &b->r, ob_sub(a->v, b->v)) +
+	       ob_turning_speed(a->shape, a->size, a->inertia, ob_rotate_back(&a->r, a->w), h) +
+	       ob_turning_speed(b->shape, b->size, b->inertia, ob_rotate_back(&b->r, b->w), h);
+}
+
+// First time at which the two touch within h (s) as they go on; apart: m, their distance now.
 static double time_of_contact(const pair_check *c, const moving_pair *p, double h, double *apart)
 {
 	ob_manifold m;
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
-	double speed = ob_norm(ob_sub(a->v, b->v)) + ob_turning_speed(a->w, a->shape, a->size) +
-		       ob_turning_speed(b->w, b->shape, b->size);
-	double gap = fmin(contact_gap, contact_gap_share * p->thin);
+	double speed = relative_speed(a, b, h);
+	double gap = fmin(contact_gap * c->s->island.unit.length, contact_gap_share * p->thin);
 	double when = ob_time_of_impact(a, b, fmax(speed, 1e-9), h, gap, gap, ob_narrowphase_finder(c->s), &m);
 	*apart = m.separation;
 	return when;
@@ -71,15 +92,13 @@ static bool passed_through(const pair_check *c, const ob_pair_key *k, const movi
 	const uint32_t id[2] = { k->a, k->b };
 	const uint64_t step = ob_step_count(c->u);
 	moving_pair start = *end;
-	double path = end->path, apart;
-	for (int i = 0; i < 2; i++)
-		path -= ob_path_now(ob_newest_motion(c->u, id[i]), step);
-	if (path < tunnel_share * end->thin)
-		return false;
+	double apart;
 	for (int i = 0; i < 2; i++) {
 		start.at[i] = shape_of(c, id[i], ob_newest_motion(c->u, id[i]), step);
 		start.at[i].v = ob_scale(ob_sub(end->at[i].p, start.at[i].p), 1 / end->h);
 	}
+	if (relative_speed(&start.at[0], &start.at[1], end->h) * end->h < tunnel_share * end->thin)
+		return false;
 	return !isinf(time_of_contact(c, &start, end->h, &apart));
 }
 
@@ -87,7 +106,8 @@ static bool touched_in_step(const pair_check *c, ob_pair_key *k, const moving_pa
 {
 	ob_manifold m;
 	ob_manifold_finder finder = ob_narrowphase_finder(c->s);
-	finder.find(finder.with, &end->at[0], &end->at[1], fmax(contact_gap, end->reach), &m);
+	finder.find(finder.with, &end->at[0], &end->at[1], fmax(contact_gap * c->s->island.unit.length, end->reach),
+		    &m);
 	if (m.separation <= 0 || passed_through(c, k, end))
 		return true;
 	k->limit = end->path + m.separation;
@@ -113,10 +133,10 @@ static bounding_spheres bounding_spheres_of(const pair_check *c, const ob_pair_k
 	return out;
 }
 
-// For how long they stay apart at constant relative velocity (s).
-static double time_apart(const bounding_spheres *s)
+// For how long they stay apart at constant relative velocity (s). contact: m, so near they touch.
+static double time_apart(const bounding_spheres *s, double contact)
 {
-	double far = s->gap - contact_gap, radii = ob_norm(s->apart) - far, closing = -ob_dot(s->apart, s->v);
+	double far = s->gap - contact, radii = ob_norm(s->apart) - far, closing = -ob_dot(s->apart, s->v);
 	double square = far * (far + 2 * radii), d = closing * closing - ob_norm2(s->v) * square;
 	if (far <= 0)
 		return 0;
@@ -131,7 +151,7 @@ static bool set_clear_until(const pair_check *c, ob_pair_key *k, const bounding_
 	if (a->state != OB_SCHEDULE_AWAKE || b->state != OB_SCHEDULE_AWAKE || until <= (double)c->steps + 1 ||
 	    !round->straight)
 		return false;
-	until = fmin(until, (double)c->steps + floor(time_apart(round) / c->h));
+	until = fmin(until, (double)c->steps + floor(time_apart(round, contact_gap * c->s->island.unit.length) / c->h));
 	k->clear_until = (uint32_t)until;
 	k->clear_as_of = (uint32_t)c->steps;
 	return k->clear_until > c->steps;
@@ -184,7 +204,8 @@ static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double 
 	if (c->s->settings->narrow_phase == OB_NARROW_AABB)
 		return false;
 	bounding_spheres round = bounding_spheres_of(c, k);
-	if (round.gap <= contact_gap || (paths >= k->limit && path_in_step(c, k, paths, solved) >= round.gap))
+	if (round.gap <= contact_gap * c->s->island.unit.length ||
+	    (paths >= k->limit && path_in_step(c, k, paths, solved) >= round.gap))
 		return false;
 	k->limit = fmax(k->limit, paths + round.gap);
 	return k->limit - paths > reach || set_clear_until(c, k, &round);
@@ -249,35 +270,66 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 	ob_universe_step_data(u)->count->checked = (uint32_t)ob_step_count(u) + solved;
 }
 
+// A pair, to be changed: a contained simulator changes a copy.
+static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *copy)
+{
+	if (!c->contained)
+		return &c->data->pair[i];
+	*copy = c->data->pair[i];
+	return copy;
+}
+
+static void end_change(const pair_check *c, uint32_t i, const ob_pair_key *k)
+{
+	if (c->contained && memcmp(k, &c->data->pair[i], sizeof *k) != 0)
+		ob_commit_check(c->s->u, i, k);
+}
+
 // The motions of a pair are prefetched while those before it are checked.
 static void check_all_by_motions(const pair_check *c, const uint32_t *pairs, uint32_t n, bool *late, double *next)
 {
 	enum { AHEAD = 4 };
-	ob_pair_key *all = c->data->pair;
+	const ob_pair_key *all = c->data->pair;
 	for (uint32_t i = 0; i < n + AHEAD; i++) {
 		if (i < n)
 			ob_prefetch_pair(c->s, &all[pairs[i]]);
 		if (i < AHEAD)
 			continue;
-		ob_pair_key *k = &all[pairs[i - AHEAD]];
+		ob_pair_key copy, *k = begin_change(c, pairs[i - AHEAD], &copy);
+		if (i == AHEAD)
+			ob_budget_begin_share(c->s, k->a);
+		if (ob_budget_spent(c->s))
+			return;
+		if (c->contained)
+			k->late = k->expected = 0; // as check_by_schedule has left it
 		*next = fmin(*next, check_by_motions(c, k));
 		*late |= k->late;
+		end_change(c, pairs[i - AHEAD], k);
 	}
 }
 
 void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 {
-	const pair_check c = { s, s->u, s->data, s->settings->step_length, ob_step_count(s->u) + solved, solved };
+	const pair_check c = { s,
+			       s->u,
+			       s->data,
+			       s->settings->step_length,
+			       ob_step_count(s->u) + solved,
+			       solved,
+			       ob_universe_contained(s->u) };
 	double next = UINT32_MAX;
 	bool late = false;
 	while (first < end) {
 		uint32_t left[OB_LATE_CONTACTS_BATCH], n = 0;
 		for (uint32_t i = 0; i < OB_LATE_CONTACTS_BATCH && first < end; i++, first++) {
-			double due = check_by_schedule(&c, &c.data->pair[first]);
-			if (due < 0)
+			ob_pair_key copy, *k = begin_change(&c, first, &copy);
+			double due = check_by_schedule(&c, k);
+			if (due < 0) {
 				left[n++] = first;
-			else
-				next = due < next ? due : next;
+				continue;
+			}
+			next = due < next ? due : next;
+			end_change(&c, first, k);
 		}
 		check_all_by_motions(&c, left, n, &late, &next);
 	}

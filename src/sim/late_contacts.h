@@ -9,9 +9,7 @@
 #ifndef OB_SIM_LATE_CONTACTS_H
 #define OB_SIM_LATE_CONTACTS_H
 
-#include "sim/state.h"
-
-enum { OB_LATE_CONTACTS_BATCH = 256 }; // pairs that a worker claims at a time
+#include "sim/commit.h"
 
 // By the scheduling worker, before all pairs are checked. solved: a step has been solved and is not yet committed.
 void ob_late_contacts_begin(ob_universe *u, bool solved);

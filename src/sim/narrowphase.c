@@ -1,45 +1,13 @@
 #include "sim/narrowphase.h"
 
 #include "base/cpu.h"
-#include "ode/ode_collide.h"
+#include "motion/drift.h"
+#include "sim/budget.h"
+#include "sim/contact_solver.h"
 
 static const double swept_travel =
 	.4; // of the smaller thickness: faster pairs are followed through the partial substep
 static const double swept_gap = 1e-3; // m: so near counts as touching
-
-// For the shapes that contact/ has no closed form for.
-static void find_by_ode(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
-{
-	ob_ode_point point[8];
-	ob_quat qa, qb;
-	// dCollide takes quaternions; here, bodies have rotation matrices.
-	const ob_mat3 *r[2] = { &a->r, &b->r };
-	ob_quat *q[2] = { &qa, &qb };
-	for (int i = 0; i < 2; i++) {
-		const double(*m)[3] = r[i]->m;
-		double w2 = 1 + m[0][0] + m[1][1] + m[2][2], x2 = 1 + m[0][0] - m[1][1] - m[2][2];
-		double y2 = 1 - m[0][0] + m[1][1] - m[2][2], z2 = 1 - m[0][0] - m[1][1] + m[2][2];
-		if (w2 >= x2 && w2 >= y2 && w2 >= z2)
-			*q[i] = (ob_quat){ w2, m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1] };
-		else if (x2 >= y2 && x2 >= z2)
-			*q[i] = (ob_quat){ m[2][1] - m[1][2], x2, m[0][1] + m[1][0], m[0][2] + m[2][0] };
-		else if (y2 >= z2)
-			*q[i] = (ob_quat){ m[0][2] - m[2][0], m[0][1] + m[1][0], y2, m[1][2] + m[2][1] };
-		else
-			*q[i] = (ob_quat){ m[1][0] - m[0][1], m[0][2] + m[2][0], m[1][2] + m[2][1], z2 };
-		*q[i] = ob_quat_normalize(*q[i]);
-	}
-	int n = ob_ode_collide(a->shape, a->size, (ob_pose){ a->p, qa }, b->shape, b->size, (ob_pose){ b->p, qb },
-			       margin, point, OB_PAIR_POINTS);
-	out->points = n;
-	out->separation = margin;
-	for (int k = 0; k < n; k++) {
-		out->normal = point[0].normal;
-		out->at[k] = point[k].position;
-		out->gap[k] = point[k].gap;
-		out->separation = fmin(out->separation, point[k].gap);
-	}
-}
 
 // ---- shapes as their axis-aligned boxes
 
@@ -69,7 +37,9 @@ static ob_placed box_around(const ob_placed *x)
 			    .size = ob_v3(half_width(x, 0), half_width(x, 1), half_width(x, 2)),
 			    .p = x->p,
 			    .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
-			    .v = x->v };
+			    .v = x->v,
+			    .rest_depth = x->rest_depth,
+			    .far_future = x->far_future };
 }
 
 void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
@@ -84,45 +54,48 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 {
 	ob_sim *s = with;
 	const ob_run_settings *run = s->settings;
+	enum { WORK = 8 };
+	ob_budget_note(s, WORK);
+	out->disc_radius = 0;
+	out->valid_path = INFINITY;
 	if (run->narrow_phase == OB_NARROW_AABB) {
 		s->counters.box_tests++;
 		ob_synthetic_load(run->load);
 		ob_manifold_aabb(a, b, margin, out);
-	} else if (!ob_manifold_find(a, b, margin, out)) {
-		find_by_ode(a, b, margin, out);
+	} else {
+		ob_manifold_find(a, b, margin, out);
 	}
-}
-
-static bool is_of_ode(ob_shape s)
-{
-	return s == OB_SHAPE_CAPSULE || s == OB_SHAPE_CYLINDER;
-}
-
-// As find_manifold, with a separation that conservative advancement can use: for ODE's shapes it is known only up to
-// the margin, so these are tested with a wide one, too.
-static void find_with_separation(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
-{
-	const double wide = .5 * fmin(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
-	find_manifold(with, a, b, margin, out);
-	if (out->points || !(is_of_ode(a->shape) || is_of_ode(b->shape)) || !(wide > margin))
-		return;
-	ob_manifold far;
-	find_manifold(with, a, b, wide, &far);
-	out->separation = fmax(margin, far.separation);
 }
 
 ob_manifold_finder ob_narrowphase_finder(ob_sim *s)
 {
-	return (ob_manifold_finder){ find_with_separation, s };
+	return (ob_manifold_finder){ find_manifold, s };
 }
 
-static ob_placed placed(const ob_island_work *w, uint32_t row)
+void ob_narrowphase_set_rest(const ob_sim *s, ob_placed *x)
 {
+	const bool pressed =
+		ob_norm2(s->settings->gravity) > 0; // without gravity hits leave nothing at rest in another
+	const double of_slop = pressed ? 2 : .01, of_thickness = .02, far_future = 10;
+	x->rest_depth = fmin(of_slop * ob_solver_slop(s), of_thickness * ob_shape_thickness(x->shape, x->size));
+	x->far_future = far_future * s->island.unit.time;
+}
+
+static ob_placed placed(const ob_sim *s, uint32_t row)
+{
+	const ob_island_work *w = &s->island;
 	const ob_body *body = &w->body[row];
 	const double *v = w->v[row];
-	return (ob_placed){
-		body->shape, body->size, body->p, body->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5])
-	};
+	ob_placed out = { .shape = body->shape,
+			  .size = body->size,
+			  .p = body->p,
+			  .r = body->r,
+			  .v = ob_v3(v[0], v[1], v[2]),
+			  .w = ob_v3(v[3], v[4], v[5]),
+			  .inertia = body->inertia,
+			  .a = body->acceleration };
+	ob_narrowphase_set_rest(s, &out);
+	return out;
 }
 
 // Bound of the speed at which any two points of the pair may approach (m/s), with external acceleration.
@@ -136,19 +109,21 @@ static double closing_speed(const ob_sim *s, const ob_contact *contact)
 		const ob_body *body = &w->body[side ? contact->b : contact->a];
 		const double *v = side ? vb : va;
 		if (body->inv_mass > 0 && body->shape != OB_SHAPE_SPHERE)
-			speed += body->radius * ob_norm(ob_v3(v[3], v[4], v[5]));
+			speed += body->radius *
+				 ob_drift_bound(ob_rotate_back(&body->r, ob_v3(v[3], v[4], v[5])), body->inertia, w->h);
 	}
 	return speed + w->max_acceleration * w->h;
 }
 
 // Points as of the time of impact t, with gaps extrapolated back to now: those that close at that instant close then.
+// Nothing touches before t, so a point that opens then does not penetrate now.
 static void extrapolate_gaps_back(const ob_placed *a, const ob_placed *b, double t, ob_manifold *m)
 {
 	ob_vec3 rel = ob_sub(a->v, b->v);
 	ob_vec3 pa = ob_madd(a->p, t, a->v), pb = ob_madd(b->p, t, b->v);
 	for (int j = 0; j < m->points; j++) {
 		ob_vec3 spin = ob_sub(ob_cross(a->w, ob_sub(m->at[j], pa)), ob_cross(b->w, ob_sub(m->at[j], pb)));
-		m->gap[j] -= t * ob_dot(m->normal, ob_add(rel, spin));
+		m->gap[j] = fmax(m->gap[j] - t * ob_dot(m->normal, ob_add(rel, spin)), fmin(m->gap[j], 0));
 	}
 }
 
@@ -161,8 +136,8 @@ static double smaller_thickness(const ob_island_work *w, const ob_contact *conta
 static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizon, double reach, ob_manifold *m)
 {
 	const ob_island_work *w = &s->island;
-	ob_placed a = placed(w, contact->a), b = placed(w, contact->b);
-	double near = fmin(swept_gap, .25 * smaller_thickness(w, contact));
+	ob_placed a = placed(s, contact->a), b = placed(s, contact->b);
+	double near = fmin(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
 	s->counters.swept_tests++;
 	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_finder(s), m);
 }
@@ -170,13 +145,15 @@ static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizo
 double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *contact, double horizon)
 {
 	ob_manifold m;
-	return time_of_impact(s, contact, horizon, fmin(swept_gap, .25 * smaller_thickness(&s->island, contact)), &m);
+	return time_of_impact(s, contact, horizon,
+			      fmin(swept_gap * s->island.unit.length, .25 * smaller_thickness(&s->island, contact)),
+			      &m);
 }
 
 void ob_narrowphase_find(ob_sim *s, const ob_contact *contact, double tolerance, ob_manifold *m, double *when)
 {
 	const ob_island_work *w = &s->island;
-	ob_placed a = placed(w, contact->a), b = placed(w, contact->b);
+	ob_placed a = placed(s, contact->a), b = placed(s, contact->b);
 	double thin = smaller_thickness(w, contact), travel = closing_speed(s, contact) * w->h;
 	*when = 0;
 	if (travel < swept_travel * thin) {

@@ -5,6 +5,7 @@
 
 #include <ob/motion.h>
 
+#include "base/allocate.h"
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
 #include "sim/publish.h"
@@ -37,6 +38,7 @@ ob_ode_baseline *ob_ode_baseline_create(ob_universe *u)
 		.objects = capacity,
 		.sleeping = run->sleeping,
 		.boxed = run->narrow_phase == OB_NARROW_AABB,
+		.pairs_max = ob_universe_step_data(u)->pairs_max,
 		.load = run->load,
 	};
 	ob_ode_thread_init();
@@ -88,12 +90,6 @@ static void follow_passports(ob_ode_baseline *m)
 	}
 }
 
-static bool is_finite(const ob_state *s)
-{
-	return isfinite(ob_norm2(s->pose.p)) && isfinite(ob_norm2(s->v)) && isfinite(ob_norm2(s->w)) &&
-	       isfinite(s->pose.q.w + s->pose.q.x + s->pose.q.y + s->pose.q.z);
-}
-
 // Towards the outside, so that the narrower numbers still hold the object.
 static void round_outwards(const double from[6], double by, float to[6])
 {
@@ -133,21 +129,29 @@ static void publish_object(ob_ode_baseline *m, uint32_t id, const ob_state *s, b
 	ob_universe_step_data(m->u)->schedule[id].state = asleep ? OB_SCHEDULE_ASLEEP : OB_SCHEDULE_AWAKE;
 }
 
+static bool moves(const ob_ode_baseline *m, uint32_t id)
+{
+	return m->held[id].there && !(ob_passport_of(m->u, id)->flags & OB_OBJECT_STATIC);
+}
+
+// All states or none.
 static void publish_all(ob_ode_baseline *m)
 {
-	ob_step_data *data = ob_universe_step_data(m->u);
 	uint32_t ids = ob_universe_ids(m->u);
+	ob_state s;
+	bool asleep, touching;
 	m->awake = 0;
 	for (uint32_t id = 0; id < ids; id++) {
-		if (!m->held[id].there || ob_passport_of(m->u, id)->flags & OB_OBJECT_STATIC)
-			continue; // what never moves keeps its first motion
-		ob_state s;
-		bool asleep, touching;
+		if (!moves(m, id))
+			continue;
 		ob_ode_world_get(m->world, id, &s, &asleep, &touching);
-		if (!is_finite(&s)) {
-			data->count->failure = OB_STEP_DIVERGED;
-			return;
-		}
+		if (!ob_state_is_sane(&s))
+			ob_step_fail(m->u, OB_STEP_DIVERGED, id);
+	}
+	for (uint32_t id = 0; id < ids && ob_step_failed(m->u, NULL) == OB_STEP_OK; id++) {
+		if (!moves(m, id))
+			continue; // what never moves keeps its first motion
+		ob_ode_world_get(m->world, id, &s, &asleep, &touching);
 		m->awake += !asleep;
 		publish_object(m, id, &s, asleep, touching);
 	}
@@ -161,10 +165,10 @@ static bool read_contacts(ob_ode_baseline *m, size_t *points)
 	size_t more = *points + *points / 2;
 	free(m->point);
 	free(m->depth);
-	m->point = calloc(more, sizeof *m->point);
-	m->depth = calloc(more, sizeof *m->depth);
-	m->points_max = m->point && m->depth ? more : 0;
-	return m->points_max && ob_ode_world_contacts(m->world, m->point, m->depth, m->points_max) == *points;
+	m->point = ob_allocate(more * sizeof *m->point);
+	m->depth = ob_allocate(more * sizeof *m->depth);
+	m->points_max = more;
+	return ob_ode_world_contacts(m->world, m->point, m->depth, m->points_max) == *points;
 }
 
 // The points of one pair as a record of the step that is now complete. A record holds the first 4 of them.
@@ -176,11 +180,8 @@ static void write_pair(ob_ode_baseline *m, uint32_t index, size_t from, size_t t
 	ob_vec3 a = ob_newest_motion(m->u, c->a)->p;
 	ob_pair_state s = { .normal = c->normal, .substep = m->run->step_length / m->run->substeps };
 	for (size_t i = from; i < to && s.points < OB_PAIR_POINTS; i++, s.points++) {
-		ob_vec3 arm = ob_sub(m->point[i].position, a);
-		s.arm_a[s.points][0] = (float)arm.x;
-		s.arm_a[s.points][1] = (float)arm.y;
-		s.arm_a[s.points][2] = (float)arm.z;
-		s.gap[s.points] = (float)-m->depth[i];
+		s.arm_a[s.points] = ob_sub(m->point[i].position, a);
+		s.gap[s.points] = -m->depth[i];
 		s.impulse[s.points] = m->point[i].impulse;
 	}
 	data->record[index].version[step & 1] = s;
@@ -200,7 +201,7 @@ static void publish_pairs(ob_ode_baseline *m)
 		for (to = from + 1; to < points; to++)
 			if (m->point[to].a != m->point[from].a || m->point[to].b != m->point[from].b)
 				break;
-		if (pairs < data->pairs_max)
+		if (pairs < data->pairs_max && ob_reserve_pairs(m->u, pairs, 1) && ob_reserve_record(m->u, pairs))
 			write_pair(m, pairs, from, to);
 	}
 	m->pairs = pairs;
@@ -213,7 +214,9 @@ void ob_ode_baseline_step(ob_ode_baseline *m)
 	follow_passports(m);
 	for (uint32_t i = 0; i < m->run->substeps; i++) {
 		if (!ob_ode_world_step(m->world, m->run->step_length / m->run->substeps)) {
-			ob_universe_step_data(m->u)->count->failure = OB_STEP_PAIRS_FULL;
+			bool full;
+			uint32_t culprit = ob_ode_world_culprit(m->world, &full);
+			ob_step_fail(m->u, full ? OB_STEP_PAIRS_FULL : OB_STEP_ENGINE, culprit);
 			return;
 		}
 	}

@@ -15,7 +15,7 @@ void ob_ode_baseline_destroy(ob_ode_baseline *m); // NULL is allowed
 
 // One step: takes in and drops objects as the passports say, steps, publishes all motions as of step
 // ob_step_count(u) + 1, and writes the touching pairs to the step data. Completing the step is left to the caller.
-// What goes wrong stands in the step data's count->failure.
+// What goes wrong fails the step (ob_step_failed).
 void ob_ode_baseline_step(ob_ode_baseline *m);
 // Of the last step: dynamic objects that are not asleep; pairs that touch.
 uint32_t ob_ode_baseline_awake(const ob_ode_baseline *m);

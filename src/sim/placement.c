@@ -39,7 +39,7 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 		m.v = m.w = ob_v3(0, 0, 0);
 	else
 		m.a = ob_external_acceleration(run, p), m.flags = OB_MOTION_FREE;
-	double reach = fixed ? 0 : ob_step_reach(run, p, m.v, m.w);
+	double reach = fixed ? 0 : ob_step_reach(run, p, m.q, m.v, m.w);
 	ob_fat_aabb_renew(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach);
 	uint32_t kind = !fixed                       ? OB_SCHEDULE_AWAKE
 			: p->shape == OB_SHAPE_PLANE ? OB_SCHEDULE_PLANE
@@ -51,6 +51,19 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 		end_flights(u);
 	if (ob_universe_traced(u))
 		ob_trace_birth(u, id);
+}
+
+// Objects whose query is pending are put in before it is made.
+void ob_sim_restore(ob_universe *u)
+{
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		if (ob_universe_step_data(u)->schedule[id].state == OB_SCHEDULE_ABSENT)
+			continue;
+		if (!ob_broadphase_query_pending(u, id))
+			ob_index_put(u, id);
+		if (ob_universe_traced(u))
+			ob_trace_birth(u, id);
+	}
 }
 
 static void wake_object(ob_universe *u, uint32_t id)
@@ -65,17 +78,18 @@ static void wake_object(ob_universe *u, uint32_t id)
 		ob_trace_moves(u, ob_trace_host(u), id, flags, m.flags);
 	ob_schedule *schedule = &ob_universe_step_data(u)->schedule[id];
 	uint32_t steps = (uint32_t)ob_step_count(u);
-	double reach = ob_step_reach(ob_universe_settings(u), pass, m.v, m.w);
+	double reach = ob_step_reach(ob_universe_settings(u), pass, m.q, m.v, m.w);
 	*schedule = (ob_schedule){ ob_schedule_path(schedule, steps), (float)reach, OB_SCHEDULE_AWAKE, steps, steps };
 }
 
 void ob_sim_remove(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	for (uint32_t i = 0; i < data->count->pairs; i++) {
+	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		uint32_t other = k->a == id ? k->b : k->a;
-		if ((k->a != id && k->b != id) || !k->active || data->schedule[other].state < OB_SCHEDULE_AWAKE)
+		if ((k->a != id && k->b != id) || !k->active || other >= data->objects_max ||
+		    data->schedule[other].state < OB_SCHEDULE_AWAKE)
 			continue;
 		wake_object(u, other);
 	}

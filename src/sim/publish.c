@@ -1,26 +1,26 @@
 #include "sim/publish.h"
 
 #include "motion/flight.h"
+#include "sim/commit.h"
 
-static uint32_t leader_of_island(const ob_step_data *data, uint32_t island)
+static bool is_sane(ob_vec3 v)
 {
-	return data->member[data->island[island].first_member];
+	const double most = 1e15;
+	return fabs(v.x) < most && fabs(v.y) < most && fabs(v.z) < most; // false of what is no number
 }
 
-// With a worker per object: does the island's leader leave the object's motion in ob_step_data.result, not in its slot?
-static bool is_left_in_result(const ob_universe *u, uint32_t id, uint32_t island)
+bool ob_state_is_sane(const ob_state *s)
 {
-	return ob_universe_settings(u)->one_per_object && leader_of_island(ob_universe_step_data(u), island) != id;
+	const ob_quat q = s->pose.q;
+	const double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+	return is_sane(s->pose.p) && is_sane(s->v) && is_sane(s->w) && norm2 > .5 && norm2 < 2;
 }
 
 void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due)
 {
-	ob_step_data *data = s->data;
-	data->schedule[id] = (ob_schedule){ m->path, m->reach, state, m->step, due };
-	if (is_left_in_result(s->u, id, data->result_island[id]))
-		data->result[id] = *m;
-	else
-		ob_stage_motion(s->u, id, m);
+	if (!ob_state_is_sane(&(ob_state){ { m->p, m->q }, m->v, m->w }) || !isfinite(m->path))
+		ob_step_fail(s->u, OB_STEP_DIVERGED, id);
+	ob_commit_result(s, &(ob_found_result){ .id = id, .state = state, .due = due, .motion = *m });
 }
 
 const ob_motion *ob_result_of(const ob_universe *u, uint32_t id)
@@ -29,7 +29,7 @@ const ob_motion *ob_result_of(const ob_universe *u, uint32_t id)
 	uint32_t island = data->result_island[id];
 	if (island == UINT32_MAX)
 		return ob_newest_motion(u, id);
-	return is_left_in_result(u, id, island) ? &data->result[id] : ob_staged_motion(u, id);
+	return ob_is_left_in_result(u, id) ? &data->result[id] : ob_staged_motion(u, id);
 }
 
 static void trace_state_change(ob_sim *s, uint32_t id, const ob_motion *next)
@@ -41,13 +41,13 @@ static void trace_state_change(ob_sim *s, uint32_t id, const ob_motion *next)
 void ob_results_commit(ob_sim *s)
 {
 	ob_step_data *data = s->data;
-	bool one_per_object = s->settings->one_per_object;
+	bool others_copy = s->settings->one_per_object && !ob_universe_contains(s->u);
 	for (uint32_t i = 0; i < data->count->islands; i++) {
 		const ob_island *is = &data->island[i];
 		for (uint32_t k = 0; k < is->members; k++) {
 			uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;
-			if (one_per_object && k > 0)
+			if (others_copy && k > 0)
 				continue;
 			trace_state_change(s, id, ob_staged_motion(s->u, id));
 			ob_commit_motion(s->u, id);

@@ -5,7 +5,8 @@
 //                       └─ solved again, from what was published before the step
 //
 // A worker that runs many objects stages straight into their slots. One that runs its own object alone writes no other
-// slot: it leaves the motions of the others in ob_step_data.result, from where their workers copy them.
+// slot: it leaves the motions of the others in ob_step_data.result, from where their workers copy them. Where simulators are
+// contained, the arranger stages and commits for all (commit.h).
 #ifndef OB_SIM_PUBLISH_H
 #define OB_SIM_PUBLISH_H
 
@@ -14,8 +15,10 @@
 #include "sim/state.h"
 #include "table/table.h"
 
+// Of numbers, and none so large that it can be meant: below 1e15 m, m/s, rad/s.
+bool ob_state_is_sane(const ob_state *s);
 // By the island's solver: stages the motion m and writes the object's schedule record. state: OB_SCHEDULE_*; due: the
-// step (from 0) that must visit the object, if nothing comes near before.
+// step (from 0) that must visit the object, if nothing comes near before. Of a motion that makes no sense it fails the step.
 void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due);
 // As staged, if the object's island was solved in this step and that is not yet committed; else as published.
 const ob_motion *ob_result_of(const ob_universe *u, uint32_t id);

@@ -25,13 +25,19 @@ void ob_sim_run(ob_sim *s);
 // object on the broad phase's requery list. The universe must be starting or paused.
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state);
 
+// Host, at the start, after ob_universe_load: the spatial index, which is not saved, of the objects that are.
+void ob_sim_restore(ob_universe *u);
+
 // Host, paused: takes an object away; its neighbours wake. Clears its passport.
 void ob_sim_remove(ob_universe *u, uint32_t id);
 
 // Host, at the start and after each pause: opens the first phase. The run then goes on until the next pause step.
 void ob_sim_resume(ob_universe *u);
 
-// Host, paused: why the run cannot go on, as one line; NULL if it can. A failed run pauses at once.
+// Host, paused: why the run cannot go on, as one line, which holds until the thread's next call; NULL if it
+// can. A failed run pauses at once.
 const char *ob_sim_failure(const ob_universe *u);
+// Host, paused: whether that is because a simulator has written where it should not: another attempt may do better.
+bool ob_sim_damaged(const ob_universe *u);
 
 #endif

@@ -1,5 +1,7 @@
 #include "sim/sparse_solver.h"
 
+#include "base/allocate.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,14 +14,14 @@ void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies)
 		ob_sparse_finish(t);
 		t->bodies_max = bodies + bodies / 2;
 		size_t n = t->bodies_max, words = (n + BITS - 1) / BITS;
-		t->adjacent = malloc(n * words * sizeof *t->adjacent);
-		t->order = malloc(n * sizeof *t->order);
-		t->place = malloc(n * sizeof *t->place);
-		t->first = malloc((n + 1) * sizeof *t->first);
-		t->at = malloc(n * n * sizeof *t->at);
-		t->own = malloc(n * sizeof *t->own);
-		t->inverse = malloc(n * sizeof *t->inverse);
-		t->change = malloc(n * sizeof *t->change);
+		t->adjacent = ob_allocate(n * words * sizeof *t->adjacent);
+		t->order = ob_allocate(n * sizeof *t->order);
+		t->place = ob_allocate(n * sizeof *t->place);
+		t->first = ob_allocate((n + 1) * sizeof *t->first);
+		t->at = ob_allocate(n * n * sizeof *t->at);
+		t->own = ob_allocate(n * sizeof *t->own);
+		t->inverse = ob_allocate(n * sizeof *t->inverse);
+		t->change = ob_allocate(n * sizeof *t->change);
 	}
 	t->bodies = bodies;
 	t->words = (bodies + BITS - 1) / BITS;
@@ -64,9 +66,9 @@ static uint32_t *list_neighbours(ob_sparse_solver *t, uint32_t body, uint32_t fr
 {
 	if (from + n >= t->below_max) {
 		t->below_max = (from + n + 1) * 2;
-		t->below = realloc(t->below, t->below_max * sizeof *t->below);
+		t->below = ob_reallocate(t->below, t->below_max * sizeof *t->below);
 		free(t->block);
-		t->block = malloc(t->below_max * sizeof *t->block);
+		t->block = ob_allocate(t->below_max * sizeof *t->block);
 	}
 	uint32_t *list = t->below + from;
 	for (uint32_t k = 0; k < t->words; k++)

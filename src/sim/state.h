@@ -16,7 +16,14 @@ struct ob_sim {
 	ob_ode_bodies ode_bodies;
 	ob_island_work island; // scratch
 	ob_rotation_cache rotations;
+	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects
+	struct { // sim/budget.h
+		uint64_t noted, told; // work; of which the step's sum knows
+		uint32_t object;
+		bool spent;
+	} budget;
+	uint64_t fault_chances; // in this process (sim/fault.h)
 	ob_counters counters; // handed over to the universe at the end of each phase
 	struct { // sim/profile.h
 		bool timed, shown; // for the counters; for the trace

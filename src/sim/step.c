@@ -10,9 +10,13 @@
 //                               │      ^
 //                      host <── PAUSE  └── nobody is due, and no pair comes near: the step is complete as it begins
 //
-// Phases are done in parallel between two openings of the gate (table/gate.h). The last worker to arrive, the scheduling
-// worker, alone does what stands in brackets and says which phase comes next. Several simulators' share of a phase is
-// claimed by whichever worker is free; with a worker per object each does its own.
+// Phases are done in parallel between two openings of the gate (table/gate.h). The last worker to arrive, the
+// scheduling worker, alone does what stands in brackets and says which phase comes next. Several simulators' share of a
+// phase is claimed by whichever worker is free; with a worker per object each does its own.
+//
+// Contained simulators (table/outbox.h) write nothing in place: the arranger, always the last to arrive, writes what
+// they hand over (commit.h), and needs no COPY. There the host resumes the run by RESUME, which the arranger alone
+// takes part in.
 //
 //   phase             task of a worker          reads                             writes
 //   BROADPHASE_START  objects whose fat AABB    index, fat AABBs                  their lists of neighbours
@@ -26,9 +30,14 @@
 //                       worker's own object
 //   BASELINE          (ODE's world) all objects all of it                         all of it
 //
-// A phase is skipped where nobody has anything to do, and the scheduling worker checks few pairs by itself: see the open_
-// functions.
+// A phase is skipped where nobody has anything to do, and the scheduling worker checks few pairs by itself: see the
+// open_ functions.
+#include <stdio.h>
+
 #include "sim/broadphase.h"
+#include "sim/budget.h"
+#include "sim/commit.h"
+#include "sim/fault.h"
 #include "sim/island_solver.h"
 #include "sim/island_builder.h"
 #include "sim/late_contacts.h"
@@ -53,8 +62,8 @@ typedef struct scheduler {
 } scheduler;
 
 typedef struct step_phase {
-	// Opens the gate to those who take part. false: the phase is over already, for nobody had anything to do, or the
-	// scheduling worker has done it. NULL: a serial part alone.
+	// Opens the gate to those who take part. false: the phase is over already, for nobody had anything to do, or
+	// the scheduling worker has done it. NULL: a serial part alone.
 	bool (*open)(const scheduler *c, ob_phase phase);
 	void (*work)(ob_sim *s); // a participant's share
 	ob_phase (*next)(const scheduler *c); // the serial part after it; which phase comes next
@@ -67,9 +76,10 @@ typedef struct step_phase {
 // Tasks 0 .. tasks-1 are claimed by so many workers, the scheduling worker first: it need not be woken.
 static void open_tasks(const scheduler *c, ob_phase phase, uint32_t tasks, uint32_t workers)
 {
-	const uint32_t all = ob_universe_workers(c->u), first = c->data->count->scheduler;
+	const uint32_t all = ob_universe_simulators(c->u),
+		       first = ob_universe_contains(c->u) ? 0 : ob_step_scheduler(c->u);
 	uint32_t *who = c->data->scratch;
-	ob_task_reset(c->u, tasks);
+	ob_task_reset(c->u, tasks, workers < all ? workers : all);
 	if (workers >= all) {
 		ob_gate_open(c->u, phase, NULL, 0);
 		return;
@@ -88,7 +98,8 @@ static bool open_broadphase(const scheduler *c, ob_phase phase)
 	if (!count)
 		return false;
 	for (uint32_t i = 0; i < count; i++)
-		ob_index_put(c->u, list[i]);
+		if (ob_object_in_range(c->data, list[i]))
+			ob_index_put(c->u, list[i]);
 	if (c->settings->one_per_object)
 		ob_gate_open(c->u, phase, list, count);
 	else
@@ -114,20 +125,23 @@ static bool open_islands(const scheduler *c, ob_phase phase)
 static bool open_pairs(const scheduler *c, ob_phase phase)
 {
 	const bool solved = phase == OB_PHASE_LATE_CONTACTS;
-	const uint32_t pairs = c->data->count->pairs;
-	const bool serial = pairs < PARALLEL_PAIRS || ob_universe_workers(c->u) == 1 || c->settings->one_per_object;
+	const uint32_t pairs = ob_pairs_count(c->data);
+	const uint32_t all = ob_universe_simulators(c->u);
+	const bool serial = pairs < PARALLEL_PAIRS || all == 1 || c->settings->one_per_object;
 	ob_late_contacts_begin(c->u, solved);
 	if (serial && c->sim) {
 		ob_late_contacts_check(c->sim, 0, pairs, solved);
 		return false;
 	}
-	ob_task_reset(c->u, (pairs + OB_LATE_CONTACTS_BATCH - 1) / OB_LATE_CONTACTS_BATCH);
+	ob_task_reset(c->u, (pairs + OB_LATE_CONTACTS_BATCH - 1) / OB_LATE_CONTACTS_BATCH, all);
 	if (!c->settings->one_per_object) {
 		ob_gate_open(c->u, phase, NULL, 0);
 		return true;
 	}
 	uint32_t first = 0;
-	while (c->data->schedule[first].state < OB_SCHEDULE_AWAKE) // pairs are checked where somebody is awake
+	const uint32_t last = all - 1;
+	while (first < last &&
+	       c->data->schedule[first].state < OB_SCHEDULE_AWAKE) // pairs are checked where somebody is awake
 		first++;
 	ob_gate_open(c->u, phase, &first, 1);
 	return true;
@@ -138,7 +152,7 @@ static bool open_copy(const scheduler *c, ob_phase phase)
 {
 	const ob_step_data *data = c->data;
 	uint32_t n = 0;
-	if (!c->settings->one_per_object)
+	if (!c->settings->one_per_object || ob_universe_contains(c->u))
 		return false;
 	for (uint32_t i = 0; i < data->count->islands; i++)
 		for (uint32_t k = 1; k < data->island[i].members; k++)
@@ -162,15 +176,30 @@ static bool open_pause(const scheduler *c, ob_phase phase)
 
 // ---- a participant's share
 
+static void do_nothing(ob_sim *s)
+{
+	(void)s;
+}
+
+static void query(ob_sim *s, uint32_t id)
+{
+	enum { TESTS_PER_WORK = 16 };
+	const uint64_t tests = s->counters.box_tests;
+	ob_budget_begin_share(s, id);
+	ob_broadphase_query(s->u, id, &s->counters.box_tests);
+	ob_budget_note(s, (s->counters.box_tests - tests) / TESTS_PER_WORK);
+	ob_budget_spent(s);
+}
+
 static void query_neighbours(ob_sim *s)
 {
 	uint32_t count, i;
 	const uint32_t *list = ob_requery_list(s->u, &count);
 	if (s->settings->one_per_object)
-		ob_broadphase_query(s->u, s->worker, &s->counters.box_tests);
+		query(s, s->worker);
 	else
-		while (ob_task_claim(s->u, &i))
-			ob_broadphase_query(s->u, list[i], &s->counters.box_tests);
+		while (ob_task_claim(s->u, &i) && ob_step_failed(s->u, NULL) == OB_STEP_OK)
+			query(s, list[i]);
 }
 
 static void check_pairs(ob_sim *s, bool solved)
@@ -199,6 +228,7 @@ static void solve_island(ob_sim *s, uint32_t island, bool first)
 	ob_island_solve(s, island);
 	if (shown)
 		ob_span_island_end(s, island);
+	ob_fault_chance(s);
 }
 
 static void solve_islands(ob_sim *s)
@@ -239,7 +269,7 @@ static void step_baseline(ob_sim *s)
 // The host may ask for a pause at a step that has just gone by: then the next one will do.
 static bool must_pause(const scheduler *c)
 {
-	return ob_step_count(c->u) >= ob_gate_pause_step(c->u) || c->data->count->failure;
+	return ob_step_count(c->u) >= ob_gate_pause_step(c->u);
 }
 
 static ob_phase build_islands(const scheduler *c)
@@ -263,6 +293,30 @@ static ob_phase begin_step(const scheduler *c)
 	if (!count->awake || !count->pairs)
 		count->next_check = UINT32_MAX;
 	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : build_islands(c);
+}
+
+// How many objects are awake, and when the first of them is due.
+static void count_awake(const scheduler *c)
+{
+	uint32_t n = 0, due = UINT32_MAX;
+	for (uint32_t id = 0; id < ob_universe_ids(c->u); id++) {
+		const ob_schedule *object = &c->data->schedule[id];
+		if (object->state != OB_SCHEDULE_AWAKE && object->state != OB_SCHEDULE_EQUILIBRIUM)
+			continue;
+		n++;
+		due = object->due < due ? object->due : due;
+	}
+	c->data->count->awake = n;
+	c->data->count->next_due = due;
+}
+
+static ob_phase after_resume(const scheduler *c)
+{
+	count_awake(c);
+	c->data->count->next_check = 0; // the host may have changed anything
+	if (c->settings->monolith)
+		ob_requery_reset(c->u); // ODE's world finds its own neighbours
+	return OB_PHASE_BROADPHASE_START;
 }
 
 static ob_phase after_broadphase_start(const scheduler *c)
@@ -289,21 +343,6 @@ static ob_phase after_broadphase(const scheduler *c)
 {
 	ob_pairs_merge(c->u, ob_step_count(c->u) + 1);
 	return OB_PHASE_LATE_CONTACTS;
-}
-
-// How many objects are awake, and when the first of them is due.
-static void count_awake(const scheduler *c)
-{
-	uint32_t n = 0, due = UINT32_MAX;
-	for (uint32_t id = 0; id < ob_universe_ids(c->u); id++) {
-		const ob_schedule *object = &c->data->schedule[id];
-		if (object->state != OB_SCHEDULE_AWAKE && object->state != OB_SCHEDULE_EQUILIBRIUM)
-			continue;
-		n++;
-		due = object->due < due ? object->due : due;
-	}
-	c->data->count->awake = n;
-	c->data->count->next_due = due;
 }
 
 static ob_phase after_late_contacts(const scheduler *c)
@@ -335,6 +374,7 @@ static ob_phase complete_step(const scheduler *c)
 {
 	const struct ob_step_counts *count = c->data->count;
 	ob_step_complete(c->u, count->awake, count->pairs, count->islands);
+	ob_step_work_reset(c->u);
 	return begin_step(c);
 }
 
@@ -342,6 +382,7 @@ static ob_phase complete_step(const scheduler *c)
 
 // clang-format off
 static const step_phase phases[] = {
+	[OB_PHASE_RESUME]           = { NULL,            do_nothing,         after_resume,           OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE },
 	[OB_PHASE_BROADPHASE_START] = { open_broadphase, query_neighbours,   after_broadphase_start, OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
 	[OB_PHASE_FORECAST]         = { open_pairs,      forecast_contacts,  after_forecast,         OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
 	[OB_PHASE_ISLANDS]          = { open_islands,    solve_islands,      after_islands,          OB_PROFILE_LOAD,       OB_TRACE_SOLVE },
@@ -354,22 +395,44 @@ static const step_phase phases[] = {
 };
 // clang-format on
 
-// From this phase to the first for which the gate opens, or to a pause.
-static void open_from(const scheduler *c, ob_phase phase)
+// Of a step that has failed nothing is published any more: the universe stays at the step before.
+static ob_phase next_phase(const scheduler *c, ob_phase finished)
 {
-	while (!phases[phase].open || !phases[phase].open(c, phase))
-		phase = phases[phase].next(c);
+	return ob_step_failed(c->u, NULL) == OB_STEP_OK ? phases[finished].next(c) : OB_PHASE_PAUSE;
 }
 
-// The last to arrive, alone: what comes next.
-static void schedule(ob_sim *s, ob_phase finished)
+// From this phase to the first for which the gate opens, or to a pause. Returns which.
+static ob_phase open_from(const scheduler *c, ob_phase phase)
+{
+	while (!phases[phase].open || !phases[phase].open(c, phase))
+		phase = next_phase(c, phase);
+	return phase;
+}
+
+// The last to arrive, alone: what comes next. Returns the phase that the gate is open with, or PAUSE.
+static ob_phase schedule(ob_sim *s, ob_phase finished)
 {
 	const scheduler c = { s->u, s, s->data, s->settings };
 	ob_profile_begin(s, OB_PROFILE_SCHEDULE);
 	ob_phase_close(s->u);
-	s->data->count->scheduler = s->worker;
-	open_from(&c, phases[finished].next(&c));
+	ob_step_set_scheduler(s->u, s->worker);
+	const ob_phase due = next_phase(&c, finished);
+	ob_fault_chance(s);
+	const ob_phase next = open_from(&c, due);
 	ob_critical_add(s->u, ob_profile_end(s));
+	return next;
+}
+
+// The arranger: commits what simulators hand over at the end of each phase, and schedules the next, until the host has
+// the turn again. false: STOP.
+static bool arrange(ob_sim *s, ob_phase phase)
+{
+	while (phase != OB_PHASE_PAUSE) {
+		if (!ob_commit_phase(s->committer, s->u, phase))
+			return false;
+		phase = schedule(s, phase);
+	}
+	return true;
 }
 
 bool ob_step(ob_sim *s)
@@ -383,11 +446,17 @@ bool ob_step(ob_sim *s)
 	ob_span_turn(s, phases[phase].span);
 	ob_profile_begin(s, phases[phase].section);
 	phases[phase].work(s);
+	ob_fault_chance(s);
 	ob_phase_worked(s->u, ob_profile_end(s));
-	*ob_worker_counters(s->u, s->worker) = s->counters;
+	if (ob_universe_contained(s->u))
+		ob_outbox_end_of(s->u)->counters = s->counters;
+	else
+		*ob_worker_counters(s->u, s->worker) = s->counters;
 	if (ob_gate_arrive(s->u, s->worker)) {
 		ob_span_turn(s, OB_TRACE_SCHEDULE);
-		schedule(s, phase);
+		phase = schedule(s, phase);
+		if (s->committer)
+			return arrange(s, phase);
 	}
 	return true;
 }
@@ -395,24 +464,124 @@ bool ob_step(ob_sim *s)
 void ob_sim_resume(ob_universe *u)
 {
 	const scheduler c = { u, NULL, ob_universe_step_data(u), ob_universe_settings(u) };
+	const uint32_t arranger = ob_universe_simulators(u);
 	ob_step_begin(u);
-	count_awake(&c);
-	c.data->count->next_check = 0; // the host may have changed anything
-	if (c.settings->monolith)
-		ob_requery_reset(u); // ODE's world finds its own neighbours
-	open_from(&c, OB_PHASE_BROADPHASE_START);
+	if (ob_universe_contains(u))
+		ob_gate_open(u, OB_PHASE_RESUME, &arranger, 1);
+	else
+		open_from(&c, after_resume(&c));
+}
+
+// ---- why the run cannot go on
+
+enum { NAMED = 120 }; // bytes of "object 4294967295 (" and a name
+
+// "object 3 (crate)", in one of two texts of the thread in turn
+static const char *name_of(const ob_universe *u, uint32_t id)
+{
+	static _Thread_local char texts[2][NAMED];
+	static _Thread_local unsigned turn;
+	char *text = texts[turn++ % 2];
+	const char *name = ob_passport_of(u, id)->name;
+	snprintf(text, NAMED, "object %u%s%.*s%s", id, *name ? " (" : "", OB_NAME_MAX, name, *name ? ")" : "");
+	return text;
+}
+
+// Names the object that is near most others: it is the one that is too large, or too fast.
+static void tell_of_neighbours(const ob_universe *u, const char *what, uint32_t most, uint32_t blamed, char *text,
+			       size_t size)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t id = blamed;
+	uint64_t near = 0;
+	for (uint32_t i = 0; i < ob_universe_ids(u); i++)
+		if (data->neighbours[i].count != UINT32_MAX && data->neighbours[i].count > near)
+			near = data->neighbours[i].count, id = i;
+	char others[32] = "most";
+	if (near)
+		snprintf(others, sizeof others, "%u", (uint32_t)near);
+	snprintf(text, size,
+		 "more than %u %s: %s alone is near %s others; make it smaller or slower, or try a smaller --step",
+		 most, what, name_of(u, id), others);
+}
+
+// Names some of the island that took so much work.
+static void tell_of_work(const ob_universe *u, uint32_t object, unsigned long long step, char *text, size_t size)
+{
+	enum { SHOWN = 4 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t place = data->result_island[object];
+	const ob_island *is = place < data->count->islands && place < data->objects_max ? &data->island[place] : NULL;
+	int n = snprintf(text, size, "step %llu takes more work than a step may: ", step);
+	for (uint32_t i = 0; is && i < is->members && i < SHOWN && is->first_member + i < data->objects_max; i++) {
+		uint32_t id = data->member[is->first_member + i];
+		if (id < data->objects_max)
+			n += snprintf(text + n, size - (size_t)n, "%s%s", i ? ", " : "", name_of(u, id));
+	}
+	if (!is)
+		n += snprintf(text + n, size - (size_t)n, "%s", name_of(u, object));
+	if (is && is->members > SHOWN)
+		n += snprintf(text + n, size - (size_t)n, " and %u more", is->members - SHOWN);
+	snprintf(text + n, size - (size_t)n,
+		 " would need millions of substeps or collision tests; make what is fast slower, what is thin thicker, "
+		 "or "
+		 "try a smaller --step");
+}
+
+// Names the culprit, if simulators are contained: then it is known.
+static const char *damage(const ob_universe *u)
+{
+	static _Thread_local char text[160];
+	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	if (!ob_universe_contains(u) || !count->culprit)
+		return "what simulators share makes no sense: one of them has written where it should not";
+	snprintf(text, sizeof text, "simulator %u %.*s", count->culprit - 1, (int)sizeof count->blamed_for - 1,
+		 count->blamed_for);
+	return text;
 }
 
 const char *ob_sim_failure(const ob_universe *u)
 {
-	switch (ob_universe_step_data(u)->count->failure) {
+	static _Thread_local char text[6 * NAMED + 256];
+	const ob_step_data *data = ob_universe_step_data(u);
+	const unsigned long long step = ob_step_count(u) + 1;
+	uint32_t object;
+	switch (ob_step_failed(u, &object)) {
 	case OB_STEP_PAIRS_FULL:
-		return "more pairs of neighbours than the universe has room for: the objects lie too close together";
+		tell_of_neighbours(u, "pairs of neighbours", data->pairs_max, object, text, sizeof text);
+		return text;
 	case OB_STEP_NEIGHBOURS_FULL:
-		return "objects have more neighbours than the universe has room for: they lie too close together";
+		tell_of_neighbours(u, "neighbours", data->neighbours_max, object, text, sizeof text);
+		return text;
 	case OB_STEP_DIVERGED:
-		return "a state is no longer a number: the run diverged; try more substeps or a smaller step";
-	default:
+		snprintf(text, sizeof text,
+			 "%s diverged in step %llu: its state is no longer a number, or beyond 1e15 m, m/s or rad/s; "
+			 "try more "
+			 "substeps or a smaller step",
+			 name_of(u, object), step);
+		return text;
+	case OB_STEP_ENGINE:
+		snprintf(text, sizeof text,
+			 "ODE gave up in step %llu at %s, whose state is too wild for it; try more substeps or a "
+			 "smaller step",
+			 step, name_of(u, object));
+		return text;
+	case OB_STEP_OVERWORKED:
+		tell_of_work(u, object, step, text, sizeof text);
+		return text;
+	case OB_STEP_LEFT:
+		return "the run was stopped";
+	case OB_STEP_MEMORY_FULL:
+		return "/dev/shm is full, and more objects touch: enlarge it (mount -o remount,size=..., docker run "
+		       "--shm-size=...) or take fewer objects";
+	case OB_STEP_OK:
 		return NULL;
+	default:
+		return damage(u);
 	}
+}
+
+bool ob_sim_damaged(const ob_universe *u)
+{
+	return ob_step_failed(u, NULL) >= OB_STEP_DAMAGED;
 }

@@ -1,6 +1,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "sim/commit.h"
 #include "sim/island_solver.h"
 #include "sim/ode_baseline.h"
 #include "sim/sim.h"
@@ -16,21 +17,29 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->data = ob_universe_step_data(u);
 		s->settings = run;
 		s->worker = worker;
+		s->island.unit = ob_run_settings_units(run);
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
 		s->times.timed = s->times.wanted = run->timed;
 		s->span.traced = ob_universe_traced(u);
 		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
 	}
 	if (!s || !s->island.row_of || !ob_ode_bodies_create(&s->ode_bodies, u) ||
-	    !ob_rotation_cache_create(&s->rotations, capacity)) {
+	    !ob_rotation_cache_create(&s->rotations, capacity) ||
+	    (run->monolith && !(s->baseline = ob_ode_baseline_create(u)))) {
 		ob_sim_destroy(s);
 		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
 		return NULL;
 	}
-	if (run->monolith) {
-		s->baseline = ob_ode_baseline_create(u);
-	} else if (run->one_per_object && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
+	if (run->one_per_object && worker < capacity && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
 		ob_ode_bodies_get(&s->ode_bodies, u, worker); // its own object
+	}
+	if (ob_universe_contains(u) && worker == ob_universe_simulators(u)) {
+		s->committer = ob_committer_create(u);
+		if (!s->committer) {
+			ob_sim_destroy(s);
+			ob_fail(e, "arranger: no memory for %u objects", capacity);
+			return NULL;
+		}
 	}
 	if (s->times.timed) { // it waits at the gate from now on; another's waiting ended with it
 		s->counters.since_ns = ob_clock_ns();
@@ -48,6 +57,7 @@ void ob_sim_destroy(ob_sim *s)
 	ob_ode_baseline_destroy(s->baseline);
 	ob_island_work_finish(&s->island);
 	ob_rotation_cache_finish(&s->rotations);
+	ob_committer_destroy(s->committer);
 	free(s);
 }
 

@@ -1,13 +1,10 @@
 #include "table/checkpoint.h"
 
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include "table/layout.h"
-#include "table/segment.h"
 
 // Bytes of the segment; begin and end on page borders.
 typedef struct range {
@@ -15,7 +12,7 @@ typedef struct range {
 } range;
 
 struct ob_checkpoint {
-	int fd; // of the segment: it tells which pages are in use
+	int fd; // the universe's: it tells which pages are in use
 	ob_control control;
 	ob_motion *motion; // [ids]
 	uint32_t ids, ids_max;
@@ -27,15 +24,10 @@ struct ob_checkpoint {
 
 ob_checkpoint *ob_checkpoint_create(const ob_universe *u)
 {
-	char path[OB_SEGMENT_PATH_MAX];
 	ob_checkpoint *c = calloc(1, sizeof *c);
 	if (!c)
 		return NULL;
-	c->fd = ob_segment_path(path, u->header.name) ? shm_open(path, O_RDONLY | O_CLOEXEC, 0) : -1;
-	if (c->fd < 0) {
-		ob_checkpoint_destroy(c);
-		return NULL;
-	}
+	c->fd = u->fd;
 	return c;
 }
 
@@ -43,8 +35,6 @@ void ob_checkpoint_destroy(ob_checkpoint *c)
 {
 	if (!c)
 		return;
-	if (c->fd >= 0)
-		close(c->fd);
 	free(c->motion);
 	free(c->kept);
 	free(c->bytes);
@@ -87,19 +77,44 @@ static bool next_in_use(int fd, uint64_t from, uint64_t end, range *found)
 	return true;
 }
 
+static bool is_blank(const char *page)
+{
+	uint64_t words[8], any = 0;
+	for (size_t at = 0; at < OB_LAYOUT_PAGE && !any; at += sizeof words) {
+		memcpy(words, page + at, sizeof words);
+		for (int i = 0; i < 8; i++)
+			any |= words[i];
+	}
+	return !any;
+}
+
+static bool keep(ob_checkpoint *c, const ob_universe *u, range r, size_t *bytes)
+{
+	size_t more = r.end - r.begin;
+	if (!grow((void **)&c->kept, sizeof *c->kept, c->ranges + 1, &c->ranges_max) ||
+	    !grow((void **)&c->bytes, 1, *bytes + more, &c->bytes_max))
+		return false;
+	memcpy(c->bytes + *bytes, u->base + r.begin, more);
+	c->kept[c->ranges++] = r;
+	*bytes += more;
+	return true;
+}
+
+// Pages that are taken and hold nothing yet are left out: what is in use and not kept is put back as zeros.
 static bool take_areas(ob_checkpoint *c, const ob_universe *u)
 {
 	range all = step_areas(u), r;
 	size_t bytes = 0;
 	c->ranges = 0;
 	for (uint64_t at = all.begin; next_in_use(c->fd, at, all.end, &r); at = r.end) {
-		size_t more = r.end - r.begin;
-		if (!grow((void **)&c->kept, sizeof *c->kept, c->ranges + 1, &c->ranges_max) ||
-		    !grow((void **)&c->bytes, 1, bytes + more, &c->bytes_max))
-			return false;
-		memcpy(c->bytes + bytes, u->base + r.begin, more);
-		c->kept[c->ranges++] = r;
-		bytes += more;
+		for (uint64_t page = r.begin, begin = r.begin; page < r.end;) {
+			for (begin = page; page < r.end && !is_blank(u->base + page); page += OB_LAYOUT_PAGE)
+				;
+			if (page > begin && !keep(c, u, (range){ begin, page }, &bytes))
+				return false;
+			for (; page < r.end && is_blank(u->base + page); page += OB_LAYOUT_PAGE)
+				;
+		}
 	}
 	return true;
 }
@@ -107,10 +122,11 @@ static bool take_areas(ob_checkpoint *c, const ob_universe *u)
 static bool take_motions(ob_checkpoint *c, const ob_universe *u)
 {
 	size_t max = c->ids_max;
-	if (!grow((void **)&c->motion, sizeof *c->motion, u->control->ids, &max))
+	const uint32_t ids = ob_universe_ids(u);
+	if (!grow((void **)&c->motion, sizeof *c->motion, ids, &max))
 		return false;
 	c->ids_max = (uint32_t)max;
-	c->ids = u->control->ids;
+	c->ids = ids;
 	for (uint32_t id = 0; id < c->ids; id++)
 		c->motion[id] = *ob_newest_motion(u, id);
 	return true;
@@ -201,6 +217,7 @@ void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
 	put_areas_back(c, u);
 	put_motions_back(c, u);
 	put_control_back(&c->control, u->control);
+	u->control->lives++;
 	reset_gate(u);
 	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
 		__atomic_store_n(&u->worker[w].pid, 0, __ATOMIC_RELEASE);

@@ -1,32 +1,19 @@
 #include "table/gate.h"
 
 #include <errno.h>
-#include <limits.h>
-#include <linux/futex.h>
 #include <string.h>
-#include <sys/syscall.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "base/cpu.h"
+#include "table/futex.h"
 #include "table/layout.h"
+#include "table/outbox.h"
 
 enum { SPIN_NS = 100000, SPINS_PER_CHECK = 32 };
 
 static uint32_t load_acquire(const uint32_t *word)
 {
 	return __atomic_load_n(word, __ATOMIC_ACQUIRE);
-}
-
-// Futex words lie in shared memory: never FUTEX_PRIVATE_FLAG. bits: which waiters of the word.
-static void futex_wait(uint32_t *word, uint32_t seen, uint32_t bits, const struct timespec *until)
-{
-	syscall(SYS_futex, word, FUTEX_WAIT_BITSET, seen, until, NULL, bits);
-}
-
-static void futex_wake(uint32_t *word, uint32_t bits)
-{
-	syscall(SYS_futex, word, FUTEX_WAKE_BITSET, INT_MAX, NULL, NULL, bits);
 }
 
 static int64_t now_ns(void)
@@ -47,7 +34,6 @@ static void relax_cpu(void)
 
 void ob_gate_prepare(ob_gate *g, uint32_t workers)
 {
-	g->workers = workers;
 	g->spin = workers <= (uint32_t)ob_cpu_count();
 	g->phase = OB_PHASE_PAUSE;
 	g->host_turn = 1;
@@ -55,17 +41,18 @@ void ob_gate_prepare(ob_gate *g, uint32_t workers)
 
 // ---- workers
 
-static bool has_turn(const ob_gate *g, const ob_gate_cell *cell)
+// done: the last turn at which the worker arrived. A contained simulator keeps it for itself.
+static bool has_turn(const ob_gate *g, const ob_gate_cell *cell, uint32_t done)
 {
-	return load_acquire(&cell->turn) != __atomic_load_n(&cell->done, __ATOMIC_RELAXED) || load_acquire(&g->stop);
+	return load_acquire(&cell->turn) != done || load_acquire(&g->stop);
 }
 
-static bool spin_for_turn(const ob_gate *g, const ob_gate_cell *cell)
+static bool spin_for_turn(const ob_gate *g, const ob_gate_cell *cell, uint32_t done)
 {
 	int64_t end = now_ns() + SPIN_NS;
 	do {
 		for (int i = 0; i < SPINS_PER_CHECK; i++) {
-			if (has_turn(g, cell))
+			if (has_turn(g, cell, done))
 				return true;
 			relax_cpu();
 		}
@@ -77,25 +64,34 @@ ob_phase ob_gate_wait(ob_universe *u, uint32_t worker)
 {
 	ob_gate *g = u->gate;
 	const ob_gate_cell *cell = u->gate_cell + worker;
-	if (!has_turn(g, cell) && !(g->spin && spin_for_turn(g, cell))) {
+	const uint32_t done = u->outbox ? ob_outbox_turns_done(u) : __atomic_load_n(&cell->done, __ATOMIC_RELAXED);
+	if (!has_turn(g, cell, done) && !(g->spin && spin_for_turn(g, cell, done))) {
 		ob_gate_half *half = u->gate_group[worker / 64].half + worker / 32 % 2;
 		uint32_t bit = UINT32_C(1) << worker % 32;
-		__atomic_fetch_or(&half->asleep, bit, __ATOMIC_SEQ_CST);
+		if (!u->outbox)
+			__atomic_fetch_or(&half->asleep, bit, __ATOMIC_SEQ_CST);
 		for (;;) {
 			uint32_t seen = load_acquire(&half->word);
-			if (has_turn(g, cell))
+			if (has_turn(g, cell, done))
 				break;
-			futex_wait(&half->word, seen, bit, NULL);
+			ob_futex_wait(&half->word, seen, bit, NULL);
 		}
-		__atomic_fetch_and(&half->asleep, ~bit, __ATOMIC_SEQ_CST);
+		if (!u->outbox)
+			__atomic_fetch_and(&half->asleep, ~bit, __ATOMIC_SEQ_CST);
 	}
 	if (load_acquire(&g->stop))
 		return OB_PHASE_STOP;
+	if (u->outbox)
+		ob_outbox_begin(u);
 	return (ob_phase)__atomic_load_n(&g->phase, __ATOMIC_RELAXED);
 }
 
 bool ob_gate_arrive(ob_universe *u, uint32_t worker)
 {
+	if (u->outbox) {
+		ob_outbox_arrive(u);
+		return false;
+	}
 	ob_gate *g = u->gate;
 	ob_gate_group *group = u->gate_group + worker / 64;
 	ob_gate_cell *cell = u->gate_cell + worker;
@@ -118,9 +114,11 @@ static void set_expected(ob_gate_group *group, uint64_t workers)
 
 static void set_all_expected(ob_universe *u, uint32_t groups)
 {
-	uint32_t workers = u->gate->workers;
+	uint32_t workers = ob_universe_simulators(u);
 	for (uint32_t i = 0; i < groups; i++)
-		set_expected(u->gate_group + i, workers - 64 * i >= 64 ? UINT64_MAX : (UINT64_C(1) << workers % 64) - 1);
+		set_expected(u->gate_group + i, workers >= 64 * i + 64 ? UINT64_MAX
+						: workers <= 64 * i    ? 0
+								       : (UINT64_C(1) << workers % 64) - 1);
 }
 
 // Writes the turn into the cells of a half's participants, then wakes those of them that sleep.
@@ -131,8 +129,10 @@ static void open_half(ob_universe *u, uint32_t first, ob_gate_half *half, uint32
 	__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
 	// A read-modify-write, not a load: of it and the waiter's "or", the second sees the first.
 	uint32_t wake = __atomic_fetch_or(&half->asleep, 0, __ATOMIC_SEQ_CST) & part;
+	if (ob_universe_contains(u)) // simulators cannot say that they sleep
+		wake = part;
 	if (wake)
-		futex_wake(&half->word, wake);
+		ob_futex_wake(&half->word, wake);
 }
 
 void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, uint32_t n)
@@ -142,7 +142,7 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 		ob_gate_stop(u);
 		return;
 	}
-	uint32_t groups = (g->workers + 63) / 64, taking_part = 0;
+	uint32_t groups = (u->header.sizes.workers + 63) / 64, taking_part = 0;
 	for (uint32_t i = 0; i < groups; i++) {
 		set_expected(u->gate_group + i, 0);
 		__atomic_store_n(&u->gate_group[i].arrived, 0, __ATOMIC_RELAXED);
@@ -150,6 +150,10 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 	if (!participants)
 		set_all_expected(u, groups);
 	for (uint32_t i = 0; participants && i < n; i++) {
+		if (participants[i] >= u->header.sizes.workers) {
+			u->step_data.count->failure = OB_STEP_DAMAGED;
+			continue;
+		}
 		ob_gate_group *group = u->gate_group + participants[i] / 64;
 		set_expected(group, group->expected | UINT64_C(1) << participants[i] % 64);
 	}
@@ -173,7 +177,7 @@ void ob_gate_pause(ob_universe *u)
 {
 	__atomic_store_n(&u->gate->phase, OB_PHASE_PAUSE, __ATOMIC_RELAXED);
 	__atomic_store_n(&u->gate->host_turn, 1, __ATOMIC_RELEASE);
-	futex_wake(&u->gate->host_turn, FUTEX_BITSET_MATCH_ANY);
+	ob_futex_wake(&u->gate->host_turn, FUTEX_BITSET_MATCH_ANY);
 }
 
 // ---- the host
@@ -199,7 +203,7 @@ bool ob_gate_host_wait(ob_universe *u, double timeout)
 			return true;
 		if (now_ns() >= end)
 			return false;
-		futex_wait(&g->host_turn, seen, FUTEX_BITSET_MATCH_ANY, &until);
+		ob_futex_wait(&g->host_turn, seen, FUTEX_BITSET_MATCH_ANY, &until);
 	}
 }
 
@@ -210,15 +214,20 @@ bool ob_gate_waits_for(const ob_universe *u, uint32_t worker)
 	return (__atomic_load_n(&group->expected, __ATOMIC_RELAXED) & ~arrived) >> worker % 64 & 1;
 }
 
+bool ob_gate_stopped(const ob_universe *u)
+{
+	return load_acquire(&u->gate->stop);
+}
+
 void ob_gate_stop(ob_universe *u)
 {
 	ob_gate *g = u->gate;
 	__atomic_store_n(&g->stop, 1, __ATOMIC_SEQ_CST);
 	__atomic_fetch_or(&g->host_turn, 2, __ATOMIC_SEQ_CST);
-	futex_wake(&g->host_turn, FUTEX_BITSET_MATCH_ANY);
-	for (uint32_t i = 0; i < g->workers; i += 32) {
+	ob_futex_wake(&g->host_turn, FUTEX_BITSET_MATCH_ANY);
+	for (uint32_t i = 0; i < u->header.sizes.workers; i += 32) {
 		ob_gate_half *half = u->gate_group[i / 64].half + i / 32 % 2;
 		__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
-		futex_wake(&half->word, FUTEX_BITSET_MATCH_ANY);
+		ob_futex_wake(&half->word, FUTEX_BITSET_MATCH_ANY);
 	}
 }

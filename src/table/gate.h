@@ -29,6 +29,9 @@
 // then waits again. Where every worker has a core, it spins on its cell for SPIN_NS before it sleeps (waking a core costs
 // some 30 us).
 //
+// Contained simulators cannot write here: they arrive through their outboxes, keep "done" for themselves, and are always
+// woken. The arranger is the last to arrive in each phase.
+//
 // STOP is a flag of its own, set for good; setting it moves every word and wakes every waiter.
 #ifndef OB_TABLE_GATE_H
 #define OB_TABLE_GATE_H
@@ -40,10 +43,10 @@ typedef struct ob_gate {
 	_Alignas(64) uint32_t turn; // of the last opening; the opener's
 	uint32_t phase; // ob_phase of that turn
 	uint32_t spin; // 1 = every worker has a core of its own
-	uint32_t workers;
 	_Alignas(64) uint32_t groups_left; // groups of which a worker has still to arrive
 	_Alignas(64) uint32_t stop; // sticky
 	_Alignas(64) uint32_t host_turn; // futex word: 1 = the host has the turn
+	uint32_t awaited; // of contained simulators: 1 + the one whose outbox the arranger waits for (outbox.h)
 } ob_gate;
 
 typedef struct ob_gate_half {
@@ -60,6 +63,7 @@ typedef struct ob_gate_group {
 typedef struct ob_gate_cell {
 	_Alignas(64) uint32_t turn; // the last turn given to this worker
 	uint32_t done; // the last turn at which it arrived
+	uint32_t taken; // of a contained simulator: hand-overs that the arranger has copied
 } ob_gate_cell;
 
 static_assert(sizeof(ob_gate) == 256 && sizeof(ob_gate_group) == 128 && sizeof(ob_gate_cell) == 64, "gate");

@@ -24,6 +24,7 @@ typedef struct area_rule {
 		PER_PAIR,
 		PER_BUCKET,
 		PER_NEIGHBOUR,
+		PER_OUTBOX_BYTE,
 		PER_RING,
 		PER_TRACE_EVENT,
 		PER_TRACED_OBJECT
@@ -64,6 +65,7 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_ISLAND_PAIR] = { ELEMENT(island_pair), PER_PAIR, 1, 0 },
 	[OB_AREA_CHUNK] = { ELEMENT(chunk), PER_OBJECT, 1, 1 },
 	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
+	[OB_AREA_OUTBOX] = { 1, PER_OUTBOX_BYTE, 1, 0 },
 	[OB_AREA_TRACE_RING] = { sizeof(ob_trace_ring), PER_RING, 1, 0 },
 	[OB_AREA_TRACE_EVENT] = { sizeof(ob_trace_event), PER_TRACE_EVENT, 1, 0 },
 	[OB_AREA_TRACE_SINCE] = { sizeof(uint64_t), PER_TRACED_OBJECT, 1, 0 },
@@ -81,6 +83,7 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 		[PER_PAIR] = s->pairs_max,
 		[PER_BUCKET] = s->buckets,
 		[PER_NEIGHBOUR] = s->neighbours_max,
+		[PER_OUTBOX_BYTE] = (uint64_t)s->workers * s->outbox_bytes,
 		[PER_RING] = traced ? s->workers + OB_TRACE_HOST_RINGS : 0,
 		[PER_TRACE_EVENT] =
 			traced ? (uint64_t)s->workers * s->trace_events + OB_TRACE_HOST_RINGS * OB_TRACE_HOST_EVENTS
@@ -89,6 +92,19 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 	};
 	const area_rule *r = &rules[area];
 	return r->element * (count[r->per] * r->times + r->more);
+}
+
+uint64_t ob_layout_element(ob_area area)
+{
+	return rules[area].element;
+}
+
+uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t ids)
+{
+	ob_layout_sizes few = *s;
+	few.capacity = ids < s->capacity ? ids : s->capacity;
+	few.pairs_max = few.neighbours_max = 0;
+	return area_bytes(&few, area) / rules[area].element;
 }
 
 // All rings together hold half a million events, 16 MiB, unless there are so many workers that each has the least.
@@ -101,22 +117,31 @@ static uint32_t ring_events(uint32_t workers)
 	return n;
 }
 
-// All there can be of a few hundred objects; 64 for each of more.
+// All there can be of some hundred objects; 128 for each of more.
 static uint32_t most_pairs(uint32_t capacity)
 {
-	enum { LEAST = 8192, ALL = 65536 };
-	uint32_t n = capacity < 362 ? capacity * capacity / 2 : ALL;
-	n = n < LEAST ? LEAST : n;
-	return 64 * capacity > n ? 64 * capacity : n;
+	enum { LEAST = 8192, ALL = 1 << 18, EACH = 128, MOST = 1 << 30 };
+	const uint64_t all = (uint64_t)capacity * capacity / 2, each = (uint64_t)EACH * capacity;
+	uint64_t n = all < ALL ? all : ALL;
+	n = n < LEAST ? LEAST : n < each && n < all ? each : n;
+	return n < MOST ? (uint32_t)n : MOST;
 }
 
-void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced)
+// A phase's results of a pool's worker fit in, mostly; of one of many, those of its object.
+static uint32_t outbox_bytes(uint32_t workers)
+{
+	enum { FEW = 64, LARGE = 1 << 18, SMALL = 1 << 14 };
+	return workers <= FEW ? LARGE : SMALL;
+}
+
+void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced, bool contained)
 {
 	h->sizes = (ob_layout_sizes){ .capacity = capacity, .workers = workers };
 	h->sizes.pairs_max = most_pairs(capacity);
 	h->sizes.buckets = power_of_two_from(2 * capacity);
-	h->sizes.neighbours_max = 64 * capacity + 65536;
+	h->sizes.neighbours_max = 2 * h->sizes.pairs_max + capacity; // either of a pair may find the other
 	h->sizes.trace_events = traced ? ring_events(workers) : 0;
+	h->sizes.outbox_bytes = contained ? outbox_bytes(workers) : 0;
 	uint64_t at = OB_LAYOUT_PAGE;
 	for (int i = 0; i < OB_AREAS; i++) {
 		h->area[i] = at;
@@ -145,7 +170,7 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	if (s->capacity < 1 || s->capacity > CAPACITY_LIMIT || s->workers < 1 || s->workers > WORKERS_LIMIT)
 		return false;
 	ob_header expected;
-	ob_layout_plan(&expected, s->capacity, s->workers, s->trace_events > 0);
+	ob_layout_plan(&expected, s->capacity, s->workers, s->trace_events > 0, s->outbox_bytes > 0);
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
 	       memchr(h->isolation, 0, sizeof h->isolation);
@@ -198,6 +223,7 @@ void ob_layout_bind(ob_universe *u, void *base)
 	u->passport_even = (void *)(u->base + area[OB_AREA_PASSPORT_EVEN]);
 	u->requery = (void *)(u->base + area[OB_AREA_REQUERY]);
 	u->requery_bit = (void *)(u->base + area[OB_AREA_REQUERY_BIT]);
+	u->outbox_area = u->base + area[OB_AREA_OUTBOX];
 	u->trace_ring = (void *)(u->base + area[OB_AREA_TRACE_RING]);
 	u->trace_event = (void *)(u->base + area[OB_AREA_TRACE_EVENT]);
 	u->trace_since = (void *)(u->base + area[OB_AREA_TRACE_SINCE]);

@@ -13,8 +13,8 @@
 #include "table/table.h"
 #include "table/trace.h"
 
-#define OB_LAYOUT_MAGIC 0x31304d495342554fu // "OUBSIM01" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 9, OB_LAYOUT_PAGE = 4096 };
+#define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
+enum { OB_LAYOUT_VERSION = 16, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -48,6 +48,7 @@ typedef enum ob_area {
 	OB_AREA_ISLAND_PAIR,
 	OB_AREA_CHUNK,
 	OB_AREA_SCRATCH,
+	OB_AREA_OUTBOX, // of each worker; empty unless simulators are contained
 	OB_AREA_TRACE_RING, // from here on empty unless traced
 	OB_AREA_TRACE_EVENT, // rings of the workers, then of the host
 	OB_AREA_TRACE_SINCE, // [capacity] ns
@@ -57,14 +58,14 @@ typedef enum ob_area {
 typedef struct ob_layout_sizes {
 	uint32_t capacity, workers, pairs_max, buckets, neighbours_max;
 	uint32_t trace_events; // of each worker's ring, a power of two; 0 = not traced
+	uint32_t outbox_bytes; // of each worker, whole pages; 0 = simulators are not contained (outbox.h)
 } ob_layout_sizes;
 
-// The first four fields stay where they are in all versions, so that any obsim can tell a stale segment.
+// The first two fields stay where they are in all versions. Whatever has the same magic is owned by its lock (segment.h).
 typedef struct ob_header {
 	uint64_t magic;
 	uint32_t version;
 	int32_t host_pid;
-	uint64_t host_start; // start time of that process, ticks since boot: a pid alone may have been given away
 	uint64_t bytes; // of the whole segment
 	uint64_t created; // ns, CLOCK_REALTIME
 	ob_layout_sizes sizes;
@@ -81,8 +82,9 @@ typedef struct ob_control {
 	uint32_t state; // ob_universe_state
 	uint32_t ids, objects;
 	uint32_t awake, pairs, islands;
+	uint32_t lives; // times that all simulators were restarted
 	_Alignas(64) uint64_t claim_next;
-	uint64_t claim_total;
+	uint32_t claim_total, claim_workers;
 	_Alignas(64) uint64_t requery_count;
 	_Alignas(64) uint64_t neighbours_used;
 } ob_control;
@@ -101,11 +103,12 @@ typedef struct ob_worker_cell {
 	int32_t pid, tid, cpu;
 	uint32_t objects;
 	_Alignas(64) ob_counters counters;
+	uint64_t faults[OB_FAULT_KINDS]; // injected
 } ob_worker_cell;
 
-// The writer's words, the reader's word. trace.h has the drawing.
+// The writer's words, the reader's word. trace.h has the drawing. A page each, which its writer alone may be let write.
 typedef struct ob_trace_ring {
-	_Alignas(64) uint64_t written;
+	_Alignas(OB_LAYOUT_PAGE) uint64_t written;
 	uint64_t taken_seen, lost, doing;
 	_Alignas(64) uint64_t taken;
 } ob_trace_ring;
@@ -113,19 +116,21 @@ typedef struct ob_trace_ring {
 // The rings of the host are large, for objects may be added by the thousand.
 enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
-static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == 128, "trace");
-static_assert(sizeof(ob_run_settings) == 88, "run settings");
-static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 88, "header");
+static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
+static_assert(sizeof(ob_run_settings) == 120, "run settings");
+static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 120, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 256, "control");
-static_assert(sizeof(ob_worker_cell) == 448, "worker cell");
-static_assert(sizeof(ob_pair_state) == 184, "pair state");
-static_assert(sizeof(ob_pair_record) == 376, "pair record");
+static_assert(sizeof(ob_worker_cell) == 512, "worker cell");
+static_assert(sizeof(ob_pair_state) == 256, "pair state");
+static_assert(sizeof(ob_pair_record) == 520, "pair record");
 static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "step data");
 
 // A process's view of a mapped segment. Immutable once made; forked children go on using it.
 struct ob_universe {
 	char *base;
+	int fd; // of the segment; its owner's, and all that forked from it, share the lock
+	uint64_t *taken; // bit per chunk whose pages this process has asked for (pages.h); NULL: a reader
 	ob_header header; // private copy, validated: later changes to the shared one have no effect
 	ob_control *control;
 	ob_gate *gate;
@@ -139,19 +144,32 @@ struct ob_universe {
 	uint32_t *requery;
 	uint64_t *requery_bit;
 	ob_step_data step_data;
+	char *outbox_area;
+	struct ob_outbox *outbox; // of this process, a contained simulator; NULL: it writes in place
 	ob_trace_ring *trace_ring; // these three only if traced
 	ob_trace_event *trace_event;
 	uint64_t *trace_since;
 };
 
 // Fills sizes (from what is given), offsets and bytes.
-void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced);
+void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced, bool contained);
+// Lets this process, whose mapping is read-only otherwise, write the ring of its own trace. false, and errno.
+bool ob_trace_unprotect(ob_universe *u, uint32_t ring);
+// The last turn of the gate at which this contained simulator has arrived.
+uint32_t ob_outbox_turns_done(const ob_universe *u);
 // Whether a header that came from outside is one that this program would have planned, in a file of file_bytes.
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);
 // Bytes that a full universe with a few contacts per object will touch: what the memory file system must have free.
 uint64_t ob_layout_likely_bytes(const ob_header *h);
+// Bytes of an element of an area; how many of them the first ids objects have, where it grows with the objects, else, where
+// it is of a fixed size, all; none where it grows with pairs or neighbours.
+uint64_t ob_layout_element(ob_area area);
+uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t ids);
 // A copy of the newest passport; false: there has never been one. Any reader.
 bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out);
+// Whether the numbers of a record that came from outside could be those of an object.
+bool ob_passport_makes_sense(const ob_passport *p, uint32_t id);
+bool ob_motion_makes_sense(const ob_motion *m);
 // Points the view at a mapping of u->header's layout.
 void ob_layout_bind(ob_universe *u, void *base);
 

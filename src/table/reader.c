@@ -1,13 +1,14 @@
-// The reader's side: attaching, and reading. Nothing in the table is trusted: offsets come from the validated private copy
-// of the header; ids, counts and floating-point numbers are checked as they are read.
+// The reader's side: attaching, and reading. Nothing in the table is trusted: offsets come from the validated private
+// copy of the header; ids, counts and floating-point numbers are checked as they are read.
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/utf8.h"
 #include "table/layout.h"
+#include "table/pages.h"
 #include "table/segment.h"
 
 static bool check_header(const ob_header *h, uint64_t bytes, const char *name, ob_error *e)
@@ -21,35 +22,38 @@ static bool check_header(const ob_header *h, uint64_t bytes, const char *name, o
 	return ob_fail(e, "/dev/shm/obsim.%s is not a complete universe table", name);
 }
 
+static bool map_segment(ob_universe *u, const char *name, ob_error *e)
+{
+	uint64_t bytes;
+	if (!ob_segment_peek(u->fd, &u->header, &bytes))
+		return ob_fail(e, "/dev/shm/obsim.%s is not a complete universe table", name);
+	if (!check_header(&u->header, bytes, name, e))
+		return false;
+	void *base = mmap(NULL, u->header.bytes, PROT_READ, MAP_SHARED | MAP_NORESERVE, u->fd, 0);
+	if (base == MAP_FAILED)
+		return ob_fail(e, "cannot map universe \"%s\": %s", name, strerror(errno));
+	ob_layout_bind(u, base);
+	ob_pages_track(u);
+	return true;
+}
+
 ob_universe *ob_universe_attach(const char *name, ob_error *e)
 {
-	char path[OB_SEGMENT_PATH_MAX];
 	ob_universe *u = calloc(1, sizeof *u);
-	uint64_t bytes = 0;
 	if (!u) {
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	int fd = ob_segment_path(path, name) ? shm_open(path, O_RDONLY | O_CLOEXEC, 0) : -1;
-	if (fd < 0)
-		ob_fail(e, "no universe \"%.60s\" on this machine", name);
-	else if (!ob_segment_peek(path, &u->header, &bytes))
-		ob_fail(e, "/dev/shm%s is not a complete universe table", path);
-	else if (check_header(&u->header, bytes, name, e)) {
-		void *base = mmap(NULL, u->header.bytes, PROT_READ, MAP_SHARED | MAP_NORESERVE, fd, 0);
-		close(fd);
-		if (base != MAP_FAILED) {
-			ob_layout_bind(u, base);
-			return u;
-		}
-		ob_fail(e, "cannot map universe \"%s\": %s", name, strerror(errno));
-		free(u);
-		return NULL;
-	}
-	if (fd >= 0)
-		close(fd);
-	free(u);
+	u->fd = ob_segment_open(name);
+	if (u->fd >= 0 ? map_segment(u, name, e) : ob_fail(e, "no universe \"%.60s\" on this machine", name))
+		return u;
+	ob_universe_destroy(u, false);
 	return NULL;
+}
+
+bool ob_universe_is_hosted(const ob_universe *u)
+{
+	return ob_segment_is_owned(u->fd);
 }
 
 void ob_universe_detach(ob_universe *u)
@@ -87,6 +91,8 @@ void ob_universe_get_info(const ob_universe *u, ob_universe_info *out)
 	out->time = (double)out->step * out->step_length;
 	memcpy(out->name, h->name, sizeof out->name);
 	memcpy(out->isolation, h->isolation, sizeof out->isolation);
+	ob_utf8_make_plain(out->name);
+	ob_utf8_make_plain(out->isolation);
 	strcpy(out->arch, h->run.monolith ? "monolith" : "obs");
 }
 
@@ -108,7 +114,7 @@ static bool finite3(ob_vec3 v)
 	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
 
-static bool passport_makes_sense(const ob_passport *p, uint32_t id)
+bool ob_passport_makes_sense(const ob_passport *p, uint32_t id)
 {
 	return p->id == id && p->shape <= OB_SHAPE_CYLINDER && finite3(p->size) && finite3(p->inertia) &&
 	       finite3(p->force) && isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) &&
@@ -119,10 +125,13 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 {
 	if (id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
-	return ob_passport_read(u, id, out) && (out->flags & OB_OBJECT_PRESENT) && passport_makes_sense(out, id);
+	if (!ob_passport_read(u, id, out) || !(out->flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(out, id))
+		return false;
+	ob_utf8_make_plain(out->name); // whatever a reader does with it, it reaches no terminal as a command
+	return true;
 }
 
-static bool motion_makes_sense(const ob_motion *m)
+bool ob_motion_makes_sense(const ob_motion *m)
 {
 	double norm = m->q.w * m->q.w + m->q.x * m->q.x + m->q.y * m->q.y + m->q.z * m->q.z;
 	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
@@ -134,7 +143,7 @@ bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out)
 	if (id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
 	return (read32(&ob_passport_of(u, id)->flags) & OB_OBJECT_PRESENT) && ob_slot_read(u->slot + id, out) &&
-	       motion_makes_sense(out);
+	       ob_motion_makes_sense(out);
 }
 
 bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6])
@@ -149,8 +158,8 @@ bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6])
 }
 
 // ---- contact points, from the pair records of the last completed step. While the universe runs, a worker may rewrite
-// the list of pairs at the same time: every value is checked, and a copy that the next step has overtaken is taken again.
-// While the universe is paused, the result is exact.
+// the list of pairs at the same time: every value is checked, and a copy that the next step has overtaken is taken
+// again. While the universe is paused, the result is exact.
 
 enum { CONTACT_TRIES = 4 };
 
@@ -206,8 +215,8 @@ static size_t collect_points(const ob_universe *u, uint64_t step, ob_contact_poi
 		    !newest_version(u, &key, step, &state) || !ob_universe_get_motion(u, key.a, &a))
 			continue;
 		for (uint32_t k = 0; k < state.points && k < OB_PAIR_POINTS; k++) {
-			ob_vec3 arm = ob_v3(state.arm_a[k][0], state.arm_a[k][1], state.arm_a[k][2]);
-			ob_contact_point c = { key.a, key.b, ob_add(a.p, arm), state.normal, state.impulse[k] };
+			ob_contact_point c = { key.a, key.b, ob_add(a.p, state.arm_a[k]), state.normal,
+					       state.impulse[k] };
 			if (!point_makes_sense(&c))
 				continue;
 			if (n < max)

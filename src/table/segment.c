@@ -1,19 +1,17 @@
 #include "table/segment.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-static const char prefix[] = "/obsim.";
-enum { UNFINISHED_AFTER_S = 10 }; // a creator that takes longer to write its header is dead
+static const char folder[] = "/dev/shm", prefix[] = "obsim.";
+enum { ATTEMPTS = 3 }; // at a name that somebody else may be clearing away at this moment
+enum { HOW = O_NONBLOCK | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC };
 
 bool ob_segment_path(char path[OB_SEGMENT_PATH_MAX], const char *name)
 {
@@ -22,80 +20,145 @@ bool ob_segment_path(char path[OB_SEGMENT_PATH_MAX], const char *name)
 	    n != strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 			      "0123456789._-"))
 		return false;
-	snprintf(path, OB_SEGMENT_PATH_MAX, "%s%s", prefix, name);
+	snprintf(path, OB_SEGMENT_PATH_MAX, "%s/%s%s", folder, prefix, name);
 	return true;
 }
 
-uint64_t ob_segment_process_start(int32_t pid)
+static bool lock(int fd)
 {
-	char path[32], text[1024];
-	snprintf(path, sizeof path, "/proc/%d/stat", pid);
-	int fd = open(path, O_RDONLY | O_CLOEXEC);
-	if (fd < 0)
-		return 0;
-	ssize_t n = read(fd, text, sizeof text - 1);
-	close(fd);
-	text[n > 0 ? n : 0] = 0;
-	// field 22; field 2 is the program's name in brackets, which may hold anything; a zombie is dead
-	const char *at = strrchr(text, ')');
-	uint64_t start = 0;
-	char state = 0;
-	if (!at ||
-	    sscanf(at + 1, " %c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %" SCNu64,
-		   &state, &start) != 2)
-		return 0;
-	return state == 'Z' || state == 'X' ? 0 : start;
+	return fcntl(fd, F_OFD_SETLK, &(struct flock){ .l_type = F_WRLCK, .l_whence = SEEK_SET }) == 0;
 }
 
-bool ob_segment_peek(const char *path, ob_header *out, uint64_t *bytes)
+bool ob_segment_is_owned(int fd)
 {
-	int fd = shm_open(path, O_RDONLY | O_CLOEXEC, 0);
-	if (fd < 0)
+	struct flock found = { .l_type = F_RDLCK, .l_whence = SEEK_SET };
+	return fcntl(fd, F_OFD_GETLK, &found) == 0 && found.l_type != F_UNLCK;
+}
+
+int ob_segment_create(ob_error *e)
+{
+	int fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+	if (fd >= 0 && lock(fd))
+		return fd;
+	ob_fail(e, "cannot create shared memory in %s: %s", folder, strerror(errno));
+	if (fd >= 0)
+		close(fd);
+	return -1;
+}
+
+// Opens what has this path, if it is a regular file; waits for nobody.
+static int open_file(const char *path, int access_mode)
+{
+	struct stat s;
+	int fd = open(path, access_mode | HOW);
+	if (fd >= 0 && fstat(fd, &s) == 0 && S_ISREG(s.st_mode))
+		return fd;
+	if (fd >= 0)
+		close(fd);
+	return -1;
+}
+
+int ob_segment_open(const char *name)
+{
+	char path[OB_SEGMENT_PATH_MAX];
+	return ob_segment_path(path, name) ? open_file(path, O_RDONLY) : -1;
+}
+
+bool ob_segment_peek(int fd, ob_header *out, uint64_t *bytes)
+{
+	struct stat s;
+	*bytes = 0;
+	if (fstat(fd, &s) != 0 || pread(fd, out, sizeof *out, 0) != sizeof *out)
 		return false;
-	struct stat s;
-	ssize_t n = fstat(fd, &s) == 0 ? pread(fd, out, sizeof *out, 0) : -1;
-	close(fd);
-	*bytes = n == sizeof *out ? (uint64_t)s.st_size : 0;
-	return n == sizeof *out;
+	*bytes = (uint64_t)s.st_size;
+	return true;
 }
 
-static double age(const char *path)
+// The caller holds the lock: if the path leads to this file now, it does so until the caller removes it.
+static void unlink_file(int fd, const char *path)
 {
-	int fd = shm_open(path, O_RDONLY | O_CLOEXEC, 0);
-	if (fd < 0)
-		return 0;
-	struct stat s;
-	struct timespec now;
-	clock_gettime(CLOCK_REALTIME, &now);
-	double t = fstat(fd, &s) == 0 ? (double)(now.tv_sec - s.st_ctim.tv_sec) : 0;
-	close(fd);
-	return t;
+	struct stat file, named;
+	if (fstat(fd, &file) == 0 && lstat(path, &named) == 0 && file.st_dev == named.st_dev &&
+	    file.st_ino == named.st_ino)
+		unlink(path);
 }
 
-bool ob_segment_stale(const char *path)
+void ob_segment_unlink(int fd, const char *name)
+{
+	char path[sizeof folder + sizeof prefix + OB_NAME_MAX];
+	size_t n = strnlen(name, OB_NAME_MAX - 1), at = sizeof folder - 1;
+	memcpy(path, folder, at); // snprintf is not among the functions that a signal handler may call
+	path[at++] = '/';
+	memcpy(path + at, prefix, sizeof prefix - 1);
+	memcpy(path + at + sizeof prefix - 1, name, n);
+	path[at + sizeof prefix - 1 + n] = 0;
+	unlink_file(fd, path);
+}
+
+static void remove_if_stale(const char *path)
 {
 	ob_header h;
 	uint64_t bytes;
-	if (!ob_segment_peek(path, &h, &bytes) || h.magic == 0)
-		return age(path) > UNFINISHED_AFTER_S;
-	if (h.magic != OB_LAYOUT_MAGIC)
-		return false; // not ours, whatever its name
-	return h.host_pid <= 0 || ob_segment_process_start(h.host_pid) != h.host_start;
+	struct stat s;
+	int fd = open_file(path, O_RDWR);
+	if (fd < 0)
+		return;
+	if (fstat(fd, &s) == 0 && s.st_uid == geteuid() && ob_segment_peek(fd, &h, &bytes) &&
+	    h.magic == OB_LAYOUT_MAGIC && lock(fd))
+		unlink_file(fd, path);
+	close(fd);
+}
+
+// The next name in the folder that could be a universe's; NULL: no more.
+static const char *next_name(DIR *d)
+{
+	const size_t skip = sizeof prefix - 1;
+	char path[OB_SEGMENT_PATH_MAX];
+	for (struct dirent *entry; (entry = readdir(d));)
+		if (strncmp(entry->d_name, prefix, skip) == 0 && ob_segment_path(path, entry->d_name + skip))
+			return entry->d_name + skip;
+	return NULL;
 }
 
 void ob_segment_remove_stale(void)
 {
-	DIR *d = opendir("/dev/shm");
+	char path[OB_SEGMENT_PATH_MAX];
+	DIR *d = opendir(folder);
 	if (!d)
 		return;
-	for (struct dirent *entry; (entry = readdir(d));) {
-		char path[OB_SEGMENT_PATH_MAX];
-		size_t skip = strlen(prefix) - 1;
-		if (strncmp(entry->d_name, prefix + 1, skip) == 0 && ob_segment_path(path, entry->d_name + skip) &&
-		    ob_segment_stale(path))
-			shm_unlink(path);
-	}
+	for (const char *name; (name = next_name(d));)
+		if (ob_segment_path(path, name))
+			remove_if_stale(path);
 	closedir(d);
+}
+
+static bool refuse_name(const char *name, const char *path, ob_error *e)
+{
+	int fd = open_file(path, O_RDONLY);
+	bool owned = fd >= 0 && ob_segment_is_owned(fd);
+	if (fd >= 0)
+		close(fd);
+	return owned ? ob_fail(e, "universe \"%s\" already runs on this machine; give this one another name", name)
+		     : ob_fail(e, "%s is there and is no universe of yours: remove it, or give this run another name",
+			       path);
+}
+
+bool ob_segment_publish(int fd, const char *name, ob_error *e)
+{
+	char path[OB_SEGMENT_PATH_MAX], open_path[40];
+	if (!ob_segment_path(path, name))
+		return ob_fail(e, "\"%.60s\" cannot be a universe's name: 1 to %d of A-Z a-z 0-9 . _ -", name,
+			       OB_NAME_MAX - 1);
+	snprintf(open_path, sizeof open_path, "/proc/self/fd/%d", fd);
+	for (int attempt = 0;; attempt++) {
+		if (linkat(AT_FDCWD, open_path, AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0)
+			return true;
+		if (errno != EEXIST)
+			return ob_fail(e, "cannot give shared memory the name %s: %s", path, strerror(errno));
+		if (attempt == ATTEMPTS)
+			return refuse_name(name, path, e);
+		remove_if_stale(path);
+	}
 }
 
 static int newest_first(const void *a, const void *b)
@@ -104,21 +167,25 @@ static int newest_first(const void *a, const void *b)
 	return (x < y) - (x > y);
 }
 
+static bool is_running(const char *name, ob_header *h)
+{
+	uint64_t bytes;
+	int fd = ob_segment_open(name);
+	bool runs = fd >= 0 && ob_segment_peek(fd, h, &bytes) && ob_layout_valid(h, bytes) && ob_segment_is_owned(fd);
+	if (fd >= 0)
+		close(fd);
+	return runs;
+}
+
 size_t ob_universe_list(char names[][OB_NAME_MAX], size_t max)
 {
 	enum { MOST = 256 };
 	ob_header *found = calloc(MOST, sizeof *found);
-	DIR *d = opendir("/dev/shm");
+	DIR *d = opendir(folder);
 	size_t n = 0;
-	for (struct dirent *entry; found && d && n < MOST && (entry = readdir(d));) {
-		char path[OB_SEGMENT_PATH_MAX];
-		size_t skip = strlen(prefix) - 1;
-		uint64_t bytes;
-		if (strncmp(entry->d_name, prefix + 1, skip) == 0 && ob_segment_path(path, entry->d_name + skip) &&
-		    ob_segment_peek(path, &found[n], &bytes) && ob_layout_valid(&found[n], bytes) &&
-		    !ob_segment_stale(path))
-			memcpy(found[n++].name, entry->d_name + skip, strlen(entry->d_name + skip) + 1);
-	}
+	for (const char *name; found && d && n < MOST && (name = next_name(d));)
+		if (is_running(name, &found[n]))
+			memcpy(found[n++].name, name, strlen(name) + 1);
 	if (d)
 		closedir(d);
 	if (found)

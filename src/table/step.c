@@ -1,7 +1,21 @@
-// What the workers of a step share beside the slots: the clock, tasks to claim, the list of bodies to requery, the arena
-// of neighbours, and the workers' own cells. Only the scheduler resets; the gate orders that.
+#include <stdio.h>
+
+// What the workers of a step share beside the slots: the clock, tasks to claim, the list of bodies to requery, the
+// arena of neighbours, and the workers' own cells. Only the scheduler resets; the gate orders that.
 #include "base/clock.h"
 #include "table/layout.h"
+#include "table/outbox.h"
+#include "table/pages.h"
+
+void ob_step_set_scheduler(ob_universe *u, uint32_t worker)
+{
+	__atomic_store_n(&ob_universe_step_data(u)->count->scheduler, worker, __ATOMIC_RELAXED);
+}
+
+uint32_t ob_step_scheduler(const ob_universe *u)
+{
+	return __atomic_load_n(&ob_universe_step_data(u)->count->scheduler, __ATOMIC_RELAXED);
+}
 
 uint64_t ob_step_count(const ob_universe *u)
 {
@@ -33,6 +47,10 @@ const ob_latency *ob_step_latency(const ob_universe *u)
 
 void ob_phase_worked(ob_universe *u, uint64_t ns)
 {
+	if (u->outbox) {
+		ob_outbox_end_of(u)->worked_ns = ns;
+		return;
+	}
 	uint64_t *longest = &u->step_clock->longest_ns, seen = __atomic_load_n(longest, __ATOMIC_RELAXED);
 	while (seen < ns && !__atomic_compare_exchange_n(longest, &seen, ns, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
 		;
@@ -63,6 +81,10 @@ void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t ti
 
 void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects)
 {
+	if (u->outbox) {
+		ob_outbox_end_of(u)->objects = objects;
+		return;
+	}
 	__atomic_store_n(&u->worker[worker].objects, objects, __ATOMIC_RELAXED);
 }
 
@@ -71,14 +93,17 @@ void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns)
 	__atomic_store_n(&u->worker[worker].cpu_ns, cpu_ns, __ATOMIC_RELAXED);
 }
 
-void ob_task_reset(ob_universe *u, uint32_t total)
+void ob_task_reset(ob_universe *u, uint32_t total, uint32_t workers)
 {
+	u->control->claim_workers = workers;
 	__atomic_store_n(&u->control->claim_total, total, __ATOMIC_RELAXED);
 	__atomic_store_n(&u->control->claim_next, 0, __ATOMIC_RELEASE);
 }
 
 bool ob_task_claim(ob_universe *u, uint32_t *index)
 {
+	if (u->outbox)
+		return ob_outbox_claim(u, index);
 	uint64_t total = __atomic_load_n(&u->control->claim_total, __ATOMIC_RELAXED);
 	uint64_t i = __atomic_fetch_add(&u->control->claim_next, 1, __ATOMIC_RELAXED);
 	*index = (uint32_t)i;
@@ -92,21 +117,63 @@ void ob_requery_append(ob_universe *u, uint32_t id)
 	if (__atomic_fetch_or(&u->requery_bit[id / 64], bit, __ATOMIC_RELAXED) & bit)
 		return;
 	uint64_t i = __atomic_fetch_add(&u->control->requery_count, 1, __ATOMIC_RELAXED);
-	__atomic_store_n(&u->requery[i], id, __ATOMIC_RELAXED);
+	if (i < u->header.sizes.capacity)
+		__atomic_store_n(&u->requery[i], id, __ATOMIC_RELAXED);
+	else
+		u->step_data.count->failure = OB_STEP_DAMAGED;
 }
 
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count)
 {
-	*count = (uint32_t)__atomic_load_n(&u->control->requery_count, __ATOMIC_ACQUIRE);
+	const uint64_t n = __atomic_load_n(&u->control->requery_count, __ATOMIC_ACQUIRE),
+		       most = u->header.sizes.capacity;
+	*count = (uint32_t)(n < most ? n : most);
 	return u->requery;
 }
 
 void ob_requery_reset(ob_universe *u)
 {
-	uint64_t n = __atomic_load_n(&u->control->requery_count, __ATOMIC_RELAXED);
-	for (uint64_t i = 0; i < n; i++)
-		__atomic_store_n(&u->requery_bit[u->requery[i] / 64], 0, __ATOMIC_RELAXED);
+	uint32_t n;
+	const uint32_t *list = ob_requery_list(u, &n);
+	for (uint32_t i = 0; i < n; i++)
+		if (list[i] < u->header.sizes.capacity)
+			__atomic_store_n(&u->requery_bit[list[i] / 64], 0, __ATOMIC_RELAXED);
 	__atomic_store_n(&u->control->requery_count, 0, __ATOMIC_RELEASE);
+}
+
+void ob_step_fail(ob_universe *u, ob_step_failure why, uint32_t object)
+{
+	uint64_t *first = u->outbox ? &ob_outbox_end_of(u)->failure : &u->step_data.count->failure,
+		 seen = __atomic_load_n(first, __ATOMIC_RELAXED);
+	const uint64_t failure = (uint64_t)object << 32 | why;
+	while ((seen == OB_STEP_OK || seen > failure) &&
+	       !__atomic_compare_exchange_n(first, &seen, failure, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+		;
+}
+
+ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object)
+{
+	uint64_t failure = __atomic_load_n(&u->step_data.count->failure, __ATOMIC_RELAXED);
+	if (u->outbox && !failure)
+		failure = ob_outbox_end_of(u)->failure;
+	uint32_t blamed = (uint32_t)(failure >> 32);
+	if (failure && (!(failure & UINT32_MAX) || blamed >= u->header.sizes.capacity))
+		failure = OB_STEP_DAMAGED; // nobody fails a step so
+	if (object)
+		*object = blamed;
+	return (ob_step_failure)(failure & UINT32_MAX);
+}
+
+uint64_t ob_step_work_add(ob_universe *u, uint64_t work)
+{
+	if (u->outbox) // what others do meanwhile is added when all have arrived
+		return u->step_data.count->work + (ob_outbox_end_of(u)->work += work);
+	return __atomic_add_fetch(&u->step_data.count->work, work, __ATOMIC_RELAXED);
+}
+
+void ob_step_work_reset(ob_universe *u)
+{
+	__atomic_store_n(&u->step_data.count->work, 0, __ATOMIC_RELAXED);
 }
 
 void ob_late_contacts_reset(ob_universe *u)
@@ -117,12 +184,28 @@ void ob_late_contacts_reset(ob_universe *u)
 
 void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check)
 {
+	if (u->outbox) {
+		ob_outbox_end *end = ob_outbox_end_of(u);
+		end->late |= late;
+		end->next_check = next_check < end->next_check ? next_check : end->next_check;
+		return;
+	}
 	uint32_t *least = &u->step_data.count->next_check, seen = __atomic_load_n(least, __ATOMIC_RELAXED);
 	while (seen > next_check &&
 	       !__atomic_compare_exchange_n(least, &seen, next_check, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
 		;
 	if (late)
 		__atomic_store_n(&u->step_data.count->late, 1, __ATOMIC_RELAXED);
+}
+
+void ob_step_blame(ob_universe *u, uint32_t worker, const char *what)
+{
+	struct ob_step_counts *count = u->step_data.count;
+	if (count->culprit) // the first stays
+		return;
+	count->failure = OB_STEP_DAMAGED;
+	count->culprit = worker + 1;
+	snprintf(count->blamed_for, sizeof count->blamed_for, "%s", what);
 }
 
 // Within a phase the stack only shrinks, so no other worker gets the same record.
@@ -132,6 +215,10 @@ uint32_t ob_record_take(ob_universe *u)
 	int32_t left = __atomic_fetch_sub(&ex->count->records_free, 1, __ATOMIC_RELAXED);
 	uint32_t record = left > 0 ? ex->record_free[left - 1]
 				   : __atomic_fetch_add(&ex->count->records_used, 1, __ATOMIC_RELAXED);
+	if (!ob_reserve_record(u, record)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return OB_NO_RECORD;
+	}
 	ex->record[record].stamp[0] = ex->record[record].stamp[1] = 0;
 	return record;
 }
@@ -140,14 +227,30 @@ void ob_record_give_back(ob_universe *u, uint32_t record)
 {
 	const ob_step_data *ex = &u->step_data;
 	int32_t free = ex->count->records_free > 0 ? ex->count->records_free : 0;
+	if (record >= ex->pairs_max || (uint32_t)free >= ex->pairs_max) {
+		ex->count->failure = OB_STEP_DAMAGED;
+		return;
+	}
+	if (!ob_pages_take(u, OB_AREA_RECORD_FREE, (uint64_t)free, 1)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return;
+	}
 	ex->record_free[free] = record;
 	ex->count->records_free = free + 1;
 }
 
-uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t count)
+uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t id, uint32_t count)
 {
 	uint64_t at = __atomic_fetch_add(&u->control->neighbours_used, count, __ATOMIC_RELAXED);
-	return at + count <= u->header.sizes.neighbours_max ? (uint32_t)at : UINT32_MAX;
+	if (at + count > u->header.sizes.neighbours_max) {
+		ob_step_fail(u, OB_STEP_NEIGHBOURS_FULL, id);
+		return UINT32_MAX;
+	}
+	if (!ob_pages_take(u, OB_AREA_NEIGHBOUR_ID, at, count)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, id);
+		return UINT32_MAX;
+	}
+	return (uint32_t)at;
 }
 
 void ob_neighbours_reset(ob_universe *u)

@@ -3,6 +3,7 @@
 #ifndef OB_TABLE_STEP_DATA_H
 #define OB_TABLE_STEP_DATA_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include <ob/universe.h>
@@ -10,17 +11,18 @@
 enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
 
 // What a pair of touching objects keeps from one step to the next: contact points, and the impulses that warm-start the
-// solver. 184 bytes.
+// solver. 256 bytes.
 // a < b are ids; the normal points from b to a. Lever arms run from the centres to the contact point, world frame,
-// as of the last collision test. Arms and gaps are small numbers, so that 24 bits are right to some nm; what two bodies
-// must agree on to the last bit, the difference of their arms and their impulses, is kept in full.
+// as of the last collision test. All of it is kept in full: what is rounded in world axes would make a scene that is
+// turned or moved go on otherwise.
 typedef struct ob_pair_state {
 	ob_vec3 normal;
 	ob_vec3 between;                  // m, from a's centre to b's: an arm of b is that of a less this
 	double impulse[OB_PAIR_ROWS];     // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
 	double substep;                   // s, length of the substep of those impulses
-	float arm_a[OB_PAIR_POINTS][3];   // m
-	float gap[OB_PAIR_POINTS];        // m, separation now; < 0 is penetration
+	double disc_radius;               // m, of a disc that they touch all over; 0: over the points' hull
+	ob_vec3 arm_a[OB_PAIR_POINTS];    // m
+	double gap[OB_PAIR_POINTS];        // m, separation now; < 0 is penetration
 	uint32_t points;                  // 0 .. 4; 0 = not touching
 	float creep;                      // m, slip of the last second while friction should have held
 } ob_pair_state;
@@ -29,6 +31,32 @@ typedef struct ob_pair_record {
 	ob_pair_state version[2];
 	uint32_t stamp[2];        // 1 + steps that are complete when the version holds; 0 = never written
 } ob_pair_record;
+
+// Index of the newest version that held when so many steps were complete; -1: none. A version written in a step that is
+// being solved again is newer.
+static inline int ob_pair_newest(const ob_pair_record *r, uint64_t steps)
+{
+	int newest = -1;
+	for (int k = 0; k < 2; k++)
+		if (r->stamp[k] && r->stamp[k] <= steps + 1 && (newest < 0 || r->stamp[k] > r->stamp[newest]))
+			newest = k;
+	return newest;
+}
+
+// A pair's state when so many steps were complete; NULL if it was never touched until then. A step's solver reads that,
+// and writes the other version, which holds when one more step is complete; so a step can be solved again.
+static inline const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps)
+{
+	int k = ob_pair_newest(r, steps);
+	return k < 0 ? NULL : &r->version[k];
+}
+
+static inline ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
+{
+	int k = ob_pair_newest(r, steps) == 0;
+	r->stamp[k] = (uint32_t)(steps + 2);
+	return &r->version[k];
+}
 
 #define OB_NO_RECORD UINT32_MAX
 
@@ -101,7 +129,10 @@ typedef struct ob_step_data {
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
 		uint32_t planes;
-		uint32_t failure;    // ob_step_failure; 0 = none
+		uint64_t failure;    // object << 32 | ob_step_failure, of ob_step_fail; 0 = none
+		uint64_t work;       // in the step so far (sim/budget.h)
+		uint32_t culprit;    // 1 + the worker that is to blame for damage; 0 = it is not known
+		char blamed_for[64];
 	} *count;
 	ob_schedule *schedule;        // [object]: written by its island's solver
 	float (*bounds)[6];           // [object]: fat AABB, which holds it until it asks for another
@@ -131,7 +162,27 @@ typedef enum ob_step_failure {
 	OB_STEP_OK,
 	OB_STEP_PAIRS_FULL,
 	OB_STEP_NEIGHBOURS_FULL,
-	OB_STEP_DIVERGED, // a state became NaN or infinite
+	OB_STEP_DIVERGED, // a state became NaN, or larger than any that can be meant
+	OB_STEP_ENGINE, // ODE gave up
+	OB_STEP_OVERWORKED, // the step's budget of work is spent
+	OB_STEP_LEFT, // the run was stopped meanwhile
+	OB_STEP_MEMORY_FULL, // the memory file system has no more pages
+	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, somebody has written where it should not
 } ob_step_failure;
+
+// Whether an id that was taken out of the shared memory is one; false: somebody has written where it should not.
+static inline bool ob_object_in_range(const ob_step_data *data, uint32_t id)
+{
+	if (id < data->objects_max)
+		return true;
+	data->count->failure = OB_STEP_DAMAGED;
+	return false;
+}
+
+// Those in pair[]: never more than it holds, whatever somebody has written.
+static inline uint32_t ob_pairs_count(const ob_step_data *data)
+{
+	return data->count->pairs < data->pairs_max ? data->count->pairs : data->pairs_max;
+}
 
 #endif

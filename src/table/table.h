@@ -1,6 +1,6 @@
 // The universe table, as its writers see it: creating it, publishing, and the areas of the step.
 //
-// This module is the only one that calls shm_open and mmap, and the only one that names a memory order.
+// This module is the only one that opens and maps shared memory, and the only one that names a memory order.
 // Everything in the table is an offset or an id, never a pointer: it is mapped at different addresses.
 //
 //   header | control | gate | worker cells | slots | passports | step data (step_data.h) | trace (trace.h)
@@ -21,6 +21,7 @@
 // What the gate opens with. The phases of a step in their order; sim/step.c says what the workers do in each.
 typedef enum ob_phase {
 	OB_PHASE_NONE,
+	OB_PHASE_RESUME,           // the host gives the turn to the arranger, which schedules what comes first
 	OB_PHASE_BROADPHASE_START, // neighbours of objects that the host has placed or changed
 	OB_PHASE_FORECAST,         // which pairs may touch in the coming step?
 	OB_PHASE_ISLANDS,          // solve
@@ -40,19 +41,40 @@ typedef struct ob_universe_setup {
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
+	bool contained;         // simulators cannot write it (outbox.h); the last of the workers is the arranger
 } ob_universe_setup;
 
-// Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments whose host is dead.
-// NULL and e on failure (name taken, no memory).
+// Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments, which nobody owns any
+// more (segment.h). The caller owns it, and with it the processes that inherit its file. NULL and e on failure (name taken,
+// no memory).
 ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e);
 // Unmaps; unlink = true also removes the name. The creator calls it with true on every exit path.
 void ob_universe_destroy(ob_universe *u, bool unlink);
-// Removes the name only: for the fork server, after the host's death. Async-signal-safe.
-void ob_universe_unlink(const char *name);
+// Owners: removes the name only, if it is still this universe's. Async-signal-safe.
+void ob_universe_unlink(const ob_universe *u);
+// The segment's file, which a process that shall own it keeps open; and, where it has moved it, where it is now.
+int ob_universe_fd(const ob_universe *u);
+void ob_universe_move_fd(ob_universe *u, int fd);
+
+// Takes the pages of all that objects 0 .. ids-1 have in the universe, before they are touched (pages.h). false and e: the
+// memory file system is full.
+bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e);
+// The same for pairs first .. first + count - 1, and for a record of a pair. false: it is full.
+bool ob_reserve_pairs(ob_universe *u, uint32_t first, uint32_t count);
+bool ob_reserve_record(ob_universe *u, uint32_t record);
+// Why pages of the universe may be missing; NULL: none need be.
+const char *ob_universe_lost(const ob_universe *u);
+// For a program that has universes mapped: where a page of one is missing after all, it ends with one line on standard
+// error, after a call of on_end, which may be NULL and must be safe in a signal handler.
+void ob_pages_guard(void (*on_end)(void));
 
 const ob_run_settings *ob_universe_settings(const ob_universe *u);
 uint32_t ob_universe_capacity(const ob_universe *u);
 uint32_t ob_universe_workers(const ob_universe *u);
+// Those of them that simulate: all, or all but the arranger.
+uint32_t ob_universe_simulators(const ob_universe *u);
+// Whether simulators are contained (outbox.h).
+bool ob_universe_contains(const ob_universe *u);
 const char *ob_universe_name(const ob_universe *u);
 void ob_universe_set_state(ob_universe *u, ob_universe_state s);
 // One past the highest id ever used: loops over objects end here.
@@ -75,6 +97,9 @@ ob_step_data *ob_universe_step_data(const ob_universe *u);
 
 // The clock of the run: the scheduler advances it.
 uint64_t ob_step_count(const ob_universe *u);
+// The worker that scheduled last, which says so itself; any thread may ask.
+void ob_step_set_scheduler(ob_universe *u, uint32_t worker);
+uint32_t ob_step_scheduler(const ob_universe *u);
 void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands);
 // Steps are timed from one completion to the next; after a pause, from here.
 void ob_step_begin(ob_universe *u);
@@ -94,27 +119,44 @@ void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects);
 void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns);
 // The worker's own counters; the host's to read while the universe stands still.
 ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker);
+// Faults that are injected (ob_fault_plan): how many a worker has; and all of them. lives: times that all simulators were
+// restarted, so that a successor does not meet the fault of its predecessor again.
+void ob_fault_note(ob_universe *u, uint32_t worker, ob_fault_kind kind);
+void ob_universe_faults(const ob_universe *u, uint64_t sum[OB_FAULT_KINDS]);
+uint32_t ob_universe_lives(const ob_universe *u);
 // Sums over all workers, and the largest error of any.
 void ob_universe_count(const ob_universe *u, ob_counters *sum);
 
 // ---- tasks: indices 0 .. total-1, each given once per phase, to the worker that asks first
-void ob_task_reset(ob_universe *u, uint32_t total);
+// Contained simulators, workers 0 .. workers-1, share them in turns instead: ob_task_owner of outbox.h.
+void ob_task_reset(ob_universe *u, uint32_t total, uint32_t workers);
 bool ob_task_claim(ob_universe *u, uint32_t *index);
 // Appends to the list of objects whose neighbours the broad phase must query again (any worker, any order).
 void ob_requery_append(ob_universe *u, uint32_t id);
 // The list so far; reset empties it. Only for the scheduler.
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count);
 void ob_requery_reset(ob_universe *u);
+// The run cannot go on after this phase: any worker. Of several, that of the lowest object stays, so that it is the same
+// in every run. object: one that is to blame.
+void ob_step_fail(ob_universe *u, ob_step_failure why, uint32_t object);
+ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object); // object may be NULL
+// Adds to the step's work; returns the sum of all workers so far. The scheduler resets it.
+uint64_t ob_step_work_add(ob_universe *u, uint64_t work);
+void ob_step_work_reset(ob_universe *u);
 // What checking pairs has found. The scheduler resets it; then each worker notes, for all pairs that it has checked,
 // whether one of them is a late contact, and the first step (from 0) at which one must be checked again.
 void ob_late_contacts_reset(ob_universe *u);
 void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check);
+// The step fails because this worker has written, or handed over, what it should not: by the arranger.
+void ob_step_blame(ob_universe *u, uint32_t worker, const char *what);
 // A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.
+// OB_NO_RECORD: no memory, which is a failure of the step.
 uint32_t ob_record_take(ob_universe *u);
 // Only for the scheduler.
 void ob_record_give_back(ob_universe *u, uint32_t record);
-// Reserves count words in the arena of neighbours; returns the offset, or UINT32_MAX when it is full
-uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t count);
+// Reserves count words in the arena of neighbours, for object id; returns the offset, or UINT32_MAX when it is full, which is a failure of
+// the step
+uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t id, uint32_t count);
 void ob_neighbours_reset(ob_universe *u);
 
 // ---- the gate (gate.h explains it with a drawing)
@@ -124,7 +166,8 @@ void ob_neighbours_reset(ob_universe *u);
 ob_phase ob_gate_wait(ob_universe *u, uint32_t worker);
 // true: the caller is the last, all other workers wait; it must call ob_gate_open or ob_gate_pause.
 bool ob_gate_arrive(ob_universe *u, uint32_t worker);
-// participants: worker numbers, n of them; NULL = all. n >= 1 unless the phase is STOP.
+// participants: worker numbers, n of them; NULL = all. n >= 1 unless the phase is STOP. A number that no worker has is
+// damage: OB_STEP_DAMAGED.
 void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, uint32_t n);
 // Instead of opening: hands the turn to the host, which sleeps in ob_gate_host_wait.
 void ob_gate_pause(ob_universe *u);
@@ -135,6 +178,8 @@ void ob_gate_set_pause_step(ob_universe *u, uint64_t step);
 uint64_t ob_gate_pause_step(const ob_universe *u);
 // Host: waits until paused; false on timeout (s)
 bool ob_gate_host_wait(ob_universe *u, double timeout);
+// Whether ob_gate_stop was called: a worker may leave its phase, and fails the step with OB_STEP_LEFT.
+bool ob_gate_stopped(const ob_universe *u);
 // Host, any time: opens the gate with STOP for all, for good; also wakes ob_gate_host_wait.
 void ob_gate_stop(ob_universe *u);
 

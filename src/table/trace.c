@@ -1,6 +1,7 @@
 #include "table/trace.h"
 
 #include <string.h>
+#include <sys/mman.h>
 
 #include "base/clock.h"
 #include "table/layout.h"
@@ -32,6 +33,16 @@ static ob_trace_event *events_of(const ob_universe *u, uint32_t ring, uint32_t *
 	*size = hosts ? OB_TRACE_HOST_EVENTS : each;
 	return u->trace_event + (size_t)each * (hosts ? workers : ring) +
 	       (hosts ? (size_t)OB_TRACE_HOST_EVENTS * (ring - workers) : 0);
+}
+
+bool ob_trace_unprotect(ob_universe *u, uint32_t ring)
+{
+	if (!ob_universe_traced(u))
+		return true;
+	uint32_t size;
+	ob_trace_event *event = events_of(u, ring, &size);
+	return mprotect(u->trace_ring + ring, sizeof *u->trace_ring, PROT_READ | PROT_WRITE) == 0 &&
+	       mprotect(event, size * sizeof *event, PROT_READ | PROT_WRITE) == 0;
 }
 
 // ---- writers
@@ -103,7 +114,8 @@ void ob_trace_death(ob_universe *u, uint32_t id, uint32_t flags_before)
 
 // ---- the reader
 
-// A writer in another process may have put anything into its words: no more than a ring's worth is believed.
+// A writer in another process may have put anything into its words: a ring that claims to be more than full is damaged,
+// and what is in it is passed over.
 uint32_t ob_trace_take(ob_universe *u, uint32_t ring, ob_trace_event *out, uint32_t max)
 {
 	uint32_t size, n = 0;
@@ -111,7 +123,11 @@ uint32_t ob_trace_take(ob_universe *u, uint32_t ring, ob_trace_event *out, uint3
 	ob_trace_ring *r = u->trace_ring + ring;
 	uint64_t taken = __atomic_load_n(&r->taken, __ATOMIC_RELAXED);
 	uint64_t ready = __atomic_load_n(&r->written, __ATOMIC_ACQUIRE) - taken;
-	for (; n < max && n < ready && n < size; n++)
+	if (ready > size) { // no ring has so many
+		__atomic_store_n(&r->taken, taken + ready, __ATOMIC_RELEASE);
+		return 0;
+	}
+	for (; n < max && n < ready; n++)
 		out[n] = event[(taken + n) & (size - 1)];
 	__atomic_store_n(&r->taken, taken + n, __ATOMIC_RELEASE);
 	return n;

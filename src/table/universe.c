@@ -1,5 +1,4 @@
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,17 +9,8 @@
 #include <unistd.h>
 
 #include "table/layout.h"
+#include "table/pages.h"
 #include "table/segment.h"
-
-static int open_new(const char *path, const char *name, ob_error *e)
-{
-	int fd = shm_open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-	if (fd < 0 && errno == EEXIST)
-		ob_fail(e, "universe \"%s\" already runs on this machine; give this one another name", name);
-	else if (fd < 0)
-		ob_fail(e, "cannot create shared memory /dev/shm%s: %s", path, strerror(errno));
-	return fd;
-}
 
 // A full memory file system would end the run with SIGBUS in the middle of a step: better not to begin.
 static bool check_room(int fd, uint64_t needed, ob_error *e)
@@ -37,46 +27,54 @@ static bool check_room(int fd, uint64_t needed, ob_error *e)
 		       room >> 20, (needed >> 20) + 1);
 }
 
-static void *map_new(int fd, const ob_header *h, ob_error *e)
-{
-	uint64_t bytes = h->bytes;
-	if (!check_room(fd, ob_layout_likely_bytes(h), e))
-		return NULL;
-	if (ftruncate(fd, (off_t)bytes) != 0) {
-		ob_fail(e, "cannot give shared memory %" PRIu64 " bytes: %s", bytes, strerror(errno));
-		return NULL;
-	}
-	void *base = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, fd, 0);
-	if (base != MAP_FAILED)
-		return base;
-	ob_fail(e, "cannot map %" PRIu64 " bytes of shared memory: %s", bytes, strerror(errno));
-	return NULL;
-}
-
 static void fill_header(ob_header *h, const ob_universe_setup *setup, const char *name)
 {
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
-	ob_layout_plan(h, setup->capacity, setup->workers, setup->traced);
+	ob_layout_plan(h, setup->capacity, setup->workers, setup->traced, setup->contained);
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
-	h->host_start = ob_segment_process_start(h->host_pid);
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 	snprintf(h->name, sizeof h->name, "%s", name);
 	snprintf(h->isolation, sizeof h->isolation, "%s", setup->isolation);
 	h->run = setup->run;
 }
 
+// The segment's first contents, before anybody can find it.
+static bool fill(ob_universe *u, ob_error *e)
+{
+	uint32_t workers = u->header.sizes.workers;
+	if (!ob_pages_take_first(u))
+		return ob_fail(e, "/dev/shm is full: no room for a universe of %u workers", workers);
+	ob_gate_prepare(u->gate, workers);
+	for (uint32_t i = 0; i < workers; i++)
+		u->worker[i].cpu = -1;
+	memcpy(u->base, &u->header, sizeof u->header);
+	return true;
+}
+
+static bool map_new(ob_universe *u, ob_error *e)
+{
+	uint64_t bytes = u->header.bytes;
+	if (!check_room(u->fd, ob_layout_likely_bytes(&u->header), e))
+		return false;
+	if (ftruncate(u->fd, (off_t)bytes) != 0)
+		return ob_fail(e, "cannot give shared memory %" PRIu64 " bytes: %s", bytes, strerror(errno));
+	void *base = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, u->fd, 0);
+	if (base == MAP_FAILED)
+		return ob_fail(e, "cannot map %" PRIu64 " bytes of shared memory: %s", bytes, strerror(errno));
+	ob_layout_bind(u, base);
+	u->taken = calloc(bytes / OB_LAYOUT_CHUNK / 64 + 1, sizeof *u->taken);
+	if (!u->taken)
+		return ob_fail(e, "out of memory");
+	return true;
+}
+
 ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 {
-	char own[OB_NAME_MAX], path[OB_SEGMENT_PATH_MAX];
+	char own[OB_NAME_MAX];
 	snprintf(own, sizeof own, "obsim-%d", (int)getpid());
 	const char *name = setup->name ? setup->name : own;
-	if (!ob_segment_path(path, name)) {
-		ob_fail(e, "\"%.60s\" cannot be a universe's name: 1 to %d of A-Z a-z 0-9 . _ -", name,
-			OB_NAME_MAX - 1);
-		return NULL;
-	}
 	ob_segment_remove_stale();
 	ob_universe *u = calloc(1, sizeof *u);
 	if (!u) {
@@ -90,25 +88,13 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 		free(u);
 		return NULL;
 	}
-	int fd = open_new(path, name, e);
-	void *base = fd < 0 ? NULL : map_new(fd, &u->header, e);
-	if (fd >= 0)
-		close(fd);
-	if (!base) {
-		if (fd >= 0)
-			shm_unlink(path);
-		free(u);
-		return NULL;
+	u->fd = ob_segment_create(e);
+	if (u->fd >= 0 && map_new(u, e) && fill(u, e) && ob_segment_publish(u->fd, name, e)) {
+		ob_pages_track(u);
+		return u;
 	}
-	ob_layout_bind(u, base);
-	ob_gate_prepare(u->gate, setup->workers);
-	for (uint32_t i = 0; i < setup->workers; i++)
-		u->worker[i].cpu = -1;
-	ob_header *shared = base;
-	memcpy((char *)shared + sizeof shared->magic, (char *)&u->header + sizeof shared->magic,
-	       sizeof *shared - sizeof shared->magic);
-	__atomic_store_n(&shared->magic, OB_LAYOUT_MAGIC, __ATOMIC_RELEASE); // from now on readers may attach
-	return u;
+	ob_universe_destroy(u, false);
+	return NULL;
 }
 
 void ob_universe_destroy(ob_universe *u, bool unlink)
@@ -116,21 +102,29 @@ void ob_universe_destroy(ob_universe *u, bool unlink)
 	if (!u)
 		return;
 	if (unlink)
-		ob_universe_unlink(u->header.name);
-	munmap(u->base, u->header.bytes);
+		ob_universe_unlink(u);
+	ob_pages_forget(u);
+	if (u->base)
+		munmap(u->base, u->header.bytes);
+	if (u->fd >= 0)
+		close(u->fd);
+	free(u->taken);
 	free(u);
 }
 
-void ob_universe_unlink(const char *name)
+void ob_universe_unlink(const ob_universe *u)
 {
-	// shm_unlink is not among the functions that POSIX lets a signal handler call; unlink is
-	static const char folder[] = "/dev/shm/obsim.";
-	char path[sizeof folder + OB_NAME_MAX];
-	size_t n = strnlen(name, OB_NAME_MAX - 1);
-	memcpy(path, folder, sizeof folder - 1);
-	memcpy(path + sizeof folder - 1, name, n);
-	path[sizeof folder - 1 + n] = 0;
-	unlink(path);
+	ob_segment_unlink(u->fd, u->header.name);
+}
+
+int ob_universe_fd(const ob_universe *u)
+{
+	return u->fd;
+}
+
+void ob_universe_move_fd(ob_universe *u, int fd)
+{
+	u->fd = fd;
 }
 
 const ob_run_settings *ob_universe_settings(const ob_universe *u)
@@ -144,6 +138,14 @@ uint32_t ob_universe_capacity(const ob_universe *u)
 uint32_t ob_universe_workers(const ob_universe *u)
 {
 	return u->header.sizes.workers;
+}
+uint32_t ob_universe_simulators(const ob_universe *u)
+{
+	return u->header.sizes.workers - (ob_universe_contains(u) ? 1 : 0);
+}
+bool ob_universe_contains(const ob_universe *u)
+{
+	return u->header.sizes.outbox_bytes > 0;
 }
 const char *ob_universe_name(const ob_universe *u)
 {
@@ -161,5 +163,6 @@ void ob_universe_set_state(ob_universe *u, ob_universe_state s)
 
 uint32_t ob_universe_ids(const ob_universe *u)
 {
-	return __atomic_load_n(&u->control->ids, __ATOMIC_ACQUIRE);
+	const uint32_t ids = __atomic_load_n(&u->control->ids, __ATOMIC_ACQUIRE), most = u->header.sizes.capacity;
+	return ids < most ? ids : most;
 }

@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <ob/error.h>
+
 #include "base/csv.h"
 #include "base/utf8.h"
 #include "check.h"
@@ -85,10 +87,41 @@ static void test_utf8(void)
 	CHECK(ob_utf8_count("") == 0 && ob_utf8_count("k\xc3\xb6ln \xff\xe2\x88!") == 9);
 }
 
+static void check_plain(const char *text, const char *plain)
+{
+	char copy[64];
+	strcpy(copy, text);
+	ob_utf8_make_plain(copy);
+	CHECK(strcmp(copy, plain) == 0);
+	ob_utf8_make_plain(copy);
+	CHECK(strcmp(copy, plain) == 0);
+}
+
+// What reaches a terminal as text is text there.
+static void test_plain(void)
+{
+	check_plain("", "");
+	check_plain("a box, k\xc3\xb6ln \xe2\x88\x92 \xf0\x9f\x93\xa6",
+		    "a box, k\xc3\xb6ln \xe2\x88\x92 \xf0\x9f\x93\xa6");
+	check_plain("a\033[2J\nb\tc\x7f", "a [2J b c ");
+	check_plain("a\xc2\x9b"
+		    "31mb", // CSI, of Latin-1
+		    "a?31mb");
+	check_plain("\x9b"
+		    "31m\xff\xe2\x88", // as a byte; cut short
+		    "?31m???");
+	check_plain("exe.\xe2\x80\xaegnp", "exe.?gnp"); // from right to left
+	check_plain("a\xe2\x81\xa6\xe2\x80\xa8\xe2\x80\x8f\xd8\x9c", "a????");
+	ob_error e;
+	ob_fail(&e, "%s: %s", "x\033]0;t\a", "\xc2\x85");
+	CHECK(strcmp(e.text, "x ]0;t : ?") == 0);
+}
+
 int main(void)
 {
 	test_csv_round_trip();
 	test_csv_foreign();
 	test_utf8();
+	test_plain();
 	return check_end();
 }

@@ -5,7 +5,7 @@
 // Runs as the run loop does, and counts. Every frame must lie within the step that shows it.
 static uint64_t count_frames(double duration, double fps, double step, uint64_t steps, uint64_t *seen_steps)
 {
-	ob_frame_clock c = ob_frame_clock_make(duration, fps, step);
+	ob_frame_clock c = ob_frame_clock_make(duration, fps, step, 0);
 	uint64_t now = 0, before = 0, shown = 0;
 	*seen_steps = 1;
 	for (;;) {
@@ -48,7 +48,7 @@ static void test_counts(void)
 // Where both are multiples of one another there is never an interpolation.
 static void test_on_steps(void)
 {
-	ob_frame_clock c = ob_frame_clock_make(36000, 60, 1. / 60);
+	ob_frame_clock c = ob_frame_clock_make(36000, 60, 1. / 60, 0);
 	for (; c.next < c.frames; c.next += 977) {
 		bool between;
 		CHECK(ob_frame_clock_step(&c, &between) == c.next);
@@ -57,8 +57,27 @@ static void test_on_steps(void)
 	CHECK(c.frames == 2160000);
 }
 
+// A run that begins at a step later has the frames from its time on, under their numbers.
+static void test_later(void)
+{
+	static const struct {
+		double fps, step;
+		uint64_t first, frame;
+	} cases[] = { { 60, 1. / 60, 1, 1 },  { 60, 1. / 60, 599, 599 }, { 30, 1. / 60, 7, 4 },
+		      { 25, .01, 32, 8 },     { 25, .01, 33, 9 },        { 1000, .1, 3, 300 },
+		      { 1. / 3, 1, 100, 34 }, { 144, 1. / 60, 1, 3 },    { 60, .1, 6000000, 36000000 } };
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		bool between;
+		ob_frame_clock c = ob_frame_clock_make(1e6, cases[i].fps, cases[i].step, cases[i].first);
+		CHECK(c.next == cases[i].frame);
+		CHECK(ob_frame_clock_step(&c, &between) >= cases[i].first);
+		CHECK(!between || ob_frame_clock_need(&c, cases[i].first) >= cases[i].first);
+	}
+}
+
 int main(void)
 {
+	test_later();
 	test_counts();
 	test_on_steps();
 	return check_end();

@@ -105,13 +105,14 @@ static void test_harmless(void)
 	strcpy(objects[4].passport.name, "a\033[2Jb\nc\td\x7f");
 	strcpy(objects[5].passport.name, "\xc2\x9b"
 					 "31m\xff\xfe");
+	strcpy(objects[7].passport.name, "up\xe2\x80\xaenwod"); // turns the direction of what follows
 	strcpy(s.info.name, "\033]0;title\a");
 	objects[6].passport.shape = 77;
 	s.info.state = (ob_universe_state)99;
 	char *text = show(&view, &s);
 	for (const unsigned char *c = (const unsigned char *)text; *c; c++)
 		CHECK((*c >= 0x20 && *c != 0x7f && *c != 0xff) || *c == '\n');
-	CHECK(!strstr(text, "\xc2\x9b"));
+	CHECK(!strstr(text, "\xc2\x9b") && !strstr(text, "\xe2\x80\xae"));
 	CHECK(strstr(text, "a?[2Jb?c?d?"));
 	free(text);
 }

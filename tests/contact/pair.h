@@ -18,7 +18,7 @@ typedef struct body {
 typedef struct pair {
 	body a, b;
 	ob_vec3 normal, arm_a[OB_POINTS], arm_b[OB_POINTS];
-	double gap[OB_POINTS], mu, e;
+	double gap[OB_POINTS], disc_radius, mu, e;
 	int points;
 } pair;
 
@@ -69,8 +69,20 @@ static inline pair random_pair(uint64_t *seed, double mass_ratio)
 
 static inline void put_pair(ob_batch *batch, int lane, const pair *p, uint32_t row_a, uint32_t row_b)
 {
-	ob_batch_lane in = { row_a, row_b, p->normal,     p->points,     p->arm_a,         p->arm_b,        p->gap,
-			     p->mu, p->e,  p->a.inv_mass, p->b.inv_mass, p->a.inv_inertia, p->b.inv_inertia };
+	ob_batch_lane in = { .body_a = row_a,
+			     .body_b = row_b,
+			     .normal = p->normal,
+			     .points = p->points,
+			     .arm_a = p->arm_a,
+			     .arm_b = p->arm_b,
+			     .gap = p->gap,
+			     .disc_radius = p->disc_radius,
+			     .mu = p->mu,
+			     .e = p->e,
+			     .inv_mass_a = p->a.inv_mass,
+			     .inv_mass_b = p->b.inv_mass,
+			     .inv_inertia_a = p->a.inv_inertia,
+			     .inv_inertia_b = p->b.inv_inertia };
 	ob_batch_set(batch, lane, &in);
 }
 

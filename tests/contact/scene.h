@@ -10,6 +10,7 @@ typedef struct scene {
 	pair p[OB_LANES];
 	ob_batch batch;
 	ob_body_row u[2 * OB_LANES + 1], v[2 * OB_LANES + 1], d[2 * OB_LANES + 1], delta[2 * OB_LANES + 1];
+	ob_body_row dv[2 * OB_LANES + 1];
 } scene;
 
 static inline uint32_t row_a(int lane)
@@ -52,6 +53,20 @@ static inline void random_scene_of(scene *s, uint64_t *seed, double push, ob_bat
 static inline void random_scene(scene *s, uint64_t *seed, double push)
 {
 	random_scene_of(s, seed, push, OB_KIND_FULL);
+}
+
+// An iteration as the contact solver makes them.
+static inline ob_solver_iteration iteration_on(const scene *s, bool first)
+{
+	return (ob_solver_iteration){ .h = substep,
+				      .block_sweeps = 4,
+				      .converged = 1e-12,
+				      .wake_threshold = 2e-3,
+				      .impact_threshold = .1,
+				      .first = first,
+				      .resting_gap = 1e-7,
+				      .turning_gap = 1e-5,
+				      .dv = s->dv };
 }
 
 #endif

@@ -11,7 +11,8 @@ static void run(const ob_kernel *k, scene *s, bool jacobi)
 	static const double cap[OB_LANES] = { .01, .02, .03, .04 };
 	k->prepare(&s->batch);
 	for (int round = 0; round < 4; round++) {
-		ob_solver_iteration iteration = { substep, 4, 0, 2e-3, .1, round == 0, jacobi };
+		ob_solver_iteration iteration = iteration_on(s, round == 0);
+		iteration.jacobi = jacobi;
 		k->solve(&s->batch, &iteration, s->u, s->v, s->d, s->delta);
 	}
 	k->project(&s->batch, 1e-4, .3, jacobi, s->d, s->delta);

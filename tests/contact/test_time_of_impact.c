@@ -119,11 +119,13 @@ static void check_meeting(const ob_placed *a, const ob_placed *b, double h, int 
 
 static void test_random(void)
 {
-	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX };
+	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
+	enum { SHAPES = sizeof shape / sizeof *shape };
 	uint64_t seed = 2;
 	int met = 0, tried = 0;
 	for (int i = 0; i < 4000; i++) {
-		ob_placed a = random_placed(&seed, shape[i % 2], 3), b = random_placed(&seed, shape[i / 2 % 2], 3);
+		ob_placed a = random_placed(&seed, shape[i % SHAPES], 3);
+		ob_placed b = random_placed(&seed, shape[i / SHAPES % SHAPES], 3);
 		double h = within(&seed, .001, .02), speed = pow(10, within(&seed, 0, 3));
 		a.v = ob_scale(ob_add(ob_sub(b.p, a.p), random_vector(&seed, 1)), speed / 4);
 		b.v = random_vector(&seed, speed / 8);

@@ -38,10 +38,37 @@ static inline ob_scene little_scene(uint32_t balls)
 	return s;
 }
 
+// Balls that fall onto each other, and keep all pairs busy.
+static inline ob_scene busy_heap(uint32_t balls)
+{
+	ob_scene s = little_scene(balls);
+	for (uint32_t i = 1; i <= balls; i++) {
+		s.object[i].state.pose.p = ob_v3(.11 * (i % 3), .12 * (i / 3 % 3) + .01 * i, .3 + .22 * (i / 9));
+		s.object[i].passport.restitution = .3;
+	}
+	return s;
+}
+
+// Balls far apart that come together within a second, in one heap on the ground.
+static inline ob_scene falling_heap(uint32_t balls)
+{
+	ob_scene s = little_scene(balls);
+	for (uint32_t i = 1; i <= balls; i++) {
+		ob_vec3 place = ob_v3(i % 7, i / 7 % 7, i / 49); // in a lattice
+		ob_vec3 to = ob_add(ob_scale(place, .15), ob_v3(0, 0, .2)),
+			from = ob_add(ob_scale(place, 4), ob_v3(0, 0, 40));
+		s.object[i].state.pose.p = from;
+		s.object[i].state.v = ob_sub(to, from);
+	}
+	return s;
+}
+
 static inline ob_host_config little_config(const ob_scene *s, ob_isolation isolation, uint32_t workers)
 {
 	ob_host_config c = { .isolation = isolation, .workers = workers };
-	c.run = (ob_run_settings){ .gravity = s->run.gravity, .step_length = s->run.step_length, .substeps = 2, .iterations = 4 };
+	c.run = (ob_run_settings){
+		.gravity = s->run.gravity, .step_length = s->run.step_length, .substeps = 2, .iterations = 4
+	};
 	return c;
 }
 

@@ -106,13 +106,13 @@ static void test_killed_fork_server(void)
 
 // A simulator stalls while it has work, in a run whose objects fall for as long as one likes, are solved in every step,
 // and are so many that each worker has some. All are restarted. False: another simulator was named, which still computes.
-static bool stall(uint32_t workers, uint32_t victim, double stall_timeout)
+static bool stall(uint32_t workers, uint32_t victim, double patience)
 {
 	ob_scene s = little_scene(200);
 	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, workers);
 	ob_error e = { "" };
 	char name[OB_NAME_MAX], who[64];
-	c.stall_timeout = stall_timeout;
+	c.patience = patience;
 	c.run.integrator = OB_INTEGRATOR_ODE; // no ballistic advance
 	for (uint32_t i = 1; i < s.objects; i++)
 		s.object[i].state.pose.p.z = 1e9;
@@ -146,7 +146,7 @@ static void test_stalled_idle_simulator(uint32_t workers, uint32_t victim)
 	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, workers);
 	ob_error e = { "" };
 	char name[OB_NAME_MAX];
-	c.stall_timeout = WAIT_S;
+	c.patience = WAIT_S;
 	c.run.sleeping = true;
 	ob_host *h = ob_host_start(&s, &c, &e);
 	strcpy(name, ob_universe_name(ob_host_universe(h)));

@@ -12,17 +12,6 @@
 
 enum { STEPS = 400, BALLS = 40 };
 
-// A heap that keeps all pairs busy: balls that fall onto each other. The caller frees object.
-static ob_scene heap(void)
-{
-	ob_scene s = little_scene(BALLS);
-	for (int i = 1; i <= BALLS; i++) {
-		s.object[i].state.pose.p = ob_v3(.11 * (i % 3), .12 * (i / 3 % 3) + .01 * i, .3 + .22 * (i / 9));
-		s.object[i].passport.restitution = .3;
-	}
-	return s;
-}
-
 // FNV-1a over what is there at the end.
 static uint64_t hash_of(const ob_host *h)
 {
@@ -78,8 +67,8 @@ static void *kill_when_asked(void *argument)
 	return NULL;
 }
 
-// Runs to the end, and asks for a blow "blows" times on the way; each comes before the next is asked for, and before the
-// end.
+// Runs to the end, and asks for a blow "blows" times on the way; each comes before the next is asked for, and before
+// the end.
 static uint64_t end_of(const ob_scene *s, const ob_host_config *c, killer *k, unsigned blows, uint32_t *deaths)
 {
 	ob_error e = { "" };
@@ -125,7 +114,7 @@ static void test_deaths(const char *what, const ob_scene *s, uint32_t workers, i
 	CHECK(deaths == 0);
 	c = little_config(s, OB_ISOLATION_PROCESS, workers);
 	c.run.sleeping = sleeping;
-	c.stall_timeout = signal == SIGSTOP ? 1 : 0;
+	c.patience = signal == SIGSTOP ? 1 : 0;
 	for (unsigned seed = 0; seed < (signal == SIGSTOP ? 1 : 2); seed++) {
 		killer k = { .seed = 7 * seed + workers, .signal = signal };
 		CHECK(end_of(s, &c, &k, blows, &deaths) == expected);
@@ -135,10 +124,23 @@ static void test_deaths(const char *what, const ob_scene *s, uint32_t workers, i
 	printf("%s, %u workers, signal %d: %u restarts\n", what, workers, signal, sum);
 }
 
+// A simulator that ends of its own accord, whatever it says of that, is as one that was killed.
+static void leave_with_7(int number)
+{
+	(void)number;
+	_exit(7);
+}
+
+static void leave_with_0(int number)
+{
+	(void)number;
+	_exit(0);
+}
+
 // Where objects are added and removed a checkpoint is taken at once, as far as there is time.
 static void test_visitors(void)
 {
-	ob_scene s = heap();
+	ob_scene s = busy_heap(BALLS);
 	for (int i = 30; i <= BALLS; i++) {
 		s.object[i].born = .1 * (i - 29);
 		s.object[i].dies = i % 2 ? .1 * (i - 29) + 1 : INFINITY;
@@ -150,7 +152,7 @@ static void test_visitors(void)
 // A simulator that dies while the universe stands still is restarted at the next step.
 static void test_killed_in_a_pause(void)
 {
-	ob_scene s = heap();
+	ob_scene s = busy_heap(BALLS);
 	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 2);
 	ob_error e = { "" };
 	ob_host_times times;
@@ -171,10 +173,56 @@ static void test_killed_in_a_pause(void)
 	free(s.object);
 }
 
+// Stops the first child that is neither of the two, as soon as it is there.
+_Noreturn static void stop_next_child(pid_t parent, const pid_t known[2])
+{
+	char path[64];
+	int child = 0;
+	snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
+	for (double until = ob_clock_wall() + WAIT_S; ob_clock_wall() < until;) {
+		FILE *f = fopen(path, "r");
+		while (f && fscanf(f, "%d", &child) == 1)
+			if (child != known[0] && child != known[1]) {
+				kill(child, SIGSTOP);
+				_exit(0);
+			}
+		if (f)
+			fclose(f);
+	}
+	_exit(1);
+}
+
+// A simulator is stopped before it is ready, in a restart: that is no end either.
+static void test_stopped_before_it_is_ready(void)
+{
+	ob_scene s = busy_heap(BALLS);
+	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 2);
+	ob_error e = { "" };
+	ob_host_times times;
+	c.patience = 1;
+	ob_host *h = ob_host_start(&s, &c, &e);
+	ob_host_go(h, 10);
+	CHECK(ob_host_wait(h, &e));
+	pid_t before[2] = { pid_of_worker(ob_host_universe(h), 0), pid_of_worker(ob_host_universe(h), 1) };
+	kill(before[0], SIGKILL);
+	while (!h->restart.requested)
+		pause_ms(1);
+	pid_t watcher = fork();
+	if (watcher == 0)
+		stop_next_child(ob_fork_server_pid(h->fork_server), before);
+	ob_host_go(h, 300);
+	CHECK(ob_host_wait(h, &e) && steps_of(h) == 300);
+	CHECK(waitpid(watcher, NULL, 0) == watcher);
+	ob_host_get_times(h, &times);
+	CHECK(times.deaths >= 1);
+	ob_host_stop(h);
+	free(s.object);
+}
+
 // Ctrl-C during a restart: a clean end.
 static void test_interrupted(void)
 {
-	ob_scene s = heap();
+	ob_scene s = busy_heap(BALLS);
 	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 0);
 	ob_error e = { "" };
 	for (int us = 0; us < 20000; us += 2000) {
@@ -194,7 +242,7 @@ static void test_interrupted(void)
 // Where each simulator that is restarted dies of the same, the run gives up: here of a damaged table.
 static void test_again_and_again(void)
 {
-	ob_scene s = heap();
+	ob_scene s = busy_heap(BALLS);
 	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 2);
 	ob_error e = { "" };
 	ob_host *h = ob_host_start(&s, &c, &e);
@@ -208,7 +256,8 @@ static void test_again_and_again(void)
 	ob_host_go(h, 200);
 	CHECK(!ob_host_wait(h, &e) && !ob_host_interrupted(h));
 	printf("%s\n", e.text);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // which make a report and an exit code of the signal
+#if !defined(__SANITIZE_ADDRESS__) && \
+	!defined(__SANITIZE_THREAD__) // which make a report and an exit code of the signal
 	CHECK(strstr(e.text, "killed by SIG") && strstr(e.text, "; giving up: simulators failed "));
 #endif
 	ob_host_stop(h);
@@ -218,7 +267,11 @@ static void test_again_and_again(void)
 
 int main(void)
 {
-	ob_scene s = heap();
+	ob_scene s = busy_heap(BALLS);
+	signal(SIGUSR1, leave_with_7);
+	signal(SIGUSR2, leave_with_0);
+	test_deaths("heap", &s, 2, SIGUSR1, false);
+	test_deaths("heap", &s, 0, SIGUSR2, false);
 	test_deaths("heap", &s, 1, SIGKILL, false);
 	test_deaths("heap", &s, 2, SIGKILL, false);
 	test_deaths("heap", &s, 3, SIGKILL, true);
@@ -227,6 +280,7 @@ int main(void)
 	free(s.object);
 	test_visitors();
 	test_killed_in_a_pause();
+	test_stopped_before_it_is_ready();
 	test_interrupted();
 	test_again_and_again();
 	return check_end();

@@ -63,7 +63,7 @@ def main():
             'plots/all-ghost.svg', 'plots/lag.svg'} <= plots, plots
     # each diagram once, but for that of late partners, which has a section and a case
     cases = checker.ids.count('stack-10') and page.count('<section id=')
-    assert cases > 30 and checker.svgs == len(plots) / 2 + 1 and checker.tables == 2 + 2 * cases, (cases, checker.svgs)
+    assert cases > 30 and checker.svgs == len(plots) / 2 + 1 and checker.tables == 4 + 2 * cases, (cases, checker.svgs)
     print(f'{cases} cases, {len(plots)} plots, {len(page) / 1e6:.2f} MB')
 
 

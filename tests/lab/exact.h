@@ -16,5 +16,11 @@ ob_state exact_slide(const ob_world *w, uint32_t id, double t); // blocks and sp
 ob_state exact_stop(const ob_world *w, uint32_t id, double t); // blocks on level ground
 ob_state exact_slip(const ob_world *w, uint32_t id, double t); // a sphere on level ground
 ob_state exact_halt(const ob_world *w, uint32_t id, double t); // flies 2.5 m, to stop before what it was aimed at
+ob_state exact_plate(const ob_world *w, uint32_t id, double t); // thin ones on level ground; right when they have stopped
+ob_state exact_drop(const ob_world *w, uint32_t id, double t); // anything from a height of 1 m, straight up again
+ob_state exact_disk(const ob_world *w, uint32_t id, double t); // on its rim, its centre at rest
+ob_state exact_roll(const ob_world *w, uint32_t id, double t); // on level ground, without slip
+ob_state exact_pull(const ob_world *w, uint32_t id, double t); // by its force, against friction
+ob_state exact_round(const ob_world *w, uint32_t id, double t); // cylinders and capsules down the slope of body 0
 
 #endif

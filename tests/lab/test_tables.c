@@ -46,6 +46,13 @@ static void test_tables(void)
 	ob_lab_print_rows(f, &d, false);
 	expect_in(f, (const char *[]){ " 14  Stack of 10", "0.25 mm  \u2264 0.5 mm", "met", "0.5 mm (ODE QuickStep)",
 				       " 11  Sliding", "MISSED", "all failed", NULL });
+	r.result[0].outcome.conserved[OB_CONSERVED_MOMENTUM] = NAN;
+	ob_results_find(&r, ob_case_find("sliding"), ob_engine_find("obsim"), &list[5].settings)
+		->outcome.conserved[OB_CONSERVED_ENERGY] = 2e-9;
+	f = begin();
+	ob_lab_print_conserved(f, &d, false);
+	expect_in(f, (const char *[]){ "momentum (\u2264 1e-12)", "2e-9  NOT KEPT", "0  kept",
+				       "Not kept in 1 of 3 cases: sliding.", NULL });
 	f = begin();
 	ob_lab_print_equal(f, &d, false);
 	expect_in(f, (const char *[]){ "Case", "at an error of", "0.5 mm", "4 (2\u00d7)", "never", "4 (0.67\u00d7)",

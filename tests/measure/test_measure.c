@@ -168,6 +168,46 @@ static void test_penetration_of_many(void)
 	CHECK_NEAR(out.mean_m * (double)pairs, sum, 1e-6);
 }
 
+static bool stop_now(void *context)
+{
+	++*(int *)context;
+	return true;
+}
+
+// Crowds: it says when it is too much, and hears that it is to stop; a field as large, in which few overlap, is
+// measured.
+static void test_penetration_of_crowds(void)
+{
+	enum { CROWD = 12000 };
+	ob_snapshot s = { .count = CROWD };
+	s.passport = calloc(CROWD, sizeof *s.passport);
+	s.motion = calloc(CROWD, sizeof *s.motion);
+	for (uint32_t i = 0; i < CROWD; i++) {
+		s.passport[i] =
+			(ob_passport){ .id = i, .flags = OB_OBJECT_PRESENT, .mass = 1, .shape = OB_SHAPE_SPHERE };
+		s.passport[i].size.x = .5;
+		s.motion[i] = (ob_motion){ .q = ob_quat_identity(), .valid_until = INFINITY };
+		s.motion[i].p = ob_v3(1.5 * (i % 100), 1.5 * (i / 100), 0);
+	}
+	snprintf(s.passport[7].name, OB_NAME_MAX, "seven");
+	s.motion[7].p.x += .6; // .9 from the next
+	ob_penetration out;
+	ob_error e = { "" };
+	int asked = 0;
+	CHECK(ob_measure_penetration_unless(&s, &out, NULL, NULL, &e));
+	CHECK(out.pairs == 1 && out.worst_a == 7 && out.worst_b == 8);
+	CHECK_NEAR(out.max_m, .1, 1e-12);
+	for (uint32_t i = 0; i < CROWD; i++)
+		s.motion[i].p = ob_v3(1e-6 * i, 0, 0);
+	s.motion[7].p = ob_v3(0, 0, 5);
+	CHECK(!ob_measure_penetration_unless(&s, &out, NULL, NULL, &e) && isnan(out.max_m) && isnan(out.mean_m));
+	CHECK(strstr(e.text, "step 0") && strstr(e.text, "alone overlaps") && !strstr(e.text, "seven"));
+	CHECK(!ob_measure_penetration_unless(&s, &out, stop_now, &asked, &e) && asked == 1);
+	CHECK(strstr(e.text, "interrupted"));
+	free(s.passport);
+	free(s.motion);
+}
+
 // Separation of contacts that carry an impulse: spheres of .5 m a distance apart, a pair counted once, penetration as
 // none.
 static void test_separation(void)
@@ -199,6 +239,7 @@ int main(void)
 	test_hash();
 	test_penetration_by_hand();
 	test_penetration_of_many();
+	test_penetration_of_crowds();
 	test_separation();
 	return check_end();
 }

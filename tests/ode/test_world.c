@@ -207,9 +207,51 @@ static void test_boxed(void)
 	ob_ode_world_destroy(w);
 }
 
+// What ODE's own assertions refuse ends the world's life, not the program's; others go on.
+static void test_giving_up(void)
+{
+	bool full = true;
+	ob_ode_world *w = world(0, false), *other = world(20, false);
+	add(w, 1, OB_SHAPE_BOX, ob_v3(0, 0, 3), 0);
+	add(w, 2, OB_SHAPE_BOX, ob_v3(5, 0, 3), 0);
+	ob_passport p = { .id = 3, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_BOX, .size = { 1, 1, 1 }, .mass = 1 };
+	p.inertia = ob_ode_inertia(p.shape, p.size, p.mass);
+	ob_ode_world_add(w, &p, &(ob_state){ { { 0, 0, 9 }, { 1, 0, 0, 0 } }, { 0, 0, 0 }, { 1e200, 1e200, 0 } });
+	bool stepped = true;
+	for (int i = 0; i < 10 && stepped; i++)
+		stepped = ob_ode_world_step(w, H);
+	CHECK(!stepped && ob_ode_world_culprit(w, &full) == 3 && !full);
+	run(other, 10);
+	ob_ode_world_destroy(w);
+	ob_ode_world_destroy(other);
+}
+
+// More pairs than fit: the object that has most of them is named.
+static void test_full(void)
+{
+	bool full = false, stepped = true;
+	ob_ode_world_setup setup = { .gravity = { 0, 0, -10 }, .iterations = 20, .objects = OBJECTS, .pairs_max = 3 };
+	ob_ode_world *w = ob_ode_world_create(&setup);
+	for (uint32_t id = 0; id < OBJECTS; id++)
+		add(w, id, OB_SHAPE_SPHERE, ob_v3(id == 7 ? 0 : 2. * id, 0, 0), 0);
+	for (uint32_t id = 0; id < 300 && stepped; id++)
+		stepped = ob_ode_world_step(w, H);
+	CHECK(stepped); // few touch
+	ob_ode_world_destroy(w);
+	setup.objects = 400;
+	w = ob_ode_world_create(&setup);
+	for (uint32_t id = 0; id < 400; id++)
+		add(w, id, OB_SHAPE_SPHERE, ob_v3(0, 0, id == 7 ? 3 : .001 * id), 0);
+	CHECK(!ob_ode_world_step(w, H));
+	CHECK(ob_ode_world_culprit(w, &full) != 7 && full);
+	ob_ode_world_destroy(w);
+}
+
 int main(void)
 {
 	ob_ode_thread_init();
+	test_giving_up();
+	test_full();
 	test_fall();
 	test_contacts(20);
 	test_contacts(0);

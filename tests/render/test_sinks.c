@@ -90,7 +90,7 @@ static void png_is_complete(void)
 	static uint8_t data[2][4 * W * H];
 	for (int run = 0; run < 2; run++) {
 		snprintf(dir[run], sizeof dir[run], "%s/deep/run%d", base, run);
-		ob_sink *s = ob_sink_png(dir[run], W, H, &e);
+		ob_sink *s = ob_sink_png(dir[run], W, H, 0, &e);
 		CHECK(s && put_frames(s, FRAMES, &e) && ob_sink_close(s, &e));
 		CHECK(files_in(dir[run]) == FRAMES);
 	}
@@ -106,7 +106,7 @@ static void png_is_complete(void)
 	// A shorter run into the same directory leaves none of the longer one's, and nothing of the user's is touched.
 	snprintf(path, sizeof path, "%s/frame-notes.txt", dir[0]);
 	fclose(fopen(path, "w"));
-	ob_sink *s = ob_sink_png(dir[0], W, H, &e);
+	ob_sink *s = ob_sink_png(dir[0], W, H, 0, &e);
 	CHECK(s && put_frames(s, 7, &e) && ob_sink_close(s, &e));
 	CHECK(files_in(dir[0]) == 8);
 }
@@ -117,9 +117,9 @@ static void png_errors(void)
 	char dir[128];
 	snprintf(dir, sizeof dir, "%s/file", base);
 	fclose(fopen(dir, "w"));
-	CHECK(!ob_sink_png(dir, W, H, &e) && strstr(e.text, dir) && strstr(e.text, "Not a directory"));
-	CHECK(!ob_sink_png("/proc/no-such-place/frames", W, H, &e) && strstr(e.text, "/proc/no-such-place/frames"));
-	CHECK(!ob_sink_png(base, 0, H, &e) && strstr(e.text, "0x36"));
+	CHECK(!ob_sink_png(dir, W, H, 0, &e) && strstr(e.text, dir) && strstr(e.text, "Not a directory"));
+	CHECK(!ob_sink_png("/proc/no-such-place/frames", W, H, 0, &e) && strstr(e.text, "/proc/no-such-place/frames"));
+	CHECK(!ob_sink_png(base, 0, H, 0, &e) && strstr(e.text, "0x36"));
 
 	// A full disk, in small: files may not grow beyond 200 bytes.
 	struct rlimit before, small;
@@ -128,7 +128,7 @@ static void png_errors(void)
 	small.rlim_cur = 200;
 	signal(SIGXFSZ, SIG_IGN);
 	snprintf(dir, sizeof dir, "%s/full", base);
-	ob_sink *s = ob_sink_png(dir, W, H, &e);
+	ob_sink *s = ob_sink_png(dir, W, H, 0, &e);
 	setrlimit(RLIMIT_FSIZE, &small);
 	bool put = put_frames(s, 100, &e), closed = ob_sink_close(s, &e);
 	setrlimit(RLIMIT_FSIZE, &before);

@@ -87,6 +87,15 @@ def simulators(parent):
 	return found
 
 
+def fork_server(parent):
+	"""Id of the fork server of this run."""
+	for pid in processes(parent):
+		with open(f"/proc/{pid}/comm") as f:
+			if f.read() == "obsim-fork\n":
+				return pid
+	raise AssertionError("no fork server")
+
+
 def end(pid):
 	"""Kills it, if it is still there."""
 	try:
@@ -127,9 +136,9 @@ class Case(unittest.TestCase):
 	def path(self, name):
 		return os.path.join(self.directory.name, name)
 
-	def start_universe(self, *words):
+	def start_universe(self, *words, command="run"):
 		"""A run under self.name, as soon as it is under way."""
-		run = start("run", *words, "--name", self.name)
+		run = start(command, *words, "--name", self.name)
 		self.addCleanup(lambda: (run.poll() is None and run.kill(), run.wait(), run.stdout.close(), run.stderr.close()))
 		self.assertTrue(wait_until(lambda: os.path.exists(segment(self.name)) or run.poll() is not None))
 		self.assertIsNone(run.poll(), "the run ended before it was looked at")

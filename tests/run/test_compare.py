@@ -133,6 +133,14 @@ class Compare(program.Case):
 			self.assertEqual(run["metrics"]["worst_penetration_m"]["runs"], 3)
 		self.assertIn("1 run of each of 3 seeds", " ".join(said.split()))
 
+	def test_hardened(self):
+		said, c = self.compare(program.scene("stack"), "-D", "n=5", "--duration", ".2", "--repeats", "1", "--harden")
+		point, = c["points"]
+		self.assertTrue(point["hashes_agree"])
+		for key in "processes_hardened", "processes_each_hardened":
+			self.assertIn("--harden", point["configurations"][key]["command"])
+		self.assertIn("hardened pool", said)
+
 	def test_too_many_for_one_each(self):
 		said, c = self.compare(program.scene("sparse"), "-D", "n=1100", "--duration", ".05", "--repeats", "1")
 		self.assertIn("process each: skipped", said)

@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "compare", "top", "lab", "paper"]
+COMMANDS = ["run", "serve", "compare", "top", "lab", "paper", "inspect"]
 
 
 def options(command):

@@ -13,6 +13,7 @@ import program
 # Whoever started the tests may ignore hang-ups (nohup), and obsim would then rightly do so, too.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
+HEAVY = [program.scene("falling_boxes"), "-D", "n=2000", "--duration", program.FOR_EVER]
 LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_EVER, "--sleeping", "off"]
 
 
@@ -46,6 +47,19 @@ class Interrupt(program.Case):
 		run = self.start_universe(*LONG, "--isolation", "process", "--workers", "objects")
 		run.send_signal(signal.SIGINT)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
+
+	def test_at_any_time(self):
+		"""Also while it starts. Before it handles signals there is nothing to clean up, and it dies of them."""
+		for number in signal.SIGTERM, signal.SIGINT:
+			for words in ["--isolation", "process", "--workers", "objects"], []:
+				for delay in 0, .01, .02, .03, .05:
+					with self.subTest(number=number, words=words, delay=delay):
+						run = program.start("run", *HEAVY, *words, "--name", self.name)
+						time.sleep(delay)
+						run.send_signal(number)
+						out, said = run.communicate(timeout=program.PATIENCE)
+						self.assertIn(run.returncode, (1, -number), said)
+						self.assertFalse(os.path.exists(program.segment(self.name)))
 
 	def test_record(self):
 		report = self.interrupt("--record", self.path("r.h5"), "--series", self.path("s.csv"))

@@ -51,6 +51,29 @@ class Killed(program.Case):
 		self.assertRegex(run.stderr.read(), r"^obsim: simulator 0 .*killed")
 		self.check_nothing_left(below)
 
+	def test_stopped_fork_server(self):
+		"""It is not waited for: the run ends in order, and takes it and its simulators along."""
+		for way in WAYS:
+			with self.subTest(way=way):
+				run = self.start_universe(*LONG, *way)
+				self.assertTrue(program.wait_until(lambda: len(program.processes(run.pid)) >= 1))
+				time.sleep(.3)
+				below = program.processes(run.pid)
+				os.kill(program.fork_server(run.pid), signal.SIGSTOP)
+				run.send_signal(signal.SIGTERM)
+				self.assertEqual(run.wait(program.PATIENCE), 1)
+				self.assertRegex(run.stderr.read(), r"fork server \(process \d+, stopped by a signal\) does not end: killed")
+				self.check_nothing_left(below)
+
+	def test_stranger_under_a_name(self):
+		"""What any user can put there blocks nobody, and is told of where its name is asked for."""
+		os.mkfifo(program.segment(self.name))
+		self.addCleanup(lambda: os.path.exists(program.segment(self.name)) and os.unlink(program.segment(self.name)))
+		program.report(program.scene("stack"), "--duration", ".1")
+		self.refuse("run", program.scene("stack"), "--name", self.name, saying=program.segment(self.name), code=1)
+		self.refuse("top", self.name, "--once", saying="", code=1)
+		os.unlink(program.segment(self.name))
+
 	def test_stale_is_cleared(self):
 		"""What a killed host and fork server leave together, the next run removes."""
 		run = self.start_universe(*LONG)

@@ -45,6 +45,7 @@ class Lab(program.Case):
 		self.refuse("lab", "--limit", "0", saying="more than 0")
 		self.refuse("lab", "--quick", "pile", saying="'pile'")
 		self.refuse("lab", "--engines", "ode-quick", "--check", saying="--check is about obsim")
+		self.refuse("lab", "--audit", "--sweep", "none", saying="--audit is a choice of settings")
 		self.refuse("lab", "--list", "--json", saying="leave --json away")
 		self.refuse("lab", "--lst", saying="did you mean --list?")
 		self.assertEqual(os.listdir(self.directory.name), [])
@@ -101,6 +102,16 @@ class Lab(program.Case):
 			lines = f.read().splitlines()
 		self.assertTrue(all(line.startswith("| ") and line.endswith(" |") for line in lines))
 		self.assertEqual(len({line.replace("\\|", "").count("|") for line in lines}), 1)
+
+	def test_audit(self):
+		said = self.lab("lab", "apexes", "head-on", "--audit").stdout
+		self.assertRegex(said, r"(?m)^Row +Case +momentum .*\n +2  Head-on pair( +\S+){3}  kept$")
+		self.assertRegex(said, r"(?m)^Row +Case +10 mm +1 mm .* 256 +order")
+		self.assertRegex(said, r"(?m)^ +5  Heights of a ball")
+		self.assertEqual({r["engine"] for r in self.rows()}, {"obsim"})
+		self.assertEqual(len(self.rows()), 2 * (1 + 4 + 7)) # as it comes, by tolerance, by substeps
+		with open(self.path("out/audit.md")) as f:
+			self.assertIn("| Heights of a ball, e = .8 |", f.read())
 
 	def test_goes_on(self):
 		self.lab(*SMALL)

@@ -31,6 +31,13 @@ class SameBits(program.Case):
 				with self.subTest(isolation=isolation, workers=workers):
 					self.assertEqual(self.hash_of("--isolation", isolation, "--workers", workers), expected)
 
+	def test_contained(self):
+		expected = self.hash_of("--workers", "1")
+		for workers in "1", "2", "3", "objects":
+			with self.subTest(workers=workers):
+				found = self.hash_of("--isolation", "process", "--harden", "--workers", workers)
+				self.assertEqual(found, expected)
+
 	def test_other_bits(self):
 		"""The hash sees a change: another step length is another run."""
 		self.assertNotEqual(self.hash_of("--workers", "1"), self.hash_of("--workers", "1", "--step", "1/61"))

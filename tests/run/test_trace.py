@@ -185,11 +185,11 @@ class Trace(program.Case):
 				path = self.path(workers + ".json")
 				run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping",
 					"off", "--isolation", "process", "--workers", workers, "--trace", path)
-				grown = lambda: os.path.exists(path) and os.path.getsize(path) > 100000
+				grown = lambda: os.path.exists(path) and os.path.getsize(path) > 400000 # a hundred events for each worker
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
 				before = os.path.getsize(path)
 				os.kill(max(program.simulators(run.pid)), signal.SIGKILL)
-				grown = lambda: os.path.getsize(path) > before + 200000
+				grown = lambda: os.path.getsize(path) > before + 400000
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
 				run.send_signal(signal.SIGINT)
 				self.assertEqual(run.wait(program.PATIENCE), 1)
@@ -200,6 +200,32 @@ class Trace(program.Case):
 				ends = [e["ts"] + e.get("dur", 0) - dead[0][1]["ts"] for e in tracks[dead[0][0]]]
 				self.assertGreater(sum(t < 0 for t in ends), 10)
 				self.assertGreater(sum(t > 0 for t in ends), 10)
+
+	def test_host_killed(self):
+		"""A host that is killed ends nothing any more, and the file is whole all the same, at whatever moment."""
+		for i in range(8):
+			path = self.path(f"{i}.json")
+			run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping",
+				"off", "--isolation", "thread", "--trace", path)
+			self.assertTrue(program.wait_until(lambda: os.path.exists(path) and os.path.getsize(path) > 20000 * i))
+			run.kill()
+			run.wait(program.PATIENCE)
+			self.assertTrue(program.wait_until(lambda: not os.path.exists(program.segment(self.name))))
+			with open(path) as f:
+				whole = json.load(f)
+			self.assertEqual(whole["otherData"], {"unfinished": True})
+			self.assertGreaterEqual(len(whole["traceEvents"]), 1)
+
+	def test_pipe(self):
+		"""What cannot be written over gets its end when there is one."""
+		os.mkfifo(self.path("pipe"))
+		run = program.start("run", program.scene("stack"), "--duration", ".1", "--trace", self.path("pipe"))
+		with open(self.path("pipe")) as f:
+			whole = json.load(f)
+		self.assertEqual(run.wait(program.PATIENCE), 0)
+		run.stdout.close()
+		run.stderr.close()
+		self.assertEqual(set(whole["otherData"]), {"events", "lost"})
 
 	def test_interrupted(self):
 		run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping", "off",

@@ -35,6 +35,10 @@ int main(void)
 {
 	CHECK(value(whole, "n=7") == 7 && value(whole, "n=1e3") == 1000 && value(whole, "n=0x10") == 16);
 	CHECK(value(real, "r=.25") == .25 && value(real, "r=3") == 3);
+	CHECK(value(real, "r=1/3") == 1. / 3 && value(real, "r=-(1 - 3)/4") == .5 && value(real, "r= 2^10") == 1024);
+	CHECK(value(real, "r=pi/6") == M_PI / 6 && value(real, "r=math.sqrt(2)") == sqrt(2) && value(real, "r=sqrt(4)") == 2);
+	CHECK(value(whole, "n=3*4") == 12 && value(whole, "n=6/2") == 3 && value(whole, "n=7//2") == 3);
+	CHECK(value(text, "t=1/3") == 3);
 	CHECK(value("sphere { radius = math.type(param('r', .5)) == 'float' and 1 or 2 }", "r=3") == 1);
 	CHECK(value("sphere { radius = math.type(param('r', 5)) == 'integer' and 1 or 2 }", "r=3e0") == 1);
 	CHECK(value(text, "t=hello") == 5 && value(text, "t=a=b") == 3);
@@ -46,11 +50,19 @@ int main(void)
 	CHECK(s && s->object[0].passport.size.x == 2);
 	ob_scene_free(s);
 
-	refused(whole, "n=2.5", ":1: param.n: expected a whole number, got -D n=2.5");
-	refused(whole, "n=many", ":1: param.n: expected a whole number, got -D n=many");
-	refused(whole, "n=", ":1: param.n: expected a whole number, got -D n=");
-	refused(real, "r=1e999", ":1: param.r: expected a number, got -D r=1e999");
-	refused(real, "r=nan", ":1: param.r: expected a number, got -D r=nan");
+	refused(whole, "n=2.5", ":1: param.n: expected a whole number (12, 3*4), got -D n=2.5");
+	refused(whole, "n=many", ":1: param.n: expected a whole number (12, 3*4), got -D n=many");
+	refused(whole, "n=", ":1: param.n: expected a whole number (12, 3*4), got -D n=");
+	refused(real, "r=1e999", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=1e999");
+	refused(real, "r=nan", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=nan");
+	refused(real, "r=1/0", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=1/0");
+	refused(real, "r=1/", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=1/");
+	refused(real, "r='1'", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r='1'");
+	refused(real, "r=1, 2", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=1, 2");
+	refused(real, "r=random()", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=random()");
+	refused(real, "r=sphere{}", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=sphere{}");
+	refused(whole, "n=1/3", ":1: param.n: expected a whole number (12, 3*4), got -D n=1/3");
+	refused(real, "r=(function() while true do end end)()", ":1: param.r: expected a number");
 	refused(real, "r=0", ":1: param.r: expected a number of at least 0.1, got 0");
 	refused(real, "r=1e7", ":1: param.r: expected a number of at most 1000000, got 10000000");
 	refused(flag, "f=yes", ":1: param.f: expected true or false, got -D f=yes");
@@ -60,6 +72,6 @@ int main(void)
 	refused("sphere { radius = 1 }", "n=1", "-D n=1: unknown parameter; the scene has none");
 	refused(whole, "n", "-D n: expected name=value");
 	refused(whole, "=1", "-D =1: expected name=value");
-	refused(whole, "n=\n\n", ":1: param.n: expected a whole number");
+	refused(whole, "n=\n\n", ":1: param.n: expected a whole number (12, 3*4)");
 	return check_end();
 }

@@ -19,6 +19,8 @@ static const char useful[] =
 	"5)\n"
 	"for i, v in ipairs(u) do assert(v == 4 - i) end\n"
 	"print('a note', 1, nil, {})\n"
+	"assert(tostring({}) == 'table' and tostring(print) == 'function' and tostring(nil) == 'nil')\n"
+	"assert(('%s %d%% %s %5.1s|'):format({}, 3, print, assert) == 'table 3% function     f|')\n"
 	"counter = 0 counter = counter + 1 assert(counter == 1)\n"
 	"sphere { radius = 1 }";
 

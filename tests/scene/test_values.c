@@ -57,7 +57,7 @@ static void check_settings(void)
 static void check_exactness(void)
 {
 	ob_scene *s = load_good("scene { tolerance = .0005, solver = 'lagged', lag = 0 }\nground {}");
-	CHECK(s && s->run.tolerance == .0005 && s->run.substeps == 1 && s->run.iterations == 64 && s->run.lag == 0 && s->run.solver == OB_SOLVER_LAGGED);
+	CHECK(s && s->run.tolerance == .0005 && s->run.substeps == 8 && s->run.iterations == 64 && s->run.lag == 0 && s->run.solver == OB_SOLVER_LAGGED);
 	ob_scene_free(s);
 	s = load_good("scene { tolerance = .0005, iterations = 9 }\nground {}");
 	CHECK(s && s->run.iterations == 9 && s->run.lag == 1);

@@ -50,9 +50,18 @@ static void test_layers(void)
 	ob_run_settings_overlay(&s, with(OB_SETTING_SUBSTEPS, 4)); // numbers stand above a tolerance
 	CHECK(s.tolerance == 0 && s.substeps == 4 && s.iterations == 16);
 	ob_run_settings_overlay(&s, with(OB_SETTING_TOLERANCE, .5e-3)); // and a tolerance above numbers
-	CHECK(s.tolerance == .5e-3 && s.substeps == 1 && s.iterations == 64);
+	CHECK(s.tolerance == .5e-3 && s.substeps == 8 && s.iterations == 64);
 	ob_run_settings_overlay(&s, with(OB_SETTING_ITERATIONS, 5));
-	CHECK(s.tolerance == .5e-3 && s.substeps == 1 && s.iterations == 5);
+	CHECK(s.tolerance == .5e-3 && s.substeps == 8 && s.iterations == 5);
+}
+
+// A smaller tolerance never chooses from fewer substeps, and the default one from the default number.
+static void test_least_substeps(void)
+{
+	CHECK(ob_run_settings_least_substeps(OB_DEFAULT_TOLERANCE) == OB_DEFAULT_SUBSTEPS);
+	CHECK(ob_run_settings_least_substeps(1) == 1);
+	for (double tolerance = 1; tolerance > 1e-6; tolerance *= .7)
+		CHECK(ob_run_settings_least_substeps(.7 * tolerance) >= ob_run_settings_least_substeps(tolerance));
 }
 
 static void test_exactness(void)
@@ -60,9 +69,20 @@ static void test_exactness(void)
 	ob_run_settings s = ob_run_settings_default();
 	CHECK(resolve(&s, nothing()) && s.tolerance == 1e-3 && s.substeps == 8 && s.iterations == 16 && s.lag == 0);
 	s = ob_run_settings_default();
-	with(OB_SETTING_TOLERANCE, .5e-3);
+	with(OB_SETTING_TOLERANCE, .1e-3);
 	layer.integrator = OB_INTEGRATOR_ODE;
-	CHECK(resolve(&s, &layer) && s.substeps == 4); // g H^2 / 2 = 1.36 mm
+	CHECK(resolve(&s, &layer) && s.substeps == 16); // g H^2 / 2 = 1.36 mm
+	for (double step = 1. / 480; step <= 10; step *= 2) { // never more than can be counted, whatever the step
+		s = ob_run_settings_default();
+		with(OB_SETTING_TOLERANCE, .1e-3);
+		layer.integrator = OB_INTEGRATOR_ODE;
+		layer.step_length = step;
+		ob_error e;
+		if (ob_run_settings_resolve(&s, &layer, &e))
+			CHECK(s.substeps <= OB_MAX_SUBSTEPS && .5 * 9.81 * step * step / s.substeps <= .1e-3);
+		else
+			CHECK(step > .1 && strstr(e.text, "1024 at most"));
+	}
 	s = ob_run_settings_default();
 	CHECK(resolve(&s, with(OB_SETTING_SOLVER, OB_SOLVER_GHOST)) && s.tolerance == 0 && s.substeps == 8);
 	s = ob_run_settings_default();
@@ -126,6 +146,7 @@ static void test_names(void)
 int main(void)
 {
 	test_layers();
+	test_least_substeps();
 	test_exactness();
 	test_lag();
 	test_monolith();

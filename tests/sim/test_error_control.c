@@ -18,7 +18,7 @@ static little_scene *tolerant(double tolerance)
 }
 
 typedef struct outcome {
-	double worst; // m, measured at the step boundaries
+	double worst, rests; // m, measured at the step boundaries; in the mean of the pairs, at the end
 	ob_counters count;
 	ob_state top; // of the last object
 } outcome;
@@ -33,6 +33,7 @@ static outcome watch(little_scene *s, double duration)
 		o.worst = fmax(o.worst, little_penetration(&l).max_m);
 	}
 	ob_universe_count(l.u, &o.count);
+	o.rests = little_penetration(&l).mean_m;
 	o.top = little_state(&l, s->world.objects - 1);
 	little_close(&l);
 	free(s);
@@ -81,6 +82,42 @@ static outcome heap(double tolerance)
 	return watch(s, 4);
 }
 
+// Boxes and spheres at random, as the program runs them when a tolerance is asked for.
+static little_scene *random_heap(uint64_t seed, double tolerance)
+{
+	little_scene *s = tolerant(tolerance);
+	s->run.substeps = ob_run_settings_least_substeps(tolerance);
+	s->run.sleeping = 1;
+	ob_world_ground(&s->world);
+	for (int i = 0; i < 24; i++) {
+		ob_vec3 p = ob_v3(.55 * (i % 3), .55 * (i / 3 % 3), .5 + .55 * (i / 9));
+		p = ob_add(p, random_vector(&seed, .02));
+		ob_world_body o = within(&seed, 0, 1) < .5 ? ob_world_sphere(&s->world, 24, .18, p)
+							   : ob_world_box(&s->world, 24, ob_v3(.2, .15, .1), p);
+		o.state->pose.q = random_attitude(&seed);
+	}
+	return s;
+}
+
+// A tolerance is kept, by what can be measured from outside, and a smaller one rests no deeper.
+static void test_random_heaps(void)
+{
+	enum { SEEDS = 6 };
+	double rests_before = INFINITY;
+	for (double tolerance = 4e-3; tolerance > .1e-3; tolerance /= 4) {
+		double rests = 0;
+		for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+			outcome o = watch(random_heap(seed, tolerance), 2.5);
+			CHECK(o.worst <= tolerance);
+			CHECK(o.count.islands_over == 0 || o.count.error > tolerance);
+			rests += o.rests / SEEDS;
+		}
+		CHECK(rests <= rests_before);
+		printf("tolerance %.4g mm: rests %.2f um deep in the mean\n", 1e3 * tolerance, 1e6 * rests);
+		rests_before = rests;
+	}
+}
+
 static void test_heap(void)
 {
 	outcome coarse = heap(5e-3), fine = heap(.5e-3);
@@ -103,8 +140,7 @@ static void test_columns(void)
 		ob_world_ground(&s->world);
 		for (int i = 0; i < 60; i++) {
 			double a = within(&random, .1, .5), b = within(&random, .1, .5), c = within(&random, .1, .5);
-			ob_vec3 p =
-				ob_v3(1.8 * (i / 4 % 4), 1.8 * (i / 16), 3 + 2 * (i % 4) + within(&random, 0, .2));
+			ob_vec3 p = ob_v3(1.8 * (i / 4 % 4), 1.8 * (i / 16), 3 + 2 * (i % 4) + within(&random, 0, .2));
 			ob_world_body o = ob_world_box(&s->world, 8000 * a * b * c, ob_v3(a, b, c), p);
 			ob_vec3 turn = random_vector(&random, 2);
 			o.state->pose.q = ob_quat_turn(ob_quat_identity(), turn);
@@ -202,6 +238,7 @@ int main(void)
 		test_heavy_on_light(tolerance);
 	}
 	test_heap();
+	test_random_heaps();
 	test_columns();
 	test_rebounds();
 	test_rest_is_cheap();

@@ -84,10 +84,12 @@ static void test_find(void)
 {
 	ob_mat3 turned = ob_quat_matrix(ob_quat_turn(ob_quat_identity(), ob_v3(.4, .7, -.2)));
 	static const ob_shape shapes[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
-	ob_placed wall = { OB_SHAPE_BOX,   ob_v3(.1, 5, 5), ob_v3(2, 0, 0), ob_quat_matrix(ob_quat_identity()),
-			   ob_v3(0, 0, 0), ob_v3(0, 0, 0) };
+	ob_placed wall = { .shape = OB_SHAPE_BOX,
+			   .size = ob_v3(.1, 5, 5),
+			   .p = ob_v3(2, 0, 0),
+			   .r = ob_quat_matrix(ob_quat_identity()) };
 	for (int i = 0; i < 4; i++) {
-		ob_placed x = { shapes[i], ob_v3(.3, .5, .2), ob_v3(0, 0, 0), turned, ob_v3(0, 0, 0), ob_v3(0, 0, 0) };
+		ob_placed x = { .shape = shapes[i], .size = ob_v3(.3, .5, .2), .r = turned };
 		double bounds[6];
 		ob_quat q = ob_quat_turn(ob_quat_identity(), ob_v3(.4, .7, -.2));
 		ob_shape_bounds(x.shape, x.size, (ob_pose){ x.p, q }, bounds);

@@ -123,7 +123,8 @@ static void test_still_pyramid(uint32_t substeps)
 	ob_world_ground(&s->world);
 	for (int row = 0; row < 8; row++)
 		for (int i = 0; i < 8 - row; i++)
-			ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5), ob_v3(0, 1.05 * (i - .5 * (7 - row)), .5 + row));
+			ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5),
+				     ob_v3(0, 1.05 * (i - .5 * (7 - row)), .5 + row));
 	little_universe l;
 	little_open(&l, s);
 	little_run_to(&l, 3);
@@ -191,6 +192,113 @@ static void test_added(void)
 	free(s);
 }
 
+// ---- rest is a balance of forces: what is just short of it goes on, however slowly; what is just within it rests
+
+// Steps until all moving bodies of the scene rest; 0: they do not within "seconds".
+static uint64_t steps_to_rest(little_scene *s, double seconds)
+{
+	little_universe l;
+	little_open(&l, s);
+	uint64_t rested = 0;
+	for (uint64_t step = 1; step <= (uint64_t)lround(60 * seconds) && !rested; step++) {
+		little_run(&l, 1);
+		bool all = true;
+		for (uint32_t i = 0; i < s->world.objects; i++)
+			all &= !(s->world.passport[i].mass > 0) || l.now.motion[i].flags & OB_MOTION_RESTS;
+		rested = all ? step : 0;
+	}
+	little_close(&l);
+	free(s);
+	return rested;
+}
+
+static little_scene *resting_scene(bool sleeping)
+{
+	little_scene *s = little_scene_new();
+	s->run.sleeping = sleeping;
+	return s;
+}
+
+// A block on a plane, pulled by "share" of what friction holds.
+static little_scene *pulled(double share, double friction, bool sleeping)
+{
+	little_scene *s = resting_scene(sleeping);
+	ob_world_ground(&s->world);
+	ob_world_body block = ob_world_box(&s->world, 7, ob_v3(.5, .3, .2), ob_v3(0, 0, .2));
+	const double force = share * friction * block.passport->mass * OB_WORLD_GRAVITY;
+	block.passport->force = ob_v3(.6 * force, .8 * force, 0);
+	ob_world_material(&s->world, friction, 0);
+	return s;
+}
+
+// .. on an incline.
+static little_scene *inclined(double share, double friction, bool sleeping)
+{
+	little_scene *s = resting_scene(sleeping);
+	const double angle = atan(share * friction);
+	ob_world_slope(&s->world, angle);
+	ob_quat q = ob_quat_turn(ob_quat_identity(), ob_v3(0, angle, 0));
+	ob_mat3 r = ob_quat_matrix(q);
+	ob_world_box(&s->world, 7, ob_v3(.5, .3, .1), ob_rotate(&r, ob_v3(0, 0, .1))).state->pose.q = q;
+	ob_world_material(&s->world, friction, 0);
+	return s;
+}
+
+// A block of which "share" of one half stands out over an edge.
+static little_scene *overhanging(double share, bool sleeping)
+{
+	little_scene *s = resting_scene(sleeping);
+	ob_world_box(&s->world, 0, ob_v3(1, 1, .5), ob_v3(-1, 0, .5));
+	ob_world_box(&s->world, 10, ob_v3(.5, .4, .2), ob_v3(.5 * (share - 1), 0, 1.2));
+	return s;
+}
+
+// A rod that leans on its lower edge, its centre beyond it or short of it by a thousandth of its width.
+static little_scene *leaning(double share, bool sleeping)
+{
+	little_scene *s = resting_scene(sleeping);
+	const double half = .02, tall = .5, lean = atan(half / tall) - (1 - share) * half / tall;
+	ob_quat q = ob_quat_turn(ob_quat_identity(), ob_v3(0, lean, 0));
+	ob_mat3 r = ob_quat_matrix(q);
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, 1, ob_v3(half, half, tall), ob_rotate(&r, ob_v3(-half, 0, tall))).state->pose.q = q;
+	s->world.state[1].pose.p.x += half;
+	return s;
+}
+
+static void test_balance(bool sleeping)
+{
+	const double over = 1.001, under = .999, watched = 1.5; // s
+	for (double friction = .05; friction < 2; friction *= 3) {
+		CHECK(!steps_to_rest(pulled(over, friction, sleeping), watched));
+		CHECK(steps_to_rest(pulled(under, friction, sleeping), 1));
+		CHECK(!steps_to_rest(inclined(over, friction, sleeping), watched));
+		CHECK(steps_to_rest(inclined(under, friction, sleeping), 1));
+	}
+	CHECK(!steps_to_rest(overhanging(over, sleeping), 1));
+	CHECK(steps_to_rest(overhanging(under, sleeping), 1));
+	CHECK(!steps_to_rest(leaning(over, sleeping), .5));
+	CHECK(!steps_to_rest(leaning(under, sleeping), .5)); // back, onto its foot
+}
+
+// Nothing brakes a ball that rolls: it goes on, as slow as it is.
+static void test_slow_roll(void)
+{
+	little_scene *s = resting_scene(true);
+	ob_world_ground(&s->world);
+	ob_world_sphere(&s->world, 1, .2, ob_v3(0, 0, .2)).state->v = ob_v3(.01, 0, 0);
+	CHECK(!steps_to_rest(s, 3));
+}
+
+// Heaps fall asleep, soon after they are slow.
+static void test_heap_sleeps(uint64_t seed)
+{
+	little_scene *s = resting_scene(true);
+	s->run.tolerance = 1e-3;
+	ob_world_falling(&s->world, 24, seed);
+	CHECK(steps_to_rest(s, 10));
+}
+
 // Capsules and cylinders, lying and standing, settle on the plane where their shape says.
 static void test_round_shapes(void)
 {
@@ -253,6 +361,11 @@ int main(void)
 	test_still_stack();
 	test_still_pyramid(1);
 	test_still_pyramid(8);
+	test_balance(true);
+	test_balance(false);
+	test_slow_roll();
+	for (uint64_t seed = 1; seed <= 4; seed++)
+		test_heap_sleeps(seed);
 	test_support_removed(false);
 	test_support_removed(true);
 	test_added();

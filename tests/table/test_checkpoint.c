@@ -72,10 +72,10 @@ static void go_astray(ob_universe *u, unsigned seed)
 	ob_motion m = motion(7);
 	ob_stage_motion(u, 5, &m);
 	scatter(u, seed, 2000);
-	ob_task_reset(u, 100);
+	ob_task_reset(u, 100, 1);
 	ob_task_claim(u, &index);
 	ob_requery_append(u, 17);
-	ob_neighbours_reserve(u, 1000);
+	ob_neighbours_reserve(u, 0, 1000);
 	ob_step_complete(u, 1, 2, 3);
 	ob_worker_announce(u, 1, 42, 42, 0);
 	ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
@@ -113,7 +113,7 @@ static void test_put_back(void)
 	publish_all(u, 3);
 	scatter(u, 1, 500);
 	ob_requery_append(u, 4);
-	ob_neighbours_reserve(u, 10);
+	ob_neighbours_reserve(u, 0, 10);
 	ob_step_complete(u, 9, 8, 7);
 	char *bytes = step_bytes(u, &n), *kept = malloc(n);
 	memcpy(kept, bytes, n); // by which all pages come into use

@@ -7,6 +7,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/utf8.h"
 #include "table/layout.h"
 
 enum { OBJECTS = 20 };
@@ -64,9 +65,8 @@ static void touch(ob_universe *u, uint32_t index, uint32_t a, uint32_t b, uint64
 	ob_pair_record *r = x->record + index;
 	ob_pair_state *s = &r->version[(stamp - 1) & 1];
 	*s = (ob_pair_state){ .normal = { 0, 0, 1 }, .points = 2, .impulse = { 1, 2 } };
-	s->arm_a[0][0] = .5f;
-	s->arm_a[1][0] = -.5f;
-	s->arm_a[0][2] = s->arm_a[1][2] = -1;
+	s->arm_a[0] = ob_v3(.5, 0, -1);
+	s->arm_a[1] = ob_v3(-.5, 0, -1);
 	r->stamp[(stamp - 1) & 1] = stamp;
 	x->count->pairs = index + 1;
 }
@@ -88,7 +88,7 @@ static void test_contacts(void)
 	ob_publish_motion(u, 6, &asleep);
 	CHECK(ob_universe_get_contacts(u, c, 8) == 4); // both sleep: what they last felt still holds
 	ob_step_data *x = ob_universe_step_data(u);
-	x->record[0].version[5 & 1].arm_a[0][0] = NAN;
+	x->record[0].version[5 & 1].arm_a[0].x = NAN;
 	CHECK(ob_universe_get_contacts(u, c, 8) == 3);
 	x->record[0].version[5 & 1].points = 1000;
 	CHECK(ob_universe_get_contacts(u, c, 8) <= 2 + OB_PAIR_POINTS);
@@ -115,6 +115,12 @@ static void read_everything(const ob_universe *r)
 			CHECK(!"nonsense was handed on");
 		if (ob_universe_get_passport(r, i, &p) && p.shape > OB_SHAPE_CYLINDER)
 			CHECK(!"nonsense was handed on");
+		char plain[OB_NAME_MAX];
+		if (ob_universe_get_passport(r, i, &p)) {
+			memcpy(plain, p.name, sizeof plain);
+			ob_utf8_make_plain(plain);
+			CHECK(strcmp(plain, p.name) == 0);
+		}
 	}
 }
 

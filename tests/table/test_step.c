@@ -23,7 +23,7 @@ static int work(void *shared, uint32_t worker)
 		if (i >= OBJECTS)
 			return 1;
 		__atomic_fetch_add(&b->claimed[i], 1, __ATOMIC_RELAXED);
-		uint32_t at = ob_neighbours_reserve(b->u, EACH);
+		uint32_t at = ob_neighbours_reserve(b->u, 0, EACH);
 		if (at == UINT32_MAX)
 			return 2;
 		for (uint32_t k = 0; k < EACH; k++)
@@ -46,7 +46,7 @@ static void run(bool processes)
 	if (!b->u)
 		return;
 	for (uint32_t round = 1; round <= 3; round++) {
-		ob_task_reset(b->u, OBJECTS);
+		ob_task_reset(b->u, OBJECTS, 1);
 		ob_late_contacts_reset(b->u);
 		CHECK(!ob_universe_step_data(b->u)->count->late);
 		ob_requery_reset(b->u);
@@ -68,10 +68,10 @@ static void run(bool processes)
 			wrong += list[i] >= OBJECTS || seen[list[i]]++;
 		CHECK(wrong == 0);
 	}
-	CHECK(ob_neighbours_reserve(b->u, 64 * OBJECTS + 65536) == UINT32_MAX); // full
+	CHECK(ob_neighbours_reserve(b->u, 0, ob_universe_step_data(b->u)->neighbours_max) == UINT32_MAX); // full
 	ob_neighbours_reset(b->u);
-	CHECK(ob_neighbours_reserve(b->u, 64 * OBJECTS + 65536) == 0);
-	CHECK(ob_neighbours_reserve(b->u, 1) == UINT32_MAX);
+	CHECK(ob_neighbours_reserve(b->u, 0, ob_universe_step_data(b->u)->neighbours_max) == 0);
+	CHECK(ob_neighbours_reserve(b->u, 0, 1) == UINT32_MAX);
 	ob_universe_destroy(b->u, true);
 }
 

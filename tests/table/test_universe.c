@@ -153,7 +153,7 @@ static void test_sparse(void)
 	CHECK(stat(file, &s) == 0);
 	CHECK(s.st_size > 1000000000 && s.st_blocks * 512 < 1 << 20);
 	ob_step_data *x = u ? ob_universe_step_data(u) : NULL;
-	CHECK(x && x->objects_max == 100000 && x->pairs_max == 6400000 && x->buckets == 262144);
+	CHECK(x && x->objects_max == 100000 && x->pairs_max == 12800000 && x->buckets == 262144);
 	if (x) { // the far ends are there, and apart
 		x->record[x->pairs_max - 1].stamp[1] = 1;
 		x->neighbour_id[x->neighbours_max - 1] = 2;

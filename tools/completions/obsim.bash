@@ -11,9 +11,9 @@ _obsim()
 	local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]}
 	local previous=${COMP_WORDS[COMP_CWORD - 1]}
 	COMPREPLY=()
-	[[ $command:$previous == @(lab|paper):--json ]] && previous= # a flag there
+	[[ $command:$previous == @(lab|paper|inspect):--json ]] && previous= # a flag there
 	if ((COMP_CWORD == 1)); then
-		mapfile -t COMPREPLY < <(compgen -W 'run compare top lab paper help --help --version' -- "$word")
+		mapfile -t COMPREPLY < <(compgen -W 'run serve compare top inspect lab paper help --help --version' -- "$word")
 		return
 	fi
 	case $previous in
@@ -26,21 +26,24 @@ _obsim()
 	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
 	--narrow) mapfile -t COMPREPLY < <(compgen -W 'obb aabb' -- "$word") ;;
 	--measure) mapfile -t COMPREPLY < <(compgen -W 'step profile end' -- "$word") ;;
+	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
 	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick
 		ode-advised ode-world bullet mujoco' -- "$word") ;;
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
+	--fault) mapfile -t COMPREPLY < <(compgen -W 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
-	--video | --raw | --record | --series | --json | --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--define | -D | --vary | --duration | --step | --seed | --substeps | --iterations | --lag | --load | --name | --fps | --samples | \
+	--video | --raw | --record | --series | --json | --trace | --checkpoint | --resume) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+	--define | -D | --vary | --duration | --every | --step | --seed | --substeps | --iterations | --lag | --load | --patience | --name | --fps | --samples | \
 		--camera | --interval | --repeats | --seeds | --limit | --objects) ;;
 	*)
 		case $command:$word in
-		help:*) mapfile -t COMPREPLY < <(compgen -W 'run compare top lab paper' -- "$word") ;;
+		help:*) mapfile -t COMPREPLY < <(compgen -W 'run serve compare top inspect lab paper' -- "$word") ;;
 		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
 		paper:*) ;;
+		inspect:*) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
 		lab:*) mapfile -t COMPREPLY < <(compgen -W "$("$program" lab --list 2>/dev/null |

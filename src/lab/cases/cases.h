@@ -43,7 +43,34 @@
 	X(far_stack) \
 	X(far_head_on) \
 	X(lag) \
-	X(hit_wall)
+	X(hit_wall) \
+	X(plates_plane) \
+	X(plates_box) \
+	X(discs_plane) \
+	X(discs_box) \
+	X(drops_plane) \
+	X(drops_box) \
+	X(drops_round) \
+	X(break_smooth) \
+	X(break_rough) \
+	X(oblique) \
+	X(rocking_blocks) \
+	X(rocking_cylinders) \
+	X(rolling_disk) \
+	X(near_spin) \
+	X(spinning_rods) \
+	X(seams_slide) \
+	X(seams_roll) \
+	X(crib_tower) \
+	X(touching_pyramid) \
+	X(unbalanced_pull) \
+	X(unbalanced_incline) \
+	X(unbalanced_brick) \
+	X(round_rest) \
+	X(cylinder_stack) \
+	X(round_incline) \
+	X(mixed_pile) \
+	X(random_heaps)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)

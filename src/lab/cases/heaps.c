@@ -83,20 +83,6 @@ static void build_falling(ob_world *w, uint32_t run)
 	ob_world_falling(w, 100, 100 + run);
 }
 
-static void observe_pile(ob_case_run_state *t)
-{
-	ob_heap_observe(t);
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
-}
-
-static void judge_pile(ob_case_run_state *t)
-{
-	ob_heap_judge(t);
-	if (!t->failed && ob_look_farthest(t) < .1)
-		t->failed = "nothing moved";
-}
-
 // clang-format off
 #define PILE_FIGURE(mean, settled, worst, gain) \
 	{ { "settled mean penetration", "mm", mean, "no penetration; in the last second" }, \
@@ -105,8 +91,8 @@ static void judge_pile(ob_case_run_state *t)
 	  { "growth of energy", "1", gain, "none: largest rise from its lowest so far, over that at the start" } }
 // clang-format on
 #define DROPPING \
-	.duration = 10, .step = 1. / 60, .runs = SEEDS, .figures = OB_HEAP_FIGURES, .observe = observe_pile, \
-	.judge = judge_pile
+	.duration = 10, .step = 1. / 60, .runs = SEEDS, .figures = OB_HEAP_FIGURES, .observe = ob_heap_observe, \
+	.judge = ob_heap_judge
 
 const ob_case ob_case_pile = {
 	.row = 17,

@@ -1,0 +1,42 @@
+#include "base/allocate.h"
+
+#include <stdlib.h>
+
+#include "base/log.h"
+
+static _Thread_local void (*on_failure)(void);
+
+static void *check(void *p, size_t bytes)
+{
+	if (p || bytes == 0)
+		return p;
+	if (on_failure)
+		on_failure();
+	ob_log_error("out of memory: %zu bytes are not to be had", bytes);
+	exit(EXIT_FAILURE);
+}
+
+void *ob_allocate(size_t bytes)
+{
+	return check(malloc(bytes), bytes);
+}
+
+void *ob_allocate_zeroed(size_t bytes)
+{
+	return check(calloc(1, bytes), bytes);
+}
+
+void *ob_allocate_aligned(size_t alignment, size_t bytes)
+{
+	return check(aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment), bytes);
+}
+
+void *ob_reallocate(void *old, size_t bytes)
+{
+	return check(realloc(old, bytes), bytes);
+}
+
+void ob_allocate_or_else(void (*leave)(void))
+{
+	on_failure = leave;
+}

@@ -1,0 +1,227 @@
+#include "checkpoint/saved_run.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/utf8.h"
+
+typedef enum saved_area {
+	AREA_FACTS,
+	AREA_SCENE, // path, ends with a 0
+	AREA_TEXT,
+	AREA_DEFINES, // texts, each ends with a 0
+	AREA_COUNTERS,
+	AREA_SLOTS,
+	AREA_PASSPORTS,
+	AREA_MOTIONS,
+	AREA_SCHEDULE,
+	AREA_BOUNDS,
+	AREA_NEIGHBOURS,
+	AREA_PLANES,
+	AREA_PAIRS,
+	AREA_RECORDS,
+	AREAS
+} saved_area;
+
+// All that is no array.
+typedef struct facts {
+	uint64_t created, step, events, seed;
+	uint32_t has_seed, checked;
+	double duration;
+	ob_run_settings settings;
+	ob_saved_figures figures;
+} facts;
+
+static_assert(sizeof(facts) == 48 + sizeof(ob_run_settings) + 80, "facts");
+static_assert(sizeof(ob_counters) % 8 == 0 && sizeof(ob_saved_slot) == 8, "counters, slots");
+
+enum { OBJECTS_MAX = 1 << 20, PAIRS_MAX = 1 << 27, TEXT_MAX = 1 << 23, DEFINES_MAX = 1 << 20 };
+
+static const ob_checkpoint_rule rules[AREAS] = {
+	[AREA_FACTS] = { "settings", sizeof(facts), 1, 1 },
+	[AREA_SCENE] = { "scene's name", 1, 1, PATH_MAX },
+	[AREA_TEXT] = { "scene", 1, 0, TEXT_MAX },
+	[AREA_DEFINES] = { "scene's parameters", 1, 0, DEFINES_MAX },
+	[AREA_COUNTERS] = { "counters", sizeof(ob_counters), 1, 1 },
+	[AREA_SLOTS] = { "slots", sizeof(ob_saved_slot), 0, OBJECTS_MAX },
+	[AREA_PASSPORTS] = { "passports", sizeof(ob_passport), 0, OBJECTS_MAX },
+	[AREA_MOTIONS] = { "motions", sizeof(ob_motion), 0, OBJECTS_MAX },
+	[AREA_SCHEDULE] = { "schedule", sizeof(ob_schedule), 0, OBJECTS_MAX },
+	[AREA_BOUNDS] = { "bounds", 6 * sizeof(float), 0, OBJECTS_MAX },
+	[AREA_NEIGHBOURS] = { "neighbours", sizeof(uint32_t), 0, OBJECTS_MAX },
+	[AREA_PLANES] = { "planes", sizeof(uint32_t), 0, OBJECTS_MAX },
+	[AREA_PAIRS] = { "pairs", sizeof(ob_pair_key), 0, PAIRS_MAX },
+	[AREA_RECORDS] = { "contact points", sizeof(ob_saved_record), 0, PAIRS_MAX },
+};
+
+// Points the arrays into the file's memory.
+static void bind(ob_saved_run *r, const ob_checkpoint_file *f)
+{
+	ob_saved_universe *u = &r->host.universe;
+	r->host.population.slot = f->area[AREA_SLOTS].at;
+	u->passport = f->area[AREA_PASSPORTS].at;
+	u->motion = f->area[AREA_MOTIONS].at;
+	u->schedule = f->area[AREA_SCHEDULE].at;
+	u->bounds = f->area[AREA_BOUNDS].at;
+	u->neighbours = f->area[AREA_NEIGHBOURS].at;
+	u->plane = f->area[AREA_PLANES].at;
+	u->pair = f->area[AREA_PAIRS].at;
+	u->record = f->area[AREA_RECORDS].at;
+}
+
+// ---- saving
+
+static uint64_t defines_bytes(const ob_scene_options *o)
+{
+	uint64_t sum = 0;
+	for (uint32_t i = 0; i < o->define_count; i++)
+		sum += strlen(o->defines[i]) + 1;
+	return sum;
+}
+
+static void fill(const ob_saved_run *r, const ob_checkpoint_file *f)
+{
+	const facts all = { .created = r->created,
+			    .step = r->host.universe.step,
+			    .events = r->host.population.events,
+			    .seed = r->options.seed,
+			    .has_seed = r->options.has_seed,
+			    .checked = r->host.universe.checked,
+			    .duration = r->duration,
+			    .settings = r->settings,
+			    .figures = r->figures };
+	memcpy(f->area[AREA_FACTS].at, &all, sizeof all);
+	strcpy(f->area[AREA_SCENE].at, r->scene);
+	memcpy(f->area[AREA_TEXT].at, r->text, r->text_size);
+	char *define = f->area[AREA_DEFINES].at;
+	for (uint32_t i = 0; i < r->options.define_count; i++)
+		define = stpcpy(define, r->options.defines[i]) + 1;
+	memcpy(f->area[AREA_COUNTERS].at, &r->host.counters, sizeof r->host.counters);
+}
+
+bool ob_saved_run_make(ob_saved_run *r, ob_checkpoint_file *f, ob_host *h, const char *program, ob_error *e)
+{
+	const ob_saved_universe *u = &r->host.universe;
+	struct timespec now;
+	if (!ob_host_count_saved(h, &r->host))
+		return ob_fail(e, "the run does not stand between two steps");
+	clock_gettime(CLOCK_REALTIME, &now);
+	r->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+	uint64_t count[AREAS] = { [AREA_FACTS] = 1,           [AREA_SCENE] = strlen(r->scene) + 1,
+				  [AREA_TEXT] = r->text_size, [AREA_DEFINES] = defines_bytes(&r->options),
+				  [AREA_COUNTERS] = 1,        [AREA_SLOTS] = r->host.population.count,
+				  [AREA_PASSPORTS] = u->ids,  [AREA_MOTIONS] = u->ids,
+				  [AREA_SCHEDULE] = u->ids,   [AREA_BOUNDS] = u->ids,
+				  [AREA_NEIGHBOURS] = u->ids, [AREA_PLANES] = u->planes,
+				  [AREA_PAIRS] = u->pairs,    [AREA_RECORDS] = u->records };
+	for (int i = 0; i < AREAS; i++)
+		if (count[i] > rules[i].most)
+			return ob_fail(e, "a checkpoint has no room for so many %s", rules[i].name);
+	if (!ob_checkpoint_plan(f, rules, AREAS, count, program, e))
+		return false;
+	bind(r, f);
+	ob_host_save(h, &r->host);
+	fill(r, f);
+	return true;
+}
+
+// ---- opening
+
+static bool lengths_agree(const ob_checkpoint_file *f)
+{
+	const uint64_t ids = f->area[AREA_PASSPORTS].count;
+	for (int i = AREA_PASSPORTS; i <= AREA_NEIGHBOURS; i++)
+		if (f->area[i].count != ids)
+			return false;
+	return f->area[AREA_PLANES].count <= ids && f->area[AREA_RECORDS].count <= f->area[AREA_PAIRS].count &&
+	       ids <= f->area[AREA_SLOTS].count;
+}
+
+static bool open_facts(ob_saved_run *r, const ob_checkpoint_file *f, const char *name, ob_error *e)
+{
+	facts all;
+	ob_error why;
+	memcpy(&all, f->area[AREA_FACTS].at, sizeof all);
+	r->created = all.created;
+	r->options = (ob_scene_options){ .has_seed = all.has_seed, .seed = all.seed };
+	r->duration = all.duration;
+	r->settings = all.settings;
+	r->figures = all.figures;
+	r->host.universe.step = all.step;
+	r->host.universe.checked = all.checked;
+	r->host.population.events = all.events;
+	if (!ob_run_settings_check(&r->settings, &why))
+		return ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);
+	if (!(r->duration > 0 && r->duration <= 1e9) || all.has_seed > 1 || all.figures.started > 1 ||
+	    all.figures.each_step > 1)
+		return ob_fail(e, "%s: this checkpoint is damaged: its settings make no sense", name);
+	return true;
+}
+
+static bool open_scene(ob_saved_run *r, const ob_checkpoint_file *f, const char *name, ob_error *e)
+{
+	const ob_checkpoint_area *path = &f->area[AREA_SCENE], *defines = &f->area[AREA_DEFINES];
+	const char *text = defines->at, *end = text + defines->count;
+	r->scene = path->at;
+	r->text = f->area[AREA_TEXT].at;
+	r->text_size = f->area[AREA_TEXT].count;
+	if (strnlen(r->scene, path->count) != path->count - 1 || (text < end && end[-1]))
+		return ob_fail(e, "%s: this checkpoint is damaged: its scene's name or parameters make no sense", name);
+	ob_utf8_make_plain(path->at);
+	for (const char *at = text; at < end; at += strlen(at) + 1)
+		r->options.define_count++;
+	r->defines = calloc(r->options.define_count + 1, sizeof *r->defines);
+	if (!r->defines)
+		return ob_fail(e, "%s: no memory", name);
+	for (uint32_t i = 0; i < r->options.define_count; i++, text += strlen(text) + 1)
+		r->defines[i] = text;
+	r->options.defines = r->defines;
+	return true;
+}
+
+static bool open_universe(ob_saved_run *r, const ob_checkpoint_file *f, const char *name, ob_error *e)
+{
+	ob_saved_universe *u = &r->host.universe;
+	ob_error why;
+	if (!lengths_agree(f))
+		return ob_fail(e, "%s: this checkpoint is damaged: the lengths of its parts do not agree", name);
+	bind(r, f);
+	u->ids = (uint32_t)f->area[AREA_PASSPORTS].count;
+	u->planes = (uint32_t)f->area[AREA_PLANES].count;
+	u->pairs = (uint32_t)f->area[AREA_PAIRS].count;
+	u->records = (uint32_t)f->area[AREA_RECORDS].count;
+	r->host.population.count = (uint32_t)f->area[AREA_SLOTS].count;
+	memcpy(&r->host.counters, f->area[AREA_COUNTERS].at, sizeof r->host.counters);
+	return ob_saved_universe_check(u, &why) || ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);
+}
+
+static bool open_parts(ob_saved_run *r, ob_checkpoint_file *f, const char *name, ob_error *e)
+{
+	*r = (ob_saved_run){ 0 };
+	if (open_facts(r, f, name, e) && open_scene(r, f, name, e) && open_universe(r, f, name, e))
+		return true;
+	ob_saved_run_close(r, f);
+	return false;
+}
+
+bool ob_saved_run_open(ob_saved_run *r, ob_checkpoint_file *f, const char *path, ob_error *e)
+{
+	return ob_checkpoint_read(f, rules, AREAS, path, e) && open_parts(r, f, path, e);
+}
+
+bool ob_saved_run_parse(ob_saved_run *r, ob_checkpoint_file *f, const void *bytes, size_t size, const char *name,
+			ob_error *e)
+{
+	return ob_checkpoint_parse(f, rules, AREAS, bytes, size, name, e) && open_parts(r, f, name, e);
+}
+
+void ob_saved_run_close(ob_saved_run *r, ob_checkpoint_file *f)
+{
+	free(r->defines);
+	*r = (ob_saved_run){ 0 };
+	ob_checkpoint_finish(f);
+}

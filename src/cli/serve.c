@@ -1,0 +1,116 @@
+// obsim serve: one scene that runs while people look at it, and change it, from their browsers.
+#include "serve/serve.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/interrupt.h"
+#include "cli/command.h"
+#include "cli/quantity.h"
+#include "cli/request.h"
+#include "cli/version.h"
+
+static const double patience = .05; // s, in which requests are heard while nothing is due
+static const double go_time = .02; // s that the universe is let run at once where it runs as fast as it can
+
+typedef struct serve_request {
+	ob_run_request run;
+	ob_server_config server;
+	uint32_t room; // for objects that viewers add
+	bool paused;
+} serve_request;
+
+static bool read_count(const ob_arguments *a, ob_option_id id, uint32_t most, uint32_t *out, ob_error *e)
+{
+	uint64_t n = *out;
+	bool fine = ob_number_count(ob_option_table[id].name, a->value[id], id == OB_OPTION_VIEWERS, most, &n, e);
+	*out = (uint32_t)n;
+	return fine;
+}
+
+static bool read_request(serve_request *q, const ob_arguments *a, ob_error *e)
+{
+	const char *listen = a->value[OB_OPTION_LISTEN];
+	*q = (serve_request){ .server = { .look_only = a->value[OB_OPTION_READONLY] != NULL,
+					  .viewers = 64,
+					  .version = ob_version_commit },
+			      .room = 1000,
+			      .paused = a->value[OB_OPTION_PAUSED] != NULL };
+	return ob_request_read(&q->run, a, e) &&
+	       ob_listen_read(&q->server.listen, listen ? listen : "127.0.0.1:8080", e) &&
+	       read_count(a, OB_OPTION_VIEWERS, 10000, &q->server.viewers, e) &&
+	       read_count(a, OB_OPTION_ROOM, 1000000, &q->room, e);
+}
+
+// Lets the universe run at its pace until Ctrl-C, and on a duration's end lets it stand, still to be looked at.
+static bool live(ob_host *h, ob_pace *pace, const ob_run_request *q, uint64_t last, ob_error *e)
+{
+	uint64_t done = 0, batch = 1;
+	double began = ob_clock_wall();
+	bool at_once = false;
+	ob_host_go(h, 0);
+	while (ob_host_wait(h, e)) {
+		double took = ob_clock_wall() - began;
+		if (at_once && took < .5 * go_time)
+			batch *= 2;
+		else if (took > 2 * go_time && batch > 1)
+			batch /= 2;
+		uint64_t due = ob_pace_wait(pace, done, q->run.step_length, patience);
+		at_once = due == UINT64_MAX && done < last;
+		due = at_once ? done + batch : due;
+		due = due < last ? due : last;
+		if (done == last) // its end has come, and it is still looked at
+			nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * patience) }, NULL);
+		began = ob_clock_wall();
+		ob_host_go(h, due); // where nothing is due, requests are heard all the same
+		done = due;
+	}
+	return ob_host_interrupted(h);
+}
+
+static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
+{
+	ob_error e;
+	ob_pace pace;
+	bool ended = false;
+	ob_pace_begin(&pace, q->run.pace, q->paused);
+	ob_server *server = ob_server_start(&q->server, h, &pace, &e);
+	if (server) {
+		printf("%s is at %s\nCtrl-C ends it.\n", q->server.scene->title, ob_server_url(server));
+		fflush(stdout);
+		ended = live(h, &pace, &q->run, last, &e);
+	}
+	ob_server_stop(server);
+	ob_pace_end(&pace);
+	return ended ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e.text);
+}
+
+int ob_command_serve(const ob_arguments *a)
+{
+	serve_request q;
+	ob_error e;
+	if (!read_request(&q, a, &e))
+		return ob_command_fail(OB_EXIT_USAGE, e.text);
+	ob_scene *scene = ob_scene_load(q.run.scene, &q.run.scene_options, &e);
+	if (!scene || !ob_request_resolve(&q.run, scene, &e)) {
+		ob_scene_free(scene);
+		return ob_command_fail(OB_EXIT_USAGE, e.text);
+	}
+	q.server.scene = scene;
+	ob_host_config config = ob_request_host(&q.run);
+	config.spare = q.room;
+	// a motion carries its step as 32 bits
+	uint64_t last =
+		a->value[OB_OPTION_DURATION] ? ob_request_steps(q.run.duration, q.run.run.step_length) : UINT32_MAX - 2;
+	signal(SIGPIPE, SIG_IGN);
+	ob_interrupt_watch(); // before there is anything that Ctrl-C would leave behind
+	ob_host *h = ob_host_start(scene, &config, &e);
+	int code = h ? carry_out(h, &q, last) : ob_command_fail(OB_EXIT_FAILED, e.text);
+	ob_host_stop(h);
+	ob_interrupt_release();
+	ob_scene_free(scene);
+	return code;
+}

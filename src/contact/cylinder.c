@@ -1,0 +1,427 @@
+#include "contact/cylinder.h"
+
+#include "contact/capsule.h"
+#include "contact/facets.h"
+#include "contact/support.h"
+
+static const double crossing = 1e-9; // m: a point so near to the surface from the inside has no direction away from it
+static const double as_deep =
+	1e-7; // m: points that lie no farther than this above the lowest prove a facet's normal best
+static const double noise = 1e-13; // m: a direction that is better by less is the same
+static const double touching = 1e-6; // m: a direction with a smaller gap does not separate the shapes
+static const double near_enough =
+	1e-3; // m: of shapes that are farther apart the nearest direction may not be that of their impact
+static const double along_facet = .99; // cosine: a normal so near to a facet's has the facet's other points, too
+static const double meet = 1e-10; // m: features that are so near to each other across the normal have a common point
+static const double side_lean = .03; // cosine: a side that leans by more touches with its rim
+static const double level = 1e-9; // cosine: an edge so nearly across the normal is a feature as a whole
+static const double far = .02; // m beyond the margin: not looked at more closely
+
+static const double deep = .01; // of a shape's size: shapes that overlap by more are searched more widely
+
+enum { STARTS = 5 };
+
+static ob_vec3 unit(ob_vec3 v)
+{
+	return ob_scale(v, 1 / ob_norm(v));
+}
+
+static ob_vec3 part_across(ob_vec3 v, ob_vec3 d)
+{
+	return ob_madd(v, -ob_dot(v, d), d);
+}
+
+// ---- plane, sphere
+
+void ob_manifold_cylinder_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	ob_vec3 n = ob_column(&b->r, 2);
+	ob_spots s;
+	out->points = 0;
+	out->separation = ob_dot(n, ob_sub(ob_support(a, ob_scale(n, -1)), b->p));
+	if (out->separation > margin)
+		return;
+	ob_spots_find(b, a, n, margin, &s);
+	ob_spots_reduce(&s);
+	ob_spots_put(&s, 1, out);
+}
+
+// The point of the cylinder nearest to x and the unit direction from there to x; inside, the nearest way out. Returns
+// the distance (m), < 0 inside.
+static double nearest_point(const ob_placed *c, ob_vec3 x, ob_vec3 *at, ob_vec3 *n)
+{
+	ob_vec3 l = ob_rotate_back(&c->r, ob_sub(x, c->p)), p = l, d;
+	double across = sqrt(l.x * l.x + l.y * l.y), side = across - c->size.x, end = fabs(l.z) - c->size.y, distance;
+	if (side > 0)
+		p.x *= c->size.x / across, p.y *= c->size.x / across;
+	if (end > 0)
+		p.z = copysign(c->size.y, l.z);
+	d = ob_sub(l, p);
+	distance = ob_norm(d);
+	if (distance > crossing) {
+		d = ob_scale(d, 1 / distance);
+	} else if (side > end) {
+		distance = side;
+		d = across > 0 ? ob_v3(l.x / across, l.y / across, 0) : ob_v3(1, 0, 0);
+		p = ob_v3(c->size.x * d.x, c->size.x * d.y, l.z);
+	} else {
+		distance = end;
+		d = ob_v3(0, 0, copysign(1, l.z));
+		p.z = copysign(c->size.y, l.z);
+	}
+	*at = ob_add(c->p, ob_rotate(&c->r, p));
+	*n = ob_rotate(&c->r, d);
+	return distance;
+}
+
+void ob_manifold_cylinder_sphere(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	ob_vec3 at, n;
+	double gap = nearest_point(a, b->p, &at, &n) - b->size.x;
+	out->normal = ob_scale(n, -1);
+	out->separation = gap;
+	out->points = gap <= margin;
+	out->gap[0] = gap;
+	out->at[0] = ob_madd(at, .5 * gap, n);
+}
+
+// ---- directions
+
+// What has been tried so far.
+typedef struct search {
+	const ob_placed *a, *b;
+	double gap; // m, the widest separation
+	ob_vec3 normal; // its direction, from b to a
+	bool is_facet; // it is that of a cap or a face
+	double time, last_gap; // s and m, of the direction that closes last; time < 0: none separates
+	ob_vec3 last; // that direction
+	bool last_is_facet;
+} search;
+
+static void try_direction(search *s, ob_vec3 n, bool facet)
+{
+	double gap = ob_apart_along(s->a, s->b, n), rate = ob_dot(n, ob_sub(s->a->v, s->b->v));
+	if (gap > s->gap + noise)
+		s->gap = gap, s->normal = n, s->is_facet = facet;
+	if (gap > touching) {
+		double time = ob_time_to_close(s->a, s->b, gap, rate);
+		if (time > s->time || (time == s->time && gap > s->last_gap + noise))
+			s->time = time, s->last_gap = gap, s->last = n, s->last_is_facet = facet;
+	}
+}
+
+// Both ways along d: the one from b to a first, which alone can be best.
+static void try_along(search *s, ob_vec3 d, bool facet)
+{
+	try_direction(s, ob_dot(d, ob_sub(s->a->p, s->b->p)) < 0 ? ob_scale(d, -1) : d, facet);
+}
+
+static void try_facets(search *s, const ob_placed *x)
+{
+	if (x->shape == OB_SHAPE_CYLINDER)
+		try_along(s, ob_column(&x->r, 2), true);
+	for (int i = 0; x->shape == OB_SHAPE_BOX && i < 3; i++)
+		try_along(s, ob_column(&x->r, i), true);
+}
+
+// Axes and edges across which features of the shape look: the axis of what is round, the edges of a box.
+static int edges_of(const ob_placed *x, ob_vec3 edge[3])
+{
+	int n = x->shape == OB_SHAPE_BOX ? 3 : 1;
+	for (int i = 0; i < n; i++)
+		edge[i] = ob_column(&x->r, n == 3 ? i : 2);
+	return n;
+}
+
+static bool is_deep(const search *s)
+{
+	return s->gap < -deep * fmin(s->a->size.x, fmin(s->a->size.y, s->b->size.x));
+}
+
+// The part of a shape that lies farthest along n: a point, and the edges that lie across n as a whole.
+typedef struct feature {
+	ob_vec3 centre, edge[3]; // m: each edge runs from -edge to edge
+	int edges;
+} feature;
+
+static feature feature_along(const ob_placed *x, ob_vec3 n)
+{
+	double h[3] = { x->size.x, x->size.y, x->size.z };
+	feature f = { .centre = ob_support(x, n) };
+	for (int i = 0; i < 3; i++) {
+		ob_vec3 e = ob_column(&x->r, i);
+		double half = x->shape == OB_SHAPE_BOX ? h[i] : x->size.y, at = ob_dot(e, ob_sub(f.centre, x->p));
+		if ((x->shape != OB_SHAPE_BOX && i < 2) || fabs(ob_dot(e, n)) > level)
+			continue;
+		f.centre = ob_madd(f.centre, -copysign(half, at), e);
+		f.edge[f.edges++] = ob_scale(e, half);
+	}
+	return f;
+}
+
+// Where two features are nearest to each other across the normal: each edge's parameter in turn, which ends at once
+// where there is one, and soon where there are two.
+static void nearest_on_features(const feature *f, const feature *g, ob_vec3 *x, ob_vec3 *y)
+{
+	enum { ROUNDS = 60 };
+	double s[6] = { 0 };
+	const int n = f->edges + g->edges;
+	ob_vec3 d = ob_sub(f->centre, g->centre);
+	if (f->edges == 1 && g->edges == 1) {
+		double lf = ob_norm(f->edge[0]), lg = ob_norm(g->edge[0]), at_f, at_g;
+		ob_nearest_on_lines(unit(f->edge[0]), unit(g->edge[0]), d, lf, lg, &at_f, &at_g);
+		s[0] = at_f / lf, s[1] = at_g / lg;
+	} else {
+		for (int round = 0; n > 0 && round < (n == 1 ? 1 : ROUNDS); round++)
+			for (int k = 0; k < n; k++) {
+				ob_vec3 e = k < f->edges ? f->edge[k] : ob_scale(g->edge[k - f->edges], -1);
+				double next = fmax(-1, fmin(1, s[k] - ob_dot(e, d) / ob_norm2(e)));
+				d = ob_madd(d, next - s[k], e);
+				s[k] = next;
+			}
+	}
+	*x = f->centre, *y = g->centre;
+	for (int k = 0; k < n; k++)
+		if (k < f->edges)
+			*x = ob_madd(*x, s[k], f->edge[k]);
+		else
+			*y = ob_madd(*y, s[k], g->edge[k - f->edges]);
+}
+
+// Do the features along the best direction have a common point? Then no direction near it is better, and none at all
+// where the shapes are apart.
+static bool is_proven(const search *s)
+{
+	feature of_a = feature_along(s->a, ob_scale(s->normal, -1)), of_b = feature_along(s->b, s->normal);
+	ob_vec3 x, y;
+	nearest_on_features(&of_a, &of_b, &x, &y);
+	return ob_norm2(part_across(ob_sub(x, y), s->normal)) < meet * meet;
+}
+
+// Across the axis of one and an axis or edge of the other.
+static void try_crossed(search *s, const ob_vec3 *edge, int n)
+{
+	ob_vec3 d = ob_sub(s->a->p, s->b->p);
+	for (int k = 1; k < n; k++) {
+		ob_vec3 c = ob_cross(edge[0], edge[k]);
+		if (ob_norm2(c) > 1e-12)
+			try_along(s, unit(c), false);
+		else if (ob_norm2(c = part_across(d, edge[0])) > 1e-12 * ob_norm2(d))
+			try_direction(s, unit(c), false);
+	}
+}
+
+// Climbs across the edge that promises most, and so on, until none finds a better direction.
+static void climb(search *s, const ob_vec3 *edge, int n, double enough)
+{
+	enum { CLIMBS = 24 };
+	const bool rims = s->b->shape == OB_SHAPE_CYLINDER;
+	const unsigned all = (1u << (n + rims)) - 1;
+	unsigned tried = 0;
+	for (int i = 0; i < CLIMBS && tried != all; i++) {
+		ob_vec3 g = ob_support_between(s->a, s->b, s->normal);
+		double most = -1, before = s->gap;
+		int best = n;
+		for (int k = 0; k < n; k++) {
+			double slope = fabs(ob_dot(ob_cross(edge[k], s->normal), g));
+			if (!(tried >> k & 1) && slope > most)
+				most = slope, best = k;
+		}
+		try_direction(s,
+			      best < n ? ob_climb_across(s->a, s->b, edge[best], s->normal)
+				       : ob_climb_rims(s->a, s->b, s->normal),
+			      false);
+		tried = s->gap > before + noise ? 1u << best : tried | 1u << best;
+		if (s->gap > enough || (s->gap > before && !is_deep(s) && is_proven(s)))
+			return;
+	}
+}
+
+// Shapes that overlap deeply have several hills.
+static void climb_from_everywhere(search *s, const ob_vec3 *edge, int n)
+{
+	ob_vec3 d = ob_sub(s->a->p, s->b->p), start[STARTS];
+	int starts = 0;
+	if (ob_norm2(d) > 0)
+		start[starts++] = unit(d);
+	for (int k = 0; k < n; k++)
+		start[starts++] = ob_scale(edge[k], ob_dot(d, edge[k]) < 0 ? -1 : 1);
+	for (int i = 0; i < starts; i++) {
+		for (int k = 0; k < n; k++)
+			try_direction(s, ob_climb_across(s->a, s->b, edge[k], start[i]), false);
+		if (s->b->shape == OB_SHAPE_CYLINDER)
+			try_direction(s, ob_climb_rims(s->a, s->b, start[i]), false);
+	}
+}
+
+// All directions in which other features than facets can touch, until one is proven to be best or separates the shapes
+// by more than "enough" (m).
+static void try_others(search *s, double enough)
+{
+	const ob_placed *b = s->b;
+	ob_vec3 at, n, edge[4] = { ob_column(&s->a->r, 2) };
+	const int edges = 1 + edges_of(b, edge + 1);
+	for (int k = -1; b->shape == OB_SHAPE_CAPSULE && k < 2; k += 2) {
+		nearest_point(s->a, ob_madd(b->p, k * b->size.y, ob_column(&b->r, 2)), &at, &n);
+		try_direction(s, ob_scale(n, -1), false);
+	}
+	try_crossed(s, edge, edges);
+	if (s->gap > enough || (!is_deep(s) && is_proven(s)))
+		return;
+	climb(s, edge, edges, enough);
+	if (is_deep(s))
+		climb_from_everywhere(s, edge, edges);
+	if (b->shape != OB_SHAPE_BOX || !(s->gap > 0) || s->gap > enough || is_proven(s))
+		return;
+	for (int k = 0; k < 8; k++) { // a corner beside a rim
+		ob_vec3 h = ob_v3(k & 1 ? b->size.x : -b->size.x, k & 2 ? b->size.y : -b->size.y,
+				  k & 4 ? b->size.z : -b->size.z);
+		nearest_point(s->a, ob_add(b->p, ob_rotate(&b->r, h)), &at, &n);
+		try_direction(s, ob_scale(n, -1), false);
+	}
+}
+
+// ---- points
+
+// The outward normal of x's facet that looks along n best, if it is within the cosine of n.
+static bool facet_near(const ob_placed *x, ob_vec3 n, double cosine, ob_vec3 *outward)
+{
+	bool near = false;
+	for (int i = x->shape == OB_SHAPE_BOX ? 0 : 2; i < 3 && x->shape != OB_SHAPE_CAPSULE; i++) {
+		ob_vec3 e = ob_column(&x->r, i);
+		double c = ob_dot(e, n);
+		if (fabs(c) >= cosine)
+			cosine = fabs(c), *outward = ob_scale(e, c < 0 ? -1 : 1), near = true;
+	}
+	return near;
+}
+
+// A line with a radius that runs along a's axis and reaches farthest along n: the axis of what is round, or an edge of
+// a box.
+static bool line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_placed *line)
+{
+	*line = *x;
+	line->shape = OB_SHAPE_CAPSULE;
+	if (x->shape != OB_SHAPE_BOX)
+		return fabs(ob_dot(ob_column(&x->r, 2), n)) < side_lean;
+	double h[3] = { x->size.x, x->size.y, x->size.z };
+	for (int i = 0; i < 3; i++) {
+		ob_vec3 e = ob_column(&x->r, i), corner = ob_support(x, n);
+		if (fabs(ob_dot(e, axis)) < along_facet)
+			continue;
+		line->p = ob_madd(corner, -ob_dot(e, ob_sub(corner, x->p)), e);
+		line->size = ob_v3(0, h[i], 0);
+		for (int c = 0; c < 3; c++) {
+			line->r.m[c][2] = x->r.m[c][i];
+			line->r.m[c][0] = x->r.m[c][(i + 1) % 3];
+			line->r.m[c][1] = x->r.m[c][(i + 2) % 3];
+		}
+		return true;
+	}
+	return false;
+}
+
+// Along n, which is no facet's normal: the nearest points of two features, the ends of a side that lies along a side or
+// an edge, and what else is about to touch on facets whose normals are near n.
+static void other_points(const search *s, ob_vec3 n, double margin, ob_manifold *out)
+{
+	feature of_a = feature_along(s->a, ob_scale(n, -1)), of_b = feature_along(s->b, n);
+	ob_vec3 x, y, axis = ob_column(&s->a->r, 2);
+	ob_line_point nearest = { .gap = ob_apart_along(s->a, s->b, n), .there = true }, end[2] = { 0 };
+	ob_placed side_a, side_b;
+	nearest_on_features(&of_a, &of_b, &x, &y);
+	nearest.at = ob_scale(ob_add(x, y), .5);
+	nearest.s = ob_dot(axis, ob_sub(nearest.at, s->a->p));
+	if (line_beside(s->a, ob_scale(n, -1), axis, &side_a) && line_beside(s->b, n, axis, &side_b))
+		ob_side_by_side(&side_a, &side_b, n, nearest.s, end);
+	ob_manifold_line(&nearest, end, margin, out);
+	out->normal = n;
+	ob_spots all = { .normal = n, .margin = margin, .same = 1e-5 * s->a->size.x };
+	for (int k = 0; k < out->points; k++)
+		ob_spots_add(&all, out->at[k], out->gap[k]);
+	for (int side = 0; side < 2; side++) {
+		const ob_placed *on = side ? s->b : s->a, *over = side ? s->a : s->b;
+		ob_vec3 outward;
+		ob_spots beside;
+		if (!facet_near(on, side ? n : ob_scale(n, -1), along_facet, &outward))
+			continue;
+		ob_spots_find(on, over, outward, margin, &beside);
+		for (int k = 0; k < beside.n; k++)
+			ob_spots_add(&all, beside.at[k], fmax(beside.gap[k], nearest.gap));
+	}
+	ob_spots_reduce(&all);
+	ob_spots_put(&all, 1, out);
+}
+
+// Common points along n, a facet's normal.
+static void facet_points(const search *s, ob_vec3 n, double margin, ob_spots *spots, double *sign)
+{
+	static const double same = 1 - 1e-12;
+	ob_vec3 outward;
+	bool of_b = facet_near(s->b, n, same, &outward);
+	if (!of_b)
+		facet_near(s->a, ob_scale(n, -1), 0, &outward);
+	*sign = of_b ? 1 : -1;
+	ob_spots_find(of_b ? s->b : s->a, of_b ? s->a : s->b, outward, margin, spots);
+}
+
+static bool proven_by(const ob_spots *spots, double gap)
+{
+	for (int k = 0; k < spots->n; k++)
+		if (spots->gap[k] <= gap + as_deep)
+			return true;
+	return false;
+}
+
+// The face of a box on which the cylinder rolls or slides over a seam, where n is not its normal. false: there is none.
+static bool on_face_underfoot(const search *s, ob_vec3 n, double margin, ob_manifold *out)
+{
+	ob_placed wider;
+	ob_vec3 normal;
+	ob_spots spots;
+	bool leaving;
+	if (!ob_face_underfoot(s->a, s->b, n, ob_apart_along(s->a, s->b, n), margin, &wider, &normal, &leaving))
+		return false;
+	ob_spots_find(&wider, s->a, normal, margin, &spots);
+	ob_spots_reduce(&spots);
+	ob_spots_put(&spots, 1, out);
+	if (leaving) // and may fall off the edge yet
+		out->valid_path = ob_leaving_path(s->a, s->b);
+	return true;
+}
+
+void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	const bool sharp = b->shape != OB_SHAPE_CAPSULE; // what is round slips off: the nearest direction will do
+	search s = { .a = a, .b = b, .gap = -INFINITY, .time = -1 };
+	ob_spots spots;
+	double sign;
+	try_facets(&s, a);
+	try_facets(&s, b);
+	out->points = 0;
+	out->separation = s.gap;
+	if (s.gap > margin + far)
+		return;
+	facet_points(&s, s.normal, margin, &spots, &sign);
+	const ob_vec3 tried = s.normal;
+	const bool proven = proven_by(&spots, s.gap);
+	if (!proven || is_deep(&s) || (sharp && s.gap > near_enough))
+		try_others(&s, margin + far);
+	out->separation = s.gap;
+	if (out->separation > margin)
+		return;
+	const bool closing = sharp && s.time >= 0;
+	const ob_vec3 n = closing ? s.last : s.normal;
+	const bool facet = closing ? s.last_is_facet : s.is_facet;
+	const bool same = facet && ob_dot(n, tried) == ob_dot(tried, tried);
+	if (b->shape == OB_SHAPE_BOX && !(same && proven) && on_face_underfoot(&s, n, margin, out))
+		return;
+	if (!facet) {
+		other_points(&s, n, margin, out);
+		return;
+	}
+	if (!same)
+		facet_points(&s, n, margin, &spots, &sign);
+	ob_spots_reduce(&spots);
+	ob_spots_put(&spots, sign, out);
+}

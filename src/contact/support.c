@@ -1,0 +1,161 @@
+#include "contact/support.h"
+
+static const double flat = 1e-12; // of a unit vector's part across an axis: less has no direction
+static const double converged = 1e-14; // of the shapes' size, what is left of a gradient
+static const double rounding = 1e-14; // of the shapes' size
+static const double widest = 1e4; // tangent of the largest turn of a climb
+
+static ob_vec3 unit(ob_vec3 v)
+{
+	return ob_scale(v, 1 / ob_norm(v));
+}
+
+ob_vec3 ob_support(const ob_placed *x, ob_vec3 n)
+{
+	ob_vec3 l = ob_rotate_back(&x->r, n), at = { 0, 0, copysign(x->size.y, l.z) };
+	if (x->shape == OB_SHAPE_BOX) {
+		at = ob_v3(copysign(x->size.x, l.x), copysign(x->size.y, l.y), copysign(x->size.z, l.z));
+	} else if (x->shape == OB_SHAPE_CYLINDER) {
+		double across = sqrt(l.x * l.x + l.y * l.y);
+		if (across > flat)
+			at.x = x->size.x * l.x / across, at.y = x->size.x * l.y / across;
+	} else {
+		at = ob_madd(at, x->size.x / ob_norm(l), l);
+	}
+	return ob_add(x->p, ob_rotate(&x->r, at));
+}
+
+ob_vec3 ob_support_between(const ob_placed *a, const ob_placed *b, ob_vec3 n)
+{
+	return ob_sub(ob_support(a, ob_scale(n, -1)), ob_support(b, n));
+}
+
+double ob_apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n)
+{
+	return ob_dot(n, ob_support_between(a, b, n));
+}
+
+// ---- across an axis
+
+// The derivative of the separation along p + t q, but for a positive factor.
+static double slope_at(const ob_placed *a, const ob_placed *b, ob_vec3 p, ob_vec3 q, double t)
+{
+	return ob_dot(ob_madd(q, -t, p), ob_support_between(a, b, ob_madd(p, t, q)));
+}
+
+ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_vec3 from)
+{
+	enum { WIDEN = 40, NARROW = 80 };
+	ob_vec3 p = ob_madd(from, -ob_dot(from, e), e);
+	if (ob_norm2(p) < 1e-8) {
+		ob_vec3 d = ob_sub(a->p, b->p);
+		p = ob_madd(d, -ob_dot(d, e), e);
+		if (ob_norm2(p) < 1e-8 * ob_norm2(d) || !(ob_norm2(p) > 0))
+			return from;
+	}
+	p = unit(p);
+	const ob_vec3 q = ob_cross(e, p);
+	const double size = ob_norm(a->size) + ob_norm(b->size);
+	double low = 0, at_low = slope_at(a, b, p, q, 0), high = 0, at_high = 0, way = at_low < 0 ? -1 : 1;
+	if (fabs(at_low) <= converged * size)
+		return p;
+	double step = way * fmin(.1, fmax(1e-6, fabs(at_low) / size));
+	for (int i = 0; i < WIDEN && at_high * at_low >= 0; i++, step *= 4) {
+		if (i)
+			low = high, at_low = at_high;
+		high = low + step;
+		if (fabs(high) > widest)
+			return unit(ob_madd(p, low, q));
+		at_high = slope_at(a, b, p, q, high);
+		if (at_high == 0)
+			return unit(ob_madd(p, high, q));
+	}
+	// Regula falsi in the form of Illinois (Dowell and Jarratt 1971); halves where that goes too slowly, at a
+	// corner.
+	double weigh_low = 1, weigh_high = 1;
+	for (int i = 0; i < NARROW && fabs(high - low) > 2e-16 * (1 + fabs(low)); i++) {
+		double share = weigh_low * at_low / (weigh_low * at_low - weigh_high * at_high);
+		double mid = low + (high - low) * (i % 3 == 2 ? .5 : share), at = slope_at(a, b, p, q, mid);
+		if (fabs(at) <= converged * size)
+			return unit(ob_madd(p, mid, q));
+		if (at * at_low > 0) {
+			weigh_high = low == mid ? weigh_high : .5 * weigh_high;
+			weigh_low = 1, low = mid, at_low = at;
+		} else {
+			weigh_low *= .5;
+			weigh_high = 1, high = mid, at_high = at;
+		}
+	}
+	return unit(ob_madd(p, low, q));
+}
+
+// ---- two rims
+
+// Adds what the rim of x curves the separation by along n, in the basis p, q across n: xx, xy, yy.
+static void add_curvature(const ob_placed *x, ob_vec3 n, ob_vec3 p, ob_vec3 q, double m[3])
+{
+	ob_vec3 d = ob_column(&x->r, 2), t = ob_cross(d, n);
+	double across2 = ob_norm2(t);
+	if (x->shape != OB_SHAPE_CYLINDER || across2 < flat)
+		return;
+	double k = x->size.x / (across2 * sqrt(across2)), tp = ob_dot(t, p), tq = ob_dot(t, q);
+	m[0] += k * tp * tp;
+	m[1] += k * tp * tq;
+	m[2] += k * tq * tq;
+}
+
+// A cap's normal is a place where the separation has no derivative: what is uphill from there, if anything is.
+static ob_vec3 off_axis(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_vec3 d)
+{
+	if (ob_norm2(ob_cross(n, d)) > 1e-16)
+		return n;
+	ob_vec3 g = ob_support_between(a, b, n);
+	double gap = ob_dot(n, g);
+	g = ob_madd(g, -gap, n);
+	for (double step = .3; step > 1e-7 && ob_norm2(g) > 0; step *= .3) {
+		ob_vec3 next = unit(ob_madd(n, step / ob_norm(g), g));
+		if (ob_apart_along(a, b, next) > gap)
+			return next;
+	}
+	return n;
+}
+
+ob_vec3 ob_climb_rims(const ob_placed *a, const ob_placed *b, ob_vec3 from)
+{
+	enum { NEWTON = 30, HALVE = 12 };
+	const double size = ob_norm(a->size) + ob_norm(b->size), longest = .5;
+	ob_vec3 n = off_axis(a, b, off_axis(a, b, from, ob_column(&a->r, 2)), ob_column(&b->r, 2));
+	for (int i = 0; i < NEWTON; i++) {
+		ob_vec3 g = ob_support_between(a, b, n),
+			p = unit(ob_cross(n, fabs(n.x) < .6 ? ob_v3(1, 0, 0) : ob_v3(0, 1, 0)));
+		ob_vec3 q = ob_cross(n, p);
+		double gap = ob_dot(n, g), gp = ob_dot(g, p), gq = ob_dot(g, q), m[3] = { gap, 0, gap };
+		const double gp0 = gp, gq0 = gq;
+		if (fabs(gp) + fabs(gq) <= converged * size)
+			break;
+		add_curvature(a, n, p, q, m);
+		add_curvature(b, n, p, q, m);
+		double det = m[0] * m[2] - m[1] * m[1];
+		if (!(m[0] > 0) || !(det > 1e-12 * m[0] * m[0])) { // not a hill here: along the slope
+			double k = 1 / (fabs(m[0]) + fabs(m[2]) + 1e-3 * size);
+			m[0] = m[2] = 1, m[1] = 0, det = 1;
+			gp *= k, gq *= k;
+		}
+		double dp = (m[2] * gp - m[1] * gq) / det, dq = (m[0] * gq - m[1] * gp) / det;
+		double l = sqrt(dp * dp + dq * dq), k = l > longest ? longest / l : 1;
+		bool better = false;
+		for (int h = 0; h < HALVE && !better; h++, k *= .5) {
+			ob_vec3 next = unit(ob_madd(ob_madd(n, k * dp, p), k * dq, q));
+			ob_vec3 at_next = ob_support_between(a, b, next);
+			double gain = ob_dot(next, at_next) - gap,
+			       left = ob_norm2(ob_madd(at_next, -ob_dot(next, at_next), next));
+			// near the top a gain drowns in rounding, the slope does not
+			better = gain > rounding * size || (gain > -rounding * size && left < gp0 * gp0 + gq0 * gq0);
+			if (better)
+				n = next;
+		}
+		if (!better)
+			break;
+	}
+	return n;
+}

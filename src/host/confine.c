@@ -1,0 +1,153 @@
+#include "host/confine.h"
+
+#include <errno.h>
+#include <grp.h>
+#include <linux/audit.h>
+#include <linux/capability.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <signal.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "table/outbox.h"
+
+enum { NOBODY = 65534, FILES = STDERR_FILENO + 1 };
+
+// Sanitizers need memory and system calls of their own.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(undefined_behavior_sanitizer)
+#define SANITIZED 1
+#endif
+#endif
+#ifndef SANITIZED
+#define SANITIZED 0
+#endif
+
+#if defined(__x86_64__)
+#define MACHINE AUDIT_ARCH_X86_64
+#elif defined(__aarch64__)
+#define MACHINE AUDIT_ARCH_AARCH64
+#endif
+
+// ---- root
+
+// A change of the user forgets that the process dies with its parent.
+static bool drop_root(void)
+{
+	const pid_t parent = getppid();
+	struct __user_cap_header_struct head = { .version = _LINUX_CAPABILITY_VERSION_3 };
+	struct __user_cap_data_struct none[2] = { { 0 } };
+	if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
+		return false;
+	if (geteuid() == 0 && (setgroups(0, NULL) != 0 || setresgid(NOBODY, NOBODY, NOBODY) != 0 ||
+			       setresuid(NOBODY, NOBODY, NOBODY) != 0))
+		return false;
+	if (syscall(SYS_capset, &head, none) != 0 || prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
+		return false;
+	if (getppid() != parent)
+		_exit(EXIT_FAILURE); // it died in the meantime
+	return true;
+}
+
+// ---- resources
+
+static bool limit(int resource, rlim_t most)
+{
+	struct rlimit now;
+	if (getrlimit((__rlimit_resource_t)resource, &now) != 0)
+		return false;
+	most = most < now.rlim_max ? most : now.rlim_max;
+	return setrlimit((__rlimit_resource_t)resource, &(struct rlimit){ most, most }) == 0;
+}
+
+static bool limit_resources(void)
+{
+	const rlim_t memory = (rlim_t)sysconf(_SC_PHYS_PAGES) / 2 * (rlim_t)sysconf(_SC_PAGESIZE);
+	return limit(RLIMIT_CORE, 0) && limit(RLIMIT_NPROC, 0) && limit(RLIMIT_NOFILE, FILES) &&
+	       limit(RLIMIT_MEMLOCK, 0) && limit(RLIMIT_MSGQUEUE, 0) && (SANITIZED || limit(RLIMIT_DATA, memory));
+}
+
+// ---- system calls
+
+#ifdef MACHINE
+#define LOAD(field) BPF_STMT(BPF_LD | BPF_W | BPF_ABS, (uint32_t)offsetof(struct seccomp_data, field))
+#define ARGUMENT(i) LOAD(args[i]) // its lower half: these machines are little-endian
+#define RETURN(what) BPF_STMT(BPF_RET | BPF_K, what)
+#define ALLOW(call) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_##call, 0, 1), RETURN(SECCOMP_RET_ALLOW)
+// Only with this value of an argument; with none of these bits set in it. What does not pass is killed.
+#define ALLOW_WITH(call, i, value) \
+	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_##call, 0, 4), ARGUMENT(i), \
+		BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, 1), RETURN(SECCOMP_RET_ALLOW), \
+		RETURN(SECCOMP_RET_KILL_PROCESS)
+#define ALLOW_WITHOUT(call, i, bits) \
+	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_##call, 0, 4), ARGUMENT(i), \
+		BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, bits, 1, 0), RETURN(SECCOMP_RET_ALLOW), \
+		RETURN(SECCOMP_RET_KILL_PROCESS)
+
+static bool filter_system_calls(void)
+{
+	const uint32_t self = (uint32_t)getpid();
+	struct sock_filter code[] = {
+		LOAD(arch),
+		BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, MACHINE, 1, 0),
+		RETURN(SECCOMP_RET_KILL_PROCESS),
+		LOAD(nr),
+		// waiting, time
+		ALLOW(futex),
+		ALLOW(sched_yield),
+		ALLOW(clock_gettime),
+		ALLOW(clock_nanosleep),
+		ALLOW(nanosleep),
+		ALLOW(gettimeofday),
+		ALLOW(restart_syscall),
+		// memory; none that is run as code
+		ALLOW(brk),
+		ALLOW(munmap),
+		ALLOW(mremap),
+		ALLOW(madvise),
+		ALLOW(getrandom),
+		ALLOW(sysinfo), // qsort() asks how much there is
+		ALLOW_WITHOUT(mmap, 2, PROT_EXEC),
+		// messages and the end, abort() included; signals to itself alone
+		ALLOW_WITH(write, 0, STDERR_FILENO),
+		ALLOW(getpid),
+		ALLOW(gettid),
+		ALLOW(rt_sigaction),
+		ALLOW(rt_sigprocmask),
+		ALLOW(rt_sigreturn),
+		ALLOW_WITH(tgkill, 0, self),
+		ALLOW_WITH(kill, 0, self),
+		ALLOW(exit),
+		ALLOW(exit_group),
+		RETURN(SECCOMP_RET_KILL_PROCESS),
+	};
+	const struct sock_fprog program = { .len = sizeof code / sizeof *code, .filter = code };
+	return SANITIZED || prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0;
+}
+#else
+static bool filter_system_calls(void)
+{
+	errno = ENOSYS;
+	return false;
+}
+#endif
+
+bool ob_confine(ob_universe *u, uint32_t worker, bool read_only, ob_error *e)
+{
+	if (read_only && !ob_outbox_enter(u, worker))
+		return ob_fail(e, "cannot make the universe read-only: %s", strerror(errno));
+	if (!drop_root())
+		return ob_fail(e, "cannot give up privileges: %s", strerror(errno));
+	if (!limit_resources())
+		return ob_fail(e, "cannot limit resources: %s", strerror(errno));
+	return filter_system_calls() || ob_fail(e, "cannot filter system calls: %s", strerror(errno));
+}

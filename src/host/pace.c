@@ -1,0 +1,102 @@
+#include "host/pace.h"
+
+#include <math.h>
+#include <time.h>
+
+#include "base/clock.h"
+
+void ob_pace_begin(ob_pace *p, double rate, bool paused)
+{
+	pthread_condattr_t monotonic;
+	*p = (ob_pace){ .state = { rate, paused } };
+	pthread_mutex_init(&p->lock, NULL);
+	pthread_condattr_init(&monotonic);
+	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+	pthread_cond_init(&p->changed, &monotonic);
+	pthread_condattr_destroy(&monotonic);
+}
+
+void ob_pace_end(ob_pace *p)
+{
+	pthread_cond_destroy(&p->changed);
+	pthread_mutex_destroy(&p->lock);
+}
+
+ob_pace_state ob_pace_get(ob_pace *p)
+{
+	pthread_mutex_lock(&p->lock);
+	ob_pace_state state = p->state;
+	pthread_mutex_unlock(&p->lock);
+	return state;
+}
+
+// Under the lock. The line begins anew with the next wait.
+static void tell(ob_pace *p)
+{
+	p->allowed = 0;
+	p->drawn = false;
+	pthread_cond_signal(&p->changed);
+}
+
+void ob_pace_set_rate(ob_pace *p, double rate)
+{
+	pthread_mutex_lock(&p->lock);
+	p->state.rate = rate;
+	tell(p);
+	pthread_mutex_unlock(&p->lock);
+}
+
+void ob_pace_set_paused(ob_pace *p, bool paused)
+{
+	pthread_mutex_lock(&p->lock);
+	p->state.paused = paused;
+	tell(p);
+	pthread_mutex_unlock(&p->lock);
+}
+
+void ob_pace_allow(ob_pace *p, uint64_t steps)
+{
+	pthread_mutex_lock(&p->lock);
+	p->allowed += p->state.paused ? steps : 0;
+	pthread_cond_signal(&p->changed);
+	pthread_mutex_unlock(&p->lock);
+}
+
+// Under the lock: the step that is due now, and how long (s) until one more is than are done.
+static uint64_t due_step(ob_pace *p, uint64_t done, double step_length, double *wait)
+{
+	double now = ob_clock_wall(), each = step_length / p->state.rate;
+	*wait = INFINITY;
+	if (p->state.paused) {
+		uint64_t due = done + p->allowed;
+		p->allowed = 0;
+		return due;
+	}
+	if (isinf(p->state.rate))
+		return UINT64_MAX;
+	double lag = p->drawn ? now - p->from_wall - (double)(done - p->from_step) * each : 0;
+	if (!p->drawn || lag > OB_PACE_BEHIND + each) {
+		p->drawn = true;
+		p->from_step = done;
+		p->from_wall = now;
+	}
+	double steps = floor((now - p->from_wall) / each);
+	uint64_t due = p->from_step + (steps < 1e18 ? (uint64_t)steps : 0);
+	*wait = p->from_wall + (double)(done + 1 - p->from_step) * each - now;
+	return due > done ? due : done;
+}
+
+uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, double patience)
+{
+	double until = ob_clock_wall() + patience, wait;
+	pthread_mutex_lock(&p->lock);
+	uint64_t due = due_step(p, done, step_length, &wait);
+	for (double now; due <= done && (now = ob_clock_wall()) < until;) {
+		double wake = fmin(until, now + fmax(wait, 0));
+		struct timespec at = { .tv_sec = (time_t)wake, .tv_nsec = (long)(1e9 * (wake - floor(wake))) };
+		pthread_cond_timedwait(&p->changed, &p->lock, &at);
+		due = due_step(p, done, step_length, &wait);
+	}
+	pthread_mutex_unlock(&p->lock);
+	return due;
+}

@@ -1,0 +1,48 @@
+// The pace of a run: how much simulated time passes in a second of the wall clock, and whether any does. Whoever lets
+// the universe run asks before it does so; whoever looks on may pause, step, or change the rate.
+//
+//                        due step
+//       rate 1         /        .  where the universe cannot keep up, it falls behind by at most OB_PACE_BEHIND of
+//                    /   .         wall time: then the line is drawn anew from where it is, and time has slipped
+//                  /  .
+//                / .  done steps
+//
+// Thread-safety: wait is one thread's; the rest may be called by any.
+#ifndef OB_HOST_PACE_H
+#define OB_HOST_PACE_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#define OB_PACE_BEHIND .1 // s
+#define OB_PACE_MAX INFINITY // the rate of "as fast as it can"
+
+typedef struct ob_pace_state {
+	double rate; // simulated seconds a second, > 0; OB_PACE_MAX
+	bool paused;
+} ob_pace_state;
+
+typedef struct ob_pace {
+	pthread_mutex_t lock; // guards what follows
+	pthread_cond_t changed;
+	ob_pace_state state;
+	uint64_t allowed; // steps that may still be made while it is paused
+	bool drawn; // the line begins at a step and an instant:
+	uint64_t from_step;
+	double from_wall; // s
+} ob_pace;
+
+void ob_pace_begin(ob_pace *p, double rate, bool paused);
+void ob_pace_end(ob_pace *p); // nobody waits any more
+
+ob_pace_state ob_pace_get(ob_pace *p);
+void ob_pace_set_rate(ob_pace *p, double rate);
+void ob_pace_set_paused(ob_pace *p, bool paused);
+void ob_pace_allow(ob_pace *p, uint64_t steps); // more, while it is paused
+
+// The step up to which a universe that has done so many steps of step_length (s) may run; waits for at most "patience"
+// (s) until that is more than it has done. UINT64_MAX: as far as it likes.
+uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, double patience);
+
+#endif

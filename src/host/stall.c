@@ -1,0 +1,96 @@
+#include "host/stall.h"
+
+#include <stdio.h>
+#include <time.h>
+
+#include "host/accounting.h"
+#include "host/host_state.h"
+
+enum { SHOWN = 4, MOST_FACTOR = 10 }; // of patience: what a run waits for simulators that get no core
+
+// The workers that the step waits for: those that the gate waits for or, where it waits for none, the one that
+// schedules.
+typedef struct blockers {
+	uint32_t worker[SHOWN], shown, more;
+} blockers;
+
+static blockers find_blockers(const ob_host *h)
+{
+	blockers b = { .shown = 0 };
+	uint32_t scheduler = ob_step_scheduler(h->u);
+	bool waits = false; // else all have arrived, and the last of them has not opened the gate again
+	for (uint32_t w = 0; w < h->workers && !waits; w++)
+		waits = ob_gate_waits_for(h->u, w);
+	for (uint32_t w = 0; w < h->workers; w++) {
+		if (waits ? !ob_gate_waits_for(h->u, w) : w != scheduler)
+			continue;
+		if (b.shown < SHOWN)
+			b.worker[b.shown++] = w;
+		else
+			b.more++;
+	}
+	return b;
+}
+
+// ---- the watch
+
+ob_stall_watch ob_stall_watch_start(const ob_host *h)
+{
+	return (ob_stall_watch){ .step = ob_step_count(h->u), .clock = ob_hang_clock_start() };
+}
+
+static bool one_is_runnable(const ob_host *h)
+{
+	blockers b = find_blockers(h);
+	ob_worker_info info;
+	bool found = false;
+	for (uint32_t i = 0; i < b.shown && !found; i++)
+		found = ob_universe_get_worker(h->u, b.worker[i], &info) &&
+			ob_state_of_thread(info.pid, info.tid) == 'R';
+	return found;
+}
+
+bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
+{
+	static const double busy = .02; // of a core: with less than that nobody computes
+	uint64_t step = ob_step_count(h->u);
+	if (step != s->step) {
+		*s = ob_stall_watch_start(h);
+		return false;
+	}
+	double waited = ob_hang_clock_tick(&s->clock), past = waited - s->looked;
+	uint64_t cpu_ns = ob_host_read_cpu(h);
+	double computed = s->cpu_ns && cpu_ns > s->cpu_ns ? 1e-9 * (double)(cpu_ns - s->cpu_ns) : 0;
+	if (computed > busy * past)
+		s->counted += computed < past ? computed : past;
+	else if (!one_is_runnable(h))
+		s->counted += past;
+	s->looked = waited;
+	s->cpu_ns = cpu_ns;
+	return s->counted > h->patience || waited > MOST_FACTOR * h->patience;
+}
+
+// ---- who it is
+
+void ob_stall_describe(const ob_host *h, char *text, size_t size)
+{
+	const uint64_t busy_ns = 10000000; // with more CPU time than this within the tenth of a second, it computes
+	blockers b = find_blockers(h);
+	uint64_t before[SHOWN];
+	ob_worker_info info[SHOWN];
+	size_t n = 0;
+	text[0] = 0;
+	for (uint32_t i = 0; i < b.shown; i++) {
+		ob_universe_get_worker(h->u, b.worker[i], &info[i]);
+		before[i] = h->spawn->cpu(&info[i]);
+	}
+	nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
+	for (uint32_t i = 0; i < b.shown && n < size; i++) {
+		char state = ob_state_of_thread(info[i].pid, info[i].tid);
+		bool computes = state == 'S' && h->spawn->cpu(&info[i]) - before[i] > busy_ns;
+		n += (size_t)snprintf(text + n, size - n, "%ssimulator %u (task %d, %s)", i ? ", " : "", b.worker[i],
+				      (int)info[i].tid, ob_state_word(computes ? 'R' : state));
+	}
+	if (b.more && n < size)
+		snprintf(text + n, size - n, " and %u more", b.more);
+}

@@ -1,0 +1,199 @@
+// Euler's equations J dw/dt = (J w) x w and dq/dt = q w / 2 are quadratic, so the coefficients of their power series
+// follow from those before by sums of products (Moore, "Interval Analysis", 1966, section 11.1). The series is taken
+// until its terms vanish; where that takes too many, the closed form is.
+#include "motion/drift.h"
+
+#include <stdbool.h>
+
+#include "motion/flight.h"
+#include "motion/spin.h"
+
+enum { TERMS = 22 };
+
+static const double negligible = 1e-17; // of a unit quaternion
+static const double longest_series = .2; // rad: beyond, the closed form, which then costs no more
+// rad: up to here what Magnus's expansion leaves out is below rounding: to order four; to order six with so many terms
+// of the rate's series
+static const double longest_of_order_four = 1e-3, longest_of_six_terms = .01, longest_of_eight_terms = .03;
+
+static bool same_moments(ob_vec3 j)
+{
+	return j.x == j.y && j.y == j.z;
+}
+
+// Unit norm, without the bias of one division (spin.c).
+static ob_quat unit(ob_quat q)
+{
+	double e = fma(q.w, q.w, fma(q.x, q.x, fma(q.y, q.y, fma(q.z, q.z, -1))));
+	double s = e * (.5 - .375 * e);
+	return (ob_quat){ q.w - q.w * s, q.x - q.x * s, q.y - q.y * s, q.z - q.z * s };
+}
+
+// False: the terms do not vanish soon enough.
+static bool series(ob_vec3 w0, ob_vec3 j, double s, ob_quat *out)
+{
+	// Of the rate times s, and of the turn; each with its power of s.
+	double wx[TERMS], wy[TERMS], wz[TERMS], q0[TERMS], q1[TERMS], q2[TERMS], q3[TERMS];
+	wx[0] = s * w0.x, wy[0] = s * w0.y, wz[0] = s * w0.z;
+	q0[0] = 1, q1[0] = q2[0] = q3[0] = 0;
+	const double cx = (j.y - j.z) / j.x, cy = (j.z - j.x) / j.y, cz = (j.x - j.y) / j.z;
+	for (int k = 0; k + 1 < TERMS; k++) {
+		double a = 0, b = 0, c = 0, d = 0, x = 0, y = 0, z = 0;
+		for (int i = 0; i <= k; i++) {
+			const int o = k - i;
+			a -= q1[i] * wx[o] + q2[i] * wy[o] + q3[i] * wz[o];
+			b += q0[i] * wx[o] + q2[i] * wz[o] - q3[i] * wy[o];
+			c += q0[i] * wy[o] + q3[i] * wx[o] - q1[i] * wz[o];
+			d += q0[i] * wz[o] + q1[i] * wy[o] - q2[i] * wx[o];
+			x += wy[i] * wz[o];
+			y += wz[i] * wx[o];
+			z += wx[i] * wy[o];
+		}
+		const double f = 1. / (k + 1), half = .5 * f;
+		q0[k + 1] = half * a, q1[k + 1] = half * b, q2[k + 1] = half * c, q3[k + 1] = half * d;
+		wx[k + 1] = f * cx * x, wy[k + 1] = f * cy * y, wz[k + 1] = f * cz * z;
+		out->w += q0[k + 1], out->x += q1[k + 1], out->y += q2[k + 1], out->z += q3[k + 1];
+		double term = fabs(q0[k + 1]) + fabs(q1[k + 1]) + fabs(q2[k + 1]) + fabs(q3[k + 1]);
+		double rate = fabs(wx[k + 1]) + fabs(wy[k + 1]) + fabs(wz[k + 1]);
+		if (term + rate < negligible)
+			return true;
+	}
+	return false;
+}
+
+// Euler's equations as dw/dt = (c.x w.y w.z, c.y w.z w.x, c.z w.x w.y).
+static ob_vec3 coupling_of(ob_vec3 j)
+{
+	const double inverse_all = 1 / (j.x * j.y * j.z);
+	return ob_v3((j.y - j.z) * (j.y * j.z) * inverse_all, (j.z - j.x) * (j.z * j.x) * inverse_all,
+		     (j.x - j.y) * (j.x * j.y) * inverse_all);
+}
+
+// The next coefficient of the rate's series, from those before, times "terms" (their number).
+static inline ob_vec3 next_rate(ob_vec3 coupling, const ob_vec3 *w, int terms)
+{
+	ob_vec3 sum = ob_v3(0, 0, 0);
+	for (int i = 0; i < terms; i++) {
+		const ob_vec3 a = w[i], b = w[terms - 1 - i];
+		sum = ob_add(sum, ob_v3(a.y * b.z, a.z * b.x, a.x * b.y));
+	}
+	return ob_v3(coupling.x * sum.x, coupling.y * sum.y, coupling.z * sum.z);
+}
+
+// The turn by a rotation vector that is so small that the series of the half angle's cosine and of sin(x) / x end soon.
+static ob_quat small_turn(ob_vec3 turn)
+{
+	const ob_vec3 half = ob_scale(turn, .5);
+	const double x = ob_norm2(half), over = 1 - x / 6 * (1 - x / 20 * (1 - x / 42));
+	return (ob_quat){ 1 - x / 2 * (1 - x / 12 * (1 - x / 30)), over * half.x, over * half.y, over * half.z };
+}
+
+// Magnus's expansion to order four, from the rate's series.
+static ob_vec3 turn_of_order_four(ob_vec3 w0, ob_vec3 j, double s)
+{
+	const ob_vec3 coupling = coupling_of(j);
+	ob_vec3 w[4] = { ob_scale(w0, s) }; // of the rate times s, each with its power of s
+	w[1] = next_rate(coupling, w, 1);
+	w[2] = ob_scale(next_rate(coupling, w, 2), .5);
+	w[3] = ob_scale(next_rate(coupling, w, 3), 1. / 3);
+	const ob_vec3 mean = ob_madd(ob_madd(ob_madd(w[0], .5, w[1]), 1. / 3, w[2]), .25, w[3]);
+	return ob_madd(mean, 1. / 12, ob_cross(w[0], ob_add(w[1], w[2])));
+}
+
+// Magnus's expansion to order six (Blanes, Casas, Oteo and Ros 2009, section 5.4) from the moments of the rate about
+// the middle, each the sum of its series, so many terms of it (a constant: the loops are unrolled).
+static inline __attribute__((always_inline)) ob_vec3 turn_of_order_six(ob_vec3 w0, ob_vec3 j, double s, int terms)
+{
+	enum { MOST = 8 };
+	const ob_vec3 coupling = coupling_of(j);
+	ob_vec3 w[MOST] = { ob_scale(w0, s) }; // as above
+	ob_vec3 mean = w[0], first = ob_v3(0, 0, 0), second = ob_scale(w[0], 1. / 12);
+#pragma GCC unroll 8
+	for (int k = 1; k < terms; k++) {
+		w[k] = ob_scale(next_rate(coupling, w, k), 1. / k);
+		mean = ob_madd(mean, 1. / (k + 1), w[k]);
+		first = ob_madd(first, 1. / (k + 2) - .5 / (k + 1), w[k]);
+		second = ob_madd(second, 1. / (k + 3) - 1. / (k + 2) + .25 / (k + 1), w[k]);
+	}
+	// The turn's equation has the rate on the right: that of its inverse has minus the rate on the left.
+	const ob_vec3 a1 = ob_madd(ob_scale(mean, -9. / 4), 15, second), a2 = ob_scale(first, -12),
+		      a3 = ob_madd(ob_scale(mean, 15), -180, second);
+	const ob_vec3 c1 = ob_cross(a1, a2), c2 = ob_scale(ob_cross(a1, ob_madd(c1, 2, a3)), -1. / 60);
+	const ob_vec3 left = ob_sub(ob_madd(c1, -20, a1), a3);
+	return ob_madd(mean, -1. / 240, ob_cross(left, ob_add(a2, c2)));
+}
+
+static bool any_moment(ob_vec3 j)
+{
+	return !(j.x > 0 && j.y > 0 && j.z > 0);
+}
+
+ob_quat ob_drift_short_turn(ob_vec3 w, ob_vec3 inertia, double s)
+{
+	return small_turn(same_moments(inertia) || any_moment(inertia) ? ob_scale(w, s)
+								       : turn_of_order_four(w, inertia, s));
+}
+
+ob_quat ob_drift_turn(ob_vec3 w, ob_vec3 inertia, double s)
+{
+	ob_quat turn = ob_quat_identity();
+	const double turned = ob_norm2(w) * s * s;
+	if (turned == 0)
+		return turn;
+	if (same_moments(inertia) || any_moment(inertia))
+		return ob_quat_turn(turn, ob_scale(w, s));
+	if (turned < longest_of_order_four * longest_of_order_four)
+		return small_turn(turn_of_order_four(w, inertia, s));
+	if (turned < longest_of_six_terms * longest_of_six_terms)
+		return small_turn(turn_of_order_six(w, inertia, s, 6));
+	if (turned < longest_of_eight_terms * longest_of_eight_terms)
+		return small_turn(turn_of_order_six(w, inertia, s, 8));
+	if (turned < longest_series * longest_series && series(w, inertia, s, &turn))
+		return unit(turn);
+	ob_spin spin;
+	ob_spin_plan(&spin, ob_quat_identity(), w, inertia);
+	ob_spin_at(&spin, s, &turn, &w);
+	return turn;
+}
+
+void ob_drift(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out)
+{
+	const ob_mat3 r = ob_quat_matrix(q);
+	const ob_vec3 b = ob_rotate_back(&r, w), j = inertia;
+	*q_out = unit(ob_quat_mul(q, ob_drift_turn(b, j, s)));
+	*w_out = w;
+	if (same_moments(j) || any_moment(j))
+		return;
+	// The rate follows from the momentum, which stays.
+	const ob_mat3 now = ob_quat_matrix(*q_out);
+	const ob_vec3 l = ob_rotate_back(&now, ob_rotate(&r, ob_v3(j.x * b.x, j.y * b.y, j.z * b.z)));
+	*w_out = ob_rotate(&now, ob_v3(l.x / j.x, l.y / j.y, l.z / j.z));
+}
+
+ob_vec3 ob_small_turn(ob_quat from, ob_quat to)
+{
+	ob_quat t = ob_quat_mul(to, (ob_quat){ from.w, -from.x, -from.y, -from.z });
+	ob_vec3 v = ob_scale(ob_v3(t.x, t.y, t.z), t.w < 0 ? -2 : 2);
+	double x = .25 * ob_norm2(v);
+	return ob_scale(v, 1 + x * (1. / 6 + x * (3. / 40 + x * (5. / 112))));
+}
+
+double ob_drift_bound(ob_vec3 w, ob_vec3 inertia, double s)
+{
+	const double slight = .02, inverse_root3 = .57735026918962576;
+	const ob_vec3 j = inertia;
+	const double rate = ob_norm(w), least = rate * s * inverse_root3;
+	if (rate == 0 || same_moments(j) || any_moment(j))
+		return rate;
+	// Those of a body: none exceeds the sum of the others, so k below is not more than this.
+	if (least < slight && j.x <= j.y + j.z && j.y <= j.z + j.x && j.z <= j.x + j.y)
+		return rate * (1 + least / (1 - slight));
+	// dw_i/dt = (J_j - J_k) / J_i w_j w_k, and the squares of the products add up to w^4 / 3 at most: d(1/w)/dt is
+	// bounded.
+	double k = fmax(fabs(j.y - j.z) / j.x, fmax(fabs(j.z - j.x) / j.y, fabs(j.x - j.y) / j.z)) * inverse_root3;
+	double grown = k * rate * s;
+	if (grown < slight)
+		return rate / (1 - grown);
+	double ever = ob_spin_bound(ob_quat_identity(), w, inertia);
+	return grown < 1 ? fmin(ever, rate / (1 - grown)) : ever;
+}

@@ -1,0 +1,272 @@
+#include "serve/command.h"
+
+#include <libwebsockets.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/utf8.h"
+
+static const char *const kinds[OB_DO_KINDS] = {
+	[OB_DO_CREATE] = "create",     [OB_DO_REMOVE] = "remove",   [OB_DO_PAUSE] = "pause",
+	[OB_DO_RESUME] = "resume",     [OB_DO_STEP] = "step",       [OB_DO_RATE] = "rate",
+	[OB_DO_CONTACTS] = "contacts", [OB_DO_INSPECT] = "inspect",
+};
+static const char *const shapes[] = {
+	[OB_SHAPE_SPHERE] = "sphere",
+	[OB_SHAPE_BOX] = "box",
+	[OB_SHAPE_CAPSULE] = "capsule",
+	[OB_SHAPE_CYLINDER] = "cylinder",
+};
+
+enum {
+	DO,
+	SHAPE,
+	NAME,
+	SIZE,
+	AT,
+	ATTITUDE,
+	VELOCITY,
+	SPIN,
+	COLOUR,
+	MASS,
+	FRICTION,
+	RESTITUTION,
+	ID,
+	GENERATION,
+	STEPS,
+	RATE,
+	ON,
+	FIELDS
+};
+
+static const char *const names[FIELDS] = { "do",       "shape",      "name",   "size", "at",       "attitude",
+					   "velocity", "spin",       "colour", "mass", "friction", "restitution",
+					   "id",       "generation", "steps",  "rate", "on" };
+// Which numbers a field has (0: a word), and between what they must lie
+static const struct {
+	int count;
+	double low, high;
+} numbers[FIELDS] = {
+	[SIZE] = { 3, 0, 1e4 },
+	[AT] = { 3, -1e9, 1e9 },
+	[ATTITUDE] = { 4, -1, 1 },
+	[VELOCITY] = { 3, -1e5, 1e5 },
+	[SPIN] = { 3, -1e4, 1e4 },
+	[COLOUR] = { 3, 0, 1 },
+	[MASS] = { 1, 1e-9, 1e12 },
+	[FRICTION] = { 1, 0, 1e3 },
+	[RESTITUTION] = { 1, 0, 1 },
+	[ID] = { 1, 0, 4294967294. },
+	[GENERATION] = { 1, 0, 4294967295. },
+	[STEPS] = { 1, 1, 1e6 },
+	[RATE] = { 1, 0, 1e6 },
+};
+
+typedef struct reading {
+	ob_error *e;
+	bool failed;
+	int depth; // of objects and lists
+	int field; // -1: none of ours
+	unsigned given; // bits: fields
+	char word[3][OB_NAME_MAX]; // do, shape, name
+	double value[FIELDS][4];
+	int count[FIELDS];
+	bool on;
+} reading;
+
+static char fail(reading *r, const char *what, const char *field)
+{
+	if (!r->failed)
+		ob_fail(r->e, "%s%s%s", field ? field : "", field ? ": " : "", what);
+	r->failed = true;
+	return -1;
+}
+
+static char begin_field(reading *r, const char *path)
+{
+	r->field = -1;
+	for (int i = 0; i < FIELDS; i++) {
+		if (strcmp(path, names[i]) == 0)
+			r->field = i;
+	}
+	if (r->field < 0)
+		return fail(r, "nothing of this name is known in a command", "a field");
+	if (r->given & 1u << r->field)
+		return fail(r, "given twice", names[r->field]);
+	r->given |= 1u << r->field;
+	return 0;
+}
+
+static char take_number(reading *r, const char *text)
+{
+	int f = r->field;
+	if (f < 0 || numbers[f].count == 0)
+		return fail(r, "a number was not expected here", f < 0 ? NULL : names[f]);
+	if (r->count[f] >= numbers[f].count || (numbers[f].count == 1) != (r->depth == 1))
+		return fail(r, "not as many numbers as expected", names[f]);
+	double v = strtod(text, NULL);
+	if (!(v >= numbers[f].low && v <= numbers[f].high))
+		return fail(r, "out of range", names[f]);
+	r->value[f][r->count[f]++] = v;
+	return 0;
+}
+
+static char take_word(reading *r, const struct lejp_ctx *c, bool whole)
+{
+	if ((r->field != DO && r->field != SHAPE && r->field != NAME) || r->depth != 1)
+		return fail(r, "a word was not expected here", r->field < 0 ? NULL : names[r->field]);
+	char *to = r->word[r->field];
+	size_t have = strlen(to), more = c->npos;
+	if (!whole || have + more >= OB_NAME_MAX || memchr(c->buf, 0, more))
+		return fail(r, "too long, or no text", names[r->field]);
+	memcpy(to + have, c->buf, more);
+	to[have + more] = 0;
+	return 0;
+}
+
+static signed char take(struct lejp_ctx *c, char reason)
+{
+	reading *r = c->user;
+	switch (reason) {
+	case LEJPCB_PAIR_NAME:
+		return r->depth == 1 ? begin_field(r, c->path) : fail(r, "nothing lies deeper in a command", NULL);
+	case LEJPCB_OBJECT_START:
+	case LEJPCB_ARRAY_START:
+		if ((reason == LEJPCB_OBJECT_START) != (r->depth == 0) || r->depth > 1)
+			return fail(r, "expected one JSON object", NULL);
+		r->depth++;
+		return 0;
+	case LEJPCB_OBJECT_END:
+	case LEJPCB_ARRAY_END:
+		r->depth--;
+		return 0;
+	case LEJPCB_VAL_NUM_INT:
+	case LEJPCB_VAL_NUM_FLOAT:
+		return take_number(r, c->buf);
+	case LEJPCB_VAL_STR_CHUNK:
+	case LEJPCB_VAL_STR_END:
+		return take_word(r, c, reason == LEJPCB_VAL_STR_END);
+	case LEJPCB_VAL_TRUE:
+	case LEJPCB_VAL_FALSE:
+		r->on = reason == LEJPCB_VAL_TRUE;
+		return r->field == ON && r->depth == 1 ? 0 : fail(r, "true and false were not expected here", NULL);
+	case LEJPCB_VAL_NULL:
+		return fail(r, "null was not expected here", NULL);
+	default:
+		return 0;
+	}
+}
+
+static ob_vec3 vec3(const reading *r, int field)
+{
+	return ob_v3(r->value[field][0], r->value[field][1], r->value[field][2]);
+}
+
+static int find_word(const char *word, const char *const list[], int n)
+{
+	for (int i = 0; i < n; i++) {
+		if (list[i] && strcmp(list[i], word) == 0)
+			return i;
+	}
+	return 0;
+}
+
+static bool needs(reading *r, unsigned needed, unsigned allowed)
+{
+	for (int i = 0; i < FIELDS; i++) {
+		if ((needed & 1u << i) && !(r->given & 1u << i))
+			return fail(r, "missing", names[i]) == 0;
+		if ((r->given & 1u << i) && !((needed | allowed) & 1u << i))
+			return fail(r, "not for this command", names[i]) == 0;
+		if ((r->given & 1u << i) && numbers[i].count > 0 && r->count[i] != numbers[i].count)
+			return fail(r, "not as many numbers as expected", names[i]) == 0;
+	}
+	return true;
+}
+
+static bool make_object(reading *r, ob_object_def *def)
+{
+	int shape = find_word(r->word[SHAPE], shapes, sizeof shapes / sizeof *shapes);
+	const double *q = r->value[ATTITUDE], *c = r->value[COLOUR];
+	if (!shape)
+		return fail(r, "expected box, sphere, capsule or cylinder", "shape") == 0;
+	*def = (ob_object_def){
+		.passport = { .shape = (uint32_t)shape,
+			      .size = vec3(r, SIZE),
+			      .mass = r->value[MASS][0],
+			      .friction = r->given & 1u << FRICTION ? r->value[FRICTION][0] : .5,
+			      .restitution = r->value[RESTITUTION][0],
+			      .colour = { .6f, .6f, .6f, 1 } },
+		.state = { .pose = { vec3(r, AT), ob_quat_identity() }, .v = vec3(r, VELOCITY), .w = vec3(r, SPIN) },
+		.dies = INFINITY
+	};
+	for (int i = 0; i < 3 && r->given & 1u << COLOUR; i++)
+		def->passport.colour[i] = (float)c[i];
+	if (r->given & 1u << ATTITUDE) {
+		if (!(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] > .5))
+			return fail(r, "expected a unit quaternion", "attitude") == 0;
+		def->state.pose.q = ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
+	}
+	// names reach terminals and pages
+	for (const char *s = r->word[NAME]; *s;) {
+		size_t bytes;
+		uint32_t code = ob_utf8_decode(s, &bytes);
+		if (ob_utf8_length(s) == 0 || code < 0x20 || (code >= 0x7f && code < 0xa0))
+			return fail(r, "expected text without control characters", "name") == 0;
+		s += bytes;
+	}
+	snprintf(def->passport.name, sizeof def->passport.name, "%s", *r->word[NAME] ? r->word[NAME] : shapes[shape]);
+	return true;
+}
+
+static bool make(reading *r, ob_command *c)
+{
+	static const unsigned needed[OB_DO_KINDS] = {
+		[OB_DO_CREATE] = 1u << SHAPE | 1u << SIZE | 1u << AT | 1u << MASS,
+		[OB_DO_REMOVE] = 1u << ID | 1u << GENERATION,
+		[OB_DO_RATE] = 1u << RATE,
+		[OB_DO_CONTACTS] = 1u << ON,
+	};
+	static const unsigned allowed[OB_DO_KINDS] = {
+		[OB_DO_CREATE] = 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION |
+				 1u << RESTITUTION | 1u << NAME,
+		[OB_DO_STEP] = 1u << STEPS,
+		[OB_DO_INSPECT] = 1u << ID,
+	};
+	int kind = find_word(r->word[DO], kinds, OB_DO_KINDS);
+	if (!kind)
+		return fail(r, "expected create, remove, pause, resume, step, rate, contacts or inspect", "do") == 0;
+	if (!needs(r, needed[kind] | 1u << DO, allowed[kind]))
+		return false;
+	*c = (ob_command){
+		.kind = (ob_command_kind)kind,
+		.id = r->given & 1u << ID ? (uint32_t)r->value[ID][0] : UINT32_MAX,
+		.generation = (uint32_t)r->value[GENERATION][0],
+		.steps = r->given & 1u << STEPS ? (uint32_t)r->value[STEPS][0] : 1,
+		.rate = r->value[RATE][0],
+		.on = r->on,
+	};
+	if (kind == OB_DO_CREATE && !make_object(r, &c->def))
+		c->kind = OB_DO_NOTHING;
+	return c->kind != OB_DO_NOTHING;
+}
+
+bool ob_command_read(ob_command *c, const char *json, size_t size, ob_error *e)
+{
+	reading r = { .e = e, .field = -1 };
+	struct lejp_ctx parser;
+	*c = (ob_command){ .kind = OB_DO_NOTHING };
+	if (size > OB_COMMAND_BYTES_MAX)
+		return ob_fail(e, "a command of %zu bytes: at most %d are read", size, OB_COMMAND_BYTES_MAX);
+	while (size > 0 && strchr(" \t\r\n", json[size - 1]) && json[size - 1]) // the parser ends with the object
+		size--;
+	lejp_construct(&parser, take, &r, NULL, 0);
+	int left = lejp_parse(&parser, (const unsigned char *)json, (int)size);
+	lejp_destruct(&parser);
+	if (r.failed)
+		return false;
+	if (left != 0)
+		return ob_fail(e, "this is no JSON object");
+	return make(&r, c);
+}

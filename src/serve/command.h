@@ -1,0 +1,45 @@
+// What viewers ask for: a JSON object each, as {"do": "create", "shape": "box", "size": [.5, .5, .5], "at": [0, 0, 3]}.
+//
+//      create    shape (box, sphere, capsule, cylinder), size (m, as ob_shape says), at (m), mass (kg); and if it likes
+//                attitude (w x y z), velocity (m/s), spin (rad/s), colour (linear RGB), friction, restitution, name
+//      remove    id, generation
+//      pause, resume
+//      step      steps (1), while it is paused
+//      rate      rate (s a s); 0: as fast as it can
+//      contacts  on
+//      inspect   id
+//
+// Nothing else may stand in it, and no byte of it is trusted. Pure; any thread.
+#ifndef OB_SERVE_COMMAND_H
+#define OB_SERVE_COMMAND_H
+
+#include "scene/scene.h"
+
+typedef enum ob_command_kind {
+	OB_DO_NOTHING,
+	OB_DO_CREATE,
+	OB_DO_REMOVE,
+	OB_DO_PAUSE,
+	OB_DO_RESUME,
+	OB_DO_STEP,
+	OB_DO_RATE,
+	OB_DO_CONTACTS,
+	OB_DO_INSPECT,
+	OB_DO_KINDS,
+} ob_command_kind;
+
+typedef struct ob_command {
+	ob_command_kind kind;
+	ob_object_def def; // create
+	uint32_t id, generation; // remove, inspect
+	uint32_t steps; // step
+	double rate; // rate; 0: as fast as it can
+	bool on; // contacts
+} ob_command;
+
+enum { OB_COMMAND_BYTES_MAX = 2048 };
+
+// false and e, for the viewer, where it makes no sense.
+bool ob_command_read(ob_command *c, const char *json, size_t size, ob_error *e);
+
+#endif

@@ -1,0 +1,119 @@
+#include "serve/facts.h"
+
+#include <math.h>
+
+#include "motion/flight.h"
+
+static void put_numbers(ob_message *m, const char *name, const double *v, int n)
+{
+	ob_message_print(m, ",\"%s\":[", name);
+	for (int i = 0; i < n; i++)
+		ob_message_print(m, isfinite(v[i]) ? "%s%.9g" : "%snull", i ? "," : "", v[i]);
+	ob_message_print(m, "]");
+}
+
+static void put_vec3(ob_message *m, const char *name, ob_vec3 v)
+{
+	put_numbers(m, name, (double[]){ v.x, v.y, v.z }, 3);
+}
+
+static void put_colour(ob_message *m, const char *name, const float c[3])
+{
+	put_numbers(m, name, (double[]){ c[0], c[1], c[2] }, 3);
+}
+
+ob_message *ob_facts_welcome(const ob_server_config *c, const ob_host *h)
+{
+	const ob_scene *scene = c->scene;
+	const ob_look_def *look = &scene->look;
+	ob_universe_info info;
+	ob_universe_get_info(ob_host_universe(h), &info);
+	ob_message *m = ob_message_new(true);
+	if (!m)
+		return NULL;
+	ob_message_print(m, "{\"welcome\":{\"protocol\":1,\"title\":");
+	ob_message_put_json(m, scene->title);
+	ob_message_print(m, ",\"universe\":");
+	ob_message_put_json(m, info.name);
+	ob_message_print(m, ",\"version\":");
+	ob_message_put_json(m, c->version);
+	ob_message_print(m, ",\"isolation\":\"%s\",\"workers\":%u,\"look_only\":%s,\"step_length\":%.17g",
+			 info.isolation, info.workers, c->look_only ? "true" : "false", info.step_length);
+	put_vec3(m, "gravity", info.gravity);
+	put_colour(m, "sky_top", look->sky_top);
+	put_colour(m, "sky_horizon", look->sky_horizon);
+	put_colour(m, "ground", look->ground_colour);
+	put_vec3(m, "sun", look->sun);
+	ob_message_print(m, ",\"grid\":%s,\"cameras\":[", look->grid ? "true" : "false");
+	for (uint32_t i = 0; i < scene->cameras; i++) {
+		const ob_camera_def *camera = &scene->camera[i];
+		ob_message_print(m, "%s{\"name\":", i ? "," : "");
+		ob_message_put_json(m, camera->name);
+		put_vec3(m, "eye", camera->eye);
+		put_vec3(m, "target", camera->target);
+		ob_message_print(m, ",\"fov\":%.9g}", camera->fov);
+	}
+	ob_message_print(m, "]}}");
+	return m;
+}
+
+ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
+{
+	ob_universe_info info;
+	ob_universe_get_info(ob_host_universe(h), &info);
+	ob_message *m = ob_message_new(true);
+	if (m)
+		ob_message_print(
+			m,
+			"{\"statistics\":{\"viewers\":%u,\"objects\":%u,\"awake\":%u,\"pairs\":%u,\"islands\":%u,"
+			"\"step\":%llu}}",
+			viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step);
+	return m;
+}
+
+static const char *state_of(const ob_passport *p, const ob_motion *m)
+{
+	if (p->flags & OB_OBJECT_STATIC)
+		return "static";
+	if (m->flags & OB_MOTION_ASLEEP)
+		return "asleep";
+	if (m->flags & OB_MOTION_EQUILIBRIUM)
+		return "in equilibrium";
+	return ob_norm2(m->a) > 0 ? "flies" : "touches";
+}
+
+ob_message *ob_facts_details(const ob_host *h, uint32_t id)
+{
+	const ob_universe *u = ob_host_universe(h);
+	ob_roster_entry entry;
+	ob_passport p;
+	ob_motion motion;
+	ob_worker_info worker;
+	ob_universe_info info;
+	ob_universe_get_info(u, &info);
+	ob_message *m = ob_message_new(true);
+	if (!m)
+		return NULL;
+	if (!ob_roster_find(ob_host_roster(h), id, &entry) || !ob_universe_get_passport(u, id, &p) ||
+	    !ob_universe_get_motion(u, id, &motion)) {
+		ob_message_print(m, "{\"details\":{\"id\":%u,\"gone\":true}}", id);
+		return m;
+	}
+	ob_message_print(m, "{\"details\":{\"id\":%u,\"generation\":%u,\"name\":", id, p.generation);
+	ob_message_put_json(m, p.name);
+	ob_message_print(
+		m,
+		",\"state\":\"%s\",\"mass\":%.9g,\"friction\":%.9g,\"restitution\":%.9g,\"island\":%u,\"step\":%u,"
+		"\"substeps\":%u",
+		state_of(&p, &motion), p.mass, p.friction, p.restitution, motion.island, motion.step, motion.substeps);
+	put_vec3(m, "size", p.size);
+	ob_state now = ob_published_at(&motion, &p, info.time);
+	put_vec3(m, "p", now.pose.p);
+	put_vec3(m, "v", now.v);
+	put_vec3(m, "w", now.w);
+	if (entry.worker != OB_ROSTER_ANY_WORKER && ob_universe_get_worker(u, entry.worker, &worker))
+		ob_message_print(m, ",\"worker\":%u,\"pid\":%d,\"tid\":%d,\"cpu\":%d,\"cpu_s\":%.3f", entry.worker,
+				 worker.pid, worker.tid, worker.cpu, 1e-9 * (double)worker.cpu_ns);
+	ob_message_print(m, "}}");
+	return m;
+}

@@ -1,0 +1,363 @@
+#include "serve/feed.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <ob/motion.h>
+
+static const double tolerated = 1. / 256; // of the radius ..
+static const double unseen = .25 / 60; // s: .. and so much of the way
+static const double v_unit = 1e-3, w_unit = 2e-3; // m/s, rad/s: of what is told in 16 bits
+
+enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24 }; // bytes of a message, of its counts
+
+// An object as viewers know it
+typedef struct known {
+	uint32_t id, generation;
+	bool announced, told; // it was, its motion was
+	bool fixed;
+	double radius; // m
+	ob_passport passport;
+	ob_feed_kind kind;
+	ob_motion motion; // the last one told
+	double seen_t0; // s, of the last one looked at ..
+	uint32_t seen_step; // .. and when it was published: what begins in a step may be published anew, as a flight
+} known;
+
+struct ob_feed {
+	const ob_universe *u;
+	const ob_roster *roster;
+	uint64_t roster_number; // of what was told
+	known *object; // ascending by id
+	size_t objects;
+	ob_roster_entry *entry;
+	size_t entry_room;
+	ob_contact_point *contact;
+	size_t contact_room;
+	double time; // s, simulated: last told
+	ob_pace_state pace; // last told
+	bool lost; // memory ran out, and viewers may have missed something: all is told anew
+};
+
+ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r)
+{
+	ob_feed *f = calloc(1, sizeof *f);
+	if (f)
+		*f = (ob_feed){ .u = u, .roster = r, .lost = true };
+	return f;
+}
+
+void ob_feed_destroy(ob_feed *f)
+{
+	if (!f)
+		return;
+	free(f->object);
+	free(f->entry);
+	free(f->contact);
+	free(f);
+}
+
+// ---- motions
+
+static ob_feed_kind kind_of(const known *k, const ob_motion *m, double step_length)
+{
+	if (k->fixed || m->flags & OB_MOTION_RESTS)
+		return OB_FEED_STANDS;
+	return m->valid_until - m->t0 > 1.001 * step_length ? OB_FEED_FREE : OB_FEED_TURNS;
+}
+
+// How far (m) any point of the object is from where viewers take it to be, as its motion m begins.
+static double off(const known *k, const ob_motion *m)
+{
+	const ob_motion *told = &k->motion;
+	double s = m->t0 - told->t0;
+	ob_vec3 p = ob_madd(ob_madd(told->p, s, told->v), .5 * s * s, told->a);
+	ob_quat q = ob_quat_turn(told->q, ob_scale(told->w, s));
+	ob_quat turn = ob_quat_mul(m->q, (ob_quat){ q.w, -q.x, -q.y, -q.z });
+	return ob_norm(ob_sub(m->p, p)) + 2 * k->radius * ob_norm(ob_v3(turn.x, turn.y, turn.z));
+}
+
+static bool is_news(const known *k, const ob_motion *m, ob_feed_kind kind)
+{
+	if (!k->told || kind != k->kind || kind == OB_FEED_FREE)
+		return true;
+	if (kind == OB_FEED_STANDS)
+		return memcmp(&m->p, &k->motion.p, sizeof m->p) != 0 || memcmp(&m->q, &k->motion.q, sizeof m->q) != 0;
+	return off(k, m) > tolerated * k->radius + unseen * ob_norm(m->v);
+}
+
+static void put_vec3(ob_message *out, ob_vec3 v)
+{
+	ob_message_put_f32(out, v.x);
+	ob_message_put_f32(out, v.y);
+	ob_message_put_f32(out, v.z);
+}
+
+static bool fits(ob_vec3 v, double one)
+{
+	return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z))) <= 32767 * one;
+}
+
+static ob_vec3 rounded(ob_vec3 v, double one)
+{
+	return ob_v3(one * rint(v.x / one), one * rint(v.y / one), one * rint(v.z / one));
+}
+
+static bool is_wide(const known *k)
+{
+	return k->kind == OB_FEED_FREE || !fits(k->motion.v, v_unit) || !fits(k->motion.w, w_unit);
+}
+
+// As it is told: from now on viewers foretell from rounded velocities, and so does the feed.
+static void know(known *k, const ob_motion *m, ob_feed_kind kind)
+{
+	k->told = true;
+	k->kind = kind;
+	k->motion = *m;
+	if (!is_wide(k)) {
+		k->motion.v = rounded(m->v, v_unit);
+		k->motion.w = rounded(m->w, w_unit);
+	}
+}
+
+static void put_i16(ob_message *out, double value)
+{
+	ob_message_put(out, &(int16_t){ (int16_t)lrint(value) }, 2);
+}
+
+static void put_short_vec3(ob_message *out, ob_vec3 v, double one)
+{
+	put_i16(out, v.x / one);
+	put_i16(out, v.y / one);
+	put_i16(out, v.z / one);
+}
+
+// before: the id of the motion put before; UINT32_MAX: none
+static void put_motion(ob_message *out, const known *k, double time, uint32_t *before)
+{
+	const ob_motion *m = &k->motion;
+	const double q[4] = { m->q.w, m->q.x, m->q.y, m->q.z };
+	bool moves = k->kind != OB_FEED_STANDS, wide = moves && is_wide(k), begun = moves && m->t0 != time;
+	bool accelerated = moves && ob_norm2(m->a) > 0;
+	uint32_t further = k->id - *before;
+	for (; further > 127; further >>= 7)
+		ob_message_put_u8(out, further | 128);
+	ob_message_put_u8(out, further);
+	*before = k->id;
+	ob_message_put_u8(out, k->kind | (wide ? OB_FEED_WIDE : 0) | (accelerated ? OB_FEED_ACCELERATED : 0) |
+				       (begun ? OB_FEED_BEGUN : 0));
+	put_vec3(out, m->p);
+	for (int i = 0; i < 4; i++)
+		put_i16(out, 32767 * q[i]);
+	if (begun)
+		ob_message_put_f32(out, time - m->t0);
+	if (accelerated)
+		put_vec3(out, m->a);
+	if (wide) {
+		put_vec3(out, m->v);
+		put_vec3(out, m->w);
+	} else if (moves) {
+		put_short_vec3(out, m->v, v_unit);
+		put_short_vec3(out, m->w, w_unit);
+	}
+}
+
+// ---- what exists
+
+static void put_object(ob_message *out, const known *k)
+{
+	const ob_passport *p = &k->passport;
+	size_t name = strnlen(p->name, OB_NAME_MAX);
+	ob_message_put_u32(out, k->id);
+	ob_message_put_u32(out, k->generation);
+	ob_message_put_u8(out, p->shape);
+	ob_message_put_u8(out, k->fixed);
+	ob_message_put_u8(out, (unsigned)name);
+	ob_message_put_u8(out, 0);
+	put_vec3(out, p->size);
+	put_vec3(out, p->inertia);
+	for (int i = 0; i < 3; i++)
+		ob_message_put_f32(out, p->colour[i]);
+	ob_message_put(out, p->name, name);
+}
+
+static bool read_roster(ob_feed *f, size_t *entries)
+{
+	for (;;) {
+		*entries = ob_roster_copy(f->roster, f->entry, f->entry_room);
+		if (*entries <= f->entry_room)
+			return true;
+		size_t room = 2 * *entries;
+		ob_roster_entry *grown = realloc(f->entry, room * sizeof *grown);
+		if (!grown)
+			return false;
+		f->entry = grown;
+		f->entry_room = room;
+	}
+}
+
+// Tells who has gone, then who has come; the list is then as the roster. false: out of memory.
+static bool tell_roster(ob_feed *f, ob_message *out)
+{
+	size_t entries, kept = 0, created = 0;
+	uint32_t removed = 0;
+	if (!read_roster(f, &entries))
+		return false;
+	known *now = calloc(entries + 1, sizeof *now);
+	if (!now)
+		return false;
+	for (size_t i = 0, at = 0; i < f->objects || at < entries;) {
+		const known *old = i < f->objects ? &f->object[i] : NULL;
+		const ob_roster_entry *entry = at < entries ? &f->entry[at] : NULL;
+		if (old && entry && old->id == entry->id && old->generation == entry->generation) {
+			now[kept++] = *old;
+			i++;
+			at++;
+		} else if (old && (!entry || old->id <= entry->id)) {
+			ob_message_put_u32(out, old->id);
+			removed++;
+			i++;
+		} else {
+			known fresh = { .id = entry->id, .generation = entry->generation };
+			at++;
+			// it may have gone again since the roster was read: then the next one says so
+			if (!ob_universe_get_passport(f->u, fresh.id, &fresh.passport) ||
+			    fresh.passport.generation != fresh.generation)
+				continue;
+			fresh.fixed = fresh.passport.flags & OB_OBJECT_STATIC;
+			fresh.radius = ob_shape_radius((ob_shape)fresh.passport.shape, fresh.passport.size);
+			now[kept++] = fresh;
+			created++;
+		}
+	}
+	for (size_t i = 0; i < kept; i++) {
+		if (!now[i].announced)
+			put_object(out, &now[i]);
+		now[i].announced = true;
+	}
+	free(f->object);
+	f->object = now;
+	f->objects = kept;
+	ob_message_set_u32(out, REMOVED_AT, removed);
+	ob_message_set_u32(out, CREATED_AT, (uint32_t)created);
+	return true;
+}
+
+// ---- messages
+
+static ob_message *begin(const ob_pace_state *pace, double time, bool anew)
+{
+	ob_message *out = ob_message_new(false);
+	if (!out)
+		return NULL;
+	ob_message_put_u8(out, OB_FEED_MOTIONS);
+	ob_message_put_u8(out, (anew ? OB_FEED_VOID : 0) | (pace->paused ? OB_FEED_PAUSED : 0));
+	ob_message_put(out, &(uint16_t){ 0 }, 2);
+	ob_message_put_f32(out, pace->rate);
+	ob_message_put_f64(out, time);
+	for (int i = 0; i < 3; i++)
+		ob_message_put_u32(out, 0);
+	return out;
+}
+
+static ob_message *whole_or_none(ob_message *out)
+{
+	if (!out->failed)
+		return out;
+	ob_message_release(out);
+	return NULL;
+}
+
+static uint32_t tell_motions(ob_feed *f, ob_message *out, double time, double step_length)
+{
+	uint32_t told = 0, before = UINT32_MAX;
+	for (size_t i = 0; i < f->objects; i++) {
+		known *k = &f->object[i];
+		ob_motion m;
+		if ((k->fixed && k->told) || !ob_universe_get_motion(f->u, k->id, &m) ||
+		    (k->told && m.t0 == k->seen_t0 && m.step == k->seen_step))
+			continue;
+		ob_feed_kind kind = kind_of(k, &m, step_length);
+		k->seen_t0 = m.t0;
+		k->seen_step = m.step;
+		if (!is_news(k, &m, kind))
+			continue;
+		know(k, &m, kind);
+		put_motion(out, k, time, &before);
+		told++;
+	}
+	return told;
+}
+
+ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace)
+{
+	ob_universe_info info;
+	uint64_t number = ob_roster_number(f->roster); // before the roster, which may be newer
+	ob_universe_get_info(f->u, &info);
+	bool anew = f->lost;
+	ob_message *out = begin(pace, info.time, anew);
+	if (!out)
+		return NULL;
+	if (anew)
+		f->objects = 0;
+	bool news = anew || number != f->roster_number || info.time != f->time || pace->paused != f->pace.paused ||
+		    pace->rate != f->pace.rate;
+	if ((anew || number != f->roster_number) && !tell_roster(f, out))
+		out->failed = true;
+	uint32_t motions = tell_motions(f, out, info.time, info.step_length);
+	ob_message_set_u32(out, MOTIONS_AT, motions);
+	f->lost = out->failed;
+	f->roster_number = number;
+	f->time = info.time;
+	f->pace = *pace;
+	if (news || motions > 0)
+		return whole_or_none(out);
+	ob_message_release(out);
+	return NULL;
+}
+
+ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace)
+{
+	ob_message *out = begin(pace, f->time, true);
+	uint32_t motions = 0, before = UINT32_MAX;
+	if (!out)
+		return NULL;
+	for (size_t i = 0; i < f->objects; i++)
+		put_object(out, &f->object[i]);
+	for (size_t i = 0; i < f->objects; i++) {
+		if (!f->object[i].told)
+			continue;
+		put_motion(out, &f->object[i], f->time, &before);
+		motions++;
+	}
+	ob_message_set_u32(out, CREATED_AT, (uint32_t)f->objects);
+	ob_message_set_u32(out, MOTIONS_AT, motions);
+	return whole_or_none(out);
+}
+
+ob_message *ob_feed_contacts(ob_feed *f)
+{
+	size_t n;
+	while ((n = ob_universe_get_contacts(f->u, f->contact, f->contact_room)) > f->contact_room) {
+		size_t room = 2 * n;
+		ob_contact_point *grown = realloc(f->contact, room * sizeof *grown);
+		if (!grown)
+			return NULL;
+		f->contact = grown;
+		f->contact_room = room;
+	}
+	ob_message *out = ob_message_new(false);
+	if (!out)
+		return NULL;
+	ob_message_put_u8(out, OB_FEED_CONTACTS);
+	ob_message_put_u8(out, 0);
+	ob_message_put(out, &(uint16_t){ 0 }, 2);
+	ob_message_put_u32(out, (uint32_t)n);
+	ob_message_put_f64(out, f->time);
+	for (size_t i = 0; i < n; i++) {
+		put_vec3(out, f->contact[i].position);
+		put_vec3(out, f->contact[i].normal);
+		ob_message_put_f32(out, f->contact[i].impulse);
+	}
+	return whole_or_none(out);
+}

@@ -1,0 +1,57 @@
+// What is told to viewers of a universe: not frames, but what exists and how it moves, from which a viewer makes frames
+// of its own at any time and from any place.
+//
+// A motion is told when a viewer could not have foretold it (dead reckoning: IEEE 1278.1). Of what flies, that is a new
+// flight; of what touches others, whose motion changes in every step, when what was told is off by more than a 256th of
+// the object's radius and a quarter of its way in a frame; of what comes to rest, that it stands, and where.
+//
+// The messages, little-endian, positions in m, world frame:
+//
+//      u8  1          u8 flags (1: all that was told before is void; 2: paused)     u16 0
+//      f32 rate (s a s)       f64 time (s, simulated)
+//      u32 removed, u32 created, u32 motions; then so many of each:
+//        removed      u32 id
+//        created      u32 id, generation; u8 shape; u8 flags (1: static); u8 bytes of the name; u8 0
+//                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB); the name (UTF-8)
+//        motion       id less the one before, in groups of 7 bits, low first, bit 7 on all but the last;
+//                     u8 kind, and 4: wide, 8: accelerated, 16: begun; f32 p[3]; i16 q[4] (w x y z, of 32767);
+//                     if begun: f32 s before time; if accelerated: f32 a[3]; unless it stands, wide: f32 v[3], w[3],
+//                     else i16 v[3] (mm/s), w[3] (2 mrad/s)
+//
+//      u8  2          u8 0    u16 0    u32 contacts    f64 time; then so many:
+//                     f32 p[3], n[3], impulse (N s)
+//
+// One thread's.
+#ifndef OB_SERVE_FEED_H
+#define OB_SERVE_FEED_H
+
+#include "host/pace.h"
+#include "host/roster.h"
+#include "serve/message.h"
+
+enum { OB_FEED_MOTIONS = 1, OB_FEED_CONTACTS = 2 }; // first byte of a message
+enum { OB_FEED_VOID = 1, OB_FEED_PAUSED = 2 }; // its flags
+
+// How a motion goes on from its instant.
+typedef enum ob_feed_kind {
+	OB_FEED_STANDS,
+	OB_FEED_TURNS, // parabola, and a turn at constant rate
+	OB_FEED_FREE, // parabola, and the free rotation of a rigid body
+} ob_feed_kind;
+
+enum { OB_FEED_WIDE = 4, OB_FEED_ACCELERATED = 8, OB_FEED_BEGUN = 16 }; // with the kind
+
+typedef struct ob_feed ob_feed;
+
+// Of a running universe and its roster, which must outlive it. NULL: out of memory.
+ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r);
+void ob_feed_destroy(ob_feed *f); // NULL is allowed
+
+// What is new since the last call; NULL: nothing is, not even the time; or out of memory.
+ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace);
+// All that was told so far, for who comes later. NULL: out of memory.
+ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace);
+// Where objects touch. NULL: out of memory.
+ob_message *ob_feed_contacts(ob_feed *f);
+
+#endif

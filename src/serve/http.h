@@ -1,0 +1,23 @@
+// The content server's half of a connection: requests for pages, scripts and shaders, answered from content.h. The
+// server's thread only.
+#ifndef OB_SERVE_HTTP_H
+#define OB_SERVE_HTTP_H
+
+#include <libwebsockets.h>
+
+#include "serve/content.h"
+
+// What is still to be sent of an answer
+typedef struct ob_http_answer {
+	const ob_content *content; // NULL: nothing
+	size_t at, end;
+} ob_http_answer;
+
+// Does the Host header name this server, and Origin, where there is one, a page of it? address: that it listens on;
+// port; any_name: the token decides, not the name.
+bool ob_http_is_ours(struct lws *wsi, const char *address, int port, bool any_name);
+// Both return what the library's callback has to: other than 0 ends the connection.
+int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path);
+int ob_http_go_on(struct lws *wsi, ob_http_answer *a);
+
+#endif

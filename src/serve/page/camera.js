@@ -1,0 +1,138 @@
+// A viewer's own viewpoint: it goes round a target (drag), moves (right button, shift, two fingers, arrows), turns its head
+// (alt, or keys), comes nearer and goes away (wheel, pinch).
+const STEEPEST = 89 * Math.PI / 180;
+
+const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => add([0, 0, 0], a, 1 / Math.hypot(...a));
+
+export class Camera {
+	constructor() {
+		this.set({ eye: [8, -10, 6], target: [0, 0, 1], fov: 0.8 });
+	}
+
+	set({ eye, target, fov }) {
+		const d = add(target, eye, -1), range = Math.hypot(...d) || 1;
+		this.target = [...target];
+		this.range = range;
+		this.azimuth = Math.atan2(d[1], d[0]);
+		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(d[2] / range)));
+		this.fov = fov;
+		this.changed = true;
+	}
+
+	get forward() {
+		const c = Math.cos(this.elevation);
+		return [Math.cos(this.azimuth) * c, Math.sin(this.azimuth) * c, Math.sin(this.elevation)];
+	}
+	get eye() { return add(this.target, this.forward, -this.range); }
+
+	orbit(right, up) {
+		this.azimuth -= right;
+		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, this.elevation - up));
+		this.changed = true;
+	}
+	// The head turns, the eye stays.
+	turn(right, up) {
+		const eye = this.eye;
+		this.orbit(right, -up);
+		this.target = add(eye, this.forward, this.range);
+	}
+	// m, along the picture and into it
+	translate(right, up, ahead) {
+		const f = this.forward, r = unit(cross(f, [0, 0, 1])), u = cross(r, f);
+		this.target = add(add(add(this.target, r, right), u, up), f, ahead);
+		this.changed = true;
+	}
+	zoom(factor) {
+		this.range = Math.max(0.05, Math.min(1e5, this.range * factor));
+		this.changed = true;
+	}
+
+	// The axes and the frustum, as ob_view of the renderer.
+	view(width, height) {
+		const forward = this.forward, right = unit(cross(forward, [0, 0, 1])), up = cross(right, forward);
+		const tanY = Math.tan(this.fov / 2), tanX = tanY * width / height;
+		return {
+			eye: this.eye, forward, right, up, tanX, tanY, range: this.range,
+			near: Math.max(0.01, Math.min(0.5, 0.01 * this.range)), far: Math.max(2000, 60 * this.range),
+		};
+	}
+
+	// The direction through a point of the picture, x and y from -1 to 1.
+	ray(x, y, width, height) {
+		const v = this.view(width, height);
+		return unit(add(add(v.forward, v.right, x * v.tanX), v.up, y * v.tanY));
+	}
+}
+
+// Mouse, touch and keys. onClick(x, y): a press without a way, in CSS pixels.
+export function control(canvas, camera, onClick) {
+	const fingers = new Map();
+	let way = 0, mode = 'orbit', spread = 0;
+	const span = () => {
+		const [a, b] = [...fingers.values()];
+		return { size: Math.hypot(a.x - b.x, a.y - b.y), x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
+	};
+	const move = (dx, dy) => {
+		const metres = 2 * camera.range * Math.tan(camera.fov / 2) / canvas.clientHeight;
+		if (mode === 'translate')
+			camera.translate(-dx * metres, dy * metres, 0);
+		else if (mode === 'turn')
+			camera.turn(-dx * 0.004, dy * 0.004);
+		else
+			camera.orbit(dx * 0.006, dy * 0.006);
+	};
+	canvas.addEventListener('pointerdown', (e) => {
+		canvas.setPointerCapture(e.pointerId);
+		fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
+		way = fingers.size > 1 ? 1e9 : 0;
+		mode = e.button === 2 || e.shiftKey ? 'translate' : e.altKey || e.button === 1 ? 'turn' : 'orbit';
+		spread = fingers.size === 2 ? span().size : 0;
+	});
+	canvas.addEventListener('pointermove', (e) => {
+		const at = fingers.get(e.pointerId);
+		if (!at)
+			return;
+		const before = fingers.size === 2 ? span() : null;
+		const dx = e.clientX - at.x, dy = e.clientY - at.y;
+		at.x = e.clientX;
+		at.y = e.clientY;
+		way += Math.abs(dx) + Math.abs(dy);
+		if (before) {
+			const after = span();
+			mode = 'translate';
+			move(after.x - before.x, after.y - before.y);
+			camera.zoom(spread > 0 ? before.size / Math.max(1, after.size) : 1);
+		} else if (fingers.size === 1) {
+			move(dx, dy);
+		}
+	});
+	const up = (e) => {
+		if (fingers.delete(e.pointerId) && way < 5 && e.type === 'pointerup' && e.button === 0)
+			onClick(e.clientX, e.clientY);
+	};
+	canvas.addEventListener('pointerup', up);
+	canvas.addEventListener('pointercancel', up);
+	canvas.addEventListener('contextmenu', (e) => e.preventDefault());
+	canvas.addEventListener('wheel', (e) => {
+		e.preventDefault();
+		camera.zoom(Math.exp(Math.max(-1, Math.min(1, e.deltaY * 0.0015))));
+	}, { passive: false });
+}
+
+// Keys that move while they are held: true if it is one.
+export function moveByKey(camera, key) {
+	const s = 0.06 * camera.range;
+	const moves = {
+		ArrowLeft: () => camera.translate(-s, 0, 0), ArrowRight: () => camera.translate(s, 0, 0),
+		ArrowUp: () => camera.translate(0, 0, s), ArrowDown: () => camera.translate(0, 0, -s),
+		PageUp: () => camera.translate(0, s, 0), PageDown: () => camera.translate(0, -s, 0),
+		a: () => camera.turn(-0.08, 0), d: () => camera.turn(0.08, 0), w: () => camera.turn(0, 0.08), s: () => camera.turn(0, -0.08),
+		'+': () => camera.zoom(0.9), '-': () => camera.zoom(1.1),
+	};
+	if (!moves[key])
+		return false;
+	moves[key]();
+	return true;
+}

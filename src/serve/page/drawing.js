@@ -1,0 +1,451 @@
+// Draws a universe with WebGL 2, by the renderer's own shaders and passes (src/render/passes.c, frame.c): shadow map,
+// occlusion map, bodies, planes, sky, overlays.
+import { BOX, CAPSULE, CYLINDER, PLANE } from './universe.js';
+import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes } from './meshes.js';
+import { turned } from './motion.js';
+
+const SHADOW_TEXELS = 2048, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: kept free at each side, for the filter
+const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2;
+const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes it
+const REACH_RANGES = 6, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
+const SUNSHINE = [1.72, 1.6, 1.36], FROM_SKY = 0.5, FROM_GROUND = 0.4;
+const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
+const INSTANCE = 16, SEGMENT = 11; // floats
+const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1] };
+
+const PROGRAMS = {
+	body: ['body.vert', 'body.frag'], shadow: ['shadow.vert', 'shadow.frag'], occlusion: ['occlusion.vert', 'occlusion.frag'],
+	blur: ['sky.vert', 'blur.frag'], plane: ['plane.vert', 'plane.frag'], sky: ['sky.vert', 'sky.frag'],
+	segment: ['segment.vert', 'segment.frag'],
+};
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+const unit = (a) => scale(a, 1 / Math.hypot(...a));
+
+async function text(path) {
+	const answer = await fetch(path);
+	if (!answer.ok)
+		throw new Error(`${path}: ${answer.status}`);
+	return answer.text();
+}
+
+// The shaders are written for OpenGL 3.3; the same text is GLSL ES 3.00 behind another first line.
+function compile(gl, kind, name, source, software) {
+	const shader = gl.createShader(kind);
+	const head = '#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2DShadow;\n' +
+		(software ? '#define OB_SOFTWARE\n' : '');
+	gl.shaderSource(shader, head + source.slice(source.indexOf('\n') + 1));
+	gl.compileShader(shader);
+	if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
+		throw new Error(`shader ${name}: ${gl.getShaderInfoLog(shader)}`);
+	return shader;
+}
+
+// ---- the orthographic projection of a map (ob_ortho)
+
+function include(r, x, y, reach) {
+	r.lowX = Math.min(r.lowX, x - reach);
+	r.lowY = Math.min(r.lowY, y - reach);
+	r.highX = Math.max(r.highX, x + reach);
+	r.highY = Math.max(r.highY, y + reach);
+}
+const nothing = () => ({ lowX: Infinity, lowY: Infinity, highX: -Infinity, highY: -Infinity });
+
+function steppedSize(need, texels) {
+	const half = Math.max(need, 0.05) * texels / (texels - 2 * MARGIN - 2);
+	return 2 ** (Math.ceil(4 * Math.log2(half)) / 4);
+}
+
+function inFrustum(v, p, radius) {
+	const d = sub(p, v.eye), z = dot(d, v.forward);
+	return z >= -radius && z <= v.far + radius &&
+		Math.abs(dot(d, v.right)) - z * v.tanX <= radius * Math.hypot(1, v.tanX) &&
+		Math.abs(dot(d, v.up)) - z * v.tanY <= radius * Math.hypot(1, v.tanY);
+}
+
+function fitOrtho(z, bodies, v, texels) {
+	const x = Math.abs(z[2]) > 0.999 ? [1, 0, 0] : unit(cross([0, 0, 1], z)), y = cross(z, x);
+	let depth = v.range, low = Infinity, high = -Infinity;
+	for (const b of bodies) {
+		const d = dot(sub(b.p, v.eye), v.forward) + b.radius;
+		if (d > depth && inFrustum(v, b.p, b.radius))
+			depth = d;
+	}
+	depth = Math.min(1.5 * depth, REACH_RANGES * v.range);
+	const frustum = nothing();
+	let cast = nothing();
+	include(frustum, dot(v.eye, x), dot(v.eye, y), 0);
+	for (let corner = 0; corner < 4; corner++) {
+		let p = add(v.eye, v.forward, depth);
+		p = add(add(p, v.right, (corner & 1 ? 1 : -1) * depth * v.tanX), v.up, (corner & 2 ? 1 : -1) * depth * v.tanY);
+		include(frustum, dot(p, x), dot(p, y), 0);
+	}
+	for (const b of bodies) {
+		const bx = dot(b.p, x), by = dot(b.p, y), up = dot(b.p, z), r = b.radius;
+		if (bx + r < frustum.lowX || bx - r > frustum.highX || by + r < frustum.lowY || by - r > frustum.highY)
+			continue;
+		include(cast, bx, by, r);
+		low = Math.min(low, up - r);
+		high = Math.max(high, up + r);
+	}
+	if (low > high)
+		[cast, low, high] = [frustum, -1, 1];
+	const lowX = Math.max(cast.lowX, frustum.lowX), highX = Math.min(cast.highX, frustum.highX);
+	const lowY = Math.max(cast.lowY, frustum.lowY), highY = Math.min(cast.highY, frustum.highY);
+	const halfX = steppedSize((highX - lowX) / 2, texels), halfY = steppedSize((highY - lowY) / 2, texels);
+	const whole = (centre, half) => 2 * half / texels * Math.round(centre / (2 * half / texels));
+	return { x, y, z, halfX, halfY, centreX: whole((lowX + highX) / 2, halfX), centreY: whole((lowY + highY) / 2, halfY), low, high };
+}
+
+const contains = (m, b) => Math.abs(dot(b.p, m.x) - m.centreX) <= m.halfX + b.radius &&
+	Math.abs(dot(b.p, m.y) - m.centreY) <= m.halfY + b.radius;
+
+function orthoMatrix(m, eye) {
+	const deep = m.high - m.low, x = scale(m.x, 0.5 / m.halfX), y = scale(m.y, 0.5 / m.halfY), z = scale(m.z, -1 / deep);
+	return [
+		x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0,
+		(dot(eye, m.x) - m.centreX) * 0.5 / m.halfX + 0.5, (dot(eye, m.y) - m.centreY) * 0.5 / m.halfY + 0.5,
+		(m.high - dot(eye, m.z)) / deep, 1,
+	];
+}
+
+function projection(v) {
+	const { near: n, far: f } = v, x = scale(v.right, 1 / v.tanX), y = scale(v.up, 1 / v.tanY), d = v.forward;
+	const z = scale(d, (f + n) / (f - n));
+	return [x[0], y[0], z[0], d[0], x[1], y[1], z[1], d[1], x[2], y[2], z[2], d[2], 0, 0, -2 * f * n / (f - n), 0];
+}
+
+// ---- instances
+
+function meshOf(body, v, height) {
+	if (body.shape === BOX)
+		return BOX_MESH;
+	const distance = Math.max(Math.hypot(...sub(body.p, v.eye)), v.near);
+	const px = 0.5 * height * body.size[0] / (v.tanY * distance), level = px < MEDIUM_PX ? 0 : px < FINE_PX ? 1 : 2;
+	return (body.shape === CYLINDER ? CYLINDER_MESH : ROUND_MESH) + level;
+}
+
+function putInstance(out, at, body, eye) {
+	const s = body.size, bevel = (smallest) => Math.min(BEVEL_SHARE * smallest, BEVEL_MOST);
+	let r = s[0], core = [0, 0, 0], rounding = 0;
+	if (body.shape === BOX)
+		[r, core, rounding] = [0, s, bevel(Math.min(...s))];
+	else if (body.shape === CYLINDER)
+		[r, core] = [bevel(Math.min(s[0], s[1])), [s[0] - bevel(Math.min(s[0], s[1])), s[0] - bevel(Math.min(s[0], s[1])),
+			s[1] - bevel(Math.min(s[0], s[1]))]];
+	else if (body.shape === CAPSULE)
+		core = [0, 0, s[1]];
+	const q = body.q, c = body.shown;
+	out.set([body.p[0] - eye[0], body.p[1] - eye[1], body.p[2] - eye[2], r, q[1], q[2], q[3], q[0], ...core, rounding, ...c, 1], at);
+}
+
+export class Drawing {
+	constructor(canvas) {
+		this.canvas = canvas;
+		const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, preserveDrawingBuffer: true });
+		if (!gl)
+			throw new Error('this browser has no WebGL 2, which the viewer draws with');
+		this.gl = gl;
+		const info = gl.getExtension('WEBGL_debug_renderer_info');
+		this.renderer = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER);
+		this.software = /llvmpipe|softpipe|swiftshader/i.test(this.renderer);
+	}
+
+	async load() {
+		const gl = this.gl;
+		this.program = {};
+		const names = [...new Set(Object.values(PROGRAMS).flat())];
+		const sources = Object.fromEntries(await Promise.all(names.map(async (n) => [n, await text(`shaders/${n}`)])));
+		for (const [name, [vertex, fragment]] of Object.entries(PROGRAMS))
+			this.program[name] = this.link(name, sources[vertex], sources[fragment]);
+		this.createBuffers();
+		this.createMaps();
+		gl.depthFunc(gl.LEQUAL);
+	}
+
+	link(name, vertex, fragment) {
+		const gl = this.gl, id = gl.createProgram(), at = {};
+		gl.attachShader(id, compile(gl, gl.VERTEX_SHADER, name, vertex, this.software));
+		gl.attachShader(id, compile(gl, gl.FRAGMENT_SHADER, name, fragment, this.software));
+		gl.linkProgram(id);
+		if (!gl.getProgramParameter(id, gl.LINK_STATUS))
+			throw new Error(`shader ${name}: ${gl.getProgramInfoLog(id)}`);
+		const block = gl.getUniformBlockIndex(id, 'Frame');
+		if (block !== gl.INVALID_INDEX)
+			gl.uniformBlockBinding(id, block, 0);
+		gl.useProgram(id);
+		for (const [sampler, number] of [['shadow_depth', UNIT_SHADOW], ['occlusion', UNIT_OCCLUSION], ['source', UNIT_SOURCE]])
+			gl.uniform1i(gl.getUniformLocation(id, sampler), number);
+		const uniform = (u) => (at[u] === undefined ? (at[u] = gl.getUniformLocation(id, u)) : at[u]);
+		return { id, uniform };
+	}
+
+	createBuffers() {
+		const gl = this.gl, set = buildMeshes();
+		this.meshes = set.meshes;
+		this.frameBlock = gl.createBuffer();
+		this.instances = gl.createBuffer();
+		this.segments = gl.createBuffer();
+		this.bodyArray = gl.createVertexArray();
+		gl.bindVertexArray(this.bodyArray);
+		gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+		gl.bufferData(gl.ARRAY_BUFFER, set.vertices, gl.STATIC_DRAW);
+		this.attribute(0, 3, 6, 0, 0);
+		this.attribute(1, 3, 6, 3, 0);
+		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+		gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, set.indices, gl.STATIC_DRAW);
+		this.segmentArray = gl.createVertexArray();
+		gl.bindVertexArray(this.segmentArray);
+		gl.bindBuffer(gl.ARRAY_BUFFER, this.segments);
+		[[0, 3, 0], [1, 3, 3], [2, 4, 6], [3, 1, 10]].forEach(([i, size, offset]) => this.attribute(i, size, SEGMENT, offset, 1));
+		this.emptyArray = gl.createVertexArray();
+	}
+
+	attribute(index, size, stride, offset, divisor) {
+		const gl = this.gl;
+		gl.enableVertexAttribArray(index);
+		gl.vertexAttribPointer(index, size, gl.FLOAT, false, 4 * stride, 4 * offset);
+		gl.vertexAttribDivisor(index, divisor);
+	}
+
+	createMaps() {
+		const gl = this.gl;
+		const map = (attachment, inner, format, type, texels) => {
+			const framebuffer = gl.createFramebuffer(), texture = gl.createTexture();
+			gl.bindTexture(gl.TEXTURE_2D, texture);
+			gl.texImage2D(gl.TEXTURE_2D, 0, inner, texels, texels, 0, format, type, null);
+			for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+				gl.texParameteri(gl.TEXTURE_2D, filter, gl.LINEAR);
+			for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T])
+				gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+			gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+			gl.framebufferTexture2D(gl.FRAMEBUFFER, attachment, gl.TEXTURE_2D, texture, 0);
+			return { framebuffer, texture };
+		};
+		this.shadow = map(gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT16, gl.DEPTH_COMPONENT, gl.UNSIGNED_SHORT, SHADOW_TEXELS);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
+		gl.drawBuffers([gl.NONE]);
+		this.occlusion = [0, 1].map(() => map(gl.COLOR_ATTACHMENT0, gl.R8, gl.RED, gl.UNSIGNED_BYTE, OCCLUSION_TEXELS));
+	}
+
+	// ---- a frame
+
+	// bodies: { shape, size, p, q, radius, shown: linear RGB }; look: the scene's (welcome). overlay: see drawSegments.
+	draw(bodies, view, look, overlay) {
+		const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
+		const solid = bodies.filter((b) => b.shape !== PLANE), planes = bodies.filter((b) => b.shape === PLANE);
+		const ground = planes.find((b) => turned(b.q, [0, 0, 1])[2] > 0.999);
+		const sun = Math.hypot(...look.sun) > 0 ? unit(look.sun) : [0, 0, 1];
+		const f = { view, ground, shadow: fitOrtho(sun, solid, view, SHADOW_TEXELS) };
+		const up = ground ? turned(ground.q, [0, 0, 1]) : [0, 0, 1];
+		f.level = ground ? dot(ground.p, up) : 0;
+		f.occlusion = fitOrtho(up, solid, view, OCCLUSION_TEXELS);
+		f.shadowMap = orthoMatrix(f.shadow, view.eye);
+		f.occlusionMap = orthoMatrix(f.occlusion, view.eye);
+		[f.occlusionMap[2], f.occlusionMap[6], f.occlusionMap[10]] = up;
+		f.occlusionMap[14] = dot(view.eye, up) - f.level;
+		this.setBlock(f, sun, look, width, height);
+		gl.enable(gl.CULL_FACE);
+		gl.depthMask(true);
+		gl.disable(gl.BLEND);
+		this.drawShadowMap(solid.filter((b) => contains(f.shadow, b)), view, height);
+		if (ground)
+			this.drawOcclusionMap(solid.filter((b) => dot(b.p, up) - b.radius < f.level + OCCLUSION_HEIGHT &&
+				contains(f.occlusion, b)), view, height);
+		this.drawColour(solid, planes, f, look, width, height);
+		if (overlay.length)
+			this.drawSegments(overlay, view);
+	}
+
+	setBlock(f, sun, look, width, height) {
+		const gl = this.gl, v = f.view, fog = Math.max(FOG_LEAST, FOG_RANGES * v.range);
+		const top = look.sky_top, horizon = look.sky_horizon, below = f.ground ? look.ground : horizon;
+		const sky = add(scale(top, 0.35), horizon, 0.65), texel = 2 * Math.max(f.shadow.halfX, f.shadow.halfY) / SHADOW_TEXELS;
+		const block = new Float32Array([
+			...projection(v), ...f.shadowMap, ...f.occlusionMap,
+			...scale(v.right, v.tanX), 0, ...scale(v.up, v.tanY), 0, ...v.forward, 0,
+			...sun, texel, ...SUNSHINE, 0, ...top, 1 / (fog * fog), ...horizon, f.ground ? 1 : 0,
+			...scale(sky, FROM_SKY), 0, ...scale(add(scale(below, 0.8), sky, 0.2), FROM_GROUND), 0,
+			width, height, 1 / width, 1 / height, 1 / SHADOW_TEXELS, 1 / SHADOW_TEXELS, 0, 0,
+		]);
+		gl.bindBuffer(gl.UNIFORM_BUFFER, this.frameBlock);
+		gl.bufferData(gl.UNIFORM_BUFFER, block, gl.DYNAMIC_DRAW);
+		gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.frameBlock);
+	}
+
+	drawInstances(bodies, view, height) {
+		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []);
+		for (const b of bodies)
+			groups[meshOf(b, view, height)].push(b);
+		const data = new Float32Array(INSTANCE * bodies.length);
+		groups.flat().forEach((b, i) => putInstance(data, INSTANCE * i, b, view.eye));
+		gl.bindVertexArray(this.bodyArray);
+		gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
+		gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+		let first = 0;
+		groups.forEach((group, k) => {
+			if (!group.length)
+				return;
+			for (let i = 0; i < 4; i++)
+				this.attribute(2 + i, 4, INSTANCE, INSTANCE * first + 4 * i, 1);
+			gl.drawElementsInstanced(gl.TRIANGLES, this.meshes[k].count, gl.UNSIGNED_SHORT, 2 * this.meshes[k].first, group.length);
+			first += group.length;
+		});
+	}
+
+	target(framebuffer, width, height) {
+		this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, framebuffer);
+		this.gl.viewport(0, 0, width, height);
+	}
+
+	drawShadowMap(casters, view, height) {
+		const gl = this.gl;
+		this.target(this.shadow.framebuffer, SHADOW_TEXELS, SHADOW_TEXELS);
+		gl.enable(gl.DEPTH_TEST);
+		gl.frontFace(gl.CCW);
+		gl.clear(gl.DEPTH_BUFFER_BIT);
+		gl.enable(gl.POLYGON_OFFSET_FILL);
+		gl.polygonOffset(1.6, 2);
+		gl.useProgram(this.program.shadow.id);
+		this.drawInstances(casters, view, height);
+		gl.disable(gl.POLYGON_OFFSET_FILL);
+	}
+
+	drawOcclusionMap(low, view, height) {
+		const gl = this.gl;
+		this.target(this.occlusion[0].framebuffer, OCCLUSION_TEXELS, OCCLUSION_TEXELS);
+		gl.disable(gl.DEPTH_TEST);
+		gl.clearColor(0, 0, 0, 0);
+		gl.clear(gl.COLOR_BUFFER_BIT);
+		gl.enable(gl.BLEND);
+		gl.blendEquation(gl.MAX);
+		gl.frontFace(gl.CW); // undersides
+		gl.useProgram(this.program.occlusion.id);
+		this.drawInstances(low, view, height);
+		gl.blendEquation(gl.FUNC_ADD);
+		gl.disable(gl.BLEND);
+		gl.disable(gl.CULL_FACE);
+		gl.bindVertexArray(this.emptyArray);
+		const { id, uniform } = this.program.blur;
+		gl.useProgram(id);
+		for (const [from, x, y] of [[0, 1, 0], [1, 0, 1]]) {
+			this.target(this.occlusion[1 - from].framebuffer, OCCLUSION_TEXELS, OCCLUSION_TEXELS);
+			gl.activeTexture(gl.TEXTURE0 + UNIT_OCCLUSION);
+			gl.bindTexture(gl.TEXTURE_2D, null); // it is drawn into
+			gl.activeTexture(gl.TEXTURE0 + UNIT_SOURCE);
+			gl.bindTexture(gl.TEXTURE_2D, this.occlusion[from].texture);
+			gl.uniform2f(uniform('direction'), x / OCCLUSION_TEXELS, y / OCCLUSION_TEXELS);
+			gl.drawArrays(gl.TRIANGLES, 0, 3);
+		}
+		gl.bindTexture(gl.TEXTURE_2D, null);
+		gl.enable(gl.CULL_FACE);
+	}
+
+	drawColour(solid, planes, f, look, width, height) {
+		const gl = this.gl;
+		this.target(null, width, height);
+		gl.enable(gl.DEPTH_TEST);
+		gl.frontFace(gl.CCW);
+		gl.clear(gl.DEPTH_BUFFER_BIT);
+		gl.activeTexture(gl.TEXTURE0 + UNIT_SHADOW);
+		gl.bindTexture(gl.TEXTURE_2D, this.shadow.texture);
+		gl.activeTexture(gl.TEXTURE0 + UNIT_OCCLUSION);
+		gl.bindTexture(gl.TEXTURE_2D, this.occlusion[0].texture);
+		gl.useProgram(this.program.body.id);
+		this.drawInstances(solid.filter((b) => inFrustum(f.view, b.p, b.radius)), f.view, height);
+		gl.disable(gl.CULL_FACE);
+		gl.bindVertexArray(this.emptyArray);
+		gl.useProgram(this.program.plane.id);
+		for (const b of planes)
+			this.drawPlane(b, f, look);
+		gl.useProgram(this.program.sky.id);
+		gl.drawArrays(gl.TRIANGLES, 0, 3);
+		gl.activeTexture(gl.TEXTURE0 + UNIT_SHADOW);
+		gl.bindTexture(gl.TEXTURE_2D, null);
+	}
+
+	drawPlane(b, f, look) {
+		const gl = this.gl, { uniform } = this.program.plane, isGround = b === f.ground;
+		const [x, y, n] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
+		const d = sub(b.p, f.view.eye), height = -dot(d, n);
+		if (height <= 0)
+			return; // from below there is nothing to see
+		const foot = scale(n, -height), onPlane = sub(foot, d), colour = isGround ? look.ground : b.shown;
+		const cell = (a) => a - 10 * Math.round(a / 10);
+		const toMap = (m) => [x, y, foot].flatMap((v, column) => [0, 1, 2].map((row) =>
+			m[row] * v[0] + m[4 + row] * v[1] + m[8 + row] * v[2] + (column === 2 ? m[12 + row] : 0)));
+		gl.uniform3fv(uniform('foot'), foot);
+		gl.uniform3fv(uniform('normal'), n);
+		gl.uniform3fv(uniform('axis_x'), x);
+		gl.uniform3fv(uniform('axis_y'), y);
+		gl.uniformMatrix3fv(uniform('shadow_of'), false, toMap(f.shadowMap));
+		gl.uniformMatrix3fv(uniform('occlusion_of'), false, toMap(f.occlusionMap));
+		gl.uniform1f(uniform('reach'), f.view.far);
+		gl.uniform2f(uniform('grid_foot'), cell(dot(onPlane, x)), cell(dot(onPlane, y)));
+		gl.uniform4f(uniform('colour'), ...colour, isGround && look.grid ? 1 : 0);
+		gl.uniform1f(uniform('occlusion_share'), isGround ? 0.75 : 0);
+		gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+	}
+
+	// overlay: { from, to (m, world), colour (sRGB, alpha), width (px) }
+	drawSegments(overlay, view) {
+		const gl = this.gl, data = new Float32Array(SEGMENT * overlay.length);
+		overlay.forEach((s, i) => data.set([...sub(s.from, view.eye), ...sub(s.to, view.eye), ...s.colour, s.width], SEGMENT * i));
+		gl.bindVertexArray(this.segmentArray);
+		gl.bindBuffer(gl.ARRAY_BUFFER, this.segments);
+		gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+		gl.depthMask(false);
+		gl.enable(gl.BLEND);
+		gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+		gl.useProgram(this.program.segment.id);
+		gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, overlay.length);
+		gl.depthMask(true);
+		gl.disable(gl.BLEND);
+	}
+}
+
+// ---- overlays
+
+// Half the sides of the box along the world's axes that holds a body.
+export function halfBounds(b) {
+	const s = b.size, columns = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
+	return [0, 1, 2].map((k) => {
+		const along = columns.map((c) => Math.abs(c[k]));
+		if (b.shape === BOX)
+			return along[0] * s[0] + along[1] * s[1] + along[2] * s[2];
+		if (b.shape === CYLINDER)
+			return s[0] * Math.sqrt(Math.max(0, 1 - along[2] * along[2])) + s[1] * along[2];
+		return s[0] + (b.shape === CAPSULE ? s[1] * along[2] : 0);
+	});
+}
+
+export function boxSegments(b, colour, width = 1.5) {
+	const h = halfBounds(b), out = [];
+	const corner = (which) => [0, 1, 2].map((k) => b.p[k] + (which >> k & 1 ? h[k] : -h[k]));
+	for (let from = 0; from < 8; from++)
+		for (const axis of [1, 2, 4])
+			if (!(from & axis))
+				out.push({ from: corner(from), to: corner(from | axis), colour, width });
+	return out;
+}
+
+export function edgeColour(b) {
+	return b.fixed ? EDGE.fixed : b.kind === 0 ? EDGE.standing : b.kind === 2 ? EDGE.flying : EDGE.awake;
+}
+
+export function contactSegments(contacts, view, height) {
+	const metresAPixel = 2 * view.tanY / height;
+	return contacts.flatMap((c) => {
+		const tip = add(c.p, c.n, 26 * metresAPixel * Math.hypot(...sub(c.p, view.eye)));
+		return [
+			{ from: c.p, to: tip, colour: [1, 0.95, 0.55, 1], width: 2 },
+			{ from: c.p, to: c.p, colour: [0.08, 0.02, 0.05, 0.85], width: 8.5 },
+			{ from: c.p, to: c.p, colour: [1, 0.3, 0.2, 1], width: 6 },
+		];
+	});
+}

@@ -1,0 +1,186 @@
+// The viewer: a window of its own into the universe that obsim serves.
+import { Camera, control, moveByKey } from './camera.js';
+import { Drawing, boxSegments, contactSegments, edgeColour, halfBounds } from './drawing.js';
+import { Panel } from './panel.js';
+import { BOX, PLANE, SPHERE, Universe } from './universe.js';
+import { turned } from './motion.js';
+
+const THROWN = 12; // m/s
+const PICKED = [1, 0.7, 0.33, 1];
+const AGAIN = [0.5, 1, 2, 5]; // s: when to look for a lost server
+
+const canvas = document.querySelector('#picture');
+const token = new URLSearchParams(location.hash.slice(1)).get('token');
+const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
+const universe = new Universe(address), camera = new Camera(), panel = new Panel();
+let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0;
+
+// ---- what is seen
+
+function bodies() {
+	const out = [];
+	for (const o of universe.objects.values()) {
+		const pose = universe.pose(o);
+		if (pose)
+			out.push({ id: o.id, shape: o.shape, size: o.size, radius: o.radius, fixed: o.fixed, kind: o.motion.kind, shown: o.colour, ...pose });
+	}
+	return out;
+}
+
+function overlay(list, view) {
+	const out = panel.on.contacts ? contactSegments(universe.contacts, view, canvas.height) : [];
+	for (const b of list) {
+		if (b.shape !== PLANE && b.id === picked)
+			out.push(...boxSegments(b, PICKED, 2.5));
+		else if (b.shape !== PLANE && panel.on.boxes)
+			out.push(...boxSegments(b, edgeColour(b)));
+	}
+	return out;
+}
+
+let before = performance.now();
+function frame(now) {
+	const seconds = Math.min(0.25, (now - before) / 1000), scale = Math.min(2, devicePixelRatio || 1);
+	const width = Math.max(1, Math.round(canvas.clientWidth * scale)), height = Math.max(1, Math.round(canvas.clientHeight * scale));
+	before = now;
+	if (canvas.width !== width || canvas.height !== height)
+		[canvas.width, canvas.height] = [width, height];
+	universe.advance(seconds);
+	const list = bodies(), view = camera.view(width, height);
+	drawing.draw(list, view, look, overlay(list, view));
+	panel.clock(universe.time, universe.rate, universe.paused);
+	frames++;
+	requestAnimationFrame(frame);
+}
+
+// ---- what is pointed at
+
+// m along the ray to the body's surface, and its normal there; null: it passes by. Capsules and cylinders as their boxes.
+function hit(b, from, ray) {
+	const d = turned(b.q, [0, 1, 2].map((k) => from[k] - b.p[k]), -1), r = turned(b.q, ray, -1);
+	if (b.shape === PLANE) {
+		const s = -d[2] / r[2];
+		return d[2] > 0 && s > 0 ? { s, normal: turned(b.q, [0, 0, 1]) } : null;
+	}
+	if (b.shape === SPHERE) {
+		const half = d[0] * r[0] + d[1] * r[1] + d[2] * r[2], c = half * half - (d[0] ** 2 + d[1] ** 2 + d[2] ** 2 - b.size[0] ** 2);
+		const s = -half - Math.sqrt(c);
+		return c >= 0 && s > 0 ? { s, normal: turned(b.q, [0, 1, 2].map((k) => (d[k] + s * r[k]) / b.size[0])) } : null;
+	}
+	const h = b.shape === BOX ? b.size : halfBounds({ ...b, q: [1, 0, 0, 0] });
+	let enter = -Infinity, leave = Infinity, axis = 0;
+	for (let k = 0; k < 3; k++) {
+		const a = (-h[k] - d[k]) / r[k], c = (h[k] - d[k]) / r[k];
+		if (Math.min(a, c) > enter)
+			[enter, axis] = [Math.min(a, c), k];
+		leave = Math.min(leave, Math.max(a, c));
+	}
+	if (!(enter <= leave) || enter <= 0)
+		return null;
+	return { s: enter, normal: turned(b.q, [0, 1, 2].map((k) => (k === axis ? -Math.sign(r[k]) : 0))) };
+}
+
+function pointAt(x, y) {
+	const box = canvas.getBoundingClientRect(), from = camera.eye;
+	const ray = camera.ray(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height, box.width, box.height);
+	let best = null;
+	for (const b of bodies()) {
+		const at = hit(b, from, ray);
+		if (at && (!best || at.s < best.s))
+			best = { ...at, body: b };
+	}
+	return { ray, from, best, place: best && [0, 1, 2].map((k) => from[k] + best.s * ray[k]) };
+}
+
+function pick(id) {
+	picked = id;
+	if (id === null)
+		panel.details(null);
+	universe.send(id === null ? { do: 'inspect' } : { do: 'inspect', id });
+}
+
+function click(x, y) {
+	const { best, place } = pointAt(x, y);
+	if (panel.on.make) {
+		if (!best)
+			return panel.notice('click on the ground, or on an object');
+		const { command, over } = panel.wanted;
+		universe.send({ ...command, at: [place[0], place[1], place[2] + over] });
+	} else {
+		pick(best && best.body.shape !== PLANE ? best.body.id : null);
+	}
+	return undefined;
+}
+
+function throwOne() {
+	const { command } = panel.wanted, from = camera.eye, f = camera.forward;
+	const ahead = Math.max(...command.size) * 2 + 0.5;
+	universe.send({ ...command, at: [0, 1, 2].map((k) => from[k] + ahead * f[k]), velocity: f.map((x) => THROWN * x) });
+}
+
+// ---- what is asked
+
+panel.addEventListener('pause', () => universe.send({ do: universe.paused ? 'resume' : 'pause' }));
+panel.addEventListener('step', () => universe.send({ do: 'step' }));
+panel.addEventListener('rate', (e) => universe.send({ do: 'rate', rate: e.detail }));
+panel.addEventListener('contacts', (e) => universe.send({ do: 'contacts', on: e.detail }));
+panel.addEventListener('throw', throwOne);
+panel.addEventListener('deselect', () => pick(null));
+panel.addEventListener('remove', () => {
+	const o = universe.objects.get(picked);
+	if (o)
+		universe.send({ do: 'remove', id: o.id, generation: o.generation });
+});
+panel.addEventListener('view', () => {
+	shownCamera = (shownCamera + 1) % cameras.length;
+	camera.set(cameras[shownCamera]);
+	panel.notice(cameras[shownCamera].name || `viewpoint ${shownCamera + 1}`, 1.5);
+});
+
+document.addEventListener('keydown', (e) => {
+	if (e.ctrlKey || e.metaKey || e.target.closest('input, select') || (e.key === ' ' && e.target.closest('button')))
+		return;
+	if (panel.key(e.key) || moveByKey(camera, e.key))
+		e.preventDefault();
+});
+control(canvas, camera, click);
+
+// ---- what is told
+
+universe.addEventListener('welcome', (e) => {
+	look = e.detail;
+	cameras = look.cameras;
+	panel.welcome(look);
+	if (!camera.placed)
+		camera.set(cameras[0]);
+	camera.placed = true;
+	tries = 0;
+	panel.notice('');
+	if (panel.on.contacts)
+		universe.send({ do: 'contacts', on: true });
+});
+universe.addEventListener('statistics', (e) => panel.statistics(e.detail));
+universe.addEventListener('details', (e) => {
+	if (e.detail.id === picked)
+		panel.details(e.detail);
+});
+universe.addEventListener('error', (e) => panel.notice(e.detail));
+universe.addEventListener('close', (e) => {
+	const wait = AGAIN[Math.min(tries++, AGAIN.length - 1)];
+	panel.notice(`${e.detail || 'the server does not answer'}; trying again`, 0);
+	setTimeout(() => universe.connect(), 1000 * wait);
+});
+
+async function begin() {
+	drawing = new Drawing(canvas);
+	await drawing.load();
+	await new Promise((resolve) => {
+		universe.addEventListener('welcome', resolve, { once: true });
+		universe.connect();
+	});
+	requestAnimationFrame(frame);
+}
+
+// For tests and the console
+window.obsim = { universe, camera, panel, pick, frames: () => frames, drawing: () => drawing };
+begin().catch((error) => panel.notice(error.message, 0));

@@ -1,0 +1,122 @@
+// What stands round the picture: the clock, the tools, and all about the object that is picked. Knows nothing of drawing.
+
+const MATERIALS = { // kg/m3, friction, restitution, linear RGB
+	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08]], steel: [7800, 0.4, 0.3, [0.42, 0.44, 0.47]],
+	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11]], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83]],
+};
+const KEYS = { ' ': 'pause', '.': 'step', n: 'make', b: 'boxes', c: 'contacts', v: 'view', '?': 'help', t: 'throw', Delete: 'remove',
+	Escape: 'deselect' };
+
+const $ = (selector) => document.querySelector(selector);
+const number = (x, digits = 3) => (Math.abs(x) < 5e-4 ? '0' : Number(x.toPrecision(digits)).toString());
+const vector = (v) => v.map((x) => number(x)).join('  ');
+
+export class Panel extends EventTarget {
+	constructor() {
+		super();
+		this.on = { make: false, boxes: false, contacts: false, help: false };
+		document.addEventListener('click', (e) => {
+			const button = e.target.closest('[data-do]');
+			if (button)
+				this.ask(button.dataset.do);
+		});
+		$('#rate').addEventListener('change', (e) => this.tell('rate', Number(e.target.value)));
+		for (const input of document.querySelectorAll('#maker input')) {
+			const show = () => { input.nextElementSibling.value = `${Number(input.value)} m`; };
+			input.addEventListener('input', show);
+			show();
+		}
+	}
+
+	tell(name, detail) { this.dispatchEvent(new CustomEvent(name, { detail })); }
+
+	// true: the key was one of ours
+	key(key) {
+		const what = KEYS[key.length === 1 ? key.toLowerCase() : key];
+		if (what)
+			this.ask(what);
+		return what !== undefined;
+	}
+
+	ask(what) {
+		if (what in this.on) {
+			this.on[what] = !this.on[what];
+			$(`[data-do=${what}]`).setAttribute('aria-pressed', this.on[what]);
+			$('#maker').hidden = !this.on.make;
+			$('#help').hidden = !this.on.help;
+			$('#picture').classList.toggle('making', this.on.make);
+		}
+		this.tell(what, this.on[what]);
+	}
+
+	// What would be made now, but for where: { shape, size, mass, colour .. } of a command, and how high over the place.
+	get wanted() {
+		const value = (name) => $(`#maker [name=${name}]`).value;
+		const s = Number(value('size')), shape = value('shape');
+		const [density, friction, restitution, colour] = MATERIALS[value('material')];
+		const make = {
+			box: { size: [s / 2, s / 2, s / 2], volume: s ** 3, low: s / 2 },
+			sphere: { size: [s / 2, 0, 0], volume: Math.PI / 6 * s ** 3, low: s / 2 },
+			cylinder: { size: [s / 2, s / 2, 0], volume: Math.PI / 4 * s ** 3, low: s / 2 },
+			capsule: { size: [s / 4, s / 4, 0], volume: Math.PI * (s / 4) ** 2 * s / 2 + 4 / 3 * Math.PI * (s / 4) ** 3, low: s / 2 },
+		}[shape];
+		const shade = 0.85 + 0.3 * Math.random();
+		return {
+			command: { do: 'create', shape, size: make.size, mass: density * make.volume, friction, restitution,
+				colour: colour.map((c) => Math.min(1, c * shade)) },
+			over: Number(value('height')) + make.low,
+		};
+	}
+
+	welcome(w) {
+		$('#title').textContent = w.title;
+		document.title = `${w.title} – obsim`;
+		for (const what of ['pause', 'step', 'make', 'remove', 'throw'])
+			for (const button of document.querySelectorAll(`[data-do=${what}]`))
+				button.disabled = w.look_only;
+		$('#rate').disabled = w.look_only;
+	}
+
+	statistics(s) {
+		$('#statistics').textContent = `${s.objects} objects, ${s.awake} awake, ${s.islands} islands, ` +
+			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}`;
+	}
+
+	clock(time, rate, paused) {
+		$('#clock').value = `${time.toFixed(2)} s`;
+		$('#pause').textContent = paused ? '▶' : '❚❚';
+		const option = [...$('#rate').options].find((o) => Number(o.value) === (Number.isFinite(rate) ? Number(rate.toPrecision(6)) : 0));
+		if (option && document.activeElement !== $('#rate'))
+			$('#rate').value = option.value;
+	}
+
+	// null: nothing is picked
+	details(d) {
+		$('#details').hidden = !d;
+		if (!d)
+			return;
+		$('#details h2').textContent = d.gone ? `object ${d.id} has gone` : d.name || `object ${d.id}`;
+		const facts = d.gone ? [] : [['id', d.id], ['state', d.state]];
+		if (!d.gone && d.mass > 0)
+			facts.push(['mass', `${number(d.mass, 4)} kg`], ['friction', number(d.friction)], ['restitution', number(d.restitution)],
+				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`],
+				['island of', d.island], ['substeps', d.substeps]);
+		if (d.worker !== undefined)
+			facts.push(['simulator', `worker ${d.worker}, pid ${d.pid}`], ['CPU used', `${d.cpu_s.toFixed(2)} s`]);
+		$('#details dl').replaceChildren(...facts.flatMap(([name, value]) => {
+			const dt = document.createElement('dt'), dd = document.createElement('dd');
+			dt.textContent = name;
+			dd.textContent = value;
+			return [dt, dd];
+		}));
+	}
+
+	// For some seconds, or, with none, until the next
+	notice(text, seconds = 4) {
+		clearTimeout(this.fading);
+		$('#notice').textContent = text;
+		$('#notice').hidden = !text;
+		if (seconds)
+			this.fading = setTimeout(() => { $('#notice').hidden = true; }, 1000 * seconds);
+	}
+}

@@ -1,0 +1,197 @@
+// The viewer's copy of the universe: what the server has told of it (src/serve/feed.h), and the time at which to look.
+import { STANDS, TURNS, normalize, poseAt } from './motion.js';
+
+const DELAY = 0.05; // s of wall time by which it looks later than it is told, so that what is told next is there in time
+const PULL = 5; // 1/s: how fast its clock is drawn to the universe's
+const LOST = 0.5; // s: farther off, it is set
+const MOTIONS = 1, CONTACTS = 2, VOID = 1, PAUSED = 2; // of a message
+const STATIC = 1;
+const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
+const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
+const BLEND = 0.08; // s, simulated, in which what was foretold goes over to what came
+
+export const SPHERE = 1, BOX = 2, PLANE = 3, CAPSULE = 4, CYLINDER = 5;
+
+class Reader {
+	constructor(buffer) {
+		this.view = new DataView(buffer);
+		this.at = 0;
+	}
+	u8() { return this.view.getUint8(this.at++); }
+	u16() { return this.view.getUint16((this.at += 2) - 2, true); }
+	i16() { return this.view.getInt16((this.at += 2) - 2, true); }
+	u32() { return this.view.getUint32((this.at += 4) - 4, true); }
+	f32() { return this.view.getFloat32((this.at += 4) - 4, true); }
+	f64() { return this.view.getFloat64((this.at += 8) - 8, true); }
+	number() {
+		let value = 0, byte, shift = 0;
+		do {
+			byte = this.u8();
+			value += (byte & 127) * 2 ** shift;
+			shift += 7;
+		} while (byte & 128);
+		return value;
+	}
+	short3(unit) { return [this.i16() * unit, this.i16() * unit, this.i16() * unit]; }
+	vec3() { return [this.f32(), this.f32(), this.f32()]; }
+	text(bytes) {
+		this.at += bytes;
+		return new TextDecoder().decode(new Uint8Array(this.view.buffer, this.at - bytes, bytes));
+	}
+}
+
+export class Universe extends EventTarget {
+	constructor(url) {
+		super();
+		this.url = url;
+		this.objects = new Map();
+		this.contacts = [];
+		this.told = 0; // s: newest time that was told
+		this.toldAt = 0; // s of wall time, when
+		this.speed = 0; // simulated seconds a second, as they come
+		this.time = 0; // s: at which the viewer looks
+		this.rate = 1;
+		this.paused = false;
+		this.bytes = this.messages = 0;
+	}
+
+	connect() {
+		this.socket = new WebSocket(this.url, 'obsim');
+		this.socket.binaryType = 'arraybuffer';
+		this.socket.onmessage = (e) => this.hear(e.data);
+		this.socket.onopen = () => this.tell('open');
+		this.socket.onclose = (e) => this.tell('close', e.reason);
+	}
+
+	tell(name, detail) { this.dispatchEvent(new CustomEvent(name, { detail })); }
+
+	send(command) {
+		if (this.socket.readyState === WebSocket.OPEN)
+			this.socket.send(JSON.stringify(command));
+	}
+
+	hear(data) {
+		this.messages++;
+		this.bytes += data.byteLength ?? data.length;
+		if (typeof data === 'string') {
+			for (const [name, value] of Object.entries(JSON.parse(data)))
+				this.tell(name, value);
+			return;
+		}
+		const r = new Reader(data), kind = r.u8();
+		if (kind === MOTIONS)
+			this.hearMotions(r);
+		else if (kind === CONTACTS)
+			this.hearContacts(r);
+	}
+
+	hearMotions(r) {
+		const flags = r.u8();
+		r.u16();
+		this.rate = r.f32();
+		const time = r.f64(), removed = r.u32(), created = r.u32(), motions = r.u32();
+		this.paused = (flags & PAUSED) !== 0;
+		if (flags & VOID) {
+			this.objects.clear();
+			this.toldAt = 0; // what came before says nothing of how fast time passes
+			this.speed = Number.isFinite(this.rate) ? this.rate : 1;
+		}
+		for (let i = 0; i < removed; i++)
+			this.objects.delete(r.u32());
+		for (let i = 0; i < created; i++)
+			this.hearObject(r);
+		for (let i = 0, id = -1; i < motions; i++) {
+			id = (id + r.number()) % 2 ** 32;
+			this.hearMotion(r, id, time);
+		}
+		this.follow(time);
+		if ((flags & VOID) || removed || created)
+			this.tell('population');
+	}
+
+	hearObject(r) {
+		const id = r.u32(), generation = r.u32(), shape = r.u8(), fixed = (r.u8() & STATIC) !== 0, bytes = r.u8();
+		r.u8();
+		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), name = r.text(bytes);
+		this.objects.set(id, { id, generation, shape, fixed, size, inertia, colour, name, radius: radiusOf(shape, size) });
+	}
+
+	hearMotion(r, id, time) {
+		const flags = r.u8(), kind = flags & KIND, p = r.vec3(), q = [r.i16(), r.i16(), r.i16(), r.i16()], norm = Math.hypot(...q);
+		const m = { kind, t0: time, p, q: q.map((x) => x / norm), a: [0, 0, 0] };
+		if (flags & BEGUN)
+			m.t0 -= r.f32();
+		if (flags & ACCELERATED)
+			m.a = r.vec3();
+		if (flags & WIDE)
+			Object.assign(m, { v: r.vec3(), w: r.vec3() });
+		else if (kind !== STANDS)
+			Object.assign(m, { v: r.short3(V_UNIT), w: r.short3(W_UNIT) });
+		const body = this.objects.get(id);
+		if (!body)
+			return;
+		body.before = body.motion;
+		body.motion = m;
+	}
+
+	hearContacts(r) {
+		r.u8();
+		r.u16();
+		const n = r.u32();
+		r.f64();
+		this.contacts = Array.from({ length: n }, () => ({ p: r.vec3(), n: r.vec3(), impulse: r.f32() }));
+	}
+
+	// The clock follows what is told, however fast that goes.
+	follow(time) {
+		const now = performance.now() / 1000, since = now - this.toldAt;
+		if (since > 1e-4 && this.toldAt > 0) {
+			const share = Math.min(1, since * 4);
+			this.speed += share * ((time - this.told) / since - this.speed);
+		}
+		this.told = time;
+		this.toldAt = now;
+	}
+
+	// To be called once a frame: the time that it shows.
+	advance(seconds) {
+		const speed = this.paused ? 0 : this.speed;
+		const goal = this.told + speed * Math.min(performance.now() / 1000 - this.toldAt - DELAY, 0.25);
+		const off = goal - this.time;
+		if (Math.abs(off) > LOST * Math.max(1, speed))
+			this.time = goal;
+		else
+			this.time += speed * seconds + off * Math.min(1, PULL * seconds);
+		return this.time;
+	}
+
+	// Where a body is at that time; null: not told yet.
+	pose(body, t = this.time) {
+		const { motion: now, before } = body;
+		if (!now || !before)
+			return now ? poseAt(now, body.inertia, t) : null;
+		if (t < now.t0)
+			return poseAt(before, body.inertia, t);
+		const pose = poseAt(now, body.inertia, t), share = (t - now.t0) / BLEND;
+		// what flew may have flown into something: that is not shown
+		return share < 1 && before.kind === TURNS ? between(poseAt(before, body.inertia, t), pose, share) : pose;
+	}
+}
+
+function between(a, b, share) {
+	const sign = a.q[0] * b.q[0] + a.q[1] * b.q[1] + a.q[2] * b.q[2] + a.q[3] * b.q[3] < 0 ? -1 : 1;
+	return {
+		p: a.p.map((x, k) => x + share * (b.p[k] - x)),
+		q: normalize(a.q.map((x, k) => x * sign + share * (b.q[k] - x * sign))),
+	};
+}
+
+function radiusOf(shape, size) {
+	switch (shape) {
+	case SPHERE: return size[0];
+	case BOX: return Math.hypot(...size);
+	case CAPSULE: return size[0] + size[1];
+	case CYLINDER: return Math.hypot(size[0], size[1]);
+	default: return Infinity;
+	}
+}

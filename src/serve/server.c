@@ -1,0 +1,467 @@
+#include <arpa/inet.h>
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/interrupt.h"
+#include "serve/client.h"
+#include "serve/facts.h"
+#include "serve/feed.h"
+#include "serve/http.h"
+#include "serve/serve.h"
+
+static const double interval = 1. / 60; // s, between two looks at the universe
+static const double share = .3; // .. of the time at most that looking may take
+static const double detail_interval = .25; // s, between two of the statistics, and of what is inspected
+static const double commands_rate = 200, creations_rate = 40; // 1/s, of one client
+enum { SEND_BUFFER = 1 << 18 }; // bytes: what the kernel keeps for a client; more would only be old when it comes
+
+struct ob_server {
+	ob_server_config config;
+	ob_host *host;
+	ob_pace *pace;
+	char token[33], url[160];
+	int port; // that it was given
+
+	pthread_t thread;
+	pthread_mutex_t lock; // guards ending
+	bool ending;
+
+	struct lws_context *context; // and all below: the thread's own
+	lws_sorted_usec_list_t tick;
+	ob_feed *feed;
+	ob_client *clients;
+	uint32_t count;
+	double details_at; // s
+};
+
+// What the library keeps for a connection: half of it for pages, half for a viewer
+typedef struct session {
+	ob_http_answer answer;
+	ob_client client;
+} session;
+
+// ---- telling
+
+static void send_to(ob_client *c, ob_message *m)
+{
+	if (c->queue.count == 0)
+		c->taken_at = ob_clock_wall();
+	if (!c->behind && !ob_client_queue_put(&c->queue, m))
+		c->behind = true;
+	lws_callback_on_writable(c->wsi);
+}
+
+// Lets go of a message that was made for sending.
+static void send_all(ob_server *s, ob_message *m, bool contacts)
+{
+	for (ob_client *c = m ? s->clients : NULL; c; c = c->next) {
+		if (!contacts || c->contacts)
+			send_to(c, m);
+	}
+	ob_message_release(m);
+}
+
+static void send_one(ob_client *c, ob_message *m)
+{
+	if (m && !m->failed)
+		send_to(c, m);
+	ob_message_release(m);
+}
+
+static void tell_error(ob_client *c, const char *text)
+{
+	ob_message *m = ob_message_new(true);
+	if (!m)
+		return;
+	ob_message_print(m, "{\"error\":");
+	ob_message_put_json(m, text);
+	ob_message_print(m, "}");
+	send_one(c, m);
+}
+
+static void look(lws_sorted_usec_list_t *tick)
+{
+	ob_server *s = lws_container_of(tick, ob_server, tick);
+	double begin = ob_clock_wall();
+	ob_pace_state pace = ob_pace_get(s->pace);
+	bool details = begin >= s->details_at;
+	bool contacts = false;
+	if (s->clients)
+		send_all(s, ob_feed_next(s->feed, &pace), false);
+	for (ob_client *c = s->clients; c; c = c->next) {
+		contacts |= c->contacts;
+		if (c->queue.count == 0)
+			c->taken_at = begin;
+		else if (begin - c->taken_at > OB_SERVER_STUCK)
+			lws_set_timeout(c->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
+		if (details && c->inspected != UINT32_MAX)
+			send_one(c, ob_facts_details(s->host, c->inspected));
+	}
+	if (contacts)
+		send_all(s, ob_feed_contacts(s->feed), true);
+	if (details && s->clients) {
+		send_all(s, ob_facts_statistics(s->host, s->count), false);
+		s->details_at = begin + detail_interval;
+	}
+	double wait = fmax(interval, (ob_clock_wall() - begin) / share);
+	lws_sul_schedule(s->context, 0, &s->tick, look, (lws_usec_t)(1e6 * wait));
+}
+
+// ---- listening
+
+static bool may(ob_server *s, ob_client *c)
+{
+	if (s->config.look_only)
+		tell_error(c, "viewers of this universe may only look");
+	return !s->config.look_only;
+}
+
+static void create(ob_server *s, ob_client *c, const ob_object_def *def)
+{
+	ob_error e;
+	if (!ob_allowance_take(&c->creations, ob_clock_wall(), creations_rate))
+		tell_error(c, "too many objects in a second: try again");
+	else if (ob_roster_copy(ob_host_roster(s->host), NULL, 0) >= ob_universe_capacity(ob_host_universe(s->host)))
+		tell_error(c, "the universe is full: remove something first");
+	else if (!ob_host_request_add(s->host, def, &e))
+		tell_error(c, e.text);
+}
+
+static void carry_out(ob_server *s, ob_client *c, const ob_command *asked)
+{
+	switch (asked->kind) {
+	case OB_DO_CONTACTS:
+		c->contacts = asked->on;
+		return;
+	case OB_DO_INSPECT:
+		c->inspected = asked->id;
+		if (asked->id != UINT32_MAX)
+			send_one(c, ob_facts_details(s->host, asked->id));
+		return;
+	default:
+		break;
+	}
+	if (!may(s, c))
+		return;
+	switch (asked->kind) {
+	case OB_DO_CREATE:
+		create(s, c, &asked->def);
+		break;
+	case OB_DO_REMOVE:
+		ob_host_request_remove(s->host, asked->id, asked->generation);
+		break;
+	case OB_DO_PAUSE:
+	case OB_DO_RESUME:
+		ob_pace_set_paused(s->pace, asked->kind == OB_DO_PAUSE);
+		break;
+	case OB_DO_STEP:
+		ob_pace_allow(s->pace, asked->steps);
+		break;
+	case OB_DO_RATE:
+		ob_pace_set_rate(s->pace, asked->rate > 0 ? asked->rate : OB_PACE_MAX);
+		break;
+	default:
+		break;
+	}
+}
+
+static int refuse_client(ob_client *c, enum lws_close_status status, const char *why)
+{
+	unsigned char text[124];
+	size_t n = strnlen(why, sizeof text - 1);
+	memcpy(text, why, n);
+	lws_close_reason(c->wsi, status, text, n);
+	return -1;
+}
+
+static int hear(ob_server *s, ob_client *c, const char *bytes, size_t size)
+{
+	ob_command asked;
+	ob_error e;
+	if (lws_frame_is_binary(c->wsi))
+		return refuse_client(c, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "commands are text");
+	if (c->command_size + size > OB_COMMAND_BYTES_MAX)
+		return refuse_client(c, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "commands are short");
+	memcpy(c->command + c->command_size, bytes, size);
+	c->command_size += size;
+	if (!lws_is_final_fragment(c->wsi) || lws_remaining_packet_payload(c->wsi) > 0)
+		return 0;
+	size = c->command_size;
+	c->command_size = 0;
+	if (!ob_allowance_take(&c->commands, ob_clock_wall(), commands_rate))
+		return refuse_client(c, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many commands in a second");
+	c->command[size] = 0;
+	if (ob_command_read(&asked, c->command, size, &e))
+		carry_out(s, c, &asked);
+	else
+		tell_error(c, e.text);
+	return 0;
+}
+
+// ---- coming and going
+
+static bool has_token(const ob_server *s, struct lws *wsi)
+{
+	char text[64];
+	unsigned differ = 0;
+	if (s->config.listen.loopback)
+		return true;
+	const char *value = lws_get_urlarg_by_name(wsi, "token=", text, sizeof text);
+	if (!value || strlen(value) != strlen(s->token))
+		return false;
+	for (size_t i = 0; s->token[i]; i++) // takes as long wherever they differ
+		differ |= (unsigned)(s->token[i] ^ value[i]);
+	return differ == 0;
+}
+
+// Before the handshake is answered. Other than 0: it is refused, and why has been said.
+static int let_in(const ob_server *s, struct lws *wsi)
+{
+	const char *why = NULL;
+	unsigned status = HTTP_STATUS_FORBIDDEN;
+	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback)) {
+		why = "only pages of this server may look at this universe";
+	} else if (!has_token(s, wsi)) {
+		why = "the token is missing or wrong: use the address that obsim serve has printed";
+	} else if (s->count >= s->config.viewers) {
+		why = "there are as many viewers as this server lets in (--viewers)";
+		status = HTTP_STATUS_SERVICE_UNAVAILABLE;
+	}
+	if (why)
+		lws_return_http_status(wsi, status, why);
+	return why != NULL;
+}
+
+static void enter(ob_server *s, ob_client *c, struct lws *wsi)
+{
+	int bytes = SEND_BUFFER;
+	ob_pace_state pace = ob_pace_get(s->pace);
+	double now = ob_clock_wall();
+	*c = (ob_client){ .wsi = wsi,
+			  .next = s->clients,
+			  .taken_at = now,
+			  .inspected = UINT32_MAX,
+			  .commands = { commands_rate, now },
+			  .creations = { creations_rate, now } };
+	s->clients = c;
+	s->count++;
+	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+	send_one(c, ob_facts_welcome(&s->config, s->host));
+	send_one(c, ob_feed_whole(s->feed, &pace));
+	send_one(c, ob_facts_statistics(s->host, s->count));
+}
+
+static void leave(ob_server *s, ob_client *c)
+{
+	for (ob_client **at = &s->clients; *at; at = &(*at)->next) {
+		if (*at == c) {
+			*at = c->next;
+			s->count--;
+			break;
+		}
+	}
+	ob_client_queue_clear(&c->queue);
+}
+
+static int write_some(ob_server *s, ob_client *c)
+{
+	unsigned before = c->queue.count;
+	size_t sent = c->queue.sent;
+	if (!ob_client_write(c))
+		return -1;
+	if (c->queue.count != before || c->queue.sent != sent)
+		c->taken_at = ob_clock_wall();
+	if (c->behind && c->queue.count == 0) {
+		ob_pace_state pace = ob_pace_get(s->pace);
+		c->behind = false;
+		send_one(c, ob_feed_whole(s->feed, &pace));
+	}
+	return 0;
+}
+
+static bool is_ending(ob_server *s)
+{
+	pthread_mutex_lock(&s->lock);
+	bool ending = s->ending;
+	pthread_mutex_unlock(&s->lock);
+	return ending;
+}
+
+static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t size)
+{
+	ob_server *s = lws_context_user(lws_get_context(wsi));
+	session *now = user;
+	switch (reason) {
+	case LWS_CALLBACK_HTTP:
+		if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback)) {
+			lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, "this is not the name of this server");
+			return -1;
+		}
+		return ob_http_answer_request(wsi, &now->answer, in);
+	case LWS_CALLBACK_HTTP_WRITEABLE:
+		return ob_http_go_on(wsi, &now->answer);
+	case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+		return let_in(s, wsi);
+	case LWS_CALLBACK_ESTABLISHED:
+		enter(s, &now->client, wsi);
+		return 0;
+	case LWS_CALLBACK_RECEIVE:
+		return hear(s, &now->client, in, size);
+	case LWS_CALLBACK_SERVER_WRITEABLE:
+		return write_some(s, &now->client);
+	case LWS_CALLBACK_CLOSED:
+		leave(s, &now->client);
+		return 0;
+	default:
+		return lws_callback_http_dummy(wsi, reason, user, in, size);
+	}
+}
+
+// ---- start and end
+
+static const struct lws_protocols protocols[] = {
+	{ .name = "obsim",
+	  .callback = on_event,
+	  .per_session_data_size = sizeof(session),
+	  .rx_buffer_size = OB_COMMAND_BYTES_MAX },
+	{ .name = NULL },
+};
+static const lws_retry_bo_t patience = { .secs_since_valid_ping = 20, .secs_since_valid_hangup = 40 };
+
+static void *serve(void *argument)
+{
+	ob_server *s = argument;
+	while (!is_ending(s) && lws_service(s->context, 0) >= 0)
+		;
+	return NULL;
+}
+
+// The library's last complaint while a server starts
+static __thread char complaint[200];
+
+static void note_complaint(int level, const char *line)
+{
+	const char *text = strstr(line, ": ");
+	(void)level;
+	snprintf(complaint, sizeof complaint, "%s", text ? text + 2 : line);
+	complaint[strcspn(complaint, "\n")] = 0;
+}
+
+static bool make_token(ob_server *s, ob_error *e)
+{
+	unsigned char random[16];
+	if (s->config.listen.loopback)
+		return true;
+	if (getrandom(random, sizeof random, 0) != sizeof random)
+		return ob_fail(e, "no random numbers for a token: %s", strerror(errno));
+	for (size_t i = 0; i < sizeof random; i++)
+		snprintf(s->token + 2 * i, 3, "%02x", random[i]);
+	return true;
+}
+
+// Asked before the library is, which tells less of why not, and leaks.
+static bool is_free(const ob_listen *l, ob_error *e)
+{
+	struct sockaddr_in four = { .sin_family = AF_INET, .sin_port = htons((uint16_t)l->port) };
+	struct sockaddr_in6 six = { .sin6_family = AF_INET6, .sin6_port = htons((uint16_t)l->port) };
+	inet_pton(AF_INET, l->address, &four.sin_addr);
+	inet_pton(AF_INET6, l->address, &six.sin6_addr);
+	int fd = socket(l->six ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), one = 1;
+	bool bound = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one) == 0 &&
+		     bind(fd, l->six ? (struct sockaddr *)&six : (struct sockaddr *)&four,
+			  l->six ? sizeof six : sizeof four) == 0;
+	int error = errno;
+	if (fd >= 0)
+		close(fd);
+	return bound ||
+	       ob_fail(e, "--listen %s:%d: %s (port 0 is one that is free)", l->address, l->port, strerror(error));
+}
+
+static bool open_context(ob_server *s, ob_error *e)
+{
+	const ob_listen *listen = &s->config.listen;
+	if (!is_free(listen, e))
+		return false;
+	lws_set_log_level(LLL_ERR | LLL_WARN, note_complaint);
+	struct lws_context_creation_info info = {
+		.port = listen->port,
+		.iface = s->config.listen.address,
+		.protocols = protocols,
+		.user = s,
+		.gid = (gid_t)-1,
+		.uid = (uid_t)-1,
+		.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
+			   (listen->six ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
+		.fd_limit_per_thread = s->config.viewers + 64,
+		.timeout_secs = 20,
+		.keepalive_timeout = 20,
+		.retry_and_idle_policy = &patience,
+		.vhost_name = "obsim",
+	};
+	s->context = lws_create_context(&info);
+	struct lws_vhost *host = s->context ? lws_get_vhost_by_name(s->context, "obsim") : NULL;
+	if (!host)
+		return ob_fail(e, "--listen %s:%d: %s", listen->address, listen->port,
+			       *complaint ? complaint : "the server cannot listen there");
+	s->port = lws_get_vhost_listen_port(host);
+	snprintf(s->url, sizeof s->url, listen->six ? "http://[%s]:%d/%s%s" : "http://%s:%d/%s%s",
+		 s->config.listen.address, s->port, s->config.listen.loopback ? "" : "#token=", s->token);
+	return true;
+}
+
+ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
+{
+	ob_server *s = calloc(1, sizeof *s);
+	sigset_t before;
+	if (!s) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
+	s->config = *c;
+	s->host = h;
+	s->pace = pace;
+	pthread_mutex_init(&s->lock, NULL);
+	s->feed = ob_feed_create(ob_host_universe(h), ob_host_roster(h));
+	bool ready = make_token(s, e) && open_context(s, e) && (s->feed || ob_fail(e, "out of memory"));
+	if (ready) {
+		lws_sul_schedule(s->context, 0, &s->tick, look, 1);
+		ob_interrupt_leave_to_main(&before);
+		int failure = pthread_create(&s->thread, NULL, serve, s);
+		pthread_sigmask(SIG_SETMASK, &before, NULL);
+		if (failure == 0)
+			return s;
+		ob_fail(e, "the server's thread cannot be started: %s", strerror(failure));
+	}
+	if (s->context)
+		lws_context_destroy(s->context);
+	ob_feed_destroy(s->feed);
+	pthread_mutex_destroy(&s->lock);
+	free(s);
+	return NULL;
+}
+
+const char *ob_server_url(const ob_server *s)
+{
+	return s->url;
+}
+
+void ob_server_stop(ob_server *s)
+{
+	if (!s)
+		return;
+	pthread_mutex_lock(&s->lock);
+	s->ending = true;
+	pthread_mutex_unlock(&s->lock);
+	lws_cancel_service(s->context);
+	pthread_join(s->thread, NULL);
+	lws_context_destroy(s->context);
+	ob_feed_destroy(s->feed);
+	pthread_mutex_destroy(&s->lock);
+	free(s);
+}

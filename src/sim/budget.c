@@ -1,0 +1,41 @@
+#include "sim/budget.h"
+
+#include "table/outbox.h"
+
+enum { GRAIN = 1 << 12 };
+
+// For whatever is small and hard, and for each object of a large scene.
+static const uint64_t base = UINT64_C(1) << 27, per_object = 1 << 15;
+
+static uint64_t work_so_far(const ob_sim *s)
+{
+	return s->budget.noted + s->counters.pair_solves;
+}
+
+void ob_budget_begin_share(ob_sim *s, uint32_t object)
+{
+	s->budget.object = object;
+	s->budget.told = work_so_far(s);
+}
+
+bool ob_budget_add(ob_universe *u, uint64_t work, uint32_t object)
+{
+	if (ob_step_work_add(u, work) <= base + per_object * ob_universe_ids(u))
+		return false;
+	ob_step_fail(u, OB_STEP_OVERWORKED, object);
+	return true;
+}
+
+bool ob_budget_spent(ob_sim *s)
+{
+	const uint64_t work = (work_so_far(s) - s->budget.told) / GRAIN * GRAIN;
+	if (work == 0 || s->budget.spent)
+		return s->budget.spent;
+	s->budget.told += work;
+	if (ob_universe_contained(s->u))
+		ob_outbox_end_of(s->u)->worked_on = s->budget.object;
+	if (ob_gate_stopped(s->u))
+		ob_step_fail(s->u, OB_STEP_LEFT, s->budget.object);
+	ob_budget_add(s->u, work, s->budget.object);
+	return s->budget.spent = ob_step_failed(s->u, NULL) != OB_STEP_OK;
+}

@@ -1,0 +1,465 @@
+#include "sim/commit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/budget.h"
+
+enum { NONE = UINT32_MAX };
+
+typedef enum record_kind {
+	END = OB_OUTBOX_END,
+	RESULT,
+	BOUNDS,
+	EFFORT,
+	CONTACT,
+	CHECK,
+	NEIGHBOURS,
+} record_kind;
+
+typedef struct bounds_record {
+	uint32_t id, reserved;
+	float box[6];
+} bounds_record;
+
+typedef struct effort_record {
+	uint32_t island, share;
+} effort_record;
+
+typedef struct check_record {
+	uint32_t pair;
+	uint8_t expected, late, reserved[2];
+	uint32_t clear_until, clear_as_of;
+	double limit;
+} check_record;
+
+// A part of an object's neighbours: "count" of "total", from "first" on.
+typedef struct neighbours_record {
+	uint32_t id, total, first, count;
+	uint32_t of[];
+} neighbours_record;
+
+enum { NEIGHBOURS_AT_ONCE = 512, MOST_EFFORT = 1 << 16 };
+
+// ---- in place
+
+bool ob_is_left_in_result(const ob_universe *u, uint32_t id)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	return ob_universe_settings(u)->one_per_object && !ob_universe_contains(u) &&
+	       data->member[data->island[data->result_island[id]].first_member] != id;
+}
+
+static void write_result(ob_universe *u, const ob_found_result *r)
+{
+	const ob_motion *m = &r->motion;
+	ob_step_data *data = ob_universe_step_data(u);
+	data->schedule[r->id] = (ob_schedule){ m->path, m->reach, r->state, m->step, r->due };
+	if (ob_is_left_in_result(u, r->id))
+		data->result[r->id] = *m;
+	else
+		ob_stage_motion(u, r->id, m);
+}
+
+static void write_bounds(ob_universe *u, uint32_t id, const float box[6])
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	memcpy(data->bounds[id], box, sizeof data->bounds[id]);
+	if (data->neighbours[id].count != UINT32_MAX) { // none is pending
+		data->neighbours[id].count = UINT32_MAX;
+		ob_requery_append(u, id);
+	}
+}
+
+static void write_effort(ob_universe *u, uint32_t island, uint32_t share)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_island *is = &data->island[island];
+	for (uint32_t i = 0; i < is->members; i++)
+		data->effort[data->member[is->first_member + i]] = share;
+}
+
+static void write_contact(ob_universe *u, const ob_found_contact *c)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_key *k = &data->pair[c->pair];
+	k->limit = c->limit;
+	k->active = c->active;
+	if (!c->kept)
+		return;
+	if (k->record == OB_NO_RECORD)
+		k->record = ob_record_take(u);
+	if (k->record == OB_NO_RECORD) // no memory, and the step has failed
+		return;
+	ob_pair_record *record = &data->record[k->record];
+	ob_pair_state *p = ob_pair_write(record, ob_step_count(u));
+	*p = c->state;
+	if (c->two_sided)
+		memcpy(data->impulse_b[k->record][p - record->version], c->impulse_b, sizeof c->impulse_b);
+}
+
+static void write_check(ob_universe *u, const check_record *c)
+{
+	ob_pair_key *k = &ob_universe_step_data(u)->pair[c->pair];
+	k->expected = c->expected;
+	k->late = c->late;
+	k->limit = c->limit;
+	k->clear_until = c->clear_until;
+	k->clear_as_of = c->clear_as_of;
+}
+
+// The object's range in the arena; NONE: it is full, and the step has failed.
+static uint32_t reserve_neighbours(ob_universe *u, uint32_t id, uint32_t total)
+{
+	const uint32_t offset = ob_neighbours_reserve(u, id, total);
+	ob_universe_step_data(u)->neighbours[id] =
+		(struct ob_neighbours){ offset == NONE ? 0 : offset, offset == NONE ? 0 : total };
+	return offset;
+}
+
+// ---- by whoever has found it
+
+void ob_commit_result(ob_sim *s, const ob_found_result *r)
+{
+	if (ob_universe_contained(s->u))
+		ob_outbox_put(s->u, RESULT, r, sizeof *r, NULL, 0);
+	else
+		write_result(s->u, r);
+}
+
+void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6])
+{
+	if (!ob_universe_contained(u)) {
+		write_bounds(u, id, box);
+		return;
+	}
+	bounds_record r = { .id = id };
+	memcpy(r.box, box, sizeof r.box);
+	ob_outbox_put(u, BOUNDS, &r, sizeof r, NULL, 0);
+}
+
+void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share)
+{
+	const effort_record r = { island,
+				  share < MOST_EFFORT ? share : MOST_EFFORT }; // so that sums stay within bounds
+	if (ob_universe_contained(s->u))
+		ob_outbox_put(s->u, EFFORT, &r, sizeof r, NULL, 0);
+	else
+		write_effort(s->u, island, r.share);
+}
+
+void ob_commit_contact(ob_sim *s, const ob_found_contact *c)
+{
+	if (ob_universe_contained(s->u))
+		ob_outbox_put(s->u, CONTACT, c, sizeof *c, NULL, 0);
+	else
+		write_contact(s->u, c);
+}
+
+void ob_commit_check(ob_universe *u, uint32_t pair, const ob_pair_key *k)
+{
+	const check_record r = { .pair = pair,
+				 .expected = k->expected,
+				 .late = k->late,
+				 .clear_until = k->clear_until,
+				 .clear_as_of = k->clear_as_of,
+				 .limit = k->limit };
+	if (ob_universe_contained(u))
+		ob_outbox_put(u, CHECK, &r, sizeof r, NULL, 0);
+	else
+		write_check(u, &r);
+}
+
+void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint32_t count)
+{
+	if (!ob_universe_contained(u)) {
+		const uint32_t offset = reserve_neighbours(u, id, count);
+		if (offset != NONE && count)
+			memcpy(ob_universe_step_data(u)->neighbour_id + offset, ids, count * sizeof *ids);
+		return;
+	}
+	uint32_t first = 0, part[NEIGHBOURS_AT_ONCE];
+	do {
+		const uint32_t left = count - first, n = left < NEIGHBOURS_AT_ONCE ? left : NEIGHBOURS_AT_ONCE;
+		const neighbours_record r = { id, count, first, n };
+		memset(part, 0, sizeof part);
+		for (uint32_t i = 0; i < n; i++)
+			part[i] = ids[first + i];
+		ob_outbox_put(u, NEIGHBOURS, &r, sizeof r, part, (n + 1) / 2 * sizeof(uint64_t));
+		first += n;
+	} while (first < count);
+}
+
+// ---- by the arranger
+
+struct ob_committer {
+	ob_mail mail;
+	uint32_t *island_owner; // [island]
+	uint32_t *query_owner; // [object]; NONE = no query was given away
+	uint32_t *had; // [object]: results, or neighbours, that have come
+	uint32_t solved; // islands before this one are solved in this phase
+	uint32_t due; // results, or queries, that are still missing
+};
+
+ob_committer *ob_committer_create(const ob_universe *u)
+{
+	const uint32_t objects = ob_universe_capacity(u);
+	ob_committer *c = calloc(1, sizeof *c);
+	if (!c)
+		return NULL;
+	c->island_owner = calloc(objects, sizeof *c->island_owner);
+	c->query_owner = calloc(objects, sizeof *c->query_owner);
+	c->had = calloc(objects, sizeof *c->had);
+	if (c->island_owner && c->query_owner && c->had)
+		return c;
+	ob_committer_destroy(c);
+	return NULL;
+}
+
+void ob_committer_destroy(ob_committer *c)
+{
+	if (!c)
+		return;
+	ob_mail_finish(&c->mail);
+	free(c->island_owner);
+	free(c->query_owner);
+	free(c->had);
+	free(c);
+}
+
+// Whose task it is in the running phase.
+static uint32_t owner_of_task(const ob_universe *u, uint32_t task)
+{
+	return ob_task_owner(task, ob_task_workers(u));
+}
+
+static void give_islands(ob_committer *c, const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const bool own = ob_universe_settings(u)->one_per_object;
+	c->solved = data->chunk[data->count->chunks];
+	for (uint32_t chunk = 0; chunk < data->count->chunks; chunk++)
+		for (uint32_t i = data->chunk[chunk]; i < data->chunk[chunk + 1]; i++) {
+			c->island_owner[i] = own ? data->member[data->island[i].first_member] : owner_of_task(u, chunk);
+			c->due += data->island[i].members;
+		}
+}
+
+static void give_queries(ob_committer *c, const ob_universe *u)
+{
+	const bool own = ob_universe_settings(u)->one_per_object;
+	const uint32_t *list = ob_requery_list(u, &c->due);
+	memset(c->query_owner, 0xff, ob_universe_ids(u) * sizeof *c->query_owner); // NONE
+	for (uint32_t i = 0; i < c->due; i++)
+		c->query_owner[list[i]] = own ? list[i] : owner_of_task(u, i);
+}
+
+static bool finite3(ob_vec3 v)
+{
+	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static bool is_sound(const ob_motion *m, const ob_universe *u)
+{
+	const double norm = m->q.w * m->q.w + m->q.x * m->q.x + m->q.y * m->q.y + m->q.z * m->q.z;
+	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
+	       finite3(m->a) && norm > .9 && norm < 1.1 && isfinite(m->path) && m->reach >= 0 && isfinite(m->reach) &&
+	       m->rest_time >= 0 && isfinite(m->rest_time) && m->step == ob_step_count(u) + 1 &&
+	       m->island < ob_universe_ids(u) && m->flags < OB_MOTION_EQUILIBRIUM << 1;
+}
+
+// The island that this simulator was given; NONE: it is none of those.
+static bool owns_island(const ob_committer *c, uint32_t worker, uint32_t island)
+{
+	return island < c->solved && c->island_owner[island] == worker;
+}
+
+static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const ob_found_result *r = from->data;
+	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) ||
+	    !owns_island(c, from->worker, ob_universe_step_data(u)->result_island[r->id]) || c->had[r->id]++)
+		return "has solved what it was not given";
+	if (!is_sound(&r->motion, u) || r->state < OB_SCHEDULE_AWAKE || r->state > OB_SCHEDULE_EQUILIBRIUM)
+		return "has found a motion that makes no sense";
+	c->due--;
+	write_result(u, r);
+	return NULL;
+}
+
+static const char *commit_bounds(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const bounds_record *r = from->data;
+	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) ||
+	    !owns_island(c, from->worker, ob_universe_step_data(u)->result_island[r->id]))
+		return "has moved what it was not given";
+	for (int i = 0; i < 3; i++)
+		if (!(r->box[i] <= r->box[3 + i]) || isinf(r->box[i]) || isinf(r->box[3 + i]))
+			return "has found bounds that make no sense";
+	write_bounds(u, r->id, r->box);
+	return NULL;
+}
+
+static const char *commit_effort(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const effort_record *r = from->data;
+	if (from->bytes != sizeof *r || !owns_island(c, from->worker, r->island) || r->share > MOST_EFFORT)
+		return "has counted what it was not given";
+	write_effort(u, r->island, r->share);
+	return NULL;
+}
+
+static bool is_sound_contact(const ob_found_contact *c)
+{
+	const ob_pair_state *p = &c->state;
+	bool sound = !isnan(c->limit) && c->active <= 1 && c->kept <= 1 && c->two_sided <= 1;
+	if (!c->kept || !sound)
+		return sound;
+	double sum = p->substep + p->disc_radius + p->creep + p->normal.x + p->normal.y + p->normal.z + p->between.x +
+		     p->between.y + p->between.z;
+	for (int i = 0; i < OB_PAIR_ROWS; i++)
+		sum += p->impulse[i] + c->impulse_b[i];
+	for (int i = 0; i < OB_PAIR_POINTS; i++)
+		sum += p->arm_a[i].x + p->arm_a[i].y + p->arm_a[i].z + p->gap[i];
+	return isfinite(sum) && p->points <= OB_PAIR_POINTS && p->substep > 0;
+}
+
+static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const ob_found_contact *r = from->data;
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (from->bytes != sizeof *r || r->pair >= ob_pairs_count(data))
+		return "has found a contact that does not exist";
+	const ob_pair_key *k = &data->pair[r->pair];
+	const uint32_t island =
+		data->result_island[k->a] != NONE ? data->result_island[k->a] : data->result_island[k->b];
+	if (!k->in_island || !owns_island(c, from->worker, island))
+		return "has found a contact of bodies that it was not given";
+	if (!is_sound_contact(r))
+		return "has found a contact that makes no sense";
+	write_contact(u, r);
+	return NULL;
+}
+
+static const char *commit_check(ob_universe *u, const ob_mail_record *from)
+{
+	const check_record *r = from->data;
+	if (from->bytes != sizeof *r || r->pair >= ob_pairs_count(ob_universe_step_data(u)) ||
+	    owner_of_task(u, r->pair / OB_LATE_CONTACTS_BATCH) != from->worker)
+		return "has checked what it was not given";
+	if (isnan(r->limit) || r->expected > 1 || r->late > 1)
+		return "has found about a pair what makes no sense";
+	write_check(u, r);
+	return NULL;
+}
+
+// Parts come one after the other, from the first on.
+static const char *commit_neighbours(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	static const char *const wrong = "has found neighbours that make no sense";
+	const neighbours_record *r = from->data;
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	if (from->bytes < sizeof *r || r->id >= ids || c->query_owner[r->id] != from->worker)
+		return "has looked for neighbours of what it was not given";
+	if (r->count > NEIGHBOURS_AT_ONCE || from->bytes != sizeof *r + (r->count + 1) / 2 * sizeof(uint64_t) ||
+	    r->first != c->had[r->id] || r->total > ids || r->count > r->total - r->first || (!r->count && r->total))
+		return wrong;
+	for (uint32_t i = 0; i < r->count; i++)
+		if (r->of[i] >= ids)
+			return wrong;
+	if (r->first == 0 && reserve_neighbours(u, r->id, r->total) == NONE)
+		return NULL;
+	if (r->count)
+		memcpy(data->neighbour_id + data->neighbours[r->id].offset + r->first, r->of, r->count * sizeof *r->of);
+	c->had[r->id] += r->count;
+	if (c->had[r->id] == r->total)
+		c->due--, c->query_owner[r->id] = NONE;
+	return NULL;
+}
+
+static const char *commit_end(ob_universe *u, const ob_mail_record *from)
+{
+	const ob_outbox_end *end = from->data;
+	ob_worker_set_objects(u, from->worker, end->objects);
+	ob_late_contacts_note(u, end->late, end->next_check);
+	ob_phase_worked(u, end->worked_ns);
+	*ob_worker_counters(u, from->worker) = end->counters;
+	return NULL;
+}
+
+// NULL, or what is wrong with the record. Which kinds a phase brings follows from what was given away in it.
+static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase, const ob_mail_record *r)
+{
+	const bool islands = phase == OB_PHASE_ISLANDS,
+		   pairs = phase == OB_PHASE_FORECAST || phase == OB_PHASE_LATE_CONTACTS,
+		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
+	switch (r->kind) {
+	case END:
+		return commit_end(u, r);
+	case RESULT:
+		return islands ? commit_result(c, u, r) : "has solved what was not to be solved";
+	case BOUNDS:
+		return islands ? commit_bounds(c, u, r) : "has moved what was not to be moved";
+	case EFFORT:
+		return islands ? commit_effort(c, u, r) : "has counted what was not to be counted";
+	case CONTACT:
+		return islands ? commit_contact(c, u, r) : "has found a contact out of turn";
+	case CHECK:
+		return pairs ? commit_check(u, r) : "has checked a pair out of turn";
+	case NEIGHBOURS:
+		return boxes ? commit_neighbours(c, u, r) : "has found neighbours out of turn";
+	default:
+		return "has handed over what is unknown";
+	}
+}
+
+// A simulator that fails says so in its last record: then what it has found is no longer a number, and not looked at.
+static bool fails(ob_committer *c, ob_universe *u)
+{
+	ob_mail all = c->mail;
+	ob_mail_record r;
+	while (ob_mail_next(u, &all, &r)) {
+		const ob_outbox_end *end = r.data;
+		if (r.kind != END)
+			continue;
+		const uint32_t why = (uint32_t)end->failure, object = (uint32_t)(end->failure >> 32);
+		if (r.bytes != sizeof *end || why >= OB_STEP_DAMAGED || object >= ob_universe_capacity(u) ||
+		    end->worked_on >= ob_universe_capacity(u))
+			ob_step_blame(u, r.worker, "has ended in a way that is unknown");
+		else if (why)
+			ob_step_fail(u, why, object);
+		else
+			ob_budget_add(u, end->work, end->worked_on);
+	}
+	return ob_step_failed(u, NULL) != OB_STEP_OK;
+}
+
+bool ob_commit_phase(ob_committer *c, ob_universe *u, ob_phase phase)
+{
+	const bool islands = phase == OB_PHASE_ISLANDS,
+		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
+	ob_mail_record r = { 0 };
+	c->due = c->solved = 0;
+	if (islands)
+		give_islands(c, u);
+	if (boxes)
+		give_queries(c, u);
+	if (islands || boxes)
+		memset(c->had, 0, ob_universe_ids(u) * sizeof *c->had);
+	if (!ob_mail_collect(u, &c->mail))
+		return false;
+	if (fails(c, u))
+		return true;
+	while (ob_mail_next(u, &c->mail, &r)) {
+		const char *wrong = commit_record(c, u, phase, &r);
+		if (wrong) {
+			ob_step_blame(u, r.worker, wrong);
+			return true;
+		}
+	}
+	if (c->due && ob_step_failed(u, NULL) == OB_STEP_OK)
+		ob_step_blame(u, r.worker, "or another has not done all that it was given");
+	return true;
+}

@@ -1,0 +1,57 @@
+// What workers find in a phase, and how it comes into the universe.
+//
+// A worker that can write the universe writes what it has found in place, at once. A contained simulator
+// (table/outbox.h) cannot: it hands the same over as a record, and when all have arrived the arranger checks each, and
+// writes it:
+//
+//   - it is what this phase brings, and of an object, island or pair that this simulator was given;
+//   - no object's result comes twice, and none is missing;
+//   - ids and indices are in their ranges, numbers are finite, what is counted is not more than there can be.
+//
+// A simulator that hands over anything else is to blame (ob_step_blame): nothing that the phase has brought is
+// followed, and all are restarted from the checkpoint. What is within these bounds and yet wrong, because a simulator
+// has miscalculated, no check can tell.
+#ifndef OB_SIM_COMMIT_H
+#define OB_SIM_COMMIT_H
+
+#include "sim/state.h"
+#include "table/outbox.h"
+
+// An object's motion after the step; state, due: as ob_schedule.
+typedef struct ob_found_result {
+	uint32_t id, state, due, reserved;
+	ob_motion motion;
+} ob_found_result;
+
+// A contact as its island's solver leaves it. kept: it touches or has touched, and state is worth keeping.
+typedef struct ob_found_contact {
+	uint32_t pair; // index
+	uint8_t active, kept, two_sided, reserved; // two_sided: impulse_b holds
+	double limit;
+	ob_pair_state state;
+	double impulse_b[OB_PAIR_ROWS];
+} ob_found_contact;
+
+enum { OB_LATE_CONTACTS_BATCH = 256 }; // pairs that a worker checks at a time
+
+// ---- by whoever has found it, in phase ..
+
+void ob_commit_result(ob_sim *s, const ob_found_result *r); // ISLANDS
+void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6]); // ISLANDS; and by the host
+void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share); // ISLANDS: of each of its members
+void ob_commit_contact(ob_sim *s, const ob_found_contact *c); // ISLANDS
+void ob_commit_check(ob_universe *u, uint32_t pair, const ob_pair_key *k); // FORECAST, LATE_CONTACTS
+void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint32_t count); // BROADPHASE
+
+// With a worker per object: does the island's leader leave the object's motion in ob_step_data.result, not in its slot?
+bool ob_is_left_in_result(const ob_universe *u, uint32_t id);
+
+// ---- by the arranger
+
+typedef struct ob_committer ob_committer;
+ob_committer *ob_committer_create(const ob_universe *u); // NULL: no memory
+void ob_committer_destroy(ob_committer *c);
+// Waits until all simulators have arrived, checks what they have handed over, and writes it. false: STOP.
+bool ob_commit_phase(ob_committer *c, ob_universe *u, ob_phase phase);
+
+#endif

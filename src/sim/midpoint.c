@@ -1,0 +1,309 @@
+#include "sim/midpoint.h"
+
+#include <string.h>
+
+#include "motion/drift.h"
+#include "sim/bodies.h"
+#include "sim/contacts.h"
+#include "sim/ghost.h"
+#include "sim/profile.h"
+
+static const double least_change = 1e-7; // m/s: less than turning brings to any row is not noticed
+static const double longest_way = .2; // of the smaller thickness: in a partial substep of bodies that are halved
+static const double loose_gap = 1e-5; // m: a point that is farther off is not held at the surface
+
+static ob_vec3 linear_of(const double *r)
+{
+	return ob_v3(r[0], r[1], r[2]);
+}
+
+static ob_vec3 angular_of(const double *r)
+{
+	return ob_v3(r[3], r[4], r[5]);
+}
+
+// ---- which contacts
+
+static bool is_round(ob_shape s)
+{
+	return s != OB_SHAPE_BOX && s != OB_SHAPE_PLANE;
+}
+
+// Bound of what turning brings to a row in half the partial substep (m/s). The rows of a sphere turn with its centre,
+// those of a plane stay.
+static double change_bound(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+	double speed = a->speed + b->speed;
+	double turn = ob_body_turn_rate(w, w->v, contact->a) + ob_body_turn_rate(w, w->v, contact->b);
+	if ((is_round(a->shape) && b->shape != OB_SHAPE_PLANE) || (is_round(b->shape) && a->shape != OB_SHAPE_PLANE))
+		turn += speed / fmin(a->radius, b->radius);
+	return .5 * w->h * turn * speed;
+}
+
+static double load_of(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	double sum = 0;
+	for (uint32_t j = 0; j < contact->points; j++)
+		sum += b->impulse[j][l];
+	return sum;
+}
+
+static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change * w->unit.speed &&
+	       load_of(w, contact) > 0 && (a->speed + b->speed) * w->h < longest_way * fmin(a->thickness, b->thickness);
+}
+
+void ob_midpoint_mark(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const bool ever = s->settings->integrator == OB_INTEGRATOR_EXACT && !ob_ghosts_used(s) &&
+			  s->settings->narrow_phase != OB_NARROW_AABB;
+	for (uint32_t i = 0; i < w->rows; i++)
+		w->body[i].among_others = w->body[i].turns = false;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+		if (contact->lane != OB_NO_LANE && a->inv_mass > 0 && b->inv_mass > 0)
+			a->among_others = b->among_others = true;
+	}
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+		contact->turns = ever && !a->among_others && !b->among_others && turns_noticeably(w, contact);
+		a->turns |= contact->turns;
+		b->turns |= contact->turns;
+	}
+}
+
+// ---- rows
+
+static double row_velocity(const ob_batch *b, uint32_t l, uint32_t j, const double *xa, const double *xb)
+{
+	double sum = 0;
+	for (int c = 0; c < 3; c++)
+		sum += b->n[c][l] * (xa[c] - xb[c]) + b->ja[j][c][l] * xa[3 + c] - b->jb[j][c][l] * xb[3 + c];
+	return sum;
+}
+
+static ob_vec3 normal_of(const ob_batch *b, uint32_t l)
+{
+	return ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
+}
+
+// True where a point that carries no load will hit within the partial substep, faster than by what gravity adds in it.
+static bool is_hit(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	for (uint32_t j = 0; j < contact->points; j++) {
+		double rate = row_velocity(b, l, j, w->v[contact->a], w->v[contact->b]) +
+			      row_velocity(b, l, j, w->dv[contact->a], w->dv[contact->b]);
+		double gap = b->gap[j][l] + row_velocity(b, l, j, w->d[contact->a], w->d[contact->b]);
+		if (b->impulse[j][l] == 0 && rate < -2 * w->max_acceleration * w->h && gap + w->h * rate < 0)
+			return true;
+	}
+	return false;
+}
+
+// ---- to the midpoint
+
+static void halve(ob_island_work *w, uint32_t row)
+{
+	ob_body *body = &w->body[row];
+	double *v = w->v[row];
+	if (body->halved || body->inv_mass == 0)
+		return;
+	ob_body_update_pose(w, row);
+	body->halved = true;
+	body->start_p = body->p;
+	body->start_q = body->q;
+	body->start_w = angular_of(v);
+	ob_vec3 way = ob_scale(linear_of(v), .5 * w->h), rate;
+	ob_quat q;
+	ob_drift(body->q, body->start_w, body->inertia, .5 * w->h, &q, &rate);
+	ob_body_place(body, ob_add(body->p, way), q);
+	v[3] = rate.x, v[4] = rate.y, v[5] = rate.z;
+	ob_vec3 turn = ob_small_turn(body->start_q, q);
+	memcpy(body->first_half, (double[8]){ way.x, way.y, way.z, turn.x, turn.y, turn.z }, sizeof body->first_half);
+}
+
+// Geometry as it was found last, before it is found again.
+typedef struct old_geometry {
+	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS], normal;
+	double since;
+} old_geometry;
+
+static ob_vec3 velocity_at(ob_vec3 v, ob_vec3 w, ob_vec3 arm)
+{
+	return ob_add(v, ob_cross(w, arm));
+}
+
+static ob_vec3 between(ob_vec3 from, ob_vec3 to, double share)
+{
+	return ob_madd(from, share, ob_sub(to, from));
+}
+
+static ob_vec3 start_rate(const ob_island_work *w, uint32_t row)
+{
+	return w->body[row].halved ? w->body[row].start_w : angular_of(w->v[row]);
+}
+
+// What turning adds to a row: its velocity now less that at the start. Where the impulse would do work on what turning
+// has left at the start, that is reversed, too.
+static double turned(double now, double start, double impulse)
+{
+	return start * impulse < 0 || fabs(start) > fabs(now - start) ? now - start : now;
+}
+
+// Sets what turning adds to each row. At the start, the geometry lay between the one before and this one; a point that
+// is new moved with its bodies.
+static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geometry *old)
+{
+	ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
+	const double share = old->since / (old->since + .5 * w->h), part = 1. / contact->points;
+	const ob_vec3 n = normal_of(b, l), start_n = between(old->normal, n, share);
+	const ob_vec3 va = linear_of(w->v[ia]), vb = linear_of(w->v[ib]), wa = angular_of(w->v[ia]),
+		      wb = angular_of(w->v[ib]), wa0 = start_rate(w, ia), wb0 = start_rate(w, ib);
+	ob_vec3 slide = { 0, 0, 0 }, slide_start = { 0, 0, 0 };
+	double most = 0;
+	for (uint32_t j = 0; j < contact->points; j++) {
+		const int k = contact->was[j];
+		const ob_vec3 ra = contact->arm_a[j], rb = contact->arm_b[j];
+		ob_vec3 ra0 = k < 0 ? ob_madd(ra, -.5 * w->h, ob_cross(wa, ra)) : between(old->arm_a[k], ra, share);
+		ob_vec3 rb0 = k < 0 ? ob_madd(rb, -.5 * w->h, ob_cross(wb, rb)) : between(old->arm_b[k], rb, share);
+		ob_vec3 now = ob_sub(velocity_at(va, wa, ra), velocity_at(vb, wb, rb));
+		ob_vec3 start = ob_sub(velocity_at(va, wa0, ra0), velocity_at(vb, wb0, rb0));
+		bool held = b->impulse[j][l] > 0 && b->gap[j][l] < loose_gap * w->unit.length;
+		most = held ? fmax(most, fabs(ob_dot(n, now) - ob_dot(start_n, start))) : most;
+		b->turn[j][l] = held ? turned(ob_dot(n, now), ob_dot(start_n, start), b->impulse[j][l]) : 0;
+		slide = ob_madd(slide, part, now);
+		slide_start = ob_madd(slide_start, part, start);
+	}
+	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
+		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
+	const ob_vec3 friction = ob_add(ob_scale(t1, b->impulse[4][l]), ob_scale(t2, b->impulse[5][l]));
+	const ob_vec3 added = ob_sub(slide, slide_start);
+	most = fmax(most, fmax(fabs(ob_dot(t1, added)), fabs(ob_dot(t2, added))));
+	if (ob_dot(friction, slide_start) < 0 || ob_norm2(slide_start) > ob_norm2(added))
+		slide = added;
+	b->turn[4][l] = ob_dot(slide, t1);
+	b->turn[5][l] = ob_dot(slide, t2);
+	b->turn[6][l] = turned(ob_dot(n, ob_sub(wa, wb)), ob_dot(start_n, ob_sub(wa0, wb0)), b->impulse[6][l]);
+	if (most > least_change * w->unit.speed)
+		b->turning |= 1u << l;
+}
+
+// The contact as it is at the midpoint; its gaps as they would be at the start, seen from there.
+static void find_at_midpoint(ob_sim *s, ob_contact *contact)
+{
+	ob_island_work *w = &s->island;
+	const ob_batch *before = &w->batch[contact->lane / OB_LANES];
+	old_geometry old = { .normal = normal_of(before, contact->lane % OB_LANES), .since = contact->since };
+	memcpy(old.arm_a, contact->arm_a, sizeof old.arm_a);
+	memcpy(old.arm_b, contact->arm_b, sizeof old.arm_b);
+	s->counters.narrowphase_tests++;
+	ob_contact_find(s, contact);
+	if (contact->lane == OB_NO_LANE)
+		return;
+	contact->since = -.5 * w->h;
+	set_turn(w, contact, &old);
+	ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	for (uint32_t j = 0; j < contact->points; j++)
+		b->gap[j][l] -= row_velocity(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
+}
+
+static bool at_midpoint(const ob_island_work *w, const ob_contact *contact)
+{
+	return contact->turns && contact->lane != OB_NO_LANE &&
+	       (w->body[contact->a].halved || w->body[contact->b].halved);
+}
+
+static bool concerns_turning(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+	return (a->inv_mass > 0 && a->turns) || (b->inv_mass > 0 && b->turns);
+}
+
+// True where contacts turn and nothing hits their bodies.
+static bool all_go_on(const ob_island_work *w)
+{
+	bool any = false;
+	for (uint32_t i = 0; i < w->contacts; i++)
+		any |= w->contact[i].turns && w->contact[i].lane != OB_NO_LANE;
+	for (uint32_t i = 0; any && i < w->contacts; i++)
+		any = w->contact[i].lane == OB_NO_LANE || !concerns_turning(w, &w->contact[i]) ||
+		      !(w->contact[i].as_of_instant || is_hit(w, &w->contact[i]));
+	return any;
+}
+
+// All contacts are found at the start.
+static void leave_midpoint(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	bool any = false;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		any |= w->contact[i].turns;
+		w->contact[i].turns = false;
+	}
+	if (any && ob_contacts_update(s, w->h)) {
+		ob_contacts_prepare(s);
+		ob_bodies_warm_start(s);
+	}
+}
+
+void ob_midpoint_begin(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
+	if (!all_go_on(w)) {
+		leave_midpoint(s);
+		return;
+	}
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->turns && !(contact->since >= 0 && contact->since < 2 * w->h))
+			ob_contact_find(s, contact);
+		contact->turns &= contact->lane != OB_NO_LANE && contact->since < INFINITY;
+	}
+	for (uint32_t i = 0; i < w->contacts; i++)
+		if (w->contact[i].turns)
+			halve(w, w->contact[i].a), halve(w, w->contact[i].b);
+	for (uint32_t i = 0; i < w->contacts; i++)
+		if (at_midpoint(w, &w->contact[i]))
+			find_at_midpoint(s, &w->contact[i]);
+	ob_contacts_prepare(s);
+	ob_bodies_warm_start(s);
+}
+
+void ob_midpoint_undo(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		ob_body *body = &w->body[i];
+		if (!body->halved)
+			continue;
+		ob_body_place(body, body->start_p, body->start_q);
+		w->v[i][3] = body->start_w.x, w->v[i][4] = body->start_w.y, w->v[i][5] = body->start_w.z;
+		body->halved = false;
+	}
+	for (uint32_t i = 0; i < w->batches; i++)
+		w->batch[i].turning = 0;
+}
+
+void ob_midpoint_end(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 0; i < w->contacts; i++)
+		w->contact[i].since += w->h;
+	for (uint32_t i = 0; i < w->batches; i++)
+		w->batch[i].turning = 0;
+	for (uint32_t i = 0; i < w->rows; i++)
+		w->body[i].halved = false;
+}

@@ -1,0 +1,342 @@
+#include "table/outbox.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "table/futex.h"
+#include "table/layout.h"
+
+enum { LANES = 4, LOOK_AGAIN_MS = 100 };
+
+// FNV's way (xor, multiply) on words, in lanes that do not wait for each other: any one word that differs makes another
+// sum, and so do several but for one chance in 2^64.
+typedef struct checksum {
+	uint64_t lane[LANES];
+	size_t words;
+} checksum;
+
+static const uint64_t prime = 0x9E3779B97F4A7C15u;
+
+typedef struct outbox_page {
+	_Alignas(64) uint32_t signal; // hand-overs so far
+	uint32_t last; // 1 = this one is the arrival
+	uint32_t turn; // of the gate
+	uint32_t bytes; // of records
+	uint64_t sum;
+	uint64_t faults[OB_FAULT_KINDS]; // injected into its simulator
+	_Alignas(64) char record[];
+} outbox_page;
+
+typedef struct record_head {
+	uint32_t kind, bytes;
+} record_head;
+
+// Of this process: what is between two phases is not in the universe.
+typedef struct ob_outbox {
+	outbox_page *page;
+	uint32_t worker, signal, done; // done: the last turn at which it arrived
+	uint32_t next_task;
+	bool stopped; // nobody takes anything any more
+	size_t used;
+	checksum sum;
+	ob_outbox_end end;
+} ob_outbox;
+
+static outbox_page *page_of(const ob_universe *u, uint32_t worker)
+{
+	return (outbox_page *)(u->outbox_area + (size_t)worker * u->header.sizes.outbox_bytes);
+}
+
+static size_t room_of(const ob_universe *u)
+{
+	return u->header.sizes.outbox_bytes - sizeof(outbox_page);
+}
+
+static checksum start_sum(uint32_t worker, uint32_t turn)
+{
+	checksum c = { .words = 0 };
+	for (uint64_t i = 0; i < LANES; i++)
+		c.lane[i] = prime * (i + 1) ^ (uint64_t)worker << 32 ^ turn;
+	return c;
+}
+
+static void add_words(checksum *c, const void *words, size_t bytes)
+{
+	for (size_t i = 0; i < bytes / 8; i++, c->words++) {
+		uint64_t word;
+		memcpy(&word, (const char *)words + 8 * i, sizeof word);
+		uint64_t *lane = &c->lane[c->words % LANES];
+		*lane = (*lane ^ word) * prime;
+	}
+}
+
+static uint64_t final_sum(const checksum *c)
+{
+	uint64_t sum = c->words;
+	for (int i = 0; i < LANES; i++)
+		sum = (sum ^ c->lane[i] ^ c->lane[i] >> 29) * prime;
+	return sum;
+}
+
+// ---- the simulator's side
+
+bool ob_outbox_enter(ob_universe *u, uint32_t worker)
+{
+	static ob_outbox own; // a process is one simulator
+	const size_t each = u->header.sizes.outbox_bytes;
+	own = (ob_outbox){ .page = page_of(u, worker), .worker = worker };
+	own.signal = __atomic_load_n(&u->gate_cell[worker].taken, __ATOMIC_RELAXED);
+	own.page->signal = own.signal; // a predecessor may have left something else
+	own.done = u->gate_cell[worker].done;
+	if (mprotect(u->base, u->header.bytes, PROT_READ) != 0 ||
+	    mprotect(own.page, each, PROT_READ | PROT_WRITE) != 0 || !ob_trace_unprotect(u, worker))
+		return false;
+	u->outbox = &own;
+	return true;
+}
+
+void ob_fault_note(ob_universe *u, uint32_t worker, ob_fault_kind kind)
+{
+	if (u->outbox)
+		u->outbox->page->faults[kind]++;
+	else
+		u->worker[worker].faults[kind]++;
+}
+
+void ob_universe_faults(const ob_universe *u, uint64_t sum[OB_FAULT_KINDS])
+{
+	memset(sum, 0, OB_FAULT_KINDS * sizeof *sum);
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
+		for (int kind = 0; kind < OB_FAULT_KINDS; kind++)
+			sum[kind] += u->worker[w].faults[kind] +
+				     (u->header.sizes.outbox_bytes ? page_of(u, w)->faults[kind] : 0);
+}
+
+uint32_t ob_universe_lives(const ob_universe *u)
+{
+	return u->control->lives;
+}
+
+bool ob_universe_contained(const ob_universe *u)
+{
+	return u->outbox;
+}
+
+void *ob_outbox_own(const ob_universe *u, size_t *bytes)
+{
+	*bytes = u->header.sizes.outbox_bytes;
+	return u->outbox->page;
+}
+
+ob_outbox_end *ob_outbox_end_of(const ob_universe *u)
+{
+	return &u->outbox->end;
+}
+
+static void empty(ob_universe *u)
+{
+	ob_outbox *o = u->outbox;
+	o->used = 0;
+	o->sum = start_sum(o->worker, u->gate_cell[o->worker].turn);
+}
+
+static void hand_over(ob_universe *u, bool last)
+{
+	ob_outbox *o = u->outbox;
+	outbox_page *page = o->page;
+	page->last = last;
+	page->turn = u->gate_cell[o->worker].turn;
+	page->bytes = (uint32_t)o->used;
+	page->sum = final_sum(&o->sum);
+	__atomic_store_n(&page->signal, ++o->signal, __ATOMIC_SEQ_CST);
+	if (__atomic_load_n(&u->gate->awaited, __ATOMIC_SEQ_CST) == o->worker + 1)
+		ob_futex_wake(&page->signal, ~UINT32_C(0));
+}
+
+// The outbox is full: until the arranger has copied it.
+static void wait_until_taken(ob_universe *u)
+{
+	ob_outbox *o = u->outbox;
+	const uint32_t *taken = &u->gate_cell[o->worker].taken;
+	for (uint32_t seen; (seen = __atomic_load_n(taken, __ATOMIC_ACQUIRE)) != o->signal && !o->stopped;
+	     o->stopped = ob_gate_stopped(u))
+		ob_futex_wait_ms(taken, seen, LOOK_AGAIN_MS);
+	empty(u);
+}
+
+static void put_part(ob_outbox *o, const void *part, size_t bytes)
+{
+	add_words(&o->sum, part, bytes);
+	memcpy(o->page->record + o->used, part, bytes);
+	o->used += bytes;
+}
+
+void ob_outbox_put(ob_universe *u, uint32_t kind, const void *record, size_t bytes, const void *more, size_t more_bytes)
+{
+	ob_outbox *o = u->outbox;
+	const record_head head = { kind, (uint32_t)(bytes + more_bytes) };
+	if (o->used + sizeof head + bytes + more_bytes > room_of(u)) {
+		hand_over(u, false);
+		wait_until_taken(u);
+	}
+	put_part(o, &head, sizeof head);
+	put_part(o, record, bytes);
+	if (more_bytes)
+		put_part(o, more, more_bytes);
+}
+
+void ob_outbox_begin(ob_universe *u)
+{
+	ob_outbox *o = u->outbox;
+	o->next_task = 0;
+	o->end = (ob_outbox_end){ .next_check = UINT32_MAX };
+	empty(u);
+}
+
+void ob_outbox_arrive(ob_universe *u)
+{
+	ob_outbox *o = u->outbox;
+	ob_outbox_put(u, OB_OUTBOX_END, &o->end, sizeof o->end, NULL, 0);
+	o->done = u->gate_cell[o->worker].turn;
+	hand_over(u, true);
+}
+
+uint32_t ob_outbox_turns_done(const ob_universe *u)
+{
+	return u->outbox->done;
+}
+
+uint32_t ob_task_owner(uint32_t index, uint32_t workers)
+{
+	const uint32_t round = index / workers, place = index % workers;
+	return round % 2 ? workers - 1 - place : place;
+}
+
+uint32_t ob_task_workers(const ob_universe *u)
+{
+	return u->control->claim_workers;
+}
+
+bool ob_outbox_claim(ob_universe *u, uint32_t *index)
+{
+	ob_outbox *o = u->outbox;
+	const uint64_t total = u->control->claim_total, workers = u->control->claim_workers, round = o->next_task++;
+	if (!workers)
+		return false;
+	const uint64_t i = round * workers + (round % 2 ? workers - 1 - o->worker : o->worker);
+	*index = (uint32_t)i;
+	return i < total;
+}
+
+// ---- the arranger's side
+
+// Sleeps until the simulator has signalled. false: STOP.
+static bool wait_for_signal(ob_universe *u, uint32_t worker, uint32_t taken)
+{
+	uint32_t *signal = &page_of(u, worker)->signal;
+	while (__atomic_load_n(signal, __ATOMIC_ACQUIRE) == taken) {
+		__atomic_store_n(&u->gate->awaited, worker + 1, __ATOMIC_SEQ_CST);
+		ob_futex_wait_ms(signal, taken, LOOK_AGAIN_MS);
+		__atomic_store_n(&u->gate->awaited, 0, __ATOMIC_RELAXED);
+		if (ob_gate_stopped(u))
+			return false;
+	}
+	return !ob_gate_stopped(u);
+}
+
+// Room for so many bytes more.
+static bool grow(ob_mail *m, size_t more)
+{
+	if (m->used + more <= m->max)
+		return true;
+	const size_t max = 2 * (m->used + more);
+	char *larger = realloc(m->bytes, max);
+	if (!larger)
+		return false;
+	m->bytes = larger;
+	m->max = max;
+	return true;
+}
+
+// Copies what the simulator has handed over. NULL, or what is wrong with it.
+static const char *take(ob_universe *u, ob_mail *m, uint32_t worker, bool *last)
+{
+	const outbox_page *page = page_of(u, worker);
+	ob_gate_cell *cell = u->gate_cell + worker;
+	const uint32_t bytes = page->bytes, taken = cell->taken + 1;
+	const struct {
+		uint64_t worker, bytes;
+	} part = { worker, bytes };
+	*last = page->last;
+	if (__atomic_load_n(&page->signal, __ATOMIC_ACQUIRE) != taken || page->turn != cell->turn || page->last > 1)
+		return "has lost its turn";
+	if (bytes > room_of(u) || bytes % 8)
+		return "has handed over more than fits in";
+	if (!grow(m, sizeof part + bytes))
+		return "has handed over more than there is memory for";
+	memcpy(m->bytes + m->used, &part, sizeof part);
+	memcpy(m->bytes + m->used + sizeof part, page->record, bytes);
+	checksum sum = start_sum(worker, cell->turn);
+	add_words(&sum, m->bytes + m->used + sizeof part, bytes);
+	if (final_sum(&sum) != page->sum)
+		return "has handed over what does not bear its checksum";
+	m->used += sizeof part + bytes;
+	__atomic_store_n(&cell->taken, taken, __ATOMIC_RELEASE);
+	if (!*last)
+		ob_futex_wake(&cell->taken, ~UINT32_C(0));
+	return NULL;
+}
+
+static bool collect_from(ob_universe *u, ob_mail *m, uint32_t worker)
+{
+	for (bool last = false; !last;) {
+		if (!wait_for_signal(u, worker, u->gate_cell[worker].taken))
+			return false;
+		const char *wrong = take(u, m, worker, &last);
+		if (wrong) {
+			ob_step_blame(u, worker, wrong);
+			return true;
+		}
+	}
+	ob_gate_group *group = u->gate_group + worker / 64; // for ob_gate_waits_for
+	__atomic_fetch_or(&group->arrived, UINT64_C(1) << worker % 64, __ATOMIC_RELAXED);
+	return true;
+}
+
+bool ob_mail_collect(ob_universe *u, ob_mail *m)
+{
+	m->used = m->at = m->end = 0;
+	for (uint32_t w = 0; w < ob_universe_simulators(u); w++)
+		if (u->gate_group[w / 64].expected >> w % 64 & 1 && !collect_from(u, m, w))
+			return false;
+	return true;
+}
+
+bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out)
+{
+	uint64_t part[2];
+	record_head head;
+	while (m->at == m->end) {
+		if (m->at == m->used)
+			return false;
+		memcpy(part, m->bytes + m->at, sizeof part);
+		m->worker = (uint32_t)part[0];
+		m->at += sizeof part;
+		m->end = m->at + part[1];
+	}
+	memcpy(&head, m->bytes + m->at, sizeof head);
+	m->at += sizeof head;
+	if (head.bytes > m->end - m->at) {
+		ob_step_blame(u, m->worker, "has handed over a record that does not end");
+		return false;
+	}
+	*out = (ob_mail_record){ m->worker, head.kind, head.bytes, m->bytes + m->at };
+	m->at += head.bytes;
+	return true;
+}
+
+void ob_mail_finish(ob_mail *m)
+{
+	free(m->bytes);
+}

@@ -1,0 +1,156 @@
+#include "table/pages.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+// ---- taking them
+
+static bool take_chunk(ob_universe *u, uint64_t chunk)
+{
+	uint64_t bit = UINT64_C(1) << chunk % 64, at = chunk * OB_LAYOUT_CHUNK, left = u->header.bytes - at;
+	uint64_t *word = &u->taken[chunk / 64];
+	if (__atomic_load_n(word, __ATOMIC_RELAXED) & bit)
+		return true;
+	// EINVAL: a kernel before 5.14 does not know it, and pages come when they are touched
+	if (madvise(u->base + at, left < OB_LAYOUT_CHUNK ? left : OB_LAYOUT_CHUNK, MADV_POPULATE_WRITE) != 0 &&
+	    errno != EINVAL)
+		return false;
+	__atomic_fetch_or(word, bit, __ATOMIC_RELAXED);
+	return true;
+}
+
+static bool take_bytes(ob_universe *u, uint64_t begin, uint64_t end)
+{
+	for (uint64_t chunk = begin / OB_LAYOUT_CHUNK; begin < end && chunk <= (end - 1) / OB_LAYOUT_CHUNK; chunk++)
+		if (!take_chunk(u, chunk))
+			return false;
+	return true;
+}
+
+bool ob_pages_take(ob_universe *u, ob_area area, uint64_t first, uint64_t count)
+{
+	const uint64_t element = ob_layout_element(area), at = u->header.area[area];
+	const uint64_t next = area + 1 < OB_AREAS ? u->header.area[area + 1] : u->header.bytes;
+	const uint64_t end = at + (first + count) * element;
+	return take_bytes(u, at + first * element, end < next ? end : next);
+}
+
+bool ob_pages_take_first(ob_universe *u)
+{
+	return take_bytes(u, 0, u->header.area[OB_AREA_SLOT]);
+}
+
+bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e)
+{
+	bool fine = true;
+	for (int i = OB_AREA_SLOT; i < OB_AREAS && fine; i++) {
+		const ob_area area = (ob_area)i;
+		// a passport's second version most objects never have, and outboxes are seldom full
+		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_OUTBOX)
+			fine = ob_pages_take(u, area, 0, ob_layout_elements_of(&u->header.sizes, area, ids));
+	}
+	struct statvfs s = { 0 };
+	return fine || (fstatvfs(u->fd, &s),
+			ob_fail(e,
+				"/dev/shm is full (%" PRIu64 " MiB): enlarge it (mount -o remount,size=..., docker run "
+				"--shm-size=...) or take fewer objects",
+				(uint64_t)s.f_blocks * s.f_frsize >> 20));
+}
+
+bool ob_reserve_pairs(ob_universe *u, uint32_t first, uint32_t count)
+{
+	return ob_pages_take(u, OB_AREA_PAIR, first, count) && ob_pages_take(u, OB_AREA_ISLAND_PAIR, first, count);
+}
+
+bool ob_reserve_record(ob_universe *u, uint32_t record)
+{
+	const uint32_t solver = u->header.run.solver;
+	const bool two = solver == OB_SOLVER_GHOST || solver == OB_SOLVER_LAGGED;
+	return ob_pages_take(u, OB_AREA_RECORD, record, 1) && (!two || ob_pages_take(u, OB_AREA_IMPULSE_B, record, 1));
+}
+
+// ---- missing ones
+
+enum { TRACKED = 16 };
+static const ob_universe *tracked[TRACKED];
+static void (*before_end)(void);
+
+bool ob_pages_track(const ob_universe *u)
+{
+	for (int i = 0; i < TRACKED; i++) {
+		const ob_universe *none = NULL;
+		if (__atomic_compare_exchange_n(&tracked[i], &none, u, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+			return true;
+	}
+	return false;
+}
+
+void ob_pages_forget(const ob_universe *u)
+{
+	for (int i = 0; i < TRACKED; i++) {
+		const ob_universe *same = u;
+		if (__atomic_compare_exchange_n(&tracked[i], &same, NULL, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+			return;
+	}
+}
+
+const char *ob_universe_lost(const ob_universe *u)
+{
+	struct stat s;
+	struct statvfs room;
+	if (fstat(u->fd, &s) == 0 && (uint64_t)s.st_size < u->header.bytes)
+		return "another program has cut it short";
+	if (fstatvfs(u->fd, &room) == 0 && room.f_blocks != 0 && room.f_bavail == 0)
+		return "/dev/shm is full: enlarge it (mount -o remount,size=..., docker run --shm-size=...)";
+	return NULL;
+}
+
+// Only what a signal handler may call.
+static void say(const char *text)
+{
+	ssize_t ignored = write(STDERR_FILENO, text, strlen(text));
+	(void)ignored;
+}
+
+static const ob_universe *find(const char *address)
+{
+	for (int i = 0; i < TRACKED; i++) {
+		const ob_universe *u = __atomic_load_n(&tracked[i], __ATOMIC_SEQ_CST);
+		if (u && address >= u->base && address < u->base + u->header.bytes)
+			return u;
+	}
+	return NULL;
+}
+
+static void on_missing_page(int number, siginfo_t *info, void *context)
+{
+	(void)context;
+	const ob_universe *u = find(info->si_addr);
+	if (!u) {
+		signal(number, SIG_DFL); // the instruction is tried again, and ends the process
+		return;
+	}
+	const char *why = ob_universe_lost(u);
+	if (before_end)
+		before_end();
+	say("obsim: the memory of universe \"");
+	say(u->header.name);
+	say("\" is not all there: ");
+	say(why ? why : "a page of it cannot be read");
+	say("\n");
+	_exit(1);
+}
+
+void ob_pages_guard(void (*on_end)(void))
+{
+	struct sigaction action = { .sa_sigaction = on_missing_page, .sa_flags = SA_SIGINFO };
+	before_end = on_end;
+	sigaction(SIGBUS, &action, NULL);
+}

@@ -1,0 +1,275 @@
+#include "table/saved.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "table/layout.h"
+
+static_assert(sizeof(ob_saved_record) == 320, "saved record");
+
+// Do the two bodies of a pair not agree on one impulse? Else its area has no pages.
+static bool is_two_sided(const ob_universe *u)
+{
+	return u->header.run.solver == OB_SOLVER_GHOST || u->header.run.solver == OB_SOLVER_LAGGED;
+}
+
+// ---- saving
+
+static bool is_present(const ob_universe *u, uint32_t id)
+{
+	ob_passport p;
+	return ob_passport_read(u, id, &p) && p.flags & OB_OBJECT_PRESENT;
+}
+
+void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out)
+{
+	const ob_step_data *data = &u->step_data;
+	*out = (ob_saved_universe){
+		.step = ob_step_count(u),
+		.checked = data->count->checked,
+		.ids = ob_universe_ids(u),
+		.planes = data->count->planes,
+		.pairs = data->count->pairs,
+	};
+	for (uint32_t i = 0; i < out->pairs; i++)
+		out->records += data->pair[i].record != OB_NO_RECORD;
+}
+
+static void save_object(const ob_universe *u, uint32_t id, ob_saved_universe *out)
+{
+	const ob_step_data *data = &u->step_data;
+	const bool present = is_present(u, id);
+	out->passport[id] = present ? *ob_passport_of(u, id) : (ob_passport){ 0 };
+	out->motion[id] = present ? *ob_newest_motion(u, id) : (ob_motion){ 0 };
+	out->schedule[id] = present ? data->schedule[id] : (ob_schedule){ 0 };
+	out->neighbours[id] = present ? data->neighbours[id].count : 0;
+	memset(out->bounds[id], 0, sizeof out->bounds[id]);
+	if (present)
+		memcpy(out->bounds[id], data->bounds[id], sizeof out->bounds[id]);
+}
+
+static void save_record(const ob_universe *u, uint32_t record, ob_saved_record *out)
+{
+	const ob_step_data *data = &u->step_data;
+	const ob_pair_record *r = &data->record[record];
+	const int newest = r->stamp[1] > r->stamp[0];
+	*out = (ob_saved_record){ .state = r->version[newest], .stamp = r->stamp[newest] };
+	if (is_two_sided(u))
+		memcpy(out->impulse_b, data->impulse_b[record][newest], sizeof out->impulse_b);
+}
+
+void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
+{
+	const ob_step_data *data = &u->step_data;
+	uint32_t records = 0;
+	for (uint32_t id = 0; id < out->ids; id++)
+		save_object(u, id, out);
+	memcpy(out->plane, data->plane, out->planes * sizeof *out->plane);
+	for (uint32_t i = 0; i < out->pairs; i++) {
+		ob_pair_key *k = &out->pair[i];
+		*k = data->pair[i];
+		if (k->record == OB_NO_RECORD)
+			continue;
+		save_record(u, k->record, &out->record[records]);
+		k->record = records++;
+	}
+}
+
+// ---- checking
+
+static bool all_finite(const double *x, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (!isfinite(x[i]))
+			return false;
+	return true;
+}
+
+static bool at_least_0(float x)
+{
+	return x >= 0 && isfinite(x);
+}
+
+static bool principal_moments_make_sense(const ob_passport *p)
+{
+	const double x = p->inertia.x, y = p->inertia.y, z = p->inertia.z, more = 1 + 1e-9;
+	if (p->flags & OB_OBJECT_STATIC)
+		return p->mass == 0 && x == 0 && y == 0 && z == 0;
+	return p->mass > 0 && x > 0 && y > 0 && z > 0 && x <= (y + z) * more && y <= (z + x) * more &&
+	       z <= (x + y) * more;
+}
+
+static uint32_t kind_of(const ob_passport *p)
+{
+	return !(p->flags & OB_OBJECT_STATIC) ? OB_SCHEDULE_AWAKE
+	       : p->shape == OB_SHAPE_PLANE   ? OB_SCHEDULE_PLANE
+					      : OB_SCHEDULE_STATIC;
+}
+
+static bool schedule_makes_sense(const ob_schedule *s, const ob_passport *p, uint64_t step)
+{
+	const bool moves = s->state >= OB_SCHEDULE_AWAKE && s->state <= OB_SCHEDULE_EQUILIBRIUM;
+	return (moves ? OB_SCHEDULE_AWAKE : s->state) == kind_of(p) && isfinite(s->path) && at_least_0(s->reach) &&
+	       s->since <= step;
+}
+
+static bool motion_of_run_makes_sense(const ob_motion *m, uint64_t step)
+{
+	enum {
+		KNOWN = OB_MOTION_FREE | OB_MOTION_STEADY | OB_MOTION_RESTS,
+		SUBSTEPS_MAX = 1 << (OB_SUBSTEP_CHOICES - 1)
+	};
+	return ob_motion_makes_sense(m) && !(m->flags & ~(uint32_t)KNOWN) && m->step <= step &&
+	       m->substeps <= SUBSTEPS_MAX && isfinite(m->path) && at_least_0(m->rest_time) && at_least_0(m->reach);
+}
+
+static bool bounds_make_sense(const float *b, const ob_passport *p)
+{
+	for (int c = 0; c < 3; c++)
+		if (!(b[c] <= b[c + 3]) || (p->shape != OB_SHAPE_PLANE && !isfinite(b[c + 3] - b[c])))
+			return false;
+	return true;
+}
+
+static bool check_object(const ob_saved_universe *s, uint32_t id, ob_error *e)
+{
+	enum { KNOWN = OB_OBJECT_PRESENT | OB_OBJECT_STATIC };
+	const ob_passport *p = &s->passport[id];
+	const char *wrong = NULL;
+	if (!(p->flags & OB_OBJECT_PRESENT))
+		return p->flags == 0 && s->schedule[id].state == OB_SCHEDULE_ABSENT
+			       ? true
+			       : ob_fail(e, "object %u is half there", id);
+	if (!ob_passport_makes_sense(p, id) || p->flags & ~(uint32_t)KNOWN || !principal_moments_make_sense(p))
+		wrong = "passport";
+	else if (!motion_of_run_makes_sense(&s->motion[id], s->step))
+		wrong = "motion";
+	else if (!schedule_makes_sense(&s->schedule[id], p, s->step))
+		wrong = "schedule";
+	else if (!bounds_make_sense(s->bounds[id], p))
+		wrong = "bounds";
+	return wrong ? ob_fail(e, "the %s of object %u makes no sense", wrong, id) : true;
+}
+
+// An object that exists; ids that came from outside.
+static bool is_there(const ob_saved_universe *s, uint32_t id)
+{
+	return id < s->ids && s->passport[id].flags & OB_OBJECT_PRESENT;
+}
+
+static bool check_planes(const ob_saved_universe *s, ob_error *e)
+{
+	bool *listed = calloc((size_t)s->ids + 1, sizeof *listed), sense = listed;
+	for (uint32_t i = 0; i < s->planes && sense; i++) {
+		const uint32_t id = s->plane[i];
+		sense = is_there(s, id) && s->schedule[id].state == OB_SCHEDULE_PLANE && !listed[id];
+		if (sense)
+			listed[id] = true;
+	}
+	free(listed);
+	return sense ? true : ob_fail(e, "the list of planes makes no sense");
+}
+
+static bool record_makes_sense(const ob_saved_record *r, uint64_t step)
+{
+	const ob_pair_state *p = &r->state;
+	const double n2 = ob_norm2(p->normal);
+	return p->points <= OB_PAIR_POINTS && (p->points == 0 || (n2 > .9 && n2 < 1.1)) && r->stamp > 0 &&
+	       r->stamp <= step + 1 && r->zero == 0 && isfinite(p->creep) &&
+	       all_finite((const double *)p, offsetof(ob_pair_state, points) / sizeof(double)) &&
+	       all_finite(r->impulse_b, OB_PAIR_ROWS);
+}
+
+static bool check_pairs(const ob_saved_universe *s, ob_error *e)
+{
+	uint32_t records = 0;
+	for (uint32_t i = 0; i < s->pairs; i++) {
+		const ob_pair_key *k = &s->pair[i], *last = i ? k - 1 : NULL;
+		const bool ids = k->a < k->b && is_there(s, k->a) && is_there(s, k->b) &&
+				 (!last || k->a > last->a || (k->a == last->a && k->b > last->b));
+		const bool moves = ids && (s->schedule[k->a].state >= OB_SCHEDULE_AWAKE ||
+					   s->schedule[k->b].state >= OB_SCHEDULE_AWAKE);
+		const bool flags = k->active <= 1 && k->expected <= 1 && k->late <= 1 && k->in_island <= 1;
+		if (!moves || !flags || isnan(k->limit) || (k->active && k->record == OB_NO_RECORD))
+			return ob_fail(e, "pair %u makes no sense", i);
+		if (k->record == OB_NO_RECORD)
+			continue;
+		if (k->record != records || records == s->records || !record_makes_sense(&s->record[records], s->step))
+			return ob_fail(e, "the contact points of pair %u make no sense", i);
+		records++;
+	}
+	return records == s->records ? true : ob_fail(e, "there are contact points of no pair");
+}
+
+bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
+{
+	if (s->step > UINT32_MAX - 2 || s->checked > s->step) // a motion carries its step as 32 bits
+		return ob_fail(e, "no run is so long");
+	for (uint32_t id = 0; id < s->ids; id++)
+		if (!check_object(s, id, e))
+			return false;
+	return check_planes(s, e) && check_pairs(s, e);
+}
+
+// ---- loading
+
+static void load_object(ob_universe *u, uint32_t id, const ob_saved_universe *s)
+{
+	ob_step_data *data = &u->step_data;
+	data->result_island[id] = UINT32_MAX;
+	if (!(s->passport[id].flags & OB_OBJECT_PRESENT))
+		return;
+	ob_write_passport(u, id, &s->passport[id]);
+	ob_publish_motion(u, id, &s->motion[id]);
+	data->schedule[id] = s->schedule[id];
+	data->neighbours[id].count = s->neighbours[id];
+	memcpy(data->bounds[id], s->bounds[id], sizeof data->bounds[id]);
+	if (s->neighbours[id] == UINT32_MAX)
+		ob_requery_append(u, id);
+}
+
+static void load_record(ob_universe *u, uint32_t record, const ob_saved_record *from)
+{
+	ob_step_data *data = &u->step_data;
+	ob_pair_record *to = &data->record[record];
+	to->version[0] = from->state;
+	to->stamp[0] = from->stamp;
+	to->stamp[1] = 0;
+	if (is_two_sided(u))
+		memcpy(data->impulse_b[record][0], from->impulse_b, sizeof from->impulse_b);
+}
+
+static bool reserve(ob_universe *u, const ob_saved_universe *s, ob_error *e)
+{
+	if (!ob_universe_reserve(u, s->ids, e))
+		return false;
+	bool fine = ob_reserve_pairs(u, 0, s->pairs);
+	for (uint32_t i = 0; i < s->records && fine; i++)
+		fine = ob_reserve_record(u, i);
+	return fine || ob_fail(e, "/dev/shm is full: enlarge it (mount -o remount,size=..., docker run --shm-size=...)");
+}
+
+bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
+{
+	ob_step_data *data = &u->step_data;
+	if (s->pairs > data->pairs_max || s->ids > data->objects_max)
+		return ob_fail(
+			e, "this run has room for %u objects and %u pairs of neighbours, the saved one has %u and %u",
+			data->objects_max, data->pairs_max, s->ids, s->pairs);
+	if (!reserve(u, s, e))
+		return false;
+	for (uint32_t id = 0; id < s->ids; id++)
+		load_object(u, id, s);
+	memcpy(data->plane, s->plane, s->planes * sizeof *s->plane);
+	memcpy(data->pair, s->pair, s->pairs * sizeof *s->pair);
+	for (uint32_t i = 0; i < s->records; i++)
+		load_record(u, i, &s->record[i]);
+	data->count->planes = s->planes;
+	data->count->pairs = s->pairs;
+	data->count->records_used = s->records;
+	data->count->checked = s->checked;
+	__atomic_store_n(&u->control->pairs, s->pairs, __ATOMIC_RELAXED);
+	__atomic_store_n(&u->control->step, s->step, __ATOMIC_RELEASE);
+	return true;
+}

@@ -1,0 +1,56 @@
+// A universe as it is saved: what of it decides how it goes on, as plain arrays, to be written to a file and put into a
+// universe of other capacity, workers and isolation.
+//
+//                     saved                                 put back
+//   passports         of those that exist                   the same bytes
+//   motions           the newest of each                    published: the first version
+//   schedule, bounds  of those that exist                   the same bytes
+//   neighbours        how many the last query found         the same: flights are computed so far ahead (sim/flight.c)
+//   pairs, planes     all, in their order                   the same bytes; a record's number is that of its pair
+//   pair records      the newest version                    the first of two versions
+//   grid, islands,    not: they follow from these           the caller's (ob_sim_restore)
+//   gate, workers
+//
+// The steps that follow are the same to the bit. Numbers have fixed widths and there is no pointer in an array, so the
+// bytes mean the same on every machine of the same byte order.
+//
+// Thread-safety: one thread, the host's, while the universe is paused (save) or starting (load).
+#ifndef OB_TABLE_SAVED_H
+#define OB_TABLE_SAVED_H
+
+#include "table/table.h"
+
+// What a pair keeps from step to step, as of its newest version.
+typedef struct ob_saved_record {
+	ob_pair_state state;
+	double impulse_b[OB_PAIR_ROWS]; // of body b, where the two do not agree on one impulse
+	uint32_t stamp; // 1 + steps that were complete when it came to hold
+	uint32_t zero;
+} ob_saved_record;
+
+// The arrays belong to whoever made them.
+typedef struct ob_saved_universe {
+	uint64_t step; // complete
+	uint32_t checked; // ob_step_counts.checked
+	uint32_t ids, planes, pairs, records; // lengths of the arrays
+	ob_passport *passport; // [ids], all 0 where there is no object; so are the next four
+	ob_motion *motion;
+	ob_schedule *schedule;
+	float (*bounds)[6];
+	uint32_t *neighbours; // UINT32_MAX: a query is pending
+	uint32_t *plane; // [planes] ids
+	ob_pair_key *pair; // [pairs]
+	ob_saved_record *record; // [records], in the order of their pairs
+} ob_saved_universe;
+
+// Fills in step, checked and the lengths, for arrays to be made.
+void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out);
+// Fills arrays of these lengths.
+void ob_universe_save(const ob_universe *u, ob_saved_universe *out);
+// Whether arrays that came from outside could be those of a universe: ids, counts, kinds, finite numbers. false and e
+// names what could not.
+bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e);
+// Into a universe that is new, of ids capacity at least. false and e: it has no room for so many pairs.
+bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e);
+
+#endif

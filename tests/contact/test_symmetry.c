@@ -1,0 +1,150 @@
+// Where two shapes touch does not depend on who looks: turned, mirrored, moved, boosted, or with the two taken in the
+// other order, a manifold has the same points. Boxes at random, and flat on each other, where axes tie.
+#include "check.h"
+#include "placed.h"
+
+static const double tiny = 1e-10; // m
+
+typedef struct view {
+	rigid moved;
+	ob_vec3 boost;
+	bool mirrored, swapped;
+} view;
+
+static ob_vec3 seen_vector(const view *w, ob_vec3 v)
+{
+	if (w->mirrored)
+		v.x = -v.x;
+	return rigid_turn(&w->moved, v);
+}
+
+static ob_placed seen(const view *w, const ob_placed *s)
+{
+	ob_placed out = *s;
+	ob_vec3 p = s->p, axial = w->mirrored ? ob_v3(-s->w.x, s->w.y, s->w.z) : s->w;
+	if (w->mirrored)
+		p.x = -p.x;
+	out.p = rigid_point(&w->moved, p);
+	for (int c = 0; c < 3;
+	     c++) { // a mirrored axis of a box is as good as its negative: the frame stays right-handed
+		ob_vec3 axis = seen_vector(w, ob_column(&s->r, c));
+		if (w->mirrored && c == 0)
+			axis = ob_scale(axis, -1);
+		out.r.m[0][c] = axis.x, out.r.m[1][c] = axis.y, out.r.m[2][c] = axis.z;
+	}
+	out.v = ob_add(seen_vector(w, s->v), w->boost);
+	if (w->mirrored)
+		axial = ob_v3(s->w.x, -s->w.y, -s->w.z);
+	out.w = rigid_turn(&w->moved, axial);
+	return out;
+}
+
+// Farthest that a point of m, as seen, is from the nearest of n (m).
+static double points_apart(const view *w, const ob_manifold *m, const ob_manifold *n)
+{
+	double most = 0;
+	for (int i = 0; i < m->points; i++) {
+		ob_vec3 at = m->at[i];
+		if (w->mirrored)
+			at.x = -at.x;
+		at = rigid_point(&w->moved, at);
+		double least = INFINITY;
+		for (int j = 0; j < n->points; j++)
+			least = fmin(least, ob_norm(ob_sub(at, n->at[j])) + fabs(m->gap[i] - n->gap[j]));
+		most = fmax(most, least);
+	}
+	return most;
+}
+
+// Whether both see the same.
+static bool same(const ob_placed *a, const ob_placed *b, double margin, const view *w)
+{
+	ob_manifold m = { .valid_path = INFINITY }, n = m;
+	ob_placed x = seen(w, a), y = seen(w, b);
+	ob_manifold_find(a, b, margin, &m);
+	ob_manifold_find(w->swapped ? &y : &x, w->swapped ? &x : &y, margin, &n);
+	if (m.points != n.points || fabs(m.separation - n.separation) > tiny)
+		return false;
+	ob_vec3 normal = ob_scale(seen_vector(w, m.normal), w->swapped ? -1 : 1);
+	return m.points == 0 || (ob_norm(ob_sub(normal, n.normal)) <= tiny && points_apart(w, &m, &n) <= tiny);
+}
+
+static view random_view(uint64_t *seed, int k)
+{
+	view w = { .moved.q = ob_quat_identity() };
+	if (k & 1)
+		w.moved = random_rigid(seed);
+	w.mirrored = k & 2;
+	w.swapped = k & 4;
+	if (k & 8)
+		w.boost = random_vector(seed, 100);
+	return w;
+}
+
+static ob_placed moving(uint64_t *seed, ob_placed s)
+{
+	s.v = random_vector(seed, 1);
+	s.w = random_vector(seed, 1);
+	s.rest_depth = 2e-4, s.far_future = 10;
+	return s;
+}
+
+static void test_random(ob_shape sa, ob_shape sb)
+{
+	uint64_t seed = 1;
+	int touching = 0, failed = 0;
+	for (int i = 0; i < 16000; i++) {
+		ob_placed a = moving(&seed, random_placed(&seed, sa, .7)),
+			  b = moving(&seed, random_placed(&seed, sb, .7));
+		double margin = within(&seed, 0, .1);
+		view w = random_view(&seed, i % 16);
+		ob_manifold m;
+		ob_manifold_find(&a, &b, margin, &m);
+		touching += m.points > 0;
+		failed += !same(&a, &b, margin, &w);
+	}
+	printf("random: %d touch, %d are seen otherwise\n", touching, failed);
+	CHECK(touching > 3000 && failed == 0);
+}
+
+// On each other, in all proportions, turned about the vertical by any angle, by a quarter, or not; a hair apart or in
+// each other; at rest or not.
+static void test_flat(double tilt, bool rests)
+{
+	uint64_t seed = 2;
+	int failed[16] = { 0 }, all = 0;
+	for (int i = 0; i < 16000; i++) {
+		ob_vec3 sa = random_size(&seed), sb = i % 3 ? random_size(&seed) : sa;
+		double turn = i % 5 == 0 ? 0 : i % 5 == 1 ? M_PI / 4 : i % 5 == 2 ? M_PI / 2 : within(&seed, -3, 3);
+		ob_vec3 th = random_vector(&seed, tilt), off = random_vector(&seed, .2);
+		ob_placed b = place(OB_SHAPE_BOX, sb, ob_v3(0, 0, 0), ob_quat_identity());
+		ob_placed a = place(OB_SHAPE_BOX, sa, ob_v3(off.x, off.y, sa.z + sb.z + within(&seed, -1e-4, 1e-4)),
+				    ob_quat_turn(ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, turn)), th));
+		if (i % 7 == 0)
+			a.p.x = a.p.y = 0;
+		if (!rests)
+			a = moving(&seed, a), b = moving(&seed, b);
+		a.rest_depth = b.rest_depth = 2e-4, a.far_future = b.far_future = 10;
+		view w = random_view(&seed, i % 16);
+		failed[i % 16] += !same(&a, &b, 3e-3, &w);
+	}
+	for (int k = 0; k < 16; k++)
+		all += failed[k];
+	printf("flat, tilt %g, %s: %d are seen otherwise:", tilt, rests ? "at rest" : "moving", all);
+	for (int k = 0; k < 16; k++)
+		printf(" %d", failed[k]);
+	printf("\n");
+	CHECK(all == 0);
+}
+
+int main(void)
+{
+	test_random(OB_SHAPE_BOX, OB_SHAPE_BOX);
+	test_random(OB_SHAPE_SPHERE, OB_SHAPE_BOX);
+	for (int rests = 0; rests < 2; rests++) {
+		test_flat(0, rests);
+		test_flat(1e-6, rests);
+		test_flat(1e-3, rests);
+	}
+	return check_end();
+}

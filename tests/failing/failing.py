@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""The Nth allocation, fork, mapping, open or write of a short run fails, for every N: one clear error and exit code 1 (2 while
+the scene is read), or the run goes on and ends in the right bits; nothing is left behind, and nobody dies of it.
+
+    failing.py OBSIM LIBRARY SCENES [KIND ...] [--every K]
+
+LIBRARY is failing.c, built. With --every K, of allocations, of which a run makes hundreds, each Kth is tried.
+"""
+
+import argparse
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+
+KINDS = ["alloc", "fork", "mmap", "open", "write"]
+WALL_SECONDS = 600
+
+
+class Run:
+	def __init__(self, a, folder):
+		self.a, self.folder = a, folder
+		self.name = f"failing-{os.getpid()}"
+
+	def once(self, kind, n, isolation):
+		"""(what it returned, whether the call failed, how many there were)."""
+		mark = os.path.join(self.folder, "mark")
+		words = [self.a.obsim, "run", os.path.join(self.a.scenes, "stack.lua"), "--duration", ".05", "--workers", "2", "--isolation", isolation,
+			"--name", self.name, "--json", os.path.join(self.folder, "out.json"), "--series", os.path.join(self.folder, "s.csv"),
+			"--trace", os.path.join(self.folder, "t.json"), "--checkpoint", os.path.join(self.folder, "c")]
+		for file in os.listdir(self.folder):
+			os.remove(os.path.join(self.folder, file))
+		env = dict(os.environ, FAIL_CALL=f"{kind}:{n}", FAIL_MARK=mark, LD_PRELOAD=self.a.library)
+		done = subprocess.run(words, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=WALL_SECONDS)
+		lines = open(mark).read().split("\n") if os.path.exists(mark) else []
+		calls = max([int(l.split()[1]) for l in lines if l.startswith("calls")], default=0)
+		return done, any(l.startswith("failed") for l in lines), calls
+
+	def state(self):
+		try:
+			with open(os.path.join(self.folder, "out.json")) as f:
+				return json.load(f)["state_hash"]
+		except (OSError, ValueError, KeyError):
+			return None
+
+	def faults(self, done, right):
+		said = [l for l in done.stderr.split("\n") if l]
+		if done.returncode not in (0, 1, 2):  # 2: it happens while the scene is read
+			yield f"exit code {done.returncode}"
+		if done.returncode and sum(l.startswith("obsim: ") and not l.startswith("obsim: warning") for l in said) != 1:
+			yield "not one error"
+		if done.returncode == 0 and self.state() != right:
+			yield "another state"
+		if [l for l in said if not l.startswith("obsim: ")]:
+			yield "words that are not obsim's"
+		if re.search(r"SIG(SEGV|ABRT|BUS|ILL|FPE)", done.stderr):
+			yield "a crash"
+		if os.path.exists("/dev/shm/obsim." + self.name):
+			yield "a universe was left behind"
+			os.remove("/dev/shm/obsim." + self.name)
+
+
+def main():
+	p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+	p.add_argument("obsim", type=os.path.abspath)
+	p.add_argument("library", type=os.path.abspath)
+	p.add_argument("scenes", type=os.path.abspath)
+	p.add_argument("kinds", nargs="*", default=KINDS)
+	p.add_argument("--every", type=int, default=1)
+	p.add_argument("--isolation", choices=["thread", "process"])
+	a = p.parse_args()
+	resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+	tried = bad = 0
+	with tempfile.TemporaryDirectory(prefix="obsim-failing-") as folder:
+		run = Run(a, folder)
+		for kind in a.kinds:
+			for isolation in [a.isolation] if a.isolation else ["thread", "process"]:
+				done, _, calls = run.once(kind, 0, isolation)
+				right = run.state()
+				if done.returncode or not right or not calls:
+					print(f"{kind}, {isolation}: does not run: {done.stderr}")
+					return 1
+				n, missed = 1, 0
+				while missed < 3:  # a worker's own calls are not among those of the host
+					done, failed, _ = run.once(kind, n, isolation)
+					missed = 0 if failed else missed + 1
+					tried += failed
+					found = list(run.faults(done, right))
+					if found:
+						bad += 1
+						print(f"{kind} {n}, {isolation}: {', '.join(found)}: {done.stderr.strip()}", flush=True)
+					n += a.every if kind == "alloc" else 1
+	print(f"{tried} calls failed, {bad} badly")
+	return 1 if bad else 0
+
+
+if __name__ == "__main__":
+	sys.exit(main())

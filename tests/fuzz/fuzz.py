@@ -1,0 +1,363 @@
+#!/usr/bin/env python3
+"""Fuzzing of the built program: scenes, Lua, command lines, checkpoints that no person would write.
+
+    fuzz.py OBSIM KIND ... [--count N | --hours H] [--seed S] [--keep DIR]
+
+KIND is one of: scenes (generated, edge values in all fields), lua (mutants of the shipped scenes), words (command lines),
+checkpoints (mutants of a run's own), records (mutants of the results that compare keeps). Each case is a process of its
+own. Whatever comes in, it must end by itself with 0, 1 or 2; say what is wrong in lines that begin "obsim: "; leave no
+universe behind; send no control character to a terminal; and compute no longer than its CPU time allows. What does not is
+kept in DIR (fuzz-kept) with the command that does it again, and the exit code is 1.
+
+For hours, all kinds in turn, on a build with sanitizers:
+
+    meson setup build-asan -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lto=false && ninja -C build-asan
+    UBSAN_OPTIONS=halt_on_error=1 setarch -R python3 tests/fuzz/fuzz.py build-asan/obsim all --hours 8 --seed $RANDOM
+
+Segments, the fifth kind, are read in the fuzzer's own process, a million in a minute: tests/fuzz/segments.c.
+"""
+
+import argparse
+import glob
+import math
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SCENES = os.path.join(HERE, "..", "..", "scenes")
+CPU_SECONDS = 60  # of one case: a step's whole budget is some 5 s, and a sanitizer takes ten times as long
+WALL_SECONDS = 1800  # what waits for ever; a machine may be as overloaded as it likes
+OUTPUT_MAX = 1 << 20  # bytes
+
+EDGES = [0., -0., 5e-324, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, .01, .1, .5, 1., 1.5, 3., 10., 100., 1e3, 1e6, 1e7, 1e9,
+	1e15, 1e16, 1e300, 1.7976931348623157e308]
+
+
+class Scenes:
+	"""Generated scenes. Mostly within what is allowed, so that they run; now and then anything."""
+
+	def __init__(self, r):
+		self.r = r
+
+	def number(self, low, high, wild=.004):
+		r = self.r
+		if r.random() < wild:
+			return r.choice(["0/0", "1/0", "-1/0", "nil", "true", "'1'", "{}", "-1e400", "2^63", repr(r.choice(EDGES))])
+		kind = r.random()
+		if kind < .35:
+			inside = [x for e in EDGES for x in (e, -e) if low <= x <= high]
+			return repr(r.choice(inside) if inside else low)
+		if kind < .5:
+			return repr(r.choice((low, high)))
+		if kind < .75 and low >= 0:
+			return repr(math.exp(r.uniform(math.log(max(low, 1e-9)), math.log(max(high, 1e-9)))))
+		return repr(r.uniform(max(low, -10), min(high, 10)))
+
+	def vector(self, low, high):
+		if self.r.random() < .003:
+			return self.r.choice(["{}", "{1, 2}", "{1, 2, 3, 4}", "{1, 2, 'x'}", "7", "{x = 1, y = 2, z = 3}"])
+		return "{" + ", ".join(self.number(low, high, .001) for _ in range(3)) + "}"
+
+	def size(self):
+		"""Of metres, mostly: what is absurd in all directions just flies by."""
+		return self.number(1e-4, 1e6) if self.r.random() < .3 else repr(self.r.uniform(.05, 2))
+
+	def place(self):
+		return self.vector(-1e7, 1e7) if self.r.random() < .1 else self.vector(-3, 3)
+
+	def maybe(self, chance, name, value):
+		return [f"{name} = {value()}"] if self.r.random() < chance else []
+
+	def body(self):
+		r = self.r
+		kind = r.choice(["box", "sphere", "capsule", "cylinder", "plane", "ground"])
+		fields = []
+		if kind == "box":
+			fields.append("size = {" + ", ".join(self.size() for _ in range(3)) + "}")
+		if kind in ("sphere", "capsule", "cylinder"):
+			fields.append(f"radius = {self.size()}")
+		if kind in ("capsule", "cylinder"):
+			fields.append(f"length = {self.size()}")
+		if kind == "plane":
+			fields += self.maybe(.8, "normal", lambda: self.vector(-1, 1))
+		if kind == "ground":
+			fields += self.maybe(.3, "height", lambda: self.number(-1e7, 1e7))
+		else:
+			fields += self.maybe(.9, "at", self.place)
+			fields += self.maybe(.05, "name", self.text)
+			fields += self.maybe(.05, "born", lambda: self.number(0, .1))
+			fields += self.maybe(.05, "dies", lambda: self.number(1e-3, 1e9))
+		if kind not in ("plane", "ground"):
+			static = r.random() < .15
+			fields += ["static = true"] if static else []
+			if not static:
+				fields += self.maybe(.5, "velocity", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
+				fields += self.maybe(.4, "spin", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
+				fields += self.maybe(.2, "force", lambda: self.vector(-1e6, 1e6) if r.random() < .8 else self.vector(-1e15, 1e15))
+				weight = r.random()
+				fields += [f"mass = {self.number(1e-12, 1e15)}"] if weight < .3 else []
+				fields += [f"density = {self.number(1e-3, 1e9)}"] if .3 < weight < .4 else []
+			fields += self.maybe(.3, "q", lambda: "{" + ", ".join(self.number(-2, 2) for _ in range(4)) + "}")
+			fields += self.maybe(.1, "rotation", lambda: f"{{ axis = {self.vector(-1, 1)}, degrees = {self.number(-36000, 36000)} }}")
+		fields += self.maybe(.2, "friction", lambda: self.number(0, 1000))
+		fields += self.maybe(.4, "restitution", lambda: self.number(0, 1))
+		fields += self.maybe(.05, "colour", lambda: r.choice(["'#ff0000'", "{1, 0, 0}", "'red'", "{2, 0, 0}"]))
+		fields += self.maybe(.01, r.choice(["sise", "material", "[1]", "camera"]), lambda: self.number(-1, 1))
+		r.shuffle(fields)
+		return f"{kind} {{ {', '.join(fields)} }}"
+
+	def text(self):
+		return self.r.choice(["'a'", "'köln'", "''", "'a#1'", "('n'):rep(47)", "('n'):rep(48)", "'\\27[2J'", "'\\xff'",
+			"'\\u{202e}'", "5"])
+
+	def head(self):
+		r = self.r
+		fields = self.maybe(.7, "step", lambda: self.number(1e-4, 10) if r.random() < .3 else r.choice(["1/60", "1/30", "1/240"]))
+		fields += self.maybe(.4, "substeps", lambda: str(r.choice([1, 1, 2, 8, 32, 256, 1000, 1001, 0])))
+		if not any(f.startswith("substeps") for f in fields):
+			fields += self.maybe(.3, "tolerance", lambda: self.number(1e-6, 1))
+		fields += self.maybe(.2, "iterations", lambda: str(r.choice([1, 2, 16, 1000, 100000])))
+		fields += self.maybe(.3, "solver", lambda: r.choice(["'coloured'", "'jacobi'", "'ghost'", "'lagged'"]))
+		fields += self.maybe(.03, "lag", lambda: str(r.randint(0, 300)))
+		fields += self.maybe(.2, "integrator", lambda: r.choice(["'exact'", "'ode'"]))
+		fields += self.maybe(.3, "sleeping", lambda: r.choice(["true", "false"]))
+		fields += self.maybe(.3, "gravity", lambda: self.vector(-1e4, 1e4) if r.random() < .3 else "{0, 0, 0}")
+		fields += self.maybe(.1, "duration", lambda: self.number(1e-3, 1e9))
+		return f"scene {{ {', '.join(fields)} }}"
+
+	def scene(self):
+		r = self.r
+		lines = [self.head()] if r.random() < .8 else []
+		lines += ["ground {}"] if r.random() < .6 else []
+		lines += [self.body() for _ in range(r.randint(1, 12))]
+		if r.random() < .1:
+			lines.append(f"for i = 1, {r.choice([20, 200])} do sphere {{ radius = .1, at = {{ i % {r.randint(1, 7)}, i // 7, .1 * i }} }} end")
+		return "\n".join(lines) + "\n"
+
+	def options(self):
+		r = self.r
+		words = ["--duration", r.choice([".02", ".05", ".1", ".3", "2"])]
+		for chance, more in [(.3, ["--isolation", r.choice(["thread", "process"])]), (.5, ["--workers", r.choice(["1", "2", "3", "objects"])]),
+				(.12, ["--narrow", "aabb"]), (.1, ["--tolerance", r.choice(["1um", ".1mm", "1mm", "1m"])]), (.1, ["--substeps", r.choice(["1", "4", "64"])]),
+				(.1, ["--solver", r.choice(["coloured", "jacobi", "ghost", "lagged"])]), (.1, ["--integrator", r.choice(["exact", "ode"])]),
+				(.1, ["--measure", r.choice(["step", "end", "profile"])]), (.1, ["--explain"]), (.05, ["--trace", "/dev/null"]), (.05, ["--json", "/dev/null"]),
+				(.05, ["--series", "/dev/null"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict"])]:
+			words += more if r.random() < chance else []
+		if r.random() < .2:
+			words = ["--arch", "monolith", "--iterations", r.choice(["20", "0", "1"]), "--duration", ".1"]
+		return words
+
+	def case(self, folder):
+		path = os.path.join(folder, "scene.lua")
+		with open(path, "w", encoding="utf-8", errors="surrogateescape") as f:
+			f.write(self.scene())
+		return ["run", path] + self.options()
+
+
+def mutate(r, data, tokens, most=6):
+	"""Bytes changed, cut, doubled, moved, or replaced by tokens."""
+	data = bytearray(data)
+	for _ in range(r.randint(1, most)):
+		at, n = r.randrange(len(data) + 1), r.randint(1, 40)
+		kind = r.randrange(7)
+		if kind == 0 and at < len(data):
+			data[at] = r.randrange(256)
+		elif kind == 1:
+			del data[at:at + n]
+		elif kind == 2:
+			data[at:at] = data[(start := r.randrange(len(data) + 1)):start + n]
+		elif kind == 3 and r.random() < .2:
+			del data[at:]
+		elif kind == 4 and at < len(data):
+			data[at] ^= 1 << r.randrange(8)
+		else:
+			data[at:at + r.choice((0, 0, n))] = r.choice(tokens)
+	return bytes(data)
+
+
+class Lua:
+	TOKENS = [t.encode("utf-8", "surrogateescape") for t in ["{", "}", "(", ")", "end", "nil", "1e308", "-1", "0/0", "1/0", '"', ",", "={", "[[", "function()",
+		"do", "\n", "..", "#", "^", "\0", "box", "scene", "''", "size", "material", "~=", "while true do", "goto", "param", "sphere {}", "camera",
+		"2^53", "('x'):rep(1e6)", "math.random(0)", "table.unpack({}, 1, 1e6)", "string.format('%99.99f', 1e308)", "for i = 1, 1e7 do",
+		"tostring({})", "error({})", "assert(nil, {})", "pairs(_G)", "t = {} t[t] = t", "%", "*", ".-", "\\u{7fffffff}", "\udcff"]]
+
+	def __init__(self, r):
+		self.r = r
+		self.seeds = []
+		for path in sorted(glob.glob(os.path.join(SCENES, "*.lua")) + glob.glob(os.path.join(HERE, "corpus", "*.lua"))):
+			with open(path, "rb") as f:
+				self.seeds.append(f.read())
+
+	def case(self, folder):
+		path = os.path.join(folder, "scene.lua")
+		with open(path, "wb") as f:
+			f.write(mutate(self.r, self.r.choice(self.seeds), self.TOKENS))
+		return ["run", path, "--duration", ".02", "--workers", "1", "--measure", "end"]
+
+
+class Words:
+	"""Command lines: every option that --help knows, with values that fit it or do not."""
+
+	VALUES = ["", "0", "-1", "1", "2", "1e300", "nan", "inf", "1/0", "1/60", "0x10", "objects", "thread", "process", "monolith", "1mm", "1e-400m", "aabb,contacts",
+		"/dev/full", "/dev/null", "/nonexistent/x", ".", "-", "a,b", "100000", "4294967296", "99999999999999999999", "\x1b[31m", "\udcff", "x" * 300, "%s%n",
+		"1x1", "0x0", "65536x65536", "n=1", "=", "n=", "none", "main"]
+
+	def __init__(self, r):
+		self.r = r
+		self.options = {}
+
+	def known(self, obsim):
+		for command in ("run", "top", "inspect", "compare"):
+			text = subprocess.run([obsim, command, "--help"], capture_output=True, text=True).stdout
+			self.options[command] = sorted(set(re.findall(r"--[a-z-]+", text)) - {"--interval"})
+
+	def case(self, folder):
+		r = self.r
+		command = r.choices(["run", "top", "inspect", r.choice(self.VALUES)], [8, 1, 1, .5])[0]
+		words = [command]
+		for _ in range(r.randint(0, 5)):
+			option = r.choice(self.options.get(command) or ["--help"])
+			words += r.choice([[option, r.choice(self.VALUES)], [f"{option}={r.choice(self.VALUES)}"], [option], [r.choice(self.VALUES)]])
+		if command == "run" and r.random() < .8:
+			words.insert(1, os.path.join(SCENES, "stack.lua"))
+			words += ["--duration", ".02"]  # the last one counts, or is refused
+		if command == "top":
+			words += ["--once", "--interval", ".05"]
+		return [w.replace("\0", "") for w in words]
+
+
+class Files:
+	"""Mutants of a file that the program itself has written, given back to it."""
+
+	def __init__(self, r):
+		self.r = r
+		self.seed = None
+
+	def case(self, folder):
+		path = os.path.join(folder, "mutant")
+		tokens = [bytes([x]) * n for x in (0, 1, 127, 255) for n in (1, 4, 8)] + [b"\0\0\0\0\0\0\xf8\x7f"]
+		with open(path, "wb") as f:
+			f.write(mutate(self.r, self.seed, tokens, 3))
+		return self.command(path, folder)
+
+
+class Checkpoints(Files):
+	def known(self, obsim):
+		with tempfile.TemporaryDirectory() as folder:
+			path = os.path.join(folder, "c")
+			subprocess.run([obsim, "run", os.path.join(SCENES, "stack.lua"), "--duration", ".1", "--checkpoint", path], stdout=subprocess.DEVNULL, check=True)
+			with open(path, "rb") as f:
+				self.seed = f.read()
+
+	def command(self, path, folder):
+		return ["inspect", path] if self.r.random() < .5 else ["run", "--resume", path, "--duration", ".12"]
+
+
+class Records(Files):
+	def known(self, obsim):
+		with tempfile.TemporaryDirectory() as folder:
+			subprocess.run([obsim, "compare", os.path.join(SCENES, "stack.lua"), "--duration", ".02", "--repeats", "1", "--out", folder],
+				stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+			with open(os.path.join(folder, "results.csv"), "rb") as f:
+				self.seed = f.read()
+
+	def command(self, path, folder):
+		out = os.path.join(folder, "out")
+		os.makedirs(out)
+		os.rename(path, os.path.join(out, "results.csv"))
+		return ["compare", os.path.join(SCENES, "stack.lua"), "--duration", ".02", "--repeats", "1", "--out", out]
+
+
+KINDS = {"scenes": Scenes, "lua": Lua, "words": Words, "checkpoints": Checkpoints, "records": Records}
+
+
+def limit():
+	resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS + 5))
+	resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+	resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 28, 1 << 28))
+
+
+def faults(done, name):
+	"""What a run must not do."""
+	text = (done.stdout + done.stderr).decode("utf-8", "replace")
+	if done.returncode not in (0, 1, 2):
+		yield f"exit code {done.returncode}" + (f" ({signal.Signals(-done.returncode).name})" if -65 < done.returncode < 0 else "")
+	if re.search(r"Sanitizer|runtime error:|^==\d+==", text, re.M):
+		yield "a sanitizer's report"
+	if done.returncode in (1, 2) and not re.search(r"^(obsim: |Usage)", done.stderr.decode("utf-8", "replace"), re.M):
+		yield "no word of what is wrong"
+	if re.search(r"was killed by SIG(?!XCPU)|exit code \d|left with", text):
+		yield "a simulator died"
+	if re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]", text):
+		yield "control characters"
+	if os.path.exists("/dev/shm/obsim." + name):
+		yield "a universe was left behind"
+
+
+def run_case(obsim, kind, folder, name):
+	words = kind.case(folder)
+	if words[0] == "run" and not isinstance(kind, Words):
+		words += ["--name", name]
+	try:
+		done = subprocess.run([obsim] + words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit,
+			timeout=WALL_SECONDS)
+	except subprocess.TimeoutExpired:
+		return words, None, ["hangs"], b""
+	return words, done.returncode, list(faults(done, name)), done.stderr
+
+
+def keep(where, label, folder, words, found, stderr):
+	to = os.path.join(where, label)
+	shutil.rmtree(to, ignore_errors=True)
+	shutil.copytree(folder, to, ignore=shutil.ignore_patterns("*.h5"))
+	with open(os.path.join(to, "command"), "w", encoding="utf-8", errors="backslashreplace") as f:
+		f.write(repr([w.replace(folder, to) for w in words]) + "\n" + "\n".join(found) + "\n\n")
+	with open(os.path.join(to, "stderr"), "wb") as f:
+		f.write(stderr[:OUTPUT_MAX])
+
+
+def main():
+	p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+	p.add_argument("obsim", type=os.path.abspath)
+	p.add_argument("kinds", nargs="+", choices=[*KINDS, "all"])
+	p.add_argument("--count", type=int, default=100, help="cases of each kind (100)")
+	p.add_argument("--hours", type=float, help="instead: for so long, the kinds in turn")
+	p.add_argument("--seed", type=int, default=1, help="case I of seed S is the same whatever the count (1)")
+	p.add_argument("--keep", type=os.path.abspath, default="fuzz-kept", help="where what fails is kept (fuzz-kept)")
+	a = p.parse_args()
+	names = list(KINDS) if "all" in a.kinds else a.kinds
+	kinds = {}
+	for n in names:
+		kinds[n] = KINDS[n](random.Random())
+		if hasattr(kinds[n], "known"):
+			kinds[n].known(a.obsim)
+	until = time.monotonic() + 3600 * a.hours if a.hours else None
+	cases = bad = i = 0
+	codes = {}
+	while time.monotonic() < until if until else i < a.count:
+		for n in names:
+			kinds[n].r.seed(f"{n} {a.seed} {i}")
+			with tempfile.TemporaryDirectory(prefix="obsim-fuzz-") as folder:
+				words, code, found, stderr = run_case(a.obsim, kinds[n], folder, f"fuzz-{os.getpid()}")
+				if found:
+					bad += 1
+					keep(a.keep, f"{n}-{a.seed}-{i}", folder, words, found, stderr)
+					print(f"{n} {i}: {', '.join(found)}: {stderr.decode('utf-8', 'replace').strip().splitlines()[-1:]}", flush=True)
+			codes[code] = codes.get(code, 0) + 1
+			cases += 1
+		i += 1
+	tally = ", ".join(f"{n} ended with {code}" for code, n in sorted(codes.items(), key=str))
+	print(f"{cases} cases ({tally}), {bad} bad" + (f", kept in {a.keep}" if bad else ""))
+	return 1 if bad else 0
+
+
+if __name__ == "__main__":
+	sys.exit(main())

@@ -1,0 +1,202 @@
+#include "play.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "measure/measure.h"
+#include "ode/ode_body.h"
+#include "sim/sim.h"
+#include "world/world.h"
+
+enum { MOST_WORKERS = 8 };
+
+typedef struct worker {
+	ob_universe *u;
+	uint32_t number;
+	pthread_t thread;
+	bool failed;
+} worker;
+
+typedef struct player {
+	const random_scene *scene;
+	ob_universe *u;
+	ob_sim *sim; // NULL: workers have threads of their own
+	uint32_t workers;
+	worker crowd[MOST_WORKERS];
+	ob_snapshot now;
+	played *out;
+} player;
+
+static bool give_up(played *out, const char *why)
+{
+	out->failed = true;
+	snprintf(out->why, sizeof out->why, "%.159s", why);
+	return false;
+}
+
+static void *live(void *arg)
+{
+	worker *w = arg;
+	ob_error e;
+	ob_ode_thread_init();
+	ob_sim *s = ob_sim_create(w->u, w->number, &e);
+	w->failed = !s;
+	if (s) {
+		ob_sim_run(s);
+		ob_sim_destroy(s);
+	}
+	ob_ode_thread_finish();
+	return NULL;
+}
+
+static void put_bodies(const random_scene *s, ob_universe *u)
+{
+	ob_world w = { .gravity = s->run.gravity };
+	for (uint32_t i = 0; i < s->bodies; i++) {
+		const scene_body *b = &s->body[i];
+		ob_world_body o = ob_world_add(&w, b->shape, b->size, b->mass, b->state.pose.p);
+		o.passport->friction = b->friction;
+		o.passport->restitution = b->restitution;
+		*o.state = b->state;
+	}
+	for (uint32_t i = 0; i < s->bodies; i++)
+		ob_write_passport(u, i, &w.passport[i]);
+	for (uint32_t i = 0; i < s->bodies; i++)
+		ob_sim_place(u, i, &w.state[i]);
+	ob_world_finish(&w);
+}
+
+static bool run_to(player *p, uint64_t step)
+{
+	ob_error e;
+	ob_gate_set_pause_step(p->u, step);
+	ob_sim_resume(p->u);
+	if (p->sim)
+		while (!ob_gate_host_wait(p->u, 0))
+			ob_step(p->sim);
+	else if (!ob_gate_host_wait(p->u, 60))
+		return give_up(p->out, "the workers do not come to a pause");
+	if (ob_sim_failure(p->u))
+		return give_up(p->out, ob_sim_failure(p->u));
+	return ob_snapshot_take(&p->now, p->u, false, &e) || give_up(p->out, e.text);
+}
+
+static bool open_player(player *p, uint32_t workers)
+{
+	static int made;
+	char name[OB_NAME_MAX];
+	ob_error e;
+	snprintf(name, sizeof name, "metamorphic-%d-%d", (int)getpid(), made++);
+	ob_universe_setup setup = { .name = name, .capacity = p->scene->bodies, .workers = workers ? workers : 1, .isolation = "thread", .run = p->scene->run };
+	p->u = ob_universe_create(&setup, &e);
+	if (!p->u)
+		return give_up(p->out, e.text);
+	ob_universe_unlink(p->u);
+	put_bodies(p->scene, p->u);
+	p->workers = workers;
+	for (uint32_t i = 0; i < workers; i++) {
+		p->crowd[i] = (worker){ .u = p->u, .number = i };
+		if (pthread_create(&p->crowd[i].thread, NULL, live, &p->crowd[i]) != 0)
+			abort();
+	}
+	if (!workers) {
+		ob_ode_thread_init();
+		p->sim = ob_sim_create(p->u, 0, &e);
+	}
+	return (workers || p->sim || give_up(p->out, e.text)) && run_to(p, 0);
+}
+
+static void close_player(player *p)
+{
+	if (!p->u)
+		return;
+	if (p->workers)
+		ob_gate_stop(p->u);
+	for (uint32_t i = 0; i < p->workers; i++)
+		pthread_join(p->crowd[i].thread, NULL);
+	if (p->sim) {
+		ob_sim_destroy(p->sim);
+		ob_ode_thread_finish();
+	}
+	ob_snapshot_finish(&p->now);
+	ob_universe_destroy(p->u, false);
+}
+
+// ---- conservation
+
+typedef struct budget {
+	ob_vec3 momentum, spin;
+	double energy, least; // J: at the start; the least since, net
+	double all_momentum, all_spin, to_lose; // what errors are shares of
+} budget;
+
+static double energy_of(const player *p)
+{
+	return ob_measure_energy(&p->now, p->scene->run.gravity);
+}
+
+static budget budget_of(const player *p)
+{
+	const random_scene *s = p->scene;
+	budget b = { ob_measure_momentum(&p->now), ob_measure_angular_momentum(&p->now), energy_of(p), 0, 0, 0, 0 };
+	double lowest = INFINITY, g = ob_norm(s->run.gravity);
+	for (uint32_t i = 0; i < s->bodies; i++) {
+		const scene_body *o = &s->body[i];
+		double r = ob_shape_radius(o->shape, o->size);
+		double v = ob_norm(o->state.v), turn = ob_norm(o->state.w) * r;
+		if (o->mass == 0)
+			continue;
+		b.all_momentum += o->mass * v;
+		b.all_spin += o->mass * (v * ob_norm(o->state.pose.p) + turn * r);
+		b.to_lose += o->mass * (.5 * v * v + .2 * turn * turn + g * r);
+		if (g > 0)
+			lowest = fmin(lowest, -ob_dot(s->run.gravity, o->state.pose.p) / g);
+	}
+	for (uint32_t i = 0; g > 0 && i < s->bodies; i++)
+		b.to_lose += s->body[i].mass * g * (-ob_dot(s->run.gravity, s->body[i].state.pose.p) / g - lowest);
+	return b;
+}
+
+static void audit(player *p, budget *b)
+{
+	ob_counters count;
+	played *out = p->out;
+	ob_universe_count(p->u, &count);
+	double net = energy_of(p) - b->energy - count.recovered;
+	b->least = fmin(b->least, net);
+	out->energy = fmax(out->energy, (net - b->least) / b->to_lose);
+	ob_vec3 lost = ob_sub(ob_measure_momentum(&p->now), b->momentum);
+	ob_vec3 turned = ob_sub(ob_measure_angular_momentum(&p->now), b->spin);
+	out->momentum = fmax(out->momentum, b->all_momentum > 0 ? ob_norm(lost) / b->all_momentum : 0);
+	out->spin = fmax(out->spin, b->all_spin > 0 ? ob_norm(turned) / b->all_spin : 0);
+	out->touched = count.pair_solves > 0 || count.impacts > 0;
+}
+
+// ---- a run
+
+void play(const random_scene *s, uint32_t workers, uint64_t steps, played *out)
+{
+	player p = { .scene = s, .out = out };
+	*out = (played){ .failed = false };
+	ob_ode_init();
+	if (open_player(&p, workers)) {
+		ob_penetration depth;
+		ob_measure_penetration(&p.now, &depth);
+		out->depth = depth.max_m;
+		budget b = budget_of(&p);
+		for (uint64_t step = 1; step <= steps && !out->failed; step++) {
+			if (!run_to(&p, step))
+				break;
+			audit(&p, &b);
+			if (step * PLAY_SAMPLES % steps)
+				continue;
+			uint64_t sample = step * PLAY_SAMPLES / steps - 1;
+			for (uint32_t i = 0; i < s->bodies; i++)
+				out->at[sample][i] = ob_snapshot_state(&p.now, i);
+		}
+		out->hash = ob_measure_hash(&p.now);
+	}
+	close_player(&p);
+}

@@ -1,0 +1,338 @@
+#include "relation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "motion/random.h"
+
+static const double tolerance = 1e-9; // m
+static const double disturbance = 1e-12; // m, of the twin
+static const double pi = 3.14159265358979323846;
+
+const char *const relation_name[RELATIONS] = { "again", "workers",  "mirrored",  "turned",   "tilted",
+					       "moved", "boosted",  "reordered", "rescaled", "refined",
+					       "far",   "momentum", "spin",      "energy" };
+
+// ---- one scene seen otherwise
+
+// Where the original's p is, the other has length * turn (mirror p) + shift + boost t.
+typedef struct view {
+	bool mirror; // x to -x, first
+	ob_quat turn;
+	ob_vec3 shift, boost; // in the other's units
+	double length, time, mass; // the other's numbers for one of the original's
+	uint32_t id[SCENE_BODIES]; // of the original's bodies
+} view;
+
+static view same_view(const random_scene *s)
+{
+	view o = { .turn = ob_quat_identity(), .length = 1, .time = 1, .mass = 1 };
+	for (uint32_t i = 0; i < s->bodies; i++)
+		o.id[i] = i;
+	return o;
+}
+
+static ob_vec3 see_vector(const view *o, ob_vec3 x)
+{
+	ob_mat3 r = ob_quat_matrix(o->turn);
+	return ob_rotate(&r, ob_v3(o->mirror ? -x.x : x.x, x.y, x.z));
+}
+
+// Of an angular velocity, whose mirror image turns the other way.
+static ob_vec3 see_axial(const view *o, ob_vec3 x)
+{
+	ob_mat3 r = ob_quat_matrix(o->turn);
+	return ob_rotate(&r, o->mirror ? ob_v3(x.x, -x.y, -x.z) : x);
+}
+
+// The body is mirrored in its own x, too, of which no shape takes notice.
+static ob_quat see_attitude(const view *o, ob_quat q)
+{
+	return ob_quat_mul(o->turn, o->mirror ? (ob_quat){ q.w, q.x, -q.y, -q.z } : q);
+}
+
+static ob_state see_state(const view *o, ob_state s, double time)
+{
+	ob_vec3 p = ob_madd(ob_add(ob_scale(see_vector(o, s.pose.p), o->length), o->shift), time * o->time, o->boost);
+	return (ob_state){ { p, see_attitude(o, s.pose.q) },
+			   ob_add(ob_scale(see_vector(o, s.v), o->length / o->time), o->boost),
+			   ob_scale(see_axial(o, s.w), 1 / o->time) };
+}
+
+static random_scene see_scene(const view *o, const random_scene *s)
+{
+	random_scene r = *s;
+	r.run.gravity = ob_scale(see_vector(o, s->run.gravity), o->length / (o->time * o->time));
+	r.run.step_length *= o->time;
+	r.run.tolerance *= o->length;
+	for (uint32_t i = 0; i < s->bodies; i++) {
+		const scene_body *from = &s->body[i];
+		scene_body *to = &r.body[o->id[i]];
+		*to = *from;
+		to->size = ob_scale(from->size, o->length);
+		to->mass *= o->mass;
+		to->state = see_state(o, from->state, 0);
+		if (from->mass == 0)
+			to->state.v = to->state.w = ob_v3(0, 0, 0);
+	}
+	return r;
+}
+
+// ---- differences
+
+static double between(const scene_body *b, const ob_state *x, const ob_state *y)
+{
+	double turned = 0, r = b->shape == OB_SHAPE_SPHERE ? b->size.x : ob_shape_radius(b->shape, b->size);
+	ob_mat3 rx = ob_quat_matrix(x->pose.q), ry = ob_quat_matrix(y->pose.q);
+	for (int i = 0; i < 3; i++)
+		turned = fmax(turned, ob_norm(ob_sub(ob_column(&rx, i), ob_column(&ry, i))));
+	return ob_norm(ob_sub(x->pose.p, y->pose.p)) + r * turned;
+}
+
+static double sample_time(const random_scene *s, int sample, uint64_t steps)
+{
+	return (double)((uint64_t)(sample + 1) * steps / PLAY_SAMPLES) * s->run.step_length;
+}
+
+// m, in the original's units: how far the other run is from the original's as it should be seen; infinity where it
+// could not be run.
+static double difference(const random_scene *s, const played *base, const played *other, const view *o, int sample,
+			 uint64_t steps)
+{
+	double most = 0;
+	for (uint32_t i = 0; i < s->bodies; i++) {
+		if (s->body[i].mass == 0)
+			continue;
+		ob_state expected = see_state(o, base->at[sample][i], sample_time(s, sample, steps));
+		scene_body body = s->body[i];
+		body.size = ob_scale(body.size, o->length);
+		double d = between(&body, &expected, &other->at[sample][o->id[i]]) / o->length;
+		if (!(d <= most))
+			most = isnan(d) ? INFINITY : d;
+	}
+	return other->failed ? INFINITY : most;
+}
+
+static random_scene twin_of(const random_scene *s, double sign)
+{
+	random_scene t = *s;
+	uint64_t seed = 1;
+	for (uint32_t i = 0; i < s->bodies; i++) {
+		ob_vec3 off = ob_scale(random_vector(&seed, 1), sign);
+		if (s->body[i].mass > 0)
+			t.body[i].state.pose.p = ob_madd(s->body[i].state.pose.p, disturbance / ob_norm(off), off);
+	}
+	return t;
+}
+
+original relation_original(const random_scene *s, uint64_t steps)
+{
+	original o = { .scene = s };
+	played twin;
+	play(s, 0, steps, &o.base);
+	o.valid = !o.base.failed && o.base.depth < 1e-6;
+	const view same = same_view(s);
+	o.samples = PLAY_SAMPLES;
+	for (int sign = -1; o.valid && sign <= 1; sign += 2) { // apart and together, in the air and in the ground
+		int sample = 0;
+		random_scene t = twin_of(s, sign);
+		play(&t, 0, steps, &twin);
+		while (sample < o.samples && difference(s, &o.base, &twin, &same, sample, steps) <= tolerance)
+			sample++;
+		o.samples = sample;
+	}
+	return o;
+}
+
+// ---- relations
+
+static ob_vec3 random_direction(uint64_t *seed)
+{
+	ob_vec3 x = random_vector(seed, 1);
+	return ob_scale(x, 1 / ob_norm(x));
+}
+
+static ob_vec3 vertical(const random_scene *s)
+{
+	double g = ob_norm(s->run.gravity);
+	return g > 0 ? ob_scale(s->run.gravity, -1 / g) : ob_v3(0, 0, 0);
+}
+
+static void turn(const random_scene *s, uint64_t *seed, view *o)
+{
+	ob_vec3 up = vertical(s);
+	o->turn =
+		scene_is_closed(s) ? random_attitude(seed) : ob_quat_turn(o->turn, ob_scale(up, within(seed, -pi, pi)));
+}
+
+// What does not move must be the same to what glides along it at any speed: planes without friction. false: there is
+// something else.
+static bool boost(const random_scene *s, uint64_t *seed, view *o)
+{
+	ob_vec3 along = random_direction(seed);
+	for (uint32_t i = 0; i < s->bodies; i++) {
+		ob_mat3 r = ob_quat_matrix(s->body[i].state.pose.q);
+		ob_vec3 normal = ob_column(&r, 2);
+		if (s->body[i].mass > 0)
+			continue;
+		if (s->body[i].shape != OB_SHAPE_PLANE || s->body[i].friction > 0)
+			return false;
+		along = ob_madd(along, -ob_dot(along, normal), normal);
+	}
+	double left = ob_norm(along);
+	o->boost = ob_scale(along, pow(10, within(seed, 0, 2)) / left);
+	return left > 1e-3;
+}
+
+static void reorder(const random_scene *s, uint64_t *seed, view *o)
+{
+	for (uint32_t i = s->bodies; i-- > 1;) {
+		uint32_t k = (uint32_t)((i + 1) * uniform(seed)), was = o->id[i];
+		o->id[i] = o->id[k];
+		o->id[k] = was;
+	}
+}
+
+// By powers of four, so that no number is rounded. Gravity stays.
+static void rescale(uint64_t *seed, view *o)
+{
+	int k = (int)within(seed, 1, 4);
+	double up = uniform(seed) < .5 ? 1 : -1;
+	o->length = exp2(2 * k * up);
+	o->time = exp2(k * up);
+	o->mass = exp2((int)within(seed, -9, 10));
+}
+
+static bool make_view(relation_id r, const random_scene *s, uint64_t *seed, view *o)
+{
+	switch (r) {
+	case RELATION_MIRRORED:
+		o->mirror = true;
+		if (uniform(seed) < .5)
+			turn(s, seed, o);
+		return true;
+	case RELATION_TURNED:
+		turn(s, seed, o);
+		return true;
+	case RELATION_TILTED:
+		o->turn = random_attitude(seed);
+		return !scene_is_closed(s);
+	case RELATION_MOVED:
+		o->shift = ob_scale(random_direction(seed), pow(10, within(seed, 0, 3)));
+		return true;
+	case RELATION_BOOSTED:
+		return boost(s, seed, o);
+	case RELATION_REORDERED:
+		reorder(s, seed, o);
+		return s->bodies > 1;
+	case RELATION_RESCALED:
+		rescale(seed, o);
+		return true;
+	default:
+		return true;
+	}
+}
+
+// A box that turns in the distance, and falls if things fall.
+static void add_far_body(random_scene *s, uint64_t *seed)
+{
+	scene_body b = { OB_SHAPE_BOX, { .1, .2, .3 }, 1, .5, .5, { .pose.q = ob_quat_identity() } };
+	b.state.pose.p = ob_madd(ob_scale(random_direction(seed), 500), 2000, vertical(s));
+	b.state.w = random_vector(seed, 3);
+	s->body[s->bodies++] = b;
+}
+
+static void judge_bits(const original *o, const random_scene *s, uint32_t workers, uint64_t steps, judged *j)
+{
+	played other;
+	play(s, workers, steps, &other);
+	memcpy(j->why, other.why, sizeof j->why);
+	j->counted = true;
+	j->error = other.failed;
+	for (int k = 0; k < PLAY_SAMPLES; k++)
+		for (uint32_t i = 0; i < o->scene->bodies; i++)
+			if (memcmp(&o->base.at[k][i], &other.at[k][i], sizeof other.at[k][i]) != 0)
+				j->error = 1;
+}
+
+static void judge_view(const original *o, const view *v, uint64_t steps, judged *j)
+{
+	played other;
+	random_scene s = see_scene(v, o->scene);
+	play(&s, 0, steps, &other);
+	memcpy(j->why, other.why, sizeof j->why);
+	j->counted = o->samples == PLAY_SAMPLES;
+	for (int k = 0; k < o->samples; k++) {
+		double d = difference(o->scene, &o->base, &other, v, k, steps);
+		if (d > tolerance && j->error <= tolerance)
+			j->when = sample_time(o->scene, k, steps);
+		j->error = fmax(j->error, d);
+	}
+	j->limit = tolerance;
+}
+
+// Substeps 8, 16, 32: what the second doubling changes, over what the first does.
+static void judge_refined(const original *o, uint64_t steps, judged *j)
+{
+	played run[3];
+	const view same = same_view(o->scene);
+	double change[2] = { 0 };
+	for (int k = 0; k < 3; k++) {
+		random_scene s = *o->scene;
+		s.run.tolerance = 0;
+		s.run.substeps = 8u << k;
+		play(&s, 0, steps, &run[k]);
+	}
+	for (int k = 0; k < o->samples; k++)
+		for (int i = 0; i < 2; i++)
+			change[i] = fmax(change[i], difference(o->scene, &run[i], &run[i + 1], &same, k, steps));
+	j->counted = o->samples == PLAY_SAMPLES;
+	j->error = change[1] <= tolerance ? 0 : change[1] / change[0];
+	j->limit = 1;
+}
+
+static double limit_of(relation_id r, const original *o)
+{
+	return r == RELATION_MOMENTUM || (r == RELATION_SPIN && !o->base.touched) ? 1e-12 : 1e-9;
+}
+
+judged relation_judge(relation_id r, const original *o, uint64_t seed, uint64_t steps)
+{
+	judged j = { .applies = true, .counted = true };
+	view v = same_view(o->scene);
+	random_scene more = *o->scene;
+	seed = seed * RELATIONS + r;
+	switch (r) {
+	case RELATION_AGAIN:
+	case RELATION_WORKERS:
+		judge_bits(o, o->scene, r == RELATION_AGAIN ? 0 : 3, steps, &j);
+		break;
+	case RELATION_FAR:
+		j.applies = more.bodies < SCENE_BODIES;
+		if (j.applies) {
+			add_far_body(&more, &seed);
+			judge_bits(o, &more, 0, steps, &j);
+		}
+		break;
+	case RELATION_REFINED:
+		judge_refined(o, steps, &j);
+		break;
+	case RELATION_MOMENTUM:
+	case RELATION_SPIN:
+	case RELATION_ENERGY:
+		j.applies = r == RELATION_ENERGY || scene_is_closed(o->scene);
+		j.error = r == RELATION_ENERGY ? o->base.energy : r == RELATION_SPIN ? o->base.spin : o->base.momentum;
+		j.limit = limit_of(r, o);
+		break;
+	default:
+		j.applies = make_view(r, o->scene, &seed, &v);
+		if (j.applies)
+			judge_view(o, &v, steps, &j);
+	}
+	return j;
+}
+
+bool relation_fails(const judged *j)
+{
+	return j->applies && !(j->error <= j->limit);
+}

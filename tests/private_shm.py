@@ -1,0 +1,43 @@
+#!/usr/bin/env -S python3 -IS
+"""private_shm.py PROGRAM ARGUMENT ..: runs a test with a /dev/shm of its own, in a mount namespace, so that tests on one
+machine do not meet there. Where that is not allowed it is everybody's, and names of its own keep the test apart.
+
+PRIVATE_SHM in the environment: options for the memory file system (tmpfs), such as size=32m.
+"""
+
+import ctypes
+import os
+import sys
+
+CLONE_NEWNS, CLONE_NEWUSER = 0x20000, 0x10000000
+MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE = 2, 4, 0x4000, 0x40000
+
+libc = ctypes.CDLL(None)
+
+
+def write(path, text):
+	with open(path, "w") as f:
+		f.write(text)
+
+
+def enter_namespace():
+	"""As one's own user and group in a user namespace, where the outer one does not allow to mount."""
+	if libc.unshare(CLONE_NEWNS) == 0:
+		return True
+	user, group = os.geteuid(), os.getegid()
+	if libc.unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0:
+		return False
+	write("/proc/self/uid_map", f"{user} {user} 1")
+	write("/proc/self/setgroups", "deny")
+	write("/proc/self/gid_map", f"{group} {group} 1")
+	return True
+
+
+def main():
+	options = os.environ.get("PRIVATE_SHM", "").encode() or None
+	if enter_namespace() and libc.mount(None, b"/", None, MS_REC | MS_PRIVATE, None) == 0:
+		libc.mount(b"tmpfs", b"/dev/shm", b"tmpfs", MS_NOSUID | MS_NODEV, options)
+	os.execvp(sys.argv[1], sys.argv[1:])
+
+
+main()

@@ -1,0 +1,77 @@
+"""Faults that are asked for: simulators fail, the report says how often, and the run ends in the same bits."""
+
+import re
+import unittest
+
+import program
+
+BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
+
+
+class Fault(program.Case):
+	def faulty(self, *words):
+		"""The report of a run with faults, and how many of each kind."""
+		done = program.report(*BOXES, *words)
+		kinds = {kind: int(n) for kind, n in re.findall(r"(\w+) (\d+)", done["fault_kinds"])}
+		self.assertEqual(sum(kinds.values()), done["faults"])
+		return done, kinds
+
+	def test_deaths(self):
+		"""Also of those that die while all others wait for what they schedule."""
+		whole = program.report(*BOXES)
+		self.assertEqual((whole["faults"], whole["fault_kinds"]), (0, ""))
+		seen = {}
+		for seed in range(1, 9):
+			workers = ["1", "2", "3", "objects"][seed % 4]
+			p = .0002 if workers == "objects" else .0015
+			done, kinds = self.faulty("--isolation", "process", "--workers", workers, "--fault", f"kill+segv+exit:p={p},seed={seed}")
+			self.assertEqual(done["state_hash"], whole["state_hash"], (seed, workers))
+			self.assertLessEqual(done["deaths"], done["faults"])
+			self.assertGreaterEqual(done["deaths"], done["faults"] > 0)
+			seen = {k: seen.get(k, 0) + kinds.get(k, 0) for k in ("kill", "segv", "exit")}
+		self.assertTrue(all(seen.values()), seen)
+
+	def test_stopped(self):
+		whole = program.report(*BOXES)
+		done, kinds = self.faulty("--isolation", "process", "--workers", "2", "--patience", "1", "--fault", "stop:p=.0005,seed=2")
+		self.assertEqual(done["state_hash"], whole["state_hash"])
+		self.assertGreater(kinds["stop"], 0)
+		self.assertGreater(done["deaths"], 0)
+
+	def test_slow(self):
+		whole = program.report(*BOXES)
+		for isolation in "thread", "process":
+			done, kinds = self.faulty("--isolation", isolation, "--workers", "2", "--fault", "slow:p=.01,ms=5")
+			self.assertEqual(done["state_hash"], whole["state_hash"])
+			self.assertGreater(kinds["slow"], 0)
+			self.assertEqual(done["deaths"], 0)
+
+	def test_same_faults(self):
+		"""One worker fails at the same chances each time."""
+		words = "--workers", "1", "--fault", "slow:p=.02,ms=1,seed=5"
+		self.assertEqual(self.faulty(*words)[1], self.faulty(*words)[1])
+
+	def test_scribbling(self):
+		"""Whatever it writes, the host ends in order: the run goes on, or says why it does not."""
+		for seed in range(1, 4):
+			done = program.call("run", *BOXES, "--isolation", "process", "--workers", "2", "--patience", "1", "--fault",
+				f"scribble:p=.003,words=5,seed={seed}", "--name", self.name)
+			self.assertIn(done.returncode, (0, 1), done.stderr)
+			self.assertEqual(done.returncode == 1, bool(re.search("^obsim: (?!warning|note)", done.stderr, re.M)), done.stderr)
+
+	def test_full_disk(self):
+		file = self.path("run.ck")
+		done = program.call("run", *BOXES, "--checkpoint", file, "--every", ".1", "--fault", "nospace:p=.5", "--json", self.path("r.json"))
+		self.assertIn("No space left on device", done.stderr)
+		self.assertEqual(program.call("inspect", file).returncode, 0)
+		whole = program.report(*BOXES)
+		self.assertEqual(program.report("--resume", file)["state_hash"], whole["state_hash"])
+
+	def test_what_is_refused(self):
+		for text, saying in ("kil:p=.1", "expected some of kill|segv"), ("kill", "how probable"), ("kill:p", "expected p="), ("kill:p=2", "at most 1"), \
+				("kill:p=.1,word=3", "expected p=, seed="), ("kill+:p=.1", "expected some of"), ("nospace:p=.1", "is for --checkpoint"):
+			self.refuse("run", *BOXES, "--isolation", "process", "--fault", text, saying=saying)
+		self.refuse("run", *BOXES, "--fault", "kill:p=.1", saying="--isolation process")
+
+
+unittest.main()

@@ -1,0 +1,255 @@
+"""A run that is put down and taken up again ends in the same bits and the same figures, whatever runs either part, and
+whatever ended the first. A checkpoint on disk is whole at any instant, or refused in one line."""
+
+import json
+import os
+import random
+import resource
+import signal
+import struct
+import subprocess
+import time
+import unittest
+
+import program
+
+# Of one process, or of how it was run; all other figures of a resumed run are those of a run in one piece.
+OWN = {"isolation", "workers", "wall_s", "cpu_s", "total_s", "body_step_cpu_us", "startup_s", "step_p50_s", "step_p90_s",
+	"step_p99_s", "step_max_s", "elapsed_s", "host_cpu_s", "renderer_cpu_s", "switches", "worker_memory_bytes", "memory_bytes",
+	"resumed_s", "faults", "fault_kinds", "checkpoints", "checkpoint_bytes", "checkpoint_s", "box_tests"}
+WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w in ("1", "2", "3", "objects")]
+
+COME_AND_GO = """scene { title = "Come and go", duration = 2, step = 1/100 }
+ground { friction = .6 }
+for i = 1, 25 do
+	box { size = { .3, .2, .25 }, at = { .4 * (i % 3) + .03 * i, .35 * (i % 2), .3 + .4 * (i // 6) }, born = .06 * i,
+		dies = i % 3 == 0 and .06 * i + .5 or nil, restitution = i % 4 == 0 and .5 or 0, density = 100 * i }
+end
+sphere { radius = .3, at = { -3, 0, 1 }, velocity = { 6, .3, 1 }, born = .4 }
+"""
+SCENES = {
+	"falling_boxes": ["-D", "n=40", "--duration", "2"],
+	"pile": ["--duration", ".5"],
+	"cradle": ["--duration", "1"],
+	"shapes": ["--duration", "1.2"],
+	"come_and_go": [],
+}
+
+
+def figures(report):
+	"""What must be the same. Workers add up the energy each, so that its sum is not the same to the last bit."""
+	energy = report["energy_recovered"]
+	return {k: f"{energy:.9g}" if k == "energy_recovered" else v for k, v in report.items() if k not in OWN}
+
+
+class Resume(program.Case):
+	def setUp(self):
+		super().setUp()
+		self.file = self.path("run.ck")
+		with open(self.path("come_and_go.lua"), "w") as f:
+			f.write(COME_AND_GO)
+
+	def words(self, name):
+		return [self.path("come_and_go.lua") if name == "come_and_go" else program.scene(name), *SCENES[name]]
+
+	def inspect(self, file=None):
+		done = program.call("inspect", file or self.file, "--json")
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		return json.loads(done.stdout)
+
+	def finish(self, *words, file=None):
+		return program.report("--resume", file or self.file, *words)
+
+	def test_same_end(self):
+		"""Put down at a random moment, twice, and taken up in other ways."""
+		chance = random.Random(1)
+		for name in SCENES:
+			whole = program.report(*self.words(name))
+			steps = [chance.randrange(1, whole["steps"]) for _ in range(2)]
+			ways = chance.sample(WAYS, 3)
+			with self.subTest(scene=name, steps=steps, ways=ways):
+				begin = ["--checkpoint", self.file, "--duration", whole["step"] * min(steps)]
+				words = [w for w in self.words(name) if w != "--duration"][:3 if name == "falling_boxes" else 1]
+				first = program.report(*words, *ways[0], *begin)
+				self.assertEqual(first["steps"], min(steps))
+				seen = self.inspect()
+				self.assertEqual((seen["steps"], seen["state_hash"], seen["objects"]), (min(steps), first["state_hash"], first["objects"]))
+				middle = self.finish(*ways[1], "--checkpoint", self.file, "--duration", whole["step"] * max(steps))
+				self.assertEqual(middle["resumed_s"], first["simulated_s"])
+				end = self.finish(*ways[2], "--duration", whole["simulated_s"])
+				self.assertEqual(figures(end), figures(whole))
+
+	def test_again_and_again(self):
+		"""A run in thirty pieces, each with a checkpoint of its own, from its scene, which is gone by then."""
+		words = self.words("come_and_go")
+		whole = program.report(*words)
+		program.report(*words, "--duration", ".01", "--checkpoint", self.file)
+		os.remove(words[0])
+		for i in range(1, 30):
+			self.finish("--duration", whole["simulated_s"] * i / 30, *WAYS[i % len(WAYS)], "--checkpoint", self.file)
+		self.assertEqual(figures(self.finish("--duration", whole["simulated_s"])), figures(whole))
+
+	def test_solvers(self):
+		"""What each solver keeps of a pair is kept, and settings and parameters are those of the first part."""
+		for more in ["--solver", "jacobi"], ["--solver", "lagged", "--lag", "3"], ["--solver", "ghost"], ["--integrator", "ode"], \
+				["--substeps", "3", "--iterations", "7"], ["--narrow", "aabb"], ["--sleeping", "off"], ["--tolerance", ".1mm"]:
+			with self.subTest(more=more):
+				words = [program.scene("falling_boxes"), "-D", "n=12", "--seed", "7", *more]
+				whole = program.report(*words, "--duration", "1.8")
+				program.report(*words, "--duration", "1.4", "--checkpoint", self.file)
+				self.assertEqual(figures(self.finish("--duration", "1.8", "--isolation", "process")), figures(whole))
+
+	def test_measured_at_the_ends(self):
+		"""Only what was measured at each step of both parts is told as the largest of all steps."""
+		words = self.words("cradle")
+		whole = program.report(*words, "--measure", "end")
+		for first, second in ("end", "end"), ("end", "step"), ("step", "end"):
+			program.report(*words[:1], "--duration", ".5", "--measure", first, "--checkpoint", self.file)
+			again = self.finish("--duration", words[-1], "--measure", second)
+			self.assertEqual(figures(again), figures(whole))
+
+	def test_every(self):
+		r = program.report(*self.words("come_and_go"), "--checkpoint", self.file, "--every", ".25")
+		self.assertEqual(r["checkpoints"], 8)
+		self.assertEqual(r["checkpoint_bytes"], os.path.getsize(self.file))
+		self.assertGreater(r["checkpoint_s"], 0)
+		self.assertEqual(os.listdir(self.directory.name).count("run.ck.part"), 0)
+		# nothing is left to do: the same report again
+		self.assertEqual(figures(self.finish()), figures(r))
+
+	def test_interrupted(self):
+		"""Ctrl-C and its kin leave a checkpoint of the step at which they ended the run."""
+		for number in signal.SIGINT, signal.SIGTERM:
+			run = self.start_universe(program.scene("falling_boxes"), "-D", "n=40", "--duration", program.FOR_EVER, "--sleeping", "off",
+				"--checkpoint", self.file, "--every", "1e6", "--json", self.path("r.json"), "--isolation", "process")
+			time.sleep(.7)
+			run.send_signal(number)
+			self.assertEqual(run.wait(program.PATIENCE), 1)
+			with open(self.path("r.json")) as f:
+				r = json.load(f)
+			seen = self.inspect()
+			self.assertEqual((seen["steps"], seen["state_hash"]), (r["steps"], r["state_hash"]))
+			end = (r["steps"] + 30) * r["step"]
+			whole = program.report(program.scene("falling_boxes"), "-D", "n=40", "--sleeping", "off", "--duration", end, "--measure", "end")
+			self.assertEqual(self.finish("--duration", end)["state_hash"], whole["state_hash"])
+
+	def test_killed_while_it_writes(self):
+		"""At any instant the file is a whole checkpoint, and the run goes on from it to the same end."""
+		words = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
+		whole = program.report(*words)
+		resumed = 0
+		for i in range(12):
+			run = program.start("run", *words, "--checkpoint", self.file, "--every", "1/60", *WAYS[i % len(WAYS)])
+			time.sleep(.02 + .03 * i)
+			below = program.processes(run.pid)
+			run.kill()
+			run.wait(program.PATIENCE)
+			run.stdout.close()
+			run.stderr.close()
+			self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
+			if not os.path.exists(self.file):
+				continue
+			self.inspect()
+			self.assertEqual(self.finish("--measure", "end")["state_hash"], whole["state_hash"])
+			resumed += 1
+			os.remove(self.file)
+		self.assertGreater(resumed, 3)
+
+	def test_full_disk(self):
+		"""A disk that fills up costs the checkpoints, not the run; the last whole one stays. What is asked for and not there at
+		the end is a failure."""
+		words = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "1"]
+		program.report(*words, "--checkpoint", self.file)
+		before = self.inspect()
+		limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (16384, 16384))
+		shm = "needs room in shared memory, which the limit counts, too"
+		done = program.call("run", "--resume", self.file, "--duration", "2", "--checkpoint", self.file, "--every", ".2", preexec_fn=limit)
+		self.assertEqual(done.returncode, 1, shm)
+		self.assertEqual(self.inspect(), before)
+
+	def test_output_goes_on(self):
+		"""What is written begins at the time of the checkpoint; frames are numbered as in a run in one piece."""
+		words = self.words("come_and_go")
+		program.report(*words, "--series", self.path("whole.csv"))
+		program.report(*words, "--duration", ".5", "--series", self.path("first.csv"), "--checkpoint", self.file)
+		self.finish("--duration", "2", "--series", self.path("second.csv"), "--trace", self.path("trace.json"))
+		lines = {}
+		for name in "whole", "first", "second":
+			with open(self.path(name + ".csv")) as f:
+				lines[name] = f.read().splitlines()
+		self.assertEqual(lines["first"], lines["whole"][:len(lines["first"])])
+		self.assertEqual(lines["second"][1:], lines["whole"][len(lines["first"]) - 1:]) # the step in common is in both
+		with open(self.path("trace.json")) as f:
+			json.load(f)
+
+	def test_frames(self):
+		if "no EGL" in program.call("--version").stdout:
+			self.skipTest("no EGL")
+		size = ["--size", "64x48", "--samples", "1", "--fps", "25"]
+		words = self.words("come_and_go")
+		program.report(*words, "--duration", ".7", *size, "--frames", self.path("whole"))
+		program.report(*words, "--duration", ".32", *size, "--frames", self.path("parts"), "--checkpoint", self.file)
+		r = self.finish("--duration", ".7", *size, "--frames", self.path("parts"))
+		self.assertEqual(r["frames"], 17 - 8)
+		for i in range(17):
+			with open(self.path(f"whole/frame-{i:06}.png"), "rb") as a, open(self.path(f"parts/frame-{i:06}.png"), "rb") as b:
+				self.assertEqual(a.read(), b.read(), i)
+
+	def test_what_is_refused(self):
+		words = self.words("cradle")
+		program.report(*words[:1], "--duration", ".1", "--checkpoint", self.file)
+		self.refuse("run", *words[:1], "--resume", self.file, saying="a checkpoint holds its scene")
+		for more in ["-D", "n=3"], ["--seed", "1"], ["--step", ".01"], ["--substeps", "2"], ["--arch", "obs"]:
+			self.refuse("run", "--resume", self.file, *more, saying="keeps the settings that it has")
+		self.refuse("run", "--resume", self.file, "--duration", ".05", saying="is at 0.1 s already")
+		self.refuse("run", *words[:1], "--every", "1", saying="--every needs --checkpoint")
+		self.refuse("run", *words[:1], "--checkpoint", "x.ck", "--arch", "monolith", saying="a monolith cannot be resumed")
+		for special in "/dev/null", "/dev/full", self.directory.name:
+			self.refuse("run", *words[:1], "--checkpoint", special, saying=special)
+		self.refuse("inspect", saying="no checkpoint given")
+		os.mkfifo(self.path("pipe"))
+		for command in ["run", "--resume"], ["inspect"]:
+			self.refuse(*command, "nothing.ck", saying="nothing.ck: cannot read the checkpoint: No such file")
+			self.refuse(*command, "pipe", saying="pipe: this is no file")
+			self.refuse(*command, "/dev/zero", saying="/dev/zero: this is no file")
+			self.refuse(*command, words[0], saying="no checkpoint of obsim")
+			self.refuse(*command, self.directory.name, saying="this is no file")
+
+	def test_damaged(self):
+		"""Any byte that is not as it was written, any that is missing or too many."""
+		program.report(*self.words("cradle")[:1], "--duration", ".1", "--checkpoint", self.file)
+		with open(self.file, "rb") as f:
+			good = f.read()
+		chance = random.Random(2)
+		places = [0, 8, 12, 16, 100, 130, *(chance.randrange(len(good)) for _ in range(20))]
+		bad = [good[:i] + bytes([good[i] ^ 1 << chance.randrange(8)]) + good[i + 1:] for i in places]
+		bad += [good[:n] for n in (0, 1, 100, 128, 4000, len(good) - 1)] + [good + b"\0"]
+		bad += [good[:12] + struct.pack("I", 99) + good[16:]]
+		said = set()
+		for i, data in enumerate(bad):
+			if data == good:
+				continue
+			with open(self.path("bad.ck"), "wb") as f:
+				f.write(data)
+			refused = self.refuse(*(["inspect"] if i % 2 else ["run", "--resume"]), "bad.ck", saying="bad.ck: ")
+			said.add(" ".join(refused.stderr.split()[2:5]))
+		self.assertIn("a checkpoint of", said) # of another version
+
+	def test_other_program(self):
+		"""Another obsim says that it is another, and goes on."""
+		program.report(*self.words("cradle")[:1], "--duration", ".1", "--checkpoint", self.file)
+		done = program.call("run", "--resume", self.file)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+	def test_two_runs_one_file(self):
+		"""Whoever comes second to one file is told so; neither harms the other's checkpoints."""
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "2", "--measure", "end", "--checkpoint", self.file, "--every", "1/60"]
+		runs = [program.start("run", *words) for _ in range(2)]
+		for run in runs:
+			said = run.communicate(timeout=program.PATIENCE)[1]
+			self.assertIn(run.returncode, (0, 1), said)
+			self.assertRegex(said, r"^(obsim: .*run\.ck\.part: another run writes it.*\n)*$")
+		self.assertEqual(self.inspect()["simulated_s"], 2)
+
+
+unittest.main()

@@ -1,0 +1,214 @@
+"""obsim serve: pages over HTTP, the universe over WebSockets, and what strangers try."""
+
+import random
+import socket
+import time
+import unittest
+
+import program
+from server import OPEN, Case, Refused, Viewer
+
+
+class Serve(Case):
+	def test_content(self):
+		self.serve()
+		head, page = self.http("GET / HTTP/1.1\nHost: HOST\nConnection: close")
+		self.assertIn(" 200 ", head)
+		self.assertIn(b"main.js", page)
+		tag = next(l for l in head.split("\r\n") if l.lower().startswith("etag:")).split(" ", 1)[1]
+		head, rest = self.http(f"GET /index.html HTTP/1.1\nHost: HOST\nConnection: close\nIf-None-Match: {tag}")
+		self.assertIn(" 304 ", head)
+		self.assertEqual(rest, b"")
+		head, part = self.http("GET /index.html HTTP/1.1\nHost: HOST\nConnection: close\nRange: bytes=5-24")
+		self.assertIn(" 206 ", head)
+		self.assertEqual(part, page[5:25])
+		head, rest = self.http("HEAD /style.css HTTP/1.1\nHost: HOST\nConnection: close")
+		self.assertIn(" 200 ", head)
+		self.assertEqual(rest, b"")
+		for request, status in ("GET /../../etc/passwd", 404), ("GET /x", 404), ("POST /", 405), ("GET /main.js?x=1", 200):
+			head, _ = self.http(f"{request} HTTP/1.1\nHost: HOST\nConnection: close\nContent-Length: 0")
+			self.assertIn(f" {status} ", head, request)
+		head, _ = self.http("GET / HTTP/1.1\nHost: stranger.example\nConnection: close")
+		self.assertIn(" 403 ", head)
+		self.end()
+
+	def test_life(self):
+		"""Somebody creates and removes; the others see it; what falls comes to rest where the table says."""
+		self.serve("--pace", "max")
+		one, other = self.viewer(), self.viewer()
+		before = len(one.objects)
+		one.send(do="create", shape="box", size=[.2, .2, .2], at=[4, 0, 1], mass=5, name="visitor")
+		for v in one, other:
+			v.until(lambda: len(v.objects) == before + 1)
+		new = max(one.objects)
+		self.assertEqual(one.objects[new]["name"], "visitor")
+		other.until(lambda: other.objects[new].get("kind") == 0)
+		self.assertAlmostEqual(other.objects[new]["p"][2], .2, delta=.01)
+		other.send(do="inspect", id=new)
+		other.until(lambda: other.told.get("details", {}).get("id") == new)
+		self.assertAlmostEqual(other.told["details"]["p"][2], other.objects[new]["p"][2], delta=1e-4)
+		other.send(do="remove", id=new, generation=one.objects[new]["generation"] + 1) # another's
+		other.send(do="remove", id=new, generation=one.objects[new]["generation"])
+		for v in one, other:
+			v.until(lambda: new not in v.objects)
+		late = self.viewer()
+		self.assertEqual(set(late.objects), set(one.objects))
+		self.end()
+
+	def test_clock(self):
+		self.serve("--paused")
+		v = self.viewer()
+		self.assertEqual((v.paused, v.time), (True, 0))
+		v.send(do="step", steps=3)
+		v.until(lambda: v.time > 0)
+		v.until(lambda: "statistics" in v.told and v.told["statistics"]["step"] == 3)
+		v.send(do="create", shape="sphere", size=[.1, 0, 0], at=[3, 3, 2], mass=1) # also while it stands
+		v.until(lambda: any(o["name"] == "sphere" for o in v.objects.values()))
+		self.assertEqual(v.told["statistics"]["step"], 3)
+		v.send(do="rate", rate=1000)
+		v.send(do="resume")
+		v.until(lambda: v.time > 1)
+		v.send(do="pause")
+		v.until(lambda: v.paused)
+		self.end()
+
+	def test_strangers(self):
+		self.serve()
+		with self.assertRaisesRegex(Refused, "403"):
+			Viewer(self.port, headers=["Origin: http://stranger.example"])
+		with self.assertRaisesRegex(Refused, "403"): # a name of its own for this address
+			Viewer(self.port, headers=[f"Host: stranger.example:{self.port}", f"Origin: http://stranger.example:{self.port}"])
+		Viewer(self.port, headers=[f"Origin: http://127.0.0.1:{self.port}"]).close()
+		self.end()
+
+	def test_token(self):
+		token = self.start("--listen", "0.0.0.0:0")
+		self.assertEqual(len(token), 32)
+		for path in "/universe", "/universe?token=", "/universe?token=" + "0" * 32, "/universe?token=" + token[:-1]:
+			with self.assertRaisesRegex(Refused, "403"):
+				Viewer(self.port, path)
+		self.viewer(path="/universe?token=" + token)
+		with self.assertRaisesRegex(Refused, "403"):
+			Viewer(self.port, "/universe?token=" + token, headers=["Origin: http://stranger.example"])
+		self.end()
+
+	def test_look_only(self):
+		self.serve("--readonly")
+		v = self.viewer()
+		self.assertTrue(v.told["welcome"]["look_only"])
+		v.send(do="pause")
+		v.until(lambda: "error" in v.told)
+		self.assertIn("only look", v.told["error"])
+		self.assertFalse(v.paused)
+		self.end()
+
+	def test_full(self):
+		self.serve("--viewers", "2")
+		self.viewer()
+		self.viewer()
+		with self.assertRaisesRegex(Refused, "503"):
+			Viewer(self.port)
+		self.end()
+
+	def test_room(self):
+		self.serve("--room", "64")
+		v = self.viewer()
+		before = len(v.objects)
+		for i in range(100):
+			v.send(do="create", shape="sphere", size=[.1, 0, 0], at=[10 + i, 0, 1], mass=1)
+			time.sleep(.03)
+		v.until(lambda: "full" in v.told.get("error", ""))
+		v.until(lambda: len(v.objects) >= before + 64)
+		self.end()
+
+	def closed(self, v):
+		"""The code with which the server closes."""
+		try:
+			while True:
+				v.receive()
+		except EOFError as e:
+			return e.args[0] if e.args else None
+		except ConnectionError:
+			return None
+
+	def test_nonsense(self):
+		self.serve()
+		v = self.viewer()
+		for text in "", "{}", "pause", '{"do":"pause"', '{"do":"create"}', '{"do":"create","shape":"box","size":[0,0,0],"at":[0,0,0],"mass":1}':
+			v.told.pop("error", None)
+			v.send_frame(OPEN, text.encode())
+			if text:
+				v.until(lambda: "error" in v.told)
+		v = self.viewer()
+		v.send_frame(OPEN, b" " * 100000)
+		self.assertIn(self.closed(v), (1009, None))
+		v = self.viewer()
+		v.send_frame(0x82, b"\0\1\2")
+		self.assertIn(self.closed(v), (1003, None))
+		v = self.viewer()
+		try:
+			for _ in range(2000):
+				v.send(do="inspect")
+		except ConnectionError:
+			pass
+		self.assertIn(self.closed(v), (1008, None))
+		self.viewer()
+		self.end()
+
+	def test_random_bytes(self):
+		"""Whatever comes, before and after the handshake, the run and another viewer do not notice."""
+		self.serve()
+		witness, draw = self.viewer(), random.Random(1)
+		for i in range(60):
+			with socket.create_connection(("127.0.0.1", self.port), timeout=program.PATIENCE) as s:
+				try:
+					s.sendall((b"GET / HTTP/1.1\r\n" if i % 2 else b"") + draw.randbytes(draw.randrange(3000)))
+				except ConnectionError:
+					pass
+		for i in range(60):
+			v = Viewer(self.port)
+			try:
+				for _ in range(20):
+					if i % 2:
+						v.send_frame(OPEN, draw.randbytes(draw.randrange(300)))
+					else:
+						v.socket.sendall(draw.randbytes(draw.randrange(300)))
+			except ConnectionError:
+				pass
+			v.close()
+		since = witness.time
+		witness.until(lambda: witness.time > since + .5)
+		self.end()
+
+	def test_stuck(self):
+		"""One that never reads does not keep others from seeing what comes."""
+		self.serve("-D", "n=200", scene="falling_boxes")
+		stuck = [Viewer(self.port) for _ in range(5)]
+		v = self.viewer()
+		v.until(lambda: v.time > 2)
+		for s in stuck:
+			s.close()
+		self.end()
+
+	def test_wrong_words(self):
+		stack = program.scene("stack")
+		for listen in "8080", "127.0.0.1", "127.0.0.1:x", "127.0.0.1:70000", "nowhere:80", ":80", "[::1:80", "1.2.3.4:5:6":
+			self.refuse("serve", stack, "--listen", listen, saying="--listen")
+		self.refuse("serve", saying="no scene given: obsim serve")
+		self.refuse("serve", stack, "--pace", "fast", saying="--pace")
+		self.refuse("serve", stack, "--viewers", "0", saying="--viewers")
+		self.serve()
+		self.refuse("serve", stack, "--listen", f"127.0.0.1:{self.port}", saying="in use", code=1)
+		self.end()
+
+
+class Pace(program.Case):
+	def test_run(self):
+		began = time.monotonic()
+		r = program.report(program.scene("stack"), "--duration", ".5", "--pace", "realtime")
+		self.assertGreater(time.monotonic() - began, .45)
+		self.assertEqual(r["state_hash"], program.report(program.scene("stack"), "--duration", ".5")["state_hash"])
+
+
+if __name__ == "__main__":
+	unittest.main()

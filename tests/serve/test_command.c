@@ -1,0 +1,133 @@
+// Commands of viewers: what they mean, and that nothing else is taken for one.
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "serve/command.h"
+
+static bool reads(const char *json, ob_command *c)
+{
+	ob_error e = { "" };
+	bool fine = ob_command_read(c, json, strlen(json), &e);
+	CHECK(fine || *e.text);
+	return fine;
+}
+
+static void test_meaning(void)
+{
+	ob_command c;
+	CHECK(reads("{\"do\":\"create\",\"shape\":\"box\",\"size\":[0.5,1,1.5],\"at\":[1,-2,3e0],\"mass\":7,"
+		    "\"velocity\":[0,0,-1],"
+		    "\"colour\":[1,0,0.5],\"friction\":0.25,\"restitution\":0.5,\"attitude\":[0,0,0,1],\"name\":"
+		    "\"B\\u00e4r\"}",
+		    &c));
+	const ob_passport *p = &c.def.passport;
+	CHECK(c.kind == OB_DO_CREATE && p->shape == OB_SHAPE_BOX && p->size.y == 1 && p->size.z == 1.5 && p->mass == 7);
+	CHECK(c.def.state.pose.p.y == -2 && c.def.state.v.z == -1 && c.def.state.pose.q.z == 1 && p->colour[2] == .5f);
+	CHECK(p->friction == .25 && p->restitution == .5 && strcmp(p->name, "B\xc3\xa4r") == 0 && isinf(c.def.dies));
+	CHECK(reads("{\"do\":\"create\",\"shape\":\"sphere\",\"size\":[1,0,0],\"at\":[0,0,9],\"mass\":1}", &c));
+	CHECK(strcmp(c.def.passport.name, "sphere") == 0 && c.def.passport.friction == .5 && c.def.state.pose.q.w == 1);
+	CHECK(reads(" {\"do\":\"remove\", \"id\":12, \"generation\":3} ", &c));
+	CHECK(c.kind == OB_DO_REMOVE && c.id == 12 && c.generation == 3);
+	CHECK(reads("{\"do\":\"pause\"}", &c) && c.kind == OB_DO_PAUSE);
+	CHECK(reads("{\"do\":\"step\"}", &c) && c.kind == OB_DO_STEP && c.steps == 1);
+	CHECK(reads("{\"do\":\"step\",\"steps\":25}", &c) && c.steps == 25);
+	CHECK(reads("{\"do\":\"rate\",\"rate\":0.25}", &c) && c.rate == .25);
+	CHECK(reads("{\"do\":\"contacts\",\"on\":true}", &c) && c.on);
+	CHECK(reads("{\"do\":\"inspect\"}", &c) && c.id == UINT32_MAX);
+}
+
+#define BOX "\"do\":\"create\",\"shape\":\"box\",\"size\":[1,1,1],\"at\":[0,0,0],\"mass\":1"
+
+static void test_nonsense(void)
+{
+	static const char *const lines[] = {
+		"",
+		"{",
+		"}",
+		"[]",
+		"7",
+		"null",
+		"\"pause\"",
+		"{}",
+		"{\"do\":7}",
+		"{\"do\":\"\"}",
+		"{\"do\":\"explode\"}",
+		"{\"do\":\"pause\"",
+		"{\"do\":\"pause\"}}",
+		"{\"do\":\"pause\",\"do\":\"pause\"}",
+		"{\"do\":[\"pause\"]}",
+		"{\"do\":\"pause\",\"id\":1}",
+		"{\"do\":{\"do\":\"pause\"}}",
+		"{\"do\":\"remove\",\"id\":1}",
+		"{\"do\":\"remove\",\"id\":-1,\"generation\":1}",
+		"{\"do\":\"remove\",\"id\":1e99,\"generation\":1}",
+		"{\"do\":\"step\",\"steps\":0}",
+		"{\"do\":\"rate\",\"rate\":-1}",
+		"{\"do\":\"contacts\",\"on\":1}",
+		"{\"do\":\"contacts\",\"on\":null}",
+		"{" BOX ",\"shape\":\"box\"}",
+		"{" BOX ",\"what\":1}",
+		"{" BOX ",\"velocity\":[1,2]}",
+		"{" BOX ",\"velocity\":[1,2,3,4]}",
+		"{" BOX ",\"velocity\":[[1],2,3]}",
+		"{" BOX ",\"velocity\":1}",
+		"{" BOX ",\"velocity\":[1,2,1e300]}",
+		"{" BOX ",\"velocity\":[1,2,\"3\"]}",
+		"{" BOX ",\"restitution\":2}",
+		"{" BOX ",\"friction\":[1]}",
+		"{" BOX ",\"attitude\":[0,0,0,0]}",
+		"{" BOX ",\"name\":\"a\\u001bb\"}",
+		"{" BOX ",\"name\":\"a\xc2\x9b"
+		"b\"}",
+		"{" BOX ",\"name\":\"a\xff\"}",
+		"{" BOX ",\"name\":\"0123456789012345678901234567890123456789012345678901234567890\"}",
+		"{\"do\":\"create\",\"shape\":\"plane\",\"size\":[1,1,1],\"at\":[0,0,0],\"mass\":1}",
+	};
+	ob_command c;
+	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+		if (reads(lines[i], &c))
+			fprintf(stderr, "taken: %s\n", lines[i]);
+		CHECK(!reads(lines[i], &c) && c.kind != OB_DO_CREATE);
+	}
+}
+
+// Random bytes, and commands in which some bytes are others
+static void test_bytes(void)
+{
+	static const char model[] = "{" BOX ",\"velocity\":[1,2,3],\"name\":\"abc\"}";
+	uint64_t seed = 1;
+	ob_command c;
+	ob_error e;
+	for (int i = 0; i < 100000; i++) {
+		char text[256];
+		size_t n = sizeof model - 1;
+		memcpy(text, model, n);
+		if (i % 2)
+			n = ob_splitmix(&seed) % sizeof text;
+		for (size_t k = 0; k < n; k++) {
+			if (i % 2 || ob_splitmix(&seed) % 30 == 0)
+				text[k] = (char)ob_splitmix(&seed);
+		}
+		char *copy = malloc(n + 1); // of its own, so that a sanitizer sees what is read behind it
+		memcpy(copy, text, n);
+		copy[n] = 0;
+		if (ob_command_read(&c, copy, n, &e) && c.kind == OB_DO_CREATE)
+			CHECK(isfinite(c.def.state.v.x) && memchr(c.def.passport.name, 0, OB_NAME_MAX));
+		free(copy);
+	}
+	char *long_one = malloc(OB_COMMAND_BYTES_MAX + 2);
+	memset(long_one, ' ', OB_COMMAND_BYTES_MAX + 2);
+	CHECK(!ob_command_read(&c, long_one, OB_COMMAND_BYTES_MAX + 1, &e));
+	free(long_one);
+}
+
+int main(void)
+{
+	test_meaning();
+	test_nonsense();
+	test_bytes();
+	return check_end();
+}

@@ -1,0 +1,50 @@
+// The content: what there is, and which of its bytes a request asks for.
+#include "check.h"
+
+#include <string.h>
+
+#include "serve/content.h"
+
+static void check_range(const char *header, ob_range_kind kind, size_t first, size_t end)
+{
+	size_t a, b;
+	ob_range_kind got = ob_content_range(header, 1000, &a, &b);
+	CHECK(got == kind);
+	if (got != OB_RANGE_NONE)
+		CHECK(a == first && b == end);
+}
+
+int main(void)
+{
+	const ob_content *page = ob_content_find("/index.html"), *shader = ob_content_find("/shaders/body.frag");
+	CHECK(page && shader && !ob_content_find("/") && !ob_content_find("/../etc/passwd") && !ob_content_find(""));
+	CHECK(page && strstr(page->type, "html") && page->size > 100 && page->tag[0] == '"');
+	CHECK(shader && memmem(shader->bytes, shader->size, "uniform Frame", 13)); // its includes are in it
+	CHECK(page && shader && strcmp(page->tag, shader->tag) != 0);
+
+	check_range("bytes=0-99", OB_RANGE_PART, 0, 100);
+	check_range("bytes=10-", OB_RANGE_PART, 10, 1000);
+	check_range("bytes=999-5000", OB_RANGE_PART, 999, 1000);
+	check_range("bytes=-300", OB_RANGE_PART, 700, 1000);
+	check_range("bytes=-5000", OB_RANGE_PART, 0, 1000);
+	check_range("bytes=1000-", OB_RANGE_NONE, 0, 0);
+	check_range("bytes=-0", OB_RANGE_NONE, 0, 0);
+	const char *const all[] = { "",
+				    "bytes",
+				    "bytes=",
+				    "bytes=-",
+				    "bytes=5-4",
+				    "bytes=1-2,5-6",
+				    "lines=1-2",
+				    "bytes=a-b",
+				    "bytes=1-2x",
+				    "bytes=--1",
+				    "bytes=99999999999999999999-" };
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		check_range(all[i], OB_RANGE_ALL, 0, 1000);
+
+	CHECK(ob_content_has_tag("\"ab\"", "\"ab\"") && ob_content_has_tag("\"x\", W/\"ab\"", "\"ab\""));
+	CHECK(ob_content_has_tag("*", "\"ab\"") && !ob_content_has_tag("\"abc\"", "\"ab\"") &&
+	      !ob_content_has_tag("", "\"ab\""));
+	return check_end();
+}

@@ -1,0 +1,84 @@
+// A step has a budget of work: when it is spent the run fails, nothing of the step is published, and those are named that
+// it went into. What diverges ends a run in the same way, and so does ODE where it gives up.
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "little_universe.h"
+
+// What the failure says; the state of the step before stands.
+static void expect_failure(little_universe *l, ob_step_failure why, uint32_t object, const char *saying)
+{
+	uint64_t before = ob_step_count(l->u);
+	ob_motion motion = *ob_newest_motion(l->u, object);
+	ob_gate_set_pause_step(l->u, before + 1);
+	ob_sim_resume(l->u);
+	while (!ob_gate_host_wait(l->u, 0))
+		ob_step(l->sim);
+	uint32_t blamed = UINT32_MAX;
+	CHECK(ob_step_failed(l->u, &blamed) == why && blamed == object);
+	CHECK(ob_step_count(l->u) == before);
+	CHECK(memcmp(&motion, ob_newest_motion(l->u, object), sizeof motion) == 0);
+	const char *text = ob_sim_failure(l->u);
+	bool said = text && strstr(text, saying);
+	CHECK(said);
+	if (!said)
+		fprintf(stderr, "%s\n", text ? text : "no failure");
+}
+
+// A few bodies are solved for a last grain of work, as if the rest of the step had taken all the others.
+static void test_spent(void)
+{
+	little_scene *s = little_scene_new();
+	ob_world_ground(&s->world);
+	for (int i = 0; i < 40; i++) {
+		ob_world_body b = ob_world_box(&s->world, 500, ob_v3(.5, .5, .5), ob_v3(.1 * (i % 2), 0, .5 + .9 * i));
+		snprintf(b.passport->name, OB_NAME_MAX, "brick %d", i);
+	}
+	little_universe l;
+	little_open(&l, s);
+	ob_step_work_add(l.u, UINT64_C(1) << 40);
+	expect_failure(&l, OB_STEP_OVERWORKED, 1, "step 1 takes more work than a step may: object 1 (brick 0)");
+	little_close(&l);
+	free(s);
+}
+
+static void test_diverged(void)
+{
+	little_scene *s = little_scene_new();
+	ob_world_sphere(&s->world, 1, .5, ob_v3(0, 0, 0));
+	ob_world_body wild = ob_world_sphere(&s->world, 1e-9, .5, ob_v3(9, 0, 0));
+	wild.passport->force = ob_v3(0, 1e15, 0);
+	snprintf(wild.passport->name, OB_NAME_MAX, "wild");
+	little_universe l;
+	little_open(&l, s);
+	expect_failure(&l, OB_STEP_DIVERGED, 1, "object 1 (wild) diverged in step 1");
+	little_close(&l);
+	free(s);
+}
+
+// ODE's stepper cannot turn such a needle as it is thrown.
+static void test_engine(void)
+{
+	little_scene *s = little_scene_new();
+	s->run.integrator = OB_INTEGRATOR_ODE;
+	s->run.step_length = 1;
+	s->run.tolerance = 0;
+	s->run.substeps = 8;
+	ob_world_box(&s->world, 490, ob_v3(3.5e-4, 5e5, 3.5e-4), ob_v3(0, 0, 0));
+	ob_world_body other = ob_world_box(&s->world, 2e14, ob_v3(.5, 5e5, 1e5), ob_v3(0, 0, 0));
+	other.state->pose.q = ob_quat_normalize((ob_quat){ .03, 0, -.6, 1 });
+	little_universe l;
+	little_open(&l, s);
+	expect_failure(&l, OB_STEP_ENGINE, 0, "ODE gave up in step 1 at object 0");
+	little_close(&l);
+	free(s);
+}
+
+int main(void)
+{
+	test_spent();
+	test_diverged();
+	test_engine();
+	return check_end();
+}

@@ -1,0 +1,167 @@
+// A block that stands tilted on one edge and falls back: its motion is that of a physical pendulum about the edge,
+// theta'' = -(m g r / I) sin(alpha - theta), until the other edge hits. Nothing is lost before that.
+#include <stdlib.h>
+
+#include "check.h"
+#include "little_universe.h"
+
+#include "reference/pivot.h"
+
+typedef struct rocking_block {
+	double half_width, half_height, r, alpha, start; // m, m, m, rad, rad
+} rocking_block;
+
+static const double g = 9.81;
+
+// s, from rest at the start until the tilt is "tilt"; the root of its speed is taken out of the integral.
+static double time_to(const rocking_block *b, double tilt)
+{
+	const int n = 4000;
+	double most = sqrt(b->start - tilt), sum = 0;
+	for (int i = 0; i < n; i++) {
+		double s = most * (i + .5) / n, fallen = 2 * sin(.5 * s * s) * sin(b->alpha - b->start + .5 * s * s);
+		sum += 2 * s / sqrt(1.5 * g / b->r * fallen) * most / n;
+	}
+	return sum;
+}
+
+static void check_block(double slenderness, bool on_box, uint32_t substeps)
+{
+	rocking_block b = { .half_width = .1, .half_height = .1 * slenderness };
+	b.r = hypot(b.half_width, b.half_height);
+	b.alpha = atan2(b.half_width, b.half_height);
+	b.start = .5 * b.alpha;
+	little_scene *s = little_scene_new();
+	s->run.substeps = substeps;
+	if (on_box)
+		ob_world_box(&s->world, 0, ob_v3(1, 1, .5), ob_v3(0, 0, -.5));
+	else
+		ob_world_ground(&s->world);
+	ob_world_body o = ob_world_box(&s->world, 10, ob_v3(b.half_width, .15, b.half_height), ob_v3(0, 0, 0));
+	const double lean = b.alpha - b.start;
+	o.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, b.start, 0));
+	o.state->pose.p = ob_v3(b.half_width - b.r * sin(lean), 0, b.r * cos(lean));
+	ob_world_material(&s->world, 1, 0);
+	little_universe l;
+	little_open(&l, s);
+	const double drop = 10 * g * b.r * (cos(lean) - cos(b.alpha)), quarter = time_to(&b, 0);
+	double energy = little_energy(&l), lost = 0, late = 0;
+	for (int step = 1;; step++) {
+		little_run(&l, 1);
+		ob_mat3 r = ob_quat_matrix(little_state(&l, 1).pose.q);
+		double tilt = atan2(r.m[0][2], r.m[2][2]);
+		if (tilt < .05 * b.start)
+			break;
+		lost = fmax(lost, fabs(little_energy(&l) - energy) / fabs(drop));
+		late = step / 60. - time_to(&b, tilt);
+	}
+	printf("h/b %g, %u substeps: time off by %.4f %%, energy by %.1e of what it gains\n", slenderness, substeps,
+	       100 * late / quarter, lost);
+	CHECK(fabs(late) <= .0005 * quarter);
+	CHECK(lost <= 3e-4);
+	little_close(&l);
+	free(s);
+}
+
+// Rate of turn of the block about an edge that it hits the ground with, squared, if no energy is lost until then.
+static double rate_of_hit(const ob_reference_rocker *r, const ob_state *s)
+{
+	return (ob_norm2(s->v) + r->moment * ob_norm2(s->w) + 2 * g * (s->pose.p.z - r->height)) /
+	       (r->moment + r->half * r->half + r->height * r->height);
+}
+
+// It rocks from edge to edge: at each hit the moment of momentum about the new edge is kept (Housner 1963).
+static void check_hits(double slenderness, bool on_box, double heading)
+{
+	const double half = .1, height = half * slenderness, start = .5 * atan2(half, height);
+	const double lean = atan2(half, height) - start, arm = hypot(half, height);
+	little_scene *s = little_scene_new();
+	if (on_box)
+		ob_world_box(&s->world, 0, ob_v3(1, 1, .5), ob_v3(0, 0, -.5));
+	else
+		ob_world_ground(&s->world);
+	ob_world_body o = ob_world_box(&s->world, 10, ob_v3(half, .15, height), ob_v3(0, 0, arm * cos(lean)));
+	o.state->pose.q = ob_quat_mul(ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, heading)),
+				      ob_quat_turn(ob_quat_identity(), ob_v3(0, start, 0)));
+	ob_world_material(&s->world, 2, 0);
+	const ob_reference_rocker r = { half, height, o.passport->inertia.y / 10, g };
+	little_universe l;
+	little_open(&l, s);
+	double tilt = start, rate = 0, worst = 0;
+	for (int step = 0, hits = 0; step < 240 && hits < 3; step++) {
+		little_run(&l, 1);
+		ob_state now = little_state(&l, 1);
+		ob_mat3 m = ob_quat_matrix(now.pose.q);
+		double was = tilt, before = rate;
+		tilt = atan2(m.m[0][2] * cos(heading) + m.m[1][2] * sin(heading), m.m[2][2]);
+		rate = rate_of_hit(&r, &now);
+		if ((tilt < 0) == (was < 0))
+			continue;
+		hits++;
+		worst = fmax(worst, fabs(sqrt(rate / before) / ob_reference_rocker_ratio(&r) - 1));
+		CHECK(hits < 3 || step < 239);
+	}
+	printf("h/b %g on %s: ratio of rates at a hit off by %.4f %%\n", slenderness, on_box ? "a box" : "a plane",
+	       100 * worst);
+	CHECK(worst <= .002);
+	little_close(&l);
+	free(s);
+}
+
+// A disk rolls steadily on its rim for a second, its centre at rest: the moment of what carries it turns its angular
+// momentum, W^2 = g (a cos - h sin) / (sin (i cos - j h / a sin)); without slip its rate beyond W is -W (cos - h / a
+// sin).
+static void check_disk(double tilt, double half_thick, double heading, bool on_box)
+{
+	const double a = .5, h = half_thick, i = a * a / 4 + h * h / 3, j = a * a / 2, c = cos(tilt), sn = sin(tilt);
+	const double turn = sqrt(g * (a * c - h * sn) / (sn * (i * c - j * h / a * sn)));
+	const double spin = -turn * (c - h / a * sn);
+	const ob_vec3 axis = ob_v3(sn * cos(heading), sn * sin(heading), c);
+	little_scene *s = little_scene_new();
+	if (on_box)
+		ob_world_box(&s->world, 0, ob_v3(1, 1, .5), ob_v3(0, 0, -.5));
+	else
+		ob_world_ground(&s->world);
+	ob_world_body o = ob_world_add(&s->world, OB_SHAPE_CYLINDER, ob_v3(a, h, 0), 10, ob_v3(0, 0, a * sn + h * c));
+	o.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(-tilt * sin(heading), tilt * cos(heading), 0));
+	o.state->w = ob_madd(ob_v3(0, 0, turn), spin, axis);
+	ob_world_material(&s->world, .5, 0);
+	little_universe l;
+	little_open(&l, s);
+	const double lying = 10 * g * h, energy = little_energy(&l) - lying;
+	double azimuth = heading, turned = 0;
+	for (int step = 0; step < 60; step++) {
+		little_run(&l, 1);
+		ob_mat3 r = ob_quat_matrix(little_state(&l, 1).pose.q);
+		double now = atan2(r.m[1][2], r.m[0][2]);
+		turned += remainder(now - azimuth, 2 * M_PI);
+		azimuth = now;
+	}
+	const double late = turned / turn - 1, lost = 1 - (little_energy(&l) - lying) / energy;
+	printf("disk at %g, %g thick, on %s: precession off by %.4f %%, energy by %.4f %%\n", tilt, 2 * h,
+	       on_box ? "a box" : "a plane", 100 * late, 100 * lost);
+	CHECK(fabs(late) <= .001);
+	CHECK(fabs(lost) <= .002);
+	little_close(&l);
+	free(s);
+}
+
+int main(void)
+{
+	static const double tilts[] = { .175, .35, .7 };
+	for (int i = 0; i < 3; i++)
+		for (int on_box = 0; on_box < 2; on_box++) {
+			check_disk(tilts[i], .025, 1, on_box);
+			check_disk(tilts[i], .1, -2, on_box);
+		}
+	static const double slenderness[] = { 2, 4, 6, 10 };
+	for (int i = 0; i < 4; i++)
+		for (int on_box = 0; on_box < 2; on_box++)
+			check_block(slenderness[i], on_box, 8);
+	for (int i = 0; i < 4; i++)
+		for (int on_box = 0; on_box < 2; on_box++)
+			check_hits(slenderness[i], on_box, on_box ? .7 : 0);
+	check_block(4, false, 32);
+	check_block(4, false, 128);
+	return check_end();
+}
