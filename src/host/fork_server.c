@@ -251,15 +251,15 @@ bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end)
 static bool wait_for_end(pid_t pid, double timeout)
 {
 	ob_hang_clock clock = ob_hang_clock_start();
-	for (long pause_ns = 50000; ob_hang_clock_tick(&clock) < timeout; pause_ns += pause_ns / 4) {
+	for (long pause_ns = 50000; ob_hang_clock_tick(&clock) < timeout;) {
 		int status;
 		pid_t found = waitpid(pid, &status, WNOHANG | WUNTRACED);
 		if (found == pid && WIFSTOPPED(status))
 			return false;
 		if (found == pid || (found < 0 && errno != EINTR))
 			return true;
-		nanosleep(&(struct timespec){ .tv_nsec = pause_ns < longest_pause_ns ? pause_ns : longest_pause_ns },
-			  NULL);
+		nanosleep(&(struct timespec){ .tv_nsec = pause_ns }, NULL);
+		pause_ns = pause_ns < longest_pause_ns ? pause_ns + pause_ns / 4 : longest_pause_ns;
 	}
 	return false;
 }
