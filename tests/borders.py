@@ -36,7 +36,7 @@ ARROWS = {
     'engine': 'world sim ode table settings measure motion base',
     'lab': 'reference engine world plot experiment settings measure motion base',
     'render': 'measure scene motion base',
-    'record': 'measure scene motion base',
+    'record': 'measure scene table settings motion base',
     'paper': 'host measure render reference plot experiment scene table settings base',
     'serve': 'host scene table settings motion base',
     'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base',
@@ -62,7 +62,7 @@ DUTIES = [
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|lab/attempt|paper/attempt)\.c$', True),
+     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|lab/attempt|paper/attempt|record/recording)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

@@ -7,7 +7,7 @@
 enum ob_exit {
 	OB_EXIT_OK,
 	OB_EXIT_FAILED, // the run failed, or was interrupted
-	OB_EXIT_USAGE, // the command line, the scene or the checkpoint is wrong
+	OB_EXIT_USAGE, // the command line, the scene, the checkpoint or the record is wrong
 	OB_EXIT_MISSED, // lab --check: a target was missed
 };
 
@@ -19,6 +19,7 @@ int ob_command_lab(const ob_arguments *a);
 int ob_command_paper(const ob_arguments *a);
 int ob_command_inspect(const ob_arguments *a);
 int ob_command_serve(const ob_arguments *a);
+int ob_command_draw_replay(const ob_arguments *a); // run with --replay: what was recorded, instead of a scene
 
 // One line on standard error, "obsim: ..."; returns code.
 int ob_command_fail(int code, const char *text);

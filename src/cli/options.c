@@ -87,7 +87,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_GPU] = { NULL, "gpu", "WHICH", "surfaceless, or the number of a GPU (the first that works)", RUN,
 			    0 },
 
-	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE", "trajectories, as HDF5", RUN, 0 },
+	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE",
+			       "trajectories, and all that it takes to draw them again, as HDF5", RUN, 0 },
 	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
 	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
 	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end",
@@ -100,8 +101,10 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				   "what the run needs to go on, replaced as it goes, and at its end", RUN, 0 },
 	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
 	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN, 0 },
+	[OB_OPTION_REPLAY] = { NULL, "replay", "FILE", "draw what was recorded, instead of a scene", RUN, 0 },
 
-	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..", "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },
+	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..",
+			      "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },
 
 	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
 	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only a quick subset", LAB | PAPER, 0 },
@@ -331,7 +334,8 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      f);
 	if (command == OB_COMMAND_RUN)
 		fputs("\nobsim run --resume FILE [OPTION ...] goes on with the scene and the settings of the "
-		      "checkpoint.\n",
+		      "checkpoint.\nobsim run --replay FILE.h5 --frames DIR draws what was recorded, with the options "
+		      "under Frames.\n",
 		      f);
 	if (command == OB_COMMAND_LAB)
 		fputs("\nA CASE is a name, a row of the table (14), or the start or pattern of names (stack, '*-10'); "

@@ -422,6 +422,34 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	       read_checkpoint(r, a, e) && read_fault(r, a->value[OB_OPTION_FAULT], e);
 }
 
+// What is run again is a record: it is not run.
+bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e)
+{
+	static const ob_option_id allowed[] = { OB_OPTION_REPLAY,  OB_OPTION_DURATION, OB_OPTION_FRAMES,
+						OB_OPTION_VIDEO,   OB_OPTION_RAW,      OB_OPTION_FPS,
+						OB_OPTION_SIZE,    OB_OPTION_SAMPLES,  OB_OPTION_CAMERA,
+						OB_OPTION_OVERLAY, OB_OPTION_GPU };
+	*r = (ob_replay_request){ .record = a->value[OB_OPTION_REPLAY] };
+	if (a->operand)
+		return ob_fail(e,
+			       "--replay and the scene %s: expected one of them, for a record holds all that is drawn",
+			       a->operand);
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		bool fine = i == OB_OPTION_DEFINE ? a->defines == 0 : !a->value[i];
+		for (size_t k = 0; k < sizeof allowed / sizeof *allowed; k++)
+			fine |= allowed[k] == (ob_option_id)i;
+		if (!fine)
+			return ob_fail(e, "--%s: a record is drawn as it was run; leave this away",
+				       name_of((ob_option_id)i));
+	}
+	if (!read_frames(&r->frames, a, e) || !real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) ||
+	    !check_outputs(a, e))
+		return false;
+	if (!r->frames.wanted)
+		return ob_fail(e, "--replay needs --frames, --video or --raw");
+	return !r->frames.contacts || ob_fail(e, "--overlay contacts: a record holds no contacts");
+}
+
 ob_host_config ob_request_host(const ob_run_request *r)
 {
 	return (ob_host_config){ .run = r->run,
@@ -440,8 +468,11 @@ uint64_t ob_request_steps(double duration, double step)
 	return n < 1 ? 1 : n < 1e18 ? (uint64_t)n : (uint64_t)1e18;
 }
 
-static bool check_camera(const char *name, const ob_scene *s, ob_error *e)
+bool ob_request_check_camera(const ob_frames_request *f, const ob_scene *s, ob_error *e)
 {
+	const char *name = f->camera;
+	if (!name)
+		return true;
 	ob_spelling near = ob_spelling_start(name);
 	char all[512] = "";
 	for (uint32_t i = 0; i < s->cameras; i++) {
@@ -475,7 +506,7 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 	if (steps > UINT32_MAX - 2)
 		return ob_fail(e, "%g s in steps of %g s are too many steps (at most %" PRIu32 "): shorten --duration",
 			       r->duration, r->run.step_length, UINT32_MAX - 2);
-	return !r->frames.camera || check_camera(r->frames.camera, s, e);
+	return ob_request_check_camera(&r->frames, s, e);
 }
 
 bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)

@@ -57,6 +57,18 @@ bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e);
 // outlive r.
 bool ob_request_resume(ob_run_request *r, const ob_saved_run *saved, const ob_scene *s, ob_error *e);
 
+// What is asked of a run that is drawn again from its record; --replay is given.
+typedef struct ob_replay_request {
+	const char *record; // path
+	double duration; // s from the run's start at which to end; 0 = the record's end
+	ob_frames_request frames;
+} ob_replay_request;
+
+// false and e on what means nothing to a replay, or is wrong otherwise.
+bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e);
+// false and e when none of the cameras has the name that is asked for.
+bool ob_request_check_camera(const ob_frames_request *f, const ob_scene *s, ob_error *e);
+
 // What it asks of the host; of a resolved one.
 ob_host_config ob_request_host(const ob_run_request *r);
 

@@ -186,10 +186,15 @@ static bool open_outputs(run *r, ob_error *e)
 	if (q->checkpoint && !(r->checkpoints = ob_checkpoint_writer_create(q->checkpoint, &q->fault)))
 		return ob_fail(e, "no memory for checkpoints");
 	if (q->record) {
-		ob_universe_info info;
-		ob_universe_get_info(ob_host_universe(r->host), &info);
-		info.capacity = r->scene->objects; // spare slots stay empty here
-		r->recorder = ob_recorder_create(q->record, &info, r->scene->title, e);
+		ob_record_facts facts = { .scene = r->scene,
+					  .path = q->scene,
+					  .options = &q->scene_options,
+					  .settings = &q->run,
+					  .duration = q->duration,
+					  .commit = ob_version_commit };
+		ob_universe_get_info(ob_host_universe(r->host), &facts.universe);
+		facts.universe.capacity = r->scene->objects; // slots that are spare have columns once they are used
+		r->recorder = ob_recorder_create(q->record, &facts, e);
 		if (!r->recorder)
 			return false;
 	}
@@ -455,6 +460,8 @@ static void finish(run *r)
 
 int ob_command_run(const ob_arguments *a)
 {
+	if (a->value[OB_OPTION_REPLAY])
+		return ob_command_draw_replay(a);
 	run r = { .begun = ob_clock_wall() };
 	ob_error e;
 	ob_host_config config = { 0 };

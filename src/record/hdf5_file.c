@@ -76,6 +76,14 @@ bool ob_hdf5_attribute_numbers(hid_t at, const char *name, const double *number,
 	return ok;
 }
 
+bool ob_hdf5_attribute_count(hid_t at, const char *name, uint64_t count)
+{
+	hid_t space = H5Screate(H5S_SCALAR);
+	bool ok = write_attribute(at, name, H5T_NATIVE_UINT64, space, &count);
+	H5Sclose(space);
+	return ok;
+}
+
 static bool add_label(hid_t set, const ob_hdf5_label *label)
 {
 	return ob_hdf5_attribute_text(set, "units", label->units) &&
@@ -83,8 +91,10 @@ static bool add_label(hid_t set, const ob_hdf5_label *label)
 	       ob_hdf5_attribute_text(set, "description", label->description);
 }
 
+enum { CACHE_SLOTS = 4001, CACHE_BYTES = 1 << 24 };
+
 hid_t ob_hdf5_dataset(hid_t in, const ob_hdf5_label *label, hid_t type, int rank, const hsize_t *dims,
-		      hsize_t chunk_rows, const void *fill)
+		      hsize_t chunk_rows, hsize_t chunk_ids, const void *fill)
 {
 	hsize_t most[4], chunk[4];
 	memcpy(most, dims, (size_t)rank * sizeof *dims);
@@ -95,10 +105,18 @@ hid_t ob_hdf5_dataset(hid_t in, const ob_hdf5_label *label, hid_t type, int rank
 	if (chunk_rows) {
 		most[0] = H5S_UNLIMITED;
 		chunk[0] = chunk_rows;
+		if (rank > 1 && chunk_ids) {
+			most[1] = H5S_UNLIMITED;
+			chunk[1] = chunk_ids;
+		}
 		H5Pset_chunk(how, rank, chunk);
 	}
 	hid_t space = H5Screate_simple(rank, dims, most);
-	hid_t set = H5Dcreate2(in, label->name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
+	// each append touches a chunk for each chunk_ids ids, and all of these should stay in memory
+	hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+	H5Pset_chunk_cache(access, CACHE_SLOTS, CACHE_BYTES, 1);
+	hid_t set = H5Dcreate2(in, label->name, type, space, H5P_DEFAULT, how, access);
+	H5Pclose(access);
 	H5Sclose(space);
 	H5Pclose(how);
 	if (set >= 0 && !add_label(set, label)) {

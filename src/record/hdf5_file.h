@@ -23,9 +23,10 @@ uint64_t ob_hdf5_length(const char *path);
 hid_t ob_hdf5_string_type(size_t length);
 bool ob_hdf5_attribute_text(hid_t at, const char *name, const char *text);
 bool ob_hdf5_attribute_numbers(hid_t at, const char *name, const double *number, size_t numbers);
-// A dataset of rank dimensions dims[]; the first grows without limit if chunk_rows > 0. NaN or fill where never
-// written. Negative on failure.
+bool ob_hdf5_attribute_count(hid_t at, const char *name, uint64_t count);
+// A dataset of rank dimensions dims[]; the first grows without limit if chunk_rows > 0, in chunks of so many rows, and
+// the second if chunk_ids > 0. Zero or fill where never written. Negative on failure.
 hid_t ob_hdf5_dataset(hid_t in, const ob_hdf5_label *label, hid_t type, int rank, const hsize_t *dims,
-		      hsize_t chunk_rows, const void *fill);
+		      hsize_t chunk_rows, hsize_t chunk_ids, const void *fill);
 
 #endif

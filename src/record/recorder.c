@@ -5,9 +5,10 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
-#include "record/hdf5_file.h"
+#include "record/layout.h"
 
 // ---- preallocation
 
@@ -58,6 +59,7 @@ static bool close_preallocation(preallocation *p, uint64_t used)
 
 enum kind { INTEGER, NUMBER, VECTOR, NAME, SHAPE, FLAG };
 enum { SHAPE_MAX = 12, FACTS = 10 };
+enum { IDS_AT_ONCE = 8 }; // at least, in a chunk of a dataset that may grow by ids
 
 // A fact of a passport and where it lies in it.
 static const struct fact {
@@ -91,7 +93,7 @@ static const struct fact {
 typedef struct objects {
 	uint32_t count;
 	hid_t group, set[FACTS]; // negative: not there
-	ob_passport *written; // [count]
+	ob_passport *written; // [count]: the last that had each id, also when it has gone
 } objects;
 
 static hid_t fact_type(enum kind kind)
@@ -121,18 +123,18 @@ static size_t fact_bytes(enum kind kind)
 // o starts zeroed. false on failure; finish_objects is due either way.
 static bool create_objects(objects *o, hid_t file, uint32_t count)
 {
-	o->count = count;
 	for (int i = 0; i < FACTS; i++)
 		o->set[i] = H5I_INVALID_HID;
 	o->group = H5Gcreate2(file, "objects", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 	o->written = calloc(count, sizeof *o->written);
 	if (o->group < 0 || !o->written)
 		return false;
+	o->count = count;
 	for (int i = 0; i < FACTS; i++) {
 		hsize_t dims[2] = { count, 3 };
 		hid_t type = fact_type(facts[i].kind);
-		o->set[i] = ob_hdf5_dataset(o->group, &facts[i].label, type, facts[i].kind == VECTOR ? 2 : 1, dims, 0,
-					    NULL);
+		o->set[i] = ob_hdf5_dataset(o->group, &facts[i].label, type, facts[i].kind == VECTOR ? 2 : 1, dims,
+					    count < IDS_AT_ONCE ? IDS_AT_ONCE : count, 0, NULL);
 		H5Tclose(type);
 		if (o->set[i] < 0)
 			return false;
@@ -161,20 +163,24 @@ static bool write_fact(const objects *o, int i, char *buffer)
 	return ok;
 }
 
-// Enters passports that are new or have changed.
-static bool update_objects(objects *o, const ob_snapshot *s)
+// More columns, of nobody.
+static bool grow_objects(objects *o, uint32_t count)
 {
-	bool changed = false, ok = true;
-	for (uint32_t id = 0; id < o->count; id++) {
-		// an object that has gone stays entered: its past is in the file
-		if (id >= s->count || !(s->passport[id].flags & OB_OBJECT_PRESENT) ||
-		    memcmp(&o->written[id], &s->passport[id], sizeof *o->written) == 0)
-			continue;
-		o->written[id] = s->passport[id];
-		changed = true;
-	}
-	if (!changed)
-		return true;
+	ob_passport *grown = realloc(o->written, count * sizeof *grown);
+	if (!grown)
+		return false;
+	memset(grown + o->count, 0, (count - o->count) * sizeof *grown);
+	o->written = grown;
+	o->count = count;
+	bool ok = true;
+	for (int i = 0; i < FACTS && ok; i++)
+		ok = H5Dset_extent(o->set[i], (hsize_t[2]){ count, 3 }) >= 0;
+	return ok;
+}
+
+static bool write_objects(const objects *o)
+{
+	bool ok = true;
 	char *buffer = malloc((size_t)o->count * OB_NAME_MAX);
 	for (int i = 0; i < FACTS && ok; i++)
 		ok = buffer && write_fact(o, i, buffer);
@@ -194,9 +200,68 @@ static bool finish_objects(objects *o)
 	return ok;
 }
 
+// ---- lists of compounds: events and motions
+
+enum { LIST_CHUNK = 1 << 16 }; // bytes
+
+typedef struct list {
+	const ob_record_table *table;
+	hid_t set, type; // negative: not there; type: in memory
+	size_t bytes; // of one, in the file
+	hsize_t rows;
+	hsize_t chunk; // rows
+} list;
+
+// Nothing of it is there yet, but it may be finished.
+static list list_of(const ob_record_table *table)
+{
+	return (list){ .table = table, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+}
+
+static bool create_list(list *l, hid_t file)
+{
+	hid_t packed = ob_record_type_in_file(l->table);
+	l->type = ob_record_type_in_memory(l->table);
+	l->bytes = H5Tget_size(packed);
+	l->chunk = LIST_CHUNK / l->bytes;
+	l->set = ob_hdf5_dataset(file, &l->table->label, packed, 1, (hsize_t[1]){ 0 }, l->chunk, 0, NULL);
+	H5Tclose(packed);
+	return l->set >= 0;
+}
+
+static bool append_list(list *l, const void *items, hsize_t count)
+{
+	if (count == 0)
+		return true;
+	hsize_t size = l->rows + count;
+	if (H5Dset_extent(l->set, &size) < 0)
+		return false;
+	hid_t in_file = H5Dget_space(l->set), in_memory = H5Screate_simple(1, &count, NULL);
+	bool ok = H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &l->rows, NULL, &count, NULL) >= 0 &&
+		  H5Dwrite(l->set, l->type, in_memory, in_file, H5P_DEFAULT, items) >= 0;
+	H5Sclose(in_memory);
+	H5Sclose(in_file);
+	l->rows += count;
+	return ok;
+}
+
+// At most, that count more take of the file.
+static uint64_t list_bytes(const list *l, uint64_t count)
+{
+	return (count + l->chunk) * l->bytes;
+}
+
+static bool finish_list(list *l)
+{
+	bool ok = l->set < 0 || H5Dclose(l->set) >= 0;
+	if (l->type >= 0)
+		H5Tclose(l->type);
+	return ok;
+}
+
 // ---- the recorder
 
-enum { TIME, STEP, POSITION, ATTITUDE, VELOCITY, ANGULAR_VELOCITY, ASLEEP, COLUMNS };
+enum { TIME, STEP, MOTIONS_UNTIL, POSITION, ATTITUDE, VELOCITY, ANGULAR_VELOCITY, ASLEEP, COLUMNS };
 enum { CHUNK_BYTES = 1 << 16, ABSENT = 255 };
 enum { INDEX_BYTES = 1 << 18 }; // more than HDF5 adds to its indices of chunks with one append
 
@@ -207,6 +272,8 @@ static const struct column {
 } columns[COLUMNS] = {
 	[TIME] = { { "time", "s", NULL, "simulated time of each recorded state" }, 0 },
 	[STEP] = { { "step", "1", NULL, "steps completed at each recorded state" }, 0 },
+	[MOTIONS_UNTIL] = { { "motions_until", "1", NULL, "how many of /motions are known at each recorded state" },
+			    0 },
 	[POSITION] = { { "position", "m", "world, right-handed, z up", "centre of mass; NaN: no such object then" },
 		       3 },
 	[ATTITUDE] = { { "attitude", "1", "body to world", "unit quaternion w x y z; NaN: no such object then" }, 4 },
@@ -222,42 +289,126 @@ struct ob_recorder {
 	char *path;
 	hid_t file, set[COLUMNS]; // negative: not there
 	objects objects;
+	list events, motions;
 	preallocation allocated;
-	uint64_t append_bytes; // at most, of one append
-	uint32_t count; // objects
+	hsize_t chunk_ids; // in a chunk of the columns
+	uint64_t row_bytes; // at most, of one append to one such chunk of each column
+	uint32_t count; // ids that have columns
 	hsize_t rows;
 	double *numbers; // [count * 4], one row of one dataset
 	uint8_t *asleep; // [count]
+	ob_record_motion *known; // [count]: what was written last of each id, zeroed where it means nothing
+	ob_record_motion *fresh; // [count]: what is new in a row
+	ob_record_event *event; // [count * 2]
 };
 
 static hid_t column_type(int column)
 {
-	return column == STEP ? H5T_NATIVE_UINT64 : column == ASLEEP ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE;
+	return column == STEP || column == MOTIONS_UNTIL ? H5T_NATIVE_UINT64
+	       : column == ASLEEP                        ? H5T_NATIVE_UINT8
+							 : H5T_NATIVE_DOUBLE;
 }
 
-// Chunks of about 64 kB, of at least one row and at most 1024: a file of few objects does not become one of many chunks. Not compressed: a chunk grows with each append, and packed anew each time it
-// would leave holes behind.
+// Chunks of about 64 kB, of at least one row and at most 1024: a file of few objects does not become one of many
+// chunks. Not compressed: a chunk grows with each append, and packed anew each time it would leave holes behind.
 static bool create_column(ob_recorder *r, int i)
 {
 	int width = columns[i].width, rank = !width ? 1 : width == 1 ? 2 : 3;
 	hsize_t dims[3] = { 0, r->count, (hsize_t)width };
-	hsize_t row = H5Tget_size(column_type(i)) * (width ? dims[1] * dims[2] : 1);
+	hsize_t ids = r->chunk_ids;
+	hsize_t row = H5Tget_size(column_type(i)) * (width ? ids * dims[2] : 1);
 	hsize_t chunk = row < CHUNK_BYTES ? CHUNK_BYTES / row : 1;
 	if (chunk > 1024)
 		chunk = 1024;
-	r->append_bytes += chunk * row;
+	r->row_bytes += chunk * row;
 	const double none = NAN;
 	const uint8_t absent = ABSENT;
 	const void *fill = i == ASLEEP ? (const void *)&absent : width ? &none : NULL;
-	r->set[i] = ob_hdf5_dataset(r->file, &columns[i].label, column_type(i), rank, dims, chunk, fill);
+	r->set[i] =
+		ob_hdf5_dataset(r->file, &columns[i].label, column_type(i), rank, dims, chunk, width ? ids : 0, fill);
 	return r->set[i] >= 0;
 }
 
-static bool write_attributes(hid_t file, const ob_universe_info *info, const char *title)
+static bool write_text(hid_t file, const char *name, const char *description, const char *text, size_t size)
 {
+	hid_t type = ob_hdf5_string_type(size ? size : 1), space = H5Screate(H5S_SCALAR);
+	hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+	bool ok = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, size ? text : "") >= 0 &&
+		  ob_hdf5_attribute_text(set, "units", "1") && ob_hdf5_attribute_text(set, "description", description);
+	if (set >= 0)
+		ok &= H5Dclose(set) >= 0;
+	H5Sclose(space);
+	H5Tclose(type);
+	return ok;
+}
+
+// The parameters that the scene was given, a line each.
+static bool write_parameters(hid_t file, const ob_scene_options *o)
+{
+	size_t size = 0, at = 0;
+	for (uint32_t i = 0; i < o->define_count; i++)
+		size += strlen(o->defines[i]) + 1;
+	char *text = malloc(size + 1);
+	for (uint32_t i = 0; text && i < o->define_count; i++)
+		at += (size_t)sprintf(text + at, "%s\n", o->defines[i]);
+	bool ok = text &&
+		  write_text(file, "parameters", "of the scene, as given by -D: NAME=VALUE, a line each", text, size);
+	free(text);
+	return ok;
+}
+
+// A dataset of a table, complete.
+static bool write_table(hid_t file, const ob_record_table *table, const void *items, hsize_t count)
+{
+	hid_t packed = ob_record_type_in_file(table), type = ob_record_type_in_memory(table);
+	hid_t set = ob_hdf5_dataset(file, &table->label, packed, 1, &count, 0, 0, NULL);
+	bool ok = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, items) >= 0;
+	if (set >= 0)
+		ok &= H5Dclose(set) >= 0;
+	H5Tclose(type);
+	H5Tclose(packed);
+	return ok;
+}
+
+static bool write_settings(hid_t file, const ob_run_settings *s)
+{
+	hid_t group = H5Gcreate2(file, "settings", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+	bool ok = group >= 0;
+	for (int i = 0; i < OB_SETTINGS && ok; i++) {
+		const ob_setting *one = &ob_setting_table[i];
+		const void *at = (const char *)s + one->offset;
+		uint32_t count = 0;
+		if (one->kind == OB_SETTING_REAL) {
+			ok = ob_hdf5_attribute_numbers(group, one->name, at, 1);
+		} else if (one->kind == OB_SETTING_COUNT) {
+			memcpy(&count, at, sizeof count);
+			ok = ob_hdf5_attribute_count(group, one->name, count);
+		} else {
+			ok = ob_hdf5_attribute_text(group, one->name, ob_setting_print(s, (ob_setting_id)i).text);
+		}
+	}
+	return group >= 0 && H5Gclose(group) >= 0 && ok;
+}
+
+static bool write_attributes(hid_t file, const ob_record_facts *f)
+{
+	const ob_universe_info *info = &f->universe;
 	double gravity[3] = { info->gravity.x, info->gravity.y, info->gravity.z }, workers = info->workers;
-	return ob_hdf5_attribute_text(file, "obsim_version", OB_VERSION) &&
-	       ob_hdf5_attribute_text(file, "title", title) && ob_hdf5_attribute_text(file, "universe", info->name) &&
+	char now[32];
+	time_t seconds = time(NULL);
+	struct tm utc;
+	strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&seconds, &utc));
+	return ob_hdf5_attribute_text(file, "format", OB_RECORD_FORMAT) &&
+	       ob_hdf5_attribute_count(file, "format_version", OB_RECORD_VERSION) &&
+	       ob_hdf5_attribute_text(file, "obsim_version", OB_VERSION) &&
+	       ob_hdf5_attribute_text(file, "obsim_commit", f->commit) &&
+	       ob_hdf5_attribute_text(file, "created", now) && ob_hdf5_attribute_text(file, "title", f->scene->title) &&
+	       ob_hdf5_attribute_text(file, "scene_file", f->path) &&
+	       ob_hdf5_attribute_count(file, "seed", f->options->has_seed ? f->options->seed : f->scene->seed) &&
+	       ob_hdf5_attribute_numbers(file, "duration", &f->duration, 1) &&
+	       ob_hdf5_attribute_text(file, "duration_units", "s") &&
+	       ob_hdf5_attribute_count(file, "record_every", f->scene->record_every) &&
+	       ob_hdf5_attribute_text(file, "universe", info->name) &&
 	       ob_hdf5_attribute_text(file, "arch", info->arch) &&
 	       ob_hdf5_attribute_text(file, "isolation", info->isolation) &&
 	       ob_hdf5_attribute_numbers(file, "gravity", gravity, 3) &&
@@ -267,19 +418,49 @@ static bool write_attributes(hid_t file, const ob_universe_info *info, const cha
 	       ob_hdf5_attribute_numbers(file, "workers", &workers, 1);
 }
 
-static bool create_file(ob_recorder *r, const ob_universe_info *info, const char *title)
+static bool write_facts(hid_t file, const ob_record_facts *f)
+{
+	return write_attributes(file, f) && write_settings(file, f->settings) &&
+	       write_text(file, "scene", "the scene's file (Lua)", f->scene->text, f->scene->text_size) &&
+	       write_parameters(file, f->options) &&
+	       write_table(file, &ob_record_cameras, f->scene->camera, f->scene->cameras) &&
+	       write_table(file, &ob_record_look, &f->scene->look, 1);
+}
+
+static bool create_file(ob_recorder *r, const ob_record_facts *about)
 {
 	r->file = H5Fcreate(r->path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-	if (r->file < 0 || !write_attributes(r->file, info, title) || !create_objects(&r->objects, r->file, r->count))
+	if (r->file < 0 || !write_facts(r->file, about) || !create_objects(&r->objects, r->file, r->count) ||
+	    !create_list(&r->events, r->file) || !create_list(&r->motions, r->file))
 		return false;
+	r->chunk_ids = r->count < IDS_AT_ONCE ? IDS_AT_ONCE : r->count;
 	for (int i = 0; i < COLUMNS; i++)
 		if (!create_column(r, i))
 			return false;
-	r->append_bytes += INDEX_BYTES + (uint64_t)r->count * sizeof(ob_passport);
 	return H5Fflush(r->file, H5F_SCOPE_GLOBAL) >= 0 && open_preallocation(&r->allocated, r->path);
 }
 
-ob_recorder *ob_recorder_create(const char *path, const ob_universe_info *info, const char *scene_title, ob_error *e)
+// Room for so many ids in memory.
+static bool make_room(ob_recorder *r, uint32_t count)
+{
+	double *numbers = realloc(r->numbers, count * 4 * sizeof *numbers);
+	r->numbers = numbers ? numbers : r->numbers;
+	uint8_t *asleep = realloc(r->asleep, count);
+	r->asleep = asleep ? asleep : r->asleep;
+	ob_record_motion *fresh = realloc(r->fresh, count * sizeof *fresh);
+	r->fresh = fresh ? fresh : r->fresh;
+	ob_record_event *event = realloc(r->event, 2 * count * sizeof *event);
+	r->event = event ? event : r->event;
+	ob_record_motion *known = realloc(r->known, count * sizeof *known);
+	r->known = known ? known : r->known;
+	if (!numbers || !asleep || !fresh || !event || !known)
+		return false;
+	memset(r->known + r->count, 0, (count - r->count) * sizeof *r->known);
+	r->count = count;
+	return true;
+}
+
+ob_recorder *ob_recorder_create(const char *path, const ob_record_facts *about, ob_error *e)
 {
 	ob_hdf5_silence();
 	ob_recorder *r = calloc(1, sizeof *r);
@@ -289,15 +470,15 @@ ob_recorder *ob_recorder_create(const char *path, const ob_universe_info *info, 
 	}
 	r->file = H5I_INVALID_HID;
 	r->allocated.fd = -1;
+	r->events = list_of(&ob_record_events);
+	r->motions = list_of(&ob_record_motions);
 	for (int i = 0; i < COLUMNS; i++)
 		r->set[i] = H5I_INVALID_HID;
-	r->count = info->capacity ? info->capacity : 1;
+	uint32_t count = about->universe.capacity ? about->universe.capacity : 1;
 	r->path = strdup(path);
-	r->numbers = calloc(r->count, 4 * sizeof *r->numbers);
-	r->asleep = calloc(r->count, 1);
-	if (!r->path || !r->numbers || !r->asleep)
-		ob_fail(e, "%s: no memory to record %u objects", path, r->count);
-	else if (create_file(r, info, scene_title))
+	if (!r->path || !make_room(r, count))
+		ob_fail(e, "%s: no memory to record %u objects", path, count);
+	else if (create_file(r, about))
 		return r;
 	else
 		ob_hdf5_fail(e, path, "create the record");
@@ -305,10 +486,79 @@ ob_recorder *ob_recorder_create(const char *path, const ob_universe_info *info, 
 	return NULL;
 }
 
+// ---- what is new
+
 static bool is_present(const ob_snapshot *s, uint32_t id)
 {
 	return id < s->count && s->passport[id].flags & OB_OBJECT_PRESENT;
 }
+
+static bool is_same_object(const ob_passport *a, const ob_passport *b)
+{
+	return a->flags & b->flags & OB_OBJECT_PRESENT && a->generation == b->generation;
+}
+
+static void note_event(ob_recorder *r, const ob_snapshot *s, ob_record_event_kind kind, const ob_passport *p,
+		       hsize_t *events)
+{
+	r->event[(*events)++] = (ob_record_event){ .step = s->step, .time = s->time, .kind = kind, .passport = *p };
+}
+
+// Enters passports that are new or have changed, and who has gone.
+static bool append_events(ob_recorder *r, const ob_snapshot *s)
+{
+	hsize_t events = 0;
+	bool changed = false;
+	for (uint32_t id = 0; id < r->count; id++) {
+		ob_passport *known = &r->objects.written[id];
+		const ob_passport *now = is_present(s, id) ? &s->passport[id] : NULL;
+		bool same = now && is_same_object(known, now), was = known->flags & OB_OBJECT_PRESENT;
+		if (was && !same) {
+			note_event(r, s, OB_RECORD_REMOVED, known, &events);
+			known->flags &=
+				~(uint32_t)OB_OBJECT_PRESENT; // what it was stays entered: its past is in the file
+		}
+		if (now && !same)
+			memset(&r->known[id], 0, sizeof r->known[id]);
+		if (!now || memcmp(known, now, sizeof *known) == 0)
+			continue;
+		note_event(r, s, same ? OB_RECORD_CHANGED : OB_RECORD_CREATED, now, &events);
+		*known = *now;
+		changed = true;
+	}
+	return append_list(&r->events, r->event, events) && (!changed || write_objects(&r->objects));
+}
+
+// Of a motion, what is recorded.
+static ob_record_motion recorded(uint32_t id, const ob_motion *m)
+{
+	return (ob_record_motion){ .id = id,
+				   .motion = { .t0 = m->t0,
+					       .valid_until = m->valid_until,
+					       .p = m->p,
+					       .q = m->q,
+					       .v = m->v,
+					       .w = m->w,
+					       .a = m->a,
+					       .flags = m->flags } };
+}
+
+static bool append_motions(ob_recorder *r, const ob_snapshot *s)
+{
+	hsize_t motions = 0;
+	for (uint32_t id = 0; id < r->count; id++) {
+		if (!is_present(s, id))
+			continue;
+		ob_record_motion now = recorded(id, &s->motion[id]);
+		if (memcmp(&now, &r->known[id], sizeof now) == 0)
+			continue;
+		r->known[id] = now;
+		r->fresh[motions++] = now;
+	}
+	return append_list(&r->motions, r->fresh, motions);
+}
+
+// ---- columns
 
 // One object's numbers of one column.
 static void copy_vector(int column, const ob_state *s, double *to)
@@ -329,6 +579,8 @@ static const void *row_of(ob_recorder *r, int column, const ob_snapshot *s)
 		return &s->time;
 	if (column == STEP)
 		return &s->step;
+	if (column == MOTIONS_UNTIL)
+		return &r->motions.rows;
 	for (uint32_t id = 0; id < r->count; id++) {
 		bool there = is_present(s, id);
 		if (column == ASLEEP) {
@@ -362,16 +614,25 @@ static bool append_row(ob_recorder *r, int column, const void *row)
 	return ok;
 }
 
+// Columns for all that are there.
+static bool grow(ob_recorder *r, const ob_snapshot *s)
+{
+	uint32_t count = s->count;
+	while (count > r->count && !is_present(s, count - 1))
+		count--;
+	return count <= r->count || (grow_objects(&r->objects, count) && make_room(r, count));
+}
+
 bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 {
-	for (uint32_t id = r->count; id < s->count; id++)
-		if (is_present(s, id))
-			return ob_fail(e, "%s: object %u came up, but only %u were to be recorded", r->path, id,
-				       r->count);
 	haddr_t used = 0;
-	if (H5Fget_eoa(r->file, &used) >= 0 && !preallocate(&r->allocated, r->path, used, r->append_bytes, e))
+	if (!grow(r, s))
+		return ob_fail(e, "%s: no memory to record %u objects", r->path, s->count);
+	uint64_t more = r->row_bytes * (1 + r->count / r->chunk_ids) + list_bytes(&r->events, 2 * r->count) +
+			list_bytes(&r->motions, r->count) + INDEX_BYTES + r->count * sizeof(ob_passport);
+	if (H5Fget_eoa(r->file, &used) >= 0 && !preallocate(&r->allocated, r->path, used, more, e))
 		return false;
-	bool ok = update_objects(&r->objects, s);
+	bool ok = append_events(r, s) && append_motions(r, s);
 	for (int i = 0; i < COLUMNS && ok; i++)
 		ok = append_row(r, i, row_of(r, i, s));
 	if (!ok || H5Fflush(r->file, H5F_SCOPE_GLOBAL) < 0)
@@ -390,6 +651,8 @@ bool ob_recorder_close(ob_recorder *r, ob_error *e)
 			ok &= H5Dclose(r->set[i]) >= 0;
 	if (r->objects.count)
 		ok &= finish_objects(&r->objects);
+	ok &= finish_list(&r->events);
+	ok &= finish_list(&r->motions);
 	if (r->file >= 0)
 		ok &= H5Fclose(r->file) >= 0;
 	ok &= close_preallocation(&r->allocated, ob_hdf5_length(r->path));
@@ -398,6 +661,9 @@ bool ob_recorder_close(ob_recorder *r, ob_error *e)
 	free(r->path);
 	free(r->numbers);
 	free(r->asleep);
+	free(r->known);
+	free(r->fresh);
+	free(r->event);
 	free(r);
 	return ok;
 }

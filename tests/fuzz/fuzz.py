@@ -4,7 +4,7 @@
     fuzz.py OBSIM KIND ... [--count N | --hours H] [--seed S] [--keep DIR]
 
 KIND is one of: scenes (generated, edge values in all fields), lua (mutants of the shipped scenes), words (command lines),
-checkpoints (mutants of a run's own), records (mutants of the results that compare keeps). Each case is a process of its
+checkpoints (mutants of a run's own), recordings (the same), records (mutants of the results that compare keeps). Each case is a process of its
 own. Whatever comes in, it must end by itself with 0, 1 or 2; say what is wrong in lines that begin "obsim: "; leave no
 universe behind; send no control character to a terminal; and compute no longer than its CPU time allows. What does not is
 kept in DIR (fuzz-kept) with the command that does it again, and the exit code is 1.
@@ -261,6 +261,18 @@ class Checkpoints(Files):
 		return ["inspect", path] if self.r.random() < .5 else ["run", "--resume", path, "--duration", ".12"]
 
 
+class Recordings(Files):
+	def known(self, obsim):
+		with tempfile.TemporaryDirectory() as folder:
+			path = os.path.join(folder, "r.h5")
+			subprocess.run([obsim, "run", os.path.join(SCENES, "stack.lua"), "--duration", ".1", "--record", path], stdout=subprocess.DEVNULL, check=True)
+			with open(path, "rb") as f:
+				self.seed = f.read()
+
+	def command(self, path, folder):
+		return ["run", "--replay", path, "--raw", "/dev/null", "--size", "16x16", "--samples", "1", "--fps", "30"]
+
+
 class Records(Files):
 	def known(self, obsim):
 		with tempfile.TemporaryDirectory() as folder:
@@ -276,7 +288,7 @@ class Records(Files):
 		return ["compare", os.path.join(SCENES, "stack.lua"), "--duration", ".02", "--repeats", "1", "--out", out]
 
 
-KINDS = {"scenes": Scenes, "lua": Lua, "words": Words, "checkpoints": Checkpoints, "records": Records}
+KINDS = {"scenes": Scenes, "lua": Lua, "words": Words, "checkpoints": Checkpoints, "recordings": Recordings, "records": Records}
 
 
 def limit():
@@ -304,7 +316,7 @@ def faults(done, name):
 
 def run_case(obsim, kind, folder, name):
 	words = kind.case(folder)
-	if words[0] == "run" and not isinstance(kind, Words):
+	if words[0] == "run" and not isinstance(kind, (Words, Recordings)):
 		words += ["--name", name]
 	try:
 		done = subprocess.run([obsim] + words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit,

@@ -19,6 +19,15 @@ with tempfile.TemporaryDirectory() as folder:
         n, objects = len(f['time']), len(f['objects/id'])
         assert f['position'].shape == (n, objects, 3), f['position'].shape
         assert f['attitude'].shape == (n, objects, 4), f['attitude'].shape
+        assert f.attrs['format'] == b'obsim record' and f.attrs['format_version'] == 2 and f.attrs['seed'] == 5
+        assert f['scene'][()] == b'box {}' and f['parameters'][()] == b'n=3\n'
+        assert f['cameras']['name'].tolist() == [b'main', b'other'] and f['look']['grid'].tolist() == [1]
+        events = f['events'][:]
+        assert events['kind'].tolist() == [1, 1, 1] and events['step'].tolist() == [0, 0, 5], events
+        assert events['size'][2].tolist() == [.1, .2, .3] and events['name'][0] == b'ground'
+        last = f['motions'][:f['motions_until'][9]]
+        last = last[last['id'] == 1][-1]
+        assert last['p'].tolist() == [1, 2, 9] and last['t0'] == f['time'][9]
         assert f.attrs['title'] == b'A title', f.attrs['title']
         assert list(f.attrs['gravity']) == [0, 0, -9.81]
         assert f['velocity'].attrs['units'] == b'm/s'

@@ -17,10 +17,23 @@ static ob_passport passport[OBJECTS];
 static ob_motion motion[OBJECTS];
 static char path[64], missing[96];
 
-static ob_universe_info info(uint32_t capacity)
+static ob_camera_def camera[2] = {
+	{ .name = "main", .eye = { 1, 2, 3 }, .velocity = { .1, 0, 0 }, .fov = .7 },
+	{ .name = "other", .eye = { 3, 2, 1 }, .target = { 0, 0, 1 }, .pan = .2, .fov = .9 },
+};
+static ob_scene scene = { .title = "A title", .text = (char *)"box {}", .text_size = 6, .seed = 5, .record_every = 1,
+			  .cameras = 2, .camera = camera, .look = { .sky_top = { .1f, .2f, .3f }, .grid = true } };
+static const char *const defines[] = { "n=3" };
+static const ob_scene_options options = { .defines = defines, .define_count = 1 };
+static ob_run_settings settings;
+
+static ob_record_facts facts(uint32_t capacity)
 {
-	return (ob_universe_info){ .name = "test", .arch = "obs", .isolation = "thread", .capacity = capacity,
-				   .workers = 2, .gravity = { 0, 0, -9.81 }, .step_length = .01 };
+	settings = ob_run_settings_default();
+	return (ob_record_facts){ .universe = { .name = "test", .arch = "obs", .isolation = "thread", .capacity = capacity,
+						.workers = 2, .gravity = { 0, 0, -9.81 }, .step_length = .01 },
+				  .scene = &scene, .path = "scene.lua", .options = &options, .settings = &settings,
+				  .duration = 10, .commit = "abc" };
 }
 
 // Object 0 is a plane, 1 a box that moves, 2 comes at step 5.
@@ -45,8 +58,8 @@ static ob_snapshot at(uint64_t step)
 
 static bool record(uint64_t rows, bool close_it, ob_error *e)
 {
-	ob_universe_info i = info(OBJECTS);
-	ob_recorder *r = ob_recorder_create(path, &i, "A title", e);
+	ob_record_facts about = facts(OBJECTS);
+	ob_recorder *r = ob_recorder_create(path, &about, e);
 	bool ok = r != NULL;
 	for (uint64_t step = 0; step < rows && ok; step++) {
 		ob_snapshot s = at(step);
@@ -204,19 +217,41 @@ static void test_full(void)
 static void test_errors(void)
 {
 	ob_error e = { "" };
-	ob_universe_info i = info(OBJECTS);
+	ob_record_facts about = facts(OBJECTS);
 	snprintf(missing, sizeof missing, "%s.dir/file.h5", path);
-	CHECK(!ob_recorder_create(missing, &i, "", &e));
+	CHECK(!ob_recorder_create(missing, &about, &e));
 	CHECK(strstr(e.text, missing) && strstr(e.text, "No such file or directory"));
-	i.capacity = OBJECTS - 1;
-	ob_recorder *r = ob_recorder_create(path, &i, "", &e);
-	ob_snapshot s = at(0); // the last object is not there yet
-	CHECK(r && ob_recorder_append(r, &s, &e));
-	s = at(5);
-	CHECK(r && !ob_recorder_append(r, &s, &e));
-	CHECK(strstr(e.text, "came up"));
-	CHECK(ob_recorder_close(r, &e));
 	CHECK(ob_recorder_close(NULL, &e));
+}
+
+// Objects whose ids there were no columns for get some, which say that they were not there before.
+static void test_growth(void)
+{
+	enum { MANY = 40 };
+	static ob_passport all[MANY];
+	static ob_motion moves[MANY];
+	double p[2][MANY][3];
+	ob_error e = { "" };
+	ob_record_facts about = facts(1);
+	ob_recorder *r = ob_recorder_create(path, &about, &e);
+	CHECK(r);
+	for (uint32_t i = 0; i < MANY; i++) {
+		all[i] = (ob_passport){ .id = i, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_SPHERE, .size = { 1, 0, 0 } };
+		moves[i] = (ob_motion){ .q = { 1, 0, 0, 0 }, .p = { i, 0, 0 } };
+	}
+	ob_snapshot s = { .count = MANY, .passport = all, .motion = moves };
+	for (uint32_t i = 1; i < MANY; i++)
+		all[i].flags = 0;
+	CHECK(r && ob_recorder_append(r, &s, &e));
+	all[MANY - 1].flags = OB_OBJECT_PRESENT;
+	s.step = 1;
+	s.time = .01;
+	CHECK(r && ob_recorder_append(r, &s, &e));
+	CHECK(ob_recorder_close(r, &e));
+	hid_t f = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+	CHECK(read_all(f, "position", H5T_NATIVE_DOUBLE, 3, (hsize_t[]){ 2, MANY, 3 }, p));
+	CHECK(p[0][0][0] == 0 && isnan(p[0][MANY - 1][0]) && p[1][MANY - 1][0] == MANY - 1 && isnan(p[1][1][0]));
+	H5Fclose(f);
 }
 
 // With a path: leaves the record of test_read.py there.
@@ -234,6 +269,7 @@ int main(int argc, char **argv)
 	test_killed();
 	test_full();
 	test_errors();
+	test_growth();
 	unlink(path);
 	return check_end();
 }

@@ -1,0 +1,138 @@
+#include "record/layout.h"
+
+#include <assert.h>
+
+// Whoever adds a member to one of these structures decides here whether a record needs it to be drawn again.
+static_assert(sizeof(ob_passport) == 176 && sizeof(ob_motion) == 176, "members of /events and /motions");
+static_assert(sizeof(ob_camera_def) == 144 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
+
+#define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
+
+#define EVENT(name, type) \
+	{ \
+#name, type, offsetof(ob_record_event, name) \
+	}
+#define PASSPORT(name, type) \
+	{ \
+#name, type, offsetof(ob_record_event, passport.name) \
+	}
+static const ob_record_member event_members[] = {
+	EVENT(step, OB_RECORD_U64),        EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
+	PASSPORT(id, OB_RECORD_U32),       PASSPORT(generation, OB_RECORD_U32), PASSPORT(flags, OB_RECORD_U32),
+	PASSPORT(shape, OB_RECORD_U32),    PASSPORT(size, OB_RECORD_VEC3),      PASSPORT(mass, OB_RECORD_F64),
+	PASSPORT(inertia, OB_RECORD_VEC3), PASSPORT(friction, OB_RECORD_F64),   PASSPORT(restitution, OB_RECORD_F64),
+	PASSPORT(colour, OB_RECORD_RGBA),  PASSPORT(name, OB_RECORD_NAME),      PASSPORT(force, OB_RECORD_VEC3),
+};
+const ob_record_table ob_record_events = {
+	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
+	  "objects that come (kind 1), change (2) and go (3), in the order of steps; shape: 1 sphere, 2 box, 3 plane, "
+	  "4 capsule, 5 cylinder; flags: 1 present, 2 static" },
+	sizeof(ob_record_event),
+	COUNT(event_members),
+	event_members,
+};
+
+#define MOTION(name, type) \
+	{ \
+#name, type, offsetof(ob_record_motion, motion.name) \
+	}
+static const ob_record_member motion_members[] = {
+	{ "id", OB_RECORD_U32, offsetof(ob_record_motion, id) },
+	MOTION(flags, OB_RECORD_U32),
+	MOTION(t0, OB_RECORD_F64),
+	MOTION(valid_until, OB_RECORD_F64),
+	MOTION(p, OB_RECORD_VEC3),
+	MOTION(q, OB_RECORD_QUAT),
+	MOTION(v, OB_RECORD_VEC3),
+	MOTION(w, OB_RECORD_VEC3),
+	MOTION(a, OB_RECORD_VEC3),
+};
+const ob_record_table ob_record_motions = {
+	{ "motions", "SI", "world, right-handed, z up; q: body to world, w x y z",
+	  "how an object moves from t0 on: p, v on a parabola with a; q, w as a free rigid body; flags: 1 in free "
+	  "flight, "
+	  "2 asleep, 8 in equilibrium" },
+	sizeof(ob_record_motion),
+	COUNT(motion_members),
+	motion_members,
+};
+
+#define CAMERA(name, type) \
+	{ \
+#name, type, offsetof(ob_camera_def, name) \
+	}
+static const ob_record_member camera_members[] = {
+	CAMERA(name, OB_RECORD_NAME),     CAMERA(eye, OB_RECORD_VEC3), CAMERA(target, OB_RECORD_VEC3),
+	CAMERA(velocity, OB_RECORD_VEC3), CAMERA(pan, OB_RECORD_F64),  CAMERA(tilt, OB_RECORD_F64),
+	CAMERA(fov, OB_RECORD_F64),
+};
+const ob_record_table ob_record_cameras = {
+	{ "cameras", "m, m/s, rad, rad/s", "world, right-handed, z up",
+	  "the scene's: the eye and its target travel with a velocity, it turns by pan and tilt; fov: vertical" },
+	sizeof(ob_camera_def),
+	COUNT(camera_members),
+	camera_members,
+};
+
+#define LOOK(name, type) \
+	{ \
+#name, type, offsetof(ob_look_def, name) \
+	}
+static const ob_record_member look_members[] = {
+	LOOK(sky_top, OB_RECORD_RGB), LOOK(sky_horizon, OB_RECORD_RGB), LOOK(ground_colour, OB_RECORD_RGB),
+	LOOK(grid, OB_RECORD_FLAG),   LOOK(sun, OB_RECORD_VEC3),
+};
+const ob_record_table ob_record_look = {
+	{ "look", "linear RGB", "world", "sky, ground, whether it has a grid, and the direction towards the sun" },
+	sizeof(ob_look_def),
+	COUNT(look_members),
+	look_members,
+};
+
+static hid_t array_of(hid_t element, hsize_t count)
+{
+	return H5Tarray_create2(element, 1, &count);
+}
+
+static hid_t type_of(ob_record_type type)
+{
+	switch (type) {
+	case OB_RECORD_U32:
+		return H5Tcopy(H5T_NATIVE_UINT32);
+	case OB_RECORD_U64:
+		return H5Tcopy(H5T_NATIVE_UINT64);
+	case OB_RECORD_FLAG:
+		return H5Tcopy(H5T_NATIVE_UINT8);
+	case OB_RECORD_F64:
+		return H5Tcopy(H5T_NATIVE_DOUBLE);
+	case OB_RECORD_VEC3:
+		return array_of(H5T_NATIVE_DOUBLE, 3);
+	case OB_RECORD_QUAT:
+		return array_of(H5T_NATIVE_DOUBLE, 4);
+	case OB_RECORD_RGB:
+		return array_of(H5T_NATIVE_FLOAT, 3);
+	case OB_RECORD_RGBA:
+		return array_of(H5T_NATIVE_FLOAT, 4);
+	case OB_RECORD_NAME:
+		return ob_hdf5_string_type(OB_NAME_MAX);
+	}
+	return H5I_INVALID_HID;
+}
+
+hid_t ob_record_type_in_memory(const ob_record_table *t)
+{
+	hid_t type = H5Tcreate(H5T_COMPOUND, t->size);
+	for (int i = 0; i < t->members; i++) {
+		hid_t member = type_of(t->member[i].type);
+		H5Tinsert(type, t->member[i].name, t->member[i].offset, member);
+		H5Tclose(member);
+	}
+	return type;
+}
+
+hid_t ob_record_type_in_file(const ob_record_table *t)
+{
+	hid_t type = ob_record_type_in_memory(t);
+	H5Tpack(type);
+	return type;
+}

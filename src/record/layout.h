@@ -1,0 +1,65 @@
+// Inside the module record only: what the compound datasets of a record hold, member by member, by which the recorder
+// writes them and the recording reads them back. HDF5 finds members by their names: a member that an older file lacks
+// reads as zero, and one that this program does not know is passed over.
+#ifndef OB_RECORD_LAYOUT_H
+#define OB_RECORD_LAYOUT_H
+
+#include "record/hdf5_file.h"
+#include "scene/scene.h"
+
+// Changes where an older program, or this one with an older file, would take something for what it is not.
+enum { OB_RECORD_VERSION = 2 };
+#define OB_RECORD_FORMAT "obsim record"
+
+typedef enum ob_record_event_kind { OB_RECORD_CREATED = 1, OB_RECORD_CHANGED, OB_RECORD_REMOVED } ob_record_event_kind;
+
+// An object came, is something else than before, or went.
+typedef struct ob_record_event {
+	uint64_t step;
+	double time; // s
+	uint32_t kind; // ob_record_event_kind
+	uint32_t zero;
+	ob_passport passport; // what it is from then on, or was
+} ob_record_event;
+
+typedef enum ob_record_type {
+	OB_RECORD_U32,
+	OB_RECORD_U64,
+	OB_RECORD_FLAG, // uint8_t, 0 or 1
+	OB_RECORD_F64,
+	OB_RECORD_VEC3,
+	OB_RECORD_QUAT, // w x y z
+	OB_RECORD_RGB, // float[3], linear
+	OB_RECORD_RGBA,
+	OB_RECORD_NAME, // char[OB_NAME_MAX], UTF-8, padded with zeros
+} ob_record_type;
+
+typedef struct ob_record_member {
+	const char *name;
+	ob_record_type type;
+	size_t offset; // in the structure
+} ob_record_member;
+
+typedef struct ob_record_table {
+	ob_hdf5_label label;
+	size_t size; // of the structure
+	int members;
+	const ob_record_member *member;
+} ob_record_table;
+
+// How an object moves from then on.
+typedef struct ob_record_motion {
+	uint32_t id, zero;
+	ob_motion motion;
+} ob_record_motion;
+
+extern const ob_record_table ob_record_events; // ob_record_event
+extern const ob_record_table ob_record_motions; // ob_record_motion: what of it decides where the object is
+extern const ob_record_table ob_record_cameras; // ob_camera_def
+extern const ob_record_table ob_record_look; // ob_look_def
+
+// The compound type of a table's structure in memory, and, packed, in a file. The caller closes it.
+hid_t ob_record_type_in_memory(const ob_record_table *t);
+hid_t ob_record_type_in_file(const ob_record_table *t);
+
+#endif

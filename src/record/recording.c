@@ -1,0 +1,565 @@
+#include "record/recording.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/utf8.h"
+#include "record/layout.h"
+#include "table/layout.h"
+
+enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, EVERY_MAX = 1 << 30, AT_ONCE = 1024 };
+static const double number_max = 1e15; // of any in SI units
+
+// A dataset of compounds, read some at a time.
+typedef struct list {
+	const ob_record_table *table;
+	hid_t set, type; // negative: not there
+	uint64_t total, first, held; // there are; of those in memory
+	char *item; // [held], of table->size
+} list;
+
+struct ob_recording {
+	char *path;
+	hid_t file; // negative: not there
+	uint64_t file_bytes;
+	ob_recording_info info;
+	double *time; // [states]
+	uint64_t *step, *motions_until; // [states]
+	list events, motions;
+	uint64_t state; // the one it has come to; UINT64_MAX: none yet
+	uint64_t event, motion; // the first that belongs to a later state
+	ob_snapshot now;
+	uint64_t population;
+};
+
+static bool damaged(const ob_recording *r, const char *what, ob_error *e)
+{
+	return ob_fail(e, "%s: this record is damaged: %s", r->path, what);
+}
+
+// ---- attributes
+
+static bool read_attribute_text(hid_t at, const char *name, char *text, size_t room)
+{
+	char long_text[4096];
+	hid_t id = H5Aexists(at, name) > 0 ? H5Aopen(at, name, H5P_DEFAULT) : H5I_INVALID_HID;
+	hid_t type = id >= 0 ? H5Aget_type(id) : H5I_INVALID_HID, space = id >= 0 ? H5Aget_space(id) : H5I_INVALID_HID;
+	bool fits = type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
+		    H5Tget_size(type) < sizeof long_text && H5Sget_simple_extent_npoints(space) == 1;
+	memset(long_text, 0, sizeof long_text);
+	bool ok = fits && H5Aread(id, type, long_text) >= 0;
+	if (space >= 0)
+		H5Sclose(space);
+	if (type >= 0)
+		H5Tclose(type);
+	if (id >= 0)
+		H5Aclose(id);
+	long_text[strnlen(long_text, room - 1)] = 0;
+	strcpy(text, long_text);
+	ob_utf8_make_plain(text);
+	return ok;
+}
+
+static bool read_attribute(hid_t at, const char *name, hid_t type, void *numbers, hssize_t count)
+{
+	hid_t id = H5Aexists(at, name) > 0 ? H5Aopen(at, name, H5P_DEFAULT) : H5I_INVALID_HID;
+	if (id < 0)
+		return false;
+	hid_t in_file = H5Aget_type(id), space = H5Aget_space(id);
+	H5T_class_t kind = H5Tget_class(in_file);
+	bool ok = (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == count &&
+		  H5Aread(id, type, numbers) >= 0;
+	H5Sclose(space);
+	H5Tclose(in_file);
+	H5Aclose(id);
+	return ok;
+}
+
+// ---- datasets
+
+// Opens one of the file's own, of rank 1, all of whose elements are on the disk. Negative and e where it is none.
+static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind, uint64_t *count, ob_error *e)
+{
+	char what[80];
+	H5L_info_t link;
+	hid_t set = H5I_INVALID_HID;
+	if (H5Lget_info(r->file, name, &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD)
+		set = H5Dopen2(r->file, name, H5P_DEFAULT);
+	if (set >= 0) {
+		hid_t type = H5Dget_type(set), space = H5Dget_space(set), how = H5Dget_create_plist(set);
+		hssize_t points = H5Sget_simple_extent_npoints(space);
+		H5D_layout_t layout = H5Pget_layout(how);
+		uint64_t bytes = 0, stored = H5Dget_storage_size(set);
+		bool fits = H5Tget_class(type) == kind && H5Sget_simple_extent_ndims(space) == 1 && points >= 0 &&
+			    (layout == H5D_CHUNKED || layout == H5D_CONTIGUOUS) && H5Pget_external_count(how) == 0 &&
+			    !__builtin_mul_overflow((uint64_t)points, (uint64_t)H5Tget_size(type), &bytes) &&
+			    bytes <= stored && stored <= r->file_bytes;
+		*count = (uint64_t)points;
+		H5Pclose(how);
+		H5Sclose(space);
+		H5Tclose(type);
+		if (fits)
+			return set;
+		H5Dclose(set);
+	}
+	snprintf(what, sizeof what, "/%s is not as it should be", name);
+	damaged(r, what, e);
+	return H5I_INVALID_HID;
+}
+
+static bool open_list(ob_recording *r, list *l, ob_error *e)
+{
+	l->set = open_set(r, l->table->label.name, H5T_COMPOUND, &l->total, e);
+	if (l->set < 0)
+		return false;
+	l->type = ob_record_type_in_memory(l->table);
+	l->item = calloc(AT_ONCE, l->table->size);
+	return l->item ? true : ob_fail(e, "%s: no memory", r->path);
+}
+
+static void close_list(list *l)
+{
+	if (l->set >= 0)
+		H5Dclose(l->set);
+	if (l->type >= 0)
+		H5Tclose(l->type);
+	free(l->item);
+}
+
+// Item i < total; NULL: it cannot be read.
+static const void *item_at(list *l, uint64_t i)
+{
+	if (i < l->first || i >= l->first + l->held) {
+		hsize_t from = i, count = l->total - i < AT_ONCE ? l->total - i : AT_ONCE;
+		hid_t in_file = H5Dget_space(l->set), in_memory = H5Screate_simple(1, &count, NULL);
+		memset(l->item, 0, AT_ONCE * l->table->size);
+		bool ok = H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &from, NULL, &count, NULL) >= 0 &&
+			  H5Dread(l->set, l->type, in_memory, in_file, H5P_DEFAULT, l->item) >= 0;
+		H5Sclose(in_memory);
+		H5Sclose(in_file);
+		l->first = i;
+		l->held = ok ? count : 0;
+		if (!ok)
+			return NULL;
+	}
+	return l->item + (i - l->first) * l->table->size;
+}
+
+// All of a dataset of numbers, of which "rows" are needed, or, 0, as many as there are.
+static void *read_numbers(ob_recording *r, const char *name, H5T_class_t kind, hid_t type, uint64_t *rows, ob_error *e)
+{
+	uint64_t count;
+	hid_t set = open_set(r, name, kind, &count, e);
+	if (set < 0)
+		return NULL;
+	void *numbers = calloc(count + 1, 8);
+	bool ok = numbers && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0;
+	H5Dclose(set);
+	if (!ok) {
+		free(numbers);
+		damaged(r, "the times of its states cannot be read", e);
+		return NULL;
+	}
+	*rows = count < *rows ? count
+			      : *rows; // a writer that was killed may have left one dataset longer than the next
+	return numbers;
+}
+
+// ---- opening
+
+static bool check_states(const ob_recording *r, ob_error *e)
+{
+	const ob_recording_info *i = &r->info;
+	const uint64_t every = i->scene.record_every;
+	for (uint64_t k = 0; k < i->states; k++) {
+		double expected = (double)r->step[k] * i->scene.run.step_length;
+		if (r->step[k] > UINT32_MAX || r->step[k] % every != 0 ||
+		    (k > 0 && r->step[k] != r->step[k - 1] + every))
+			return damaged(r, "its states are not in order", e);
+		if (!(fabs(r->time[k] - expected) <= 1e-6 * (i->scene.run.step_length + expected)))
+			return damaged(r, "the times of its states are not those of its steps", e);
+		if (r->motions_until[k] > r->motions.total || (k > 0 && r->motions_until[k] < r->motions_until[k - 1]))
+			return damaged(r, "it lacks motions", e);
+	}
+	return true;
+}
+
+static bool open_states(ob_recording *r, ob_error *e)
+{
+	ob_recording_info *i = &r->info;
+	i->states = UINT64_MAX;
+	r->time = read_numbers(r, "time", H5T_FLOAT, H5T_NATIVE_DOUBLE, &i->states, e);
+	r->step = r->time ? read_numbers(r, "step", H5T_INTEGER, H5T_NATIVE_UINT64, &i->states, e) : NULL;
+	r->motions_until =
+		r->step ? read_numbers(r, "motions_until", H5T_INTEGER, H5T_NATIVE_UINT64, &i->states, e) : NULL;
+	if (!r->motions_until || !open_list(r, &r->events, e) || !open_list(r, &r->motions, e))
+		return false;
+	if (i->states == 0)
+		return ob_fail(e, "%s: this record is empty: its run ended before the first state", r->path);
+	if (!check_states(r, e))
+		return false;
+	i->interval = i->scene.record_every * i->scene.run.step_length;
+	i->first = r->step[0] / i->scene.record_every;
+	i->begin = r->time[0];
+	i->end = r->time[i->states - 1];
+	return true;
+}
+
+static bool finite3(ob_vec3 v)
+{
+	return fabs(v.x) <= number_max && fabs(v.y) <= number_max && fabs(v.z) <= number_max;
+}
+
+static bool is_colour(const float *c, int n)
+{
+	bool ok = true;
+	for (int i = 0; i < n; i++)
+		ok &= c[i] >= 0 && c[i] <= 1000;
+	return ok;
+}
+
+static bool camera_makes_sense(ob_camera_def *c)
+{
+	c->name[OB_NAME_MAX - 1] = 0;
+	ob_utf8_make_plain(c->name);
+	return finite3(c->eye) && finite3(c->target) && finite3(c->velocity) && fabs(c->pan) <= number_max &&
+	       fabs(c->tilt) <= number_max && c->fov > 0 && c->fov < M_PI;
+}
+
+static bool open_cameras(ob_recording *r, ob_error *e)
+{
+	ob_scene *scene = &r->info.scene;
+	list cameras = { .table = &ob_record_cameras, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	bool ok = open_list(r, &cameras, e);
+	if (ok && (cameras.total < 1 || cameras.total > CAMERAS_MAX))
+		ok = damaged(r, "it has no cameras, or too many", e);
+	if (ok && !(scene->camera = calloc(cameras.total, sizeof *scene->camera)))
+		ok = ob_fail(e, "%s: no memory", r->path);
+	for (uint64_t i = 0; ok && i < cameras.total; i++) {
+		const ob_camera_def *c = item_at(&cameras, i);
+		if (c)
+			scene->camera[i] = *c;
+		scene->cameras++;
+		if (!c || !camera_makes_sense(&scene->camera[i]))
+			ok = damaged(r, "its cameras make no sense", e);
+	}
+	close_list(&cameras);
+	return ok;
+}
+
+static bool open_look(ob_recording *r, ob_error *e)
+{
+	list l = { .table = &ob_record_look, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	ob_look_def *look = &r->info.scene.look;
+	bool ok = open_list(r, &l, e);
+	const char *item = ok && l.total == 1 ? item_at(&l, 0) : NULL;
+	if (item) {
+		uint8_t grid = (uint8_t)item[offsetof(ob_look_def, grid)];
+		memcpy(look, item, sizeof *look);
+		memcpy(&look->grid, &(bool){ grid != 0 }, sizeof look->grid); // a byte from outside may be no bool
+	}
+	if (ok && !(item && is_colour(look->sky_top, 3) && is_colour(look->sky_horizon, 3) &&
+		    is_colour(look->ground_colour, 3) && finite3(look->sun)))
+		ok = damaged(r, "/look makes no sense", e);
+	close_list(&l);
+	return ok;
+}
+
+static bool open_facts(ob_recording *r, ob_error *e)
+{
+	ob_recording_info *i = &r->info;
+	ob_scene *scene = &i->scene;
+	double workers = 0, every = 0;
+	bool there = read_attribute_text(r->file, "title", scene->title, sizeof scene->title) &&
+		     read_attribute_text(r->file, "universe", i->universe, sizeof i->universe) &&
+		     read_attribute_text(r->file, "isolation", i->isolation, sizeof i->isolation) &&
+		     read_attribute_text(r->file, "obsim_version", i->version, sizeof i->version) &&
+		     read_attribute_text(r->file, "obsim_commit", i->commit, sizeof i->commit) &&
+		     read_attribute_text(r->file, "created", i->created, sizeof i->created) &&
+		     read_attribute(r->file, "workers", H5T_NATIVE_DOUBLE, &workers, 1) &&
+		     read_attribute(r->file, "gravity", H5T_NATIVE_DOUBLE, &scene->run.gravity, 3) &&
+		     read_attribute(r->file, "step_length", H5T_NATIVE_DOUBLE, &scene->run.step_length, 1) &&
+		     read_attribute(r->file, "duration", H5T_NATIVE_DOUBLE, &scene->duration, 1) &&
+		     read_attribute(r->file, "record_every", H5T_NATIVE_DOUBLE, &every, 1) &&
+		     read_attribute(r->file, "seed", H5T_NATIVE_UINT64, &scene->seed, 1);
+	if (!there)
+		return damaged(r, "it does not say what was run", e);
+	if (!(workers >= 0 && workers <= UINT32_MAX) || !finite3(scene->run.gravity) ||
+	    !(scene->run.step_length >= 1e-9 && scene->run.step_length <= 1e6) ||
+	    !(scene->duration > 0 && scene->duration <= 1e9) || !(every >= 1 && every <= EVERY_MAX))
+		return damaged(r, "its steps or its duration make no sense", e);
+	i->workers = (uint32_t)workers;
+	scene->record_every = (uint32_t)every;
+	return true;
+}
+
+static bool check_format(const ob_recording *r, ob_error *e)
+{
+	char format[32], version[32];
+	double number = 0;
+	if (!read_attribute_text(r->file, "format", format, sizeof format)) {
+		if (!read_attribute_text(r->file, "obsim_version", version, sizeof version))
+			return ob_fail(e, "%s: this is an HDF5 file, but no record of obsim", r->path);
+		number = 1;
+	} else if (strcmp(format, OB_RECORD_FORMAT) != 0) {
+		return ob_fail(e, "%s: this is an HDF5 file, but no record of obsim", r->path);
+	}
+	if (number == 0 && !read_attribute(r->file, "format_version", H5T_NATIVE_DOUBLE, &number, 1))
+		return damaged(r, "it does not say of which version it is", e);
+	if (number == OB_RECORD_VERSION)
+		return true;
+	return ob_fail(e,
+		       "%s: this record is of version %g, and this obsim reads version %d: record the run again, or "
+		       "use the obsim that wrote it",
+		       r->path, number, OB_RECORD_VERSION);
+}
+
+static bool open_file(ob_recording *r, ob_error *e)
+{
+	struct stat s;
+	if (stat(r->path, &s) != 0 || access(r->path, R_OK) != 0)
+		return ob_fail(e, "%s: %s", r->path, strerror(errno));
+	if (!S_ISREG(s.st_mode))
+		return ob_fail(e, "%s: this is no file", r->path);
+	r->file_bytes = (uint64_t)s.st_size;
+	if (H5Fis_hdf5(r->path) <= 0)
+		return ob_fail(e, "%s: this is no record of obsim: it is no HDF5 file", r->path);
+	r->file = H5Fopen(r->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+	if (r->file < 0)
+		return ob_fail(e, "%s: this record cannot be opened: it is being written, cut short, or damaged",
+			       r->path);
+	return check_format(r, e) && open_facts(r, e) && open_cameras(r, e) && open_look(r, e) && open_states(r, e);
+}
+
+static ob_recording *open_here(const char *path, ob_error *e)
+{
+	ob_hdf5_silence();
+	ob_recording *r = calloc(1, sizeof *r);
+	if (!r || !(r->path = strdup(path))) {
+		ob_fail(e, "%s: no memory", path);
+		free(r);
+		return NULL;
+	}
+	r->file = H5I_INVALID_HID;
+	r->events = (list){ .table = &ob_record_events, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	r->motions = (list){ .table = &ob_record_motions, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	r->state = UINT64_MAX;
+	if (open_file(r, e))
+		return r;
+	ob_recording_close(r);
+	return NULL;
+}
+
+// ---- the first reading, by a child
+
+// Reads all that there is; e is empty if that works.
+static void read_to_end(const char *path, ob_error *e)
+{
+	bool ended = false;
+	ob_recording *r = open_here(path, e);
+	if (!r)
+		return;
+	while (ob_recording_next(r, &ended, e))
+		;
+	if (ended)
+		e->text[0] = 0;
+	ob_recording_close(r);
+}
+
+static _Noreturn void be_child(const char *path, int to)
+{
+	struct stat s = { .st_size = 0 };
+	ob_error e = { "" };
+	int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+	stat(path, &s);
+	rlim_t seconds = 60 + (rlim_t)s.st_size / 1000000;
+	setrlimit(RLIMIT_CPU, &(struct rlimit){ seconds, seconds });
+	setrlimit(RLIMIT_CORE, &(struct rlimit){ 0, 0 });
+	dup2(nowhere, STDERR_FILENO); // what a library says as it dies
+	read_to_end(path, &e);
+	ssize_t written = write(to, e.text, sizeof e.text);
+	_exit(written == sizeof e.text ? 0 : 1);
+}
+
+static bool read_by_child(const char *path, ob_error *e)
+{
+	int ends[2], status = 0;
+	ob_error said = { "" };
+	if (pipe2(ends, O_CLOEXEC) != 0)
+		return ob_fail(e, "%s: no pipe: %s", path, strerror(errno));
+	pid_t child = fork();
+	if (child == 0)
+		be_child(path, ends[1]);
+	close(ends[1]);
+	size_t at = 0;
+	ssize_t n = 0;
+	while (child > 0 && at < sizeof said.text &&
+	       ((n = read(ends[0], said.text + at, sizeof said.text - at)) > 0 || (n < 0 && errno == EINTR)))
+		at += n > 0 ? (size_t)n : 0;
+	close(ends[0]);
+	if (child < 0)
+		return ob_fail(e, "%s: no process to read it: %s", path, strerror(errno));
+	while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+		;
+	said.text[sizeof said.text - 1] = 0;
+	if (at < sizeof said.text || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+		return ob_fail(e, "%s: this record is damaged: HDF5 cannot read it (%s)", path,
+			       WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "and gives no reason");
+	return !said.text[0] || ob_fail(e, "%s", said.text);
+}
+
+ob_recording *ob_recording_open(const char *path, ob_error *e)
+{
+	return read_by_child(path, e) ? open_here(path, e) : NULL;
+}
+
+const ob_recording_info *ob_recording_get_info(const ob_recording *r)
+{
+	return &r->info;
+}
+
+void ob_recording_close(ob_recording *r)
+{
+	if (!r)
+		return;
+	close_list(&r->events);
+	close_list(&r->motions);
+	if (r->file >= 0)
+		H5Fclose(r->file);
+	ob_snapshot_finish(&r->now);
+	free(r->info.scene.camera);
+	free(r->time);
+	free(r->step);
+	free(r->motions_until);
+	free(r->path);
+	free(r);
+}
+
+// ---- from state to state
+
+static bool make_room(ob_snapshot *s, uint32_t count)
+{
+	if (count > s->count_max) {
+		uint32_t room = 2 * count;
+		ob_passport *passport = realloc(s->passport, room * sizeof *passport);
+		s->passport = passport ? passport : s->passport;
+		ob_motion *motion = realloc(s->motion, room * sizeof *motion);
+		s->motion = motion ? motion : s->motion;
+		if (!passport || !motion)
+			return false;
+		s->count_max = room;
+	}
+	for (; s->count < count; s->count++) {
+		memset(&s->passport[s->count], 0, sizeof *s->passport);
+		memset(&s->motion[s->count], 0, sizeof *s->motion);
+	}
+	return true;
+}
+
+static bool passport_makes_sense(const ob_passport *p)
+{
+	bool sized = p->size.x >= 0 && p->size.y >= 0 && p->size.z >= 0;
+	return ob_passport_makes_sense(p, p->id) && p->shape != OB_SHAPE_NONE && p->flags & OB_OBJECT_PRESENT &&
+	       sized && finite3(p->size) && finite3(p->inertia) && p->inertia.x >= 0 && p->inertia.y >= 0 &&
+	       p->inertia.z >= 0 && p->mass <= number_max && is_colour(p->colour, 4);
+}
+
+static bool is_present(const ob_snapshot *s, uint32_t id)
+{
+	return id < s->count && s->passport[id].flags & OB_OBJECT_PRESENT;
+}
+
+static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *e)
+{
+	ob_snapshot *s = &r->now;
+	ob_record_event now = *event;
+	const uint32_t id = now.passport.id;
+	now.passport.name[OB_NAME_MAX - 1] = 0;
+	if (now.step != r->step[r->state] || id >= OBJECTS_MAX || now.kind < OB_RECORD_CREATED ||
+	    now.kind > OB_RECORD_REMOVED)
+		return damaged(r, "its events make no sense", e);
+	bool there = is_present(s, id), same = there && s->passport[id].generation == now.passport.generation;
+	if (now.kind == OB_RECORD_CREATED ? there : !same)
+		return damaged(r, "an object goes that is not there, or comes twice", e);
+	if (now.kind == OB_RECORD_REMOVED) {
+		memset(&s->passport[id], 0, sizeof *s->passport);
+		memset(&s->motion[id], 0, sizeof *s->motion);
+		return true;
+	}
+	if (!passport_makes_sense(&now.passport))
+		return damaged(r, "an object makes no sense", e);
+	if (!make_room(s, id + 1))
+		return ob_fail(e, "%s: no memory for %u objects", r->path, id + 1);
+	s->passport[id] = now.passport;
+	ob_utf8_make_plain(s->passport[id].name);
+	return true;
+}
+
+static bool take_motion(ob_recording *r, const ob_record_motion *m, ob_error *e)
+{
+	const ob_motion *now = &m->motion;
+	if (!is_present(&r->now, m->id) || !ob_motion_makes_sense(now) || !finite3(now->p) || !finite3(now->v) ||
+	    !finite3(now->w) || !finite3(now->a) || now->t0 > r->now.time + r->info.interval || now->t0 < -number_max)
+		return damaged(r, "a motion makes no sense", e);
+	r->now.motion[m->id] = *now;
+	return true;
+}
+
+// Who came in this state moves, too, or stands somewhere.
+static bool check_new(const ob_recording *r, uint64_t first, list *events, ob_error *e)
+{
+	for (uint64_t i = first; i < r->event; i++) {
+		const ob_record_event *event = item_at(events, i);
+		if (!event)
+			return damaged(r, "/events cannot be read", e);
+		if (is_present(&r->now, event->passport.id) &&
+		    !ob_motion_makes_sense(&r->now.motion[event->passport.id]))
+			return damaged(r, "an object is nowhere", e);
+	}
+	return true;
+}
+
+bool ob_recording_next(ob_recording *r, bool *ended, ob_error *e)
+{
+	*ended = r->state + 1 == r->info.states;
+	if (*ended)
+		return false;
+	r->state++;
+	r->now.time = r->time[r->state];
+	r->now.step = r->info.first + r->state;
+	const uint64_t first = r->event;
+	for (; r->event < r->events.total; r->event++) {
+		const ob_record_event *event = item_at(&r->events, r->event);
+		if (!event)
+			return damaged(r, "/events cannot be read", e);
+		if (event->step > r->step[r->state])
+			break;
+		if (!take_event(r, event, e))
+			return false;
+	}
+	r->population += r->event > first;
+	for (; r->motion < r->motions_until[r->state]; r->motion++) {
+		const ob_record_motion *m = item_at(&r->motions, r->motion);
+		if (!m)
+			return damaged(r, "/motions cannot be read", e);
+		if (!take_motion(r, m, e))
+			return false;
+	}
+	return check_new(r, first, &r->events, e);
+}
+
+const ob_snapshot *ob_recording_state(const ob_recording *r)
+{
+	return &r->now;
+}
+
+uint64_t ob_recording_population(const ob_recording *r)
+{
+	return r->population;
+}

@@ -1,0 +1,282 @@
+// A record that is read back gives the snapshots that were recorded; what is no record, or a damaged one, gives one line.
+#include <hdf5.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "record/record.h"
+#include "record/recording.h"
+
+#include "../check.h"
+
+enum { OBJECTS = 40, STATES = 300, EVERY = 3 };
+static const double step_length = .01;
+static char path[64], fifo[80];
+
+// What there is at a state: 0 a plane, 1 a ball in flight that rebounds every 50 states, 2 moves each step, 3 comes at
+// state 20, changes colour at 40 and goes at 60, from 80 on another has its id; 39 comes at the end.
+static ob_snapshot at(uint64_t state)
+{
+	static ob_passport passport[OBJECTS];
+	static ob_motion motion[OBJECTS];
+	const double t = step_length * EVERY * (double)state;
+	memset(passport, 0, sizeof passport);
+	memset(motion, 0, sizeof motion);
+	for (uint32_t id = 0; id < OBJECTS; id++) {
+		bool there = id < 3 || (id == 3 && state >= 20 && state < 60) || (id == 3 && state >= 80) ||
+			     (id == OBJECTS - 1 && state == STATES - 1);
+		if (!there)
+			continue;
+		passport[id] = (ob_passport){ .id = id, .generation = 1 + (id == 3 && state >= 80), .flags = OB_OBJECT_PRESENT,
+					      .shape = OB_SHAPE_BOX, .size = { .1, .2, .3 }, .mass = 2, .inertia = { 1, 2, 3 },
+					      .friction = .5, .colour = { .2f, state >= 40 ? .9f : .1f, .3f, 1 } };
+		snprintf(passport[id].name, OB_NAME_MAX, "object %u", id);
+		motion[id] = (ob_motion){ .t0 = id == 1 ? .5 * step_length * EVERY * (double)(state / 50 * 50)
+						: id == 2 ? t
+							  : 0,
+					  .valid_until = id == 1 ? INFINITY : t + 1, .q = { .5, -.5, .5, .5 },
+					  .p = { id, (double)(id == 2 ? state : 0), .1 }, .v = { 1, 0, 3 }, .w = { .1, .2, .3 },
+					  .a = { 0, 0, -9.81 }, .flags = id == 1 ? OB_MOTION_FREE : 0 };
+		if (id != 1)
+			motion[id].valid_until = 1;
+	}
+	passport[0].shape = OB_SHAPE_PLANE;
+	passport[0].flags |= OB_OBJECT_STATIC;
+	return (ob_snapshot){ .step = EVERY * (state + 2), .time = step_length * (double)(EVERY * (state + 2)), .count = OBJECTS,
+			      .passport = passport, .motion = motion };
+}
+
+static void record(uint64_t states)
+{
+	static ob_camera_def camera[2] = {
+		{ .name = "main", .eye = { 1, 2, 3 }, .velocity = { .1, 0, 0 }, .fov = .7 },
+		{ .name = "other", .eye = { 3, 2, 1 }, .target = { 0, 0, 1 }, .pan = .2, .tilt = -.1, .fov = .9 },
+	};
+	static ob_scene scene = { .title = "A title", .text = (char *)"box {}", .text_size = 6, .seed = 5, .record_every = EVERY,
+				  .cameras = 2, .camera = camera,
+				  .look = { .sky_top = { .1f, .2f, .3f }, .grid = true, .sun = { 0, 1, 2 } } };
+	static const ob_scene_options options;
+	ob_run_settings settings = ob_run_settings_default();
+	ob_error e = { "" };
+	ob_record_facts facts = { .universe = { .name = "test", .arch = "obs", .isolation = "thread", .capacity = 4, .workers = 2,
+						.gravity = { 0, 0, -9.81 }, .step_length = step_length },
+				  .scene = &scene, .path = "scene.lua", .options = &options, .settings = &settings,
+				  .duration = 10, .commit = "abc" };
+	ob_recorder *r = ob_recorder_create(path, &facts, &e);
+	CHECK(r);
+	for (uint64_t i = 0; r && i < states; i++) {
+		ob_snapshot s = at(i);
+		CHECK(ob_recorder_append(r, &s, &e));
+	}
+	CHECK(ob_recorder_close(r, &e));
+}
+
+// What is drawn of an object: all else of a motion is the simulators' own.
+static bool same_motion(const ob_motion *a, const ob_motion *b)
+{
+	return a->t0 == b->t0 && a->valid_until == b->valid_until && memcmp(&a->p, &b->p, sizeof a->p) == 0 &&
+	       memcmp(&a->q, &b->q, sizeof a->q) == 0 && memcmp(&a->v, &b->v, sizeof a->v) == 0 &&
+	       memcmp(&a->w, &b->w, sizeof a->w) == 0 && memcmp(&a->a, &b->a, sizeof a->a) == 0 && a->flags == b->flags;
+}
+
+static void test_same_snapshots(void)
+{
+	ob_error e = { "" };
+	bool ended = false;
+	uint64_t states = 0;
+	record(STATES);
+	ob_recording *r = ob_recording_open(path, &e);
+	CHECK(r);
+	while (r && ob_recording_next(r, &ended, &e)) {
+		ob_snapshot was = at(states);
+		const ob_snapshot *now = ob_recording_state(r);
+		CHECK(now->step == states + 2 && now->time == was.time);
+		for (uint32_t id = 0; id < OBJECTS; id++) {
+			bool there = id < now->count && now->passport[id].flags & OB_OBJECT_PRESENT;
+			CHECK(there == (was.passport[id].flags & OB_OBJECT_PRESENT));
+			if (there)
+				CHECK(memcmp(&now->passport[id], &was.passport[id], sizeof *was.passport) == 0 &&
+				      same_motion(&now->motion[id], &was.motion[id]));
+		}
+		CHECK(ob_recording_population(r) == 1u + (states >= 20) + (states >= 40) + (states >= 60) + (states >= 80) +
+							    (states == STATES - 1));
+		states++;
+	}
+	CHECK(ended && states == STATES);
+	const ob_recording_info *i = r ? ob_recording_get_info(r) : NULL;
+	CHECK(i && i->states == STATES && i->first == 2 && i->interval == EVERY * step_length && i->workers == 2);
+	CHECK(i && strcmp(i->scene.title, "A title") == 0 && i->scene.cameras == 2 && i->scene.seed == 5 && i->scene.look.grid);
+	CHECK(i && i->scene.camera[1].pan == .2 && i->scene.camera[0].velocity.x == .1 && i->scene.look.sun.z == 2);
+	CHECK(i && strcmp(i->commit, "abc") == 0 && i->scene.duration == 10 && i->scene.run.gravity.z == -9.81);
+	ob_recording_close(r);
+}
+
+static void refuse(const char *file, const char *saying)
+{
+	ob_error e = { "" };
+	ob_recording *r = ob_recording_open(file, &e);
+	if (r || !strstr(e.text, saying) || !strstr(e.text, file))
+		fprintf(stderr, "said: %s\n", e.text);
+	CHECK(!r && strstr(e.text, saying) && strstr(e.text, file));
+	ob_recording_close(r);
+}
+
+// Opens the file, as any program may, and changes it.
+static void change(void (*how)(hid_t file))
+{
+	record(10);
+	hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+	how(file);
+	H5Fclose(file);
+}
+
+static void write_number(hid_t file, const char *set, hsize_t at, const void *number, hid_t type)
+{
+	hid_t id = H5Dopen2(file, set, H5P_DEFAULT), space = H5Dget_space(id), one = H5Screate(H5S_SCALAR);
+	H5Sselect_elements(space, H5S_SELECT_SET, 1, &at);
+	CHECK(H5Dwrite(id, type, one, space, H5P_DEFAULT, number) >= 0);
+	H5Sclose(one);
+	H5Sclose(space);
+	H5Dclose(id);
+}
+
+static void set_member(hid_t file, const char *set, const char *member, hid_t type, hsize_t at, const void *value)
+{
+	hid_t compound = H5Tcreate(H5T_COMPOUND, H5Tget_size(type));
+	H5Tinsert(compound, member, 0, type);
+	write_number(file, set, at, value, compound);
+	H5Tclose(compound);
+}
+
+static void newer(hid_t file)
+{
+	hid_t a = H5Aopen(file, "format_version", H5P_DEFAULT);
+	H5Awrite(a, H5T_NATIVE_UINT64, &(uint64_t){ 99 });
+	H5Aclose(a);
+}
+
+static void old(hid_t file)
+{
+	H5Adelete(file, "format");
+	H5Adelete(file, "format_version");
+}
+
+static void foreign(hid_t file)
+{
+	old(file);
+	H5Adelete(file, "obsim_version");
+}
+
+static void no_motions(hid_t file)
+{
+	H5Ldelete(file, "motions", H5P_DEFAULT);
+}
+
+static void elsewhere(hid_t file)
+{
+	no_motions(file);
+	H5Lcreate_external("/etc/passwd", "/motions", file, "motions", H5P_DEFAULT, H5P_DEFAULT);
+}
+
+static void huge(hid_t file)
+{
+	hid_t set = H5Dopen2(file, "time", H5P_DEFAULT);
+	H5Dset_extent(set, (hsize_t[]){ (hsize_t)1 << 50 });
+	H5Dclose(set);
+}
+
+static void nowhen(hid_t file)
+{
+	write_number(file, "time", 3, &(double){ NAN }, H5T_NATIVE_DOUBLE);
+}
+
+static void too_many(hid_t file)
+{
+	write_number(file, "motions_until", 9, &(uint64_t){ UINT64_MAX }, H5T_NATIVE_UINT64);
+}
+
+static void nan_motion(hid_t file)
+{
+	set_member(file, "motions", "valid_until", H5T_NATIVE_DOUBLE, 2, &(double){ NAN });
+}
+
+static void stranger(hid_t file)
+{
+	set_member(file, "motions", "id", H5T_NATIVE_UINT32, 2, &(uint32_t){ 1000000 });
+}
+
+static void huge_id(hid_t file)
+{
+	set_member(file, "events", "id", H5T_NATIVE_UINT32, 2, &(uint32_t){ UINT32_MAX });
+}
+
+static void no_shape(hid_t file)
+{
+	set_member(file, "events", "shape", H5T_NATIVE_UINT32, 2, &(uint32_t){ 1000 });
+}
+
+static void twice(hid_t file)
+{
+	set_member(file, "events", "id", H5T_NATIVE_UINT32, 2, &(uint32_t){ 1 });
+}
+
+static void flat(hid_t file)
+{
+	set_member(file, "cameras", "fov", H5T_NATIVE_DOUBLE, 0, &(double){ 0 });
+}
+
+static void test_damaged(void)
+{
+	static const struct {
+		void (*how)(hid_t file);
+		const char *saying;
+	} damages[] = {
+		{ newer, "of version 99" },
+		{ old, "of version 1" },
+		{ foreign, "no record of obsim" },
+		{ no_motions, "/motions is not as it should be" },
+		{ elsewhere, "/motions is not as it should be" },
+		{ huge, "/time is not as it should be" },
+		{ nowhen, "times" },
+		{ too_many, "it lacks motions" },
+		{ nan_motion, "a motion makes no sense" },
+		{ stranger, "a motion makes no sense" },
+		{ huge_id, "its events make no sense" },
+		{ no_shape, "an object makes no sense" },
+		{ twice, "comes twice" },
+		{ flat, "its cameras make no sense" },
+	};
+	for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
+		change(damages[i].how);
+		refuse(path, damages[i].saying);
+	}
+	record(0);
+	refuse(path, "this record is empty");
+}
+
+static void test_no_record(void)
+{
+	record(10);
+	CHECK(truncate(path, 20000) == 0);
+	refuse(path, "cut short");
+	CHECK(truncate(path, 0) == 0);
+	refuse(path, "no HDF5 file");
+	refuse("/nonexistent/record.h5", "No such file or directory");
+	refuse("/tmp", "no file");
+	snprintf(fifo, sizeof fifo, "%s.fifo", path);
+	CHECK(mkfifo(fifo, 0600) == 0);
+	refuse(fifo, "no file"); // and nobody waits for who would write it
+	unlink(fifo);
+}
+
+int main(void)
+{
+	snprintf(path, sizeof path, "/tmp/obsim-test-recording-%d.h5", (int)getpid());
+	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+	test_same_snapshots();
+	test_damaged();
+	test_no_record();
+	unlink(path);
+	return check_end();
+}
