@@ -20,6 +20,7 @@
 #include <ob/vec.h>
 
 #define OB_NAME_MAX 48 // bytes of a universe's or object's name, with the final 0
+#define OB_DEATH_MAX 248 // bytes of what is said of a simulator's death, with the final 0
 
 #pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
 
@@ -35,6 +36,7 @@ typedef enum ob_shape {
 enum { // ob_passport.flags
 	OB_OBJECT_PRESENT = 1 << 0, // exists now; a slot without it is free
 	OB_OBJECT_STATIC = 1 << 1,  // never moves; mass and inertia are 0
+	OB_OBJECT_FROZEN = 1 << 2,  // static since its simulator died
 };
 
 // What an object is. 176 bytes.
@@ -103,6 +105,9 @@ typedef struct ob_universe_info {
 	uint32_t awake;       // dynamic objects that are not asleep
 	uint32_t pairs;       // pairs whose bounds overlap
 	uint32_t islands;     // groups that were solved together in the last step
+	uint32_t deaths;      // times that simulators died or stalled
+	uint32_t frozen;      // objects that stay where they are since then (OB_OBJECT_FROZEN)
+	char last_death[OB_DEATH_MAX]; // which it was, and of what; "" = none
 } ob_universe_info;
 
 typedef struct ob_worker_info {

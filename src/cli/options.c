@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
+#include "host/death.h"
 #include "settings/settings.h"
 
 enum {
@@ -64,6 +65,11 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_PATIENCE] = { NULL, "patience", "S",
 				 "seconds that a step may take before simulators count as stalled (60)", RUN | SERVE,
 				 0 },
+	[OB_OPTION_ON_DEATH] = { NULL, "on-death", OB_ON_DEATH_NAMES,
+				 "what comes of a simulator's death: a restart, or its objects freeze (restart)",
+				 RUN | SERVE, 0 },
+	[OB_OPTION_RESTARTS] = { NULL, "restarts", "N/S",
+				     "end the run at more than N deaths within S seconds (no limit)", RUN | SERVE, 0 },
 	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", RUN | SERVE, 0 },
 
 	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max",

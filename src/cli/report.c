@@ -66,6 +66,7 @@ static const struct field {
 	FIELD(REAL, renderer_cpu_s),
 	FIELD(COUNT, switches),
 	FIELD(COUNT, deaths),
+	FIELD(COUNT, frozen),
 	FIELD(COUNT, faults),
 	FIELD(TEXT, fault_kinds),
 	FIELD(COUNT, worker_memory_bytes),
@@ -95,6 +96,30 @@ static const struct field {
 };
 enum { FIELDS = sizeof fields / sizeof *fields };
 
+static void write_death(const ob_death *d, ob_json *j)
+{
+	static const char *const causes[OB_DEATH_CAUSES] = { "signal", "exit", "stall", "damage", "failure" };
+	ob_json_open(j, NULL);
+	ob_json_string(j, "cause", causes[d->cause]);
+	ob_json_count(j, "step", d->step);
+	if (d->worker != OB_NO_WORKER)
+		ob_json_count(j, "simulator", d->worker);
+	if (d->pid)
+		ob_json_count(j, "process", (uint64_t)d->pid);
+	if (d->cause == OB_DEATH_SIGNAL)
+		ob_json_count(j, "signal", (uint64_t)d->signal);
+	if (d->cause == OB_DEATH_EXIT)
+		ob_json_count(j, "exit_code", (uint64_t)d->code);
+	if (d->object != OB_NO_OBJECT) {
+		ob_json_count(j, "object", d->object);
+		ob_json_string(j, "name", d->name);
+	}
+	ob_json_string(j, "what", d->text);
+	ob_json_string(j, "last_words", d->words);
+	ob_json_count(j, "frozen", d->frozen);
+	ob_json_close(j);
+}
+
 void ob_report_write_members(const ob_report *r, ob_json *j)
 {
 	for (int i = 0; i < FIELDS; i++) {
@@ -107,6 +132,12 @@ void ob_report_write_members(const ob_report *r, ob_json *j)
 		else
 			ob_json_number(j, f->key, *(const double *)at);
 	}
+	if (!r->deaths_told)
+		return;
+	ob_json_open_list(j, "death_list");
+	for (uint32_t i = 0; i < r->deaths_told; i++)
+		write_death(&r->death[i], j);
+	ob_json_close_list(j);
 }
 
 void ob_report_write_json(const ob_report *r, FILE *f)
@@ -250,8 +281,12 @@ static void print_cost(const ob_report *r, FILE *f)
 			ob_quantity_text(&a, r->step_p50_s, "s"), ob_quantity_text(&b, r->step_p99_s, "s"),
 			ob_quantity_text(&c, r->startup_s, "s"));
 	fprintf(f, "  memory       %s\n", ob_quantity_text(&a, (double)r->memory_bytes, "B"));
-	if (r->deaths > 0)
-		fprintf(f, "  deaths       %" PRIu64 "; the state is as it would be without\n", r->deaths);
+	if (r->frozen > 0)
+		fprintf(f, "  deaths       %" PRIu64 "; %" PRIu64 " object%s frozen since then\n", r->deaths, r->frozen,
+			r->frozen == 1 ? "" : "s");
+	else if (r->deaths > 0)
+		fprintf(f, "  deaths       %" PRIu64 "%s\n", r->deaths,
+			strcmp(r->outcome, "failed") == 0 ? "" : "; the state is as it would be without");
 }
 
 static void print_quality(const ob_report *r, FILE *f)

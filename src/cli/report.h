@@ -39,7 +39,9 @@ typedef struct ob_report {
 	double host_cpu_s, renderer_cpu_s;
 	char fault_kinds[160]; // "kill 3, exit 1": as many as were injected of each; "" = none
 	uint64_t faults; // of all kinds
-	uint64_t switches, deaths, worker_memory_bytes;
+	uint64_t switches, deaths, frozen, worker_memory_bytes; // frozen: objects, for deaths
+	ob_death death[OB_DEATHS_KEPT]; // the last of them, oldest first, ..
+	uint32_t deaths_told; // .. so many
 	double energy_start, energy_end, energy_gain_max;
 	double momentum_error;
 	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;

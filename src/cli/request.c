@@ -242,6 +242,33 @@ static bool check_harden(const ob_run_request *r, ob_error *e)
 	return true;
 }
 
+// What becomes of the run when simulators die, and how often they may: "5/10" is five times within ten seconds.
+static bool read_deaths(ob_run_request *r, const ob_arguments *a, ob_error *e)
+{
+	const char *policy = a->value[OB_OPTION_ON_DEATH], *limit = a->value[OB_OPTION_RESTARTS];
+	uint32_t value = OB_ON_DEATH_RESTART;
+	uint64_t deaths = 0;
+	char number[32];
+	if (policy && !ob_setting_find(OB_ON_DEATH_NAMES, policy, &value))
+		return ob_fail(e, "--on-death %s: expected one of %s", policy, OB_ON_DEATH_NAMES);
+	r->on_death = (ob_on_death)value;
+	if (r->on_death == OB_ON_DEATH_FREEZE && r->asked.monolith == 1)
+		return ob_fail(e, "--on-death freeze: a monolith is one simulator, without which nothing goes on; leave "
+				  "--arch monolith away");
+	if (!limit)
+		return true;
+	const char *slash = strchr(limit, '/');
+	if (!slash || (size_t)(slash - limit) >= sizeof number)
+		return ob_fail(e, "--restarts %s: expected a number and seconds, as in 5/10", limit);
+	snprintf(number, sizeof number, "%.*s", (int)(slash - limit), limit);
+	if (!ob_number_count(name_of(OB_OPTION_RESTARTS), number, 1, OB_RESTART_LIMIT_MAX, &deaths, e) ||
+	    !ob_number_real(name_of(OB_OPTION_RESTARTS), slash + 1, 0, 1e9, &r->limit.seconds, e))
+		return false;
+	r->limit.deaths = (uint32_t)deaths;
+	return r->on_death != OB_ON_DEATH_ABORT ||
+	       ob_fail(e, "--restarts: with --on-death abort nothing is restarted; leave one of them away");
+}
+
 static bool read_setting(ob_run_settings *to, const ob_setting *s, const char *text, ob_error *e)
 {
 	void *at = (char *)to + s->offset;
@@ -418,6 +445,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_PATIENCE, 1e9, &r->patience, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
 	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && check_harden(r, e) &&
+	       read_deaths(r, a, e) &&
 	       check_name(r->name, e) && read_frames(&r->frames, a, e) && check_outputs(a, e) &&
 	       read_checkpoint(r, a, e) && read_fault(r, a->value[OB_OPTION_FAULT], e);
 }
@@ -458,7 +486,9 @@ ob_host_config ob_request_host(const ob_run_request *r)
 				 .workers = r->workers,
 				 .harden = r->harden,
 				 .trace = r->trace,
-				 .patience = r->patience };
+				 .patience = r->patience,
+				 .on_death = r->on_death,
+				 .limit = r->limit };
 }
 
 uint64_t ob_request_steps(double duration, double step)

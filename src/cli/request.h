@@ -32,6 +32,8 @@ typedef struct ob_run_request {
 	bool harden;
 	double duration; // s; 0 = the scene's
 	double patience; // s, for a step; 0 = the host's choice
+	ob_on_death on_death;
+	ob_restart_limit limit; // of deaths
 	ob_run_settings asked; // a layer: what the command line leaves alone is unset
 	ob_run_settings run; // after ob_request_resolve
 	bool explain;

@@ -118,7 +118,7 @@ static void keep_checkpoint(run *r)
 		.duration = q->duration,
 		.settings = q->run,
 	};
-	now.settings.timed = 0;
+	now.settings.timed = now.settings.freezes = 0;
 	now.settings.fault = (ob_fault_plan){ 0 };
 	ob_observer_save(&r->observer, &now.figures);
 	now.figures.each_step = measures_all(r);
@@ -337,6 +337,8 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->worker_memory_bytes = times.worker_memory_bytes;
 	p->switches = times.switches;
 	p->deaths = times.deaths;
+	p->frozen = times.frozen;
+	p->deaths_told = ob_host_get_deaths(r->host, p->death);
 	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r, first_time(r));
 }
 

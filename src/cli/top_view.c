@@ -93,6 +93,13 @@ static void put_header(ob_top_view *view, const ob_top_sample *s, FILE *f)
 	snprintf(line, sizeof line, "objects %" PRIu32 ", awake %" PRIu32 ", near pairs %" PRIu32 ", islands %" PRIu32,
 		 i->objects, i->awake, i->pairs, i->islands);
 	put_line(view, f, line);
+	if (i->deaths == 0)
+		return;
+	int n = snprintf(line, sizeof line, "deaths %" PRIu32, i->deaths);
+	if (i->frozen)
+		n += snprintf(line + n, sizeof line - (size_t)n, ", objects frozen %" PRIu32, i->frozen);
+	snprintf(line + n, sizeof line - (size_t)n, "; the last: %s", i->last_death);
+	put_line(view, f, line);
 }
 
 static void put_workers(ob_top_view *view, const ob_top_sample *s, uint32_t from, uint32_t count, FILE *f)
@@ -122,7 +129,8 @@ static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 	char line[LINE_MAX_BYTES], name[128];
 	int pad = NAME_WIDTH - clean_name(o->passport.name, NAME_WIDTH, name, sizeof name);
 	const char *shape = o->passport.shape < sizeof shapes / sizeof *shapes ? shapes[o->passport.shape] : "?";
-	const char *state = o->passport.flags & OB_OBJECT_STATIC   ? "static"
+	const char *state = o->passport.flags & OB_OBJECT_FROZEN   ? "frozen"
+			    : o->passport.flags & OB_OBJECT_STATIC ? "static"
 			    : !o->moving                           ? "?"
 			    : (o->motion.flags & OB_MOTION_ASLEEP) ? "asleep"
 			    : (o->motion.flags & OB_MOTION_FREE)   ? "free"

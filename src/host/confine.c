@@ -119,6 +119,7 @@ static bool filter_system_calls(void)
 		ALLOW_WITHOUT(mmap, 2, PROT_EXEC),
 		// messages and the end, abort() included; signals to itself alone
 		ALLOW_WITH(write, 0, STDERR_FILENO),
+		ALLOW_WITH(writev, 0, STDERR_FILENO), // what glibc says before abort()
 		ALLOW(getpid),
 		ALLOW(gettid),
 		ALLOW(rt_sigaction),

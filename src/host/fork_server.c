@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/utf8.h"
 #include "host/accounting.h"
 
 struct ob_fork_server {
@@ -34,15 +36,18 @@ typedef struct server {
 	ob_universe *u;
 	ob_worker_run run;
 	int link, children_fd; // the host; SIGCHLD
+	int words_in, words_out; // what workers write on standard error, and where they write it
 	uint32_t workers;
 	pid_t *pid; // [workers]; 0 = none
+	char (*words)[OB_LAST_WORDS]; // [workers]: the last of it
 } server;
 
 enum { LINK_FD = 3, SEGMENT_FD = 4 };
+#define NO_WORKER UINT32_MAX
 
 // The fork server needs nothing that the host has open: no file of a recorder, no device of a renderer, no terminal
 // input. It keeps the universe's segment, which it owns beside the host.
-static void close_inherited_files(ob_universe *u, int link)
+static bool close_inherited_files(ob_universe *u, int link)
 {
 	int null = open("/dev/null", O_RDWR);
 	if (null >= 0) {
@@ -52,10 +57,11 @@ static void close_inherited_files(ob_universe *u, int link)
 	// first out of the way of each other
 	link = fcntl(link, F_DUPFD, SEGMENT_FD + 1);
 	int segment = fcntl(ob_universe_fd(u), F_DUPFD, SEGMENT_FD + 1);
-	dup2(link, LINK_FD);
-	dup2(segment, SEGMENT_FD);
+	if (link < 0 || segment < 0 || dup2(link, LINK_FD) < 0 || dup2(segment, SEGMENT_FD) < 0)
+		return false;
 	ob_universe_move_fd(u, SEGMENT_FD);
 	close_range(SEGMENT_FD + 1, ~0U, 0);
+	return true;
 }
 
 // With the default actions, a signal to the whole process group would end the fork server, which has to clean up.
@@ -77,19 +83,127 @@ _Noreturn static void run_simulator(const server *s, uint32_t worker, pid_t pare
 	signal(SIGINT, SIG_IGN);
 	sigemptyset(&none);
 	sigprocmask(SIG_SETMASK, &none, NULL);
+	dup2(s->words_out, STDERR_FILENO);
 	close_range(LINK_FD, ~0U, 0);
 	snprintf(name, sizeof name, "sim %u", worker);
 	prctl(PR_SET_NAME, name);
 	_exit(s->run(s->u, worker));
 }
 
-static bool report_end(const server *s, const ob_worker_end *end)
+// ---- last words
+
+static uint32_t worker_of(const server *s, pid_t pid)
+{
+	uint32_t w = 0;
+	while (w < s->workers && s->pid[w] != pid)
+		w++;
+	return w;
+}
+
+// Adds to them what a worker has written; the oldest fall out.
+static void keep_words(char kept[OB_LAST_WORDS], const char *text, size_t n)
+{
+	const size_t most = OB_LAST_WORDS - 1;
+	size_t before = strlen(kept);
+	if (n > most) {
+		text += n - most;
+		n = most;
+	}
+	if (before + n > most) {
+		const size_t fall = before + n - most;
+		memmove(kept, kept + fall, before - fall);
+		before -= fall;
+	}
+	for (size_t i = 0; i < n; i++)
+		kept[before + i] = text[i] ? text[i] : '?';
+	kept[before + n] = 0;
+}
+
+// To standard error, as far as it takes it now. A pipe that is ready takes a page without blocking.
+static void hand_on(const char *text, size_t n)
+{
+	enum { PAGE = 4096 };
+	while (n > 0) {
+		struct pollfd p = { .fd = STDERR_FILENO, .events = POLLOUT };
+		if (poll(&p, 1, 0) <= 0 || p.revents & (POLLERR | POLLNVAL))
+			return;
+		const ssize_t written = write(STDERR_FILENO, text, n < PAGE ? n : PAGE);
+		if (written <= 0)
+			return;
+		text += written;
+		n -= (size_t)written;
+	}
+}
+
+// One worker's, of what has been written; false: there is nothing more now.
+static bool take_words(const server *s)
+{
+	char text[1 << 14], control[CMSG_SPACE(sizeof(struct ucred))];
+	struct iovec to = { text, sizeof text };
+	struct msghdr m = { .msg_iov = &to, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control };
+	const ssize_t n = recvmsg(s->words_in, &m, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+	if (n <= 0)
+		return false;
+	for (const struct cmsghdr *c = CMSG_FIRSTHDR(&m); c; c = CMSG_NXTHDR(&m, (struct cmsghdr *)c)) {
+		struct ucred who;
+		if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_CREDENTIALS)
+			continue;
+		memcpy(&who, CMSG_DATA(c), sizeof who);
+		const uint32_t w = worker_of(s, who.pid);
+		if (w < s->workers)
+			keep_words(s->words[w], text, (size_t)n);
+	}
+	hand_on(text, (size_t)n);
+	return true;
+}
+
+// All that was written before now, by a worker that has died among others; no more, for some may write without an end.
+static void take_all_words(const server *s)
+{
+	for (int i = 0; i < 64 && take_words(s); i++)
+		;
+}
+
+// Whole lines, if there are any, as one line with | between them, and nothing in it that a terminal would obey.
+static void last_lines(char words[OB_LAST_WORDS])
+{
+	size_t n = strlen(words);
+	while (n > 0 && words[n - 1] == '\n')
+		words[--n] = 0;
+	const char *second = n >= OB_LAST_WORDS - 2 ? strchr(words, '\n') : NULL;
+	if (second)
+		memmove(words, second + 1, strlen(second + 1) + 1);
+	for (char *at = words; *at; at++)
+		*at = *at == '\n' ? '|' : *at;
+	ob_utf8_make_plain(words);
+}
+
+static bool open_words(server *s)
+{
+	int ends[2];
+	const int on = 1;
+	if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+		return false;
+	s->words_in = ends[0];
+	s->words_out = ends[1];
+	s->words = calloc(s->workers, sizeof *s->words);
+	return s->words && setsockopt(s->words_in, SOL_SOCKET, SO_PASSCRED, &on, sizeof on) == 0;
+}
+
+// ---- ends
+
+static void report_end(int link, const ob_worker_end *end)
 {
 	ssize_t n;
 	do {
-		n = send(s->link, end, sizeof *end, MSG_NOSIGNAL);
+		n = send(link, end, offsetof(ob_worker_end, words) + strlen(end->words) + 1, MSG_NOSIGNAL);
 	} while (n < 0 && errno == EINTR);
-	return n == sizeof *end;
+}
+
+// Its first report: whether it can do what it is for; error = errno.
+static void report_ready(int link, int error)
+{
+	report_end(link, &(ob_worker_end){ .worker = NO_WORKER, .error = error });
 }
 
 static void fork_simulators(server *s, fork_request r)
@@ -105,7 +219,7 @@ static void fork_simulators(server *s, fork_request r)
 			continue;
 		}
 		error = error ? error : errno;
-		report_end(s, &(ob_worker_end){ .worker = w, .error = error });
+		report_end(s->link, &(ob_worker_end){ .worker = w, .error = error });
 	}
 }
 
@@ -122,16 +236,19 @@ static void reap(server *s)
 	int status;
 	pid_t pid;
 	while ((pid = waitpid(-1, &status, WNOHANG)) > 0) {
-		uint32_t w = 0;
-		while (w < s->workers && s->pid[w] != pid)
-			w++;
+		const uint32_t w = worker_of(s, pid);
 		if (w == s->workers)
 			continue;
+		take_all_words(s);
+		ob_worker_end end = { .worker = w,
+				      .pid = pid,
+				      .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
+				      .code = WIFEXITED(status) ? WEXITSTATUS(status) : 0 };
+		last_lines(s->words[w]);
+		memcpy(end.words, s->words[w], sizeof end.words);
+		s->words[w][0] = 0;
 		s->pid[w] = 0;
-		report_end(s, &(ob_worker_end){ .worker = w,
-						.pid = pid,
-						.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
-						.code = WIFEXITED(status) ? WEXITSTATUS(status) : 0 });
+		report_end(s->link, &end);
 	}
 }
 
@@ -147,10 +264,14 @@ _Noreturn static void clean_up(const server *s)
 
 _Noreturn static void serve(server *s)
 {
-	struct pollfd fds[2] = { { .fd = s->link, .events = POLLIN }, { .fd = s->children_fd, .events = POLLIN } };
+	struct pollfd fds[3] = { { .fd = s->link, .events = POLLIN },
+				 { .fd = s->children_fd, .events = POLLIN },
+				 { .fd = s->words_in, .events = POLLIN } };
 	for (;;) {
-		if (poll(fds, 2, -1) < 0 && errno != EINTR)
+		if (poll(fds, 3, -1) < 0 && errno != EINTR)
 			clean_up(s);
+		if (fds[2].revents)
+			take_words(s);
 		if (fds[1].revents) {
 			struct signalfd_siginfo drained;
 			if (read(s->children_fd, &drained, sizeof drained) > 0)
@@ -178,18 +299,43 @@ _Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int lin
 	sigemptyset(&child);
 	sigaddset(&child, SIGCHLD);
 	sigprocmask(SIG_SETMASK, &child, NULL);
-	close_inherited_files(u, link);
+	if (!close_inherited_files(u, link)) {
+		report_ready(link, errno);
+		_exit(EXIT_FAILURE);
+	}
 	s.children_fd = signalfd(-1, &child, SFD_CLOEXEC | SFD_NONBLOCK);
 	s.pid = calloc(s.workers, sizeof *s.pid);
-	if (s.children_fd < 0 || !s.pid)
+	if (s.children_fd < 0 || !s.pid || !open_words(&s)) {
+		report_ready(s.link, errno);
 		clean_up(&(server){ .u = u });
+	}
+	report_ready(s.link, 0);
 	serve(&s);
 }
 
 // ---- the host's side
 
+static const double start_timeout = 10; // s to wait until it is ready
 static const double end_timeout = 5; // s to wait for the fork server's end, before and after it is killed
 static const long longest_pause_ns = 5000000;
+
+// Waits for its first report. 0 = it is ready; else errno.
+static int wait_until_ready(const ob_fork_server *s)
+{
+	ob_hang_clock clock = ob_hang_clock_start();
+	while (ob_hang_clock_tick(&clock) < start_timeout) {
+		struct pollfd p = { .fd = s->link, .events = POLLIN };
+		ob_worker_end first;
+		if (poll(&p, 1, 100) <= 0)
+			continue;
+		const ssize_t n = recv(s->link, &first, sizeof first, MSG_DONTWAIT);
+		if (n > 0)
+			return first.error;
+		if (n == 0 || errno != EINTR)
+			return ECHILD; // it has ended
+	}
+	return ETIMEDOUT;
+}
 
 ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error *e)
 {
@@ -211,6 +357,12 @@ ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error
 		return NULL;
 	}
 	s->link = ends[0];
+	const int error = wait_until_ready(s);
+	if (error) {
+		ob_fork_server_stop(s);
+		ob_fail(e, "the fork server does not start: %s", strerror(error));
+		return NULL;
+	}
 	return s;
 }
 
@@ -244,7 +396,10 @@ bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end)
 	do {
 		n = recv(s->link, end, sizeof *end, MSG_DONTWAIT);
 	} while (n < 0 && errno == EINTR);
-	return n == sizeof *end;
+	if (n <= (ssize_t)offsetof(ob_worker_end, words))
+		return false;
+	end->words[n - (ssize_t)offsetof(ob_worker_end, words) - 1] = 0;
+	return true;
 }
 
 // Whether the fork server has ended within so many seconds. One that somebody has stopped is not waited for.

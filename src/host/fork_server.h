@@ -9,6 +9,12 @@
 //        workers first .. first+count  >                   (count 0: kill all)
 //        <  ob_worker_end, one per worker that ended, by whatever cause
 //
+//   workers' standard error --- one socket ---> fork server ---> its own standard error, the host's
+//
+// What workers write on standard error passes through the fork server, which keeps the last of each for its
+// ob_worker_end. All write into one socket; the kernel says whose it was (SCM_CREDENTIALS). It is handed on at once, but
+// where that would block: a reader that does not read loses it, and holds nobody up.
+//
 // The fork server is the workers' parent, so it learns of each death at once (SIGCHLD) and with its exact cause, and the
 // host needs neither a file descriptor nor a poll entry per worker. It has a session of its own: the host alone handles
 // Ctrl-C at the terminal.

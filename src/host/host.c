@@ -1,6 +1,7 @@
 #include "host/host.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -35,6 +36,10 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 					  : (unsigned long long)scene->objects + c->spare);
 	if (c->harden && (c->isolation != OB_ISOLATION_PROCESS || r->monolith))
 		return ob_fail(e, "harden: only object simulators in processes can be contained");
+	if (c->on_death == OB_ON_DEATH_FREEZE && r->monolith)
+		return ob_fail(e, "on death: a monolith is one simulator, without which there is nothing to go on");
+	if (c->limit.deaths > OB_RESTART_LIMIT_MAX || (c->limit.deaths && !(c->limit.seconds > 0)))
+		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))
 			return false;
@@ -71,6 +76,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.run = c->run,
 	};
 	setup.run.one_per_object = one_per_object;
+	setup.run.freezes = c->on_death == OB_ON_DEATH_FREEZE;
 	setup.workers += c->harden; // the arranger
 	return ob_universe_create(&setup, e);
 }
@@ -106,7 +112,7 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host
 	else if (!load(h, from, e))
 		return false;
 	ob_restart_prepare(h);
-	ob_restart_checkpoint(h, true);
+	ob_restart_checkpoint(h, true, false);
 	return true;
 }
 
@@ -114,10 +120,11 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host
 static bool fail_start(ob_host *h, uint32_t worker, double patience, ob_error *e)
 {
 	pid_t server = ob_fork_server_pid(h->fork_server);
-	ob_restart_request(h, "simulator %u of %u was not ready after %g s; the fork server is process %d, %s",
-			   worker + 1, h->workers, patience, (int)server,
-			   ob_state_word(ob_state_of_thread(server, server)));
-	return ob_fail(e, "%s", h->failed ? h->failure.text : h->restart.reason.text);
+	ob_death d = { .cause = OB_DEATH_STALL, .worker = worker, .step = ob_step_count(h->u) + 1, .object = OB_NO_OBJECT };
+	snprintf(d.text, sizeof d.text, "simulator %u of %u was not ready after %g s; the fork server is process %d, %s",
+		 worker + 1, h->workers, patience, (int)server, ob_state_word(ob_state_of_thread(server, server)));
+	ob_restart_request(h, &d);
+	return ob_fail(e, "%s", h->failed ? h->failure.text : d.text);
 }
 
 bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
@@ -129,7 +136,7 @@ bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 		if (h->interrupted)
 			return ob_fail(e, "interrupted");
 		if (h->failed || h->restart.requested)
-			return ob_fail(e, "%s", h->failed ? h->failure.text : h->restart.reason.text);
+			return ob_fail(e, "%s", h->failed ? h->failure.text : "a simulator has died");
 		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0) {
 			w++;
 			clock = ob_hang_clock_start();
@@ -176,6 +183,8 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	}
 	h->wake_fd = h->interrupt_fd = -1;
 	h->patience = config->patience > 0 ? config->patience : default_patience;
+	h->on_death = config->on_death;
+	h->limit = config->limit;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
 	pthread_mutex_init(&h->interval.lock, NULL);
@@ -254,13 +263,14 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 		.critical_s = 1e-9 * (double)ob_critical_path(h->u),
 	};
 	get_memory(h, out);
+	out->deaths = h->restart.deaths;
+	out->frozen = h->restart.frozen;
 	if (!h->cpu_counted)
 		return;
 	out->cpu_s = 1e-9 * (double)(ob_host_read_cpu(h) - h->cpu_before);
 	out->host_cpu_s = ob_clock_process_cpu() - h->own_cpu_before - (h->spawn->own_memory ? 0 : out->cpu_s);
 	uint64_t switches = ob_host_count_switches(h) + h->restart.switches;
 	out->switches = switches > h->switches_before ? switches - h->switches_before : 0;
-	out->deaths = h->restart.deaths;
 	out->elapsed_s = h->last_end - h->first_start;
 	out->gate_s = ob_host_gate_time(h, h->last_end) - h->gate_before;
 }
@@ -274,8 +284,9 @@ void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t numb
 bool ob_host_end_trace(ob_host *h, ob_timeline_sums *sums, ob_error *e)
 {
 	ob_timeline *t = h->timeline;
+	ob_death deaths[OB_DEATHS_KEPT];
 	h->timeline = NULL;
-	return ob_timeline_finish(t, sums, e);
+	return ob_timeline_finish(t, deaths, ob_host_get_deaths(h, deaths), sums, e);
 }
 
 bool ob_host_count_saved(ob_host *h, ob_saved_host *out)

@@ -15,6 +15,7 @@
 #ifndef OB_HOST_HOST_H
 #define OB_HOST_HOST_H
 
+#include "host/death.h"
 #include "host/timeline.h"
 #include "scene/scene.h"
 #include "host/population.h"
@@ -30,6 +31,14 @@ typedef struct ob_saved_host {
 
 typedef enum ob_isolation { OB_ISOLATION_THREAD, OB_ISOLATION_PROCESS } ob_isolation;
 
+// More deaths than so many within so long end the run (OTP's restart intensity); deaths 0: only deaths that bring the run
+// nowhere do (restart.h).
+typedef struct ob_restart_limit {
+	uint32_t deaths;
+	double seconds; // wall
+} ob_restart_limit;
+enum { OB_RESTART_LIMIT_MAX = 10000, OB_DEATHS_KEPT = 16 };
+
 typedef struct ob_host_config {
 	const char *name; // of the universe; NULL = obsim-<pid>
 	ob_isolation isolation;
@@ -37,6 +46,8 @@ typedef struct ob_host_config {
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
 	double patience; // s without a completed step after which the run counts as stalled (stall.h); 0 = 60
 	bool harden; // processes: simulators cannot write the universe (table/outbox.h), and may do little else (confine.h)
+	ob_on_death on_death; // of simulators; a monolith's end ends the run in any case
+	ob_restart_limit limit;
 	const char *trace; // file for the timeline of what workers and host do (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
 	const ob_saved_host *from; // where the run begins, checked (ob_saved_universe_check); NULL = the scene's start
@@ -49,7 +60,8 @@ typedef struct ob_host_times {
 	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
 	double critical_s; // if timed: critical path of all steps: the longest worker in each phase, and scheduling (CPU)
 	double elapsed_s; // from the first go that stepped to the last pause, pauses included
-	uint32_t deaths; // times that simulators died or stalled and all were restarted
+	uint32_t deaths; // times that simulators died, stalled, or failed
+	uint32_t frozen; // objects that stay where they are for it
 	double gate_s; // if timed: all workers' waiting at the gate in that time, pauses included (wall)
 	double host_cpu_s; // CPU of the host's process since then, without its workers: renderer, recorder, measures
 	uint64_t switches; // context switches of workers since then
@@ -63,8 +75,9 @@ typedef struct ob_host ob_host;
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e);
 // Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there. The first
 // go may be to step 0: the first broad phase runs, and nothing moves.
-// A process that dies or stalls does not end the run: all simulators are restarted from the last checkpoint, which the
-// caller does not see, and come to the same bits (restart.h says where that is not possible).
+// A process that dies or stalls does not end the run, unless it is to: all simulators are restarted from the last
+// checkpoint, which the caller does not see, and come to the same bits (restart.h says where that is not possible). Where
+// what fails is frozen, the run goes on with it as it was when the last step was complete.
 // wait: false and e when a simulator died and could not be restarted, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
@@ -72,6 +85,8 @@ bool ob_host_interrupted(const ob_host *h);
 const ob_universe *ob_host_universe(const ob_host *h);
 const ob_roster *ob_host_roster(const ob_host *h);
 void ob_host_get_times(ob_host *h, ob_host_times *out);
+// The last deaths, oldest first, OB_DEATHS_KEPT of them at most; returns how many.
+uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT]);
 // Requests, carried out at the next step boundary. id comes back through the roster. Any thread.
 // false: no memory, or, add, the definition makes no sense, and e says why. remove: nothing happens if another generation has the id by then.
 bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e);

@@ -18,17 +18,26 @@ typedef struct ob_interval {
 	uint64_t most; // the same when it began: no step goes beyond
 } ob_interval;
 
+// An object that is to be frozen as it is when so many steps are complete.
+typedef struct ob_freeze {
+	uint64_t step;
+	uint32_t id, generation;
+} ob_freeze;
+
 // See restart.h.
 typedef struct ob_restart_state {
 	ob_checkpoint *checkpoint; // NULL: the death of a worker is a failure
 	atomic_bool current; // the checkpoint holds the objects that exist now
-	atomic_bool requested; // reason says why
-	ob_error reason;
+	atomic_bool requested; // the latest death says why
 	double taken_at, cost; // s, wall: when the checkpoint was taken, and how long that took
 	double began, spent; // s, wall: since when checkpoints are possible; the time that all of them have taken
 	double progress_at; // s, wall: when a checkpoint was last farther than the one before
-	unsigned attempts, deaths; // restarts since then; restarts since the start
+	unsigned attempts, deaths; // restarts since then; deaths since the start
 	uint64_t half_way; // steps: half of what was made when simulators died last
+	ob_death last[OB_DEATHS_KEPT]; // the latest is last[(deaths - 1) % OB_DEATHS_KEPT]; under failure_lock
+	double *when; // [limit.deaths]: s, wall, of the last deaths, in turn; NULL = no limit
+	ob_freeze *freeze; // [freezes]: objects that are to be frozen; by id within a step
+	uint32_t freezes, freezes_max, frozen; // frozen: so far
 	_Atomic uint64_t cpu; // ns, of the workers that are gone
 	uint64_t switches; // theirs
 } ob_restart_state;
@@ -58,6 +67,8 @@ struct ob_host {
 	uint64_t target; // the caller's
 	bool started; // the gate was opened once
 	double patience; // s
+	ob_on_death on_death;
+	ob_restart_limit limit;
 
 	uint64_t interval_first_step;
 	double interval_start; // s, wall

@@ -1,13 +1,15 @@
 #include "host/restart.h"
 
-#include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "base/clock.h"
 #include "base/log.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
+#include "sim/sim.h"
 
 enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once, ..
 static const double attempts_timeout = 10; // s, .. and others for so long
@@ -19,14 +21,20 @@ static const double interrupted_kill_timeout = .05; // .. and after Ctrl-C
 
 void ob_restart_prepare(ob_host *h)
 {
-	if (h->spawn->restart && !ob_universe_settings(h->u)->monolith)
-		h->restart.checkpoint = ob_checkpoint_create(h->u);
-	h->restart.began = h->restart.progress_at = ob_clock_wall();
+	ob_restart_state *r = &h->restart;
+	const bool possible = h->spawn->own_memory || h->on_death == OB_ON_DEATH_FREEZE;
+	if (possible && h->on_death != OB_ON_DEATH_ABORT && !ob_universe_settings(h->u)->monolith)
+		r->checkpoint = ob_checkpoint_create(h->u);
+	if (h->limit.deaths)
+		r->when = calloc(h->limit.deaths, sizeof *r->when);
+	r->began = r->progress_at = ob_clock_wall();
 }
 
 void ob_restart_finish(ob_host *h)
 {
 	ob_checkpoint_destroy(h->restart.checkpoint);
+	free(h->restart.when);
+	free(h->restart.freeze);
 }
 
 // Where simulators die again and again, half of the way that they made last is likely to be made: so the run gets on,
@@ -34,7 +42,10 @@ void ob_restart_finish(ob_host *h)
 uint64_t ob_restart_next_step(const ob_host *h)
 {
 	const ob_restart_state *r = &h->restart;
-	return r->attempts > 0 ? ob_checkpoint_step(r->checkpoint) + r->half_way : UINT64_MAX;
+	uint64_t next = r->attempts > 0 ? ob_checkpoint_step(r->checkpoint) + r->half_way : UINT64_MAX;
+	for (uint32_t i = 0; i < r->freezes; i++)
+		next = r->freeze[i].step < next ? r->freeze[i].step : next;
+	return next;
 }
 
 bool ob_restart_checkpoint_due(const ob_host *h)
@@ -50,14 +61,14 @@ bool ob_restart_checkpoint_due(const ob_host *h)
 	return now - r->taken_at >= fmax(checkpoint_interval, r->cost / checkpoint_share);
 }
 
-void ob_restart_checkpoint(ob_host *h, bool changed)
+void ob_restart_checkpoint(ob_host *h, bool changed, bool frozen)
 {
 	ob_restart_state *r = &h->restart;
 	r->current &= !changed;
-	if (!ob_restart_checkpoint_due(h))
+	if (!frozen && !ob_restart_checkpoint_due(h))
 		return;
 	double began = ob_clock_wall();
-	bool progress = ob_step_count(h->u) > ob_checkpoint_step(r->checkpoint);
+	bool progress = frozen || ob_step_count(h->u) > ob_checkpoint_step(r->checkpoint);
 	r->current = ob_checkpoint_take(r->checkpoint, h->u);
 	r->taken_at = ob_clock_wall();
 	r->cost = r->taken_at - began;
@@ -68,40 +79,173 @@ void ob_restart_checkpoint(ob_host *h, bool changed)
 	}
 }
 
-void ob_restart_request(ob_host *h, const char *format, ...)
+// ---- deaths
+
+static ob_death *latest(ob_restart_state *r)
+{
+	return &r->last[(r->deaths - 1) % OB_DEATHS_KEPT];
+}
+
+// The latest, as it is said to people.
+static const char *describe(ob_host *h, ob_error *text)
+{
+	pthread_mutex_lock(&h->failure_lock);
+	ob_death_print(latest(&h->restart), text->text, sizeof text->text);
+	pthread_mutex_unlock(&h->failure_lock);
+	return text->text;
+}
+
+// Whether this death, the newest, is one too many.
+static bool is_over_limit(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
-	ob_error reason;
-	va_list args;
-	va_start(args, format);
-	vsnprintf(reason.text, sizeof reason.text, format, args);
-	va_end(args);
-	if (!r->current) {
-		ob_host_set_failure(h, "%s", reason.text);
-		return;
-	}
+	if (!r->when)
+		return false;
+	double *oldest = &r->when[(r->deaths - 1) % h->limit.deaths], now = ob_clock_wall(), before = *oldest;
+	*oldest = now;
+	return r->deaths > h->limit.deaths && now - before <= h->limit.seconds;
+}
+
+void ob_restart_request(ob_host *h, const ob_death *d)
+{
+	ob_restart_state *r = &h->restart;
+	const bool hangs = d->cause == OB_DEATH_STALL && !h->spawn->own_memory; // a thread cannot be killed
 	pthread_mutex_lock(&h->failure_lock);
-	if (!r->requested)
-		r->reason = reason;
-	r->requested = true;
+	const bool first = !r->requested && !h->failed;
+	if (first) {
+		r->deaths++;
+		*latest(r) = *d;
+		latest(r)->when = ob_clock_ns();
+		r->requested = r->current && !hangs;
+		ob_error text;
+		ob_death_print(d, text.text, sizeof text.text);
+		ob_universe_note_death(h->u, text.text);
+	}
 	pthread_mutex_unlock(&h->failure_lock);
+	if (first && !r->requested) {
+		ob_error text;
+		ob_host_set_failure(h, "%s", describe(h, &text));
+	}
 	ob_gate_stop(h->u); // the others leave, and the host wakes
 }
 
-static bool kill_all_workers(ob_host *h)
+void ob_restart_add_words(ob_host *h, const ob_worker_end *end)
+{
+	ob_restart_state *r = &h->restart;
+	pthread_mutex_lock(&h->failure_lock);
+	if (r->deaths > 0 && latest(r)->worker == end->worker && !*latest(r)->words)
+		memcpy(latest(r)->words, end->words, sizeof end->words);
+	pthread_mutex_unlock(&h->failure_lock);
+}
+
+uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT])
+{
+	const ob_restart_state *r = &h->restart;
+	pthread_mutex_lock(&h->failure_lock);
+	const uint32_t n = r->deaths < OB_DEATHS_KEPT ? r->deaths : OB_DEATHS_KEPT;
+	for (uint32_t i = 0; i < n; i++)
+		out[i] = r->last[(r->deaths - n + i) % OB_DEATHS_KEPT];
+	pthread_mutex_unlock(&h->failure_lock);
+	return n;
+}
+
+// ---- freezing
+
+static bool add_freeze(ob_restart_state *r, ob_freeze f)
+{
+	for (uint32_t i = 0; i < r->freezes; i++)
+		if (r->freeze[i].id == f.id)
+			return true;
+	if (r->freezes == r->freezes_max) {
+		const uint32_t more = 2 * r->freezes_max + 16;
+		ob_freeze *larger = realloc(r->freeze, more * sizeof *larger);
+		if (!larger)
+			return false;
+		r->freeze = larger;
+		r->freezes_max = more;
+	}
+	r->freeze[r->freezes++] = f;
+	return true;
+}
+
+// Notes which objects the latest death freezes, before anything is put back. text: their names are added. false: none
+// can be frozen, and without that the run would fail again.
+static bool plan_freeze(ob_host *h, ob_error *text)
+{
+	enum { SHOWN = 3 };
+	ob_restart_state *r = &h->restart;
+	const uint32_t most = ob_universe_ids(h->u);
+	uint32_t *ids = malloc((most + 1) * sizeof *ids), n = 0, frozen = 0;
+	ob_death *d = latest(r);
+	const bool alone = ob_universe_settings(h->u)->one_per_object && d->cause != OB_DEATH_FAILURE;
+	if (ids && d->object < most)
+		n = alone ? 1 : ob_sim_failed_objects(h->u, d->object, ids, most);
+	if (alone && n)
+		ids[0] = d->object;
+	for (uint32_t i = 0; i < n && i < most; i++) {
+		ob_passport p;
+		if (ids[i] >= most || !ob_universe_get_passport(h->u, ids[i], &p) || p.flags & OB_OBJECT_STATIC ||
+		    !add_freeze(r, (ob_freeze){ ob_step_count(h->u), ids[i], p.generation }))
+			continue;
+		size_t at = strlen(text->text);
+		if (frozen++ < SHOWN)
+			snprintf(text->text + at, sizeof text->text - at, "%s object %u%s%.*s%s",
+				 frozen > 1 ? "," : "; frozen:", ids[i], *p.name ? " (" : "", OB_NAME_MAX, p.name,
+				 *p.name ? ")" : "");
+	}
+	size_t at = strlen(text->text);
+	if (frozen > SHOWN)
+		snprintf(text->text + at, sizeof text->text - at, " and %u more", frozen - SHOWN);
+	free(ids);
+	pthread_mutex_lock(&h->failure_lock);
+	d->frozen = frozen;
+	pthread_mutex_unlock(&h->failure_lock);
+	return frozen > 0 || d->cause != OB_DEATH_FAILURE;
+}
+
+bool ob_restart_freeze(ob_host *h)
+{
+	ob_restart_state *r = &h->restart;
+	const uint64_t step = ob_step_count(h->u);
+	uint32_t left = 0, frozen = 0;
+	for (uint32_t i = 0; i < r->freezes; i++) {
+		const ob_freeze f = r->freeze[i];
+		if (f.step > step)
+			r->freeze[left++] = f;
+		else if (ob_passport_of(h->u, f.id)->generation == f.generation)
+			frozen += ob_sim_freeze(h->u, f.id);
+	}
+	r->freezes = left;
+	r->frozen += frozen;
+	if (frozen)
+		ob_universe_note_frozen(h->u, frozen);
+	return frozen > 0;
+}
+
+// ---- restart
+
+static void fail_to_end_workers(ob_host *h)
+{
+	ob_error text;
+	const pid_t server = ob_fork_server_pid(h->fork_server);
+	if (h->spawn->own_memory)
+		ob_host_set_failure(h, "%s; the fork server (process %d, %s) has not killed %u simulators within %g s",
+				    describe(h, &text), (int)server, ob_state_word(ob_state_of_thread(server, server)),
+				    h->running_workers, kill_timeout);
+	else
+		ob_host_set_failure(h, "%s; %u simulators' threads have not left within %g s", describe(h, &text),
+				    h->running_workers, kill_timeout);
+}
+
+static bool end_all_workers(ob_host *h)
 {
 	ob_hang_clock clock = ob_hang_clock_start();
-	h->spawn->kill(h->group);
+	h->spawn->end(h->group);
 	while (h->running_workers > 0 && !h->failed &&
 	       ob_hang_clock_tick(&clock) < (h->interrupted ? interrupted_kill_timeout : kill_timeout))
 		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
-	if (h->running_workers > 0 && !h->interrupted) {
-		pid_t server = ob_fork_server_pid(h->fork_server);
-		ob_host_set_failure(h, "%s; the fork server (process %d, %s) has not killed %u simulators within %g s",
-				    h->restart.reason.text, (int)server,
-				    ob_state_word(ob_state_of_thread(server, server)), h->running_workers,
-				    kill_timeout);
-	}
+	if (h->running_workers > 0 && !h->interrupted)
+		fail_to_end_workers(h);
 	return h->running_workers == 0 && !h->failed;
 }
 
@@ -122,35 +266,64 @@ static void save_accounts(ob_host *h)
 		ob_worker_set_cpu(h->u, w, 0);
 }
 
+// How many of the deaths that are kept were this one's worker's.
+static uint32_t count_alike(const ob_restart_state *r)
+{
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < OB_DEATHS_KEPT && i < r->deaths; i++)
+		n += r->last[i].worker == r->last[(r->deaths - 1) % OB_DEATHS_KEPT].worker;
+	return n;
+}
+
+static bool give_up(ob_host *h)
+{
+	ob_restart_state *r = &h->restart;
+	ob_error text;
+	const uint32_t kept = r->deaths < OB_DEATHS_KEPT ? r->deaths : OB_DEATHS_KEPT;
+	if (!r->current)
+		ob_host_set_failure(h, "%s; objects had been added or removed since the last checkpoint",
+				    describe(h, &text));
+	else if (is_over_limit(h))
+		ob_host_set_failure(h,
+				    "%s; giving up: simulators died more than %u times within %g s (--restarts), "
+				    "%u of the last %u times this one",
+				    describe(h, &text), h->limit.deaths, h->limit.seconds, count_alike(r), kept);
+	else if (++r->attempts > QUICK_ATTEMPTS && ob_clock_wall() - r->progress_at > attempts_timeout)
+		ob_host_set_failure(
+			h,
+			"%s; giving up: simulators failed %u times since the checkpoint of step %llu, %u of the "
+			"last %u times this one",
+			describe(h, &text), r->attempts, (unsigned long long)ob_checkpoint_step(r->checkpoint),
+			count_alike(r), kept);
+	return h->failed;
+}
+
 bool ob_restart(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
-	ob_error e;
-	unsigned long long step = ob_checkpoint_step(r->checkpoint);
-	if (!r->current) {
-		ob_host_set_failure(h, "%s; objects had been added or removed since the last checkpoint",
-				    r->reason.text);
+	ob_error e, text;
+	if (give_up(h))
 		return false;
-	}
-	if (++r->attempts > QUICK_ATTEMPTS && ob_clock_wall() - r->progress_at > attempts_timeout) {
-		ob_host_set_failure(h, "%s; giving up: simulators failed %u times since the checkpoint of step %llu",
-				    r->reason.text, r->attempts, step);
-		return false;
-	}
+	const uint64_t step = ob_checkpoint_step(r->checkpoint);
 	r->half_way = ob_step_count(h->u) > step + 1 ? (ob_step_count(h->u) - step) / 2 : 1;
 	save_accounts(h);
-	if (!kill_all_workers(h))
+	if (!end_all_workers(h))
 		return false;
-	ob_log_warn("%s; restarting all simulators from the checkpoint of step %llu", r->reason.text, step);
-	r->deaths++;
+	describe(h, &text);
+	if (h->on_death == OB_ON_DEATH_FREEZE && !plan_freeze(h, &text)) {
+		ob_host_set_failure(h, "%s", text.text);
+		return false;
+	}
+	ob_log_warn("%s; restarting all simulators from the checkpoint of step %llu", text.text,
+		    (unsigned long long)step);
 	back_off(h);
 	ob_checkpoint_put_back(r->checkpoint, h->u);
 	r->requested = false;
 	if (h->interrupted)
 		return false;
 	h->running_workers = h->workers;
-	if (!h->spawn->restart(h->group)) {
-		ob_host_set_failure(h, "%s; the fork server has ended", r->reason.text);
+	if (!h->spawn->restart(h->group, &e)) {
+		ob_host_set_failure(h, "%s; %s", text.text, e.text);
 		return false;
 	}
 	if (ob_host_wait_for_workers(h, &e))

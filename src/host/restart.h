@@ -16,8 +16,15 @@
 // A checkpoint is taken at a pause: when objects have been added or removed, or else four times a second, but not so
 // often that checkpoints take more than a twentieth of the time; after a restart, half way to where simulators died. A stall (host.h) asks for a restart, too.
 //
-// The run fails where a restart is impossible or of no use:
-//   - with threads, which die with the host;
+// Freezing (ob_on_death): the objects of whom has died, or of the island that has failed, are noted with the number of
+// steps that were complete. Then all is as above; the run pauses where that many are complete again, the objects become
+// static, and a checkpoint is taken. So they stand where they stood when their simulator died, wherever the checkpoint was,
+// and where it dies in the same step of every run, all runs end in the same bits. Threads restart, too: when they have
+// left, which they do unless they hang.
+//
+// The run fails where a restart is impossible or of no use, or not wanted:
+//   - where it is to abort, or simulators have died more often than its limit allows;
+//   - with threads, which die with the host, unless what fails is to be frozen;
 //   - with a monolith, whose world lies in its worker's own memory;
 //   - when workers have died again and again for ten seconds and the run has not got past its checkpoint, for then the
 //     simulator itself is likely to be the cause;
@@ -31,14 +38,18 @@
 
 // Makes ready. Without it, or with no memory for it, a request is a failure.
 void ob_restart_prepare(ob_host *h);
-// At a pause, takes a checkpoint if one is due; changed = objects were added or removed.
-void ob_restart_checkpoint(ob_host *h, bool changed);
+// At a pause, takes a checkpoint if one is due; changed = objects were added or removed; frozen = some were frozen.
+void ob_restart_checkpoint(ob_host *h, bool changed, bool frozen);
 // The step at which the run pauses for one in any case; UINT64_MAX: none.
 uint64_t ob_restart_next_step(const ob_host *h);
 // Whether it is time for a pause to take a checkpoint.
 bool ob_restart_checkpoint_due(const ob_host *h);
-// A worker has died, or is stalled, for this reason. The first request counts until ob_restart.
-void ob_restart_request(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// A worker has died, or is stalled, so. The first request counts until ob_restart.
+void ob_restart_request(ob_host *h, const ob_death *d);
+// The words of a worker that has been ended, if it is the one that the request is about.
+void ob_restart_add_words(ob_host *h, const ob_worker_end *end);
+// At a pause: freezes what is to be frozen at this step. true: some was.
+bool ob_restart_freeze(ob_host *h);
 // After a request: restarts all workers; they then stand at the gate, the universe at a pause. false: the run has failed,
 // or another worker died in the meantime, which is a request again.
 bool ob_restart(ob_host *h);

@@ -53,7 +53,8 @@ static void begin_interval(ob_host *h)
 {
 	ob_interval *interval = &h->interval;
 	uint64_t step = ob_step_count(h->u);
-	ob_restart_checkpoint(h, ob_population_update(h->population, step, h->requests));
+	const bool changed = ob_population_update(h->population, step, h->requests), frozen = ob_restart_freeze(h);
+	ob_restart_checkpoint(h, changed, frozen);
 	if (h->started && step >= h->target)
 		return;
 	uint64_t next = ob_population_next_step(h->population), retry = ob_restart_next_step(h);
@@ -111,8 +112,14 @@ static void report_stall(ob_host *h, uint64_t step)
 {
 	char blocking[400];
 	ob_stall_describe(h, blocking, sizeof blocking);
-	ob_restart_request(h, "step %llu was not complete after %g s; waiting for %s", (unsigned long long)step + 1,
-			   h->patience, blocking);
+	ob_death d = { .cause = OB_DEATH_STALL, .worker = ob_stall_first(h), .step = step + 1 };
+	ob_worker_info info = { 0 };
+	if (ob_universe_get_worker(h->u, d.worker, &info))
+		d.pid = info.pid;
+	ob_death_find_object(&d, h->u);
+	snprintf(d.text, sizeof d.text, "step %llu was not complete after %g s; waiting for %s",
+		 (unsigned long long)step + 1, h->patience, blocking);
+	ob_restart_request(h, &d);
 }
 
 // Not paused yet: detects a stall, and makes the interval end early if somebody waits for a pause. false: interrupted,
@@ -153,6 +160,31 @@ static const char *find_damage(const ob_host *h)
 	return ob_sim_damaged(h->u) ? ob_sim_failure(h->u) : NULL;
 }
 
+static void report_damage(ob_host *h, const char *damage)
+{
+	ob_death d = { .cause = OB_DEATH_DAMAGE, .worker = ob_sim_culprit(h->u), .step = ob_step_count(h->u) + 1 };
+	ob_worker_info info = { 0 };
+	if (ob_universe_get_worker(h->u, d.worker, &info))
+		d.pid = info.pid;
+	ob_death_find_object(&d, h->u);
+	snprintf(d.text, sizeof d.text, "%s", damage);
+	ob_restart_request(h, &d);
+}
+
+// A step that cannot be solved, because of what an object is or does: as if its simulator had died, where that is frozen;
+// else it is the end.
+static void report_failure(ob_host *h, const char *failure)
+{
+	ob_death d = { .cause = OB_DEATH_FAILURE, .worker = OB_NO_WORKER, .step = ob_step_count(h->u) + 1 };
+	if (h->on_death != OB_ON_DEATH_FREEZE || !ob_sim_failed_alone(h->u, &d.object)) {
+		ob_host_set_failure(h, "%s", failure);
+		return;
+	}
+	ob_death_find_object(&d, h->u);
+	snprintf(d.text, sizeof d.text, "%s", failure);
+	ob_restart_request(h, &d);
+}
+
 static bool result_of_run(ob_host *h, ob_error *e)
 {
 	if (h->interrupted)
@@ -178,9 +210,9 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 			if (h->interrupted)
 				break;
 		} else if (turn && find_damage(h)) {
-			ob_restart_request(h, "%s", find_damage(h));
+			report_damage(h, find_damage(h));
 		} else if (failure) {
-			ob_host_set_failure(h, "%s", failure);
+			report_failure(h, failure);
 		} else if (turn && at_interval_end(h)) {
 			end_interval(h);
 			if (!h->interrupted)

@@ -24,17 +24,17 @@ typedef struct ob_spawn {
 	int (*fd)(const ob_worker_group *g);
 	// Fetches the report of one worker that has ended, without waiting; false: none at the moment.
 	bool (*next_end)(ob_worker_group *g, ob_worker_end *end);
-	// Both NULL where a worker cannot die alone. kill: kills all workers. restart: starts all anew, once the ends
-	// of all have been fetched; false: the fork server is gone.
-	void (*kill)(ob_worker_group *g);
-	bool (*restart)(ob_worker_group *g);
+	// end: ends all workers; processes at once, threads when they come to the gate or look up from a long step.
+	// restart: starts all anew, once the ends of all have been fetched. false and e: they do not start.
+	void (*end)(ob_worker_group *g);
+	bool (*restart)(ob_worker_group *g, ob_error *e);
 	// ns of CPU time that the worker has used; 0 when it is gone.
 	uint64_t (*cpu)(const ob_worker_info *w);
 	// After ob_gate_stop: waits until all have left, at most timeout (s), and frees g. false: some have not
 	// left and may still touch the universe.
 	bool (*join)(ob_worker_group *g, double timeout);
 	double leave_timeout; // s to join for: a process that does not leave can be killed, a thread cannot
-	bool own_memory; // a worker has an address space of its own, apart from the host's
+	bool own_memory; // a worker has an address space of its own, apart from the host's, and can die alone
 } ob_spawn;
 
 // What a join may sleep at once (ms) when it has "left" seconds: its hang clock ticks in between (base/clock.h).

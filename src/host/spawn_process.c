@@ -25,15 +25,15 @@ static bool process_next_end(ob_worker_group *g, ob_worker_end *end)
 	return got;
 }
 
-static void process_kill(ob_worker_group *g)
+static void process_end(ob_worker_group *g)
 {
 	ob_fork_server_kill(g->fork_server);
 }
 
-static bool process_restart(ob_worker_group *g)
+static bool process_restart(ob_worker_group *g, ob_error *e)
 {
 	g->ended = 0;
-	return ob_fork_server_fork(g->fork_server, 0, g->workers);
+	return ob_fork_server_fork(g->fork_server, 0, g->workers) || ob_fail(e, "the fork server has ended");
 }
 
 static uint64_t process_cpu(const ob_worker_info *w)
@@ -82,7 +82,7 @@ const ob_spawn ob_spawn_processes = {
 	.start = process_start,
 	.fd = process_fd,
 	.next_end = process_next_end,
-	.kill = process_kill,
+	.end = process_end,
 	.restart = process_restart,
 	.cpu = process_cpu,
 	.join = process_join,

@@ -26,7 +26,7 @@ struct ob_worker_group {
 	ob_universe *u;
 	ob_worker_run run;
 	int ends[2]; // pipe: each thread writes an ob_worker_end as its last act
-	uint32_t started, ended;
+	uint32_t workers, started, ended;
 	worker_thread threads[];
 };
 
@@ -51,13 +51,21 @@ static int thread_fd(const ob_worker_group *g)
 static bool thread_next_end(ob_worker_group *g, ob_worker_end *end)
 {
 	bool got = read(g->ends[0], end, sizeof *end) == sizeof *end;
-	g->ended += got;
+	if (got) // else nothing may be written: a restart may be under way
+		g->ended++;
 	return got;
 }
 
 static uint64_t thread_cpu(const ob_worker_info *w)
 {
 	return ob_clock_cpu_of_thread(w->tid);
+}
+
+static void join_all(ob_worker_group *g)
+{
+	for (uint32_t i = 0; i < g->started; i++)
+		pthread_join(g->threads[i].thread, NULL);
+	g->started = g->ended = 0;
 }
 
 static bool thread_join(ob_worker_group *g, double timeout)
@@ -73,8 +81,7 @@ static bool thread_join(ob_worker_group *g, double timeout)
 		while (thread_next_end(g, &end))
 			;
 	}
-	for (uint32_t i = 0; i < g->started; i++)
-		pthread_join(g->threads[i].thread, NULL);
+	join_all(g);
 	close(g->ends[0]);
 	close(g->ends[1]);
 	free(g);
@@ -100,6 +107,26 @@ static int start_threads(ob_worker_group *g, uint32_t workers)
 	return error;
 }
 
+static bool fail_start(const ob_worker_group *g, int error, ob_error *e)
+{
+	return ob_fail(e,
+		       "thread %u of %u does not start: %s; use fewer workers, or raise the limit on processes "
+		       "(ulimit -u, or pids.max of the container)",
+		       g->started + 1, g->workers, strerror(error));
+}
+
+static void thread_end(ob_worker_group *g)
+{
+	ob_gate_stop(g->u);
+}
+
+static bool thread_restart(ob_worker_group *g, ob_error *e)
+{
+	join_all(g);
+	int error = start_threads(g, g->workers);
+	return !error || fail_start(g, error, e);
+}
+
 static ob_worker_group *thread_start(const ob_worker_group_setup *setup, ob_error *e)
 {
 	uint32_t workers = ob_universe_workers(setup->u);
@@ -112,12 +139,10 @@ static ob_worker_group *thread_start(const ob_worker_group_setup *setup, ob_erro
 	fcntl(g->ends[0], F_SETFL, O_NONBLOCK);
 	g->u = setup->u;
 	g->run = setup->run;
+	g->workers = workers;
 	int error = start_threads(g, workers);
 	if (error) {
-		ob_fail(e,
-			"thread %u of %u does not start: %s; use fewer workers, or raise the limit on processes "
-			"(ulimit -u, or pids.max of the container)",
-			g->started + 1, workers, strerror(error));
+		fail_start(g, error, e);
 		ob_gate_stop(setup->u);
 		thread_join(g, 5);
 		return NULL;
@@ -130,6 +155,8 @@ const ob_spawn ob_spawn_threads = {
 	.start = thread_start,
 	.fd = thread_fd,
 	.next_end = thread_next_end,
+	.end = thread_end,
+	.restart = thread_restart,
 	.cpu = thread_cpu,
 	.join = thread_join,
 	.leave_timeout = 5,

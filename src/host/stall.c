@@ -72,6 +72,12 @@ bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
 
 // ---- who it is
 
+uint32_t ob_stall_first(const ob_host *h)
+{
+	const blockers b = find_blockers(h);
+	return b.shown ? b.worker[0] : UINT32_MAX;
+}
+
 void ob_stall_describe(const ob_host *h, char *text, size_t size)
 {
 	const uint64_t busy_ns = 10000000; // with more CPU time than this within the tenth of a second, it computes

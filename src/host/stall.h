@@ -22,6 +22,9 @@ typedef struct ob_stall_watch {
 ob_stall_watch ob_stall_watch_start(const ob_host *h);
 // To be called some ten times a second. true: patience (s) has ended without a completed step.
 bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h);
+// The first of the workers that block the step, those
+// that the next function names; UINT32_MAX: nobody does.
+uint32_t ob_stall_first(const ob_host *h);
 // Names the workers that block the step, those that the gate still waits for or, where it waits for none, the one that
 // schedules: "simulator 3 (task 4242, stopped by a signal), simulator 5 (task 4244, computing)". Text may be cut to
 // size. Takes a tenth of a second, to see which of them compute.

@@ -38,10 +38,33 @@ static void describe_worker(const ob_host *h, const ob_worker_end *end, char *te
 	snprintf(text + n, size - (size_t)n, "process %d)", end->pid);
 }
 
+// How a process has ended that was not to end.
+static void request_restart(ob_host *h, const ob_worker_end *end, const char *worker)
+{
+	const unsigned long long step = ob_step_count(h->u);
+	ob_death d = { .cause = end->signal ? OB_DEATH_SIGNAL : OB_DEATH_EXIT,
+		       .worker = end->worker,
+		       .pid = end->pid,
+		       .signal = end->signal,
+		       .code = end->code,
+		       .step = step + 1 };
+	ob_death_find_object(&d, h->u);
+	memcpy(d.words, end->words, sizeof d.words);
+	if (end->signal)
+		snprintf(d.text, sizeof d.text, "%s was killed by SIG%s (%s) after step %llu", worker,
+			 sigabbrev_np(end->signal), strsignal(end->signal), step);
+	else
+		snprintf(d.text, sizeof d.text, "%s left with exit code %d after step %llu, before the run was over", worker,
+			 end->code, step);
+	ob_restart_request(h, &d);
+}
+
 static void on_end(ob_host *h, const ob_worker_end *end)
 {
 	char worker[160];
 	unsigned long long step = ob_step_count(h->u);
+	if (h->restart.requested)
+		ob_restart_add_words(h, end);
 	if (h->ending || h->failed || h->restart.requested)
 		return;
 	describe_worker(h, end, worker, sizeof worker);
@@ -62,12 +85,8 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 			"%s ran out of memory after step %llu: take fewer objects or workers, or raise the limits "
 			"(ulimit -v, or memory.max of the container)",
 			worker, step);
-	else if (end->signal)
-		ob_restart_request(h, "%s was killed by SIG%s (%s) after step %llu", worker, sigabbrev_np(end->signal),
-				   strsignal(end->signal), step);
 	else
-		ob_restart_request(h, "%s left with exit code %d after step %llu, before the run was over", worker,
-				   end->code, step);
+		request_restart(h, end, worker);
 }
 
 static void on_fork_server_end(ob_host *h)

@@ -242,7 +242,7 @@ static void finish_file(ob_timeline *t)
 	free(doing);
 }
 
-bool ob_timeline_finish(ob_timeline *t, ob_timeline_sums *sums, ob_error *e)
+bool ob_timeline_finish(ob_timeline *t, const ob_death *deaths, uint32_t n, ob_timeline_sums *sums, ob_error *e)
 {
 	*sums = (ob_timeline_sums){ 0 };
 	if (!t)
@@ -253,6 +253,13 @@ bool ob_timeline_finish(ob_timeline *t, ob_timeline_sums *sums, ob_error *e)
 	pthread_mutex_unlock(&t->lock);
 	pthread_join(t->thread, NULL);
 	finish_file(t);
+	for (uint32_t i = 0; i < n; i++) {
+		ob_error line;
+		ob_death_print(&deaths[i], line.text, sizeof line.text);
+		ob_trace_file_put_death(t->file, deaths[i].worker < ob_universe_workers(t->u) ? deaths[i].worker
+									      : ob_trace_supervisor(t->u),
+					line.text, deaths[i].step, deaths[i].when);
+	}
 	*sums = (ob_timeline_sums){ t->events, t->lost };
 	bool fine = ob_trace_file_close(t->file, t->events, t->lost, e);
 	pthread_cond_destroy(&t->end);

@@ -5,6 +5,7 @@
 #ifndef OB_HOST_TIMELINE_H
 #define OB_HOST_TIMELINE_H
 
+#include "host/death.h"
 #include "table/trace.h"
 
 typedef struct ob_timeline ob_timeline;
@@ -16,8 +17,8 @@ typedef struct ob_timeline_sums {
 
 // On a universe that is traced. NULL and e on failure.
 ob_timeline *ob_timeline_start(ob_universe *u, const char *path, ob_error *e);
-// Writes what is there, ends the file, frees t (NULL is allowed). Workers that have not left should stand still: what
+// Writes what is there, and of these deaths what was learnt of each, ends the file, frees t (NULL is allowed). Workers that have not left should stand still: what
 // they do from now on is not in the file. false and e if it is not whole.
-bool ob_timeline_finish(ob_timeline *t, ob_timeline_sums *sums, ob_error *e);
+bool ob_timeline_finish(ob_timeline *t, const ob_death *deaths, uint32_t n, ob_timeline_sums *sums, ob_error *e);
 
 #endif

@@ -262,6 +262,19 @@ void ob_trace_file_put(ob_trace_file *f, uint32_t ring, const ob_trace_event *e,
 	}
 }
 
+void ob_trace_file_put_death(ob_trace_file *f, uint32_t ring, const char *what, uint64_t step, uint64_t when)
+{
+	char cut[500]; // the longest event: the buffer is empty, and holds it however much of it must be escaped
+	snprintf(cut, sizeof cut, "%s", what);
+	ob_trace_file_flush(f);
+	begin_instant(f, of_ring(f, ring), "why it died", when);
+	add(f, ",\"args\":{\"what\":");
+	add_string(f, cut);
+	add_member(f, ",\"step\":", step);
+	add(f, "}");
+	end(f);
+}
+
 void ob_trace_file_put_lost(ob_trace_file *f, uint32_t ring, uint64_t lost, uint64_t when)
 {
 	begin_instant(f, of_ring(f, ring), "events lost", when);

@@ -22,6 +22,8 @@ ob_trace_file *ob_trace_file_open(const char *path, const ob_universe *u, ob_err
 void ob_trace_file_put(ob_trace_file *f, uint32_t ring, const ob_trace_event *event, bool unfinished);
 // The name of object id's track, as its passport has it now; again when the object is another.
 void ob_trace_file_name_object(ob_trace_file *f, uint32_t id);
+// On the ring's track: what is known of the death of its simulator at this instant (ns), in this step.
+void ob_trace_file_put_death(ob_trace_file *f, uint32_t ring, const char *what, uint64_t step, uint64_t when);
 // On the ring's track: so many events are missing before this instant (ns).
 void ob_trace_file_put_lost(ob_trace_file *f, uint32_t ring, uint64_t lost, uint64_t when);
 // Writes down what has been put so far.

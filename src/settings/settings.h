@@ -46,9 +46,10 @@ typedef enum ob_fault_kind {
 	OB_FAULT_SLOW, // a simulator sleeps
 	OB_FAULT_SCRIBBLE, // .. stores random words anywhere in the universe where it can write
 	OB_FAULT_NOSPACE, // a checkpoint cannot be written, as on a full disk
+	OB_FAULT_ABORT, // a simulator's process says why on standard error, and aborts, as an assertion does
 	OB_FAULT_KINDS
 } ob_fault_kind;
-#define OB_FAULT_NAMES "kill|segv|exit|stop|slow|scribble|nospace"
+#define OB_FAULT_NAMES "kill|segv|exit|stop|slow|scribble|nospace|abort"
 
 // A simulator has a chance to fail after each island that it has solved, at the end of each phase, and when it has
 // scheduled the next. Whether it does is drawn from the seed, its worker's number, how often all were restarted, and how many
@@ -82,6 +83,7 @@ typedef struct ob_run_settings {
 	uint32_t one_per_object; // 1 = worker i runs object i and nothing else; set by the host
 	uint32_t timed;          // 1 = counters tell what each section of the step took
 	uint32_t load;           // > 0: 1 + 2 + .. + load is added up at each test of two axis-aligned boxes
+	uint32_t freezes;        // 1 = what cannot be solved is frozen: budgets are each island's own; set by the host
 	ob_fault_plan fault;
 } ob_run_settings;
 

@@ -16,14 +16,34 @@ void ob_budget_begin_share(ob_sim *s, uint32_t object)
 {
 	s->budget.object = object;
 	s->budget.told = work_so_far(s);
+	s->budget.share = 0;
+	if (s->settings->freezes)
+		s->budget.spent = false;
+	ob_worker_set_object(s->u, s->worker, object);
+}
+
+static uint64_t most_work(const ob_universe *u)
+{
+	return base + per_object * ob_universe_ids(u);
 }
 
 bool ob_budget_add(ob_universe *u, uint64_t work, uint32_t object)
 {
-	if (ob_step_work_add(u, work) <= base + per_object * ob_universe_ids(u))
+	if (ob_step_work_add(u, work) <= most_work(u))
 		return false;
 	ob_step_fail(u, OB_STEP_OVERWORKED, object);
 	return true;
+}
+
+// Each share has a budget of its own, so that whether it exceeds it does not depend on what others do in the meantime,
+// and the same shares fail in every run.
+static bool spends_share(ob_sim *s, uint64_t work)
+{
+	s->budget.share += work;
+	const bool stopped = ob_gate_stopped(s->u);
+	if (stopped || s->budget.share > most_work(s->u))
+		ob_step_fail(s->u, stopped ? OB_STEP_LEFT : OB_STEP_OVERWORKED, s->budget.object);
+	return stopped || s->budget.share > most_work(s->u);
 }
 
 bool ob_budget_spent(ob_sim *s)
@@ -32,6 +52,8 @@ bool ob_budget_spent(ob_sim *s)
 	if (work == 0 || s->budget.spent)
 		return s->budget.spent;
 	s->budget.told += work;
+	if (s->settings->freezes)
+		return s->budget.spent = spends_share(s, work);
 	if (ob_universe_contained(s->u))
 		ob_outbox_end_of(s->u)->worked_on = s->budget.object;
 	if (ob_gate_stopped(s->u))

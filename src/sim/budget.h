@@ -5,12 +5,15 @@
 //
 // A share is what is worked on as a whole, and by one worker: an island, or a batch of pairs. Shares are counted in
 // grains, and what is left over at a share's end is dropped, so that the sum does not depend on who worked on which.
+//
+// Where what fails is frozen (ob_run_settings.freezes), each share has all of the budget for itself, and all shares of
+// the phase are worked on even if one has failed: which objects fail is then the same in every run, too.
 #ifndef OB_SIM_BUDGET_H
 #define OB_SIM_BUDGET_H
 
 #include "sim/state.h"
 
-// object: whom to blame for what this share costs.
+// object: whom to blame for what this share costs, and for the worker's death, should it die of it.
 void ob_budget_begin_share(ob_sim *s, uint32_t object);
 // true: the budget is spent, or the run was stopped; the step has failed, and what is under way may be left as it is.
 bool ob_budget_spent(ob_sim *s);

@@ -106,6 +106,14 @@ static void scribble(const ob_universe *u, uint32_t words, uint64_t random)
 
 // ---- all faults
 
+_Noreturn static void say_and_abort(void)
+{
+	static const char words[] = "an assertion failed, as it was to (--fault abort)\n";
+	ssize_t ignored = write(STDERR_FILENO, words, sizeof words - 1);
+	(void)ignored;
+	abort();
+}
+
 static void fail(const ob_universe *u, ob_fault_kind kind, const ob_fault_plan *plan, uint64_t random)
 {
 	switch (kind) {
@@ -127,6 +135,8 @@ static void fail(const ob_universe *u, ob_fault_kind kind, const ob_fault_plan *
 	case OB_FAULT_SCRIBBLE:
 		scribble(u, plan->words, random);
 		break;
+	case OB_FAULT_ABORT:
+		say_and_abort();
 	case OB_FAULT_NOSPACE: // not a simulator's
 	case OB_FAULT_KINDS:
 		break;

@@ -207,6 +207,7 @@ static uint32_t rest_flag(ob_sim *s)
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &s->data->island[i];
+	ob_worker_set_object(s->u, s->worker, s->data->member[is->first_member]);
 	if (advance_ballistically(s, is))
 		return;
 	const uint64_t before = cost_so_far(s);

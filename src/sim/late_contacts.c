@@ -285,6 +285,11 @@ static void end_change(const pair_check *c, uint32_t i, const ob_pair_key *k)
 		ob_commit_check(c->s->u, i, k);
 }
 
+static bool moves(const pair_check *c, uint32_t id)
+{
+	return c->data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+}
+
 // The motions of a pair are prefetched while those before it are checked.
 static void check_all_by_motions(const pair_check *c, const uint32_t *pairs, uint32_t n, bool *late, double *next)
 {
@@ -297,7 +302,7 @@ static void check_all_by_motions(const pair_check *c, const uint32_t *pairs, uin
 			continue;
 		ob_pair_key copy, *k = begin_change(c, pairs[i - AHEAD], &copy);
 		if (i == AHEAD)
-			ob_budget_begin_share(c->s, k->a);
+			ob_budget_begin_share(c->s, moves(c, k->a) ? k->a : k->b);
 		if (ob_budget_spent(c->s))
 			return;
 		if (c->contained)

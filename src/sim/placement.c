@@ -82,6 +82,38 @@ static void wake_object(ob_universe *u, uint32_t id)
 	*schedule = (ob_schedule){ ob_schedule_path(schedule, steps), (float)reach, OB_SCHEDULE_AWAKE, steps, steps };
 }
 
+bool ob_sim_freeze(ob_universe *u, uint32_t id)
+{
+	ob_passport p = *ob_passport_of(u, id);
+	if (!(p.flags & OB_OBJECT_PRESENT) || p.flags & OB_OBJECT_STATIC)
+		return false;
+	const ob_state now = ob_state_now(u, id, ob_newest_motion(u, id), ob_step_count(u));
+	ob_sim_remove(u, id);
+	p.flags |= OB_OBJECT_STATIC | OB_OBJECT_FROZEN;
+	p.mass = 0;
+	p.inertia = ob_v3(0, 0, 0);
+	ob_write_passport(u, id, &p);
+	ob_sim_place(u, id, &now);
+	return true;
+}
+
+uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *ids, uint32_t most)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (object >= data->objects_max)
+		return 0;
+	const uint32_t place = data->result_island[object];
+	const bool solved = ob_gate_phase(u) == OB_PHASE_ISLANDS || ob_step_failed(u, NULL) == OB_STEP_OVERWORKED;
+	const ob_island *is = solved && place < data->objects_max ? &data->island[place] : NULL;
+	if (!is || is->members > data->objects_max || is->first_member > data->objects_max - is->members) {
+		ids[0] = object;
+		return 1;
+	}
+	for (uint32_t i = 0; i < is->members && i < most; i++)
+		ids[i] = data->member[is->first_member + i];
+	return is->members;
+}
+
 void ob_sim_remove(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);

@@ -31,6 +31,14 @@ void ob_sim_restore(ob_universe *u);
 // Host, paused: takes an object away; its neighbours wake. Clears its passport.
 void ob_sim_remove(ob_universe *u, uint32_t id);
 
+// Host, paused: the object stays where it is from now on, static and without mass, for nobody simulates it any more; its
+// neighbours wake. false: it is not there, or does not move anyway.
+bool ob_sim_freeze(ob_universe *u, uint32_t id);
+// Host, after the workers have left, before anything is put back: the objects in whose name a simulator failed that was
+// busy with "object", or a step that failed because of it: its island's while islands are solved, else itself alone. At
+// most so many ids; returns how many there are.
+uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *ids, uint32_t most);
+
 // Host, at the start and after each pause: opens the first phase. The run then goes on until the next pause step.
 void ob_sim_resume(ob_universe *u);
 
@@ -39,5 +47,9 @@ void ob_sim_resume(ob_universe *u);
 const char *ob_sim_failure(const ob_universe *u);
 // Host, paused: whether that is because a simulator has written where it should not: another attempt may do better.
 bool ob_sim_damaged(const ob_universe *u);
+// Of damage: the worker that has done it; UINT32_MAX: it is not known.
+uint32_t ob_sim_culprit(const ob_universe *u);
+// Of a failure that is no damage: whether it is this object's, or its island's, so that the run could go on without.
+bool ob_sim_failed_alone(const ob_universe *u, uint32_t *object);
 
 #endif

@@ -19,7 +19,8 @@ struct ob_sim {
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects
 	struct { // sim/budget.h
-		uint64_t noted, told; // work; of which the step's sum knows
+		uint64_t noted, told; // work; of which the step's sum, or the share's, knows
+		uint64_t share; // of the running share, if it has a budget of its own
 		uint32_t object;
 		bool spent;
 	} budget;

@@ -131,6 +131,7 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	ob_late_contacts_begin(c->u, solved);
 	if (serial && c->sim) {
 		ob_late_contacts_check(c->sim, 0, pairs, solved);
+		ob_worker_set_object(c->u, c->sim->worker, OB_NO_OBJECT);
 		return false;
 	}
 	ob_task_reset(c->u, (pairs + OB_LATE_CONTACTS_BATCH - 1) / OB_LATE_CONTACTS_BATCH, all);
@@ -198,7 +199,7 @@ static void query_neighbours(ob_sim *s)
 	if (s->settings->one_per_object)
 		query(s, s->worker);
 	else
-		while (ob_task_claim(s->u, &i) && ob_step_failed(s->u, NULL) == OB_STEP_OK)
+		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK))
 			query(s, list[i]);
 }
 
@@ -446,6 +447,7 @@ bool ob_step(ob_sim *s)
 	ob_span_turn(s, phases[phase].span);
 	ob_profile_begin(s, phases[phase].section);
 	phases[phase].work(s);
+	ob_worker_set_object(s->u, s->worker, OB_NO_OBJECT);
 	ob_fault_chance(s);
 	ob_phase_worked(s->u, ob_profile_end(s));
 	if (ob_universe_contained(s->u))
@@ -579,6 +581,17 @@ const char *ob_sim_failure(const ob_universe *u)
 	default:
 		return damage(u);
 	}
+}
+
+uint32_t ob_sim_culprit(const ob_universe *u)
+{
+	return ob_universe_contains(u) ? ob_universe_step_data(u)->count->culprit - 1 : UINT32_MAX;
+}
+
+bool ob_sim_failed_alone(const ob_universe *u, uint32_t *object)
+{
+	const ob_step_failure why = ob_step_failed(u, object);
+	return why == OB_STEP_OVERWORKED || why == OB_STEP_DIVERGED || why == OB_STEP_ENGINE;
 }
 
 bool ob_sim_damaged(const ob_universe *u)

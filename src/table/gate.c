@@ -214,6 +214,11 @@ bool ob_gate_waits_for(const ob_universe *u, uint32_t worker)
 	return (__atomic_load_n(&group->expected, __ATOMIC_RELAXED) & ~arrived) >> worker % 64 & 1;
 }
 
+ob_phase ob_gate_phase(const ob_universe *u)
+{
+	return (ob_phase)__atomic_load_n(&u->gate->phase, __ATOMIC_RELAXED);
+}
+
 bool ob_gate_stopped(const ob_universe *u)
 {
 	return load_acquire(&u->gate->stop);

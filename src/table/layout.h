@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 16, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 17, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -87,6 +87,9 @@ typedef struct ob_control {
 	uint32_t claim_total, claim_workers;
 	_Alignas(64) uint64_t requery_count;
 	_Alignas(64) uint64_t neighbours_used;
+	_Alignas(64) uint32_t deaths; // so far: times that simulators died
+	uint32_t frozen; // objects that were frozen for it
+	char last_death[OB_DEATH_MAX]; // as ob_universe_info
 } ob_control;
 
 // How long steps take. The gate orders its writers, but any worker may raise longest_ns, and critical_ns grows after the
@@ -102,6 +105,7 @@ typedef struct ob_worker_cell {
 	_Alignas(64) uint64_t cpu_ns;
 	int32_t pid, tid, cpu;
 	uint32_t objects;
+	uint32_t working_on; // 1 + the object that the worker is busy with; 0 = none, or it is contained (outbox.c)
 	_Alignas(64) ob_counters counters;
 	uint64_t faults[OB_FAULT_KINDS]; // injected
 } ob_worker_cell;
@@ -120,7 +124,7 @@ static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT
 static_assert(sizeof(ob_run_settings) == 120, "run settings");
 static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 120, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
-static_assert(sizeof(ob_control) == 256, "control");
+static_assert(sizeof(ob_control) == 512, "control");
 static_assert(sizeof(ob_worker_cell) == 512, "worker cell");
 static_assert(sizeof(ob_pair_state) == 256, "pair state");
 static_assert(sizeof(ob_pair_record) == 520, "pair record");

@@ -25,6 +25,7 @@ typedef struct outbox_page {
 	uint32_t bytes; // of records
 	uint64_t sum;
 	uint64_t faults[OB_FAULT_KINDS]; // injected into its simulator
+	uint32_t working_on; // as ob_worker_cell
 	_Alignas(64) char record[];
 } outbox_page;
 
@@ -111,6 +112,22 @@ void ob_universe_faults(const ob_universe *u, uint64_t sum[OB_FAULT_KINDS])
 		for (int kind = 0; kind < OB_FAULT_KINDS; kind++)
 			sum[kind] += u->worker[w].faults[kind] +
 				     (u->header.sizes.outbox_bytes ? page_of(u, w)->faults[kind] : 0);
+}
+
+void ob_worker_set_object(ob_universe *u, uint32_t worker, uint32_t object)
+{
+	uint32_t *to = u->outbox ? &u->outbox->page->working_on : &u->worker[worker].working_on;
+	__atomic_store_n(to, object + 1, __ATOMIC_RELAXED);
+}
+
+uint32_t ob_worker_object(const ob_universe *u, uint32_t worker)
+{
+	if (worker >= u->header.sizes.workers)
+		return OB_NO_OBJECT;
+	const uint32_t *from = u->header.sizes.outbox_bytes ? &page_of(u, worker)->working_on
+							    : &u->worker[worker].working_on;
+	const uint32_t object = __atomic_load_n(from, __ATOMIC_RELAXED) - 1;
+	return object < u->header.sizes.capacity ? object : OB_NO_OBJECT;
 }
 
 uint32_t ob_universe_lives(const ob_universe *u)

@@ -87,7 +87,12 @@ void ob_universe_get_info(const ob_universe *u, ob_universe_info *out)
 		.awake = least(read32(&c->awake), h->sizes.capacity),
 		.pairs = least(read32(&c->pairs), h->sizes.pairs_max),
 		.islands = least(read32(&c->islands), h->sizes.capacity),
+		.deaths = read32(&c->deaths),
+		.frozen = read32(&c->frozen),
 	};
+	for (size_t i = 0; i + 1 < sizeof out->last_death; i++)
+		out->last_death[i] = __atomic_load_n(&c->last_death[i], __ATOMIC_RELAXED);
+	ob_utf8_make_plain(out->last_death);
 	out->time = (double)out->step * out->step_length;
 	memcpy(out->name, h->name, sizeof out->name);
 	memcpy(out->isolation, h->isolation, sizeof out->isolation);

@@ -77,6 +77,9 @@ uint32_t ob_universe_simulators(const ob_universe *u);
 bool ob_universe_contains(const ob_universe *u);
 const char *ob_universe_name(const ob_universe *u);
 void ob_universe_set_state(ob_universe *u, ob_universe_state s);
+// For readers: another simulator has died, in these words, and so many objects were frozen for it. The host's.
+void ob_universe_note_death(ob_universe *u, const char *what);
+void ob_universe_note_frozen(ob_universe *u, uint32_t objects);
 // One past the highest id ever used: loops over objects end here.
 uint32_t ob_universe_ids(const ob_universe *u);
 
@@ -116,6 +119,11 @@ uint64_t ob_critical_path(const ob_universe *u);
 // Worker cells. The worker itself calls announce once; the host refreshes the CPU time.
 void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu);
 void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects);
+// The object that the worker is busy with, in whose name it fails if it does; OB_NO_OBJECT: none. By the worker; read by
+// the host, whoever has written it.
+#define OB_NO_OBJECT UINT32_MAX
+void ob_worker_set_object(ob_universe *u, uint32_t worker, uint32_t object);
+uint32_t ob_worker_object(const ob_universe *u, uint32_t worker);
 void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns);
 // The worker's own counters; the host's to read while the universe stands still.
 ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker);
@@ -178,6 +186,8 @@ void ob_gate_set_pause_step(ob_universe *u, uint64_t step);
 uint64_t ob_gate_pause_step(const ob_universe *u);
 // Host: waits until paused; false on timeout (s)
 bool ob_gate_host_wait(ob_universe *u, double timeout);
+// The phase that was opened last; any thread.
+ob_phase ob_gate_phase(const ob_universe *u);
 // Whether ob_gate_stop was called: a worker may leave its phase, and fails the step with OB_STEP_LEFT.
 bool ob_gate_stopped(const ob_universe *u);
 // Host, any time: opens the gate with STOP for all, for good; also wakes ob_gate_host_wait.

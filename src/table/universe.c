@@ -161,6 +161,23 @@ void ob_universe_set_state(ob_universe *u, ob_universe_state s)
 	__atomic_store_n(&u->control->state, s, __ATOMIC_RELEASE);
 }
 
+// Byte by byte, for a reader may read at the same time: it may get some of each text, and no more than that.
+void ob_universe_note_death(ob_universe *u, const char *what)
+{
+	ob_control *c = u->control;
+	for (size_t i = 0; i < sizeof c->last_death; i++) {
+		const char letter = i + 1 < sizeof c->last_death ? *what : 0;
+		__atomic_store_n(&c->last_death[i], letter, __ATOMIC_RELAXED);
+		what += *what != 0;
+	}
+	__atomic_fetch_add(&c->deaths, 1, __ATOMIC_RELEASE);
+}
+
+void ob_universe_note_frozen(ob_universe *u, uint32_t objects)
+{
+	__atomic_fetch_add(&u->control->frozen, objects, __ATOMIC_RELEASE);
+}
+
 uint32_t ob_universe_ids(const ob_universe *u)
 {
 	const uint32_t ids = __atomic_load_n(&u->control->ids, __ATOMIC_ACQUIRE), most = u->header.sizes.capacity;

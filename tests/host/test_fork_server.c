@@ -83,6 +83,58 @@ static void test_deaths(void)
 	ob_universe_destroy(u, true);
 }
 
+// Writes so many lines on standard error, and dies in the middle of what it does.
+static int talk(ob_universe *u, uint32_t worker)
+{
+	static const int lines[] = { 0, 1, 3, 5000 };
+	ob_worker_announce(u, worker, getpid(), gettid(), -1);
+	for (int i = 0; i < lines[worker]; i++)
+		dprintf(STDERR_FILENO, "word %d of %u\n", i, worker);
+	if (worker == 1)
+		dprintf(STDERR_FILENO, "\033[2J without an end");
+	abort();
+}
+
+// What each has said comes with its end, the last lines whole; and on standard error, where nobody else may stop it.
+static void test_last_words(void)
+{
+	ob_error e = { "" };
+	char name[OB_NAME_MAX];
+	snprintf(name, sizeof name, "test-words-%d", (int)getpid());
+	int before = dup(STDERR_FILENO), said[2];
+	if (pipe(said) != 0)
+		abort();
+	dup2(said[1], STDERR_FILENO); // a pipe that nobody reads yet
+	ob_universe *u = make_universe(name, 4);
+	ob_fork_server *k = ob_fork_server_start(u, talk, &e);
+	dup2(before, STDERR_FILENO);
+	const ob_spawn *s = &ob_spawn_processes;
+	ob_worker_group *g = s->start(&(ob_worker_group_setup){ .u = u, .fork_server = k, .run = talk }, &e);
+	ob_worker_end end;
+	for (int i = 0; i < 4; i++) {
+		CHECK(next_end(s, g, WAIT_MS, &end) && end.signal == SIGABRT);
+		size_t n = strlen(end.words);
+		if (end.worker == 0)
+			CHECK(n == 0);
+		else if (end.worker == 1)
+			CHECK(strcmp(end.words, "word 0 of 1| [2J without an end") == 0);
+		else if (end.worker == 2)
+			CHECK(strcmp(end.words, "word 0 of 2|word 1 of 2|word 2 of 2") == 0);
+		else
+			CHECK(n > OB_LAST_WORDS / 2 && strncmp(end.words, "word 49", 7) == 0 &&
+			      strcmp(end.words + n - 14, "word 4999 of 3") == 0);
+	}
+	char text[4096];
+	CHECK(read(said[0], text, sizeof text) > 0);
+	ob_gate_stop(u);
+	CHECK(s->join(g, WAIT_S));
+	ob_fork_server_stop(k);
+	ob_universe_destroy(u, true);
+	close(before);
+	close(said[0]);
+	close(said[1]);
+}
+
 _Noreturn static void run_host(const ob_spawn *s, const char *name, uint32_t workers, int ready)
 {
 	prctl(PR_SET_PDEATHSIG, SIGKILL); // should the test be ended
@@ -122,6 +174,7 @@ int main(void)
 	test_start_and_leave(&ob_spawn_processes, WORKERS);
 	test_start_and_leave(&ob_spawn_threads, WORKERS);
 	test_deaths();
+	test_last_words();
 	test_killed_host(&ob_spawn_processes, WORKERS / 2);
 	test_killed_host(&ob_spawn_threads, 8);
 	return check_end();

@@ -54,7 +54,7 @@ static void test_lost(void)
 	for (uint32_t i = 0; i < size + 70; i++)
 		ob_trace_span(u, 1, OB_TRACE_SCHEDULE, ob_clock_ns(), 0, 0);
 	ob_timeline *t = ob_timeline_start(u, path, &e);
-	CHECK(t && ob_timeline_finish(t, &sums, &e));
+	CHECK(t && ob_timeline_finish(t, NULL, 0, &sums, &e));
 	CHECK(sums.events == size + 70 && sums.lost == 70);
 	CHECK(count("\"name\":\"schedule\"") == size);
 	CHECK(count("\"name\":\"events lost\",\"args\":{\"events\":70}") == 1);
@@ -77,7 +77,7 @@ static void test_order(void)
 	ob_trace_span(u, 0, OB_TRACE_CHUNK, now, 1, 9);
 	ob_trace_span(u, 0, OB_TRACE_SOLVE, now, 1, 9);
 	ob_trace_doing(u, 1, OB_TRACE_OBJECTS, now);
-	CHECK(t && ob_timeline_finish(t, &sums, &e) && sums.events == 4 && sums.lost == 0);
+	CHECK(t && ob_timeline_finish(t, NULL, 0, &sums, &e) && sums.events == 4 && sums.lost == 0);
 	const char *text = file_text();
 	const char *solve = strstr(text, "\"solve\""), *chunk = strstr(text, "\"chunk\"");
 	const char *island = strstr(text, "\"island\""), *load = strstr(text, "\"load\"");
@@ -102,7 +102,7 @@ static void test_names(void)
 	ob_write_passport(u, 2, &p);
 	ob_trace_birth(u, 2);
 	ob_timeline *t = ob_timeline_start(u, path, &e);
-	CHECK(t && ob_timeline_finish(t, &sums, &e));
+	CHECK(t && ob_timeline_finish(t, NULL, 0, &sums, &e));
 	CHECK(strstr(file_text(), "\"2 a\\u0022b\\u005cc\\u000a\xc3\xa4 \\u00ff\""));
 	ob_universe_destroy(u, true);
 }
@@ -116,7 +116,7 @@ static void test_no_room(void)
 		return;
 	CHECK(!ob_timeline_start(u, "/nowhere/at/all", &e) && strstr(e.text, "/nowhere/at/all"));
 	ob_timeline *t = ob_timeline_start(u, "/dev/full", &e);
-	CHECK(t && !ob_timeline_finish(t, &sums, &e) && strstr(e.text, "/dev/full"));
+	CHECK(t && !ob_timeline_finish(t, NULL, 0, &sums, &e) && strstr(e.text, "/dev/full"));
 	ob_universe_destroy(u, true);
 }
 

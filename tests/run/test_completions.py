@@ -14,7 +14,7 @@ COMMANDS = ["run", "serve", "compare", "top", "lab", "paper", "inspect"]
 
 
 def options(command):
-	return re.findall(r"^  .{4}(--[a-z]+)", program.call(command, "--help").stdout, re.M)
+	return re.findall(r"^  .{4}(--[a-z-]+)", program.call(command, "--help").stdout, re.M)
 
 
 class Completions(program.Case):
@@ -30,9 +30,9 @@ class Completions(program.Case):
 	def test_no_other_option(self):
 		known = {o for c in COMMANDS for o in options(c)} | {"--version"}
 		with open(os.path.join(FILES, "obsim.fish")) as f:
-			self.assertLessEqual({"--" + o for o in re.findall(r"^complete .* -l ([a-z]+)", f.read(), re.M)}, known)
+			self.assertLessEqual({"--" + o for o in re.findall(r"^complete .* -l ([a-z-]+)", f.read(), re.M)}, known)
 		with open(os.path.join(FILES, "_obsim")) as f:
-			self.assertLessEqual(set(re.findall(r"--[a-z]+", f.read())), known)
+			self.assertLessEqual(set(re.findall(r"--[a-z][a-z-]*", f.read())), known)
 
 	def bash(self, *words):
 		script = 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _obsim; printf "%s\\n" "${COMPREPLY[@]}"'

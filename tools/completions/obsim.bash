@@ -26,6 +26,8 @@ _obsim()
 	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
 	--narrow) mapfile -t COMPREPLY < <(compgen -W 'obb aabb' -- "$word") ;;
 	--measure) mapfile -t COMPREPLY < <(compgen -W 'step profile end' -- "$word") ;;
+	--on-death) mapfile -t COMPREPLY < <(compgen -W 'restart freeze abort' -- "$word") ;;
+	--restarts) mapfile -t COMPREPLY < <(compgen -W '5/10' -- "$word") ;;
 	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
@@ -33,7 +35,7 @@ _obsim()
 	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick
 		ode-advised ode-world bullet mujoco' -- "$word") ;;
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
-	--fault) mapfile -t COMPREPLY < <(compgen -W 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p=' -- "$word") ;;
+	--fault) mapfile -t COMPREPLY < <(compgen -W 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= abort:p=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --json | --trace | --checkpoint | --resume | --replay) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--define | -D | --vary | --duration | --every | --step | --seed | --substeps | --iterations | --lag | --load | --patience | --name | --fps | --samples | \

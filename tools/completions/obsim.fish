@@ -46,6 +46,8 @@ complete -c obsim -n $lives -l arch -x -a 'obs monolith' -d 'one simulator per o
 complete -c obsim -n $lives -l isolation -x -a 'thread process' -d 'what a worker is'
 complete -c obsim -n $lives -l name -x -d 'name of the universe'
 complete -c obsim -n $lives -l patience -x -d 'seconds that a step may take'
+complete -c obsim -n $lives -l on-death -x -a 'restart freeze abort' -d 'what comes of a death'
+complete -c obsim -n $lives -l restarts -x -a '5/10' -d 'deaths within seconds'
 complete -c obsim -n $lives -l pace -x -a 'realtime max .1 10' -d 'simulated seconds a second of the clock'
 
 set -l serve '__fish_seen_subcommand_from serve'
@@ -62,7 +64,7 @@ complete -c obsim -n $run -l trace -r -F -d 'what each worker did when, for ui.p
 complete -c obsim -n $run -l checkpoint -r -F -d 'what the run needs to go on'
 complete -c obsim -n $run -l every -x -d 'simulated seconds between checkpoints'
 complete -c obsim -n $run -l resume -r -F -d 'go on from a checkpoint'
-complete -c obsim -n $run -l fault -x -a 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p=' -d 'simulators that fail'
+complete -c obsim -n $run -l fault -x -a 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= abort:p=' -d 'simulators that fail'
 complete -c obsim -n $run -l frames -x -a '(__fish_complete_directories)' -d 'write PNG files'
 complete -c obsim -n $run -l video -r -F -d 'write a video'
 complete -c obsim -n $run -l raw -r -F -d 'write raw rgb24 frames'

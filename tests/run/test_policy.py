@@ -1,0 +1,104 @@
+"""What becomes of a run whose simulators die: all restart, their objects freeze, or it ends; and what is said of each death."""
+
+import json
+import os
+import re
+import unittest
+
+import program
+
+BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
+PROCESS = ["--isolation", "process"]
+NEEDLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "ode_gives_up.lua")
+ABORTS = "an assertion failed, as it was to (--fault abort)"
+
+
+class Policy(program.Case):
+	def test_last_words(self):
+		"""The culprit, its step and what it said: on standard error, in the report, in the trace."""
+		trace, whole = self.path("trace.json"), program.report(*BOXES)
+		for more in [], ["--harden"]:
+			done = program.call("run", *BOXES, *PROCESS, "--workers", "2", "--fault", "abort:p=.004,seed=3", *more, "--json", "-",
+				"--trace", trace)
+			self.assertEqual(done.returncode, 0, done.stderr)
+			report = json.loads(done.stdout)
+			self.assertEqual(report["state_hash"], whole["state_hash"])
+			self.assertGreater(report["deaths"], 0)
+			self.assertEqual(report["frozen"], 0)
+			self.assertEqual(len(report["death_list"]), min(16, report["deaths"]))
+			self.assertEqual(len(re.findall(f"(?m)^{re.escape(ABORTS)}$", done.stderr)), report["faults"]) # as it was written, too
+			for d in report["death_list"]:
+				self.assertEqual((d["cause"], d["signal"], d["last_words"], d["frozen"]), ("signal", 6, ABORTS, 0))
+				self.assertIn(f"simulator {d['simulator']} (process {d['process']}) was killed by SIGABRT", d["what"])
+				self.assertIn(f"after step {d['step'] - 1}", d["what"])
+				self.assertIn(d["what"], done.stderr)
+			with open(trace) as f:
+				events = [e for e in json.load(f)["traceEvents"] if e.get("name") == "why it died"]
+			self.assertEqual([e["args"]["step"] for e in events], [d["step"] for d in report["death_list"]])
+			self.assertTrue(all(e["args"]["what"].endswith("its last words: " + ABORTS) for e in events))
+
+	def test_abort(self):
+		done = program.call("run", *BOXES, *PROCESS, "--on-death", "abort", "--fault", "kill:p=.01,seed=2", "--json", self.path("r"))
+		self.assertRegex(done.stderr, r"^obsim: simulator \d \(process \d+\) was killed by SIGKILL")
+		self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1))
+		with open(self.path("r")) as f:
+			report = json.load(f)
+		self.assertEqual((report["outcome"], report["deaths"], len(report["death_list"])), ("failed", 1, 1))
+
+	def test_restarts(self):
+		"""More deaths than allowed: it gives up, and says who died, how often."""
+		words = [*BOXES, *PROCESS, "--workers", "1", "--fault", "exit:p=.005,seed=5", "--restarts"]
+		done = program.call("run", *words, "2/1e6", "--name", self.name)
+		self.assertEqual(done.returncode, 1)
+		self.assertEqual(done.stderr.count("restarting all"), 2)
+		self.assertRegex(done.stderr, r"(?m)^obsim: simulator 0 .* left with exit code 99 .*giving up: simulators died more than 2 "
+			r"times within 1e\+06 s \(--restarts\), 3 of the last 3 times this one$")
+		self.assertEqual(program.call("run", *words, "9999/1e6").returncode, 0)
+
+	def test_freeze(self):
+		"""Deaths in the same step of each run freeze the same objects, wherever the checkpoints were."""
+		words = [*BOXES, *PROCESS, "--on-death", "freeze"]
+		whole = program.report(*BOXES)
+		for workers, fault in ("1", "segv:p=.001,seed=4"), ("objects", "exit:p=.0001,seed=1"):
+			done = [program.report(*words, "--workers", workers, "--fault", fault) for _ in range(3)]
+			self.assertGreater(done[0]["frozen"], 0, workers)
+			self.assertEqual(done[0]["bodies"], whole["bodies"] - done[0]["frozen"])
+			self.assertEqual(done[0]["objects"], whole["objects"])
+			if workers == "1":
+				self.assertEqual(len({(r["state_hash"], r["frozen"], r["deaths"]) for r in done}), 1)
+
+	def test_freeze_what_fails(self):
+		"""An object at which ODE gives up: the same in threads and processes, with any number of workers."""
+		seen = set()
+		for isolation, workers in ("thread", "1"), ("thread", "2"), ("thread", "objects"), ("process", "2"), ("process", "objects"):
+			r = program.report(NEEDLE, "--duration", "3", "--isolation", isolation, "--workers", workers, "--on-death", "freeze")
+			self.assertEqual([d["cause"] for d in r["death_list"]], ["failure"] * r["deaths"])
+			self.assertEqual((r["steps"], r["death_list"][0]["name"]), (3, "needle"))
+			seen.add((r["state_hash"], r["frozen"]))
+		self.assertEqual(len(seen), 1)
+		r = program.report(NEEDLE, "--duration", "3", *PROCESS, "--harden", "--workers", "2", "--on-death", "freeze")
+		self.assertEqual(seen, {(r["state_hash"], r["frozen"])})
+
+	def test_frozen_goes_on(self):
+		"""What is frozen stays so in a checkpoint, and obsim top shows it."""
+		file = self.path("run.ck")
+		words = [*BOXES, *PROCESS, "--workers", "1", "--on-death", "freeze", "--fault", "segv:p=.001,seed=4"]
+		r = program.report(*words, "--checkpoint", file)
+		self.assertEqual(program.report("--resume", file, "--duration", "2")["bodies"], r["bodies"])
+		words[words.index("--duration") + 1] = program.FOR_EVER
+		run = self.start_universe(*words, "--sleeping", "off")
+		look = lambda: program.call("top", self.name, "--once").stdout
+		self.assertTrue(program.wait_until(lambda: "objects frozen" in look()))
+		self.assertRegex(look(), r"deaths \d+, objects frozen \d+; the last: simulator 0 \(process \d+\) was killed by SIGSEGV")
+		run.terminate()
+		run.wait(program.PATIENCE)
+
+	def test_what_is_refused(self):
+		for words, saying in (["--on-death", "retire"], "restart|freeze|abort"), (["--restarts", "5"], "as in 5/10"), \
+				(["--restarts", "0/5"], "restarts"), (["--restarts", "5/-1"], "restarts"), \
+				(["--restarts", "5/10", "--on-death", "abort"], "nothing is restarted"), \
+				(["--arch", "monolith", "--on-death", "freeze"], "monolith"):
+			self.refuse("run", *BOXES, *words, saying=saying)
+
+
+unittest.main()
