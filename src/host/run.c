@@ -110,7 +110,7 @@ static void restart_interval(ob_host *h)
 
 static void report_stall(ob_host *h, uint64_t step)
 {
-	char blocking[400];
+	char blocking[300];
 	ob_stall_describe(h, blocking, sizeof blocking);
 	ob_death d = { .cause = OB_DEATH_STALL, .worker = ob_stall_first(h), .step = step + 1 };
 	ob_worker_info info = { 0 };
