@@ -11,6 +11,7 @@ enum {
 	CYCLE_ITERATIONS = 60, // .. so many iterations before the second, and three times as many before the third
 	MAX_NEWTON_STEPS = 10,
 	MAX_ITERATIONS = 4000, // of a set that is too large for Newton's method
+	ELIMINATED_PER_WORK = 128, // of n^3, where n rows are eliminated
 };
 
 static const double exact = 2e-15; // of the largest velocity: what rounding leaves
@@ -42,6 +43,7 @@ typedef struct impact_set {
 	change_of_velocity *change; // [bodies]
 	double largest; // m/s, of the points
 	double share; // of e: 1, or 0 for the plastic impact
+	uint64_t *work; // so far, of one point in one iteration each
 } impact_set;
 
 static ob_vec3 times(const double *s, ob_vec3 x)
@@ -177,6 +179,7 @@ static void iterate(const impact_set *s, int iterations, double *x, double *u)
 {
 	double most = INFINITY;
 	for (int n = 0; n < iterations && most > exact * s->largest; n++) {
+		*s->work += s->points;
 		find_velocities(s, x, u);
 		most = 0;
 		for (uint32_t k = 0; k < s->points; k++) {
@@ -339,9 +342,11 @@ static bool newton(const impact_set *s, newton_system *y, bool downhill, double 
 	double now = residual(s, x, u);
 	for (int n = 0; n < MAX_NEWTON_STEPS && now > exact * s->largest; n++) {
 		double share = 1;
+		*s->work += s->points + (uint64_t)y->n * (uint64_t)y->n * (uint64_t)y->n / ELIMINATED_PER_WORK;
 		if (!newton_step(s, y, x, u))
 			return false;
 		for (int tries = 0; tries < 4; tries++, share *= .5) {
+			*s->work += s->points;
 			for (int i = 0; i < y->n; i++)
 				next[i] = x[i] + share * y->step[i];
 			find_velocities(s, next, u);
@@ -465,7 +470,7 @@ static void gather_points(impact_set *s, const ob_impact_body *body, const ob_im
 	}
 }
 
-void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points)
+uint64_t ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points)
 {
 	enum { FEW = 8 };
 	struct {
@@ -475,7 +480,8 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 		uint32_t count[2 * FEW];
 	} few;
 	const bool many = points > FEW || bodies > 2 * FEW;
-	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change };
+	uint64_t work = points;
+	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change, .work = &work };
 	double *row = few.row;
 	uint32_t *count = few.count;
 	if (many) {
@@ -502,6 +508,7 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 		free(row);
 		free(count);
 	}
+	return work;
 }
 
 // ---- a lane of a batch

@@ -44,7 +44,8 @@ enum { OB_IMPACT_MOST_POINTS = 36 };
 
 // Changes the velocities of the bodies by one impact at all those of the points that approach. Others may approach
 // afterwards. Momentum and angular momentum are kept to rounding, energy does not grow.
-void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points);
+// Gives the work that it took, counted in iterations of a point, some 30 ns each.
+uint64_t ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points);
 
 // m: points that come within this when the first one hits, hit with it
 #define OB_IMPACT_SIMULTANEOUS 1e-7

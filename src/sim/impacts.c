@@ -7,6 +7,7 @@
 #include "base/allocate.h"
 #include "motion/drift.h"
 #include "sim/bodies.h"
+#include "sim/budget.h"
 #include "sim/contacts.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
@@ -727,7 +728,7 @@ static bool solve_joined(ob_sim *s, uint32_t chain, double t)
 	if (x->points > OB_IMPACT_MOST_POINTS && leave_plastic(s, chain))
 		return false;
 	memcpy(x->before, x->body, x->bodies * sizeof *x->body);
-	ob_impact_solve(x->body, x->bodies, x->point, x->points);
+	ob_budget_note(s, ob_impact_solve(x->body, x->bodies, x->point, x->points));
 	return true;
 }
 
@@ -765,7 +766,7 @@ static void solve_set(ob_sim *s, uint32_t chain)
 	} while (join_violated(s, chain, t));
 	if (w->max_acceleration == 0 && set_hops(s, chain, t, x->before)) {
 		memcpy(x->body, x->before, x->bodies * sizeof *x->body);
-		ob_impact_solve(x->body, x->bodies, x->point, x->points);
+		ob_budget_note(s, ob_impact_solve(x->body, x->bodies, x->point, x->points));
 	}
 	for (uint32_t i = 0; i < x->bodies; i++)
 		end_loads(w, x->row[i], t);
@@ -908,7 +909,7 @@ bool ob_impacts_resolve(ob_sim *s, bool first)
 		w->impacts.root[row] = row;
 	ob_ghosts_read(s, w->v, 0);
 	look_at_all(s, first);
-	while (w->impacts.count && round < max_rounds) {
+	while (w->impacts.count && round < max_rounds && !ob_budget_spent(s)) {
 		const uint32_t selected = join_touching(s, select_earliest(w));
 		solve_selected(s, selected);
 		round++;

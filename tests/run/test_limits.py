@@ -26,6 +26,8 @@ class Limits(program.Case):
 	def test_work(self):
 		self.fail(hostile("overworked"), "--duration", ".1", "--isolation", "process",
 			saying=r"^obsim: step 1 takes more work .* object 1 \(brick 1\)")
+		self.fail(hostile("impacts"), "--duration", ".02", "--narrow", "aabb",
+			saying=r"^obsim: step 1 takes more work .* object 1 \(box#1\)")
 
 	def test_crowd(self):
 		"""Two hundred thousand spheres in one heap: too many pairs for a step and for a measure, which both hear SIGTERM."""
