@@ -73,12 +73,16 @@ class Scenes:
 	def place(self):
 		return self.vector(-1e7, 1e7) if self.r.random() < .1 else self.vector(-3, 3)
 
+	def one_of(self, right, wrong):
+		"""A scene with one fault is refused and computes nothing, so faults are rare."""
+		return self.r.choice(wrong if self.r.random() < .02 else right)
+
 	def maybe(self, chance, name, value):
 		return [f"{name} = {value()}"] if self.r.random() < chance else []
 
 	def body(self):
 		r = self.r
-		kind = r.choice(["box", "sphere", "capsule", "cylinder", "plane", "ground"])
+		kind = self.one_of(["box", "sphere", "capsule", "cylinder", "plane"], ["ground"])
 		fields = []
 		if kind == "box":
 			fields.append("size = {" + ", ".join(self.size() for _ in range(3)) + "}")
@@ -105,37 +109,83 @@ class Scenes:
 				weight = r.random()
 				fields += [f"mass = {self.number(1e-12, 1e15)}"] if weight < .3 else []
 				fields += [f"density = {self.number(1e-3, 1e9)}"] if .3 < weight < .4 else []
-			fields += self.maybe(.3, "q", lambda: "{" + ", ".join(self.number(-2, 2) for _ in range(4)) + "}")
-			fields += self.maybe(.1, "rotation", lambda: f"{{ axis = {self.vector(-1, 1)}, degrees = {self.number(-36000, 36000)} }}")
+			turned = r.random()
+			if turned < .3:
+				fields.append("q = {" + ", ".join(self.number(-2, 2) for _ in range(4)) + "}")
+			if .29 < turned < .5:
+				fields.append(f"rotation = {{ axis = {self.vector(-1, 1)}, degrees = {self.number(-36000, 36000)} }}")
 		fields += self.maybe(.2, "friction", lambda: self.number(0, 1000))
 		fields += self.maybe(.4, "restitution", lambda: self.number(0, 1))
-		fields += self.maybe(.05, "colour", lambda: r.choice(["'#ff0000'", "{1, 0, 0}", "'red'", "{2, 0, 0}"]))
+		fields += self.maybe(.05, "colour", self.colour)
+		fields += self.maybe(.1, "material", lambda: self.one_of(["'a'", "'b'"], ["'c'"]))
+		fields += self.maybe(.1, "grid", lambda: r.choice(["true", "false"])) if kind == "ground" else []
 		fields += self.maybe(.01, r.choice(["sise", "material", "[1]", "camera"]), lambda: self.number(-1, 1))
 		r.shuffle(fields)
 		return f"{kind} {{ {', '.join(fields)} }}"
 
 	def text(self):
-		return self.r.choice(["'a'", "'köln'", "''", "'a#1'", "('n'):rep(47)", "('n'):rep(48)", "'\\27[2J'", "'\\xff'",
-			"'\\u{202e}'", "5"])
+		return "(" + self.one_of(["'a'", "'köln'", "'two words'", "('n'):rep(47)"], ["''", "'a#1'", "('n'):rep(48)", "'\\27[2J'", "'\\xff'", "'\\u{202e}'", "5"]) + ")"
 
 	def head(self):
 		r = self.r
 		fields = self.maybe(.7, "step", lambda: self.number(1e-4, 10) if r.random() < .3 else r.choice(["1/60", "1/30", "1/240"]))
-		fields += self.maybe(.4, "substeps", lambda: str(r.choice([1, 1, 2, 8, 32, 256, 1000, 1001, 0])))
+		fields += self.maybe(.4, "substeps", lambda: str(self.one_of([1, 1, 2, 8, 32, 256, 1000], [1001, 0])))
 		if not any(f.startswith("substeps") for f in fields):
 			fields += self.maybe(.3, "tolerance", lambda: self.number(1e-6, 1))
 		fields += self.maybe(.2, "iterations", lambda: str(r.choice([1, 2, 16, 1000, 100000])))
 		fields += self.maybe(.3, "solver", lambda: r.choice(["'coloured'", "'jacobi'", "'ghost'", "'lagged'"]))
-		fields += self.maybe(.03, "lag", lambda: str(r.randint(0, 300)))
+		if "solver = 'lagged'" in fields or r.random() < .01:
+			fields += self.maybe(.5, "lag", lambda: str(self.one_of([0, 1, 7, 256], [257, -1])))
 		fields += self.maybe(.2, "integrator", lambda: r.choice(["'exact'", "'ode'"]))
 		fields += self.maybe(.3, "sleeping", lambda: r.choice(["true", "false"]))
 		fields += self.maybe(.3, "gravity", lambda: self.vector(-1e4, 1e4) if r.random() < .3 else "{0, 0, 0}")
 		fields += self.maybe(.1, "duration", lambda: self.number(1e-3, 1e9))
+		fields += self.maybe(.1, "title", self.text) + self.maybe(.1, "seed", lambda: str(self.one_of([0, 1, 2**32, 2**53 - 1], [2**53 + 2, -1, .5])))
 		return f"scene {{ {', '.join(fields)} }}"
+
+	def colour(self):
+		return self.one_of(["'#ff0000'", "'#00ff0080'", "{1, 0, 0}", "{0, .5, 1, .2}", f"{{{self.number(0, 1)}, 0, 1}}"], ["'red'", "'#12'", "{2, 0, 0}", "{}"])
+
+	def material(self, name):
+		fields = []
+		for chance, field, value in [(.5, "friction", lambda: self.number(0, 1000)), (.5, "restitution", lambda: self.number(0, 1)),
+				(.5, "density", lambda: self.number(1e-3, 1e9)), (.3, "colour", self.colour)]:
+			fields += self.maybe(chance, field, value)
+		return f"material {name} {{ {', '.join(fields)} }}"
+
+	def look(self, kind):
+		"""What is seen, and from where."""
+		r = self.r
+		if kind == "record":
+			return f"record {{ every = {self.one_of([1, 2, 1000000], [0, -1, 1e9])} }}"
+		if kind == "sun":
+			return f"sun {{ towards = {self.vector(-1, 1)} }}"
+		fields = []
+		if kind == "sky":
+			for name in "top", "horizon":
+				fields += self.maybe(.7, name, self.colour)
+			return f"sky {{ {', '.join(fields)} }}"
+		if r.random() < .5:
+			fields += [f"eye = {self.place()}", f"target = {self.place()}"]
+		else:
+			fields += self.maybe(.7, "from", lambda: self.vector(-1, 1))
+		for name, value in ("fov", lambda: self.number(1, 170)), ("velocity", lambda: self.vector(-1e6, 1e6)), ("pan", lambda: self.number(-1e4, 1e4)), \
+				("tilt", lambda: self.number(-1e4, 1e4)):
+			fields += self.maybe(.2, name, value)
+		return f"camera{self.text()} {{ {', '.join(fields)} }}"
+
+	def drawn(self):
+		"""Parameters and random numbers."""
+		return self.r.choice(["local n = param('n', 3, { min = 1, max = 9 })", "local s = param('s', 'a', { 'a', 'b' })", "local x = random(-1, 1)",
+			"local q = random_rotation()", "local i = math.random(1, 6)", "local p = param('p', .5)", "local b = param('b', true)",
+			"sphere { radius = random(.1, .5), at = { random(), random(), 2 }, q = random_rotation() }"])
 
 	def scene(self):
 		r = self.r
 		lines = [self.head()] if r.random() < .8 else []
+		lines += [self.look(kind) for kind in ("camera", "sky", "sun", "record") if r.random() < .1]
+		lines += [self.drawn() for _ in range(r.choice([0, 0, 0, 1, 2]))]
+		lines += [self.material(name) for name in ("'a'", "'b'") if r.random() < .98]
 		lines += ["ground {}"] if r.random() < .6 else []
 		lines += [self.body() for _ in range(r.randint(1, 12))]
 		if r.random() < .1:
@@ -144,7 +194,7 @@ class Scenes:
 
 	def options(self):
 		r = self.r
-		words = ["--duration", r.choice([".02", ".05", ".1", ".3", "2"])]
+		words = ["--duration", r.choice([".02", ".02", ".05", ".05", ".1", ".3"])]
 		for chance, more in [(.3, ["--isolation", r.choice(["thread", "process"])]), (.5, ["--workers", r.choice(["1", "2", "3", "objects"])]),
 				(.12, ["--narrow", "aabb"]), (.1, ["--tolerance", r.choice(["1um", ".1mm", "1mm", "1m"])]), (.1, ["--substeps", r.choice(["1", "4", "64"])]),
 				(.1, ["--solver", r.choice(["coloured", "jacobi", "ghost", "lagged"])]), (.1, ["--integrator", r.choice(["exact", "ode"])]),
@@ -306,7 +356,9 @@ def faults(done, name):
 		yield "a sanitizer's report"
 	if done.returncode in (1, 2) and not re.search(r"^(obsim: |Usage)", done.stderr.decode("utf-8", "replace"), re.M):
 		yield "no word of what is wrong"
-	if re.search(r"was killed by SIG(?!XCPU)|exit code \d|left with", text):
+	if "SIGXCPU" in text:
+		yield "computes too long"
+	elif re.search(r"was killed by SIG|exit code \d|left with", text):
 		yield "a simulator died"
 	if re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]", text):
 		yield "control characters"
@@ -318,12 +370,15 @@ def run_case(obsim, kind, folder, name):
 	words = kind.case(folder)
 	if words[0] == "run" and not isinstance(kind, (Words, Recordings)):
 		words += ["--name", name]
+	before = resource.getrusage(resource.RUSAGE_CHILDREN)
 	try:
 		done = subprocess.run([obsim] + words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit,
 			timeout=WALL_SECONDS)
 	except subprocess.TimeoutExpired:
-		return words, None, ["hangs"], b""
-	return words, done.returncode, list(faults(done, name)), done.stderr
+		return words, None, ["hangs"], b"", WALL_SECONDS
+	after = resource.getrusage(resource.RUSAGE_CHILDREN)
+	cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+	return words, done.returncode, list(faults(done, name)), done.stderr, cpu
 
 
 def keep(where, label, folder, words, found, stderr):
@@ -353,12 +408,14 @@ def main():
 			kinds[n].known(a.obsim)
 	until = time.monotonic() + 3600 * a.hours if a.hours else None
 	cases = bad = i = 0
+	longest = 0, "none"
 	codes = {}
 	while time.monotonic() < until if until else i < a.count:
 		for n in names:
 			kinds[n].r.seed(f"{n} {a.seed} {i}")
 			with tempfile.TemporaryDirectory(prefix="obsim-fuzz-") as folder:
-				words, code, found, stderr = run_case(a.obsim, kinds[n], folder, f"fuzz-{os.getpid()}")
+				words, code, found, stderr, cpu = run_case(a.obsim, kinds[n], folder, f"fuzz-{os.getpid()}")
+				longest = max(longest, (cpu, f"{n}-{a.seed}-{i}"))
 				if found:
 					bad += 1
 					keep(a.keep, f"{n}-{a.seed}-{i}", folder, words, found, stderr)
@@ -367,7 +424,7 @@ def main():
 			cases += 1
 		i += 1
 	tally = ", ".join(f"{n} ended with {code}" for code, n in sorted(codes.items(), key=str))
-	print(f"{cases} cases ({tally}), {bad} bad" + (f", kept in {a.keep}" if bad else ""))
+	print(f"{cases} cases ({tally}), {bad} bad, {longest[0]:.1f} s of CPU at most ({longest[1]})" + (f", kept in {a.keep}" if bad else ""))
 	return 1 if bad else 0
 
 
