@@ -7,7 +7,9 @@ import glob
 import json
 import os
 import pty
+import re
 import signal
+import struct
 import subprocess
 import tempfile
 import time
@@ -24,10 +26,13 @@ def scene(name):
 
 
 def call(*words, timeout=PATIENCE, **more):
-	"""obsim WORDS to its end; text in and out."""
+	"""obsim WORDS to its end; text in and out, without the lines of progress that a slow machine sees."""
 	more.setdefault("stdout", subprocess.PIPE)
 	more.setdefault("stderr", subprocess.PIPE)
-	return subprocess.run([OBSIM, *map(str, words)], timeout=timeout, text=True, **more)
+	done = subprocess.run([OBSIM, *map(str, words)], timeout=timeout, text=True, **more)
+	if done.stderr:
+		done.stderr = re.sub(r"^\[#* *\] \d+ of \d+, .* left: .*\n", "", done.stderr, flags=re.MULTILINE)
+	return done
 
 
 def start(*words, **more):
@@ -45,6 +50,17 @@ def report(*words, **more):
 
 def segment(name):
 	return "/dev/shm/obsim." + name
+
+
+def steps(name):
+	"""Steps that this universe has made, or 0; as its readers find them (table/layout.h)."""
+	try:
+		with open(segment(name), "rb") as f:
+			f.seek(64)
+			f.seek(struct.unpack("=Q", f.read(8))[0])
+			return struct.unpack("=Q", f.read(8))[0]
+	except (OSError, struct.error):
+		return 0
 
 
 def processes(parent):
@@ -141,6 +157,13 @@ class Case(unittest.TestCase):
 		run = start(command, *words, "--name", self.name)
 		self.addCleanup(lambda: (run.poll() is None and run.kill(), run.wait(), run.stdout.close(), run.stderr.close()))
 		self.assertTrue(wait_until(lambda: os.path.exists(segment(self.name)) or run.poll() is not None))
+		self.assertIsNone(run.poll(), "the run ended before it was looked at")
+		return run
+
+	def start_stepping(self, *words):
+		"""The same, as soon as it has made a step: all its processes are there."""
+		run = self.start_universe(*words)
+		self.assertTrue(wait_until(lambda: steps(self.name) > 0 or run.poll() is not None))
 		self.assertIsNone(run.poll(), "the run ended before it was looked at")
 		return run
 

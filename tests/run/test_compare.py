@@ -156,9 +156,9 @@ class Compare(program.Case):
 
 	def test_interrupt(self):
 		run = program.start("compare", program.scene("falling_boxes"), "-D", "n=50", "--duration", program.FOR_EVER)
-		time.sleep(1)
+		self.assertTrue(program.wait_until(lambda: program.processes(run.pid)))
+		time.sleep(.3)
 		below = program.processes(run.pid)
-		self.assertTrue(below)
 		os.kill(run.pid, signal.SIGTERM)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		said = run.stderr.read()
@@ -170,7 +170,8 @@ class Compare(program.Case):
 
 	def test_killed(self):
 		run = program.start("compare", program.scene("falling_boxes"), "-D", "n=50", "--duration", program.FOR_EVER)
-		time.sleep(1)
+		self.assertTrue(program.wait_until(lambda: program.processes(run.pid)))
+		time.sleep(.3)
 		below = program.processes(run.pid)
 		run.kill()
 		run.wait(program.PATIENCE)

@@ -18,9 +18,11 @@ LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_
 
 
 class Interrupt(program.Case):
-	def interrupt(self, *words, number=signal.SIGINT, after=.7):
-		run = self.start_universe(*LONG, "--json", self.path("r.json"), *words)
-		time.sleep(after)
+	def interrupt(self, *words, number=signal.SIGINT, when=lambda: True):
+		"""The report of a run that is interrupted a moment after it is so far."""
+		run = self.start_stepping(*LONG, "--json", self.path("r.json"), *words)
+		self.assertTrue(program.wait_until(when))
+		time.sleep(.3)
 		below = program.processes(run.pid)
 		run.send_signal(number)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
@@ -77,7 +79,8 @@ class Interrupt(program.Case):
 		if "no EGL" in program.call("--version").stdout:
 			self.skipTest("no EGL")
 		video = ["--video", self.path("v.mp4")] if shutil.which("ffmpeg") and shutil.which("ffprobe") else []
-		report = self.interrupt("--frames", self.path("f"), "--size", "64x48", "--samples", "1", *video, after=2)
+		report = self.interrupt("--frames", self.path("f"), "--size", "64x48", "--samples", "1", *video,
+			when=lambda: os.path.exists(self.path("f/frame-000002.png")))
 		names = sorted(os.listdir(self.path("f")))
 		self.assertEqual(names, [f"frame-{i:06}.png" for i in range(report["frames"])])
 		for name in names:
@@ -92,9 +95,10 @@ class Interrupt(program.Case):
 		"""At a terminal Ctrl-C reaches the whole group: ffmpeg and the simulators, too."""
 		words = ["--isolation", "process"]
 		if shutil.which("ffmpeg") and "no EGL" not in program.call("--version").stdout:
-			words += ["--video", self.path("v.mp4"), "--size", "64x48", "--samples", "1"]
+			words += ["--video", self.path("v.mp4"), "--frames", self.path("f"), "--size", "64x48", "--samples", "1"]
 		run = program.start("run", *LONG, "--name", self.name, *words, start_new_session=True)
-		time.sleep(2)
+		self.assertTrue(program.wait_until(lambda: program.steps(self.name) > 0))
+		self.assertTrue("--video" not in words or program.wait_until(lambda: os.path.exists(self.path("f/frame-000002.png"))))
 		os.killpg(run.pid, signal.SIGINT)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertIn("interrupted", run.stderr.read())

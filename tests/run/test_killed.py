@@ -20,8 +20,7 @@ class Killed(program.Case):
 	def test_host(self):
 		for way in WAYS:
 			with self.subTest(way=way):
-				run = self.start_universe(*LONG, *way)
-				time.sleep(.5)
+				run = self.start_stepping(*LONG, *way)
 				below = program.processes(run.pid)
 				self.assertGreaterEqual(len(below), 31 if way == WAYS[-1] else 1)
 				run.send_signal(signal.SIGKILL)
@@ -43,8 +42,7 @@ class Killed(program.Case):
 
 	def test_simulator_of_a_monolith(self):
 		"""There is nothing to go back to: the run fails, naming the simulator that died, and ends in order."""
-		run = self.start_universe(*LONG, "--isolation", "process", "--arch", "monolith")
-		time.sleep(.5)
+		run = self.start_stepping(*LONG, "--isolation", "process", "--arch", "monolith")
 		below = program.processes(run.pid)
 		os.kill(program.simulators(run.pid)[0], signal.SIGKILL)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
@@ -55,9 +53,7 @@ class Killed(program.Case):
 		"""It is not waited for: the run ends in order, and takes it and its simulators along."""
 		for way in WAYS:
 			with self.subTest(way=way):
-				run = self.start_universe(*LONG, *way)
-				self.assertTrue(program.wait_until(lambda: len(program.processes(run.pid)) >= 1))
-				time.sleep(.3)
+				run = self.start_stepping(*LONG, *way)
 				below = program.processes(run.pid)
 				os.kill(program.fork_server(run.pid), signal.SIGSTOP)
 				run.send_signal(signal.SIGTERM)
@@ -76,8 +72,7 @@ class Killed(program.Case):
 
 	def test_stale_is_cleared(self):
 		"""What a killed host and fork server leave together, the next run removes."""
-		run = self.start_universe(*LONG)
-		time.sleep(.3)
+		run = self.start_stepping(*LONG)
 		below = program.processes(run.pid)
 		for pid in [run.pid, *below]:
 			os.kill(pid, signal.SIGSTOP)

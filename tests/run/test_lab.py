@@ -211,16 +211,17 @@ class Lab(program.Case):
 		leader, terminal = self.open_terminal()
 		run = self.start("lab", "projectile", "pile", "--engines", "obsim", "--sweep", "substeps=1024", stderr=terminal)
 		os.close(terminal)
-		time.sleep(2)
-		run.send_signal(signal.SIGINT)
-		run.wait(program.PATIENCE)
-		seen = b""
+		seen, asked = b"", False
 		try:
 			while chunk := os.read(leader, 65536):
 				seen += chunk
+				if b" of 4, " in seen and not asked:
+					run.send_signal(signal.SIGINT)
+					asked = True
 		except OSError: # the other end is closed
 			pass
 		os.close(leader)
+		run.wait(program.PATIENCE)
 		self.assertRegex(seen.decode(), r"\[#* *\] \d of 4, .* left: \S+, obsim substeps=\d+")
 		self.assertIn("\r\033[Kobsim: interrupted", seen.decode())
 

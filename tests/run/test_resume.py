@@ -120,9 +120,9 @@ class Resume(program.Case):
 	def test_interrupted(self):
 		"""Ctrl-C and its kin leave a checkpoint of the step at which they ended the run."""
 		for number in signal.SIGINT, signal.SIGTERM:
-			run = self.start_universe(program.scene("falling_boxes"), "-D", "n=40", "--duration", program.FOR_EVER, "--sleeping", "off",
+			run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=40", "--duration", program.FOR_EVER, "--sleeping", "off",
 				"--checkpoint", self.file, "--every", "1e6", "--json", self.path("r.json"), "--isolation", "process")
-			time.sleep(.7)
+			time.sleep(.3)
 			run.send_signal(number)
 			self.assertEqual(run.wait(program.PATIENCE), 1)
 			with open(self.path("r.json")) as f:
@@ -140,7 +140,9 @@ class Resume(program.Case):
 		resumed = 0
 		for i in range(12):
 			run = program.start("run", *words, "--checkpoint", self.file, "--every", "1/60", *WAYS[i % len(WAYS)])
-			time.sleep(.02 + .03 * i)
+			if i % 2: # from the first checkpoint on; else at any time, also while it starts
+				self.assertTrue(program.wait_until(lambda: os.path.exists(self.file) or run.poll() is not None))
+			time.sleep(.02 * i)
 			below = program.processes(run.pid)
 			run.kill()
 			run.wait(program.PATIENCE)

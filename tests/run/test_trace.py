@@ -228,9 +228,9 @@ class Trace(program.Case):
 		self.assertEqual(set(whole["otherData"]), {"events", "lost"})
 
 	def test_interrupted(self):
-		run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping", "off",
+		run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping", "off",
 			"--trace", self.path("t.json"))
-		time.sleep(.5)
+		time.sleep(.3)
 		run.send_signal(signal.SIGINT)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.check(self.path("t.json"), 10**9)
