@@ -68,7 +68,7 @@ class Scenes:
 
 	def size(self):
 		"""Of metres, mostly: what is absurd in all directions just flies by."""
-		return self.number(1e-4, 1e6) if self.r.random() < .3 else repr(self.r.uniform(.05, 2))
+		return self.number(1e-4, 1e6) if self.r.random() < .05 else repr(self.r.uniform(.05, 2))
 
 	def place(self):
 		return self.vector(-1e7, 1e7) if self.r.random() < .1 else self.vector(-3, 3)
@@ -423,6 +423,8 @@ def main():
 			codes[code] = codes.get(code, 0) + 1
 			cases += 1
 		i += 1
+		if i % 1000 == 0:
+			print(f"{i} of each kind, {bad} bad", flush=True)
 	tally = ", ".join(f"{n} ended with {code}" for code, n in sorted(codes.items(), key=str))
 	print(f"{cases} cases ({tally}), {bad} bad, {longest[0]:.1f} s of CPU at most ({longest[1]})" + (f", kept in {a.keep}" if bad else ""))
 	return 1 if bad else 0
