@@ -86,6 +86,7 @@ typedef enum ob_universe_state {
 	OB_UNIVERSE_RUNNING,
 	OB_UNIVERSE_FINISHED, // ended as planned; the table stays as it was at the end
 	OB_UNIVERSE_FAILED,
+	OB_UNIVERSE_LOST,     // another program has cut its memory short: nothing of it can be read any more
 } ob_universe_state;
 
 // Facts of a run that do not change once it has started, and its clock.
@@ -137,6 +138,9 @@ bool ob_universe_is_hosted(const ob_universe *u);
 // Names of the universes on this machine, newest first; returns how many there are (may exceed max).
 size_t ob_universe_list(char names[][OB_NAME_MAX], size_t max);
 
+// To be called at the beginning of each look at the universe: it also asks the system whether all of the universe's memory
+// is still there. If not, the state is OB_UNIVERSE_LOST from now on, and all that follows returns false, or 0. Memory that
+// is cut short in the middle of a look, by a program of the same user, ends the reader (SIGBUS).
 void ob_universe_get_info(const ob_universe *u, ob_universe_info *out);
 // false: no such worker
 bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out);

@@ -69,6 +69,7 @@ static const struct field {
 	FIELD(COUNT, frozen),
 	FIELD(COUNT, faults),
 	FIELD(TEXT, fault_kinds),
+	FIELD(COUNT, faults_overwritten),
 	FIELD(COUNT, worker_memory_bytes),
 	FIELD(COUNT, memory_bytes),
 	FIELD(TEXT, state_hash),
@@ -182,8 +183,9 @@ static void count_fault(ob_report *r, uint32_t kind, uint64_t times)
 	r->faults += times;
 }
 
-void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS])
+void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS], uint32_t overwritten)
 {
+	r->faults_overwritten = overwritten;
 	for (uint32_t i = 0; i < OB_FAULT_KINDS; i++)
 		count_fault(r, i, faults[i]);
 }
@@ -318,8 +320,10 @@ void ob_report_print(const ob_report *r, FILE *f)
 	print_tolerance(r, f);
 	if (own_time(r) > 0)
 		print_cost(r, f);
-	if (r->faults > 0)
-		fprintf(f, "  faults       %" PRIu64 " injected: %s\n", r->faults, r->fault_kinds);
+	if (r->faults > 0 || r->faults_overwritten > 0)
+		fprintf(f, "  faults       %s%" PRIu64 " injected%s%s%s\n", r->faults_overwritten ? "at least " : "", r->faults,
+			*r->fault_kinds ? ": " : "", r->fault_kinds,
+			r->faults_overwritten ? "; simulators have written over other counters of them" : "");
 	print_quality(r, f);
 	if (r->frame_rate > 0) {
 		fprintf(f, "  frames       %" PRIu64, r->frames);

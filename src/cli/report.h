@@ -39,6 +39,7 @@ typedef struct ob_report {
 	double host_cpu_s, renderer_cpu_s;
 	char fault_kinds[160]; // "kill 3, exit 1": as many as were injected of each; "" = none
 	uint64_t faults; // of all kinds
+	uint64_t faults_overwritten; // counters of faults that simulators have written over: there were more
 	uint64_t switches, deaths, frozen, worker_memory_bytes; // frozen: objects, for deaths
 	ob_death death[OB_DEATHS_KEPT]; // the last of them, oldest first, ..
 	uint32_t deaths_told; // .. so many
@@ -60,7 +61,7 @@ void ob_report_write_members(const ob_report *r, ob_json *j);
 // Fills the figures of the tolerance, and the workers' time if the run was timed, from counters summed over all workers.
 void ob_report_count(ob_report *r, const ob_counters *c, bool timed);
 // Fills the figures of faults.
-void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS]);
+void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS], uint32_t overwritten);
 
 // Whether a tolerance was asked for or is the default, and an island's error stayed above it.
 bool ob_report_missed_tolerance(const ob_report *r);

@@ -371,11 +371,11 @@ static bool read_fault(ob_run_request *r, const char *text, ob_error *e)
 			return false;
 	if (!(f.probability > 0))
 		return ob_fail(e, "--fault: expected how probable a fault is at each chance, as in kill:p=.001");
-	const uint32_t anywhere = 1u << OB_FAULT_SLOW | 1u << OB_FAULT_NOSPACE;
+	const uint32_t anywhere = 1u << OB_FAULT_SLOW | 1u << OB_FAULT_NOSPACE | 1u << OB_FAULT_NOPAGES;
 	if (f.kinds & ~anywhere && r->isolation != OB_ISOLATION_PROCESS)
 		return ob_fail(
 			e,
-			"--fault: only slow and nospace can happen to a thread; give the simulators processes of their "
+			"--fault: only slow, nospace and nopages can happen to a thread; give the simulators processes of their "
 			"own: --isolation process");
 	if (f.kinds & 1u << OB_FAULT_NOSPACE && !r->checkpoint)
 		return ob_fail(e, "--fault nospace is for --checkpoint");

@@ -290,9 +290,9 @@ static void report_time(const run *r, const ob_host_times *times, ob_report *p)
 	ob_universe_count(ob_host_universe(r->host), &counters);
 	ob_report_count(p, &counters, timed);
 	uint64_t faults[OB_FAULT_KINDS];
-	ob_universe_faults(ob_host_universe(r->host), faults);
+	const uint32_t overwritten = ob_universe_faults(ob_host_universe(r->host), faults);
 	faults[OB_FAULT_NOSPACE] += r->checkpoint_sums.faults;
-	ob_report_faults(p, faults);
+	ob_report_faults(p, faults, overwritten);
 	p->wall_s = times->wall_s;
 	p->cpu_s = times->cpu_s;
 	p->startup_s = times->startup_s;

@@ -69,6 +69,8 @@ static int clean_name(const char *name, int max, char *out, size_t size)
 static const char *state_name(const ob_top_sample *s)
 {
 	static const char *const names[] = { "starting", "running", "finished", "failed" };
+	if (s->info.state == OB_UNIVERSE_LOST)
+		return "lost: another program has cut it short";
 	if (!s->alive)
 		return s->info.state == OB_UNIVERSE_FINISHED ? "finished, host gone" : "host gone";
 	return s->info.state <= OB_UNIVERSE_FAILED ? names[s->info.state] : "?";

@@ -319,6 +319,11 @@ static const double start_timeout = 10; // s to wait until it is ready
 static const double end_timeout = 5; // s to wait for the fork server's end, before and after it is killed
 static const long longest_pause_ns = 5000000;
 
+static const char *remedy(int error)
+{
+	return error == EMFILE ? "; raise the limit (ulimit -n)" : "";
+}
+
 // Waits for its first report. 0 = it is ready; else errno.
 static int wait_until_ready(const ob_fork_server *s)
 {
@@ -343,7 +348,7 @@ ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error
 	ob_fork_server *s = calloc(1, sizeof *s);
 	if (!s || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
 		free(s);
-		ob_fail(e, "cannot make the link to the fork server: %s", strerror(errno));
+		ob_fail(e, "cannot make the link to the fork server: %s%s", strerror(errno), remedy(errno));
 		return NULL;
 	}
 	s->pid = fork();
@@ -360,7 +365,7 @@ ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error
 	const int error = wait_until_ready(s);
 	if (error) {
 		ob_fork_server_stop(s);
-		ob_fail(e, "the fork server does not start: %s", strerror(error));
+		ob_fail(e, "the fork server does not start: %s%s", strerror(error), remedy(error));
 		return NULL;
 	}
 	return s;

@@ -10,7 +10,8 @@
 #include "host/stall.h"
 #include "sim/sim.h"
 
-static const double poll_interval = .05; // s, between checks of a run that does not pause
+static const double poll_interval = .05; // s, between checks of a run that does not pause, ..
+enum { LOOKS_PER_POLL = 5 }; // .. in which it is asked so often whether Ctrl-C has come
 static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C
 
 void ob_host_set_failure(ob_host *h, const char *format, ...)
@@ -197,12 +198,24 @@ static bool result_of_run(ob_host *h, ob_error *e)
 	return false;
 }
 
+// Whether the host has the turn, after a while at most.
+static bool wait_for_turn(const ob_host *h)
+{
+	bool turn = false;
+	for (int i = 0; i < LOOKS_PER_POLL && !turn; i++) {
+		turn = ob_gate_host_wait(h->u, poll_interval / LOOKS_PER_POLL);
+		if (h->interrupted)
+			break;
+	}
+	return turn;
+}
+
 bool ob_host_wait(ob_host *h, ob_error *e)
 {
 	ob_stall_watch stall = ob_stall_watch_start(h);
 	double interrupted_at = 0;
 	while (h->interval.running && !h->failed) {
-		bool turn = ob_gate_host_wait(h->u, poll_interval);
+		bool turn = wait_for_turn(h);
 		const char *failure = turn ? ob_sim_failure(h->u) : NULL;
 		if (h->restart.requested) { // the gate was stopped for it: this is not a pause
 			restart_interval(h);

@@ -46,10 +46,11 @@ typedef enum ob_fault_kind {
 	OB_FAULT_SLOW, // a simulator sleeps
 	OB_FAULT_SCRIBBLE, // .. stores random words anywhere in the universe where it can write
 	OB_FAULT_NOSPACE, // a checkpoint cannot be written, as on a full disk
+	OB_FAULT_NOPAGES, // the universe cannot grow, as in a full /dev/shm
 	OB_FAULT_ABORT, // a simulator's process says why on standard error, and aborts, as an assertion does
 	OB_FAULT_KINDS
 } ob_fault_kind;
-#define OB_FAULT_NAMES "kill|segv|exit|stop|slow|scribble|nospace|abort"
+#define OB_FAULT_NAMES "kill|segv|exit|stop|slow|scribble|nospace|nopages|abort"
 
 // A simulator has a chance to fail after each island that it has solved, at the end of each phase, and when it has
 // scheduled the next. Whether it does is drawn from the seed, its worker's number, how often all were restarted, and how many

@@ -137,7 +137,8 @@ static void fail(const ob_universe *u, ob_fault_kind kind, const ob_fault_plan *
 		break;
 	case OB_FAULT_ABORT:
 		say_and_abort();
-	case OB_FAULT_NOSPACE: // not a simulator's
+	case OB_FAULT_NOSPACE: // these two are not a simulator's
+	case OB_FAULT_NOPAGES:
 	case OB_FAULT_KINDS:
 		break;
 	}
@@ -146,7 +147,7 @@ static void fail(const ob_universe *u, ob_fault_kind kind, const ob_fault_plan *
 // The lives are part of what is drawn: or who begins again from a checkpoint would fail at the same place for ever.
 void ob_fault_chance(ob_sim *s)
 {
-	enum { SIMULATORS = ~(1 << OB_FAULT_NOSPACE) };
+	enum { SIMULATORS = ~(1 << OB_FAULT_NOSPACE | 1 << OB_FAULT_NOPAGES) };
 	const ob_fault_plan *plan = &s->settings->fault;
 	uint64_t random = 0;
 	if (!(plan->probability > 0) || s->committer) // the arranger is no simulator

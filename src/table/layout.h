@@ -134,6 +134,7 @@ static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "step data
 struct ob_universe {
 	char *base;
 	int fd; // of the segment; its owner's, and all that forked from it, share the lock
+	bool lost; // a reader's: its file was found to be too short (reader.c)
 	uint64_t *taken; // bit per chunk whose pages this process has asked for (pages.h); NULL: a reader
 	ob_header header; // private copy, validated: later changes to the shared one have no effect
 	ob_control *control;

@@ -97,21 +97,41 @@ bool ob_outbox_enter(ob_universe *u, uint32_t worker)
 	return true;
 }
 
-void ob_fault_note(ob_universe *u, uint32_t worker, ob_fault_kind kind)
+// A counter of faults lies where they may strike it: its upper half says whether the lower one is what was counted. 0 is 0.
+static uint64_t sealed(uint32_t count)
 {
-	if (u->outbox)
-		u->outbox->page->faults[kind]++;
-	else
-		u->worker[worker].faults[kind]++;
+	return (uint64_t)(count * UINT32_C(0x9E3779B1)) << 32 | count;
 }
 
-void ob_universe_faults(const ob_universe *u, uint64_t sum[OB_FAULT_KINDS])
+void ob_fault_note(ob_universe *u, uint32_t worker, ob_fault_kind kind)
 {
+	uint64_t *at = u->outbox ? &u->outbox->page->faults[kind] : &u->worker[worker].faults[kind];
+	const uint64_t seen = __atomic_load_n(at, __ATOMIC_RELAXED);
+	if (seen == sealed((uint32_t)seen)) // else it stays what it is: overwritten
+		__atomic_store_n(at, sealed((uint32_t)seen + 1), __ATOMIC_RELAXED);
+}
+
+static uint32_t add_faults(const uint64_t from[OB_FAULT_KINDS], uint64_t sum[OB_FAULT_KINDS])
+{
+	uint32_t overwritten = 0;
+	for (int kind = 0; kind < OB_FAULT_KINDS; kind++) {
+		const bool whole = from[kind] == sealed((uint32_t)from[kind]);
+		sum[kind] += whole ? (uint32_t)from[kind] : 0;
+		overwritten += !whole;
+	}
+	return overwritten;
+}
+
+uint32_t ob_universe_faults(const ob_universe *u, uint64_t sum[OB_FAULT_KINDS])
+{
+	uint32_t overwritten = 0;
 	memset(sum, 0, OB_FAULT_KINDS * sizeof *sum);
-	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
-		for (int kind = 0; kind < OB_FAULT_KINDS; kind++)
-			sum[kind] += u->worker[w].faults[kind] +
-				     (u->header.sizes.outbox_bytes ? page_of(u, w)->faults[kind] : 0);
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++) {
+		overwritten += add_faults(u->worker[w].faults, sum);
+		if (u->header.sizes.outbox_bytes)
+			overwritten += add_faults(page_of(u, w)->faults, sum);
+	}
+	return overwritten;
 }
 
 void ob_worker_set_object(ob_universe *u, uint32_t worker, uint32_t object)

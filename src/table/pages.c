@@ -12,12 +12,25 @@
 
 // ---- taking them
 
+// Whether /dev/shm shall be full when this chunk is to be taken: a fault that was asked for.
+static bool fails(ob_universe *u, uint64_t chunk)
+{
+	uint64_t random;
+	const ob_fault_plan *plan = &u->header.run.fault;
+	if (ob_fault_draw(plan, 1u << OB_FAULT_NOPAGES, UINT32_MAX, chunk, &random) == OB_FAULT_KINDS)
+		return false;
+	ob_fault_note(u, 0, OB_FAULT_NOPAGES);
+	return true;
+}
+
 static bool take_chunk(ob_universe *u, uint64_t chunk)
 {
 	uint64_t bit = UINT64_C(1) << chunk % 64, at = chunk * OB_LAYOUT_CHUNK, left = u->header.bytes - at;
 	uint64_t *word = &u->taken[chunk / 64];
 	if (__atomic_load_n(word, __ATOMIC_RELAXED) & bit)
 		return true;
+	if (fails(u, chunk))
+		return false;
 	// EINVAL: a kernel before 5.14 does not know it, and pages come when they are touched
 	if (madvise(u->base + at, left < OB_LAYOUT_CHUNK ? left : OB_LAYOUT_CHUNK, MADV_POPULATE_WRITE) != 0 &&
 	    errno != EINVAL)

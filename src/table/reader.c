@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/utf8.h"
@@ -71,18 +72,35 @@ static uint32_t least(uint32_t a, uint32_t b)
 	return a < b ? a : b;
 }
 
+// Of a universe that this process has attached: whether it has found its segment cut short. What follows does not touch it.
+static bool is_lost(const ob_universe *u)
+{
+	return __atomic_load_n(&u->lost, __ATOMIC_RELAXED);
+}
+
+static bool look_for_loss(const ob_universe *u)
+{
+	struct stat s;
+	const bool attached = !u->taken;
+	if (attached && !is_lost(u) && (fstat(u->fd, &s) != 0 || (uint64_t)s.st_size < u->header.bytes))
+		__atomic_store_n(&((ob_universe *)u)->lost, true, __ATOMIC_RELAXED);
+	return is_lost(u);
+}
+
 void ob_universe_get_info(const ob_universe *u, ob_universe_info *out)
 {
+	static const ob_control nothing;
 	const ob_header *h = &u->header;
-	const ob_control *c = u->control;
+	const bool lost = look_for_loss(u);
+	const ob_control *c = lost ? &nothing : u->control;
 	*out = (ob_universe_info){
 		.host_pid = h->host_pid,
 		.capacity = h->sizes.capacity,
 		.workers = h->sizes.workers,
 		.gravity = h->run.gravity,
 		.step_length = h->run.step_length,
-		.step = ob_step_count(u),
-		.state = (ob_universe_state)least(read32(&c->state), OB_UNIVERSE_FAILED),
+		.step = lost ? 0 : ob_step_count(u),
+		.state = lost ? OB_UNIVERSE_LOST : (ob_universe_state)least(read32(&c->state), OB_UNIVERSE_FAILED),
 		.objects = least(read32(&c->objects), h->sizes.capacity),
 		.awake = least(read32(&c->awake), h->sizes.capacity),
 		.pairs = least(read32(&c->pairs), h->sizes.pairs_max),
@@ -103,7 +121,7 @@ void ob_universe_get_info(const ob_universe *u, ob_universe_info *out)
 
 bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out)
 {
-	if (worker >= u->header.sizes.workers)
+	if (is_lost(u) || worker >= u->header.sizes.workers)
 		return false;
 	const ob_worker_cell *w = u->worker + worker;
 	out->pid = __atomic_load_n(&w->pid, __ATOMIC_ACQUIRE);
@@ -128,7 +146,7 @@ bool ob_passport_makes_sense(const ob_passport *p, uint32_t id)
 
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out)
 {
-	if (id >= least(ob_universe_ids(u), u->header.sizes.capacity))
+	if (is_lost(u) || id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
 	if (!ob_passport_read(u, id, out) || !(out->flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(out, id))
 		return false;
@@ -145,7 +163,7 @@ bool ob_motion_makes_sense(const ob_motion *m)
 
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out)
 {
-	if (id >= least(ob_universe_ids(u), u->header.sizes.capacity))
+	if (is_lost(u) || id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
 	return (read32(&ob_passport_of(u, id)->flags) & OB_OBJECT_PRESENT) && ob_slot_read(u->slot + id, out) &&
 	       ob_motion_makes_sense(out);
@@ -235,7 +253,7 @@ static size_t collect_points(const ob_universe *u, uint64_t step, ob_contact_poi
 size_t ob_universe_get_contacts(const ob_universe *u, ob_contact_point *out, size_t max)
 {
 	size_t n = 0;
-	for (int i = 0; i < CONTACT_TRIES; i++) {
+	for (int i = 0; i < CONTACT_TRIES && !is_lost(u); i++) {
 		uint64_t step = ob_step_count(u);
 		n = collect_points(u, step, out, max);
 		if (ob_step_count(u) == step)

@@ -127,10 +127,11 @@ uint32_t ob_worker_object(const ob_universe *u, uint32_t worker);
 void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns);
 // The worker's own counters; the host's to read while the universe stands still.
 ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker);
-// Faults that are injected (ob_fault_plan): how many a worker has; and all of them. lives: times that all simulators were
+// Faults that are injected (ob_fault_plan): how many a worker has; and all of them. A simulator may
+// have written over what it or another has: returns how many counters say so, which are left out. lives: times that all simulators were
 // restarted, so that a successor does not meet the fault of its predecessor again.
 void ob_fault_note(ob_universe *u, uint32_t worker, ob_fault_kind kind);
-void ob_universe_faults(const ob_universe *u, uint64_t sum[OB_FAULT_KINDS]);
+uint32_t ob_universe_faults(const ob_universe *u, uint64_t sum[OB_FAULT_KINDS]);
 uint32_t ob_universe_lives(const ob_universe *u);
 // Sums over all workers, and the largest error of any.
 void ob_universe_count(const ob_universe *u, ob_counters *sum);

@@ -2,14 +2,16 @@
 """The Nth allocation, fork, mapping, open or write of a short run fails, for every N: one clear error and exit code 1 (2 while
 the scene is read), or the run goes on and ends in the right bits; nothing is left behind, and nobody dies of it.
 
-    failing.py OBSIM LIBRARY SCENES [KIND ...] [--every K]
+    failing.py OBSIM LIBRARY SCENES [KIND ...] [--every K [--first N]]
 
-LIBRARY is failing.c, built. With --every K, of allocations, of which a run makes hundreds, each Kth is tried.
+LIBRARY is failing.c, built. With --every K, of allocations, of which a run makes hundreds, each Kth is tried, from the Nth
+on, which is drawn and printed unless given: so different runs of the tests try different ones.
 """
 
 import argparse
 import json
 import os
+import random
 import re
 import resource
 import subprocess
@@ -70,8 +72,11 @@ def main():
 	p.add_argument("scenes", type=os.path.abspath)
 	p.add_argument("kinds", nargs="*", default=KINDS)
 	p.add_argument("--every", type=int, default=1)
+	p.add_argument("--first", type=int)
 	p.add_argument("--isolation", choices=["thread", "process"])
 	a = p.parse_args()
+	first = a.first or random.randint(1, a.every)
+	print(f"allocations from number {first} on: --every {a.every} --first {first}", flush=True)
 	resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 	tried = bad = 0
 	with tempfile.TemporaryDirectory(prefix="obsim-failing-") as folder:
@@ -83,7 +88,7 @@ def main():
 				if done.returncode or not right or not calls:
 					print(f"{kind}, {isolation}: does not run: {done.stderr}")
 					return 1
-				n, missed = 1, 0
+				n, missed = first if kind == "alloc" else 1, 0
 				while missed < 3:  # a worker's own calls are not among those of the host
 					done, failed, _ = run.once(kind, n, isolation)
 					missed = 0 if failed else missed + 1

@@ -67,6 +67,25 @@ class Fault(program.Case):
 		whole = program.report(*BOXES)
 		self.assertEqual(program.report("--resume", file)["state_hash"], whole["state_hash"])
 
+	def test_no_pages(self):
+		"""The universe cannot grow: at its start or in a step that is the same in every run, one line, and nothing left behind."""
+		for isolation in ["thread"], ["process"], ["process", "--harden"]:
+			said = set()
+			for _ in range(2):
+				done = program.call("run", *BOXES, "--isolation", *isolation, "--fault", "nopages:p=1", "--name", self.name)
+				self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+				said.add(done.stderr)
+			self.assertEqual(len(said), 1)
+			self.assertIn("/dev/shm is full", said.pop())
+		failed = 0
+		for seed in range(1, 9):
+			done = program.call("run", program.scene("pile"), "--duration", ".5", "--isolation", "process", "--fault",
+				f"nopages:p=.02,seed={seed}", "--name", self.name)
+			self.assertIn(done.returncode, (0, 1), done.stderr)
+			self.assertEqual(done.returncode, "/dev/shm is full" in done.stderr, done.stderr)
+			failed += done.returncode
+		self.assertGreater(failed, 0)
+
 	def test_what_is_refused(self):
 		for text, saying in ("kil:p=.1", "expected some of kill|segv"), ("kill", "how probable"), ("kill:p", "expected p="), ("kill:p=2", "at most 1"), \
 				("kill:p=.1,word=3", "expected p=, seed="), ("kill+:p=.1", "expected some of"), ("nospace:p=.1", "is for --checkpoint"):

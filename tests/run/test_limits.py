@@ -2,6 +2,7 @@
 behind; and scenes that are the same in every run."""
 
 import os
+import resource
 import signal
 import time
 import unittest
@@ -42,6 +43,23 @@ class Limits(program.Case):
 				saying=r"^obsim: ODE gave up in step 1 at object 0 \(needle\)")
 			for i in ("thread", "process") for w in ("1", "2", "objects")}
 		self.assertEqual(len(texts), 1)
+
+	def test_few_descriptors(self):
+		"""However few files may be open: one line, or it runs."""
+		ran = set()
+		for files in [*range(3, 24), 28, 32, 40]:
+			for isolation in ["thread"], ["process"], ["process", "--harden"]:
+				done = program.call("run", program.scene("stack"), "--duration", ".05", "--workers", "2", "--isolation", *isolation,
+					"--series", self.path("s.csv"), "--trace", self.path("t.json"), "--checkpoint", self.path("c"), "--json", self.path("j"),
+					"--name", self.name, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files)))
+				if files == 3 and not done.stderr: # not even its libraries can be opened, of which the loader tells nobody
+					continue
+				ran.add((done.returncode, *isolation))
+				self.assertIn(done.returncode, (0, 1, 2, 127), (files, done.stderr)) # 127: the loader's
+				said = [line for line in done.stderr.split("\n") if line and not line.startswith("obsim: warning: ")]
+				self.assertEqual(len(said), 1 if done.returncode else 0, (files, isolation, done.stderr))
+				self.assertFalse(done.returncode == 1 and "open files" not in said[0], (files, done.stderr))
+		self.assertLessEqual({(c, *i) for c in (0, 1) for i in (["thread"], ["process"], ["process", "--harden"])}, ran)
 
 	def test_many_substeps(self):
 		self.refuse("run", hostile("many_substeps"), "--tolerance", ".1mm", saying="1024 at most")

@@ -179,6 +179,35 @@ static void test_strangers(void)
 	shm_unlink(path);
 }
 
+// A universe that is cut short between two looks: a reader is told, reads nothing more of it, and lives.
+static void test_cut_short(void)
+{
+	ob_error e;
+	ob_universe_info info;
+	ob_worker_info w;
+	ob_passport p;
+	ob_motion m;
+	ob_contact_point c[4];
+	float bounds[6];
+	for (int pages = 0; pages < 3; pages++) {
+		ob_universe *u = create_filled(), *r = ob_universe_attach(name, &e);
+		CHECK(r);
+		ob_universe_get_info(r, &info);
+		CHECK(info.state != OB_UNIVERSE_LOST && ob_universe_get_motion(r, 0, &m));
+		CHECK(ftruncate(u->fd, pages * OB_LAYOUT_PAGE) == 0);
+		ob_universe_get_info(r, &info);
+		CHECK(info.state == OB_UNIVERSE_LOST && strcmp(info.name, name) == 0 && info.objects == 0);
+		CHECK(!ob_universe_get_motion(r, 0, &m) && !ob_universe_get_passport(r, 0, &p));
+		CHECK(!ob_universe_get_bounds(r, 0, bounds) && !ob_universe_get_worker(r, 0, &w));
+		CHECK(ob_universe_get_contacts(r, c, 4) == 0);
+		CHECK(ftruncate(u->fd, (off_t)u->header.bytes) == 0); // what has been cut off does not come back
+		ob_universe_get_info(r, &info);
+		CHECK(info.state == OB_UNIVERSE_LOST);
+		ob_universe_detach(r);
+		ob_universe_destroy(u, true);
+	}
+}
+
 int main(void)
 {
 	snprintf(name, sizeof name, "test-reader-%d", (int)getpid());
@@ -186,5 +215,6 @@ int main(void)
 	test_contacts();
 	test_damage();
 	test_strangers();
+	test_cut_short();
 	return check_end();
 }
