@@ -56,16 +56,14 @@ class Policy(program.Case):
 		self.assertEqual(program.call("run", *words, "9999/1e6").returncode, 0)
 
 	def test_freeze(self):
-		"""Deaths in the same step of each run freeze the same objects, wherever the checkpoints were."""
+		"""The objects of whom dies stay, and the run goes on; in which step he dies a second time depends on the checkpoints."""
 		words = [*BOXES, *PROCESS, "--on-death", "freeze"]
 		whole = program.report(*BOXES)
 		for workers, fault in ("1", "segv:p=.001,seed=4"), ("objects", "exit:p=.0001,seed=1"):
-			done = [program.report(*words, "--workers", workers, "--fault", fault) for _ in range(3)]
-			self.assertGreater(done[0]["frozen"], 0, workers)
-			self.assertEqual(done[0]["bodies"], whole["bodies"] - done[0]["frozen"])
-			self.assertEqual(done[0]["objects"], whole["objects"])
-			if workers == "1":
-				self.assertEqual(len({(r["state_hash"], r["frozen"], r["deaths"]) for r in done}), 1)
+			done = program.report(*words, "--workers", workers, "--fault", fault)
+			self.assertGreater(done["frozen"], 0, workers)
+			self.assertEqual(done["bodies"], whole["bodies"] - done["frozen"])
+			self.assertEqual(done["objects"], whole["objects"])
 
 	def test_freeze_what_fails(self):
 		"""An object at which ODE gives up: the same in threads and processes, with any number of workers."""
