@@ -8,6 +8,7 @@
 #include "host/host_state.h"
 #include "host/restart.h"
 #include "little_scene.h"
+#include "sim/publish.h"
 #include "workers.h"
 
 enum { STEPS = 400, BALLS = 40 };
@@ -173,6 +174,49 @@ static void test_killed_in_a_pause(void)
 	free(s.object);
 }
 
+// A simulator that dies in a certain step is frozen as it was when the last one before was complete, whenever checkpoints
+// were taken.
+static uint64_t end_without(const ob_scene *s, uint32_t victim, uint64_t step, int delay_ms, ob_state *frozen)
+{
+	ob_host_config c = little_config(s, OB_ISOLATION_PROCESS, 0);
+	ob_error e = { "" };
+	ob_host_times times;
+	ob_motion before, after;
+	ob_death deaths[OB_DEATHS_KEPT];
+	c.on_death = OB_ON_DEATH_FREEZE;
+	ob_host *h = ob_host_start(s, &c, &e);
+	ob_host_go(h, step / 2);
+	CHECK(ob_host_wait(h, &e));
+	pause_ms(delay_ms);
+	ob_host_go(h, step);
+	CHECK(ob_host_wait(h, &e) && ob_universe_get_motion(ob_host_universe(h), victim, &before));
+	*frozen = ob_state_now(ob_host_universe(h), victim, &before, step);
+	kill(pid_of_worker(ob_host_universe(h), victim), SIGKILL);
+	while (!h->restart.requested)
+		pause_ms(1);
+	ob_host_go(h, 2 * step);
+	CHECK(ob_host_wait(h, &e) && steps_of(h) == 2 * step);
+	CHECK(ob_universe_get_motion(ob_host_universe(h), victim, &after));
+	CHECK(ob_norm(ob_sub(after.p, frozen->pose.p)) == 0 && ob_norm(after.v) == 0);
+	ob_host_get_times(h, &times);
+	CHECK(times.deaths == 1 && times.frozen == 1);
+	CHECK(ob_host_get_deaths(h, deaths) == 1 && deaths[0].object == victim && deaths[0].step == step + 1);
+	uint64_t hash = hash_of(h);
+	ob_host_stop(h);
+	return hash;
+}
+
+static void test_frozen(void)
+{
+	ob_scene s = busy_heap(BALLS);
+	ob_state frozen[3];
+	uint64_t hash[3];
+	for (int i = 0; i < 3; i++)
+		hash[i] = end_without(&s, 7, 60, 200 * i, &frozen[i]);
+	CHECK(hash[0] == hash[1] && hash[0] == hash[2]);
+	free(s.object);
+}
+
 // Stops the first child that is neither of the two, as soon as it is there.
 _Noreturn static void stop_next_child(pid_t parent, const pid_t known[2])
 {
@@ -280,6 +324,7 @@ int main(void)
 	free(s.object);
 	test_visitors();
 	test_killed_in_a_pause();
+	test_frozen();
 	test_stopped_before_it_is_ready();
 	test_interrupted();
 	test_again_and_again();
