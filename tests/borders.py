@@ -25,7 +25,8 @@ ARROWS = {
     'ode': 'base',
     'sim': 'contact ode motion table settings base',
     'scene': 'settings base',
-    'host': 'sim scene table settings ode base',
+    'script': 'scene table settings motion base',
+    'host': 'sim script scene table settings ode base',
     'checkpoint': 'host scene table settings base',
     'measure': 'motion base',
     'reference': 'motion base',
@@ -49,7 +50,7 @@ BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['repor
 DUTIES = [
     ('include <ode/...>', r'#\s*include\s*<ode/', r'src/ode/', True),
     ('include EGL or OpenGL', r'#\s*include\s*<(EGL|GL|GLES\w*)/', r'src/render/', True),
-    ('include Lua', r'#\s*include\s*<(lua[\d.]*/)?(lua|lauxlib|lualib|luaconf)\.h', r'src/scene/', True),
+    ('include Lua', r'#\s*include\s*<(lua[\d.]*/)?(lua|lauxlib|lualib|luaconf)\.h', r'src/(scene|script)/', True),
     ('include libwebsockets', r'#\s*include\s*<libwebsockets', r'src/serve/', True),
     ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
     ('include cairo', r'#\s*include\s*<cairo', r'src/plot/', True),

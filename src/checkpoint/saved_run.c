@@ -24,6 +24,9 @@ typedef enum saved_area {
 	AREA_PLANES,
 	AREA_PAIRS,
 	AREA_RECORDS,
+	AREA_SCRIPT_TURNS,
+	AREA_SCRIPT_CELLS,
+	AREA_SCRIPT_TEXTS,
 	AREAS
 } saved_area;
 
@@ -39,7 +42,7 @@ typedef struct facts {
 static_assert(sizeof(facts) == 48 + sizeof(ob_run_settings) + 80, "facts");
 static_assert(sizeof(ob_counters) % 8 == 0 && sizeof(ob_saved_slot) == 8, "counters, slots");
 
-enum { OBJECTS_MAX = 1 << 20, PAIRS_MAX = 1 << 27, TEXT_MAX = 1 << 23, DEFINES_MAX = 1 << 20 };
+enum { OBJECTS_MAX = 1 << 20, PAIRS_MAX = 1 << 27, TEXT_MAX = 1 << 23, DEFINES_MAX = 1 << 20, SCRIPTS_MAX = 1 << 28 };
 
 static const ob_checkpoint_rule rules[AREAS] = {
 	[AREA_FACTS] = { "settings", sizeof(facts), 1, 1 },
@@ -56,6 +59,9 @@ static const ob_checkpoint_rule rules[AREAS] = {
 	[AREA_PLANES] = { "planes", sizeof(uint32_t), 0, OBJECTS_MAX },
 	[AREA_PAIRS] = { "pairs", sizeof(ob_pair_key), 0, PAIRS_MAX },
 	[AREA_RECORDS] = { "contact points", sizeof(ob_saved_record), 0, PAIRS_MAX },
+	[AREA_SCRIPT_TURNS] = { "scripts' schedule", sizeof(ob_script_turn), 0, OBJECTS_MAX },
+	[AREA_SCRIPT_CELLS] = { "scripts' state", sizeof(ob_script_cell), 0, OBJECTS_MAX },
+	[AREA_SCRIPT_TEXTS] = { "scripts", 1, 0, SCRIPTS_MAX },
 };
 
 // Points the arrays into the file's memory.
@@ -71,6 +77,9 @@ static void bind(ob_saved_run *r, const ob_checkpoint_file *f)
 	u->plane = f->area[AREA_PLANES].at;
 	u->pair = f->area[AREA_PAIRS].at;
 	u->record = f->area[AREA_RECORDS].at;
+	u->script_turn = f->area[AREA_SCRIPT_TURNS].at;
+	u->script_cell = f->area[AREA_SCRIPT_CELLS].at;
+	u->script_text = f->area[AREA_SCRIPT_TEXTS].at;
 }
 
 // ---- saving
@@ -111,13 +120,23 @@ bool ob_saved_run_make(ob_saved_run *r, ob_checkpoint_file *f, ob_host *h, const
 		return ob_fail(e, "the run does not stand between two steps");
 	clock_gettime(CLOCK_REALTIME, &now);
 	r->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-	uint64_t count[AREAS] = { [AREA_FACTS] = 1,           [AREA_SCENE] = strlen(r->scene) + 1,
-				  [AREA_TEXT] = r->text_size, [AREA_DEFINES] = defines_bytes(&r->options),
-				  [AREA_COUNTERS] = 1,        [AREA_SLOTS] = r->host.population.count,
-				  [AREA_PASSPORTS] = u->ids,  [AREA_MOTIONS] = u->ids,
-				  [AREA_SCHEDULE] = u->ids,   [AREA_BOUNDS] = u->ids,
-				  [AREA_NEIGHBOURS] = u->ids, [AREA_PLANES] = u->planes,
-				  [AREA_PAIRS] = u->pairs,    [AREA_RECORDS] = u->records };
+	uint64_t count[AREAS] = { [AREA_FACTS] = 1,
+				  [AREA_SCENE] = strlen(r->scene) + 1,
+				  [AREA_TEXT] = r->text_size,
+				  [AREA_DEFINES] = defines_bytes(&r->options),
+				  [AREA_COUNTERS] = 1,
+				  [AREA_SLOTS] = r->host.population.count,
+				  [AREA_PASSPORTS] = u->ids,
+				  [AREA_MOTIONS] = u->ids,
+				  [AREA_SCHEDULE] = u->ids,
+				  [AREA_BOUNDS] = u->ids,
+				  [AREA_NEIGHBOURS] = u->ids,
+				  [AREA_PLANES] = u->planes,
+				  [AREA_PAIRS] = u->pairs,
+				  [AREA_RECORDS] = u->records,
+				  [AREA_SCRIPT_TURNS] = u->script_cells,
+				  [AREA_SCRIPT_CELLS] = u->script_cells,
+				  [AREA_SCRIPT_TEXTS] = u->script_bytes };
 	for (int i = 0; i < AREAS; i++)
 		if (count[i] > rules[i].most)
 			return ob_fail(e, "a checkpoint has no room for so many %s", rules[i].name);
@@ -137,6 +156,8 @@ static bool lengths_agree(const ob_checkpoint_file *f)
 	for (int i = AREA_PASSPORTS; i <= AREA_NEIGHBOURS; i++)
 		if (f->area[i].count != ids)
 			return false;
+	if (f->area[AREA_SCRIPT_TURNS].count != f->area[AREA_SCRIPT_CELLS].count)
+		return false;
 	return f->area[AREA_PLANES].count <= ids && f->area[AREA_RECORDS].count <= f->area[AREA_PAIRS].count &&
 	       ids <= f->area[AREA_SLOTS].count;
 }
@@ -194,6 +215,8 @@ static bool open_universe(ob_saved_run *r, const ob_checkpoint_file *f, const ch
 	u->planes = (uint32_t)f->area[AREA_PLANES].count;
 	u->pairs = (uint32_t)f->area[AREA_PAIRS].count;
 	u->records = (uint32_t)f->area[AREA_RECORDS].count;
+	u->script_cells = (uint32_t)f->area[AREA_SCRIPT_TURNS].count;
+	u->script_bytes = (uint32_t)f->area[AREA_SCRIPT_TEXTS].count;
 	r->host.population.count = (uint32_t)f->area[AREA_SLOTS].count;
 	memcpy(&r->host.counters, f->area[AREA_COUNTERS].at, sizeof r->host.counters);
 	return ob_saved_universe_check(u, &why) || ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);

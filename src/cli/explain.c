@@ -109,14 +109,15 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 		line(f, "tolerance", "none: every island takes %" PRIu32 " substeps", x->settings->substeps);
 }
 
-static void explain_rest(const ob_run_request *q, FILE *f)
+static void explain_rest(const ob_run_request *q, const ob_scene *scene, FILE *f)
 {
 	line(f, "renderer", q->frames.wanted ? "frames were asked for" : "none: no frames were asked for");
 	line(f, "recorder", q->record ? "--record" : "none: nothing was to be recorded");
 	line(f, "measuring",
 	     q->measure == OB_MEASURE_STEPS ? "energy, momentum and penetration of each step (--measure step)"
 					    : "only of the start and the end (--measure)");
-	line(f, "Lua", "none: it ended when the scene had been read");
+	line(f, "Lua",
+	     scene->scripts ? "objects' scripts, when they are due" : "none: it ended when the scene had been read");
 	line(f, "one world", "none: each object is a simulator of its own");
 }
 
@@ -133,6 +134,7 @@ static void print_costs(const ob_explained *x, FILE *f)
 		[OB_PROFILE_MOVE] = "turning, predicting, displacing",
 		[OB_PROFILE_PROJECT] = "penetrations pushed apart",
 		[OB_PROFILE_PUBLISH] = "motions into their slots",
+		[OB_PROFILE_SCRIPTS] = "objects' scripts",
 	};
 	double rest = x->cpu_s;
 	ob_quantity q;
@@ -154,7 +156,7 @@ void ob_explain_print(const ob_explained *x, FILE *f)
 	fputs("  what was modelled, and what was not\n", f);
 	explain_motion(x, &t, f);
 	explain_contact(x, &t, f);
-	explain_rest(x->request, f);
+	explain_rest(x->request, x->scene, f);
 	fprintf(f, "  what it cost: %s of CPU\n", ob_quantity_text(&q, x->cpu_s, "s"));
 	print_costs(x, f);
 }

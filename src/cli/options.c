@@ -15,7 +15,8 @@ enum {
 	LAB = OB_COMMAND_LAB,
 	PAPER = OB_COMMAND_PAPER,
 	INSPECT = OB_COMMAND_INSPECT,
-	SERVE = OB_COMMAND_SERVE
+	SERVE = OB_COMMAND_SERVE,
+	SEND = OB_COMMAND_SEND
 };
 
 const ob_option ob_option_table[OB_OPTIONS] = {
@@ -136,7 +137,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
 	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end",
-			     RUN | COMPARE | TOP | LAB | PAPER | INSPECT | SERVE, 'h' },
+			     RUN | COMPARE | TOP | LAB | PAPER | INSPECT | SERVE | SEND, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -274,7 +275,7 @@ bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **
 		} else if (!only_operands && argv[i][0] == '-' && argv[i][1]) {
 			if (!take_option(a, argc, argv, &i, e))
 				return false;
-		} else if (a->operand && command != OB_COMMAND_LAB) {
+		} else if (a->operand && command != OB_COMMAND_LAB && command != OB_COMMAND_SEND) {
 			return ob_fail(e, "unexpected '%s' after '%s': one %s at a time", argv[i], a->operand,
 				       command == OB_COMMAND_TOP       ? "universe"
 				       : command == OB_COMMAND_INSPECT ? "checkpoint"
@@ -306,6 +307,8 @@ static const struct {
 	  "Runs a scene as one world, as threads and as processes, and prints one table." },
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
+	{ OB_COMMAND_SEND, "obsim send NAME create|remove|colour|message ...",
+	  "Asks a running universe to change an object, or sends its script a message." },
 	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",
 	  "Says what a checkpoint holds, and whether it is whole." },
 	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",
@@ -342,6 +345,12 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		fputs("\nobsim run --resume FILE [OPTION ...] goes on with the scene and the settings of the "
 		      "checkpoint.\nobsim run --replay FILE.h5 --frames DIR draws what was recorded, with the options "
 		      "under Frames.\n",
+		      f);
+	if (command == OB_COMMAND_SEND)
+		fputs("\nobsim send NAME create 'sphere { radius = .3, at = { 0, 0, 5 } }'   as a scene says it\n"
+		      "obsim send NAME remove OBJECT                                        by its name or number\n"
+		      "obsim send NAME colour OBJECT '#rrggbb'\n"
+		      "obsim send NAME message OBJECT VALUE ...                             for its on_message; -- before a -1\n",
 		      f);
 	if (command == OB_COMMAND_LAB)
 		fputs("\nA CASE is a name, a row of the table (14), or the start or pattern of names (stack, '*-10'); "

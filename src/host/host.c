@@ -30,16 +30,23 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "substeps: must be at least 1");
 	if (r->tolerance > 0 && r->substeps > OB_MAX_SUBSTEPS)
 		return ob_fail(e, "substeps: a tolerance chooses %d at most, not %u", OB_MAX_SUBSTEPS, r->substeps);
-	if (c->workers > WORKERS_MAX || (c->workers == 0 && (uint64_t)scene->objects + c->spare > WORKERS_MAX))
+	if (c->workers > WORKERS_MAX ||
+	    (c->workers == 0 && (uint64_t)scene->objects + c->spare + (scene->scripts ? scene->room : 0) > WORKERS_MAX))
 		return ob_fail(e, "workers: at most %d, asked for %llu", WORKERS_MAX,
 			       c->workers ? (unsigned long long)c->workers
-					  : (unsigned long long)scene->objects + c->spare);
+					  : (unsigned long long)scene->objects + c->spare +
+						    (scene->scripts ? scene->room : 0));
 	if (c->harden && (c->isolation != OB_ISOLATION_PROCESS || r->monolith))
 		return ob_fail(e, "harden: only object simulators in processes can be contained");
 	if (c->on_death == OB_ON_DEATH_FREEZE && r->monolith)
 		return ob_fail(e, "on death: a monolith is one simulator, without which there is nothing to go on");
 	if (c->limit.deaths > OB_RESTART_LIMIT_MAX || (c->limit.deaths && !(c->limit.seconds > 0)))
 		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
+	if (scene->scripts && c->on_death == OB_ON_DEATH_FREEZE)
+		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
+	if (scene->scripts && (c->harden || r->monolith))
+		return ob_fail(e, "%s: the scene has scripts, which only object simulators run that write the universe",
+			       c->harden ? "harden" : "arch monolith");
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))
 			return false;
@@ -57,10 +64,43 @@ static void raise_task_limit(void)
 	}
 }
 
+// The texts of all scripts with their directory, as the universe keeps them; NULL: no memory. The caller frees it.
+static ob_script_directory *script_texts(const ob_scene *scene, uint32_t *bytes)
+{
+	uint32_t size = sizeof(ob_script_directory);
+	for (uint32_t i = 0; i < scene->scripts; i++)
+		size += scene->script[i].size;
+	ob_script_directory *d = calloc(1, size);
+	if (!d)
+		return NULL;
+	*bytes = size;
+	d->scripts = scene->scripts;
+	size = sizeof *d;
+	for (uint32_t i = 0; i < scene->scripts; i++) {
+		const ob_script_def *s = &scene->script[i];
+		memcpy(d->text[i].name, s->name, sizeof d->text[i].name);
+		d->text[i].offset = size;
+		d->text[i].size = s->size;
+		memcpy((char *)d + size, s->text, s->size);
+		size += s->size;
+	}
+	return d;
+}
+
+static uint32_t scripted_objects(const ob_scene *scene)
+{
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < scene->objects; i++)
+		n += scene->object[i].script > 0;
+	return n;
+}
+
 static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c, const ob_spawn *spawn, ob_error *e)
 {
 	bool one_per_object = c->workers == 0 && !c->run.monolith;
 	uint32_t spare = one_per_object || c->spare > POOL_SPARE ? c->spare : POOL_SPARE;
+	if (scene->scripts)
+		spare += scene->room;
 	uint32_t capacity = scene->objects + spare > 0 ? scene->objects + spare : 1;
 	if (c->from && c->from->population.count > capacity)
 		capacity = c->from->population.count;
@@ -78,7 +118,20 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 	setup.run.one_per_object = one_per_object;
 	setup.run.freezes = c->on_death == OB_ON_DEATH_FREEZE;
 	setup.workers += c->harden; // the arranger
-	return ob_universe_create(&setup, e);
+	ob_script_directory *texts = NULL;
+	if (scene->scripts) {
+		texts = script_texts(scene, &setup.script_bytes);
+		if (!texts)
+			return ob_fail(e, "out of memory"), NULL;
+		setup.script_text = texts;
+		setup.script_cells = scripted_objects(scene) + scene->room;
+		setup.script_cells += !setup.script_cells;
+		if (c->from && c->from->universe.script_cells > setup.script_cells)
+			setup.script_cells = c->from->universe.script_cells;
+	}
+	ob_universe *u = ob_universe_create(&setup, e);
+	free(texts);
+	return u;
 }
 
 static bool start_timeline(ob_host *h, const char *path, ob_error *e)
@@ -181,7 +234,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	h->wake_fd = h->interrupt_fd = -1;
+	h->wake_fd = h->interrupt_fd = h->ask_fd = -1;
 	h->patience = config->patience > 0 ? config->patience : default_patience;
 	h->on_death = config->on_death;
 	h->limit = config->limit;
@@ -319,12 +372,18 @@ static bool request(ob_host *h, const ob_request *r)
 bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e)
 {
 	return ob_object_check(def, e) &&
-	       (request(h, &(ob_request){ .add = true, .def = *def }) || ob_fail(e, "out of memory"));
+	       (request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = *def }) || ob_fail(e, "out of memory"));
+}
+
+bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e)
+{
+	return (r->kind != OB_REQUEST_ADD || ob_object_check(&r->def, e)) &&
+	       (request(h, r) || ob_fail(e, "out of memory"));
 }
 
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation)
 {
-	return request(h, &(ob_request){ .id = id, .generation = generation });
+	return request(h, &(ob_request){ .kind = OB_REQUEST_REMOVE, .id = id, .generation = generation });
 }
 
 void ob_host_stop(ob_host *h)

@@ -91,6 +91,8 @@ uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT]);
 // false: no memory, or, add, the definition makes no sense, and e says why. remove: nothing happens if another generation has the id by then.
 bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e);
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation);
+// Any of them: as ob_host_request_add, whose check it makes. Any thread.
+bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e);
 // With a trace: what the calling thread, the one that starts and stops the host, has done since begin (ob_clock_ns).
 void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t number);
 // Ends the trace's file; stop does so, too. false and e if it is not whole. Without a trace: true, and no events.

@@ -10,6 +10,8 @@
 #include "host/spawn.h"
 #include "table/checkpoint.h"
 
+enum { OB_SCRIPTS_TOLD = 20 }; // errors of scripts that are told one by one
+
 // A run interval: from one opening of the gate to the next pause. Host and supervisor may both make it end early.
 typedef struct ob_interval {
 	pthread_mutex_t lock;
@@ -57,6 +59,7 @@ struct ob_host {
 	bool supervised;
 	atomic_bool dismissed; // the supervisor is to end
 	int wake_fd, interrupt_fd; // ends the supervisor; SIGINT and its kin
+	int ask_fd; // by which other programs ask for something (host/ask.h)
 	atomic_uint running_workers; // that have not ended
 	atomic_bool interrupted, failed, ending;
 	pthread_mutex_t failure_lock;
@@ -64,6 +67,10 @@ struct ob_host {
 
 	ob_restart_state restart;
 	ob_interval interval;
+	struct {
+		uint32_t failed, told, more; // as counted when it was looked last; of whom it was said; not said
+		uint64_t who[OB_SCRIPTS_TOLD]; // generation << 32 | id
+	} scripts; // that errors have stopped
 	uint64_t target; // the caller's
 	bool started; // the gate was opened once
 	double patience; // s
@@ -87,6 +94,8 @@ struct ob_host {
 void ob_host_set_failure(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // Tells the workers to leave. Any thread.
 void ob_host_halt(ob_host *h);
+// Warns of scripts that were stopped since the last call. Paused.
+void ob_host_tell_of_scripts(ob_host *h);
 // Makes the running interval end at the next step boundary. Any thread.
 void ob_host_pause_early(ob_host *h);
 

@@ -1,5 +1,6 @@
 #include "host/population.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <urcu/wfcqueue.h>
@@ -7,6 +8,7 @@
 #include "base/log.h"
 #include "host/rcu_tsan.h"
 #include "ode/ode_body.h"
+#include "scene/random.h"
 #include "sim/sim.h"
 
 // An entry of the timetable.
@@ -23,6 +25,7 @@ typedef struct slot {
 	uint32_t generation; // of its latest object
 	unsigned char use; // slot_use
 	bool removal_scheduled; // the timetable will remove its object
+	bool created; // by a script
 } slot;
 
 struct ob_population {
@@ -33,6 +36,14 @@ struct ob_population {
 	event *events; // the timetable: ascending by step; at one step removals first
 	size_t event_count, next;
 	bool changed;
+	bool asked; // by somebody outside, in the last update
+	uint32_t first_free; // no slot below it is free
+	uint32_t created; // objects that scripts have created, and that exist
+	struct {
+		slot *slots; // NULL: none kept
+		size_t next;
+		uint32_t first_free, created;
+	} kept;
 };
 
 // ---- requests
@@ -137,7 +148,26 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 
 // ---- changes
 
-static void add_object(ob_population *p, uint32_t id, const ob_object_def *def)
+// Numbers of its own for each object that ever has the slot.
+static void seed_random(const ob_population *p, uint32_t id, uint64_t random[4])
+{
+	ob_random r;
+	ob_random_seed(&r, p->scene->seed ^ (((uint64_t)p->slots[id].generation << 32 | id) + 1) * 0x9e3779b97f4a7c15u);
+	memcpy(random, r.s, sizeof r.s);
+}
+
+static void give_script(ob_population *p, uint32_t id, const ob_object_def *def, const unsigned char *state)
+{
+	uint64_t random[4];
+	if (!def->script)
+		return;
+	seed_random(p, id, random);
+	if (!ob_script_take_cell(p->u, id, def->script - 1, state, def->state_bytes, random))
+		ob_log_warn("object \"%s\" has no script: no room for it", def->passport.name);
+}
+
+// state: of its script, def->state_bytes
+static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, const unsigned char *state)
 {
 	ob_passport pass = def->passport;
 	pass.id = id;
@@ -152,7 +182,9 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def)
 	ob_write_passport(p->u, id, &pass);
 	ob_sim_place(p->u, id, &def->state);
 	p->slots[id].use = SLOT_PRESENT;
+	p->slots[id].created = false;
 	p->changed = true;
+	give_script(p, id, def, state);
 }
 
 static void remove_object(ob_population *p, uint32_t id)
@@ -160,7 +192,11 @@ static void remove_object(ob_population *p, uint32_t id)
 	slot *s = &p->slots[id];
 	if (s->use != SLOT_PRESENT)
 		return;
+	ob_script_free_cell(p->u, id);
 	ob_sim_remove(p->u, id);
+	p->created -= s->created;
+	s->created = false;
+	p->first_free = id < p->first_free ? id : p->first_free;
 	s->use = s->removal_scheduled ? SLOT_RESERVED
 				      : SLOT_FREE; // else the timetable would remove the slot's next object
 	p->changed = true;
@@ -171,22 +207,122 @@ static void remove_scheduled(ob_population *p, uint32_t id)
 	p->slots[id].removal_scheduled = false;
 	remove_object(p, id);
 	p->slots[id].use = SLOT_FREE;
+	p->first_free = id < p->first_free ? id : p->first_free;
 }
 
-static void add_on_request(ob_population *p, const ob_object_def *def)
+// Into the lowest free slot, which it returns; UINT32_MAX: there is none, and a warning says so.
+static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const unsigned char *state)
 {
-	uint32_t capacity = ob_universe_capacity(p->u);
-	for (uint32_t id = 0; id < capacity; id++) {
-		if (p->slots[id].use == SLOT_FREE) {
-			ob_error e;
-			if (ob_universe_reserve(p->u, id + 1, &e))
-				add_object(p, id, def);
-			else
-				ob_log_warn("object \"%s\" was not added: %s", def->passport.name, e.text);
-			return;
+	const uint32_t capacity = ob_universe_capacity(p->u);
+	uint32_t id = p->first_free;
+	ob_error e;
+	while (id < capacity && p->slots[id].use != SLOT_FREE)
+		id++;
+	p->first_free = id;
+	if (id == capacity) {
+		ob_log_warn("object \"%s\" was not added: all %u slots are taken", def->passport.name, capacity);
+		return UINT32_MAX;
+	}
+	if (!ob_universe_reserve(p->u, id + 1, &e)) {
+		ob_log_warn("object \"%s\" was not added: %s", def->passport.name, e.text);
+		return UINT32_MAX;
+	}
+	ob_object_def named = *def;
+	char *name = named.passport.name;
+	const size_t n = strnlen(name, OB_NAME_MAX);
+	if (n > 0 && n < OB_NAME_MAX - 12 && name[n - 1] == '#') // a script's, which does not know its id
+		snprintf(name + n, OB_NAME_MAX - n, "%u", id);
+	add_object(p, id, &named, state);
+	return id;
+}
+
+// ---- what scripts ask for
+
+// It has asked for what cannot be: its script is stopped, and says why.
+static void stop_script(ob_population *p, uint32_t cell, uint32_t line, const char *why)
+{
+	ob_step_data *data = ob_universe_step_data(p->u);
+	ob_script_turn *turn = &data->script_turn[cell];
+	ob_script_cell *c = &data->script_cell[cell];
+	const uint32_t script = turn->script - 1;
+	turn->flags |= OB_SCRIPT_STOPPED;
+	c->failed_step = (uint32_t)ob_step_count(p->u);
+	snprintf(c->error, sizeof c->error, "%.47s:%u: %s",
+		 script < data->script_text->scripts ? data->script_text->text[script].name : "?", line, why);
+	data->script_counts->failed++;
+}
+
+// What lies in the universe is not taken for granted.
+static void create_for_script(ob_population *p, uint32_t cell, const ob_script_post *post)
+{
+	const ob_step_data *data = ob_universe_step_data(p->u);
+	ob_object_def def;
+	ob_error e;
+	if (data->script_turn[cell].flags & OB_SCRIPT_STOPPED || post->used < sizeof def)
+		return;
+	memcpy(&def, post + 1, sizeof def);
+	if (post->used - sizeof def < def.state_bytes || def.script > data->script_text->scripts)
+		return;
+	if (!ob_object_check(&def, &e)) {
+		stop_script(p, cell, post->line, e.text);
+		return;
+	}
+	if (p->created >= p->scene->room) {
+		char why[160];
+		snprintf(why, sizeof why,
+			 "%u objects that scripts have created exist, and the scene has no room for more: "
+			 "remove some, or give it more with scene { room = ... }",
+			 p->created);
+		stop_script(p, cell, post->line, why);
+		return;
+	}
+	const uint32_t id = add_on_request(p, &def, (const unsigned char *)(post + 1) + sizeof def);
+	if (id == UINT32_MAX)
+		return;
+	p->slots[id].created = true;
+	p->created++;
+}
+
+static void carry_out_scripts(ob_population *p)
+{
+	const ob_step_data *data = ob_universe_step_data(p->u);
+	ob_script_counts *count = data->script_counts;
+	const uint32_t capacity = ob_universe_capacity(p->u);
+	if (!count || !count->requests)
+		return;
+	count->requests = 0;
+	for (uint32_t i = 0; i < count->due && i < data->script_cells; i++) {
+		const uint32_t cell = data->script_due[i];
+		if (cell >= data->script_cells || !data->script_turn[cell].script)
+			continue;
+		const ob_script_cell *c = &data->script_cell[cell];
+		for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {
+			const ob_script_post *post = (const ob_script_post *)(const void *)(c->outbox + at);
+			at += (uint32_t)sizeof *post + post->bytes;
+			if (at > OB_SCRIPT_OUTBOX_BYTES || post->used > post->bytes)
+				break;
+			if (post->kind == OB_SCRIPT_CREATE)
+				create_for_script(p, cell, post);
+			else if (post->kind == OB_SCRIPT_REMOVE && post->object < capacity &&
+				 p->slots[post->object].generation == post->generation)
+				remove_object(p, post->object);
 		}
 	}
-	ob_log_warn("object \"%s\" was not added: all %u slots are taken", def->passport.name, capacity);
+}
+
+// One that exists.
+static void change_on_request(ob_population *p, const ob_request *r)
+{
+	ob_passport pass = *ob_passport_of(p->u, r->id);
+	if (r->kind == OB_REQUEST_REMOVE) {
+		remove_object(p, r->id);
+	} else if (r->kind == OB_REQUEST_MESSAGE) {
+		if (!ob_script_deliver(p->u, r->id, r->values, r->bytes))
+			ob_log_warn("object \"%.*s\" got no message: too many wait for it", OB_NAME_MAX, pass.name);
+	} else {
+		memcpy(pass.colour, r->colour, sizeof pass.colour);
+		ob_write_passport(p->u, r->id, &pass);
+	}
 }
 
 static void publish_roster(ob_population *p)
@@ -216,20 +352,60 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	for (; p->next < p->event_count && p->events[p->next].step <= step; p->next++) {
 		event *due = &p->events[p->next];
 		if (due->add)
-			add_object(p, due->id, &p->scene->object[due->id]);
+			add_object(p, due->id, &p->scene->object[due->id],
+				   p->scene->states + p->scene->object[due->id].state_at);
 		else
 			remove_scheduled(p, due->id);
 	}
+	carry_out_scripts(p);
+	p->asked = false;
 	while (ob_requests_take(q, &r)) {
-		if (r.add)
-			add_on_request(p, &r.def);
-		else if (r.id < ob_universe_capacity(p->u) && p->slots[r.id].generation == r.generation)
-			remove_object(p, r.id);
+		p->asked = true;
+		if (r.kind == OB_REQUEST_ADD)
+			add_on_request(p, &r.def, NULL);
+		else if (r.id < ob_universe_capacity(p->u) && p->slots[r.id].generation == r.generation &&
+			 p->slots[r.id].use == SLOT_PRESENT)
+			change_on_request(p, &r);
 	}
 	bool changed = p->changed;
 	if (changed)
 		publish_roster(p);
 	return changed;
+}
+
+bool ob_population_repeats(const ob_population *p)
+{
+	return p->scene->scripts > 0;
+}
+
+bool ob_population_was_asked(const ob_population *p)
+{
+	return p->asked;
+}
+
+bool ob_population_keep(ob_population *p)
+{
+	const size_t bytes = ob_universe_capacity(p->u) * sizeof *p->slots;
+	if (!p->kept.slots)
+		p->kept.slots = malloc(bytes);
+	if (!p->kept.slots)
+		return false;
+	memcpy(p->kept.slots, p->slots, bytes);
+	p->kept.next = p->next;
+	p->kept.first_free = p->first_free;
+	p->kept.created = p->created;
+	return true;
+}
+
+void ob_population_put_back(ob_population *p)
+{
+	if (!p->kept.slots)
+		return;
+	memcpy(p->slots, p->kept.slots, ob_universe_capacity(p->u) * sizeof *p->slots);
+	p->next = p->kept.next;
+	p->first_free = p->kept.first_free;
+	p->created = p->kept.created;
+	publish_roster(p);
 }
 
 uint64_t ob_population_next_step(const ob_population *p)
@@ -249,7 +425,7 @@ void ob_population_save(const ob_population *p, ob_saved_population *out)
 {
 	for (uint32_t id = 0; id < out->count; id++) {
 		const slot *s = &p->slots[id];
-		out->slot[id] = (ob_saved_slot){ s->generation, s->use, s->removal_scheduled, { 0 } };
+		out->slot[id] = (ob_saved_slot){ s->generation, s->use, s->removal_scheduled, s->created, 0 };
 	}
 }
 
@@ -257,8 +433,8 @@ static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot 
 {
 	const ob_passport *pass = ob_passport_of(p->u, id);
 	const bool present = id < ob_universe_ids(p->u) && pass->flags & OB_OBJECT_PRESENT;
-	return s->use <= SLOT_PRESENT && s->removal_scheduled <= 1 && present == (s->use == SLOT_PRESENT) &&
-	       (!present || pass->generation == s->generation);
+	return s->use <= SLOT_PRESENT && s->removal_scheduled <= 1 && s->created <= 1 &&
+	       present == (s->use == SLOT_PRESENT) && (!present || pass->generation == s->generation);
 }
 
 // What the saved objects are made of is checked as if they were added now.
@@ -283,7 +459,8 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 		const ob_saved_slot *from = &s->slot[id];
 		if (!check_slot(p, id, from))
 			return ob_fail(e, "slot %u makes no sense", id);
-		p->slots[id] = (slot){ from->generation, from->use, from->removal_scheduled };
+		p->slots[id] = (slot){ from->generation, from->use, from->removal_scheduled, from->created };
+		p->created += from->created;
 	}
 	p->next = s->events;
 	publish_roster(p);
@@ -348,5 +525,6 @@ void ob_population_destroy(ob_population *p)
 		return;
 	free(p->events);
 	free(p->slots);
+	free(p->kept.slots);
 	free(p);
 }

@@ -10,14 +10,24 @@
 #include "scene/scene.h"
 #include "table/table.h"
 
-// Requests to add or remove objects, kept until the next step boundary: a wait-free queue of liburcu. Any number of
+// Requests to add, remove or colour objects, or to send them a message, kept until the next step boundary: a wait-free queue of liburcu. Any number of
 // threads push, one takes.
 typedef struct ob_requests ob_requests;
 
+typedef enum ob_request_kind {
+	OB_REQUEST_ADD,
+	OB_REQUEST_REMOVE,
+	OB_REQUEST_COLOUR,
+	OB_REQUEST_MESSAGE, // to the object's script
+} ob_request_kind;
+
 typedef struct ob_request {
-	bool add;
-	uint32_t id, generation; // to remove
+	uint32_t kind; // ob_request_kind
+	uint32_t id, generation; // of the object, unless one is added
 	ob_object_def def; // to add
+	float colour[4]; // linear
+	uint32_t bytes; // of the message
+	unsigned char values[512]; // flat (scene/flat.h)
 } ob_request;
 
 ob_requests *ob_requests_create(void); // NULL: out of memory
@@ -38,6 +48,14 @@ void ob_population_destroy(ob_population *p);
 
 // Carries out what the timetable has due at this step or before, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
+// For a checkpoint in memory (table/checkpoint.h): keeps what it knows beside the universe, and puts it back. So what
+// the timetable and scripts do is done again by a run that begins anew there.
+bool ob_population_keep(ob_population *p); // false: out of memory
+void ob_population_put_back(ob_population *p);
+// Whether it does: where the scene has scripts.
+bool ob_population_repeats(const ob_population *p);
+// Whether the last update has carried out requests that came from outside, which nobody repeats.
+bool ob_population_was_asked(const ob_population *p);
 // The next step at which something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);
 
@@ -46,7 +64,8 @@ typedef struct ob_saved_slot {
 	uint32_t generation; // of its latest object
 	uint8_t use; // 0 = free, 1 = reserved: the timetable has another event for it, 2 = present
 	uint8_t removal_scheduled; // 1 = the timetable will remove its object
-	uint8_t zero[2];
+	uint8_t created; // 1 = by a script
+	uint8_t zero;
 } ob_saved_slot;
 
 typedef struct ob_saved_population {

@@ -69,7 +69,8 @@ void ob_restart_checkpoint(ob_host *h, bool changed, bool frozen)
 		return;
 	double began = ob_clock_wall();
 	bool progress = frozen || ob_step_count(h->u) > ob_checkpoint_step(r->checkpoint);
-	r->current = ob_checkpoint_take(r->checkpoint, h->u);
+	r->current = ob_checkpoint_take(r->checkpoint, h->u) &&
+		     (!ob_population_repeats(h->population) || ob_population_keep(h->population));
 	r->taken_at = ob_clock_wall();
 	r->cost = r->taken_at - began;
 	r->spent += r->cost;
@@ -318,6 +319,8 @@ bool ob_restart(ob_host *h)
 		    (unsigned long long)step);
 	back_off(h);
 	ob_checkpoint_put_back(r->checkpoint, h->u);
+	if (ob_population_repeats(h->population))
+		ob_population_put_back(h->population);
 	r->requested = false;
 	if (h->interrupted)
 		return false;

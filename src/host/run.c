@@ -5,6 +5,8 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/log.h"
+#include "base/utf8.h"
 #include "host/host_state.h"
 #include "host/restart.h"
 #include "host/stall.h"
@@ -55,7 +57,10 @@ static void begin_interval(ob_host *h)
 	ob_interval *interval = &h->interval;
 	uint64_t step = ob_step_count(h->u);
 	const bool changed = ob_population_update(h->population, step, h->requests), frozen = ob_restart_freeze(h);
-	ob_restart_checkpoint(h, changed, frozen);
+	const bool beyond_recall =
+		ob_population_repeats(h->population) ? ob_population_was_asked(h->population) : changed;
+	ob_restart_checkpoint(h, beyond_recall, frozen);
+	ob_host_tell_of_scripts(h);
 	if (h->started && step >= h->target)
 		return;
 	uint64_t next = ob_population_next_step(h->population), retry = ob_restart_next_step(h);
@@ -144,6 +149,43 @@ void ob_host_go(ob_host *h, uint64_t step)
 		begin_interval(h);
 }
 
+// Says once of each object whose script an error has stopped, in whichever life of the simulators.
+static void tell_of_script(ob_host *h, uint32_t cell)
+{
+	const ob_step_data *data = ob_universe_step_data(h->u);
+	const ob_script_turn *turn = &data->script_turn[cell];
+	char error[OB_SCRIPT_ERROR_BYTES + 1] = "";
+	memcpy(error, data->script_cell[cell].error, OB_SCRIPT_ERROR_BYTES);
+	ob_utf8_make_plain(error);
+	const uint64_t who = (uint64_t)turn->generation << 32 | turn->object;
+	for (uint32_t i = 0; i < h->scripts.told; i++)
+		if (h->scripts.who[i] == who)
+			return;
+	if (h->scripts.told < OB_SCRIPTS_TOLD)
+		h->scripts.who[h->scripts.told++] = who;
+	else if (h->scripts.more++ > 0)
+		return;
+	if (h->scripts.more)
+		ob_log_warn("more scripts were stopped: the report has their number");
+	else
+		ob_log_warn("the script of object %u (%.*s) was stopped at %g s: %s", turn->object, OB_NAME_MAX,
+			    ob_passport_of(h->u, turn->object)->name,
+			    data->script_cell[cell].failed_step * ob_universe_settings(h->u)->step_length, error);
+}
+
+void ob_host_tell_of_scripts(ob_host *h)
+{
+	const ob_step_data *data = ob_universe_step_data(h->u);
+	const ob_script_counts *count = data->script_counts;
+	if (!count || count->failed == h->scripts.failed)
+		return;
+	h->scripts.failed = count->failed;
+	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
+		if (data->script_turn[i].script && data->script_turn[i].flags & OB_SCRIPT_STOPPED &&
+		    data->script_turn[i].object < data->objects_max)
+			tell_of_script(h, i);
+}
+
 // A gate that was stopped looks like a pause: the step then falls short of the interval's end.
 static bool at_interval_end(ob_host *h)
 {
@@ -226,7 +268,7 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 			report_damage(h, find_damage(h));
 		} else if (failure) {
 			report_failure(h, failure);
-		} else if (turn && at_interval_end(h)) {
+		} else if (turn && (at_interval_end(h) || ob_sim_awaits_requests(h->u))) {
 			end_interval(h);
 			if (!h->interrupted)
 				begin_interval(h);

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "host/ask.h"
 #include "host/host_state.h"
 #include "host/restart.h"
 
@@ -97,7 +98,7 @@ static void on_fork_server_end(ob_host *h)
 }
 
 // Returns false when the supervisor is to end.
-static bool handle_events(ob_host *h, struct pollfd fds[4])
+static bool handle_events(ob_host *h, struct pollfd fds[5])
 {
 	ob_worker_end end;
 	if (fds[0].revents)
@@ -117,22 +118,25 @@ static bool handle_events(ob_host *h, struct pollfd fds[4])
 		fds[3].fd = -1;
 		ob_host_pause_early(h);
 	}
+	if (fds[4].revents)
+		ob_ask_answer(h, h->ask_fd);
 	return true;
 }
 
 static void *supervise(void *argument)
 {
 	ob_host *h = argument;
-	struct pollfd fds[4] = {
+	struct pollfd fds[5] = {
 		{ .fd = h->wake_fd, .events = POLLIN },
 		{ .fd = h->spawn->fd(h->group), .events = POLLIN },
 		{ .fd = ob_fork_server_fd(h->fork_server) }, // only POLLHUP
 		{ .fd = h->interrupt_fd, .events = POLLIN },
+		{ .fd = h->ask_fd, .events = POLLIN },
 	};
 	double refreshed = 0;
 	pthread_setname_np(pthread_self(), "supervisor");
 	for (;;) {
-		if (poll(fds, 4, REFRESH_MS) < 0)
+		if (poll(fds, 5, REFRESH_MS) < 0)
 			continue;
 		if (h->dismissed || !handle_events(h, fds))
 			return NULL;
@@ -150,6 +154,7 @@ bool ob_supervisor_start(ob_host *h, ob_error *e)
 	h->wake_fd = eventfd(0, EFD_CLOEXEC);
 	if (h->wake_fd < 0)
 		return ob_fail(e, "cannot make an event for the supervisor: %s", strerror(errno));
+	h->ask_fd = ob_ask_listen(ob_universe_name(h->u));
 	ob_interrupt_leave_to_main(&before);
 	int error = pthread_create(&h->supervisor, NULL, supervise, h);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -172,4 +177,7 @@ void ob_supervisor_stop(ob_host *h)
 	if (h->wake_fd >= 0)
 		close(h->wake_fd);
 	h->wake_fd = -1;
+	if (h->ask_fd >= 0)
+		close(h->ask_fd);
+	h->ask_fd = -1;
 }

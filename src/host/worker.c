@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "host/confine.h"
 #include "ode/ode_body.h"
+#include "script/script.h"
 #include "sim/sim.h"
 
 static _Thread_local jmp_buf no_memory;
@@ -28,6 +29,16 @@ static int live(ob_universe *u, uint32_t worker)
 	ob_ode_init();
 	ob_ode_thread_init();
 	ob_sim *s = ob_sim_create(u, worker, &e);
+	ob_script_runner *scripts = NULL;
+	if (s && ob_universe_step_data(u)->script_counts) {
+		scripts = ob_script_runner_create(u);
+		if (scripts) {
+			ob_sim_set_scripts(s, ob_script_runner_run, scripts);
+		} else {
+			ob_sim_destroy(s);
+			s = NULL;
+		}
+	}
 	if (s)
 		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from here on it is ready for the gate
 	bool ready = s && (!ob_universe_contains(u) || ob_confine(u, worker, !arranges, &e));
@@ -36,6 +47,7 @@ static int live(ob_universe *u, uint32_t worker)
 	else if (s)
 		ob_log_warn("worker %u: %s", worker, e.text);
 	ob_sim_destroy(s);
+	ob_script_runner_destroy(scripts);
 	ob_ode_thread_finish();
 	return ready ? EXIT_SUCCESS : s ? EXIT_FAILURE : OB_WORKER_NO_MEMORY;
 }

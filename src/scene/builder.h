@@ -37,6 +37,8 @@ typedef struct ob_builder {
 	uint32_t cameras;
 	char param[OB_SCENE_PARAMS_MAX][OB_NAME_MAX]; // names that the scene asked for
 	uint32_t params;
+	uint32_t states_room;
+	const char *path; // of the scene, from where files of scripts are found; NULL: there are none
 	ob_random random;
 	bool random_used;
 } ob_builder;
@@ -46,7 +48,14 @@ ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, con
 // NULL where no material has this name.
 const ob_material *ob_builder_material(const ob_builder *b, const char *name);
 
+// The number of the script that an object's field `script` says, which is made where it is new. Raises an error where
+// it is none.
+uint32_t ob_builder_script(lua_State *L, ob_builder *b, const char *where, const char *script);
+// Keeps an object's state; its place in the scene's states.
+uint32_t ob_builder_keep_state(lua_State *L, ob_builder *b, const unsigned char *bytes, uint32_t size);
+
 // lua_CFunctions
+int ob_scene_call_script(lua_State *L);
 int ob_scene_call_scene(lua_State *L);
 int ob_scene_call_record(lua_State *L);
 int ob_scene_call_sky(lua_State *L);

@@ -6,6 +6,7 @@
 
 #include "base/spelling.h"
 #include "scene/builder.h"
+#include "scene/flat.h"
 #include "scene/sandbox.h"
 #include "scene/text.h"
 
@@ -62,7 +63,8 @@ int ob_scene_call_material(lua_State *L)
 
 // What a call may say; NaN = not said.
 typedef struct body {
-	const char *name, *material;
+	const char *name, *material, *script;
+	ob_flat state; // of the script
 	ob_vec3 size, at, velocity, spin, force, normal;
 	double radius, length, height, mass, density, friction, restitution, born, dies;
 	ob_quat q, rotation;
@@ -80,7 +82,8 @@ typedef struct body {
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
 		F(at, .kind = OB_FIELD_VECTOR, .low = -1e7, .high = 1e7), \
 		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
-		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9)
+		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
+		F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT)
 #define MOVING \
 	F(mass, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e15), \
 		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
@@ -104,7 +107,11 @@ static const ob_field ground_fields[] = {
 	F(grid, .kind = OB_FIELD_BOOLEAN),
 	SURFACE,
 };
-#define READ(L, where, fields, to) ob_fields_read(L, 1, where, fields, sizeof fields / sizeof *fields, to)
+#define STATE_BYTES 1024 // as many as the universe keeps of an object (table/script_data.h)
+#define READ(L, where, fields, to) \
+	unsigned char state_bytes[STATE_BYTES]; \
+	(to)->state = (ob_flat){ state_bytes, 0, sizeof state_bytes }; \
+	ob_fields_read(L, 1, where, fields, sizeof fields / sizeof *fields, to)
 
 static const body nothing = {
 	.size = { NAN, NAN, NAN },
@@ -267,6 +274,15 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	o->state.pose.q = !isnan(d->q.w) ? d->q : !isnan(d->rotation.w) ? d->rotation : ob_quat_identity();
 	o->state.v = d->velocity;
 	o->state.w = d->spin;
+	if (d->state.size && !d->script)
+		ob_sandbox_fail(L, "%s.state: expected none where there is no script", kind);
+	if (d->script) {
+		const uint32_t script = ob_builder_script(L, b, kind, d->script);
+		const uint32_t at = ob_builder_keep_state(L, b, d->state.bytes, d->state.size);
+		o = &b->scene->object[b->scene->objects - 1];
+		o->script = script;
+		o->state_at = at, o->state_bytes = d->state.size;
+	}
 	o->born = d->born;
 	o->dies = d->dies;
 	return o;

@@ -10,6 +10,7 @@ typedef struct scene_fields {
 	const char *title;
 	double duration;
 	uint64_t seed;
+	uint32_t room;
 	ob_vec3 gravity;
 	ob_run_settings run; // what the scene leaves alone is unset
 } scene_fields;
@@ -19,6 +20,7 @@ static const ob_field own_fields[] = {
 	F(title, .kind = OB_FIELD_TEXT, .high = sizeof((ob_scene *)0)->title - 1),
 	F(gravity, .kind = OB_FIELD_VECTOR, .low = -1e4, .high = 1e4),
 	F(duration, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
+	F(room, .kind = OB_FIELD_COUNT, .low = 0, .high = OB_SCENE_ROOM_MAX),
 	F(seed, .kind = OB_FIELD_WHOLE, .low = 0, .high = 0x1p53),
 };
 #undef F
@@ -89,11 +91,12 @@ int ob_scene_call_scene(lua_State *L)
 	b->has_scene = true;
 	ob_field fields[OWN_FIELDS + SETTINGS];
 	list_fields(fields);
-	scene_fields f = { s->title, s->duration, s->seed, s->run.gravity, ob_run_settings_unset() };
+	scene_fields f = { s->title, s->duration, s->seed, s->room, s->run.gravity, ob_run_settings_unset() };
 	ob_fields_read(L, 1, "scene", fields, OWN_FIELDS + SETTINGS, &f);
 	if (f.title != s->title)
 		snprintf(s->title, sizeof s->title, "%s", f.title);
 	s->duration = f.duration;
+	s->room = f.room;
 	s->run.gravity = f.gravity;
 	ob_run_settings_overlay(&s->run, &f.run);
 	check_settings(L, &f, s);

@@ -11,7 +11,9 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
+#include "scene/flat.h"
 #include "scene/sandbox.h"
+#include "scene/scene.h"
 #include "scene/text.h"
 #include "settings/settings.h"
 
@@ -241,6 +243,11 @@ bool ob_colour_from_hex(const char *text, float linear[4])
 	return true;
 }
 
+bool ob_scene_read_colour(const char *text, float linear[4])
+{
+	return ob_colour_from_hex(text, linear);
+}
+
 static void read_colour(const reader *r)
 {
 	double rgba[4] = { 0, 0, 0, 1 };
@@ -254,14 +261,34 @@ static void read_colour(const reader *r)
 	ob_colour_from_srgb(rgba, r->to);
 }
 
+static void read_flat(const reader *r)
+{
+	char what[64];
+	snprintf(what, sizeof what, "%s.%s", r->where, r->field->name);
+	if (!lua_istable(r->L, -1))
+		fail(r, "a table of values, as in { speed = 3 }");
+	ob_flat *f = r->to;
+	f->size = 0;
+	ob_flat_put_table(r->L, -1, f, what);
+}
+
+static void read_source(const reader *r)
+{
+	size_t size;
+	const char *text = lua_type(r->L, -1) == LUA_TSTRING ? lua_tolstring(r->L, -1, &size) : NULL;
+	if (!text || size == 0 || (double)size > r->field->high || memchr(text, 0, size))
+		fail(r, "the name of a script, of a file that ends with .lua, or a script as text");
+	*(const char **)r->to = text;
+}
+
 static void (*const read_kind[])(const reader *r) = {
-	[OB_FIELD_NUMBER] = read_number,         [OB_FIELD_WHOLE] = read_whole,
-	[OB_FIELD_COUNT] = read_count,           [OB_FIELD_BOOLEAN] = read_boolean,
-	[OB_FIELD_SWITCH] = read_switch,         [OB_FIELD_TEXT] = read_text,
-	[OB_FIELD_CHOICE] = read_choice,
-	[OB_FIELD_VECTOR] = read_vector,         [OB_FIELD_DIRECTION] = read_direction,
-	[OB_FIELD_QUATERNION] = read_quaternion, [OB_FIELD_ROTATION] = read_rotation,
-	[OB_FIELD_COLOUR] = read_colour,
+	[OB_FIELD_NUMBER] = read_number,       [OB_FIELD_WHOLE] = read_whole,
+	[OB_FIELD_COUNT] = read_count,         [OB_FIELD_BOOLEAN] = read_boolean,
+	[OB_FIELD_SWITCH] = read_switch,       [OB_FIELD_TEXT] = read_text,
+	[OB_FIELD_CHOICE] = read_choice,       [OB_FIELD_VECTOR] = read_vector,
+	[OB_FIELD_DIRECTION] = read_direction, [OB_FIELD_QUATERNION] = read_quaternion,
+	[OB_FIELD_ROTATION] = read_rotation,   [OB_FIELD_COLOUR] = read_colour,
+	[OB_FIELD_FLAT] = read_flat,           [OB_FIELD_SOURCE] = read_source,
 };
 
 static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *name, const ob_field *field,

@@ -23,6 +23,8 @@ typedef enum ob_field_kind {
 	OB_FIELD_DIRECTION, // ob_vec3 of any length but 0, made a unit vector
 	OB_FIELD_QUATERNION, // ob_quat {w, x, y, z} of any norm but 0, made a unit quaternion
 	OB_FIELD_ROTATION, // ob_quat from { axis = {x, y, z}, degrees = a }
+	OB_FIELD_FLAT, // ob_flat: a table of flat values (scene/flat.h)
+	OB_FIELD_SOURCE, // const char *, valid while the table is: text of any characters, at most high bytes
 	OB_FIELD_COLOUR, // float[4], linear, from {r, g, b [, a]} or "#rrggbb[aa]" (sRGB)
 } ob_field_kind;
 

@@ -13,6 +13,7 @@
 
 // Steps that one pattern match may take at most: some 50 ms.
 #define PATTERN_STEPS 1e7
+#define STEPS_PER_INSTRUCTION 100. // of the matcher; a bound of them, mostly far above what it takes
 #define PRINT_COST 1000 // instructions that writing a line is worth
 
 static const char *const base_names[] = { "assert", "error", "ipairs", "select", "tonumber", "type", NULL };
@@ -55,7 +56,7 @@ static int match_guarded(lua_State *L)
 	const char *pattern = luaL_checklstring(L, 2, &size);
 	if (pattern_steps(pattern, size, length) > PATTERN_STEPS)
 		ob_sandbox_fail(L, "pattern too costly: expected a shorter text or fewer of * + - in the pattern");
-	ob_sandbox_spend(L, 1);
+	ob_sandbox_spend(L, 1 + (unsigned)(pattern_steps(pattern, size, length) / STEPS_PER_INSTRUCTION));
 	return lua_tocfunction(L, lua_upvalueindex(1))(L);
 }
 
@@ -184,6 +185,10 @@ static const char *push_text(lua_State *L, int index, size_t *size)
 	case LUA_TNUMBER:
 	case LUA_TSTRING:
 		return luaL_tolstring(L, index, size);
+	case LUA_TUSERDATA: // an object, in scripts
+		if (luaL_callmeta(L, index, "__tostring"))
+			return lua_tolstring(L, -1, size);
+		__attribute__((fallthrough));
 	default:
 		lua_pushstring(L, luaL_typename(L, index));
 		return lua_tolstring(L, -1, size);

@@ -1,5 +1,6 @@
 #include "scene/sandbox.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -14,12 +15,14 @@
 #define CHUNK "scene"
 // A few long operations between two looks at the clock, each below some milliseconds: well under a second together.
 #define HOOK_EVERY 100
+#define STRING_BYTES 64 // of a new string, that count as an instruction
 #define LARGE ((size_t)64 << 10) // bytes: filling such a block takes long enough to look at the clock
 
 struct ob_sandbox {
 	lua_State *L;
 	const char *path;
 	void *user;
+	ob_sandbox_limits limit;
 	size_t memory; // bytes held by Lua
 	uint64_t instructions;
 	double deadline; // s, of ob_clock_wall
@@ -27,6 +30,7 @@ struct ob_sandbox {
 	const char *refused;
 	int refused_line;
 	int error_line;
+	bool lacked_memory;
 };
 
 static ob_sandbox *sandbox_of(lua_State *L)
@@ -53,7 +57,8 @@ int ob_sandbox_line(lua_State *L)
 void ob_sandbox_fail(lua_State *L, const char *format, ...)
 {
 	char text[sizeof((ob_error *)0)->text];
-	int n = snprintf(text, sizeof text, CHUNK ":%d: ", ob_sandbox_line(L));
+	const int line = ob_sandbox_line(L); // 0: nothing of the text runs
+	int n = snprintf(text, sizeof text, line ? CHUNK ":%d: " : CHUNK ": ", line);
 	va_list args;
 	va_start(args, format);
 	vsnprintf(text + n, sizeof text - (size_t)n, format, args);
@@ -70,10 +75,9 @@ void ob_sandbox_spend(lua_State *L, unsigned instructions)
 {
 	ob_sandbox *s = sandbox_of(L);
 	s->instructions += instructions;
-	if (s->instructions > OB_SANDBOX_INSTRUCTIONS)
-		ob_sandbox_fail(L, "stopped after %d million instructions: does a loop never end?",
-				OB_SANDBOX_INSTRUCTIONS / 1000000);
-	if (ob_clock_wall() > s->deadline)
+	if (s->instructions > s->limit.instructions)
+		ob_sandbox_fail(L, "%s", s->limit.out_of_instructions);
+	if (s->deadline < INFINITY && ob_clock_wall() > s->deadline)
 		ob_sandbox_fail(L, "%s", too_late);
 }
 
@@ -101,11 +105,13 @@ static void *allocate(void *user, void *block, size_t old, size_t size)
 		return NULL;
 	}
 	if (size > had) {
+		if (!block && old == LUA_TSTRING)
+			s->instructions += size / STRING_BYTES; // for it has to be written, too
 		if (!block && old == LUA_TSTRING && size > OB_SANDBOX_STRING)
 			return refuse(s, "a string grew beyond 1 MiB");
-		if (s->memory - had + size > OB_SANDBOX_MEMORY)
-			return refuse(s, "the scene needs more than 64 MiB of memory");
-		if (size > LARGE && ob_clock_wall() > s->deadline)
+		if (s->memory - had + size > s->limit.memory)
+			return refuse(s, s->limit.out_of_memory);
+		if (size > LARGE && s->deadline < INFINITY && ob_clock_wall() > s->deadline)
 			return refuse(s, too_late);
 	}
 	void *moved = realloc(block, size);
@@ -129,6 +135,7 @@ static bool report(ob_sandbox *s, int status, ob_error *e)
 {
 	size_t n = strlen(CHUNK ":");
 	const char *text = lua_tostring(s->L, -1);
+	s->lacked_memory = status == LUA_ERRMEM;
 	if (status == LUA_ERRMEM)
 		ob_fail(e, "%s:%d: %s", s->path, s->refused_line, s->refused);
 	else if (strncmp(text, CHUNK ":", n) == 0)
@@ -141,12 +148,27 @@ static bool report(ob_sandbox *s, int status, ob_error *e)
 
 ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, ob_error *e)
 {
+	static const ob_sandbox_limits of_scenes = {
+		.memory = OB_SANDBOX_MEMORY,
+		.instructions = OB_SANDBOX_INSTRUCTIONS,
+		.seconds = OB_SANDBOX_SECONDS,
+		.out_of_memory = "the scene needs more than 64 MiB of memory",
+		.out_of_instructions = "stopped after 50 million instructions: does a loop never end?",
+	};
+	_Static_assert(OB_SANDBOX_MEMORY == (size_t)64 << 20 && OB_SANDBOX_INSTRUCTIONS == 50000000, "said above");
+	return ob_sandbox_create_limited(path, &of_scenes, open, user, e);
+}
+
+ob_sandbox *ob_sandbox_create_limited(const char *path, const ob_sandbox_limits *limits, lua_CFunction open, void *user,
+				      ob_error *e)
+{
 	ob_sandbox *s = calloc(1, sizeof *s);
 	if (!s)
 		return ob_fail(e, "%s: no memory", path), NULL;
 	s->path = path;
 	s->user = user;
-	s->deadline = ob_clock_wall() + OB_SANDBOX_SECONDS;
+	s->limit = *limits;
+	s->deadline = limits->seconds < INFINITY ? ob_clock_wall() + limits->seconds : INFINITY;
 	s->L = lua_newstate(allocate, s);
 	if (!s->L) {
 		free(s);
@@ -212,4 +234,29 @@ bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e)
 		return report(s, status, e);
 	lua_settop(s->L, 0);
 	return true;
+}
+
+lua_State *ob_sandbox_lua(ob_sandbox *s)
+{
+	return s->L;
+}
+
+bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e)
+{
+	lua_State *L = s->L;
+	const int handler = lua_gettop(L) - arguments;
+	lua_pushcfunction(L, note_line);
+	lua_insert(L, handler);
+	s->instructions = 0;
+	lua_sethook(L, hook, LUA_MASKCOUNT, HOOK_EVERY); // which begins to count anew
+	const int status = lua_pcall(L, arguments, 0, handler);
+	if (status != LUA_OK)
+		return report(s, status, e);
+	lua_settop(L, 0);
+	return true;
+}
+
+bool ob_sandbox_lacked_memory(const ob_sandbox *s)
+{
+	return s->lacked_memory;
 }

@@ -21,15 +21,33 @@
 
 typedef struct ob_sandbox ob_sandbox;
 
+// What may be used: by all that a sandbox runs, and with ob_sandbox_call by one call.
+typedef struct ob_sandbox_limits {
+	size_t memory; // bytes
+	uint64_t instructions;
+	double seconds; // wall clock; INFINITY: the same on any machine
+	const char *out_of_memory, *out_of_instructions; // what the errors say
+} ob_sandbox_limits;
+
 // path: for messages; open: builds the globals (ob_library_open); user: what ob_sandbox_user gives to the functions that
 // are called from Lua. Path and user are kept, not copied. NULL and e when there is no memory.
 ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, ob_error *e);
+// The same with limits of its own.
+ob_sandbox *ob_sandbox_create_limited(const char *path, const ob_sandbox_limits *limits, lua_CFunction open, void *user,
+				      ob_error *e);
 void ob_sandbox_destroy(ob_sandbox *s); // NULL is allowed
 
 // Offers f to the scene as a global (library = NULL) or as a field of a library ("math").
 bool ob_sandbox_offer(ob_sandbox *s, const char *library, const char *name, lua_CFunction f, ob_error *e);
 // Runs Lua text (not bytecode); false and e when it fails.
 bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e);
+
+// The Lua state, for whoever calls functions of the text that has run. ob_sandbox_call: the function and so many
+// arguments lie at the top of the stack, which is empty afterwards; false and e when it fails. memory: as
+// ob_sandbox_run, whether it was memory that ran out may be asked afterwards.
+lua_State *ob_sandbox_lua(ob_sandbox *s);
+bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e);
+bool ob_sandbox_lacked_memory(const ob_sandbox *s);
 
 // For functions called from Lua:
 void *ob_sandbox_user(lua_State *L);

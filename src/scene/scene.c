@@ -72,6 +72,7 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "capsule", ob_scene_call_capsule },
 		{ NULL, "cylinder", ob_scene_call_cylinder },
 		{ NULL, "plane", ob_scene_call_plane },
+		{ NULL, "script", ob_scene_call_script },
 		{ NULL, "param", ob_scene_call_param },
 		{ NULL, "random", ob_scene_call_random },
 		{ NULL, "random_rotation", ob_scene_call_random_rotation },
@@ -98,6 +99,7 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 	s->duration = 10;
 	s->seed = o->has_seed ? o->seed : 1;
 	s->record_every = 1;
+	s->room = 64;
 	set_colour(s->look.sky_top, "#5f93c9");
 	set_colour(s->look.sky_horizon, "#dce8f1");
 	set_colour(s->look.ground_colour, "#b4b9b3");
@@ -138,6 +140,7 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 		s->text = text;
 		s->text_size = size;
 		b->scene = s;
+		b->path = path;
 		b->options = o ? o : &none;
 		set_defaults(s, path, b->options);
 		ob_random_seed(&b->random, s->seed);
@@ -176,6 +179,10 @@ void ob_scene_free(ob_scene *s)
 		return;
 	free(s->object);
 	free(s->camera);
+	for (uint32_t i = 0; i < s->scripts; i++)
+		free(s->script[i].text);
+	free(s->script);
+	free(s->states);
 	free(s->text);
 	free(s);
 }

@@ -9,6 +9,8 @@
 typedef struct ob_object_def {
 	ob_passport passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
 	ob_state state;       // at its first instant
+	uint32_t script; // 1 + its number; 0: none
+	uint32_t state_at, state_bytes; // of what its script begins with (scene/flat.h), in ob_scene.states
 	double born, dies;    // s; born = 0 and dies = infinity: there all the time
 } ob_object_def;
 
@@ -27,6 +29,13 @@ typedef struct ob_look_def {
 	ob_vec3 sun;          // direction towards the sun
 } ob_look_def;
 
+// A script of objects: its own file, or part of the scene.
+typedef struct ob_script_def {
+	char name[OB_NAME_MAX]; // for messages, and by which it is found
+	char *text; // Lua, ends with a 0
+	uint32_t size;
+} ob_script_def;
+
 typedef struct ob_scene {
 	char title[128];
 	ob_run_settings run;        // before what the command line asks for (ob_run_settings_resolve)
@@ -38,6 +47,11 @@ typedef struct ob_scene {
 	ob_camera_def *camera;      // at least one
 	ob_look_def look;
 	uint32_t record_every;      // steps between recorded states; 1 unless the scene says otherwise
+	uint32_t scripts;
+	ob_script_def *script; // [scripts]
+	unsigned char *states; // of all objects' scripts
+	uint32_t states_bytes;
+	uint32_t room; // objects that scripts may have created at the same time
 	char *text; // of its file: ob_scene_load_text makes the same scene of it
 	size_t text_size;
 } ob_scene;
@@ -55,5 +69,14 @@ ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e
 // The same of a text that is no file, or no longer; path is for its title and for messages.
 ob_scene *ob_scene_load_text(const char *path, const char *text, size_t size, const ob_scene_options *o, ob_error *e);
 void ob_scene_free(ob_scene *s);
+
+// "#rrggbb" or "#rrggbbaa" as people write it, to linear RGB and alpha; false: it is neither.
+bool ob_scene_read_colour(const char *text, float linear[4]);
+// Appends what a word means, a number, true, false, or text, to the values of a message (scene/flat.h). false: it has no
+// room.
+bool ob_scene_put_value(const char *word, unsigned char *to, uint32_t *size, uint32_t room);
+
+#define OB_SCENE_SCRIPT_BYTES (256 << 10) // of one script
+#define OB_SCENE_ROOM_MAX 100000
 
 #endif

@@ -9,6 +9,7 @@
 #include "sim/equilibrium.h"
 #include "sim/flight.h"
 #include "sim/publish.h"
+#include "sim/scripts.h"
 
 static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
 {
@@ -47,6 +48,15 @@ static void set_speed_bound(ob_island_work *w, uint32_t row)
 	body->speed = ob_norm(linear_of(w->v[row])) + body->turning;
 }
 
+// rad/s^2, by a torque (N m, world)
+static ob_vec3 turned_by(const ob_body *body, ob_vec3 torque)
+{
+	const double *i = body->inv_inertia; // xx xy xz yy yz zz
+	return ob_v3(i[0] * torque.x + i[1] * torque.y + i[2] * torque.z,
+		     i[1] * torque.x + i[3] * torque.y + i[4] * torque.z,
+		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
+}
+
 static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 {
 	ob_island_work *w = &s->island;
@@ -80,6 +90,13 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	w->mass += pass->mass;
 	body->acceleration = ob_external_acceleration(run, pass);
 	w->max_acceleration = fmax(w->max_acceleration, ob_norm(body->acceleration));
+	body->torque = ob_script_torque(s->data, id);
+	if (ob_norm2(body->torque) > 0) {
+		w->torques = true;
+		body->moved_freely = false; // no closed form holds it
+		const double most = body->radius * ob_norm(turned_by(body, body->torque));
+		w->max_acceleration = fmax(w->max_acceleration, ob_norm(body->acceleration) + most);
+	}
 	set_speed_bound(w, row);
 }
 
@@ -101,7 +118,7 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	const ob_run_settings *run = s->settings;
 	w->h = w->substep = run->step_length / w->substeps;
 	w->mass = w->max_acceleration = w->recovered = w->residual = 0;
-	w->projected = false;
+	w->projected = w->torques = false;
 	w->unpaced = 0;
 	w->error = w->new_error = 0;
 	w->bodies = is->members;
@@ -307,7 +324,8 @@ void ob_bodies_warm_start(ob_sim *s)
 	ob_island_work *w = &s->island;
 	memset(w->dv, 0, w->rows * sizeof *w->dv);
 	for (uint32_t i = 1; i <= w->bodies; i++)
-		add_row(w->dv[i], ob_scale(w->body[i].acceleration, w->h), ob_v3(0, 0, 0));
+		add_row(w->dv[i], ob_scale(w->body[i].acceleration, w->h),
+			w->torques ? ob_scale(turned_by(&w->body[i], w->body[i].torque), w->h) : ob_v3(0, 0, 0));
 	for (uint32_t k = 0; k < w->batches; k++) {
 		const ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)

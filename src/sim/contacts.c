@@ -453,6 +453,7 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 	contact->e = fmax(a->restitution, b->restitution);
 	w->elastic |= contact->e > 0;
 	const ob_pair_state *p = state_before(s, k);
+	contact->began = !p;
 	if (!p)
 		return;
 	contact->points = p->points;

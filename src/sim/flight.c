@@ -5,6 +5,7 @@
 #include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/publish.h"
+#include "sim/touches.h"
 
 // ---- impacts on planes
 
@@ -116,7 +117,7 @@ static double fastest_approach(const ob_impact_body *body, const ob_impact_point
 }
 
 // Changes velocities by the impact of all points that are on the plane. false: it does not rebound here.
-static bool apply_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
+static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
 {
 	const ob_passport *passport = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);
 	const ob_half_space ground = half_space(s->u, plane);
@@ -136,6 +137,9 @@ static bool apply_plane_impact(const ob_sim *s, uint32_t id, uint32_t plane, ob_
 		return false;
 	for (int k = 0; k < REFLECTIONS && fastest_approach(body, point, points) > reflected * approach; k++)
 		ob_impact_solve(body, 2, point, points);
+	if (points > 0)
+		ob_touches_note(s, id, plane, passport->mass * ob_dot(ob_sub(body[0].v, state->v), ground.normal),
+				ob_add(state->pose.p, point[0].arm_a));
 	state->v = body[0].v, state->w = body[0].w;
 	return fastest_approach(body, point, points) <= reflected * approach;
 }

@@ -11,6 +11,7 @@
 #include "sim/contacts.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
+#include "sim/touches.h"
 
 static const double max_smooth_acceleration = 3; // of the largest external one: more is the echo of an impact
 static const double least_approach = 1e-6; // m/s
@@ -782,6 +783,7 @@ static void solve_set(ob_sim *s, uint32_t chain)
 			continue;
 		w->contact[i->contact].rebounds++;
 		i->time = t;
+		ob_touches_note_impact(s, i);
 		take_geometry(s, i, &x->at[x->slot[w->contact[i->contact].a]],
 			      &x->at[x->slot[w->contact[i->contact].b]]);
 		s->counters.impacts++;

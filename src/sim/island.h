@@ -30,6 +30,7 @@ typedef struct ob_body {
 	double mass, inv_mass;
 	ob_vec3 inertia; // principal
 	ob_vec3 acceleration; // m/s^2, external
+	ob_vec3 torque; // N m, world, external
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
 	double path, speed; // m, as ob_motion.path; m/s bound of any point
@@ -75,6 +76,7 @@ typedef struct ob_contact {
 	uint32_t rebounds; // in the partial substep
 	bool left_to_solver; // its hits in the partial substep are those of too many points
 	bool as_of_instant; // its geometry is that of an instant in the running partial substep
+	bool began; // its bodies did not touch when the step began
 	bool mirror; // the second contact of a pair that is solved for each side apart: its own body is b
 } ob_contact;
 
@@ -177,6 +179,8 @@ typedef struct ob_island_work {
 	uint32_t iteration; // number of the running one, ever growing
 	double mass; // of all bodies, kg
 	double max_acceleration; // m/s^2, the largest external acceleration of any body
+	bool feels; // a body's script is told of its contacts
+	bool torques; // a body has an external torque
 	uint32_t substeps; // of this step
 	double error, new_error; // m (sim/error_control.h): of the step; that the step itself has caused
 	double substep; // s, the whole

@@ -19,6 +19,8 @@
 #include "sim/impacts.h"
 #include "sim/midpoint.h"
 #include "sim/profile.h"
+#include "sim/scripts.h"
+#include "sim/touches.h"
 
 enum { MAX_IMPACT_ROUNDS = 4 }; // in a partial substep; a body that rattles faster is left to the contact solver
 
@@ -82,6 +84,7 @@ static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 	ob_error_control_note_bounce(s);
 	ob_midpoint_begin(s);
 	solve_velocities(s);
+	ob_touches_note_solved(s);
 	ob_bodies_integrate_positions(s);
 	ob_error_control_note_slip(s);
 	ob_midpoint_end(s);
@@ -96,6 +99,7 @@ static bool solve_step(ob_sim *s, const ob_island *is)
 {
 	ob_island_work *w = &s->island;
 	ob_profile_enter(s, OB_PROFILE_LOAD);
+	ob_touches_begin(s, is);
 	ob_bodies_load(s, is);
 	ob_contacts_load(s, is);
 	ob_direct_begin(&w->direct);
@@ -161,6 +165,8 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 	const uint32_t id = data->member[is->first_member];
 	if (is->members > 1 || (is->pairs && (data->count->merged || s->settings->integrator == OB_INTEGRATOR_ODE)))
 		return false;
+	if (data->script_of && ob_norm2(ob_script_torque(data, id)) > 0)
+		return false;
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
 		uint32_t other = k->a == id ? k->b : k->a;
@@ -186,6 +192,7 @@ static bool advance_ballistically(ob_sim *s, const ob_island *is)
 	if (!may_advance_ballistically(s, is))
 		return false;
 	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
+	ob_touches_begin(s, is);
 	if (!ob_ballistic_advance(s, s->data->member[is->first_member]))
 		return false;
 	end_contacts(s, is);
@@ -199,6 +206,8 @@ static bool advance_ballistically(ob_sim *s, const ob_island *is)
 static uint32_t rest_flag(ob_sim *s)
 {
 	const double rest_time = ob_bodies_update_rest(s);
+	if (s->island.torques) // equilibrium and sleep know of forces alone
+		return 0;
 	if (ob_equilibrium_reached(&s->island))
 		return s->settings->sleeping ? OB_MOTION_ASLEEP : OB_MOTION_EQUILIBRIUM;
 	return ob_balance_may_sleep(s, rest_time) ? OB_MOTION_ASLEEP : 0;

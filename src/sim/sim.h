@@ -15,6 +15,10 @@ typedef struct ob_sim ob_sim;
 ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e); // in the worker's own thread
 void ob_sim_destroy(ob_sim *s);
 
+// How a worker runs the script of an object, which this module does not know: that of a cell (table/script_data.h).
+typedef void (*ob_script_run)(void *runner, uint32_t cell);
+void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);
+
 // The worker takes part in one phase of the step (step.c shows them all): it waits at the gate until one opens to it,
 // does its share and arrives; the last worker to arrive schedules the next phase, or the pause. false: STOP.
 bool ob_step(ob_sim *s);
@@ -41,6 +45,10 @@ uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *
 
 // Host, at the start and after each pause: opens the first phase. The run then goes on until the next pause step.
 void ob_sim_resume(ob_universe *u);
+
+// Host, paused: whether the pause is that of scripts, whose creations and removals (ob_script_requests) it is to carry
+// out before it goes on with the step.
+bool ob_sim_awaits_requests(const ob_universe *u);
 
 // Host, paused: why the run cannot go on, as one line, which holds until the thread's next call; NULL if it
 // can. A failed run pauses at once.

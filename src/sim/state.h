@@ -24,6 +24,10 @@ struct ob_sim {
 		uint32_t object;
 		bool spent;
 	} budget;
+	struct { // sim/scripts.h; NULL: this worker runs none
+		ob_script_run run;
+		void *runner;
+	} scripts;
 	uint64_t fault_chances; // in this process (sim/fault.h)
 	ob_counters counters; // handed over to the universe at the end of each phase
 	struct { // sim/profile.h

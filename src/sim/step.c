@@ -4,6 +4,8 @@
 //     │
 //   BROADPHASE_START       ┌─────────── merge the islands that a late contact joins ───────────┐
 //     │                    v                                                                   │
+//   SCRIPTS            │                                                                   │
+//     │                │                                                                   │
 //   FORECAST ──(build)─> ISLANDS ──> BROADPHASE ──(merge pairs)──> LATE_CONTACTS ──(commit)────┤
 //     ^                                                                                        v
 //     └──────(begin)─────────── COMPLETE <──────────────────────────────────────────────── COPY
@@ -21,6 +23,7 @@
 //   phase             task of a worker          reads                             writes
 //   BROADPHASE_START  objects whose fat AABB    index, fat AABBs                  their lists of neighbours
 //   BROADPHASE          has changed
+//   SCRIPTS           an object's script    motions, passports                its cell
 //   FORECAST          256 pairs                 schedule records, motions         expected, limit of those pairs
 //   ISLANDS           a chunk of islands        motions and contacts as of        staged motions, fat AABBs, schedule
 //                                                 before the step                   records, contacts of after the step
@@ -45,11 +48,13 @@
 #include "sim/prefetch.h"
 #include "sim/profile.h"
 #include "sim/publish.h"
+#include "sim/scripts.h"
 #include "sim/sim.h"
 #include "sim/state.h"
 
 enum {
 	QUERIES_PER_WORKER = 16, // for fewer the gate would cost more than another worker gains
+	SCRIPTS_PER_WORKER = 16, // likewise
 	PARALLEL_PAIRS = 4 * OB_LATE_CONTACTS_BATCH, // checked by all workers from here on, for the same reason
 };
 
@@ -104,6 +109,20 @@ static bool open_broadphase(const scheduler *c, ob_phase phase)
 		ob_gate_open(c->u, phase, list, count);
 	else
 		open_tasks(c, phase, count, 1 + count / QUERIES_PER_WORKER);
+	return true;
+}
+
+static bool open_scripts(const scheduler *c, ob_phase phase)
+{
+	const ob_step_data *data = c->data;
+	const uint32_t due = data->script_counts->due;
+	if (!c->settings->one_per_object) {
+		open_tasks(c, phase, due, 1 + due / SCRIPTS_PER_WORKER);
+		return true;
+	}
+	for (uint32_t i = 0; i < due; i++)
+		data->scratch[i] = data->script_turn[data->script_due[i]].object;
+	ob_gate_open(c->u, phase, data->scratch, due);
 	return true;
 }
 
@@ -291,6 +310,8 @@ static ob_phase begin_step(const scheduler *c)
 		return OB_PHASE_PAUSE;
 	if (c->settings->monolith)
 		return OB_PHASE_BASELINE;
+	if (ob_scripts_due(c->u))
+		return OB_PHASE_SCRIPTS;
 	if (!count->awake || !count->pairs)
 		count->next_check = UINT32_MAX;
 	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : build_islands(c);
@@ -327,7 +348,19 @@ static ob_phase after_broadphase_start(const scheduler *c)
 	if (!queries)
 		return begin_step(c);
 	ob_pairs_merge(c->u, ob_step_count(c->u));
-	return OB_PHASE_FORECAST;
+	return !must_pause(c) && ob_scripts_due(c->u) ? OB_PHASE_SCRIPTS : OB_PHASE_FORECAST;
+}
+
+// What moves otherwise now may touch others. Objects that are created or removed the host places at once.
+static ob_phase after_scripts(const scheduler *c)
+{
+	uint32_t queries;
+	if (ob_scripts_carry_out(c->u))
+		count_awake(c);
+	if (ob_scripts_have_requests(c->u))
+		return OB_PHASE_PAUSE;
+	ob_requery_list(c->u, &queries);
+	return queries ? OB_PHASE_BROADPHASE_START : OB_PHASE_FORECAST;
 }
 
 static ob_phase after_forecast(const scheduler *c)
@@ -385,6 +418,7 @@ static ob_phase complete_step(const scheduler *c)
 static const step_phase phases[] = {
 	[OB_PHASE_RESUME]           = { NULL,            do_nothing,         after_resume,           OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE },
 	[OB_PHASE_BROADPHASE_START] = { open_broadphase, query_neighbours,   after_broadphase_start, OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
+	[OB_PHASE_SCRIPTS]          = { open_scripts,    ob_scripts_run,     after_scripts,          OB_PROFILE_SCRIPTS,    OB_TRACE_OBJECTS },
 	[OB_PHASE_FORECAST]         = { open_pairs,      forecast_contacts,  after_forecast,         OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
 	[OB_PHASE_ISLANDS]          = { open_islands,    solve_islands,      after_islands,          OB_PROFILE_LOAD,       OB_TRACE_SOLVE },
 	[OB_PHASE_BROADPHASE]       = { open_broadphase, query_neighbours,   after_broadphase,       OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },

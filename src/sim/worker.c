@@ -61,6 +61,12 @@ void ob_sim_destroy(ob_sim *s)
 	free(s);
 }
 
+void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner)
+{
+	s->scripts.run = run;
+	s->scripts.runner = runner;
+}
+
 void ob_sim_run(ob_sim *s)
 {
 	while (ob_step(s))

@@ -15,6 +15,8 @@ struct ob_checkpoint {
 	int fd; // the universe's: it tells which pages are in use
 	ob_control control;
 	ob_motion *motion; // [ids]
+	ob_passport *passport; // [ids], where scripts may change them in a step; else NULL
+	size_t passports_max;
 	uint32_t ids, ids_max;
 	range *kept; // ascending
 	size_t ranges, ranges_max;
@@ -36,6 +38,7 @@ void ob_checkpoint_destroy(ob_checkpoint *c)
 	if (!c)
 		return;
 	free(c->motion);
+	free(c->passport);
 	free(c->kept);
 	free(c->bytes);
 	free(c);
@@ -132,10 +135,23 @@ static bool take_motions(ob_checkpoint *c, const ob_universe *u)
 	return true;
 }
 
+// One that was never written is all 0.
+static bool take_passports(ob_checkpoint *c, const ob_universe *u)
+{
+	if (!u->step_data.script_cells)
+		return true;
+	if (!grow((void **)&c->passport, sizeof *c->passport, c->ids, &c->passports_max))
+		return false;
+	for (uint32_t id = 0; id < c->ids; id++)
+		if (!ob_passport_read(u, id, &c->passport[id]))
+			c->passport[id] = (ob_passport){ 0 };
+	return true;
+}
+
 bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u)
 {
 	c->control = *u->control;
-	return take_motions(c, u) && take_areas(c, u);
+	return take_motions(c, u) && take_passports(c, u) && take_areas(c, u);
 }
 
 // Word by word, for readers in other threads or processes may read at the same time. from NULL = zeros.
@@ -178,6 +194,18 @@ static void put_motions_back(const ob_checkpoint *c, ob_universe *u)
 	}
 }
 
+// What has come since then has no passport, and is not there.
+static void put_passports_back(const ob_checkpoint *c, ob_universe *u)
+{
+	static const ob_passport none = { 0 };
+	for (uint32_t id = 0; u->step_data.script_cells && id < ob_universe_ids(u); id++) {
+		ob_passport now;
+		const ob_passport *then = id < c->ids ? &c->passport[id] : &none;
+		if (ob_passport_read(u, id, &now) && memcmp(&now, then, sizeof now) != 0)
+			ob_write_passport(u, id, then);
+	}
+}
+
 // Ends the spans that dead workers had begun, on their own tracks, which their successors continue.
 static void end_traces(ob_universe *u)
 {
@@ -216,6 +244,7 @@ void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
 	end_traces(u);
 	put_areas_back(c, u);
 	put_motions_back(c, u);
+	put_passports_back(c, u);
 	put_control_back(&c->control, u->control);
 	u->control->lives++;
 	reset_gate(u);

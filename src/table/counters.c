@@ -20,6 +20,7 @@ const char *ob_profile_name(uint32_t section)
 		[OB_PROFILE_MOVE] = "move",
 		[OB_PROFILE_PROJECT] = "project",
 		[OB_PROFILE_PUBLISH] = "publish",
+		[OB_PROFILE_SCRIPTS] = "scripts",
 	};
 	return section < OB_PROFILE_SECTIONS && names[section] ? names[section] : "?";
 }

@@ -17,6 +17,7 @@ typedef enum ob_profile_section {
 	OB_PROFILE_MOVE, // rotation, prediction, integration
 	OB_PROFILE_PROJECT, // penetrations pushed apart
 	OB_PROFILE_PUBLISH, // rest, boxes, motions into their slots
+	OB_PROFILE_SCRIPTS, // objects' scripts
 	OB_PROFILE_SECTIONS
 } ob_profile_section;
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-enum { CAPACITY_LIMIT = 1 << 24, WORKERS_LIMIT = 1 << 20 };
+enum { CAPACITY_LIMIT = 1 << 24, WORKERS_LIMIT = 1 << 20, SCRIPT_BYTES_LIMIT = 1 << 28 };
 
 static uint32_t power_of_two_from(uint32_t least)
 {
@@ -27,7 +27,11 @@ typedef struct area_rule {
 		PER_OUTBOX_BYTE,
 		PER_RING,
 		PER_TRACE_EVENT,
-		PER_TRACED_OBJECT
+		PER_TRACED_OBJECT,
+		PER_SCRIPTED_UNIVERSE,
+		PER_SCRIPTED_OBJECT,
+		PER_SCRIPT_CELL,
+		PER_SCRIPT_BYTE,
 	} per;
 	unsigned times, more;
 } area_rule;
@@ -64,7 +68,13 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_MEMBER] = { ELEMENT(member), PER_OBJECT, 1, 0 },
 	[OB_AREA_ISLAND_PAIR] = { ELEMENT(island_pair), PER_PAIR, 1, 0 },
 	[OB_AREA_CHUNK] = { ELEMENT(chunk), PER_OBJECT, 1, 1 },
+	[OB_AREA_SCRIPT_COUNTS] = { ELEMENT(script_counts), PER_SCRIPTED_UNIVERSE, 1, 0 },
+	[OB_AREA_SCRIPT_OF] = { ELEMENT(script_of), PER_SCRIPTED_OBJECT, 1, 0 },
+	[OB_AREA_SCRIPT_TURN] = { ELEMENT(script_turn), PER_SCRIPT_CELL, 1, 0 },
+	[OB_AREA_SCRIPT_CELL] = { ELEMENT(script_cell), PER_SCRIPT_CELL, 1, 0 },
+	[OB_AREA_SCRIPT_DUE] = { ELEMENT(script_due), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
+	[OB_AREA_SCRIPT_TEXT] = { 1, PER_SCRIPT_BYTE, 1, 0 },
 	[OB_AREA_OUTBOX] = { 1, PER_OUTBOX_BYTE, 1, 0 },
 	[OB_AREA_TRACE_RING] = { sizeof(ob_trace_ring), PER_RING, 1, 0 },
 	[OB_AREA_TRACE_EVENT] = { sizeof(ob_trace_event), PER_TRACE_EVENT, 1, 0 },
@@ -89,6 +99,10 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 			traced ? (uint64_t)s->workers * s->trace_events + OB_TRACE_HOST_RINGS * OB_TRACE_HOST_EVENTS
 			       : 0,
 		[PER_TRACED_OBJECT] = traced ? s->capacity : 0,
+		[PER_SCRIPTED_UNIVERSE] = s->script_cells > 0,
+		[PER_SCRIPTED_OBJECT] = s->script_cells > 0 ? s->capacity : 0,
+		[PER_SCRIPT_CELL] = s->script_cells,
+		[PER_SCRIPT_BYTE] = s->script_bytes,
 	};
 	const area_rule *r = &rules[area];
 	return r->element * (count[r->per] * r->times + r->more);
@@ -134,14 +148,18 @@ static uint32_t outbox_bytes(uint32_t workers)
 	return workers <= FEW ? LARGE : SMALL;
 }
 
-void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced, bool contained)
+void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 {
-	h->sizes = (ob_layout_sizes){ .capacity = capacity, .workers = workers };
+	const uint32_t capacity = p->capacity, workers = p->workers;
+	h->sizes = (ob_layout_sizes){ .capacity = capacity,
+				      .workers = workers,
+				      .script_cells = p->script_cells,
+				      .script_bytes = p->script_bytes };
 	h->sizes.pairs_max = most_pairs(capacity);
 	h->sizes.buckets = power_of_two_from(2 * capacity);
 	h->sizes.neighbours_max = 2 * h->sizes.pairs_max + capacity; // either of a pair may find the other
-	h->sizes.trace_events = traced ? ring_events(workers) : 0;
-	h->sizes.outbox_bytes = contained ? outbox_bytes(workers) : 0;
+	h->sizes.trace_events = p->traced ? ring_events(workers) : 0;
+	h->sizes.outbox_bytes = p->contained ? outbox_bytes(workers) : 0;
 	uint64_t at = OB_LAYOUT_PAGE;
 	for (int i = 0; i < OB_AREAS; i++) {
 		h->area[i] = at;
@@ -169,8 +187,12 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 		return false;
 	if (s->capacity < 1 || s->capacity > CAPACITY_LIMIT || s->workers < 1 || s->workers > WORKERS_LIMIT)
 		return false;
+	if (s->script_cells > s->capacity || s->script_bytes > SCRIPT_BYTES_LIMIT ||
+	    (s->script_cells > 0) != (s->script_bytes >= sizeof(ob_script_directory)))
+		return false;
 	ob_header expected;
-	ob_layout_plan(&expected, s->capacity, s->workers, s->trace_events > 0, s->outbox_bytes > 0);
+	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->trace_events > 0,
+							s->outbox_bytes > 0, s->script_cells, s->script_bytes });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
 	       memchr(h->isolation, 0, sizeof h->isolation);
@@ -206,6 +228,16 @@ static void bind_step_data(ob_universe *u)
 		.chunk = (void *)(base + area[OB_AREA_CHUNK]),
 		.scratch = (void *)(base + area[OB_AREA_SCRATCH]),
 	};
+	if (!u->header.sizes.script_cells)
+		return;
+	ob_step_data *data = &u->step_data;
+	data->script_cells = u->header.sizes.script_cells;
+	data->script_counts = (void *)(base + area[OB_AREA_SCRIPT_COUNTS]);
+	data->script_of = (void *)(base + area[OB_AREA_SCRIPT_OF]);
+	data->script_turn = (void *)(base + area[OB_AREA_SCRIPT_TURN]);
+	data->script_cell = (void *)(base + area[OB_AREA_SCRIPT_CELL]);
+	data->script_due = (void *)(base + area[OB_AREA_SCRIPT_DUE]);
+	data->script_text = (void *)(base + area[OB_AREA_SCRIPT_TEXT]);
 }
 
 void ob_layout_bind(ob_universe *u, void *base)

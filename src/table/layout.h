@@ -47,7 +47,13 @@ typedef enum ob_area {
 	OB_AREA_MEMBER,
 	OB_AREA_ISLAND_PAIR,
 	OB_AREA_CHUNK,
+	OB_AREA_SCRIPT_COUNTS, // these five empty unless the scene has scripts
+	OB_AREA_SCRIPT_OF, // [capacity]
+	OB_AREA_SCRIPT_TURN, // [script_cells]
+	OB_AREA_SCRIPT_CELL, // [script_cells]
+	OB_AREA_SCRIPT_DUE, // [script_cells]
 	OB_AREA_SCRATCH,
+	OB_AREA_SCRIPT_TEXT,
 	OB_AREA_OUTBOX, // of each worker; empty unless simulators are contained
 	OB_AREA_TRACE_RING, // from here on empty unless traced
 	OB_AREA_TRACE_EVENT, // rings of the workers, then of the host
@@ -59,6 +65,8 @@ typedef struct ob_layout_sizes {
 	uint32_t capacity, workers, pairs_max, buckets, neighbours_max;
 	uint32_t trace_events; // of each worker's ring, a power of two; 0 = not traced
 	uint32_t outbox_bytes; // of each worker, whole pages; 0 = simulators are not contained (outbox.h)
+	uint32_t script_cells; // objects that can have a script at the same time; 0 = the scene has none
+	uint32_t script_bytes; // of their texts, with the directory
 } ob_layout_sizes;
 
 // The first two fields stay where they are in all versions. Whatever has the same magic is owned by its lock (segment.h).
@@ -122,7 +130,7 @@ enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
 static_assert(sizeof(ob_run_settings) == 120, "run settings");
-static_assert(sizeof(ob_header) == 64 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 120, "header");
+static_assert(sizeof(ob_header) == 72 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 120, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 512, "control");
 static_assert(sizeof(ob_worker_cell) == 512, "worker cell");
@@ -156,8 +164,15 @@ struct ob_universe {
 	uint64_t *trace_since;
 };
 
+// What a layout is planned for.
+typedef struct ob_layout_plan_of {
+	uint32_t capacity, workers;
+	bool traced, contained;
+	uint32_t script_cells, script_bytes;
+} ob_layout_plan_of;
+
 // Fills sizes (from what is given), offsets and bytes.
-void ob_layout_plan(ob_header *h, uint32_t capacity, uint32_t workers, bool traced, bool contained);
+void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p);
 // Lets this process, whose mapping is read-only otherwise, write the ring of its own trace. false, and errno.
 bool ob_trace_unprotect(ob_universe *u, uint32_t ring);
 // The last turn of the gate at which this contained simulator has arrived.

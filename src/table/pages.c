@@ -65,8 +65,9 @@ bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e)
 	bool fine = true;
 	for (int i = OB_AREA_SLOT; i < OB_AREAS && fine; i++) {
 		const ob_area area = (ob_area)i;
-		// a passport's second version most objects never have, and outboxes are seldom full
-		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_OUTBOX)
+		// a passport's second version most objects never have, and outboxes are seldom full; cells are taken
+		// one by one
+		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_OUTBOX && area != OB_AREA_SCRIPT_CELL)
 			fine = ob_pages_take(u, area, 0, ob_layout_elements_of(&u->header.sizes, area, ids));
 	}
 	struct statvfs s = { 0 };

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "table/layout.h"
+#include "table/pages.h"
 
 static_assert(sizeof(ob_saved_record) == 320, "saved record");
 
@@ -32,6 +33,10 @@ void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out)
 		.planes = data->count->planes,
 		.pairs = data->count->pairs,
 	};
+	if (data->script_cells) {
+		out->script_cells = data->script_counts->cells;
+		out->script_bytes = u->header.sizes.script_bytes;
+	}
 	for (uint32_t i = 0; i < out->pairs; i++)
 		out->records += data->pair[i].record != OB_NO_RECORD;
 }
@@ -59,8 +64,28 @@ static void save_record(const ob_universe *u, uint32_t record, ob_saved_record *
 		memcpy(out->impulse_b, data->impulse_b[record][newest], sizeof out->impulse_b);
 }
 
+// What scripts ask for in a step is over.
+static void save_scripts(const ob_universe *u, ob_saved_universe *out)
+{
+	const ob_step_data *data = &u->step_data;
+	for (uint32_t i = 0; i < out->script_cells; i++) {
+		const ob_script_turn *turn = &data->script_turn[i];
+		ob_script_cell *c = &out->script_cell[i];
+		out->script_turn[i] = *turn;
+		memset(c, 0, sizeof *c);
+		if (!turn->script)
+			continue;
+		*c = data->script_cell[i];
+		c->asks = c->outbox_bytes = 0;
+		memset(c->outbox, 0, sizeof c->outbox);
+	}
+	if (out->script_bytes)
+		memcpy(out->script_text, data->script_text, out->script_bytes);
+}
+
 void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
 {
+	save_scripts(u, out);
 	const ob_step_data *data = &u->step_data;
 	uint32_t records = 0;
 	for (uint32_t id = 0; id < out->ids; id++)
@@ -202,6 +227,34 @@ static bool check_pairs(const ob_saved_universe *s, ob_error *e)
 	return records == s->records ? true : ob_fail(e, "there are contact points of no pair");
 }
 
+static bool script_makes_sense(const ob_saved_universe *s, uint32_t cell)
+{
+	enum { KNOWN = (OB_SCRIPT_FEELS << 1) - 1 };
+	const ob_script_turn *t = &s->script_turn[cell];
+	const ob_script_cell *c = &s->script_cell[cell];
+	if (!t->script)
+		return t->flags == 0;
+	return is_there(s, t->object) && s->passport[t->object].generation == t->generation &&
+	       t->script <= OB_SCRIPTS_MAX && !(t->flags & ~(uint32_t)KNOWN) && c->state_bytes <= sizeof c->state &&
+	       c->inbox_bytes <= sizeof c->inbox && c->touches <= OB_SCRIPT_TOUCHES && !c->asks && !c->outbox_bytes &&
+	       isfinite(ob_norm2(c->torque)) && memchr(c->error, 0, sizeof c->error);
+}
+
+static bool check_scripts(const ob_saved_universe *s, ob_error *e)
+{
+	bool *taken = calloc((size_t)s->ids + 1, sizeof *taken), sense = taken;
+	for (uint32_t i = 0; i < s->script_cells && sense; i++) {
+		sense = script_makes_sense(s, i);
+		const uint32_t id = s->script_turn[i].object;
+		if (!sense || !s->script_turn[i].script)
+			continue;
+		sense = !taken[id];
+		taken[id] = true;
+	}
+	free(taken);
+	return sense ? true : ob_fail(e, "what its scripts keep makes no sense");
+}
+
 bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
 {
 	if (s->step > UINT32_MAX - 2 || s->checked > s->step) // a motion carries its step as 32 bits
@@ -209,7 +262,7 @@ bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
 	for (uint32_t id = 0; id < s->ids; id++)
 		if (!check_object(s, id, e))
 			return false;
-	return check_planes(s, e) && check_pairs(s, e);
+	return check_planes(s, e) && check_pairs(s, e) && check_scripts(s, e);
 }
 
 // ---- loading
@@ -250,8 +303,37 @@ static bool reserve(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	return fine || ob_fail(e, "/dev/shm is full: enlarge it (mount -o remount,size=..., docker run --shm-size=...)");
 }
 
+// false: the memory file system is full
+static bool load_scripts(ob_universe *u, const ob_saved_universe *s)
+{
+	ob_step_data *data = &u->step_data;
+	for (uint32_t i = 0; i < s->script_cells; i++) {
+		const ob_script_turn *turn = &s->script_turn[i];
+		if (turn->script && (!ob_pages_take(u, OB_AREA_SCRIPT_CELL, i, 1) ||
+				     !ob_pages_take(u, OB_AREA_PASSPORT_EVEN, turn->object, 1)))
+			return false;
+		data->script_turn[i] = *turn;
+		if (!turn->script)
+			continue;
+		data->script_cell[i] = s->script_cell[i];
+		data->script_of[turn->object] = i + 1;
+		data->script_counts->failed += (turn->flags & OB_SCRIPT_STOPPED) != 0;
+	}
+	if (data->script_cells)
+		data->script_counts->cells = s->script_cells;
+	return true;
+}
+
+static bool scripts_are_the_same(const ob_universe *u, const ob_saved_universe *s)
+{
+	return s->script_bytes == u->header.sizes.script_bytes && s->script_cells <= u->step_data.script_cells &&
+	       (!s->script_bytes || memcmp(s->script_text, u->step_data.script_text, s->script_bytes) == 0);
+}
+
 bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 {
+	if (!scripts_are_the_same(u, s))
+		return ob_fail(e, "its scripts are not those of the saved run: a file beside the scene has changed");
 	ob_step_data *data = &u->step_data;
 	if (s->pairs > data->pairs_max || s->ids > data->objects_max)
 		return ob_fail(
@@ -261,6 +343,8 @@ bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 		return false;
 	for (uint32_t id = 0; id < s->ids; id++)
 		load_object(u, id, s);
+	if (!load_scripts(u, s))
+		return ob_fail(e, "/dev/shm is full: no room for the objects' scripts");
 	memcpy(data->plane, s->plane, s->planes * sizeof *s->plane);
 	memcpy(data->pair, s->pair, s->pairs * sizeof *s->pair);
 	for (uint32_t i = 0; i < s->records; i++)

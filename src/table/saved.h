@@ -8,6 +8,7 @@
 //   neighbours        how many the last query found         the same: flights are computed so far ahead (sim/flight.c)
 //   pairs, planes     all, in their order                   the same bytes; a record's number is that of its pair
 //   pair records      the newest version                    the first of two versions
+//   scripts           cells, texts                      the same bytes; texts are compared
 //   grid, islands,    not: they follow from these           the caller's (ob_sim_restore)
 //   gate, workers
 //
@@ -41,6 +42,11 @@ typedef struct ob_saved_universe {
 	uint32_t *plane; // [planes] ids
 	ob_pair_key *pair; // [pairs]
 	ob_saved_record *record; // [records], in the order of their pairs
+	uint32_t script_cells; // length of the next two
+	ob_script_turn *script_turn;
+	ob_script_cell *script_cell;
+	uint32_t script_bytes; // of the texts, with their directory, which must be the same when it goes on
+	char *script_text;
 } ob_saved_universe;
 
 // Fills in step, checked and the lengths, for arrays to be made.

@@ -8,6 +8,8 @@
 
 #include <ob/universe.h>
 
+#include "table/script_data.h"
+
 enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
 
 // What a pair of touching objects keeps from one step to the next: contact points, and the impulses that warm-start the
@@ -156,6 +158,14 @@ typedef struct ob_step_data {
 	uint32_t *island_pair;        // indices into pair[]
 	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
 	uint32_t *scratch;            // [4 * objects]: the scheduler's
+	// All NULL where the scene has no script.
+	ob_script_counts *script_counts;
+	uint32_t *script_of; // [object]: 1 + its cell; 0 = it has no script
+	ob_script_turn *script_turn; // [script_cells]
+	ob_script_cell *script_cell; // [script_cells]
+	uint32_t *script_due; // [script_cells]: those that run before this step, ascending
+	const ob_script_directory *script_text;
+	uint32_t script_cells;
 } ob_step_data;
 
 typedef enum ob_step_failure {

@@ -21,17 +21,18 @@
 // What the gate opens with. The phases of a step in their order; sim/step.c says what the workers do in each.
 typedef enum ob_phase {
 	OB_PHASE_NONE,
-	OB_PHASE_RESUME,           // the host gives the turn to the arranger, which schedules what comes first
+	OB_PHASE_RESUME, // the host gives the turn to the arranger, which schedules what comes first
 	OB_PHASE_BROADPHASE_START, // neighbours of objects that the host has placed or changed
-	OB_PHASE_FORECAST,         // which pairs may touch in the coming step?
-	OB_PHASE_ISLANDS,          // solve
-	OB_PHASE_BROADPHASE,       // neighbours of objects whose fat AABB has changed
-	OB_PHASE_LATE_CONTACTS,    // which pairs touched in this step that were in different islands?
-	OB_PHASE_COPY,             // with a worker per object: take over the result of the island's solver
-	OB_PHASE_COMPLETE,         // serial: the gate never opens with it
-	OB_PHASE_BASELINE,         // one ODE world holds all objects: its whole step
-	OB_PHASE_PAUSE,            // the universe stands still at a step boundary for the host to look at
-	OB_PHASE_STOP,             // leave
+	OB_PHASE_SCRIPTS, // objects' scripts run
+	OB_PHASE_FORECAST, // which pairs may touch in the coming step?
+	OB_PHASE_ISLANDS, // solve
+	OB_PHASE_BROADPHASE, // neighbours of objects whose fat AABB has changed
+	OB_PHASE_LATE_CONTACTS, // which pairs touched in this step that were in different islands?
+	OB_PHASE_COPY, // with a worker per object: take over the result of the island's solver
+	OB_PHASE_COMPLETE, // serial: the gate never opens with it
+	OB_PHASE_BASELINE, // one ODE world holds all objects: its whole step
+	OB_PHASE_PAUSE, // the universe stands still at a step boundary for the host to look at
+	OB_PHASE_STOP, // leave
 } ob_phase;
 
 typedef struct ob_universe_setup {
@@ -42,6 +43,9 @@ typedef struct ob_universe_setup {
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
 	bool contained;         // simulators cannot write it (outbox.h); the last of the workers is the arranger
+	uint32_t script_cells; // objects that can have a script at the same time (script_data.h); 0: none
+	uint32_t script_bytes; // of the scripts' texts: an ob_script_directory, and what it points at
+	const void *script_text;
 } ob_universe_setup;
 
 // Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments, which nobody owns any
@@ -62,6 +66,18 @@ bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e);
 // The same for pairs first .. first + count - 1, and for a record of a pair. false: it is full.
 bool ob_reserve_pairs(ob_universe *u, uint32_t first, uint32_t count);
 bool ob_reserve_record(ob_universe *u, uint32_t record);
+// Gives the object, which has just been added, a free cell for its script, the lowest: text number `script`, with this
+// state and these random numbers. false: none is free, or the memory file system is full. Host, paused; so is the
+// other.
+bool ob_script_take_cell(ob_universe *u, uint32_t id, uint32_t script, const void *state, uint32_t state_bytes,
+			 const uint64_t random[4]);
+// Takes the object's cell away, if it has one.
+void ob_script_free_cell(ob_universe *u, uint32_t id);
+// Puts a message of these values, from nobody, into the mail of the object's script. false: it has none, or no room for
+// it. Host, paused.
+bool ob_script_deliver(ob_universe *u, uint32_t id, const void *values, uint32_t bytes);
+// The cell of an object; NULL: it has no script.
+const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id);
 // Why pages of the universe may be missing; NULL: none need be.
 const char *ob_universe_lost(const ob_universe *u);
 // For a program that has universes mapped: where a page of one is missing after all, it ends with one line on standard

@@ -31,7 +31,8 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 {
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
-	ob_layout_plan(h, setup->capacity, setup->workers, setup->traced, setup->contained);
+	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->traced, setup->contained,
+						setup->script_cells, setup->script_bytes });
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
@@ -41,7 +42,7 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 }
 
 // The segment's first contents, before anybody can find it.
-static bool fill(ob_universe *u, ob_error *e)
+static bool fill(ob_universe *u, const ob_universe_setup *setup, ob_error *e)
 {
 	uint32_t workers = u->header.sizes.workers;
 	if (!ob_pages_take_first(u))
@@ -49,6 +50,10 @@ static bool fill(ob_universe *u, ob_error *e)
 	ob_gate_prepare(u->gate, workers);
 	for (uint32_t i = 0; i < workers; i++)
 		u->worker[i].cpu = -1;
+	if (!ob_pages_take(u, OB_AREA_SCRIPT_TEXT, 0, u->header.sizes.script_bytes))
+		return ob_fail(e, "/dev/shm is full: no room for the scene's scripts");
+	if (setup->script_bytes)
+		memcpy(u->base + u->header.area[OB_AREA_SCRIPT_TEXT], setup->script_text, setup->script_bytes);
 	memcpy(u->base, &u->header, sizeof u->header);
 	return true;
 }
@@ -89,7 +94,7 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 		return NULL;
 	}
 	u->fd = ob_segment_create(e);
-	if (u->fd >= 0 && map_new(u, e) && fill(u, e) && ob_segment_publish(u->fd, name, e)) {
+	if (u->fd >= 0 && map_new(u, e) && fill(u, setup, e) && ob_segment_publish(u->fd, name, e)) {
 		ob_pages_track(u);
 		return u;
 	}

@@ -86,7 +86,7 @@ static void *push_on(void *argument)
 {
 	for (uint32_t i = 0; i < PUSHES; i++)
 		ob_requests_push(
-			queue, &(ob_request){ .id = i, .add = true, .def.passport.id = (uint32_t)(intptr_t)argument });
+			queue, &(ob_request){ .id = i, .kind = OB_REQUEST_ADD, .def.passport.id = (uint32_t)(intptr_t)argument });
 	return NULL;
 }
 

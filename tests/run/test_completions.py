@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "serve", "compare", "top", "lab", "paper", "inspect"]
+COMMANDS = ["run", "serve", "compare", "top", "lab", "paper", "inspect", "send"]
 
 
 def options(command):
@@ -43,6 +43,7 @@ class Completions(program.Case):
 
 	def test_bash(self):
 		self.assertEqual(self.bash("co"), ["compare"])
+		self.assertEqual(self.bash("sen"), ["send"])
 		for command in COMMANDS:
 			self.assertEqual(self.bash(command, "--"), options(command))
 		self.assertEqual(self.bash("run", "--arch", "m"), ["monolith"])

@@ -121,7 +121,7 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 10);
+	CHECK(files() == 11);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
@@ -136,6 +136,9 @@ int main(int argc, char **argv)
 	check_count("thin_wall", NULL, 2, false);
 	check_count("sparse", NULL, 201, true);
 	check_count("shapes", NULL, 52, false);
+	check_count("flock", NULL, 67, false);
+	check_count("flock", "n=200", 207, false);
+	check_seeds("flock", true);
 	check_seeds("falling_boxes", true);
 	check_seeds("stack", true);
 	check_seeds("pile", true);

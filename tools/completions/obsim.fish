@@ -17,11 +17,12 @@ complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in all con
 complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
 complete -c obsim -n __fish_use_subcommand -a lab -d 'run hard cases with several engines'
 complete -c obsim -n __fish_use_subcommand -a paper -d 'run the paper again and judge its claims'
+complete -c obsim -n __fish_use_subcommand -a send -d 'ask a running universe for something'
 complete -c obsim -n __fish_use_subcommand -a inspect -d 'say what a checkpoint holds'
 complete -c obsim -n __fish_use_subcommand -a help -d 'help of a command'
 complete -c obsim -n __fish_use_subcommand -l version -d 'version, commit, libraries'
 complete -c obsim -s h -l help -d 'print help'
-complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve compare top inspect lab paper'
+complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve compare top send inspect lab paper'
 
 set -l both '__fish_seen_subcommand_from run compare serve'
 complete -c obsim -n $both -a '(__fish_complete_suffix .lua)'
@@ -117,3 +118,6 @@ complete -c obsim -n $paper -l json -d 'print the results as JSON'
 set -l inspect '__fish_seen_subcommand_from inspect'
 complete -c obsim -n $inspect -F
 complete -c obsim -n $inspect -l json -d 'print it as JSON'
+
+set -l send '__fish_seen_subcommand_from send'
+complete -c obsim -n $send -a 'create remove colour message'

@@ -1,0 +1,129 @@
+// obsim send: asks a running universe for something, from another terminal or a program.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/spelling.h"
+#include "cli/command.h"
+#include "host/ask.h"
+#include "table/table.h"
+
+typedef struct sending {
+	const char *universe;
+	ob_universe *u;
+	const char *const *word; // behind the verb; NULL ends
+	ob_request request;
+} sending;
+
+// By its number or its name.
+static bool find_object(sending *s, const char *text, ob_error *e)
+{
+	char *end;
+	ob_passport p;
+	ob_spelling near = ob_spelling_start(text);
+	const unsigned long number = strtoul(text, &end, 10);
+	const bool by_number = *text && !*end && number < UINT32_MAX;
+	for (uint32_t id = 0; id < ob_universe_ids(s->u); id++) {
+		if (!ob_universe_get_passport(s->u, id, &p))
+			continue;
+		p.name[OB_NAME_MAX - 1] = 0;
+		if (by_number ? id == number : strcmp(p.name, text) == 0) {
+			s->request.id = id;
+			s->request.generation = p.generation;
+			return true;
+		}
+		if (!by_number)
+			ob_spelling_offer(&near, p.name);
+	}
+	return near.best ? ob_fail(e, "universe \"%s\" has no object \"%s\": did you mean \"%s\"?", s->universe, text,
+				   near.best)
+			 : ob_fail(e, "universe \"%s\" has no object \"%s\"", s->universe, text);
+}
+
+// As the scene says it: one call, or several.
+static bool create(sending *s, ob_error *e)
+{
+	const char *text = s->word[0];
+	ob_scene *scene = ob_scene_load_text("obsim send", text, strlen(text), NULL, e);
+	bool fine = scene;
+	for (uint32_t i = 0; fine && i < scene->objects; i++) {
+		const ob_object_def *def = &scene->object[i];
+		s->request = (ob_request){ .kind = OB_REQUEST_ADD, .def = *def };
+		if (def->script || def->born > 0 || def->dies < INFINITY)
+			fine = ob_fail(e, "create: expected an object without script, born and dies");
+		fine = fine && ob_ask(s->universe, &s->request, e);
+	}
+	ob_scene_free(scene);
+	return fine;
+}
+
+static bool remove_object(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_REMOVE;
+	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+}
+
+static bool colour(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_COLOUR;
+	if (!ob_scene_read_colour(s->word[1], s->request.colour))
+		return ob_fail(e, "colour: expected \"#rrggbb\", got \"%s\"", s->word[1]);
+	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+}
+
+static bool message(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_MESSAGE;
+	for (int i = 1; s->word[i]; i++)
+		if (!ob_scene_put_value(s->word[i], s->request.values, &s->request.bytes, sizeof s->request.values))
+			return ob_fail(e, "message: at most %zu bytes can be sent", sizeof s->request.values);
+	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+}
+
+static const struct verb {
+	const char *name, *usage;
+	int words; // at least
+	bool more;
+	bool (*send)(sending *s, ob_error *e);
+} verbs[] = {
+	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, false, create },
+	{ "remove", "remove OBJECT", 1, false, remove_object },
+	{ "colour", "colour OBJECT '#rrggbb'", 2, false, colour },
+	{ "message", "message OBJECT VALUE ...", 1, true, message },
+};
+enum { VERBS = sizeof verbs / sizeof *verbs };
+
+static const struct verb *find_verb(const char *name, ob_error *e)
+{
+	ob_spelling near = ob_spelling_start(name ? name : "");
+	for (int i = 0; name && i < VERBS; i++) {
+		if (strcmp(verbs[i].name, name) == 0)
+			return &verbs[i];
+		ob_spelling_offer(&near, verbs[i].name);
+	}
+	if (name && near.best)
+		ob_fail(e, "unknown request '%s': did you mean %s?", name, near.best);
+	else
+		ob_fail(e, "expected what to ask for: obsim send NAME create, remove, colour or message");
+	return NULL;
+}
+
+int ob_command_send(const ob_arguments *a)
+{
+	ob_error e;
+	if (!a->operand)
+		return ob_command_fail(OB_EXIT_USAGE, "no universe given: obsim send NAME remove OBJECT");
+	const struct verb *v = find_verb(a->operands[1], &e);
+	int words = 0;
+	while (v && a->operands[2 + words])
+		words++;
+	if (v && (words < v->words || (words > v->words && !v->more)))
+		ob_fail(&e, "%s: expected obsim send %s %s", v->name, a->operand, v->usage);
+	if (!v || words < v->words || (words > v->words && !v->more))
+		return ob_command_fail(OB_EXIT_USAGE, e.text);
+	sending s = { .universe = a->operand, .word = a->operands + 2 };
+	s.u = ob_universe_attach(s.universe, &e);
+	const bool fine = s.u && v->send(&s, &e);
+	ob_universe_detach(s.u);
+	return fine ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e.text);
+}

@@ -1,0 +1,149 @@
+#include "host/ask.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "base/utf8.h"
+#include "host/host_state.h"
+
+enum { PATIENCE_MS = 200, ANSWER_PATIENCE_MS = 10000, WAITING = 16 };
+
+static const char magic[8] = { 'O', 'B', 'S', 'I', 'M', 'A', 'S', '1' };
+
+typedef struct packet {
+	char magic[8];
+	uint64_t size; // of a request, as this program has it
+	ob_request request;
+} packet;
+
+static socklen_t address_of(const char *universe, struct sockaddr_un *a)
+{
+	*a = (struct sockaddr_un){ .sun_family = AF_UNIX };
+	const int n = snprintf(a->sun_path + 1, sizeof a->sun_path - 1, "obsim.%s", universe);
+	return (socklen_t)(offsetof(struct sockaddr_un, sun_path) + 1 + (size_t)n);
+}
+
+// ---- the universe's side
+
+int ob_ask_listen(const char *universe)
+{
+	struct sockaddr_un a;
+	const socklen_t n = address_of(universe, &a);
+	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd >= 0 && (bind(fd, (struct sockaddr *)&a, n) != 0 || listen(fd, WAITING) != 0)) {
+		close(fd);
+		return -1;
+	}
+	return fd;
+}
+
+static bool is_ours(int fd)
+{
+	struct ucred who;
+	socklen_t n = sizeof who;
+	return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && (who.uid == geteuid() || who.uid == 0);
+}
+
+static bool is_colour(const float *c)
+{
+	for (int i = 0; i < 4; i++)
+		if (!(c[i] >= 0 && c[i] <= 1))
+			return false;
+	return true;
+}
+
+// All of them is in its definition.
+static bool is_plain(uint32_t shape)
+{
+	return shape == OB_SHAPE_BOX || shape == OB_SHAPE_SPHERE || shape == OB_SHAPE_CAPSULE ||
+	       shape == OB_SHAPE_CYLINDER;
+}
+
+static bool check(const ob_host *h, const ob_request *r, ob_error *e)
+{
+	ob_passport p;
+	if (r->kind > OB_REQUEST_MESSAGE)
+		return ob_fail(e, "unknown request");
+	if (r->kind == OB_REQUEST_ADD)
+		return (is_plain(r->def.passport.shape) && !r->def.script && !r->def.state_bytes) ||
+		       ob_fail(e, "only boxes, spheres, capsules and cylinders without a script can be created so");
+	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
+		return ob_fail(e, "the object has gone");
+	if (r->kind == OB_REQUEST_COLOUR && !is_colour(r->colour))
+		return ob_fail(e, "a colour has parts from 0 to 1");
+	if (r->kind == OB_REQUEST_MESSAGE && (r->bytes > sizeof r->values || !ob_script_turn_of(h->u, r->id)))
+		return ob_fail(e, "object %u (%.*s) has no script to send a message to", r->id, OB_NAME_MAX, p.name);
+	return true;
+}
+
+static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
+{
+	ob_request *r = &p->request;
+	e->text[0] = 0;
+	if (n != sizeof *p || memcmp(p->magic, magic, sizeof magic) != 0 || p->size != sizeof *r) {
+		ob_fail(e, "the request is not of this version of obsim");
+		return;
+	}
+	if (r->kind == OB_REQUEST_ADD) {
+		r->def.passport.name[OB_NAME_MAX - 1] = 0;
+		ob_utf8_make_plain(r->def.passport.name);
+	}
+	if (check(h, r, e))
+		ob_host_request(h, r, e);
+}
+
+void ob_ask_answer(ob_host *h, int socket)
+{
+	ob_error e = { "" };
+	packet p;
+	const int fd = accept4(socket, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+	struct pollfd ready = { .fd = fd, .events = POLLIN };
+	if (fd < 0)
+		return;
+	if (!is_ours(fd))
+		ob_fail(&e, "this universe belongs to another user");
+	else if (poll(&ready, 1, PATIENCE_MS) == 1) // for the supervisor has other things to do
+		carry_out(h, &p, recv(fd, &p, sizeof p, 0), &e);
+	else
+		ob_fail(&e, "nothing was asked for");
+	const ssize_t ignored = send(fd, &e, sizeof e, MSG_NOSIGNAL | MSG_DONTWAIT);
+	(void)ignored;
+	close(fd);
+}
+
+// ---- the other side
+
+static bool ask(int fd, const char *universe, const ob_request *r, ob_error *e)
+{
+	struct sockaddr_un a;
+	const socklen_t n = address_of(universe, &a);
+	packet p = { .size = sizeof *r };
+	struct pollfd answered = { .fd = fd, .events = POLLIN };
+	ob_error answer;
+	memcpy(p.magic, magic, sizeof magic);
+	memcpy(&p.request, r, sizeof *r);
+	if (connect(fd, (struct sockaddr *)&a, n) != 0)
+		return ob_fail(e, "universe \"%s\" takes no requests: %s", universe, strerror(errno));
+	if (send(fd, &p, sizeof p, MSG_NOSIGNAL) != sizeof p || poll(&answered, 1, ANSWER_PATIENCE_MS) != 1 ||
+	    recv(fd, &answer, sizeof answer, 0) != sizeof answer)
+		return ob_fail(e, "universe \"%s\" does not answer", universe);
+	answer.text[sizeof answer.text - 1] = 0;
+	ob_utf8_make_plain(answer.text);
+	return !*answer.text || ob_fail(e, "universe \"%s\": %s", universe, answer.text);
+}
+
+bool ob_ask(const char *universe, const ob_request *r, ob_error *e)
+{
+	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+	if (fd < 0)
+		return ob_fail(e, "no socket: %s", strerror(errno));
+	const bool fine = ask(fd, universe, r, e);
+	close(fd);
+	return fine;
+}

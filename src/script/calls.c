@@ -1,0 +1,604 @@
+// What a script can call.
+#include <math.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+#include "motion/flight.h"
+#include "scene/text.h"
+#include "script/runner.h"
+
+// ---- arguments
+
+static ob_script_runner *runner_of(lua_State *L)
+{
+	ob_script_runner *r = ob_sandbox_user(L);
+	if (!r->turn)
+		ob_sandbox_fail(L, "objects can be asked in a function alone, as in function on_start() ... end");
+	return r;
+}
+
+static ob_flat_object *object_at(lua_State *L, int index, const char *call)
+{
+	ob_flat_object *o = luaL_testudata(L, index, OB_FLAT_OBJECT);
+	if (!o)
+		ob_sandbox_fail(L, "%s: expected an object before the colon, as in self:%s(...)", call, call);
+	return o;
+}
+
+// Only the script's own object can be asked to do something.
+static ob_script_runner *own(lua_State *L, const char *call)
+{
+	ob_script_runner *r = runner_of(L);
+	const ob_flat_object *o = object_at(L, 1, call);
+	if (o->id != r->turn->object || o->generation != r->turn->generation)
+		ob_sandbox_fail(L, "%s: a script moves its own object, self; others can be sent a message", call);
+	return r;
+}
+
+static double number_at(lua_State *L, int index, const char *call, double most)
+{
+	const double x = lua_tonumber(L, index);
+	if (lua_type(L, index) != LUA_TNUMBER || !(fabs(x) <= most)) {
+		char got[OB_TEXT_VALUE];
+		ob_text_of_value(L, index, got);
+		ob_sandbox_fail(L, "%s: expected a number, up to %g, got %s", call, most, got);
+	}
+	return x;
+}
+
+// x, y, z from this index on, or a table {x, y, z} there. Returns how many values it took.
+static int vector_at(lua_State *L, int index, const char *call, double most, ob_vec3 *out)
+{
+	double x[3];
+	if (!lua_istable(L, index)) {
+		for (int i = 0; i < 3; i++)
+			x[i] = number_at(L, index + i, call, most);
+		*out = ob_v3(x[0], x[1], x[2]);
+		return 3;
+	}
+	for (int i = 0; i < 3; i++) {
+		lua_geti(L, index, i + 1);
+		x[i] = number_at(L, -1, call, most);
+		lua_pop(L, 1);
+	}
+	*out = ob_v3(x[0], x[1], x[2]);
+	return 1;
+}
+
+static int push_vector(lua_State *L, ob_vec3 v)
+{
+	lua_pushnumber(L, v.x);
+	lua_pushnumber(L, v.y);
+	lua_pushnumber(L, v.z);
+	return 3;
+}
+
+static void push_object(lua_State *L, const ob_script_runner *r, uint32_t id)
+{
+	ob_flat_object *o = lua_newuserdatauv(L, sizeof *o, 0);
+	*o = (ob_flat_object){ id, ob_passport_of(r->u, id)->generation };
+	luaL_setmetatable(L, OB_FLAT_OBJECT);
+}
+
+// ---- asking any object
+
+// Its passport; NULL: it is gone.
+static const ob_passport *passport_of(const ob_script_runner *r, const ob_flat_object *o)
+{
+	if (o->id >= ob_universe_ids(r->u) || r->data->schedule[o->id].state == OB_SCHEDULE_ABSENT)
+		return NULL;
+	const ob_passport *p = ob_passport_of(r->u, o->id);
+	return p->flags & OB_OBJECT_PRESENT && p->generation == o->generation ? p : NULL;
+}
+
+static double now_of(const ob_script_runner *r)
+{
+	return (double)r->step * r->settings->step_length;
+}
+
+static int call_exists(lua_State *L)
+{
+	lua_pushboolean(L, passport_of(runner_of(L), object_at(L, 1, "exists")) != NULL);
+	return 1;
+}
+
+static int call_id(lua_State *L)
+{
+	lua_pushinteger(L, object_at(L, 1, "id")->id);
+	return 1;
+}
+
+static int call_name(lua_State *L)
+{
+	const ob_passport *p = passport_of(runner_of(L), object_at(L, 1, "name"));
+	if (p)
+		lua_pushlstring(L, p->name, strnlen(p->name, OB_NAME_MAX));
+	return p != NULL;
+}
+
+static int call_mass(lua_State *L)
+{
+	const ob_passport *p = passport_of(runner_of(L), object_at(L, 1, "mass"));
+	if (p)
+		lua_pushnumber(L, p->mass);
+	return p != NULL;
+}
+
+// The centre alone, for which no turning need be computed.
+static int call_position(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const ob_flat_object *o = object_at(L, 1, "position");
+	const ob_passport *p = passport_of(r, o);
+	if (!p)
+		return 0;
+	const ob_motion *m = ob_newest_motion(r->u, o->id);
+	const double t = now_of(r), s = t - m->t0;
+	return push_vector(L, ob_published_stands(m, p, t) ? m->p : ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a));
+}
+
+static int call_velocity(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const ob_flat_object *o = object_at(L, 1, "velocity");
+	const ob_passport *p = passport_of(r, o);
+	if (!p)
+		return 0;
+	const ob_motion *m = ob_newest_motion(r->u, o->id);
+	const double t = now_of(r);
+	return push_vector(L, ob_published_stands(m, p, t) ? m->v : ob_madd(m->v, t - m->t0, m->a));
+}
+
+static bool state_of(lua_State *L, const char *call, ob_state *out)
+{
+	const ob_script_runner *r = runner_of(L);
+	const ob_flat_object *o = object_at(L, 1, call);
+	const ob_passport *p = passport_of(r, o);
+	if (p)
+		*out = ob_published_at(ob_newest_motion(r->u, o->id), p, now_of(r));
+	return p;
+}
+
+static int call_spin(lua_State *L)
+{
+	ob_state s;
+	return state_of(L, "spin", &s) ? push_vector(L, s.w) : 0;
+}
+
+static int call_attitude(lua_State *L)
+{
+	ob_state s;
+	if (!state_of(L, "attitude", &s))
+		return 0;
+	lua_pushnumber(L, s.pose.q.w);
+	return 1 + push_vector(L, ob_v3(s.pose.q.x, s.pose.q.y, s.pose.q.z));
+}
+
+// From the object's axes to the world's.
+static int call_turned(lua_State *L)
+{
+	ob_state s;
+	ob_vec3 v;
+	vector_at(L, 2, "turned", 1e15, &v);
+	if (!state_of(L, "turned", &s))
+		return 0;
+	const ob_mat3 m = ob_quat_matrix(s.pose.q);
+	return push_vector(L, ob_rotate(&m, v));
+}
+
+// ---- what the own object does
+
+static int call_force(lua_State *L)
+{
+	ob_script_runner *r = own(L, "force");
+	vector_at(L, 2, "force", 1e15, &r->cell->force);
+	r->cell->asks |= OB_SCRIPT_ASKS_FORCE;
+	return 0;
+}
+
+static int call_torque(lua_State *L)
+{
+	ob_script_runner *r = own(L, "torque");
+	vector_at(L, 2, "torque", 1e15, &r->cell->next_torque);
+	r->cell->asks |= OB_SCRIPT_ASKS_TORQUE;
+	return 0;
+}
+
+// At the centre, or at a point, where it turns the object as well.
+static int call_push(lua_State *L)
+{
+	ob_script_runner *r = own(L, "push");
+	ob_vec3 push, at;
+	ob_state s;
+	const int taken = vector_at(L, 2, "push", 1e12, &push);
+	if (!lua_isnoneornil(L, 2 + taken)) {
+		vector_at(L, 2 + taken, "push", 1e9, &at);
+		if (state_of(L, "push", &s))
+			r->cell->twist = ob_add(r->cell->twist, ob_cross(ob_sub(at, s.pose.p), push));
+	}
+	r->cell->push = ob_add(r->cell->push, push);
+	r->cell->asks |= OB_SCRIPT_ASKS_PUSH;
+	return 0;
+}
+
+static int call_twist(lua_State *L)
+{
+	ob_script_runner *r = own(L, "twist");
+	ob_vec3 twist;
+	vector_at(L, 2, "twist", 1e12, &twist);
+	r->cell->twist = ob_add(r->cell->twist, twist);
+	r->cell->asks |= OB_SCRIPT_ASKS_PUSH;
+	return 0;
+}
+
+static int call_colour(lua_State *L)
+{
+	static const ob_field field = { .name = "colour", .kind = OB_FIELD_COLOUR, .required = true };
+	ob_script_runner *r = own(L, "colour");
+	lua_settop(L, 2);
+	ob_script_thaw(L, 2);
+	lua_newtable(L);
+	lua_insert(L, 2);
+	lua_setfield(L, 2, "colour");
+	ob_fields_read(L, 2, "self", &field, 1, r->cell->colour);
+	r->cell->asks |= OB_SCRIPT_ASKS_COLOUR;
+	return 0;
+}
+
+static int call_wake(lua_State *L)
+{
+	ob_script_runner *r = own(L, "wake");
+	const double after = number_at(L, 2, "wake", 1e9), steps = ceil(after / r->settings->step_length - 1e-6);
+	const double step = (double)r->step + fmax(1, steps);
+	r->turn->wake = step < UINT32_MAX ? (uint32_t)step : UINT32_MAX;
+	return 0;
+}
+
+// ---- what is done at the step's end: messages, creations, removals
+
+static ob_script_post *begin_post(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, uint32_t id,
+				  uint32_t generation)
+{
+	ob_script_cell *c = r->cell;
+	ob_script_post *post = (ob_script_post *)(void *)(c->outbox + c->outbox_bytes);
+	if (c->outbox_bytes + sizeof *post > OB_SCRIPT_OUTBOX_BYTES)
+		ob_sandbox_fail(L, "expected at most %d bytes of messages, creations and removals in a step",
+				OB_SCRIPT_OUTBOX_BYTES);
+	*post = (ob_script_post){
+		.kind = kind, .line = (uint32_t)ob_sandbox_line(L), .object = id, .generation = generation
+	};
+	return post;
+}
+
+static ob_flat rest_of(const ob_script_cell *c)
+{
+	const uint32_t at = c->outbox_bytes + (uint32_t)sizeof(ob_script_post);
+	return (ob_flat){ (unsigned char *)(uintptr_t)c->outbox + at, 0, OB_SCRIPT_OUTBOX_BYTES - at };
+}
+
+static void end_post(const ob_script_runner *r, ob_script_post *post, const ob_flat *f)
+{
+	post->used = f->size;
+	post->bytes = (f->size + 7) / 8 * 8; // the outbox is a multiple of that
+	memset(f->bytes + f->size, 0, post->bytes - f->size);
+	r->cell->outbox_bytes += (uint32_t)sizeof *post + post->bytes;
+	r->cell->asks |= OB_SCRIPT_ASKS_POST;
+}
+
+static int call_send(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const int values = lua_gettop(L);
+	const ob_flat_object *to = luaL_testudata(L, 1, OB_FLAT_OBJECT);
+	if (!to)
+		ob_sandbox_fail(L, "send: expected an object to send to, as in send(find(\"lift\"), \"up\")");
+	ob_script_post *post = begin_post(L, r, OB_SCRIPT_MESSAGE, to->id, to->generation);
+	ob_flat f = rest_of(r->cell);
+	for (int i = 2; i <= values; i++)
+		ob_flat_put(L, i, &f, "send");
+	end_post(r, post, &f);
+	return 0;
+}
+
+static int call_remove(lua_State *L)
+{
+	ob_script_runner *r = runner_of(L);
+	const ob_flat_object *o = object_at(L, 1, "remove");
+	if (o->id == r->turn->object && o->generation == r->turn->generation) {
+		r->ended = true;
+		return 0;
+	}
+	ob_flat none = rest_of(r->cell);
+	ob_script_post *post = begin_post(L, r, OB_SCRIPT_REMOVE, o->id, o->generation);
+	end_post(r, post, &none);
+	return 0;
+}
+
+// Upvalue 1 is the scene's function, which puts the object into the runner's scene; 2 its name.
+static int call_create(lua_State *L)
+{
+	ob_script_runner *r = runner_of(L);
+	const char *kind = lua_tostring(L, lua_upvalueindex(2));
+	lua_settop(L, 1);
+	ob_script_thaw(L, 1);
+	const bool named = lua_istable(L, 1) && lua_getfield(L, 1, "name") != LUA_TNIL;
+	lua_settop(L, 1);
+	lua_pushnil(L);
+	lua_setfield(L, LUA_REGISTRYINDEX, "scene.names"); // names are the host's to give
+	r->scene.objects = r->scene.states_bytes = 0;
+	lua_tocfunction(L, lua_upvalueindex(1))(L);
+	ob_object_def *def = &r->scene.object[0];
+	if (def->born > 0 || def->dies < INFINITY)
+		ob_sandbox_fail(L, "%s: expected neither born nor dies: it is created now, and removed on request",
+				kind);
+	if (!named)
+		snprintf(def->passport.name, sizeof def->passport.name, "%s#", kind); // and its id
+	ob_script_post *post = begin_post(L, r, OB_SCRIPT_CREATE, 0, 0);
+	ob_flat f = rest_of(r->cell);
+	if (f.room < sizeof *def + def->state_bytes)
+		ob_sandbox_fail(L, "%s: expected at most %d bytes of messages, creations and removals in a step", kind,
+				OB_SCRIPT_OUTBOX_BYTES);
+	memcpy(f.bytes, def, sizeof *def);
+	if (def->state_bytes)
+		memcpy(f.bytes + sizeof *def, r->scene.states, def->state_bytes);
+	f.size = (uint32_t)sizeof *def + def->state_bytes;
+	end_post(r, post, &f);
+	return 0;
+}
+
+// ---- the world around
+
+static int call_time(lua_State *L)
+{
+	lua_pushnumber(L, now_of(runner_of(L)));
+	return 1;
+}
+
+static int call_find(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const char *name = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : NULL;
+	if (!name)
+		ob_sandbox_fail(L, "find: expected the name of an object");
+	for (uint32_t id = 0; id < ob_universe_ids(r->u); id++) {
+		if (r->data->schedule[id].state == OB_SCHEDULE_ABSENT ||
+		    strncmp(ob_passport_of(r->u, id)->name, name, OB_NAME_MAX) != 0)
+			continue;
+		push_object(L, r, id);
+		return 1;
+	}
+	ob_sandbox_spend(L, ob_universe_ids(r->u) / 8);
+	return 0;
+}
+
+typedef struct near_object {
+	double distance2;
+	uint32_t id;
+} near_object;
+
+enum { NEAR_MAX = 256 };
+
+// Into a list of the nearest, in the order of distance and id.
+static uint32_t insert(near_object *list, uint32_t n, near_object o)
+{
+	uint32_t at = n < NEAR_MAX ? n : NEAR_MAX;
+	while (at > 0 && (list[at - 1].distance2 > o.distance2 ||
+			  (list[at - 1].distance2 == o.distance2 && list[at - 1].id > o.id))) {
+		if (at < NEAR_MAX)
+			list[at] = list[at - 1];
+		at--;
+	}
+	if (at < NEAR_MAX)
+		list[at] = o;
+	return n < NEAR_MAX ? n + 1 : n;
+}
+
+static bool is_far(const float *b, ob_vec3 p, double radius)
+{
+	return b[0] > p.x + radius || b[3] < p.x - radius || b[1] > p.y + radius || b[4] < p.y - radius ||
+	       b[2] > p.z + radius || b[5] < p.z - radius;
+}
+
+// Objects that move and whose centres are within the radius, nearest first.
+static int call_near(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const double radius = number_at(L, 1, "near", 1e9), t = now_of(r);
+	const uint32_t own_id = r->turn->object, ids = ob_universe_ids(r->u);
+	const ob_motion *m = ob_newest_motion(r->u, own_id);
+	const ob_vec3 here = ob_published_at(m, ob_passport_of(r->u, own_id), t).pose.p;
+	near_object list[NEAR_MAX];
+	uint32_t n = 0;
+	ob_sandbox_spend(L, ids / 8);
+	for (uint32_t id = 0; id < ids; id++) {
+		if (r->data->schedule[id].state < OB_SCHEDULE_AWAKE || id == own_id ||
+		    is_far(r->data->bounds[id], here, radius))
+			continue;
+		m = ob_newest_motion(r->u, id);
+		const double s = t - m->t0;
+		const ob_vec3 there = ob_published_stands(m, ob_passport_of(r->u, id), t)
+					      ? m->p
+					      : ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
+		const double d2 = ob_norm2(ob_sub(there, here));
+		if (d2 <= radius * radius)
+			n = insert(list, n, (near_object){ d2, id });
+	}
+	lua_createtable(L, (int)n, 0);
+	for (uint32_t i = 0; i < n; i++) {
+		push_object(L, r, list[i].id);
+		lua_rawseti(L, -2, (lua_Integer)i + 1);
+	}
+	return 1;
+}
+
+// ray(from, direction [, length]): the object, the distance, the normal; nothing: it meets none.
+static int call_ray(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	ob_vec3 from, direction;
+	int at = 1 + vector_at(L, 1, "ray", 1e9, &from);
+	at += vector_at(L, at, "ray", 1e9, &direction);
+	const double length = lua_isnoneornil(L, at) ? 1e9 : number_at(L, at, "ray", 1e9), n = ob_norm(direction);
+	ob_ray_hit hit;
+	if (!(n > 0))
+		ob_sandbox_fail(L, "ray: expected a direction that is not 0");
+	ob_sandbox_spend(L, ob_universe_ids(r->u) / 8);
+	if (!ob_ray_cast(r->u, from, ob_scale(direction, 1 / n), length, r->turn->object, &hit))
+		return 0;
+	push_object(L, r, hit.id);
+	lua_pushnumber(L, hit.distance);
+	return 2 + push_vector(L, hit.normal);
+}
+
+// ---- self.state, and what belongs to all objects
+
+static int state_get(lua_State *L)
+{
+	ob_flat_get(L, &runner_of(L)->state, 2);
+	return 1;
+}
+
+static int state_set(lua_State *L)
+{
+	ob_flat_set(L, &runner_of(L)->state, 2, 3, "self.state");
+	return 0;
+}
+
+// pairs(self.state), and of a frozen table: upvalue 1 is the scene's.
+static int call_pairs(lua_State *L)
+{
+	if (luaL_testudata(L, 1, "state")) {
+		const ob_flat *s = &runner_of(L)->state;
+		ob_flat_push_table(L, s->bytes, s->size);
+		lua_replace(L, 1);
+	} else {
+		ob_script_thaw(L, 1);
+	}
+	lua_settop(L, 1);
+	return lua_tocfunction(L, lua_upvalueindex(1)) ? (lua_pushvalue(L, lua_upvalueindex(1)), lua_insert(L, 1),
+							  lua_call(L, 1, LUA_MULTRET), lua_gettop(L))
+						       : 0;
+}
+
+// Upvalue 1: the methods; 2: the state.
+static int object_index(lua_State *L)
+{
+	lua_pushvalue(L, 2);
+	if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL)
+		return 1;
+	const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "?";
+	if (strcmp(name, "state") != 0)
+		ob_sandbox_fail(L, "%.40s: objects have none", name);
+	own(L, "state");
+	lua_pushvalue(L, lua_upvalueindex(2));
+	return 1;
+}
+
+static int refuse_field(lua_State *L)
+{
+	ob_sandbox_fail(L, "cannot set %.40s of an object: values are kept in self.state",
+			lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "a field");
+}
+
+static int object_equal(lua_State *L)
+{
+	const ob_flat_object *a = luaL_testudata(L, 1, OB_FLAT_OBJECT), *b = luaL_testudata(L, 2, OB_FLAT_OBJECT);
+	lua_pushboolean(L, a && b && a->id == b->id && a->generation == b->generation);
+	return 1;
+}
+
+static int object_text(lua_State *L)
+{
+	const ob_script_runner *r = ob_sandbox_user(L);
+	const ob_flat_object *o = object_at(L, 1, "tostring");
+	const ob_passport *p = r->turn ? passport_of(r, o) : NULL;
+	lua_pushfstring(L, "object %d%s%s%s", (int)o->id, p ? " (" : "", p ? p->name : "", p ? ")" : "");
+	return 1;
+}
+
+static const luaL_Reg methods[] = {
+	{ "exists", call_exists },
+	{ "id", call_id },
+	{ "name", call_name },
+	{ "mass", call_mass },
+	{ "position", call_position },
+	{ "velocity", call_velocity },
+	{ "spin", call_spin },
+	{ "attitude", call_attitude },
+	{ "turned", call_turned },
+	{ "force", call_force },
+	{ "torque", call_torque },
+	{ "push", call_push },
+	{ "twist", call_twist },
+	{ "colour", call_colour },
+	{ "wake", call_wake },
+	{ "remove", call_remove },
+	{ NULL, NULL },
+};
+
+static void open_objects(lua_State *L)
+{
+	luaL_newmetatable(L, "state");
+	lua_pushcfunction(L, state_get);
+	lua_setfield(L, -2, "__index");
+	lua_pushcfunction(L, state_set);
+	lua_setfield(L, -2, "__newindex");
+	lua_pop(L, 1);
+	luaL_newmetatable(L, OB_FLAT_OBJECT);
+	luaL_newlib(L, methods);
+	lua_newuserdatauv(L, 1, 0);
+	luaL_setmetatable(L, "state");
+	lua_pushcclosure(L, object_index, 2);
+	lua_setfield(L, -2, "__index");
+	lua_pushcfunction(L, refuse_field);
+	lua_setfield(L, -2, "__newindex");
+	lua_pushcfunction(L, object_equal);
+	lua_setfield(L, -2, "__eq");
+	lua_pushcfunction(L, object_text);
+	lua_setfield(L, -2, "__tostring");
+	lua_pop(L, 1);
+}
+
+int ob_script_calls_open(lua_State *L)
+{
+	static const luaL_Reg calls[] = {
+		{ "time", call_time },
+		{ "find", call_find },
+		{ "near", call_near },
+		{ "ray", call_ray },
+		{ "send", call_send },
+		{ "random", ob_scene_call_random },
+		{ "random_rotation", ob_scene_call_random_rotation },
+	};
+	static const luaL_Reg creations[] = {
+		{ "box", ob_scene_call_box },
+		{ "sphere", ob_scene_call_sphere },
+		{ "capsule", ob_scene_call_capsule },
+		{ "cylinder", ob_scene_call_cylinder },
+	};
+	open_objects(L);
+	lua_pushglobaltable(L);
+	for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
+		lua_pushcfunction(L, calls[i].func);
+		lua_setfield(L, -2, calls[i].name);
+	}
+	for (size_t i = 0; i < sizeof creations / sizeof *creations; i++) {
+		lua_pushcfunction(L, creations[i].func);
+		lua_pushstring(L, creations[i].name);
+		lua_pushcclosure(L, call_create, 2);
+		lua_setfield(L, -2, creations[i].name);
+	}
+	lua_getfield(L, -1, "pairs");
+	lua_pushcclosure(L, call_pairs, 1);
+	lua_setfield(L, -2, "pairs");
+	lua_getfield(L, -1, "math");
+	lua_pushcfunction(L, ob_scene_call_random_integer);
+	lua_setfield(L, -2, "random");
+	lua_pop(L, 1);
+	ob_flat_object *self = lua_newuserdatauv(L, sizeof *self, 0);
+	*self = (ob_flat_object){ UINT32_MAX, 0 };
+	luaL_setmetatable(L, OB_FLAT_OBJECT);
+	lua_setfield(L, -2, "self");
+	return 0;
+}

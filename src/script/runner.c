@@ -1,0 +1,356 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+#include "script/runner.h"
+
+static const char *const handler_names[OB_HANDLERS] = {
+	[OB_HANDLER_START] = "on_start",     [OB_HANDLER_STEP] = "on_step", [OB_HANDLER_CONTACT] = "on_contact",
+	[OB_HANDLER_MESSAGE] = "on_message", [OB_HANDLER_WAKE] = "on_wake", [OB_HANDLER_STOP] = "on_stop",
+};
+
+// ---- interpreters
+
+static int open_all(lua_State *L)
+{
+	ob_library_open(L);
+	return ob_script_calls_open(L);
+}
+
+// Called protected: takes the handlers out of the globals, and freezes the rest.
+static int finish_text(lua_State *L)
+{
+	ob_interpreter *p = lua_touserdata(L, 1);
+	lua_settop(L, 0);
+	lua_pushglobaltable(L);
+	for (int i = 0; i < OB_HANDLERS; i++) {
+		lua_pushstring(L, handler_names[i]);
+		const int type = lua_rawget(L, 1);
+		if (type != LUA_TNIL && type != LUA_TFUNCTION)
+			ob_sandbox_fail(L, "%s: expected a function, got a %s", handler_names[i], luaL_typename(L, -1));
+		if (type == LUA_TFUNCTION)
+			p->handler[i] = luaL_ref(L, LUA_REGISTRYINDEX);
+		else
+			lua_pop(L, 1);
+	}
+	lua_pushliteral(L, "self");
+	lua_rawget(L, 1);
+	p->self = lua_touserdata(L, -1);
+	ob_script_freeze(L, p);
+	return 0;
+}
+
+static void close_interpreter(ob_interpreter *p)
+{
+	ob_sandbox_destroy(p->sandbox);
+	free(p->watched);
+	*p = (ob_interpreter){ .sandbox = NULL };
+}
+
+// The interpreter of a text; where the text cannot be run, its `broken` says why.
+static ob_interpreter *interpreter_of(ob_script_runner *r, uint32_t script)
+{
+	static const ob_sandbox_limits limits = {
+		.memory = OB_SCRIPT_MEMORY,
+		.instructions = OB_SCRIPT_INSTRUCTIONS,
+		.seconds = INFINITY, // for all machines stop at the same place
+		.out_of_memory = "the script needs more than 4 MiB of memory",
+		.out_of_instructions = "stopped after a million instructions: does a loop never end?",
+	};
+	_Static_assert(OB_SCRIPT_MEMORY == 4 << 20 && OB_SCRIPT_INSTRUCTIONS == 1000000, "said above");
+	const ob_script_directory *d = r->data->script_text;
+	ob_interpreter *p = &r->interpreter[script];
+	if (p->sandbox || *p->broken.text)
+		return p;
+	for (int i = 0; i < OB_HANDLERS; i++)
+		p->handler[i] = LUA_NOREF;
+	p->sandbox = ob_sandbox_create_limited(d->text[script].name, &limits, open_all, r, &p->broken);
+	if (!p->sandbox)
+		return p;
+	lua_State *L = ob_sandbox_lua(p->sandbox);
+	r->turn = NULL;
+	ob_random_seed(&r->builder.random, 1);
+	bool good =
+		ob_sandbox_run(p->sandbox, (const char *)d + d->text[script].offset, d->text[script].size, &p->broken);
+	if (good) {
+		lua_pushcfunction(L, finish_text);
+		lua_pushlightuserdata(L, p);
+		good = ob_sandbox_call(p->sandbox, 1, &p->broken);
+	}
+	const ob_error why = p->broken;
+	if (!good) {
+		close_interpreter(p);
+		p->broken = why;
+	}
+	return p;
+}
+
+// ---- calls
+
+// Calls the handler, if the script has it, with the arguments at the top of the stack.
+static bool call(ob_script_runner *r, ob_interpreter *p, ob_handler h, int arguments, ob_error *e)
+{
+	lua_State *L = ob_sandbox_lua(p->sandbox);
+	if (r->ended || p->handler[h] == LUA_NOREF) {
+		lua_pop(L, arguments);
+		return true;
+	}
+	lua_rawgeti(L, LUA_REGISTRYINDEX, p->handler[h]);
+	lua_insert(L, -1 - arguments);
+	return ob_sandbox_call(p->sandbox, arguments, e);
+}
+
+// Called protected, for memory may run out: the arguments of a message, and the call.
+typedef struct delivery {
+	ob_script_runner *r;
+	ob_interpreter *p;
+	const ob_script_post *post;
+	const ob_script_touch *touch;
+} delivery;
+
+static void push_object(lua_State *L, uint32_t id, uint32_t generation)
+{
+	ob_flat_object *o = lua_newuserdatauv(L, sizeof *o, 0);
+	*o = (ob_flat_object){ id, generation };
+	luaL_setmetatable(L, OB_FLAT_OBJECT);
+}
+
+static int tell_message(lua_State *L)
+{
+	const delivery *d = lua_touserdata(L, 1);
+	const unsigned char *values = (const unsigned char *)(d->post + 1);
+	lua_settop(L, 0);
+	lua_rawgeti(L, LUA_REGISTRYINDEX, d->p->handler[OB_HANDLER_MESSAGE]);
+	push_object(L, d->post->object, d->post->generation);
+	int arguments = 1;
+	for (uint32_t at = 0, n; at < d->post->used; at += n, arguments++) {
+		luaL_checkstack(L, 4, "too many values");
+		n = ob_flat_push(L, values + at, d->post->used - at);
+		if (!n)
+			break;
+	}
+	lua_call(L, arguments, 0);
+	return 0;
+}
+
+static int tell_touch(lua_State *L)
+{
+	const delivery *d = lua_touserdata(L, 1);
+	const ob_vec3 at = d->touch->point;
+	lua_settop(L, 0);
+	lua_rawgeti(L, LUA_REGISTRYINDEX, d->p->handler[OB_HANDLER_CONTACT]);
+	push_object(L, d->touch->other, d->touch->generation);
+	lua_pushnumber(L, d->touch->impulse);
+	lua_createtable(L, 3, 0);
+	const double x[] = { at.x, at.y, at.z };
+	for (int i = 0; i < 3; i++) {
+		lua_pushnumber(L, x[i]);
+		lua_rawseti(L, -2, i + 1);
+	}
+	lua_call(L, 3, 0);
+	return 0;
+}
+
+static bool call_with(lua_CFunction f, delivery *d, ob_error *e)
+{
+	lua_State *L = ob_sandbox_lua(d->p->sandbox);
+	lua_pushcfunction(L, f);
+	lua_pushlightuserdata(L, d);
+	return ob_sandbox_call(d->p->sandbox, 1, e);
+}
+
+static bool tell_mail(ob_script_runner *r, ob_interpreter *p, ob_error *e)
+{
+	const ob_script_cell *c = r->cell;
+	bool good = true;
+	for (uint32_t at = 0; good && !r->ended && at + sizeof(ob_script_post) <= c->inbox_bytes;) {
+		const ob_script_post *post = (const ob_script_post *)(const void *)(c->inbox + at);
+		at += (uint32_t)sizeof *post + post->bytes;
+		if (post->used > post->bytes || at > OB_SCRIPT_INBOX_BYTES) // not what was sent
+			break;
+		if (p->handler[OB_HANDLER_MESSAGE] != LUA_NOREF)
+			good = call_with(tell_message, &(delivery){ r, p, post, NULL }, e);
+	}
+	return good;
+}
+
+static bool tell_touches(ob_script_runner *r, ob_interpreter *p, ob_error *e)
+{
+	bool good = true;
+	for (uint32_t i = 0; good && !r->ended && i < r->cell->touches && i < OB_SCRIPT_TOUCHES; i++)
+		if (p->handler[OB_HANDLER_CONTACT] != LUA_NOREF)
+			good = call_with(tell_touch, &(delivery){ r, p, NULL, &r->cell->touch[i] }, e);
+	return good;
+}
+
+static bool tell_step(ob_script_runner *r, ob_interpreter *p, ob_error *e)
+{
+	if (p->handler[OB_HANDLER_STEP] == LUA_NOREF)
+		return true;
+	lua_pushnumber(ob_sandbox_lua(p->sandbox), r->settings->step_length);
+	return call(r, p, OB_HANDLER_STEP, 1, e);
+}
+
+static int check_frozen(lua_State *L)
+{
+	ob_script_check_frozen(L, lua_touserdata(L, 1));
+	return 0;
+}
+
+static bool is_still_frozen(ob_interpreter *p, ob_error *e)
+{
+	lua_State *L = ob_sandbox_lua(p->sandbox);
+	if (!p->watched_count)
+		return true;
+	lua_pushcfunction(L, check_frozen);
+	lua_pushlightuserdata(L, p);
+	return ob_sandbox_call(p->sandbox, 1, e);
+}
+
+// Removes the object that the script is of: the host does, at once.
+static void leave(ob_script_runner *r)
+{
+	ob_script_cell *c = r->cell;
+	const ob_script_post post = { .kind = OB_SCRIPT_REMOVE,
+				      .object = r->turn->object,
+				      .generation = r->turn->generation };
+	if (c->outbox_bytes + sizeof post > OB_SCRIPT_OUTBOX_BYTES)
+		c->outbox_bytes = 0; // what it has said last is lost
+	memcpy(c->outbox + c->outbox_bytes, &post, sizeof post);
+	c->outbox_bytes += (uint32_t)sizeof post;
+	c->asks |= OB_SCRIPT_ASKS_POST;
+}
+
+// All that is due, in this order.
+static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
+{
+	ob_script_turn *t = r->turn;
+	const uint32_t flags = t->flags, wake = t->wake;
+	t->flags = (flags | OB_SCRIPT_STARTED) & ~(uint32_t)(OB_SCRIPT_MAIL | OB_SCRIPT_TOUCHED);
+	if (p->handler[OB_HANDLER_STEP] != LUA_NOREF)
+		t->flags |= OB_SCRIPT_EACH_STEP;
+	if (p->handler[OB_HANDLER_CONTACT] != LUA_NOREF)
+		t->flags |= OB_SCRIPT_FEELS;
+	if (!(flags & OB_SCRIPT_STARTED) && !call(r, p, OB_HANDLER_START, 0, e))
+		return false;
+	if (flags & OB_SCRIPT_MAIL && !tell_mail(r, p, e))
+		return false;
+	if (flags & OB_SCRIPT_TOUCHED && !tell_touches(r, p, e))
+		return false;
+	if (wake <= r->step && flags & OB_SCRIPT_STARTED) {
+		if (t->wake == wake) // and no other was asked for meanwhile
+			t->wake = UINT32_MAX;
+		if (!call(r, p, OB_HANDLER_WAKE, 0, e))
+			return false;
+	}
+	if (!tell_step(r, p, e))
+		return false;
+	if (r->ended || flags & OB_SCRIPT_LEAVING) {
+		r->ended = false;
+		if (!call(r, p, OB_HANDLER_STOP, 0, e))
+			return false;
+		leave(r);
+	}
+	return is_still_frozen(p, e);
+}
+
+static bool attempt(ob_script_runner *r, const ob_script_turn *turn, ob_error *e)
+{
+	ob_script_cell *c = r->cell;
+	ob_interpreter *p = interpreter_of(r, turn->script - 1);
+	if (*p->broken.text) {
+		*e = p->broken;
+		return false;
+	}
+	c->asks = 0;
+	c->outbox_bytes = 0;
+	c->force = ob_passport_of(r->u, turn->object)->force;
+	c->next_torque = c->torque;
+	c->push = c->twist = ob_v3(0, 0, 0);
+	*p->self = (ob_flat_object){ turn->object, turn->generation };
+	r->ended = false;
+	return call_all(r, p, e);
+}
+
+void ob_script_runner_run(void *runner, uint32_t cell)
+{
+	ob_script_runner *r = runner;
+	ob_script_turn *t = &r->data->script_turn[cell];
+	ob_script_cell *c = &r->data->script_cell[cell];
+	const ob_script_turn before = *t;
+	unsigned char state[OB_SCRIPT_STATE_BYTES];
+	const uint32_t state_bytes = c->state_bytes;
+	ob_error e = { "" };
+	if (before.script > r->data->script_text->scripts || state_bytes > sizeof state)
+		return;
+	memcpy(state, c->state, state_bytes);
+	r->cell = c;
+	r->step = ob_step_count(r->u);
+	for (int again = 0;; again++) {
+		ob_interpreter *p = interpreter_of(r, before.script - 1);
+		r->turn = t;
+		r->state = (ob_flat){ c->state, state_bytes, OB_SCRIPT_STATE_BYTES };
+		memcpy(r->builder.random.s, c->random, sizeof c->random);
+		if (attempt(r, &before, &e))
+			break;
+		// An interpreter that has run others may have less memory left than a new one, which decides.
+		const bool memory = p->sandbox && ob_sandbox_lacked_memory(p->sandbox);
+		if (!*p->broken.text)
+			close_interpreter(p);
+		*t = before;
+		memcpy(c->state, state, state_bytes);
+		if (memory && again == 0)
+			continue;
+		t->flags |= OB_SCRIPT_STOPPED;
+		c->asks = OB_SCRIPT_ASKS_ERROR;
+		c->outbox_bytes = 0;
+		c->failed_step = (uint32_t)r->step;
+		snprintf(c->error, sizeof c->error, "%s", e.text);
+		r->state.size = state_bytes;
+		break;
+	}
+	c->state_bytes = r->state.size;
+	memcpy(c->random, r->builder.random.s, sizeof c->random);
+	c->inbox_bytes = c->touches = 0;
+	r->turn = NULL;
+}
+
+// ---- runners
+
+ob_script_runner *ob_script_runner_create(ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_script_runner *r = calloc(1, sizeof *r);
+	ob_script_def *names = r ? calloc(OB_SCRIPTS_MAX, sizeof *names) : NULL;
+	if (!names) {
+		free(r);
+		return NULL;
+	}
+	static const ob_scene_options none = { 0 };
+	r->u = u;
+	r->data = data;
+	r->settings = ob_universe_settings(u);
+	r->builder.scene = &r->scene;
+	r->builder.options = &none;
+	r->scene.script = names;
+	const uint32_t scripts = data->script_text->scripts;
+	r->scene.scripts = scripts < OB_SCRIPTS_MAX ? scripts : OB_SCRIPTS_MAX;
+	for (uint32_t i = 0; i < r->scene.scripts; i++)
+		memcpy(names[i].name, data->script_text->text[i].name, sizeof names[i].name);
+	return r;
+}
+
+void ob_script_runner_destroy(ob_script_runner *r)
+{
+	if (!r)
+		return;
+	for (uint32_t i = 0; i < OB_SCRIPTS_MAX; i++)
+		close_interpreter(&r->interpreter[i]);
+	free(r->scene.script);
+	free(r->scene.object);
+	free(r->scene.states);
+	free(r);
+}

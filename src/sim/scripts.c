@@ -1,0 +1,187 @@
+#include "sim/scripts.h"
+
+#include <string.h>
+
+#include "sim/broadphase.h"
+#include "sim/publish.h"
+
+// ---- who runs
+
+bool ob_scripts_due(ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_script_counts *count = data->script_counts;
+	const uint64_t step = ob_step_count(u);
+	if (!count || count->ran_for == step + 1)
+		return false;
+	count->ran_for = (uint32_t)step + 1;
+	count->due = 0;
+	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
+		if (ob_script_is_due(&data->script_turn[i], step))
+			data->script_due[count->due++] = i;
+	return count->due > 0;
+}
+
+void ob_scripts_run(ob_sim *s)
+{
+	const ob_step_data *data = s->data;
+	uint32_t i;
+	if (s->settings->one_per_object)
+		s->scripts.run(s->scripts.runner, data->script_of[s->worker] - 1);
+	else
+		while (ob_task_claim(s->u, &i))
+			s->scripts.run(s->scripts.runner, data->script_due[i]);
+}
+
+bool ob_sim_awaits_requests(const ob_universe *u)
+{
+	return ob_scripts_have_requests(u);
+}
+
+bool ob_scripts_have_requests(const ob_universe *u)
+{
+	const ob_script_counts *count = ob_universe_step_data(u)->script_counts;
+	return count && count->requests > 0;
+}
+
+// ---- what they have asked for
+
+static bool moves(const ob_step_data *data, uint32_t id)
+{
+	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+}
+
+// The object goes on from here with other velocities, or under another force: what was computed ahead of it is void.
+static void set_going(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_run_settings *run = ob_universe_settings(u);
+	const ob_passport *pass = ob_passport_of(u, id);
+	const uint64_t step = ob_step_count(u);
+	ob_motion m = *ob_newest_motion(u, id);
+	const bool supported = ob_norm2(m.a) == 0;
+	const ob_state now = ob_state_now(u, id, &m, step);
+	m.path = ob_path_now(&m, step);
+	m.t0 = m.valid_until = (double)step * run->step_length;
+	m.p = now.pose.p, m.q = now.pose.q, m.v = now.v, m.w = now.w;
+	if (ob_norm2(push) > 0)
+		m.v = ob_madd(m.v, 1 / pass->mass, push);
+	if (ob_norm2(twist) > 0) {
+		const ob_mat3 r = ob_quat_matrix(m.q);
+		const ob_vec3 l = ob_rotate_back(&r, twist);
+		m.w = ob_add(m.w,
+			     ob_rotate(&r, ob_v3(l.x / pass->inertia.x, l.y / pass->inertia.y, l.z / pass->inertia.z)));
+	}
+	m.a = supported ? ob_v3(0, 0, 0) : ob_external_acceleration(run, pass);
+	m.step = (uint32_t)step;
+	m.flags = 0;
+	m.rest_time = 0;
+	const double reach = ob_step_reach(run, pass, m.q, m.v, m.w);
+	m.reach = (float)reach;
+	ob_schedule *schedule = &data->schedule[id];
+	*schedule = (ob_schedule){ ob_schedule_path(schedule, step), (float)reach, OB_SCHEDULE_AWAKE, m.step, m.step };
+	ob_fat_aabb_update(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach, 0);
+	ob_publish_motion(u, id, &m);
+}
+
+static bool same_vector(ob_vec3 a, ob_vec3 b)
+{
+	return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+// true: it moves otherwise from now on
+static bool change_object(ob_universe *u, uint32_t id, ob_script_cell *c)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const bool body = moves(data, id);
+	ob_passport p = *ob_passport_of(u, id);
+	bool other = false;
+	if (body && c->asks & OB_SCRIPT_ASKS_FORCE) {
+		other |= !same_vector(p.force, c->force);
+		p.force = c->force;
+	}
+	if (c->asks & OB_SCRIPT_ASKS_COLOUR)
+		memcpy(p.colour, c->colour, sizeof p.colour);
+	if (memcmp(&p, ob_passport_of(u, id), sizeof p) != 0)
+		ob_write_passport(u, id, &p);
+	if (body && c->asks & OB_SCRIPT_ASKS_TORQUE) {
+		other |= !same_vector(c->torque, c->next_torque);
+		c->torque = c->next_torque;
+	}
+	const ob_vec3 none = { 0 };
+	const bool pushed = body && c->asks & OB_SCRIPT_ASKS_PUSH;
+	if (other || pushed)
+		set_going(u, id, pushed ? c->push : none, pushed ? c->twist : none);
+	return other || pushed;
+}
+
+static void deliver(ob_step_data *data, const ob_script_turn *from, const ob_script_post *post)
+{
+	const uint32_t cell = post->object < data->objects_max ? data->script_of[post->object] : 0;
+	if (!cell)
+		return;
+	ob_script_turn *to = &data->script_turn[cell - 1];
+	ob_script_cell *c = &data->script_cell[cell - 1];
+	if (to->generation != post->generation || to->flags & OB_SCRIPT_STOPPED)
+		return;
+	const uint32_t bytes = (uint32_t)sizeof *post + post->bytes;
+	if (c->inbox_bytes + bytes > OB_SCRIPT_INBOX_BYTES) {
+		data->script_counts->lost++;
+		return;
+	}
+	ob_script_post mail = *post;
+	mail.object = from->object, mail.generation = from->generation;
+	memcpy(c->inbox + c->inbox_bytes, &mail, sizeof mail);
+	memcpy(c->inbox + c->inbox_bytes + sizeof mail, post + 1, post->bytes);
+	c->inbox_bytes += bytes;
+	to->flags |= OB_SCRIPT_MAIL;
+}
+
+// One that has a script of its own is told first, and goes a step later.
+static void remove_object(ob_step_data *data, const ob_script_turn *from, ob_script_post *post)
+{
+	const uint32_t cell = post->object < data->objects_max ? data->script_of[post->object] : 0;
+	ob_script_turn *to = cell ? &data->script_turn[cell - 1] : NULL;
+	if (to && to != from && to->generation == post->generation && !(to->flags & OB_SCRIPT_STOPPED)) {
+		to->flags |= OB_SCRIPT_LEAVING;
+		post->kind = OB_SCRIPT_MESSAGE, post->bytes = 0, post->generation = 0; // nobody's
+		return;
+	}
+	data->script_counts->requests++;
+}
+
+// Posts lie on borders of 8 bytes.
+static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_cell *c)
+{
+	for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {
+		ob_script_post *post = (ob_script_post *)(void *)(c->outbox + at);
+		at += (uint32_t)sizeof *post + post->bytes;
+		if (post->kind == OB_SCRIPT_MESSAGE)
+			deliver(data, from, post);
+		else if (post->kind == OB_SCRIPT_REMOVE)
+			remove_object(data, from, post);
+		else
+			data->script_counts->requests++;
+	}
+}
+
+bool ob_scripts_carry_out(ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_script_counts *count = data->script_counts;
+	bool other = false;
+	count->requests = 0;
+	count->calls += count->due;
+	for (uint32_t i = 0; i < count->due; i++) {
+		const uint32_t cell = data->script_due[i];
+		ob_script_turn *turn = &data->script_turn[cell];
+		ob_script_cell *c = &data->script_cell[cell];
+		if (c->asks & ~(uint32_t)(OB_SCRIPT_ASKS_POST | OB_SCRIPT_ASKS_ERROR))
+			other |= change_object(u, turn->object, c);
+		if (c->asks & OB_SCRIPT_ASKS_POST)
+			post_all(data, turn, c);
+		count->failed += (c->asks & OB_SCRIPT_ASKS_ERROR) != 0;
+		c->asks = 0;
+	}
+	return other;
+}

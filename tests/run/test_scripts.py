@@ -1,0 +1,331 @@
+"""Scripts of objects, end to end: what they can do, what stops them and nothing else, and that a run comes to the same bits
+whoever runs them and however often simulators die."""
+
+import re
+import unittest
+
+import program
+
+ROOMY = ["--measure", "end"]
+
+
+class Scripts(program.Case):
+	def write(self, name, text):
+		with open(self.path(name), "w") as f:
+			f.write(text)
+		return self.path(name)
+
+	def run_scene(self, text, *words, code=0):
+		"""What obsim says of a scene with this text."""
+		done = program.call("run", self.write("scene.lua", text), *words)
+		self.assertEqual(done.returncode, code, done.stderr)
+		return done.stderr
+
+	def one(self, script, *words, object="mass = 2", scene="duration = 1", code=0):
+		"""The same with one ball that has this script, far above the ground; what it prints is in the answer."""
+		return self.run_scene(f"""
+scene {{ {scene} }}
+ground {{}}
+script("it", [[{script}]])
+sphere {{ name = "ball", radius = .5, at = {{ 0, 0, 1000 }}, script = "it", {object} }}
+""", *words, code=code)
+
+	def numbers(self, said, word):
+		"""The numbers behind a word that was printed."""
+		found = re.findall(rf"^obsim: {word} (.*)$", said, re.M)
+		self.assertTrue(found, said)
+		return [[float(x) for x in line.split()] for line in found]
+
+	# ---- what they do
+
+	def test_constant_force(self):
+		"""A force holds until another is set: a parabola."""
+		said = self.one("function on_start() self:force(6, 0, 2 * 9.81) self:wake(.5) end "
+		                "function on_wake() local x, y, z = self:position() print('at', x, y, z, self:velocity()) end")
+		x, y, z, vx, vy, vz = self.numbers(said, "at")[0]
+		self.assertAlmostEqual(x, .5 * 3 * .25, 9)
+		self.assertAlmostEqual(z, 1000, 9)
+		self.assertAlmostEqual(vx, 1.5, 9)
+		self.assertAlmostEqual(vz, 0, 9)
+
+	def test_torque(self):
+		"""Spin grows by torque over moment of inertia: 2/5 m r^2 = .2 kg m^2."""
+		said = self.one("function on_start() self:torque(0, 0, .4) self:wake(.5) end "
+		                "function on_wake() print('spin', self:spin()) self:torque(0, 0, 0) self.state.w = 1 "
+		                "if time() < .9 then self:wake(.4) end end")
+		spins = self.numbers(said, "spin")
+		self.assertAlmostEqual(spins[0][2], 1, 9)
+		self.assertAlmostEqual(spins[1][2], 1, 9)
+
+	def test_push_and_twist(self):
+		said = self.one("function on_start() self:push(4, 0, 0) self:twist { 0, .6, 0 } self:wake(.1) end "
+		                "function on_wake() print('v', self:velocity()) print('w', self:spin()) end")
+		self.assertAlmostEqual(self.numbers(said, "v")[0][0], 2, 12)
+		self.assertAlmostEqual(self.numbers(said, "w")[0][1], 3, 12)
+
+	def test_friction_holds_a_block(self):
+		"""A force below the friction limit does not move a block, one above it moves it as the closed form says."""
+		said = self.run_scene("""
+scene { duration = 1 }
+ground { friction = .5 }
+script("pull", [[
+function on_step()
+	if time() == 0 then self:force(self.state.share * .5 * self:mass() * 9.81, 0, 0) end
+	self.state.x = self:position()
+end
+function on_start() self:wake(59 / 60) end
+function on_wake() print(self:name(), (self:position()), (self:velocity())) end
+]])
+for i, share in ipairs { .9, 1.5 } do
+	box { name = share < 1 and "held" or "pulled", size = { 1, 1, 1 }, at = { 0, 3 * i, .5 }, friction = .5, mass = 4,
+	      script = "pull", state = { share = share } }
+end
+""")
+		self.assertLess(abs(self.numbers(said, "held")[0][0]), 1e-4)
+		x, v = self.numbers(said, "pulled")[0]
+		a, t = .5 * .5 * 9.81, 59 / 60
+		self.assertAlmostEqual(v / (a * t), 1, 2)
+		self.assertAlmostEqual(x / (.5 * a * t * t), 1, 2)
+
+	def test_contact(self):
+		"""A ball that falls by 1 m onto the ground, and rebounds with .8 of its speed: m (1 + e) sqrt(2 g h)."""
+		said = self.run_scene("""
+scene { duration = 1 }
+ground {}
+script("ball", [[function on_contact(other, impulse, point) print("hit", impulse, point[1], point[2], point[3])
+  print("by", other:name(), other == find("ground"), self == other) end]])
+sphere { radius = .2, at = { 3, 4, 1.2 }, mass = 2, restitution = .8, script = "ball" }
+""")
+		hits = self.numbers(said, "hit")
+		self.assertEqual(len(hits), 1)
+		self.assertAlmostEqual(hits[0][0], 2 * 1.8 * (2 * 9.81) ** .5, 6)
+		for found, expected in zip(hits[0][1:], (3, 4, 0)):
+			self.assertAlmostEqual(found, expected, 6)
+		self.assertIn("obsim: by ground true false", said)
+
+	def test_contact_of_two(self):
+		"""Both are told, with the same impulse, and of one contact once while it lasts."""
+		said = self.run_scene("""
+scene { duration = 1, gravity = { 0, 0, 0 } }
+script("ball", "function on_contact(other, impulse) print(self:name(), impulse) end")
+sphere { name = "a", radius = .5, mass = 1, at = { -2, 0, 0 }, velocity = { 4, 0, 0 }, script = "ball" }
+sphere { name = "b", radius = .5, mass = 3, at = { 0, 0, 0 }, script = "ball" }
+""")
+		for name in "a", "b":
+			found = self.numbers(said, name)
+			self.assertEqual(len(found), 1)
+			self.assertAlmostEqual(found[0][0], 3, 3)  # they go on together
+
+	def test_messages_and_timers(self):
+		said = self.run_scene("""
+scene { duration = 1 }
+ground {}
+script("ping", [[
+function on_start() self:wake(.25) end
+function on_wake() send(find("b"), "ping", 1, 2.5, true, self) end
+function on_message(from, text, n) print("got", time(), from:name(), text, n) end
+]])
+script("pong", "function on_message(from, text, i, x, yes, who) send(from, text .. ' pong', i + x) print(yes, who == from, math.type(i)) end")
+sphere { name = "a", radius = .1, at = { 0, 0, 9 }, script = "ping" }
+sphere { name = "b", radius = .1, at = { 1, 0, 9 }, script = "pong" }
+""")
+		self.assertRegex(said, r"got 0\.28333\d* b ping pong 3\.5")
+		self.assertIn("obsim: true true integer", said)
+
+	def test_ray_and_near(self):
+		said = self.run_scene("""
+scene { duration = .1, gravity = { 0, 0, 0 } }
+ground {}
+script("eye", [[function on_start()
+	local o, d, nx, ny, nz = ray(0, 0, 5, 1, 0, 0, 100)
+	print("ray", d, nx, ny, nz) print("sees", o:name())
+	o, d = ray({ 0, 0, 5 }, { 0, 0, -1 }) print("down", d)
+	print("none", ray(0, 0, 5, 0, 1, 0, 100) == nil)
+	local names = "" for _, n in ipairs(near(8)) do names = names .. n:name() .. " " end print("near", names)
+end]])
+sphere { name = "eye", radius = .1, at = { 0, 0, 5 }, script = "eye" }
+box { name = "wall", size = { 1, 4, 4 }, at = { 5, 0, 5 } }
+sphere { name = "far", radius = .1, at = { 0, 0, 20 } }
+sphere { name = "close", radius = .1, at = { 1, 0, 8 } }
+""")
+		self.assertEqual(self.numbers(said, "ray")[0], [4.5, -1, 0, 0])
+		self.assertEqual(self.numbers(said, "down")[0], [5])
+		self.assertIn("obsim: sees wall\n", said)
+		self.assertIn("obsim: none true\n", said)
+		self.assertIn("obsim: near close wall \n", said)
+
+	def test_colour(self):
+		"""It is in the universe: the next script to ask for the object's looks is a reader."""
+		self.assertEqual(self.one("function on_start() self:colour('#ff0000') self:colour { 0, .5, 1 } end"), "")
+		self.assertIn("self.colour: expected a colour", self.one("function on_start() self:colour('red') end"))
+
+	def test_create_and_remove(self):
+		said = self.run_scene("""
+scene { duration = 1, room = 4 }
+ground {}
+script("child", [[
+function on_start() print("born", self.state.n, self:name()) self:wake(.1) end
+function on_wake() self:remove() end
+function on_stop() print("gone", self.state.n) send(find("mother"), "bye", self) end
+]])
+script("mother", [[
+function on_start() self.state.n = 0 self:wake(.1) end
+function on_wake()
+	self.state.n = self.state.n + 1
+	sphere { radius = .1, at = { self.state.n, 0, 9 }, script = "child", state = { n = self.state.n } }
+	if self.state.n < 5 then self:wake(.1) end
+end
+function on_message(from, text, child)
+	print("exists", child:exists(), child:position() == nil)
+	send(child, "too late")
+end
+]])
+sphere { name = "mother", radius = .1, at = { 0, 5, 9 }, script = "mother" }
+""")
+		self.assertEqual([n for n, in self.numbers(said, "gone")], [1, 2, 3, 4, 5])
+		self.assertEqual(said.count("exists false true"), 5)
+		self.assertNotIn("warning", said)
+
+	def test_removed_by_another(self):
+		said = self.run_scene("""
+scene { duration = .5 }
+ground {}
+script("hunter", [[
+function on_start() self:wake(.1) end
+function on_wake() find("plain"):remove() find("scripted"):remove() self.state.o = find("plain") self:wake(.1) end
+function on_message(from, text) print(text, from:exists(), self.state.o:exists()) self:wake(9) end
+]])
+sphere { name = "hunter", radius = .1, at = { 0, 5, 9 }, script = "hunter" }
+sphere { name = "plain", radius = .1, at = { 0, 6, 9 } }
+sphere { name = "scripted", radius = .1, at = { 0, 7, 9 }, script = "function on_stop() send(find('hunter'), 'last words') end" }
+""")
+		self.assertIn("obsim: last words false false", said)
+		self.assertNotIn("warning", said)
+
+	def test_many_created_and_removed(self):
+		"""Slots and cells are used again, however many objects there have been."""
+		found = self.report_of("""
+scene { duration = 40, step = 1 / 20, room = 12 }
+script("drop", "function on_start() self:wake(.1) end function on_wake() self:remove() end")
+script("tap", [[function on_step()
+  for i = 1, 3 do sphere { radius = .1, at = { 0, i, 0 }, script = "drop" } end
+  self.state.n = (self.state.n or 0) + 3
+end]])
+sphere { radius = .1, at = { 9, 9, 9 }, script = "tap" }
+""")
+		self.assertEqual(found["outcome"], "finished")
+		self.assertLessEqual(found["objects"], 13)
+
+	def report_of(self, text, *words):
+		return program.report(self.write("scene.lua", text), *ROOMY, *words)
+
+	# ---- what stops them
+
+	def test_limits(self):
+		"""Each of these stops its script, with object, file and line, and nothing else."""
+		cases = {
+			"function on_step()\n while true do end end": r"it:2: stopped after a million instructions",
+			"function on_start()\n\n local t = {} for i = 1, 1e9 do t[i] = i end end": r"it:3: the script needs more than 4 MiB",
+			"function on_start() local t = 'x' for i = 1, 99 do t = t .. t end end": r"it:1: a string grew beyond 1 MiB",
+			"function on_wake()\n local t t.x = 1 end function on_start() self:wake(.1) end": r"it:2: attempt to index",
+			"function on_start() self:force(1, 2) end": r"it:1: force: expected a number, up to 1e\+15, got nothing",
+			"function on_start() self:force(0 / 0, 1, 2) end": r"it:1: force: expected a number, up to 1e\+15, got nan",
+			"function on_start() find('ground'):force(1, 2, 3) end": r"it:1: force: a script moves its own object",
+			"n = 0 function on_step() n = n + 1 end": r"it:1: cannot set n here: a script keeps values in self\.state",
+			"local n = 0\nfunction on_step() n = n + 1 end": r"it: n was set, which the function at line 2 sees",
+			"local t = { { 1 } } function on_step() t[1][1] = 2 end": r"it:1: cannot set a value here",
+			"function on_step() string.rep = nil end": r"it:1: cannot set rep here",
+			"self:push(1, 2, 3)": r"it:1: objects can be asked in a function alone",
+			"on_step = 3": r"it: on_step: expected a function, got a number",
+			"function on_step() self.state.x = {} end": r"self\.state: expected a number, text, true, false or an object, got a table",
+			"function on_step() for i = 1, 999 do self.state[i] = 'text' end end": r"self\.state: expected at most 1024 bytes",
+			"function on_step() for i = 1, 99 do send(self, ('x'):rep(99)) end end": r"it:1: expected at most 4096 bytes of messages, creations and removals in a step",
+			"function on_step() self.colour = 3 end": r"it:1: cannot set colour of an object",
+			"function on_step() os.exit() end": r"it:1: os: not available",
+			"function on_step() sphere { radius = -1 } end": r"it:1: sphere\.radius: expected a number above 0",
+			"function on_step() sphere { radius = 1, dies = 3 } end": r"sphere: expected neither born nor dies",
+			"function on_step() sphere { radius = 1, script = 'its' } end": r'unknown script "its", did you mean "it"',
+			"function on_step()\n sphere { radius = .1, at = { random(0, 99), random(0, 99), 9 } } end":
+				r"it:2: 3 objects that scripts have created exist, and the scene has no room for more",
+			"function on_step() for i = 1, 1e6 do ('a'):rep(300):find('a-a-b') end end": r"it:1: pattern too costly",
+		}
+		for script, expected in cases.items():
+			with self.subTest(script=script):
+				said = self.one(script, scene="duration = .2, room = 3")
+				self.assertEqual(said.count("\n"), 1, said)
+				self.assertRegex(said, r"^obsim: warning: the script of object 1 \(ball\) was stopped at [\d.]+ s: .*" + expected)
+
+	def test_one_stops_others_go_on(self):
+		said = self.run_scene("""
+scene { duration = .5 }
+ground {}
+script("it", [[
+function on_start() self:wake(.2) end
+function on_wake() if self:name() == "bad" then while true do end end print("fine", self:id()) end
+]])
+for i = 1, 5 do sphere { name = i == 3 and "bad" or "good " .. i, radius = .1, at = { i, 0, 9 }, script = "it" } end
+""", "--workers", 2)
+		self.assertEqual(sorted(i for i, in self.numbers(said, "fine")), [1, 2, 4, 5])
+		self.assertEqual(said.count("warning"), 1)
+
+	def test_refused(self):
+		"""What is wrong before the run is an error of the scene, or of how it is asked for."""
+		for field, expected in {
+			"script = 'none.lua'": r"scene\.lua:1: sphere\.script: cannot read .*none\.lua: No such file",
+			"script = '../x.lua'": r"expected a file in the folder of the scene",
+			"script = '/etc/x.lua'": r"expected a file in the folder of the scene",
+			"script = 'none'": r"expected the name of a script, of a file that ends with \.lua, or a script as text",
+			"script = 3": r"expected the name of a script.*got 3",
+			"script = 'function on_step('": r"sphere\.script: scene\.lua script 1:1: .* expected",
+			"state = { x = 1 }": r"sphere\.state: expected none where there is no script",
+			"script = 'function f() end', state = { {} }": r"sphere\.state: expected a number, text, true, false or an object",
+		}.items():
+			with self.subTest(field=field):
+				said = self.run_scene(f"sphere {{ radius = 1, {field} }}", code=2)
+				self.assertRegex(said, expected)
+		scene = self.write("scene.lua", "sphere { radius = 1, script = 'function on_step() end' }")
+		for words in (["--isolation", "process", "--harden"], ["--arch", "monolith"]):
+			done = program.call("run", scene, *words)
+			self.assertEqual(done.returncode, 1)
+			self.assertRegex(done.stderr, r"the scene has scripts")
+
+	# ---- the same bits
+
+	FLOCK = [program.scene("flock"), "-D", "n=30", "--duration", "2.5"]
+
+	def test_same_bits(self):
+		expected = program.report(*self.FLOCK, *ROOMY, "--workers", 1)
+		for isolation in "thread", "process":
+			for workers in 2, 3, 8, "objects":
+				with self.subTest(isolation=isolation, workers=workers):
+					found = program.report(*self.FLOCK, *ROOMY, "--isolation", isolation, "--workers", workers)
+					self.assertEqual(found["state_hash"], expected["state_hash"])
+					self.assertEqual(found["objects"], expected["objects"])
+		looked = program.report(*self.FLOCK, "--measure", "step")
+		self.assertEqual(looked["state_hash"], expected["state_hash"])
+
+	def test_killed(self):
+		expected = program.report(*self.FLOCK, *ROOMY)
+		found = program.report(*self.FLOCK, *ROOMY, "--isolation", "process", "--workers", 2, "--fault", "kill:p=.001,seed=3")
+		self.assertGreater(found["deaths"], 0)
+		self.assertEqual(found["state_hash"], expected["state_hash"])
+		self.assertEqual(found["objects"], expected["objects"])
+
+	def test_resumed(self):
+		expected = program.report(*self.FLOCK, *ROOMY)
+		program.report(*self.FLOCK[:-1], "1.3", *ROOMY, "--checkpoint", self.path("half"))
+		found = program.report("--resume", self.path("half"), "--duration", "2.5", *ROOMY, "--workers", 2)
+		self.assertEqual(found["state_hash"], expected["state_hash"])
+		self.assertEqual(found["objects"], expected["objects"])
+
+	def test_resumed_with_another_script(self):
+		self.write("it.lua", "function on_step() self:force(1, 0, 0) end")
+		scene = self.write("scene.lua", "scene { duration = 1 } sphere { radius = 1, script = 'it.lua' }")
+		program.report(scene, "--checkpoint", self.path("half"))
+		self.write("it.lua", "function on_step() self:force(2, 0, 0) end")
+		done = program.call("run", "--resume", self.path("half"), "--duration", 2)
+		self.assertEqual(done.returncode, 1)
+		self.assertRegex(done.stderr, r"its scripts are not those of the saved run")
+
+
+unittest.main()

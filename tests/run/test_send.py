@@ -1,0 +1,72 @@
+"""obsim send: another program asks a running universe."""
+
+import socket
+import unittest
+
+import program
+
+SCENE = """
+ground {}
+script("it", "function on_message(from, ...) print('got', from:exists(), ...) end")
+sphere { name = "listener", radius = .3, at = { 0, 0, .3 }, script = "it" }
+box { name = "crate", size = { 1, 1, 1 }, at = { 3, 0, .5 } }
+"""
+
+
+class Send(program.Case):
+	def setUp(self):
+		super().setUp()
+		with open(self.path("scene.lua"), "w") as f:
+			f.write(SCENE)
+		self.run_ = self.start_universe(self.path("scene.lua"), "--pace", "realtime", "--duration", program.FOR_EVER)
+		self.assertTrue(program.wait_until(lambda: "listener" in self.objects()))
+
+	def tearDown(self):
+		if self.run_.poll() is None:
+			self.run_.terminate()
+			self.run_.wait(program.PATIENCE)
+		super().tearDown()
+
+	def objects(self):
+		done = program.call("top", self.name, "--once", "--interval", ".01")
+		return [line.split()[1] for line in done.stdout.splitlines() if line.split()[:1] and line.split()[0].isdigit()]
+
+	def send(self, *words, code=0, saying=""):
+		done = program.call("send", *words)
+		self.assertEqual(done.returncode, code, done.stderr)
+		if saying:
+			self.assertRegex(done.stderr, saying)
+
+	def test_all(self):
+		self.send(self.name, "message", "listener", "hello", "3", "2.5", "true", "--", "-1")
+		self.send(self.name, "create", "sphere { name = 'new', radius = .2, at = { 0, 3, 2 } }")
+		self.assertTrue(program.wait_until(lambda: "new" in self.objects()))
+		self.send(self.name, "colour", "new", "#00ff00")
+		self.send(self.name, "remove", "crate")
+		self.assertTrue(program.wait_until(lambda: "crate" not in self.objects()))
+		self.send(self.name, "remove", "crate", code=1, saying='has no object "crate"')
+		self.send(self.name, "message", "new", "x", code=1, saying="has no script")
+		self.send(self.name, "create", "plane {}", code=1, saying="only boxes, spheres, capsules and cylinders")
+		self.send(self.name, "create", "sphere { radius = -1 }", code=1, saying=r"sphere\.radius: expected a number above 0")
+		self.send(self.name, "colour", "new", "green", code=1, saying="#rrggbb")
+		self.send("nobody", "remove", "x", code=1, saying="nobody")
+		for words, saying in ((), "no universe given"), ((self.name,), "create, remove, colour or message"), \
+				((self.name, "remov", "x"), "did you mean remove"), ((self.name, "remove"), "remove OBJECT"):
+			self.send(*words, code=2, saying=saying)
+		self.run_.terminate()
+		self.assertIn("got false hello 3 2.5 true -1", self.run_.communicate(timeout=program.PATIENCE)[1])
+
+	def test_rubbish(self):
+		"""Whatever else comes to the socket is refused, and the run goes on."""
+		for rubbish in b"", b"x", b"OBSIMAS1" + bytes(500), bytes(100000):
+			with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as s:
+				s.settimeout(program.PATIENCE)
+				s.connect("\0obsim." + self.name)
+				if rubbish:
+					s.send(rubbish)
+					self.assertIn(b"not of this version", s.recv(10000))
+		self.assertIn("listener", self.objects())
+		self.assertIsNone(self.run_.poll())
+
+
+unittest.main()
