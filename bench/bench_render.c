@@ -1,6 +1,8 @@
-// Frames per second off-screen, with readback: bench_render [OBJECTS [WIDTH HEIGHT [SAMPLES [PNG-DIRECTORY]]]]
+// Frames per second off-screen, with readback: bench_render [OBJECTS [WIDTH HEIGHT [SAMPLES [draft|fine
+// [PNG-DIRECTORY]]]]]
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "test_scene.h"
@@ -22,8 +24,9 @@ static int measure(ob_renderer *r, const ob_snapshot *s, const ob_render_setup *
 			return 1;
 	wall = ob_clock_wall() - wall;
 	cpu = ob_clock_process_cpu() - cpu;
-	printf("%u objects, %dx%d, %d samples: %.1f fps, %.2f ms wall, %.2f ms CPU a frame\n", s->count - 1,
-	       setup->width, setup->height, setup->samples, FRAMES / wall, 1e3 * wall / FRAMES, 1e3 * cpu / FRAMES);
+	printf("%u objects, %dx%d, %d samples, %s: %.1f fps, %.2f ms wall, %.2f ms CPU a frame\n", s->count - 1,
+	       setup->width, setup->height, setup->samples, setup->quality == OB_QUALITY_FINE ? "fine" : "draft",
+	       FRAMES / wall, 1e3 * wall / FRAMES, 1e3 * cpu / FRAMES);
 	return 0;
 }
 
@@ -32,7 +35,9 @@ int main(int argc, char **argv)
 	int objects = argc > 1 ? atoi(argv[1]) : 1000;
 	ob_render_setup setup = { .width = argc > 3 ? atoi(argv[2]) : 1280,
 				  .height = argc > 3 ? atoi(argv[3]) : 720,
-				  .samples = argc > 4 ? atoi(argv[4]) : 4 };
+				  .samples = argc > 4 ? atoi(argv[4]) : 4,
+				  .quality = argc > 5 && strcmp(argv[5], "fine") == 0 ? OB_QUALITY_FINE
+										      : OB_QUALITY_DRAFT };
 	ob_look_def look = test_scene_look();
 	ob_error e = { "" };
 	ob_snapshot s;
@@ -40,7 +45,7 @@ int main(int argc, char **argv)
 	uint8_t *rgba = malloc(4 * (size_t)setup.width * (size_t)setup.height);
 	test_scene_boxes(&s, (uint32_t)objects, 26, 1);
 	int failed = !r || !rgba || measure(r, &s, &setup, rgba);
-	ob_sink *png = !failed && argc > 5 ? ob_sink_png(argv[5], setup.width, setup.height, 0, &e) : NULL;
+	ob_sink *png = !failed && argc > 6 ? ob_sink_png(argv[6], setup.width, setup.height, 0, &e) : NULL;
 	if (png) {
 		failed = !ob_sink_put(png, 0, 0, rgba, &e);
 		failed |= !ob_sink_close(png, &e);

@@ -4,26 +4,37 @@
 in vec3 v_local, v_to_eye, v_shadow;
 in vec2 v_open_fog;
 flat in vec4 v_half;
-flat in vec3 v_sun, v_up, v_colour;
+flat in vec3 v_sun, v_up, v_matt, v_shine, v_edge;
+flat in vec4 v_gloss;
+#ifndef OB_DRAFT
+flat in vec4 v_attitude;
+vec3 turned(vec3 v) { return v + 2. * cross(v_attitude.xyz, cross(v_attitude.xyz, v) + v_attitude.w * v); }
+#endif
 out vec4 pixel;
 
 void main()
 {
 	vec3 n = normalize(sign(v_local) * max(1. - (v_half.xyz - abs(v_local)) * v_half.w, 0.));
-	vec3 to_eye = normalize(v_to_eye);
-	float facing = max(dot(n, v_sun), 0.);
-	vec3 light = sun_colour.rgb * (facing * sunlight(v_shadow));
-	vec3 ambient = mix(ambient_down.rgb, ambient_up.rgb, .5 + .5 * dot(n, v_up)) * v_open_fog.x;
+	vec3 to_eye = normalize(v_to_eye), half_way = normalize(to_eye + v_sun);
+	float rises = dot(n, v_up), across = max(dot(n, to_eye), 0.);
+	vec3 light = sun_colour.rgb * (max(dot(n, v_sun), 0.) * sunlight(v_shadow));
 
-	// A matt varnish: a soft highlight, and sky at grazing angles (Blinn 1977; Schlick 1994).
-	float gloss = max(dot(n, normalize(to_eye + v_sun)), 0.);
-	gloss *= gloss;
-	gloss *= gloss;
-	gloss *= gloss;
-	gloss *= gloss;
-	gloss *= gloss;
-	float grazing = 1. - max(dot(n, to_eye), 0.);
-	grazing *= grazing;
-	vec3 shine = light * (.16 * gloss) + ambient * (.22 * grazing * grazing);
-	pixel = shown(v_colour * (light + ambient) + shine, v_open_fog.y);
+	// Of the ground's light less comes up near it, of the sky's what is not hidden.
+#ifdef OB_DRAFT
+	float open = v_open_fog.x;
+#else
+	float open = open_sky(-turned(v_to_eye), turned(n));
+#endif
+	float above = .5 + .5 * rises;
+	vec3 ambient = mix(ambient_down.rgb * v_open_fog.x, ambient_up.rgb * open, above);
+
+	// A microfacet surface: the glint of the sun (GGX, with Karis's visibility, 2013), and what is mirrored (Lagarde 2011).
+	float facing = max(dot(n, half_way), 0.);
+	float wide = (facing * facing * v_gloss.x + 1.) * max(dot(to_eye, half_way), .1);
+	vec3 glint = v_shine * min(v_gloss.y / (wide * wide), 24.);
+	float grazing = 1. - across, grazing2 = grazing * grazing;
+	vec3 mirrored = surroundings(2. * across * rises - dot(to_eye, v_up), v_gloss.z, v_gloss.w) *
+			(v_shine + v_edge * (grazing2 * grazing2 * grazing));
+
+	pixel = shown(v_matt * (light + ambient) + light * glint + mirrored * (.25 + .75 * open), v_open_fog.y);
 }

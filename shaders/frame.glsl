@@ -6,17 +6,21 @@ layout(std140) uniform Frame {
 	mat4 view_projection;
 	mat4 shadow_map;    // to shadow-map coordinates, 0..1 each
 	mat4 occlusion_map; // to occlusion-map coordinates (xy, 0..1) and the height over the ground (z, m)
-	vec4 ray_right;    // view ray = forward + x right + y up, with x and y in -1..1
+	vec4 ray_right;     // view ray = forward + x right + y up, with x and y in -1..1
 	vec4 ray_up;
 	vec4 ray_forward;
-	vec4 sun;          // unit, towards the sun; w: texel of the shadow map, m
-	vec4 sun_colour;   
-	vec4 sky_top;      // w: 1 / square of the fog's distance, 1/m2
-	vec4 sky_horizon;  // w: 1 with a ground, 0 without
-	vec4 ambient_up;
+	vec4 sun;           // unit, towards the sun; w: texel of the shadow map, m
+	vec4 sun_colour;    // irradiance / pi
+	vec4 sky_top;       // w: 1 / square of the fog's distance, 1/m2
+	vec4 sky_horizon;   // w: 1 with a ground, 0 without
+	vec4 ambient_up;    // irradiance / pi from above and from below
 	vec4 ambient_down;
-	vec4 viewport;     // px: width, height; 1 / width, 1 / height
-	vec2 shadow_texel;   // 1 / texels of the shadow map
+	vec4 ground_shine;  // radiance of the sunlit ground, as polished things mirror it
+	vec4 viewport;      // px: width, height; 1 / width, 1 / height
+	vec4 shadow_texel;  // 1 / texels of the shadow map; zw: radius of the penumbra, in the map, of what hangs one of the
+	                    // map's depths above
+	mat4 sky_map[12];   // as shadow_map, seen from directions of the sky
+	vec4 sky_ray[12];   // unit, towards there; w: texel of the map, m
 };
 
 // How much fog lies between the eye and p.

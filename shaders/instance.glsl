@@ -4,7 +4,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 position_radius; // m, relative to the eye; m, of the ball
 layout(location = 3) in vec4 attitude;        // quaternion x y z w, body to world
 layout(location = 4) in vec4 core;            // m, half size; w: width of a box's rounded edges, m; 0 = not a box
-layout(location = 5) in vec4 colour;          // linear
+layout(location = 5) in vec4 colour;          // linear; w: 15 times its metal, whole, and then its roughness, below 1
 
 vec3 turned(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) + attitude.w * v); }
 vec3 turned_back(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) - attitude.w * v); }

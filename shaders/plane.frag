@@ -1,12 +1,15 @@
 #version 330 core
 #include "frame.glsl"
 #include "light.glsl"
-uniform vec3 foot, normal;
+uniform vec3 foot, normal, axis_x, axis_y;
 uniform vec2 grid_foot;         // m: where the foot lies in the 10 m cell of the grid
 uniform vec4 colour;            // linear; w: 1 with grid
-uniform mat3 shadow_of, occlusion_of; // (along x, along y, 1) to the coordinates of the shadow map and the occlusion map
-uniform float occlusion_share;      // how much contacts darken: 0 where the occlusion map is not of this plane
+uniform mat3 shadow_of;         // (along x, along y, 1) to the coordinates of the shadow map
+#ifdef OB_DRAFT
+uniform mat3 occlusion_of;
+uniform float occlusion_share;  // how much contacts darken: 0 where the occlusion map is not of this plane
 uniform sampler2D occlusion;
+#endif
 in vec2 v_at;
 out vec4 pixel;
 
@@ -22,17 +25,26 @@ vec2 lines(vec2 at, vec2 sharp, float distance, float width)
 float ink(vec2 at)
 {
 	vec2 sharp = 1. / max(fwidth(at), 1e-4);
-	vec2 thin = lines(at, sharp, 1., .022), strong = lines(at, sharp, 10., .06);
-	return colour.w * max(.42 * max(thin.x, thin.y), .66 * max(strong.x, strong.y));
+	vec2 thin = lines(at, sharp, 1., .02), strong = lines(at, sharp, 10., .05);
+	return colour.w * max(.3 * max(thin.x, thin.y), .5 * max(strong.x, strong.y));
 }
 
 void main()
 {
 	vec3 albedo = colour.rgb * (1. - ink(v_at + grid_foot));
 	vec3 at = vec3(v_at, 1.);
+#ifdef OB_FAR
+	float sunny = max(dot(normal, sun.xyz), 0.), open = 1.;
+#else
 	float sunny = sunlight(shadow_of * at) * max(dot(normal, sun.xyz), 0.);
+#ifdef OB_DRAFT
 	float open = 1. - occlusion_share * texture(occlusion, (occlusion_of * at).xy).r;
-	vec3 ambient = mix(ambient_down.rgb, ambient_up.rgb, .5 + .5 * normal.z) * open;
+	sunny *= .4 + .6 * open;
+#else
+	float open = open_sky(foot + v_at.x * axis_x + v_at.y * axis_y, normal);
+#endif
+#endif
+	vec3 ambient = mix(ambient_down.rgb, ambient_up.rgb * open, .5 + .5 * normal.z);
 	float fogged = 1. - exp2(-(dot(foot, foot) + dot(v_at, v_at)) * sky_top.w);
-	pixel = shown(albedo * (sun_colour.rgb * (sunny * (.4 + .6 * open)) + ambient), fogged);
+	pixel = shown(albedo * (sun_colour.rgb * sunny + ambient), fogged);
 }

@@ -1,12 +1,22 @@
 #version 330 core
+// A plane as far as one can see: the patch where shadows fall, and, with other light, the ring round it.
 #include "frame.glsl"
 uniform vec3 foot, axis_x, axis_y; // m: the point of the plane nearest to the eye; unit axes
+uniform vec4 patch_ends;           // m from the foot, along the axes: low x, low y, high x, high y
 uniform float reach;               // m, half side of the square that is drawn
 
 out vec2 v_at; // m from the foot, along the axes
 
 void main()
 {
-	v_at = (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2. - 1.) * reach;
+#ifdef OB_FAR
+	int corner = (gl_VertexID >> 1) & 3; // of ten: inside, outside, inside .. once round
+	bool outside = (gl_VertexID & 1) == 1, right = corner == 1 || corner == 2, up = corner >= 2;
+	vec4 ends = outside ? vec4(-reach, -reach, reach, reach) : patch_ends;
+#else
+	bool right = (gl_VertexID & 1) == 1, up = gl_VertexID >= 2;
+	vec4 ends = patch_ends;
+#endif
+	v_at = vec2(right ? ends.z : ends.x, up ? ends.w : ends.y);
 	gl_Position = view_projection * vec4(foot + v_at.x * axis_x + v_at.y * axis_y, 1.);
 }

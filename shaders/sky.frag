@@ -15,5 +15,5 @@ void main()
 	glow *= glow;
 	vec3 sky = mix(sky_top.rgb, sky_horizon.rgb, down2 * down2 * down);
 	sky *= 1. + .4 * min(ray.z, 0.); // without a ground: a little depth below the horizon
-	pixel = vec4(encode(min(sky + sun_colour.rgb * (.06 * glow * min(4. * up, 1.)), 1.)), 1.);
+	pixel = shown(sky + sun_colour.rgb * (.06 * glow * min(4. * up, 1.)), 0.);
 }

@@ -39,7 +39,7 @@ enum { // ob_passport.flags
 	OB_OBJECT_FROZEN = 1 << 2,  // static since its simulator died
 };
 
-// What an object is. 176 bytes.
+// What an object is. 184 bytes.
 typedef struct ob_passport {
 	uint32_t id;          // index of the object in the table, from 0
 	uint32_t generation;  // grows each time the slot is given to another object
@@ -53,6 +53,8 @@ typedef struct ob_passport {
 	float colour[4];      // linear RGB, alpha
 	char name[OB_NAME_MAX];
 	ob_vec3 force;        // N, world frame: constant, acts at the centre
+	float roughness;      // 0..1, of its surface to the eye: 0 = polished, 1 = matt
+	float metal;          // 0..1: whether it reflects as metals do, in its own colour
 } ob_passport;
 
 enum { // ob_motion.flags

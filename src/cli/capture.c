@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "plot/caption.h"
 
 ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first)
 {
@@ -55,6 +56,8 @@ struct ob_capture {
 	uint64_t first; // frame that is drawn
 	ob_renderer *renderer;
 	ob_camera_def camera;
+	const char *title; // of the scene, for the caption; NULL = none
+	int width, height;
 	ob_sink *sink[SINKS_MAX];
 	int sinks;
 	int raw_fd; // -1 = none
@@ -108,10 +111,14 @@ ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, d
 	c->clock = ob_frame_clock_make(duration, f->fps, step, first);
 	c->first = c->clock.next;
 	c->camera = *find_camera(scene, f->camera);
+	c->title = f->caption ? scene->title : NULL;
+	c->width = f->width;
+	c->height = f->height;
 	c->raw_fd = -1;
 	ob_render_setup setup = {
 		.width = f->width,
 		.height = f->height,
+		.quality = f->quality,
 		.samples = f->samples,
 		.device = f->gpu,
 		.overlay_aabb = f->aabb,
@@ -158,6 +165,12 @@ bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *
 		uint64_t begin = ob_clock_ns();
 		if (!ob_renderer_draw(c->renderer, from, now, between ? t : now->time, &c->camera, c->rgba, e))
 			return false;
+		if (c->title) {
+			char time[32];
+			snprintf(time, sizeof time, "%.2f s", t);
+			if (!ob_plot_caption(c->rgba, c->width, c->height, c->title, time, e))
+				return false;
+		}
 		trace(c, OB_TRACE_DRAW, begin);
 		begin = ob_clock_ns();
 		for (int i = 0; i < c->sinks; i++) {

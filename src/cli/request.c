@@ -166,8 +166,11 @@ static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
 			f->aabb = true;
 		else if (n == 8 && strncmp(list, "contacts", n) == 0)
 			f->contacts = true;
+		else if (n == 7 && strncmp(list, "caption", n) == 0)
+			f->caption = true;
 		else
-			return ob_fail(e, "--overlay %.*s: expected aabb, contacts, or aabb,contacts", (int)n, list);
+			return ob_fail(e, "--overlay %.*s: expected aabb, contacts or caption, as in aabb,contacts",
+				       (int)n, list);
 		list += n + (list[n] == ',');
 	}
 	return true;
@@ -198,16 +201,21 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 		.height = 720,
 	};
 	f->wanted = f->dir || f->video || f->raw;
-	static const ob_option_id details[] = { OB_OPTION_FPS,    OB_OPTION_SIZE,    OB_OPTION_SAMPLES,
-						OB_OPTION_CAMERA, OB_OPTION_OVERLAY, OB_OPTION_GPU };
+	static const ob_option_id details[] = { OB_OPTION_FPS,     OB_OPTION_SIZE,   OB_OPTION_QUALITY,
+						OB_OPTION_SAMPLES, OB_OPTION_CAMERA, OB_OPTION_OVERLAY,
+						OB_OPTION_GPU };
 	for (size_t i = 0; i < sizeof details / sizeof *details; i++) {
 		if (a->value[details[i]] && !f->wanted)
 			return ob_fail(e, "--%s needs --frames, --video or --raw", name_of(details[i]));
 	}
 	if (f->gpu && strcmp(f->gpu, "surfaceless") != 0 && strspn(f->gpu, "0123456789") != strlen(f->gpu))
 		return ob_fail(e, "--gpu %s: expected surfaceless, or the number of a GPU, from 0", f->gpu);
-	uint32_t samples = 4;
-	if (!count(a, OB_OPTION_SAMPLES, 1, 32, &samples, e))
+	const char *quality = a->value[OB_OPTION_QUALITY];
+	if (quality && strcmp(quality, "draft") != 0 && strcmp(quality, "fine") != 0)
+		return ob_fail(e, "--quality %s: expected draft or fine", quality);
+	f->quality = quality && strcmp(quality, "fine") == 0 ? OB_QUALITY_FINE : OB_QUALITY_DRAFT;
+	uint32_t samples = f->quality == OB_QUALITY_FINE ? 16 : 4;
+	if (!count(a, OB_OPTION_SAMPLES, 1, f->quality == OB_QUALITY_FINE ? 256 : 32, &samples, e))
 		return false;
 	f->samples = (int)samples;
 	if (!real(a, OB_OPTION_FPS, 1e5, &f->fps, e) || !read_size(f, a->value[OB_OPTION_SIZE], e))

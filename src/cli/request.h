@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "host/host.h"
 #include "host/pace.h"
+#include "render/render.h"
 #include "scene/scene.h"
 
 typedef struct ob_frames_request {
@@ -13,8 +14,9 @@ typedef struct ob_frames_request {
 	const char *dir, *video, *raw; // NULL = not asked for; raw "-" = standard output
 	const char *gpu, *camera; // NULL = the renderer's choice, the scene's first
 	double fps; // per simulated second
+	ob_quality quality;
 	int width, height, samples;
-	bool aabb, contacts; // overlays
+	bool aabb, contacts, caption; // overlays
 } ob_frames_request;
 
 typedef enum ob_measure_when {

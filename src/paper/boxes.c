@@ -47,6 +47,7 @@ static void put_box(ob_object_def *o, uint32_t id, uint32_t side, uint64_t *stat
 		.friction = friction,
 		.colour = { (float)(.15 + .7 * ob_splitmix_real(state)), (float)(.15 + .5 * ob_splitmix_real(state)),
 			    (float)(.1 + .5 * ob_splitmix_real(state)), 1 },
+		.roughness = .45f,
 	};
 	snprintf(o->passport.name, sizeof o->passport.name, "box#%u", id);
 	o->state.pose.p =

@@ -50,7 +50,7 @@ typedef struct ob_instance {
 	float position_radius[4]; // m: centre relative to the eye; radius of the ball that thickens the core
 	float attitude[4]; // x y z w
 	float core[4]; // m: half size; width of a box's rounded edges, 0 = not a box
-	float colour[4];
+	float colour[4]; // linear; 15 times its metal, whole, and then its roughness, below 1
 } ob_instance;
 
 // Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1.
@@ -62,6 +62,9 @@ typedef struct ob_instances {
 
 // Evaluates all motions at time t (s); prev may be NULL. false: out of memory. b starts zeroed.
 bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t);
+// An automatic camera where it sees what moves now, in a picture of this shape; any other as it is. A pure function of
+// where bodies are, and smooth in it, so that a picture depends on nothing but its time.
+ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, int width, int height);
 // Nearest to the eye first, so that what is hidden is not shaded.
 void ob_draw_list_sort(ob_draw_list *b, ob_vec3 eye);
 void ob_draw_list_finish(ob_draw_list *b);

@@ -51,11 +51,11 @@ static double depth_in_sight(const ob_draw_list *b, const ob_view *v)
 	return fmin(1.5 * depth, most);
 }
 
-// The least of the sizes 2^(k/4) that holds need (m) and the margin.
+// The least of the sizes 2^(k/6) that holds need (m) and the margin.
 static double stepped_size(double need, int texels)
 {
 	double half = fmax(need, .05) * texels / (texels - 2 * MARGIN - 2);
-	return exp2(ceil(4 * log2(half)) / 4);
+	return exp2(ceil(6 * log2(half)) / 6);
 }
 
 static double whole_texels(double centre, double half, int texels)
@@ -122,8 +122,10 @@ void ob_ortho_matrix(const ob_ortho *m, ob_vec3 eye, float out[16])
 // ---- the frame
 
 static const double fog_ranges = 9, fog_least = 150; // camera ranges; m: distance of the fog
-static const float sunshine[3] = { 1.72f, 1.60f, 1.36f }; // irradiance / pi, relative to a white of 1
-static const float from_sky = .50f, from_ground = .40f; // the same, of a sky of 1 and a ground of 1
+static const float sunshine[3] = { 1.95f, 1.82f, 1.60f }; // irradiance / pi, relative to a white of 1
+static const float from_sky = .52f, from_ground = .45f; // the same, of a sky of 1 and a ground of 1
+static const double sun_radius = .025; // rad: half the angle of the sun's disc; wider than ours, as through thin haze
+static const double golden = 2.39996322972865332; // rad, the golden angle
 
 static void set_vec4(float to[4], ob_vec3 v, double w)
 {
@@ -160,6 +162,12 @@ static void set_lighting(ob_frame_block *k, const ob_look_def *look, ob_vec3 sun
 	set_vec4(k->sky_horizon, horizon, ground);
 	set_vec4(k->ambient_up, ob_scale(sky, from_sky), 0);
 	set_vec4(k->ambient_down, ob_scale(ob_add(ob_scale(below, .8), ob_scale(sky, .2)), from_ground), 0);
+	double shines = ground ? sunshine[1] * fmax(sun.z, 0) + from_sky : 1;
+	set_vec4(k->ground_shine, ob_scale(below, .75 * shines), 0);
+	double deep = sun_radius * (m->z_high - m->z_low);
+	k->shadow_texel[0] = k->shadow_texel[1] = 1.f / OB_SHADOW_TEXELS;
+	k->shadow_texel[2] = (float)(.5 * deep / m->half_x);
+	k->shadow_texel[3] = (float)(.5 * deep / m->half_y);
 }
 
 // The third row of the occlusion map's matrix is the height over the ground, in m.
@@ -181,22 +189,65 @@ static void set_occlusion(ob_frame *f, const ob_draw_list *b)
 	m[14] = (float)(ob_dot(f->view.eye, up) - f->level);
 }
 
-void ob_frame_set(ob_frame *f, const ob_draw_list *b, const ob_look_def *look, const ob_camera_def *c, double t,
-		  int width, int height)
+// A point of the sun's disc: Vogel's spiral, the middle for a single picture.
+static ob_vec3 sun_of_share(const ob_look_def *look, const ob_frame_share *s)
 {
-	ob_frame_block *k = &f->block;
 	double length = ob_norm(look->sun);
 	ob_vec3 sun = length > 0 ? ob_scale(look->sun, 1 / length) : ob_v3(0, 0, 1);
+	if (s->count == 1)
+		return sun;
+	ob_vec3 x = ob_cross(fabs(sun.z) > .9 ? ob_v3(1, 0, 0) : ob_v3(0, 0, 1), sun), y;
+	x = ob_scale(x, 1 / ob_norm(x));
+	y = ob_cross(sun, x);
+	double r = sun_radius * sqrt((s->number + .5) / s->count), turn = golden * s->number;
+	sun = ob_madd(ob_madd(sun, r * cos(turn), x), r * sin(turn), y);
+	return ob_scale(sun, 1 / ob_norm(sun));
+}
+
+// Directions spread evenly over the sky: a height in each band, and the golden angle round.
+static void set_sky(ob_frame *f, const ob_draw_list *b, const ob_frame_share *s, int texels)
+{
+	f->sky_maps = s->sky_maps;
+	for (int i = 0; i < f->sky_maps; i++) {
+		double part = (i + fmod(.5 + s->number * .61803398874989485, 1)) / f->sky_maps;
+		double up = .06 + .92 * part, turn = golden * (i * s->count + s->number), out = sqrt(1 - up * up);
+		ob_vec3 ray = ob_v3(out * cos(turn), out * sin(turn), up);
+		ob_ortho *m = &f->sky[i];
+		*m = ob_ortho_fit(ray, b, &f->view, texels);
+		ob_ortho_matrix(m, f->view.eye, f->block.sky_map[i]);
+		set_vec4(f->block.sky_ray[i], ray, 2 * fmax(m->half_x, m->half_y) / texels);
+	}
+}
+
+// Moves the picture within its pixels: additive recurrence by the plastic number (Roberts 2018).
+static void shift_in_pixel(float projection[16], const ob_frame_share *s, int width, int height)
+{
+	if (s->count == 1)
+		return;
+	double x = fmod(.5 + s->number * .75487766624669276, 1) - .5,
+	       y = fmod(.5 + s->number * .56984029099805327, 1) - .5;
+	for (int i = 0; i < 4; i++) {
+		projection[4 * i] += (float)(2 * x / width) * projection[4 * i + 3];
+		projection[4 * i + 1] += (float)(2 * y / height) * projection[4 * i + 3];
+	}
+}
+
+void ob_frame_set(ob_frame *f, const ob_draw_list *b, const ob_look_def *look, const ob_camera_def *c, double t,
+		  int width, int height, const ob_frame_share *share, int sky_texels)
+{
+	ob_frame_block *k = &f->block;
+	ob_vec3 sun = sun_of_share(look, share);
 	f->view = ob_view_of_camera(c, t, width, height);
 	f->shadow = ob_ortho_fit(sun, b, &f->view, OB_SHADOW_TEXELS);
 	f->ground = find_ground(b);
 	ob_view_projection(&f->view, k->view_projection);
+	shift_in_pixel(k->view_projection, share, width, height);
 	ob_ortho_matrix(&f->shadow, f->view.eye, k->shadow_map);
 	set_occlusion(f, b);
 	set_vec4(k->ray_right, ob_scale(f->view.right, f->view.tan_x), 0);
 	set_vec4(k->ray_up, ob_scale(f->view.up, -f->view.tan_y), 0); // rows run down
 	set_vec4(k->ray_forward, f->view.forward, 0);
 	set_lighting(k, look, sun, &f->shadow, fmax(fog_least, fog_ranges * f->view.range), f->ground >= 0);
-	k->shadow_texel[0] = k->shadow_texel[1] = 1.f / OB_SHADOW_TEXELS;
+	set_sky(f, b, share, sky_texels);
 	set_vec4(k->viewport, ob_v3(width, height, 1. / width), 1. / height);
 }

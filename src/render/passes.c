@@ -9,16 +9,21 @@
 
 typedef struct source {
 	const char *name, *vertex, *fragment;
+	const char *define; // NULL = nothing else
 } source;
 
 static const source sources[OB_PROGRAMS] = {
-	[OB_PROGRAM_BODY] = { "body", shader_body_vert, shader_body_frag },
-	[OB_PROGRAM_SHADOW] = { "shadow", shader_shadow_vert, shader_shadow_frag },
-	[OB_PROGRAM_OCCLUSION] = { "occlusion", shader_occlusion_vert, shader_occlusion_frag },
-	[OB_PROGRAM_BLUR] = { "blur", shader_sky_vert, shader_blur_frag },
-	[OB_PROGRAM_PLANE] = { "plane", shader_plane_vert, shader_plane_frag },
-	[OB_PROGRAM_SKY] = { "sky", shader_sky_vert, shader_sky_frag },
-	[OB_PROGRAM_SEGMENT] = { "segment", shader_segment_vert, shader_segment_frag },
+	[OB_PROGRAM_BODY] = { "body", shader_body_vert, shader_body_frag, NULL },
+	[OB_PROGRAM_SHADOW] = { "shadow", shader_shadow_vert, shader_shadow_frag, NULL },
+	[OB_PROGRAM_SKY_SHADOW] = { "sky shadow", shader_sky_shadow_vert, shader_shadow_frag, NULL },
+	[OB_PROGRAM_OCCLUSION] = { "occlusion", shader_occlusion_vert, shader_occlusion_frag, NULL },
+	[OB_PROGRAM_BLUR] = { "blur", shader_sky_vert, shader_blur_frag, NULL },
+	[OB_PROGRAM_PLANE] = { "plane", shader_plane_vert, shader_plane_frag, NULL },
+	[OB_PROGRAM_FAR_PLANE] = { "far plane", shader_plane_vert, shader_plane_frag, "#define OB_FAR\n" },
+	[OB_PROGRAM_SKY] = { "sky", shader_sky_vert, shader_sky_frag, NULL },
+	[OB_PROGRAM_SEGMENT] = { "segment", shader_segment_vert, shader_segment_frag, NULL },
+	[OB_PROGRAM_ADD] = { "add", shader_sky_vert, shader_add_frag, NULL },
+	[OB_PROGRAM_RESOLVE] = { "resolve", shader_sky_vert, shader_resolve_frag, NULL },
 };
 
 // Mesa without a GPU: shaders then choose what is cheaper.
@@ -28,21 +33,39 @@ static bool is_software_renderer(void)
 	return name && (strstr(name, "llvmpipe") || strstr(name, "softpipe"));
 }
 
-static bool compile_shader(GLuint program, GLenum stage, const char *name, const char *text, ob_error *e)
+ob_light ob_light_choose(ob_quality quality)
 {
+	if (quality == OB_QUALITY_FINE)
+		return OB_LIGHT_AVERAGED;
+	return is_software_renderer() ? OB_LIGHT_DRAFT : OB_LIGHT_WHOLE;
+}
+
+int ob_light_sky_maps(ob_light light)
+{
+	return light == OB_LIGHT_DRAFT      ? 0
+	       : light == OB_LIGHT_AVERAGED ? 4
+					    : OB_SKY_MAPS_MAX; // as in shaders/light.glsl
+}
+
+static bool compile_shader(GLuint program, GLenum stage, const source *s, ob_light light, ob_error *e)
+{
+	const char *text = stage == GL_VERTEX_SHADER ? s->vertex : s->fragment;
 	GLuint shader = glCreateShader(stage);
 	GLint good = 0;
 	// After #version, which must come first.
 	const char *body = strchr(text, '\n') + 1;
-	const char *const part[] = { text, is_software_renderer() ? "#define OB_SOFTWARE\n" : "", body };
-	const GLint length[] = { (GLint)(body - text), -1, -1 };
-	glShaderSource(shader, 3, part, length);
+	static const char *const define[] = { [OB_LIGHT_DRAFT] = "#define OB_DRAFT\n",
+					      [OB_LIGHT_AVERAGED] = "#define OB_AVERAGED\n",
+					      [OB_LIGHT_WHOLE] = "" };
+	const char *const part[] = { text, define[light], s->define ? s->define : "", body };
+	const GLint length[] = { (GLint)(body - text), -1, -1, -1 };
+	glShaderSource(shader, 4, part, length);
 	glCompileShader(shader);
 	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
 	if (!good) {
 		char log[800] = "";
 		glGetShaderInfoLog(shader, sizeof log, NULL, log);
-		ob_fail(e, "shader %s (%s) does not compile: %s", name,
+		ob_fail(e, "shader %s (%s) does not compile: %s", s->name,
 			stage == GL_VERTEX_SHADER ? "vertex" : "fragment", log);
 	}
 	glAttachShader(program, shader);
@@ -67,16 +90,18 @@ static bool link_program(GLuint program, const char *name, ob_error *e)
 	glUniform1i(glGetUniformLocation(program, "shadow_depth"), OB_UNIT_SHADOW);
 	glUniform1i(glGetUniformLocation(program, "occlusion"), OB_UNIT_OCCLUSION);
 	glUniform1i(glGetUniformLocation(program, "source"), OB_UNIT_SOURCE);
+	glUniform1i(glGetUniformLocation(program, "shadow_plain"), OB_UNIT_PLAIN);
+	glUniform1i(glGetUniformLocation(program, "sky_depth"), OB_UNIT_SKY);
 	return true;
 }
 
-bool ob_programs_create(GLuint program[OB_PROGRAMS], ob_error *e)
+bool ob_programs_create(GLuint program[OB_PROGRAMS], ob_light light, ob_error *e)
 {
 	for (int i = 0; i < OB_PROGRAMS; i++) {
 		const source *s = &sources[i];
 		program[i] = glCreateProgram();
-		if (!compile_shader(program[i], GL_VERTEX_SHADER, s->name, s->vertex, e) ||
-		    !compile_shader(program[i], GL_FRAGMENT_SHADER, s->name, s->fragment, e) ||
+		if (!compile_shader(program[i], GL_VERTEX_SHADER, s, light, e) ||
+		    !compile_shader(program[i], GL_FRAGMENT_SHADER, s, light, e) ||
 		    !link_program(program[i], s->name, e))
 			return false;
 	}
@@ -120,6 +145,19 @@ static GLuint create_texture(GLenum attachment, GLenum inner, GLenum format, GLe
 	return id;
 }
 
+// A colour of floats, as large as the frame.
+static GLuint create_float_texture(GLenum inner, const ob_targets *t)
+{
+	GLuint id;
+	glGenTextures(1, &id);
+	glBindTexture(GL_TEXTURE_2D, id);
+	glTexImage2D(GL_TEXTURE_2D, 0, (GLint)inner, t->width, t->height, 0, GL_RGBA, GL_FLOAT, NULL);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, id, 0);
+	return id;
+}
+
 static GLuint create_framebuffer(void)
 {
 	GLuint id;
@@ -135,6 +173,25 @@ static bool is_complete(const char *name, ob_error *e)
 	return ob_fail(e, "the driver cannot draw into the %s (is there enough graphics memory?)", name);
 }
 
+static bool create_sky_maps(ob_targets *t, ob_error *e)
+{
+	t->sky = create_framebuffer();
+	glGenTextures(1, &t->sky_depth);
+	glBindTexture(GL_TEXTURE_2D_ARRAY, t->sky_depth);
+	glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT16, t->sky_texels, t->sky_texels, t->sky_maps, 0,
+		     GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, NULL);
+	glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+	glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+	glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+	glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, t->sky_depth, 0, 0);
+	glDrawBuffer(GL_NONE);
+	glReadBuffer(GL_NONE);
+	return is_complete("maps of the sky", e);
+}
+
 static bool create_maps(ob_targets *t, ob_error *e)
 {
 	t->shadow = create_framebuffer();
@@ -143,6 +200,14 @@ static bool create_maps(ob_targets *t, ob_error *e)
 	glDrawBuffer(GL_NONE);
 	glReadBuffer(GL_NONE);
 	if (!is_complete("shadow map", e))
+		return false;
+	glGenSamplers(1, &t->plain_sampler);
+	glSamplerParameteri(t->plain_sampler, GL_TEXTURE_COMPARE_MODE, GL_NONE);
+	glSamplerParameteri(t->plain_sampler, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glSamplerParameteri(t->plain_sampler, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glSamplerParameteri(t->plain_sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+	glSamplerParameteri(t->plain_sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+	if (t->sky_maps > 0 && !create_sky_maps(t, e))
 		return false;
 	for (int i = 0; i < 2; i++) {
 		t->occlusion[i] = create_framebuffer();
@@ -154,14 +219,35 @@ static bool create_maps(ob_targets *t, ob_error *e)
 	return true;
 }
 
-bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_error *e)
+// One picture, and the sum; both with the depth that the plain colour target has.
+static bool create_sum(ob_targets *t, ob_error *e)
+{
+	t->one = create_framebuffer();
+	t->one_colour = create_float_texture(GL_RGBA16F, t);
+	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, t->depth);
+	if (!is_complete("picture to average", e))
+		return false;
+	t->sum = create_framebuffer();
+	t->sum_colour = create_float_texture(GL_RGBA32F, t);
+	return is_complete("average of pictures", e);
+}
+
+bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_light light, ob_error *e)
 {
 	GLint most = 1, widest = 0;
 	glGetIntegerv(GL_MAX_SAMPLES, &most);
 	glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &widest);
 	if (width > widest || height > widest)
 		return ob_fail(e, "frames of %dx%d: this driver draws at most %dx%d", width, height, widest, widest);
-	*t = (ob_targets){ .width = width, .height = height, .samples = samples < most ? samples : most };
+	*t = (ob_targets){
+		.width = width,
+		.height = height,
+		.samples = light == OB_LIGHT_AVERAGED ? 1
+			   : samples < most           ? samples
+						      : most,
+		.sky_maps = ob_light_sky_maps(light),
+		.sky_texels = light == OB_LIGHT_AVERAGED ? 1024 : 512,
+	};
 	t->plain = create_framebuffer();
 	t->plain_colour = create_renderbuffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, t, 0);
 	if (t->samples > 1) {
@@ -171,17 +257,20 @@ bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_err
 		t->multi_colour = create_renderbuffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, t, t->samples);
 	}
 	t->depth = create_renderbuffer(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, t, t->samples > 1 ? t->samples : 0);
-	return is_complete("colour target", e) && create_maps(t, e);
+	return is_complete("colour target", e) && (light != OB_LIGHT_AVERAGED || create_sum(t, e)) && create_maps(t, e);
 }
 
 void ob_targets_destroy(ob_targets *t)
 {
-	const GLuint framebuffers[] = { t->plain, t->multi, t->shadow, t->occlusion[0], t->occlusion[1] };
+	const GLuint framebuffers[] = { t->plain,        t->multi, t->shadow, t->occlusion[0],
+					t->occlusion[1], t->sky,   t->one,    t->sum };
 	const GLuint renderbuffers[] = { t->plain_colour, t->multi_colour, t->depth };
-	const GLuint textures[] = { t->shadow_depth, t->occlusion_texture[0], t->occlusion_texture[1] };
-	glDeleteFramebuffers(5, framebuffers); // zeros are ignored
+	const GLuint textures[] = { t->shadow_depth, t->occlusion_texture[0], t->occlusion_texture[1],
+				    t->sky_depth,    t->one_colour,           t->sum_colour };
+	glDeleteFramebuffers(8, framebuffers); // zeros are ignored
 	glDeleteRenderbuffers(3, renderbuffers);
-	glDeleteTextures(3, textures);
+	glDeleteTextures(6, textures);
+	glDeleteSamplers(1, &t->plain_sampler);
 }
 
 // ---- passes
@@ -213,10 +302,10 @@ static bool create_meshes(ob_passes *p, ob_error *e)
 	return built ? true : ob_fail(e, "out of memory");
 }
 
-bool ob_passes_create(ob_passes *p, ob_error *e)
+bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e)
 {
 	*p = (ob_passes){ 0 };
-	if (!ob_programs_create(p->program, e))
+	if (!ob_programs_create(p->program, light, e))
 		return false;
 	glGenVertexArrays(1, &p->empty_array);
 	glGenBuffers(1, &p->frame_block);
@@ -284,20 +373,35 @@ static void draw_instances(const ob_passes *p, const ob_instances *i)
 	}
 }
 
-void ob_passes_shadow_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters)
+static void draw_depth(const ob_passes *p, ob_program program, const ob_instances *casters, int texels)
 {
 	upload_instances(p, casters);
-	glBindFramebuffer(GL_FRAMEBUFFER, t->shadow);
-	glViewport(0, 0, OB_SHADOW_TEXELS, OB_SHADOW_TEXELS);
+	glViewport(0, 0, texels, texels);
 	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(GL_LESS);
 	glFrontFace(GL_CCW);
 	glClear(GL_DEPTH_BUFFER_BIT);
 	glEnable(GL_POLYGON_OFFSET_FILL);
 	glPolygonOffset(shadow_slope, shadow_offset);
-	glUseProgram(p->program[OB_PROGRAM_SHADOW]);
+	glUseProgram(p->program[program]);
 	draw_instances(p, casters);
 	glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void ob_passes_shadow_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, t->shadow);
+	draw_depth(p, OB_PROGRAM_SHADOW, casters, OB_SHADOW_TEXELS);
+}
+
+void ob_passes_sky_map(const ob_passes *p, const ob_targets *t, int layer, const ob_instances *casters)
+{
+	GLuint program = p->program[OB_PROGRAM_SKY_SHADOW];
+	glBindFramebuffer(GL_FRAMEBUFFER, t->sky);
+	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, t->sky_depth, 0, layer);
+	glUseProgram(program);
+	glUniform1i(glGetUniformLocation(program, "layer"), layer);
+	draw_depth(p, OB_PROGRAM_SKY_SHADOW, casters, t->sky_texels);
 }
 
 static void blur_occlusion(const ob_passes *p, const ob_targets *t, int from, float x, float y)
@@ -351,9 +455,33 @@ static void set_plane_to_map(GLuint program, const char *name, const float m[16]
 	glUniformMatrix3fv(glGetUniformLocation(program, name), 1, GL_FALSE, to);
 }
 
-// A square round the point of the plane that is nearest to the eye, as large as one can see.
+// Where in the plane what the shadow map holds can cast shadows: low x, low y, high x, high y, m from the foot along
+// the plane's axes, within reach.
+static void find_patch(const ob_frame *f, ob_vec3 foot, ob_vec3 n, ob_vec3 x, ob_vec3 y, float patch[4])
+{
+	const ob_ortho *m = &f->shadow;
+	float reach = (float)f->view.far_plane;
+	double slope = ob_dot(m->z, n);
+	bool grazes = slope < .02;
+	patch[0] = patch[1] = grazes ? -reach : reach;
+	patch[2] = patch[3] = -patch[0];
+	for (int corner = 0; corner < 4 && !grazes; corner++) {
+		ob_vec3 p = ob_scale(m->x, m->centre_x + (corner & 1 ? m->half_x : -m->half_x));
+		p = ob_madd(p, m->centre_y + (corner & 2 ? m->half_y : -m->half_y), m->y);
+		p = ob_sub(p, ob_add(f->view.eye, foot));
+		p = ob_madd(p, -ob_dot(p, n) / slope, m->z);
+		float at_x = (float)ob_dot(p, x), at_y = (float)ob_dot(p, y);
+		patch[0] = fminf(patch[0], at_x);
+		patch[1] = fminf(patch[1], at_y);
+		patch[2] = fmaxf(patch[2], at_x);
+		patch[3] = fmaxf(patch[3], at_y);
+	}
+	for (int i = 0; i < 4; i++)
+		patch[i] = fmaxf(-reach, fminf(reach, patch[i]));
+}
+
 static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, const float colour[3], bool ground,
-		       bool grid)
+		       bool grid, bool far)
 {
 	ob_mat3 r = ob_quat_matrix(pose->q);
 	ob_vec3 n = ob_column(&r, 2), x = ob_column(&r, 0), y = ob_column(&r, 1), d = ob_sub(pose->p, f->view.eye);
@@ -361,24 +489,48 @@ static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, c
 	if (height <= 0)
 		return; // from below there is nothing to see
 	ob_vec3 foot = ob_scale(n, -height), on_plane = ob_sub(foot, d);
+	float patch[4];
+	find_patch(f, foot, n, x, y, patch);
+	glUseProgram(program);
 	set_vec3_uniform(program, "foot", foot);
 	set_vec3_uniform(program, "normal", n);
 	set_vec3_uniform(program, "axis_x", x);
 	set_vec3_uniform(program, "axis_y", y);
 	set_plane_to_map(program, "shadow_of", f->block.shadow_map, foot, x, y);
 	set_plane_to_map(program, "occlusion_of", f->block.occlusion_map, foot, x, y);
+	glUniform4fv(glGetUniformLocation(program, "patch_ends"), 1, patch);
 	glUniform1f(glGetUniformLocation(program, "reach"), (float)f->view.far_plane);
 	glUniform2f(glGetUniformLocation(program, "grid_foot"), (float)remainder(ob_dot(on_plane, x), 10),
 		    (float)remainder(ob_dot(on_plane, y), 10));
 	glUniform4f(glGetUniformLocation(program, "colour"), colour[0], colour[1], colour[2], grid);
 	glUniform1f(glGetUniformLocation(program, "occlusion_share"), ground ? .75f : 0);
-	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+	glDrawArrays(GL_TRIANGLE_STRIP, 0, far ? 10 : 4);
+}
+
+// Over a level ground the sky is drawn in the rows from its horizon on only: llvmpipe shades what is hidden, too.
+static void draw_sky(const ob_passes *p, const ob_targets *t, const ob_frame *f, const ob_draw_list *b)
+{
+	int rows = t->height;
+	double height = f->ground >= 0 ? f->view.eye.z - b->plane[f->ground].p.z : 0;
+	if (height > 0) {
+		double longest = sqrt(1 + f->view.tan_x * f->view.tan_x + f->view.tan_y * f->view.tan_y);
+		double lowest =
+			-1.1 * longest * height / f->view.far_plane; // rise of a ray that still passes the ground's end
+		double up = -f->block.ray_up[2]; // rows run down
+		double end = ceil(.5 * t->height * (1 + (f->view.forward.z - lowest) / up));
+		rows = (int)fmax(0, fmin(t->height, end));
+	}
+	glEnable(GL_SCISSOR_TEST);
+	glScissor(0, 0, t->width, rows);
+	glUseProgram(p->program[OB_PROGRAM_SKY]);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+	glDisable(GL_SCISSOR_TEST);
 }
 
 void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
 		      const ob_frame *f, const ob_look_def *look)
 {
-	glBindFramebuffer(GL_FRAMEBUFFER, t->multi ? t->multi : t->plain);
+	glBindFramebuffer(GL_FRAMEBUFFER, t->one ? t->one : t->multi ? t->multi : t->plain);
 	glViewport(0, 0, t->width, t->height);
 	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(GL_LEQUAL);
@@ -386,6 +538,11 @@ void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instance
 	glClear(GL_DEPTH_BUFFER_BIT);
 	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SHADOW);
 	glBindTexture(GL_TEXTURE_2D, t->shadow_depth);
+	glActiveTexture(GL_TEXTURE0 + OB_UNIT_PLAIN);
+	glBindTexture(GL_TEXTURE_2D, t->shadow_depth);
+	glBindSampler(OB_UNIT_PLAIN, t->plain_sampler);
+	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SKY);
+	glBindTexture(GL_TEXTURE_2D_ARRAY, t->sky_depth);
 	glActiveTexture(GL_TEXTURE0 + OB_UNIT_OCCLUSION);
 	glBindTexture(GL_TEXTURE_2D, t->occlusion_texture[0]);
 	upload_instances(p, seen);
@@ -393,15 +550,47 @@ void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instance
 	draw_instances(p, seen);
 	glDisable(GL_CULL_FACE);
 	glBindVertexArray(p->empty_array);
-	glUseProgram(p->program[OB_PROGRAM_PLANE]);
-	for (int i = 0; i < b->planes; i++) {
-		bool ground = i == f->ground;
-		draw_plane(p->program[OB_PROGRAM_PLANE], &b->plane[i], f,
-			   ground ? look->ground_colour : b->now->passport[b->plane_id[i]].colour, ground,
-			   ground && look->grid);
+	for (int i = 0; i < 2 * b->planes; i++) {
+		int plane = i / 2;
+		bool ground = plane == f->ground, far = i % 2;
+		draw_plane(p->program[far ? OB_PROGRAM_FAR_PLANE : OB_PROGRAM_PLANE], &b->plane[plane], f,
+			   ground ? look->ground_colour : b->now->passport[b->plane_id[plane]].colour, ground,
+			   ground && look->grid, far);
 	}
-	glUseProgram(p->program[OB_PROGRAM_SKY]);
+	draw_sky(p, t, f, b);
+}
+
+void ob_passes_add(const ob_passes *p, const ob_targets *t, int number, int count)
+{
+	GLuint program = p->program[OB_PROGRAM_ADD];
+	glBindFramebuffer(GL_FRAMEBUFFER, t->sum);
+	glDisable(GL_DEPTH_TEST);
+	glDisable(GL_CULL_FACE);
+	if (number > 0) {
+		glEnable(GL_BLEND);
+		glBlendFunc(GL_ONE, GL_ONE);
+	}
+	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SOURCE);
+	glBindTexture(GL_TEXTURE_2D, t->one_colour);
+	glBindVertexArray(p->empty_array);
+	glUseProgram(program);
+	glUniform1f(glGetUniformLocation(program, "share"), 1.f / (float)count);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
+	glDisable(GL_BLEND);
+}
+
+void ob_passes_resolve(const ob_passes *p, const ob_targets *t)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, t->plain);
+	glDisable(GL_DEPTH_TEST);
+	glDepthMask(GL_FALSE); // overlays are hidden by what the last picture left
+	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SOURCE);
+	glBindTexture(GL_TEXTURE_2D, t->sum_colour);
+	glBindVertexArray(p->empty_array);
+	glUseProgram(p->program[OB_PROGRAM_RESOLVE]);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+	glDepthMask(GL_TRUE);
+	glEnable(GL_DEPTH_TEST);
 }
 
 void ob_passes_overlay(const ob_passes *p, const ob_overlay *o, bool hidden_by_bodies)

@@ -8,38 +8,58 @@
 #include <GL/glcorearb.h>
 
 #include "render/frame.h"
+#include "render/render.h"
 
 // ---- shader programs
 
 typedef enum ob_program {
 	OB_PROGRAM_BODY,
 	OB_PROGRAM_SHADOW,
+	OB_PROGRAM_SKY_SHADOW,
 	OB_PROGRAM_OCCLUSION,
 	OB_PROGRAM_BLUR,
 	OB_PROGRAM_PLANE,
+	OB_PROGRAM_FAR_PLANE, // where no shadow falls
 	OB_PROGRAM_SKY,
 	OB_PROGRAM_SEGMENT,
+	OB_PROGRAM_ADD,
+	OB_PROGRAM_RESOLVE,
 	OB_PROGRAMS,
 } ob_program;
 
-enum { OB_UNIT_SHADOW, OB_UNIT_OCCLUSION, OB_UNIT_SOURCE }; // texture units
+enum { OB_UNIT_SHADOW, OB_UNIT_OCCLUSION, OB_UNIT_SOURCE, OB_UNIT_PLAIN, OB_UNIT_SKY }; // texture units
+
+// How light is computed: see shaders/light.glsl.
+typedef enum ob_light {
+	OB_LIGHT_DRAFT,
+	OB_LIGHT_AVERAGED,
+	OB_LIGHT_WHOLE,
+} ob_light;
+
+// What a renderer of this quality does with this context's driver.
+ob_light ob_light_choose(ob_quality quality);
+int ob_light_sky_maps(ob_light light);
 
 // Compiles and links all programs; the frame block is bound to uniform buffer 0. A current context is needed.
-bool ob_programs_create(GLuint program[OB_PROGRAMS], ob_error *e);
+bool ob_programs_create(GLuint program[OB_PROGRAMS], ob_light light, ob_error *e);
 void ob_programs_destroy(GLuint program[OB_PROGRAMS]);
 
-// ---- render targets: colour (multisampled and plain), shadow map, occlusion map
+// ---- render targets: colour (multisampled and plain; of one picture and of the sum), and the maps
 
 typedef struct ob_targets {
 	int width, height, samples;
 	GLuint plain, multi; // framebuffers; multi = 0: draw into plain
 	GLuint plain_colour, multi_colour, depth; // renderbuffers
 	GLuint shadow, shadow_depth; // shadow map: framebuffer and depth texture
+	GLuint plain_sampler; // reads the shadow map without comparison
 	GLuint occlusion[2], occlusion_texture[2]; // occlusion map, and what it is blurred through
+	int sky_maps, sky_texels;
+	GLuint sky, sky_depth; // framebuffer, and an array of depth textures
+	GLuint one, one_colour, sum, sum_colour; // of averaged pictures: framebuffers and float textures; else 0
 } ob_targets;
 
-// samples is lowered to what the driver offers.
-bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_error *e);
+// samples is lowered to what the driver offers; of averaged pictures it does not count.
+bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_light light, ob_error *e);
 void ob_targets_destroy(ob_targets *t);
 
 // ---- passes
@@ -53,17 +73,23 @@ typedef struct ob_passes {
 	ob_mesh mesh[OB_MESHES];
 } ob_passes;
 
-bool ob_passes_create(ob_passes *p, ob_error *e);
+bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e);
 void ob_passes_destroy(ob_passes *p);
 
 void ob_passes_begin(const ob_passes *p, const ob_frame_block *block);
 // The shadow map, from all that casts.
 void ob_passes_shadow_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters);
+// The map of direction number layer of the sky, from all that casts there.
+void ob_passes_sky_map(const ob_passes *p, const ob_targets *t, int layer, const ob_instances *casters);
 // The occlusion map, from what is near the ground.
 void ob_passes_occlusion_map(const ob_passes *p, const ob_targets *t, const ob_instances *low);
 // The colour target, without overlays.
 void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
-		       const ob_frame *f, const ob_look_def *look);
+		      const ob_frame *f, const ob_look_def *look);
+// One of count averaged pictures: adds it to the sum, which the first clears.
+void ob_passes_add(const ob_passes *p, const ob_targets *t, int number, int count);
+// The average, to the colour target.
+void ob_passes_resolve(const ob_passes *p, const ob_targets *t);
 void ob_passes_overlay(const ob_passes *p, const ob_overlay *o, bool hidden_by_bodies);
 // rgba: width * height * 4 bytes, top row first
 void ob_passes_read(const ob_targets *t, uint8_t *rgba);

@@ -7,9 +7,15 @@
 #include "measure/measure.h"
 #include "scene/scene.h"
 
+typedef enum ob_quality {
+	OB_QUALITY_DRAFT, // one picture; without a GPU with the cheapest light
+	OB_QUALITY_FINE, // many pictures averaged: soft shadows, light of the sky, smooth edges
+} ob_quality;
+
 typedef struct ob_render_setup {
 	int width, height;
-	int samples; // multisampling, 1 = none
+	ob_quality quality;
+	int samples; // draft: multisampling, 1 = none; fine: pictures that are averaged
 	const char *device; // NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0",
 			    // "1", ..
 	bool overlay_aabb, overlay_contacts;

@@ -14,6 +14,7 @@ struct ob_renderer {
 	ob_targets targets;
 	ob_passes passes;
 	ob_draw_list list;
+	ob_light light;
 	ob_instances casters, near_ground, visible;
 	ob_overlay overlay;
 };
@@ -37,13 +38,14 @@ ob_renderer *ob_renderer_create(const ob_render_setup *setup, const ob_look_def 
 	}
 	r->setup = *setup;
 	r->look = *look;
-	if (!ob_context_create(&r->context, setup->device, e) ||
-	    !ob_targets_create(&r->targets, setup->width, setup->height, setup->samples, e) ||
-	    !ob_passes_create(&r->passes, e)) {
-		ob_renderer_destroy(r);
-		return NULL;
+	if (ob_context_create(&r->context, setup->device, e)) {
+		r->light = ob_light_choose(setup->quality);
+		if (ob_targets_create(&r->targets, setup->width, setup->height, setup->samples, r->light, e) &&
+		    ob_passes_create(&r->passes, r->light, e))
+			return r;
 	}
-	return r;
+	ob_renderer_destroy(r);
+	return NULL;
 }
 
 void ob_renderer_destroy(ob_renderer *r)
@@ -95,26 +97,55 @@ static bool draw_overlays(ob_renderer *r, const ob_snapshot *now, const ob_view 
 	return true;
 }
 
+// The maps of one picture, and the picture itself. false: out of memory.
+static bool draw_share(ob_renderer *r, const ob_camera_def *c, double t, const ob_frame_share *share, ob_frame *f)
+{
+	const ob_passes *p = &r->passes;
+	const ob_targets *to = &r->targets;
+	int width = r->setup.width, height = r->setup.height;
+	ob_frame_set(f, &r->list, &r->look, c, t, width, height, share, to->sky_texels);
+	if (share->number == 0)
+		ob_draw_list_sort(&r->list, f->view.eye);
+	ob_passes_begin(p, &f->block);
+	if (!ob_instances_fill(&r->casters, &r->list, &f->view, height, casts_shadow, &f->shadow))
+		return false;
+	ob_passes_shadow_map(p, to, &r->casters);
+	for (int i = 0; i < f->sky_maps; i++) {
+		if (!ob_instances_fill(&r->casters, &r->list, &f->view, height, casts_shadow, &f->sky[i]))
+			return false;
+		ob_passes_sky_map(p, to, i, &r->casters);
+	}
+	if (f->ground >= 0 && r->light == OB_LIGHT_DRAFT) {
+		if (!ob_instances_fill(&r->near_ground, &r->list, &f->view, height, is_near_ground, f))
+			return false;
+		ob_passes_occlusion_map(p, to, &r->near_ground);
+	}
+	if (!ob_instances_fill(&r->visible, &r->list, &f->view, height, is_visible, &f->view))
+		return false;
+	ob_passes_colour(p, to, &r->visible, &r->list, f, &r->look);
+	return true;
+}
+
 bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
 		      uint8_t *rgba, ob_error *e)
 {
 	ob_frame f = { 0 };
+	ob_camera_def camera;
+	bool averaged = r->light == OB_LIGHT_AVERAGED;
+	ob_frame_share share = { .count = averaged ? r->setup.samples : 1, .sky_maps = r->targets.sky_maps };
 	if (!ob_context_make_current(&r->context, e))
 		return false;
 	if (!ob_draw_list_fill(&r->list, prev, now, t))
 		return ob_fail(e, "out of memory");
-	ob_frame_set(&f, &r->list, &r->look, c, t, r->setup.width, r->setup.height);
-	ob_draw_list_sort(&r->list, f.view.eye);
-	if (!ob_instances_fill(&r->casters, &r->list, &f.view, r->setup.height, casts_shadow, &f.shadow) ||
-	    (f.ground >= 0 &&
-	     !ob_instances_fill(&r->near_ground, &r->list, &f.view, r->setup.height, is_near_ground, &f)) ||
-	    !ob_instances_fill(&r->visible, &r->list, &f.view, r->setup.height, is_visible, &f.view))
-		return ob_fail(e, "out of memory");
-	ob_passes_begin(&r->passes, &f.block);
-	ob_passes_shadow_map(&r->passes, &r->targets, &r->casters);
-	if (f.ground >= 0)
-		ob_passes_occlusion_map(&r->passes, &r->targets, &r->near_ground);
-	ob_passes_colour(&r->passes, &r->targets, &r->visible, &r->list, &f, &r->look);
+	camera = ob_camera_follow(c, &r->list, r->setup.width, r->setup.height);
+	for (; share.number < share.count; share.number++) {
+		if (!draw_share(r, &camera, t, &share, &f))
+			return ob_fail(e, "out of memory");
+		if (averaged)
+			ob_passes_add(&r->passes, &r->targets, share.number, share.count);
+	}
+	if (averaged)
+		ob_passes_resolve(&r->passes, &r->targets);
 	if (!draw_overlays(r, now, &f.view))
 		return ob_fail(e, "out of memory");
 	ob_passes_read(&r->targets, rgba);

@@ -15,6 +15,7 @@
 typedef struct ob_material {
 	char name[OB_NAME_MAX];
 	double friction, restitution; // NaN, also in colour[0]: not given
+	double roughness, metal;
 	double density; // kg/m^3
 	float colour[4];
 } ob_material;

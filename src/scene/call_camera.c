@@ -179,6 +179,7 @@ static void frame(const ob_scene *s, ob_camera_draft *c)
 	double x = .5 * (f.right - f.left), y = .5 * (f.above - f.below);
 	double z = -fmax((f.right + f.left) / (2 * v.tan_x), (f.above + f.below) / (2 * v.tan_y));
 	ob_vec3 side = ob_add(ob_scale(v.right, x), ob_scale(v.up, y));
+	c->def.automatic = true;
 	c->def.eye = ob_madd(side, z, v.forward);
 	c->def.target = ob_madd(c->def.eye, fmax(.5 * (f.near + f.far) - z, 1), v.forward);
 }

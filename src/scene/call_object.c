@@ -1,4 +1,5 @@
 // material, box, sphere, capsule, cylinder, plane, ground: the objects, and what several of them have in common.
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +19,50 @@ static const ob_field material_fields[] = {
 	OB_FIELD(ob_material, density, .name = "density", .kind = OB_FIELD_NUMBER, .low = 0, .above = true,
 		 .high = 1e9),
 	OB_FIELD(ob_material, colour, .name = "colour", .kind = OB_FIELD_COLOUR),
+	OB_FIELD(ob_material, roughness, .name = "roughness", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
+	OB_FIELD(ob_material, metal, .name = "metal", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
 };
+
+static const ob_material not_given = {
+	.friction = NAN,
+	.restitution = NAN,
+	.density = NAN,
+	.colour = { NAN },
+	.roughness = NAN,
+	.metal = NAN,
+};
+
+// How a surface looks where the scene does not say, by a word in the name of its material.
+static const struct finish {
+	const char *word;
+	double roughness, metal;
+} finishes[] = {
+	{ "steel", .32, 1 },   { "iron", .5, 1 },   { "chrome", .08, 1 },  { "aluminium", .38, 1 },
+	{ "copper", .28, 1 },  { "brass", .26, 1 }, { "gold", .2, 1 },     { "silver", .18, 1 },
+	{ "lead", .55, 1 },    { "metal", .35, 1 }, { "wood", .62, 0 },    { "rubber", .8, 0 },
+	{ "plastic", .35, 0 }, { "stone", .85, 0 }, { "concrete", .9, 0 }, { "brick", .9, 0 },
+	{ "ice", .1, 0 },      { "glass", .05, 0 }, { "billiard", .1, 0 }, { "porcelain", .12, 0 },
+};
+static const struct finish usual_finish = { NULL, .45, 0 };
+
+static bool has_word(const char *name, const char *word)
+{
+	size_t n = strlen(word);
+	for (const char *at = name; (at = strstr(at, word)); at += n)
+		if ((at == name || !isalpha((unsigned char)at[-1])) && !isalpha((unsigned char)at[n]))
+			return true;
+	return false;
+}
+
+static void find_finish(ob_material *m)
+{
+	for (size_t i = 0; i < sizeof finishes / sizeof *finishes; i++) {
+		if (!has_word(m->name, finishes[i].word))
+			continue;
+		m->roughness = isnan(m->roughness) ? finishes[i].roughness : m->roughness;
+		m->metal = isnan(m->metal) ? finishes[i].metal : m->metal;
+	}
+}
 
 const ob_material *ob_builder_material(const ob_builder *b, const char *name)
 {
@@ -37,11 +81,12 @@ static int define_material(lua_State *L)
 		ob_sandbox_fail(L, "material \"%s\": exists already", name);
 	if (b->materials == OB_SCENE_MATERIALS_MAX)
 		ob_sandbox_fail(L, "material: expected at most %d materials", OB_SCENE_MATERIALS_MAX);
-	ob_material m = { .friction = NAN, .restitution = NAN, .density = NAN, .colour = { NAN } };
+	ob_material m = not_given;
 	snprintf(m.name, sizeof m.name, "%s", name);
 	char where[OB_NAME_MAX + 16];
 	snprintf(where, sizeof where, "material \"%s\"", name);
 	ob_fields_read(L, 1, where, material_fields, sizeof material_fields / sizeof *material_fields, &m);
+	find_finish(&m);
 	b->material[b->materials++] = m;
 	return 0;
 }
@@ -66,7 +111,7 @@ typedef struct body {
 	const char *name, *material, *script;
 	ob_flat state; // of the script
 	ob_vec3 size, at, velocity, spin, force, normal;
-	double radius, length, height, mass, density, friction, restitution, born, dies;
+	double radius, length, height, mass, density, friction, restitution, roughness, metal, born, dies;
 	ob_quat q, rotation;
 	float colour[4];
 	bool fixed, grid;
@@ -77,7 +122,9 @@ typedef struct body {
 #define SURFACE \
 	F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
 		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1000), \
-		F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), F(colour, .kind = OB_FIELD_COLOUR)
+		F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), F(colour, .kind = OB_FIELD_COLOUR), \
+		F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
+		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1)
 #define PLACE \
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
 		F(at, .kind = OB_FIELD_VECTOR, .low = -1e7, .high = 1e7), \
@@ -122,6 +169,8 @@ static const body nothing = {
 	.density = NAN,
 	.friction = NAN,
 	.restitution = NAN,
+	.roughness = NAN,
+	.metal = NAN,
 	.dies = INFINITY,
 	.q = { .w = NAN },
 	.rotation = { .w = NAN },
@@ -193,8 +242,7 @@ static _Noreturn void fail_material(lua_State *L, const ob_builder *b, const cha
 // What is said at the object comes first, then its material's, then the default.
 static void apply_material(lua_State *L, const ob_builder *b, const char *kind, body *d)
 {
-	static const ob_material none = { .friction = NAN, .restitution = NAN, .density = NAN, .colour = { NAN } };
-	const ob_material *m = d->material ? ob_builder_material(b, d->material) : &none;
+	const ob_material *m = d->material ? ob_builder_material(b, d->material) : &not_given;
 	if (!m)
 		fail_material(L, b, kind, d->material);
 	if (isnan(d->friction))
@@ -203,6 +251,10 @@ static void apply_material(lua_State *L, const ob_builder *b, const char *kind, 
 		d->restitution = isnan(m->restitution) ? 0 : m->restitution;
 	if (isnan(d->density) && isnan(d->mass))
 		d->density = isnan(m->density) ? DENSITY : m->density;
+	if (isnan(d->roughness))
+		d->roughness = isnan(m->roughness) ? usual_finish.roughness : m->roughness;
+	if (isnan(d->metal))
+		d->metal = isnan(m->metal) ? usual_finish.metal : m->metal;
 	if (isnan(d->colour[0]))
 		memcpy(d->colour, m->colour, sizeof d->colour);
 	if (isnan(d->colour[0])) {
@@ -269,6 +321,8 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	p->force = d->force;
 	p->friction = d->friction;
 	p->restitution = d->restitution;
+	p->roughness = (float)d->roughness;
+	p->metal = (float)d->metal;
 	memcpy(p->colour, d->colour, sizeof p->colour);
 	o->state.pose.p = d->at;
 	o->state.pose.q = !isnan(d->q.w) ? d->q : !isnan(d->rotation.w) ? d->rotation : ob_quat_identity();

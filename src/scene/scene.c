@@ -102,9 +102,9 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 	s->room = 64;
 	set_colour(s->look.sky_top, "#5f93c9");
 	set_colour(s->look.sky_horizon, "#dce8f1");
-	set_colour(s->look.ground_colour, "#b4b9b3");
+	set_colour(s->look.ground_colour, "#a9aeab");
 	s->look.grid = true;
-	ob_vec3 sun = ob_v3(-.45, -.5, .9);
+	ob_vec3 sun = ob_v3(-.85, .1, .7);
 	s->look.sun = ob_scale(sun, 1 / ob_norm(sun));
 }
 

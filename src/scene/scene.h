@@ -20,6 +20,7 @@ typedef struct ob_camera_def {
 	ob_vec3 velocity;     // m/s, the eye and target travel (translate)
 	double pan, tilt;     // rad/s, turning about the vertical and about the right-hand axis (pan-tilt)
 	double fov;           // rad, vertical
+	bool automatic;       // eye and target are where it begins; it goes along with what moves
 } ob_camera_def;
 
 typedef struct ob_look_def {

@@ -32,6 +32,8 @@ enum {
 	MASS,
 	FRICTION,
 	RESTITUTION,
+	ROUGHNESS,
+	METAL,
 	ID,
 	GENERATION,
 	STEPS,
@@ -40,9 +42,10 @@ enum {
 	FIELDS
 };
 
-static const char *const names[FIELDS] = { "do",       "shape",      "name",   "size", "at",       "attitude",
-					   "velocity", "spin",       "colour", "mass", "friction", "restitution",
-					   "id",       "generation", "steps",  "rate", "on" };
+static const char *const names[FIELDS] = { "do",         "shape",       "name",      "size",   "at",
+					   "attitude",   "velocity",    "spin",      "colour", "mass",
+					   "friction",   "restitution", "roughness", "metal",  "id",
+					   "generation", "steps",       "rate",      "on" };
 // Which numbers a field has (0: a word), and between what they must lie
 static const struct {
 	int count;
@@ -57,6 +60,8 @@ static const struct {
 	[MASS] = { 1, 1e-9, 1e12 },
 	[FRICTION] = { 1, 0, 1e3 },
 	[RESTITUTION] = { 1, 0, 1 },
+	[ROUGHNESS] = { 1, 0, 1 },
+	[METAL] = { 1, 0, 1 },
 	[ID] = { 1, 0, 4294967294. },
 	[GENERATION] = { 1, 0, 4294967295. },
 	[STEPS] = { 1, 1, 1e6 },
@@ -197,7 +202,9 @@ static bool make_object(reading *r, ob_object_def *def)
 			      .mass = r->value[MASS][0],
 			      .friction = r->given & 1u << FRICTION ? r->value[FRICTION][0] : .5,
 			      .restitution = r->value[RESTITUTION][0],
-			      .colour = { .6f, .6f, .6f, 1 } },
+			      .colour = { .6f, .6f, .6f, 1 },
+			      .roughness = r->given & 1u << ROUGHNESS ? (float)r->value[ROUGHNESS][0] : .45f,
+			      .metal = (float)r->value[METAL][0] },
 		.state = { .pose = { vec3(r, AT), ob_quat_identity() }, .v = vec3(r, VELOCITY), .w = vec3(r, SPIN) },
 		.dies = INFINITY
 	};
@@ -230,7 +237,7 @@ static bool make(reading *r, ob_command *c)
 	};
 	static const unsigned allowed[OB_DO_KINDS] = {
 		[OB_DO_CREATE] = 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION |
-				 1u << RESTITUTION | 1u << NAME,
+				 1u << RESTITUTION | 1u << ROUGHNESS | 1u << METAL | 1u << NAME,
 		[OB_DO_STEP] = 1u << STEPS,
 		[OB_DO_INSPECT] = 1u << ID,
 	};

@@ -1,7 +1,8 @@
 // What viewers ask for: a JSON object each, as {"do": "create", "shape": "box", "size": [.5, .5, .5], "at": [0, 0, 3]}.
 //
 //      create    shape (box, sphere, capsule, cylinder), size (m, as ob_shape says), at (m), mass (kg); and if it likes
-//                attitude (w x y z), velocity (m/s), spin (rad/s), colour (linear RGB), friction, restitution, name
+//                attitude (w x y z), velocity (m/s), spin (rad/s), colour (linear RGB), friction, restitution,
+//                roughness, metal, name
 //      remove    id, generation
 //      pause, resume
 //      step      steps (1), while it is paused

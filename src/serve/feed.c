@@ -173,7 +173,8 @@ static void put_object(ob_message *out, const known *k)
 	ob_message_put_u8(out, p->shape);
 	ob_message_put_u8(out, k->fixed);
 	ob_message_put_u8(out, (unsigned)name);
-	ob_message_put_u8(out, 0);
+	ob_message_put_u8(out, (unsigned)lround(15 * fminf(fmaxf(p->roughness, 0), 1)) |
+				       16 * (unsigned)lround(15 * fminf(fmaxf(p->metal, 0), 1)));
 	put_vec3(out, p->size);
 	put_vec3(out, p->inertia);
 	for (int i = 0; i < 3; i++)

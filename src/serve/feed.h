@@ -11,7 +11,8 @@
 //      f32 rate (s a s)       f64 time (s, simulated)
 //      u32 removed, u32 created, u32 motions; then so many of each:
 //        removed      u32 id
-//        created      u32 id, generation; u8 shape; u8 flags (1: static); u8 bytes of the name; u8 0
+//        created      u32 id, generation; u8 shape; u8 flags (1: static); u8 bytes of the name;
+//                     u8 surface: roughness, of 15, and 16 times metal, of 15
 //                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB); the name (UTF-8)
 //        motion       id less the one before, in groups of 7 bits, low first, bit 7 on all but the last;
 //                     u8 kind, and 4: wide, 8: accelerated, 16: begun; f32 p[3]; i16 q[4] (w x y z, of 32767);

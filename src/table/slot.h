@@ -46,9 +46,9 @@ typedef struct ob_passport_slot {
 } ob_passport_slot;
 
 static_assert(sizeof(ob_motion) == 176, "payload of a slot");
-static_assert(sizeof(ob_passport) == 176, "passport");
+static_assert(sizeof(ob_passport) == 184, "passport");
 static_assert(sizeof(ob_slot) == 360, "slot");
-static_assert(sizeof(ob_passport_slot) == 184, "passport slot");
+static_assert(sizeof(ob_passport_slot) == 192, "passport slot");
 
 typedef uint64_t __attribute__((may_alias)) ob_word;
 

@@ -30,7 +30,8 @@ ob_motion *test_scene_add(ob_snapshot *s, ob_shape shape, ob_vec3 size, ob_vec3 
 					.size = size,
 					.mass = 1,
 					.inertia = { 1, 1, 1 },
-					.colour = { colour[0], colour[1], colour[2], 1 } };
+					.colour = { colour[0], colour[1], colour[2], 1 },
+					.roughness = .5f };
 	s->motion[i] = (ob_motion){ .p = p, .q = q, .valid_until = INFINITY };
 	return &s->motion[i];
 }

@@ -29,7 +29,8 @@ _obsim()
 	--on-death) mapfile -t COMPREPLY < <(compgen -W 'restart freeze abort' -- "$word") ;;
 	--restarts) mapfile -t COMPREPLY < <(compgen -W '5/10' -- "$word") ;;
 	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
-	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts aabb,contacts' -- "$word") ;;
+	--quality) mapfile -t COMPREPLY < <(compgen -W 'draft fine' -- "$word") ;;
+	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts caption aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
 	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick

@@ -4,18 +4,21 @@ import { BOX, CAPSULE, CYLINDER, PLANE } from './universe.js';
 import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes } from './meshes.js';
 import { turned } from './motion.js';
 
-const SHADOW_TEXELS = 2048, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: kept free at each side, for the filter
-const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2;
+const SHADOW_TEXELS = 1792, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: kept free at each side, for the filter
+const SKY_MAPS = 12; // as in light.glsl
+const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4;
 const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes it
 const REACH_RANGES = 6, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
-const SUNSHINE = [1.72, 1.6, 1.36], FROM_SKY = 0.5, FROM_GROUND = 0.4;
+const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RADIUS = 0.025, GOLDEN = 2.39996322972865332;
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
 const INSTANCE = 16, SEGMENT = 11; // floats
 const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1] };
 
 const PROGRAMS = {
-	body: ['body.vert', 'body.frag'], shadow: ['shadow.vert', 'shadow.frag'], occlusion: ['occlusion.vert', 'occlusion.frag'],
-	blur: ['sky.vert', 'blur.frag'], plane: ['plane.vert', 'plane.frag'], sky: ['sky.vert', 'sky.frag'],
+	body: ['body.vert', 'body.frag'], shadow: ['shadow.vert', 'shadow.frag'],
+	skyShadow: ['sky_shadow.vert', 'shadow.frag'], occlusion: ['occlusion.vert', 'occlusion.frag'],
+	blur: ['sky.vert', 'blur.frag'], plane: ['plane.vert', 'plane.frag'],
+	farPlane: ['plane.vert', 'plane.frag', '#define OB_FAR\n'], sky: ['sky.vert', 'sky.frag'],
 	segment: ['segment.vert', 'segment.frag'],
 };
 
@@ -34,10 +37,9 @@ async function text(path) {
 }
 
 // The shaders are written for OpenGL 3.3; the same text is GLSL ES 3.00 behind another first line.
-function compile(gl, kind, name, source, software) {
+function compile(gl, kind, name, source, defines) {
 	const shader = gl.createShader(kind);
-	const head = '#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2DShadow;\n' +
-		(software ? '#define OB_SOFTWARE\n' : '');
+	const head = '#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2DShadow;\n' + defines;
 	gl.shaderSource(shader, head + source.slice(source.indexOf('\n') + 1));
 	gl.compileShader(shader);
 	if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
@@ -57,7 +59,7 @@ const nothing = () => ({ lowX: Infinity, lowY: Infinity, highX: -Infinity, highY
 
 function steppedSize(need, texels) {
 	const half = Math.max(need, 0.05) * texels / (texels - 2 * MARGIN - 2);
-	return 2 ** (Math.ceil(4 * Math.log2(half)) / 4);
+	return 2 ** (Math.ceil(6 * Math.log2(half)) / 6);
 }
 
 function inFrustum(v, p, radius) {
@@ -113,6 +115,29 @@ function orthoMatrix(m, eye) {
 	];
 }
 
+// Where in a plane shadows can fall: low x, low y, high x, high y, m from the foot along the plane's axes.
+function patchEnds(f, foot, x, y, n) {
+	const m = f.shadow, reach = f.view.far, slope = dot(m.z, n);
+	if (slope < 0.02)
+		return [-reach, -reach, reach, reach];
+	const corners = [0, 1, 2, 3].map((corner) => {
+		let p = add(scale(m.x, m.centreX + (corner & 1 ? 1 : -1) * m.halfX), m.y, m.centreY + (corner & 2 ? 1 : -1) * m.halfY);
+		p = sub(p, add(f.view.eye, foot));
+		p = add(p, m.z, -dot(p, n) / slope);
+		return [dot(p, x), dot(p, y)].map((at) => Math.max(-reach, Math.min(reach, at)));
+	});
+	const ends = (pick, k) => pick(...corners.map((c) => c[k]));
+	return [ends(Math.min, 0), ends(Math.min, 1), ends(Math.max, 0), ends(Math.max, 1)];
+}
+
+// Directions spread evenly over the sky.
+function skyRays() {
+	return Array.from({ length: SKY_MAPS }, (_, i) => {
+		const up = 0.06 + 0.92 * (i + 0.5) / SKY_MAPS, out = Math.sqrt(1 - up * up);
+		return [out * Math.cos(GOLDEN * i), out * Math.sin(GOLDEN * i), up];
+	});
+}
+
 function projection(v) {
 	const { near: n, far: f } = v, x = scale(v.right, 1 / v.tanX), y = scale(v.up, 1 / v.tanY), d = v.forward;
 	const z = scale(d, (f + n) / (f - n));
@@ -139,12 +164,13 @@ function putInstance(out, at, body, eye) {
 			s[1] - bevel(Math.min(s[0], s[1]))]];
 	else if (body.shape === CAPSULE)
 		core = [0, 0, s[1]];
-	const q = body.q, c = body.shown;
-	out.set([body.p[0] - eye[0], body.p[1] - eye[1], body.p[2] - eye[2], r, q[1], q[2], q[3], q[0], ...core, rounding, ...c, 1], at);
+	const q = body.q, c = body.shown, surface = Math.round(15 * body.metal) + Math.min(body.roughness, 0.99);
+	out.set([body.p[0] - eye[0], body.p[1] - eye[1], body.p[2] - eye[2], r, q[1], q[2], q[3], q[0], ...core, rounding, ...c, surface], at);
 }
 
 export class Drawing {
-	constructor(canvas) {
+	// light: "draft" is cheap, "whole" has soft shadows and the sky's light; none: by what the browser draws with.
+	constructor(canvas, light) {
 		this.canvas = canvas;
 		const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, preserveDrawingBuffer: true });
 		if (!gl)
@@ -153,24 +179,25 @@ export class Drawing {
 		const info = gl.getExtension('WEBGL_debug_renderer_info');
 		this.renderer = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER);
 		this.software = /llvmpipe|softpipe|swiftshader/i.test(this.renderer);
+		this.draft = light ? light === 'draft' : this.software;
 	}
 
 	async load() {
 		const gl = this.gl;
 		this.program = {};
-		const names = [...new Set(Object.values(PROGRAMS).flat())];
+		const names = [...new Set(Object.values(PROGRAMS).flatMap((p) => p.slice(0, 2)))];
 		const sources = Object.fromEntries(await Promise.all(names.map(async (n) => [n, await text(`shaders/${n}`)])));
-		for (const [name, [vertex, fragment]] of Object.entries(PROGRAMS))
-			this.program[name] = this.link(name, sources[vertex], sources[fragment]);
+		for (const [name, [vertex, fragment, define = '']] of Object.entries(PROGRAMS))
+			this.program[name] = this.link(name, sources[vertex], sources[fragment], define + (this.draft ? '#define OB_DRAFT\n' : ''));
 		this.createBuffers();
 		this.createMaps();
 		gl.depthFunc(gl.LEQUAL);
 	}
 
-	link(name, vertex, fragment) {
+	link(name, vertex, fragment, defines) {
 		const gl = this.gl, id = gl.createProgram(), at = {};
-		gl.attachShader(id, compile(gl, gl.VERTEX_SHADER, name, vertex, this.software));
-		gl.attachShader(id, compile(gl, gl.FRAGMENT_SHADER, name, fragment, this.software));
+		gl.attachShader(id, compile(gl, gl.VERTEX_SHADER, name, vertex, defines));
+		gl.attachShader(id, compile(gl, gl.FRAGMENT_SHADER, name, fragment, defines));
 		gl.linkProgram(id);
 		if (!gl.getProgramParameter(id, gl.LINK_STATUS))
 			throw new Error(`shader ${name}: ${gl.getProgramInfoLog(id)}`);
@@ -178,7 +205,8 @@ export class Drawing {
 		if (block !== gl.INVALID_INDEX)
 			gl.uniformBlockBinding(id, block, 0);
 		gl.useProgram(id);
-		for (const [sampler, number] of [['shadow_depth', UNIT_SHADOW], ['occlusion', UNIT_OCCLUSION], ['source', UNIT_SOURCE]])
+		for (const [sampler, number] of [['shadow_depth', UNIT_SHADOW], ['occlusion', UNIT_OCCLUSION], ['source', UNIT_SOURCE],
+			['shadow_plain', UNIT_PLAIN], ['sky_depth', UNIT_SKY]])
 			gl.uniform1i(gl.getUniformLocation(id, sampler), number);
 		const uniform = (u) => (at[u] === undefined ? (at[u] = gl.getUniformLocation(id, u)) : at[u]);
 		return { id, uniform };
@@ -230,7 +258,31 @@ export class Drawing {
 		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
 		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
 		gl.drawBuffers([gl.NONE]);
+		if (!this.draft)
+			this.createSkyMaps();
 		this.occlusion = [0, 1].map(() => map(gl.COLOR_ATTACHMENT0, gl.R8, gl.RED, gl.UNSIGNED_BYTE, OCCLUSION_TEXELS));
+	}
+
+	createSkyMaps() {
+		const gl = this.gl;
+		this.plain = gl.createSampler(); // reads the shadow map without comparison
+		for (const [what, value] of [[gl.TEXTURE_COMPARE_MODE, gl.NONE], [gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
+			[gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
+			gl.samplerParameteri(this.plain, what, value);
+		this.skyTexture = gl.createTexture();
+		gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.skyTexture);
+		gl.texImage3D(gl.TEXTURE_2D_ARRAY, 0, gl.DEPTH_COMPONENT16, SKY_TEXELS, SKY_TEXELS, SKY_MAPS, 0, gl.DEPTH_COMPONENT, gl.UNSIGNED_SHORT, null);
+		for (const [what, value] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE],
+			[gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE], [gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE], [gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL]])
+			gl.texParameteri(gl.TEXTURE_2D_ARRAY, what, value);
+		gl.bindTexture(gl.TEXTURE_2D_ARRAY, null);
+		this.skyFramebuffers = Array.from({ length: SKY_MAPS }, (_, layer) => {
+			const framebuffer = gl.createFramebuffer();
+			gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+			gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, this.skyTexture, 0, layer);
+			gl.drawBuffers([gl.NONE]);
+			return framebuffer;
+		});
 	}
 
 	// ---- a frame
@@ -249,12 +301,14 @@ export class Drawing {
 		f.occlusionMap = orthoMatrix(f.occlusion, view.eye);
 		[f.occlusionMap[2], f.occlusionMap[6], f.occlusionMap[10]] = up;
 		f.occlusionMap[14] = dot(view.eye, up) - f.level;
+		f.sky = this.draft ? [] : skyRays().map((ray) => ({ ray, map: fitOrtho(ray, solid, view, SKY_TEXELS) }));
 		this.setBlock(f, sun, look, width, height);
 		gl.enable(gl.CULL_FACE);
 		gl.depthMask(true);
 		gl.disable(gl.BLEND);
 		this.drawShadowMap(solid.filter((b) => contains(f.shadow, b)), view, height);
-		if (ground)
+		f.sky.forEach(({ map }, i) => this.drawSkyMap(i, solid.filter((b) => contains(map, b)), view, height));
+		if (ground && this.draft)
 			this.drawOcclusionMap(solid.filter((b) => dot(b.p, up) - b.radius < f.level + OCCLUSION_HEIGHT &&
 				contains(f.occlusion, b)), view, height);
 		this.drawColour(solid, planes, f, look, width, height);
@@ -266,12 +320,17 @@ export class Drawing {
 		const gl = this.gl, v = f.view, fog = Math.max(FOG_LEAST, FOG_RANGES * v.range);
 		const top = look.sky_top, horizon = look.sky_horizon, below = f.ground ? look.ground : horizon;
 		const sky = add(scale(top, 0.35), horizon, 0.65), texel = 2 * Math.max(f.shadow.halfX, f.shadow.halfY) / SHADOW_TEXELS;
+		const shines = f.ground ? SUNSHINE[1] * Math.max(sun[2], 0) + FROM_SKY : 1, deep = SUN_RADIUS * (f.shadow.high - f.shadow.low) / 2;
+		const unused = new Array(SKY_MAPS - f.sky.length), none = new Array(16).fill(0);
 		const block = new Float32Array([
 			...projection(v), ...f.shadowMap, ...f.occlusionMap,
 			...scale(v.right, v.tanX), 0, ...scale(v.up, v.tanY), 0, ...v.forward, 0,
 			...sun, texel, ...SUNSHINE, 0, ...top, 1 / (fog * fog), ...horizon, f.ground ? 1 : 0,
 			...scale(sky, FROM_SKY), 0, ...scale(add(scale(below, 0.8), sky, 0.2), FROM_GROUND), 0,
-			width, height, 1 / width, 1 / height, 1 / SHADOW_TEXELS, 1 / SHADOW_TEXELS, 0, 0,
+			...scale(below, 0.75 * shines), 0,
+			width, height, 1 / width, 1 / height, 1 / SHADOW_TEXELS, 1 / SHADOW_TEXELS, deep / f.shadow.halfX, deep / f.shadow.halfY,
+			...f.sky.flatMap(({ map }) => orthoMatrix(map, v.eye)), ...unused.fill(none).flat(),
+			...f.sky.flatMap(({ ray, map }) => [...ray, 2 * Math.max(map.halfX, map.halfY) / SKY_TEXELS]), ...unused.fill(none.slice(12)).flat(),
 		]);
 		gl.bindBuffer(gl.UNIFORM_BUFFER, this.frameBlock);
 		gl.bufferData(gl.UNIFORM_BUFFER, block, gl.DYNAMIC_DRAW);
@@ -304,14 +363,26 @@ export class Drawing {
 	}
 
 	drawShadowMap(casters, view, height) {
-		const gl = this.gl;
 		this.target(this.shadow.framebuffer, SHADOW_TEXELS, SHADOW_TEXELS);
+		this.gl.useProgram(this.program.shadow.id);
+		this.drawDepth(casters, view, height);
+	}
+
+	drawSkyMap(layer, casters, view, height) {
+		const { id, uniform } = this.program.skyShadow;
+		this.target(this.skyFramebuffers[layer], SKY_TEXELS, SKY_TEXELS);
+		this.gl.useProgram(id);
+		this.gl.uniform1i(uniform('layer'), layer);
+		this.drawDepth(casters, view, height);
+	}
+
+	drawDepth(casters, view, height) {
+		const gl = this.gl;
 		gl.enable(gl.DEPTH_TEST);
 		gl.frontFace(gl.CCW);
 		gl.clear(gl.DEPTH_BUFFER_BIT);
 		gl.enable(gl.POLYGON_OFFSET_FILL);
 		gl.polygonOffset(1.6, 2);
-		gl.useProgram(this.program.shadow.id);
 		this.drawInstances(casters, view, height);
 		gl.disable(gl.POLYGON_OFFSET_FILL);
 	}
@@ -356,21 +427,45 @@ export class Drawing {
 		gl.bindTexture(gl.TEXTURE_2D, this.shadow.texture);
 		gl.activeTexture(gl.TEXTURE0 + UNIT_OCCLUSION);
 		gl.bindTexture(gl.TEXTURE_2D, this.occlusion[0].texture);
+		if (!this.draft) {
+			gl.activeTexture(gl.TEXTURE0 + UNIT_PLAIN);
+			gl.bindTexture(gl.TEXTURE_2D, this.shadow.texture);
+			gl.bindSampler(UNIT_PLAIN, this.plain);
+			gl.activeTexture(gl.TEXTURE0 + UNIT_SKY);
+			gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.skyTexture);
+		}
 		gl.useProgram(this.program.body.id);
 		this.drawInstances(solid.filter((b) => inFrustum(f.view, b.p, b.radius)), f.view, height);
 		gl.disable(gl.CULL_FACE);
 		gl.bindVertexArray(this.emptyArray);
-		gl.useProgram(this.program.plane.id);
-		for (const b of planes)
-			this.drawPlane(b, f, look);
-		gl.useProgram(this.program.sky.id);
-		gl.drawArrays(gl.TRIANGLES, 0, 3);
-		gl.activeTexture(gl.TEXTURE0 + UNIT_SHADOW);
-		gl.bindTexture(gl.TEXTURE_2D, null);
+		for (const b of planes) {
+			this.drawPlane(b, f, look, this.program.plane, 4);
+			this.drawPlane(b, f, look, this.program.farPlane, 10);
+		}
+		this.drawSky(f, width, height);
+		for (const [number, kind] of [[UNIT_SHADOW, gl.TEXTURE_2D], [UNIT_PLAIN, gl.TEXTURE_2D], [UNIT_SKY, gl.TEXTURE_2D_ARRAY]]) {
+			gl.activeTexture(gl.TEXTURE0 + number);
+			gl.bindTexture(kind, null); // it will be drawn into
+		}
 	}
 
-	drawPlane(b, f, look) {
-		const gl = this.gl, { uniform } = this.program.plane, isGround = b === f.ground;
+	// Over a level ground from its horizon on only: software shades what is hidden, too.
+	drawSky(f, width, height) {
+		const gl = this.gl, v = f.view, over = f.ground ? v.eye[2] - f.ground.p[2] : 0;
+		let first = 0;
+		if (over > 0) {
+			const lowest = -1.1 * Math.hypot(1, v.tanX, v.tanY) * over / v.far;
+			first = Math.max(0, Math.min(height, Math.floor(0.5 * height * (1 + (lowest - v.forward[2]) / (v.up[2] * v.tanY)))));
+		}
+		gl.enable(gl.SCISSOR_TEST);
+		gl.scissor(0, first, width, height - first);
+		gl.useProgram(this.program.sky.id);
+		gl.drawArrays(gl.TRIANGLES, 0, 3);
+		gl.disable(gl.SCISSOR_TEST);
+	}
+
+	drawPlane(b, f, look, { id, uniform }, vertices) {
+		const gl = this.gl, isGround = b === f.ground;
 		const [x, y, n] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
 		const d = sub(b.p, f.view.eye), height = -dot(d, n);
 		if (height <= 0)
@@ -379,6 +474,8 @@ export class Drawing {
 		const cell = (a) => a - 10 * Math.round(a / 10);
 		const toMap = (m) => [x, y, foot].flatMap((v, column) => [0, 1, 2].map((row) =>
 			m[row] * v[0] + m[4 + row] * v[1] + m[8 + row] * v[2] + (column === 2 ? m[12 + row] : 0)));
+		gl.useProgram(id);
+		gl.uniform4fv(uniform('patch_ends'), patchEnds(f, foot, x, y, n));
 		gl.uniform3fv(uniform('foot'), foot);
 		gl.uniform3fv(uniform('normal'), n);
 		gl.uniform3fv(uniform('axis_x'), x);
@@ -389,7 +486,7 @@ export class Drawing {
 		gl.uniform2f(uniform('grid_foot'), cell(dot(onPlane, x)), cell(dot(onPlane, y)));
 		gl.uniform4f(uniform('colour'), ...colour, isGround && look.grid ? 1 : 0);
 		gl.uniform1f(uniform('occlusion_share'), isGround ? 0.75 : 0);
-		gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+		gl.drawArrays(gl.TRIANGLE_STRIP, 0, vertices);
 	}
 
 	// overlay: { from, to (m, world), colour (sRGB, alpha), width (px) }

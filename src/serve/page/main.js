@@ -10,7 +10,7 @@ const PICKED = [1, 0.7, 0.33, 1];
 const AGAIN = [0.5, 1, 2, 5]; // s: when to look for a lost server
 
 const canvas = document.querySelector('#picture');
-const token = new URLSearchParams(location.hash.slice(1)).get('token');
+const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const universe = new Universe(address), camera = new Camera(), panel = new Panel();
 let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0;
@@ -22,7 +22,8 @@ function bodies() {
 	for (const o of universe.objects.values()) {
 		const pose = universe.pose(o);
 		if (pose)
-			out.push({ id: o.id, shape: o.shape, size: o.size, radius: o.radius, fixed: o.fixed, kind: o.motion.kind, shown: o.colour, ...pose });
+			out.push({ id: o.id, shape: o.shape, size: o.size, radius: o.radius, fixed: o.fixed, kind: o.motion.kind, shown: o.colour,
+				roughness: o.roughness, metal: o.metal, ...pose });
 	}
 	return out;
 }
@@ -172,7 +173,7 @@ universe.addEventListener('close', (e) => {
 });
 
 async function begin() {
-	drawing = new Drawing(canvas);
+	drawing = new Drawing(canvas, asked.get('light'));
 	await drawing.load();
 	await new Promise((resolve) => {
 		universe.addEventListener('welcome', resolve, { once: true });

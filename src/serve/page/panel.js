@@ -1,8 +1,8 @@
 // What stands round the picture: the clock, the tools, and all about the object that is picked. Knows nothing of drawing.
 
-const MATERIALS = { // kg/m3, friction, restitution, linear RGB
-	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08]], steel: [7800, 0.4, 0.3, [0.42, 0.44, 0.47]],
-	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11]], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83]],
+const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, metal
+	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
+	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11], 0.8, 0], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83], 0.1, 0],
 };
 const KEYS = { ' ': 'pause', '.': 'step', n: 'make', b: 'boxes', c: 'contacts', v: 'view', '?': 'help', t: 'throw', Delete: 'remove',
 	Escape: 'deselect' };
@@ -53,7 +53,7 @@ export class Panel extends EventTarget {
 	get wanted() {
 		const value = (name) => $(`#maker [name=${name}]`).value;
 		const s = Number(value('size')), shape = value('shape');
-		const [density, friction, restitution, colour] = MATERIALS[value('material')];
+		const [density, friction, restitution, colour, roughness, metal] = MATERIALS[value('material')];
 		const make = {
 			box: { size: [s / 2, s / 2, s / 2], volume: s ** 3, low: s / 2 },
 			sphere: { size: [s / 2, 0, 0], volume: Math.PI / 6 * s ** 3, low: s / 2 },
@@ -62,7 +62,7 @@ export class Panel extends EventTarget {
 		}[shape];
 		const shade = 0.85 + 0.3 * Math.random();
 		return {
-			command: { do: 'create', shape, size: make.size, mass: density * make.volume, friction, restitution,
+			command: { do: 'create', shape, size: make.size, mass: density * make.volume, friction, restitution, roughness, metal,
 				colour: colour.map((c) => Math.min(1, c * shade)) },
 			over: Number(value('height')) + make.low,
 		};

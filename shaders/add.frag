@@ -1,0 +1,8 @@
+#version 330 core
+// One of the pictures that are averaged.
+precision highp float;
+uniform highp sampler2D source;
+uniform float share;
+out vec4 pixel;
+
+void main() { pixel = share * texelFetch(source, ivec2(gl_FragCoord.xy), 0); }
