@@ -3,8 +3,8 @@
 #include <assert.h>
 
 // Whoever adds a member to one of these structures decides here whether a record needs it to be drawn again.
-static_assert(sizeof(ob_passport) == 176 && sizeof(ob_motion) == 176, "members of /events and /motions");
-static_assert(sizeof(ob_camera_def) == 144 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
+static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
+static_assert(sizeof(ob_camera_def) == 152 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
 
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
 
@@ -17,11 +17,12 @@ static_assert(sizeof(ob_camera_def) == 144 && sizeof(ob_look_def) == 64, "member
 #name, type, offsetof(ob_record_event, passport.name) \
 	}
 static const ob_record_member event_members[] = {
-	EVENT(step, OB_RECORD_U64),        EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
-	PASSPORT(id, OB_RECORD_U32),       PASSPORT(generation, OB_RECORD_U32), PASSPORT(flags, OB_RECORD_U32),
-	PASSPORT(shape, OB_RECORD_U32),    PASSPORT(size, OB_RECORD_VEC3),      PASSPORT(mass, OB_RECORD_F64),
-	PASSPORT(inertia, OB_RECORD_VEC3), PASSPORT(friction, OB_RECORD_F64),   PASSPORT(restitution, OB_RECORD_F64),
-	PASSPORT(colour, OB_RECORD_RGBA),  PASSPORT(name, OB_RECORD_NAME),      PASSPORT(force, OB_RECORD_VEC3),
+	EVENT(step, OB_RECORD_U64),         EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
+	PASSPORT(id, OB_RECORD_U32),        PASSPORT(generation, OB_RECORD_U32), PASSPORT(flags, OB_RECORD_U32),
+	PASSPORT(shape, OB_RECORD_U32),     PASSPORT(size, OB_RECORD_VEC3),      PASSPORT(mass, OB_RECORD_F64),
+	PASSPORT(inertia, OB_RECORD_VEC3),  PASSPORT(friction, OB_RECORD_F64),   PASSPORT(restitution, OB_RECORD_F64),
+	PASSPORT(colour, OB_RECORD_RGBA),   PASSPORT(name, OB_RECORD_NAME),      PASSPORT(force, OB_RECORD_VEC3),
+	PASSPORT(roughness, OB_RECORD_F32), PASSPORT(metal, OB_RECORD_F32),
 };
 const ob_record_table ob_record_events = {
 	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
@@ -62,13 +63,14 @@ const ob_record_table ob_record_motions = {
 #name, type, offsetof(ob_camera_def, name) \
 	}
 static const ob_record_member camera_members[] = {
-	CAMERA(name, OB_RECORD_NAME),     CAMERA(eye, OB_RECORD_VEC3), CAMERA(target, OB_RECORD_VEC3),
-	CAMERA(velocity, OB_RECORD_VEC3), CAMERA(pan, OB_RECORD_F64),  CAMERA(tilt, OB_RECORD_F64),
-	CAMERA(fov, OB_RECORD_F64),
+	CAMERA(name, OB_RECORD_NAME),     CAMERA(eye, OB_RECORD_VEC3),       CAMERA(target, OB_RECORD_VEC3),
+	CAMERA(velocity, OB_RECORD_VEC3), CAMERA(pan, OB_RECORD_F64),        CAMERA(tilt, OB_RECORD_F64),
+	CAMERA(fov, OB_RECORD_F64),       CAMERA(automatic, OB_RECORD_FLAG),
 };
 const ob_record_table ob_record_cameras = {
 	{ "cameras", "m, m/s, rad, rad/s", "world, right-handed, z up",
-	  "the scene's: the eye and its target travel with a velocity, it turns by pan and tilt; fov: vertical" },
+	  "the scene's: the eye and its target travel with a velocity, it turns by pan and tilt; fov: vertical; "
+	  "automatic: it goes along with what moves" },
 	sizeof(ob_camera_def),
 	COUNT(camera_members),
 	camera_members,
@@ -103,6 +105,8 @@ static hid_t type_of(ob_record_type type)
 		return H5Tcopy(H5T_NATIVE_UINT64);
 	case OB_RECORD_FLAG:
 		return H5Tcopy(H5T_NATIVE_UINT8);
+	case OB_RECORD_F32:
+		return H5Tcopy(H5T_NATIVE_FLOAT);
 	case OB_RECORD_F64:
 		return H5Tcopy(H5T_NATIVE_DOUBLE);
 	case OB_RECORD_VEC3:

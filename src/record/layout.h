@@ -26,6 +26,7 @@ typedef enum ob_record_type {
 	OB_RECORD_U32,
 	OB_RECORD_U64,
 	OB_RECORD_FLAG, // uint8_t, 0 or 1
+	OB_RECORD_F32,
 	OB_RECORD_F64,
 	OB_RECORD_VEC3,
 	OB_RECORD_QUAT, // w x y z

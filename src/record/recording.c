@@ -226,6 +226,9 @@ static bool is_colour(const float *c, int n)
 
 static bool camera_makes_sense(ob_camera_def *c)
 {
+	uint8_t automatic;
+	memcpy(&automatic, &c->automatic, sizeof automatic);
+	c->automatic = automatic != 0; // a byte from outside may be no bool
 	c->name[OB_NAME_MAX - 1] = 0;
 	ob_utf8_make_plain(c->name);
 	return finite3(c->eye) && finite3(c->target) && finite3(c->velocity) && fabs(c->pan) <= number_max &&
@@ -467,7 +470,8 @@ static bool passport_makes_sense(const ob_passport *p)
 	bool sized = p->size.x >= 0 && p->size.y >= 0 && p->size.z >= 0;
 	return ob_passport_makes_sense(p, p->id) && p->shape != OB_SHAPE_NONE && p->flags & OB_OBJECT_PRESENT &&
 	       sized && finite3(p->size) && finite3(p->inertia) && p->inertia.x >= 0 && p->inertia.y >= 0 &&
-	       p->inertia.z >= 0 && p->mass <= number_max && is_colour(p->colour, 4);
+	       p->inertia.z >= 0 && p->mass <= number_max && is_colour(p->colour, 4) &&
+	       p->roughness >= 0 && p->roughness <= 1 && p->metal >= 0 && p->metal <= 1;
 }
 
 static bool is_present(const ob_snapshot *s, uint32_t id)
