@@ -16,6 +16,7 @@ for k = 1, 3 do
 		plane { normal = normal, at = at, material = "billiard", colour = k == 3 and "#b4b9b3" or "#c9d3da" }
 	end
 end
+sun { towards = { -.5, -.62, .6 } }
 camera "main" { eye = { -2.1 * half, -2.8 * half, 1.2 * half }, target = { 0, 0, -.1 * half }, fov = 50 }
 
 for i = 0, n - 1 do

@@ -11,10 +11,10 @@ material "steel" { friction = .2, restitution = .3, density = 7850, colour = "#c
 material "stone" { friction = .7, density = 2400, colour = "#8f958c" }
 
 sky { top = "#4f86c0", horizon = "#e3edf4" }
-sun { towards = { -.5, -.45, .8 } }
+sun { towards = { -.8, -.3, .75 } }
 ground { friction = .6, grid = true }
 
-camera "main" { eye = { -7.5, -11, 6 }, target = { -.6, 0, 2.4 }, fov = 40 }
+camera "main" { eye = { -6, -9.8, 4.9 }, target = { -1.1, 0, 2.4 }, fov = 44 }
 camera "orbit" { eye = { 0, -15, 5 }, target = { 0, 0, 1 }, pan = 6 }
 camera "above" { from = { 0, -.05, 1 } }
 
@@ -24,7 +24,7 @@ box {
 	size = { 6, 3, .3 }, at = { -2, 0, 1.6 }, rotation = { axis = { 0, 1, 0 }, degrees = 22 },
 }
 box { name = "gate", static = true, material = "steel", size = { .15, 3, 1.2 }, at = { .95, 0, 1.1 }, dies = 3 }
-plane { name = "slope", normal = { -1, 0, .35 }, at = { 9, 0, 0 }, friction = .6, colour = "#a9aea8" }
+plane { name = "slope", normal = { -1, 0, .35 }, at = { 16, 0, 0 }, friction = .6, colour = "#a9aea8" }
 
 local make = {
 	function(f) f.material, f.radius = "rubber", .22; sphere(f) end,

@@ -7,7 +7,7 @@ local spacing = param("spacing", 4.0, { min = 2, max = 100 })
 
 scene { title = "Sparse field", duration = 10 }
 material "rubber" { friction = .5, restitution = .8, density = 1000 }
-ground { material = "rubber", colour = "#b4b9b3" }
+ground { material = "rubber" }
 camera "main" { from = { -.4, -.8, .45 }, fov = 32 }
 
 local side = math.ceil(math.sqrt(n))

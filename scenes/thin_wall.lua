@@ -6,7 +6,7 @@ local speed = param("speed", 100.0, { min = .01, max = 100000 })
 scene { title = "Thin wall", duration = 1, gravity = { 0, 0, 0 } }
 camera "main" { eye = { -6, -7, 2.6 }, target = { -.8, 0, 0 }, fov = 40 }
 
-box { name = "wall", static = true, size = { .02, 4, 4 }, at = { 0, 0, 0 }, restitution = 0, colour = "#8fa3b5" }
+box { name = "wall", static = true, size = { .02, 4, 4 }, at = { 0, 0, 0 }, restitution = 0, colour = "#5f7488" }
 
 -- It flies to a point on the wall, at most a metre and a half from the middle.
 local start = { -3, random(-1, 1), random(-1, 1) }

@@ -162,7 +162,7 @@ static void set_lighting(ob_frame_block *k, const ob_look_def *look, ob_vec3 sun
 	set_vec4(k->sky_horizon, horizon, ground);
 	set_vec4(k->ambient_up, ob_scale(sky, from_sky), 0);
 	set_vec4(k->ambient_down, ob_scale(ob_add(ob_scale(below, .8), ob_scale(sky, .2)), from_ground), 0);
-	double shines = ground ? sunshine[1] * fmax(sun.z, 0) + from_sky : 1;
+	double shines = ground ? sunshine[1] * fmax(sun.z, 0) + from_sky : .6;
 	set_vec4(k->ground_shine, ob_scale(below, .75 * shines), 0);
 	double deep = sun_radius * (m->z_high - m->z_low);
 	k->shadow_texel[0] = k->shadow_texel[1] = 1.f / OB_SHADOW_TEXELS;

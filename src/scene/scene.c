@@ -104,7 +104,7 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 	set_colour(s->look.sky_horizon, "#dce8f1");
 	set_colour(s->look.ground_colour, "#a9aeab");
 	s->look.grid = true;
-	ob_vec3 sun = ob_v3(-.85, .1, .7);
+	ob_vec3 sun = ob_v3(-.85, -.22, .7);
 	s->look.sun = ob_scale(sun, 1 / ob_norm(sun));
 }
 

@@ -51,7 +51,8 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_host *h)
 		ob_message_put_json(m, camera->name);
 		put_vec3(m, "eye", camera->eye);
 		put_vec3(m, "target", camera->target);
-		ob_message_print(m, ",\"fov\":%.9g}", camera->fov);
+		ob_message_print(m, ",\"fov\":%.9g,\"automatic\":%s}", camera->fov,
+				 camera->automatic ? "true" : "false");
 	}
 	ob_message_print(m, "]}}");
 	return m;

@@ -1,9 +1,13 @@
 // A viewer's own viewpoint: it goes round a target (drag), moves (right button, shift, two fingers, arrows), turns its head
-// (alt, or keys), comes nearer and goes away (wheel, pinch).
+// (alt, or keys), comes nearer and goes away (wheel, pinch). Until it is taken hold of, an automatic one goes along with what
+// moves.
 const STEEPEST = 89 * Math.PI / 180;
+const LOST_RANGES = 1.5, SPREAD = 2.05, NEAREST = 0.3; // of an automatic viewpoint: see src/render/draw_list.c
+const NARROWEST = 1.3; // width over height, below which the angle of view grows with the height
 
 const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => add([0, 0, 0], a, 1 / Math.hypot(...a));
 
 export class Camera {
@@ -11,14 +15,15 @@ export class Camera {
 		this.set({ eye: [8, -10, 6], target: [0, 0, 1], fov: 0.8 });
 	}
 
-	set({ eye, target, fov }) {
+	set({ eye, target, fov, automatic }) {
 		const d = add(target, eye, -1), range = Math.hypot(...d) || 1;
 		this.target = [...target];
 		this.range = range;
 		this.azimuth = Math.atan2(d[1], d[0]);
 		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(d[2] / range)));
 		this.fov = fov;
-		this.changed = true;
+		this.first = { target: this.target, range };
+		this.following = automatic === true;
 	}
 
 	get forward() {
@@ -28,9 +33,9 @@ export class Camera {
 	get eye() { return add(this.target, this.forward, -this.range); }
 
 	orbit(right, up) {
+		this.following = false;
 		this.azimuth -= right;
 		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, this.elevation - up));
-		this.changed = true;
 	}
 	// The head turns, the eye stays.
 	turn(right, up) {
@@ -41,18 +46,44 @@ export class Camera {
 	// m, along the picture and into it
 	translate(right, up, ahead) {
 		const f = this.forward, r = unit(cross(f, [0, 0, 1])), u = cross(r, f);
+		this.following = false;
 		this.target = add(add(add(this.target, r, right), u, up), f, ahead);
-		this.changed = true;
 	}
 	zoom(factor) {
 		this.range = Math.max(0.05, Math.min(1e5, this.range * factor));
-		this.changed = true;
+		this.following = false;
+	}
+
+	// Where it sees what moves, as ob_camera_follow of the renderer.
+	follow(bodies, width, height) {
+		const v = this.view(width, height), { target, range } = this.first, moving = [];
+		let all = 0, middle = [0, 0, 0];
+		for (const { p, radius, fixed } of bodies) {
+			if (fixed || !Number.isFinite(radius))
+				continue;
+			const d = add(p, target, -1), weight = 1 / (1 + (dot(d, d) / (LOST_RANGES * range) ** 2) ** 2);
+			moving.push({ p, radius, weight });
+			all += weight;
+			middle = add(middle, p, weight);
+		}
+		if (all < 0.5)
+			return;
+		middle = [0, 1, 2].map((k) => middle[k] / all);
+		const moments = [0, 0, 0, 0];
+		for (const { p, radius, weight } of moving) {
+			const d = add(p, middle, -1), x = dot(d, v.right), y = dot(d, v.up), z = dot(d, v.forward);
+			const rx = radius * Math.hypot(1, v.tanX) - z * v.tanX, ry = radius * Math.hypot(1, v.tanY) - z * v.tanY;
+			[x + rx, rx - x, y + ry, ry - y].forEach((reach, k) => { moments[k] += weight / all * Math.max(reach, 0) ** 4; });
+		}
+		const [right, left, above, below] = moments.map((m) => SPREAD * m ** 0.25);
+		this.target = add(add(middle, v.right, (right - left) / 2), v.up, (above - below) / 2);
+		this.range = Math.max((right + left) / (2 * v.tanX), (above + below) / (2 * v.tanY), NEAREST * range);
 	}
 
 	// The axes and the frustum, as ob_view of the renderer.
 	view(width, height) {
 		const forward = this.forward, right = unit(cross(forward, [0, 0, 1])), up = cross(right, forward);
-		const tanY = Math.tan(this.fov / 2), tanX = tanY * width / height;
+		const tanY = Math.tan(this.fov / 2) * Math.max(1, NARROWEST * height / width), tanX = tanY * width / height;
 		return {
 			eye: this.eye, forward, right, up, tanX, tanY, range: this.range,
 			near: Math.max(0.01, Math.min(0.5, 0.01 * this.range)), far: Math.max(2000, 60 * this.range),

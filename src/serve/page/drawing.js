@@ -320,7 +320,7 @@ export class Drawing {
 		const gl = this.gl, v = f.view, fog = Math.max(FOG_LEAST, FOG_RANGES * v.range);
 		const top = look.sky_top, horizon = look.sky_horizon, below = f.ground ? look.ground : horizon;
 		const sky = add(scale(top, 0.35), horizon, 0.65), texel = 2 * Math.max(f.shadow.halfX, f.shadow.halfY) / SHADOW_TEXELS;
-		const shines = f.ground ? SUNSHINE[1] * Math.max(sun[2], 0) + FROM_SKY : 1, deep = SUN_RADIUS * (f.shadow.high - f.shadow.low) / 2;
+		const shines = f.ground ? SUNSHINE[1] * Math.max(sun[2], 0) + FROM_SKY : 0.6, deep = SUN_RADIUS * (f.shadow.high - f.shadow.low) / 2;
 		const unused = new Array(SKY_MAPS - f.sky.length), none = new Array(16).fill(0);
 		const block = new Float32Array([
 			...projection(v), ...f.shadowMap, ...f.occlusionMap,

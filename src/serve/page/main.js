@@ -13,7 +13,7 @@ const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const universe = new Universe(address), camera = new Camera(), panel = new Panel();
-let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0;
+let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0, framesTold = 0;
 
 // ---- what is seen
 
@@ -47,7 +47,10 @@ function frame(now) {
 	if (canvas.width !== width || canvas.height !== height)
 		[canvas.width, canvas.height] = [width, height];
 	universe.advance(seconds);
-	const list = bodies(), view = camera.view(width, height);
+	const list = bodies();
+	if (camera.following)
+		camera.follow(list, width, height);
+	const view = camera.view(width, height);
 	drawing.draw(list, view, look, overlay(list, view));
 	panel.clock(universe.time, universe.rate, universe.paused);
 	frames++;
@@ -126,6 +129,7 @@ panel.addEventListener('step', () => universe.send({ do: 'step' }));
 panel.addEventListener('rate', (e) => universe.send({ do: 'rate', rate: e.detail }));
 panel.addEventListener('contacts', (e) => universe.send({ do: 'contacts', on: e.detail }));
 panel.addEventListener('throw', throwOne);
+panel.addEventListener('follow', () => camera.set({ ...cameras[shownCamera], automatic: true }));
 panel.addEventListener('deselect', () => pick(null));
 panel.addEventListener('remove', () => {
 	const o = universe.objects.get(picked);
@@ -156,11 +160,15 @@ universe.addEventListener('welcome', (e) => {
 		camera.set(cameras[0]);
 	camera.placed = true;
 	tries = 0;
-	panel.notice('');
+	panel.notice(frames ? '' : 'drag to go round · right button or two fingers to move · wheel or pinch to come nearer · ? for more', 8);
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
 });
 universe.addEventListener('statistics', (e) => panel.statistics(e.detail));
+setInterval(() => {
+	panel.speed(frames - framesTold, drawing?.software);
+	framesTold = frames;
+}, 1000);
 universe.addEventListener('details', (e) => {
 	if (e.detail.id === picked)
 		panel.details(e.detail);

@@ -4,7 +4,7 @@ const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, meta
 	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
 	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11], 0.8, 0], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83], 0.1, 0],
 };
-const KEYS = { ' ': 'pause', '.': 'step', n: 'make', b: 'boxes', c: 'contacts', v: 'view', '?': 'help', t: 'throw', Delete: 'remove',
+const KEYS = { ' ': 'pause', '.': 'step', n: 'make', b: 'boxes', c: 'contacts', v: 'view', f: 'follow', '?': 'help', t: 'throw', Delete: 'remove',
 	Escape: 'deselect' };
 
 const $ = (selector) => document.querySelector(selector);
@@ -75,6 +75,11 @@ export class Panel extends EventTarget {
 			for (const button of document.querySelectorAll(`[data-do=${what}]`))
 				button.disabled = w.look_only;
 		$('#rate').disabled = w.look_only;
+	}
+
+	// Frames in a second; in software there are few.
+	speed(frames, software) {
+		$('#speed').textContent = `${frames} frames/s${software ? ', drawn without a GPU' : ''}`;
 	}
 
 	statistics(s) {
