@@ -17,7 +17,8 @@ typedef struct ob_state {
 	ob_vec3 w; // rad/s, world frame
 } ob_state;
 
-// The state at time t (s): parabola for the centre, torque-free rotation for the attitude.
+// The state at time t (s): parabola for the centre, torque-free rotation for the attitude. What swings with frequency f
+// goes about the ellipse p + v sin(f s) / f + a (1 - cos(f s)) / f^2, s = t - t0: to and fro, where v and a are parallel.
 // Torque-free rotation of a rigid body in closed form: Jacobi elliptic functions for the body rates
 // (Jacobi 1849; Whittaker 1937, ch. VI), the attitude by theta functions (van Zon and Schofield 2007).
 // inertia = principal moments (kg m^2, body frame); equal moments or w along a principal axis turn at constant w.
@@ -40,8 +41,8 @@ double ob_shape_radius(ob_shape shape, ob_vec3 size);
 // Smallest thickness (m) of a shape: how far it may move before it could pass through something unseen.
 double ob_shape_thickness(ob_shape shape, ob_vec3 size);
 
-// Axis-aligned box that holds the shape over [t0, t0 + s] of its free motion: extremes of the parabola, plus
-// the bounding sphere where it turns.
+// Axis-aligned box that holds the shape over [t0, t0 + s] of its free motion: extremes of the parabola, or of all of the
+// ellipse, plus the bounding sphere where it turns.
 void ob_motion_swept_bounds(const ob_motion *m, ob_shape shape, ob_vec3 size, double s, double bounds[6]);
 
 // First time in [0, s] at which a gap (m) with rate v (m/s) and constant acceleration a (m/s^2) closes:

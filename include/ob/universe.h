@@ -37,6 +37,8 @@ enum { // ob_passport.flags
 	OB_OBJECT_PRESENT = 1 << 0, // exists now; a slot without it is free
 	OB_OBJECT_STATIC = 1 << 1,  // never moves; mass and inertia are 0
 	OB_OBJECT_FROZEN = 1 << 2,  // static since its simulator died
+	OB_OBJECT_KINEMATIC = 1 << 3, // moves as it is told, whatever touches it; mass and inertia are 0
+	OB_OBJECT_PRESCRIBED = OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC, // no force moves it
 };
 
 // What an object is. 184 bytes.
@@ -52,7 +54,10 @@ typedef struct ob_passport {
 	double restitution;   // 0..1; a pair uses the larger of the two
 	float colour[4];      // linear RGB, alpha
 	char name[OB_NAME_MAX];
-	ob_vec3 force;        // N, world frame: constant, acts at the centre
+	union {
+		ob_vec3 force;            // N, world frame: constant, acts at the centre
+		ob_vec3 surface_velocity; // m/s, body frame, of what is prescribed: at which its surface runs, as a belt's does
+	};
 	float roughness;      // 0..1, of its surface to the eye: 0 = polished, 1 = matt
 	float metal;          // 0..1: whether it reflects as metals do, in its own colour
 } ob_passport;
@@ -63,6 +68,7 @@ enum { // ob_motion.flags
 	OB_MOTION_STEADY = 1 << 2, // its contacts hold it, and the solver changed nothing about it in the last step
 	OB_MOTION_EQUILIBRIUM = 1 << 3, // in equilibrium: it is not solved again until something touches it
 	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_EQUILIBRIUM, // either: it stays where it is
+	OB_MOTION_SWINGS = 1 << 4, // the centre goes about an ellipse, or to and fro, with a frequency; kinematic objects alone
 };
 
 // How an object moves from t0 on, unless touched. 176 bytes: the payload of one slot version.
@@ -73,12 +79,17 @@ typedef struct ob_motion {
 	ob_quat q;          // body to world
 	ob_vec3 v;          // m/s
 	ob_vec3 w;          // rad/s, world frame
-	ob_vec3 a;          // m/s^2, constant while the motion holds (gravity in flight, 0 when supported)
+	ob_vec3 a;          // m/s^2, constant while the motion holds, unless it swings (gravity in flight, 0 when supported)
 	double path;        // m, length of path of the fastest surface point since the run began
 	uint32_t step;      // the step that published this
 	uint32_t flags;     // OB_MOTION_*
-	float rest_time;    // s, rest timer: how long it has been slower than the sleeping threshold
-	uint32_t island;    // lowest id of the island in which it was solved
+	union {
+		struct {
+			float rest_time; // s, rest timer: how long it has been slower than the sleeping threshold
+			uint32_t island; // lowest id of the island in which it was solved
+		};
+		double frequency; // rad/s, if it swings: then a is the acceleration at t0
+	};
 	float reach;        // m, how much of that path each step adds at most, until something else is published
 	uint32_t substeps;  // that its island asks for in the next step, where a tolerance chooses; 0 = none yet
 } ob_motion;

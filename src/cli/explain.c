@@ -27,7 +27,7 @@ static traits traits_of(const ob_scene *s)
 	traits t = { 0 };
 	for (uint32_t i = 0; i < s->objects; i++) {
 		const ob_passport *p = &s->object[i].passport;
-		bool moves = !(p->flags & OB_OBJECT_STATIC);
+		bool moves = !(p->flags & OB_OBJECT_PRESCRIBED);
 		t.bodies += moves;
 		t.round += moves && p->shape == OB_SHAPE_SPHERE;
 		t.forced += moves && ob_norm2(p->force) > 0;
@@ -82,8 +82,7 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 	else
 		line(f, "collision", "none: no two boxes came near each other");
 	if (c->pair_solves)
-		line(f, "contact",
-		     "%" PRIu64 " solves of pairs in %" PRIu64 " iterations; %" PRIu64 " direct solves",
+		line(f, "contact", "%" PRIu64 " solves of pairs in %" PRIu64 " iterations; %" PRIu64 " direct solves",
 		     c->pair_solves, c->solver_iterations, c->direct_solves);
 	else
 		line(f, "contact", "none: nothing touched");
@@ -98,8 +97,8 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 		line(f, "restitution", "none: no object has any; %" PRIu64 " plastic impacts at their own instants",
 		     c->impacts);
 	else
-		line(f, "restitution", "%" PRIu64 " impacts at their own instants, in %" PRIu64 " iterations", c->impacts,
-		     c->impact_iterations);
+		line(f, "restitution", "%" PRIu64 " impacts at their own instants, in %" PRIu64 " iterations",
+		     c->impacts, c->impact_iterations);
 	line(f, "recovery", "%.3g J of potential energy, from pushing penetrations apart", c->recovered);
 	if (x->settings->tolerance > 0)
 		line(f, "tolerance",
@@ -141,8 +140,8 @@ static void print_costs(const ob_explained *x, FILE *f)
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++) {
 		double s = 1e-9 * (double)x->counters.time_ns[i];
 		rest -= s;
-		fprintf(f, "    %-11s %10s %5.1f %%  %s\n", ob_profile_name((uint32_t)i), ob_quantity_text(&q, s, "s"), 100 * s / x->cpu_s,
-			what[i]);
+		fprintf(f, "    %-11s %10s %5.1f %%  %s\n", ob_profile_name((uint32_t)i), ob_quantity_text(&q, s, "s"),
+			100 * s / x->cpu_s, what[i]);
 	}
 	rest = fmax(0, rest);
 	fprintf(f, "    %-11s %10s %5.1f %%  waiting for each other, and what these clocks cost\n", "gate",

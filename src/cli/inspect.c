@@ -30,7 +30,7 @@ static void summarize(const ob_saved_run *r, summary *out)
 	for (uint32_t id = 0; id < u->ids; id++) {
 		bool present = u->passport[id].flags & OB_OBJECT_PRESENT;
 		out->objects += present;
-		out->bodies += present && !(u->passport[id].flags & OB_OBJECT_STATIC);
+		out->bodies += present && !(u->passport[id].flags & OB_OBJECT_PRESCRIBED);
 		out->asleep += present && u->motion[id].flags & OB_MOTION_ASLEEP;
 	}
 	for (uint32_t i = 0; i < u->pairs; i++)

@@ -19,7 +19,7 @@ static bool is_closed(const ob_scene *s)
 	if (ob_norm2(s->run.gravity) > 0 || !all_stay(s))
 		return false;
 	for (uint32_t i = 0; i < s->objects; i++) {
-		if (s->object[i].passport.flags & OB_OBJECT_STATIC || ob_norm2(s->object[i].passport.force) > 0)
+		if (s->object[i].passport.flags & OB_OBJECT_PRESCRIBED || ob_norm2(s->object[i].passport.force) > 0)
 			return false;
 	}
 	return true;
@@ -75,7 +75,7 @@ void ob_observer_resume(ob_observer *o, const ob_saved_figures *from)
 
 static bool moves(const ob_snapshot *s, uint32_t i)
 {
-	return (s->passport[i].flags & OB_OBJECT_PRESENT) && !(s->passport[i].flags & OB_OBJECT_STATIC);
+	return (s->passport[i].flags & OB_OBJECT_PRESENT) && !(s->passport[i].flags & OB_OBJECT_PRESCRIBED);
 }
 
 static void write_line(const ob_observer *o, const ob_snapshot *s, ob_vec3 momentum)

@@ -223,7 +223,7 @@ static void count_objects(const ob_snapshot *s, ob_report *p)
 	for (uint32_t i = 0; i < s->count; i++) {
 		bool present = s->passport[i].flags & OB_OBJECT_PRESENT;
 		p->objects += present;
-		p->bodies += present && !(s->passport[i].flags & OB_OBJECT_STATIC);
+		p->bodies += present && !(s->passport[i].flags & OB_OBJECT_PRESCRIBED);
 	}
 }
 
@@ -234,7 +234,7 @@ static double body_steps(const run *r, double since)
 	for (uint32_t i = 0; i < r->scene->objects; i++) {
 		const ob_object_def *d = &r->scene->object[i];
 		double there = fmin(d->dies, r->now.time) - fmax(d->born, since);
-		if (!(d->passport.flags & OB_OBJECT_STATIC) && there > 0)
+		if (!(d->passport.flags & OB_OBJECT_PRESCRIBED) && there > 0)
 			sum += there / r->request.run.step_length;
 	}
 	return sum;

@@ -131,12 +131,13 @@ static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 	char line[LINE_MAX_BYTES], name[128];
 	int pad = NAME_WIDTH - clean_name(o->passport.name, NAME_WIDTH, name, sizeof name);
 	const char *shape = o->passport.shape < sizeof shapes / sizeof *shapes ? shapes[o->passport.shape] : "?";
-	const char *state = o->passport.flags & OB_OBJECT_FROZEN   ? "frozen"
-			    : o->passport.flags & OB_OBJECT_STATIC ? "static"
-			    : !o->moving                           ? "?"
-			    : (o->motion.flags & OB_MOTION_ASLEEP) ? "asleep"
-			    : (o->motion.flags & OB_MOTION_FREE)   ? "free"
-								   : "awake";
+	const char *state = o->passport.flags & OB_OBJECT_FROZEN      ? "frozen"
+			    : o->passport.flags & OB_OBJECT_STATIC    ? "static"
+			    : o->passport.flags & OB_OBJECT_KINEMATIC ? "driven"
+			    : !o->moving                              ? "?"
+			    : (o->motion.flags & OB_MOTION_ASLEEP)    ? "asleep"
+			    : (o->motion.flags & OB_MOTION_FREE)      ? "free"
+								      : "awake";
 	int n = snprintf(line, sizeof line, "%5" PRIu32 " %s%*s %-8s %-6s", o->id, name, pad, "", shape, state);
 	if (o->moving)
 		snprintf(line + n, sizeof line - (size_t)n, " %8.4g %8.4g %8.4g %8.3g %8.3g", tidy(o->position.x),

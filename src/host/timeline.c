@@ -13,7 +13,8 @@
 
 enum { PERIOD_MS = 50, TAKEN_AT_ONCE = 4096 };
 
-// A span arrives when it ends, so inner ones arrive before the outer one, which the file must have first: they wait for it.
+// A span arrives when it ends, so inner ones arrive before the outer one, which the file must have first: they wait for
+// it.
 typedef struct ring_state {
 	ob_trace_event *waiting;
 	uint32_t count, room;
@@ -216,7 +217,7 @@ static void put_unfinished(ob_timeline *t, const ob_trace_event *doing, uint64_t
 		ob_passport p;
 		ob_motion m;
 		uint64_t since = ob_trace_since(t->u, id);
-		if (!ob_universe_get_passport(t->u, id, &p) || p.flags & OB_OBJECT_STATIC ||
+		if (!ob_universe_get_passport(t->u, id, &p) || p.flags & OB_OBJECT_PRESCRIBED ||
 		    !ob_universe_get_motion(t->u, id, &m))
 			continue;
 		ob_trace_event e = { since > t->state_until[id] ? since : t->state_until[id],

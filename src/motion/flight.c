@@ -1,11 +1,42 @@
 #include "motion/flight.h"
 
+// 1 - cos without loss near 0
+static double versine(double x)
+{
+	const double half = sin(.5 * x);
+	return 2 * half * half;
+}
+
+ob_vec3 ob_centre_at(const ob_motion *m, double t)
+{
+	const double s = t - m->t0, f = m->frequency;
+	if (m->flags & OB_MOTION_SWINGS)
+		return ob_madd(ob_madd(m->p, sin(f * s) / f, m->v), versine(f * s) / (f * f), m->a);
+	return ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
+}
+
+ob_vec3 ob_velocity_at(const ob_motion *m, double t)
+{
+	const double s = t - m->t0, f = m->frequency;
+	if (m->flags & OB_MOTION_SWINGS)
+		return ob_madd(ob_scale(m->v, cos(f * s)), sin(f * s) / f, m->a);
+	return ob_madd(m->v, s, m->a);
+}
+
+ob_vec3 ob_acceleration_at(const ob_motion *m, double t)
+{
+	const double s = t - m->t0, f = m->frequency;
+	if (m->flags & OB_MOTION_SWINGS)
+		return ob_madd(ob_scale(m->a, cos(f * s)), -f * sin(f * s), m->v);
+	return m->a;
+}
+
 ob_state ob_motion_at(const ob_motion *m, ob_vec3 inertia, double t)
 {
 	double s = t - m->t0;
 	ob_state out;
-	out.pose.p = ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
-	out.v = ob_madd(m->v, s, m->a);
+	out.pose.p = ob_centre_at(m, t);
+	out.v = ob_velocity_at(m, t);
 	ob_rotate_free(m->q, m->w, inertia, s, &out.pose.q, &out.w);
 	return out;
 }

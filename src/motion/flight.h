@@ -1,10 +1,16 @@
-// What a published motion says of the present, and when a flying shape first touches a plane. Pure functions, thread-safe.
+// What a published motion says of the present, and when a flying shape first touches a plane. Pure functions,
+// thread-safe.
 #ifndef OB_MOTION_FLIGHT_H
 #define OB_MOTION_FLIGHT_H
 
 #include <ob/motion.h>
 
 #include "motion/spin.h"
+
+// Of its centre alone at time t (s): m, m/s, m/s^2, as ob_motion_at has them.
+ob_vec3 ob_centre_at(const ob_motion *m, double t);
+ob_vec3 ob_velocity_at(const ob_motion *m, double t);
+ob_vec3 ob_acceleration_at(const ob_motion *m, double t);
 
 // Does the object stand at time t (s) where its motion m begins?
 bool ob_published_stands(const ob_motion *m, const ob_passport *p, double t);
@@ -28,9 +34,9 @@ typedef struct ob_half_space {
 
 // The first instant in [from, until] (s) at which a point of the shape is on the plane and closes; infinity: none is.
 // A point that is within rounding of the plane at "from" and closes gives "from" itself. Spheres in closed form; boxes,
-// capsules and cylinders by conservative advancement of their corners and rims (Mirtich 1996), each with a curve that bounds
-// its fall: about ten evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does, and at once where
-// it has.
+// capsules and cylinders by conservative advancement of their corners and rims (Mirtich 1996), each with a curve that
+// bounds its fall: about ten evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does, and at
+// once where it has.
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until);
 
 // Bound of the angular speed (rad/s) of a free body that turns with w at q, at any time.

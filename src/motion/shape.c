@@ -105,12 +105,27 @@ static void sweep(double p, double v, double a, double t0, double s, double half
 	*high += half + slack;
 }
 
+// Extremes of all of the ellipse with frequency f, widened as those of the parabola.
+static void surround(double p, double v, double a, double f, double half, double *low, double *high)
+{
+	const double centre = p + a / (f * f), amplitude = hypot(v / f, a / (f * f)),
+		     most = amplitude + half + 8 * DBL_EPSILON * (fabs(p) + half + amplitude);
+	*low = centre - most;
+	*high = centre + most;
+}
+
 void ob_motion_swept_bounds(const ob_motion *m, ob_shape shape, ob_vec3 size, double s, double bounds[6])
 {
 	ob_vec3 half = half_extents(shape, size, m->q);
 	if (ob_norm2(m->w) > 0) {
 		double radius = ob_shape_radius(shape, size);
 		half = ob_v3(radius, radius, radius);
+	}
+	if (m->flags & OB_MOTION_SWINGS) {
+		surround(m->p.x, m->v.x, m->a.x, m->frequency, half.x, &bounds[0], &bounds[3]);
+		surround(m->p.y, m->v.y, m->a.y, m->frequency, half.y, &bounds[1], &bounds[4]);
+		surround(m->p.z, m->v.z, m->a.z, m->frequency, half.z, &bounds[2], &bounds[5]);
+		return;
 	}
 	sweep(m->p.x, m->v.x, m->a.x, m->t0, s, half.x, &bounds[0], &bounds[3]);
 	sweep(m->p.y, m->v.y, m->a.y, m->t0, s, half.y, &bounds[1], &bounds[4]);

@@ -332,7 +332,7 @@ static void add_segment(ob_overlay *o, ob_vec3 from, ob_vec3 to, const float col
 
 static const float *colour_of(const ob_passport *p, const ob_motion *m)
 {
-	if (p->flags & OB_OBJECT_STATIC)
+	if (p->flags & OB_OBJECT_PRESCRIBED)
 		return fixed;
 	if (m->flags & OB_MOTION_ASLEEP)
 		return asleep;

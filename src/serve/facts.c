@@ -76,6 +76,8 @@ static const char *state_of(const ob_passport *p, const ob_motion *m)
 {
 	if (p->flags & OB_OBJECT_STATIC)
 		return "static";
+	if (p->flags & OB_OBJECT_KINEMATIC)
+		return "kinematic";
 	if (m->flags & OB_MOTION_ASLEEP)
 		return "asleep";
 	if (m->flags & OB_MOTION_EQUILIBRIUM)
@@ -106,7 +108,8 @@ ob_message *ob_facts_details(const ob_host *h, uint32_t id)
 		m,
 		",\"state\":\"%s\",\"mass\":%.9g,\"friction\":%.9g,\"restitution\":%.9g,\"island\":%u,\"step\":%u,"
 		"\"substeps\":%u",
-		state_of(&p, &motion), p.mass, p.friction, p.restitution, motion.island, motion.step, motion.substeps);
+		state_of(&p, &motion), p.mass, p.friction, p.restitution,
+		motion.flags & OB_MOTION_SWINGS ? id : motion.island, motion.step, motion.substeps);
 	put_vec3(m, "size", p.size);
 	ob_state now = ob_published_at(&motion, &p, info.time);
 	put_vec3(m, "p", now.pose.p);

@@ -63,6 +63,8 @@ static ob_feed_kind kind_of(const known *k, const ob_motion *m, double step_leng
 {
 	if (k->fixed || m->flags & OB_MOTION_RESTS)
 		return OB_FEED_STANDS;
+	if (m->flags & OB_MOTION_SWINGS)
+		return OB_FEED_SWINGS;
 	return m->valid_until - m->t0 > 1.001 * step_length ? OB_FEED_FREE : OB_FEED_TURNS;
 }
 
@@ -79,7 +81,7 @@ static double off(const known *k, const ob_motion *m)
 
 static bool is_news(const known *k, const ob_motion *m, ob_feed_kind kind)
 {
-	if (!k->told || kind != k->kind || kind == OB_FEED_FREE)
+	if (!k->told || kind != k->kind || kind >= OB_FEED_FREE)
 		return true;
 	if (kind == OB_FEED_STANDS)
 		return memcmp(&m->p, &k->motion.p, sizeof m->p) != 0 || memcmp(&m->q, &k->motion.q, sizeof m->q) != 0;
@@ -105,7 +107,7 @@ static ob_vec3 rounded(ob_vec3 v, double one)
 
 static bool is_wide(const known *k)
 {
-	return k->kind == OB_FEED_FREE || !fits(k->motion.v, v_unit) || !fits(k->motion.w, w_unit);
+	return k->kind >= OB_FEED_FREE || !fits(k->motion.v, v_unit) || !fits(k->motion.w, w_unit);
 }
 
 // As it is told: from now on viewers foretell from rounded velocities, and so does the feed.
@@ -153,6 +155,8 @@ static void put_motion(ob_message *out, const known *k, double time, uint32_t *b
 		ob_message_put_f32(out, time - m->t0);
 	if (accelerated)
 		put_vec3(out, m->a);
+	if (k->kind == OB_FEED_SWINGS)
+		ob_message_put(out, &m->frequency, sizeof m->frequency);
 	if (wide) {
 		put_vec3(out, m->v);
 		put_vec3(out, m->w);

@@ -16,8 +16,8 @@
 //                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB); the name (UTF-8)
 //        motion       id less the one before, in groups of 7 bits, low first, bit 7 on all but the last;
 //                     u8 kind, and 4: wide, 8: accelerated, 16: begun; f32 p[3]; i16 q[4] (w x y z, of 32767);
-//                     if begun: f32 s before time; if accelerated: f32 a[3]; unless it stands, wide: f32 v[3], w[3],
-//                     else i16 v[3] (mm/s), w[3] (2 mrad/s)
+//                     if begun: f32 s before time; if accelerated: f32 a[3]; if it swings: f64 frequency (rad/s);
+//                     unless it stands, wide: f32 v[3], w[3], else i16 v[3] (mm/s), w[3] (2 mrad/s)
 //
 //      u8  2          u8 0    u16 0    u32 contacts    f64 time; then so many:
 //                     f32 p[3], n[3], impulse (N s)
@@ -38,6 +38,7 @@ typedef enum ob_feed_kind {
 	OB_FEED_STANDS,
 	OB_FEED_TURNS, // parabola, and a turn at constant rate
 	OB_FEED_FREE, // parabola, and the free rotation of a rigid body
+	OB_FEED_SWINGS, // an ellipse about which the centre goes with a frequency, and a turn at constant rate
 } ob_feed_kind;
 
 enum { OB_FEED_WIDE = 4, OB_FEED_ACCELERATED = 8, OB_FEED_BEGUN = 16 }; // with the kind

@@ -69,7 +69,8 @@ typedef struct ob_layout_sizes {
 	uint32_t script_bytes; // of their texts, with the directory
 } ob_layout_sizes;
 
-// The first two fields stay where they are in all versions. Whatever has the same magic is owned by its lock (segment.h).
+// The first two fields stay where they are in all versions. Whatever has the same magic is owned by its lock
+// (segment.h).
 typedef struct ob_header {
 	uint64_t magic;
 	uint32_t version;
@@ -100,8 +101,8 @@ typedef struct ob_control {
 	char last_death[OB_DEATH_MAX]; // as ob_universe_info
 } ob_control;
 
-// How long steps take. The gate orders its writers, but any worker may raise longest_ns, and critical_ns grows after the
-// gate has opened: these two are atomic.
+// How long steps take. The gate orders its writers, but any worker may raise longest_ns, and critical_ns grows after
+// the gate has opened: these two are atomic.
 typedef struct ob_step_clock {
 	_Alignas(64) uint64_t begun_ns; // when the running step began, ob_clock_ns
 	uint64_t longest_ns; // CPU of the worker with the most of it in the running phase; see above
@@ -181,8 +182,8 @@ uint32_t ob_outbox_turns_done(const ob_universe *u);
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);
 // Bytes that a full universe with a few contacts per object will touch: what the memory file system must have free.
 uint64_t ob_layout_likely_bytes(const ob_header *h);
-// Bytes of an element of an area; how many of them the first ids objects have, where it grows with the objects, else, where
-// it is of a fixed size, all; none where it grows with pairs or neighbours.
+// Bytes of an element of an area; how many of them the first ids objects have, where it grows with the objects, else,
+// where it is of a fixed size, all; none where it grows with pairs or neighbours.
 uint64_t ob_layout_element(ob_area area);
 uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t ids);
 // A copy of the newest passport; false: there has never been one. Any reader.

@@ -158,7 +158,8 @@ bool ob_motion_makes_sense(const ob_motion *m)
 {
 	double norm = m->q.w * m->q.w + m->q.x * m->q.x + m->q.y * m->q.y + m->q.z * m->q.z;
 	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
-	       finite3(m->a) && norm > .9 && norm < 1.1;
+	       finite3(m->a) && norm > .9 && norm < 1.1 &&
+	       (!(m->flags & OB_MOTION_SWINGS) || (m->frequency > 0 && isfinite(m->frequency)));
 }
 
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out)

@@ -119,7 +119,7 @@ static bool at_least_0(float x)
 static bool principal_moments_make_sense(const ob_passport *p)
 {
 	const double x = p->inertia.x, y = p->inertia.y, z = p->inertia.z, more = 1 + 1e-9;
-	if (p->flags & OB_OBJECT_STATIC)
+	if (p->flags & OB_OBJECT_PRESCRIBED)
 		return p->mass == 0 && x == 0 && y == 0 && z == 0;
 	return p->mass > 0 && x > 0 && y > 0 && z > 0 && x <= (y + z) * more && y <= (z + x) * more &&
 	       z <= (x + y) * more;
@@ -127,9 +127,10 @@ static bool principal_moments_make_sense(const ob_passport *p)
 
 static uint32_t kind_of(const ob_passport *p)
 {
-	return !(p->flags & OB_OBJECT_STATIC) ? OB_SCHEDULE_AWAKE
-	       : p->shape == OB_SHAPE_PLANE   ? OB_SCHEDULE_PLANE
-					      : OB_SCHEDULE_STATIC;
+	return p->flags & OB_OBJECT_KINEMATIC   ? OB_SCHEDULE_KINEMATIC
+	       : !(p->flags & OB_OBJECT_STATIC) ? OB_SCHEDULE_AWAKE
+	       : p->shape == OB_SHAPE_PLANE     ? OB_SCHEDULE_PLANE
+						: OB_SCHEDULE_STATIC;
 }
 
 static bool schedule_makes_sense(const ob_schedule *s, const ob_passport *p, uint64_t step)
@@ -142,11 +143,12 @@ static bool schedule_makes_sense(const ob_schedule *s, const ob_passport *p, uin
 static bool motion_of_run_makes_sense(const ob_motion *m, uint64_t step)
 {
 	enum {
-		KNOWN = OB_MOTION_FREE | OB_MOTION_STEADY | OB_MOTION_RESTS,
+		KNOWN = OB_MOTION_FREE | OB_MOTION_STEADY | OB_MOTION_RESTS | OB_MOTION_SWINGS,
 		SUBSTEPS_MAX = 1 << (OB_SUBSTEP_CHOICES - 1)
 	};
 	return ob_motion_makes_sense(m) && !(m->flags & ~(uint32_t)KNOWN) && m->step <= step &&
-	       m->substeps <= SUBSTEPS_MAX && isfinite(m->path) && at_least_0(m->rest_time) && at_least_0(m->reach);
+	       m->substeps <= SUBSTEPS_MAX && isfinite(m->path) &&
+	       (m->flags & OB_MOTION_SWINGS || at_least_0(m->rest_time)) && at_least_0(m->reach);
 }
 
 static bool bounds_make_sense(const float *b, const ob_passport *p)
@@ -159,7 +161,7 @@ static bool bounds_make_sense(const float *b, const ob_passport *p)
 
 static bool check_object(const ob_saved_universe *s, uint32_t id, ob_error *e)
 {
-	enum { KNOWN = OB_OBJECT_PRESENT | OB_OBJECT_STATIC | OB_OBJECT_FROZEN };
+	enum { KNOWN = OB_OBJECT_PRESENT | OB_OBJECT_PRESCRIBED | OB_OBJECT_FROZEN };
 	const ob_passport *p = &s->passport[id];
 	const char *wrong = NULL;
 	if (!(p->flags & OB_OBJECT_PRESENT))
@@ -168,7 +170,8 @@ static bool check_object(const ob_saved_universe *s, uint32_t id, ob_error *e)
 			       : ob_fail(e, "object %u is half there", id);
 	if (!ob_passport_makes_sense(p, id) || p->flags & ~(uint32_t)KNOWN || !principal_moments_make_sense(p))
 		wrong = "passport";
-	else if (!motion_of_run_makes_sense(&s->motion[id], s->step))
+	else if (!motion_of_run_makes_sense(&s->motion[id], s->step) ||
+		 (s->motion[id].flags & OB_MOTION_SWINGS && !(p->flags & OB_OBJECT_KINEMATIC)))
 		wrong = "motion";
 	else if (!schedule_makes_sense(&s->schedule[id], p, s->step))
 		wrong = "schedule";
@@ -300,7 +303,8 @@ static bool reserve(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	bool fine = ob_reserve_pairs(u, 0, s->pairs);
 	for (uint32_t i = 0; i < s->records && fine; i++)
 		fine = ob_reserve_record(u, i);
-	return fine || ob_fail(e, "/dev/shm is full: enlarge it (mount -o remount,size=..., docker run --shm-size=...)");
+	return fine ||
+	       ob_fail(e, "/dev/shm is full: enlarge it (mount -o remount,size=..., docker run --shm-size=...)");
 }
 
 // false: the memory file system is full

@@ -88,10 +88,17 @@ enum {
 	OB_SCHEDULE_ABSENT,
 	OB_SCHEDULE_PLANE,  // static; a ballistic advance ends before it meets the plane
 	OB_SCHEDULE_STATIC,
+	OB_SCHEDULE_KINEMATIC, // no simulator solves it; the host publishes its motions
 	OB_SCHEDULE_AWAKE,
 	OB_SCHEDULE_ASLEEP, // this state and the next: not solved until something comes near
 	OB_SCHEDULE_EQUILIBRIUM,
 };
+
+// May it move in a step that nothing wakes it for?
+static inline bool ob_schedule_moves(const ob_schedule *s)
+{
+	return s->state == OB_SCHEDULE_AWAKE || s->state == OB_SCHEDULE_KINEMATIC;
+}
 
 // Upper bound of an object's path (m) when "steps" steps are complete: it grows by its reach in each step in which
 // it is not solved.
@@ -123,6 +130,7 @@ typedef struct ob_step_data {
 		uint32_t scheduler;  // the worker that scheduled last
 		uint32_t merged;     // 1 = islands that late contacts merged are being solved again
 		uint32_t awake;      // objects
+		uint32_t kinematic;  // objects
 		uint32_t checked;    // steps that were complete, or solved, when all pairs were checked last
 		uint32_t late;       // 1 = that check found a late contact; any worker may write it
 		uint32_t next_due;   // no object is due before this step, unless one is solved before ..

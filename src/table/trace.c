@@ -107,7 +107,7 @@ void ob_trace_birth(ob_universe *u, uint32_t id)
 
 void ob_trace_death(ob_universe *u, uint32_t id, uint32_t flags_before)
 {
-	if (!(ob_passport_of(u, id)->flags & OB_OBJECT_STATIC)) // what never moves is in no state
+	if (!(ob_passport_of(u, id)->flags & OB_OBJECT_PRESCRIBED)) // what never moves is in no state
 		change(u, ob_trace_host(u), id, ob_trace_motion_of(flags_before), OB_TRACE_ABSENT);
 	ob_trace_span(u, ob_trace_host(u), OB_TRACE_DEATH, ob_trace_since(u, id), id, 0);
 }

@@ -14,7 +14,7 @@ typedef struct told {
 	bool there, moves;
 	uint32_t generation;
 	ob_feed_kind kind;
-	double t0;
+	double t0, frequency;
 	ob_vec3 p, v, w, a, inertia;
 	ob_quat q;
 } told;
@@ -96,6 +96,7 @@ static void hear_motion(reader *r, copy *c, uint32_t *before)
 	o->q = ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
 	o->t0 = c->time - (flags & OB_FEED_BEGUN ? TAKE(float) : 0);
 	o->a = flags & OB_FEED_ACCELERATED ? take_vec3(r) : ob_v3(0, 0, 0);
+	o->frequency = o->kind == OB_FEED_SWINGS ? TAKE(double) : 0;
 	o->v = o->w = ob_v3(0, 0, 0);
 	if (flags & OB_FEED_WIDE) {
 		o->v = take_vec3(r);
@@ -137,7 +138,9 @@ static ob_pace_state at_rate_1 = { 1, false };
 
 static ob_vec3 shown_at(const told *o, double t)
 {
-	double s = o->kind == OB_FEED_STANDS ? 0 : t - o->t0;
+	double s = o->kind == OB_FEED_STANDS ? 0 : t - o->t0, f = o->frequency;
+	if (o->kind == OB_FEED_SWINGS)
+		return ob_madd(ob_madd(o->p, sin(f * s) / f, o->v), (1 - cos(f * s)) / (f * f), o->a);
 	return ob_madd(ob_madd(o->p, s, o->v), .5 * s * s, o->a);
 }
 
@@ -176,6 +179,12 @@ int main(void)
 		s.object[i].state.pose.p = ob_v3(.15 * (i % 3), .14 * (i / 3 % 3), .3 + .22 * (i / 9));
 		s.object[i].passport.restitution = .5;
 	}
+	ob_object_def *swing = &s.object[40];
+	swing->state.pose.p = ob_v3(3, 0, 1);
+	swing->passport.flags = OB_OBJECT_KINEMATIC;
+	swing->passport.mass = 0;
+	ob_path path = ob_path_circle(&swing->state, ob_v3(3, .2, 1), ob_v3(0, 0, 1), 5);
+	swing->path = &path;
 	ob_host_config config = little_config(&s, OB_ISOLATION_THREAD, 2);
 	ob_error e = { "" };
 	config.spare = 8;

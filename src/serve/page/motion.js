@@ -1,7 +1,7 @@
-// How a told motion goes on: a parabola, and a turn at constant rate or the free rotation of a rigid body. Quaternions are
+// How a told motion goes on: a parabola, or an ellipse with a frequency, and a turn at constant rate or the free rotation of a rigid body. Quaternions are
 // w x y z and turn the body's axes to the world's, as in <ob/vec.h>.
 
-export const STANDS = 0, TURNS = 1, FREE = 2;
+export const STANDS = 0, TURNS = 1, FREE = 2, SWINGS = 3;
 const RADIANS_A_STEP = 0.05; // of Runge and Kutta's fourth order: 1e-8 rad in a radian
 
 export const multiply = (a, b) => [
@@ -57,13 +57,20 @@ function momentumOf(q, w, inertia) {
 
 const isEven = (i) => !(i[0] > 0) || (Math.abs(i[0] - i[1]) < 1e-6 * i[0] && Math.abs(i[0] - i[2]) < 1e-6 * i[0]);
 
+function centreAfter(m, s) {
+	if (m.kind !== SWINGS)
+		return [0, 1, 2].map((k) => m.p[k] + s * (m.v[k] + s / 2 * m.a[k]));
+	const f = m.frequency, along = Math.sin(f * s) / f, aside = 2 * (Math.sin(f * s / 2) / f) ** 2;
+	return [0, 1, 2].map((k) => m.p[k] + along * m.v[k] + aside * m.a[k]);
+}
+
 // Where a body is at time t (s) by motion m: { p, q }.
 export function poseAt(m, inertia, t) {
 	const s = t - m.t0;
 	if (m.kind === STANDS || s === 0)
 		return { p: m.p, q: m.q };
-	const p = [0, 1, 2].map((k) => m.p[k] + s * (m.v[k] + s / 2 * m.a[k]));
-	if (m.kind === TURNS || isEven(inertia))
+	const p = centreAfter(m, s);
+	if (m.kind !== FREE || isEven(inertia))
 		return { p, q: turnedBy(m.q, m.w, s) };
 	// from where it was asked for last, if that was before
 	const from = m.last && s >= 0 && m.last.s <= s ? m.last : { s: 0, q: m.q };

@@ -1,5 +1,5 @@
 // The viewer's copy of the universe: what the server has told of it (src/serve/feed.h), and the time at which to look.
-import { STANDS, TURNS, normalize, poseAt } from './motion.js';
+import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
 
 const DELAY = 0.05; // s of wall time by which it looks later than it is told, so that what is told next is there in time
 const PULL = 5; // 1/s: how fast its clock is drawn to the universe's
@@ -122,6 +122,8 @@ export class Universe extends EventTarget {
 			m.t0 -= r.f32();
 		if (flags & ACCELERATED)
 			m.a = r.vec3();
+		if (kind === SWINGS)
+			m.frequency = r.f64();
 		if (flags & WIDE)
 			Object.assign(m, { v: r.vec3(), w: r.vec3() });
 		else if (kind !== STANDS)
