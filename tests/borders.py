@@ -24,7 +24,7 @@ ARROWS = {
     'contact': 'motion base',
     'ode': 'base',
     'sim': 'contact ode motion table settings base',
-    'scene': 'settings base',
+    'scene': 'settings motion base',
     'script': 'scene table settings motion base',
     'host': 'sim script scene table settings ode base',
     'checkpoint': 'host scene table settings base',

@@ -12,6 +12,7 @@ struct ob_engine {
 	ob_universe *u;
 	ob_sim *sim;
 	uint32_t objects;
+	bool driven; // some are kinematic
 };
 
 // The worker's turns until the gate pauses.
@@ -43,6 +44,14 @@ static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run,
 	return u;
 }
 
+// Kinematic bodies go on as they are told. w: of the engine's creation; NULL afterwards
+static void prescribe(ob_engine *p, const ob_world *w)
+{
+	for (uint32_t i = 0; i < p->objects && p->driven; i++)
+		if (ob_passport_of(p->u, i)->flags & OB_OBJECT_KINEMATIC)
+			ob_sim_prescribe(p->u, i, w ? ob_world_path(w, i) : NULL, 0);
+}
+
 static void destroy(ob_engine *p)
 {
 	if (!p)
@@ -66,10 +75,13 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *run, ob_error
 	p->objects = w->objects;
 	p->u = open_universe(w, run, e);
 	if (p->u) {
-		for (uint32_t i = 0; i < w->objects; i++)
+		for (uint32_t i = 0; i < w->objects; i++) {
+			p->driven |= (w->passport[i].flags & OB_OBJECT_KINEMATIC) != 0;
 			ob_write_passport(p->u, i, &w->passport[i]);
+		}
 		for (uint32_t i = 0; i < w->objects; i++)
 			ob_sim_place(p->u, i, &w->state[i]);
+		prescribe(p, w);
 		p->sim = ob_sim_create(p->u, 0, e);
 	}
 	if (p->sim) {
@@ -83,6 +95,7 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *run, ob_error
 
 static bool step(ob_engine *p, ob_error *e)
 {
+	prescribe(p, NULL);
 	ob_gate_set_pause_step(p->u, ob_step_count(p->u) + 1);
 	work(p);
 	return sound(p, e);

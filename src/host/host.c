@@ -149,10 +149,25 @@ static bool load(ob_host *h, const ob_saved_host *from, ob_error *e)
 	return true;
 }
 
+static bool check_paths(const ob_scene *scene, double step_length, ob_error *e)
+{
+	uint32_t which = 0;
+	for (uint32_t i = 0; i < scene->objects; i++) {
+		const ob_path *path = scene->object[i].path;
+		if (path && path->points && !ob_path_fits(path, step_length, &which))
+			return ob_fail(e,
+				       "object \"%s\": points %u and %u of its path are less than two steps of %g s "
+				       "apart; take them apart, or try a smaller --step",
+				       scene->object[i].passport.name, which, which + 1, step_length);
+	}
+	return true;
+}
+
 // Those of the scene's start, or of where the run is to go on.
 static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host *from, ob_error *e)
 {
-	if (!ob_universe_reserve(h->u, scene->objects, e))
+	if (!check_paths(scene, ob_universe_settings(h->u)->step_length, e) ||
+	    !ob_universe_reserve(h->u, scene->objects, e))
 		return false;
 	ob_ode_init();
 	h->roster = ob_roster_create();

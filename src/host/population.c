@@ -26,6 +26,8 @@ typedef struct slot {
 	unsigned char use; // slot_use
 	bool removal_scheduled; // the timetable will remove its object
 	bool created; // by a script
+	const ob_path *path; // of a kinematic object that has one
+	uint64_t born; // step
 } slot;
 
 struct ob_population {
@@ -35,6 +37,8 @@ struct ob_population {
 	slot *slots; // [capacity]
 	event *events; // the timetable: ascending by step; at one step removals first
 	size_t event_count, next;
+	uint32_t kinematic; // objects
+	uint64_t next_prescribed; // the step at which a kinematic object is to be told how it goes on
 	bool changed;
 	bool asked; // by somebody outside, in the last update
 	uint32_t first_free; // no slot below it is free
@@ -42,7 +46,7 @@ struct ob_population {
 	struct {
 		slot *slots; // NULL: none kept
 		size_t next;
-		uint32_t first_free, created;
+		uint32_t first_free, created, kinematic;
 	} kept;
 };
 
@@ -120,7 +124,7 @@ static bool check_shape(const ob_passport *p, ob_error *e)
 	if (p->shape <= OB_SHAPE_NONE || p->shape > OB_SHAPE_CYLINDER)
 		return ob_fail(e, "object \"%.*s\": unknown shape %u", OB_NAME_MAX, p->name, p->shape);
 	if (p->shape == OB_SHAPE_PLANE)
-		return p->flags & OB_OBJECT_STATIC ||
+		return (p->flags & OB_OBJECT_PRESCRIBED) == OB_OBJECT_STATIC ||
 		       ob_fail(e, "object \"%.*s\": a plane must be static", OB_NAME_MAX, p->name);
 	if (!finite3(p->size) || !(p->size.x > 0) || (needs_y && !(p->size.y > 0)) || (needs_z && !(p->size.z > 0)))
 		return ob_fail(e, "object \"%.*s\": size must be positive", OB_NAME_MAX, p->name);
@@ -137,8 +141,8 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 		return ob_fail(e, "object %u: its name is longer than %d characters", p->id, OB_NAME_MAX - 1);
 	if (!check_shape(p, e))
 		return false;
-	if (!(p->flags & OB_OBJECT_STATIC) && !(p->mass > 0 && isfinite(p->mass)))
-		return ob_fail(e, "object \"%s\": mass must be positive (or the object static)", p->name);
+	if (!(p->flags & OB_OBJECT_PRESCRIBED) && !(p->mass > 0 && isfinite(p->mass)))
+		return ob_fail(e, "object \"%s\": mass must be positive (or the object static or kinematic)", p->name);
 	if (!finite3(s->pose.p) || !finite3(s->v) || !finite3(s->w) || !(fabs(norm2 - 1) < 1e-6))
 		return ob_fail(e, "object \"%s\": position, attitude and velocities must be finite", p->name);
 	if (!(p->friction >= 0 && isfinite(p->friction)) || !(p->restitution >= 0 && p->restitution <= 1))
@@ -173,7 +177,7 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	pass.id = id;
 	pass.generation = ++p->slots[id].generation;
 	pass.flags |= OB_OBJECT_PRESENT;
-	if (pass.flags & OB_OBJECT_STATIC) {
+	if (pass.flags & OB_OBJECT_PRESCRIBED) {
 		pass.mass = 0;
 		pass.inertia = ob_v3(0, 0, 0);
 	} else {
@@ -183,8 +187,16 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	ob_sim_place(p->u, id, &def->state);
 	p->slots[id].use = SLOT_PRESENT;
 	p->slots[id].created = false;
+	p->kinematic += (pass.flags & OB_OBJECT_KINEMATIC) != 0;
+	p->slots[id].path = def->path;
+	p->slots[id].born = ob_step_count(p->u);
 	p->changed = true;
 	give_script(p, id, def, state);
+}
+
+static bool is_kinematic(const ob_population *p, uint32_t id)
+{
+	return p->slots[id].use == SLOT_PRESENT && ob_passport_of(p->u, id)->flags & OB_OBJECT_KINEMATIC;
 }
 
 static void remove_object(ob_population *p, uint32_t id)
@@ -192,6 +204,7 @@ static void remove_object(ob_population *p, uint32_t id)
 	slot *s = &p->slots[id];
 	if (s->use != SLOT_PRESENT)
 		return;
+	p->kinematic -= is_kinematic(p, id);
 	ob_script_free_cell(p->u, id);
 	ob_sim_remove(p->u, id);
 	p->created -= s->created;
@@ -346,6 +359,20 @@ static void publish_roster(ob_population *p)
 	p->changed = false;
 }
 
+// How kinematic objects go on from this step.
+static void prescribe_all(ob_population *p)
+{
+	uint32_t left = p->kinematic;
+	p->next_prescribed = UINT64_MAX;
+	for (uint32_t id = 0; left > 0; id++) {
+		if (!is_kinematic(p, id))
+			continue;
+		const uint64_t next = ob_sim_prescribe(p->u, id, p->slots[id].path, p->slots[id].born);
+		p->next_prescribed = next < p->next_prescribed ? next : p->next_prescribed;
+		left--;
+	}
+}
+
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 {
 	ob_request r;
@@ -368,6 +395,7 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 			change_on_request(p, &r);
 	}
 	bool changed = p->changed;
+	prescribe_all(p);
 	if (changed)
 		publish_roster(p);
 	return changed;
@@ -394,6 +422,7 @@ bool ob_population_keep(ob_population *p)
 	p->kept.next = p->next;
 	p->kept.first_free = p->first_free;
 	p->kept.created = p->created;
+	p->kept.kinematic = p->kinematic;
 	return true;
 }
 
@@ -405,12 +434,14 @@ void ob_population_put_back(ob_population *p)
 	p->next = p->kept.next;
 	p->first_free = p->kept.first_free;
 	p->created = p->kept.created;
+	p->kinematic = p->kept.kinematic;
 	publish_roster(p);
 }
 
 uint64_t ob_population_next_step(const ob_population *p)
 {
-	return p->next < p->event_count ? p->events[p->next].step : UINT64_MAX;
+	const uint64_t event = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX;
+	return event < p->next_prescribed ? event : p->next_prescribed;
 }
 
 // ---- saved
@@ -449,6 +480,24 @@ static bool check_objects(const ob_population *p, ob_error *e)
 	return true;
 }
 
+// The first step boundary at or after t (s), round-off aside
+static uint64_t step_at(double t, double step_length)
+{
+	double k = ceil(t / step_length - 1e-6);
+	return k <= 0 ? 0 : k < 1e18 ? (uint64_t)k : UINT64_MAX;
+}
+
+// A path is the scene's, and so is the object that has one: the first in its slot.
+static void load_path(ob_population *p, uint32_t id)
+{
+	const double h = ob_universe_settings(p->u)->step_length;
+	slot *s = &p->slots[id];
+	if (id >= p->scene->objects || s->generation != 1)
+		return;
+	s->path = p->scene->object[id].path;
+	s->born = step_at(p->scene->object[id].born, h);
+}
+
 bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error *e)
 {
 	if (s->count > ob_universe_capacity(p->u) || s->count < p->scene->objects || s->events > p->event_count)
@@ -459,8 +508,13 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 		const ob_saved_slot *from = &s->slot[id];
 		if (!check_slot(p, id, from))
 			return ob_fail(e, "slot %u makes no sense", id);
-		p->slots[id] = (slot){ from->generation, from->use, from->removal_scheduled, from->created };
+		p->slots[id] = (slot){ .generation = from->generation,
+				       .use = from->use,
+				       .removal_scheduled = from->removal_scheduled,
+				       .created = from->created };
 		p->created += from->created;
+		load_path(p, id);
+		p->kinematic += is_kinematic(p, id);
 	}
 	p->next = s->events;
 	publish_roster(p);
@@ -468,13 +522,6 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 }
 
 // ---- the scene's timetable
-
-// The first step boundary at or after t (s), round-off aside
-static uint64_t step_at(double t, double step_length)
-{
-	double k = ceil(t / step_length - 1e-6);
-	return k <= 0 ? 0 : k < 1e18 ? (uint64_t)k : UINT64_MAX;
-}
 
 static int by_step(const void *pa, const void *pb)
 {
@@ -507,6 +554,7 @@ ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_ro
 	p->u = u;
 	p->roster = r;
 	p->scene = scene;
+	p->next_prescribed = UINT64_MAX;
 	p->slots = calloc(ob_universe_capacity(u), sizeof *p->slots);
 	p->events = calloc(2 * (size_t)scene->objects + 1, sizeof *p->events);
 	if (!p->slots || !p->events) {

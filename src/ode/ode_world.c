@@ -99,7 +99,9 @@ struct object {
 	uint32_t id;
 	bool touching;
 	double friction, restitution;
+	bool kinematic;
 	ob_vec3 force; // N, acts in every step
+	ob_vec3 surface_velocity; // m/s, frame of the object
 	ob_state placed; // of static objects
 };
 
@@ -189,16 +191,31 @@ void ob_ode_world_destroy(ob_ode_world *w)
 	free(w);
 }
 
-static void add_body(ob_ode_world *w, struct object *m, const ob_passport *p, const ob_state *s)
+static void place_body(struct object *m, const ob_state *s)
 {
-	dMass mass;
-	dMassSetParameters(&mass, p->mass, 0, 0, 0, p->inertia.x, p->inertia.y, p->inertia.z, 0, 0, 0);
-	m->body = dBodyCreate(w->world);
-	dBodySetMass(m->body, &mass);
 	dBodySetPosition(m->body, s->pose.p.x, s->pose.p.y, s->pose.p.z);
 	dBodySetQuaternion(m->body, (dQuaternion){ s->pose.q.w, s->pose.q.x, s->pose.q.y, s->pose.q.z });
 	dBodySetLinearVel(m->body, s->v.x, s->v.y, s->v.z);
 	dBodySetAngularVel(m->body, s->w.x, s->w.y, s->w.z);
+}
+
+static void add_body(ob_ode_world *w, struct object *m, const ob_passport *p, const ob_state *s)
+{
+	dMass mass;
+	m->body = dBodyCreate(w->world);
+	if (m->kinematic) {
+		dBodySetKinematic(m->body);
+		dBodySetAutoDisableFlag(m->body, 0);
+	} else {
+		dMassSetParameters(&mass, p->mass, 0, 0, 0, p->inertia.x, p->inertia.y, p->inertia.z, 0, 0, 0);
+		dBodySetMass(m->body, &mass);
+	}
+	place_body(m, s);
+}
+
+void ob_ode_world_drive(ob_ode_world *w, uint32_t id, const ob_state *s)
+{
+	place_body(&w->object[id], s);
 }
 
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
@@ -208,13 +225,15 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 		.id = p->id,
 		.friction = p->friction,
 		.restitution = p->restitution,
-		.force = p->force,
+		.kinematic = p->flags & OB_OBJECT_KINEMATIC,
+		.force = p->flags & OB_OBJECT_PRESCRIBED ? ob_v3(0, 0, 0) : p->force,
+		.surface_velocity = p->flags & OB_OBJECT_PRESCRIBED ? p->surface_velocity : ob_v3(0, 0, 0),
 		.placed = *s,
 	};
 	m->geom = ob_ode_geom_create(w->space, p->shape, p->size);
 	if (m->geom)
 		dGeomSetData(m->geom, m);
-	if (!(p->flags & OB_OBJECT_STATIC) && p->mass > 0) {
+	if (m->kinematic || (!(p->flags & OB_OBJECT_STATIC) && p->mass > 0)) {
 		add_body(w, m, p, s);
 		if (m->geom)
 			dGeomSetBody(m->geom, m->body);
@@ -267,11 +286,16 @@ static bool is_awake(const struct object *m)
 	return m->body && dBodyIsEnabled(m->body);
 }
 
+static bool is_dynamic(const struct object *m)
+{
+	return m->body && !m->kinematic;
+}
+
 static void collide_pair(void *data, dGeomID one, dGeomID other)
 {
 	ob_ode_world *w = data;
 	struct object *a = dGeomGetData(one), *b = dGeomGetData(other);
-	if (!is_awake(a) && !is_awake(b))
+	if ((!is_awake(a) && !is_awake(b)) || (!is_dynamic(a) && !is_dynamic(b)))
 		return;
 	if (a->id > b->id) {
 		struct object *lower = b;
@@ -303,6 +327,27 @@ static int by_ids(const void *x, const void *y)
 	return (p->b->id > q->b->id) - (p->b->id < q->b->id);
 }
 
+// m/s, world frame
+static ob_vec3 surface_velocity(const struct object *m)
+{
+	const dReal *q = m->body ? dBodyGetQuaternion(m->body) : NULL;
+	ob_mat3 r = ob_quat_matrix(q ? (ob_quat){ q[0], q[1], q[2], q[3] } : m->placed.pose.q);
+	return ob_rotate(&r, m->surface_velocity);
+}
+
+// The first body is carried along at a velocity (m/s), as far as that lies in the plane of the contact.
+static void run_surface(dContact *c, ob_vec3 velocity)
+{
+	const ob_vec3 n = ob_v3(c->geom.normal[0], c->geom.normal[1], c->geom.normal[2]);
+	const ob_vec3 along = ob_madd(velocity, -ob_dot(velocity, n), n);
+	const double speed = ob_norm(along);
+	if (!(speed > 1e-12))
+		return;
+	c->surface.mode |= dContactMotion1 | dContactFDir1;
+	c->surface.motion1 = speed;
+	c->fdir1[0] = along.x / speed, c->fdir1[1] = along.y / speed, c->fdir1[2] = along.z / speed;
+}
+
 // ODE's first body must be a dynamic one, and its normals point into the first body.
 static void create_contact_joints(ob_ode_world *w, struct contact_pair *p, double bounce_speed)
 {
@@ -313,10 +358,12 @@ static void create_contact_joints(ob_ode_world *w, struct contact_pair *p, doubl
 			       .bounce_vel = bounce_speed,
 		       } };
 	bool turned = !p->a->body;
+	const ob_vec3 belt = ob_sub(surface_velocity(p->b), surface_velocity(p->a));
 	for (int i = 0; i < p->points; i++) {
 		c.geom = p->point[i];
 		for (int k = 0; turned && k < 3; k++)
 			c.geom.normal[k] = -c.geom.normal[k];
+		run_surface(&c, turned ? ob_scale(belt, -1) : belt);
 		dJointID joint = dJointCreateContact(w->world, w->joints, &c);
 		dJointAttach(joint, turned ? p->b->body : p->a->body, turned ? NULL : p->b->body);
 		dJointSetFeedback(joint, &p->force[i]);

@@ -12,21 +12,23 @@ typedef struct ob_ode_world ob_ode_world;
 typedef struct ob_ode_world_setup {
 	ob_vec3 gravity;
 	uint32_t iterations; // QuickStep; 0 = dWorldStep (the big-matrix solver)
-	uint32_t objects;    // ids are 0 .. objects-1
-	bool sleeping;       // ODE's auto-disable
-	bool boxed;          // contacts are those of the axis-aligned boxes round the objects
-	uint32_t pairs_max;  // of objects in contact, in a step; 0 = as many as there is memory for
-	uint32_t load;       // ob_synthetic_load, at each pair of boxes that the space finds to overlap
-	bool hashed;         // pairs are found by a hash space instead of sweep and prune
-	double surface_layer;    // m, that contacts may sink in; 0 = ODE's default, as with those below
-	double softness;         // constraint force mixing (kg^-1) of all constraints
+	uint32_t objects; // ids are 0 .. objects-1
+	bool sleeping; // ODE's auto-disable
+	bool boxed; // contacts are those of the axis-aligned boxes round the objects
+	uint32_t pairs_max; // of objects in contact, in a step; 0 = as many as there is memory for
+	uint32_t load; // ob_synthetic_load, at each pair of boxes that the space finds to overlap
+	bool hashed; // pairs are found by a hash space instead of sweep and prune
+	double surface_layer; // m, that contacts may sink in; 0 = ODE's default, as with those below
+	double softness; // constraint force mixing (kg^-1) of all constraints
 	double correcting_speed; // m/s, at most, at which penetration is undone
 } ob_ode_world_setup;
 
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s); // NULL: no memory
-void ob_ode_world_destroy(ob_ode_world *w);                     // NULL is allowed
+void ob_ode_world_destroy(ob_ode_world *w); // NULL is allowed
 // p->id must be free.
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s);
+// Where a kinematic object is before the next step, and how it moves.
+void ob_ode_world_drive(ob_ode_world *w, uint32_t id, const ob_state *s);
 // What it touches wakes. Nothing happens if there is no such object.
 void ob_ode_world_remove(ob_ode_world *w, uint32_t id);
 // Collides and steps by h (s). A pair of which neither moves nor is awake is not collided.

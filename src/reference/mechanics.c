@@ -1,6 +1,7 @@
 #include "reference/mechanics.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 ob_vec3 ob_reference_parabola(ob_vec3 p, ob_vec3 v, ob_vec3 a, double t)
 {
@@ -49,6 +50,81 @@ double ob_reference_incline(double g, double angle, double mu)
 double ob_reference_friction_angle(double mu)
 {
 	return atan(mu);
+}
+
+// The first instant after from + fine / 2 at which a function crosses 0; until: it does not before. Sampled, then
+// halved.
+static double crossing(double (*f)(const double *of, double t), const double *of, double from, double until,
+		       double fine)
+{
+	const double begin = f(of, from + .5 * fine);
+	for (double t = from + fine; t - fine < until; t += fine) {
+		double low = t - fine, high = fmin(t, until);
+		if (f(of, high) * begin > 0)
+			continue;
+		for (int i = 0; i < 60; i++) {
+			const double middle = .5 * (low + high);
+			*(f(of, middle) * begin > 0 ? &low : &high) = middle;
+		}
+		return high;
+	}
+	return until;
+}
+
+// of: velocity of the block at "since", its acceleration, since, velocity amplitude of the table, its frequency
+static double slip_at(const double *of, double t)
+{
+	return of[0] + of[1] * (t - of[2]) - of[3] * cos(of[4] * t);
+}
+
+// of: the table's acceleration amplitude, its frequency, and the limit: negative when friction holds no more
+static double grip_at(const double *of, double t)
+{
+	return of[2] - fabs(of[0] * sin(of[1] * t));
+}
+
+ob_reference_shaken ob_reference_shaken_block(double amplitude, double frequency, double mu, double g, double v,
+					      double t)
+{
+	const double fine = 2 * M_PI / frequency / 4096, fastest = amplitude * frequency, limit = mu * g;
+	ob_reference_shaken b = { 0, v };
+	double now = 0;
+	bool sticks = fabs(v - fastest) < 1e-12 * fastest;
+	while (now < t) {
+		const double table = fastest * frequency; // of its acceleration, -table sin
+		if (sticks) {
+			const double grip[3] = { table, frequency, limit };
+			const double end =
+				grip_at(grip, now + 1e-6 * fine) < 0 ? now : crossing(grip_at, grip, now, t, fine);
+			b.x += amplitude * (sin(frequency * end) - sin(frequency * now));
+			b.v = fastest * cos(frequency * end);
+			now = end;
+			sticks = false;
+			if (now >= t)
+				break;
+		}
+		const double ahead =
+			fastest * cos(frequency * (now + fine)) - b.v; // of the table; it drags the block along
+		const double slip[5] = { b.v, ahead > 0 ? limit : -limit, now, fastest, frequency };
+		const double end = crossing(slip_at, slip, now, t, fine), s = end - now;
+		b.x += b.v * s + .5 * slip[1] * s * s;
+		b.v += slip[1] * s;
+		now = end;
+		sticks = now < t && fabs(table * sin(frequency * now)) <= limit;
+	}
+	return b;
+}
+
+double ob_reference_turntable_radius(double rate, double mu, double g)
+{
+	return mu * g / (rate * rate);
+}
+
+ob_vec3 ob_reference_turntable_ball(double rate, ob_vec3 p, ob_vec3 v, double t)
+{
+	const double f = 2. / 7 * rate; // v' = f z x v
+	const ob_vec3 across = ob_v3(-v.y, v.x, 0);
+	return ob_madd(ob_madd(p, sin(f * t) / f, ob_v3(v.x, v.y, 0)), (1 - cos(f * t)) / f, across);
 }
 
 double ob_reference_stop_time(double v, double mu, double g)

@@ -48,6 +48,22 @@ void ob_reference_oblique(ob_reference_sphere *a, ob_reference_sphere *b, ob_vec
 double ob_reference_incline(double g, double angle, double mu);
 double ob_reference_friction_angle(double mu); // rad: the slope on which it just sticks, atan(mu)
 
+// A block on a table that goes to and fro as amplitude sin(frequency t) (m, rad/s), with v (m/s) at the start, against
+// the ground: it slides at mu g until it has the table's velocity, and sticks while friction can give it the table's
+// acceleration (Coulomb). Its displacement and velocity at t (s), from the closed form of each phase; the ends of phases to
+// 1e-14 of a period.
+typedef struct ob_reference_shaken {
+	double x, v; // m, m/s
+} ob_reference_shaken;
+ob_reference_shaken ob_reference_shaken_block(double amplitude, double frequency, double mu, double g, double v,
+					      double t);
+// m: a block farther from the axis of a turntable (rad/s) slides off.
+double ob_reference_turntable_radius(double rate, double mu, double g);
+// The centre (m) at t (s) of a homogeneous ball that rolls without slipping on a turntable with rate (rad/s) about the
+// origin, from a place with a velocity, and with the spin of rolling: a circle with 2/7 of the turntable's rate
+// (Milne 1948, Vectorial Mechanics; Weltner 1979, Am. J. Phys. 47).
+ob_vec3 ob_reference_turntable_ball(double rate, ob_vec3 p, ob_vec3 v, double t);
+
 // A block at speed v on level ground comes to rest after v / (mu g), having gone v^2 / (2 mu g).
 double ob_reference_stop_time(double v, double mu, double g);
 double ob_reference_stop_distance(double v, double mu, double g);

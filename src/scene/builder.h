@@ -46,6 +46,8 @@ typedef struct ob_builder {
 
 // Adds an object with its own name, or, where name is NULL, one made of its kind and id ("box#12").
 ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, const char *name);
+// The object's path from the table at the top of the stack, and its first state. kind: of the call, for messages.
+void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o);
 // NULL where no material has this name.
 const ob_material *ob_builder_material(const ob_builder *b, const char *name);
 

@@ -103,6 +103,8 @@ int ob_scene_call_material(lua_State *L)
 	return 1;
 }
 
+enum { UNSAID = UINT32_MAX, DYNAMIC = 0, STATIC, KINEMATIC }; // body.kind; the numbers of its choices
+
 #define FRICTION .5
 #define DENSITY 1000. // kg/m^3
 
@@ -110,11 +112,12 @@ int ob_scene_call_material(lua_State *L)
 typedef struct body {
 	const char *name, *material, *script;
 	ob_flat state; // of the script
-	ob_vec3 size, at, velocity, spin, force, normal;
+	ob_vec3 size, at, velocity, spin, force, normal, surface_velocity;
+	uint32_t kind;
 	double radius, length, height, mass, density, friction, restitution, roughness, metal, born, dies;
 	ob_quat q, rotation;
 	float colour[4];
-	bool fixed, grid;
+	bool fixed, grid, path;
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
@@ -122,6 +125,7 @@ typedef struct body {
 #define SURFACE \
 	F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
 		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1000), \
+		F(surface_velocity, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
 		F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), F(colour, .kind = OB_FIELD_COLOUR), \
 		F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
 		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1)
@@ -138,7 +142,8 @@ typedef struct body {
 		F(velocity, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
 		F(spin, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
 		F(force, .kind = OB_FIELD_VECTOR, .low = -1e15, .high = 1e15), \
-		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
+		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
+		F(path, .kind = OB_FIELD_TABLE), OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
 
 static const ob_field box_fields[] = {
 	F(size, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e6, .required = true),
@@ -163,6 +168,7 @@ static const ob_field ground_fields[] = {
 static const body nothing = {
 	.size = { NAN, NAN, NAN },
 	.normal = { 0, 0, 1 },
+	.kind = UNSAID,
 	.radius = NAN,
 	.length = NAN,
 	.mass = NAN,
@@ -259,7 +265,7 @@ static void apply_material(lua_State *L, const ob_builder *b, const char *kind, 
 		memcpy(d->colour, m->colour, sizeof d->colour);
 	if (isnan(d->colour[0])) {
 		size_t i = b->scene->objects % (sizeof palette / sizeof *palette);
-		ob_colour_from_hex(d->fixed ? static_colour : palette[i], d->colour);
+		ob_colour_from_hex(d->kind == DYNAMIC ? palette[i] : static_colour, d->colour);
 	}
 }
 
@@ -291,34 +297,53 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 		refuse_together(L, kind, "mass", "density");
 	if (!isnan(d->q.w) && !isnan(d->rotation.w))
 		refuse_together(L, kind, "q", "rotation");
-	if (d->fixed && !isnan(d->mass))
-		ob_sandbox_fail(L, "%s.mass: expected none for a static object, got %.10g", kind, d->mass);
+	const char *named = d->kind == STATIC ? "static" : "kinematic";
+	if (d->kind != DYNAMIC && !isnan(d->mass))
+		ob_sandbox_fail(L, "%s.mass: expected none for a %s object, got %.10g", kind, named, d->mass);
 	const struct {
 		const char *name;
 		ob_vec3 value;
 	} moves[] = { { "velocity", d->velocity }, { "spin", d->spin }, { "force", d->force } };
 	for (int i = 0; i < 3; i++)
-		if (d->fixed && ob_norm2(moves[i].value) > 0)
-			ob_sandbox_fail(L, "%s.%s: expected none for a static object", kind, moves[i].name);
+		if (ob_norm2(moves[i].value) > 0 && (d->kind == STATIC || (d->kind == KINEMATIC && i == 2)))
+			ob_sandbox_fail(L, "%s.%s: expected none for a %s object", kind, moves[i].name, named);
+	if (d->kind == DYNAMIC && ob_norm2(d->surface_velocity) > 0)
+		ob_sandbox_fail(L, "%s.surface_velocity: expected a static or kinematic object", kind);
+	if (d->kind != KINEMATIC && d->path)
+		ob_sandbox_fail(L, "%s.path: expected kind = \"kinematic\" with it", kind);
+	if (d->path && ob_norm2(d->velocity) > 0)
+		refuse_together(L, kind, "velocity", "path");
 	if (d->dies <= d->born)
 		ob_sandbox_fail(L, "%s.dies: expected a time after born = %.10g, got %.10g", kind, d->born, d->dies);
+}
+
+static void find_kind(lua_State *L, const char *kind, body *d)
+{
+	if (d->fixed && d->kind != UNSAID && d->kind != STATIC)
+		refuse_together(L, kind, "static", "kind");
+	if (d->kind == UNSAID)
+		d->kind = d->fixed ? STATIC : DYNAMIC;
 }
 
 static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec3 size, body *d)
 {
 	ob_builder *b = ob_sandbox_user(L);
+	find_kind(L, kind, d);
 	check_together(L, kind, d);
 	apply_material(L, b, kind, d);
-	double mass = d->fixed ? 0 : isnan(d->mass) ? d->density * volume(shape, size) : d->mass;
-	if (!d->fixed && !(mass >= 1e-12 && mass <= 1e15))
+	double mass = d->kind != DYNAMIC ? 0 : isnan(d->mass) ? d->density * volume(shape, size) : d->mass;
+	if (d->kind == DYNAMIC && !(mass >= 1e-12 && mass <= 1e15))
 		ob_sandbox_fail(L, "%s.mass: expected from 1e-12 to 1e+15 kg, got %.4g", kind, mass);
 	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
 	ob_passport *p = &o->passport;
-	p->flags |= d->fixed ? OB_OBJECT_STATIC : 0;
+	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
 	p->shape = shape;
 	p->size = size;
 	p->mass = mass;
-	p->force = d->force;
+	if (d->kind == DYNAMIC)
+		p->force = d->force;
+	else
+		p->surface_velocity = d->surface_velocity;
 	p->friction = d->friction;
 	p->restitution = d->restitution;
 	p->roughness = (float)d->roughness;
@@ -339,6 +364,11 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	}
 	o->born = d->born;
 	o->dies = d->dies;
+	if (d->path) {
+		lua_getfield(L, 1, "path");
+		ob_builder_read_path(L, kind, o);
+		lua_pop(L, 1);
+	}
 	return o;
 }
 

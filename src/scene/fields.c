@@ -281,6 +281,13 @@ static void read_source(const reader *r)
 	*(const char **)r->to = text;
 }
 
+static void read_table(const reader *r)
+{
+	if (!lua_istable(r->L, -1))
+		fail(r, "a table");
+	*(bool *)r->to = true;
+}
+
 static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_NUMBER] = read_number,       [OB_FIELD_WHOLE] = read_whole,
 	[OB_FIELD_COUNT] = read_count,         [OB_FIELD_BOOLEAN] = read_boolean,
@@ -289,6 +296,7 @@ static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_DIRECTION] = read_direction, [OB_FIELD_QUATERNION] = read_quaternion,
 	[OB_FIELD_ROTATION] = read_rotation,   [OB_FIELD_COLOUR] = read_colour,
 	[OB_FIELD_FLAT] = read_flat,           [OB_FIELD_SOURCE] = read_source,
+	[OB_FIELD_TABLE] = read_table,
 };
 
 static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *name, const ob_field *field,

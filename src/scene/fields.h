@@ -25,6 +25,7 @@ typedef enum ob_field_kind {
 	OB_FIELD_ROTATION, // ob_quat from { axis = {x, y, z}, degrees = a }
 	OB_FIELD_FLAT, // ob_flat: a table of flat values (scene/flat.h)
 	OB_FIELD_SOURCE, // const char *, valid while the table is: text of any characters, at most high bytes
+	OB_FIELD_TABLE, // bool: it is there; whoever knows what it holds reads it
 	OB_FIELD_COLOUR, // float[4], linear, from {r, g, b [, a]} or "#rrggbb[aa]" (sRGB)
 } ob_field_kind;
 

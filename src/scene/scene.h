@@ -4,6 +4,7 @@
 
 #include <ob/motion.h>
 
+#include "motion/path.h"
 #include "settings/settings.h"
 
 typedef struct ob_object_def {
@@ -11,6 +12,7 @@ typedef struct ob_object_def {
 	ob_state state;       // at its first instant
 	uint32_t script; // 1 + its number; 0: none
 	uint32_t state_at, state_bytes; // of what its script begins with (scene/flat.h), in ob_scene.states
+	ob_path *path;        // how a kinematic one moves; NULL: it goes on as it begins. The scene's, freed with it
 	double born, dies;    // s; born = 0 and dies = infinity: there all the time
 } ob_object_def;
 

@@ -6,16 +6,12 @@
 #include "sim/midpoint.h"
 #include "sim/narrowphase.h"
 #include "sim/relative_speed.h"
+#include "sim/surfaces.h"
 
 // How far two bodies that touch may turn (rad) and slide (of the smaller thickness) in a partial substep ..
 static const double max_motion = .03;
 static const double fast_share = 1. / 10; // .. of that, where they get farther than their thickness in a substep
 static const double max_partial_substeps = 1024; // of a substep
-
-static ob_vec3 linear_of(const double *r)
-{
-	return ob_v3(r[0], r[1], r[2]);
-}
 
 // For how long a contact's points and normal are where they are now (s), at the velocities in rows. A sphere's point
 // moves with its centre, and a plane is the same everywhere.
@@ -23,7 +19,7 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	double turn = ob_body_turn_rate(w, rows, contact->a) + ob_body_turn_rate(w, rows, contact->b);
-	double slide = ob_norm(ob_sub(linear_of(rows[contact->a]), linear_of(rows[contact->b])));
+	double slide = ob_norm(ob_contact_velocity(w, rows, contact));
 	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
 		slide = 0;
 	double thin = fmin(a->thickness, b->thickness), distance = (slide + .5 * thin * turn) * w->substep;
@@ -55,6 +51,7 @@ static double partial_length(ob_sim *s, double left)
 		h = fmin(h, fmax(fmax(w->h_min, geometry_lifetime(w, w->v, contact)),
 				 ob_narrowphase_time_of_impact(s, contact, h)));
 	}
+	h = fmin(h, fmax(w->h_min, ob_surfaces_reversal(s, h)));
 	return left - h < .5 * h && left < 1.5 * w->h_min ? left : h;
 }
 

@@ -10,6 +10,7 @@
 #include "sim/flight.h"
 #include "sim/publish.h"
 #include "sim/scripts.h"
+#include "sim/surfaces.h"
 
 static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
 {
@@ -119,7 +120,8 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	w->h = w->substep = run->step_length / w->substeps;
 	w->mass = w->max_acceleration = w->recovered = w->residual = 0;
 	w->projected = w->torques = false;
-	w->unpaced = 0;
+	w->unpaced = w->time = 0;
+	w->surfaces.count = 0;
 	w->error = w->new_error = 0;
 	w->bodies = is->members;
 	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
@@ -140,6 +142,12 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 		uint32_t fixed = data->schedule[k->a].state < OB_SCHEDULE_AWAKE   ? k->a
 				 : data->schedule[k->b].state < OB_SCHEDULE_AWAKE ? k->b
 										  : UINT32_MAX;
+		if (fixed != UINT32_MAX && ob_surface_moves(ob_passport_of(s->u, fixed))) {
+			w->row_of[fixed] = w->rows;
+			load_body(s, w->rows, fixed, false);
+			ob_surface_add(s, w->rows++, i);
+			continue;
+		}
 		if (fixed == UINT32_MAX || (w->row_of[fixed] < w->rows && w->row_of[fixed] > w->bodies &&
 					    w->body[w->row_of[fixed]].id == fixed))
 			continue;
@@ -331,6 +339,7 @@ void ob_bodies_warm_start(ob_sim *s)
 		if (b->live)
 			ob_batch_apply_impulses(b, b->impulse, w->dv);
 	}
+	ob_surfaces_warm_start(s);
 }
 
 void ob_bodies_predict_velocities(ob_sim *s)
@@ -339,6 +348,7 @@ void ob_bodies_predict_velocities(ob_sim *s)
 	for (uint32_t i = 1; i <= w->bodies; i++)
 		for (int c = 0; c < 6; c++)
 			w->u[i][c] = w->v[i][c] + w->dv[i][c];
+	ob_surfaces_predict_velocities(s);
 }
 
 // ODE's integrator instead of ours: the impulses of the partial substep go in as a force.
@@ -379,12 +389,24 @@ static void integrate_exactly(ob_island_work *w, uint32_t row, double smooth)
 		d[c] += (w->h - old) * u[c] + old * v[c];
 }
 
+static void advance_surface(ob_sim *s, uint32_t row)
+{
+	ob_island_work *w = &s->island;
+	ob_pose end;
+	if (!ob_surface_advance(s, row, &end))
+		return;
+	update_gaps(w, row);
+	memset(w->d[row], 0, sizeof(ob_body_row));
+	ob_body_place(&w->body[row], end.p, end.q);
+}
+
 void ob_bodies_integrate_positions(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
 	w->unpaced += w->h;
 	double smooth = 2 * w->max_acceleration * w->max_acceleration * w->h * w->h;
+	ob_surfaces_carry(s);
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		if (run->integrator == OB_INTEGRATOR_ODE) {
 			integrate_by_ode(s, i);
@@ -401,6 +423,9 @@ void ob_bodies_integrate_positions(ob_sim *s)
 		set_speed_bound(w, i);
 		w->body[i].path += w->h * w->body[i].speed;
 	}
+	for (uint32_t row = w->bodies + 1; w->surfaces.count && row < w->rows; row++)
+		advance_surface(s, row);
+	w->time += w->h;
 }
 
 double ob_bodies_update_rest(ob_sim *s)

@@ -282,7 +282,7 @@ static bool box_contains(const float *box, const double *tight, double margin)
 	return true;
 }
 
-static void set_fat_aabb(ob_universe *u, uint32_t id, const double *tight, double margin)
+void ob_fat_aabb_set(ob_universe *u, uint32_t id, const double *tight, double margin)
 {
 	float box[6];
 	for (int c = 0; c < 3; c++) {
@@ -367,7 +367,7 @@ void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double
 	double margin = fmax(predict_fat_aabb(u, p, now, reach, next), w.bulge);
 	sweep_box(next, w.back, 1);
 	if (!held || is_oversized(box, next, margin))
-		set_fat_aabb(u, id, next, margin);
+		ob_fat_aabb_set(u, id, next, margin);
 }
 
 void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double reach)
@@ -376,7 +376,7 @@ void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double 
 	double next[6];
 	ob_shape_bounds(p->shape, p->size, now->pose, next);
 	double margin = predict_fat_aabb(u, p, now, reach, next);
-	set_fat_aabb(u, id, next, margin);
+	ob_fat_aabb_set(u, id, next, margin);
 }
 
 void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double margin)
@@ -386,7 +386,7 @@ void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double ma
 	for (int c = 0; c < 3; c++)
 		fits &= old[3 + c] - old[c] <= sweep_oversize * (box[3 + c] - box[c] + 2 * margin);
 	if (!fits)
-		set_fat_aabb(u, id, box, margin);
+		ob_fat_aabb_set(u, id, box, margin);
 }
 
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)

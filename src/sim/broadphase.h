@@ -28,7 +28,9 @@ void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double
 double ob_fat_aabb_margin(const ob_run_settings *run, ob_shape shape, ob_vec3 size);
 // As ob_fat_aabb_update, for a box that holds a whole flight, and the margin (m) around it.
 void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double margin);
-// The same, with a new box in any case.
+// The same box and margin in any case.
+void ob_fat_aabb_set(ob_universe *u, uint32_t id, const double *box, double margin);
+// As ob_fat_aabb_update, with a new box in any case.
 void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double reach);
 
 // ---- spatial index: a hierarchical hash grid (Ericson, Real-Time Collision Detection, 2005, ch. 7.2)

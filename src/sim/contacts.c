@@ -11,6 +11,7 @@
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
 #include "sim/relative_speed.h"
+#include "sim/surfaces.h"
 
 // ---- lanes and graph colouring
 
@@ -528,6 +529,9 @@ void ob_contacts_load(ob_sim *s, const ob_island *is)
 		ob_contact t = {
 			.key = key, .a = w->row_of[k->a], .b = w->row_of[k->b], .lane = OB_NO_LANE, .since = INFINITY
 		};
+		const uint32_t own = w->surfaces.count ? ob_surface_row(w, w->contact_order[i]) : 0;
+		if (own)
+			*(w->body[own].id == k->a ? &t.a : &t.b) = own;
 		t.limit = k->limit - w->body[t.a].path - w->body[t.b].path;
 		if (ob_ghosts_used(s) && t.a <= w->bodies && t.b <= w->bodies)
 			load_with_ghosts(s, &t, k);
@@ -535,6 +539,7 @@ void ob_contacts_load(ob_sim *s, const ob_island *is)
 			load_contact(s, &t, k);
 	}
 	link_adjacent(w);
+	ob_surfaces_begin(s);
 }
 
 // The lane's impulses, or zeros if it has none.

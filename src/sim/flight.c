@@ -116,6 +116,17 @@ static double fastest_approach(const ob_impact_body *body, const ob_impact_point
 	return most;
 }
 
+// m/s, of the plane's surface, in the plane
+static ob_vec3 running_velocity(const ob_universe *u, uint32_t plane, const ob_half_space *ground)
+{
+	const ob_vec3 own = ob_passport_of(u, plane)->surface_velocity;
+	if (ob_norm2(own) == 0)
+		return ob_v3(0, 0, 0);
+	const ob_mat3 r = ob_quat_matrix(ob_newest_motion(u, plane)->q);
+	const ob_vec3 v = ob_rotate(&r, own);
+	return ob_madd(v, -ob_dot(v, ground->normal), ground->normal);
+}
+
 // Changes velocities by the impact of all points that are on the plane. false: it does not rebound here.
 static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
 {
@@ -125,6 +136,7 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 		     e = fmax(passport->restitution, other->restitution);
 	ob_impact_point point[SUPPORT_POINTS];
 	ob_impact_body body[2] = { { .inv_mass = 1 / passport->mass, .v = state->v, .w = state->w } };
+	body[1].v = running_velocity(s->u, plane, &ground);
 	if (!(e > 0) || s->settings->narrow_phase != OB_NARROW_OBB)
 		return false;
 	const ob_mat3 r = ob_quat_matrix(state->pose.q);
@@ -180,6 +192,8 @@ ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *f, double t
 	const ob_passport *body = ob_passport_of(s->u, id);
 	if (ob_published_stands(f, body, time))
 		return (ob_state){ { f->p, f->q }, f->v, f->w };
+	if (body->flags & OB_OBJECT_KINEMATIC)
+		return ob_motion_at(f, body->inertia, time);
 	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .a = f->a };
 	ob_state now = ob_motion_at(&m, body->inertia, time);
 	if (ob_norm2(f->w) > 0)

@@ -11,6 +11,8 @@
 #include "sim/contacts.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
+#include "sim/relative_speed.h"
+#include "sim/surfaces.h"
 #include "sim/touches.h"
 
 static const double max_smooth_acceleration = 3; // of the largest external one: more is the echo of an impact
@@ -51,6 +53,7 @@ static void set_drift(ob_island_work *w)
 		else
 			memcpy(w->drift[i], (double[8]){ external.x, external.y, external.z }, sizeof *w->drift);
 	}
+	ob_surfaces_set_drift(w);
 }
 
 static ob_vec3 linear_of(const double *r)
@@ -74,7 +77,7 @@ static void fly(const ob_island_work *w, uint32_t row, double t, ob_body_at *x)
 		return;
 	x->p = ob_madd(ob_madd(x->p, t, x->v), .5 * t * t, a);
 	x->v = ob_madd(x->v, t, a);
-	if (body->inv_mass == 0 || (ob_norm2(x->w) == 0 && ob_norm2(b) == 0))
+	if ((body->inv_mass == 0 && !body->surface) || (ob_norm2(x->w) == 0 && ob_norm2(b) == 0))
 		return;
 	if (body->isotropic) {
 		x->q = ob_quat_turn(x->q, ob_madd(ob_scale(x->w, t), .5 * t * t, b));
@@ -150,11 +153,11 @@ static unsigned may_hit(const ob_island_work *w, const ob_contact *contact)
 // carry a contact, as they pass each other while they turn, too
 static double curvature(const ob_island_work *w, const ob_contact *contact)
 {
-	double speed = ob_norm(ob_sub(linear_of(w->v[contact->a]), linear_of(w->v[contact->b]))), turn = 0, sum = 0;
+	double speed = ob_norm(ob_contact_velocity(w, w->v, contact)), turn = 0, sum = 0;
 	for (int side = 0; side < 2; side++) {
 		const uint32_t row = side ? contact->b : contact->a;
 		const ob_body *body = &w->body[row];
-		if (!(body->inv_mass > 0) || body->shape == OB_SHAPE_SPHERE)
+		if ((!(body->inv_mass > 0) && !body->surface) || body->shape == OB_SHAPE_SPHERE)
 			continue;
 		const double rate = ob_norm(angular_of(w->v[row]));
 		turn += rate;
@@ -540,7 +543,8 @@ static uint32_t body_of_set(ob_sim *s, ob_impacts *x, uint32_t row, double t)
 	const ob_body *body = &w->body[row];
 	const ob_body_at at = x->at[i] = body_at(w, row, t);
 	x->row[i] = row;
-	x->body[i] = (ob_impact_body){ .inv_mass = body->inv_mass, .v = at.v, .w = at.w };
+	const ob_vec3 v = body->surface ? ob_add(at.v, ob_surface_velocity(w, row)) : at.v;
+	x->body[i] = (ob_impact_body){ .inv_mass = body->inv_mass, .v = v, .w = at.w };
 	if (body->inv_mass > 0)
 		ob_inverse_inertia(body->inertia, &at.r, x->body[i].inv_inertia);
 	return i;

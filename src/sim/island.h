@@ -47,6 +47,8 @@ typedef struct ob_body {
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
 	uint32_t ghost_of; // of a ghost: the row that it stands for
+	uint32_t surface; // 1 + its place among the surfaces that move (sim/surfaces.h); 0: it is none
+	double carried; // N s, of all surfaces that carry it
 	bool among_others; // it touches bodies that move
 	bool turns; // it has a contact whose geometry turns
 	bool halved; // it is at the midpoint of the partial substep (sim/midpoint.h), where it came by first_half ..
@@ -150,6 +152,21 @@ typedef struct ob_impacts {
 	ob_impact_point *point;
 } ob_impacts;
 
+// A surface that moves as it is told (sim/surfaces.h).
+typedef struct ob_surface {
+	uint32_t row, pair, contact; // its own; of the island's pairs; of the island's contacts
+	ob_motion motion;
+	ob_vec3 running; // m/s, frame of the body: as ob_passport.surface_velocity
+	ob_state begin, end; // of the running partial substep
+	ob_vec3 now; // m/s, world: the running surface at the contact
+} ob_surface;
+
+// Memory grown as needed, never shrunk.
+typedef struct ob_surfaces {
+	uint32_t count, max;
+	ob_surface *surface; // ascending by pair
+} ob_surfaces;
+
 // Memory grown as needed, never shrunk.
 typedef struct ob_island_work {
 	ob_units unit; // of the run, for thresholds
@@ -184,6 +201,7 @@ typedef struct ob_island_work {
 	uint32_t substeps; // of this step
 	double error, new_error; // m (sim/error_control.h): of the step; that the step itself has caused
 	double substep; // s, the whole
+	double time; // s, from the step's start to the running partial substep's
 	double h, h_min; // s (sim/adaptive_substep.h), of the running partial substep; of any but the last of a substep
 	double unpaced; // s: of which the contacts' paths do not know yet
 	double last_impact; // s into the partial substep: the last one's instant
@@ -194,6 +212,7 @@ typedef struct ob_island_work {
 	ob_direct_solver direct;
 	ob_conjugate conjugate;
 	ob_impacts impacts;
+	ob_surfaces surfaces;
 } ob_island_work;
 
 // In the running partial substep

@@ -47,7 +47,7 @@ static bool is_due(const builder *p, uint32_t id)
 static bool involves(const builder *p, const ob_pair_key *k)
 {
 	const ob_schedule *a = &p->data->schedule[k->a], *b = &p->data->schedule[k->b];
-	return p->previous ? k->late : a->state == OB_SCHEDULE_AWAKE || b->state == OB_SCHEDULE_AWAKE;
+	return p->previous ? k->late : ob_schedule_moves(a) || ob_schedule_moves(b);
 }
 
 static bool joins_islands(const builder *p, const ob_pair_key *k)

@@ -20,6 +20,7 @@
 #include "sim/midpoint.h"
 #include "sim/profile.h"
 #include "sim/scripts.h"
+#include "sim/surfaces.h"
 #include "sim/touches.h"
 
 enum { MAX_IMPACT_ROUNDS = 4 }; // in a partial substep; a body that rattles faster is left to the contact solver
@@ -76,6 +77,7 @@ static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
 	ob_ghosts_follow(s);
 	ob_adaptive_begin(s, left);
+	ob_surfaces_renew_contacts(s);
 	ob_impacts_begin(s);
 	ob_midpoint_mark(s);
 	update_contacts(s);
@@ -206,7 +208,7 @@ static bool advance_ballistically(ob_sim *s, const ob_island *is)
 static uint32_t rest_flag(ob_sim *s)
 {
 	const double rest_time = ob_bodies_update_rest(s);
-	if (s->island.torques) // equilibrium and sleep know of forces alone
+	if (s->island.torques || ob_surfaces_carry_any(&s->island)) // equilibrium and sleep know of forces alone
 		return 0;
 	if (ob_equilibrium_reached(&s->island))
 		return s->settings->sleeping ? OB_MOTION_ASLEEP : OB_MOTION_EQUILIBRIUM;
@@ -259,4 +261,5 @@ void ob_island_work_finish(ob_island_work *w)
 	ob_direct_finish(&w->direct);
 	ob_conjugate_finish(&w->conjugate);
 	ob_impacts_finish(&w->impacts);
+	ob_surfaces_finish(&w->surfaces);
 }

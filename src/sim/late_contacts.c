@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "contact/manifold.h"
+#include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/commit.h"
@@ -40,14 +41,15 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, 
 	const ob_passport *p = ob_passport_of(c->u, id);
 	const double h = c->h;
 	ob_state now = ob_ballistic_state(c->s, id, m, (double)steps * h);
+	const ob_vec3 a = ob_acceleration_at(m, (double)steps * h);
 	ob_placed out = { .shape = p->shape,
 			  .size = p->size,
 			  .p = now.pose.p,
 			  .r = ob_quat_matrix(now.pose.q),
-			  .v = ob_madd(now.v, .5 * h, m->a),
+			  .v = ob_madd(now.v, .5 * h, a),
 			  .w = now.w,
 			  .inertia = p->inertia,
-			  .a = m->a };
+			  .a = a };
 	ob_narrowphase_set_rest(c->s, &out);
 	return out;
 }
@@ -126,9 +128,10 @@ static bounding_spheres bounding_spheres_of(const pair_check *c, const ob_pair_k
 	const ob_motion *a = ob_result_of(c->u, k->a), *b = ob_result_of(c->u, k->b);
 	const ob_passport *pa = ob_passport_of(c->u, k->a), *pb = ob_passport_of(c->u, k->b);
 	const double time = (double)c->steps * c->h;
-	bounding_spheres out = { .straight = a->a.x == b->a.x && a->a.y == b->a.y && a->a.z == b->a.z };
+	const bool parabolas = !((a->flags | b->flags) & OB_MOTION_SWINGS);
+	bounding_spheres out = { .straight = parabolas && a->a.x == b->a.x && a->a.y == b->a.y && a->a.z == b->a.z };
 	out.apart = ob_sub(ob_centre_now(c->u, k->a, a, c->steps), ob_centre_now(c->u, k->b, b, c->steps));
-	out.v = ob_sub(ob_madd(a->v, time - a->t0, a->a), ob_madd(b->v, time - b->t0, b->a));
+	out.v = ob_sub(ob_velocity_at(a, time), ob_velocity_at(b, time));
 	out.gap = ob_norm(out.apart) - ob_shape_radius(pa->shape, pa->size) - ob_shape_radius(pb->shape, pb->size);
 	return out;
 }
@@ -237,7 +240,7 @@ static double check_by_schedule(const pair_check *c, ob_pair_key *k)
 	if (k->late |
 	    k->expected) // most pairs are left as they are: their memory stays with every worker that has read it
 		k->late = k->expected = 0;
-	if ((a->state != OB_SCHEDULE_AWAKE && b->state != OB_SCHEDULE_AWAKE) || impact_is_computed(a, b, c->steps))
+	if ((!ob_schedule_moves(a) && !ob_schedule_moves(b)) || impact_is_computed(a, b, c->steps))
 		return INFINITY;
 	if (k->active)
 		return (double)c->steps;

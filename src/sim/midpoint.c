@@ -7,6 +7,8 @@
 #include "sim/contacts.h"
 #include "sim/ghost.h"
 #include "sim/profile.h"
+#include "sim/relative_speed.h"
+#include "sim/surfaces.h"
 
 static const double least_change = 1e-7; // m/s: less than turning brings to any row is not noticed
 static const double longest_way = .2; // of the smaller thickness: in a partial substep of bodies that are halved
@@ -34,7 +36,7 @@ static bool is_round(ob_shape s)
 static double change_bound(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	double speed = a->speed + b->speed;
+	double speed = a->surface | b->surface ? ob_contact_speed(w, contact) : a->speed + b->speed;
 	double turn = ob_body_turn_rate(w, w->v, contact->a) + ob_body_turn_rate(w, w->v, contact->b);
 	if ((is_round(a->shape) && b->shape != OB_SHAPE_PLANE) || (is_round(b->shape) && a->shape != OB_SHAPE_PLANE))
 		turn += speed / fmin(a->radius, b->radius);
@@ -54,6 +56,9 @@ static double load_of(const ob_island_work *w, const ob_contact *contact)
 static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+	if ((a->surface && ob_norm2(angular_of(w->v[contact->a])) > 0) ||
+	    (b->surface && ob_norm2(angular_of(w->v[contact->b])) > 0))
+		return false; // of the first order, but for what is carried
 	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change * w->unit.speed &&
 	       load_of(w, contact) > 0 && (a->speed + b->speed) * w->h < longest_way * fmin(a->thickness, b->thickness);
 }
@@ -112,10 +117,13 @@ static bool is_hit(const ob_island_work *w, const ob_contact *contact)
 
 // ---- to the midpoint
 
-static void halve(ob_island_work *w, uint32_t row)
+static void halve(ob_sim *s, uint32_t row)
 {
+	ob_island_work *w = &s->island;
 	ob_body *body = &w->body[row];
 	double *v = w->v[row];
+	if (body->surface && !body->halved)
+		ob_surface_halve(s, row);
 	if (body->halved || body->inv_mass == 0)
 		return;
 	ob_body_update_pose(w, row);
@@ -274,7 +282,7 @@ void ob_midpoint_begin(ob_sim *s)
 	}
 	for (uint32_t i = 0; i < w->contacts; i++)
 		if (w->contact[i].turns)
-			halve(w, w->contact[i].a), halve(w, w->contact[i].b);
+			halve(s, w->contact[i].a), halve(s, w->contact[i].b);
 	for (uint32_t i = 0; i < w->contacts; i++)
 		if (at_midpoint(w, &w->contact[i]))
 			find_at_midpoint(s, &w->contact[i]);
@@ -293,6 +301,7 @@ void ob_midpoint_undo(ob_sim *s)
 		w->v[i][3] = body->start_w.x, w->v[i][4] = body->start_w.y, w->v[i][5] = body->start_w.z;
 		body->halved = false;
 	}
+	ob_surfaces_undo_halves(s);
 	for (uint32_t i = 0; i < w->batches; i++)
 		w->batch[i].turning = 0;
 }

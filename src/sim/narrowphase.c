@@ -108,7 +108,7 @@ static double closing_speed(const ob_sim *s, const ob_contact *contact)
 	for (int side = 0; side < 2; side++) {
 		const ob_body *body = &w->body[side ? contact->b : contact->a];
 		const double *v = side ? vb : va;
-		if (body->inv_mass > 0 && body->shape != OB_SHAPE_SPHERE)
+		if ((body->inv_mass > 0 || body->surface) && body->shape != OB_SHAPE_SPHERE)
 			speed += body->radius *
 				 ob_drift_bound(ob_rotate_back(&body->r, ob_v3(v[3], v[4], v[5])), body->inertia, w->h);
 	}

@@ -131,7 +131,7 @@ static void publish_object(ob_ode_baseline *m, uint32_t id, const ob_state *s, b
 
 static bool moves(const ob_ode_baseline *m, uint32_t id)
 {
-	return m->held[id].there && !(ob_passport_of(m->u, id)->flags & OB_OBJECT_STATIC);
+	return m->held[id].there && !(ob_passport_of(m->u, id)->flags & OB_OBJECT_PRESCRIBED);
 }
 
 // All states or none.
@@ -209,11 +209,26 @@ static void publish_pairs(ob_ode_baseline *m)
 	data->count->records_used = data->count->pairs;
 }
 
+// Kinematic objects, to where they are at an instant (s).
+static void drive(ob_ode_baseline *m, double time)
+{
+	const uint32_t ids = ob_universe_step_data(m->u)->count->kinematic ? ob_universe_ids(m->u) : 0;
+	for (uint32_t id = 0; id < ids; id++) {
+		const ob_passport *p = ob_passport_of(m->u, id);
+		if (!m->held[id].there || !(p->flags & OB_OBJECT_KINEMATIC))
+			continue;
+		const ob_state now = ob_motion_at(ob_newest_motion(m->u, id), p->inertia, time);
+		ob_ode_world_drive(m->world, id, &now);
+	}
+}
+
 void ob_ode_baseline_step(ob_ode_baseline *m)
 {
+	const double h = m->run->step_length / m->run->substeps;
 	follow_passports(m);
 	for (uint32_t i = 0; i < m->run->substeps; i++) {
-		if (!ob_ode_world_step(m->world, m->run->step_length / m->run->substeps)) {
+		drive(m, (double)ob_step_count(m->u) * m->run->step_length + i * h);
+		if (!ob_ode_world_step(m->world, h)) {
 			bool full;
 			uint32_t culprit = ob_ode_world_culprit(m->world, &full);
 			ob_step_fail(m->u, full ? OB_STEP_PAIRS_FULL : OB_STEP_ENGINE, culprit);

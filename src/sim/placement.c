@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "contact/batch.h"
+#include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/publish.h"
 #include "sim/sim.h"
@@ -26,9 +27,9 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 	ob_step_data *data = ob_universe_step_data(u);
 	const ob_run_settings *run = ob_universe_settings(u);
 	const ob_passport *p = ob_passport_of(u, id);
-	bool fixed = p->flags & OB_OBJECT_STATIC;
+	const bool fixed = p->flags & OB_OBJECT_STATIC, prescribed = p->flags & OB_OBJECT_PRESCRIBED;
 	ob_motion m = { .t0 = ob_step_count(u) * run->step_length,
-			.valid_until = fixed ? INFINITY : (double)ob_step_count(u) * run->step_length,
+			.valid_until = prescribed ? INFINITY : (double)ob_step_count(u) * run->step_length,
 			.p = state->pose.p,
 			.q = ob_quat_normalize(state->pose.q),
 			.v = state->v,
@@ -41,16 +42,116 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 		m.a = ob_external_acceleration(run, p), m.flags = OB_MOTION_FREE;
 	double reach = fixed ? 0 : ob_step_reach(run, p, m.q, m.v, m.w);
 	ob_fat_aabb_renew(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach);
-	uint32_t kind = !fixed                       ? OB_SCHEDULE_AWAKE
+	uint32_t kind = !prescribed                  ? OB_SCHEDULE_AWAKE
+			: !fixed                     ? OB_SCHEDULE_KINEMATIC
 			: p->shape == OB_SHAPE_PLANE ? OB_SCHEDULE_PLANE
 						     : OB_SCHEDULE_STATIC;
-	data->schedule[id] = (ob_schedule){ 0, (float)reach, kind, m.step, fixed ? UINT32_MAX : m.step };
+	data->schedule[id] = (ob_schedule){ 0, (float)reach, kind, m.step, prescribed ? UINT32_MAX : m.step };
 	data->result_island[id] = UINT32_MAX;
 	ob_publish_motion(u, id, &m);
 	if (kind == OB_SCHEDULE_PLANE)
 		end_flights(u);
 	if (ob_universe_traced(u))
 		ob_trace_birth(u, id);
+}
+
+// ---- kinematic objects
+
+// m/s, of any point of the object, from now until the motion ends
+static double prescribed_speed(const ob_passport *p, const ob_motion *m, double now)
+{
+	double speed = ob_norm(ob_velocity_at(m, now));
+	if (m->flags & OB_MOTION_SWINGS)
+		speed = sqrt(ob_norm2(m->v) + ob_norm2(m->a) / (m->frequency * m->frequency));
+	else if (ob_norm2(m->a) > 0)
+		speed = fmax(speed, ob_norm(ob_velocity_at(m, m->valid_until)));
+	return speed + (p->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(m->w) * ob_shape_radius(p->shape, p->size));
+}
+
+// Its fat AABB holds it for so long (s) from now on; infinity: for good.
+static void hold_for(ob_universe *u, uint32_t id, const ob_motion *m, double now, double s)
+{
+	const ob_passport *p = ob_passport_of(u, id);
+	ob_motion rest = *m;
+	double box[6];
+	if (!(m->flags & OB_MOTION_SWINGS)) {
+		rest.p = ob_centre_at(m, now), rest.v = ob_velocity_at(m, now);
+		rest.t0 = now;
+	}
+	if (ob_norm2(m->w) > 0)
+		rest.q = ob_motion_at(m, p->inertia, now).pose.q;
+	ob_motion_swept_bounds(&rest, (ob_shape)p->shape, p->size, s, box);
+	ob_fat_aabb_set(u, id, box, ob_fat_aabb_margin(ob_universe_settings(u), (ob_shape)p->shape, p->size));
+}
+
+// Steps after which the fat AABB of what goes on at this speed (m/s) is made anew: it covers some radii.
+static uint64_t steps_held(const ob_universe *u, const ob_passport *p, double speed)
+{
+	enum { LEAST = 4, MOST = 512 };
+	const double radii = 4, n = radii * ob_shape_radius((ob_shape)p->shape, p->size) /
+				    (speed * ob_universe_settings(u)->step_length);
+	return n < LEAST ? LEAST : n > MOST ? MOST : (uint64_t)n;
+}
+
+static void publish_prescribed(ob_universe *u, uint32_t id, ob_motion *m, double until)
+{
+	const ob_run_settings *run = ob_universe_settings(u);
+	const ob_passport *p = ob_passport_of(u, id);
+	ob_schedule *schedule = &ob_universe_step_data(u)->schedule[id];
+	const uint32_t step = (uint32_t)ob_step_count(u);
+	const double now = (double)step * run->step_length;
+	m->path = ob_schedule_path(schedule, step);
+	m->reach = (float)(prescribed_speed(p, m, now) * run->step_length);
+	m->reach = nextafterf(m->reach, INFINITY);
+	m->step = step;
+	m->flags |= OB_MOTION_FREE;
+	*schedule = (ob_schedule){ m->path, m->reach, OB_SCHEDULE_KINEMATIC, step, UINT32_MAX };
+	hold_for(u, id, m, now, until - now);
+	ob_publish_motion(u, id, m);
+}
+
+static uint64_t prescribe_spline(ob_universe *u, uint32_t id, const ob_path *path, uint64_t born)
+{
+	const double h = ob_universe_settings(u)->step_length;
+	const uint64_t step = ob_step_count(u);
+	const ob_path_piece piece = ob_path_piece_at(path, h, step - born);
+	const uint64_t from = born + piece.from, until = piece.until == UINT64_MAX ? UINT64_MAX : born + piece.until;
+	const double begin = (double)from * h, end = until == UINT64_MAX ? INFINITY : (double)until * h;
+	ob_motion m = *ob_newest_motion(u, id);
+	if (m.t0 == begin && m.valid_until == end)
+		return until;
+	const ob_state turned = ob_motion_at(&m, ob_v3(0, 0, 0), begin);
+	m.t0 = begin, m.valid_until = end;
+	m.p = piece.p, m.v = piece.v, m.a = piece.a;
+	m.q = turned.pose.q;
+	publish_prescribed(u, id, &m, end);
+	return until;
+}
+
+uint64_t ob_sim_prescribe(ob_universe *u, uint32_t id, const ob_path *path, uint64_t born)
+{
+	const ob_passport *p = ob_passport_of(u, id);
+	const uint64_t step = ob_step_count(u);
+	const double h = ob_universe_settings(u)->step_length, now = (double)step * h;
+	ob_motion m = *ob_newest_motion(u, id);
+	if (path && path->points)
+		return prescribe_spline(u, id, path, born);
+	if (path && !(m.flags & OB_MOTION_SWINGS)) {
+		m.flags |= OB_MOTION_SWINGS;
+		m.a = path->a, m.frequency = path->frequency;
+		publish_prescribed(u, id, &m, INFINITY);
+	}
+	if (m.flags & OB_MOTION_SWINGS)
+		return UINT64_MAX;
+	const double speed = ob_norm(m.v);
+	const uint64_t held = speed > 0 ? steps_held(u, p, speed) : UINT64_MAX;
+	if (step == m.step) {
+		m.rest_time = 0, m.island = id;
+		publish_prescribed(u, id, &m, speed > 0 ? now + (double)held * h : INFINITY);
+	} else if (speed > 0 && (step - m.step) % held == 0) {
+		hold_for(u, id, &m, now, (double)held * h);
+	}
+	return speed > 0 ? step + held - (step - m.step) % held : UINT64_MAX;
 }
 
 // Objects whose query is pending are put in before it is made.
@@ -85,12 +186,13 @@ static void wake_object(ob_universe *u, uint32_t id)
 bool ob_sim_freeze(ob_universe *u, uint32_t id)
 {
 	ob_passport p = *ob_passport_of(u, id);
-	if (!(p.flags & OB_OBJECT_PRESENT) || p.flags & OB_OBJECT_STATIC)
+	if (!(p.flags & OB_OBJECT_PRESENT) || p.flags & OB_OBJECT_PRESCRIBED)
 		return false;
 	const ob_state now = ob_state_now(u, id, ob_newest_motion(u, id), ob_step_count(u));
 	ob_sim_remove(u, id);
 	p.flags |= OB_OBJECT_STATIC | OB_OBJECT_FROZEN;
 	p.mass = 0;
+	p.surface_velocity = ob_v3(0, 0, 0); // it lies where the force did
 	p.inertia = ob_v3(0, 0, 0);
 	ob_write_passport(u, id, &p);
 	ob_sim_place(u, id, &now);

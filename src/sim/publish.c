@@ -74,10 +74,10 @@ ob_state ob_state_now(const ob_universe *u, uint32_t id, const ob_motion *m, uin
 
 ob_vec3 ob_centre_now(const ob_universe *u, uint32_t id, const ob_motion *m, uint64_t steps)
 {
-	double time = time_after(u, steps), s = time - m->t0;
+	const double time = time_after(u, steps);
 	if (ob_published_stands(m, ob_passport_of(u, id), time))
 		return m->p;
-	return ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
+	return ob_centre_at(m, time);
 }
 
 double ob_path_now(const ob_motion *m, uint64_t steps)

@@ -8,6 +8,7 @@
 
 #include <ob/motion.h>
 
+#include "motion/path.h"
 #include "table/table.h"
 
 typedef struct ob_sim ob_sim;
@@ -28,6 +29,11 @@ void ob_sim_run(ob_sim *s);
 // Host, before the first step and after it has changed passports: puts the object's first motion into its slot and the
 // object on the broad phase's requery list. The universe must be starting or paused.
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state);
+
+// Host, before the first step and at a pause, after ob_sim_place: what a kinematic object does from now on. path NULL:
+// it goes on as it was placed; born: the step of its first instant. Returns the step at which it is to be called again:
+// UINT64_MAX = never. To call it at other steps, too, changes nothing.
+uint64_t ob_sim_prescribe(ob_universe *u, uint32_t id, const ob_path *path, uint64_t born);
 
 // Host, at the start, after ob_universe_load: the spatial index, which is not saved, of the objects that are.
 void ob_sim_restore(ob_universe *u);

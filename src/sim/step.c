@@ -312,7 +312,7 @@ static ob_phase begin_step(const scheduler *c)
 		return OB_PHASE_BASELINE;
 	if (ob_scripts_due(c->u))
 		return OB_PHASE_SCRIPTS;
-	if (!count->awake || !count->pairs)
+	if (!(count->awake || count->kinematic) || !count->pairs)
 		count->next_check = UINT32_MAX;
 	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : build_islands(c);
 }
@@ -320,15 +320,17 @@ static ob_phase begin_step(const scheduler *c)
 // How many objects are awake, and when the first of them is due.
 static void count_awake(const scheduler *c)
 {
-	uint32_t n = 0, due = UINT32_MAX;
+	uint32_t n = 0, kinematic = 0, due = UINT32_MAX;
 	for (uint32_t id = 0; id < ob_universe_ids(c->u); id++) {
 		const ob_schedule *object = &c->data->schedule[id];
+		kinematic += object->state == OB_SCHEDULE_KINEMATIC;
 		if (object->state != OB_SCHEDULE_AWAKE && object->state != OB_SCHEDULE_EQUILIBRIUM)
 			continue;
 		n++;
 		due = object->due < due ? object->due : due;
 	}
 	c->data->count->awake = n;
+	c->data->count->kinematic = kinematic;
 	c->data->count->next_due = due;
 }
 

@@ -59,6 +59,29 @@ ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mas
 	return (ob_world_body){ &w->passport[id], &w->state[id] };
 }
 
+void ob_world_kinematic(ob_world_body b)
+{
+	b.passport->flags = OB_OBJECT_PRESENT | OB_OBJECT_KINEMATIC;
+	b.passport->mass = 0;
+	b.passport->inertia = ob_v3(0, 0, 0);
+}
+
+void ob_world_swing(ob_world *w, ob_world_body b, ob_vec3 amplitude, double frequency, double phase)
+{
+	ob_world_kinematic(b);
+	w->path = grown(w->path, w->paths + 1, sizeof *w->path);
+	w->path[w->paths++] =
+		(struct ob_world_path){ b.passport->id, ob_path_sine(b.state, amplitude, frequency, phase) };
+}
+
+const ob_path *ob_world_path(const ob_world *w, uint32_t id)
+{
+	for (uint32_t i = 0; i < w->paths; i++)
+		if (w->path[i].id == id)
+			return &w->path[i].path;
+	return NULL;
+}
+
 ob_world_body ob_world_box(ob_world *w, double mass, ob_vec3 half, ob_vec3 p)
 {
 	return ob_world_add(w, OB_SHAPE_BOX, half, mass, p);
@@ -151,6 +174,7 @@ void ob_world_finish(ob_world *w)
 {
 	free(w->passport);
 	free(w->state);
+	free(w->path);
 	*w = (ob_world){ 0 };
 }
 

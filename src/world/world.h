@@ -9,6 +9,8 @@
 
 #include <ob/motion.h>
 
+#include "motion/path.h"
+
 #define OB_WORLD_GRAVITY 9.81 // m/s^2
 
 // Start with { .gravity = ... } and nothing else.
@@ -17,6 +19,11 @@ typedef struct ob_world {
 	uint32_t objects, objects_max; // there are, there is room for
 	ob_passport *passport; // [objects], id = index, inertia filled; force is constant, at the centre (N, world frame)
 	ob_state *state; // [objects]
+	uint32_t paths; // of kinematic bodies that swing
+	struct ob_world_path {
+		uint32_t id;
+		ob_path path;
+	} *path; // [paths]
 } ob_world;
 
 // To be changed at will; both pointers hold until the next body is built.
@@ -27,6 +34,12 @@ typedef struct ob_world_body {
 
 // size as in ob_shape; mass in kg, 0 = never moves; p = centre. The inertia is that of a homogeneous body.
 ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p);
+// The body moves on with its state's velocities, whatever touches it.
+void ob_world_kinematic(ob_world_body b);
+// The same to and fro about its place: sin(frequency t + phase) of the amplitude (m; rad/s, rad) away from it.
+void ob_world_swing(ob_world *w, ob_world_body b, ob_vec3 amplitude, double frequency, double phase);
+// NULL: it has none
+const ob_path *ob_world_path(const ob_world *w, uint32_t id);
 // Half extents and radius in m.
 ob_world_body ob_world_box(ob_world *w, double mass, ob_vec3 half, ob_vec3 p);
 ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p);

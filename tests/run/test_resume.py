@@ -32,6 +32,7 @@ SCENES = {
 	"pile": ["--duration", ".5"],
 	"cradle": ["--duration", "1"],
 	"shapes": ["--duration", "1.2"],
+	"machines": ["--duration", "1.2"],
 	"come_and_go": [],
 }
 

@@ -13,6 +13,7 @@ SCENES = {
 	"cradle": ["--duration", "1.5"],
 	"sparse": ["--duration", "2"],
 	"shapes": ["--duration", "2"],
+	"machines": ["--duration", "1.5"],
 }
 NAME = sys.argv.pop(1)
 

@@ -9,7 +9,7 @@
 
 #define ROOM 16384
 
-static const char *const seeds[] = { "falling_boxes", "stack", "pile", "cradle", "head_on", "thin_wall", "shapes" };
+static const char *const seeds[] = { "falling_boxes", "stack", "pile", "cradle", "head_on", "thin_wall", "shapes", "machines" };
 static const char *const tokens[] = { "{",     "}",     "(",          ")",     "end",   "nil",
 				      "1e308", "-1",    "0/0",        "1/0",   "\"",    ",",
 				      "={",    "[[",    "function()", "do",    "\n",    "..",

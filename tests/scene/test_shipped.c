@@ -139,6 +139,8 @@ int main(int argc, char **argv)
 	check_count("flock", NULL, 67, false);
 	check_count("flock", "n=200", 207, false);
 	check_seeds("flock", true);
+	check_count("machines", NULL, 43, false);
+	check_seeds("machines", true);
 	check_seeds("falling_boxes", true);
 	check_seeds("stack", true);
 	check_seeds("pile", true);

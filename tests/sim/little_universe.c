@@ -18,8 +18,23 @@ little_scene *little_scene_new(void)
 	if (!s)
 		give_up("scene", "no memory");
 	s->run = (ob_run_settings){ .gravity = { 0, 0, -9.81 }, .step_length = 1. / 60, .substeps = 8, .iterations = 16 };
-	s->world = (ob_world){ s->run.gravity, 0, LITTLE_MOST, s->passport, s->state };
+	s->world = (ob_world){
+		.gravity = s->run.gravity, .objects_max = LITTLE_MOST, .passport = s->passport, .state = s->state
+	};
 	return s;
+}
+
+// Returns the step at which it is due again.
+static uint64_t prescribe(ob_universe *u, const ob_world *w)
+{
+	uint64_t next = UINT64_MAX;
+	for (uint32_t id = 0; id < w->objects; id++) {
+		if (!(ob_passport_of(u, id)->flags & OB_OBJECT_KINEMATIC))
+			continue;
+		const uint64_t due = ob_sim_prescribe(u, id, ob_world_path(w, id), 0);
+		next = due < next ? due : next;
+	}
+	return next;
 }
 
 ob_universe *little_populate(const little_scene *s, uint32_t workers)
@@ -37,6 +52,7 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 		ob_write_passport(u, i, &s->world.passport[i]);
 	for (uint32_t i = 0; i < s->world.objects; i++)
 		ob_sim_place(u, i, &s->world.state[i]);
+	prescribe(u, &s->world);
 	return u;
 }
 
@@ -63,12 +79,16 @@ void little_close(little_universe *l)
 void little_run(little_universe *l, uint64_t steps)
 {
 	ob_error e;
-	ob_gate_set_pause_step(l->u, ob_step_count(l->u) + steps);
-	ob_sim_resume(l->u);
-	while (!ob_gate_host_wait(l->u, 0))
-		ob_step(l->sim);
-	if (ob_sim_failure(l->u))
-		give_up("step", ob_sim_failure(l->u));
+	const uint64_t end = ob_step_count(l->u) + steps;
+	do {
+		const uint64_t next = prescribe(l->u, &l->scene->world);
+		ob_gate_set_pause_step(l->u, next < end ? next : end);
+		ob_sim_resume(l->u);
+		while (!ob_gate_host_wait(l->u, 0))
+			ob_step(l->sim);
+		if (ob_sim_failure(l->u))
+			give_up("step", ob_sim_failure(l->u));
+	} while (ob_step_count(l->u) < end);
 	if (!ob_snapshot_take(&l->now, l->u, false, &e))
 		give_up("snapshot", e.text);
 }

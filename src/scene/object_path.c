@@ -1,0 +1,144 @@
+// The path of a kinematic object: { kind = "sine", amplitude = {.1, 0, 0}, frequency = 2 } and so on.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <lauxlib.h>
+
+#include "scene/builder.h"
+#include "scene/sandbox.h"
+
+enum { SINE, CIRCLE, SPLINE }; // the numbers of the choices
+
+// What the table may say; NaN = not said.
+typedef struct draft {
+	uint32_t kind;
+	ob_vec3 amplitude, centre, axis;
+	double frequency, phase;
+	bool points, loop;
+} draft;
+
+#define F(member, ...) OB_FIELD(draft, member, .name = #member, __VA_ARGS__)
+static const ob_field path_fields[] = {
+	F(kind, .kind = OB_FIELD_CHOICE, .choices = "sine|circle|spline", .required = true),
+	F(amplitude, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6),
+	F(frequency, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e4),
+	F(phase, .kind = OB_FIELD_NUMBER, .low = -1e3, .high = 1e3),
+	F(centre, .kind = OB_FIELD_VECTOR, .low = -1e7, .high = 1e7),
+	F(axis, .kind = OB_FIELD_DIRECTION),
+	F(points, .kind = OB_FIELD_TABLE),
+	F(loop, .kind = OB_FIELD_BOOLEAN),
+};
+
+// What a kind does not need is not to be said; what it needs is.
+static void check_said(lua_State *L, const char *where, const draft *d)
+{
+	static const char *const kinds[] = { "sine", "circle", "spline" };
+	const struct {
+		const char *name;
+		bool said;
+		unsigned needed, allowed; // bit per kind
+	} fields[] = {
+		{ "amplitude", !isnan(d->amplitude.x), 1 << SINE, 1 << SINE },
+		{ "frequency", !isnan(d->frequency), 1 << SINE | 1 << CIRCLE, 1 << SINE | 1 << CIRCLE },
+		{ "phase", !isnan(d->phase), 0, 1 << SINE },
+		{ "centre", !isnan(d->centre.x), 1 << CIRCLE, 1 << CIRCLE },
+		{ "axis", !isnan(d->axis.x), 0, 1 << CIRCLE },
+		{ "points", d->points, 1 << SPLINE, 1 << SPLINE },
+		{ "loop", d->loop, 0, 1 << SPLINE },
+	};
+	for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+		if (fields[i].needed >> d->kind & 1 && !fields[i].said)
+			ob_sandbox_fail(L, "%s.%s: expected for kind = \"%s\", got nothing", where, fields[i].name,
+					kinds[d->kind]);
+		if (fields[i].said && !(fields[i].allowed >> d->kind & 1))
+			ob_sandbox_fail(L, "%s.%s: expected none for kind = \"%s\"", where, fields[i].name,
+					kinds[d->kind]);
+	}
+}
+
+static void keep_path(lua_State *L, const char *where, ob_object_def *o, const ob_path *path)
+{
+	o->path = ob_path_copy(path);
+	if (!o->path)
+		ob_sandbox_fail(L, "%s: no memory left on this machine", where);
+}
+
+static void make_sine(lua_State *L, const char *where, const draft *d, ob_object_def *o)
+{
+	const ob_path path =
+		ob_path_sine(&o->state, d->amplitude, 2 * M_PI * d->frequency, isnan(d->phase) ? 0 : d->phase);
+	keep_path(L, where, o, &path);
+}
+
+static void make_circle(lua_State *L, const char *where, const draft *d, ob_object_def *o)
+{
+	const ob_vec3 axis = isnan(d->axis.x) ? ob_v3(0, 0, 1) : d->axis, r = ob_sub(o->state.pose.p, d->centre);
+	if (!(ob_norm(ob_cross(axis, r)) > 1e-9))
+		ob_sandbox_fail(L, "%s.centre: expected a point that the axis does not lead from to the object's place",
+				where);
+	const ob_path path = ob_path_circle(&o->state, d->centre, axis, 2 * M_PI * d->frequency);
+	keep_path(L, where, o, &path);
+}
+
+// {t, x, y, z} at the top of the stack
+static bool read_point(lua_State *L, ob_path_point *out)
+{
+	double x[4];
+	bool good = lua_istable(L, -1) && lua_rawlen(L, -1) == 4;
+	for (int i = 0; i < 4 && good; i++) {
+		good = lua_rawgeti(L, -1, i + 1) == LUA_TNUMBER;
+		x[i] = lua_tonumber(L, -1);
+		good = good && fabs(x[i]) <= (i ? 1e7 : 1e9);
+		lua_pop(L, 1);
+	}
+	if (good)
+		*out = (ob_path_point){ x[0], ob_v3(x[1], x[2], x[3]) };
+	return good;
+}
+
+static void make_spline(lua_State *L, const char *where, const draft *d, ob_object_def *o)
+{
+	lua_getfield(L, -1, "points");
+	const size_t n = lua_rawlen(L, -1);
+	if (n < 2 || n > OB_PATH_POINTS_MAX)
+		ob_sandbox_fail(L, "%s.points: expected 2 to %d points {t, x, y, z}, got %zu", where,
+				OB_PATH_POINTS_MAX, n);
+	ob_path_point room[OB_PATH_POINTS_MAX] = { 0 };
+	keep_path(L, where, o, &(ob_path){ .points = (uint32_t)n, .loop = d->loop, .point = room });
+	ob_path *path = o->path;
+	for (size_t i = 0; i < n; i++) {
+		lua_rawgeti(L, -1, (lua_Integer)i + 1);
+		if (!read_point(L, &path->point[i]))
+			ob_sandbox_fail(L, "%s.points: expected four numbers {t, x, y, z} as point %zu", where, i + 1);
+		if (i == 0 ? path->point[0].t != 0 : !(path->point[i].t > path->point[i - 1].t))
+			ob_sandbox_fail(L,
+					"%s.points: expected times that begin with 0 and grow, got %.10g at point %zu",
+					where, path->point[i].t, i + 1);
+		lua_pop(L, 1);
+	}
+	lua_pop(L, 1);
+	const ob_vec3 first = path->point[0].p, last = path->point[n - 1].p;
+	if (d->loop && (first.x != last.x || first.y != last.y || first.z != last.z))
+		ob_sandbox_fail(L, "%s.loop: expected the last point where the first one is", where);
+	for (size_t i = 0; i < n; i++)
+		path->point[i].p = ob_add(path->point[i].p, o->state.pose.p);
+	o->state.pose.p = path->point[0].p;
+}
+
+void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o)
+{
+	char where[64];
+	const ob_vec3 unsaid = { NAN, NAN, NAN };
+	draft d = { .amplitude = unsaid, .centre = unsaid, .axis = unsaid, .frequency = NAN, .phase = NAN };
+	snprintf(where, sizeof where, "%s.path", kind);
+	luaL_checkstack(L, 8, "nested too deep");
+	ob_fields_read(L, -1, where, path_fields, sizeof path_fields / sizeof *path_fields, &d);
+	check_said(L, where, &d);
+	if (d.kind == SINE)
+		make_sine(L, where, &d, o);
+	else if (d.kind == CIRCLE)
+		make_circle(L, where, &d, o);
+	else
+		make_spline(L, where, &d, o);
+}
