@@ -8,7 +8,7 @@ const ob_conserved_kind ob_conserved_kinds[OB_CONSERVED] = {
 
 static bool is_fixed(const ob_passport *p)
 {
-	return p->flags & OB_OBJECT_STATIC || !(p->mass > 0);
+	return p->flags & OB_OBJECT_PRESCRIBED || !(p->mass > 0);
 }
 
 ob_conservation ob_conservation_begin(const ob_world *w)
@@ -24,6 +24,8 @@ ob_conservation ob_conservation_begin(const ob_world *w)
 		mass += p->mass;
 	}
 	c.centre = ob_scale(c.centre, mass > 0 ? 1 / mass : 0);
+	c.driven = ob_world_is_driven(w); // what does work may add energy
+	c.worst[OB_CONSERVED_ENERGY] = c.driven ? NAN : 0;
 	c.worst[OB_CONSERVED_MOMENTUM] = c.worst[OB_CONSERVED_ANGULAR] = c.closed ? 0 : NAN;
 	return c;
 }
@@ -74,7 +76,7 @@ void ob_conservation_look(ob_conservation *c, const ob_snapshot *now, double rec
 		c->scale[i] = fmax(c->scale[i], s.scale[i]);
 	double net = s.energy - recovered, *scale = c->scale;
 	c->lowest = fmin(c->lowest, net);
-	if (scale[OB_CONSERVED_ENERGY] > 0)
+	if (scale[OB_CONSERVED_ENERGY] > 0 && !c->driven)
 		keep(&c->worst[OB_CONSERVED_ENERGY], (net - c->lowest) / scale[OB_CONSERVED_ENERGY]);
 	if (!c->closed)
 		return;

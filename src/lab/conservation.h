@@ -1,6 +1,7 @@
 // What every case is watched for, whatever it is about: momentum, angular momentum and energy, as far as its world
 // keeps them. A world where nothing is fixed, nothing is pulled and no gravity acts is closed: all three are watched.
-// Where gravity, constant forces and fixed bodies act, the energy can only fall. One thread per watch.
+// Where gravity, constant forces and fixed bodies act, the energy can only fall. Where bodies move as they are told,
+// nothing is watched. One thread per watch.
 #ifndef OB_LAB_CONSERVATION_H
 #define OB_LAB_CONSERVATION_H
 
@@ -27,7 +28,7 @@ extern const ob_conserved_kind ob_conserved_kinds[OB_CONSERVED];
 
 typedef struct ob_conservation {
 	const ob_world *world;
-	bool closed, begun;
+	bool closed, begun, driven;
 	ob_vec3 centre, momentum, angular; // at the start
 	double scale[OB_CONSERVED], lowest; // kg m/s, kg m^2/s, J; J
 	double worst[OB_CONSERVED]; // NAN: not kept by this world

@@ -13,7 +13,7 @@ ob_vec3 ob_look_moved(const ob_case_run_state *t, uint32_t id)
 
 bool ob_look_moves(const ob_case_run_state *t, uint32_t id)
 {
-	return !(t->world->passport[id].flags & OB_OBJECT_STATIC);
+	return !(t->world->passport[id].flags & OB_OBJECT_PRESCRIBED);
 }
 
 double ob_look_energy(const ob_case_run_state *t)

@@ -7,7 +7,7 @@
 
 ob_state ob_look_at(const ob_case_run_state *t, uint32_t id);
 ob_vec3 ob_look_moved(const ob_case_run_state *t, uint32_t id); // m, since the start
-bool ob_look_moves(const ob_case_run_state *t, uint32_t id); // it is not static
+bool ob_look_moves(const ob_case_run_state *t, uint32_t id); // forces move it
 double ob_look_energy(const ob_case_run_state *t); // J; potential energy is 0 at z = 0
 double ob_look_farthest(const ob_case_run_state *t); // m: the farthest that a body is from where it started
 // Some centre is a metre below the level ground: through it, not just deep in it.

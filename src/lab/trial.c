@@ -53,6 +53,10 @@ static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind 
 	ob_conservation_look(&conserved, &t->now, 0);
 	if (c->observe)
 		c->observe(t);
+	if (!kind->drives && ob_world_is_driven(t->world)) {
+		t->failed = "takes no bodies that move as they are told";
+		broken = true;
+	}
 	while (!t->failed && t->frame < frames) {
 		double cpu = ob_clock_thread_cpu(), wall = ob_clock_wall();
 		bool on = kind->step(engine, e);

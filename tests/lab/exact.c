@@ -6,7 +6,7 @@
 
 static bool is_static(const ob_world *w, uint32_t id)
 {
-	return w->passport[id].flags & OB_OBJECT_STATIC;
+	return w->passport[id].flags & OB_OBJECT_PRESCRIBED;
 }
 
 ob_state exact_rest(const ob_world *w, uint32_t id, double t)
@@ -220,4 +220,51 @@ ob_state exact_round(const ob_world *w, uint32_t id, double t)
 	double moment = p->inertia.z / (p->mass * p->size.x * p->size.x);
 	return accelerated(w->state[id],
 			   ob_scale(down, ob_reference_round_incline(-w->gravity.z, asin(-down.z), moment)), t);
+}
+
+ob_state exact_shaken(const ob_world *w, uint32_t id, double t)
+{
+	const ob_path *path = ob_world_path(w, id - id % 2);
+	const double f = path->frequency;
+	ob_state s = w->state[id];
+	if (is_static(w, id)) {
+		s.pose.p = ob_madd(s.pose.p, sin(f * t) / f, s.v);
+		s.v = ob_scale(s.v, cos(f * t));
+		return s;
+	}
+	const ob_reference_shaken b = ob_reference_shaken_block(ob_norm(w->state[id - 1].v) / f, f,
+								w->passport[id].friction, -w->gravity.z, 0, t);
+	s.pose.p.x += b.x;
+	s.v.x = b.v;
+	return s;
+}
+
+ob_state exact_belt(const ob_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	if (is_static(w, id))
+		return s;
+	const double speed = w->passport[id - 1].surface_velocity.x, a = w->passport[id].friction * -w->gravity.z,
+		     since = fmin(t, speed / a);
+	s.pose.p.x += .5 * a * since * since + speed * (t - since);
+	s.v.x = a * since;
+	return s;
+}
+
+ob_state exact_turntable(const ob_world *w, uint32_t id, double t)
+{
+	ob_state s = w->state[id];
+	const ob_vec3 turn = ob_v3(0, 0, w->state[id - id % 2].w.z * t), axis = w->state[id - id % 2].pose.p;
+	s.pose.q = ob_quat_turn(s.pose.q, turn);
+	if (is_static(w, id))
+		return s;
+	const ob_mat3 r = ob_quat_matrix(ob_quat_turn(ob_quat_identity(), turn));
+	const double rate = s.w.z, radius = s.pose.p.x - axis.x;
+	if (radius > ob_reference_turntable_radius(rate, w->passport[id].friction, -w->gravity.z)) {
+		s.pose.p = ob_madd(s.pose.p, t, s.v);
+		return s;
+	}
+	s.pose.p = ob_add(axis, ob_rotate(&r, ob_sub(s.pose.p, axis)));
+	s.v = ob_rotate(&r, s.v);
+	return s;
 }

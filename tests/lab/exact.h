@@ -22,5 +22,8 @@ ob_state exact_disk(const ob_world *w, uint32_t id, double t); // on its rim, it
 ob_state exact_roll(const ob_world *w, uint32_t id, double t); // on level ground, without slip
 ob_state exact_pull(const ob_world *w, uint32_t id, double t); // by its force, against friction
 ob_state exact_round(const ob_world *w, uint32_t id, double t); // cylinders and capsules down the slope of body 0
+ob_state exact_shaken(const ob_world *w, uint32_t id, double t); // blocks on tables that swing
+ob_state exact_belt(const ob_world *w, uint32_t id, double t); // blocks on belts
+ob_state exact_turntable(const ob_world *w, uint32_t id, double t); // boxes that stay, or go off straight
 
 #endif

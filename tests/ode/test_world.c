@@ -247,6 +247,35 @@ static void test_full(void)
 	ob_ode_world_destroy(w);
 }
 
+// A lift takes a box up, and a belt along, at their own speeds.
+static void test_driven(void)
+{
+	ob_ode_world *w = world(20, true);
+	bool asleep, touching;
+	ob_passport p = { .id = 1, .flags = OB_OBJECT_PRESENT | OB_OBJECT_KINEMATIC, .shape = OB_SHAPE_BOX };
+	p.size = ob_v3(2, 2, .5);
+	p.friction = 1;
+	ob_state lift = { .pose = { { 0, 0, .6 }, { 1, 0, 0, 0 } }, .v = { 0, 0, 1 } };
+	ob_ode_world_add(w, &p, &lift);
+	add(w, 2, OB_SHAPE_BOX, ob_v3(0, 0, 1.6), 0);
+	p.id = 3;
+	p.flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC;
+	p.surface_velocity = ob_v3(0, 1.5, 0);
+	const ob_state belt = { .pose = { { 10, 0, 1 }, { 1, 0, 0, 0 } } };
+	ob_ode_world_add(w, &p, &belt);
+	add(w, 4, OB_SHAPE_BOX, ob_v3(10, -1.5, 2), 0);
+	for (int i = 0; i < 240; i++) {
+		lift.pose.p.z = .6 + i * H;
+		ob_ode_world_drive(w, 1, &lift);
+		run(w, 1);
+	}
+	CHECK_NEAR(get(w, 2, &asleep, &touching).pose.p.z, 2.6, .02);
+	CHECK_NEAR(get(w, 2, &asleep, &touching).v.z, 1, .01);
+	CHECK_NEAR(get(w, 4, &asleep, &touching).v.y, 1.5, .01);
+	CHECK_NEAR(get(w, 4, &asleep, &touching).pose.p.y, -1.5 + 1.5 - 1.5 * .5 * 1.5 / 7.07, .05);
+	ob_ode_world_destroy(w);
+}
+
 int main(void)
 {
 	ob_ode_thread_init();
@@ -262,6 +291,7 @@ int main(void)
 	test_standing(OB_SHAPE_CYLINDER);
 	test_same_bits();
 	test_boxed();
+	test_driven();
 	ob_ode_thread_finish();
 	return check_end();
 }

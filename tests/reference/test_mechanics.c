@@ -271,6 +271,41 @@ static void test_cards(void)
 	CHECK(ob_reference_cards_grip(atan(.1), 1, .1) < 1e-15); // the centre stands over the foot
 }
 
+// Against small steps: the velocity follows the table's as fast as friction lets it.
+static void test_shaken(void)
+{
+	static const double mu[] = { .05, .2, .35, .5 };
+	const double amplitude = .1, f = 6, gravity = 9.81, h = 1e-5;
+	for (int i = 0; i < 4; i++) {
+		double x = 0, v = .2;
+		for (int k = 1; k <= 300000; k++) {
+			const double table = amplitude * f * cos(f * h * k), most = mu[i] * gravity * h,
+				     change = fmax(-most, fmin(most, table - v));
+			x += h * (v + .5 * change);
+			v += change;
+			if (k % 50000)
+				continue;
+			const ob_reference_shaken b = ob_reference_shaken_block(amplitude, f, mu[i], gravity, .2, h * k);
+			CHECK_NEAR(b.x, x, 2e-5);
+			CHECK_NEAR(b.v, v, 2e-4);
+		}
+	}
+}
+
+// The force on the ball is friction's, which turns it: m v' = F, I w' = -R z x F, v = R w x z + rate z x p.
+static void test_turntable_ball(void)
+{
+	const double rate = 2, h = 1e-5;
+	ob_vec3 p = ob_v3(1, 0, 0), v = ob_v3(.5, .1, 0);
+	for (int k = 0; k < 200000; k++) {
+		const ob_vec3 half = ob_madd(v, .5 * h * 2 / 7 * rate, ob_v3(-v.y, v.x, 0));
+		p = ob_madd(p, h, half);
+		v = ob_madd(v, h * 2 / 7 * rate, ob_v3(-half.y, half.x, 0));
+	}
+	CHECK_NEAR(ob_norm(ob_sub(p, ob_reference_turntable_ball(rate, ob_v3(1, 0, 0), ob_v3(.5, .1, 0), 2))), 0, 1e-8);
+	CHECK_NEAR(ob_reference_turntable_radius(3, .6, 9.81), .654, 1e-12);
+}
+
 int main(void)
 {
 	test_parabola();
@@ -285,5 +320,7 @@ int main(void)
 	test_push();
 	test_overhang();
 	test_cards();
+	test_shaken();
+	test_turntable_ball();
 	return check_end();
 }

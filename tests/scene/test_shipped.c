@@ -121,7 +121,7 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 11);
+	CHECK(files() == 12);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
@@ -139,7 +139,7 @@ int main(int argc, char **argv)
 	check_count("flock", NULL, 67, false);
 	check_count("flock", "n=200", 207, false);
 	check_seeds("flock", true);
-	check_count("machines", NULL, 43, false);
+	check_count("machines", NULL, 42, false);
 	check_seeds("machines", true);
 	check_seeds("falling_boxes", true);
 	check_seeds("stack", true);

@@ -70,7 +70,10 @@
 	X(cylinder_stack) \
 	X(round_incline) \
 	X(mixed_pile) \
-	X(random_heaps)
+	X(random_heaps) \
+	X(shaking_tables) \
+	X(belts) \
+	X(turntables)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)
