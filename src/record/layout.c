@@ -27,7 +27,7 @@ static const ob_record_member event_members[] = {
 const ob_record_table ob_record_events = {
 	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
 	  "objects that come (kind 1), change (2) and go (3), in the order of steps; shape: 1 sphere, 2 box, 3 plane, "
-	  "4 capsule, 5 cylinder; flags: 1 present, 2 static" },
+	  "4 capsule, 5 cylinder; flags: 1 present, 2 static, 8 kinematic" },
 	sizeof(ob_record_event),
 	COUNT(event_members),
 	event_members,
@@ -47,12 +47,13 @@ static const ob_record_member motion_members[] = {
 	MOTION(v, OB_RECORD_VEC3),
 	MOTION(w, OB_RECORD_VEC3),
 	MOTION(a, OB_RECORD_VEC3),
+	MOTION(frequency, OB_RECORD_F64),
 };
 const ob_record_table ob_record_motions = {
 	{ "motions", "SI", "world, right-handed, z up; q: body to world, w x y z",
 	  "how an object moves from t0 on: p, v on a parabola with a; q, w as a free rigid body; flags: 1 in free "
 	  "flight, "
-	  "2 asleep, 8 in equilibrium" },
+	  "2 asleep, 8 in equilibrium, 16 on an ellipse with a frequency" },
 	sizeof(ob_record_motion),
 	COUNT(motion_members),
 	motion_members,

@@ -540,6 +540,7 @@ static ob_record_motion recorded(uint32_t id, const ob_motion *m)
 					       .v = m->v,
 					       .w = m->w,
 					       .a = m->a,
+					       .frequency = m->flags & OB_MOTION_SWINGS ? m->frequency : 0,
 					       .flags = m->flags } };
 }
 
