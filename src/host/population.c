@@ -260,7 +260,7 @@ static void stop_script(ob_population *p, uint32_t cell, uint32_t line, const ch
 	const uint32_t script = turn->script - 1;
 	turn->flags |= OB_SCRIPT_STOPPED;
 	c->failed_step = (uint32_t)ob_step_count(p->u);
-	snprintf(c->error, sizeof c->error, "%.47s:%u: %s",
+	snprintf(c->error, sizeof c->error, "%.47s:%u: %.130s",
 		 script < data->script_text->scripts ? data->script_text->text[script].name : "?", line, why);
 	data->script_counts->failed++;
 }
