@@ -15,7 +15,8 @@ void ob_conjugate_begin(ob_island_work *w)
 		c->direction = ob_allocate_aligned(32, c->batches_max * sizeof *c->direction);
 		c->change = ob_allocate_aligned(32, c->batches_max * sizeof *c->change);
 	}
-	memset(c->direction, 0, w->batches * sizeof *c->direction);
+	if (w->batches)
+		memset(c->direction, 0, w->batches * sizeof *c->direction);
 	c->last = 0;
 }
 

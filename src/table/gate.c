@@ -112,6 +112,11 @@ static void set_expected(ob_gate_group *group, uint64_t workers)
 	__atomic_store_n(&group->expected, workers, __ATOMIC_RELAXED);
 }
 
+static uint64_t expected_of(const ob_gate_group *group)
+{
+	return __atomic_load_n(&group->expected, __ATOMIC_RELAXED);
+}
+
 static void set_all_expected(ob_universe *u, uint32_t groups)
 {
 	uint32_t workers = ob_universe_simulators(u);
@@ -155,17 +160,18 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 			continue;
 		}
 		ob_gate_group *group = u->gate_group + participants[i] / 64;
-		set_expected(group, group->expected | UINT64_C(1) << participants[i] % 64);
+		set_expected(group, expected_of(group) | UINT64_C(1) << participants[i] % 64);
 	}
 	for (uint32_t i = 0; i < groups; i++)
-		taking_part += u->gate_group[i].expected != 0;
+		taking_part += expected_of(u->gate_group + i) != 0;
 	__atomic_store_n(&g->groups_left, taking_part, __ATOMIC_RELAXED);
 	__atomic_store_n(&g->phase, phase, __ATOMIC_RELAXED);
-	__atomic_store_n(&g->host_turn, 0, __ATOMIC_RELAXED);
+	if (__atomic_load_n(&g->host_turn, __ATOMIC_RELAXED) & 1) // a worker that opens must not take away STOP's bit
+		__atomic_fetch_and(&g->host_turn, ~UINT32_C(1), __ATOMIC_RELAXED);
 	uint32_t turn = ++g->turn;
 	for (uint32_t i = 0; i < groups && taking_part; i++) {
 		ob_gate_group *group = u->gate_group + i;
-		uint64_t expected = group->expected;
+		uint64_t expected = expected_of(group);
 		taking_part -= expected != 0;
 		for (uint32_t k = 0; k < 2; k++)
 			if ((uint32_t)(expected >> 32 * k))

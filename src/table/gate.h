@@ -45,7 +45,7 @@ typedef struct ob_gate {
 	uint32_t spin; // 1 = every worker has a core of its own
 	_Alignas(64) uint32_t groups_left; // groups of which a worker has still to arrive
 	_Alignas(64) uint32_t stop; // sticky
-	_Alignas(64) uint32_t host_turn; // futex word: 1 = the host has the turn
+	_Alignas(64) uint32_t host_turn; // futex word: bit 0 = the host has the turn; bit 1 moves it at STOP
 	uint32_t awaited; // of contained simulators: 1 + the one whose outbox the arranger waits for (outbox.h)
 } ob_gate;
 

@@ -61,6 +61,10 @@ class Limits(program.Case):
 				self.assertFalse(done.returncode == 1 and "open files" not in said[0], (files, done.stderr))
 		self.assertLessEqual({(c, *i) for c in (0, 1) for i in (["thread"], ["process"], ["process", "--harden"])}, ran)
 
+	def test_nothing_touches(self):
+		"""What the sanitizers found."""
+		program.report(hostile("no_contacts"), "--duration", ".1")
+
 	def test_many_substeps(self):
 		self.refuse("run", hostile("many_substeps"), "--tolerance", ".1mm", saying="1024 at most")
 
