@@ -39,7 +39,7 @@ ARROWS = {
     'render': 'measure scene motion base',
     'record': 'measure scene table settings motion base',
     'paper': 'host measure render reference plot experiment scene table settings base',
-    'serve': 'host scene table settings motion base',
+    'serve': 'record measure host scene table settings motion base',
     'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],

@@ -20,6 +20,7 @@ int ob_command_paper(const ob_arguments *a);
 int ob_command_inspect(const ob_arguments *a);
 int ob_command_serve(const ob_arguments *a);
 int ob_command_send(const ob_arguments *a);
+int ob_command_export(const ob_arguments *a);
 int ob_command_draw_replay(const ob_arguments *a); // run with --replay: what was recorded, instead of a scene
 
 // One line on standard error, "obsim: ..."; returns code.

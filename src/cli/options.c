@@ -16,7 +16,8 @@ enum {
 	PAPER = OB_COMMAND_PAPER,
 	INSPECT = OB_COMMAND_INSPECT,
 	SERVE = OB_COMMAND_SERVE,
-	SEND = OB_COMMAND_SEND
+	SEND = OB_COMMAND_SEND,
+	EXPORT = OB_COMMAND_EXPORT
 };
 
 const ob_option ob_option_table[OB_OPTIONS] = {
@@ -110,7 +111,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				   "what the run needs to go on, replaced as it goes, and at its end", RUN, 0 },
 	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
 	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN, 0 },
-	[OB_OPTION_REPLAY] = { NULL, "replay", "FILE", "draw what was recorded, instead of a scene", RUN, 0 },
+	[OB_OPTION_REPLAY] = { NULL, "replay", "FILE", "show what was recorded, instead of a scene", RUN | SERVE, 0 },
 
 	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..",
 			      "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },
@@ -139,7 +140,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
 	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end",
-			     RUN | COMPARE | TOP | LAB | PAPER | INSPECT | SERVE | SEND, 'h' },
+			     RUN | COMPARE | TOP | LAB | PAPER | INSPECT | SERVE | SEND | EXPORT, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -277,10 +278,12 @@ bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **
 		} else if (!only_operands && argv[i][0] == '-' && argv[i][1]) {
 			if (!take_option(a, argc, argv, &i, e))
 				return false;
-		} else if (a->operand && command != OB_COMMAND_LAB && command != OB_COMMAND_SEND) {
+		} else if (a->operand && command != OB_COMMAND_LAB && command != OB_COMMAND_SEND &&
+			   !(command == OB_COMMAND_EXPORT && operands < 2)) {
 			return ob_fail(e, "unexpected '%s' after '%s': one %s at a time", argv[i], a->operand,
 				       command == OB_COMMAND_TOP       ? "universe"
 				       : command == OB_COMMAND_INSPECT ? "checkpoint"
+				       : command == OB_COMMAND_EXPORT  ? "record and one page"
 								       : "scene");
 		} else {
 			a->operands[operands++] = argv[i];
@@ -311,6 +314,8 @@ static const struct {
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
 	{ OB_COMMAND_SEND, "obsim send NAME create|remove|colour|message ...",
 	  "Asks a running universe to change an object, or sends its script a message." },
+	{ OB_COMMAND_EXPORT, "obsim export FILE.h5 PAGE.html",
+	  "Makes a page of what was recorded, which any browser plays by itself." },
 	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",
 	  "Says what a checkpoint holds, and whether it is whole." },
 	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",
@@ -354,6 +359,11 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      "obsim send NAME colour OBJECT '#rrggbb'\n"
 		      "obsim send NAME message OBJECT VALUE ...                             for its on_message; -- before a -1\n",
 		      f);
+	if (command == OB_COMMAND_SERVE)
+		fputs("\nobsim serve --replay FILE.h5 [--listen ADDR:PORT] shows what was recorded, to each viewer at "
+		      "a time of "
+		      "their own.\n",
+		      f);
 	if (command == OB_COMMAND_LAB)
 		fputs("\nA CASE is a name, a row of the table (14), or the start or pattern of names (stack, '*-10'); "
 		      "without one, all.\nThe same command goes on where it was interrupted.\n",
@@ -361,6 +371,7 @@ void ob_options_help(FILE *f, ob_command_bit command)
 	fprintf(f, "\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage%s.\n",
 		command == OB_COMMAND_LAB       ? ", 3 a target missed"
 		: command == OB_COMMAND_INSPECT ? ", or no whole checkpoint"
+		: command == OB_COMMAND_EXPORT  ? ", or no whole record"
 						: " or scene");
 }
 

@@ -17,6 +17,7 @@ typedef enum ob_command_bit {
 	OB_COMMAND_INSPECT = 32,
 	OB_COMMAND_SERVE = 64,
 	OB_COMMAND_SEND = 128,
+	OB_COMMAND_EXPORT = 256,
 } ob_command_bit;
 
 // In the order in which help shows them.
@@ -107,7 +108,7 @@ typedef struct ob_arguments {
 	const char **define; // every -D, in order; NULL ends
 	uint32_t defines;
 	const char *operand; // the scene file or the universe's name: the first of all; NULL = none
-	const char **operands; // all, in order: only lab and send take more than one; NULL ends
+	const char **operands; // all, in order: only lab, send and export take more than one; NULL ends
 } ob_arguments;
 
 // Reads argv[0 .. argc-1] (what follows the command's name). The strings stay argv's. false and e on misuse.

@@ -458,31 +458,38 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	       read_checkpoint(r, a, e) && read_fault(r, a->value[OB_OPTION_FAULT], e);
 }
 
-// What is run again is a record: it is not run.
+bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e)
+{
+	if (a->operand)
+		return ob_fail(e,
+			       "--replay and the scene %s: expected one of them, for a record holds all that is shown",
+			       a->operand);
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		bool fine = i == OB_OPTION_DEFINE ? a->defines == 0 : !a->value[i];
+		for (size_t k = 0; k < count; k++)
+			fine |= allowed[k] == (ob_option_id)i;
+		if (!fine)
+			return ob_fail(e, "--%s: a record is shown as it was run; leave this away",
+				       name_of((ob_option_id)i));
+	}
+	return true;
+}
+
 bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e)
 {
 	static const ob_option_id allowed[] = { OB_OPTION_REPLAY,  OB_OPTION_DURATION, OB_OPTION_FRAMES,
 						OB_OPTION_VIDEO,   OB_OPTION_RAW,      OB_OPTION_FPS,
 						OB_OPTION_SIZE,    OB_OPTION_SAMPLES,  OB_OPTION_CAMERA,
-						OB_OPTION_OVERLAY, OB_OPTION_GPU };
+						OB_OPTION_OVERLAY, OB_OPTION_GPU,      OB_OPTION_QUALITY };
 	*r = (ob_replay_request){ .record = a->value[OB_OPTION_REPLAY] };
-	if (a->operand)
-		return ob_fail(e,
-			       "--replay and the scene %s: expected one of them, for a record holds all that is drawn",
-			       a->operand);
-	for (int i = 0; i < OB_OPTIONS; i++) {
-		bool fine = i == OB_OPTION_DEFINE ? a->defines == 0 : !a->value[i];
-		for (size_t k = 0; k < sizeof allowed / sizeof *allowed; k++)
-			fine |= allowed[k] == (ob_option_id)i;
-		if (!fine)
-			return ob_fail(e, "--%s: a record is drawn as it was run; leave this away",
-				       name_of((ob_option_id)i));
-	}
-	if (!read_frames(&r->frames, a, e) || !real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) ||
+	if (!ob_request_check_replay(a, allowed, sizeof allowed / sizeof *allowed, e) ||
+	    !read_frames(&r->frames, a, e) || !real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) ||
 	    !check_outputs(a, e))
 		return false;
 	if (!r->frames.wanted)
-		return ob_fail(e, "--replay needs --frames, --video or --raw");
+		return ob_fail(
+			e, "--replay needs --frames, --video or --raw; obsim serve --replay %s shows it in a browser",
+			r->record);
 	return !r->frames.contacts || ob_fail(e, "--overlay contacts: a record holds no contacts");
 }
 

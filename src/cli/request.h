@@ -68,6 +68,8 @@ typedef struct ob_replay_request {
 	ob_frames_request frames;
 } ob_replay_request;
 
+// false and e when there is a scene beside --replay, or another option than those that are allowed.
+bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e);
 // false and e on what means nothing to a replay, or is wrong otherwise.
 bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e);
 // false and e when none of the cameras has the name that is asked for.

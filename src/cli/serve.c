@@ -12,6 +12,7 @@
 #include "cli/quantity.h"
 #include "cli/request.h"
 #include "cli/version.h"
+#include "serve/film.h"
 
 static const double patience = .05; // s, in which requests are heard while nothing is due
 static const double go_time = .02; // s that the universe is let run at once where it runs as fast as it can
@@ -88,8 +89,56 @@ static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
 	return ended ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e.text);
 }
 
+// Until Ctrl-C
+static int show_film(const serve_request *q, ob_error *e)
+{
+	ob_server *server = ob_server_start(&q->server, NULL, NULL, e);
+	if (!server)
+		return ob_command_fail(OB_EXIT_FAILED, e->text);
+	printf("%s, recorded, is at %s\nCtrl-C ends it.\n", q->server.scene->title, ob_server_url(server));
+	fflush(stdout);
+	while (!ob_interrupt_came())
+		nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * patience) }, NULL);
+	ob_server_stop(server);
+	return OB_EXIT_OK;
+}
+
+static bool read_replay_request(serve_request *q, const ob_arguments *a, ob_error *e)
+{
+	static const ob_option_id allowed[] = { OB_OPTION_REPLAY, OB_OPTION_LISTEN };
+	const char *listen = a->value[OB_OPTION_LISTEN];
+	*q = (serve_request){ .server = { .look_only = true, .version = ob_version_commit } };
+	return ob_request_check_replay(a, allowed, sizeof allowed / sizeof *allowed, e) &&
+	       ob_listen_read(&q->server.listen, listen ? listen : "127.0.0.1:8080", e);
+}
+
+static int serve_replay(const ob_arguments *a)
+{
+	serve_request q;
+	ob_error e;
+	const char *path = a->value[OB_OPTION_REPLAY];
+	ob_recording *r = read_replay_request(&q, a, &e) ? ob_recording_open(path, &e) : NULL;
+	ob_message *film = r ? ob_film_make(r, path, &e) : NULL;
+	int code;
+	if (film) {
+		q.server.scene = &ob_recording_get_info(r)->scene;
+		q.server.film = film;
+		signal(SIGPIPE, SIG_IGN);
+		ob_interrupt_watch();
+		code = show_film(&q, &e);
+		ob_interrupt_release();
+	} else {
+		code = ob_command_fail(OB_EXIT_USAGE, e.text);
+	}
+	ob_message_release(film);
+	ob_recording_close(r);
+	return code;
+}
+
 int ob_command_serve(const ob_arguments *a)
 {
+	if (a->value[OB_OPTION_REPLAY])
+		return serve_replay(a);
 	serve_request q;
 	ob_error e;
 	if (!read_request(&q, a, &e))

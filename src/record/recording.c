@@ -512,6 +512,7 @@ static bool take_motion(ob_recording *r, const ob_record_motion *m, ob_error *e)
 	    !finite3(now->w) || !finite3(now->a) || now->t0 > r->now.time + r->info.interval || now->t0 < -number_max)
 		return damaged(r, "a motion makes no sense", e);
 	r->now.motion[m->id] = *now;
+	r->now.motion[m->id].step = (uint32_t)r->step[r->state];
 	return true;
 }
 

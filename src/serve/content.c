@@ -15,6 +15,11 @@ const ob_content *ob_content_find(const char *path)
 	return NULL;
 }
 
+const ob_content *ob_content_at(size_t i)
+{
+	return i < sizeof contents / sizeof *contents ? &contents[i] : NULL;
+}
+
 // A number of at most 15 digits; false: none is there.
 static bool take_number(const char **s, uint64_t *out)
 {

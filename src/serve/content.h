@@ -14,8 +14,10 @@ typedef struct ob_content {
 	size_t size;
 } ob_content;
 
-// NULL: nothing is there.
+// NULL: nothing is there. Paths of requests begin with '/'; all scripts in one, for a page that needs nobody, are
+// "all.js".
 const ob_content *ob_content_find(const char *path);
+const ob_content *ob_content_at(size_t i); // the ones that there are; NULL: no more
 
 typedef enum ob_range_kind { OB_RANGE_ALL, OB_RANGE_PART, OB_RANGE_NONE } ob_range_kind;
 

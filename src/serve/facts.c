@@ -22,24 +22,24 @@ static void put_colour(ob_message *m, const char *name, const float c[3])
 	put_numbers(m, name, (double[]){ c[0], c[1], c[2] }, 3);
 }
 
-ob_message *ob_facts_welcome(const ob_server_config *c, const ob_host *h)
+ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info)
 {
 	const ob_scene *scene = c->scene;
 	const ob_look_def *look = &scene->look;
-	ob_universe_info info;
-	ob_universe_get_info(ob_host_universe(h), &info);
 	ob_message *m = ob_message_new(true);
 	if (!m)
 		return NULL;
 	ob_message_print(m, "{\"welcome\":{\"protocol\":1,\"title\":");
 	ob_message_put_json(m, scene->title);
 	ob_message_print(m, ",\"universe\":");
-	ob_message_put_json(m, info.name);
+	ob_message_put_json(m, info->name);
 	ob_message_print(m, ",\"version\":");
 	ob_message_put_json(m, c->version);
-	ob_message_print(m, ",\"isolation\":\"%s\",\"workers\":%u,\"look_only\":%s,\"step_length\":%.17g",
-			 info.isolation, info.workers, c->look_only ? "true" : "false", info.step_length);
-	put_vec3(m, "gravity", info.gravity);
+	ob_message_print(m, ",\"isolation\":");
+	ob_message_put_json(m, info->isolation);
+	ob_message_print(m, ",\"workers\":%u,\"look_only\":%s,\"step_length\":%.17g", info->workers,
+			 c->look_only ? "true" : "false", info->step_length);
+	put_vec3(m, "gravity", info->gravity);
 	put_colour(m, "sky_top", look->sky_top);
 	put_colour(m, "sky_horizon", look->sky_horizon);
 	put_colour(m, "ground", look->ground_colour);

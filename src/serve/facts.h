@@ -7,7 +7,7 @@
 #include "serve/serve.h"
 
 // {"welcome": title, isolation, gravity, how it looks, cameras ..}: first of all
-ob_message *ob_facts_welcome(const ob_server_config *c, const ob_host *h);
+ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info);
 // {"statistics": objects, awake, pairs, islands, step, viewers}
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
 // {"details": name, state, mass, island, worker ..}, or that it is gone

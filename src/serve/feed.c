@@ -6,7 +6,7 @@
 #include <ob/motion.h>
 
 static const double tolerated = 1. / 256; // of the radius ..
-static const double unseen = .25 / 60; // s: .. and so much of the way
+static const double unseen = .25 / 60; // s: .. and, of what is looked at as it goes, so much of the way
 static const double v_unit = 1e-3, w_unit = 2e-3; // m/s, rad/s: of what is told in 16 bits
 
 enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24 }; // bytes of a message, of its counts
@@ -25,8 +25,9 @@ typedef struct known {
 } known;
 
 struct ob_feed {
-	const ob_universe *u;
+	const ob_universe *u; // NULL: the source is another
 	const ob_roster *roster;
+	ob_feed_source source;
 	uint64_t roster_number; // of what was told
 	known *object; // ascending by id
 	size_t objects;
@@ -39,11 +40,59 @@ struct ob_feed {
 	bool lost; // memory ran out, and viewers may have missed something: all is told anew
 };
 
-ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r)
+// ---- a universe as a source: "of" is the feed
+
+static uint64_t universe_number(const void *of)
+{
+	return ob_roster_number(((const ob_feed *)of)->roster);
+}
+
+static size_t universe_list(const void *of, ob_roster_entry *out, size_t max)
+{
+	return ob_roster_copy(((const ob_feed *)of)->roster, out, max);
+}
+
+static bool universe_passport(const void *of, uint32_t id, ob_passport *out)
+{
+	return ob_universe_get_passport(((const ob_feed *)of)->u, id, out);
+}
+
+static bool universe_motion(const void *of, uint32_t id, ob_motion *out)
+{
+	return ob_universe_get_motion(((const ob_feed *)of)->u, id, out);
+}
+
+static double universe_time(const void *of)
+{
+	ob_universe_info info;
+	ob_universe_get_info(((const ob_feed *)of)->u, &info);
+	return info.time;
+}
+
+ob_feed *ob_feed_create_of(const ob_feed_source *source)
 {
 	ob_feed *f = calloc(1, sizeof *f);
 	if (f)
-		*f = (ob_feed){ .u = u, .roster = r, .lost = true };
+		*f = (ob_feed){ .source = *source, .lost = true };
+	return f;
+}
+
+ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r)
+{
+	ob_universe_info info;
+	ob_universe_get_info(u, &info);
+	ob_feed *f = ob_feed_create_of(&(ob_feed_source){ .number = universe_number,
+							  .list = universe_list,
+							  .passport = universe_passport,
+							  .motion = universe_motion,
+							  .time = universe_time,
+							  .step_length = info.step_length,
+							  .unseen = unseen });
+	if (!f)
+		return NULL;
+	f->u = u;
+	f->roster = r;
+	f->source.of = f;
 	return f;
 }
 
@@ -79,13 +128,13 @@ static double off(const known *k, const ob_motion *m)
 	return ob_norm(ob_sub(m->p, p)) + 2 * k->radius * ob_norm(ob_v3(turn.x, turn.y, turn.z));
 }
 
-static bool is_news(const known *k, const ob_motion *m, ob_feed_kind kind)
+static bool is_news(const ob_feed *f, const known *k, const ob_motion *m, ob_feed_kind kind)
 {
 	if (!k->told || kind != k->kind || kind >= OB_FEED_FREE)
 		return true;
 	if (kind == OB_FEED_STANDS)
 		return memcmp(&m->p, &k->motion.p, sizeof m->p) != 0 || memcmp(&m->q, &k->motion.q, sizeof m->q) != 0;
-	return off(k, m) > tolerated * k->radius + unseen * ob_norm(m->v);
+	return off(k, m) > tolerated * k->radius + f->source.unseen * ob_norm(m->v);
 }
 
 static void put_vec3(ob_message *out, ob_vec3 v)
@@ -189,7 +238,7 @@ static void put_object(ob_message *out, const known *k)
 static bool read_roster(ob_feed *f, size_t *entries)
 {
 	for (;;) {
-		*entries = ob_roster_copy(f->roster, f->entry, f->entry_room);
+		*entries = f->source.list(f->source.of, f->entry, f->entry_room);
 		if (*entries <= f->entry_room)
 			return true;
 		size_t room = 2 * *entries;
@@ -226,7 +275,7 @@ static bool tell_roster(ob_feed *f, ob_message *out)
 			known fresh = { .id = entry->id, .generation = entry->generation };
 			at++;
 			// it may have gone again since the roster was read: then the next one says so
-			if (!ob_universe_get_passport(f->u, fresh.id, &fresh.passport) ||
+			if (!f->source.passport(f->source.of, fresh.id, &fresh.passport) ||
 			    fresh.passport.generation != fresh.generation)
 				continue;
 			fresh.fixed = fresh.passport.flags & OB_OBJECT_STATIC;
@@ -273,19 +322,19 @@ static ob_message *whole_or_none(ob_message *out)
 	return NULL;
 }
 
-static uint32_t tell_motions(ob_feed *f, ob_message *out, double time, double step_length)
+static uint32_t tell_motions(ob_feed *f, ob_message *out, double time)
 {
 	uint32_t told = 0, before = UINT32_MAX;
 	for (size_t i = 0; i < f->objects; i++) {
 		known *k = &f->object[i];
 		ob_motion m;
-		if ((k->fixed && k->told) || !ob_universe_get_motion(f->u, k->id, &m) ||
+		if ((k->fixed && k->told) || !f->source.motion(f->source.of, k->id, &m) ||
 		    (k->told && m.t0 == k->seen_t0 && m.step == k->seen_step))
 			continue;
-		ob_feed_kind kind = kind_of(k, &m, step_length);
+		ob_feed_kind kind = kind_of(k, &m, f->source.step_length);
 		k->seen_t0 = m.t0;
 		k->seen_step = m.step;
-		if (!is_news(k, &m, kind))
+		if (!is_news(f, k, &m, kind))
 			continue;
 		know(k, &m, kind);
 		put_motion(out, k, time, &before);
@@ -296,24 +345,23 @@ static uint32_t tell_motions(ob_feed *f, ob_message *out, double time, double st
 
 ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace)
 {
-	ob_universe_info info;
-	uint64_t number = ob_roster_number(f->roster); // before the roster, which may be newer
-	ob_universe_get_info(f->u, &info);
+	uint64_t number = f->source.number(f->source.of); // before the roster, which may be newer
+	double time = f->source.time(f->source.of);
 	bool anew = f->lost;
-	ob_message *out = begin(pace, info.time, anew);
+	ob_message *out = begin(pace, time, anew);
 	if (!out)
 		return NULL;
 	if (anew)
 		f->objects = 0;
-	bool news = anew || number != f->roster_number || info.time != f->time || pace->paused != f->pace.paused ||
+	bool news = anew || number != f->roster_number || time != f->time || pace->paused != f->pace.paused ||
 		    pace->rate != f->pace.rate;
 	if ((anew || number != f->roster_number) && !tell_roster(f, out))
 		out->failed = true;
-	uint32_t motions = tell_motions(f, out, info.time, info.step_length);
+	uint32_t motions = tell_motions(f, out, time);
 	ob_message_set_u32(out, MOTIONS_AT, motions);
 	f->lost = out->failed;
 	f->roster_number = number;
-	f->time = info.time;
+	f->time = time;
 	f->pace = *pace;
 	if (news || motions > 0)
 		return whole_or_none(out);
@@ -342,8 +390,8 @@ ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace)
 
 ob_message *ob_feed_contacts(ob_feed *f)
 {
-	size_t n;
-	while ((n = ob_universe_get_contacts(f->u, f->contact, f->contact_room)) > f->contact_room) {
+	size_t n = 0;
+	while (f->u && (n = ob_universe_get_contacts(f->u, f->contact, f->contact_room)) > f->contact_room) {
 		size_t room = 2 * n;
 		ob_contact_point *grown = realloc(f->contact, room * sizeof *grown);
 		if (!grown)

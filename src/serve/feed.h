@@ -45,8 +45,22 @@ enum { OB_FEED_WIDE = 4, OB_FEED_ACCELERATED = 8, OB_FEED_BEGUN = 16 }; // with 
 
 typedef struct ob_feed ob_feed;
 
+// Where a feed looks. What each function is given is "of".
+typedef struct ob_feed_source {
+	const void *of;
+	uint64_t (*number)(const void *of); // as ob_roster_number
+	size_t (*list)(const void *of, ob_roster_entry *out, size_t max); // as ob_roster_copy
+	bool (*passport)(const void *of, uint32_t id, ob_passport *out); // as ob_universe_get_passport
+	bool (*motion)(const void *of, uint32_t id, ob_motion *out); // as ob_universe_get_motion
+	double (*time)(const void *of); // s, simulated
+	double step_length; // s
+	double unseen; // s: what an object may be off by is its way in so long, too, for nobody sees it stand still
+} ob_feed_source;
+
 // Of a running universe and its roster, which must outlive it. NULL: out of memory.
 ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r);
+// Of anything else; it has no contacts.
+ob_feed *ob_feed_create_of(const ob_feed_source *source);
 void ob_feed_destroy(ob_feed *f); // NULL is allowed
 
 // What is new since the last call; NULL: nothing is, not even the time; or out of memory.

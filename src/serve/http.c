@@ -88,12 +88,21 @@ static int refuse(struct lws *wsi, unsigned status, const char *text)
 	return end_transaction(wsi);
 }
 
-int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path)
+static const ob_content *find(const char *path, const ob_content *own)
+{
+	for (const ob_content *c = own; c->path; c++) {
+		if (strcmp(c->path, path) == 0)
+			return c;
+	}
+	return path[0] == '/' ? ob_content_find(path) : NULL;
+}
+
+int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path, const ob_content *own)
 {
 	head h;
 	char header[256], part[96], *uri;
 	int length, method = lws_http_get_uri_and_method(wsi, &uri, &length);
-	const ob_content *c = ob_content_find(strcmp(path, "/") == 0 ? "/index.html" : path);
+	const ob_content *c = find(strcmp(path, "/") == 0 ? "/index.html" : path, own);
 	*a = (ob_http_answer){ .content = NULL };
 	if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
 		return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, "only GET and HEAD are answered here\n");

@@ -17,7 +17,8 @@ typedef struct ob_http_answer {
 // port; any_name: the token decides, not the name.
 bool ob_http_is_ours(struct lws *wsi, const char *address, int port, bool any_name);
 // Both return what the library's callback has to: other than 0 ends the connection.
-int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path);
+// own: contents that come before those of content.h; ends with one without a path.
+int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path, const ob_content *own);
 int ob_http_go_on(struct lws *wsi, ob_http_answer *a);
 
 #endif

@@ -13,12 +13,15 @@
 // Who may come: on a loopback address, pages of this server alone, and programs of this machine; on any other address,
 // who has the token. A page of another origin is refused, also where it has a name of its own for this address.
 //
+// Where a film is shown there is no universe: pages alone are handed out, and the film to who has the token.
+//
 // Thread-safety: start and stop are one thread's.
 #ifndef OB_SERVE_SERVE_H
 #define OB_SERVE_SERVE_H
 
 #include "host/host.h"
 #include "host/pace.h"
+#include "serve/message.h"
 
 typedef struct ob_listen {
 	char address[64]; // in numbers
@@ -36,13 +39,14 @@ typedef struct ob_server_config {
 	uint32_t viewers; // at most
 	const ob_scene *scene;
 	const char *version;
+	const ob_message *film; // what is shown instead of a universe (film.h), each viewer at a time of their own; NULL: none
 } ob_server_config;
 
 enum { OB_SERVER_STUCK = 20 }; // s
 
 typedef struct ob_server ob_server;
 
-// The host and the pace must outlive it. NULL and e on failure.
+// The host and the pace must outlive it; of a film there are none. NULL and e on failure.
 ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e);
 // Where the page is, with its token, if there is one.
 const char *ob_server_url(const ob_server *s);

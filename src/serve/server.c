@@ -12,6 +12,7 @@
 #include "serve/client.h"
 #include "serve/facts.h"
 #include "serve/feed.h"
+#include "serve/film_page.h"
 #include "serve/http.h"
 #include "serve/serve.h"
 
@@ -19,6 +20,7 @@ static const double interval = 1. / 60; // s, between two looks at the universe
 static const double share = .3; // .. of the time at most that looking may take
 static const double detail_interval = .25; // s, between two of the statistics, and of what is inspected
 static const double commands_rate = 200, creations_rate = 40; // 1/s, of one client
+static const char film_path[] = "/recording";
 enum { SEND_BUFFER = 1 << 18 }; // bytes: what the kernel keeps for a client; more would only be old when it comes
 
 struct ob_server {
@@ -27,6 +29,9 @@ struct ob_server {
 	ob_pace *pace;
 	char token[33], url[160];
 	int port; // that it was given
+	ob_message *film_page; // NULL: a universe is served
+	char tag[2][24]; // of the page and of the film
+	ob_content own[3]; // both; ends with one without a path
 
 	pthread_t thread;
 	pthread_mutex_t lock; // guards ending
@@ -233,15 +238,31 @@ static int let_in(const ob_server *s, struct lws *wsi)
 		why = "there are as many viewers as this server lets in (--viewers)";
 		status = HTTP_STATUS_SERVICE_UNAVAILABLE;
 	}
+	if (!why && s->config.film)
+		why = "a recording is shown here, which a page plays by itself";
 	if (why)
 		lws_return_http_status(wsi, status, why);
 	return why != NULL;
+}
+
+static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const char *path)
+{
+	const char *why = NULL;
+	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback))
+		why = "this is not the name of this server";
+	else if (strcmp(path, film_path) == 0 && !has_token(s, wsi))
+		why = "the token is missing or wrong: use the address that obsim serve has printed";
+	if (!why)
+		return ob_http_answer_request(wsi, a, path, s->own);
+	lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, why);
+	return -1;
 }
 
 static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 {
 	int bytes = SEND_BUFFER;
 	ob_pace_state pace = ob_pace_get(s->pace);
+	ob_universe_info info;
 	double now = ob_clock_wall();
 	*c = (ob_client){ .wsi = wsi,
 			  .next = s->clients,
@@ -252,7 +273,8 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 	s->clients = c;
 	s->count++;
 	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
-	send_one(c, ob_facts_welcome(&s->config, s->host));
+	ob_universe_get_info(ob_host_universe(s->host), &info);
+	send_one(c, ob_facts_welcome(&s->config, &info));
 	send_one(c, ob_feed_whole(s->feed, &pace));
 	send_one(c, ob_facts_statistics(s->host, s->count));
 }
@@ -299,11 +321,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 	session *now = user;
 	switch (reason) {
 	case LWS_CALLBACK_HTTP:
-		if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback)) {
-			lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, "this is not the name of this server");
-			return -1;
-		}
-		return ob_http_answer_request(wsi, &now->answer, in);
+		return answer(s, wsi, &now->answer, in);
 	case LWS_CALLBACK_HTTP_WRITEABLE:
 		return ob_http_go_on(wsi, &now->answer);
 	case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
@@ -415,6 +433,29 @@ static bool open_context(ob_server *s, ob_error *e)
 	return true;
 }
 
+// By which a browser knows that it has the same already (Fowler, Noll, Vo: FNV-1a).
+static void make_tag(const ob_message *m, char tag[24])
+{
+	uint64_t hash = 0xcbf29ce484222325;
+	for (size_t i = 0; i < m->size; i++)
+		hash = (hash ^ m->bytes[i]) * 0x100000001b3;
+	snprintf(tag, 24, "\"%016llx\"", (unsigned long long)hash);
+}
+
+static bool prepare_film(ob_server *s, ob_error *e)
+{
+	const ob_message *film = s->config.film;
+	s->film_page = ob_film_page_served();
+	if (!s->film_page)
+		return ob_fail(e, "out of memory");
+	make_tag(s->film_page, s->tag[0]);
+	make_tag(film, s->tag[1]);
+	s->own[0] = (ob_content){ "/index.html", "text/html; charset=utf-8", s->tag[0], s->film_page->bytes,
+				  s->film_page->size };
+	s->own[1] = (ob_content){ film_path, "application/gzip", s->tag[1], film->bytes, film->size };
+	return true;
+}
+
 ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
 {
 	ob_server *s = calloc(1, sizeof *s);
@@ -427,10 +468,12 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 	s->host = h;
 	s->pace = pace;
 	pthread_mutex_init(&s->lock, NULL);
-	s->feed = ob_feed_create(ob_host_universe(h), ob_host_roster(h));
-	bool ready = make_token(s, e) && open_context(s, e) && (s->feed || ob_fail(e, "out of memory"));
+	s->feed = h ? ob_feed_create(ob_host_universe(h), ob_host_roster(h)) : NULL;
+	bool ready = make_token(s, e) && (!c->film || prepare_film(s, e)) && open_context(s, e) &&
+		     (s->feed || c->film || ob_fail(e, "out of memory"));
 	if (ready) {
-		lws_sul_schedule(s->context, 0, &s->tick, look, 1);
+		if (s->feed)
+			lws_sul_schedule(s->context, 0, &s->tick, look, 1);
 		ob_interrupt_leave_to_main(&before);
 		int failure = pthread_create(&s->thread, NULL, serve, s);
 		pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -441,6 +484,7 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 	if (s->context)
 		lws_context_destroy(s->context);
 	ob_feed_destroy(s->feed);
+	ob_message_release(s->film_page);
 	pthread_mutex_destroy(&s->lock);
 	free(s);
 	return NULL;
@@ -462,6 +506,7 @@ void ob_server_stop(ob_server *s)
 	pthread_join(s->thread, NULL);
 	lws_context_destroy(s->context);
 	ob_feed_destroy(s->feed);
+	ob_message_release(s->film_page);
 	pthread_mutex_destroy(&s->lock);
 	free(s);
 }

@@ -320,6 +320,8 @@ class Recordings(Files):
 				self.seed = f.read()
 
 	def command(self, path, folder):
+		if self.r.random() < .5:
+			return ["export", path, os.path.join(folder, "page.html")]
 		return ["run", "--replay", path, "--raw", "/dev/null", "--size", "16x16", "--samples", "1", "--fps", "30"]
 
 

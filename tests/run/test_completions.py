@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "serve", "compare", "top", "lab", "paper", "inspect", "send"]
+COMMANDS = ["run", "serve", "export", "compare", "top", "lab", "paper", "inspect", "send"]
 
 
 def options(command):

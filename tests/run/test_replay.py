@@ -98,8 +98,8 @@ class Replay(program.Case):
 		frames = ["--frames", self.path("f")]
 		for words, saying in (
 				([], "--replay needs --frames, --video or --raw"),
-				([*frames, "--seed", "2"], "--seed: a record is drawn as it was run"),
-				([*frames, "-D", "n=3"], "--define: a record is drawn as it was run"),
+				([*frames, "--seed", "2"], "--seed: a record is shown as it was run"),
+				([*frames, "-D", "n=3"], "--define: a record is shown as it was run"),
 				([*frames, program.scene("stack")], "expected one of them"),
 				([*frames, "--camera", "nobody"], "--camera nobody: the scene has none of this name"),
 				([*frames, "--overlay", "contacts"], "a record holds no contacts")):

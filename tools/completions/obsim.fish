@@ -13,6 +13,7 @@ end
 complete -c obsim -f
 complete -c obsim -n __fish_use_subcommand -a run -d 'run a scene and report'
 complete -c obsim -n __fish_use_subcommand -a serve -d 'run a scene that people look at'
+complete -c obsim -n __fish_use_subcommand -a export -d 'make a page of what was recorded'
 complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in all configurations'
 complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
 complete -c obsim -n __fish_use_subcommand -a lab -d 'run hard cases with several engines'
@@ -22,7 +23,7 @@ complete -c obsim -n __fish_use_subcommand -a inspect -d 'say what a checkpoint 
 complete -c obsim -n __fish_use_subcommand -a help -d 'help of a command'
 complete -c obsim -n __fish_use_subcommand -l version -d 'version, commit, libraries'
 complete -c obsim -s h -l help -d 'print help'
-complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve compare top send inspect lab paper'
+complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve export compare top send inspect lab paper'
 
 set -l both '__fish_seen_subcommand_from run compare serve'
 complete -c obsim -n $both -a '(__fish_complete_suffix .lua)'
@@ -57,6 +58,8 @@ complete -c obsim -n $serve -l paused -d 'stand still until a viewer lets it run
 complete -c obsim -n $serve -l readonly -d 'viewers may look, and change nothing'
 complete -c obsim -n $serve -l viewers -x -d 'viewers at a time'
 complete -c obsim -n $serve -l room -x -d 'objects that viewers may add'
+complete -c obsim -n $serve -l replay -r -F -d 'show what was recorded'
+complete -c obsim -n '__fish_seen_subcommand_from export' -F
 
 set -l run '__fish_seen_subcommand_from run'
 complete -c obsim -n '__fish_seen_subcommand_from run compare' -l json -r -F -d 'the report as JSON'

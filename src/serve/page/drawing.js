@@ -30,6 +30,9 @@ const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 const unit = (a) => scale(a, 1 / Math.hypot(...a));
 
 async function text(path) {
+	const here = document.getElementById(path); // a page that is one file has it
+	if (here)
+		return here.textContent;
 	const answer = await fetch(path);
 	if (!answer.ok)
 		throw new Error(`${path}: ${answer.status}`);

@@ -1,6 +1,7 @@
 // The viewer: a window of its own into the universe that obsim serves.
 import { Camera, control, moveByKey } from './camera.js';
 import { Drawing, boxSegments, contactSegments, edgeColour, halfBounds } from './drawing.js';
+import { Film } from './film.js';
 import { Panel } from './panel.js';
 import { BOX, PLANE, SPHERE, Universe } from './universe.js';
 import { turned } from './motion.js';
@@ -12,7 +13,8 @@ const AGAIN = [0.5, 1, 2, 5]; // s: when to look for a lost server
 const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
-const universe = new Universe(address), camera = new Camera(), panel = new Panel();
+const recording = document.querySelector('meta[name=recording]').content;
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel();
 let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0, framesTold = 0;
 
 // ---- what is seen
@@ -126,6 +128,10 @@ function throwOne() {
 
 panel.addEventListener('pause', () => universe.send({ do: universe.paused ? 'resume' : 'pause' }));
 panel.addEventListener('step', () => universe.send({ do: 'step' }));
+if (recording) {
+	panel.addEventListener('back', () => universe.send({ do: 'step', steps: -1 }));
+	panel.addEventListener('seek', (e) => universe.seek(e.detail));
+}
 panel.addEventListener('rate', (e) => universe.send({ do: 'rate', rate: e.detail }));
 panel.addEventListener('contacts', (e) => universe.send({ do: 'contacts', on: e.detail }));
 panel.addEventListener('throw', throwOne);
@@ -143,7 +149,7 @@ panel.addEventListener('view', () => {
 });
 
 document.addEventListener('keydown', (e) => {
-	if (e.ctrlKey || e.metaKey || e.target.closest('input, select') || (e.key === ' ' && e.target.closest('button')))
+	if (e.ctrlKey || e.metaKey || e.target.closest('input:not(#time), select') || (e.key === ' ' && e.target.closest('button')))
 		return;
 	if (panel.key(e.key) || moveByKey(camera, e.key))
 		e.preventDefault();
@@ -164,6 +170,7 @@ universe.addEventListener('welcome', (e) => {
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
 });
+universe.addEventListener('film', (e) => panel.film(e.detail));
 universe.addEventListener('statistics', (e) => panel.statistics(e.detail));
 setInterval(() => {
 	panel.speed(frames - framesTold, drawing?.software);
@@ -183,9 +190,9 @@ universe.addEventListener('close', (e) => {
 async function begin() {
 	drawing = new Drawing(canvas, asked.get('light'));
 	await drawing.load();
-	await new Promise((resolve) => {
+	await new Promise((resolve, reject) => {
 		universe.addEventListener('welcome', resolve, { once: true });
-		universe.connect();
+		universe.connect()?.catch(reject);
 	});
 	requestAnimationFrame(frame);
 }

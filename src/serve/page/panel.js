@@ -4,8 +4,10 @@ const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, meta
 	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
 	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11], 0.8, 0], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83], 0.1, 0],
 };
-const KEYS = { ' ': 'pause', '.': 'step', n: 'make', b: 'boxes', c: 'contacts', v: 'view', f: 'follow', '?': 'help', t: 'throw', Delete: 'remove',
+const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', v: 'view', f: 'follow', '?': 'help', t: 'throw', Delete: 'remove',
 	Escape: 'deselect' };
+
+const MARKS_MOST = 400; // on the time bar
 
 const $ = (selector) => document.querySelector(selector);
 const number = (x, digits = 3) => (Math.abs(x) < 5e-4 ? '0' : Number(x.toPrecision(digits)).toString());
@@ -14,6 +16,7 @@ const vector = (v) => v.map((x) => number(x)).join('  ');
 export class Panel extends EventTarget {
 	constructor() {
 		super();
+		this.off = new Set(); // what is not to be had here
 		this.on = { make: false, boxes: false, contacts: false, help: false };
 		document.addEventListener('click', (e) => {
 			const button = e.target.closest('[data-do]');
@@ -21,6 +24,7 @@ export class Panel extends EventTarget {
 				this.ask(button.dataset.do);
 		});
 		$('#rate').addEventListener('change', (e) => this.tell('rate', Number(e.target.value)));
+		$('#time').addEventListener('input', (e) => this.tell('seek', Number(e.target.value)));
 		for (const input of document.querySelectorAll('#maker input')) {
 			const show = () => { input.nextElementSibling.value = `${Number(input.value)} m`; };
 			input.addEventListener('input', show);
@@ -39,6 +43,8 @@ export class Panel extends EventTarget {
 	}
 
 	ask(what) {
+		if (this.off.has(what))
+			return;
 		if (what in this.on) {
 			this.on[what] = !this.on[what];
 			$(`[data-do=${what}]`).setAttribute('aria-pressed', this.on[what]);
@@ -82,6 +88,33 @@ export class Panel extends EventTarget {
 		$('#speed').textContent = `${frames} frames/s${software ? ', drawn without a GPU' : ''}`;
 	}
 
+	// What is looked at is a recording: it has a time bar, and nobody changes it.
+	film(f) {
+		const span = f.end - f.begin || 1;
+		document.body.classList.add('film');
+		for (const what of ['pause', 'step', 'back'])
+			$(`[data-do=${what}]`).disabled = $(`[data-do=${what}]`).hidden = false;
+		this.off = new Set(['make', 'throw', 'contacts', 'remove']);
+		for (const what of ['make', 'contacts', 'remove'])
+			$(`[data-do=${what}]`).hidden = true;
+		for (const part of document.querySelectorAll('#film, .film'))
+			part.hidden = false;
+		$('#rate').disabled = false;
+		Object.assign($('#rate').options[4], { value: '16', textContent: '16 ×' });
+		Object.assign($('#time'), { min: f.begin, max: f.end });
+		$('#length').value = `${f.end.toFixed(2)} s`;
+		$('#statistics').textContent = `recorded ${f.created.slice(0, 10)} by obsim ${f.version}, seed ${f.seed}`;
+		$('#statistics').title = `commit ${f.commit}`;
+		const shown = f.events.filter((_, i) => i % Math.ceil(f.events.length / MARKS_MOST) === 0);
+		$('#marks').replaceChildren(...shown.map(([time, kind, , name]) => {
+			const mark = document.createElement('i');
+			mark.className = kind > 0 ? 'came' : 'went';
+			mark.style.left = `${100 * (time - f.begin) / span}%`;
+			mark.title = `${name} ${kind > 0 ? 'comes' : 'goes'}`;
+			return mark;
+		}));
+	}
+
 	statistics(s) {
 		$('#statistics').textContent = `${s.objects} objects, ${s.awake} awake, ${s.islands} islands, ` +
 			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}`;
@@ -89,6 +122,7 @@ export class Panel extends EventTarget {
 
 	clock(time, rate, paused) {
 		$('#clock').value = `${time.toFixed(2)} s`;
+		$('#time').value = time;
 		$('#pause').textContent = paused ? '▶' : '❚❚';
 		const option = [...$('#rate').options].find((o) => Number(o.value) === (Number.isFinite(rate) ? Number(rate.toPrecision(6)) : 0));
 		if (option && document.activeElement !== $('#rate'))
@@ -104,8 +138,9 @@ export class Panel extends EventTarget {
 		const facts = d.gone ? [] : [['id', d.id], ['state', d.state]];
 		if (!d.gone && d.mass > 0)
 			facts.push(['mass', `${number(d.mass, 4)} kg`], ['friction', number(d.friction)], ['restitution', number(d.restitution)],
-				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`],
-				['island of', d.island], ['substeps', d.substeps]);
+				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`]);
+		if (!d.gone && d.mass > 0 && d.island !== undefined)
+			facts.push(['island of', d.island], ['substeps', d.substeps]);
 		if (d.worker !== undefined)
 			facts.push(['simulator', `worker ${d.worker}, pid ${d.pid}`], ['CPU used', `${d.cpu_s.toFixed(2)} s`]);
 		$('#details dl').replaceChildren(...facts.flatMap(([name, value]) => {

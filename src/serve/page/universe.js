@@ -179,7 +179,8 @@ export class Universe extends EventTarget {
 	}
 }
 
-function between(a, b, share) {
+// A share of the way from one pose to another.
+export function between(a, b, share) {
 	const sign = a.q[0] * b.q[0] + a.q[1] * b.q[1] + a.q[2] * b.q[2] + a.q[3] * b.q[3] < 0 ? -1 : 1;
 	return {
 		p: a.p.map((x, k) => x + share * (b.p[k] - x)),

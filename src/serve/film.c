@@ -1,0 +1,260 @@
+#include "serve/film.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "serve/facts.h"
+#include "serve/feed.h"
+
+enum { ANEW_AT_LEAST = 1 << 16, ANEW_AFTER = 4 }; // bytes; times the size of what all is when told anew
+static const size_t bytes_max = 1u << 30; // as it comes to lie in a browser's memory
+
+// ---- a recording as a source: "of" is the recording
+
+static uint64_t recorded_number(const void *of)
+{
+	return ob_recording_population(of);
+}
+
+static size_t recorded_list(const void *of, ob_roster_entry *out, size_t max)
+{
+	const ob_snapshot *s = ob_recording_state(of);
+	size_t n = 0;
+	for (uint32_t id = 0; id < s->count; id++) {
+		if (!(s->passport[id].flags & OB_OBJECT_PRESENT))
+			continue;
+		if (n < max)
+			out[n] = (ob_roster_entry){ .id = id,
+						    .generation = s->passport[id].generation,
+						    .worker = OB_ROSTER_ANY_WORKER };
+		n++;
+	}
+	return n;
+}
+
+static bool is_present(const ob_snapshot *s, uint32_t id)
+{
+	return id < s->count && s->passport[id].flags & OB_OBJECT_PRESENT;
+}
+
+static bool recorded_passport(const void *of, uint32_t id, ob_passport *out)
+{
+	const ob_snapshot *s = ob_recording_state(of);
+	if (is_present(s, id))
+		*out = s->passport[id];
+	return is_present(s, id);
+}
+
+static bool recorded_motion(const void *of, uint32_t id, ob_motion *out)
+{
+	const ob_snapshot *s = ob_recording_state(of);
+	if (is_present(s, id))
+		*out = s->motion[id];
+	return is_present(s, id);
+}
+
+static double recorded_time(const void *of)
+{
+	return ob_recording_state(of)->time;
+}
+
+// ---- the film
+
+typedef struct film {
+	ob_recording *recording;
+	ob_feed *feed;
+	ob_message *told; // messages with their lengths
+	ob_message *objects, *events; // elements of JSON arrays
+	ob_passport *passport; // [ids]: as of the last state
+	uint32_t ids;
+	size_t since; // bytes told since all was told anew
+	size_t whole; // bytes of that
+} film;
+
+static void put(ob_message *to, const ob_message *m)
+{
+	ob_message_put_u32(to, (uint32_t)m->size);
+	ob_message_put(to, m->bytes, m->size);
+}
+
+static void note_event(film *f, double time, int came, uint32_t id, const ob_passport *p)
+{
+	ob_message_print(f->events, "%s[%.9g,%d,%u,", f->events->size ? "," : "", time, came, id);
+	ob_message_put_json(f->events, p->name);
+	ob_message_print(f->events, "]");
+}
+
+// Who came and went with this state, for the time bar and for who picks them.
+static bool note_population(film *f)
+{
+	const ob_snapshot *s = ob_recording_state(f->recording);
+	const double begin = ob_recording_get_info(f->recording)->begin;
+	if (s->count > f->ids) {
+		ob_passport *grown = realloc(f->passport, s->count * sizeof *grown);
+		if (!grown)
+			return false;
+		memset(grown + f->ids, 0, (s->count - f->ids) * sizeof *grown);
+		f->passport = grown;
+		f->ids = s->count;
+	}
+	for (uint32_t id = 0; id < f->ids; id++) {
+		const ob_passport *now = &s->passport[id];
+		ob_passport *was = &f->passport[id];
+		bool there = now->flags & OB_OBJECT_PRESENT, before = was->flags & OB_OBJECT_PRESENT;
+		bool same = there && before && now->generation == was->generation;
+		if (before && !same && s->time > begin)
+			note_event(f, s->time, -1, id, was);
+		if (there && !same && s->time > begin)
+			note_event(f, s->time, 1, id, now);
+		if (there && !same)
+			ob_message_print(f->objects, "%s[%u,%u,%.9g,%.9g,%.9g]", f->objects->size ? "," : "", id,
+					 now->generation, now->mass, now->friction, now->restitution);
+		*was = *now;
+	}
+	return !f->objects->failed && !f->events->failed;
+}
+
+static bool tell_state(film *f)
+{
+	static const ob_pace_state pace = { .rate = 1 };
+	ob_message *m = ob_feed_next(f->feed, &pace);
+	if (!m)
+		return false; // there is always news: the time
+	put(f->told, m);
+	f->since += m->size;
+	f->whole = f->whole ? f->whole : m->size; // the first tells all
+	ob_message_release(m);
+	if (f->since <= ANEW_AFTER * f->whole + ANEW_AT_LEAST)
+		return true;
+	m = ob_feed_whole(f->feed, &pace);
+	if (!m)
+		return false;
+	put(f->told, m);
+	f->since = 0;
+	f->whole = m->size;
+	ob_message_release(m);
+	return true;
+}
+
+static bool tell_all(film *f, const char *path, ob_error *e)
+{
+	uint64_t population = UINT64_MAX;
+	bool ended = false;
+	while (ob_recording_next(f->recording, &ended, e)) {
+		bool changed = ob_recording_population(f->recording) != population;
+		population = ob_recording_population(f->recording);
+		if ((changed && !note_population(f)) || !tell_state(f) || f->told->failed)
+			return ob_fail(e, "%s: no memory to show it", path);
+		if (f->told->size > bytes_max)
+			return ob_fail(e,
+				       "%s: it is too long to be shown in a browser, which would need more than %zu "
+				       "MiB for it; record fewer steps, or fewer objects",
+				       path, bytes_max >> 20);
+	}
+	return ended;
+}
+
+static void put_text(ob_message *m, const char *name, const char *text)
+{
+	ob_message_print(m, ",\"%s\":", name);
+	ob_message_put_json(m, text);
+}
+
+// What comes first: both JSON messages.
+static bool put_head(const film *f, ob_message *out)
+{
+	const ob_recording_info *i = ob_recording_get_info(f->recording);
+	ob_universe_info universe = { .workers = i->workers,
+				      .gravity = i->scene.run.gravity,
+				      .step_length = i->scene.run.step_length };
+	const ob_server_config config = { .look_only = true, .scene = &i->scene, .version = i->commit };
+	snprintf(universe.name, sizeof universe.name, "%s", i->universe);
+	snprintf(universe.isolation, sizeof universe.isolation, "%s", i->isolation);
+	ob_message *welcome = ob_facts_welcome(&config, &universe), *about = ob_message_new(true);
+	if (welcome && about) {
+		put(out, welcome);
+		ob_message_print(about, "{\"film\":{\"begin\":%.17g,\"end\":%.17g,\"interval\":%.17g,\"seed\":\"%llu\"",
+				 i->begin, i->end, i->interval, (unsigned long long)i->scene.seed);
+		put_text(about, "created", i->created);
+		put_text(about, "version", i->version);
+		put_text(about, "commit", i->commit);
+		ob_message_print(about, ",\"objects\":[");
+		ob_message_put(about, f->objects->bytes, f->objects->size);
+		ob_message_print(about, "],\"events\":[");
+		ob_message_put(about, f->events->bytes, f->events->size);
+		ob_message_print(about, "]}}");
+		put(out, about);
+	}
+	bool ok = welcome && about && !welcome->failed && !about->failed && !out->failed;
+	ob_message_release(welcome);
+	ob_message_release(about);
+	return ok;
+}
+
+// Adds what deflate makes of some bytes to out.
+static bool deflate_some(z_stream *z, const unsigned char *bytes, size_t size, bool last, ob_message *out)
+{
+	unsigned char buffer[1 << 15];
+	do {
+		z->next_in = (unsigned char *)bytes;
+		z->avail_in = size < UINT_MAX ? (unsigned)size : UINT_MAX;
+		bytes += z->avail_in;
+		size -= z->avail_in;
+		do {
+			z->next_out = buffer;
+			z->avail_out = sizeof buffer;
+			if (deflate(z, last && size == 0 ? Z_FINISH : Z_NO_FLUSH) == Z_STREAM_ERROR)
+				return false;
+			ob_message_put(out, buffer, sizeof buffer - z->avail_out);
+		} while (z->avail_out == 0);
+	} while (size > 0);
+	return !out->failed;
+}
+
+static ob_message *pack(const film *f)
+{
+	enum { GZIP = 16 };
+	z_stream z = { .zalloc = NULL };
+	ob_message *head = ob_message_new(false), *out = ob_message_new(false);
+	bool begun = head && out && put_head(f, head) &&
+		     deflateInit2(&z, 6, Z_DEFLATED, MAX_WBITS + GZIP, 8, Z_DEFAULT_STRATEGY) == Z_OK;
+	bool ok = begun && deflate_some(&z, head->bytes, head->size, false, out) &&
+		  deflate_some(&z, f->told->bytes, f->told->size, true, out);
+	if (begun)
+		deflateEnd(&z);
+	ob_message_release(head);
+	if (ok)
+		return out;
+	ob_message_release(out);
+	return NULL;
+}
+
+ob_message *ob_film_make(ob_recording *r, const char *path, ob_error *e)
+{
+	const ob_feed_source source = { .of = r,
+					.number = recorded_number,
+					.list = recorded_list,
+					.passport = recorded_passport,
+					.motion = recorded_motion,
+					.time = recorded_time,
+					.step_length = ob_recording_get_info(r)->scene.run.step_length };
+	film f = { .recording = r,
+		   .feed = ob_feed_create_of(&source),
+		   .told = ob_message_new(false),
+		   .objects = ob_message_new(true),
+		   .events = ob_message_new(true) };
+	ob_message *out = NULL;
+	if (!f.feed || !f.told || !f.objects || !f.events)
+		ob_fail(e, "%s: no memory to show it", path);
+	else if (tell_all(&f, path, e) && !(out = pack(&f)))
+		ob_fail(e, "%s: no memory to show it", path);
+	ob_feed_destroy(f.feed);
+	ob_message_release(f.told);
+	ob_message_release(f.objects);
+	ob_message_release(f.events);
+	free(f.passport);
+	return out;
+}

@@ -1,0 +1,161 @@
+// A recording that plays by itself (src/serve/film.h): what a universe would have told, with a clock of the viewer's own,
+// which goes back as well as on.
+import { FREE, STANDS, normalize, poseAt } from './motion.js';
+import { Universe, between } from './universe.js';
+
+const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b; // of a message
+const JUMP = 1; // s: farther on, it begins where all is told anew
+const NEWS = 0.15; // s of wall time between two of what is told about the object that is picked
+
+// "#id": an element of this page that holds the recording, in base64; else where it is to be fetched.
+async function load(source) {
+	let packed;
+	if (source.startsWith('#')) {
+		const text = document.querySelector(source).textContent;
+		packed = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]);
+	} else {
+		const token = new URLSearchParams(location.hash.slice(1)).get('token');
+		const answer = await fetch(token ? `${source}?token=${encodeURIComponent(token)}` : source);
+		if (!answer.ok)
+			throw new Error(`the recording: ${(await answer.text()).replace(/<[^>]*>/g, ' ').trim() || answer.status}`);
+		packed = await answer.blob();
+	}
+	return new Response(packed.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+}
+
+export class Film extends Universe {
+	constructor(source) {
+		super(null);
+		this.source = source;
+		this.steps = []; // { time, data, anew }: messages, in the order of their times
+		this.shown = -1; // index of the last one that was heard ..
+		this.since = this.heard = 0; // s: .. the time of the one before, and its own
+		this.facts = new Map(); // of objects: what is not told with their motions
+		this.inspected = undefined;
+		this.newsAt = 0;
+	}
+
+	async connect() {
+		const buffer = await load(this.source), view = new DataView(buffer);
+		for (let at = 0; at < buffer.byteLength;) {
+			const size = view.getUint32(at, true), data = buffer.slice(at + LENGTH, at + LENGTH + size);
+			at += LENGTH + size;
+			if (view.getUint8(at - size) === JSON_BEGINS)
+				this.hear(new TextDecoder().decode(data));
+			else
+				this.steps.push({ time: view.getFloat64(at - size + TIME_AT, true), data, anew: (view.getUint8(at - size + FLAGS_AT) & VOID) !== 0 });
+		}
+		this.seek(this.begin);
+		this.rate = 1;
+		this.paused = false;
+	}
+
+	tell(name, detail) {
+		if (name === 'film') {
+			Object.assign(this, { begin: detail.begin, end: detail.end, interval: detail.interval, time: detail.begin });
+			for (const [id, generation, mass, friction, restitution] of detail.objects)
+				this.facts.set(`${id} ${generation}`, { mass, friction, restitution });
+		}
+		super.tell(name, detail);
+	}
+
+	// Hears what was told up to time t, and once more, so that what happens between two states is known.
+	seek(t) {
+		this.time = Math.max(this.begin, Math.min(this.end, t));
+		const { rate, paused } = this;
+		if (this.shown < 0 || this.time < this.since || this.time > this.heard + JUMP)
+			this.begins(this.steps.findLastIndex((s) => s.anew && s.time <= this.time));
+		while (this.heard < this.time && this.shown + 1 < this.steps.length) {
+			const step = this.steps[++this.shown];
+			if (step.anew)
+				continue; // that is for who begins there
+			this.since = this.heard;
+			this.heard = step.time;
+			this.hear(step.data);
+		}
+		Object.assign(this, { rate, paused });
+	}
+
+	// Where all was told anew, unless that is behind where it is on its way.
+	begins(index) {
+		if (this.shown >= 0 && this.time >= this.since && index <= this.shown)
+			return;
+		this.shown = Math.max(0, index);
+		this.since = this.heard = this.steps[this.shown].time;
+		this.hear(this.steps[this.shown].data);
+	}
+
+	advance(seconds) {
+		if (!this.paused)
+			this.seek(this.time + seconds * this.rate);
+		if (this.time >= this.end)
+			this.paused = true;
+		this.newsAt += seconds;
+		if (this.inspected !== undefined && this.newsAt > NEWS)
+			this.inspect();
+		return this.time;
+	}
+
+	// As the renderer draws it between two states (ob_motion_between): what flew on is where it flew, what did not went straight.
+	pose(body, t = this.time) {
+		const { motion: now, before } = body;
+		if (!now || !before || t >= now.t0)
+			return now ? poseAt(now, body.inertia, t) : null;
+		const from = Math.max(before.t0, now.t0 - this.interval);
+		if (now.kind >= FREE || t <= from)
+			return poseAt(before, body.inertia, t);
+		return between(poseAt(before, body.inertia, from), now, (t - from) / (now.t0 - from));
+	}
+
+	send(command) {
+		switch (command.do) {
+		case 'pause':
+			this.paused = true;
+			break;
+		case 'resume':
+			if (this.time >= this.end)
+				this.seek(this.begin);
+			this.paused = false;
+			break;
+		case 'step':
+			this.paused = true;
+			this.seek(this.begin + this.interval * (Math.round((this.time - this.begin) / this.interval) + (command.steps ?? 1)));
+			break;
+		case 'rate':
+			this.rate = command.rate;
+			break;
+		case 'inspect':
+			this.inspected = command.id;
+			if (command.id !== undefined)
+				this.inspect();
+			break;
+		default:
+		}
+	}
+
+	inspect() {
+		const id = this.inspected, body = this.objects.get(id);
+		this.newsAt = 0;
+		if (!body?.motion)
+			return this.tell('details', { id, gone: true });
+		const h = 1e-4, { p } = this.pose(body), { q } = this.pose(body);
+		const early = this.pose(body, this.time - h), late = this.pose(body, this.time + h);
+		return this.tell('details', {
+			id, generation: body.generation, name: body.name, size: body.size, p, q,
+			state: body.fixed ? 'static' : body.motion.kind === STANDS ? 'rests' : body.motion.kind === FREE ? 'flies' : 'moves',
+			v: p.map((_, k) => (late.p[k] - early.p[k]) / (2 * h)), w: rateOf(early.q, late.q, 2 * h),
+			...this.facts.get(`${id} ${body.generation}`),
+		});
+	}
+}
+
+// rad/s, world, of the turn from a to b in s.
+function rateOf(a, b, s) {
+	const [w, x, y, z] = normalize([
+		b[0] * a[0] + b[1] * a[1] + b[2] * a[2] + b[3] * a[3],
+		-b[0] * a[1] + b[1] * a[0] - b[2] * a[3] + b[3] * a[2],
+		-b[0] * a[2] + b[1] * a[3] + b[2] * a[0] - b[3] * a[1],
+		-b[0] * a[3] - b[1] * a[2] + b[2] * a[1] + b[3] * a[0],
+	]);
+	return [x, y, z].map((c) => 2 * c * Math.sign(w || 1) / s);
+}

@@ -1,0 +1,216 @@
+"""A recorded run in browsers: as one page that needs nobody, and served, to each viewer at a time of their own. What they see is
+what the renderer drew.
+
+Where OBSIM_PICTURES names a directory, what was seen is kept there.
+"""
+
+import base64
+import gzip
+import os
+import unittest
+
+import browser
+import program
+import server
+
+SCENE = """scene { title = "Some <fall> & come", duration = 2, step = 1 / 60 }
+ground {}
+camera "main" { eye = { -5, -6, 3.5 }, target = { 0, 0, .6 } }
+for i = 0, 11 do
+	box { size = { .5, .4, .3 }, at = { i % 3 - 1, .6 * (i // 3) - 1, 1 + .5 * i }, spin = { 2, 1, i - 5 } }
+end
+sphere { radius = .3, at = { 2.2, -1, 2 }, restitution = .7, colour = "#e4572e", name = "ball" }
+capsule { radius = .15, length = .5, at = { -1.5, -1, 1 }, spin = { 0, 5, 1 }, dies = 1.2 }
+cylinder { radius = .25, length = .5, at = { 0, -1.4, 1.5 }, born = .5, spin = { 4, 0, 0 } }
+"""
+TIMES = .4, 49 / 60 + .005, 1.75  # s: in the air, between two steps, at rest
+# Of 255, the mean difference, and the share of pixels that are off by more than FAR. Edges, of which the ground's grid has
+# most, lie a share of a pixel apart where browser and renderer have not the same rasterizer.
+MEAN, FAR, FAR_SHARE = 2.5, 40, .02
+
+# Both pictures as the browser decodes them: the mean difference, and the share of pixels that are off by more than FAR.
+COMPARE = """const [png, far, done] = arguments, canvas = document.querySelector('#picture');
+const pixels = async (source) => {
+	const image = await createImageBitmap(await (await fetch(source)).blob()), c = new OffscreenCanvas(image.width, image.height);
+	c.getContext('2d').drawImage(image, 0, 0);
+	return c.getContext('2d').getImageData(0, 0, image.width, image.height);
+};
+Promise.all([pixels('data:image/png;base64,' + png), pixels(canvas.toDataURL())]).then(([a, b]) => {
+	let sum = 0, off = 0;
+	for (let i = 0; i < a.data.length; i += 4) {
+		const d = [0, 1, 2].map((k) => Math.abs(a.data[i + k] - b.data[i + k]));
+		sum += d[0] + d[1] + d[2];
+		off += Math.max(...d) > far;
+	}
+	done({ same: a.width === b.width && a.height === b.height, mean: sum / (a.data.length / 4 * 3), off: off / (a.data.length / 4) });
+}, (error) => done({ error: error.message }));"""
+
+
+class Case(server.Case):
+	def setUp(self):
+		super().setUp()
+		self.record, scene = self.path("run.h5"), self.path("scene.lua")
+		with open(scene, "w") as f:
+			f.write(SCENE)
+		program.report(scene, "--record", self.record)
+		self.scene = scene
+
+	def start_replay(self, *words):
+		"""Returns the token, if there is one."""
+		self.run_ = program.start("serve", "--replay", self.record, *(words or ("--listen", "127.0.0.1:0")))
+		self.addCleanup(lambda: (self.run_.poll() is None and self.run_.kill(), self.run_.wait(), self.run_.stdout.close(),
+			self.run_.stderr.close()))
+		where, _, token = self.run_.stdout.readline().rsplit(" ", 1)[1].strip().partition("#token=")
+		self.port = int(where.rstrip("/").rsplit(":", 1)[1])
+		return token
+
+	def export(self):
+		page = self.path("page.html")
+		done = program.call("export", self.record, page)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		return page
+
+
+class Served(Case):
+	def test_http(self):
+		self.start_replay()
+		head, body = self.http("GET / HTTP/1.1\nHost: HOST\nConnection: close")
+		self.assertIn(b'<meta name="recording" content="recording">', body)
+		head, body = self.http("GET /recording HTTP/1.1\nHost: HOST\nConnection: close")
+		self.assertIn("200 OK", head)
+		tag = next(line.split(": ")[1] for line in head.split("\r\n") if line.lower().startswith("etag"))
+		told = gzip.decompress(body)
+		self.assertTrue(told[4:].startswith(b'{"welcome":'))
+		head, body = self.http(f"GET /recording HTTP/1.1\nHost: HOST\nIf-None-Match: {tag}\nConnection: close")
+		self.assertIn("304", head)
+		for path in "/all.js", "all.js":
+			self.assertNotIn("200 OK", self.http(f"GET {path} HTTP/1.1\nHost: HOST\nConnection: close")[0])
+		with self.assertRaises(server.Refused):
+			server.Viewer(self.port)
+		self.end()
+
+	def test_token(self):
+		token = self.start_replay("--listen", "0.0.0.0:0")
+		get = lambda path: self.http(f"GET {path} HTTP/1.1\nHost: HOST\nConnection: close")[0].split("\r\n")[0]
+		self.assertIn("403", get("/recording"))
+		self.assertIn("403", get("/recording?token=" + "0" * len(token)))
+		self.assertIn("200", get("/recording?token=" + token))
+		self.end()
+
+	def test_misuse(self):
+		self.refuse("serve", "--replay", self.record, program.scene("stack"), saying="expected one of them")
+		self.refuse("serve", "--replay", self.record, "--paused", saying="--paused: a record is shown as it was run")
+		self.refuse("serve", "--replay", self.path("nothing"), saying="No such file or directory")
+		self.refuse("export", self.record, saying="export needs a record and a page")
+		self.refuse("export", saying="export needs a record and a page")
+		self.refuse("export", self.record, "a.html", "b.html", saying="unexpected 'b.html'")
+		self.refuse("export", self.record, self.record, saying="would replace the record")
+		self.refuse("export", self.scene, "a.html", saying="no HDF5 file")
+		self.refuse("export", self.record, self.path("no/a.html"), saying="No such file or directory", code=1)
+		self.refuse("export", self.record, "/dev/full", saying="No space left on device", code=1)
+
+
+@unittest.skipUnless(browser.CHROMIUM and browser.DRIVER, "no Chromium with its driver")
+class Pages(Case):
+	def setUp(self):
+		super().setUp()
+		self.driver = browser.Driver()
+		self.addCleanup(self.driver.end)
+
+	def open(self, url, ready="obsim.frames() > 3"):
+		b = browser.Browser(self.driver, 720, 560)
+		self.addCleanup(b.close)
+		b.go(url)
+		b.wait(ready)
+		return b
+
+	def seek(self, b, time):
+		b.run("obsim.universe.send({ do: 'pause' }); obsim.universe.seek(arguments[0])", time)
+		frames = b.run("return obsim.frames()")
+		b.wait(f"obsim.frames() > {frames} + 1")
+
+	def keep(self, name, data):
+		folder = os.environ.get("OBSIM_PICTURES")
+		if folder:
+			with open(os.path.join(folder, name), "wb") as f:
+				f.write(data)
+
+	def test_exported(self):
+		"""One file, without a server."""
+		b = self.open("file://" + self.export(), "obsim.universe.time > .1")
+		self.play(b)
+		self.check_pictures(b)
+		self.assertEqual(b.console(), [])
+
+	def play(self, b):
+		"""It plays, pauses, goes back and on, and says of what is picked how it was at that time."""
+		self.assertEqual(b.run("return document.title"), "Some <fall> & come – obsim")
+		there = lambda name: b.run("return [...obsim.universe.objects.values()].some((o) => o.name.startsWith(arguments[0]))", name)
+		b.key(" ")
+		b.wait("obsim.universe.paused")
+		for time, capsule, cylinder in (1.5, False, True), (.2, True, False), (.8, True, True), (0, True, False), (2, False, True):
+			self.seek(b, time)
+			self.assertEqual((there("capsule"), there("cylinder")), (capsule, cylinder), time)
+		ball = b.run("return [...obsim.universe.objects.values()].find((o) => o.name === 'ball').id")
+		b.run("obsim.pick(arguments[0])", ball)
+		self.seek(b, .3)
+		b.wait("document.querySelector('#details dl').textContent.includes('mass')")
+		shown = b.run("return obsim.universe.pose(obsim.universe.objects.get(arguments[0])).p", ball)
+		self.assertAlmostEqual(shown[2], 2 - .5 * 9.81 * .3**2, delta=.3 / 256)  # it flies
+		self.seek(b, .5)
+		b.key(".")
+		self.assertAlmostEqual(b.run("return obsim.universe.time"), .5 + 1 / 60, places=9)
+		b.key(",")
+		self.assertAlmostEqual(b.run("return obsim.universe.time"), .5, places=9)
+		self.assertEqual(b.run("return document.querySelectorAll('#marks i').length"), 2)
+		b.run("const t = document.querySelector('#time'); t.value = 1; t.dispatchEvent(new Event('input'))")
+		self.assertEqual(b.run("return obsim.universe.time"), 1)
+		b.key("n")  # nobody creates anything here
+		self.assertTrue(b.run("return document.querySelector('#maker').hidden"))
+		self.seek(b, 1.95)
+		b.key(" ")
+		b.wait("obsim.universe.paused && obsim.universe.time === obsim.universe.end")
+		b.run("obsim.pick(null)")
+
+	def compare(self, b, drawn):
+		found = b.ask("POST", "/execute/async", {"script": COMPARE, "args": [base64.b64encode(drawn).decode(), FAR]})
+		self.assertTrue(found.get("same"), found)
+		return found["mean"], found["off"]
+
+	def check_pictures(self, b):
+		"""At three times it shows what the run itself drew then."""
+		size = "{}x{}".format(*b.run("const c = document.querySelector('#picture'); return [c.width, c.height]"))
+		drawn = None
+		for time in TIMES:
+			self.seek(b, time)
+			if drawn:
+				mean, off = self.compare(b, drawn)
+				self.assertTrue(mean > MEAN or off > FAR_SHARE, "pictures of two times are taken for one")
+			folder = self.path(f"f{time}")
+			done = program.call("run", self.scene, "--frames", folder, "--fps", repr(1 / time), "--size", size, "--duration", "4",
+				"--measure", "end")
+			self.assertEqual(done.returncode, 0, done.stderr)
+			with open(os.path.join(folder, "frame-000001.png"), "rb") as f: # which is at 1 / fps
+				drawn = f.read()
+			mean, off = self.compare(b, drawn)
+			self.keep(f"drawn-{time:.2f}.png", drawn)
+			self.keep(f"played-{time:.2f}.png", base64.b64decode(b.run("return document.querySelector('#picture').toDataURL()").split(",")[1]))
+			print(f"{time:.3f} s: mean difference {mean:.3f} of 255, {100 * off:.3f} % of pixels off by more than {FAR}")
+			self.assertLess(mean, MEAN)
+			self.assertLess(off, FAR_SHARE)
+
+	def test_served(self):
+		"""Two viewers of one recording, each at a time of their own."""
+		self.start_replay()
+		one, other = (self.open(f"http://127.0.0.1:{self.port}/") for _ in range(2))
+		self.seek(one, .25)
+		self.seek(other, 1.5)
+		self.assertEqual([b.run("return obsim.universe.time") for b in (one, other)], [.25, 1.5])
+		self.assertNotEqual(*(b.run("return document.querySelector('#picture').toDataURL()") for b in (one, other)))
+		for b in one, other:
+			self.assertEqual(b.console(), [])
+		self.end()
+
+
+if __name__ == "__main__":
+	unittest.main()
