@@ -209,7 +209,7 @@ def hour(obsim, hours):
 			looks.append([*holdings(host.pid), *holdings(children(host.pid)[0])])
 			print(f"{(time.monotonic() - began) / 60:.0f} min: host {looks[-1][0]} kB, {looks[-1][1]} descriptors, {looks[-1][2]} mappings; "
 				f"fork server {looks[-1][3]} kB, {looks[-1][4]}, {looks[-1][5]}", flush=True)
-		host.send_signal(signal.SIGINT)
+		host.send_signal(signal.SIGTERM)
 		report = json.loads(host.stdout.read())
 		host.wait()
 		pump.wait()
