@@ -130,10 +130,10 @@ static void set_patch(ob_batch *b, int l, const vec2 *p, int points, double disc
 	double size2 = e1.x * e1.x + e1.y * e1.y + e2.x * e2.x + e2.y * e2.y;
 	if (size2 > 0)
 		set_thickness(&e1, &e2);
+	const double inverse = size2 > 0 ? 1 / cross2(e1, e2) : 0;
 	for (int j = 0; j < OB_POINTS; j++) {
-		bool used = size2 > 0 && j < points;
-		b->patch_s[j][l] = used ? cross2(p[j], e2) / cross2(e1, e2) : 0;
-		b->patch_t[j][l] = used ? cross2(e1, p[j]) / cross2(e1, e2) : 0;
+		b->patch_s[j][l] = j < points ? cross2(p[j], e2) * inverse : 0;
+		b->patch_t[j][l] = j < points ? cross2(e1, p[j]) * inverse : 0;
 	}
 	b->patch_e1[0][l] = e1.x, b->patch_e1[1][l] = e1.y;
 	b->patch_e2[0][l] = e2.x, b->patch_e2[1][l] = e2.y;

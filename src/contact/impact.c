@@ -244,7 +244,9 @@ static bool eliminate(newton_system *y, int n)
 		y->step[k] = y->step[pivot], y->step[pivot] = t;
 		for (int i = k + 1; i < n; i++) {
 			double f = y->m[i][k] / y->m[k][k];
-			for (int j = k + 1; j < n && f != 0; j++)
+			if (f == 0)
+				continue;
+			for (int j = k + 1; j < n; j++)
 				y->m[i][j] -= f * y->m[k][j];
 			y->step[i] -= f * y->step[k];
 		}

@@ -7,7 +7,7 @@
 #include "contact/patch.h"
 
 static const int max_block_sweeps = 64;
-static const int sweeps_of_a_round = 8; // of a block that is solved to the end: after each it is extrapolated
+static const int sweeps_of_a_round = 2; // of a block that is solved to the end: after each a step of Newton's method
 static const int coarse_block_sweeps = 2; // of a block that will be solved again in the next iteration
 static const double min_projection = .01; // of the slop: shallower penetrations are not pushed, or that would never end
 
@@ -78,7 +78,8 @@ static inline void invert_patch(ob_batch *b, lanes a44, lanes a55, lanes a66, la
 		b->friction_mass[i] = lanes_select(patch, m[i] / det, b->friction_mass[i]);
 }
 
-PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind)
+// moves_a, moves_b: some lane's body does.
+PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind, bool moves_a, bool moves_b)
 {
 	const lanes *ja[7] = { b->ja[0], b->ja[1], b->ja[2], b->ja[3], b->fa1, b->fa2, b->n };
 	const lanes *jb[7] = { b->jb[0], b->jb[1], b->jb[2], b->jb[3], b->fb1, b->fb2, b->n };
@@ -87,12 +88,16 @@ PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind)
 		lanes xa[3], xb[3];
 		if (!in_use(kind, i))
 			continue;
-		sym_mul(b->ia, ja[i], xa);
-		sym_mul(b->ib, jb[i], xb);
+		if (moves_a)
+			sym_mul(b->ia, ja[i], xa);
+		if (moves_b)
+			sym_mul(b->ib, jb[i], xb);
 		for (int j = 0; j <= i; j++) {
 			if (!in_use(kind, j))
 				continue;
-			lanes s = dot3(xa, ja[j]) * b->ka + dot3(xb, jb[j]) * b->kb;
+			lanes s = moves_a ? dot3(xa, ja[j]) * b->ka : lanes_of(0);
+			if (moves_b)
+				s += dot3(xb, jb[j]) * b->kb;
 			if ((i < 4 && j < 4) || (i == j && i < 6))
 				s += mass; // the same direction: normals, and each tangent with itself
 			a[i][j] = a[j][i] = s;
@@ -116,10 +121,15 @@ PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind)
 
 static void prepare(ob_batch *b)
 {
-	if (b->kind == OB_KIND_FULL)
-		prepare_kind(b, OB_KIND_FULL);
+	const bool moves_a = lanes_bits(b->ima > 0), moves_b = lanes_bits(b->imb > 0);
+	if (b->kind != OB_KIND_FULL)
+		prepare_kind(b, b->kind, true, true);
+	else if (moves_a && moves_b)
+		prepare_kind(b, OB_KIND_FULL, true, true);
+	else if (moves_a)
+		prepare_kind(b, OB_KIND_FULL, true, false);
 	else
-		prepare_kind(b, b->kind);
+		prepare_kind(b, OB_KIND_FULL, false, true);
 }
 
 static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes *o)
@@ -412,50 +422,122 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 	return lanes_max(largest, spin * spin);
 }
 
-// What the sweeps over a block that is solved to the end have done to its impulses.
-typedef struct sweep_history {
-	lanes before[OB_ROWS]; // by the last sweep of the round before
-	lanes moving; // (m/s)^2: when it was extrapolated last
-} sweep_history;
-
-// Where one sweep changes the impulses in the same direction as the one before, to where they lead: to the limit of the
-// geometric series (Aitken 1926), but not past the place where the points have done their work, nor past the one where
-// the first lets go. The four points of a face cannot all close what they have left, each as rounding has it, and
-// sweeps would pass a load round for ever. The next sweep sees to the law. Not again where that has not led on.
-static __attribute__((noinline)) void extrapolate(const ob_batch *b, ob_batch_kind kind, lane_mask to, lanes moving,
-						  const lanes *was, sweep_history *h, lanes *x, lanes *step)
+// d becomes m^-1 d, by elimination without pivots.
+PER_KIND void eliminate(ob_batch_kind kind, int rows, lanes (*m)[OB_ROWS], lanes *d)
 {
-	const double least_ratio = .1, steady = .9, endless = .99; // steady: cos^2 between the two changes
-	const double led_on = .25;
-	lanes d[OB_ROWS], taken[OB_ROWS] = { 0 }, old = lanes_of(0), now = old, both = old, work = old, spent = old;
-	for (int i = 0; i < OB_ROWS; i++)
-		if (in_use(kind, i)) {
-			const lanes weight = i == 4 || i == 5 ? b->slide_rate2 * b->slide_mass : b->diag[i];
-			d[i] = x[i] - was[i];
-			old += h->before[i] * h->before[i] * weight;
-			now += d[i] * d[i] * weight;
-			both += d[i] * h->before[i] * weight;
-			couple(b, kind, i, -d[i], taken);
+#pragma GCC unroll 7
+	for (int k = 0; k < rows; k++) {
+		if (!in_use(kind, k))
+			continue;
+		m[k][k] = 1 / m[k][k];
+#pragma GCC unroll 7
+		for (int i = k + 1; i < rows; i++) {
+			if (!in_use(kind, i))
+				continue;
+			const lanes f = m[i][k] * m[k][k];
+#pragma GCC unroll 7
+			for (int j = k + 1; j < rows; j++)
+				if (in_use(kind, j))
+					m[i][j] -= f * m[k][j];
+			d[i] -= f * d[k];
 		}
-	const lanes ratio = both / lanes_max(old, lanes_of(1e-300));
-	lanes more = lanes_select(ratio < endless, ratio / (1 - ratio), lanes_of(INFINITY));
-	for (int i = 0; i < points_of(kind); i++) {
-		more = lanes_select(d[i] < 0, lanes_min(more, -x[i] / d[i]), more);
-		work += step[i] * b->diag[i] * d[i];
-		spent += taken[i] * b->diag[i] * d[i];
 	}
-	more = lanes_select(more * spent > work, work / spent, more);
-	to &= (ratio > least_ratio) & (both * both > steady * now * old) & (more > 0) & (more < INFINITY) &
-	      (moving < led_on * h->moving);
-	if (!lanes_bits(to))
-		return;
-	h->moving = lanes_select(to, moving, h->moving);
-	more = lanes_where(to, more);
-	for (int i = 0; i < OB_ROWS; i++)
-		if (in_use(kind, i)) {
-			x[i] += more * d[i];
-			step[i] -= more * taken[i];
-		}
+#pragma GCC unroll 7
+	for (int i = rows - 1; i >= 0; i--) {
+		if (!in_use(kind, i))
+			continue;
+#pragma GCC unroll 7
+		for (int j = i + 1; j < rows; j++)
+			if (in_use(kind, j))
+				d[i] -= m[i][j] * d[j];
+		d[i] *= m[i][i];
+	}
+}
+
+// From impulses that sweeps have brought near to the end, a step of Newton's method to where the law is kept: points
+// that push reach their velocity, and friction that holds stops the slip; or, where it slides, it keeps its direction
+// and its share of the load. Not past the place where the first point lets go; the next sweep sees to the law. Rows of
+// a face depend on each other: of all steps it is as good as the shortest.
+PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask to, lanes *x, lanes *step)
+{
+	const double proximity = 1e-9; // of a row's own coefficient
+	const lanes one = lanes_of(1), none = lanes_of(0);
+	const bool slides = !holds && in_use(kind, 4);
+	const int rows = holds && in_use(kind, 6) ? 7 : holds && in_use(kind, 4) ? 6 : points_of(kind);
+	lanes m[OB_ROWS][OB_ROWS], d[OB_ROWS], sum = x[0], more = none, share = one;
+	lane_mask open[OB_ROWS] = { 0 };
+	for (int i = 1; i < points_of(kind); i++)
+		sum += x[i];
+#pragma GCC unroll 7
+	for (int i = 0; i < rows; i++)
+		if (in_use(kind, i))
+			open[i] = (b->inv_diag[i] > 0) & (i < OB_POINTS ? x[i] > 0 : i == 6 ? b->radius > 0 : sum > 0);
+	const lanes brought = slides ? 1 / lanes_max(sum, lanes_of(1e-300)) : none;
+#pragma GCC unroll 7
+	for (int i = 0; i < rows; i++) {
+		if (!in_use(kind, i))
+			continue;
+		lanes with = none; // what a unit of load does to this row by the friction that it brings
+		if (slides)
+			for (int j = OB_POINTS; j < OB_ROWS; j++)
+				if (in_use(kind, j))
+					with += b->coupling[j][i] * x[j];
+		d[i] = lanes_where(open[i], step[i]);
+#pragma GCC unroll 7
+		for (int j = 0; j < rows; j++)
+			if (in_use(kind, j) && i != j)
+				m[i][j] = lanes_where(open[i] & open[j], b->coupling[j][i] + with * brought);
+		m[i][i] = lanes_select(open[i], 1 + proximity + with * brought, one);
+	}
+	eliminate(kind, rows, m, d);
+	for (int i = 0; i < points_of(kind); i++) {
+		share = lanes_select(x[i] + d[i] < 0, lanes_min(share, -x[i] / d[i]), share);
+		more += d[i];
+	}
+	to &= (sum > 0) & (share > 0) & (share <= 1);
+	share = lanes_where(to, share);
+	for (int i = 0; i < OB_ROWS; i++) {
+		if (!in_use(kind, i) || (!slides && i >= rows))
+			continue;
+		const lanes change = share * (i < rows ? d[i] : x[i] * (more * brought));
+		x[i] += change;
+		if (i < OB_POINTS)
+			x[i] = lanes_max(x[i], none);
+		couple(b, kind, i, change, step);
+	}
+}
+
+static __attribute__((noinline)) void leap_holding(const ob_batch *b, ob_batch_kind kind, lane_mask to, lanes *x,
+						   lanes *step)
+{
+	if (kind == OB_KIND_FULL)
+		leap(b, OB_KIND_FULL, true, to, x, step);
+	else
+		leap(b, kind, true, to, x, step);
+}
+
+static __attribute__((noinline)) void leap_sliding(const ob_batch *b, ob_batch_kind kind, lane_mask to, lanes *x,
+						   lanes *step)
+{
+	if (kind == OB_KIND_FULL)
+		leap(b, OB_KIND_FULL, false, to, x, step);
+	else
+		leap(b, kind, false, to, x, step);
+}
+
+// Lanes whose friction is at its limit.
+PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const friction_state *f, const lanes *x)
+{
+	const double at_limit = 1 - 1e-9;
+	lane_mask none = { 0 };
+	if (!in_use(kind, 4))
+		return none;
+	lanes bound = b->mu * (x[0] + (points_of(kind) > 1 ? x[1] + x[2] + x[3] : lanes_of(0)));
+	lane_mask disc = x[4] * x[4] + x[5] * x[5] >= at_limit * bound * bound;
+	if (!in_use(kind, 6))
+		return disc;
+	lane_mask patch = b->radius > 0;
+	return (patch & lanes_mask(f->search.slides)) | (~patch & disc);
 }
 
 // Sweeps a block until it is solved, up to the iteration's number of sweeps; fewer if it changes so much that another
@@ -465,10 +547,7 @@ PER_KIND unsigned solve_block(const ob_batch *b, ob_batch_kind kind, bool alone,
 			      friction_state *f, lanes *x, const lanes *r)
 {
 	const bool patches = alone && in_use(kind, 6);
-	lanes step[OB_ROWS], was[OB_ROWS];
-	sweep_history history;
-	if (alone)
-		history.moving = lanes_of(INFINITY);
+	lanes step[OB_ROWS];
 	for (int i = 0; i < OB_ROWS; i++)
 		if (in_use(kind, i))
 			step[i] = -(r[i] * b->inv_diag[i]);
@@ -478,20 +557,19 @@ PER_KIND unsigned solve_block(const ob_batch *b, ob_batch_kind kind, bool alone,
 	lane_mask open = lanes_mask(b->live);
 	int s = 1;
 	for (; s <= max_block_sweeps && lanes_bits(open); s++) {
-		const int of_round = s % sweeps_of_a_round;
-		if (alone && of_round <= 1)
-			memcpy(was, x, sizeof was);
 		lanes moving = sweep_block(b, kind, patches, open, f, x, step);
 		open &= (moving > converged) & (isolated | (moving > tolerable));
 		if (s >= iteration->block_sweeps)
 			open &= isolated;
 		else if (s >= coarse_block_sweeps)
 			open &= isolated | (moving <= coarse);
-		if (alone && of_round == 0)
-			for (int i = 0; i < OB_ROWS; i++)
-				history.before[i] = x[i] - was[i];
-		else if (alone && of_round == 1 && s > 1)
-			extrapolate(b, kind, open & isolated, moving, was, &history, x, step);
+		if (alone && s % sweeps_of_a_round == 0 && lanes_bits(open & isolated)) {
+			const lane_mask slides = sliding_lanes(b, kind, f, x);
+			if (lanes_bits(open & isolated & ~slides))
+				leap_holding(b, kind, open & isolated & ~slides, x, step);
+			if (lanes_bits(open & isolated & slides))
+				leap_sliding(b, kind, open & isolated & slides, x, step);
+		}
 	}
 	return (unsigned)s - 1;
 }

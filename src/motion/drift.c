@@ -14,6 +14,7 @@ static const double negligible = 1e-17; // of a unit quaternion
 static const double longest_series = .2; // rad: beyond, the closed form, which then costs no more
 // rad: up to here what Magnus's expansion leaves out is below rounding: to order four; to order six with so many terms
 // of the rate's series
+static const double longest_of_order_four_held = .01, longest_held = .03; // rad: .. below 1e-11
 static const double longest_of_order_four = 1e-3, longest_of_six_terms = .01, longest_of_eight_terms = .03;
 
 static bool same_moments(ob_vec3 j)
@@ -156,18 +157,36 @@ ob_quat ob_drift_turn(ob_vec3 w, ob_vec3 inertia, double s)
 	return turn;
 }
 
+// After a turn, in the frame of the body, from the attitude r and the rate b (body frame): the rate follows from the
+// momentum, which stays.
+static ob_vec3 rate_after(const ob_mat3 *r, ob_vec3 b, ob_vec3 j, ob_quat after)
+{
+	const ob_mat3 now = ob_quat_matrix(after);
+	const ob_vec3 l = ob_rotate_back(&now, ob_rotate(r, ob_v3(j.x * b.x, j.y * b.y, j.z * b.z)));
+	return ob_rotate(&now, ob_v3(l.x / j.x, l.y / j.y, l.z / j.z));
+}
+
 void ob_drift(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out)
 {
 	const ob_mat3 r = ob_quat_matrix(q);
 	const ob_vec3 b = ob_rotate_back(&r, w), j = inertia;
 	*q_out = unit(ob_quat_mul(q, ob_drift_turn(b, j, s)));
-	*w_out = w;
-	if (same_moments(j) || any_moment(j))
+	*w_out = same_moments(j) || any_moment(j) ? w : rate_after(&r, b, j, *q_out);
+}
+
+void ob_drift_held(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out)
+{
+	const double turned = ob_norm2(w) * s * s;
+	if (turned >= longest_held * longest_held || same_moments(inertia) || any_moment(inertia)) {
+		ob_drift(q, w, inertia, s, q_out, w_out);
 		return;
-	// The rate follows from the momentum, which stays.
-	const ob_mat3 now = ob_quat_matrix(*q_out);
-	const ob_vec3 l = ob_rotate_back(&now, ob_rotate(&r, ob_v3(j.x * b.x, j.y * b.y, j.z * b.z)));
-	*w_out = ob_rotate(&now, ob_v3(l.x / j.x, l.y / j.y, l.z / j.z));
+	}
+	const ob_mat3 r = ob_quat_matrix(q);
+	const ob_vec3 b = ob_rotate_back(&r, w);
+	*q_out = unit(ob_quat_mul(q, small_turn(turned < longest_of_order_four_held * longest_of_order_four_held
+							? turn_of_order_four(b, inertia, s)
+							: turn_of_order_six(b, inertia, s, 6))));
+	*w_out = rate_after(&r, b, inertia, *q_out);
 }
 
 ob_vec3 ob_small_turn(ob_quat from, ob_quat to)

@@ -16,6 +16,9 @@ ob_quat ob_drift_short_turn(ob_vec3 w, ob_vec3 inertia, double s);
 // Attitude and rate (world frame) after s.
 void ob_drift(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out);
 
+// The same for less, for a body whose contacts change its rate by much more: its attitude is off by 1e-11 at most.
+void ob_drift_held(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out);
+
 // Rotation vector (rad, world frame) of the turn from one attitude to another: of small turns, to six digits.
 ob_vec3 ob_small_turn(ob_quat from, ob_quat to);
 

@@ -8,6 +8,7 @@
 #include "sim/broadphase.h"
 #include "sim/equilibrium.h"
 #include "sim/flight.h"
+#include "sim/narrowphase.h"
 #include "sim/publish.h"
 #include "sim/scripts.h"
 #include "sim/surfaces.h"
@@ -84,6 +85,7 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	body->isotropic = pass->inertia.x == pass->inertia.y && pass->inertia.y == pass->inertia.z;
 	body->radius = ob_shape_radius(pass->shape, pass->size);
 	body->thickness = ob_shape_thickness(pass->shape, pass->size);
+	body->rest_depth = ob_narrowphase_rest_depth(s, body->thickness);
 	update_inertia(body);
 	if (!moves)
 		return;
@@ -237,8 +239,8 @@ void ob_body_update_pose(ob_island_work *w, uint32_t row)
 	update_row_pose(w, row);
 }
 
-// The row's pose takes its displacement, and turns freely for h (s).
-static void drift_row(ob_island_work *w, uint32_t row, double h)
+// The row's pose takes its displacement, and turns freely for h (s). held: contacts have changed its rate.
+static void drift_row(ob_island_work *w, uint32_t row, double h, bool held)
 {
 	ob_body *body = &w->body[row];
 	double *d = w->d[row];
@@ -246,7 +248,7 @@ static void drift_row(ob_island_work *w, uint32_t row, double h)
 	ob_vec3 rate;
 	if (ob_norm2(angular_of(d)) > 0)
 		update_row_pose(w, row);
-	ob_drift(body->q, angular_of(w->v[row]), body->inertia, h, &q, &rate);
+	(held ? ob_drift_held : ob_drift)(body->q, angular_of(w->v[row]), body->inertia, h, &q, &rate);
 	add_row(d, ob_v3(0, 0, 0), ob_small_turn(body->q, q));
 	update_gaps(w, row);
 	ob_body_place(body, ob_add(body->p, linear_of(d)), q);
@@ -254,13 +256,13 @@ static void drift_row(ob_island_work *w, uint32_t row, double h)
 	memset(d, 0, sizeof *w->d);
 }
 
-static void drift_body(ob_island_work *w, uint32_t row, double h)
+static void drift_body(ob_island_work *w, uint32_t row, double h, bool held)
 {
 	for (uint32_t g = w->body[row].next_ghost; g; g = w->body[g].next_ghost) {
 		memcpy(w->d[g], w->d[row], sizeof *w->d);
-		drift_row(w, g, h);
+		drift_row(w, g, h, held);
 	}
-	drift_row(w, row, h);
+	drift_row(w, row, h, held);
 }
 
 // From the midpoint (sim/midpoint.h) to the partial substep's end. Where the velocity jumped, as if it had jumped at
@@ -276,7 +278,7 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	ob_quat q;
 	if (jumped)
 		way = ob_madd(way, h, jump);
-	ob_drift(body->q, angular_of(u), body->inertia, h, &q, &rate);
+	ob_drift_held(body->q, angular_of(u), body->inertia, h, &q, &rate);
 	if (jumped) {
 		ob_quat turned = ob_quat_turn(q, ob_scale(jump_turn, h));
 		ob_mat3 from = ob_quat_matrix(q), to = ob_quat_matrix(turned);
@@ -309,7 +311,7 @@ static void turn_body(ob_sim *s, uint32_t row, bool held)
 		return;
 	}
 	s->counters.gyroscopic_steps++;
-	drift_body(w, row, w->h);
+	drift_body(w, row, w->h, held && w->max_acceleration > 0);
 }
 
 // ---- velocities

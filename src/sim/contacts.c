@@ -190,9 +190,11 @@ static unsigned match_nearest(ob_contact *contact, const saved_impulses *old, do
 	unsigned taken = 0;
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
 		contact->was[j] = -1;
-		for (uint32_t k = 0; j < contact->points && k < old->points; k++)
-			apart2[j][k] = fmin(ob_norm2(ob_sub(contact->arm_a[j], old->arm[k])),
-					    ob_norm2(ob_sub(contact->arm_b[j], old->arm_b[k])));
+		for (uint32_t k = 0; j < contact->points && k < old->points; k++) {
+			const double a = ob_norm2(ob_sub(contact->arm_a[j], old->arm[k])),
+				     b = ob_norm2(ob_sub(contact->arm_b[j], old->arm_b[k]));
+			apart2[j][k] = a < b ? a : b;
+		}
 	}
 	for (uint32_t n = 0; n < contact->points && n < old->points; n++) {
 		double best = limit;

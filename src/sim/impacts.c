@@ -82,7 +82,7 @@ static void fly(const ob_island_work *w, uint32_t row, double t, ob_body_at *x)
 	if (body->isotropic) {
 		x->q = ob_quat_turn(x->q, ob_madd(ob_scale(x->w, t), .5 * t * t, b));
 	} else {
-		ob_drift(x->q, x->w, body->inertia, t, &x->q, &x->w);
+		(w->max_acceleration > 0 ? ob_drift_held : ob_drift)(x->q, x->w, body->inertia, t, &x->q, &x->w);
 		x->q = ob_norm2(b) > 0 ? ob_quat_turn(x->q, ob_scale(b, .5 * t * t)) : x->q;
 	}
 	x->w = ob_madd(x->w, t, b);
@@ -108,8 +108,9 @@ static ob_placed placed(const ob_sim *s, uint32_t row, const ob_body_at *x)
 			  .v = x->v,
 			  .w = x->w,
 			  .inertia = body->inertia,
-			  .a = body->acceleration };
-	ob_narrowphase_set_rest(s, &out);
+			  .a = body->acceleration,
+			  .rest_depth = body->rest_depth,
+			  .far_future = ob_narrowphase_far_future(s) };
 	return out;
 }
 
@@ -325,13 +326,11 @@ static void look_ahead(ob_sim *s, uint32_t contact)
 	const ob_impact_rows at = { w->v, w->drift, w->d };
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
 	const int l = c->lane % OB_LANES;
-	const double by_rows = ob_impact_time(b, l, &in, &at);
-	double first = by_rows;
 	if (slack > min_curvature * w->unit.length) {
 		in.slack = slack;
 		in.threshold = threshold - 2 * slack / w->h;
-		first = ob_impact_time(b, l, &in, &at);
 	}
+	const double first = ob_impact_time(b, l, &in, &at);
 	if (isinf(first))
 		return;
 	ob_body_update_pose(w, c->a);
@@ -340,8 +339,11 @@ static void look_ahead(ob_sim *s, uint32_t contact)
 	ob_body_at body_a, body_b;
 	if (refine_instant(s, &i, later(w->body[c->a].hit, w->body[c->b].hit), &body_a, &body_b)) {
 		w->impacts.pending[w->impacts.count++] = i;
-	} else if (by_rows <= w->h && (c->e > 0 || w->max_acceleration == 0)) {
-		take_geometry(s, &i, &body_a, &body_b);
+	} else if (c->e > 0 || w->max_acceleration == 0) {
+		in.slack = 0;
+		in.threshold = threshold;
+		if (ob_impact_time(b, l, &in, &at) <= w->h)
+			take_geometry(s, &i, &body_a, &body_b);
 	}
 }
 

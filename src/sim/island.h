@@ -33,6 +33,7 @@ typedef struct ob_body {
 	ob_vec3 torque; // N m, world, external
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
+	double rest_depth; // m, as ob_placed.rest_depth
 	double path, speed; // m, as ob_motion.path; m/s bound of any point
 	double turning; // m/s, what of that speed comes from turning
 	float rest_time; // s, as ob_motion.rest_time

@@ -49,8 +49,9 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, 
 			  .v = ob_madd(now.v, .5 * h, a),
 			  .w = now.w,
 			  .inertia = p->inertia,
-			  .a = a };
-	ob_narrowphase_set_rest(c->s, &out);
+			  .a = a,
+			  .rest_depth = ob_narrowphase_rest_depth(c->s, ob_shape_thickness(p->shape, p->size)),
+			  .far_future = ob_narrowphase_far_future(c->s) };
 	return out;
 }
 

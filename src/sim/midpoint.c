@@ -133,7 +133,7 @@ static void halve(ob_sim *s, uint32_t row)
 	body->start_w = angular_of(v);
 	ob_vec3 way = ob_scale(linear_of(v), .5 * w->h), rate;
 	ob_quat q;
-	ob_drift(body->q, body->start_w, body->inertia, .5 * w->h, &q, &rate);
+	ob_drift_held(body->q, body->start_w, body->inertia, .5 * w->h, &q, &rate);
 	ob_body_place(body, ob_add(body->p, way), q);
 	v[3] = rate.x, v[4] = rate.y, v[5] = rate.z;
 	ob_vec3 turn = ob_small_turn(body->start_q, q);

@@ -1,7 +1,6 @@
 #include "sim/narrowphase.h"
 
 #include "base/cpu.h"
-#include "motion/drift.h"
 #include "sim/budget.h"
 #include "sim/contact_solver.h"
 
@@ -72,13 +71,18 @@ ob_manifold_finder ob_narrowphase_finder(ob_sim *s)
 	return (ob_manifold_finder){ find_manifold, s };
 }
 
-void ob_narrowphase_set_rest(const ob_sim *s, ob_placed *x)
+double ob_narrowphase_rest_depth(const ob_sim *s, double thickness)
 {
 	const bool pressed =
 		ob_norm2(s->settings->gravity) > 0; // without gravity hits leave nothing at rest in another
-	const double of_slop = pressed ? 2 : .01, of_thickness = .02, far_future = 10;
-	x->rest_depth = fmin(of_slop * ob_solver_slop(s), of_thickness * ob_shape_thickness(x->shape, x->size));
-	x->far_future = far_future * s->island.unit.time;
+	const double of_slop = pressed ? 2 : .01, of_thickness = .02;
+	return fmin(of_slop * ob_solver_slop(s), of_thickness * thickness);
+}
+
+double ob_narrowphase_far_future(const ob_sim *s)
+{
+	const double far_future = 10;
+	return far_future * s->island.unit.time;
 }
 
 static ob_placed placed(const ob_sim *s, uint32_t row)
@@ -93,8 +97,9 @@ static ob_placed placed(const ob_sim *s, uint32_t row)
 			  .v = ob_v3(v[0], v[1], v[2]),
 			  .w = ob_v3(v[3], v[4], v[5]),
 			  .inertia = body->inertia,
-			  .a = body->acceleration };
-	ob_narrowphase_set_rest(s, &out);
+			  .a = body->acceleration,
+			  .rest_depth = body->rest_depth,
+			  .far_future = ob_narrowphase_far_future(s) };
 	return out;
 }
 
@@ -104,14 +109,7 @@ static double closing_speed(const ob_sim *s, const ob_contact *contact)
 	const ob_island_work *w = &s->island;
 	const double *va = w->v[contact->a], *vb = w->v[contact->b];
 	ob_vec3 rel = ob_v3(va[0] - vb[0], va[1] - vb[1], va[2] - vb[2]);
-	double speed = ob_norm(rel);
-	for (int side = 0; side < 2; side++) {
-		const ob_body *body = &w->body[side ? contact->b : contact->a];
-		const double *v = side ? vb : va;
-		if ((body->inv_mass > 0 || body->surface) && body->shape != OB_SHAPE_SPHERE)
-			speed += body->radius *
-				 ob_drift_bound(ob_rotate_back(&body->r, ob_v3(v[3], v[4], v[5])), body->inertia, w->h);
-	}
+	const double speed = ob_norm(rel) + w->body[contact->a].turning + w->body[contact->b].turning;
 	return speed + w->max_acceleration * w->h;
 }
 

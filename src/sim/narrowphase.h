@@ -10,8 +10,10 @@
 // tolerance: m, gaps up to it are always found. Both bodies' poses must be up to date (ob_body_update_pose).
 void ob_narrowphase_find(ob_sim *s, const ob_contact *t, double tolerance, ob_manifold *m, double *when);
 
-// Fills in how deep the shape may be in others while it rests on them, and which future is far (see ob_placed).
-void ob_narrowphase_set_rest(const ob_sim *s, ob_placed *x);
+// How deep (m) a shape of this thickness (m) may be in others while it rests on them, and which future (s) is far: see
+// ob_placed.
+double ob_narrowphase_rest_depth(const ob_sim *s, double thickness);
+double ob_narrowphase_far_future(const ob_sim *s);
 
 // The collision test of any two shapes that the run's settings ask for.
 ob_manifold_finder ob_narrowphase_finder(ob_sim *s);

@@ -56,6 +56,26 @@ static void check_short_turns(void)
 	}
 }
 
+// The drift of what is held: the attitude is off by 1e-11 at most, and momentum is kept as exactly.
+static void check_held(void)
+{
+	uint64_t seed = 4;
+	double attitude = 0, momentum = 0;
+	for (int i = 0; i < 3000; i++) {
+		ob_vec3 j = random_moments(&seed, i % 3), w = random_vector(&seed, pow(10, within(&seed, -3, 2)));
+		ob_quat q = random_attitude(&seed), exact, held;
+		double s = within(&seed, -.05, .05) / ob_norm(w);
+		ob_vec3 exact_rate, rate, before = momentum_of(q, w, j);
+		ob_drift(q, w, j, s, &exact, &exact_rate);
+		ob_drift_held(q, w, j, s, &held, &rate);
+		attitude = fmax(attitude, apart(exact, held));
+		momentum = fmax(momentum, ob_norm(ob_sub(momentum_of(held, rate, j), before)) / ob_norm(before));
+	}
+	printf("held: attitude to %.1e, momentum to %.1e\n", attitude, momentum);
+	CHECK(attitude <= 1e-11);
+	CHECK(momentum <= 1e-14);
+}
+
 // 10^5 steps of up to .15 rad.
 static void check_conservation(void)
 {
@@ -77,6 +97,7 @@ int main(void)
 {
 	check_against_closed_form();
 	check_short_turns();
+	check_held();
 	check_conservation();
 	return check_end();
 }
