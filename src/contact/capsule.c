@@ -3,10 +3,12 @@
 #include "contact/facets.h"
 
 static const double side_by_side = .99; // cosine: directions so near to each other are taken to run along each other
-static const double crossing = 1e-9; // m: a segment so near to another shape's inside has no direction away from it
-static const double redundant = 1e-9; // m: a point that lies no deeper between two others
+static const double crossing =
+	1e-9; // of the radius: a segment so near to another shape's inside has no direction away from it
+static const double redundant = 1e-9; // of the line: a point that lies no deeper between two others
 static const double same_place = 1e-3; // of the radius: two points so near to each other are one
-static const double prefer_face = 1e-5; // m: a face pushes a segment out rather than an edge that is as near
+static const double prefer_face =
+	5e-5; // of the radius: a face pushes a segment out rather than an edge that is as near
 
 static double clamp(double x, double limit)
 {
@@ -29,7 +31,8 @@ void ob_manifold_line(const ob_line_point *nearest, const ob_line_point end[2], 
 	bool alone = true;
 	if (use[0] && use[1]) {
 		double share = (nearest->s - end[0].s) / (end[1].s - end[0].s);
-		alone = nearest->gap < end[0].gap + share * (end[1].gap - end[0].gap) - redundant;
+		alone = nearest->gap <
+			end[0].gap + share * (end[1].gap - end[0].gap) - redundant * fabs(end[1].s - end[0].s);
 	}
 	if (alone)
 		put(out, nearest);
@@ -84,7 +87,7 @@ void ob_manifold_capsule_sphere(const ob_placed *a, const ob_placed *b, double m
 	ob_vec3 u = ob_column(&a->r, 2);
 	ob_vec3 x = point_on(a, clamp(ob_dot(u, ob_sub(b->p, a->p)), a->size.y)), d = ob_sub(x, b->p);
 	double l = ob_norm(d), gap = l - a->size.x - b->size.x;
-	out->normal = l > crossing ? ob_scale(d, 1 / l) : across(a, u);
+	out->normal = l > crossing * a->size.x ? ob_scale(d, 1 / l) : across(a, u);
 	out->separation = gap;
 	out->points = gap <= margin;
 	out->gap[0] = gap;
@@ -98,7 +101,7 @@ static ob_line_point between_at(const ob_placed *a, const ob_placed *b, double s
 {
 	ob_vec3 x = point_on(a, s), y = point_on(b, t), d = ob_sub(x, y);
 	double l = ob_norm(d), gap = l - a->size.x - b->size.x;
-	if (l > crossing)
+	if (l > crossing * a->size.x)
 		*normal = ob_scale(d, 1 / l);
 	ob_vec3 on_a = ob_madd(x, -a->size.x, *normal), on_b = ob_madd(y, b->size.x, *normal);
 	return (ob_line_point){ s, gap, ob_scale(ob_add(on_a, on_b), .5), true };
@@ -236,7 +239,7 @@ static double way_out(const box_segment *x, double n[3], int *axis)
 			continue;
 		double nj = -x->k[m] / l, nm = x->k[j] / l, at = nj * x->l[j] + nm * x->l[m];
 		double in = fabs(nj) * x->h[j] + fabs(nm) * x->h[m] - fabs(at);
-		if (in < least - prefer_face) {
+		if (in < least - prefer_face * x->radius) {
 			least = in, *axis = 3 + i;
 			n[i] = 0, n[j] = at < 0 ? -nj : nj, n[m] = at < 0 ? -nm : nm;
 		}
@@ -254,7 +257,7 @@ static void side_by_side_range(const box_segment *x, double s, double *low, doub
 {
 	*low = -x->length, *high = x->length;
 	for (int i = 0; i < 3; i++) {
-		if (fabs(along(x, i, s)) > x->h[i] + crossing || x->k[i] == 0)
+		if (fabs(along(x, i, s)) > x->h[i] + crossing * x->radius || x->k[i] == 0)
 			continue;
 		double one = (x->h[i] - x->l[i]) / x->k[i], other = (-x->h[i] - x->l[i]) / x->k[i];
 		*low = fmax(*low, fmin(one, other));
@@ -360,7 +363,7 @@ void ob_manifold_capsule_box(const ob_placed *a, const ob_placed *b, double marg
 	};
 	double s = nearest_to_box(&x), d[3];
 	away(&x, s, d);
-	if (norm(d) > crossing)
+	if (norm(d) > crossing * a->size.x)
 		outside_box(a, b, &x, s, margin, out);
 	else
 		through_box(a, b, &x, margin, out);

@@ -4,19 +4,19 @@
 #include "contact/facets.h"
 #include "contact/support.h"
 
-static const double crossing = 1e-9; // m: a point so near to the surface from the inside has no direction away from it
-static const double as_deep =
-	1e-7; // m: points that lie no farther than this above the lowest prove a facet's normal best
-static const double noise = 1e-13; // m: a direction that is better by less is the same
-static const double touching = 1e-6; // m: a direction with a smaller gap does not separate the shapes
-static const double near_enough =
-	1e-3; // m: of shapes that are farther apart the nearest direction may not be that of their impact
+// Lengths, in terms of the thinner shape's thickness.
+static const double crossing = 1e-9; // a point so near to the surface from the inside has no direction away from it
+static const double as_deep = 3e-7; // points that lie no farther than this above the lowest prove a facet's normal best
+static const double noise = 3e-13; // a direction that is better by less is the same
+static const double touching = 3e-6; // a direction with a smaller gap does not separate the shapes
+static const double near_enough = 3e-3; // of shapes that are farther apart the nearest direction may not be that of
+					// their impact
+static const double meet = 3e-10; // features that are so near to each other across the normal have a common point
+static const double far = .06; // beyond the margin: not looked at more closely
+
 static const double along_facet = .99; // cosine: a normal so near to a facet's has the facet's other points, too
-static const double meet = 1e-10; // m: features that are so near to each other across the normal have a common point
 static const double side_lean = .03; // cosine: a side that leans by more touches with its rim
 static const double level = 1e-9; // cosine: an edge so nearly across the normal is a feature as a whole
-static const double far = .02; // m beyond the margin: not looked at more closely
-
 static const double deep = .01; // of a shape's size: shapes that overlap by more are searched more widely
 
 enum { STARTS = 5 };
@@ -58,7 +58,7 @@ static double nearest_point(const ob_placed *c, ob_vec3 x, ob_vec3 *at, ob_vec3 
 		p.z = copysign(c->size.y, l.z);
 	d = ob_sub(l, p);
 	distance = ob_norm(d);
-	if (distance > crossing) {
+	if (distance > crossing * c->size.x) {
 		d = ob_scale(d, 1 / distance);
 	} else if (side > end) {
 		distance = side;
@@ -90,6 +90,7 @@ void ob_manifold_cylinder_sphere(const ob_placed *a, const ob_placed *b, double 
 // What has been tried so far.
 typedef struct search {
 	const ob_placed *a, *b;
+	double thickness; // m, of the thinner one
 	double gap; // m, the widest separation
 	ob_vec3 normal; // its direction, from b to a
 	bool is_facet; // it is that of a cap or a face
@@ -101,11 +102,11 @@ typedef struct search {
 static void try_direction(search *s, ob_vec3 n, bool facet)
 {
 	double gap = ob_apart_along(s->a, s->b, n), rate = ob_dot(n, ob_sub(s->a->v, s->b->v));
-	if (gap > s->gap + noise)
+	if (gap > s->gap + noise * s->thickness)
 		s->gap = gap, s->normal = n, s->is_facet = facet;
-	if (gap > touching) {
+	if (gap > touching * s->thickness) {
 		double time = ob_time_to_close(s->a, s->b, gap, rate);
-		if (time > s->time || (time == s->time && gap > s->last_gap + noise))
+		if (time > s->time || (time == s->time && gap > s->last_gap + noise * s->thickness))
 			s->time = time, s->last_gap = gap, s->last = n, s->last_is_facet = facet;
 	}
 }
@@ -193,9 +194,10 @@ static void nearest_on_features(const feature *f, const feature *g, ob_vec3 *x, 
 static bool is_proven(const search *s)
 {
 	feature of_a = feature_along(s->a, ob_scale(s->normal, -1)), of_b = feature_along(s->b, s->normal);
+	const double near = meet * s->thickness;
 	ob_vec3 x, y;
 	nearest_on_features(&of_a, &of_b, &x, &y);
-	return ob_norm2(part_across(ob_sub(x, y), s->normal)) < meet * meet;
+	return ob_norm2(part_across(ob_sub(x, y), s->normal)) < near * near;
 }
 
 // Across the axis of one and an axis or edge of the other.
@@ -231,7 +233,7 @@ static void climb(search *s, const ob_vec3 *edge, int n, double enough)
 			      best < n ? ob_climb_across(s->a, s->b, edge[best], s->normal)
 				       : ob_climb_rims(s->a, s->b, s->normal),
 			      false);
-		tried = s->gap > before + noise ? 1u << best : tried | 1u << best;
+		tried = s->gap > before + noise * s->thickness ? 1u << best : tried | 1u << best;
 		if (s->gap > enough || (s->gap > before && !is_deep(s) && is_proven(s)))
 			return;
 	}
@@ -365,10 +367,10 @@ static void facet_points(const search *s, ob_vec3 n, double margin, ob_spots *sp
 	ob_spots_find(of_b ? s->b : s->a, of_b ? s->a : s->b, outward, margin, spots);
 }
 
-static bool proven_by(const ob_spots *spots, double gap)
+static bool proven_by(const search *s, const ob_spots *spots)
 {
 	for (int k = 0; k < spots->n; k++)
-		if (spots->gap[k] <= gap + as_deep)
+		if (spots->gap[k] <= s->gap + as_deep * s->thickness)
 			return true;
 	return false;
 }
@@ -393,20 +395,21 @@ static bool on_face_underfoot(const search *s, ob_vec3 n, double margin, ob_mani
 void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	const bool sharp = b->shape != OB_SHAPE_CAPSULE; // what is round slips off: the nearest direction will do
-	search s = { .a = a, .b = b, .gap = -INFINITY, .time = -1 };
+	const double thickness = fmin(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
+	search s = { .a = a, .b = b, .thickness = thickness, .gap = -INFINITY, .time = -1 };
 	ob_spots spots;
 	double sign;
 	try_facets(&s, a);
 	try_facets(&s, b);
 	out->points = 0;
 	out->separation = s.gap;
-	if (s.gap > margin + far)
+	if (s.gap > margin + far * thickness)
 		return;
 	facet_points(&s, s.normal, margin, &spots, &sign);
 	const ob_vec3 tried = s.normal;
-	const bool proven = proven_by(&spots, s.gap);
-	if (!proven || is_deep(&s) || (sharp && s.gap > near_enough))
-		try_others(&s, margin + far);
+	const bool proven = proven_by(&s, &spots);
+	if (!proven || is_deep(&s) || (sharp && s.gap > near_enough * thickness))
+		try_others(&s, margin + far * thickness);
 	out->separation = s.gap;
 	if (out->separation > margin)
 		return;

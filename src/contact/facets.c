@@ -7,7 +7,8 @@ static const double steepest_face = .05; // cosine: a face that is steeper has n
 static const double upright = 1e-6; // rad: a cap that leans by less looks straight at the other facet
 static const double pressing = 1e-6; // of an acceleration: a smaller part along a facet presses nowhere
 static const double parallel = .99; // cosine, of caps whose rims are taken to lie in one plane
-static const double border = 1e-9; // m: so far outside is inside
+static const double border = 1e-9; // of the facet's size: so far outside is inside
+static const double as_low = 1e-4; // of what counts as the same place: no lower
 
 static ob_vec3 unit(ob_vec3 v)
 {
@@ -169,7 +170,7 @@ static bool inside_polygon(const polygon *p, ob_vec3 n, ob_vec3 x)
 	double turn = ob_dot(p->normal, n) < 0 ? -1 : 1;
 	for (int k = 0; k < 4; k++) {
 		ob_vec3 e = ob_sub(p->corner[(k + 1) & 3], p->corner[k]);
-		if (turn * ob_dot(n, ob_cross(e, ob_sub(x, p->corner[k]))) < -border * ob_norm(e))
+		if (turn * ob_dot(n, ob_cross(e, ob_sub(x, p->corner[k]))) < -border * ob_norm2(e))
 			return false;
 	}
 	return true;
@@ -238,12 +239,12 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 	int whole = 0;
 	for (int k = 0; k < 4; k++) {
 		ob_vec3 x = ob_madd(over->centre, q, rim_over[k]), y = into_plane(x, n, on->centre, n);
-		if (ob_norm(ob_sub(y, on->centre)) <= r + border)
+		if (ob_norm(ob_sub(y, on->centre)) <= r * (1 + border))
 			add(s, y, x), whole++;
 	}
-	if (!level || l + q <= r + border) {
+	if (!level || l + q <= r * (1 + border)) {
 		s->disc_radius = whole == 4 && s->n == 4 ? q : 0;
-	} else if (l + r <= q + border) {
+	} else if (l + r <= q * (1 + border)) {
 		s->n = 0;
 		for (int k = 0; k < 4; k++) {
 			ob_vec3 y = ob_madd(on->centre, r, rim_on[k]);
@@ -267,7 +268,7 @@ static bool within_polygon(const polygon *p, ob_vec3 x, ob_vec3 y, double share[
 	share[0] = 0, share[1] = 1;
 	for (int k = 0; k < 4; k++) {
 		ob_vec3 inwards = ob_cross(p->normal, ob_sub(p->corner[(k + 1) & 3], p->corner[k]));
-		double slack = border * ob_norm(inwards);
+		double slack = border * ob_norm2(inwards);
 		double f = ob_dot(inwards, ob_sub(x, p->corner[k])) + slack;
 		double g = ob_dot(inwards, ob_sub(y, p->corner[k])) + slack;
 		if (f < 0 && g < 0)
@@ -297,7 +298,7 @@ static void line_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 		if (!within_polygon(&p, below[0], below[1], share))
 			return;
 	} else if (on->shape == OB_SHAPE_CYLINDER &&
-		   !within_circle(below[0], below[1], origin, on->size.x + border, share)) {
+		   !within_circle(below[0], below[1], origin, on->size.x * (1 + border), share)) {
 		return;
 	}
 	for (int k = 0; k < 2; k++) {
@@ -353,7 +354,7 @@ static void box_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 		ob_rim_directions(on, over, ob_scale(p.normal, -1), rim);
 		also.n = 0;
 		polygon_and_disc(&also, &p, &cap, rim, false);
-		if (lowest(&also) < lowest(s) - border)
+		if (lowest(&also) < lowest(s) - as_low * s->same)
 			*s = also;
 	}
 }
@@ -383,7 +384,7 @@ void ob_spots_reduce(ob_spots *s)
 	int keep[4] = { 0, -1, -1, -1 };
 	double far = -1, left = 0, right = 0;
 	for (int k = 1; k < s->n; k++)
-		if (s->gap[k] < s->gap[keep[0]] - border)
+		if (s->gap[k] < s->gap[keep[0]] - as_low * s->same)
 			keep[0] = k;
 	const ob_vec3 first = s->at[keep[0]];
 	for (int k = 0; k < s->n; k++)

@@ -58,7 +58,6 @@ static const unsigned round_faults[RELATIONS] = {
 	[RELATION_REORDERED] = HEAP | STATICS,
 	[RELATION_REFINED] = ROLL,
 	[RELATION_ENERGY] = BOUNCE | ROLL,
-	[RELATION_RESCALED] = HITS | HEAP | STATICS, // lengths in cylinder.c and capsule.c
 };
 
 static bool is_asserted(const request *q, relation_id r, scene_kind k)
