@@ -159,6 +159,8 @@ void ob_universe_get_info(const ob_universe *u, ob_universe_info *out);
 bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out);
 // false: no object has this id now
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out);
+// Another number after each change of the passport, so that who has read it knows when to look again; 0: there is none.
+uint64_t ob_universe_get_passport_version(const ob_universe *u, uint32_t id);
 // The newest published motion; never torn. false: no such object, or its bytes do not make sense.
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out);
 // The fat AABB (m, xmin ymin zmin xmax ymax zmax) that holds the object until it publishes another; a plane's is infinite.

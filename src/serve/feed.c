@@ -18,6 +18,7 @@ typedef struct known {
 	bool fixed;
 	double radius; // m
 	ob_passport passport;
+	uint64_t passport_version; // looked at before the passport was
 	ob_feed_kind kind;
 	ob_motion motion; // the last one told
 	double seen_t0; // s, of the last one looked at ..
@@ -57,6 +58,11 @@ static bool universe_passport(const void *of, uint32_t id, ob_passport *out)
 	return ob_universe_get_passport(((const ob_feed *)of)->u, id, out);
 }
 
+static uint64_t universe_passport_version(const void *of, uint32_t id)
+{
+	return ob_universe_get_passport_version(((const ob_feed *)of)->u, id);
+}
+
 static bool universe_motion(const void *of, uint32_t id, ob_motion *out)
 {
 	return ob_universe_get_motion(((const ob_feed *)of)->u, id, out);
@@ -84,6 +90,7 @@ ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r)
 	ob_feed *f = ob_feed_create_of(&(ob_feed_source){ .number = universe_number,
 							  .list = universe_list,
 							  .passport = universe_passport,
+							  .passport_version = universe_passport_version,
 							  .motion = universe_motion,
 							  .time = universe_time,
 							  .step_length = info.step_length,
@@ -250,10 +257,10 @@ static bool read_roster(ob_feed *f, size_t *entries)
 	}
 }
 
-// Tells who has gone, then who has come; the list is then as the roster. false: out of memory.
-static bool tell_roster(ob_feed *f, ob_message *out)
+// Tells who has gone, then who has come, and how many that are; the list is then as the roster. false: out of memory.
+static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
 {
-	size_t entries, kept = 0, created = 0;
+	size_t entries, kept = 0;
 	uint32_t removed = 0;
 	if (!read_roster(f, &entries))
 		return false;
@@ -272,7 +279,9 @@ static bool tell_roster(ob_feed *f, ob_message *out)
 			removed++;
 			i++;
 		} else {
-			known fresh = { .id = entry->id, .generation = entry->generation };
+			known fresh = { .id = entry->id,
+					.generation = entry->generation,
+					.passport_version = f->source.passport_version(f->source.of, entry->id) };
 			at++;
 			// it may have gone again since the roster was read: then the next one says so
 			if (!f->source.passport(f->source.of, fresh.id, &fresh.passport) ||
@@ -281,7 +290,7 @@ static bool tell_roster(ob_feed *f, ob_message *out)
 			fresh.fixed = fresh.passport.flags & OB_OBJECT_STATIC;
 			fresh.radius = ob_shape_radius((ob_shape)fresh.passport.shape, fresh.passport.size);
 			now[kept++] = fresh;
-			created++;
+			++*created;
 		}
 	}
 	for (size_t i = 0; i < kept; i++) {
@@ -293,8 +302,34 @@ static bool tell_roster(ob_feed *f, ob_message *out)
 	f->object = now;
 	f->objects = kept;
 	ob_message_set_u32(out, REMOVED_AT, removed);
-	ob_message_set_u32(out, CREATED_AT, (uint32_t)created);
 	return true;
+}
+
+static bool looks_alike(const ob_passport *a, const ob_passport *b)
+{
+	return memcmp(a->colour, b->colour, sizeof a->colour) == 0 && a->roughness == b->roughness &&
+	       a->metal == b->metal;
+}
+
+// Tells of those who look otherwise than they were told to, as of who has come; returns how many.
+static uint32_t tell_looks(ob_feed *f, ob_message *out)
+{
+	uint32_t told = 0;
+	for (size_t i = 0; i < f->objects; i++) {
+		known *k = &f->object[i];
+		const uint64_t version = f->source.passport_version(f->source.of, k->id);
+		ob_passport now;
+		if (version == k->passport_version || !f->source.passport(f->source.of, k->id, &now) ||
+		    now.generation != k->generation)
+			continue;
+		k->passport_version = version;
+		if (looks_alike(&now, &k->passport))
+			continue;
+		k->passport = now;
+		put_object(out, k);
+		told++;
+	}
+	return told;
 }
 
 // ---- messages
@@ -355,15 +390,18 @@ ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace)
 		f->objects = 0;
 	bool news = anew || number != f->roster_number || time != f->time || pace->paused != f->pace.paused ||
 		    pace->rate != f->pace.rate;
-	if ((anew || number != f->roster_number) && !tell_roster(f, out))
+	uint32_t objects = 0;
+	if ((anew || number != f->roster_number) && !tell_roster(f, out, &objects))
 		out->failed = true;
+	objects += tell_looks(f, out);
 	uint32_t motions = tell_motions(f, out, time);
+	ob_message_set_u32(out, CREATED_AT, objects);
 	ob_message_set_u32(out, MOTIONS_AT, motions);
 	f->lost = out->failed;
 	f->roster_number = number;
 	f->time = time;
 	f->pace = *pace;
-	if (news || motions > 0)
+	if (news || objects > 0 || motions > 0)
 		return whole_or_none(out);
 	ob_message_release(out);
 	return NULL;

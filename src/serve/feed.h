@@ -11,7 +11,8 @@
 //      f32 rate (s a s)       f64 time (s, simulated)
 //      u32 removed, u32 created, u32 motions; then so many of each:
 //        removed      u32 id
-//        created      u32 id, generation; u8 shape; u8 flags (1: static); u8 bytes of the name;
+//        created      (or one that was created before, and looks otherwise from now on)
+//                     u32 id, generation; u8 shape; u8 flags (1: static); u8 bytes of the name;
 //                     u8 surface: roughness, of 15, and 16 times metal, of 15
 //                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB); the name (UTF-8)
 //        motion       id less the one before, in groups of 7 bits, low first, bit 7 on all but the last;
@@ -51,6 +52,7 @@ typedef struct ob_feed_source {
 	uint64_t (*number)(const void *of); // as ob_roster_number
 	size_t (*list)(const void *of, ob_roster_entry *out, size_t max); // as ob_roster_copy
 	bool (*passport)(const void *of, uint32_t id, ob_passport *out); // as ob_universe_get_passport
+	uint64_t (*passport_version)(const void *of, uint32_t id); // another one after it has come to look otherwise
 	bool (*motion)(const void *of, uint32_t id, ob_motion *out); // as ob_universe_get_motion
 	double (*time)(const void *of); // s, simulated
 	double step_length; // s

@@ -1,6 +1,7 @@
 #include "serve/film.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,16 @@ static bool recorded_passport(const void *of, uint32_t id, ob_passport *out)
 	if (is_present(s, id))
 		*out = s->passport[id];
 	return is_present(s, id);
+}
+
+// A record has no versions. What can look otherwise is a colour: its channels, to 2^-20, are the version.
+static uint64_t recorded_passport_version(const void *of, uint32_t id)
+{
+	const ob_snapshot *s = ob_recording_state(of);
+	uint64_t version = 0;
+	for (int i = 0; i < 3 && is_present(s, id); i++)
+		version = version << 21 | (uint64_t)lrintf(0x1p20f * fminf(fmaxf(s->passport[id].colour[i], 0), 1));
+	return version;
 }
 
 static bool recorded_motion(const void *of, uint32_t id, ob_motion *out)
@@ -238,6 +249,7 @@ ob_message *ob_film_make(ob_recording *r, const char *path, ob_error *e)
 					.number = recorded_number,
 					.list = recorded_list,
 					.passport = recorded_passport,
+					.passport_version = recorded_passport_version,
 					.motion = recorded_motion,
 					.time = recorded_time,
 					.step_length = ob_recording_get_info(r)->scene.run.step_length };

@@ -72,7 +72,8 @@ static uint32_t least(uint32_t a, uint32_t b)
 	return a < b ? a : b;
 }
 
-// Of a universe that this process has attached: whether it has found its segment cut short. What follows does not touch it.
+// Of a universe that this process has attached: whether it has found its segment cut short. What follows does not touch
+// it.
 static bool is_lost(const ob_universe *u)
 {
 	return __atomic_load_n(&u->lost, __ATOMIC_RELAXED);
@@ -152,6 +153,13 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 		return false;
 	ob_utf8_make_plain(out->name); // whatever a reader does with it, it reaches no terminal as a command
 	return true;
+}
+
+uint64_t ob_universe_get_passport_version(const ob_universe *u, uint32_t id)
+{
+	if (is_lost(u) || id >= least(ob_universe_ids(u), u->header.sizes.capacity))
+		return 0;
+	return __atomic_load_n(&u->passport[id].version, __ATOMIC_ACQUIRE);
 }
 
 bool ob_motion_makes_sense(const ob_motion *m)

@@ -19,7 +19,8 @@ camera "main" { eye = { -5, -6, 3.5 }, target = { 0, 0, .6 } }
 for i = 0, 11 do
 	box { size = { .5, .4, .3 }, at = { i % 3 - 1, .6 * (i // 3) - 1, 1 + .5 * i }, spin = { 2, 1, i - 5 } }
 end
-sphere { radius = .3, at = { 2.2, -1, 2 }, restitution = .7, colour = "#e4572e", name = "ball" }
+sphere { radius = .3, at = { 2.2, -1, 2 }, restitution = .7, colour = "#e4572e", name = "ball",
+	script = [[function on_start() self:wake(.6) end function on_wake() self:colour("#f6d743") end]] }
 capsule { radius = .15, length = .5, at = { -1.5, -1, 1 }, spin = { 0, 5, 1 }, dies = 1.2 }
 cylinder { radius = .25, length = .5, at = { 0, -1.4, 1.5 }, born = .5, spin = { 4, 0, 0 } }
 """

@@ -17,6 +17,7 @@ typedef struct told {
 	double t0, frequency;
 	ob_vec3 p, v, w, a, inertia;
 	ob_quat q;
+	ob_vec3 colour;
 } told;
 
 typedef struct copy {
@@ -67,10 +68,11 @@ static void hear_object(reader *r, copy *c)
 	take(r, head, sizeof head);
 	CHECK(id < IDS && head[0] >= OB_SHAPE_SPHERE && head[0] <= OB_SHAPE_CYLINDER && head[2] < OB_NAME_MAX);
 	told *o = &c->object[id % IDS];
-	*o = (told){ .there = true, .generation = generation };
+	if (!o->there || o->generation != generation)
+		*o = (told){ .there = true, .generation = generation };
 	take_vec3(r);
 	o->inertia = take_vec3(r);
-	take_vec3(r);
+	o->colour = take_vec3(r);
 	take(r, name, head[2]);
 }
 
@@ -172,6 +174,11 @@ static void check_shown(const copy *c, const ob_host *h)
 	}
 }
 
+static bool same(ob_vec3 a, ob_vec3 b)
+{
+	return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 int main(void)
 {
 	ob_scene s = little_scene(40);
@@ -205,6 +212,13 @@ int main(void)
 		if (step == 150)
 			CHECK(ob_host_request_remove(h, 5, 1) &&
 			      ob_host_request_remove(h, 6, 7)); // nobody of generation 7 is there
+		if (step == 350)
+			for (uint32_t id = 20; id < 22; id++) {
+				const ob_request red = {
+					.kind = OB_REQUEST_COLOUR, .id = id, .generation = 1, .colour = { 1, .25, 0, 1 }
+				};
+				CHECK(ob_host_request(h, &red, &e));
+			}
 		CHECK(advance(h, step));
 		hear(&early, ob_feed_next(feed, &at_rate_1));
 		check_shown(&early, h);
@@ -214,7 +228,10 @@ int main(void)
 			CHECK(late.time == early.time);
 			for (int i = 0; i < IDS; i++) {
 				const told *a = &early.object[i], *b = &late.object[i];
-				CHECK(a->there == b->there);
+				CHECK(a->there == b->there && same(a->colour, b->colour));
+				if (a->there)
+					CHECK(same(a->colour, ob_v3(1, .25, 0)) ==
+					      (step >= 350 && (i == 20 || i == 21)));
 				CHECK(!a->there ||
 				      ob_norm(ob_sub(shown_at(a, early.time), shown_at(b, late.time))) < 1e-5);
 			}

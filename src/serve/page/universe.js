@@ -112,7 +112,8 @@ export class Universe extends EventTarget {
 	hearObject(r) {
 		const id = r.u32(), generation = r.u32(), shape = r.u8(), fixed = (r.u8() & STATIC) !== 0, bytes = r.u8(), surface = r.u8();
 		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), name = r.text(bytes);
-		this.objects.set(id, { id, generation, shape, fixed, size, inertia, colour, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
+		const known = this.objects.get(id); // it looks otherwise, and moves as it did
+		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed, size, inertia, colour, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
 	}
 
 	hearMotion(r, id, time) {
