@@ -104,7 +104,7 @@ static void check_meeting(const ob_placed *a, const ob_placed *b, double h, int 
 	for (int k = 0; k <= 300; k++)
 		CHECK(separation(a, b, end * k / 300) > 0);
 	if (isinf(t)) {
-		ob_manifold now; // at the same margin: of what is farther apart a lower bound is found, which depends on it
+		ob_manifold now; // at the same margin, for what is farther apart has a lower bound that depends on it
 		ob_manifold_find(a, b, tolerance, &now);
 		CHECK(m.points == 0);
 		CHECK_NEAR(m.separation, now.separation, 1e-12);
