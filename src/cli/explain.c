@@ -19,7 +19,7 @@ __attribute__((format(printf, 3, 4))) static void line(FILE *f, const char *thin
 
 // What the scene's objects have that a part of the step would have to model.
 typedef struct traits {
-	uint32_t bodies, round, rough, elastic, forced;
+	uint32_t bodies, round, rough, elastic, forced, varying;
 } traits;
 
 static traits traits_of(const ob_scene *s)
@@ -31,6 +31,7 @@ static traits traits_of(const ob_scene *s)
 		t.bodies += moves;
 		t.round += moves && p->shape == OB_SHAPE_SPHERE;
 		t.forced += moves && ob_norm2(p->force) > 0;
+		t.varying += s->object[i].force != NULL;
 		t.rough += p->friction > 0;
 		t.elastic += p->restitution > 0;
 	}
@@ -70,6 +71,9 @@ static void explain_motion(const ob_explained *x, const traits *t, FILE *f)
 		     t->round == t->bodies ? "all are spheres" : "nothing that touched turned");
 	if (t->forced)
 		line(f, "forces", "constant ones on %" PRIu32 " objects", t->forced);
+	if (t->varying)
+		line(f, "varying", "forces that change in time on %" PRIu32 " objects: energy is put in and taken out",
+		     t->varying);
 }
 
 static void explain_contact(const ob_explained *x, const traits *t, FILE *f)

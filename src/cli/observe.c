@@ -14,9 +14,18 @@ static bool all_stay(const ob_scene *s)
 	return true;
 }
 
+static bool forces_vary(const ob_scene *s)
+{
+	for (uint32_t i = 0; i < s->objects; i++) {
+		if (s->object[i].force)
+			return true;
+	}
+	return false;
+}
+
 static bool is_closed(const ob_scene *s)
 {
-	if (ob_norm2(s->run.gravity) > 0 || !all_stay(s))
+	if (ob_norm2(s->run.gravity) > 0 || !all_stay(s) || forces_vary(s))
 		return false;
 	for (uint32_t i = 0; i < s->objects; i++) {
 		if (s->object[i].passport.flags & OB_OBJECT_PRESCRIBED || ob_norm2(s->object[i].passport.force) > 0)
@@ -30,7 +39,7 @@ bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, o
 	*o = (ob_observer){
 		.gravity = scene->run.gravity,
 		.closed = is_closed(scene),
-		.all_stay = all_stay(scene),
+		.energy_stays = all_stay(scene) && !forces_vary(scene),
 		.momentum_error = NAN,
 	};
 	if (!path)
@@ -133,7 +142,7 @@ void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r)
 	double scale = o->energy_start != 0 ? fabs(o->energy_start) : 1;
 	r->energy_start = o->energy_start;
 	r->energy_end = o->energy;
-	r->energy_gain_max = each_step && o->all_stay ? (o->energy_top - o->energy_start) / scale : NAN;
+	r->energy_gain_max = each_step && o->energy_stays ? (o->energy_top - o->energy_start) / scale : NAN;
 	r->momentum_error = each_step ? o->momentum_error : NAN;
 	r->penetration_max_m = o->now.max_m;
 	r->penetration_mean_m = o->now.mean_m;

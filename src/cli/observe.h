@@ -13,7 +13,7 @@
 typedef struct ob_observer {
 	ob_vec3 gravity;
 	bool started;
-	bool all_stay; // nobody comes or goes, so that energy only falls
+	bool energy_stays; // nobody comes or goes, no force changes in time, so that energy only falls
 	bool closed; // nothing from outside acts, so that momentum stays
 	uint64_t last_step;
 	double energy_start, energy, energy_top; // J

@@ -51,6 +51,8 @@ static bool create(sending *s, ob_error *e)
 		s->request = (ob_request){ .kind = OB_REQUEST_ADD, .def = *def };
 		if (def->script || def->born > 0 || def->dies < INFINITY)
 			fine = ob_fail(e, "create: expected an object without script, born and dies");
+		else if (def->path || def->force)
+			fine = ob_fail(e, "create: expected neither path nor varying_force: a scene's objects have them");
 		fine = fine && ob_ask(s->universe, &s->request, e);
 	}
 	ob_scene_free(scene);

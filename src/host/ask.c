@@ -93,6 +93,7 @@ static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
 	if (r->kind == OB_REQUEST_ADD) {
 		r->def.passport.name[OB_NAME_MAX - 1] = 0;
 		ob_utf8_make_plain(r->def.passport.name);
+		r->def.path = NULL, r->def.force = NULL; // a scene's alone
 	}
 	if (check(h, r, e))
 		ob_host_request(h, r, e);

@@ -27,6 +27,8 @@ typedef struct slot {
 	bool removal_scheduled; // the timetable will remove its object
 	bool created; // by a script
 	const ob_path *path; // of a kinematic object that has one
+	const ob_force *force; // that changes in time; NULL: none
+	ob_vec3 constant; // N, the other one, if there is such a force
 	uint64_t born; // step
 } slot;
 
@@ -37,8 +39,8 @@ struct ob_population {
 	slot *slots; // [capacity]
 	event *events; // the timetable: ascending by step; at one step removals first
 	size_t event_count, next;
-	uint32_t kinematic; // objects
-	uint64_t next_prescribed; // the step at which a kinematic object is to be told how it goes on
+	uint32_t kinematic, pushed; // objects: those with a force that changes in time
+	uint64_t next_prescribed; // the step at which one of them is to be told how it goes on
 	bool changed;
 	bool asked; // by somebody outside, in the last update
 	uint32_t first_free; // no slot below it is free
@@ -46,7 +48,7 @@ struct ob_population {
 	struct {
 		slot *slots; // NULL: none kept
 		size_t next;
-		uint32_t first_free, created, kinematic;
+		uint32_t first_free, created, kinematic, pushed;
 	} kept;
 };
 
@@ -188,6 +190,9 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	p->slots[id].use = SLOT_PRESENT;
 	p->slots[id].created = false;
 	p->kinematic += (pass.flags & OB_OBJECT_KINEMATIC) != 0;
+	p->pushed += def->force != NULL;
+	p->slots[id].force = def->force;
+	p->slots[id].constant = pass.force;
 	p->slots[id].path = def->path;
 	p->slots[id].born = ob_step_count(p->u);
 	p->changed = true;
@@ -206,6 +211,8 @@ static void remove_object(ob_population *p, uint32_t id)
 		return;
 	p->kinematic -= is_kinematic(p, id);
 	ob_script_free_cell(p->u, id);
+	p->pushed -= s->force != NULL;
+	s->force = NULL;
 	ob_sim_remove(p->u, id);
 	p->created -= s->created;
 	s->created = false;
@@ -274,6 +281,7 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 	if (data->script_turn[cell].flags & OB_SCRIPT_STOPPED || post->used < sizeof def)
 		return;
 	memcpy(&def, post + 1, sizeof def);
+	def.path = NULL, def.force = NULL; // the scene's alone
 	if (post->used - sizeof def < def.state_bytes || def.script > data->script_text->scripts)
 		return;
 	if (!ob_object_check(&def, &e)) {
@@ -359,6 +367,25 @@ static void publish_roster(ob_population *p)
 	p->changed = false;
 }
 
+// Forces that change in time, for the step that comes.
+static void push_all(ob_population *p)
+{
+	const double h = ob_universe_settings(p->u)->step_length;
+	uint32_t left = p->pushed;
+	for (uint32_t id = 0; left > 0; id++) {
+		const slot *s = &p->slots[id];
+		if (s->use != SLOT_PRESENT || !s->force)
+			continue;
+		const uint64_t since = ob_step_count(p->u) - s->born, next = ob_force_next(s->force, h, since);
+		const ob_vec3 now = ob_force_mean(s->force, h, since),
+			      before = since ? ob_force_mean(s->force, h, since - 1) : ob_v3(0, 0, 0);
+		ob_sim_push(p->u, id, ob_add(s->constant, now), ob_norm2(ob_sub(now, before)) > 0);
+		if (next != UINT64_MAX && s->born + next < p->next_prescribed)
+			p->next_prescribed = s->born + next;
+		left--;
+	}
+}
+
 // How kinematic objects go on from this step.
 static void prescribe_all(ob_population *p)
 {
@@ -371,6 +398,7 @@ static void prescribe_all(ob_population *p)
 		p->next_prescribed = next < p->next_prescribed ? next : p->next_prescribed;
 		left--;
 	}
+	push_all(p);
 }
 
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
@@ -423,6 +451,7 @@ bool ob_population_keep(ob_population *p)
 	p->kept.first_free = p->first_free;
 	p->kept.created = p->created;
 	p->kept.kinematic = p->kinematic;
+	p->kept.pushed = p->pushed;
 	return true;
 }
 
@@ -435,6 +464,7 @@ void ob_population_put_back(ob_population *p)
 	p->first_free = p->kept.first_free;
 	p->created = p->kept.created;
 	p->kinematic = p->kept.kinematic;
+	p->pushed = p->kept.pushed;
 	publish_roster(p);
 }
 
@@ -495,6 +525,9 @@ static void load_path(ob_population *p, uint32_t id)
 	if (id >= p->scene->objects || s->generation != 1)
 		return;
 	s->path = p->scene->object[id].path;
+	s->force = s->use == SLOT_PRESENT ? p->scene->object[id].force : NULL;
+	s->constant = p->scene->object[id].passport.force;
+	p->pushed += s->force != NULL;
 	s->born = step_at(p->scene->object[id].born, h);
 }
 

@@ -218,6 +218,15 @@ void ob_ode_world_drive(ob_ode_world *w, uint32_t id, const ob_state *s)
 	place_body(&w->object[id], s);
 }
 
+void ob_ode_world_push(ob_ode_world *w, uint32_t id, ob_vec3 force)
+{
+	struct object *m = &w->object[id];
+	if (!m->body || m->kinematic || ob_norm2(ob_sub(force, m->force)) == 0)
+		return;
+	m->force = force;
+	dBodyEnable(m->body);
+}
+
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 {
 	struct object *m = &w->object[p->id];

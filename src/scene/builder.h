@@ -48,6 +48,8 @@ typedef struct ob_builder {
 ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, const char *name);
 // The object's path from the table at the top of the stack, and its first state. kind: of the call, for messages.
 void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o);
+// The same for a force that changes in time.
+void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o);
 // NULL where no material has this name.
 const ob_material *ob_builder_material(const ob_builder *b, const char *name);
 

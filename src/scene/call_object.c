@@ -117,7 +117,7 @@ typedef struct body {
 	double radius, length, height, mass, density, friction, restitution, roughness, metal, born, dies;
 	ob_quat q, rotation;
 	float colour[4];
-	bool fixed, grid, path;
+	bool fixed, grid, path, varying_force;
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
@@ -143,7 +143,8 @@ typedef struct body {
 		F(spin, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
 		F(force, .kind = OB_FIELD_VECTOR, .low = -1e15, .high = 1e15), \
 		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
-		F(path, .kind = OB_FIELD_TABLE), OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
+		F(path, .kind = OB_FIELD_TABLE), F(varying_force, .kind = OB_FIELD_TABLE), \
+		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
 
 static const ob_field box_fields[] = {
 	F(size, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e6, .required = true),
@@ -309,6 +310,10 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 			ob_sandbox_fail(L, "%s.%s: expected none for a %s object", kind, moves[i].name, named);
 	if (d->kind == DYNAMIC && ob_norm2(d->surface_velocity) > 0)
 		ob_sandbox_fail(L, "%s.surface_velocity: expected a static or kinematic object", kind);
+	if (d->kind != DYNAMIC && d->varying_force)
+		ob_sandbox_fail(L, "%s.varying_force: expected none for a %s object", kind, named);
+	if (d->script && d->varying_force)
+		refuse_together(L, kind, "script", "varying_force");
 	if (d->kind != KINEMATIC && d->path)
 		ob_sandbox_fail(L, "%s.path: expected kind = \"kinematic\" with it", kind);
 	if (d->path && ob_norm2(d->velocity) > 0)
@@ -367,6 +372,11 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	if (d->path) {
 		lua_getfield(L, 1, "path");
 		ob_builder_read_path(L, kind, o);
+		lua_pop(L, 1);
+	}
+	if (d->varying_force) {
+		lua_getfield(L, 1, "varying_force");
+		ob_builder_read_force(L, kind, o);
 		lua_pop(L, 1);
 	}
 	return o;

@@ -1,4 +1,5 @@
-// The path of a kinematic object: { kind = "sine", amplitude = {.1, 0, 0}, frequency = 2 } and so on.
+// What an object is told to do in time: the path of a kinematic one, { kind = "sine", amplitude = {.1, 0, 0}, frequency
+// = 2 } and so on; and forces that change.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,15 +82,15 @@ static void make_circle(lua_State *L, const char *where, const draft *d, ob_obje
 	keep_path(L, where, o, &path);
 }
 
-// {t, x, y, z} at the top of the stack
-static bool read_point(lua_State *L, ob_path_point *out)
+// {t, x, y, z} at the top of the stack; each of x, y, z up to "most"
+static bool read_point(lua_State *L, double most, ob_path_point *out)
 {
 	double x[4];
 	bool good = lua_istable(L, -1) && lua_rawlen(L, -1) == 4;
 	for (int i = 0; i < 4 && good; i++) {
 		good = lua_rawgeti(L, -1, i + 1) == LUA_TNUMBER;
 		x[i] = lua_tonumber(L, -1);
-		good = good && fabs(x[i]) <= (i ? 1e7 : 1e9);
+		good = good && fabs(x[i]) <= (i ? most : 1e9);
 		lua_pop(L, 1);
 	}
 	if (good)
@@ -97,33 +98,40 @@ static bool read_point(lua_State *L, ob_path_point *out)
 	return good;
 }
 
-static void make_spline(lua_State *L, const char *where, const draft *d, ob_object_def *o)
+// The points of the table at the top of the stack. Returns how many there are.
+static uint32_t read_points(lua_State *L, const char *where, double most, ob_path_point point[OB_PATH_POINTS_MAX])
 {
 	lua_getfield(L, -1, "points");
 	const size_t n = lua_rawlen(L, -1);
 	if (n < 2 || n > OB_PATH_POINTS_MAX)
-		ob_sandbox_fail(L, "%s.points: expected 2 to %d points {t, x, y, z}, got %zu", where,
-				OB_PATH_POINTS_MAX, n);
-	ob_path_point room[OB_PATH_POINTS_MAX] = { 0 };
-	keep_path(L, where, o, &(ob_path){ .points = (uint32_t)n, .loop = d->loop, .point = room });
-	ob_path *path = o->path;
+		ob_sandbox_fail(L, "%s.points: expected 2 to %d points {t, x, y, z}, got %d", where, OB_PATH_POINTS_MAX,
+				(int)n);
 	for (size_t i = 0; i < n; i++) {
 		lua_rawgeti(L, -1, (lua_Integer)i + 1);
-		if (!read_point(L, &path->point[i]))
-			ob_sandbox_fail(L, "%s.points: expected four numbers {t, x, y, z} as point %zu", where, i + 1);
-		if (i == 0 ? path->point[0].t != 0 : !(path->point[i].t > path->point[i - 1].t))
+		if (!read_point(L, most, &point[i]))
+			ob_sandbox_fail(L, "%s.points: expected four numbers {t, x, y, z} as point %d", where,
+					(int)i + 1);
+		if (i == 0 ? point[0].t != 0 : !(point[i].t > point[i - 1].t))
 			ob_sandbox_fail(L,
-					"%s.points: expected times that begin with 0 and grow, got %.10g at point %zu",
-					where, path->point[i].t, i + 1);
+					"%s.points: expected times that begin with 0 and grow, got %.10g at point %d",
+					where, point[i].t, (int)i + 1);
 		lua_pop(L, 1);
 	}
 	lua_pop(L, 1);
-	const ob_vec3 first = path->point[0].p, last = path->point[n - 1].p;
+	return (uint32_t)n;
+}
+
+static void make_spline(lua_State *L, const char *where, const draft *d, ob_object_def *o)
+{
+	ob_path_point point[OB_PATH_POINTS_MAX];
+	const uint32_t n = read_points(L, where, 1e7, point);
+	const ob_vec3 first = point[0].p, last = point[n - 1].p;
 	if (d->loop && (first.x != last.x || first.y != last.y || first.z != last.z))
 		ob_sandbox_fail(L, "%s.loop: expected the last point where the first one is", where);
-	for (size_t i = 0; i < n; i++)
-		path->point[i].p = ob_add(path->point[i].p, o->state.pose.p);
-	o->state.pose.p = path->point[0].p;
+	for (uint32_t i = 0; i < n; i++)
+		point[i].p = ob_add(point[i].p, o->state.pose.p);
+	keep_path(L, where, o, &(ob_path){ .points = n, .loop = d->loop, .point = point });
+	o->state.pose.p = point[0].p;
 }
 
 void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o)
@@ -141,4 +149,74 @@ void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o)
 		make_circle(L, where, &d, o);
 	else
 		make_spline(L, where, &d, o);
+}
+
+// ---- forces that change in time
+
+typedef struct force_draft {
+	uint32_t kind; // ob_force_kind
+	ob_vec3 force;
+	double frequency, phase, from, to;
+	bool points;
+} force_draft;
+
+#define G(member, ...) OB_FIELD(force_draft, member, .name = #member, __VA_ARGS__)
+static const ob_field force_fields[] = {
+	G(kind, .kind = OB_FIELD_CHOICE, .choices = "sine|pulse|linear", .required = true),
+	G(force, .kind = OB_FIELD_VECTOR, .low = -1e15, .high = 1e15),
+	G(frequency, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e4),
+	G(phase, .kind = OB_FIELD_NUMBER, .low = -1e3, .high = 1e3),
+	G(from, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9),
+	G(to, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
+	G(points, .kind = OB_FIELD_TABLE),
+};
+
+static void check_force(lua_State *L, const char *where, const force_draft *d)
+{
+	static const char *const kinds[] = { "sine", "pulse", "linear" };
+	const struct {
+		const char *name;
+		bool said;
+		unsigned needed, allowed; // bit per kind
+	} fields[] = {
+		{ "force", !isnan(d->force.x), 3, 3 },
+		{ "frequency", !isnan(d->frequency), 1 << OB_FORCE_SINE, 1 << OB_FORCE_SINE },
+		{ "phase", !isnan(d->phase), 0, 1 << OB_FORCE_SINE },
+		{ "from", !isnan(d->from), 0, 1 << OB_FORCE_PULSE },
+		{ "to", !isnan(d->to), 1 << OB_FORCE_PULSE, 1 << OB_FORCE_PULSE },
+		{ "points", d->points, 1 << OB_FORCE_LINEAR, 1 << OB_FORCE_LINEAR },
+	};
+	for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+		if (fields[i].needed >> d->kind & 1 && !fields[i].said)
+			ob_sandbox_fail(L, "%s.%s: expected for kind = \"%s\", got nothing", where, fields[i].name,
+					kinds[d->kind]);
+		if (fields[i].said && !(fields[i].allowed >> d->kind & 1))
+			ob_sandbox_fail(L, "%s.%s: expected none for kind = \"%s\"", where, fields[i].name,
+					kinds[d->kind]);
+	}
+	if (d->kind == OB_FORCE_PULSE && !(d->to > (isnan(d->from) ? 0 : d->from)))
+		ob_sandbox_fail(L, "%s.to: expected a time after from, got %.10g", where, d->to);
+}
+
+void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o)
+{
+	char where[64];
+	force_draft d = { .force = { NAN, NAN, NAN }, .frequency = NAN, .phase = NAN, .from = NAN, .to = NAN };
+	ob_path_point point[OB_PATH_POINTS_MAX];
+	snprintf(where, sizeof where, "%s.varying_force", kind);
+	luaL_checkstack(L, 8, "nested too deep");
+	ob_fields_read(L, -1, where, force_fields, sizeof force_fields / sizeof *force_fields, &d);
+	check_force(L, where, &d);
+	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, 1e15, point) : 0;
+	const ob_force f = { .kind = (ob_force_kind)d.kind,
+			     .force = points ? ob_v3(0, 0, 0) : d.force,
+			     .frequency = isnan(d.frequency) ? 0 : 2 * M_PI * d.frequency,
+			     .phase = isnan(d.phase) ? 0 : d.phase,
+			     .from = isnan(d.from) ? 0 : d.from,
+			     .until = isnan(d.to) ? 0 : d.to,
+			     .points = points,
+			     .point = points ? point : NULL };
+	o->force = ob_force_copy(&f);
+	if (!o->force)
+		ob_sandbox_fail(L, "%s: no memory left on this machine", where);
 }

@@ -178,7 +178,7 @@ void ob_scene_free(ob_scene *s)
 	if (!s)
 		return;
 	for (uint32_t i = 0; i < s->objects; i++)
-		free(s->object[i].path);
+		free(s->object[i].path), free(s->object[i].force);
 	free(s->object);
 	free(s->camera);
 	for (uint32_t i = 0; i < s->scripts; i++)

@@ -4,6 +4,7 @@
 
 #include <ob/motion.h>
 
+#include "motion/force.h"
 #include "motion/path.h"
 #include "settings/settings.h"
 
@@ -13,6 +14,7 @@ typedef struct ob_object_def {
 	uint32_t script; // 1 + its number; 0: none
 	uint32_t state_at, state_bytes; // of what its script begins with (scene/flat.h), in ob_scene.states
 	ob_path *path;        // how a kinematic one moves; NULL: it goes on as it begins. The scene's, freed with it
+	ob_force *force;      // that changes in time, beside the passport's; NULL: none. As path
 	double born, dies;    // s; born = 0 and dies = infinity: there all the time
 } ob_object_def;
 

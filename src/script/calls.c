@@ -1,5 +1,6 @@
 // What a script can call.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <lauxlib.h>
@@ -329,6 +330,11 @@ static int call_create(lua_State *L)
 	r->scene.objects = r->scene.states_bytes = 0;
 	lua_tocfunction(L, lua_upvalueindex(1))(L);
 	ob_object_def *def = &r->scene.object[0];
+	if (def->path || def->force) {
+		free(def->path), free(def->force);
+		ob_sandbox_fail(L, "%s: expected neither path nor varying_force: only objects of the scene have them",
+				kind);
+	}
 	if (def->born > 0 || def->dies < INFINITY)
 		ob_sandbox_fail(L, "%s: expected neither born nor dies: it is created now, and removed on request",
 				kind);

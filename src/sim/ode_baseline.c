@@ -81,6 +81,8 @@ static void follow_passports(ob_ode_baseline *m)
 			ob_ode_world_remove(m->world, id);
 			h->there = false;
 		}
+		if (present && h->there)
+			ob_ode_world_push(m->world, id, p->force);
 		if (!present || h->there)
 			continue;
 		const ob_motion *first = ob_newest_motion(m->u, id);

@@ -216,6 +216,24 @@ uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *
 	return is->members;
 }
 
+void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes)
+{
+	ob_passport p = *ob_passport_of(u, id);
+	ob_schedule *schedule = &ob_universe_step_data(u)->schedule[id];
+	if (p.flags & OB_OBJECT_PRESCRIBED)
+		return;
+	if (p.force.x != force.x || p.force.y != force.y || p.force.z != force.z) {
+		p.force = force;
+		ob_write_passport(u, id, &p);
+	}
+	if (!changes)
+		return;
+	if (schedule->state == OB_SCHEDULE_ASLEEP || schedule->state == OB_SCHEDULE_EQUILIBRIUM)
+		wake_object(u, id);
+	if (schedule->state == OB_SCHEDULE_AWAKE)
+		schedule->due = (uint32_t)ob_step_count(u); // a flight that was computed ahead ends
+}
+
 void ob_sim_remove(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);

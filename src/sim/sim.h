@@ -35,6 +35,10 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state);
 // UINT64_MAX = never. To call it at other steps, too, changes nothing.
 uint64_t ob_sim_prescribe(ob_universe *u, uint32_t id, const ob_path *path, uint64_t born);
 
+// Host, at a pause: this constant force (N) acts on a dynamic object from now on. changes: another one has acted until now,
+// and if the object rests, it wakes. Its passport does not tell: after a restart it is that of a later step.
+void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes);
+
 // Host, at the start, after ob_universe_load: the spatial index, which is not saved, of the objects that are.
 void ob_sim_restore(ob_universe *u);
 

@@ -1,7 +1,9 @@
 """A run that is put down and taken up again ends in the same bits and the same figures, whatever runs either part, and
 whatever ended the first. A checkpoint on disk is whole at any instant, or refused in one line."""
 
+import csv
 import json
+import math
 import os
 import random
 import resource
@@ -79,6 +81,58 @@ class Resume(program.Case):
 				self.assertEqual(middle["resumed_s"], first["simulated_s"])
 				end = self.finish(*ways[2], "--duration", whole["simulated_s"])
 				self.assertEqual(figures(end), figures(whole))
+
+	def test_varying_forces(self):
+		"""A sine in flight, a pulse in flight, one on a rough floor where a box has slept, and one born late: the closed form's
+		momentum, and the same bits for any workers, after a resume in the middle of each pulse, and after kills."""
+		scene = self.path("forces.lua")
+		with open(scene, "w") as f:
+			f.write("""scene { duration = 3.5, step = 1/100 }
+				ground { friction = .5 }
+				box { size = { 1, 1, .5 }, mass = 2, at = { 5, 0, .25 },
+					varying_force = { kind = "pulse", force = { 0, 30, 0 }, from = 2.503, to = 2.807 } }
+				box { size = { 1, 1, .5 }, mass = 2, at = { 5, 2, .25 } } -- is hit
+				for i = 1, 8 do
+					box { size = { .2, .2, .1 }, mass = 2, at = { 0, 2 * i, 50 }, force = { 0, 0, 2 * 9.81 }, born = i == 8 and 1 or 0,
+						varying_force = { kind = "sine", force = { i, 0, 0 }, frequency = .5, phase = .1 * i } }
+				end
+				sphere { radius = .2, mass = 2, at = { -9, 0, 50 }, force = { 0, 0, 2 * 9.81 },
+					varying_force = { kind = "linear", points = { { 0, 0, 0, 0 }, { 1, 0, 4, 0 }, { 1.5, 0, -4, 0 }, { 2, 0, 0, 0 } } } }""")
+		whole = program.report(scene)
+		self.assertIsNone(whole["energy_gain_max"])
+		for way in WAYS:
+			self.assertEqual(program.report(scene, *way)["state_hash"], whole["state_hash"], way)
+		for at in ".5", "1.3", "2.5", "2.6", "2.9":
+			program.report(scene, "--duration", at, "--checkpoint", self.file)
+			self.assertEqual(figures(self.finish("--duration", "3.5")), figures(whole), at)
+		deaths = 0
+		for seed in 7, 8:
+			killed = program.report(scene, "--isolation", "process", "--workers", "2", "--fault", f"kill:p=.01,seed={seed}")
+			self.assertEqual(killed["state_hash"], whole["state_hash"])
+			deaths += killed["deaths"]
+		self.assertGreater(deaths, 0)
+
+	def test_momentum_of_varying_forces(self):
+		"""The program's own series against the integrals of the forces, at each step."""
+		scene, series = self.path("forces.lua"), self.path("forces.csv")
+		with open(scene, "w") as f:
+			f.write("""scene { duration = 3, step = 1/100, gravity = { 0, 0, 0 } }
+				box { size = { .2, .2, .1 }, mass = 2, at = { 0, 0, 0 },
+					varying_force = { kind = "sine", force = { 3, 0, 0 }, frequency = .5, phase = .4 } }
+				box { size = { .2, .2, .1 }, mass = 3, at = { 0, 9, 0 }, force = { 0, 1, 0 },
+					varying_force = { kind = "pulse", force = { 0, 4, 0 }, from = 1.003, to = 1.297 } }
+				box { size = { .2, .2, .1 }, mass = 4, at = { 0, 0, 9 }, born = 1,
+					varying_force = { kind = "pulse", force = { 0, 0, 5 }, from = .5, to = .7 } }""")
+		program.report(scene, "--series", series)
+		w = math.pi
+		with open(series) as f:
+			lines = list(csv.DictReader(f))
+		self.assertEqual(len(lines), 301)
+		for line in lines:
+			t = float(line["time_s"])
+			self.assertAlmostEqual(float(line["momentum_x"]), 3 * (math.cos(.4) - math.cos(w * t + .4)) / w, delta=1e-9)
+			self.assertAlmostEqual(float(line["momentum_y"]), t + 4 * min(max(t - 1.003, 0), .294), delta=1e-9)
+			self.assertAlmostEqual(float(line["momentum_z"]), 5 * min(max(t - 1.5, 0), .2), delta=1e-9)
 
 	def test_again_and_again(self):
 		"""A run in thirty pieces, each with a checkpoint of its own, from its scene, which is gone by then."""

@@ -244,6 +244,10 @@ sphere { radius = .1, at = { 9, 9, 9 }, script = "tap" }
 			"function on_step() os.exit() end": r"it:1: os: not available",
 			"function on_step() sphere { radius = -1 } end": r"it:1: sphere\.radius: expected a number above 0",
 			"function on_step() sphere { radius = 1, dies = 3 } end": r"sphere: expected neither born nor dies",
+			"function on_step() sphere { radius = 1, varying_force = { kind = 'pulse', force = { 1, 0, 0 }, to = 1 } } end":
+				r"it:1: sphere: expected neither path nor varying_force",
+			"function on_step() sphere { radius = 1, kind = 'kinematic', path = { kind = 'sine', amplitude = { 1, 0, 0 }, frequency = 1 } } end":
+				r"it:1: sphere: expected neither path nor varying_force",
 			"function on_step() sphere { radius = 1, script = 'its' } end": r'unknown script "its", did you mean "it"',
 			"function on_step()\n sphere { radius = .1, at = { random(0, 99), random(0, 99), 9 } } end":
 				r"it:2: 3 objects that scripts have created exist, and the scene has no room for more",
