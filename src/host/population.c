@@ -470,8 +470,8 @@ void ob_population_put_back(ob_population *p)
 
 uint64_t ob_population_next_step(const ob_population *p)
 {
-	const uint64_t event = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX;
-	return event < p->next_prescribed ? event : p->next_prescribed;
+	const uint64_t timetable = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX;
+	return timetable < p->next_prescribed ? timetable : p->next_prescribed;
 }
 
 // ---- saved

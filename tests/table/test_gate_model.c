@@ -30,9 +30,9 @@ static void wake_sleepers(const uint32_t *word, uint32_t bits);
 #define __atomic_load_n(at, order) ((__typeof__(*(at)))load(at, sizeof *(at)))
 #define __atomic_store_n(at, value, order) \
 	((order) == __ATOMIC_SEQ_CST ? (void)change(at, sizeof *(at), SET, value) : store(at, sizeof *(at), value))
-#define __atomic_fetch_or(at, x, order) ((__typeof__(*(at)))change(at, sizeof *(at), OR, x))
-#define __atomic_fetch_and(at, x, order) ((__typeof__(*(at)))change(at, sizeof *(at), AND, x))
-#define __atomic_fetch_add(at, x, order) ((__typeof__(*(at)))change(at, sizeof *(at), ADD, x))
+#define __atomic_fetch_or(at, x, order) change(at, sizeof *(at), OR, x)
+#define __atomic_fetch_and(at, x, order) change(at, sizeof *(at), AND, x)
+#define __atomic_fetch_add(at, x, order) change(at, sizeof *(at), ADD, x)
 #define __atomic_sub_fetch(at, x, order) ((__typeof__(*(at)))(change(at, sizeof *(at), ADD, -(uint64_t)(x)) - (x)))
 #define ob_futex_wait(word, seen, bits, until) sleep_on(word, seen, bits, until)
 #define ob_futex_wake(word, bits) wake_sleepers(word, bits)
