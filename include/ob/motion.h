@@ -32,7 +32,8 @@ void ob_rotate_free(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_
 // drawn inside the ground.
 ob_pose ob_motion_between(const ob_motion *prev, const ob_motion *next, ob_vec3 inertia, double t);
 
-// Tight axis-aligned box (xmin ymin zmin xmax ymax zmax, m) of a shape at a pose; a plane gives an infinite box.
+// Tight axis-aligned box (xmin ymin zmin xmax ymax zmax, m) of a shape at a pose; a plane gives an infinite box, a hull
+// that of the ball that holds it (ob_hull_bounds is tight).
 void ob_shape_bounds(ob_shape shape, ob_vec3 size, ob_pose pose, double bounds[6]);
 
 // Radius (m) of the sphere round the centre of mass that holds the shape; infinity for a plane.

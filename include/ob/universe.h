@@ -31,6 +31,8 @@ typedef enum ob_shape {
 	OB_SHAPE_PLANE,    // infinite; through the origin of its pose, solid below its +z axis; always static
 	OB_SHAPE_CAPSULE,  // size.x = radius, size.y = half length of the cylinder part; axis = body z
 	OB_SHAPE_CYLINDER, // size.x = radius, size.y = half length; axis = body z
+	OB_SHAPE_HULL,     // of points (ob/hull.h); size = radius of the ball that holds it, half its least width, radius
+			   // of the ball in it, both balls about the centre of mass
 } ob_shape;
 
 enum { // ob_passport.flags
@@ -46,7 +48,8 @@ typedef struct ob_passport {
 	uint32_t id;          // index of the object in the table, from 0
 	uint32_t generation;  // grows each time the slot is given to another object
 	uint32_t flags;       // OB_OBJECT_*
-	uint32_t shape;       // ob_shape
+	uint16_t shape;       // ob_shape
+	uint16_t hull;        // of a hull: which of the universe's (ob_universe_get_hull)
 	ob_vec3 size;         // m, see ob_shape
 	double mass;          // kg; 0 = static
 	ob_vec3 inertia;      // kg m^2, principal moments in the body frame; 0 = static
@@ -122,6 +125,8 @@ typedef struct ob_universe_info {
 	uint32_t deaths;      // times that simulators died or stalled
 	uint32_t frozen;      // objects that stay where they are since then (OB_OBJECT_FROZEN)
 	char last_death[OB_DEATH_MAX]; // which it was, and of what; "" = none
+	uint32_t hulls;       // hulls are numbered 0 .. hulls-1
+	uint64_t created;     // ns since 1970: no other universe has the same name and instant
 } ob_universe_info;
 
 typedef struct ob_worker_info {

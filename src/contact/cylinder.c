@@ -123,11 +123,39 @@ static void try_facets(search *s, const ob_placed *x)
 		try_along(s, ob_column(&x->r, 2), true);
 	for (int i = 0; x->shape == OB_SHAPE_BOX && i < 3; i++)
 		try_along(s, ob_column(&x->r, i), true);
+	for (uint32_t f = 0; x->shape == OB_SHAPE_HULL && f < x->hull->faces; f++) { // it is b: its normals lead to a
+		const ob_vec3 n = ob_rotate(&x->r, x->hull->normal[f]);
+		if (ob_dot(n, ob_sub(s->a->p, s->b->p)) - x->hull->offset[f] > fmin(s->gap, touching * s->thickness))
+			try_direction(s, n, true);
+	}
 }
 
-// Axes and edges across which features of the shape look: the axis of what is round, the edges of a box.
-static int edges_of(const ob_placed *x, ob_vec3 edge[3])
+enum { EDGES_MAX = 24 }; // that are looked at of a shape: a hull may have more
+
+// The directions of the hull's edges at the corner that lies farthest along n.
+static int edges_at_corner(const ob_placed *x, ob_vec3 n, ob_vec3 *edge)
 {
+	const ob_hull *h = x->hull;
+	const ob_vec3 l = ob_rotate_back(&x->r, n);
+	uint32_t corner = 0;
+	int found = 0;
+	for (uint32_t k = 1; k < h->corners; k++)
+		if (ob_dot(l, h->corner[k]) > ob_dot(l, h->corner[corner]))
+			corner = k;
+	for (uint32_t i = 0; i < h->edges && found < EDGES_MAX; i++) {
+		const ob_hull_edge *e = &h->edge[i];
+		if (e->from == corner || e->to == corner)
+			edge[found++] = unit(ob_rotate(&x->r, ob_sub(h->corner[e->to], h->corner[e->from])));
+	}
+	return found;
+}
+
+// Axes and edges across which features of the shape look: the axis of what is round, the edges of a box. Of a hull
+// those where it is farthest along n.
+static int edges_of(const ob_placed *x, ob_vec3 n0, ob_vec3 edge[EDGES_MAX])
+{
+	if (x->shape == OB_SHAPE_HULL)
+		return edges_at_corner(x, n0, edge);
 	int n = x->shape == OB_SHAPE_BOX ? 3 : 1;
 	for (int i = 0; i < n; i++)
 		edge[i] = ob_column(&x->r, n == 3 ? i : 2);
@@ -145,8 +173,29 @@ typedef struct feature {
 	int edges;
 } feature;
 
+// A hull's corner, or the edge of which both ends lie as far; of a face a corner.
+static feature hull_feature(const ob_placed *x, ob_vec3 n)
+{
+	const ob_hull *h = x->hull;
+	const ob_vec3 l = ob_rotate_back(&x->r, n);
+	feature f = { .centre = ob_support(x, n) };
+	const double most = ob_dot(n, ob_sub(f.centre, x->p)) - level * h->radius;
+	uint32_t high = 0, last[2] = { 0, 0 };
+	for (uint32_t k = 0; k < h->corners; k++)
+		if (ob_dot(l, h->corner[k]) >= most)
+			last[high++ & 1] = k;
+	if (high == 2) {
+		const ob_vec3 from = h->corner[last[0]], to = h->corner[last[1]];
+		f.centre = ob_add(x->p, ob_rotate(&x->r, ob_scale(ob_add(from, to), .5)));
+		f.edge[f.edges++] = ob_rotate(&x->r, ob_scale(ob_sub(to, from), .5));
+	}
+	return f;
+}
+
 static feature feature_along(const ob_placed *x, ob_vec3 n)
 {
+	if (x->shape == OB_SHAPE_HULL)
+		return hull_feature(x, n);
 	double h[3] = { x->size.x, x->size.y, x->size.z };
 	feature f = { .centre = ob_support(x, n) };
 	for (int i = 0; i < 3; i++) {
@@ -218,7 +267,7 @@ static void climb(search *s, const ob_vec3 *edge, int n, double enough)
 {
 	enum { CLIMBS = 24 };
 	const bool rims = s->b->shape == OB_SHAPE_CYLINDER;
-	const unsigned all = (1u << (n + rims)) - 1;
+	const unsigned all = (1u << (n + rims)) - 1; // n is 1 + EDGES_MAX at most
 	unsigned tried = 0;
 	for (int i = 0; i < CLIMBS && tried != all; i++) {
 		ob_vec3 g = ob_support_between(s->a, s->b, s->normal);
@@ -256,31 +305,91 @@ static void climb_from_everywhere(search *s, const ob_vec3 *edge, int n)
 	}
 }
 
+// Directions across the axis and each edge of a hull that could be better than the best so far.
+static void try_hull_crossed(search *s, ob_vec3 axis)
+{
+	const ob_placed *b = s->b;
+	const ob_hull *h = b->hull;
+	const ob_vec3 d = ob_sub(s->a->p, b->p);
+	for (uint32_t i = 0; i < h->edges; i++) {
+		const ob_hull_edge *e = &h->edge[i];
+		const ob_vec3 from = ob_rotate(&b->r, h->corner[e->from]);
+		const ob_vec3 way = ob_rotate(&b->r, ob_sub(h->corner[e->to], h->corner[e->from])),
+			      c = ob_cross(axis, way);
+		if (ob_norm2(c) <= 1e-12 * ob_norm2(way))
+			continue;
+		const ob_vec3 out = ob_rotate(&b->r, ob_add(h->normal[e->left], h->normal[e->right]));
+		const ob_vec3 n = ob_scale(unit(c), ob_dot(c, out) < 0 ? -1 : 1);
+		if (ob_dot(n, ob_sub(d, from)) > fmin(s->gap, touching * s->thickness))
+			try_direction(s, n, false);
+	}
+}
+
+// Climbs across every edge of a hull whose side could be better than the best so far.
+static void climb_hull(search *s)
+{
+	const ob_placed *b = s->b;
+	const ob_hull *h = b->hull;
+	const ob_vec3 d = ob_sub(s->a->p, b->p);
+	for (uint32_t i = 0; i < h->edges; i++) {
+		const ob_hull_edge *e = &h->edge[i];
+		const ob_vec3 n = unit(ob_rotate(&b->r, ob_add(h->normal[e->left], h->normal[e->right])));
+		const ob_vec3 way = unit(ob_rotate(&b->r, ob_sub(h->corner[e->to], h->corner[e->from])));
+		if (ob_dot(n, ob_sub(d, ob_rotate(&b->r, h->corner[e->from]))) > s->gap)
+			try_direction(s, ob_climb_across(s->a, b, way, n), false);
+	}
+}
+
+// The directions from corners of b.
+static void try_corners(search *s)
+{
+	const ob_placed *b = s->b;
+	ob_vec3 at, n;
+	const uint32_t corners = b->shape == OB_SHAPE_HULL ? b->hull->corners : 8;
+	for (uint32_t k = 0; k < corners; k++) {
+		ob_vec3 h = b->shape == OB_SHAPE_HULL
+				    ? b->hull->corner[k]
+				    : ob_v3(k & 1 ? b->size.x : -b->size.x, k & 2 ? b->size.y : -b->size.y,
+					    k & 4 ? b->size.z : -b->size.z);
+		nearest_point(s->a, ob_add(b->p, ob_rotate(&b->r, h)), &at, &n);
+		try_direction(s, ob_scale(n, -1), false);
+	}
+}
+
 // All directions in which other features than facets can touch, until one is proven to be best or separates the shapes
 // by more than "enough" (m).
 static void try_others(search *s, double enough)
 {
+	enum { CORNERS = 4 };
 	const ob_placed *b = s->b;
-	ob_vec3 at, n, edge[4] = { ob_column(&s->a->r, 2) };
-	const int edges = 1 + edges_of(b, edge + 1);
+	const bool hull = b->shape == OB_SHAPE_HULL;
+	ob_vec3 at, n, edge[1 + EDGES_MAX] = { ob_column(&s->a->r, 2) };
+	int edges = 1 + edges_of(b, s->normal, edge + 1);
 	for (int k = -1; b->shape == OB_SHAPE_CAPSULE && k < 2; k += 2) {
 		nearest_point(s->a, ob_madd(b->p, k * b->size.y, ob_column(&b->r, 2)), &at, &n);
 		try_direction(s, ob_scale(n, -1), false);
 	}
-	try_crossed(s, edge, edges);
+	if (hull)
+		try_hull_crossed(s, edge[0]);
+	else
+		try_crossed(s, edge, edges);
 	if (s->gap > enough || (!is_deep(s) && is_proven(s)))
 		return;
 	climb(s, edge, edges, enough);
-	if (is_deep(s))
-		climb_from_everywhere(s, edge, edges);
-	if (b->shape != OB_SHAPE_BOX || !(s->gap > 0) || s->gap > enough || is_proven(s))
-		return;
-	for (int k = 0; k < 8; k++) { // a corner beside a rim
-		ob_vec3 h = ob_v3(k & 1 ? b->size.x : -b->size.x, k & 2 ? b->size.y : -b->size.y,
-				  k & 4 ? b->size.z : -b->size.z);
-		nearest_point(s->a, ob_add(b->p, ob_rotate(&b->r, h)), &at, &n);
-		try_direction(s, ob_scale(n, -1), false);
+	for (int i = 0; hull && i < CORNERS && s->gap <= enough; i++) { // from corner to corner
+		const double before = s->gap;
+		edges = 1 + edges_of(b, s->normal, edge + 1);
+		climb(s, edge, edges, enough);
+		if (s->gap <= before + noise * s->thickness)
+			break;
 	}
+	if (hull && s->gap <= enough && !is_proven(s))
+		climb_hull(s);
+	if (is_deep(s))
+		climb_from_everywhere(s, edge, edges < STARTS ? edges : STARTS - 1);
+	if ((b->shape != OB_SHAPE_BOX && !hull) || !(s->gap > 0) || s->gap > enough || is_proven(s))
+		return;
+	try_corners(s); // a corner beside a rim
 }
 
 // ---- points
@@ -289,6 +398,13 @@ static void try_others(search *s, double enough)
 static bool facet_near(const ob_placed *x, ob_vec3 n, double cosine, ob_vec3 *outward)
 {
 	bool near = false;
+	for (uint32_t f = 0; x->shape == OB_SHAPE_HULL && f < x->hull->faces; f++) {
+		const ob_vec3 e = ob_rotate(&x->r, x->hull->normal[f]);
+		if (ob_dot(e, n) >= cosine)
+			cosine = ob_dot(e, n), *outward = e, near = true;
+	}
+	if (x->shape == OB_SHAPE_HULL)
+		return near;
 	for (int i = x->shape == OB_SHAPE_BOX ? 0 : 2; i < 3 && x->shape != OB_SHAPE_CAPSULE; i++) {
 		ob_vec3 e = ob_column(&x->r, i);
 		double c = ob_dot(e, n);
@@ -298,12 +414,27 @@ static bool facet_near(const ob_placed *x, ob_vec3 n, double cosine, ob_vec3 *ou
 	return near;
 }
 
+static bool hull_line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_placed *line)
+{
+	const feature f = hull_feature(x, n);
+	if (f.edges != 1 || fabs(ob_dot(unit(f.edge[0]), axis)) < along_facet)
+		return false;
+	const ob_vec3 e = unit(f.edge[0]), p = unit(ob_cross(e, fabs(e.x) < .6 ? ob_v3(1, 0, 0) : ob_v3(0, 1, 0))),
+		      q = ob_cross(e, p);
+	line->p = f.centre;
+	line->size = ob_v3(0, ob_norm(f.edge[0]), 0);
+	line->r = (ob_mat3){ { { p.x, q.x, e.x }, { p.y, q.y, e.y }, { p.z, q.z, e.z } } };
+	return true;
+}
+
 // A line with a radius that runs along a's axis and reaches farthest along n: the axis of what is round, or an edge of
 // a box.
 static bool line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_placed *line)
 {
 	*line = *x;
 	line->shape = OB_SHAPE_CAPSULE;
+	if (x->shape == OB_SHAPE_HULL)
+		return hull_line_beside(x, n, axis, line);
 	if (x->shape != OB_SHAPE_BOX)
 		return fabs(ob_dot(ob_column(&x->r, 2), n)) < side_lean;
 	double h[3] = { x->size.x, x->size.y, x->size.z };

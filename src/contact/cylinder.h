@@ -14,7 +14,7 @@
 
 void ob_manifold_cylinder_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_cylinder_sphere(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
-// b: a box, a capsule or another cylinder.
+// b: a box, a capsule, another cylinder or a hull.
 void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 #endif

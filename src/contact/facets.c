@@ -98,7 +98,9 @@ typedef struct disc {
 } disc;
 
 typedef struct polygon {
-	ob_vec3 corner[4], normal; // outward
+	int n;
+	ob_vec3 normal; // outward
+	ob_vec3 corner[OB_HULL_CORNERS_MAX]; // counterclockwise
 } polygon;
 
 static disc cap_of(const ob_placed *cylinder, ob_vec3 towards)
@@ -109,12 +111,40 @@ static disc cap_of(const ob_placed *cylinder, ob_vec3 towards)
 	return (disc){ ob_madd(cylinder->p, cylinder->size.y, d), d, cylinder->size.x };
 }
 
+static polygon hull_face(const ob_placed *x, uint32_t f)
+{
+	const ob_hull *h = x->hull;
+	polygon p;
+	p.n = h->first[f + 1] - h->first[f];
+	p.normal = ob_rotate(&x->r, h->normal[f]);
+	for (int k = 0; k < p.n; k++)
+		p.corner[k] = ob_add(x->p, ob_rotate(&x->r, h->corner[h->loop[h->first[f] + k]]));
+	return p;
+}
+
+static uint32_t hull_face_towards(const ob_placed *x, ob_vec3 towards)
+{
+	const ob_vec3 l = ob_rotate_back(&x->r, towards);
+	double best = -INFINITY;
+	uint32_t face = 0;
+	for (uint32_t f = 0; f < x->hull->faces; f++) {
+		const double c = ob_dot(l, x->hull->normal[f]);
+		if (c > best)
+			best = c, face = f;
+	}
+	return face;
+}
+
+// Of a box or a hull.
 static polygon face_of(const ob_placed *box, ob_vec3 towards)
 {
+	if (box->shape == OB_SHAPE_HULL)
+		return hull_face(box, hull_face_towards(box, towards));
 	static const int s1[4] = { 1, -1, -1, 1 }, s2[4] = { 1, 1, -1, -1 };
 	double h[3] = { box->size.x, box->size.y, box->size.z }, best = -1;
 	polygon p;
 	int k = 0;
+	p.n = 4;
 	for (int i = 0; i < 3; i++) {
 		double c = ob_dot(towards, ob_column(&box->r, i));
 		if (fabs(c) > best)
@@ -168,8 +198,8 @@ static void add(ob_spots *s, ob_vec3 on, ob_vec3 over)
 static bool inside_polygon(const polygon *p, ob_vec3 n, ob_vec3 x)
 {
 	double turn = ob_dot(p->normal, n) < 0 ? -1 : 1;
-	for (int k = 0; k < 4; k++) {
-		ob_vec3 e = ob_sub(p->corner[(k + 1) & 3], p->corner[k]);
+	for (int k = 0; k < p->n; k++) {
+		ob_vec3 e = ob_sub(p->corner[k + 1 < p->n ? k + 1 : 0], p->corner[k]);
 		if (turn * ob_dot(n, ob_cross(e, ob_sub(x, p->corner[k]))) < -border * ob_norm2(e))
 			return false;
 	}
@@ -196,7 +226,7 @@ static ob_vec3 between(ob_vec3 x, ob_vec3 y, double share)
 // A polygon and a disc, one of which is the facet that the spots' normal belongs to.
 static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const ob_vec3 rim[4], bool polygon_is_on)
 {
-	ob_vec3 flat[4]; // the corners in the disc's plane
+	ob_vec3 flat[OB_HULL_CORNERS_MAX]; // the corners in the disc's plane
 	int whole = 0;
 	for (int k = 0; k < 4; k++) {
 		ob_vec3 x = ob_madd(c->centre, c->radius, rim[k]);
@@ -206,14 +236,14 @@ static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const
 		add(s, polygon_is_on ? y : x, polygon_is_on ? x : y);
 		whole++;
 	}
-	for (int k = 0; k < 4; k++) {
+	for (int k = 0; k < p->n; k++) {
 		flat[k] = into_plane(p->corner[k], s->normal, c->centre, c->normal);
 		if (ob_norm2(ob_sub(flat[k], c->centre)) < c->radius * c->radius)
 			add(s, polygon_is_on ? p->corner[k] : flat[k], polygon_is_on ? flat[k] : p->corner[k]);
 	}
-	for (int k = 0; k < 4; k++) {
+	for (int k = 0; k < p->n; k++) {
 		double share[2];
-		int next = (k + 1) & 3;
+		int next = k + 1 < p->n ? k + 1 : 0;
 		if (!within_circle(flat[k], flat[next], c->centre, c->radius, share))
 			continue;
 		whole = 0;
@@ -266,8 +296,8 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 static bool within_polygon(const polygon *p, ob_vec3 x, ob_vec3 y, double share[2])
 {
 	share[0] = 0, share[1] = 1;
-	for (int k = 0; k < 4; k++) {
-		ob_vec3 inwards = ob_cross(p->normal, ob_sub(p->corner[(k + 1) & 3], p->corner[k]));
+	for (int k = 0; k < p->n; k++) {
+		ob_vec3 inwards = ob_cross(p->normal, ob_sub(p->corner[k + 1 < p->n ? k + 1 : 0], p->corner[k]));
 		double slack = border * ob_norm2(inwards);
 		double f = ob_dot(inwards, ob_sub(x, p->corner[k])) + slack;
 		double g = ob_dot(inwards, ob_sub(y, p->corner[k])) + slack;
@@ -287,13 +317,13 @@ static void line_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 	double share[2] = { 0, 1 };
 	ob_vec3 end[2], below[2], origin = on->p, towards = ob_scale(n, -1);
 	line_of(over, towards, end);
-	if (on->shape == OB_SHAPE_BOX)
+	if (on->shape == OB_SHAPE_BOX || on->shape == OB_SHAPE_HULL)
 		origin = face_of(on, n).corner[0];
 	else if (on->shape == OB_SHAPE_CYLINDER)
 		origin = cap_of(on, n).centre;
 	for (int k = 0; k < 2; k++)
 		below[k] = into_plane(end[k], n, origin, n);
-	if (on->shape == OB_SHAPE_BOX) {
+	if (on->shape == OB_SHAPE_BOX || on->shape == OB_SHAPE_HULL) {
 		polygon p = face_of(on, n);
 		if (!within_polygon(&p, below[0], below[1], share))
 			return;
@@ -319,7 +349,7 @@ static void cap_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 			add(s, into_plane(x, s->normal, on->p, s->normal), x);
 		}
 		s->disc_radius = s->n == 4 ? cap.radius : 0;
-	} else if (on->shape == OB_SHAPE_BOX) {
+	} else if (on->shape == OB_SHAPE_BOX || on->shape == OB_SHAPE_HULL) {
 		const polygon p = face_of(on, s->normal);
 		polygon_and_disc(s, &p, &cap, rim, true);
 	} else {
@@ -359,6 +389,41 @@ static void box_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 	}
 }
 
+// What of one face of the shape over the cap is over it, if it comes down lower than what is found already.
+static void face_over(ob_spots *s, const ob_placed *on, const ob_placed *over, const disc *cap, const polygon *p)
+{
+	ob_spots also = *s;
+	ob_vec3 rim[4];
+	ob_rim_directions(on, over, ob_scale(p->normal, -1), rim);
+	also.n = 0;
+	polygon_and_disc(&also, p, cap, rim, false);
+	if (lowest(&also) < lowest(s) - as_low * s->same)
+		*s = also;
+}
+
+// The same of a hull: the face that looks at the cap best, then the others at its lowest corner.
+static void hull_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
+{
+	const ob_vec3 towards = ob_scale(s->normal, -1), l = ob_rotate_back(&over->r, towards);
+	const disc cap = cap_of(on, s->normal);
+	const ob_hull *h = over->hull;
+	const uint32_t best = hull_face_towards(over, towards);
+	double most = -INFINITY;
+	for (uint32_t k = 0; k < h->corners; k++)
+		most = fmax(most, ob_dot(l, h->corner[k]));
+	polygon p = hull_face(over, best);
+	face_over(s, on, over, &cap, &p);
+	for (uint32_t f = 0; f < h->faces; f++) {
+		bool at_lowest = false;
+		for (uint32_t k = h->first[f]; k < h->first[f + 1]; k++)
+			at_lowest |= ob_dot(l, h->corner[h->loop[k]]) >= most - border * h->radius;
+		if (f == best || !at_lowest || ob_dot(l, h->normal[f]) < steepest_face)
+			continue;
+		p = hull_face(over, f);
+		face_over(s, on, over, &cap, &p);
+	}
+}
+
 void ob_spots_find(const ob_placed *on, const ob_placed *over, ob_vec3 n, double margin, ob_spots *out)
 {
 	out->normal = n;
@@ -368,6 +433,10 @@ void ob_spots_find(const ob_placed *on, const ob_placed *over, ob_vec3 n, double
 	out->disc_radius = 0;
 	if (over->shape == OB_SHAPE_BOX) {
 		box_over(out, on, over);
+		return;
+	}
+	if (over->shape == OB_SHAPE_HULL) {
+		hull_over(out, on, over);
 		return;
 	}
 	double lean = fabs(ob_dot(n, ob_column(&over->r, 2)));

@@ -22,8 +22,8 @@ typedef struct ob_spots {
 // with the bodies.
 void ob_rim_directions(const ob_placed *cylinder, const ob_placed *other, ob_vec3 towards, ob_vec3 direction[4]);
 
-// Common points of shape "on" (a plane, a box, or a cylinder's cap), whose facet has the outward unit normal n, and of
-// the cylinder, box or capsule "over" it. axis: of on's frame, along n.
+// Common points of shape "on" (a plane, a box, a hull, or a cylinder's cap), whose facet has the outward unit normal n,
+// and of the cylinder, box, hull or capsule "over" it. axis: of on's frame, along n.
 void ob_spots_find(const ob_placed *on, const ob_placed *over, ob_vec3 n, double margin, ob_spots *out);
 
 // Seams: a face of the box that a touches, and that does not close before the direction n in which their gap (m) is,

@@ -2,6 +2,8 @@
 
 #include "contact/capsule.h"
 #include "contact/cylinder.h"
+#include "contact/hull_round.h"
+#include "contact/polytope.h"
 #include "motion/drift.h"
 #include "motion/spin.h"
 
@@ -161,20 +163,26 @@ static void flip(ob_manifold *m)
 typedef void pair_function(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 // By the shapes of a and b; where there is none the other way round, if any.
-static pair_function *const pair_functions[OB_SHAPE_CYLINDER + 1][OB_SHAPE_CYLINDER + 1] = {
+static pair_function *const pair_functions[OB_SHAPE_HULL + 1][OB_SHAPE_HULL + 1] = {
 	[OB_SHAPE_SPHERE] = { [OB_SHAPE_SPHERE] = sphere_sphere,
 			      [OB_SHAPE_PLANE] = sphere_plane,
-			      [OB_SHAPE_BOX] = sphere_box },
-	[OB_SHAPE_BOX] = { [OB_SHAPE_PLANE] = box_plane, [OB_SHAPE_BOX] = ob_manifold_boxes },
+			      [OB_SHAPE_BOX] = sphere_box,
+			      [OB_SHAPE_HULL] = ob_manifold_round_hull },
+	[OB_SHAPE_BOX] = { [OB_SHAPE_PLANE] = box_plane,
+			   [OB_SHAPE_BOX] = ob_manifold_boxes,
+			   [OB_SHAPE_HULL] = ob_manifold_polytopes },
 	[OB_SHAPE_CAPSULE] = { [OB_SHAPE_PLANE] = ob_manifold_capsule_plane,
 			       [OB_SHAPE_SPHERE] = ob_manifold_capsule_sphere,
 			       [OB_SHAPE_BOX] = ob_manifold_capsule_box,
-			       [OB_SHAPE_CAPSULE] = ob_manifold_capsules },
+			       [OB_SHAPE_CAPSULE] = ob_manifold_capsules,
+			       [OB_SHAPE_HULL] = ob_manifold_round_hull },
 	[OB_SHAPE_CYLINDER] = { [OB_SHAPE_PLANE] = ob_manifold_cylinder_plane,
 				[OB_SHAPE_SPHERE] = ob_manifold_cylinder_sphere,
 				[OB_SHAPE_BOX] = ob_manifold_cylinder_edged,
 				[OB_SHAPE_CAPSULE] = ob_manifold_cylinder_edged,
-				[OB_SHAPE_CYLINDER] = ob_manifold_cylinder_edged },
+				[OB_SHAPE_CYLINDER] = ob_manifold_cylinder_edged,
+				[OB_SHAPE_HULL] = ob_manifold_cylinder_edged },
+	[OB_SHAPE_HULL] = { [OB_SHAPE_PLANE] = ob_manifold_hull_plane, [OB_SHAPE_HULL] = ob_manifold_polytopes },
 };
 
 bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)

@@ -3,6 +3,7 @@
 #ifndef OB_CONTACT_MANIFOLD_H
 #define OB_CONTACT_MANIFOLD_H
 
+#include <ob/hull.h>
 #include <ob/motion.h>
 
 typedef struct ob_placed {
@@ -17,6 +18,7 @@ typedef struct ob_placed {
 	double far_future; // s: what does not close within so long stays open until it is looked at again. Much longer
 			   // than a step, so that rounding does not count as closing; 0: any closing counts
 	ob_vec3 a; // m/s^2, external acceleration: towards where on its rim a standing cylinder is pressed most
+	const ob_hull *hull; // of a hull
 } ob_placed;
 
 typedef struct ob_manifold {

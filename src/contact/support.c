@@ -10,6 +10,18 @@ static ob_vec3 unit(ob_vec3 v)
 	return ob_scale(v, 1 / ob_norm(v));
 }
 
+static ob_vec3 farthest_corner(const ob_hull *h, ob_vec3 l)
+{
+	double most = -INFINITY;
+	ob_vec3 at = { 0, 0, 0 };
+	for (uint32_t k = 0; k < h->corners; k++) {
+		const double there = ob_dot(l, h->corner[k]);
+		if (there > most)
+			most = there, at = h->corner[k];
+	}
+	return at;
+}
+
 ob_vec3 ob_support(const ob_placed *x, ob_vec3 n)
 {
 	ob_vec3 l = ob_rotate_back(&x->r, n), at = { 0, 0, copysign(x->size.y, l.z) };
@@ -19,6 +31,8 @@ ob_vec3 ob_support(const ob_placed *x, ob_vec3 n)
 		double across = sqrt(l.x * l.x + l.y * l.y);
 		if (across > flat)
 			at.x = x->size.x * l.x / across, at.y = x->size.x * l.y / across;
+	} else if (x->shape == OB_SHAPE_HULL) {
+		at = farthest_corner(x->hull, l);
 	} else {
 		at = ob_madd(at, x->size.x / ob_norm(l), l);
 	}

@@ -5,7 +5,8 @@
 
 #include "contact/manifold.h"
 
-// The point of the shape that lies farthest along n (world; need not be of unit length). Boxes, cylinders, capsules.
+// The point of the shape that lies farthest along n (world; need not be of unit length). Boxes, cylinders, capsules,
+// hulls.
 ob_vec3 ob_support(const ob_placed *x, ob_vec3 n);
 
 // From b's farthest point along n to a's farthest against it: the gradient of the separation along n.

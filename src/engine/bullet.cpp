@@ -66,7 +66,16 @@ static btScalar pair_restitution(const btCollisionObject *a, const btCollisionOb
 	return btMax(a->getRestitution(), b->getRestitution());
 }
 
-static std::unique_ptr<btCollisionShape> make_shape(const ob_passport *p)
+static std::unique_ptr<btCollisionShape> make_hull(const ob_hull *h)
+{
+	auto shape = std::make_unique<btConvexHullShape>();
+	for (uint32_t k = 0; k < h->corners; k++)
+		shape->addPoint(vector(h->corner[k]), false);
+	shape->recalcLocalAabb();
+	return shape;
+}
+
+static std::unique_ptr<btCollisionShape> make_shape(const ob_world *w, const ob_passport *p)
 {
 	btScalar x = btScalar(p->size.x), y = btScalar(p->size.y);
 	switch (p->shape) {
@@ -80,14 +89,16 @@ static std::unique_ptr<btCollisionShape> make_shape(const ob_passport *p)
 		return std::make_unique<btCapsuleShapeZ>(x, 2 * y);
 	case OB_SHAPE_CYLINDER:
 		return std::make_unique<btCylinderShapeZ>(btVector3(x, x, y));
+	case OB_SHAPE_HULL:
+		return make_hull(&w->hull[p->hull]);
 	default:
 		return std::make_unique<btEmptyShape>();
 	}
 }
 
-static void add(ob_engine *b, const ob_passport *p, const ob_state *s, bool sleeping)
+static void add(ob_engine *b, const ob_world *w, const ob_passport *p, const ob_state *s, bool sleeping)
 {
-	b->shape.push_back(make_shape(p));
+	b->shape.push_back(make_shape(w, p));
 	bool moves = !(p->flags & OB_OBJECT_STATIC) && p->mass > 0;
 	btRigidBody::btRigidBodyConstructionInfo info(moves ? btScalar(p->mass) : btScalar(0), nullptr,
 						      b->shape.back().get(), vector(p->inertia));
@@ -140,7 +151,7 @@ static void set_up(ob_engine *b, const ob_world *w, const ob_run_settings *s)
 	b->substeps = s->substeps;
 	b->substep = btScalar(s->step_length / s->substeps);
 	for (uint32_t i = 0; i < w->objects; i++)
-		add(b, &w->passport[i], &w->state[i], s->sleeping);
+		add(b, w, &w->passport[i], &w->state[i], s->sleeping);
 }
 
 extern "C" ob_engine *ob_bullet_create(const ob_world *w, const ob_run_settings *s, ob_error *e)

@@ -239,6 +239,10 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *
 			s->substeps, s->step_length, s->iterations);
 		return NULL;
 	}
+	if (w->hulls > 0) {
+		ob_fail(e, "there are hulls, which MuJoCo is not given here");
+		return NULL;
+	}
 	mju_user_error = note_error;
 	mju_user_warning = ignore_warning;
 	ob_engine *p = calloc(1, sizeof *p);

@@ -35,9 +35,12 @@ static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run,
 	static unsigned made;
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "engine-%d-%u", (int)getpid(), made++);
-	ob_universe_setup setup = {
-		.name = name, .capacity = w->objects, .workers = 1, .isolation = "thread", .run = *run
-	};
+	ob_universe_setup setup = { .name = name,
+				    .capacity = w->objects,
+				    .workers = 1,
+				    .hulls = w->hulls,
+				    .isolation = "thread",
+				    .run = *run };
 	ob_universe *u = ob_universe_create(&setup, e);
 	if (u)
 		ob_universe_unlink(u);
@@ -74,7 +77,10 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *run, ob_error
 	ob_engine_ode_enter();
 	p->objects = w->objects;
 	p->u = open_universe(w, run, e);
-	if (p->u) {
+	bool fine = p->u;
+	for (uint32_t i = 0; i < w->hulls && fine; i++)
+		fine = ob_write_hull(p->u, i, &w->hull[i]) || ob_fail(e, "no memory for hull %u", i);
+	if (fine) {
 		for (uint32_t i = 0; i < w->objects; i++) {
 			p->driven |= (w->passport[i].flags & OB_OBJECT_KINEMATIC) != 0;
 			ob_write_passport(p->u, i, &w->passport[i]);

@@ -55,6 +55,10 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_ode_wor
 		ob_fail(e, "%u substeps of a step of %g s: ODE must be told what to do", s->substeps, s->step_length);
 		return NULL;
 	}
+	if (w->hulls > 0) { // ODE has convex geometries, but no contacts between them and boxes
+		ob_fail(e, "there are hulls, which ODE's world does not have here");
+		return NULL;
+	}
 	ob_engine *p = calloc(1, sizeof *p);
 	if (!p) {
 		ob_fail(e, "no memory for an engine");

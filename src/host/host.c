@@ -47,6 +47,8 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 	if (scene->scripts && (c->harden || r->monolith))
 		return ob_fail(e, "%s: the scene has scripts, which only object simulators run that write the universe",
 			       c->harden ? "harden" : "arch monolith");
+	if (r->monolith && scene->hulls > 0) // of ODE's convex geometries few collide with each other
+		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))
 			return false;
@@ -110,6 +112,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.workers = one_per_object    ? capacity
 			   : c->run.monolith ? 1
 					     : c->workers,
+		.hulls = scene->hulls,
 		.isolation = spawn->name,
 		.traced = c->trace != NULL,
 		.contained = c->harden,
@@ -169,6 +172,9 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host
 	if (!check_paths(scene, ob_universe_settings(h->u)->step_length, e) ||
 	    !ob_universe_reserve(h->u, scene->objects, e))
 		return false;
+	for (uint32_t i = 0; i < scene->hulls; i++)
+		if (!ob_write_hull(h->u, i, &scene->hull[i]))
+			return ob_fail(e, "/dev/shm is full: no room for %u hulls", scene->hulls);
 	ob_ode_init();
 	h->roster = ob_roster_create();
 	h->requests = ob_requests_create();
@@ -188,9 +194,12 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host
 static bool fail_start(ob_host *h, uint32_t worker, double patience, ob_error *e)
 {
 	pid_t server = ob_fork_server_pid(h->fork_server);
-	ob_death d = { .cause = OB_DEATH_STALL, .worker = worker, .step = ob_step_count(h->u) + 1, .object = OB_NO_OBJECT };
-	snprintf(d.text, sizeof d.text, "simulator %u of %u was not ready after %g s; the fork server is process %d, %s",
-		 worker + 1, h->workers, patience, (int)server, ob_state_word(ob_state_of_thread(server, server)));
+	ob_death d = {
+		.cause = OB_DEATH_STALL, .worker = worker, .step = ob_step_count(h->u) + 1, .object = OB_NO_OBJECT
+	};
+	snprintf(d.text, sizeof d.text,
+		 "simulator %u of %u was not ready after %g s; the fork server is process %d, %s", worker + 1,
+		 h->workers, patience, (int)server, ob_state_word(ob_state_of_thread(server, server)));
 	ob_restart_request(h, &d);
 	return ob_fail(e, "%s", h->failed ? h->failure.text : d.text);
 }

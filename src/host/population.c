@@ -122,8 +122,8 @@ static bool finite3(ob_vec3 v)
 
 static bool check_shape(const ob_passport *p, ob_error *e)
 {
-	bool needs_y = p->shape != OB_SHAPE_SPHERE, needs_z = p->shape == OB_SHAPE_BOX;
-	if (p->shape <= OB_SHAPE_NONE || p->shape > OB_SHAPE_CYLINDER)
+	bool needs_y = p->shape != OB_SHAPE_SPHERE, needs_z = p->shape == OB_SHAPE_BOX || p->shape == OB_SHAPE_HULL;
+	if (p->shape <= OB_SHAPE_NONE || p->shape > OB_SHAPE_HULL)
 		return ob_fail(e, "object \"%.*s\": unknown shape %u", OB_NAME_MAX, p->name, p->shape);
 	if (p->shape == OB_SHAPE_PLANE)
 		return (p->flags & OB_OBJECT_PRESCRIBED) == OB_OBJECT_STATIC ||
@@ -150,6 +150,16 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 	if (!(p->friction >= 0 && isfinite(p->friction)) || !(p->restitution >= 0 && p->restitution <= 1))
 		return ob_fail(e, "object \"%s\": friction must be >= 0, restitution in 0..1", p->name);
 	return true;
+}
+
+// Hulls follow from the scene.
+static bool check_hull(const ob_population *p, const ob_passport *pass, ob_error *e)
+{
+	const ob_hull *h = ob_hull_of(p->u, pass);
+	if (pass->shape != OB_SHAPE_HULL ||
+	    (h && pass->size.x == h->radius && pass->size.y == .5 * h->thickness && pass->size.z == h->inner))
+		return true;
+	return ob_fail(e, "object \"%s\": its hull is not one of its scene", pass->name);
 }
 
 // ---- changes
@@ -182,6 +192,8 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	if (pass.flags & OB_OBJECT_PRESCRIBED) {
 		pass.mass = 0;
 		pass.inertia = ob_v3(0, 0, 0);
+	} else if (pass.shape == OB_SHAPE_HULL) {
+		pass.inertia = ob_scale(ob_hull_of(p->u, &pass)->inertia, pass.mass);
 	} else {
 		pass.inertia = ob_ode_inertia((ob_shape)pass.shape, pass.size, pass.mass);
 	}
@@ -236,6 +248,10 @@ static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const
 	const uint32_t capacity = ob_universe_capacity(p->u);
 	uint32_t id = p->first_free;
 	ob_error e;
+	if (!check_hull(p, &def->passport, &e)) {
+		ob_log_warn("%s", e.text);
+		return UINT32_MAX;
+	}
 	while (id < capacity && p->slots[id].use != SLOT_FREE)
 		id++;
 	p->first_free = id;
@@ -504,7 +520,8 @@ static bool check_objects(const ob_population *p, ob_error *e)
 	for (uint32_t id = 0; id < ob_universe_ids(p->u); id++) {
 		const ob_motion *m = ob_newest_motion(p->u, id);
 		ob_object_def def = { .passport = *ob_passport_of(p->u, id), .state = { { m->p, m->q }, m->v, m->w } };
-		if (def.passport.flags & OB_OBJECT_PRESENT && !ob_object_check(&def, e))
+		if (def.passport.flags & OB_OBJECT_PRESENT &&
+		    (!ob_object_check(&def, e) || !check_hull(p, &def.passport, e)))
 			return false;
 	}
 	return true;

@@ -1,5 +1,7 @@
 #include "measure/depth.h"
 
+#include "measure/hull_depth.h"
+
 // Half length (m) of the segment inside a capsule; 0 for a sphere.
 static double core_length(const ob_solid *s)
 {
@@ -9,6 +11,14 @@ static double core_length(const ob_solid *s)
 static double clamp(double x, double low, double high)
 {
 	return x < low ? low : x > high ? high : x;
+}
+
+static double hull_extent(const ob_hull *h, ob_vec3 n)
+{
+	double most = -INFINITY;
+	for (uint32_t k = 0; k < h->corners; k++)
+		most = fmax(most, ob_dot(n, h->corner[k]));
+	return most;
 }
 
 double ob_solid_extent(const ob_solid *s, ob_vec3 n)
@@ -23,6 +33,8 @@ double ob_solid_extent(const ob_solid *s, ob_vec3 n)
 		return s->size.x + fabs(b.z) * s->size.y;
 	case OB_SHAPE_CYLINDER:
 		return s->size.x * sqrt(b.x * b.x + b.y * b.y) + fabs(b.z) * s->size.y;
+	case OB_SHAPE_HULL:
+		return hull_extent(s->hull, b);
 	case OB_SHAPE_PLANE:
 	case OB_SHAPE_NONE:
 		break;
@@ -33,7 +45,7 @@ double ob_solid_extent(const ob_solid *s, ob_vec3 n)
 static double plane_and_solid(const ob_solid *plane, const ob_solid *s)
 {
 	ob_vec3 n = ob_column(&plane->r, 2);
-	return ob_solid_extent(s, n) - ob_dot(n, ob_sub(s->p, plane->p));
+	return ob_solid_extent(s, ob_scale(n, -1)) - ob_dot(n, ob_sub(s->p, plane->p));
 }
 
 // Distance of two segments, centres d apart, unit directions u and v, half lengths hu and hv (Lumelsky 1985).
@@ -183,14 +195,16 @@ static double depth_of_capsule_and_box(const ob_solid *capsule, const ob_solid *
 //
 // Depth of two convex solids as the least overlap of their projections over all directions n:
 //
-//     overlap(n) = extent_a(n) + extent_b(n) - |n . d|,   d from one centre to the other (all solids are symmetric)
+//     overlap(n) = extent_a(n) + extent_b(-n) - n . d,    d from a's centre to b's
+//
+// and n stands for -n, too: all solids but hulls are symmetric.
 //
 // The function is smooth but for kinks where n lies along an axis of a solid, or in the plane across one (a box's edges
 // and a cylinder's rims and mantle cast their projections there), and its least value often lies in a kink. So the
 // search takes the axes and their products as they are, walks each plane of kinks in one dimension, and looks for
 // smooth minima in two, from an even scatter of starts.
 
-enum { AXES_MAX = 6, PLANE_STARTS = 16, SPHERE_STARTS = 48, TURNS = 8 };
+enum { AXES_MAX = 1 + OB_HULL_EDGES_MAX, PLANE_STARTS = 16, SPHERE_STARTS = 48, TURNS = 8 };
 
 struct search {
 	const ob_solid *a, *b;
@@ -203,7 +217,12 @@ struct search {
 
 static double overlap(const struct search *s, ob_vec3 n)
 {
-	return ob_solid_extent(s->a, n) + ob_solid_extent(s->b, n) - fabs(ob_dot(n, s->d));
+	const double along = ob_dot(n, s->d);
+	if (s->b->shape != OB_SHAPE_HULL)
+		return ob_solid_extent(s->a, n) + ob_solid_extent(s->b, n) - fabs(along);
+	const ob_vec3 back = ob_scale(n, -1);
+	return fmin(ob_solid_extent(s->a, n) + ob_solid_extent(s->b, back) - along,
+		    ob_solid_extent(s->a, back) + ob_solid_extent(s->b, n) + along);
 }
 
 static ob_vec3 unit(ob_vec3 n)
@@ -227,6 +246,17 @@ static void add_axes(struct search *s, const ob_solid *solid)
 			s->axis[s->axes++] = ob_column(&solid->r, i);
 	if (solid->shape == OB_SHAPE_CAPSULE || solid->shape == OB_SHAPE_CYLINDER)
 		s->axis[s->axes++] = ob_column(&solid->r, 2);
+}
+
+// A hull's kinks lie across its edges; it is b.
+static void add_hull(struct search *s, const ob_solid *solid)
+{
+	const ob_hull *h = solid->hull;
+	for (uint32_t f = 0; f < h->faces; f++)
+		try_direction(s, ob_rotate(&solid->r, h->normal[f]));
+	for (uint32_t k = 0; k < h->edges; k++)
+		s->axis[s->axes++] =
+			unit(ob_rotate(&solid->r, ob_sub(h->corner[h->edge[k].to], h->corner[h->edge[k].from])));
 }
 
 static void span_across(ob_vec3 n, ob_vec3 *u, ob_vec3 *v)
@@ -323,7 +353,10 @@ double ob_depth_search(const ob_solid *a, const ob_solid *b)
 {
 	struct search s = { .a = a, .b = b, .d = ob_sub(b->p, a->p), .least = INFINITY };
 	add_axes(&s, a);
-	add_axes(&s, b);
+	if (b->shape == OB_SHAPE_HULL)
+		add_hull(&s, b);
+	else
+		add_axes(&s, b);
 	double distance = ob_norm(s.d);
 	try_direction(&s, distance > 0 ? ob_scale(s.d, 1 / distance) : ob_v3(0, 0, 1));
 	for (int i = 0; i < s.axes; i++)
@@ -349,13 +382,18 @@ double ob_depth_search(const ob_solid *a, const ob_solid *b)
 double ob_depth(const ob_solid *a, const ob_solid *b)
 {
 	if (a->shape > b->shape)
-		return ob_depth(b, a); // from here on a's shape comes first in sphere, box, plane, capsule, cylinder
+		return ob_depth(b,
+				a); // from here on a's shape comes first in sphere, box, plane, capsule, cylinder, hull
 	if (a->shape == OB_SHAPE_NONE || (a->shape == OB_SHAPE_PLANE && b->shape == OB_SHAPE_PLANE))
 		return -INFINITY;
 	if (a->shape == OB_SHAPE_PLANE)
 		return plane_and_solid(a, b);
 	if (b->shape == OB_SHAPE_PLANE)
 		return plane_and_solid(b, a);
+	if (b->shape == OB_SHAPE_HULL)
+		return a->shape == OB_SHAPE_BOX || a->shape == OB_SHAPE_HULL ? ob_depth_of_polyhedra(a, b)
+		       : a->shape == OB_SHAPE_CYLINDER                       ? ob_depth_search(a, b)
+									     : ob_depth_of_round_and_hull(a, b);
 	if (b->shape == OB_SHAPE_CYLINDER)
 		return a->shape == OB_SHAPE_SPHERE ? sphere_and_cylinder(a, b) : ob_depth_search(a, b);
 	if (a->shape == OB_SHAPE_BOX)

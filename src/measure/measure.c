@@ -137,6 +137,8 @@ static bool is_over(struct search *s)
 
 static bool needs_search(ob_shape a, ob_shape b)
 {
+	if ((a == OB_SHAPE_HULL || b == OB_SHAPE_HULL) && a != OB_SHAPE_PLANE && b != OB_SHAPE_PLANE)
+		return true;
 	return (a == OB_SHAPE_CYLINDER && b != OB_SHAPE_SPHERE) || (b == OB_SHAPE_CYLINDER && a != OB_SHAPE_SPHERE);
 }
 
@@ -181,11 +183,14 @@ static void collect_solids(const ob_snapshot *s, struct item *item, struct box *
 		i->id = id;
 		i->overlaps = 0;
 		i->fixed = p->flags & OB_OBJECT_STATIC || !(p->mass > 0);
-		i->solid = (ob_solid){ p->shape, p->size, pose.p, ob_quat_matrix(pose.q) };
+		i->solid = (ob_solid){ p->shape, p->size, pose.p, ob_quat_matrix(pose.q), ob_snapshot_hull(s, id) };
 		if (plane)
 			continue;
 		box[*solids - 1].item = *solids - 1;
-		ob_shape_bounds(p->shape, p->size, pose, box[*solids - 1].bounds);
+		if (i->solid.hull)
+			ob_hull_bounds(i->solid.hull, pose, box[*solids - 1].bounds);
+		else
+			ob_shape_bounds(p->shape, p->size, pose, box[*solids - 1].bounds);
 	}
 }
 
@@ -373,7 +378,7 @@ static ob_solid solid_of(const ob_snapshot *s, uint32_t id)
 {
 	const ob_passport *p = &s->passport[id];
 	ob_state state = ob_snapshot_state(s, id);
-	return (ob_solid){ p->shape, p->size, state.pose.p, ob_quat_matrix(state.pose.q) };
+	return (ob_solid){ p->shape, p->size, state.pose.p, ob_quat_matrix(state.pose.q), ob_snapshot_hull(s, id) };
 }
 
 // Impulse (N s) of all points of the contact at *i, which follow one another; *i is set behind them.

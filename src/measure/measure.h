@@ -5,6 +5,7 @@
 #ifndef OB_MEASURE_MEASURE_H
 #define OB_MEASURE_MEASURE_H
 
+#include <ob/hull.h>
 #include <ob/motion.h>
 
 // A copy of all motions at one step boundary.
@@ -18,6 +19,9 @@ typedef struct ob_snapshot {
 	ob_contact_point *contact;
 	uint32_t count_max;
 	size_t contacts_max;
+	uint64_t created;     // of the universe that the hulls are those of
+	uint32_t hulls;
+	ob_hull **hull;       // [hulls], those that objects have had so far; else NULL
 } ob_snapshot;
 
 // Copies the universe (which must stand still for the snapshot to be of one step) into s, growing its memory. s starts
@@ -26,6 +30,8 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, 
 // The memory of "to" grows as needed; false (and "to" as it was) when there is none.
 bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from);
 void ob_snapshot_finish(ob_snapshot *s);
+// NULL: it is no hull.
+const ob_hull *ob_snapshot_hull(const ob_snapshot *s, uint32_t id);
 // State of a present object at the snapshot's time: its motion may be older (asleep, static, in flight).
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id);
 

@@ -39,6 +39,43 @@ static bool grow_contacts(ob_snapshot *s, size_t count)
 	return true;
 }
 
+static void drop_hulls(ob_snapshot *s)
+{
+	for (uint32_t i = 0; i < s->hulls; i++)
+		free(s->hull[i]);
+	free(s->hull);
+	s->hull = NULL;
+	s->hulls = 0;
+}
+
+// Room for the hulls of a universe, which never change: those that are there already stay.
+static bool expect_hulls(ob_snapshot *s, uint64_t created, uint32_t hulls)
+{
+	if (s->created == created && s->hulls == hulls)
+		return true;
+	drop_hulls(s);
+	s->created = created;
+	if (hulls > 0 && !(s->hull = calloc(hulls, sizeof *s->hull)))
+		return false;
+	s->hulls = hulls;
+	return true;
+}
+
+static bool take_hull(ob_snapshot *s, const ob_universe *u, const ob_passport *p, ob_error *e)
+{
+	if (p->shape != OB_SHAPE_HULL || (p->hull < s->hulls && s->hull[p->hull]))
+		return true;
+	ob_hull *h = p->hull < s->hulls ? malloc(sizeof *h) : NULL;
+	if (!h)
+		return ob_fail(e, "no memory for the hull of object %u", p->id);
+	if (!ob_universe_get_hull(u, p->hull, h)) {
+		free(h);
+		return ob_fail(e, "object %u (%.*s) has a hull that makes no sense", p->id, OB_NAME_MAX, p->name);
+	}
+	s->hull[p->hull] = h;
+	return true;
+}
+
 // An object that vanishes between two looks is absent; one that stays without a state is broken.
 static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_error *e)
 {
@@ -48,7 +85,7 @@ static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_er
 	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
 		return true;
 	if (ob_universe_get_motion(u, id, &s->motion[id]))
-		return true;
+		return take_hull(s, u, p, e);
 	bool there = ob_universe_get_passport(u, id, &again) && again.generation == p->generation;
 	if (there)
 		return ob_fail(e, "object %u (%.*s) has published no state that makes sense", id, OB_NAME_MAX, p->name);
@@ -72,7 +109,7 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, 
 {
 	ob_universe_info info;
 	ob_universe_get_info(u, &info);
-	if (!grow_objects(s, info.capacity))
+	if (!grow_objects(s, info.capacity) || !expect_hulls(s, info.created, info.hulls))
 		return ob_fail(e, "no memory for a snapshot of %u objects", info.capacity);
 	s->step = info.step;
 	s->time = info.time;
@@ -84,9 +121,24 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, 
 	return !with_contacts || take_contacts(s, u, e);
 }
 
+static bool copy_hulls(ob_snapshot *to, const ob_snapshot *from)
+{
+	if (!expect_hulls(to, from->created, from->hulls))
+		return false;
+	for (uint32_t i = 0; i < from->hulls; i++) {
+		if (!from->hull[i] || to->hull[i])
+			continue;
+		to->hull[i] = malloc(sizeof *to->hull[i]);
+		if (!to->hull[i])
+			return false;
+		*to->hull[i] = *from->hull[i];
+	}
+	return true;
+}
+
 bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
 {
-	if (!grow_objects(to, from->count) || !grow_contacts(to, from->contacts))
+	if (!grow_objects(to, from->count) || !grow_contacts(to, from->contacts) || !copy_hulls(to, from))
 		return false;
 	to->step = from->step;
 	to->time = from->time;
@@ -106,7 +158,14 @@ void ob_snapshot_finish(ob_snapshot *s)
 	free(s->passport);
 	free(s->motion);
 	free(s->contact);
+	drop_hulls(s);
 	memset(s, 0, sizeof *s);
+}
+
+const ob_hull *ob_snapshot_hull(const ob_snapshot *s, uint32_t id)
+{
+	const ob_passport *p = &s->passport[id];
+	return p->shape == OB_SHAPE_HULL && p->hull < s->hulls ? s->hull[p->hull] : NULL;
 }
 
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id)

@@ -3,6 +3,7 @@
 #ifndef OB_MOTION_FLIGHT_H
 #define OB_MOTION_FLIGHT_H
 
+#include <ob/hull.h>
 #include <ob/motion.h>
 
 #include "motion/spin.h"
@@ -25,6 +26,7 @@ typedef struct ob_flier {
 	ob_quat q; // attitude at s = 0, which stays where spin is NULL
 	ob_vec3 w; // rad/s, world, at s = 0
 	const ob_spin *spin;
+	const ob_hull *hull; // of a hull
 } ob_flier;
 
 typedef struct ob_half_space {
@@ -34,9 +36,9 @@ typedef struct ob_half_space {
 
 // The first instant in [from, until] (s) at which a point of the shape is on the plane and closes; infinity: none is.
 // A point that is within rounding of the plane at "from" and closes gives "from" itself. Spheres in closed form; boxes,
-// capsules and cylinders by conservative advancement of their corners and rims (Mirtich 1996), each with a curve that
-// bounds its fall: about ten evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does, and at
-// once where it has.
+// hulls, capsules and cylinders by conservative advancement of their corners and rims (Mirtich 1996), each with a curve
+// that bounds its fall: about ten evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does,
+// and at once where it has.
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until);
 
 // Bound of the angular speed (rad/s) of a free body that turns with w at q, at any time.

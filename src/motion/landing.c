@@ -24,25 +24,28 @@ static double turning_bound(ob_vec3 i, double w)
 
 // A shape is the points around its centre, grown by a radius: a box its corners, a capsule the ends of its axis. A
 // cylinder's are the ends of its axis, with a rim about each.
-typedef struct hull {
+typedef struct outline {
 	ob_vec3 half; // m, of the box of the points
 	double radius; // m, of each
 	double reach; // m, of a point from the centre
 	double rim; // m
-} hull;
+	const ob_hull *corners; // instead of the box: the points
+} outline;
 
-static bool hull_of(const ob_flier *f, hull *h)
+static bool outline_of(const ob_flier *f, outline *h)
 {
-	*h = (hull){ f->size, 0, 0, 0 };
+	*h = (outline){ .half = f->size };
 	if (f->shape == OB_SHAPE_SPHERE)
-		*h = (hull){ { 0, 0, 0 }, f->size.x, 0, 0 };
+		*h = (outline){ .radius = f->size.x };
 	else if (f->shape == OB_SHAPE_CAPSULE)
-		*h = (hull){ { 0, 0, f->size.y }, f->size.x, 0, 0 };
+		*h = (outline){ .half = { 0, 0, f->size.y }, .radius = f->size.x };
 	else if (f->shape == OB_SHAPE_CYLINDER)
-		*h = (hull){ { 0, 0, f->size.y }, 0, 0, f->size.x };
+		*h = (outline){ .half = { 0, 0, f->size.y }, .rim = f->size.x };
+	else if (f->shape == OB_SHAPE_HULL)
+		*h = (outline){ .corners = f->hull };
 	else if (f->shape != OB_SHAPE_BOX)
 		return false;
-	h->reach = ob_norm(ob_v3(h->half.x + h->rim, h->half.y, h->half.z));
+	h->reach = h->corners ? h->corners->radius : ob_norm(ob_v3(h->half.x + h->rim, h->half.y, h->half.z));
 	return true;
 }
 
@@ -98,10 +101,19 @@ static double rim_time(rim *x, double tolerance)
 	return low;
 }
 
-// For how long no point of the hull lands, at least (s); *lands: one does then. height and speed: of the centre over
+// When a point lands at least (s), that is so high and rises at this rate; *lands: it does so now.
+static void land_point(double gap, double rate, double most, double tolerance, double *least, bool *lands)
+{
+	const bool touches = gap <= tolerance;
+	const double t = fall_time(touches && (rate >= 0 || gap < 0) ? 0 : gap, rate, most);
+	if (t < *least)
+		*least = t, *lands = touches && rate < 0;
+}
+
+// For how long no point of the outline lands, at least (s); *lands: one does then. height and speed: of the centre over
 // the plane. No point falls faster than with the acceleration "most".
-static double advance(const ob_flier *f, const hull *h, ob_vec3 n, double s, double height, double speed, double most,
-		      double tolerance, bool *lands)
+static double advance(const ob_flier *f, const outline *h, ob_vec3 n, double s, double height, double speed,
+		      double most, double tolerance, bool *lands)
 {
 	ob_quat q = f->q;
 	ob_vec3 w = { 0, 0, 0 };
@@ -121,14 +133,17 @@ static double advance(const ob_flier *f, const hull *h, ob_vec3 n, double s, dou
 		*lands = least == 0;
 		return least;
 	}
+	for (uint32_t k = 0; h->corners && k < h->corners->corners; k++) {
+		const ob_vec3 c = h->corners->corner[k];
+		land_point(height + ob_dot(c, normal), speed + ob_dot(c, turning), most, tolerance, &least, lands);
+	}
+	if (h->corners)
+		return least;
 	for (int k = 0; k < 8; k++) {
 		double x = k & 1 ? 1 : -1, y = k & 2 ? 1 : -1, z = k & 4 ? 1 : -1;
 		double gap = height + x * up.x + y * up.y + z * up.z;
 		double rate = speed + x * rise.x + y * rise.y + z * rise.z;
-		const bool touches = gap <= tolerance;
-		const double t = fall_time(touches && (rate >= 0 || gap < 0) ? 0 : gap, rate, most);
-		if (t < least)
-			least = t, *lands = touches && rate < 0;
+		land_point(gap, rate, most, tolerance, &least, lands);
 	}
 	return least;
 }
@@ -136,8 +151,8 @@ static double advance(const ob_flier *f, const hull *h, ob_vec3 n, double s, dou
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until)
 {
 	const ob_vec3 n = plane->normal;
-	hull h;
-	bool known = hull_of(f, &h);
+	outline h;
+	bool known = outline_of(f, &h);
 	const double radius = known ? ob_shape_radius(f->shape, f->size) : f->size.x;
 	const double p = ob_dot(n, f->p) - plane->offset, v = ob_dot(n, f->v), a = ob_dot(n, f->a);
 	if (known && h.reach == 0) {

@@ -13,6 +13,7 @@ static ob_vec3 half_extents(ob_shape shape, ob_vec3 size, ob_quat q)
 		case OB_SHAPE_NONE:
 			break;
 		case OB_SHAPE_SPHERE:
+		case OB_SHAPE_HULL: // the ball that holds it: ob_hull_bounds is tight
 			half[i] = size.x;
 			break;
 		case OB_SHAPE_BOX:
@@ -49,6 +50,7 @@ double ob_shape_radius(ob_shape shape, ob_vec3 size)
 	case OB_SHAPE_NONE:
 		return 0;
 	case OB_SHAPE_SPHERE:
+	case OB_SHAPE_HULL:
 		return size.x;
 	case OB_SHAPE_BOX:
 		return ob_norm(size);
@@ -76,6 +78,8 @@ double ob_shape_thickness(ob_shape shape, ob_vec3 size)
 		return INFINITY;
 	case OB_SHAPE_CYLINDER:
 		return 2 * fmin(size.x, size.y);
+	case OB_SHAPE_HULL:
+		return 2 * size.y;
 	}
 	return 0;
 }

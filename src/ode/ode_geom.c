@@ -14,6 +14,7 @@ dGeomID ob_ode_geom_create(dSpaceID space, ob_shape shape, ob_vec3 size)
 	case OB_SHAPE_CYLINDER:
 		return dCreateCylinder(space, size.x, 2 * size.y);
 	case OB_SHAPE_NONE:
+	case OB_SHAPE_HULL: // nothing collides with it: worlds with hulls are refused, and a body of its own needs none
 		break;
 	}
 	return NULL;
@@ -50,6 +51,7 @@ dMass ob_ode_mass(ob_shape shape, ob_vec3 size, double mass)
 		break;
 	case OB_SHAPE_PLANE:
 	case OB_SHAPE_NONE:
+	case OB_SHAPE_HULL: // it knows its own
 		break;
 	}
 	return m;

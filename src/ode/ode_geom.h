@@ -6,7 +6,7 @@
 
 #include <ob/motion.h>
 
-// space may be 0; NULL for OB_SHAPE_NONE
+// space may be 0; NULL for OB_SHAPE_NONE and for a hull
 dGeomID ob_ode_geom_create(dSpaceID space, ob_shape shape, ob_vec3 size);
 // For a geometry without a body (static objects, single tests).
 void ob_ode_geom_place(dGeomID g, ob_pose pose);

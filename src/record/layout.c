@@ -17,17 +17,18 @@ static_assert(sizeof(ob_camera_def) == 152 && sizeof(ob_look_def) == 64, "member
 #name, type, offsetof(ob_record_event, passport.name) \
 	}
 static const ob_record_member event_members[] = {
-	EVENT(step, OB_RECORD_U64),         EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
-	PASSPORT(id, OB_RECORD_U32),        PASSPORT(generation, OB_RECORD_U32), PASSPORT(flags, OB_RECORD_U32),
-	PASSPORT(shape, OB_RECORD_U32),     PASSPORT(size, OB_RECORD_VEC3),      PASSPORT(mass, OB_RECORD_F64),
-	PASSPORT(inertia, OB_RECORD_VEC3),  PASSPORT(friction, OB_RECORD_F64),   PASSPORT(restitution, OB_RECORD_F64),
-	PASSPORT(colour, OB_RECORD_RGBA),   PASSPORT(name, OB_RECORD_NAME),      PASSPORT(force, OB_RECORD_VEC3),
-	PASSPORT(roughness, OB_RECORD_F32), PASSPORT(metal, OB_RECORD_F32),
+	EVENT(step, OB_RECORD_U64),           EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
+	PASSPORT(id, OB_RECORD_U32),          PASSPORT(generation, OB_RECORD_U32), PASSPORT(flags, OB_RECORD_U32),
+	PASSPORT(shape, OB_RECORD_U16),       PASSPORT(hull, OB_RECORD_U16),       PASSPORT(size, OB_RECORD_VEC3),
+	PASSPORT(mass, OB_RECORD_F64),        PASSPORT(inertia, OB_RECORD_VEC3),   PASSPORT(friction, OB_RECORD_F64),
+	PASSPORT(restitution, OB_RECORD_F64), PASSPORT(colour, OB_RECORD_RGBA),    PASSPORT(name, OB_RECORD_NAME),
+	PASSPORT(force, OB_RECORD_VEC3),      PASSPORT(roughness, OB_RECORD_F32),
+	PASSPORT(metal, OB_RECORD_F32),
 };
 const ob_record_table ob_record_events = {
 	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
 	  "objects that come (kind 1), change (2) and go (3), in the order of steps; shape: 1 sphere, 2 box, 3 plane, "
-	  "4 capsule, 5 cylinder; flags: 1 present, 2 static, 8 kinematic" },
+	  "4 capsule, 5 cylinder, 6 hull; flags: 1 present, 2 static, 8 kinematic" },
 	sizeof(ob_record_event),
 	COUNT(event_members),
 	event_members,
@@ -100,6 +101,8 @@ static hid_t array_of(hid_t element, hsize_t count)
 static hid_t type_of(ob_record_type type)
 {
 	switch (type) {
+	case OB_RECORD_U16:
+		return H5Tcopy(H5T_NATIVE_UINT16);
 	case OB_RECORD_U32:
 		return H5Tcopy(H5T_NATIVE_UINT32);
 	case OB_RECORD_U64:

@@ -23,6 +23,7 @@ typedef struct ob_record_event {
 } ob_record_event;
 
 typedef enum ob_record_type {
+	OB_RECORD_U16,
 	OB_RECORD_U32,
 	OB_RECORD_U64,
 	OB_RECORD_FLAG, // uint8_t, 0 or 1

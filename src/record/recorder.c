@@ -72,11 +72,12 @@ static const struct fact {
 	  INTEGER,
 	  offsetof(ob_passport, generation) },
 	{ { "name", "1", NULL, "name given by the scene" }, NAME, offsetof(ob_passport, name) },
-	{ { "shape", "1", NULL, "sphere, box, plane, capsule, cylinder; empty: no object" },
+	{ { "shape", "1", NULL, "sphere, box, plane, capsule, cylinder, hull; empty: no object" },
 	  SHAPE,
 	  offsetof(ob_passport, shape) },
 	{ { "size", "m", "body",
-	    "sphere: radius; box: half extents; capsule and cylinder: radius, half length along body z" },
+	    "sphere: radius; box: half extents; capsule and cylinder: radius, half length along body z; "
+	    "hull: radius of the ball that holds it, half its least width, radius of the ball in it" },
 	  VECTOR,
 	  offsetof(ob_passport, size) },
 	{ { "mass", "kg", NULL, "0: static" }, NUMBER, offsetof(ob_passport, mass) },
@@ -144,9 +145,9 @@ static bool create_objects(objects *o, hid_t file, uint32_t count)
 
 static void copy_fact(const struct fact *f, const ob_passport *p, char *to)
 {
-	static const char shapes[][SHAPE_MAX] = { "", "sphere", "box", "plane", "capsule", "cylinder" };
+	static const char shapes[][SHAPE_MAX] = { "", "sphere", "box", "plane", "capsule", "cylinder", "hull" };
 	if (f->kind == SHAPE)
-		memcpy(to, shapes[p->shape <= OB_SHAPE_CYLINDER ? p->shape : 0], SHAPE_MAX);
+		memcpy(to, shapes[p->shape <= OB_SHAPE_HULL ? p->shape : 0], SHAPE_MAX);
 	else if (f->kind == FLAG)
 		*to = (p->flags & OB_OBJECT_STATIC) != 0;
 	else

@@ -496,6 +496,9 @@ static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *
 		memset(&s->motion[id], 0, sizeof *s->motion);
 		return true;
 	}
+	if (now.passport.shape == OB_SHAPE_HULL)
+		return ob_fail(e, "%s: it has hulls, whose corners a record does not hold: run its scene again instead",
+			       r->path);
 	if (!passport_makes_sense(&now.passport))
 		return damaged(r, "an object makes no sense", e);
 	if (!make_room(s, id + 1))

@@ -102,7 +102,8 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 	b->planes = 0;
 	for (uint32_t i = 0; i < now->count; i++) {
 		const ob_passport *p = &now->passport[i];
-		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE || p->shape > OB_SHAPE_CYLINDER)
+		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE || p->shape > OB_SHAPE_HULL ||
+		    (p->shape == OB_SHAPE_HULL && !ob_snapshot_hull(now, i)))
 			continue;
 		ob_pose pose = pose_at(prev, now, i, t);
 		if (p->shape != OB_SHAPE_PLANE) {
@@ -206,13 +207,15 @@ void ob_draw_list_finish(ob_draw_list *b)
 	*b = (ob_draw_list){ 0 };
 }
 
-static int mesh_of(const ob_passport *p, const ob_draw_item *body, const ob_view *v, int height)
+static uint32_t mesh_of(const ob_passport *p, const ob_draw_item *body, const ob_view *v, int height)
 {
 	if (p->shape == OB_SHAPE_BOX)
 		return OB_MESH_BOX;
+	if (p->shape == OB_SHAPE_HULL)
+		return OB_MESHES + p->hull;
 	double distance = ob_norm(ob_sub(body->pose.p, v->eye));
 	double px = .5 * height * p->size.x / (v->tan_y * fmax(distance, v->near_plane));
-	int level = px < medium_px ? 0 : px < fine_px ? 1 : 2;
+	uint32_t level = px < medium_px ? 0 : px < fine_px ? 1 : 2;
 	return (p->shape == OB_SHAPE_CYLINDER ? OB_MESH_CYLINDER : OB_MESH_ROUND) + level;
 }
 
@@ -249,6 +252,9 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 		core = ob_v3(size.x - r, size.x - r, size.y - r);
 	} else if (p->shape == OB_SHAPE_CAPSULE) {
 		core.z = size.y;
+	} else if (p->shape == OB_SHAPE_HULL) { // its mesh has metres
+		r = 0;
+		core = ob_v3(1, 1, 1);
 	}
 	set_vec4(i.position_radius, at.x, at.y, at.z, r);
 	set_vec4(i.attitude, pose->q.x, pose->q.y, pose->q.z, pose->q.w);
@@ -257,6 +263,19 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 		i.colour[k] = p->colour[k];
 	i.colour[3] = roundf(15 * clampf(p->metal, 0, 1)) + clampf(p->roughness, 0, .99f);
 	return i;
+}
+
+static bool expect_meshes(ob_instances *out, uint32_t meshes)
+{
+	if (meshes > out->meshes_max) {
+		uint32_t *grown = realloc(out->first, (meshes + 1) * sizeof *grown);
+		if (!grown)
+			return false;
+		out->first = grown;
+		out->meshes_max = meshes;
+	}
+	out->meshes = meshes;
+	return out->first;
 }
 
 bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *v, int height, ob_draw_filter filter,
@@ -269,32 +288,34 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 		out->instance = grown;
 		out->capacity = b->count;
 	}
-	uint8_t *mesh = malloc(b->count + 1);
-	if (!mesh)
+	if (!expect_meshes(out, OB_MESHES + b->now->hulls))
 		return false;
-	uint32_t count[OB_MESHES + 1] = { 0 };
-	for (uint32_t i = 0; i < b->count; i++) {
+	uint32_t *mesh = malloc((b->count + 1) * sizeof *mesh), *count = calloc(out->meshes + 1, sizeof *count);
+	for (uint32_t i = 0; mesh && count && i < b->count; i++) {
 		const ob_draw_item *body = &b->body[i];
 		bool taken = filter(body, context);
-		mesh[i] = taken ? (uint8_t)mesh_of(&b->now->passport[body->id], body, v, height) : OB_MESHES;
+		mesh[i] = taken ? mesh_of(&b->now->passport[body->id], body, v, height) : out->meshes;
 		count[mesh[i]]++;
 	}
 	out->first[0] = 0;
-	for (int k = 0; k < OB_MESHES; k++) {
+	for (uint32_t k = 0; count && k < out->meshes; k++) {
 		out->first[k + 1] = out->first[k] + count[k];
 		count[k] = out->first[k];
 	}
-	for (uint32_t i = 0; i < b->count; i++)
-		if (mesh[i] < OB_MESHES)
+	for (uint32_t i = 0; mesh && count && i < b->count; i++)
+		if (mesh[i] < out->meshes)
 			out->instance[count[mesh[i]]++] =
 				instance_of(&b->now->passport[b->body[i].id], &b->body[i].pose, v->eye);
+	const bool fine = mesh && count;
 	free(mesh);
-	return true;
+	free(count);
+	return fine;
 }
 
 void ob_instances_finish(ob_instances *i)
 {
 	free(i->instance);
+	free(i->first);
 	*i = (ob_instances){ 0 };
 }
 
@@ -355,7 +376,11 @@ bool ob_overlay_boxes(ob_overlay *o, const ob_draw_list *b, const ob_view *v)
 		if (!ob_view_in_frustum(v, body->pose.p, 2 * body->radius))
 			continue;
 		double bounds[6];
-		ob_shape_bounds(p->shape, p->size, body->pose, bounds);
+		const ob_hull *hull = ob_snapshot_hull(b->now, body->id);
+		if (hull)
+			ob_hull_bounds(hull, body->pose, bounds);
+		else
+			ob_shape_bounds(p->shape, p->size, body->pose, bounds);
 		for (int from = 0; from < 8; from++)
 			for (int axis = 1; axis <= 4; axis *= 2)
 				if (!(from & axis))

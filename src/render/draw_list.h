@@ -53,11 +53,13 @@ typedef struct ob_instance {
 	float colour[4]; // linear; 15 times its metal, whole, and then its roughness, below 1
 } ob_instance;
 
-// Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1.
+// Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1. After the meshes of the shapes come
+// those of the snapshot's hulls.
 typedef struct ob_instances {
 	ob_instance *instance;
-	uint32_t first[OB_MESHES + 1];
-	uint32_t capacity;
+	uint32_t meshes;
+	uint32_t *first; // [meshes + 1]
+	uint32_t capacity, meshes_max;
 } ob_instances;
 
 // Evaluates all motions at time t (s); prev may be NULL. false: out of memory. b starts zeroed.

@@ -137,3 +137,20 @@ void ob_mesh_set_finish(ob_mesh_set *s)
 	free(s->vertex);
 	free(s->index);
 }
+
+uint32_t ob_mesh_of_hull(const ob_hull *h, ob_vertex *vertex)
+{
+	uint32_t n = 0;
+	for (uint32_t f = 0; f < h->faces; f++)
+		for (uint32_t k = h->first[f] + 1u; k + 1 < h->first[f + 1]; k++) {
+			const uint8_t corner[3] = { h->loop[h->first[f]], h->loop[k], h->loop[k + 1] };
+			const ob_vec3 m = h->normal[f];
+			for (int i = 0; i < 3; i++, n++) {
+				const ob_vec3 c = h->corner[corner[i]];
+				if (vertex)
+					vertex[n] = (ob_vertex){ { (float)c.x, (float)c.y, (float)c.z },
+								 { (float)m.x, (float)m.y, (float)m.z } };
+			}
+		}
+	return n;
+}

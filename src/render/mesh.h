@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <ob/hull.h>
+
 typedef struct ob_vertex {
 	float corner[3], normal[3];
 } ob_vertex;
@@ -33,5 +35,9 @@ typedef struct ob_mesh_set {
 
 bool ob_mesh_set_build(ob_mesh_set *s); // counter-clockwise from outside; false: out of memory
 void ob_mesh_set_finish(ob_mesh_set *s);
+
+// The faces of a hull as triangles, three vertices each, in metres: returns how many vertices. counter-clockwise from
+// outside. NULL: counts only.
+uint32_t ob_mesh_of_hull(const ob_hull *h, ob_vertex *vertex);
 
 #endif

@@ -1,6 +1,7 @@
 #include "render/passes.h"
 
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "shaders.h"
@@ -319,6 +320,12 @@ bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e)
 		return false;
 	set_attribute(0, 3, sizeof(ob_vertex), offsetof(ob_vertex, corner), 0);
 	set_attribute(1, 3, sizeof(ob_vertex), offsetof(ob_vertex, normal), 0);
+	glGenBuffers(1, &p->hull_vertices);
+	glGenVertexArrays(1, &p->hull_array);
+	glBindVertexArray(p->hull_array);
+	glBindBuffer(GL_ARRAY_BUFFER, p->hull_vertices);
+	set_attribute(0, 3, sizeof(ob_vertex), offsetof(ob_vertex, corner), 0);
+	set_attribute(1, 3, sizeof(ob_vertex), offsetof(ob_vertex, normal), 0);
 	glGenVertexArrays(1, &p->segment_array);
 	glBindVertexArray(p->segment_array);
 	glBindBuffer(GL_ARRAY_BUFFER, p->segments);
@@ -331,11 +338,49 @@ bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e)
 
 void ob_passes_destroy(ob_passes *p)
 {
-	const GLuint buffers[] = { p->frame_block, p->vertices, p->indices, p->instances, p->segments };
-	const GLuint arrays[] = { p->body_array, p->segment_array, p->empty_array };
+	const GLuint buffers[] = {
+		p->frame_block, p->vertices, p->indices, p->instances, p->segments, p->hull_vertices
+	};
+	const GLuint arrays[] = { p->body_array, p->segment_array, p->empty_array, p->hull_array };
 	ob_programs_destroy(p->program);
-	glDeleteBuffers(5, buffers);
-	glDeleteVertexArrays(3, arrays);
+	glDeleteBuffers(6, buffers);
+	glDeleteVertexArrays(4, arrays);
+	free(p->hull_first);
+}
+
+static uint32_t known_hulls(const ob_snapshot *s)
+{
+	uint32_t known = 0;
+	for (uint32_t i = 0; i < s->hulls; i++)
+		known += s->hull[i] != NULL;
+	return known;
+}
+
+bool ob_passes_take_hulls(ob_passes *p, const ob_snapshot *s)
+{
+	const uint32_t known = known_hulls(s);
+	if (p->hulls == s->hulls && p->known_hulls == known && p->hulls_of == s->created)
+		return true;
+	uint32_t *first = realloc(p->hull_first, (s->hulls + 1) * sizeof *first), vertices = 0;
+	if (!first)
+		return false;
+	p->hull_first = first;
+	for (uint32_t i = 0; i < s->hulls; i++) {
+		first[i] = vertices;
+		vertices += s->hull[i] ? ob_mesh_of_hull(s->hull[i], NULL) : 0;
+	}
+	first[s->hulls] = vertices;
+	ob_vertex *vertex = malloc((vertices + 1) * sizeof *vertex);
+	if (!vertex)
+		return false;
+	for (uint32_t i = 0; i < s->hulls; i++)
+		if (s->hull[i])
+			ob_mesh_of_hull(s->hull[i], vertex + first[i]);
+	glBindBuffer(GL_ARRAY_BUFFER, p->hull_vertices);
+	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(vertices * sizeof *vertex), vertex, GL_STATIC_DRAW);
+	free(vertex);
+	p->hulls = s->hulls, p->known_hulls = known, p->hulls_of = s->created;
+	return true;
 }
 
 void ob_passes_begin(const ob_passes *p, const ob_frame_block *block)
@@ -352,24 +397,42 @@ static void upload_instances(const ob_passes *p, const ob_instances *i)
 {
 	glBindVertexArray(p->body_array);
 	glBindBuffer(GL_ARRAY_BUFFER, p->instances);
-	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(i->first[OB_MESHES] * sizeof *i->instance), i->instance,
+	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(i->first[i->meshes] * sizeof *i->instance), i->instance,
 		     GL_STREAM_DRAW);
+}
+
+// Points the instances' attributes at those from "first" on.
+static void set_instances(uint32_t first)
+{
+	const size_t at = first * sizeof(ob_instance);
+	set_attribute(2, 4, sizeof(ob_instance), at + offsetof(ob_instance, position_radius), 1);
+	set_attribute(3, 4, sizeof(ob_instance), at + offsetof(ob_instance, attitude), 1);
+	set_attribute(4, 4, sizeof(ob_instance), at + offsetof(ob_instance, core), 1);
+	set_attribute(5, 4, sizeof(ob_instance), at + offsetof(ob_instance, colour), 1);
 }
 
 // Draws what upload_instances has uploaded.
 static void draw_instances(const ob_passes *p, const ob_instances *i)
 {
-	for (int k = 0; k < OB_MESHES; k++) {
+	for (uint32_t k = 0; k < OB_MESHES; k++) {
 		uint32_t first = i->first[k], count = i->first[k + 1] - first;
-		size_t at = first * sizeof(ob_instance);
 		if (!count)
 			continue;
-		set_attribute(2, 4, sizeof(ob_instance), at + offsetof(ob_instance, position_radius), 1);
-		set_attribute(3, 4, sizeof(ob_instance), at + offsetof(ob_instance, attitude), 1);
-		set_attribute(4, 4, sizeof(ob_instance), at + offsetof(ob_instance, core), 1);
-		set_attribute(5, 4, sizeof(ob_instance), at + offsetof(ob_instance, colour), 1);
+		set_instances(first);
 		glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)p->mesh[k].index_count, GL_UNSIGNED_SHORT,
 					(const void *)(p->mesh[k].index_first * sizeof(uint16_t)), (GLsizei)count);
+	}
+	if (i->first[i->meshes] == i->first[OB_MESHES])
+		return;
+	glBindVertexArray(p->hull_array);
+	glBindBuffer(GL_ARRAY_BUFFER, p->instances);
+	for (uint32_t k = OB_MESHES; k < i->meshes; k++) {
+		const uint32_t first = i->first[k], count = i->first[k + 1] - first, hull = k - OB_MESHES;
+		if (!count)
+			continue;
+		set_instances(first);
+		glDrawArraysInstanced(GL_TRIANGLES, (GLint)p->hull_first[hull],
+				      (GLsizei)(p->hull_first[hull + 1] - p->hull_first[hull]), (GLsizei)count);
 	}
 }
 

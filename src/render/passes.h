@@ -71,11 +71,17 @@ typedef struct ob_passes {
 	GLuint segment_array, segments;
 	GLuint empty_array; // for what is made from gl_VertexID alone
 	ob_mesh mesh[OB_MESHES];
+	GLuint hull_array, hull_vertices;
+	uint32_t hulls, known_hulls; // of the snapshot; those of them that were there
+	uint64_t hulls_of; // the snapshot's ob_snapshot.created
+	uint32_t *hull_first; // [hulls + 1]: vertices of each, in hull_vertices
 } ob_passes;
 
 bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e);
 void ob_passes_destroy(ob_passes *p);
 
+// Meshes of the hulls that the snapshot has; false: out of memory.
+bool ob_passes_take_hulls(ob_passes *p, const ob_snapshot *s);
 void ob_passes_begin(const ob_passes *p, const ob_frame_block *block);
 // The shadow map, from all that casts.
 void ob_passes_shadow_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters);

@@ -137,6 +137,8 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 		return false;
 	if (!ob_draw_list_fill(&r->list, prev, now, t))
 		return ob_fail(e, "out of memory");
+	if (!ob_passes_take_hulls(&r->passes, now))
+		return ob_fail(e, "out of memory");
 	camera = ob_camera_follow(c, &r->list, r->setup.width, r->setup.height);
 	for (; share.number < share.count; share.number++) {
 		if (!draw_share(r, &camera, t, &share, &f))

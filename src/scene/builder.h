@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 
 #define OB_SCENE_OBJECTS_MAX 200000
+#define OB_SCENE_HULLS_MAX 4096
 #define OB_SCENE_MATERIALS_MAX 256
 #define OB_SCENE_CAMERAS_MAX 64
 #define OB_SCENE_PARAMS_MAX 64
@@ -30,6 +31,8 @@ typedef struct ob_camera_draft {
 typedef struct ob_builder {
 	ob_scene *scene; // objects are added to it; its room for them:
 	uint32_t objects_room;
+	uint32_t hulls_room;
+	uint64_t *hull_points; // [scene->hulls], hashes of the points that each was made of
 	const ob_scene_options *options;
 	bool has_scene; // scene { ... } was called
 	ob_material material[OB_SCENE_MATERIALS_MAX];
@@ -69,6 +72,7 @@ int ob_scene_call_ground(lua_State *L);
 int ob_scene_call_material(lua_State *L);
 int ob_scene_call_camera(lua_State *L);
 int ob_scene_call_box(lua_State *L);
+int ob_scene_call_hull(lua_State *L);
 int ob_scene_call_sphere(lua_State *L);
 int ob_scene_call_capsule(lua_State *L);
 int ob_scene_call_cylinder(lua_State *L);

@@ -1,4 +1,4 @@
-// material, box, sphere, capsule, cylinder, plane, ground: the objects, and what several of them have in common.
+// material, box, hull, sphere, capsule, cylinder, plane, ground: the objects, and what several of them have in common.
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/spelling.h"
+#include "hull/hull.h"
 #include "scene/builder.h"
 #include "scene/flat.h"
 #include "scene/sandbox.h"
@@ -116,6 +117,8 @@ typedef struct body {
 	uint32_t kind;
 	double radius, length, height, mass, density, friction, restitution, roughness, metal, born, dies;
 	ob_quat q, rotation;
+	ob_points points;
+	const ob_hull *hull; // in the scene; NULL: it is none
 	float colour[4];
 	bool fixed, grid, path, varying_force;
 } body;
@@ -148,6 +151,12 @@ typedef struct body {
 
 static const ob_field box_fields[] = {
 	F(size, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e6, .required = true),
+	PLACE,
+	MOVING,
+	SURFACE,
+};
+static const ob_field hull_fields[] = {
+	F(points, .kind = OB_FIELD_POINTS, .low = -1e6, .high = 1e6, .required = true),
 	PLACE,
 	MOVING,
 	SURFACE,
@@ -270,7 +279,7 @@ static void apply_material(lua_State *L, const ob_builder *b, const char *kind, 
 	}
 }
 
-static double volume(ob_shape shape, ob_vec3 size)
+static double volume(ob_shape shape, ob_vec3 size, const ob_hull *hull)
 {
 	double disc = M_PI * size.x * size.x;
 	switch (shape) {
@@ -282,6 +291,8 @@ static double volume(ob_shape shape, ob_vec3 size)
 		return disc * (2 * size.y + 4. / 3 * size.x);
 	case OB_SHAPE_CYLINDER:
 		return disc * 2 * size.y;
+	case OB_SHAPE_HULL:
+		return hull->volume;
 	default:
 		return 0;
 	}
@@ -330,13 +341,22 @@ static void find_kind(lua_State *L, const char *kind, body *d)
 		d->kind = d->fixed ? STATIC : DYNAMIC;
 }
 
+// "at" is where the points' origin is; a body's own frame is at its centre of mass, along its principal axes.
+static void take_hull_frame(const ob_scene *s, const ob_hull *h, ob_object_def *o)
+{
+	const ob_mat3 r = ob_quat_matrix(o->state.pose.q);
+	o->passport.hull = (uint16_t)(h - s->hull);
+	o->state.pose.p = ob_add(o->state.pose.p, ob_rotate(&r, h->centre));
+	o->state.pose.q = ob_quat_mul(o->state.pose.q, h->frame);
+}
+
 static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec3 size, body *d)
 {
 	ob_builder *b = ob_sandbox_user(L);
 	find_kind(L, kind, d);
 	check_together(L, kind, d);
 	apply_material(L, b, kind, d);
-	double mass = d->kind != DYNAMIC ? 0 : isnan(d->mass) ? d->density * volume(shape, size) : d->mass;
+	double mass = d->kind != DYNAMIC ? 0 : isnan(d->mass) ? d->density * volume(shape, size, d->hull) : d->mass;
 	if (d->kind == DYNAMIC && !(mass >= 1e-12 && mass <= 1e15))
 		ob_sandbox_fail(L, "%s.mass: expected from 1e-12 to 1e+15 kg, got %.4g", kind, mass);
 	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
@@ -356,6 +376,8 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	memcpy(p->colour, d->colour, sizeof p->colour);
 	o->state.pose.p = d->at;
 	o->state.pose.q = !isnan(d->q.w) ? d->q : !isnan(d->rotation.w) ? d->rotation : ob_quat_identity();
+	if (d->hull)
+		take_hull_frame(b->scene, d->hull, o);
 	o->state.v = d->velocity;
 	o->state.w = d->spin;
 	if (d->state.size && !d->script)
@@ -387,6 +409,58 @@ int ob_scene_call_box(lua_State *L)
 	body d = nothing;
 	READ(L, "box", box_fields, &d);
 	add(L, "box", OB_SHAPE_BOX, ob_scale(d.size, .5), &d);
+	return 0;
+}
+
+static uint64_t hash_points(const ob_points *p)
+{
+	uint64_t hash = 0xcbf29ce484222325u; // FNV-1a over the bytes
+	const unsigned char *byte = (const unsigned char *)p->at;
+	for (size_t i = 0; i < p->count * sizeof *p->at; i++)
+		hash = (hash ^ byte[i]) * 0x100000001b3u;
+	return hash;
+}
+
+static void grow_hulls(lua_State *L, ob_builder *b)
+{
+	ob_scene *s = b->scene;
+	const uint32_t room = b->hulls_room ? 2 * b->hulls_room : 8;
+	ob_hull *hull = realloc(s->hull, room * sizeof *hull);
+	if (hull)
+		s->hull = hull;
+	uint64_t *points = realloc(b->hull_points, room * sizeof *points);
+	if (points)
+		b->hull_points = points;
+	if (!hull || !points)
+		ob_sandbox_fail(L, "hull: no memory left on this machine");
+	b->hulls_room = room;
+}
+
+// The scene's hull of these points; objects of the same points share it.
+static const ob_hull *find_hull(lua_State *L, ob_builder *b, const ob_points *p)
+{
+	ob_scene *s = b->scene;
+	const uint64_t hash = hash_points(p);
+	ob_error e;
+	for (uint32_t i = 0; i < s->hulls; i++)
+		if (b->hull_points[i] == hash)
+			return &s->hull[i];
+	if (s->hulls == OB_SCENE_HULLS_MAX)
+		ob_sandbox_fail(L, "hull.points: expected at most %d different hulls in a scene", OB_SCENE_HULLS_MAX);
+	if (s->hulls == b->hulls_room)
+		grow_hulls(L, b);
+	if (!ob_hull_build(p->at, p->count, &s->hull[s->hulls], &e))
+		ob_sandbox_fail(L, "hull.points: %s", e.text);
+	b->hull_points[s->hulls] = hash;
+	return &s->hull[s->hulls++];
+}
+
+int ob_scene_call_hull(lua_State *L)
+{
+	body d = nothing;
+	READ(L, "hull", hull_fields, &d);
+	d.hull = find_hull(L, ob_sandbox_user(L), &d.points);
+	add(L, "hull", OB_SHAPE_HULL, ob_hull_size(d.hull), &d);
 	return 0;
 }
 

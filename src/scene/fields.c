@@ -161,6 +161,30 @@ static void read_vector(const reader *r)
 	*(ob_vec3 *)r->to = ob_v3(x[0], x[1], x[2]);
 }
 
+// The memory is Lua's, which keeps it until the next list is read.
+static void read_points(const reader *r)
+{
+	lua_State *L = r->L;
+	const size_t n = lua_istable(L, -1) ? lua_rawlen(L, -1) : 0;
+	if (n < 1 || n > OB_FIELD_POINTS_MAX) {
+		char expected[80];
+		snprintf(expected, sizeof expected, "a list of 4 to %d points {x, y, z}", OB_FIELD_POINTS_MAX);
+		fail(r, expected);
+	}
+	ob_vec3 *at = lua_newuserdatauv(L, n * sizeof *at, 0);
+	lua_setfield(L, LUA_REGISTRYINDEX, "scene.points");
+	for (size_t i = 0; i < n; i++) {
+		char name[64];
+		ob_field each = *r->field;
+		snprintf(name, sizeof name, "%s[%zu]", r->field->name, i + 1);
+		each.name = name;
+		lua_rawgeti(L, -1, (lua_Integer)i + 1);
+		read_vector(&(reader){ L, r->where, &each, &at[i] });
+		lua_pop(L, 1);
+	}
+	*(ob_points *)r->to = (ob_points){ at, (uint32_t)n };
+}
+
 // Scaled by its largest part first, so that squares neither vanish nor overflow; false where there is no direction.
 static bool make_unit(double *x, int n)
 {
@@ -294,9 +318,9 @@ static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_SWITCH] = read_switch,       [OB_FIELD_TEXT] = read_text,
 	[OB_FIELD_CHOICE] = read_choice,       [OB_FIELD_VECTOR] = read_vector,
 	[OB_FIELD_DIRECTION] = read_direction, [OB_FIELD_QUATERNION] = read_quaternion,
-	[OB_FIELD_ROTATION] = read_rotation,   [OB_FIELD_COLOUR] = read_colour,
-	[OB_FIELD_FLAT] = read_flat,           [OB_FIELD_SOURCE] = read_source,
-	[OB_FIELD_TABLE] = read_table,
+	[OB_FIELD_ROTATION] = read_rotation,   [OB_FIELD_POINTS] = read_points,
+	[OB_FIELD_COLOUR] = read_colour,       [OB_FIELD_FLAT] = read_flat,
+	[OB_FIELD_SOURCE] = read_source,       [OB_FIELD_TABLE] = read_table,
 };
 
 static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *name, const ob_field *field,

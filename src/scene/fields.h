@@ -8,8 +8,10 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include <lua.h>
+#include <ob/vec.h>
 
 typedef enum ob_field_kind {
 	OB_FIELD_NUMBER, // double, within low..high
@@ -26,8 +28,17 @@ typedef enum ob_field_kind {
 	OB_FIELD_FLAT, // ob_flat: a table of flat values (scene/flat.h)
 	OB_FIELD_SOURCE, // const char *, valid while the table is: text of any characters, at most high bytes
 	OB_FIELD_TABLE, // bool: it is there; whoever knows what it holds reads it
+	OB_FIELD_POINTS, // ob_points from {{x, y, z}, ..}, each within low..high
 	OB_FIELD_COLOUR, // float[4], linear, from {r, g, b [, a]} or "#rrggbb[aa]" (sRGB)
 } ob_field_kind;
+
+// Valid until the next list of points is read.
+typedef struct ob_points {
+	const ob_vec3 *at;
+	uint32_t count;
+} ob_points;
+
+enum { OB_FIELD_POINTS_MAX = 4096 };
 
 typedef struct ob_field {
 	const char *name;

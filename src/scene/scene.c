@@ -68,6 +68,7 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "material", ob_scene_call_material },
 		{ NULL, "camera", ob_scene_call_camera },
 		{ NULL, "box", ob_scene_call_box },
+		{ NULL, "hull", ob_scene_call_hull },
 		{ NULL, "sphere", ob_scene_call_sphere },
 		{ NULL, "capsule", ob_scene_call_capsule },
 		{ NULL, "cylinder", ob_scene_call_cylinder },
@@ -149,6 +150,8 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 		free(text);
 		ob_fail(e, "%s: no memory", path);
 	}
+	if (b)
+		free(b->hull_points);
 	free(b);
 	if (good)
 		return s;
@@ -180,6 +183,7 @@ void ob_scene_free(ob_scene *s)
 	for (uint32_t i = 0; i < s->objects; i++)
 		free(s->object[i].path), free(s->object[i].force);
 	free(s->object);
+	free(s->hull);
 	free(s->camera);
 	for (uint32_t i = 0; i < s->scripts; i++)
 		free(s->script[i].text);

@@ -2,6 +2,7 @@
 #ifndef OB_SCENE_SCENE_H
 #define OB_SCENE_SCENE_H
 
+#include <ob/hull.h>
 #include <ob/motion.h>
 
 #include "motion/force.h"
@@ -48,6 +49,8 @@ typedef struct ob_scene {
 	uint64_t seed;
 	uint32_t objects;
 	ob_object_def *object;      // [objects]; ids are their index
+	uint32_t hulls;
+	ob_hull *hull;              // [hulls], by the number in passports
 	uint32_t cameras;
 	ob_camera_def *camera;      // at least one
 	ob_look_def look;

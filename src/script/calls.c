@@ -566,6 +566,12 @@ static void open_objects(lua_State *L)
 	lua_pop(L, 1);
 }
 
+// The universe holds the hulls of its scene, and has no room for others.
+static int call_hull(lua_State *L)
+{
+	ob_sandbox_fail(L, "hull: scripts create no hulls: expected box, sphere, capsule or cylinder");
+}
+
 int ob_script_calls_open(lua_State *L)
 {
 	static const luaL_Reg calls[] = {
@@ -573,6 +579,7 @@ int ob_script_calls_open(lua_State *L)
 		{ "find", call_find },
 		{ "near", call_near },
 		{ "ray", call_ray },
+		{ "hull", call_hull },
 		{ "send", call_send },
 		{ "random", ob_scene_call_random },
 		{ "random_rotation", ob_scene_call_random_rotation },

@@ -197,7 +197,7 @@ static bool make_object(reading *r, ob_object_def *def)
 	if (!shape)
 		return fail(r, "expected box, sphere, capsule or cylinder", "shape") == 0;
 	*def = (ob_object_def){
-		.passport = { .shape = (uint32_t)shape,
+		.passport = { .shape = (uint16_t)shape,
 			      .size = vec3(r, SIZE),
 			      .mass = r->value[MASS][0],
 			      .friction = r->given & 1u << FRICTION ? r->value[FRICTION][0] : .5,

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <ob/hull.h>
 #include <ob/motion.h>
 
 static const double tolerated = 1. / 256; // of the radius ..
@@ -224,7 +225,23 @@ static void put_motion(ob_message *out, const known *k, double time, uint32_t *b
 
 // ---- what exists
 
-static void put_object(ob_message *out, const known *k)
+static void put_hull(ob_message *out, const ob_universe *u, uint32_t number)
+{
+	ob_hull h;
+	if (!u || !ob_universe_get_hull(u, number, &h)) // a film is of a record, which has no hulls
+		h.corners = h.faces = 0;
+	ob_message_put_u8(out, h.corners);
+	ob_message_put_u8(out, h.faces);
+	ob_message_put(out, &(uint16_t){ (uint16_t)number }, 2);
+	for (uint32_t i = 0; i < h.corners; i++)
+		put_vec3(out, h.corner[i]);
+	for (uint32_t f = 0; f < h.faces; f++) {
+		ob_message_put_u8(out, h.first[f + 1] - h.first[f]);
+		ob_message_put(out, h.loop + h.first[f], h.first[f + 1] - h.first[f]);
+	}
+}
+
+static void put_object(ob_message *out, const ob_universe *u, const known *k)
 {
 	const ob_passport *p = &k->passport;
 	size_t name = strnlen(p->name, OB_NAME_MAX);
@@ -239,6 +256,8 @@ static void put_object(ob_message *out, const known *k)
 	put_vec3(out, p->inertia);
 	for (int i = 0; i < 3; i++)
 		ob_message_put_f32(out, p->colour[i]);
+	if (p->shape == OB_SHAPE_HULL)
+		put_hull(out, u, p->hull);
 	ob_message_put(out, p->name, name);
 }
 
@@ -295,7 +314,7 @@ static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
 	}
 	for (size_t i = 0; i < kept; i++) {
 		if (!now[i].announced)
-			put_object(out, &now[i]);
+			put_object(out, f->u, &now[i]);
 		now[i].announced = true;
 	}
 	free(f->object);
@@ -326,7 +345,7 @@ static uint32_t tell_looks(ob_feed *f, ob_message *out)
 		if (looks_alike(&now, &k->passport))
 			continue;
 		k->passport = now;
-		put_object(out, k);
+		put_object(out, f->u, k);
 		told++;
 	}
 	return told;
@@ -414,7 +433,7 @@ ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace)
 	if (!out)
 		return NULL;
 	for (size_t i = 0; i < f->objects; i++)
-		put_object(out, &f->object[i]);
+		put_object(out, f->u, &f->object[i]);
 	for (size_t i = 0; i < f->objects; i++) {
 		if (!f->object[i].told)
 			continue;

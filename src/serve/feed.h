@@ -14,7 +14,9 @@
 //        created      (or one that was created before, and looks otherwise from now on)
 //                     u32 id, generation; u8 shape; u8 flags (1: static); u8 bytes of the name;
 //                     u8 surface: roughness, of 15, and 16 times metal, of 15
-//                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB); the name (UTF-8)
+//                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB);
+//                     of a hull: u8 corners, u8 faces, u16 number, f32 p[3] of each corner (body's frame), and of each
+//                     face u8 corners, then u8 of each, counterclockwise; the name (UTF-8)
 //        motion       id less the one before, in groups of 7 bits, low first, bit 7 on all but the last;
 //                     u8 kind, and 4: wide, 8: accelerated, 16: begun; f32 p[3]; i16 q[4] (w x y z, of 32767);
 //                     if begun: f32 s before time; if accelerated: f32 a[3]; if it swings: f64 frequency (rad/s);

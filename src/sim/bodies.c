@@ -70,6 +70,7 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	ob_body *body = &w->body[row];
 	*body = (ob_body){ .id = id,
 			   .shape = pass->shape,
+			   .hull = ob_hull_of(s->u, pass),
 			   .size = pass->size,
 			   .p = now.pose.p,
 			   .q = now.pose.q,

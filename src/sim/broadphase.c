@@ -260,6 +260,15 @@ static const double oversize_margins = 4; // a box larger by so many margins of 
 static const uint64_t oversize_check_steps = 16; // .. which is checked every so many steps
 static const double sweep_oversize = 2; // a box so many times as long as a flight's new one is replaced
 
+static void tight_bounds(const ob_universe *u, const ob_passport *p, ob_pose pose, double bounds[6])
+{
+	const ob_hull *hull = ob_hull_of(u, p);
+	if (hull)
+		ob_hull_bounds(hull, pose, bounds);
+	else
+		ob_shape_bounds(p->shape, p->size, pose, bounds);
+}
+
 double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s)
 {
 	double rate = shape == OB_SHAPE_SPHERE ? 0 : ob_drift_bound(w, inertia, s);
@@ -353,7 +362,7 @@ void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double
 	const double h = ob_universe_settings(u)->step_length, way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
 	const wake w = wake_of(u, id, now, path);
 	double next[6], behind[6], ahead[6];
-	ob_shape_bounds(p->shape, p->size, now->pose, next);
+	tight_bounds(u, p, now->pose, next);
 	memcpy(behind, next, sizeof next);
 	memcpy(ahead, next, sizeof next);
 	sweep_box(behind, w.back, 1);
@@ -374,7 +383,7 @@ void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double 
 {
 	const ob_passport *p = ob_passport_of(u, id);
 	double next[6];
-	ob_shape_bounds(p->shape, p->size, now->pose, next);
+	tight_bounds(u, p, now->pose, next);
 	double margin = predict_fat_aabb(u, p, now, reach, next);
 	ob_fat_aabb_set(u, id, next, margin);
 }
@@ -484,8 +493,8 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 	if (spheres > fmax(ra, rb) && !aabbs) // the boxes would not add much, and cost more
 		return spheres;
 	double box_a[6], box_b[6], distance = 0;
-	ob_shape_bounds(pa->shape, pa->size, ob_state_now(u, a, ma, steps).pose, box_a);
-	ob_shape_bounds(pb->shape, pb->size, ob_state_now(u, b, mb, steps).pose, box_b);
+	tight_bounds(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
+	tight_bounds(u, pb, ob_state_now(u, b, mb, steps).pose, box_b);
 	for (int c = 0; c < 3; c++)
 		distance = fmax(distance, fmax(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
 	return aabbs ? distance : fmax(distance, spheres);

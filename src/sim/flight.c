@@ -2,6 +2,7 @@
 
 #include "contact/facets.h"
 #include "contact/impact.h"
+#include "contact/polytope.h"
 #include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/publish.h"
@@ -25,7 +26,8 @@ static ob_half_space half_space(const ob_universe *u, uint32_t plane)
 static ob_flier landing_body(ob_sim *s, uint32_t id, const ob_motion *f)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);
-	ob_flier out = { body->shape, body->size, body->inertia, f->p, f->v, f->a, f->q, f->w, NULL };
+	ob_flier out = { body->shape, body->size, body->inertia, f->p, f->v,
+			 f->a,        f->q,       f->w,          NULL, ob_hull_of(s->u, body) };
 	if (s->settings->narrow_phase == OB_NARROW_AABB) {
 		double reach = sqrt(3) * ob_shape_radius(body->shape, body->size);
 		out.shape = OB_SHAPE_NONE;
@@ -86,14 +88,40 @@ static int support_points(const ob_passport *body, ob_vec3 n, const ob_mat3 *r, 
 	}
 }
 
+// The same of a hull: no more than four of what may be many.
+static uint32_t corners_on_plane(ob_units unit, const ob_hull *hull, const ob_half_space *ground, const ob_state *s,
+				 double rounding, ob_impact_point *point)
+{
+	const double margin = OB_IMPACT_SIMULTANEOUS * unit.length;
+	const ob_vec3 n = ground->normal, z = fabs(n.x) < .6 ? ob_v3(1, 0, 0) : ob_v3(0, 1, 0);
+	const ob_vec3 u = ob_scale(ob_cross(z, n), 1 / ob_norm(ob_cross(z, n))), w = ob_cross(n, u);
+	const ob_placed body = { .shape = OB_SHAPE_HULL,
+				 .p = s->pose.p,
+				 .r = ob_quat_matrix(s->pose.q),
+				 .rest_depth = .5 * margin,
+				 .hull = hull };
+	const ob_placed plane = { .shape = OB_SHAPE_PLANE,
+				  .p = ob_scale(n, ground->offset),
+				  .r = { { { u.x, w.x, n.x }, { u.y, w.y, n.y }, { u.z, w.z, n.z } } } };
+	ob_manifold m = { .points = 0 };
+	ob_manifold_hull_plane(&body, &plane, margin, &m);
+	for (int k = 0; k < m.points; k++)
+		point[k] = (ob_impact_point){ .normal = n,
+					      .arm_a = ob_sub(ob_madd(m.at[k], .5 * m.gap[k], n), s->pose.p),
+					      .b = 1 };
+	return m.separation <= rounding ? (uint32_t)m.points : 0;
+}
+
 // The points that are on the plane: those within rounding of it, and what touches at the same time with them.
-static uint32_t points_on_plane(ob_units unit, const ob_passport *body, const ob_half_space *ground, const ob_state *s,
-				ob_impact_point *point)
+static uint32_t points_on_plane(ob_units unit, const ob_passport *body, const ob_hull *hull,
+				const ob_half_space *ground, const ob_state *s, ob_impact_point *point)
 {
 	const ob_vec3 n = ground->normal;
 	const ob_mat3 r = ob_quat_matrix(s->pose.q);
 	const double rounding = on_plane_gap * unit.length + 1e-14 * (ob_norm(s->pose.p) + fabs(ground->offset));
 	const double height = ob_dot(n, s->pose.p) - ground->offset;
+	if (hull)
+		return corners_on_plane(unit, hull, ground, s, rounding, point);
 	ob_vec3 arm[SUPPORT_POINTS];
 	const int points = support_points(body, n, &r, arm);
 	uint32_t found = 0;
@@ -141,7 +169,8 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 		return false;
 	const ob_mat3 r = ob_quat_matrix(state->pose.q);
 	ob_inverse_inertia(passport->inertia, &r, body[0].inv_inertia);
-	const uint32_t points = points_on_plane(s->island.unit, passport, &ground, state, point);
+	const uint32_t points =
+		points_on_plane(s->island.unit, passport, ob_hull_of(s->u, passport), &ground, state, point);
 	for (uint32_t k = 0; k < points; k++)
 		point[k].mu = mu, point[k].e = e;
 	const double approach = fastest_approach(body, point, points);

@@ -110,7 +110,8 @@ static ob_placed placed(const ob_sim *s, uint32_t row, const ob_body_at *x)
 			  .inertia = body->inertia,
 			  .a = body->acceleration,
 			  .rest_depth = body->rest_depth,
-			  .far_future = ob_narrowphase_far_future(s) };
+			  .far_future = ob_narrowphase_far_future(s),
+			  .hull = body->hull };
 	return out;
 }
 

@@ -24,6 +24,7 @@ enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
 typedef struct ob_body {
 	uint32_t id;
 	ob_shape shape;
+	const ob_hull *hull; // of a hull, in the universe
 	ob_vec3 size, p;
 	ob_quat q;
 	ob_mat3 r;

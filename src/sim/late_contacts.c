@@ -51,7 +51,8 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, 
 			  .inertia = p->inertia,
 			  .a = a,
 			  .rest_depth = ob_narrowphase_rest_depth(c->s, ob_shape_thickness(p->shape, p->size)),
-			  .far_future = ob_narrowphase_far_future(c->s) };
+			  .far_future = ob_narrowphase_far_future(c->s),
+			  .hull = ob_hull_of(c->u, p) };
 	return out;
 }
 

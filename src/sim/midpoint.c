@@ -28,7 +28,7 @@ static ob_vec3 angular_of(const double *r)
 
 static bool is_round(ob_shape s)
 {
-	return s != OB_SHAPE_BOX && s != OB_SHAPE_PLANE;
+	return s != OB_SHAPE_BOX && s != OB_SHAPE_PLANE && s != OB_SHAPE_HULL;
 }
 
 // Bound of what turning brings to a row in half the partial substep (m/s). The rows of a sphere turn with its centre,

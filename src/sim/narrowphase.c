@@ -28,10 +28,32 @@ static double half_width(const ob_placed *x, int i)
 	}
 }
 
+// A hull's box is not about its centre.
+static void find_extent(const ob_placed *x, ob_vec3 *middle, ob_vec3 *half)
+{
+	ob_vec3 low = { INFINITY, INFINITY, INFINITY }, high = { -INFINITY, -INFINITY, -INFINITY };
+	for (uint32_t k = 0; k < x->hull->corners; k++) {
+		const ob_vec3 c = ob_rotate(&x->r, x->hull->corner[k]);
+		low = ob_v3(fmin(low.x, c.x), fmin(low.y, c.y), fmin(low.z, c.z));
+		high = ob_v3(fmax(high.x, c.x), fmax(high.y, c.y), fmax(high.z, c.z));
+	}
+	*middle = ob_madd(x->p, .5, ob_add(low, high));
+	*half = ob_scale(ob_sub(high, low), .5);
+}
+
 static ob_placed box_around(const ob_placed *x)
 {
 	if (x->shape == OB_SHAPE_PLANE)
 		return *x;
+	if (x->shape == OB_SHAPE_HULL) {
+		ob_placed box = { .shape = OB_SHAPE_BOX,
+				  .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
+				  .v = x->v,
+				  .rest_depth = x->rest_depth,
+				  .far_future = x->far_future };
+		find_extent(x, &box.p, &box.size);
+		return box;
+	}
 	return (ob_placed){ .shape = OB_SHAPE_BOX,
 			    .size = ob_v3(half_width(x, 0), half_width(x, 1), half_width(x, 2)),
 			    .p = x->p,
@@ -99,7 +121,8 @@ static ob_placed placed(const ob_sim *s, uint32_t row)
 			  .inertia = body->inertia,
 			  .a = body->acceleration,
 			  .rest_depth = body->rest_depth,
-			  .far_future = ob_narrowphase_far_future(s) };
+			  .far_future = ob_narrowphase_far_future(s),
+			  .hull = body->hull };
 	return out;
 }
 

@@ -2,7 +2,12 @@
 
 #include <string.h>
 
-enum { CAPACITY_LIMIT = 1 << 24, WORKERS_LIMIT = 1 << 20, SCRIPT_BYTES_LIMIT = 1 << 28 };
+enum {
+	CAPACITY_LIMIT = 1 << 24,
+	WORKERS_LIMIT = 1 << 20,
+	HULLS_LIMIT = UINT16_MAX,
+	SCRIPT_BYTES_LIMIT = 1 << 28
+};
 
 static uint32_t power_of_two_from(uint32_t least)
 {
@@ -25,6 +30,7 @@ typedef struct area_rule {
 		PER_BUCKET,
 		PER_NEIGHBOUR,
 		PER_OUTBOX_BYTE,
+		PER_HULL,
 		PER_RING,
 		PER_TRACE_EVENT,
 		PER_TRACED_OBJECT,
@@ -46,6 +52,7 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_SLOT] = { sizeof(ob_slot), PER_OBJECT, 1, 0 },
 	[OB_AREA_PASSPORT] = { sizeof(ob_passport_slot), PER_OBJECT, 1, 0 },
 	[OB_AREA_PASSPORT_EVEN] = { sizeof(ob_passport), PER_OBJECT, 1, 0 },
+	[OB_AREA_HULL] = { sizeof(ob_hull), PER_HULL, 1, 0 },
 	[OB_AREA_STEP_CLOCK] = { sizeof(ob_step_clock), FIXED, 0, 1 },
 	[OB_AREA_REQUERY] = { sizeof(uint32_t), PER_OBJECT, 1, 0 },
 	[OB_AREA_REQUERY_BIT] = { sizeof(uint64_t), PER_64_OBJECTS, 1, 0 },
@@ -94,6 +101,7 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 		[PER_BUCKET] = s->buckets,
 		[PER_NEIGHBOUR] = s->neighbours_max,
 		[PER_OUTBOX_BYTE] = (uint64_t)s->workers * s->outbox_bytes,
+		[PER_HULL] = s->hulls,
 		[PER_RING] = traced ? s->workers + OB_TRACE_HOST_RINGS : 0,
 		[PER_TRACE_EVENT] =
 			traced ? (uint64_t)s->workers * s->trace_events + OB_TRACE_HOST_RINGS * OB_TRACE_HOST_EVENTS
@@ -117,7 +125,7 @@ uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t 
 {
 	ob_layout_sizes few = *s;
 	few.capacity = ids < s->capacity ? ids : s->capacity;
-	few.pairs_max = few.neighbours_max = 0;
+	few.pairs_max = few.neighbours_max = few.hulls = 0;
 	return area_bytes(&few, area) / rules[area].element;
 }
 
@@ -153,6 +161,7 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 	const uint32_t capacity = p->capacity, workers = p->workers;
 	h->sizes = (ob_layout_sizes){ .capacity = capacity,
 				      .workers = workers,
+				      .hulls = p->hulls,
 				      .script_cells = p->script_cells,
 				      .script_bytes = p->script_bytes };
 	h->sizes.pairs_max = most_pairs(capacity);
@@ -185,14 +194,16 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	const ob_layout_sizes *s = &h->sizes;
 	if (h->magic != OB_LAYOUT_MAGIC || h->version != OB_LAYOUT_VERSION)
 		return false;
-	if (s->capacity < 1 || s->capacity > CAPACITY_LIMIT || s->workers < 1 || s->workers > WORKERS_LIMIT)
+	if (s->capacity < 1 || s->capacity > CAPACITY_LIMIT || s->workers < 1 || s->workers > WORKERS_LIMIT ||
+	    s->hulls > HULLS_LIMIT)
 		return false;
 	if (s->script_cells > s->capacity || s->script_bytes > SCRIPT_BYTES_LIMIT ||
 	    (s->script_cells > 0) != (s->script_bytes >= sizeof(ob_script_directory)))
 		return false;
 	ob_header expected;
-	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->trace_events > 0,
-							s->outbox_bytes > 0, s->script_cells, s->script_bytes });
+	ob_layout_plan(&expected,
+		       &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
+					     s->outbox_bytes > 0, s->script_cells, s->script_bytes });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
 	       memchr(h->isolation, 0, sizeof h->isolation);
@@ -253,6 +264,7 @@ void ob_layout_bind(ob_universe *u, void *base)
 	u->slot = (void *)(u->base + area[OB_AREA_SLOT]);
 	u->passport = (void *)(u->base + area[OB_AREA_PASSPORT]);
 	u->passport_even = (void *)(u->base + area[OB_AREA_PASSPORT_EVEN]);
+	u->hull = (void *)(u->base + area[OB_AREA_HULL]);
 	u->requery = (void *)(u->base + area[OB_AREA_REQUERY]);
 	u->requery_bit = (void *)(u->base + area[OB_AREA_REQUERY_BIT]);
 	u->outbox_area = u->base + area[OB_AREA_OUTBOX];

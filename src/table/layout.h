@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 17, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 18, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -25,6 +25,7 @@ typedef enum ob_area {
 	OB_AREA_SLOT, // [capacity]
 	OB_AREA_PASSPORT, // [capacity]
 	OB_AREA_PASSPORT_EVEN, // [capacity]
+	OB_AREA_HULL, // [hulls]
 	OB_AREA_STEP_CLOCK,
 	OB_AREA_REQUERY, // [capacity] ids
 	OB_AREA_REQUERY_BIT, // [capacity / 64] ids that are on the list
@@ -65,6 +66,7 @@ typedef struct ob_layout_sizes {
 	uint32_t capacity, workers, pairs_max, buckets, neighbours_max;
 	uint32_t trace_events; // of each worker's ring, a power of two; 0 = not traced
 	uint32_t outbox_bytes; // of each worker, whole pages; 0 = simulators are not contained (outbox.h)
+	uint32_t hulls;
 	uint32_t script_cells; // objects that can have a script at the same time; 0 = the scene has none
 	uint32_t script_bytes; // of their texts, with the directory
 } ob_layout_sizes;
@@ -155,6 +157,7 @@ struct ob_universe {
 	ob_slot *slot;
 	ob_passport_slot *passport;
 	ob_passport *passport_even;
+	ob_hull *hull;
 	uint32_t *requery;
 	uint64_t *requery_bit;
 	ob_step_data step_data;
@@ -167,7 +170,7 @@ struct ob_universe {
 
 // What a layout is planned for.
 typedef struct ob_layout_plan_of {
-	uint32_t capacity, workers;
+	uint32_t capacity, workers, hulls;
 	bool traced, contained;
 	uint32_t script_cells, script_bytes;
 } ob_layout_plan_of;

@@ -108,6 +108,8 @@ void ob_universe_get_info(const ob_universe *u, ob_universe_info *out)
 		.islands = least(read32(&c->islands), h->sizes.capacity),
 		.deaths = read32(&c->deaths),
 		.frozen = read32(&c->frozen),
+		.hulls = h->sizes.hulls,
+		.created = h->created,
 	};
 	for (size_t i = 0; i + 1 < sizeof out->last_death; i++)
 		out->last_death[i] = __atomic_load_n(&c->last_death[i], __ATOMIC_RELAXED);
@@ -133,6 +135,13 @@ bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_inf
 	return true;
 }
 
+// Copies plain data word by word: each word at least is whole.
+static void copy_words(void *to, const void *from, size_t bytes)
+{
+	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
+		((ob_word *)to)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_RELAXED);
+}
+
 static bool finite3(ob_vec3 v)
 {
 	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
@@ -140,7 +149,7 @@ static bool finite3(ob_vec3 v)
 
 bool ob_passport_makes_sense(const ob_passport *p, uint32_t id)
 {
-	return p->id == id && p->shape <= OB_SHAPE_CYLINDER && finite3(p->size) && finite3(p->inertia) &&
+	return p->id == id && p->shape <= OB_SHAPE_HULL && finite3(p->size) && finite3(p->inertia) &&
 	       finite3(p->force) && isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) &&
 	       isfinite(p->restitution) && memchr(p->name, 0, sizeof p->name);
 }
@@ -149,7 +158,8 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 {
 	if (is_lost(u) || id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
-	if (!ob_passport_read(u, id, out) || !(out->flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(out, id))
+	if (!ob_passport_read(u, id, out) || !(out->flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(out, id) ||
+	    (out->shape == OB_SHAPE_HULL && out->hull >= u->header.sizes.hulls))
 		return false;
 	ob_utf8_make_plain(out->name); // whatever a reader does with it, it reaches no terminal as a command
 	return true;
@@ -160,6 +170,16 @@ uint64_t ob_universe_get_passport_version(const ob_universe *u, uint32_t id)
 	if (is_lost(u) || id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return 0;
 	return __atomic_load_n(&u->passport[id].version, __ATOMIC_ACQUIRE);
+}
+
+// Written before any passport names it, and never again: a copy that is not whole comes from damage, and makes no
+// sense.
+bool ob_universe_get_hull(const ob_universe *u, uint32_t hull, ob_hull *out)
+{
+	if (hull >= u->header.sizes.hulls)
+		return false;
+	copy_words(out, &u->hull[hull], sizeof *out);
+	return ob_hull_makes_sense(out);
 }
 
 bool ob_motion_makes_sense(const ob_motion *m)
@@ -194,13 +214,6 @@ bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6])
 // again. While the universe is paused, the result is exact.
 
 enum { CONTACT_TRIES = 4 };
-
-// Copies plain data of the step word by word: each word at least is whole.
-static void copy_words(void *to, const void *from, size_t bytes)
-{
-	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
-		((ob_word *)to)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_RELAXED);
-}
 
 // The version that holds after "step": it bears that stamp, or, where both objects sleep, the newest stamp before it.
 static bool newest_version(const ob_universe *u, const ob_pair_key *key, uint64_t step, ob_pair_state *out)

@@ -1,6 +1,7 @@
 #include "table/slot.h"
 
 #include "table/layout.h"
+#include "table/pages.h"
 
 void ob_publish_motion(ob_universe *u, uint32_t id, const ob_motion *m)
 {
@@ -34,6 +35,19 @@ const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id)
 {
 	const ob_passport_slot *s = u->passport + id;
 	return __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_RING_VERSIONS ? &s->odd : u->passport_even + id;
+}
+
+const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
+{
+	return p->shape == OB_SHAPE_HULL && p->hull < u->header.sizes.hulls ? u->hull + p->hull : NULL;
+}
+
+bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h)
+{
+	if (hull >= u->header.sizes.hulls || !ob_hull_makes_sense(h) || !ob_pages_take(u, OB_AREA_HULL, hull, 1))
+		return false;
+	u->hull[hull] = *h;
+	return true;
 }
 
 // From an object's even passport to its odd one.

@@ -12,6 +12,7 @@
 #ifndef OB_TABLE_TABLE_H
 #define OB_TABLE_TABLE_H
 
+#include <ob/hull.h>
 #include <ob/universe.h>
 
 #include "settings/settings.h"
@@ -39,6 +40,7 @@ typedef struct ob_universe_setup {
 	const char *name;       // unique on this machine; NULL = "obsim-<pid>"
 	uint32_t capacity;      // object slots
 	uint32_t workers;       // >= 1
+	uint32_t hulls;         // that objects may have
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
@@ -108,9 +110,12 @@ const ob_motion *ob_staged_motion(const ob_universe *u, uint32_t id);
 void ob_commit_motion(ob_universe *u, uint32_t id);
 // The host's, while the universe is paused or starting.
 void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
+// The same, of a hull that no passport names yet. false: there is no room for it, or it makes no sense.
+bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h);
 // Direct views for the step, which the gate orders: the newest motion, the passport. Never for outside readers.
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id);
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
+const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p); // NULL: it is no hull
 // The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);
 

@@ -31,8 +31,8 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 {
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
-	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->traced, setup->contained,
-						setup->script_cells, setup->script_bytes });
+	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->hulls, setup->traced,
+						setup->contained, setup->script_cells, setup->script_bytes });
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;

@@ -2,8 +2,10 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/random.h"
+#include "hull/hull.h"
 
 static void *grown(void *old, uint32_t count, size_t size)
 {
@@ -101,6 +103,32 @@ ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p
 	return ob_world_add(w, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
 }
 
+// The number of the hull, which several bodies may share.
+static uint32_t add_hull(ob_world *w, const ob_hull *h)
+{
+	for (uint32_t i = 0; i < w->hulls; i++)
+		if (!memcmp(&w->hull[i], h, sizeof *h))
+			return i;
+	w->hull = grown(w->hull, w->hulls + 1, sizeof *w->hull);
+	w->hull[w->hulls] = *h;
+	return w->hulls++;
+}
+
+ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint32_t points, ob_vec3 p)
+{
+	ob_hull h;
+	ob_error e;
+	if (!ob_hull_build(point, points, &h, &e)) {
+		fprintf(stderr, "hull: %s\n", e.text);
+		abort();
+	}
+	ob_world_body b = ob_world_add(w, OB_SHAPE_HULL, ob_hull_size(&h), mass, ob_add(p, h.centre));
+	b.passport->hull = (uint16_t)add_hull(w, &h);
+	b.passport->inertia = ob_scale(h.inertia, mass);
+	b.state->pose.q = h.frame;
+	return b;
+}
+
 ob_world_body ob_world_ground(ob_world *w)
 {
 	return ob_world_add(w, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));
@@ -184,6 +212,7 @@ void ob_world_finish(ob_world *w)
 	free(w->passport);
 	free(w->state);
 	free(w->path);
+	free(w->hull);
 	*w = (ob_world){ 0 };
 }
 

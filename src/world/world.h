@@ -7,6 +7,7 @@
 #ifndef OB_WORLD_WORLD_H
 #define OB_WORLD_WORLD_H
 
+#include <ob/hull.h>
 #include <ob/motion.h>
 
 #include "motion/path.h"
@@ -17,13 +18,16 @@
 typedef struct ob_world {
 	ob_vec3 gravity; // m/s^2
 	uint32_t objects, objects_max; // there are, there is room for
-	ob_passport *passport; // [objects], id = index, inertia filled; force is constant, at the centre (N, world frame)
+	ob_passport
+		*passport; // [objects], id = index, inertia filled; force is constant, at the centre (N, world frame)
 	ob_state *state; // [objects]
 	uint32_t paths; // of kinematic bodies that swing
 	struct ob_world_path {
 		uint32_t id;
 		ob_path path;
 	} *path; // [paths]
+	uint32_t hulls;
+	ob_hull *hull; // [hulls], by the number in passports
 } ob_world;
 
 // To be changed at will; both pointers hold until the next body is built.
@@ -45,13 +49,16 @@ const ob_path *ob_world_path(const ob_world *w, uint32_t id);
 // Half extents and radius in m.
 ob_world_body ob_world_box(ob_world *w, double mass, ob_vec3 half, ob_vec3 p);
 ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p);
+// The hull of these points (m), whose origin is at p; the body's own frame is another (ob/hull.h). Points that have
+// none end the program.
+ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint32_t points, ob_vec3 p);
 // The plane z = 0, and the same tilted by a turn "angle" (rad) about y: what lies on it slides towards +x.
 ob_world_body ob_world_ground(ob_world *w);
 ob_world_body ob_world_slope(ob_world *w, double angle);
 // n unit cubes of 1000 kg one on the other, their centres up to 10 mm off the axis in x and in y; no ground.
 void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed);
-// n boxes in columns of four, 1.8 m apart, over a ground: half extents of .1 to .5 m, 1000 kg/m^3, turned at random, the
-// lowest between 2.8 and 3.8 m up.
+// n boxes in columns of four, 1.8 m apart, over a ground: half extents of .1 to .5 m, 1000 kg/m^3, turned at random,
+// the lowest between 2.8 and 3.8 m up.
 void ob_world_falling(ob_world *w, uint32_t n, uint64_t seed);
 // n such boxes 4 m apart, at heights of 2 to 10 m, thrown up at up to 4 m/s, with restitution .8.
 void ob_world_sparse(ob_world *w, uint32_t n, uint64_t seed);

@@ -15,6 +15,12 @@ static inline double reach(const ob_placed *x, ob_vec3 n)
 		return x->size.x + fabs(l.z) * x->size.y;
 	case OB_SHAPE_CYLINDER:
 		return x->size.x * sqrt(l.x * l.x + l.y * l.y) + fabs(l.z) * x->size.y;
+	case OB_SHAPE_HULL: {
+		double most = -INFINITY;
+		for (uint32_t k = 0; k < x->hull->corners; k++)
+			most = fmax(most, ob_dot(l, x->hull->corner[k]));
+		return most;
+	}
 	case OB_SHAPE_PLANE:
 		return l.z > 1 - 1e-12 ? 0 : INFINITY;
 	default:

@@ -5,7 +5,7 @@
 
 static ob_solid solid(ob_shape shape, ob_vec3 size, ob_vec3 p, ob_quat q)
 {
-	return (ob_solid){ shape, size, p, ob_quat_matrix(q) };
+	return (ob_solid){ shape, size, p, ob_quat_matrix(q), NULL };
 }
 
 static ob_quat about(ob_vec3 axis, double angle) { return ob_quat_turn(ob_quat_identity(), ob_scale(axis, angle)); }

@@ -12,6 +12,7 @@ import program
 
 OPEN, CLOSE = 0x81, 8
 MOTIONS, VOID, PAUSED = 1, 1, 2
+HULL = 6 # shape
 
 
 class Refused(Exception):
@@ -95,8 +96,13 @@ class Viewer:
 			self.removed.append(i)
 		for _ in range(created):
 			i, generation, shape, static, name, _ = struct.unpack_from("<IIBBBB", m, at)
-			text = m[at + 48:at + 48 + name].decode()
-			at += 48 + name
+			at += 48
+			if shape == HULL:
+				corners, faces = m[at], m[at + 1]
+				at += 4 + 12 * corners
+				for _ in range(faces):
+					at += 1 + m[at]
+			text, at = m[at:at + name].decode(), at + name
 			self.objects[i] = {"generation": generation, "shape": shape, "name": text, "static": static}
 			self.created.append(i)
 		i = -1

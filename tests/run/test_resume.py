@@ -35,6 +35,7 @@ SCENES = {
 	"cradle": ["--duration", "1"],
 	"shapes": ["--duration", "1.2"],
 	"machines": ["--duration", "1.2"],
+	"solids": ["--duration", "1.2"],
 	"come_and_go": [],
 }
 

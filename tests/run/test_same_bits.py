@@ -14,6 +14,7 @@ SCENES = {
 	"sparse": ["--duration", "2"],
 	"shapes": ["--duration", "2"],
 	"machines": ["--duration", "1.5"],
+	"solids": ["--duration", "1.5"],
 }
 NAME = sys.argv.pop(1)
 

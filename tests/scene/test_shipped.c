@@ -121,7 +121,7 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 12);
+	CHECK(files() == 13);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
@@ -141,6 +141,7 @@ int main(int argc, char **argv)
 	check_seeds("flock", true);
 	check_count("machines", NULL, 42, false);
 	check_seeds("machines", true);
+	check_count("solids", NULL, 16, false);
 	check_seeds("falling_boxes", true);
 	check_seeds("stack", true);
 	check_seeds("pile", true);

@@ -42,12 +42,15 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 	static int made;
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-sim-%d-%d", (int)getpid(), made++);
-	ob_universe_setup setup = { .name = name, .capacity = s->capacity ? s->capacity : s->world.objects, .workers = workers, .isolation = "thread", .run = s->run };
+	ob_universe_setup setup = { .name = name, .capacity = s->capacity ? s->capacity : s->world.objects, .workers = workers, .hulls = s->world.hulls, .isolation = "thread", .run = s->run };
 	ob_error e;
 	ob_ode_init();
 	ob_universe *u = ob_universe_create(&setup, &e);
 	if (!u)
 		give_up("universe", e.text);
+	for (uint32_t i = 0; i < s->world.hulls; i++)
+		if (!ob_write_hull(u, i, &s->world.hull[i]))
+			give_up("hull", "no room");
 	for (uint32_t i = 0; i < s->world.objects; i++)
 		ob_write_passport(u, i, &s->world.passport[i]);
 	for (uint32_t i = 0; i < s->world.objects; i++)

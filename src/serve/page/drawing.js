@@ -1,7 +1,7 @@
 // Draws a universe with WebGL 2, by the renderer's own shaders and passes (src/render/passes.c, frame.c): shadow map,
 // occlusion map, bodies, planes, sky, overlays.
-import { BOX, CAPSULE, CYLINDER, PLANE } from './universe.js';
-import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes } from './meshes.js';
+import { BOX, CAPSULE, CYLINDER, HULL, PLANE } from './universe.js';
+import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
 
 const SHADOW_TEXELS = 1792, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: kept free at each side, for the filter
@@ -167,6 +167,8 @@ function putInstance(out, at, body, eye) {
 			s[1] - bevel(Math.min(s[0], s[1]))]];
 	else if (body.shape === CAPSULE)
 		core = [0, 0, s[1]];
+	else if (body.shape === HULL) // its mesh has metres
+		[r, core] = [0, [1, 1, 1]];
 	const q = body.q, c = body.shown, surface = Math.round(15 * body.metal) + Math.min(body.roughness, 0.99);
 	out.set([body.p[0] - eye[0], body.p[1] - eye[1], body.p[2] - eye[2], r, q[1], q[2], q[3], q[0], ...core, rounding, ...c, surface], at);
 }
@@ -218,6 +220,7 @@ export class Drawing {
 	createBuffers() {
 		const gl = this.gl, set = buildMeshes();
 		this.meshes = set.meshes;
+		this.hulls = new Map(); // number -> { array, count }
 		this.frameBlock = gl.createBuffer();
 		this.instances = gl.createBuffer();
 		this.segments = gl.createBuffer();
@@ -340,10 +343,35 @@ export class Drawing {
 		gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.frameBlock);
 	}
 
+	// The mesh of a hull, made when it is first drawn.
+	hullMesh(hull) {
+		const gl = this.gl;
+		let mesh = this.hulls.get(hull.number);
+		if (mesh)
+			return mesh;
+		const vertices = hullVertices(hull);
+		mesh = { array: gl.createVertexArray(), count: vertices.length / 6 };
+		gl.bindVertexArray(mesh.array);
+		gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+		gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
+		this.attribute(0, 3, 6, 0, 0);
+		this.attribute(1, 3, 6, 3, 0);
+		this.hulls.set(hull.number, mesh);
+		return mesh;
+	}
+
 	drawInstances(bodies, view, height) {
-		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []);
-		for (const b of bodies)
-			groups[meshOf(b, view, height)].push(b);
+		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []), hulls = new Map();
+		for (const b of bodies) {
+			if (b.shape !== HULL)
+				groups[meshOf(b, view, height)].push(b);
+			else if (hulls.has(b.hull.number))
+				hulls.get(b.hull.number).push(b);
+			else
+				hulls.set(b.hull.number, [b]);
+		}
+		const meshes = [...hulls.values()].map((group) => this.hullMesh(group[0].hull));
+		groups.push(...hulls.values());
 		const data = new Float32Array(INSTANCE * bodies.length);
 		groups.flat().forEach((b, i) => putInstance(data, INSTANCE * i, b, view.eye));
 		gl.bindVertexArray(this.bodyArray);
@@ -353,9 +381,17 @@ export class Drawing {
 		groups.forEach((group, k) => {
 			if (!group.length)
 				return;
+			const hull = k < MESHES ? null : meshes[k - MESHES];
+			if (hull) {
+				gl.bindVertexArray(hull.array);
+				gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
+			}
 			for (let i = 0; i < 4; i++)
 				this.attribute(2 + i, 4, INSTANCE, INSTANCE * first + 4 * i, 1);
-			gl.drawElementsInstanced(gl.TRIANGLES, this.meshes[k].count, gl.UNSIGNED_SHORT, 2 * this.meshes[k].first, group.length);
+			if (hull)
+				gl.drawArraysInstanced(gl.TRIANGLES, 0, hull.count, group.length);
+			else
+				gl.drawElementsInstanced(gl.TRIANGLES, this.meshes[k].count, gl.UNSIGNED_SHORT, 2 * this.meshes[k].first, group.length);
 			first += group.length;
 		});
 	}
@@ -513,7 +549,12 @@ export class Drawing {
 
 // Half the sides of the box along the world's axes that holds a body.
 export function halfBounds(b) {
-	const s = b.size, columns = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
+	const s = b.size;
+	if (b.shape === HULL) { // about its centre of mass, as wide as the wider side
+		const turnedCorners = b.hull.corners.map((c) => turned(b.q, c));
+		return [0, 1, 2].map((k) => Math.max(...turnedCorners.map((c) => Math.abs(c[k]))));
+	}
+	const columns = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
 	return [0, 1, 2].map((k) => {
 		const along = columns.map((c) => Math.abs(c[k]));
 		if (b.shape === BOX)

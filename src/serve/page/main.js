@@ -3,7 +3,7 @@ import { Camera, control, moveByKey } from './camera.js';
 import { Drawing, boxSegments, contactSegments, edgeColour, halfBounds } from './drawing.js';
 import { Film } from './film.js';
 import { Panel } from './panel.js';
-import { BOX, PLANE, SPHERE, Universe } from './universe.js';
+import { BOX, HULL, PLANE, SPHERE, Universe } from './universe.js';
 import { turned } from './motion.js';
 
 const THROWN = 12; // m/s
@@ -24,7 +24,7 @@ function bodies() {
 	for (const o of universe.objects.values()) {
 		const pose = universe.pose(o);
 		if (pose)
-			out.push({ id: o.id, shape: o.shape, size: o.size, radius: o.radius, fixed: o.fixed, kind: o.motion.kind, shown: o.colour,
+			out.push({ id: o.id, shape: o.shape, size: o.size, hull: o.hull, radius: o.radius, fixed: o.fixed, kind: o.motion.kind, shown: o.colour,
 				roughness: o.roughness, metal: o.metal, ...pose });
 	}
 	return out;
@@ -61,6 +61,27 @@ function frame(now) {
 
 // ---- what is pointed at
 
+// The same for a hull: the ray, in its frame, against the planes of all faces.
+function hitHull(b, from, ray) {
+	let enter = -Infinity, leave = Infinity, normal = null;
+	for (const face of b.hull.faces) {
+		const [p, u, v] = face.slice(0, 3).map((k, i) => b.hull.corners[k].map((x, j) => (i ? x - b.hull.corners[face[0]][j] : x)));
+		const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+		const rate = n[0] * ray[0] + n[1] * ray[1] + n[2] * ray[2];
+		const height = n[0] * (from[0] - p[0]) + n[1] * (from[1] - p[1]) + n[2] * (from[2] - p[2]), s = -height / rate;
+		if (rate === 0 && height > 0)
+			return null;
+		if (rate < 0 && s > enter)
+			[enter, normal] = [s, n];
+		if (rate > 0)
+			leave = Math.min(leave, s);
+	}
+	if (!normal || !(enter <= leave) || enter <= 0)
+		return null;
+	const l = Math.hypot(...normal);
+	return { s: enter, normal: turned(b.q, normal.map((x) => x / l)) };
+}
+
 // m along the ray to the body's surface, and its normal there; null: it passes by. Capsules and cylinders as their boxes.
 function hit(b, from, ray) {
 	const d = turned(b.q, [0, 1, 2].map((k) => from[k] - b.p[k]), -1), r = turned(b.q, ray, -1);
@@ -73,6 +94,8 @@ function hit(b, from, ray) {
 		const s = -half - Math.sqrt(c);
 		return c >= 0 && s > 0 ? { s, normal: turned(b.q, [0, 1, 2].map((k) => (d[k] + s * r[k]) / b.size[0])) } : null;
 	}
+	if (b.shape === HULL)
+		return hitHull(b, d, r);
 	const h = b.shape === BOX ? b.size : halfBounds({ ...b, q: [1, 0, 0, 0] });
 	let enter = -Infinity, leave = Infinity, axis = 0;
 	for (let k = 0; k < 3; k++) {

@@ -88,3 +88,17 @@ export function buildMeshes() {
 		one(() => b.cylinder(n));
 	return { vertices: new Float32Array(b.vertices), indices: new Uint16Array(b.indices), meshes: b.meshes };
 }
+
+// The faces of a hull as triangles, a corner and a normal a vertex, in metres.
+export function hullVertices(hull) {
+	const out = [];
+	for (const face of hull.faces) {
+		const [a, b, c] = face.slice(0, 3).map((k) => hull.corners[k]);
+		const u = b.map((x, k) => x - a[k]), v = c.map((x, k) => x - a[k]);
+		const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], l = Math.hypot(...n);
+		for (let k = 1; k + 1 < face.length; k++)
+			for (const corner of [face[0], face[k], face[k + 1]])
+				out.push(...hull.corners[corner], ...n.map((x) => x / l));
+	}
+	return new Float32Array(out);
+}

@@ -10,7 +10,7 @@ const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, in which what was foretold goes over to what came
 
-export const SPHERE = 1, BOX = 2, PLANE = 3, CAPSULE = 4, CYLINDER = 5;
+export const SPHERE = 1, BOX = 2, PLANE = 3, CAPSULE = 4, CYLINDER = 5, HULL = 6;
 
 class Reader {
 	constructor(buffer) {
@@ -111,9 +111,10 @@ export class Universe extends EventTarget {
 
 	hearObject(r) {
 		const id = r.u32(), generation = r.u32(), shape = r.u8(), fixed = (r.u8() & STATIC) !== 0, bytes = r.u8(), surface = r.u8();
-		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), name = r.text(bytes);
+		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = shape === HULL ? hearHull(r) : null;
+		const name = r.text(bytes);
 		const known = this.objects.get(id); // it looks otherwise, and moves as it did
-		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed, size, inertia, colour, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
+		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed, size, inertia, colour, hull, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
 	}
 
 	hearMotion(r, id, time) {
@@ -180,6 +181,16 @@ export class Universe extends EventTarget {
 	}
 }
 
+// { number, corners: [[x, y, z]], faces: [[index]] }, in the body's frame, faces counterclockwise from outside.
+function hearHull(r) {
+	const corners = r.u8(), faces = r.u8(), number = r.u16();
+	return {
+		number,
+		corners: Array.from({ length: corners }, () => r.vec3()),
+		faces: Array.from({ length: faces }, () => Array.from({ length: r.u8() }, () => r.u8())),
+	};
+}
+
 // A share of the way from one pose to another.
 export function between(a, b, share) {
 	const sign = a.q[0] * b.q[0] + a.q[1] * b.q[1] + a.q[2] * b.q[2] + a.q[3] * b.q[3] < 0 ? -1 : 1;
@@ -191,7 +202,8 @@ export function between(a, b, share) {
 
 function radiusOf(shape, size) {
 	switch (shape) {
-	case SPHERE: return size[0];
+	case SPHERE:
+	case HULL: return size[0];
 	case BOX: return Math.hypot(...size);
 	case CAPSULE: return size[0] + size[1];
 	case CYLINDER: return Math.hypot(size[0], size[1]);

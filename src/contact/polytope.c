@@ -1,0 +1,586 @@
+#include "contact/polytope.h"
+
+#include <string.h>
+
+static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
+static const double prefer_face = 1e-3; // of the thickness: an edge's axis must separate by so much more than a face's
+static const double prefer_face_when_deep = .02; // of the depth, beside it
+static const double nearby = .05; // of the thickness: shapes farther apart than that need no axes of edges
+static const double parallel_edges = 1e-4; // sin^2 of their angle
+static const double crossing_faces = .5; // cosine: faces that look so differently
+static const double as_low = 2e-9; // of the radius: corners that count as equally low
+static const double same_depth = 1e-4; // of half the thickness: points that count as equally deep
+
+// ---- boxes and hulls alike
+
+// The topology of a box: corner k has the signs of the bits of k.
+static const ob_hull box_topology = {
+	.corners = 8,
+	.faces = 6,
+	.edges = 12,
+	.normal = { { -1, 0, 0 }, { 1, 0, 0 }, { 0, -1, 0 }, { 0, 1, 0 }, { 0, 0, -1 }, { 0, 0, 1 } },
+	.first = { 0, 4, 8, 12, 16, 20, 24 },
+	.loop = { 0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6 },
+	.edge = { { 0, 1, 2, 4 },
+		  { 2, 3, 4, 3 },
+		  { 4, 5, 5, 2 },
+		  { 6, 7, 3, 5 },
+		  { 0, 2, 4, 0 },
+		  { 1, 3, 1, 4 },
+		  { 4, 6, 0, 5 },
+		  { 5, 7, 5, 1 },
+		  { 0, 4, 0, 2 },
+		  { 1, 5, 2, 1 },
+		  { 2, 6, 3, 0 },
+		  { 3, 7, 1, 3 } },
+};
+
+// A shape with the world's axes, about an origin that both of a pair share.
+typedef struct polytope {
+	const ob_placed *placed;
+	const ob_hull *shape; // its topology
+	ob_vec3 centre;
+	double inner, radius, thin; // m: see ob_hull
+	ob_vec3 corner[OB_HULL_CORNERS_MAX], normal[OB_HULL_FACES_MAX];
+	double offset[OB_HULL_FACES_MAX]; // m, of the face from the centre
+} polytope;
+
+static double radius_of(const ob_placed *x)
+{
+	return x->shape == OB_SHAPE_BOX ? ob_norm(x->size) : x->hull->radius;
+}
+
+static void polytope_init(polytope *x, const ob_placed *from, ob_vec3 origin)
+{
+	x->placed = from;
+	x->centre = ob_sub(from->p, origin);
+	x->radius = radius_of(from);
+	if (from->shape == OB_SHAPE_BOX) {
+		const ob_vec3 h = from->size;
+		x->shape = &box_topology;
+		x->inner = fmin(h.x, fmin(h.y, h.z));
+		x->thin = 2 * x->inner;
+		for (int k = 0; k < 8; k++)
+			x->corner[k] = ob_v3(k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z);
+		for (int f = 0; f < 6; f++)
+			x->offset[f] = f < 2 ? h.x : f < 4 ? h.y : h.z;
+	} else {
+		x->shape = from->hull;
+		x->inner = from->hull->inner;
+		x->thin = from->hull->thickness;
+		memcpy(x->corner, from->hull->corner, from->hull->corners * sizeof *x->corner);
+		memcpy(x->offset, from->hull->offset, from->hull->faces * sizeof *x->offset);
+	}
+	for (uint32_t k = 0; k < x->shape->corners; k++)
+		x->corner[k] = ob_add(x->centre, ob_rotate(&from->r, x->corner[k]));
+	for (uint32_t f = 0; f < x->shape->faces; f++)
+		x->normal[f] = ob_rotate(&from->r, x->shape->normal[f]);
+}
+
+// How far the lowest corner reaches along n (m).
+static double lowest_along(const polytope *x, ob_vec3 n)
+{
+	double low = INFINITY;
+	for (uint32_t k = 0; k < x->shape->corners; k++) {
+		const double at = ob_dot(n, x->corner[k]);
+		low = at < low ? at : low;
+	}
+	return low;
+}
+
+static ob_vec3 velocity_at(const polytope *x, ob_vec3 at)
+{
+	return ob_add(x->placed->v, ob_cross(x->placed->w, ob_sub(at, x->centre)));
+}
+
+// ---- axes
+
+enum { OPEN_MAX = 32 };
+
+// An axis along which the shapes are apart, or overlap least.
+typedef struct axis {
+	double gap; // m
+	bool is_face;
+	bool of_b; // whose face it is
+	uint32_t face;
+	uint32_t edge_a, edge_b;
+	ob_vec3 normal; // unit, from b to a
+} axis;
+
+typedef struct axes {
+	axis face, edge; // the best of each kind
+	int open; // those that separate, or along which the shapes touch no deeper than at rest
+	axis list[OPEN_MAX];
+} axes;
+
+// Where there are more than are kept, those that are farthest open stay.
+static void add_open(axes *s, const axis *x)
+{
+	if (s->open < OPEN_MAX) {
+		s->list[s->open++] = *x;
+		return;
+	}
+	int least = 0;
+	for (int k = 1; k < OPEN_MAX; k++)
+		if (s->list[k].gap < s->list[least].gap)
+			least = k;
+	if (x->gap > s->list[least].gap)
+		s->list[least] = *x;
+}
+
+// The faces of one. No axis has a larger gap than if the other were the ball inside it.
+static void try_faces(axes *s, const polytope *of, const polytope *other, bool of_b, double rest)
+{
+	const ob_vec3 d = ob_sub(other->centre, of->centre);
+	for (uint32_t f = 0; f < of->shape->faces; f++) {
+		const ob_vec3 n = of->normal[f];
+		const double most = ob_dot(n, d) - of->offset[f] - other->inner;
+		if (most < fmin(s->face.gap, -rest))
+			continue;
+		const axis x = { .gap = lowest_along(other, n) - ob_dot(n, of->centre) - of->offset[f],
+				 .is_face = true,
+				 .of_b = of_b,
+				 .face = f,
+				 .normal = of_b ? n : ob_scale(n, -1) };
+		if (x.gap > s->face.gap)
+			s->face = x;
+		if (x.gap > -rest)
+			add_open(s, &x);
+	}
+}
+
+// An edge whose arc of normals comes near enough to the other shape.
+typedef struct near_edge {
+	uint32_t edge;
+	ob_vec3 from, way; // m
+	ob_vec3 left, right; // normals of its faces
+} near_edge;
+
+// Edges that have a normal n with n . d >= least: no other can be part of an axis with a larger gap. d: unit.
+static uint32_t collect_edges(const polytope *x, ob_vec3 d, double least, near_edge *out)
+{
+	uint32_t n = 0;
+	for (uint32_t k = 0; k < x->shape->edges; k++) {
+		const ob_hull_edge *e = &x->shape->edge[k];
+		const ob_vec3 left = x->normal[e->left], right = x->normal[e->right];
+		const double l = ob_dot(left, d), r = ob_dot(right, d);
+		if (l < least && r < least) { // the arc between may come nearer still
+			const ob_vec3 way = ob_sub(x->corner[e->to], x->corner[e->from]);
+			const double along = ob_dot(way, d), far2 = 1 - along * along / ob_norm2(way);
+			const ob_vec3 across = ob_cross(way, d);
+			const bool between = ob_dot(across, left) * ob_dot(across, right) < 0;
+			if (!between || (least > 0 && far2 < least * least))
+				continue;
+		}
+		out[n++] =
+			(near_edge){ k, x->corner[e->from], ob_sub(x->corner[e->to], x->corner[e->from]), left, right };
+	}
+	return n;
+}
+
+static void try_edges(axes *s, const polytope *a, const polytope *b, double rest, double discount)
+{
+	near_edge of_a[OB_HULL_EDGES_MAX], of_b[OB_HULL_EDGES_MAX];
+	const ob_vec3 d = ob_sub(b->centre, a->centre);
+	const double apart = ob_norm(d), needed = a->inner + b->inner + fmin(s->face.gap, -rest);
+	const ob_vec3 towards = apart > 0 ? ob_scale(d, 1 / apart) : ob_v3(0, 0, 1);
+	const double least = apart > 0 ? needed / apart - 1e-9 : -1;
+	const uint32_t na = collect_edges(a, towards, least, of_a);
+	const uint32_t nb = collect_edges(b, ob_scale(towards, -1), least, of_b);
+	for (uint32_t i = 0; i < na; i++)
+		for (uint32_t j = 0; j < nb; j++) {
+			const near_edge *ea = &of_a[i], *eb = &of_b[j];
+			const double bl = ob_dot(eb->left, ea->way), br = ob_dot(eb->right, ea->way);
+			if (bl * br >= 0)
+				continue;
+			const double al = ob_dot(ea->left, eb->way), ar = ob_dot(ea->right, eb->way);
+			if (al * ar >= 0 || bl * ar >= 0)
+				continue;
+			ob_vec3 n = ob_cross(ea->way, eb->way);
+			const double l2 = ob_norm2(n);
+			if (l2 < parallel_edges * ob_norm2(ea->way) * ob_norm2(eb->way))
+				continue;
+			n = ob_scale(n, (ob_dot(n, ob_add(ea->left, ea->right)) > 0 ? -1 : 1) / sqrt(l2));
+			const axis x = { .gap = ob_dot(n, ob_sub(ea->from, eb->from)),
+					 .edge_a = ea->edge,
+					 .edge_b = eb->edge,
+					 .normal = n };
+			if (x.gap > s->edge.gap)
+				s->edge = x;
+			if (x.gap - discount > -rest)
+				add_open(s, &x);
+		}
+}
+
+// ---- which axis
+
+// m/s at which the gap of a face opens: of its lowest corners, the one that opens least.
+static double face_rate(const polytope *of, const polytope *other, ob_vec3 n)
+{
+	const double low = lowest_along(other, n) + as_low * other->radius;
+	double rate = INFINITY;
+	for (uint32_t k = 0; k < other->shape->corners; k++) {
+		const ob_vec3 x = other->corner[k];
+		if (ob_dot(n, x) <= low)
+			rate = fmin(rate, ob_dot(n, ob_sub(velocity_at(other, x), velocity_at(of, x))));
+	}
+	return rate;
+}
+
+// The lines that carry two edges: where they are nearest to each other; shares of the edges.
+static void nearest_on_edges(const polytope *a, const polytope *b, const axis *x, bool limited, ob_vec3 *xa,
+			     ob_vec3 *xb)
+{
+	const ob_hull_edge *ea = &a->shape->edge[x->edge_a], *eb = &b->shape->edge[x->edge_b];
+	const ob_vec3 pa = a->corner[ea->from], pb = b->corner[eb->from], u = ob_sub(a->corner[ea->to], pa),
+		      v = ob_sub(b->corner[eb->to], pb), w = ob_sub(pa, pb);
+	const double uu = ob_norm2(u), vv = ob_norm2(v), uv = ob_dot(u, v), uw = ob_dot(u, w), vw = ob_dot(v, w);
+	const double det = uu * vv - uv * uv;
+	double s = (uv * vw - uw * vv) / det, t = (vw * uu - uv * uw) / det;
+	if (limited) {
+		s = fmax(0, fmin(1, s));
+		t = fmax(0, fmin(1, t));
+	}
+	*xa = ob_madd(pa, s, u);
+	*xb = ob_madd(pb, t, v);
+}
+
+static double opening_rate(const polytope *a, const polytope *b, const axis *x)
+{
+	ob_vec3 xa, xb;
+	if (x->is_face)
+		return x->of_b ? face_rate(b, a, b->normal[x->face]) : face_rate(a, b, a->normal[x->face]);
+	nearest_on_edges(a, b, x, false, &xa, &xb);
+	return ob_dot(x->normal, ob_sub(velocity_at(a, xa), velocity_at(b, xb)));
+}
+
+// As between boxes: the axis that closes last; before it a face that touches and does not close. NULL: no axis
+// separates; crossing is set where the shapes touch along two faces that do not close.
+static const axis *closing_last(const polytope *a, const polytope *b, const axes *s, double rest, double discount,
+				bool *crossing)
+{
+	const axis *best = NULL, *touching = NULL;
+	double latest = -1, largest = 0, steadiest = INFINITY;
+	const double never = ob_time_to_close(a->placed, b->placed, 1, 0);
+	*crossing = false;
+	if (s->open <= 1)
+		return s->open ? &s->list[0] : NULL;
+	for (int k = 0; k < s->open; k++) {
+		const axis *x = &s->list[k];
+		const double gap = x->gap - (x->is_face ? 0 : discount), rate = opening_rate(a, b, x);
+		const double time = ob_time_to_close(a->placed, b->placed, gap + rest, rate);
+		if (time == never && x->is_face && fabs(gap) <= rest) {
+			*crossing |= touching && fabs(ob_dot(touching->normal, x->normal)) < crossing_faces;
+			if (fabs(rate) < steadiest || (fabs(rate) == steadiest && gap > touching->gap))
+				steadiest = fabs(rate), touching = x;
+		}
+		if (time > latest || (time == latest && gap > largest))
+			latest = time, largest = gap, best = x;
+	}
+	return touching ? touching : best;
+}
+
+// ---- points
+
+static void polygon_put(ob_polygon *p, double u, double w, double z)
+{
+	if (p->n < OB_POLYGON_MAX) {
+		p->u[p->n] = u, p->w[p->n] = w, p->z[p->n] = z;
+		p->n++;
+	}
+}
+
+static void polygon_drop(ob_polygon *p, int k)
+{
+	for (p->n--; k < p->n; k++)
+		p->u[k] = p->u[k + 1], p->w[k] = p->w[k + 1], p->z[k] = p->z[k + 1];
+}
+
+// Twice the area of the triangle of a point and its neighbours.
+static double corner_area(const ob_polygon *p, int k)
+{
+	const int i = k ? k - 1 : p->n - 1, j = k + 1 < p->n ? k + 1 : 0;
+	return fabs((p->u[i] - p->u[k]) * (p->w[j] - p->w[k]) - (p->u[j] - p->u[k]) * (p->w[i] - p->w[k]));
+}
+
+// Of many points, those go first that span least; one that is deepest stays.
+static void reduce_to_eight(ob_polygon *p, double tie)
+{
+	enum { FEW = 8 };
+	while (p->n > FEW) {
+		double deepest = INFINITY, least = INFINITY;
+		int deep = 0, drop = -1;
+		for (int k = 0; k < p->n; k++)
+			deepest = fmin(deepest, p->z[k]);
+		for (int k = 0; k < p->n; k++)
+			deep += p->z[k] <= deepest + tie;
+		for (int k = 0; k < p->n; k++) {
+			const double area = corner_area(p, k);
+			if (area < least && (deep > 1 || p->z[k] > deepest + tie))
+				least = area, drop = k;
+		}
+		polygon_drop(p, drop < 0 ? 0 : drop);
+	}
+}
+
+// Keeps the four points that span the largest area with one of the deepest among them.
+static void reduce_to_four(ob_polygon *p, double tie)
+{
+	double deepest = INFINITY, largest = -1;
+	unsigned deep = 0, keep = 0;
+	if (p->n <= 4)
+		return;
+	reduce_to_eight(p, tie);
+	for (int k = 0; k < p->n; k++)
+		deepest = fmin(deepest, p->z[k]);
+	for (int k = 0; k < p->n; k++)
+		deep |= (unsigned)(p->z[k] <= deepest + tie) << k;
+	for (int i = 0; i < p->n; i++)
+		for (int j = i + 1; j < p->n; j++)
+			for (int k = j + 1; k < p->n; k++)
+				for (int l = k + 1; l < p->n; l++) {
+					const unsigned four = 1u << i | 1u << j | 1u << k | 1u << l;
+					const double area = fabs((p->u[k] - p->u[i]) * (p->w[l] - p->w[j]) -
+								 (p->w[k] - p->w[i]) * (p->u[l] - p->u[j]));
+					if ((four & deep) && area > largest)
+						largest = area, keep = four;
+				}
+	for (int k = p->n - 1; k >= 0; k--)
+		if (!(keep >> k & 1))
+			polygon_drop(p, k);
+}
+
+// Turns scattered points into the polygon round them, as far as their order about their middle makes one.
+static void order_round_middle(ob_polygon *p)
+{
+	double mu = 0, mw = 0, angle[OB_POLYGON_MAX];
+	for (int k = 0; k < p->n; k++)
+		mu += p->u[k] / p->n, mw += p->w[k] / p->n;
+	for (int k = 0; k < p->n; k++) {
+		const double u = p->u[k], w = p->w[k], z = p->z[k], turn = atan2(w - mw, u - mu);
+		int at = k;
+		for (; at > 0 && angle[at - 1] > turn; at--) {
+			angle[at] = angle[at - 1];
+			p->u[at] = p->u[at - 1], p->w[at] = p->w[at - 1], p->z[at] = p->z[at - 1];
+		}
+		angle[at] = turn, p->u[at] = u, p->w[at] = w, p->z[at] = z;
+	}
+}
+
+void ob_polygon_reduce(ob_polygon *p, double band)
+{
+	double low[4] = { INFINITY, INFINITY, INFINITY, INFINITY };
+	if (p->n <= 4)
+		return;
+	for (int k = 0; k < p->n; k++) {
+		double z = p->z[k];
+		for (int i = 0; i < 4; i++)
+			if (z < low[i]) {
+				const double x = low[i];
+				low[i] = z, z = x;
+			}
+	}
+	const double highest = fmax(low[3], low[0] + band);
+	for (int k = p->n - 1; k >= 0; k--)
+		if (p->z[k] > highest)
+			polygon_drop(p, k);
+	if (p->n > 4)
+		order_round_middle(p);
+	reduce_to_four(p, band);
+}
+
+// The part of p on the inner side of the line through (u, w) across the outward direction (nu, nw).
+static void clip(ob_polygon *p, double u, double w, double nu, double nw)
+{
+	ob_polygon out;
+	out.n = 0;
+	for (int k = 0; k < p->n; k++) {
+		const int next = k + 1 < p->n ? k + 1 : 0;
+		const double f = nu * (p->u[k] - u) + nw * (p->w[k] - w),
+			     g = nu * (p->u[next] - u) + nw * (p->w[next] - w);
+		if (f <= 0)
+			polygon_put(&out, p->u[k], p->w[k], p->z[k]);
+		if ((f < 0 && g > 0) || (f > 0 && g < 0)) {
+			const double s = f / (f - g);
+			polygon_put(&out, p->u[k] + s * (p->u[next] - p->u[k]), p->w[k] + s * (p->w[next] - p->w[k]),
+				    p->z[k] + s * (p->z[next] - p->z[k]));
+		}
+	}
+	p->n = out.n;
+	memcpy(p->u, out.u, (size_t)out.n * sizeof *p->u);
+	memcpy(p->w, out.w, (size_t)out.n * sizeof *p->w);
+	memcpy(p->z, out.z, (size_t)out.n * sizeof *p->z);
+}
+
+// Of the faces at its lowest corners, the one that looks most against n.
+static uint32_t incident_face(const polytope *in, ob_vec3 n)
+{
+	const double low = lowest_along(in, n) + as_low * in->radius;
+	uint64_t lowest = 0;
+	uint32_t best = 0;
+	double least = INFINITY;
+	for (uint32_t k = 0; k < in->shape->corners; k++)
+		lowest |= (uint64_t)(ob_dot(n, in->corner[k]) <= low) << k;
+	for (uint32_t f = 0; f < in->shape->faces; f++) {
+		const double c = ob_dot(n, in->normal[f]);
+		bool there = false;
+		for (uint32_t k = in->shape->first[f]; c < least && k < in->shape->first[f + 1]; k++)
+			there |= lowest >> in->shape->loop[k] & 1;
+		if (there)
+			least = c, best = f;
+	}
+	return best;
+}
+
+static void face_manifold(const polytope *ref, const polytope *in, uint32_t face, bool of_b, ob_vec3 origin,
+			  double margin, ob_manifold *m)
+{
+	const ob_hull *top = ref->shape;
+	const uint32_t first = top->first[face], end = top->first[face + 1],
+		       incident = incident_face(in, ref->normal[face]);
+	const ob_vec3 n = ref->normal[face], base = ref->corner[top->loop[first]];
+	ob_vec3 u = ob_sub(ref->corner[top->loop[first + 1]], base);
+	u = ob_scale(u, 1 / ob_norm(u));
+	const ob_vec3 w = ob_cross(n, u);
+	ob_polygon p;
+	p.n = 0;
+	for (uint32_t k = in->shape->first[incident]; k < in->shape->first[incident + 1]; k++) {
+		const ob_vec3 x = ob_sub(in->corner[in->shape->loop[k]], base);
+		polygon_put(&p, ob_dot(x, u), ob_dot(x, w), ob_dot(x, n));
+	}
+	for (uint32_t k = first; k < end && p.n; k++) {
+		const ob_vec3 from = ob_sub(ref->corner[top->loop[k]], base),
+			      to = ob_sub(ref->corner[top->loop[k + 1 < end ? k + 1 : first]], base);
+		const ob_vec3 way = ob_sub(to, from);
+		clip(&p, ob_dot(from, u), ob_dot(from, w), ob_dot(way, w), -ob_dot(way, u));
+	}
+	for (int k = p.n - 1; k >= 0; k--)
+		if (!(p.z[k] <= margin))
+			polygon_drop(&p, k);
+	reduce_to_four(&p, same_depth * .5 * ref->thin);
+	m->normal = ob_scale(n, of_b ? 1 : -1);
+	m->points = p.n;
+	for (int k = 0; k < p.n; k++) {
+		const ob_vec3 on = ob_madd(ob_madd(base, p.u[k], u), p.w[k], w);
+		m->gap[k] = p.z[k];
+		m->at[k] = ob_add(origin, ob_madd(on, .5 * p.z[k], n));
+	}
+}
+
+static void edge_manifold(const polytope *a, const polytope *b, const axis *x, ob_vec3 origin, ob_manifold *m)
+{
+	ob_vec3 xa, xb;
+	nearest_on_edges(a, b, x, true, &xa, &xb);
+	m->normal = x->normal;
+	m->points = 1;
+	m->gap[0] = ob_dot(x->normal, ob_sub(xa, xb));
+	m->at[0] = ob_add(origin, ob_scale(ob_add(xa, xb), .5));
+}
+
+// The face whose normal is nearest to that of two edges, if it is near enough: one that has one of the edges.
+static bool face_along(const polytope *a, const polytope *b, const axis *x, uint32_t *face, bool *of_b)
+{
+	double best = along_face;
+	bool found = false;
+	for (int k = 0; k < 4; k++) {
+		const ob_hull_edge *e = k < 2 ? &a->shape->edge[x->edge_a] : &b->shape->edge[x->edge_b];
+		const uint32_t f = k & 1 ? e->right : e->left;
+		const double c = k < 2 ? -ob_dot(a->normal[f], x->normal) : ob_dot(b->normal[f], x->normal);
+		if (c > best)
+			best = c, *face = f, *of_b = k >= 2, found = true;
+	}
+	return found;
+}
+
+// The points of the axis' face, or of a face that looks along two edges; or else theirs.
+static void manifold_along(const polytope *a, const polytope *b, const axis *x, ob_vec3 origin, double margin,
+			   ob_manifold *out)
+{
+	uint32_t face = x->face;
+	bool of_b = x->of_b;
+	const bool has_face = x->is_face || face_along(a, b, x, &face, &of_b);
+	if (has_face)
+		face_manifold(of_b ? b : a, of_b ? a : b, face, of_b, origin, margin, out);
+	if (!x->is_face && (!has_face || !out->points))
+		edge_manifold(a, b, x, origin, out);
+}
+
+// Is there a point as low as this (m)?
+static bool is_proven(const ob_manifold *m, double gap)
+{
+	for (int k = 0; k < m->points; k++)
+		if (m->gap[k] <= gap)
+			return true;
+	return false;
+}
+
+// ---- pairs
+
+void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double margin, ob_manifold *out)
+{
+	polytope a, b;
+	axes s = { .face = { .gap = -INFINITY }, .edge = { .gap = -INFINITY } };
+	bool crossing;
+	const ob_vec3 origin = pb->p;
+	const double rest = fmin(pa->rest_depth, pb->rest_depth);
+	out->points = 0;
+	out->separation = ob_norm(ob_sub(pa->p, pb->p)) - radius_of(pa) - radius_of(pb);
+	if (out->separation > margin)
+		return;
+	polytope_init(&a, pa, origin);
+	polytope_init(&b, pb, origin);
+	const double thin = fmin(a.thin, b.thin), discount = prefer_face * thin;
+	try_faces(&s, &a, &b, false, rest);
+	try_faces(&s, &b, &a, true, rest);
+	out->separation = s.face.gap;
+	if (s.face.gap > margin + nearby * thin)
+		return;
+	try_edges(&s, &a, &b, rest, discount);
+	out->separation = fmax(s.face.gap, s.edge.gap);
+	if (out->separation > margin)
+		return;
+	const axis *x = closing_last(&a, &b, &s, rest, discount, &crossing);
+	out->valid_path = crossing ? rest : INFINITY;
+	if (crossing)
+		return;
+	if (!x)
+		x = s.edge.gap > s.face.gap + discount - prefer_face_when_deep * s.face.gap ? &s.edge : &s.face;
+	manifold_along(&a, &b, x, origin, margin, out);
+	if (is_proven(out, x->gap + rest + discount))
+		return;
+	// Another axis than the best, whose features do not lie over each other: it holds nothing.
+	out->points = 0;
+	const axis *best = s.edge.gap > s.face.gap ? &s.edge : &s.face;
+	if (best->is_face)
+		manifold_along(&a, &b, best, origin, margin, out);
+	else
+		edge_manifold(&a, &b, best, origin, out);
+	if (!out->points) // only shapes that are apart have none: looked at again before they can touch
+		out->valid_path = fmax(rest, out->separation);
+}
+
+void ob_manifold_hull_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	const ob_vec3 n = ob_column(&b->r, 2), l = ob_rotate_back(&a->r, n), u = ob_column(&b->r, 0),
+		      w = ob_column(&b->r, 1);
+	const double height = ob_dot(n, ob_sub(a->p, b->p)), band = 2 * a->rest_depth;
+	ob_polygon p;
+	p.n = 0;
+	out->separation = INFINITY;
+	for (uint32_t k = 0; k < a->hull->corners; k++) {
+		const double gap = height + ob_dot(l, a->hull->corner[k]);
+		out->separation = fmin(out->separation, gap);
+		if (gap > margin)
+			continue;
+		const ob_vec3 x = ob_rotate(&a->r, a->hull->corner[k]);
+		polygon_put(&p, ob_dot(x, u), ob_dot(x, w), gap);
+	}
+	ob_polygon_reduce(&p, band);
+	out->normal = n;
+	out->points = p.n;
+	for (int k = 0; k < p.n; k++) {
+		const ob_vec3 on = ob_madd(ob_madd(ob_scale(n, p.z[k] - height), p.u[k], u), p.w[k], w);
+		out->gap[k] = p.z[k];
+		out->at[k] = ob_madd(ob_add(a->p, on), -.5 * p.z[k], n);
+	}
+}

@@ -1,0 +1,466 @@
+#include "hull/hull.h"
+
+#include <assert.h>
+#include <libqhull_r/qhull_ra.h>
+#include <stdlib.h>
+#include <string.h>
+
+static_assert(sizeof(ob_hull_edge) == 4 && OB_HULL_CORNERS_MAX <= UINT8_MAX && OB_HULL_FACES_MAX <= UINT8_MAX,
+	      "indices of corners and faces have a byte");
+
+static const double thinnest = 1e-6; // of the radius
+static const double noise = 1e-13; // of a tensor's trace: off its diagonal, or between two moments
+static const double rounding = 1e-14; // of the radius: a centre that is so near to the origin is the origin
+
+static const char too_flat[] = "expected points that are not all in one plane, and no thinner than 1e-6 of their size";
+
+// ---- qhull
+
+// A face as qhull finds it: its corners, in no order.
+typedef struct raw_face {
+	ob_vec3 normal;
+	uint32_t corners;
+	uint8_t corner[OB_HULL_CORNERS_MAX];
+} raw_face;
+
+typedef struct raw_hull {
+	ob_vec3 *point; // sorted, each once
+	size_t points;
+	bool *is_corner; // [points]
+	uint32_t faces;
+	raw_face face[OB_HULL_FACES_MAX];
+} raw_hull;
+
+// Lexicographic, so that the order in which points are given makes no difference.
+static int by_place(const void *pa, const void *pb)
+{
+	const ob_vec3 *a = pa, *b = pb;
+	if (a->x != b->x)
+		return a->x < b->x ? -1 : 1;
+	if (a->y != b->y)
+		return a->y < b->y ? -1 : 1;
+	return (a->z > b->z) - (a->z < b->z);
+}
+
+static size_t sort_points(ob_vec3 *point, size_t n)
+{
+	size_t kept = 0;
+	qsort(point, n, sizeof *point, by_place);
+	for (size_t i = 0; i < n; i++)
+		if (!kept || by_place(&point[kept - 1], &point[i]) != 0)
+			point[kept++] = point[i];
+	return kept;
+}
+
+static void take_faces(qhT *qh, raw_hull *h)
+{
+	facetT *facet;
+	h->faces = 0;
+	FORALLfacets
+	{
+		vertexT *vertex, **vertexp;
+		raw_face *f = &h->face[h->faces++];
+		f->normal = ob_v3(facet->normal[0], facet->normal[1], facet->normal[2]);
+		f->corners = 0;
+		FOREACHvertex_(facet->vertices) if (f->corners < OB_HULL_CORNERS_MAX) f->corner[f->corners++] =
+			(uint8_t)qh_pointid(qh, vertex->point);
+	}
+}
+
+// Marks the corners among the points; with faces, where every point is one, takes these, too. false: qhull has found no
+// hull.
+static bool run_qhull(raw_hull *h, bool with_faces)
+{
+	char *said = NULL, command[] = "qhull";
+	size_t length = 0;
+	FILE *log = open_memstream(&said, &length);
+	qhT *qh = malloc(sizeof *qh);
+	double *place = malloc(h->points * sizeof(double[3]));
+	bool fine = log && qh && place;
+	for (size_t i = 0; fine && i < h->points; i++)
+		memcpy(place + 3 * i, (double[3]){ h->point[i].x, h->point[i].y, h->point[i].z }, sizeof(double[3]));
+	if (fine) {
+		int left, all;
+		qh_zero(qh, log);
+		fine = qh_new_qhull(qh, 3, (int)h->points, place, false, command, NULL, log) == 0;
+		if (fine && with_faces)
+			fine = qh->num_facets <= OB_HULL_FACES_MAX;
+		if (fine && with_faces)
+			take_faces(qh, h);
+		vertexT *vertex;
+		memset(h->is_corner, 0, h->points * sizeof *h->is_corner);
+		for (vertex = fine ? qh->vertex_list : NULL; vertex && vertex->next; vertex = vertex->next)
+			h->is_corner[qh_pointid(qh, vertex->point)] = true;
+		qh_freeqhull(qh, !qh_ALL);
+		qh_memfreeshort(qh, &left, &all);
+	}
+	free(place);
+	free(qh);
+	if (log)
+		fclose(log);
+	free(said);
+	return fine;
+}
+
+static void keep_corners(raw_hull *h)
+{
+	size_t kept = 0;
+	for (size_t i = 0; i < h->points; i++)
+		if (h->is_corner[i])
+			h->point[kept++] = h->point[i];
+	h->points = kept;
+}
+
+// ---- faces and edges
+
+// The corners of a face in their order round its middle, counterclockwise along the normal.
+static void order_corners(const ob_vec3 *corner, raw_face *f)
+{
+	ob_vec3 middle = ob_v3(0, 0, 0);
+	double angle[OB_HULL_CORNERS_MAX];
+	for (uint32_t k = 0; k < f->corners; k++)
+		middle = ob_madd(middle, 1. / f->corners, corner[f->corner[k]]);
+	const ob_vec3 first = ob_sub(corner[f->corner[0]], middle), across = ob_cross(f->normal, first);
+	for (uint32_t k = 0; k < f->corners; k++) {
+		const ob_vec3 d = ob_sub(corner[f->corner[k]], middle);
+		const double turn = k ? atan2(ob_dot(d, across), ob_dot(d, first)) : 0;
+		const uint8_t c = f->corner[k];
+		uint32_t at = k;
+		for (; at > 0 && angle[at - 1] > turn; at--)
+			angle[at] = angle[at - 1], f->corner[at] = f->corner[at - 1];
+		angle[at] = turn, f->corner[at] = c;
+	}
+}
+
+// Newell's normal of a polygon (Sutherland, Sproull and Schumacker 1974): of all its corners alike.
+static ob_vec3 newell(const ob_hull *h, uint32_t f)
+{
+	ob_vec3 n = ob_v3(0, 0, 0);
+	const ob_vec3 origin = h->corner[h->loop[h->first[f]]];
+	for (uint32_t k = h->first[f] + 1u; k + 1 < h->first[f + 1]; k++)
+		n = ob_add(n,
+			   ob_cross(ob_sub(h->corner[h->loop[k]], origin), ob_sub(h->corner[h->loop[k + 1]], origin)));
+	return n;
+}
+
+static void set_planes(ob_hull *h)
+{
+	for (uint32_t f = 0; f < h->faces; f++) {
+		const ob_vec3 n = newell(h, f);
+		const uint32_t corners = h->first[f + 1] - h->first[f];
+		h->normal[f] = ob_scale(n, 1 / ob_norm(n));
+		double sum = 0;
+		for (uint32_t k = h->first[f]; k < h->first[f + 1]; k++)
+			sum += ob_dot(h->normal[f], h->corner[h->loop[k]]);
+		h->offset[f] = sum / corners;
+	}
+}
+
+// Each edge is found from the face that has it from the lower to the higher corner; the other has it the other way.
+static bool find_edges(ob_hull *h)
+{
+	enum { NONE = OB_HULL_FACES_MAX };
+	uint8_t face_of[OB_HULL_CORNERS_MAX][OB_HULL_CORNERS_MAX];
+	memset(face_of, NONE, sizeof face_of);
+	for (uint32_t f = 0; f < h->faces; f++)
+		for (uint32_t k = h->first[f]; k < h->first[f + 1]; k++) {
+			const uint32_t next = k + 1 < h->first[f + 1] ? k + 1 : h->first[f];
+			uint8_t *at = &face_of[h->loop[k]][h->loop[next]];
+			if (*at != NONE)
+				return false;
+			*at = (uint8_t)f;
+		}
+	h->edges = 0;
+	for (uint32_t i = 0; i < h->corners; i++)
+		for (uint32_t j = 0; j < h->corners; j++) {
+			if (face_of[i][j] == NONE)
+				continue;
+			if (face_of[j][i] == NONE || (i < j && h->edges == OB_HULL_EDGES_MAX))
+				return false;
+			if (i < j)
+				h->edge[h->edges++] =
+					(ob_hull_edge){ (uint8_t)i, (uint8_t)j, face_of[i][j], face_of[j][i] };
+		}
+	return h->corners + h->faces == h->edges + 2 && h->first[h->faces] == 2 * h->edges;
+}
+
+static bool take_shape(raw_hull *raw, ob_hull *h)
+{
+	uint32_t loops = 0;
+	h->corners = (uint32_t)raw->points;
+	h->faces = raw->faces;
+	memcpy(h->corner, raw->point, raw->points * sizeof *raw->point);
+	for (uint32_t f = 0; f < raw->faces; f++) {
+		raw_face *face = &raw->face[f];
+		if (face->corners < 3 || loops + face->corners > 2 * OB_HULL_EDGES_MAX)
+			return false;
+		order_corners(h->corner, face);
+		h->first[f] = (uint16_t)loops;
+		memcpy(h->loop + loops, face->corner, face->corners);
+		loops += face->corners;
+	}
+	h->first[h->faces] = (uint16_t)loops;
+	return find_edges(h);
+}
+
+// ---- mass
+
+typedef struct integrals {
+	double volume; // m^3
+	ob_vec3 first; // m^4
+	double second[3][3]; // m^5, of x_i x_j
+} integrals;
+
+// Sums over the tetrahedra of the origin and each triangle of each face: exact.
+static integrals integrate(const ob_hull *h)
+{
+	integrals out = { 0 };
+	for (uint32_t f = 0; f < h->faces; f++)
+		for (uint32_t k = h->first[f] + 1u; k + 1 < h->first[f + 1]; k++) {
+			const ob_vec3 a = h->corner[h->loop[h->first[f]]], b = h->corner[h->loop[k]],
+				      c = h->corner[h->loop[k + 1]], s = ob_add(a, ob_add(b, c));
+			const double det = ob_dot(a, ob_cross(b, c));
+			const double x[4][3] = {
+				{ a.x, a.y, a.z }, { b.x, b.y, b.z }, { c.x, c.y, c.z }, { s.x, s.y, s.z }
+			};
+			out.volume += det / 6;
+			out.first = ob_madd(out.first, det / 24, s);
+			for (int v = 0; v < 4; v++)
+				for (int i = 0; i < 3; i++)
+					for (int j = 0; j < 3; j++)
+						out.second[i][j] += det / 120 * x[v][i] * x[v][j];
+		}
+	return out;
+}
+
+static double radius_of(const ob_hull *h)
+{
+	double most = 0;
+	for (uint32_t k = 0; k < h->corners; k++)
+		most = fmax(most, ob_norm(h->corner[k]));
+	return most;
+}
+
+static double snapped(double x, double least)
+{
+	return fabs(x) < least ? 0 : x;
+}
+
+// Jacobi's rotations: the axes of the symmetric matrix m become the columns of r, and m diagonal.
+static void diagonalise(double m[3][3], double r[3][3])
+{
+	enum { SWEEPS = 30 };
+	const double least = noise * (m[0][0] + m[1][1] + m[2][2]);
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			r[i][j] = i == j;
+	for (int sweep = 0; sweep < SWEEPS; sweep++)
+		for (int p = 0; p < 2; p++)
+			for (int q = p + 1; q < 3; q++) {
+				if (fabs(m[p][q]) <= (sweep ? 1e-3 : 1) * least)
+					continue;
+				const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+				const double t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1));
+				const double c = 1 / sqrt(t * t + 1), s = t * c;
+				for (int k = 0; k < 3; k++) {
+					const double a = m[k][p], b = m[k][q];
+					m[k][p] = c * a - s * b, m[k][q] = s * a + c * b;
+				}
+				for (int k = 0; k < 3; k++) {
+					const double a = m[p][k], b = m[q][k];
+					m[p][k] = c * a - s * b, m[q][k] = s * a + c * b;
+				}
+				for (int k = 0; k < 3; k++) {
+					const double a = r[k][p], b = r[k][q];
+					r[k][p] = c * a - s * b, r[k][q] = s * a + c * b;
+				}
+			}
+}
+
+// Of a rotation (Shepperd 1978).
+static ob_quat quaternion_of(double r[3][3])
+{
+	const double trace = r[0][0] + r[1][1] + r[2][2];
+	double q[4] = { trace, r[0][0], r[1][1], r[2][2] };
+	int best = 0;
+	for (int i = 1; i < 4; i++)
+		if (q[i] > q[best])
+			best = i;
+	const double anti[3] = { r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1] };
+	if (best == 0)
+		return ob_quat_normalize((ob_quat){ 1 + trace, anti[0], anti[1], anti[2] });
+	const int i = best - 1, j = (i + 1) % 3, k = (i + 2) % 3;
+	q[0] = anti[i];
+	q[1 + i] = 1 + r[i][i] - r[j][j] - r[k][k];
+	q[1 + j] = r[j][i] + r[i][j];
+	q[1 + k] = r[k][i] + r[i][k];
+	return ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
+}
+
+// Moments that are equal but for rounding become equal: such a body turns at a constant rate.
+static void make_equal(double m[3][3], double least)
+{
+	const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3;
+	bool all = true;
+	for (int i = 0; i < 3; i++)
+		all &= fabs(m[i][i] - mean) <= least;
+	for (int i = 0; i < 3; i++) {
+		double *a = &m[i][i], *b = &m[(i + 1) % 3][(i + 1) % 3];
+		if (all)
+			*a = mean;
+		else if (fabs(*a - *b) <= least)
+			*a = *b = .5 * (*a + *b);
+	}
+}
+
+// Moves the corners to the centre of mass, then turns them into the principal frame. from: where the origin of the
+// corners was.
+static void set_frame(ob_hull *h, ob_vec3 from)
+{
+	enum { ROUNDS = 2 };
+	const double radius = radius_of(h);
+	ob_vec3 centre = ob_v3(0, 0, 0);
+	integrals mass = { 0 };
+	for (int round = 0; round < ROUNDS; round++) {
+		mass = integrate(h);
+		const ob_vec3 off = ob_scale(mass.first, 1 / mass.volume);
+		const ob_vec3 by = ob_v3(snapped(off.x, rounding * radius), snapped(off.y, rounding * radius),
+					 snapped(off.z, rounding * radius));
+		for (uint32_t k = 0; k < h->corners; k++)
+			h->corner[k] = ob_sub(h->corner[k], by);
+		centre = ob_add(centre, by);
+	}
+	mass = integrate(h);
+	double tensor[3][3], r[3][3];
+	const double trace = mass.second[0][0] + mass.second[1][1] + mass.second[2][2];
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			tensor[i][j] = ((i == j ? trace : 0) - mass.second[i][j]) / mass.volume;
+	diagonalise(tensor, r);
+	make_equal(tensor, 10 * noise * (tensor[0][0] + tensor[1][1] + tensor[2][2]));
+	h->volume = mass.volume;
+	h->inertia = ob_v3(tensor[0][0], tensor[1][1], tensor[2][2]);
+	h->centre = ob_add(from, centre);
+	h->frame = quaternion_of(r);
+	const ob_mat3 turn = ob_quat_matrix(h->frame);
+	for (uint32_t k = 0; k < h->corners; k++)
+		h->corner[k] = ob_rotate_back(&turn, h->corner[k]);
+}
+
+// Stops where it is more than "enough".
+static double width_along(const ob_hull *h, ob_vec3 n, double enough)
+{
+	double low = INFINITY, high = -INFINITY;
+	for (uint32_t k = 0; k < h->corners && !(high - low > enough); k++) {
+		const double x = ob_dot(n, h->corner[k]);
+		low = fmin(low, x), high = fmax(high, x);
+	}
+	return high - low;
+}
+
+// The least width lies across a face, or across two edges (Houle and Toussaint 1988).
+static double least_width(const ob_hull *h)
+{
+	double least = INFINITY;
+	for (uint32_t f = 0; f < h->faces; f++)
+		least = fmin(least, width_along(h, h->normal[f], least));
+	for (uint32_t i = 0; i < h->edges; i++)
+		for (uint32_t j = i + 1; j < h->edges; j++) {
+			const ob_vec3 u = ob_sub(h->corner[h->edge[i].to], h->corner[h->edge[i].from]);
+			const ob_vec3 v = ob_sub(h->corner[h->edge[j].to], h->corner[h->edge[j].from]),
+				      n = ob_cross(u, v);
+			const double l2 = ob_norm2(n);
+			if (l2 > 1e-8 * ob_norm2(u) * ob_norm2(v))
+				least = fmin(least, width_along(h, ob_scale(n, 1 / sqrt(l2)), least));
+		}
+	return least;
+}
+
+static void set_sizes(ob_hull *h)
+{
+	h->radius = radius_of(h);
+	h->thickness = least_width(h);
+	h->inner = INFINITY;
+	for (uint32_t f = 0; f < h->faces; f++)
+		h->inner = fmin(h->inner, h->offset[f]);
+}
+
+// ---- all of it
+
+static ob_vec3 middle_of_bounds(const ob_vec3 *point, size_t n)
+{
+	ob_vec3 low = point[0], high = point[0];
+	for (size_t i = 0; i < n; i++) {
+		low = ob_v3(fmin(low.x, point[i].x), fmin(low.y, point[i].y), fmin(low.z, point[i].z));
+		high = ob_v3(fmax(high.x, point[i].x), fmax(high.y, point[i].y), fmax(high.z, point[i].z));
+	}
+	return ob_scale(ob_add(low, high), .5);
+}
+
+// The faces of the corners alone. One that lies on an edge of the others, but for rounding, may turn out to be none.
+static bool take_corners(raw_hull *raw)
+{
+	enum { ROUNDS = 4 };
+	for (int i = 0; i < ROUNDS; i++) {
+		const size_t before = raw->points;
+		if (!run_qhull(raw, true))
+			return false;
+		keep_corners(raw);
+		if (raw->points == before)
+			return true;
+	}
+	return false;
+}
+
+// The points are moved so that the corners' middle is the origin, where they have all their digits.
+static bool build(raw_hull *raw, ob_hull *out, ob_error *e)
+{
+	const ob_vec3 middle = middle_of_bounds(raw->point, raw->points);
+	for (size_t i = 0; i < raw->points; i++)
+		raw->point[i] = ob_sub(raw->point[i], middle);
+	if (raw->points < 4 || !run_qhull(raw, false))
+		return ob_fail(e, "%s", raw->points < 4 ? "expected at least four different points" : too_flat);
+	keep_corners(raw);
+	if (raw->points > OB_HULL_CORNERS_MAX)
+		return ob_fail(e, "expected a hull of at most %d corners, got %zu", OB_HULL_CORNERS_MAX, raw->points);
+	if (!take_corners(raw) || !take_shape(raw, out))
+		return ob_fail(e, "%s", too_flat);
+	set_frame(out, middle);
+	set_planes(out);
+	set_sizes(out);
+	if (!(out->thickness > thinnest * out->radius) || !ob_hull_makes_sense(out))
+		return ob_fail(e, "%s", too_flat);
+	return true;
+}
+
+bool ob_hull_build(const ob_vec3 *point, size_t points, ob_hull *out, ob_error *e)
+{
+	memset(out, 0, sizeof *out);
+	if (points < 4)
+		return ob_fail(e, "expected at least four different points");
+	if (points > OB_HULL_POINTS_MAX)
+		return ob_fail(e, "expected at most %d points, got %zu", OB_HULL_POINTS_MAX, points);
+	for (size_t i = 0; i < points; i++)
+		if (!isfinite(point[i].x) || !isfinite(point[i].y) || !isfinite(point[i].z))
+			return ob_fail(e, "expected points of finite numbers");
+	raw_hull *raw = calloc(1, sizeof *raw);
+	bool fine = raw;
+	if (raw) {
+		raw->point = malloc(points * sizeof *raw->point);
+		raw->is_corner = malloc(points * sizeof *raw->is_corner);
+		fine = raw->point && raw->is_corner;
+	}
+	if (fine) {
+		memcpy(raw->point, point, points * sizeof *point);
+		raw->points = sort_points(raw->point, points);
+		fine = build(raw, out, e);
+	} else {
+		ob_fail(e, "no memory");
+	}
+	if (raw) {
+		free(raw->point);
+		free(raw->is_corner);
+	}
+	free(raw);
+	return fine;
+}
