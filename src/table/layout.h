@@ -79,8 +79,8 @@ typedef struct ob_header {
 	int32_t host_pid;
 	uint64_t bytes; // of the whole segment
 	uint64_t created; // ns, CLOCK_REALTIME
-	ob_layout_sizes sizes;
 	uint64_t area[OB_AREAS]; // offsets
+	ob_layout_sizes sizes;
 	char name[OB_NAME_MAX];
 	char isolation[16];
 	ob_run_settings run;

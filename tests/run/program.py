@@ -56,7 +56,7 @@ def steps(name):
 	"""Steps that this universe has made, or 0; as its readers find them (table/layout.h)."""
 	try:
 		with open(segment(name), "rb") as f:
-			f.seek(64)
+			f.seek(32) # ob_header.area
 			f.seek(struct.unpack("=Q", f.read(8))[0])
 			return struct.unpack("=Q", f.read(8))[0]
 	except (OSError, struct.error):

@@ -81,7 +81,7 @@ class Report(program.Case):
 		for line in "restitution  none: no object has any", "flight       closed form", "collision", "Coulomb's cone":
 			self.assertIn(line, boxes.stderr)
 		shares = [float(x) for x in re.findall(r"([\d.]+) %", boxes.stderr)]
-		self.assertEqual(len(shares), 11)
+		self.assertEqual(len(shares), 12)
 		self.assertAlmostEqual(sum(shares), 100, delta=2)
 
 	def test_energy_is_exact(self):
