@@ -28,7 +28,7 @@ class Killed(program.Case):
 				self.check_nothing_left(below)
 
 	def test_host_at_any_time(self):
-		"""Also while it starts."""
+		"""Also while it starts. If it had a name and no fork server yet, the next start clears it away."""
 		for delay in 0, .001, .002, .005, .01, .02, .05, .1:
 			with self.subTest(delay=delay):
 				run = program.start("run", *LONG, "--isolation", "process", "--workers", "objects", "--name", self.name)
@@ -38,6 +38,8 @@ class Killed(program.Case):
 				run.wait(program.PATIENCE)
 				run.stdout.close()
 				run.stderr.close()
+				self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
+				program.report(program.scene("stack"), "--duration", ".1")
 				self.check_nothing_left(below)
 
 	def test_simulator_of_a_monolith(self):
