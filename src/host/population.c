@@ -26,11 +26,10 @@ typedef struct slot {
 	unsigned char use; // slot_use
 	bool removal_scheduled; // the timetable will remove its object
 	bool created; // by a script
-	const ob_path *path; // of a kinematic object that has one
-	const ob_force *force; // that changes in time; NULL: none
-	ob_vec3 constant; // N, the other one, if there is such a force
-	uint64_t born; // step
+	bool driven; // by the path, or the force that changes in time, of the scene's object of this id
+	uint32_t born; // step
 } slot;
+static_assert(sizeof(slot) == 12, "all objects have one, and what is kept of it");
 
 struct ob_population {
 	ob_universe *u;
@@ -203,10 +202,8 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	p->slots[id].created = false;
 	p->kinematic += (pass.flags & OB_OBJECT_KINEMATIC) != 0;
 	p->pushed += def->force != NULL;
-	p->slots[id].force = def->force;
-	p->slots[id].constant = pass.force;
-	p->slots[id].path = def->path;
-	p->slots[id].born = ob_step_count(p->u);
+	p->slots[id].driven = def->path || def->force;
+	p->slots[id].born = (uint32_t)ob_step_count(p->u);
 	p->changed = true;
 	give_script(p, id, def, state);
 }
@@ -216,6 +213,17 @@ static bool is_kinematic(const ob_population *p, uint32_t id)
 	return p->slots[id].use == SLOT_PRESENT && ob_passport_of(p->u, id)->flags & OB_OBJECT_KINEMATIC;
 }
 
+// NULL: none
+static const ob_path *path_of(const ob_population *p, uint32_t id)
+{
+	return p->slots[id].driven ? p->scene->object[id].path : NULL;
+}
+
+static const ob_force *force_of(const ob_population *p, uint32_t id)
+{
+	return p->slots[id].driven ? p->scene->object[id].force : NULL;
+}
+
 static void remove_object(ob_population *p, uint32_t id)
 {
 	slot *s = &p->slots[id];
@@ -223,8 +231,8 @@ static void remove_object(ob_population *p, uint32_t id)
 		return;
 	p->kinematic -= is_kinematic(p, id);
 	ob_script_free_cell(p->u, id);
-	p->pushed -= s->force != NULL;
-	s->force = NULL;
+	p->pushed -= force_of(p, id) != NULL;
+	s->driven = false;
 	ob_sim_remove(p->u, id);
 	p->created -= s->created;
 	s->created = false;
@@ -390,12 +398,13 @@ static void push_all(ob_population *p)
 	uint32_t left = p->pushed;
 	for (uint32_t id = 0; left > 0; id++) {
 		const slot *s = &p->slots[id];
-		if (s->use != SLOT_PRESENT || !s->force)
+		const ob_force *force = force_of(p, id);
+		if (s->use != SLOT_PRESENT || !force)
 			continue;
-		const uint64_t since = ob_step_count(p->u) - s->born, next = ob_force_next(s->force, h, since);
-		const ob_vec3 now = ob_force_mean(s->force, h, since),
-			      before = since ? ob_force_mean(s->force, h, since - 1) : ob_v3(0, 0, 0);
-		ob_sim_push(p->u, id, ob_add(s->constant, now), ob_norm2(ob_sub(now, before)) > 0);
+		const uint64_t since = ob_step_count(p->u) - s->born, next = ob_force_next(force, h, since);
+		const ob_vec3 now = ob_force_mean(force, h, since),
+			      before = since ? ob_force_mean(force, h, since - 1) : ob_v3(0, 0, 0);
+		ob_sim_push(p->u, id, ob_add(p->scene->object[id].passport.force, now), ob_norm2(ob_sub(now, before)) > 0);
 		if (next != UINT64_MAX && s->born + next < p->next_prescribed)
 			p->next_prescribed = s->born + next;
 		left--;
@@ -410,7 +419,7 @@ static void prescribe_all(ob_population *p)
 	for (uint32_t id = 0; left > 0; id++) {
 		if (!is_kinematic(p, id))
 			continue;
-		const uint64_t next = ob_sim_prescribe(p->u, id, p->slots[id].path, p->slots[id].born);
+		const uint64_t next = ob_sim_prescribe(p->u, id, path_of(p, id), p->slots[id].born);
 		p->next_prescribed = next < p->next_prescribed ? next : p->next_prescribed;
 		left--;
 	}
@@ -541,11 +550,10 @@ static void load_path(ob_population *p, uint32_t id)
 	slot *s = &p->slots[id];
 	if (id >= p->scene->objects || s->generation != 1)
 		return;
-	s->path = p->scene->object[id].path;
-	s->force = s->use == SLOT_PRESENT ? p->scene->object[id].force : NULL;
-	s->constant = p->scene->object[id].passport.force;
-	p->pushed += s->force != NULL;
-	s->born = step_at(p->scene->object[id].born, h);
+	const ob_object_def *def = &p->scene->object[id];
+	s->driven = s->use == SLOT_PRESENT && (def->path || def->force);
+	p->pushed += force_of(p, id) != NULL;
+	s->born = (uint32_t)step_at(p->scene->object[id].born, h);
 }
 
 bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error *e)

@@ -29,7 +29,9 @@ class Deaths(program.Case):
 		out, said = run.communicate(timeout=program.PATIENCE)
 		self.assertEqual(run.returncode, 0, said)
 		report = json.loads(out)
-		self.assertEqual(said.count("restarting all simulators from the checkpoint of step"), report["deaths"])
+		# whoever dies when the last step is complete is not needed again
+		restarts = said.count("restarting all simulators from the checkpoint of step")
+		self.assertIn(report["deaths"] - restarts, (0, 1), said)
 		return report, struck
 
 	def test_same_bits(self):
