@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "contact/manifold.h"
+#include "contact/polytope.h"
 
 // Everything that the axis tests need, in a's frame.
 typedef struct frame_pair {
@@ -245,22 +246,7 @@ static void clip(polygon *p, int axis, double sign, double limit)
 // Keeps the four points that span the largest area with one of the deepest among them.
 static void reduce_to_four(polygon *p, double tie)
 {
-	double deepest = INFINITY, largest = -1;
-	unsigned deep = 0, keep = 0;
-	for (int k = 0; k < p->n; k++)
-		deepest = fmin(deepest, p->z[k]);
-	for (int k = 0; k < p->n; k++)
-		deep |= (unsigned)(p->z[k] <= deepest + tie) << k;
-	for (int i = 0; i < p->n; i++)
-		for (int j = i + 1; j < p->n; j++)
-			for (int k = j + 1; k < p->n; k++)
-				for (int l = k + 1; l < p->n; l++) {
-					const unsigned four = 1u << i | 1u << j | 1u << k | 1u << l;
-					double area = fabs((p->u[k] - p->u[i]) * (p->w[l] - p->w[j]) -
-							   (p->w[k] - p->w[i]) * (p->u[l] - p->u[j]));
-					if ((four & deep) && area > largest)
-						largest = area, keep = four;
-				}
+	const unsigned keep = ob_widest_four(p->u, p->w, p->z, p->n, tie);
 	polygon out = { .n = 0 };
 	for (int k = 0; k < p->n; k++)
 		if (keep >> k & 1)

@@ -323,28 +323,34 @@ static void reduce_to_eight(ob_polygon *p, double tie)
 	}
 }
 
-// Keeps the four points that span the largest area with one of the deepest among them.
-static void reduce_to_four(ob_polygon *p, double tie)
+unsigned ob_widest_four(const double *u, const double *w, const double *z, int n, double tie)
 {
 	double deepest = INFINITY, largest = -1;
 	unsigned deep = 0, keep = 0;
-	if (p->n <= 4)
-		return;
-	reduce_to_eight(p, tie);
-	for (int k = 0; k < p->n; k++)
-		deepest = fmin(deepest, p->z[k]);
-	for (int k = 0; k < p->n; k++)
-		deep |= (unsigned)(p->z[k] <= deepest + tie) << k;
-	for (int i = 0; i < p->n; i++)
-		for (int j = i + 1; j < p->n; j++)
-			for (int k = j + 1; k < p->n; k++)
-				for (int l = k + 1; l < p->n; l++) {
+	for (int k = 0; k < n; k++)
+		deepest = fmin(deepest, z[k]);
+	for (int k = 0; k < n; k++)
+		deep |= (unsigned)(z[k] <= deepest + tie) << k;
+	for (int i = 0; i < n; i++)
+		for (int j = i + 1; j < n; j++)
+			for (int k = j + 1; k < n; k++)
+				for (int l = k + 1; l < n; l++) {
 					const unsigned four = 1u << i | 1u << j | 1u << k | 1u << l;
-					const double area = fabs((p->u[k] - p->u[i]) * (p->w[l] - p->w[j]) -
-								 (p->w[k] - p->w[i]) * (p->u[l] - p->u[j]));
+					const double area = fabs((u[k] - u[i]) * (w[l] - w[j]) -
+								 (w[k] - w[i]) * (u[l] - u[j]));
 					if ((four & deep) && area > largest)
 						largest = area, keep = four;
 				}
+	return keep;
+}
+
+// Keeps the four points that span the largest area with one of the deepest among them.
+static void reduce_to_four(ob_polygon *p, double tie)
+{
+	if (p->n <= 4)
+		return;
+	reduce_to_eight(p, tie);
+	const unsigned keep = ob_widest_four(p->u, p->w, p->z, p->n, tie);
 	for (int k = p->n - 1; k >= 0; k--)
 		if (!(keep >> k & 1))
 			polygon_drop(p, k);

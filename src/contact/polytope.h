@@ -23,5 +23,8 @@ typedef struct ob_polygon {
 // Keeps four points at most, of those that are as low as the lowest within "band" (m), or else the four lowest: those
 // that span most.
 void ob_polygon_reduce(ob_polygon *p, double band);
+// Of n points (at most 32): a bit for each of the four that span the largest area with one of the deepest, to tie, among
+// them.
+unsigned ob_widest_four(const double *u, const double *w, const double *z, int n, double tie);
 
 #endif
