@@ -31,15 +31,29 @@ static const ob_field path_fields[] = {
 	F(loop, .kind = OB_FIELD_BOOLEAN),
 };
 
+typedef struct said_field {
+	const char *name;
+	bool said;
+	unsigned needed, allowed; // bit per kind
+} said_field;
+
 // What a kind does not need is not to be said; what it needs is.
+static void check_for_kind(lua_State *L, const char *where, int kind, const char *name, const said_field *fields,
+			   size_t n)
+{
+	for (size_t i = 0; i < n; i++) {
+		if (fields[i].needed >> kind & 1 && !fields[i].said)
+			ob_sandbox_fail(L, "%s.%s: expected for kind = \"%s\", got nothing", where, fields[i].name,
+					name);
+		if (fields[i].said && !(fields[i].allowed >> kind & 1))
+			ob_sandbox_fail(L, "%s.%s: expected none for kind = \"%s\"", where, fields[i].name, name);
+	}
+}
+
 static void check_said(lua_State *L, const char *where, const draft *d)
 {
 	static const char *const kinds[] = { "sine", "circle", "spline" };
-	const struct {
-		const char *name;
-		bool said;
-		unsigned needed, allowed; // bit per kind
-	} fields[] = {
+	const said_field fields[] = {
 		{ "amplitude", !isnan(d->amplitude.x), 1 << SINE, 1 << SINE },
 		{ "frequency", !isnan(d->frequency), 1 << SINE | 1 << CIRCLE, 1 << SINE | 1 << CIRCLE },
 		{ "phase", !isnan(d->phase), 0, 1 << SINE },
@@ -48,14 +62,7 @@ static void check_said(lua_State *L, const char *where, const draft *d)
 		{ "points", d->points, 1 << SPLINE, 1 << SPLINE },
 		{ "loop", d->loop, 0, 1 << SPLINE },
 	};
-	for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
-		if (fields[i].needed >> d->kind & 1 && !fields[i].said)
-			ob_sandbox_fail(L, "%s.%s: expected for kind = \"%s\", got nothing", where, fields[i].name,
-					kinds[d->kind]);
-		if (fields[i].said && !(fields[i].allowed >> d->kind & 1))
-			ob_sandbox_fail(L, "%s.%s: expected none for kind = \"%s\"", where, fields[i].name,
-					kinds[d->kind]);
-	}
+	check_for_kind(L, where, d->kind, kinds[d->kind], fields, sizeof fields / sizeof *fields);
 }
 
 static void keep_path(lua_State *L, const char *where, ob_object_def *o, const ob_path *path)
@@ -174,11 +181,7 @@ static const ob_field force_fields[] = {
 static void check_force(lua_State *L, const char *where, const force_draft *d)
 {
 	static const char *const kinds[] = { "sine", "pulse", "linear" };
-	const struct {
-		const char *name;
-		bool said;
-		unsigned needed, allowed; // bit per kind
-	} fields[] = {
+	const said_field fields[] = {
 		{ "force", !isnan(d->force.x), 3, 3 },
 		{ "frequency", !isnan(d->frequency), 1 << OB_FORCE_SINE, 1 << OB_FORCE_SINE },
 		{ "phase", !isnan(d->phase), 0, 1 << OB_FORCE_SINE },
@@ -186,14 +189,7 @@ static void check_force(lua_State *L, const char *where, const force_draft *d)
 		{ "to", !isnan(d->to), 1 << OB_FORCE_PULSE, 1 << OB_FORCE_PULSE },
 		{ "points", d->points, 1 << OB_FORCE_LINEAR, 1 << OB_FORCE_LINEAR },
 	};
-	for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
-		if (fields[i].needed >> d->kind & 1 && !fields[i].said)
-			ob_sandbox_fail(L, "%s.%s: expected for kind = \"%s\", got nothing", where, fields[i].name,
-					kinds[d->kind]);
-		if (fields[i].said && !(fields[i].allowed >> d->kind & 1))
-			ob_sandbox_fail(L, "%s.%s: expected none for kind = \"%s\"", where, fields[i].name,
-					kinds[d->kind]);
-	}
+	check_for_kind(L, where, d->kind, kinds[d->kind], fields, sizeof fields / sizeof *fields);
 	if (d->kind == OB_FORCE_PULSE && !(d->to > (isnan(d->from) ? 0 : d->from)))
 		ob_sandbox_fail(L, "%s.to: expected a time after from, got %.10g", where, d->to);
 }
