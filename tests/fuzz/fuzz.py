@@ -291,6 +291,13 @@ class Files:
 		self.r = r
 		self.seed = None
 
+	def known(self, obsim):
+		with tempfile.TemporaryDirectory() as folder:
+			path = os.path.join(folder, "file")
+			subprocess.run([obsim, "run", os.path.join(SCENES, "stack.lua"), "--duration", ".1", self.WRITTEN_BY, path], stdout=subprocess.DEVNULL, check=True)
+			with open(path, "rb") as f:
+				self.seed = f.read()
+
 	def case(self, folder):
 		path = os.path.join(folder, "mutant")
 		tokens = [bytes([x]) * n for x in (0, 1, 127, 255) for n in (1, 4, 8)] + [b"\0\0\0\0\0\0\xf8\x7f"]
@@ -300,24 +307,14 @@ class Files:
 
 
 class Checkpoints(Files):
-	def known(self, obsim):
-		with tempfile.TemporaryDirectory() as folder:
-			path = os.path.join(folder, "c")
-			subprocess.run([obsim, "run", os.path.join(SCENES, "stack.lua"), "--duration", ".1", "--checkpoint", path], stdout=subprocess.DEVNULL, check=True)
-			with open(path, "rb") as f:
-				self.seed = f.read()
+	WRITTEN_BY = "--checkpoint"
 
 	def command(self, path, folder):
 		return ["inspect", path] if self.r.random() < .5 else ["run", "--resume", path, "--duration", ".12"]
 
 
 class Recordings(Files):
-	def known(self, obsim):
-		with tempfile.TemporaryDirectory() as folder:
-			path = os.path.join(folder, "r.h5")
-			subprocess.run([obsim, "run", os.path.join(SCENES, "stack.lua"), "--duration", ".1", "--record", path], stdout=subprocess.DEVNULL, check=True)
-			with open(path, "rb") as f:
-				self.seed = f.read()
+	WRITTEN_BY = "--record"
 
 	def command(self, path, folder):
 		if self.r.random() < .5:
