@@ -6,6 +6,7 @@ second around it; so it counts the server's interval, the way, and what this pro
 Prints one line a figure.
 """
 import argparse
+import collections
 import json
 import os
 import pathlib
@@ -13,10 +14,13 @@ import selectors
 import socket
 import struct
 import subprocess
+import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOTIONS, VOID = 1, 1
+RATE, LIFE = 20, 10  # 1/s: objects that viewers create; s, after which they remove them
+CONTINUED, BINARY, TEXT, CLOSE, PING, PONG = 0, 2, 1, 8, 9, 10  # what a frame is (RFC 6455, 5.2)
 
 
 class Viewer:
@@ -31,10 +35,13 @@ class Viewer:
         self.buffer.clear()
         self.socket.setblocking(False)
         selector.register(self.socket, selectors.EVENT_READ, self)
-        self.whole, self.bytes, self.came, self.created, self.removed = b'', 0, [], 0, 0
+        self.whole, self.bytes, self.came, self.news = b'', 0, [], collections.deque()
+        self.created = self.removed = self.told_anew = 0
 
     def read(self):
         data = self.socket.recv(1 << 20)
+        if not data:
+            sys.exit('a viewer was dropped, without a reason')
         now = time.monotonic()
         self.bytes += len(data)
         self.buffer += data
@@ -49,15 +56,40 @@ class Viewer:
             n = int.from_bytes(self.buffer[2:head], 'big') if head > 2 else n
             if len(self.buffer) < head + n:
                 return
-            first, self.whole = self.buffer[0], self.whole + bytes(self.buffer[head:head + n])
+            first, payload = self.buffer[0], bytes(self.buffer[head:head + n])
             del self.buffer[:head + n]
-            if first & 0x80:
-                if self.whole[:1] == bytes([MOTIONS]):
-                    flags, _, simulated, removed, created, _ = struct.unpack_from('<xB2xfdIII', self.whole)
-                    self.created += 0 if flags & VOID else created
-                    self.removed += removed
-                    self.came.append((now, simulated))
+            self.take(first & 0xf, first & 0x80, payload, now)
+
+    def take(self, kind, last, payload, now):
+        if kind == PING:
+            self.send(PONG, payload)
+        elif kind == CLOSE:
+            sys.exit(f'a viewer was dropped: {payload[2:].decode(errors="replace")}')
+        elif kind in (CONTINUED, TEXT, BINARY):
+            self.whole += payload
+            if last:
+                self.told(now)
                 self.whole = b''
+
+    def told(self, now):
+        if self.whole[:1] == bytes([MOTIONS]):
+            flags, _, simulated, removed, created, _ = struct.unpack_from('<xB2xfdIII', self.whole)
+            self.came.append((now, simulated))
+            if flags & VOID:
+                self.told_anew += len(self.came) > 2  # not where it begins
+                return
+            self.removed += removed
+            self.created += created
+            at = 28 + 4 * removed
+            for _ in range(created):  # there are no hulls among them, which are longer
+                *new, name = struct.unpack_from('<II2xB', self.whole, at)
+                self.news.append(new)
+                at += 48 + name
+
+    def send(self, kind, payload):
+        n = len(payload)
+        size = bytes([0x80 | n]) if n < 126 else bytes([0x80 | 126]) + struct.pack('>H', n)
+        self.socket.sendall(bytes([0x80 | kind]) + size + bytes(4) + payload)  # masked by zeros: as it is
 
 
 def serve(obsim, objects):
@@ -72,31 +104,32 @@ def cpu(pid):
     return (int(words[11]) + int(words[12])) / os.sysconf('SC_CLK_TCK')
 
 
-def send(viewer, **command):
-    data = json.dumps(command).encode()
-    viewer.socket.sendall(bytes([0x81, 0x80 | 126]) + struct.pack('>H', len(data)) + bytes(4) + data)
-
-
 def watch(obsim, viewers, objects, seconds):
     run, port = serve(obsim, objects)
     selector = selectors.DefaultSelector()
     all_ = [Viewer(port, selector) for _ in range(viewers)]
     begin = time.monotonic()
-    before, made = cpu(run.pid), 0
+    before, made, gone = cpu(run.pid), 0, 0
     first = None
     while time.monotonic() - begin < seconds:
         for key, _ in selector.select(.1):
             key.data.read()
-        if viewers and time.monotonic() - begin > .05 * made and made < 20 * (seconds - 2):
-            send(all_[made % viewers], do='create', shape='sphere', size=[.1, 0, 0], at=[0, 0, 0], mass=1, name=f'new {made}')
+        if time.monotonic() - begin > made / RATE and made < RATE * (seconds - 2):
+            v = all_[made % viewers]
+            command = dict(do='create', shape='sphere', size=[.1, 0, 0], at=[0, 0, 0], mass=1, name=f'new {made}')
+            v.send(TEXT, json.dumps(command).encode())
             made += 1
+            if made > RATE * LIFE and len(all_[0].news) > 0:
+                id_, generation = all_[0].news.popleft()
+                v.send(TEXT, json.dumps(dict(do='remove', id=id_, generation=generation)).encode())
+                gone += 1
         if first is None:
             first = [v.bytes for v in all_]
     spent = cpu(run.pid) - before
     simulated = max((v.came[-1][1] - v.came[0][1] for v in all_ if v.came), default=seconds)
     run.terminate()
     run.wait()
-    return all_, spent, simulated, first, made
+    return all_, spent, simulated, first, made, gone
 
 
 def main():
@@ -107,7 +140,7 @@ def main():
     parser.add_argument('--seconds', type=float, default=60)
     a = parser.parse_args()
     alone = watch(a.obsim, 1, a.objects, a.seconds / 3)
-    all_, spent, simulated, first, made = watch(a.obsim, a.viewers, a.objects, a.seconds)
+    all_, spent, simulated, first, made, gone = watch(a.obsim, a.viewers, a.objects, a.seconds)
     late = []
     soonest = {}
     for v in all_:
@@ -119,7 +152,8 @@ def main():
     traffic = sum(v.bytes - f for v, f in zip(all_, first)) / len(all_) / a.objects / a.seconds
     print(f'staleness_ms p50 {1e3 * late[len(late) // 2]:.1f} p99 {1e3 * late[int(.99 * len(late))]:.1f} max {1e3 * late[-1]:.1f}')
     print(f'bytes_per_object_and_second {traffic:.0f} (poses of 28 bytes at 60 Hz: 1680)')
-    print(f'created {made}, seen by all: {all(v.created == made for v in all_)}')
+    missed = sum(v.created != made or v.removed != gone for v in all_)
+    print(f'created {made}, removed {gone}; viewers that missed one {missed}, that were told anew {sum(v.told_anew > 0 for v in all_)}')
     print(f'simulated_per_second one viewer {alone[2] / (a.seconds / 3):.3f}, {a.viewers} viewers {simulated / a.seconds:.3f}')
     print(f'cpu_s_per_second one viewer {alone[1] / (a.seconds / 3):.3f}, {a.viewers} viewers {spent / a.seconds:.3f}')
 

@@ -10,7 +10,7 @@ import time
 
 import program
 
-OPEN, CLOSE = 0x81, 8
+OPEN, PONG, CLOSE, PING = 0x81, 0x8a, 8, 9
 MOTIONS, VOID, PAUSED = 1, 1, 2
 HULL = 6 # shape
 
@@ -72,6 +72,8 @@ class Viewer:
 			data, kind = self.take(n), first & 15
 			if kind == CLOSE:
 				raise EOFError(struct.unpack(">H", data[:2])[0] if data else 0, data[2:].decode())
+			if kind == PING:
+				self.send_frame(PONG, data)
 			if kind > 2:
 				continue
 			whole += data
