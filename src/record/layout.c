@@ -4,17 +4,18 @@
 
 // Whoever adds a member to one of these structures decides here whether a record needs it to be drawn again.
 static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
+static_assert(sizeof(ob_hull) == 7008, "members of /hulls");
 static_assert(sizeof(ob_camera_def) == 152 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
 
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
 
 #define EVENT(name, type) \
 	{ \
-#name, type, offsetof(ob_record_event, name) \
+#name, type, offsetof(ob_record_event, name), 0 \
 	}
 #define PASSPORT(name, type) \
 	{ \
-#name, type, offsetof(ob_record_event, passport.name) \
+#name, type, offsetof(ob_record_event, passport.name), 0 \
 	}
 static const ob_record_member event_members[] = {
 	EVENT(step, OB_RECORD_U64),           EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
@@ -22,8 +23,7 @@ static const ob_record_member event_members[] = {
 	PASSPORT(shape, OB_RECORD_U16),       PASSPORT(hull, OB_RECORD_U16),       PASSPORT(size, OB_RECORD_VEC3),
 	PASSPORT(mass, OB_RECORD_F64),        PASSPORT(inertia, OB_RECORD_VEC3),   PASSPORT(friction, OB_RECORD_F64),
 	PASSPORT(restitution, OB_RECORD_F64), PASSPORT(colour, OB_RECORD_RGBA),    PASSPORT(name, OB_RECORD_NAME),
-	PASSPORT(force, OB_RECORD_VEC3),      PASSPORT(roughness, OB_RECORD_F32),
-	PASSPORT(metal, OB_RECORD_F32),
+	PASSPORT(force, OB_RECORD_VEC3),      PASSPORT(roughness, OB_RECORD_F32),  PASSPORT(metal, OB_RECORD_F32),
 };
 const ob_record_table ob_record_events = {
 	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
@@ -36,10 +36,10 @@ const ob_record_table ob_record_events = {
 
 #define MOTION(name, type) \
 	{ \
-#name, type, offsetof(ob_record_motion, motion.name) \
+#name, type, offsetof(ob_record_motion, motion.name), 0 \
 	}
 static const ob_record_member motion_members[] = {
-	{ "id", OB_RECORD_U32, offsetof(ob_record_motion, id) },
+	{ "id", OB_RECORD_U32, offsetof(ob_record_motion, id), 0 },
 	MOTION(flags, OB_RECORD_U32),
 	MOTION(t0, OB_RECORD_F64),
 	MOTION(valid_until, OB_RECORD_F64),
@@ -60,9 +60,46 @@ const ob_record_table ob_record_motions = {
 	motion_members,
 };
 
+#define HULL(name, type) \
+	{ \
+#name, type, offsetof(ob_record_hull, hull.name), 0 \
+	}
+#define HULL_ARRAY(name, type) \
+	{ \
+#name, type, offsetof(ob_record_hull, hull.name), COUNT(((ob_hull *)NULL)->name) \
+	}
+static const ob_record_member hull_members[] = {
+	{ "number", OB_RECORD_U32, offsetof(ob_record_hull, number), 0 },
+	HULL(corners, OB_RECORD_U32),
+	HULL(faces, OB_RECORD_U32),
+	HULL(edges, OB_RECORD_U32),
+	HULL(radius, OB_RECORD_F64),
+	HULL(inner, OB_RECORD_F64),
+	HULL(thickness, OB_RECORD_F64),
+	HULL(volume, OB_RECORD_F64),
+	HULL(inertia, OB_RECORD_VEC3),
+	HULL(centre, OB_RECORD_VEC3),
+	HULL(frame, OB_RECORD_QUAT),
+	HULL_ARRAY(corner, OB_RECORD_VEC3),
+	HULL_ARRAY(normal, OB_RECORD_VEC3),
+	HULL_ARRAY(offset, OB_RECORD_F64),
+	HULL_ARRAY(first, OB_RECORD_U16),
+	HULL_ARRAY(loop, OB_RECORD_U8),
+	HULL_ARRAY(edge, OB_RECORD_EDGE),
+};
+const ob_record_table ob_record_hulls = {
+	{ "hulls", "SI", "body: the centre of mass, the principal axes",
+	  "convex hulls, by the number that events have as hull: the first so many of corner, normal and offset (of "
+	  "faces), "
+	  "edge; face f has the corners loop[first[f]] .. loop[first[f + 1] - 1], counterclockwise seen from outside" },
+	sizeof(ob_record_hull),
+	COUNT(hull_members),
+	hull_members,
+};
+
 #define CAMERA(name, type) \
 	{ \
-#name, type, offsetof(ob_camera_def, name) \
+#name, type, offsetof(ob_camera_def, name), 0 \
 	}
 static const ob_record_member camera_members[] = {
 	CAMERA(name, OB_RECORD_NAME),     CAMERA(eye, OB_RECORD_VEC3),       CAMERA(target, OB_RECORD_VEC3),
@@ -80,7 +117,7 @@ const ob_record_table ob_record_cameras = {
 
 #define LOOK(name, type) \
 	{ \
-#name, type, offsetof(ob_look_def, name) \
+#name, type, offsetof(ob_look_def, name), 0 \
 	}
 static const ob_record_member look_members[] = {
 	LOOK(sky_top, OB_RECORD_RGB), LOOK(sky_horizon, OB_RECORD_RGB), LOOK(ground_colour, OB_RECORD_RGB),
@@ -101,14 +138,15 @@ static hid_t array_of(hid_t element, hsize_t count)
 static hid_t type_of(ob_record_type type)
 {
 	switch (type) {
+	case OB_RECORD_U8:
+	case OB_RECORD_FLAG:
+		return H5Tcopy(H5T_NATIVE_UINT8);
 	case OB_RECORD_U16:
 		return H5Tcopy(H5T_NATIVE_UINT16);
 	case OB_RECORD_U32:
 		return H5Tcopy(H5T_NATIVE_UINT32);
 	case OB_RECORD_U64:
 		return H5Tcopy(H5T_NATIVE_UINT64);
-	case OB_RECORD_FLAG:
-		return H5Tcopy(H5T_NATIVE_UINT8);
 	case OB_RECORD_F32:
 		return H5Tcopy(H5T_NATIVE_FLOAT);
 	case OB_RECORD_F64:
@@ -123,15 +161,27 @@ static hid_t type_of(ob_record_type type)
 		return array_of(H5T_NATIVE_FLOAT, 4);
 	case OB_RECORD_NAME:
 		return ob_hdf5_string_type(OB_NAME_MAX);
+	case OB_RECORD_EDGE:
+		return array_of(H5T_NATIVE_UINT8, sizeof(ob_hull_edge));
 	}
 	return H5I_INVALID_HID;
+}
+
+static hid_t type_of_member(const ob_record_member *m)
+{
+	hid_t one = type_of(m->type);
+	if (m->length == 0)
+		return one;
+	hid_t all = array_of(one, m->length);
+	H5Tclose(one);
+	return all;
 }
 
 hid_t ob_record_type_in_memory(const ob_record_table *t)
 {
 	hid_t type = H5Tcreate(H5T_COMPOUND, t->size);
 	for (int i = 0; i < t->members; i++) {
-		hid_t member = type_of(t->member[i].type);
+		hid_t member = type_of_member(&t->member[i]);
 		H5Tinsert(type, t->member[i].name, t->member[i].offset, member);
 		H5Tclose(member);
 	}

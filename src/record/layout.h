@@ -4,6 +4,8 @@
 #ifndef OB_RECORD_LAYOUT_H
 #define OB_RECORD_LAYOUT_H
 
+#include <ob/hull.h>
+
 #include "record/hdf5_file.h"
 #include "scene/scene.h"
 
@@ -23,6 +25,7 @@ typedef struct ob_record_event {
 } ob_record_event;
 
 typedef enum ob_record_type {
+	OB_RECORD_U8,
 	OB_RECORD_U16,
 	OB_RECORD_U32,
 	OB_RECORD_U64,
@@ -34,12 +37,14 @@ typedef enum ob_record_type {
 	OB_RECORD_RGB, // float[3], linear
 	OB_RECORD_RGBA,
 	OB_RECORD_NAME, // char[OB_NAME_MAX], UTF-8, padded with zeros
+	OB_RECORD_EDGE, // ob_hull_edge
 } ob_record_type;
 
 typedef struct ob_record_member {
 	const char *name;
 	ob_record_type type;
 	size_t offset; // in the structure
+	size_t length; // of an array of these; 0: it is none
 } ob_record_member;
 
 typedef struct ob_record_table {
@@ -55,8 +60,15 @@ typedef struct ob_record_motion {
 	ob_motion motion;
 } ob_record_motion;
 
+// A hull, and the number that passports bear.
+typedef struct ob_record_hull {
+	uint32_t number, zero;
+	ob_hull hull;
+} ob_record_hull;
+
 extern const ob_record_table ob_record_events; // ob_record_event
 extern const ob_record_table ob_record_motions; // ob_record_motion: what of it decides where the object is
+extern const ob_record_table ob_record_hulls; // ob_record_hull
 extern const ob_record_table ob_record_cameras; // ob_camera_def
 extern const ob_record_table ob_record_look; // ob_look_def
 

@@ -290,7 +290,7 @@ struct ob_recorder {
 	char *path;
 	hid_t file, set[COLUMNS]; // negative: not there
 	objects objects;
-	list events, motions;
+	list events, motions, hulls;
 	preallocation allocated;
 	hsize_t chunk_ids; // in a chunk of the columns
 	uint64_t row_bytes; // at most, of one append to one such chunk of each column
@@ -301,6 +301,8 @@ struct ob_recorder {
 	ob_record_motion *known; // [count]: what was written last of each id, zeroed where it means nothing
 	ob_record_motion *fresh; // [count]: what is new in a row
 	ob_record_event *event; // [count * 2]
+	uint32_t known_hulls;
+	bool *knows_hull; // [known_hulls]: it is in the file
 };
 
 static hid_t column_type(int column)
@@ -432,7 +434,7 @@ static bool create_file(ob_recorder *r, const ob_record_facts *about)
 {
 	r->file = H5Fcreate(r->path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
 	if (r->file < 0 || !write_facts(r->file, about) || !create_objects(&r->objects, r->file, r->count) ||
-	    !create_list(&r->events, r->file) || !create_list(&r->motions, r->file))
+	    !create_list(&r->events, r->file) || !create_list(&r->motions, r->file) || !create_list(&r->hulls, r->file))
 		return false;
 	r->chunk_ids = r->count < IDS_AT_ONCE ? IDS_AT_ONCE : r->count;
 	for (int i = 0; i < COLUMNS; i++)
@@ -473,6 +475,7 @@ ob_recorder *ob_recorder_create(const char *path, const ob_record_facts *about, 
 	r->allocated.fd = -1;
 	r->events = list_of(&ob_record_events);
 	r->motions = list_of(&ob_record_motions);
+	r->hulls = list_of(&ob_record_hulls);
 	for (int i = 0; i < COLUMNS; i++)
 		r->set[i] = H5I_INVALID_HID;
 	uint32_t count = about->universe.capacity ? about->universe.capacity : 1;
@@ -528,6 +531,41 @@ static bool append_events(ob_recorder *r, const ob_snapshot *s)
 		changed = true;
 	}
 	return append_list(&r->events, r->event, events) && (!changed || write_objects(&r->objects));
+}
+
+static bool is_new_hull(const ob_recorder *r, const ob_snapshot *s, uint32_t hull)
+{
+	return s->hull[hull] && !(hull < r->known_hulls && r->knows_hull[hull]);
+}
+
+static uint32_t count_new_hulls(const ob_recorder *r, const ob_snapshot *s)
+{
+	uint32_t count = 0;
+	for (uint32_t i = 0; i < s->hulls; i++)
+		count += is_new_hull(r, s, i);
+	return count;
+}
+
+// Enters hulls that objects have for the first time.
+static bool append_hulls(ob_recorder *r, const ob_snapshot *s)
+{
+	bool ok = true;
+	if (s->hulls > r->known_hulls) {
+		bool *grown = realloc(r->knows_hull, s->hulls * sizeof *grown);
+		if (!grown)
+			return false;
+		memset(grown + r->known_hulls, 0, (s->hulls - r->known_hulls) * sizeof *grown);
+		r->knows_hull = grown;
+		r->known_hulls = s->hulls;
+	}
+	for (uint32_t i = 0; i < s->hulls && ok; i++) {
+		if (!is_new_hull(r, s, i))
+			continue;
+		ob_record_hull now = { .number = i, .hull = *s->hull[i] };
+		ok = append_list(&r->hulls, &now, 1);
+		r->knows_hull[i] = true;
+	}
+	return ok;
 }
 
 // Of a motion, what is recorded.
@@ -631,10 +669,11 @@ bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 	if (!grow(r, s))
 		return ob_fail(e, "%s: no memory to record %u objects", r->path, s->count);
 	uint64_t more = r->row_bytes * (1 + r->count / r->chunk_ids) + list_bytes(&r->events, 2 * r->count) +
-			list_bytes(&r->motions, r->count) + INDEX_BYTES + r->count * sizeof(ob_passport);
+			list_bytes(&r->motions, r->count) + list_bytes(&r->hulls, count_new_hulls(r, s)) + INDEX_BYTES +
+			r->count * sizeof(ob_passport);
 	if (H5Fget_eoa(r->file, &used) >= 0 && !preallocate(&r->allocated, r->path, used, more, e))
 		return false;
-	bool ok = append_events(r, s) && append_motions(r, s);
+	bool ok = append_hulls(r, s) && append_events(r, s) && append_motions(r, s);
 	for (int i = 0; i < COLUMNS && ok; i++)
 		ok = append_row(r, i, row_of(r, i, s));
 	if (!ok || H5Fflush(r->file, H5F_SCOPE_GLOBAL) < 0)
@@ -655,6 +694,7 @@ bool ob_recorder_close(ob_recorder *r, ob_error *e)
 		ok &= finish_objects(&r->objects);
 	ok &= finish_list(&r->events);
 	ok &= finish_list(&r->motions);
+	ok &= finish_list(&r->hulls);
 	if (r->file >= 0)
 		ok &= H5Fclose(r->file) >= 0;
 	ok &= close_preallocation(&r->allocated, ob_hdf5_length(r->path));
@@ -666,6 +706,7 @@ bool ob_recorder_close(ob_recorder *r, ob_error *e)
 	free(r->known);
 	free(r->fresh);
 	free(r->event);
+	free(r->knows_hull);
 	free(r);
 	return ok;
 }

@@ -13,7 +13,8 @@
 #include "record/layout.h"
 #include "table/layout.h"
 
-enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, EVERY_MAX = 1 << 30, AT_ONCE = 1024 };
+enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, HULLS_MAX = UINT16_MAX + 1, EVERY_MAX = 1 << 30 };
+enum { BYTES_AT_ONCE = 1 << 18 };
 static const double number_max = 1e15; // of any in SI units
 
 // A dataset of compounds, read some at a time.
@@ -21,6 +22,7 @@ typedef struct list {
 	const ob_record_table *table;
 	hid_t set, type; // negative: not there
 	uint64_t total, first, held; // there are; of those in memory
+	uint64_t room; // .. at most
 	char *item; // [held], of table->size
 } list;
 
@@ -119,7 +121,8 @@ static bool open_list(ob_recording *r, list *l, ob_error *e)
 	if (l->set < 0)
 		return false;
 	l->type = ob_record_type_in_memory(l->table);
-	l->item = calloc(AT_ONCE, l->table->size);
+	l->room = BYTES_AT_ONCE / l->table->size;
+	l->item = calloc(l->room, l->table->size);
 	return l->item ? true : ob_fail(e, "%s: no memory", r->path);
 }
 
@@ -136,9 +139,9 @@ static void close_list(list *l)
 static const void *item_at(list *l, uint64_t i)
 {
 	if (i < l->first || i >= l->first + l->held) {
-		hsize_t from = i, count = l->total - i < AT_ONCE ? l->total - i : AT_ONCE;
+		hsize_t from = i, count = l->total - i < l->room ? l->total - i : l->room;
 		hid_t in_file = H5Dget_space(l->set), in_memory = H5Screate_simple(1, &count, NULL);
-		memset(l->item, 0, AT_ONCE * l->table->size);
+		memset(l->item, 0, l->room * l->table->size);
 		bool ok = H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &from, NULL, &count, NULL) >= 0 &&
 			  H5Dread(l->set, l->type, in_memory, in_file, H5P_DEFAULT, l->item) >= 0;
 		H5Sclose(in_memory);
@@ -274,6 +277,39 @@ static bool open_look(ob_recording *r, ob_error *e)
 	return ok;
 }
 
+static bool take_recorded_hull(ob_recording *r, const ob_record_hull *h, ob_error *e)
+{
+	ob_snapshot *s = &r->now;
+	if (!h || h->number >= s->hulls || s->hull[h->number] || !ob_hull_makes_sense(&h->hull))
+		return damaged(r, "its hulls make no sense", e);
+	s->hull[h->number] = malloc(sizeof h->hull);
+	if (!s->hull[h->number])
+		return ob_fail(e, "%s: no memory for its hulls", r->path);
+	*s->hull[h->number] = h->hull;
+	return true;
+}
+
+// Records of before there were hulls lack them.
+static bool open_hulls(ob_recording *r, ob_error *e)
+{
+	list hulls = { .table = &ob_record_hulls, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	ob_snapshot *s = &r->now;
+	if (H5Lexists(r->file, hulls.table->label.name, H5P_DEFAULT) <= 0)
+		return true;
+	bool ok = open_list(r, &hulls, e);
+	if (ok && hulls.total > HULLS_MAX)
+		ok = damaged(r, "it has too many hulls", e);
+	if (ok && hulls.total > 0 && !(s->hull = calloc(HULLS_MAX, sizeof *s->hull)))
+		ok = ob_fail(e, "%s: no memory for its hulls", r->path);
+	s->hulls = s->hull ? HULLS_MAX : 0;
+	for (uint64_t i = 0; ok && i < hulls.total; i++)
+		ok = take_recorded_hull(r, item_at(&hulls, i), e);
+	while (s->hulls > 0 && !s->hull[s->hulls - 1])
+		s->hulls--;
+	close_list(&hulls);
+	return ok;
+}
+
 static bool open_facts(ob_recording *r, ob_error *e)
 {
 	ob_recording_info *i = &r->info;
@@ -337,7 +373,8 @@ static bool open_file(ob_recording *r, ob_error *e)
 	if (r->file < 0)
 		return ob_fail(e, "%s: this record cannot be opened: it is being written, cut short, or damaged",
 			       r->path);
-	return check_format(r, e) && open_facts(r, e) && open_cameras(r, e) && open_look(r, e) && open_states(r, e);
+	return check_format(r, e) && open_facts(r, e) && open_cameras(r, e) && open_look(r, e) && open_hulls(r, e) &&
+	       open_states(r, e);
 }
 
 static ob_recording *open_here(const char *path, ob_error *e)
@@ -470,8 +507,13 @@ static bool passport_makes_sense(const ob_passport *p)
 	bool sized = p->size.x >= 0 && p->size.y >= 0 && p->size.z >= 0;
 	return ob_passport_makes_sense(p, p->id) && p->shape != OB_SHAPE_NONE && p->flags & OB_OBJECT_PRESENT &&
 	       sized && finite3(p->size) && finite3(p->inertia) && p->inertia.x >= 0 && p->inertia.y >= 0 &&
-	       p->inertia.z >= 0 && p->mass <= number_max && is_colour(p->colour, 4) &&
-	       p->roughness >= 0 && p->roughness <= 1 && p->metal >= 0 && p->metal <= 1;
+	       p->inertia.z >= 0 && p->mass <= number_max && is_colour(p->colour, 4) && p->roughness >= 0 &&
+	       p->roughness <= 1 && p->metal >= 0 && p->metal <= 1;
+}
+
+static bool has_its_hull(const ob_snapshot *s, const ob_passport *p)
+{
+	return p->shape != OB_SHAPE_HULL || (p->hull < s->hulls && s->hull[p->hull]);
 }
 
 static bool is_present(const ob_snapshot *s, uint32_t id)
@@ -496,10 +538,7 @@ static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *
 		memset(&s->motion[id], 0, sizeof *s->motion);
 		return true;
 	}
-	if (now.passport.shape == OB_SHAPE_HULL)
-		return ob_fail(e, "%s: it has hulls, whose corners a record does not hold: run its scene again instead",
-			       r->path);
-	if (!passport_makes_sense(&now.passport))
+	if (!passport_makes_sense(&now.passport) || !has_its_hull(s, &now.passport))
 		return damaged(r, "an object makes no sense", e);
 	if (!make_room(s, id + 1))
 		return ob_fail(e, "%s: no memory for %u objects", r->path, id + 1);

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <ob/hull.h>
 #include <ob/motion.h>
 
 static const double tolerated = 1. / 256; // of the radius ..
@@ -69,6 +68,11 @@ static bool universe_motion(const void *of, uint32_t id, ob_motion *out)
 	return ob_universe_get_motion(((const ob_feed *)of)->u, id, out);
 }
 
+static bool universe_hull(const void *of, uint32_t hull, ob_hull *out)
+{
+	return ob_universe_get_hull(((const ob_feed *)of)->u, hull, out);
+}
+
 static double universe_time(const void *of)
 {
 	ob_universe_info info;
@@ -93,6 +97,7 @@ ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r)
 							  .passport = universe_passport,
 							  .passport_version = universe_passport_version,
 							  .motion = universe_motion,
+							  .hull = universe_hull,
 							  .time = universe_time,
 							  .step_length = info.step_length,
 							  .unseen = unseen });
@@ -225,10 +230,10 @@ static void put_motion(ob_message *out, const known *k, double time, uint32_t *b
 
 // ---- what exists
 
-static void put_hull(ob_message *out, const ob_universe *u, uint32_t number)
+static void put_hull(ob_message *out, const ob_feed_source *source, uint32_t number)
 {
 	ob_hull h;
-	if (!u || !ob_universe_get_hull(u, number, &h)) // a film is of a record, which has no hulls
+	if (!source->hull(source->of, number, &h)) // spoilt by a simulator that went wrong
 		h.corners = h.faces = 0;
 	ob_message_put_u8(out, h.corners);
 	ob_message_put_u8(out, h.faces);
@@ -241,7 +246,7 @@ static void put_hull(ob_message *out, const ob_universe *u, uint32_t number)
 	}
 }
 
-static void put_object(ob_message *out, const ob_universe *u, const known *k)
+static void put_object(ob_message *out, const ob_feed_source *source, const known *k)
 {
 	const ob_passport *p = &k->passport;
 	size_t name = strnlen(p->name, OB_NAME_MAX);
@@ -257,7 +262,7 @@ static void put_object(ob_message *out, const ob_universe *u, const known *k)
 	for (int i = 0; i < 3; i++)
 		ob_message_put_f32(out, p->colour[i]);
 	if (p->shape == OB_SHAPE_HULL)
-		put_hull(out, u, p->hull);
+		put_hull(out, source, p->hull);
 	ob_message_put(out, p->name, name);
 }
 
@@ -314,7 +319,7 @@ static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
 	}
 	for (size_t i = 0; i < kept; i++) {
 		if (!now[i].announced)
-			put_object(out, f->u, &now[i]);
+			put_object(out, &f->source, &now[i]);
 		now[i].announced = true;
 	}
 	free(f->object);
@@ -345,7 +350,7 @@ static uint32_t tell_looks(ob_feed *f, ob_message *out)
 		if (looks_alike(&now, &k->passport))
 			continue;
 		k->passport = now;
-		put_object(out, f->u, k);
+		put_object(out, &f->source, k);
 		told++;
 	}
 	return told;
@@ -433,7 +438,7 @@ ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace)
 	if (!out)
 		return NULL;
 	for (size_t i = 0; i < f->objects; i++)
-		put_object(out, f->u, &f->object[i]);
+		put_object(out, &f->source, &f->object[i]);
 	for (size_t i = 0; i < f->objects; i++) {
 		if (!f->object[i].told)
 			continue;

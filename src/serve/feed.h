@@ -29,6 +29,8 @@
 #ifndef OB_SERVE_FEED_H
 #define OB_SERVE_FEED_H
 
+#include <ob/hull.h>
+
 #include "host/pace.h"
 #include "host/roster.h"
 #include "serve/message.h"
@@ -56,6 +58,7 @@ typedef struct ob_feed_source {
 	bool (*passport)(const void *of, uint32_t id, ob_passport *out); // as ob_universe_get_passport
 	uint64_t (*passport_version)(const void *of, uint32_t id); // another one after it has come to look otherwise
 	bool (*motion)(const void *of, uint32_t id, ob_motion *out); // as ob_universe_get_motion
+	bool (*hull)(const void *of, uint32_t hull, ob_hull *out); // as ob_universe_get_hull
 	double (*time)(const void *of); // s, simulated
 	double step_length; // s
 	double unseen; // s: what an object may be off by is its way in so long, too, for nobody sees it stand still

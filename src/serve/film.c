@@ -67,6 +67,15 @@ static bool recorded_motion(const void *of, uint32_t id, ob_motion *out)
 	return is_present(s, id);
 }
 
+static bool recorded_hull(const void *of, uint32_t hull, ob_hull *out)
+{
+	const ob_snapshot *s = ob_recording_state(of);
+	const ob_hull *h = hull < s->hulls ? s->hull[hull] : NULL;
+	if (h)
+		*out = *h;
+	return h != NULL;
+}
+
 static double recorded_time(const void *of)
 {
 	return ob_recording_state(of)->time;
@@ -251,6 +260,7 @@ ob_message *ob_film_make(ob_recording *r, const char *path, ob_error *e)
 					.passport = recorded_passport,
 					.passport_version = recorded_passport_version,
 					.motion = recorded_motion,
+					.hull = recorded_hull,
 					.time = recorded_time,
 					.step_length = ob_recording_get_info(r)->scene.run.step_length };
 	film f = { .recording = r,

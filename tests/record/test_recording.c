@@ -5,24 +5,37 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hull/hull.h"
 #include "record/record.h"
 #include "record/recording.h"
 
 #include "../check.h"
 
-enum { OBJECTS = 40, STATES = 300, EVERY = 3 };
+enum { OBJECTS = 40, STATES = 300, EVERY = 3, HULLS = 7 };
 static const double step_length = .01;
 static char path[64], fifo[80];
 
+static ob_hull tetrahedron, prism;
+
+static void build_hulls(void)
+{
+	static const ob_vec3 point[6] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 2 }, { 1, 0, 2 }, { 0, 1, 2 } };
+	ob_error e;
+	CHECK(ob_hull_build(point, 4, &tetrahedron, &e) && ob_hull_build(point, 6, &prism, &e));
+}
+
 // What there is at a state: 0 a plane, 1 a ball in flight that rebounds every 50 states, 2 moves each step, 3 comes at
-// state 20, changes colour at 40 and goes at 60, from 80 on another has its id; 39 comes at the end.
+// state 20, changes colour at 40 and goes at 60, from 80 on another has its id; 39 comes at the end. 2 is a hull, and 3 is one,
+// of another number, from 80 on.
 static ob_snapshot at(uint64_t state)
 {
 	static ob_passport passport[OBJECTS];
 	static ob_motion motion[OBJECTS];
+	static ob_hull *hull[HULLS];
 	const double t = step_length * EVERY * (double)state;
 	memset(passport, 0, sizeof passport);
 	memset(motion, 0, sizeof motion);
+	memset(hull, 0, sizeof hull);
 	for (uint32_t id = 0; id < OBJECTS; id++) {
 		bool there = id < 3 || (id == 3 && state >= 20 && state < 60) || (id == 3 && state >= 80) ||
 			     (id == OBJECTS - 1 && state == STATES - 1);
@@ -41,10 +54,18 @@ static ob_snapshot at(uint64_t state)
 		if (id != 1)
 			motion[id].valid_until = 1;
 	}
+	passport[2].shape = OB_SHAPE_HULL;
+	passport[2].hull = 5;
+	hull[5] = &tetrahedron;
+	if (state >= 80) {
+		passport[3].shape = OB_SHAPE_HULL;
+		passport[3].hull = 1;
+		hull[1] = &prism;
+	}
 	passport[0].shape = OB_SHAPE_PLANE;
 	passport[0].flags |= OB_OBJECT_STATIC;
 	return (ob_snapshot){ .step = EVERY * (state + 2), .time = step_length * (double)(EVERY * (state + 2)), .count = OBJECTS,
-			      .passport = passport, .motion = motion };
+			      .passport = passport, .motion = motion, .hulls = HULLS, .hull = hull };
 }
 
 static void record(uint64_t states)
@@ -98,6 +119,9 @@ static void test_same_snapshots(void)
 			if (there)
 				CHECK(memcmp(&now->passport[id], &was.passport[id], sizeof *was.passport) == 0 &&
 				      same_motion(&now->motion[id], &was.motion[id]));
+			const ob_hull *hull = there ? ob_snapshot_hull(&was, id) : NULL;
+			if (hull)
+				CHECK(memcmp(ob_snapshot_hull(now, id), hull, sizeof *hull) == 0);
 		}
 		CHECK(ob_recording_population(r) == 1u + (states >= 20) + (states >= 40) + (states >= 60) + (states >= 80) +
 							    (states == STATES - 1));
@@ -221,6 +245,26 @@ static void twice(hid_t file)
 	set_member(file, "events", "id", H5T_NATIVE_UINT32, 2, &(uint32_t){ 1 });
 }
 
+static void no_hulls(hid_t file)
+{
+	H5Ldelete(file, "hulls", H5P_DEFAULT);
+}
+
+static void another_hull(hid_t file)
+{
+	set_member(file, "hulls", "number", H5T_NATIVE_UINT32, 0, &(uint32_t){ 4 });
+}
+
+static void huge_hull(hid_t file)
+{
+	set_member(file, "hulls", "number", H5T_NATIVE_UINT32, 0, &(uint32_t){ 1 << 16 });
+}
+
+static void many_corners(hid_t file)
+{
+	set_member(file, "hulls", "corners", H5T_NATIVE_UINT32, 0, &(uint32_t){ 100 });
+}
+
 static void flat(hid_t file)
 {
 	set_member(file, "cameras", "fov", H5T_NATIVE_DOUBLE, 0, &(double){ 0 });
@@ -246,6 +290,10 @@ static void test_damaged(void)
 		{ no_shape, "an object makes no sense" },
 		{ twice, "comes twice" },
 		{ flat, "its cameras make no sense" },
+		{ no_hulls, "an object makes no sense" },
+		{ another_hull, "an object makes no sense" },
+		{ huge_hull, "its hulls make no sense" },
+		{ many_corners, "its hulls make no sense" },
 	};
 	for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
 		change(damages[i].how);
@@ -274,6 +322,7 @@ int main(void)
 {
 	snprintf(path, sizeof path, "/tmp/obsim-test-recording-%d.h5", (int)getpid());
 	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+	build_hulls();
 	test_same_snapshots();
 	test_damaged();
 	test_no_record();

@@ -23,6 +23,7 @@ sphere { radius = .3, at = { 2.2, -1, 2 }, restitution = .7, colour = "#e4572e",
 	script = [[function on_start() self:wake(.6) end function on_wake() self:colour("#f6d743") end]] }
 capsule { radius = .15, length = .5, at = { -1.5, -1, 1 }, spin = { 0, 5, 1 }, dies = 1.2 }
 cylinder { radius = .25, length = .5, at = { 0, -1.4, 1.5 }, born = .5, spin = { 4, 0, 0 } }
+hull { points = { { 0, 0, 0 }, { .7, 0, 0 }, { 0, .6, 0 }, { .3, .1, .6 } }, at = { -2.6, -.5, 1 }, colour = "#7a5195", spin = { 0, 4, 2 } }
 """
 TIMES = .4, 49 / 60 + .005, 1.75  # s: in the air, between two steps, at rest
 # Of 255, the mean difference, and the share of pixels that are off by more than FAR. Edges, of which the ground's grid has
