@@ -5,9 +5,9 @@
 
 static void set3(lanes *x, int l, ob_vec3 v)
 {
-	x[0][l] = v.x;
-	x[1][l] = v.y;
-	x[2][l] = v.z;
+	lanes_put(&x[0], l, v.x);
+	lanes_put(&x[1], l, v.y);
+	lanes_put(&x[2], l, v.z);
 }
 
 void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)
@@ -40,8 +40,10 @@ void ob_batch_clear(ob_batch *b, int l)
 	};
 	ob_batch_set(b, l, &empty);
 	b->live &= ~(1u << l);
-	for (int i = 0; i < OB_ROWS; i++)
-		b->impulse[i][l] = b->impulse_start[i][l] = 0;
+	for (int i = 0; i < OB_ROWS; i++) {
+		lanes_put(&b->impulse[i], l, 0);
+		lanes_put(&b->impulse_start[i], l, 0);
+	}
 }
 
 // ---- the patch
@@ -132,12 +134,12 @@ static void set_patch(ob_batch *b, int l, const vec2 *p, int points, double disc
 		set_thickness(&e1, &e2);
 	const double inverse = size2 > 0 ? 1 / cross2(e1, e2) : 0;
 	for (int j = 0; j < OB_POINTS; j++) {
-		b->patch_s[j][l] = j < points ? cross2(p[j], e2) * inverse : 0;
-		b->patch_t[j][l] = j < points ? cross2(e1, p[j]) * inverse : 0;
+		lanes_put(&b->patch_s[j], l, j < points ? cross2(p[j], e2) * inverse : 0);
+		lanes_put(&b->patch_t[j], l, j < points ? cross2(e1, p[j]) * inverse : 0);
 	}
-	b->patch_e1[0][l] = e1.x, b->patch_e1[1][l] = e1.y;
-	b->patch_e2[0][l] = e2.x, b->patch_e2[1][l] = e2.y;
-	b->disc[l] = disc;
+	lanes_put(&b->patch_e1[0], l, e1.x), lanes_put(&b->patch_e1[1], l, e1.y);
+	lanes_put(&b->patch_e2[0], l, e2.x), lanes_put(&b->patch_e2[1], l, e2.y);
+	lanes_put(&b->disc, l, disc);
 }
 
 void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
@@ -154,7 +156,7 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 		bool used = j < in->points;
 		set3(b->ja[j], l, used ? ob_cross(in->arm_a[j], n) : ob_v3(0, 0, 0));
 		set3(b->jb[j], l, used ? ob_cross(in->arm_b[j], n) : ob_v3(0, 0, 0));
-		b->gap[j][l] = used ? in->gap[j] : ob_no_contact;
+		lanes_put(&b->gap[j], l, used ? in->gap[j] : ob_no_contact);
 		if (used) {
 			ob_vec3 from = ob_sub(in->arm_a[j], ca);
 			at[j] = (vec2){ ob_dot(from, t1), ob_dot(from, t2) };
@@ -169,13 +171,13 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 	set3(b->fb1, l, ob_cross(cb, t1));
 	set3(b->fb2, l, ob_cross(cb, t2));
 	for (int c = 0; c < 6; c++) {
-		b->ia[c][l] = in->inv_inertia_a[c];
-		b->ib[c][l] = in->inv_inertia_b[c];
+		lanes_put(&b->ia[c], l, in->inv_inertia_a[c]);
+		lanes_put(&b->ib[c], l, in->inv_inertia_b[c]);
 	}
-	b->ima[l] = in->inv_mass_a;
-	b->imb[l] = in->inv_mass_b;
-	b->mu[l] = in->mu;
-	b->radius[l] = in->points > 1 ? radius : 0;
+	lanes_put(&b->ima, l, in->inv_mass_a);
+	lanes_put(&b->imb, l, in->inv_mass_b);
+	lanes_put(&b->mu, l, in->mu);
+	lanes_put(&b->radius, l, in->points > 1 ? radius : 0);
 	set_patch(b, l, at, in->points, in->points > 1 ? in->disc_radius : 0);
 	b->body_a[l] = in->body_a;
 	b->body_b[l] = in->body_b;

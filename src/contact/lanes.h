@@ -65,6 +65,12 @@ static inline void lanes_store(double *to, lanes x)
 {
 	__builtin_memcpy(to, &x, sizeof x);
 }
+// Writes lane l alone. (x[l] = y is compiled by clang, where l is not constant, to a copy of the whole and back, which
+// waits for the store in between.)
+static inline void lanes_put(lanes *x, int l, double y)
+{
+	__builtin_memcpy((char *)x + (unsigned)l * sizeof y, &y, sizeof y);
+}
 // Turns four by four numbers over: x[i][l] becomes x[l][i].
 static inline void lanes_transpose(lanes *x)
 {

@@ -185,7 +185,7 @@ static void update_gaps(ob_island_work *w, uint32_t row)
 			double opened = 0;
 			for (int c = 0; c < 3; c++)
 				opened += b->n[c][l] * d[c] + arm[c][l] * d[3 + c];
-			b->gap[j][l] += sign * opened;
+			lanes_put(&b->gap[j], l, b->gap[j][l] + sign * opened);
 		}
 	}
 }

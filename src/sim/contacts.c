@@ -238,13 +238,13 @@ static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const 
 	int l = contact->lane % OB_LANES;
 	ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1, t2;
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
-		b->impulse[j][l] = contact->was[j] >= 0 ? old->impulse[contact->was[j]] : 0;
+		lanes_put(&b->impulse[j], l, contact->was[j] >= 0 ? old->impulse[contact->was[j]] : 0);
 	ob_tangents(n, &t1, &t2);
-	b->impulse[4][l] = same ? ob_dot(old->friction, t1) : 0;
-	b->impulse[5][l] = same ? ob_dot(old->friction, t2) : 0;
-	b->impulse[6][l] = same ? old->impulse[6] : 0;
+	lanes_put(&b->impulse[4], l, same ? ob_dot(old->friction, t1) : 0);
+	lanes_put(&b->impulse[5], l, same ? ob_dot(old->friction, t2) : 0);
+	lanes_put(&b->impulse[6], l, same ? old->impulse[6] : 0);
 	for (int i = 0; i < OB_PAIR_ROWS; i++)
-		b->impulse_start[i][l] = b->impulse[i][l];
+		lanes_put(&b->impulse_start[i], l, b->impulse[i][l]);
 }
 
 // ---- geometry
@@ -411,8 +411,8 @@ static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 			(m[0]->inv_mass == 0 || m[0]->contacts == 1) && (m[1]->inv_mass == 0 || m[1]->contacts == 1);
 		b->isolated |= (unsigned)isolated << l & b->live;
 		if (jacobi) {
-			b->ka[l] = fmax(1, m[0]->contacts);
-			b->kb[l] = fmax(1, m[1]->contacts);
+			lanes_put(&b->ka, l, fmax(1, m[0]->contacts));
+			lanes_put(&b->kb, l, fmax(1, m[1]->contacts));
 		}
 	}
 }
