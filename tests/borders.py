@@ -27,7 +27,7 @@ ARROWS = {
     'sim': 'contact ode motion table settings base',
     'scene': 'hull settings motion base',
     'script': 'scene table settings motion base',
-    'host': 'sim script scene table settings ode base',
+    'host': 'sim script scene hull table settings ode base',
     'checkpoint': 'host scene table settings base',
     'measure': 'motion base',
     'reference': 'motion base',

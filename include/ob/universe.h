@@ -125,7 +125,7 @@ typedef struct ob_universe_info {
 	uint32_t deaths;      // times that simulators died or stalled
 	uint32_t frozen;      // objects that stay where they are since then (OB_OBJECT_FROZEN)
 	char last_death[OB_DEATH_MAX]; // which it was, and of what; "" = none
-	uint32_t hulls;       // hulls are numbered 0 .. hulls-1
+	uint32_t hulls;       // hulls are numbered 0 .. hulls-1; more may come
 	uint64_t created;     // ns since 1970: no other universe has the same name and instant
 } ob_universe_info;
 

@@ -23,7 +23,7 @@
 #include <ob/error.h>
 
 // A change of what an area holds needs a new version.
-enum { OB_CHECKPOINT_VERSION = 4, OB_CHECKPOINT_AREAS_MAX = 32 };
+enum { OB_CHECKPOINT_VERSION = 5, OB_CHECKPOINT_AREAS_MAX = 32 };
 
 typedef struct ob_checkpoint_rule {
 	const char *name; // for messages

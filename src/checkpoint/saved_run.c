@@ -27,6 +27,7 @@ typedef enum saved_area {
 	AREA_SCRIPT_TURNS,
 	AREA_SCRIPT_CELLS,
 	AREA_SCRIPT_TEXTS,
+	AREA_HULLS, // that are not the scene's
 	AREAS
 } saved_area;
 
@@ -62,6 +63,7 @@ static const ob_checkpoint_rule rules[AREAS] = {
 	[AREA_SCRIPT_TURNS] = { "scripts' schedule", sizeof(ob_script_turn), 0, OBJECTS_MAX },
 	[AREA_SCRIPT_CELLS] = { "scripts' state", sizeof(ob_script_cell), 0, OBJECTS_MAX },
 	[AREA_SCRIPT_TEXTS] = { "scripts", 1, 0, SCRIPTS_MAX },
+	[AREA_HULLS] = { "hulls", sizeof(ob_hull_corners), 0, OB_SCENE_HULLS_MAX },
 };
 
 // Points the arrays into the file's memory.
@@ -80,6 +82,7 @@ static void bind(ob_saved_run *r, const ob_checkpoint_file *f)
 	u->script_turn = f->area[AREA_SCRIPT_TURNS].at;
 	u->script_cell = f->area[AREA_SCRIPT_CELLS].at;
 	u->script_text = f->area[AREA_SCRIPT_TEXTS].at;
+	r->host.population.hull = f->area[AREA_HULLS].at;
 }
 
 // ---- saving
@@ -136,7 +139,8 @@ bool ob_saved_run_make(ob_saved_run *r, ob_checkpoint_file *f, ob_host *h, const
 				  [AREA_RECORDS] = u->records,
 				  [AREA_SCRIPT_TURNS] = u->script_cells,
 				  [AREA_SCRIPT_CELLS] = u->script_cells,
-				  [AREA_SCRIPT_TEXTS] = u->script_bytes };
+				  [AREA_SCRIPT_TEXTS] = u->script_bytes,
+				  [AREA_HULLS] = r->host.population.hulls };
 	for (int i = 0; i < AREAS; i++)
 		if (count[i] > rules[i].most)
 			return ob_fail(e, "a checkpoint has no room for so many %s", rules[i].name);
@@ -218,6 +222,7 @@ static bool open_universe(ob_saved_run *r, const ob_checkpoint_file *f, const ch
 	u->script_cells = (uint32_t)f->area[AREA_SCRIPT_TURNS].count;
 	u->script_bytes = (uint32_t)f->area[AREA_SCRIPT_TEXTS].count;
 	r->host.population.count = (uint32_t)f->area[AREA_SLOTS].count;
+	r->host.population.hulls = (uint32_t)f->area[AREA_HULLS].count;
 	memcpy(&r->host.counters, f->area[AREA_COUNTERS].at, sizeof r->host.counters);
 	return ob_saved_universe_check(u, &why) || ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);
 }

@@ -49,10 +49,13 @@ static bool create(sending *s, ob_error *e)
 	for (uint32_t i = 0; fine && i < scene->objects; i++) {
 		const ob_object_def *def = &scene->object[i];
 		s->request = (ob_request){ .kind = OB_REQUEST_ADD, .def = *def };
+		if (def->passport.shape == OB_SHAPE_HULL)
+			s->request.corners = scene->hull_corners[def->passport.hull];
 		if (def->script || def->born > 0 || def->dies < INFINITY)
 			fine = ob_fail(e, "create: expected an object without script, born and dies");
 		else if (def->path || def->force)
-			fine = ob_fail(e, "create: expected neither path nor varying_force: a scene's objects have them");
+			fine = ob_fail(e,
+				       "create: expected neither path nor varying_force: a scene's objects have them");
 		fine = fine && ob_ask(s->universe, &s->request, e);
 	}
 	ob_scene_free(scene);

@@ -58,11 +58,22 @@ static bool is_colour(const float *c)
 	return true;
 }
 
-// All of them is in its definition.
-static bool is_plain(uint32_t shape)
+static bool check_new(const ob_host *h, const ob_request *r, ob_error *e)
 {
-	return shape == OB_SHAPE_BOX || shape == OB_SHAPE_SPHERE || shape == OB_SHAPE_CAPSULE ||
-	       shape == OB_SHAPE_CYLINDER;
+	const uint32_t shape = r->def.passport.shape;
+	const bool known = shape == OB_SHAPE_BOX || shape == OB_SHAPE_SPHERE || shape == OB_SHAPE_CAPSULE ||
+			   shape == OB_SHAPE_CYLINDER || shape == OB_SHAPE_HULL;
+	ob_hull hull;
+	if (!known || r->def.script || r->def.state_bytes)
+		return ob_fail(e,
+			       "only boxes, spheres, capsules, cylinders and hulls without a script can be created so");
+	if (shape != OB_SHAPE_HULL)
+		return true;
+	if (ob_universe_hulls(h->u) == 0)
+		return ob_fail(e, "the one ODE world has no hulls");
+	return r->corners.count <= OB_HULL_CORNERS_MAX
+		       ? ob_hull_build(r->corners.at, r->corners.count, &hull, e)
+		       : ob_fail(e, "a hull has at most %d corners", OB_HULL_CORNERS_MAX);
 }
 
 static bool check(const ob_host *h, const ob_request *r, ob_error *e)
@@ -71,8 +82,7 @@ static bool check(const ob_host *h, const ob_request *r, ob_error *e)
 	if (r->kind > OB_REQUEST_MESSAGE)
 		return ob_fail(e, "unknown request");
 	if (r->kind == OB_REQUEST_ADD)
-		return (is_plain(r->def.passport.shape) && !r->def.script && !r->def.state_bytes) ||
-		       ob_fail(e, "only boxes, spheres, capsules and cylinders without a script can be created so");
+		return check_new(h, r, e);
 	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
 		return ob_fail(e, "the object has gone");
 	if (r->kind == OB_REQUEST_COLOUR && !is_colour(r->colour))

@@ -112,7 +112,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.workers = one_per_object    ? capacity
 			   : c->run.monolith ? 1
 					     : c->workers,
-		.hulls = scene->hulls,
+		.hulls = c->run.monolith ? 0 : OB_SCENE_HULLS_MAX,
 		.isolation = spawn->name,
 		.traced = c->trace != NULL,
 		.contained = c->harden,
@@ -172,15 +172,14 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host
 	if (!check_paths(scene, ob_universe_settings(h->u)->step_length, e) ||
 	    !ob_universe_reserve(h->u, scene->objects, e))
 		return false;
-	for (uint32_t i = 0; i < scene->hulls; i++)
-		if (!ob_write_hull(h->u, i, &scene->hull[i]))
-			return ob_fail(e, "/dev/shm is full: no room for %u hulls", scene->hulls);
 	ob_ode_init();
 	h->roster = ob_roster_create();
 	h->requests = ob_requests_create();
-	h->population = h->roster ? ob_population_create(scene, h->u, h->roster) : NULL;
-	if (!h->requests || !h->population)
+	if (!h->requests || !h->roster)
 		return ob_fail(e, "out of memory");
+	h->population = ob_population_create(scene, h->u, h->roster, e);
+	if (!h->population)
+		return false;
 	if (!from)
 		ob_population_update(h->population, 0, h->requests);
 	else if (!load(h, from, e))

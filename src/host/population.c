@@ -44,10 +44,11 @@ struct ob_population {
 	bool asked; // by somebody outside, in the last update
 	uint32_t first_free; // no slot below it is free
 	uint32_t created; // objects that scripts have created, and that exist
+	ob_hulls hulls;
 	struct {
 		slot *slots; // NULL: none kept
 		size_t next;
-		uint32_t first_free, created, kinematic, pushed;
+		uint32_t first_free, created, kinematic, pushed, hulls;
 	} kept;
 };
 
@@ -151,14 +152,13 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 	return true;
 }
 
-// Hulls follow from the scene.
 static bool check_hull(const ob_population *p, const ob_passport *pass, ob_error *e)
 {
 	const ob_hull *h = ob_hull_of(p->u, pass);
 	if (pass->shape != OB_SHAPE_HULL ||
 	    (h && pass->size.x == h->radius && pass->size.y == .5 * h->thickness && pass->size.z == h->inner))
 		return true;
-	return ob_fail(e, "object \"%s\": its hull is not one of its scene", pass->name);
+	return ob_fail(e, "object \"%s\": it has no hull of this universe", pass->name);
 }
 
 // ---- changes
@@ -296,6 +296,19 @@ static void stop_script(ob_population *p, uint32_t cell, uint32_t line, const ch
 	data->script_counts->failed++;
 }
 
+// The corners of a hull are what is left of the post.
+static bool take_hull(ob_population *p, ob_object_def *def, const ob_script_post *post, ob_error *e)
+{
+	const size_t before = sizeof *def + def->state_bytes, bytes = post->used - before;
+	ob_hull_corners corners = { .count = (uint32_t)(bytes / sizeof *corners.at) };
+	if (def->passport.shape != OB_SHAPE_HULL)
+		return true;
+	if (bytes > sizeof corners.at)
+		return ob_fail(e, "hull: its corners make no sense");
+	memcpy(corners.at, (const unsigned char *)(post + 1) + before, bytes);
+	return ob_hulls_give(&p->hulls, &corners, &def->passport, e);
+}
+
 // What lies in the universe is not taken for granted.
 static void create_for_script(ob_population *p, uint32_t cell, const ob_script_post *post)
 {
@@ -308,7 +321,7 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 	def.path = NULL, def.force = NULL; // the scene's alone
 	if (post->used - sizeof def < def.state_bytes || def.script > data->script_text->scripts)
 		return;
-	if (!ob_object_check(&def, &e)) {
+	if (!take_hull(p, &def, post, &e) || !ob_object_check(&def, &e)) {
 		stop_script(p, cell, post->line, e.text);
 		return;
 	}
@@ -370,6 +383,16 @@ static void change_on_request(ob_population *p, const ob_request *r)
 	}
 }
 
+static void add_asked_for(ob_population *p, ob_request *r)
+{
+	ob_error e;
+	ob_passport *pass = &r->def.passport;
+	if (pass->shape == OB_SHAPE_HULL && r->corners.count && !ob_hulls_give(&p->hulls, &r->corners, pass, &e))
+		ob_log_warn("object \"%s\" was not added: %s", pass->name, e.text);
+	else
+		add_on_request(p, &r->def, NULL);
+}
+
 static void publish_roster(ob_population *p)
 {
 	bool one_per_object = ob_universe_settings(p->u)->one_per_object;
@@ -404,7 +427,8 @@ static void push_all(ob_population *p)
 		const uint64_t since = ob_step_count(p->u) - s->born, next = ob_force_next(force, h, since);
 		const ob_vec3 now = ob_force_mean(force, h, since),
 			      before = since ? ob_force_mean(force, h, since - 1) : ob_v3(0, 0, 0);
-		ob_sim_push(p->u, id, ob_add(p->scene->object[id].passport.force, now), ob_norm2(ob_sub(now, before)) > 0);
+		ob_sim_push(p->u, id, ob_add(p->scene->object[id].passport.force, now),
+			    ob_norm2(ob_sub(now, before)) > 0);
 		if (next != UINT64_MAX && s->born + next < p->next_prescribed)
 			p->next_prescribed = s->born + next;
 		left--;
@@ -442,7 +466,7 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	while (ob_requests_take(q, &r)) {
 		p->asked = true;
 		if (r.kind == OB_REQUEST_ADD)
-			add_on_request(p, &r.def, NULL);
+			add_asked_for(p, &r);
 		else if (r.id < ob_universe_capacity(p->u) && p->slots[r.id].generation == r.generation &&
 			 p->slots[r.id].use == SLOT_PRESENT)
 			change_on_request(p, &r);
@@ -477,6 +501,7 @@ bool ob_population_keep(ob_population *p)
 	p->kept.created = p->created;
 	p->kept.kinematic = p->kinematic;
 	p->kept.pushed = p->pushed;
+	p->kept.hulls = p->hulls.count;
 	return true;
 }
 
@@ -490,6 +515,7 @@ void ob_population_put_back(ob_population *p)
 	p->created = p->kept.created;
 	p->kinematic = p->kept.kinematic;
 	p->pushed = p->kept.pushed;
+	p->hulls.count = p->kept.hulls; // the same come again, as they were
 	publish_roster(p);
 }
 
@@ -504,7 +530,9 @@ uint64_t ob_population_next_step(const ob_population *p)
 void ob_population_count_saved(const ob_population *p, ob_saved_population *out)
 {
 	uint32_t ids = ob_universe_ids(p->u);
-	*out = (ob_saved_population){ .events = p->next, .count = ids > p->scene->objects ? ids : p->scene->objects };
+	*out = (ob_saved_population){ .events = p->next,
+				      .count = ids > p->scene->objects ? ids : p->scene->objects,
+				      .hulls = p->hulls.count - p->hulls.of_scene };
 }
 
 void ob_population_save(const ob_population *p, ob_saved_population *out)
@@ -513,6 +541,8 @@ void ob_population_save(const ob_population *p, ob_saved_population *out)
 		const slot *s = &p->slots[id];
 		out->slot[id] = (ob_saved_slot){ s->generation, s->use, s->removal_scheduled, s->created, 0 };
 	}
+	if (out->hulls)
+		memcpy(out->hull, p->hulls.corners, out->hulls * sizeof *out->hull);
 }
 
 static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot *s)
@@ -560,7 +590,7 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 {
 	if (s->count > ob_universe_capacity(p->u) || s->count < p->scene->objects || s->events > p->event_count)
 		return ob_fail(e, "its objects are not those of its scene");
-	if (!check_objects(p, e))
+	if (!ob_hulls_load(&p->hulls, s->hull, s->hulls, e) || !check_objects(p, e))
 		return false;
 	for (uint32_t id = 0; id < s->count; id++) {
 		const ob_saved_slot *from = &s->slot[id];
@@ -603,19 +633,22 @@ static void plan_object(ob_population *p, uint32_t id, double step_length)
 		p->events[p->event_count++] = (event){ .step = dies, .id = id };
 }
 
-ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r)
+ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r, ob_error *e)
 {
 	double step_length = ob_universe_settings(u)->step_length;
 	ob_population *p = calloc(1, sizeof *p);
-	if (!p)
+	if (!p) {
+		ob_fail(e, "out of memory");
 		return NULL;
+	}
 	p->u = u;
 	p->roster = r;
 	p->scene = scene;
 	p->next_prescribed = UINT64_MAX;
 	p->slots = calloc(ob_universe_capacity(u), sizeof *p->slots);
 	p->events = calloc(2 * (size_t)scene->objects + 1, sizeof *p->events);
-	if (!p->slots || !p->events) {
+	bool ready = p->slots && p->events ? ob_hulls_init(&p->hulls, scene, u, e) : ob_fail(e, "out of memory");
+	if (!ready) {
 		ob_population_destroy(p);
 		return NULL;
 	}
@@ -631,6 +664,7 @@ void ob_population_destroy(ob_population *p)
 		return;
 	free(p->events);
 	free(p->slots);
+	ob_hulls_finish(&p->hulls);
 	free(p->kept.slots);
 	free(p);
 }

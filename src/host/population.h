@@ -6,6 +6,7 @@
 #ifndef OB_HOST_POPULATION_H
 #define OB_HOST_POPULATION_H
 
+#include "host/hulls.h"
 #include "host/roster.h"
 #include "scene/scene.h"
 #include "table/table.h"
@@ -25,6 +26,7 @@ typedef struct ob_request {
 	uint32_t kind; // ob_request_kind
 	uint32_t id, generation; // of the object, unless one is added
 	ob_object_def def; // to add
+	ob_hull_corners corners; // of a hull
 	float colour[4]; // linear
 	uint32_t bytes; // of the message
 	unsigned char values[512]; // flat (scene/flat.h)
@@ -42,8 +44,8 @@ typedef struct ob_population ob_population;
 bool ob_object_check(const ob_object_def *def, ob_error *e);
 
 // Slots 0 .. scene->objects-1 are the scene's; the rest of the table is for objects added later. All three must outlive
-// it. NULL: out of memory.
-ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r);
+// it. Writes the scene's hulls. NULL and e: out of memory, of the system or of /dev/shm.
+ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r, ob_error *e);
 void ob_population_destroy(ob_population *p);
 
 // Carries out what the timetable has due at this step or before, then the requests. true: objects were added or removed.
@@ -72,9 +74,11 @@ typedef struct ob_saved_population {
 	uint64_t events; // of the timetable, that have been carried out
 	uint32_t count; // slots that were ever used, or will be by the timetable: the scene's at least
 	ob_saved_slot *slot; // [count]
+	uint32_t hulls; // that have come since the run began
+	ob_hull_corners *hull; // [hulls]
 } ob_saved_population;
 
-// Fills in events and count, for the array to be made; then the array.
+// Fills in events, count and hulls, for the arrays to be made; then the arrays.
 void ob_population_count_saved(const ob_population *p, ob_saved_population *out);
 void ob_population_save(const ob_population *p, ob_saved_population *out);
 // Instead of the first update, after ob_universe_load. false and e: it is not that of this scene and universe.

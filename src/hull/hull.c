@@ -464,3 +464,21 @@ bool ob_hull_build(const ob_vec3 *point, size_t points, ob_hull *out, ob_error *
 	free(raw);
 	return fine;
 }
+
+void ob_hull_find_corners(const ob_hull *h, const ob_vec3 *point, size_t points, ob_hull_corners *out)
+{
+	const ob_mat3 r = ob_quat_matrix(h->frame);
+	memset(out, 0, sizeof *out);
+	out->count = h->corners;
+	for (uint32_t k = 0; k < h->corners; k++) {
+		const ob_vec3 corner = ob_add(h->centre, ob_rotate(&r, h->corner[k]));
+		double least = INFINITY;
+		for (size_t i = 0; i < points; i++) {
+			const double d2 = ob_norm2(ob_sub(point[i], corner));
+			if (d2 < least) {
+				least = d2;
+				out->at[k] = point[i];
+			}
+		}
+	}
+}

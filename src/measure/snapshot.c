@@ -48,15 +48,20 @@ static void drop_hulls(ob_snapshot *s)
 	s->hulls = 0;
 }
 
-// Room for the hulls of a universe, which never change: those that are there already stay.
+// Room for the hulls of a universe, which never change: those that are there already stay, and others may come.
 static bool expect_hulls(ob_snapshot *s, uint64_t created, uint32_t hulls)
 {
-	if (s->created == created && s->hulls == hulls)
-		return true;
-	drop_hulls(s);
+	if (s->created != created)
+		drop_hulls(s);
 	s->created = created;
-	if (hulls > 0 && !(s->hull = calloc(hulls, sizeof *s->hull)))
+	if (s->hulls >= hulls)
+		return true;
+	ob_hull **grown = realloc(s->hull, hulls * sizeof *grown);
+	if (!grown)
 		return false;
+	for (uint32_t i = s->hulls; i < hulls; i++)
+		grown[i] = NULL;
+	s->hull = grown;
 	s->hulls = hulls;
 	return true;
 }
@@ -65,7 +70,8 @@ static bool take_hull(ob_snapshot *s, const ob_universe *u, const ob_passport *p
 {
 	if (p->shape != OB_SHAPE_HULL || (p->hull < s->hulls && s->hull[p->hull]))
 		return true;
-	ob_hull *h = p->hull < s->hulls ? malloc(sizeof *h) : NULL;
+	// one that has come since the universe was asked how many there are
+	ob_hull *h = expect_hulls(s, s->created, p->hull + 1u) ? malloc(sizeof *h) : NULL;
 	if (!h)
 		return ob_fail(e, "no memory for the hull of object %u", p->id);
 	if (!ob_universe_get_hull(u, p->hull, h)) {

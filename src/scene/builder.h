@@ -8,7 +8,6 @@
 #include "scene/scene.h"
 
 #define OB_SCENE_OBJECTS_MAX 200000
-#define OB_SCENE_HULLS_MAX 4096
 #define OB_SCENE_MATERIALS_MAX 256
 #define OB_SCENE_CAMERAS_MAX 64
 #define OB_SCENE_PARAMS_MAX 64

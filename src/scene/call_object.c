@@ -428,10 +428,13 @@ static void grow_hulls(lua_State *L, ob_builder *b)
 	ob_hull *hull = realloc(s->hull, room * sizeof *hull);
 	if (hull)
 		s->hull = hull;
+	ob_hull_corners *corners = realloc(s->hull_corners, room * sizeof *corners);
+	if (corners)
+		s->hull_corners = corners;
 	uint64_t *points = realloc(b->hull_points, room * sizeof *points);
 	if (points)
 		b->hull_points = points;
-	if (!hull || !points)
+	if (!hull || !corners || !points)
 		ob_sandbox_fail(L, "hull: no memory left on this machine");
 	b->hulls_room = room;
 }
@@ -451,6 +454,7 @@ static const ob_hull *find_hull(lua_State *L, ob_builder *b, const ob_points *p)
 		grow_hulls(L, b);
 	if (!ob_hull_build(p->at, p->count, &s->hull[s->hulls], &e))
 		ob_sandbox_fail(L, "hull.points: %s", e.text);
+	ob_hull_find_corners(&s->hull[s->hulls], p->at, p->count, &s->hull_corners[s->hulls]);
 	b->hull_points[s->hulls] = hash;
 	return &s->hull[s->hulls++];
 }

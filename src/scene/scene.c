@@ -184,6 +184,7 @@ void ob_scene_free(ob_scene *s)
 		free(s->object[i].path), free(s->object[i].force);
 	free(s->object);
 	free(s->hull);
+	free(s->hull_corners);
 	free(s->camera);
 	for (uint32_t i = 0; i < s->scripts; i++)
 		free(s->script[i].text);

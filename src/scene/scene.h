@@ -2,12 +2,14 @@
 #ifndef OB_SCENE_SCENE_H
 #define OB_SCENE_SCENE_H
 
-#include <ob/hull.h>
 #include <ob/motion.h>
 
+#include "hull/hull.h"
 #include "motion/force.h"
 #include "motion/path.h"
 #include "settings/settings.h"
+
+enum { OB_SCENE_HULLS_MAX = 4096 }; // different ones, with those that come while it runs
 
 typedef struct ob_object_def {
 	ob_passport passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
@@ -51,6 +53,7 @@ typedef struct ob_scene {
 	ob_object_def *object;      // [objects]; ids are their index
 	uint32_t hulls;
 	ob_hull *hull;              // [hulls], by the number in passports
+	ob_hull_corners *hull_corners; // [hulls], as the scene gives them
 	uint32_t cameras;
 	ob_camera_def *camera;      // at least one
 	ob_look_def look;

@@ -316,6 +316,19 @@ static int call_remove(lua_State *L)
 	return 0;
 }
 
+// A hull takes longer than other objects; all others have no points.
+static unsigned cost_of_points(lua_State *L)
+{
+	enum { EACH = 100 };
+	unsigned points = 0;
+	if (lua_istable(L, 1)) {
+		lua_getfield(L, 1, "points");
+		points = (unsigned)lua_rawlen(L, -1);
+		lua_pop(L, 1);
+	}
+	return EACH * points;
+}
+
 // Upvalue 1 is the scene's function, which puts the object into the runner's scene; 2 its name.
 static int call_create(lua_State *L)
 {
@@ -327,7 +340,8 @@ static int call_create(lua_State *L)
 	lua_settop(L, 1);
 	lua_pushnil(L);
 	lua_setfield(L, LUA_REGISTRYINDEX, "scene.names"); // names are the host's to give
-	r->scene.objects = r->scene.states_bytes = 0;
+	r->scene.objects = r->scene.states_bytes = r->scene.hulls = 0;
+	ob_sandbox_spend(L, cost_of_points(L));
 	lua_tocfunction(L, lua_upvalueindex(1))(L);
 	ob_object_def *def = &r->scene.object[0];
 	if (def->path || def->force) {
@@ -342,13 +356,18 @@ static int call_create(lua_State *L)
 		snprintf(def->passport.name, sizeof def->passport.name, "%s#", kind); // and its id
 	ob_script_post *post = begin_post(L, r, OB_SCRIPT_CREATE, 0, 0);
 	ob_flat f = rest_of(r->cell);
-	if (f.room < sizeof *def + def->state_bytes)
+	const ob_hull_corners *corners = r->scene.hulls ? &r->scene.hull_corners[0] : NULL;
+	const size_t corners_bytes = corners ? corners->count * sizeof *corners->at : 0;
+	if (f.room < sizeof *def + def->state_bytes + corners_bytes)
 		ob_sandbox_fail(L, "%s: expected at most %d bytes of messages, creations and removals in a step", kind,
 				OB_SCRIPT_OUTBOX_BYTES);
 	memcpy(f.bytes, def, sizeof *def);
 	if (def->state_bytes)
 		memcpy(f.bytes + sizeof *def, r->scene.states, def->state_bytes);
 	f.size = (uint32_t)sizeof *def + def->state_bytes;
+	if (corners)
+		memcpy(f.bytes + f.size, corners->at, corners_bytes);
+	f.size += (uint32_t)corners_bytes;
 	end_post(r, post, &f);
 	return 0;
 }
@@ -566,12 +585,6 @@ static void open_objects(lua_State *L)
 	lua_pop(L, 1);
 }
 
-// The universe holds the hulls of its scene, and has no room for others.
-static int call_hull(lua_State *L)
-{
-	ob_sandbox_fail(L, "hull: scripts create no hulls: expected box, sphere, capsule or cylinder");
-}
-
 int ob_script_calls_open(lua_State *L)
 {
 	static const luaL_Reg calls[] = {
@@ -579,15 +592,13 @@ int ob_script_calls_open(lua_State *L)
 		{ "find", call_find },
 		{ "near", call_near },
 		{ "ray", call_ray },
-		{ "hull", call_hull },
 		{ "send", call_send },
 		{ "random", ob_scene_call_random },
 		{ "random_rotation", ob_scene_call_random_rotation },
 	};
 	static const luaL_Reg creations[] = {
-		{ "box", ob_scene_call_box },
-		{ "sphere", ob_scene_call_sphere },
-		{ "capsule", ob_scene_call_capsule },
+		{ "box", ob_scene_call_box },           { "hull", ob_scene_call_hull },
+		{ "sphere", ob_scene_call_sphere },     { "capsule", ob_scene_call_capsule },
 		{ "cylinder", ob_scene_call_cylinder },
 	};
 	open_objects(L);

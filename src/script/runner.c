@@ -351,6 +351,9 @@ void ob_script_runner_destroy(ob_script_runner *r)
 		close_interpreter(&r->interpreter[i]);
 	free(r->scene.script);
 	free(r->scene.object);
+	free(r->scene.hull);
+	free(r->scene.hull_corners);
+	free(r->builder.hull_points);
 	free(r->scene.states);
 	free(r);
 }

@@ -183,6 +183,7 @@ uint64_t ob_layout_likely_bytes(const ob_header *h)
 	ob_layout_sizes likely = h->sizes;
 	likely.pairs_max = PAIRS_PER_OBJECT * likely.capacity;
 	likely.neighbours_max = likely.pairs_max;
+	likely.hulls = 0; // those that there are have their pages before the run
 	uint64_t sum = OB_LAYOUT_PAGE;
 	for (int i = 0; i < OB_AREAS; i++)
 		sum += area_bytes(&likely, (ob_area)i);

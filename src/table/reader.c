@@ -108,7 +108,7 @@ void ob_universe_get_info(const ob_universe *u, ob_universe_info *out)
 		.islands = least(read32(&c->islands), h->sizes.capacity),
 		.deaths = read32(&c->deaths),
 		.frozen = read32(&c->frozen),
-		.hulls = h->sizes.hulls,
+		.hulls = least(read32(&c->hulls), h->sizes.hulls),
 		.created = h->created,
 	};
 	for (size_t i = 0; i + 1 < sizeof out->last_death; i++)

@@ -69,6 +69,7 @@ typedef struct ob_script_cell {
 } ob_script_cell;
 
 // What stands in an outbox, one after the other; in an inbox, the same with the sender in place of the addressee.
+// What is said: the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull.
 typedef enum ob_script_post_kind { OB_SCRIPT_MESSAGE, OB_SCRIPT_REMOVE, OB_SCRIPT_CREATE } ob_script_post_kind;
 
 typedef struct ob_script_post {

@@ -1,5 +1,7 @@
 #include "table/slot.h"
 
+#include <string.h>
+
 #include "table/layout.h"
 #include "table/pages.h"
 
@@ -46,7 +48,10 @@ bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h)
 {
 	if (hull >= u->header.sizes.hulls || !ob_hull_makes_sense(h) || !ob_pages_take(u, OB_AREA_HULL, hull, 1))
 		return false;
-	u->hull[hull] = *h;
+	if (hull >= u->control->hulls || memcmp(&u->hull[hull], h, sizeof *h) != 0)
+		u->hull[hull] = *h;
+	if (hull >= u->control->hulls)
+		__atomic_store_n(&u->control->hulls, hull + 1, __ATOMIC_RELEASE);
 	return true;
 }
 

@@ -40,7 +40,7 @@ typedef struct ob_universe_setup {
 	const char *name;       // unique on this machine; NULL = "obsim-<pid>"
 	uint32_t capacity;      // object slots
 	uint32_t workers;       // >= 1
-	uint32_t hulls;         // that objects may have
+	uint32_t hulls;         // that objects may have, of the scene and created
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
@@ -98,6 +98,7 @@ void ob_universe_set_state(ob_universe *u, ob_universe_state s);
 // For readers: another simulator has died, in these words, and so many objects were frozen for it. The host's.
 void ob_universe_note_death(ob_universe *u, const char *what);
 void ob_universe_note_frozen(ob_universe *u, uint32_t objects);
+uint32_t ob_universe_hulls(const ob_universe *u); // that it has room for
 // One past the highest id ever used: loops over objects end here.
 uint32_t ob_universe_ids(const ob_universe *u);
 

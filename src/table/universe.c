@@ -140,6 +140,11 @@ uint32_t ob_universe_capacity(const ob_universe *u)
 {
 	return u->header.sizes.capacity;
 }
+
+uint32_t ob_universe_hulls(const ob_universe *u)
+{
+	return u->header.sizes.hulls;
+}
 uint32_t ob_universe_workers(const ob_universe *u)
 {
 	return u->header.sizes.workers;

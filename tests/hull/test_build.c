@@ -191,6 +191,23 @@ static void check_elsewhere(uint64_t *seed, const ob_hull *h, const ob_vec3 *poi
 	CHECK_NEAR(there.thickness, h->thickness, 1e-10 * h->radius);
 }
 
+// The corners as they were given: points of the caller's, of which the same hull is built.
+static void check_corners(const ob_hull *h, const ob_vec3 *point, size_t n)
+{
+	ob_hull_corners c;
+	ob_hull again;
+	ob_error e;
+	ob_hull_find_corners(h, point, n, &c);
+	CHECK(c.count == h->corners);
+	for (uint32_t k = 0; k < c.count; k++) {
+		bool given = false;
+		for (size_t i = 0; i < n; i++)
+			given |= memcmp(&point[i], &c.at[k], sizeof *point) == 0;
+		CHECK(given);
+	}
+	CHECK(ob_hull_build(c.at, c.count, &again, &e) && memcmp(&again, h, sizeof again) == 0);
+}
+
 static void check_many(void)
 {
 	uint64_t seed = 1;
@@ -208,6 +225,7 @@ static void check_many(void)
 		check_whole(&h, point, n);
 		check_same(&seed, &h, point, n);
 		check_elsewhere(&seed, &h, point, n);
+		check_corners(&h, point, n);
 	}
 }
 

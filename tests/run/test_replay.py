@@ -20,6 +20,8 @@ sphere {{ radius = .3, at = {{ 0, 0, .9 }}, dies = .5 }}
 capsule {{ radius = .2, length = .6, at = {{ 1, 0, 1.5 }}, born = .25, spin = {{ 9, 0, 0 }} }}
 cylinder {{ radius = .2, length = .6, at = {{ -1, 0, 1.5 }}, born = .3, dies = .8 }}
 hull {{ points = {{ {{ 0, 0, 0 }}, {{ .8, 0, 0 }}, {{ 0, .6, 0 }}, {{ .2, .2, .7 }} }}, at = {{ .5, -1, 1 }}, spin = {{ 1, 2, 3 }} }}
+sphere {{ radius = .1, at = {{ 2, 1, .1 }}, script = [[function on_start() self:wake(.2) end function on_wake()
+	hull {{ points = {{ {{ 0, 0, 0 }}, {{ .6, 0, 0 }}, {{ 0, .8, 0 }}, {{ .1, .1, .4 }}, {{ .5, .5, .4 }} }}, at = {{ 1, 1, 1.5 }} }} end]] }}
 hull {{ points = {{ {{ 0, 0, 0 }}, {{ .5, 0, 0 }}, {{ 0, .5, 0 }}, {{ 0, 0, .5 }}, {{ .5, .5, .5 }} }}, at = {{ -1, -1, 1 }}, born = .4 }}
 """
 

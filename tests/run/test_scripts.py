@@ -216,6 +216,18 @@ sphere { radius = .1, at = { 9, 9, 9 }, script = "tap" }
 		self.assertEqual(found["outcome"], "finished")
 		self.assertLessEqual(found["objects"], 13)
 
+	def test_hull_as_of_a_scene(self):
+		"""A hull that a script creates is the one that a scene makes of the same points, to the bit."""
+		points = "{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, .7, 0 }, { .2, .3, .9 }, { .3, .2, .1 } }"
+		hull = f"hull {{ name = 'it', points = {points}, at = {{ 1, 2, 4 }}, rotation = {{ axis = {{ 1, 1, 0 }}, degrees = 40 }}, spin = {{ 1, 2, 3 }} }}"
+		ball = "ground {} sphere { radius = .2, at = { 9, 9, 1 }"
+		alike = [self.report_of(text) for text in (
+			f"scene {{ duration = 2 }} {ball} }} {hull}",
+			f'scene {{ duration = 2 }} {ball}, script = "function on_start() {hull} end" }}',
+			f'scene {{ duration = 2 }} {ball}, script = "function on_start() {hull} end" }} hull {{ points = {points}, at = {{ 7, 7, 7 }}, dies = .1 }}')]
+		self.assertEqual(alike[0]["state_hash"], alike[1]["state_hash"])
+		self.assertEqual([r["objects"] for r in alike], [3, 3, 3])
+
 	def report_of(self, text, *words):
 		return program.report(self.write("scene.lua", text), *ROOMY, *words)
 
@@ -243,6 +255,12 @@ sphere { radius = .1, at = { 9, 9, 9 }, script = "tap" }
 			"function on_step() self.colour = 3 end": r"it:1: cannot set colour of an object",
 			"function on_step() os.exit() end": r"it:1: os: not available",
 			"function on_step() sphere { radius = -1 } end": r"it:1: sphere\.radius: expected a number above 0",
+			"function on_step()\n hull { points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } } } end":
+				r"it:2: hull\.points: expected at least four different points",
+			"function on_step() hull { points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 } } } end":
+				r"it:1: hull\.points: .*in one plane",
+			"local t = {} for i = 1, 4000 do t[i] = { i % 7, i % 11, i % 13 } end function on_step() for i = 1, 9 do hull { points = t } end end":
+				r"it:1: stopped after a million instructions",
 			"function on_step() sphere { radius = 1, dies = 3 } end": r"sphere: expected neither born nor dies",
 			"function on_step() sphere { radius = 1, varying_force = { kind = 'pulse', force = { 1, 0, 0 }, to = 1 } } end":
 				r"it:1: sphere: expected neither path nor varying_force",
@@ -341,6 +359,54 @@ for i = 1, 5 do sphere { name = i == 3 and "bad" or "good " .. i, radius = .1, a
 		found = program.report("--resume", self.path("half"), "--duration", "4.5", *ROOMY, "--workers", 2)
 		self.assertEqual(found["state_hash"], expected["state_hash"])
 		self.assertEqual(found["objects"], expected["objects"])
+
+	CRYSTALS = """
+scene { duration = 3, room = 20 }
+ground {}
+script("crystal", "function on_start() self:wake(1) end function on_wake() self:remove() end")
+script("grow", [[
+function on_start() self:wake(.05) end
+function on_wake()
+	local points = {}
+	for i = 1, 12 do points[i] = { random(-.3, .3), random(-.3, .3), random(-.3, .3) } end
+	hull { points = points, at = { random(-1, 1), random(-1, 1), 2 }, script = "crystal" }
+	if random() < .5 then
+		hull { points = { { 0, 0, 0 }, { .4, 0, 0 }, { 0, .4, 0 }, { 0, 0, .4 } }, at = { random(-1, 1), random(-1, 1), 3 }, script = "crystal" }
+	end
+	self:wake(.15)
+end
+]])
+hull { points = { { 0, 0, 0 }, { .4, 0, 0 }, { 0, .4, 0 }, { 0, 0, .4 } }, at = { 0, 0, 1 }, spin = { 3, 2, 1 } }
+sphere { name = "mother", radius = .1, at = { 0, 5, .1 }, script = "grow" }
+"""
+
+	def test_hulls_same_bits(self):
+		"""Hulls come with numbers that are the same whoever creates them, who dies, and where the run goes on."""
+		scene = self.write("crystals.lua", self.CRYSTALS)
+		expected = program.report(scene, *ROOMY, "--workers", 1)
+		self.assertGreater(expected["objects"], 6)
+		for words in (["--workers", 3], ["--isolation", "process", "--workers", 2],
+				["--isolation", "process", "--workers", 2, "--fault", "kill:p=.002,seed=5"]):
+			with self.subTest(words=words):
+				found = program.report(scene, *ROOMY, *words)
+				self.assertEqual(found["state_hash"], expected["state_hash"])
+		self.assertGreater(found["deaths"], 0)
+		program.report(scene, *ROOMY, "--duration", "1.7", "--checkpoint", self.path("half"))
+		found = program.report("--resume", self.path("half"), "--duration", "3", *ROOMY, "--workers", 2)
+		self.assertEqual(found["state_hash"], expected["state_hash"])
+
+	def test_too_many_hulls(self):
+		"""A universe keeps all hulls that it has ever had, up to a limit that the script is told of."""
+		said = self.run_scene("""
+scene { duration = 3, step = 1 / 600, room = 30, gravity = { 0, 0, 0 } }
+script("brief", "function on_start() self:remove() end")
+sphere { radius = .1, at = { 0, 0, 9 }, script = [[function on_step()
+	for i = 1, 5 do
+		hull { points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 + random() } }, at = { 3 * i, 0, 0 }, script = "brief" }
+	end
+end]] }
+""")
+		self.assertRegex(said, "was stopped at .*: there is no room for more than 4096 different hulls")
 
 	def test_resumed_with_another_script(self):
 		self.write("it.lua", "function on_step() self:force(1, 0, 0) end")
