@@ -33,7 +33,7 @@ ARROWS = {
     'reference': 'motion base',
     'plot': 'base',
     'experiment': 'plot reference base',
-    'compare': 'experiment plot reference base',
+    'compare': 'experiment plot reference settings base',
     'world': 'hull motion base',
     'engine': 'world sim ode table settings measure motion base',
     'lab': 'reference engine world plot experiment settings measure motion base',

@@ -21,6 +21,7 @@ static bool is_passed_on(ob_option_id id)
 	case OB_OPTION_WORKERS:
 	case OB_OPTION_NARROW:
 	case OB_OPTION_SEED:
+	case OB_OPTION_HARDEN:
 		return false; // compare passes its own
 	default:
 		return (ob_option_table[id].commands & OB_COMMAND_RUN) &&
@@ -97,7 +98,7 @@ static bool prepare(ob_comparison *c, const ob_arguments *a, ob_error *e)
 {
 	ob_run_request request;
 	uint64_t repeats = USUAL_REPEATS, seeds = 1;
-	if (!ob_request_read(&request, a, e))
+	if (!ob_request_read(&request, a, e) || !ob_harden_read(&c->harden, a->value[OB_OPTION_HARDEN], e))
 		return false;
 	if (request.workers == 0)
 		return ob_fail(e,
@@ -120,7 +121,6 @@ static bool prepare(ob_comparison *c, const ob_arguments *a, ob_error *e)
 	c->repeats = (uint32_t)repeats;
 	c->seeds = (uint32_t)seeds;
 	c->pool = request.workers;
-	c->hardened = a->value[OB_OPTION_HARDEN] != NULL;
 	c->drawn = a->value[OB_OPTION_OUT] != NULL;
 	bool fine = pass_on(c, a, e);
 	for (uint32_t i = 0; fine && i < c->points; i++)

@@ -38,7 +38,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_WORKERS] = { NULL, "workers", "N|objects",
 				"workers in the pool, or one for each object (one per core)", RUN | COMPARE | SERVE,
 				0 },
-	[OB_OPTION_HARDEN] = { NULL, "harden", NULL,
+	[OB_OPTION_HARDEN] = { NULL, "harden", "[=LIST]",
 			       "processes that can write their own results alone, and do little else",
 			       RUN | COMPARE | SERVE, 0 },
 	[OB_OPTION_TOLERANCE] = { NULL, "tolerance", "LENGTH",
@@ -194,6 +194,11 @@ static bool add_define(ob_arguments *a, const char *text, ob_error *e)
 	return true;
 }
 
+static bool is_optional(const ob_option *o)
+{
+	return o->argument && o->argument[0] == '[';
+}
+
 static bool set(ob_arguments *a, ob_option_id id, const char *value, ob_error *e)
 {
 	const ob_option *o = &ob_option_table[id];
@@ -201,7 +206,7 @@ static bool set(ob_arguments *a, ob_option_id id, const char *value, ob_error *e
 		return add_define(a, value, e);
 	if (a->value[id])
 		return ob_fail(e, "--%s is given twice", o->name);
-	if (o->argument && !*value)
+	if (o->argument && !*value && !is_optional(o))
 		return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
 	if (!check_choice(o, &value, e))
 		return false;
@@ -253,6 +258,9 @@ static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_erro
 		value = text[2] ? text + 2 : NULL;
 	}
 	const ob_option *o = &ob_option_table[id];
+	if (is_optional(o))
+		return value && !*value ? ob_fail(e, "--%s=: expected a list behind it, or leave the = away", o->name)
+					: set(a, id, value ? value : "", e);
 	if (!o->argument)
 		return value ? ob_fail(e, "--%s takes no value", o->name) : set(a, id, "", e);
 	if (!value) {
@@ -340,8 +348,8 @@ void ob_options_help(FILE *f, ob_command_bit command)
 			fprintf(f, "\n%s:\n", group);
 		shown = group;
 		char left[64];
-		snprintf(left, sizeof left, "%s%c%s--%s %s", o->letter ? "-" : " ", o->letter ? o->letter : ' ',
-			 o->letter ? ", " : "  ", o->name, o->argument ? o->argument : "");
+		snprintf(left, sizeof left, "%s%c%s--%s%s%s", o->letter ? "-" : " ", o->letter ? o->letter : ' ',
+			 o->letter ? ", " : "  ", o->name, is_optional(o) ? "" : " ", o->argument ? o->argument : "");
 		fprintf(f, "  %-32s %s\n", left, o->help);
 	}
 	if (command == OB_COMMAND_TOP)

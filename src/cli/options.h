@@ -94,7 +94,9 @@ typedef enum ob_option_id {
 typedef struct ob_option {
 	const char *group; // heading in the help; NULL = under the one before
 	const char *name; // without the dashes
-	const char *argument; // NULL = a flag; lower-case words with | between them are the only values allowed
+	// NULL = a flag; "[=WHAT]" = one that may have a value, behind a = alone; lower-case words with | between them are
+	// the only values allowed
+	const char *argument;
 	const char *help;
 	unsigned commands; // ob_command_bit
 	char letter; // short form; 0 = none

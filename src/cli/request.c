@@ -240,8 +240,12 @@ static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
-static bool check_harden(const ob_run_request *r, ob_error *e)
+static bool read_harden(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
+	if (!ob_harden_read(&r->harden, a->value[OB_OPTION_HARDEN], e))
+		return false;
+	if (a->command == OB_COMMAND_COMPARE) // which has it as configurations
+		r->harden = 0;
 	if (r->harden && r->asked.monolith == 1)
 		return ob_fail(e,
 			       "--harden: a monolith is one simulator, which writes all; leave --arch monolith away");
@@ -437,8 +441,6 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.strict = a->value[OB_OPTION_STRICT] != NULL,
-		.harden = a->value[OB_OPTION_HARDEN] &&
-			  a->command != OB_COMMAND_COMPARE, // which has it as configurations
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
 			   : strcmp(measure, "profile") == 0        ? OB_MEASURE_PROFILE
 								    : OB_MEASURE_ENDS,
@@ -452,7 +454,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		return ob_fail(e, "--series has a line for each step: it needs --measure step");
 	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_PATIENCE, 1e9, &r->patience, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
-	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && check_harden(r, e) &&
+	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && read_harden(r, a, e) &&
 	       read_deaths(r, a, e) &&
 	       check_name(r->name, e) && read_frames(&r->frames, a, e) && check_outputs(a, e) &&
 	       read_checkpoint(r, a, e) && read_fault(r, a->value[OB_OPTION_FAULT], e);

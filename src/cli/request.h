@@ -31,7 +31,7 @@ typedef struct ob_run_request {
 	const char *name; // of the universe; NULL = the host's choice
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object
-	bool harden;
+	uint32_t harden; // bits, 1 << ob_harden_measure
 	double duration; // s; 0 = the scene's
 	double patience; // s, for a step; 0 = the host's choice
 	ob_on_death on_death;

@@ -12,27 +12,39 @@
 #include "experiment/process.h"
 
 const ob_configuration ob_configuration_table[OB_CONFIGURATIONS] = {
-	[OB_CONFIGURATION_MONOLITH] = { "monolith", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0, false, false },
-	[OB_CONFIGURATION_THREAD] = { "thread_1", "1 thread", "obs", "thread", OB_WORKERS_ONE, 0, false, false },
-	[OB_CONFIGURATION_THREADS_2] = { "threads_2", "2 threads", "obs", "thread", OB_WORKERS_TWO, 0, false, false },
-	[OB_CONFIGURATION_THREADS] = { "threads", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, false, false },
+	[OB_CONFIGURATION_MONOLITH] = { "monolith", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0, false, NULL },
+	[OB_CONFIGURATION_THREAD] = { "thread_1", "1 thread", "obs", "thread", OB_WORKERS_ONE, 0, false, NULL },
+	[OB_CONFIGURATION_THREADS_2] = { "threads_2", "2 threads", "obs", "thread", OB_WORKERS_TWO, 0, false, NULL },
+	[OB_CONFIGURATION_THREADS] = { "threads", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, false, NULL },
 	[OB_CONFIGURATION_PROCESSES] = { "processes", "process pool", "obs", "process", OB_WORKERS_POOL, 0, false,
-					 false },
+					 NULL },
 	[OB_CONFIGURATION_GROUPS] = { "process_groups", "groups of 60", "obs", "process", OB_WORKERS_GROUPS, 0, false,
-				      false },
+				      NULL },
 	// more than these make one workstation wait for its scheduler alone
 	[OB_CONFIGURATION_THREADS_EACH] = { "threads_each", "thread each", "obs", "thread", OB_WORKERS_EACH, 4096,
-					    false, false },
+					    false, NULL },
 	[OB_CONFIGURATION_PROCESSES_EACH] = { "processes_each", "process each", "obs", "process", OB_WORKERS_EACH, 1024,
-					      false, false },
+					      false, NULL },
+	[OB_CONFIGURATION_OUTBOX] = { "processes_outbox", "outboxes", "obs", "process", OB_WORKERS_POOL, 0, false,
+				      "outbox" },
+	[OB_CONFIGURATION_CHECKSUM] = { "processes_checksum", "with checksum", "obs", "process", OB_WORKERS_POOL, 0,
+					false, "checksum" },
+	[OB_CONFIGURATION_PAGES] = { "processes_pages", "with pages", "obs", "process", OB_WORKERS_POOL, 0, false,
+				     "pages" },
+	[OB_CONFIGURATION_PRIVILEGES] = { "processes_privileges", "privileges", "obs", "process", OB_WORKERS_POOL, 0,
+					  false, "privileges" },
+	[OB_CONFIGURATION_LIMITS] = { "processes_limits", "limits", "obs", "process", OB_WORKERS_POOL, 0, false,
+				      "limits" },
+	[OB_CONFIGURATION_CALLS] = { "processes_calls", "system calls", "obs", "process", OB_WORKERS_POOL, 0, false,
+				     "calls" },
 	[OB_CONFIGURATION_HARDENED] = { "processes_hardened", "hardened pool", "obs", "process", OB_WORKERS_POOL, 0,
-					false, true },
+					false, "" },
 	[OB_CONFIGURATION_HARDENED_EACH] = { "processes_each_hardened", "hardened each", "obs", "process",
-					     OB_WORKERS_EACH, 1024, false, true },
+					     OB_WORKERS_EACH, 1024, false, "" },
 	[OB_CONFIGURATION_MONOLITH_OTHER] = { "monolith_other", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0,
-					      true, false },
+					      true, NULL },
 	[OB_CONFIGURATION_THREADS_OTHER] = { "threads_other", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, true,
-					     false },
+					     NULL },
 };
 
 #define METRIC(id, key_, title_, unit_, scale_, group_, meaning_) \
@@ -174,6 +186,15 @@ static uint32_t count_workers(ob_worker_count count, uint32_t objects, uint32_t 
 	return 1;
 }
 
+// Of hardened ones, only if their measures are to be priced.
+static bool is_asked(const ob_comparison *c, ob_configuration_id id)
+{
+	const char *list = ob_configuration_table[id].harden;
+	uint32_t measures;
+	ob_error e;
+	return !list || (*list ? ob_harden_read(&measures, list, &e) && !(measures & ~c->harden) : c->harden);
+}
+
 static void plan_point(const ob_comparison *c, ob_sweep_point *p)
 {
 	for (int i = 0; i < OB_CONFIGURATIONS; i++) {
@@ -186,7 +207,7 @@ static void plan_point(const ob_comparison *c, ob_sweep_point *p)
 			snprintf(why, room, "the pool has as many");
 		else if (i == OB_CONFIGURATION_GROUPS && p->workers[i] < 2)
 			snprintf(why, room, "%" PRIu32 " objects are one group", p->objects);
-		else if (w->objects_max && p->objects > w->objects_max && (!w->hardened || c->hardened))
+		else if (w->objects_max && p->objects > w->objects_max && is_asked(c, i))
 			snprintf(why, room, "%" PRIu32 " objects are more than the %" PRIu32 " that are tried",
 				 p->objects, w->objects_max);
 	}
@@ -248,8 +269,8 @@ char **ob_comparison_arguments(const ob_comparison *c, const ob_sweep_point *p, 
 	ADD("--json=-");
 	ADD("--arch=%s", w->arch);
 	ADD("--isolation=%s", w->isolation);
-	if (w->hardened)
-		ADD("--harden");
+	if (w->harden)
+		ADD("--harden%s%s", *w->harden ? "=" : "", w->harden);
 	ADD("--narrow=%s", w->other_narrow ? c->other : c->narrow);
 	ADD("--seed=%" PRIu64, seed);
 	ADD("--measure=%s", kind == OB_COMPARE_MEASURED ? "step" : timed ? "profile" : "end");
@@ -401,7 +422,7 @@ static double guess(const job *j)
 static bool add_trial(ob_trials *s, const job *j, uint32_t seed)
 {
 	ob_trial t = { .seed = j->point->seed + seed, .guess_s = guess(j), .what = j };
-	if (*j->point->skipped[j->id] || (ob_configuration_table[j->id].hardened && !j->comparison->hardened))
+	if (*j->point->skipped[j->id] || !is_asked(j->comparison, j->id))
 		return true;
 	memcpy(t.of, j->point->key, sizeof t.of);
 	ob_configuration_key(j->id, j->kind, t.configuration);
@@ -521,6 +542,19 @@ ob_spread ob_comparison_ratio(const ob_comparison *c, const ob_sweep_point *p, o
 	ob_statistics s = ob_records_ratio(&c->records, p->key, ob_configuration_table[of].key,
 					   ob_configuration_table[to].key, m, false);
 	return spread_of(&s);
+}
+
+ob_configuration_id ob_configuration_without(ob_configuration_id id)
+{
+	switch (id) {
+	case OB_CONFIGURATION_CHECKSUM:
+	case OB_CONFIGURATION_PAGES:
+		return OB_CONFIGURATION_OUTBOX;
+	case OB_CONFIGURATION_HARDENED_EACH:
+		return OB_CONFIGURATION_PROCESSES_EACH;
+	default:
+		return ob_configuration_table[id].harden ? OB_CONFIGURATION_PROCESSES : OB_CONFIGURATIONS;
+	}
 }
 
 // A run with frames may fail where nothing can be drawn.

@@ -8,6 +8,7 @@
 #define OB_COMPARE_COMPARE_H
 
 #include "experiment/experiment.h"
+#include "settings/settings.h"
 
 typedef enum ob_worker_count {
 	OB_WORKERS_ONE,
@@ -25,7 +26,7 @@ typedef struct ob_configuration {
 	ob_worker_count workers;
 	uint32_t objects_max; // with more objects it is not tried; 0 = any number
 	bool other_narrow; // runs with the narrow phase that was not asked for
-	bool hardened; // with --harden; only if asked for
+	const char *harden; // the list of --harden: runs only if these measures are asked for; "" = all; NULL = none
 } ob_configuration;
 
 typedef enum ob_configuration_id {
@@ -37,7 +38,13 @@ typedef enum ob_configuration_id {
 	OB_CONFIGURATION_GROUPS,
 	OB_CONFIGURATION_THREADS_EACH,
 	OB_CONFIGURATION_PROCESSES_EACH,
-	OB_CONFIGURATION_HARDENED,
+	OB_CONFIGURATION_OUTBOX, // measures of --harden, with what they need
+	OB_CONFIGURATION_CHECKSUM,
+	OB_CONFIGURATION_PAGES,
+	OB_CONFIGURATION_PRIVILEGES,
+	OB_CONFIGURATION_LIMITS,
+	OB_CONFIGURATION_CALLS,
+	OB_CONFIGURATION_HARDENED, // all of them
 	OB_CONFIGURATION_HARDENED_EACH,
 	OB_CONFIGURATION_MONOLITH_OTHER, // from here on: the other narrow phase
 	OB_CONFIGURATION_THREADS_OTHER,
@@ -111,7 +118,7 @@ typedef struct ob_comparison {
 	const char *scene; // path
 	const char *narrow, *other; // narrow phases
 	uint32_t repeats, seeds, pool;
-	bool hardened; // the hardened configurations, too
+	uint32_t harden; // measures that are priced one by one, 1 << ob_harden_measure, and then all together; 0 = none
 	bool drawn; // each configuration is run once with frames, too
 	char options[512]; // as the command line had them
 	uint32_t passed; // options that each run gets
@@ -151,6 +158,8 @@ ob_spread ob_comparison_spread(const ob_comparison *c, const ob_sweep_point *p, 
 // Sample by sample, one configuration's metric over another's: what changes from one repeat to the next cancels out.
 ob_spread ob_comparison_ratio(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id of,
 			      ob_configuration_id to, ob_compare_metric m);
+// The same without the measure that it prices; of all measures: without any. OB_CONFIGURATIONS: it prices none.
+ob_configuration_id ob_configuration_without(ob_configuration_id id);
 // Was it run, and did no run fail?
 bool ob_comparison_is_done(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id);
 const char *ob_comparison_failure(const ob_comparison *c, const ob_sweep_point *p,

@@ -117,6 +117,38 @@ ob_table *ob_comparison_table(const ob_comparison *c, const ob_sweep_point *p, b
 	return t;
 }
 
+static void add_ratio(ob_table *t, ob_spread r)
+{
+	ob_table_add(t, "%.2f", r.median);
+	if (!isnan(r.low))
+		ob_table_small(t, "%.2f – %.2f", r.low, r.high);
+}
+
+ob_table *ob_comparison_prices(const ob_comparison *c, const ob_sweep_point *p)
+{
+	ob_table *t = NULL;
+	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
+		const ob_configuration_id without = ob_configuration_without(w);
+		if (without == OB_CONFIGURATIONS || !ob_comparison_is_done(c, p, w) ||
+		    !ob_comparison_is_done(c, p, without))
+			continue;
+		if (!t) {
+			t = ob_table_new("llrr");
+			if (!t)
+				return NULL;
+			ob_table_add(t, "What containment costs");
+			ob_table_add(t, "over");
+			ob_table_add(t, "CPU");
+			ob_table_add(t, "wall");
+		}
+		ob_table_add(t, "  %s", ob_configuration_table[w].title);
+		ob_table_add(t, "%s", ob_configuration_table[without].title);
+		add_ratio(t, ob_comparison_ratio(c, p, w, without, OB_COMPARE_CPU));
+		add_ratio(t, ob_comparison_ratio(c, p, w, without, OB_COMPARE_WALL));
+	}
+	return t;
+}
+
 // ---- the text
 
 // In lines of at most this width, unless a word is longer
@@ -166,6 +198,12 @@ static void print_point(const ob_comparison *c, const ob_sweep_point *p, FILE *f
 	if (t)
 		ob_table_print(t, f, width);
 	ob_table_free(t);
+	t = ob_comparison_prices(c, p);
+	if (t) {
+		fputc('\n', f);
+		ob_table_print(t, f, width);
+	}
+	ob_table_free(t);
 	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
 		const char *failed = ob_comparison_failure(c, p, w);
 		if (!failed && !*p->skipped[w])
@@ -187,18 +225,33 @@ void ob_comparison_print(const ob_comparison *c, FILE *f, size_t width)
 
 // ---- JSON
 
+static void write_spread(const char *key, ob_spread x, ob_json *j)
+{
+	ob_json_open(j, key);
+	ob_json_number(j, "median", x.median);
+	ob_json_number(j, "low", x.low);
+	ob_json_number(j, "high", x.high);
+	ob_json_count(j, "runs", x.n);
+	ob_json_close(j);
+}
+
+static void write_price(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_json *j)
+{
+	const ob_configuration_id without = ob_configuration_without(id);
+	if (without == OB_CONFIGURATIONS || !ob_comparison_is_done(c, p, id) || !ob_comparison_is_done(c, p, without))
+		return;
+	ob_json_open(j, ob_configuration_table[id].key);
+	ob_json_string(j, "over", ob_configuration_table[without].key);
+	write_spread("cpu", ob_comparison_ratio(c, p, id, without, OB_COMPARE_CPU), j);
+	write_spread("wall", ob_comparison_ratio(c, p, id, without, OB_COMPARE_WALL), j);
+	ob_json_close(j);
+}
+
 static void write_metrics(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_json *j)
 {
 	ob_json_open(j, "metrics");
-	for (int m = 0; m < OB_COMPARE_SHOWN; m++) {
-		ob_spread x = ob_comparison_spread(c, p, id, m);
-		ob_json_open(j, ob_compare_metric_table[m].key);
-		ob_json_number(j, "median", x.median);
-		ob_json_number(j, "low", x.low);
-		ob_json_number(j, "high", x.high);
-		ob_json_count(j, "runs", x.n);
-		ob_json_close(j);
-	}
+	for (int m = 0; m < OB_COMPARE_SHOWN; m++)
+		write_spread(ob_compare_metric_table[m].key, ob_comparison_spread(c, p, id, m), j);
 	ob_json_close(j);
 }
 
@@ -258,6 +311,10 @@ static void write_point(const ob_comparison *c, const ob_sweep_point *p, ob_json
 	for (int w = 0; w < OB_CONFIGURATIONS; w++)
 		if (ob_comparison_is_done(c, p, w))
 			write_configuration(c, p, w, j);
+	ob_json_close(j);
+	ob_json_open(j, "prices");
+	for (int w = 0; w < OB_CONFIGURATIONS; w++)
+		write_price(c, p, w, j);
 	ob_json_close(j);
 	ob_json_open(j, "skipped");
 	for (int w = 0; w < OB_CONFIGURATIONS; w++)

@@ -261,6 +261,10 @@ static void write_point(ob_page *p, const ob_comparison *c, const ob_sweep_point
 	if (t)
 		ob_table_html(t, p);
 	ob_table_free(t);
+	t = ob_comparison_prices(c, at);
+	if (t)
+		ob_table_html(t, p);
+	ob_table_free(t);
 	write_left_out(p, c, at);
 	ob_page_markup(p, "</section>\n");
 }

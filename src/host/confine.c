@@ -40,13 +40,18 @@ enum { NOBODY = 65534, FILES = STDERR_FILENO + 1 };
 
 // ---- root
 
+static bool gain_no_more(void)
+{
+	return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0;
+}
+
 // A change of the user forgets that the process dies with its parent.
 static bool drop_root(void)
 {
 	const pid_t parent = getppid();
 	struct __user_cap_header_struct head = { .version = _LINUX_CAPABILITY_VERSION_3 };
 	struct __user_cap_data_struct none[2] = { { 0 } };
-	if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
+	if (!gain_no_more())
 		return false;
 	if (geteuid() == 0 && (setgroups(0, NULL) != 0 || setresgid(NOBODY, NOBODY, NOBODY) != 0 ||
 			       setresuid(NOBODY, NOBODY, NOBODY) != 0))
@@ -132,7 +137,7 @@ static bool filter_system_calls(void)
 		RETURN(SECCOMP_RET_KILL_PROCESS),
 	};
 	const struct sock_fprog program = { .len = sizeof code / sizeof *code, .filter = code };
-	return SANITIZED || prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0;
+	return SANITIZED || (gain_no_more() && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0);
 }
 #else
 static bool filter_system_calls(void)
@@ -142,13 +147,16 @@ static bool filter_system_calls(void)
 }
 #endif
 
-bool ob_confine(ob_universe *u, uint32_t worker, bool read_only, ob_error *e)
+bool ob_confine(ob_universe *u, uint32_t worker, ob_error *e)
 {
-	if (read_only && !ob_outbox_enter(u, worker))
+	const uint32_t measures = ob_universe_harden(u);
+	const bool arranges = ob_universe_contains(u) && worker == ob_universe_simulators(u);
+	if (ob_universe_contains(u) && !arranges && !ob_outbox_enter(u, worker))
 		return ob_fail(e, "cannot make the universe read-only: %s", strerror(errno));
-	if (!drop_root())
+	if (measures & 1 << OB_HARDEN_PRIVILEGES && !drop_root())
 		return ob_fail(e, "cannot give up privileges: %s", strerror(errno));
-	if (!limit_resources())
+	if (measures & 1 << OB_HARDEN_LIMITS && !limit_resources())
 		return ob_fail(e, "cannot limit resources: %s", strerror(errno));
-	return filter_system_calls() || ob_fail(e, "cannot filter system calls: %s", strerror(errno));
+	return !(measures & 1 << OB_HARDEN_CALLS) || filter_system_calls() ||
+	       ob_fail(e, "cannot filter system calls: %s", strerror(errno));
 }

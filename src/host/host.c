@@ -21,6 +21,11 @@ enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
 static const double default_patience = 60, least_start_patience = 5; // s
 static const double interrupted_leave_timeout = .05; // s: Ctrl-C does not wait for the end of a long step
 
+static bool has_outboxes(const ob_host_config *c)
+{
+	return c->harden & 1 << OB_HARDEN_OUTBOX;
+}
+
 static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
 {
 	const ob_run_settings *r = &c->run;
@@ -44,9 +49,10 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
 	if (scene->scripts && c->on_death == OB_ON_DEATH_FREEZE)
 		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
-	if (scene->scripts && (c->harden || r->monolith))
-		return ob_fail(e, "%s: the scene has scripts, which only object simulators run that write the universe",
-			       c->harden ? "harden" : "arch monolith");
+	if (scene->scripts && (has_outboxes(c) || r->monolith))
+		return ob_fail(e, "%s: the scene has scripts, which only object simulators run that write the universe%s",
+			       has_outboxes(c) ? "harden" : "arch monolith",
+			       has_outboxes(c) ? "; --harden=privileges,limits,calls lets them" : "");
 	if (r->monolith && scene->hulls > 0) // of ODE's convex geometries few collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
 	for (uint32_t i = 0; i < scene->objects; i++) {
@@ -115,12 +121,12 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.hulls = c->run.monolith ? 0 : OB_SCENE_HULLS_MAX,
 		.isolation = spawn->name,
 		.traced = c->trace != NULL,
-		.contained = c->harden,
+		.harden = c->harden,
 		.run = c->run,
 	};
 	setup.run.one_per_object = one_per_object;
 	setup.run.freezes = c->on_death == OB_ON_DEATH_FREEZE;
-	setup.workers += c->harden; // the arranger
+	setup.workers += has_outboxes(c); // the arranger
 	ob_script_directory *texts = NULL;
 	if (scene->scripts) {
 		texts = script_texts(scene, &setup.script_bytes);

@@ -45,7 +45,7 @@ typedef struct ob_host_config {
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
 	double patience; // s without a completed step after which the run counts as stalled (stall.h); 0 = 60
-	bool harden; // processes: simulators cannot write the universe (table/outbox.h), and may do little else (confine.h)
+	uint32_t harden; // processes: measures so that simulators harm nobody (confine.h), bits, 1 << ob_harden_measure; 0 = none
 	ob_on_death on_death; // of simulators; a monolith's end ends the run in any case
 	ob_restart_limit limit;
 	const char *trace; // file for the timeline of what workers and host do (timeline.h); NULL = none

@@ -41,7 +41,7 @@ static int live(ob_universe *u, uint32_t worker)
 	}
 	if (s)
 		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from here on it is ready for the gate
-	bool ready = s && (!ob_universe_contains(u) || ob_confine(u, worker, !arranges, &e));
+	bool ready = s && ob_confine(u, worker, &e);
 	if (ready)
 		ob_sim_run(s);
 	else if (s)

@@ -1,6 +1,7 @@
 #include "settings/settings.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define UNSET UINT32_MAX // of counts, choices and switches; NaN of reals
@@ -198,6 +199,25 @@ bool ob_setting_find(const char *names, const char *word, uint32_t *value)
 		names += n + (names[n] == '|');
 	}
 	return false;
+}
+
+bool ob_harden_read(uint32_t *measures, const char *list, ob_error *e)
+{
+	const uint32_t of_outboxes = 1 << OB_HARDEN_CHECKSUM | 1 << OB_HARDEN_PAGES;
+	uint32_t found = list && !*list ? OB_HARDEN_ALL : 0;
+	while (list && *list) {
+		char word[16];
+		const int n = (int)strcspn(list, ",");
+		uint32_t measure;
+		snprintf(word, sizeof word, "%.*s", n, list);
+		if (!ob_setting_find(OB_HARDEN_NAMES, word, &measure))
+			return ob_fail(e, "--harden=%.*s: expected some of %s, with commas between them", n, list,
+				       OB_HARDEN_NAMES);
+		found |= 1u << measure;
+		list += n + (list[n] == ',');
+	}
+	*measures = found & of_outboxes ? found | 1 << OB_HARDEN_OUTBOX : found;
+	return true;
 }
 
 ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id)

@@ -68,6 +68,22 @@ typedef struct ob_fault_plan {
 // random: for more draws.
 ob_fault_kind ob_fault_draw(const ob_fault_plan *p, uint32_t among, uint32_t worker, uint64_t chance, uint64_t *random);
 
+// What is done so that a simulator's process harms nobody but itself (--harden; host/confine.h has what each is).
+typedef enum ob_harden_measure {
+	OB_HARDEN_OUTBOX, // it hands over its results, which the arranger checks and writes (table/outbox.h)
+	OB_HARDEN_CHECKSUM, // what it hands over bears a checksum; needs OUTBOX
+	OB_HARDEN_PAGES, // it maps the universe read-only, but for its own outbox; needs OUTBOX
+	OB_HARDEN_PRIVILEGES, // it has no root, no capabilities
+	OB_HARDEN_LIMITS, // of resources
+	OB_HARDEN_CALLS, // of the system's, few may be made
+	OB_HARDEN_MEASURES
+} ob_harden_measure;
+#define OB_HARDEN_NAMES "outbox|checksum|pages|privileges|limits|calls"
+enum { OB_HARDEN_ALL = (1 << OB_HARDEN_MEASURES) - 1 }; // bits, 1 << ob_harden_measure
+
+// The measures of a list as "pages,calls", and those that these need; "": all, NULL: none. false and e: a word is none of them.
+bool ob_harden_read(uint32_t *measures, const char *list, ob_error *e);
+
 // Fixed for a run; lies in the table, so that every process sees the same: a fixed size, no pointers.
 typedef struct ob_run_settings {
 	ob_vec3 gravity;         // m/s^2

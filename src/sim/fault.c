@@ -23,11 +23,11 @@ typedef struct shared_range {
 	unsigned char *resident; // [pages], bit 0; NULL = all are in use
 } shared_range;
 
-// Memory that it shares with others and may write, of which pages are in use. A contained simulator may not ask the
+// Memory that it shares with others and may write, of which pages are in use. Whose universe is read-only may not ask the
 // system for that, but it knows.
 static size_t find_shared(const ob_universe *u, shared_range *out, size_t *in_use)
 {
-	if (ob_universe_contained(u)) {
+	if (ob_universe_contained(u) && ob_universe_harden(u) & 1 << OB_HARDEN_PAGES) {
 		size_t bytes;
 		*out = (shared_range){ .begin = ob_outbox_own(u, &bytes) };
 		*in_use = out->pages = out->in_use = bytes / PAGE;

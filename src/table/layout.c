@@ -206,6 +206,7 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 		       &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
 					     s->outbox_bytes > 0, s->script_cells, s->script_bytes });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
+	       (h->harden & 1 << OB_HARDEN_OUTBOX) == (s->outbox_bytes ? 1 << OB_HARDEN_OUTBOX : 0) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
 	       memchr(h->isolation, 0, sizeof h->isolation);
 }

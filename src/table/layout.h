@@ -84,6 +84,7 @@ typedef struct ob_header {
 	char name[OB_NAME_MAX];
 	char isolation[16];
 	ob_run_settings run;
+	uint32_t harden, zero; // bits, 1 << ob_harden_measure
 } ob_header;
 
 // What changes as the run goes on. Counters that several workers hit have a cache line each.
@@ -134,7 +135,7 @@ enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
 static_assert(sizeof(ob_run_settings) == 120, "run settings");
-static_assert(sizeof(ob_header) == 72 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 120, "header");
+static_assert(sizeof(ob_header) == 72 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 120 + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 512, "control");
 static_assert(sizeof(ob_worker_cell) == 512, "worker cell");

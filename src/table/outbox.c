@@ -39,6 +39,7 @@ typedef struct ob_outbox {
 	uint32_t worker, signal, done; // done: the last turn at which it arrived
 	uint32_t next_task;
 	bool stopped; // nobody takes anything any more
+	bool summed; // the checksum is of the records, too, not of the turn alone
 	size_t used;
 	checksum sum;
 	ob_outbox_end end;
@@ -90,8 +91,10 @@ bool ob_outbox_enter(ob_universe *u, uint32_t worker)
 	own.signal = __atomic_load_n(&u->gate_cell[worker].taken, __ATOMIC_RELAXED);
 	own.page->signal = own.signal; // a predecessor may have left something else
 	own.done = u->gate_cell[worker].done;
-	if (mprotect(u->base, u->header.bytes, PROT_READ) != 0 ||
-	    mprotect(own.page, each, PROT_READ | PROT_WRITE) != 0 || !ob_trace_unprotect(u, worker))
+	own.summed = u->header.harden & 1 << OB_HARDEN_CHECKSUM;
+	if (u->header.harden & 1 << OB_HARDEN_PAGES &&
+	    (mprotect(u->base, u->header.bytes, PROT_READ) != 0 ||
+	     mprotect(own.page, each, PROT_READ | PROT_WRITE) != 0 || !ob_trace_unprotect(u, worker)))
 		return false;
 	u->outbox = &own;
 	return true;
@@ -204,7 +207,8 @@ static void wait_until_taken(ob_universe *u)
 
 static void put_part(ob_outbox *o, const void *part, size_t bytes)
 {
-	add_words(&o->sum, part, bytes);
+	if (o->summed)
+		add_words(&o->sum, part, bytes);
 	memcpy(o->page->record + o->used, part, bytes);
 	o->used += bytes;
 }
@@ -315,7 +319,8 @@ static const char *take(ob_universe *u, ob_mail *m, uint32_t worker, bool *last)
 	memcpy(m->bytes + m->used, &part, sizeof part);
 	memcpy(m->bytes + m->used + sizeof part, page->record, bytes);
 	checksum sum = start_sum(worker, cell->turn);
-	add_words(&sum, m->bytes + m->used + sizeof part, bytes);
+	if (u->header.harden & 1 << OB_HARDEN_CHECKSUM)
+		add_words(&sum, m->bytes + m->used + sizeof part, bytes);
 	if (final_sum(&sum) != page->sum)
 		return "has handed over what does not bear its checksum";
 	m->used += sizeof part + bytes;

@@ -12,6 +12,7 @@
 // A simulator can write its own outbox and, where the run is traced, its own ring; a store to anything else ends it
 // (SIGSEGV). It puts records into the outbox while it works. The checksum is taken of each record as it is put, not of
 // the outbox, so a wild store into what has been put already is noticed: who harms its own outbox is found out, too.
+// Read-only pages and the checksum are measures of their own (OB_HARDEN_PAGES, OB_HARDEN_CHECKSUM): a run can do without.
 //
 //   simulator   records; bytes, checksum, turn, last;  signal = n;  wake, if the arranger waits for this one
 //   arranger    for each participant in turn: waits until signal = taken + 1;  copies;  taken = n
@@ -44,7 +45,8 @@ enum { OB_OUTBOX_END = 0 }; // its kind; all others are the module sim's
 
 // ---- the simulator's side
 
-// From here on this process can write its own outbox and ring, no more. false, and errno: it could not be done.
+// From here on this process hands over what it finds; with OB_HARDEN_PAGES it can write its own outbox and ring, no more.
+// false, and errno: it could not be done.
 bool ob_outbox_enter(ob_universe *u, uint32_t worker);
 // Whether this process is a simulator that is contained so.
 bool ob_universe_contained(const ob_universe *u);

@@ -44,7 +44,7 @@ typedef struct ob_universe_setup {
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
-	bool contained;         // simulators cannot write it (outbox.h); the last of the workers is the arranger
+	uint32_t harden;        // bits, 1 << ob_harden_measure; with OUTBOX the last of the workers is the arranger (outbox.h)
 	uint32_t script_cells; // objects that can have a script at the same time (script_data.h); 0: none
 	uint32_t script_bytes; // of the scripts' texts: an ob_script_directory, and what it points at
 	const void *script_text;
@@ -91,6 +91,8 @@ uint32_t ob_universe_capacity(const ob_universe *u);
 uint32_t ob_universe_workers(const ob_universe *u);
 // Those of them that simulate: all, or all but the arranger.
 uint32_t ob_universe_simulators(const ob_universe *u);
+// What is done so that simulators harm nobody: bits, 1 << ob_harden_measure.
+uint32_t ob_universe_harden(const ob_universe *u);
 // Whether simulators are contained (outbox.h).
 bool ob_universe_contains(const ob_universe *u);
 const char *ob_universe_name(const ob_universe *u);

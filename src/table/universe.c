@@ -32,13 +32,14 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
 	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->hulls, setup->traced,
-						setup->contained, setup->script_cells, setup->script_bytes });
+						setup->harden & 1 << OB_HARDEN_OUTBOX, setup->script_cells, setup->script_bytes });
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 	snprintf(h->name, sizeof h->name, "%s", name);
 	snprintf(h->isolation, sizeof h->isolation, "%s", setup->isolation);
 	h->run = setup->run;
+	h->harden = setup->harden;
 }
 
 // The segment's first contents, before anybody can find it.
@@ -152,6 +153,10 @@ uint32_t ob_universe_workers(const ob_universe *u)
 uint32_t ob_universe_simulators(const ob_universe *u)
 {
 	return u->header.sizes.workers - (ob_universe_contains(u) ? 1 : 0);
+}
+uint32_t ob_universe_harden(const ob_universe *u)
+{
+	return u->header.harden;
 }
 bool ob_universe_contains(const ob_universe *u)
 {

@@ -54,6 +54,12 @@ static void test_taken(void)
 	      0); // a value; whether it is a good one is for the request to say
 	CHECK(!a.value[OB_OPTION_STEP] && !a.value[OB_OPTION_HELP]);
 	ob_options_finish(&a);
+	CHECK(parse(&a, OB_COMMAND_RUN, "--harden s.lua", copy, &e)); // its value stands behind a =, or not at all
+	CHECK(strcmp(a.value[OB_OPTION_HARDEN], "") == 0 && strcmp(a.operand, "s.lua") == 0);
+	ob_options_finish(&a);
+	CHECK(parse(&a, OB_COMMAND_RUN, "s.lua --harden=pages,calls", copy, &e));
+	CHECK(strcmp(a.value[OB_OPTION_HARDEN], "pages,calls") == 0);
+	ob_options_finish(&a);
 	CHECK(parse(&a, OB_COMMAND_TOP, "--once -- --odd", copy, &e));
 	CHECK(a.value[OB_OPTION_ONCE] && strcmp(a.operand, "--odd") == 0);
 	ob_options_finish(&a);
@@ -74,6 +80,8 @@ static void test_refused(void)
 	check_refused(OB_COMMAND_RUN, "s.lua --duration", "--duration needs a value");
 	check_refused(OB_COMMAND_RUN, "s.lua --duration --step 1", "--duration needs a value");
 	check_refused(OB_COMMAND_RUN, "s.lua --json=", "--json needs a value");
+	check_refused(OB_COMMAND_RUN, "s.lua --harden=", "leave the = away");
+	check_refused(OB_COMMAND_RUN, "s.lua --harden --harden=pages", "--harden is given twice");
 	check_refused(OB_COMMAND_RUN, "s.lua --help=me", "--help takes no value");
 	check_refused(OB_COMMAND_RUN, "s.lua --step 1 --step 1", "--step is given twice");
 	check_refused(OB_COMMAND_RUN, "s.lua -D n=1 -D n=2", "-D n is given twice");

@@ -75,6 +75,10 @@ static void test_refused(void)
 	check_refused("s --json /tmp", "this is a directory");
 	check_refused("s --frames /dev/null", "this is a file");
 	check_refused("s --series x.csv --measure end", "--measure step");
+	check_refused("s --harden", "add --isolation process");
+	check_refused("s --isolation process --harden --arch monolith", "a monolith is one simulator");
+	check_refused("s --isolation process --harden=page", "--harden=page: expected some of outbox|checksum|pages");
+	check_refused("s --isolation process --harden=,", "--harden=: expected some of");
 	check_refused("s --name a/b", "letters, digits");
 	check_refused("s --name .hidden", "letters, digits");
 	check_refused("s --name aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", "at most 47");
@@ -100,6 +104,11 @@ static void test_taken(void)
 	CHECK(read_line("s --tolerance 1e-3m", &r, &e) && r.asked.tolerance == 1e-3 && !r.explain);
 	CHECK(read_line("s --tolerance 20um", &r, &e));
 	CHECK_NEAR(r.asked.tolerance, 20e-6, 1e-18);
+	CHECK(!r.harden && read_line("s --harden --isolation process", &r, &e) && r.harden == OB_HARDEN_ALL);
+	CHECK(read_line("s --harden=limits,calls --isolation process", &r, &e));
+	CHECK(r.harden == (1 << OB_HARDEN_LIMITS | 1 << OB_HARDEN_CALLS));
+	CHECK(read_line("s --harden=pages --isolation process", &r, &e)); // which need the outbox
+	CHECK(r.harden == (1 << OB_HARDEN_OUTBOX | 1 << OB_HARDEN_PAGES));
 	CHECK(read_line("s --seed 18446744073709551615", &r, &e));
 	CHECK(r.scene_options.has_seed && r.scene_options.seed == UINT64_MAX);
 }

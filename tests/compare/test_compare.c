@@ -1,11 +1,13 @@
 // What a comparison says of made-up runs: each answer has to follow from the figures, and change with them. What each
 // run is told to do.
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
 #include "compare/compare.h"
+#include "compare/table.h"
 
 enum { RUNS = 7 };
 
@@ -106,6 +108,18 @@ static void test_ratio(void)
 	finish(c);
 }
 
+// Words and numbers alone, a blank between them
+static void squeeze(char *text)
+{
+	char *to = text;
+	for (char *from = text; *from; from++) {
+		const bool kept = isalnum((unsigned char)*from) || *from == '.';
+		if (kept || (to > text && to[-1] != ' '))
+			*to++ = kept ? *from : ' ';
+	}
+	*to = 0;
+}
+
 static void test_text(void)
 {
 	ob_comparison *c = make(1, 3, RUNS);
@@ -122,6 +136,49 @@ static void test_text(void)
 	c->other = "obb";
 	ob_verdict_make(&v, c, c->point);
 	CHECK(strstr(v.narrow, "take 4.00 times the CPU of true shapes"));
+	finish(c);
+}
+
+// Each measure's price is over the same run without it, run by run.
+static void add_containment(ob_comparison *c, ob_configuration_id id, double cpu, double wall)
+{
+	fill(c, id, cpu);
+	for (uint32_t i = 0; i < c->repeats; i++) {
+		ob_record *r = &c->records.record[c->records.count - c->repeats + i];
+		r->metric[OB_COMPARE_CPU] = cpu * (1 + .5 * i);
+		r->metric[OB_COMPARE_WALL] = wall * (1 + .5 * i);
+	}
+}
+
+static void test_prices(void)
+{
+	ob_comparison *c = make(1, 3, RUNS);
+	ob_table *t = ob_comparison_prices(c, c->point);
+	CHECK(!t);
+	for (int i = 0; i < RUNS; i++) { // of the plain pool
+		ob_record *r = &c->records.record[2 * RUNS + i];
+		CHECK(!strcmp(r->configuration, "processes"));
+		r->metric[OB_COMPARE_CPU] = r->metric[OB_COMPARE_WALL] = 1 + .5 * i;
+	}
+	add_containment(c, OB_CONFIGURATION_OUTBOX, 1.25, 1.5);
+	add_containment(c, OB_CONFIGURATION_PAGES, 1.5, 1.5);
+	add_containment(c, OB_CONFIGURATION_CALLS, 1.01, 1);
+	add_containment(c, OB_CONFIGURATION_HARDENED, 1.75, 2);
+	char text[4096] = "";
+	FILE *f = fmemopen(text, sizeof text, "w");
+	t = ob_comparison_prices(c, c->point);
+	CHECK(t);
+	ob_table_print(t, f, 0);
+	ob_table_free(t);
+	fclose(f);
+	static const char *const lines[] = { "outboxes process pool 1.25 1.25 1.25 1.50 1.50 1.50",
+					     "with pages outboxes 1.20 1.20 1.20 1.00 1.00 1.00",
+					     "system calls process pool 1.01 1.01 1.01 1.00 1.00 1.00",
+					     "hardened pool process pool 1.75 1.75 1.75 2.00 2.00 2.00" };
+	squeeze(text);
+	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+		CHECK(strstr(text, lines[i]));
+	CHECK(!strstr(text, "checksum") && !strstr(text, "each")); // were not run
 	finish(c);
 }
 
@@ -255,6 +312,7 @@ int main(void)
 	test_too_few();
 	test_ratio();
 	test_text();
+	test_prices();
 	test_agreement();
 	test_failure();
 	test_print();

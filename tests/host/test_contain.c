@@ -1,5 +1,6 @@
 // Hardened simulators: the bits are the same; what is scribbled over all that one of them can write of the universe is
-// noticed or of no effect, and never gets into the result; the culprit is named.
+// noticed or of no effect, and never gets into the result; the culprit is named. Each measure alone is in force, and
+// changes no bits.
 //
 // Words are written from outside, at any instant (process_vm_writev goes by the protection of the pages, as the
 // simulator's own stores do).
@@ -125,7 +126,87 @@ static void test_same_bits(const ob_scene *s, uint64_t expected)
 	uint32_t deaths;
 	for (size_t i = 0; i < sizeof workers / sizeof *workers; i++) {
 		ob_host_config c = little_config(s, OB_ISOLATION_PROCESS, workers[i]);
-		c.harden = true;
+		c.harden = OB_HARDEN_ALL;
+		CHECK(run(s, &c, NULL, &deaths) == expected && deaths == 0);
+	}
+}
+
+// ---- each measure
+
+// A number of /proc/PID/FILE behind a word at the start of a line; -1: there is none.
+static int64_t number_of(pid_t pid, const char *file, const char *word, int base)
+{
+	char path[64], line[400];
+	int64_t found = -1;
+	snprintf(path, sizeof path, "/proc/%d/%s", (int)pid, file);
+	FILE *f = fopen(path, "r");
+	while (f && found < 0 && fgets(line, sizeof line, f))
+		if (!strncmp(line, word, strlen(word)))
+			found = strtoll(line + strlen(word), NULL, base);
+	if (f)
+		fclose(f);
+	return found;
+}
+
+// Bytes that the process shares with others, the universe, and of these those that it can write.
+static void count_shared(pid_t pid, uint64_t *all, uint64_t *writable)
+{
+	char path[64], line[400], rights[5];
+	uint64_t begin, end;
+	snprintf(path, sizeof path, "/proc/%d/maps", (int)pid);
+	FILE *f = fopen(path, "r");
+	*all = *writable = 0;
+	while (f && fgets(line, sizeof line, f))
+		if (sscanf(line, "%" SCNx64 "-%" SCNx64 " %4s", &begin, &end, rights) == 3 && rights[3] == 's') {
+			*all += end - begin;
+			*writable += rights[1] == 'w' ? end - begin : 0;
+		}
+	if (f)
+		fclose(f);
+}
+
+static void check_in_force(const ob_universe *u, uint32_t measures)
+{
+	enum { NOBODY = 65534, FILES = 3 };
+	const bool privileges = measures & 1 << OB_HARDEN_PRIVILEGES, calls = measures & 1 << OB_HARDEN_CALLS;
+	ob_worker_info info;
+	uint64_t all, writable;
+	CHECK(ob_universe_workers(u) - ob_universe_simulators(u) == (measures >> OB_HARDEN_OUTBOX & 1));
+	for (uint32_t w = 0; w < ob_universe_workers(u); w++) {
+		CHECK(ob_universe_get_worker(u, w, &info));
+		count_shared(info.pid, &all, &writable);
+		CHECK(all > 0 && writable > 0);
+		CHECK((writable < all) == (measures & 1 << OB_HARDEN_PAGES && w < ob_universe_simulators(u)));
+		CHECK(number_of(info.pid, "status", "Uid:", 10) == (privileges && getuid() == 0 ? NOBODY : getuid()));
+		CHECK(number_of(info.pid, "status", "CapEff:", 16) ==
+		      (privileges ? 0 : number_of(getpid(), "status", "CapEff:", 16)));
+		CHECK(number_of(info.pid, "status", "NoNewPrivs:", 10) ==
+		      (privileges || calls || number_of(getpid(), "status", "NoNewPrivs:", 10) == 1));
+		CHECK((number_of(info.pid, "limits", "Max open files", 10) == FILES) ==
+		      !!(measures & 1 << OB_HARDEN_LIMITS));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // which make calls of their own
+		CHECK(number_of(info.pid, "status", "Seccomp_filters:", 10) ==
+		      number_of(getpid(), "status", "Seccomp_filters:", 10) + calls);
+#endif
+	}
+}
+
+static void test_each_measure(const ob_scene *s, uint64_t expected)
+{
+	static const char *const lists[] = { "outbox", "checksum", "pages", "privileges", "limits", "calls", "", NULL };
+	ob_error e;
+	uint32_t deaths;
+	for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+		ob_host_config c = little_config(s, OB_ISOLATION_PROCESS, 2);
+		CHECK(ob_harden_read(&c.harden, lists[i], &e));
+		ob_host *h = ob_host_start(s, &c, &e);
+		CHECK(h);
+		if (!h)
+			continue;
+		ob_host_go(h, 10);
+		CHECK(ob_host_wait(h, &e));
+		check_in_force(ob_host_universe(h), c.harden);
+		ob_host_stop(h);
 		CHECK(run(s, &c, NULL, &deaths) == expected && deaths == 0);
 	}
 }
@@ -141,11 +222,12 @@ int main(int argc, char **argv)
 	ob_host_config c = little_config(&s, OB_ISOLATION_THREAD, 1);
 	const uint64_t expected = run(&s, &c, NULL, &deaths);
 	test_same_bits(&s, expected);
+	test_each_measure(&s, expected);
 	for (uint64_t seed = first; seed < first + seeds; seed++)
 		for (int i = 0; i < 3; i++, runs++) {
 			scribbler by = { .random = 3 * seed + (uint64_t)i, .words = words[i], .own_memory = argc > 3 };
 			c = little_config(&s, OB_ISOLATION_PROCESS, seed % 4 == 3 ? 0 : 2);
-			c.harden = true;
+			c.harden = OB_HARDEN_ALL;
 			c.patience = 1;
 			const uint64_t hash = run(&s, &c, &by, &deaths);
 			failed += !hash;

@@ -140,6 +140,22 @@ class Compare(program.Case):
 		for key in "processes_hardened", "processes_each_hardened":
 			self.assertIn("--harden", point["configurations"][key]["command"])
 		self.assertIn("hardened pool", said)
+		measures = ["outbox", "checksum", "pages", "privileges", "limits", "calls"]
+		for measure in measures:
+			self.assertIn("--harden=" + measure, point["configurations"]["processes_" + measure]["command"])
+		self.assertEqual([*point["prices"]], ["processes_" + m for m in measures] + ["processes_hardened", "processes_each_hardened"])
+		for price in point["prices"].values():
+			self.assertIn(price["over"], point["configurations"])
+			self.assertGreater(price["cpu"]["median"], 0)
+			self.assertGreater(price["wall"]["median"], 0)
+		self.assertIn("What containment costs", said)
+
+	def test_some_measures(self):
+		said, c = self.compare(program.scene("stack"), "-D", "n=5", "--duration", ".2", "--repeats", "1", "--harden=pages,limits")
+		self.assertEqual({*c["points"][0]["prices"]}, {"processes_outbox", "processes_pages", "processes_limits", "processes_hardened",
+			"processes_each_hardened"})
+		self.assertEqual(c["options"], " -D n=5 --duration .2")
+		self.assertNotIn("with checksum", said)
 
 	def test_too_many_for_one_each(self):
 		said, c = self.compare(program.scene("sparse"), "-D", "n=1100", "--duration", ".05", "--repeats", "1")
@@ -149,7 +165,7 @@ class Compare(program.Case):
 
 	def test_refused(self):
 		for words in ["--vary", "n"], ["--vary", "=3"], ["--vary", "n="], ["--repeats", "0"], ["--vary", "nix=3"], ["--seeds", "0"], \
-			["--repeats", "50", "--seeds", "2"], ["--fresh"], ["--workers", "objects"]:
+			["--repeats", "50", "--seeds", "2"], ["--fresh"], ["--workers", "objects"], ["--harden=all"]:
 			done = program.call("compare", program.scene("stack"), *words)
 			self.assertEqual(done.returncode, 2, words)
 			self.assertTrue(done.stderr.startswith("obsim: "), done.stderr)

@@ -311,6 +311,13 @@ for i = 1, 5 do sphere { name = i == 3 and "bad" or "good " .. i, radius = .1, a
 			self.assertEqual(done.returncode, 1)
 			self.assertRegex(done.stderr, r"the scene has scripts")
 
+	def test_confined(self):
+		"""What is no outbox does not keep scripts from writing the universe."""
+		hashes = {program.report(*self.FLOCK, *ROOMY, "--isolation", "process", *more)["state_hash"]
+			for more in ([], ["--harden=privileges,limits,calls"])}
+		self.assertEqual(len(hashes), 1)
+		self.one("function on_start() print('said', 1) end", "--isolation", "process", "--harden=privileges,limits,calls")
+
 	# ---- the same bits
 
 	# A hundred birds that steer, and flush where they touch something; and drops that are made and go.

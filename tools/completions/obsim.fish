@@ -36,7 +36,7 @@ complete -c obsim -n $both -l tolerance -x -a '5mm .5mm .05mm' -d 'error that ob
 complete -c obsim -n $both -l substeps -x -d 'substeps a step'
 complete -c obsim -n $both -l iterations -x -d 'of the contact solver a substep'
 complete -c obsim -n $both -l solver -x -a 'coloured jacobi ghost lagged' -d 'how contacts are solved'
-complete -c obsim -n $both -l harden -d 'processes that write their own results alone'
+complete -c obsim -n $both -l harden -a 'outbox checksum pages privileges limits calls' -d 'processes that write their own results alone'
 complete -c obsim -n $both -l lag -x -d 'lagged: iterations that a state is late'
 complete -c obsim -n $both -l integrator -x -a 'exact ode' -d 'free motion'
 complete -c obsim -n $both -l sleeping -x -a 'on off' -d 'whether what rests may sleep'

@@ -1,0 +1,56 @@
+// What a simulator hands over arrives as it was put. A word that was changed in its outbox is noticed with the measure
+// checksum, and blamed on it; without, it is taken for a result.
+#include "../check.h"
+
+#include <string.h>
+
+#include "table/layout.h"
+#include "table/outbox.h"
+
+enum { KIND = 7, WORDS = 5 };
+
+static const uint64_t sent[WORDS] = { 1, 2, 3, UINT64_MAX, 1234567 };
+
+// Hands over one record and collects it, both in this process; spoil: after it was put.
+static void hand_over(uint32_t harden, bool spoil)
+{
+	ob_error e;
+	ob_mail mail = { 0 };
+	ob_mail_record got;
+	size_t bytes;
+	ob_universe_setup setup = { .capacity = 1, .workers = 2, .isolation = "process", .harden = harden };
+	ob_universe *u = ob_universe_create(&setup, &e);
+	CHECK(u && ob_outbox_enter(u, 0));
+	if (!u)
+		return;
+	u->gate_group[0].expected = 1;
+	ob_outbox_begin(u);
+	ob_outbox_put(u, KIND, sent, sizeof sent, NULL, 0);
+	uint64_t *word = ob_outbox_own(u, &bytes);
+	while (spoil && *word != sent[WORDS - 1])
+		word++;
+	*word += spoil;
+	ob_outbox_arrive(u);
+	CHECK(ob_mail_collect(u, &mail));
+	const bool noticed = spoil && harden & 1 << OB_HARDEN_CHECKSUM;
+	CHECK(ob_step_failed(u, NULL) == (noticed ? OB_STEP_DAMAGED : OB_STEP_OK));
+	CHECK(!noticed == ob_mail_next(u, &mail, &got));
+	if (!noticed) {
+		CHECK(got.worker == 0 && got.kind == KIND && got.bytes == sizeof sent);
+		CHECK((memcmp(got.data, sent, sizeof sent) != 0) == spoil);
+		CHECK(ob_mail_next(u, &mail, &got) && got.kind == OB_OUTBOX_END);
+		CHECK(!ob_mail_next(u, &mail, &got));
+	}
+	ob_mail_finish(&mail);
+	ob_universe_destroy(u, true);
+}
+
+int main(void)
+{
+	const uint32_t plain = 1 << OB_HARDEN_OUTBOX, summed = plain | 1 << OB_HARDEN_CHECKSUM;
+	hand_over(plain, false);
+	hand_over(plain, true);
+	hand_over(summed, false);
+	hand_over(summed, true);
+	return check_end();
+}
