@@ -5,10 +5,12 @@
     soak.py OBSIM hosts [HOSTS SERVERS BOTH]         hosts and fork servers are killed (40 10 4), and runs taken up again
     soak.py OBSIM hour [HOURS]                       one run of 1000 balls, for hours (1), whose simulators die all the time
 
-blows: stack, pyramid, pile and falling boxes, in turns with two workers and with one for each object. Each comes at a random
-moment; SIGSTOP stands for a hang; exits come from within (--fault). hosts: a run writes a checkpoint thirty times a second. When
-it has ended, and another has started, no process of it and no universe is left; what is on the disk is a checkpoint, and ends, taken up
-again, in the same bits. hour: memory, descriptors and mappings of host and fork server stay what they were after the first tenth.
+blows: a stack and a pyramid on a table that shakes, a pile, falling boxes, birds with scripts, in turns with two workers and
+with one for each object. Each comes at a random moment, once the run has come further than at the last; SIGSTOP stands for a
+hang; exits come from within (--fault). hosts: a run writes a checkpoint thirty times a second. When it has ended, and another has
+started, no process of it and no universe is left; what is on the disk is a checkpoint, and ends, taken up again, in the same bits.
+hour: at the pace of reality, so that as many steps without faults, by one thread, take minutes; memory, descriptors and mappings
+of host and fork server stay what they were after the first tenth.
 
 Prints a line for each kind, and exits with 1 if a hash is wrong, a run fails, or anything is left behind.
 """
@@ -16,6 +18,7 @@ Prints a line for each kind, and exits with 1 if a hash is wrong, a run fails, o
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -23,11 +26,27 @@ import tempfile
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SCENES = {"stack": ["--duration", "20"], "pyramid": ["--duration", "5"], "pile": ["--duration", "3"],
-	"falling_boxes": ["-D", "n=60", "--duration", "6"]}
+SCENES = {"stack": [], "pyramid": [], "pile": ["-D", "n=3", "--duration", "3"],
+	"falling_boxes": ["-D", "n=30", "--duration", "8"], "flock": ["-D", "n=12", "--duration", "8"]}
 BLOWS = {"killed": signal.SIGKILL, "segfault": signal.SIGSEGV, "exit": None, "stopped": signal.SIGSTOP}
-BLOWS_PER_RUN = 8
+BLOWS_PER_RUN = {"killed": 12, "segfault": 12, "exit": 0, "stopped": 3}
 WORKERS = ["2", "objects"]
+STACK = """-- Ten cubes on a shaking table: what rests would not be solved again.
+scene { duration = 8 }
+box { kind = "kinematic", size = { 30, 30, 1 }, at = { 0, 0, -.5 }, path = { kind = "sine", amplitude = { .01, 0, 0 }, frequency = 1.5 } }
+for i = 1, 10 do
+	box { size = { 1, 1, 1 }, at = { random(-.01, .01), random(-.01, .01), i - .5 }, mass = 1000, friction = .5 }
+end
+"""
+PYRAMID = """-- A wall of 21 cubes on a shaking table.
+scene { duration = 3 }
+box { kind = "kinematic", size = { 30, 30, 1 }, at = { 0, 0, -.5 }, path = { kind = "sine", amplitude = { .02, 0, 0 }, frequency = 1.5 } }
+for row = 1, 6 do
+	for i = 1, 7 - row do
+		box { size = { 1, 1, 1 }, at = { (i - (8 - row) / 2) * 1.05, 0, row - .5 } }
+	end
+end
+"""
 BALLS = """-- A thousand balls between six walls, which never come to rest.
 scene { gravity = { 0, 0, 0 }, duration = 1e6 }
 for axis = 1, 3 do
@@ -44,12 +63,26 @@ end
 """
 
 
+WRITTEN = {"stack": STACK, "pyramid": PYRAMID, "balls": BALLS}
+folder = tempfile.TemporaryDirectory()
+
+
+def path(scene):
+	"""Of one of obsim's scenes, or of those here."""
+	if scene not in WRITTEN:
+		return f"{HERE}/../scenes/{scene}.lua"
+	file = os.path.join(folder.name, f"{scene}.lua")
+	with open(file, "w") as f:
+		f.write(WRITTEN[scene])
+	return file
+
+
 def run(obsim, *words):
 	return subprocess.Popen([obsim, "run", *words, "--measure", "end", "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def scene_words(scene):
-	return [f"{HERE}/../scenes/{scene}.lua", *SCENES[scene], "--sleeping", "off"]
+	return [path(scene), *SCENES[scene], "--sleeping", "off"]
 
 
 def children(pid):
@@ -90,20 +123,37 @@ def gone(pids, seconds=120):
 
 
 class Undisturbed:
-	"""How each scene ends, and how long that takes."""
+	"""How each scene ends, and how long that takes with so many workers."""
 
 	def __init__(self, obsim):
 		self.hash, self.took = {}, {}
 		for scene in SCENES:
-			began = time.monotonic()
-			self.hash[scene] = json.loads(run(obsim, *scene_words(scene)).communicate()[0])["state_hash"]
-			self.took[scene] = time.monotonic() - began
+			for workers in WORKERS:
+				began = time.monotonic()
+				out, said = run(obsim, *scene_words(scene), "--isolation", "process", "--workers", workers).communicate()
+				ended = json.loads(out)["state_hash"] if out else sys.exit(said)
+				if self.hash.setdefault(scene, ended) != ended:
+					sys.exit(f"{scene}: other bits with {workers} workers, and nothing has happened to it")
+				self.took[scene, workers] = time.monotonic() - began
 
 
-def strike(host, number, pause):
+def step_of(obsim, name):
+	"""How far the universe has come; -1: it is not there, or about to go."""
+	said = subprocess.run([obsim, "top", "--once", name], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+	found = re.search(r"^step (\d+)", said, re.M)
+	return int(found[1]) if found else -1
+
+
+def strike(obsim, host, name, number, after, pause):
+	"""A blow, once the run has come further than at the last one, for a run that gets nowhere gives up. Blows, and its step."""
 	time.sleep(pause)
-	victims = simulators(host.pid)
-	return end(random.choice(victims), number) if victims and host.poll() is None else 0
+	while host.poll() is None:
+		step = step_of(obsim, name)
+		victims = simulators(host.pid)
+		if step > after and victims:
+			return end(random.choice(victims), number), step
+		time.sleep(.01)
+	return 0, after
 
 
 def blows(obsim, wanted):
@@ -112,12 +162,14 @@ def blows(obsim, wanted):
 	for (kind, number), count in zip(BLOWS.items(), wanted):
 		dealt = deaths = runs = 0
 		while dealt < count:
-			scene, workers = list(SCENES)[turn % 4], WORKERS[turn // 4 % 2]
+			scene, workers = list(SCENES)[turn % len(SCENES)], WORKERS[turn // len(SCENES) % 2]
 			turn += 1
 			faults = [] if number else ["--fault", f"exit:p={.0001 if workers == 'objects' else .001},seed={turn}"]
 			host = run(obsim, *scene_words(scene), "--isolation", "process", "--workers", workers, "--patience", "1", "--name", name, *faults)
-			for _ in range(0 if not number else 1 if kind == "stopped" else BLOWS_PER_RUN):
-				dealt += strike(host, number, random.uniform(.1, 1) * undisturbed.took[scene] / BLOWS_PER_RUN)
+			step = -1
+			for _ in range(BLOWS_PER_RUN[kind]):
+				struck, step = strike(obsim, host, name, number, step, random.uniform(0, 1) * undisturbed.took[scene, workers] / BLOWS_PER_RUN[kind])
+				dealt += struck
 			out, said = host.communicate()
 			report = json.loads(out) if host.returncode == 0 else {"state_hash": said, "deaths": 0, "faults": 0}
 			left = os.path.exists(f"/dev/shm/obsim.{name}")
@@ -159,12 +211,12 @@ def hosts(obsim, wanted):
 	for victims, count in zip(("host", "server", "both"), wanted):
 		resumed = 0
 		for _ in range(count):
-			scene = list(SCENES)[turn % 4]
-			way = [["--isolation", "process", "--workers", "2"], ["--isolation", "process", "--workers", "objects"], ["--workers", "2"]][turn // 4 % 3]
+			scene, workers = list(SCENES)[turn % len(SCENES)], WORKERS[turn // len(SCENES) % 2]
+			way = ["--workers", workers, "--isolation", "thread" if turn // len(SCENES) % 3 == 2 else "process"]
 			turn += 1
-			with tempfile.TemporaryDirectory() as folder:
-				file = os.path.join(folder, "run.ck")
-				faults = list(killed_run(obsim, scene, way, victims, random.uniform(0, 1) * undisturbed.took[scene], file, name))
+			with tempfile.TemporaryDirectory() as kept:
+				file = os.path.join(kept, "run.ck")
+				faults = list(killed_run(obsim, scene, way, victims, random.uniform(0, 1) * undisturbed.took[scene, workers], file, name))
 				next_one = run(obsim, f"{HERE}/../scenes/stack.lua", "--duration", ".05")
 				next_one.communicate()
 				until = time.monotonic() + 120  # a fork server may be about to remove it
@@ -195,15 +247,12 @@ def holdings(pid):
 
 
 def hour(obsim, hours):
-	with tempfile.TemporaryDirectory() as folder:
-		scene = os.path.join(folder, "balls.lua")
-		with open(scene, "w") as f:
-			f.write(BALLS)
-		host = run(obsim, scene, "--isolation", "process", "--workers", "2", "--patience", "20", "--fault", "kill+segv+exit:p=.00002,seed=1", "--name",
-			f"soak-{os.getpid()}")
+	with tempfile.TemporaryFile("w") as said:
+		scene = path("balls")
+		host = run(obsim, scene, "--isolation", "process", "--workers", "2", "--patience", "20", "--pace", "realtime", "--fault",
+			"kill+segv+exit:p=.00005,seed=1", "--name", f"soak-{os.getpid()}")
 		began, looks = time.monotonic(), []
-		with open(os.path.join(folder, "said"), "w") as said:
-			pump = subprocess.Popen(["cat"], stdin=host.stderr, stdout=said)  # one line for each death
+		pump = subprocess.Popen(["cat"], stdin=host.stderr, stdout=said)  # one line for each death
 		while host.poll() is None and time.monotonic() - began < 3600 * hours:
 			time.sleep(min(60, 360 * hours))
 			looks.append([*holdings(host.pid), *holdings(children(host.pid)[0])])
@@ -214,7 +263,7 @@ def hour(obsim, hours):
 		host.wait()
 		pump.wait()
 		first, most = looks[len(looks) // 10], [max(column) for column in zip(*looks)]
-		same = json.loads(run(obsim, scene, "--duration", repr(report["steps"] * report["step"])).communicate()[0])
+		same = json.loads(run(obsim, scene, "--workers", "1", "--duration", repr(report["steps"] * report["step"])).communicate()[0])
 		right = (same["steps"], same["state_hash"]) == (report["steps"], report["state_hash"])
 		flat = all(m <= 1.1 * f for f, m in zip(first, most))
 	print(f"{report['steps']} steps, {report['deaths']} restarts ({report['fault_kinds']}); hash {'right' if right else 'WRONG'}; "
