@@ -80,7 +80,7 @@ class Fault(program.Case):
 		failed = 0
 		for seed in range(1, 9):
 			done = program.call("run", program.scene("pile"), "--duration", ".5", "--isolation", "process", "--fault",
-				f"nopages:p=.02,seed={seed}", "--name", self.name)
+				f"nopages:p=.1,seed={seed}", "--name", self.name)
 			self.assertIn(done.returncode, (0, 1), done.stderr)
 			self.assertEqual(done.returncode, "/dev/shm is full" in done.stderr, done.stderr)
 			failed += done.returncode
