@@ -275,11 +275,9 @@ static bool attempt(ob_script_runner *r, const ob_script_turn *turn, ob_error *e
 	return call_all(r, p, e);
 }
 
-void ob_script_runner_run(void *runner, uint32_t cell)
+void ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c)
 {
 	ob_script_runner *r = runner;
-	ob_script_turn *t = &r->data->script_turn[cell];
-	ob_script_cell *c = &r->data->script_cell[cell];
 	const ob_script_turn before = *t;
 	unsigned char state[OB_SCRIPT_STATE_BYTES];
 	const uint32_t state_bytes = c->state_bytes;

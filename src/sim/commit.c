@@ -16,6 +16,9 @@ typedef enum record_kind {
 	CONTACT,
 	CHECK,
 	NEIGHBOURS,
+	TOUCH,
+	SCRIPT,
+	POSTS,
 } record_kind;
 
 typedef struct bounds_record {
@@ -40,7 +43,29 @@ typedef struct neighbours_record {
 	uint32_t of[];
 } neighbours_record;
 
-enum { NEIGHBOURS_AT_ONCE = 512, MOST_EFFORT = 1 << 16 };
+typedef struct touch_record {
+	uint32_t id, other; // as ob_commit_touch
+	double impulse;
+	ob_vec3 point;
+} touch_record;
+
+// What has come of a script, but for its outbox, of which parts follow; state: in whole words.
+typedef struct script_record {
+	uint32_t cell, flags, wake, asks, state_bytes, outbox_bytes, failed_step, reserved;
+	uint64_t random[4];
+	ob_vec3 force, next_torque, push, twist;
+	float colour[4];
+	char error[OB_SCRIPT_ERROR_BYTES];
+	unsigned char state[];
+} script_record;
+
+// So many bytes of a cell's outbox, whole words, from "first" on.
+typedef struct posts_record {
+	uint32_t cell, first, bytes, reserved;
+	unsigned char part[];
+} posts_record;
+
+enum { NEIGHBOURS_AT_ONCE = 512, POSTS_AT_ONCE = 2048, MOST_EFFORT = 1 << 16 };
 
 // ---- in place
 
@@ -97,6 +122,50 @@ static void write_contact(ob_universe *u, const ob_found_contact *c)
 	*p = c->state;
 	if (c->two_sided)
 		memcpy(data->impulse_b[k->record][p - record->version], c->impulse_b, sizeof c->impulse_b);
+}
+
+static void write_touch(ob_universe *u, const touch_record *r)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t cell = data->script_of[r->id] - 1;
+	ob_script_turn *turn = &data->script_turn[cell];
+	ob_script_cell *c = &data->script_cell[cell];
+	uint32_t i = 0;
+	if (r->other == OB_NO_OBJECT) {
+		turn->flags &= ~(uint32_t)OB_SCRIPT_TOUCHED;
+		c->touches = 0;
+		return;
+	}
+	turn->flags |= OB_SCRIPT_TOUCHED;
+	while (i < c->touches && c->touch[i].other != r->other)
+		i++;
+	if (i == OB_SCRIPT_TOUCHES)
+		return;
+	if (i == c->touches)
+		c->touch[c->touches++] = (ob_script_touch){ .other = r->other,
+							    .generation = ob_passport_of(u, r->other)->generation,
+							    .point = r->point };
+	c->touch[i].impulse += r->impulse;
+}
+
+// As the script's runner leaves them.
+static void write_script(ob_universe *u, const script_record *r)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_script_turn *turn = &data->script_turn[r->cell];
+	ob_script_cell *c = &data->script_cell[r->cell];
+	turn->flags = r->flags;
+	turn->wake = r->wake;
+	memcpy(c->random, r->random, sizeof c->random);
+	c->force = r->force, c->next_torque = r->next_torque, c->push = r->push, c->twist = r->twist;
+	memcpy(c->colour, r->colour, sizeof c->colour);
+	c->asks = r->asks;
+	c->state_bytes = r->state_bytes;
+	memcpy(c->state, r->state, r->state_bytes);
+	c->outbox_bytes = r->outbox_bytes;
+	c->failed_step = r->failed_step;
+	memcpy(c->error, r->error, sizeof c->error);
+	c->inbox_bytes = c->touches = 0;
 }
 
 static void write_check(ob_universe *u, const check_record *c)
@@ -157,6 +226,44 @@ void ob_commit_contact(ob_sim *s, const ob_found_contact *c)
 		write_contact(s->u, c);
 }
 
+void ob_commit_touch(ob_sim *s, uint32_t id, uint32_t other, double impulse, ob_vec3 point)
+{
+	const touch_record r = { id, other, impulse, point };
+	if (ob_universe_contained(s->u))
+		ob_outbox_put(s->u, TOUCH, &r, sizeof r, NULL, 0);
+	else
+		write_touch(s->u, &r);
+}
+
+static size_t in_words(size_t bytes)
+{
+	return (bytes + 7) / 8 * 8;
+}
+
+void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, const ob_script_cell *c)
+{
+	script_record r = { .cell = cell,
+			    .flags = turn->flags,
+			    .wake = turn->wake,
+			    .asks = c->asks,
+			    .state_bytes = c->state_bytes,
+			    .outbox_bytes = c->outbox_bytes,
+			    .failed_step = c->failed_step,
+			    .force = c->force,
+			    .next_torque = c->next_torque,
+			    .push = c->push,
+			    .twist = c->twist };
+	memcpy(r.random, c->random, sizeof r.random);
+	memcpy(r.colour, c->colour, sizeof r.colour);
+	memcpy(r.error, c->error, sizeof r.error);
+	ob_outbox_put(s->u, SCRIPT, &r, sizeof r, c->state, in_words(c->state_bytes));
+	for (uint32_t first = 0; first < c->outbox_bytes; first += POSTS_AT_ONCE) {
+		const uint32_t left = c->outbox_bytes - first, n = left < POSTS_AT_ONCE ? left : POSTS_AT_ONCE;
+		const posts_record part = { cell, first, n, 0 };
+		ob_outbox_put(s->u, POSTS, &part, sizeof part, c->outbox + first, n);
+	}
+}
+
 void ob_commit_check(ob_universe *u, uint32_t pair, const ob_pair_key *k)
 {
 	const check_record r = { .pair = pair,
@@ -196,10 +303,11 @@ void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint
 struct ob_committer {
 	ob_mail mail;
 	uint32_t *island_owner; // [island]
-	uint32_t *query_owner; // [object]; NONE = no query was given away
-	uint32_t *had; // [object]: results, or neighbours, that have come
+	uint32_t *query_owner; // [object], or of scripts [cell]; NONE = none was given away
+	uint32_t *had; // [object]: results, or neighbours, that have come; [cell]: of what its script brings, 1 + bytes
+		       // of posts
 	uint32_t solved; // islands before this one are solved in this phase
-	uint32_t due; // results, or queries, that are still missing
+	uint32_t due; // results, queries, or scripts, that are still missing
 };
 
 ob_committer *ob_committer_create(const ob_universe *u)
@@ -253,6 +361,18 @@ static void give_queries(ob_committer *c, const ob_universe *u)
 	memset(c->query_owner, 0xff, ob_universe_ids(u) * sizeof *c->query_owner); // NONE
 	for (uint32_t i = 0; i < c->due; i++)
 		c->query_owner[list[i]] = own ? list[i] : owner_of_task(u, i);
+}
+
+static void give_scripts(ob_committer *c, const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const bool own = ob_universe_settings(u)->one_per_object;
+	c->due = data->script_counts->due;
+	memset(c->query_owner, 0xff, data->script_cells * sizeof *c->query_owner); // NONE
+	for (uint32_t i = 0; i < c->due; i++) {
+		const uint32_t cell = data->script_due[i];
+		c->query_owner[cell] = own ? data->script_turn[cell].object : owner_of_task(u, i);
+	}
 }
 
 static bool finite3(ob_vec3 v)
@@ -342,6 +462,88 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 	return NULL;
 }
 
+static const char *commit_touch(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const touch_record *r = from->data;
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) || !data->script_of || !data->script_of[r->id] ||
+	    !owns_island(c, from->worker, data->result_island[r->id]))
+		return "has felt for what it was not given";
+	if ((r->other >= ob_universe_ids(u) && r->other != OB_NO_OBJECT) || !isfinite(r->impulse) || !finite3(r->point))
+		return "has felt what makes no sense";
+	write_touch(u, r);
+	return NULL;
+}
+
+static bool is_sound_script(const script_record *r, size_t bytes)
+{
+	enum { FLAGS = 2 * OB_SCRIPT_FEELS - 1, ASKS = 2 * OB_SCRIPT_ASKS_ERROR - 1 };
+	return bytes >= sizeof *r && r->state_bytes <= OB_SCRIPT_STATE_BYTES &&
+	       bytes == sizeof *r + in_words(r->state_bytes) && r->outbox_bytes <= OB_SCRIPT_OUTBOX_BYTES &&
+	       r->outbox_bytes % 8 == 0 && !(r->flags & ~(uint32_t)FLAGS) && !(r->asks & ~(uint32_t)ASKS) &&
+	       finite3(r->force) && finite3(r->next_torque) && finite3(r->push) && finite3(r->twist) &&
+	       isfinite(r->colour[0] + r->colour[1] + r->colour[2] + r->colour[3]) &&
+	       memchr(r->error, 0, sizeof r->error);
+}
+
+static void have_script(ob_committer *c, const ob_universe *u, uint32_t cell)
+{
+	if (c->had[cell] <= ob_universe_step_data(u)->script_cell[cell].outbox_bytes)
+		return;
+	c->due--;
+	c->query_owner[cell] = NONE;
+}
+
+static const char *commit_script(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const script_record *r = from->data;
+	if (from->bytes < sizeof *r || r->cell >= ob_universe_step_data(u)->script_cells ||
+	    c->query_owner[r->cell] != from->worker || c->had[r->cell])
+		return "has run a script that it was not given";
+	if (!is_sound_script(r, from->bytes))
+		return "has run a script to what makes no sense";
+	write_script(u, r);
+	c->had[r->cell] = 1;
+	have_script(c, u, r->cell);
+	return NULL;
+}
+
+// Each within the outbox, one behind the other, to its end.
+static bool are_sound_posts(const ob_script_cell *c)
+{
+	uint32_t at = 0;
+	while (at + sizeof(ob_script_post) <= c->outbox_bytes) {
+		const ob_script_post *post = (const ob_script_post *)(const void *)(c->outbox + at);
+		at += (uint32_t)sizeof *post;
+		if (post->kind > OB_SCRIPT_CREATE || post->bytes % 8 || post->used > post->bytes ||
+		    post->bytes > c->outbox_bytes - at)
+			return false;
+		at += post->bytes;
+	}
+	return at == c->outbox_bytes;
+}
+
+// Parts come one after the other, behind what else has come of their script.
+static const char *commit_posts(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	static const char *const wrong = "has run a script that asks for what makes no sense";
+	const posts_record *r = from->data;
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (from->bytes < sizeof *r || r->cell >= data->script_cells || c->query_owner[r->cell] != from->worker ||
+	    !c->had[r->cell])
+		return "has asked for a script that it was not given";
+	ob_script_cell *cell = &data->script_cell[r->cell];
+	if (!r->bytes || r->bytes % 8 || r->bytes != from->bytes - sizeof *r || r->first != c->had[r->cell] - 1 ||
+	    r->bytes > cell->outbox_bytes - r->first)
+		return wrong;
+	memcpy(cell->outbox + r->first, r->part, r->bytes);
+	c->had[r->cell] += r->bytes;
+	if (c->had[r->cell] > cell->outbox_bytes && !are_sound_posts(cell))
+		return wrong;
+	have_script(c, u, r->cell);
+	return NULL;
+}
+
 static const char *commit_check(ob_universe *u, const ob_mail_record *from)
 {
 	const check_record *r = from->data;
@@ -392,7 +594,7 @@ static const char *commit_end(ob_universe *u, const ob_mail_record *from)
 // NULL, or what is wrong with the record. Which kinds a phase brings follows from what was given away in it.
 static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase, const ob_mail_record *r)
 {
-	const bool islands = phase == OB_PHASE_ISLANDS,
+	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
 		   pairs = phase == OB_PHASE_FORECAST || phase == OB_PHASE_LATE_CONTACTS,
 		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
 	switch (r->kind) {
@@ -406,6 +608,12 @@ static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase
 		return islands ? commit_effort(c, u, r) : "has counted what was not to be counted";
 	case CONTACT:
 		return islands ? commit_contact(c, u, r) : "has found a contact out of turn";
+	case TOUCH:
+		return islands ? commit_touch(c, u, r) : "has felt out of turn";
+	case SCRIPT:
+		return scripts ? commit_script(c, u, r) : "has run a script out of turn";
+	case POSTS:
+		return scripts ? commit_posts(c, u, r) : "has asked for a script out of turn";
 	case CHECK:
 		return pairs ? commit_check(u, r) : "has checked a pair out of turn";
 	case NEIGHBOURS:
@@ -438,7 +646,7 @@ static bool fails(ob_committer *c, ob_universe *u)
 
 bool ob_commit_phase(ob_committer *c, ob_universe *u, ob_phase phase)
 {
-	const bool islands = phase == OB_PHASE_ISLANDS,
+	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
 		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
 	ob_mail_record r = { 0 };
 	c->due = c->solved = 0;
@@ -446,8 +654,10 @@ bool ob_commit_phase(ob_committer *c, ob_universe *u, ob_phase phase)
 		give_islands(c, u);
 	if (boxes)
 		give_queries(c, u);
-	if (islands || boxes)
-		memset(c->had, 0, ob_universe_ids(u) * sizeof *c->had);
+	if (scripts)
+		give_scripts(c, u);
+	if (islands || boxes || scripts)
+		memset(c->had, 0, ob_universe_capacity(u) * sizeof *c->had);
 	if (!ob_mail_collect(u, &c->mail))
 		return false;
 	if (fails(c, u))

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "sim/broadphase.h"
+#include "sim/commit.h"
 #include "sim/publish.h"
 
 // ---- who runs
@@ -22,15 +23,27 @@ bool ob_scripts_due(ob_universe *u)
 	return count->due > 0;
 }
 
-void ob_scripts_run(ob_sim *s)
+static void run(ob_sim *s, uint32_t cell)
 {
 	const ob_step_data *data = s->data;
+	if (!ob_universe_contained(s->u)) {
+		s->scripts.run(s->scripts.runner, &data->script_turn[cell], &data->script_cell[cell]);
+		return;
+	}
+	s->scripts.turn = data->script_turn[cell];
+	s->scripts.cell = data->script_cell[cell];
+	s->scripts.run(s->scripts.runner, &s->scripts.turn, &s->scripts.cell);
+	ob_hand_over_script(s, cell, &s->scripts.turn, &s->scripts.cell);
+}
+
+void ob_scripts_run(ob_sim *s)
+{
 	uint32_t i;
 	if (s->settings->one_per_object)
-		s->scripts.run(s->scripts.runner, data->script_of[s->worker] - 1);
+		run(s, s->data->script_of[s->worker] - 1);
 	else
 		while (ob_task_claim(s->u, &i))
-			s->scripts.run(s->scripts.runner, data->script_due[i]);
+			run(s, s->data->script_due[i]);
 }
 
 bool ob_sim_awaits_requests(const ob_universe *u)

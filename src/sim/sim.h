@@ -16,8 +16,9 @@ typedef struct ob_sim ob_sim;
 ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e); // in the worker's own thread
 void ob_sim_destroy(ob_sim *s);
 
-// How a worker runs the script of an object, which this module does not know: that of a cell (table/script_data.h).
-typedef void (*ob_script_run)(void *runner, uint32_t cell);
+// How a worker runs the script of an object, which this module does not know: what is known of it (table/script_data.h), in
+// the universe or in a copy.
+typedef void (*ob_script_run)(void *runner, ob_script_turn *turn, ob_script_cell *cell);
 void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);
 
 // The worker takes part in one phase of the step (step.c shows them all): it waits at the gate until one opens to it,

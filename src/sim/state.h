@@ -27,6 +27,8 @@ struct ob_sim {
 	struct { // sim/scripts.h; NULL: this worker runs none
 		ob_script_run run;
 		void *runner;
+		ob_script_turn turn; // of a contained simulator, the copies that it runs ..
+		ob_script_cell cell; // .. and hands over
 	} scripts;
 	uint64_t fault_chances; // in this process (sim/fault.h)
 	ob_counters counters; // handed over to the universe at the end of each phase

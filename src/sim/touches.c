@@ -1,55 +1,36 @@
 #include "sim/touches.h"
 
-// The cell of a body whose script has an on_contact; NULL: it has none.
-static ob_script_cell *cell_that_feels(const ob_step_data *data, uint32_t id, ob_script_turn **turn)
+#include "sim/commit.h"
+
+// Whether it is a body whose script has an on_contact.
+static bool feels(const ob_step_data *data, uint32_t id)
 {
 	const uint32_t cell = data->script_of[id];
-	if (!cell || data->schedule[id].state < OB_SCHEDULE_AWAKE)
-		return NULL;
-	*turn = &data->script_turn[cell - 1];
-	return (*turn)->flags & OB_SCRIPT_FEELS ? &data->script_cell[cell - 1] : NULL;
+	return cell && data->schedule[id].state >= OB_SCHEDULE_AWAKE &&
+	       data->script_turn[cell - 1].flags & OB_SCRIPT_FEELS;
 }
 
 void ob_touches_begin(ob_sim *s, const ob_island *is)
 {
 	const ob_step_data *data = s->data;
-	ob_script_turn *turn;
 	s->island.feels = false;
 	for (uint32_t i = 0; data->script_of && i < is->members; i++) {
-		ob_script_cell *c = cell_that_feels(data, data->member[is->first_member + i], &turn);
-		if (!c)
+		const uint32_t id = data->member[is->first_member + i];
+		if (!feels(data, id))
 			continue;
 		s->island.feels = true;
-		turn->flags &= ~(uint32_t)OB_SCRIPT_TOUCHED;
-		c->touches = 0;
+		ob_commit_touch(s, id, OB_NO_OBJECT, 0, ob_v3(0, 0, 0));
 	}
-}
-
-static void note(ob_sim *s, uint32_t id, uint32_t other, double impulse, ob_vec3 point)
-{
-	ob_script_turn *turn;
-	ob_script_cell *c = cell_that_feels(s->data, id, &turn);
-	uint32_t i = 0;
-	if (!c)
-		return;
-	turn->flags |= OB_SCRIPT_TOUCHED;
-	while (i < c->touches && c->touch[i].other != other)
-		i++;
-	if (i == OB_SCRIPT_TOUCHES)
-		return;
-	if (i == c->touches)
-		c->touch[c->touches++] = (ob_script_touch){ .other = other,
-							    .generation = ob_passport_of(s->u, other)->generation,
-							    .point = point };
-	c->touch[i].impulse += impulse;
 }
 
 void ob_touches_note(ob_sim *s, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
 {
 	if (!s->data->script_of)
 		return;
-	note(s, a, b, impulse, point);
-	note(s, b, a, impulse, point);
+	if (feels(s->data, a))
+		ob_commit_touch(s, a, b, impulse, point);
+	if (feels(s->data, b))
+		ob_commit_touch(s, b, a, impulse, point);
 }
 
 void ob_touches_note_solved(ob_sim *s)

@@ -1,5 +1,5 @@
 // Contacts that begin in a step, noted for the scripts of the bodies that touch: their on_contact is called before the
-// next step (sim/scripts.h). By the solver of a body's island, which alone writes its cell then.
+// next step (sim/scripts.h). By the solver of a body's island (commit.h).
 #ifndef OB_SIM_TOUCHES_H
 #define OB_SIM_TOUCHES_H
 

@@ -7,6 +7,7 @@ import unittest
 import program
 
 ROOMY = ["--measure", "end"]
+HARDENED = ["--isolation", "process", "--harden"]
 
 
 class Scripts(program.Case):
@@ -290,6 +291,36 @@ for i = 1, 5 do sphere { name = i == 3 and "bad" or "good " .. i, radius = .1, a
 		self.assertEqual(sorted(i for i, in self.numbers(said, "fine")), [1, 2, 4, 5])
 		self.assertEqual(said.count("warning"), 1)
 
+	def test_hardened(self):
+		"""Simulators that cannot write the universe hand over all that scripts ask for, are told, and fail of."""
+		scene = """
+scene { duration = 1, room = 9 }
+ground {}
+script("bomb", "function on_step() local t = {} for i = 1, 1e9 do t[i] = { i } end end")
+script("child", "function on_start() print('born', self.state.n) send(find('mother'), self.state.n) self:remove() end")
+script("mother", [[
+function on_contact(other, impulse, point)
+	print("touched", other:name(), impulse, point[3])
+	for i = 1, 8 do sphere { radius = .1, at = { i, 3, 1 }, script = "child", state = { n = i, text = ("x"):rep(100) } } end
+	self:colour("#ff0000") self:torque(0, 0, 1) self:push(0, 0, 5)
+end
+function on_message(from, n)
+	self.state.sum = (self.state.sum or 0) + n
+	if n == 8 then print("sum", self.state.sum, self:position()) end
+end
+]])
+sphere { name = "mother", radius = .5, at = { 0, 0, .6 }, script = "mother" }
+sphere { name = "bad", radius = .5, at = { 4, 0, .6 }, script = "bomb" }
+"""
+		expected = self.run_scene(scene)
+		self.assertEqual([n for n, in self.numbers(expected, "born")], list(range(1, 9)))
+		self.assertEqual(self.numbers(expected, "sum")[0][0], 36)
+		self.assertEqual(expected.count("needs more than 4 MiB"), 1)
+		for workers in 1, 3, "objects":
+			with self.subTest(workers=workers):
+				said = self.run_scene(scene, *HARDENED, "--workers", workers)
+				self.assertEqual(sorted(said.splitlines()), sorted(expected.splitlines()))
+
 	def test_refused(self):
 		"""What is wrong before the run is an error of the scene, or of how it is asked for."""
 		for field, expected in {
@@ -306,10 +337,9 @@ for i = 1, 5 do sphere { name = i == 3 and "bad" or "good " .. i, radius = .1, a
 				said = self.run_scene(f"sphere {{ radius = 1, {field} }}", code=2)
 				self.assertRegex(said, expected)
 		scene = self.write("scene.lua", "sphere { radius = 1, script = 'function on_step() end' }")
-		for words in (["--isolation", "process", "--harden"], ["--arch", "monolith"]):
-			done = program.call("run", scene, *words)
-			self.assertEqual(done.returncode, 1)
-			self.assertRegex(done.stderr, r"the scene has scripts")
+		done = program.call("run", scene, "--arch", "monolith")
+		self.assertEqual(done.returncode, 1)
+		self.assertRegex(done.stderr, r"the scene has scripts")
 
 	def test_confined(self):
 		"""What is no outbox does not keep scripts from writing the universe."""
@@ -360,6 +390,18 @@ for i = 1, 5 do sphere { name = i == 3 and "bad" or "good " .. i, radius = .1, a
 				self.assertGreater(found[0]["deaths"], 0)
 				self.same(found, expected)
 
+	def test_hardened_same_bits(self):
+		"""Of simulators that hand over what scripts ask for; that are killed, and scribble over what they hand over."""
+		flock = [program.scene("flock"), "-D", "n=30", "--duration", "2.5", *ROOMY]
+		expected = program.report(*flock)
+		for words in (["--workers", 1], ["--workers", "objects"], ["--workers", 2, "--fault", "kill:p=.001,seed=3"],
+				["--workers", 2, "--fault", "scribble:p=.002,words=20,seed=4"]):
+			with self.subTest(words=words):
+				found = program.report(*flock, *HARDENED, *words)
+				self.assertEqual(found["state_hash"], expected["state_hash"])
+				self.assertEqual(found["objects"], expected["objects"])
+				self.assertEqual(found["deaths"] > 0, "--fault" in words)
+
 	def test_resumed(self):
 		expected = program.report(*self.FLOCK, *ROOMY)
 		program.report(*self.FLOCK[:-1], "2.3", *ROOMY, "--checkpoint", self.path("half"))
@@ -393,6 +435,7 @@ sphere { name = "mother", radius = .1, at = { 0, 5, .1 }, script = "grow" }
 		expected = program.report(scene, *ROOMY, "--workers", 1)
 		self.assertGreater(expected["objects"], 6)
 		for words in (["--workers", 3], ["--isolation", "process", "--workers", 2],
+				[*HARDENED, "--workers", 2],
 				["--isolation", "process", "--workers", 2, "--fault", "kill:p=.002,seed=5"]):
 			with self.subTest(words=words):
 				found = program.report(scene, *ROOMY, *words)
