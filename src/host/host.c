@@ -19,7 +19,7 @@
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
 static const double default_patience = 60, least_start_patience = 5; // s
-static const double interrupted_leave_timeout = .05; // s: Ctrl-C does not wait for the end of a long step
+static const double interrupted_leave_timeout = .02; // s: Ctrl-C does not wait for the end of a long step
 
 static bool has_outboxes(const ob_host_config *c)
 {

@@ -275,8 +275,10 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 		} else {
 			if (turn)
 				nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL);
-			if (!check_progress(h, &stall, &interrupted_at))
+			if (!check_progress(h, &stall, &interrupted_at)) {
+				ob_host_halt(h); // while the report is made, workers leave
 				break;
+			}
 		}
 	}
 	return result_of_run(h, e);
