@@ -455,9 +455,9 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	ob_request r;
 	for (; p->next < p->event_count && p->events[p->next].step <= step; p->next++) {
 		event *due = &p->events[p->next];
+		const ob_object_def *def = &p->scene->object[due->id];
 		if (due->add)
-			add_object(p, due->id, &p->scene->object[due->id],
-				   p->scene->states + p->scene->object[due->id].state_at);
+			add_object(p, due->id, def, def->state_bytes ? p->scene->states + def->state_at : NULL);
 		else
 			remove_scheduled(p, due->id);
 	}
