@@ -11,7 +11,8 @@ enum {
 	CYCLE_ITERATIONS = 60, // .. so many iterations before the second, and three times as many before the third
 	MAX_NEWTON_STEPS = 10,
 	MAX_ITERATIONS = 4000, // of a set that is too large for Newton's method
-	ELIMINATED_PER_WORK = 128, // of n^3, where n rows are eliminated
+	WORK_OF_POINT = 4, // in an iteration
+	ELIMINATED_PER_WORK = 32, // of n^3, where n rows are eliminated
 };
 
 static const double exact = 2e-15; // of the largest velocity: what rounding leaves
@@ -43,7 +44,7 @@ typedef struct impact_set {
 	change_of_velocity *change; // [bodies]
 	double largest; // m/s, of the points
 	double share; // of e: 1, or 0 for the plastic impact
-	uint64_t *work; // so far, of one point in one iteration each
+	const ob_impact_payer *payer; // or NULL
 } impact_set;
 
 static ob_vec3 times(const double *s, ob_vec3 x)
@@ -174,12 +175,18 @@ static double residual(const impact_set *s, const double *x, const double *u)
 	return most;
 }
 
+// Of n iterations, and of an elimination of so many rows. true: no more.
+static bool pay(const impact_set *s, uint64_t iterations, uint64_t rows)
+{
+	const uint64_t work = WORK_OF_POINT * s->points * iterations + rows * rows * rows / ELIMINATED_PER_WORK;
+	return s->payer && s->payer->is_over(s->payer->with, work);
+}
+
 // All points at once, again and again.
 static void iterate(const impact_set *s, int iterations, double *x, double *u)
 {
 	double most = INFINITY;
-	for (int n = 0; n < iterations && most > exact * s->largest; n++) {
-		*s->work += s->points;
+	for (int n = 0; n < iterations && most > exact * s->largest && !pay(s, 1, 0); n++) {
 		find_velocities(s, x, u);
 		most = 0;
 		for (uint32_t k = 0; k < s->points; k++) {
@@ -344,11 +351,10 @@ static bool newton(const impact_set *s, newton_system *y, bool downhill, double 
 	double now = residual(s, x, u);
 	for (int n = 0; n < MAX_NEWTON_STEPS && now > exact * s->largest; n++) {
 		double share = 1;
-		*s->work += s->points + (uint64_t)y->n * (uint64_t)y->n * (uint64_t)y->n / ELIMINATED_PER_WORK;
-		if (!newton_step(s, y, x, u))
+		if (pay(s, 1, (uint64_t)y->n) || !newton_step(s, y, x, u))
 			return false;
 		for (int tries = 0; tries < 4; tries++, share *= .5) {
-			*s->work += s->points;
+			pay(s, 1, 0);
 			for (int i = 0; i < y->n; i++)
 				next[i] = x[i] + share * y->step[i];
 			find_velocities(s, next, u);
@@ -472,7 +478,8 @@ static void gather_points(impact_set *s, const ob_impact_body *body, const ob_im
 	}
 }
 
-uint64_t ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points)
+void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
+		     const ob_impact_payer *payer)
 {
 	enum { FEW = 8 };
 	struct {
@@ -482,8 +489,7 @@ uint64_t ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_
 		uint32_t count[2 * FEW];
 	} few;
 	const bool many = points > FEW || bodies > 2 * FEW;
-	uint64_t work = points;
-	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change, .work = &work };
+	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change, .payer = payer };
 	double *row = few.row;
 	uint32_t *count = few.count;
 	if (many) {
@@ -493,7 +499,7 @@ uint64_t ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_
 		count = ob_allocate(bodies * sizeof *count);
 	}
 	gather_points(&s, body, point, points);
-	if (s.points) {
+	if (s.points && !pay(&s, 1, 0)) {
 		double *x = row, *u = x + 3 * points;
 		set_rates(&s, count);
 		solve_law(&s, 1, x, u);
@@ -510,7 +516,6 @@ uint64_t ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_
 		free(row);
 		free(count);
 	}
-	return work;
 }
 
 // ---- a lane of a batch

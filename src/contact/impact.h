@@ -42,10 +42,18 @@ double ob_impact_opening(const ob_impact_body *body, const ob_impact_point *poin
 // Sets of more points take far longer.
 enum { OB_IMPACT_MOST_POINTS = 36 };
 
+// Who pays: told of work as it is done, in units of some 30 ns, again and again. true: it is to end at once, with
+// whatever velocities it has found.
+typedef struct ob_impact_payer {
+	bool (*is_over)(void *with, uint64_t work);
+	void *with;
+} ob_impact_payer;
+
 // Changes the velocities of the bodies by one impact at all those of the points that approach. Others may approach
 // afterwards. Momentum and angular momentum are kept to rounding, energy does not grow.
-// Gives the work that it took, counted in iterations of a point, some 30 ns each.
-uint64_t ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points);
+// payer: NULL = nobody.
+void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
+		     const ob_impact_payer *payer);
 
 // m: points that come within this when the first one hits, hit with it
 #define OB_IMPACT_SIMULTANEOUS 1e-7

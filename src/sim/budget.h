@@ -1,7 +1,11 @@
 // The budget of a step: how much work it may take before the run ends, with the names of those that it went into. So no
 // scene hangs, however thin, fast or stiff what is in it. Work is counted, never timed: the run ends in the same step
 // on any machine, with any number of workers. Its unit is what a pair costs in an iteration of the contact solver, some
-// 30 ns.
+// 30 ns; what is done much of, and costs more, is noted as so many units.
+//
+// The budget is looked at wherever a scene can choose how often something is done: in each collision test, after which
+// nothing touches any more (narrowphase.c), each iteration, each impact, each plane that a flight may end on. So a step
+// ends soon once it is spent, or the run is stopped.
 //
 // A share is what is worked on as a whole, and by one worker: an island, or a batch of pairs. Shares are counted in
 // grains, and what is left over at a share's end is dropped, so that the sum does not depend on who worked on which.

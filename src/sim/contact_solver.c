@@ -115,11 +115,11 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 		if (iteration->first ? !b->live : w->batch_due[i] < w->iteration)
 			continue;
 		unsigned pairs = (unsigned)__builtin_popcount(b->live);
+		enum { SWEEP = 2, ISOLATED_SWEEP = 16 }; // work: of a patch, at most
 		s->counters.pair_solves += pairs;
 		s->counters.frictionless_solves += b->kind & OB_KIND_FRICTIONLESS ? pairs : 0;
 		ob_batch_solve(b, iteration, w->u, w->v, w->d, w->delta);
-		enum { SWEEP_WORK = 16 }; // of a patch, at most
-		ob_budget_note(s, b->isolated ? SWEEP_WORK * b->sweeps : 0);
+		ob_budget_note(s, OB_LANES - pairs + (b->isolated ? ISOLATED_SWEEP : SWEEP) * b->sweeps);
 		*any_active |= activate_bodies(w, b);
 		residual = lanes_max(residual, b->residual);
 	}
@@ -136,7 +136,7 @@ static double converge(ob_sim *s, ob_solver_iteration *iteration, uint32_t max_i
 	double residual = INFINITY;
 	bool any_active = true;
 	ob_conjugate_begin(w);
-	for (uint32_t k = 0; k < max_iterations && any_active; k++) {
+	for (uint32_t k = 0; k < max_iterations && any_active && !ob_budget_spent(s); k++) {
 		if (k)
 			ob_conjugate_go_on(w);
 		s->counters.solver_iterations++;

@@ -384,8 +384,8 @@ bool ob_direct_solve(ob_sim *s)
 	double alpha = 1, t;
 	find_row_velocities(w);
 	s->counters.direct_solves++;
-	enum { WORK_PER_BODY = 64 }; // of trees; a sparse solve costs up to ten times as much
-	ob_budget_note(s, (uint64_t)WORK_PER_BODY * w->bodies);
+	enum { OF_TREES = 64, SPARSE = 640 }; // for each body, at most
+	ob_budget_note(s, (uint64_t)(f->shape == OB_DIRECT_CYCLIC ? SPARSE : OF_TREES) * w->bodies);
 	if (!find_direction(w))
 		return false;
 	for (project_solution(w, alpha); (t = line_search(w)) < min_step && alpha > min_alpha;

@@ -5,6 +5,7 @@
 #include "contact/polytope.h"
 #include "motion/flight.h"
 #include "sim/broadphase.h"
+#include "sim/budget.h"
 #include "sim/publish.h"
 #include "sim/touches.h"
 
@@ -45,7 +46,9 @@ static double plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight,
 	const ob_step_data *data = s->data;
 	ob_flier f = landing_body(s, id, flight);
 	double first = INFINITY;
-	for (uint32_t i = 0; i < data->count->planes; i++) {
+	enum { WORK_OF_LANDING = 32 };
+	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(s); i++) {
+		ob_budget_note(s, WORK_OF_LANDING);
 		ob_half_space ground = half_space(s->u, data->plane[i]);
 		double t = ob_landing_time(&f, &ground, from - flight->t0, fmin(until, first) - flight->t0);
 		if (flight->t0 + t < first)
@@ -177,7 +180,7 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 	if (!(approach > contact_approach * s->island.unit.speed))
 		return false;
 	for (int k = 0; k < REFLECTIONS && fastest_approach(body, point, points) > reflected * approach; k++)
-		ob_impact_solve(body, 2, point, points);
+		ob_impact_solve(body, 2, point, points, NULL); // few points, few times
 	if (points > 0)
 		ob_touches_note(s->u, id, plane, passport->mass * ob_dot(ob_sub(body[0].v, state->v), ground.normal),
 				ob_add(state->pose.p, point[0].arm_a));
@@ -291,8 +294,11 @@ static ob_state state_by_ode(ob_sim *s, uint32_t id)
 	ob_state now = { { before->p, before->q }, before->v, before->w };
 	ob_vec3 force = ob_scale(ob_passport_of(s->u, id)->force, h);
 	bool done = true;
-	for (uint32_t i = 0; i < run->substeps && done; i++)
+	enum { WORK_OF_SUBSTEP = 32 };
+	for (uint32_t i = 0; i < run->substeps && done && !ob_budget_spent(s); i++) {
+		ob_budget_note(s, WORK_OF_SUBSTEP);
 		done = ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, id), &now, force, ob_v3(0, 0, 0), h);
+	}
 	if (!done)
 		ob_step_fail(s->u, OB_STEP_ENGINE, id);
 	return now;

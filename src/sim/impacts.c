@@ -34,8 +34,10 @@ enum {
 	MAX_TOUCHING = 128, // points that hang together with a plastic hit, where nothing external acts ..
 	MAX_TOUCHING_LOADED = 4, // .. and where something does: larger heaps are left to the contact solver
 	NONE = UINT32_MAX,
-	IN_GROUP = UINT32_MAX
 };
+
+// Bits of seen[] while a round is chosen.
+static const uint32_t in_group = UINT32_C(1) << 31, is_chosen = UINT32_C(1) << 30;
 
 // ---- motion within the partial substep
 
@@ -206,6 +208,8 @@ static void find_between(ob_sim *s, const ob_contact *contact, const ob_body_at 
 
 static void find_at(ob_sim *s, const ob_contact *contact, double t, ob_body_at *a, ob_body_at *b, ob_manifold *m)
 {
+	enum { WORK_OF_FLIGHTS = 32 };
+	ob_budget_note(s, WORK_OF_FLIGHTS);
 	*a = body_at(&s->island, contact->a, t);
 	*b = body_at(&s->island, contact->b, t);
 	find_between(s, contact, a, b, m);
@@ -318,6 +322,8 @@ static void look_ahead(ob_sim *s, uint32_t contact)
 	const unsigned mask = may_hit(w, c);
 	if (!mask)
 		return;
+	enum { WORK = 4 };
+	ob_budget_note(s, WORK);
 	const double slack = curvature(w, c), threshold = threshold_of(w, c);
 	ob_impact in = { .h = w->h,
 			 .threshold = threshold,
@@ -448,7 +454,7 @@ static bool find_group(ob_island_work *w, uint32_t first, double t, touching_gro
 	g->contacts = 1;
 	g->points = touching_points(w, &w->contact[first], t);
 	g->contact[0] = first;
-	x->seen[first] = IN_GROUP;
+	x->seen[first] |= in_group;
 	for (uint32_t k = 0; k < g->contacts && g->points <= most; k++)
 		for (int side = 0; side < 2 && g->points <= most; side++) {
 			const ob_contact *c = &w->contact[g->contact[k]];
@@ -458,26 +464,18 @@ static bool find_group(ob_island_work *w, uint32_t first, double t, touching_gro
 				const uint32_t i = w->adjacency[body->first_adjacent + j];
 				const ob_contact *other = &w->contact[i];
 				uint32_t n = 0;
-				if (x->seen[i] != IN_GROUP && is_plastic(other) && other->lane != OB_NO_LANE)
+				if (!(x->seen[i] & in_group) && is_plastic(other) && other->lane != OB_NO_LANE)
 					n = touching_points(w, other, t);
 				g->points += n;
 				if (!n || g->points > most)
 					continue;
-				x->seen[i] = IN_GROUP;
+				x->seen[i] |= in_group;
 				g->contact[g->contacts++] = i;
 			}
 		}
 	for (uint32_t k = 0; k < g->contacts; k++)
-		x->seen[g->contact[k]] = 0;
+		x->seen[g->contact[k]] &= ~in_group;
 	return g->points <= most;
-}
-
-static bool is_selected(const ob_impacts *x, uint32_t contact, uint32_t selected)
-{
-	for (uint32_t k = 0; k < selected; k++)
-		if (x->pending[k].contact == contact)
-			return true;
-	return false;
 }
 
 // Into the first "selected" pending impacts, unless it is there already. Returns how many there are then.
@@ -489,7 +487,7 @@ static uint32_t select_touching(ob_sim *s, uint32_t contact, double t, uint32_t 
 	ob_impact_instant i = { .contact = contact, .time = t };
 	ob_body_at a, b;
 	bool touches = false;
-	if (is_selected(x, contact, selected))
+	if (x->seen[contact] & is_chosen)
 		return selected;
 	ob_body_update_pose(w, c->a);
 	ob_body_update_pose(w, c->b);
@@ -498,6 +496,7 @@ static uint32_t select_touching(ob_sim *s, uint32_t contact, double t, uint32_t 
 		touches |= i.m.gap[j] <= touching * w->unit.length;
 	if (!touches)
 		return selected;
+	x->seen[contact] |= is_chosen;
 	x->pending[x->count++] = x->pending[selected];
 	x->pending[selected] = i;
 	if (moves(w, c->a) && moves(w, c->b))
@@ -510,6 +509,7 @@ static uint32_t leave_to_solver(ob_island_work *w, uint32_t k, uint32_t selected
 {
 	ob_impacts *x = &w->impacts;
 	w->contact[x->pending[k].contact].left_to_solver = true;
+	x->seen[x->pending[k].contact] = 0;
 	x->pending[k] = x->pending[--selected];
 	x->pending[selected] = x->pending[--x->count];
 	return selected;
@@ -522,6 +522,8 @@ static uint32_t join_touching(ob_sim *s, uint32_t selected)
 	ob_impacts *x = &w->impacts;
 	const uint32_t hits = selected;
 	touching_group g;
+	for (uint32_t k = 0; k < hits; k++)
+		x->seen[x->pending[k].contact] |= is_chosen;
 	for (uint32_t k = 0; k < selected && k < hits;) {
 		const ob_impact_instant i = x->pending[k];
 		if (!is_plastic(&w->contact[i.contact])) {
@@ -534,6 +536,8 @@ static uint32_t join_touching(ob_sim *s, uint32_t selected)
 			selected = leave_to_solver(w, k, selected);
 		}
 	}
+	for (uint32_t k = 0; k < selected; k++)
+		x->seen[x->pending[k].contact] = 0;
 	return selected;
 }
 
@@ -720,6 +724,19 @@ static bool leave_plastic(ob_sim *s, uint32_t chain)
 	return true;
 }
 
+static bool is_over(void *sim, uint64_t work)
+{
+	ob_budget_note(sim, work);
+	return ob_budget_spent(sim);
+}
+
+static void solve_points(ob_sim *s)
+{
+	ob_impacts *x = &s->island.impacts;
+	const ob_impact_payer payer = { is_over, s };
+	ob_impact_solve(x->body, x->bodies, x->point, x->points, &payer);
+}
+
 // The impact of those contacts from "chain" on that have joined it. false: it is left to the contact solver.
 static bool solve_joined(ob_sim *s, uint32_t chain, double t)
 {
@@ -736,7 +753,7 @@ static bool solve_joined(ob_sim *s, uint32_t chain, double t)
 	if (x->points > OB_IMPACT_MOST_POINTS && leave_plastic(s, chain))
 		return false;
 	memcpy(x->before, x->body, x->bodies * sizeof *x->body);
-	ob_budget_note(s, ob_impact_solve(x->body, x->bodies, x->point, x->points));
+	solve_points(s);
 	return true;
 }
 
@@ -774,7 +791,7 @@ static void solve_set(ob_sim *s, uint32_t chain)
 	} while (join_violated(s, chain, t));
 	if (w->max_acceleration == 0 && set_hops(s, chain, t, x->before)) {
 		memcpy(x->body, x->before, x->bodies * sizeof *x->body);
-		ob_budget_note(s, ob_impact_solve(x->body, x->bodies, x->point, x->points));
+		solve_points(s);
 	}
 	for (uint32_t i = 0; i < x->bodies; i++)
 		end_loads(w, x->row[i], t);
@@ -919,6 +936,7 @@ bool ob_impacts_resolve(ob_sim *s, bool first)
 	ob_ghosts_read(s, w->v, 0);
 	look_at_all(s, first);
 	while (w->impacts.count && round < max_rounds && !ob_budget_spent(s)) {
+		ob_budget_note(s, w->impacts.count);
 		const uint32_t selected = join_touching(s, select_earliest(w));
 		solve_selected(s, selected);
 		round++;

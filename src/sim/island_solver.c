@@ -72,7 +72,8 @@ static void solve_velocities(ob_sim *s)
 // The table of contents of an island's step: a substep, or a part of one, in the order in which things happen.
 static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 {
-	ob_budget_note(s, s->island.rows + s->island.contacts);
+	enum { WORK_OF_BODY = 24, WORK_OF_CONTACT = 8 }; // beside its tests and solves
+	ob_budget_note(s, WORK_OF_BODY * s->island.rows + WORK_OF_CONTACT * s->island.contacts);
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
 	ob_ghosts_follow(s);
 	ob_adaptive_begin(s, left);
@@ -217,11 +218,10 @@ static uint32_t rest_flag(ob_sim *s)
 void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &s->data->island[i];
-	ob_worker_set_object(s->u, s->worker, s->data->member[is->first_member]);
+	ob_budget_begin_share(s, s->data->member[is->first_member]);
 	if (advance_ballistically(s, is))
 		return;
 	const uint64_t before = cost_so_far(s);
-	ob_budget_begin_share(s, s->data->member[is->first_member]);
 	s->island.substeps = ob_error_control_substeps(s, is);
 	if (!solve_equilibrium(s, is))
 		while (!solve_step(s, is))

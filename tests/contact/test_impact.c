@@ -3,6 +3,7 @@
 #include "contact/impact.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "check.h"
 #include "pair.h"
@@ -39,7 +40,7 @@ static void add_point(hit *h, uint32_t a, uint32_t b, ob_vec3 at, ob_vec3 normal
 static void solve(hit *h)
 {
 	memcpy(h->after, h->before, sizeof h->after);
-	ob_impact_solve(h->after, h->bodies, h->point, h->points);
+	ob_impact_solve(h->after, h->bodies, h->point, h->points, NULL);
 }
 
 static double energy_of(const hit *h, const ob_impact_body *x)
@@ -298,8 +299,45 @@ static void test_pending(void)
 	CHECK(isinf(time_of(&x, 1e-6)));
 }
 
+typedef struct purse {
+	uint64_t work, left;
+	int calls;
+} purse;
+
+static bool pay(void *with, uint64_t work)
+{
+	purse *p = with;
+	p->work += work;
+	p->calls++;
+	return p->work > p->left;
+}
+
+// A plate that comes down on its many points: whoever pays is told of all work, and when it is over it ends at once.
+static void test_payer(void)
+{
+	enum { SIDE = 8 };
+	ob_impact_point point[SIDE * SIDE];
+	const ob_impact_body plate = {
+		.inv_mass = 1, .inv_inertia = { 3, 0, 0, 3, 0, 1.5 }, .v = { 1, .3, -2 }, .w = { .2, .1, 3 }
+	};
+	ob_impact_body unpaid[2] = { plate }, paid[2] = { plate }, cut[2] = { plate };
+	for (int i = 0; i < SIDE * SIDE; i++) {
+		const ob_vec3 at = ob_v3((i % SIDE) / 7. - .5, (i / SIDE) / 7. - .5, -.1);
+		point[i] =
+			(ob_impact_point){ .b = 1, .normal = { 0, 0, 1 }, .arm_a = at, .arm_b = at, .mu = .3, .e = .5 };
+	}
+	purse rich = { .left = UINT64_MAX }, poor = { .left = 0 };
+	ob_impact_solve(unpaid, 2, point, SIDE * SIDE, NULL);
+	ob_impact_solve(paid, 2, point, SIDE * SIDE, &(ob_impact_payer){ pay, &rich });
+	ob_impact_solve(cut, 2, point, SIDE * SIDE, &(ob_impact_payer){ pay, &poor });
+	CHECK(memcmp(unpaid, paid, sizeof paid) == 0);
+	CHECK(rich.work >= (uint64_t)rich.calls * SIDE * SIDE && rich.calls > 100);
+	CHECK(poor.calls < 10);
+}
+
 int main(void)
 {
+	test_payer();
 	test_random();
 	test_central();
 	test_flat();

@@ -1,9 +1,11 @@
-// A step has a budget of work: when it is spent the run fails, nothing of the step is published, and those are named that
-// it went into. What diverges ends a run in the same way, and so does ODE where it gives up.
+// A step has a budget of work: when it is spent the run fails, nothing of the step is published, and those are named
+// that it went into. What diverges ends a run in the same way, and so does ODE where it gives up.
 #include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
+#include "sim/budget.h"
+#include "sim/narrowphase.h"
 #include "little_universe.h"
 
 // What the failure says; the state of the step before stands.
@@ -43,6 +45,61 @@ static void test_spent(void)
 	free(s);
 }
 
+// The last grain of work goes into what flies alone: past so many planes, or in so many substeps of ODE's stepper.
+static void test_spent_in_flight(void)
+{
+	for (int by_ode = 0; by_ode < 2; by_ode++) {
+		little_scene *s = little_scene_new();
+		if (by_ode) {
+			s->run.integrator = OB_INTEGRATOR_ODE;
+			s->run.tolerance = 0;
+			s->run.substeps = 1000;
+		}
+		ob_world_sphere(&s->world, 500, .5, ob_v3(0, 0, 9));
+		for (int i = 0; i < (by_ode ? 1 : 200); i++)
+			ob_world_ground(&s->world);
+		little_universe l;
+		little_open(&l, s);
+		ob_step_work_add(l.u, UINT64_C(1) << 40);
+		expect_failure(&l, OB_STEP_OVERWORKED, 0, "step 1 takes more work than a step may: object 0");
+		little_close(&l);
+		free(s);
+	}
+}
+
+// What costs more counts for more; and once the budget is spent no two bodies touch any more, so that whoever looks at
+// many pairs comes to an end.
+static void test_collision_tests(void)
+{
+	little_scene *s = little_scene_new();
+	ob_world_sphere(&s->world, 500, .5, ob_v3(0, 0, 9));
+	little_universe l;
+	little_open(&l, s);
+	const ob_placed sphere = { .shape = OB_SHAPE_SPHERE,
+				   .size = { .5, 0, 0 },
+				   .r = ob_quat_matrix(ob_quat_identity()) };
+	ob_placed box = sphere, cylinder = sphere;
+	box.shape = OB_SHAPE_BOX, box.size = ob_v3(.5, .5, .5), box.p = ob_v3(.3, .2, .1);
+	cylinder.shape = OB_SHAPE_CYLINDER, cylinder.size = ob_v3(.5, .5, 0);
+	const ob_manifold_finder finder = ob_narrowphase_finder(l.sim);
+	ob_manifold m;
+	uint64_t noted[2];
+	ob_budget_begin_share(l.sim, 0);
+	for (int i = 0; i < 2; i++) {
+		const uint64_t before = l.sim->budget.noted;
+		finder.find(finder.with, i ? &cylinder : &sphere, &box, .1, &m);
+		noted[i] = l.sim->budget.noted - before;
+		CHECK(m.points > 0);
+	}
+	CHECK(noted[0] > 0 && noted[1] > 20 * noted[0]);
+	ob_step_work_add(l.u, UINT64_C(1) << 40);
+	ob_budget_note(l.sim, 1 << 20);
+	finder.find(finder.with, &sphere, &box, .1, &m);
+	CHECK(m.points == 0 && m.separation > 0);
+	little_close(&l);
+	free(s);
+}
+
 static void test_diverged(void)
 {
 	little_scene *s = little_scene_new();
@@ -78,6 +135,8 @@ static void test_engine(void)
 int main(void)
 {
 	test_spent();
+	test_spent_in_flight();
+	test_collision_tests();
 	test_diverged();
 	test_engine();
 	return check_end();
