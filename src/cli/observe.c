@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/log.h"
+
 static bool all_stay(const ob_scene *s)
 {
 	for (uint32_t i = 0; i < s->objects; i++) {
@@ -78,6 +80,7 @@ void ob_observer_resume(ob_observer *o, const ob_saved_figures *from)
 	o->momentum_start = from->momentum_start;
 	o->momentum_scale = from->momentum_scale;
 	o->momentum_error = from->momentum_error;
+	o->now.max_m = o->now.mean_m = isnan(from->worst) ? NAN : 0;
 	o->worst = from->worst;
 	o->worst_time = from->worst_time;
 }
@@ -112,6 +115,19 @@ static bool is_interrupted(void *host)
 	return ob_host_interrupted(host);
 }
 
+// Where that is too much to measure, the run goes on without: the worst is not known any more, also after a resume.
+static bool measure_penetration(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e)
+{
+	ob_error why;
+	if (isnan(o->worst) || ob_measure_penetration_unless(s, &o->now, is_interrupted, (void *)host, &why))
+		return true;
+	if (ob_host_interrupted(host))
+		return ob_fail(e, "%s", why.text);
+	ob_log_warn("penetration is not measured from here on: %s", why.text);
+	o->worst = o->worst_time = NAN;
+	return true;
+}
+
 bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e)
 {
 	if (o->started && s->step == o->last_step)
@@ -125,7 +141,7 @@ bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *ho
 	if (o->closed && o->momentum_scale > 0)
 		o->momentum_error =
 			fmax(o->momentum_error, ob_norm(ob_sub(momentum, o->momentum_start)) / o->momentum_scale);
-	if (!ob_measure_penetration_unless(s, &o->now, is_interrupted, (void *)host, e))
+	if (!measure_penetration(o, s, host, e))
 		return false;
 	if (o->now.max_m > o->worst) {
 		o->worst = o->now.max_m;

@@ -21,7 +21,7 @@ typedef struct ob_observer {
 	double momentum_scale; // kg m/s, sum of the sizes at the start
 	double momentum_error; // largest so far, relative to the scale
 	ob_penetration now;
-	double worst, worst_time; // m, s
+	double worst, worst_time; // m, s; NaN: there was too much to measure
 	FILE *series; // a line for each snapshot; NULL = none
 	const char *series_path;
 } ob_observer;
@@ -31,8 +31,8 @@ bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, o
 // For a checkpoint of the step of the last snapshot, and of a run that goes on from there, which measures it again.
 void ob_observer_save(const ob_observer *o, ob_saved_figures *out);
 void ob_observer_resume(ob_observer *o, const ob_saved_figures *from);
-// Measures a snapshot; the first is the start. One that has been measured already is passed over. false and e: it cannot
-// be measured, or the host is interrupted.
+// Measures a snapshot; the first is the start. One that has been measured already is passed over. Where penetration is
+// too much to measure, a warning says so once, and it is NaN from then on. false and e: the host is interrupted.
 bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e);
 // Puts the figures into the report; each_step: every step was measured, so that the largest means something.
 void ob_observer_report(const ob_observer *o, bool each_step, ob_report *r);

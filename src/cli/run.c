@@ -311,12 +311,17 @@ static void report_time(const run *r, const ob_host_times *times, ob_report *p)
 	p->host_cpu_s = times->host_cpu_s - p->renderer_cpu_s;
 }
 
+static bool is_interrupted(void *host)
+{
+	return ob_host_interrupted(host);
+}
+
 static void report_separation(const run *r, ob_report *p)
 {
 	ob_snapshot s = { 0 };
 	ob_separation apart = { NAN, NAN, 0 };
 	if (ob_snapshot_take(&s, ob_host_universe(r->host), true, NULL))
-		ob_measure_separation(&s, &apart);
+		ob_measure_separation(&s, &apart, is_interrupted, r->host);
 	p->separation_max_m = apart.max_m;
 	p->separation_mean_m = apart.mean_m;
 	ob_snapshot_finish(&s);

@@ -113,6 +113,13 @@ struct node {
 	uint32_t children; // the first of two; 0: a leaf
 };
 
+struct effort {
+	uint64_t work, asked; // asked: work when stop was asked last
+	bool (*stop)(void *context);
+	void *context;
+	bool stopped;
+};
+
 struct search {
 	struct item *item;
 	struct box *box;
@@ -120,26 +127,30 @@ struct search {
 	uint32_t nodes;
 	ob_penetration *out;
 	double total; // m
-	uint64_t work, asked; // asked: work when stop was asked last
-	bool (*stop)(void *context);
-	void *context;
-	bool stopped;
+	struct effort effort;
 };
 
-static bool is_over(struct search *s)
+static bool is_over(struct effort *x)
 {
-	if (s->work - s->asked >= ASKED_EVERY * WORK_OF_SEARCH && s->stop) {
-		s->asked = s->work;
-		s->stopped |= s->stop(s->context);
+	if (x->work - x->asked >= ASKED_EVERY * WORK_OF_SEARCH && x->stop) {
+		x->asked = x->work;
+		x->stopped |= x->stop(x->context);
 	}
-	return s->stopped || s->work > most_work;
+	return x->stopped || x->work > most_work;
 }
 
 static bool needs_search(ob_shape a, ob_shape b)
 {
-	if ((a == OB_SHAPE_HULL || b == OB_SHAPE_HULL) && a != OB_SHAPE_PLANE && b != OB_SHAPE_PLANE)
+	if (a == OB_SHAPE_PLANE || b == OB_SHAPE_PLANE)
+		return false;
+	if (a == OB_SHAPE_HULL || b == OB_SHAPE_HULL)
 		return true;
 	return (a == OB_SHAPE_CYLINDER && b != OB_SHAPE_SPHERE) || (b == OB_SHAPE_CYLINDER && a != OB_SHAPE_SPHERE);
+}
+
+static uint64_t work_of(const ob_solid *a, const ob_solid *b)
+{
+	return needs_search(a->shape, b->shape) ? WORK_OF_SEARCH : WORK_OF_DEPTH;
 }
 
 static void add_depth(struct search *s, struct item *a, struct item *b)
@@ -148,7 +159,7 @@ static void add_depth(struct search *s, struct item *a, struct item *b)
 		return;
 	a->overlaps++;
 	b->overlaps++;
-	s->work += needs_search(a->solid.shape, b->solid.shape) ? WORK_OF_SEARCH : WORK_OF_DEPTH;
+	s->effort.work += work_of(&a->solid, &b->solid);
 	double depth = ob_depth(&a->solid, &b->solid);
 	if (!(depth > 0))
 		return;
@@ -287,8 +298,8 @@ static void test_leaves(struct search *s, const struct node *a, const struct nod
 		const struct box *one = &s->box[i];
 		if (!boxes_overlap(one->bounds, b->bounds))
 			continue;
-		for (uint32_t j = a == b ? i + 1 : b->first; j < b->first + b->count && !is_over(s); j++) {
-			s->work++;
+		for (uint32_t j = a == b ? i + 1 : b->first; j < b->first + b->count && !is_over(&s->effort); j++) {
+			s->effort.work++;
 			if (boxes_overlap(one->bounds, s->box[j].bounds))
 				add_depth(s, &s->item[one->item], &s->item[s->box[j].item]);
 		}
@@ -298,8 +309,8 @@ static void test_leaves(struct search *s, const struct node *a, const struct nod
 static void find_pairs(struct search *s, uint32_t one, uint32_t other)
 {
 	const struct node *a = &s->node[one], *b = &s->node[other];
-	s->work++;
-	if (is_over(s) || !boxes_overlap(a->bounds, b->bounds))
+	s->effort.work++;
+	if (is_over(&s->effort) || !boxes_overlap(a->bounds, b->bounds))
 		return;
 	if (!a->children && !b->children) {
 		test_leaves(s, a, b);
@@ -320,7 +331,7 @@ static bool give_up(const struct search *s, const ob_snapshot *of, ob_error *e)
 {
 	const struct item *most = s->item;
 	s->out->max_m = s->out->mean_m = NAN;
-	if (s->stopped)
+	if (s->effort.stopped)
 		return ob_fail(e, "interrupted");
 	for (uint32_t i = 0; i < of->count; i++)
 		most = s->item[i].overlaps > most->overlaps ? &s->item[i] : most;
@@ -337,7 +348,7 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 	*out = (ob_penetration){ 0 };
 	if (!s->count)
 		return true;
-	struct search x = { .out = out, .stop = stop, .context = context };
+	struct search x = { .out = out, .effort = { .stop = stop, .context = context } };
 	x.item = calloc(s->count, sizeof *x.item);
 	x.box = malloc(s->count * sizeof *x.box);
 	x.node = malloc(2 * (size_t)s->count * sizeof *x.node);
@@ -349,7 +360,7 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 		uint32_t solids, planes;
 		collect_solids(s, x.item, x.box, &solids, &planes);
 		for (uint32_t k = 0; k < planes; k++)
-			for (uint32_t i = 0; i < solids && !is_over(&x); i++)
+			for (uint32_t i = 0; i < solids && !is_over(&x.effort); i++)
 				add_depth(&x, &x.item[s->count - 1 - k], &x.item[i]);
 		x.node[0] = (struct node){ .count = solids };
 		x.nodes = 1;
@@ -359,7 +370,7 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 		}
 		if (out->pairs)
 			out->mean_m = x.total / (double)out->pairs;
-		fine = !is_over(&x) || give_up(&x, s, e);
+		fine = !is_over(&x.effort) || give_up(&x, s, e);
 	}
 	free(x.item);
 	free(x.box);
@@ -391,15 +402,21 @@ static double contact_impulse(const ob_snapshot *s, size_t *i)
 	return impulse;
 }
 
-void ob_measure_separation(const ob_snapshot *s, ob_separation *out)
+void ob_measure_separation(const ob_snapshot *s, ob_separation *out, bool (*stop)(void *context), void *context)
 {
 	double sum = 0;
+	struct effort effort = { .stop = stop, .context = context };
 	*out = (ob_separation){ 0 };
 	for (size_t i = 0; i < s->contacts;) {
 		const ob_contact_point *c = &s->contact[i];
 		if (!(contact_impulse(s, &i) > 0) || c->a >= s->count || c->b >= s->count)
 			continue;
 		ob_solid a = solid_of(s, c->a), b = solid_of(s, c->b);
+		effort.work += work_of(&a, &b);
+		if (is_over(&effort)) {
+			*out = (ob_separation){ NAN, NAN, 0 };
+			return;
+		}
 		double gap = fmax(0, -ob_depth(&a, &b));
 		out->pairs++;
 		sum += gap;

@@ -63,7 +63,9 @@ typedef struct ob_separation {
 	size_t pairs;
 } ob_separation;
 // Separation of contacts that carry an impulse, in a snapshot taken with its contacts: the distance of the true shapes
-// along the best of the axes that could part them, never more than it is.
-void ob_measure_separation(const ob_snapshot *s, ob_separation *out);
+// along the best of the axes that could part them, never more than it is. max_m and mean_m are NaN when there are more
+// contacts than can be looked at in some seconds, or once stop(context) says so, which is asked every few milliseconds.
+// stop: NULL = never.
+void ob_measure_separation(const ob_snapshot *s, ob_separation *out, bool (*stop)(void *context), void *context);
 
 #endif

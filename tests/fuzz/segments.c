@@ -98,7 +98,7 @@ static void read_all(const ob_universe *u, ob_snapshot *s)
 		ob_measure_hash(s);
 		ob_measure_energy(s, info.gravity);
 		ob_measure_penetration(s, &depth);
-		ob_measure_separation(s, &apart);
+		ob_measure_separation(s, &apart, NULL, NULL);
 	}
 }
 

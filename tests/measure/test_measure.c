@@ -216,7 +216,7 @@ static void test_separation(void)
 	ob_separation apart;
 	motions[1].p.x = 1.25;
 	motions[2].p.y = .9;
-	ob_measure_separation(&s, &apart);
+	ob_measure_separation(&s, &apart, NULL, NULL);
 	CHECK(apart.pairs == 0 && apart.max_m == 0 && apart.mean_m == 0);
 	ob_contact_point point[] = { { .a = 0, .b = 1 },
 				     { .a = 0, .b = 1, .impulse = 1 },
@@ -225,10 +225,31 @@ static void test_separation(void)
 				     { .a = 1, .b = 2 } };
 	s.contact = point;
 	s.contacts = 5;
-	ob_measure_separation(&s, &apart);
+	ob_measure_separation(&s, &apart, NULL, NULL);
 	CHECK(apart.pairs == 2); // the fourth names what is not there, the last bears nothing
 	CHECK_NEAR(apart.max_m, .25, 1e-12);
 	CHECK_NEAR(apart.mean_m, .125, 1e-12);
+}
+
+// As many contacts of cylinders as nobody can look at: it says so, and hears that it is to stop.
+static void test_separation_of_crowds(void)
+{
+	enum { CROWD = 400000 };
+	ob_snapshot s = snapshot(2);
+	ob_separation apart;
+	int asked = 0;
+	passports[0].shape = passports[1].shape = OB_SHAPE_CYLINDER;
+	passports[0].size = passports[1].size = ob_v3(.5, .5, 0);
+	motions[1].p = ob_v3(3, 0, 0);
+	s.contact = calloc(CROWD, sizeof *s.contact);
+	s.contacts = CROWD;
+	for (uint32_t i = 0; i < CROWD; i++)
+		s.contact[i] = (ob_contact_point){ .a = i % 2, .b = 1 - i % 2, .impulse = 1 };
+	ob_measure_separation(&s, &apart, stop_now, &asked);
+	CHECK(asked == 1 && isnan(apart.max_m) && isnan(apart.mean_m));
+	ob_measure_separation(&s, &apart, NULL, NULL);
+	CHECK(apart.pairs == 0 && isnan(apart.max_m) && isnan(apart.mean_m));
+	free(s.contact);
 }
 
 int main(void)
@@ -241,5 +262,6 @@ int main(void)
 	test_penetration_of_many();
 	test_penetration_of_crowds();
 	test_separation();
+	test_separation_of_crowds();
 	return check_end();
 }

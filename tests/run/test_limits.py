@@ -1,6 +1,7 @@
 """Scenes that ask for more than can be computed: one line that names the objects and the step, exit code 1, nothing left
 behind; and scenes that are the same in every run."""
 
+import json
 import os
 import resource
 import signal
@@ -37,6 +38,24 @@ class Limits(program.Case):
 		run.send_signal(signal.SIGTERM)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertNotIn("does not return", run.stderr.read())
+
+	@unittest.skipIf(os.environ.get("SANITIZED"), "a measure of 10^5 pairs takes minutes with a sanitizer")
+	def test_too_much_to_measure(self):
+		"""Penetration is left out, with one warning, and the rest of the run is there: its series, its checkpoint, and what goes on from that."""
+		series, checkpoint = self.path("s.csv"), self.path("c")
+		done = program.call("run", hostile("rods"), "--duration", ".05", "--series", series, "--checkpoint", checkpoint, "--json", "-", "--name", self.name)
+		self.assertEqual(done.returncode, 0, done.stderr)
+		self.assertRegex(done.stderr, r"^obsim: warning: penetration is not measured from here on: step 0: .* alone overlaps 739 others: move them apart\n")
+		self.assertEqual(done.stderr.count("warning"), 1, done.stderr)
+		report = json.loads(done.stdout)
+		for figure in "penetration_max_m", "penetration_mean_m", "worst_penetration_m", "worst_penetration_time_s":
+			self.assertIsNone(report[figure], figure)
+		self.assertEqual((report["outcome"], report["steps"], report["energy_end"]), ("finished", 3, 0))
+		with open(series, encoding="utf-8") as f:
+			self.assertEqual([line.split(",")[6] for line in f][1:], 4 * ["nan"])
+		done = program.call("run", "--resume", checkpoint, "--duration", ".1", "--json", "-", "--name", self.name)
+		self.assertEqual((done.returncode, done.stderr.count("warning")), (0, 0), done.stderr)
+		self.assertIsNone(json.loads(done.stdout)["worst_penetration_m"])
 
 	def test_ode(self):
 		texts = {self.fail(hostile("ode_gives_up"), "--duration", "1", "--isolation", i, "--workers", w,
