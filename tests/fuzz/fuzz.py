@@ -46,6 +46,7 @@ class Scenes:
 
 	def __init__(self, r):
 		self.r = r
+		self.scripts, self.hulls = 0, False  # how many the scene has, and whether it has any
 
 	def number(self, low, high, wild=.004):
 		r = self.r
@@ -75,21 +76,106 @@ class Scenes:
 
 	def one_of(self, right, wrong):
 		"""A scene with one fault is refused and computes nothing, so faults are rare."""
-		return self.r.choice(wrong if self.r.random() < .02 else right)
+		return self.r.choice(wrong if self.r.random() < .005 else right)
 
 	def maybe(self, chance, name, value):
 		return [f"{name} = {value()}"] if self.r.random() < chance else []
 
+	def hull_points(self):
+		"""Corners, most of them of bodies; some flat, tiny, huge, or the same point again and again."""
+		r = self.r
+		kind = r.choice(["few", "many", "box", "prism", "round"] if r.random() < .9 else ["flat", "line", "same", "tiny", "huge", "crowd"])
+		if kind == "crowd":
+			return f"(function() local p = {{}} for i = 1, {r.choice([5, 300, 4096, 4097])} do p[i] = {{ random(-1, 1), random(-1, 1), random(-1, 1) }} end return p end)()"
+		if kind == "round":
+			n = self.one_of([12, 40, 64], [70])
+			points = [(math.cos(2.4 * i) * math.sqrt(max(0, 1 - z * z)), math.sin(2.4 * i) * math.sqrt(max(0, 1 - z * z)), z) for i in range(n) for z in [1 - 2 * i / n]]
+		elif kind == "box":
+			points = [(x, y, z) for x in (-.5, .5) for y in (-.3, .3) for z in (0, r.uniform(.01, 1))]
+		elif kind == "prism":
+			n = r.randint(3, 31)
+			points = [(.5 * math.cos(2 * math.pi * i / n), .5 * math.sin(2 * math.pi * i / n), z) for i in range(n) for z in (0, r.choice([1e-6, .01, .5, 20]))]
+		else:
+			points = [[r.uniform(-.5, .5) for _ in range(3)] for _ in range(r.randint(4, 12) if kind != "many" else r.randint(20, 60))]
+		if kind == "flat":
+			points = [(x, y, r.choice([0, 0, 1e-15, 1e-9, 1e-4, 1e-3]) * z) for x, y, z in points]
+		if kind == "line":
+			points = [(x, 1e-12 * y, 1e-12 * z) for x, y, z in points]
+		if kind == "same" or r.random() < .1:
+			points += [r.choice(points) for _ in range(20)]
+		if kind in ("tiny", "huge") or r.random() < .1:
+			scale = {"tiny": r.choice([1e-12, 1e-6, 1e-4, .01]), "huge": r.choice([10, 1e3, 1e5, 1e9])}.get(kind, 1)
+			off = r.choice([0, 0, 10, 1e5])
+			points = [[scale * c + off for c in p] for p in points]
+		return "{" + ", ".join("{" + ", ".join(repr(c) for c in p) + "}" for p in points) + "}"
+
+	def timed_points(self, most, closed):
+		r = self.r
+		points, t = [], 0.
+		for _ in range(self.one_of([2, 2, 3, 3, 5, 40], [0, 1, 1025])):
+			points.append(f"{{{t!r}, " + ", ".join(self.number(-most, most, .001) for _ in range(3)) + "}")
+			t += self.one_of([.1, .3, 1, 1e6, r.uniform(.07, .2)], [1e-9, 1e-3])
+		if closed:
+			points.append(f"{{{t!r}, " + points[0].split(", ", 1)[1])
+		return "{" + ", ".join(points) + "}"
+
+	def path(self):
+		r = self.r
+		kind = self.one_of(["sine", "circle", "spline"], ["square"])
+		fields = [f"kind = '{kind}'"]
+		if kind == "sine":
+			fields += [f"amplitude = {self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-1, 1)}"] + self.maybe(.4, "phase", lambda: self.number(-1e3, 1e3))
+		if kind == "circle":
+			fields += [f"centre = {self.place()}"] + self.maybe(.5, "axis", lambda: self.vector(-1, 1))
+		if kind == "spline":
+			loop = self.one_of([False, True], [0])
+			points = self.timed_points(1e7 if r.random() < .1 else 2, loop or r.random() < .1)
+			return f"{{ kind = 'spline', points = {points}, loop = {'true' if loop is not False else 'false'} }}"
+		return "{ " + ", ".join(fields) + f", frequency = {self.number(1e-9, 1e4) if r.random() < .3 else r.uniform(.1, 5)} }}"
+
+	def varying_force(self):
+		r = self.r
+		kind = self.one_of(["sine", "pulse", "linear"], ["cosine"])
+		force = f"force = {self.vector(-1e15, 1e15) if r.random() < .1 else self.vector(-1e4, 1e4)}"
+		if kind == "linear":
+			return f"{{ kind = 'linear', points = {self.timed_points(1e15 if r.random() < .1 else 1e4, False)} }}"
+		if kind == "pulse":
+			return f"{{ kind = 'pulse', {force}, from = {self.number(0, .1)}, to = {self.number(.1, 1e9)} }}"
+		return f"{{ kind = '{kind}', {force}, frequency = {self.number(1e-9, 1e4)} }}"
+
+	def shape(self, kind):
+		if kind == "box":
+			return ["size = {" + ", ".join(self.size() for _ in range(3)) + "}"]
+		if kind == "hull":
+			self.hulls = True
+			return [f"points = {self.hull_points()}"]
+		fields = [f"radius = {self.size()}"] if kind in ("sphere", "capsule", "cylinder") else []
+		return fields + ([f"length = {self.size()}"] if kind in ("capsule", "cylinder") else [])
+
+	def motion(self, static):
+		"""How a body moves, or is moved."""
+		r = self.r
+		fields = []
+		kinematic = not static and r.random() < .15
+		moved = kinematic and r.random() < .6
+		if static:
+			return [r.choice(["static = true", "kind = 'static'"])]
+		if not moved:
+			fields += self.maybe(.5, "velocity", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
+		fields += self.maybe(.4, "spin", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
+		if kinematic:
+			return fields + ["kind = 'kinematic'"] + ([f"path = {self.path()}"] if moved else [])
+		fields += self.maybe(.2, "force", lambda: self.vector(-1e6, 1e6) if r.random() < .8 else self.vector(-1e15, 1e15))
+		fields += self.maybe(.1, "varying_force", self.varying_force)
+		weight = r.random()
+		fields += [f"mass = {self.number(1e-12, 1e15)}"] if weight < .3 else []
+		fields += [f"density = {self.number(1e-3, 1e9)}"] if .3 < weight < .4 else []
+		return fields
+
 	def body(self):
 		r = self.r
-		kind = self.one_of(["box", "sphere", "capsule", "cylinder", "plane"], ["ground"])
-		fields = []
-		if kind == "box":
-			fields.append("size = {" + ", ".join(self.size() for _ in range(3)) + "}")
-		if kind in ("sphere", "capsule", "cylinder"):
-			fields.append(f"radius = {self.size()}")
-		if kind in ("capsule", "cylinder"):
-			fields.append(f"length = {self.size()}")
+		kind = self.one_of(["box", "sphere", "capsule", "cylinder", "hull", "plane"], ["ground"])
+		fields = self.shape(kind)
 		if kind == "plane":
 			fields += self.maybe(.8, "normal", lambda: self.vector(-1, 1))
 		if kind == "ground":
@@ -99,29 +185,53 @@ class Scenes:
 			fields += self.maybe(.05, "name", self.text)
 			fields += self.maybe(.05, "born", lambda: self.number(0, .1))
 			fields += self.maybe(.05, "dies", lambda: self.number(1e-3, 1e9))
-		if kind not in ("plane", "ground"):
-			static = r.random() < .15
-			fields += ["static = true"] if static else []
-			if not static:
-				fields += self.maybe(.5, "velocity", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
-				fields += self.maybe(.4, "spin", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
-				fields += self.maybe(.2, "force", lambda: self.vector(-1e6, 1e6) if r.random() < .8 else self.vector(-1e15, 1e15))
-				weight = r.random()
-				fields += [f"mass = {self.number(1e-12, 1e15)}"] if weight < .3 else []
-				fields += [f"density = {self.number(1e-3, 1e9)}"] if .3 < weight < .4 else []
+		fixed = kind in ("plane", "ground")
+		if not fixed:
+			fixed = r.random() < .15
+			fields += self.motion(fixed)
 			turned = r.random()
 			if turned < .3:
 				fields.append("q = {" + ", ".join(self.number(-2, 2) for _ in range(4)) + "}")
-			if .29 < turned < .5:
+			if .3 < turned < .5:
 				fields.append(f"rotation = {{ axis = {self.vector(-1, 1)}, degrees = {self.number(-36000, 36000)} }}")
+		if fixed or "kind = 'kinematic'" in fields:
+			fields += self.maybe(.3, "surface_velocity", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-3, 3))
+		if self.scripts and kind != "ground" and r.random() < .5 and not any(f.startswith("varying_force") for f in fields):
+			fields.append(f"script = 's{r.randrange(self.scripts)}'")
+			fields += self.maybe(.3, "state", lambda: self.one_of(["{}", "{ a = 1, b = 'x', c = true }", "{ 1, 2, 3 }"], ["{ a = {} }", "{ a = ('x'):rep(2000) }", "7"]))
 		fields += self.maybe(.2, "friction", lambda: self.number(0, 1000))
 		fields += self.maybe(.4, "restitution", lambda: self.number(0, 1))
 		fields += self.maybe(.05, "colour", self.colour)
+		fields += self.maybe(.05, "roughness", lambda: self.number(0, 1)) + self.maybe(.05, "metal", lambda: self.number(0, 1))
 		fields += self.maybe(.1, "material", lambda: self.one_of(["'a'", "'b'"], ["'c'"]))
 		fields += self.maybe(.1, "grid", lambda: r.choice(["true", "false"])) if kind == "ground" else []
 		fields += self.maybe(.01, r.choice(["sise", "material", "[1]", "camera"]), lambda: self.number(-1, 1))
 		r.shuffle(fields)
 		return f"{kind} {{ {', '.join(fields)} }}"
+
+	# What scripts may do, and what they had better not.
+	DEEDS = ["while true do end", "local t = {} for i = 1, 1e7 do t[i] = ('x'):rep(1000) .. i end", "local s = 'x' while true do s = s .. s end",
+		"sphere { radius = .1, at = { random(-2, 2), random(-2, 2), 3 } }", "for i = 1, 40 do box { size = { .1, .1, .1 }, at = { i, 0, 2 } } end",
+		"sphere { radius = .1, at = { self:position() }, script = 's0' }", "self:remove()", "for _, o in ipairs(near(1e9)) do o:remove() end",
+		"for _, o in ipairs(near(5)) do send(o, 'hello', o, 1, true) end", "send(self, 1, 2, 3)", "send(nil, 1)", "send(self, ('x'):rep(5000))", "send(self, {})",
+		"for i = 1, 1000 do send(self, i) end", "self:force(0/0, 0, 0)", "self:force(1e308, -1e308, 1e300)", "self:force(1, 2)", "self:force { 0, 0, 50 }",
+		"self:torque(0, 1e300, 0)", "self:torque(0, 0, 3)", "self:push(1, 2, 3)", "self:push(1e15, 0, 0, 1e15, 1e15, 0)", "self:push(0, 0, 1, 0/0, 0, 0)",
+		"self:twist(1, 0, 0)", "self:twist(1e300, 1e300, 1e300)", "self:colour('#ff0000')", "self:colour('red')", "self:colour { 2, 0, 0 }", "self:wake(.01)",
+		"self:wake(0)", "self:wake(-1)", "self:wake(1e300)", "self:wake(0/0)", "self.state.a = (self.state.a or 0) + 1", "self.state.b = ('x'):rep(2000)",
+		"self.state.c = self", "self.state.t = {}", "self.state = nil", "x = 1", "local a, b, c = self:position() self:push(-a, -b, -c)",
+		"local o, d = ray(0, 0, 9, 0, 0, -1) if o and o:exists() then o:name() end", "ray(0, 0, 0, 0, 0, 0)", "ray(0/0, 0, 0, 1/0, 0, 0, -1)", "near(0/0)",
+		"near(-1)", "find('two words')", "find('a'):remove()", "error({})", "error('\\27[2J')", "local function f() return f() + 1 end f()", "nothing()",
+		"self:turned(1, 2)", "print(self:spin(), self:attitude(), self:mass(), self:id(), time())", "math.random(0)", "random_rotation()",
+		"('x'):rep(1e9)", "('a'):rep(200):find(('a*'):rep(30) .. 'b')", "for k, v in pairs(self.state) do self.state[k] = nil end"]
+
+	def script(self, number):
+		r = self.r
+		functions = []
+		for name in r.sample(["on_start()", "on_step(dt)", "on_message(from, ...)", "on_contact(other, impulse, point)", "on_wake()", "on_stop()"], r.randint(1, 4)):
+			functions.append(f"function {name} {' '.join(r.choice(self.DEEDS) for _ in range(r.choice([1, 1, 2, 3])))} end")
+		if r.random() < .03:
+			functions.append(r.choice(["while true do end", "end", "self:remove()", "on_step = 5", "t = {} for i = 1, 1e7 do t[i] = i end", "\0"]))
+		return f"script('s{number}', [=[" + "\n".join(functions) + "]=])"
 
 	def text(self):
 		return "(" + self.one_of(["'a'", "'köln'", "'two words'", "('n'):rep(47)"], ["''", "'a#1'", "('n'):rep(48)", "'\\27[2J'", "'\\xff'", "'\\u{202e}'", "5"]) + ")"
@@ -139,6 +249,7 @@ class Scenes:
 		fields += self.maybe(.2, "integrator", lambda: r.choice(["'exact'", "'ode'"]))
 		fields += self.maybe(.3, "sleeping", lambda: r.choice(["true", "false"]))
 		fields += self.maybe(.3, "gravity", lambda: self.vector(-1e4, 1e4) if r.random() < .3 else "{0, 0, 0}")
+		fields += self.maybe(.1, "room", lambda: str(self.one_of([0, 1, 5, 1000], [-1, 100001])))
 		fields += self.maybe(.1, "duration", lambda: self.number(1e-3, 1e9))
 		fields += self.maybe(.1, "title", self.text) + self.maybe(.1, "seed", lambda: str(self.one_of([0, 1, 2**32, 2**53 - 1], [2**53 + 2, -1, .5])))
 		return f"scene {{ {', '.join(fields)} }}"
@@ -183,6 +294,9 @@ class Scenes:
 	def scene(self):
 		r = self.r
 		lines = [self.head()] if r.random() < .8 else []
+		self.hulls = False
+		self.scripts = r.randint(1, 3) if r.random() < .25 else 0
+		lines += [self.script(i) for i in range(self.scripts)]
 		lines += [self.look(kind) for kind in ("camera", "sky", "sun", "record") if r.random() < .1]
 		lines += [self.drawn() for _ in range(r.choice([0, 0, 0, 1, 2]))]
 		lines += [self.material(name) for name in ("'a'", "'b'") if r.random() < .98]
@@ -199,9 +313,11 @@ class Scenes:
 				(.12, ["--narrow", "aabb"]), (.1, ["--tolerance", r.choice(["1um", ".1mm", "1mm", "1m"])]), (.1, ["--substeps", r.choice(["1", "4", "64"])]),
 				(.1, ["--solver", r.choice(["coloured", "jacobi", "ghost", "lagged"])]), (.1, ["--integrator", r.choice(["exact", "ode"])]),
 				(.1, ["--measure", r.choice(["step", "end", "profile"])]), (.1, ["--explain"]), (.05, ["--trace", "/dev/null"]), (.05, ["--json", "/dev/null"]),
-				(.05, ["--series", "/dev/null"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict"])]:
+				(.05, ["--series", "/dev/null"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict"]), (.1, ["--on-death", "freeze"])]:
 			words += more if r.random() < chance else []
-		if r.random() < .2:
+		if "process" in words and not self.scripts:
+			words += ["--harden"] if r.random() < .3 else []
+		if r.random() < (.2 if not self.scripts and not self.hulls else .005):
 			words = ["--arch", "monolith", "--iterations", r.choice(["20", "0", "1"]), "--duration", ".1"]
 		return words
 
