@@ -3,13 +3,14 @@
 
     soak.py OBSIM blows [KILLS SEGVS EXITS STOPS]    simulators die in so many ways (40 20 10 5)
     soak.py OBSIM hosts [HOSTS SERVERS BOTH]         hosts and fork servers are killed (40 10 4), and runs taken up again
+    soak.py OBSIM scribble [RUNS]                    simulators store words where they can, hardened and not (60 runs of each)
     soak.py OBSIM hour [HOURS]                       one run of 1000 balls, for hours (1), whose simulators die all the time
 
-blows: a stack and a pyramid on a table that shakes, a pile, falling boxes, birds with scripts, in turns with two workers and
-with one for each object. Each comes at a random moment, once the run has come further than at the last; SIGSTOP stands for a
-hang; exits come from within (--fault). hosts: a run writes a checkpoint thirty times a second. When it has ended, and another has
+blows: a stack and a pyramid on a table that shakes, a pile, falling boxes, boxes with scripts, in turns with two workers and
+with one for each object. They come at random moments, one or two at once; SIGSTOP stands for a hang; exits come from within (--fault). hosts: a run writes a checkpoint thirty times a second. When it has ended, and another has
 started, no process of it and no universe is left; what is on the disk is a checkpoint, and ends, taken up again, in the same bits.
-hour: at the pace of reality, so that as many steps without faults, by one thread, take minutes; memory, descriptors and mappings
+scribble: 1, 10 or 500 words at a time; hardened, a run ends in the same bits; not hardened it may be wrong, or give up with one line,
+but its host lives. hour: at the pace of reality, so that as many steps without faults, by one thread, take minutes; memory, descriptors and mappings
 of host and fork server stay what they were after the first tenth.
 
 Prints a line for each kind, and exits with 1 if a hash is wrong, a run fails, or anything is left behind.
@@ -18,7 +19,6 @@ Prints a line for each kind, and exits with 1 if a hash is wrong, a run fails, o
 import json
 import os
 import random
-import re
 import signal
 import subprocess
 import sys
@@ -26,25 +26,41 @@ import tempfile
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SCENES = {"stack": [], "pyramid": [], "pile": ["-D", "n=3", "--duration", "3"],
-	"falling_boxes": ["-D", "n=30", "--duration", "8"], "flock": ["-D", "n=12", "--duration", "8"]}
+SCENES = {"stack": ([], 6), "pyramid": ([], 3), "pile": (["-D", "n=3"], 3), "falling_boxes": (["-D", "n=20"], 6), "scripted": ([], 4)}  # s
 BLOWS = {"killed": signal.SIGKILL, "segfault": signal.SIGSEGV, "exit": None, "stopped": signal.SIGSTOP}
 BLOWS_PER_RUN = {"killed": 12, "segfault": 12, "exit": 0, "stopped": 3}
 WORKERS = ["2", "objects"]
 STACK = """-- Ten cubes on a shaking table: what rests would not be solved again.
-scene { duration = 8 }
 box { kind = "kinematic", size = { 30, 30, 1 }, at = { 0, 0, -.5 }, path = { kind = "sine", amplitude = { .01, 0, 0 }, frequency = 1.5 } }
 for i = 1, 10 do
 	box { size = { 1, 1, 1 }, at = { random(-.01, .01), random(-.01, .01), i - .5 }, mass = 1000, friction = .5 }
 end
 """
 PYRAMID = """-- A wall of 21 cubes on a shaking table.
-scene { duration = 3 }
 box { kind = "kinematic", size = { 30, 30, 1 }, at = { 0, 0, -.5 }, path = { kind = "sine", amplitude = { .02, 0, 0 }, frequency = 1.5 } }
 for row = 1, 6 do
 	for i = 1, 7 - row do
 		box { size = { 1, 1, 1 }, at = { (i - (8 - row) / 2) * 1.05, 0, row - .5 } }
 	end
+end
+"""
+SCRIPTED = """-- Boxes that keep together, hop where they touch something, tell what they hit, and count.
+ground {}
+script("hop", [[
+function on_start() self.state.hops = 0 end
+function on_contact(other)
+	self.state.hops = self.state.hops + 1
+	self:push((random() - .5) * 2, (random() - .5) * 2, 6 * self:mass() * random())
+	if other then send(other, "hit", self.state.hops) end
+end
+function on_step(dt)
+	local x, y = self:position()
+	self:force(-4 * x, -4 * y, 0)
+end
+function on_message(from, word, hops) self:twist(0, 0, .01 * hops) end
+]])
+for i = 1, 10 do
+	box { size = { .4, .4, .4 }, at = { .5 * (i % 4), .5 * (i // 4), .5 + .1 * i }, mass = 1, script = "hop" }
 end
 """
 BALLS = """-- A thousand balls between six walls, which never come to rest.
@@ -63,7 +79,7 @@ end
 """
 
 
-WRITTEN = {"stack": STACK, "pyramid": PYRAMID, "balls": BALLS}
+WRITTEN = {"stack": STACK, "pyramid": PYRAMID, "scripted": SCRIPTED, "balls": BALLS}
 folder = tempfile.TemporaryDirectory()
 
 
@@ -81,8 +97,9 @@ def run(obsim, *words):
 	return subprocess.Popen([obsim, "run", *words, "--measure", "end", "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def scene_words(scene):
-	return [path(scene), *SCENES[scene], "--sleeping", "off"]
+def scene_words(scene, part=1):
+	define, seconds = SCENES[scene]
+	return [path(scene), *define, "--duration", str(part * seconds), "--sleeping", "off"]
 
 
 def children(pid):
@@ -125,35 +142,25 @@ def gone(pids, seconds=120):
 class Undisturbed:
 	"""How each scene ends, and how long that takes with so many workers."""
 
-	def __init__(self, obsim):
+	def __init__(self, obsim, scenes=tuple(SCENES), part=1):
 		self.hash, self.took = {}, {}
-		for scene in SCENES:
+		for scene in scenes:
 			for workers in WORKERS:
 				began = time.monotonic()
-				out, said = run(obsim, *scene_words(scene), "--isolation", "process", "--workers", workers).communicate()
+				out, said = run(obsim, *scene_words(scene, part), "--isolation", "process", "--workers", workers).communicate()
 				ended = json.loads(out)["state_hash"] if out else sys.exit(said)
 				if self.hash.setdefault(scene, ended) != ended:
 					sys.exit(f"{scene}: other bits with {workers} workers, and nothing has happened to it")
 				self.took[scene, workers] = time.monotonic() - began
 
 
-def step_of(obsim, name):
-	"""How far the universe has come; -1: it is not there, or about to go."""
-	said = subprocess.run([obsim, "top", "--once", name], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
-	found = re.search(r"^step (\d+)", said, re.M)
-	return int(found[1]) if found else -1
-
-
-def strike(obsim, host, name, number, after, pause):
-	"""A blow, once the run has come further than at the last one, for a run that gets nowhere gives up. Blows, and its step."""
+def strike(host, number, pause):
+	"""One simulator is hit, or two at once. Returns how many."""
 	time.sleep(pause)
-	while host.poll() is None:
-		step = step_of(obsim, name)
-		victims = simulators(host.pid)
-		if step > after and victims:
-			return end(random.choice(victims), number), step
-		time.sleep(.01)
-	return 0, after
+	victims = simulators(host.pid)
+	if host.poll() is not None:
+		return 0
+	return sum(end(victim, number) for victim in random.sample(victims, min(len(victims), random.randint(1, 2))))
 
 
 def blows(obsim, wanted):
@@ -166,10 +173,8 @@ def blows(obsim, wanted):
 			turn += 1
 			faults = [] if number else ["--fault", f"exit:p={.0001 if workers == 'objects' else .001},seed={turn}"]
 			host = run(obsim, *scene_words(scene), "--isolation", "process", "--workers", workers, "--patience", "1", "--name", name, *faults)
-			step = -1
 			for _ in range(BLOWS_PER_RUN[kind]):
-				struck, step = strike(obsim, host, name, number, step, random.uniform(0, 1) * undisturbed.took[scene, workers] / BLOWS_PER_RUN[kind])
-				dealt += struck
+				dealt += strike(host, number, random.uniform(.1, 2) * undisturbed.took[scene, workers] / BLOWS_PER_RUN[kind])
 			out, said = host.communicate()
 			report = json.loads(out) if host.returncode == 0 else {"state_hash": said, "deaths": 0, "faults": 0}
 			left = os.path.exists(f"/dev/shm/obsim.{name}")
@@ -238,6 +243,32 @@ def hosts(obsim, wanted):
 	return wrong
 
 
+def scribble(obsim, wanted):
+	scenes, name, part = [scene for scene in SCENES if scene != "scripted"], f"soak-{os.getpid()}", .25
+	undisturbed, bad = Undisturbed(obsim, scenes, part), 0
+	for more in ["--harden"], []:
+		stores = deaths = other = gave_up = 0
+		for turn in range(wanted[0]):
+			scene, workers, words = scenes[turn % 4], WORKERS[turn // 4 % 2], (1, 10, 500)[turn % 3]
+			host = run(obsim, *scene_words(scene, part), "--isolation", "process", "--workers", workers, "--patience", "1", "--name", name, *more,
+				"--fault", f"scribble:p={.0003 if workers == 'objects' else .003},words={words},seed={turn + 1}")
+			out, said = host.communicate()
+			report = json.loads(out) if host.returncode == 0 else {"state_hash": None, "deaths": 0, "faults": 0}
+			wrong = report["state_hash"] != undisturbed.hash[scene]
+			failed = host.returncode == 1
+			left = os.path.exists(f"/dev/shm/obsim.{name}")
+			if host.returncode not in (0, 1) or left or (more and wrong):
+				bad += 1
+				print(f"{scene}, {workers} workers, {words} words, seed {turn + 1} {more}: exit {host.returncode}, left: {left}, wrong: {wrong}: {said}", flush=True)
+			stores += words * report["faults"]
+			deaths += report["deaths"]
+			gave_up += failed
+			other += wrong and not failed
+		print(f"{'hardened' if more else 'not hardened'}: {wanted[0]} runs, {stores} words in those that ended, {deaths} restarts, {gave_up} gave up, "
+			f"{other} ended otherwise, {bad} bad so far", flush=True)
+	return bad
+
+
 def holdings(pid):
 	"""Memory (kB), descriptors, mappings of a process."""
 	with open(f"/proc/{pid}/status") as f:
@@ -272,7 +303,7 @@ def hour(obsim, hours):
 
 
 def main():
-	modes = {"blows": (blows, [40, 20, 10, 5]), "hosts": (hosts, [40, 10, 4])}
+	modes = {"blows": (blows, [40, 20, 10, 5]), "hosts": (hosts, [40, 10, 4]), "scribble": (scribble, [60])}
 	if len(sys.argv) < 3 or sys.argv[2] not in (*modes, "hour"):
 		sys.exit(__doc__)
 	random.seed(1)

@@ -24,9 +24,10 @@ typedef enum slot_use { SLOT_FREE, SLOT_RESERVED, SLOT_PRESENT } slot_use; // sa
 typedef struct slot {
 	uint32_t generation; // of its latest object
 	unsigned char use; // slot_use
-	bool removal_scheduled; // the timetable will remove its object
-	bool created; // by a script
-	bool driven; // by the path, or the force that changes in time, of the scene's object of this id
+	bool removal_scheduled : 1; // the timetable will remove its object
+	bool created : 1; // by a script
+	bool driven : 1; // by the path, or the force that changes in time, of the scene's object of this id
+	bool kinematic : 1; // is counted as such, whatever its passport, which others can write, says now
 	uint32_t born; // step
 } slot;
 static_assert(sizeof(slot) == 12, "all objects have one, and what is kept of it");
@@ -200,17 +201,13 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	ob_sim_place(p->u, id, &def->state);
 	p->slots[id].use = SLOT_PRESENT;
 	p->slots[id].created = false;
-	p->kinematic += (pass.flags & OB_OBJECT_KINEMATIC) != 0;
+	p->slots[id].kinematic = pass.flags & OB_OBJECT_KINEMATIC;
+	p->kinematic += p->slots[id].kinematic;
 	p->pushed += def->force != NULL;
 	p->slots[id].driven = def->path || def->force;
 	p->slots[id].born = (uint32_t)ob_step_count(p->u);
 	p->changed = true;
 	give_script(p, id, def, state);
-}
-
-static bool is_kinematic(const ob_population *p, uint32_t id)
-{
-	return p->slots[id].use == SLOT_PRESENT && ob_passport_of(p->u, id)->flags & OB_OBJECT_KINEMATIC;
 }
 
 // NULL: none
@@ -229,7 +226,8 @@ static void remove_object(ob_population *p, uint32_t id)
 	slot *s = &p->slots[id];
 	if (s->use != SLOT_PRESENT)
 		return;
-	p->kinematic -= is_kinematic(p, id);
+	p->kinematic -= s->kinematic;
+	s->kinematic = false;
 	ob_script_free_cell(p->u, id);
 	p->pushed -= force_of(p, id) != NULL;
 	s->driven = false;
@@ -441,7 +439,7 @@ static void prescribe_all(ob_population *p)
 	uint32_t left = p->kinematic;
 	p->next_prescribed = UINT64_MAX;
 	for (uint32_t id = 0; left > 0; id++) {
-		if (!is_kinematic(p, id))
+		if (!p->slots[id].kinematic)
 			continue;
 		const uint64_t next = ob_sim_prescribe(p->u, id, path_of(p, id), p->slots[id].born);
 		p->next_prescribed = next < p->next_prescribed ? next : p->next_prescribed;
@@ -602,7 +600,8 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 				       .created = from->created };
 		p->created += from->created;
 		load_path(p, id);
-		p->kinematic += is_kinematic(p, id);
+		p->slots[id].kinematic = from->use == SLOT_PRESENT && ob_passport_of(p->u, id)->flags & OB_OBJECT_KINEMATIC;
+		p->kinematic += p->slots[id].kinematic;
 	}
 	p->next = s->events;
 	publish_roster(p);
