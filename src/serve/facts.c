@@ -67,13 +67,16 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 		ob_message_print(
 			m,
 			"{\"statistics\":{\"viewers\":%u,\"objects\":%u,\"awake\":%u,\"pairs\":%u,\"islands\":%u,"
-			"\"step\":%llu}}",
-			viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step);
+			"\"step\":%llu,\"frozen\":%u}}",
+			viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
+			info.frozen);
 	return m;
 }
 
 static const char *state_of(const ob_passport *p, const ob_motion *m)
 {
+	if (p->flags & OB_OBJECT_FROZEN)
+		return "frozen";
 	if (p->flags & OB_OBJECT_STATIC)
 		return "static";
 	if (p->flags & OB_OBJECT_KINEMATIC)

@@ -253,7 +253,7 @@ static void put_object(ob_message *out, const ob_feed_source *source, const know
 	ob_message_put_u32(out, k->id);
 	ob_message_put_u32(out, k->generation);
 	ob_message_put_u8(out, p->shape);
-	ob_message_put_u8(out, k->fixed);
+	ob_message_put_u8(out, (k->fixed ? OB_FEED_STATIC : 0) | (p->flags & OB_OBJECT_FROZEN ? OB_FEED_FROZEN : 0));
 	ob_message_put_u8(out, (unsigned)name);
 	ob_message_put_u8(out, (unsigned)lround(15 * fminf(fmaxf(p->roughness, 0), 1)) |
 				       16 * (unsigned)lround(15 * fminf(fmaxf(p->metal, 0), 1)));
@@ -332,7 +332,7 @@ static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
 static bool looks_alike(const ob_passport *a, const ob_passport *b)
 {
 	return memcmp(a->colour, b->colour, sizeof a->colour) == 0 && a->roughness == b->roughness &&
-	       a->metal == b->metal;
+	       a->metal == b->metal && a->flags == b->flags;
 }
 
 // Tells of those who look otherwise than they were told to, as of who has come; returns how many.
@@ -350,6 +350,10 @@ static uint32_t tell_looks(ob_feed *f, ob_message *out)
 		if (looks_alike(&now, &k->passport))
 			continue;
 		k->passport = now;
+		if ((now.flags & OB_OBJECT_STATIC) != 0 && !k->fixed) { // it is frozen: where it stands is told again
+			k->fixed = true;
+			k->told = false;
+		}
 		put_object(out, &f->source, k);
 		told++;
 	}

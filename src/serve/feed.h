@@ -12,7 +12,7 @@
 //      u32 removed, u32 created, u32 motions; then so many of each:
 //        removed      u32 id
 //        created      (or one that was created before, and looks otherwise from now on)
-//                     u32 id, generation; u8 shape; u8 flags (1: static); u8 bytes of the name;
+//                     u32 id, generation; u8 shape; u8 flags (1: static; 2: frozen); u8 bytes of the name;
 //                     u8 surface: roughness, of 15, and 16 times metal, of 15
 //                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB);
 //                     of a hull: u8 corners, u8 faces, u16 number, f32 p[3] of each corner (body's frame), and of each
@@ -37,6 +37,7 @@
 
 enum { OB_FEED_MOTIONS = 1, OB_FEED_CONTACTS = 2 }; // first byte of a message
 enum { OB_FEED_VOID = 1, OB_FEED_PAUSED = 2 }; // its flags
+enum { OB_FEED_STATIC = 1, OB_FEED_FROZEN = 2 }; // an object's
 
 // How a motion goes on from its instant.
 typedef enum ob_feed_kind {

@@ -49,11 +49,12 @@ static bool recorded_passport(const void *of, uint32_t id, ob_passport *out)
 	return is_present(s, id);
 }
 
-// A record has no versions. What can look otherwise is a colour: its channels, to 2^-20, are the version.
+// A record has no versions. What can look otherwise is a colour, and what is frozen: its channels, to 2^-20, and a bit
+// are the version.
 static uint64_t recorded_passport_version(const void *of, uint32_t id)
 {
 	const ob_snapshot *s = ob_recording_state(of);
-	uint64_t version = 0;
+	uint64_t version = is_present(s, id) && s->passport[id].flags & OB_OBJECT_FROZEN;
 	for (int i = 0; i < 3 && is_present(s, id); i++)
 		version = version << 21 | (uint64_t)lrintf(0x1p20f * fminf(fmaxf(s->passport[id].colour[i], 0), 1));
 	return version;

@@ -97,7 +97,7 @@ class Viewer:
 			del self.objects[i]
 			self.removed.append(i)
 		for _ in range(created):
-			i, generation, shape, static, name, _ = struct.unpack_from("<IIBBBB", m, at)
+			i, generation, shape, what, name, _ = struct.unpack_from("<IIBBBB", m, at)
 			at += 48
 			if shape == HULL:
 				corners, faces = m[at], m[at + 1]
@@ -105,7 +105,7 @@ class Viewer:
 				for _ in range(faces):
 					at += 1 + m[at]
 			text, at = m[at:at + name].decode(), at + name
-			self.objects[i] = {"generation": generation, "shape": shape, "name": text, "static": static}
+			self.objects[i] = {"generation": generation, "shape": shape, "name": text, "static": bool(what & 1), "frozen": bool(what & 2)}
 			self.created.append(i)
 		i = -1
 		for _ in range(motions):
@@ -165,8 +165,12 @@ class Case(program.Case):
 		head, _, body = data.partition(b"\r\n\r\n")
 		return head.decode(), body
 
-	def end(self):
+	def end(self, saying=""):
 		self.run_.terminate()
 		out, err = self.run_.communicate(timeout=program.PATIENCE)
-		self.assertEqual((self.run_.returncode, err), (0, ""))
+		self.assertEqual(self.run_.returncode, 0)
+		if saying:
+			self.assertIn(saying, err)
+		else:
+			self.assertEqual(err, "")
 

@@ -1,6 +1,8 @@
 """obsim serve: pages over HTTP, the universe over WebSockets, and what strangers try."""
 
+import os
 import random
+import signal
 import socket
 import time
 import unittest
@@ -54,6 +56,25 @@ class Serve(Case):
 		late = self.viewer()
 		self.assertEqual(set(late.objects), set(one.objects))
 		self.end()
+
+	def test_frozen(self):
+		"""An object whose simulator has died stays where it was, and viewers are told so, also who comes later."""
+		self.serve("-D", "n=8", "--isolation", "process", "--workers", "objects", "--on-death", "freeze", "--room", "0",
+			scene="falling_boxes")
+		v = self.viewer()
+		i = next(i for i, o in v.objects.items() if not o["static"])
+		v.until(lambda: v.objects[i].get("kind") == 2) # it flies
+		v.send(do="inspect", id=i)
+		v.until(lambda: v.told.get("details", {}).get("id") == i)
+		self.assertFalse(v.objects[i]["frozen"])
+		os.kill(v.told["details"]["pid"], signal.SIGKILL)
+		v.until(lambda: v.objects[i]["frozen"] and v.objects[i]["kind"] == 0)
+		v.until(lambda: v.told["details"]["state"] == "frozen" and v.told["statistics"]["frozen"] == 1)
+		late = self.viewer()
+		late.until(lambda: "p" in late.objects[i])
+		self.assertEqual(late.objects[i], v.objects[i])
+		self.assertEqual([o["frozen"] for o in late.objects.values()].count(True), 1)
+		self.end(saying="was killed by SIGKILL")
 
 	def test_clock(self):
 		self.serve("--paused")

@@ -4,6 +4,7 @@ Where OBSIM_PICTURES names a directory, what they saw is kept there.
 """
 
 import os
+import signal
 import unittest
 
 import browser
@@ -55,6 +56,24 @@ class Viewer(server.Case):
 		for b in one, other:
 			self.assertEqual(b.console(), [])
 		self.end()
+
+	def test_frozen(self):
+		"""What is frozen is shown in a frame of its own, without being asked for, and says so."""
+		self.serve("-D", "n=8", "--isolation", "process", "--workers", "objects", "--on-death", "freeze", "--room", "0",
+			scene="falling_boxes")
+		b, witness = self.open(), self.viewer()
+		i = next(i for i, o in witness.objects.items() if not o["static"])
+		witness.send(do="inspect", id=i)
+		witness.until(lambda: witness.told.get("details", {}).get("id") == i)
+		os.kill(witness.told["details"]["pid"], signal.SIGKILL)
+		b.wait(f"obsim.universe.objects.get({i}).frozen")
+		b.run(f"obsim.pick({i})")
+		b.wait("document.querySelector('#details dl').textContent.includes('frozen')")
+		b.wait("document.querySelector('#statistics').textContent.includes(', 1 frozen')")
+		b.run("obsim.pick(null)")
+		self.keep(b, "frozen.png")
+		self.assertEqual(b.console(), [])
+		self.end(saying="was killed by SIGKILL")
 
 	def test_viewpoint(self):
 		"""Each looks from elsewhere: round it, along, with the head turned."""

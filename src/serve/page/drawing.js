@@ -12,7 +12,7 @@ const REACH_RANGES = 6, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
 const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RADIUS = 0.025, GOLDEN = 2.39996322972865332;
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
 const INSTANCE = 16, SEGMENT = 11; // floats
-const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1] };
+const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1], frozen: [0.6, 0.85, 1, 1] };
 
 const PROGRAMS = {
 	body: ['body.vert', 'body.frag'], shadow: ['shadow.vert', 'shadow.frag'],
@@ -576,7 +576,7 @@ export function boxSegments(b, colour, width = 1.5) {
 }
 
 export function edgeColour(b) {
-	return b.fixed ? EDGE.fixed : b.kind === 0 ? EDGE.standing : b.kind === 2 ? EDGE.flying : EDGE.awake;
+	return b.frozen ? EDGE.frozen : b.fixed ? EDGE.fixed : b.kind === 0 ? EDGE.standing : b.kind === 2 ? EDGE.flying : EDGE.awake;
 }
 
 export function contactSegments(contacts, view, height) {

@@ -142,7 +142,7 @@ export class Film extends Universe {
 		const early = this.pose(body, this.time - h), late = this.pose(body, this.time + h);
 		return this.tell('details', {
 			id, generation: body.generation, name: body.name, size: body.size, p, q,
-			state: body.fixed ? 'static' : body.motion.kind === STANDS ? 'rests' : body.motion.kind === FREE ? 'flies' : 'moves',
+			state: body.frozen ? 'frozen' : body.fixed ? 'static' : body.motion.kind === STANDS ? 'rests' : body.motion.kind === FREE ? 'flies' : 'moves',
 			v: p.map((_, k) => (late.p[k] - early.p[k]) / (2 * h)), w: rateOf(early.q, late.q, 2 * h),
 			...this.facts.get(`${id} ${body.generation}`),
 		});

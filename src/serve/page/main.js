@@ -24,7 +24,7 @@ function bodies() {
 	for (const o of universe.objects.values()) {
 		const pose = universe.pose(o);
 		if (pose)
-			out.push({ id: o.id, shape: o.shape, size: o.size, hull: o.hull, radius: o.radius, fixed: o.fixed, kind: o.motion.kind, shown: o.colour,
+			out.push({ id: o.id, shape: o.shape, size: o.size, hull: o.hull, radius: o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: o.colour,
 				roughness: o.roughness, metal: o.metal, ...pose });
 	}
 	return out;
@@ -35,7 +35,7 @@ function overlay(list, view) {
 	for (const b of list) {
 		if (b.shape !== PLANE && b.id === picked)
 			out.push(...boxSegments(b, PICKED, 2.5));
-		else if (b.shape !== PLANE && panel.on.boxes)
+		else if (b.shape !== PLANE && (panel.on.boxes || b.frozen))
 			out.push(...boxSegments(b, edgeColour(b)));
 	}
 	return out;

@@ -5,7 +5,7 @@ const DELAY = 0.05; // s of wall time by which it looks later than it is told, s
 const PULL = 5; // 1/s: how fast its clock is drawn to the universe's
 const LOST = 0.5; // s: farther off, it is set
 const MOTIONS = 1, CONTACTS = 2, VOID = 1, PAUSED = 2; // of a message
-const STATIC = 1;
+const STATIC = 1, FROZEN = 2;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, in which what was foretold goes over to what came
@@ -110,11 +110,11 @@ export class Universe extends EventTarget {
 	}
 
 	hearObject(r) {
-		const id = r.u32(), generation = r.u32(), shape = r.u8(), fixed = (r.u8() & STATIC) !== 0, bytes = r.u8(), surface = r.u8();
+		const id = r.u32(), generation = r.u32(), shape = r.u8(), flags = r.u8(), bytes = r.u8(), surface = r.u8();
 		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = shape === HULL ? hearHull(r) : null;
 		const name = r.text(bytes);
 		const known = this.objects.get(id); // it looks otherwise, and moves as it did
-		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed, size, inertia, colour, hull, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
+		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
 	}
 
 	hearMotion(r, id, time) {
