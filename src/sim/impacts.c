@@ -179,8 +179,7 @@ static double threshold_of(const ob_island_work *w, const ob_contact *contact)
 	if (contact->e == 0)
 		return slow_of(w);
 	if (a > 0 && b > 0 && contact->rebounds < max_aftershocks &&
-	    fabs(a - b) * (w->body[contact->a].speed + w->body[contact->b].speed) <=
-		    OB_IMPACT_SIMULTANEOUS * w->unit.length)
+	    fabs(a - b) * ob_contact_speed(w, contact) <= OB_IMPACT_SIMULTANEOUS * w->unit.length)
 		return aftershock_threshold * w->unit.speed;
 	return 4 * w->max_acceleration * w->substep + least_approach * w->unit.speed;
 }
@@ -197,7 +196,7 @@ static void find_between(ob_sim *s, const ob_contact *contact, const ob_body_at 
 {
 	const ob_island_work *w = &s->island;
 	ob_placed pa = placed(s, contact->a, a), pb = placed(s, contact->b, b);
-	const double closing = w->body[contact->a].speed + w->body[contact->b].speed;
+	const double closing = ob_contact_speed(w, contact);
 	const double thin = fmin(w->body[contact->a].thickness, w->body[contact->b].thickness);
 	const ob_manifold_finder finder = ob_narrowphase_finder(s);
 	s->counters.narrowphase_tests++;

@@ -36,7 +36,7 @@ static bool is_round(ob_shape s)
 static double change_bound(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	double speed = a->surface | b->surface ? ob_contact_speed(w, contact) : a->speed + b->speed;
+	double speed = ob_contact_speed(w, contact);
 	double turn = ob_body_turn_rate(w, w->v, contact->a) + ob_body_turn_rate(w, w->v, contact->b);
 	if ((is_round(a->shape) && b->shape != OB_SHAPE_PLANE) || (is_round(b->shape) && a->shape != OB_SHAPE_PLANE))
 		turn += speed / fmin(a->radius, b->radius);
@@ -60,7 +60,7 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	    (b->surface && ob_norm2(angular_of(w->v[contact->b])) > 0))
 		return false; // of the first order, but for what is carried
 	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change * w->unit.speed &&
-	       load_of(w, contact) > 0 && (a->speed + b->speed) * w->h < longest_way * fmin(a->thickness, b->thickness);
+	       load_of(w, contact) > 0 && ob_contact_speed(w, contact) * w->h < longest_way * fmin(a->thickness, b->thickness);
 }
 
 void ob_midpoint_mark(ob_sim *s)

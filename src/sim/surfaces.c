@@ -105,6 +105,20 @@ static double load_of(const ob_island_work *w, const ob_surface *x)
 	return sum;
 }
 
+// m/s^2, as large as gravity seems to who is carried: the surface's turning counts as far as it presses the two
+// together, for what it does along the contact, and away from it, friction alone can follow.
+static double pressing(const ob_island_work *w, const ob_surface *x)
+{
+	const ob_contact *c = contact_of(w, x);
+	const uint32_t row = carried_row(w, x), l = c->lane % OB_LANES;
+	const ob_body *own = &w->body[x->row], *body = &w->body[row];
+	const ob_batch *b = &w->batch[c->lane / OB_LANES];
+	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), turn = angular_of(w->v[x->row]),
+		      arm = ob_sub(body->p, own->p), inward = ob_cross(turn, ob_cross(turn, arm));
+	return ob_norm(ob_sub(body->acceleration, own->acceleration)) +
+	       fmax(0, (c->a == row ? 1 : -1) * ob_dot(n, inward));
+}
+
 void ob_surfaces_begin(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -115,14 +129,9 @@ void ob_surfaces_begin(ob_sim *s)
 			if (at)
 				x->surface[at - 1].contact = i;
 		}
-	for (uint32_t i = 0; i < x->count; i++) {
-		const ob_surface *surface = &x->surface[i];
-		const ob_body *own = &w->body[surface->row], *body = &w->body[carried_row(w, surface)];
-		const ob_vec3 turn = angular_of(w->v[surface->row]), arm = ob_sub(body->p, own->p),
-			      carried = ob_add(own->acceleration, ob_cross(turn, ob_cross(turn, arm)));
-		if (touches(w, surface)) // as large as gravity seems to who is carried
-			w->max_acceleration = fmax(w->max_acceleration, ob_norm(ob_sub(body->acceleration, carried)));
-	}
+	for (uint32_t i = 0; i < x->count; i++)
+		if (touches(w, &x->surface[i]))
+			w->max_acceleration = fmax(w->max_acceleration, pressing(w, &x->surface[i]));
 }
 
 static const double sliding_share = .999; // of its bound: a smaller friction impulse holds
