@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "hull/hull.h"
 #include "measure/measure.h"
 #include "ode/ode_body.h"
 #include "sim/sim.h"
@@ -21,6 +22,8 @@ typedef struct worker {
 
 typedef struct player {
 	const random_scene *scene;
+	uint64_t steps; // of the run
+	ob_quat frame[SCENE_BODIES]; // of hulls: of their principal axes, in the frame of their points
 	ob_universe *u;
 	ob_sim *sim; // NULL: workers have threads of their own
 	uint32_t workers;
@@ -51,26 +54,70 @@ static void *live(void *arg)
 	return NULL;
 }
 
-static void put_bodies(const random_scene *s, ob_universe *u)
+static void add_body(ob_world *w, player *p, uint32_t i)
 {
-	ob_world w = { .gravity = s->run.gravity };
-	for (uint32_t i = 0; i < s->bodies; i++) {
-		const scene_body *b = &s->body[i];
-		ob_world_body o = ob_world_add(&w, b->shape, b->size, b->mass, b->state.pose.p);
-		o.passport->friction = b->friction;
-		o.passport->restitution = b->restitution;
-		*o.state = b->state;
+	const scene_body *b = &p->scene->body[i];
+	const bool hull = b->shape == OB_SHAPE_HULL;
+	ob_world_body o = hull ? ob_world_hull(w, b->mass, b->point, b->points, b->state.pose.p)
+			       : ob_world_add(w, b->shape, b->size, b->mass, b->state.pose.p);
+	p->frame[i] = hull ? o.state->pose.q : ob_quat_identity();
+	o.passport->friction = b->friction;
+	o.passport->restitution = b->restitution;
+	o.passport->surface_velocity = b->running;
+	*o.state = b->state;
+	if (hull) {
+		const ob_mat3 r = ob_quat_matrix(p->frame[i]);
+		o.state->pose.q = ob_quat_mul(b->state.pose.q, p->frame[i]);
+		o.passport->surface_velocity = ob_rotate_back(&r, b->running);
 	}
-	for (uint32_t i = 0; i < s->bodies; i++)
-		ob_write_passport(u, i, &w.passport[i]);
-	for (uint32_t i = 0; i < s->bodies; i++)
-		ob_sim_place(u, i, &w.state[i]);
-	ob_world_finish(&w);
+	if (b->driven || (b->mass == 0 && b->shape != OB_SHAPE_PLANE && ob_norm2(p->scene->lift) > 0))
+		ob_world_kinematic(o);
+}
+
+// What speeds up does so through the first half of a way that takes four times as long as the run.
+static void prescribe(const player *p, uint32_t i)
+{
+	const scene_body *b = &p->scene->body[i];
+	if (!(ob_passport_of(p->u, i)->flags & OB_OBJECT_KINEMATIC))
+		return;
+	const double time = 4 * (double)p->steps * p->scene->run.step_length;
+	ob_path_point point[2] = { { 0, b->state.pose.p },
+				   { time, ob_madd(b->state.pose.p, .25 * time * time, p->scene->lift) } };
+	const ob_path lift = { .points = 2, .point = point };
+	const ob_path *own = b->path.frequency > 0 ? &b->path : NULL; // NULL: on with its velocities
+	ob_sim_prescribe(p->u, i, b->driven ? own : &lift, 0);
+}
+
+static void put_bodies(player *p, const ob_world *w)
+{
+	for (uint32_t i = 0; i < w->hulls; i++)
+		ob_write_hull(p->u, i, &w->hull[i]);
+	for (uint32_t i = 0; i < w->objects; i++)
+		ob_write_passport(p->u, i, &w->passport[i]);
+	for (uint32_t i = 0; i < w->objects; i++)
+		ob_sim_place(p->u, i, &w->state[i]);
+}
+
+// As the host does before each step.
+static void drive_bodies(const player *p)
+{
+	const uint64_t step = ob_step_count(p->u);
+	const double h = p->scene->run.step_length;
+	for (uint32_t i = 0; i < p->scene->bodies; i++) {
+		prescribe(p, i);
+		if (p->scene->body[i].pushed) {
+			const ob_force *f = &p->scene->body[i].push;
+			const ob_vec3 now = ob_force_mean(f, h, step),
+				      before = step ? ob_force_mean(f, h, step - 1) : ob_v3(0, 0, 0);
+			ob_sim_push(p->u, i, now, ob_norm2(ob_sub(now, before)) > 0);
+		}
+	}
 }
 
 static bool run_to(player *p, uint64_t step)
 {
 	ob_error e;
+	drive_bodies(p);
 	ob_gate_set_pause_step(p->u, step);
 	ob_sim_resume(p->u);
 	if (p->sim)
@@ -89,12 +136,23 @@ static bool open_player(player *p, uint32_t workers)
 	char name[OB_NAME_MAX];
 	ob_error e;
 	snprintf(name, sizeof name, "metamorphic-%d-%d", (int)getpid(), made++);
-	ob_universe_setup setup = { .name = name, .capacity = p->scene->bodies, .workers = workers ? workers : 1, .isolation = "thread", .run = p->scene->run };
+	ob_world w = { .gravity = p->scene->run.gravity };
+	for (uint32_t i = 0; i < p->scene->bodies; i++)
+		add_body(&w, p, i);
+	ob_universe_setup setup = { .name = name,
+				    .capacity = p->scene->bodies,
+				    .workers = workers ? workers : 1,
+				    .hulls = w.hulls,
+				    .isolation = "thread",
+				    .run = p->scene->run };
 	p->u = ob_universe_create(&setup, &e);
+	if (p->u) {
+		ob_universe_unlink(p->u);
+		put_bodies(p, &w);
+	}
+	ob_world_finish(&w);
 	if (!p->u)
 		return give_up(p->out, e.text);
-	ob_universe_unlink(p->u);
-	put_bodies(p->scene, p->u);
 	p->workers = workers;
 	for (uint32_t i = 0; i < workers; i++) {
 		p->crowd[i] = (worker){ .u = p->u, .number = i };
@@ -176,9 +234,18 @@ static void audit(player *p, budget *b)
 
 // ---- a run
 
+static ob_state state_of(const player *p, uint32_t i)
+{
+	ob_state x = ob_snapshot_state(&p->now, i);
+	const ob_quat f = p->frame[i];
+	if (p->scene->body[i].shape == OB_SHAPE_HULL)
+		x.pose.q = ob_quat_mul(x.pose.q, (ob_quat){ f.w, -f.x, -f.y, -f.z });
+	return x;
+}
+
 void play(const random_scene *s, uint32_t workers, uint64_t steps, played *out)
 {
-	player p = { .scene = s, .out = out };
+	player p = { .scene = s, .steps = steps, .out = out };
 	*out = (played){ .failed = false };
 	ob_ode_init();
 	if (open_player(&p, workers)) {
@@ -194,7 +261,7 @@ void play(const random_scene *s, uint32_t workers, uint64_t steps, played *out)
 				continue;
 			uint64_t sample = step * PLAY_SAMPLES / steps - 1;
 			for (uint32_t i = 0; i < s->bodies; i++)
-				out->at[sample][i] = ob_snapshot_state(&p.now, i);
+				out->at[sample][i] = state_of(&p, i);
 		}
 		out->hash = ob_measure_hash(&p.now);
 	}

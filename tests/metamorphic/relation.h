@@ -15,14 +15,16 @@ typedef enum relation_id {
 	RELATION_TURNED, // about the vertical; by any rotation where nothing is vertical
 	RELATION_TILTED, // by any rotation, gravity with it
 	RELATION_MOVED, // by 1 to 1000 m
-	RELATION_BOOSTED, // by 1 to 100 m/s, along all planes
+	RELATION_BOOSTED, // by 1 to 100 m/s, along all planes; what stands then moves as it is told
 	RELATION_REORDERED, // objects in another order
 	RELATION_RESCALED, // other units of length, time and mass
 	RELATION_REFINED, // twice the substeps, twice: the second time it changes less
 	RELATION_FAR, // something else far away
 	RELATION_MOMENTUM, // kept in a closed system
 	RELATION_SPIN, // so is angular momentum
-	RELATION_ENERGY, // never more than before, net of position recovery
+	RELATION_ENERGY, // never more than before, net of position recovery; where no work is done from outside
+	RELATION_LIFTED, // all that stands speeds up, with as much more gravity: nothing is felt of it
+	RELATION_REFRAMED, // the points of hulls in another frame and order
 	RELATIONS
 } relation_id;
 

@@ -58,7 +58,7 @@ static ob_quat rounded_attitude(ob_quat q, int digits)
 		(ob_quat){ rounded(q.w, digits), rounded(q.x, digits), rounded(q.y, digits), rounded(q.z, digits) });
 }
 
-enum { SIMPLER = 9 };
+enum { SIMPLER = 13 };
 
 // The i-th way to make a body simpler; false: there is nothing to do.
 static bool simplify(scene_body *b, int way)
@@ -89,9 +89,24 @@ static bool simplify(scene_body *b, int way)
 	case 7:
 		b->mass = 1;
 		return was.mass != 1 && was.mass > 0;
-	default:
+	case 8:
 		b->size = ob_v3(was.size.x, was.size.x, was.size.x);
-		return was.shape != OB_SHAPE_PLANE && (was.size.y != was.size.x || was.size.z != was.size.x);
+		return was.shape != OB_SHAPE_PLANE && was.shape != OB_SHAPE_HULL &&
+		       (was.size.y != was.size.x || was.size.z != was.size.x);
+	case 9:
+		b->shape = OB_SHAPE_BOX;
+		return was.shape == OB_SHAPE_HULL;
+	case 10:
+		b->pushed = false;
+		return was.pushed;
+	case 11:
+		b->running = ob_v3(0, 0, 0);
+		return ob_norm2(was.running) > 0;
+	default:
+		b->driven = false;
+		b->state.v = b->state.w = ob_v3(0, 0, 0);
+		b->path = (ob_path){ 0 };
+		return was.driven;
 	}
 }
 
@@ -108,7 +123,12 @@ static bool simplify_bodies(shrinking *p)
 
 static void round_body(scene_body *b, int digits)
 {
-	b->size = rounded_vector(b->size, digits);
+	for (uint32_t i = 0; i < b->points; i++)
+		b->point[i] = rounded_vector(b->point[i], digits);
+	if (b->shape != OB_SHAPE_HULL)
+		b->size = rounded_vector(b->size, digits);
+	else if (!scene_make_hull(b))
+		b->mass = NAN; // and so no scene
 	b->mass = rounded(b->mass, digits);
 	b->friction = rounded(b->friction, digits);
 	b->restitution = rounded(b->restitution, digits);

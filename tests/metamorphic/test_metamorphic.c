@@ -1,6 +1,6 @@
 // Random scenes run twice, the second time seen otherwise; and what a run must keep. Prints a table of relations and
 // kinds of scenes: tried, counted (a twin stayed near), failed, the worst.
-//   metamorphic [--seeds A..B] [--relation NAME] [--kind NAME] [--shapes sphere,box,capsule,cylinder] [--steps N]
+//   metamorphic [--seeds A..B] [--relation NAME] [--kind NAME] [--shapes sphere,box,capsule,cylinder,hull] [--steps N]
 //               [--shrink] [--scene FILE.lua] [--kept FILE.lua ...]
 // Without --relation: all. With --suite, relations are asserted but where "faults" says that they do not hold yet, and
 // what fails is printed. --kept: files of scenes whose first line names the relation and its seed, as --shrink prints
@@ -35,35 +35,47 @@ enum {
 	STACK = 1 << SCENE_STACK,
 	SLIDE = 1 << SCENE_SLIDE,
 	ROLL = 1 << SCENE_ROLL,
+	TABLES = 1 << SCENE_TABLES,
+	PADDLES = 1 << SCENE_PADDLES,
+	PUSHED = 1 << SCENE_PUSHED,
 	ALL = (1 << SCENE_KINDS) - 1
 };
 
 // Where a relation does not hold yet: it is measured there, and not asserted.
 static const unsigned faults[RELATIONS] = {
-	[RELATION_MIRRORED] = HEAP | STATICS,
-	[RELATION_TURNED] = BOUNCE | HEAP | STATICS,
-	[RELATION_TILTED] = BOUNCE | HEAP | STATICS,
-	[RELATION_MOVED] = HITS | BOUNCE | HEAP | STATICS,
-	[RELATION_BOOSTED] = BOUNCE | HEAP | STACK,
+	[RELATION_MIRRORED] = HEAP | STATICS | TABLES,
+	[RELATION_TURNED] = BOUNCE | HEAP | STATICS | TABLES | PUSHED,
+	[RELATION_TILTED] = BOUNCE | HEAP | STATICS | TABLES,
+	[RELATION_MOVED] = HITS | BOUNCE | HEAP | STATICS | TABLES,
+	[RELATION_BOOSTED] = HEAP | TABLES | PADDLES | PUSHED,
+	[RELATION_LIFTED] = ALL & ~(SPINS | BOUNCE | STACK),
 	[RELATION_REFINED] = ALL & ~(SPINS | ROLL),
 	[RELATION_SPIN] = HITS,
-	[RELATION_ENERGY] = HEAP | STATICS,
+	[RELATION_ENERGY] = HEAP | STATICS | PUSHED,
 };
 // .. and with capsules and cylinders.
 static const unsigned round_faults[RELATIONS] = {
-	[RELATION_MIRRORED] = ROLL,
-	[RELATION_TURNED] = ROLL,
-	[RELATION_MOVED] = ROLL,
-	[RELATION_BOOSTED] = ROLL,
-	[RELATION_REORDERED] = HEAP | STATICS,
-	[RELATION_REFINED] = ROLL,
-	[RELATION_ENERGY] = BOUNCE | ROLL,
+	[RELATION_MIRRORED] = ROLL | PADDLES,  [RELATION_TURNED] = ROLL | PADDLES, [RELATION_TILTED] = PADDLES,
+	[RELATION_MOVED] = ROLL | PADDLES,     [RELATION_BOOSTED] = BOUNCE | ROLL, [RELATION_LIFTED] = BOUNCE,
+	[RELATION_REORDERED] = HEAP | STATICS, [RELATION_REFINED] = ROLL,          [RELATION_ENERGY] = BOUNCE | ROLL,
+};
+// .. and with hulls.
+static const unsigned hull_faults[RELATIONS] = {
+	[RELATION_MIRRORED] = STACK,
+	[RELATION_TURNED] = STACK,
+	[RELATION_TILTED] = STACK | PADDLES,
+	[RELATION_BOOSTED] = STACK,
+	[RELATION_RESCALED] = TABLES,
+	[RELATION_ENERGY] = BOUNCE,
+	[RELATION_REFRAMED] = STATICS | STACK,
+	[RELATION_LIFTED] = STACK,
 };
 
 static bool is_asserted(const request *q, relation_id r, scene_kind k)
 {
 	const bool round = q->shapes & (1u << OB_SHAPE_CAPSULE | 1u << OB_SHAPE_CYLINDER);
-	return !((faults[r] | (round ? round_faults[r] : 0)) & 1u << k);
+	const bool hull = q->shapes & 1u << OB_SHAPE_HULL;
+	return !((faults[r] | (round ? round_faults[r] : 0) | (hull ? hull_faults[r] : 0)) & 1u << k);
 }
 
 static void show(relation_id r, uint64_t seed, const random_scene *s, const judged *j)
@@ -197,6 +209,7 @@ static unsigned find_shapes(const char *text)
 	set |= strstr(text, "box") ? 1u << OB_SHAPE_BOX : 0;
 	set |= strstr(text, "capsule") ? 1u << OB_SHAPE_CAPSULE : 0;
 	set |= strstr(text, "cylinder") ? 1u << OB_SHAPE_CYLINDER : 0;
+	set |= strstr(text, "hull") ? 1u << OB_SHAPE_HULL : 0;
 	return set;
 }
 

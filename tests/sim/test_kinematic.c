@@ -1,5 +1,5 @@
-// Kinematic bodies and belts: what they carry, throw, drag and hit, against closed forms, and against the same in another
-// frame of reference.
+// Kinematic bodies and belts: what they carry, throw, drag and hit, against closed forms, and against the same in
+// another frame of reference.
 #include <stdlib.h>
 
 #include "check.h"
@@ -13,6 +13,7 @@ static void done(little_universe *l, little_scene *s)
 {
 	little_close(l);
 	free(s->world.path);
+	free(s->world.hull);
 	free(s);
 }
 
@@ -33,8 +34,8 @@ static double shaken_error(double mu, double amplitude, double frequency, uint32
 	little_scene *s = usual_scene();
 	if (substeps)
 		s->run.tolerance = 0, s->run.substeps = substeps;
-	ob_world_swing(&s->world, ob_world_box(&s->world, 0, ob_v3(3, 3, .1), ob_v3(0, 0, -.1)),
-		       ob_v3(amplitude, 0, 0), frequency, 0);
+	ob_world_swing(&s->world, ob_world_box(&s->world, 0, ob_v3(3, 3, .1), ob_v3(0, 0, -.1)), ob_v3(amplitude, 0, 0),
+		       frequency, 0);
 	ob_world_box(&s->world, 10, ob_v3(.2, .2, .1), ob_v3(0, 0, .1));
 	ob_world_material(&s->world, mu, 0);
 	little_universe l;
@@ -187,8 +188,8 @@ static void test_ball_on_turntable(void)
 
 // ---- frames of reference
 
-// A box tumbles onto a table and slides; "along": the velocity of all of it; lift: m/s^2, at which the table goes up, from
-// below, instead of so much more gravity.
+// A box tumbles onto a table and slides; "along": the velocity of all of it; lift: m/s^2, at which the table goes up,
+// from below, instead of so much more gravity.
 static ob_state tumble(ob_vec3 along, bool moving, int steps, ob_vec3 *table_p)
 {
 	little_scene *s = usual_scene();
@@ -269,6 +270,193 @@ static void test_lift(void)
 	CHECK_NEAR(lifted.z - height, heavy.z, 1e-6);
 }
 
+// ---- what leaves a lift that falls faster than things fall, and comes down on it again
+
+typedef struct carried {
+	double amplitude, frequency;
+	bool rides;
+	double since, z, v; // s, m, m/s: it flies since then, and began so
+} carried;
+
+static double table_height(const carried *c, double t)
+{
+	return c->amplitude * sin(c->frequency * t);
+}
+
+static double table_speed(const carried *c, double t)
+{
+	return c->amplitude * c->frequency * cos(c->frequency * t);
+}
+
+static double flight_height(const carried *c, double t)
+{
+	return c->z + c->v * (t - c->since) - .5 * g * (t - c->since) * (t - c->since);
+}
+
+// The instant in between at which a body that flies comes down on the table
+static double landing(const carried *c, double from, double to)
+{
+	for (int i = 0; i < 60; i++) {
+		const double middle = .5 * (from + to);
+		*(flight_height(c, middle) > table_height(c, middle) ? &from : &to) = middle;
+	}
+	return to;
+}
+
+// The lowest point of what lies on the table, at t, if it is asked for in small steps.
+static double carried_height(carried *c, double before, double t)
+{
+	const double share = g / (c->amplitude * c->frequency * c->frequency);
+	if (!c->rides && flight_height(c, t) <= table_height(c, t)) {
+		before = landing(c, before, t);
+		c->rides = true;
+	}
+	const double turn = fmod(c->frequency * t, 2 * M_PI), leaves = asin(fmin(1, share));
+	if (c->rides && share < 1 && turn > leaves && turn < M_PI - leaves) {
+		c->since = fmax(before, t - (turn - leaves) / c->frequency);
+		c->z = table_height(c, c->since), c->v = table_speed(c, c->since);
+		c->rides = false;
+	}
+	return c->rides ? table_height(c, t) : flight_height(c, t);
+}
+
+static void put_on_lift(little_scene *s, int shape)
+{
+	ob_vec3 corner[12];
+	for (int i = 0; i < 12; i++)
+		corner[i] = ob_v3(.1 * cos(M_PI * (i / 2) / 3), .1 * sin(M_PI * (i / 2) / 3), i % 2 ? .1 : -.1);
+	if (shape == 0)
+		ob_world_box(&s->world, 2, ob_v3(.1, .1, .1), ob_v3(0, 0, .1));
+	else if (shape == 1)
+		ob_world_hull(&s->world, 2, corner, 12, ob_v3(0, 0, .1));
+	else
+		ob_world_sphere(&s->world, 2, .1, ob_v3(0, 0, .1));
+}
+
+static void test_leaves_lift(void)
+{
+	enum { PARTS = 1000 }; // of a frame
+	static const double frequency[] = { 8, 12, 18 }; // 0.65, 1.47 and 3.3 g at the top
+	for (int i = 0; i < 9; i++) {
+		carried c = { .amplitude = .1, .frequency = frequency[i / 3], .rides = true };
+		little_scene *s = usual_scene();
+		ob_world_swing(&s->world, ob_world_box(&s->world, 0, ob_v3(1, 1, .1), ob_v3(0, 0, -.1)),
+			       ob_v3(0, 0, c.amplitude), c.frequency, 0);
+		put_on_lift(s, i % 3);
+		s->state[1].v.z = table_speed(&c, 0);
+		ob_world_material(&s->world, .5, 0);
+		little_universe l;
+		little_open(&l, s);
+		double worst = 0, highest = 0;
+		for (int k = 1; k <= 120 * PARTS; k++) {
+			const double low = carried_height(&c, (k - 1) / (60. * PARTS), k / (60. * PARTS));
+			if (k % PARTS)
+				continue;
+			little_run(&l, 1);
+			worst = fmax(worst, fabs(little_state(&l, 1).pose.p.z - .1 - low));
+			highest = fmax(highest, low - table_height(&c, k / (60. * PARTS)));
+		}
+		printf("lift, %.2g g at the top: off by %.2g m, %.2g m above it\n",
+		       c.amplitude * c.frequency * c.frequency / g, worst, highest);
+		CHECK(worst < 1e-4);
+		CHECK((highest > 1e-3) == (i >= 3));
+		done(&l, s);
+	}
+}
+
+// ---- a block on a table that shakes begins to rock where its weight no longer holds its edge down
+
+static double tilt_on_table(double share)
+{
+	const double half = .1, height = .4, frequency = M_PI;
+	const double amplitude = share * g * half / height / (frequency * frequency);
+	little_scene *s = usual_scene();
+	ob_world_swing(&s->world, ob_world_box(&s->world, 0, ob_v3(5, 5, .1), ob_v3(0, 0, -.1)), ob_v3(amplitude, 0, 0),
+		       frequency, 0);
+	ob_world_box(&s->world, 5, ob_v3(half, .2, height), ob_v3(0, 0, height)).state->v.x = amplitude * frequency;
+	ob_world_material(&s->world, 1, 0);
+	little_universe l;
+	little_open(&l, s);
+	double tilt = 0;
+	for (int i = 0; i < 240; i++) {
+		little_run(&l, 1);
+		const ob_mat3 r = ob_quat_matrix(little_state(&l, 1).pose.q);
+		tilt = fmax(tilt, hypot(r.m[0][2], r.m[1][2]));
+	}
+	done(&l, s);
+	return tilt;
+}
+
+static void test_rocks(void)
+{
+	const double below = tilt_on_table(.99), above = tilt_on_table(1.01);
+	printf("on a shaking table: tilts by %.2g at .99 of the limit, %.2g at 1.01\n", below, above);
+	CHECK(below < 1e-7);
+	CHECK(above > 1e-4);
+}
+
+// ---- a ball that is set on a belt slides, and then rolls with 2/7 of its speed
+
+static void test_ball_on_belt(void)
+{
+	const double speed = 2, mu = .3, until = speed / (3.5 * mu * g), rolls = 2 * speed / 7;
+	for (int kinematic = 0; kinematic < 2; kinematic++) {
+		little_scene *s = usual_scene();
+		ob_world_body belt = ob_world_box(&s->world, 0, ob_v3(20, 1, .1), ob_v3(0, 0, -.1));
+		if (kinematic) {
+			ob_world_kinematic(belt);
+			belt.state->v.x = speed;
+		} else {
+			belt.passport->surface_velocity = ob_v3(speed, 0, 0);
+		}
+		ob_world_sphere(&s->world, 1, .1, ob_v3(0, 0, .1));
+		ob_world_material(&s->world, mu, 0);
+		little_universe l;
+		little_open(&l, s);
+		little_run(&l, 120);
+		CHECK_NEAR(little_state(&l, 1).v.x, rolls, 1e-9);
+		CHECK_NEAR(little_state(&l, 1).pose.p.x, rolls * (2 - .5 * until), 1e-5);
+		done(&l, s);
+	}
+}
+
+// ---- a row of blocks is pushed along
+
+static void test_pushed_row(void)
+{
+	enum { ROW = 5 };
+	for (int hull = 0; hull < 2; hull++) {
+		little_scene *s = usual_scene();
+		ob_world_ground(&s->world);
+		ob_world_body pusher = ob_world_box(&s->world, 0, ob_v3(.1, .5, .3), ob_v3(-1, 0, .35));
+		ob_world_kinematic(pusher);
+		pusher.state->v.x = .5;
+		for (int i = 0; i < ROW; i++) {
+			ob_vec3 corner[8];
+			for (int k = 0; k < 8; k++)
+				corner[k] = ob_v3(k & 1 ? .1 : -.1, k & 2 ? .1 : -.1, k & 4 ? .1 : -.1);
+			if (hull)
+				ob_world_hull(&s->world, 1, corner, 8, ob_v3(.3 * i, 0, .1));
+			else
+				ob_world_box(&s->world, 1, ob_v3(.1, .1, .1), ob_v3(.3 * i, 0, .1));
+		}
+		ob_world_material(&s->world, .4, 0);
+		little_universe l;
+		little_open(&l, s);
+		double deepest = 0;
+		for (int i = 0; i < 48; i++) {
+			little_run(&l, 10);
+			deepest = fmax(deepest, little_penetration(&l).max_m);
+		}
+		CHECK(deepest < 1e-3);
+		for (uint32_t i = 0; i < ROW; i++) {
+			CHECK_NEAR(little_state(&l, 2 + i).v.x, .5, 1e-3);
+			CHECK_NEAR(little_state(&l, 2 + i).pose.p.x, -1 + .5 * 8 + .2 + .2 * i, 1e-3);
+		}
+		done(&l, s);
+	}
+}
+
 // ---- hits
 
 // v' = -e v + (1 + e) u of a ball that meets a paddle
@@ -287,6 +475,53 @@ static void test_paddle(void)
 		little_open(&l, s);
 		little_run(&l, 90);
 		CHECK_NEAR(little_state(&l, 1).v.z, 2 * e[i % 3] + (1 + e[i % 3]) * u[i / 3], 1e-9);
+		done(&l, s);
+	}
+}
+
+// A paddle that turns meets a ball that waits: (1 + e) times the velocity of the place where it meets it, along its
+// normal.
+static void test_turning_paddle(void)
+{
+	static const struct {
+		double rate, radius, e;
+	} each[] = { { 3, .5, .5 }, { 3, .5, 1 }, { 10, .2, .5 }, { 10, .2, 1 }, { 30, .5, 1 }, { 100, .9, 1 } };
+	const double ball = .05, half = .03, from = -.8; // m, m, rad
+	for (int i = 0; i < 6; i++) {
+		little_scene *s = usual_scene();
+		s->run.gravity = s->world.gravity = ob_v3(0, 0, 0);
+		ob_world_body paddle = ob_world_box(&s->world, 0, ob_v3(1, half, .5), ob_v3(0, 0, 0));
+		ob_world_kinematic(paddle);
+		paddle.state->w.z = each[i].rate;
+		paddle.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, from));
+		ob_world_sphere(&s->world, 1, ball, ob_v3(each[i].radius, 0, .1));
+		ob_world_material(&s->world, 0, each[i].e);
+		const double angle = -asin((half + ball) / each[i].radius), when = (angle - from) / each[i].rate;
+		const double v = (1 + each[i].e) * each[i].rate * each[i].radius * cos(angle);
+		little_universe l;
+		little_open(&l, s);
+		little_run(&l, (uint64_t)ceil(60 * when) + 1);
+		const ob_vec3 expected = ob_v3(-v * sin(angle), v * cos(angle), 0);
+		CHECK_NEAR(ob_norm(ob_sub(little_state(&l, 1).v, expected)), 0, 1e-9 * v);
+		done(&l, s);
+	}
+}
+
+// An elastic ball goes on bouncing on a smooth plate, however fast that turns below it.
+static void test_bounces_on_turntable(void)
+{
+	for (double rate = 1; rate <= 1000; rate *= 10) {
+		little_scene *s = usual_scene();
+		ob_world_body plate = ob_world_add(&s->world, OB_SHAPE_CYLINDER, ob_v3(1, .1, 0), 0, ob_v3(0, 0, -.1));
+		ob_world_kinematic(plate);
+		plate.state->w.z = rate;
+		ob_world_sphere(&s->world, 1, .1, ob_v3(.5, 0, .6));
+		ob_world_material(&s->world, 0, 1);
+		little_universe l;
+		little_open(&l, s);
+		const double energy = little_energy(&l);
+		little_run(&l, 300);
+		CHECK_NEAR(little_energy(&l) / energy, 1, 1e-9);
 		done(&l, s);
 	}
 }
@@ -323,7 +558,13 @@ int main(void)
 	test_ball_on_turntable();
 	test_boost();
 	test_lift();
+	test_leaves_lift();
+	test_rocks();
+	test_ball_on_belt();
+	test_pushed_row();
 	test_paddle();
+	test_turning_paddle();
+	test_bounces_on_turntable();
 	test_wakes();
 	return check_end();
 }
