@@ -1,0 +1,171 @@
+#include "mesh/mesh.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "mesh/gltf.h"
+
+static const float farthest = 1e6f; // m, of a vertex along an axis
+
+float ob_surface_pack(float roughness, float metal)
+{
+	return roundf(15 * fminf(fmaxf(metal, 0), 1)) + fminf(fmaxf(roughness, 0), .99f);
+}
+
+size_t ob_mesh_bytes(const ob_mesh *m)
+{
+	return m->vertices * sizeof *m->vertex + m->indices * sizeof *m->index;
+}
+
+void ob_mesh_finish(ob_mesh *m)
+{
+	free(m->vertex);
+	free(m->index);
+	*m = (ob_mesh){ 0 };
+}
+
+bool ob_mesh_can_read(void)
+{
+	return ob_gltf_is_there();
+}
+
+// ---- numbers
+
+static bool lies_within(const float *v, int n, float low, float high)
+{
+	for (int i = 0; i < n; i++)
+		if (!(v[i] >= low && v[i] <= high))
+			return false;
+	return true;
+}
+
+static bool vertex_makes_sense(const ob_mesh_vertex *v)
+{
+	return lies_within(v->position, 3, -farthest, farthest) && lies_within(v->normal, 3, -1.01f, 1.01f) &&
+	       lies_within(v->colour, 3, -1, 1) && lies_within(&v->surface, 1, -1, 16);
+}
+
+bool ob_mesh_makes_sense(ob_mesh *m)
+{
+	double most = 0;
+	if (m->vertices < 3 || m->vertices > OB_MESH_VERTICES_MAX || m->indices < 3 || m->indices % 3 != 0 ||
+	    m->indices > 3 * OB_MESH_TRIANGLES_MAX)
+		return false;
+	for (uint32_t i = 0; i < m->indices; i++)
+		if (m->index[i] >= m->vertices)
+			return false;
+	for (uint32_t i = 0; i < m->vertices; i++) {
+		const float *p = m->vertex[i].position;
+		if (!vertex_makes_sense(&m->vertex[i]))
+			return false;
+		most = fmax(most, ob_norm2(ob_v3(p[0], p[1], p[2])));
+	}
+	m->radius = sqrt(most);
+	return true;
+}
+
+static void set3(float to[3], ob_vec3 v)
+{
+	to[0] = (float)v.x;
+	to[1] = (float)v.y;
+	to[2] = (float)v.z;
+}
+
+bool ob_mesh_place(ob_mesh *m, double scale, ob_pose pose, ob_error *e)
+{
+	const ob_mat3 r = ob_quat_matrix(pose.q);
+	for (uint32_t i = 0; i < m->vertices; i++) {
+		ob_mesh_vertex *v = &m->vertex[i];
+		const ob_vec3 p = ob_v3(v->position[0], v->position[1], v->position[2]);
+		const ob_vec3 n = ob_v3(v->normal[0], v->normal[1], v->normal[2]);
+		set3(v->position, ob_madd(pose.p, scale, ob_rotate(&r, p)));
+		set3(v->normal, ob_rotate(&r, n));
+	}
+	return ob_mesh_makes_sense(m) || ob_fail(e, "a vertex of it lies more than 1000 km away");
+}
+
+// ---- files
+
+static uint32_t word_at(const unsigned char *bytes, size_t at)
+{
+	return bytes[at] | (uint32_t)bytes[at + 1] << 8 | (uint32_t)bytes[at + 2] << 16 | (uint32_t)bytes[at + 3] << 24;
+}
+
+// The header of 12 bytes, and that of the first part, which is JSON (glTF 2.0, 4.4).
+static bool check_header(const unsigned char *bytes, size_t size, ob_error *e)
+{
+	enum { HEADERS = 20, JSON = 0x4e4f534a };
+	size_t text = 0;
+	while (text < size && strchr(" \t\r\n\xef\xbb\xbf", bytes[text]) && bytes[text])
+		text++;
+	if (text < size && bytes[text] == '{')
+		return ob_fail(e, "it is glTF as text (.gltf): expected binary glTF (.glb), one file that holds all");
+	if (size < 4 || memcmp(bytes, "glTF", 4) != 0)
+		return ob_fail(e, "it is no binary glTF file (.glb)");
+	if (size < HEADERS)
+		return ob_fail(e, "it is cut short");
+	if (word_at(bytes, 4) != 2)
+		return ob_fail(e, "it is glTF of version %u: expected 2", word_at(bytes, 4));
+	if (word_at(bytes, 8) > size)
+		return ob_fail(e, "it is cut short: %zu of %u bytes are there", size, word_at(bytes, 8));
+	if (word_at(bytes, 8) < HEADERS || word_at(bytes, 12) > word_at(bytes, 8) - HEADERS ||
+	    word_at(bytes, 16) != JSON)
+		return ob_fail(e, "it is damaged: it does not begin with its JSON part");
+	if (word_at(bytes, 12) > OB_MESH_JSON_MAX)
+		return ob_fail(e, "its JSON part is larger than %d KiB", OB_MESH_JSON_MAX >> 10);
+	return true;
+}
+
+bool ob_mesh_read(ob_mesh *m, const void *bytes, size_t size, ob_error *e)
+{
+	*m = (ob_mesh){ 0 };
+	if (size > OB_MESH_FILE_MAX)
+		return ob_fail(e, "it is larger than %d MiB", OB_MESH_FILE_MAX >> 20);
+	if (!check_header(bytes, size, e) || !ob_gltf_read(m, bytes, size, e))
+		return false;
+	if (ob_mesh_makes_sense(m))
+		return true;
+	ob_mesh_finish(m);
+	return ob_fail(e, "a vertex of it lies more than 1000 km away, or is no number");
+}
+
+static unsigned char *read_all(int fd, size_t *size, ob_error *e)
+{
+	struct stat st;
+	if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) {
+		ob_fail(e, "it is no file");
+		return NULL;
+	}
+	if (st.st_size > OB_MESH_FILE_MAX) {
+		ob_fail(e, "it is larger than %d MiB", OB_MESH_FILE_MAX >> 20);
+		return NULL;
+	}
+	unsigned char *bytes = malloc((size_t)st.st_size + 1);
+	ssize_t n = 1;
+	for (*size = 0; bytes && n > 0 && *size<(size_t)st.st_size; *size += n> 0 ? (size_t)n : 0)
+		n = read(fd, bytes + *size, (size_t)st.st_size - *size);
+	if (bytes && n >= 0)
+		return bytes;
+	ob_fail(e, "%s", bytes ? strerror(errno) : "no memory");
+	free(bytes);
+	return NULL;
+}
+
+bool ob_mesh_load(ob_mesh *m, const char *path, ob_error *e)
+{
+	size_t size = 0;
+	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe without a writer must not hold it up
+	*m = (ob_mesh){ 0 };
+	if (fd < 0)
+		return ob_fail(e, "%s", strerror(errno));
+	unsigned char *bytes = read_all(fd, &size, e);
+	close(fd);
+	const bool good = bytes && ob_mesh_read(m, bytes, size, e);
+	free(bytes);
+	return good;
+}

@@ -1,0 +1,53 @@
+// What objects look like where they look otherwise than they collide: triangles, read from a binary glTF 2.0 file.
+// Physics knows nothing of them; the renderer and the viewer's page draw them from the same bytes.
+//
+// Thread-safety: functions of one mesh are one thread's; a mesh that nobody changes may be read by many.
+#ifndef OB_MESH_MESH_H
+#define OB_MESH_MESH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <ob/error.h>
+#include <ob/motion.h>
+
+enum {
+	OB_MESH_FILE_MAX = 32 << 20, // bytes of a file
+	OB_MESH_JSON_MAX = 512 << 10, // .. and of the part of it that is text
+	OB_MESH_VERTICES_MAX = 500000, // as drawn: where a triangle has no normals it has three of its own
+	OB_MESH_TRIANGLES_MAX = 500000,
+};
+
+// As the shaders read it (shaders/instance.glsl), and as it is handed out and recorded: little-endian. 40 bytes.
+typedef struct ob_mesh_vertex {
+	float position[3]; // m, body frame
+	float normal[3]; // unit, outward
+	float colour[3]; // linear RGB; below 0: the object's
+	float surface; // roughness and metal (ob_surface_pack); below 0: the object's
+} ob_mesh_vertex;
+
+typedef struct ob_mesh {
+	uint32_t vertices, indices;
+	ob_mesh_vertex *vertex; // [vertices]
+	uint32_t *index; // [indices]: three a triangle, counterclockwise seen from outside
+	double radius; // m, of the ball round the origin that holds it
+} ob_mesh;
+
+// Both from 0 to 1, as one number: 15 times the metal, whole, and then the roughness, below 1.
+float ob_surface_pack(float roughness, float metal);
+
+// Reads a binary glTF file: all triangles of its scene, each where its nodes place it, in m. glTF's y, which points up,
+// becomes z, and its z becomes -y. No other file is read. false and e, which says what is wrong with the file, but not
+// its name; m needs no finish then.
+bool ob_mesh_load(ob_mesh *m, const char *path, ob_error *e);
+// The same of a file's bytes.
+bool ob_mesh_read(ob_mesh *m, const void *bytes, size_t size, ob_error *e);
+bool ob_mesh_can_read(void); // false: this program was built without what reads such files
+// Makes it scale times as large, turns and then moves it. false and e: a vertex comes to lie more than 1000 km away.
+bool ob_mesh_place(ob_mesh *m, double scale, ob_pose pose, ob_error *e);
+// Whether what came from elsewhere is one: counts within the limits, indices of vertices, numbers. Sets the radius.
+bool ob_mesh_makes_sense(ob_mesh *m);
+size_t ob_mesh_bytes(const ob_mesh *m); // of vertices and indices
+void ob_mesh_finish(ob_mesh *m);
+
+#endif

@@ -1,0 +1,179 @@
+// Hostile glTF files: mutants of good ones, read in this process. Each is refused in a word, or becomes a mesh that
+// makes sense; none may crash, run without end, or ask for more memory than a file of its size is worth. 20000 in a
+// minute or so:
+//
+//   meshes FOLDER [COUNT [SEED]]    mutants of FOLDER/*.glb, and of a cube
+//
+// tinygltf itself has no sanitizers in it; with those of this program (build-asan) what it hands over is watched.
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../mesh/glb.h"
+#include "base/random.h"
+#include "check.h"
+#include "mesh/mesh.h"
+
+enum { SEEDS_MAX = 8, BYTES_MAX = 1 << 20, CHANGES = 5 };
+
+// Put in place of numbers, and anywhere else
+static const char *const words[] = {
+	"-1",
+	"0",
+	"1",
+	"2",
+	"3",
+	"7",
+	"255",
+	"65535",
+	"2147483647",
+	"2147483648",
+	"4294967295",
+	"18446744073709551615",
+	"1e308",
+	"-0.0",
+	"1.5",
+	"null",
+	"true",
+	"{}",
+	"[]",
+	"[[",
+	"]]",
+	"{\"a\":",
+	"\"",
+	"\\",
+	",",
+	":",
+	"\"VEC2\"",
+	"\"SCALAR\"",
+	"\"MAT4\"",
+	"5120",
+	"5121",
+	"5123",
+	"5125",
+	"5130",
+	"\"uri\":\"x.bin\"",
+	"\"uri\":\"data:application/octet-stream;base64,AAAA\"",
+	"\"sparse\":{}",
+	"\"byteStride\":1",
+	"\"children\":[0]",
+	"\"extensionsRequired\":[\"x\"]",
+	"\"skin\":0",
+	"\"normalized\":true",
+	"\"mode\":5",
+	"\"indices\":0",
+	"\"images\":[{\"bufferView\":0,\"mimeType\":\"image/png\"}]",
+	"\"doubleSided\":true",
+};
+
+static glb seed[SEEDS_MAX];
+static uint32_t seeds;
+static uint64_t state = 1;
+
+static uint32_t below(uint32_t n)
+{
+	return (uint32_t)(ob_splitmix(&state) % n);
+}
+
+static void read_seeds(const char *folder)
+{
+	const glb_cube_buffer cube = glb_cube_of(1);
+	seed[seeds++] = glb_make(GLB_CUBE, &cube, sizeof cube);
+	DIR *d = opendir(folder);
+	for (struct dirent *entry; d && (entry = readdir(d)) && seeds < SEEDS_MAX;) {
+		char path[1024];
+		unsigned char *bytes = malloc(BYTES_MAX);
+		if (!strstr(entry->d_name, ".glb") || !bytes) {
+			free(bytes);
+			continue;
+		}
+		snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+		FILE *f = fopen(path, "rb");
+		seed[seeds++] = (glb){ bytes, f ? fread(bytes, 1, BYTES_MAX, f) : 0 };
+		if (f)
+			fclose(f);
+	}
+	if (d)
+		closedir(d);
+}
+
+// The next number of the text from "at" on: its length, and its place in *at; 0: there is none.
+static size_t find_number(const char *text, size_t size, size_t *at)
+{
+	static const char digits[] = "0123456789.-";
+	while (*at < size && !memchr(digits, text[*at], sizeof digits - 1))
+		++*at;
+	size_t n = 0;
+	while (*at + n < size && memchr(digits, text[*at + n], sizeof digits - 1))
+		n++;
+	return n;
+}
+
+// In the JSON, of which *size bytes are there and room is enough: a number, or a few bytes, become a word.
+static void change_text(char *text, size_t *size)
+{
+	const char *word = words[below(sizeof words / sizeof *words)];
+	size_t at = below((uint32_t)*size + 1), n = below(3) ? find_number(text, *size, &at) : below(4),
+	       put = strlen(word);
+	if (at + n > *size)
+		n = *size - at;
+	memmove(text + at + put, text + at + n, *size - at - n);
+	memcpy(text + at, word, put);
+	*size += put - n;
+}
+
+static glb mutant(const glb *of)
+{
+	uint32_t json;
+	memcpy(&json, of->bytes + 12, 4);
+	const size_t rest = 20 + (size_t)json, data = of->size > rest + 8 ? of->size - rest - 8 : 0;
+	char *text = malloc(json + 64 * CHANGES);
+	unsigned char *buffer = malloc(data + 1);
+	size_t size = json;
+	memcpy(text, of->bytes + 20, json);
+	memcpy(buffer, of->bytes + of->size - data, data);
+	for (uint32_t i = below(CHANGES); i > 0; i--)
+		change_text(text, &size);
+	for (uint32_t i = data ? below(CHANGES) : 0; i > 0; i--)
+		buffer[below((uint32_t)data)] = (unsigned char)below(256);
+	text[size] = 0;
+	glb out = glb_make(text, buffer, below(20) ? data : below((uint32_t)data + 1));
+	for (uint32_t i = below(8) ? 0 : below(4); i > 0; i--)
+		out.bytes[below(below(2) ? 24 : (uint32_t)out.size)] ^= (unsigned char)(1 << below(8));
+	if (below(30) == 0)
+		out.size = below((uint32_t)out.size + 1);
+	free(text);
+	free(buffer);
+	return out;
+}
+
+int main(int argc, char **argv)
+{
+	const long count = argc > 2 ? strtol(argv[2], NULL, 10) : 2000;
+	long good = 0;
+	if (!ob_mesh_can_read()) {
+		fprintf(stderr, "skipped: built without tinygltf\n");
+		return 77;
+	}
+	state = argc > 3 ? strtoul(argv[3], NULL, 10) : 1;
+	read_seeds(argc > 1 ? argv[1] : ".");
+	CHECK(seeds > 1);
+	for (long i = 0; i < count; i++) {
+		glb g = mutant(&seed[below(seeds)]);
+		ob_mesh m;
+		ob_error e = { "" };
+		if (ob_mesh_read(&m, g.bytes, g.size, &e)) {
+			good++;
+			CHECK(ob_mesh_makes_sense(&m) && isfinite(m.radius));
+			ob_mesh_finish(&m);
+		} else {
+			CHECK(e.text[0] && !m.vertex && !m.index);
+		}
+		free(g.bytes);
+	}
+	for (uint32_t i = 0; i < seeds; i++)
+		free(seed[i].bytes);
+	printf("%ld of %ld were good\n", good, count);
+	CHECK(good > 0 && good < count);
+	return check_end();
+}
