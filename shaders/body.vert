@@ -24,10 +24,11 @@ void main()
 	v_sun = turned_back(sun.xyz);
 	v_up = turned_back(vec3(0., 0., 1.));
 	v_to_eye = turned_back(-p);
-	float metal = floor(colour.w) / 15.;
-	float roughness = max(colour.w - floor(colour.w), .06), sharp = roughness * roughness * roughness * roughness;
-	v_matt = colour.rgb * (1. - metal);
-	v_shine = mix(vec3(.04), colour.rgb, metal);
+	vec4 look = shown_paint();
+	float metal = floor(look.w) / 15.;
+	float roughness = max(look.w - floor(look.w), .06), sharp = roughness * roughness * roughness * roughness;
+	v_matt = look.rgb * (1. - metal);
+	v_shine = mix(vec3(.04), look.rgb, metal);
 	v_edge = max(vec3(1. - roughness), v_shine) - v_shine;
 	v_gloss = vec4(sharp - 1., sharp / (4. * roughness + 2.), .5 / (.06 + .9 * roughness), .25 * roughness);
 

@@ -3,9 +3,17 @@ layout(location = 0) in vec3 corner;          // of the core, in units of its ha
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 position_radius; // m, relative to the eye; m, of the ball
 layout(location = 3) in vec4 attitude;        // quaternion x y z w, body to world
-layout(location = 4) in vec4 core;            // m, half size; w: width of a box's rounded edges, m; 0 = not a box
+layout(location = 4) in vec4 core;            // m, half size; w: width of a box's rounded edges, m; 0 = not a box; of
+                                              // what looks like a mesh: -1 if that has the colour, -2 if the surface
 layout(location = 5) in vec4 colour;          // linear; w: 15 times its metal, whole, and then its roughness, below 1
+layout(location = 6) in vec4 paint;           // of a mesh's vertex: as colour; below 0: the object's
 
 vec3 turned(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) + attitude.w * v); }
 vec3 turned_back(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) - attitude.w * v); }
+vec4 shown_paint()
+{
+	int by_mesh = int(max(-core.w, 0.) + .5);
+	return vec4((by_mesh & 1) != 0 && paint.r >= 0. ? paint.rgb : colour.rgb,
+		    (by_mesh & 2) != 0 && paint.w >= 0. ? paint.w : colour.w);
+}
 vec3 world_position() { return turned(corner * core.xyz + normal * position_radius.w) + position_radius.xyz; }

@@ -41,6 +41,8 @@ enum { // ob_passport.flags
 	OB_OBJECT_FROZEN = 1 << 2,  // static since its simulator died
 	OB_OBJECT_KINEMATIC = 1 << 3, // moves as it is told, whatever touches it; mass and inertia are 0
 	OB_OBJECT_PRESCRIBED = OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC, // no force moves it
+	OB_OBJECT_MESH_COLOUR = 1 << 4, // its mesh's colours are shown, not its own
+	OB_OBJECT_MESH_SURFACE = 1 << 5, // the same of roughness and metal
 };
 
 // What an object is. 184 bytes.
@@ -48,7 +50,8 @@ typedef struct ob_passport {
 	uint32_t id;          // index of the object in the table, from 0
 	uint32_t generation;  // grows each time the slot is given to another object
 	uint32_t flags;       // OB_OBJECT_*
-	uint16_t shape;       // ob_shape
+	uint8_t shape;        // ob_shape: as what it collides, and what it looks like unless it has a mesh
+	uint8_t mesh;         // 1 + the number of the scene's mesh that it looks like; 0 = none. Who draws has the meshes
 	uint16_t hull;        // of a hull: which of the universe's (ob_universe_get_hull)
 	ob_vec3 size;         // m, see ob_shape
 	double mass;          // kg; 0 = static

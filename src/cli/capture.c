@@ -123,6 +123,8 @@ ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, d
 		.device = f->gpu,
 		.overlay_aabb = f->aabb,
 		.overlay_contacts = f->contacts,
+		.mesh = scene->mesh,
+		.meshes = scene->meshes,
 	};
 	c->rgba = malloc((size_t)f->width * (size_t)f->height * 4);
 	if (!c->rgba)

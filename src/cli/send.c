@@ -53,6 +53,8 @@ static bool create(sending *s, ob_error *e)
 			s->request.corners = scene->hull_corners[def->passport.hull];
 		if (def->script || def->born > 0 || def->dies < INFINITY)
 			fine = ob_fail(e, "create: expected an object without script, born and dies");
+		else if (def->passport.mesh)
+			fine = ob_fail(e, "create: expected no mesh: a scene's objects have them");
 		else if (def->path || def->force)
 			fine = ob_fail(e,
 				       "create: expected neither path nor varying_force: a scene's objects have them");

@@ -153,9 +153,12 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 	return true;
 }
 
-static bool check_hull(const ob_population *p, const ob_passport *pass, ob_error *e)
+// Hulls are the universe's, meshes the scene's.
+static bool check_parts(const ob_population *p, const ob_passport *pass, ob_error *e)
 {
 	const ob_hull *h = ob_hull_of(p->u, pass);
+	if (pass->mesh > p->scene->meshes)
+		return ob_fail(e, "object \"%s\": its mesh is not one of its scene", pass->name);
 	if (pass->shape != OB_SHAPE_HULL ||
 	    (h && pass->size.x == h->radius && pass->size.y == .5 * h->thickness && pass->size.z == h->inner))
 		return true;
@@ -254,7 +257,7 @@ static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const
 	const uint32_t capacity = ob_universe_capacity(p->u);
 	uint32_t id = p->first_free;
 	ob_error e;
-	if (!check_hull(p, &def->passport, &e)) {
+	if (!check_parts(p, &def->passport, &e)) {
 		ob_log_warn("%s", e.text);
 		return UINT32_MAX;
 	}
@@ -377,6 +380,7 @@ static void change_on_request(ob_population *p, const ob_request *r)
 			ob_log_warn("object \"%.*s\" got no message: too many wait for it", OB_NAME_MAX, pass.name);
 	} else {
 		memcpy(pass.colour, r->colour, sizeof pass.colour);
+		pass.flags &= ~(uint32_t)OB_OBJECT_MESH_COLOUR;
 		ob_write_passport(p->u, r->id, &pass);
 	}
 }
@@ -558,7 +562,7 @@ static bool check_objects(const ob_population *p, ob_error *e)
 		const ob_motion *m = ob_newest_motion(p->u, id);
 		ob_object_def def = { .passport = *ob_passport_of(p->u, id), .state = { { m->p, m->q }, m->v, m->w } };
 		if (def.passport.flags & OB_OBJECT_PRESENT &&
-		    (!ob_object_check(&def, e) || !check_hull(p, &def.passport, e)))
+		    (!ob_object_check(&def, e) || !check_parts(p, &def.passport, e)))
 			return false;
 	}
 	return true;

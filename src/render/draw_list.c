@@ -88,6 +88,12 @@ static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t
 	return ob_motion_between(&before, m, inertia, t);
 }
 
+// NULL: it looks as it collides.
+static const ob_mesh *look_of(const ob_draw_list *b, const ob_passport *p)
+{
+	return p->mesh > 0 && p->mesh <= b->meshes ? &b->mesh[p->mesh - 1] : NULL;
+}
+
 bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t)
 {
 	if (now->count > b->capacity) {
@@ -107,7 +113,9 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 			continue;
 		ob_pose pose = pose_at(prev, now, i, t);
 		if (p->shape != OB_SHAPE_PLANE) {
-			b->body[b->count++] = (ob_draw_item){ pose, ob_shape_radius(p->shape, p->size), 0, i };
+			const ob_mesh *look = look_of(b, p);
+			const double radius = look ? look->radius : ob_shape_radius(p->shape, p->size);
+			b->body[b->count++] = (ob_draw_item){ pose, radius, 0, i };
 		} else if (b->planes < OB_PLANES_MAX) {
 			b->plane_id[b->planes] = i;
 			b->plane[b->planes++] = pose;
@@ -207,8 +215,11 @@ void ob_draw_list_finish(ob_draw_list *b)
 	*b = (ob_draw_list){ 0 };
 }
 
-static uint32_t mesh_of(const ob_passport *p, const ob_draw_item *body, const ob_view *v, int height)
+static uint32_t mesh_of(const ob_draw_list *b, const ob_passport *p, const ob_draw_item *body, const ob_view *v,
+			int height)
 {
+	if (look_of(b, p))
+		return OB_MESHES + b->now->hulls + p->mesh - 1;
 	if (p->shape == OB_SHAPE_BOX)
 		return OB_MESH_BOX;
 	if (p->shape == OB_SHAPE_HULL)
@@ -232,18 +243,18 @@ static void set_vec4(float to[4], double x, double y, double z, double w)
 	to[3] = (float)w;
 }
 
-static float clampf(float x, float low, float high)
-{
-	return x > low ? fminf(x, high) : low;
-}
-
-static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec3 eye)
+static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec3 eye, bool look)
 {
 	ob_instance i;
 	ob_vec3 at = ob_sub(pose->p, eye), size = p->size;
 	double r = size.x, rounding = 0;
 	ob_vec3 core = { 0, 0, 0 };
-	if (p->shape == OB_SHAPE_BOX) {
+	if (look) { // its mesh has metres, and so has a hull's
+		r = 0;
+		core = ob_v3(1, 1, 1);
+		rounding -= p->flags & OB_OBJECT_MESH_COLOUR ? 1 : 0;
+		rounding -= p->flags & OB_OBJECT_MESH_SURFACE ? 2 : 0;
+	} else if (p->shape == OB_SHAPE_BOX) {
 		r = 0;
 		core = size;
 		rounding = bevel_width(fmin(size.x, fmin(size.y, size.z)));
@@ -252,7 +263,7 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 		core = ob_v3(size.x - r, size.x - r, size.y - r);
 	} else if (p->shape == OB_SHAPE_CAPSULE) {
 		core.z = size.y;
-	} else if (p->shape == OB_SHAPE_HULL) { // its mesh has metres
+	} else if (p->shape == OB_SHAPE_HULL) {
 		r = 0;
 		core = ob_v3(1, 1, 1);
 	}
@@ -261,7 +272,7 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 	set_vec4(i.core, core.x, core.y, core.z, rounding);
 	for (int k = 0; k < 3; k++)
 		i.colour[k] = p->colour[k];
-	i.colour[3] = roundf(15 * clampf(p->metal, 0, 1)) + clampf(p->roughness, 0, .99f);
+	i.colour[3] = ob_surface_pack(p->roughness, p->metal);
 	return i;
 }
 
@@ -288,13 +299,13 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 		out->instance = grown;
 		out->capacity = b->count;
 	}
-	if (!expect_meshes(out, OB_MESHES + b->now->hulls))
+	if (!expect_meshes(out, OB_MESHES + b->now->hulls + b->meshes))
 		return false;
 	uint32_t *mesh = malloc((b->count + 1) * sizeof *mesh), *count = calloc(out->meshes + 1, sizeof *count);
 	for (uint32_t i = 0; mesh && count && i < b->count; i++) {
 		const ob_draw_item *body = &b->body[i];
 		bool taken = filter(body, context);
-		mesh[i] = taken ? mesh_of(&b->now->passport[body->id], body, v, height) : out->meshes;
+		mesh[i] = taken ? mesh_of(b, &b->now->passport[body->id], body, v, height) : out->meshes;
 		count[mesh[i]]++;
 	}
 	out->first[0] = 0;
@@ -305,7 +316,8 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 	for (uint32_t i = 0; mesh && count && i < b->count; i++)
 		if (mesh[i] < out->meshes)
 			out->instance[count[mesh[i]]++] =
-				instance_of(&b->now->passport[b->body[i].id], &b->body[i].pose, v->eye);
+				instance_of(&b->now->passport[b->body[i].id], &b->body[i].pose, v->eye,
+					    mesh[i] >= OB_MESHES + b->now->hulls);
 	const bool fine = mesh && count;
 	free(mesh);
 	free(count);

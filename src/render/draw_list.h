@@ -4,6 +4,7 @@
 #define OB_RENDER_DRAW_LIST_H
 
 #include "measure/measure.h"
+#include "mesh/mesh.h"
 #include "render/mesh.h"
 #include "scene/scene.h"
 
@@ -37,6 +38,8 @@ typedef struct ob_draw_item {
 } ob_draw_item;
 
 typedef struct ob_draw_list {
+	const ob_mesh *mesh; // [meshes] of the scene: set once, before the first fill
+	uint32_t meshes;
 	const ob_snapshot *now;
 	ob_draw_item *body;
 	uint32_t count, capacity;
@@ -49,12 +52,13 @@ typedef struct ob_draw_list {
 typedef struct ob_instance {
 	float position_radius[4]; // m: centre relative to the eye; radius of the ball that thickens the core
 	float attitude[4]; // x y z w
-	float core[4]; // m: half size; width of a box's rounded edges, 0 = not a box
+	float core[4]; // m: half size; width of a box's rounded edges, 0 = not a box; of a mesh less than 0: -1 if its
+		       // colours are shown, -2 if its surface is
 	float colour[4]; // linear; 15 times its metal, whole, and then its roughness, below 1
 } ob_instance;
 
 // Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1. After the meshes of the shapes come
-// those of the snapshot's hulls.
+// those of the snapshot's hulls, and then the scene's.
 typedef struct ob_instances {
 	ob_instance *instance;
 	uint32_t meshes;

@@ -110,7 +110,7 @@ static void build_cylinder(ob_mesh_set *s, int n)
 
 static void build_one(ob_mesh_set *s, int kind)
 {
-	ob_mesh *m = &s->mesh[kind];
+	ob_mesh_range *m = &s->mesh[kind];
 	m->index_first = s->indices;
 	if (kind == OB_MESH_BOX)
 		build_box(s);

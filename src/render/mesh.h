@@ -22,15 +22,15 @@ typedef enum ob_mesh_kind {
 } ob_mesh_kind;
 
 // Where one mesh lies in the arrays that hold all of them.
-typedef struct ob_mesh {
+typedef struct ob_mesh_range {
 	uint32_t index_first, index_count;
-} ob_mesh;
+} ob_mesh_range;
 
 typedef struct ob_mesh_set {
 	ob_vertex *vertex;
 	uint16_t *index;
 	uint32_t vertices, indices;
-	ob_mesh mesh[OB_MESHES];
+	ob_mesh_range mesh[OB_MESHES];
 } ob_mesh_set;
 
 bool ob_mesh_set_build(ob_mesh_set *s); // counter-clockwise from outside; false: out of memory

@@ -303,9 +303,27 @@ static bool create_meshes(ob_passes *p, ob_error *e)
 	return built ? true : ob_fail(e, "out of memory");
 }
 
-bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e)
+static void create_look(ob_look_buffers *l, const ob_mesh *m)
 {
-	*p = (ob_passes){ 0 };
+	glGenVertexArrays(1, &l->array);
+	glGenBuffers(1, &l->vertices);
+	glGenBuffers(1, &l->indices);
+	glBindVertexArray(l->array);
+	glBindBuffer(GL_ARRAY_BUFFER, l->vertices);
+	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(m->vertices * sizeof *m->vertex), m->vertex, GL_STATIC_DRAW);
+	set_attribute(0, 3, sizeof(ob_mesh_vertex), offsetof(ob_mesh_vertex, position), 0);
+	set_attribute(1, 3, sizeof(ob_mesh_vertex), offsetof(ob_mesh_vertex, normal), 0);
+	set_attribute(6, 4, sizeof(ob_mesh_vertex), offsetof(ob_mesh_vertex, colour), 0);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, l->indices);
+	glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(m->indices * sizeof *m->index), m->index, GL_STATIC_DRAW);
+	l->index_count = m->indices;
+}
+
+bool ob_passes_create(ob_passes *p, ob_light light, const ob_mesh *mesh, uint32_t meshes, ob_error *e)
+{
+	*p = (ob_passes){ .look = calloc(meshes + 1, sizeof *p->look) };
+	if (!p->look)
+		return ob_fail(e, "out of memory");
 	if (!ob_programs_create(p->program, light, e))
 		return false;
 	glGenVertexArrays(1, &p->empty_array);
@@ -333,6 +351,8 @@ bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e)
 	set_attribute(1, 3, sizeof(ob_segment), offsetof(ob_segment, to), 1);
 	set_attribute(2, 4, sizeof(ob_segment), offsetof(ob_segment, colour), 1);
 	set_attribute(3, 1, sizeof(ob_segment), offsetof(ob_segment, width), 1);
+	for (; p->looks < meshes; p->looks++)
+		create_look(&p->look[p->looks], &mesh[p->looks]);
 	return true;
 }
 
@@ -345,6 +365,11 @@ void ob_passes_destroy(ob_passes *p)
 	ob_programs_destroy(p->program);
 	glDeleteBuffers(6, buffers);
 	glDeleteVertexArrays(4, arrays);
+	for (uint32_t i = 0; i < p->looks; i++) {
+		glDeleteVertexArrays(1, &p->look[i].array);
+		glDeleteBuffers(2, (const GLuint[]){ p->look[i].vertices, p->look[i].indices });
+	}
+	free(p->look);
 	free(p->hull_first);
 }
 
@@ -411,6 +436,32 @@ static void set_instances(uint32_t first)
 	set_attribute(5, 4, sizeof(ob_instance), at + offsetof(ob_instance, colour), 1);
 }
 
+static void draw_hulls(const ob_passes *p, const ob_instances *i)
+{
+	glBindVertexArray(p->hull_array);
+	for (uint32_t hull = 0; hull < p->hulls; hull++) {
+		const uint32_t *first = &i->first[OB_MESHES + hull], count = first[1] - first[0];
+		if (!count)
+			continue;
+		set_instances(first[0]);
+		glDrawArraysInstanced(GL_TRIANGLES, (GLint)p->hull_first[hull],
+				      (GLsizei)(p->hull_first[hull + 1] - p->hull_first[hull]), (GLsizei)count);
+	}
+}
+
+static void draw_looks(const ob_passes *p, const ob_instances *i)
+{
+	for (uint32_t k = 0; k < p->looks; k++) {
+		const uint32_t *first = &i->first[OB_MESHES + p->hulls + k], count = first[1] - first[0];
+		if (!count)
+			continue;
+		glBindVertexArray(p->look[k].array);
+		set_instances(first[0]);
+		glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)p->look[k].index_count, GL_UNSIGNED_INT, NULL,
+					(GLsizei)count);
+	}
+}
+
 // Draws what upload_instances has uploaded.
 static void draw_instances(const ob_passes *p, const ob_instances *i)
 {
@@ -422,17 +473,9 @@ static void draw_instances(const ob_passes *p, const ob_instances *i)
 		glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)p->mesh[k].index_count, GL_UNSIGNED_SHORT,
 					(const void *)(p->mesh[k].index_first * sizeof(uint16_t)), (GLsizei)count);
 	}
-	if (i->first[i->meshes] == i->first[OB_MESHES])
-		return;
-	glBindVertexArray(p->hull_array);
-	glBindBuffer(GL_ARRAY_BUFFER, p->instances);
-	for (uint32_t k = OB_MESHES; k < i->meshes; k++) {
-		const uint32_t first = i->first[k], count = i->first[k + 1] - first, hull = k - OB_MESHES;
-		if (!count)
-			continue;
-		set_instances(first);
-		glDrawArraysInstanced(GL_TRIANGLES, (GLint)p->hull_first[hull],
-				      (GLsizei)(p->hull_first[hull + 1] - p->hull_first[hull]), (GLsizei)count);
+	if (i->first[i->meshes] > i->first[OB_MESHES]) {
+		draw_hulls(p, i);
+		draw_looks(p, i);
 	}
 }
 

@@ -64,20 +64,29 @@ void ob_targets_destroy(ob_targets *t);
 
 // ---- passes
 
+// A mesh of the scene
+typedef struct ob_look_buffers {
+	GLuint array, vertices, indices;
+	uint32_t index_count;
+} ob_look_buffers;
+
 typedef struct ob_passes {
 	GLuint program[OB_PROGRAMS];
 	GLuint frame_block;
 	GLuint body_array, vertices, indices, instances;
 	GLuint segment_array, segments;
 	GLuint empty_array; // for what is made from gl_VertexID alone
-	ob_mesh mesh[OB_MESHES];
+	ob_mesh_range mesh[OB_MESHES];
 	GLuint hull_array, hull_vertices;
 	uint32_t hulls, known_hulls; // of the snapshot; those of them that were there
 	uint64_t hulls_of; // the snapshot's ob_snapshot.created
 	uint32_t *hull_first; // [hulls + 1]: vertices of each, in hull_vertices
+	uint32_t looks; // meshes of the scene
+	ob_look_buffers *look; // [looks]
 } ob_passes;
 
-bool ob_passes_create(ob_passes *p, ob_light light, ob_error *e);
+// mesh: the scene's, which are copied.
+bool ob_passes_create(ob_passes *p, ob_light light, const ob_mesh *mesh, uint32_t meshes, ob_error *e);
 void ob_passes_destroy(ob_passes *p);
 
 // Meshes of the hulls that the snapshot has; false: out of memory.

@@ -19,6 +19,9 @@ typedef struct ob_render_setup {
 	const char *device; // NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0",
 			    // "1", ..
 	bool overlay_aabb, overlay_contacts;
+	const ob_mesh *mesh; // [meshes], the scene's, which must outlive the renderer: what objects look like by the
+			     // number in their passports. One whose number is beyond these looks as it collides
+	uint32_t meshes;
 } ob_render_setup;
 
 typedef struct ob_renderer ob_renderer;

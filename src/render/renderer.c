@@ -41,8 +41,11 @@ ob_renderer *ob_renderer_create(const ob_render_setup *setup, const ob_look_def 
 	if (ob_context_create(&r->context, setup->device, e)) {
 		r->light = ob_light_choose(setup->quality);
 		if (ob_targets_create(&r->targets, setup->width, setup->height, setup->samples, r->light, e) &&
-		    ob_passes_create(&r->passes, r->light, e))
+		    ob_passes_create(&r->passes, r->light, setup->mesh, setup->meshes, e)) {
+			r->list.mesh = setup->mesh;
+			r->list.meshes = setup->meshes;
 			return r;
+		}
 	}
 	ob_renderer_destroy(r);
 	return NULL;

@@ -3,11 +3,15 @@
 #ifndef OB_SCENE_BUILDER_H
 #define OB_SCENE_BUILDER_H
 
+#include <limits.h>
+
 #include "scene/fields.h"
 #include "scene/random.h"
 #include "scene/scene.h"
 
 #define OB_SCENE_OBJECTS_MAX 200000
+#define OB_SCENE_MESH_BYTES (64u << 20) // of all meshes
+#define OB_SCENE_MESH_NAME_MAX 256 // bytes, with the final 0
 #define OB_SCENE_MATERIALS_MAX 256
 #define OB_SCENE_CAMERAS_MAX 64
 #define OB_SCENE_PARAMS_MAX 64
@@ -27,11 +31,19 @@ typedef struct ob_camera_draft {
 	ob_vec3 from; // unit, from the objects towards the eye
 } ob_camera_draft;
 
+// What a mesh was made of: objects of the same share it.
+typedef struct ob_mesh_source {
+	char file[OB_SCENE_MESH_NAME_MAX];
+	double scale;
+	ob_pose pose; // of the file's frame in the body's
+} ob_mesh_source;
+
 typedef struct ob_builder {
 	ob_scene *scene; // objects are added to it; its room for them:
 	uint32_t objects_room;
 	uint32_t hulls_room;
 	uint64_t *hull_points; // [scene->hulls], hashes of the points that each was made of
+	ob_mesh_source *mesh_source; // [scene->meshes]
 	const ob_scene_options *options;
 	bool has_scene; // scene { ... } was called
 	ob_material material[OB_SCENE_MATERIALS_MAX];
@@ -55,6 +67,11 @@ void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o);
 // NULL where no material has this name.
 const ob_material *ob_builder_material(const ob_builder *b, const char *name);
 
+// The path of a file that lies with the scene. Raises an error where the name leads elsewhere, as the field of "where".
+void ob_builder_find_file(lua_State *L, const ob_builder *b, const char *where, const char *field, const char *name,
+			  char path[PATH_MAX]);
+// 1 + the number of the scene's mesh from this source, which is read where it is new. Raises an error where it is none.
+uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob_mesh_source *source);
 // The number of the script that an object's field `script` says, which is made where it is new. Raises an error where
 // it is none.
 uint32_t ob_builder_script(lua_State *L, ob_builder *b, const char *where, const char *script);

@@ -159,7 +159,8 @@ static fit fit_objects(const ob_scene *s, const view *v)
 		if (o->passport.shape == OB_SHAPE_PLANE)
 			continue;
 		ob_vec3 p = o->state.pose.p;
-		double r = ob_shape_radius((ob_shape)o->passport.shape, o->passport.size);
+		double r = o->passport.mesh ? s->mesh[o->passport.mesh - 1].radius
+					    : ob_shape_radius((ob_shape)o->passport.shape, o->passport.size);
 		fit_sphere(&f, v, p, r);
 		double fall = fmax(p.z - r - ground, 0);
 		p.z -= fall;

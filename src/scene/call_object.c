@@ -116,11 +116,15 @@ typedef struct body {
 	ob_vec3 size, at, velocity, spin, force, normal, surface_velocity;
 	uint32_t kind;
 	double radius, length, height, mass, density, friction, restitution, roughness, metal, born, dies;
-	ob_quat q, rotation;
+	ob_quat q, rotation, mesh_rotation;
+	const char *mesh;
+	ob_vec3 mesh_at;
+	double mesh_scale;
 	ob_points points;
 	const ob_hull *hull; // in the scene; NULL: it is none
 	float colour[4];
 	bool fixed, grid, path, varying_force;
+	bool own_colour, own_surface; // said by it or its material
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
@@ -148,21 +152,28 @@ typedef struct body {
 		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
 		F(path, .kind = OB_FIELD_TABLE), F(varying_force, .kind = OB_FIELD_TABLE), \
 		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
+#define LOOKS \
+	F(mesh, .kind = OB_FIELD_TEXT, .high = OB_SCENE_MESH_NAME_MAX - 1), \
+		F(mesh_scale, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e6), \
+		F(mesh_at, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
+		F(mesh_rotation, .kind = OB_FIELD_ROTATION)
 
 static const ob_field box_fields[] = {
 	F(size, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e6, .required = true),
 	PLACE,
 	MOVING,
 	SURFACE,
+	LOOKS,
 };
 static const ob_field hull_fields[] = {
 	F(points, .kind = OB_FIELD_POINTS, .low = -1e6, .high = 1e6, .required = true),
 	PLACE,
 	MOVING,
 	SURFACE,
+	LOOKS,
 };
-static const ob_field sphere_fields[] = { EXTENT(radius), PLACE, MOVING, SURFACE };
-static const ob_field long_fields[] = { EXTENT(radius), EXTENT(length), PLACE, MOVING, SURFACE };
+static const ob_field sphere_fields[] = { EXTENT(radius), PLACE, MOVING, SURFACE, LOOKS };
+static const ob_field long_fields[] = { EXTENT(radius), EXTENT(length), PLACE, MOVING, SURFACE, LOOKS };
 static const ob_field plane_fields[] = { F(normal, .kind = OB_FIELD_DIRECTION), PLACE, SURFACE };
 static const ob_field ground_fields[] = {
 	F(height, .kind = OB_FIELD_NUMBER, .low = -1e7, .high = 1e7),
@@ -190,6 +201,9 @@ static const body nothing = {
 	.dies = INFINITY,
 	.q = { .w = NAN },
 	.rotation = { .w = NAN },
+	.mesh_rotation = { .w = NAN },
+	.mesh_at = { NAN, NAN, NAN },
+	.mesh_scale = NAN,
 	.colour = { NAN },
 	.grid = true,
 };
@@ -267,13 +281,15 @@ static void apply_material(lua_State *L, const ob_builder *b, const char *kind, 
 		d->restitution = isnan(m->restitution) ? 0 : m->restitution;
 	if (isnan(d->density) && isnan(d->mass))
 		d->density = isnan(m->density) ? DENSITY : m->density;
+	d->own_surface = !isnan(d->roughness) || !isnan(d->metal) || !isnan(m->roughness) || !isnan(m->metal);
 	if (isnan(d->roughness))
 		d->roughness = isnan(m->roughness) ? usual_finish.roughness : m->roughness;
 	if (isnan(d->metal))
 		d->metal = isnan(m->metal) ? usual_finish.metal : m->metal;
 	if (isnan(d->colour[0]))
 		memcpy(d->colour, m->colour, sizeof d->colour);
-	if (isnan(d->colour[0])) {
+	d->own_colour = !isnan(d->colour[0]);
+	if (!d->own_colour) {
 		size_t i = b->scene->objects % (sizeof palette / sizeof *palette);
 		ob_colour_from_hex(d->kind == DYNAMIC ? palette[i] : static_colour, d->colour);
 	}
@@ -329,6 +345,11 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 		ob_sandbox_fail(L, "%s.path: expected kind = \"kinematic\" with it", kind);
 	if (d->path && ob_norm2(d->velocity) > 0)
 		refuse_together(L, kind, "velocity", "path");
+	if (!d->mesh && (!isnan(d->mesh_scale) || !isnan(d->mesh_at.x) || !isnan(d->mesh_rotation.w)))
+		ob_sandbox_fail(L, "%s.%s: expected mesh = \"FILE.glb\" with it", kind,
+				!isnan(d->mesh_scale)  ? "mesh_scale"
+				: !isnan(d->mesh_at.x) ? "mesh_at"
+						       : "mesh_rotation");
 	if (d->dies <= d->born)
 		ob_sandbox_fail(L, "%s.dies: expected a time after born = %.10g, got %.10g", kind, d->born, d->dies);
 }
@@ -350,6 +371,22 @@ static void take_hull_frame(const ob_scene *s, const ob_hull *h, ob_object_def *
 	o->state.pose.q = ob_quat_mul(o->state.pose.q, h->frame);
 }
 
+// A mesh lies in the frame that the scene's author sees; of a hull, the body's is another.
+static uint8_t find_mesh(lua_State *L, ob_builder *b, const char *kind, const body *d)
+{
+	ob_mesh_source source = { .scale = isnan(d->mesh_scale) ? 1 : d->mesh_scale };
+	source.pose.p = isnan(d->mesh_at.x) ? ob_v3(0, 0, 0) : d->mesh_at;
+	source.pose.q = isnan(d->mesh_rotation.w) ? ob_quat_identity() : d->mesh_rotation;
+	if (d->hull) {
+		const ob_quat f = d->hull->frame;
+		const ob_mat3 r = ob_quat_matrix(f);
+		source.pose.p = ob_rotate_back(&r, ob_sub(source.pose.p, d->hull->centre));
+		source.pose.q = ob_quat_mul((ob_quat){ f.w, -f.x, -f.y, -f.z }, source.pose.q);
+	}
+	snprintf(source.file, sizeof source.file, "%s", d->mesh);
+	return ob_builder_mesh(L, b, kind, &source);
+}
+
 static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec3 size, body *d)
 {
 	ob_builder *b = ob_sandbox_user(L);
@@ -359,10 +396,14 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	double mass = d->kind != DYNAMIC ? 0 : isnan(d->mass) ? d->density * volume(shape, size, d->hull) : d->mass;
 	if (d->kind == DYNAMIC && !(mass >= 1e-12 && mass <= 1e15))
 		ob_sandbox_fail(L, "%s.mass: expected from 1e-12 to 1e+15 kg, got %.4g", kind, mass);
+	const uint8_t mesh = d->mesh ? find_mesh(L, b, kind, d) : 0;
 	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
 	ob_passport *p = &o->passport;
+	p->mesh = mesh;
+	p->flags |= mesh && !d->own_colour ? OB_OBJECT_MESH_COLOUR : 0;
+	p->flags |= mesh && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
 	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
-	p->shape = shape;
+	p->shape = (uint8_t)shape;
 	p->size = size;
 	p->mass = mass;
 	if (d->kind == DYNAMIC)

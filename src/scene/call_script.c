@@ -1,6 +1,5 @@
 // script: the scripts of objects, by name, from files beside the scene or from the scene itself.
 #include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,13 +30,20 @@ static const char *last_part(const char *path)
 	return slash ? slash + 1 : path;
 }
 
-// Into memory of its own; a scene reaches no file but those that lie with it.
+// A scene reaches no file but those that lie with it.
+void ob_builder_find_file(lua_State *L, const ob_builder *b, const char *where, const char *field, const char *name,
+			  char path[PATH_MAX])
+{
+	if (name[0] == '/' || strstr(name, ".."))
+		ob_sandbox_fail(L, "%s.%s: expected a file in the folder of the scene, got \"%s\"", where, field, name);
+	snprintf(path, PATH_MAX, "%.*s%s", (int)(last_part(b->path) - b->path), b->path, name);
+}
+
+// Into memory of its own.
 static char *read_script(lua_State *L, const ob_builder *b, const char *where, const char *name)
 {
 	char path[PATH_MAX];
-	if (name[0] == '/' || strstr(name, ".."))
-		ob_sandbox_fail(L, "%s.script: expected a file in the folder of the scene, got \"%s\"", where, name);
-	snprintf(path, sizeof path, "%.*s%s", (int)(last_part(b->path) - b->path), b->path, name);
+	ob_builder_find_file(L, b, where, "script", name, path);
 	FILE *f = fopen(path, "rbe");
 	char *text = f ? malloc(OB_SCENE_SCRIPT_BYTES + 1) : NULL;
 	const size_t size = text ? fread(text, 1, OB_SCENE_SCRIPT_BYTES + 1, f) : 0;

@@ -150,8 +150,10 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 		free(text);
 		ob_fail(e, "%s: no memory", path);
 	}
-	if (b)
+	if (b) {
 		free(b->hull_points);
+		free(b->mesh_source);
+	}
 	free(b);
 	if (good)
 		return s;
@@ -185,6 +187,9 @@ void ob_scene_free(ob_scene *s)
 	free(s->object);
 	free(s->hull);
 	free(s->hull_corners);
+	for (uint32_t i = 0; i < s->meshes; i++)
+		ob_mesh_finish(&s->mesh[i]);
+	free(s->mesh);
 	free(s->camera);
 	for (uint32_t i = 0; i < s->scripts; i++)
 		free(s->script[i].text);

@@ -5,6 +5,7 @@
 #include <ob/motion.h>
 
 #include "hull/hull.h"
+#include "mesh/mesh.h"
 #include "motion/force.h"
 #include "motion/path.h"
 #include "settings/settings.h"
@@ -44,6 +45,8 @@ typedef struct ob_script_def {
 	uint32_t size;
 } ob_script_def;
 
+enum { OB_SCENE_MESHES_MAX = 255 }; // as passports can name
+
 typedef struct ob_scene {
 	char title[128];
 	ob_run_settings run;        // before what the command line asks for (ob_run_settings_resolve)
@@ -54,6 +57,8 @@ typedef struct ob_scene {
 	uint32_t hulls;
 	ob_hull *hull;              // [hulls], by the number in passports
 	ob_hull_corners *hull_corners; // [hulls], as the scene gives them
+	uint32_t meshes;
+	ob_mesh *mesh;              // [meshes], by the number in passports, less 1; in the frame of the bodies
 	uint32_t cameras;
 	ob_camera_def *camera;      // at least one
 	ob_look_def look;

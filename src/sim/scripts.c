@@ -4,7 +4,6 @@
 
 #include "sim/broadphase.h"
 #include "sim/commit.h"
-#include "sim/ode_baseline.h"
 #include "sim/publish.h"
 
 // ---- who runs
@@ -104,10 +103,9 @@ static bool same_vector(ob_vec3 a, ob_vec3 b)
 }
 
 // true: it moves otherwise from now on
-static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
+static bool change_object(ob_universe *u, uint32_t id, ob_script_cell *c)
 {
-	ob_universe *u = s->u;
-	const ob_step_data *data = s->data;
+	const ob_step_data *data = ob_universe_step_data(u);
 	const bool body = moves(data, id);
 	ob_passport p = *ob_passport_of(u, id);
 	bool other = false;
@@ -115,8 +113,10 @@ static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 		other |= !same_vector(p.force, c->force);
 		p.force = c->force;
 	}
-	if (c->asks & OB_SCRIPT_ASKS_COLOUR)
+	if (c->asks & OB_SCRIPT_ASKS_COLOUR) {
 		memcpy(p.colour, c->colour, sizeof p.colour);
+		p.flags &= ~(uint32_t)OB_OBJECT_MESH_COLOUR;
+	}
 	if (memcmp(&p, ob_passport_of(u, id), sizeof p) != 0)
 		ob_write_passport(u, id, &p);
 	if (body && c->asks & OB_SCRIPT_ASKS_TORQUE) {
@@ -125,9 +125,7 @@ static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 	}
 	const ob_vec3 none = { 0 };
 	const bool pushed = body && c->asks & OB_SCRIPT_ASKS_PUSH;
-	if (s->baseline && pushed) // which follows forces and torques by itself
-		ob_ode_baseline_kick(s->baseline, id, c->push, c->twist);
-	else if (!s->baseline && (other || pushed))
+	if (other || pushed)
 		set_going(u, id, pushed ? c->push : none, pushed ? c->twist : none);
 	return other || pushed;
 }
@@ -182,9 +180,9 @@ static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_c
 	}
 }
 
-bool ob_scripts_carry_out(ob_sim *s)
+bool ob_scripts_carry_out(ob_universe *u)
 {
-	ob_step_data *data = s->data;
+	ob_step_data *data = ob_universe_step_data(u);
 	ob_script_counts *count = data->script_counts;
 	bool other = false;
 	count->requests = 0;
@@ -194,7 +192,7 @@ bool ob_scripts_carry_out(ob_sim *s)
 		ob_script_turn *turn = &data->script_turn[cell];
 		ob_script_cell *c = &data->script_cell[cell];
 		if (c->asks & ~(uint32_t)(OB_SCRIPT_ASKS_POST | OB_SCRIPT_ASKS_ERROR))
-			other |= change_object(s, turn->object, c);
+			other |= change_object(u, turn->object, c);
 		if (c->asks & OB_SCRIPT_ASKS_POST)
 			post_all(data, turn, c);
 		count->failed += (c->asks & OB_SCRIPT_ASKS_ERROR) != 0;

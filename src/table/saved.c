@@ -161,7 +161,10 @@ static bool bounds_make_sense(const float *b, const ob_passport *p)
 
 static bool check_object(const ob_saved_universe *s, uint32_t id, ob_error *e)
 {
-	enum { KNOWN = OB_OBJECT_PRESENT | OB_OBJECT_PRESCRIBED | OB_OBJECT_FROZEN };
+	enum {
+		KNOWN = OB_OBJECT_PRESENT | OB_OBJECT_PRESCRIBED | OB_OBJECT_FROZEN | OB_OBJECT_MESH_COLOUR |
+			OB_OBJECT_MESH_SURFACE
+	};
 	const ob_passport *p = &s->passport[id];
 	const char *wrong = NULL;
 	if (!(p->flags & OB_OBJECT_PRESENT))

@@ -10,7 +10,7 @@
 static double volume(const ob_mesh_set *s, int kind, double core_xy, double radius)
 {
 	double six = 0;
-	const ob_mesh *m = &s->mesh[kind];
+	const ob_mesh_range *m = &s->mesh[kind];
 	for (uint32_t i = 0; i < m->index_count; i += 3) {
 		ob_vec3 p[3];
 		for (int k = 0; k < 3; k++) {

@@ -121,7 +121,7 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 13);
+	CHECK(files() == 14);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
@@ -138,6 +138,10 @@ int main(int argc, char **argv)
 	check_count("shapes", NULL, 52, false);
 	check_count("flock", NULL, 67, false);
 	check_count("flock", "n=200", 207, false);
+	if (ob_mesh_can_read()) {
+		check_count("bowling", NULL, 13, false);
+		check_seeds("bowling", false);
+	}
 	check_seeds("flock", true);
 	check_count("machines", NULL, 42, false);
 	check_seeds("machines", true);

@@ -1,0 +1,122 @@
+// Objects that look like meshes: a mesh of a cube gives the picture of the cube, whatever it collides as; who paints
+// it.
+#include <string.h>
+
+#include "canvas.h"
+#include "hull/hull.h"
+#include "render/mesh.h"
+
+static const float red[3] = { .7f, .05f, .04f }, green[3] = { .04f, .5f, .06f };
+
+static ob_camera_def camera(void)
+{
+	return test_scene_camera(ob_v3(3, -7, 4), ob_v3(0, 0, 1));
+}
+
+// The faces of a cube as a hull has them, at distance half (m) from the origin.
+static ob_hull hull_of_cube(double half)
+{
+	ob_vec3 corner[8];
+	ob_hull h;
+	ob_error e;
+	for (int i = 0; i < 8; i++)
+		corner[i] = ob_v3(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half);
+	CHECK(ob_hull_build(corner, 8, &h, &e));
+	return h;
+}
+
+static ob_mesh mesh_of_hull(const ob_hull *h, const float colour[3], float surface)
+{
+	ob_vertex vertex[3 * OB_HULL_FACES_MAX];
+	ob_mesh m = { .vertices = ob_mesh_of_hull(h, vertex) };
+	m.indices = m.vertices;
+	m.vertex = calloc(m.vertices, sizeof *m.vertex);
+	m.index = calloc(m.vertices, sizeof *m.index);
+	for (uint32_t i = 0; i < m.vertices; i++) {
+		memcpy(m.vertex[i].position, vertex[i].corner, sizeof vertex[i].corner);
+		memcpy(m.vertex[i].normal, vertex[i].normal, sizeof vertex[i].normal);
+		memcpy(m.vertex[i].colour, colour, 3 * sizeof *colour);
+		m.vertex[i].surface = surface;
+		m.index[i] = i;
+	}
+	CHECK(ob_mesh_makes_sense(&m));
+	return m;
+}
+
+static const ob_mesh *looks; // of the next picture
+static uint32_t looks_count;
+
+// One object of this shape and colour on the ground, tilted.
+static uint8_t *picture(ob_shape shape, ob_vec3 size, const float colour[3], uint8_t mesh, uint32_t flags,
+			ob_hull *hull)
+{
+	ob_render_setup setup = { .width = CANVAS_WIDTH, .height = CANVAS_HEIGHT, .samples = 4 };
+	const ob_look_def look = test_scene_look();
+	const ob_camera_def from = camera();
+	ob_error e = { "" };
+	ob_snapshot s;
+	setup.mesh = looks;
+	setup.meshes = looks_count;
+	canvas c = { ob_renderer_create(&setup, &look, &e), malloc(4 * CANVAS_WIDTH * CANVAS_HEIGHT) };
+	if (!c.renderer) {
+		fprintf(stderr, "skipped: %s\n", e.text);
+		exit(77);
+	}
+	test_scene_start(&s, 1);
+	test_scene_add(&s, shape, size, ob_v3(0, 0, 1.6), ob_quat_turn(ob_quat_identity(), ob_v3(.4, .2, .7)), colour);
+	s.passport[1].mesh = mesh;
+	s.passport[1].flags |= flags;
+	s.passport[1].roughness = .25f; // a whole surface as vertices have it
+	s.hulls = hull ? 1 : 0;
+	s.hull = &hull;
+	canvas_draw(&c, NULL, &s, 0, &from);
+	test_scene_finish(&s);
+	ob_renderer_destroy(c.renderer);
+	return c.rgba;
+}
+
+static bool same(const uint8_t *a, const uint8_t *b)
+{
+	return memcmp(a, b, 4 * CANVAS_WIDTH * CANVAS_HEIGHT) == 0;
+}
+
+// Mean difference of a channel, of 255.
+static double difference(const uint8_t *a, const uint8_t *b)
+{
+	double sum = 0;
+	for (int i = 0; i < 4 * CANVAS_WIDTH * CANVAS_HEIGHT; i++)
+		sum += abs(a[i] - b[i]);
+	return sum / (4 * CANVAS_WIDTH * CANVAS_HEIGHT);
+}
+
+int main(void)
+{
+	ob_hull cube = hull_of_cube(1);
+	ob_mesh mesh[2] = { mesh_of_hull(&cube, red, ob_surface_pack(.25f, 0)),
+			    mesh_of_hull(&cube, (const float[3]){ -1, -1, -1 }, -1) };
+	const ob_vec3 round = ob_v3(.7, 0, 0), box = ob_v3(1, 1, 1);
+	enum { BOTH = OB_OBJECT_MESH_COLOUR | OB_OBJECT_MESH_SURFACE };
+	uint8_t *as_box = picture(OB_SHAPE_BOX, box, red, 0, 0, NULL);
+	uint8_t *as_hull = picture(OB_SHAPE_HULL, ob_hull_size(&cube), red, 0, 0, &cube);
+	uint8_t *as_ball = picture(OB_SHAPE_SPHERE, round, red, 0, 0, NULL);
+	looks = mesh;
+	looks_count = 2;
+	uint8_t *by_mesh = picture(OB_SHAPE_SPHERE, round, green, 1, BOTH, NULL);
+	uint8_t *by_object = picture(OB_SHAPE_SPHERE, round, red, 1, 0, NULL);
+	uint8_t *unpainted = picture(OB_SHAPE_SPHERE, round, red, 2, BOTH, NULL);
+	uint8_t *other = picture(OB_SHAPE_SPHERE, round, green, 1, OB_OBJECT_MESH_SURFACE, NULL);
+	uint8_t *among_hulls = picture(OB_SHAPE_HULL, ob_hull_size(&cube), red, 2, 0, &cube);
+	uint8_t *beyond = picture(OB_SHAPE_SPHERE, round, red, 3, BOTH, NULL);
+	CHECK(same(by_mesh, as_hull) && same(by_object, as_hull) && same(unpainted, as_hull) &&
+	      same(among_hulls, as_hull));
+	printf("%g %g\n", difference(by_mesh, as_box), difference(as_ball, as_box));
+	CHECK(difference(by_mesh, as_box) < .1 * difference(as_ball, as_box)); // a box has rounded edges
+	CHECK(difference(other, as_hull) > 1);
+	CHECK(same(beyond, as_ball)); // a mesh that nobody has is not drawn: it looks as it collides
+	uint8_t *const all[] = { as_box, as_hull, as_ball, by_mesh, by_object, unpainted, other, among_hulls, beyond };
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		free(all[i]);
+	ob_mesh_finish(&mesh[0]);
+	ob_mesh_finish(&mesh[1]);
+	return check_end();
+}
