@@ -20,10 +20,11 @@ static_assert(sizeof(ob_camera_def) == 152 && sizeof(ob_look_def) == 64, "member
 static const ob_record_member event_members[] = {
 	EVENT(step, OB_RECORD_U64),           EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
 	PASSPORT(id, OB_RECORD_U32),          PASSPORT(generation, OB_RECORD_U32), PASSPORT(flags, OB_RECORD_U32),
-	PASSPORT(shape, OB_RECORD_U16),       PASSPORT(hull, OB_RECORD_U16),       PASSPORT(size, OB_RECORD_VEC3),
+	PASSPORT(shape, OB_RECORD_U8),        PASSPORT(hull, OB_RECORD_U16),       PASSPORT(size, OB_RECORD_VEC3),
 	PASSPORT(mass, OB_RECORD_F64),        PASSPORT(inertia, OB_RECORD_VEC3),   PASSPORT(friction, OB_RECORD_F64),
 	PASSPORT(restitution, OB_RECORD_F64), PASSPORT(colour, OB_RECORD_RGBA),    PASSPORT(name, OB_RECORD_NAME),
 	PASSPORT(force, OB_RECORD_VEC3),      PASSPORT(roughness, OB_RECORD_F32),  PASSPORT(metal, OB_RECORD_F32),
+	PASSPORT(mesh, OB_RECORD_U8),
 };
 const ob_record_table ob_record_events = {
 	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
@@ -128,6 +129,33 @@ const ob_record_table ob_record_look = {
 	sizeof(ob_look_def),
 	COUNT(look_members),
 	look_members,
+};
+
+#define VERTEX(name, type) \
+	{ \
+#name, type, offsetof(ob_mesh_vertex, name), 0 \
+	}
+static const ob_record_member vertex_members[] = {
+	VERTEX(position, OB_RECORD_RGB),
+	VERTEX(normal, OB_RECORD_RGB),
+	VERTEX(colour, OB_RECORD_RGB),
+	VERTEX(surface, OB_RECORD_F32),
+};
+const ob_record_table ob_record_mesh_vertices = {
+	{ "vertices", "m; colour: linear RGB", "body",
+	  "of the mesh that events name by its number; colour, surface: below 0: the object's; surface: 15 times the "
+	  "metal, whole, and then the roughness, below 1" },
+	sizeof(ob_mesh_vertex),
+	COUNT(vertex_members),
+	vertex_members,
+};
+
+static const ob_record_member triangle_members[] = { { "corner", OB_RECORD_U32, 0, 3 } };
+const ob_record_table ob_record_mesh_triangles = {
+	{ "triangles", "1", NULL, "the vertices of each, counterclockwise seen from outside" },
+	3 * sizeof(uint32_t),
+	COUNT(triangle_members),
+	triangle_members,
 };
 
 static hid_t array_of(hid_t element, hsize_t count)

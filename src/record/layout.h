@@ -34,7 +34,7 @@ typedef enum ob_record_type {
 	OB_RECORD_F64,
 	OB_RECORD_VEC3,
 	OB_RECORD_QUAT, // w x y z
-	OB_RECORD_RGB, // float[3], linear
+	OB_RECORD_RGB, // float[3], linear; or a place or a direction
 	OB_RECORD_RGBA,
 	OB_RECORD_NAME, // char[OB_NAME_MAX], UTF-8, padded with zeros
 	OB_RECORD_EDGE, // ob_hull_edge
@@ -71,6 +71,8 @@ extern const ob_record_table ob_record_motions; // ob_record_motion: what of it 
 extern const ob_record_table ob_record_hulls; // ob_record_hull
 extern const ob_record_table ob_record_cameras; // ob_camera_def
 extern const ob_record_table ob_record_look; // ob_look_def
+extern const ob_record_table ob_record_mesh_vertices; // ob_mesh_vertex
+extern const ob_record_table ob_record_mesh_triangles; // uint32_t[3]
 
 // The compound type of a table's structure in memory, and, packed, in a file. The caller closes it.
 hid_t ob_record_type_in_memory(const ob_record_table *t);

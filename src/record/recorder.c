@@ -373,6 +373,27 @@ static bool write_table(hid_t file, const ob_record_table *table, const void *it
 	return ok;
 }
 
+static bool write_mesh(hid_t meshes, uint32_t number, const ob_mesh *m)
+{
+	char name[16];
+	snprintf(name, sizeof name, "%u", number);
+	hid_t group = H5Gcreate2(meshes, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+	bool ok = group >= 0 && write_table(group, &ob_record_mesh_vertices, m->vertex, m->vertices) &&
+		  write_table(group, &ob_record_mesh_triangles, m->index, m->indices / 3);
+	return group >= 0 && H5Gclose(group) >= 0 && ok;
+}
+
+static bool write_meshes(hid_t file, const ob_scene *s)
+{
+	if (s->meshes == 0)
+		return true;
+	hid_t meshes = H5Gcreate2(file, "meshes", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+	bool ok = meshes >= 0;
+	for (uint32_t i = 0; i < s->meshes && ok; i++)
+		ok = write_mesh(meshes, i + 1, &s->mesh[i]);
+	return meshes >= 0 && H5Gclose(meshes) >= 0 && ok;
+}
+
 static bool write_settings(hid_t file, const ob_run_settings *s)
 {
 	hid_t group = H5Gcreate2(file, "settings", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -427,7 +448,7 @@ static bool write_facts(hid_t file, const ob_record_facts *f)
 	       write_text(file, "scene", "the scene's file (Lua)", f->scene->text, f->scene->text_size) &&
 	       write_parameters(file, f->options) &&
 	       write_table(file, &ob_record_cameras, f->scene->camera, f->scene->cameras) &&
-	       write_table(file, &ob_record_look, &f->scene->look, 1);
+	       write_table(file, &ob_record_look, &f->scene->look, 1) && write_meshes(file, f->scene);
 }
 
 static bool create_file(ob_recorder *r, const ob_record_facts *about)

@@ -310,6 +310,66 @@ static bool open_hulls(ob_recording *r, ob_error *e)
 	return ok;
 }
 
+// All items of a table of a mesh, into memory of its own; NULL: it cannot be read, or they are too many.
+static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_table *table, uint64_t most,
+			     uint64_t *count, ob_error *e)
+{
+	char name[32];
+	snprintf(name, sizeof name, "meshes/%u/%s", number, table->label.name);
+	hid_t set = open_set(r, name, H5T_COMPOUND, count, e);
+	if (set < 0)
+		return NULL;
+	hid_t type = ob_record_type_in_memory(table);
+	const bool fits = *count > 0 && *count <= most;
+	void *items = fits ? calloc(*count, table->size) : NULL;
+	const bool read = items && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, items) >= 0;
+	if (fits && !items)
+		ob_fail(e, "%s: no memory for its meshes", r->path);
+	else if (!read)
+		damaged(r, "its meshes make no sense", e);
+	H5Tclose(type);
+	H5Dclose(set);
+	if (read)
+		return items;
+	free(items);
+	return NULL;
+}
+
+static bool open_mesh(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
+{
+	uint64_t vertices = 0, triangles = 0;
+	m->vertex = read_mesh_table(r, number, &ob_record_mesh_vertices, OB_MESH_VERTICES_MAX, &vertices, e);
+	if (!m->vertex)
+		return false;
+	m->index = read_mesh_table(r, number, &ob_record_mesh_triangles, OB_MESH_TRIANGLES_MAX, &triangles, e);
+	if (!m->index)
+		return false;
+	m->vertices = (uint32_t)vertices;
+	m->indices = 3 * (uint32_t)triangles;
+	return ob_mesh_makes_sense(m) || damaged(r, "its meshes make no sense", e);
+}
+
+// Records of scenes without meshes lack the group.
+static bool open_meshes(ob_recording *r, ob_error *e)
+{
+	ob_scene *s = &r->info.scene;
+	char name[32] = "meshes";
+	bool ok = true;
+	if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
+		return true;
+	s->mesh = calloc(OB_SCENE_MESHES_MAX, sizeof *s->mesh);
+	if (!s->mesh)
+		return ob_fail(e, "%s: no memory for its meshes", r->path);
+	while (ok && s->meshes < OB_SCENE_MESHES_MAX) {
+		snprintf(name, sizeof name, "meshes/%u", s->meshes + 1);
+		if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
+			break;
+		s->meshes++;
+		ok = open_mesh(r, s->meshes, &s->mesh[s->meshes - 1], e);
+	}
+	return ok;
+}
+
 static bool open_facts(ob_recording *r, ob_error *e)
 {
 	ob_recording_info *i = &r->info;
@@ -374,7 +434,7 @@ static bool open_file(ob_recording *r, ob_error *e)
 		return ob_fail(e, "%s: this record cannot be opened: it is being written, cut short, or damaged",
 			       r->path);
 	return check_format(r, e) && open_facts(r, e) && open_cameras(r, e) && open_look(r, e) && open_hulls(r, e) &&
-	       open_states(r, e);
+	       open_meshes(r, e) && open_states(r, e);
 }
 
 static ob_recording *open_here(const char *path, ob_error *e)
@@ -474,6 +534,9 @@ void ob_recording_close(ob_recording *r)
 		H5Fclose(r->file);
 	ob_snapshot_finish(&r->now);
 	free(r->info.scene.camera);
+	for (uint32_t i = 0; i < r->info.scene.meshes; i++)
+		ob_mesh_finish(&r->info.scene.mesh[i]);
+	free(r->info.scene.mesh);
 	free(r->time);
 	free(r->step);
 	free(r->motions_until);
@@ -538,7 +601,8 @@ static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *
 		memset(&s->motion[id], 0, sizeof *s->motion);
 		return true;
 	}
-	if (!passport_makes_sense(&now.passport) || !has_its_hull(s, &now.passport))
+	if (!passport_makes_sense(&now.passport) || !has_its_hull(s, &now.passport) ||
+	    now.passport.mesh > r->info.scene.meshes)
 		return damaged(r, "an object makes no sense", e);
 	if (!make_room(s, id + 1))
 		return ob_fail(e, "%s: no memory for %u objects", r->path, id + 1);

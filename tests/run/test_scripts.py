@@ -7,7 +7,6 @@ import unittest
 import program
 
 ROOMY = ["--measure", "end"]
-MONOLITH = ["--arch", "monolith"]
 HARDENED = ["--isolation", "process", "--harden"]
 
 
@@ -337,6 +336,10 @@ sphere { name = "bad", radius = .5, at = { 4, 0, .6 }, script = "bomb" }
 			with self.subTest(field=field):
 				said = self.run_scene(f"sphere {{ radius = 1, {field} }}", code=2)
 				self.assertRegex(said, expected)
+		scene = self.write("scene.lua", "sphere { radius = 1, script = 'function on_step() end' }")
+		done = program.call("run", scene, "--arch", "monolith")
+		self.assertEqual(done.returncode, 1)
+		self.assertRegex(done.stderr, r"the scene has scripts")
 
 	def test_confined(self):
 		"""What is no outbox does not keep scripts from writing the universe."""
@@ -344,44 +347,6 @@ sphere { name = "bad", radius = .5, at = { 4, 0, .6 }, script = "bomb" }
 			for more in ([], ["--harden=privileges,limits,calls"])}
 		self.assertEqual(len(hashes), 1)
 		self.one("function on_start() print('said', 1) end", "--isolation", "process", "--harden=privileges,limits,calls")
-
-	# ---- in one ODE world
-
-	def test_monolith(self):
-		"""Forces, torques, pushes and timers do there what they do in object simulators."""
-		said = self.one("function on_start() self:force(6, 0, 2 * 9.81) self:torque(0, 0, .4) self:push(4, 0, 0) "
-		                "self:twist { 0, .6, 0 } self:wake(.5) end "
-		                "function on_wake() print('v', self:velocity()) print('w', self:spin()) end", *MONOLITH)
-		for found, expected in zip(self.numbers(said, "v")[0] + self.numbers(said, "w")[0], (3.5, 0, 0, 0, 3, 1)):
-			self.assertAlmostEqual(found, expected, 9)
-
-	def test_monolith_contact(self):
-		"""Told once while it lasts, asleep or not, and again after a leap."""
-		said = self.run_scene("""
-scene { duration = 6 }
-ground {}
-script("it", [[
-function on_contact(other, impulse, point) print("hit", time(), impulse, point[3]) self:colour("#ff0000") end
-function on_start() self:wake(4) end
-function on_wake() self:push(0, 0, 4) end
-]])
-box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script = "it" }
-""", *MONOLITH)
-		hits = self.numbers(said, "hit")
-		self.assertEqual([t > 4 for t, _, _ in hits], [False, True], hits)
-		for (_, impulse, _), speed in zip(hits, ((2 * 9.81) ** .5, 4)): # ODE pushes out, beside, a fifth of what has sunk in
-			self.assertGreater(impulse, speed - .1)
-			self.assertLess(impulse, 1.2 * speed + 2 * 9.81 / 60)
-		self.assertAlmostEqual(hits[0][2], 0, delta=.1)
-
-	def test_monolith_population(self):
-		"""Objects come and go; the run is the same each time, in a thread or a process."""
-		found = [program.report(*self.FLOCK[:1], "-D", "n=30", "--duration", "2", *ROOMY, *MONOLITH, *more)
-			for more in ([], [], ["--isolation", "process"])]
-		self.assertGreater(found[0]["objects"], 40)
-		self.assertEqual(len({r["state_hash"] for r in found}), 1)
-		said = self.one("function on_start() hull { points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } } end", *MONOLITH)
-		self.assertRegex(said, "was stopped at .*: the one ODE world has no hulls")
 
 	# ---- the same bits
 

@@ -1,0 +1,105 @@
+"""Objects that look like meshes: drawn as these, they move as they did, and a file that is none ends in one line."""
+
+import os
+import unittest
+
+import glb
+import program
+
+FALLING = "ground {{}}\nfor i = 1, 5 do\n\tbox {{ size = {{ .6, .6, .6 }}, at = {{ .1 * i, 0, i }}{} }}\nend\n"
+STANDING = "ground {{}}\ncamera 'main' {{ eye = {{ 3, -5, 3 }}, target = {{ 0, 0, 1 }} }}\n{}\n"
+SIZE = ["--size", "96x64", "--samples", "1", "--fps", "10", "--duration", ".2"]
+
+
+def difference(a, b):
+	"""Of two pictures, per channel, of 255."""
+	return sum(abs(x - y) for x, y in zip(a, b, strict=True)) / len(a)
+
+
+class Meshes(program.Case):
+	def write(self, name, content):
+		os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
+		with open(self.path(name), "wb" if isinstance(content, bytes) else "w") as f:
+			f.write(content)
+		return self.path(name)
+
+	def frames(self, name, text, *words):
+		scene = self.write(f"{name}.lua", text)
+		report = program.report(scene, *SIZE, "--raw", self.path(name), *words)
+		with open(self.path(name), "rb") as f:
+			return f.read(), report["state_hash"]
+
+	def test_it_moves_as_it_did(self):
+		self.write("cube.glb", glb.cube(.3))
+		_, plain = self.frames("plain", FALLING.format(""))
+		looks, meshed = self.frames("meshed", FALLING.format(", mesh = 'cube.glb'"))
+		self.assertEqual(meshed, plain)
+		again = self.frames("processes", FALLING.format(", mesh = 'cube.glb'"), "--isolation", "process", "--workers", "objects", "--harden")
+		self.assertEqual(again, (looks, plain))
+
+	def test_it_looks_like_its_mesh(self):
+		self.write("looks/cube.glb", glb.cube(.5))
+		self.write("looks/red.glb", glb.cube(1, (1, 0, 0)))
+		points = ", ".join(f"{{ {', '.join(map(str, c))} }}" for c in glb.CORNERS)
+		about = "static = true, at = { 0, 0, 1 }, rotation = { axis = { 1, 2, 3 }, degrees = 40 }, colour = '#ff0000'"
+		hull, _ = self.frames("hull", STANDING.format(f"hull {{ points = {{ {points} }}, {about} }}"))
+		for name, text in {
+				"scaled": f"sphere {{ radius = .2, {about}, mesh = 'looks/cube.glb', mesh_scale = 2 }}",
+				"turned": f"capsule {{ radius = .2, length = 1, {about}, mesh = 'looks/red.glb', mesh_rotation = {{ axis = {{ 0, 0, 1 }}, degrees = 90 }} }}",
+				"painted": f"cylinder {{ radius = .2, length = 1, {about.partition(', colour')[0]}, mesh = 'looks/red.glb' }}",
+				"hull's": f"hull {{ points = {{ {points.replace('-1', '-2')} }}, {about}, mesh = 'looks/red.glb' }}"}.items():
+			with self.subTest(name):
+				looks, _ = self.frames(name, STANDING.format(text))
+				self.assertLess(difference(looks, hull), .2) # edges, and those of shadows
+		moved, _ = self.frames("moved", STANDING.format(f"box {{ size = {{ 1, 1, 1 }}, {about}, mesh = 'looks/red.glb', mesh_at = {{ 0, 0, .5 }} }}"))
+		self.assertGreater(difference(moved, hull), 1)
+
+	def test_a_file_that_is_no_mesh(self):
+		whole = glb.cube(1)
+		self.write("cut.glb", whole[:-9])
+		self.write("text.gltf", '{ "asset": { "version": "2.0" } }')
+		self.write("points.glb", glb.cube(1, mode=0))
+		self.write("noise.glb", bytes(range(256)))
+		os.mkdir(self.path("folder.glb"))
+		os.mkfifo(self.path("pipe.glb"))
+		for name, saying in {"none.glb": "No such file", "cut.glb": "cut short", "text.gltf": "glTF as text", "points.glb": "no triangles",
+				"noise.glb": "no binary glTF", "folder.glb": "no file", "pipe.glb": "no file", "../cube.glb": "in the folder of the scene",
+				"/etc/passwd": "in the folder of the scene"}.items():
+			with self.subTest(name):
+				scene = self.write("scene.lua", f"ground {{}}\n\nbox {{ size = {{ 1, 1, 1 }}, mesh = '{name}' }}\n")
+				done = self.refuse("run", scene, saying=saying)
+				self.assertIn("scene.lua:3: box.mesh: ", done.stderr)
+				self.assertIn(name, done.stderr)
+
+	def test_only_objects_of_the_scene_have_one(self):
+		self.write("cube.glb", glb.cube(.3))
+		self.write("scene.lua", "ground {}\nsphere { radius = .3, at = { 0, 0, 1 }, script = [[\n"
+			"function on_start() box { size = { 1, 1, 1 }, mesh = 'cube.glb' } end]] }\n")
+		done = program.call("run", self.path("scene.lua"), "--duration", ".1", cwd=self.directory.name)
+		self.assertIn("box.mesh: expected none: only objects of the scene have one", done.stderr)
+		run = self.start_universe(program.scene("stack"), "--pace", "realtime", "--duration", program.FOR_EVER)
+		done = program.call("send", self.name, "create", "box { size = { 1, 1, 1 }, mesh = 'cube.glb' }", cwd=self.directory.name)
+		run.terminate()
+		run.communicate(timeout=program.PATIENCE)
+		self.assertEqual(done.returncode, 1, done.stderr)
+		self.assertIn("expected no mesh", done.stderr)
+
+	def test_it_is_recorded(self):
+		self.write("cube.glb", glb.cube(.3, (0, .5, 0)))
+		looks, _ = self.frames("meshed", FALLING.format(", mesh = 'cube.glb'"), "--record", self.path("r.h5"))
+		os.remove(self.path("cube.glb"))
+		program.call("run", "--replay", self.path("r.h5"), *SIZE, "--raw", self.path("again"))
+		with open(self.path("again"), "rb") as f:
+			self.assertEqual(f.read(), looks)
+
+	def test_it_is_read_again_to_go_on(self):
+		self.write("cube.glb", glb.cube(.3))
+		scene = self.write("scene.lua", FALLING.format(", mesh = 'cube.glb'"))
+		whole = program.report(scene, "--duration", ".4")
+		program.report(scene, "--duration", ".2", "--checkpoint", self.path("c"))
+		self.assertEqual(program.report("--resume", self.path("c"), "--duration", ".4")["state_hash"], whole["state_hash"])
+		os.remove(self.path("cube.glb"))
+		self.refuse("run", "--resume", self.path("c"), saying="cube.glb: No such file")
+
+
+unittest.main()
