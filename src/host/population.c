@@ -407,7 +407,9 @@ static void publish_roster(ob_population *p)
 		ob_roster_entry *entry = &entries[n++];
 		entry->id = id;
 		entry->generation = pass->generation;
+		const ob_script_turn *turn = ob_script_turn_of(p->u, id);
 		entry->worker = one_per_object ? id : OB_ROSTER_ANY_WORKER;
+		entry->script = turn ? turn->script : 0;
 		memcpy(entry->name, pass->name, sizeof entry->name);
 	}
 	if (!entries || !ob_roster_publish(p->roster, entries, n))

@@ -14,6 +14,7 @@
 typedef struct ob_roster_entry {
 	uint32_t id, generation;
 	uint32_t worker; // its own worker's number, or OB_ROSTER_ANY_WORKER
+	uint32_t script; // 1 + its number in the scene; 0: none
 	char name[OB_NAME_MAX];
 } ob_roster_entry;
 

@@ -88,7 +88,7 @@ static const char *state_of(const ob_passport *p, const ob_motion *m)
 	return ob_norm2(m->a) > 0 ? "flies" : "touches";
 }
 
-ob_message *ob_facts_details(const ob_host *h, uint32_t id)
+ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t id)
 {
 	const ob_universe *u = ob_host_universe(h);
 	ob_roster_entry entry;
@@ -118,6 +118,10 @@ ob_message *ob_facts_details(const ob_host *h, uint32_t id)
 	put_vec3(m, "p", now.pose.p);
 	put_vec3(m, "v", now.v);
 	put_vec3(m, "w", now.w);
+	if (entry.script && entry.script <= scene->scripts) {
+		ob_message_print(m, ",\"script\":");
+		ob_message_put_json(m, scene->script[entry.script - 1].name);
+	}
 	if (entry.worker != OB_ROSTER_ANY_WORKER && ob_universe_get_worker(u, entry.worker, &worker))
 		ob_message_print(m, ",\"worker\":%u,\"pid\":%d,\"tid\":%d,\"cpu\":%d,\"cpu_s\":%.3f", entry.worker,
 				 worker.pid, worker.tid, worker.cpu, 1e-9 * (double)worker.cpu_ns);

@@ -11,6 +11,6 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *
 // {"statistics": objects, awake, pairs, islands, step, viewers}
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
 // {"details": name, state, mass, island, worker ..}, or that it is gone
-ob_message *ob_facts_details(const ob_host *h, uint32_t id);
+ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t id);
 
 #endif

@@ -106,7 +106,7 @@ static void look(lws_sorted_usec_list_t *tick)
 		else if (begin - c->taken_at > OB_SERVER_STUCK)
 			lws_set_timeout(c->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
 		if (details && c->inspected != UINT32_MAX)
-			send_one(c, ob_facts_details(s->host, c->inspected));
+			send_one(c, ob_facts_details(s->config.scene, s->host, c->inspected));
 	}
 	if (contacts)
 		send_all(s, ob_feed_contacts(s->feed), true);
@@ -147,7 +147,7 @@ static void carry_out(ob_server *s, ob_client *c, const ob_command *asked)
 	case OB_DO_INSPECT:
 		c->inspected = asked->id;
 		if (asked->id != UINT32_MAX)
-			send_one(c, ob_facts_details(s->host, asked->id));
+			send_one(c, ob_facts_details(s->config.scene, s->host, asked->id));
 		return;
 	default:
 		break;
