@@ -97,6 +97,14 @@ class Browser:
 	def click(self, x, y):
 		self.pointer(("move", x, y), ("down", 0), ("up", 0))
 
+	def touch(self, *fingers):
+		"""Fingers that go down, along their ways and up again, together: each a list of places (x, y), all as many."""
+		def way(places):
+			steps = [{"type": "pointerMove", "duration": 0 if i == 0 else 50, "x": int(x), "y": int(y)} for i, (x, y) in enumerate(places)]
+			return [steps[0], {"type": "pointerDown", "button": 0}, *steps[1:], {"type": "pointerUp", "button": 0}]
+		self.ask("POST", "/actions", {"actions": [{"type": "pointer", "id": f"finger {i}", "parameters": {"pointerType": "touch"},
+			"actions": way(places)} for i, places in enumerate(fingers)]})
+
 	def key(self, key):
 		self.ask("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": [
 			{"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})

@@ -30,7 +30,24 @@ class Viewer(server.Case):
 
 	def keep(self, b, name):
 		folder = os.environ.get("OBSIM_PICTURES")
-		return b.picture(os.path.join(folder, name) if folder else None)
+		if folder:
+			self.still(b)
+			b.picture(os.path.join(folder, name))
+
+	def drawn(self, b):
+		"""The picture without what stands round it, with all that has been asked for."""
+		frames = b.run("return obsim.frames()")
+		b.wait(f"obsim.frames() > {frames} + 1")
+		return b.run("return document.querySelector('#picture').toDataURL()")
+
+	def still(self, b):
+		"""The same, once it has come to stand."""
+		pictures = [None]
+		def again():
+			pictures.append(self.drawn(b))
+			return pictures[-1] == pictures[-2]
+		self.assertTrue(program.wait_until(again))
+		return pictures[-1]
 
 	def test_two_people(self):
 		self.serve()
@@ -81,16 +98,17 @@ class Viewer(server.Case):
 		one, other = self.open(), self.open()
 		eye = lambda b: b.run("return [...obsim.camera.eye, ...obsim.camera.forward]")
 		still, places = eye(other), [eye(one)]
-		pictures = [one.picture()]
+		pictures = [self.drawn(one)]
 		one.pointer(("move", 500, 300), ("down", 0), ("move", 600, 340), ("up", 0)) # round
 		places.append(eye(one))
-		pictures.append(one.picture())
+		pictures.append(self.drawn(one))
 		one.pointer(("move", 500, 300), ("down", 2), ("move", 420, 320), ("up", 2)) # along
 		places.append(eye(one))
-		pictures.append(one.picture())
+		pictures.append(self.drawn(one))
 		one.key("a") # the head
 		places.append(eye(one))
-		pictures.append(self.keep(one, "turned.png"))
+		pictures.append(self.drawn(one))
+		self.keep(one, "turned.png")
 		self.assertEqual(len(set(pictures)), 4, "two pictures are the same")
 		move = lambda a, b: max(abs(x - y) for x, y in zip(a, b))
 		self.assertGreater(move(places[0], places[1]), .1)
@@ -103,6 +121,87 @@ class Viewer(server.Case):
 			self.assertEqual(b.console(), [])
 		self.end()
 
+	def test_touch(self):
+		"""One finger goes round, two move and come nearer, a tap picks."""
+		self.serve("--paused")
+		b = self.open()
+		look = lambda: b.run("const { range, target, forward } = obsim.camera; return { range, target, forward }")
+		first = look()
+		b.touch([(500, 300), (560, 320), (620, 340)])
+		round_ = look()
+		self.assertNotEqual(round_["forward"], first["forward"])
+		self.assertEqual((round_["range"], round_["target"]), (first["range"], first["target"]))
+		b.touch([(450, 300), (400, 300), (350, 300)], [(550, 300), (600, 300), (650, 300)]) # apart: from 100 to 300 px
+		near = look()
+		self.assertAlmostEqual(near["range"], round_["range"] / 3, delta=.02 * round_["range"])
+		self.assertEqual(near["forward"], round_["forward"])
+		b.touch([(350, 300), (350, 340), (350, 380)], [(650, 300), (650, 340), (650, 380)]) # along, as far apart as they are
+		along = look()
+		self.assertAlmostEqual(along["range"], near["range"], delta=.02 * near["range"])
+		self.assertEqual(along["forward"], near["forward"])
+		self.assertGreater(max(abs(x - y) for x, y in zip(along["target"], near["target"])), .1)
+		self.assertTrue(b.run("return document.querySelector('#details').hidden"))
+		b.key("v") # the scene's viewpoint, which looks at the stack
+		b.touch([(480, 300)])
+		b.wait("document.querySelector('#details dl').textContent.includes('mass')")
+		self.assertEqual(b.console(), [])
+		self.end()
+
+	def test_follows(self):
+		"""The viewpoint goes along with what is picked, and round it, until it is moved away."""
+		self.serve("-D", "n=8", "--paused", scene="flock")
+		b = self.open()
+		bird = b.run("return [...obsim.universe.objects.values()].find((o) => o.name === 'bird 3').id")
+		where = lambda: b.run("return obsim.universe.pose(obsim.universe.objects.get(arguments[0])).p", bird)
+		off = lambda: b.run("const p = obsim.universe.pose(obsim.universe.objects.get(arguments[0])).p, t = obsim.camera.target; "
+			"return Math.hypot(...p.map((x, k) => x - t[k]))", bird)
+		b.run("obsim.pick(arguments[0])", bird)
+		b.wait("document.querySelector('#details dl').textContent.includes('flock/bird.lua')")
+		b.click(*b.run("const r = document.querySelector('[data-do=follow]').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]"))
+		began = where()
+		b.run("obsim.universe.send({ do: 'step', steps: 60 })")
+		b.wait("obsim.universe.time > .98")
+		b.wait("obsim.camera.off && Math.hypot(...obsim.camera.off) < 1e-3")
+		self.assertGreater(max(abs(x - y) for x, y in zip(where(), began)), 1)
+		self.assertLess(off(), 2e-3)
+		self.keep(b, "followed.png")
+		forward = b.run("return obsim.camera.forward")
+		b.pointer(("move", 300, 300), ("down", 0), ("move", 400, 340), ("up", 0)) # round it
+		self.assertNotEqual(b.run("return obsim.camera.forward"), forward)
+		b.run("obsim.universe.send({ do: 'step', steps: 30 })")
+		b.wait("obsim.universe.time > 1.48")
+		self.assertLess(off(), 2e-3)
+		b.pointer(("move", 300, 300), ("down", 2), ("move", 330, 340), ("up", 2)) # away
+		b.wait("document.querySelector('[data-do=follow]').ariaPressed === 'false'")
+		still = b.run("return obsim.camera.target")
+		b.run("obsim.universe.send({ do: 'step', steps: 30 })")
+		b.wait("obsim.universe.time > 1.98")
+		self.assertEqual(b.run("return obsim.camera.target"), still)
+		self.assertEqual(b.console(), [])
+		self.end()
+
+	def test_clock(self):
+		"""Pause, a step and the pace, by their buttons."""
+		self.serve()
+		b = self.open()
+		button = lambda what: b.run("document.querySelector(`[data-do=${arguments[0]}]`).click()", what)
+		button("pause")
+		b.wait("obsim.universe.paused")
+		told = b.run("return obsim.universe.told")
+		button("step")
+		b.wait(f"obsim.universe.told > {told}")
+		self.assertAlmostEqual(b.run("return obsim.universe.told") - told, 1 / 60, delta=1e-6)
+		b.run("const r = document.querySelector('#rate'); r.value = '0.05'; r.dispatchEvent(new Event('change'))")
+		b.wait("Math.abs(obsim.universe.rate - .05) < 1e-6")
+		button("pause")
+		b.wait("!obsim.universe.paused")
+		slow = b.run("return [obsim.universe.told, performance.now()]")
+		b.wait(f"obsim.universe.told > {slow[0]} + .05")
+		passed = b.run("return [obsim.universe.told, performance.now()]")
+		self.assertLess((passed[0] - slow[0]) / ((passed[1] - slow[1]) / 1000), .2, "s a second, at a twentieth of the pace")
+		self.assertEqual(b.console(), [])
+		self.end()
+
 	def test_tools(self):
 		self.serve("--paused")
 		b = self.open()
@@ -111,9 +210,15 @@ class Viewer(server.Case):
 		told = b.run("return obsim.universe.told")
 		b.key(" ")
 		b.wait(f"obsim.universe.told > {told} + .3")
+		b.key(" ")
+		b.wait("obsim.universe.paused")
+		pictures = [self.still(b)]
 		b.key("c")
 		b.wait("obsim.universe.contacts.length > 0")
+		pictures.append(self.still(b))
 		b.key("b")
+		pictures.append(self.still(b))
+		self.assertEqual(len(set(pictures)), 3, "what was laid over the picture is not seen")
 		b.run("obsim.pick(1)")
 		b.wait("document.querySelector('#details dl').textContent.includes('mass')")
 		b.key("?")

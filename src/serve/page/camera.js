@@ -4,6 +4,8 @@
 const STEEPEST = 89 * Math.PI / 180;
 const LOST_RANGES = 1.5, SPREAD = 2.05, NEAREST = 0.3; // of an automatic viewpoint: see src/render/draw_list.c
 const NARROWEST = 1.3; // width over height, below which the angle of view grows with the height
+const FADE = 0.2; // s, in which a viewpoint comes to what it is to go along with ..
+const NEAR = 30; // .. as near as so many of its radii
 
 const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -24,6 +26,7 @@ export class Camera {
 		this.fov = fov;
 		this.first = { target: this.target, range };
 		this.following = automatic === true;
+		this.off = null;
 	}
 
 	get forward() {
@@ -40,6 +43,7 @@ export class Camera {
 	// The head turns, the eye stays.
 	turn(right, up) {
 		const eye = this.eye;
+		this.off = null;
 		this.orbit(right, -up);
 		this.target = add(eye, this.forward, this.range);
 	}
@@ -47,11 +51,27 @@ export class Camera {
 	translate(right, up, ahead) {
 		const f = this.forward, r = unit(cross(f, [0, 0, 1])), u = cross(r, f);
 		this.following = false;
+		this.off = null;
 		this.target = add(add(add(this.target, r, right), u, up), f, ahead);
 	}
 	zoom(factor) {
-		this.range = Math.max(0.05, Math.min(1e5, this.range * factor));
+		this.range = this.near = Math.max(0.05, Math.min(1e5, this.range * factor));
 		this.following = false;
+	}
+
+	// It goes along with a body at p from now on, and round it, until it is moved away.
+	get holds() { return this.off !== null; }
+	hold(p, radius) {
+		this.following = false;
+		this.off = add(this.target, p, -1);
+		this.near = Math.min(this.range, NEAR * radius);
+	}
+	release() { this.off = null; }
+	accompany(p, seconds) {
+		const left = Math.exp(-seconds / FADE);
+		this.off = this.off.map((x) => x * left);
+		this.target = add(p, this.off);
+		this.range = this.near + left * (this.range - this.near);
 	}
 
 	// Where it sees what moves, as ob_camera_follow of the renderer.

@@ -8,6 +8,8 @@ import { turned } from './motion.js';
 
 const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
+const HINT = 'drag to go round · right button to move · wheel to come nearer · click an object to know it · ? for more';
+const HINT_TOUCH = 'drag to go round · two fingers to move and come nearer · tap an object to know it';
 const AGAIN = [0.5, 1, 2, 5]; // s: when to look for a lost server
 
 const canvas = document.querySelector('#picture');
@@ -15,7 +17,7 @@ const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('to
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
 const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel();
-let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0, framesTold = 0;
+let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0, framesTold = 0, shown = '';
 
 // ---- what is seen
 
@@ -41,6 +43,16 @@ function overlay(list, view) {
 	return out;
 }
 
+// The viewpoint goes along with what is picked, if it is asked to.
+function accompany(list, seconds) {
+	const body = camera.holds && list.find((b) => b.id === picked);
+	if (body)
+		camera.accompany(body.p, seconds);
+	else
+		camera.release();
+	panel.follows(camera.holds);
+}
+
 let before = performance.now();
 function frame(now) {
 	const seconds = Math.min(0.25, (now - before) / 1000), scale = Math.min(2, devicePixelRatio || 1);
@@ -52,8 +64,14 @@ function frame(now) {
 	const list = bodies();
 	if (camera.following)
 		camera.follow(list, width, height);
+	accompany(list, seconds);
 	const view = camera.view(width, height);
-	drawing.draw(list, view, look, overlay(list, view));
+	// What is the same is not drawn again: a universe that is paused costs nothing.
+	const { on } = panel, seen = [universe.time, universe.news, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
+		on.contacts].join();
+	if (seen !== shown)
+		drawing.draw(list, view, look, overlay(list, view));
+	shown = seen;
 	panel.clock(universe.time, universe.rate, universe.paused);
 	frames++;
 	requestAnimationFrame(frame);
@@ -126,6 +144,16 @@ function pick(id) {
 	if (id === null)
 		panel.details(null);
 	universe.send(id === null ? { do: 'inspect' } : { do: 'inspect', id });
+	if (camera.holds)
+		hold();
+}
+
+function hold() {
+	const o = universe.objects.get(picked), pose = o && universe.pose(o);
+	if (pose)
+		camera.hold(pose.p, o.radius);
+	else
+		camera.release();
 }
 
 function click(x, y) {
@@ -158,7 +186,14 @@ if (recording) {
 panel.addEventListener('rate', (e) => universe.send({ do: 'rate', rate: e.detail }));
 panel.addEventListener('contacts', (e) => universe.send({ do: 'contacts', on: e.detail }));
 panel.addEventListener('throw', throwOne);
-panel.addEventListener('follow', () => camera.set({ ...cameras[shownCamera], automatic: true }));
+panel.addEventListener('follow', () => {
+	if (picked === null)
+		camera.set({ ...cameras[shownCamera], automatic: true });
+	else if (camera.holds)
+		camera.release();
+	else
+		hold();
+});
 panel.addEventListener('deselect', () => pick(null));
 panel.addEventListener('remove', () => {
 	const o = universe.objects.get(picked);
@@ -189,7 +224,7 @@ universe.addEventListener('welcome', (e) => {
 		camera.set(cameras[0]);
 	camera.placed = true;
 	tries = 0;
-	panel.notice(frames ? '' : 'drag to go round · right button or two fingers to move · wheel or pinch to come nearer · ? for more', 8);
+	panel.notice(frames ? '' : matchMedia('(pointer: coarse)').matches ? HINT_TOUCH : HINT, 8);
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
 });

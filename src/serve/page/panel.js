@@ -8,6 +8,7 @@ const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c:
 	Escape: 'deselect' };
 
 const MARKS_MOST = 400; // on the time bar
+const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // what small screens leave out of the facts
 
 const $ = (selector) => document.querySelector(selector);
 const number = (x, digits = 3) => (Math.abs(x) < 5e-4 ? '0' : Number(x.toPrecision(digits)).toString());
@@ -81,7 +82,11 @@ export class Panel extends EventTarget {
 			for (const button of document.querySelectorAll(`[data-do=${what}]`))
 				button.disabled = w.look_only;
 		$('#rate').disabled = w.look_only;
+		this.pool = `one of ${w.workers} ${w.isolation === 'process' ? 'processes' : 'threads'}`;
 	}
+
+	// Whether the viewpoint goes along with what is picked
+	follows(on) { $('[data-do=follow]').setAttribute('aria-pressed', on); }
 
 	// Frames in a second; in software there are few.
 	speed(frames, software) {
@@ -141,10 +146,15 @@ export class Panel extends EventTarget {
 				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`]);
 		if (!d.gone && d.mass > 0 && d.island !== undefined)
 			facts.push(['island of', d.island], ['substeps', d.substeps]);
-		if (d.worker !== undefined)
+		if (d.script)
+			facts.push(['script', d.script]);
+		if (d.worker === undefined && d.island !== undefined)
+			facts.push(['simulator', this.pool]);
+		else if (d.worker !== undefined)
 			facts.push(['simulator', `worker ${d.worker}, pid ${d.pid}`], ['CPU used', `${d.cpu_s.toFixed(2)} s`]);
 		$('#details dl').replaceChildren(...facts.flatMap(([name, value]) => {
 			const dt = document.createElement('dt'), dd = document.createElement('dd');
+			dt.className = dd.className = MORE.has(name) ? 'more' : '';
 			dt.textContent = name;
 			dd.textContent = value;
 			return [dt, dd];

@@ -3,7 +3,7 @@ import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
 
 const DELAY = 0.05; // s of wall time by which it looks later than it is told, so that what is told next is there in time
 const PULL = 5; // 1/s: how fast its clock is drawn to the universe's
-const LOST = 0.5; // s: farther off, it is set
+const LOST = 0.5, SETTLED = 1e-4; // s: farther off, it is set; and nearer, where time stands
 const MOTIONS = 1, CONTACTS = 2, VOID = 1, PAUSED = 2; // of a message
 const STATIC = 1, FROZEN = 2;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
@@ -53,6 +53,7 @@ export class Universe extends EventTarget {
 		this.rate = 1;
 		this.paused = false;
 		this.bytes = this.messages = 0;
+		this.news = 0; // grows when something that is seen is told
 	}
 
 	connect() {
@@ -105,6 +106,8 @@ export class Universe extends EventTarget {
 			this.hearMotion(r, id, time);
 		}
 		this.follow(time);
+		if ((flags & VOID) || removed || created || motions)
+			this.news++;
 		if ((flags & VOID) || removed || created)
 			this.tell('population');
 	}
@@ -142,6 +145,7 @@ export class Universe extends EventTarget {
 		r.u16();
 		const n = r.u32();
 		r.f64();
+		this.news++;
 		this.contacts = Array.from({ length: n }, () => ({ p: r.vec3(), n: r.vec3(), impulse: r.f32() }));
 	}
 
@@ -161,7 +165,7 @@ export class Universe extends EventTarget {
 		const speed = this.paused ? 0 : this.speed;
 		const goal = this.told + speed * Math.min(performance.now() / 1000 - this.toldAt - DELAY, 0.25);
 		const off = goal - this.time;
-		if (Math.abs(off) > LOST * Math.max(1, speed))
+		if (Math.abs(off) > LOST * Math.max(1, speed) || (this.paused && Math.abs(off) < SETTLED))
 			this.time = goal;
 		else
 			this.time += speed * seconds + off * Math.min(1, PULL * seconds);
