@@ -82,17 +82,20 @@ static bool is_round(const ob_placed *x)
 	return x->shape == OB_SHAPE_CYLINDER || x->shape == OB_SHAPE_CAPSULE;
 }
 
-// Of a test: a cylinder's rim is compared with all that the other has, hulls are climbed from corner to corner.
+// Of a test; and of what it takes to find the points of two that touch, where a cylinder's rim is compared with all
+// that the other one has.
 static uint64_t work_of_test(const ob_placed *a, const ob_placed *b)
 {
-	enum { LEAST = 8, OF_A_CORNER = 6, OF_A_CORNER_AT_A_RIM = 80, OF_TWO_ROUND = 192 };
-	const bool rim = a->shape == OB_SHAPE_CYLINDER || b->shape == OB_SHAPE_CYLINDER;
-	const uint64_t corners = corners_of(a) + corners_of(b);
-	if (rim && is_round(a) && is_round(b))
-		return OF_TWO_ROUND;
-	if (rim && corners)
-		return OF_A_CORNER_AT_A_RIM * corners;
-	return LEAST + (a->hull || b->hull ? OF_A_CORNER * corners : 0);
+	enum { LEAST = 8 };
+	return LEAST + (a->hull || b->hull ? corners_of(a) + corners_of(b) : 0);
+}
+
+static uint64_t work_of_points(const ob_placed *a, const ob_placed *b)
+{
+	enum { OF_A_CORNER = 100, OF_TWO_ROUND = 256 };
+	if (a->shape != OB_SHAPE_CYLINDER && b->shape != OB_SHAPE_CYLINDER)
+		return 0;
+	return is_round(a) && is_round(b) ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
 }
 
 // Once the budget is spent nothing touches any more, so that whoever looks at many pairs soon comes to an end.
@@ -114,6 +117,7 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 		ob_manifold_aabb(a, b, margin, out);
 	} else {
 		ob_manifold_find(a, b, margin, out);
+		ob_budget_note(s, out->points ? work_of_points(a, b) : 0);
 	}
 }
 
