@@ -239,9 +239,10 @@ class Scenes:
 	def head(self):
 		r = self.r
 		fields = self.maybe(.7, "step", lambda: self.number(1e-4, 10) if r.random() < .3 else r.choice(["1/60", "1/30", "1/240"]))
-		fields += self.maybe(.4, "substeps", lambda: str(self.one_of([1, 1, 2, 8, 32, 256, 1000], [1001, 0])))
+		many = r.random() < .05  # substeps: what is wild takes as many as it may, and most of a campaign's time
+		fields += self.maybe(.8, "substeps", lambda: str(self.one_of([32, 256, 1000] if many else [1, 1, 2, 4, 8], [1001, 0])))
 		if not any(f.startswith("substeps") for f in fields):
-			fields += self.maybe(.3, "tolerance", lambda: self.number(1e-6, 1))
+			fields += self.maybe(.9, "tolerance", lambda: self.number(1e-6 if many else .01, 1))
 		fields += self.maybe(.2, "iterations", lambda: str(r.choice([1, 2, 16, 1000, 100000])))
 		fields += self.maybe(.3, "solver", lambda: r.choice(["'coloured'", "'jacobi'", "'ghost'", "'lagged'"]))
 		if "solver = 'lagged'" in fields or r.random() < .01:
@@ -293,7 +294,7 @@ class Scenes:
 
 	def scene(self):
 		r = self.r
-		lines = [self.head()] if r.random() < .8 else []
+		lines = [self.head()] if r.random() < .95 else []
 		self.hulls = False
 		self.scripts = r.randint(1, 3) if r.random() < .25 else 0
 		lines += [self.script(i) for i in range(self.scripts)]
@@ -308,9 +309,9 @@ class Scenes:
 
 	def options(self):
 		r = self.r
-		words = ["--duration", r.choice([".02", ".02", ".05", ".05", ".1", ".3"])]
+		words = ["--duration", r.choices([".02", ".05", ".1", ".3"], [6, 4, 1, .3])[0]]
 		for chance, more in [(.3, ["--isolation", r.choice(["thread", "process"])]), (.5, ["--workers", r.choice(["1", "2", "3", "objects"])]),
-				(.12, ["--narrow", "aabb"]), (.1, ["--tolerance", r.choice(["1um", ".1mm", "1mm", "1m"])]), (.1, ["--substeps", r.choice(["1", "4", "64"])]),
+				(.12, ["--narrow", "aabb"]), (.05, ["--tolerance", r.choice(["1um", "1mm", "1m", "1m", "1m"])]), (.1, ["--substeps", r.choice(["1", "4", "4", "64"])]),
 				(.1, ["--solver", r.choice(["coloured", "jacobi", "ghost", "lagged"])]), (.1, ["--integrator", r.choice(["exact", "ode"])]),
 				(.1, ["--measure", r.choice(["step", "end", "profile"])]), (.1, ["--explain"]), (.05, ["--trace", "/dev/null"]), (.05, ["--json", "/dev/null"]),
 				(.05, ["--series", "/dev/null"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict"]), (.1, ["--on-death", "freeze"])]:
