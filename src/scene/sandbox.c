@@ -260,3 +260,8 @@ bool ob_sandbox_lacked_memory(const ob_sandbox *s)
 {
 	return s->lacked_memory;
 }
+
+uint64_t ob_sandbox_instructions(const ob_sandbox *s)
+{
+	return s->instructions;
+}

@@ -48,6 +48,8 @@ bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e);
 lua_State *ob_sandbox_lua(ob_sandbox *s);
 bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e);
 bool ob_sandbox_lacked_memory(const ob_sandbox *s);
+// How many the last call took, as far as it came.
+uint64_t ob_sandbox_instructions(const ob_sandbox *s);
 
 // For functions called from Lua:
 void *ob_sandbox_user(lua_State *L);

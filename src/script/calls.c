@@ -404,16 +404,18 @@ typedef struct near_object {
 
 enum { NEAR_MAX = 256 };
 
-// Into a list of the nearest, in the order of distance and id.
-static uint32_t insert(near_object *list, uint32_t n, near_object o)
+// Into a list of the nearest, in the order of distance and id. work: grows by how many had to make room.
+static uint32_t insert(near_object *list, uint32_t n, near_object o, uint32_t *work)
 {
-	uint32_t at = n < NEAR_MAX ? n : NEAR_MAX;
+	const uint32_t last = n < NEAR_MAX ? n : NEAR_MAX;
+	uint32_t at = last;
 	while (at > 0 && (list[at - 1].distance2 > o.distance2 ||
 			  (list[at - 1].distance2 == o.distance2 && list[at - 1].id > o.id))) {
 		if (at < NEAR_MAX)
 			list[at] = list[at - 1];
 		at--;
 	}
+	*work += last - at;
 	if (at < NEAR_MAX)
 		list[at] = o;
 	return n < NEAR_MAX ? n + 1 : n;
@@ -434,7 +436,7 @@ static int call_near(lua_State *L)
 	const ob_motion *m = ob_newest_motion(r->u, own_id);
 	const ob_vec3 here = ob_published_at(m, ob_passport_of(r->u, own_id), t).pose.p;
 	near_object list[NEAR_MAX];
-	uint32_t n = 0;
+	uint32_t n = 0, work = 0;
 	ob_sandbox_spend(L, ids / 8);
 	for (uint32_t id = 0; id < ids; id++) {
 		if (r->data->schedule[id].state < OB_SCHEDULE_AWAKE || id == own_id ||
@@ -447,8 +449,9 @@ static int call_near(lua_State *L)
 					      : ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
 		const double d2 = ob_norm2(ob_sub(there, here));
 		if (d2 <= radius * radius)
-			n = insert(list, n, (near_object){ d2, id });
+			n = insert(list, n, (near_object){ d2, id }, &work);
 	}
+	ob_sandbox_spend(L, work / 8);
 	lua_createtable(L, (int)n, 0);
 	for (uint32_t i = 0; i < n; i++) {
 		push_object(L, r, list[i].id);

@@ -100,7 +100,9 @@ static bool call(ob_script_runner *r, ob_interpreter *p, ob_handler h, int argum
 	}
 	lua_rawgeti(L, LUA_REGISTRYINDEX, p->handler[h]);
 	lua_insert(L, -1 - arguments);
-	return ob_sandbox_call(p->sandbox, arguments, e);
+	const bool fine = ob_sandbox_call(p->sandbox, arguments, e);
+	r->instructions += ob_sandbox_instructions(p->sandbox);
+	return fine;
 }
 
 // Called protected, for memory may run out: the arguments of a message, and the call.
@@ -275,7 +277,7 @@ static bool attempt(ob_script_runner *r, const ob_script_turn *turn, ob_error *e
 	return call_all(r, p, e);
 }
 
-void ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c)
+uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c)
 {
 	ob_script_runner *r = runner;
 	const ob_script_turn before = *t;
@@ -283,12 +285,13 @@ void ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c)
 	const uint32_t state_bytes = c->state_bytes;
 	ob_error e = { "" };
 	if (before.script > r->data->script_text->scripts || state_bytes > sizeof state)
-		return;
+		return 0;
 	memcpy(state, c->state, state_bytes);
 	r->cell = c;
 	r->step = ob_step_count(r->u);
 	for (int again = 0;; again++) {
 		ob_interpreter *p = interpreter_of(r, before.script - 1);
+		r->instructions = 0; // what an attempt without memory has taken depends on who made it
 		r->turn = t;
 		r->state = (ob_flat){ c->state, state_bytes, OB_SCRIPT_STATE_BYTES };
 		memcpy(r->builder.random.s, c->random, sizeof c->random);
@@ -314,6 +317,7 @@ void ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c)
 	memcpy(c->random, r->builder.random.s, sizeof c->random);
 	c->inbox_bytes = c->touches = 0;
 	r->turn = NULL;
+	return r->instructions;
 }
 
 // ---- runners

@@ -45,6 +45,7 @@ struct ob_script_runner {
 	ob_script_cell *cell;
 	ob_flat state; // the cell's
 	uint64_t step;
+	uint64_t instructions; // of all calls of this turn
 	bool ended; // it has asked for its own removal
 };
 

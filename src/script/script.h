@@ -23,6 +23,6 @@ typedef struct ob_script_runner ob_script_runner;
 ob_script_runner *ob_script_runner_create(ob_universe *u); // NULL: no memory
 void ob_script_runner_destroy(ob_script_runner *r); // NULL is allowed
 // Calls what is due of a script, and writes what comes of it to its turn and its cell alone. An ob_script_run of sim/sim.h.
-void ob_script_runner_run(void *runner, ob_script_turn *turn, ob_script_cell *cell);
+uint64_t ob_script_runner_run(void *runner, ob_script_turn *turn, ob_script_cell *cell);
 
 #endif

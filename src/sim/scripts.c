@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "sim/broadphase.h"
+#include "sim/budget.h"
 #include "sim/commit.h"
 #include "sim/publish.h"
 
@@ -23,27 +24,34 @@ bool ob_scripts_due(ob_universe *u)
 	return count->due > 0;
 }
 
-static void run(ob_sim *s, uint32_t cell)
+static uint64_t run(ob_sim *s, uint32_t cell)
 {
 	const ob_step_data *data = s->data;
-	if (!ob_universe_contained(s->u)) {
-		s->scripts.run(s->scripts.runner, &data->script_turn[cell], &data->script_cell[cell]);
-		return;
-	}
+	if (!ob_universe_contained(s->u))
+		return s->scripts.run(s->scripts.runner, &data->script_turn[cell], &data->script_cell[cell]);
 	s->scripts.turn = data->script_turn[cell];
 	s->scripts.cell = data->script_cell[cell];
-	s->scripts.run(s->scripts.runner, &s->scripts.turn, &s->scripts.cell);
+	const uint64_t instructions = s->scripts.run(s->scripts.runner, &s->scripts.turn, &s->scripts.cell);
 	ob_hand_over_script(s, cell, &s->scripts.turn, &s->scripts.cell);
+	return instructions;
+}
+
+static void run_share(ob_sim *s, uint32_t cell)
+{
+	enum { INSTRUCTIONS_PER_WORK = 4 };
+	ob_budget_begin_share(s, s->data->script_turn[cell].object);
+	ob_budget_note(s, run(s, cell) / INSTRUCTIONS_PER_WORK);
+	ob_budget_spent(s);
 }
 
 void ob_scripts_run(ob_sim *s)
 {
 	uint32_t i;
 	if (s->settings->one_per_object)
-		run(s, s->data->script_of[s->worker] - 1);
+		run_share(s, s->data->script_of[s->worker] - 1);
 	else
-		while (ob_task_claim(s->u, &i))
-			run(s, s->data->script_due[i]);
+		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK))
+			run_share(s, s->data->script_due[i]);
 }
 
 bool ob_sim_awaits_requests(const ob_universe *u)

@@ -17,8 +17,8 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e); // in the w
 void ob_sim_destroy(ob_sim *s);
 
 // How a worker runs the script of an object, which this module does not know: what is known of it (table/script_data.h), in
-// the universe or in a copy.
-typedef void (*ob_script_run)(void *runner, ob_script_turn *turn, ob_script_cell *cell);
+// the universe or in a copy. Gives how many instructions it took, the same whoever runs it.
+typedef uint64_t (*ob_script_run)(void *runner, ob_script_turn *turn, ob_script_cell *cell);
 void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);
 
 // The worker takes part in one phase of the step (step.c shows them all): it waits at the gate until one opens to it,

@@ -560,10 +560,13 @@ static void tell_of_work(const ob_universe *u, uint32_t object, unsigned long lo
 		n += snprintf(text + n, size - (size_t)n, "%s", name_of(u, object));
 	if (is && is->members > SHOWN)
 		n += snprintf(text + n, size - (size_t)n, " and %u more", is->members - SHOWN);
+	if (data->script_of && object < data->objects_max && data->script_of[object])
+		n += snprintf(text + n, size - (size_t)n, " would need millions of instructions of scripts, or of");
+	else
+		n += snprintf(text + n, size - (size_t)n, " would need millions of");
 	snprintf(text + n, size - (size_t)n,
-		 " would need millions of substeps or collision tests; make what is fast slower, what is thin thicker, "
-		 "or "
-		 "try a smaller --step");
+		 " substeps or collision tests; make what is fast slower, what is thin thicker, or try a smaller "
+		 "--step");
 }
 
 // Names the culprit, if simulators are contained: then it is known.

@@ -30,6 +30,7 @@ class Limits(program.Case):
 			saying=r"^obsim: step 1 takes more work .* object 1 \(brick 1\)")
 		self.fail(hostile("impacts"), "--duration", ".02", "--narrow", "aabb",
 			saying=r"^obsim: step 1 takes more work .* object 1 \(box#1\)")
+		self.fail(hostile("busy_scripts"), "--duration", ".02", saying=r"^obsim: step 1 takes more work .* object \d+ \(sphere#\d+\) would need millions of instructions of scripts")
 
 	def test_crowd(self):
 		"""Two hundred thousand spheres in one heap: too many pairs for a step and for a measure, which both hear SIGTERM."""
