@@ -79,6 +79,28 @@ static ob_vec3 first_acceleration(ob_vec3 p, ob_vec3 v, ob_vec3 q, ob_vec3 w, do
 	return ob_scale(ob_sub(way, gain), 2 / (s1 * (s1 + s2)));
 }
 
+bool ob_path_turn(ob_quat from, ob_quat to, ob_vec3 *turn)
+{
+	ob_quat r = ob_quat_mul(to, (ob_quat){ from.w, -from.x, -from.y, -from.z });
+	if (r.w < 0)
+		r = (ob_quat){ -r.w, -r.x, -r.y, -r.z };
+	const ob_vec3 v = ob_v3(r.x, r.y, r.z);
+	const double s = ob_norm(v); // sine of half the angle
+	*turn = s > 0 ? ob_scale(v, 2 * atan2(s, r.w) / s) : v;
+	return r.w > 1e-9;
+}
+
+// The attitude and the rate of a piece that begins so long (s) after point i, of s to the next.
+static void turn_piece(const ob_path *path, uint32_t i, double since, double s, ob_path_piece *piece)
+{
+	ob_vec3 turn;
+	if (!path->turns)
+		return;
+	ob_path_turn(path->point[i].q, path->point[i + 1].q, &turn);
+	piece->w = ob_scale(turn, 1 / s);
+	piece->q = since > 0 ? ob_quat_turn(path->point[i].q, ob_scale(piece->w, since)) : path->point[i].q;
+}
+
 ob_path_piece ob_path_piece_at(const ob_path *path, double h, uint64_t step)
 {
 	const uint32_t last = path->points - 1;
@@ -86,7 +108,9 @@ ob_path_piece ob_path_piece_at(const ob_path *path, double h, uint64_t step)
 	const uint64_t since = step - round;
 	uint32_t i = 0;
 	if (since >= period)
-		return (ob_path_piece){ .from = period, .until = UINT64_MAX, .p = path->point[last].p };
+		return (ob_path_piece){
+			.from = period, .until = UINT64_MAX, .p = path->point[last].p, .q = path->point[last].q
+		};
 	while (step_of(path, i + 1, h) <= since)
 		i++;
 	const uint64_t from = step_of(path, i, h), until = step_of(path, i + 1, h), middle = from + (until - from) / 2;
@@ -94,8 +118,11 @@ ob_path_piece ob_path_piece_at(const ob_path *path, double h, uint64_t step)
 	const ob_vec3 p = path->point[i].p, q = path->point[i + 1].p, v = velocity_at(path, i, h),
 		      w = velocity_at(path, i + 1, h), a = first_acceleration(p, v, q, w, s1, s2);
 	const ob_vec3 halfway = ob_madd(v, s1, a);
-	if (since < middle)
-		return (ob_path_piece){ round + from, round + middle, p, v, a };
-	return (ob_path_piece){ round + middle, round + until, ob_madd(ob_madd(p, s1, v), .5 * s1 * s1, a), halfway,
-				ob_scale(ob_sub(w, halfway), 1 / s2) };
+	const bool first = since < middle;
+	ob_path_piece piece = { .from = round + (first ? from : middle), .until = round + (first ? middle : until) };
+	piece.p = first ? p : ob_madd(ob_madd(p, s1, v), .5 * s1 * s1, a);
+	piece.v = first ? v : halfway;
+	piece.a = first ? a : ob_scale(ob_sub(w, halfway), 1 / s2);
+	turn_piece(path, i, first ? 0 : s1, s1 + s2, &piece);
+	return piece;
 }

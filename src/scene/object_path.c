@@ -89,25 +89,33 @@ static void make_circle(lua_State *L, const char *where, const draft *d, ob_obje
 	keep_path(L, where, o, &path);
 }
 
-// {t, x, y, z} at the top of the stack; each of x, y, z up to "most"
-static bool read_point(lua_State *L, double most, ob_path_point *out)
+enum { PLACED = 4, TURNED = 8 }; // numbers of a point: its time and place, and its attitude
+
+// {t, x, y, z} at the top of the stack, or with {.., qw, qx, qy, qz}; each of x, y, z up to "most"
+static bool read_point(lua_State *L, double most, int numbers, ob_path_point *out)
 {
-	double x[4];
-	bool good = lua_istable(L, -1) && lua_rawlen(L, -1) == 4;
-	for (int i = 0; i < 4 && good; i++) {
+	double x[TURNED] = { 0 };
+	bool good = lua_istable(L, -1) && lua_rawlen(L, -1) == (size_t)numbers;
+	for (int i = 0; i < numbers && good; i++) {
 		good = lua_rawgeti(L, -1, i + 1) == LUA_TNUMBER;
 		x[i] = lua_tonumber(L, -1);
 		good = good && fabs(x[i]) <= (i ? most : 1e9);
 		lua_pop(L, 1);
 	}
+	const ob_quat q = { x[4], x[5], x[6], x[7] };
+	good = good && (numbers == PLACED || q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z > 1e-12);
 	if (good)
-		*out = (ob_path_point){ x[0], ob_v3(x[1], x[2], x[3]) };
+		*out = (ob_path_point){ x[0], ob_v3(x[1], x[2], x[3]),
+					numbers == PLACED ? ob_quat_identity() : ob_quat_normalize(q) };
 	return good;
 }
 
-// The points of the table at the top of the stack. Returns how many there are.
-static uint32_t read_points(lua_State *L, const char *where, double most, ob_path_point point[OB_PATH_POINTS_MAX])
+// The points of the table at the top of the stack. Returns how many there are. turns: whether they have attitudes;
+// NULL: they are to have none.
+static uint32_t read_points(lua_State *L, const char *where, double most, ob_path_point point[OB_PATH_POINTS_MAX],
+			    bool *turns)
 {
+	int numbers = PLACED;
 	lua_getfield(L, -1, "points");
 	const size_t n = lua_rawlen(L, -1);
 	if (n < 2 || n > OB_PATH_POINTS_MAX)
@@ -115,8 +123,13 @@ static uint32_t read_points(lua_State *L, const char *where, double most, ob_pat
 				(int)n);
 	for (size_t i = 0; i < n; i++) {
 		lua_rawgeti(L, -1, (lua_Integer)i + 1);
-		if (!read_point(L, most, &point[i]))
-			ob_sandbox_fail(L, "%s.points: expected four numbers {t, x, y, z} as point %d", where,
+		if (i == 0 && turns && lua_istable(L, -1) && lua_rawlen(L, -1) == TURNED)
+			numbers = TURNED;
+		if (!read_point(L, most, numbers, &point[i]))
+			ob_sandbox_fail(L, "%s.points: expected %s as point %d", where,
+					numbers == PLACED
+						? "four numbers {t, x, y, z}"
+						: "eight numbers {t, x, y, z, qw, qx, qy, qz}, as point 1 has,",
 					(int)i + 1);
 		if (i == 0 ? point[0].t != 0 : !(point[i].t > point[i - 1].t))
 			ob_sandbox_fail(L,
@@ -125,19 +138,42 @@ static uint32_t read_points(lua_State *L, const char *where, double most, ob_pat
 		lua_pop(L, 1);
 	}
 	lua_pop(L, 1);
+	if (turns)
+		*turns = numbers == TURNED;
 	return (uint32_t)n;
+}
+
+// From the attitude that the object has, in which it is to stand still by itself.
+static void make_turns(lua_State *L, const char *where, const draft *d, ob_object_def *o, ob_path_point *point,
+		       uint32_t n)
+{
+	ob_vec3 turn;
+	if (ob_norm2(o->state.w) > 0)
+		ob_sandbox_fail(L, "%s.points: expected no attitudes beside a spin", where);
+	for (uint32_t i = 1; i < n; i++)
+		if (!ob_path_turn(point[i - 1].q, point[i].q, &turn))
+			ob_sandbox_fail(L, "%s.points: expected less than half a turn from point %d to point %d", where,
+					(int)i, (int)i + 1);
+	if (d->loop && (!ob_path_turn(point[n - 1].q, point[0].q, &turn) || ob_norm(turn) > 1e-9))
+		ob_sandbox_fail(L, "%s.loop: expected the last point with the attitude of the first one", where);
+	for (uint32_t i = 0; i < n; i++)
+		point[i].q = ob_quat_mul(point[i].q, o->state.pose.q);
+	o->state.pose.q = point[0].q;
 }
 
 static void make_spline(lua_State *L, const char *where, const draft *d, ob_object_def *o)
 {
 	ob_path_point point[OB_PATH_POINTS_MAX];
-	const uint32_t n = read_points(L, where, 1e7, point);
+	bool turns;
+	const uint32_t n = read_points(L, where, 1e7, point, &turns);
 	const ob_vec3 first = point[0].p, last = point[n - 1].p;
 	if (d->loop && (first.x != last.x || first.y != last.y || first.z != last.z))
 		ob_sandbox_fail(L, "%s.loop: expected the last point where the first one is", where);
 	for (uint32_t i = 0; i < n; i++)
 		point[i].p = ob_add(point[i].p, o->state.pose.p);
-	keep_path(L, where, o, &(ob_path){ .points = n, .loop = d->loop, .point = point });
+	if (turns)
+		make_turns(L, where, d, o, point, n);
+	keep_path(L, where, o, &(ob_path){ .points = n, .loop = d->loop, .turns = turns, .point = point });
 	o->state.pose.p = point[0].p;
 }
 
@@ -203,7 +239,7 @@ void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o)
 	luaL_checkstack(L, 8, "nested too deep");
 	ob_fields_read(L, -1, where, force_fields, sizeof force_fields / sizeof *force_fields, &d);
 	check_force(L, where, &d);
-	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, 1e15, point) : 0;
+	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, 1e15, point, NULL) : 0;
 	const ob_force f = { .kind = (ob_force_kind)d.kind,
 			     .force = points ? ob_v3(0, 0, 0) : d.force,
 			     .frequency = isnan(d.frequency) ? 0 : 2 * M_PI * d.frequency,

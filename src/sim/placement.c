@@ -123,7 +123,8 @@ static uint64_t prescribe_spline(ob_universe *u, uint32_t id, const ob_path *pat
 	const ob_state turned = ob_motion_at(&m, ob_v3(0, 0, 0), begin);
 	m.t0 = begin, m.valid_until = end;
 	m.p = piece.p, m.v = piece.v, m.a = piece.a;
-	m.q = turned.pose.q;
+	m.q = path->turns ? piece.q : turned.pose.q;
+	m.w = path->turns ? piece.w : m.w;
 	publish_prescribed(u, id, &m, end);
 	return until;
 }

@@ -81,8 +81,8 @@ static void prescribe(const player *p, uint32_t i)
 	if (!(ob_passport_of(p->u, i)->flags & OB_OBJECT_KINEMATIC))
 		return;
 	const double time = 4 * (double)p->steps * p->scene->run.step_length;
-	ob_path_point point[2] = { { 0, b->state.pose.p },
-				   { time, ob_madd(b->state.pose.p, .25 * time * time, p->scene->lift) } };
+	ob_path_point point[2] = { { .t = 0, .p = b->state.pose.p },
+				   { .t = time, .p = ob_madd(b->state.pose.p, .25 * time * time, p->scene->lift) } };
 	const ob_path lift = { .points = 2, .point = point };
 	const ob_path *own = b->path.frequency > 0 ? &b->path : NULL; // NULL: on with its velocities
 	ob_sim_prescribe(p->u, i, b->driven ? own : &lift, 0);

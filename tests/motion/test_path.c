@@ -77,7 +77,10 @@ static void check_spline(const ob_path *path, double h, uint64_t steps)
 
 static void test_spline(void)
 {
-	ob_path_point lift[] = { { 0, { 0, 0, 0 } }, { 1, { 0, 0, 0 } }, { 3, { 0, 0, 4 } }, { 4, { 0, 0, 4 } } };
+	ob_path_point lift[] = { { .t = 0, .p = { 0, 0, 0 } },
+				 { .t = 1, .p = { 0, 0, 0 } },
+				 { .t = 3, .p = { 0, 0, 4 } },
+				 { .t = 4, .p = { 0, 0, 4 } } };
 	const ob_path path = { .points = 4, .point = lift };
 	const double h = 1. / 60;
 	check_spline(&path, h, 400);
@@ -87,11 +90,11 @@ static void test_spline(void)
 	CHECK_NEAR(down.p.z, 2, 1e-12);
 	CHECK(ob_path_piece_at(&path, h, 300).until == UINT64_MAX);
 	CHECK(ob_path_piece_at(&path, h, 300).p.z == 4);
-	ob_path_point round[] = { { 0, { 0, 0, 0 } },
-				  { .7, { 1, 0, 0 } },
-				  { 1.1, { 2, 1, 0 } },
-				  { 1.6, { 0, 2, .5 } },
-				  { 2.5, { 0, 0, 0 } } };
+	ob_path_point round[] = { { .t = 0, .p = { 0, 0, 0 } },
+				  { .t = .7, .p = { 1, 0, 0 } },
+				  { .t = 1.1, .p = { 2, 1, 0 } },
+				  { .t = 1.6, .p = { 0, 2, .5 } },
+				  { .t = 2.5, .p = { 0, 0, 0 } } };
 	const ob_path loop = { .points = 5, .loop = true, .point = round };
 	check_spline(&loop, h, 1000);
 	check_spline(&loop, .013, 1000);
@@ -105,10 +108,55 @@ static void test_spline(void)
 	free(copy);
 }
 
+// Degrees about z, from the attitude a to b.
+static double degrees_between(ob_quat a, ob_quat b)
+{
+	ob_vec3 turn;
+	CHECK(ob_path_turn(a, b, &turn));
+	CHECK_NEAR(ob_norm(ob_sub(turn, ob_v3(0, 0, turn.z))), 0, 1e-12);
+	return turn.z * 180 / M_PI;
+}
+
+static ob_quat about_z(double degrees)
+{
+	return (ob_quat){ cos(degrees * M_PI / 360), 0, 0, sin(degrees * M_PI / 360) };
+}
+
+// Attitudes are those of the points, and between them as far as the time is; the shortest way, and none where there is none.
+static void test_turns(void)
+{
+	ob_path_point door[] = { { 0, { 0, 0, 0 }, about_z(0) },
+				 { 1, { 0, 0, 0 }, about_z(90) },
+				 { 1.5, { 0, 0, 0 }, about_z(90) },
+				 { 3, { 0, 0, 0 }, about_z(-60) },
+				 { 4, { 0, 0, 0 }, about_z(360) } }; // which is that of 0, with the other sign
+	const double h = 1. / 60;
+	const struct {
+		double t, degrees, rate;
+	} expected[] = { { 0, 0, 90 }, { .5, 45, 90 }, { 1, 90, 0 }, { 1.5, 90, -100 }, { 2.25, 15, -100 }, { 3, -60, 60 }, { 3.5, -30, 60 } };
+	for (int loop = 0; loop < 2; loop++) {
+		const ob_path path = { .points = 5, .loop = loop, .turns = true, .point = door };
+		for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+			const uint64_t step = (uint64_t)lround(expected[i].t / h) + (loop ? 2400 : 0);
+			const ob_path_piece p = ob_path_piece_at(&path, h, step);
+			const ob_quat q = ob_quat_turn(p.q, ob_scale(p.w, (double)(step - p.from) * h));
+			CHECK_NEAR(degrees_between(about_z(expected[i].degrees), q), 0, 1e-10);
+			CHECK_NEAR(p.w.z * 180 / M_PI, expected[i].rate, 1e-9);
+		}
+		const ob_path_piece end = ob_path_piece_at(&path, h, 5000);
+		CHECK(loop || (ob_norm(end.w) == 0 && end.until == UINT64_MAX));
+		CHECK(loop || fabs(degrees_between(end.q, about_z(0))) < 1e-10);
+	}
+	ob_vec3 turn;
+	CHECK(!ob_path_turn(about_z(10), about_z(190), &turn));
+	CHECK(ob_path_turn(about_z(10), about_z(10), &turn) && ob_norm(turn) == 0);
+}
+
 int main(void)
 {
 	test_sine();
 	test_circle();
 	test_spline();
+	test_turns();
 	return check_end();
 }

@@ -259,7 +259,7 @@ static ob_vec3 slid_on_lift(double gravity, const ob_path *path, double *height)
 static void test_lift(void)
 {
 	const double a = 4, time = 4; // m/s^2, s: it speeds up through the first half
-	ob_path_point point[2] = { { 0, { 0, 0, -.2 } }, { time, { 0, 0, -.2 + a * time * time / 4 } } };
+	ob_path_point point[2] = { { .t = 0, .p = { 0, 0, -.2 } }, { .t = time, .p = { 0, 0, -.2 + a * time * time / 4 } } };
 	const ob_path path = { .points = 2, .point = point };
 	double height, ground;
 	const ob_vec3 lifted = slid_on_lift(g, &path, &height), heavy = slid_on_lift(g + a, NULL, &ground);
