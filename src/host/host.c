@@ -49,8 +49,6 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
 	if (scene->scripts && c->on_death == OB_ON_DEATH_FREEZE)
 		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
-	if (scene->scripts && r->monolith)
-		return ob_fail(e, "arch monolith: the scene has scripts, which only object simulators run");
 	if (r->monolith && scene->hulls > 0) // of ODE's convex geometries few collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
 	for (uint32_t i = 0; i < scene->objects; i++) {

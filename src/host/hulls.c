@@ -32,6 +32,8 @@ static uint32_t find(const ob_hulls *h, const ob_hull *hull)
 static bool append(ob_hulls *h, const ob_hull_corners *corners, const ob_hull *hull, ob_error *e)
 {
 	const uint32_t come = h->count - h->of_scene;
+	if (ob_universe_hulls(h->u) == 0)
+		return ob_fail(e, "the one ODE world has no hulls");
 	if (h->count >= ob_universe_hulls(h->u))
 		return ob_fail(e, "there is no room for more than %u different hulls", ob_universe_hulls(h->u));
 	ob_hull_corners *grown = realloc(h->corners, (come + 1) * sizeof *grown);

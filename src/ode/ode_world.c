@@ -100,7 +100,7 @@ struct object {
 	bool touching;
 	double friction, restitution;
 	bool kinematic;
-	ob_vec3 force; // N, acts in every step
+	ob_vec3 force, torque; // N, N m, act in every step
 	ob_vec3 surface_velocity; // m/s, frame of the object
 	ob_state placed; // of static objects
 };
@@ -218,12 +218,31 @@ void ob_ode_world_drive(ob_ode_world *w, uint32_t id, const ob_state *s)
 	place_body(&w->object[id], s);
 }
 
-void ob_ode_world_push(ob_ode_world *w, uint32_t id, ob_vec3 force)
+void ob_ode_world_push(ob_ode_world *w, uint32_t id, ob_vec3 force, ob_vec3 torque)
 {
 	struct object *m = &w->object[id];
-	if (!m->body || m->kinematic || ob_norm2(ob_sub(force, m->force)) == 0)
+	if (!m->body || m->kinematic ||
+	    (ob_norm2(ob_sub(force, m->force)) == 0 && ob_norm2(ob_sub(torque, m->torque)) == 0))
 		return;
 	m->force = force;
+	m->torque = torque;
+	dBodyEnable(m->body);
+}
+
+void ob_ode_world_kick(ob_ode_world *w, uint32_t id, ob_vec3 impulse, ob_vec3 twist)
+{
+	struct object *m = &w->object[id];
+	dMass mass;
+	if (!m->body || m->kinematic)
+		return;
+	dBodyGetMass(m->body, &mass);
+	const dReal *q = dBodyGetQuaternion(m->body), *v = dBodyGetLinearVel(m->body), *o = dBodyGetAngularVel(m->body);
+	const ob_mat3 r = ob_quat_matrix((ob_quat){ q[0], q[1], q[2], q[3] });
+	const ob_vec3 l = ob_rotate_back(&r, twist);
+	const ob_vec3 turn = ob_rotate(&r, ob_v3(l.x / mass.I[0], l.y / mass.I[5], l.z / mass.I[10])); // principal axes
+	dBodySetLinearVel(m->body, v[0] + impulse.x / mass.mass, v[1] + impulse.y / mass.mass,
+			  v[2] + impulse.z / mass.mass);
+	dBodySetAngularVel(m->body, o[0] + turn.x, o[1] + turn.y, o[2] + turn.z);
 	dBodyEnable(m->body);
 }
 
@@ -401,6 +420,7 @@ static void collide_and_step(void *context)
 			continue; // ODE would keep the forces on a sleeper until it wakes
 		m->touching = false;
 		dBodySetForce(m->body, m->force.x, m->force.y, m->force.z);
+		dBodySetTorque(m->body, m->torque.x, m->torque.y, m->torque.z);
 	}
 	// Slower than what gravity adds in two steps is rest, not an impact.
 	double bounce_speed = 2 * x->h * ob_norm(w->setup.gravity);

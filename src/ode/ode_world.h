@@ -29,8 +29,10 @@ void ob_ode_world_destroy(ob_ode_world *w); // NULL is allowed
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s);
 // Where a kinematic object is before the next step, and how it moves.
 void ob_ode_world_drive(ob_ode_world *w, uint32_t id, const ob_state *s);
-// The constant force (N) of an object, which wakes if it is another one than before.
-void ob_ode_world_push(ob_ode_world *w, uint32_t id, ob_vec3 force);
+// The constant force (N) and torque (N m) of an object, which wakes if they are others than before.
+void ob_ode_world_push(ob_ode_world *w, uint32_t id, ob_vec3 force, ob_vec3 torque);
+// Gives an object that moves an impulse (N s) at its centre, and one of rotation (N m s). It wakes.
+void ob_ode_world_kick(ob_ode_world *w, uint32_t id, ob_vec3 impulse, ob_vec3 twist);
 // What it touches wakes. Nothing happens if there is no such object.
 void ob_ode_world_remove(ob_ode_world *w, uint32_t id);
 // Collides and steps by h (s). A pair of which neither moves nor is awake is not collided.

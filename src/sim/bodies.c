@@ -10,7 +10,6 @@
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
 #include "sim/publish.h"
-#include "sim/scripts.h"
 #include "sim/surfaces.h"
 
 static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)

@@ -226,13 +226,13 @@ void ob_commit_contact(ob_sim *s, const ob_found_contact *c)
 		write_contact(s->u, c);
 }
 
-void ob_commit_touch(ob_sim *s, uint32_t id, uint32_t other, double impulse, ob_vec3 point)
+void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse, ob_vec3 point)
 {
 	const touch_record r = { id, other, impulse, point };
-	if (ob_universe_contained(s->u))
-		ob_outbox_put(s->u, TOUCH, &r, sizeof r, NULL, 0);
+	if (ob_universe_contained(u))
+		ob_outbox_put(u, TOUCH, &r, sizeof r, NULL, 0);
 	else
-		write_touch(s->u, &r);
+		write_touch(u, &r);
 }
 
 static size_t in_words(size_t bytes)

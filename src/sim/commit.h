@@ -42,7 +42,7 @@ void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share); // ISLANDS: o
 void ob_commit_contact(ob_sim *s, const ob_found_contact *c); // ISLANDS
 // The object's script is to be told that it has begun to touch another, with so much more of a normal impulse (N s), at
 // this point (m); other OB_NO_OBJECT: that what it was to be told of the step is void.
-void ob_commit_touch(ob_sim *s, uint32_t id, uint32_t other, double impulse, ob_vec3 point); // ISLANDS
+void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse, ob_vec3 point); // ISLANDS, BASELINE
 // By a contained simulator alone: others have run the script in place.
 void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, const ob_script_cell *c); // SCRIPTS
 void ob_commit_check(ob_universe *u, uint32_t pair, const ob_pair_key *k); // FORECAST, LATE_CONTACTS

@@ -182,7 +182,7 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 	for (int k = 0; k < REFLECTIONS && fastest_approach(body, point, points) > reflected * approach; k++)
 		ob_impact_solve(body, 2, point, points, NULL); // few points, few times
 	if (points > 0)
-		ob_touches_note(s, id, plane, passport->mass * ob_dot(ob_sub(body[0].v, state->v), ground.normal),
+		ob_touches_note(s->u, id, plane, passport->mass * ob_dot(ob_sub(body[0].v, state->v), ground.normal),
 				ob_add(state->pose.p, point[0].arm_a));
 	state->v = body[0].v, state->w = body[0].w;
 	return fastest_approach(body, point, points) <= reflected * approach;

@@ -19,7 +19,6 @@
 #include "sim/impacts.h"
 #include "sim/midpoint.h"
 #include "sim/profile.h"
-#include "sim/scripts.h"
 #include "sim/surfaces.h"
 #include "sim/touches.h"
 

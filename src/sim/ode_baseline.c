@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <ob/motion.h>
 
@@ -9,11 +10,21 @@
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
 #include "sim/publish.h"
+#include "sim/touches.h"
 #include "table/trace.h"
 
 struct held_object { // whether the world holds an object for a slot, and which
 	bool there;
 	uint32_t generation;
+};
+
+struct touching {
+	uint32_t a, b;
+};
+
+struct touching_list { // ascending, each once
+	struct touching *pair;
+	size_t count, max;
 };
 
 struct ob_ode_baseline {
@@ -24,6 +35,7 @@ struct ob_ode_baseline {
 	ob_contact_point *point;
 	double *depth;
 	size_t points_max;
+	struct touching_list pressed, presses; // where there are scripts: before the step, and in it
 	uint32_t awake, pairs;
 	bool traced;
 };
@@ -65,8 +77,21 @@ void ob_ode_baseline_destroy(ob_ode_baseline *m)
 	free(m->held);
 	free(m->point);
 	free(m->depth);
+	free(m->pressed.pair);
+	free(m->presses.pair);
 	free(m);
 	ob_ode_thread_finish();
+}
+
+// Whoever has its id next has touched nobody.
+static void forget_touches(ob_ode_baseline *m, uint32_t id)
+{
+	struct touching_list *l = &m->pressed;
+	size_t kept = 0;
+	for (size_t i = 0; i < l->count; i++)
+		if (l->pair[i].a != id && l->pair[i].b != id)
+			l->pair[kept++] = l->pair[i];
+	l->count = kept;
 }
 
 // The passports are the host's, which changes them between steps.
@@ -79,10 +104,11 @@ static void follow_passports(ob_ode_baseline *m)
 		bool present = p->flags & OB_OBJECT_PRESENT;
 		if (h->there && (!present || h->generation != p->generation)) {
 			ob_ode_world_remove(m->world, id);
+			forget_touches(m, id);
 			h->there = false;
 		}
 		if (present && h->there)
-			ob_ode_world_push(m->world, id, p->force);
+			ob_ode_world_push(m->world, id, p->force, ob_script_torque(ob_universe_step_data(m->u), id));
 		if (!present || h->there)
 			continue;
 		const ob_motion *first = ob_newest_motion(m->u, id);
@@ -211,6 +237,86 @@ static void publish_pairs(ob_ode_baseline *m)
 	data->count->records_used = data->count->pairs;
 }
 
+// ---- what scripts are told of
+
+static int by_pair(const void *x, const void *y)
+{
+	const struct touching *p = x, *q = y;
+	if (p->a != q->a)
+		return p->a < q->a ? -1 : 1;
+	return (p->b > q->b) - (p->b < q->b);
+}
+
+static void add_touching(struct touching_list *l, uint32_t a, uint32_t b)
+{
+	if (l->count == l->max) {
+		const size_t max = l->max ? 2 * l->max : 64;
+		struct touching *more = ob_allocate(max * sizeof *more);
+		if (l->count)
+			memcpy(more, l->pair, l->count * sizeof *more);
+		free(l->pair);
+		l->pair = more;
+		l->max = max;
+	}
+	l->pair[l->count++] = (struct touching){ a, b };
+}
+
+// After each substep: pairs that press, and did not before the step, begin to touch.
+static void note_touches(ob_ode_baseline *m)
+{
+	size_t points, to;
+	if (!read_contacts(m, &points))
+		return;
+	for (size_t from = 0; from < points; from = to) {
+		const ob_contact_point *c = &m->point[from];
+		double impulse = 0;
+		ob_vec3 sum = { 0 };
+		for (to = from; to < points && m->point[to].a == c->a && m->point[to].b == c->b; to++) {
+			impulse += m->point[to].impulse;
+			sum = ob_add(sum, m->point[to].position);
+		}
+		const struct touching pair = { c->a, c->b };
+		const bool before =
+			m->pressed.count && bsearch(&pair, m->pressed.pair, m->pressed.count, sizeof pair, by_pair);
+		if (!before && impulse > 0)
+			ob_touches_note(m->u, pair.a, pair.b, impulse, ob_scale(sum, 1. / (double)(to - from)));
+		if (before || impulse > 0)
+			add_touching(&m->presses, pair.a, pair.b);
+	}
+}
+
+static bool is_awake(const ob_ode_baseline *m, uint32_t id)
+{
+	ob_state s;
+	bool asleep, touching;
+	if (!moves(m, id))
+		return false;
+	ob_ode_world_get(m->world, id, &s, &asleep, &touching);
+	return !asleep;
+}
+
+// ODE does not collide what sleeps, which touches as it did.
+static void end_touches(ob_ode_baseline *m)
+{
+	struct touching_list *l = &m->presses;
+	size_t kept = 0;
+	for (size_t i = 0; i < m->pressed.count; i++) {
+		const struct touching p = m->pressed.pair[i];
+		if (!is_awake(m, p.a) && !is_awake(m, p.b))
+			add_touching(l, p.a, p.b);
+	}
+	if (l->count)
+		qsort(l->pair, l->count, sizeof *l->pair, by_pair);
+	for (size_t i = 0; i < l->count; i++)
+		if (!kept || by_pair(&l->pair[kept - 1], &l->pair[i]) != 0)
+			l->pair[kept++] = l->pair[i];
+	l->count = kept;
+	const struct touching_list old = m->pressed;
+	m->pressed = *l;
+	*l = old;
+	l->count = 0;
+}
+
 // Kinematic objects, to where they are at an instant (s).
 static void drive(ob_ode_baseline *m, double time)
 {
@@ -224,8 +330,15 @@ static void drive(ob_ode_baseline *m, double time)
 	}
 }
 
+void ob_ode_baseline_kick(ob_ode_baseline *m, uint32_t id, ob_vec3 impulse, ob_vec3 twist)
+{
+	follow_passports(m); // it may be new
+	ob_ode_world_kick(m->world, id, impulse, twist);
+}
+
 void ob_ode_baseline_step(ob_ode_baseline *m)
 {
+	const bool scripts = ob_universe_step_data(m->u)->script_of;
 	const double h = m->run->step_length / m->run->substeps;
 	follow_passports(m);
 	for (uint32_t i = 0; i < m->run->substeps; i++) {
@@ -236,7 +349,11 @@ void ob_ode_baseline_step(ob_ode_baseline *m)
 			ob_step_fail(m->u, full ? OB_STEP_PAIRS_FULL : OB_STEP_ENGINE, culprit);
 			return;
 		}
+		if (scripts)
+			note_touches(m);
 	}
+	if (scripts)
+		end_touches(m);
 	publish_all(m);
 	publish_pairs(m);
 }

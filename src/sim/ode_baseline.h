@@ -14,9 +14,12 @@ ob_ode_baseline *ob_ode_baseline_create(ob_universe *u);
 void ob_ode_baseline_destroy(ob_ode_baseline *m); // NULL is allowed
 
 // One step: takes in and drops objects as the passports say, steps, publishes all motions as of step
-// ob_step_count(u) + 1, and writes the touching pairs to the step data. Completing the step is left to the caller.
+// ob_step_count(u) + 1, writes the touching pairs to the step data, and
+// notes those that have begun to touch for their scripts. Completing the step is left to the caller.
 // What goes wrong fails the step (ob_step_failed).
 void ob_ode_baseline_step(ob_ode_baseline *m);
+// Between two steps: gives an object an impulse (N s) at its centre, and one of rotation (N m s).
+void ob_ode_baseline_kick(ob_ode_baseline *m, uint32_t id, ob_vec3 impulse, ob_vec3 twist);
 // Of the last step: dynamic objects that are not asleep; pairs that touch.
 uint32_t ob_ode_baseline_awake(const ob_ode_baseline *m);
 uint32_t ob_ode_baseline_pairs(const ob_ode_baseline *m);

@@ -5,6 +5,7 @@
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/commit.h"
+#include "sim/ode_baseline.h"
 #include "sim/publish.h"
 
 // ---- who runs
@@ -111,9 +112,10 @@ static bool same_vector(ob_vec3 a, ob_vec3 b)
 }
 
 // true: it moves otherwise from now on
-static bool change_object(ob_universe *u, uint32_t id, ob_script_cell *c)
+static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
+	ob_universe *u = s->u;
+	const ob_step_data *data = s->data;
 	const bool body = moves(data, id);
 	ob_passport p = *ob_passport_of(u, id);
 	bool other = false;
@@ -133,7 +135,9 @@ static bool change_object(ob_universe *u, uint32_t id, ob_script_cell *c)
 	}
 	const ob_vec3 none = { 0 };
 	const bool pushed = body && c->asks & OB_SCRIPT_ASKS_PUSH;
-	if (other || pushed)
+	if (s->baseline && pushed) // which follows forces and torques by itself
+		ob_ode_baseline_kick(s->baseline, id, c->push, c->twist);
+	else if (!s->baseline && (other || pushed))
 		set_going(u, id, pushed ? c->push : none, pushed ? c->twist : none);
 	return other || pushed;
 }
@@ -188,9 +192,9 @@ static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_c
 	}
 }
 
-bool ob_scripts_carry_out(ob_universe *u)
+bool ob_scripts_carry_out(ob_sim *s)
 {
-	ob_step_data *data = ob_universe_step_data(u);
+	ob_step_data *data = s->data;
 	ob_script_counts *count = data->script_counts;
 	bool other = false;
 	count->requests = 0;
@@ -200,7 +204,7 @@ bool ob_scripts_carry_out(ob_universe *u)
 		ob_script_turn *turn = &data->script_turn[cell];
 		ob_script_cell *c = &data->script_cell[cell];
 		if (c->asks & ~(uint32_t)(OB_SCRIPT_ASKS_POST | OB_SCRIPT_ASKS_ERROR))
-			other |= change_object(u, turn->object, c);
+			other |= change_object(s, turn->object, c);
 		if (c->asks & OB_SCRIPT_ASKS_POST)
 			post_all(data, turn, c);
 		count->failed += (c->asks & OB_SCRIPT_ASKS_ERROR) != 0;

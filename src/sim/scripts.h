@@ -12,18 +12,11 @@
 // The scheduling worker's. Whether a script is due before the coming step; lists those that are, once for each step.
 bool ob_scripts_due(ob_universe *u);
 // After they have run: carries out what they have asked for. true: an object moves, or will, otherwise than was known.
-bool ob_scripts_carry_out(ob_universe *u);
+bool ob_scripts_carry_out(ob_sim *s);
 // Whether the host has creations and removals to carry out now.
 bool ob_scripts_have_requests(const ob_universe *u);
 
 // A worker's: runs those of the list that it gets.
 void ob_scripts_run(ob_sim *s);
-
-// The torque (N m, world frame) that the object's script has set; 0 without a script.
-static inline ob_vec3 ob_script_torque(const ob_step_data *data, uint32_t id)
-{
-	const uint32_t cell = data->script_of ? data->script_of[id] : 0;
-	return cell ? data->script_cell[cell - 1].torque : ob_v3(0, 0, 0);
-}
 
 #endif

@@ -308,10 +308,10 @@ static ob_phase begin_step(const scheduler *c)
 	const uint64_t step = ob_step_count(c->u);
 	if (must_pause(c))
 		return OB_PHASE_PAUSE;
-	if (c->settings->monolith)
-		return OB_PHASE_BASELINE;
 	if (ob_scripts_due(c->u))
 		return OB_PHASE_SCRIPTS;
+	if (c->settings->monolith)
+		return OB_PHASE_BASELINE;
 	if (!(count->awake || count->kinematic) || !count->pairs)
 		count->next_check = UINT32_MAX;
 	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : build_islands(c);
@@ -357,10 +357,12 @@ static ob_phase after_broadphase_start(const scheduler *c)
 static ob_phase after_scripts(const scheduler *c)
 {
 	uint32_t queries;
-	if (ob_scripts_carry_out(c->u))
+	if (ob_scripts_carry_out(c->sim))
 		count_awake(c);
 	if (ob_scripts_have_requests(c->u))
 		return OB_PHASE_PAUSE;
+	if (c->settings->monolith)
+		return OB_PHASE_BASELINE;
 	ob_requery_list(c->u, &queries);
 	return queries ? OB_PHASE_BROADPHASE_START : OB_PHASE_FORECAST;
 }

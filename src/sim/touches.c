@@ -19,18 +19,19 @@ void ob_touches_begin(ob_sim *s, const ob_island *is)
 		if (!feels(data, id))
 			continue;
 		s->island.feels = true;
-		ob_commit_touch(s, id, OB_NO_OBJECT, 0, ob_v3(0, 0, 0));
+		ob_commit_touch(s->u, id, OB_NO_OBJECT, 0, ob_v3(0, 0, 0));
 	}
 }
 
-void ob_touches_note(ob_sim *s, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
+void ob_touches_note(ob_universe *u, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
 {
-	if (!s->data->script_of)
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (!data->script_of)
 		return;
-	if (feels(s->data, a))
-		ob_commit_touch(s, a, b, impulse, point);
-	if (feels(s->data, b))
-		ob_commit_touch(s, b, a, impulse, point);
+	if (feels(data, a))
+		ob_commit_touch(u, a, b, impulse, point);
+	if (feels(data, b))
+		ob_commit_touch(u, b, a, impulse, point);
 }
 
 void ob_touches_note_solved(ob_sim *s)
@@ -48,7 +49,7 @@ void ob_touches_note_solved(ob_sim *s)
 			point = ob_madd(point, 1. / c->points, ob_add(w->body[c->a].p, c->arm_a[j]));
 		}
 		if (impulse > 0)
-			ob_touches_note(s, w->body[c->a].id, w->body[c->b].id, impulse, point);
+			ob_touches_note(s->u, w->body[c->a].id, w->body[c->b].id, impulse, point);
 	}
 }
 
@@ -65,6 +66,6 @@ void ob_touches_note_impact(ob_sim *s, const ob_impact_instant *i)
 	ob_vec3 point = { 0 };
 	for (int j = 0; j < i->m.points; j++)
 		point = ob_madd(point, 1. / i->m.points, i->m.at[j]);
-	ob_touches_note(s, w->body[c->a].id, w->body[c->b].id,
+	ob_touches_note(s->u, w->body[c->a].id, w->body[c->b].id,
 			fabs(ob_dot(change, i->m.normal)) / w->body[row].inv_mass, point);
 }

@@ -203,4 +203,11 @@ static inline uint32_t ob_pairs_count(const ob_step_data *data)
 	return data->count->pairs < data->pairs_max ? data->count->pairs : data->pairs_max;
 }
 
+// The torque (N m, world frame) that the object's script has set; 0 without a script.
+static inline ob_vec3 ob_script_torque(const ob_step_data *data, uint32_t id)
+{
+	const uint32_t cell = data->script_of ? data->script_of[id] : 0;
+	return cell ? data->script_cell[cell - 1].torque : ob_v3(0, 0, 0);
+}
+
 #endif
