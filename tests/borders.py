@@ -41,7 +41,7 @@ ARROWS = {
     'render': 'measure mesh scene motion base',
     'record': 'measure mesh scene table settings motion base',
     'paper': 'host measure render reference plot experiment scene table settings base',
-    'serve': 'record measure host scene table settings motion base',
+    'serve': 'record measure mesh host scene table settings motion base',
     'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],

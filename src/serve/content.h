@@ -12,6 +12,7 @@ typedef struct ob_content {
 	const char *tag; // entity tag with its quotes: hash of the bytes
 	const unsigned char *bytes;
 	size_t size;
+	bool lasting; // its path says its bytes, so it need not be asked for again
 } ob_content;
 
 // NULL: nothing is there. Paths of requests begin with '/'; all scripts in one, for a page that needs nobody, are

@@ -22,7 +22,7 @@ static void put_colour(ob_message *m, const char *name, const float c[3])
 	put_numbers(m, name, (double[]){ c[0], c[1], c[2] }, 3);
 }
 
-ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info)
+ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info, const ob_content *mesh)
 {
 	const ob_scene *scene = c->scene;
 	const ob_look_def *look = &scene->look;
@@ -53,6 +53,11 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *
 		put_vec3(m, "target", camera->target);
 		ob_message_print(m, ",\"fov\":%.9g,\"automatic\":%s}", camera->fov,
 				 camera->automatic ? "true" : "false");
+	}
+	ob_message_print(m, "],\"meshes\":[");
+	for (uint32_t i = 0; mesh && i < scene->meshes; i++) {
+		ob_message_print(m, i ? "," : "");
+		ob_message_put_json(m, mesh[i].path + 1); // as the page sees it
 	}
 	ob_message_print(m, "]}}");
 	return m;

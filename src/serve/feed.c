@@ -253,7 +253,10 @@ static void put_object(ob_message *out, const ob_feed_source *source, const know
 	ob_message_put_u32(out, k->id);
 	ob_message_put_u32(out, k->generation);
 	ob_message_put_u8(out, p->shape);
-	ob_message_put_u8(out, (k->fixed ? OB_FEED_STATIC : 0) | (p->flags & OB_OBJECT_FROZEN ? OB_FEED_FROZEN : 0));
+	ob_message_put_u8(out, (k->fixed ? OB_FEED_STATIC : 0) | (p->flags & OB_OBJECT_FROZEN ? OB_FEED_FROZEN : 0) |
+				       (p->mesh ? OB_FEED_LOOKS : 0) |
+				       (p->flags & OB_OBJECT_MESH_COLOUR ? OB_FEED_MESH_COLOUR : 0) |
+				       (p->flags & OB_OBJECT_MESH_SURFACE ? OB_FEED_MESH_SURFACE : 0));
 	ob_message_put_u8(out, (unsigned)name);
 	ob_message_put_u8(out, (unsigned)lround(15 * fminf(fmaxf(p->roughness, 0), 1)) |
 				       16 * (unsigned)lround(15 * fminf(fmaxf(p->metal, 0), 1)));
@@ -263,6 +266,8 @@ static void put_object(ob_message *out, const ob_feed_source *source, const know
 		ob_message_put_f32(out, p->colour[i]);
 	if (p->shape == OB_SHAPE_HULL)
 		put_hull(out, source, p->hull);
+	if (p->mesh)
+		ob_message_put_u8(out, p->mesh);
 	ob_message_put(out, p->name, name);
 }
 
@@ -478,5 +483,20 @@ ob_message *ob_feed_contacts(ob_feed *f)
 		put_vec3(out, f->contact[i].normal);
 		ob_message_put_f32(out, f->contact[i].impulse);
 	}
+	return whole_or_none(out);
+}
+
+ob_message *ob_feed_mesh(const ob_mesh *m, uint32_t number)
+{
+	ob_message *out = ob_message_new(false);
+	if (!out)
+		return NULL;
+	ob_message_put_u8(out, OB_FEED_MESH);
+	ob_message_put_u8(out, number);
+	ob_message_put(out, &(uint16_t){ 0 }, 2);
+	ob_message_put_u32(out, m->vertices);
+	ob_message_put_u32(out, m->indices);
+	ob_message_put(out, m->vertex, m->vertices * sizeof *m->vertex);
+	ob_message_put(out, m->index, m->indices * sizeof *m->index);
 	return whole_or_none(out);
 }

@@ -12,11 +12,13 @@
 //      u32 removed, u32 created, u32 motions; then so many of each:
 //        removed      u32 id
 //        created      (or one that was created before, and looks otherwise from now on)
-//                     u32 id, generation; u8 shape; u8 flags (1: static; 2: frozen); u8 bytes of the name;
+//                     u32 id, generation; u8 shape; u8 flags (1: static; 2: frozen; 4: it looks like a mesh,
+//                     8: whose colours are shown, 16: whose surface is); u8 bytes of the name;
 //                     u8 surface: roughness, of 15, and 16 times metal, of 15
 //                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB);
 //                     of a hull: u8 corners, u8 faces, u16 number, f32 p[3] of each corner (body's frame), and of each
-//                     face u8 corners, then u8 of each, counterclockwise; the name (UTF-8)
+//                     face u8 corners, then u8 of each, counterclockwise;
+//                     of what looks like a mesh: u8 its number, from 1; the name (UTF-8)
 //        motion       id less the one before, in groups of 7 bits, low first, bit 7 on all but the last;
 //                     u8 kind, and 4: wide, 8: accelerated, 16: begun; f32 p[3]; i16 q[4] (w x y z, of 32767);
 //                     if begun: f32 s before time; if accelerated: f32 a[3]; if it swings: f64 frequency (rad/s);
@@ -24,6 +26,11 @@
 //
 //      u8  2          u8 0    u16 0    u32 contacts    f64 time; then so many:
 //                     f32 p[3], n[3], impulse (N s)
+//
+//      u8  3          u8 number of a mesh, from 1    u16 0    u32 vertices, indices; then so many:
+//                     f32 p[3], n[3], colour[3] (linear RGB; below 0: the object's), surface (15 times the metal,
+//                     whole, and then the roughness, below 1; below 0: the object's)
+//                     u32 vertex: three a triangle, counterclockwise
 //
 // One thread's.
 #ifndef OB_SERVE_FEED_H
@@ -33,11 +40,18 @@
 
 #include "host/pace.h"
 #include "host/roster.h"
+#include "mesh/mesh.h"
 #include "serve/message.h"
 
-enum { OB_FEED_MOTIONS = 1, OB_FEED_CONTACTS = 2 }; // first byte of a message
+enum { OB_FEED_MOTIONS = 1, OB_FEED_CONTACTS = 2, OB_FEED_MESH = 3 }; // first byte of a message
 enum { OB_FEED_VOID = 1, OB_FEED_PAUSED = 2 }; // its flags
-enum { OB_FEED_STATIC = 1, OB_FEED_FROZEN = 2 }; // an object's
+enum { // an object's
+	OB_FEED_STATIC = 1,
+	OB_FEED_FROZEN = 2,
+	OB_FEED_LOOKS = 4,
+	OB_FEED_MESH_COLOUR = 8,
+	OB_FEED_MESH_SURFACE = 16,
+};
 
 // How a motion goes on from its instant.
 typedef enum ob_feed_kind {
@@ -77,5 +91,7 @@ ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace);
 ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace);
 // Where objects touch. NULL: out of memory.
 ob_message *ob_feed_contacts(ob_feed *f);
+// A mesh of the scene: content, which never changes. NULL: out of memory.
+ob_message *ob_feed_mesh(const ob_mesh *m, uint32_t number);
 
 #endif

@@ -49,15 +49,16 @@ static bool recorded_passport(const void *of, uint32_t id, ob_passport *out)
 	return is_present(s, id);
 }
 
-// A record has no versions. What can look otherwise is a colour, and what is frozen: its channels, to 2^-20, and a bit
-// are the version.
+// A record has no versions. What can look otherwise is a colour, whose it is, and what is frozen: its channels, to
+// 2^-20, a bit, and another number where it is a mesh's are the version.
 static uint64_t recorded_passport_version(const void *of, uint32_t id)
 {
 	const ob_snapshot *s = ob_recording_state(of);
 	uint64_t version = is_present(s, id) && s->passport[id].flags & OB_OBJECT_FROZEN;
 	for (int i = 0; i < 3 && is_present(s, id); i++)
 		version = version << 21 | (uint64_t)lrintf(0x1p20f * fminf(fmaxf(s->passport[id].colour[i], 0), 1));
-	return version;
+	const bool by_mesh = is_present(s, id) && s->passport[id].flags & OB_OBJECT_MESH_COLOUR;
+	return by_mesh ? ~version : version;
 }
 
 static bool recorded_motion(const void *of, uint32_t id, ob_motion *out)
@@ -184,7 +185,20 @@ static void put_text(ob_message *m, const char *name, const char *text)
 	ob_message_put_json(m, text);
 }
 
-// What comes first: both JSON messages.
+static bool put_meshes(const ob_scene *s, ob_message *out)
+{
+	bool ok = true;
+	for (uint32_t i = 0; i < s->meshes && ok; i++) {
+		ob_message *mesh = ob_feed_mesh(&s->mesh[i], i + 1);
+		ok = mesh;
+		if (mesh)
+			put(out, mesh);
+		ob_message_release(mesh);
+	}
+	return ok;
+}
+
+// What comes first: both JSON messages, and what does not change.
 static bool put_head(const film *f, ob_message *out)
 {
 	const ob_recording_info *i = ob_recording_get_info(f->recording);
@@ -194,7 +208,7 @@ static bool put_head(const film *f, ob_message *out)
 	const ob_server_config config = { .look_only = true, .scene = &i->scene, .version = i->commit };
 	snprintf(universe.name, sizeof universe.name, "%s", i->universe);
 	snprintf(universe.isolation, sizeof universe.isolation, "%s", i->isolation);
-	ob_message *welcome = ob_facts_welcome(&config, &universe), *about = ob_message_new(true);
+	ob_message *welcome = ob_facts_welcome(&config, &universe, NULL), *about = ob_message_new(true);
 	if (welcome && about) {
 		put(out, welcome);
 		ob_message_print(about, "{\"film\":{\"begin\":%.17g,\"end\":%.17g,\"interval\":%.17g,\"seed\":\"%llu\"",
@@ -209,7 +223,7 @@ static bool put_head(const film *f, ob_message *out)
 		ob_message_print(about, "]}}");
 		put(out, about);
 	}
-	bool ok = welcome && about && !welcome->failed && !about->failed && !out->failed;
+	bool ok = welcome && about && put_meshes(&i->scene, out) && !welcome->failed && !about->failed && !out->failed;
 	ob_message_release(welcome);
 	ob_message_release(about);
 	return ok;

@@ -2,7 +2,7 @@
 // been told, one after the other, in one piece.
 //
 //   gzip of:   u32 bytes, a message;  u32 bytes, a message;  ..       little-endian
-//              {"welcome": ..}, {"film": ..}, then those of feed.h, in the order of their times
+//              {"welcome": ..}, {"film": ..}, the meshes, then the others of feed.h, in the order of their times
 //
 // {"film": begin, end, interval (s), created, version, commit, objects: [[id, generation, mass, friction, restitution]
 // ..], events: [[time, came (1) or went (-1), id, name] ..]}

@@ -88,6 +88,13 @@ static int refuse(struct lws *wsi, unsigned status, const char *text)
 	return end_transaction(wsi);
 }
 
+// By default a content is kept, but asked for by its tag each time.
+static void add_caching(head *h, const ob_content *c)
+{
+	add(h, "etag:", c->tag);
+	add(h, "cache-control:", c->lasting ? "private, max-age=31536000, immutable" : "no-cache");
+}
+
 static const ob_content *find(const char *path, const ob_content *own)
 {
 	for (const ob_content *c = own; c->path; c++) {
@@ -111,8 +118,7 @@ int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path,
 	if (lws_hdr_copy(wsi, header, sizeof header, WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 &&
 	    ob_content_has_tag(header, c->tag)) {
 		begin_head(&h, wsi, HTTP_STATUS_NOT_MODIFIED, c->type, LWS_ILLEGAL_HTTP_CONTENT_LEN);
-		add(&h, "etag:", c->tag);
-		add(&h, "cache-control:", "no-cache");
+		add_caching(&h, c);
 		return write_head(&h) ? end_transaction(wsi) : -1;
 	}
 	ob_range_kind range = OB_RANGE_ALL;
@@ -123,8 +129,7 @@ int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path,
 		return refuse(wsi, HTTP_STATUS_REQ_RANGE_NOT_SATISFIABLE, "there are not so many bytes\n");
 	begin_head(&h, wsi, range == OB_RANGE_PART ? HTTP_STATUS_PARTIAL_CONTENT : HTTP_STATUS_OK, c->type,
 		   end - first);
-	add(&h, "etag:", c->tag);
-	add(&h, "cache-control:", "no-cache"); // kept, but asked for by its tag each time
+	add_caching(&h, c);
 	add(&h, "accept-ranges:", "bytes");
 	if (range == OB_RANGE_PART) {
 		snprintf(part, sizeof part, "bytes %zu-%zu/%zu", first, end - 1, c->size);

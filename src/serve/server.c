@@ -20,8 +20,14 @@ static const double interval = 1. / 60; // s, between two looks at the universe
 static const double share = .3; // .. of the time at most that looking may take
 static const double detail_interval = .25; // s, between two of the statistics, and of what is inspected
 static const double commands_rate = 200, creations_rate = 40; // 1/s, of one client
-static const char film_path[] = "/recording";
+static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
 enum { SEND_BUFFER = 1 << 18 }; // bytes: what the kernel keeps for a client; more would only be old when it comes
+
+// What a content of this server's own is made of
+typedef struct own_content {
+	ob_message *bytes; // a film's are not its own
+	char path[40], tag[24];
+} own_content;
 
 struct ob_server {
 	ob_server_config config;
@@ -29,9 +35,8 @@ struct ob_server {
 	ob_pace *pace;
 	char token[33], url[160];
 	int port; // that it was given
-	ob_message *film_page; // NULL: a universe is served
-	char tag[2][24]; // of the page and of the film
-	ob_content own[3]; // both; ends with one without a path
+	own_content *own_bytes; // what belongs to own
+	ob_content *own; // of a film its page and itself, else the scene's meshes; ends with one without a path
 
 	pthread_t thread;
 	pthread_mutex_t lock; // guards ending
@@ -250,7 +255,8 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 	const char *why = NULL;
 	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback))
 		why = "this is not the name of this server";
-	else if (strcmp(path, film_path) == 0 && !has_token(s, wsi))
+	else if ((strcmp(path, film_path) == 0 || strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
+		 !has_token(s, wsi))
 		why = "the token is missing or wrong: use the address that obsim serve has printed";
 	if (!why)
 		return ob_http_answer_request(wsi, a, path, s->own);
@@ -274,7 +280,7 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 	s->count++;
 	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
 	ob_universe_get_info(ob_host_universe(s->host), &info);
-	send_one(c, ob_facts_welcome(&s->config, &info));
+	send_one(c, ob_facts_welcome(&s->config, &info, s->own));
 	send_one(c, ob_feed_whole(s->feed, &pace));
 	send_one(c, ob_facts_statistics(s->host, s->count));
 }
@@ -434,26 +440,58 @@ static bool open_context(ob_server *s, ob_error *e)
 }
 
 // By which a browser knows that it has the same already (Fowler, Noll, Vo: FNV-1a).
-static void make_tag(const ob_message *m, char tag[24])
+static uint64_t hash_of(const ob_message *m)
 {
 	uint64_t hash = 0xcbf29ce484222325;
 	for (size_t i = 0; i < m->size; i++)
 		hash = (hash ^ m->bytes[i]) * 0x100000001b3;
-	snprintf(tag, 24, "\"%016llx\"", (unsigned long long)hash);
+	return hash;
 }
 
-static bool prepare_film(ob_server *s, ob_error *e)
+// Content number i of the server's own; path: NULL: its hash names it. bytes: must last as long as the server.
+static void add_own(ob_server *s, uint32_t i, const char *path, const char *type, const ob_message *bytes)
+{
+	own_content *o = &s->own_bytes[i];
+	const unsigned long long hash = hash_of(bytes);
+	snprintf(o->tag, sizeof o->tag, "\"%016llx\"", hash);
+	if (path)
+		snprintf(o->path, sizeof o->path, "%s", path);
+	else
+		snprintf(o->path, sizeof o->path, "%s%016llx", meshes_path, hash);
+	s->own[i] = (ob_content){ o->path, type, o->tag, bytes->bytes, bytes->size, !path };
+}
+
+static bool prepare_own(ob_server *s, ob_error *e)
 {
 	const ob_message *film = s->config.film;
-	s->film_page = ob_film_page_served();
-	if (!s->film_page)
-		return ob_fail(e, "out of memory");
-	make_tag(s->film_page, s->tag[0]);
-	make_tag(film, s->tag[1]);
-	s->own[0] = (ob_content){ "/index.html", "text/html; charset=utf-8", s->tag[0], s->film_page->bytes,
-				  s->film_page->size };
-	s->own[1] = (ob_content){ film_path, "application/gzip", s->tag[1], film->bytes, film->size };
-	return true;
+	const ob_scene *scene = s->config.scene;
+	const uint32_t count = film ? 2 : scene->meshes;
+	s->own_bytes = calloc(count + 1, sizeof *s->own_bytes);
+	s->own = calloc(count + 1, sizeof *s->own);
+	bool ok = s->own_bytes && s->own;
+	if (ok && film) {
+		s->own_bytes[0].bytes = ob_film_page_served();
+		ok = s->own_bytes[0].bytes;
+		if (ok) {
+			add_own(s, 0, "/index.html", "text/html; charset=utf-8", s->own_bytes[0].bytes);
+			add_own(s, 1, film_path, "application/gzip", film);
+		}
+	}
+	for (uint32_t i = 0; i < count && ok && !film; i++) {
+		s->own_bytes[i].bytes = ob_feed_mesh(&scene->mesh[i], i + 1);
+		ok = s->own_bytes[i].bytes;
+		if (ok)
+			add_own(s, i, NULL, "application/octet-stream", s->own_bytes[i].bytes);
+	}
+	return ok || ob_fail(e, "out of memory");
+}
+
+static void release_own(ob_server *s)
+{
+	for (uint32_t i = 0; s->own_bytes && s->own && s->own[i].path; i++)
+		ob_message_release(s->own_bytes[i].bytes);
+	free(s->own_bytes);
+	free(s->own);
 }
 
 ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
@@ -469,7 +507,7 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 	s->pace = pace;
 	pthread_mutex_init(&s->lock, NULL);
 	s->feed = h ? ob_feed_create(ob_host_universe(h), ob_host_roster(h)) : NULL;
-	bool ready = make_token(s, e) && (!c->film || prepare_film(s, e)) && open_context(s, e) &&
+	bool ready = make_token(s, e) && prepare_own(s, e) && open_context(s, e) &&
 		     (s->feed || c->film || ob_fail(e, "out of memory"));
 	if (ready) {
 		if (s->feed)
@@ -484,7 +522,7 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 	if (s->context)
 		lws_context_destroy(s->context);
 	ob_feed_destroy(s->feed);
-	ob_message_release(s->film_page);
+	release_own(s);
 	pthread_mutex_destroy(&s->lock);
 	free(s);
 	return NULL;
@@ -506,7 +544,7 @@ void ob_server_stop(ob_server *s)
 	pthread_join(s->thread, NULL);
 	lws_context_destroy(s->context);
 	ob_feed_destroy(s->feed);
-	ob_message_release(s->film_page);
+	release_own(s);
 	pthread_mutex_destroy(&s->lock);
 	free(s);
 }

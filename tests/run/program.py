@@ -17,6 +17,7 @@ import unittest
 
 OBSIM = os.environ["OBSIM"]
 SCENES = os.environ["SCENES"]
+MESHES = os.environ.get("MESHES") # whether obsim can read them
 FOR_EVER = "7e7"  # s to simulate, about as many as there may be: at rest, millions of steps pass in a second
 PATIENCE = 600  # s, for one call; a sanitizer slows it down some ten times, and so may whoever else uses the machine
 

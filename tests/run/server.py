@@ -104,8 +104,11 @@ class Viewer:
 				at += 4 + 12 * corners
 				for _ in range(faces):
 					at += 1 + m[at]
+			mesh = 0
+			if what & 4:
+				mesh, at = m[at], at + 1
 			text, at = m[at:at + name].decode(), at + name
-			self.objects[i] = {"generation": generation, "shape": shape, "name": text, "static": bool(what & 1), "frozen": bool(what & 2)}
+			self.objects[i] = {"mesh": mesh, "generation": generation, "shape": shape, "name": text, "static": bool(what & 1), "frozen": bool(what & 2)}
 			self.created.append(i)
 		i = -1
 		for _ in range(motions):
@@ -142,7 +145,11 @@ class Case(program.Case):
 
 	def start(self, *words, scene="stack"):
 		"""Returns the token, if there is one."""
-		self.run_ = self.start_universe(program.scene(scene), *words, command="serve")
+		return self.serve_file(program.scene(scene), *words)
+
+	def serve_file(self, path, *words):
+		"""The same of any scene."""
+		self.run_ = self.start_universe(path, *(words or ("--listen", "127.0.0.1:0")), command="serve")
 		where, _, token = self.run_.stdout.readline().rsplit(" ", 1)[1].strip().partition("#token=")
 		self.port = int(where.rstrip("/").rsplit(":", 1)[1])
 		return token

@@ -10,6 +10,7 @@ import os
 import unittest
 
 import browser
+import glb
 import program
 import server
 
@@ -25,6 +26,7 @@ capsule { radius = .15, length = .5, at = { -1.5, -1, 1 }, spin = { 0, 5, 1 }, d
 cylinder { radius = .25, length = .5, at = { 0, -1.4, 1.5 }, born = .5, spin = { 4, 0, 0 } }
 hull { points = { { 0, 0, 0 }, { .7, 0, 0 }, { 0, .6, 0 }, { .3, .1, .6 } }, at = { -2.6, -.5, 1 }, colour = "#7a5195", spin = { 0, 4, 2 } }
 """
+MESHED = 'sphere { radius = .25, at = { -1.2, -2.6, 1.5 }, velocity = { 0, 1, 0 }, spin = { 3, 1, 0 }, mesh = "cube.glb" }'
 TIMES = .4, 49 / 60 + .005, 1.75  # s: in the air, between two steps, at rest
 # Of 255, the mean difference, and the share of pixels that are off by more than FAR. Edges, of which the ground's grid has
 # most, lie a share of a pixel apart where browser and renderer have not the same rasterizer.
@@ -53,7 +55,9 @@ class Case(server.Case):
 		super().setUp()
 		self.record, scene = self.path("run.h5"), self.path("scene.lua")
 		with open(scene, "w") as f:
-			f.write(SCENE)
+			f.write(SCENE + (MESHED if program.MESHES else ""))
+		with open(self.path("cube.glb"), "wb") as f:
+			f.write(glb.cube(.3, (.02, .4, .1)))
 		program.report(scene, "--record", self.record)
 		self.scene = scene
 

@@ -4,9 +4,11 @@ import os
 import random
 import signal
 import socket
+import struct
 import time
 import unittest
 
+import glb
 import program
 from server import OPEN, Case, Refused, Viewer
 
@@ -100,6 +102,42 @@ class Serve(Case):
 		with self.assertRaisesRegex(Refused, "403"): # a name of its own for this address
 			Viewer(self.port, headers=[f"Host: stranger.example:{self.port}", f"Origin: http://stranger.example:{self.port}"])
 		Viewer(self.port, headers=[f"Origin: http://127.0.0.1:{self.port}"]).close()
+		self.end()
+
+	@unittest.skipUnless(program.MESHES, "built without tinygltf")
+	def test_meshes(self):
+		"""What objects look like is content under its hash, for who has the token."""
+		with open(self.path("cube.glb"), "wb") as f:
+			f.write(glb.cube(.5, (1, 0, 0)))
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("ground {}\nfor i = 1, 3 do sphere { radius = .4, at = { 2 * i, 0, .4 }, mesh = 'cube.glb', mesh_scale = i } end\n")
+		self.serve_file(self.path("scene.lua"))
+		v = self.viewer()
+		self.assertEqual([o["mesh"] for o in v.objects.values()], [0, 1, 2, 3])
+		paths = v.told["welcome"]["meshes"]
+		self.assertEqual(len(set(paths)), 3)
+		get = lambda path, more="": self.http(f"GET {path} HTTP/1.1\nHost: HOST\nConnection: close{more}")
+		for number, path in enumerate(paths, 1):
+			self.assertRegex(path, "^meshes/[0-9a-f]{16}$")
+			head, body = get("/" + path)
+			self.assertIn(" 200 ", head)
+			self.assertIn("immutable", head)
+			kind, told, vertices, indices = struct.unpack_from("<BBxxII", body)
+			self.assertEqual((kind, told, vertices, indices, len(body)), (3, number, 36, 36, 12 + 36 * 40 + 36 * 4))
+			places = [struct.unpack_from("<10f", body, 12 + 40 * i) for i in range(36)]
+			self.assertEqual({abs(x) for p in places for x in p[:3]}, {.5 * number})
+			self.assertEqual({p[6:9] for p in places}, {(1, 0, 0)})
+			head, part = get("/" + path, "\nRange: bytes=12-51")
+			self.assertIn(" 206 ", head)
+			self.assertEqual(part, body[12:52])
+			head, rest = get("/" + path, f'\nIf-None-Match: "{path[7:]}"')
+			self.assertIn(" 304 ", head)
+			self.assertEqual(rest, b"")
+		self.assertIn(" 404 ", get("/meshes/0000000000000000")[0])
+		self.end()
+		token = self.serve_file(self.path("scene.lua"), "--listen", "0.0.0.0:0")
+		self.assertIn(" 403 ", get("/" + paths[0])[0])
+		self.assertIn(" 200 ", get(f"/{paths[0]}?token={token}")[0])
 		self.end()
 
 	def test_token(self):

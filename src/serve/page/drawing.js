@@ -11,7 +11,7 @@ const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes
 const REACH_RANGES = 6, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
 const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RADIUS = 0.025, GOLDEN = 2.39996322972865332;
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
-const INSTANCE = 16, SEGMENT = 11; // floats
+const INSTANCE = 16, SEGMENT = 11, MESH_VERTEX = 10; // floats
 const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1], frozen: [0.6, 0.85, 1, 1] };
 
 const PROGRAMS = {
@@ -160,14 +160,16 @@ function meshOf(body, v, height) {
 function putInstance(out, at, body, eye) {
 	const s = body.size, bevel = (smallest) => Math.min(BEVEL_SHARE * smallest, BEVEL_MOST);
 	let r = s[0], core = [0, 0, 0], rounding = 0;
-	if (body.shape === BOX)
+	if (body.mesh) // it has metres, and so has a hull's
+		[r, core, rounding] = [0, [1, 1, 1], -(body.meshColour ? 1 : 0) - (body.meshSurface ? 2 : 0)];
+	else if (body.shape === BOX)
 		[r, core, rounding] = [0, s, bevel(Math.min(...s))];
 	else if (body.shape === CYLINDER)
 		[r, core] = [bevel(Math.min(s[0], s[1])), [s[0] - bevel(Math.min(s[0], s[1])), s[0] - bevel(Math.min(s[0], s[1])),
 			s[1] - bevel(Math.min(s[0], s[1]))]];
 	else if (body.shape === CAPSULE)
 		core = [0, 0, s[1]];
-	else if (body.shape === HULL) // its mesh has metres
+	else if (body.shape === HULL)
 		[r, core] = [0, [1, 1, 1]];
 	const q = body.q, c = body.shown, surface = Math.round(15 * body.metal) + Math.min(body.roughness, 0.99);
 	out.set([body.p[0] - eye[0], body.p[1] - eye[1], body.p[2] - eye[2], r, q[1], q[2], q[3], q[0], ...core, rounding, ...c, surface], at);
@@ -221,6 +223,7 @@ export class Drawing {
 		const gl = this.gl, set = buildMeshes();
 		this.meshes = set.meshes;
 		this.hulls = new Map(); // number -> { array, count }
+		this.looks = new Map(); // number -> { array, count, radius, buffers }: meshes of the scene
 		this.frameBlock = gl.createBuffer();
 		this.instances = gl.createBuffer();
 		this.segments = gl.createBuffer();
@@ -293,7 +296,7 @@ export class Drawing {
 
 	// ---- a frame
 
-	// bodies: { shape, size, p, q, radius, shown: linear RGB }; look: the scene's (welcome). overlay: see drawSegments.
+	// bodies: { shape, size, p, q, radius, shown: linear RGB; mesh: of looks, if it looks like one }; look: the scene's (welcome). overlay: see drawSegments.
 	draw(bodies, view, look, overlay) {
 		const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
 		const solid = bodies.filter((b) => b.shape !== PLANE), planes = bodies.filter((b) => b.shape === PLANE);
@@ -360,18 +363,42 @@ export class Drawing {
 		return mesh;
 	}
 
-	drawInstances(bodies, view, height) {
-		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []), hulls = new Map();
-		for (const b of bodies) {
-			if (b.shape !== HULL)
-				groups[meshOf(b, view, height)].push(b);
-			else if (hulls.has(b.hull.number))
-				hulls.get(b.hull.number).push(b);
-			else
-				hulls.set(b.hull.number, [b]);
+	// A mesh of the scene, as it is told.
+	addMesh({ number, vertices, indices }) {
+		const gl = this.gl, look = { array: gl.createVertexArray(), count: indices.length, radius: 0, buffers: [gl.createBuffer(), gl.createBuffer()] };
+		for (let i = 0; i < vertices.length; i += MESH_VERTEX)
+			look.radius = Math.max(look.radius, Math.hypot(vertices[i], vertices[i + 1], vertices[i + 2]));
+		gl.bindVertexArray(look.array);
+		gl.bindBuffer(gl.ARRAY_BUFFER, look.buffers[0]);
+		gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
+		[[0, 3, 0], [1, 3, 3], [6, 4, 6]].forEach(([i, size, offset]) => this.attribute(i, size, MESH_VERTEX, offset, 0));
+		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, look.buffers[1]);
+		gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+		gl.bindVertexArray(null);
+		this.looks.set(number, look);
+	}
+
+	forgetMeshes() {
+		for (const look of this.looks.values()) {
+			this.gl.deleteVertexArray(look.array);
+			look.buffers.forEach((b) => this.gl.deleteBuffer(b));
 		}
-		const meshes = [...hulls.values()].map((group) => this.hullMesh(group[0].hull));
-		groups.push(...hulls.values());
+		this.looks.clear();
+	}
+
+	drawInstances(bodies, view, height) {
+		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []), others = new Map(); // hulls and meshes
+		for (const b of bodies) {
+			const own = b.mesh ?? (b.shape === HULL ? this.hullMesh(b.hull) : null);
+			if (!own)
+				groups[meshOf(b, view, height)].push(b);
+			else if (others.has(own))
+				others.get(own).push(b);
+			else
+				others.set(own, [b]);
+		}
+		const meshes = [...others.keys()];
+		groups.push(...others.values());
 		const data = new Float32Array(INSTANCE * bodies.length);
 		groups.flat().forEach((b, i) => putInstance(data, INSTANCE * i, b, view.eye));
 		gl.bindVertexArray(this.bodyArray);
@@ -381,15 +408,17 @@ export class Drawing {
 		groups.forEach((group, k) => {
 			if (!group.length)
 				return;
-			const hull = k < MESHES ? null : meshes[k - MESHES];
-			if (hull) {
-				gl.bindVertexArray(hull.array);
+			const own = k < MESHES ? null : meshes[k - MESHES];
+			if (own) {
+				gl.bindVertexArray(own.array);
 				gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
 			}
 			for (let i = 0; i < 4; i++)
 				this.attribute(2 + i, 4, INSTANCE, INSTANCE * first + 4 * i, 1);
-			if (hull)
-				gl.drawArraysInstanced(gl.TRIANGLES, 0, hull.count, group.length);
+			if (own?.buffers)
+				gl.drawElementsInstanced(gl.TRIANGLES, own.count, gl.UNSIGNED_INT, 0, group.length);
+			else if (own)
+				gl.drawArraysInstanced(gl.TRIANGLES, 0, own.count, group.length);
 			else
 				gl.drawElementsInstanced(gl.TRIANGLES, this.meshes[k].count, gl.UNSIGNED_SHORT, 2 * this.meshes[k].first, group.length);
 			first += group.length;

@@ -58,7 +58,7 @@ def main(output, expander, *contents):
             sys.exit(f'{path}: this would end the element that holds it in a page')
         arrays.append(f'static const unsigned char content_{number}[] = {{{",".join(map(str, data))}}};\n')
         tag = hashlib.sha256(data).hexdigest()[:32]
-        table.append(f'\t{{ "{path}", "{TYPES[pathlib.Path(path).suffix]}", "\\"{tag}\\"", content_{number}, {len(data)} }},\n')
+        table.append(f'\t{{ "{path}", "{TYPES[pathlib.Path(path).suffix]}", "\\"{tag}\\"", content_{number}, {len(data)}, false }},\n')
     text = ''.join(arrays) + 'static const ob_content contents[] = {\n' + ''.join(table) + '};\n'
     pathlib.Path(output).write_text(text, encoding='utf-8')
 

@@ -3,7 +3,7 @@
 import { FREE, STANDS, normalize, poseAt } from './motion.js';
 import { Universe, between } from './universe.js';
 
-const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b; // of a message
+const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b, MESH_BEGINS = 3; // of a message
 const JUMP = 1; // s: farther on, it begins where all is told anew
 const NEWS = 0.15; // s of wall time between two of what is told about the object that is picked
 
@@ -40,8 +40,11 @@ export class Film extends Universe {
 		for (let at = 0; at < buffer.byteLength;) {
 			const size = view.getUint32(at, true), data = buffer.slice(at + LENGTH, at + LENGTH + size);
 			at += LENGTH + size;
-			if (view.getUint8(at - size) === JSON_BEGINS)
+			const first = view.getUint8(at - size);
+			if (first === JSON_BEGINS)
 				this.hear(new TextDecoder().decode(data));
+			else if (first === MESH_BEGINS)
+				this.hear(data);
 			else
 				this.steps.push({ time: view.getFloat64(at - size + TIME_AT, true), data, anew: (view.getUint8(at - size + FLAGS_AT) & VOID) !== 0 });
 		}

@@ -25,8 +25,9 @@ function bodies() {
 	const out = [];
 	for (const o of universe.objects.values()) {
 		const pose = universe.pose(o);
+		const mesh = drawing.looks.get(o.mesh);
 		if (pose)
-			out.push({ id: o.id, shape: o.shape, size: o.size, hull: o.hull, radius: o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: o.colour,
+			out.push({ id: o.id, shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: o.colour,
 				roughness: o.roughness, metal: o.metal, ...pose });
 	}
 	return out;
@@ -67,7 +68,7 @@ function frame(now) {
 	accompany(list, seconds);
 	const view = camera.view(width, height);
 	// What is the same is not drawn again: a universe that is paused costs nothing.
-	const { on } = panel, seen = [universe.time, universe.news, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
+	const { on } = panel, seen = [universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
 		on.contacts].join();
 	if (seen !== shown)
 		drawing.draw(list, view, look, overlay(list, view));
@@ -220,6 +221,7 @@ universe.addEventListener('welcome', (e) => {
 	look = e.detail;
 	cameras = look.cameras;
 	panel.welcome(look);
+	fetchMeshes(look.meshes);
 	if (!camera.placed)
 		camera.set(cameras[0]);
 	camera.placed = true;
@@ -228,6 +230,18 @@ universe.addEventListener('welcome', (e) => {
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
 });
+// Meshes are content, which a browser keeps; a recording tells its own. Until they are here objects look as they collide.
+async function fetchMeshes(paths) {
+	drawing.forgetMeshes();
+	await Promise.all(paths.map(async (path) => {
+		const answer = await fetch(token ? `${path}?token=${encodeURIComponent(token)}` : path);
+		if (!answer.ok)
+			throw new Error(`${path}: ${answer.status}`);
+		universe.hear(await answer.arrayBuffer());
+	})).catch((error) => panel.notice(error.message));
+}
+
+universe.addEventListener('mesh', (e) => drawing.addMesh(e.detail));
 universe.addEventListener('film', (e) => panel.film(e.detail));
 universe.addEventListener('statistics', (e) => panel.statistics(e.detail));
 setInterval(() => {

@@ -4,8 +4,9 @@ import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
 const DELAY = 0.05; // s of wall time by which it looks later than it is told, so that what is told next is there in time
 const PULL = 5; // 1/s: how fast its clock is drawn to the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: farther off, it is set; and nearer, where time stands
-const MOTIONS = 1, CONTACTS = 2, VOID = 1, PAUSED = 2; // of a message
-const STATIC = 1, FROZEN = 2;
+const MOTIONS = 1, CONTACTS = 2, MESH = 3, VOID = 1, PAUSED = 2; // of a message
+const MESH_HEAD = 12, MESH_VERTEX = 10; // bytes; floats
+const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, in which what was foretold goes over to what came
@@ -84,6 +85,8 @@ export class Universe extends EventTarget {
 			this.hearMotions(r);
 		else if (kind === CONTACTS)
 			this.hearContacts(r);
+		else if (kind === MESH)
+			this.hearMesh(r, data);
 	}
 
 	hearMotions(r) {
@@ -115,9 +118,16 @@ export class Universe extends EventTarget {
 	hearObject(r) {
 		const id = r.u32(), generation = r.u32(), shape = r.u8(), flags = r.u8(), bytes = r.u8(), surface = r.u8();
 		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = shape === HULL ? hearHull(r) : null;
-		const name = r.text(bytes);
+		const mesh = flags & LOOKS ? r.u8() : 0, name = r.text(bytes);
 		const known = this.objects.get(id); // it looks otherwise, and moves as it did
-		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
+		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, mesh, meshColour: (flags & MESH_COLOUR) !== 0, meshSurface: (flags & MESH_SURFACE) !== 0, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
+	}
+
+	hearMesh(r, data) {
+		const number = r.u8();
+		r.u16();
+		const floats = MESH_VERTEX * r.u32(), indices = r.u32();
+		this.tell('mesh', { number, vertices: new Float32Array(data, MESH_HEAD, floats), indices: new Uint32Array(data, MESH_HEAD + 4 * floats, indices) });
 	}
 
 	hearMotion(r, id, time) {
