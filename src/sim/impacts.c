@@ -556,6 +556,19 @@ static uint32_t body_of_set(ob_sim *s, ob_impacts *x, uint32_t row, double t)
 	return i;
 }
 
+// m: of the plane in which convex bodies touch, along its normal from "centre". Points that are in each other, one deeper
+// than another, are no such plane, and could not all leave as restitution asks: a body that tilts moves them towards
+// each other. Where all are to stop, they can.
+static double level_of(const ob_manifold *m, double near, ob_vec3 centre)
+{
+	double sum = 0;
+	int points = 0;
+	for (int j = 0; j < m->points; j++)
+		if (m->gap[j] <= near)
+			sum += ob_dot(m->normal, ob_sub(m->at[j], centre)), points++;
+	return points ? sum / points : 0;
+}
+
 static void add_points(ob_sim *s, ob_impact_instant *i, double t)
 {
 	ob_island_work *w = &s->island;
@@ -564,15 +577,19 @@ static void add_points(ob_sim *s, ob_impact_instant *i, double t)
 	const uint32_t a = body_of_set(s, x, c->a, t), b = body_of_set(s, x, c->b, t);
 	const ob_vec3 pa = x->at[a].p, pb = x->at[b].p;
 	const double near = (is_plastic(c) ? touching : OB_IMPACT_SIMULTANEOUS) * w->unit.length;
+	const double level = level_of(&i->m, near, pa);
 	i->first_point = x->points;
 	for (int j = 0; j < i->m.points; j++) {
+		const ob_vec3 arm = ob_sub(i->m.at[j], pa);
+		const double off = is_plastic(c) ? 0 : level - ob_dot(i->m.normal, arm);
+		const ob_vec3 at = ob_madd(i->m.at[j], off, i->m.normal);
 		if (i->m.gap[j] > near)
 			continue;
 		x->point[x->points] = (ob_impact_point){ .a = a,
 							 .b = b,
 							 .normal = i->m.normal,
-							 .arm_a = ob_sub(i->m.at[j], pa),
-							 .arm_b = ob_sub(i->m.at[j], pb),
+							 .arm_a = ob_sub(at, pa),
+							 .arm_b = ob_sub(at, pb),
 							 .mu = c->mu,
 							 .e = c->rebounds < max_rebounds ? c->e : 0 };
 		x->points += is_plastic(c) || ob_impact_opening(x->body, &x->point[x->points]) < 0;
