@@ -53,7 +53,8 @@ typedef struct ob_batch {
 	unsigned turning; // lanes whose geometry turns within the substep
 	unsigned slides; // lanes whose friction was at its limit in the last iteration
 	unsigned sweeps; // in the last iteration
-	unsigned active; // lanes that changed a velocity by more than the wake threshold in the last iteration
+	unsigned solved; // isolated lanes that it has solved to the end: it takes no other one
+	unsigned active; // other lanes that changed a velocity by more than the wake threshold in the last iteration
 	lanes n[3], t1[3], t2[3]; // normal (b to a), tangents
 	lanes ja[4][3], jb[4][3]; // angular Jacobian of each normal: r x n
 	lanes fa1[3], fb1[3], fa2[3], fb2[3]; // angular Jacobian of friction: r x t at the centroid
@@ -72,7 +73,8 @@ typedef struct ob_batch {
 	lanes impulse[7], impulse_start[7]; // now; when the substep began
 	lanes bias[4]; // m/s, at which each gap may close
 	lanes turn[7]; // m/s, rad/s: in lanes whose geometry turns, what the rest of the substep will add to each row
-	lanes residual; // (m/s)^2: the square of the largest change of a velocity in the last iteration
+	double changed,
+		residual; // (m/s)^2: of the largest change of a velocity in the last iteration; .. of lanes not solved
 	lanes diag[7], inv_diag[7]; // of A; the inverse is 0 for a row that is not in use
 	lanes coupling[7][7]; // [i][j] = A_ij / A_jj: impulse i does to row j what so much of impulse j does
 } ob_batch;
@@ -87,6 +89,7 @@ typedef struct ob_solver_iteration {
 	double impact_threshold; // m/s: an approach or change above it is an impact
 	bool first; // of the substep: sets the bias from the gaps
 	bool jacobi; // adds the changes to delta instead of the velocities
+	bool ghosts; // velocities change between iterations, also those of isolated lanes
 	double resting_gap, turning_gap; // m: a point that presses keeps a smaller gap; where the geometry turns
 	const ob_body_row *dv; // change of v that is expected in the substep
 } ob_solver_iteration;

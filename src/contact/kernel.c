@@ -542,9 +542,9 @@ PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const fr
 
 // Sweeps a block until it is solved, up to the iteration's number of sweeps; fewer if it changes so much that another
 // iteration will follow. An isolated lane has no later iteration to mend what is left over, so it is solved to the end.
-// alone: there is such a lane. Returns the number of sweeps.
-PER_KIND unsigned solve_block(const ob_batch *b, ob_batch_kind kind, bool alone, const ob_solver_iteration *iteration,
-			      friction_state *f, lanes *x, const lanes *r)
+// alone: there is such a lane. Sets the number of sweeps, and which isolated lanes have been solved.
+PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_solver_iteration *iteration,
+			  friction_state *f, lanes *x, const lanes *r)
 {
 	const bool patches = alone && in_use(kind, 6);
 	lanes step[OB_ROWS];
@@ -571,7 +571,8 @@ PER_KIND unsigned solve_block(const ob_batch *b, ob_batch_kind kind, bool alone,
 				leap_sliding(b, kind, open & isolated & slides, x, step);
 		}
 	}
-	return (unsigned)s - 1;
+	b->sweeps = (unsigned)s - 1;
+	b->solved = lanes_bits(isolated & ~open);
 }
 
 // va, vb of apply for rows that may stand in several lanes: their changes are added one by one, in lane order.
@@ -679,10 +680,10 @@ PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iterat
 		friction_state friction = { .v = v, .model = &b->model };
 		b->model.known =
 			iteration->first ? 0 : b->model.known; // once in a substep, unless nothing else will mend it
-		b->sweeps = solve_block(b, kind, true, iteration, &friction, x, r);
+		solve_block(b, kind, true, iteration, &friction, x, r);
 		b->slides = friction.search.slides & b->live;
 	} else {
-		b->sweeps = solve_block(b, kind, false, iteration, NULL, x, r);
+		solve_block(b, kind, false, iteration, NULL, x, r);
 	}
 	for (int i = 0; i < OB_ROWS; i++) {
 		change[i] = lanes_of(0);
@@ -691,8 +692,12 @@ PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iterat
 		change[i] = x[i] - b->impulse[i];
 		b->impulse[i] = x[i];
 	}
-	b->residual = largest_change(b, kind, change);
-	b->active = lanes_bits(b->residual > square(iteration->wake_threshold)) & b->live;
+	b->solved &= iteration->ghosts ? 0 : ~0u;
+	const lanes changed = largest_change(b, kind, change),
+		    left = lanes_where(lanes_mask(b->live & ~b->solved), changed);
+	b->changed = lanes_largest(changed);
+	b->residual = lanes_largest(left);
+	b->active = lanes_bits(left > square(iteration->wake_threshold));
 	for (int i = 0; i < OB_ROWS; i++)
 		if (in_use(kind, i))
 			jump[i] = x[i] - b->impulse_start[i];

@@ -54,6 +54,13 @@ static inline lanes lanes_sqrt(lanes a)
 {
 	return (lanes){ __builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3]) };
 }
+static inline double lanes_largest(lanes a)
+{
+	double most = a[0];
+	for (int l = 1; l < OB_LANES; l++)
+		most = a[l] > most ? a[l] : most;
+	return most;
+}
 // Four numbers that lie side by side, at any address
 static inline lanes lanes_load(const double *from)
 {

@@ -103,11 +103,12 @@ static void activate_ghosts(ob_island_work *w)
 }
 
 // One iteration over the contacts of active bodies, colour by colour; over all in the first. Returns the largest change
-// of a velocity (m/s).
-static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bool *any_active)
+// of a velocity (m/s) after which another iteration may find something to do: not where a pair that touches nothing
+// else has been solved to the end. changed: the largest of all.
+static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bool *any_active, double *changed)
 {
 	ob_island_work *w = &s->island;
-	lanes residual = lanes_of(0);
+	double residual = 0, most = 0; // squares
 	*any_active = false;
 	for (uint32_t k = 0; k < w->batches; k++) {
 		const uint32_t i = w->batch_order[k];
@@ -121,11 +122,13 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 		ob_batch_solve(b, iteration, w->u, w->v, w->d, w->delta);
 		ob_budget_note(s, OB_LANES - pairs + (b->isolated ? ISOLATED_SWEEP : SWEEP) * b->sweeps);
 		*any_active |= activate_bodies(w, b);
-		residual = lanes_max(residual, b->residual);
+		residual = b->residual > residual ? b->residual : residual;
+		most = b->changed > most ? b->changed : most;
 	}
 	if (iteration->jacobi)
 		add_rows(w, w->u, w->delta);
-	return sqrt(fmax(fmax(residual[0], residual[1]), fmax(residual[2], residual[3])));
+	*changed = sqrt(most);
+	return sqrt(residual);
 }
 
 // Conjugate iterations on u, over all contacts, until none changes a velocity by more than the wake threshold. Returns
@@ -133,7 +136,7 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 static double converge(ob_sim *s, ob_solver_iteration *iteration, uint32_t max_iterations)
 {
 	ob_island_work *w = &s->island;
-	double residual = INFINITY;
+	double residual = INFINITY, changed;
 	bool any_active = true;
 	ob_conjugate_begin(w);
 	for (uint32_t k = 0; k < max_iterations && any_active && !ob_budget_spent(s); k++) {
@@ -144,7 +147,7 @@ static double converge(ob_sim *s, ob_solver_iteration *iteration, uint32_t max_i
 		for (uint32_t i = 0; i < w->batches; i++)
 			w->batch_due[i] = w->iteration;
 		ob_conjugate_note(w);
-		residual = solve_contacts(s, iteration, &any_active);
+		residual = solve_contacts(s, iteration, &any_active, &changed);
 		iteration->first = false;
 	}
 	return residual;
@@ -160,6 +163,7 @@ void ob_solver_converge(ob_sim *s, double enough, uint32_t max_iterations)
 		.impact_threshold = INFINITY,
 		.first = true,
 		.jacobi = is_jacobi(s),
+		.ghosts = ob_ghosts_used(s),
 		.resting_gap = resting_gap * s->island.unit.length,
 		.turning_gap = turning_gap * s->island.unit.length,
 		.dv = s->island.dv,
@@ -207,12 +211,13 @@ void ob_solver_iterate(ob_sim *s)
 		.impact_threshold = impact_threshold * w->unit.speed * w->h / w->substep,
 		.first = true,
 		.jacobi = is_jacobi(s),
+		.ghosts = ob_ghosts_used(s),
 		.resting_gap = resting_gap * w->unit.length,
 		.turning_gap = turning_gap * w->unit.length,
 		.dv = w->dv,
 	};
 	bool any_active = true;
-	double residual = 0;
+	double residual = 0, changed;
 	ob_direct_begin_partial(&w->direct);
 	for (uint32_t k = 0; k < max_extra_iterations * run->iterations && any_active && !ob_budget_spent(s); k++) {
 		if (k == run->iterations)
@@ -221,9 +226,9 @@ void ob_solver_iterate(ob_sim *s)
 		ob_ghosts_read(s, w->u, k);
 		activate_ghosts(w);
 		w->iteration += 1 + (k == 0); // a gap, so that no body is active from the last partial substep
-		residual = solve_contacts(s, &iteration, &any_active);
+		residual = solve_contacts(s, &iteration, &any_active, &changed);
 		if (iteration.first)
-			w->residual = fmax(w->residual, residual);
+			w->residual = fmax(w->residual, changed);
 		iteration.first = false;
 		iteration.block_tolerance = block_tolerance * residual;
 		if (!ob_direct_wanted(s, residual))
