@@ -381,6 +381,11 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 	newton_system y;
 	double start[MAX_DENSE_ROWS];
 	set.share = share;
+	if (s->points == 1 && s->dims == 1) { // a quotient
+		const point_rows *r = s->point;
+		x[0] = fmax(0, -(1 + share * r->e) * r->before[0] / coupling(r, 0, r, 0));
+		return;
+	}
 	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
 	if (s->points > OB_IMPACT_MOST_POINTS) {
 		iterate(&set, MAX_ITERATIONS, x, u);

@@ -100,21 +100,20 @@ static ob_body_at body_at(const ob_island_work *w, uint32_t row, double t)
 	return x;
 }
 
-static ob_placed placed(const ob_sim *s, uint32_t row, const ob_body_at *x)
+static void place(const ob_sim *s, uint32_t row, const ob_body_at *x, ob_placed *out)
 {
 	const ob_body *body = &s->island.body[row];
-	ob_placed out = { .shape = body->shape,
-			  .size = body->size,
-			  .p = x->p,
-			  .r = x->r,
-			  .v = x->v,
-			  .w = x->w,
-			  .inertia = body->inertia,
-			  .a = body->acceleration,
-			  .rest_depth = body->rest_depth,
-			  .far_future = ob_narrowphase_far_future(s),
-			  .hull = body->hull };
-	return out;
+	out->shape = body->shape;
+	out->size = body->size;
+	out->p = x->p;
+	out->r = x->r;
+	out->v = x->v;
+	out->w = x->w;
+	out->inertia = body->inertia;
+	out->a = body->acceleration;
+	out->rest_depth = body->rest_depth;
+	out->far_future = ob_narrowphase_far_future(s);
+	out->hull = body->hull;
 }
 
 // ---- the instant of a contact
@@ -195,7 +194,9 @@ static double rate_of(const ob_body_at *a, const ob_body_at *b, const ob_manifol
 static void find_between(ob_sim *s, const ob_contact *contact, const ob_body_at *a, const ob_body_at *b, ob_manifold *m)
 {
 	const ob_island_work *w = &s->island;
-	ob_placed pa = placed(s, contact->a, a), pb = placed(s, contact->b, b);
+	ob_placed pa, pb;
+	place(s, contact->a, a, &pa);
+	place(s, contact->b, b, &pb);
 	const double closing = ob_contact_speed(w, contact);
 	const double thin = fmin(w->body[contact->a].thickness, w->body[contact->b].thickness);
 	const ob_manifold_finder finder = ob_narrowphase_finder(s);

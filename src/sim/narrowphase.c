@@ -140,23 +140,22 @@ double ob_narrowphase_far_future(const ob_sim *s)
 	return far_future * s->island.unit.time;
 }
 
-static ob_placed placed(const ob_sim *s, uint32_t row)
+static void place(const ob_sim *s, uint32_t row, ob_placed *out)
 {
 	const ob_island_work *w = &s->island;
 	const ob_body *body = &w->body[row];
 	const double *v = w->v[row];
-	ob_placed out = { .shape = body->shape,
-			  .size = body->size,
-			  .p = body->p,
-			  .r = body->r,
-			  .v = ob_v3(v[0], v[1], v[2]),
-			  .w = ob_v3(v[3], v[4], v[5]),
-			  .inertia = body->inertia,
-			  .a = body->acceleration,
-			  .rest_depth = body->rest_depth,
-			  .far_future = ob_narrowphase_far_future(s),
-			  .hull = body->hull };
-	return out;
+	out->shape = body->shape;
+	out->size = body->size;
+	out->p = body->p;
+	out->r = body->r;
+	out->v = ob_v3(v[0], v[1], v[2]);
+	out->w = ob_v3(v[3], v[4], v[5]);
+	out->inertia = body->inertia;
+	out->a = body->acceleration;
+	out->rest_depth = body->rest_depth;
+	out->far_future = ob_narrowphase_far_future(s);
+	out->hull = body->hull;
 }
 
 // Bound of the speed at which any two points of the pair may approach (m/s), with external acceleration.
@@ -190,7 +189,9 @@ static double smaller_thickness(const ob_island_work *w, const ob_contact *conta
 static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizon, double reach, ob_manifold *m)
 {
 	const ob_island_work *w = &s->island;
-	ob_placed a = placed(s, contact->a), b = placed(s, contact->b);
+	ob_placed a, b;
+	place(s, contact->a, &a);
+	place(s, contact->b, &b);
 	double near = fmin(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
 	s->counters.swept_tests++;
 	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_finder(s), m);
@@ -207,7 +208,9 @@ double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *contact, doubl
 void ob_narrowphase_find(ob_sim *s, const ob_contact *contact, double tolerance, ob_manifold *m, double *when)
 {
 	const ob_island_work *w = &s->island;
-	ob_placed a = placed(s, contact->a), b = placed(s, contact->b);
+	ob_placed a, b;
+	place(s, contact->a, &a);
+	place(s, contact->b, &b);
 	double thin = smaller_thickness(w, contact), travel = closing_speed(s, contact) * w->h;
 	*when = 0;
 	if (travel < swept_travel * thin) {
