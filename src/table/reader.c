@@ -156,11 +156,13 @@ bool ob_passport_makes_sense(const ob_passport *p, uint32_t id)
 
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out)
 {
+	ob_passport p;
 	if (is_lost(u) || id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
-	if (!ob_passport_read(u, id, out) || !(out->flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(out, id) ||
-	    (out->shape == OB_SHAPE_HULL && out->hull >= u->header.sizes.hulls))
+	if (!ob_passport_read(u, id, &p) || !(p.flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(&p, id) ||
+	    (p.shape == OB_SHAPE_HULL && p.hull >= u->header.sizes.hulls))
 		return false;
+	*out = p; // never one that makes no sense: a snapshot takes for present what stands there
 	ob_utf8_make_plain(out->name); // whatever a reader does with it, it reaches no terminal as a command
 	return true;
 }

@@ -80,8 +80,12 @@ static void read_all(const ob_universe *u, ob_snapshot *s)
 	for (uint32_t i = 0; i <= WORKERS; i++)
 		ob_universe_get_worker(u, i, &w);
 	for (uint32_t i = 0; i <= OBJECTS; i++) {
+		const ob_passport none = { 0 };
+		p = none;
 		if (ob_universe_get_passport(u, i, &p))
 			check_passport(&p, i);
+		else
+			CHECK(memcmp(&p, &none, sizeof p) == 0);
 		if (ob_universe_get_motion(u, i, &m)) {
 			ob_motion_at(&m, ob_v3(.1, .2, .3), info.time);
 			CHECK(is_finite(m.p) && is_finite(m.v) && isfinite(m.t0));
