@@ -14,7 +14,7 @@ For hours, all kinds in turn, on a build with sanitizers:
     meson setup build-asan -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lto=false && ninja -C build-asan
     UBSAN_OPTIONS=halt_on_error=1 LSAN_OPTIONS=suppressions=$PWD/tests/leaks.txt setarch -R python3 tests/fuzz/fuzz.py build-asan/obsim all --hours 8 --seed $RANDOM
 
-Segments, the fifth kind, are read in the fuzzer's own process, a million in a minute: tests/fuzz/segments.c.
+Segments and meshes are read in the fuzzer's own process, a million segments in a minute: tests/fuzz/segments.c, meshes.c.
 """
 
 import argparse
