@@ -7,11 +7,12 @@
     soak.py OBSIM hour [HOURS]                       one run of 1000 balls, for hours (1), whose simulators die all the time
 
 blows: a stack and a pyramid on a table that shakes, a pile, falling boxes, boxes with scripts, in turns with two workers and
-with one for each object. They come at random moments, one or two at once; SIGSTOP stands for a hang; exits come from within (--fault). hosts: a run writes a checkpoint thirty times a second. When it has ended, and another has
-started, no process of it and no universe is left; what is on the disk is a checkpoint, and ends, taken up again, in the same bits.
-scribble: 1, 10 or 500 words at a time; hardened, a run ends in the same bits; not hardened it may be wrong, or give up with one line,
-but its host lives. hour: at the pace of reality, so that as many steps without faults, by one thread, take minutes; memory, descriptors and mappings
-of host and fork server stay what they were after the first tenth.
+with one for each object. They come at random moments, one or two at once; SIGSTOP stands for a hang; exits come from within
+(--fault). hosts: a run writes a checkpoint thirty times a second. When it has ended, and another has started, no process of it
+and no universe is left; what is on the disk is a checkpoint, and ends, taken up again, in the same bits. scribble: 1, 10 or 500
+words at a time; hardened, a run ends in the same bits; not hardened it may be wrong, or give up with one line, but its host lives.
+hour: at the pace of reality, so that as many steps without faults, by one thread, take minutes; memory, descriptors and mappings of
+host and fork server stay what they were after the first tenth.
 
 Prints a line for each kind, and exits with 1 if a hash is wrong, a run fails, or anything is left behind.
 """
@@ -45,6 +46,7 @@ for row = 1, 6 do
 end
 """
 SCRIPTED = """-- Boxes that keep together, hop where they touch something, tell what they hit, and count.
+scene { room = 0 } -- else each object that they might create has a worker, too
 ground {}
 script("hop", [[
 function on_start() self.state.hops = 0 end
@@ -171,7 +173,7 @@ def blows(obsim, wanted):
 		while dealt < count:
 			scene, workers = list(SCENES)[turn % len(SCENES)], WORKERS[turn // len(SCENES) % 2]
 			turn += 1
-			faults = [] if number else ["--fault", f"exit:p={.0001 if workers == 'objects' else .001},seed={turn}"]
+			faults = [] if number else ["--fault", f"exit:p={.0005 if workers == 'objects' else .004},seed={turn}"]
 			host = run(obsim, *scene_words(scene), "--isolation", "process", "--workers", workers, "--patience", "1", "--name", name, *faults)
 			for _ in range(BLOWS_PER_RUN[kind]):
 				dealt += strike(host, number, random.uniform(.1, 2) * undisturbed.took[scene, workers] / BLOWS_PER_RUN[kind])
@@ -259,13 +261,14 @@ def scribble(obsim, wanted):
 			left = os.path.exists(f"/dev/shm/obsim.{name}")
 			if host.returncode not in (0, 1) or left or (more and wrong):
 				bad += 1
-				print(f"{scene}, {workers} workers, {words} words, seed {turn + 1} {more}: exit {host.returncode}, left: {left}, wrong: {wrong}: {said}", flush=True)
+				print(f"{scene}, {workers} workers, {words} words, seed {turn + 1} {more}: exit {host.returncode}, left: {left}, "
+					f"wrong: {wrong}: {said}", flush=True)
 			stores += words * report["faults"]
 			deaths += report["deaths"]
 			gave_up += failed
 			other += wrong and not failed
-		print(f"{'hardened' if more else 'not hardened'}: {wanted[0]} runs, {stores} words in those that ended, {deaths} restarts, {gave_up} gave up, "
-			f"{other} ended otherwise, {bad} bad so far", flush=True)
+		print(f"{'hardened' if more else 'not hardened'}: {wanted[0]} runs, {stores} words in those that ended, {deaths} restarts, "
+			f"{gave_up} gave up, {other} ended otherwise, {bad} bad so far", flush=True)
 	return bad
 
 
