@@ -167,8 +167,13 @@ static void count_shared(pid_t pid, uint64_t *all, uint64_t *writable)
 
 static void check_in_force(const ob_universe *u, uint32_t measures)
 {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+	const bool filtered = false; // sanitizers make calls of their own, which confine.c lets them make
+#else
+	const bool filtered = true;
+#endif
 	enum { NOBODY = 65534, FILES = 3 };
-	const bool privileges = measures & 1 << OB_HARDEN_PRIVILEGES, calls = measures & 1 << OB_HARDEN_CALLS;
+	const bool privileges = measures & 1 << OB_HARDEN_PRIVILEGES, calls = filtered && measures & 1 << OB_HARDEN_CALLS;
 	ob_worker_info info;
 	uint64_t all, writable;
 	CHECK(ob_universe_workers(u) - ob_universe_simulators(u) == (measures >> OB_HARDEN_OUTBOX & 1));
@@ -184,10 +189,8 @@ static void check_in_force(const ob_universe *u, uint32_t measures)
 		      (privileges || calls || number_of(getpid(), "status", "NoNewPrivs:", 10) == 1));
 		CHECK((number_of(info.pid, "limits", "Max open files", 10) == FILES) ==
 		      !!(measures & 1 << OB_HARDEN_LIMITS));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // which make calls of their own
 		CHECK(number_of(info.pid, "status", "Seccomp_filters:", 10) ==
 		      number_of(getpid(), "status", "Seccomp_filters:", 10) + calls);
-#endif
 	}
 }
 
