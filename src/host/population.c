@@ -408,8 +408,8 @@ static void publish_roster(ob_population *p)
 		entry->id = id;
 		entry->generation = pass->generation;
 		const ob_script_turn *turn = ob_script_turn_of(p->u, id);
-		entry->worker = one_per_object ? id : OB_ROSTER_ANY_WORKER;
-		entry->script = turn ? turn->script : 0;
+		entry->script = turn ? (uint8_t)turn->script : 0;
+		entry->own_worker = one_per_object;
 		memcpy(entry->name, pass->name, sizeof entry->name);
 	}
 	if (!entries || !ob_roster_publish(p->roster, entries, n))

@@ -9,12 +9,10 @@
 
 #include <ob/universe.h>
 
-#define OB_ROSTER_ANY_WORKER UINT32_MAX // a pool: the worker that claims the object's island
-
 typedef struct ob_roster_entry {
 	uint32_t id, generation;
-	uint32_t worker; // its own worker's number, or OB_ROSTER_ANY_WORKER
-	uint32_t script; // 1 + its number in the scene; 0: none
+	uint8_t script; // 1 + its number in the scene; 0: none
+	bool own_worker; // whose number is its id; else a pool's, whichever claims the object's island
 	char name[OB_NAME_MAX];
 } ob_roster_entry;
 

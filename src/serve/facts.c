@@ -127,8 +127,8 @@ ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t i
 		ob_message_print(m, ",\"script\":");
 		ob_message_put_json(m, scene->script[entry.script - 1].name);
 	}
-	if (entry.worker != OB_ROSTER_ANY_WORKER && ob_universe_get_worker(u, entry.worker, &worker))
-		ob_message_print(m, ",\"worker\":%u,\"pid\":%d,\"tid\":%d,\"cpu\":%d,\"cpu_s\":%.3f", entry.worker,
+	if (entry.own_worker && ob_universe_get_worker(u, entry.id, &worker))
+		ob_message_print(m, ",\"worker\":%u,\"pid\":%d,\"tid\":%d,\"cpu\":%d,\"cpu_s\":%.3f", entry.id,
 				 worker.pid, worker.tid, worker.cpu, 1e-9 * (double)worker.cpu_ns);
 	ob_message_print(m, "}}");
 	return m;

@@ -29,8 +29,7 @@ static size_t recorded_list(const void *of, ob_roster_entry *out, size_t max)
 			continue;
 		if (n < max)
 			out[n] = (ob_roster_entry){ .id = id,
-						    .generation = s->passport[id].generation,
-						    .worker = OB_ROSTER_ANY_WORKER };
+						    .generation = s->passport[id].generation };
 		n++;
 	}
 	return n;

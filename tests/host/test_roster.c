@@ -15,7 +15,7 @@ static atomic_bool over;
 static void fill(ob_roster_entry *entries, uint32_t n, uint32_t generation)
 {
 	for (uint32_t i = 0; i < n; i++) {
-		entries[i] = (ob_roster_entry){ .id = 2 * i, .generation = generation, .worker = i };
+		entries[i] = (ob_roster_entry){ .id = 2 * i, .generation = generation, .script = (uint8_t)i };
 		snprintf(entries[i].name, OB_NAME_MAX, "object %u", 2 * i);
 	}
 }
@@ -71,7 +71,7 @@ static void test_lookup(void)
 	CHECK(!ob_roster_find(r, 0, &found));
 	fill(entries, ENTRIES, 7);
 	CHECK(ob_roster_publish(r, entries, ENTRIES));
-	CHECK(ob_roster_find(r, 42, &found) && found.worker == 21 && found.generation == 7);
+	CHECK(ob_roster_find(r, 42, &found) && found.script == 21 && found.generation == 7);
 	CHECK(!ob_roster_find(r, 43, &found));
 	CHECK(!ob_roster_find(r, UINT32_MAX, &found));
 	CHECK(ob_roster_find_name(r, "object 198", &found) && found.id == 198);

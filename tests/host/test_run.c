@@ -138,7 +138,7 @@ static void test_requests(ob_isolation isolation, uint32_t workers)
 	CHECK(ok != NULL);
 	CHECK(reach(h, steps_of(h) + 1)); // should they have come too late for the long run
 	CHECK(ob_roster_find_name(ob_host_roster(h), "newcomer", &entry) && entry.id == 3 && entry.generation == 1);
-	CHECK(entry.worker == (workers ? OB_ROSTER_ANY_WORKER : 3));
+	CHECK(entry.own_worker == !workers);
 	CHECK(!is_there(h, 1) && is_there(h, 2));
 	a.def = ball("second", 30, 0, 3); // gets the slot of ball 1
 	CHECK(ob_host_request_add(h, &a.def, NULL) && reach(h, steps_of(h) + 1));
