@@ -173,7 +173,8 @@ static void check_in_force(const ob_universe *u, uint32_t measures)
 	const bool filtered = true;
 #endif
 	enum { NOBODY = 65534, FILES = 3 };
-	const bool privileges = measures & 1 << OB_HARDEN_PRIVILEGES, calls = filtered && measures & 1 << OB_HARDEN_CALLS;
+	const bool privileges = measures & 1 << OB_HARDEN_PRIVILEGES,
+		   calls = filtered && measures & 1 << OB_HARDEN_CALLS;
 	ob_worker_info info;
 	uint64_t all, writable;
 	CHECK(ob_universe_workers(u) - ob_universe_simulators(u) == (measures >> OB_HARDEN_OUTBOX & 1));

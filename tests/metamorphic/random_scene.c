@@ -23,6 +23,13 @@ static double decades(dice *d, double low, double high)
 	return pow(10, within(&d->seed, low, high));
 }
 
+// Along x and y, drawn in turn: in which order a compiler calls what gives it its arguments is its own affair.
+static ob_vec3 level_within(dice *d, double low, double high, double z)
+{
+	double x = within(&d->seed, low, high), y = within(&d->seed, low, high);
+	return ob_v3(x, y, z);
+}
+
 static int pick(dice *d, int most)
 {
 	return (int)(most * uniform(&d->seed));
@@ -274,7 +281,7 @@ static void draw_statics(random_scene *s, dice *d)
 {
 	int n = 1 + pick(d, 3);
 	for (int i = 0; i < n; i++) {
-		ob_vec3 half = ob_scale(ob_v3(within(&d->seed, 1, 4), within(&d->seed, 1, 4), .5), d->size);
+		ob_vec3 half = ob_scale(level_within(d, 1, 4, .5), d->size);
 		ob_vec3 p = ob_add(random_vector(&d->seed, d->size), ob_v3(0, 0, -2 * d->size));
 		scene_body *b = add(s, d, OB_SHAPE_BOX, half, p);
 		b->mass = 0;
@@ -290,7 +297,8 @@ static void draw_stack(random_scene *s, dice *d)
 	double top = 0;
 	add_ground(s, d);
 	for (int i = 0; i < n; i++) {
-		ob_vec3 half = ob_v3(within(&d->seed, .6, 1), within(&d->seed, .6, 1), within(&d->seed, .2, 1));
+		ob_vec3 half = level_within(d, .6, 1, 0);
+		half.z = within(&d->seed, .2, 1);
 		half = ob_scale(half, d->size);
 		ob_vec3 off = random_vector(&d->seed, .2 * d->size);
 		scene_body *b = add_level(s, d, half, ob_v3(off.x, off.y, top + half.z));
@@ -308,7 +316,8 @@ static void draw_slide(random_scene *s, dice *d)
 	else
 		add(s, d, OB_SHAPE_BOX, ob_scale(ob_v3(30, 30, 1), d->size), ob_v3(0, 0, -d->size))->mass = 0;
 	for (int i = 0; i < n; i++) {
-		ob_vec3 half = ob_v3(within(&d->seed, .6, 1), within(&d->seed, .6, 1), within(&d->seed, .1, .5));
+		ob_vec3 half = level_within(d, .6, 1, 0);
+		half.z = within(&d->seed, .1, .5);
 		half = ob_scale(half, d->size);
 		scene_body *b = add_level(s, d, half, ob_v3(0, 4 * i * d->size, half.z));
 		b->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, within(&d->seed, -3, 3)));
@@ -361,13 +370,13 @@ static void turn_about_a_centre(scene_body *b, dice *d)
 static void draw_tables(random_scene *s, dice *d)
 {
 	double speed = sqrt(gravity * d->size), rate = sqrt(gravity / d->size);
-	ob_vec3 half = ob_scale(ob_v3(within(&d->seed, 3, 6), within(&d->seed, 3, 6), .5), d->size);
+	ob_vec3 half = ob_scale(level_within(d, 3, 6, .5), d->size);
 	scene_body *b = add_level(s, d, half, ob_v3(0, 0, -.5 * d->size));
 	int how = pick(d, 6), n = 1 + pick(d, 3);
 	b->mass = 0;
 	b->driven = how != 0;
 	if (how == 0)
-		b->running = ob_scale(ob_v3(within(&d->seed, -1, 1), within(&d->seed, -1, 1), 0), speed);
+		b->running = ob_scale(level_within(d, -1, 1, 0), speed);
 	else if (how == 1)
 		b->state.v = random_vector(&d->seed, within(&d->seed, 0, 1) * speed);
 	else if (how == 2 || how == 3)
@@ -379,7 +388,8 @@ static void draw_tables(random_scene *s, dice *d)
 	if (uniform(&d->seed) < .6)
 		return drop_heap(s, d, n, 2.2 * d->size);
 	for (int i = 0; i < n; i++) {
-		half = ob_v3(within(&d->seed, .6, 1), within(&d->seed, .6, 1), within(&d->seed, .1, .5));
+		half = level_within(d, .6, 1, 0);
+		half.z = within(&d->seed, .1, .5);
 		half = ob_scale(half, d->size);
 		b = add_level(s, d, half, ob_v3(0, 2.6 * (i - .5 * (n - 1)) * d->size, half.z));
 		b->state.pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, within(&d->seed, -3, 3)));
