@@ -14,7 +14,8 @@ For hours, all kinds in turn, on a build with sanitizers:
     meson setup build-asan -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lto=false && ninja -C build-asan
     UBSAN_OPTIONS=halt_on_error=1 LSAN_OPTIONS=suppressions=$PWD/tests/leaks.txt setarch -R python3 tests/fuzz/fuzz.py build-asan/obsim all --hours 8 --seed $RANDOM
 
-Segments and meshes are read in the fuzzer's own process, a million segments in a minute: tests/fuzz/segments.c, meshes.c.
+Segments, meshes and checkpoints whose checksums are right are read in the fuzzer's own process, a million in some minutes:
+tests/fuzz/segments.c, meshes.c, tests/checkpoint/test_hostile.c.
 """
 
 import argparse
@@ -512,6 +513,7 @@ def main():
 	p.add_argument("obsim", type=os.path.abspath)
 	p.add_argument("kinds", nargs="+", choices=[*KINDS, "all"])
 	p.add_argument("--count", type=int, default=100, help="cases of each kind (100)")
+	p.add_argument("--first", type=int, default=0, metavar="I", help="the number of the first case (0)")
 	p.add_argument("--hours", type=float, help="instead: for so long, the kinds in turn")
 	p.add_argument("--seed", type=int, default=1, help="case I of seed S is the same whatever the count (1)")
 	p.add_argument("--keep", type=os.path.abspath, default="fuzz-kept", help="where what fails is kept (fuzz-kept)")
@@ -523,24 +525,30 @@ def main():
 		if hasattr(kinds[n], "known"):
 			kinds[n].known(a.obsim)
 	until = time.monotonic() + 3600 * a.hours if a.hours else None
-	cases = bad = i = 0
+	cases = bad = 0
+	i = a.first
 	longest = 0, "none"
 	codes = {}
-	while time.monotonic() < until if until else i < a.count:
-		for n in names:
-			kinds[n].r.seed(f"{n} {a.seed} {i}")
-			with tempfile.TemporaryDirectory(prefix="obsim-fuzz-") as folder:
-				words, code, found, stderr, cpu = run_case(a.obsim, kinds[n], folder, f"fuzz-{os.getpid()}")
-				longest = max(longest, (cpu, f"{n}-{a.seed}-{i}"))
-				if found:
-					bad += 1
-					keep(a.keep, f"{n}-{a.seed}-{i}", folder, words, found, stderr)
-					print(f"{n} {i}: {', '.join(found)}: {stderr.decode('utf-8', 'replace').strip().splitlines()[-1:]}", flush=True)
-			codes[code] = codes.get(code, 0) + 1
-			cases += 1
-		i += 1
-		if i % 1000 == 0:
-			print(f"{i} of each kind, {bad} bad", flush=True)
+	for s in signal.SIGINT, signal.SIGTERM:
+		signal.signal(s, signal.default_int_handler)  # what has been done so far is told
+	try:
+		while time.monotonic() < until if until else i < a.first + a.count:
+			for n in names:
+				kinds[n].r.seed(f"{n} {a.seed} {i}")
+				with tempfile.TemporaryDirectory(prefix="obsim-fuzz-") as folder:
+					words, code, found, stderr, cpu = run_case(a.obsim, kinds[n], folder, f"fuzz-{os.getpid()}")
+					longest = max(longest, (cpu, f"{n}-{a.seed}-{i}"))
+					if found:
+						bad += 1
+						keep(a.keep, f"{n}-{a.seed}-{i}", folder, words, found, stderr)
+						print(f"{n} {i}: {', '.join(found)}: {stderr.decode('utf-8', 'replace').strip().splitlines()[-1:]}", flush=True)
+				codes[code] = codes.get(code, 0) + 1
+				cases += 1
+			i += 1
+			if i % 1000 == 0:
+				print(f"{i} of each kind, {bad} bad", flush=True)
+	except KeyboardInterrupt:
+		print(f"ends before case {i}")
 	tally = ", ".join(f"{n} ended with {code}" for code, n in sorted(codes.items(), key=str))
 	print(f"{cases} cases ({tally}), {bad} bad, {longest[0]:.1f} s of CPU at most ({longest[1]})" + (f", kept in {a.keep}" if bad else ""))
 	return 1 if bad else 0

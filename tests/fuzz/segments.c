@@ -11,10 +11,11 @@
 #include "base/random.h"
 #include "base/utf8.h"
 #include "check.h"
+#include "hull/hull.h"
 #include "measure/measure.h"
 #include "table/layout.h"
 
-enum { OBJECTS = 12, WORKERS = 3, CHANGES = 24, CONTACTS = 64 };
+enum { OBJECTS = 12, HULLS = 2, WORKERS = 3, CHANGES = 24, CONTACTS = 64 };
 
 // What lies where a change goes, so that it can be undone: copying the whole segment back would take most of the time.
 typedef struct change {
@@ -23,12 +24,25 @@ typedef struct change {
 
 static char name[OB_NAME_MAX];
 
+static void fill_hulls(ob_universe *u)
+{
+	static const ob_vec3 point[] = { { -.5, -.4, 0 }, { .5, -.4, 0 }, { 0, .6, 0 },
+					 { 0, 0, .7 },    { .3, .3, .5 }, { -.4, .1, .6 } };
+	for (uint32_t i = 0; i < HULLS; i++) {
+		ob_hull h;
+		ob_error e = { "" };
+		CHECK(ob_hull_build(point, 4 + 2 * i, &h, &e) && ob_write_hull(u, i, &h));
+	}
+}
+
 static void fill(ob_universe *u)
 {
+	fill_hulls(u);
 	for (uint32_t i = 0; i < OBJECTS; i++) {
 		ob_passport p = { .id = i,
 				  .flags = OB_OBJECT_PRESENT | (i ? 0 : OB_OBJECT_STATIC),
-				  .shape = 1 + i % OB_SHAPE_CYLINDER,
+				  .shape = 1 + i % OB_SHAPE_HULL,
+				  .hull = i / OB_SHAPE_HULL % HULLS,
 				  .size = { .5, .5, .5 },
 				  .mass = i ? 1 : 0,
 				  .inertia = { .1, .2, .3 } };
@@ -55,15 +69,60 @@ static bool is_finite(ob_vec3 v)
 	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
 
+static bool is_plain(const char *text, size_t room)
+{
+	char plain[OB_DEATH_MAX];
+	memcpy(plain, text, room);
+	CHECK(memchr(plain, 0, room));
+	plain[room - 1] = 0;
+	ob_utf8_make_plain(plain);
+	return strcmp(plain, text) == 0;
+}
+
 static void check_passport(const ob_passport *p, uint32_t id)
 {
-	char plain[OB_NAME_MAX];
-	memcpy(plain, p->name, sizeof plain);
-	CHECK(memchr(plain, 0, sizeof plain));
-	plain[sizeof plain - 1] = 0;
-	ob_utf8_make_plain(plain);
-	CHECK(p->id == id && p->shape <= OB_SHAPE_CYLINDER && is_finite(p->size) && p->mass >= 0 &&
-	      strcmp(plain, p->name) == 0);
+	CHECK(p->id == id && p->shape <= OB_SHAPE_HULL && is_finite(p->size) && p->mass >= 0 &&
+	      is_plain(p->name, sizeof p->name));
+}
+
+static bool holds(const ob_hull *h, const double bounds[6])
+{
+	bool finite = true;
+	for (int i = 0; i < 6; i++)
+		finite &= isfinite(bounds[i]);
+	return finite && h->corners <= OB_HULL_CORNERS_MAX && h->faces <= OB_HULL_FACES_MAX &&
+	       h->edges <= OB_HULL_EDGES_MAX;
+}
+
+static void read_hulls(const ob_universe *u)
+{
+	for (uint32_t i = 0; i <= HULLS; i++) {
+		ob_hull h;
+		double bounds[6];
+		if (!ob_universe_get_hull(u, i, &h))
+			continue;
+		ob_hull_bounds(&h, (ob_pose){ .p = { 1, 2, 3 }, .q = { .5, .5, -.5, .5 } }, bounds);
+		CHECK(i < HULLS && holds(&h, bounds));
+	}
+}
+
+// What an observer makes of a snapshot.
+static void measure(const ob_snapshot *s, ob_vec3 gravity)
+{
+	ob_penetration depth;
+	ob_separation apart;
+	for (uint32_t i = 0; i < s->count; i++) {
+		bool there = s->passport[i].flags & OB_OBJECT_PRESENT;
+		CHECK(!ob_snapshot_hull(s, i) || (there && s->passport[i].shape == OB_SHAPE_HULL));
+		if (there)
+			ob_snapshot_state(s, i);
+	}
+	ob_measure_hash(s);
+	ob_measure_energy(s, gravity);
+	ob_measure_momentum(s);
+	ob_measure_angular_momentum(s);
+	ob_measure_penetration(s, &depth);
+	ob_measure_separation(s, &apart, NULL, NULL);
 }
 
 // All that a viewer asks for, and what it computes of it.
@@ -76,7 +135,11 @@ static void read_all(const ob_universe *u, ob_snapshot *s)
 	ob_motion m;
 	float bounds[6];
 	ob_universe_get_info(u, &info);
-	CHECK(info.capacity == OBJECTS && info.objects <= OBJECTS && info.state <= OB_UNIVERSE_FAILED);
+	CHECK(info.capacity == OBJECTS && info.objects <= OBJECTS && info.hulls <= HULLS &&
+	      info.state <= OB_UNIVERSE_FAILED);
+	CHECK(is_plain(info.name, sizeof info.name) && is_plain(info.isolation, sizeof info.isolation) &&
+	      is_plain(info.last_death, sizeof info.last_death));
+	read_hulls(u);
 	for (uint32_t i = 0; i <= WORKERS; i++)
 		ob_universe_get_worker(u, i, &w);
 	for (uint32_t i = 0; i <= OBJECTS; i++) {
@@ -96,14 +159,8 @@ static void read_all(const ob_universe *u, ob_snapshot *s)
 	size_t n = ob_universe_get_contacts(u, contact, CONTACTS);
 	for (size_t i = 0; i < n && i < CONTACTS; i++)
 		CHECK(contact[i].a < contact[i].b && contact[i].b < OBJECTS && is_finite(contact[i].position));
-	ob_penetration depth;
-	ob_separation apart;
-	if (ob_snapshot_take(s, u, true, NULL)) {
-		ob_measure_hash(s);
-		ob_measure_energy(s, info.gravity);
-		ob_measure_penetration(s, &depth);
-		ob_measure_separation(s, &apart, NULL, NULL);
-	}
+	if (ob_snapshot_take(s, u, true, NULL))
+		measure(s, info.gravity);
 }
 
 // Mostly where something lies; edge values as often as random ones.
@@ -139,7 +196,8 @@ static uint64_t random_place(const ob_universe *u, uint64_t *r)
 	const uint64_t *area = u->header.area;
 	uint64_t x = ob_splitmix(r), i = (x >> 32) % (OB_AREAS + 1);
 	uint64_t from = i == OB_AREAS ? 0 : area[i], to = i + 1 < OB_AREAS ? area[i + 1] : u->header.bytes;
-	uint64_t used = to - from < 4096 ? to - from : 4096; // little of an area is in use
+	uint64_t used = i == OB_AREA_HULL ? HULLS * sizeof(ob_hull) : 4096; // little of an area is in use
+	used = to - from < used ? to - from : used;
 	return used < 8 ? 0 : from + x % (used / 8) * 8; // an area may be empty
 }
 
@@ -159,9 +217,12 @@ int main(int argc, char **argv)
 	uint64_t r = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
 	ob_error e = { "" };
 	snprintf(name, sizeof name, "fuzz-segments-%d", (int)getpid());
-	ob_universe_setup setup = {
-		.name = name, .capacity = OBJECTS, .workers = WORKERS, .isolation = "thread", .traced = true
-	};
+	ob_universe_setup setup = { .name = name,
+				    .capacity = OBJECTS,
+				    .workers = WORKERS,
+				    .hulls = HULLS,
+				    .isolation = "thread",
+				    .traced = true };
 	setup.run = ob_run_settings_default();
 	ob_universe *u = ob_universe_create(&setup, &e);
 	ob_universe *before = u ? ob_universe_attach(name, &e) : NULL;
