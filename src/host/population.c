@@ -549,12 +549,33 @@ void ob_population_save(const ob_population *p, ob_saved_population *out)
 		memcpy(out->hull, p->hulls.corners, out->hulls * sizeof *out->hull);
 }
 
+// What so many events of the timetable make of the slots, which are as they were planned.
+static void follow_timetable(ob_population *p, uint64_t events)
+{
+	for (uint64_t i = 0; i < events; i++) {
+		slot *s = &p->slots[p->events[i].id];
+		s->use = p->events[i].add ? SLOT_PRESENT : SLOT_FREE;
+		s->removal_scheduled &= p->events[i].add;
+	}
+}
+
+// Whether a slot that the timetable has left so can be as it was saved: scripts and requests may have removed its
+// object, and have given a free slot to another. An event finds what it was planned for.
+static bool follows(const slot *planned, const ob_saved_slot *s)
+{
+	if (s->removal_scheduled != planned->removal_scheduled)
+		return false;
+	if (planned->use == SLOT_RESERVED)
+		return s->use == SLOT_RESERVED && s->generation == 0;
+	return s->use == SLOT_PRESENT || s->use == (planned->removal_scheduled ? SLOT_RESERVED : SLOT_FREE);
+}
+
 static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot *s)
 {
 	const ob_passport *pass = ob_passport_of(p->u, id);
 	const bool present = id < ob_universe_ids(p->u) && pass->flags & OB_OBJECT_PRESENT;
-	return s->use <= SLOT_PRESENT && s->removal_scheduled <= 1 && s->created <= 1 &&
-	       present == (s->use == SLOT_PRESENT) && (!present || pass->generation == s->generation);
+	return follows(&p->slots[id], s) && s->created <= present && present == (s->use == SLOT_PRESENT) &&
+	       (!present || pass->generation == s->generation);
 }
 
 // What the saved objects are made of is checked as if they were added now.
@@ -596,6 +617,7 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 		return ob_fail(e, "its objects are not those of its scene");
 	if (!ob_hulls_load(&p->hulls, s->hull, s->hulls, e) || !check_objects(p, e))
 		return false;
+	follow_timetable(p, s->events);
 	for (uint32_t id = 0; id < s->count; id++) {
 		const ob_saved_slot *from = &s->slot[id];
 		if (!check_slot(p, id, from))

@@ -141,6 +141,18 @@ static bool step(const ob_saved_run *r)
 	return went;
 }
 
+// The next event of the timetable would add an object that is there, or has been removed.
+static void test_timetable(ob_saved_run *r)
+{
+	const uint64_t events = r->host.population.events;
+	CHECK(events > 1);
+	for (uint64_t i = 0; i < events; i++) {
+		r->host.population.events = i;
+		CHECK(!step(r));
+	}
+	r->host.population.events = events;
+}
+
 int main(int argc, char **argv)
 {
 	const long mutants = argc > 1 ? atol(argv[1]) : MUTANTS;
@@ -152,6 +164,7 @@ int main(int argc, char **argv)
 	char *kept = malloc(good.size);
 	memcpy(kept, good.bytes, good.size);
 	CHECK(ob_saved_run_parse(&r, &bad, kept, good.size, "good", NULL) && step(&r));
+	test_timetable(&r);
 	ob_saved_run_close(&r, &bad);
 	for (long i = 0; i < mutants; i++) {
 		ob_error e = { "" };
