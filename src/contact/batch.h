@@ -148,6 +148,9 @@ extern const ob_kernel ob_kernel_portable;
 #ifdef OB_HAVE_AVX2
 extern const ob_kernel ob_kernel_avx2;
 #endif
+#ifdef OB_HAVE_AVX512
+extern const ob_kernel ob_kernel_avx512;
+#endif
 
 // The fastest that this processor runs.
 const ob_kernel *ob_kernel_best(void);

@@ -47,5 +47,8 @@ int main(void)
 	if (ob_kernel_best() == &ob_kernel_portable)
 		return SKIPPED;
 	compare(ob_kernel_best(), &ob_kernel_portable);
+#ifdef OB_HAVE_AVX2
+	compare(&ob_kernel_avx2, &ob_kernel_portable); // it may be the second best
+#endif
 	return check_end();
 }
