@@ -11,6 +11,19 @@ typedef struct ob_vec3 {
 	double x, y, z;
 } ob_vec3;
 
+// The smaller, the larger; of equal ones b, and where one is no number, the other. fmin and fmax are calls of the library
+// where the compiler does not know which zero they return, and all registers are saved around them.
+static inline double ob_min(double a, double b)
+{
+	const double least = a < b ? a : b;
+	return b == b ? least : a;
+}
+static inline double ob_max(double a, double b)
+{
+	const double most = a > b ? a : b;
+	return b == b ? most : a;
+}
+
 typedef struct ob_quat {
 	double w, x, y, z;
 } ob_quat;

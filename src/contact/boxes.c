@@ -40,7 +40,8 @@ static void frame_pair_init(frame_pair *f, const ob_placed *a, const ob_placed *
 	memcpy(f->t, (double[3]){ t.x, t.y, t.z }, sizeof f->t);
 	memcpy(f->ha, (double[3]){ a->size.x, a->size.y, a->size.z }, sizeof f->ha);
 	memcpy(f->hb, (double[3]){ b->size.x, b->size.y, b->size.z }, sizeof f->hb);
-	f->thin = 2 * fmin(fmin(f->ha[0], fmin(f->ha[1], f->ha[2])), fmin(f->hb[0], fmin(f->hb[1], f->hb[2])));
+	f->thin =
+		2 * ob_min(ob_min(f->ha[0], ob_min(f->ha[1], f->ha[2])), ob_min(f->hb[0], ob_min(f->hb[1], f->hb[2])));
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++) {
 			f->c[i][j] =
@@ -313,7 +314,7 @@ static void face_manifold(const ob_placed *a, const ob_placed *b, int face, doub
 		}
 	p.n = kept;
 	if (p.n > 4)
-		reduce_to_four(&p, same_depth * fmin(ref->size.x, fmin(ref->size.y, ref->size.z)));
+		reduce_to_four(&p, same_depth * ob_min(ref->size.x, ob_min(ref->size.y, ref->size.z)));
 	m->normal = ob_scale(n, of_b ? 1 : -1);
 	m->points = p.n;
 	for (int k = 0; k < p.n; k++) {
@@ -334,10 +335,10 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 	if (s.largest_face > margin + nearby * f.thin)
 		return;
 	find_edge_gaps(&f, &s);
-	out->separation = fmax(s.largest_face, s.largest_edge);
+	out->separation = ob_max(s.largest_face, s.largest_edge);
 	if (out->separation > margin)
 		return;
-	const double rest = fmin(a->rest_depth, b->rest_depth);
+	const double rest = ob_min(a->rest_depth, b->rest_depth);
 	int axis = closing_last(a, b, &f, &s, rest, &crossing);
 	out->valid_path = crossing ? rest : INFINITY;
 	if (crossing)

@@ -18,7 +18,7 @@ static double clamp(double x, double limit)
 static void put(ob_manifold *m, const ob_line_point *p)
 {
 	m->at[m->points] = p->at;
-	m->gap[m->points++] = fmax(p->gap, m->separation);
+	m->gap[m->points++] = ob_max(p->gap, m->separation);
 }
 
 void ob_manifold_line(const ob_line_point *nearest, const ob_line_point end[2], double margin, ob_manifold *out)
@@ -113,7 +113,7 @@ void ob_nearest_on_lines(ob_vec3 u, ob_vec3 v, ob_vec3 w, double la, double lb, 
 	if (det > 1e-14) {
 		*s = clamp((c * vw - uw) / det, la);
 	} else {
-		double low = fmax(-la, -uw - lb), high = fmin(la, -uw + lb);
+		double low = ob_max(-la, -uw - lb), high = ob_min(la, -uw + lb);
 		*s = clamp(.5 * (low + high), la);
 	}
 	*t = vw + c * *s;
@@ -196,7 +196,7 @@ static double nearest_to_box(const box_segment *x)
 		else if (at > 0 && s <= high)
 			high = s, at_high = at;
 		else if (at == 0)
-			level_from = fmin(level_from, s), level_to = fmax(level_to, s);
+			level_from = ob_min(level_from, s), level_to = ob_max(level_to, s);
 	}
 	if (level_from <= level_to)
 		return .5 * (level_from + level_to);
@@ -260,8 +260,8 @@ static void side_by_side_range(const box_segment *x, double s, double *low, doub
 		if (fabs(along(x, i, s)) > x->h[i] + crossing * x->radius || x->k[i] == 0)
 			continue;
 		double one = (x->h[i] - x->l[i]) / x->k[i], other = (-x->h[i] - x->l[i]) / x->k[i];
-		*low = fmax(*low, fmin(one, other));
-		*high = fmin(*high, fmax(one, other));
+		*low = ob_max(*low, ob_min(one, other));
+		*high = ob_min(*high, ob_max(one, other));
 	}
 }
 
@@ -298,7 +298,7 @@ static void outside_box(const ob_placed *a, const ob_placed *b, const box_segmen
 	const double l = norm(d);
 	const ob_vec3 n = ob_scale(to_world(b, d), 1 / l);
 	ob_line_point nearest = on_line(a, x, s, l, n), end[2] = { 0 };
-	bool border = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2]))) < l;
+	bool border = ob_max(fabs(d[0]), ob_max(fabs(d[1]), fabs(d[2]))) < l;
 	if (border && nearest.gap <= margin && on_face_underfoot(a, b, n, nearest.gap, margin, out))
 		return;
 	side_by_side_range(x, s, &range[0], &range[1]);
@@ -341,8 +341,8 @@ static void through_box(const ob_placed *a, const ob_placed *b, const box_segmen
 			double one = (x->h[i] - x->l[i]) / x->k[i], other = (-x->h[i] - x->l[i]) / x->k[i];
 			if (i == axis || x->k[i] == 0)
 				continue;
-			low = fmax(low, fmin(one, other));
-			high = fmin(high, fmax(one, other));
+			low = ob_max(low, ob_min(one, other));
+			high = ob_min(high, ob_max(one, other));
 		}
 		double at_low = n[axis] * along(x, axis, low) - x->h[axis];
 		double at_high = n[axis] * along(x, axis, high) - x->h[axis];

@@ -125,7 +125,7 @@ static void try_facets(search *s, const ob_placed *x)
 		try_along(s, ob_column(&x->r, i), true);
 	for (uint32_t f = 0; x->shape == OB_SHAPE_HULL && f < x->hull->faces; f++) { // it is b: its normals lead to a
 		const ob_vec3 n = ob_rotate(&x->r, x->hull->normal[f]);
-		if (ob_dot(n, ob_sub(s->a->p, s->b->p)) - x->hull->offset[f] > fmin(s->gap, touching * s->thickness))
+		if (ob_dot(n, ob_sub(s->a->p, s->b->p)) - x->hull->offset[f] > ob_min(s->gap, touching * s->thickness))
 			try_direction(s, n, true);
 	}
 }
@@ -164,7 +164,7 @@ static int edges_of(const ob_placed *x, ob_vec3 n0, ob_vec3 edge[EDGES_MAX])
 
 static bool is_deep(const search *s)
 {
-	return s->gap < -deep * fmin(s->a->size.x, fmin(s->a->size.y, s->b->size.x));
+	return s->gap < -deep * ob_min(s->a->size.x, ob_min(s->a->size.y, s->b->size.x));
 }
 
 // The part of a shape that lies farthest along n: a point, and the edges that lie across n as a whole.
@@ -225,7 +225,7 @@ static void nearest_on_features(const feature *f, const feature *g, ob_vec3 *x, 
 		for (int round = 0; n > 0 && round < (n == 1 ? 1 : ROUNDS); round++)
 			for (int k = 0; k < n; k++) {
 				ob_vec3 e = k < f->edges ? f->edge[k] : ob_scale(g->edge[k - f->edges], -1);
-				double next = fmax(-1, fmin(1, s[k] - ob_dot(e, d) / ob_norm2(e)));
+				double next = ob_max(-1, ob_min(1, s[k] - ob_dot(e, d) / ob_norm2(e)));
 				d = ob_madd(d, next - s[k], e);
 				s[k] = next;
 			}
@@ -320,7 +320,7 @@ static void try_hull_crossed(search *s, ob_vec3 axis)
 			continue;
 		const ob_vec3 out = ob_rotate(&b->r, ob_add(h->normal[e->left], h->normal[e->right]));
 		const ob_vec3 n = ob_scale(unit(c), ob_dot(c, out) < 0 ? -1 : 1);
-		if (ob_dot(n, ob_sub(d, from)) > fmin(s->gap, touching * s->thickness))
+		if (ob_dot(n, ob_sub(d, from)) > ob_min(s->gap, touching * s->thickness))
 			try_direction(s, n, false);
 	}
 }
@@ -480,7 +480,7 @@ static void other_points(const search *s, ob_vec3 n, double margin, ob_manifold 
 			continue;
 		ob_spots_find(on, over, outward, margin, &beside);
 		for (int k = 0; k < beside.n; k++)
-			ob_spots_add(&all, beside.at[k], fmax(beside.gap[k], nearest.gap));
+			ob_spots_add(&all, beside.at[k], ob_max(beside.gap[k], nearest.gap));
 	}
 	ob_spots_reduce(&all);
 	ob_spots_put(&all, 1, out);
@@ -526,7 +526,7 @@ static bool on_face_underfoot(const search *s, ob_vec3 n, double margin, ob_mani
 void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	const bool sharp = b->shape != OB_SHAPE_CAPSULE; // what is round slips off: the nearest direction will do
-	const double thickness = fmin(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
+	const double thickness = ob_min(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
 	search s = { .a = a, .b = b, .thickness = thickness, .gap = -INFINITY, .time = -1 };
 	ob_spots spots;
 	double sign;

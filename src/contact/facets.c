@@ -47,7 +47,7 @@ static const double leaving_share = .1; // of the depth at rest
 
 static double rest_depth(const ob_placed *a, const ob_placed *b)
 {
-	return fmin(a->rest_depth, b->rest_depth);
+	return ob_min(a->rest_depth, b->rest_depth);
 }
 
 double ob_leaving_path(const ob_placed *a, const ob_placed *b)
@@ -283,7 +283,7 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 		s->disc_radius = s->n == 4 ? r : 0;
 	} else if (l < r + q) { // a lens: its corners, and where it is widest
 		ob_vec3 u = ob_scale(way, 1 / l), v = ob_cross(n, u);
-		double x = .5 * (l + (r - q) * (r + q) / l), y = sqrt(fmax(0, r * r - x * x));
+		double x = .5 * (l + (r - q) * (r + q) / l), y = sqrt(ob_max(0, r * r - x * x));
 		ob_vec3 place[4] = { ob_madd(ob_madd(on->centre, x, u), y, v),
 				     ob_madd(ob_madd(on->centre, x, u), -y, v), ob_madd(on->centre, r, u),
 				     ob_madd(centre, -q, u) };
@@ -304,9 +304,9 @@ static bool within_polygon(const polygon *p, ob_vec3 x, ob_vec3 y, double share[
 		if (f < 0 && g < 0)
 			return false;
 		if (f < 0)
-			share[0] = fmax(share[0], f / (f - g));
+			share[0] = ob_max(share[0], f / (f - g));
 		else if (g < 0)
-			share[1] = fmin(share[1], f / (f - g));
+			share[1] = ob_min(share[1], f / (f - g));
 	}
 	return share[0] <= share[1];
 }
@@ -332,7 +332,7 @@ static void line_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 		return;
 	}
 	for (int k = 0; k < 2; k++) {
-		double at = fmin(fmax(share[k], 0), 1);
+		double at = ob_min(ob_max(share[k], 0), 1);
 		add(s, between(below[0], below[1], at), between(end[0], end[1], at));
 	}
 }
@@ -363,7 +363,7 @@ static double lowest(const ob_spots *s)
 {
 	double least = INFINITY;
 	for (int k = 0; k < s->n; k++)
-		least = fmin(least, s->gap[k]);
+		least = ob_min(least, s->gap[k]);
 	return least;
 }
 
@@ -410,7 +410,7 @@ static void hull_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 	const uint32_t best = hull_face_towards(over, towards);
 	double most = -INFINITY;
 	for (uint32_t k = 0; k < h->corners; k++)
-		most = fmax(most, ob_dot(l, h->corner[k]));
+		most = ob_max(most, ob_dot(l, h->corner[k]));
 	polygon p = hull_face(over, best);
 	face_over(s, on, over, &cap, &p);
 	for (uint32_t f = 0; f < h->faces; f++) {
@@ -465,9 +465,9 @@ void ob_spots_reduce(ob_spots *s)
 		double side = ob_dot(across, ob_sub(s->at[k], first));
 		if (k == keep[0] || k == keep[1])
 			continue;
-		if (side > fmax(left, least))
+		if (side > ob_max(left, least))
 			left = side, keep[2] = k;
-		if (side < fmin(right, -least))
+		if (side < ob_min(right, -least))
 			right = side, keep[3] = k;
 	}
 	ob_spots out = *s;

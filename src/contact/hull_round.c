@@ -47,9 +47,9 @@ static bool over_face(const segment *x, uint32_t f, double reach, double range[2
 		const double l = ob_norm(out), past = ob_dot(out, ob_sub(x->p, from)) - reach * l,
 			     rate = ob_dot(out, x->k);
 		if (rate > 0)
-			range[1] = fmin(range[1], -past / rate);
+			range[1] = ob_min(range[1], -past / rate);
 		else if (rate < 0)
-			range[0] = fmax(range[0], -past / rate);
+			range[0] = ob_max(range[0], -past / rate);
 		else if (past > 0)
 			return false;
 	}
@@ -63,9 +63,9 @@ static bool goes_through(const segment *x)
 	for (uint32_t f = 0; f < x->hull->faces && low <= high; f++) {
 		const double there = height(x->hull, f, x->p) - crossing, rate = ob_dot(x->hull->normal[f], x->k);
 		if (rate > 0)
-			high = fmin(high, -there / rate);
+			high = ob_min(high, -there / rate);
 		else if (rate < 0)
-			low = fmax(low, -there / rate);
+			low = ob_max(low, -there / rate);
 		else if (there > 0)
 			return false;
 	}
@@ -168,8 +168,8 @@ static void side_by_side_range(const segment *x, const nearest *near, double ran
 		    ob_norm(ob_sub(ob_madd(from, along / l, way), foot)) > crossing)
 			continue;
 		const double one = (ob_dot(way, ob_sub(from, x->p)) / l) / c, other = one + l / c;
-		range[0] = fmax(-x->length, fmin(one, other));
-		range[1] = fmin(x->length, fmax(one, other));
+		range[0] = ob_max(-x->length, ob_min(one, other));
+		range[1] = ob_min(x->length, ob_max(one, other));
 	}
 }
 
@@ -199,7 +199,7 @@ static double opening(const ob_placed *a, const ob_placed *b, const segment *x, 
 static bool on_face_underfoot(const ob_placed *a, const ob_placed *b, const segment *x, const nearest *near,
 			      double margin, ob_manifold *out)
 {
-	const double rest = fmin(a->rest_depth, b->rest_depth), gap = near->distance - x->radius;
+	const double rest = ob_min(a->rest_depth, b->rest_depth), gap = near->distance - x->radius;
 	const double other = ob_time_to_close(a, b, gap + rest, opening(a, b, x, near->s, near->n));
 	double latest = other, range[2] = { -x->length, x->length };
 	int face = -1;

@@ -151,7 +151,7 @@ typedef struct projection {
 
 static projection project(const impact_set *s, const point_rows *r, const double *x, const double *u)
 {
-	projection p = { { fmax(0, x[0] - r->rate * u[0]), 0, 0 }, { 0, 0 }, 0, 0 };
+	projection p = { { ob_max(0, x[0] - r->rate * u[0]), 0, 0 }, { 0, 0 }, 0, 0 };
 	if (s->dims == 1)
 		return p;
 	p.bound = r->mu * p.x[0];
@@ -170,7 +170,7 @@ static double residual(const impact_set *s, const double *x, const double *u)
 		const uint32_t at = k * (uint32_t)s->dims;
 		projection p = project(s, &s->point[k], x + at, u + at);
 		for (int i = 0; i < s->dims; i++)
-			most = fmax(most, fabs(p.x[i] - x[at + (uint32_t)i]) / s->point[k].rate);
+			most = ob_max(most, fabs(p.x[i] - x[at + (uint32_t)i]) / s->point[k].rate);
 	}
 	return most;
 }
@@ -193,7 +193,7 @@ static void iterate(const impact_set *s, int iterations, double *x, double *u)
 			const uint32_t at = k * (uint32_t)s->dims;
 			projection p = project(s, &s->point[k], x + at, u + at);
 			for (int i = 0; i < s->dims; i++) {
-				most = fmax(most, fabs(p.x[i] - x[at + (uint32_t)i]) / s->point[k].rate);
+				most = ob_max(most, fabs(p.x[i] - x[at + (uint32_t)i]) / s->point[k].rate);
 				x[at + (uint32_t)i] = p.x[i];
 			}
 		}
@@ -383,7 +383,7 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 	set.share = share;
 	if (s->points == 1 && s->dims == 1) { // a quotient
 		const point_rows *r = s->point;
-		x[0] = fmax(0, -(1 + share * r->e) * r->before[0] / coupling(r, 0, r, 0));
+		x[0] = ob_max(0, -(1 + share * r->e) * r->before[0] / coupling(r, 0, r, 0));
 		return;
 	}
 	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
@@ -435,7 +435,7 @@ static double share_without_gain(uint32_t rows, const double *p, const double *x
 	if (!(c0 < 0) || !(c2 > 0))
 		return 0;
 	double root = sqrt(c1 * c1 - 4 * c2 * c0);
-	return fmin(1, c1 > 0 ? -2 * c0 / (c1 + root) : (root - c1) / (2 * c2));
+	return ob_min(1, c1 > 0 ? -2 * c0 / (c1 + root) : (root - c1) / (2 * c2));
 }
 
 // memory: for four times as many numbers as there are rows
@@ -461,7 +461,7 @@ static void limit_energy(const impact_set *s, double *x, double *memory)
 		given += x[i] * u0[i];
 		spread += x[i] * (ux[i] - u0[i]);
 	}
-	const double less = spread > 0 ? fmax(0, fmin(1, -2 * given / spread)) : 1;
+	const double less = spread > 0 ? ob_max(0, ob_min(1, -2 * given / spread)) : 1;
 	for (uint32_t i = 0; i < rows; i++)
 		x[i] *= less;
 }
@@ -479,7 +479,7 @@ static void gather_points(impact_set *s, const ob_impact_body *body, const ob_im
 		if (r->mu > 0)
 			s->dims = 3;
 		for (int i = 0; i < 3; i++)
-			s->largest = fmax(s->largest, fabs(r->before[i]));
+			s->largest = ob_max(s->largest, fabs(r->before[i]));
 	}
 }
 
@@ -545,8 +545,8 @@ double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_im
 		    b->gap[i][l] + opening_of(b, i, l, at->d[ia], at->d[ib]) - in->slack > (in->gain - rate) * in->h)
 			continue;
 		double a = opening_of(b, i, l, at->dv[ia], at->dv[ib]) / in->h;
-		const double threshold = in->threshold + in->settling * fmax(0, -a);
-		if (!(rate + fmin(0, a) * in->h < -threshold))
+		const double threshold = in->threshold + in->settling * ob_max(0, -a);
+		if (!(rate + ob_min(0, a) * in->h < -threshold))
 			continue;
 		double gap = b->gap[i][l] + opening_of(b, i, l, at->d[ia], at->d[ib]);
 		double t = ob_time_of_closing(gap - in->slack, rate, a, in->h);

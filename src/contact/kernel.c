@@ -762,13 +762,13 @@ static void limit_prediction(ob_batch *b, const double *cap_impulse, double cap_
 		for (int i = 0; i < OB_ROWS; i++)
 			change[i] = b->impulse[i][l] - b->impulse_start[i][l];
 		for (int i = 0; i < OB_POINTS; i++)
-			change[i] = fmin(change[i], fmax(cap_impulse[l], cap_velocity / b->diag[i][l]));
+			change[i] = ob_min(change[i], ob_max(cap_impulse[l], cap_velocity / b->diag[i][l]));
 		const double slip = __builtin_sqrt(change[4] * change[4] + change[5] * change[5]),
-			     most = fmax(cap_impulse[l], cap_velocity * b->slide_mass[l]), arm = b->radius[l];
+			     most = ob_max(cap_impulse[l], cap_velocity * b->slide_mass[l]), arm = b->radius[l];
 		if (slip > most)
 			share = most / slip;
 		change[4] *= share, change[5] *= share;
-		const double twist = fmax(cap_impulse[l] * arm, cap_velocity / (b->diag[6][l] * arm));
+		const double twist = ob_max(cap_impulse[l] * arm, cap_velocity / (b->diag[6][l] * arm));
 		change[6] = change[6] > twist ? twist : change[6] < -twist ? -twist : change[6];
 		for (int i = 0; i < OB_ROWS; i++)
 			b->impulse[i][l] = b->impulse_start[i][l] + change[i];

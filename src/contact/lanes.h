@@ -94,6 +94,11 @@ static inline lane_mask lanes_mask(unsigned bits)
 	lane_mask bit = { 1, 2, 4, 8 };
 	return (bit & (int64_t)bits) != 0;
 }
+// How many bits are set. (Without an instruction for it, gcc's own is a call of its library.)
+static inline unsigned lanes_count(unsigned bits)
+{
+	return (unsigned)(UINT64_C(0x4332322132212110) >> 4 * (bits & 15)) & 7;
+}
 // Bit l is set where lane l of m is true
 #if defined(__AVX__)
 static inline unsigned lanes_bits(lane_mask m)

@@ -78,8 +78,8 @@ static box_side nearest_side(ob_vec3 l, ob_vec3 size)
 
 double ob_time_to_close(const ob_placed *a, const ob_placed *b, double left, double rate)
 {
-	const double far = fmin(a->far_future, b->far_future), latest = far > 0 ? far : INFINITY;
-	return left <= 0 ? 0 : rate < 0 ? fmin(latest, -left / rate) : latest;
+	const double far = ob_min(a->far_future, b->far_future), latest = far > 0 ? far : INFINITY;
+	return left <= 0 ? 0 : rate < 0 ? ob_min(latest, -left / rate) : latest;
 }
 
 // Beyond a face's border the sphere meets an edge, unless it touches the face's plane and does not close along the
@@ -89,7 +89,7 @@ double ob_time_to_close(const ob_placed *a, const ob_placed *b, double left, dou
 static void find_plane_underfoot(const ob_placed *a, const ob_placed *b, ob_vec3 l, ob_vec3 v, double reach,
 				 box_side *side, bool *leaving)
 {
-	const double radius = a->size.x, rest = fmin(a->rest_depth, b->rest_depth), nearest = side->distance;
+	const double radius = a->size.x, rest = ob_min(a->rest_depth, b->rest_depth), nearest = side->distance;
 	const double closes_at_edge = ob_time_to_close(a, b, side->distance - radius + rest, ob_dot(side->n, v));
 	double latest = closes_at_edge;
 	bool found = false;
@@ -111,14 +111,14 @@ static void sphere_box(const ob_placed *a, const ob_placed *b, double margin, ob
 	const ob_vec3 apart = ob_sub(a->p, b->p), l = ob_rotate_back(&b->r, apart);
 	box_side side = nearest_side(l, b->size);
 	const double separation = side.distance - a->size.x;
-	const bool past_border = fmax(fabs(side.n.x), fmax(fabs(side.n.y), fabs(side.n.z))) < 1;
+	const bool past_border = ob_max(fabs(side.n.x), ob_max(fabs(side.n.y), fabs(side.n.z))) < 1;
 	m->valid_path = INFINITY;
 	if (past_border && separation <= margin) {
 		ob_vec3 v = ob_rotate_back(&b->r, ob_sub(ob_sub(a->v, b->v), ob_cross(b->w, apart)));
 		bool leaving;
 		find_plane_underfoot(a, b, l, v, margin, &side, &leaving);
 		if (leaving) // and may fall off the edge yet
-			m->valid_path = leaving_share * fmin(a->rest_depth, b->rest_depth);
+			m->valid_path = leaving_share * ob_min(a->rest_depth, b->rest_depth);
 	}
 	double gap = side.distance - a->size.x;
 	ob_vec3 n = ob_rotate(&b->r, side.n), surface = ob_add(b->p, ob_rotate(&b->r, side.surface));
@@ -263,7 +263,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			return t;
 		if (out->points)
 			break;
-		t += (fmax(out->separation, tolerance) - .5 * tolerance) / speed;
+		t += (ob_max(out->separation, tolerance) - .5 * tolerance) / speed;
 	}
 	if (t <= h) {
 		ob_placed at = placed_at(&am, t), bt = placed_at(&bm, t);

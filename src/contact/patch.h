@@ -292,8 +292,9 @@ static inline void patch_move(const lanes *centre, lanes *m)
 	m[4] += x * m[1] + y * m[3];
 }
 
-// D and its derivatives at the slip d, which is scaled to be of the order of 1 (D is homogeneous).
-static inline void patch_slip_at(const patch_load *p, lanes *d, patch_slip *o)
+// D and its derivatives at the slip d, which is scaled to be of the order of 1 (D is homogeneous), in the lanes asked
+// for.
+static inline void patch_slip_at(const patch_load *p, lane_mask asked, lanes *d, patch_slip *o)
 {
 	const double far_share = .02; // of what moves, that turns
 	lanes size = lanes_abs(p->e1[0]) + lanes_abs(p->e1[1]) + lanes_abs(p->e2[0]) + lanes_abs(p->e2[1]);
@@ -304,8 +305,11 @@ static inline void patch_slip_at(const patch_load *p, lanes *d, patch_slip *o)
 		d[c] *= scale;
 	v[0] *= scale, v[1] *= scale;
 	lane_mask far = turns < far_share * moves;
-	patch_slip_near(p, v, lanes_select(far, 1 / size, d[2]), o);
-	if (lanes_bits(far)) {
+	if (lanes_bits(asked & ~far))
+		patch_slip_near(p, v, lanes_select(far, 1 / size, d[2]), o);
+	else
+		*o = (patch_slip){ 0 };
+	if (lanes_bits(asked & far)) {
 		patch_slip at_far;
 		patch_slip_far(p, v, d[2], &at_far);
 		o->power = lanes_select(far, at_far.power, o->power);
@@ -327,7 +331,7 @@ static inline void patch_model_set(const patch_load *p, lane_mask to, const lane
 {
 	lanes d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
 	patch_slip at;
-	patch_slip_at(p, d, &at);
+	patch_slip_at(p, to, d, &at);
 	const lanes from[2] = { -p->pressure[0], -p->pressure[1] };
 	patch_move(from, at.bound);
 	d[0] -= d[2] * p->pressure[1];

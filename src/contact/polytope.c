@@ -58,7 +58,7 @@ static void polytope_init(polytope *x, const ob_placed *from, ob_vec3 origin)
 	if (from->shape == OB_SHAPE_BOX) {
 		const ob_vec3 h = from->size;
 		x->shape = &box_topology;
-		x->inner = fmin(h.x, fmin(h.y, h.z));
+		x->inner = ob_min(h.x, ob_min(h.y, h.z));
 		x->thin = 2 * x->inner;
 		for (int k = 0; k < 8; k++)
 			x->corner[k] = ob_v3(k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z);
@@ -135,7 +135,7 @@ static void try_faces(axes *s, const polytope *of, const polytope *other, bool o
 	for (uint32_t f = 0; f < of->shape->faces; f++) {
 		const ob_vec3 n = of->normal[f];
 		const double most = ob_dot(n, d) - of->offset[f] - other->inner;
-		if (most < fmin(s->face.gap, -rest))
+		if (most < ob_min(s->face.gap, -rest))
 			continue;
 		const axis x = { .gap = lowest_along(other, n) - ob_dot(n, of->centre) - of->offset[f],
 				 .is_face = true,
@@ -182,7 +182,7 @@ static void try_edges(axes *s, const polytope *a, const polytope *b, double rest
 {
 	near_edge of_a[OB_HULL_EDGES_MAX], of_b[OB_HULL_EDGES_MAX];
 	const ob_vec3 d = ob_sub(b->centre, a->centre);
-	const double apart = ob_norm(d), needed = a->inner + b->inner + fmin(s->face.gap, -rest);
+	const double apart = ob_norm(d), needed = a->inner + b->inner + ob_min(s->face.gap, -rest);
 	const ob_vec3 towards = apart > 0 ? ob_scale(d, 1 / apart) : ob_v3(0, 0, 1);
 	const double least = apart > 0 ? needed / apart - 1e-9 : -1;
 	const uint32_t na = collect_edges(a, towards, least, of_a);
@@ -222,7 +222,7 @@ static double face_rate(const polytope *of, const polytope *other, ob_vec3 n)
 	for (uint32_t k = 0; k < other->shape->corners; k++) {
 		const ob_vec3 x = other->corner[k];
 		if (ob_dot(n, x) <= low)
-			rate = fmin(rate, ob_dot(n, ob_sub(velocity_at(other, x), velocity_at(of, x))));
+			rate = ob_min(rate, ob_dot(n, ob_sub(velocity_at(other, x), velocity_at(of, x))));
 	}
 	return rate;
 }
@@ -238,8 +238,8 @@ static void nearest_on_edges(const polytope *a, const polytope *b, const axis *x
 	const double det = uu * vv - uv * uv;
 	double s = (uv * vw - uw * vv) / det, t = (vw * uu - uv * uw) / det;
 	if (limited) {
-		s = fmax(0, fmin(1, s));
-		t = fmax(0, fmin(1, t));
+		s = ob_max(0, ob_min(1, s));
+		t = ob_max(0, ob_min(1, t));
 	}
 	*xa = ob_madd(pa, s, u);
 	*xb = ob_madd(pb, t, v);
@@ -311,7 +311,7 @@ static void reduce_to_eight(ob_polygon *p, double tie)
 		double deepest = INFINITY, least = INFINITY;
 		int deep = 0, drop = -1;
 		for (int k = 0; k < p->n; k++)
-			deepest = fmin(deepest, p->z[k]);
+			deepest = ob_min(deepest, p->z[k]);
 		for (int k = 0; k < p->n; k++)
 			deep += p->z[k] <= deepest + tie;
 		for (int k = 0; k < p->n; k++) {
@@ -328,7 +328,7 @@ unsigned ob_widest_four(const double *u, const double *w, const double *z, int n
 	double deepest = INFINITY, largest = -1;
 	unsigned deep = 0, keep = 0;
 	for (int k = 0; k < n; k++)
-		deepest = fmin(deepest, z[k]);
+		deepest = ob_min(deepest, z[k]);
 	for (int k = 0; k < n; k++)
 		deep |= (unsigned)(z[k] <= deepest + tie) << k;
 	for (int i = 0; i < n; i++)
@@ -336,8 +336,8 @@ unsigned ob_widest_four(const double *u, const double *w, const double *z, int n
 			for (int k = j + 1; k < n; k++)
 				for (int l = k + 1; l < n; l++) {
 					const unsigned four = 1u << i | 1u << j | 1u << k | 1u << l;
-					const double area = fabs((u[k] - u[i]) * (w[l] - w[j]) -
-								 (w[k] - w[i]) * (u[l] - u[j]));
+					const double area =
+						fabs((u[k] - u[i]) * (w[l] - w[j]) - (w[k] - w[i]) * (u[l] - u[j]));
 					if ((four & deep) && area > largest)
 						largest = area, keep = four;
 				}
@@ -386,7 +386,7 @@ void ob_polygon_reduce(ob_polygon *p, double band)
 				low[i] = z, z = x;
 			}
 	}
-	const double highest = fmax(low[3], low[0] + band);
+	const double highest = ob_max(low[3], low[0] + band);
 	for (int k = p->n - 1; k >= 0; k--)
 		if (p->z[k] > highest)
 			polygon_drop(p, k);
@@ -528,21 +528,21 @@ void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double marg
 	axes s = { .face = { .gap = -INFINITY }, .edge = { .gap = -INFINITY } };
 	bool crossing;
 	const ob_vec3 origin = pb->p;
-	const double rest = fmin(pa->rest_depth, pb->rest_depth);
+	const double rest = ob_min(pa->rest_depth, pb->rest_depth);
 	out->points = 0;
 	out->separation = ob_norm(ob_sub(pa->p, pb->p)) - radius_of(pa) - radius_of(pb);
 	if (out->separation > margin)
 		return;
 	polytope_init(&a, pa, origin);
 	polytope_init(&b, pb, origin);
-	const double thin = fmin(a.thin, b.thin), discount = prefer_face * thin;
+	const double thin = ob_min(a.thin, b.thin), discount = prefer_face * thin;
 	try_faces(&s, &a, &b, false, rest);
 	try_faces(&s, &b, &a, true, rest);
 	out->separation = s.face.gap;
 	if (s.face.gap > margin + nearby * thin)
 		return;
 	try_edges(&s, &a, &b, rest, discount);
-	out->separation = fmax(s.face.gap, s.edge.gap);
+	out->separation = ob_max(s.face.gap, s.edge.gap);
 	if (out->separation > margin)
 		return;
 	const axis *x = closing_last(&a, &b, &s, rest, discount, &crossing);
@@ -562,7 +562,7 @@ void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double marg
 	else
 		edge_manifold(&a, &b, best, origin, out);
 	if (!out->points) // only shapes that are apart have none: looked at again before they can touch
-		out->valid_path = fmax(rest, out->separation);
+		out->valid_path = ob_max(rest, out->separation);
 }
 
 void ob_manifold_hull_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
@@ -575,7 +575,7 @@ void ob_manifold_hull_plane(const ob_placed *a, const ob_placed *b, double margi
 	out->separation = INFINITY;
 	for (uint32_t k = 0; k < a->hull->corners; k++) {
 		const double gap = height + ob_dot(l, a->hull->corner[k]);
-		out->separation = fmin(out->separation, gap);
+		out->separation = ob_min(out->separation, gap);
 		if (gap > margin)
 			continue;
 		const ob_vec3 x = ob_rotate(&a->r, a->hull->corner[k]);

@@ -73,7 +73,7 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 	double low = 0, at_low = slope_at(a, b, p, q, 0), high = 0, at_high = 0, way = at_low < 0 ? -1 : 1;
 	if (fabs(at_low) <= converged * size)
 		return p;
-	double step = way * fmin(.1, fmax(1e-6, fabs(at_low) / size));
+	double step = way * ob_min(.1, ob_max(1e-6, fabs(at_low) / size));
 	for (int i = 0; i < WIDEN && at_high * at_low >= 0; i++, step *= 4) {
 		if (i)
 			low = high, at_low = at_high;

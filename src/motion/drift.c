@@ -209,10 +209,10 @@ double ob_drift_bound(ob_vec3 w, ob_vec3 inertia, double s)
 		return rate * (1 + least / (1 - slight));
 	// dw_i/dt = (J_j - J_k) / J_i w_j w_k, and the squares of the products add up to w^4 / 3 at most: d(1/w)/dt is
 	// bounded.
-	double k = fmax(fabs(j.y - j.z) / j.x, fmax(fabs(j.z - j.x) / j.y, fabs(j.x - j.y) / j.z)) * inverse_root3;
+	double k = ob_max(fabs(j.y - j.z) / j.x, ob_max(fabs(j.z - j.x) / j.y, fabs(j.x - j.y) / j.z)) * inverse_root3;
 	double grown = k * rate * s;
 	if (grown < slight)
 		return rate / (1 - grown);
 	double ever = ob_spin_bound(ob_quat_identity(), w, inertia);
-	return grown < 1 ? fmin(ever, rate / (1 - grown)) : ever;
+	return grown < 1 ? ob_min(ever, rate / (1 - grown)) : ever;
 }

@@ -25,13 +25,13 @@ static ob_vec3 line_impulse(const ob_path_point *p, const ob_path_point *q, doub
 static ob_vec3 linear_impulse(const ob_force *f, double a, double b)
 {
 	const ob_path_point *first = f->point, *last = f->point + f->points - 1;
-	ob_vec3 sum = ob_scale(first->p, fmax(0, fmin(b, first->t) - a));
+	ob_vec3 sum = ob_scale(first->p, ob_max(0, ob_min(b, first->t) - a));
 	for (const ob_path_point *p = first; p < last; p++) {
-		const double from = fmax(a, p->t), until = fmin(b, p[1].t);
+		const double from = ob_max(a, p->t), until = ob_min(b, p[1].t);
 		if (from < until)
 			sum = ob_add(sum, line_impulse(p, p + 1, from, until));
 	}
-	return ob_madd(sum, fmax(0, b - fmax(a, last->t)), last->p);
+	return ob_madd(sum, ob_max(0, b - ob_max(a, last->t)), last->p);
 }
 
 ob_vec3 ob_force_mean(const ob_force *f, double h, uint64_t step)
@@ -42,7 +42,7 @@ ob_vec3 ob_force_mean(const ob_force *f, double h, uint64_t step)
 	case OB_FORCE_SINE:
 		return ob_scale(f->force, sin(middle) * sin(half) / half);
 	case OB_FORCE_PULSE:
-		return ob_scale(f->force, fmax(0, fmin(b, f->until) - fmax(a, f->from)) / (b - a));
+		return ob_scale(f->force, ob_max(0, ob_min(b, f->until) - ob_max(a, f->from)) / (b - a));
 	case OB_FORCE_LINEAR:
 		return ob_scale(linear_impulse(f, a, b), 1 / (b - a));
 	}

@@ -7,18 +7,18 @@ static const int most_advances = 200; // a grazing corner takes many; after so m
 
 double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {
-	double least = fmin(inertia.x, fmin(inertia.y, inertia.z));
+	double least = ob_min(inertia.x, ob_min(inertia.y, inertia.z));
 	if (!(least > 0) || (inertia.x == inertia.y && inertia.y == inertia.z))
 		return ob_norm(w);
 	ob_mat3 r = ob_quat_matrix(q);
 	ob_vec3 b = ob_rotate_back(&r, w), l = ob_v3(inertia.x * b.x, inertia.y * b.y, inertia.z * b.z);
-	return sqrt(fmin(ob_dot(l, b) / least, ob_norm2(l) / (least * least)));
+	return sqrt(ob_min(ob_dot(l, b) / least, ob_norm2(l) / (least * least)));
 }
 
 // Euler: dw_i/dt = (I_j - I_k) / I_i w_j w_k, and the squares of the products add up to w^4 / 3 at most.
 static double turning_bound(ob_vec3 i, double w)
 {
-	double k = fmax(fabs(i.y - i.z) / i.x, fmax(fabs(i.z - i.x) / i.y, fabs(i.x - i.y) / i.z));
+	double k = ob_max(fabs(i.y - i.z) / i.x, ob_max(fabs(i.z - i.x) / i.y, fabs(i.x - i.y) / i.z));
 	return w * w * (1 + (i.x > 0 && i.y > 0 && i.z > 0 ? k / sqrt(3) : 0));
 }
 
@@ -82,7 +82,7 @@ static double rim_time(rim *x, double tolerance)
 	double gap = x->height - lean;
 	if (gap <= tolerance) {
 		bool all = gap + 2 * lean <= tolerance; // the whole rim is on the plane
-		if (x->rate - (all ? turn : ob_dot(x->lean, x->lean_rate) / fmax(lean, DBL_MIN)) < 0)
+		if (x->rate - (all ? turn : ob_dot(x->lean, x->lean_rate) / ob_max(lean, DBL_MIN)) < 0)
 			return 0;
 		x->height = lean, gap = 0;
 	}
@@ -94,9 +94,9 @@ static double rim_time(rim *x, double tolerance)
 		low += (high - low) * (at_low / (at_low - at_high));
 		at_low = lowest_of_rim(x, low);
 		ob_vec3 down = ob_madd(x->lean, high, x->lean_rate);
-		double slope = x->rate - high * x->most - ob_dot(down, x->lean_rate) / fmax(ob_norm(down), DBL_MIN);
+		double slope = x->rate - high * x->most - ob_dot(down, x->lean_rate) / ob_max(ob_norm(down), DBL_MIN);
 		if (slope < 0)
-			high = fmax(low, high - at_high / slope), at_high = lowest_of_rim(x, high);
+			high = ob_max(low, high - at_high / slope), at_high = lowest_of_rim(x, high);
 	}
 	return low;
 }
@@ -128,7 +128,7 @@ static double advance(const ob_flier *f, const outline *h, ob_vec3 n, double s, 
 			rim x = { height + side * up.z, speed + side * rise.z, most, { 0, 0, 0 }, { 0, 0, 0 } };
 			x.lean = ob_scale(ob_v3(normal.x, normal.y, 0), h->rim);
 			x.lean_rate = ob_scale(ob_v3(turning.x, turning.y, 0), h->rim);
-			least = fmin(least, rim_time(&x, tolerance));
+			least = ob_min(least, rim_time(&x, tolerance));
 		}
 		*lands = least == 0;
 		return least;
@@ -166,7 +166,7 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 	if (!(s <= until) || !known)
 		return s <= until ? s : INFINITY;
 	double spin = f->spin ? ob_spin_bound(f->q, f->w, f->inertia) : 0;
-	double most = fmax(0, -a) + h.reach * turning_bound(f->inertia, spin);
+	double most = ob_max(0, -a) + h.reach * turning_bound(f->inertia, spin);
 	double tolerance = near * radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
 	for (int k = 0; k < most_advances && s <= until; k++) {
 		height = p + s * (v + .5 * s * a) - h.radius, speed = v + s * a;
@@ -174,7 +174,7 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 		double t = advance(f, &h, n, s, height, speed, most, tolerance, &lands);
 		if (lands)
 			return s + t;
-		s += fmax(t, DBL_EPSILON * fabs(s));
+		s += ob_max(t, DBL_EPSILON * fabs(s));
 	}
 	return s <= until ? s : INFINITY;
 }

@@ -73,11 +73,11 @@ double ob_shape_thickness(ob_shape shape, ob_vec3 size)
 	case OB_SHAPE_CAPSULE:
 		return 2 * size.x;
 	case OB_SHAPE_BOX:
-		return 2 * fmin(size.x, fmin(size.y, size.z));
+		return 2 * ob_min(size.x, ob_min(size.y, size.z));
 	case OB_SHAPE_PLANE:
 		return INFINITY;
 	case OB_SHAPE_CYLINDER:
-		return 2 * fmin(size.x, size.y);
+		return 2 * ob_min(size.x, size.y);
 	case OB_SHAPE_HULL:
 		return 2 * size.y;
 	}
@@ -96,12 +96,12 @@ static double height(double p, double v, double a, double t)
 static void sweep(double p, double v, double a, double t0, double s, double half, double *low, double *high)
 {
 	double end = height(p, v, a, s), turn = a != 0 ? -v / a : 0, slack = 0;
-	*low = fmin(p, end);
-	*high = fmax(p, end);
+	*low = ob_min(p, end);
+	*high = ob_max(p, end);
 	if (turn * (turn - s) < 0) { // the vertex lies between
 		double top = height(p, v, a, turn);
-		*low = fmin(*low, top);
-		*high = fmax(*high, top);
+		*low = ob_min(*low, top);
+		*high = ob_max(*high, top);
 	}
 	if (isfinite(s))
 		slack = 4 * DBL_EPSILON * (fabs(p) + half + (fabs(v) + fabs(a * s)) * (fabs(t0) + fabs(s)));

@@ -41,7 +41,7 @@ static int plan_symmetric(ob_spin *spin, ob_vec3 momentum, const double l[3], co
 {
 	for (int k = 0; k < 3; k++) {
 		double a = inertia[(k + 1) % 3], b = inertia[(k + 2) % 3];
-		if (fabs(a - b) > SAME * fmax(a, b))
+		if (fabs(a - b) > SAME * ob_max(a, b))
 			continue;
 		double pair = .5 * (a + b), rest = l[k] * (1 / inertia[k] - 1 / pair);
 		plan_turns(spin, ob_scale(momentum, 1 / pair),
@@ -118,9 +118,9 @@ static void plan_theta(ob_spin *spin, double size, ob_vec3 n, double i1, double 
 	       a3 = sqrt(s3 + s2 * i3 * (i2 - i1) / (i2 * (i3 - i1)));
 	spin->amplitude = ob_v3(a1, i3 > i2 ? a2 : -a2, a3);
 	double bend = i3 * (i2 - i1) / (i1 * (i3 - i2)), outer = s3, inner = s1 * bend;
-	spin->m = fmin(square(a1 / a3) * bend, 1);
+	spin->m = ob_min(square(a1 / a3) * bend, 1);
 	// Where rounding alone decides how near the separatrix is, it is not nearer than the rounding.
-	spin->mc = fmin(fmax(outer - inner, 1e-17 * (outer + inner)) / square(a3), 1);
+	spin->mc = ob_min(ob_max(outer - inner, 1e-17 * (outer + inner)) / square(a3), 1);
 	double kc = sqrt(spin->mc), k = sqrt(spin->m), mean = ob_jacobi_mean(kc), mean_c = ob_jacobi_mean(k);
 	spin->root_kc = sqrt(kc);
 	spin->phase = ob_jacobi_phase(n.x / a1, n.y / spin->amplitude.y, kc);

@@ -22,16 +22,16 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 	double slide = ob_norm(ob_contact_velocity(w, rows, contact));
 	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
 		slide = 0;
-	double thin = fmin(a->thickness, b->thickness), distance = (slide + .5 * thin * turn) * w->substep;
-	double motion = max_motion * fmax(fast_share, fmin(1, thin / distance));
-	return fmin(motion / turn, motion * thin / slide);
+	double thin = ob_min(a->thickness, b->thickness), distance = (slide + .5 * thin * turn) * w->substep;
+	double motion = max_motion * ob_max(fast_share, ob_min(1, thin / distance));
+	return ob_min(motion / turn, motion * thin / slide);
 }
 
 // False where the geometry certainly lasts for h (s).
 static bool may_outrun_geometry(const ob_island_work *w, const ob_contact *contact, double h)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	return ob_contact_speed(w, contact) * h > max_motion * fmin(a->thickness, b->thickness);
+	return ob_contact_speed(w, contact) * h > max_motion * ob_min(a->thickness, b->thickness);
 }
 
 static double partial_length(ob_sim *s, double left)
@@ -40,7 +40,7 @@ static double partial_length(ob_sim *s, double left)
 	double h = left;
 	for (uint32_t i = 0; i < w->contacts; i++)
 		if (w->contact[i].lane != OB_NO_LANE && may_outrun_geometry(w, &w->contact[i], h))
-			h = fmin(h, fmax(w->h_min, geometry_lifetime(w, w->v, &w->contact[i])));
+			h = ob_min(h, ob_max(w->h_min, geometry_lifetime(w, w->v, &w->contact[i])));
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
 		if (contact->lane != OB_NO_LANE || !may_outrun_geometry(w, contact, h) ||
@@ -48,10 +48,10 @@ static double partial_length(ob_sim *s, double left)
 			continue;
 		ob_body_update_pose(w, contact->a);
 		ob_body_update_pose(w, contact->b);
-		h = fmin(h, fmax(fmax(w->h_min, geometry_lifetime(w, w->v, contact)),
-				 ob_narrowphase_time_of_impact(s, contact, h)));
+		h = ob_min(h, ob_max(ob_max(w->h_min, geometry_lifetime(w, w->v, contact)),
+				     ob_narrowphase_time_of_impact(s, contact, h)));
 	}
-	h = fmin(h, fmax(w->h_min, ob_surfaces_reversal(s, h)));
+	h = ob_min(h, ob_max(w->h_min, ob_surfaces_reversal(s, h)));
 	return left - h < .5 * h && left < 1.5 * w->h_min ? left : h;
 }
 
@@ -81,8 +81,8 @@ bool ob_adaptive_shorten(ob_sim *s)
 	for (uint32_t i = 0; i < w->batches; i++)
 		hit |= w->batch[i].impact != 0;
 	for (uint32_t i = 0; hit && i < w->contacts; i++)
-		h = fmin(h, geometry_lifetime(w, w->u, &w->contact[i]));
-	h = fmax(fmax(h, w->h_min), w->last_impact); // past the impacts that were made in it
+		h = ob_min(h, geometry_lifetime(w, w->u, &w->contact[i]));
+	h = ob_max(ob_max(h, w->h_min), w->last_impact); // past the impacts that were made in it
 	if (h > .6 * w->h)
 		return false;
 	ob_midpoint_undo(s);

@@ -29,8 +29,8 @@ static double fastest(const ob_island_work *w)
 	double most = 0;
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		const double *u = w->u[i];
-		most = fmax(most,
-			    ob_norm(ob_v3(u[0], u[1], u[2])) + w->body[i].radius * ob_norm(ob_v3(u[3], u[4], u[5])));
+		most = ob_max(most,
+			      ob_norm(ob_v3(u[0], u[1], u[2])) + w->body[i].radius * ob_norm(ob_v3(u[3], u[4], u[5])));
 	}
 	return most;
 }
@@ -70,7 +70,7 @@ bool ob_balance_may_sleep(ob_sim *s, double rest_time)
 	ob_island_work *w = &s->island;
 	const double step = s->settings->step_length;
 	const long steps = lround(rest_time / step), delay = lround(sleep_delay * w->unit.time / step),
-		   interval = lround(fmax(1, sleep_interval * w->unit.time / step));
+		   interval = lround(ob_max(1, sleep_interval * w->unit.time / step));
 	if (!s->settings->sleeping || steps < delay || (steps - delay) % interval)
 		return false;
 	ob_contacts_prepare(s);

@@ -92,13 +92,13 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	add_row(w->v[row], now.v, now.w);
 	w->mass += pass->mass;
 	body->acceleration = ob_external_acceleration(run, pass);
-	w->max_acceleration = fmax(w->max_acceleration, ob_norm(body->acceleration));
+	w->max_acceleration = ob_max(w->max_acceleration, ob_norm(body->acceleration));
 	body->torque = ob_script_torque(s->data, id);
 	if (ob_norm2(body->torque) > 0) {
 		w->torques = true;
 		body->moved_freely = false; // no closed form holds it
 		const double most = body->radius * ob_norm(turned_by(body, body->torque));
-		w->max_acceleration = fmax(w->max_acceleration, ob_norm(body->acceleration) + most);
+		w->max_acceleration = ob_max(w->max_acceleration, ob_norm(body->acceleration) + most);
 	}
 	set_speed_bound(w, row);
 }
@@ -438,7 +438,7 @@ double ob_bodies_update_rest(ob_sim *s)
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		ob_body *body = &w->body[i];
 		body->rest_time = body->speed < rest_speed ? body->rest_time + (float)s->settings->step_length : 0;
-		since = fmin(since, body->contacts > 0 ? body->rest_time : 0);
+		since = ob_min(since, body->contacts > 0 ? body->rest_time : 0);
 	}
 	return since;
 }

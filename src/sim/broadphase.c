@@ -304,7 +304,8 @@ void ob_fat_aabb_set(ob_universe *u, uint32_t id, const double *tight, double ma
 
 double ob_fat_aabb_margin(const ob_run_settings *run, ob_shape shape, ob_vec3 size)
 {
-	return fmin(rest_margin * ob_run_settings_units(run).length, rest_margin_share * ob_shape_radius(shape, size));
+	return ob_min(rest_margin * ob_run_settings_units(run).length,
+		      rest_margin_share * ob_shape_radius(shape, size));
 }
 
 // What a step leaves behind: the object was nowhere but between where it was and where it is, or no farther than
@@ -318,7 +319,7 @@ static wake wake_of(const ob_universe *u, uint32_t id, const ob_state *now, doub
 {
 	const uint64_t step = ob_step_count(u);
 	ob_vec3 back = ob_sub(ob_centre_now(u, id, ob_newest_motion(u, id), step), now->pose.p);
-	double straight = ob_norm(back), more = fmax(0, path - straight);
+	double straight = ob_norm(back), more = ob_max(0, path - straight);
 	return (wake){ { back.x, back.y, back.z }, more + .5 * sqrt(more * (path + straight)) };
 }
 
@@ -326,8 +327,8 @@ static wake wake_of(const ob_universe *u, uint32_t id, const ob_state *now, doub
 static void sweep_box(double *box, const double *by, double times)
 {
 	for (int c = 0; c < 3; c++) {
-		box[c] += fmin(0, times * by[c]);
-		box[3 + c] += fmax(0, times * by[c]);
+		box[c] += ob_min(0, times * by[c]);
+		box[3 + c] += ob_max(0, times * by[c]);
 	}
 }
 
@@ -341,8 +342,8 @@ static double predict_fat_aabb(const ob_universe *u, const ob_passport *p, const
 	const double h = run->step_length, margin = ob_fat_aabb_margin(run, p->shape, p->size),
 		     limit = margin_limit * ob_run_settings_units(run).length,
 		     way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
-	const double once = margin + reach, aside = fmax(0, reach - h * ob_norm(now->v));
-	double more = reach > 0 ? fmax(0, fmin(fat_aabb_steps - 1, (limit - once) / reach)) : 0; // steps
+	const double once = margin + reach, aside = ob_max(0, reach - h * ob_norm(now->v));
+	double more = reach > 0 ? ob_max(0, ob_min(fat_aabb_steps - 1, (limit - once) / reach)) : 0; // steps
 	sweep_box(box, way, 1 + more);
 	return margin + (1 + more) * aside;
 }
@@ -368,12 +369,12 @@ void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double
 	sweep_box(behind, w.back, 1);
 	sweep_box(ahead, way, 1);
 	bool held =
-		box_contains(box, behind, w.bulge) && box_contains(box, ahead, fmax(0, reach - h * ob_norm(now->v)));
+		box_contains(box, behind, w.bulge) && box_contains(box, ahead, ob_max(0, reach - h * ob_norm(now->v)));
 	// A box made when the object was fast is replaced when it is slow; objects are checked in turn, not all at
 	// once.
 	if (held && (ob_step_count(u) + id) % oversize_check_steps)
 		return;
-	double margin = fmax(predict_fat_aabb(u, p, now, reach, next), w.bulge);
+	double margin = ob_max(predict_fat_aabb(u, p, now, reach, next), w.bulge);
 	sweep_box(next, w.back, 1);
 	if (!held || is_oversized(box, next, margin))
 		ob_fat_aabb_set(u, id, next, margin);
@@ -490,14 +491,14 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 	if (pb->shape == OB_SHAPE_PLANE)
 		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
 	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
-	if (spheres > fmax(ra, rb) && !aabbs) // the boxes would not add much, and cost more
+	if (spheres > ob_max(ra, rb) && !aabbs) // the boxes would not add much, and cost more
 		return spheres;
 	double box_a[6], box_b[6], distance = 0;
 	tight_bounds(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
 	tight_bounds(u, pb, ob_state_now(u, b, mb, steps).pose, box_b);
 	for (int c = 0; c < 3; c++)
-		distance = fmax(distance, fmax(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
-	return aabbs ? distance : fmax(distance, spheres);
+		distance = ob_max(distance, ob_max(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
+	return aabbs ? distance : ob_max(distance, spheres);
 }
 
 // Path of both together in the step that was solved, if one was (m).

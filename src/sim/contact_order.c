@@ -9,7 +9,7 @@ static float relative_distance(const ob_body *a, const ob_body *b)
 	const ob_body *plane = a->shape == OB_SHAPE_PLANE ? a : b, *other = a->shape == OB_SHAPE_PLANE ? b : a;
 	ob_vec3 between = ob_sub(other->p, plane->p);
 	if (plane->shape == OB_SHAPE_PLANE)
-		return (float)fmax(0, .1 * ob_dot(between, ob_column(&plane->r, 2)) / other->radius);
+		return (float)ob_max(0, .1 * ob_dot(between, ob_column(&plane->r, 2)) / other->radius);
 	return (float)(ob_norm(between) / (a->radius + b->radius));
 }
 

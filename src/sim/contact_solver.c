@@ -42,7 +42,7 @@ static bool is_jacobi(const ob_sim *s)
 static double within_tolerance(const ob_sim *s, double usual, double of_tolerance)
 {
 	double tolerance = s->settings->tolerance;
-	return tolerance > 0 ? fmin(usual, of_tolerance * tolerance) : usual;
+	return tolerance > 0 ? ob_min(usual, of_tolerance * tolerance) : usual;
 }
 
 double ob_solver_slop(const ob_sim *s)
@@ -115,7 +115,7 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 		ob_batch *b = &w->batch[i];
 		if (iteration->first ? !b->live : w->batch_due[i] < w->iteration)
 			continue;
-		unsigned pairs = (unsigned)__builtin_popcount(b->live);
+		unsigned pairs = lanes_count(b->live);
 		enum { SWEEP = 2, ISOLATED_SWEEP = 16 }; // work: of a patch, at most
 		s->counters.pair_solves += pairs;
 		s->counters.frictionless_solves += b->kind & OB_KIND_FRICTIONLESS ? pairs : 0;
@@ -206,8 +206,8 @@ void ob_solver_iterate(ob_sim *s)
 		.h = w->h,
 		.block_sweeps = block_sweeps,
 		.converged = converged * w->unit.speed,
-		.wake_threshold = fmin(max_wake_threshold * w->unit.speed,
-				       wake * w->substep / w->h), // what lasts shorter, moves less
+		.wake_threshold = ob_min(max_wake_threshold * w->unit.speed,
+					 wake * w->substep / w->h), // what lasts shorter, moves less
 		.impact_threshold = impact_threshold * w->unit.speed * w->h / w->substep,
 		.first = true,
 		.jacobi = is_jacobi(s),
@@ -228,7 +228,7 @@ void ob_solver_iterate(ob_sim *s)
 		w->iteration += 1 + (k == 0); // a gap, so that no body is active from the last partial substep
 		residual = solve_contacts(s, &iteration, &any_active, &changed);
 		if (iteration.first)
-			w->residual = fmax(w->residual, changed);
+			w->residual = ob_max(w->residual, changed);
 		iteration.first = false;
 		iteration.block_tolerance = block_tolerance * residual;
 		if (!ob_direct_wanted(s, residual))

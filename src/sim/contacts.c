@@ -217,7 +217,7 @@ static void match_points(const ob_island_work *w, ob_contact *contact, const sav
 {
 	const ob_body *ma = &w->body[contact->a], *mb = &w->body[contact->b];
 	const bool sphere = ma->shape == OB_SHAPE_SPHERE || mb->shape == OB_SHAPE_SPHERE;
-	const double near = same_place * fmin(ma->thickness, mb->thickness);
+	const double near = same_place * ob_min(ma->thickness, mb->thickness);
 	const unsigned taken = match_nearest(contact, old, sphere ? INFINITY : near * near);
 	if (contact->was[0] >= 0 || (ma->shape != OB_SHAPE_CYLINDER && mb->shape != OB_SHAPE_CYLINDER))
 		return;
@@ -236,10 +236,10 @@ static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const 
 	const bool same = old->points > 0;
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	int l = contact->lane % OB_LANES;
-	ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1, t2;
+	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
+		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
 		lanes_put(&b->impulse[j], l, contact->was[j] >= 0 ? old->impulse[contact->was[j]] : 0);
-	ob_tangents(n, &t1, &t2);
 	lanes_put(&b->impulse[4], l, same ? ob_dot(old->friction, t1) : 0);
 	lanes_put(&b->impulse[5], l, same ? ob_dot(old->friction, t2) : 0);
 	lanes_put(&b->impulse[6], l, same ? old->impulse[6] : 0);
@@ -257,9 +257,9 @@ static const double retest_path = .0015; // m: after which the geometry of a res
 static double retest_distance(const ob_sim *s)
 {
 	double tolerance = s->settings->tolerance;
-	double share = max_retest_share * fmin(1, 16. / s->island.substeps);
+	double share = max_retest_share * ob_min(1, 16. / s->island.substeps);
 	const double usual = retest_path * s->island.unit.length;
-	return tolerance > 0 ? fmin(usual, share * tolerance) : usual;
+	return tolerance > 0 ? ob_min(usual, share * tolerance) : usual;
 }
 
 // By how far the points are from the bodies' centres, which is the same however the scene is seen: a sweep over the
@@ -320,15 +320,15 @@ void ob_contact_find(ob_sim *s, ob_contact *contact)
 	ob_body_update_pose(w, contact->a);
 	ob_body_update_pose(w, contact->b);
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	double tolerance = retest_distance(s) * fmin(1, 2 * fmin(a->thickness, b->thickness) / w->unit.length);
+	double tolerance = retest_distance(s) * ob_min(1, 2 * ob_min(a->thickness, b->thickness) / w->unit.length);
 	ob_narrowphase_find(s, contact, tolerance, &m, &when);
 	if (!m.points) {
-		contact->limit = contact->path + fmin(fmax(tolerance, m.separation - tolerance), m.valid_path);
+		contact->limit = contact->path + ob_min(ob_max(tolerance, m.separation - tolerance), m.valid_path);
 		if (contact->lane != OB_NO_LANE)
 			leave_lane(w, contact);
 		return;
 	}
-	contact->limit = contact->path + fmin(tolerance, m.valid_path);
+	contact->limit = contact->path + ob_min(tolerance, m.valid_path);
 	contact->since = when > 0 ? INFINITY : 0;
 	if (contact->lane == OB_NO_LANE)
 		take_lane(s, contact);
@@ -347,7 +347,7 @@ static double speed_gain(const ob_island_work *w, const ob_contact *contact)
 	const double *a = w->dv[contact->a], *b = w->dv[contact->b];
 	if (contact->lane == OB_NO_LANE)
 		return free;
-	return fmin(free, .5 * (ob_norm(ob_v3(a[0], a[1], a[2])) + ob_norm(ob_v3(b[0], b[1], b[2]))));
+	return ob_min(free, .5 * (ob_norm(ob_v3(a[0], a[1], a[2])) + ob_norm(ob_v3(b[0], b[1], b[2]))));
 }
 
 // true: its geometry was found anew
@@ -411,8 +411,8 @@ static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 			(m[0]->inv_mass == 0 || m[0]->contacts == 1) && (m[1]->inv_mass == 0 || m[1]->contacts == 1);
 		b->isolated |= (unsigned)isolated << l & b->live;
 		if (jacobi) {
-			lanes_put(&b->ka, l, fmax(1, m[0]->contacts));
-			lanes_put(&b->kb, l, fmax(1, m[1]->contacts));
+			lanes_put(&b->ka, l, ob_max(1, m[0]->contacts));
+			lanes_put(&b->kb, l, ob_max(1, m[1]->contacts));
 		}
 	}
 }
@@ -453,7 +453,7 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 	*contact = *from;
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	contact->mu = sqrt(a->friction * b->friction);
-	contact->e = fmax(a->restitution, b->restitution);
+	contact->e = ob_max(a->restitution, b->restitution);
 	w->elastic |= contact->e > 0;
 	const ob_pair_state *p = state_before(s, k);
 	contact->began = !p;

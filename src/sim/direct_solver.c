@@ -292,9 +292,9 @@ static void distribute_load(const ob_batch *b, int l, double *x)
 		return;
 	for (int j = 0; j < 4; j++) {
 		if (n[j] > 0)
-			from = fmax(from, -x[j] / n[j]);
+			from = ob_max(from, -x[j] / n[j]);
 		if (n[j] < 0)
-			to = fmin(to, -x[j] / n[j]);
+			to = ob_min(to, -x[j] / n[j]);
 	}
 	if (isinf(from) || isinf(to))
 		return;
@@ -306,13 +306,13 @@ static void project_on_cone(const ob_batch *b, int l, double *x)
 {
 	double sum = 0;
 	for (int j = 0; j < OB_POINTS; j++)
-		sum += x[j] = fmax(0, x[j]);
+		sum += x[j] = ob_max(0, x[j]);
 	double bound = b->mu[l] * sum, friction = hypot(x[4], x[5]);
 	if (friction > bound) {
 		x[4] *= bound / friction;
 		x[5] *= bound / friction;
 	}
-	x[6] = fmax(-bound * b->radius[l], fmin(bound * b->radius[l], x[6]));
+	x[6] = ob_max(-bound * b->radius[l], ob_min(bound * b->radius[l], x[6]));
 }
 
 // The share alpha of the solution, projected: changes of the impulses, and of the velocities in w->delta.
@@ -359,7 +359,7 @@ static double line_search(const ob_island_work *w)
 			curvature += c[l];
 		}
 	}
-	return slope < 0 && curvature > 0 ? fmin(1, -slope / curvature) : 0;
+	return slope < 0 && curvature > 0 ? ob_min(1, -slope / curvature) : 0;
 }
 
 static bool find_direction(ob_island_work *w)
@@ -464,7 +464,7 @@ static double fastest_contact(const ob_island_work *w, const ob_body_row *rows, 
 		if (contact->lane == OB_NO_LANE)
 			continue;
 		double speed = contact->mu > 0 ? ob_norm(v) : ob_relative_speed(a->shape, &a->r, b->shape, &b->r, v);
-		most = fmax(most, speed);
+		most = ob_max(most, speed);
 		*sum += speed;
 	}
 	return most;

@@ -44,7 +44,7 @@ bool ob_equilibrium_body_steady(const ob_island_work *w, uint32_t row)
 	for (uint32_t k = 0; k < body->adjacent; k++) {
 		const ob_contact *contact = &w->contact[w->adjacency[body->first_adjacent + k]];
 		if (contact->lane != OB_NO_LANE)
-			speed = fmax(speed, ob_contact_speed(w, contact));
+			speed = ob_max(speed, ob_contact_speed(w, contact));
 	}
 	return body->contacts > 0 && speed <= steady_speed * w->unit.speed;
 }

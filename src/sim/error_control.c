@@ -40,7 +40,7 @@ static double depth_of(const ob_island_work *w, const ob_contact *contact)
 		double gap = b->gap[j][l];
 		for (int c = 0; c < 3; c++)
 			gap += b->n[c][l] * (da[c] - db[c]) + b->ja[j][c][l] * da[3 + c] - b->jb[j][c][l] * db[3 + c];
-		deepest = fmax(deepest, -gap);
+		deepest = ob_max(deepest, -gap);
 	}
 	return deepest;
 }
@@ -56,10 +56,10 @@ void ob_error_control_note_depth(ob_sim *s, bool at_start)
 		if (at_start)
 			contact->initial_depth = depth;
 		else if (depth > contact->initial_depth) {
-			w->new_error = fmax(w->new_error, depth);
-			contact->depth_growth = fmax(contact->depth_growth, depth - contact->initial_depth);
+			w->new_error = ob_max(w->new_error, depth);
+			contact->depth_growth = ob_max(contact->depth_growth, depth - contact->initial_depth);
 		}
-		w->error = fmax(w->error, depth);
+		w->error = ob_max(w->error, depth);
 	}
 }
 
@@ -111,10 +111,10 @@ void ob_error_control_note_bounce(ob_sim *s)
 		ob_impact slow = { .h = w->h, .threshold = tolerable, .gain = INFINITY, .points = ~0u };
 		if (resolved > tolerable &&
 		    ob_impact_time(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &slow, &at) <= slow.h)
-			lost = fmax(lost, contact->e * contact->e * resolved * resolved / (2 * w->max_acceleration));
+			lost = ob_max(lost, contact->e * contact->e * resolved * resolved / (2 * w->max_acceleration));
 	}
-	w->error = fmax(w->error, lost);
-	w->new_error = fmax(w->new_error, lost);
+	w->error = ob_max(w->error, lost);
+	w->new_error = ob_max(w->new_error, lost);
 }
 
 // ---- accepted, or solved again
@@ -124,14 +124,14 @@ static void note_creep(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
-	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / (creep_time * w->unit.time));
+	const double tolerance = run->tolerance, fading = ob_min(1, run->step_length / (creep_time * w->unit.time));
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		ob_contact *contact = &w->contact[i];
 		contact->creep = contact->creep * (1 - fading) + contact->slip;
-		w->error = fmax(w->error, contact->creep);
+		w->error = ob_max(w->error, contact->creep);
 		bool goes_on = contact->slip > fading * tolerance && w->substeps < max_substeps_for_creep;
 		if (contact->creep > tolerance && (goes_on || contact->slip > .5 * tolerance))
-			w->new_error = fmax(w->new_error, contact->creep);
+			w->new_error = ob_max(w->new_error, contact->creep);
 	}
 }
 
@@ -139,11 +139,11 @@ static void note_creep(ob_sim *s)
 // fewer where the error would stay tolerable.
 static uint32_t substeps_for(const ob_island_work *w, const ob_contact *contact, const ob_run_settings *run)
 {
-	const double tolerance = run->tolerance, fading = fmin(1, run->step_length / (creep_time * w->unit.time));
+	const double tolerance = run->tolerance, fading = ob_min(1, run->step_length / (creep_time * w->unit.time));
 	double depth = contact->initial_depth + contact->depth_growth,
 	       creep = contact->slip / fading; // which slipping on like this adds up to
-	double change = fmax(depth, contact->creep) > .5 * tolerance ? fmax(contact->depth_growth, creep)
-								     : contact->depth_growth;
+	double change = ob_max(depth, contact->creep) > .5 * tolerance ? ob_max(contact->depth_growth, creep)
+								       : contact->depth_growth;
 	uint32_t n = w->substeps;
 	if (contact->creep > .75 * tolerance && creep > tolerance && n < max_substeps_for_creep)
 		n *= 2;
@@ -185,7 +185,7 @@ bool ob_error_control_accept(ob_sim *s)
 	}
 	set_next_substeps(s);
 	s->counters.islands_over += w->error > tolerance;
-	s->counters.error = fmax(s->counters.error, w->error);
+	s->counters.error = ob_max(s->counters.error, w->error);
 	s->counters.chosen[31 - __builtin_clz(w->substeps)]++;
 	return true;
 }

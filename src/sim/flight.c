@@ -50,11 +50,11 @@ static double plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight,
 	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(s); i++) {
 		ob_budget_note(s, WORK_OF_LANDING);
 		ob_half_space ground = half_space(s->u, data->plane[i]);
-		double t = ob_landing_time(&f, &ground, from - flight->t0, fmin(until, first) - flight->t0);
+		double t = ob_landing_time(&f, &ground, from - flight->t0, ob_min(until, first) - flight->t0);
 		if (flight->t0 + t < first)
 			first = flight->t0 + t, *plane = data->plane[i];
 	}
-	return fmax(first, from);
+	return ob_max(first, from);
 }
 
 enum { SUPPORT_POINTS = 8, REFLECTIONS = 32 }; // at an instant; a body that needs more is left to the contact solver
@@ -131,7 +131,7 @@ static uint32_t points_on_plane(ob_units unit, const ob_passport *body, const ob
 	double lowest = INFINITY;
 	for (int k = 0; k < points; k++) {
 		const double gap = height + ob_dot(n, arm[k]);
-		lowest = fmin(lowest, gap);
+		lowest = ob_min(lowest, gap);
 		if (gap <= OB_IMPACT_SIMULTANEOUS * unit.length)
 			point[found++] = (ob_impact_point){ .normal = n, .arm_a = arm[k], .b = 1 };
 	}
@@ -143,7 +143,7 @@ static double fastest_approach(const ob_impact_body *body, const ob_impact_point
 {
 	double most = 0;
 	for (uint32_t k = 0; k < points; k++)
-		most = fmax(most, -ob_impact_opening(body, &point[k]));
+		most = ob_max(most, -ob_impact_opening(body, &point[k]));
 	return most;
 }
 
@@ -164,7 +164,7 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 	const ob_passport *passport = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);
 	const ob_half_space ground = half_space(s->u, plane);
 	const double mu = sqrt(passport->friction * other->friction),
-		     e = fmax(passport->restitution, other->restitution);
+		     e = ob_max(passport->restitution, other->restitution);
 	ob_impact_point point[SUPPORT_POINTS];
 	ob_impact_body body[2] = { { .inv_mass = 1 / passport->mass, .v = state->v, .w = state->w } };
 	body[1].v = running_velocity(s->u, plane, &ground);
@@ -239,7 +239,7 @@ static double flight_speed_bound(const ob_passport *body, const ob_motion *f, do
 {
 	double begin = ob_norm(ob_madd(f->v, from - f->t0, f->a)), end = ob_norm(ob_madd(f->v, until - f->t0, f->a));
 	bool turns = body->shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0;
-	return fmax(begin, end) +
+	return ob_max(begin, end) +
 	       (turns ? ob_spin_bound(f->q, f->w, body->inertia) * ob_shape_radius(body->shape, body->size) : 0);
 }
 
@@ -334,12 +334,12 @@ static double flight_horizon(const ob_sim *s, uint32_t id, const ob_state *from,
 	const ob_passport *body = ob_passport_of(s->u, id);
 	const float *box = s->data->bounds[id];
 	const uint32_t neighbours = s->data->neighbours[id].count;
-	const double side = fmax(box[3] - box[0], fmax(box[4] - box[1], box[5] - box[2]));
+	const double side = ob_max(box[3] - box[0], ob_max(box[4] - box[1], box[5] - box[2]));
 	double length = least_sweep * ob_shape_radius(body->shape, body->size);
 	if (neighbours != UINT32_MAX)
-		length = fmax(length, side * most_neighbours / fmax(1, neighbours));
+		length = ob_max(length, side * most_neighbours / ob_max(1, neighbours));
 	double speed = ob_norm(from->v), fall = sqrt(speed * speed + 2 * ob_norm(a) * length);
-	return fmin(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // for which it moves so far
+	return ob_min(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // for which it moves so far
 }
 
 bool ob_ballistic_advance(ob_sim *s, uint32_t id)
@@ -355,12 +355,12 @@ bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 	ob_motion m = ob_ballistic_flight(s, id);
 	const ob_state now = ob_ballistic_state(s, id, &m, (double)step * h);
 	const double horizon = end + flight_horizon(s, id, &now, m.a);
-	double since = (double)step * h, from = fmax(m.valid_until, since);
+	double since = (double)step * h, from = ob_max(m.valid_until, since);
 	uint32_t plane = 0, impacts = 0;
 	m.path = ob_path_now(&m, step);
 	for (;;) {
-		m.valid_until = fmin(horizon, plane_impact_time(s, id, &m, from, horizon, &plane));
-		double until = fmin(m.valid_until, end);
+		m.valid_until = ob_min(horizon, plane_impact_time(s, id, &m, from, horizon, &plane));
+		double until = ob_min(m.valid_until, end);
 		m.path += flight_speed_bound(body, &m, since, until) * (until - since);
 		if (!(m.valid_until < end))
 			break;

@@ -198,12 +198,12 @@ static void find_between(ob_sim *s, const ob_contact *contact, const ob_body_at 
 	place(s, contact->a, a, &pa);
 	place(s, contact->b, b, &pb);
 	const double closing = ob_contact_speed(w, contact);
-	const double thin = fmin(w->body[contact->a].thickness, w->body[contact->b].thickness);
+	const double thin = ob_min(w->body[contact->a].thickness, w->body[contact->b].thickness);
 	const ob_manifold_finder finder = ob_narrowphase_finder(s);
 	s->counters.narrowphase_tests++;
 	m->disc_radius = 0;
 	m->valid_path = INFINITY;
-	finder.find(finder.with, &pa, &pb, fmin(reach * w->unit.length + 1.5 * closing * w->h, .5 * thin), m);
+	finder.find(finder.with, &pa, &pb, ob_min(reach * w->unit.length + 1.5 * closing * w->h, .5 * thin), m);
 }
 
 static void find_at(ob_sim *s, const ob_contact *contact, double t, ob_body_at *a, ob_body_at *b, ob_manifold *m)
@@ -250,7 +250,7 @@ static double until_closing(const ob_island_work *w, const ob_impact_instant *i,
 	for (int j = 0; j < m->points; j++) {
 		double rate = rate_of(a, b, m, j), least = threshold;
 		if (contact->e == 0)
-			least += settling * w->substep / w->h * fmax(0, -gain_of(w, contact, a, b, m, j));
+			least += settling * w->substep / w->h * ob_max(0, -gain_of(w, contact, a, b, m, j));
 		if (!(rate < -least) || !point_may_hit(contact, mask, a, m, j))
 			continue;
 		if (-m->gap[j] / rate < first)
@@ -266,8 +266,8 @@ static bool refine_instant(ob_sim *s, ob_impact_instant *i, double earliest, ob_
 {
 	const ob_island_work *w = &s->island;
 	const ob_contact *contact = &w->contact[i->contact];
-	const double smaller = fmin(w->body[contact->a].radius, w->body[contact->b].radius);
-	i->time = fmax(i->time, earliest);
+	const double smaller = ob_min(w->body[contact->a].radius, w->body[contact->b].radius);
+	i->time = ob_max(i->time, earliest);
 	for (int k = 0; k < MAX_NEWTON_STEPS; k++) {
 		find_at(s, contact, i->time, a, b, &i->m);
 		double more = until_closing(w, i, a, b, &i->approach);
@@ -278,7 +278,7 @@ static bool refine_instant(ob_sim *s, ob_impact_instant *i, double earliest, ob_
 			return true;
 		if (i->time >= w->h && more > 0)
 			return false;
-		i->time = fmax(earliest, fmin(w->h, i->time + more));
+		i->time = ob_max(earliest, ob_min(w->h, i->time + more));
 	}
 	return false;
 }
@@ -290,8 +290,8 @@ static void keep_open(const ob_island_work *w, const ob_contact *contact)
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
 	for (uint32_t j = 0; j < contact->points; j++)
-		b->gap[j][l] = fmax(b->gap[j][l], -w->h * row_velocity(b, l, j, w->v[ia], w->v[ib]) -
-							  row_velocity(b, l, j, w->d[ia], w->d[ib]));
+		b->gap[j][l] = ob_max(b->gap[j][l], -w->h * row_velocity(b, l, j, w->v[ia], w->v[ib]) -
+							    row_velocity(b, l, j, w->d[ia], w->d[ib]));
 }
 
 // What the contact's geometry at an instant was at the partial substep's start, if its bodies keep to their flights.
@@ -379,7 +379,7 @@ static double first_pending(const ob_island_work *w, bool plastic)
 	double first = INFINITY;
 	for (uint32_t k = 0; k < w->impacts.count; k++)
 		if (is_plastic(&w->contact[w->impacts.pending[k].contact]) == plastic)
-			first = fmin(first, w->impacts.pending[k].time);
+			first = ob_min(first, w->impacts.pending[k].time);
 	return first;
 }
 
@@ -405,16 +405,16 @@ static uint32_t select_earliest(ob_island_work *w)
 		}
 	for (uint32_t k = 0; k < x->count; k++) {
 		const ob_contact *c = &w->contact[x->pending[k].contact];
-		x->first[c->a] = fmin(x->first[c->a], x->pending[k].time);
-		x->first[c->b] = fmin(x->first[c->b], x->pending[k].time);
+		x->first[c->a] = ob_min(x->first[c->a], x->pending[k].time);
+		x->first[c->b] = ob_min(x->first[c->b], x->pending[k].time);
 	}
 	for (uint32_t k = 0; k < x->count; k++) {
 		const ob_impact_instant i = x->pending[k];
 		const ob_contact *c = &w->contact[i.contact];
-		double first = fmin(plastic, moves(w, c->a) ? x->first[c->a] : INFINITY);
-		first = fmin(first, moves(w, c->b) ? x->first[c->b] : INFINITY);
+		double first = ob_min(plastic, moves(w, c->a) ? x->first[c->a] : INFINITY);
+		first = ob_min(first, moves(w, c->b) ? x->first[c->b] : INFINITY);
 		if (is_plastic(c))
-			first = fmin(first, elastic);
+			first = ob_min(first, elastic);
 		if (!at_once_with(w, &i, first))
 			continue;
 		x->pending[k] = x->pending[selected];
@@ -557,9 +557,9 @@ static uint32_t body_of_set(ob_sim *s, ob_impacts *x, uint32_t row, double t)
 	return i;
 }
 
-// m: of the plane in which convex bodies touch, along its normal from "centre". Points that are in each other, one deeper
-// than another, are no such plane, and could not all leave as restitution asks: a body that tilts moves them towards
-// each other. Where all are to stop, they can.
+// m: of the plane in which convex bodies touch, along its normal from "centre". Points that are in each other, one
+// deeper than another, are no such plane, and could not all leave as restitution asks: a body that tilts moves them
+// towards each other. Where all are to stop, they can.
 static double level_of(const ob_manifold *m, double near, ob_vec3 centre)
 {
 	double sum = 0;
@@ -636,12 +636,12 @@ static bool set_hops(ob_sim *s, uint32_t chain, double t, const ob_impact_body *
 		fly(w, c->b, w->h, &at_b);
 		find_between(s, c, &at_a, &at_b, &m);
 		for (int j = 0; j < m.points; j++)
-			least = fmin(least, m.gap[j]);
+			least = ob_min(least, m.gap[j]);
 		for (uint32_t j = i->first_point; j < i->first_point + i->set_points; j++) {
 			const double approach = -ob_impact_opening(before, &x->point[j]);
-			const double e = approach > 0 ? fmin(1, -least / w->h / approach) : 0;
+			const double e = approach > 0 ? ob_min(1, -least / w->h / approach) : 0;
 			any |= e > x->point[j].e;
-			x->point[j].e = fmax(e, x->point[j].e);
+			x->point[j].e = ob_max(e, x->point[j].e);
 		}
 	}
 	return any;
@@ -670,7 +670,7 @@ static void set_back(ob_sim *s, uint32_t row, ob_body_at x, double t)
 	memcpy(d, (double[8]){ shift.x, shift.y, shift.z, turn.x, turn.y, turn.z }, sizeof *w->d);
 	ob_body_update_pose(w, row);
 	memcpy(v, (double[8]){ x.v.x, x.v.y, x.v.z, x.w.x, x.w.y, x.w.z }, sizeof *w->v);
-	body->hit = fmax(t, DBL_MIN);
+	body->hit = ob_max(t, DBL_MIN);
 }
 
 static void velocity_after(const ob_island_work *w, uint32_t row, double t, double *out)
@@ -713,7 +713,7 @@ static void end_load(ob_island_work *w, const ob_contact *c, double t)
 			to[i] -= w->body[side[k]].loaded ? brought[i] : 0;
 			v[i] += set_back || !w->body[side[1 - k]].loaded ? 0 : t / w->h * brought[i];
 		}
-		w->body[side[k]].hit = moves(w, side[k]) ? fmax(t, DBL_MIN) : 0;
+		w->body[side[k]].hit = moves(w, side[k]) ? ob_max(t, DBL_MIN) : 0;
 		memset(brought, 0, sizeof *w->delta);
 	}
 }
@@ -801,7 +801,7 @@ static void solve_set(ob_sim *s, uint32_t chain)
 	ob_impacts *x = &w->impacts;
 	double t = INFINITY;
 	for (uint32_t k = chain; k != NONE; k = x->next[k])
-		t = fmin(t, x->pending[k].time);
+		t = ob_min(t, x->pending[k].time);
 	do {
 		if (!solve_joined(s, chain, t))
 			return;
@@ -829,7 +829,7 @@ static void solve_set(ob_sim *s, uint32_t chain)
 			      &x->at[x->slot[w->contact[i->contact].b]]);
 		s->counters.impacts++;
 	}
-	w->last_impact = fmax(w->last_impact, t);
+	w->last_impact = ob_max(w->last_impact, t);
 }
 
 // Solves the first "selected" of the pending impacts, set by set.

@@ -65,7 +65,7 @@ static moving_pair moving_pair_of(const pair_check *c, const ob_pair_key *k)
 	for (int i = 0; i < 2; i++) {
 		uint32_t id = i ? k->b : k->a;
 		p.at[i] = shape_of(c, id, ob_result_of(c->u, id), c->steps);
-		p.thin = fmin(p.thin, ob_shape_thickness(p.at[i].shape, p.at[i].size));
+		p.thin = ob_min(p.thin, ob_shape_thickness(p.at[i].shape, p.at[i].size));
 	}
 	return p;
 }
@@ -84,8 +84,8 @@ static double time_of_contact(const pair_check *c, const moving_pair *p, double 
 	ob_manifold m;
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
 	double speed = relative_speed(a, b, h);
-	double gap = fmin(contact_gap * c->s->island.unit.length, contact_gap_share * p->thin);
-	double when = ob_time_of_impact(a, b, fmax(speed, 1e-9), h, gap, gap, ob_narrowphase_finder(c->s), &m);
+	double gap = ob_min(contact_gap * c->s->island.unit.length, contact_gap_share * p->thin);
+	double when = ob_time_of_impact(a, b, ob_max(speed, 1e-9), h, gap, gap, ob_narrowphase_finder(c->s), &m);
 	*apart = m.separation;
 	return when;
 }
@@ -110,7 +110,7 @@ static bool touched_in_step(const pair_check *c, ob_pair_key *k, const moving_pa
 {
 	ob_manifold m;
 	ob_manifold_finder finder = ob_narrowphase_finder(c->s);
-	finder.find(finder.with, &end->at[0], &end->at[1], fmax(contact_gap * c->s->island.unit.length, end->reach),
+	finder.find(finder.with, &end->at[0], &end->at[1], ob_max(contact_gap * c->s->island.unit.length, end->reach),
 		    &m);
 	if (m.separation <= 0 || passed_through(c, k, end))
 		return true;
@@ -152,11 +152,12 @@ static double time_apart(const bounding_spheres *s, double contact)
 static bool set_clear_until(const pair_check *c, ob_pair_key *k, const bounding_spheres *round)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
-	double until = fmin(a->due, b->due);
+	double until = ob_min(a->due, b->due);
 	if (a->state != OB_SCHEDULE_AWAKE || b->state != OB_SCHEDULE_AWAKE || until <= (double)c->steps + 1 ||
 	    !round->straight)
 		return false;
-	until = fmin(until, (double)c->steps + floor(time_apart(round, contact_gap * c->s->island.unit.length) / c->h));
+	until = ob_min(until,
+		       (double)c->steps + floor(time_apart(round, contact_gap * c->s->island.unit.length) / c->h));
 	k->clear_until = (uint32_t)until;
 	k->clear_as_of = (uint32_t)c->steps;
 	return k->clear_until > c->steps;
@@ -173,7 +174,7 @@ static bool touches_next(const pair_check *c, ob_pair_key *k, const moving_pair 
 	double apart;
 	if (!isinf(time_of_contact(c, now, now->h, &apart)))
 		return true;
-	k->limit = fmax(k->limit, now->path + apart);
+	k->limit = ob_max(k->limit, now->path + apart);
 	return false;
 }
 
@@ -212,7 +213,7 @@ static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double 
 	if (round.gap <= contact_gap * c->s->island.unit.length ||
 	    (paths >= k->limit && path_in_step(c, k, paths, solved) >= round.gap))
 		return false;
-	k->limit = fmax(k->limit, paths + round.gap);
+	k->limit = ob_max(k->limit, paths + round.gap);
 	return k->limit - paths > reach || set_clear_until(c, k, &round);
 }
 
@@ -231,7 +232,7 @@ static void check_shapes(const pair_check *c, ob_pair_key *k, double left, bool 
 // The first step that begins with so little left of the known distance that the two might use it up.
 static double step_of_limit(const ob_pair_key *k, double paths, double reach, uint64_t steps)
 {
-	return reach > 0 ? (double)steps + fmax(1, floor((k->limit - paths) / reach) - 1) : INFINITY;
+	return reach > 0 ? (double)steps + ob_max(1, floor((k->limit - paths) / reach) - 1) : INFINITY;
 }
 
 // Returns the step (from 0) that the pair must be checked for next, from the schedule records alone; < 0: they do not
@@ -312,7 +313,7 @@ static void check_all_by_motions(const pair_check *c, const uint32_t *pairs, uin
 			return;
 		if (c->contained)
 			k->late = k->expected = 0; // as check_by_schedule has left it
-		*next = fmin(*next, check_by_motions(c, k));
+		*next = ob_min(*next, check_by_motions(c, k));
 		*late |= k->late;
 		end_change(c, pairs[i - AHEAD], k);
 	}

@@ -39,7 +39,7 @@ static double change_bound(const ob_island_work *w, const ob_contact *contact)
 	double speed = ob_contact_speed(w, contact);
 	double turn = ob_body_turn_rate(w, w->v, contact->a) + ob_body_turn_rate(w, w->v, contact->b);
 	if ((is_round(a->shape) && b->shape != OB_SHAPE_PLANE) || (is_round(b->shape) && a->shape != OB_SHAPE_PLANE))
-		turn += speed / fmin(a->radius, b->radius);
+		turn += speed / ob_min(a->radius, b->radius);
 	return .5 * w->h * turn * speed;
 }
 
@@ -60,7 +60,8 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	    (b->surface && ob_norm2(angular_of(w->v[contact->b])) > 0))
 		return false; // of the first order, but for what is carried
 	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change * w->unit.speed &&
-	       load_of(w, contact) > 0 && ob_contact_speed(w, contact) * w->h < longest_way * fmin(a->thickness, b->thickness);
+	       load_of(w, contact) > 0 &&
+	       ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness);
 }
 
 void ob_midpoint_mark(ob_sim *s)
@@ -188,7 +189,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		ob_vec3 now = ob_sub(velocity_at(va, wa, ra), velocity_at(vb, wb, rb));
 		ob_vec3 start = ob_sub(velocity_at(va, wa0, ra0), velocity_at(vb, wb0, rb0));
 		bool held = b->impulse[j][l] > 0 && b->gap[j][l] < loose_gap * w->unit.length;
-		most = held ? fmax(most, fabs(ob_dot(n, now) - ob_dot(start_n, start))) : most;
+		most = held ? ob_max(most, fabs(ob_dot(n, now) - ob_dot(start_n, start))) : most;
 		b->turn[j][l] = held ? turned(ob_dot(n, now), ob_dot(start_n, start), b->impulse[j][l]) : 0;
 		slide = ob_madd(slide, part, now);
 		slide_start = ob_madd(slide_start, part, start);
@@ -197,7 +198,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
 	const ob_vec3 friction = ob_add(ob_scale(t1, b->impulse[4][l]), ob_scale(t2, b->impulse[5][l]));
 	const ob_vec3 added = ob_sub(slide, slide_start);
-	most = fmax(most, fmax(fabs(ob_dot(t1, added)), fabs(ob_dot(t2, added))));
+	most = ob_max(most, ob_max(fabs(ob_dot(t1, added)), fabs(ob_dot(t2, added))));
 	if (ob_dot(friction, slide_start) < 0 || ob_norm2(slide_start) > ob_norm2(added))
 		slide = added;
 	b->turn[4][l] = ob_dot(slide, t1);

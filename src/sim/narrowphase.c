@@ -34,8 +34,8 @@ static void find_extent(const ob_placed *x, ob_vec3 *middle, ob_vec3 *half)
 	ob_vec3 low = { INFINITY, INFINITY, INFINITY }, high = { -INFINITY, -INFINITY, -INFINITY };
 	for (uint32_t k = 0; k < x->hull->corners; k++) {
 		const ob_vec3 c = ob_rotate(&x->r, x->hull->corner[k]);
-		low = ob_v3(fmin(low.x, c.x), fmin(low.y, c.y), fmin(low.z, c.z));
-		high = ob_v3(fmax(high.x, c.x), fmax(high.y, c.y), fmax(high.z, c.z));
+		low = ob_v3(ob_min(low.x, c.x), ob_min(low.y, c.y), ob_min(low.z, c.z));
+		high = ob_v3(ob_max(high.x, c.x), ob_max(high.y, c.y), ob_max(high.z, c.z));
 	}
 	*middle = ob_madd(x->p, .5, ob_add(low, high));
 	*half = ob_scale(ob_sub(high, low), .5);
@@ -131,7 +131,7 @@ double ob_narrowphase_rest_depth(const ob_sim *s, double thickness)
 	const bool pressed =
 		ob_norm2(s->settings->gravity) > 0; // without gravity hits leave nothing at rest in another
 	const double of_slop = pressed ? 2 : .01, of_thickness = .02;
-	return fmin(of_slop * ob_solver_slop(s), of_thickness * thickness);
+	return ob_min(of_slop * ob_solver_slop(s), of_thickness * thickness);
 }
 
 double ob_narrowphase_far_future(const ob_sim *s)
@@ -176,13 +176,13 @@ static void extrapolate_gaps_back(const ob_placed *a, const ob_placed *b, double
 	ob_vec3 pa = ob_madd(a->p, t, a->v), pb = ob_madd(b->p, t, b->v);
 	for (int j = 0; j < m->points; j++) {
 		ob_vec3 spin = ob_sub(ob_cross(a->w, ob_sub(m->at[j], pa)), ob_cross(b->w, ob_sub(m->at[j], pb)));
-		m->gap[j] = fmax(m->gap[j] - t * ob_dot(m->normal, ob_add(rel, spin)), fmin(m->gap[j], 0));
+		m->gap[j] = ob_max(m->gap[j] - t * ob_dot(m->normal, ob_add(rel, spin)), ob_min(m->gap[j], 0));
 	}
 }
 
 static double smaller_thickness(const ob_island_work *w, const ob_contact *contact)
 {
-	return fmin(w->body[contact->a].thickness, w->body[contact->b].thickness);
+	return ob_min(w->body[contact->a].thickness, w->body[contact->b].thickness);
 }
 
 // The time of impact (s), and the points up to "reach" (m) then.
@@ -192,7 +192,7 @@ static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizo
 	ob_placed a, b;
 	place(s, contact->a, &a);
 	place(s, contact->b, &b);
-	double near = fmin(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
+	double near = ob_min(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
 	s->counters.swept_tests++;
 	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_finder(s), m);
 }
@@ -201,7 +201,7 @@ double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *contact, doubl
 {
 	ob_manifold m;
 	return time_of_impact(s, contact, horizon,
-			      fmin(swept_gap * s->island.unit.length, .25 * smaller_thickness(&s->island, contact)),
+			      ob_min(swept_gap * s->island.unit.length, .25 * smaller_thickness(&s->island, contact)),
 			      &m);
 }
 
@@ -214,11 +214,11 @@ void ob_narrowphase_find(ob_sim *s, const ob_contact *contact, double tolerance,
 	double thin = smaller_thickness(w, contact), travel = closing_speed(s, contact) * w->h;
 	*when = 0;
 	if (travel < swept_travel * thin) {
-		find_manifold(s, &a, &b, fmin(tolerance + 1.5 * travel, fmax(.5 * thin, tolerance + travel)), m);
+		find_manifold(s, &a, &b, ob_min(tolerance + 1.5 * travel, ob_max(.5 * thin, tolerance + travel)), m);
 		return;
 	}
 	double impact =
-		time_of_impact(s, contact, w->h, fmin(w->body[contact->a].radius, w->body[contact->b].radius), m);
+		time_of_impact(s, contact, w->h, ob_min(w->body[contact->a].radius, w->body[contact->b].radius), m);
 	if (isinf(impact))
 		return;
 	*when = impact;

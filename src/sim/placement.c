@@ -64,7 +64,7 @@ static double prescribed_speed(const ob_passport *p, const ob_motion *m, double 
 	if (m->flags & OB_MOTION_SWINGS)
 		speed = sqrt(ob_norm2(m->v) + ob_norm2(m->a) / (m->frequency * m->frequency));
 	else if (ob_norm2(m->a) > 0)
-		speed = fmax(speed, ob_norm(ob_velocity_at(m, m->valid_until)));
+		speed = ob_max(speed, ob_norm(ob_velocity_at(m, m->valid_until)));
 	return speed + (p->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(m->w) * ob_shape_radius(p->shape, p->size));
 }
 

@@ -44,8 +44,8 @@ uint64_t ob_profile_end(ob_sim *s)
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
 		wall += (double)s->times.wall[i];
 	for (int i = 0; i < OB_PROFILE_SECTIONS && wall > 0; i++)
-		s->counters.time_ns[i] += (uint64_t)((double)s->times.wall[i] * fmin(1, cpu / wall));
-	s->counters.held_ns += (uint64_t)fmax(0, wall - cpu);
+		s->counters.time_ns[i] += (uint64_t)((double)s->times.wall[i] * ob_min(1, cpu / wall));
+	s->counters.held_ns += (uint64_t)ob_max(0, wall - cpu);
 	s->counters.since_ns = s->times.since;
 	return (uint64_t)cpu;
 }

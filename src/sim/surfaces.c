@@ -116,7 +116,7 @@ static double pressing(const ob_island_work *w, const ob_surface *x)
 	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), turn = angular_of(w->v[x->row]),
 		      arm = ob_sub(body->p, own->p), inward = ob_cross(turn, ob_cross(turn, arm));
 	return ob_norm(ob_sub(body->acceleration, own->acceleration)) +
-	       fmax(0, (c->a == row ? 1 : -1) * ob_dot(n, inward));
+	       ob_max(0, (c->a == row ? 1 : -1) * ob_dot(n, inward));
 }
 
 void ob_surfaces_begin(ob_sim *s)
@@ -131,7 +131,7 @@ void ob_surfaces_begin(ob_sim *s)
 		}
 	for (uint32_t i = 0; i < x->count; i++)
 		if (touches(w, &x->surface[i]))
-			w->max_acceleration = fmax(w->max_acceleration, pressing(w, &x->surface[i]));
+			w->max_acceleration = ob_max(w->max_acceleration, pressing(w, &x->surface[i]));
 }
 
 static const double sliding_share = .999; // of its bound: a smaller friction impulse holds
@@ -176,7 +176,7 @@ double ob_surfaces_reversal(const ob_sim *s, double h)
 	double first = INFINITY;
 	for (uint32_t i = 0; i < w->surfaces.count; i++)
 		if (ob_norm2(w->body[w->surfaces.surface[i].row].acceleration) > 0)
-			first = fmin(first, reversal(w, &w->surfaces.surface[i]));
+			first = ob_min(first, reversal(w, &w->surfaces.surface[i]));
 	return first < h ? first : INFINITY;
 }
 
