@@ -27,6 +27,7 @@ import re
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -110,11 +111,12 @@ class Scenes:
 			points = [[scale * c + off for c in p] for p in points]
 		return "{" + ", ".join("{" + ", ".join(repr(c) for c in p) + "}" for p in points) + "}"
 
-	def timed_points(self, most, closed):
+	def timed_points(self, most, closed, turns=False):
 		r = self.r
 		points, t = [], 0.
 		for _ in range(self.one_of([2, 2, 3, 3, 5, 40], [0, 1, 1025])):
-			points.append(f"{{{t!r}, " + ", ".join(self.number(-most, most, .001) for _ in range(3)) + "}")
+			turned = [repr(r.choice([0., 1., 1e-9, r.uniform(-1, 1)])) for _ in range(self.one_of([4], [3, 0]))] if turns else []
+			points.append(f"{{{t!r}, " + ", ".join([self.number(-most, most, .001) for _ in range(3)] + turned) + "}")
 			t += self.one_of([.1, .3, 1, 1e6, r.uniform(.07, .2)], [1e-9, 1e-3])
 		if closed:
 			points.append(f"{{{t!r}, " + points[0].split(", ", 1)[1])
@@ -130,7 +132,7 @@ class Scenes:
 			fields += [f"centre = {self.place()}"] + self.maybe(.5, "axis", lambda: self.vector(-1, 1))
 		if kind == "spline":
 			loop = self.one_of([False, True], [0])
-			points = self.timed_points(1e7 if r.random() < .1 else 2, loop or r.random() < .1)
+			points = self.timed_points(1e7 if r.random() < .1 else 2, loop or r.random() < .1, r.random() < .3)
 			return f"{{ kind = 'spline', points = {points}, loop = {'true' if loop is not False else 'false'} }}"
 		return "{ " + ", ".join(fields) + f", frequency = {self.number(1e-9, 1e4) if r.random() < .3 else r.uniform(.1, 5)} }}"
 
@@ -142,7 +144,8 @@ class Scenes:
 			return f"{{ kind = 'linear', points = {self.timed_points(1e15 if r.random() < .1 else 1e4, False)} }}"
 		if kind == "pulse":
 			return f"{{ kind = 'pulse', {force}, from = {self.number(0, .1)}, to = {self.number(.1, 1e9)} }}"
-		return f"{{ kind = '{kind}', {force}, frequency = {self.number(1e-9, 1e4)} }}"
+		phase = self.maybe(.3, "phase", lambda: self.number(-1e3, 1e3))
+		return "{ " + ", ".join([f"kind = '{kind}'", force, f"frequency = {self.number(1e-9, 1e4)}"] + phase) + " }"
 
 	def shape(self, kind):
 		if kind == "box":
@@ -152,6 +155,12 @@ class Scenes:
 			return [f"points = {self.hull_points()}"]
 		fields = [f"radius = {self.size()}"] if kind in ("sphere", "capsule", "cylinder") else []
 		return fields + ([f"length = {self.size()}"] if kind in ("capsule", "cylinder") else [])
+
+	def mesh(self):
+		"""What a body looks like: the files lie beside the scene."""
+		path = self.one_of(["ball.glb", "lane.glb"], ["none.glb", "../ball.glb", "/etc/passwd", "scene.lua", ""])
+		fields = [f"mesh = '{path}'"] + self.maybe(.3, "mesh_scale", lambda: self.number(1e-9, 1e6)) + self.maybe(.3, "mesh_at", self.place)
+		return fields + self.maybe(.3, "mesh_rotation", lambda: f"{{ axis = {self.vector(-1, 1)}, degrees = {self.number(-36000, 36000)} }}")
 
 	def motion(self, static):
 		"""How a body moves, or is moved."""
@@ -190,6 +199,7 @@ class Scenes:
 		if not fixed:
 			fixed = r.random() < .15
 			fields += self.motion(fixed)
+			fields += self.mesh() if r.random() < .03 else []
 			turned = r.random()
 			if turned < .3:
 				fields.append("q = {" + ", ".join(self.number(-2, 2) for _ in range(4)) + "}")
@@ -198,7 +208,7 @@ class Scenes:
 		if fixed or "kind = 'kinematic'" in fields:
 			fields += self.maybe(.3, "surface_velocity", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-3, 3))
 		if self.scripts and kind != "ground" and r.random() < .5 and not any(f.startswith("varying_force") for f in fields):
-			fields.append(f"script = 's{r.randrange(self.scripts)}'")
+			fields.append(f"script = '{self.one_of([f's{r.randrange(self.scripts)}', 'drop.lua'], ['none.lua', 's9', 'self:remove()'])}'")
 			fields += self.maybe(.3, "state", lambda: self.one_of(["{}", "{ a = 1, b = 'x', c = true }", "{ 1, 2, 3 }"], ["{ a = {} }", "{ a = ('x'):rep(2000) }", "7"]))
 		fields += self.maybe(.2, "friction", lambda: self.number(0, 1000))
 		fields += self.maybe(.4, "restitution", lambda: self.number(0, 1))
@@ -244,9 +254,9 @@ class Scenes:
 		fields += self.maybe(.8, "substeps", lambda: str(self.one_of([32, 256, 1000] if many else [1, 1, 2, 4, 8], [1001, 0])))
 		if not any(f.startswith("substeps") for f in fields):
 			fields += self.maybe(.9, "tolerance", lambda: self.number(1e-6 if many else .01, 1))
-		fields += self.maybe(.2, "iterations", lambda: str(r.choice([1, 2, 16, 1000, 100000])))
-		fields += self.maybe(.3, "solver", lambda: r.choice(["'coloured'", "'jacobi'", "'ghost'", "'lagged'"]))
-		if "solver = 'lagged'" in fields or r.random() < .01:
+		fields += self.maybe(.2, r.choice(["iterations", "iterations", "passes"]), lambda: str(r.choice([1, 2, 16, 1000, 100000])))
+		fields += self.maybe(.3, r.choice(["solver", "solver", "exchange"]), lambda: r.choice(["'coloured'", "'jacobi'", "'ghost'", "'lagged'"]))
+		if any(f.endswith("= 'lagged'") for f in fields) or r.random() < .01:
 			fields += self.maybe(.5, "lag", lambda: str(self.one_of([0, 1, 7, 256], [257, -1])))
 		fields += self.maybe(.2, "integrator", lambda: r.choice(["'exact'", "'ode'"]))
 		fields += self.maybe(.3, "sleeping", lambda: r.choice(["true", "false"]))
@@ -262,7 +272,8 @@ class Scenes:
 	def material(self, name):
 		fields = []
 		for chance, field, value in [(.5, "friction", lambda: self.number(0, 1000)), (.5, "restitution", lambda: self.number(0, 1)),
-				(.5, "density", lambda: self.number(1e-3, 1e9)), (.3, "colour", self.colour)]:
+				(.5, "density", lambda: self.number(1e-3, 1e9)), (.3, "colour", self.colour), (.2, "roughness", lambda: self.number(0, 1)),
+				(.2, "metal", lambda: self.number(0, 1))]:
 			fields += self.maybe(chance, field, value)
 		return f"material {name} {{ {', '.join(fields)} }}"
 
@@ -314,8 +325,10 @@ class Scenes:
 		for chance, more in [(.3, ["--isolation", r.choice(["thread", "process"])]), (.5, ["--workers", r.choice(["1", "2", "3", "objects"])]),
 				(.12, ["--narrow", "aabb"]), (.05, ["--tolerance", r.choice(["1um", "1mm", "1m", "1m", "1m"])]), (.1, ["--substeps", r.choice(["1", "4", "4", "64"])]),
 				(.1, ["--solver", r.choice(["coloured", "jacobi", "ghost", "lagged"])]), (.1, ["--integrator", r.choice(["exact", "ode"])]),
-				(.1, ["--measure", r.choice(["step", "end", "profile"])]), (.1, ["--explain"]), (.05, ["--trace", "/dev/null"]), (.05, ["--json", "/dev/null"]),
-				(.05, ["--series", "/dev/null"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict"]), (.1, ["--on-death", "freeze"])]:
+				(.1, ["--measure", r.choice(["step", "end", "profile"])]), (.05, ["--step", r.choice(["1e-4", "1/60", ".1", "10"])]),
+				(.05, ["--iterations", r.choice(["1", "64"])]), (.05, ["--solver", "lagged", "--lag", r.choice(["0", "3"])]), (.05, ["--sleeping", r.choice(["on", "off"])]),
+				(.05, ["--seed", r.choice(["0", "7"])]), (.02, ["-D", r.choice(["n=5", "s=b", "p=1/3", "m=1"])]), (.1, ["--explain"]), (.05, ["--trace", "t.json"]), (.05, ["--json", "/dev/null"]),
+				(.05, ["--series", "s.csv"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict", "--tolerance", "1mm"]), (.1, ["--on-death", "freeze"])]:
 			words += more if r.random() < chance else []
 		if "process" in words and not self.scripts:
 			words += ["--harden"] if r.random() < .3 else []
@@ -325,6 +338,8 @@ class Scenes:
 
 	def case(self, folder):
 		path = os.path.join(folder, "scene.lua")
+		for beside in "bowling/ball.glb", "bowling/lane.glb", "flock/drop.lua":
+			shutil.copy(os.path.join(SCENES, beside), folder)
 		with open(path, "w", encoding="utf-8", errors="surrogateescape") as f:
 			f.write(self.scene())
 		return ["run", path] + self.options()
@@ -359,16 +374,24 @@ class Lua:
 
 	def __init__(self, r):
 		self.r = r
-		self.seeds = []
-		for path in sorted(glob.glob(os.path.join(SCENES, "*.lua")) + glob.glob(os.path.join(HERE, "corpus", "*.lua"))):
-			with open(path, "rb") as f:
-				self.seeds.append(f.read())
+		self.scenes = [os.path.basename(path) for path in sorted(glob.glob(os.path.join(SCENES, "*.lua")))]
+
+	def mutate(self, path):
+		with open(path, "rb") as f:
+			text = f.read()
+		with open(path, "wb") as f:
+			f.write(mutate(self.r, text, self.TOKENS, 3))
 
 	def case(self, folder):
-		path = os.path.join(folder, "scene.lua")
-		with open(path, "wb") as f:
-			f.write(mutate(self.r, self.r.choice(self.seeds), self.TOKENS))
-		return ["run", path, "--duration", ".02", "--workers", "1", "--measure", "end"]
+		"""A scene, with what it reads beside it; of a scene with scripts, often these."""
+		name = self.r.choice(self.scenes)
+		path, beside = os.path.join(folder, name), os.path.join(folder, name[:-4])
+		shutil.copy(os.path.join(SCENES, name), folder)
+		if os.path.isdir(os.path.join(SCENES, name[:-4])):
+			shutil.copytree(os.path.join(SCENES, name[:-4]), beside)
+		scripts = sorted(glob.glob(os.path.join(beside, "*.lua")))
+		self.mutate(self.r.choice(scripts) if scripts and self.r.random() < .7 else path)
+		return ["run", path, "--duration", ".1" if scripts else ".02", "--workers", "1", "--measure", "end"]
 
 
 class Words:
@@ -383,13 +406,13 @@ class Words:
 		self.options = {}
 
 	def known(self, obsim):
-		for command in ("run", "top", "inspect", "compare"):
+		for command in ("run", "top", "inspect", "send", "export", "compare"):
 			text = subprocess.run([obsim, command, "--help"], capture_output=True, text=True).stdout
 			self.options[command] = sorted(set(re.findall(r"--[a-z-]+", text)) - {"--interval"})
 
 	def case(self, folder):
 		r = self.r
-		command = r.choices(["run", "top", "inspect", r.choice(self.VALUES)], [8, 1, 1, .5])[0]
+		command = r.choices(["run", "top", "inspect", "send", "export", r.choice(self.VALUES)], [8, 1, 1, 1, 1, .5])[0]
 		words = [command]
 		for _ in range(r.randint(0, 5)):
 			option = r.choice(self.options.get(command) or ["--help"])
@@ -399,33 +422,89 @@ class Words:
 			words += ["--duration", ".02"]  # the last one counts, or is refused
 		if command == "top":
 			words += ["--once", "--interval", ".05"]
+		if command == "send":
+			words += r.sample(["none", "create", "remove", "colour", "message", "sphere { radius = 1 }", "'"], 3)
 		return [w.replace("\0", "") for w in words]
 
 
 class Files:
-	"""Mutants of a file that the program itself has written, given back to it."""
+	"""Mutants of files that the program itself has written, given back to it."""
+
+	SCENES = ["stack", "machines", "solids", "flock"]
+	NUMBERS = [struct.pack("<d", x) for x in (0, -1, .5, 3, 1e-300, 1e300, -1e300, math.inf, -math.inf, math.nan)] + \
+		[struct.pack("<I", x) for x in (0, 1, 2, 21, 255, 0x7fffffff, 0xfffffffe, 0xffffffff)]
 
 	def __init__(self, r):
 		self.r = r
-		self.seed = None
+		self.seeds = []
 
 	def known(self, obsim):
-		with tempfile.TemporaryDirectory() as folder:
-			path = os.path.join(folder, "file")
-			subprocess.run([obsim, "run", os.path.join(SCENES, "stack.lua"), "--duration", ".1", self.WRITTEN_BY, path], stdout=subprocess.DEVNULL, check=True)
-			with open(path, "rb") as f:
-				self.seed = f.read()
+		for scene in self.SCENES:
+			with tempfile.TemporaryDirectory() as folder:
+				path = os.path.join(folder, "file")
+				subprocess.run([obsim, "run", os.path.join(SCENES, scene + ".lua"), "--duration", ".1", self.WRITTEN_BY, path], stdout=subprocess.DEVNULL,
+					check=True)
+				with open(path, "rb") as f:
+					self.seeds.append(f.read())
+
+	def renumbered(self, data, areas):
+		"""Numbers become others where they stand, in areas (from, to) that are as likely as each other."""
+		data = bytearray(data)
+		for _ in range(self.r.randint(1, 3)):
+			number = self.r.choice(self.NUMBERS)
+			first, last = self.r.choice(areas)
+			at = self.r.randrange(first, last) // 4 * 4
+			data[at:at + len(number)] = number
+		return data
+
+	def mutant(self):
+		seed = self.r.choice(self.seeds)
+		if self.r.random() < .5:
+			return bytes(self.renumbered(seed, [(i, i + 4096) for i in range(0, len(seed) - 4096, 4096) if any(seed[i:i + 4096])]))
+		tokens = [bytes([x]) * n for x in (0, 1, 127, 255) for n in (1, 4, 8)] + [b"\0\0\0\0\0\0\xf8\x7f"]
+		return mutate(self.r, seed, tokens, 3)
 
 	def case(self, folder):
 		path = os.path.join(folder, "mutant")
-		tokens = [bytes([x]) * n for x in (0, 1, 127, 255) for n in (1, 4, 8)] + [b"\0\0\0\0\0\0\xf8\x7f"]
 		with open(path, "wb") as f:
-			f.write(mutate(self.r, self.seed, tokens, 3))
+			f.write(self.mutant())
 		return self.command(path, folder)
+
+
+CRC64 = []  # of each byte: ECMA-182, reflected
+for crc in range(256):
+	for _ in range(8):
+		crc = crc >> 1 ^ (0xc96c5795d7870f42 if crc & 1 else 0)
+	CRC64.append(crc)
+
+
+def crc64(data):
+	crc = (1 << 64) - 1
+	for byte in data:
+		crc = crc >> 8 ^ CRC64[(crc ^ byte) & 255]
+	return crc ^ (1 << 64) - 1
 
 
 class Checkpoints(Files):
 	WRITTEN_BY = "--checkpoint"
+	HEADER, LINE = 128, 32  # checkpoint/file.h
+
+	def mutant(self):
+		"""Half of them with checksums that are right."""
+		if self.r.random() < .5:
+			return super().mutant()
+		seed = self.r.choice(self.seeds)
+		areas, = struct.unpack_from("<I", seed, 88)
+		table = self.HEADER + areas * self.LINE
+		lines = [struct.unpack_from("<II3Q", seed, at) for at in range(self.HEADER, table, self.LINE)]
+		full = [(offset, offset + min(element * count, 1 << 14)) for element, _, count, offset, _ in lines if element * count >= 8]
+		data = self.renumbered(seed, full)
+		for i, (element, _, count, offset, _) in enumerate(lines):
+			if data[offset:offset + element * count] != seed[offset:offset + element * count]:
+				struct.pack_into("<Q", data, self.HEADER + i * self.LINE + 24, crc64(data[offset:offset + element * count]))
+		struct.pack_into("<Q", data, self.HEADER - 8, 0)
+		struct.pack_into("<Q", data, self.HEADER - 8, crc64(data[:table]))
+		return bytes(data)
 
 	def command(self, path, folder):
 		return ["inspect", path] if self.r.random() < .5 else ["run", "--resume", path, "--duration", ".12"]
@@ -446,7 +525,7 @@ class Records(Files):
 			subprocess.run([obsim, "compare", os.path.join(SCENES, "stack.lua"), "--duration", ".02", "--repeats", "1", "--out", folder],
 				stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
 			with open(os.path.join(folder, "results.csv"), "rb") as f:
-				self.seed = f.read()
+				self.seeds.append(f.read())
 
 	def command(self, path, folder):
 		out = os.path.join(folder, "out")

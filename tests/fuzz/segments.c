@@ -47,7 +47,7 @@ static void fill(ob_universe *u)
 				  .mass = i ? 1 : 0,
 				  .inertia = { .1, .2, .3 } };
 		ob_motion m = { .q = { 1, 0, 0, 0 },
-				.p = { i, 0, 1 },
+				.p = { 1.2 * i, 0, 1 }, // apart: what their depth costs is not of interest
 				.v = { 1, 0, 0 },
 				.w = { 1, 2, 3 },
 				.valid_until = INFINITY };
