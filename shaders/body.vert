@@ -3,14 +3,21 @@
 // needs no turning. A box's edges are rounded by bending its normal near them.
 #include "frame.glsl"
 #include "instance.glsl"
+#include "surface.glsl"
 out vec3 v_local;       // box: position, m; else: normal
 out vec3 v_to_eye;
 out vec3 v_shadow;      // shadow-map coordinates
 out vec2 v_open_fog;    // share of the ground's light that comes up; fog
 flat out vec4 v_half;   // of v_local; 1 / width of the rounding
-flat out vec3 v_sun, v_up, v_matt; // v_matt: colour of what is scattered
-flat out vec3 v_shine, v_edge;     // reflectance at right angles; what it grows by where one looks along the surface
-flat out vec4 v_gloss;             // of the glint: its sharpness less 1, its strength; of what is mirrored: see surroundings()
+flat out vec3 v_sun, v_up;
+#ifdef OB_TEXTURED
+out vec2 v_place;         // in the images
+flat out vec4 v_paint;    // which they multiply: colour; metal and roughness, as shown_paint()
+flat out vec2 v_by_mesh;  // 1 where they do, of colour and of surface, else 0
+#else
+flat out vec3 v_matt, v_shine, v_edge; // of the Surface
+flat out vec4 v_gloss;
+#endif
 #ifndef OB_DRAFT
 flat out vec4 v_attitude;
 #endif
@@ -25,12 +32,17 @@ void main()
 	v_up = turned_back(vec3(0., 0., 1.));
 	v_to_eye = turned_back(-p);
 	vec4 look = shown_paint();
-	float metal = floor(look.w) / 15.;
-	float roughness = max(look.w - floor(look.w), .06), sharp = roughness * roughness * roughness * roughness;
-	v_matt = look.rgb * (1. - metal);
-	v_shine = mix(vec3(.04), look.rgb, metal);
-	v_edge = max(vec3(1. - roughness), v_shine) - v_shine;
-	v_gloss = vec4(sharp - 1., sharp / (4. * roughness + 2.), .5 / (.06 + .9 * roughness), .25 * roughness);
+#ifdef OB_TEXTURED
+	v_place = texture_place;
+	v_paint = look;
+	v_by_mesh = vec2(by_mesh());
+#else
+	Surface s = surface_of(look.rgb, floor(look.w) / 15., fract(look.w));
+	v_matt = s.matt;
+	v_shine = s.shine;
+	v_edge = s.edge;
+	v_gloss = s.gloss;
+#endif
 
 	// The shadow is looked up off the surface, farther where light grazes: no acne, and contacts stay attached.
 	float facing = clamp(dot(n, sun.xyz), 0., 1.);

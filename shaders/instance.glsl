@@ -7,13 +7,19 @@ layout(location = 4) in vec4 core;            // m, half size; w: width of a box
                                               // what looks like a mesh: -1 if that has the colour, -2 if the surface
 layout(location = 5) in vec4 colour;          // linear; w: 15 times its metal, whole, and then its roughness, below 1
 layout(location = 6) in vec4 paint;           // of a mesh's vertex: as colour; below 0: the object's
+layout(location = 7) in vec2 texture_place;   // the same, in its part's images
 
 vec3 turned(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) + attitude.w * v); }
 vec3 turned_back(vec3 v) { return v + 2. * cross(attitude.xyz, cross(attitude.xyz, v) - attitude.w * v); }
+// Whether its mesh says what colour it has, and what surface.
+bvec2 by_mesh()
+{
+	int flags = int(max(-core.w, 0.) + .5);
+	return bvec2((flags & 1) != 0 && paint.r >= 0., (flags & 2) != 0 && paint.w >= 0.);
+}
 vec4 shown_paint()
 {
-	int by_mesh = int(max(-core.w, 0.) + .5);
-	return vec4((by_mesh & 1) != 0 && paint.r >= 0. ? paint.rgb : colour.rgb,
-		    (by_mesh & 2) != 0 && paint.w >= 0. ? paint.w : colour.w);
+	bvec2 mesh = by_mesh();
+	return vec4(mesh.x ? paint.rgb : colour.rgb, mesh.y ? paint.w : colour.w);
 }
 vec3 world_position() { return turned(corner * core.xyz + normal * position_radius.w) + position_radius.xyz; }

@@ -58,6 +58,7 @@ DUTIES = [
     ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
     ('include cairo', r'#\s*include\s*<cairo', r'src/plot/', True),
     ('include tinygltf', r'#\s*include\s*[<"]tiny_gltf', r'src/mesh/', True),
+    ('include libjpeg', r'#\s*include\s*<jpeglib', r'src/mesh/', True),
     ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/engine/', True),
     ('include MuJoCo', r'#\s*include\s*<mujoco', r'src/engine/', True),
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),

@@ -1,8 +1,9 @@
 // glTF through tinygltf, which turns its JSON into structures and checks little more than their form. So what may be
-// large is bounded before it is called (look_through), it may open no other file and decodes no picture, and every
-// index, count and place in the file is checked here before it is used.
+// large is bounded before it is called (look_through), it may open no other file and decodes no picture (image.c does),
+// and every index, count and place in the file is checked here before it is used.
 #include <math.h> // C++'s own must not come in with C linkage
 #include <exception>
+#include <memory>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -15,6 +16,7 @@
 
 extern "C" {
 #include "mesh/gltf.h"
+#include "mesh/image.h"
 }
 
 namespace
@@ -123,21 +125,30 @@ struct numbers {
 	bool normalized;
 };
 
+// What a buffer view lies in, if all of it does.
+const std::vector<unsigned char> &buffer_of(const tinygltf::Model &model, const tinygltf::BufferView &view,
+					    const char *what)
+{
+	const std::vector<unsigned char> &data = at(model.buffers, view.buffer, "buffer").data;
+	if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
+		fail(std::string("it is damaged: its ") + what + " are not all there");
+	return data;
+}
+
 numbers open(const tinygltf::Model &model, int index, const char *what)
 {
 	const tinygltf::Accessor &a = at(model.accessors, index, "accessor");
 	if (a.sparse.isSparse)
 		fail(std::string("its ") + what + " are sparse, which is not read here");
 	const tinygltf::BufferView &view = at(model.bufferViews, a.bufferView, "buffer view");
-	const std::vector<unsigned char> &data = at(model.buffers, view.buffer, "buffer").data;
+	const std::vector<unsigned char> &data = buffer_of(model, view, what);
 	const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(a.componentType));
 	const int parts = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(a.type));
 	if (bytes <= 0 || parts <= 0 || parts > 4 || view.byteStride > STRIDE_MAX ||
 	    (view.byteStride && view.byteStride < static_cast<size_t>(bytes * parts)))
 		fail(std::string("it is damaged: its ") + what + " are of no known type");
 	const size_t one = static_cast<size_t>(bytes * parts), stride = view.byteStride ? view.byteStride : one;
-	const bool inside = view.byteOffset <= data.size() && view.byteLength <= data.size() - view.byteOffset &&
-			    a.byteOffset <= view.byteLength && one <= view.byteLength - a.byteOffset;
+	const bool inside = a.byteOffset <= view.byteLength && one <= view.byteLength - a.byteOffset;
 	if (!inside || a.count == 0 || a.count - 1 > (view.byteLength - a.byteOffset - one) / stride)
 		fail(std::string("it is damaged: its ") + what + " are not all there");
 	return { data.data() + view.byteOffset + a.byteOffset, stride, a.count, a.componentType, parts, a.normalized };
@@ -250,46 +261,31 @@ transform of_node(const tinygltf::Node &n)
 	return t;
 }
 
-// ---- triangles
+// ---- the mesh as it grows
 
-struct paint {
-	float colour[3], surface; // below 0: the object's
+struct release {
+	void operator()(uint8_t *bytes) const { free(bytes); }
 };
 
-float share(double x)
-{
-	return static_cast<float>(fmin(fmax(x, 0), 1)); // of NaN: 0
-}
-
-// What a texture says is not drawn: there the object's own colour and surface stand in for it.
-paint paint_of(const tinygltf::Model &model, const tinygltf::Primitive &p)
-{
-	paint out = { { -1, -1, -1 }, -1 };
-	if (p.material < 0)
-		return out;
-	const tinygltf::PbrMetallicRoughness &m = at(model.materials, p.material, "material").pbrMetallicRoughness;
-	if (m.baseColorTexture.index < 0 && m.baseColorFactor.size() >= 3)
-		for (size_t k = 0; k < 3; k++)
-			out.colour[k] = share(m.baseColorFactor[k]);
-	if (m.metallicRoughnessTexture.index < 0)
-		out.surface = ob_surface_pack(share(m.roughnessFactor), share(m.metallicFactor));
-	return out;
-}
-
-// The vertices of one primitive, which the triangles of one side share where they can.
-struct corners {
-	numbers position, normal, colour;
-	bool has_normal, has_colour;
-	transform place, place_of_normal;
-	paint look;
+struct picture {
+	int image; // of the file
+	bool surface; // green and blue are numbers
+	uint32_t width, height;
+	std::unique_ptr<uint8_t, release> rgba;
 };
 
-// The mesh as it grows.
+struct group {
+	ob_mesh_part part;
+	std::vector<uint32_t> index;
+};
+
 struct builder {
 	std::vector<ob_mesh_vertex> vertex;
-	std::vector<uint32_t> index;
+	std::vector<group> groups;
+	std::vector<picture> pictures;
 	std::vector<uint32_t> known,
 		known_in; // by the number in the primitive: that in vertex, and of which round it is
+	size_t indices = 0, pixels = 0; // of all groups, of all pictures
 	uint32_t round = 0;
 	size_t work = 0;
 };
@@ -301,6 +297,171 @@ void spend(builder &b, size_t more)
 		fail("it has more parts, or more triangles, than are read here");
 }
 
+// The number of the group of these images.
+size_t group_of(builder &b, const ob_mesh_part &part)
+{
+	size_t i = 0;
+	while (i < b.groups.size() && memcmp(&b.groups[i].part, &part, sizeof part) != 0)
+		i++;
+	if (i == OB_MESH_PARTS_MAX)
+		fail("it has more than " + std::to_string(OB_MESH_PARTS_MAX) + " materials with pictures of their own");
+	if (i == b.groups.size())
+		b.groups.push_back({ part, {} });
+	return i;
+}
+
+template <class T> T *copy(const T *from, size_t count)
+{
+	T *to = static_cast<T *>(malloc(count * sizeof *from));
+	if (!to)
+		throw std::bad_alloc();
+	memcpy(to, from, count * sizeof *from);
+	return to;
+}
+
+void move_to(builder &b, ob_mesh *m)
+{
+	std::vector<uint32_t> index;
+	std::vector<ob_mesh_part> part;
+	if (b.indices == 0)
+		fail("it has no triangles");
+	for (group &g : b.groups) {
+		g.part.indices = static_cast<uint32_t>(g.index.size());
+		index.insert(index.end(), g.index.begin(), g.index.end());
+		part.push_back(g.part);
+	}
+	m->vertex = copy(b.vertex.data(), b.vertex.size());
+	m->vertices = static_cast<uint32_t>(b.vertex.size());
+	m->index = copy(index.data(), index.size());
+	m->indices = static_cast<uint32_t>(index.size());
+	if (b.pictures.empty())
+		return;
+	m->part = copy(part.data(), part.size());
+	m->parts = static_cast<uint32_t>(part.size());
+	m->image = static_cast<ob_mesh_image *>(malloc(b.pictures.size() * sizeof *m->image));
+	if (!m->image)
+		throw std::bad_alloc();
+	for (picture &p : b.pictures)
+		m->image[m->images++] = { p.width, p.height, p.rgba.release() };
+}
+
+// ---- what is on triangles
+
+// u and v are each x u + y v + at, of those of the file.
+struct coordinates {
+	int set;
+	double u[3], v[3];
+};
+
+// What is on the triangles of a primitive.
+struct paint {
+	float colour[3], surface; // below 0: the object's
+	ob_mesh_part part;
+	coordinates where; // of its images
+};
+
+float share(double x)
+{
+	return static_cast<float>(fmin(fmax(x, 0), 1)); // of NaN: 0
+}
+
+// 1 + the number of the picture that a texture shows, which is read where it is new.
+uint8_t picture_of(builder &b, const tinygltf::Model &model, int index, bool surface)
+{
+	const tinygltf::Image &image = at(model.images, index, "picture");
+	ob_mesh_image read;
+	ob_error e;
+	for (size_t i = 0; i < b.pictures.size(); i++)
+		if (b.pictures[i].image == index && b.pictures[i].surface == surface)
+			return static_cast<uint8_t>(i + 1);
+	if (b.pictures.size() == OB_MESH_IMAGES_MAX)
+		fail("it has more than " + std::to_string(OB_MESH_IMAGES_MAX) + " pictures");
+	if (image.bufferView < 0)
+		fail("a picture of it lies in another file: expected all in one");
+	const tinygltf::BufferView &view = at(model.bufferViews, image.bufferView, "buffer view");
+	const std::vector<unsigned char> &data = buffer_of(model, view, "pictures");
+	b.pictures.reserve(b.pictures.size() + 1); // so that what is read is owned at once
+	if (!ob_image_read(&read, data.data() + view.byteOffset, view.byteLength, OB_MESH_PIXELS_MAX - b.pixels, &e))
+		fail(e.text);
+	b.pictures.push_back({ index, surface, read.width, read.height, std::unique_ptr<uint8_t, release>(read.rgba) });
+	b.pixels += static_cast<size_t>(read.width) * read.height;
+	return static_cast<uint8_t>(b.pictures.size());
+}
+
+uint8_t wrap_of(int mode)
+{
+	return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? OB_MESH_CLAMP
+	       : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? OB_MESH_MIRROR
+							       : OB_MESH_REPEAT;
+}
+
+double member(const tinygltf::Value &v, const char *name, size_t k, double otherwise)
+{
+	if (!v.Has(name))
+		return otherwise;
+	const tinygltf::Value &pair = v.Get(name);
+	const tinygltf::Value &one = pair.IsArray() && k < pair.ArrayLen() ? pair.Get(k) : pair;
+	return one.IsNumber() ? one.GetNumberAsDouble() : otherwise;
+}
+
+// As the extension KHR_texture_transform has it: scaled, turned, then moved.
+coordinates coordinates_of(const tinygltf::TextureInfo &info)
+{
+	const auto found = info.extensions.find("KHR_texture_transform");
+	if (found == info.extensions.end() || !found->second.IsObject())
+		return { info.texCoord, { 1, 0, 0 }, { 0, 1, 0 } };
+	const tinygltf::Value &t = found->second;
+	const double turn = member(t, "rotation", 0, 0), c = cos(turn), s = sin(turn);
+	const double x = member(t, "scale", 0, 1), y = member(t, "scale", 1, 1);
+	const double set = member(t, "texCoord", 0, info.texCoord);
+	return { set >= 0 && set < 100 ? static_cast<int>(set) : 0,
+		 { c * x, s * y, member(t, "offset", 0, 0) },
+		 { -s * x, c * y, member(t, "offset", 1, 0) } };
+}
+
+// Images of one part lie on it in the same way.
+void add_texture(builder &b, const tinygltf::Model &model, const tinygltf::TextureInfo &info, bool surface, paint &out)
+{
+	const tinygltf::Texture &t = at(model.textures, info.index, "texture");
+	const tinygltf::Sampler none, &s = t.sampler < 0 ? none : at(model.samplers, t.sampler, "sampler");
+	const uint8_t wrap[2] = { wrap_of(s.wrapS), wrap_of(s.wrapT) };
+	const coordinates where = coordinates_of(info);
+	const bool other = out.where.set != where.set || memcmp(out.where.u, where.u, sizeof where.u) != 0 ||
+			   memcmp(out.where.v, where.v, sizeof where.v) != 0 || memcmp(out.part.wrap, wrap, 2) != 0;
+	if (out.part.colour && other)
+		fail("the two textures of a material lie on it in different ways, which is not read here");
+	(surface ? out.part.surface : out.part.colour) = picture_of(b, model, t.source, surface);
+	memcpy(out.part.wrap, wrap, 2);
+	out.where = where;
+}
+
+paint paint_of(builder &b, const tinygltf::Model &model, const tinygltf::Primitive &p)
+{
+	paint out = { { -1, -1, -1 }, -1, {}, {} };
+	if (p.material < 0)
+		return out;
+	const tinygltf::PbrMetallicRoughness &m = at(model.materials, p.material, "material").pbrMetallicRoughness;
+	for (size_t k = 0; k < 3; k++)
+		out.colour[k] = m.baseColorFactor.size() >= 3 ? share(m.baseColorFactor[k]) : 1;
+	out.surface = ob_surface_pack(share(m.roughnessFactor), share(m.metallicFactor));
+	if (m.baseColorTexture.index >= 0)
+		add_texture(b, model, m.baseColorTexture, false, out);
+	if (m.metallicRoughnessTexture.index >= 0)
+		add_texture(b, model, m.metallicRoughnessTexture, true, out);
+	return out;
+}
+
+// ---- triangles
+
+// The vertices of one primitive, which the triangles of one side share where they can.
+struct corners {
+	numbers position, normal, colour, texture;
+	bool has_normal, has_colour, has_texture;
+	transform place, place_of_normal;
+	paint look;
+	size_t group;
+};
+
 uint32_t add_vertex(builder &b, const corners &c, uint32_t i, vec n)
 {
 	if (b.vertex.size() == OB_MESH_VERTICES_MAX)
@@ -310,9 +471,16 @@ uint32_t add_vertex(builder &b, const corners &c, uint32_t i, vec n)
 	ob_mesh_vertex v = { { static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z) },
 			     { static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z) },
 			     { c.look.colour[0], c.look.colour[1], c.look.colour[2] },
-			     c.look.surface };
+			     c.look.surface,
+			     { 0, 0 } };
 	for (int k = 0; k < 3 && c.has_colour && v.colour[k] >= 0; k++)
 		v.colour[k] *= share(number(c.colour, i, k));
+	if (c.has_texture) {
+		const double s = number(c.texture, i, 0), t = number(c.texture, i, 1);
+		const coordinates &w = c.look.where;
+		v.texture[0] = static_cast<float>(w.u[0] * s + w.u[1] * t + w.u[2]);
+		v.texture[1] = static_cast<float>(w.v[0] * s + w.v[1] * t + w.v[2]);
+	}
 	b.vertex.push_back(v);
 	return static_cast<uint32_t>(b.vertex.size() - 1);
 }
@@ -339,10 +507,11 @@ void add_triangle(builder &b, const corners &c, const uint32_t i[3], double side
 	const double size = dot(flat, flat);
 	if (!(size > 0 && size < INFINITY))
 		return; // it has no face
-	if (b.index.size() == 3 * static_cast<size_t>(OB_MESH_TRIANGLES_MAX))
+	if (b.indices == 3 * static_cast<size_t>(OB_MESH_TRIANGLES_MAX))
 		fail("it has more than " + std::to_string(OB_MESH_TRIANGLES_MAX) + " triangles");
 	for (int k = 0; k < 3; k++)
-		b.index.push_back(corner(b, c, i[k], flat, side));
+		b.groups[c.group].index.push_back(corner(b, c, i[k], flat, side));
+	b.indices += 3;
 }
 
 // Vertices of another primitive, or of its other side, are others.
@@ -369,20 +538,6 @@ void add_triangles(builder &b, const corners &c, const std::vector<uint32_t> &li
 			std::swap(i[1], i[2]);
 		add_triangle(b, c, i, side);
 	}
-}
-
-void move_to(const builder &b, ob_mesh *m)
-{
-	if (b.index.empty())
-		fail("it has no triangles");
-	m->vertex = static_cast<ob_mesh_vertex *>(malloc(b.vertex.size() * sizeof b.vertex[0]));
-	m->index = static_cast<uint32_t *>(malloc(b.index.size() * sizeof b.index[0]));
-	if (!m->vertex || !m->index)
-		throw std::bad_alloc();
-	memcpy(m->vertex, b.vertex.data(), b.vertex.size() * sizeof b.vertex[0]);
-	memcpy(m->index, b.index.data(), b.index.size() * sizeof b.index[0]);
-	m->vertices = static_cast<uint32_t>(b.vertex.size());
-	m->indices = static_cast<uint32_t>(b.index.size());
 }
 
 std::vector<uint32_t> indices_of(const tinygltf::Model &model, const tinygltf::Primitive &p, size_t vertices)
@@ -437,11 +592,17 @@ void add_primitive(builder &out, const tinygltf::Model &model, const tinygltf::P
 		return;
 	c.normal = find(model, p, "NORMAL", "normals", 3, &c.has_normal);
 	c.colour = find(model, p, "COLOR_0", "colours", 3, &c.has_colour);
-	if ((c.has_normal && c.normal.count < c.position.count) || (c.has_colour && c.colour.count < c.position.count))
-		fail("it is damaged: it has more positions than normals or colours");
+	c.look = paint_of(out, model, p);
+	if (c.look.part.colour || c.look.part.surface)
+		c.texture = find(model, p, ("TEXCOORD_" + std::to_string(c.look.where.set)).c_str(),
+				 "texture coordinates", 2, &c.has_texture);
+	if ((c.has_normal && c.normal.count < c.position.count) ||
+	    (c.has_colour && c.colour.count < c.position.count) ||
+	    (c.has_texture && c.texture.count < c.position.count))
+		fail("it is damaged: it has more positions than normals, colours or texture coordinates");
 	c.place = place;
 	c.place_of_normal = of_normals(place);
-	c.look = paint_of(model, p);
+	c.group = group_of(out, c.look.part);
 	const std::vector<uint32_t> list = indices_of(model, p, c.position.count);
 	add_triangles(out, c, list, mode, 1);
 	if (p.material >= 0 && model.materials[static_cast<size_t>(p.material)].doubleSided)

@@ -19,11 +19,18 @@ float ob_surface_pack(float roughness, float metal)
 
 size_t ob_mesh_bytes(const ob_mesh *m)
 {
-	return m->vertices * sizeof *m->vertex + m->indices * sizeof *m->index;
+	size_t bytes = m->vertices * sizeof *m->vertex + m->indices * sizeof *m->index + m->parts * sizeof *m->part;
+	for (uint32_t i = 0; i < m->images; i++)
+		bytes += 4 * (size_t)m->image[i].width * m->image[i].height;
+	return bytes;
 }
 
 void ob_mesh_finish(ob_mesh *m)
 {
+	for (uint32_t i = 0; i < m->images; i++)
+		free(m->image[i].rgba);
+	free(m->image);
+	free(m->part);
 	free(m->vertex);
 	free(m->index);
 	*m = (ob_mesh){ 0 };
@@ -47,14 +54,43 @@ static bool lies_within(const float *v, int n, float low, float high)
 static bool vertex_makes_sense(const ob_mesh_vertex *v)
 {
 	return lies_within(v->position, 3, -farthest, farthest) && lies_within(v->normal, 3, -1.01f, 1.01f) &&
-	       lies_within(v->colour, 3, -1, 1) && lies_within(&v->surface, 1, -1, 16);
+	       lies_within(v->colour, 3, -1, 1) && lies_within(&v->surface, 1, -1, 16) &&
+	       lies_within(v->texture, 2, -farthest, farthest);
+}
+
+static bool images_make_sense(const ob_mesh *m)
+{
+	uint64_t pixels = 0;
+	for (uint32_t i = 0; i < m->images; i++) {
+		const ob_mesh_image *image = &m->image[i];
+		if (image->width < 1 || image->width > OB_MESH_IMAGE_SIDE_MAX || image->height < 1 ||
+		    image->height > OB_MESH_IMAGE_SIDE_MAX)
+			return false;
+		pixels += (uint64_t)image->width * image->height;
+	}
+	return pixels <= OB_MESH_PIXELS_MAX;
+}
+
+static bool parts_make_sense(const ob_mesh *m)
+{
+	uint64_t indices = m->parts ? 0 : m->indices;
+	for (uint32_t i = 0; i < m->parts; i++) {
+		const ob_mesh_part *p = &m->part[i];
+		if (p->indices % 3 != 0 || p->colour > m->images || p->surface > m->images ||
+		    p->wrap[0] >= OB_MESH_WRAPS || p->wrap[1] >= OB_MESH_WRAPS)
+			return false;
+		indices += p->indices;
+	}
+	return indices == m->indices;
 }
 
 bool ob_mesh_makes_sense(ob_mesh *m)
 {
 	double most = 0;
 	if (m->vertices < 3 || m->vertices > OB_MESH_VERTICES_MAX || m->indices < 3 || m->indices % 3 != 0 ||
-	    m->indices > 3 * OB_MESH_TRIANGLES_MAX)
+	    m->indices > 3 * OB_MESH_TRIANGLES_MAX || m->parts > OB_MESH_PARTS_MAX || m->images > OB_MESH_IMAGES_MAX)
+		return false;
+	if (!images_make_sense(m) || !parts_make_sense(m))
 		return false;
 	for (uint32_t i = 0; i < m->indices; i++)
 		if (m->index[i] >= m->vertices)

@@ -1,5 +1,6 @@
-// What objects look like where they look otherwise than they collide: triangles, read from a binary glTF 2.0 file.
-// Physics knows nothing of them; the renderer and the viewer's page draw them from the same bytes.
+// What objects look like where they look otherwise than they collide: triangles, and the pictures on them, read from a
+// binary glTF 2.0 file. Physics knows nothing of them; the renderer and the viewer's page draw them from the same
+// bytes.
 //
 // Thread-safety: functions of one mesh are one thread's; a mesh that nobody changes may be read by many.
 #ifndef OB_MESH_MESH_H
@@ -16,20 +17,44 @@ enum {
 	OB_MESH_JSON_MAX = 512 << 10, // .. and of the part of it that is text
 	OB_MESH_VERTICES_MAX = 500000, // as drawn: where a triangle has no normals it has three of its own
 	OB_MESH_TRIANGLES_MAX = 500000,
+	OB_MESH_PARTS_MAX = 255,
+	OB_MESH_IMAGES_MAX = 255,
+	OB_MESH_IMAGE_SIDE_MAX = 4096, // pixels
+	OB_MESH_PIXELS_MAX = 8 << 20, // of all images of a mesh
 };
 
-// As the shaders read it (shaders/instance.glsl), and as it is handed out and recorded: little-endian. 40 bytes.
+// As the shaders read it (shaders/instance.glsl), and as it is handed out and recorded: little-endian. 48 bytes.
 typedef struct ob_mesh_vertex {
 	float position[3]; // m, body frame
 	float normal[3]; // unit, outward
 	float colour[3]; // linear RGB; below 0: the object's
 	float surface; // roughness and metal (ob_surface_pack); below 0: the object's
+	float texture[2]; // where it lies in its images: 0, 0 is the upper left corner, 1, 1 the lower right one
 } ob_mesh_vertex;
+
+// How an image goes on beyond its sides.
+typedef enum ob_mesh_wrap { OB_MESH_REPEAT, OB_MESH_MIRROR, OB_MESH_CLAMP, OB_MESH_WRAPS } ob_mesh_wrap;
+
+// Triangles that have the same images, whose values multiply those of the vertices. 8 bytes.
+typedef struct ob_mesh_part {
+	uint32_t indices; // after those of the parts before it
+	uint8_t colour; // 1 + the number of an image in sRGB; 0: none
+	uint8_t surface; // the same of one whose green is roughness and whose blue is metal, both linear
+	uint8_t wrap[2]; // ob_mesh_wrap, along an image's width and height
+} ob_mesh_part;
+
+typedef struct ob_mesh_image {
+	uint32_t width, height;
+	uint8_t *rgba; // [height][width][4], the top row first; alpha is not drawn
+} ob_mesh_image;
 
 typedef struct ob_mesh {
 	uint32_t vertices, indices;
 	ob_mesh_vertex *vertex; // [vertices]
 	uint32_t *index; // [indices]: three a triangle, counterclockwise seen from outside
+	uint32_t parts, images;
+	ob_mesh_part *part; // [parts]: all of index; none: there are no images
+	ob_mesh_image *image; // [images]
 	double radius; // m, of the ball round the origin that holds it
 } ob_mesh;
 
@@ -45,9 +70,10 @@ bool ob_mesh_read(ob_mesh *m, const void *bytes, size_t size, ob_error *e);
 bool ob_mesh_can_read(void); // false: this program was built without what reads such files
 // Makes it scale times as large, turns and then moves it. false and e: a vertex comes to lie more than 1000 km away.
 bool ob_mesh_place(ob_mesh *m, double scale, ob_pose pose, ob_error *e);
-// Whether what came from elsewhere is one: counts within the limits, indices of vertices, numbers. Sets the radius.
+// Whether what came from elsewhere is one: counts within the limits, indices of vertices, parts, numbers. Sets the
+// radius.
 bool ob_mesh_makes_sense(ob_mesh *m);
-size_t ob_mesh_bytes(const ob_mesh *m); // of vertices and indices
+size_t ob_mesh_bytes(const ob_mesh *m); // of all that it holds
 void ob_mesh_finish(ob_mesh *m);
 
 #endif

@@ -136,15 +136,14 @@ const ob_record_table ob_record_look = {
 #name, type, offsetof(ob_mesh_vertex, name), 0 \
 	}
 static const ob_record_member vertex_members[] = {
-	VERTEX(position, OB_RECORD_RGB),
-	VERTEX(normal, OB_RECORD_RGB),
-	VERTEX(colour, OB_RECORD_RGB),
-	VERTEX(surface, OB_RECORD_F32),
+	VERTEX(position, OB_RECORD_RGB), VERTEX(normal, OB_RECORD_RGB),   VERTEX(colour, OB_RECORD_RGB),
+	VERTEX(surface, OB_RECORD_F32),  VERTEX(texture, OB_RECORD_PAIR),
 };
 const ob_record_table ob_record_mesh_vertices = {
 	{ "vertices", "m; colour: linear RGB", "body",
 	  "of the mesh that events name by its number; colour, surface: below 0: the object's; surface: 15 times the "
-	  "metal, whole, and then the roughness, below 1" },
+	  "metal, whole, and then the roughness, below 1; texture: place in the images of its part, whose upper left "
+	  "corner is 0, 0 and whose lower right one 1, 1" },
 	sizeof(ob_mesh_vertex),
 	COUNT(vertex_members),
 	vertex_members,
@@ -156,6 +155,25 @@ const ob_record_table ob_record_mesh_triangles = {
 	3 * sizeof(uint32_t),
 	COUNT(triangle_members),
 	triangle_members,
+};
+
+#define PART(name, type, length) \
+	{ \
+#name, type, offsetof(ob_mesh_part, name), length \
+	}
+static const ob_record_member part_members[] = {
+	PART(indices, OB_RECORD_U32, 0),
+	PART(colour, OB_RECORD_U8, 0),
+	PART(surface, OB_RECORD_U8, 0),
+	PART(wrap, OB_RECORD_U8, 2),
+};
+const ob_record_table ob_record_mesh_parts = {
+	{ "parts", "1", NULL,
+	  "triangles that have the same images: indices: three times their number, after those of the parts before; "
+	  "colour, surface: numbers of images, 0: none; wrap: along an image's sides: 0 repeated, 1 mirrored, 2 held" },
+	sizeof(ob_mesh_part),
+	COUNT(part_members),
+	part_members,
 };
 
 static hid_t array_of(hid_t element, hsize_t count)
@@ -183,6 +201,8 @@ static hid_t type_of(ob_record_type type)
 		return array_of(H5T_NATIVE_DOUBLE, 3);
 	case OB_RECORD_QUAT:
 		return array_of(H5T_NATIVE_DOUBLE, 4);
+	case OB_RECORD_PAIR:
+		return array_of(H5T_NATIVE_FLOAT, 2);
 	case OB_RECORD_RGB:
 		return array_of(H5T_NATIVE_FLOAT, 3);
 	case OB_RECORD_RGBA:

@@ -34,6 +34,7 @@ typedef enum ob_record_type {
 	OB_RECORD_F64,
 	OB_RECORD_VEC3,
 	OB_RECORD_QUAT, // w x y z
+	OB_RECORD_PAIR, // float[2]
 	OB_RECORD_RGB, // float[3], linear; or a place or a direction
 	OB_RECORD_RGBA,
 	OB_RECORD_NAME, // char[OB_NAME_MAX], UTF-8, padded with zeros
@@ -73,6 +74,7 @@ extern const ob_record_table ob_record_cameras; // ob_camera_def
 extern const ob_record_table ob_record_look; // ob_look_def
 extern const ob_record_table ob_record_mesh_vertices; // ob_mesh_vertex
 extern const ob_record_table ob_record_mesh_triangles; // uint32_t[3]
+extern const ob_record_table ob_record_mesh_parts; // ob_mesh_part
 
 // The compound type of a table's structure in memory, and, packed, in a file. The caller closes it.
 hid_t ob_record_type_in_memory(const ob_record_table *t);

@@ -373,13 +373,35 @@ static bool write_table(hid_t file, const ob_record_table *table, const void *it
 	return ok;
 }
 
+static bool write_image(hid_t images, uint32_t number, const ob_mesh_image *image)
+{
+	char name[16];
+	const hsize_t size[3] = { image->height, image->width, 4 };
+	snprintf(name, sizeof name, "%u", number);
+	const ob_hdf5_label label = { name, "1", NULL, "red, green, blue, alpha, the top row first" };
+	hid_t set = ob_hdf5_dataset(images, &label, H5T_NATIVE_UINT8, 3, size, 0, 0, NULL);
+	bool ok = set >= 0 && H5Dwrite(set, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, image->rgba) >= 0;
+	return set >= 0 && H5Dclose(set) >= 0 && ok;
+}
+
+static bool write_images(hid_t group, const ob_mesh *m)
+{
+	if (m->images == 0)
+		return true;
+	hid_t images = H5Gcreate2(group, "images", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+	bool ok = images >= 0 && write_table(group, &ob_record_mesh_parts, m->part, m->parts);
+	for (uint32_t i = 0; i < m->images && ok; i++)
+		ok = write_image(images, i + 1, &m->image[i]);
+	return images >= 0 && H5Gclose(images) >= 0 && ok;
+}
+
 static bool write_mesh(hid_t meshes, uint32_t number, const ob_mesh *m)
 {
 	char name[16];
 	snprintf(name, sizeof name, "%u", number);
 	hid_t group = H5Gcreate2(meshes, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 	bool ok = group >= 0 && write_table(group, &ob_record_mesh_vertices, m->vertex, m->vertices) &&
-		  write_table(group, &ob_record_mesh_triangles, m->index, m->indices / 3);
+		  write_table(group, &ob_record_mesh_triangles, m->index, m->indices / 3) && write_images(group, m);
 	return group >= 0 && H5Gclose(group) >= 0 && ok;
 }
 

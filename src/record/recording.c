@@ -85,8 +85,8 @@ static bool read_attribute(hid_t at, const char *name, hid_t type, void *numbers
 
 // ---- datasets
 
-// Opens one of the file's own, of rank 1, all of whose elements are on the disk. Negative and e where it is none.
-static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind, uint64_t *count, ob_error *e)
+// Opens one of the file's own, of this rank, all of whose elements are on the disk. Negative and e where it is none.
+static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind, int rank, uint64_t *count, ob_error *e)
 {
 	char what[80];
 	H5L_info_t link;
@@ -98,7 +98,7 @@ static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind,
 		hssize_t points = H5Sget_simple_extent_npoints(space);
 		H5D_layout_t layout = H5Pget_layout(how);
 		uint64_t bytes = 0, stored = H5Dget_storage_size(set);
-		bool fits = H5Tget_class(type) == kind && H5Sget_simple_extent_ndims(space) == 1 && points >= 0 &&
+		bool fits = H5Tget_class(type) == kind && H5Sget_simple_extent_ndims(space) == rank && points >= 0 &&
 			    (layout == H5D_CHUNKED || layout == H5D_CONTIGUOUS) && H5Pget_external_count(how) == 0 &&
 			    !__builtin_mul_overflow((uint64_t)points, (uint64_t)H5Tget_size(type), &bytes) &&
 			    bytes <= stored && stored <= r->file_bytes;
@@ -117,7 +117,7 @@ static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind,
 
 static bool open_list(ob_recording *r, list *l, ob_error *e)
 {
-	l->set = open_set(r, l->table->label.name, H5T_COMPOUND, &l->total, e);
+	l->set = open_set(r, l->table->label.name, H5T_COMPOUND, 1, &l->total, e);
 	if (l->set < 0)
 		return false;
 	l->type = ob_record_type_in_memory(l->table);
@@ -158,7 +158,7 @@ static const void *item_at(list *l, uint64_t i)
 static void *read_numbers(ob_recording *r, const char *name, H5T_class_t kind, hid_t type, uint64_t *rows, ob_error *e)
 {
 	uint64_t count;
-	hid_t set = open_set(r, name, kind, &count, e);
+	hid_t set = open_set(r, name, kind, 1, &count, e);
 	if (set < 0)
 		return NULL;
 	void *numbers = calloc(count + 1, 8);
@@ -316,7 +316,7 @@ static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_t
 {
 	char name[32];
 	snprintf(name, sizeof name, "meshes/%u/%s", number, table->label.name);
-	hid_t set = open_set(r, name, H5T_COMPOUND, count, e);
+	hid_t set = open_set(r, name, H5T_COMPOUND, 1, count, e);
 	if (set < 0)
 		return NULL;
 	hid_t type = ob_record_type_in_memory(table);
@@ -335,6 +335,62 @@ static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_t
 	return NULL;
 }
 
+// Its height, width and 4; false: it is none, or too large.
+static bool take_image_size(hid_t set, ob_mesh_image *image)
+{
+	hsize_t size[3] = { 0 };
+	hid_t space = H5Dget_space(set);
+	const bool fits = H5Sget_simple_extent_dims(space, size, NULL) == 3 && size[0] >= 1 &&
+			  size[0] <= OB_MESH_IMAGE_SIDE_MAX && size[1] >= 1 && size[1] <= OB_MESH_IMAGE_SIDE_MAX &&
+			  size[2] == 4;
+	image->height = (uint32_t)size[0];
+	image->width = (uint32_t)size[1];
+	H5Sclose(space);
+	return fits;
+}
+
+static bool open_image(ob_recording *r, const char *name, ob_mesh_image *image, ob_error *e)
+{
+	uint64_t pixels = 0;
+	hid_t set = open_set(r, name, H5T_INTEGER, 3, &pixels, e);
+	if (set < 0)
+		return false;
+	const bool fits = take_image_size(set, image);
+	if (fits)
+		image->rgba = malloc(4 * (size_t)image->width * image->height);
+	const bool read =
+		image->rgba && H5Dread(set, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, image->rgba) >= 0;
+	H5Dclose(set);
+	if (fits && !image->rgba)
+		return ob_fail(e, "%s: no memory for its meshes", r->path);
+	return read || damaged(r, "its meshes make no sense", e);
+}
+
+// Meshes without images lack both.
+static bool open_parts(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
+{
+	char name[48];
+	uint64_t parts = 0;
+	snprintf(name, sizeof name, "meshes/%u/parts", number);
+	if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
+		return true;
+	m->part = read_mesh_table(r, number, &ob_record_mesh_parts, OB_MESH_PARTS_MAX, &parts, e);
+	m->image = calloc(OB_MESH_IMAGES_MAX, sizeof *m->image);
+	if (!m->part)
+		return false;
+	if (!m->image)
+		return ob_fail(e, "%s: no memory for its meshes", r->path);
+	m->parts = (uint32_t)parts;
+	bool ok = true;
+	while (ok && m->images < OB_MESH_IMAGES_MAX) {
+		snprintf(name, sizeof name, "meshes/%u/images/%u", number, m->images + 1);
+		if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
+			break;
+		ok = open_image(r, name, &m->image[m->images++], e);
+	}
+	return ok;
+}
+
 static bool open_mesh(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
 {
 	uint64_t vertices = 0, triangles = 0;
@@ -346,6 +402,8 @@ static bool open_mesh(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
 		return false;
 	m->vertices = (uint32_t)vertices;
 	m->indices = 3 * (uint32_t)triangles;
+	if (!open_parts(r, number, m, e))
+		return false;
 	return ob_mesh_makes_sense(m) || damaged(r, "its meshes make no sense", e);
 }
 

@@ -15,6 +15,7 @@ typedef struct source {
 
 static const source sources[OB_PROGRAMS] = {
 	[OB_PROGRAM_BODY] = { "body", shader_body_vert, shader_body_frag, NULL },
+	[OB_PROGRAM_TEXTURED] = { "textured body", shader_body_vert, shader_body_frag, "#define OB_TEXTURED\n" },
 	[OB_PROGRAM_SHADOW] = { "shadow", shader_shadow_vert, shader_shadow_frag, NULL },
 	[OB_PROGRAM_SKY_SHADOW] = { "sky shadow", shader_sky_shadow_vert, shader_shadow_frag, NULL },
 	[OB_PROGRAM_OCCLUSION] = { "occlusion", shader_occlusion_vert, shader_occlusion_frag, NULL },
@@ -93,6 +94,8 @@ static bool link_program(GLuint program, const char *name, ob_error *e)
 	glUniform1i(glGetUniformLocation(program, "source"), OB_UNIT_SOURCE);
 	glUniform1i(glGetUniformLocation(program, "shadow_plain"), OB_UNIT_PLAIN);
 	glUniform1i(glGetUniformLocation(program, "sky_depth"), OB_UNIT_SKY);
+	glUniform1i(glGetUniformLocation(program, "colour_image"), OB_UNIT_COLOUR_IMAGE);
+	glUniform1i(glGetUniformLocation(program, "surface_image"), OB_UNIT_SURFACE_IMAGE);
 	return true;
 }
 
@@ -303,8 +306,38 @@ static bool create_meshes(ob_passes *p, ob_error *e)
 	return built ? true : ob_fail(e, "out of memory");
 }
 
-static void create_look(ob_look_buffers *l, const ob_mesh *m)
+// form: GL_SRGB8_ALPHA8 or GL_RGBA8. Smaller ones of it are made for what is far away.
+static GLuint create_image(const ob_mesh_image *image, GLint form)
 {
+	GLuint id;
+	glGenTextures(1, &id);
+	glBindTexture(GL_TEXTURE_2D, id);
+	glTexImage2D(GL_TEXTURE_2D, 0, form, (GLsizei)image->width, (GLsizei)image->height, 0, GL_RGBA,
+		     GL_UNSIGNED_BYTE, image->rgba);
+	glGenerateMipmap(GL_TEXTURE_2D);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	return id;
+}
+
+static void create_images(ob_look_buffers *l)
+{
+	for (uint32_t i = 0; i < l->mesh->parts; i++) {
+		const ob_mesh_part *p = &l->mesh->part[i];
+		if (p->colour && !l->image[p->colour - 1])
+			l->image[p->colour - 1] = create_image(&l->mesh->image[p->colour - 1], GL_SRGB8_ALPHA8);
+		if (p->surface && !l->image[p->surface - 1])
+			l->image[p->surface - 1] = create_image(&l->mesh->image[p->surface - 1], GL_RGBA8);
+	}
+}
+
+static bool create_look(ob_look_buffers *l, const ob_mesh *m)
+{
+	l->mesh = m;
+	l->image = calloc(m->images + 1, sizeof *l->image);
+	if (!l->image)
+		return false;
+	create_images(l);
 	glGenVertexArrays(1, &l->array);
 	glGenBuffers(1, &l->vertices);
 	glGenBuffers(1, &l->indices);
@@ -314,9 +347,21 @@ static void create_look(ob_look_buffers *l, const ob_mesh *m)
 	set_attribute(0, 3, sizeof(ob_mesh_vertex), offsetof(ob_mesh_vertex, position), 0);
 	set_attribute(1, 3, sizeof(ob_mesh_vertex), offsetof(ob_mesh_vertex, normal), 0);
 	set_attribute(6, 4, sizeof(ob_mesh_vertex), offsetof(ob_mesh_vertex, colour), 0);
+	set_attribute(7, 2, sizeof(ob_mesh_vertex), offsetof(ob_mesh_vertex, texture), 0);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, l->indices);
 	glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(m->indices * sizeof *m->index), m->index, GL_STATIC_DRAW);
-	l->index_count = m->indices;
+	return true;
+}
+
+static bool create_looks(ob_passes *p, const ob_mesh *mesh, uint32_t meshes)
+{
+	p->white = create_image(&(ob_mesh_image){ 1, 1, (uint8_t[]){ 255, 255, 255, 255 } }, GL_RGBA8);
+	while (p->looks < meshes) {
+		const uint32_t i = p->looks++;
+		if (!create_look(&p->look[i], &mesh[i]))
+			return false;
+	}
+	return true;
 }
 
 bool ob_passes_create(ob_passes *p, ob_light light, const ob_mesh *mesh, uint32_t meshes, ob_error *e)
@@ -351,9 +396,7 @@ bool ob_passes_create(ob_passes *p, ob_light light, const ob_mesh *mesh, uint32_
 	set_attribute(1, 3, sizeof(ob_segment), offsetof(ob_segment, to), 1);
 	set_attribute(2, 4, sizeof(ob_segment), offsetof(ob_segment, colour), 1);
 	set_attribute(3, 1, sizeof(ob_segment), offsetof(ob_segment, width), 1);
-	for (; p->looks < meshes; p->looks++)
-		create_look(&p->look[p->looks], &mesh[p->looks]);
-	return true;
+	return create_looks(p, mesh, meshes) || ob_fail(e, "out of memory");
 }
 
 void ob_passes_destroy(ob_passes *p)
@@ -368,7 +411,11 @@ void ob_passes_destroy(ob_passes *p)
 	for (uint32_t i = 0; i < p->looks; i++) {
 		glDeleteVertexArrays(1, &p->look[i].array);
 		glDeleteBuffers(2, (const GLuint[]){ p->look[i].vertices, p->look[i].indices });
+		if (p->look[i].image)
+			glDeleteTextures((GLsizei)p->look[i].mesh->images, p->look[i].image);
+		free(p->look[i].image);
 	}
+	glDeleteTextures(1, &p->white);
 	free(p->look);
 	free(p->hull_first);
 }
@@ -449,7 +496,34 @@ static void draw_hulls(const ob_passes *p, const ob_instances *i)
 	}
 }
 
-static void draw_looks(const ob_passes *p, const ob_instances *i)
+static void bind_image(GLenum unit, GLuint image, const uint8_t wrap[2])
+{
+	static const GLint modes[OB_MESH_WRAPS] = {
+		[OB_MESH_REPEAT] = GL_REPEAT, [OB_MESH_MIRROR] = GL_MIRRORED_REPEAT, [OB_MESH_CLAMP] = GL_CLAMP_TO_EDGE
+	};
+	glActiveTexture(GL_TEXTURE0 + unit);
+	glBindTexture(GL_TEXTURE_2D, image);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, modes[wrap[0]]);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, modes[wrap[1]]);
+}
+
+// The parts of a mesh with images, each with its own.
+static void draw_textured(const ob_passes *p, const ob_look_buffers *l, GLsizei count)
+{
+	size_t first = 0;
+	glUseProgram(p->program[OB_PROGRAM_TEXTURED]);
+	for (uint32_t i = 0; i < l->mesh->parts; i++) {
+		const ob_mesh_part *part = &l->mesh->part[i];
+		bind_image(OB_UNIT_COLOUR_IMAGE, part->colour ? l->image[part->colour - 1] : p->white, part->wrap);
+		bind_image(OB_UNIT_SURFACE_IMAGE, part->surface ? l->image[part->surface - 1] : p->white, part->wrap);
+		glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)part->indices, GL_UNSIGNED_INT,
+					(const void *)(first * sizeof(uint32_t)), count);
+		first += part->indices;
+	}
+	glUseProgram(p->program[OB_PROGRAM_BODY]);
+}
+
+static void draw_looks(const ob_passes *p, const ob_instances *i, bool in_colour)
 {
 	for (uint32_t k = 0; k < p->looks; k++) {
 		const uint32_t *first = &i->first[OB_MESHES + p->hulls + k], count = first[1] - first[0];
@@ -457,13 +531,16 @@ static void draw_looks(const ob_passes *p, const ob_instances *i)
 			continue;
 		glBindVertexArray(p->look[k].array);
 		set_instances(first[0]);
-		glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)p->look[k].index_count, GL_UNSIGNED_INT, NULL,
-					(GLsizei)count);
+		if (in_colour && p->look[k].mesh->parts)
+			draw_textured(p, &p->look[k], (GLsizei)count);
+		else
+			glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)p->look[k].mesh->indices, GL_UNSIGNED_INT, NULL,
+						(GLsizei)count);
 	}
 }
 
-// Draws what upload_instances has uploaded.
-static void draw_instances(const ob_passes *p, const ob_instances *i)
+// Draws what upload_instances has uploaded. in_colour: the program is OB_PROGRAM_BODY.
+static void draw_instances(const ob_passes *p, const ob_instances *i, bool in_colour)
 {
 	for (uint32_t k = 0; k < OB_MESHES; k++) {
 		uint32_t first = i->first[k], count = i->first[k + 1] - first;
@@ -475,7 +552,7 @@ static void draw_instances(const ob_passes *p, const ob_instances *i)
 	}
 	if (i->first[i->meshes] > i->first[OB_MESHES]) {
 		draw_hulls(p, i);
-		draw_looks(p, i);
+		draw_looks(p, i, in_colour);
 	}
 }
 
@@ -490,7 +567,7 @@ static void draw_depth(const ob_passes *p, ob_program program, const ob_instance
 	glEnable(GL_POLYGON_OFFSET_FILL);
 	glPolygonOffset(shadow_slope, shadow_offset);
 	glUseProgram(p->program[program]);
-	draw_instances(p, casters);
+	draw_instances(p, casters, false);
 	glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -534,7 +611,7 @@ void ob_passes_occlusion_map(const ob_passes *p, const ob_targets *t, const ob_i
 	glBlendEquation(GL_MAX);
 	glFrontFace(GL_CW); // undersides
 	glUseProgram(p->program[OB_PROGRAM_OCCLUSION]);
-	draw_instances(p, low);
+	draw_instances(p, low, false);
 	glBlendEquation(GL_FUNC_ADD);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
@@ -653,7 +730,7 @@ void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instance
 	glBindTexture(GL_TEXTURE_2D, t->occlusion_texture[0]);
 	upload_instances(p, seen);
 	glUseProgram(p->program[OB_PROGRAM_BODY]);
-	draw_instances(p, seen);
+	draw_instances(p, seen, true);
 	glDisable(GL_CULL_FACE);
 	glBindVertexArray(p->empty_array);
 	for (int i = 0; i < 2 * b->planes; i++) {

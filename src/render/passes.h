@@ -14,6 +14,7 @@
 
 typedef enum ob_program {
 	OB_PROGRAM_BODY,
+	OB_PROGRAM_TEXTURED, // a body, with images on it
 	OB_PROGRAM_SHADOW,
 	OB_PROGRAM_SKY_SHADOW,
 	OB_PROGRAM_OCCLUSION,
@@ -27,7 +28,15 @@ typedef enum ob_program {
 	OB_PROGRAMS,
 } ob_program;
 
-enum { OB_UNIT_SHADOW, OB_UNIT_OCCLUSION, OB_UNIT_SOURCE, OB_UNIT_PLAIN, OB_UNIT_SKY }; // texture units
+enum { // texture units
+	OB_UNIT_SHADOW,
+	OB_UNIT_OCCLUSION,
+	OB_UNIT_SOURCE,
+	OB_UNIT_PLAIN,
+	OB_UNIT_SKY,
+	OB_UNIT_COLOUR_IMAGE,
+	OB_UNIT_SURFACE_IMAGE,
+};
 
 // How light is computed: see shaders/light.glsl.
 typedef enum ob_light {
@@ -66,8 +75,9 @@ void ob_targets_destroy(ob_targets *t);
 
 // A mesh of the scene
 typedef struct ob_look_buffers {
+	const ob_mesh *mesh;
 	GLuint array, vertices, indices;
-	uint32_t index_count;
+	GLuint *image; // [mesh->images]: textures
 } ob_look_buffers;
 
 typedef struct ob_passes {
@@ -83,9 +93,10 @@ typedef struct ob_passes {
 	uint32_t *hull_first; // [hulls + 1]: vertices of each, in hull_vertices
 	uint32_t looks; // meshes of the scene
 	ob_look_buffers *look; // [looks]
+	GLuint white; // the texture of what has none
 } ob_passes;
 
-// mesh: the scene's, which are copied.
+// mesh: the scene's, which must outlive p.
 bool ob_passes_create(ob_passes *p, ob_light light, const ob_mesh *mesh, uint32_t meshes, ob_error *e);
 void ob_passes_destroy(ob_passes *p);
 

@@ -493,10 +493,18 @@ ob_message *ob_feed_mesh(const ob_mesh *m, uint32_t number)
 		return NULL;
 	ob_message_put_u8(out, OB_FEED_MESH);
 	ob_message_put_u8(out, number);
-	ob_message_put(out, &(uint16_t){ 0 }, 2);
+	ob_message_put_u8(out, m->parts);
+	ob_message_put_u8(out, m->images);
 	ob_message_put_u32(out, m->vertices);
 	ob_message_put_u32(out, m->indices);
 	ob_message_put(out, m->vertex, m->vertices * sizeof *m->vertex);
 	ob_message_put(out, m->index, m->indices * sizeof *m->index);
+	ob_message_put(out, m->part, m->parts * sizeof *m->part);
+	for (uint32_t i = 0; i < m->images; i++) {
+		const ob_mesh_image *image = &m->image[i];
+		ob_message_put_u32(out, image->width);
+		ob_message_put_u32(out, image->height);
+		ob_message_put(out, image->rgba, 4 * (size_t)image->width * image->height);
+	}
 	return whole_or_none(out);
 }

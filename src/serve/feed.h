@@ -27,10 +27,14 @@
 //      u8  2          u8 0    u16 0    u32 contacts    f64 time; then so many:
 //                     f32 p[3], n[3], impulse (N s)
 //
-//      u8  3          u8 number of a mesh, from 1    u16 0    u32 vertices, indices; then so many:
-//                     f32 p[3], n[3], colour[3] (linear RGB; below 0: the object's), surface (15 times the metal,
-//                     whole, and then the roughness, below 1; below 0: the object's)
-//                     u32 vertex: three a triangle, counterclockwise
+//      u8  3          u8 number of a mesh, from 1    u8 parts, images    u32 vertices, indices; then so many:
+//        vertices     f32 p[3], n[3], colour[3] (linear RGB; below 0: the object's), surface (15 times the metal,
+//                     whole, and then the roughness, below 1; below 0: the object's), place in the images[2]
+//        indices      u32 vertex: three a triangle, counterclockwise
+//        parts        u32 indices, after those of the parts before; u8 image of the colours (sRGB), u8 image of
+//                     roughness (green) and metal (blue), both from 1 and multiplied with the vertices', 0: none;
+//                     u8 wrap[2]: along an image's sides it is 0 repeated, 1 mirrored, 2 held. No parts: no images
+//        images       u32 width, height; then u8 red, green, blue, alpha of each pixel, the top row first
 //
 // One thread's.
 #ifndef OB_SERVE_FEED_H

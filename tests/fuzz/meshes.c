@@ -2,16 +2,17 @@
 // makes sense; none may crash, run without end, or ask for more memory than a file of its size is worth. 20000 in a
 // minute or so:
 //
-//   meshes FOLDER [COUNT [SEED]]    mutants of FOLDER/*.glb, and of a cube
+//   meshes FOLDER [COUNT [SEED]]    mutants of FOLDER/*.glb, and of cubes with and without pictures
 //
-// tinygltf itself has no sanitizers in it; with those of this program (build-asan) what it hands over is watched.
+// tinygltf, libpng and libjpeg have no sanitizers in them; with those of this program (build-asan) what they hand over
+// is watched.
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
-#include "../mesh/glb.h"
+#include "../mesh/pictures.h"
 #include "base/random.h"
-#include "check.h"
 #include "mesh/mesh.h"
 
 enum { SEEDS_MAX = 8, BYTES_MAX = 1 << 20, CHANGES = 5 };
@@ -78,7 +79,11 @@ static uint32_t below(uint32_t n)
 static void read_seeds(const char *folder)
 {
 	const glb_cube_buffer cube = glb_cube_of(1);
+	const picture png = grey_png(), jpeg = orange_jpeg();
+	static const char both[] = "\"baseColorTexture\":{\"index\":0},\"metallicRoughnessTexture\":{\"index\":0}";
 	seed[seeds++] = glb_make(GLB_CUBE, &cube, sizeof cube);
+	seed[seeds++] = textured_cube(&png, both, TEXTURES);
+	seed[seeds++] = textured_cube(&jpeg, both, TEXTURES);
 	DIR *d = opendir(folder);
 	for (struct dirent *entry; d && (entry = readdir(d)) && seeds < SEEDS_MAX;) {
 		char path[1024];
@@ -95,6 +100,54 @@ static void read_seeds(const char *folder)
 	}
 	if (d)
 		closedir(d);
+}
+
+static uint32_t big_endian(const unsigned char *at)
+{
+	return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
+}
+
+static void put_big_endian(unsigned char *at, uint32_t value)
+{
+	for (int i = 0; i < 4; i++)
+		at[i] = (unsigned char)(value >> (24 - 8 * i));
+}
+
+// In one part of a PNG of so many bytes: a number or some bytes of it, and its checksum is made right again.
+static void change_png(unsigned char *png, size_t size)
+{
+	static const uint32_t numbers[] = { 0, 1, 2, 255, 4096, 4097, 65535, 0x7fffffff, 0x80000000, 0xffffffff };
+	size_t at = 8;
+	for (uint32_t skip = below(4); skip > 0 && at + 12 < size; skip--)
+		at += 12 + (size_t)big_endian(png + at);
+	if (at + 12 > size)
+		return;
+	const size_t length = big_endian(png + at);
+	if (length < 8 || length > size - at - 12)
+		return;
+	if (below(2))
+		put_big_endian(png + at + 8 + 4 * below(2), numbers[below(sizeof numbers / sizeof *numbers)]);
+	else
+		png[at + 8 + below((uint32_t)length)] = (unsigned char)below(256);
+	if (below(8))
+		put_big_endian(png + at + 8 + length, (uint32_t)crc32(0, png + at + 4, (uInt)(length + 4)));
+}
+
+// The picture in a file's buffer, if it has one: another number, another byte, or nothing from somewhere on.
+static void change_picture(unsigned char *buffer, size_t size)
+{
+	unsigned char *png = memmem(buffer, size, "\x89PNG\r\n\x1a\n", 8);
+	unsigned char *at = png ? png : memmem(buffer, size, "\xff\xd8\xff", 3);
+	if (!at)
+		return;
+	const size_t left = size - (size_t)(at - buffer);
+	const uint32_t place = below((uint32_t)left);
+	if (png && below(4))
+		change_png(png, left);
+	else if (below(2))
+		at[place] = (unsigned char)below(256);
+	else
+		memset(at + place, 0, left - place);
 }
 
 // The next number of the text from "at" on: its length, and its place in *at; 0: there is none.
@@ -136,6 +189,8 @@ static glb mutant(const glb *of)
 		change_text(text, &size);
 	for (uint32_t i = data ? below(CHANGES) : 0; i > 0; i--)
 		buffer[below((uint32_t)data)] = (unsigned char)below(256);
+	for (uint32_t i = below(CHANGES); i > 1; i--)
+		change_picture(buffer, data);
 	text[size] = 0;
 	glb out = glb_make(text, buffer, below(20) ? data : below((uint32_t)data + 1));
 	for (uint32_t i = below(8) ? 0 : below(4); i > 0; i--)
@@ -151,10 +206,6 @@ int main(int argc, char **argv)
 {
 	const long count = argc > 2 ? strtol(argv[2], NULL, 10) : 2000;
 	long good = 0;
-	if (!ob_mesh_can_read()) {
-		fprintf(stderr, "skipped: built without tinygltf\n");
-		return 77;
-	}
 	state = argc > 3 ? strtoul(argv[3], NULL, 10) : 1;
 	read_seeds(argc > 1 ? argv[1] : ".");
 	CHECK(seeds > 1);

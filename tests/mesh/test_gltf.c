@@ -1,10 +1,12 @@
-// Binary glTF files: where nodes place their triangles, which way these look, what paints them; and files that are
-// none.
+// Binary glTF files: where nodes place their triangles, which way these look, what paints them, what pictures lie on
+// them; and files that are none.
 #include <math.h>
+#include <zlib.h>
 
 #include "check.h"
 #include "glb.h"
 #include "mesh/mesh.h"
+#include "pictures.h"
 
 #define PRIMITIVE "{\"attributes\":{\"POSITION\":0},\"indices\":1}"
 #define ONE_MESH "\"meshes\":[{\"primitives\":[" PRIMITIVE "]}],"
@@ -118,7 +120,7 @@ static void materials_paint(void)
 	static const char json[] =
 		"{\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":2,"
 		"\"COLOR_0\":3},\"indices\":1,\"material\":0}]}],\"materials\":[{\"pbrMetallicRoughness\":{"
-		"\"baseColorFactor\":[0.5,0.25,1,1],\"metallicFactor\":1,\"roughnessFactor\":0.25%s}}],"
+		"\"baseColorFactor\":[0.5,0.25,1,1],\"metallicFactor\":1,\"roughnessFactor\":0.25}}],"
 		"\"asset\":{\"version\":\"2.0\"},\"accessors\":["
 		"{\"bufferView\":0,\"componentType\":5126,\"count\":8,\"type\":\"VEC3\"},"
 		"{\"bufferView\":1,\"componentType\":5123,\"count\":36,\"type\":\"SCALAR\"},"
@@ -128,28 +130,183 @@ static void materials_paint(void)
 		"{\"buffer\":0,\"byteOffset\":168,\"byteLength\":96},{\"buffer\":0,\"byteOffset\":264,\"byteLength\":"
 		"32}],"
 		"\"buffers\":[{\"byteLength\":296}]}";
-	static const char texture[] = ",\"baseColorTexture\":{\"index\":0}";
 	for (int i = 0; i < 8; i++) {
 		memcpy(b.normal[i], b.cube.corner[i], sizeof b.normal[i]);
 		memcpy(b.colour[i], (uint8_t[]){ 255, 0, 51, 255 }, 4);
 	}
-	for (int textured = 0; textured < 2; textured++) {
-		char text[sizeof json + sizeof texture];
-		ob_mesh m;
-		ob_error e = { "" };
-		snprintf(text, sizeof text, json, textured ? texture : "");
-		glb g = glb_make(text, &b, sizeof b);
-		CHECK(ob_mesh_read(&m, g.bytes, g.size, &e));
-		CHECK(m.vertices == 8 && m.indices == 36);
-		check_normals(&m, ob_v3(0, 0, 0));
-		const ob_mesh_vertex *v = m.vertex;
-		CHECK_NEAR(v->colour[0], textured ? -1 : .5, 1e-6); // what a texture says is the object's to say
-		CHECK_NEAR(v->colour[1], textured ? -1 : 0, 1e-6);
-		CHECK_NEAR(v->colour[2], textured ? -1 : .2, 1e-6);
-		CHECK_NEAR(v->surface, 15.25, 1e-6);
-		ob_mesh_finish(&m);
-		free(g.bytes);
+	ob_mesh m;
+	ob_error e = { "" };
+	glb g = glb_make(json, &b, sizeof b);
+	CHECK(ob_mesh_read(&m, g.bytes, g.size, &e));
+	CHECK(m.vertices == 8 && m.indices == 36 && m.parts == 0 && m.images == 0);
+	check_normals(&m, ob_v3(0, 0, 0));
+	CHECK_NEAR(m.vertex->colour[0], .5, 1e-6);
+	CHECK_NEAR(m.vertex->colour[1], 0, 1e-6);
+	CHECK_NEAR(m.vertex->colour[2], .2, 1e-6);
+	CHECK_NEAR(m.vertex->surface, 15.25, 1e-6);
+	ob_mesh_finish(&m);
+	free(g.bytes);
+}
+
+static void refuse(const char *json, const void *buffer, size_t size, const char *saying)
+{
+	glb g = glb_make(json, buffer, size);
+	ob_mesh m;
+	ob_error e = { "" };
+	CHECK(!ob_mesh_read(&m, g.bytes, g.size, &e));
+	CHECK(strstr(e.text, saying));
+	if (!strstr(e.text, saying))
+		fprintf(stderr, "  expected %s\n  got %s\n", saying, e.text);
+	CHECK(!m.vertex && !m.index);
+	free(g.bytes);
+}
+
+static void refuse_cube(const char *json, const char *saying)
+{
+	const glb_cube_buffer cube = glb_cube_of(1);
+	refuse(json, &cube, sizeof cube, saying);
+}
+
+// ---- pictures
+
+static ob_mesh read_textured(const picture *p, const char *values, const char *more)
+{
+	glb g = textured_cube(p, values, more);
+	ob_mesh m = { 0 };
+	ob_error e = { "" };
+	CHECK(ob_mesh_read(&m, g.bytes, g.size, &e));
+	if (e.text[0])
+		fprintf(stderr, "  %s\n", e.text);
+	free(g.bytes);
+	return m;
+}
+
+static void refuse_textured(const picture *p, const char *values, const char *more, const char *saying)
+{
+	glb g = textured_cube(p, values, more);
+	ob_mesh m;
+	ob_error e = { "" };
+	CHECK(!ob_mesh_read(&m, g.bytes, g.size, &e));
+	CHECK(strstr(e.text, saying));
+	if (!strstr(e.text, saying))
+		fprintf(stderr, "  expected %s\n  got %s\n", saying, e.text);
+	CHECK(!m.vertex && !m.index && !m.part && !m.image);
+	free(g.bytes);
+}
+
+static void pictures_lie_on_it(void)
+{
+	const picture png = grey_png(), jpeg = orange_jpeg();
+	ob_mesh m = read_textured(&png, "\"baseColorFactor\":[0.5,1,1,1],\"baseColorTexture\":{\"index\":0}", TEXTURES);
+	CHECK(m.images == 1 && m.image[0].width == WIDTH && m.image[0].height == HEIGHT);
+	for (int i = 0; m.images && i < WIDTH * HEIGHT; i++) {
+		const uint8_t *pixel = m.image[0].rgba + 4 * i, grey = shade(i % WIDTH, i / WIDTH);
+		CHECK(pixel[0] == grey && pixel[1] == grey && pixel[2] == grey && pixel[3] == 255);
 	}
+	// What has it comes first, then what has none
+	CHECK(m.parts == 2 && m.part[0].indices == 36 && m.part[0].colour == 1 && m.part[0].surface == 0);
+	CHECK(m.part[0].wrap[0] == OB_MESH_CLAMP && m.part[0].wrap[1] == OB_MESH_MIRROR);
+	CHECK(m.part[1].indices == 36 && m.part[1].colour == 0 && m.part[1].surface == 0);
+	for (int i = 0; i < 36; i++) {
+		const ob_mesh_vertex *v = &m.vertex[m.index[i]];
+		CHECK(v->texture[0] == (float)glb_cube[i] && v->texture[1] == .25f);
+		CHECK(v->colour[0] == .5f && v->colour[1] == 1);
+	}
+	CHECK(m.vertex[m.index[36]].colour[0] < 0);
+	CHECK(ob_mesh_bytes(&m) ==
+	      m.vertices * sizeof *m.vertex + m.indices * 4 + 2 * sizeof *m.part + 4 * WIDTH * HEIGHT);
+	ob_mesh_finish(&m);
+
+	// The same one as colours and as roughness and metal is two: the one is sRGB
+	m = read_textured(&jpeg,
+			  "\"baseColorTexture\":{\"index\":0},\"metallicRoughnessTexture\":{\"index\":0},"
+			  "\"roughnessFactor\":0.5",
+			  TEXTURES);
+	CHECK(m.images == 2 && m.parts == 2 && m.part[0].colour == 1 && m.part[0].surface == 2);
+	CHECK_NEAR(m.vertex[m.index[0]].surface, 15.5, 1e-6);
+	for (int i = 0; m.images == 2 && i < WIDTH * HEIGHT; i++)
+		for (int k = 0; k < 3; k++)
+			CHECK(abs(m.image[1].rgba[4 * i + k] - (const int[]){ 230, 120, 30 }[k]) <= 3);
+	ob_mesh_finish(&m);
+
+	// Scaled, turned (a quarter: u becomes -v), moved
+	m = read_textured(
+		&png,
+		"\"baseColorTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,4],"
+		"\"rotation\":1.5707963267948966,\"offset\":[10,20]}}}",
+		TEXTURES);
+	CHECK_NEAR(m.vertex[m.index[0]].texture[0], 10 + 4 * .25, 1e-5);
+	CHECK_NEAR(m.vertex[m.index[0]].texture[1], 20 - 2 * glb_cube[0], 1e-5);
+	ob_mesh_finish(&m);
+
+	// Coordinates that are not there: its corner everywhere
+	m = read_textured(&png, "\"baseColorTexture\":{\"index\":0,\"texCoord\":1}", TEXTURES);
+	CHECK(m.images == 1 && m.vertex[m.index[0]].texture[0] == 0);
+	ob_mesh_finish(&m);
+}
+
+static void put_big_endian(unsigned char *at, uint32_t value)
+{
+	for (int i = 0; i < 4; i++)
+		at[i] = (unsigned char)(value >> (24 - 8 * i));
+}
+
+// The same picture, as its head says of another size.
+static picture resized(picture p, uint32_t width, uint32_t height)
+{
+	put_big_endian(p.bytes + 16, width);
+	put_big_endian(p.bytes + 20, height);
+	put_big_endian(p.bytes + 29, (uint32_t)crc32(0, p.bytes + 12, 17));
+	return p;
+}
+
+static void pictures_that_are_none_are_refused(void)
+{
+	static const char base[] = "\"baseColorTexture\":{\"index\":0}";
+	const picture png = grey_png(), jpeg = orange_jpeg();
+	picture p;
+	for (size_t n = 0; n < png.size; n++) {
+		p = png;
+		p.size = n;
+		refuse_textured(&p, base, TEXTURES, n < 8 ? "neither PNG nor JPEG" : "damaged PNG");
+	}
+	for (size_t n = 3; n < jpeg.size; n++) {
+		p = jpeg;
+		p.size = n;
+		refuse_textured(&p, base, TEXTURES, "damaged JPEG");
+	}
+	p = png;
+	((unsigned char *)memmem(p.bytes, p.size, "IDAT", 4))[6] ^= 1;
+	refuse_textured(&p, base, TEXTURES, "damaged PNG");
+	p = resized(png, 100000, 3);
+	refuse_textured(&p, base, TEXTURES, "100000 x 3 pixels: expected at most 4096 x 4096");
+	p = resized(png, 0x7fffffff, 0x7fffffff);
+	refuse_textured(&p, base, TEXTURES, "expected at most 4096 x 4096");
+	p = resized(png, 4096, 4096);
+	refuse_textured(&p, base, TEXTURES, "more than 8388608 pixels");
+	p = resized(png, 4096, 2048); // as large as may be, and not there
+	refuse_textured(&p, base, TEXTURES, "damaged PNG");
+	p = resized(png, 0, 3);
+	refuse_textured(&p, base, TEXTURES, "damaged PNG");
+
+	refuse_textured(&png, "\"baseColorTexture\":{\"index\":1}", TEXTURES, "no texture 1");
+	refuse_textured(&png, base, "\"textures\":[{\"source\":1}],", "no picture 1");
+	refuse_textured(&png, base, "\"textures\":[{}],", "no picture -1");
+	refuse_textured(&png, base, "\"textures\":[{\"source\":0,\"sampler\":4}],", "no sampler 4");
+	refuse_textured(&png,
+			"\"baseColorTexture\":{\"index\":0},\"metallicRoughnessTexture\":{\"index\":0,\"texCoord\":1}",
+			TEXTURES, "in different ways");
+	refuse_cube(
+		"{\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+		"\"material\":0}]}],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+		"\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"/etc/passwd\"}]," GLB_CUBE_REST "}",
+		"another file");
+	refuse_cube(
+		"{\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+		"\"material\":0}]}],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+		"\"textures\":[{\"source\":0}],\"images\":[{\"bufferView\":0,\"mimeType\":\"image/"
+		"webp\"}]," GLB_CUBE_REST "}",
+		"neither PNG nor JPEG");
 }
 
 static void strips_fans_and_both_sides(void)
@@ -183,25 +340,6 @@ static void strips_fans_and_both_sides(void)
 		ob_mesh_finish(&m);
 		free(g.bytes);
 	}
-}
-
-static void refuse(const char *json, const void *buffer, size_t size, const char *saying)
-{
-	glb g = glb_make(json, buffer, size);
-	ob_mesh m;
-	ob_error e = { "" };
-	CHECK(!ob_mesh_read(&m, g.bytes, g.size, &e));
-	CHECK(strstr(e.text, saying));
-	if (!strstr(e.text, saying))
-		fprintf(stderr, "  expected %s\n  got %s\n", saying, e.text);
-	CHECK(!m.vertex && !m.index);
-	free(g.bytes);
-}
-
-static void refuse_cube(const char *json, const char *saying)
-{
-	const glb_cube_buffer cube = glb_cube_of(1);
-	refuse(json, &cube, sizeof cube, saying);
 }
 
 static void refuse_bytes(const void *bytes, size_t size, const char *saying)
@@ -282,15 +420,13 @@ static void what_would_be_large_is_refused(void)
 
 int main(void)
 {
-	if (!ob_mesh_can_read()) {
-		fprintf(stderr, "skipped: built without tinygltf\n");
-		return 77;
-	}
 	nodes_place_what_they_have();
 	it_is_scaled_turned_and_moved();
 	materials_paint();
 	strips_fans_and_both_sides();
+	pictures_lie_on_it();
 	what_is_no_mesh_is_refused();
+	pictures_that_are_none_are_refused();
 	what_would_be_large_is_refused();
 	return check_end();
 }

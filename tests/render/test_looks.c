@@ -1,5 +1,5 @@
 // Objects that look like meshes: a mesh of a cube gives the picture of the cube, whatever it collides as; who paints
-// it.
+// it, and what its images do.
 #include <string.h>
 
 #include "canvas.h"
@@ -41,6 +41,19 @@ static ob_mesh mesh_of_hull(const ob_hull *h, const float colour[3], float surfa
 	}
 	CHECK(ob_mesh_makes_sense(&m));
 	return m;
+}
+
+// All of it has one image of colours and one of roughness and metal, each of a single pixel.
+static void put_images(ob_mesh *m, const uint8_t colour[4], const uint8_t surface[4])
+{
+	m->image = calloc(2, sizeof *m->image);
+	m->part = calloc(1, sizeof *m->part);
+	m->images = 2;
+	m->parts = 1;
+	m->image[0] = (ob_mesh_image){ 1, 1, memcpy(malloc(4), colour, 4) };
+	m->image[1] = (ob_mesh_image){ 1, 1, memcpy(malloc(4), surface, 4) };
+	m->part[0] = (ob_mesh_part){ .indices = m->indices, .colour = 1, .surface = 2 };
+	CHECK(ob_mesh_makes_sense(m));
 }
 
 static const ob_mesh *looks; // of the next picture
@@ -92,31 +105,47 @@ static double difference(const uint8_t *a, const uint8_t *b)
 int main(void)
 {
 	ob_hull cube = hull_of_cube(1);
-	ob_mesh mesh[2] = { mesh_of_hull(&cube, red, ob_surface_pack(.25f, 0)),
+	ob_mesh mesh[4] = { mesh_of_hull(&cube, red, ob_surface_pack(.25f, 0)),
+			    mesh_of_hull(&cube, (const float[3]){ -1, -1, -1 }, -1),
+			    mesh_of_hull(&cube, (const float[3]){ 1, .1f, .4f }, ob_surface_pack(.5f, 1)),
 			    mesh_of_hull(&cube, (const float[3]){ -1, -1, -1 }, -1) };
+	// sRGB of .7, of .5, which a tenth of makes .05, and of .1; half of the roughness, and no metal
+	static const uint8_t colours[4] = { 218, 188, 89, 0 }, surfaces[4] = { 9, 128, 0, 0 };
 	const ob_vec3 round = ob_v3(.7, 0, 0), box = ob_v3(1, 1, 1);
 	enum { BOTH = OB_OBJECT_MESH_COLOUR | OB_OBJECT_MESH_SURFACE };
 	uint8_t *as_box = picture(OB_SHAPE_BOX, box, red, 0, 0, NULL);
 	uint8_t *as_hull = picture(OB_SHAPE_HULL, ob_hull_size(&cube), red, 0, 0, &cube);
 	uint8_t *as_ball = picture(OB_SHAPE_SPHERE, round, red, 0, 0, NULL);
 	looks = mesh;
-	looks_count = 2;
+	looks_count = 4;
+	put_images(&mesh[2], colours, surfaces);
+	put_images(&mesh[3], colours, surfaces);
 	uint8_t *by_mesh = picture(OB_SHAPE_SPHERE, round, green, 1, BOTH, NULL);
 	uint8_t *by_object = picture(OB_SHAPE_SPHERE, round, red, 1, 0, NULL);
 	uint8_t *unpainted = picture(OB_SHAPE_SPHERE, round, red, 2, BOTH, NULL);
 	uint8_t *other = picture(OB_SHAPE_SPHERE, round, green, 1, OB_OBJECT_MESH_SURFACE, NULL);
 	uint8_t *among_hulls = picture(OB_SHAPE_HULL, ob_hull_size(&cube), red, 2, 0, &cube);
-	uint8_t *beyond = picture(OB_SHAPE_SPHERE, round, red, 3, BOTH, NULL);
+	uint8_t *beyond = picture(OB_SHAPE_SPHERE, round, red, 5, BOTH, NULL);
+	uint8_t *by_images = picture(OB_SHAPE_SPHERE, round, green, 3, BOTH, NULL);
+	uint8_t *own_colour = picture(OB_SHAPE_SPHERE, round, red, 3, OB_OBJECT_MESH_SURFACE, NULL);
+	uint8_t *own_surface = picture(OB_SHAPE_SPHERE, round, green, 3, OB_OBJECT_MESH_COLOUR, NULL);
+	uint8_t *no_paint = picture(OB_SHAPE_SPHERE, round, red, 4, BOTH, NULL);
 	CHECK(same(by_mesh, as_hull) && same(by_object, as_hull) && same(unpainted, as_hull) &&
 	      same(among_hulls, as_hull));
 	printf("%g %g\n", difference(by_mesh, as_box), difference(as_ball, as_box));
 	CHECK(difference(by_mesh, as_box) < .1 * difference(as_ball, as_box)); // a box has rounded edges
 	CHECK(difference(other, as_hull) > 1);
 	CHECK(same(beyond, as_ball)); // a mesh that nobody has is not drawn: it looks as it collides
-	uint8_t *const all[] = { as_box, as_hull, as_ball, by_mesh, by_object, unpainted, other, among_hulls, beyond };
+	printf("%g %g %g\n", difference(by_images, as_hull), difference(own_colour, as_hull),
+	       difference(own_surface, as_hull));
+	CHECK(difference(by_images, as_hull) < .1 && difference(own_colour, as_hull) < .1 &&
+	      difference(own_surface, as_hull) < .1);
+	CHECK(same(no_paint, as_hull)); // images multiply what the mesh says, and it says nothing
+	uint8_t *const all[] = { as_box,      as_hull, as_ball,   by_mesh,    by_object,   unpainted, other,
+				 among_hulls, beyond,  by_images, own_colour, own_surface, no_paint };
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		free(all[i]);
-	ob_mesh_finish(&mesh[0]);
-	ob_mesh_finish(&mesh[1]);
+	for (int i = 0; i < 4; i++)
+		ob_mesh_finish(&mesh[i]);
 	return check_end();
 }

@@ -57,7 +57,7 @@ class Case(server.Case):
 		with open(scene, "w") as f:
 			f.write(SCENE + (MESHED if program.MESHES else ""))
 		with open(self.path("cube.glb"), "wb") as f:
-			f.write(glb.cube(.3, (.02, .4, .1)))
+			f.write(glb.cube(.3, (1, .8, 1), picture=glb.QUARTERS, shine=True))
 		program.report(scene, "--record", self.record)
 		self.scene = scene
 

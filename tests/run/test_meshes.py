@@ -54,15 +54,27 @@ class Meshes(program.Case):
 		moved, _ = self.frames("moved", STANDING.format(f"box {{ size = {{ 1, 1, 1 }}, {about}, mesh = 'looks/red.glb', mesh_at = {{ 0, 0, .5 }} }}"))
 		self.assertGreater(difference(moved, hull), 1)
 
+	def test_a_picture_lies_on_it(self):
+		self.write("cube.glb", glb.cube(1, (1, 1, 1), picture=glb.QUARTERS))
+		looks, _ = self.frames("picture", "ground {}\ncamera 'main' { eye = { 0, -9, 1.2 }, target = { 0, 0, 1.2 }, fov = 22 }\n"
+			"sphere { radius = .2, at = { 0, 0, 1.2 }, static = true, mesh = 'cube.glb' }\n")
+		at = lambda x, y: tuple(looks[3 * (96 * y + x):][:3])
+		quarters = at(38, 22), at(58, 22), at(38, 42), at(58, 42) # of the first frame: red, green, blue, and grey
+		for k, pixel in enumerate(quarters[:3]):
+			self.assertGreater(pixel[k], 1.5 * max(pixel[:k] + pixel[k + 1:]), quarters)
+		self.assertLess(max(quarters[3]), 1.3 * min(quarters[3]), quarters)
+
 	def test_a_file_that_is_no_mesh(self):
 		whole = glb.cube(1)
 		self.write("cut.glb", whole[:-9])
 		self.write("text.gltf", '{ "asset": { "version": "2.0" } }')
 		self.write("points.glb", glb.cube(1, mode=0))
 		self.write("noise.glb", bytes(range(256)))
+		self.write("broken.glb", glb.cube(1, (1, 1, 1), picture=glb.QUARTERS).replace(b"IDAT", b"IDaT"))
 		os.mkdir(self.path("folder.glb"))
 		os.mkfifo(self.path("pipe.glb"))
 		for name, saying in {"none.glb": "No such file", "cut.glb": "cut short", "text.gltf": "glTF as text", "points.glb": "no triangles",
+				"broken.glb": "a picture of it is a damaged PNG",
 				"noise.glb": "no binary glTF", "folder.glb": "no file", "pipe.glb": "no file", "../cube.glb": "in the folder of the scene",
 				"/etc/passwd": "in the folder of the scene"}.items():
 			with self.subTest(name):
@@ -85,7 +97,7 @@ class Meshes(program.Case):
 		self.assertIn("expected no mesh", done.stderr)
 
 	def test_it_is_recorded(self):
-		self.write("cube.glb", glb.cube(.3, (0, .5, 0)))
+		self.write("cube.glb", glb.cube(.3, (1, .8, .9), picture=glb.QUARTERS, shine=True))
 		looks, _ = self.frames("meshed", FALLING.format(", mesh = 'cube.glb'"), "--record", self.path("r.h5"))
 		os.remove(self.path("cube.glb"))
 		program.call("run", "--replay", self.path("r.h5"), *SIZE, "--raw", self.path("again"))

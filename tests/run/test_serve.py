@@ -108,7 +108,7 @@ class Serve(Case):
 	def test_meshes(self):
 		"""What objects look like is content under its hash, for who has the token."""
 		with open(self.path("cube.glb"), "wb") as f:
-			f.write(glb.cube(.5, (1, 0, 0)))
+			f.write(glb.cube(.5, (1, 0, 0), picture=glb.QUARTERS))
 		with open(self.path("scene.lua"), "w") as f:
 			f.write("ground {}\nfor i = 1, 3 do sphere { radius = .4, at = { 2 * i, 0, .4 }, mesh = 'cube.glb', mesh_scale = i } end\n")
 		self.serve_file(self.path("scene.lua"))
@@ -122,11 +122,15 @@ class Serve(Case):
 			head, body = get("/" + path)
 			self.assertIn(" 200 ", head)
 			self.assertIn("immutable", head)
-			kind, told, vertices, indices = struct.unpack_from("<BBxxII", body)
-			self.assertEqual((kind, told, vertices, indices, len(body)), (3, number, 36, 36, 12 + 36 * 40 + 36 * 4))
-			places = [struct.unpack_from("<10f", body, 12 + 40 * i) for i in range(36)]
+			self.assertEqual(struct.unpack_from("<BBBBII", body), (3, number, 1, 1, 36, 36))
+			places = [struct.unpack_from("<12f", body, 12 + 48 * i) for i in range(36)]
 			self.assertEqual({abs(x) for p in places for x in p[:3]}, {.5 * number})
 			self.assertEqual({p[6:9] for p in places}, {(1, 0, 0)})
+			self.assertEqual({p[10:] for p in places}, {(0, 0), (0, 1), (1, 0), (1, 1)})
+			at = 12 + 36 * 48 + 36 * 4
+			self.assertEqual(struct.unpack_from("<IBBBB", body, at), (36, 1, 0, 0, 0))
+			self.assertEqual(struct.unpack_from("<II", body, at + 8), (64, 64))
+			self.assertEqual(body[at + 16:], bytes(sum(((*pixel, 255) for row in glb.QUARTERS for pixel in row), ())))
 			head, part = get("/" + path, "\nRange: bytes=12-51")
 			self.assertIn(" 206 ", head)
 			self.assertEqual(part, body[12:52])

@@ -78,23 +78,29 @@ class Viewer(server.Case):
 	@unittest.skipUnless(program.MESHES, "built without tinygltf")
 	def test_meshes(self):
 		"""What looks like a mesh is drawn as that, and picked as what it is."""
-		with open(self.path("cube.glb"), "wb") as f:
-			f.write(glb.cube(1, (0, .5, 0)))
+		for name, mesh in ("cube.glb", glb.cube(1, (0, .5, 0))), ("picture.glb", glb.cube(1, (1, 1, 1), picture=glb.QUARTERS)):
+			with open(self.path(name), "wb") as f:
+				f.write(mesh)
 		with open(self.path("scene.lua"), "w") as f:
 			f.write("ground {}\ncamera 'main' { eye = { 0, -6, 1 }, target = { 0, 0, 1 } }\n"
 				"sphere { radius = .2, at = { 0, 0, 1 }, static = true, colour = '#ff0000', mesh = 'cube.glb', name = 'small' }\n"
-				"sphere { radius = .2, at = { 2.5, 0, 1 }, static = true, mesh = 'cube.glb' }\n")
+				"sphere { radius = .2, at = { 2.5, 0, 1 }, static = true, mesh = 'cube.glb' }\n"
+				"sphere { radius = .2, at = { -2.5, 0, 1 }, static = true, mesh = 'picture.glb' }\n")
 		self.serve_file(self.path("scene.lua"))
 		b = self.open()
-		b.wait("obsim.drawing().looks.size === 1 && obsim.frames() > 6")
+		b.wait("obsim.drawing().looks.size === 2 && obsim.frames() > 6")
 		# Where no sphere reaches: the one's own colour comes before its mesh's, the other shows its mesh's
 		seen = b.run("""const from = document.querySelector('#picture'), c = new OffscreenCanvas(from.width, from.height).getContext('2d', { willReadFrequently: true });
 			c.drawImage(from, 0, 0);
 			const perMetre = from.height / 2 / (Math.tan(arguments[0] / 2) * 5); // at the cubes' faces
-			return [-.8, 2.2].map((x) => [...c.getImageData(from.width / 2 + x * perMetre, from.height / 2 - .8 * perMetre, 1, 1).data]);""",
+			const at = (x, z) => [...c.getImageData(from.width / 2 + x * perMetre, from.height / 2 - (z - 1) * perMetre, 1, 1).data];
+			return [[-.8, 1.8], [2.2, 1.8], [-2.9, 1.5], [-2, 1.5], [-2.9, .5], [-2, .5]].map((p) => at(...p));""",
 			0.6981317)
 		self.assertGreater(seen[0][0], 2 * max(seen[0][1:3]), seen)
 		self.assertGreater(seen[1][1], 2 * max(seen[1][0], seen[1][2]), seen)
+		for k, (*rgb, _) in enumerate(seen[2:5]): # quarters of the third one's picture: red, green, blue, and grey
+			self.assertGreater(rgb[k], 1.5 * max(rgb[:k] + rgb[k + 1:]), seen)
+		self.assertLess(max(seen[5][:3]), 1.3 * min(seen[5][:3]), seen)
 		self.assertEqual(b.console(), [])
 		self.keep(b, "meshes.png")
 		self.end()

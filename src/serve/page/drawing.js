@@ -6,16 +6,16 @@ import { turned } from './motion.js';
 
 const SHADOW_TEXELS = 1792, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: kept free at each side, for the filter
 const SKY_MAPS = 12; // as in light.glsl
-const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4;
+const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4, UNIT_COLOUR_IMAGE = 5, UNIT_SURFACE_IMAGE = 6;
 const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes it
 const REACH_RANGES = 6, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
 const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RADIUS = 0.025, GOLDEN = 2.39996322972865332;
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
-const INSTANCE = 16, SEGMENT = 11, MESH_VERTEX = 10; // floats
+const INSTANCE = 16, SEGMENT = 11, MESH_VERTEX = 12; // floats
 const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1], frozen: [0.6, 0.85, 1, 1] };
 
 const PROGRAMS = {
-	body: ['body.vert', 'body.frag'], shadow: ['shadow.vert', 'shadow.frag'],
+	body: ['body.vert', 'body.frag'], textured: ['body.vert', 'body.frag', '#define OB_TEXTURED\n'], shadow: ['shadow.vert', 'shadow.frag'],
 	skyShadow: ['sky_shadow.vert', 'shadow.frag'], occlusion: ['occlusion.vert', 'occlusion.frag'],
 	blur: ['sky.vert', 'blur.frag'], plane: ['plane.vert', 'plane.frag'],
 	farPlane: ['plane.vert', 'plane.frag', '#define OB_FAR\n'], sky: ['sky.vert', 'sky.frag'],
@@ -213,7 +213,7 @@ export class Drawing {
 			gl.uniformBlockBinding(id, block, 0);
 		gl.useProgram(id);
 		for (const [sampler, number] of [['shadow_depth', UNIT_SHADOW], ['occlusion', UNIT_OCCLUSION], ['source', UNIT_SOURCE],
-			['shadow_plain', UNIT_PLAIN], ['sky_depth', UNIT_SKY]])
+			['shadow_plain', UNIT_PLAIN], ['sky_depth', UNIT_SKY], ['colour_image', UNIT_COLOUR_IMAGE], ['surface_image', UNIT_SURFACE_IMAGE]])
 			gl.uniform1i(gl.getUniformLocation(id, sampler), number);
 		const uniform = (u) => (at[u] === undefined ? (at[u] = gl.getUniformLocation(id, u)) : at[u]);
 		return { id, uniform };
@@ -223,7 +223,8 @@ export class Drawing {
 		const gl = this.gl, set = buildMeshes();
 		this.meshes = set.meshes;
 		this.hulls = new Map(); // number -> { array, count }
-		this.looks = new Map(); // number -> { array, count, radius, buffers }: meshes of the scene
+		this.looks = new Map(); // number -> { array, count, radius, buffers, parts, textures }: meshes of the scene
+		this.white = this.createImage({ width: 1, height: 1, bytes: new Uint8Array(4).fill(255) }, gl.RGBA8); // of what has none
 		this.frameBlock = gl.createBuffer();
 		this.instances = gl.createBuffer();
 		this.segments = gl.createBuffer();
@@ -363,15 +364,33 @@ export class Drawing {
 		return mesh;
 	}
 
+	// form: SRGB8_ALPHA8 or RGBA8.
+	createImage({ width, height, bytes }, form) {
+		const gl = this.gl, id = gl.createTexture();
+		gl.activeTexture(gl.TEXTURE0 + UNIT_COLOUR_IMAGE);
+		gl.bindTexture(gl.TEXTURE_2D, id);
+		gl.texImage2D(gl.TEXTURE_2D, 0, form, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+		gl.generateMipmap(gl.TEXTURE_2D);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+		return id;
+	}
+
 	// A mesh of the scene, as it is told.
-	addMesh({ number, vertices, indices }) {
-		const gl = this.gl, look = { array: gl.createVertexArray(), count: indices.length, radius: 0, buffers: [gl.createBuffer(), gl.createBuffer()] };
+	addMesh({ number, vertices, indices, parts, images }) {
+		const gl = this.gl, look = { array: gl.createVertexArray(), count: indices.length, radius: 0, buffers: [gl.createBuffer(), gl.createBuffer()], parts, textures: [] };
+		for (const { colour, surface } of parts) {
+			if (colour)
+				look.textures[colour - 1] ??= this.createImage(images[colour - 1], gl.SRGB8_ALPHA8);
+			if (surface)
+				look.textures[surface - 1] ??= this.createImage(images[surface - 1], gl.RGBA8);
+		}
 		for (let i = 0; i < vertices.length; i += MESH_VERTEX)
 			look.radius = Math.max(look.radius, Math.hypot(vertices[i], vertices[i + 1], vertices[i + 2]));
 		gl.bindVertexArray(look.array);
 		gl.bindBuffer(gl.ARRAY_BUFFER, look.buffers[0]);
 		gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
-		[[0, 3, 0], [1, 3, 3], [6, 4, 6]].forEach(([i, size, offset]) => this.attribute(i, size, MESH_VERTEX, offset, 0));
+		[[0, 3, 0], [1, 3, 3], [6, 4, 6], [7, 2, 10]].forEach(([i, size, offset]) => this.attribute(i, size, MESH_VERTEX, offset, 0));
 		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, look.buffers[1]);
 		gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
 		gl.bindVertexArray(null);
@@ -382,11 +401,35 @@ export class Drawing {
 		for (const look of this.looks.values()) {
 			this.gl.deleteVertexArray(look.array);
 			look.buffers.forEach((b) => this.gl.deleteBuffer(b));
+			look.textures.forEach((t) => this.gl.deleteTexture(t));
 		}
 		this.looks.clear();
 	}
 
-	drawInstances(bodies, view, height) {
+	bindImage(unit, image, wrap) {
+		const gl = this.gl, modes = [gl.REPEAT, gl.MIRRORED_REPEAT, gl.CLAMP_TO_EDGE];
+		gl.activeTexture(gl.TEXTURE0 + unit);
+		gl.bindTexture(gl.TEXTURE_2D, image);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, modes[wrap[0]]);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, modes[wrap[1]]);
+	}
+
+	// The parts of a mesh with images, each with its own.
+	drawTextured(look, count) {
+		const gl = this.gl;
+		let first = 0;
+		gl.useProgram(this.program.textured.id);
+		for (const { indices, colour, surface, wrap } of look.parts) {
+			this.bindImage(UNIT_COLOUR_IMAGE, colour ? look.textures[colour - 1] : this.white, wrap);
+			this.bindImage(UNIT_SURFACE_IMAGE, surface ? look.textures[surface - 1] : this.white, wrap);
+			gl.drawElementsInstanced(gl.TRIANGLES, indices, gl.UNSIGNED_INT, 4 * first, count);
+			first += indices;
+		}
+		gl.useProgram(this.program.body.id);
+	}
+
+	// inColour: with the program body, for the picture.
+	drawInstances(bodies, view, height, inColour = false) {
 		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []), others = new Map(); // hulls and meshes
 		for (const b of bodies) {
 			const own = b.mesh ?? (b.shape === HULL ? this.hullMesh(b.hull) : null);
@@ -415,7 +458,9 @@ export class Drawing {
 			}
 			for (let i = 0; i < 4; i++)
 				this.attribute(2 + i, 4, INSTANCE, INSTANCE * first + 4 * i, 1);
-			if (own?.buffers)
+			if (inColour && own?.parts?.length)
+				this.drawTextured(own, group.length);
+			else if (own?.buffers)
 				gl.drawElementsInstanced(gl.TRIANGLES, own.count, gl.UNSIGNED_INT, 0, group.length);
 			else if (own)
 				gl.drawArraysInstanced(gl.TRIANGLES, 0, own.count, group.length);
@@ -503,7 +548,7 @@ export class Drawing {
 			gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.skyTexture);
 		}
 		gl.useProgram(this.program.body.id);
-		this.drawInstances(solid.filter((b) => inFrustum(f.view, b.p, b.radius)), f.view, height);
+		this.drawInstances(solid.filter((b) => inFrustum(f.view, b.p, b.radius)), f.view, height, true);
 		gl.disable(gl.CULL_FACE);
 		gl.bindVertexArray(this.emptyArray);
 		for (const b of planes) {

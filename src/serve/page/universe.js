@@ -5,7 +5,7 @@ const DELAY = 0.05; // s of wall time by which it looks later than it is told, s
 const PULL = 5; // 1/s: how fast its clock is drawn to the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: farther off, it is set; and nearer, where time stands
 const MOTIONS = 1, CONTACTS = 2, MESH = 3, VOID = 1, PAUSED = 2; // of a message
-const MESH_HEAD = 12, MESH_VERTEX = 10; // bytes; floats
+const MESH_HEAD = 12, MESH_VERTEX = 12; // bytes; floats
 const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
@@ -124,10 +124,16 @@ export class Universe extends EventTarget {
 	}
 
 	hearMesh(r, data) {
-		const number = r.u8();
-		r.u16();
-		const floats = MESH_VERTEX * r.u32(), indices = r.u32();
-		this.tell('mesh', { number, vertices: new Float32Array(data, MESH_HEAD, floats), indices: new Uint32Array(data, MESH_HEAD + 4 * floats, indices) });
+		const number = r.u8(), parts = r.u8(), images = r.u8(), floats = MESH_VERTEX * r.u32(), indices = r.u32();
+		const mesh = { number, vertices: new Float32Array(data, MESH_HEAD, floats), indices: new Uint32Array(data, MESH_HEAD + 4 * floats, indices) };
+		r.at = MESH_HEAD + 4 * (floats + indices);
+		mesh.parts = Array.from({ length: parts }, () => ({ indices: r.u32(), colour: r.u8(), surface: r.u8(), wrap: [r.u8(), r.u8()] }));
+		mesh.images = Array.from({ length: images }, () => {
+			const width = r.u32(), height = r.u32(), bytes = new Uint8Array(data, r.at, 4 * width * height);
+			r.at += bytes.length;
+			return { width, height, bytes };
+		});
+		this.tell('mesh', mesh);
 	}
 
 	hearMotion(r, id, time) {
