@@ -228,8 +228,14 @@ static void polygon_put(polygon *p, double u, double w, double z)
 // Cuts away what lies beyond limit on one side (sign) of one face axis (0 = u, 1 = w).
 static void clip(polygon *p, int axis, double sign, double limit)
 {
-	polygon out = { .n = 0 };
+	polygon out;
 	const double *x = axis ? p->w : p->u;
+	bool beyond = false;
+	for (int k = 0; k < p->n; k++)
+		beyond |= sign * x[k] - limit > 0;
+	if (!beyond)
+		return;
+	out.n = 0;
 	for (int k = 0; k < p->n; k++) {
 		int next = k + 1 < p->n ? k + 1 : 0;
 		double f = sign * x[k] - limit, g = sign * x[next] - limit;

@@ -188,14 +188,25 @@ static unsigned match_nearest(ob_contact *contact, const saved_impulses *old, do
 {
 	double apart2[OB_PAIR_POINTS][OB_PAIR_POINTS];
 	unsigned taken = 0;
-	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
-		contact->was[j] = -1;
-		for (uint32_t k = 0; j < contact->points && k < old->points; k++) {
+	bool shared = false; // an old point is the nearest one of two points
+	memset(contact->was, -1, sizeof contact->was);
+	for (uint32_t j = 0; j < contact->points; j++) {
+		double best = limit;
+		for (uint32_t k = 0; k < old->points; k++) {
 			const double a = ob_norm2(ob_sub(contact->arm_a[j], old->arm[k])),
 				     b = ob_norm2(ob_sub(contact->arm_b[j], old->arm_b[k]));
 			apart2[j][k] = a < b ? a : b;
+			contact->was[j] = apart2[j][k] < best ? (int8_t)k : contact->was[j];
+			best = apart2[j][k] < best ? apart2[j][k] : best;
 		}
+		const unsigned bit = contact->was[j] >= 0 ? 1u << contact->was[j] : 0;
+		shared |= taken & bit;
+		taken |= bit;
 	}
+	if (!shared)
+		return taken;
+	taken = 0;
+	memset(contact->was, -1, sizeof contact->was);
 	for (uint32_t n = 0; n < contact->points && n < old->points; n++) {
 		double best = limit;
 		uint32_t at = OB_PAIR_POINTS, to = 0;
@@ -294,7 +305,7 @@ static void put_points(ob_island_work *w, ob_contact *contact, const ob_manifold
 	}
 	order_points(w, contact, gap);
 	fill_lane(w, contact, m->normal, gap);
-	if (!(ob_dot(m->normal, old->normal) > same_normal))
+	if (old->points && !(ob_dot(m->normal, old->normal) > same_normal))
 		old->points = 0;
 	match_points(w, contact, old);
 	warm_start_lane(w, contact, old);
@@ -303,7 +314,7 @@ static void put_points(ob_island_work *w, ob_contact *contact, const ob_manifold
 void ob_contact_set_geometry(ob_sim *s, ob_contact *contact, const ob_manifold *m, ob_vec3 pa, ob_vec3 pb)
 {
 	ob_island_work *w = &s->island;
-	saved_impulses old = { .points = 0 };
+	saved_impulses old;
 	save_impulses(w, contact, &old);
 	put_points(w, contact, m, pa, pb, &old);
 	ob_batch_prepare(&w->batch[contact->lane / OB_LANES]);
@@ -316,7 +327,7 @@ void ob_contact_find(ob_sim *s, ob_contact *contact)
 	ob_island_work *w = &s->island;
 	ob_manifold m;
 	double when;
-	saved_impulses old = { .points = 0 };
+	saved_impulses old;
 	ob_body_update_pose(w, contact->a);
 	ob_body_update_pose(w, contact->b);
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
@@ -331,7 +342,7 @@ void ob_contact_find(ob_sim *s, ob_contact *contact)
 	contact->limit = contact->path + ob_min(tolerance, m.valid_path);
 	contact->since = when > 0 ? INFINITY : 0;
 	if (contact->lane == OB_NO_LANE)
-		take_lane(s, contact);
+		take_lane(s, contact), old.points = 0;
 	else
 		save_impulses(w, contact, &old);
 	ob_vec3 va = ob_v3(w->v[contact->a][0], w->v[contact->a][1], w->v[contact->a][2]);
