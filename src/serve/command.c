@@ -259,17 +259,42 @@ static bool make(reading *r, ob_command *c)
 	return c->kind != OB_DO_NOTHING;
 }
 
+// The parser takes numbers of twenty digits at most, with those of the exponent, while pages write small ones in more.
+enum { DIGITS = 17 };
+
+// A copy without the digits of fractions that are too many, which tell nothing; returns its size.
+static size_t shorten_fractions(char *to, const char *json, size_t size)
+{
+	size_t n = 0;
+	unsigned digits = 0;
+	bool word = false, escaped = false, fraction = false;
+	for (size_t i = 0; i < size; i++) {
+		const char at = json[i];
+		const bool digit = !word && at >= '0' && at <= '9';
+		fraction = !word && (at == '.' || (fraction && digit));
+		digits = digit ? digits + 1 : at == '.' ? digits : 0;
+		if (!(digit && fraction && digits > DIGITS))
+			to[n++] = at;
+		if (at == '"' && !escaped)
+			word = !word;
+		escaped = word && at == '\\' && !escaped;
+	}
+	return n;
+}
+
 bool ob_command_read(ob_command *c, const char *json, size_t size, ob_error *e)
 {
 	reading r = { .e = e, .field = -1 };
 	struct lejp_ctx parser;
+	char text[OB_COMMAND_BYTES_MAX];
 	*c = (ob_command){ .kind = OB_DO_NOTHING };
 	if (size > OB_COMMAND_BYTES_MAX)
 		return ob_fail(e, "a command of %zu bytes: at most %d are read", size, OB_COMMAND_BYTES_MAX);
 	while (size > 0 && strchr(" \t\r\n", json[size - 1]) && json[size - 1]) // the parser ends with the object
 		size--;
+	size = shorten_fractions(text, json, size);
 	lejp_construct(&parser, take, &r, NULL, 0);
-	int left = lejp_parse(&parser, (const unsigned char *)json, (int)size);
+	int left = lejp_parse(&parser, (const unsigned char *)text, (int)size);
 	lejp_destruct(&parser);
 	if (r.failed)
 		return false;

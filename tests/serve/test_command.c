@@ -29,6 +29,13 @@ static void test_meaning(void)
 	CHECK(p->friction == .25 && p->restitution == .5 && strcmp(p->name, "B\xc3\xa4r") == 0 && isinf(c.def.dies));
 	CHECK(reads("{\"do\":\"create\",\"shape\":\"sphere\",\"size\":[1,0,0],\"at\":[0,0,9],\"mass\":1}", &c));
 	CHECK(strcmp(c.def.passport.name, "sphere") == 0 && c.def.passport.friction == .5 && c.def.state.pose.q.w == 1);
+	// as a page writes what is small
+	CHECK(reads("{\"do\":\"create\",\"shape\":\"sphere\",\"size\":[1,0,0],\"at\":[-0.000123456789012345678,1e-7,"
+		    "1.25E+2],\"mass\":0.30000000000000000000000001e1,\"name\":\"\\\"0.000000000000000000000012345\"}",
+		    &c));
+	CHECK_NEAR(c.def.state.pose.p.x, -0.000123456789012345678, 1e-16);
+	CHECK(c.def.state.pose.p.y == 1e-7 && c.def.state.pose.p.z == 125 && c.def.passport.mass == 3);
+	CHECK(strcmp(c.def.passport.name, "\"0.000000000000000000000012345") == 0);
 	CHECK(reads(" {\"do\":\"remove\", \"id\":12, \"generation\":3} ", &c));
 	CHECK(c.kind == OB_DO_REMOVE && c.id == 12 && c.generation == 3);
 	CHECK(reads("{\"do\":\"pause\"}", &c) && c.kind == OB_DO_PAUSE);
