@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """How a served universe fares with many viewers: bench/serve.py OBSIM [--viewers 50] [--objects 1000] [--seconds 60].
 
-All viewers are this one program. Staleness is how much later, for its simulated time, a message comes than the soonest of the
-second around it; so it counts the server's interval, the way, and what this program and the stepping are late themselves.
-Prints one line a figure.
+All viewers are this one program. Staleness is how much later, for its simulated time, a message arrives than the soonest of the
+second around it; so it counts the server's interval, the way, and what the stepping is late itself. A message has arrived when
+the kernel has it for the viewer; how much later this program reads it is told beside, as is by how much the last viewer has the
+same message later than the first, which is the server's alone. Prints one line a figure.
 """
 import argparse
 import collections
 import json
+import math
 import os
 import pathlib
+import random
 import selectors
 import socket
 import struct
@@ -20,6 +23,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOTIONS, VOID = 1, 1
 RATE, LIFE = 20, 10  # 1/s: objects that viewers create; s, after which they remove them
+SO_TIMESTAMPNS = 35  # Linux; Python does not name it
 CONTINUED, BINARY, TEXT, CLOSE, PING, PONG = 0, 2, 1, 8, 9, 10  # what a frame is (RFC 6455, 5.2)
 
 
@@ -33,16 +37,22 @@ class Viewer:
         while b'\r\n\r\n' not in self.buffer:
             self.buffer += self.socket.recv(1)
         self.buffer.clear()
+        self.socket.setsockopt(socket.SOL_SOCKET, SO_TIMESTAMPNS, 1)
         self.socket.setblocking(False)
         selector.register(self.socket, selectors.EVENT_READ, self)
         self.whole, self.bytes, self.came, self.news = b'', 0, [], collections.deque()
+        self.read_late = []  # s
         self.created = self.removed = self.told_anew = 0
 
     def read(self):
-        data = self.socket.recv(1 << 20)
+        data, more, _, _ = self.socket.recvmsg(1 << 20, socket.CMSG_SPACE(16))
         if not data:
             sys.exit('a viewer was dropped, without a reason')
-        now = time.monotonic()
+        now = time.time()
+        if more:  # when the last of the bytes came
+            seconds, nanoseconds = struct.unpack('qq', more[0][2])
+            self.read_late.append(now - seconds - 1e-9 * nanoseconds)
+            now -= self.read_late[-1]
         self.bytes += len(data)
         self.buffer += data
         while len(self.buffer) >= 2:
@@ -72,6 +82,8 @@ class Viewer:
                 self.whole = b''
 
     def told(self, now):
+        if self.whole.startswith(b'{"error"'):
+            sys.exit(f'a viewer was refused something: {self.whole.decode()}')
         if self.whole[:1] == bytes([MOTIONS]):
             flags, _, simulated, removed, created, _ = struct.unpack_from('<xB2xfdIII', self.whole)
             self.came.append((now, simulated))
@@ -99,9 +111,14 @@ def serve(obsim, objects):
 
 
 def cpu(pid):
-    with open(f'/proc/{pid}/stat') as f:
-        words = f.read().rpartition(')')[2].split()
-    return (int(words[11]) + int(words[12])) / os.sysconf('SC_CLK_TCK')
+    """CPU seconds so far: of the simulators, the server, and all else of the program, and of this one."""
+    spent = dict(simulators=0, server=0, rest=0, viewers=time.process_time())
+    for thread in pathlib.Path(f'/proc/{pid}/task').iterdir():
+        name, _, words = (thread / 'stat').read_text().partition('(')[2].rpartition(')')
+        words = words.split()
+        whose = 'simulators' if name.startswith('sim ') else 'server' if name == 'server' else 'rest'
+        spent[whose] += (int(words[11]) + int(words[12])) / os.sysconf('SC_CLK_TCK')
+    return spent
 
 
 def watch(obsim, viewers, objects, seconds):
@@ -110,13 +127,15 @@ def watch(obsim, viewers, objects, seconds):
     all_ = [Viewer(port, selector) for _ in range(viewers)]
     begin = time.monotonic()
     before, made, gone = cpu(run.pid), 0, 0
+    seeded = random.Random(1)
+    anywhere = lambda most: [seeded.uniform(-most, most) for _ in range(3)]
     first = None
     while time.monotonic() - begin < seconds:
         for key, _ in selector.select(.1):
             key.data.read()
         if time.monotonic() - begin > made / RATE and made < RATE * (seconds - 2):
             v = all_[made % viewers]
-            command = dict(do='create', shape='sphere', size=[.1, 0, 0], at=[0, 0, 0], mass=1, name=f'new {made}')
+            command = dict(do='create', shape='sphere', size=[.1, 0, 0], at=anywhere(5), velocity=anywhere(3), mass=1, name=f'new {made}')
             v.send(TEXT, json.dumps(command).encode())
             made += 1
             if made > RATE * LIFE and len(all_[0].news) > 0:
@@ -125,11 +144,16 @@ def watch(obsim, viewers, objects, seconds):
                 gone += 1
         if first is None:
             first = [v.bytes for v in all_]
-    spent = cpu(run.pid) - before
+    spent = {whose: (s - before[whose]) / seconds for whose, s in cpu(run.pid).items()}
     simulated = max((v.came[-1][1] - v.came[0][1] for v in all_ if v.came), default=seconds)
     run.terminate()
     run.wait()
     return all_, spent, simulated, first, made, gone
+
+
+def print_times(what, seconds):
+    ms = sorted(1e3 * s for s in seconds)
+    print(f'{what}_ms p50 {ms[len(ms) // 2]:.1f} p99 {ms[int(.99 * len(ms))]:.1f} max {ms[-1]:.1f}')
 
 
 def main():
@@ -141,21 +165,22 @@ def main():
     a = parser.parse_args()
     alone = watch(a.obsim, 1, a.objects, a.seconds / 3)
     all_, spent, simulated, first, made, gone = watch(a.obsim, a.viewers, a.objects, a.seconds)
-    late = []
-    soonest = {}
+    soonest, by_time = {}, collections.defaultdict(list)
     for v in all_:
         for now, t in v.came:
-            soonest[int(now)] = min(soonest.get(int(now), 1e9), now - t)
-    for v in all_:
-        late += [now - t - min(soonest.get(int(now) + k, 1e9) for k in (-1, 0, 1)) for now, t in v.came]
-    late.sort()
+            soonest[int(now)] = min(soonest.get(int(now), math.inf), now - t)
+            by_time[t].append(now)
+    late = [now - t - min(soonest.get(int(now) + k, math.inf) for k in (-1, 0, 1)) for v in all_ for now, t in v.came]
     traffic = sum(v.bytes - f for v, f in zip(all_, first)) / len(all_) / a.objects / a.seconds
-    print(f'staleness_ms p50 {1e3 * late[len(late) // 2]:.1f} p99 {1e3 * late[int(.99 * len(late))]:.1f} max {1e3 * late[-1]:.1f}')
+    print_times('staleness', late)
+    print_times('last_viewer_after_the_first', [max(a) - min(a) for a in by_time.values() if len(a) == len(all_)])
+    print_times('read_after_arrival', [s for v in all_ for s in v.read_late])
     print(f'bytes_per_object_and_second {traffic:.0f} (poses of 28 bytes at 60 Hz: 1680)')
     missed = sum(v.created != made or v.removed != gone for v in all_)
     print(f'created {made}, removed {gone}; viewers that missed one {missed}, that were told anew {sum(v.told_anew > 0 for v in all_)}')
     print(f'simulated_per_second one viewer {alone[2] / (a.seconds / 3):.3f}, {a.viewers} viewers {simulated / a.seconds:.3f}')
-    print(f'cpu_s_per_second one viewer {alone[1] / (a.seconds / 3):.3f}, {a.viewers} viewers {spent / a.seconds:.3f}')
+    for n, spent in (1, alone[1]), (a.viewers, spent):
+        print(f'cpu_s_per_second {n} viewer{"s" * (n > 1)}: ' + ', '.join(f'{whose} {s:.3f}' for whose, s in spent.items()))
 
 
 if __name__ == '__main__':

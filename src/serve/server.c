@@ -361,6 +361,7 @@ static const lws_retry_bo_t patience = { .secs_since_valid_ping = 20, .secs_sinc
 static void *serve(void *argument)
 {
 	ob_server *s = argument;
+	pthread_setname_np(pthread_self(), "server");
 	while (!is_ending(s) && lws_service(s->context, 0) >= 0)
 		;
 	return NULL;
