@@ -25,7 +25,7 @@ static bool same_moments(ob_vec3 j)
 // Unit norm, without the bias of one division (spin.c).
 static ob_quat unit(ob_quat q)
 {
-	double e = fma(q.w, q.w, fma(q.x, q.x, fma(q.y, q.y, fma(q.z, q.z, -1))));
+	double e = ob_quat_excess(q);
 	double s = e * (.5 - .375 * e);
 	return (ob_quat){ q.w - q.w * s, q.x - q.x * s, q.y - q.y * s, q.z - q.z * s };
 }

@@ -37,6 +37,9 @@ typedef struct ob_spin {
 // q is a unit quaternion, w in the world frame. A moment that is not positive counts as "any": w stays constant.
 void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
+// |q|^2 - 1 to the last digit, of a q that is nearly a unit quaternion.
+double ob_quat_excess(ob_quat q);
+
 // Attitude and rate (world frame) at s, which may be negative.
 void ob_spin_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out);
 
