@@ -231,25 +231,74 @@ static inline int patch_corners(const patch_load *p, const lanes *v, lanes (*at)
 	return PATCH_CORNERS;
 }
 
-// The centre of rotation is not far away: w is not near 0.
-static inline void patch_slip_near(const patch_load *p, const lanes *v, lanes w, patch_slip *o)
+// The slip at a corner, and its magnitude.
+static inline lanes patch_slip_of(const lanes *v, lanes w, const lanes *x, lanes *u)
 {
-	lanes corner[PATCH_CORNERS][2], u[PATCH_CORNERS][2], r[PATCH_CORNERS], area = lanes_of(0);
-	const int corners = patch_corners(p, v, corner);
-	const lanes iw = 1 / w, slope[2] = { -p->slope[1] * iw, p->slope[0] * iw };
-	const lanes at = 1 - slope[0] * v[0] - slope[1] * v[1];
-	patch_sums sum = { 0 };
+	u[0] = v[0] - w * x[1];
+	u[1] = v[1] + w * x[0];
+	return lanes_sqrt(u[0] * u[0] + u[1] * u[1]);
+}
+
+// Integrals over the border, and twice the area.
+static inline lanes patch_sum_edges(const lanes (*corner)[2], int corners, const lanes *v, lanes w, lanes at,
+				    const lanes *slope, patch_sums *o)
+{
+	lanes u[PATCH_CORNERS][2], r[PATCH_CORNERS], area = lanes_of(0);
 	for (int i = 0; i < corners; i++) {
 		const lanes *x = corner[i], *next = corner[i + 1 < corners ? i + 1 : 0];
-		u[i][0] = v[0] - w * x[1];
-		u[i][1] = v[1] + w * x[0];
-		r[i] = lanes_sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1]);
+		r[i] = patch_slip_of(v, w, x, u[i]);
 		area += x[0] * next[1] - x[1] * next[0];
 	}
 	for (int i = 0; i < corners; i++) {
 		int next = i + 1 < corners ? i + 1 : 0;
-		patch_add_edge(u[i], r[i], u[next], r[next], at, slope, &sum);
+		patch_add_edge(u[i], r[i], u[next], r[next], at, slope, o);
 	}
+	return area;
+}
+
+static inline lanes patch_add_all(lanes sum, lanes x)
+{
+	return lanes_of(sum[0] + x[0] + x[1] + x[2] + x[3]);
+}
+
+// The same of lane l alone, with four edges side by side: the same sums in the same order.
+static inline lanes patch_sum_edges_of(int l, const lanes (*corner)[2], int corners, const lanes *v, lanes w, lanes at,
+				       const lanes *slope, patch_sums *o)
+{
+	const lanes own_v[2] = { lanes_of(v[0][l]), lanes_of(v[1][l]) }, own_w = lanes_of(w[l]);
+	const lanes own_slope[2] = { lanes_of(slope[0][l]), lanes_of(slope[1][l]) };
+	lanes area = lanes_of(0);
+	for (int i = 0; i < corners; i += OB_LANES) {
+		const int end = i + OB_LANES < corners ? i + OB_LANES : 0;
+		patch_sums four = { 0 };
+		lanes x[2], next[2], u[2], un[2];
+		for (int c = 0; c < 2; c++) {
+			x[c] = (lanes){ corner[i][c][l], corner[i + 1][c][l], corner[i + 2][c][l],
+					corner[i + 3][c][l] };
+			next[c] = (lanes){ x[c][1], x[c][2], x[c][3], corner[end][c][l] };
+		}
+		const lanes r = patch_slip_of(own_v, own_w, x, u), rn = patch_slip_of(own_v, own_w, next, un);
+		patch_add_edge(u, r, un, rn, lanes_of(at[l]), own_slope, &four);
+		area = patch_add_all(area, x[0] * next[1] - x[1] * next[0]);
+		for (int c = 0; c < 2; c++)
+			o->force[c] = patch_add_all(o->force[c], four.force[c]);
+		o->power = patch_add_all(o->power, four.power);
+		o->weight = patch_add_all(o->weight, four.weight);
+	}
+	return area;
+}
+
+// The centre of rotation is not far away: w is not near 0. In the lanes asked for.
+static inline void patch_slip_near(const patch_load *p, unsigned asked, const lanes *v, lanes w, patch_slip *o)
+{
+	lanes corner[PATCH_CORNERS][2];
+	const int corners = patch_corners(p, v, corner);
+	const lanes iw = 1 / w, slope[2] = { -p->slope[1] * iw, p->slope[0] * iw };
+	const lanes at = 1 - slope[0] * v[0] - slope[1] * v[1];
+	patch_sums sum = { 0 };
+	const lanes area = lanes_count(asked) == 1
+				   ? patch_sum_edges_of(__builtin_ctz(asked), corner, corners, v, w, at, slope, &sum)
+				   : patch_sum_edges(corner, corners, v, w, at, slope, &sum);
 	const lanes scale = 2 * iw * iw / area;
 	for (int c = 0; c < 2; c++)
 		o->grad[c] = scale * sum.force[c];
@@ -306,7 +355,7 @@ static inline void patch_slip_at(const patch_load *p, lane_mask asked, lanes *d,
 	v[0] *= scale, v[1] *= scale;
 	lane_mask far = turns < far_share * moves;
 	if (lanes_bits(asked & ~far))
-		patch_slip_near(p, v, lanes_select(far, 1 / size, d[2]), o);
+		patch_slip_near(p, lanes_bits(asked & ~far), v, lanes_select(far, 1 / size, d[2]), o);
 	else
 		*o = (patch_slip){ 0 };
 	if (lanes_bits(asked & far)) {
