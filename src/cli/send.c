@@ -44,7 +44,8 @@ static bool find_object(sending *s, const char *text, ob_error *e)
 static bool create(sending *s, ob_error *e)
 {
 	const char *text = s->word[0];
-	ob_scene *scene = ob_scene_load_text("obsim send", text, strlen(text), NULL, e);
+	const ob_scene_options options = { .joining = true };
+	ob_scene *scene = ob_scene_load_text("obsim send", text, strlen(text), &options, e);
 	bool fine = scene;
 	for (uint32_t i = 0; fine && i < scene->objects; i++) {
 		const ob_object_def *def = &scene->object[i];
@@ -53,8 +54,6 @@ static bool create(sending *s, ob_error *e)
 			s->request.corners = scene->hull_corners[def->passport.hull];
 		if (def->script || def->born > 0 || def->dies < INFINITY)
 			fine = ob_fail(e, "create: expected an object without script, born and dies");
-		else if (def->passport.mesh)
-			fine = ob_fail(e, "create: expected no mesh: a scene's objects have them");
 		else if (def->path || def->force)
 			fine = ob_fail(e,
 				       "create: expected neither path nor varying_force: a scene's objects have them");

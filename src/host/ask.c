@@ -58,7 +58,7 @@ static bool is_colour(const float *c)
 	return true;
 }
 
-static bool check_new(const ob_host *h, const ob_request *r, ob_error *e)
+static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 {
 	const uint32_t shape = r->def.passport.shape;
 	const bool known = shape == OB_SHAPE_BOX || shape == OB_SHAPE_SPHERE || shape == OB_SHAPE_CAPSULE ||
@@ -67,6 +67,8 @@ static bool check_new(const ob_host *h, const ob_request *r, ob_error *e)
 	if (!known || r->def.script || r->def.state_bytes)
 		return ob_fail(e,
 			       "only boxes, spheres, capsules, cylinders and hulls without a script can be created so");
+	if (!ob_population_find_look(h->population, &r->def, e))
+		return false;
 	if (shape != OB_SHAPE_HULL)
 		return true;
 	if (ob_universe_hulls(h->u) == 0)
@@ -76,7 +78,7 @@ static bool check_new(const ob_host *h, const ob_request *r, ob_error *e)
 		       : ob_fail(e, "a hull has at most %d corners", OB_HULL_CORNERS_MAX);
 }
 
-static bool check(const ob_host *h, const ob_request *r, ob_error *e)
+static bool check(const ob_host *h, ob_request *r, ob_error *e)
 {
 	ob_passport p;
 	if (r->kind > OB_REQUEST_MESSAGE)

@@ -153,6 +153,22 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 	return true;
 }
 
+bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_error *e)
+{
+	uint32_t i = 0;
+	def->passport.mesh = 0;
+	if (!def->look)
+		return true;
+	while (i < p->scene->meshes && p->scene->mesh[i].key != def->look)
+		i++;
+	if (i == p->scene->meshes)
+		return ob_fail(
+			e, "mesh: expected one that an object of the scene has, with the same scale, rotation, place "
+			   "and, if any, hull");
+	def->passport.mesh = (uint8_t)(i + 1);
+	return true;
+}
+
 // Hulls are the universe's, meshes the scene's.
 static bool check_parts(const ob_population *p, const ob_passport *pass, ob_error *e)
 {
@@ -322,7 +338,7 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 	def.path = NULL, def.force = NULL; // the scene's alone
 	if (post->used - sizeof def < def.state_bytes || def.script > data->script_text->scripts)
 		return;
-	if (!take_hull(p, &def, post, &e) || !ob_object_check(&def, &e)) {
+	if (!ob_population_find_look(p, &def, &e) || !take_hull(p, &def, post, &e) || !ob_object_check(&def, &e)) {
 		stop_script(p, cell, post->line, e.text);
 		return;
 	}
@@ -628,7 +644,8 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 				       .created = from->created };
 		p->created += from->created;
 		load_path(p, id);
-		p->slots[id].kinematic = from->use == SLOT_PRESENT && ob_passport_of(p->u, id)->flags & OB_OBJECT_KINEMATIC;
+		p->slots[id].kinematic =
+			from->use == SLOT_PRESENT && ob_passport_of(p->u, id)->flags & OB_OBJECT_KINEMATIC;
 		p->kinematic += p->slots[id].kinematic;
 	}
 	p->next = s->events;

@@ -48,6 +48,10 @@ bool ob_object_check(const ob_object_def *def, ob_error *e);
 ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r, ob_error *e);
 void ob_population_destroy(ob_population *p);
 
+// The mesh of the scene that an object which comes from outside asks to look like, into its passport; a number that is
+// there already is not believed. false and e: the scene has none of this kind. Any thread.
+bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_error *e);
+
 // Carries out what the timetable has due at this step or before, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
 // For a checkpoint in memory (table/checkpoint.h): keeps what it knows beside the universe, and puts it back. So what

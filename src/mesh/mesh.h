@@ -56,6 +56,7 @@ typedef struct ob_mesh {
 	ob_mesh_part *part; // [parts]: all of index; none: there are no images
 	ob_mesh_image *image; // [images]
 	double radius; // m, of the ball round the origin that holds it
+	uint64_t key; // of its file's name, scale and pose (ob_mesh_key); 0: nobody has said
 } ob_mesh;
 
 // Both from 0 to 1, as one number: 15 times the metal, whole, and then the roughness, below 1.
@@ -73,6 +74,8 @@ bool ob_mesh_place(ob_mesh *m, double scale, ob_pose pose, ob_error *e);
 // Whether what came from elsewhere is one: counts within the limits, indices of vertices, parts, numbers. Sets the
 // radius.
 bool ob_mesh_makes_sense(ob_mesh *m);
+// By what a mesh is named while a universe runs: a hash of what it is made of, never 0. The same in all programs.
+uint64_t ob_mesh_key(const char *file, double scale, ob_pose pose);
 size_t ob_mesh_bytes(const ob_mesh *m); // of all that it holds
 void ob_mesh_finish(ob_mesh *m);
 

@@ -31,9 +31,9 @@ typedef struct ob_camera_draft {
 	ob_vec3 from; // unit, from the objects towards the eye
 } ob_camera_draft;
 
-// What a mesh was made of: objects of the same share it.
+// What a mesh is made of.
 typedef struct ob_mesh_source {
-	char file[OB_SCENE_MESH_NAME_MAX];
+	const char *file;
 	double scale;
 	ob_pose pose; // of the file's frame in the body's
 } ob_mesh_source;
@@ -43,7 +43,6 @@ typedef struct ob_builder {
 	uint32_t objects_room;
 	uint32_t hulls_room;
 	uint64_t *hull_points; // [scene->hulls], hashes of the points that each was made of
-	ob_mesh_source *mesh_source; // [scene->meshes]
 	const ob_scene_options *options;
 	bool has_scene; // scene { ... } was called
 	ob_material material[OB_SCENE_MATERIALS_MAX];

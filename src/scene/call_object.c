@@ -372,9 +372,9 @@ static void take_hull_frame(const ob_scene *s, const ob_hull *h, ob_object_def *
 }
 
 // A mesh lies in the frame that the scene's author sees; of a hull, the body's is another.
-static uint8_t find_mesh(lua_State *L, ob_builder *b, const char *kind, const body *d)
+static ob_mesh_source source_of_mesh(const body *d)
 {
-	ob_mesh_source source = { .scale = isnan(d->mesh_scale) ? 1 : d->mesh_scale };
+	ob_mesh_source source = { .file = d->mesh, .scale = isnan(d->mesh_scale) ? 1 : d->mesh_scale };
 	source.pose.p = isnan(d->mesh_at.x) ? ob_v3(0, 0, 0) : d->mesh_at;
 	source.pose.q = isnan(d->mesh_rotation.w) ? ob_quat_identity() : d->mesh_rotation;
 	if (d->hull) {
@@ -383,8 +383,7 @@ static uint8_t find_mesh(lua_State *L, ob_builder *b, const char *kind, const bo
 		source.pose.p = ob_rotate_back(&r, ob_sub(source.pose.p, d->hull->centre));
 		source.pose.q = ob_quat_mul((ob_quat){ f.w, -f.x, -f.y, -f.z }, source.pose.q);
 	}
-	snprintf(source.file, sizeof source.file, "%s", d->mesh);
-	return ob_builder_mesh(L, b, kind, &source);
+	return source;
 }
 
 static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec3 size, body *d)
@@ -396,12 +395,14 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	double mass = d->kind != DYNAMIC ? 0 : isnan(d->mass) ? d->density * volume(shape, size, d->hull) : d->mass;
 	if (d->kind == DYNAMIC && !(mass >= 1e-12 && mass <= 1e15))
 		ob_sandbox_fail(L, "%s.mass: expected from 1e-12 to 1e+15 kg, got %.4g", kind, mass);
-	const uint8_t mesh = d->mesh ? find_mesh(L, b, kind, d) : 0;
+	const ob_mesh_source source = source_of_mesh(d);
+	const uint8_t mesh = d->mesh && !b->options->joining ? ob_builder_mesh(L, b, kind, &source) : 0;
 	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
 	ob_passport *p = &o->passport;
 	p->mesh = mesh;
-	p->flags |= mesh && !d->own_colour ? OB_OBJECT_MESH_COLOUR : 0;
-	p->flags |= mesh && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
+	o->look = d->mesh && !mesh ? ob_mesh_key(source.file, source.scale, source.pose) : 0;
+	p->flags |= d->mesh && !d->own_colour ? OB_OBJECT_MESH_COLOUR : 0;
+	p->flags |= d->mesh && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
 	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
 	p->shape = (uint8_t)shape;
 	p->size = size;

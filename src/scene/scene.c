@@ -150,10 +150,8 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 		free(text);
 		ob_fail(e, "%s: no memory", path);
 	}
-	if (b) {
+	if (b)
 		free(b->hull_points);
-		free(b->mesh_source);
-	}
 	free(b);
 	if (good)
 		return s;

@@ -15,6 +15,7 @@ enum { OB_SCENE_HULLS_MAX = 4096 }; // different ones, with those that come whil
 typedef struct ob_object_def {
 	ob_passport passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
 	ob_state state;       // at its first instant
+	uint64_t look; // of what comes while the universe runs: key of the mesh that it looks like (ob_mesh.key); 0: none
 	uint32_t script; // 1 + its number; 0: none
 	uint32_t state_at, state_bytes; // of what its script begins with (scene/flat.h), in ob_scene.states
 	ob_path *path;        // how a kinematic one moves; NULL: it goes on as it begins. The scene's, freed with it
@@ -77,6 +78,7 @@ typedef struct ob_scene_options {
 	uint32_t define_count;
 	bool has_seed;
 	uint64_t seed;              // replaces the scene's
+	bool joining;               // its objects are for a universe that runs: their meshes are named (look), not read
 } ob_scene_options;
 
 // Reads, runs and checks a scene file; o may be NULL. NULL and e on error, in one line: "file:line: where.field:

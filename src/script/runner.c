@@ -331,12 +331,12 @@ ob_script_runner *ob_script_runner_create(ob_universe *u)
 		free(r);
 		return NULL;
 	}
-	static const ob_scene_options none = { 0 };
+	static const ob_scene_options joining = { .joining = true };
 	r->u = u;
 	r->data = data;
 	r->settings = ob_universe_settings(u);
 	r->builder.scene = &r->scene;
-	r->builder.options = &none;
+	r->builder.options = &joining;
 	r->scene.script = names;
 	const uint32_t scripts = data->script_text->scripts;
 	r->scene.scripts = scripts < OB_SCRIPTS_MAX ? scripts : OB_SCRIPTS_MAX;

@@ -83,18 +83,27 @@ class Meshes(program.Case):
 				self.assertIn("scene.lua:3: box.mesh: ", done.stderr)
 				self.assertIn(name, done.stderr)
 
-	def test_only_objects_of_the_scene_have_one(self):
-		self.write("cube.glb", glb.cube(.3))
-		self.write("scene.lua", "ground {}\nsphere { radius = .3, at = { 0, 0, 1 }, script = [[\n"
-			"function on_start() box { size = { 1, 1, 1 }, mesh = 'cube.glb' } end]] }\n")
-		done = program.call("run", self.path("scene.lua"), "--duration", ".1", cwd=self.directory.name)
-		self.assertIn("box.mesh: expected none: only objects of the scene have one", done.stderr)
-		run = self.start_universe(program.scene("stack"), "--pace", "realtime", "--duration", program.FOR_EVER)
-		done = program.call("send", self.name, "create", "box { size = { 1, 1, 1 }, mesh = 'cube.glb' }", cwd=self.directory.name)
-		run.terminate()
-		run.communicate(timeout=program.PATIENCE)
-		self.assertEqual(done.returncode, 1, done.stderr)
-		self.assertIn("expected no mesh", done.stderr)
+	def test_what_scripts_create_has_one_of_the_scene(self):
+		self.write("cube.glb", glb.cube(.5, (1, 1, 1), picture=glb.QUARTERS))
+		points = "points = { { -1, -1, -1 }, { 2, 0, 0 }, { 0, 2, 0 }, { 0, 0, 1 } }"
+		known = (f"ground {{}}\nhull {{ {points}, static = true, at = {{ -2, 0, 1 }}, mesh = 'cube.glb', mesh_scale = 2, mesh_at = {{ 0, 0, .5 }} }}\n"
+			"box { size = { 1, 1, 1 }, static = true, at = { 2, 0, 1 }, mesh = 'cube.glb' }\n"
+			"camera 'main' { eye = { 3, -8, 3 }, target = { 0, 0, 1.5 } }\n")
+		new = (f"hull {{ {points}, static = true, at = {{ 0, 0, 3 }}, mesh = 'cube.glb', mesh_scale = 2, mesh_at = {{ 0, -0.0, .5 }} }}\n"
+			"\tsphere { radius = .2, static = true, at = { 0, -2, 1 }, mesh = 'cube.glb' }\n")
+		scripted = "sphere {{ radius = .1, at = {{ 0, 0, 9 }}, script = [[\nfunction on_start()\n\t{}end]] }}\n"
+		last = slice(-3 * 96 * 64, None)
+		declared, _ = self.frames("declared", known + scripted.format("") + new)
+		created, _ = self.frames("created", known + scripted.format(new))
+		other, _ = self.frames("other", known + scripted.format(new.replace(", mesh = 'cube.glb' }", " }")))
+		self.assertEqual(created[last], declared[last])
+		self.assertNotEqual(created[last], other[last])
+		for name, wrong in ("scale", new.replace("= 2", "= 3")), ("file", new.replace("cube", "ball")), ("hull", new.replace("{ 2, 0", "{ 3, 0")):
+			with self.subTest(name):
+				scene = self.write("wrong.lua", known + scripted.format(wrong))
+				done = program.call("run", scene, "--duration", ".1")
+				self.assertIn("wrong.lua", done.stderr)
+				self.assertIn("mesh: expected one that an object of the scene has", done.stderr)
 
 	def test_it_is_recorded(self):
 		self.write("cube.glb", glb.cube(.3, (1, .8, .9), picture=glb.QUARTERS, shine=True))

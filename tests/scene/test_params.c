@@ -6,7 +6,7 @@
 static double value(const char *text, const char *define)
 {
 	ob_error e = { "" };
-	ob_scene_options o = { &define, 1, false, 0 };
+	ob_scene_options o = { .defines = &define, .define_count = 1 };
 	ob_scene *s = load_bytes(text, strlen(text), &o, &e);
 	double x = s ? s->object[0].passport.size.x : NAN;
 	if (!s)
@@ -18,7 +18,7 @@ static double value(const char *text, const char *define)
 static void refused(const char *text, const char *define, const char *expected)
 {
 	ob_error e = { "" };
-	ob_scene_options o = { &define, 1, false, 0 };
+	ob_scene_options o = { .defines = &define, .define_count = 1 };
 	CHECK(!load_bytes(text, strlen(text), &o, &e));
 	CHECK(strstr(e.text, expected) && !strchr(e.text, '\n'));
 	if (!strstr(e.text, expected))
@@ -45,7 +45,7 @@ int main(void)
 	CHECK(value(flag, "f=true") == 2 && value(flag, "f=false") == 1);
 	CHECK(value(choice, "c=three") == 5);
 	const char *twice[] = { "n=1", "n=2" };
-	ob_scene_options o = { twice, 2, false, 0 };
+	ob_scene_options o = { .defines = twice, .define_count = 2 };
 	ob_scene *s = load_bytes(whole, strlen(whole), &o, NULL);
 	CHECK(s && s->object[0].passport.size.x == 2);
 	ob_scene_free(s);

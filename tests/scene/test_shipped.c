@@ -13,7 +13,7 @@ static ob_scene *load(const char *name, const char *define, uint64_t seed)
 {
 	char path[1024];
 	ob_error e = { "" };
-	ob_scene_options o = { &define, define ? 1 : 0, seed > 0, seed };
+	ob_scene_options o = { &define, define ? 1 : 0, seed > 0, seed, false };
 	snprintf(path, sizeof path, "%s/%s.lua", folder, name);
 	ob_scene *s = ob_scene_load(path, &o, &e);
 	CHECK(s);
