@@ -148,6 +148,11 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 		return ob_fail(e, "object \"%s\": mass must be positive (or the object static or kinematic)", p->name);
 	if (!finite3(s->pose.p) || !finite3(s->v) || !finite3(s->w) || !(fabs(norm2 - 1) < 1e-6))
 		return ob_fail(e, "object \"%s\": position, attitude and velocities must be finite", p->name);
+	if (!finite3(p->force))
+		return ob_fail(e, "object \"%s\": its force, or the velocity of its surface, must be finite", p->name);
+	for (int i = 0; i < 4; i++)
+		if (!(p->colour[i] >= 0 && p->colour[i] <= 1))
+			return ob_fail(e, "object \"%s\": a colour has parts from 0 to 1", p->name);
 	if (!(p->friction >= 0 && isfinite(p->friction)) || !(p->restitution >= 0 && p->restitution <= 1))
 		return ob_fail(e, "object \"%s\": friction must be >= 0, restitution in 0..1", p->name);
 	return true;
