@@ -79,7 +79,7 @@ static void activate_body(ob_island_work *w, uint32_t row, uint32_t iteration)
 		return;
 	body->active_iteration = iteration;
 	for (uint32_t k = 0; k < body->adjacent; k++) {
-		uint32_t lane = w->contact[w->adjacency[body->first_adjacent + k]].lane;
+		uint32_t lane = w->contact_lane[w->adjacency[body->first_adjacent + k]];
 		if (lane != OB_NO_LANE)
 			w->batch_due[lane / OB_LANES] = iteration + 1;
 	}

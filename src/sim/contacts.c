@@ -76,6 +76,11 @@ static ob_batch_kind kind_of(const ob_sim *s, const ob_contact *contact)
 	       (contact->mu > 0 ? OB_KIND_FULL : OB_KIND_FRICTIONLESS);
 }
 
+static void set_lane(ob_island_work *w, ob_contact *contact, uint32_t lane)
+{
+	contact->lane = w->contact_lane[contact - w->contact] = lane;
+}
+
 // Takes a lane of the first colour that neither body uses.
 static void take_lane(ob_sim *s, ob_contact *contact)
 {
@@ -91,7 +96,7 @@ static void take_lane(ob_sim *s, ob_contact *contact)
 	if (colour < OB_COLOURS && (live | 1u << lane) == ALL_LANES)
 		w->open_batch[colour][kind] = w->next_open_batch[batch]; // it is the top, and full now
 	contact->colour = colour;
-	contact->lane = batch * OB_LANES + lane;
+	set_lane(w, contact, batch * OB_LANES + lane);
 	for (int side = 0; side < 2; side++) {
 		ob_body *body = &w->body[side ? contact->b : contact->a];
 		if (body->inv_mass > 0 && colour < OB_COLOURS)
@@ -116,7 +121,7 @@ static void leave_lane(ob_island_work *w, ob_contact *contact)
 			body->colours &= ~(UINT64_C(1) << contact->colour);
 		body->contacts--;
 	}
-	contact->lane = OB_NO_LANE;
+	set_lane(w, contact, OB_NO_LANE);
 	contact->points = 0;
 	w->counts_stale = true;
 }
@@ -462,6 +467,7 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 	ob_island_work *w = &s->island;
 	ob_contact *contact = &w->contact[w->contacts++];
 	*contact = *from;
+	set_lane(w, contact, OB_NO_LANE);
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	contact->mu = sqrt(a->friction * b->friction);
 	contact->e = ob_max(a->restitution, b->restitution);
@@ -526,6 +532,7 @@ void ob_contacts_load(ob_sim *s, const ob_island *is)
 	if (most > w->contacts_max) {
 		w->contacts_max = most + most / 2;
 		w->contact = ob_reallocate(w->contact, w->contacts_max * sizeof *w->contact);
+		w->contact_lane = ob_reallocate(w->contact_lane, w->contacts_max * sizeof *w->contact_lane);
 		w->adjacency = ob_reallocate(w->adjacency, 2 * w->contacts_max * sizeof *w->adjacency);
 		w->contact_key = ob_reallocate(w->contact_key, 2 * w->contacts_max * sizeof *w->contact_key);
 		w->contact_order = ob_reallocate(w->contact_order, w->contacts_max * sizeof *w->contact_order);

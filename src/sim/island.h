@@ -183,6 +183,7 @@ typedef struct ob_island_work {
 		*drift; // change of velocity in the partial substep as impacts see it: dv without the echo of an impact
 	uint32_t contacts, contacts_max;
 	ob_contact *contact;
+	uint32_t *contact_lane; // [contacts]: as they say themselves, side by side for who asks for nothing else
 	uint64_t *contact_key; // of sim/contact_order.c
 	uint32_t *contact_order; // indices of the island's pairs, as they are loaded
 	uint32_t *adjacency; // contacts of each body, touching or not

@@ -247,6 +247,7 @@ void ob_island_work_finish(ob_island_work *w)
 	free(w->delta);
 	free(w->drift);
 	free(w->contact);
+	free(w->contact_lane);
 	free(w->adjacency);
 	free(w->contact_key);
 	free(w->contact_order);
