@@ -134,62 +134,86 @@ static const double spread =
 	2.05; // to a side of the picture, in one-sided fourth moments; of an even crowd 1.78 holds all
 static const double nearest = .3; // of the first picture: it comes no nearer
 
-// How far bodies reach beyond the sides of a pyramid of view with its tip in their middle (see call_camera.c).
+// How far bodies reach beyond two opposite sides of a pyramid of view with its tip in their middle (see call_camera.c).
+typedef struct reach {
+	double high, low; // m
+} reach;
+
 typedef struct crowd {
+	const ob_draw_list *list;
+	const ob_camera_def *camera;
+	ob_view view;
 	ob_vec3 middle; // m
 	double weight;
-	double right, left, above, below; // m
 } crowd;
 
-static double weight_of(const ob_draw_list *b, uint32_t i, const ob_camera_def *c, double range)
+static double weight_of(const crowd *all, uint32_t i)
 {
-	if (b->now->passport[b->body[i].id].flags & OB_OBJECT_STATIC)
+	const ob_draw_item *body = &all->list->body[i];
+	if (all->list->now->passport[body->id].flags & OB_OBJECT_STATIC)
 		return 0;
-	double far = ob_norm2(ob_sub(b->body[i].pose.p, c->target)) / pow(lost_ranges * range, 2);
+	double lost = lost_ranges * all->view.range;
+	double far = ob_norm2(ob_sub(body->pose.p, all->camera->target)) / (lost * lost);
 	return 1 / (1 + far * far);
 }
 
-static void add_reach(double *moment, double weight, double reach)
+static void find_middle(crowd *all)
 {
-	*moment += weight * pow(fmax(reach, 0), 4);
+	for (uint32_t i = 0; i < all->list->count; i++) {
+		double w = weight_of(all, i);
+		all->middle = ob_madd(all->middle, w, all->list->body[i].pose.p);
+		all->weight += w;
+	}
+	all->middle = ob_scale(all->middle, 1 / all->weight);
 }
 
-static crowd crowd_of(const ob_draw_list *b, const ob_camera_def *c, const ob_view *v)
+static double fourth_power(double x)
 {
-	crowd all = { 0 };
-	for (uint32_t i = 0; i < b->count; i++) {
-		double w = weight_of(b, i, c, v->range);
-		all.middle = ob_madd(all.middle, w, b->body[i].pose.p);
-		all.weight += w;
+	return x * x * (x * x);
+}
+
+// Along an axis of the picture, where half of the angle that may be filled has this tangent
+static reach reach_of(const crowd *all, ob_vec3 axis, double tangent)
+{
+	const double slant = hypot(1, tangent);
+	double high = 0, low = 0;
+	for (uint32_t i = 0; i < all->list->count; i++) {
+		const ob_draw_item *body = &all->list->body[i];
+		ob_vec3 d = ob_sub(body->pose.p, all->middle);
+		double x = ob_dot(d, axis), r = body->radius * slant - ob_dot(d, all->view.forward) * tangent;
+		double w = weight_of(all, i) / all->weight;
+		high += w * fourth_power(fmax(r + x, 0));
+		low += w * fourth_power(fmax(r - x, 0));
 	}
-	if (all.weight < .5)
-		return (crowd){ 0 }; // nothing moves, or all is lost
-	all.middle = ob_scale(all.middle, 1 / all.weight);
-	for (uint32_t i = 0; i < b->count; i++) {
-		ob_vec3 d = ob_sub(b->body[i].pose.p, all.middle);
-		double x = ob_dot(d, v->right), y = ob_dot(d, v->up), z = ob_dot(d, v->forward), r = b->body[i].radius;
-		double w = weight_of(b, i, c, v->range) / all.weight;
-		double rx = r * hypot(1, v->tan_x) - z * v->tan_x, ry = r * hypot(1, v->tan_y) - z * v->tan_y;
-		add_reach(&all.right, w, x + rx);
-		add_reach(&all.left, w, rx - x);
-		add_reach(&all.above, w, y + ry);
-		add_reach(&all.below, w, ry - y);
-	}
-	return all;
+	return (reach){ spread * pow(high, .25), spread * pow(low, .25) };
+}
+
+// How far along an axis the tip stands beside the middle, so far away, for as much room in the picture on one side as
+// on the other: where there is room to spare, a narrower pyramid holds the bodies as well, which is found by iterating.
+static double centre(const crowd *all, ob_vec3 axis, double tangent, double away)
+{
+	reach r = reach_of(all, axis, tangent);
+	for (int i = 0; i < 4; i++)
+		r = reach_of(all, axis, fmin((r.high + r.low) / (2 * away), tangent));
+	return .5 * (r.high - r.low);
 }
 
 ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, int width, int height)
 {
 	ob_camera_def to = *c;
-	ob_view v = ob_view_of_camera(c, 0, width, height);
-	crowd all = c->automatic ? crowd_of(b, c, &v) : (crowd){ 0 };
-	if (!(all.weight > 0))
+	if (!c->automatic)
 		return to;
-	double right = spread * pow(all.right, .25), left = spread * pow(all.left, .25);
-	double above = spread * pow(all.above, .25), below = spread * pow(all.below, .25);
-	double away = fmax((right + left) / (2 * v.tan_x), (above + below) / (2 * v.tan_y));
-	to.target = ob_madd(ob_madd(all.middle, .5 * (right - left), v.right), .5 * (above - below), v.up);
-	to.eye = ob_madd(to.target, -fmax(away, nearest * v.range), v.forward);
+	crowd all = { .list = b, .camera = c, .view = ob_view_of_camera(c, 0, width, height) };
+	const ob_view *v = &all.view;
+	find_middle(&all);
+	if (!(all.weight >= .5))
+		return to; // nothing moves, or all is lost
+	reach x = reach_of(&all, v->right, v->tan_x), y = reach_of(&all, v->up, v->tan_y);
+	double away = fmax((x.high + x.low) / (2 * v->tan_x), (y.high + y.low) / (2 * v->tan_y));
+	away = fmax(away, nearest * v->range);
+	to.target = ob_madd(all.middle, centre(&all, v->right, v->tan_x, away), v->right);
+	to.target = ob_madd(to.target, centre(&all, v->up, v->tan_y, away), v->up);
+	to.eye = ob_madd(to.target, -away, v->forward);
 	return to;
 }
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "canvas.h"
+#include "render/draw_list.h"
 
 static const float red[3] = { .7f, .05f, .04f };
 
@@ -100,10 +101,54 @@ static void far_from_the_origin(void)
 	canvas_close(&c);
 }
 
+// How far up (or along another axis) in the picture the bodies reach: least and most, -1 and 1 at its edges
+static void find_extent(const ob_draw_list *list, const ob_view *v, ob_vec3 axis, double tangent, double *least,
+			double *most)
+{
+	*least = INFINITY, *most = -INFINITY;
+	for (uint32_t i = 0; i < list->count; i++) {
+		ob_vec3 d = ob_sub(list->body[i].pose.p, v->eye);
+		double at = ob_dot(d, axis) / (ob_dot(d, v->forward) * tangent);
+		*least = fmin(*least, at), *most = fmax(*most, at);
+	}
+}
+
+// What lies flat leaves as much room above it as below, though its near edge looks larger than its far one; what is
+// tall the same at its sides.
+static void automatic_cameras_centre(void)
+{
+	static const float red[] = { 1, 0, 0 };
+	for (int tall = 0; tall < 2; tall++) {
+		ob_draw_list list = { 0 };
+		ob_snapshot s;
+		test_scene_start(&s, 100);
+		for (int i = 0; i < 100; i++) {
+			double a = i % 10 - 4.5, b = i / 10;
+			test_scene_add(&s, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0),
+				       tall ? ob_v3(.3 * a, .8 * a, 2 * b) : ob_v3(a, b, .2), ob_quat_identity(), red);
+		}
+		ob_camera_def camera = test_scene_camera(ob_v3(0, -9, 2.5), ob_v3(0, 4.5, 0));
+		camera.automatic = true;
+		CHECK(ob_draw_list_fill(&list, NULL, &s, 0));
+		camera = ob_camera_follow(&camera, &list, 320, 180);
+		ob_view v = ob_view_of_camera(&camera, 0, 320, 180);
+		double low, high, left, right;
+		find_extent(&list, &v, v.up, v.tan_y, &low, &high);
+		find_extent(&list, &v, v.right, v.tan_x, &left, &right);
+		CHECK_NEAR(high + low, 0, .2); // a tenth of the picture, for the far edge counts as the near one
+		CHECK_NEAR(right + left, 0, .05);
+		CHECK(low > -1 && high < 1 && left > -1 && right < 1);
+		CHECK(tall ? high - low > 1.5 && right - left < 1 : high - low < 1.2 && right - left > 1.5);
+		ob_draw_list_finish(&list);
+		test_scene_finish(&s);
+	}
+}
+
 int main(void)
 {
 	between_steps();
 	cameras_move();
+	automatic_cameras_centre();
 	far_from_the_origin();
 	return check_end();
 }

@@ -89,15 +89,31 @@ export class Camera {
 		if (all < 0.5)
 			return;
 		middle = [0, 1, 2].map((k) => middle[k] / all);
-		const moments = [0, 0, 0, 0];
-		for (const { p, radius, weight } of moving) {
-			const d = add(p, middle, -1), x = dot(d, v.right), y = dot(d, v.up), z = dot(d, v.forward);
-			const rx = radius * Math.hypot(1, v.tanX) - z * v.tanX, ry = radius * Math.hypot(1, v.tanY) - z * v.tanY;
-			[x + rx, rx - x, y + ry, ry - y].forEach((reach, k) => { moments[k] += weight / all * Math.max(reach, 0) ** 4; });
-		}
-		const [right, left, above, below] = moments.map((m) => SPREAD * m ** 0.25);
-		this.target = add(add(middle, v.right, (right - left) / 2), v.up, (above - below) / 2);
-		this.range = Math.max((right + left) / (2 * v.tanX), (above + below) / (2 * v.tanY), NEAREST * range);
+		const placed = moving.map(({ p, radius, weight }) => {
+			const d = add(p, middle, -1);
+			return { right: dot(d, v.right), up: dot(d, v.up), ahead: dot(d, v.forward), radius, share: weight / all };
+		});
+		// How far they reach beyond the sides of a pyramid of view, along an axis of the picture
+		const reach = (axis, tangent) => {
+			const slant = Math.hypot(1, tangent);
+			let high = 0, low = 0;
+			for (const b of placed) {
+				const r = b.radius * slant - b.ahead * tangent;
+				high += b.share * Math.max(r + b[axis], 0) ** 4;
+				low += b.share * Math.max(r - b[axis], 0) ** 4;
+			}
+			return [SPREAD * high ** 0.25, SPREAD * low ** 0.25];
+		};
+		const needed = (axis, tangent) => reach(axis, tangent).reduce((a, b) => a + b) / (2 * tangent);
+		const away = Math.max(needed('right', v.tanX), needed('up', v.tanY), NEAREST * range);
+		const centre = (axis, tangent) => {
+			let [high, low] = reach(axis, tangent);
+			for (let i = 0; i < 4; i++)
+				[high, low] = reach(axis, Math.min((high + low) / (2 * away), tangent));
+			return (high - low) / 2;
+		};
+		this.target = add(add(middle, v.right, centre('right', v.tanX)), v.up, centre('up', v.tanY));
+		this.range = away;
 	}
 
 	// The axes and the frustum, as ob_view of the renderer.
