@@ -98,7 +98,7 @@ class Browser:
 		self.pointer(("move", x, y), ("down", 0), ("up", 0))
 
 	def touch(self, *fingers):
-		"""Fingers that go down, along their ways and up again, together: each a list of places (x, y), all as many."""
+		"""Fingers that go down together, and along their ways: each a list of places (x, y); who has fewer is up sooner."""
 		def way(places):
 			steps = [{"type": "pointerMove", "duration": 0 if i == 0 else 50, "x": int(x), "y": int(y)} for i, (x, y) in enumerate(places)]
 			return [steps[0], {"type": "pointerDown", "button": 0}, *steps[1:], {"type": "pointerUp", "button": 0}]

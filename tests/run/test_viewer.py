@@ -171,6 +171,12 @@ class Viewer(server.Case):
 		self.assertAlmostEqual(along["range"], near["range"], delta=.02 * near["range"])
 		self.assertEqual(along["forward"], near["forward"])
 		self.assertGreater(max(abs(x - y) for x, y in zip(along["target"], near["target"])), .1)
+		angles = lambda: b.run("return [obsim.camera.azimuth, obsim.camera.elevation, obsim.camera.range]")
+		before = angles()
+		b.touch([(350, 300), (400, 300), (450, 300), (450, 300), (490, 280), (530, 260)], [(650, 300), (600, 300), (550, 300)])
+		after = angles() # together, then one is up, and the other goes round as if it had come alone
+		for a, expected in zip(after, (before[0] - 80 * .006, before[1] + 40 * .006, before[2] * 3)):
+			self.assertAlmostEqual(a, expected, delta=.02 * abs(expected))
 		self.assertTrue(b.run("return document.querySelector('#details').hidden"))
 		b.key("v") # the scene's viewpoint, which looks at the stack
 		b.touch([(480, 300)])

@@ -178,6 +178,8 @@ export function control(canvas, camera, onClick) {
 	const up = (e) => {
 		if (fingers.delete(e.pointerId) && way < 5 && e.type === 'pointerup' && e.button === 0)
 			onClick(e.clientX, e.clientY);
+		if (fingers.size === 1)
+			mode = 'orbit'; // as one finger does, whatever two did
 	};
 	canvas.addEventListener('pointerup', up);
 	canvas.addEventListener('pointercancel', up);
