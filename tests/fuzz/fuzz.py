@@ -34,6 +34,10 @@ import tempfile
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "run"))
+
+import glb
+
 SCENES = os.path.join(HERE, "..", "..", "scenes")
 CPU_SECONDS = 60  # of one case: a step's whole budget is some 5 s, and a sanitizer takes ten times as long
 WALL_SECONDS = 1800  # what waits for ever; a machine may be as overloaded as it likes
@@ -512,6 +516,20 @@ class Checkpoints(Files):
 
 class Recordings(Files):
 	WRITTEN_BY = "--record"
+
+	def known(self, obsim):
+		"""And one of a mesh with a picture on it, where obsim reads such."""
+		super().known(obsim)
+		with tempfile.TemporaryDirectory() as folder:
+			path, scene = os.path.join(folder, "file"), os.path.join(folder, "scene.lua")
+			with open(os.path.join(folder, "cube.glb"), "wb") as f:
+				f.write(glb.cube(.3, (1, .5, 1), picture=[[glb.RED, glb.GREEN, glb.GREY]] * 2, shine=True))
+			with open(scene, "w", encoding="utf-8") as f:
+				f.write("ground {} box { size = { .6, .6, .6 }, at = { 0, 0, 1 }, mesh = 'cube.glb' }")
+			subprocess.run([obsim, "run", scene, "--duration", ".1", self.WRITTEN_BY, path], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+			if os.path.exists(path):
+				with open(path, "rb") as f:
+					self.seeds.append(f.read())
 
 	def command(self, path, folder):
 		if self.r.random() < .5:

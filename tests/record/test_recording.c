@@ -68,6 +68,37 @@ static ob_snapshot at(uint64_t state)
 			      .passport = passport, .motion = motion, .hulls = HULLS, .hull = hull };
 }
 
+// One of a single colour, and one whose two triangles have pictures of their own.
+static ob_mesh_vertex vertex[4] = {
+	{ .position = { 1, 0, 0 }, .normal = { 0, 0, 1 }, .colour = { -1, -1, -1 }, .surface = -1 },
+	{ .position = { 0, 1, 0 }, .normal = { 0, 0, 1 }, .colour = { .1f, .2f, .3f }, .surface = 15.5f, .texture = { 1, -.5f } },
+	{ .position = { 0, 0, 0 }, .normal = { 0, 0, 1 }, .colour = { .1f, .2f, .3f }, .texture = { .25f, 3 } },
+	{ .position = { 1, 1, 0 }, .normal = { 0, 0, 1 }, .colour = { 1, 1, 1 } },
+};
+static uint32_t triangle[6] = { 0, 1, 2, 0, 3, 1 };
+static uint8_t wide[4 * 3 * 2] = { 1, 2, 3, 4, 250 }, single[4] = { 9, 8, 7, 255 };
+static ob_mesh_image image[2] = { { 3, 2, wide }, { 1, 1, single } };
+static ob_mesh_part part[2] = {
+	{ .indices = 3, .colour = 1, .surface = 2, .wrap = { OB_MESH_CLAMP, OB_MESH_MIRROR } },
+	{ .indices = 3, .colour = 2 },
+};
+static ob_mesh mesh[2] = {
+	{ .vertices = 3, .vertex = vertex, .indices = 3, .index = triangle },
+	{ .vertices = 4, .vertex = vertex, .indices = 6, .index = triangle, .parts = 2, .part = part, .images = 2, .image = image },
+};
+
+static void check_mesh(const ob_mesh *was, const ob_mesh *now)
+{
+	CHECK(now->vertices == was->vertices && memcmp(now->vertex, was->vertex, was->vertices * sizeof *was->vertex) == 0);
+	CHECK(now->indices == was->indices && memcmp(now->index, was->index, was->indices * sizeof *was->index) == 0);
+	CHECK(now->parts == was->parts && now->images == was->images);
+	for (uint32_t i = 0; i < was->parts && i < now->parts; i++)
+		CHECK(memcmp(&now->part[i], &was->part[i], sizeof *was->part) == 0);
+	for (uint32_t i = 0; i < was->images && i < now->images; i++)
+		CHECK(now->image[i].width == was->image[i].width && now->image[i].height == was->image[i].height &&
+		      memcmp(now->image[i].rgba, was->image[i].rgba, 4 * was->image[i].width * was->image[i].height) == 0);
+}
+
 static void record(uint64_t states)
 {
 	static ob_camera_def camera[2] = {
@@ -75,7 +106,7 @@ static void record(uint64_t states)
 		{ .name = "other", .eye = { 3, 2, 1 }, .target = { 0, 0, 1 }, .pan = .2, .tilt = -.1, .fov = .9 },
 	};
 	static ob_scene scene = { .title = "A title", .text = (char *)"box {}", .text_size = 6, .seed = 5, .record_every = EVERY,
-				  .cameras = 2, .camera = camera,
+				  .cameras = 2, .camera = camera, .meshes = 2, .mesh = mesh,
 				  .look = { .sky_top = { .1f, .2f, .3f }, .grid = true, .sun = { 0, 1, 2 } } };
 	static const ob_scene_options options;
 	ob_run_settings settings = ob_run_settings_default();
@@ -132,6 +163,9 @@ static void test_same_snapshots(void)
 	CHECK(i && i->states == STATES && i->first == 2 && i->interval == EVERY * step_length && i->workers == 2);
 	CHECK(i && strcmp(i->scene.title, "A title") == 0 && i->scene.cameras == 2 && i->scene.seed == 5 && i->scene.look.grid);
 	CHECK(i && i->scene.camera[1].pan == .2 && i->scene.camera[0].velocity.x == .1 && i->scene.look.sun.z == 2);
+	CHECK(i && i->scene.meshes == 2);
+	for (uint32_t k = 0; i && k < i->scene.meshes; k++)
+		check_mesh(&mesh[k], &i->scene.mesh[k]);
 	CHECK(i && strcmp(i->commit, "abc") == 0 && i->scene.duration == 10 && i->scene.run.gravity.z == -9.81);
 	ob_recording_close(r);
 }
@@ -265,6 +299,60 @@ static void many_corners(hid_t file)
 	set_member(file, "hulls", "corners", H5T_NATIVE_UINT32, 0, &(uint32_t){ 100 });
 }
 
+static void no_image(hid_t file)
+{
+	H5Ldelete(file, "meshes/2/images/2", H5P_DEFAULT);
+}
+
+static void flat_image(hid_t file)
+{
+	H5Ldelete(file, "meshes/2/images/1", H5P_DEFAULT);
+	H5Lcreate_hard(file, "meshes/2/parts", file, "meshes/2/images/1", H5P_DEFAULT, H5P_DEFAULT);
+}
+
+// In place of one that it could be: as many bytes, of another size.
+static void put_image(hid_t file, hsize_t height, hsize_t width, hsize_t depth)
+{
+	const hsize_t size[3] = { height, width, depth };
+	uint8_t *bytes = calloc(height * width * depth, 1);
+	H5Ldelete(file, "meshes/2/images/1", H5P_DEFAULT);
+	hid_t space = H5Screate_simple(3, size, NULL);
+	hid_t set = H5Dcreate2(file, "meshes/2/images/1", H5T_NATIVE_UINT8, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+	CHECK(bytes && H5Dwrite(set, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes) >= 0);
+	H5Dclose(set);
+	H5Sclose(space);
+	free(bytes);
+}
+
+static void wide_image(hid_t file)
+{
+	put_image(file, 1, OB_MESH_IMAGE_SIDE_MAX + 1, 4);
+}
+
+static void deep_image(hid_t file)
+{
+	put_image(file, 2, 3, 5);
+}
+
+static void long_part(hid_t file)
+{
+	set_member(file, "meshes/2/parts", "indices", H5T_NATIVE_UINT32, 1, &(uint32_t){ 6 });
+}
+
+static void no_wrap(hid_t file)
+{
+	hid_t pair = H5Tarray_create2(H5T_NATIVE_UINT8, 1, (hsize_t[]){ 2 });
+	set_member(file, "meshes/2/parts", "wrap", pair, 0, (uint8_t[]){ 0, 3 });
+	H5Tclose(pair);
+}
+
+static void nan_texture(hid_t file)
+{
+	hid_t pair = H5Tarray_create2(H5T_NATIVE_FLOAT, 1, (hsize_t[]){ 2 });
+	set_member(file, "meshes/1/vertices", "texture", pair, 2, (float[]){ 0, NAN });
+	H5Tclose(pair);
+}
+
 static void flat(hid_t file)
 {
 	set_member(file, "cameras", "fov", H5T_NATIVE_DOUBLE, 0, &(double){ 0 });
@@ -294,6 +382,13 @@ static void test_damaged(void)
 		{ another_hull, "an object makes no sense" },
 		{ huge_hull, "its hulls make no sense" },
 		{ many_corners, "its hulls make no sense" },
+		{ no_image, "its meshes make no sense" },
+		{ flat_image, "/meshes/2/images/1 is not as it should be" },
+		{ wide_image, "its meshes make no sense" },
+		{ deep_image, "its meshes make no sense" },
+		{ long_part, "its meshes make no sense" },
+		{ no_wrap, "its meshes make no sense" },
+		{ nan_texture, "its meshes make no sense" },
 	};
 	for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
 		change(damages[i].how);
