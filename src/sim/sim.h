@@ -32,8 +32,8 @@ void ob_sim_run(ob_sim *s);
 void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state);
 
 // Host, before the first step and at a pause, after ob_sim_place: what a kinematic object does from now on. path NULL:
-// it goes on as it was placed; born: the step of its first instant. Returns the step at which it is to be called again:
-// UINT64_MAX = never. To call it at other steps, too, changes nothing.
+// it goes on as it was placed; born: the step of its first instant. Returns the step at which it must be called again,
+// at a pause, for what it has published holds no longer; UINT64_MAX: never. To call it at other steps, too, changes nothing.
 uint64_t ob_sim_prescribe(ob_universe *u, uint32_t id, const ob_path *path, uint64_t born);
 
 // Host, at a pause: this constant force (N) acts on a dynamic object from now on. changes: another one has acted until now,
