@@ -1,7 +1,8 @@
 // What a checkpoint holds of a run: all that it needs to go on, and to end in the same bits and the same figures as if
 // it had never been put down. Whoever resumes it needs neither the scene's file nor the command line of the first run.
 //
-//   the scene     its text, the -D and the seed that it was read with: read again, it gives objects to come, cameras, look
+//   the scene     its text, the -D and the seed that it was read with: read again, it gives objects to come,
+//                 cameras, look
 //   settings      as resolved for the run; they cannot be changed on the way
 //   the universe  at a step boundary (table/saved.h); which slots are free, and how far the timetable is
 //                 (host/population.h)
