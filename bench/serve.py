@@ -7,6 +7,7 @@ the kernel has it for the viewer; how much later this program reads it is told b
 same message later than the first, which is the server's alone. Prints one line a figure.
 """
 import argparse
+import atexit
 import collections
 import json
 import math
@@ -123,6 +124,7 @@ def cpu(pid):
 
 def watch(obsim, viewers, objects, seconds):
     run, port = serve(obsim, objects)
+    atexit.register(run.terminate)  # also where a viewer is dropped
     selector = selectors.DefaultSelector()
     all_ = [Viewer(port, selector) for _ in range(viewers)]
     begin = time.monotonic()

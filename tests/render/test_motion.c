@@ -117,7 +117,6 @@ static void find_extent(const ob_draw_list *list, const ob_view *v, ob_vec3 axis
 // tall the same at its sides.
 static void automatic_cameras_centre(void)
 {
-	static const float red[] = { 1, 0, 0 };
 	for (int tall = 0; tall < 2; tall++) {
 		ob_draw_list list = { 0 };
 		ob_snapshot s;
