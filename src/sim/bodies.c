@@ -92,13 +92,10 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	add_row(w->v[row], now.v, now.w);
 	w->mass += pass->mass;
 	body->acceleration = ob_external_acceleration(run, pass);
-	w->max_acceleration = ob_max(w->max_acceleration, ob_norm(body->acceleration));
 	body->torque = ob_script_torque(s->data, id);
 	if (ob_norm2(body->torque) > 0) {
 		w->torques = true;
 		body->moved_freely = false; // no closed form holds it
-		const double most = body->radius * ob_norm(turned_by(body, body->torque));
-		w->max_acceleration = ob_max(w->max_acceleration, ob_norm(body->acceleration) + most);
 	}
 	set_speed_bound(w, row);
 }
@@ -114,13 +111,132 @@ static void reserve_rows(ob_island_work *w, uint32_t rows)
 	}
 }
 
+// ---- the frame of reference
+
+static const double same_share = 1e-9; // of an acceleration: another that differs by less is the same
+
+static bool is_slippery(const ob_body *body)
+{
+	return body->shape == OB_SHAPE_PLANE && body->friction == 0;
+}
+
+// m/s^2, of a against b, as it is felt on the body that has b: what goes along a plane without friction is not.
+static double felt_on(const ob_body *body, ob_vec3 a, ob_vec3 b)
+{
+	const ob_vec3 felt = ob_sub(a, b);
+	return is_slippery(body) ? fabs(ob_dot(felt, ob_column(&body->r, 2))) : ob_norm(felt);
+}
+
+// Of what moves itself: exactly that of each where all have the same.
+static ob_vec3 mean_acceleration(const ob_island_work *w)
+{
+	ob_vec3 sum = { 0, 0, 0 };
+	bool same = true;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		sum = ob_madd(sum, w->body[i].mass / w->mass, w->body[i].acceleration);
+		same &= same_vector(w->body[i].acceleration, w->body[1].acceleration);
+	}
+	return same ? w->body[1].acceleration : sum;
+}
+
+// The acceleration of what holds the bodies, which is one as long as all of it goes with it; along a plane without
+// friction, that of the bodies. 0: there is no such frame, or nothing holds them.
+static ob_vec3 find_frame(const ob_island_work *w)
+{
+	const ob_vec3 none = { 0, 0, 0 };
+	const ob_body *holds = NULL, *slippery = NULL;
+	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
+		*(is_slippery(&w->body[row]) ? &slippery : &holds) = &w->body[row];
+	if (!holds && !slippery)
+		return none;
+	ob_vec3 a = holds ? holds->acceleration : mean_acceleration(w);
+	if (slippery && !holds) {
+		const ob_vec3 n = ob_column(&slippery->r, 2);
+		const ob_vec3 along = ob_madd(a, -ob_dot(a, n), n);
+		a = ob_norm(along) > same_share * ob_norm(a) ? along : none;
+	}
+	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
+		if (felt_on(&w->body[row], w->body[row].acceleration, a) > same_share * ob_norm(a) ||
+		    ob_surface_swings(w, row))
+			return none;
+	return a;
+}
+
+// m/s^2, by a body, the largest on any of what holds it. What a surface that swings does counts once it touches: see
+// ob_surfaces_begin.
+static double felt_on_any(const ob_island_work *w, const ob_body *body)
+{
+	const ob_vec3 none = { 0, 0, 0 };
+	double most = w->rows == 1 + w->bodies ? ob_norm(body->acceleration) : 0;
+	for (uint32_t row = 1 + w->bodies; row < w->rows; row++) {
+		const ob_body *holds = &w->body[row];
+		const bool as_before = row > 1 + w->bodies && !is_slippery(holds) && !is_slippery(holds - 1) &&
+				       same_vector(holds->acceleration, holds[-1].acceleration) &&
+				       !ob_surface_swings(w, row - 1);
+		if (ob_surface_swings(w, row))
+			most = ob_max(most, felt_on(holds, body->acceleration, none));
+		else if (!as_before)
+			most = ob_max(most, felt_on(holds, body->acceleration, holds->acceleration));
+	}
+	return most;
+}
+
+// m/s^2: the largest that is felt on what holds the bodies, and by one of them against the others.
+static double felt_acceleration(const ob_island_work *w)
+{
+	const ob_vec3 mean = mean_acceleration(w);
+	double most = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		const ob_body *body = &w->body[i];
+		if (i > 1 && !w->torques && same_vector(body->acceleration, body[-1].acceleration))
+			continue;
+		double felt = ob_norm(ob_sub(body->acceleration, mean));
+		felt = ob_max(felt, felt_on_any(w, body));
+		if (w->torques)
+			felt += body->radius * ob_norm(turned_by(body, body->torque));
+		most = ob_max(most, felt);
+	}
+	return most;
+}
+
+// What stands on a lift feels it as weight: an island is solved as seen by who speeds up with what holds it, and how
+// far that has come is added in the end.
+static void enter_frame(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const bool ode = s->settings->integrator == OB_INTEGRATOR_ODE;
+	w->frame = ode ? ob_v3(0, 0, 0) : find_frame(w);
+	for (uint32_t row = 1; row < w->rows && ob_norm2(w->frame) > 0; row++)
+		w->body[row].acceleration =
+			is_slippery(&w->body[row]) ? ob_v3(0, 0, 0) : ob_sub(w->body[row].acceleration, w->frame);
+	w->max_acceleration = felt_acceleration(w);
+}
+
+void ob_bodies_leave_frame(ob_sim *s)
+{
+	ob_island_work *w = &s->island;
+	const double h = s->settings->step_length;
+	for (uint32_t row = 1; row < w->rows && ob_norm2(w->frame) > 0; row++) {
+		ob_body *body = &w->body[row];
+		if (row > w->bodies && !body->surface)
+			continue;
+		body->acceleration = ob_add(body->acceleration, w->frame);
+		body->p = ob_madd(body->p, .5 * h * h, w->frame);
+		add_row(w->v[row], ob_scale(w->frame, h), ob_v3(0, 0, 0));
+		if (row > w->bodies)
+			continue;
+		body->path += .5 * h * h * ob_norm(w->frame);
+		set_speed_bound(w, row);
+	}
+}
+
 void ob_bodies_load(ob_sim *s, const ob_island *is)
 {
 	ob_step_data *data = s->data;
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
 	w->h = w->substep = run->step_length / w->substeps;
-	w->mass = w->max_acceleration = w->recovered = w->residual = 0;
+	w->mass = w->recovered = w->residual = 0;
 	w->projected = w->torques = false;
 	w->unpaced = w->time = 0;
 	w->surfaces.count = 0;
@@ -157,6 +273,7 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 		load_body(s, w->rows++, fixed, false);
 	}
 	w->first_ghost = w->rows;
+	enter_frame(s);
 }
 
 // ---- attitudes

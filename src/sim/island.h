@@ -30,7 +30,7 @@ typedef struct ob_body {
 	ob_mat3 r;
 	double mass, inv_mass;
 	ob_vec3 inertia; // principal
-	ob_vec3 acceleration; // m/s^2, external
+	ob_vec3 acceleration; // m/s^2, external, in the frame of the island
 	ob_vec3 torque; // N m, world, external
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
@@ -198,7 +198,8 @@ typedef struct ob_island_work {
 	bool elastic, plastic; // hits with restitution, and without, are solved at their instants (sim/impacts.h)
 	uint32_t iteration; // number of the running one, ever growing
 	double mass; // of all bodies, kg
-	double max_acceleration; // m/s^2, the largest external acceleration of any body
+	double max_acceleration; // m/s^2, the largest external acceleration that a body feels
+	ob_vec3 frame; // m/s^2: the island is solved as seen by who speeds up like this
 	bool feels; // a body's script is told of its contacts
 	bool torques; // a body has an external torque
 	uint32_t substeps; // of this step

@@ -208,7 +208,8 @@ static bool advance_ballistically(ob_sim *s, const ob_island *is)
 static uint32_t rest_flag(ob_sim *s)
 {
 	const double rest_time = ob_bodies_update_rest(s);
-	if (s->island.torques || ob_surfaces_carry_any(&s->island)) // equilibrium and sleep know of forces alone
+	if (s->island.torques || ob_norm2(s->island.frame) > 0 ||
+	    ob_surfaces_carry_any(&s->island)) // equilibrium and sleep know of forces alone
 		return 0;
 	if (ob_equilibrium_reached(&s->island))
 		return s->settings->sleeping ? OB_MOTION_ASLEEP : OB_MOTION_EQUILIBRIUM;
@@ -231,6 +232,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	s->counters.recovered += s->island.recovered;
 	s->counters.body_steps += is->members;
 	note_effort(s, i, cost_so_far(s) - before);
+	ob_bodies_leave_frame(s);
 	const uint32_t rest = rest_flag(s);
 	ob_contacts_store(s);
 	ob_profile_enter(s, OB_PROFILE_PUBLISH);

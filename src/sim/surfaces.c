@@ -74,6 +74,12 @@ uint32_t ob_surface_row(const ob_island_work *w, uint32_t pair)
 	return low < x->count && x->surface[low].pair == pair ? x->surface[low].row : 0;
 }
 
+bool ob_surface_swings(const ob_island_work *w, uint32_t row)
+{
+	const uint32_t at = w->body[row].surface;
+	return at && w->surfaces.surface[at - 1].motion.flags & OB_MOTION_SWINGS;
+}
+
 static bool turns(const ob_surface *x)
 {
 	return ob_norm2(x->motion.w) > 0;
@@ -134,6 +140,7 @@ void ob_surfaces_begin(ob_sim *s)
 			w->max_acceleration = ob_max(w->max_acceleration, pressing(w, &x->surface[i]));
 }
 
+static const double unnoticed_share = 1e-9; // of gravity: what speeds up less along the contact goes evenly
 static const double sliding_share = .999; // of its bound: a smaller friction impulse holds
 
 // s: until the slip at the surface's contact is 0
@@ -167,7 +174,7 @@ static double reversal(const ob_island_work *w, const ob_surface *x)
 		along += fabs(ob_dot(t[k], carried));
 		square += a[k] * a[k];
 	}
-	return along > 0 && both < 0 ? -both / square : INFINITY;
+	return along > unnoticed_share * w->max_acceleration && both < 0 ? -both / square : INFINITY;
 }
 
 double ob_surfaces_reversal(const ob_sim *s, double h)
@@ -190,16 +197,21 @@ void ob_surfaces_renew_contacts(ob_sim *s)
 	}
 }
 
-static double start_time(const ob_sim *s)
+static double step_time(const ob_sim *s)
 {
-	return (double)ob_step_count(s->u) * s->settings->step_length + s->island.time;
+	return (double)ob_step_count(s->u) * s->settings->step_length;
 }
 
-static ob_state state_at(const ob_surface *x, const ob_body *body, double time)
+// In the island's frame.
+static ob_state state_at(const ob_sim *s, const ob_surface *x, const ob_body *body, double time)
 {
-	if (goes(&x->motion))
-		return ob_motion_at(&x->motion, ob_v3(0, 0, 0), time);
-	return (ob_state){ { body->p, body->q }, { 0, 0, 0 }, { 0, 0, 0 } };
+	const double since = time - step_time(s);
+	if (!goes(&x->motion))
+		return (ob_state){ { body->p, body->q }, { 0, 0, 0 }, { 0, 0, 0 } };
+	ob_state at = ob_motion_at(&x->motion, ob_v3(0, 0, 0), time);
+	at.pose.p = ob_madd(at.pose.p, -.5 * since * since, s->island.frame);
+	at.v = ob_madd(at.v, -since, s->island.frame);
+	return at;
 }
 
 // Where a point of the body in one pose is in another.
@@ -229,13 +241,12 @@ static ob_vec3 running_velocity(const ob_island_work *w, const ob_surface *x)
 void ob_surfaces_warm_start(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
-	const double begin = start_time(s), end = begin + w->h;
 	for (uint32_t i = 0; i < w->surfaces.count; i++) {
 		ob_surface *x = &w->surfaces.surface[i];
 		const ob_body *own = &w->body[x->row], *body = &w->body[carried_row(w, x)];
 		const double *v = w->v[carried_row(w, x)];
-		x->begin = state_at(x, own, begin);
-		x->end = state_at(x, own, end);
+		x->begin = state_at(s, x, own, step_time(s) + w->time);
+		x->end = state_at(s, x, own, step_time(s) + w->time + w->h);
 		ob_vec3 target = x->end.v;
 		if (turns(x)) {
 			const ob_vec3 at =
@@ -308,7 +319,7 @@ void ob_surface_halve(ob_sim *s, uint32_t row)
 	body->start_q = body->q;
 	body->start_w = x->begin.w;
 	body->halved = true;
-	const ob_state middle = state_at(x, body, start_time(s) + .5 * w->h);
+	const ob_state middle = state_at(s, x, body, step_time(s) + w->time + .5 * w->h);
 	const ob_vec3 way = ob_sub(middle.pose.p, body->p);
 	set_row(body->first_half, way, ob_v3(0, 0, 0));
 	body->p = middle.pose.p;
@@ -338,7 +349,7 @@ bool ob_surface_advance(ob_sim *s, uint32_t row, ob_pose *end)
 	if (!goes(&x->motion))
 		return false;
 	set_row(w->d[row], ob_sub(end->p, from), ob_small_turn(body->q, end->q));
-	body->acceleration = ob_acceleration_at(&x->motion, start_time(s) + w->h);
+	body->acceleration = ob_sub(ob_acceleration_at(&x->motion, step_time(s) + w->time + w->h), w->frame);
 	body->turning = body->shape == OB_SHAPE_SPHERE ? 0 : body->radius * ob_norm(x->end.w);
 	body->speed = ob_norm(x->end.v) + body->turning;
 	body->path += (double)x->motion.reach * w->h / s->settings->step_length;

@@ -21,6 +21,8 @@ bool ob_surface_moves(const ob_passport *p);
 void ob_surface_add(ob_sim *s, uint32_t row, uint32_t pair);
 // The row that was made for the pair; 0: none.
 uint32_t ob_surface_row(const ob_island_work *w, uint32_t pair);
+// Is the row that of a surface whose acceleration changes all the time?
+bool ob_surface_swings(const ob_island_work *w, uint32_t row);
 // When all contacts are loaded: to whom the surfaces belong, and how fast what they carry is accelerated.
 void ob_surfaces_begin(ob_sim *s);
 // When, in the coming partial substep, what slides on a surface that speeds up will stop doing so, if friction goes on

@@ -34,6 +34,12 @@ void ob_touches_note(ob_universe *u, uint32_t a, uint32_t b, double impulse, ob_
 		ob_commit_touch(u, b, a, impulse, point);
 }
 
+// From the frame in which the island is solved; t: s into the partial substep.
+static ob_vec3 in_world(const ob_island_work *w, ob_vec3 point, double t)
+{
+	return ob_madd(point, .5 * (w->time + t) * (w->time + t), w->frame);
+}
+
 void ob_touches_note_solved(ob_sim *s)
 {
 	const ob_island_work *w = &s->island;
@@ -49,7 +55,7 @@ void ob_touches_note_solved(ob_sim *s)
 			point = ob_madd(point, 1. / c->points, ob_add(w->body[c->a].p, c->arm_a[j]));
 		}
 		if (impulse > 0)
-			ob_touches_note(s->u, w->body[c->a].id, w->body[c->b].id, impulse, point);
+			ob_touches_note(s->u, w->body[c->a].id, w->body[c->b].id, impulse, in_world(w, point, 0));
 	}
 }
 
@@ -67,5 +73,5 @@ void ob_touches_note_impact(ob_sim *s, const ob_impact_instant *i)
 	for (int j = 0; j < i->m.points; j++)
 		point = ob_madd(point, 1. / i->m.points, i->m.at[j]);
 	ob_touches_note(s->u, w->body[c->a].id, w->body[c->b].id,
-			fabs(ob_dot(change, i->m.normal)) / w->body[row].inv_mass, point);
+			fabs(ob_dot(change, i->m.normal)) / w->body[row].inv_mass, in_world(w, point, i->time));
 }
