@@ -122,7 +122,7 @@ class Scenes:
 			turned = [repr(r.choice([0., 1., 1e-9, r.uniform(-1, 1)])) for _ in range(self.one_of([4], [3, 0]))] if turns else []
 			points.append(f"{{{t!r}, " + ", ".join([self.number(-most, most, .001) for _ in range(3)] + turned) + "}")
 			t += self.one_of([.1, .3, 1, 1e6, r.uniform(.07, .2)], [1e-9, 1e-3])
-		if closed:
+		if closed and points:
 			points.append(f"{{{t!r}, " + points[0].split(", ", 1)[1])
 		return "{" + ", ".join(points) + "}"
 
