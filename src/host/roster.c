@@ -7,10 +7,19 @@
 
 #include "host/rcu_tsan.h"
 
+// An entry as it is kept: of its name, no more than there is.
+typedef struct kept {
+	uint32_t id, generation;
+	uint32_t name; // where it begins in the snapshot's names
+	uint8_t script;
+	bool own_worker;
+} kept;
+
 typedef struct snapshot {
 	uint64_t number;
 	size_t n;
-	ob_roster_entry entry[];
+	char *names; // behind the entries, each with its final 0
+	kept entry[];
 } snapshot;
 
 struct ob_roster {
@@ -60,15 +69,31 @@ static void unlock_snapshot(const snapshot *s)
 
 // ---- the writer
 
+static size_t name_length(const ob_roster_entry *entry)
+{
+	return strnlen(entry->name, OB_NAME_MAX - 1);
+}
+
 static snapshot *new_snapshot(uint64_t number, const ob_roster_entry *entries, size_t n)
 {
-	snapshot *s = malloc(sizeof *s + n * sizeof *entries);
+	size_t bytes = 0;
+	for (size_t i = 0; i < n; i++)
+		bytes += name_length(&entries[i]) + 1;
+	snapshot *s = malloc(sizeof *s + n * sizeof *s->entry + bytes);
 	if (!s)
 		return NULL;
 	s->number = number;
 	s->n = n;
-	if (n > 0)
-		memcpy(s->entry, entries, n * sizeof *entries);
+	s->names = (char *)(s->entry + n);
+	uint32_t at = 0;
+	for (size_t i = 0; i < n; i++) {
+		const ob_roster_entry *from = &entries[i];
+		const size_t length = name_length(from);
+		s->entry[i] = (kept){ from->id, from->generation, at, from->script, from->own_worker };
+		memcpy(s->names + at, from->name, length);
+		s->names[at + length] = 0;
+		at += (uint32_t)length + 1;
+	}
 	OB_ORDER_BEFORE(s);
 	return s;
 }
@@ -114,28 +139,38 @@ uint64_t ob_roster_number(const ob_roster *r)
 	return number;
 }
 
+static ob_roster_entry whole(const snapshot *s, const kept *of)
+{
+	ob_roster_entry entry = { .id = of->id,
+				  .generation = of->generation,
+				  .script = of->script,
+				  .own_worker = of->own_worker };
+	strcpy(entry.name, s->names + of->name);
+	return entry;
+}
+
 size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max)
 {
 	const snapshot *s = lock_snapshot(r);
-	size_t n = s->n, copied = n < max ? n : max;
-	if (copied > 0)
-		memcpy(out, s->entry, copied * sizeof *out);
+	const size_t n = s->n;
+	for (size_t i = 0; i < n && i < max; i++)
+		out[i] = whole(s, &s->entry[i]);
 	unlock_snapshot(s);
 	return n;
 }
 
 static int by_id(const void *key, const void *entry)
 {
-	uint32_t a = *(const uint32_t *)key, b = ((const ob_roster_entry *)entry)->id;
+	uint32_t a = *(const uint32_t *)key, b = ((const kept *)entry)->id;
 	return (a > b) - (a < b);
 }
 
 bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out)
 {
 	const snapshot *s = lock_snapshot(r);
-	const ob_roster_entry *found = bsearch(&id, s->entry, s->n, sizeof *s->entry, by_id);
+	const kept *found = bsearch(&id, s->entry, s->n, sizeof *s->entry, by_id);
 	if (found)
-		*out = *found;
+		*out = whole(s, found);
 	unlock_snapshot(s);
 	return found != NULL;
 }
@@ -145,9 +180,9 @@ bool ob_roster_find_name(const ob_roster *r, const char *name, ob_roster_entry *
 	const snapshot *s = lock_snapshot(r);
 	bool found = false;
 	for (size_t i = 0; i < s->n && !found; i++) {
-		found = strncmp(s->entry[i].name, name, OB_NAME_MAX) == 0;
+		found = strcmp(s->names + s->entry[i].name, name) == 0;
 		if (found)
-			*out = s->entry[i];
+			*out = whole(s, &s->entry[i]);
 	}
 	unlock_snapshot(s);
 	return found;
