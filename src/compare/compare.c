@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "experiment/analysis.h"
 #include "experiment/folder.h"
 #include "experiment/json.h"
@@ -213,14 +214,6 @@ static void plan_point(const ob_comparison *c, ob_sweep_point *p)
 	}
 }
 
-// FNV-1a (Fowler, Noll, Vo), continued
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t n)
-{
-	for (size_t i = 0; i < n; i++)
-		hash = (hash ^ ((const unsigned char *)bytes)[i]) * UINT64_C(0x100000001b3);
-	return hash;
-}
-
 static bool hash_file(uint64_t *hash, const char *path, ob_error *e)
 {
 	char bytes[4096];
@@ -228,7 +221,7 @@ static bool hash_file(uint64_t *hash, const char *path, ob_error *e)
 	if (!f)
 		return ob_fail(e, "%s: %m", path);
 	for (size_t n; (n = fread(bytes, 1, sizeof bytes, f));)
-		*hash = hash_bytes(*hash, bytes, n);
+		*hash = ob_hash_on(*hash, bytes, n);
 	bool fine = !ferror(f);
 	fclose(f);
 	return fine || ob_fail(e, "%s cannot be read", path);
@@ -236,11 +229,11 @@ static bool hash_file(uint64_t *hash, const char *path, ob_error *e)
 
 bool ob_comparison_plan(ob_comparison *c, ob_error *e)
 {
-	uint64_t hash = UINT64_C(0xcbf29ce484222325);
+	uint64_t hash = OB_HASH_BEGIN;
 	const char *slash = strrchr(c->scene, '/');
 	if (!hash_file(&hash, c->scene, e))
 		return false;
-	hash = hash_bytes(hash, c->options, strlen(c->options));
+	hash = ob_hash_on(hash, c->options, strlen(c->options));
 	for (uint32_t i = 0; i < c->points; i++) {
 		ob_sweep_point *p = &c->point[i];
 		plan_point(c, p);
@@ -248,7 +241,7 @@ bool ob_comparison_plan(ob_comparison *c, ob_error *e)
 		int n = snprintf(p->key, sizeof p->key, "%.80s%s%s", slash ? slash + 1 : c->scene,
 				 *p->define ? " " : "", p->define);
 		snprintf(p->key + n, sizeof p->key - (size_t)n, " @%016" PRIx64,
-			 hash_bytes(hash, p->define, strlen(p->define)));
+			 ob_hash_on(hash, p->define, strlen(p->define)));
 	}
 	return true;
 }

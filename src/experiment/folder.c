@@ -8,6 +8,7 @@
 #include <sys/utsname.h>
 
 #include "base/cpu.h"
+#include "base/hash.h"
 
 bool ob_folder_make(const char *folder, ob_error *e)
 {
@@ -103,9 +104,9 @@ void ob_provenance_commit(const char *commit, char *to, size_t room)
 		n == 0 || commit[n - 1] == '+' || strcmp(commit, "unknown") == 0 ? fopen("/proc/self/exe", "re") : NULL;
 	if (!f)
 		return;
-	uint64_t hash = 0xcbf29ce484222325; // FNV-1a
+	uint64_t hash = OB_HASH_BEGIN;
 	for (int c; (c = getc(f)) != EOF;)
-		hash = (hash ^ (uint64_t)c) * 0x100000001b3;
+		hash = ob_hash_on(hash, &(unsigned char){ (unsigned char)c }, 1);
 	fclose(f);
 	snprintf(to + strlen(to), room - strlen(to), "%s%08" PRIx32, n && commit[n - 1] == '+' ? "" : "+",
 		 (uint32_t)(hash ^ hash >> 32));

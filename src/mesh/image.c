@@ -179,9 +179,9 @@ bool ob_image_read(ob_mesh_image *out, const unsigned char *bytes, size_t size, 
 		good = read_jpeg(out, bytes, size, most, e);
 	else
 		ob_fail(e, "a picture of it is neither PNG nor JPEG");
-	if (!good)
+	if (!good) {
 		free(out->rgba);
-	if (!good)
 		*out = (ob_mesh_image){ 0 };
+	}
 	return good;
 }

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "mesh/gltf.h"
 
 static const float farthest = 1e6f; // m, of a vertex along an axis
@@ -25,20 +26,13 @@ size_t ob_mesh_bytes(const ob_mesh *m)
 	return bytes;
 }
 
-static uint64_t add_to_hash(uint64_t hash, const void *bytes, size_t size)
-{
-	for (const unsigned char *at = bytes; size > 0; size--)
-		hash = (hash ^ *at++) * 0x100000001b3u; // FNV-1a
-	return hash;
-}
-
 uint64_t ob_mesh_key(const char *file, double scale, ob_pose pose)
 {
 	double number[] = { scale, pose.p.x, pose.p.y, pose.p.z, pose.q.w, pose.q.x, pose.q.y, pose.q.z };
 	for (size_t i = 0; i < sizeof number / sizeof *number; i++)
 		number[i] += 0.; // -0 is 0
-	const uint64_t hash = add_to_hash(0xcbf29ce484222325u, file, strlen(file) + 1);
-	const uint64_t key = add_to_hash(hash, number, sizeof number);
+	const uint64_t hash = ob_hash_on(OB_HASH_BEGIN, file, strlen(file) + 1);
+	const uint64_t key = ob_hash_on(hash, number, sizeof number);
 	return key ? key : 1;
 }
 

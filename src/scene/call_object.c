@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/spelling.h"
 #include "hull/hull.h"
 #include "scene/builder.h"
@@ -456,11 +457,7 @@ int ob_scene_call_box(lua_State *L)
 
 static uint64_t hash_points(const ob_points *p)
 {
-	uint64_t hash = 0xcbf29ce484222325u; // FNV-1a over the bytes
-	const unsigned char *byte = (const unsigned char *)p->at;
-	for (size_t i = 0; i < p->count * sizeof *p->at; i++)
-		hash = (hash ^ byte[i]) * 0x100000001b3u;
-	return hash;
+	return ob_hash_on(OB_HASH_BEGIN, p->at, p->count * sizeof *p->at);
 }
 
 static void grow_hulls(lua_State *L, ob_builder *b)

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/hash.h"
 #include "base/interrupt.h"
 #include "serve/client.h"
 #include "serve/facts.h"
@@ -440,13 +441,10 @@ static bool open_context(ob_server *s, ob_error *e)
 	return true;
 }
 
-// By which a browser knows that it has the same already (Fowler, Noll, Vo: FNV-1a).
+// By which a browser knows that it has the same already.
 static uint64_t hash_of(const ob_message *m)
 {
-	uint64_t hash = 0xcbf29ce484222325;
-	for (size_t i = 0; i < m->size; i++)
-		hash = (hash ^ m->bytes[i]) * 0x100000001b3;
-	return hash;
+	return ob_hash_on(OB_HASH_BEGIN, m->bytes, m->size);
 }
 
 // Content number i of the server's own; path: NULL: its hash names it. bytes: must last as long as the server.

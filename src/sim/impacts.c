@@ -100,22 +100,6 @@ static ob_body_at body_at(const ob_island_work *w, uint32_t row, double t)
 	return x;
 }
 
-static void place(const ob_sim *s, uint32_t row, const ob_body_at *x, ob_placed *out)
-{
-	const ob_body *body = &s->island.body[row];
-	out->shape = body->shape;
-	out->size = body->size;
-	out->p = x->p;
-	out->r = x->r;
-	out->v = x->v;
-	out->w = x->w;
-	out->inertia = body->inertia;
-	out->a = body->acceleration;
-	out->rest_depth = body->rest_depth;
-	out->far_future = ob_narrowphase_far_future(s);
-	out->hull = body->hull;
-}
-
 // ---- the instant of a contact
 
 static double row_velocity(const ob_batch *b, uint32_t l, uint32_t j, const double *xa, const double *xb)
@@ -195,8 +179,8 @@ static void find_between(ob_sim *s, const ob_contact *contact, const ob_body_at 
 {
 	const ob_island_work *w = &s->island;
 	ob_placed pa, pb;
-	place(s, contact->a, a, &pa);
-	place(s, contact->b, b, &pb);
+	ob_narrowphase_place(s, contact->a, a->p, &a->r, a->v, a->w, &pa);
+	ob_narrowphase_place(s, contact->b, b->p, &b->r, b->v, b->w, &pb);
 	const double closing = ob_contact_speed(w, contact);
 	const double thin = ob_min(w->body[contact->a].thickness, w->body[contact->b].thickness);
 	const ob_manifold_finder finder = ob_narrowphase_finder(s);

@@ -140,22 +140,29 @@ double ob_narrowphase_far_future(const ob_sim *s)
 	return far_future * s->island.unit.time;
 }
 
-static void place(const ob_sim *s, uint32_t row, ob_placed *out)
+void ob_narrowphase_place(const ob_sim *s, uint32_t row, ob_vec3 p, const ob_mat3 *r, ob_vec3 v, ob_vec3 w,
+			  ob_placed *out)
 {
-	const ob_island_work *w = &s->island;
-	const ob_body *body = &w->body[row];
-	const double *v = w->v[row];
+	const ob_body *body = &s->island.body[row];
 	out->shape = body->shape;
 	out->size = body->size;
-	out->p = body->p;
-	out->r = body->r;
-	out->v = ob_v3(v[0], v[1], v[2]);
-	out->w = ob_v3(v[3], v[4], v[5]);
+	out->p = p;
+	out->r = *r;
+	out->v = v;
+	out->w = w;
 	out->inertia = body->inertia;
 	out->a = body->acceleration;
 	out->rest_depth = body->rest_depth;
 	out->far_future = ob_narrowphase_far_future(s);
 	out->hull = body->hull;
+}
+
+// As the body is now.
+static void place(const ob_sim *s, uint32_t row, ob_placed *out)
+{
+	const ob_body *body = &s->island.body[row];
+	const double *v = s->island.v[row];
+	ob_narrowphase_place(s, row, body->p, &body->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]), out);
 }
 
 // Bound of the speed at which any two points of the pair may approach (m/s), with external acceleration.

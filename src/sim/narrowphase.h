@@ -15,6 +15,10 @@ void ob_narrowphase_find(ob_sim *s, const ob_contact *t, double tolerance, ob_ma
 double ob_narrowphase_rest_depth(const ob_sim *s, double thickness);
 double ob_narrowphase_far_future(const ob_sim *s);
 
+// A body of the island as collision tests take it, in this pose and at these rates.
+void ob_narrowphase_place(const ob_sim *s, uint32_t row, ob_vec3 p, const ob_mat3 *r, ob_vec3 v, ob_vec3 w,
+			  ob_placed *out);
+
 // The collision test of any two shapes that the run's settings ask for.
 ob_manifold_finder ob_narrowphase_finder(ob_sim *s);
 

@@ -107,12 +107,6 @@ static uint32_t big_endian(const unsigned char *at)
 	return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-static void put_big_endian(unsigned char *at, uint32_t value)
-{
-	for (int i = 0; i < 4; i++)
-		at[i] = (unsigned char)(value >> (24 - 8 * i));
-}
-
 // In one part of a PNG of so many bytes: a number or some bytes of it, and its checksum is made right again.
 static void change_png(unsigned char *png, size_t size)
 {

@@ -3,6 +3,7 @@
 // sanitizer is to see them (tests/run/test_scripts.py has what each call does).
 #include <string.h>
 
+#include "base/hash.h"
 #include "check.h"
 #include "host/host.h"
 #include "measure/measure.h"
@@ -48,28 +49,20 @@ typedef struct outcome {
 	bool greeted; // a bird has heard of others
 } outcome;
 
-// FNV-1a
-static uint64_t mix(uint64_t hash, const void *bytes, size_t n)
-{
-	for (size_t i = 0; i < n; i++)
-		hash = (hash ^ ((const unsigned char *)bytes)[i]) * UINT64_C(0x100000001b3);
-	return hash;
-}
-
 // What scripts keep is in no hash of a universe.
 static void look_at_cells(const ob_universe *u, outcome *o)
 {
 	const ob_step_data *x = ob_universe_step_data(u);
-	o->scripts_state = UINT64_C(0xcbf29ce484222325);
+	o->scripts_state = OB_HASH_BEGIN;
 	for (uint32_t i = 0; i < x->script_cells; i++) {
 		const ob_script_cell *c = &x->script_cell[i];
 		if (!x->script_turn[i].script)
 			continue;
 		CHECK(!(x->script_turn[i].flags & OB_SCRIPT_STOPPED));
-		o->scripts_state = mix(o->scripts_state, &x->script_turn[i], sizeof *x->script_turn);
-		o->scripts_state = mix(o->scripts_state, c->state, c->state_bytes);
-		o->scripts_state = mix(o->scripts_state, c->inbox, c->inbox_bytes);
-		o->scripts_state = mix(o->scripts_state, c->random, sizeof c->random);
+		o->scripts_state = ob_hash_on(o->scripts_state, &x->script_turn[i], sizeof *x->script_turn);
+		o->scripts_state = ob_hash_on(o->scripts_state, c->state, c->state_bytes);
+		o->scripts_state = ob_hash_on(o->scripts_state, c->inbox, c->inbox_bytes);
+		o->scripts_state = ob_hash_on(o->scripts_state, c->random, sizeof c->random);
 		o->greeted |= c->inbox_bytes > 0;
 	}
 }

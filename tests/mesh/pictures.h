@@ -22,6 +22,13 @@ static inline uint8_t shade(int x, int y)
 	return (uint8_t)(40 * x + 9 * y);
 }
 
+// As PNG has its numbers.
+static inline void put_big_endian(unsigned char *at, uint32_t value)
+{
+	for (int i = 0; i < 4; i++)
+		at[i] = (unsigned char)(value >> (24 - 8 * i));
+}
+
 // Of one channel, grey.
 static inline picture grey_png(void)
 {

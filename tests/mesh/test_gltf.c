@@ -148,17 +148,21 @@ static void materials_paint(void)
 	free(g.bytes);
 }
 
-static void refuse(const char *json, const void *buffer, size_t size, const char *saying)
+static void refuse_file(glb g, const char *saying)
 {
-	glb g = glb_make(json, buffer, size);
 	ob_mesh m;
 	ob_error e = { "" };
 	CHECK(!ob_mesh_read(&m, g.bytes, g.size, &e));
 	CHECK(strstr(e.text, saying));
 	if (!strstr(e.text, saying))
 		fprintf(stderr, "  expected %s\n  got %s\n", saying, e.text);
-	CHECK(!m.vertex && !m.index);
+	CHECK(!m.vertex && !m.index && !m.part && !m.image);
 	free(g.bytes);
+}
+
+static void refuse(const char *json, const void *buffer, size_t size, const char *saying)
+{
+	refuse_file(glb_make(json, buffer, size), saying);
 }
 
 static void refuse_cube(const char *json, const char *saying)
@@ -183,15 +187,7 @@ static ob_mesh read_textured(const picture *p, const char *values, const char *m
 
 static void refuse_textured(const picture *p, const char *values, const char *more, const char *saying)
 {
-	glb g = textured_cube(p, values, more);
-	ob_mesh m;
-	ob_error e = { "" };
-	CHECK(!ob_mesh_read(&m, g.bytes, g.size, &e));
-	CHECK(strstr(e.text, saying));
-	if (!strstr(e.text, saying))
-		fprintf(stderr, "  expected %s\n  got %s\n", saying, e.text);
-	CHECK(!m.vertex && !m.index && !m.part && !m.image);
-	free(g.bytes);
+	refuse_file(textured_cube(p, values, more), saying);
 }
 
 static void pictures_lie_on_it(void)
@@ -243,12 +239,6 @@ static void pictures_lie_on_it(void)
 	m = read_textured(&png, "\"baseColorTexture\":{\"index\":0,\"texCoord\":1}", TEXTURES);
 	CHECK(m.images == 1 && m.vertex[m.index[0]].texture[0] == 0);
 	ob_mesh_finish(&m);
-}
-
-static void put_big_endian(unsigned char *at, uint32_t value)
-{
-	for (int i = 0; i < 4; i++)
-		at[i] = (unsigned char)(value >> (24 - 8 * i));
 }
 
 // The same picture, as its head says of another size.
