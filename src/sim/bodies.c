@@ -438,6 +438,13 @@ double ob_body_turn_rate(const ob_island_work *w, const ob_body_row *rows, uint3
 	return w->body[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(angular_of(rows[row]));
 }
 
+void ob_body_set_velocity(ob_island_work *w, uint32_t row, ob_vec3 linear, ob_vec3 angular)
+{
+	memset(w->v[row], 0, sizeof *w->v);
+	add_row(w->v[row], linear, angular);
+	set_speed_bound(w, row);
+}
+
 void ob_bodies_update_speed_bounds(ob_sim *s)
 {
 	ob_island_work *w = &s->island;

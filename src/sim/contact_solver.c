@@ -28,10 +28,7 @@ static const double turning_gap = 1e-5; // m: the same where the geometry turns
 
 static const double impact_threshold = .1; // m/s: faster changes are impacts and not extrapolated by the warm start
 
-// Position projection.
-static const double slop = 1e-4, projected_share = .3; // m; of the penetration, per partial substep
-static const double unpressed_slop = 1e-3; // m, where nothing external acts: what is pushed changes angular momentum
-static const double max_slop_share = 1. / 8; // of the tolerance
+static const double slop = 1e-4, max_slop_share = 1. / 8; // m; of the tolerance
 
 static bool is_jacobi(const ob_sim *s)
 {
@@ -50,7 +47,7 @@ double ob_solver_slop(const ob_sim *s)
 	return within_tolerance(s, slop * s->island.unit.length, max_slop_share);
 }
 
-static void add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
+void ob_solver_add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from)
 {
 	for (uint32_t i = 1; i <= w->bodies; i++)
 		for (int c = 0; c < 6; c++)
@@ -126,7 +123,7 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 		most = b->changed > most ? b->changed : most;
 	}
 	if (iteration->jacobi)
-		add_rows(w, w->u, w->delta);
+		ob_solver_add_rows(w, w->u, w->delta);
 	*changed = sqrt(most);
 	return sqrt(residual);
 }
@@ -241,54 +238,4 @@ void ob_solver_iterate(ob_sim *s)
 	w->direct.used_last = w->direct.solves > 0;
 	if (ob_direct_settles(s, residual))
 		settle(s, &iteration);
-}
-
-// ---- position projection
-
-// J: potential energy that the displacements of all bodies add against their external accelerations
-static double potential_energy(const ob_island_work *w)
-{
-	double sum = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		const ob_vec3 a = w->body[i].acceleration;
-		sum -= w->body[i].mass * (a.x * w->d[i][0] + a.y * w->d[i][1] + a.z * w->d[i][2]);
-	}
-	return sum;
-}
-
-// A projected body turns, too, and with it its axis-aligned box grows or shrinks: the narrow phase must test it again.
-static void add_projection_to_paths(ob_island_work *w)
-{
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		double *was = w->delta[i];
-		const double *is = w->d[i];
-		ob_vec3 shift = ob_v3(is[0] - was[0], is[1] - was[1], is[2] - was[2]);
-		ob_vec3 turn = ob_v3(is[3] - was[3], is[4] - was[4], is[5] - was[5]);
-		const double path = ob_norm(shift) + w->body[i].radius * ob_norm(turn);
-		w->body[i].path += path;
-		for (uint32_t k = 0; k < w->body[i].adjacent; k++)
-			w->contact[w->adjacency[w->body[i].first_adjacent + k]].path += path;
-		memset(was, 0, sizeof *w->delta);
-	}
-}
-
-void ob_solver_project_positions(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	const double left =
-		w->plastic && w->max_acceleration == 0 ? unpressed_slop * w->unit.length : ob_solver_slop(s);
-	bool aabb = s->settings->narrow_phase == OB_NARROW_AABB && !is_jacobi(s);
-	double before = potential_energy(w);
-	if (aabb)
-		memcpy(w->delta + 1, w->d + 1, w->bodies * sizeof *w->d);
-	for (uint32_t k = 0; k < w->batches; k++) {
-		ob_batch *b = &w->batch[w->batch_order[k]];
-		if (b->live)
-			w->projected |= ob_batch_project(b, left, projected_share, is_jacobi(s), w->d, w->delta);
-	}
-	if (is_jacobi(s))
-		add_rows(w, w->d, w->delta);
-	if (aabb)
-		add_projection_to_paths(w);
-	w->recovered += potential_energy(w) - before;
 }

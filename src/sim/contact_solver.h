@@ -1,4 +1,4 @@
-// The contact solver: contact impulses by iterations over the pairs, position projection.
+// The contact solver: contact impulses by iterations over the pairs.
 //
 // Coloured: of the contacts of one colour no two share a body, so each pair is solved with true masses on the
 // velocities that the colours before have left (Gauss-Seidel). Jacobi: all pairs are solved on the same velocities,
@@ -18,7 +18,7 @@ void ob_solver_limit_prediction(ob_sim *s);
 void ob_solver_converge(ob_sim *s, double enough, uint32_t max_iterations);
 // m: penetrations up to it are left as they are.
 double ob_solver_slop(const ob_sim *s);
-// Position projection: pushes penetrations beyond the slop apart in d.
-void ob_solver_project_positions(ob_sim *s);
+// Adds to each body's row what "from" has for it, and empties that.
+void ob_solver_add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from);
 
 #endif

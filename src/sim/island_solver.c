@@ -19,6 +19,7 @@
 #include "sim/impacts.h"
 #include "sim/midpoint.h"
 #include "sim/profile.h"
+#include "sim/push_apart.h"
 #include "sim/surfaces.h"
 #include "sim/touches.h"
 
@@ -93,7 +94,7 @@ static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 	ob_solver_limit_prediction(s);
 	ob_ghosts_follow(s);
 	ob_profile_enter(s, OB_PROFILE_PROJECT);
-	ob_solver_project_positions(s);
+	ob_push_apart(s);
 }
 
 // The whole step on a private copy, from what is published. true: the solution's error is tolerable.
