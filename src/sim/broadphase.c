@@ -260,7 +260,7 @@ static const double oversize_margins = 4; // a box larger by so many margins of 
 static const uint64_t oversize_check_steps = 16; // .. which is checked every so many steps
 static const double sweep_oversize = 2; // a box so many times as long as a flight's new one is replaced
 
-static void tight_bounds(const ob_universe *u, const ob_passport *p, ob_pose pose, double bounds[6])
+void ob_tight_aabb(const ob_universe *u, const ob_passport *p, ob_pose pose, double bounds[6])
 {
 	const ob_hull *hull = ob_hull_of(u, p);
 	if (hull)
@@ -363,7 +363,7 @@ void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double
 	const double h = ob_universe_settings(u)->step_length, way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
 	const wake w = wake_of(u, id, now, path);
 	double next[6], behind[6], ahead[6];
-	tight_bounds(u, p, now->pose, next);
+	ob_tight_aabb(u, p, now->pose, next);
 	memcpy(behind, next, sizeof next);
 	memcpy(ahead, next, sizeof next);
 	sweep_box(behind, w.back, 1);
@@ -384,7 +384,7 @@ void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double 
 {
 	const ob_passport *p = ob_passport_of(u, id);
 	double next[6];
-	tight_bounds(u, p, now->pose, next);
+	ob_tight_aabb(u, p, now->pose, next);
 	double margin = predict_fat_aabb(u, p, now, reach, next);
 	ob_fat_aabb_set(u, id, next, margin);
 }
@@ -414,201 +414,4 @@ void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
 	ob_commit_neighbours(u, id, all, n);
 	if (all != near)
 		free(all);
-}
-
-// ---- pairs
-
-static int by_key(const void *x, const void *y)
-{
-	uint64_t a = *(const uint64_t *)x, b = *(const uint64_t *)y;
-	return a < b ? -1 : a > b;
-}
-
-static uint64_t key_of(uint32_t a, uint32_t b)
-{
-	return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
-static bool immobile(const ob_step_data *data, uint32_t id)
-{
-	return data->schedule[id].state < OB_SCHEDULE_AWAKE;
-}
-
-// How many neighbours a query has found; 0 where the range is none.
-static uint32_t neighbours_found(const ob_step_data *data, uint32_t id)
-{
-	const struct ob_neighbours *p = &data->neighbours[id];
-	if ((uint64_t)p->offset + p->count <= data->neighbours_max)
-		return p->count;
-	data->count->failure = OB_STEP_DAMAGED;
-	return 0;
-}
-
-// All pairs that the queries of the list have found, sorted, each once: of two objects that were both queried, and have
-// found each other, the lower one lists the pair. The caller frees.
-static uint64_t *collect_pair_keys(ob_universe *u, const uint32_t *list, uint32_t count, const uint32_t *requeried,
-				   size_t *n)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	size_t total = 0, kept = 0;
-	for (uint32_t k = 0; k < count; k++)
-		total += ob_object_in_range(data, list[k]) ? neighbours_found(data, list[k]) : 0;
-	uint64_t *keys = ob_allocate((total + 1) * sizeof *keys);
-	for (uint32_t k = 0; k < count && ob_object_in_range(data, list[k]); k++) {
-		const struct ob_neighbours *p = &data->neighbours[list[k]];
-		const uint32_t found = neighbours_found(data, list[k]);
-		for (uint32_t i = 0; i < found && kept < total; i++) {
-			uint32_t other = data->neighbour_id[p->offset + i];
-			if (!ob_object_in_range(data, other))
-				continue;
-			bool listed = requeried[other] && other < list[k];
-			if (!listed && (!immobile(data, list[k]) || !immobile(data, other)))
-				keys[kept++] = key_of(list[k], other);
-		}
-	}
-	qsort(keys, kept, sizeof *keys, by_key);
-	*n = kept;
-	return keys;
-}
-
-static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
-{
-	const ob_motion *m = ob_newest_motion(u, plane);
-	ob_mat3 r = ob_quat_matrix(m->q);
-	return ob_dot(ob_column(&r, 2), ob_sub(at, m->p)) - sphere;
-}
-
-// Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
-static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
-{
-	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
-	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
-	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // which reach beyond the bounding sphere
-	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
-	ob_vec3 centre_a = ob_centre_now(u, a, ma, steps), centre_b = ob_centre_now(u, b, mb, steps);
-	if (pa->shape == OB_SHAPE_PLANE)
-		return plane_distance(u, a, centre_b, (aabbs ? sqrt(3) : 1) * rb);
-	if (pb->shape == OB_SHAPE_PLANE)
-		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
-	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
-	if (spheres > ob_max(ra, rb) && !aabbs) // the boxes would not add much, and cost more
-		return spheres;
-	double box_a[6], box_b[6], distance = 0;
-	tight_bounds(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
-	tight_bounds(u, pb, ob_state_now(u, b, mb, steps).pose, box_b);
-	for (int c = 0; c < 3; c++)
-		distance = ob_max(distance, ob_max(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
-	return aabbs ? distance : ob_max(distance, spheres);
-}
-
-// Path of both together in the step that was solved, if one was (m).
-static double path_in_step(const ob_universe *u, uint32_t a, uint32_t b, double paths, uint64_t steps)
-{
-	const uint64_t step = ob_step_count(u);
-	return steps > step
-		       ? paths - ob_path_now(ob_newest_motion(u, a), step) - ob_path_now(ob_newest_motion(u, b), step)
-		       : 0;
-}
-
-static ob_pair_key make_pair(const ob_universe *u, uint64_t key, uint64_t steps)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
-	double distance = pair_distance(u, a, b, steps);
-	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
-	// Nearer than they have moved in the step that was solved: they may have touched in it.
-	double limit = distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
-	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
-}
-
-static uint64_t key_of_pair(const ob_pair_key *k)
-{
-	return (uint64_t)k->a << 32 | k->b;
-}
-
-void ob_pair_release_record(ob_universe *u, ob_pair_key *k)
-{
-	if (k->record != OB_NO_RECORD)
-		ob_record_give_back(u, k->record);
-	k->record = OB_NO_RECORD;
-}
-
-// Drops the pairs of queried objects that no query has found again, and from the keys those of pairs that exist.
-// Returns how many keys are left.
-static size_t drop_separated_pairs(ob_universe *u, const uint32_t *requeried, uint64_t *keys, size_t count)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	size_t k = 0, fresh = 0;
-	uint32_t kept = 0;
-	const uint32_t pairs = ob_pairs_count(data);
-	for (uint32_t i = 0; i < pairs; i++) {
-		const ob_pair_key *old = &data->pair[i];
-		if (!ob_object_in_range(data, old->a) || !ob_object_in_range(data, old->b))
-			continue;
-		while (k < count && keys[k] < key_of_pair(old))
-			keys[fresh++] = keys[k++];
-		bool kept_pair = k < count && keys[k] == key_of_pair(old);
-		k += kept_pair;
-		// A pair with a record stays until the step is over: it may have to be solved again.
-		if (kept_pair || old->record != OB_NO_RECORD || !(requeried[old->a] | requeried[old->b]))
-			data->pair[kept++] = *old;
-	}
-	while (k < count)
-		keys[fresh++] = keys[k++];
-	data->count->pairs = kept;
-	return fresh;
-}
-
-// Merges from the back, where there is room.
-static void insert_pairs(ob_universe *u, const uint64_t *keys, size_t fresh, uint64_t steps)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	size_t old = data->count->pairs, end = old + fresh;
-	if (end > data->pairs_max) {
-		ob_step_fail(u, OB_STEP_PAIRS_FULL, 0);
-		return;
-	}
-	if (!ob_reserve_pairs(u, (uint32_t)old, (uint32_t)fresh)) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return;
-	}
-	data->count->pairs = (uint32_t)end;
-	while (fresh > 0) {
-		if (old > 0 && key_of_pair(&data->pair[old - 1]) > keys[fresh - 1])
-			data->pair[--end] = data->pair[--old];
-		else
-			data->pair[--end] = make_pair(u, keys[--fresh], steps);
-	}
-}
-
-void ob_pairs_merge(ob_universe *u, uint64_t steps)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	uint32_t count, *requeried = data->scratch;
-	const uint32_t *list = ob_requery_list(u, &count);
-	size_t fresh;
-	if (!count)
-		return;
-	memset(requeried, 0, ob_universe_ids(u) * sizeof *requeried);
-	for (uint32_t i = 0; i < count; i++)
-		if (ob_object_in_range(data, list[i]))
-			requeried[list[i]] = 1;
-	uint64_t *keys = collect_pair_keys(u, list, count, requeried, &fresh);
-	insert_pairs(u, keys, drop_separated_pairs(u, requeried, keys, fresh), steps);
-	free(keys);
-	ob_requery_reset(u);
-	ob_neighbours_reset(u);
-}
-
-void ob_pairs_drop(ob_universe *u, uint32_t id)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	uint32_t out = 0;
-	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
-		if (data->pair[i].a == id || data->pair[i].b == id)
-			ob_pair_release_record(u, &data->pair[i]);
-		else
-			data->pair[out++] = data->pair[i];
-	}
-	data->count->pairs = out;
 }

@@ -4,7 +4,7 @@
 //
 // Each object has a fat AABB, which holds it for some steps. When it no longer does, the object gets a new one and a
 // place on the list of objects to requery. The scheduling worker moves those in the spatial index, workers query it for
-// their neighbours, and the scheduling worker merges the answers into the list of pairs.
+// their neighbours, and the scheduling worker merges the answers into the pairs (sim/pairs.h).
 #ifndef OB_SIM_BROADPHASE_H
 #define OB_SIM_BROADPHASE_H
 
@@ -20,6 +20,8 @@ double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w
 // How far any point of the object may get in one step from this attitude and these velocities (m), under its external
 // acceleration.
 double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_quat q, ob_vec3 v, ob_vec3 w);
+// The smallest box that holds an object in this pose.
+void ob_tight_aabb(const ob_universe *u, const ob_passport *p, ob_pose pose, double bounds[6]);
 // If the object's fat AABB does not hold it for its next step, or is much too large, makes a new one and appends the
 // object to the requery list. now: its state at the end of the step; reach: m, in the next step; path: m, of any of its
 // points in the step that was solved, which a new one holds, too.
@@ -50,16 +52,5 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 // scheduling worker has updated the index.
 void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests);
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id);
-
-// ---- pairs of objects whose fat AABBs overlap, sorted by (a, b), each with a record while they touch
-
-// Merges the neighbours of the objects on the requery list into the pairs, and empties the list. The scheduling worker
-// alone. steps: that are complete, or solved.
-void ob_pairs_merge(ob_universe *u, uint64_t steps);
-// Drops every pair of an object that goes away.
-void ob_pairs_drop(ob_universe *u, uint32_t id);
-// Gives the pair's record back, if it has one. The scheduling worker, between steps: what a step has written may be
-// read until its end.
-void ob_pair_release_record(ob_universe *u, ob_pair_key *k);
 
 #endif

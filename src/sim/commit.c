@@ -31,7 +31,7 @@ typedef struct effort_record {
 } effort_record;
 
 typedef struct check_record {
-	uint32_t pair;
+	uint32_t check; // its place in check[]
 	uint8_t expected, late, reserved[2];
 	uint32_t clear_until, clear_as_of;
 	double limit;
@@ -170,7 +170,8 @@ static void write_script(ob_universe *u, const script_record *r)
 
 static void write_check(ob_universe *u, const check_record *c)
 {
-	ob_pair_key *k = &ob_universe_step_data(u)->pair[c->pair];
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_key *k = &data->pair[data->check[c->check]];
 	k->expected = c->expected;
 	k->late = c->late;
 	k->limit = c->limit;
@@ -264,9 +265,9 @@ void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, c
 	}
 }
 
-void ob_commit_check(ob_universe *u, uint32_t pair, const ob_pair_key *k)
+void ob_commit_check(ob_universe *u, uint32_t check, const ob_pair_key *k)
 {
-	const check_record r = { .pair = pair,
+	const check_record r = { .check = check,
 				 .expected = k->expected,
 				 .late = k->late,
 				 .clear_until = k->clear_until,
@@ -449,7 +450,7 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 {
 	const ob_found_contact *r = from->data;
 	const ob_step_data *data = ob_universe_step_data(u);
-	if (from->bytes != sizeof *r || r->pair >= ob_pairs_count(data))
+	if (from->bytes != sizeof *r || r->pair >= ob_pairs_end(data))
 		return "has found a contact that does not exist";
 	const ob_pair_key *k = &data->pair[r->pair];
 	const uint32_t island =
@@ -547,8 +548,8 @@ static const char *commit_posts(ob_committer *c, ob_universe *u, const ob_mail_r
 static const char *commit_check(ob_universe *u, const ob_mail_record *from)
 {
 	const check_record *r = from->data;
-	if (from->bytes != sizeof *r || r->pair >= ob_pairs_count(ob_universe_step_data(u)) ||
-	    owner_of_task(u, r->pair / OB_LATE_CONTACTS_BATCH) != from->worker)
+	if (from->bytes != sizeof *r || r->check >= ob_checks_count(ob_universe_step_data(u)) ||
+	    owner_of_task(u, r->check / OB_LATE_CONTACTS_BATCH) != from->worker)
 		return "has checked what it was not given";
 	if (isnan(r->limit) || r->expected > 1 || r->late > 1)
 		return "has found about a pair what makes no sense";
@@ -585,7 +586,8 @@ static const char *commit_end(ob_universe *u, const ob_mail_record *from)
 {
 	const ob_outbox_end *end = from->data;
 	ob_worker_set_objects(u, from->worker, end->objects);
-	ob_late_contacts_note(u, end->late, end->next_check);
+	if (end->late)
+		ob_late_contacts_note(u);
 	ob_phase_worked(u, end->worked_ns);
 	*ob_worker_counters(u, from->worker) = end->counters;
 	return NULL;

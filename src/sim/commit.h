@@ -45,7 +45,7 @@ void ob_commit_contact(ob_sim *s, const ob_found_contact *c); // ISLANDS
 void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse, ob_vec3 point); // ISLANDS, BASELINE
 // By a contained simulator alone: others have run the script in place.
 void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, const ob_script_cell *c); // SCRIPTS
-void ob_commit_check(ob_universe *u, uint32_t pair, const ob_pair_key *k); // FORECAST, LATE_CONTACTS
+void ob_commit_check(ob_universe *u, uint32_t check, const ob_pair_key *k); // FORECAST, LATE_CONTACTS
 void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint32_t count); // BROADPHASE
 
 // With a worker per object: does the island's leader leave the object's motion in ob_step_data.result, not in its slot?

@@ -2,19 +2,25 @@
 
 #include <string.h>
 
-#include "sim/broadphase.h"
+#include "sim/calendar.h"
+#include "sim/pairs.h"
+#include "sim/sort_ids.h"
 
 enum { NONE = UINT32_MAX };
 enum { CHUNK_WORK_MIN = 48 }; // work of a chunk, some us: for less the gate would cost more than another worker gains
 
-// What the scheduling worker builds islands with: a union-find forest, whose roots are the lowest ids of their trees.
+// What the scheduling worker builds islands with: the bodies that are involved, and a union-find forest of them, whose
+// roots are the lowest ids of their trees. Nothing is as long as there are objects, or pairs, and has to be cleared.
 typedef struct builder {
 	ob_universe *u;
 	ob_step_data *data;
 	uint32_t ids;
-	uint32_t *parent; // [id]
+	uint32_t *body; // [bodies], ascending when all are found
+	uint32_t bodies;
+	uint32_t *place; // [id]: where it is in body[]; true where that says the same
+	uint32_t *parent; // [id], of bodies
 	uint32_t *island_of; // [root]
-	uint32_t *previous; // [id]: its island before islands were merged; NULL = those of a new step are built
+	bool merges; // islands that were solved apart are merged; else those of a new step are built
 	uint64_t step; // that they are for
 } builder;
 
@@ -31,39 +37,16 @@ static bool is_dynamic(const builder *p, uint32_t id)
 	return p->data->schedule[id].state >= OB_SCHEDULE_AWAKE;
 }
 
+// When islands are merged: it is in one of those that were solved. Until members are listed anew.
+static bool was_solved(const builder *p, uint32_t id)
+{
+	return p->data->result_island[id] != NONE;
+}
+
 // In no island unless something wakes it. False for what has fallen asleep in this very step.
 static bool is_asleep(const builder *p, uint32_t id)
 {
-	return p->data->schedule[id].state >= OB_SCHEDULE_ASLEEP && (!p->previous || p->previous[id] == NONE);
-}
-
-// True if the object must be solved in this step, whatever comes near it; false in free flight.
-static bool is_due(const builder *p, uint32_t id)
-{
-	return p->previous ? p->previous[id] != NONE : p->data->schedule[id].due <= p->step;
-}
-
-// True if the link between the two makes both be solved in this step.
-static bool involves(const builder *p, const ob_pair_key *k)
-{
-	const ob_schedule *a = &p->data->schedule[k->a], *b = &p->data->schedule[k->b];
-	return p->previous ? k->late : ob_schedule_moves(a) || ob_schedule_moves(b);
-}
-
-static bool joins_islands(const builder *p, const ob_pair_key *k)
-{
-	if (!is_dynamic(p, k->a) || !is_dynamic(p, k->b))
-		return false;
-	return !p->previous || k->late || (k->active && is_asleep(p, k->a) && is_asleep(p, k->b));
-}
-
-static void union_trees(builder *p, uint32_t i, uint32_t j)
-{
-	uint32_t a = root_of(p->parent, i), b = root_of(p->parent, j);
-	if (a < b)
-		p->parent[b] = a;
-	else
-		p->parent[a] = b;
+	return p->data->schedule[id].state >= OB_SCHEDULE_ASLEEP && !was_solved(p, id);
 }
 
 static bool is_in_range(const builder *p, const ob_pair_key *k)
@@ -71,53 +54,131 @@ static bool is_in_range(const builder *p, const ob_pair_key *k)
 	return ob_object_in_range(p->data, k->a) && ob_object_in_range(p->data, k->b);
 }
 
-// Only pairs that touch or are expected to link anything: few of all pairs, told by their flags alone.
+static bool is_involved(const builder *p, uint32_t id)
+{
+	const uint32_t i = p->place[id];
+	return i < p->bodies && p->body[i] == id;
+}
+
+static void involve(builder *p, uint32_t id)
+{
+	if (is_involved(p, id) || p->bodies == p->ids)
+		return;
+	p->place[id] = p->bodies;
+	p->body[p->bodies++] = id;
+	p->parent[id] = id;
+}
+
+// Both are involved, in one tree.
+static void join(builder *p, uint32_t i, uint32_t j)
+{
+	involve(p, i);
+	involve(p, j);
+	uint32_t a = root_of(p->parent, i), b = root_of(p->parent, j);
+	if (a < b)
+		p->parent[b] = a;
+	else
+		p->parent[a] = b;
+}
+
+// The link makes both be solved in this step.
+static void involve_link(builder *p, const ob_pair_key *k)
+{
+	if (is_dynamic(p, k->a) && is_dynamic(p, k->b))
+		join(p, k->a, k->b);
+	else
+		involve(p, is_dynamic(p, k->a) ? k->a : k->b);
+}
+
+// Whether the pair links what it touches. Sleepers that something has woken within a step wake those that they touch;
+// what is expected then is of the coming step.
 static bool is_link(const builder *p, const ob_pair_key *k)
 {
-	return (k->active | (p->previous ? k->late : k->expected)) && is_in_range(p, k);
+	return is_in_range(p, k) && is_dynamic(p, k->a) && is_dynamic(p, k->b) &&
+	       (p->merges ? k->active && is_asleep(p, k->a) && is_asleep(p, k->b) : k->active | k->expected);
 }
 
-// Also notes which objects the links involve: island_of is 0 there.
-static void join_islands(builder *p)
+// Of a new step: a pair that touches, or is expected to, with something that moves.
+static void involve_pair(builder *p, const ob_pair_key *k)
 {
-	ob_step_data *data = p->data;
-	for (uint32_t id = 0; id < p->ids; id++)
-		p->parent[id] = id;
-	memset(p->island_of, 0xff, p->ids * sizeof *p->island_of); // NONE
-	for (uint32_t i = 0; p->previous && i < data->count->islands; i++) {
-		const uint32_t *member = data->member + data->island[i].first_member;
-		for (uint32_t k = 1; k < data->island[i].members; k++)
-			union_trees(p, member[0], member[k]);
-	}
-	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
-		const ob_pair_key *k = &data->pair[i];
-		if (!is_link(p, k))
-			continue;
-		if (involves(p, k))
-			p->island_of[is_dynamic(p, k->a) ? k->a : k->b] = 0;
-		if (joins_islands(p, k))
-			union_trees(p, k->a, k->b);
+	if ((k->active | k->expected) && is_in_range(p, k) &&
+	    (ob_schedule_moves(&p->data->schedule[k->a]) || ob_schedule_moves(&p->data->schedule[k->b])))
+		involve_link(p, k);
+}
+
+// Who must be solved in a new step, whatever comes near it, and those that such a pair involves: it has an entry for
+// now, or is one of what is due.
+static void involve_due(builder *p)
+{
+	const ob_step_data *data = p->data;
+	const ob_calendar solve = ob_calendar_of_objects(p->u), look = ob_calendar_of_pairs(p->u);
+	const uint32_t most = ob_pairs_end(data), pairs = ob_calendar_list(&look, p->step, data->check, most);
+	uint32_t *due = p->island_of; // not yet needed
+	const uint32_t n = ob_calendar_list(&solve, p->step, due, p->ids);
+	for (uint32_t i = 0; i < pairs; i++)
+		involve_pair(p, &data->pair[data->check[i]]);
+	for (uint32_t i = 0; i < n; i++) {
+		ob_pair_place at;
+		involve(p, due[i]);
+		for (uint32_t link = data->first_pair[due[i]]; ob_pair_at(data, link, &at);
+		     link = ob_pair_next(data, at))
+			involve_pair(p, &data->pair[at.pair]);
 	}
 }
 
-// Numbers the awake trees by their lowest id and lists their members in ascending order.
+// Those that were solved in this step, and whom they have met.
+static void involve_solved(builder *p)
+{
+	const ob_step_data *data = p->data;
+	for (uint32_t i = 0; i < data->count->islands; i++) {
+		const uint32_t *member = data->member + data->island[i].first_member;
+		involve(p, member[0]);
+		for (uint32_t k = 1; k < data->island[i].members; k++)
+			join(p, member[0], member[k]);
+	}
+	for (uint32_t i = 0; i < ob_checks_count(data); i++) {
+		const ob_pair_key *k = &data->pair[data->check[i]];
+		if (k->late && is_in_range(p, k))
+			involve_link(p, k);
+	}
+}
+
+// The lists grow while they are gone through: breadth first.
+static void involve_linked(builder *p)
+{
+	const ob_step_data *data = p->data;
+	for (uint32_t i = 0; i < p->bodies; i++) {
+		ob_pair_place at;
+		if (was_solved(p, p->body[i]))
+			continue;
+		for (uint32_t link = data->first_pair[p->body[i]]; ob_pair_at(data, link, &at);
+		     link = ob_pair_next(data, at))
+			if (is_link(p, &data->pair[at.pair]))
+				join(p, data->pair[at.pair].a, data->pair[at.pair].b);
+	}
+}
+
+// A solution stands if the island has the members that it had, and none of them has a late contact.
+static bool stands(const builder *p, const ob_island *is)
+{
+	const uint32_t *member = p->data->member + is->first_member;
+	for (uint32_t k = 0; k < is->members; k++)
+		if (!was_solved(p, member[k]) || p->data->result_island[member[k]] != p->data->result_island[member[0]])
+			return false;
+	return p->merges;
+}
+
+// Numbers the trees by their lowest id and lists their members in ascending order.
 static void list_members(builder *p)
 {
 	ob_step_data *data = p->data;
 	uint32_t n = 0, total = 0;
-	for (uint32_t id = 0; id < p->ids; id++) // a tree with one member that is due, or involved, is solved
-		if (is_dynamic(p, id) && (p->island_of[id] != NONE || is_due(p, id)))
-			p->island_of[root_of(p->parent, id)] = 0;
-	for (uint32_t id = 0; id < p->ids; id++) {
-		uint32_t root = root_of(p->parent, id);
-		data->result_island[id] = NONE;
-		if (p->island_of[root] == NONE || !is_dynamic(p, id))
-			continue;
+	for (uint32_t i = 0; i < p->bodies; i++) {
+		const uint32_t id = p->body[i], root = p->parent[id] = root_of(p->parent, id);
 		if (root == id) {
 			p->island_of[id] = n;
 			data->island[n++] = (ob_island){ .first_member = 0 };
 		}
-		data->result_island[id] = p->island_of[root];
 		data->island[p->island_of[root]].members++;
 	}
 	for (uint32_t i = 0; i < n; i++) {
@@ -125,30 +186,21 @@ static void list_members(builder *p)
 		total += data->island[i].members;
 		data->island[i].members = 0;
 	}
-	for (uint32_t id = 0; id < p->ids; id++)
-		if (data->result_island[id] != NONE) {
-			ob_island *is = &data->island[data->result_island[id]];
-			data->member[is->first_member + is->members++] = id;
-		}
-	data->count->islands = n;
-}
-
-// A solution stands if the island has the members that it had, and none of them has a late contact.
-static void mark_solved(builder *p)
-{
-	ob_step_data *data = p->data;
-	for (uint32_t i = 0; i < data->count->islands; i++) {
-		const uint32_t *member = data->member + data->island[i].first_member;
-		data->island[i].solved = 1;
-		for (uint32_t k = 0; k < data->island[i].members; k++)
-			if (p->previous[member[k]] == NONE || p->previous[member[k]] != p->previous[member[0]])
-				data->island[i].solved = 0;
+	for (uint32_t i = 0; i < p->bodies; i++) {
+		const uint32_t id = p->body[i];
+		ob_island *is = &data->island[p->island_of[p->parent[id]]];
+		data->member[is->first_member + is->members++] = id;
 	}
-	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
-		const ob_pair_key *k = &data->pair[i];
-		if (k->late)
+	for (uint32_t i = 0; i < n; i++)
+		data->island[i].solved = stands(p, &data->island[i]);
+	for (uint32_t i = 0; i < p->bodies; i++)
+		data->result_island[p->body[i]] = p->island_of[p->parent[p->body[i]]];
+	for (uint32_t i = 0; p->merges && i < ob_checks_count(data); i++) {
+		const ob_pair_key *k = &data->pair[data->check[i]];
+		if (k->late && is_in_range(p, k))
 			data->island[data->result_island[is_dynamic(p, k->a) ? k->a : k->b]].solved = 0;
 	}
+	data->count->islands = n;
 }
 
 static bool is_solved_again(const builder *p, uint32_t island)
@@ -161,11 +213,11 @@ static bool is_solved_again(const builder *p, uint32_t island)
 static uint32_t island_of_pair(const builder *p, ob_pair_key *k)
 {
 	const uint32_t ia = p->data->result_island[k->a], ib = p->data->result_island[k->b], i = ia != NONE ? ia : ib;
-	if (p->previous && (is_solved_again(p, ia) || is_solved_again(p, ib)))
+	if (p->merges && (is_solved_again(p, ia) || is_solved_again(p, ib)))
 		k->limit = -INFINITY;
 	if (i == NONE || (ia != ib && ((ia != NONE && ib != NONE) || (is_dynamic(p, k->a) && is_dynamic(p, k->b)))))
 		return NONE;
-	if (p->previous && p->data->island[i].solved)
+	if (p->merges && p->data->island[i].solved)
 		return k->in_island ? i : NONE;
 	if (k->active)
 		return i;
@@ -174,33 +226,74 @@ static uint32_t island_of_pair(const builder *p, ob_pair_key *k)
 	return a->reach + b->reach >= k->limit - paths ? i : NONE;
 }
 
+static bool comes_before(const ob_pair_key *a, const ob_pair_key *b)
+{
+	return a->a != b->a ? a->a < b->a : a->b < b->b;
+}
+
+// By their ids, ascending: a shell sort, for most islands have few pairs.
+static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
+{
+	static const uint32_t gaps[] = { 29524, 9841, 3280, 1093, 364, 121, 40, 13, 4, 1 };
+	for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
+		for (uint32_t i = gaps[g]; i < n; i++) {
+			const uint32_t moved = pair[i];
+			uint32_t at = i;
+			for (; at >= gaps[g] && comes_before(&data->pair[moved], &data->pair[pair[at - gaps[g]]]);
+			     at -= gaps[g])
+				pair[at] = pair[at - gaps[g]];
+			pair[at] = moved;
+		}
+}
+
+// A pair of two members is listed with its a. in_island holds from here to the next islands.
+static void list_pairs_of(builder *p, uint32_t id, uint32_t island, uint32_t *total)
+{
+	ob_step_data *data = p->data;
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		ob_pair_key *k = &data->pair[at.pair];
+		if (!is_in_range(p, k) || (at.side && data->result_island[k->a] != NONE))
+			continue;
+		const bool in_island = island_of_pair(p, k) == island && *total < data->pairs_max;
+		if (k->in_island != in_island)
+			k->in_island = in_island;
+		if (in_island)
+			data->island_pair[(*total)++] = at.pair;
+	}
+}
+
 static void list_pairs(builder *p)
 {
 	ob_step_data *data = p->data;
 	uint32_t total = 0;
-	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
-		ob_pair_key *k = &data->pair[i];
-		uint32_t island = is_in_range(p, k) ? island_of_pair(p, k) : NONE;
-		if (k->in_island != (island != NONE))
-			k->in_island = island != NONE;
-		if (k->record != OB_NO_RECORD && !p->previous && !k->active)
-			ob_pair_release_record(p->u, k);
-		if (island != NONE)
-			data->island[island].pairs++;
-	}
 	for (uint32_t i = 0; i < data->count->islands; i++) {
-		data->island[i].first_pair = total;
-		total += data->island[i].pairs;
-		data->island[i].pairs = 0;
+		ob_island *is = &data->island[i];
+		is->first_pair = total;
+		for (uint32_t k = 0; k < is->members; k++)
+			list_pairs_of(p, data->member[is->first_member + k], i, &total);
+		is->pairs = total - is->first_pair;
+		sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
 	}
-	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
-		const ob_pair_key *k = &data->pair[i];
-		if (!k->in_island)
-			continue;
-		uint32_t ia = data->result_island[k->a];
-		ob_island *is = &data->island[ia != NONE ? ia : data->result_island[k->b]];
-		data->island_pair[is->first_pair + is->pairs++] = i;
+	data->count->island_pairs = total;
+}
+
+// Of the step before: pairs are in no island any more, and those that touch no more need no record.
+static void end_islands(builder *p)
+{
+	ob_step_data *data = p->data;
+	for (uint32_t i = 0; i < data->count->island_pairs && i < data->pairs_max; i++) {
+		if (data->island_pair[i] >= data->pairs_max) {
+			data->count->failure = OB_STEP_DAMAGED;
+			return;
+		}
+		ob_pair_key *k = &data->pair[data->island_pair[i]];
+		k->in_island = 0;
+		if (k->record != OB_NO_RECORD && !k->active)
+			ob_pair_release_record(p->u, k);
 	}
+	data->count->visits += data->count->island_pairs;
+	data->count->island_pairs = 0;
 }
 
 // What its members have cost in the last step, and at least what islands of such a size do.
@@ -233,7 +326,7 @@ static void sort_by_work(builder *p)
 {
 	enum { BITS = 8, DIGITS = 1 << BITS };
 	const ob_island *island = p->data->island;
-	uint32_t n = p->data->count->islands, *from = p->parent, *to = p->island_of,
+	uint32_t n = p->data->count->islands, *from = p->parent, *to = p->place,
 		 largest = 0; // whose contents are no longer needed
 	for (uint32_t i = 0; i < n; i++) {
 		from[i] = i;
@@ -281,29 +374,43 @@ static void make_chunks(builder *p)
 	data->count->chunks = chunks;
 }
 
-static void build(builder *p)
+static builder begin(ob_universe *u, bool merges)
 {
-	join_islands(p);
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	data->count->merged = merges;
+	return (builder){ .u = u,
+			  .data = data,
+			  .ids = ids,
+			  .body = data->scratch,
+			  .place = data->scratch + ids,
+			  .parent = data->scratch + 2 * (size_t)ids,
+			  .island_of = data->scratch + 3 * (size_t)ids,
+			  .merges = merges,
+			  .step = ob_step_count(u) };
+}
+
+static void finish(builder *p)
+{
+	involve_linked(p);
+	ob_sort_ids(p->body, p->bodies, p->ids, p->place); // whose contents are no longer needed
 	list_members(p);
-	if (p->previous)
-		mark_solved(p);
 	list_pairs(p);
 	make_chunks(p);
+	p->data->count->visits += p->bodies;
 }
 
 void ob_islands_build(ob_universe *u)
 {
-	ob_step_data *data = ob_universe_step_data(u);
-	uint32_t ids = ob_universe_ids(u);
-	data->count->merged = 0;
-	build(&(builder){ u, data, ids, data->scratch, data->scratch + ids, NULL, ob_step_count(u) });
+	builder p = begin(u, false);
+	end_islands(&p);
+	involve_due(&p);
+	finish(&p);
 }
 
 void ob_islands_merge(ob_universe *u)
 {
-	ob_step_data *data = ob_universe_step_data(u);
-	uint32_t ids = ob_universe_ids(u), *previous = data->scratch + 2 * ids;
-	data->count->merged = 1;
-	memcpy(previous, data->result_island, ids * sizeof *previous);
-	build(&(builder){ u, data, ids, data->scratch, data->scratch + ids, previous, ob_step_count(u) });
+	builder p = begin(u, true);
+	involve_solved(&p);
+	finish(&p);
 }

@@ -6,10 +6,12 @@
 #include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
+#include "sim/calendar.h"
 #include "sim/commit.h"
 #include "sim/prefetch.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
+#include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
 
@@ -163,10 +165,10 @@ static bool set_clear_until(const pair_check *c, ob_pair_key *k, const bounding_
 	return k->clear_until > c->steps;
 }
 
-static bool is_clear(const pair_check *c, const ob_pair_key *k, uint64_t steps)
+static bool is_clear(const ob_step_data *data, const ob_pair_key *k, uint64_t steps)
 {
-	return k->clear_until > steps && c->data->schedule[k->a].since <= k->clear_as_of &&
-	       c->data->schedule[k->b].since <= k->clear_as_of;
+	return k->clear_until > steps && data->schedule[k->a].since <= k->clear_as_of &&
+	       data->schedule[k->b].since <= k->clear_as_of;
 }
 
 static bool touches_next(const pair_check *c, ob_pair_key *k, const moving_pair *now)
@@ -229,65 +231,136 @@ static void check_shapes(const pair_check *c, ob_pair_key *k, double left, bool 
 		k->expected = touches_next(c, k, &p);
 }
 
-// The first step that begins with so little left of the known distance that the two might use it up.
-static double step_of_limit(const ob_pair_key *k, double paths, double reach, uint64_t steps)
+// Whether the schedule records alone tell that nothing can happen between the two in the coming step.
+static bool is_idle(const ob_step_data *data, const ob_pair_key *k, uint64_t steps)
 {
-	return reach > 0 ? (double)steps + ob_max(1, floor((k->limit - paths) / reach) - 1) : INFINITY;
+	const ob_schedule *a = &data->schedule[k->a], *b = &data->schedule[k->b];
+	return (!ob_schedule_moves(a) && !ob_schedule_moves(b)) || impact_is_computed(a, b, steps);
 }
 
-// Returns the step (from 0) that the pair must be checked for next, from the schedule records alone; < 0: they do not
-// suffice.
-static double check_by_schedule(const pair_check *c, ob_pair_key *k)
+// What is known from the schedule records alone. false: they do not suffice.
+static bool check_by_schedule(const pair_check *c, ob_pair_key *k)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
 	if (k->late |
 	    k->expected) // most pairs are left as they are: their memory stays with every worker that has read it
 		k->late = k->expected = 0;
-	if ((!ob_schedule_moves(a) && !ob_schedule_moves(b)) || impact_is_computed(a, b, c->steps))
-		return INFINITY;
-	if (k->active)
-		return (double)c->steps;
-	if (is_clear(c, k, c->steps))
-		return k->clear_until;
-	double paths = ob_schedule_path(a, c->steps) + ob_schedule_path(b, c->steps),
-	       reach = (double)a->reach + (double)b->reach;
-	return k->limit - paths > reach ? step_of_limit(k, paths, reach, c->steps) : -1;
+	if (is_idle(c->data, k, c->steps) || k->active || is_clear(c->data, k, c->steps))
+		return true;
+	const double paths = ob_schedule_path(a, c->steps) + ob_schedule_path(b, c->steps);
+	return k->limit - paths > (double)a->reach + (double)b->reach;
 }
 
 // The same from the motions of both.
-static double check_by_motions(const pair_check *c, ob_pair_key *k)
+static void check_by_motions(const pair_check *c, ob_pair_key *k)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
-	const bool solved =
-		c->solved && (c->steps == 0 || !is_clear(c, k, c->steps - 1)); // then they cannot have touched in it
-	double paths = ob_schedule_path(a, c->steps) + ob_schedule_path(b, c->steps),
-	       reach = (double)a->reach + (double)b->reach;
+	const bool solved = c->solved && (c->steps == 0 ||
+					  !is_clear(c->data, k, c->steps - 1)); // then they cannot have touched in it
+	const double paths = ob_schedule_path(a, c->steps) + ob_schedule_path(b, c->steps),
+		     reach = (double)a->reach + (double)b->reach;
 	const double left = k->limit - paths;
 	if (!spheres_exclude_contact(c, k, paths, reach, solved))
 		check_shapes(c, k, left, solved);
-	if (k->expected)
-		return (double)c->steps;
-	return is_clear(c, k, c->steps) ? k->clear_until : step_of_limit(k, paths, reach, c->steps);
+}
+
+// ---- which pairs, and when again
+
+// The first step that begins with so little left of the known distance that the two might use it up; the one before
+// where rounding might hide it.
+static double step_of_limit(const ob_pair_key *k, double paths, double reach, uint64_t steps)
+{
+	const double left = k->limit - paths, rounding = 1e-9 * left + 1e-14 * (fabs(k->limit) + paths);
+	return reach > 0 ? (double)steps + ob_max(1, ceil((left - rounding) / reach) - 1) : INFINITY;
+}
+
+// The step (from 0) for which a pair that has been checked must be checked again, if neither object publishes another
+// motion before. Until then its check would change nothing.
+static double next_check(const ob_step_data *data, const ob_pair_key *k, uint64_t steps)
+{
+	const ob_schedule *a = &data->schedule[k->a], *b = &data->schedule[k->b];
+	if (is_idle(data, k, steps))
+		return INFINITY;
+	if (k->active || k->expected)
+		return (double)steps;
+	if (is_clear(data, k, steps))
+		return k->clear_until;
+	const double paths = ob_schedule_path(a, steps) + ob_schedule_path(b, steps),
+		     reach = (double)a->reach + (double)b->reach;
+	return step_of_limit(k, paths, reach, steps);
+}
+
+// Its next step; and its pairs are to be checked, each listed once: that of two members with its a.
+static void note_solved(ob_universe *u, uint32_t id, const ob_calendar *solve, const ob_calendar *look)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	ob_calendar_set(solve, id, data->schedule[id].due);
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		const uint32_t a = data->pair[at.pair].a;
+		if (data->count->checks == data->pairs_max || !ob_object_in_range(data, a))
+			return;
+		if (at.side && data->result_island[a] != UINT32_MAX)
+			continue;
+		ob_calendar_set(look, at.pair, UINT32_MAX);
+		data->check[data->count->checks++] = at.pair;
+	}
 }
 
 void ob_late_contacts_begin(ob_universe *u, bool solved)
 {
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar solve = ob_calendar_of_objects(u), look = ob_calendar_of_pairs(u);
+	const uint64_t steps = ob_step_count(u) + solved;
 	ob_late_contacts_reset(u);
-	ob_universe_step_data(u)->count->checked = (uint32_t)ob_step_count(u) + solved;
+	data->count->checked = (uint32_t)steps;
+	data->count->checks = 0;
+	for (uint32_t i = 0; solved && i < data->count->islands; i++)
+		for (uint32_t k = 0; k < data->island[i].members; k++)
+			note_solved(u, data->member[data->island[i].first_member + k], &solve, &look);
+	const uint32_t first = data->count->checks;
+	data->count->checks += ob_calendar_list(&look, steps, data->check + first, data->pairs_max - first);
+	for (uint32_t i = first; i < data->count->checks; i++)
+		ob_calendar_set(&look, data->check[i], UINT32_MAX);
 }
+
+static bool is_due(const ob_step_data *data, uint32_t id, uint64_t step)
+{
+	return data->schedule[id].state >= OB_SCHEDULE_AWAKE && data->schedule[id].due <= step;
+}
+
+// A pair of what is solved in the coming step needs no entry: it is checked when that is done.
+void ob_late_contacts_end(ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	const uint32_t steps = data->count->checked;
+	for (uint32_t i = 0; i < ob_checks_count(data); i++) {
+		const ob_pair_key *k = &data->pair[data->check[i]];
+		if (is_due(data, k->a, steps) || is_due(data, k->b, steps))
+			continue;
+		const double next = next_check(data, k, steps);
+		if (next < UINT32_MAX)
+			ob_calendar_set(&look, data->check[i], (uint64_t)next);
+	}
+	data->count->visits += data->count->checks;
+}
+
+// ---- the check
 
 // A pair, to be changed: a contained simulator changes a copy.
 static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *copy)
 {
+	ob_pair_key *k = &c->data->pair[c->data->check[i]];
 	if (!c->contained)
-		return &c->data->pair[i];
-	*copy = c->data->pair[i];
+		return k;
+	*copy = *k;
 	return copy;
 }
 
 static void end_change(const pair_check *c, uint32_t i, const ob_pair_key *k)
 {
-	if (c->contained && memcmp(k, &c->data->pair[i], sizeof *k) != 0)
+	if (c->contained && memcmp(k, &c->data->pair[c->data->check[i]], sizeof *k) != 0)
 		ob_commit_check(c->s->u, i, k);
 }
 
@@ -297,25 +370,25 @@ static bool moves(const pair_check *c, uint32_t id)
 }
 
 // The motions of a pair are prefetched while those before it are checked.
-static void check_all_by_motions(const pair_check *c, const uint32_t *pairs, uint32_t n, bool *late, double *next)
+static void check_all_by_motions(const pair_check *c, const uint32_t *checks, uint32_t n, bool *late)
 {
 	enum { AHEAD = 4 };
-	const ob_pair_key *all = c->data->pair;
+	const ob_step_data *data = c->data;
 	for (uint32_t i = 0; i < n + AHEAD; i++) {
 		if (i < n)
-			ob_prefetch_pair(c->s, &all[pairs[i]]);
+			ob_prefetch_pair(c->s, &data->pair[data->check[checks[i]]]);
 		if (i < AHEAD)
 			continue;
-		ob_pair_key copy, *k = begin_change(c, pairs[i - AHEAD], &copy);
+		ob_pair_key copy, *k = begin_change(c, checks[i - AHEAD], &copy);
 		if (i == AHEAD)
 			ob_budget_begin_share(c->s, moves(c, k->a) ? k->a : k->b);
 		if (ob_budget_spent(c->s))
 			return;
 		if (c->contained)
 			k->late = k->expected = 0; // as check_by_schedule has left it
-		*next = ob_min(*next, check_by_motions(c, k));
+		check_by_motions(c, k);
 		*late |= k->late;
-		end_change(c, pairs[i - AHEAD], k);
+		end_change(c, checks[i - AHEAD], k);
 	}
 }
 
@@ -328,21 +401,18 @@ void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved
 			       ob_step_count(s->u) + solved,
 			       solved,
 			       ob_universe_contained(s->u) };
-	double next = UINT32_MAX;
 	bool late = false;
 	while (first < end) {
 		uint32_t left[OB_LATE_CONTACTS_BATCH], n = 0;
 		for (uint32_t i = 0; i < OB_LATE_CONTACTS_BATCH && first < end; i++, first++) {
 			ob_pair_key copy, *k = begin_change(&c, first, &copy);
-			double due = check_by_schedule(&c, k);
-			if (due < 0) {
+			if (check_by_schedule(&c, k))
+				end_change(&c, first, k);
+			else
 				left[n++] = first;
-				continue;
-			}
-			next = due < next ? due : next;
-			end_change(&c, first, k);
 		}
-		check_all_by_motions(&c, left, n, &late, &next);
+		check_all_by_motions(&c, left, n, &late);
 	}
-	ob_late_contacts_note(s->u, late, (uint32_t)next);
+	if (late)
+		ob_late_contacts_note(s->u);
 }

@@ -3,18 +3,22 @@
 //
 // Islands are made of pairs that touch and of pairs that are expected to (ob_pair_key.expected): a forecast that takes
 // every object to go on as it does. It fails where an object is hit and hits another one within the same step. So after
-// the islands are solved, each pair that was in none of them is checked: has the path that both have made used up the
-// known distance between them, and do they touch at the step's end, or did they on the way? Then their islands are
-// merged and solved again.
+// the islands are solved, each pair of an object that was solved and that was in none of them is checked: has the path
+// that both have made used up the known distance between them, and do they touch at the step's end, or did they on the
+// way? Then their islands are merged and solved again.
 #ifndef OB_SIM_LATE_CONTACTS_H
 #define OB_SIM_LATE_CONTACTS_H
 
 #include "sim/commit.h"
 
-// By the scheduling worker, before all pairs are checked. solved: a step has been solved and is not yet committed.
+// By the scheduling worker, before pairs are checked: lists those that must be, in ob_step_data.check. They are
+// those whose turn it is (sim/calendar.h), and all of the objects that have been solved. solved: a step has been solved
+// and is not yet committed.
 void ob_late_contacts_begin(ob_universe *u, bool solved);
-// Checks pairs first .. end-1: sets expected, late and limit of each, and notes in ob_step_data.count whether any contact
-// is late and when pairs must be checked next.
+// Checks first .. end-1 of them: sets expected, late and limit of each, and notes in ob_step_data.count whether any
+// contact is late.
 void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved);
+// By the scheduling worker, when all of them are checked: enters in the calendar when each must be checked again.
+void ob_late_contacts_end(ob_universe *u);
 
 #endif

@@ -4,9 +4,20 @@
 #include "contact/batch.h"
 #include "motion/flight.h"
 #include "sim/broadphase.h"
+#include "sim/calendar.h"
+#include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/sim.h"
 #include "table/trace.h"
+
+// The object's schedule record has changed.
+static void note_change(ob_universe *u, uint32_t id)
+{
+	const ob_schedule *s = &ob_universe_step_data(u)->schedule[id];
+	const ob_calendar solve = ob_calendar_of_objects(u);
+	ob_calendar_set(&solve, id, s->state >= OB_SCHEDULE_AWAKE ? s->due : UINT32_MAX);
+	ob_pairs_look(u, id);
+}
 
 // No flight has an impact computed on a plane that is new: all are solved in the next step.
 static void end_flights(ob_universe *u)
@@ -19,6 +30,7 @@ static void end_flights(ob_universe *u)
 		m.flags &= ~(uint32_t)OB_MOTION_FREE;
 		ob_publish_motion(u, id, &m);
 		data->schedule[id].due = (uint32_t)ob_step_count(u);
+		note_change(u, id);
 	}
 }
 
@@ -48,6 +60,7 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 						     : OB_SCHEDULE_STATIC;
 	data->schedule[id] = (ob_schedule){ 0, (float)reach, kind, m.step, prescribed ? UINT32_MAX : m.step };
 	data->result_island[id] = UINT32_MAX;
+	note_change(u, id);
 	ob_publish_motion(u, id, &m);
 	if (kind == OB_SCHEDULE_PLANE)
 		end_flights(u);
@@ -106,6 +119,7 @@ static void publish_prescribed(ob_universe *u, uint32_t id, ob_motion *m, double
 	m->step = step;
 	m->flags |= OB_MOTION_FREE;
 	*schedule = (ob_schedule){ m->path, m->reach, OB_SCHEDULE_KINEMATIC, step, UINT32_MAX };
+	note_change(u, id);
 	hold_for(u, id, m, now, until - now);
 	ob_publish_motion(u, id, m);
 }
@@ -166,6 +180,7 @@ void ob_sim_restore(ob_universe *u)
 		if (ob_universe_traced(u))
 			ob_trace_birth(u, id);
 	}
+	ob_pairs_link(u);
 }
 
 static void wake_object(ob_universe *u, uint32_t id)
@@ -182,6 +197,7 @@ static void wake_object(ob_universe *u, uint32_t id)
 	uint32_t steps = (uint32_t)ob_step_count(u);
 	double reach = ob_step_reach(ob_universe_settings(u), pass, m.q, m.v, m.w);
 	*schedule = (ob_schedule){ ob_schedule_path(schedule, steps), (float)reach, OB_SCHEDULE_AWAKE, steps, steps };
+	note_change(u, id);
 }
 
 bool ob_sim_freeze(ob_universe *u, uint32_t id)
@@ -231,14 +247,16 @@ void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes)
 		return;
 	if (schedule->state == OB_SCHEDULE_ASLEEP || schedule->state == OB_SCHEDULE_EQUILIBRIUM)
 		wake_object(u, id);
-	if (schedule->state == OB_SCHEDULE_AWAKE)
+	if (schedule->state == OB_SCHEDULE_AWAKE) {
 		schedule->due = (uint32_t)ob_step_count(u); // a flight that was computed ahead ends
+		note_change(u, id);
+	}
 }
 
 void ob_sim_remove(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	for (uint32_t i = 0; i < ob_pairs_count(data); i++) {
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		uint32_t other = k->a == id ? k->b : k->a;
 		if ((k->a != id && k->b != id) || !k->active || other >= data->objects_max ||
@@ -249,6 +267,7 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 	ob_pairs_drop(u, id);
 	ob_index_remove(u, id);
 	data->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
+	note_change(u, id);
 	if (ob_universe_traced(u))
 		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
 	ob_passport none = *ob_passport_of(u, id);

@@ -47,6 +47,8 @@ void ob_results_commit(ob_sim *s)
 		for (uint32_t k = 0; k < is->members; k++) {
 			uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;
+			data->count->awake += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
+			data->count->awake -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
 			if (others_copy && k > 0)
 				continue;
 			trace_state_change(s, id, ob_staged_motion(s->u, id));

@@ -40,7 +40,8 @@ uint64_t ob_sim_prescribe(ob_universe *u, uint32_t id, const ob_path *path, uint
 // and if the object rests, it wakes. Its passport does not tell: after a restart it is that of a later step.
 void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes);
 
-// Host, at the start, after ob_universe_load: the spatial index, which is not saved, of the objects that are.
+// Host, at the start, after ob_universe_load: what is not saved, and follows from what is: the spatial index, lists of pairs and
+// calendars (sim/pairs.h).
 void ob_sim_restore(ob_universe *u);
 
 // Host, paused: takes an object away; its neighbours wake. Clears its passport.

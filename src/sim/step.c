@@ -39,12 +39,14 @@
 
 #include "sim/broadphase.h"
 #include "sim/budget.h"
+#include "sim/calendar.h"
 #include "sim/commit.h"
 #include "sim/fault.h"
 #include "sim/island_solver.h"
 #include "sim/island_builder.h"
 #include "sim/late_contacts.h"
 #include "sim/ode_baseline.h"
+#include "sim/pairs.h"
 #include "sim/prefetch.h"
 #include "sim/profile.h"
 #include "sim/publish.h"
@@ -144,10 +146,12 @@ static bool open_islands(const scheduler *c, ob_phase phase)
 static bool open_pairs(const scheduler *c, ob_phase phase)
 {
 	const bool solved = phase == OB_PHASE_LATE_CONTACTS;
-	const uint32_t pairs = ob_pairs_count(c->data);
 	const uint32_t all = ob_universe_simulators(c->u);
-	const bool serial = pairs < PARALLEL_PAIRS || all == 1 || c->settings->one_per_object;
 	ob_late_contacts_begin(c->u, solved);
+	const uint32_t pairs = ob_checks_count(c->data);
+	const bool serial = pairs < PARALLEL_PAIRS || all == 1 || c->settings->one_per_object;
+	if (!pairs)
+		return false;
 	if (serial && c->sim) {
 		ob_late_contacts_check(c->sim, 0, pairs, solved);
 		ob_worker_set_object(c->u, c->sim->worker, OB_NO_OBJECT);
@@ -224,7 +228,7 @@ static void query_neighbours(ob_sim *s)
 
 static void check_pairs(ob_sim *s, bool solved)
 {
-	const uint32_t pairs = s->data->count->pairs;
+	const uint32_t pairs = ob_checks_count(s->data);
 	uint32_t i;
 	while (ob_task_claim(s->u, &i)) {
 		uint32_t first = i * OB_LATE_CONTACTS_BATCH, end = first + OB_LATE_CONTACTS_BATCH;
@@ -292,12 +296,19 @@ static bool must_pause(const scheduler *c)
 	return ob_step_count(c->u) >= ob_gate_pause_step(c->u);
 }
 
+// An object must be solved in this step, or a pair be checked before it.
+static bool is_anybody_due(const scheduler *c)
+{
+	const uint64_t step = ob_step_count(c->u);
+	const ob_calendar solve = ob_calendar_of_objects(c->u), look = ob_calendar_of_pairs(c->u);
+	return ob_calendar_is_due(&solve, step) || ob_calendar_is_due(&look, step);
+}
+
 static ob_phase build_islands(const scheduler *c)
 {
 	struct ob_step_counts *count = c->data->count;
-	const uint64_t step = ob_step_count(c->u);
 	count->islands = 0;
-	if (count->next_check <= step || count->next_due <= step)
+	if (is_anybody_due(c))
 		ob_islands_build(c->u);
 	return count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
 }
@@ -312,32 +323,25 @@ static ob_phase begin_step(const scheduler *c)
 		return OB_PHASE_SCRIPTS;
 	if (c->settings->monolith)
 		return OB_PHASE_BASELINE;
-	if (!(count->awake || count->kinematic) || !count->pairs)
-		count->next_check = UINT32_MAX;
-	return count->next_check <= step && count->checked != step ? OB_PHASE_FORECAST : build_islands(c);
+	return count->checked != step && is_anybody_due(c) ? OB_PHASE_FORECAST : build_islands(c);
 }
 
-// How many objects are awake, and when the first of them is due.
+// How many objects are awake, and how many kinematic, after somebody has changed any.
 static void count_awake(const scheduler *c)
 {
-	uint32_t n = 0, kinematic = 0, due = UINT32_MAX;
+	uint32_t n = 0, kinematic = 0;
 	for (uint32_t id = 0; id < ob_universe_ids(c->u); id++) {
 		const ob_schedule *object = &c->data->schedule[id];
 		kinematic += object->state == OB_SCHEDULE_KINEMATIC;
-		if (object->state != OB_SCHEDULE_AWAKE && object->state != OB_SCHEDULE_EQUILIBRIUM)
-			continue;
-		n++;
-		due = object->due < due ? object->due : due;
+		n += object->state == OB_SCHEDULE_AWAKE || object->state == OB_SCHEDULE_EQUILIBRIUM;
 	}
 	c->data->count->awake = n;
 	c->data->count->kinematic = kinematic;
-	c->data->count->next_due = due;
 }
 
 static ob_phase after_resume(const scheduler *c)
 {
 	count_awake(c);
-	c->data->count->next_check = 0; // the host may have changed anything
 	if (c->settings->monolith)
 		ob_requery_reset(c->u); // ODE's world finds its own neighbours
 	return OB_PHASE_BROADPHASE_START;
@@ -369,6 +373,7 @@ static ob_phase after_scripts(const scheduler *c)
 
 static ob_phase after_forecast(const scheduler *c)
 {
+	ob_late_contacts_end(c->u);
 	return must_pause(c) ? OB_PHASE_PAUSE : build_islands(c);
 }
 
@@ -386,6 +391,7 @@ static ob_phase after_broadphase(const scheduler *c)
 static ob_phase after_late_contacts(const scheduler *c)
 {
 	const bool late = c->data->count->late;
+	ob_late_contacts_end(c->u);
 	c->sim->counters.island_merges += late;
 	*ob_worker_counters(c->u, c->sim->worker) = c->sim->counters; // before anybody may look
 	if (late) {
@@ -393,7 +399,6 @@ static ob_phase after_late_contacts(const scheduler *c)
 		return OB_PHASE_ISLANDS;
 	}
 	ob_results_commit(c->sim);
-	count_awake(c);
 	return OB_PHASE_COPY;
 }
 
@@ -411,7 +416,7 @@ static ob_phase after_baseline(const scheduler *c)
 static ob_phase complete_step(const scheduler *c)
 {
 	const struct ob_step_counts *count = c->data->count;
-	ob_step_complete(c->u, count->awake, count->pairs, count->islands);
+	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle, count->islands);
 	ob_step_work_reset(c->u);
 	return begin_step(c);
 }

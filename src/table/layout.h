@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 20, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 21, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -41,6 +41,15 @@ typedef enum ob_area {
 	OB_AREA_BUCKET,
 	OB_AREA_PLANE,
 	OB_AREA_PAIR,
+	OB_AREA_PAIR_LINKS,
+	OB_AREA_FIRST_PAIR,
+	OB_AREA_SOLVE,
+	OB_AREA_SOLVE_64,
+	OB_AREA_SOLVE_4096,
+	OB_AREA_LOOK,
+	OB_AREA_LOOK_64,
+	OB_AREA_LOOK_4096,
+	OB_AREA_CHECK,
 	OB_AREA_RECORD,
 	OB_AREA_IMPULSE_B,
 	OB_AREA_RECORD_FREE,

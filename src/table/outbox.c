@@ -231,7 +231,7 @@ void ob_outbox_begin(ob_universe *u)
 {
 	ob_outbox *o = u->outbox;
 	o->next_task = 0;
-	o->end = (ob_outbox_end){ .next_check = UINT32_MAX };
+	o->end = (ob_outbox_end){ 0 };
 	empty(u);
 }
 

@@ -35,7 +35,7 @@ typedef struct ob_outbox_end {
 	uint64_t failure; // as of ob_step_fail
 	uint64_t work; // as of ob_step_work_add
 	uint64_t worked_ns; // as of ob_phase_worked
-	uint32_t late, next_check; // as of ob_late_contacts_note
+	uint32_t late, reserved; // late: as of ob_late_contacts_note
 	uint32_t objects; // as of ob_worker_set_objects
 	uint32_t worked_on; // object that the last of the work went into
 	ob_counters counters;

@@ -80,7 +80,13 @@ bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e)
 
 bool ob_reserve_pairs(ob_universe *u, uint32_t first, uint32_t count)
 {
-	return ob_pages_take(u, OB_AREA_PAIR, first, count) && ob_pages_take(u, OB_AREA_ISLAND_PAIR, first, count);
+	static const ob_area each[] = { OB_AREA_PAIR, OB_AREA_PAIR_LINKS, OB_AREA_LOOK, OB_AREA_CHECK,
+					OB_AREA_ISLAND_PAIR };
+	bool fine = ob_pages_take(u, OB_AREA_LOOK_64, first / 64, 1 + count / 64) &&
+		    ob_pages_take(u, OB_AREA_LOOK_4096, first / 4096, 1 + count / 4096);
+	for (size_t i = 0; i < sizeof each / sizeof *each && fine; i++)
+		fine = ob_pages_take(u, each[i], first, count);
+	return fine;
 }
 
 bool ob_reserve_record(ob_universe *u, uint32_t record)

@@ -123,6 +123,11 @@ void ob_requery_append(ob_universe *u, uint32_t id)
 		u->step_data.count->failure = OB_STEP_DAMAGED;
 }
 
+bool ob_requery_lists(const ob_universe *u, uint32_t id)
+{
+	return __atomic_load_n(&u->requery_bit[id / 64], __ATOMIC_RELAXED) >> id % 64 & 1;
+}
+
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count)
 {
 	const uint64_t n = __atomic_load_n(&u->control->requery_count, __ATOMIC_ACQUIRE),
@@ -179,22 +184,13 @@ void ob_step_work_reset(ob_universe *u)
 void ob_late_contacts_reset(ob_universe *u)
 {
 	u->step_data.count->late = 0;
-	u->step_data.count->next_check = UINT32_MAX;
 }
 
-void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check)
+void ob_late_contacts_note(ob_universe *u)
 {
-	if (u->outbox) {
-		ob_outbox_end *end = ob_outbox_end_of(u);
-		end->late |= late;
-		end->next_check = next_check < end->next_check ? next_check : end->next_check;
-		return;
-	}
-	uint32_t *least = &u->step_data.count->next_check, seen = __atomic_load_n(least, __ATOMIC_RELAXED);
-	while (seen > next_check &&
-	       !__atomic_compare_exchange_n(least, &seen, next_check, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
-		;
-	if (late)
+	if (u->outbox)
+		ob_outbox_end_of(u)->late = 1;
+	else
 		__atomic_store_n(&u->step_data.count->late, 1, __ATOMIC_RELAXED);
 }
 

@@ -62,7 +62,7 @@ static inline ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 
 #define OB_NO_RECORD UINT32_MAX
 
-// A pair of objects whose fat AABBs overlap.
+// A pair of objects whose fat AABBs overlap. One that is not in use has a == b.
 typedef struct ob_pair_key {
 	uint32_t a, b;      // ids, a < b
 	uint32_t record;    // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
@@ -74,6 +74,18 @@ typedef struct ob_pair_key {
 	uint32_t clear_until; // the pair cannot touch before this step (from 0) either, provided that neither object has
 	uint32_t clear_as_of; // published another motion since so many steps were complete
 } ob_pair_key;
+
+// A pair's place in the lists of pairs of its two objects (sim/pairs.h): [0] that of a, [1] that of b. Links are 1 + 2 times
+// the next pair's index, plus 1 if the list is that of its b; 0 ends. Of a pair that is not in use next[0] is 1 + the next
+// one of those.
+typedef struct ob_pair_links {
+	uint32_t next[2], before[2];
+} ob_pair_links;
+
+// A calendar (sim/calendar.h), of objects or of pairs: how urgent each of them is, and the most of 64 and of 4096.
+typedef struct ob_calendar_levels {
+	uint32_t *one, *of_64, *of_4096;
+} ob_calendar_levels;
 
 // Schedule record: what the scheduler must know of an object, 24 bytes, so that it need not read the slots.
 typedef struct ob_schedule {
@@ -125,7 +137,10 @@ typedef struct ob_index_cell {
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {
-		uint32_t pairs, islands, chunks, records_used;
+		uint32_t pairs;      // that were ever used at the same time: those in use lie before this one, not all without gaps
+		uint32_t pairs_idle; // of these, not in use
+		uint32_t first_idle; // 1 + one of them, the first of a list
+		uint32_t islands, chunks, records_used;
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
 		uint32_t scheduler;  // the worker that scheduled last
 		uint32_t merged;     // 1 = islands that late contacts merged are being solved again
@@ -133,8 +148,9 @@ typedef struct ob_step_data {
 		uint32_t kinematic;  // objects
 		uint32_t checked;    // steps that were complete, or solved, when all pairs were checked last
 		uint32_t late;       // 1 = that check found a late contact; any worker may write it
-		uint32_t next_due;   // no object is due before this step, unless one is solved before ..
-		uint32_t next_check; // .. and no pair has to be checked before this one: the least that any check has found
+		uint32_t checks;     // pairs in check[]
+		uint32_t island_pairs; // in island_pair[]
+		uint64_t visits;     // objects and pairs that arranging steps has looked at so far
 		uint32_t levels[64]; // objects per size class
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
@@ -156,7 +172,12 @@ typedef struct ob_step_data {
 	ob_index_cell *cell;          // [object]
 	uint32_t *bucket;             // [buckets]: 1 + first object; 0 = empty
 	uint32_t *plane;              // ids of planes: neighbours of every object
-	ob_pair_key *pair;            // sorted by (a, b)
+	ob_pair_key *pair;            // in no order
+	ob_pair_links *pair_links;    // [pair]
+	uint32_t *first_pair;         // [object]: the first of its list of pairs, as ob_pair_links.next; none of what is static
+	ob_calendar_levels solve;     // [object]: when it is due
+	ob_calendar_levels look;      // [pair]: when it must be checked, unless no check could change anything
+	uint32_t *check;              // pairs to be checked in this phase
 	ob_pair_record *record;       // taken when a pair begins to touch
 	double (*impulse_b)[2][OB_PAIR_ROWS]; // [record], of each version: of body b, where the two do not agree on one
 	                              // impulse (sim/ghost.h)
@@ -197,10 +218,15 @@ static inline bool ob_object_in_range(const ob_step_data *data, uint32_t id)
 	return false;
 }
 
-// Those in pair[]: never more than it holds, whatever somebody has written.
-static inline uint32_t ob_pairs_count(const ob_step_data *data)
+// Where pair[] ends: never more than it holds, whatever somebody has written.
+static inline uint32_t ob_pairs_end(const ob_step_data *data)
 {
 	return data->count->pairs < data->pairs_max ? data->count->pairs : data->pairs_max;
+}
+
+static inline uint32_t ob_checks_count(const ob_step_data *data)
+{
+	return data->count->checks < data->pairs_max ? data->count->checks : data->pairs_max;
 }
 
 // The torque (N m, world frame) that the object's script has set; 0 without a script.

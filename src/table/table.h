@@ -169,6 +169,7 @@ void ob_requery_append(ob_universe *u, uint32_t id);
 // The list so far; reset empties it. Only for the scheduler.
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count);
 void ob_requery_reset(ob_universe *u);
+bool ob_requery_lists(const ob_universe *u, uint32_t id); // whether it is on the list
 // The run cannot go on after this phase: any worker. Of several, that of the lowest object stays, so that it is the same
 // in every run. object: one that is to blame.
 void ob_step_fail(ob_universe *u, ob_step_failure why, uint32_t object);
@@ -176,10 +177,9 @@ ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object); // objec
 // Adds to the step's work; returns the sum of all workers so far. The scheduler resets it.
 uint64_t ob_step_work_add(ob_universe *u, uint64_t work);
 void ob_step_work_reset(ob_universe *u);
-// What checking pairs has found. The scheduler resets it; then each worker notes, for all pairs that it has checked,
-// whether one of them is a late contact, and the first step (from 0) at which one must be checked again.
+// Whether a pair that has been checked is a late contact. The scheduler resets it; then any worker may note one.
 void ob_late_contacts_reset(ob_universe *u);
-void ob_late_contacts_note(ob_universe *u, bool late, uint32_t next_check);
+void ob_late_contacts_note(ob_universe *u);
 // The step fails because this worker has written, or handed over, what it should not: by the arranger.
 void ob_step_blame(ob_universe *u, uint32_t worker, const char *what);
 // A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.

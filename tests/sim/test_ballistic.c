@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "little_universe.h"
+#include "sim/pairs.h"
 #include "motion/random.h"
 
 enum { STEPS = 90 };
@@ -24,7 +25,8 @@ static little_scene *thrown(uint64_t *seed, bool balls, double room)
 		double x = within(seed, -room, room), y = within(seed, -room, room);
 		ob_vec3 p = ob_v3(x, y, 1.5 + 1.2 * i);
 		bool ball = balls || uniform(seed) < .3;
-		ob_world_body o = ball ? ob_world_sphere(&s->world, 1 + a, a, p) : ob_world_box(&s->world, 1 + a, ob_v3(a, b, c), p);
+		ob_world_body o = ball ? ob_world_sphere(&s->world, 1 + a, a, p)
+				       : ob_world_box(&s->world, 1 + a, ob_v3(a, b, c), p);
 		o.passport->restitution = e;
 		o.state->v = random_vector(seed, 4);
 		o.state->w = random_vector(seed, 4);
@@ -45,6 +47,7 @@ static void call_all(ob_universe *u)
 		ob_publish_motion(u, id, &m);
 		ex->schedule[id].due = (uint32_t)ob_step_count(u);
 	}
+	ob_pairs_link(u); // calendars follow what the schedule says
 }
 
 typedef struct outcome {

@@ -5,6 +5,7 @@
 #include "check.h"
 #include "little_universe.h"
 #include "sim/island_builder.h"
+#include "sim/pairs.h"
 
 #include "motion/random.h"
 
@@ -23,7 +24,8 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 		if (kind < .1)
 			ex->schedule[i].state = OB_SCHEDULE_STATIC;
 		if (kind > .6)
-			ex->schedule[i].state = OB_SCHEDULE_ASLEEP, ex->schedule[i].reach = 0, ex->schedule[i].due = UINT32_MAX;
+			ex->schedule[i].state = OB_SCHEDULE_ASLEEP, ex->schedule[i].reach = 0,
+			ex->schedule[i].due = UINT32_MAX;
 		if (kind > .97)
 			ex->schedule[i].state = OB_SCHEDULE_ABSENT;
 	}
@@ -37,11 +39,14 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 			double kind = uniform(&seed);
 			ex->pair[n] = (ob_pair_key){ .a = a, .b = b, .record = n, .limit = limit };
 			ex->pair[n].active = kind < .2;
-			ex->pair[n].expected =
-				kind > .2 && kind < .6 && (x->state == OB_SCHEDULE_AWAKE || y->state == OB_SCHEDULE_AWAKE);
+			ex->pair[n].expected = kind > .2 && kind < .6 &&
+					       (x->state == OB_SCHEDULE_AWAKE || y->state == OB_SCHEDULE_AWAKE);
 			n++;
 		}
 	ex->count->pairs = n;
+	for (uint32_t i = 0; i < BODIES; i++)
+		ex->result_island[i] = UINT32_MAX;
+	ob_pairs_link(u);
 }
 
 typedef struct flood {
@@ -73,7 +78,8 @@ static void flood_fill(const ob_step_data *ex, flood *f)
 		f->island[i] = i;
 	for (uint32_t i = ex->count->pairs; i > 0; i--) { // another order than the plan's
 		const ob_pair_key *k = &ex->pair[i - 1];
-		if (moves(ex, k->a) && moves(ex, k->b) && f->island[k->a] != f->island[k->b] && (k->active || k->expected))
+		if (moves(ex, k->a) && moves(ex, k->b) && f->island[k->a] != f->island[k->b] &&
+		    (k->active || k->expected))
 			join(f->island, f->island[k->a], f->island[k->b]);
 	}
 }
@@ -180,6 +186,9 @@ static void check_reunion(ob_universe *u, uint64_t seed)
 			ex->schedule[i].state = OB_SCHEDULE_ASLEEP;
 	for (uint32_t i = 0; i < BODIES; i++) // a union may have been united again under a lower id
 		f.united[f.island[i]] |= f.united[i];
+	for (uint32_t i = 0; i < ex->count->pairs; i++)
+		ex->check[i] = i;
+	ex->count->checks = ex->count->pairs;
 	ob_islands_merge(u);
 	uint32_t unsolved = 0;
 	for (uint32_t i = 0; i < ex->count->islands; i++) {

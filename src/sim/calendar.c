@@ -1,0 +1,88 @@
+#include "sim/calendar.h"
+
+#include <string.h>
+
+ob_calendar ob_calendar_of_objects(const ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	return (ob_calendar){ data->solve, ob_universe_ids(u), &data->count->visits };
+}
+
+ob_calendar ob_calendar_of_pairs(const ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	return (ob_calendar){ data->look, ob_pairs_end(data), &data->count->visits };
+}
+
+static uint32_t urgency_of(uint64_t step)
+{
+	return step < UINT32_MAX ? UINT32_MAX - (uint32_t)step : 0;
+}
+
+void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step)
+{
+	const uint32_t urgency = urgency_of(step);
+	c->level.one[i] = urgency;
+	if (c->level.of_64[i / 64] >= urgency)
+		return;
+	c->level.of_64[i / 64] = urgency;
+	if (c->level.of_4096[i / 4096] < urgency)
+		c->level.of_4096[i / 4096] = urgency;
+}
+
+static uint32_t most_of_64(const uint32_t *below)
+{
+	uint32_t most = 0;
+	for (int i = 0; i < 64; i++)
+		most = below[i] > most ? below[i] : most;
+	return most;
+}
+
+// Those of 64 that are at least so urgent, behind the n that are listed; list NULL: whether there are any. Puts right
+// what the level above says of them.
+static uint32_t list_64(const ob_calendar *c, uint32_t block, uint32_t least, uint32_t *list, uint32_t n, uint32_t most)
+{
+	const uint32_t *one = c->level.one + 64 * (size_t)block;
+	*c->visits += 1;
+	for (uint32_t i = 0; i < 64 && n < most; i++) {
+		if (one[i] < least)
+			continue;
+		if (list)
+			list[n] = 64 * block + i;
+		n++;
+	}
+	c->level.of_64[block] = most_of_64(one);
+	return n;
+}
+
+static uint32_t list_all(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most)
+{
+	const uint32_t least = urgency_of(step);
+	uint32_t n = 0;
+	for (uint32_t top = 0; top < (c->end + 4095) / 4096; top++) {
+		if (c->level.of_4096[top] < least)
+			continue;
+		for (uint32_t block = 64 * top; block < 64 * (top + 1) && n < most; block++)
+			if (c->level.of_64[block] >= least)
+				n = list_64(c, block, least, list, n, most);
+		c->level.of_4096[top] = most_of_64(c->level.of_64 + 64 * (size_t)top);
+	}
+	return n;
+}
+
+bool ob_calendar_is_due(const ob_calendar *c, uint64_t step)
+{
+	return list_all(c, step, NULL, 1) > 0;
+}
+
+uint32_t ob_calendar_list(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most)
+{
+	return list_all(c, step, list, most);
+}
+
+void ob_calendar_clear(const ob_calendar *c)
+{
+	memset(c->level.one, 0, c->end * sizeof *c->level.one);
+	memset(c->level.of_64, 0, (c->end + 63) / 64 * sizeof *c->level.of_64);
+	memset(c->level.of_4096, 0, (c->end + 4095) / 4096 * sizeof *c->level.of_4096);
+}

@@ -1,0 +1,311 @@
+#include "sim/pairs.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "sim/broadphase.h"
+#include "sim/calendar.h"
+#include "sim/publish.h"
+#include "sim/sort_ids.h"
+
+// ---- lists
+
+// Where a link to this place stands: in the place before it, or at the start of the list.
+static void put_link(ob_step_data *data, uint32_t id, uint32_t before, uint32_t link)
+{
+	ob_pair_place at;
+	if (ob_pair_at(data, before, &at))
+		data->pair_links[at.pair].next[at.side] = link;
+	else
+		data->first_pair[id] = link;
+}
+
+static void link_side(ob_step_data *data, uint32_t pair, uint32_t side, uint32_t id)
+{
+	const uint32_t first = data->first_pair[id], link = 1 + 2 * pair + side;
+	ob_pair_place at;
+	data->pair_links[pair].next[side] = first;
+	data->pair_links[pair].before[side] = 0;
+	if (ob_pair_at(data, first, &at))
+		data->pair_links[at.pair].before[at.side] = link;
+	data->first_pair[id] = link;
+}
+
+static void unlink_side(ob_step_data *data, uint32_t pair, uint32_t side, uint32_t id)
+{
+	const uint32_t next = data->pair_links[pair].next[side], before = data->pair_links[pair].before[side];
+	ob_pair_place at;
+	if (ob_pair_at(data, next, &at))
+		data->pair_links[at.pair].before[at.side] = before;
+	put_link(data, id, before, next);
+}
+
+static void link_pair(ob_universe *u, uint32_t pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_pair_key *k = &data->pair[pair];
+	for (uint32_t side = 0; side < 2; side++)
+		if (ob_has_pairs(data, side ? k->b : k->a))
+			link_side(data, pair, side, side ? k->b : k->a);
+}
+
+static void put_aside(ob_step_data *data, uint32_t pair)
+{
+	data->pair[pair] = (ob_pair_key){ .record = OB_NO_RECORD };
+	data->pair_links[pair] = (ob_pair_links){ .next = { data->count->first_idle } };
+	data->count->first_idle = 1 + pair;
+	data->count->pairs_idle++;
+}
+
+static void drop_pair(ob_universe *u, uint32_t pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	const ob_pair_key *k = &data->pair[pair];
+	for (uint32_t side = 0; side < 2; side++)
+		if (ob_has_pairs(data, side ? k->b : k->a))
+			unlink_side(data, pair, side, side ? k->b : k->a);
+	ob_calendar_set(&look, pair, UINT32_MAX);
+	put_aside(data, pair);
+}
+
+// One that is not in use. false: there is none, and the step has failed.
+static bool take_pair(ob_universe *u, uint32_t *pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	if (data->count->first_idle) {
+		*pair = data->count->first_idle - 1;
+		if (*pair < data->pairs_max) {
+			data->count->first_idle = data->pair_links[*pair].next[0];
+			data->count->pairs_idle--;
+			return true;
+		}
+		data->count->failure = OB_STEP_DAMAGED;
+		return false;
+	}
+	*pair = data->count->pairs;
+	if (*pair >= data->pairs_max)
+		ob_step_fail(u, OB_STEP_PAIRS_FULL, 0);
+	else if (!ob_reserve_pairs(u, *pair, 1))
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+	else
+		return data->count->pairs++, true;
+	return false;
+}
+
+void ob_pairs_link(ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint64_t step = ob_step_count(u);
+	const uint32_t ids = ob_universe_ids(u);
+	const ob_calendar solve = ob_calendar_of_objects(u), look = ob_calendar_of_pairs(u);
+	ob_calendar_clear(&solve);
+	ob_calendar_clear(&look);
+	data->count->first_idle = data->count->pairs_idle = data->count->island_pairs = data->count->checks = 0;
+	memset(data->first_pair, 0, ids * sizeof *data->first_pair);
+	for (uint32_t id = 0; id < ids; id++)
+		if (data->schedule[id].state >= OB_SCHEDULE_AWAKE)
+			ob_calendar_set(&solve, id, data->schedule[id].due);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		if (k->a == k->b) {
+			put_aside(data, i);
+			continue;
+		}
+		link_pair(u, i);
+		ob_calendar_set(&look, i, step);
+		if (k->in_island || k->record != OB_NO_RECORD)
+			data->island_pair[data->count->island_pairs++] = i;
+	}
+}
+
+void ob_pairs_look(ob_universe *u, uint32_t id)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id], n = 0; ob_pair_at(data, link, &at) && n < data->objects_max;
+	     link = ob_pair_next(data, at), n++)
+		ob_calendar_set(&look, at.pair, 0);
+}
+
+void ob_pair_release_record(ob_universe *u, ob_pair_key *k)
+{
+	if (k->record != OB_NO_RECORD)
+		ob_record_give_back(u, k->record);
+	k->record = OB_NO_RECORD;
+}
+
+// Called by the host, too, and for what is static: so all pairs are looked at.
+void ob_pairs_drop(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		ob_pair_key *k = &data->pair[i];
+		if (k->a == k->b || (k->a != id && k->b != id) || !ob_object_in_range(data, k->a) ||
+		    !ob_object_in_range(data, k->b))
+			continue;
+		ob_pair_release_record(u, k);
+		drop_pair(u, i);
+	}
+}
+
+// ---- new ones
+
+static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
+{
+	const ob_motion *m = ob_newest_motion(u, plane);
+	ob_mat3 r = ob_quat_matrix(m->q);
+	return ob_dot(ob_column(&r, 2), ob_sub(at, m->p)) - sphere;
+}
+
+// Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
+static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+{
+	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
+	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
+	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // which reach beyond the bounding sphere
+	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
+	ob_vec3 centre_a = ob_centre_now(u, a, ma, steps), centre_b = ob_centre_now(u, b, mb, steps);
+	if (pa->shape == OB_SHAPE_PLANE)
+		return plane_distance(u, a, centre_b, (aabbs ? sqrt(3) : 1) * rb);
+	if (pb->shape == OB_SHAPE_PLANE)
+		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
+	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
+	if (spheres > ob_max(ra, rb) && !aabbs) // the boxes would not add much, and cost more
+		return spheres;
+	double box_a[6], box_b[6], distance = 0;
+	ob_tight_aabb(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
+	ob_tight_aabb(u, pb, ob_state_now(u, b, mb, steps).pose, box_b);
+	for (int c = 0; c < 3; c++)
+		distance = ob_max(distance, ob_max(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
+	return aabbs ? distance : ob_max(distance, spheres);
+}
+
+// Path of both together in the step that was solved, if one was (m).
+static double path_in_step(const ob_universe *u, uint32_t a, uint32_t b, double paths, uint64_t steps)
+{
+	const uint64_t step = ob_step_count(u);
+	return steps > step
+		       ? paths - ob_path_now(ob_newest_motion(u, a), step) - ob_path_now(ob_newest_motion(u, b), step)
+		       : 0;
+}
+
+static ob_pair_key new_pair(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	double distance = pair_distance(u, a, b, steps);
+	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
+	// Nearer than they have moved in the step that was solved: they may have touched in it.
+	double limit = distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
+	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
+}
+
+static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	uint32_t pair;
+	if (!take_pair(u, &pair))
+		return;
+	data->pair[pair] = id < other ? new_pair(u, id, other, steps) : new_pair(u, other, id, steps);
+	link_pair(u, pair);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	ob_calendar_set(&look, pair, steps); // to be checked at once
+}
+
+// ---- what queries have found
+
+// The neighbours that a query has found, each to be found again by its id, without an array that would have to be
+// cleared: place[id] is believed where of[place[id]] says the same (Briggs and Torczon, An efficient representation for
+// sparse sets, 1993).
+typedef struct neighbour_set {
+	uint32_t *of, count;
+	uint32_t *place; // [id]
+} neighbour_set;
+
+static neighbour_set neighbours_of(ob_step_data *data, uint32_t id, uint32_t *place)
+{
+	const struct ob_neighbours *p = &data->neighbours[id];
+	neighbour_set s = { data->neighbour_id + p->offset, p->count, place };
+	if ((uint64_t)p->offset + p->count > data->neighbours_max) {
+		data->count->failure = OB_STEP_DAMAGED;
+		s.count = 0;
+	}
+	for (uint32_t i = 0; i < s.count; i++)
+		if (ob_object_in_range(data, s.of[i]))
+			place[s.of[i]] = i;
+	return s;
+}
+
+// Whether it is one of them; then it is none any more.
+static bool strike_out(neighbour_set *s, uint32_t id)
+{
+	const uint32_t i = s->place[id];
+	if (i >= s->count || s->of[i] != id)
+		return false;
+	s->of[i] = OB_NO_OBJECT;
+	return true;
+}
+
+static bool is_immobile(const ob_step_data *data, uint32_t id)
+{
+	return data->schedule[id].state < OB_SCHEDULE_AWAKE;
+}
+
+// Of two objects that were both queried, and have found each other, the lower one decides.
+static bool decides(const ob_universe *u, uint32_t id, uint32_t other)
+{
+	return id < other || !ob_requery_lists(u, other);
+}
+
+// Drops the object's pairs that its query has not found again, and adds those that are new. What is static keeps no
+// list of its pairs, and its query is made when it has come: then it has none.
+static void renew_pairs(ob_universe *u, uint32_t id, uint32_t *place, uint64_t steps)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	neighbour_set found = neighbours_of(data, id, place);
+	ob_pair_place at;
+	data->count->visits += 1 + found.count;
+	for (uint32_t link = ob_has_pairs(data, id) ? data->first_pair[id] : 0, next; ob_pair_at(data, link, &at);
+	     link = next) {
+		const ob_pair_key *k = &data->pair[at.pair];
+		const uint32_t other = at.side ? k->a : k->b;
+		next = ob_pair_next(data, at);
+		if (!ob_object_in_range(data, other))
+			return;
+		const bool stays = strike_out(&found, other);
+		// A pair with a record stays until the step is over: it may have to be solved again.
+		if (!stays && k->record == OB_NO_RECORD && decides(u, id, other))
+			drop_pair(u, at.pair);
+	}
+	uint32_t fresh = 0;
+	for (uint32_t i = 0; i < found.count; i++) {
+		const uint32_t other = found.of[i];
+		if (other != OB_NO_OBJECT && ob_object_in_range(data, other) && decides(u, id, other) &&
+		    (!is_immobile(data, id) || !is_immobile(data, other)))
+			found.of[fresh++] = other;
+	}
+	ob_sort_ids(found.of, fresh, ob_universe_ids(u), place); // which is no longer needed
+	for (uint32_t i = 0; i < fresh; i++)
+		add_pair(u, id, found.of[i], steps);
+}
+
+// In the order of ids, whatever the order in which workers have put them on the list and queries have found them: so
+// pairs lie in the same places in every run.
+void ob_pairs_merge(ob_universe *u, uint64_t steps)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	uint32_t count, n = 0, *queried = data->scratch, *place = data->scratch + ids;
+	const uint32_t *list = ob_requery_list(u, &count);
+	if (!count)
+		return;
+	for (uint32_t i = 0; i < count && n < ids; i++)
+		if (list[i] < ids)
+			queried[n++] = list[i];
+	ob_sort_ids(queried, n, ids, place);
+	for (uint32_t i = 0; i < n && ob_step_failed(u, NULL) == OB_STEP_OK; i++)
+		renew_pairs(u, queried[i], place, steps);
+	ob_requery_reset(u);
+	ob_neighbours_reset(u);
+}

@@ -1,0 +1,61 @@
+// Pairs of objects whose fat AABBs overlap, each with a record while they touch, and for each object the list of its
+// pairs.
+//
+//   first_pair[5] ──> pair 12 (5, 9) ──> pair 3 (2, 5) ──> ..
+//   first_pair[9] ──────┘
+//
+// A pair stays where it is in pair[] as long as it exists, so lists and checks name it by its index. What is static
+// keeps no list: the ground has a pair with each object, and nobody ever asks for all of them.
+//
+// Written by the scheduling worker alone, and by the host at a pause.
+#ifndef OB_SIM_PAIRS_H
+#define OB_SIM_PAIRS_H
+
+#include "table/table.h"
+
+// Whether the object has a list of its pairs.
+static inline bool ob_has_pairs(const ob_step_data *data, uint32_t id)
+{
+	return data->schedule[id].state >= OB_SCHEDULE_KINEMATIC;
+}
+
+// The pair's place in the list of its a (side 0) or b.
+typedef struct ob_pair_place {
+	uint32_t pair, side;
+} ob_pair_place;
+
+// For all pairs in the list of id: for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link =
+// ob_pair_next(data, at)). false: the list is over; or the link leads out of pair[], which is damage.
+static inline bool ob_pair_at(const ob_step_data *data, uint32_t link, ob_pair_place *at)
+{
+	if (!link)
+		return false;
+	*at = (ob_pair_place){ (link - 1) / 2, (link - 1) % 2 };
+	if (at->pair < data->pairs_max) {
+		data->count->visits++;
+		return true;
+	}
+	data->count->failure = OB_STEP_DAMAGED;
+	return false;
+}
+
+static inline uint32_t ob_pair_next(const ob_step_data *data, ob_pair_place at)
+{
+	return data->pair_links[at.pair].next[at.side];
+}
+
+// Merges the neighbours of the objects on the requery list into the pairs, and empties the list. steps: that are
+// complete, or solved.
+void ob_pairs_merge(ob_universe *u, uint64_t steps);
+// Drops every pair of an object that goes away.
+void ob_pairs_drop(ob_universe *u, uint32_t id);
+// All pairs of the object are checked before its next step, for it moves otherwise from now on.
+void ob_pairs_look(ob_universe *u, uint32_t id);
+// Makes anew what follows from schedule[] and pair[], which somebody has filled: all lists, both calendars
+// (sim/calendar.h), and the list of the pairs of the last step's islands, of which those that touch no more have their
+// records taken away.
+void ob_pairs_link(ob_universe *u);
+// Gives the pair's record back, if it has one. Between steps: what a step has written may be read until its end.
+void ob_pair_release_record(ob_universe *u, ob_pair_key *k);
+
+#endif

@@ -1,0 +1,117 @@
+// Calendars against a plain list of when everybody is due; and what runs arrange by them against a look at everybody in
+// each step, in what they find and in how much they look at.
+#include <stdlib.h>
+
+#include "check.h"
+#include "little_universe.h"
+#include "motion/random.h"
+#include "sim/calendar.h"
+
+enum { OBJECTS = 2000 };
+
+static uint32_t random_below(uint64_t *seed, uint32_t n)
+{
+	return (uint32_t)(uniform(seed) * n);
+}
+
+// Entries are set, put off and taken away at random while steps go by: each step finds exactly those that are due.
+static void test_entries(void)
+{
+	static uint32_t due[OBJECTS], found[OBJECTS];
+	uint64_t seed = 31;
+	little_scene *s = little_scene_new();
+	for (int i = 0; i < OBJECTS; i++)
+		ob_world_sphere(&s->world, 1, .1, ob_v3(i, 0, 0));
+	ob_universe *u = little_populate(s, 1);
+	const ob_calendar c = ob_calendar_of_objects(u);
+	ob_calendar_clear(&c);
+	for (uint32_t i = 0; i < OBJECTS; i++)
+		due[i] = UINT32_MAX;
+	for (uint32_t step = 0; step < 2000; step++) {
+		for (uint32_t k = random_below(&seed, 40); k > 0; k--) {
+			const uint32_t i = random_below(&seed, OBJECTS);
+			due[i] = uniform(&seed) < .1 ? UINT32_MAX : step + random_below(&seed, 400);
+			ob_calendar_set(&c, i, due[i]);
+		}
+		uint32_t n = 0, wrong = 0;
+		const bool any = ob_calendar_is_due(&c, step);
+		const uint32_t listed = ob_calendar_list(&c, step, found, OBJECTS);
+		for (uint32_t i = 0; i < OBJECTS; i++)
+			if (due[i] <= step)
+				wrong += n >= listed || found[n++] != i;
+		CHECK(wrong == 0 && n == listed && any == (n > 0));
+		for (uint32_t k = 0; k < listed; k++)
+			if (uniform(&seed) < .8)
+				due[found[k]] = UINT32_MAX, ob_calendar_set(&c, found[k], UINT32_MAX);
+	}
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
+// Balls that are thrown up and bounce, some of which meet.
+static little_scene *thrown(uint32_t balls, double spacing)
+{
+	uint64_t seed = 32;
+	little_scene *s = little_scene_new();
+	ob_world_ground(&s->world).passport->restitution = .7;
+	for (uint32_t i = 0; i < balls; i++)
+		ob_world_sphere(&s->world, 1, .2, ob_v3(spacing * (i % 12), spacing * (i / 12), within(&seed, 1, 4)))
+			.state->v = random_vector(&seed, 2);
+	return s;
+}
+
+// The same run, but that everybody, and every pair, is looked at in each step: the same bits, so nothing was missed.
+static void test_nothing_missed(void)
+{
+	uint64_t hash[2];
+	for (int all = 0; all < 2; all++) {
+		little_scene *s = thrown(100, 1.2);
+		little_universe l;
+		little_open(&l, s);
+		for (int step = 0; step < 240; step++) {
+			const ob_calendar look = ob_calendar_of_pairs(l.u);
+			const ob_step_data *data = ob_universe_step_data(l.u);
+			for (uint32_t i = 0; all && i < data->count->pairs; i++)
+				if (data->pair[i].a != data->pair[i].b)
+					ob_calendar_set(&look, i, 0);
+			little_run(&l, 1);
+		}
+		hash[all] = ob_measure_hash(&l.now);
+		little_close(&l);
+		free(s);
+	}
+	CHECK(hash[0] == hash[1]);
+}
+
+// What rests beside those that move costs no look: so many more visits in the same run.
+static uint64_t visits_with(uint32_t at_rest)
+{
+	little_scene *s = thrown(20, 3);
+	s->run.sleeping = true;
+	for (uint32_t i = 0; i < at_rest; i++)
+		ob_world_box(&s->world, 1, ob_v3(.2, .2, .2), ob_v3(100 + 3. * (i % 40), 3. * (i / 40), .2));
+	little_universe l;
+	little_open(&l, s);
+	little_run(&l, 60); // all of those sleep by now
+	const uint64_t before = ob_universe_step_data(l.u)->count->visits;
+	little_run(&l, 60);
+	const uint64_t visits = ob_universe_step_data(l.u)->count->visits - before;
+	little_close(&l);
+	free(s);
+	return visits;
+}
+
+static void test_cost(void)
+{
+	const uint64_t alone = visits_with(0), among_many = visits_with(1600);
+	CHECK(alone > 0);
+	CHECK(among_many == alone);
+}
+
+int main(void)
+{
+	test_entries();
+	test_nothing_missed();
+	test_cost();
+	return check_end();
+}
