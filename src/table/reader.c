@@ -248,21 +248,51 @@ static bool point_makes_sense(const ob_contact_point *c)
 	       isfinite(c->impulse);
 }
 
+static int by_ids(const void *x, const void *y)
+{
+	const ob_pair_key *a = x, *b = y;
+	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
+}
+
+// Copies of all pairs that touch, sorted by their ids: where they lie is the run's own business, and differs after a
+// restart from a file. The caller frees; NULL: there are none, or no memory.
+static ob_pair_key *touching_pairs(const ob_step_data *x, size_t *n)
+{
+	const uint32_t end = __atomic_load_n(&x->count->pairs, __ATOMIC_RELAXED);
+	ob_pair_key *out = NULL;
+	size_t room = 0;
+	*n = 0;
+	for (uint32_t i = 0; i < end && i < x->pairs_max; i++) {
+		ob_pair_key key;
+		copy_words(&key, x->pair + i, sizeof key);
+		if (!key.active || key.a >= key.b || key.b >= x->objects_max || key.record >= x->pairs_max)
+			continue;
+		if (*n == room) {
+			room = 2 * room + 64;
+			ob_pair_key *more = realloc(out, room * sizeof *out);
+			if (!more)
+				break;
+			out = more;
+		}
+		out[(*n)++] = key;
+	}
+	if (*n)
+		qsort(out, *n, sizeof *out, by_ids);
+	return out;
+}
+
 static size_t collect_points(const ob_universe *u, uint64_t step, ob_contact_point *out, size_t max)
 {
-	const ob_step_data *x = &u->step_data;
-	uint32_t pairs = __atomic_load_n(&x->count->pairs, __ATOMIC_RELAXED);
-	size_t n = 0;
-	for (uint32_t i = 0; i < pairs && i < x->pairs_max; i++) {
-		ob_pair_key key;
+	size_t pairs, n = 0;
+	ob_pair_key *pair = touching_pairs(&u->step_data, &pairs);
+	for (size_t i = 0; i < pairs; i++) {
+		const ob_pair_key *key = &pair[i];
 		ob_pair_state state;
 		ob_motion a;
-		copy_words(&key, x->pair + i, sizeof key);
-		if (!key.active || key.a >= key.b || key.b >= x->objects_max || key.record >= x->pairs_max ||
-		    !newest_version(u, &key, step, &state) || !ob_universe_get_motion(u, key.a, &a))
+		if (!newest_version(u, key, step, &state) || !ob_universe_get_motion(u, key->a, &a))
 			continue;
 		for (uint32_t k = 0; k < state.points && k < OB_PAIR_POINTS; k++) {
-			ob_contact_point c = { key.a, key.b, ob_add(a.p, state.arm_a[k]), state.normal,
+			ob_contact_point c = { key->a, key->b, ob_add(a.p, state.arm_a[k]), state.normal,
 					       state.impulse[k] };
 			if (!point_makes_sense(&c))
 				continue;
@@ -271,6 +301,7 @@ static size_t collect_points(const ob_universe *u, uint64_t step, ob_contact_poi
 			n++;
 		}
 	}
+	free(pair);
 	return n;
 }
 
