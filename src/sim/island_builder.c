@@ -226,24 +226,21 @@ static uint32_t island_of_pair(const builder *p, ob_pair_key *k)
 	return a->reach + b->reach >= k->limit - paths ? i : NONE;
 }
 
-static bool comes_before(const ob_pair_key *a, const ob_pair_key *b)
-{
-	return a->a != b->a ? a->a < b->a : a->b < b->b;
-}
-
 // By their ids, ascending: a shell sort, for most islands have few pairs.
 static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
 {
 	static const uint32_t gaps[] = { 29524, 9841, 3280, 1093, 364, 121, 40, 13, 4, 1 };
-	for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
-		for (uint32_t i = gaps[g]; i < n; i++) {
+	const ob_pair_key *all = data->pair;
+	for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++) {
+		const uint32_t gap = gaps[g];
+		for (uint32_t i = gap; i < n; i++) {
 			const uint32_t moved = pair[i];
 			uint32_t at = i;
-			for (; at >= gaps[g] && comes_before(&data->pair[moved], &data->pair[pair[at - gaps[g]]]);
-			     at -= gaps[g])
-				pair[at] = pair[at - gaps[g]];
+			for (; at >= gap && ob_pairs_by_ids(&all[moved], &all[pair[at - gap]]) < 0; at -= gap)
+				pair[at] = pair[at - gap];
 			pair[at] = moved;
 		}
+	}
 }
 
 // A pair of two members is listed with its a. in_island holds from here to the next islands.

@@ -248,12 +248,6 @@ static bool point_makes_sense(const ob_contact_point *c)
 	       isfinite(c->impulse);
 }
 
-static int by_ids(const void *x, const void *y)
-{
-	const ob_pair_key *a = x, *b = y;
-	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
-}
-
 // Copies of all pairs that touch, sorted by their ids: where they lie is the run's own business, and differs after a
 // restart from a file. The caller frees; NULL: there are none, or no memory.
 static ob_pair_key *touching_pairs(const ob_step_data *x, size_t *n)
@@ -277,7 +271,7 @@ static ob_pair_key *touching_pairs(const ob_step_data *x, size_t *n)
 		out[(*n)++] = key;
 	}
 	if (*n)
-		qsort(out, *n, sizeof *out, by_ids);
+		qsort(out, *n, sizeof *out, ob_pairs_by_ids);
 	return out;
 }
 

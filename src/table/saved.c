@@ -31,14 +31,15 @@ void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out)
 		.checked = data->count->checked,
 		.ids = ob_universe_ids(u),
 		.planes = data->count->planes,
-		.pairs = data->count->pairs - data->count->pairs_idle,
 	};
 	if (data->script_cells) {
 		out->script_cells = data->script_counts->cells;
 		out->script_bytes = u->header.sizes.script_bytes;
 	}
-	for (uint32_t i = 0; i < ob_pairs_end(data); i++)
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		out->pairs += data->pair[i].a != data->pair[i].b;
 		out->records += data->pair[i].record != OB_NO_RECORD;
+	}
 }
 
 static void save_object(const ob_universe *u, uint32_t id, ob_saved_universe *out)
@@ -64,12 +65,6 @@ static void save_record(const ob_universe *u, uint32_t record, ob_saved_record *
 		memcpy(out->impulse_b, data->impulse_b[record][newest], sizeof out->impulse_b);
 }
 
-static int by_ids(const void *x, const void *y)
-{
-	const ob_pair_key *a = x, *b = y;
-	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
-}
-
 // Sorted by their ids: where they lie in pair[] is the run's own business.
 static void save_pairs(const ob_universe *u, ob_saved_universe *out)
 {
@@ -78,7 +73,7 @@ static void save_pairs(const ob_universe *u, ob_saved_universe *out)
 	for (uint32_t i = 0; i < ob_pairs_end(data) && pairs < out->pairs; i++)
 		if (data->pair[i].a != data->pair[i].b)
 			out->pair[pairs++] = data->pair[i];
-	qsort(out->pair, pairs, sizeof *out->pair, by_ids);
+	qsort(out->pair, pairs, sizeof *out->pair, ob_pairs_by_ids);
 	for (uint32_t i = 0; i < pairs; i++) {
 		ob_pair_key *k = &out->pair[i];
 		if (k->record == OB_NO_RECORD)

@@ -75,6 +75,13 @@ typedef struct ob_pair_key {
 	uint32_t clear_as_of; // published another motion since so many steps were complete
 } ob_pair_key;
 
+// For qsort: by their ids, ascending. Where pairs lie in pair[] is the run's own business, so whoever needs an order sorts.
+static inline int ob_pairs_by_ids(const void *x, const void *y)
+{
+	const ob_pair_key *a = x, *b = y;
+	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
+}
+
 // A pair's place in the lists of pairs of its two objects (sim/pairs.h): [0] that of a, [1] that of b. Links are 1 + 2 times
 // the next pair's index, plus 1 if the list is that of its b; 0 ends. Of a pair that is not in use next[0] is 1 + the next
 // one of those.
