@@ -11,9 +11,16 @@ typedef struct range {
 	uint64_t begin, end;
 } range;
 
+// What one step leaves for the next in ob_control. The rest of it goes on in a new life, or others write it at any time
+// (a death, the state).
+typedef struct step_control {
+	uint64_t step, claim_next, requery_count, neighbours_used;
+	uint32_t claim_total, awake, pairs, islands;
+} step_control;
+
 struct ob_checkpoint {
 	int fd; // the universe's: it tells which pages are in use
-	ob_control control;
+	step_control control;
 	ob_motion *motion; // [ids]
 	ob_passport *passport; // [ids], where scripts may change them in a step; else NULL
 	size_t passports_max;
@@ -148,9 +155,21 @@ static bool take_passports(ob_checkpoint *c, const ob_universe *u)
 	return true;
 }
 
+static void take_control(ob_checkpoint *c, const ob_control *from)
+{
+	c->control = (step_control){ .step = from->step,
+				     .claim_next = from->claim_next,
+				     .claim_total = from->claim_total,
+				     .requery_count = from->requery_count,
+				     .neighbours_used = from->neighbours_used,
+				     .awake = from->awake,
+				     .pairs = from->pairs,
+				     .islands = from->islands };
+}
+
 bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u)
 {
-	c->control = *u->control;
+	take_control(c, u->control);
 	return take_motions(c, u) && take_passports(c, u) && take_areas(c, u);
 }
 
@@ -218,7 +237,7 @@ static void end_traces(ob_universe *u)
 	}
 }
 
-static void put_control_back(const ob_control *from, ob_control *to)
+static void put_control_back(const step_control *from, ob_control *to)
 {
 	to->claim_next = from->claim_next;
 	to->claim_total = from->claim_total;

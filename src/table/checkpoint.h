@@ -11,7 +11,8 @@
 //
 // These hold everything that an object needs from one step to the next, so the steps that follow are the same to the bit.
 //
-// Thread-safety: one thread, the host's, while the universe is paused (take), or has no worker (put back).
+// Thread-safety: one thread, the host's, while the universe is paused (take), or has no worker (put back). Deaths may be
+// noted at any time.
 #ifndef OB_TABLE_CHECKPOINT_H
 #define OB_TABLE_CHECKPOINT_H
 

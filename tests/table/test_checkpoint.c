@@ -184,10 +184,39 @@ static void test_readers(void)
 	ob_universe_destroy(l.u, true);
 }
 
+static void *note_deaths(void *argument)
+{
+	look *l = argument;
+	for (; !l->over; l->looks++)
+		ob_universe_note_death(l->u, "killed while the universe is paused");
+	return NULL;
+}
+
+// Simulators may die while the universe is paused: checkpoints neither mind that nor forget them. (What the thread
+// sanitizer finds ends the test.)
+static void test_deaths(void)
+{
+	pthread_t thread;
+	look l = { .u = make() };
+	ob_checkpoint *c = ob_checkpoint_create(l.u);
+	publish_all(l.u, 3);
+	pthread_create(&thread, NULL, note_deaths, &l);
+	for (int i = 0; i < 100 || l.looks < 1000; i++) {
+		CHECK(ob_checkpoint_take(c, l.u));
+		ob_checkpoint_put_back(c, l.u);
+	}
+	l.over = true;
+	pthread_join(thread, NULL);
+	CHECK(l.u->control->deaths == l.looks);
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(l.u, true);
+}
+
 int main(void)
 {
 	test_put_back();
 	test_new_pages();
 	test_readers();
+	test_deaths();
 	return check_end();
 }
