@@ -35,14 +35,17 @@ static const ob_hull box_topology = {
 		  { 3, 7, 1, 3 } },
 };
 
-// A shape with the world's axes, about an origin that both of a pair share.
+// A shape about an origin that both of a pair share, with the world's axes. Corners and faces stay in the shape's own
+// frame, and what they are compared with is turned into it: most of them are never asked for in the world.
 typedef struct polytope {
 	const ob_placed *placed;
-	const ob_hull *shape; // its topology
+	const ob_hull *shape; // its topology and the normals of its faces
+	const ob_vec3 *corner; // m, from the centre
+	const double *offset; // m, of the face from the centre
 	ob_vec3 centre;
 	double inner, radius, thin; // m: see ob_hull
-	ob_vec3 corner[OB_HULL_CORNERS_MAX], normal[OB_HULL_FACES_MAX];
-	double offset[OB_HULL_FACES_MAX]; // m, of the face from the centre
+	ob_vec3 box_corner[8];
+	double box_offset[6];
 } polytope;
 
 static double radius_of(const ob_placed *x)
@@ -60,31 +63,58 @@ static void polytope_init(polytope *x, const ob_placed *from, ob_vec3 origin)
 		x->shape = &box_topology;
 		x->inner = ob_min(h.x, ob_min(h.y, h.z));
 		x->thin = 2 * x->inner;
+		x->corner = x->box_corner;
+		x->offset = x->box_offset;
 		for (int k = 0; k < 8; k++)
-			x->corner[k] = ob_v3(k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z);
+			x->box_corner[k] = ob_v3(k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z);
 		for (int f = 0; f < 6; f++)
-			x->offset[f] = f < 2 ? h.x : f < 4 ? h.y : h.z;
+			x->box_offset[f] = f < 2 ? h.x : f < 4 ? h.y : h.z;
 	} else {
 		x->shape = from->hull;
 		x->inner = from->hull->inner;
 		x->thin = from->hull->thickness;
-		memcpy(x->corner, from->hull->corner, from->hull->corners * sizeof *x->corner);
-		memcpy(x->offset, from->hull->offset, from->hull->faces * sizeof *x->offset);
+		x->corner = from->hull->corner;
+		x->offset = from->hull->offset;
 	}
-	for (uint32_t k = 0; k < x->shape->corners; k++)
-		x->corner[k] = ob_add(x->centre, ob_rotate(&from->r, x->corner[k]));
-	for (uint32_t f = 0; f < x->shape->faces; f++)
-		x->normal[f] = ob_rotate(&from->r, x->shape->normal[f]);
 }
 
-// How far the lowest corner reaches along n (m).
-static double lowest_along(const polytope *x, ob_vec3 n)
+static ob_vec3 to_world(const polytope *x, ob_vec3 direction)
 {
-	double low = INFINITY;
+	return ob_rotate(&x->placed->r, direction);
+}
+
+static ob_vec3 to_local(const polytope *x, ob_vec3 direction)
+{
+	return ob_rotate_back(&x->placed->r, direction);
+}
+
+static ob_vec3 corner_of(const polytope *x, uint32_t k)
+{
+	return ob_add(x->centre, to_world(x, x->corner[k]));
+}
+
+static ob_vec3 normal_of(const polytope *x, uint32_t face)
+{
+	return to_world(x, x->shape->normal[face]);
+}
+
+// The corner that is lowest along n, which is in the shape's frame; how far it reaches, from the centre (m).
+static uint32_t lowest_corner(const polytope *x, ob_vec3 n, double *low)
+{
+	uint32_t lowest = 0;
+	*low = INFINITY;
 	for (uint32_t k = 0; k < x->shape->corners; k++) {
 		const double at = ob_dot(n, x->corner[k]);
-		low = at < low ? at : low;
+		if (at < *low)
+			*low = at, lowest = k;
 	}
+	return lowest;
+}
+
+static double lowest_along(const polytope *x, ob_vec3 n)
+{
+	double low;
+	lowest_corner(x, n, &low);
 	return low;
 }
 
@@ -128,24 +158,46 @@ static void add_open(axes *s, const axis *x)
 		s->list[least] = *x;
 }
 
-// The faces of one. No axis has a larger gap than if the other were the ball inside it.
-static void try_faces(axes *s, const polytope *of, const polytope *other, bool of_b, double rest)
+// Of two points of the other shape, how high they are above the faces of one (m): along a face's normal no axis has a
+// larger gap than the point's height, nor than the centre's less the radius of the ball inside it.
+typedef struct heights {
+	double of_centre[OB_HULL_FACES_MAX];
+	double of_point[OB_HULL_FACES_MAX]; // of the corner that is lowest above the face that looks at the centre most
+} heights;
+
+static void find_heights(const polytope *of, ob_vec3 point, double *height)
 {
-	const ob_vec3 d = ob_sub(other->centre, of->centre);
+	for (uint32_t f = 0; f < of->shape->faces; f++)
+		height[f] = ob_dot(of->shape->normal[f], point) - of->offset[f];
+}
+
+static void add_face(axes *s, const polytope *of, bool of_b, double rest, uint32_t f, double gap)
+{
+	const ob_vec3 n = normal_of(of, f);
+	const axis x = { .gap = gap, .is_face = true, .of_b = of_b, .face = f, .normal = of_b ? n : ob_scale(n, -1) };
+	if (gap > s->face.gap)
+		s->face = x;
+	if (gap > -rest)
+		add_open(s, &x);
+}
+
+// The faces of one, first that which looks at the other's centre most.
+static void try_faces(axes *s, const polytope *of, const polytope *other, bool of_b, double rest, heights *h)
+{
+	const ob_vec3 d = to_local(of, ob_sub(other->centre, of->centre));
+	uint32_t first = 0;
+	double low;
+	find_heights(of, d, h->of_centre);
+	for (uint32_t f = 1; f < of->shape->faces; f++)
+		first = h->of_centre[f] > h->of_centre[first] ? f : first;
+	const uint32_t corner = lowest_corner(other, to_local(other, normal_of(of, first)), &low);
+	find_heights(of, ob_add(d, to_local(of, to_world(other, other->corner[corner]))), h->of_point);
+	add_face(s, of, of_b, rest, first, h->of_centre[first] + low);
 	for (uint32_t f = 0; f < of->shape->faces; f++) {
-		const ob_vec3 n = of->normal[f];
-		const double most = ob_dot(n, d) - of->offset[f] - other->inner;
-		if (most < ob_min(s->face.gap, -rest))
-			continue;
-		const axis x = { .gap = lowest_along(other, n) - ob_dot(n, of->centre) - of->offset[f],
-				 .is_face = true,
-				 .of_b = of_b,
-				 .face = f,
-				 .normal = of_b ? n : ob_scale(n, -1) };
-		if (x.gap > s->face.gap)
-			s->face = x;
-		if (x.gap > -rest)
-			add_open(s, &x);
+		const double least = ob_min(s->face.gap, -rest);
+		if (f != first && h->of_point[f] >= least && h->of_centre[f] - other->inner >= least)
+			add_face(s, of, of_b, rest, f,
+				 h->of_centre[f] + lowest_along(other, to_local(other, normal_of(of, f))));
 	}
 }
 
@@ -156,37 +208,43 @@ typedef struct near_edge {
 	ob_vec3 left, right; // normals of its faces
 } near_edge;
 
-// Edges that have a normal n with n . d >= least: no other can be part of an axis with a larger gap. d: unit.
-static uint32_t collect_edges(const polytope *x, ob_vec3 d, double least, near_edge *out)
+// Is a point higher than "least" (m) above an edge along one of its arc of normals? left, right: its heights above the
+// edge's faces, which are those at the ends of the arc. In between they run as a cosine does.
+static bool is_above_edge(const polytope *x, const ob_hull_edge *e, const double *height, double least)
 {
+	const double left = height[e->left], right = height[e->right];
+	if (left >= least || right >= least)
+		return true;
+	if (left <= 0 && right <= 0)
+		return false;
+	const double c = ob_dot(x->shape->normal[e->left], x->shape->normal[e->right]);
+	return right > c * left && left > c * right &&
+	       (least <= 0 || left * left + right * right - 2 * c * left * right >= least * least * (1 - c * c));
+}
+
+// Edges that may be part of an axis with a gap of "needed" (m).
+static uint32_t collect_edges(const polytope *x, const polytope *other, double needed, const heights *h, near_edge *out)
+{
+	const double slack = 1e-9 * (x->radius + other->radius);
 	uint32_t n = 0;
 	for (uint32_t k = 0; k < x->shape->edges; k++) {
 		const ob_hull_edge *e = &x->shape->edge[k];
-		const ob_vec3 left = x->normal[e->left], right = x->normal[e->right];
-		const double l = ob_dot(left, d), r = ob_dot(right, d);
-		if (l < least && r < least) { // the arc between may come nearer still
-			const ob_vec3 way = ob_sub(x->corner[e->to], x->corner[e->from]);
-			const double along = ob_dot(way, d), far2 = 1 - along * along / ob_norm2(way);
-			const ob_vec3 across = ob_cross(way, d);
-			const bool between = ob_dot(across, left) * ob_dot(across, right) < 0;
-			if (!between || (least > 0 && far2 < least * least))
-				continue;
-		}
-		out[n++] =
-			(near_edge){ k, x->corner[e->from], ob_sub(x->corner[e->to], x->corner[e->from]), left, right };
+		if (!is_above_edge(x, e, h->of_point, needed - slack) ||
+		    !is_above_edge(x, e, h->of_centre, needed + other->inner - slack))
+			continue;
+		out[n++] = (near_edge){ k, corner_of(x, e->from),
+					to_world(x, ob_sub(x->corner[e->to], x->corner[e->from])),
+					normal_of(x, e->left), normal_of(x, e->right) };
 	}
 	return n;
 }
 
-static void try_edges(axes *s, const polytope *a, const polytope *b, double rest, double discount)
+static void try_edges(axes *s, const polytope *a, const polytope *b, double needed, double rest, double discount,
+		      const heights *heights_a, const heights *heights_b)
 {
 	near_edge of_a[OB_HULL_EDGES_MAX], of_b[OB_HULL_EDGES_MAX];
-	const ob_vec3 d = ob_sub(b->centre, a->centre);
-	const double apart = ob_norm(d), needed = a->inner + b->inner + ob_min(s->face.gap, -rest);
-	const ob_vec3 towards = apart > 0 ? ob_scale(d, 1 / apart) : ob_v3(0, 0, 1);
-	const double least = apart > 0 ? needed / apart - 1e-9 : -1;
-	const uint32_t na = collect_edges(a, towards, least, of_a);
-	const uint32_t nb = collect_edges(b, ob_scale(towards, -1), least, of_b);
+	const uint32_t na = collect_edges(a, b, needed, heights_a, of_a);
+	const uint32_t nb = na ? collect_edges(b, a, needed, heights_b, of_b) : 0;
 	for (uint32_t i = 0; i < na; i++)
 		for (uint32_t j = 0; j < nb; j++) {
 			const near_edge *ea = &of_a[i], *eb = &of_b[j];
@@ -217,12 +275,14 @@ static void try_edges(axes *s, const polytope *a, const polytope *b, double rest
 // m/s at which the gap of a face opens: of its lowest corners, the one that opens least.
 static double face_rate(const polytope *of, const polytope *other, ob_vec3 n)
 {
-	const double low = lowest_along(other, n) + as_low * other->radius;
+	const ob_vec3 l = to_local(other, n);
+	const double low = lowest_along(other, l) + as_low * other->radius;
 	double rate = INFINITY;
 	for (uint32_t k = 0; k < other->shape->corners; k++) {
-		const ob_vec3 x = other->corner[k];
-		if (ob_dot(n, x) <= low)
-			rate = ob_min(rate, ob_dot(n, ob_sub(velocity_at(other, x), velocity_at(of, x))));
+		if (ob_dot(l, other->corner[k]) > low)
+			continue;
+		const ob_vec3 x = corner_of(other, k);
+		rate = ob_min(rate, ob_dot(n, ob_sub(velocity_at(other, x), velocity_at(of, x))));
 	}
 	return rate;
 }
@@ -232,8 +292,8 @@ static void nearest_on_edges(const polytope *a, const polytope *b, const axis *x
 			     ob_vec3 *xb)
 {
 	const ob_hull_edge *ea = &a->shape->edge[x->edge_a], *eb = &b->shape->edge[x->edge_b];
-	const ob_vec3 pa = a->corner[ea->from], pb = b->corner[eb->from], u = ob_sub(a->corner[ea->to], pa),
-		      v = ob_sub(b->corner[eb->to], pb), w = ob_sub(pa, pb);
+	const ob_vec3 pa = corner_of(a, ea->from), pb = corner_of(b, eb->from), u = ob_sub(corner_of(a, ea->to), pa),
+		      v = ob_sub(corner_of(b, eb->to), pb), w = ob_sub(pa, pb);
 	const double uu = ob_norm2(u), vv = ob_norm2(v), uv = ob_dot(u, v), uw = ob_dot(u, w), vw = ob_dot(v, w);
 	const double det = uu * vv - uv * uv;
 	double s = (uv * vw - uw * vv) / det, t = (vw * uu - uv * uw) / det;
@@ -249,7 +309,7 @@ static double opening_rate(const polytope *a, const polytope *b, const axis *x)
 {
 	ob_vec3 xa, xb;
 	if (x->is_face)
-		return x->of_b ? face_rate(b, a, b->normal[x->face]) : face_rate(a, b, a->normal[x->face]);
+		return x->of_b ? face_rate(b, a, normal_of(b, x->face)) : face_rate(a, b, normal_of(a, x->face));
 	nearest_on_edges(a, b, x, false, &xa, &xb);
 	return ob_dot(x->normal, ob_sub(velocity_at(a, xa), velocity_at(b, xb)));
 }
@@ -399,6 +459,11 @@ void ob_polygon_reduce(ob_polygon *p, double band)
 static void clip(ob_polygon *p, double u, double w, double nu, double nw)
 {
 	ob_polygon out;
+	bool beyond = false;
+	for (int k = 0; k < p->n; k++)
+		beyond |= nu * (p->u[k] - u) + nw * (p->w[k] - w) > 0;
+	if (!beyond)
+		return;
 	out.n = 0;
 	for (int k = 0; k < p->n; k++) {
 		const int next = k + 1 < p->n ? k + 1 : 0;
@@ -421,14 +486,15 @@ static void clip(ob_polygon *p, double u, double w, double nu, double nw)
 // Of the faces at its lowest corners, the one that looks most against n.
 static uint32_t incident_face(const polytope *in, ob_vec3 n)
 {
-	const double low = lowest_along(in, n) + as_low * in->radius;
+	const ob_vec3 l = to_local(in, n);
+	const double low = lowest_along(in, l) + as_low * in->radius;
 	uint64_t lowest = 0;
 	uint32_t best = 0;
 	double least = INFINITY;
 	for (uint32_t k = 0; k < in->shape->corners; k++)
-		lowest |= (uint64_t)(ob_dot(n, in->corner[k]) <= low) << k;
+		lowest |= (uint64_t)(ob_dot(l, in->corner[k]) <= low) << k;
 	for (uint32_t f = 0; f < in->shape->faces; f++) {
-		const double c = ob_dot(n, in->normal[f]);
+		const double c = ob_dot(l, in->shape->normal[f]);
 		bool there = false;
 		for (uint32_t k = in->shape->first[f]; c < least && k < in->shape->first[f + 1]; k++)
 			there |= lowest >> in->shape->loop[k] & 1;
@@ -442,23 +508,24 @@ static void face_manifold(const polytope *ref, const polytope *in, uint32_t face
 			  double margin, ob_manifold *m)
 {
 	const ob_hull *top = ref->shape;
-	const uint32_t first = top->first[face], end = top->first[face + 1],
-		       incident = incident_face(in, ref->normal[face]);
-	const ob_vec3 n = ref->normal[face], base = ref->corner[top->loop[first]];
-	ob_vec3 u = ob_sub(ref->corner[top->loop[first + 1]], base);
+	const uint32_t first = top->first[face], end = top->first[face + 1];
+	const ob_vec3 n = normal_of(ref, face), base = corner_of(ref, top->loop[first]);
+	const uint32_t incident = incident_face(in, n);
+	ob_vec3 u = ob_sub(corner_of(ref, top->loop[first + 1]), base);
 	u = ob_scale(u, 1 / ob_norm(u));
 	const ob_vec3 w = ob_cross(n, u);
 	ob_polygon p;
 	p.n = 0;
 	for (uint32_t k = in->shape->first[incident]; k < in->shape->first[incident + 1]; k++) {
-		const ob_vec3 x = ob_sub(in->corner[in->shape->loop[k]], base);
+		const ob_vec3 x = ob_sub(corner_of(in, in->shape->loop[k]), base);
 		polygon_put(&p, ob_dot(x, u), ob_dot(x, w), ob_dot(x, n));
 	}
+	ob_vec3 from = { 0, 0, 0 };
 	for (uint32_t k = first; k < end && p.n; k++) {
-		const ob_vec3 from = ob_sub(ref->corner[top->loop[k]], base),
-			      to = ob_sub(ref->corner[top->loop[k + 1 < end ? k + 1 : first]], base);
+		const ob_vec3 to = ob_sub(corner_of(ref, top->loop[k + 1 < end ? k + 1 : first]), base);
 		const ob_vec3 way = ob_sub(to, from);
 		clip(&p, ob_dot(from, u), ob_dot(from, w), ob_dot(way, w), -ob_dot(way, u));
+		from = to;
 	}
 	for (int k = p.n - 1; k >= 0; k--)
 		if (!(p.z[k] <= margin))
@@ -491,7 +558,7 @@ static bool face_along(const polytope *a, const polytope *b, const axis *x, uint
 	for (int k = 0; k < 4; k++) {
 		const ob_hull_edge *e = k < 2 ? &a->shape->edge[x->edge_a] : &b->shape->edge[x->edge_b];
 		const uint32_t f = k & 1 ? e->right : e->left;
-		const double c = k < 2 ? -ob_dot(a->normal[f], x->normal) : ob_dot(b->normal[f], x->normal);
+		const double c = k < 2 ? -ob_dot(normal_of(a, f), x->normal) : ob_dot(normal_of(b, f), x->normal);
 		if (c > best)
 			best = c, *face = f, *of_b = k >= 2, found = true;
 	}
@@ -526,6 +593,7 @@ void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double marg
 {
 	polytope a, b;
 	axes s = { .face = { .gap = -INFINITY }, .edge = { .gap = -INFINITY } };
+	heights heights_a, heights_b;
 	bool crossing;
 	const ob_vec3 origin = pb->p;
 	const double rest = ob_min(pa->rest_depth, pb->rest_depth);
@@ -536,12 +604,12 @@ void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double marg
 	polytope_init(&a, pa, origin);
 	polytope_init(&b, pb, origin);
 	const double thin = ob_min(a.thin, b.thin), discount = prefer_face * thin;
-	try_faces(&s, &a, &b, false, rest);
-	try_faces(&s, &b, &a, true, rest);
+	try_faces(&s, &a, &b, false, rest, &heights_a);
+	try_faces(&s, &b, &a, true, rest, &heights_b);
 	out->separation = s.face.gap;
 	if (s.face.gap > margin + nearby * thin)
 		return;
-	try_edges(&s, &a, &b, rest, discount);
+	try_edges(&s, &a, &b, ob_min(s.face.gap, discount - rest), rest, discount, &heights_a, &heights_b);
 	out->separation = ob_max(s.face.gap, s.edge.gap);
 	if (out->separation > margin)
 		return;
