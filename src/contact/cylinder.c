@@ -506,6 +506,22 @@ static bool proven_by(const search *s, const ob_spots *spots)
 	return false;
 }
 
+// The shapes overlap beyond a facet, but hardly more to the side: that a point proves the facet's normal best tells of
+// directions near it alone.
+static bool is_overhanging(const search *s)
+{
+	static const double hardly = 2; // times as much
+	const ob_placed *x[2] = { s->a, s->b };
+	const ob_vec3 d = ob_sub(s->a->p, s->b->p);
+	for (int k = 0; s->gap < 0 && k < 2; k++) {
+		const ob_vec3 side = part_across(d, ob_column(&x[k]->r, 2));
+		if (x[k]->shape == OB_SHAPE_CYLINDER && ob_norm2(side) > 1e-12 * ob_norm2(d) &&
+		    ob_apart_along(s->a, s->b, unit(side)) > hardly * s->gap)
+			return true;
+	}
+	return false;
+}
+
 // The face of a box on which the cylinder rolls or slides over a seam, where n is not its normal. false: there is none.
 static bool on_face_underfoot(const search *s, ob_vec3 n, double margin, ob_manifold *out)
 {
@@ -538,7 +554,7 @@ void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double m
 		return;
 	facet_points(&s, s.normal, margin, &spots, &sign);
 	const ob_vec3 tried = s.normal;
-	const bool proven = proven_by(&s, &spots);
+	const bool proven = proven_by(&s, &spots) && !is_overhanging(&s);
 	if (!proven || is_deep(&s) || (sharp && s.gap > near_enough * thickness))
 		try_others(&s, margin + far * thickness);
 	out->separation = s.gap;

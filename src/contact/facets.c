@@ -259,6 +259,29 @@ static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const
 		s->disc_radius = c->radius;
 }
 
+// Where the rims of two discs cross, seen along the normal n, near x in the plane of the first: both quadratic
+// equations by Newton's method. false: they do not cross there.
+static bool rims_cross(const disc *on, const disc *over, ob_vec3 n, ob_vec3 *x)
+{
+	enum { NEWTON = 12 };
+	const double r2 = on->radius * on->radius, q2 = over->radius * over->radius;
+	const double across = ob_dot(over->normal, n);
+	for (int i = 0; i < NEWTON; i++) {
+		const ob_vec3 f = ob_sub(*x, on->centre);
+		const ob_vec3 g = ob_sub(into_plane(*x, n, over->centre, over->normal), over->centre);
+		const ob_vec3 gn = ob_madd(g, -ob_dot(g, n) / across, over->normal); // g follows x along n
+		const ob_vec3 u = ob_madd(f, -ob_dot(f, n), n), v = ob_madd(gn, -ob_dot(gn, n), n);
+		const double ef = .5 * (r2 - ob_norm2(f)), eg = .5 * (q2 - ob_norm2(g)),
+			     det = ob_dot(n, ob_cross(u, v));
+		if (fabs(ef) <= border * r2 && fabs(eg) <= border * q2)
+			return true;
+		if (!(det * det > border * r2 * q2))
+			return false;
+		*x = ob_madd(*x, 1 / det, ob_cross(ob_sub(ob_scale(v, ef), ob_scale(u, eg)), n));
+	}
+	return false;
+}
+
 static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const ob_vec3 rim_on[4],
 			  const ob_vec3 rim_over[4])
 {
@@ -283,12 +306,20 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 		s->disc_radius = s->n == 4 ? r : 0;
 	} else if (l < r + q) { // a lens: its corners, and where it is widest
 		ob_vec3 u = ob_scale(way, 1 / l), v = ob_cross(n, u);
-		double x = .5 * (l + (r - q) * (r + q) / l), y = sqrt(ob_max(0, r * r - x * x));
-		ob_vec3 place[4] = { ob_madd(ob_madd(on->centre, x, u), y, v),
-				     ob_madd(ob_madd(on->centre, x, u), -y, v), ob_madd(on->centre, r, u),
-				     ob_madd(centre, -q, u) };
-		for (int k = 0; k < 4; k++)
-			add(s, place[k], into_plane(place[k], n, over->centre, over->normal));
+		const double x = .5 * (l + (r - q) * (r + q) / l), y = sqrt(ob_max(0, r * r - x * x));
+		ob_vec3 corner[2] = { ob_madd(ob_madd(on->centre, x, u), y, v),
+				      ob_madd(ob_madd(on->centre, x, u), -y, v) };
+		for (int k = 0; k < 2; k++)
+			if (rims_cross(on, over, n, &corner[k]))
+				add(s, corner[k], into_plane(corner[k], n, over->centre, over->normal));
+		const ob_vec3 far = ob_madd(on->centre, r, u),
+			      far_over = into_plane(far, n, over->centre, over->normal);
+		const ob_vec3 near_over = ob_madd(over->centre, -q, unit(part_across(u, over->normal))),
+			      near = into_plane(near_over, n, on->centre, n);
+		if (ob_norm(ob_sub(far_over, over->centre)) <= q * (1 + border))
+			add(s, far, far_over);
+		if (ob_norm(ob_sub(near, on->centre)) <= r * (1 + border))
+			add(s, near, near_over);
 	}
 }
 

@@ -3,6 +3,7 @@
 static const double flat = 1e-12; // of a unit vector's part across an axis: less has no direction
 static const double converged = 1e-14; // of the shapes' size, what is left of a gradient
 static const double rounding = 1e-14; // of the shapes' size
+static const double flattest = 1e-9; // of the shapes' size, of a curvature that a step is measured by
 static const double widest = 1e4; // tangent of the largest turn of a climb
 
 static ob_vec3 unit(ob_vec3 v)
@@ -134,6 +135,23 @@ static ob_vec3 off_axis(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_ve
 	return n;
 }
 
+// What lies uphill, in a basis across n: of the slope g and the curvature m (xx, xy, yy, of a hill positive), Newton's
+// step, as if the surface were curved as much downwards where it is curved upwards: along a ridge it is flat, and may
+// be curved either way.
+static void newton_step(const double g[2], const double m[3], double least, double step[2])
+{
+	const double mean = .5 * (m[0] + m[2]), half = .5 * (m[0] - m[2]), root = sqrt(half * half + m[1] * m[1]);
+	double x = m[1], y = root - half; // along the direction of the larger curvature, mean + root
+	if (half > 0)
+		x = root + half, y = m[1];
+	const double l = sqrt(x * x + y * y);
+	x = l > 0 ? x / l : 1, y = l > 0 ? y / l : 0;
+	const double along = (g[0] * x + g[1] * y) / ob_max(fabs(mean + root), least),
+		     across = (g[1] * x - g[0] * y) / ob_max(fabs(mean - root), least);
+	step[0] = along * x - across * y;
+	step[1] = along * y + across * x;
+}
+
 ob_vec3 ob_climb_rims(const ob_placed *a, const ob_placed *b, ob_vec3 from)
 {
 	enum { NEWTON = 30, HALVE = 12 };
@@ -143,28 +161,24 @@ ob_vec3 ob_climb_rims(const ob_placed *a, const ob_placed *b, ob_vec3 from)
 		ob_vec3 g = ob_support_between(a, b, n),
 			p = unit(ob_cross(n, fabs(n.x) < .6 ? ob_v3(1, 0, 0) : ob_v3(0, 1, 0)));
 		ob_vec3 q = ob_cross(n, p);
-		double gap = ob_dot(n, g), gp = ob_dot(g, p), gq = ob_dot(g, q), m[3] = { gap, 0, gap };
-		const double gp0 = gp, gq0 = gq;
-		if (fabs(gp) + fabs(gq) <= converged * size)
+		const double gap = ob_dot(n, g), slope[2] = { ob_dot(g, p), ob_dot(g, q) };
+		double m[3] = { gap, 0, gap }, step[2];
+		if (fabs(slope[0]) + fabs(slope[1]) <= converged * size)
 			break;
 		add_curvature(a, n, p, q, m);
 		add_curvature(b, n, p, q, m);
-		double det = m[0] * m[2] - m[1] * m[1];
-		if (!(m[0] > 0) || !(det > 1e-12 * m[0] * m[0])) { // not a hill here: along the slope
-			double k = 1 / (fabs(m[0]) + fabs(m[2]) + 1e-3 * size);
-			m[0] = m[2] = 1, m[1] = 0, det = 1;
-			gp *= k, gq *= k;
-		}
-		double dp = (m[2] * gp - m[1] * gq) / det, dq = (m[0] * gq - m[1] * gp) / det;
-		double l = sqrt(dp * dp + dq * dq), k = l > longest ? longest / l : 1;
+		newton_step(slope, m, flattest * size, step);
+		const double l = sqrt(step[0] * step[0] + step[1] * step[1]);
 		bool better = false;
+		double k = l > longest ? longest / l : 1;
 		for (int h = 0; h < HALVE && !better; h++, k *= .5) {
-			ob_vec3 next = unit(ob_madd(ob_madd(n, k * dp, p), k * dq, q));
+			ob_vec3 next = unit(ob_madd(ob_madd(n, k * step[0], p), k * step[1], q));
 			ob_vec3 at_next = ob_support_between(a, b, next);
 			double gain = ob_dot(next, at_next) - gap,
 			       left = ob_norm2(ob_madd(at_next, -ob_dot(next, at_next), next));
 			// near the top a gain drowns in rounding, the slope does not
-			better = gain > rounding * size || (gain > -rounding * size && left < gp0 * gp0 + gq0 * gq0);
+			better = gain > rounding * size ||
+				 (gain > -rounding * size && left < slope[0] * slope[0] + slope[1] * slope[1]);
 			if (better)
 				n = next;
 		}
