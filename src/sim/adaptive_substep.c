@@ -18,7 +18,7 @@ static const double max_partial_substeps = 1024; // of a substep
 static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	double turn = ob_body_turn_rate(w, rows, contact->a) + ob_body_turn_rate(w, rows, contact->b);
+	double turn = ob_contact_turn_rate(w, rows, contact);
 	double slide = ob_norm(ob_contact_velocity(w, rows, contact));
 	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
 		slide = 0;

@@ -10,6 +10,7 @@
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
 #include "sim/publish.h"
+#include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
 static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
@@ -42,11 +43,17 @@ static void update_inertia(ob_body *body)
 static void set_speed_bound(ob_island_work *w, uint32_t row)
 {
 	ob_body *body = &w->body[row];
-	body->turning = 0;
-	if (body->shape != OB_SHAPE_SPHERE)
-		body->turning = body->radius *
-				ob_drift_bound(ob_rotate_back(&body->r, angular_of(w->v[row])), body->inertia, w->h);
+	const ob_vec3 rate = ob_rotate_back(&body->r, angular_of(w->v[row]));
+	body->turning = ob_turning_speed(body->shape, body->size, body->inertia, rate, w->h);
 	body->speed = ob_norm(linear_of(w->v[row])) + body->turning;
+	if (ob_has_axis(body->shape))
+		body->speed += body->radius * fabs(rate.z);
+}
+
+// m/s, bound of how fast the body's surface moves: its points may do so faster, where a round body spins.
+static double surface_speed(const ob_island_work *w, uint32_t row)
+{
+	return ob_norm(linear_of(w->v[row])) + w->body[row].turning;
 }
 
 // rad/s^2, by a torque (N m, world)
@@ -433,11 +440,6 @@ static void turn_body(ob_sim *s, uint32_t row, bool held)
 
 // ---- velocities
 
-double ob_body_turn_rate(const ob_island_work *w, const ob_body_row *rows, uint32_t row)
-{
-	return w->body[row].shape == OB_SHAPE_SPHERE ? 0 : ob_norm(angular_of(rows[row]));
-}
-
 void ob_body_set_velocity(ob_island_work *w, uint32_t row, ob_vec3 linear, ob_vec3 angular)
 {
 	memset(w->v[row], 0, sizeof *w->v);
@@ -547,7 +549,7 @@ void ob_bodies_integrate_positions(ob_sim *s)
 			turn_body(s, i, held);
 		}
 		set_speed_bound(w, i);
-		w->body[i].path += w->h * w->body[i].speed;
+		w->body[i].path += w->h * surface_speed(w, i);
 	}
 	for (uint32_t row = w->bodies + 1; w->surfaces.count && row < w->rows; row++)
 		advance_surface(s, row);

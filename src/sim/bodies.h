@@ -13,8 +13,6 @@ void ob_body_update_pose(ob_island_work *w, uint32_t row);
 void ob_body_place(ob_body *body, ob_vec3 p, ob_quat q);
 // v, and with it the bound of its speed
 void ob_body_set_velocity(ob_island_work *w, uint32_t row, ob_vec3 linear, ob_vec3 angular);
-// rad/s, of what changes the body's contacts by turning; 0 for spheres.
-double ob_body_turn_rate(const ob_island_work *w, const ob_body_row *rows, uint32_t row);
 // Speed bounds anew of bodies that were hit in the partial substep.
 void ob_bodies_update_speed_bounds(ob_sim *s);
 // dv: what external acceleration and the last impulses will bring, where the contacts are now.

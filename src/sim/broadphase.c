@@ -12,6 +12,7 @@
 #include "motion/drift.h"
 #include "sim/commit.h"
 #include "sim/publish.h"
+#include "sim/relative_speed.h"
 
 // ---- spatial index
 
@@ -271,6 +272,8 @@ void ob_tight_aabb(const ob_universe *u, const ob_passport *p, ob_pose pose, dou
 
 double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s)
 {
+	if (ob_has_axis(shape) && inertia.x == inertia.y) // its axis turns at a rate that stays
+		w.z = 0, s = 0;
 	double rate = shape == OB_SHAPE_SPHERE ? 0 : ob_drift_bound(w, inertia, s);
 	return rate == 0 ? 0 : rate * ob_shape_radius(shape, size);
 }

@@ -14,8 +14,8 @@
 
 // ---- fat AABBs
 
-// Bound of what turning adds to the speed of any point of an object (m/s) within s from the rate w (rad/s, frame of the
-// object); 0 for spheres, and without rotation.
+// Bound of what turning adds to the speed of an object's surface (m/s) within s from the rate w (rad/s, frame of the
+// object); 0 for spheres, without rotation, and where a round body spins about its axis.
 double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s);
 // How far any point of the object may get in one step from this attitude and these velocities (m), under its external
 // acceleration.

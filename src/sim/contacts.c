@@ -123,13 +123,16 @@ static void leave_lane(ob_island_work *w, ob_contact *contact)
 	}
 	set_lane(w, contact, OB_NO_LANE);
 	contact->points = 0;
+	contact->spin_lever_a = contact->spin_lever_b = 0;
 	w->counts_stale = true;
 }
 
 // Writes the contact's geometry into its lane. gap: m, of each point.
-static void fill_lane(ob_island_work *w, const ob_contact *contact, ob_vec3 normal, const double *gap)
+static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, const double *gap)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+	contact->spin_lever_a = ob_spin_lever(a, normal, contact->arm_a, contact->points);
+	contact->spin_lever_b = ob_spin_lever(b, normal, contact->arm_b, contact->points);
 	ob_batch_lane lane = { .body_a = contact->a,
 			       .body_b = contact->b,
 			       .normal = normal,

@@ -36,7 +36,7 @@ typedef struct ob_body {
 	double friction, restitution, radius, thickness;
 	double rest_depth; // m, as ob_placed.rest_depth
 	double path, speed; // m, as ob_motion.path; m/s bound of any point
-	double turning; // m/s, what of that speed comes from turning
+	double turning; // m/s, what turning adds to the speed at which its surface moves
 	float rest_time; // s, as ob_motion.rest_time
 	bool isotropic; // inertia is the same about all axes
 	bool moved_freely; // it touched nothing in this step, not for a moment
@@ -69,6 +69,7 @@ typedef struct ob_contact {
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
 	int8_t was[OB_PAIR_POINTS]; // of each point: which one it was when the geometry was found before; -1: none
 	double disc_radius; // m, of the manifold
+	double spin_lever_a, spin_lever_b; // m, of its points (sim/relative_speed.h); 0 while they are apart
 	double path,
 		limit; // m: how far the two have moved, one from the other, in this step; until when the geometry holds
 	double since; // s, from when the geometry was found to the partial substep's start; infinity: unknown

@@ -37,7 +37,7 @@ static double change_bound(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	double speed = ob_contact_speed(w, contact);
-	double turn = ob_body_turn_rate(w, w->v, contact->a) + ob_body_turn_rate(w, w->v, contact->b);
+	double turn = ob_contact_turn_rate(w, w->v, contact);
 	if ((is_round(a->shape) && b->shape != OB_SHAPE_PLANE) || (is_round(b->shape) && a->shape != OB_SHAPE_PLANE))
 		turn += speed / ob_min(a->radius, b->radius);
 	return .5 * w->h * turn * speed;

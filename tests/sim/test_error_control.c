@@ -193,6 +193,34 @@ static void test_rest_is_cheap(void)
 	free(s);
 }
 
+// What is round and rolls straight on looks the same from step to step: one substep, and no collision tests.
+static void test_rolling_is_cheap(ob_shape shape)
+{
+	const double radius = .2, speed = 1;
+	little_scene *s = tolerant(.5e-3);
+	ob_world_ground(&s->world);
+	ob_world_body o = ob_world_add(&s->world, shape, ob_v3(radius, .3, 0), 2, ob_v3(0, 0, radius));
+	o.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(M_PI / 2, 0, 0));
+	o.state->v = ob_v3(speed, 0, 0), o.state->w = ob_v3(0, speed / radius, 0);
+	const uint32_t id = o.passport->id;
+	little_universe l;
+	ob_counters before, after;
+	little_open(&l, s);
+	little_run_to(&l, 1);
+	ob_universe_count(l.u, &before);
+	const double from = little_state(&l, id).pose.p.x;
+	little_run_to(&l, 3);
+	ob_universe_count(l.u, &after);
+	CHECK_NEAR(little_state(&l, id).pose.p.x - from, 2 * speed, 1e-9);
+	CHECK_NEAR(little_state(&l, id).w.y, speed / radius, 1e-9);
+	CHECK(before.chosen[0] > 0);
+	for (int i = 1; i < OB_SUBSTEP_CHOICES; i++)
+		CHECK(after.chosen[i] == before.chosen[i]);
+	CHECK(after.narrowphase_tests == before.narrowphase_tests);
+	little_close(&l);
+	free(s);
+}
+
 // The hash after 2 s; fresh: each step by a simulator that has run nothing before.
 static uint64_t hash(ob_integrator integrator, bool fresh)
 {
@@ -242,6 +270,8 @@ int main(void)
 	test_columns();
 	test_rebounds();
 	test_rest_is_cheap();
+	test_rolling_is_cheap(OB_SHAPE_CYLINDER);
+	test_rolling_is_cheap(OB_SHAPE_CAPSULE);
 	test_no_trace();
 	return check_end();
 }

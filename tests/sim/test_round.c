@@ -66,6 +66,24 @@ static void test_rolls_off(ob_shape shape)
 	free(s);
 }
 
+// Spins about its axis where nothing brakes it: that moves no surface, and is no rest.
+static void test_spins_on(ob_shape shape)
+{
+	little_scene *s = little_scene_new();
+	ob_world_ground(&s->world);
+	const double low = shape == OB_SHAPE_CAPSULE ? .5 : .3;
+	ob_world_body o = ob_world_add(&s->world, shape, ob_v3(.2, .3, 0), 2, ob_v3(0, 0, low));
+	o.state->w = ob_v3(0, 0, .01);
+	const uint32_t id = o.passport->id;
+	ob_world_material(&s->world, 0, 0);
+	little_universe u;
+	little_open(&u, s);
+	little_run(&u, 120);
+	CHECK_NEAR(little_state(&u, id).w.z, .01, 1e-12);
+	little_close(&u);
+	free(s);
+}
+
 // rad, by which the axis of a cylinder that stands on a slope has turned after two seconds; turn: of the cylinder
 // about its axis.
 static double tips(double slope, double turn)
@@ -98,6 +116,8 @@ int main(void)
 	test_bounces(OB_SHAPE_CAPSULE, true);
 	test_rolls_off(OB_SHAPE_CYLINDER);
 	test_rolls_off(OB_SHAPE_CAPSULE);
+	test_spins_on(OB_SHAPE_CYLINDER);
+	test_spins_on(OB_SHAPE_CAPSULE);
 	const double critical = atan(.4);
 	for (double turn = 0; turn < 1.5; turn += .35) { // whichever way the cylinder is turned
 		CHECK(tips(.995 * critical, turn) < 1e-6);
