@@ -10,9 +10,15 @@
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
-static const double least_change = 1e-7; // m/s: less than turning brings to any row is not noticed
+static const double least_turning = 5e-5; // m/s^2: less than turning brings to any row is not noticed
 static const double longest_way = .2; // of the smaller thickness: in a partial substep of bodies that are halved
 static const double loose_gap = 1e-5; // m: a point that is farther off is not held at the surface
+
+// m/s, in the partial substep
+static double least_change(const ob_island_work *w)
+{
+	return least_turning * w->unit.speed / w->unit.time * w->h;
+}
 
 static ob_vec3 linear_of(const double *r)
 {
@@ -59,8 +65,7 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	if ((a->surface && ob_norm2(angular_of(w->v[contact->a])) > 0) ||
 	    (b->surface && ob_norm2(angular_of(w->v[contact->b])) > 0))
 		return false; // of the first order, but for what is carried
-	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change * w->unit.speed &&
-	       load_of(w, contact) > 0 &&
+	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change(w) && load_of(w, contact) > 0 &&
 	       ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness);
 }
 
@@ -204,7 +209,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 	b->turn[4][l] = ob_dot(slide, t1);
 	b->turn[5][l] = ob_dot(slide, t2);
 	b->turn[6][l] = turned(ob_dot(n, ob_sub(wa, wb)), ob_dot(start_n, ob_sub(wa0, wb0)), b->impulse[6][l]);
-	if (most > least_change * w->unit.speed)
+	if (most > least_change(w))
 		b->turning |= 1u << l;
 }
 
