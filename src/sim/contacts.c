@@ -270,6 +270,7 @@ static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const 
 
 static const double max_retest_share = 3; // of the tolerance
 static const double retest_path = .0015; // m: after which the geometry of a resting pair is tested again
+static const double standing = 1e-5; // m/s: what is slower moves by less than that before it is faster
 
 // m: path after which a pair is tested again. Corners that were no points of the contact come down by a share of the
 // path of the bodies; where many substeps did not reach the tolerance, that may be why.
@@ -369,13 +370,23 @@ static double speed_gain(const ob_island_work *w, const ob_contact *contact)
 	return ob_min(free, .5 * (ob_norm(ob_v3(a[0], a[1], a[2])) + ob_norm(ob_v3(b[0], b[1], b[2]))));
 }
 
+// A body that all but balances on an edge is turned by what little its centre is beside that, which its way changes: so
+// a pair that touches nothing else that moves is found wherever it moves. Among others, iterations are no finer.
+static bool moves_alone(const ob_island_work *w, const ob_contact *contact, double speed)
+{
+	return contact->lane != OB_NO_LANE && !w->body[contact->a].among_others && !w->body[contact->b].among_others &&
+	       speed > standing * w->unit.speed;
+}
+
 // true: its geometry was found anew
 static bool update_contact(ob_sim *s, ob_contact *contact, double since, double ahead)
 {
 	const ob_island_work *w = &s->island;
 	const double speed = ob_contact_speed(w, contact);
 	contact->path += since * speed;
-	if (((contact->as_of_instant || contact->turns) && ahead > 0) ||
+	if ((contact->as_of_instant || contact->turns) && ahead > 0)
+		return false;
+	if (!(ahead > 0 && moves_alone(w, contact, speed)) &&
 	    !(contact->path + (speed + speed_gain(w, contact)) * ahead > contact->limit))
 		return false;
 	s->counters.narrowphase_tests++;

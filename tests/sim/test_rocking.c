@@ -76,6 +76,29 @@ static void check_refined(double slenderness)
 	}
 }
 
+// A brick whose centre is a little beyond the edge that it lies on: it topples about that edge. Of what turns it, its
+// centre's distance from the edge, the first .1 mm that the edge is off would take a fifth.
+static void check_toppling(double beyond, double tolerance, uint32_t substeps)
+{
+	const ob_vec3 half = ob_v3(.5, .25, .1);
+	little_scene *s = little_scene_new();
+	s->run.substeps = substeps;
+	s->run.tolerance = tolerance;
+	ob_world_box(&s->world, 0, ob_v3(2, 1, .5), ob_v3(-2, 0, -.5));
+	const double moment = ob_world_box(&s->world, 10, half, ob_v3(beyond, 0, half.z)).passport->inertia.y / 10;
+	ob_world_material(&s->world, 1, 0);
+	little_universe l;
+	little_open(&l, s);
+	little_run(&l, 84);
+	ob_mat3 r = ob_quat_matrix(little_state(&l, 1).pose.q);
+	const double off = atan2(r.m[0][2], r.m[2][2]) / ob_reference_topple(beyond, half.z, moment, g, 84 / 60.) - 1;
+	printf("brick %g mm over the edge, %u substeps, tolerance %g: tilt off by %.4f %%\n", 1e3 * beyond, substeps,
+	       tolerance, 100 * off);
+	CHECK(fabs(off) <= .002);
+	little_close(&l);
+	free(s);
+}
+
 // Rate of turn of the block about an edge that it hits the ground with, squared, if no energy is lost until then.
 static double rate_of_hit(const ob_reference_rocker *r, const ob_state *s)
 {
@@ -182,5 +205,11 @@ int main(void)
 			}
 	for (int i = 0; i < 4; i++)
 		check_refined(slenderness[i]);
+	for (uint32_t substeps = 4; substeps <= 256; substeps *= 4) {
+		check_toppling(5e-4, 0, substeps);
+		check_toppling(2e-3, 0, substeps);
+	}
+	for (double tolerance = 1e-2; tolerance > 5e-6; tolerance /= 10)
+		check_toppling(5e-4, tolerance, 8);
 	return check_end();
 }
