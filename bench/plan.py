@@ -49,6 +49,8 @@ SHORT = [
     ('stack-10', ['obsim', *OTHERS], {'duration': 5}),
     ('pyramid-15', ['obsim', *OTHERS], {'duration': 1}),
     ('falling-200', ['obsim', 'obsim 2 threads', 'obsim 2 processes', *OTHERS], {'duration': 2}),
+    ('cylinders-200', ['obsim'], {'duration': 2}),
+    ('capsules-200', ['obsim'], {'duration': 2}),
     ('pile', ['obsim', *OTHERS], {'duration': 1}),
     ('heavy-1000', ['obsim', 'ode-world'], {'duration': 5}),
     ('hit-wall', ['obsim', *OTHERS, 'mujoco'], {'duration': 1}),

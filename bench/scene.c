@@ -19,6 +19,16 @@ static void build_falling(ob_world *w, uint32_t run)
 	ob_world_falling(w, scene.bodies, 100 + run);
 }
 
+static void build_cylinders(ob_world *w, uint32_t run)
+{
+	ob_world_falling_solids(w, OB_SHAPE_CYLINDER, scene.bodies, 100 + run);
+}
+
+static void build_capsules(ob_world *w, uint32_t run)
+{
+	ob_world_falling_solids(w, OB_SHAPE_CAPSULE, scene.bodies, 100 + run);
+}
+
 static void build_sparse(ob_world *w, uint32_t run)
 {
 	ob_world_sparse(w, scene.bodies, 200 + run);
@@ -65,6 +75,8 @@ static void judge_balls(ob_case_run_state *t)
 
 static const bench_scene families[] = {
 	{ .of = { .name = "falling-", .duration = 10, .build = build_falling, CROWD } },
+	{ .of = { .name = "cylinders-", .duration = 10, .build = build_cylinders, CROWD } },
+	{ .of = { .name = "capsules-", .duration = 10, .build = build_capsules, CROWD } },
 	{ .of = { .name = "sparse-", .duration = 10, .build = build_sparse, CROWD }, .sleeping = true },
 	{ .of = { .name = "balls-",
 		  .duration = 20,
@@ -95,6 +107,7 @@ const bench_scene *bench_scene_find(const char *name, ob_error *e)
 			return &scene;
 		}
 	}
-	ob_fail(e, "no scene \"%s\": a case of the lab, or falling-N, sparse-N, balls-N", name);
+	ob_fail(e, "no scene \"%s\": a case of the lab, or falling-N, cylinders-N, capsules-N, sparse-N, balls-N",
+		name);
 	return NULL;
 }

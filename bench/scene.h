@@ -11,7 +11,8 @@ typedef struct bench_scene {
 	bool sleeping; // what rests may sleep
 } bench_scene;
 
-// "pile", "falling-1000", "sparse-10000", "balls-49". NULL and e: there is none of this name. What it returns holds
+// "pile", "falling-1000", "cylinders-1000", "capsules-1000" (as many boxes, of the same volumes: "falling"),
+// "sparse-10000", "balls-49". NULL and e: there is none of this name. What it returns holds
 // until the next call.
 const bench_scene *bench_scene_find(const char *name, ob_error *e);
 

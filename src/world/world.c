@@ -149,10 +149,19 @@ void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed)
 	}
 }
 
-static ob_world_body box_of_any_size(ob_world *w, ob_vec3 p, uint64_t *seed)
+// Of the volume of a box with these half extents: a cylinder as high as that, or a capsule twice as long as thick.
+static ob_vec3 size_of_volume(ob_shape shape, ob_vec3 half)
+{
+	const double radius = cbrt(8 * half.x * half.y * half.z / (10. / 3 * M_PI));
+	if (shape == OB_SHAPE_CYLINDER)
+		return ob_v3(sqrt(4 * half.x * half.y / M_PI), half.z, 0);
+	return shape == OB_SHAPE_CAPSULE ? ob_v3(radius, radius, 0) : half;
+}
+
+static ob_world_body solid_of_any_size(ob_world *w, ob_shape shape, ob_vec3 p, uint64_t *seed)
 {
 	ob_vec3 half = ob_add(ob_v3(.3, .3, .3), ob_splitmix_vector(seed, .2));
-	ob_world_body b = ob_world_box(w, 8000 * half.x * half.y * half.z, half, p);
+	ob_world_body b = ob_world_add(w, shape, size_of_volume(shape, half), 8000 * half.x * half.y * half.z, p);
 	b.state->pose.q = ob_world_random_attitude(seed);
 	return b;
 }
@@ -165,6 +174,11 @@ static uint32_t side_of(uint32_t n)
 
 void ob_world_falling(ob_world *w, uint32_t n, uint64_t seed)
 {
+	ob_world_falling_solids(w, OB_SHAPE_BOX, n, seed);
+}
+
+void ob_world_falling_solids(ob_world *w, ob_shape shape, uint32_t n, uint64_t seed)
+{
 	enum { LEVELS = 4 };
 	uint32_t side = side_of((n + LEVELS - 1) / LEVELS);
 	double z = 0;
@@ -172,7 +186,7 @@ void ob_world_falling(ob_world *w, uint32_t n, uint64_t seed)
 	for (uint32_t i = 0; i < n; i++) {
 		uint32_t column = i / LEVELS;
 		z = (i % LEVELS ? z : 1) + 1.8 + ob_splitmix_real(&seed);
-		box_of_any_size(w, ob_v3(1.8 * (column % side), 1.8 * (column / side), z), &seed);
+		solid_of_any_size(w, shape, ob_v3(1.8 * (column % side), 1.8 * (column / side), z), &seed);
 	}
 }
 
@@ -182,7 +196,7 @@ void ob_world_sparse(ob_world *w, uint32_t n, uint64_t seed)
 	ob_world_ground(w);
 	for (uint32_t i = 0; i < n; i++) {
 		ob_vec3 p = ob_v3(4. * (i % side), 4. * (i / side), ob_splitmix_within(&seed, 2, 10));
-		ob_world_body b = box_of_any_size(w, p, &seed);
+		ob_world_body b = solid_of_any_size(w, OB_SHAPE_BOX, p, &seed);
 		b.state->v = ob_splitmix_vector(&seed, 1);
 		b.state->v.z = ob_splitmix_within(&seed, 0, 4);
 		b.state->w = ob_splitmix_vector(&seed, 1);

@@ -60,6 +60,8 @@ void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed);
 // n boxes in columns of four, 1.8 m apart, over a ground: half extents of .1 to .5 m, 1000 kg/m^3, turned at random,
 // the lowest between 2.8 and 3.8 m up.
 void ob_world_falling(ob_world *w, uint32_t n, uint64_t seed);
+// The same with cylinders as high as those boxes, or capsules twice as long as thick, of the same volumes.
+void ob_world_falling_solids(ob_world *w, ob_shape shape, uint32_t n, uint64_t seed);
 // n such boxes 4 m apart, at heights of 2 to 10 m, thrown up at up to 4 m/s, with restitution .8.
 void ob_world_sparse(ob_world *w, uint32_t n, uint64_t seed);
 // n elastic spheres of radius .1 m and 10 kg in a square, 2 m apart, fall from a height of 5 m without friction.
