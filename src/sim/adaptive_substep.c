@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "sim/bodies.h"
+#include "sim/contacts.h"
 #include "sim/midpoint.h"
 #include "sim/narrowphase.h"
 #include "sim/relative_speed.h"
@@ -11,6 +12,7 @@
 // How far two bodies that touch may turn (rad) and slide (of the smaller thickness) in a partial substep ..
 static const double max_motion = .03;
 static const double fast_share = 1. / 10; // .. of that, where they get farther than their thickness in a substep
+static const double touching_gap = 1e-3; // m: what is nearer touches, as a swept test takes it
 static const double max_partial_substeps = 1024; // of a substep
 
 // For how long a contact's points and normal are where they are now (s), at the velocities in rows. A sphere's point
@@ -34,17 +36,32 @@ static bool may_outrun_geometry(const ob_island_work *w, const ob_contact *conta
 	return ob_contact_speed(w, contact) * h > max_motion * ob_min(a->thickness, b->thickness);
 }
 
+// Whether a contact that does not touch has a lane depends on when it was looked at last: it means nothing here.
+static bool touches(const ob_island_work *w, const ob_contact *contact)
+{
+	return contact->lane != OB_NO_LANE && ob_contact_gap(w, contact) <= touching_gap * w->unit.length;
+}
+
+// False where the two certainly do not meet within h (s).
+static bool may_meet(const ob_island_work *w, const ob_contact *contact, double h)
+{
+	const double speed = ob_contact_speed(w, contact);
+	if (contact->path + speed * (h + w->unpaced) <= contact->limit)
+		return false;
+	return contact->lane == OB_NO_LANE ||
+	       ob_contact_gap(w, contact) <= touching_gap * w->unit.length + (speed + w->max_acceleration * h) * h;
+}
+
 static double partial_length(ob_sim *s, double left)
 {
 	ob_island_work *w = &s->island;
 	double h = left;
 	for (uint32_t i = 0; i < w->contacts; i++)
-		if (w->contact[i].lane != OB_NO_LANE && may_outrun_geometry(w, &w->contact[i], h))
+		if (may_outrun_geometry(w, &w->contact[i], h) && touches(w, &w->contact[i]))
 			h = ob_min(h, ob_max(w->h_min, geometry_lifetime(w, w->v, &w->contact[i])));
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
-		if (contact->lane != OB_NO_LANE || !may_outrun_geometry(w, contact, h) ||
-		    contact->path + ob_contact_speed(w, contact) * (h + w->unpaced) <= contact->limit)
+		if (!may_outrun_geometry(w, contact, h) || touches(w, contact) || !may_meet(w, contact, h))
 			continue;
 		ob_body_update_pose(w, contact->a);
 		ob_body_update_pose(w, contact->b);

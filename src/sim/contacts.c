@@ -282,18 +282,24 @@ static double retest_distance(const ob_sim *s)
 	return tolerance > 0 ? ob_min(usual, share * tolerance) : usual;
 }
 
+static const double same_distance = 1e-9; // share of a square: distances that differ by less do so by rounding
+
 // By how far the points are from the bodies' centres, which is the same however the scene is seen: a sweep over the
-// rows of a block takes them in turn. A rim's points have roles, and come as they are.
+// rows of a block takes them in turn. A plane without friction is the same everywhere. Points that are equally far, and
+// those of a rim, which have roles, come as they were found.
 static void order_points(const ob_island_work *w, ob_contact *contact, double *gap)
 {
 	double far[OB_PAIR_POINTS];
-	if (w->body[contact->a].shape == OB_SHAPE_CYLINDER || w->body[contact->b].shape == OB_SHAPE_CYLINDER)
+	const ob_shape sa = w->body[contact->a].shape, sb = w->body[contact->b].shape;
+	const double of_a = sa == OB_SHAPE_PLANE && contact->mu == 0 ? 0 : 1,
+		     of_b = sb == OB_SHAPE_PLANE && contact->mu == 0 ? 0 : 1;
+	if (sa == OB_SHAPE_CYLINDER || sb == OB_SHAPE_CYLINDER)
 		return;
 	for (uint32_t i = 0; i < contact->points; i++) {
 		const ob_vec3 a = contact->arm_a[i], b = contact->arm_b[i];
-		const double g = gap[i], f = ob_norm2(a) + ob_norm2(b);
+		const double g = gap[i], f = of_a * ob_norm2(a) + of_b * ob_norm2(b);
 		uint32_t at = i;
-		for (; at > 0 && far[at - 1] > f; at--) {
+		for (; at > 0 && far[at - 1] > f * (1 + same_distance); at--) {
 			far[at] = far[at - 1], gap[at] = gap[at - 1];
 			contact->arm_a[at] = contact->arm_a[at - 1], contact->arm_b[at] = contact->arm_b[at - 1];
 		}
@@ -359,6 +365,21 @@ void ob_contact_find(ob_sim *s, ob_contact *contact)
 	put_points(w, contact, &m, ob_madd(a->p, when, va), ob_madd(b->p, when, vb), &old);
 }
 
+double ob_contact_gap(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	const double *da = w->d[contact->a], *db = w->d[contact->b];
+	double least = INFINITY;
+	for (uint32_t j = 0; j < contact->points; j++) {
+		double gap = b->gap[j][l];
+		for (int c = 0; c < 3; c++)
+			gap += b->n[c][l] * (da[c] - db[c]) + b->ja[j][c][l] * da[3 + c] - b->jb[j][c][l] * db[3 + c];
+		least = ob_min(least, gap);
+	}
+	return least;
+}
+
 // m/s, bound of the speed that the two may gain within the partial substep, on average over it. Bodies that touch are
 // expected to go on as they did: at rest they gain nothing.
 static double speed_gain(const ob_island_work *w, const ob_contact *contact)
@@ -367,7 +388,18 @@ static double speed_gain(const ob_island_work *w, const ob_contact *contact)
 	const double *a = w->dv[contact->a], *b = w->dv[contact->b];
 	if (contact->lane == OB_NO_LANE)
 		return free;
-	return ob_min(free, .5 * (ob_norm(ob_v3(a[0], a[1], a[2])) + ob_norm(ob_v3(b[0], b[1], b[2]))));
+	return ob_min(free, .5 * ob_norm(ob_v3(a[0] - b[0], a[1] - b[1], a[2] - b[2])));
+}
+
+bool ob_contact_in_reach(const ob_island_work *w, const ob_contact *contact)
+{
+	if (contact->lane == OB_NO_LANE)
+		return false;
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	for (uint32_t j = 0; j < contact->points; j++)
+		if (b->impulse[j][contact->lane % OB_LANES] > 0)
+			return true;
+	return ob_contact_gap(w, contact) <= (ob_contact_speed(w, contact) + w->max_acceleration * w->h) * w->h;
 }
 
 // A body that all but balances on an edge is turned by what little its centre is beside that, which its way changes: so
@@ -431,19 +463,36 @@ static void order_batches(ob_island_work *w)
 	w->order_stale = false;
 }
 
-// Writes into each lane how many contacts its bodies have.
+// Notes which pairs touch nothing else, and into each lane how many contacts its bodies have.
 static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 {
 	b->isolated = 0;
 	for (int l = 0; l < OB_LANES; l++) {
 		const ob_body *m[2] = { &w->body[b->body_a[l]], &w->body[b->body_b[l]] };
 		bool isolated =
-			(m[0]->inv_mass == 0 || m[0]->contacts == 1) && (m[1]->inv_mass == 0 || m[1]->contacts == 1);
+			(m[0]->inv_mass == 0 || m[0]->in_reach <= 1) && (m[1]->inv_mass == 0 || m[1]->in_reach <= 1);
 		b->isolated |= (unsigned)isolated << l & b->live;
 		if (jacobi) {
 			lanes_put(&b->ka, l, ob_max(1, m[0]->contacts));
 			lanes_put(&b->kb, l, ob_max(1, m[1]->contacts));
 		}
+	}
+}
+
+// How many contacts of each body may carry something in the partial substep: 0, 1 or more. Others have lanes, too, or
+// do not: that depends on when they were looked at last.
+static void count_in_reach(ob_island_work *w)
+{
+	for (uint32_t row = 0; row < w->rows; row++)
+		w->body[row].in_reach = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+		const bool known = (a->inv_mass == 0 || a->in_reach > 1) && (b->inv_mass == 0 || b->in_reach > 1);
+		if (known || !ob_contact_in_reach(w, contact))
+			continue;
+		a->in_reach++;
+		b->in_reach++;
 	}
 }
 
@@ -453,10 +502,10 @@ void ob_contacts_prepare(ob_sim *s)
 	bool jacobi = s->settings->solver == OB_SOLVER_JACOBI;
 	if (w->order_stale)
 		order_batches(w);
+	count_in_reach(w);
 	for (uint32_t i = 0; i < w->batches; i++) {
 		ob_batch *b = &w->batch[i];
-		if (w->counts_stale)
-			count_contacts(w, b, jacobi);
+		count_contacts(w, b, jacobi && w->counts_stale);
 		if (b->dirty || (jacobi && w->counts_stale))
 			ob_batch_prepare(b);
 	}
@@ -474,6 +523,15 @@ static const ob_pair_state *state_before(const ob_sim *s, const ob_pair_key *k)
 		return NULL;
 	const ob_pair_state *p = ob_pair_before(&data->record[k->record], ob_step_count(s->u));
 	return p && p->points ? p : NULL;
+}
+
+bool ob_contact_carried_load(const ob_sim *s, const ob_pair_key *k)
+{
+	const ob_pair_state *p = state_before(s, k);
+	double sum = 0;
+	for (uint32_t j = 0; p && j < p->points; j++)
+		sum += p->impulse[j];
+	return sum > 0;
 }
 
 static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k)

@@ -30,21 +30,6 @@ static bool has_tolerance(const ob_sim *s)
 
 // ---- notes
 
-static double depth_of(const ob_island_work *w, const ob_contact *contact)
-{
-	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
-	const uint32_t l = contact->lane % OB_LANES;
-	const double *da = w->d[contact->a], *db = w->d[contact->b];
-	double deepest = 0;
-	for (uint32_t j = 0; j < contact->points; j++) {
-		double gap = b->gap[j][l];
-		for (int c = 0; c < 3; c++)
-			gap += b->n[c][l] * (da[c] - db[c]) + b->ja[j][c][l] * da[3 + c] - b->jb[j][c][l] * db[3 + c];
-		deepest = ob_max(deepest, -gap);
-	}
-	return deepest;
-}
-
 void ob_error_control_note_depth(ob_sim *s, bool at_start)
 {
 	ob_island_work *w = &s->island;
@@ -52,7 +37,7 @@ void ob_error_control_note_depth(ob_sim *s, bool at_start)
 		ob_contact *contact = &w->contact[i];
 		if (contact->lane == OB_NO_LANE)
 			continue;
-		double depth = depth_of(w, contact);
+		double depth = ob_max(0, -ob_contact_gap(w, contact));
 		if (at_start)
 			contact->initial_depth = depth;
 		else if (depth > contact->initial_depth) {

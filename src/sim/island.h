@@ -41,6 +41,7 @@ typedef struct ob_body {
 	bool isotropic; // inertia is the same about all axes
 	bool moved_freely; // it touched nothing in this step, not for a moment
 	uint32_t contacts; // that touch
+	uint32_t in_reach; // of those, that may carry something in the running partial substep: 0, 1 or more
 	bool loaded; // its flights within the partial substep are those of the last one's contact forces, too
 	double hit; // s into the partial substep: its last impact; 0: none
 	uint64_t colours; // bit per colour in use

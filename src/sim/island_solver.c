@@ -149,16 +149,6 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 
 // ---- ballistic advance
 
-// Did the pair's contact carry a load when the step before ended?
-static bool carried_load(const ob_sim *s, const ob_pair_key *k)
-{
-	const ob_pair_state *p = ob_pair_before(&s->data->record[k->record], ob_step_count(s->u));
-	double sum = 0;
-	for (uint32_t j = 0; p && j < p->points; j++)
-		sum += p->impulse[j];
-	return sum > 0;
-}
-
 // True for a body near planes only, with no resting contact, that has no late contact in this step: a ballistic advance
 // may do. A body that bounces so low that the contact solver has had it goes on as a flight; one that has become slow
 // is left to come to rest.
@@ -174,7 +164,7 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
 		uint32_t other = k->a == id ? k->b : k->a;
 		if (data->schedule[other].state != OB_SCHEDULE_PLANE ||
-		    (k->active && (ob_newest_motion(s->u, id)->rest_time > 0 || carried_load(s, k))))
+		    (k->active && (ob_newest_motion(s->u, id)->rest_time > 0 || ob_contact_carried_load(s, k))))
 			return false;
 	}
 	return true;

@@ -79,7 +79,8 @@ void ob_midpoint_mark(ob_sim *s)
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
 		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-		if (contact->lane != OB_NO_LANE && a->inv_mass > 0 && b->inv_mass > 0)
+		if (a->inv_mass > 0 && b->inv_mass > 0 && !(a->among_others && b->among_others) &&
+		    ob_contact_in_reach(w, contact))
 			a->among_others = b->among_others = true;
 	}
 	for (uint32_t i = 0; i < w->contacts; i++) {
