@@ -6,6 +6,7 @@
 #include "base/allocate.h"
 #include "motion/drift.h"
 #include "sim/broadphase.h"
+#include "sim/contacts.h"
 #include "sim/equilibrium.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
@@ -92,7 +93,7 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	body->isotropic = pass->inertia.x == pass->inertia.y && pass->inertia.y == pass->inertia.z;
 	body->radius = ob_shape_radius(pass->shape, pass->size);
 	body->thickness = ob_shape_thickness(pass->shape, pass->size);
-	body->rest_depth = ob_narrowphase_rest_depth(s, body->thickness);
+	body->rest_depth = ob_narrowphase_rest_depth(s, body->thickness, true);
 	update_inertia(body);
 	if (!moves)
 		return;
@@ -146,16 +147,15 @@ static ob_vec3 mean_acceleration(const ob_island_work *w)
 	return same ? w->body[1].acceleration : sum;
 }
 
-// The acceleration of what holds the bodies, which is one as long as all of it goes with it; along a plane without
-// friction, that of the bodies. 0: there is no such frame, or nothing holds them.
+// The acceleration of what holds the bodies, which is one as long as all of it goes with it; of bodies that nothing
+// holds, their mean. 0: there is no such frame.
 static ob_vec3 find_frame(const ob_island_work *w)
 {
 	const ob_vec3 none = { 0, 0, 0 };
 	const ob_body *holds = NULL, *slippery = NULL;
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
-		*(is_slippery(&w->body[row]) ? &slippery : &holds) = &w->body[row];
-	if (!holds && !slippery)
-		return none;
+		if (w->body[row].holds)
+			*(is_slippery(&w->body[row]) ? &slippery : &holds) = &w->body[row];
 	ob_vec3 a = holds ? holds->acceleration : mean_acceleration(w);
 	if (slippery && !holds) {
 		const ob_vec3 n = ob_column(&slippery->r, 2);
@@ -163,27 +163,29 @@ static ob_vec3 find_frame(const ob_island_work *w)
 		a = ob_norm(along) > same_share * ob_norm(a) ? along : none;
 	}
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
-		if (felt_on(&w->body[row], w->body[row].acceleration, a) > same_share * ob_norm(a) ||
-		    ob_surface_swings(w, row))
+		if (w->body[row].holds &&
+		    (felt_on(&w->body[row], w->body[row].acceleration, a) > same_share * ob_norm(a) ||
+		     ob_surface_swings(w, row)))
 			return none;
 	return a;
 }
 
-// m/s^2, by a body, the largest on any of what holds it. What a surface that swings does counts once it touches: see
-// ob_surfaces_begin.
+// m/s^2, by a body, the largest on any of what holds it. What a surface that swings takes away when the step begins it
+// may give again before the end.
 static double felt_on_any(const ob_island_work *w, const ob_body *body)
 {
 	const ob_vec3 none = { 0, 0, 0 };
-	double most = w->rows == 1 + w->bodies ? ob_norm(body->acceleration) : 0;
+	double most = 0;
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++) {
 		const ob_body *holds = &w->body[row];
 		const bool as_before = row > 1 + w->bodies && !is_slippery(holds) && !is_slippery(holds - 1) &&
-				       same_vector(holds->acceleration, holds[-1].acceleration) &&
-				       !ob_surface_swings(w, row - 1);
+				       holds[-1].holds && same_vector(holds->acceleration, holds[-1].acceleration);
+		if (!holds->holds)
+			continue;
+		if (!as_before)
+			most = ob_max(most, felt_on(holds, body->acceleration, holds->acceleration));
 		if (ob_surface_swings(w, row))
 			most = ob_max(most, felt_on(holds, body->acceleration, none));
-		else if (!as_before)
-			most = ob_max(most, felt_on(holds, body->acceleration, holds->acceleration));
 	}
 	return most;
 }
@@ -206,8 +208,49 @@ static double felt_acceleration(const ob_island_work *w)
 	return most;
 }
 
-// What stands on a lift feels it as weight: an island is solved as seen by who speeds up with what holds it, and how
-// far that has come is added in the end.
+// The row of the pair that is fixed or moves as it is told; 0: both move themselves.
+static uint32_t holding_row(const ob_sim *s, const ob_island *is, uint32_t pair)
+{
+	const ob_island_work *w = &s->island;
+	const ob_pair_key *k = &s->data->pair[s->data->island_pair[is->first_pair + pair]];
+	const uint32_t own = w->surfaces.count ? ob_surface_row(w, pair) : 0;
+	const uint32_t a = w->row_of[k->a], b = w->row_of[k->b];
+	return own ? own : a > w->bodies ? a : b > w->bodies ? b : 0;
+}
+
+// True where the pair may touch within the step, by how it moves: the same however fast all of it goes.
+static bool comes_near(ob_sim *s, uint32_t a, uint32_t b)
+{
+	const ob_island_work *w = &s->island;
+	const double h = s->settings->step_length;
+	const ob_contact pair = { .a = a, .b = b };
+	const double gained = h * ob_norm(ob_sub(w->body[a].acceleration, w->body[b].acceleration));
+	const double way = h * (ob_contact_speed(w, &pair) + gained);
+	return ob_narrowphase_distance(s, a, b, way) <= way;
+}
+
+// Bodies that touch each other in the air are held by what they come near in the step. Of a single one it does not
+// matter, and what carries a load is held.
+static void find_what_holds(ob_sim *s, const ob_island *is)
+{
+	ob_island_work *w = &s->island;
+	bool held = is->members == 1;
+	for (uint32_t i = 0; i < is->pairs && !held; i++)
+		held = holding_row(s, is, i) &&
+		       ob_contact_carried_load(s, &s->data->pair[s->data->island_pair[is->first_pair + i]]);
+	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
+		w->body[row].holds = held;
+	for (uint32_t i = 0; i < is->pairs && !held; i++) {
+		const ob_pair_key *k = &s->data->pair[s->data->island_pair[is->first_pair + i]];
+		const uint32_t row = holding_row(s, is, i);
+		const uint32_t other = row && w->body[row].id == k->a ? w->row_of[k->b] : w->row_of[k->a];
+		if (row && !w->body[row].holds)
+			w->body[row].holds = comes_near(s, row, other);
+	}
+}
+
+// What falls together feels nothing of it, and what stands on a lift feels it as weight: an island is solved as seen by
+// who speeds up with what holds it, and how far that has come is added in the end.
 static void enter_frame(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -217,6 +260,8 @@ static void enter_frame(ob_sim *s)
 		w->body[row].acceleration =
 			is_slippery(&w->body[row]) ? ob_v3(0, 0, 0) : ob_sub(w->body[row].acceleration, w->frame);
 	w->max_acceleration = felt_acceleration(w);
+	for (uint32_t row = 1; row < w->rows && w->max_acceleration == 0; row++)
+		w->body[row].rest_depth = ob_narrowphase_rest_depth(s, w->body[row].thickness, false);
 }
 
 void ob_bodies_leave_frame(ob_sim *s)
@@ -280,6 +325,7 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 		load_body(s, w->rows++, fixed, false);
 	}
 	w->first_ghost = w->rows;
+	find_what_holds(s, is);
 	enter_frame(s);
 }
 

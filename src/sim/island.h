@@ -50,6 +50,7 @@ typedef struct ob_body {
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
 	uint32_t ghost_of; // of a ghost: the row that it stands for
+	bool holds; // of a row that is fixed or moves as it is told: what the island's bodies feel, they feel on it
 	uint32_t surface; // 1 + its place among the surfaces that move (sim/surfaces.h); 0: it is none
 	double carried; // N s, of all surfaces that carry it
 	bool among_others; // it touches bodies that move

@@ -52,7 +52,8 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, 
 			  .w = now.w,
 			  .inertia = p->inertia,
 			  .a = a,
-			  .rest_depth = ob_narrowphase_rest_depth(c->s, ob_shape_thickness(p->shape, p->size)),
+			  .rest_depth = ob_narrowphase_rest_depth(c->s, ob_shape_thickness(p->shape, p->size),
+								  ob_norm2(c->s->settings->gravity) > 0),
 			  .far_future = ob_narrowphase_far_future(c->s),
 			  .hull = ob_hull_of(c->u, p) };
 	return out;

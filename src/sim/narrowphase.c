@@ -126,10 +126,8 @@ ob_manifold_finder ob_narrowphase_finder(ob_sim *s)
 	return (ob_manifold_finder){ find_manifold, s };
 }
 
-double ob_narrowphase_rest_depth(const ob_sim *s, double thickness)
+double ob_narrowphase_rest_depth(const ob_sim *s, double thickness, bool pressed)
 {
-	const bool pressed =
-		ob_norm2(s->settings->gravity) > 0; // without gravity hits leave nothing at rest in another
 	const double of_slop = pressed ? 2 : .01, of_thickness = .02;
 	return ob_min(of_slop * ob_solver_slop(s), of_thickness * thickness);
 }
@@ -163,6 +161,17 @@ static void place(const ob_sim *s, uint32_t row, ob_placed *out)
 	const ob_body *body = &s->island.body[row];
 	const double *v = s->island.v[row];
 	ob_narrowphase_place(s, row, body->p, &body->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]), out);
+}
+
+double ob_narrowphase_distance(ob_sim *s, uint32_t a, uint32_t b, double margin)
+{
+	ob_placed pa, pb;
+	ob_manifold m;
+	s->counters.narrowphase_tests++;
+	place(s, a, &pa);
+	place(s, b, &pb);
+	find_manifold(s, &pa, &pb, margin, &m);
+	return m.separation;
 }
 
 // Bound of the speed at which any two points of the pair may approach (m/s), with external acceleration.

@@ -10,9 +10,12 @@
 // tolerance: m, gaps up to it are always found. Both bodies' poses must be up to date (ob_body_update_pose).
 void ob_narrowphase_find(ob_sim *s, const ob_contact *t, double tolerance, ob_manifold *m, double *when);
 
+// m: the distance of two rows of the island, or less; beyond the margin, some more than that.
+double ob_narrowphase_distance(ob_sim *s, uint32_t a, uint32_t b, double margin);
+
 // How deep (m) a shape of this thickness (m) may be in others while it rests on them, and which future (s) is far: see
-// ob_placed.
-double ob_narrowphase_rest_depth(const ob_sim *s, double thickness);
+// ob_placed. pressed: something presses them together; where nothing does, hits leave nothing at rest in another.
+double ob_narrowphase_rest_depth(const ob_sim *s, double thickness, bool pressed);
 double ob_narrowphase_far_future(const ob_sim *s);
 
 // A body of the island as collision tests take it, in this pose and at these rates.

@@ -202,13 +202,12 @@ static double step_time(const ob_sim *s)
 	return (double)ob_step_count(s->u) * s->settings->step_length;
 }
 
-// In the island's frame.
-static ob_state state_at(const ob_sim *s, const ob_surface *x, const ob_body *body, double time)
+// In the island's frame; since: s, from the step's start
+static ob_state state_at(const ob_sim *s, const ob_surface *x, const ob_body *body, double since)
 {
-	const double since = time - step_time(s);
 	if (!goes(&x->motion))
 		return (ob_state){ { body->p, body->q }, { 0, 0, 0 }, { 0, 0, 0 } };
-	ob_state at = ob_motion_at(&x->motion, ob_v3(0, 0, 0), time);
+	ob_state at = ob_motion_at(&x->motion, ob_v3(0, 0, 0), step_time(s) + since);
 	at.pose.p = ob_madd(at.pose.p, -.5 * since * since, s->island.frame);
 	at.v = ob_madd(at.v, -since, s->island.frame);
 	return at;
@@ -245,8 +244,8 @@ void ob_surfaces_warm_start(ob_sim *s)
 		ob_surface *x = &w->surfaces.surface[i];
 		const ob_body *own = &w->body[x->row], *body = &w->body[carried_row(w, x)];
 		const double *v = w->v[carried_row(w, x)];
-		x->begin = state_at(s, x, own, step_time(s) + w->time);
-		x->end = state_at(s, x, own, step_time(s) + w->time + w->h);
+		x->begin = state_at(s, x, own, w->time);
+		x->end = state_at(s, x, own, w->time + w->h);
 		ob_vec3 target = x->end.v;
 		if (turns(x)) {
 			const ob_vec3 at =
@@ -319,10 +318,10 @@ void ob_surface_halve(ob_sim *s, uint32_t row)
 	body->start_q = body->q;
 	body->start_w = x->begin.w;
 	body->halved = true;
-	const ob_state middle = state_at(s, x, body, step_time(s) + w->time + .5 * w->h);
-	const ob_vec3 way = ob_sub(middle.pose.p, body->p);
+	const ob_vec3 way =
+		ob_scale(x->begin.v, .5 * w->h); // as the bodies that are halved go: at the start's velocity
 	set_row(body->first_half, way, ob_v3(0, 0, 0));
-	body->p = middle.pose.p;
+	body->p = ob_add(body->p, way);
 }
 
 void ob_surfaces_undo_halves(ob_sim *s)
