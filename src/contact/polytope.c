@@ -98,24 +98,32 @@ static ob_vec3 normal_of(const polytope *x, uint32_t face)
 	return to_world(x, x->shape->normal[face]);
 }
 
-// The corner that is lowest along n, which is in the shape's frame; how far it reaches, from the centre (m).
-static uint32_t lowest_corner(const polytope *x, ob_vec3 n, double *low)
-{
-	uint32_t lowest = 0;
-	*low = INFINITY;
-	for (uint32_t k = 0; k < x->shape->corners; k++) {
-		const double at = ob_dot(n, x->corner[k]);
-		if (at < *low)
-			*low = at, lowest = k;
-	}
-	return lowest;
-}
-
+// How far the lowest corner reaches along n, from the centre (m). n: in the shape's frame. Four minima side by side
+// wait less for each other than one.
 static double lowest_along(const polytope *x, ob_vec3 n)
 {
-	double low;
-	lowest_corner(x, n, &low);
-	return low;
+	const ob_vec3 *c = x->corner;
+	const uint32_t corners = x->shape->corners; // four at least
+	double low[4] = { INFINITY, INFINITY, INFINITY, INFINITY };
+	for (uint32_t k = 0; k + 4 <= corners; k += 4)
+		for (uint32_t i = 0; i < 4; i++) {
+			const double at = ob_dot(n, c[k + i]);
+			low[i] = at < low[i] ? at : low[i];
+		}
+	for (uint32_t i = 0; i < 4; i++) {
+		const double at = ob_dot(n, c[corners - 4 + i]);
+		low[i] = at < low[i] ? at : low[i];
+	}
+	return ob_min(ob_min(low[0], low[1]), ob_min(low[2], low[3]));
+}
+
+// The corner that is lowest along n; low: as lowest_along says.
+static uint32_t lowest_corner(const polytope *x, ob_vec3 n, double low)
+{
+	uint32_t k = 0;
+	while (k + 1 < x->shape->corners && ob_dot(n, x->corner[k]) > low)
+		k++;
+	return k;
 }
 
 static ob_vec3 velocity_at(const polytope *x, ob_vec3 at)
@@ -165,10 +173,19 @@ typedef struct heights {
 	double of_point[OB_HULL_FACES_MAX]; // of the corner that is lowest above the face that looks at the centre most
 } heights;
 
-static void find_heights(const polytope *of, ob_vec3 point, double *height)
+// Returns the face above which the point is highest. point: in the frame of the faces.
+static uint32_t find_heights(const polytope *of, ob_vec3 point, double *height)
 {
-	for (uint32_t f = 0; f < of->shape->faces; f++)
-		height[f] = ob_dot(of->shape->normal[f], point) - of->offset[f];
+	const uint32_t faces = of->shape->faces;
+	double highest = -INFINITY;
+	uint32_t f = 0;
+	for (uint32_t k = 0; k < faces; k++)
+		height[k] = ob_dot(of->shape->normal[k], point) - of->offset[k];
+	for (uint32_t k = 0; k < faces; k++)
+		highest = height[k] > highest ? height[k] : highest;
+	while (f + 1 < faces && height[f] < highest)
+		f++;
+	return f;
 }
 
 static void add_face(axes *s, const polytope *of, bool of_b, double rest, uint32_t f, double gap)
@@ -185,19 +202,19 @@ static void add_face(axes *s, const polytope *of, bool of_b, double rest, uint32
 static void try_faces(axes *s, const polytope *of, const polytope *other, bool of_b, double rest, heights *h)
 {
 	const ob_vec3 d = to_local(of, ob_sub(other->centre, of->centre));
-	uint32_t first = 0;
-	double low;
-	find_heights(of, d, h->of_centre);
-	for (uint32_t f = 1; f < of->shape->faces; f++)
-		first = h->of_centre[f] > h->of_centre[first] ? f : first;
-	const uint32_t corner = lowest_corner(other, to_local(other, normal_of(of, first)), &low);
+	const uint32_t first = find_heights(of, d, h->of_centre);
+	const ob_vec3 down = to_local(other, normal_of(of, first));
+	const double low = lowest_along(other, down);
+	const uint32_t corner = lowest_corner(other, down, low);
 	find_heights(of, ob_add(d, to_local(of, to_world(other, other->corner[corner]))), h->of_point);
 	add_face(s, of, of_b, rest, first, h->of_centre[first] + low);
+	double least = ob_min(s->face.gap, -rest);
 	for (uint32_t f = 0; f < of->shape->faces; f++) {
-		const double least = ob_min(s->face.gap, -rest);
-		if (f != first && h->of_point[f] >= least && h->of_centre[f] - other->inner >= least)
-			add_face(s, of, of_b, rest, f,
-				 h->of_centre[f] + lowest_along(other, to_local(other, normal_of(of, f))));
+		if (f == first || h->of_point[f] < least || h->of_centre[f] - other->inner < least)
+			continue;
+		add_face(s, of, of_b, rest, f,
+			 h->of_centre[f] + lowest_along(other, to_local(other, normal_of(of, f))));
+		least = ob_min(s->face.gap, -rest);
 	}
 }
 
@@ -209,32 +226,43 @@ typedef struct near_edge {
 } near_edge;
 
 // Is a point higher than "least" (m) above an edge along one of its arc of normals? left, right: its heights above the
-// edge's faces, which are those at the ends of the arc. In between they run as a cosine does.
-static bool is_above_edge(const polytope *x, const ob_hull_edge *e, const double *height, double least)
+// edge's faces, which are those at the ends of the arc; in between they run as a cosine does. cosine: of the arc.
+static bool is_above_edge(double left, double right, double cosine, double least)
 {
-	const double left = height[e->left], right = height[e->right];
 	if (left >= least || right >= least)
 		return true;
-	if (left <= 0 && right <= 0)
-		return false;
-	const double c = ob_dot(x->shape->normal[e->left], x->shape->normal[e->right]);
-	return right > c * left && left > c * right &&
-	       (least <= 0 || left * left + right * right - 2 * c * left * right >= least * least * (1 - c * c));
+	return right > cosine * left && left > cosine * right &&
+	       (least <= 0 ||
+		left * left + right * right - 2 * cosine * left * right >= least * least * (1 - cosine * cosine));
 }
 
-// Edges that may be part of an axis with a gap of "needed" (m).
+// Edges that may be part of an axis with a gap of "needed" (m). Above an edge between two faces of neither of which it
+// is in front, a point is nowhere.
 static uint32_t collect_edges(const polytope *x, const polytope *other, double needed, const heights *h, near_edge *out)
 {
-	const double slack = 1e-9 * (x->radius + other->radius);
-	uint32_t n = 0;
+	enum { POINT = 1, CENTRE = 2 };
+	const double slack = 1e-9 * (x->radius + other->radius), of_point = needed - slack,
+		     of_centre = needed + other->inner - slack, point_from = ob_min(of_point, 0),
+		     centre_from = ob_min(of_centre, 0);
+	uint8_t in_front[OB_HULL_FACES_MAX], near[OB_HULL_EDGES_MAX];
+	uint32_t n = 0, nears = 0;
+	for (uint32_t f = 0; f < x->shape->faces; f++)
+		in_front[f] = (uint8_t)((h->of_point[f] >= point_from ? POINT : 0) |
+					(h->of_centre[f] >= centre_from ? CENTRE : 0));
 	for (uint32_t k = 0; k < x->shape->edges; k++) {
-		const ob_hull_edge *e = &x->shape->edge[k];
-		if (!is_above_edge(x, e, h->of_point, needed - slack) ||
-		    !is_above_edge(x, e, h->of_centre, needed + other->inner - slack))
+		near[nears] = (uint8_t)k;
+		nears += (in_front[x->shape->edge[k].left] | in_front[x->shape->edge[k].right]) == (POINT | CENTRE);
+	}
+	for (uint32_t i = 0; i < nears; i++) {
+		const ob_hull_edge *e = &x->shape->edge[near[i]];
+		const ob_vec3 left = x->shape->normal[e->left], right = x->shape->normal[e->right];
+		const double cosine = ob_dot(left, right);
+		if (!is_above_edge(h->of_point[e->left], h->of_point[e->right], cosine, of_point) ||
+		    !is_above_edge(h->of_centre[e->left], h->of_centre[e->right], cosine, of_centre))
 			continue;
-		out[n++] = (near_edge){ k, corner_of(x, e->from),
-					to_world(x, ob_sub(x->corner[e->to], x->corner[e->from])),
-					normal_of(x, e->left), normal_of(x, e->right) };
+		out[n++] = (near_edge){ near[i], corner_of(x, e->from),
+					to_world(x, ob_sub(x->corner[e->to], x->corner[e->from])), to_world(x, left),
+					to_world(x, right) };
 	}
 	return n;
 }
