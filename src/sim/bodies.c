@@ -6,10 +6,10 @@
 #include "base/allocate.h"
 #include "motion/drift.h"
 #include "sim/broadphase.h"
-#include "sim/contacts.h"
 #include "sim/equilibrium.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
+#include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
@@ -237,7 +237,7 @@ static void find_what_holds(ob_sim *s, const ob_island *is)
 	bool held = is->members == 1;
 	for (uint32_t i = 0; i < is->pairs && !held; i++)
 		held = holding_row(s, is, i) &&
-		       ob_contact_carried_load(s, &s->data->pair[s->data->island_pair[is->first_pair + i]]);
+		       ob_pair_carried_load(s->u, &s->data->pair[s->data->island_pair[is->first_pair + i]]);
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
 		w->body[row].holds = held;
 	for (uint32_t i = 0; i < is->pairs && !held; i++) {

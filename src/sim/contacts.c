@@ -10,6 +10,7 @@
 #include "sim/contact_order.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
+#include "sim/pairs.h"
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
@@ -514,26 +515,6 @@ void ob_contacts_prepare(ob_sim *s)
 
 // ---- between the universe and the island
 
-// The pair's state before the step; NULL if it did not touch. A first solution has overwritten what its key says, so
-// where islands are solved again the record alone is asked.
-static const ob_pair_state *state_before(const ob_sim *s, const ob_pair_key *k)
-{
-	const ob_step_data *data = s->data;
-	if (k->record == OB_NO_RECORD || (!k->active && !data->count->merged))
-		return NULL;
-	const ob_pair_state *p = ob_pair_before(&data->record[k->record], ob_step_count(s->u));
-	return p && p->points ? p : NULL;
-}
-
-bool ob_contact_carried_load(const ob_sim *s, const ob_pair_key *k)
-{
-	const ob_pair_state *p = state_before(s, k);
-	double sum = 0;
-	for (uint32_t j = 0; p && j < p->points; j++)
-		sum += p->impulse[j];
-	return sum > 0;
-}
-
 static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k)
 {
 	ob_island_work *w = &s->island;
@@ -544,7 +525,7 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 	contact->mu = sqrt(a->friction * b->friction);
 	contact->e = ob_max(a->restitution, b->restitution);
 	w->elastic |= contact->e > 0;
-	const ob_pair_state *p = state_before(s, k);
+	const ob_pair_state *p = ob_pair_state_before(s->u, k);
 	contact->began = !p;
 	if (!p)
 		return;
@@ -676,7 +657,7 @@ void ob_contacts_store(ob_sim *s)
 		found.pair = contact->key;
 		found.limit = contact->limit - path + w->body[contact->a].path + w->body[contact->b].path;
 		found.active = active;
-		found.kept = active || k->active || state_before(s, k);
+		found.kept = active || k->active || ob_pair_state_before(s->u, k);
 		found.two_sided = mirror != NULL;
 		if (found.kept)
 			store_contact(w, contact, &found.state);

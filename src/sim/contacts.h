@@ -19,8 +19,6 @@ bool ob_contacts_update_hit(ob_sim *s, double ahead);
 void ob_contact_set_geometry(ob_sim *s, ob_contact *contact, const ob_manifold *m, ob_vec3 pa, ob_vec3 pb);
 // Finds the geometry of one contact now.
 void ob_contact_find(ob_sim *s, ob_contact *contact);
-// Did the pair's contact carry a load when the step before ended?
-bool ob_contact_carried_load(const ob_sim *s, const ob_pair_key *k);
 // m: how far the nearest points of a contact that has a lane are apart now.
 double ob_contact_gap(const ob_island_work *w, const ob_contact *contact);
 // Has it a lane, and may it close within the partial substep?

@@ -18,6 +18,7 @@
 #include "sim/ghost.h"
 #include "sim/impacts.h"
 #include "sim/midpoint.h"
+#include "sim/pairs.h"
 #include "sim/profile.h"
 #include "sim/push_apart.h"
 #include "sim/surfaces.h"
@@ -164,7 +165,7 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
 		uint32_t other = k->a == id ? k->b : k->a;
 		if (data->schedule[other].state != OB_SCHEDULE_PLANE ||
-		    (k->active && (ob_newest_motion(s->u, id)->rest_time > 0 || ob_contact_carried_load(s, k))))
+		    (k->active && (ob_newest_motion(s->u, id)->rest_time > 0 || ob_pair_carried_load(s->u, k))))
 			return false;
 	}
 	return true;

@@ -309,3 +309,25 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 	ob_requery_reset(u);
 	ob_neighbours_reset(u);
 }
+
+// ---- what touched
+
+// A first solution has overwritten what the pair's key says, so where islands are solved again the record alone is
+// asked.
+const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_key *k)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (k->record == OB_NO_RECORD || (!k->active && !data->count->merged))
+		return NULL;
+	const ob_pair_state *p = ob_pair_before(&data->record[k->record], ob_step_count(u));
+	return p && p->points ? p : NULL;
+}
+
+bool ob_pair_carried_load(const ob_universe *u, const ob_pair_key *k)
+{
+	const ob_pair_state *p = ob_pair_state_before(u, k);
+	double sum = 0;
+	for (uint32_t j = 0; p && j < p->points; j++)
+		sum += p->impulse[j];
+	return sum > 0;
+}

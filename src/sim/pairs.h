@@ -44,6 +44,11 @@ static inline uint32_t ob_pair_next(const ob_step_data *data, ob_pair_place at)
 	return data->pair_links[at.pair].next[at.side];
 }
 
+// The pair's state before the step; NULL if it did not touch. Any worker, while islands are solved.
+const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_key *k);
+// Did its contact carry a load then?
+bool ob_pair_carried_load(const ob_universe *u, const ob_pair_key *k);
+
 // Merges the neighbours of the objects on the requery list into the pairs, and empties the list. steps: that are
 // complete, or solved.
 void ob_pairs_merge(ob_universe *u, uint64_t steps);
