@@ -45,17 +45,71 @@ ob_vec3 ob_support_between(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 	return ob_sub(ob_support(a, ob_scale(n, -1)), ob_support(b, n));
 }
 
+// How far the shape reaches from its centre along n, times n's length (m).
+static double reach(const ob_placed *x, ob_vec3 n)
+{
+	const ob_vec3 z = ob_column(&x->r, 2);
+	const double along = fabs(ob_dot(z, n));
+	switch (x->shape) {
+	case OB_SHAPE_BOX:
+		return x->size.x * fabs(ob_dot(ob_column(&x->r, 0), n)) +
+		       x->size.y * fabs(ob_dot(ob_column(&x->r, 1), n)) + x->size.z * along;
+	case OB_SHAPE_CYLINDER:
+		return x->size.x * ob_norm(ob_cross(z, n)) + x->size.y * along;
+	case OB_SHAPE_CAPSULE:
+		return x->size.x * ob_norm(n) + x->size.y * along;
+	default:
+		return ob_dot(n, ob_sub(ob_support(x, n), x->p));
+	}
+}
+
 double ob_apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 {
-	return ob_dot(n, ob_support_between(a, b, n));
+	return ob_dot(n, ob_sub(a->p, b->p)) - reach(a, ob_scale(n, -1)) - reach(b, n);
 }
 
 // ---- across an axis
 
-// The derivative of the separation along p + t q, but for a positive factor.
-static double slope_at(const ob_placed *a, const ob_placed *b, ob_vec3 p, ob_vec3 q, double t)
+// A shape for directions p + t q, with p and q of unit length and across each other.
+typedef struct slice {
+	const ob_placed *x;
+	double turn; // -1: it is looked at from the other side
+	ob_vec3 p, q; // in the shape's frame
+	double half[3]; // m: of the box that is in the shape, to which what is round is added
+	double radius; // m, of a cylinder's rim
+} slice;
+
+static slice slice_of(const ob_placed *x, double turn, ob_vec3 p, ob_vec3 q)
 {
-	return ob_dot(ob_madd(q, -t, p), ob_support_between(a, b, ob_madd(p, t, q)));
+	slice s = { .x = x, .turn = turn, .p = ob_rotate_back(&x->r, p), .q = ob_rotate_back(&x->r, q) };
+	if (x->shape == OB_SHAPE_BOX)
+		s.half[0] = x->size.x, s.half[1] = x->size.y, s.half[2] = x->size.z;
+	else
+		s.half[2] = x->size.y;
+	if (x->shape == OB_SHAPE_CYLINDER)
+		s.radius = x->size.x;
+	return s;
+}
+
+// By what the shape takes part in the slope: its farthest point from its centre, along q - t p. A ball has none.
+static double part_of_slope(const slice *s, double t)
+{
+	const ob_vec3 n = ob_madd(s->p, t, s->q), d = ob_madd(s->q, -t, s->p);
+	if (s->x->shape == OB_SHAPE_HULL) {
+		const ob_vec3 at = ob_sub(ob_support(s->x, ob_scale(ob_rotate(&s->x->r, n), s->turn)), s->x->p);
+		return s->turn * ob_dot(ob_rotate(&s->x->r, d), at);
+	}
+	double sum = copysign(s->half[2], n.z) * d.z;
+	if (s->x->shape == OB_SHAPE_BOX)
+		return sum + copysign(s->half[0], n.x) * d.x + copysign(s->half[1], n.y) * d.y;
+	const double across = sqrt(n.x * n.x + n.y * n.y);
+	return across > flat ? sum + s->radius * (n.x * d.x + n.y * d.y) / across : sum;
+}
+
+// The derivative of the separation along p + t q, but for a positive factor; apart: of the centres, along p and q.
+static double slope_at(const slice *a, const slice *b, const double apart[2], double t)
+{
+	return apart[1] - t * apart[0] - part_of_slope(a, t) - part_of_slope(b, t);
 }
 
 ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_vec3 from)
@@ -71,7 +125,9 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 	p = unit(p);
 	const ob_vec3 q = ob_cross(e, p);
 	const double size = ob_norm(a->size) + ob_norm(b->size);
-	double low = 0, at_low = slope_at(a, b, p, q, 0), high = 0, at_high = 0, way = at_low < 0 ? -1 : 1;
+	const slice of_a = slice_of(a, -1, p, q), of_b = slice_of(b, 1, p, q);
+	const double apart[2] = { ob_dot(p, ob_sub(a->p, b->p)), ob_dot(q, ob_sub(a->p, b->p)) };
+	double low = 0, at_low = slope_at(&of_a, &of_b, apart, 0), high = 0, at_high = 0, way = at_low < 0 ? -1 : 1;
 	if (fabs(at_low) <= converged * size)
 		return p;
 	double step = way * ob_min(.1, ob_max(1e-6, fabs(at_low) / size));
@@ -81,7 +137,7 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 		high = low + step;
 		if (fabs(high) > widest)
 			return unit(ob_madd(p, low, q));
-		at_high = slope_at(a, b, p, q, high);
+		at_high = slope_at(&of_a, &of_b, apart, high);
 		if (at_high == 0)
 			return unit(ob_madd(p, high, q));
 	}
@@ -90,7 +146,7 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 	double weigh_low = 1, weigh_high = 1;
 	for (int i = 0; i < NARROW && fabs(high - low) > 2e-16 * (1 + fabs(low)); i++) {
 		double share = weigh_low * at_low / (weigh_low * at_low - weigh_high * at_high);
-		double mid = low + (high - low) * (i % 3 == 2 ? .5 : share), at = slope_at(a, b, p, q, mid);
+		double mid = low + (high - low) * (i % 3 == 2 ? .5 : share), at = slope_at(&of_a, &of_b, apart, mid);
 		if (fabs(at) <= converged * size)
 			return unit(ob_madd(p, mid, q));
 		if (at * at_low > 0) {
