@@ -252,13 +252,13 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, bool straight)
 	const ob_passport *body = ob_passport_of(s->u, id);
 	const uint64_t step = ob_step_count(s->u) + 1;
 	const double h = run->step_length, end = (double)step * h;
-	ob_state now = ob_ballistic_state(s, id, m, end);
 	uint64_t due = m->flags & OB_MOTION_FREE ? (uint64_t)(m->valid_until / h) : step;
 	due -= (double)due * h > m->valid_until && due > step; // the quotient may have been rounded up
 	double last = (double)(due + 1) * h, reach = flight_speed_bound(body, m, end, last) * h;
 	const double from = straight ? end - h : end;
-	ob_state begin = straight ? ob_ballistic_state(s, id, m, from) : now;
-	ob_motion rest = { .p = begin.pose.p, .q = begin.pose.q, .v = begin.v, .w = begin.w, .a = m->a };
+	// Of what turns the box is that of the bounding sphere, so its attitude need not be known.
+	ob_motion rest = { .p = ob_centre_at(m, from), .q = m->q, .v = ob_velocity_at(m, from), .w = m->w, .a = m->a };
+	const ob_state now = { { ob_centre_at(m, end), m->q }, ob_velocity_at(m, end), m->w };
 	double box[6];
 	ob_motion_swept_bounds(&rest, body->shape, body->size, last - from, box);
 	m->step = (uint32_t)step;
@@ -326,10 +326,10 @@ static void step_by_ode(ob_sim *s, uint32_t id)
 	ob_body_publish(s, id, &m, &end);
 }
 
-// For how long a flight is computed from this state on (s). Its fat AABB holds all of it, and overlaps that of whatever
-// is in its column: where many fly close together, as long as is expected to bring no more than the most neighbours,
-// judged by those that the object's box has now. What flies alone is computed far ahead.
-static double flight_horizon(const ob_sim *s, uint32_t id, const ob_state *from, ob_vec3 a)
+// For how long a flight is computed from this velocity on (s). Its fat AABB holds all of it, and overlaps that of
+// whatever is in its column: where many fly close together, as long as is expected to bring no more than the most
+// neighbours, judged by those that the object's box has now. What flies alone is computed far ahead.
+static double flight_horizon(const ob_sim *s, uint32_t id, ob_vec3 v, ob_vec3 a)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);
 	const float *box = s->data->bounds[id];
@@ -338,7 +338,7 @@ static double flight_horizon(const ob_sim *s, uint32_t id, const ob_state *from,
 	double length = least_sweep * ob_shape_radius(body->shape, body->size);
 	if (neighbours != UINT32_MAX)
 		length = ob_max(length, side * most_neighbours / ob_max(1, neighbours));
-	double speed = ob_norm(from->v), fall = sqrt(speed * speed + 2 * ob_norm(a) * length);
+	double speed = ob_norm(v), fall = sqrt(speed * speed + 2 * ob_norm(a) * length);
 	return ob_min(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // for which it moves so far
 }
 
@@ -353,9 +353,9 @@ bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 	const uint64_t step = ob_step_count(s->u);
 	const double h = run->step_length, end = (double)(step + 1) * h;
 	ob_motion m = ob_ballistic_flight(s, id);
-	const ob_state now = ob_ballistic_state(s, id, &m, (double)step * h);
-	const double horizon = end + flight_horizon(s, id, &now, m.a);
-	double since = (double)step * h, from = ob_max(m.valid_until, since);
+	double since = (double)step * h;
+	const double horizon = end + flight_horizon(s, id, ob_velocity_at(&m, since), m.a);
+	double from = ob_max(m.valid_until, since);
 	uint32_t plane = 0, impacts = 0;
 	m.path = ob_path_now(&m, step);
 	for (;;) {
