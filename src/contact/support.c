@@ -4,6 +4,7 @@ static const double flat = 1e-12; // of a unit vector's part across an axis: les
 static const double converged = 1e-14; // of the shapes' size, what is left of a gradient
 static const double rounding = 1e-14; // of the shapes' size
 static const double flattest = 1e-9; // of the shapes' size, of a curvature that a step is measured by
+static const double beside_jump = 1e-13; // of a turn's tangent: so near to a jump the slope is that of its side
 static const double widest = 1e4; // tangent of the largest turn of a climb
 
 static ob_vec3 unit(ob_vec3 v)
@@ -75,7 +76,7 @@ typedef struct slice {
 	const ob_placed *x;
 	double turn; // -1: it is looked at from the other side
 	ob_vec3 p, q; // in the shape's frame
-	double half[3]; // m: of the box that is in the shape, to which what is round is added
+	double half[3]; // m: of the box that is in the shape, to which what is round is added; 0: of a hull
 	double radius; // m, of a cylinder's rim
 } slice;
 
@@ -84,7 +85,7 @@ static slice slice_of(const ob_placed *x, double turn, ob_vec3 p, ob_vec3 q)
 	slice s = { .x = x, .turn = turn, .p = ob_rotate_back(&x->r, p), .q = ob_rotate_back(&x->r, q) };
 	if (x->shape == OB_SHAPE_BOX)
 		s.half[0] = x->size.x, s.half[1] = x->size.y, s.half[2] = x->size.z;
-	else
+	else if (x->shape != OB_SHAPE_HULL)
 		s.half[2] = x->size.y;
 	if (x->shape == OB_SHAPE_CYLINDER)
 		s.radius = x->size.x;
@@ -104,6 +105,17 @@ static double part_of_slope(const slice *s, double t)
 		return sum + copysign(s->half[0], n.x) * d.x + copysign(s->half[1], n.y) * d.y;
 	const double across = sqrt(n.x * n.x + n.y * n.y);
 	return across > flat ? sum + s->radius * (n.x * d.x + n.y * d.y) / across : sum;
+}
+
+// Where the slope jumps, as the farthest point goes from one end of the shape to the other: t, added to jump. Returns
+// how many there are then.
+static int add_jumps(const slice *s, double jump[6], int n)
+{
+	const double p[3] = { s->p.x, s->p.y, s->p.z }, q[3] = { s->q.x, s->q.y, s->q.z };
+	for (int i = 0; i < 3; i++)
+		if (s->half[i] > 0 && fabs(q[i]) > flat)
+			jump[n++] = -p[i] / q[i];
+	return n;
 }
 
 // The derivative of the separation along p + t q, but for a positive factor; apart: of the centres, along p and q.
@@ -141,20 +153,39 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 		if (at_high == 0)
 			return unit(ob_madd(p, high, q));
 	}
-	// Regula falsi in the form of Illinois (Dowell and Jarratt 1971); halves where that goes too slowly, at a
-	// corner.
+	// The top is often where the slope jumps; elsewhere a jump is kept out of what is bracketed.
+	double jump[6];
+	const int jumps = add_jumps(&of_b, jump, add_jumps(&of_a, jump, 0));
+	for (int k = 0; k < jumps; k++) {
+		const double beside = (high > low ? beside_jump : -beside_jump) * (1 + fabs(jump[k])),
+			     before = jump[k] - beside, after = jump[k] + beside;
+		if (!((before - low) * beside > 0 && (high - after) * beside > 0))
+			continue;
+		const double at_before = slope_at(&of_a, &of_b, apart, before);
+		if (at_before * at_low <= 0) {
+			high = before, at_high = at_before;
+			continue;
+		}
+		const double at_after = slope_at(&of_a, &of_b, apart, after);
+		if (at_after * at_low <= 0)
+			return unit(ob_madd(p, jump[k], q));
+		low = after, at_low = at_after;
+	}
+	// Regula falsi in the form of Illinois (Dowell and Jarratt 1971): an end that is kept twice weighs less.
 	double weigh_low = 1, weigh_high = 1;
+	int kept = 0; // the end that was kept: -1 low, 1 high
 	for (int i = 0; i < NARROW && fabs(high - low) > 2e-16 * (1 + fabs(low)); i++) {
-		double share = weigh_low * at_low / (weigh_low * at_low - weigh_high * at_high);
-		double mid = low + (high - low) * (i % 3 == 2 ? .5 : share), at = slope_at(&of_a, &of_b, apart, mid);
-		if (fabs(at) <= converged * size)
+		const double share = weigh_low * at_low / (weigh_low * at_low - weigh_high * at_high);
+		const double mid = low + (high - low) * (i % 8 == 7 ? .5 : share),
+			     at = slope_at(&of_a, &of_b, apart, mid);
+		if (fabs(at) <= converged * size * (1 + fabs(mid)))
 			return unit(ob_madd(p, mid, q));
 		if (at * at_low > 0) {
-			weigh_high = low == mid ? weigh_high : .5 * weigh_high;
-			weigh_low = 1, low = mid, at_low = at;
+			weigh_high = kept > 0 ? .5 * weigh_high : 1;
+			weigh_low = 1, low = mid, at_low = at, kept = 1;
 		} else {
-			weigh_low *= .5;
-			weigh_high = 1, high = mid, at_high = at;
+			weigh_low = kept < 0 ? .5 * weigh_low : 1;
+			weigh_high = 1, high = mid, at_high = at, kept = -1;
 		}
 	}
 	return unit(ob_madd(p, low, q));
