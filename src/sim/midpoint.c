@@ -10,14 +10,16 @@
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
-static const double least_turning = 5e-5; // m/s^2: less than turning brings to any row is not noticed
+static const double least_turning = 1e-6; // m/s^2: less than turning brings to any row is not noticed ..
+static const double least_face_turning = 5e-5; // .. where three points are held, which leaves nothing to tilt
 static const double longest_way = .2; // of the smaller thickness: in a partial substep of bodies that are halved
 static const double loose_gap = 1e-5; // m: a point that is farther off is not held at the surface
 
 // m/s, in the partial substep
-static double least_change(const ob_island_work *w)
+static double least_change(const ob_island_work *w, uint32_t held)
 {
-	return least_turning * w->unit.speed / w->unit.time * w->h;
+	const double least = held > 2 ? least_face_turning : least_turning;
+	return least * w->unit.speed / w->unit.time * w->h;
 }
 
 static ob_vec3 linear_of(const double *r)
@@ -65,7 +67,8 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	if ((a->surface && ob_norm2(angular_of(w->v[contact->a])) > 0) ||
 	    (b->surface && ob_norm2(angular_of(w->v[contact->b])) > 0))
 		return false; // of the first order, but for what is carried
-	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change(w) && load_of(w, contact) > 0 &&
+	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change(w, 0) &&
+	       load_of(w, contact) > 0 &&
 	       ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness);
 }
 
@@ -187,6 +190,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		      wb = angular_of(w->v[ib]), wa0 = start_rate(w, ia), wb0 = start_rate(w, ib);
 	ob_vec3 slide = { 0, 0, 0 }, slide_start = { 0, 0, 0 };
 	double most = 0;
+	uint32_t held_points = 0;
 	for (uint32_t j = 0; j < contact->points; j++) {
 		const int k = contact->was[j];
 		const ob_vec3 ra = contact->arm_a[j], rb = contact->arm_b[j];
@@ -195,6 +199,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		ob_vec3 now = ob_sub(velocity_at(va, wa, ra), velocity_at(vb, wb, rb));
 		ob_vec3 start = ob_sub(velocity_at(va, wa0, ra0), velocity_at(vb, wb0, rb0));
 		bool held = b->impulse[j][l] > 0 && b->gap[j][l] < loose_gap * w->unit.length;
+		held_points += held;
 		most = held ? ob_max(most, fabs(ob_dot(n, now) - ob_dot(start_n, start))) : most;
 		b->turn[j][l] = held ? turned(ob_dot(n, now), ob_dot(start_n, start), b->impulse[j][l]) : 0;
 		slide = ob_madd(slide, part, now);
@@ -210,7 +215,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 	b->turn[4][l] = ob_dot(slide, t1);
 	b->turn[5][l] = ob_dot(slide, t2);
 	b->turn[6][l] = turned(ob_dot(n, ob_sub(wa, wb)), ob_dot(start_n, ob_sub(wa0, wb0)), b->impulse[6][l]);
-	if (most > least_change(w))
+	if (most > least_change(w, held_points))
 		b->turning |= 1u << l;
 }
 
