@@ -108,10 +108,35 @@ static void test_cost(void)
 	CHECK(among_many == alone);
 }
 
+// Of balls in flight few are due in a step: what is looked at follows them, not those that fly on.
+static void test_cost_of_flights(void)
+{
+	enum { BALLS = 1200, STEPS = 120, LOOKS = 16 };
+	little_scene *s = thrown(BALLS, 6);
+	little_universe l;
+	little_open(&l, s);
+	little_run(&l, 1); // all are due in the first one
+	const ob_step_data *data = ob_universe_step_data(l.u);
+	const uint64_t before = data->count->visits;
+	uint64_t solved = 0;
+	for (int step = 0; step < STEPS; step++) {
+		little_run(&l, 1);
+		for (uint32_t id = 0; id < ob_universe_ids(l.u); id++)
+			solved += ob_newest_motion(l.u, id)->step == ob_step_count(l.u);
+	}
+	const uint64_t visits = data->count->visits - before;
+	CHECK(solved > BALLS);
+	CHECK(visits <= LOOKS * solved);
+	CHECK(LOOKS * solved < (uint64_t)BALLS * STEPS); // or that would say little
+	little_close(&l);
+	free(s);
+}
+
 int main(void)
 {
 	test_entries();
 	test_nothing_missed();
 	test_cost();
+	test_cost_of_flights();
 	return check_end();
 }
