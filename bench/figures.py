@@ -10,7 +10,8 @@ import subprocess
 import sys
 import tempfile
 
-SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scenes')
+BENCH = os.path.dirname(os.path.abspath(__file__))
+SCENES = os.path.join(BENCH, '..', 'scenes')
 RUNS = 3
 SEEDS = 12  # of the error tables: one heap is an anecdote
 
@@ -140,6 +141,21 @@ def counts():
     return text
 
 
+def shapes():
+    """What a pile costs, by the shape of its bodies: each seed is another pile."""
+    text = head(f'200 bodies, 3 s, {SEEDS} seeds', 'CPU per body and step, µs', 'over boxes', 'deepest penetration, mm')
+    boxes = 0
+    for what, words in (('boxes', ()), *((f'hulls of {n} points', ('-D', f'points={n}')) for n in (8, 12, 20)),
+                        ('boxes of .5 m, upright: columns, not a heap', ('-D', 'upright=true'))):
+        reports = [run(os.path.join(BENCH, 'shapes.lua'), *words, '--workers', '1', '--seed', str(seed), runs=1)
+                   for seed in range(1, SEEDS + 1)]
+        cost = [r['body_step_cpu_us'] for r in reports]
+        boxes = boxes or statistics.median(cost)
+        text += row(what, spread(cost, 3), f'{statistics.median(cost) / boxes:.2f}',
+                    spread([1e3 * r['worst_penetration_m'] for r in reports], 3))
+    return text
+
+
 def capture():
     """Frames to PNG, four samples a pixel, drawn by whatever EGL finds."""
     text = head('60 frames of 100 falling boxes to PNG', 'frames per second')
@@ -150,7 +166,7 @@ def capture():
     return text
 
 
-TABLES = {f.__name__: f for f in (machine, summary, compare, varied, error_falling, error_stack, bits, counts, capture)}
+TABLES = {f.__name__: f for f in (machine, summary, compare, varied, error_falling, error_stack, bits, counts, shapes, capture)}
 
 
 def refresh(path):
