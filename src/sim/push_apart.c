@@ -6,6 +6,7 @@
 #include "sim/contact_solver.h"
 
 static const double pushed_share = .3; // of the penetration, per partial substep
+static const double most_share = 1.1; // of what two move against each other, where a push has to give energy back
 
 static bool is_jacobi(const ob_sim *s)
 {
@@ -97,7 +98,8 @@ static ob_vec3 turn_of(const pair_motion *m, ob_vec3 angular)
 	return ob_scale(sum, 1 / (s[0] * a + s[1] * b + s[2] * c));
 }
 
-// Velocities for the new poses such that angular momentum is as before, and energy no more. false: there are none.
+// Velocities for the new poses such that angular momentum is as before, and energy, too, as far as their motion against
+// each other can give or take it. false: there are none.
 static bool keep_motion(const pair_motion *before, body_in_pair *x)
 {
 	const pair_motion moved = motion_of(x);
@@ -107,13 +109,13 @@ static bool keep_motion(const pair_motion *before, body_in_pair *x)
 		x[i].w = ob_add(x[i].w, given_back);
 	}
 	const double now = motion_of(x).energy;
-	if (now <= before->energy)
-		return true;
 	const ob_vec3 as_one = turn_of(&moved, before->angular); // has the least energy of all that keep it
 	const double least = .5 * ob_dot(as_one, before->angular);
+	if (now <= before->energy && !(now > least))
+		return true;
 	if (!(before->energy >= least && now > least))
 		return false;
-	const double share = sqrt((before->energy - least) / (now - least));
+	const double share = ob_min(sqrt((before->energy - least) / (now - least)), most_share);
 	for (int i = 0; i < 2; i++) {
 		const ob_vec3 v = ob_add(moved.v, ob_cross(as_one, ob_sub(x[i].p, moved.centre)));
 		x[i].v = ob_madd(v, share, ob_sub(x[i].v, v));

@@ -3,8 +3,8 @@
 // Where nothing external acts, a push keeps momentum, angular momentum and energy of the two bodies, too. Their
 // displacements are equal and opposite, along the normals, but bodies that move past each other have another angular
 // momentum in another place. What it changes is given back by one turn of both about their centre of mass, in which no
-// contact of theirs opens or slides; the energy that this brings is taken from their motion against each other. Where
-// that has too little, they stay where they are.
+// contact of theirs opens or slides; the energy that this brings or takes is that of their motion against each other.
+// Where that has too little to give, they stay where they are.
 #ifndef OB_SIM_PUSH_APART_H
 #define OB_SIM_PUSH_APART_H
 

@@ -63,6 +63,26 @@ static void check_pair(uint64_t seed, double tolerance)
 	free(s);
 }
 
+// Smooth elastic balls that pass each other while they are pushed apart keep their energy.
+static void check_balls(double aside)
+{
+	little_scene *s = little_scene_new();
+	s->run.gravity = ob_v3(0, 0, 0);
+	s->run.tolerance = 1e-3;
+	for (int i = 0; i < 2; i++)
+		ob_world_sphere(&s->world, 1 + i, .2, ob_v3(i * (.4 - depth), 0, 0)).state->v =
+			ob_v3(i ? -.5 : .5, i ? -aside : aside, 0);
+	ob_world_material(&s->world, 0, 1);
+	little_universe l;
+	little_open(&l, s);
+	const double energy = little_energy(&l);
+	little_run(&l, 60);
+	CHECK_NEAR(little_energy(&l) / energy, 1, 1e-12);
+	CHECK(little_penetration(&l).max_m == 0);
+	little_close(&l);
+	free(s);
+}
+
 int main(int argc, char **argv)
 {
 	const uint64_t first = argc > 1 ? strtoull(argv[1], NULL, 10) : 1,
@@ -70,5 +90,7 @@ int main(int argc, char **argv)
 	for (uint64_t seed = first; seed < first + seeds; seed++)
 		for (double tolerance = 1e-3; tolerance > 5e-6; tolerance /= 10)
 			check_pair(seed, tolerance);
+	for (double aside = .1; aside < 10; aside *= 2)
+		check_balls(aside);
 	return check_end();
 }
