@@ -218,14 +218,39 @@ static uint32_t holding_row(const ob_sim *s, const ob_island *is, uint32_t pair)
 	return own ? own : a > w->bodies ? a : b > w->bodies ? b : 0;
 }
 
-// True where the pair may touch within the step, by how it moves: the same however fast all of it goes.
-static bool comes_near(ob_sim *s, uint32_t a, uint32_t b)
+// J, of the bodies' motion against their centre of mass
+static double inner_energy(const ob_island_work *w)
+{
+	ob_vec3 mean = { 0, 0, 0 };
+	double sum = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		mean = ob_madd(mean, w->body[i].mass / w->mass, linear_of(w->v[i]));
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		const ob_body *body = &w->body[i];
+		const ob_vec3 rate = ob_rotate_back(&body->r, angular_of(w->v[i])), k = body->inertia;
+		sum += .5 * body->mass * ob_norm2(ob_sub(linear_of(w->v[i]), mean)) +
+		       .5 * (k.x * rate.x * rate.x + k.y * rate.y * rate.y + k.z * rate.z * rate.z);
+	}
+	return sum;
+}
+
+// m/s, of any point of a body against the centre of mass: hits among the bodies give it no more.
+static double most_inner_speed(const ob_body *body, double energy)
+{
+	const ob_vec3 k = body->inertia;
+	const double least = ob_min(k.x, ob_min(k.y, k.z));
+	return sqrt(2 * energy / body->mass) + (least > 0 ? body->radius * sqrt(2 * energy / least) : 0);
+}
+
+// True where the pair may touch within the step, whatever hits before that do to b: the same however fast all of it
+// goes. energy: J, inner
+static bool comes_near(ob_sim *s, uint32_t a, uint32_t b, double energy)
 {
 	const ob_island_work *w = &s->island;
 	const double h = s->settings->step_length;
 	const ob_contact pair = { .a = a, .b = b };
 	const double gained = h * ob_norm(ob_sub(w->body[a].acceleration, w->body[b].acceleration));
-	const double way = h * (ob_contact_speed(w, &pair) + gained);
+	const double way = h * (ob_contact_speed(w, &pair) + gained + 2 * most_inner_speed(&w->body[b], energy));
 	return ob_narrowphase_distance(s, a, b, way) <= way;
 }
 
@@ -240,12 +265,13 @@ static void find_what_holds(ob_sim *s, const ob_island *is)
 		       ob_pair_carried_load(s->u, &s->data->pair[s->data->island_pair[is->first_pair + i]]);
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
 		w->body[row].holds = held;
+	const double energy = held ? 0 : inner_energy(w);
 	for (uint32_t i = 0; i < is->pairs && !held; i++) {
 		const ob_pair_key *k = &s->data->pair[s->data->island_pair[is->first_pair + i]];
 		const uint32_t row = holding_row(s, is, i);
 		const uint32_t other = row && w->body[row].id == k->a ? w->row_of[k->b] : w->row_of[k->a];
 		if (row && !w->body[row].holds)
-			w->body[row].holds = comes_near(s, row, other);
+			w->body[row].holds = comes_near(s, row, other, energy);
 	}
 }
 

@@ -348,8 +348,29 @@ static void test_break(double e, double mu, double gravity, double turn)
 	free(s);
 }
 
+// A heavy ball knocks a light one, which floats, onto the ground within the step: neither was to come near it.
+static void test_knocked_onto_ground(void)
+{
+	little_scene *s = little_scene_new();
+	ob_world_ground(&s->world);
+	ob_world_sphere(&s->world, 1, .1, ob_v3(0, 0, .4));
+	ob_world_sphere(&s->world, 100, .1, ob_v3(0, 0, .65)).state->v = ob_v3(0, 0, -30);
+	ob_world_material(&s->world, 0, 1);
+	little_universe l;
+	little_open(&l, s);
+	const double energy = little_energy(&l);
+	for (int step = 0; step < 10; step++) {
+		little_run(&l, 1);
+		CHECK_NEAR(little_energy(&l) / energy, 1, 1e-12);
+		CHECK(little_penetration(&l).max_m <= 1e-9);
+	}
+	little_close(&l);
+	free(s);
+}
+
 int main(void)
 {
+	test_knocked_onto_ground();
 	for (uint64_t k = 0; k < 20; k++)
 		for (int edge = 0; edge < 2; edge++) {
 			test_flat_landing(GROUND_PLANE, edge, k % 2 ? .1 * (double)k : 0, k);
