@@ -156,6 +156,8 @@ static ob_vec3 find_frame(const ob_island_work *w)
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
 		if (w->body[row].holds)
 			*(is_slippery(&w->body[row]) ? &slippery : &holds) = &w->body[row];
+	if (w->in_field && !holds && !slippery)
+		return none;
 	ob_vec3 a = holds ? holds->acceleration : mean_acceleration(w);
 	if (slippery && !holds) {
 		const ob_vec3 n = ob_column(&slippery->r, 2);
@@ -175,7 +177,7 @@ static ob_vec3 find_frame(const ob_island_work *w)
 static double felt_on_any(const ob_island_work *w, const ob_body *body)
 {
 	const ob_vec3 none = { 0, 0, 0 };
-	double most = 0;
+	double most = w->rows == 1 + w->bodies && w->in_field ? ob_norm(body->acceleration) : 0;
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++) {
 		const ob_body *holds = &w->body[row];
 		const bool as_before = row > 1 + w->bodies && !is_slippery(holds) && !is_slippery(holds - 1) &&
@@ -254,12 +256,12 @@ static bool comes_near(ob_sim *s, uint32_t a, uint32_t b, double energy)
 	return ob_narrowphase_distance(s, a, b, way) <= way;
 }
 
-// Bodies that touch each other in the air are held by what they come near in the step. Of a single one it does not
+// Bodies that touch each other in the air, unless they are solved as in a field, are held by what they come near in the step. Of a single one it does not
 // matter, and what carries a load is held.
 static void find_what_holds(ob_sim *s, const ob_island *is)
 {
 	ob_island_work *w = &s->island;
-	bool held = is->members == 1;
+	bool held = is->members == 1 || w->in_field;
 	for (uint32_t i = 0; i < is->pairs && !held; i++)
 		held = holding_row(s, is, i) &&
 		       ob_pair_carried_load(s->u, &s->data->pair[s->data->island_pair[is->first_pair + i]]);

@@ -168,6 +168,12 @@ bool ob_error_control_accept(ob_sim *s)
 		w->substeps = w->substeps < max_substeps ? w->substeps : max_substeps;
 		return false;
 	}
+	const bool floats = w->max_acceleration == 0 && ob_norm2(w->frame) > 0;
+	if (w->new_error > tolerance && floats && !w->in_field) {
+		w->in_field = true;
+		w->substeps = s->settings->substeps;
+		return false;
+	}
 	set_next_substeps(s);
 	s->counters.islands_over += w->error > tolerance;
 	s->counters.error = ob_max(s->counters.error, w->error);

@@ -203,6 +203,8 @@ typedef struct ob_island_work {
 	double mass; // of all bodies, kg
 	double max_acceleration; // m/s^2, the largest external acceleration that a body feels
 	ob_vec3 frame; // m/s^2: the island is solved as seen by who speeds up like this
+	bool in_field; // bodies that fall together feel what moves them: a solution in which they float missed the
+		       // tolerance
 	bool feels; // a body's script is told of its contacts
 	bool torques; // a body has an external torque
 	uint32_t substeps; // of this step

@@ -215,6 +215,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	if (advance_ballistically(s, is))
 		return;
 	const uint64_t before = cost_so_far(s);
+	s->island.in_field = false;
 	s->island.substeps = ob_error_control_substeps(s, is);
 	if (!solve_equilibrium(s, is))
 		while (!solve_step(s, is))

@@ -70,6 +70,12 @@ class Report(program.Case):
 		self.assertIn(" kept, ", done.stdout)
 		self.refuse("run", program.scene("stack"), "--substeps", "4", "--strict", saying="no tolerance")
 
+	def test_hits_in_the_air_keep_the_tolerance(self):
+		"""Hulls that hit each other while they fall: two of them jam as bodies that float do."""
+		shapes = os.path.join(program.SCENES, "..", "bench", "shapes.lua")
+		done = program.call("run", shapes, "-D", "points=8", "-D", "upright=true", "--seed", "3", "--duration", ".75", "--strict")
+		self.assertEqual(done.returncode, 0, done.stderr)
+
 	def test_explain(self):
 		cradle = program.call("run", program.scene("cradle"), "--substeps", "8", "--explain")
 		self.assertEqual((cradle.returncode, cradle.stderr), (0, ""))
