@@ -256,8 +256,8 @@ static bool comes_near(ob_sim *s, uint32_t a, uint32_t b, double energy)
 	return ob_narrowphase_distance(s, a, b, way) <= way;
 }
 
-// Bodies that touch each other in the air, unless they are solved as in a field, are held by what they come near in the step. Of a single one it does not
-// matter, and what carries a load is held.
+// Bodies that touch each other in the air, unless they are solved as in a field, are held by what they come near in the
+// step. Of a single one it does not matter, and what carries a load is held.
 static void find_what_holds(ob_sim *s, const ob_island *is)
 {
 	ob_island_work *w = &s->island;
