@@ -6,6 +6,7 @@
 #define OB_VEC_H
 
 #include <math.h>
+#include <stdbool.h>
 
 typedef struct ob_vec3 {
 	double x, y, z;
@@ -47,6 +48,7 @@ static inline ob_vec3 ob_cross(ob_vec3 a, ob_vec3 b)
 	return ob_v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 static inline double ob_norm2(ob_vec3 a) { return ob_dot(a, a); }
+static inline bool ob_equal(ob_vec3 a, ob_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 static inline double ob_norm(ob_vec3 a) { return sqrt(ob_dot(a, a)); }
 
 static inline ob_quat ob_quat_identity(void) { return (ob_quat){ 1, 0, 0, 0 }; }

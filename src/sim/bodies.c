@@ -9,7 +9,6 @@
 #include "sim/equilibrium.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
-#include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
@@ -18,19 +17,6 @@ static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
 {
 	r[0] += linear.x, r[1] += linear.y, r[2] += linear.z;
 	r[3] += angular.x, r[4] += angular.y, r[5] += angular.z;
-}
-
-static ob_vec3 linear_of(const double *r)
-{
-	return ob_v3(r[0], r[1], r[2]);
-}
-static ob_vec3 angular_of(const double *r)
-{
-	return ob_v3(r[3], r[4], r[5]);
-}
-static bool same_vector(ob_vec3 a, ob_vec3 b)
-{
-	return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
 // For the pose that the body has.
@@ -44,9 +30,9 @@ static void update_inertia(ob_body *body)
 static void set_speed_bound(ob_island_work *w, uint32_t row)
 {
 	ob_body *body = &w->body[row];
-	const ob_vec3 rate = ob_rotate_back(&body->r, angular_of(w->v[row]));
+	const ob_vec3 rate = ob_rotate_back(&body->r, ob_row_angular(w->v[row]));
 	body->turning = ob_turning_speed(body->shape, body->size, body->inertia, rate, w->h);
-	body->speed = ob_norm(linear_of(w->v[row])) + body->turning;
+	body->speed = ob_norm(ob_row_linear(w->v[row])) + body->turning;
 	if (ob_has_axis(body->shape))
 		body->speed += body->radius * fabs(rate.z);
 }
@@ -54,16 +40,7 @@ static void set_speed_bound(ob_island_work *w, uint32_t row)
 // m/s, bound of how fast the body's surface moves: its points may do so faster, where a round body spins.
 static double surface_speed(const ob_island_work *w, uint32_t row)
 {
-	return ob_norm(linear_of(w->v[row])) + w->body[row].turning;
-}
-
-// rad/s^2, by a torque (N m, world)
-static ob_vec3 turned_by(const ob_body *body, ob_vec3 torque)
-{
-	const double *i = body->inv_inertia; // xx xy xz yy yz zz
-	return ob_v3(i[0] * torque.x + i[1] * torque.y + i[2] * torque.z,
-		     i[1] * torque.x + i[3] * torque.y + i[4] * torque.z,
-		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
+	return ob_norm(ob_row_linear(w->v[row])) + w->body[row].turning;
 }
 
 static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
@@ -119,197 +96,6 @@ static void reserve_rows(ob_island_work *w, uint32_t rows)
 	}
 }
 
-// ---- the frame of reference
-
-static const double same_share = 1e-9; // of an acceleration: another that differs by less is the same
-
-static bool is_slippery(const ob_body *body)
-{
-	return body->shape == OB_SHAPE_PLANE && body->friction == 0;
-}
-
-// m/s^2, of a against b, as it is felt on the body that has b: what goes along a plane without friction is not.
-static double felt_on(const ob_body *body, ob_vec3 a, ob_vec3 b)
-{
-	const ob_vec3 felt = ob_sub(a, b);
-	return is_slippery(body) ? fabs(ob_dot(felt, ob_column(&body->r, 2))) : ob_norm(felt);
-}
-
-// Of what moves itself: exactly that of each where all have the same.
-static ob_vec3 mean_acceleration(const ob_island_work *w)
-{
-	ob_vec3 sum = { 0, 0, 0 };
-	bool same = true;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		sum = ob_madd(sum, w->body[i].mass / w->mass, w->body[i].acceleration);
-		same &= same_vector(w->body[i].acceleration, w->body[1].acceleration);
-	}
-	return same ? w->body[1].acceleration : sum;
-}
-
-// The acceleration of what holds the bodies, which is one as long as all of it goes with it; of bodies that nothing
-// holds, their mean. 0: there is no such frame.
-static ob_vec3 find_frame(const ob_island_work *w)
-{
-	const ob_vec3 none = { 0, 0, 0 };
-	const ob_body *holds = NULL, *slippery = NULL;
-	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
-		if (w->body[row].holds)
-			*(is_slippery(&w->body[row]) ? &slippery : &holds) = &w->body[row];
-	if (w->in_field && !holds && !slippery)
-		return none;
-	ob_vec3 a = holds ? holds->acceleration : mean_acceleration(w);
-	if (slippery && !holds) {
-		const ob_vec3 n = ob_column(&slippery->r, 2);
-		const ob_vec3 along = ob_madd(a, -ob_dot(a, n), n);
-		a = ob_norm(along) > same_share * ob_norm(a) ? along : none;
-	}
-	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
-		if (w->body[row].holds &&
-		    (felt_on(&w->body[row], w->body[row].acceleration, a) > same_share * ob_norm(a) ||
-		     ob_surface_swings(w, row)))
-			return none;
-	return a;
-}
-
-// m/s^2, by a body, the largest on any of what holds it. What a surface that swings takes away when the step begins it
-// may give again before the end.
-static double felt_on_any(const ob_island_work *w, const ob_body *body)
-{
-	const ob_vec3 none = { 0, 0, 0 };
-	double most = w->rows == 1 + w->bodies && w->in_field ? ob_norm(body->acceleration) : 0;
-	for (uint32_t row = 1 + w->bodies; row < w->rows; row++) {
-		const ob_body *holds = &w->body[row];
-		const bool as_before = row > 1 + w->bodies && !is_slippery(holds) && !is_slippery(holds - 1) &&
-				       holds[-1].holds && same_vector(holds->acceleration, holds[-1].acceleration);
-		if (!holds->holds)
-			continue;
-		if (!as_before)
-			most = ob_max(most, felt_on(holds, body->acceleration, holds->acceleration));
-		if (ob_surface_swings(w, row))
-			most = ob_max(most, felt_on(holds, body->acceleration, none));
-	}
-	return most;
-}
-
-// m/s^2: the largest that is felt on what holds the bodies, and by one of them against the others.
-static double felt_acceleration(const ob_island_work *w)
-{
-	const ob_vec3 mean = mean_acceleration(w);
-	double most = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		const ob_body *body = &w->body[i];
-		if (i > 1 && !w->torques && same_vector(body->acceleration, body[-1].acceleration))
-			continue;
-		double felt = ob_norm(ob_sub(body->acceleration, mean));
-		felt = ob_max(felt, felt_on_any(w, body));
-		if (w->torques)
-			felt += body->radius * ob_norm(turned_by(body, body->torque));
-		most = ob_max(most, felt);
-	}
-	return most;
-}
-
-// The row of the pair that is fixed or moves as it is told; 0: both move themselves.
-static uint32_t holding_row(const ob_sim *s, const ob_island *is, uint32_t pair)
-{
-	const ob_island_work *w = &s->island;
-	const ob_pair_key *k = &s->data->pair[s->data->island_pair[is->first_pair + pair]];
-	const uint32_t own = w->surfaces.count ? ob_surface_row(w, pair) : 0;
-	const uint32_t a = w->row_of[k->a], b = w->row_of[k->b];
-	return own ? own : a > w->bodies ? a : b > w->bodies ? b : 0;
-}
-
-// J, of the bodies' motion against their centre of mass
-static double inner_energy(const ob_island_work *w)
-{
-	ob_vec3 mean = { 0, 0, 0 };
-	double sum = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++)
-		mean = ob_madd(mean, w->body[i].mass / w->mass, linear_of(w->v[i]));
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		const ob_body *body = &w->body[i];
-		const ob_vec3 rate = ob_rotate_back(&body->r, angular_of(w->v[i])), k = body->inertia;
-		sum += .5 * body->mass * ob_norm2(ob_sub(linear_of(w->v[i]), mean)) +
-		       .5 * (k.x * rate.x * rate.x + k.y * rate.y * rate.y + k.z * rate.z * rate.z);
-	}
-	return sum;
-}
-
-// m/s, of any point of a body against the centre of mass: hits among the bodies give it no more.
-static double most_inner_speed(const ob_body *body, double energy)
-{
-	const ob_vec3 k = body->inertia;
-	const double least = ob_min(k.x, ob_min(k.y, k.z));
-	return sqrt(2 * energy / body->mass) + (least > 0 ? body->radius * sqrt(2 * energy / least) : 0);
-}
-
-// True where the pair may touch within the step, whatever hits before that do to b: the same however fast all of it
-// goes. energy: J, inner
-static bool comes_near(ob_sim *s, uint32_t a, uint32_t b, double energy)
-{
-	const ob_island_work *w = &s->island;
-	const double h = s->settings->step_length;
-	const ob_contact pair = { .a = a, .b = b };
-	const double gained = h * ob_norm(ob_sub(w->body[a].acceleration, w->body[b].acceleration));
-	const double way = h * (ob_contact_speed(w, &pair) + gained + 2 * most_inner_speed(&w->body[b], energy));
-	return ob_narrowphase_distance(s, a, b, way) <= way;
-}
-
-// Bodies that touch each other in the air, unless they are solved as in a field, are held by what they come near in the
-// step. Of a single one it does not matter, and what carries a load is held.
-static void find_what_holds(ob_sim *s, const ob_island *is)
-{
-	ob_island_work *w = &s->island;
-	bool held = is->members == 1 || w->in_field;
-	for (uint32_t i = 0; i < is->pairs && !held; i++)
-		held = holding_row(s, is, i) &&
-		       ob_pair_carried_load(s->u, &s->data->pair[s->data->island_pair[is->first_pair + i]]);
-	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
-		w->body[row].holds = held;
-	const double energy = held ? 0 : inner_energy(w);
-	for (uint32_t i = 0; i < is->pairs && !held; i++) {
-		const ob_pair_key *k = &s->data->pair[s->data->island_pair[is->first_pair + i]];
-		const uint32_t row = holding_row(s, is, i);
-		const uint32_t other = row && w->body[row].id == k->a ? w->row_of[k->b] : w->row_of[k->a];
-		if (row && !w->body[row].holds)
-			w->body[row].holds = comes_near(s, row, other, energy);
-	}
-}
-
-// What falls together feels nothing of it, and what stands on a lift feels it as weight: an island is solved as seen by
-// who speeds up with what holds it, and how far that has come is added in the end.
-static void enter_frame(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	const bool ode = s->settings->integrator == OB_INTEGRATOR_ODE;
-	w->frame = ode ? ob_v3(0, 0, 0) : find_frame(w);
-	for (uint32_t row = 1; row < w->rows && ob_norm2(w->frame) > 0; row++)
-		w->body[row].acceleration =
-			is_slippery(&w->body[row]) ? ob_v3(0, 0, 0) : ob_sub(w->body[row].acceleration, w->frame);
-	w->max_acceleration = felt_acceleration(w);
-	for (uint32_t row = 1; row < w->rows && w->max_acceleration == 0; row++)
-		w->body[row].rest_depth = ob_narrowphase_rest_depth(s, w->body[row].thickness, false);
-}
-
-void ob_bodies_leave_frame(ob_sim *s)
-{
-	ob_island_work *w = &s->island;
-	const double h = s->settings->step_length;
-	for (uint32_t row = 1; row < w->rows && ob_norm2(w->frame) > 0; row++) {
-		ob_body *body = &w->body[row];
-		if (row > w->bodies && !body->surface)
-			continue;
-		body->acceleration = ob_add(body->acceleration, w->frame);
-		body->p = ob_madd(body->p, .5 * h * h, w->frame);
-		add_row(w->v[row], ob_scale(w->frame, h), ob_v3(0, 0, 0));
-		if (row > w->bodies)
-			continue;
-		body->path += .5 * h * h * ob_norm(w->frame);
-		set_speed_bound(w, row);
-	}
-}
-
 void ob_bodies_load(ob_sim *s, const ob_island *is)
 {
 	ob_step_data *data = s->data;
@@ -353,8 +139,6 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 		load_body(s, w->rows++, fixed, false);
 	}
 	w->first_ghost = w->rows;
-	find_what_holds(s, is);
-	enter_frame(s);
 }
 
 // ---- attitudes
@@ -414,10 +198,10 @@ static void update_row_pose(ob_island_work *w, uint32_t row)
 	if (d[0] == 0 && d[1] == 0 && d[2] == 0 && d[3] == 0 && d[4] == 0 && d[5] == 0)
 		return;
 	update_gaps(w, row);
-	body->p = ob_add(body->p, linear_of(d));
-	ob_vec3 th = angular_of(d);
+	body->p = ob_add(body->p, ob_row_linear(d));
+	ob_vec3 th = ob_row_angular(d);
 	if (ob_norm2(th) > 0) {
-		ob_vec3 rate = ob_rotate_back(&body->r, angular_of(w->v[row]));
+		ob_vec3 rate = ob_rotate_back(&body->r, ob_row_angular(w->v[row]));
 		set_attitude(body, ob_quat_turn(body->q, th));
 		if (!body->isotropic)
 			set_rate(w->v[row], ob_rotate(&body->r, rate));
@@ -444,12 +228,12 @@ static void drift_row(ob_island_work *w, uint32_t row, double h, bool held)
 	double *d = w->d[row];
 	ob_quat q;
 	ob_vec3 rate;
-	if (ob_norm2(angular_of(d)) > 0)
+	if (ob_norm2(ob_row_angular(d)) > 0)
 		update_row_pose(w, row);
-	(held ? ob_drift_held : ob_drift)(body->q, angular_of(w->v[row]), body->inertia, h, &q, &rate);
+	(held ? ob_drift_held : ob_drift)(body->q, ob_row_angular(w->v[row]), body->inertia, h, &q, &rate);
 	add_row(d, ob_v3(0, 0, 0), ob_small_turn(body->q, q));
 	update_gaps(w, row);
-	ob_body_place(body, ob_add(body->p, linear_of(d)), q);
+	ob_body_place(body, ob_add(body->p, ob_row_linear(d)), q);
 	set_rate(w->v[row], rate);
 	memset(d, 0, sizeof *w->d);
 }
@@ -470,13 +254,14 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	ob_body *body = &w->body[row];
 	double *v = w->v[row], *d = w->d[row];
 	const double *u = w->u[row], h = .5 * w->h;
-	ob_vec3 jump = ob_sub(linear_of(u), linear_of(v)), jump_turn = ob_sub(angular_of(u), angular_of(v)), rate;
+	ob_vec3 jump = ob_sub(ob_row_linear(u), ob_row_linear(v)),
+		jump_turn = ob_sub(ob_row_angular(u), ob_row_angular(v)), rate;
 	const bool jumped = ob_norm2(jump) >= smooth || body->radius * body->radius * ob_norm2(jump_turn) >= 9 * smooth;
-	ob_vec3 way = ob_scale(linear_of(u), h);
+	ob_vec3 way = ob_scale(ob_row_linear(u), h);
 	ob_quat q;
 	if (jumped)
 		way = ob_madd(way, h, jump);
-	ob_drift_held(body->q, angular_of(u), body->inertia, h, &q, &rate);
+	ob_drift_held(body->q, ob_row_angular(u), body->inertia, h, &q, &rate);
 	if (jumped) {
 		ob_quat turned = ob_quat_turn(q, ob_scale(jump_turn, h));
 		ob_mat3 from = ob_quat_matrix(q), to = ob_quat_matrix(turned);
@@ -486,7 +271,7 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	memcpy(v, u, sizeof *w->v);
 	set_rate(v, rate);
 	memset(d, 0, sizeof *w->d);
-	add_row(d, ob_add(way, linear_of(body->first_half)), ob_small_turn(body->start_q, q));
+	add_row(d, ob_add(way, ob_row_linear(body->first_half)), ob_small_turn(body->start_q, q));
 	update_gaps(w, row);
 	memset(d, 0, sizeof *w->d);
 	ob_body_place(body, ob_add(body->p, way), q);
@@ -499,12 +284,12 @@ static void turn_body(ob_sim *s, uint32_t row, bool held)
 	ob_island_work *w = &s->island;
 	const ob_body *body = &w->body[row];
 	double *d = w->d[row];
-	const ob_vec3 turn = ob_scale(angular_of(w->v[row]), w->h);
+	const ob_vec3 turn = ob_scale(ob_row_angular(w->v[row]), w->h);
 	const double turned = ob_norm2(turn);
 	if (body->isotropic || turned == 0 || (held && turned < unnoticed_turn * unnoticed_turn)) {
 		add_row(d, ob_v3(0, 0, 0), turn);
 		const double most = body->isotropic ? deferred_turn_isotropic : deferred_turn;
-		if (ob_norm2(angular_of(d)) > most * most)
+		if (ob_norm2(ob_row_angular(d)) > most * most)
 			ob_body_update_pose(w, row);
 		return;
 	}
@@ -535,7 +320,8 @@ void ob_bodies_warm_start(ob_sim *s)
 	memset(w->dv, 0, w->rows * sizeof *w->dv);
 	for (uint32_t i = 1; i <= w->bodies; i++)
 		add_row(w->dv[i], ob_scale(w->body[i].acceleration, w->h),
-			w->torques ? ob_scale(turned_by(&w->body[i], w->body[i].torque), w->h) : ob_v3(0, 0, 0));
+			w->torques ? ob_scale(ob_body_turned_by(&w->body[i], w->body[i].torque), w->h)
+				   : ob_v3(0, 0, 0));
 	for (uint32_t k = 0; k < w->batches; k++) {
 		const ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
@@ -562,10 +348,10 @@ static void integrate_by_ode(ob_sim *s, uint32_t row)
 	double change[6];
 	for (int c = 0; c < 6; c++)
 		change[c] = w->u[row][c] - w->v[row][c];
-	ob_vec3 j = ob_scale(ob_sub(linear_of(change), g), body->mass),
-		wl = ob_rotate_back(&body->r, angular_of(change));
+	ob_vec3 j = ob_scale(ob_sub(ob_row_linear(change), g), body->mass),
+		wl = ob_rotate_back(&body->r, ob_row_angular(change));
 	ob_vec3 l = ob_rotate(&body->r, ob_v3(wl.x * body->inertia.x, wl.y * body->inertia.y, wl.z * body->inertia.z));
-	ob_state state = { { body->p, body->q }, linear_of(w->v[row]), angular_of(w->v[row]) };
+	ob_state state = { { body->p, body->q }, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]) };
 	ob_pose before = state.pose;
 	if (!ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, body->id), &state, j, l, w->h))
 		ob_step_fail(s->u, OB_STEP_ENGINE, body->id);
@@ -617,7 +403,7 @@ void ob_bodies_integrate_positions(ob_sim *s)
 		} else if (w->body[i].halved) {
 			finish_halved(w, i, smooth);
 		} else {
-			bool held = !same_vector(angular_of(w->u[i]), angular_of(w->v[i]));
+			bool held = !ob_equal(ob_row_angular(w->u[i]), ob_row_angular(w->v[i]));
 			integrate_exactly(w, i, smooth);
 			memcpy(w->v[i], w->u[i], sizeof *w->v);
 			turn_body(s, i, held);
@@ -655,8 +441,8 @@ void ob_bodies_publish(ob_sim *s, uint32_t rest)
 				 .valid_until = rest ? INFINITY : (step + 1) * run->step_length,
 				 .p = body->p,
 				 .q = body->q,
-				 .v = linear_of(w->v[i]),
-				 .w = angular_of(w->v[i]),
+				 .v = ob_row_linear(w->v[i]),
+				 .w = ob_row_angular(w->v[i]),
 				 .path = body->path,
 				 .step = (uint32_t)step,
 				 .rest_time = body->rest_time,

@@ -21,9 +21,8 @@ void ob_bodies_warm_start(ob_sim *s);
 void ob_bodies_predict_velocities(ob_sim *s);
 // Moves the bodies through the partial substep: between impulses each turns as in free flight. u becomes the new v.
 void ob_bodies_integrate_positions(ob_sim *s);
-// After the last substep: back to the world's frame of reference.
-void ob_bodies_leave_frame(ob_sim *s);
-// After that: rest timers. Returns for how long (s) all bodies have been slow and touched something.
+// After the last substep, in the world's frame of reference: rest timers. Returns for how long (s) all bodies have been
+// slow and touched something.
 double ob_bodies_update_rest(ob_sim *s);
 // rest: OB_MOTION_ASLEEP, OB_MOTION_EQUILIBRIUM, or 0
 void ob_bodies_publish(ob_sim *s, uint32_t rest);

@@ -196,11 +196,6 @@ static const double max_horizon = 2; // s: impacts are computed so far ahead at 
 static const double least_sweep = 8; // radii: .. and if a flight's fat AABB may be longer than that ..
 static const double most_neighbours = 32; // .. no farther than brings it so many neighbours
 
-static bool same_vector(ob_vec3 a, ob_vec3 b)
-{
-	return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id)
 {
 	const ob_run_settings *run = s->settings;
@@ -208,7 +203,7 @@ ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id)
 	ob_motion m = *ob_newest_motion(s->u, id);
 	ob_vec3 a = ob_external_acceleration(run, ob_passport_of(s->u, id));
 	double now = (double)step * run->step_length;
-	if (!same_vector(m.a, a)) {
+	if (!ob_equal(m.a, a)) {
 		ob_state begin = ob_state_now(s->u, id, &m, step);
 		m.p = begin.pose.p, m.q = begin.pose.q, m.v = begin.v, m.w = begin.w, m.a = a;
 		m.t0 = m.valid_until = now;

@@ -58,23 +58,13 @@ static void set_drift(ob_island_work *w)
 	ob_surfaces_set_drift(w);
 }
 
-static ob_vec3 linear_of(const double *r)
-{
-	return ob_v3(r[0], r[1], r[2]);
-}
-
-static ob_vec3 angular_of(const double *r)
-{
-	return ob_v3(r[3], r[4], r[5]);
-}
-
 // Free flight over t (s), forth or back: a parabola; the attitude exactly but for what its contacts turn, which is
 // added to the second order.
 static void fly(const ob_island_work *w, uint32_t row, double t, ob_body_at *x)
 {
 	const ob_body *body = &w->body[row];
-	const ob_vec3 a = ob_scale(linear_of(w->drift[row]), 1 / w->h),
-		      b = ob_scale(angular_of(w->drift[row]), 1 / w->h);
+	const ob_vec3 a = ob_scale(ob_row_linear(w->drift[row]), 1 / w->h),
+		      b = ob_scale(ob_row_angular(w->drift[row]), 1 / w->h);
 	if (t == 0)
 		return;
 	x->p = ob_madd(ob_madd(x->p, t, x->v), .5 * t * t, a);
@@ -95,7 +85,7 @@ static void fly(const ob_island_work *w, uint32_t row, double t, ob_body_at *x)
 static ob_body_at body_at(const ob_island_work *w, uint32_t row, double t)
 {
 	const ob_body *body = &w->body[row];
-	ob_body_at x = { body->p, linear_of(w->v[row]), angular_of(w->v[row]), body->q, body->r };
+	ob_body_at x = { body->p, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]), body->q, body->r };
 	fly(w, row, t, &x);
 	return x;
 }
@@ -146,7 +136,7 @@ static double curvature(const ob_island_work *w, const ob_contact *contact)
 		const ob_body *body = &w->body[row];
 		if ((!(body->inv_mass > 0) && !body->surface) || body->shape == OB_SHAPE_SPHERE)
 			continue;
-		const double rate = ob_norm(angular_of(w->v[row]));
+		const double rate = ob_norm(ob_row_angular(w->v[row]));
 		turn += rate;
 		speed += body->radius * rate;
 		sum += body->radius * rate * rate;
@@ -204,8 +194,8 @@ static double gain_of(const ob_island_work *w, const ob_contact *contact, const 
 		      const ob_manifold *m, int j)
 {
 	const double *fa = w->drift[contact->a], *fb = w->drift[contact->b];
-	ob_vec3 va = ob_add(linear_of(fa), ob_cross(angular_of(fa), ob_sub(m->at[j], a->p)));
-	ob_vec3 vb = ob_add(linear_of(fb), ob_cross(angular_of(fb), ob_sub(m->at[j], b->p)));
+	ob_vec3 va = ob_add(ob_row_linear(fa), ob_cross(ob_row_angular(fa), ob_sub(m->at[j], a->p)));
+	ob_vec3 vb = ob_add(ob_row_linear(fb), ob_cross(ob_row_angular(fb), ob_sub(m->at[j], b->p)));
 	return ob_dot(m->normal, ob_sub(va, vb));
 }
 
@@ -652,7 +642,8 @@ static void set_back(ob_sim *s, uint32_t row, ob_body_at x, double t)
 	ob_body *body = &w->body[row];
 	double *v = w->v[row], *d = w->d[row];
 	fly(w, row, -t, &x);
-	const double change = ob_norm(ob_sub(x.v, linear_of(v))) + body->radius * ob_norm(ob_sub(x.w, angular_of(v)));
+	const double change =
+		ob_norm(ob_sub(x.v, ob_row_linear(v))) + body->radius * ob_norm(ob_sub(x.w, ob_row_angular(v)));
 	for (uint32_t k = 0; k < body->adjacent; k++) // so far, it went at another speed
 		w->contact[w->adjacency[body->first_adjacent + k]].path += t * change;
 	ob_vec3 shift = ob_sub(x.p, body->p), turn = turn_between(body->q, x.q);

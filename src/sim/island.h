@@ -224,6 +224,25 @@ typedef struct ob_island_work {
 	ob_surfaces surfaces;
 } ob_island_work;
 
+static inline ob_vec3 ob_row_linear(const double *row)
+{
+	return ob_v3(row[0], row[1], row[2]);
+}
+
+static inline ob_vec3 ob_row_angular(const double *row)
+{
+	return ob_v3(row[3], row[4], row[5]);
+}
+
+// rad/s^2, by a torque (N m, world)
+static inline ob_vec3 ob_body_turned_by(const ob_body *body, ob_vec3 torque)
+{
+	const double *i = body->inv_inertia; // xx xy xz yy yz zz
+	return ob_v3(i[0] * torque.x + i[1] * torque.y + i[2] * torque.z,
+		     i[1] * torque.x + i[3] * torque.y + i[4] * torque.z,
+		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
+}
+
 // In the running partial substep
 static inline bool ob_contact_was_hit(const ob_island_work *w, const ob_contact *c)
 {

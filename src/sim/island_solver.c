@@ -15,6 +15,7 @@
 #include "sim/equilibrium.h"
 #include "sim/error_control.h"
 #include "sim/flight.h"
+#include "sim/frame.h"
 #include "sim/ghost.h"
 #include "sim/impacts.h"
 #include "sim/midpoint.h"
@@ -105,6 +106,7 @@ static bool solve_step(ob_sim *s, const ob_island *is)
 	ob_profile_enter(s, OB_PROFILE_LOAD);
 	ob_touches_begin(s, is);
 	ob_bodies_load(s, is);
+	ob_frame_enter(s, is);
 	ob_contacts_load(s, is);
 	ob_direct_begin(&w->direct);
 	s->counters.body_substeps += (uint64_t)is->members * w->substeps;
@@ -225,7 +227,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 	s->counters.recovered += s->island.recovered;
 	s->counters.body_steps += is->members;
 	note_effort(s, i, cost_so_far(s) - before);
-	ob_bodies_leave_frame(s);
+	ob_frame_leave(s);
 	const uint32_t rest = rest_flag(s);
 	ob_contacts_store(s);
 	ob_profile_enter(s, OB_PROFILE_PUBLISH);

@@ -134,7 +134,7 @@ static bounding_spheres bounding_spheres_of(const pair_check *c, const ob_pair_k
 	const ob_passport *pa = ob_passport_of(c->u, k->a), *pb = ob_passport_of(c->u, k->b);
 	const double time = (double)c->steps * c->h;
 	const bool parabolas = !((a->flags | b->flags) & OB_MOTION_SWINGS);
-	bounding_spheres out = { .straight = parabolas && a->a.x == b->a.x && a->a.y == b->a.y && a->a.z == b->a.z };
+	bounding_spheres out = { .straight = parabolas && ob_equal(a->a, b->a) };
 	out.apart = ob_sub(ob_centre_now(c->u, k->a, a, c->steps), ob_centre_now(c->u, k->b, b, c->steps));
 	out.v = ob_sub(ob_velocity_at(a, time), ob_velocity_at(b, time));
 	out.gap = ob_norm(out.apart) - ob_shape_radius(pa->shape, pa->size) - ob_shape_radius(pb->shape, pb->size);

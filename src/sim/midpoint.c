@@ -22,16 +22,6 @@ static double least_change(const ob_island_work *w, uint32_t held)
 	return least * w->unit.speed / w->unit.time * w->h;
 }
 
-static ob_vec3 linear_of(const double *r)
-{
-	return ob_v3(r[0], r[1], r[2]);
-}
-
-static ob_vec3 angular_of(const double *r)
-{
-	return ob_v3(r[3], r[4], r[5]);
-}
-
 // ---- which contacts
 
 static bool is_round(ob_shape s)
@@ -64,8 +54,8 @@ static double load_of(const ob_island_work *w, const ob_contact *contact)
 static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	if ((a->surface && ob_norm2(angular_of(w->v[contact->a])) > 0) ||
-	    (b->surface && ob_norm2(angular_of(w->v[contact->b])) > 0))
+	if ((a->surface && ob_norm2(ob_row_angular(w->v[contact->a])) > 0) ||
+	    (b->surface && ob_norm2(ob_row_angular(w->v[contact->b])) > 0))
 		return false; // of the first order, but for what is carried
 	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change(w, 0) &&
 	       load_of(w, contact) > 0 &&
@@ -140,8 +130,8 @@ static void halve(ob_sim *s, uint32_t row)
 	body->halved = true;
 	body->start_p = body->p;
 	body->start_q = body->q;
-	body->start_w = angular_of(v);
-	ob_vec3 way = ob_scale(linear_of(v), .5 * w->h), rate;
+	body->start_w = ob_row_angular(v);
+	ob_vec3 way = ob_scale(ob_row_linear(v), .5 * w->h), rate;
 	ob_quat q;
 	ob_drift_held(body->q, body->start_w, body->inertia, .5 * w->h, &q, &rate);
 	ob_body_place(body, ob_add(body->p, way), q);
@@ -168,7 +158,7 @@ static ob_vec3 between(ob_vec3 from, ob_vec3 to, double share)
 
 static ob_vec3 start_rate(const ob_island_work *w, uint32_t row)
 {
-	return w->body[row].halved ? w->body[row].start_w : angular_of(w->v[row]);
+	return w->body[row].halved ? w->body[row].start_w : ob_row_angular(w->v[row]);
 }
 
 // What turning adds to a row: its velocity now less that at the start. Where the impulse would do work on what turning
@@ -186,8 +176,8 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
 	const double share = old->since / (old->since + .5 * w->h), part = 1. / contact->points;
 	const ob_vec3 n = normal_of(b, l), start_n = between(old->normal, n, share);
-	const ob_vec3 va = linear_of(w->v[ia]), vb = linear_of(w->v[ib]), wa = angular_of(w->v[ia]),
-		      wb = angular_of(w->v[ib]), wa0 = start_rate(w, ia), wb0 = start_rate(w, ib);
+	const ob_vec3 va = ob_row_linear(w->v[ia]), vb = ob_row_linear(w->v[ib]), wa = ob_row_angular(w->v[ia]),
+		      wb = ob_row_angular(w->v[ib]), wa0 = start_rate(w, ia), wb0 = start_rate(w, ib);
 	ob_vec3 slide = { 0, 0, 0 }, slide_start = { 0, 0, 0 };
 	double most = 0;
 	uint32_t held_points = 0;

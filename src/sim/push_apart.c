@@ -13,16 +13,6 @@ static bool is_jacobi(const ob_sim *s)
 	return s->settings->solver == OB_SOLVER_JACOBI;
 }
 
-static ob_vec3 linear_of(const double *r)
-{
-	return ob_v3(r[0], r[1], r[2]);
-}
-
-static ob_vec3 angular_of(const double *r)
-{
-	return ob_v3(r[3], r[4], r[5]);
-}
-
 // ---- a pair that nothing holds
 
 typedef struct body_in_pair {
@@ -41,9 +31,8 @@ typedef struct pair_motion {
 static body_in_pair body_of(const ob_island_work *w, uint32_t row)
 {
 	const ob_body *body = &w->body[row];
-	return (body_in_pair){
-		body->mass, body->inertia, body->p, linear_of(w->v[row]), angular_of(w->v[row]), body->r
-	};
+	return (body_in_pair){ body->mass, body->inertia, body->p, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]),
+			       body->r };
 }
 
 // Where the row's displacement brings it: its rate turns with it.
@@ -51,8 +40,8 @@ static body_in_pair displaced(const ob_island_work *w, uint32_t row)
 {
 	body_in_pair x = body_of(w, row);
 	const ob_vec3 rate = ob_rotate_back(&x.r, x.w);
-	x.p = ob_add(x.p, linear_of(w->d[row]));
-	x.r = ob_quat_matrix(ob_quat_turn(w->body[row].q, angular_of(w->d[row])));
+	x.p = ob_add(x.p, ob_row_linear(w->d[row]));
+	x.r = ob_quat_matrix(ob_quat_turn(w->body[row].q, ob_row_angular(w->d[row])));
 	x.w = w->body[row].isotropic ? x.w : ob_rotate(&x.r, rate);
 	return x;
 }

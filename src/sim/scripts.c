@@ -111,11 +111,6 @@ static void set_going(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
 	ob_publish_motion(u, id, &m);
 }
 
-static bool same_vector(ob_vec3 a, ob_vec3 b)
-{
-	return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 // true: it moves otherwise from now on
 static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 {
@@ -125,7 +120,7 @@ static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 	ob_passport p = *ob_passport_of(u, id);
 	bool other = false;
 	if (body && c->asks & OB_SCRIPT_ASKS_FORCE) {
-		other |= !same_vector(p.force, c->force);
+		other |= !ob_equal(p.force, c->force);
 		p.force = c->force;
 	}
 	if (c->asks & OB_SCRIPT_ASKS_COLOUR) {
@@ -135,7 +130,7 @@ static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 	if (memcmp(&p, ob_passport_of(u, id), sizeof p) != 0)
 		ob_write_passport(u, id, &p);
 	if (body && c->asks & OB_SCRIPT_ASKS_TORQUE) {
-		other |= !same_vector(c->torque, c->next_torque);
+		other |= !ob_equal(c->torque, c->next_torque);
 		c->torque = c->next_torque;
 	}
 	const ob_vec3 none = { 0 };

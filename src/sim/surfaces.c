@@ -9,16 +9,6 @@
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
 
-static ob_vec3 linear_of(const double *r)
-{
-	return ob_v3(r[0], r[1], r[2]);
-}
-
-static ob_vec3 angular_of(const double *r)
-{
-	return ob_v3(r[3], r[4], r[5]);
-}
-
 static void set_row(double *row, ob_vec3 linear, ob_vec3 angular)
 {
 	memcpy(row, (double[8]){ linear.x, linear.y, linear.z, angular.x, angular.y, angular.z }, sizeof(ob_body_row));
@@ -119,7 +109,7 @@ static double pressing(const ob_island_work *w, const ob_surface *x)
 	const uint32_t row = carried_row(w, x), l = c->lane % OB_LANES;
 	const ob_body *own = &w->body[x->row], *body = &w->body[row];
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
-	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), turn = angular_of(w->v[x->row]),
+	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), turn = ob_row_angular(w->v[x->row]),
 		      arm = ob_sub(body->p, own->p), inward = ob_cross(turn, ob_cross(turn, arm));
 	return ob_norm(ob_sub(body->acceleration, own->acceleration)) +
 	       ob_max(0, (c->a == row ? 1 : -1) * ob_dot(n, inward));
@@ -163,7 +153,7 @@ static double reversal(const ob_island_work *w, const ob_surface *x)
 		slip[0] += b->t1[i][l] * (va[i] - vb[i]) + b->fa1[i][l] * va[3 + i] - b->fb1[i][l] * vb[3 + i];
 		slip[1] += b->t2[i][l] * (va[i] - vb[i]) + b->fa2[i][l] * va[3 + i] - b->fb2[i][l] * vb[3 + i];
 	}
-	const ob_vec3 turn = angular_of(w->v[x->row]), arm = ob_sub(body->p, own->p),
+	const ob_vec3 turn = ob_row_angular(w->v[x->row]), arm = ob_sub(body->p, own->p),
 		      carried = ob_add(own->acceleration, ob_cross(turn, ob_cross(turn, arm)));
 	const ob_vec3 outer = ob_sub(body->acceleration, carried);
 	double s[2], a[2], both = 0, square = 0, along = 0;
@@ -249,8 +239,8 @@ void ob_surfaces_warm_start(ob_sim *s)
 		ob_vec3 target = x->end.v;
 		if (turns(x)) {
 			const ob_vec3 at =
-				body->halved ? body->start_p : ob_add(body->p, linear_of(w->d[carried_row(w, x)]));
-			const ob_vec3 slip = ob_sub(linear_of(v), velocity_of(&x->begin, at));
+				body->halved ? body->start_p : ob_add(body->p, ob_row_linear(w->d[carried_row(w, x)]));
+			const ob_vec3 slip = ob_sub(ob_row_linear(v), velocity_of(&x->begin, at));
 			const ob_vec3 then = ob_madd(carried_to(&x->begin.pose, &x->end.pose, at), w->h, slip);
 			target = ob_sub(velocity_of(&x->end, then), ob_cross(x->end.w, ob_sub(at, x->begin.pose.p)));
 		}
@@ -300,7 +290,7 @@ void ob_surfaces_carry(ob_sim *s)
 		const double load = load_of(w, x);
 		if (!(load > 0) || body->halved || !(turns(x) || x->motion.flags & OB_MOTION_SWINGS))
 			continue;
-		const ob_vec3 at = ob_add(body->p, linear_of(w->d[row])),
+		const ob_vec3 at = ob_add(body->p, ob_row_linear(w->d[row])),
 			      then = carried_to(&x->begin.pose, &x->end.pose, at);
 		const ob_vec3 by_rule =
 			ob_scale(ob_add(velocity_of(&x->begin, at), velocity_of(&x->end, then)), .5 * w->h);
