@@ -35,6 +35,8 @@ static void set_speed_bound(ob_island_work *w, uint32_t row)
 	body->speed = ob_norm(ob_row_linear(w->v[row])) + body->turning;
 	if (ob_has_axis(body->shape))
 		body->speed += body->radius * fabs(rate.z);
+	else if (body->shape == OB_SHAPE_SPHERE)
+		body->speed += body->radius * ob_norm(rate);
 }
 
 // m/s, bound of how fast the body's surface moves: its points may do so faster, where a round body spins.

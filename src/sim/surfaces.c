@@ -24,6 +24,14 @@ bool ob_surface_moves(const ob_passport *p)
 	return p->flags & OB_OBJECT_KINEMATIC || ob_norm2(p->surface_velocity) > 0;
 }
 
+// As of a body that moves itself: a sphere's spin moves points, but no surface.
+static void set_speed_bound(ob_body *body, const ob_state *now)
+{
+	const double points = body->radius * ob_norm(now->w);
+	body->turning = body->shape == OB_SHAPE_SPHERE ? 0 : points;
+	body->speed = ob_norm(now->v) + points;
+}
+
 void ob_surface_add(ob_sim *s, uint32_t row, uint32_t pair)
 {
 	ob_island_work *w = &s->island;
@@ -45,8 +53,7 @@ void ob_surface_add(ob_sim *s, uint32_t row, uint32_t pair)
 	const ob_state state = ob_motion_at(&surface->motion, ob_v3(0, 0, 0), now);
 	set_row(w->v[row], state.v, state.w);
 	body->acceleration = ob_acceleration_at(&surface->motion, now);
-	body->turning = body->shape == OB_SHAPE_SPHERE ? 0 : body->radius * ob_norm(state.w);
-	body->speed = ob_norm(state.v) + body->turning;
+	set_speed_bound(body, &state);
 }
 
 // Pairs come in their order, and so do their surfaces.
@@ -339,8 +346,7 @@ bool ob_surface_advance(ob_sim *s, uint32_t row, ob_pose *end)
 		return false;
 	set_row(w->d[row], ob_sub(end->p, from), ob_small_turn(body->q, end->q));
 	body->acceleration = ob_sub(ob_acceleration_at(&x->motion, step_time(s) + w->time + w->h), w->frame);
-	body->turning = body->shape == OB_SHAPE_SPHERE ? 0 : body->radius * ob_norm(x->end.w);
-	body->speed = ob_norm(x->end.v) + body->turning;
+	set_speed_bound(body, &x->end);
 	body->path += (double)x->motion.reach * w->h / s->settings->step_length;
 	return true;
 }
