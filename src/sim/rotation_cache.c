@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLOTS_MAX = 1024 }; // .9 MB
+enum { SLOTS_MAX = 256 }; // .2 MB
 
 // What a rotation follows from.
 typedef struct rotation_key {
