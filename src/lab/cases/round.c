@@ -159,10 +159,11 @@ static ob_world_body build_any(ob_world *w, int kind, ob_vec3 p)
 
 static void build_mixture(ob_world *w, int count, int side, uint64_t seed)
 {
+	const double apart = .6; // m: the longest are .54 m, and are drawn up to .02 m off
 	ob_world_ground(w);
 	for (int i = 0; i < count; i++) {
-		ob_vec3 p = ob_v3(.55 * (i % side - .5 * (side - 1)), .55 * (i / side % side - .5 * (side - 1)),
-				  .5 + .55 * (i / side / side));
+		ob_vec3 p = ob_v3(apart * (i % side - .5 * (side - 1)), apart * (i / side % side - .5 * (side - 1)),
+				  .5 + apart * (i / side / side));
 		p = ob_add(p, ob_splitmix_vector(&seed, .02));
 		ob_world_body b = build_any(w, (int)(ob_splitmix(&seed) % 4), p);
 		b.state->pose.q = ob_world_random_attitude(&seed);
