@@ -92,15 +92,11 @@ static inline ob_vec3 ob_rotate_back(const ob_mat3 *r, ob_vec3 v)
 // Column i: the body's axis i in world coordinates
 static inline ob_vec3 ob_column(const ob_mat3 *r, int i) { return ob_v3(r->m[0][i], r->m[1][i], r->m[2][i]); }
 
+#pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
+
 // q turned by the rotation vector th (rad, world frame): exp(th) q, normalised
-static inline ob_quat ob_quat_turn(ob_quat q, ob_vec3 th)
-{
-	double a2 = ob_norm2(th);
-	if (a2 == 0)
-		return q;
-	double a = sqrt(a2), s = a > 1e-6 ? sin(.5 * a) / a : .5 - a2 / 48;
-	ob_quat d = { cos(.5 * a), th.x * s, th.y * s, th.z * s };
-	return ob_quat_normalize(ob_quat_mul(d, q));
-}
+ob_quat ob_quat_turn(ob_quat q, ob_vec3 th);
+
+#pragma GCC visibility pop
 
 #endif

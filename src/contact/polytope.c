@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "elementary/elementary.h"
+
 static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
 static const double prefer_face = 1e-3; // of the thickness: an edge's axis must separate by so much more than a face's
 static const double prefer_face_when_deep = .02; // of the depth, beside it
@@ -451,7 +453,7 @@ static void order_round_middle(ob_polygon *p)
 	for (int k = 0; k < p->n; k++)
 		mu += p->u[k] / p->n, mw += p->w[k] / p->n;
 	for (int k = 0; k < p->n; k++) {
-		const double u = p->u[k], w = p->w[k], z = p->z[k], turn = atan2(w - mw, u - mu);
+		const double u = p->u[k], w = p->w[k], z = p->z[k], turn = ob_atan2(w - mw, u - mu);
 		int at = k;
 		for (; at > 0 && angle[at - 1] > turn; at--) {
 			angle[at] = angle[at - 1];

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
+
 static_assert(sizeof(ob_hull_edge) == 4 && OB_HULL_CORNERS_MAX <= UINT8_MAX && OB_HULL_FACES_MAX <= UINT8_MAX,
 	      "indices of corners and faces have a byte");
 
@@ -123,7 +125,7 @@ static void order_corners(const ob_vec3 *corner, raw_face *f)
 	const ob_vec3 first = ob_sub(corner[f->corner[0]], middle), across = ob_cross(f->normal, first);
 	for (uint32_t k = 0; k < f->corners; k++) {
 		const ob_vec3 d = ob_sub(corner[f->corner[k]], middle);
-		const double turn = k ? atan2(ob_dot(d, across), ob_dot(d, first)) : 0;
+		const double turn = k ? ob_atan2(ob_dot(d, across), ob_dot(d, first)) : 0;
 		const uint8_t c = f->corner[k];
 		uint32_t at = k;
 		for (; at > 0 && angle[at - 1] > turn; at--)

@@ -1,9 +1,11 @@
 #include "motion/flight.h"
 
+#include "elementary/elementary.h"
+
 // 1 - cos without loss near 0
 static double versine(double x)
 {
-	const double half = sin(.5 * x);
+	const double half = ob_sin(.5 * x);
 	return 2 * half * half;
 }
 
@@ -11,7 +13,7 @@ ob_vec3 ob_centre_at(const ob_motion *m, double t)
 {
 	const double s = t - m->t0, f = m->frequency;
 	if (m->flags & OB_MOTION_SWINGS)
-		return ob_madd(ob_madd(m->p, sin(f * s) / f, m->v), versine(f * s) / (f * f), m->a);
+		return ob_madd(ob_madd(m->p, ob_sin(f * s) / f, m->v), versine(f * s) / (f * f), m->a);
 	return ob_madd(ob_madd(m->p, s, m->v), .5 * s * s, m->a);
 }
 
@@ -19,7 +21,7 @@ ob_vec3 ob_velocity_at(const ob_motion *m, double t)
 {
 	const double s = t - m->t0, f = m->frequency;
 	if (m->flags & OB_MOTION_SWINGS)
-		return ob_madd(ob_scale(m->v, cos(f * s)), sin(f * s) / f, m->a);
+		return ob_madd(ob_scale(m->v, ob_cos(f * s)), ob_sin(f * s) / f, m->a);
 	return ob_madd(m->v, s, m->a);
 }
 
@@ -27,7 +29,7 @@ ob_vec3 ob_acceleration_at(const ob_motion *m, double t)
 {
 	const double s = t - m->t0, f = m->frequency;
 	if (m->flags & OB_MOTION_SWINGS)
-		return ob_madd(ob_scale(m->a, cos(f * s)), -f * sin(f * s), m->v);
+		return ob_madd(ob_scale(m->a, ob_cos(f * s)), -f * ob_sin(f * s), m->v);
 	return m->a;
 }
 
@@ -50,7 +52,7 @@ static ob_quat between(ob_quat a, ob_quat b, double f)
 	double sine = ob_norm(axis);
 	if (!(sine > 0))
 		return a;
-	double angle = 2 * atan2(turn.w < 0 ? -sine : sine, fabs(turn.w));
+	double angle = 2 * ob_atan2(turn.w < 0 ? -sine : sine, fabs(turn.w));
 	return ob_quat_turn(a, ob_scale(axis, f * angle / sine));
 }
 

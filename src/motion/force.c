@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
+
 ob_force *ob_force_copy(const ob_force *f)
 {
 	ob_force *copy = malloc(sizeof *copy + f->points * sizeof *copy->point);
@@ -40,7 +42,7 @@ ob_vec3 ob_force_mean(const ob_force *f, double h, uint64_t step)
 		     half = .5 * f->frequency * h;
 	switch (f->kind) {
 	case OB_FORCE_SINE:
-		return ob_scale(f->force, sin(middle) * sin(half) / half);
+		return ob_scale(f->force, ob_sin(middle) * ob_sin(half) / half);
 	case OB_FORCE_PULSE:
 		return ob_scale(f->force, ob_max(0, ob_min(b, f->until) - ob_max(a, f->from)) / (b - a));
 	case OB_FORCE_LINEAR:

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "elementary/elementary.h"
+
 enum { MEAN_STEPS = 12 }; // from b = 1e-300 the mean converges in 10
 
 // One step of Gauss; 0 when a and b agree to the last digits.
@@ -45,16 +47,16 @@ double ob_jacobi_phase(double x, double y, double kc)
 		scale *= .5;
 		on = mean_step(&a, &b);
 	}
-	return (half_turns * M_PI + atan2(y, x)) * scale;
+	return (half_turns * M_PI + ob_atan2(y, x)) * scale;
 }
 
 void ob_theta_plan(ob_theta *t, double nome, double alpha)
 {
-	double c = cosh(2 * alpha), s = sinh(2 * alpha), square = nome * nome, power = square;
-	double small = exp(-2 * alpha);
+	double c = ob_cosh(2 * alpha), s = ob_sinh(2 * alpha), square = nome * nome, power = square;
+	double small = ob_exp(-2 * alpha);
 	t->real[0] = 1;
 	t->even[0] = 1 + small;
-	t->odd[0] = -expm1(-2 * alpha);
+	t->odd[0] = -ob_expm1(-2 * alpha);
 	int n = 1;
 	for (; n < OB_THETA_TERMS; n++) { // power = q^(2 n)
 		t->real[n] = power * t->real[n - 1];
@@ -70,7 +72,7 @@ void ob_theta_plan(ob_theta *t, double nome, double alpha)
 ob_theta_value ob_theta_at(const ob_theta *t, double v)
 {
 	double s, c, sign = 1;
-	sincos(v, &s, &c);
+	ob_sincos(v, &s, &c);
 	double c2 = c * c - s * s, s2 = 2 * s * c; // of 2 v: each term turns by it
 	ob_theta_value sum = { 0 };
 	for (int n = 0; n < t->terms; n++) {

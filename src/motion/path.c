@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
+
 ob_path *ob_path_copy(const ob_path *path)
 {
 	ob_path *copy = malloc(sizeof *copy + path->points * sizeof *copy->point);
@@ -17,9 +19,9 @@ ob_path *ob_path_copy(const ob_path *path)
 
 ob_path ob_path_sine(ob_state *state, ob_vec3 amplitude, double frequency, double phase)
 {
-	state->v = ob_scale(amplitude, frequency * cos(phase));
-	state->pose.p = ob_madd(state->pose.p, sin(phase), amplitude);
-	return (ob_path){ .frequency = frequency, .a = ob_scale(amplitude, -frequency * frequency * sin(phase)) };
+	state->v = ob_scale(amplitude, frequency * ob_cos(phase));
+	state->pose.p = ob_madd(state->pose.p, ob_sin(phase), amplitude);
+	return (ob_path){ .frequency = frequency, .a = ob_scale(amplitude, -frequency * frequency * ob_sin(phase)) };
 }
 
 ob_path ob_path_circle(ob_state *state, ob_vec3 centre, ob_vec3 axis, double frequency)
@@ -86,7 +88,7 @@ bool ob_path_turn(ob_quat from, ob_quat to, ob_vec3 *turn)
 		r = (ob_quat){ -r.w, -r.x, -r.y, -r.z };
 	const ob_vec3 v = ob_v3(r.x, r.y, r.z);
 	const double s = ob_norm(v); // sine of half the angle
-	*turn = s > 0 ? ob_scale(v, 2 * atan2(s, r.w) / s) : v;
+	*turn = s > 0 ? ob_scale(v, 2 * ob_atan2(s, r.w) / s) : v;
 	return r.w > 1e-9;
 }
 

@@ -112,7 +112,8 @@ static void sweep(double p, double v, double a, double t0, double s, double half
 // Extremes of all of the ellipse with frequency f, widened as those of the parabola.
 static void surround(double p, double v, double a, double f, double half, double *low, double *high)
 {
-	const double centre = p + a / (f * f), amplitude = hypot(v / f, a / (f * f)),
+	const double centre = p + a / (f * f), sine = v / f, cosine = a / (f * f),
+		     amplitude = sqrt(sine * sine + cosine * cosine),
 		     most = amplitude + half + 8 * DBL_EPSILON * (fabs(p) + half + amplitude);
 	*low = centre - most;
 	*high = centre + most;

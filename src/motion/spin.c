@@ -11,6 +11,8 @@
 
 #include <ob/motion.h>
 
+#include "elementary/elementary.h"
+
 // Moments closer than this are equal: over a thousand radians the difference stays below 1e-12 rad.
 static const double SAME = 1e-15;
 // A direction this near (sine) to a principal axis is on it.
@@ -100,7 +102,7 @@ static void azimuth_at(const ob_spin *spin, double s, const ob_theta_value *t, o
 		       double *sin_out)
 {
 	double sl, cl, im = spin->side * t->im;
-	sincos(spin->precession * s, &sl, &cl);
+	ob_sincos(spin->precession * s, &sl, &cl);
 	double a = t->re * cl - im * sl, b = t->re * sl + im * cl;
 	double c = a * n.x + b * n.y, d = b * n.x - a * n.y, r = 1 / sqrt(c * c + d * d);
 	*cos_out = c * r;
@@ -125,7 +127,7 @@ static void plan_theta(ob_spin *spin, double size, ob_vec3 n, double i1, double 
 	spin->root_kc = sqrt(kc);
 	spin->phase = ob_jacobi_phase(n.x / a1, n.y / spin->amplitude.y, kc);
 	spin->speed = mean * size * a3 * sqrt((i3 - i1) / i1 * ((i3 - i2) / i2)) / i3;
-	ob_theta_plan(&spin->theta, exp(-M_PI * mean / mean_c),
+	ob_theta_plan(&spin->theta, ob_exp(-M_PI * mean / mean_c),
 		      ob_jacobi_phase(sqrt(cn2), sqrt(sn2), k) * mean / mean_c);
 	spin->side = i1 > i2 ? 1 : -1;
 	// At v = pi / 2 the azimuth turns at L / I2, of which the theta function has its logarithmic slope.

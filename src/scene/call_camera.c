@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 #include "scene/text.h"
@@ -109,7 +110,7 @@ typedef struct view {
 
 static view look(ob_vec3 from, double fov)
 {
-	double tangent = tan(.5 * fov) / MARGIN;
+	double tangent = ob_tan(.5 * fov) / MARGIN;
 	view v = { .forward = ob_scale(from, -1), .tan_x = ASPECT * tangent, .tan_y = tangent };
 	ob_vec3 vertical = fabs(from.z) > .9999 ? ob_v3(0, 1, 0) : ob_v3(0, 0, 1);
 	v.right = ob_cross(v.forward, vertical);

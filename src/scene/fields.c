@@ -11,6 +11,7 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
+#include "elementary/elementary.h"
 #include "scene/flat.h"
 #include "scene/sandbox.h"
 #include "scene/scene.h"
@@ -243,7 +244,7 @@ static void read_rotation(const reader *r)
 void ob_colour_from_srgb(const double rgba[4], float linear[4])
 {
 	for (int i = 0; i < 3; i++) // IEC 61966-2-1
-		linear[i] = (float)(rgba[i] <= .04045 ? rgba[i] / 12.92 : pow((rgba[i] + .055) / 1.055, 2.4));
+		linear[i] = (float)(rgba[i] <= .04045 ? rgba[i] / 12.92 : ob_pow((rgba[i] + .055) / 1.055, 2.4));
 	linear[3] = (float)rgba[3];
 }
 

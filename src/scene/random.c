@@ -5,6 +5,7 @@
 #include <lauxlib.h>
 
 #include "base/random.h"
+#include "elementary/elementary.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 
@@ -52,7 +53,7 @@ uint64_t ob_random_up_to(ob_random *r, uint64_t last)
 ob_quat ob_random_rotation(ob_random *r)
 {
 	double u = ob_random_real(r), a = 2 * M_PI * ob_random_real(r), b = 2 * M_PI * ob_random_real(r);
-	return (ob_quat){ sqrt(u) * cos(b), sqrt(1 - u) * sin(a), sqrt(1 - u) * cos(a), sqrt(u) * sin(b) };
+	return (ob_quat){ sqrt(u) * ob_cos(b), sqrt(1 - u) * ob_sin(a), sqrt(1 - u) * ob_cos(a), sqrt(u) * ob_sin(b) };
 }
 
 // ---- random(), random(low, high), random_rotation(), math.random: numbers from the scene's seed

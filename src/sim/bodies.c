@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "elementary/elementary.h"
 #include "motion/drift.h"
 #include "sim/broadphase.h"
 #include "sim/equilibrium.h"
@@ -360,7 +361,7 @@ static void integrate_by_ode(ob_sim *s, uint32_t row)
 	// The displacement row takes the step, so that the gaps follow; the turn is what ODE made of it.
 	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
 	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
-	double angle = 2 * atan2(sin_half, turn.w), scale = sin_half > 1e-12 ? angle / sin_half : 2;
+	double angle = 2 * ob_atan2(sin_half, turn.w), scale = sin_half > 1e-12 ? angle / sin_half : 2;
 	add_row(w->d[row], ob_sub(state.pose.p, before.p), ob_scale(ob_v3(turn.x, turn.y, turn.z), scale));
 	memset(w->u[row], 0, sizeof(ob_body_row));
 	add_row(w->u[row], state.v, state.w);

@@ -29,6 +29,11 @@ static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
 	return &w->batch[w->contact[c->contact].lane / OB_LANES];
 }
 
+static double length(double x, double y)
+{
+	return sqrt(x * x + y * y);
+}
+
 static int lane_of(const ob_island_work *w, const ob_direct_contact *c)
 {
 	return w->contact[c->contact].lane % OB_LANES;
@@ -75,7 +80,7 @@ static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double
 			row[n++] = (uint8_t)j;
 	}
 	double bound = within * b->mu[l] * sum;
-	if (n && b->mu[l] > 0 && hypot(b->impulse[4][l], b->impulse[5][l]) <= bound)
+	if (n && b->mu[l] > 0 && length(b->impulse[4][l], b->impulse[5][l]) <= bound)
 		row[n++] = 4, row[n++] = 5;
 	if (n && b->mu[l] > 0 && b->radius[l] > 0 && fabs(b->impulse[6][l]) <= bound * b->radius[l])
 		row[n++] = 6;
@@ -307,7 +312,7 @@ static void project_on_cone(const ob_batch *b, int l, double *x)
 	double sum = 0;
 	for (int j = 0; j < OB_POINTS; j++)
 		sum += x[j] = ob_max(0, x[j]);
-	double bound = b->mu[l] * sum, friction = hypot(x[4], x[5]);
+	double bound = b->mu[l] * sum, friction = length(x[4], x[5]);
 	if (friction > bound) {
 		x[4] *= bound / friction;
 		x[5] *= bound / friction;

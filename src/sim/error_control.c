@@ -67,7 +67,7 @@ static double slip_of(const ob_island_work *w, const ob_contact *contact)
 	}
 	for (int k = 0; k < 2 && b->turning >> l & 1; k++)
 		rate[k] += b->turn[4 + k][l];
-	return hypot(rate[0], rate[1]);
+	return sqrt(rate[0] * rate[0] + rate[1] * rate[1]);
 }
 
 void ob_error_control_note_slip(ob_sim *s)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "elementary/elementary.h"
 #include "motion/drift.h"
 #include "sim/bodies.h"
 #include "sim/budget.h"
@@ -631,7 +632,7 @@ static ob_vec3 turn_between(ob_quat a, ob_quat b)
 {
 	ob_quat turn = ob_quat_mul(b, (ob_quat){ a.w, -a.x, -a.y, -a.z });
 	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
-	double angle = 2 * atan2(sin_half, fabs(turn.w)), scale = sin_half > 1e-12 ? angle / sin_half : 2;
+	double angle = 2 * ob_atan2(sin_half, fabs(turn.w)), scale = sin_half > 1e-12 ? angle / sin_half : 2;
 	return ob_scale(ob_v3(turn.x, turn.y, turn.z), turn.w < 0 ? -scale : scale);
 }
 

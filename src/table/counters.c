@@ -1,5 +1,7 @@
 #include <math.h>
 
+#include "elementary/elementary.h"
+
 #include "table/layout.h"
 
 ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker)
@@ -68,7 +70,7 @@ static const double shortest = 1e-7, width = 1.02; // s, ratio
 
 void ob_latency_add(ob_latency *l, double seconds)
 {
-	double bin = seconds > shortest ? floor(log(seconds / shortest) / log(width)) : 0;
+	double bin = seconds > shortest ? floor(ob_log(seconds / shortest) / ob_log(width)) : 0;
 	l->count[(int)fmin(bin, OB_LATENCY_BINS - 1)]++;
 	l->total++;
 }
@@ -79,7 +81,7 @@ double ob_latency_percentile(const ob_latency *l, double fraction)
 	for (int i = 0; i < OB_LATENCY_BINS; i++) {
 		seen += l->count[i];
 		if (seen > 0 && seen >= rank)
-			return shortest * pow(width, i + .5);
+			return shortest * ob_pow(width, i + .5);
 	}
 	return 0;
 }

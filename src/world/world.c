@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "elementary/elementary.h"
 #include "hull/hull.h"
 
 static void *grown(void *old, uint32_t count, size_t size)
@@ -152,7 +153,7 @@ void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed)
 // Of the volume of a box with these half extents: a cylinder as high as that, or a capsule twice as long as thick.
 static ob_vec3 size_of_volume(ob_shape shape, ob_vec3 half)
 {
-	const double radius = cbrt(8 * half.x * half.y * half.z / (10. / 3 * M_PI));
+	const double radius = ob_pow(8 * half.x * half.y * half.z / (10. / 3 * M_PI), 1. / 3);
 	if (shape == OB_SHAPE_CYLINDER)
 		return ob_v3(sqrt(4 * half.x * half.y / M_PI), half.z, 0);
 	return shape == OB_SHAPE_CAPSULE ? ob_v3(radius, radius, 0) : half;
