@@ -27,4 +27,5 @@ const ob_engine_kind ob_engine_bullet = {
 	.step = ob_bullet_step,
 	.get = ob_bullet_get,
 	.destroy = ob_bullet_destroy,
+	.drives = OB_WORLD_DRIVES_BODIES,
 };

@@ -22,6 +22,7 @@
 
 extern "C" {
 #include "engine/bullet.h"
+#include "engine/drive.h"
 }
 
 // Declared in the order in which they are made: destroyed the other way round, the bodies by hand before their world.
@@ -34,7 +35,9 @@ struct ob_engine {
 	std::vector<std::unique_ptr<btCollisionShape>> shape;
 	std::vector<std::unique_ptr<btRigidBody>> body;
 	std::vector<btVector3> force; // N; acts in every step
-	btScalar substep; // s
+	ob_drive drive = {};
+	uint64_t steps = 0; // substeps, so far
+	double substep; // s
 	uint32_t substeps;
 
 	ob_engine() : dispatcher(&configuration), world(&dispatcher, &broadphase, &solver, &configuration) {}
@@ -42,6 +45,7 @@ struct ob_engine {
 	{
 		for (auto &b : body)
 			world.removeRigidBody(b.get());
+		ob_drive_finish(&drive);
 	}
 };
 
@@ -53,6 +57,12 @@ static btVector3 vector(ob_vec3 v)
 static ob_vec3 vector(const btVector3 &v)
 {
 	return ob_v3(v.x(), v.y(), v.z());
+}
+
+static btTransform transform(const ob_pose &p)
+{
+	const ob_quat &q = p.q;
+	return btTransform(btQuaternion(btScalar(q.x), btScalar(q.y), btScalar(q.z), btScalar(q.w)), vector(p.p));
 }
 
 // One rule for all of the process, as Bullet has it.
@@ -102,10 +112,7 @@ static void add(ob_engine *b, const ob_world *w, const ob_passport *p, const ob_
 	bool moves = !(p->flags & OB_OBJECT_STATIC) && p->mass > 0;
 	btRigidBody::btRigidBodyConstructionInfo info(moves ? btScalar(p->mass) : btScalar(0), nullptr,
 						      b->shape.back().get(), vector(p->inertia));
-	const ob_quat &q = s->pose.q;
-	info.m_startWorldTransform.setOrigin(vector(s->pose.p));
-	info.m_startWorldTransform.setRotation(
-		btQuaternion(btScalar(q.x), btScalar(q.y), btScalar(q.z), btScalar(q.w)));
+	info.m_startWorldTransform = transform(s->pose);
 	info.m_friction = btScalar(p->friction);
 	info.m_restitution = btScalar(p->restitution);
 	b->body.push_back(std::make_unique<btRigidBody>(info));
@@ -120,7 +127,10 @@ static void add(ob_engine *b, const ob_world *w, const ob_passport *p, const ob_
 	}
 	if (p->restitution > 0)
 		body->setContactProcessingThreshold(0);
-	if (moves && !sleeping)
+	const bool driven = p->flags & OB_OBJECT_KINEMATIC;
+	if (driven)
+		body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+	if (driven || (moves && !sleeping))
 		body->setActivationState(DISABLE_DEACTIVATION);
 	b->force.push_back(vector(p->force));
 	b->world.addRigidBody(body);
@@ -139,6 +149,30 @@ static void allow_for_bounces(btContactSolverInfo *info, const ob_world *w)
 		info->m_erp2 = 0;
 }
 
+static void place_driven(ob_engine *p)
+{
+	for (uint32_t i = 0; i < p->drive.count; i++) {
+		btRigidBody *b = p->body[p->drive.body[i].id].get();
+		const ob_state s = ob_drive_step(&p->drive, i, double(p->steps) * p->substep, p->substep);
+		b->setWorldTransform(transform(s.pose));
+		b->setInterpolationWorldTransform(b->getWorldTransform());
+	}
+}
+
+// Called within a step, after Bullet has drawn the velocities of kinematic bodies from two transforms: a turn by less
+// than half a milliradian is none in single precision.
+static void give_velocities(btDynamicsWorld *world, btScalar h)
+{
+	(void)h;
+	const ob_engine *p = static_cast<const ob_engine *>(world->getWorldUserInfo());
+	for (uint32_t i = 0; i < p->drive.count; i++) {
+		btRigidBody *b = p->body[p->drive.body[i].id].get();
+		const ob_state s = ob_drive_step(&p->drive, i, double(p->steps) * p->substep, p->substep);
+		b->setLinearVelocity(vector(s.v));
+		b->setAngularVelocity(vector(s.w));
+	}
+}
+
 static void set_up(ob_engine *b, const ob_world *w, const ob_run_settings *s)
 {
 	gCalculateCombinedFrictionCallback = pair_friction;
@@ -149,7 +183,10 @@ static void set_up(ob_engine *b, const ob_world *w, const ob_run_settings *s)
 	b->world.getSolverInfo().m_numIterations = int(s->iterations);
 	allow_for_bounces(&b->world.getSolverInfo(), w);
 	b->substeps = s->substeps;
-	b->substep = btScalar(s->step_length / s->substeps);
+	b->substep = s->step_length / s->substeps;
+	if (!ob_drive_init(&b->drive, w))
+		throw std::bad_alloc();
+	b->world.setInternalTickCallback(give_velocities, b, true);
 	for (uint32_t i = 0; i < w->objects; i++)
 		add(b, w, &w->passport[i], &w->state[i], s->sleeping);
 }
@@ -179,7 +216,9 @@ extern "C" bool ob_bullet_step(ob_engine *p, ob_error *e)
 		for (size_t i = 0; i < p->body.size(); i++)
 			if (!p->force[i].isZero())
 				p->body[i]->applyCentralForce(p->force[i]);
-		p->world.stepSimulation(p->substep, 0);
+		p->world.stepSimulation(btScalar(p->substep), 0);
+		p->steps++;
+		place_driven(p);
 	}
 	return true;
 }

@@ -26,7 +26,7 @@ typedef struct ob_engine_kind {
 	// J since the start: potential energy that pushing penetrations apart has added. NULL = the engine does not tell
 	double (*recovered)(const ob_engine *p);
 	void (*destroy)(ob_engine *p); // NULL is allowed
-	bool drives; // kinematic bodies and running surfaces; else it is not to be given any
+	ob_world_drive drives; // the most that it is to be given
 } ob_engine_kind;
 
 // All that were built in, in the order of legends; ends with NULL.

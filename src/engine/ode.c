@@ -17,6 +17,7 @@
 
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
+#include "engine/drive.h"
 #include "engine/engines.h"
 
 static _Thread_local unsigned users;
@@ -35,6 +36,8 @@ void ob_engine_ode_leave(void)
 
 struct ob_engine {
 	ob_ode_world *world;
+	ob_drive drive;
+	uint64_t steps; // substeps, so far
 	double substep; // s
 	uint32_t substeps, objects;
 };
@@ -44,6 +47,7 @@ static void destroy(ob_engine *p)
 	if (!p)
 		return;
 	ob_ode_world_destroy(p->world);
+	ob_drive_finish(&p->drive);
 	free(p);
 	ob_engine_ode_leave();
 }
@@ -70,7 +74,7 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_ode_wor
 	setup.objects = w->objects;
 	setup.sleeping = s->sleeping;
 	p->world = ob_ode_world_create(&setup);
-	if (!p->world) {
+	if (!p->world || !ob_drive_init(&p->drive, w)) {
 		ob_fail(e, "no memory for a world of %u bodies", w->objects);
 		destroy(p);
 		return NULL;
@@ -117,7 +121,11 @@ static ob_engine *create_world(const ob_world *w, const ob_run_settings *s, ob_e
 
 static bool step(ob_engine *p, ob_error *e)
 {
-	for (uint32_t i = 0; i < p->substeps; i++)
+	for (uint32_t i = 0; i < p->substeps; i++, p->steps++) {
+		for (uint32_t k = 0; k < p->drive.count; k++) {
+			ob_state s = ob_drive_step(&p->drive, k, (double)p->steps * p->substep, p->substep);
+			ob_ode_world_drive(p->world, p->drive.body[k].id, &s);
+		}
 		if (!ob_ode_world_step(p->world, p->substep)) {
 			bool full;
 			uint32_t culprit = ob_ode_world_culprit(p->world, &full);
@@ -125,6 +133,7 @@ static bool step(ob_engine *p, ob_error *e)
 				       full ? "no memory for the contacts; body %u has most" : "ODE gave up at body %u",
 				       culprit);
 		}
+	}
 	return true;
 }
 
@@ -135,7 +144,8 @@ static void get(const ob_engine *p, ob_state *state)
 		ob_ode_world_get(p->world, i, &state[i], &asleep, &touching);
 }
 
-#define THE_REST .version = OB_ODE_VERSION, .step = step, .get = get, .destroy = destroy
+#define THE_REST \
+	.version = OB_ODE_VERSION, .step = step, .get = get, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES
 #define QUICK \
 	.usual = { .step_length = OB_DEFAULT_STEP, .substeps = 1, .iterations = OB_DEFAULT_MONOLITH_ITERATIONS }, \
 	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 }

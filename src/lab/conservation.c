@@ -24,7 +24,7 @@ ob_conservation ob_conservation_begin(const ob_world *w)
 		mass += p->mass;
 	}
 	c.centre = ob_scale(c.centre, mass > 0 ? 1 / mass : 0);
-	c.driven = ob_world_is_driven(w); // what does work may add energy
+	c.driven = ob_world_drives(w) != OB_WORLD_DRIVES_NOTHING; // what does work may add energy
 	c.worst[OB_CONSERVED_ENERGY] = c.driven ? NAN : 0;
 	c.worst[OB_CONSERVED_MOMENTUM] = c.worst[OB_CONSERVED_ANGULAR] = c.closed ? 0 : NAN;
 	return c;

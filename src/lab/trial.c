@@ -53,7 +53,7 @@ static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind 
 	ob_conservation_look(&conserved, &t->now, 0);
 	if (c->observe)
 		c->observe(t);
-	if (!kind->drives && ob_world_is_driven(t->world)) {
+	if (kind->drives < ob_world_drives(t->world)) {
 		t->failed = "takes no bodies that move as they are told";
 		broken = true;
 	}

@@ -77,13 +77,17 @@ void ob_world_swing(ob_world *w, ob_world_body b, ob_vec3 amplitude, double freq
 		(struct ob_world_path){ b.passport->id, ob_path_sine(b.state, amplitude, frequency, phase) };
 }
 
-bool ob_world_is_driven(const ob_world *w)
+ob_world_drive ob_world_drives(const ob_world *w)
 {
-	for (uint32_t i = 0; i < w->objects; i++)
-		if (w->passport[i].flags & OB_OBJECT_KINEMATIC ||
-		    (w->passport[i].flags & OB_OBJECT_STATIC && ob_norm2(w->passport[i].surface_velocity) > 0))
-			return true;
-	return false;
+	ob_world_drive drives = OB_WORLD_DRIVES_NOTHING;
+	for (uint32_t i = 0; i < w->objects; i++) {
+		const ob_passport *p = &w->passport[i];
+		if (p->flags & OB_OBJECT_PRESCRIBED && ob_norm2(p->surface_velocity) > 0)
+			return OB_WORLD_DRIVES_SURFACES;
+		if (p->flags & OB_OBJECT_KINEMATIC)
+			drives = OB_WORLD_DRIVES_BODIES;
+	}
+	return drives;
 }
 
 const ob_path *ob_world_path(const ob_world *w, uint32_t id)

@@ -42,8 +42,13 @@ ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mas
 void ob_world_kinematic(ob_world_body b);
 // The same to and fro about its place: sin(frequency t + phase) of the amplitude (m; rad/s, rad) away from it.
 void ob_world_swing(ob_world *w, ob_world_body b, ob_vec3 amplitude, double frequency, double phase);
-// Are there kinematic bodies, or running surfaces?
-bool ob_world_is_driven(const ob_world *w);
+// What a world moves whatever touches it. What moves kinematic bodies and surfaces takes kinematic bodies alone, too.
+typedef enum ob_world_drive {
+	OB_WORLD_DRIVES_NOTHING,
+	OB_WORLD_DRIVES_BODIES, // kinematic ones
+	OB_WORLD_DRIVES_SURFACES, // of bodies that are static or kinematic
+} ob_world_drive;
+ob_world_drive ob_world_drives(const ob_world *w);
 // NULL: it has none
 const ob_path *ob_world_path(const ob_world *w, uint32_t id);
 // Half extents and radius in m.

@@ -247,6 +247,40 @@ static void sleep_on(void)
 	little_world_free(l);
 }
 
+// Two tables are where they are told to be, one that swings and one that turns as it goes up, whatever stands on them;
+// cubes ride along, for friction holds them.
+static void driven(void)
+{
+	if (kind->drives < OB_WORLD_DRIVES_BODIES)
+		return;
+	enum { SWINGS = 0, TURNS = 1 };
+	static const double f = 2, rate = .5, climb = .2; // rad/s, rad/s, m/s
+	const ob_vec3 half = ob_v3(1, 1, .1), swing = ob_v3(.3, 0, 0);
+	little_world *l = little_world_new();
+	ob_world_swing(&l->world, ob_world_box(&l->world, 0, half, ob_v3(0, 0, -.1)), swing, f, acos(0));
+	ob_world_body up = ob_world_box(&l->world, 0, half, ob_v3(5, 0, -.1));
+	ob_world_kinematic(up);
+	up.state->v.z = climb;
+	up.state->w.z = rate;
+	uint32_t rider = little_cube(l, 2, .25, ob_v3(.3, 0, .25)), turned = little_cube(l, 2, .25, ob_v3(5.2, 0, .25));
+	l->world.state[turned].v = ob_v3(0, .2 * rate, climb);
+	l->world.state[turned].w.z = rate;
+	little_run(kind, l, 32, 2);
+	const ob_state *table = l->now;
+	const double exact = .3 * cos(2 * f);
+	CHECK_NEAR(table[SWINGS].pose.p.x, exact, 1e-5); // single precision
+	CHECK_NEAR(table[TURNS].pose.p.z, -.1 + 2 * climb, 1e-5);
+	CHECK_NEAR(table[TURNS].pose.q.z, sin(rate), 1e-5);
+	if (!is("obsim-ghost")) { // which answers contacts as if alone
+		CHECK_NEAR(l->now[rider].pose.p.x, exact, .02);
+		CHECK_NEAR(l->now[rider].v.x, -.3 * f * sin(2 * f), .05);
+		CHECK_NEAR(l->now[turned].pose.p.x, 5 + .2 * cos(2 * rate), .02);
+		CHECK_NEAR(l->now[turned].pose.p.y, .2 * sin(2 * rate), .02);
+		CHECK_NEAR(l->now[turned].pose.p.z, .25 + 2 * climb, .01);
+	}
+	little_world_free(l);
+}
+
 int main(int argc, char **argv)
 {
 	kind = ob_engine_find(argv[1]);
@@ -264,5 +298,6 @@ int main(int argc, char **argv)
 	tolerance();
 	again();
 	sleep_on();
+	driven();
 	return check_end();
 }

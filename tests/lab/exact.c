@@ -239,6 +239,16 @@ ob_state exact_shaken(const ob_world *w, uint32_t id, double t)
 	return s;
 }
 
+ob_state exact_ridden(const ob_world *w, uint32_t id, double t)
+{
+	const ob_path *path = ob_world_path(w, 0);
+	const double f = path->frequency;
+	ob_state s = w->state[id];
+	s.pose.p = ob_madd(s.pose.p, (1 - cos(f * t)) / (f * f), path->a);
+	s.v = ob_scale(path->a, sin(f * t) / f);
+	return s;
+}
+
 ob_state exact_belt(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];

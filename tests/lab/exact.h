@@ -23,6 +23,7 @@ ob_state exact_roll(const ob_world *w, uint32_t id, double t); // on level groun
 ob_state exact_pull(const ob_world *w, uint32_t id, double t); // by its force, against friction
 ob_state exact_round(const ob_world *w, uint32_t id, double t); // cylinders and capsules down the slope of body 0
 ob_state exact_shaken(const ob_world *w, uint32_t id, double t); // blocks on tables that swing
+ob_state exact_ridden(const ob_world *w, uint32_t id, double t); // all as body 0, which swings from rest
 ob_state exact_belt(const ob_world *w, uint32_t id, double t); // blocks on belts
 ob_state exact_turntable(const ob_world *w, uint32_t id, double t); // boxes that stay, or go off straight
 

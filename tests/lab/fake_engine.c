@@ -77,7 +77,7 @@ CREATE(dying, in_use, 3)
 	const ob_engine_kind kind##_engine = { .name = #kind, \
 					     .title = #kind, \
 					     .version = "", \
-					     .drives = true, \
+					     .drives = OB_WORLD_DRIVES_SURFACES, \
 					     .create = create_##kind, \
 					     .step = step_function, \
 					     .get = get_function, \

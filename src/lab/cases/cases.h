@@ -73,7 +73,9 @@
 	X(random_heaps) \
 	X(shaking_tables) \
 	X(belts) \
-	X(turntables)
+	X(turntables) \
+	X(shaken_stack) \
+	X(shaken_pile)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)

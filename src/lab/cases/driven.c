@@ -1,6 +1,10 @@
-// What stands on things that move as they are told: a shaking table, a belt, a turntable.
+// What stands on things that move as they are told: on shaking tables, belts, turntables; and stacks and piles that a
+// table keeps from coming to rest.
+#include "base/random.h"
 #include "lab/cases/cases.h"
+#include "lab/heap.h"
 #include "lab/look.h"
+#include "measure/measure.h"
 #include "reference/mechanics.h"
 #include "world/world.h"
 
@@ -191,4 +195,107 @@ const ob_case ob_case_turntables = {
 		    { "creep of what stays", "mm", .01, "none" } },
 	.build = build_turntables,
 	.judge = judge_turntables,
+};
+
+// ---- stacks and piles that are shaken
+
+enum { SEEDS = 5 }; // a run for each
+enum { STACK_WORST, STACK_CREEP, STACK_FALLEN, STACK_MEAN, STACK_FIGURES };
+enum { MEMORY_SUM, MEMORY_FRAMES }; // m: of the mean penetrations so far
+
+// A table whose top is z = 0 goes to and fro along x from an end of its way on, where it is at rest. It is body 0.
+static void build_shaken_table(ob_world *w, double half, double acceleration)
+{
+	ob_world_body table = ob_world_box(w, 0, ob_v3(half, half, .5), ob_v3(-amplitude, 0, -.5));
+	ob_world_swing(w, table, ob_v3(amplitude, 0, 0), sqrt(acceleration / amplitude), acos(0));
+}
+
+static void build_shaken_stack(ob_world *w, uint32_t run)
+{
+	uint64_t seed = 4200 + run;
+	build_shaken_table(w, 2, -.3 * w->gravity.z);
+	for (int i = 0; i < 10; i++) {
+		ob_vec3 off = ob_splitmix_vector(&seed, .01);
+		ob_world_box(w, 250, ob_v3(.5, .5, .125), ob_v3(off.x, off.y, .125 + .25 * i));
+	}
+}
+
+static void observe_shaken_stack(ob_case_run_state *t)
+{
+	ob_penetration p;
+	ob_measure_penetration(&t->now, &p);
+	ob_look_keep(&t->figure[STACK_WORST], 1e3 * p.max_m);
+	t->memory[MEMORY_SUM] += p.mean_m;
+	t->memory[MEMORY_FRAMES]++;
+	const double f = ob_world_path(t->world, 0)->frequency;
+	const ob_vec3 told = ob_v3(amplitude * (cos(f * t->time) - 1), 0, 0);
+	double fallen = 0;
+	for (uint32_t id = 0; id < t->world->objects; id++) {
+		ob_vec3 off = ob_sub(ob_look_moved(t, id), told);
+		ob_look_keep(&t->figure[STACK_CREEP], 1e3 * hypot(off.x, off.y));
+		fallen += ob_norm(off) > .25;
+	}
+	t->figure[STACK_FALLEN] = fallen;
+	if (fallen > 0)
+		t->failed = "fell";
+}
+
+static void judge_shaken_stack(ob_case_run_state *t)
+{
+	t->figure[STACK_MEAN] = 1e3 * t->memory[MEMORY_SUM] / t->memory[MEMORY_FRAMES];
+}
+
+const ob_case ob_case_shaken_stack = {
+	.row = 42,
+	.name = "shaken-stack",
+	.title = "Shaken stack of 10",
+	.setup = "Ten slabs of 1 x 1 x .25 m and 250 kg, each up to 10 mm off the axis, friction .5, ride on a table "
+		 "that goes to and fro by .1 m at up to .3 g; nothing slips or tips, and nothing ever rests; 20 s; the "
+		 "worst of five such.",
+	.others = "not measured elsewhere",
+	.quick = true,
+	.compared = true,
+	.duration = 20,
+	.step = 1. / 60,
+	.runs = SEEDS,
+	.figures = STACK_FIGURES,
+	.figure = { { "worst penetration", "mm", .5, "no penetration" },
+		    { "creep", "mm", 1, "it rides along: farthest that a body is aside of where the table takes it" },
+		    { "bodies that fell", "1", 0, "none: friction and width hold all of it" },
+		    { "mean penetration", "mm", NAN, "no penetration; over contacts and time" } },
+	.build = build_shaken_stack,
+	.observe = observe_shaken_stack,
+	.judge = judge_shaken_stack,
+};
+
+static void build_shaken_pile(ob_world *w, uint32_t run)
+{
+	uint64_t seed = 4250 + run;
+	build_shaken_table(w, 15, -.6 * w->gravity.z);
+	for (int i = 0; i < 64; i++) {
+		ob_vec3 p = ob_v3((i % 4 - 1.5) * .75, (i / 4 % 4 - 1.5) * .75, .75 + .8 * (i / 16));
+		p = ob_add(p, ob_splitmix_vector(&seed, .05));
+		ob_vec3 turn = ob_splitmix_vector(&seed, .15);
+		ob_world_box(w, 125, ob_v3(.25, .25, .25), p).state->pose.q = ob_quat_turn(ob_quat_identity(), turn);
+	}
+}
+
+const ob_case ob_case_shaken_pile = {
+	.row = 42,
+	.name = "shaken-pile",
+	.title = "Shaken pile of 64",
+	.setup = "64 boxes of .5 m in a loose grid, slightly turned, drop half a metre on a table that goes to and fro "
+		 "by .1 m at up to .6 g; friction .5, so that they slip all the time; 10 s; the worst of five such.",
+	.others = "not measured elsewhere",
+	.compared = true,
+	.duration = 10,
+	.step = 1. / 60,
+	.runs = SEEDS,
+	.figures = OB_HEAP_GROWTH,
+	.figure = { { "mean penetration in the last second", "mm", .5, "no penetration" },
+		    { "worst penetration in the last second", "mm", 2, "no penetration" },
+		    { "worst penetration at any moment", "mm", 2, "no penetration" } },
+	.build = build_shaken_pile,
+	.observe = ob_heap_observe,
+	.judge = ob_heap_judge,
 };
