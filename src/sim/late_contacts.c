@@ -393,6 +393,17 @@ static void check_all_by_motions(const pair_check *c, const uint32_t *checks, ui
 	}
 }
 
+// A pair's record and those of its objects lie anywhere, and take longer to come than to be looked at: they are asked for
+// some checks before.
+static void prefetch_records(const pair_check *c, uint32_t i, uint32_t end)
+{
+	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
+	if (i + PAIR_AHEAD < end)
+		__builtin_prefetch(&c->data->pair[c->data->check[i + PAIR_AHEAD]]);
+	if (i + OBJECTS_AHEAD < end)
+		ob_prefetch_schedule(c->s, &c->data->pair[c->data->check[i + OBJECTS_AHEAD]]);
+}
+
 void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 {
 	const pair_check c = { s,
@@ -406,6 +417,7 @@ void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved
 	while (first < end) {
 		uint32_t left[OB_LATE_CONTACTS_BATCH], n = 0;
 		for (uint32_t i = 0; i < OB_LATE_CONTACTS_BATCH && first < end; i++, first++) {
+			prefetch_records(&c, first, end);
 			ob_pair_key copy, *k = begin_change(&c, first, &copy);
 			if (check_by_schedule(&c, k))
 				end_change(&c, first, k);

@@ -14,6 +14,16 @@ static void prefetch_object(ob_sim *s, uint32_t id)
 	prefetch(ob_passport_of(s->u, id), sizeof(ob_passport));
 }
 
+void ob_prefetch_schedule(ob_sim *s, const ob_pair_key *k)
+{
+	const uint32_t id[2] = { k->a, k->b };
+	for (int i = 0; i < 2; i++) {
+		__builtin_prefetch(&s->data->schedule[id[i]]);
+		__builtin_prefetch(&s->data->result_island[id[i]]);
+		ob_prefetch_versions(s->u, id[i]);
+	}
+}
+
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k)
 {
 	prefetch_object(s, k->a);

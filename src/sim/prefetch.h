@@ -7,7 +7,8 @@
 // Island i, which this worker solves next; of a large one the beginning.
 void ob_prefetch_island(ob_sim *s, uint32_t i);
 
-// Motions and passports of a pair that is checked soon.
+// Of a pair that is checked soon: the schedule records, and where its motions and passports are found; then these.
+void ob_prefetch_schedule(ob_sim *s, const ob_pair_key *k);
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k);
 
 #endif

@@ -39,6 +39,12 @@ const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id)
 	return __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_RING_VERSIONS ? &s->odd : u->passport_even + id;
 }
 
+void ob_prefetch_versions(const ob_universe *u, uint32_t id)
+{
+	__builtin_prefetch(&u->slot[id].version);
+	__builtin_prefetch(&u->passport[id].version);
+}
+
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 {
 	return p->shape == OB_SHAPE_HULL && p->hull < u->header.sizes.hulls ? u->hull + p->hull : NULL;
