@@ -36,6 +36,10 @@ typedef struct change_of_velocity {
 	ob_vec3 v, w;
 } change_of_velocity;
 
+// Nearly all sets are of one point. For them the compiler makes code of its own from the same text, in which the numbers
+// of points and rows are constants.
+#define PER_SIZE static inline __attribute__((always_inline))
+
 // The set of points that approach.
 typedef struct impact_set {
 	uint32_t bodies, points;
@@ -111,7 +115,7 @@ static void set_rates(impact_set *s, uint32_t *count)
 	}
 }
 
-static void add_changes(const impact_set *s, const double *x)
+PER_SIZE void add_changes(const impact_set *s, const double *x)
 {
 	memset(s->change, 0, s->bodies * sizeof *s->change);
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -128,7 +132,7 @@ static void add_changes(const impact_set *s, const double *x)
 }
 
 // What all rows have to reach, u, with the impulses x: the normal velocities are in excess of the law's.
-static void find_velocities(const impact_set *s, const double *x, double *u)
+PER_SIZE void find_velocities(const impact_set *s, const double *x, double *u)
 {
 	add_changes(s, x);
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -149,7 +153,7 @@ typedef struct projection {
 	double bound;
 } projection;
 
-static projection project(const impact_set *s, const point_rows *r, const double *x, const double *u)
+PER_SIZE projection project(const impact_set *s, const point_rows *r, const double *x, const double *u)
 {
 	projection p = { { ob_max(0, x[0] - r->rate * u[0]), 0, 0 }, { 0, 0 }, 0, 0 };
 	if (s->dims == 1)
@@ -163,7 +167,7 @@ static projection project(const impact_set *s, const point_rows *r, const double
 }
 
 // m/s: by how much an iteration would change something
-static double residual(const impact_set *s, const double *x, const double *u)
+PER_SIZE double residual(const impact_set *s, const double *x, const double *u)
 {
 	double most = 0;
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -176,14 +180,14 @@ static double residual(const impact_set *s, const double *x, const double *u)
 }
 
 // Of n iterations, and of an elimination of so many rows. true: no more.
-static bool pay(const impact_set *s, uint64_t iterations, uint64_t rows)
+PER_SIZE bool pay(const impact_set *s, uint64_t iterations, uint64_t rows)
 {
 	const uint64_t work = WORK_OF_POINT * s->points * iterations + rows * rows * rows / ELIMINATED_PER_WORK;
 	return s->payer && s->payer->is_over(s->payer->with, work);
 }
 
 // All points at once, again and again.
-static void iterate(const impact_set *s, int iterations, double *x, double *u)
+PER_SIZE void iterate(const impact_set *s, int iterations, double *x, double *u)
 {
 	double most = INFINITY;
 	for (int n = 0; n < iterations && most > exact * s->largest && !pay(s, 1, 0); n++) {
@@ -209,7 +213,7 @@ typedef struct newton_system {
 	int open[MAX_DENSE_ROWS], opens; // rows of points that push: the others' impulses go to zero
 } newton_system;
 
-static double coupling(const point_rows *r, int i, const point_rows *q, int j)
+PER_SIZE double coupling(const point_rows *r, int i, const point_rows *q, int j)
 {
 	const double along = ob_dot(r->along[i], q->along[j]);
 	double sum = 0;
@@ -224,7 +228,7 @@ static double coupling(const point_rows *r, int i, const point_rows *q, int j)
 	return sum;
 }
 
-static void fill_matrix(const impact_set *s, newton_system *y)
+PER_SIZE void fill_matrix(const impact_set *s, newton_system *y)
 {
 	y->n = (int)s->points * s->dims;
 	for (int i = 0; i < y->n; i++)
@@ -234,7 +238,7 @@ static void fill_matrix(const impact_set *s, newton_system *y)
 }
 
 // Elimination with row pivots of the first n rows and columns; false: singular.
-static bool eliminate(newton_system *y, int n)
+PER_SIZE bool eliminate(newton_system *y, int n)
 {
 	for (int k = 0; k < n; k++) {
 		int pivot = k;
@@ -267,7 +271,7 @@ static bool eliminate(newton_system *y, int n)
 }
 
 // Row "row" is to reach zero velocity.
-static void put_stop(newton_system *y, int row, double u)
+PER_SIZE void put_stop(newton_system *y, int row, double u)
 {
 	memcpy(y->m[row], y->a[row], (unsigned)y->n * sizeof **y->m);
 	y->m[row][row] += proximity * y->a[row][row];
@@ -275,7 +279,7 @@ static void put_stop(newton_system *y, int row, double u)
 }
 
 // Rows "row" and the next: friction of magnitude mu x against z, which turns with the sliding velocity.
-static void put_sliding(newton_system *y, int row, const point_rows *r, const projection *p, const double *x)
+PER_SIZE void put_sliding(newton_system *y, int row, const point_rows *r, const projection *p, const double *x)
 {
 	const double k = p->bound / p->length, d[2] = { p->z[0] / p->length, p->z[1] / p->length };
 	for (int i = 0; i < 2; i++) {
@@ -295,10 +299,13 @@ static void put_sliding(newton_system *y, int row, const point_rows *r, const pr
 }
 
 // Open rows and columns alone, where the others' steps are known.
-static bool eliminate_open(newton_system *y, const double *x)
+PER_SIZE bool eliminate_open(newton_system *y, const double *x)
 {
 	double others[MAX_DENSE_ROWS];
-	bool is_open[MAX_DENSE_ROWS] = { false };
+	bool is_open[MAX_DENSE_ROWS];
+	if (y->opens == y->n)
+		return eliminate(y, y->n);
+	memset(is_open, 0, (unsigned)y->n * sizeof *is_open);
 	for (int k = 0; k < y->opens; k++)
 		is_open[y->open[k]] = true;
 	for (int i = 0; i < y->n; i++)
@@ -319,7 +326,7 @@ static bool eliminate_open(newton_system *y, const double *x)
 	return true;
 }
 
-static bool newton_step(const impact_set *s, newton_system *y, const double *x, const double *u)
+PER_SIZE bool newton_step(const impact_set *s, newton_system *y, const double *x, const double *u)
 {
 	y->opens = 0;
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -344,7 +351,7 @@ static bool newton_step(const impact_set *s, newton_system *y, const double *x, 
 // A whole step may lead through worse places to the solution, as which points push and which slide is changed; shorter
 // ones lead downhill alone. true: solved to rounding; false as soon as it comes where it has been, too. x: from where,
 // and the solution.
-static bool newton(const impact_set *s, newton_system *y, bool downhill, double *x, double *u)
+PER_SIZE bool newton(const impact_set *s, newton_system *y, bool downhill, double *x, double *u)
 {
 	double next[MAX_DENSE_ROWS], seen[MAX_NEWTON_STEPS], then = INFINITY;
 	find_velocities(s, x, u);
@@ -373,13 +380,41 @@ static bool newton(const impact_set *s, newton_system *y, bool downhill, double 
 	return now <= stalled * s->largest;
 }
 
-// The impulses x of the law. Newton's method needs to begin where it is already known which points slide; where it does
-// not come to an end, iterations go on from the last place that they had reached.
+// Newton's method needs to begin where it is already known which points slide; where it does not come to an end,
+// iterations go on from the last place that they had reached.
+PER_SIZE void solve_cycles(const impact_set *s, double *x, double *u)
+{
+	newton_system y;
+	double start[MAX_DENSE_ROWS];
+	fill_matrix(s, &y);
+	for (int cycle = 0; cycle < MAX_CYCLES; cycle++) {
+		iterate(s, cycle == 0 ? 0 : cycle == 1 ? CYCLE_ITERATIONS : 3 * CYCLE_ITERATIONS, x, u);
+		memcpy(start, x, (unsigned)y.n * sizeof *x);
+		for (int downhill = 0; downhill <= (cycle + 1 == MAX_CYCLES); downhill++) { // which is seldom needed
+			if (newton(s, &y, downhill, x, u))
+				return;
+			memcpy(x, start, (unsigned)y.n * sizeof *x);
+		}
+	}
+}
+
+static void solve_one_point(const impact_set *s, double *x, double *u)
+{
+	impact_set set = *s;
+	set.points = 1;
+	set.dims = 3;
+	solve_cycles(&set, x, u);
+}
+
+static void solve_points(const impact_set *s, double *x, double *u)
+{
+	solve_cycles(s, x, u);
+}
+
+// The impulses x of the law.
 static void solve_law(const impact_set *s, double share, double *x, double *u)
 {
 	impact_set set = *s;
-	newton_system y;
-	double start[MAX_DENSE_ROWS];
 	set.share = share;
 	if (s->points == 1 && s->dims == 1) { // a quotient
 		const point_rows *r = s->point;
@@ -387,20 +422,12 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 		return;
 	}
 	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
-	if (s->points > OB_IMPACT_MOST_POINTS) {
+	if (s->points > OB_IMPACT_MOST_POINTS)
 		iterate(&set, MAX_ITERATIONS, x, u);
-		return;
-	}
-	fill_matrix(&set, &y);
-	for (int cycle = 0; cycle < MAX_CYCLES; cycle++) {
-		iterate(&set, cycle == 0 ? 0 : cycle == 1 ? CYCLE_ITERATIONS : 3 * CYCLE_ITERATIONS, x, u);
-		memcpy(start, x, (unsigned)y.n * sizeof *x);
-		for (int downhill = 0; downhill <= (cycle + 1 == MAX_CYCLES); downhill++) { // which is seldom needed
-			if (newton(&set, &y, downhill, x, u))
-				return;
-			memcpy(x, start, (unsigned)y.n * sizeof *x);
-		}
-	}
+	else if (s->points == 1)
+		solve_one_point(&set, x, u);
+	else
+		solve_points(&set, x, u);
 }
 
 // ---- energy
