@@ -18,6 +18,7 @@
 
 // Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m.
 enum { LEVEL_ZERO = 33, LEVELS = 64 };
+enum { CELLS_AT_ONCE = 16 }; // whose objects are asked for together
 
 typedef struct cell {
 	int32_t level, x, y, z;
@@ -189,19 +190,50 @@ static void scan_level(const ob_step_data *data, uint32_t id, int level, overlap
 			add_overlap(a, j - 1);
 }
 
+// The objects of a cell that overlap, from the first link of its bucket on.
+static void scan_cell(const ob_step_data *data, uint32_t id, const cell *at, uint32_t first, overlaps *a)
+{
+	for (uint32_t next = first; next; next = data->cell[next - 1].next) {
+		const uint32_t j = next - 1;
+		const ob_index_cell *c = &data->cell[j];
+		if (j != id && c->level == at->level && c->x == at->x && c->y == at->y && c->z == at->z &&
+		    test_overlap(a, data->bounds[id], data->bounds[j]))
+			add_overlap(a, j);
+	}
+}
+
+// Most buckets are empty. What lies in the others is asked for while the next ones are looked at.
+typedef struct found_cells {
+	uint32_t n, first[CELLS_AT_ONCE];
+	cell at[CELLS_AT_ONCE];
+} found_cells;
+
+static void scan_found(const ob_step_data *data, uint32_t id, found_cells *found, overlaps *a)
+{
+	for (uint32_t i = 0; i < found->n; i++)
+		scan_cell(data, id, &found->at[i], found->first[i], a);
+	found->n = 0;
+}
+
 static void scan_cells(const ob_step_data *data, uint32_t id, int level, const cell *lo, const cell *hi, overlaps *a)
 {
+	found_cells found;
+	found.n = 0;
 	for (int32_t z = lo->z; z <= hi->z; z++)
 		for (int32_t y = lo->y; y <= hi->y; y++)
-			for (int32_t x = lo->x; x <= hi->x; x++)
-				for (uint32_t next = data->bucket[bucket_of(data, (cell){ level, x, y, z })]; next;
-				     next = data->cell[next - 1].next) {
-					uint32_t j = next - 1;
-					const ob_index_cell *c = &data->cell[j];
-					if (j != id && c->level == level && c->x == x && c->y == y && c->z == z &&
-					    test_overlap(a, data->bounds[id], data->bounds[j]))
-						add_overlap(a, j);
-				}
+			for (int32_t x = lo->x; x <= hi->x; x++) {
+				const cell at = { level, x, y, z };
+				const uint32_t first = data->bucket[bucket_of(data, at)];
+				if (!first)
+					continue;
+				__builtin_prefetch(&data->cell[first - 1]);
+				__builtin_prefetch(data->bounds[first - 1]);
+				found.at[found.n] = at;
+				found.first[found.n++] = first;
+				if (found.n == CELLS_AT_ONCE)
+					scan_found(data, id, &found, a);
+			}
+	scan_found(data, id, &found, a);
 }
 
 // The cells of a class in which the centre of a box may lie that overlaps b; false: there are none.

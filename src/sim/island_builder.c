@@ -4,6 +4,7 @@
 
 #include "sim/calendar.h"
 #include "sim/pairs.h"
+#include "sim/prefetch.h"
 #include "sim/sort_ids.h"
 
 enum { NONE = UINT32_MAX };
@@ -267,8 +268,10 @@ static void list_pairs(builder *p)
 	for (uint32_t i = 0; i < data->count->islands; i++) {
 		ob_island *is = &data->island[i];
 		is->first_pair = total;
-		for (uint32_t k = 0; k < is->members; k++)
+		for (uint32_t k = 0; k < is->members; k++) {
+			ob_prefetch_pairs_of(p->u, is->first_member + k);
 			list_pairs_of(p, data->member[is->first_member + k], i, &total);
+		}
 		is->pairs = total - is->first_pair;
 		sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
 	}

@@ -291,6 +291,17 @@ static double next_check(const ob_step_data *data, const ob_pair_key *k, uint64_
 	return step_of_limit(k, paths, reach, steps);
 }
 
+// A pair's record lies anywhere, and so do those of its two objects: they are asked for some checks before.
+static void prefetch_check(const ob_universe *u, uint32_t i, uint32_t end)
+{
+	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (i + PAIR_AHEAD < end)
+		__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
+	if (i + OBJECTS_AHEAD < end)
+		ob_prefetch_schedule(u, &data->pair[data->check[i + OBJECTS_AHEAD]]);
+}
+
 // Its next step; and its pairs are to be checked, each listed once: that of two members with its a.
 static void note_solved(ob_universe *u, uint32_t id, const ob_calendar *solve, const ob_calendar *look)
 {
@@ -317,8 +328,10 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 	data->count->checked = (uint32_t)steps;
 	data->count->checks = 0;
 	for (uint32_t i = 0; solved && i < data->count->islands; i++)
-		for (uint32_t k = 0; k < data->island[i].members; k++)
+		for (uint32_t k = 0; k < data->island[i].members; k++) {
+			ob_prefetch_pairs_of(u, data->island[i].first_member + k);
 			note_solved(u, data->member[data->island[i].first_member + k], &solve, &look);
+		}
 	const uint32_t first = data->count->checks;
 	data->count->checks += ob_calendar_list(&look, steps, data->check + first, data->pairs_max - first);
 	for (uint32_t i = first; i < data->count->checks; i++)
@@ -336,8 +349,10 @@ void ob_late_contacts_end(ob_universe *u)
 	const ob_step_data *data = ob_universe_step_data(u);
 	const ob_calendar look = ob_calendar_of_pairs(u);
 	const uint32_t steps = data->count->checked;
-	for (uint32_t i = 0; i < ob_checks_count(data); i++) {
+	const uint32_t end = ob_checks_count(data);
+	for (uint32_t i = 0; i < end; i++) {
 		const ob_pair_key *k = &data->pair[data->check[i]];
+		prefetch_check(u, i, end);
 		if (is_due(data, k->a, steps) || is_due(data, k->b, steps))
 			continue;
 		const double next = next_check(data, k, steps);
@@ -393,17 +408,6 @@ static void check_all_by_motions(const pair_check *c, const uint32_t *checks, ui
 	}
 }
 
-// A pair's record and those of its objects lie anywhere, and take longer to come than to be looked at: they are asked for
-// some checks before.
-static void prefetch_records(const pair_check *c, uint32_t i, uint32_t end)
-{
-	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
-	if (i + PAIR_AHEAD < end)
-		__builtin_prefetch(&c->data->pair[c->data->check[i + PAIR_AHEAD]]);
-	if (i + OBJECTS_AHEAD < end)
-		ob_prefetch_schedule(c->s, &c->data->pair[c->data->check[i + OBJECTS_AHEAD]]);
-}
-
 void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
 {
 	const pair_check c = { s,
@@ -417,7 +421,7 @@ void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved
 	while (first < end) {
 		uint32_t left[OB_LATE_CONTACTS_BATCH], n = 0;
 		for (uint32_t i = 0; i < OB_LATE_CONTACTS_BATCH && first < end; i++, first++) {
-			prefetch_records(&c, first, end);
+			prefetch_check(c.u, first, end);
 			ob_pair_key copy, *k = begin_change(&c, first, &copy);
 			if (check_by_schedule(&c, k))
 				end_change(&c, first, k);

@@ -14,14 +14,30 @@ static void prefetch_object(ob_sim *s, uint32_t id)
 	prefetch(ob_passport_of(s->u, id), sizeof(ob_passport));
 }
 
-void ob_prefetch_schedule(ob_sim *s, const ob_pair_key *k)
+void ob_prefetch_schedule(const ob_universe *u, const ob_pair_key *k)
 {
+	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t id[2] = { k->a, k->b };
 	for (int i = 0; i < 2; i++) {
-		__builtin_prefetch(&s->data->schedule[id[i]]);
-		__builtin_prefetch(&s->data->result_island[id[i]]);
-		ob_prefetch_versions(s->u, id[i]);
+		__builtin_prefetch(&data->schedule[id[i]]);
+		__builtin_prefetch(&data->result_island[id[i]]);
+		ob_prefetch_versions(u, id[i]);
 	}
+}
+
+void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i)
+{
+	enum { HEAD_AHEAD = 16, PAIR_AHEAD = 8 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (i + HEAD_AHEAD < data->objects_max)
+		__builtin_prefetch(&data->first_pair[data->member[i + HEAD_AHEAD]]);
+	if (i + PAIR_AHEAD >= data->objects_max || data->member[i + PAIR_AHEAD] >= data->objects_max)
+		return;
+	const uint32_t link = data->first_pair[data->member[i + PAIR_AHEAD]];
+	if (!link)
+		return;
+	__builtin_prefetch(&data->pair[(link - 1) / 2]);
+	__builtin_prefetch(&data->pair_links[(link - 1) / 2]);
 }
 
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k)

@@ -8,7 +8,10 @@
 void ob_prefetch_island(ob_sim *s, uint32_t i);
 
 // Of a pair that is checked soon: the schedule records, and where its motions and passports are found; then these.
-void ob_prefetch_schedule(ob_sim *s, const ob_pair_key *k);
+void ob_prefetch_schedule(const ob_universe *u, const ob_pair_key *k);
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k);
+
+// Where members of the islands are gone through, at place i of member[]: the first pairs of those that follow.
+void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i);
 
 #endif
