@@ -59,8 +59,14 @@ static const unsigned round_faults[RELATIONS] = {
 };
 // .. and with hulls.
 static const unsigned hull_faults[RELATIONS] = {
-	[RELATION_TURNED] = STACK,  [RELATION_TILTED] = STACK | PADDLES, [RELATION_BOOSTED] = STACK,
-	[RELATION_ENERGY] = BOUNCE, [RELATION_REFRAMED] = STATICS,       [RELATION_LIFTED] = STATICS | STACK,
+	[RELATION_TURNED] = STACK,
+	[RELATION_TILTED] = STACK | PADDLES,
+	[RELATION_BOOSTED] = STACK,
+	[RELATION_ENERGY] = BOUNCE,
+	[RELATION_LIFTED] = STATICS | STACK,
+	[RELATION_REFRAMED] = STATICS | TABLES,
+	[RELATION_REORDERED] = TABLES,
+	[RELATION_RESCALED] = TABLES,
 };
 
 static bool is_asserted(const request *q, relation_id r, scene_kind k)
