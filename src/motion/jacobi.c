@@ -15,17 +15,9 @@ static int mean_step(double *a, double *b)
 	return apart > 2e-16 * next;
 }
 
-double ob_jacobi_mean(double b)
-{
-	double a = 1;
-	for (int i = 0; i < MEAN_STEPS && mean_step(&a, &b); i++)
-		;
-	return a;
-}
-
 // Landen's ascending transformation (Abramowitz and Stegun 1964, 17.6.8): tan(phi' - phi) = (b / a) tan(phi). The
 // angle is kept as half turns and a direction with x >= 0, which needs no tangent to be finite.
-double ob_jacobi_phase(double x, double y, double kc)
+double ob_jacobi_phase(double x, double y, double kc, double *mean)
 {
 	double a = 1, b = kc, half_turns = 0, scale = 1;
 	if (x < 0) {
@@ -47,6 +39,7 @@ double ob_jacobi_phase(double x, double y, double kc)
 		scale *= .5;
 		on = mean_step(&a, &b);
 	}
+	*mean = a;
 	return (half_turns * M_PI + ob_atan2(y, x)) * scale;
 }
 

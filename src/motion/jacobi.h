@@ -19,12 +19,10 @@ typedef struct ob_theta_value {
 	double re, im; // theta_1 at v + i alpha
 } ob_theta_value;
 
-// Arithmetic-geometric mean M(1, b), b > 0: K(k) = pi / (2 M(1, k')).
-double ob_jacobi_mean(double b);
-
 // Incomplete integral F(phi, k) for the angle phi of the direction (x, y), as the phase F M(1, k') = pi F / (2 K):
-// phi = pi / 2 gives pi / 2. kc = k' = sqrt(1 - k^2) > 0. The phase lies in [-pi / 2, 3 pi / 2].
-double ob_jacobi_phase(double x, double y, double kc);
+// phi = pi / 2 gives pi / 2. kc = k' = sqrt(1 - k^2) > 0. The phase lies in [-pi / 2, 3 pi / 2]. mean: M(1, k'), the
+// arithmetic-geometric mean that it comes by, with which K(k) = pi / (2 M(1, k')).
+double ob_jacobi_phase(double x, double y, double kc, double *mean);
 
 // nome in [0, .9], alpha in [0, -log(nome) / 2]
 void ob_theta_plan(ob_theta *t, double nome, double alpha);

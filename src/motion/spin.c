@@ -123,12 +123,12 @@ static void plan_theta(ob_spin *spin, double size, ob_vec3 n, double i1, double 
 	spin->m = ob_min(square(a1 / a3) * bend, 1);
 	// Where rounding alone decides how near the separatrix is, it is not nearer than the rounding.
 	spin->mc = ob_min(ob_max(outer - inner, 1e-17 * (outer + inner)) / square(a3), 1);
-	double kc = sqrt(spin->mc), k = sqrt(spin->m), mean = ob_jacobi_mean(kc), mean_c = ob_jacobi_mean(k);
+	double kc = sqrt(spin->mc), k = sqrt(spin->m), mean, mean_c;
 	spin->root_kc = sqrt(kc);
-	spin->phase = ob_jacobi_phase(n.x / a1, n.y / spin->amplitude.y, kc);
+	spin->phase = ob_jacobi_phase(n.x / a1, n.y / spin->amplitude.y, kc, &mean);
+	const double shift = ob_jacobi_phase(sqrt(cn2), sqrt(sn2), k, &mean_c);
 	spin->speed = mean * size * a3 * sqrt((i3 - i1) / i1 * ((i3 - i2) / i2)) / i3;
-	ob_theta_plan(&spin->theta, ob_exp(-M_PI * mean / mean_c),
-		      ob_jacobi_phase(sqrt(cn2), sqrt(sn2), k) * mean / mean_c);
+	ob_theta_plan(&spin->theta, ob_exp(-M_PI * mean / mean_c), shift * mean / mean_c);
 	spin->side = i1 > i2 ? 1 : -1;
 	// At v = pi / 2 the azimuth turns at L / I2, of which the theta function has its logarithmic slope.
 	spin->precession = size / i2 + spin->side * spin->speed * ob_theta_slope(&spin->theta);
