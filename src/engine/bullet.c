@@ -28,4 +28,5 @@ const ob_engine_kind ob_engine_bullet = {
 	.get = ob_bullet_get,
 	.destroy = ob_bullet_destroy,
 	.drives = OB_WORLD_DRIVES_BODIES,
+	.hulls = true,
 };

@@ -27,6 +27,7 @@ typedef struct ob_engine_kind {
 	double (*recovered)(const ob_engine *p);
 	void (*destroy)(ob_engine *p); // NULL is allowed
 	ob_world_drive drives; // the most that it is to be given
+	bool hulls; // it takes convex hulls
 } ob_engine_kind;
 
 // All that were built in, in the order of legends; ends with NULL.

@@ -177,7 +177,7 @@ static ob_engine *create_lagged(const ob_world *w, const ob_run_settings *s, ob_
 #define USUAL .step_length = OB_DEFAULT_STEP, .substeps = OB_DEFAULT_SUBSTEPS, .iterations = OB_DEFAULT_ITERATIONS
 #define THE_REST \
 	.version = "", .iteration_choice = { 1, 2, 4, 8, 16, 32, 64 }, .step = step, .get = get, \
-	.recovered = recovered, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES
+	.recovered = recovered, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES, .hulls = true
 
 const ob_engine_kind ob_engine_obsim = {
 	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = OB_DEFAULT_TOLERANCE }, THE_REST

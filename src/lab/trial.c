@@ -41,22 +41,27 @@ static void take(ob_case_run_state *t, const ob_state *state)
 	}
 }
 
+// What of the world the engine cannot be given; NULL: it takes all of it.
+static const char *lacks(const ob_engine_kind *kind, const ob_world *w)
+{
+	if (kind->drives < ob_world_drives(w))
+		return "takes no bodies that move as they are told";
+	return w->hulls && !kind->hulls ? "takes no hulls" : NULL;
+}
+
 // Runs to the end or to the first failure that the case or an insane state shows. Only stepping is timed.
-static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind *kind, ob_state *state, ob_case_result *out,
-		  ob_error *e)
+static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind *kind, ob_state *state,
+		  ob_case_result *out, ob_error *e)
 {
 	const ob_case *c = t->of;
 	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step_length);
-	bool broken = false;
+	t->failed = lacks(kind, t->world);
+	bool broken = t->failed;
 	ob_conservation conserved = ob_conservation_begin(t->world);
 	take(t, t->world->state);
 	ob_conservation_look(&conserved, &t->now, 0);
-	if (c->observe)
+	if (c->observe && !broken)
 		c->observe(t);
-	if (kind->drives < ob_world_drives(t->world)) {
-		t->failed = "takes no bodies that move as they are told";
-		broken = true;
-	}
 	while (!t->failed && t->frame < frames) {
 		double cpu = ob_clock_thread_cpu(), wall = ob_clock_wall();
 		bool on = kind->step(engine, e);
@@ -114,17 +119,21 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	ob_case_run_state t = { .of = c, .run = number, .world = &w, .settings = *s };
 	t.settings.step_length = s->step_length > 0 ? s->step_length : c->step;
 	t.settings.sleeping |= c->sleeps;
-	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport };
+	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport, .hulls = w.hulls };
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
+	t.now.hull = calloc(w.hulls + 1, sizeof(ob_hull *));
+	for (uint32_t i = 0; i < w.hulls && t.now.hull; i++)
+		t.now.hull[i] = &w.hull[i];
 	t.body_memory = calloc(w.objects, 8 * sizeof *t.body_memory);
 	ob_state *state = calloc(w.objects, sizeof *state);
 	ob_engine *engine = NULL;
-	bool made = t.now.motion && t.body_memory && state;
-	if (!made)
+	bool made = t.now.motion && t.now.hull && t.body_memory && state;
+	if (!made) {
 		ob_fail(e, "no memory for a world of %u bodies", w.objects);
-	else
+	} else if (!lacks(kind, &w)) {
 		engine = kind->create(&w, &t.settings, e);
-	made = engine;
+		made = engine;
+	}
 	if (made) {
 		ob_error broke = { "" };
 		watch(&t, engine, kind, state, out, &broke);
@@ -135,13 +144,15 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 			snprintf(failures->why, sizeof failures->why, "%s", t.failed);
 	}
 	free(t.now.motion);
+	free(t.now.hull);
 	free(t.body_memory);
 	free(state);
 	ob_world_finish(&w);
 	return made;
 }
 
-bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out, ob_error *e)
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out,
+		 ob_error *e)
 {
 	tally failures = { 0 };
 	*out = (ob_case_result){ 0 };

@@ -78,6 +78,7 @@ CREATE(dying, in_use, 3)
 					     .title = #kind, \
 					     .version = "", \
 					     .drives = OB_WORLD_DRIVES_SURFACES, \
+					     .hulls = true, \
 					     .create = create_##kind, \
 					     .step = step_function, \
 					     .get = get_function, \

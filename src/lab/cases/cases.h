@@ -75,7 +75,9 @@
 	X(belts) \
 	X(turntables) \
 	X(shaken_stack) \
-	X(shaken_pile)
+	X(shaken_pile) \
+	X(arch_stands) \
+	X(arch_falls)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)

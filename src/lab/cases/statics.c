@@ -1,6 +1,7 @@
-// On which side of the edge: bricks over a table's rim, two cards that lean on each other.
+// On which side of the edge: bricks over a table's rim, two cards that lean on each other, an arch.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
+#include "reference/arch.h"
 #include "reference/mechanics.h"
 #include "world/world.h"
 
@@ -155,6 +156,73 @@ const ob_case ob_case_a_frame_slides = {
 	.figures = SIDE_FIGURES,
 	.figure = SIDE_FIGURE(CARDS),
 	.build = build_a_frame_slides,
+	.observe = observe_side,
+	.judge = judge_falls,
+};
+
+enum { VOUSSOIRS = 20 };
+
+// "share" of the thickness with which it can just stand
+static void build_arch(ob_world *w, double share)
+{
+	static const double radius = 5, half_depth = .5; // m
+	const double half = .5 * share * ob_reference_arch_thickness(VOUSSOIRS, radius);
+	ob_world_ground(w);
+	for (int i = 0; i < VOUSSOIRS; i++) {
+		ob_vec3 corner[8];
+		for (int k = 0; k < 8; k++) {
+			const double angle = M_PI * (i + (k & 1)) / VOUSSOIRS, r = radius + (k & 2 ? half : -half);
+			corner[k] = ob_v3(r * cos(angle), k & 4 ? half_depth : -half_depth, r * sin(angle));
+		}
+		ob_world_hull(w, 1000, corner, 8, ob_v3(0, 0, 0));
+	}
+	ob_world_material(w, .9, 0);
+}
+
+static void build_arch_stands(ob_world *w, uint32_t run)
+{
+	build_arch(w, 1.001);
+}
+
+static void build_arch_falls(ob_world *w, uint32_t run)
+{
+	build_arch(w, .999);
+}
+
+#define THRUST "a line of thrust within all joints (Heyman 1969)"
+
+const ob_case ob_case_arch_stands = {
+	.row = 43,
+	.name = "arch-stands",
+	.title = "An arch that just stands",
+	.setup =
+		"Twenty voussoirs in a half circle of 5 m without mortar, .1 % thicker than they must be; friction .9; "
+		"20 s.",
+	.others = "not measured elsewhere",
+	.quick = true,
+	.duration = 20,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = SIDE_FIGURES,
+	.figure = SIDE_FIGURE(THRUST),
+	.build = build_arch_stands,
+	.observe = observe_side,
+	.judge = judge_stands,
+};
+
+const ob_case ob_case_arch_falls = {
+	.row = 43,
+	.name = "arch-falls",
+	.title = "An arch that just falls",
+	.setup = "As before, .1 % thinner than they must be: it must fall within 20 s.",
+	.others = "not measured elsewhere",
+	.quick = true,
+	.duration = 20,
+	.step = 1. / 60,
+	.runs = 1,
+	.figures = SIDE_FIGURES,
+	.figure = SIDE_FIGURE(THRUST),
+	.build = build_arch_falls,
 	.observe = observe_side,
 	.judge = judge_falls,
 };

@@ -1,0 +1,75 @@
+#include "reference/arch.h"
+
+#include <math.h>
+
+// The joints of half an arch, from the crown down: what lies between the crown and a joint, and where the joint is.
+enum { JOINTS_MAX = 512 };
+typedef struct half_arch {
+	int joints;
+	double inner, outer; // m, radii
+	double sine[JOINTS_MAX], cosine[JOINTS_MAX];
+	double weight[JOINTS_MAX], moment[JOINTS_MAX]; // for a unit of weight an area: m^2, m^3 about the centre
+} half_arch;
+
+// A voussoir is a quadrilateral: its area, and its moment about the vertical through the centre, by triangles.
+static half_arch cut(int voussoirs, double radius, double thickness)
+{
+	half_arch h = { .joints = voussoirs / 2, .inner = radius - .5 * thickness, .outer = radius + .5 * thickness };
+	double weight = 0, moment = 0;
+	for (int j = 0; j < h.joints; j++) {
+		const double from = M_PI * (h.joints - j) / voussoirs, to = M_PI * (h.joints - j - 1) / voussoirs;
+		const double x[4] = { h.inner * cos(to), h.outer * cos(to), h.outer * cos(from), h.inner * cos(from) };
+		const double z[4] = { h.inner * sin(to), h.outer * sin(to), h.outer * sin(from), h.inner * sin(from) };
+		for (int k = 0; k < 4; k++) {
+			const int next = (k + 1) % 4;
+			const double area = .5 * (x[k] * z[next] - x[next] * z[k]);
+			weight += area;
+			moment += area * (x[k] + x[next]) / 3;
+		}
+		h.cosine[j] = cos(to), h.sine[j] = sin(to);
+		h.weight[j] = weight, h.moment[j] = moment;
+	}
+	return h;
+}
+
+// The thrust crosses the crown at a moment Q about the centre, and each joint at (Q + moment) / (weight cosine + thrust
+// sine) from it. Returns how much the least Q that joints ask for is above the greatest that they allow, for a
+// horizontal thrust.
+static double excess(const half_arch *h, double thrust)
+{
+	double least = h->inner * thrust, greatest = h->outer * thrust;
+	for (int j = 0; j < h->joints; j++) {
+		const double normal = h->weight[j] * h->cosine[j] + thrust * h->sine[j];
+		least = fmax(least, h->inner * normal - h->moment[j]);
+		greatest = fmin(greatest, h->outer * normal - h->moment[j]);
+	}
+	return least - greatest;
+}
+
+// The excess is convex in the thrust.
+static int stands(const half_arch *h)
+{
+	double low = 0, high = 3 * h->weight[h->joints - 1];
+	for (int i = 0; i < 200; i++) {
+		const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+		if (excess(h, a) < excess(h, b))
+			high = b;
+		else
+			low = a;
+	}
+	return excess(h, .5 * (low + high)) <= 0;
+}
+
+double ob_reference_arch_thickness(int voussoirs, double radius)
+{
+	double falls = 0, holds = radius;
+	for (int i = 0; i < 60; i++) {
+		const double thickness = .5 * (falls + holds);
+		const half_arch h = cut(voussoirs, radius, thickness);
+		if (stands(&h))
+			holds = thickness;
+		else
+			falls = thickness;
+	}
+	return holds;
+}
