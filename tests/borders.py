@@ -19,6 +19,7 @@ FUNCTION_LINES = 80
 ARROWS = {
     'base': '',
     'elementary': '',
+    'ranks': 'base',
     'motion': 'elementary base',
     'hull': 'motion elementary base',
     'mesh': 'motion base',
@@ -29,7 +30,7 @@ ARROWS = {
     'sim': 'contact ode motion elementary table settings base',
     'scene': 'hull mesh settings motion elementary base',
     'script': 'scene table settings motion base',
-    'host': 'sim script scene hull table settings ode base',
+    'host': 'sim script scene hull table settings ode base ranks',
     'checkpoint': 'host scene table settings base',
     'measure': 'motion base',
     'reference': 'motion base',
@@ -43,7 +44,7 @@ ARROWS = {
     'record': 'measure mesh scene table settings motion base',
     'paper': 'host measure render reference plot experiment scene table settings base',
     'serve': 'record measure mesh host scene table settings motion base',
-    'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base',
+    'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],
@@ -62,6 +63,7 @@ DUTIES = [
     ('include libjpeg', r'#\s*include\s*<jpeglib', r'src/mesh/', True),
     ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/engine/', True),
     ('include MuJoCo', r'#\s*include\s*<mujoco', r'src/engine/', True),
+    ('include MPI', r'#\s*include\s*<mpi', r'src/ranks/mpi\.c$', True),
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),

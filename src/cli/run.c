@@ -16,10 +16,12 @@
 #include "cli/report.h"
 #include "cli/version.h"
 #include "base/interrupt.h"
+#include "ranks/ranks.h"
 #include "record/record.h"
 
 typedef struct run {
 	ob_run_request request;
+	ob_ranks ranks;
 	ob_scene *scene;
 	ob_host *host;
 	ob_capture *capture; // NULL = no frames
@@ -415,7 +417,7 @@ static int carry_out(run *r)
 		return code;
 	ob_report *report = &(ob_report){ 0 };
 	make_report(r, done ? "finished" : interrupted ? "interrupted" : "failed", report);
-	if (!write_report(r, report, &e_report))
+	if (r->ranks.rank == 0 && !write_report(r, report, &e_report))
 		code = ob_command_fail(OB_EXIT_FAILED, e_report.text);
 	if (ob_report_missed_tolerance(report)) {
 		warn_of_missed_tolerance(report);
@@ -447,6 +449,31 @@ static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 	return r->scene;
 }
 
+// One universe on several machines: simulators in processes that hand over what they find, an end where one dies, and
+// no more on this rank than that; what is made of the run is rank 0's.
+static bool share(run *r, ob_ranks ranks, ob_error *e)
+{
+	ob_run_request *q = &r->request;
+	if (q->run.monolith || q->workers == 0)
+		return ob_fail(e,
+			       "on several ranks a universe has object simulators in a pool: leave --arch monolith and "
+			       "--workers objects away");
+	if (q->harden >> OB_HARDEN_PRIVILEGES)
+		return ob_fail(e, "--harden: several ranks speak over the network: take outbox,checksum,pages at most");
+	q->isolation = OB_ISOLATION_PROCESS;
+	q->harden |= 1 << OB_HARDEN_OUTBOX;
+	q->on_death = OB_ON_DEATH_ABORT;
+	q->patience = 1e9; // another rank may be slow
+	if (ranks.rank == 0)
+		return true;
+	q->name = NULL; // for the first may be on this machine
+	q->frames.wanted = q->explain = false;
+	q->record = q->json = q->series = q->trace = q->checkpoint = NULL;
+	q->measure = OB_MEASURE_ENDS;
+	q->pace = INFINITY;
+	return true;
+}
+
 static void prepare(run *r, ob_host_config *config)
 {
 	const ob_run_request *q = &r->request;
@@ -454,6 +481,7 @@ static void prepare(run *r, ob_host_config *config)
 	r->every = ob_request_steps(q->every, q->run.step_length);
 	r->kept = UINT64_MAX;
 	*config = ob_request_host(q);
+	config->ranks = r->ranks;
 	config->from = q->resume ? &r->saved.host : NULL;
 }
 
@@ -472,7 +500,8 @@ int ob_command_run(const ob_arguments *a)
 	run r = { .begun = ob_clock_wall() };
 	ob_error e;
 	ob_host_config config = { 0 };
-	if (!read_scene(&r, a, &e)) {
+	r.ranks = ob_ranks_started();
+	if (!read_scene(&r, a, &e) || (r.ranks.ranks > 1 && !share(&r, r.ranks, &e))) {
 		finish(&r);
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	}

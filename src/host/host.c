@@ -19,6 +19,7 @@
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
 static const double default_patience = 60, least_start_patience = 5; // s
+static const double rank_leave_timeout = 3600; // s: rank 0 may have much to write; one that dies ends the others
 static const double interrupted_leave_timeout = .02; // s: Ctrl-C does not wait for the end of a long step
 
 static bool has_outboxes(const ob_host_config *c)
@@ -43,6 +44,8 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 						    (scene->scripts ? scene->room : 0));
 	if (c->harden && (c->isolation != OB_ISOLATION_PROCESS || r->monolith))
 		return ob_fail(e, "harden: only object simulators in processes can be contained");
+	if (c->ranks.ranks > 1 && (!has_outboxes(c) || c->workers == 0 || c->on_death != OB_ON_DEATH_ABORT))
+		return ob_fail(e, "ranks: take simulators in a pool, with outboxes, and let a death end the run");
 	if (c->on_death == OB_ON_DEATH_FREEZE && r->monolith)
 		return ob_fail(e, "on death: a monolith is one simulator, without which there is nothing to go on");
 	if (c->limit.deaths > OB_RESTART_LIMIT_MAX || (c->limit.deaths && !(c->limit.seconds > 0)))
@@ -113,7 +116,9 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.capacity = capacity,
 		.workers = one_per_object    ? capacity
 			   : c->run.monolith ? 1
-					     : c->workers,
+					     : c->workers * (c->ranks.ranks ? c->ranks.ranks : 1),
+		.rank = c->ranks.rank,
+		.ranks = c->ranks.ranks,
 		.hulls = c->run.monolith ? 0 : OB_SCENE_HULLS_MAX,
 		.isolation = spawn->name,
 		.traced = c->trace != NULL,
@@ -215,7 +220,7 @@ bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 			return ob_fail(e, "interrupted");
 		if (h->failed || h->restart.requested)
 			return ob_fail(e, "%s", h->failed ? h->failure.text : "a simulator has died");
-		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0) {
+		if (!ob_worker_is_here(h->u, w) || (ob_universe_get_worker(h->u, w, &info) && info.pid != 0)) {
 			w++;
 			clock = ob_hang_clock_start();
 			continue;
@@ -243,7 +248,9 @@ static bool start_workers(ob_host *h, ob_error *e)
 	h->interrupt_fd = ob_interrupt_watch();
 	if (h->interrupt_fd < 0)
 		return ob_fail(e, "cannot watch for signals: %s", strerror(errno));
-	h->running_workers = h->workers;
+	h->running_workers = 0;
+	for (uint32_t w = 0; w < h->workers; w++)
+		h->running_workers += ob_worker_is_here(h->u, w);
 	h->group = h->spawn->start(
 		&(ob_worker_group_setup){ .u = h->u, .fork_server = h->fork_server, .run = ob_worker_live }, e);
 	return h->group && ob_supervisor_start(h, e) && wait_until_ready(h, e);
@@ -423,7 +430,9 @@ void ob_host_stop(ob_host *h)
 	}
 	ob_supervisor_stop(h);
 	if (h->group)
-		left = h->spawn->join(h->group, h->interrupted ? interrupted_leave_timeout : h->spawn->leave_timeout);
+		left = h->spawn->join(h->group, h->interrupted                ? interrupted_leave_timeout
+						: ob_universe_ranks(h->u) > 1 ? rank_leave_timeout
+									      : h->spawn->leave_timeout);
 	ob_timeline_sums sums;
 	ob_error e;
 	if (!ob_host_end_trace(h, &sums, &e))

@@ -17,6 +17,7 @@
 
 #include "host/death.h"
 #include "host/timeline.h"
+#include "ranks/ranks.h"
 #include "scene/scene.h"
 #include "host/population.h"
 #include "table/saved.h"
@@ -43,6 +44,7 @@ typedef struct ob_host_config {
 	const char *name; // of the universe; NULL = obsim-<pid>
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
+	ob_ranks ranks; // of one universe on several machines, each with so many workers, in processes; ranks 0 or 1: one
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
 	double patience; // s without a completed step after which the run counts as stalled (stall.h); 0 = 60
 	uint32_t harden; // processes: measures so that simulators harm nobody (confine.h), bits, 1 << ob_harden_measure; 0 = none

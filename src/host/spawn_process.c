@@ -9,8 +9,20 @@
 
 struct ob_worker_group {
 	ob_fork_server *fork_server;
-	uint32_t workers, ended;
+	const ob_universe *u;
+	uint32_t workers, ended; // workers: that are here
 };
+
+// Those of this rank: its simulators, and the arranger.
+static bool fork_workers(ob_worker_group *g)
+{
+	const uint32_t all = ob_universe_workers(g->u), simulators = ob_universe_simulators(g->u),
+		       here = simulators / ob_universe_ranks(g->u), first = ob_universe_rank(g->u) * here;
+	g->workers = here + all - simulators;
+	return here == simulators ? ob_fork_server_fork(g->fork_server, 0, all)
+				  : ob_fork_server_fork(g->fork_server, first, here) &&
+					    ob_fork_server_fork(g->fork_server, simulators, all - simulators);
+}
 
 static int process_fd(const ob_worker_group *g)
 {
@@ -33,7 +45,7 @@ static void process_end(ob_worker_group *g)
 static bool process_restart(ob_worker_group *g, ob_error *e)
 {
 	g->ended = 0;
-	return ob_fork_server_fork(g->fork_server, 0, g->workers) || ob_fail(e, "the fork server has ended");
+	return fork_workers(g) || ob_fail(e, "the fork server has ended");
 }
 
 static uint64_t process_cpu(const ob_worker_info *w)
@@ -68,8 +80,8 @@ static ob_worker_group *process_start(const ob_worker_group_setup *setup, ob_err
 		return NULL;
 	}
 	g->fork_server = setup->fork_server;
-	g->workers = ob_universe_workers(setup->u);
-	if (!ob_fork_server_fork(g->fork_server, 0, g->workers)) {
+	g->u = setup->u;
+	if (!fork_workers(g)) {
 		ob_fail(e, "the fork server has ended: %s", strerror(errno));
 		free(g);
 		return NULL;

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "host/confine.h"
 #include "ode/ode_body.h"
+#include "ranks/ranks.h"
 #include "script/script.h"
 #include "sim/sim.h"
 
@@ -20,12 +21,31 @@ static void leave_without_memory(void)
 	longjmp(no_memory, 1);
 }
 
+static const char *gather(void *wire, const void *mine, size_t n, const size_t **at)
+{
+	return ob_wire_gather(wire, mine, n, at);
+}
+
+// The arranger of a rank: joins those of the others. false and e: it cannot.
+static bool join(ob_sim *s, const ob_universe *u, ob_wire **wire, ob_error *e)
+{
+	const ob_ranks own = { ob_universe_rank(u), ob_universe_ranks(u) };
+	if (own.ranks == 1)
+		return true;
+	*wire = ob_wire_open(&own, e);
+	if (!*wire)
+		return false;
+	return ob_sim_join(s, &(ob_peers){ own.rank, own.ranks, gather, *wire, false }, e);
+}
+
 static int live(ob_universe *u, uint32_t worker)
 {
 	ob_error e;
+	ob_wire *wire = NULL;
 	const bool arranges = ob_universe_contains(u) && worker == ob_universe_simulators(u);
-	int cpu = arranges ? -1
-			   : ob_cpu_pin(worker); // more workers than cores: in turn; the arranger where there is room
+	const uint32_t here = ob_universe_simulators(u) / ob_universe_ranks(u); // of those, this rank's
+	int cpu = arranges ? -1 // where there is room
+			   : ob_cpu_pin(here ? worker % here : worker); // more workers than cores: in turn
 	ob_ode_init();
 	ob_ode_thread_init();
 	ob_sim *s = ob_sim_create(u, worker, &e);
@@ -41,11 +61,14 @@ static int live(ob_universe *u, uint32_t worker)
 	}
 	if (s)
 		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from here on it is ready for the gate
-	bool ready = s && ob_confine(u, worker, &e);
+	bool ready = s && ob_confine(u, worker, &e) && (!arranges || join(s, u, &wire, &e));
 	if (ready)
 		ob_sim_run(s);
 	else if (s)
 		ob_log_warn("worker %u: %s", worker, e.text);
+	if (wire)
+		ob_sim_leave(s);
+	ob_wire_close(wire);
 	ob_sim_destroy(s);
 	ob_script_runner_destroy(scripts);
 	ob_ode_thread_finish();

@@ -646,11 +646,10 @@ static bool fails(ob_committer *c, ob_universe *u)
 	return ob_step_failed(u, NULL) != OB_STEP_OK;
 }
 
-bool ob_commit_phase(ob_committer *c, ob_universe *u, ob_phase phase)
+bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 {
 	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
 		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
-	ob_mail_record r = { 0 };
 	c->due = c->solved = 0;
 	if (islands)
 		give_islands(c, u);
@@ -660,18 +659,26 @@ bool ob_commit_phase(ob_committer *c, ob_universe *u, ob_phase phase)
 		give_scripts(c, u);
 	if (islands || boxes || scripts)
 		memset(c->had, 0, ob_universe_capacity(u) * sizeof *c->had);
-	if (!ob_mail_collect(u, &c->mail))
-		return false;
+	return ob_mail_collect(u, &c->mail);
+}
+
+ob_mail *ob_committer_mail(ob_committer *c)
+{
+	return &c->mail;
+}
+
+void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
+{
+	ob_mail_record r = { 0 };
 	if (fails(c, u))
-		return true;
+		return;
 	while (ob_mail_next(u, &c->mail, &r)) {
 		const char *wrong = commit_record(c, u, phase, &r);
 		if (wrong) {
 			ob_step_blame(u, r.worker, wrong);
-			return true;
+			return;
 		}
 	}
 	if (c->due && ob_step_failed(u, NULL) == OB_STEP_OK)
 		ob_step_blame(u, r.worker, "or another has not done all that it was given");
-	return true;
 }

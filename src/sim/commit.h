@@ -56,7 +56,10 @@ bool ob_is_left_in_result(const ob_universe *u, uint32_t id);
 typedef struct ob_committer ob_committer;
 ob_committer *ob_committer_create(const ob_universe *u); // NULL: no memory
 void ob_committer_destroy(ob_committer *c);
-// Waits until all simulators have arrived, checks what they have handed over, and writes it. false: STOP.
-bool ob_commit_phase(ob_committer *c, ob_universe *u, ob_phase phase);
+// Waits until all simulators that are here have arrived, and collects what they have handed over. false: STOP.
+bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase);
+ob_mail *ob_committer_mail(ob_committer *c); // what was collected; that of other ranks' simulators is put to it
+// Checks what is in the mail, which is of all that take part in the phase, and writes it.
+void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase);
 
 #endif

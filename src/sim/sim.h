@@ -21,6 +21,20 @@ void ob_sim_destroy(ob_sim *s);
 typedef uint64_t (*ob_script_run)(void *runner, ob_script_turn *turn, ob_script_cell *cell);
 void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);
 
+// How the arranger of a rank reaches the others (peers.h): gathers what each has to say, n bytes of it here, in the order of
+// ranks; at: where each begins, and the end. NULL: no memory.
+typedef struct ob_peers {
+	uint32_t rank, ranks;
+	const char *(*gather)(void *wire, const void *mine, size_t n, const size_t **at);
+	void *wire;
+	bool parted; // one has left, and all know it
+} ob_peers;
+// Of the arranger, before its first step: false and e, on all ranks, where one of them has other workers, objects or
+// settings, or computes other bits.
+bool ob_sim_join(ob_sim *s, const ob_peers *p, ob_error *e);
+// When its run is over: tells those that may be waiting for it.
+void ob_sim_leave(ob_sim *s);
+
 // The worker takes part in one phase of the step (step.c shows them all): it waits at the gate until one opens to it,
 // does its share and arrives; the last worker to arrive schedules the next phase, or the pause. false: STOP.
 bool ob_step(ob_sim *s);

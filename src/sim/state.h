@@ -17,6 +17,7 @@ struct ob_sim {
 	ob_island_work island; // scratch
 	ob_rotation_cache rotations;
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)
+	ob_peers peers; // the arranger's; no ranks: there is but this one
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects
 	struct { // sim/budget.h
 		uint64_t noted, told; // work; of which the step's sum, or the share's, knows

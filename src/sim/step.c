@@ -47,6 +47,7 @@
 #include "sim/late_contacts.h"
 #include "sim/ode_baseline.h"
 #include "sim/pairs.h"
+#include "sim/peers.h"
 #include "sim/prefetch.h"
 #include "sim/profile.h"
 #include "sim/publish.h"
@@ -467,12 +468,24 @@ static ob_phase schedule(ob_sim *s, ob_phase finished)
 	return next;
 }
 
+// What the simulators of all ranks have handed over. The arranger alone resumes a run, each rank's for itself. false: STOP.
+static bool commit(ob_sim *s, ob_phase phase)
+{
+	const bool alone = s->peers.ranks < 2 || phase == OB_PHASE_RESUME;
+	const uint64_t digest = alone ? 0 : ob_peers_digest(s->u, phase);
+	if (!ob_commit_collect(s->committer, s->u, phase))
+		return false;
+	if (alone || ob_peers_exchange(&s->peers, s->u, phase, digest, ob_committer_mail(s->committer)))
+		ob_commit_mail(s->committer, s->u, phase);
+	return true;
+}
+
 // The arranger: commits what simulators hand over at the end of each phase, and schedules the next, until the host has
 // the turn again. false: STOP.
 static bool arrange(ob_sim *s, ob_phase phase)
 {
 	while (phase != OB_PHASE_PAUSE) {
-		if (!ob_commit_phase(s->committer, s->u, phase))
+		if (!commit(s, phase))
 			return false;
 		phase = schedule(s, phase);
 	}
@@ -579,7 +592,7 @@ static void tell_of_work(const ob_universe *u, uint32_t object, unsigned long lo
 // Names the culprit, if simulators are contained: then it is known.
 static const char *damage(const ob_universe *u)
 {
-	static _Thread_local char text[160];
+	static _Thread_local char text[OB_STEP_BLAME_MAX + 32];
 	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
 	if (!ob_universe_contains(u) || !count->culprit)
 		return "what simulators share makes no sense: one of them has written where it should not";
@@ -618,7 +631,7 @@ const char *ob_sim_failure(const ob_universe *u)
 		tell_of_work(u, object, step, text, sizeof text);
 		return text;
 	case OB_STEP_LEFT:
-		return "the run was stopped";
+		return ob_universe_ranks(u) > 1 ? "another rank has left the run" : "the run was stopped";
 	case OB_STEP_MEMORY_FULL:
 		return "/dev/shm is full, and more objects touch: enlarge it (mount -o remount,size=..., docker run "
 		       "--shm-size=...) or take fewer objects";

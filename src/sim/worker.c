@@ -4,6 +4,7 @@
 #include "sim/commit.h"
 #include "sim/island_solver.h"
 #include "sim/ode_baseline.h"
+#include "sim/peers.h"
 #include "sim/sim.h"
 #include "sim/state.h"
 
@@ -65,6 +66,17 @@ void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner)
 {
 	s->scripts.run = run;
 	s->scripts.runner = runner;
+}
+
+bool ob_sim_join(ob_sim *s, const ob_peers *p, ob_error *e)
+{
+	s->peers = *p;
+	return ob_peers_join(&s->peers, s->u, e);
+}
+
+void ob_sim_leave(ob_sim *s)
+{
+	ob_peers_leave(&s->peers);
 }
 
 void ob_sim_run(ob_sim *s)

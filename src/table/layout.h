@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 21, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 22, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -156,6 +156,7 @@ static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "step data
 struct ob_universe {
 	char *base;
 	int fd; // of the segment; its owner's, and all that forked from it, share the lock
+	uint32_t rank, ranks; // its owner's (table.h)
 	bool lost; // a reader's: its file was found to be too short (reader.c)
 	uint64_t *taken; // bit per chunk whose pages this process has asked for (pages.h); NULL: a reader
 	ob_header header; // private copy, validated: later changes to the shared one have no effect

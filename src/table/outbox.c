@@ -350,8 +350,28 @@ bool ob_mail_collect(ob_universe *u, ob_mail *m)
 {
 	m->used = m->at = m->end = 0;
 	for (uint32_t w = 0; w < ob_universe_simulators(u); w++)
-		if (u->gate_group[w / 64].expected >> w % 64 & 1 && !collect_from(u, m, w))
+		if (u->gate_group[w / 64].expected >> w % 64 & 1 && ob_worker_is_here(u, w) && !collect_from(u, m, w))
 			return false;
+	return true;
+}
+
+bool ob_mail_append(ob_mail *m, const void *bytes, size_t n)
+{
+	if (!grow(m, n))
+		return false;
+	if (n)
+		memcpy(m->bytes + m->used, bytes, n);
+	m->used += n;
+	return true;
+}
+
+bool ob_mail_put_before(ob_mail *m, const void *bytes, size_t n)
+{
+	if (!grow(m, n))
+		return false;
+	memmove(m->bytes + n, m->bytes, m->used);
+	memcpy(m->bytes, bytes, n);
+	m->used += n;
 	return true;
 }
 

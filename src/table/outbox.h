@@ -82,9 +82,12 @@ typedef struct ob_mail_record {
 	const void *data;
 } ob_mail_record;
 
-// Waits until all participants of the phase have arrived, and copies what they have handed over. What does not bear its
+// Waits until all participants of the phase that are here have arrived, and copies what they have handed over. What does not bear its
 // checksum is blamed on its simulator (ob_step_blame). false: STOP.
 bool ob_mail_collect(ob_universe *u, ob_mail *m);
+// Puts bytes behind, or before, what the mail holds. false: no memory.
+bool ob_mail_append(ob_mail *m, const void *bytes, size_t n);
+bool ob_mail_put_before(ob_mail *m, const void *bytes, size_t n);
 // The next record; false: there is none.
 bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out);
 void ob_mail_finish(ob_mail *m);

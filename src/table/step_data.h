@@ -141,6 +141,8 @@ typedef struct ob_index_cell {
 } ob_index_cell;
 
 // The areas, as pointers into this process's mapping (made once per process by the table module).
+enum { OB_STEP_BLAME_MAX = 200 }; // bytes of what a worker is blamed for
+
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {
@@ -165,7 +167,7 @@ typedef struct ob_step_data {
 		uint64_t failure;    // object << 32 | ob_step_failure, of ob_step_fail; 0 = none
 		uint64_t work;       // in the step so far (sim/budget.h)
 		uint32_t culprit;    // 1 + the worker that is to blame for damage; 0 = it is not known
-		char blamed_for[64];
+		char blamed_for[OB_STEP_BLAME_MAX];
 	} *count;
 	ob_schedule *schedule;        // [object]: written by its island's solver
 	float (*bounds)[6];           // [object]: fat AABB, which holds it until it asks for another

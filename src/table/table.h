@@ -41,6 +41,7 @@ typedef struct ob_universe_setup {
 	uint32_t capacity;      // object slots
 	uint32_t workers;       // >= 1
 	uint32_t hulls;         // that objects may have, of the scene and created
+	uint32_t rank, ranks;   // of several machines' (sim/peers.h) this one; ranks 0 or 1: there is one
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
@@ -91,11 +92,17 @@ uint32_t ob_universe_capacity(const ob_universe *u);
 uint32_t ob_universe_workers(const ob_universe *u);
 // Those of them that simulate: all, or all but the arranger.
 uint32_t ob_universe_simulators(const ob_universe *u);
+// Of several ranks this one, and how many; and whether a worker is one of this rank's, each of which has its share of the
+// simulators, in the order of ranks, and an arranger.
+uint32_t ob_universe_rank(const ob_universe *u);
+uint32_t ob_universe_ranks(const ob_universe *u);
+bool ob_worker_is_here(const ob_universe *u, uint32_t worker);
 // What is done so that simulators harm nobody: bits, 1 << ob_harden_measure.
 uint32_t ob_universe_harden(const ob_universe *u);
 // Whether simulators are contained (outbox.h).
 bool ob_universe_contains(const ob_universe *u);
 const char *ob_universe_name(const ob_universe *u);
+uint32_t ob_universe_version(void); // of the layout that this program has
 void ob_universe_set_state(ob_universe *u, ob_universe_state s);
 // For readers: another simulator has died, in these words, and so many objects were frozen for it. The host's.
 void ob_universe_note_death(ob_universe *u, const char *what);

@@ -94,6 +94,8 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 		free(u);
 		return NULL;
 	}
+	u->rank = setup->rank;
+	u->ranks = setup->ranks ? setup->ranks : 1;
 	u->fd = ob_segment_create(e);
 	if (u->fd >= 0 && map_new(u, e) && fill(u, setup, e) && ob_segment_publish(u->fd, name, e)) {
 		ob_pages_track(u);
@@ -153,6 +155,23 @@ uint32_t ob_universe_workers(const ob_universe *u)
 uint32_t ob_universe_simulators(const ob_universe *u)
 {
 	return u->header.sizes.workers - (ob_universe_contains(u) ? 1 : 0);
+}
+uint32_t ob_universe_version(void)
+{
+	return OB_LAYOUT_VERSION;
+}
+uint32_t ob_universe_rank(const ob_universe *u)
+{
+	return u->rank;
+}
+uint32_t ob_universe_ranks(const ob_universe *u)
+{
+	return u->ranks;
+}
+bool ob_worker_is_here(const ob_universe *u, uint32_t worker)
+{
+	const uint32_t simulators = ob_universe_simulators(u);
+	return worker >= simulators || worker / (simulators / u->ranks) == u->rank;
 }
 uint32_t ob_universe_harden(const ob_universe *u)
 {

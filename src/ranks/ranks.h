@@ -1,0 +1,39 @@
+// One universe on several machines: the processes that mpirun or srun has started together, its ranks, and the wire
+// between them.
+//
+//   rank 0                                rank 1                                rank 2
+//   host, its simulators                  host, its simulators                  host, its simulators
+//   universe  <- arranger ------ wire ------ arranger -> universe ------ wire ------ arranger -> universe
+//
+// Only mpi.c knows MPI. It is a module of its own, obsim-mpi.so, which is loaded when a run has more than one rank: so
+// the program runs where there is no MPI, and needs it nowhere else.
+//
+// Thread-safety: a wire belongs to one thread.
+#ifndef OB_RANKS_RANKS_H
+#define OB_RANKS_RANKS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <ob/error.h>
+
+typedef struct ob_ranks {
+	uint32_t rank, ranks; // this one's number, from 0; how many there are
+} ob_ranks;
+
+// As Open MPI's mpirun has it. One rank: there is no launcher.
+ob_ranks ob_ranks_started(void);
+
+typedef struct ob_wire ob_wire;
+
+// Joins the others; returns when all have. The program must not have loaded MPI. NULL and e: it cannot be loaded, or a
+// launcher's figures are not MPI's.
+ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e);
+// Gathers what each rank has to say, n bytes of it here: all of it, in the order of ranks, which holds until the next
+// call. at: where each begins, and the end. Each rank must call it. NULL: no memory. Where a rank has gone, MPI ends
+// this one.
+const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t **at);
+// Waits until all have come here. NULL is allowed.
+void ob_wire_close(ob_wire *w);
+
+#endif

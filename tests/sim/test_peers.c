@@ -1,0 +1,158 @@
+// What arrangers of several ranks tell each other: the mail of all in their order; where two differ, which rank, step
+// and object; and that one has left. The other rank is made up here.
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/little_universe.h"
+#include "sim/peers.h"
+
+enum { CRATE = 1 };
+
+// Says as rank 1 what rank 0 says, but for one bit.
+typedef struct echo {
+	size_t wrong[2]; // byte of each message in turn, 1 + its place; 0: none
+	bool leaves; // instead
+	unsigned calls;
+	char all[1 << 16];
+	size_t at[3];
+} echo;
+
+static const char *gather(void *wire, const void *mine, size_t n, const size_t **at)
+{
+	echo *w = wire;
+	const size_t wrong = w->calls < 2 ? w->wrong[w->calls] : 0;
+	w->calls++;
+	CHECK(2 * n <= sizeof w->all && wrong <= n);
+	memcpy(w->all, mine, n);
+	memcpy(w->all + n, mine, n);
+	if (wrong)
+		w->all[n + wrong - 1] ^= 1;
+	if (w->leaves) // as ob_peers_leave has it
+		memset(w->all + n + sizeof(uint64_t), 0xff, sizeof(uint64_t));
+	w->at[1] = n;
+	w->at[2] = 2 * n;
+	*at = w->at;
+	return w->all;
+}
+
+static void open_two(little_scene **s, little_universe *l)
+{
+	*s = little_scene_new();
+	ob_world_ground(&(*s)->world);
+	snprintf(ob_world_box(&(*s)->world, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5)).passport->name, OB_NAME_MAX,
+		 "crate");
+	ob_world_sphere(&(*s)->world, 1, .5, ob_v3(3, 0, .6));
+	little_open(l, *s);
+	little_run(l, 5);
+}
+
+static void close_two(little_scene *s, little_universe *l)
+{
+	little_close(l);
+	free(s);
+}
+
+static bool exchange(ob_peers *p, ob_universe *u, ob_mail *mail)
+{
+	static const uint64_t words[3] = { 1, 2, 3 };
+	mail->used = 0;
+	CHECK(ob_mail_append(mail, words, sizeof words));
+	return ob_peers_exchange(p, u, OB_PHASE_ISLANDS, ob_peers_digest(u, OB_PHASE_ISLANDS), mail);
+}
+
+static void check_mail(void)
+{
+	little_scene *s;
+	little_universe l;
+	echo wire = { .calls = 0 };
+	ob_peers p = { 0, 2, gather, &wire, false };
+	ob_mail mail = { 0 };
+	open_two(&s, &l);
+	const uint64_t both[6] = { 1, 2, 3, 1, 2, 3 };
+	CHECK(exchange(&p, l.u, &mail) && mail.used == sizeof both && memcmp(mail.bytes, both, sizeof both) == 0);
+	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_OK && wire.calls == 1);
+	ob_mail_finish(&mail);
+	close_two(s, &l);
+}
+
+// A digest that differs, then the object in which the ranks differ: each tells all of its objects, in words.
+static void check_difference(size_t place, const char *named)
+{
+	little_scene *s;
+	little_universe l;
+	echo wire = { .wrong = { 1 + 2 * sizeof(uint64_t), place } };
+	ob_peers p = { 0, 2, gather, &wire, false };
+	ob_mail mail = { 0 };
+	open_two(&s, &l);
+	CHECK(!exchange(&p, l.u, &mail) && ob_step_failed(l.u, NULL) == OB_STEP_DAMAGED);
+	const char *text = ob_universe_step_data(l.u)->count->blamed_for;
+	CHECK(strstr(text, "rank 1") && strstr(text, "step 6") && strstr(text, named));
+	ob_mail_finish(&mail);
+	close_two(s, &l);
+}
+
+static void check_digest(void)
+{
+	little_scene *s;
+	little_universe l;
+	open_two(&s, &l);
+	const uint64_t before = ob_peers_digest(l.u, OB_PHASE_ISLANDS);
+	CHECK(ob_universe_step_data(l.u)->count->islands > 0 && ob_peers_digest(l.u, OB_PHASE_ISLANDS) == before);
+	ob_motion m = *ob_newest_motion(l.u, CRATE);
+	m.v.z = nextafter(m.v.z, 1);
+	ob_publish_motion(l.u, CRATE, &m);
+	CHECK(ob_peers_digest(l.u, OB_PHASE_ISLANDS) != before);
+	close_two(s, &l);
+}
+
+// Who leaves says so once; who hears it leaves, too, and says nothing more.
+static void check_leaving(void)
+{
+	little_scene *s;
+	little_universe l;
+	echo wire = { .calls = 0 };
+	ob_peers p = { 0, 2, gather, &wire, false };
+	ob_mail mail = { 0 };
+	open_two(&s, &l);
+	ob_peers_leave(&p);
+	ob_peers_leave(&p);
+	CHECK(wire.calls == 1);
+	wire = (echo){ .leaves = true };
+	p.parted = false;
+	CHECK(!exchange(&p, l.u, &mail) && ob_step_failed(l.u, NULL) == OB_STEP_LEFT && p.parted);
+	ob_peers_leave(&p);
+	CHECK(wire.calls == 1);
+	ob_mail_finish(&mail);
+	close_two(s, &l);
+}
+
+static void check_joining(void)
+{
+	little_scene *s;
+	little_universe l;
+	ob_error e;
+	echo same = { .calls = 0 };
+	ob_peers p = { 0, 2, gather, &same, false };
+	open_two(&s, &l);
+	CHECK(ob_peers_join(&p, l.u, &e) && !p.parted);
+	static const char *const wrong[] = { "version", "workers", "settings", "scene", "bits" };
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+		echo other = { .wrong = { 1 + i * sizeof(uint64_t) } };
+		p = (ob_peers){ 0, 2, gather, &other, false };
+		CHECK(!ob_peers_join(&p, l.u, &e) && strstr(e.text, "rank 1") && strstr(e.text, wrong[i]) && p.parted);
+	}
+	close_two(s, &l);
+}
+
+int main(void)
+{
+	check_mail();
+	check_difference(1 + CRATE * sizeof(uint64_t), "object \"crate\"");
+	check_difference(0, "otherwise");
+	check_digest();
+	check_leaving();
+	check_joining();
+	return check_end();
+}
