@@ -50,6 +50,7 @@ typedef struct ob_batch {
 	unsigned impact; // lanes whose impulses jumped in this substep: not to be extrapolated
 	unsigned elastic; // lanes with restitution
 	unsigned isolated; // lanes whose bodies are in no other contact
+	unsigned hit; // lanes with a body that was hit within the substep: at its start it was not as its rows say
 	unsigned turning; // lanes whose geometry turns within the substep
 	unsigned slides; // lanes whose friction was at its limit in the last iteration
 	unsigned sweeps; // in the last iteration

@@ -605,7 +605,8 @@ PER_KIND void write_changes(const ob_batch *b, ob_batch_kind kind, bool jacobi, 
 // How far each gap may close in the substep, as a velocity. The points of a resting contact are each where rounding
 // left them, and would take turns for ever to close what is left: they stay. Restitution is exact in time, so an
 // elastic point must not be stopped early: a body that falls freely closes less than its final velocity says, by half
-// of what it gains. A point at the surface that does not leave has no such way to fall.
+// of what it gains. A point at the surface that does not leave has no such way to fall. Where nothing else mends it, a
+// point that opens now may close as fast again: what pushes it then, over the substep, does no work.
 PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, const ob_body_row *v,
 		       const ob_body_row *d)
 {
@@ -635,6 +636,14 @@ PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteratio
 	for (int i = 0; i < points_of(kind); i++)
 		b->bias[i] = (lanes)(free[i] & (lane_mask)lanes_max(b->bias[i], lanes_of(0))) / h +
 			     (lanes)(turning & (lane_mask)b->turn[i]);
+	const unsigned alone = b->isolated & ~b->hit;
+	if (!alone)
+		return;
+	lanes va[6], vb[6], now[4];
+	gather_both(b, v, va, vb);
+	normal_velocities(b, kind, va, vb, now);
+	for (int i = 0; i < points_of(kind); i++)
+		b->bias[i] = lanes_select(lanes_mask(alone), lanes_max(b->bias[i], now[i]), b->bias[i]);
 }
 
 // The square of the most that a row's velocity would change (m/s) if its impulse alone did.

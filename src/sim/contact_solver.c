@@ -24,7 +24,7 @@ static const int max_settling_rounds = 32; // in a partial substep
 static const uint32_t max_settling_iterations = 512, max_failures = 4; // .. and of direct solves
 
 static const double resting_gap = 1e-7; // m: a point that presses keeps its distance from the surface, if that is less
-static const double turning_gap = 1e-5; // m: the same where the geometry turns
+static const double turning_gap = 3e-6; // m: the same where the geometry turns
 
 static const double impact_threshold = .1; // m/s: faster changes are impacts and not extrapolated by the warm start
 

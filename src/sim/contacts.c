@@ -467,12 +467,13 @@ static void order_batches(ob_island_work *w)
 // Notes which pairs touch nothing else, and into each lane how many contacts its bodies have.
 static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 {
-	b->isolated = 0;
+	b->isolated = b->hit = 0;
 	for (int l = 0; l < OB_LANES; l++) {
 		const ob_body *m[2] = { &w->body[b->body_a[l]], &w->body[b->body_b[l]] };
 		bool isolated =
 			(m[0]->inv_mass == 0 || m[0]->in_reach <= 1) && (m[1]->inv_mass == 0 || m[1]->in_reach <= 1);
 		b->isolated |= (unsigned)isolated << l & b->live;
+		b->hit |= (unsigned)(m[0]->hit > 0 || m[1]->hit > 0) << l;
 		if (jacobi) {
 			lanes_put(&b->ka, l, ob_max(1, m[0]->contacts));
 			lanes_put(&b->kb, l, ob_max(1, m[1]->contacts));

@@ -58,7 +58,7 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	    (b->surface && ob_norm2(ob_row_angular(w->v[contact->b])) > 0))
 		return false; // of the first order, but for what is carried
 	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change(w, 0) &&
-	       load_of(w, contact) > 0 &&
+	       (load_of(w, contact) > 0 || ob_contact_gap(w, contact) < loose_gap * w->unit.length) &&
 	       ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness);
 }
 
@@ -168,8 +168,8 @@ static double turned(double now, double start, double impulse)
 	return start * impulse < 0 || fabs(start) > fabs(now - start) ? now - start : now;
 }
 
-// Sets what turning adds to each row. At the start, the geometry lay between the one before and this one; a point that
-// is new moved with its bodies.
+// Sets what turning adds to each row. A point that opens at the midpoint may come back as fast, so no push on it does
+// work. At the start, the geometry lay between the one before and this one; a point that is new moved with its bodies.
 static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geometry *old)
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
@@ -188,10 +188,11 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		ob_vec3 rb0 = k < 0 ? ob_madd(rb, -.5 * w->h, ob_cross(wb, rb)) : between(old->arm_b[k], rb, share);
 		ob_vec3 now = ob_sub(velocity_at(va, wa, ra), velocity_at(vb, wb, rb));
 		ob_vec3 start = ob_sub(velocity_at(va, wa0, ra0), velocity_at(vb, wb0, rb0));
-		bool held = b->impulse[j][l] > 0 && b->gap[j][l] < loose_gap * w->unit.length;
+		const double opens = ob_dot(n, now), added = opens - ob_dot(start_n, start);
+		const bool pressed = b->impulse[j][l] > 0, held = pressed && b->gap[j][l] < loose_gap * w->unit.length;
 		held_points += held;
-		most = held ? ob_max(most, fabs(ob_dot(n, now) - ob_dot(start_n, start))) : most;
-		b->turn[j][l] = held ? turned(ob_dot(n, now), ob_dot(start_n, start), b->impulse[j][l]) : 0;
+		b->turn[j][l] = ob_max(opens, held ? added : 0);
+		most = ob_max(most, ob_max(b->turn[j][l], pressed ? fabs(added) : 0));
 		slide = ob_madd(slide, part, now);
 		slide_start = ob_madd(slide_start, part, start);
 	}

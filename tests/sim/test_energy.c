@@ -69,7 +69,8 @@ static little_scene *pyramid(int rows, uint32_t substeps)
 	ob_world_ground(&s->world);
 	for (int row = 0; row < rows; row++)
 		for (int i = 0; i < rows - row; i++)
-			ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5), ob_v3(0, 1.05 * (i - .5 * (rows - row - 1)), .5 + row));
+			ob_world_box(&s->world, 1000, ob_v3(.5, .5, .5),
+				     ob_v3(0, 1.05 * (i - .5 * (rows - row - 1)), .5 + row));
 	return s;
 }
 
@@ -81,9 +82,76 @@ static void report(const char *what, uint32_t substeps, growth g)
 	CHECK(g.net <= 1e-9);
 }
 
+// What goes over an edge turns about it, opens again, or leaves: whatever comes first, the edge's push does no work.
+static void test_edges(double friction)
+{
+	double most = 0;
+	for (uint64_t seed = 1; seed <= 20; seed++) {
+		little_scene *s = little_scene_new();
+		uint64_t at = seed;
+		ob_world_box(&s->world, 0, ob_v3(.4, .4, .2), ob_v3(0, 0, -.2));
+		const double x = within(&at, .35, .45), y = within(&at, .35, .45), z = within(&at, .1, .3);
+		ob_world_body o = ob_world_sphere(&s->world, 1, .1, ob_v3(x, y, z));
+		o.state->v = ob_v3(within(&at, -.3, .3), within(&at, -.3, .3), 0);
+		ob_world_material(&s->world, friction, 0);
+		most = fmax(most, watch(s, 1, 9.81 * .5).since);
+	}
+	printf("spheres over an edge, friction %g: %.1e since the least\n", friction, most);
+	CHECK(most <= 1e-9);
+}
+
+// m, of the corners: the second lowest's height over the lowest's
+static double between_lowest(const ob_state *x, ob_vec3 half, double *lowest)
+{
+	const ob_mat3 r = ob_quat_matrix(x->pose.q);
+	double second = *lowest = INFINITY;
+	for (int i = 0; i < 8; i++) {
+		const ob_vec3 c = ob_v3(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z);
+		const double z = x->pose.p.z + ob_rotate(&r, c).z;
+		second = fmin(second, fmax(z, *lowest));
+		*lowest = fmin(*lowest, z);
+	}
+	return second - *lowest;
+}
+
+// A box falls from one corner, which slides over smooth ground: until another one comes down, nothing is won.
+static void test_smooth_corner(void)
+{
+	double most = 0;
+	for (uint64_t seed = 1; seed <= 20; seed++) {
+		little_scene *s = little_scene_new();
+		little_universe l;
+		uint64_t at = seed;
+		double lowest;
+		ob_world_ground(&s->world);
+		const ob_vec3 half = ob_v3(within(&at, .2, .5), within(&at, .2, .5), within(&at, .2, .5));
+		ob_world_body o = ob_world_box(&s->world, 10, half, ob_v3(0, 0, 0));
+		o.state->pose.q = random_attitude(&at);
+		between_lowest(o.state, half, &lowest);
+		o.state->pose.p.z = -lowest;
+		ob_world_material(&s->world, 0, 0);
+		little_open(&l, s);
+		double least = little_energy(&l);
+		ob_state now = little_state(&l, 1);
+		for (int step = 0; step < 60 && between_lowest(&now, half, &lowest) > .1; step++) {
+			little_run(&l, 1);
+			now = little_state(&l, 1);
+			most = fmax(most, (little_energy(&l) - least) / (10 * 9.81 * .5));
+			least = fmin(least, little_energy(&l));
+		}
+		little_close(&l);
+		free(s);
+	}
+	printf("boxes that fall from a corner on smooth ground: %.1e since the least\n", most);
+	CHECK(most <= 1e-9);
+}
+
 int main(void)
 {
 	test_recovery();
+	test_edges(0);
+	test_edges(.5);
+	test_smooth_corner();
 	for (uint32_t substeps = 4; substeps <= 8; substeps *= 2) {
 		report("stack of 10", substeps, watch(stack(10, 0, substeps), 10, 1000 * 9.81 * 50));
 		report("stack of 40", substeps, watch(stack(40, 0, substeps), 10, 1000 * 9.81 * 800));
