@@ -110,6 +110,24 @@ static void land_point(double gap, double rate, double most, double tolerance, d
 		*least = t, *lands = touches && rate < 0;
 }
 
+// The same of a box's corners, when the first one does: side by side, for which of them rise and which come down nobody
+// can foretell. One that rises and never falls has a quotient by zero, which is no less than anything.
+static double land_corners(const double *gap, const double *rate, double most, double tolerance, bool *lands)
+{
+	enum { CORNERS = 8 };
+	double t[CORNERS], least = INFINITY;
+	for (int k = 0; k < CORNERS; k++) {
+		const bool falls = rate[k] < 0;
+		const double left = (gap[k] <= tolerance) & (!falls | (gap[k] < 0)) ? 0 : gap[k];
+		const double root = sqrt(rate[k] * rate[k] + 2 * most * left);
+		t[k] = (falls ? 2 * left : rate[k] + root) / (falls ? root - rate[k] : most);
+	}
+	for (int k = 0; k < CORNERS; k++)
+		if (t[k] < least)
+			least = t[k], *lands = gap[k] <= tolerance && rate[k] < 0;
+	return least;
+}
+
 // For how long no point of the outline lands, at least (s); *lands: one does then. height and speed: of the centre over
 // the plane. No point falls faster than with the acceleration "most".
 static double advance(const ob_flier *f, const outline *h, ob_vec3 n, double s, double height, double speed,
@@ -139,13 +157,13 @@ static double advance(const ob_flier *f, const outline *h, ob_vec3 n, double s, 
 	}
 	if (h->corners)
 		return least;
+	double gap[8], rate[8];
 	for (int k = 0; k < 8; k++) {
 		double x = k & 1 ? 1 : -1, y = k & 2 ? 1 : -1, z = k & 4 ? 1 : -1;
-		double gap = height + x * up.x + y * up.y + z * up.z;
-		double rate = speed + x * rise.x + y * rise.y + z * rise.z;
-		land_point(gap, rate, most, tolerance, &least, lands);
+		gap[k] = height + x * up.x + y * up.y + z * up.z;
+		rate[k] = speed + x * rise.x + y * rise.y + z * rise.z;
 	}
-	return least;
+	return land_corners(gap, rate, most, tolerance, lands);
 }
 
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until)
