@@ -22,26 +22,60 @@ static uint64_t mixed(uint64_t sum, uint64_t word)
 	return sum ^ sum >> 29;
 }
 
-static uint64_t motion_digest(const ob_motion *m)
+// Of whole words
+static uint64_t digest_words(const void *words, size_t bytes)
 {
-	uint64_t word[sizeof *m / sizeof(uint64_t)], sum = 0;
-	memcpy(word, m, sizeof word);
-	for (size_t i = 0; i < sizeof word / sizeof *word; i++)
-		sum = mixed(sum, word[i]);
+	uint64_t word, sum = 0;
+	for (size_t at = 0; at + sizeof word <= bytes; at += sizeof word) {
+		memcpy(&word, (const char *)words + at, sizeof word);
+		sum = mixed(sum, word);
+	}
 	return sum;
 }
 
-static uint64_t digest_islands(const ob_universe *u, uint64_t sum)
+static uint64_t motion_digest(const ob_motion *m)
+{
+	return digest_words(m, sizeof *m);
+}
+
+// A damaged universe is read here, too: nothing in it is followed unchecked.
+
+static uint32_t islands_of(const ob_step_data *data)
+{
+	const uint32_t chunks = data->count->chunks, islands = chunks < data->objects_max ? data->chunk[chunks] : 0;
+	return islands < data->objects_max ? islands : data->objects_max;
+}
+
+// The k-th of an island's pairs, and how it touches before the step; NULL: damaged.
+static const ob_pair_key *pair_of(const ob_universe *u, const ob_island *is, uint32_t k, uint64_t *digest)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t islands = data->chunk[data->count->chunks];
-	for (uint32_t i = 0; i < islands; i++) {
-		const ob_island *is = &data->island[i];
-		sum = mixed(sum, (uint64_t)is->members << 32 | is->pairs);
-		for (uint32_t k = 0; k < is->members; k++) {
-			const uint32_t id = data->member[is->first_member + k];
-			sum = mixed(mixed(sum, id), motion_digest(ob_newest_motion(u, id)));
-		}
+	const uint32_t at = is->first_pair + k, pair = at < data->pairs_max ? data->island_pair[at] : UINT32_MAX;
+	if (pair >= ob_pairs_end(data))
+		return NULL;
+	const ob_pair_key *key = &data->pair[pair];
+	const bool kept = key->record < data->count->records_used && key->record < data->pairs_max;
+	const ob_pair_state *before = kept ? ob_pair_before(&data->record[key->record], ob_step_count(u)) : NULL;
+	*digest = before ? digest_words(before, sizeof *before) : 0;
+	return ob_object_in_range(data, key->a) && ob_object_in_range(data, key->b) ? key : NULL;
+}
+
+static uint64_t digest_island(const ob_universe *u, const ob_island *is, uint64_t sum)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	sum = mixed(sum, (uint64_t)is->members << 32 | is->pairs);
+	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++) {
+		const uint32_t id = data->member[is->first_member + k];
+		sum = mixed(sum, id);
+		if (ob_object_in_range(data, id))
+			sum = mixed(sum, motion_digest(ob_newest_motion(u, id)));
+	}
+	for (uint32_t k = 0; k < is->pairs; k++) {
+		uint64_t touch;
+		const ob_pair_key *key = pair_of(u, is, k, &touch);
+		if (!key)
+			break;
+		sum = mixed(mixed(sum, (uint64_t)key->a << 32 | key->b), touch);
 	}
 	return sum;
 }
@@ -54,7 +88,9 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
 	uint64_t sum = mixed(mixed(queries, data->count->pairs), ob_checks_count(data));
 	for (uint32_t i = 0; i < queries; i++)
 		sum = mixed(sum, list[i]);
-	return phase == OB_PHASE_ISLANDS ? digest_islands(u, sum) : sum;
+	for (uint32_t i = 0; phase == OB_PHASE_ISLANDS && i < islands_of(data); i++)
+		sum = digest_island(u, &data->island[i], sum);
+	return sum;
 }
 
 // ---- where ranks differ
@@ -72,6 +108,24 @@ static uint32_t find_object(const char *all, const size_t *at, uint32_t rank)
 	return OB_NO_OBJECT;
 }
 
+// Of each object how it moves, and how it touches others where it is about to be solved.
+static void digest_each(const ob_universe *u, uint64_t *of, uint32_t ids)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t islands = ob_gate_phase(u) == OB_PHASE_ISLANDS ? islands_of(data) : 0;
+	uint64_t touch;
+	for (uint32_t id = 0; id < ids; id++)
+		of[id] = motion_digest(ob_newest_motion(u, id));
+	for (uint32_t i = 0; i < islands; i++)
+		for (uint32_t k = 0; k < data->island[i].pairs; k++) {
+			const ob_pair_key *key = pair_of(u, &data->island[i], k, &touch);
+			if (!key)
+				return;
+			of[key->a] += touch;
+			of[key->b] += touch;
+		}
+}
+
 // All ranks come here together, for all have seen the same messages: each tells the others about every object.
 static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 {
@@ -81,8 +135,8 @@ static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 	char text[OB_STEP_BLAME_MAX];
 	uint32_t id = OB_NO_OBJECT;
 	uint64_t *mine = calloc(ids + 1, sizeof *mine);
-	for (uint32_t i = 0; mine && i < ids; i++)
-		mine[i] = motion_digest(ob_newest_motion(u, i));
+	if (mine)
+		digest_each(u, mine, ids);
 	const char *all = p->gather(p->wire, mine, mine ? ids * sizeof *mine : 0, &at);
 	free(mine);
 	if (all)

@@ -13,7 +13,8 @@
 #include "sim/sim.h"
 #include "table/outbox.h"
 
-// What the phase begins with, before any of it is committed: who is to be solved, from which motions, or asked.
+// What the phase begins with, before any of it is committed: who is to be solved, from which motions and contacts, or
+// asked.
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
 // Replaces the mail of this rank's simulators by that of all. false: the others are elsewhere, or one has left, and the
 // step has failed.

@@ -140,9 +140,9 @@ typedef struct ob_index_cell {
 	uint32_t before, after; // 1 + its neighbours in the list of all objects of that class; 0 = none
 } ob_index_cell;
 
-// The areas, as pointers into this process's mapping (made once per process by the table module).
 enum { OB_STEP_BLAME_MAX = 200 }; // bytes of what a worker is blamed for
 
+// The areas, as pointers into this process's mapping (made once per process by the table module).
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {

@@ -83,6 +83,20 @@ class Ranks(program.Case):
 				self.assertIn("rank 2", done.stderr)
 				self.assertIn(said, done.stderr)
 
+	def test_no_wrong_result(self):
+		"""Where simulators of one rank write what they should not, the run ends with an error, or in the right bits."""
+		words = [program.scene("gas"), "--duration", "2", "--workers", "1", "--isolation", "process", "--measure", "end",
+			"--json", "-"]
+		right, ended = self.hash_of((2, words)), 0
+		for seed in range(1, 6):
+			done = run((1, words), (1, [*words, "--fault", f"scribble:p=.02,seed={seed}"]))
+			if done.returncode:
+				ended += 1
+				self.assertRegex(done.stderr, "is of rank 1, which|has left the run|was killed by|interrupted")
+			else:
+				self.assertEqual(json.loads(done.stdout)["state_hash"], right)
+		self.assertGreater(ended, 0)
+
 	def test_a_death_ends_all(self):
 		words = [program.scene("gas"), "--duration", program.FOR_EVER, "--workers", "1"]
 		running = subprocess.Popen(command((3, words)), env=RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
