@@ -140,13 +140,13 @@ void ob_surfaces_begin(ob_sim *s)
 static const double unnoticed_share = 1e-9; // of gravity: what speeds up less along the contact goes evenly
 static const double sliding_share = .999; // of its bound: a smaller friction impulse holds
 
-// s: until the slip at the surface's contact is 0
+// s: until the slip at the surface's contact is 0, where friction then turns round
 static double reversal(const ob_island_work *w, const ob_surface *x)
 {
 	const ob_contact *c = contact_of(w, x);
 	const uint32_t row = carried_row(w, x), l = c->lane % OB_LANES;
 	const ob_body *own = &w->body[x->row], *body = &w->body[row];
-	if (c->lane == OB_NO_LANE || !(load_of(w, x) > 0))
+	if (c->lane == OB_NO_LANE || !(c->mu * load_of(w, x) > 0))
 		return INFINITY;
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
 	const double bound = sliding_share * c->mu * load_of(w, x), f[2] = { b->impulse[4][l], b->impulse[5][l] },
