@@ -36,8 +36,8 @@ typedef struct change_of_velocity {
 	ob_vec3 v, w;
 } change_of_velocity;
 
-// Nearly all sets are of one point. For them the compiler makes code of its own from the same text, in which the numbers
-// of points and rows are constants.
+// Nearly all sets are of one point. For them the compiler makes code of its own from the same text, in which the
+// numbers of points and rows are constants.
 #define PER_SIZE static inline __attribute__((always_inline))
 
 // The set of points that approach.
