@@ -132,13 +132,6 @@ const char *ob_universe_lost(const ob_universe *u)
 	return NULL;
 }
 
-// Only what a signal handler may call.
-static void say(const char *text)
-{
-	ssize_t ignored = write(STDERR_FILENO, text, strlen(text));
-	(void)ignored;
-}
-
 static const ob_universe *find(const char *address)
 {
 	for (int i = 0; i < TRACKED; i++) {
@@ -149,22 +142,34 @@ static const ob_universe *find(const char *address)
 	return NULL;
 }
 
+// Only what a signal handler may call; in one piece, for others may be writing.
+static void say_missing(const ob_universe *u)
+{
+	char line[512];
+	const char *why = ob_universe_lost(u);
+	char *end = stpcpy(line, "obsim: the memory of universe \"");
+	end = stpncpy(end, u->header.name, OB_NAME_MAX);
+	end = stpcpy(stpcpy(end, "\" is not all there: "), why ? why : "a page of it cannot be read");
+	*end++ = '\n';
+	ssize_t ignored = write(STDERR_FILENO, line, (size_t)(end - line));
+	(void)ignored;
+}
+
+// Several threads may come here at once: the first says it and ends them all.
 static void on_missing_page(int number, siginfo_t *info, void *context)
 {
+	static int ending;
 	(void)context;
 	const ob_universe *u = find(info->si_addr);
 	if (!u) {
 		signal(number, SIG_DFL); // the instruction is tried again, and ends the process
 		return;
 	}
-	const char *why = ob_universe_lost(u);
+	while (__atomic_exchange_n(&ending, 1, __ATOMIC_SEQ_CST))
+		pause();
 	if (before_end)
 		before_end();
-	say("obsim: the memory of universe \"");
-	say(u->header.name);
-	say("\" is not all there: ");
-	say(why ? why : "a page of it cannot be read");
-	say("\n");
+	say_missing(u);
 	_exit(1);
 }
 

@@ -3,6 +3,7 @@
 //
 // Only with a small /dev/shm of its own: PRIVATE_SHM=size=32m tests/private_shm.py PROGRAM.
 #include <fcntl.h>
+#include <pthread.h>
 #include <string.h>
 #include <sys/statvfs.h>
 
@@ -81,6 +82,46 @@ static void check_harm(ob_isolation isolation, uint32_t workers, void (*harm)(vo
 	unlink("/dev/shm/filler");
 }
 
+enum { READERS = 8, TIMES = 20 };
+static pthread_barrier_t together;
+
+static void *read_missing_page(void *universe)
+{
+	const volatile ob_passport *p = ob_passport_of(universe, 1);
+	pthread_barrier_wait(&together);
+	return (void *)(uintptr_t)p->id;
+}
+
+// Threads that miss pages at once say so once.
+static void test_many_miss(void)
+{
+	for (int i = 0; i < TIMES; i++) {
+		char text[2000];
+		int status;
+		FILE *said = tmpfile();
+		pid_t reader = fork();
+		if (reader == 0) {
+			pthread_t thread[READERS];
+			ob_universe *u = make_universe("test-room", 2);
+			dup2(fileno(said), STDERR_FILENO);
+			ob_pages_guard(NULL);
+			cut_short();
+			pthread_barrier_init(&together, NULL, READERS);
+			for (int k = 0; k < READERS; k++)
+				pthread_create(&thread[k], NULL, read_missing_page, u);
+			for (int k = 0; k < READERS; k++)
+				pthread_join(thread[k], NULL);
+			_exit(2);
+		}
+		CHECK(waitpid(reader, &status, 0) == reader && WIFEXITED(status) && WEXITSTATUS(status) == 1);
+		rewind(said);
+		text[fread(text, 1, sizeof text - 1, said)] = 0;
+		CHECK(strstr(text, "cut it short") && strchr(text, '\n') == text + strlen(text) - 1);
+		fclose(said);
+		unlink("/dev/shm/obsim.test-room");
+	}
+}
+
 // There is not even room to begin.
 static void test_start(void)
 {
@@ -117,6 +158,7 @@ int main(void)
 	}
 	adopt_orphans();
 	test_start();
+	test_many_miss();
 	test_reserved();
 	for (int i = 0; i < 2; i++) {
 		const ob_isolation isolation = i ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD;
