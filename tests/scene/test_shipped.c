@@ -121,13 +121,15 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 14);
+	CHECK(files() == 15);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
 	check_count("gas", NULL, 206, false);
 	check_count("gas", "n=1000", 1006, false);
 	check_count("stack", NULL, 11, false);
+	check_count("arch", NULL, 21, false);
+	check_count("arch", "n=40", 41, false);
 	check_count("pyramid", NULL, 56, false);
 	check_count("pyramid", "rows=15", 121, false);
 	check_count("pile", NULL, 217, false);
