@@ -273,5 +273,5 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 	}
 	out->points = 0;
 	out->separation = apart;
-	return INFINITY;
+	return t <= h && margin == tolerance ? t : INFINITY;
 }

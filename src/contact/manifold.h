@@ -56,7 +56,8 @@ typedef struct ob_manifold_finder {
 // collision tests: both shapes move at their constant v and turn freely. Returns the first time in [0, h] (s) at which
 // they are within tolerance (m), and in out the points up to margin (m) as of that time: what turns about the first
 // point to touch brings the next ones down within the same step. Infinity if they do not touch; then out has no points,
-// and separation is as of now. speed: bound of the closing speed of any two points (m/s) until then.
+// and separation is as of now. So it is where margin is tolerance and too many advances would be needed, beside what turns
+// fast: then the time is that until which they certainly do not touch. speed: bound of the closing speed of any two points (m/s) until then.
 double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out);
 
