@@ -9,12 +9,20 @@
 #define OB_WIRE_MODULE "obsim-mpi.so"
 #define OB_WIRE_MODULE_ENTRY "ob_wire_mpi"
 
+// Of each rank's share of an exchange: how long it is, and its first bytes. So what is short needs one message, not
+// two; as long as Open MPI sends at once, without asking the receiver.
+enum { OB_WIRE_FIRST = 4000 };
+typedef struct ob_wire_first {
+	uint64_t bytes; // of all that it has to say
+	char text[OB_WIRE_FIRST]; // the first of them
+} ob_wire_first;
+
 typedef struct ob_wire_module {
 	bool (*open)(uint32_t *rank, uint32_t *ranks);
-	// size[r] := of each rank, the bytes that it has
-	void (*sizes)(size_t mine, size_t *size);
-	// From all into "all", where that of rank r begins at at[r] and ends at at[r + 1]
-	void (*bytes)(const void *mine, char *all, const size_t *at);
+	// all[r] := what rank r has in "mine"
+	void (*first)(const ob_wire_first *mine, ob_wire_first *all);
+	// From all into "all": "bytes[r]" of rank r, a multiple of 8, to at[r], likewise. mine: this one's
+	void (*rest)(const void *mine, char *all, const size_t *at, const size_t *bytes);
 	void (*close)(void);
 } ob_wire_module;
 

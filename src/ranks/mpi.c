@@ -22,34 +22,48 @@ static bool open_mpi(uint32_t *rank, uint32_t *all)
 	return counts && offsets;
 }
 
-// MPI polls while it waits; here only for a moment, for the core may be a simulator's.
+static double seconds(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// MPI polls while it waits; here only for a moment, for the core may be a simulator's, and then after naps, each a
+// share of what it has waited for: so a wait takes no more longer than that, and few wakings however long it is.
 static void wait_for(MPI_Request *r)
 {
-	enum { POLLS = 200, NAP_NS = 20000 };
+	static const double poll = 30e-6, shortest = 20e-6, longest = 2e-3, share = .125; // s
+	const double begun = seconds();
 	int done = 0;
-	for (int i = 0; !done; i++) {
+	for (;;) {
 		MPI_Test(r, &done, MPI_STATUS_IGNORE);
-		if (!done && i >= POLLS)
-			nanosleep(&(struct timespec){ .tv_nsec = NAP_NS }, NULL);
+		if (done)
+			return;
+		const double waited = seconds() - begun, nap = share * waited;
+		if (waited > poll)
+			nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * (nap < shortest  ? shortest
+									       : nap > longest ? longest
+											       : nap)) },
+				  NULL);
 	}
 }
 
-static void gather_sizes(size_t mine, size_t *size)
+static void gather_first(const ob_wire_first *mine, ob_wire_first *all)
 {
 	MPI_Request r;
-	const uint64_t bytes = mine;
-	MPI_Iallgather(&bytes, 1, MPI_UINT64_T, size, 1, MPI_UINT64_T, MPI_COMM_WORLD, &r);
+	MPI_Iallgather(mine, sizeof *mine / 8, MPI_UINT64_T, all, sizeof *all / 8, MPI_UINT64_T, MPI_COMM_WORLD, &r);
 	wait_for(&r);
 }
 
-// In words of 8 bytes, of which a message has a whole number: so an int counts 16 GB.
-static void gather_bytes(const void *mine, char *all, const size_t *at)
+// In words of 8 bytes: so an int counts 16 GB.
+static void gather_rest(const void *mine, char *all, const size_t *at, const size_t *bytes)
 {
 	MPI_Request r;
 	int own;
 	MPI_Comm_rank(MPI_COMM_WORLD, &own);
 	for (int i = 0; i < ranks; i++) {
-		counts[i] = (int)((at[i + 1] - at[i]) / 8);
+		counts[i] = (int)(bytes[i] / 8);
 		offsets[i] = (int)(at[i] / 8);
 	}
 	MPI_Iallgatherv(mine, counts[own], MPI_UINT64_T, all, counts, offsets, MPI_UINT64_T, MPI_COMM_WORLD, &r);
@@ -63,8 +77,8 @@ static void close_mpi(void)
 	free(offsets);
 }
 
-_Static_assert(sizeof(size_t) == sizeof(uint64_t), "sizes go over the wire as they are");
+_Static_assert(sizeof(ob_wire_first) % 8 == 0, "it goes over the wire in words");
 
 extern const ob_wire_module ob_wire_mpi;
 __attribute__((visibility("default")))
-const ob_wire_module ob_wire_mpi = { open_mpi, gather_sizes, gather_bytes, close_mpi };
+const ob_wire_module ob_wire_mpi = { open_mpi, gather_first, gather_rest, close_mpi };

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "ranks/module.h"
 
@@ -9,7 +10,9 @@ struct ob_wire {
 	void *library;
 	const ob_wire_module *module;
 	uint32_t ranks;
+	ob_wire_first mine, *first; // [ranks]
 	size_t *at; // [ranks + 1]
+	size_t *rest_at, *rest; // [ranks]: behind the first bytes of each, where, how many
 	char *all;
 	size_t max;
 };
@@ -39,44 +42,98 @@ static bool load(ob_wire *w, ob_error *e)
 	return w->module || ob_fail(e, "%s is another obsim's: %s", OB_WIRE_MODULE, dlerror());
 }
 
-ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e)
+static ob_wire *create(uint32_t ranks)
+{
+	ob_wire *w = calloc(1, sizeof *w);
+	if (!w)
+		return NULL;
+	w->ranks = ranks;
+	w->first = calloc(ranks, sizeof *w->first);
+	w->at = calloc(ranks + 1, sizeof *w->at);
+	w->rest_at = calloc(ranks, sizeof *w->rest_at);
+	w->rest = calloc(ranks, sizeof *w->rest);
+	return w;
+}
+
+static void destroy(ob_wire *w)
+{
+	free(w->first);
+	free(w->at);
+	free(w->rest_at);
+	free(w->rest);
+	free(w->all);
+	free(w);
+}
+
+static bool join(ob_wire *w, const ob_ranks *ranks, ob_error *e)
 {
 	uint32_t rank, all;
-	ob_wire *w = calloc(1, sizeof *w);
-	if (w)
-		w->at = calloc(ranks->ranks + 1, sizeof *w->at);
-	if (!w || !w->at) {
-		free(w);
+	if (!w->first || !w->at || !w->rest_at || !w->rest)
+		return ob_fail(e, "out of memory");
+	if (!load(w, e))
+		return false;
+	if (!w->module->open(&rank, &all))
+		return ob_fail(e, "MPI does not start");
+	if (rank == ranks->rank && all == ranks->ranks)
+		return true;
+	w->module->close();
+	return ob_fail(e, "the launcher has said rank %u of %u, MPI says %u of %u", ranks->rank, ranks->ranks, rank,
+		       all);
+}
+
+ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e)
+{
+	ob_wire *w = create(ranks->ranks);
+	if (!w) {
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	w->ranks = ranks->ranks;
-	if (!load(w, e) || (!w->module->open(&rank, &all) && !ob_fail(e, "MPI does not start"))) {
-		free(w->at);
-		free(w);
-		return NULL;
-	}
-	if (rank == ranks->rank && all == ranks->ranks)
+	if (join(w, ranks, e))
 		return w;
-	ob_fail(e, "the launcher has said rank %u of %u, MPI says %u of %u", ranks->rank, ranks->ranks, rank, all);
-	ob_wire_close(w);
+	destroy(w);
 	return NULL;
+}
+
+// Room for what all have to say. false: there is no memory.
+static bool make_room(ob_wire *w)
+{
+	if (w->at[w->ranks] <= w->max)
+		return true;
+	const size_t max = 2 * w->at[w->ranks];
+	char *larger = realloc(w->all, max);
+	if (!larger)
+		return false;
+	w->all = larger;
+	w->max = max;
+	return true;
+}
+
+static size_t in_first(size_t bytes)
+{
+	return bytes < OB_WIRE_FIRST ? bytes : OB_WIRE_FIRST;
 }
 
 const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t **at)
 {
-	w->module->sizes(n, w->at + 1);
-	for (uint32_t r = 0; r < w->ranks; r++)
-		w->at[r + 1] += w->at[r];
-	if (w->at[w->ranks] > w->max) {
-		const size_t max = 2 * w->at[w->ranks];
-		char *larger = realloc(w->all, max);
-		if (!larger)
-			return NULL;
-		w->all = larger;
-		w->max = max;
+	bool more = false;
+	w->mine.bytes = n;
+	if (n)
+		memcpy(w->mine.text, mine, in_first(n));
+	w->module->first(&w->mine, w->first);
+	for (uint32_t r = 0; r < w->ranks; r++) {
+		const size_t bytes = w->first[r].bytes, first = in_first(bytes);
+		w->at[r + 1] = w->at[r] + bytes;
+		w->rest_at[r] = w->at[r] + first;
+		w->rest[r] = bytes - first;
+		more |= w->rest[r] > 0;
 	}
-	w->module->bytes(mine, w->all, w->at);
+	if (!make_room(w))
+		return NULL;
+	for (uint32_t r = 0; r < w->ranks; r++)
+		if (w->first[r].bytes)
+			memcpy(w->all + w->at[r], w->first[r].text, in_first(w->first[r].bytes));
+	if (more)
+		w->module->rest((const char *)mine + in_first(n), w->all, w->rest_at, w->rest);
 	*at = w->at;
 	return w->all;
 }
@@ -86,7 +143,5 @@ void ob_wire_close(ob_wire *w)
 	if (!w)
 		return;
 	w->module->close();
-	free(w->at);
-	free(w->all);
-	free(w);
+	destroy(w);
 }
