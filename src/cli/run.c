@@ -1,6 +1,7 @@
 // obsim run: one scene, from its file to frames, records and a report.
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <signal.h>
 #include <string.h>
@@ -22,6 +23,7 @@
 typedef struct run {
 	ob_run_request request;
 	ob_ranks ranks;
+	char own_checkpoint[PATH_MAX]; // of a rank that is not the first
 	ob_scene *scene;
 	ob_host *host;
 	ob_capture *capture; // NULL = no frames
@@ -131,6 +133,13 @@ static void keep_checkpoint(run *r)
 	r->kept = r->now.step;
 }
 
+// Of several ranks each keeps one from its first step on, for any may be left without the others.
+static bool is_checkpoint_due(const run *r)
+{
+	return r->checkpoints && r->now.step != r->kept && r->now.step % r->every == 0 &&
+	       (r->now.step > r->first || r->ranks.ranks > 1);
+}
+
 // How far of the way to the next boundary the clock lets it go
 static uint64_t keep_pace(run *r, uint64_t next)
 {
@@ -151,8 +160,7 @@ static bool step_through(run *r, ob_error *e)
 		return false;
 	for (;;) {
 		uint64_t next = next_boundary(r);
-		if (r->checkpoints && r->now.step % r->every == 0 && r->now.step > r->first && r->now.step != r->kept &&
-		    next != UINT64_MAX)
+		if (is_checkpoint_due(r) && next != UINT64_MAX)
 			keep_checkpoint(r);
 		if (next != UINT64_MAX)
 			ob_host_go(r->host, keep_pace(r, next));
@@ -390,6 +398,21 @@ static bool write_report(const run *r, const ob_report *p, ob_error *e)
 	return !q->json || write_json(q->json, p, e);
 }
 
+// Whether it is kept as it was left. Several ranks are left in the middle of a step, each in its own: there the last that
+// all have come to counts.
+static bool is_end_kept(const run *r, bool done, bool interrupted)
+{
+	return r->checkpoints && r->kept != r->now.step && (done || (interrupted && r->ranks.ranks < 2));
+}
+
+// Each rank for itself: nobody knows which of them are left.
+static void tell_of_checkpoint(const run *r)
+{
+	if (r->checkpoint_sums.written > 0)
+		ob_log_warn("rank %u: the run goes on from %g s with: obsim run --resume %s", r->ranks.rank,
+			    (double)r->kept * r->request.run.step_length, r->request.checkpoint);
+}
+
 // From the running host to its report. Returns an ob_exit.
 static int carry_out(run *r)
 {
@@ -399,7 +422,7 @@ static int carry_out(run *r)
 	bool ready = open_outputs(r, &e);
 	bool done = ready && step_through(r, &e);
 	bool interrupted = !done && ob_host_interrupted(r->host);
-	if (r->checkpoints && (done || interrupted) && r->kept != r->now.step)
+	if (is_end_kept(r, done, interrupted))
 		keep_checkpoint(r);
 	bool closed = close_outputs(r, &e_close);
 	ob_progress_end(progress);
@@ -413,6 +436,8 @@ static int carry_out(run *r)
 	// a sink that broke the run tells the same again when it is closed
 	if (!closed && (done || interrupted))
 		code = ob_command_fail(OB_EXIT_FAILED, e_close.text);
+	if (!done && closed && r->ranks.ranks > 1)
+		tell_of_checkpoint(r);
 	if (!r->observer.started)
 		return code;
 	ob_report *report = &(ob_report){ 0 };
@@ -449,8 +474,8 @@ static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 	return r->scene;
 }
 
-// One universe on several machines: simulators in processes that hand over what they find, an end where one dies, and
-// no more on this rank than that; what is made of the run is rank 0's.
+// One universe on several machines: simulators in processes that hand over what they find, an end where one dies, and on
+// this rank no more than that and its checkpoints; what is made of the run is rank 0's.
 static bool share(run *r, ob_ranks ranks, ob_error *e)
 {
 	ob_run_request *q = &r->request;
@@ -468,7 +493,13 @@ static bool share(run *r, ob_ranks ranks, ob_error *e)
 		return true;
 	q->name = NULL; // for the first may be on this machine
 	q->frames.wanted = q->explain = false;
-	q->record = q->json = q->series = q->trace = q->checkpoint = NULL;
+	q->record = q->json = q->series = q->trace = NULL;
+	if (q->checkpoint) { // its own, for the same reason
+		const int n = snprintf(r->own_checkpoint, sizeof r->own_checkpoint, "%s.%u", q->checkpoint, ranks.rank);
+		if (n < 0 || (size_t)n >= sizeof r->own_checkpoint)
+			return ob_fail(e, "--checkpoint: the name is too long");
+		q->checkpoint = r->own_checkpoint;
+	}
 	q->measure = OB_MEASURE_ENDS;
 	q->pace = INFINITY;
 	return true;

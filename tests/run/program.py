@@ -97,25 +97,25 @@ def alive(pid):
 		return False
 
 
+def comm(pid):
+	"""The name that the process goes by; "": it has ended."""
+	try:
+		with open(f"/proc/{pid}/comm") as f:
+			return f.read().rstrip("\n")
+	except OSError:
+		return ""
+
+
 def simulators(parent):
 	"""Ids of all simulators of this run that are processes of their own."""
-	found = []
-	for pid in processes(parent):
-		try:
-			with open(f"/proc/{pid}/comm") as f:
-				if f.read().startswith("sim "):
-					found.append(pid)
-		except OSError:
-			pass
-	return found
+	return [pid for pid in processes(parent) if comm(pid).startswith("sim ")]
 
 
 def fork_server(parent):
 	"""Id of the fork server of this run."""
 	for pid in processes(parent):
-		with open(f"/proc/{pid}/comm") as f:
-			if f.read() == "obsim-fork\n":
-				return pid
+		if comm(pid) == "obsim-fork":
+			return pid
 	raise AssertionError("no fork server")
 
 

@@ -1,8 +1,9 @@
 """One universe on several ranks, all of them on this machine: the bits of one process, files of rank 0 alone, and one error
-for all where a rank is different, or dies."""
+for all where a rank is different, or dies; then each of the others has a checkpoint, from which any number of ranks go on."""
 
 import json
 import os
+import random
 import signal
 import subprocess
 import tempfile
@@ -69,8 +70,9 @@ class Ranks(program.Case):
 			kept = os.path.join(folder, "kept")
 			done = run((2, [*words, "--duration", ".5", "--workers", "1", "--checkpoint", kept]))
 			self.assertEqual(done.returncode, 0, done.stderr)
-			more = ["--resume", kept, "--duration", "1", "--workers", "1", "--json", "-"]
-			self.assertEqual(self.hash_of((3, more)), expected)
+			for file in kept, kept + ".1":
+				more = ["--resume", file, "--duration", "1", "--workers", "1", "--json", "-"]
+				self.assertEqual(self.hash_of((3, more)), expected)
 
 	def test_refused(self):
 		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "1"]
@@ -99,34 +101,80 @@ class Ranks(program.Case):
 
 	def test_a_death_ends_all(self):
 		words = [program.scene("gas"), "--duration", program.FOR_EVER, "--workers", "1"]
-		running = subprocess.Popen(command((3, words)), env=RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-			stderr=subprocess.PIPE, text=True)
-		try:
-			os.kill(self.simulator_of(running.pid, "sim 1"), signal.SIGKILL)
-			_, said = running.communicate(timeout=program.PATIENCE)
-		finally:
-			running.kill()
+		running = self.start_stepping_ranks(words)
+		os.kill(self.process_of(self.ranks_of(running)[1], "sim 1"), signal.SIGKILL)
+		_, said = running.communicate(timeout=program.PATIENCE)
 		self.assertNotEqual(running.returncode, 0)
 		self.assertIn("was killed by SIGKILL", said)
 		self.assertIn("another rank has left the run", said)
 
-	def simulator_of(self, launcher, name):
-		end = time.monotonic() + program.PATIENCE
-		while time.monotonic() < end:
-			for pid in program.processes(launcher):
-				try:
-					with open(f"/proc/{pid}/comm", encoding="utf-8") as f:
-						if f.read().strip() == name and self.has_stepped(launcher):
-							return pid
-				except OSError:
-					pass
-			time.sleep(.05)
-		self.fail(f"{name} does not come")
+	def test_goes_on_after_a_death(self):
+		"""Whichever process of a rank is killed, at whatever moment: the run ends, nothing is left of it but checkpoints, and from
+		that of any other rank it comes to the same end. Real time passes, so that it has not ended before."""
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--sleeping", "off", "--measure", "end"]
+		right = program.report(*words, "--duration", "4", "--workers", "1")["state_hash"]
+		for victim, again in ("obsim", 2), ("obsim-fork", 4), ("sim 3", 3):
+			with self.subTest(victim=victim), tempfile.TemporaryDirectory() as folder:
+				kept = os.path.join(folder, "kept")
+				running = self.start_stepping_ranks([*words, "--duration", "4", "--pace", "1", "--workers", "1", "--checkpoint", kept,
+					"--every", ".1"])
+				time.sleep(random.uniform(0, 2))
+				ranks, below = self.ranks_of(running), program.processes(running.pid)
+				hit = random.randrange(3)
+				os.kill(self.process_of(ranks[hit], victim), signal.SIGKILL)
+				_, said = running.communicate(timeout=program.PATIENCE)
+				self.assertNotEqual(running.returncode, 0)
+				files = [kept, kept + ".1", kept + ".2"]
+				self.check_nothing_left(below)
+				# who is killed while it writes cannot take back what it has begun
+				self.assertLessEqual({os.path.join(folder, name) for name in os.listdir(folder)}, {*files, files[hit] + ".part"})
+				others = [file for file in files if file != files[hit]]
+				for file in others:
+					self.assertIn(f"obsim run --resume {file}\n", said)
+					self.assertEqual(program.call("inspect", file).returncode, 0)
+				self.assertEqual(self.hash_of((again, ["--resume", random.choice(others), "--workers", "1", "--json", "-"])), right)
+
+	def test_a_stopped_rank_delays(self):
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--sleeping", "off", "--duration", "2", "--measure", "end", "--json", "-"]
+		right = program.report(*words[:-2], "--workers", "1")["state_hash"]
+		running = self.start_stepping_ranks([*words, "--pace", "1", "--workers", "1"])
+		stopped = self.ranks_of(running)[1]
+		for number in signal.SIGSTOP, signal.SIGCONT:
+			for pid in stopped:
+				os.kill(pid, number)
+			time.sleep(3 if number == signal.SIGSTOP else 0)
+		out, said = running.communicate(timeout=program.PATIENCE)
+		self.assertEqual(running.returncode, 0, said)
+		self.assertEqual(json.loads(out)["state_hash"], right)
+
+	def start_stepping_ranks(self, words):
+		"""Three, as soon as each has made a step."""
+		running = subprocess.Popen(command((3, words)), env=RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+			stderr=subprocess.PIPE, text=True)
+		self.addCleanup(lambda: (running.poll() is None and running.kill(), running.wait(), running.stdout.close(), running.stderr.close()))
+		self.assertTrue(program.wait_until(lambda: self.have_stepped(running) or running.poll() is not None))
+		self.assertIsNone(running.poll(), "the run ended before it was looked at")
+		return running
 
 	@staticmethod
-	def has_stepped(launcher):
-		names = [f"obsim-{pid}" for pid in program.processes(launcher)]
+	def have_stepped(running):
+		names = [f"obsim-{pid}" for pid in program.processes(running.pid)]
 		return sum(program.steps(name) > 0 for name in names) == 3
+
+	@staticmethod
+	def ranks_of(running):
+		"""Of each rank its processes, the rank itself first; mpirun starts them in their order."""
+		first = [pid for pid in program.processes(running.pid) if program.comm(pid) == "obsim"]
+		return [[pid, *program.processes(pid)] for pid in sorted(first)]
+
+	def process_of(self, rank, name):
+		found = [pid for pid in rank if program.comm(pid) == name]
+		self.assertEqual(len(found), 1, name)
+		return found[0]
+
+	def check_nothing_left(self, below):
+		self.assertTrue(program.wait_until(lambda: not any(map(program.alive, below))))
+		self.assertEqual([pid for pid in below if os.path.exists(program.segment(f"obsim-{pid}"))], [])
 
 
 unittest.main()

@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""One universe on several ranks of this machine, for longer than the tests have time: does every run end in the bits of one process?
+
+    ranks.py OBSIM kills [N]     N times (50) a process of some rank is killed at some moment, and the run taken up again
+    ranks.py OBSIM stops [N]     N times (10) all processes of a rank are stopped for some seconds, and let go on
+    ranks.py OBSIM matrix        scenes, ranks, workers, isolation
+
+kills: 2 to 4 ranks of 1 or 2 workers; what is killed is the rank itself, its fork server, its arranger or a simulator. The run
+must end within seconds, no process, universe or other file be left, and each other rank have a checkpoint that is whole; one of
+them, drawn, is taken up by a drawn number of ranks. A run that is hit before it has kept its first checkpoint is begun anew.
+
+Needs mpirun. Exits with 1 if a hash is wrong, a run fails, or anything is left.
+"""
+
+import collections
+import glob
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scenes")
+RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}
+KILLED = {"falling_boxes": ["-D", "n=60", "--duration", "4"], "pile": ["--duration", ".5"], "machines": ["--duration", "2"],
+	"flock": ["--duration", "2"]}
+MATRIX = {"falling_boxes": ["-D", "n=1000", "--duration", "1"], "sparse": ["-D", "n=1000", "--duration", "1"],
+	"pile": ["--duration", "1"], "cradle": ["--duration", "2"], "flock": ["--duration", "2"], "machines": ["--duration", "2"]}
+PATIENCE = 600 # s, for one run
+
+
+def words_of(scenes, name):
+	return [os.path.join(FOLDER, name + ".lua"), *scenes[name], "--measure", "end", "--sleeping", "off"]
+
+
+def start(obsim, ranks, words):
+	"""The run's launcher, or the run itself."""
+	launcher = ["mpirun", "-n", str(ranks)] if ranks else []
+	return subprocess.Popen([*launcher, obsim, "run", *map(str, words), "--json", "-"], env=RANKS, stdin=subprocess.DEVNULL,
+		stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def hash_of(obsim, ranks, words):
+	out, said = start(obsim, ranks, words).communicate(timeout=PATIENCE)
+	return json.loads(out)["state_hash"] if out else said
+
+
+def stat(pid):
+	"""Its parent and its state; None: it is gone."""
+	try:
+		with open(f"/proc/{pid}/stat", encoding="utf-8") as f:
+			words = f.read().rpartition(")")[2].split()
+		return int(words[1]), words[0]
+	except OSError:
+		return None
+
+
+def name_of(pid):
+	try:
+		with open(f"/proc/{pid}/comm", encoding="utf-8") as f:
+			return f.read().strip()
+	except OSError:
+		return ""
+
+
+def below(parent):
+	"""All processes that descend from this one."""
+	children = collections.defaultdict(list)
+	for path in glob.glob("/proc/[0-9]*"):
+		pid = int(os.path.basename(path))
+		found = stat(pid)
+		if found:
+			children[found[0]].append(pid)
+	every, ahead = [], [parent]
+	while ahead:
+		more = children[ahead.pop()]
+		every += more
+		ahead += more
+	return every
+
+
+def ranks_of(launcher):
+	"""Of each rank its processes, the rank itself first; in the order of ranks."""
+	return [[pid, *below(pid)] for pid in sorted(p for p in below(launcher) if name_of(p) == "obsim")]
+
+
+def traces():
+	return {path for pattern in ("/dev/shm/*", "/tmp/ompi.*/*") for path in glob.glob(pattern)}
+
+
+def alive(pids):
+	return [pid for pid in pids if (stat(pid) or (0, "Z"))[1] != "Z"]
+
+
+def what_is_left(pids, before, folder, ranks, hit):
+	"""After a minute at most, for other runs come and go, too. Who is killed while it writes cannot take back what it has begun."""
+	kept = {file_of(folder, r) for r in range(ranks)} | {file_of(folder, hit) + ".part"}
+	end = time.monotonic() + 60
+	while True:
+		left = [*alive(pids), *(traces() - before), *(set(glob.glob(os.path.join(folder, "*"))) - kept)]
+		if not left or time.monotonic() > end:
+			return left
+		time.sleep(.01)
+
+
+def file_of(folder, rank):
+	return os.path.join(folder, f"run.{rank}" if rank else "run")
+
+
+def whole(obsim, path):
+	return subprocess.run([obsim, "inspect", path], capture_output=True, check=False).returncode == 0
+
+
+def kill_one(obsim, chance, name, took, folder):
+	"""Who was killed, after how many seconds the run had ended (s), what is wrong, and the checkpoint of a rank that was not hit;
+	None: it had ended before, or had not begun to step."""
+	ranks, workers, before = chance.randint(2, 4), chance.randint(1, 2), traces()
+	run = start(obsim, ranks, [*words_of(KILLED, name), "--workers", workers, "--checkpoint", file_of(folder, 0), "--every", ".1"])
+	time.sleep(chance.uniform(0, took[name]))
+	processes = ranks_of(run.pid)
+	if len(processes) < ranks or run.poll() is not None:
+		run.communicate(timeout=PATIENCE)
+		return None
+	hit, everyone = chance.randrange(ranks), below(run.pid)
+	victim = chance.choice(processes[hit])
+	who, at = name_of(victim), time.monotonic()
+	try:
+		os.kill(victim, signal.SIGKILL)
+	except ProcessLookupError:
+		pass
+	run.communicate(timeout=PATIENCE)
+	ended, wrong = time.monotonic() - at, []
+	left = what_is_left(everyone, before, folder, ranks, hit)
+	if left:
+		wrong.append(f"left: {left}")
+	if run.returncode == 0:
+		return None
+	files = [file_of(folder, r) for r in range(ranks) if r != hit]
+	if not any(map(os.path.exists, files)):
+		return None
+	wrong += [f"no checkpoint: {f}" for f in files if not whole(obsim, f)]
+	who = "arranger" if who == f"sim {ranks * workers}" else "simulator" if who.startswith("sim ") else {"obsim": "rank", "obsim-fork": "fork server"}.get(who, who)
+	return who, ended, wrong, chance.choice(files)
+
+
+def kills(obsim, count):
+	chance, wrong, dealt, ended = random.Random(1), 0, collections.Counter(), []
+	right = {name: hash_of(obsim, 0, words_of(KILLED, name)) for name in KILLED}
+	took = {}
+	for name in KILLED:
+		began = time.monotonic()
+		hash_of(obsim, 3, [*words_of(KILLED, name), "--workers", "1"])
+		took[name] = time.monotonic() - began
+	while dealt.total() < count:
+		name = chance.choice(list(KILLED))
+		with tempfile.TemporaryDirectory() as folder:
+			found = kill_one(obsim, chance, name, took, folder)
+			if not found:
+				continue
+			who, seconds, faults, file = found
+			again = chance.randint(1, 4)
+			state = hash_of(obsim, again if again > 1 else 0, ["--resume", file, "--workers", chance.randint(1, 2)])
+		if state != right[name]:
+			faults.append(f"taken up again by {again} it ends in {state}")
+		dealt[who] += 1
+		ended.append(seconds)
+		wrong += len(faults) > 0
+		if faults:
+			print(f"{name}, {who} killed: {'; '.join(faults)}", flush=True)
+	ended.sort()
+	print(f"{dealt.total()} kills ({', '.join(f'{n} of a {who}' for who, n in dealt.items())}), {wrong} wrong; ended after "
+		f"{ended[len(ended) // 2]:.2f} s in the median, {ended[-1]:.2f} s at most")
+	return wrong
+
+
+def stops(obsim, count):
+	chance, wrong = random.Random(2), 0
+	words = words_of(KILLED, "falling_boxes")
+	right = hash_of(obsim, 0, words)
+	for _ in range(count):
+		run = start(obsim, 3, [*words, "--workers", "1"])
+		while len(ranks_of(run.pid)) < 3 and run.poll() is None:
+			time.sleep(.01)
+		time.sleep(chance.uniform(.5, 1.5))
+		stopped = chance.choice(ranks_of(run.pid) or [[]])
+		for number, pause in (signal.SIGSTOP, chance.uniform(2, 8)), (signal.SIGCONT, 0):
+			for pid in alive(stopped):
+				os.kill(pid, number)
+			time.sleep(pause)
+		out, said = run.communicate(timeout=PATIENCE)
+		if not out or json.loads(out)["state_hash"] != right:
+			wrong += 1
+			print(f"a rank was stopped: {out or said}", flush=True)
+	print(f"{count} ranks stopped for 2 to 8 s, {wrong} wrong")
+	return wrong
+
+
+def matrix(obsim):
+	wrong = runs = 0
+	ways = [(0, isolation, workers) for isolation in ("thread", "process") for workers in (1, 2)]
+	ways += [(ranks, "process", workers) for ranks in (1, 2, 3, 4) for workers in (1, 2)]
+	for name in MATRIX:
+		found = {}
+		for ranks, isolation, workers in ways:
+			found[ranks, isolation, workers] = hash_of(obsim, ranks, [*words_of(MATRIX, name), "--isolation", isolation, "--workers", workers])
+		right = found[ways[0]]
+		different = [way for way in ways if found[way] != right]
+		wrong += len(different)
+		runs += len(ways)
+		print(f"{name} {' '.join(MATRIX[name])}: {right}, {len(ways)} runs, {len(different)} different {different or ''}", flush=True)
+	print(f"{runs} runs, {wrong} wrong")
+	return wrong
+
+
+def main():
+	if len(sys.argv) < 3 or sys.argv[2] not in ("kills", "stops", "matrix"):
+		sys.exit(__doc__)
+	obsim, what, count = sys.argv[1], sys.argv[2], [int(word) for word in sys.argv[3:]]
+	if what == "matrix":
+		wrong = matrix(obsim)
+	else:
+		wrong = kills(obsim, *count or [50]) if what == "kills" else stops(obsim, *count or [10])
+	sys.exit(wrong > 0)
+
+
+main()
