@@ -60,6 +60,11 @@ uint32_t ob_run_settings_least_substeps(double tolerance)
 	return least;
 }
 
+double ob_run_settings_coarseness(const ob_run_settings *s)
+{
+	return s->tolerance > 0 && s->substeps < OB_DEFAULT_SUBSTEPS ? (double)OB_DEFAULT_SUBSTEPS / s->substeps : 1;
+}
+
 ob_run_settings ob_run_settings_unset(void)
 {
 	ob_run_settings layer = { 0 };

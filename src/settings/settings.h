@@ -128,6 +128,10 @@ enum {
 // solution errs by is not all of it seen (a pivot's energy, a slow creep): a smaller tolerance never starts from less.
 uint32_t ob_run_settings_least_substeps(double tolerance);
 
+// By how much coarser than the default a run is that has a tolerance: its substeps are at least so many times as long;
+// 1 at the default, at any smaller tolerance, and without one. It has no unit, so that it stays where a run is rescaled.
+double ob_run_settings_coarseness(const ob_run_settings *s);
+
 // Coloured solver, exact integrator, 8 substeps at least with the default tolerance, sleeping.
 ob_run_settings ob_run_settings_default(void);
 

@@ -11,7 +11,8 @@
 
 // How far two bodies that touch may turn (rad) and slide (of the smaller thickness) in a partial substep ..
 static const double max_motion = .03;
-static const double fast_share = 1. / 10; // .. of that, where they get farther than their thickness in a substep
+static const double unnoticed = .5; // of the tolerance: .. or farther in a coarse run, which may be off by so much ..
+static const double fast_share = 1. / 10; // .. of all that, where they get farther than their thickness in a substep
 static const double touching_gap = 1e-3; // m: what is nearer touches, as a swept test takes it
 static const double max_partial_substeps = 1024; // of a substep
 
@@ -25,8 +26,12 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
 		slide = 0;
 	double thin = ob_min(a->thickness, b->thickness), distance = (slide + .5 * thin * turn) * w->substep;
-	double motion = max_motion * ob_max(fast_share, ob_min(1, thin / distance));
-	return ob_min(motion / turn, motion * thin / slide);
+	const double share = ob_max(fast_share, ob_min(1, thin / distance)), allowed = w->tolerance / thin;
+	// What turns leaves its tangent by half the thickness times the square of the turn; what slides leaves what is
+	// under it by no more than it slides.
+	const double max_turn = ob_coarser(w, max_motion, sqrt(2 * unnoticed * allowed)),
+		     max_slide = ob_coarser(w, max_motion, allowed);
+	return ob_min(max_turn * share / turn, max_slide * share * thin / slide);
 }
 
 // False where the geometry certainly lasts for h (s).

@@ -69,8 +69,10 @@ bool ob_balance_may_sleep(ob_sim *s, double rest_time)
 {
 	ob_island_work *w = &s->island;
 	const double step = s->settings->step_length;
-	const long steps = lround(rest_time / step), delay = lround(sleep_delay * w->unit.time / step),
-		   interval = lround(ob_max(1, sleep_interval * w->unit.time / step));
+	// Asking costs as much as some steps: where these cost less, it is asked sooner.
+	const double time = ob_coarse_time(w);
+	const long steps = lround(rest_time / step), delay = lround(sleep_delay * time / step),
+		   interval = lround(ob_max(1, sleep_interval * time / step));
 	if (!s->settings->sleeping || steps < delay || (steps - delay) % interval)
 		return false;
 	ob_contacts_prepare(s);

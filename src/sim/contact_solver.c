@@ -198,12 +198,15 @@ void ob_solver_iterate(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
-	const double wake = within_tolerance(s, wake_threshold * w->unit.speed, max_wake_rate / w->unit.time);
+	// What iterations leave in each substep adds up over a step: the fewer there are, the more each may leave,
+	// until it would creep by half the tolerance.
+	const double more = ob_max(1, .5 * w->coarseness);
+	const double wake = more * within_tolerance(s, wake_threshold * w->unit.speed, max_wake_rate / w->unit.time);
 	ob_solver_iteration iteration = {
 		.h = w->h,
 		.block_sweeps = block_sweeps,
 		.converged = converged * w->unit.speed,
-		.wake_threshold = ob_min(max_wake_threshold * w->unit.speed,
+		.wake_threshold = ob_min(more * max_wake_threshold * w->unit.speed,
 					 wake * w->substep / w->h), // what lasts shorter, moves less
 		.impact_threshold = impact_threshold * w->unit.speed * w->h / w->substep,
 		.first = true,

@@ -271,6 +271,8 @@ static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const 
 
 static const double max_retest_share = 3; // of the tolerance
 static const double retest_path = .0015; // m: after which the geometry of a resting pair is tested again
+static const double coarse_share = .2; // of the tolerance: what a coarse run may miss of a new corner ..
+static const double coarse_thickness = .1; // .. and of the smaller thickness, at most
 static const double standing = 1e-5; // m/s: what is slower moves by less than that before it is faster
 
 // m: path after which a pair is tested again. Corners that were no points of the contact come down by a share of the
@@ -347,7 +349,9 @@ void ob_contact_find(ob_sim *s, ob_contact *contact)
 	ob_body_update_pose(w, contact->a);
 	ob_body_update_pose(w, contact->b);
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	double tolerance = retest_distance(s) * ob_min(1, 2 * ob_min(a->thickness, b->thickness) / w->unit.length);
+	const double thin = ob_min(a->thickness, b->thickness);
+	const double tolerance = ob_coarser(w, retest_distance(s) * ob_min(1, 2 * thin / w->unit.length),
+					    ob_min(coarse_share * w->tolerance, coarse_thickness * thin));
 	ob_narrowphase_find(s, contact, tolerance, &m, &when);
 	if (!m.points) {
 		contact->limit = contact->path + ob_min(ob_max(tolerance, m.separation - tolerance), m.valid_path);
@@ -404,11 +408,12 @@ bool ob_contact_in_reach(const ob_island_work *w, const ob_contact *contact)
 }
 
 // A body that all but balances on an edge is turned by what little its centre is beside that, which its way changes: so
-// a pair that touches nothing else that moves is found wherever it moves. Among others, iterations are no finer.
+// a pair that touches nothing else that moves is found wherever it moves. Among others, iterations are no finer; and a
+// coarse run takes for balanced what its tolerance is wider than.
 static bool moves_alone(const ob_island_work *w, const ob_contact *contact, double speed)
 {
-	return contact->lane != OB_NO_LANE && !w->body[contact->a].among_others && !w->body[contact->b].among_others &&
-	       speed > standing * w->unit.speed;
+	return w->coarseness == 1 && contact->lane != OB_NO_LANE && !w->body[contact->a].among_others &&
+	       !w->body[contact->b].among_others && speed > standing * w->unit.speed;
 }
 
 // true: its geometry was found anew

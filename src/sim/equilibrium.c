@@ -4,7 +4,7 @@
 
 static const double steady_speed = 1e-3; // m/s, of any point of a body against what touches it
 static const double residual_threshold = 1e-7; // m/s: a first iteration that changes a velocity by more has work to do
-static const double min_rest_time = .1; // s
+static const double min_rest_time = .1; // s; for which a coarse run does not wait as long
 
 bool ob_equilibrium_likely(const ob_sim *s, const ob_island *is)
 {
@@ -31,7 +31,7 @@ bool ob_equilibrium_reached(const ob_island_work *w)
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		const ob_body *body = &w->body[i];
 		if (body->contacts == 0 || body->speed > residual_threshold * w->unit.speed ||
-		    body->rest_time < min_rest_time * w->unit.time)
+		    body->rest_time < min_rest_time * ob_coarse_time(w))
 			return false;
 	}
 	return true;

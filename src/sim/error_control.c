@@ -104,12 +104,18 @@ void ob_error_control_note_bounce(ob_sim *s)
 
 // ---- accepted, or solved again
 
+// Of what has slipped, in a step.
+static double fading_of(const ob_island_work *w, const ob_run_settings *run)
+{
+	return ob_min(1, run->step_length / (creep_time * ob_coarse_time(w)));
+}
+
 // What slipped fades over the creep time.
 static void note_creep(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
-	const double tolerance = run->tolerance, fading = ob_min(1, run->step_length / (creep_time * w->unit.time));
+	const double tolerance = run->tolerance, fading = fading_of(w, run);
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		ob_contact *contact = &w->contact[i];
 		contact->creep = contact->creep * (1 - fading) + contact->slip;
@@ -124,7 +130,7 @@ static void note_creep(ob_sim *s)
 // fewer where the error would stay tolerable.
 static uint32_t substeps_for(const ob_island_work *w, const ob_contact *contact, const ob_run_settings *run)
 {
-	const double tolerance = run->tolerance, fading = ob_min(1, run->step_length / (creep_time * w->unit.time));
+	const double tolerance = run->tolerance, fading = fading_of(w, run);
 	double depth = contact->initial_depth + contact->depth_growth,
 	       creep = contact->slip / fading; // which slipping on like this adds up to
 	double change = ob_max(depth, contact->creep) > .5 * tolerance ? ob_max(contact->depth_growth, creep)

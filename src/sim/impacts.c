@@ -28,7 +28,8 @@ static const uint32_t max_rebounds = 100; // of a contact in a partial substep: 
 // Of plastic hits
 static const double touching = 1e-5; // m: points that are so near may be hit with what hits beside them
 static const double settling = 4; // substeps: an approach that builds up in so many is that of a contact that lasts ..
-static const double slow_share = .1; // .. and so is one slower than this share of what gravity brings in a substep
+static const double slow_share = .1; // .. and so is one slower than this share of what gravity brings in a substep ..
+static const double unnoticed = .2; // .. and in a coarse run one whose geometry is off by less, of the tolerance
 
 enum {
 	MAX_NEWTON_STEPS = 20,
@@ -106,27 +107,6 @@ static double slow_of(const ob_island_work *w)
 	return slow_share * w->max_acceleration * w->substep + least_approach * w->unit.speed;
 }
 
-// Bits of the contact's points that may hit. What carries a load where something presses bodies together is held, and
-// no hit, unless one of its bodies has just been hit.
-static unsigned may_hit(const ob_island_work *w, const ob_contact *contact)
-{
-	enum { ALL = (1 << OB_POINTS) - 1 };
-	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	unsigned mask = 0;
-	if (contact->lane == OB_NO_LANE)
-		return 0;
-	if (contact->e > 0)
-		return ALL;
-	if (!w->plastic || contact->left_to_solver || a->speed + b->speed + w->max_acceleration * w->h <= slow_of(w))
-		return 0;
-	if (w->max_acceleration == 0 || a->hit > 0 || b->hit > 0)
-		return ALL;
-	const ob_batch *batch = &w->batch[contact->lane / OB_LANES];
-	for (uint32_t j = 0; j < contact->points; j++)
-		mask |= (unsigned)!(batch->impulse[j][contact->lane % OB_LANES] > 0) << j;
-	return mask;
-}
-
 // m: by how much the rows of a contact may be off within the partial substep, as its bodies turn; where hits alone
 // carry a contact, as they pass each other while they turn, too
 static double curvature(const ob_island_work *w, const ob_contact *contact)
@@ -143,6 +123,35 @@ static double curvature(const ob_island_work *w, const ob_contact *contact)
 		sum += body->radius * rate * rate;
 	}
 	return .5 * w->h * w->h * (w->max_acceleration > 0 ? sum : sum + 2 * turn * speed);
+}
+
+// True of a plastic hit that a coarse run leaves to the contact solver: its geometry at its instant is that of the
+// partial substep's start, as far as the tolerance asks. Where nothing presses bodies together hits do all there is.
+static bool is_unnoticed(const ob_island_work *w, const ob_contact *contact)
+{
+	return w->coarseness > 1 && w->max_acceleration > 0 && curvature(w, contact) <= unnoticed * w->tolerance;
+}
+
+// Bits of the contact's points that may hit. What carries a load where something presses bodies together is held, and
+// no hit, unless one of its bodies has just been hit.
+static unsigned may_hit(const ob_island_work *w, const ob_contact *contact)
+{
+	enum { ALL = (1 << OB_POINTS) - 1 };
+	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+	unsigned mask = 0;
+	if (contact->lane == OB_NO_LANE)
+		return 0;
+	if (contact->e > 0)
+		return ALL;
+	if (!w->plastic || contact->left_to_solver || a->speed + b->speed + w->max_acceleration * w->h <= slow_of(w) ||
+	    is_unnoticed(w, contact))
+		return 0;
+	if (w->max_acceleration == 0 || a->hit > 0 || b->hit > 0)
+		return ALL;
+	const ob_batch *batch = &w->batch[contact->lane / OB_LANES];
+	for (uint32_t j = 0; j < contact->points; j++)
+		mask |= (unsigned)!(batch->impulse[j][contact->lane % OB_LANES] > 0) << j;
+	return mask;
 }
 
 // m/s: slower approaches are left to the contact solver, but not where both bodies have just been hit: what one impact

@@ -175,6 +175,7 @@ typedef struct ob_surfaces {
 // Memory grown as needed, never shrunk.
 typedef struct ob_island_work {
 	ob_units unit; // of the run, for thresholds
+	double tolerance, coarseness; // m, of the run, or the default; ob_run_settings_coarseness()
 	uint32_t rows, rows_max; // bodies + fixed bodies + row 0
 	uint32_t bodies; // rows 1 .. bodies
 	uint32_t first_ghost; // rows from here on are ghosts
@@ -223,6 +224,19 @@ typedef struct ob_island_work {
 	ob_impacts impacts;
 	ob_surfaces surfaces;
 } ob_island_work;
+
+// A threshold where the tolerance leaves room: as usual, and in a coarse run more, up to what the tolerance bounds, but
+// no more than the run is coarser. So at the default tolerance and below it is as usual.
+static inline double ob_coarser(const ob_island_work *w, double usual, double bound)
+{
+	return ob_max(usual, ob_min(w->coarseness * usual, bound));
+}
+
+// For a second of the default a coarse run waits, and remembers, so many s: its unit of time is longer, not its steps.
+static inline double ob_coarse_time(const ob_island_work *w)
+{
+	return w->unit.time / w->coarseness;
+}
 
 static inline ob_vec3 ob_row_linear(const double *row)
 {

@@ -62,6 +62,14 @@ static void test_least_substeps(void)
 	CHECK(ob_run_settings_least_substeps(1) == 1);
 	for (double tolerance = 1; tolerance > 1e-6; tolerance *= .7)
 		CHECK(ob_run_settings_least_substeps(.7 * tolerance) >= ob_run_settings_least_substeps(tolerance));
+	ob_run_settings s = ob_run_settings_default();
+	CHECK(ob_run_settings_coarseness(&s) == 1);
+	s.tolerance = OB_DEFAULT_TOLERANCE / 10;
+	CHECK(ob_run_settings_coarseness(&s) == 1);
+	s.substeps = 2;
+	CHECK(ob_run_settings_coarseness(&s) == OB_DEFAULT_SUBSTEPS / 2);
+	s.tolerance = 0;
+	CHECK(ob_run_settings_coarseness(&s) == 1);
 }
 
 static void test_exactness(void)
