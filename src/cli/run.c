@@ -49,6 +49,11 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 	return a < b ? a : b;
 }
 
+static uint64_t next_checkpoint(const run *r)
+{
+	return earlier((r->now.step / r->every + 1) * r->every, r->steps);
+}
+
 // The next step boundary that somebody wants to see; UINT64_MAX when the run is done.
 static uint64_t next_boundary(const run *r)
 {
@@ -60,7 +65,7 @@ static uint64_t next_boundary(const run *r)
 	if (r->recorder)
 		next = earlier(next, (now / r->scene->record_every + 1) * r->scene->record_every);
 	if (r->checkpoints)
-		next = earlier(next, (now / r->every + 1) * r->every);
+		next = earlier(next, next_checkpoint(r));
 	if (r->capture)
 		next = earlier(next, ob_capture_need(r->capture, now));
 	return next;
@@ -162,6 +167,8 @@ static bool step_through(run *r, ob_error *e)
 		uint64_t next = next_boundary(r);
 		if (is_checkpoint_due(r) && next != UINT64_MAX)
 			keep_checkpoint(r);
+		if (r->checkpoints)
+			ob_host_want_contacts(r->host, next_checkpoint(r));
 		if (next != UINT64_MAX)
 			ob_host_go(r->host, keep_pace(r, next));
 		if (!use_snapshot(r, e))
@@ -513,6 +520,7 @@ static void prepare(run *r, ob_host_config *config)
 	r->kept = UINT64_MAX;
 	*config = ob_request_host(q);
 	config->ranks = r->ranks;
+	config->shares_contacts = q->frames.contacts;
 	config->from = q->resume ? &r->saved.host : NULL;
 }
 

@@ -119,6 +119,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 					     : c->workers * (c->ranks.ranks ? c->ranks.ranks : 1),
 		.rank = c->ranks.rank,
 		.ranks = c->ranks.ranks,
+		.shares_contacts = c->shares_contacts,
 		.hulls = c->run.monolith ? 0 : OB_SCENE_HULLS_MAX,
 		.isolation = spawn->name,
 		.traced = c->trace != NULL,

@@ -45,6 +45,7 @@ typedef struct ob_host_config {
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
 	ob_ranks ranks; // of one universe on several machines, each with so many workers, in processes; ranks 0 or 1: one
+	bool shares_contacts; // of several ranks: each has what all pairs keep, after each step
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
 	double patience; // s without a completed step after which the run counts as stalled (stall.h); 0 = 60
 	uint32_t harden; // processes: measures so that simulators harm nobody (confine.h), bits, 1 << ob_harden_measure; 0 = none
@@ -83,6 +84,9 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 // wait: false and e when a simulator died and could not be restarted, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
+// Between a wait and the next go, on each of several ranks alike: when so many steps are complete this one has what all
+// pairs keep, too, as it must to be saved there. Once at a time.
+void ob_host_want_contacts(ob_host *h, uint64_t step);
 bool ob_host_interrupted(const ob_host *h);
 const ob_universe *ob_host_universe(const ob_host *h);
 const ob_roster *ob_host_roster(const ob_host *h);

@@ -149,6 +149,11 @@ void ob_host_go(ob_host *h, uint64_t step)
 		begin_interval(h);
 }
 
+void ob_host_want_contacts(ob_host *h, uint64_t step)
+{
+	ob_contacts_want(h->u, step);
+}
+
 // Says once of each object whose script an error has stopped, in whichever life of the simulators.
 static void tell_of_script(ob_host *h, uint32_t cell)
 {

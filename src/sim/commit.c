@@ -1,10 +1,12 @@
 #include "sim/commit.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sim/budget.h"
+#include "sim/holdings.h"
 
 enum { NONE = UINT32_MAX };
 
@@ -105,23 +107,37 @@ static void write_effort(ob_universe *u, uint32_t island, uint32_t share)
 		data->effort[data->member[is->first_member + i]] = share;
 }
 
-static void write_contact(ob_universe *u, const ob_found_contact *c)
+// All of a contact but what is kept of it. The version of its record that is to hold that; -1: none is.
+static int write_contact_key(ob_universe *u, const ob_found_contact *c)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	ob_pair_key *k = &data->pair[c->pair];
 	k->limit = c->limit;
 	k->active = c->active;
 	if (!c->kept)
-		return;
+		return -1;
 	if (k->record == OB_NO_RECORD)
 		k->record = ob_record_take(u);
 	if (k->record == OB_NO_RECORD) // no memory, and the step has failed
-		return;
+		return -1;
 	ob_pair_record *record = &data->record[k->record];
-	ob_pair_state *p = ob_pair_write(record, ob_step_count(u));
-	*p = c->state;
+	return (int)(ob_pair_write(record, ob_step_count(u)) - record->version);
+}
+
+static void write_contact_state(ob_universe *u, const ob_found_contact *c, int version)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t record = data->pair[c->pair].record;
+	data->record[record].version[version] = c->state;
 	if (c->two_sided)
-		memcpy(data->impulse_b[k->record][p - record->version], c->impulse_b, sizeof c->impulse_b);
+		memcpy(data->impulse_b[record][version], c->impulse_b, sizeof c->impulse_b);
+}
+
+static void write_contact(ob_universe *u, const ob_found_contact *c)
+{
+	const int version = write_contact_key(u, c);
+	if (version >= 0)
+		write_contact_state(u, c, version);
 }
 
 static void write_touch(ob_universe *u, const touch_record *r)
@@ -219,10 +235,18 @@ void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share)
 		write_effort(s->u, island, r.share);
 }
 
+// What is handed over of it.
+static size_t contact_bytes(const ob_found_contact *c)
+{
+	return !c->kept       ? offsetof(ob_found_contact, state)
+	       : c->two_sided ? sizeof *c
+			      : offsetof(ob_found_contact, impulse_b);
+}
+
 void ob_commit_contact(ob_sim *s, const ob_found_contact *c)
 {
 	if (ob_universe_contained(s->u))
-		ob_outbox_put(s->u, CONTACT, c, sizeof *c, NULL, 0);
+		ob_outbox_put(s->u, CONTACT, c, contact_bytes(c), NULL, 0);
 	else
 		write_contact(s->u, c);
 }
@@ -302,7 +326,13 @@ void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint
 // ---- by the arranger
 
 struct ob_committer {
-	ob_mail mail;
+	ob_mail mail; // of the simulators that are here
+	// Of several ranks, else NULL, or 0
+	ob_holdings *holdings;
+	uint32_t rank, ranks;
+	ob_mail out; // what the others get
+	const char *all; // what all have said; that of rank r begins at at[r]
+	const size_t *at;
 	uint32_t *island_owner; // [island]
 	uint32_t *query_owner; // [object], or of scripts [cell]; NONE = none was given away
 	uint32_t *had; // [object]: results, or neighbours, that have come; [cell]: of what its script brings, 1 + bytes
@@ -320,7 +350,11 @@ ob_committer *ob_committer_create(const ob_universe *u)
 	c->island_owner = calloc(objects, sizeof *c->island_owner);
 	c->query_owner = calloc(objects, sizeof *c->query_owner);
 	c->had = calloc(objects, sizeof *c->had);
-	if (c->island_owner && c->query_owner && c->had)
+	c->rank = ob_universe_rank(u);
+	c->ranks = ob_universe_ranks(u);
+	if (c->ranks > 1)
+		c->holdings = ob_holdings_create(u);
+	if (c->island_owner && c->query_owner && c->had && (c->ranks < 2 || c->holdings))
 		return c;
 	ob_committer_destroy(c);
 	return NULL;
@@ -331,6 +365,8 @@ void ob_committer_destroy(ob_committer *c)
 	if (!c)
 		return;
 	ob_mail_finish(&c->mail);
+	ob_mail_finish(&c->out);
+	ob_holdings_destroy(c->holdings);
 	free(c->island_owner);
 	free(c->query_owner);
 	free(c->had);
@@ -431,35 +467,53 @@ static const char *commit_effort(ob_committer *c, ob_universe *u, const ob_mail_
 	return NULL;
 }
 
-static bool is_sound_contact(const ob_found_contact *c)
+static bool is_sound_contact(const ob_found_contact *c, bool whole)
 {
 	const ob_pair_state *p = &c->state;
 	bool sound = !isnan(c->limit) && c->active <= 1 && c->kept <= 1 && c->two_sided <= 1;
-	if (!c->kept || !sound)
+	if (!c->kept || !sound || !whole)
 		return sound;
 	double sum = p->substep + p->disc_radius + p->creep + p->normal.x + p->normal.y + p->normal.z + p->between.x +
 		     p->between.y + p->between.z;
 	for (int i = 0; i < OB_PAIR_ROWS; i++)
-		sum += p->impulse[i] + c->impulse_b[i];
+		sum += p->impulse[i] + (c->two_sided ? c->impulse_b[i] : 0);
 	for (int i = 0; i < OB_PAIR_POINTS; i++)
 		sum += p->arm_a[i].x + p->arm_a[i].y + p->arm_a[i].z + p->gap[i];
 	return isfinite(sum) && p->points <= OB_PAIR_POINTS && p->substep > 0;
+}
+
+// Of other ranks' simulators comes, as a rule, but that there is one.
+static bool is_whole(const ob_committer *c, const ob_universe *u, const ob_mail_record *from)
+{
+	return c->ranks < 2 || ob_universe_shares_contacts(u) || ob_worker_is_here(u, from->worker);
 }
 
 static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const ob_found_contact *r = from->data;
 	const ob_step_data *data = ob_universe_step_data(u);
-	if (from->bytes != sizeof *r || r->pair >= ob_pairs_end(data))
+	const bool whole = is_whole(c, u, from);
+	if (from->bytes < offsetof(ob_found_contact, state) ||
+	    from->bytes != (whole ? contact_bytes(r) : offsetof(ob_found_contact, state)) ||
+	    r->pair >= ob_pairs_end(data))
 		return "has found a contact that does not exist";
 	const ob_pair_key *k = &data->pair[r->pair];
 	const uint32_t island =
 		data->result_island[k->a] != NONE ? data->result_island[k->a] : data->result_island[k->b];
 	if (!k->in_island || !owns_island(c, from->worker, island))
 		return "has found a contact of bodies that it was not given";
-	if (!is_sound_contact(r))
+	if (!is_sound_contact(r, whole))
 		return "has found a contact that makes no sense";
-	write_contact(u, r);
+	const int version = write_contact_key(u, r);
+	if (version < 0)
+		return NULL;
+	if (whole)
+		write_contact_state(u, r, version);
+	else
+		data->record[k->record].version[version].points = 0; // for readers
+	if (c->holdings)
+		ob_holdings_note(c->holdings, u, k->record, version,
+				 ob_universe_shares_contacts(u) ? OB_ALL_RANKS : ob_universe_rank_of(u, from->worker));
 	return NULL;
 }
 
@@ -625,24 +679,41 @@ static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase
 	}
 }
 
+// The mail of a rank, to be read.
+static ob_mail mail_of(const ob_committer *c, uint32_t rank)
+{
+	if (!c->all || rank == c->rank)
+		return (ob_mail){ .bytes = c->mail.bytes, .used = c->mail.used };
+	const size_t begin = c->at[rank] + sizeof(ob_peers_head);
+	return (ob_mail){ .bytes = (char *)c->all + begin, .used = c->at[rank + 1] - begin };
+}
+
+static uint32_t mails(const ob_committer *c)
+{
+	return c->all ? c->ranks : 1;
+}
+
+static void note_end(ob_universe *u, const ob_mail_record *r)
+{
+	const ob_outbox_end *end = r->data;
+	const uint32_t why = (uint32_t)end->failure, object = (uint32_t)(end->failure >> 32);
+	if (r->bytes != sizeof *end || why >= OB_STEP_DAMAGED || object >= ob_universe_capacity(u) ||
+	    end->worked_on >= ob_universe_capacity(u))
+		ob_step_blame(u, r->worker, "has ended in a way that is unknown");
+	else if (why)
+		ob_step_fail(u, why, object);
+	else
+		ob_budget_add(u, end->work, end->worked_on);
+}
+
 // A simulator that fails says so in its last record: then what it has found is no longer a number, and not looked at.
 static bool fails(ob_committer *c, ob_universe *u)
 {
-	ob_mail all = c->mail;
 	ob_mail_record r;
-	while (ob_mail_next(u, &all, &r)) {
-		const ob_outbox_end *end = r.data;
-		if (r.kind != END)
-			continue;
-		const uint32_t why = (uint32_t)end->failure, object = (uint32_t)(end->failure >> 32);
-		if (r.bytes != sizeof *end || why >= OB_STEP_DAMAGED || object >= ob_universe_capacity(u) ||
-		    end->worked_on >= ob_universe_capacity(u))
-			ob_step_blame(u, r.worker, "has ended in a way that is unknown");
-		else if (why)
-			ob_step_fail(u, why, object);
-		else
-			ob_budget_add(u, end->work, end->worked_on);
-	}
+	for (uint32_t rank = 0; rank < mails(c); rank++)
+		for (ob_mail m = mail_of(c, rank); ob_mail_next(u, &m, &r);)
+			if (r.kind == END)
+				note_end(u, &r);
 	return ob_step_failed(u, NULL) != OB_STEP_OK;
 }
 
@@ -651,6 +722,7 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
 		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
 	c->due = c->solved = 0;
+	c->all = NULL;
 	if (islands)
 		give_islands(c, u);
 	if (boxes)
@@ -662,9 +734,40 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 	return ob_mail_collect(u, &c->mail);
 }
 
-ob_mail *ob_committer_mail(ob_committer *c)
+// Of contacts the others get no more than that they are there, unless what is kept of them is wanted everywhere.
+static bool put_for_others(ob_mail *out, const ob_mail_record *r, bool contacts)
 {
-	return &c->mail;
+	const uint32_t bytes = r->kind == CONTACT && !contacts && r->bytes > offsetof(ob_found_contact, state)
+				       ? offsetof(ob_found_contact, state)
+				       : r->bytes;
+	return ob_mail_append_record(out, &(ob_mail_record){ r->worker, r->kind, bytes, r->data });
+}
+
+bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest)
+{
+	const uint32_t damaged = phase == OB_PHASE_ISLANDS ? ob_holdings_damaged(c->holdings, u) : OB_NO_OBJECT;
+	ob_mail own = mail_of(c, c->rank);
+	ob_mail_record r;
+	bool fits = ob_peers_begin(&c->out);
+	while (fits && ob_mail_next(u, &own, &r))
+		fits = put_for_others(&c->out, &r, ob_universe_shares_contacts(u));
+	if (!fits)
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+	const ob_peers_head head = { .phase = phase,
+				     .digest = digest,
+				     .damaged = damaged == OB_NO_OBJECT ? 0 : 1 + damaged };
+	c->all = fits ? ob_peers_exchange(p, u, head, &c->out, &c->at) : NULL;
+	return c->all;
+}
+
+bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p)
+{
+	return ob_holdings_move(c->holdings, u, p);
+}
+
+bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)
+{
+	return ob_holdings_gather(c->holdings, u, p);
 }
 
 void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
@@ -672,13 +775,14 @@ void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
 	ob_mail_record r = { 0 };
 	if (fails(c, u))
 		return;
-	while (ob_mail_next(u, &c->mail, &r)) {
-		const char *wrong = commit_record(c, u, phase, &r);
-		if (wrong) {
-			ob_step_blame(u, r.worker, wrong);
-			return;
+	for (uint32_t rank = 0; rank < mails(c); rank++)
+		for (ob_mail m = mail_of(c, rank); ob_mail_next(u, &m, &r);) {
+			const char *wrong = commit_record(c, u, phase, &r);
+			if (wrong) {
+				ob_step_blame(u, r.worker, wrong);
+				return;
+			}
 		}
-	}
 	if (c->due && ob_step_failed(u, NULL) == OB_STEP_OK)
 		ob_step_blame(u, r.worker, "or another has not done all that it was given");
 }

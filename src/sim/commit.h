@@ -14,6 +14,7 @@
 #ifndef OB_SIM_COMMIT_H
 #define OB_SIM_COMMIT_H
 
+#include "sim/peers.h"
 #include "sim/state.h"
 #include "table/outbox.h"
 
@@ -58,8 +59,16 @@ ob_committer *ob_committer_create(const ob_universe *u); // NULL: no memory
 void ob_committer_destroy(ob_committer *c);
 // Waits until all simulators that are here have arrived, and collects what they have handed over. false: STOP.
 bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase);
-ob_mail *ob_committer_mail(ob_committer *c); // what was collected; that of other ranks' simulators is put to it
 // Checks what is in the mail, which is of all that take part in the phase, and writes it.
 void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase);
+
+// ---- by the arranger of one of several ranks; false: the step has failed
+
+// Before islands are solved: what pairs keep goes to who solves them.
+bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p);
+// Puts what the other ranks' simulators have handed over to what was collected. digest: ob_peers_digest.
+bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest);
+// Between two steps: all ranks have what all pairs keep.
+bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p);
 
 #endif

@@ -347,23 +347,11 @@ static void sort_by_work(builder *p)
 }
 
 // Largest first, so that no worker starts on a large one when the others are done; small ones several at a time.
-static void make_chunks(builder *p)
+static void make_chunks(builder *p, uint32_t unsolved, uint64_t total)
 {
 	ob_step_data *data = p->data;
-	uint64_t total = 0, filled = 0;
-	uint32_t n = data->count->islands, unsolved = 0, chunks = 0;
-	for (uint32_t i = 0; i < n; i++)
-		data->island[i].work = data->island[i].solved ? 0 : estimated_work(p, &data->island[i]);
-	sort_by_work(p);
-	for (uint32_t i = 0; i < n; i++) {
-		for (uint32_t m = 0; m < data->island[i].members; m++)
-			data->result_island[data->member[data->island[i].first_member + m]] = i;
-		if (data->island[i].solved)
-			continue;
-		total += data->island[i].work;
-		unsolved++;
-	}
-	uint64_t share = total / (16 * (uint64_t)ob_universe_workers(p->u)) + 1;
+	uint64_t share = total / (16 * (uint64_t)ob_universe_workers(p->u)) + 1, filled = 0;
+	uint32_t chunks = 0;
 	share = share > CHUNK_WORK_MIN ? share : CHUNK_WORK_MIN;
 	for (uint32_t i = 0; i < unsolved; i++) {
 		if (i == 0 || filled >= share)
@@ -372,6 +360,107 @@ static void make_chunks(builder *p)
 	}
 	data->chunk[chunks] = unsolved;
 	data->count->chunks = chunks;
+}
+
+// ---- of several ranks
+
+// Who shares the islands, and what each has so far.
+typedef struct shares {
+	uint32_t count; // of simulators: no more than there are objects
+	uint32_t *load, *votes; // [count]
+	uint32_t *owner; // [island]
+	uint32_t most; // load
+	int shift; // of work, for loads of 32 bits
+} shares;
+
+// Who has solved most of its members last, or would by their ids, as what is created together lies together.
+static uint32_t preferred_owner(const builder *p, const shares *s, const ob_island *is)
+{
+	const ob_step_data *data = p->data;
+	uint32_t best = 0, most = 0;
+	for (uint32_t k = 0; k < is->members; k++) {
+		const uint32_t id = data->member[is->first_member + k], home = data->home[id] - 1,
+			       who = home < s->count ? home : (uint32_t)((uint64_t)id * s->count / p->ids);
+		if (++s->votes[who] > most)
+			best = who, most = s->votes[who];
+	}
+	for (uint32_t k = 0; k < is->members; k++) {
+		const uint32_t id = data->member[is->first_member + k], home = data->home[id] - 1;
+		s->votes[home < s->count ? home : (uint32_t)((uint64_t)id * s->count / p->ids)] = 0;
+	}
+	return best;
+}
+
+static uint32_t least_loaded(const shares *s)
+{
+	uint32_t best = 0;
+	for (uint32_t w = 1; w < s->count; w++)
+		best = s->load[w] < s->load[best] ? w : best;
+	return best;
+}
+
+static void give_island(builder *p, shares *s, uint32_t island)
+{
+	const ob_island *is = &p->data->island[island];
+	const uint32_t work = is->work >> s->shift;
+	uint32_t who = preferred_owner(p, s, is);
+	if (s->load[who] + work > s->most)
+		who = least_loaded(s);
+	s->load[who] += work;
+	s->owner[island] = who;
+	for (uint32_t k = 0; k < is->members; k++)
+		p->data->home[p->data->member[is->first_member + k]] = 1 + who;
+}
+
+// A chunk for each simulator, of islands that it has solved before: what their pairs keep lies with its rank
+// (holdings.h). The largest are given first; where one would get a tenth more than its share, another does.
+static void make_shares(builder *p, uint32_t unsolved, uint64_t total)
+{
+	enum { SLACK = 10, WORTH_SHARING = 16 * CHUNK_WORK_MIN };
+	ob_step_data *data = p->data;
+	const uint32_t all = ob_universe_simulators(p->u), islands = data->count->islands;
+	shares s = { .count = all < p->ids ? all : p->ids, .load = p->body, .votes = p->place, .owner = p->island_of };
+	while (total >> s.shift > UINT32_MAX / 4)
+		s.shift++;
+	const uint64_t share = total / s.count + total / (s.count * SLACK) + 1;
+	s.most = (uint32_t)((share > WORTH_SHARING ? share : WORTH_SHARING) >> s.shift);
+	memset(s.load, 0, s.count * sizeof *s.load);
+	memset(s.votes, 0, s.count * sizeof *s.votes);
+	for (uint32_t i = 0; i < unsolved; i++)
+		give_island(p, &s, i);
+	memset(data->chunk, 0, (s.count + 1) * sizeof *data->chunk);
+	for (uint32_t i = 0; i < unsolved; i++)
+		data->chunk[s.owner[i] + 1]++;
+	for (uint32_t w = 0; w < s.count; w++)
+		data->chunk[w + 1] += data->chunk[w];
+	memcpy(s.load, data->chunk, s.count * sizeof *s.load); // where the next of each goes
+	for (uint32_t i = 0; i < islands; i++)
+		p->parent[i < unsolved ? s.load[s.owner[i]]++ : i] = i;
+	permute_islands(data->island, p->parent, islands);
+	data->count->chunks = s.count;
+}
+
+// The order in which islands are solved, and who solves which.
+static void deal_islands(builder *p)
+{
+	ob_step_data *data = p->data;
+	const uint32_t n = data->count->islands;
+	uint64_t total = 0;
+	uint32_t unsolved = 0;
+	for (uint32_t i = 0; i < n; i++)
+		data->island[i].work = data->island[i].solved ? 0 : estimated_work(p, &data->island[i]);
+	sort_by_work(p);
+	for (uint32_t i = 0; i < n; i++) {
+		total += data->island[i].work;
+		unsolved += !data->island[i].solved;
+	}
+	if (ob_universe_ranks(p->u) > 1)
+		make_shares(p, unsolved, total);
+	else
+		make_chunks(p, unsolved, total);
+	for (uint32_t i = 0; i < n; i++)
+		for (uint32_t m = 0; m < data->island[i].members; m++)
+			data->result_island[data->member[data->island[i].first_member + m]] = i;
 }
 
 static builder begin(ob_universe *u, bool merges)
@@ -395,9 +484,9 @@ static void finish(builder *p)
 	involve_linked(p);
 	ob_sort_ids(p->body, p->bodies, p->ids, p->place); // whose contents are no longer needed
 	list_members(p);
-	list_pairs(p);
-	make_chunks(p);
 	p->data->count->visits += p->bodies;
+	list_pairs(p);
+	deal_islands(p);
 }
 
 void ob_islands_build(ob_universe *u)

@@ -6,7 +6,7 @@
 #include "table/table.h"
 
 // Groups the objects that are due (ob_schedule.due), and those that they touch or are expected to, into islands, and the
-// islands into chunks of about equal work, largest first. Islands that an awake object touches, or is expected to, wake.
+// islands into chunks of about equal work, largest first; of several ranks, into one for each simulator. Islands that an awake object touches, or is expected to, wake.
 void ob_islands_build(ob_universe *u);
 // Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join. The solutions of the
 // others stand; the chunks hold what must be solved again.

@@ -7,35 +7,14 @@
 
 #include "elementary/elementary.h"
 #include "sim/broadphase.h"
+#include "sim/digest.h"
 #include "sim/late_contacts.h"
 
-// What each message begins with.
-typedef struct message_head {
-	uint64_t step, phase, digest; // phase: or LEAVING
-} message_head;
-
-static const uint64_t LEAVING = UINT64_MAX;
-
-static uint64_t mixed(uint64_t sum, uint64_t word)
-{
-	sum = (sum ^ word) * 0x9e3779b97f4a7c15u;
-	return sum ^ sum >> 29;
-}
-
-// Of whole words
-static uint64_t digest_words(const void *words, size_t bytes)
-{
-	uint64_t word, sum = 0;
-	for (size_t at = 0; at + sizeof word <= bytes; at += sizeof word) {
-		memcpy(&word, (const char *)words + at, sizeof word);
-		sum = mixed(sum, word);
-	}
-	return sum;
-}
+static const uint64_t LEAVING = UINT64_MAX; // a phase, too
 
 static uint64_t motion_digest(const ob_motion *m)
 {
-	return digest_words(m, sizeof *m);
+	return ob_digest_words(m, sizeof *m);
 }
 
 // A damaged universe is read here, too: nothing in it is followed unchecked.
@@ -46,38 +25,42 @@ static uint32_t islands_of(const ob_step_data *data)
 	return islands < data->objects_max ? islands : data->objects_max;
 }
 
-// The k-th of an island's pairs, and how it touches before the step; NULL: damaged.
-static const ob_pair_key *pair_of(const ob_universe *u, const ob_island *is, uint32_t k, uint64_t *digest)
+// Asks for the motions of the next island's members while those of one are looked at.
+static void prefetch_members(const ob_universe *u, const ob_island *is)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t at = is->first_pair + k, pair = at < data->pairs_max ? data->island_pair[at] : UINT32_MAX;
-	if (pair >= ob_pairs_end(data))
-		return NULL;
-	const ob_pair_key *key = &data->pair[pair];
-	const bool kept = key->record < data->count->records_used && key->record < data->pairs_max;
-	const ob_pair_state *before = kept ? ob_pair_before(&data->record[key->record], ob_step_count(u)) : NULL;
-	*digest = before ? digest_words(before, sizeof *before) : 0;
-	return ob_object_in_range(data, key->a) && ob_object_in_range(data, key->b) ? key : NULL;
+	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++)
+		if (data->member[is->first_member + k] < data->objects_max)
+			ob_prefetch_versions(u, data->member[is->first_member + k]);
 }
 
 static uint64_t digest_island(const ob_universe *u, const ob_island *is, uint64_t sum)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	sum = mixed(sum, (uint64_t)is->members << 32 | is->pairs);
+	const uint64_t place = (uint64_t)is->first_pair << 32 | is->pairs;
+	sum = ob_digest_word(ob_digest_word(sum, (uint64_t)is->members << 32 | is->solved), place);
 	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++) {
 		const uint32_t id = data->member[is->first_member + k];
-		sum = mixed(sum, id);
+		sum = ob_digest_word(sum, id);
 		if (ob_object_in_range(data, id))
-			sum = mixed(sum, motion_digest(ob_newest_motion(u, id)));
-	}
-	for (uint32_t k = 0; k < is->pairs; k++) {
-		uint64_t touch;
-		const ob_pair_key *key = pair_of(u, is, k, &touch);
-		if (!key)
-			break;
-		sum = mixed(mixed(sum, (uint64_t)key->a << 32 | key->b), touch);
+			sum = ob_digest_word(sum, motion_digest(ob_newest_motion(u, id)));
 	}
 	return sum;
+}
+
+// Pairs lie in the same places on all ranks.
+static uint64_t digest_solve(const ob_universe *u, uint64_t sum)
+{
+	enum { AHEAD = 4 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t islands = islands_of(data), pairs = data->count->island_pairs;
+	for (uint32_t i = 0; i < islands; i++) {
+		if (i + AHEAD < islands)
+			prefetch_members(u, &data->island[i + AHEAD]);
+		sum = digest_island(u, &data->island[i], sum);
+	}
+	const uint32_t words = (pairs < data->pairs_max ? pairs : data->pairs_max) / 2;
+	return ob_digest_word(sum, ob_digest_words(data->island_pair, words * sizeof(uint64_t)));
 }
 
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
@@ -85,12 +68,10 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
 	const ob_step_data *data = ob_universe_step_data(u);
 	uint32_t queries;
 	const uint32_t *list = ob_requery_list(u, &queries);
-	uint64_t sum = mixed(mixed(queries, data->count->pairs), ob_checks_count(data));
+	uint64_t sum = ob_digest_word(ob_digest_word(queries, data->count->pairs), ob_checks_count(data));
 	for (uint32_t i = 0; i < queries; i++)
-		sum = mixed(sum, list[i]);
-	for (uint32_t i = 0; phase == OB_PHASE_ISLANDS && i < islands_of(data); i++)
-		sum = digest_island(u, &data->island[i], sum);
-	return sum;
+		sum = ob_digest_word(sum, list[i]);
+	return phase == OB_PHASE_ISLANDS ? digest_solve(u, sum) : sum;
 }
 
 // ---- where ranks differ
@@ -108,35 +89,22 @@ static uint32_t find_object(const char *all, const size_t *at, uint32_t rank)
 	return OB_NO_OBJECT;
 }
 
-// Of each object how it moves, and how it touches others where it is about to be solved.
-static void digest_each(const ob_universe *u, uint64_t *of, uint32_t ids)
+static void blame(const ob_peers *p, ob_universe *u, uint32_t rank, const char *text)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t islands = ob_gate_phase(u) == OB_PHASE_ISLANDS ? islands_of(data) : 0;
-	uint64_t touch;
-	for (uint32_t id = 0; id < ids; id++)
-		of[id] = motion_digest(ob_newest_motion(u, id));
-	for (uint32_t i = 0; i < islands; i++)
-		for (uint32_t k = 0; k < data->island[i].pairs; k++) {
-			const ob_pair_key *key = pair_of(u, &data->island[i], k, &touch);
-			if (!key)
-				return;
-			of[key->a] += touch;
-			of[key->b] += touch;
-		}
+	ob_step_blame(u, rank * (ob_universe_simulators(u) / p->ranks), text);
 }
 
 // All ranks come here together, for all have seen the same messages: each tells the others about every object.
 static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 {
-	const uint32_t ids = ob_universe_ids(u), culprit = rank * (ob_universe_simulators(u) / p->ranks);
+	const uint32_t ids = ob_universe_ids(u);
 	const unsigned long long step = ob_step_count(u) + 1;
 	const size_t *at;
 	char text[OB_STEP_BLAME_MAX];
 	uint32_t id = OB_NO_OBJECT;
 	uint64_t *mine = calloc(ids + 1, sizeof *mine);
-	if (mine)
-		digest_each(u, mine, ids);
+	for (uint32_t i = 0; mine && i < ids; i++)
+		mine[i] = motion_digest(ob_newest_motion(u, i));
 	const char *all = p->gather(p->wire, mine, mine ? ids * sizeof *mine : 0, &at);
 	free(mine);
 	if (all)
@@ -148,12 +116,23 @@ static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 	else
 		snprintf(text, sizeof text, "is of rank %u, which has arranged step %llu otherwise than rank 0", rank,
 			 step);
-	ob_step_blame(u, culprit, text);
+	blame(p, u, rank, text);
 }
 
-static message_head head_of(const char *all, const size_t *at, uint32_t rank)
+// What it has kept of a contact has changed since.
+static void blame_memory(const ob_peers *p, ob_universe *u, uint32_t rank, uint64_t object)
 {
-	message_head head;
+	char text[OB_STEP_BLAME_MAX];
+	snprintf(text, sizeof text,
+		 "is of rank %u, which in step %llu has other bits than it had found of a contact of object \"%s\"",
+		 rank, (unsigned long long)ob_step_count(u) + 1,
+		 object < ob_universe_ids(u) ? ob_passport_of(u, (uint32_t)object)->name : "");
+	blame(p, u, rank, text);
+}
+
+static ob_peers_head head_of(const char *all, const size_t *at, uint32_t rank)
+{
+	ob_peers_head head;
 	memcpy(&head, all + at[rank], sizeof head);
 	return head;
 }
@@ -161,15 +140,22 @@ static message_head head_of(const char *all, const size_t *at, uint32_t rank)
 // Whether all stand where rank 0 does; else the step has failed.
 static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const size_t *at)
 {
-	const message_head first = head_of(all, at, 0);
+	const ob_peers_head first = head_of(all, at, 0);
 	for (uint32_t r = 0; r < p->ranks; r++)
 		p->parted |= head_of(all, at, r).phase == LEAVING;
 	if (p->parted) {
 		ob_step_fail(u, OB_STEP_LEFT, 0);
 		return false;
 	}
+	for (uint32_t r = 0; r < p->ranks; r++) {
+		const ob_peers_head other = head_of(all, at, r);
+		if (other.damaged) {
+			blame_memory(p, u, r, other.damaged - 1);
+			return false;
+		}
+	}
 	for (uint32_t r = 1; r < p->ranks; r++) {
-		const message_head other = head_of(all, at, r);
+		const ob_peers_head other = head_of(all, at, r);
 		if (memcmp(&first, &other, sizeof first) != 0) {
 			blame_rank(p, u, r);
 			return false;
@@ -180,33 +166,28 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 
 // ---- an exchange
 
-static bool replace_mail(const ob_peers *p, const char *all, const size_t *at, ob_mail *mail)
+bool ob_peers_begin(ob_mail *mail)
 {
-	bool fits = true;
-	mail->used = 0;
-	for (uint32_t r = 0; r < p->ranks && fits; r++)
-		fits = ob_mail_append(mail, all + at[r] + sizeof(message_head),
-				      at[r + 1] - at[r] - sizeof(message_head));
-	return fits;
+	const ob_peers_head empty = { 0 };
+	ob_mail_clear(mail);
+	return ob_mail_append(mail, &empty, sizeof empty);
 }
 
-bool ob_peers_exchange(ob_peers *p, ob_universe *u, ob_phase phase, uint64_t digest, ob_mail *mail)
+const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
 {
-	const message_head head = { ob_step_count(u), phase, digest };
-	const size_t *at;
-	const char *all =
-		ob_mail_put_before(mail, &head, sizeof head) ? p->gather(p->wire, mail->bytes, mail->used, &at) : NULL;
-	if (all && !stand_together(p, u, all, at))
-		return false;
-	if (all && replace_mail(p, all, at, mail))
-		return true;
-	ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-	return false;
+	head.step = ob_step_count(u);
+	memcpy(mail->bytes, &head, sizeof head);
+	const char *all = p->gather(p->wire, mail->bytes, mail->used, at);
+	if (!all) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return NULL;
+	}
+	return stand_together(p, u, all, *at) ? all : NULL;
 }
 
 void ob_peers_leave(ob_peers *p)
 {
-	const message_head head = { 0, LEAVING, 0 };
+	const ob_peers_head head = { .phase = LEAVING };
 	const size_t *at;
 	if (p->ranks > 1 && !p->parted)
 		p->gather(p->wire, &head, sizeof head, &at);
@@ -225,7 +206,7 @@ static uint64_t digest_bytes(const void *bytes, size_t n)
 	const unsigned char *byte = bytes;
 	uint64_t sum = n;
 	for (size_t i = 0; i < n; i++)
-		sum = mixed(sum, byte[i]);
+		sum = ob_digest_word(sum, byte[i]);
 	return sum;
 }
 
@@ -234,8 +215,8 @@ static uint64_t digest_objects(const ob_universe *u)
 {
 	uint64_t sum = ob_universe_capacity(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
-		sum = mixed(sum, digest_bytes(ob_passport_of(u, id), sizeof(ob_passport)));
-		sum = mixed(sum, motion_digest(ob_newest_motion(u, id)));
+		sum = ob_digest_word(sum, digest_bytes(ob_passport_of(u, id), sizeof(ob_passport)));
+		sum = ob_digest_word(sum, motion_digest(ob_newest_motion(u, id)));
 	}
 	return sum;
 }
@@ -248,7 +229,7 @@ static uint64_t digest_arithmetic(void)
 		double x = .37 * i, y, found[4] = { ob_sin(x), ob_atan2(x, 3), ob_exp(-x), 0 };
 		y = x * x;
 		found[3] = fma(x, x, -y) + sqrt(x) / 3;
-		sum = mixed(sum, digest_bytes(found, sizeof found));
+		sum = ob_digest_word(sum, digest_bytes(found, sizeof found));
 	}
 	return sum;
 }
@@ -272,7 +253,8 @@ bool ob_peers_join(ob_peers *p, const ob_universe *u, ob_error *e)
 	const size_t *at;
 	run.timed = run.freezes = 0;
 	run.fault = (ob_fault_plan){ 0 };
-	const introduction own = { ob_universe_version(), ob_universe_simulators(u), digest_bytes(&run, sizeof run),
+	const introduction own = { ob_universe_version(), ob_universe_simulators(u),
+				   ob_digest_word(digest_bytes(&run, sizeof run), ob_universe_shares_contacts(u)),
 				   digest_objects(u), digest_arithmetic() };
 	const char *all = p->gather(p->wire, &own, sizeof own, &at);
 	if (!all)

@@ -4,6 +4,8 @@
 //
 //   arranger, at the end of a phase:  outboxes of its own simulators -> mail -> all ranks' mail -> commit
 //
+// But what pairs keep between steps, most of what simulators find, goes only where it is needed (holdings.h).
+//
 // With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with. Where two
 // differ, all find out about which object, and the run ends. An arranger whose run is over, for whatever reason, says
 // so in place of a mail, so nobody waits for it.
@@ -13,12 +15,24 @@
 #include "sim/sim.h"
 #include "table/outbox.h"
 
-// What the phase begins with, before any of it is committed: who is to be solved, from which motions and contacts, or
-// asked.
+// What each message begins with.
+typedef struct ob_peers_head {
+	uint64_t step; // set by ob_peers_exchange
+	uint64_t phase; // an ob_phase, or one of the next
+	uint64_t digest;
+	uint64_t damaged; // 1 + an object, what is kept of which is not what it was; 0: none is known
+} ob_peers_head;
+#define OB_PEERS_MOVE (UINT64_MAX - 1)
+#define OB_PEERS_GATHER (UINT64_MAX - 2)
+
+// What the phase begins with, before any of it is committed: who is to be solved, from which motions, or asked.
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
-// Replaces the mail of this rank's simulators by that of all. false: the others are elsewhere, or one has left, and the
-// step has failed.
-bool ob_peers_exchange(ob_peers *p, ob_universe *u, ob_phase phase, uint64_t digest, ob_mail *mail);
+// Empties the mail but for a head. false: no memory.
+bool ob_peers_begin(ob_mail *mail);
+// Sends the mail, which begins with a head, this one. Gives those of all ranks, heads and all, in their order: that of
+// rank r from at[r] to at[r + 1]; they hold until the next call. NULL: the others are elsewhere, or one has left, and
+// the step has failed.
+const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
 bool ob_peers_join(ob_peers *p, const ob_universe *u, ob_error *e);
 void ob_peers_leave(ob_peers *p);
 

@@ -129,10 +129,30 @@ static bool open_scripts(const scheduler *c, ob_phase phase)
 	return true;
 }
 
+// Each simulator has a chunk, which may be empty (island_builder.h).
+static bool open_shares(const scheduler *c, ob_phase phase)
+{
+	const ob_step_data *data = c->data;
+	const uint32_t all = data->count->chunks;
+	uint32_t n = 0;
+	ob_task_reset(c->u, all, all);
+	if (!ob_commit_give(c->sim->committer, c->u, &c->sim->peers))
+		return false;
+	for (uint32_t w = 0; w < all; w++)
+		if (data->chunk[w] < data->chunk[w + 1])
+			data->scratch[n++] = w;
+		else
+			ob_worker_set_objects(c->u, w, 0);
+	ob_gate_open(c->u, phase, data->scratch, n);
+	return true;
+}
+
 static bool open_islands(const scheduler *c, ob_phase phase)
 {
 	const ob_step_data *data = c->data;
 	uint32_t n = 0;
+	if (ob_universe_ranks(c->u) > 1)
+		return open_shares(c, phase);
 	if (!c->settings->one_per_object) {
 		open_tasks(c, phase, data->count->chunks, data->count->chunks);
 		return true;
@@ -419,6 +439,9 @@ static ob_phase complete_step(const scheduler *c)
 	const struct ob_step_counts *count = c->data->count;
 	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle, count->islands);
 	ob_step_work_reset(c->u);
+	if (ob_universe_ranks(c->u) > 1 && ob_contacts_wanted(c->u) == ob_step_count(c->u) &&
+	    !ob_commit_share(c->sim->committer, c->u, &c->sim->peers))
+		return OB_PHASE_PAUSE;
 	return begin_step(c);
 }
 
@@ -475,7 +498,7 @@ static bool commit(ob_sim *s, ob_phase phase)
 	const uint64_t digest = alone ? 0 : ob_peers_digest(s->u, phase);
 	if (!ob_commit_collect(s->committer, s->u, phase))
 		return false;
-	if (alone || ob_peers_exchange(&s->peers, s->u, phase, digest, ob_committer_mail(s->committer)))
+	if (alone || ob_commit_exchange(s->committer, s->u, &s->peers, phase, digest))
 		ob_commit_mail(s->committer, s->u, phase);
 	return true;
 }

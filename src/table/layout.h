@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 22, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 23, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -34,6 +34,7 @@ typedef enum ob_area {
 	OB_AREA_BOUNDS,
 	OB_AREA_RESULT,
 	OB_AREA_EFFORT,
+	OB_AREA_HOME,
 	OB_AREA_RESULT_ISLAND,
 	OB_AREA_NEIGHBOURS,
 	OB_AREA_NEIGHBOUR_ID,
@@ -100,6 +101,7 @@ typedef struct ob_header {
 typedef struct ob_control {
 	_Alignas(64) uint64_t step;
 	uint64_t pause_step;
+	uint64_t contacts_step; // as ob_contacts_want
 	uint32_t state; // ob_universe_state
 	uint32_t ids, objects;
 	uint32_t awake, pairs, islands;
@@ -157,6 +159,7 @@ struct ob_universe {
 	char *base;
 	int fd; // of the segment; its owner's, and all that forked from it, share the lock
 	uint32_t rank, ranks; // its owner's (table.h)
+	bool shares_contacts; // likewise
 	bool lost; // a reader's: its file was found to be too short (reader.c)
 	uint64_t *taken; // bit per chunk whose pages this process has asked for (pages.h); NULL: a reader
 	ob_header header; // private copy, validated: later changes to the shared one have no effect

@@ -33,6 +33,11 @@ typedef struct record_head {
 	uint32_t kind, bytes;
 } record_head;
 
+// In a mail, what a simulator has handed over at a time.
+typedef struct part_head {
+	uint64_t worker, bytes; // of records behind this
+} part_head;
+
 // Of this process: what is between two phases is not in the universe.
 typedef struct ob_outbox {
 	outbox_page *page;
@@ -100,7 +105,8 @@ bool ob_outbox_enter(ob_universe *u, uint32_t worker)
 	return true;
 }
 
-// A counter of faults lies where they may strike it: its upper half says whether the lower one is what was counted. 0 is 0.
+// A counter of faults lies where they may strike it: its upper half says whether the lower one is what was counted. 0
+// is 0.
 static uint64_t sealed(uint32_t count)
 {
 	return (uint64_t)(count * UINT32_C(0x9E3779B1)) << 32 | count;
@@ -147,8 +153,8 @@ uint32_t ob_worker_object(const ob_universe *u, uint32_t worker)
 {
 	if (worker >= u->header.sizes.workers)
 		return OB_NO_OBJECT;
-	const uint32_t *from = u->header.sizes.outbox_bytes ? &page_of(u, worker)->working_on
-							    : &u->worker[worker].working_on;
+	const uint32_t *from =
+		u->header.sizes.outbox_bytes ? &page_of(u, worker)->working_on : &u->worker[worker].working_on;
 	const uint32_t object = __atomic_load_n(from, __ATOMIC_RELAXED) - 1;
 	return object < u->header.sizes.capacity ? object : OB_NO_OBJECT;
 }
@@ -306,9 +312,7 @@ static const char *take(ob_universe *u, ob_mail *m, uint32_t worker, bool *last)
 	const outbox_page *page = page_of(u, worker);
 	ob_gate_cell *cell = u->gate_cell + worker;
 	const uint32_t bytes = page->bytes, taken = cell->taken + 1;
-	const struct {
-		uint64_t worker, bytes;
-	} part = { worker, bytes };
+	const part_head part = { worker, bytes };
 	*last = page->last;
 	if (__atomic_load_n(&page->signal, __ATOMIC_ACQUIRE) != taken || page->turn != cell->turn || page->last > 1)
 		return "has lost its turn";
@@ -348,11 +352,16 @@ static bool collect_from(ob_universe *u, ob_mail *m, uint32_t worker)
 
 bool ob_mail_collect(ob_universe *u, ob_mail *m)
 {
-	m->used = m->at = m->end = 0;
+	ob_mail_clear(m);
 	for (uint32_t w = 0; w < ob_universe_simulators(u); w++)
 		if (u->gate_group[w / 64].expected >> w % 64 & 1 && ob_worker_is_here(u, w) && !collect_from(u, m, w))
 			return false;
 	return true;
+}
+
+void ob_mail_clear(ob_mail *m)
+{
+	m->used = m->at = m->end = m->part = 0;
 }
 
 bool ob_mail_append(ob_mail *m, const void *bytes, size_t n)
@@ -365,27 +374,38 @@ bool ob_mail_append(ob_mail *m, const void *bytes, size_t n)
 	return true;
 }
 
-bool ob_mail_put_before(ob_mail *m, const void *bytes, size_t n)
+bool ob_mail_append_record(ob_mail *m, const ob_mail_record *r)
 {
-	if (!grow(m, n))
+	const record_head head = { r->kind, r->bytes };
+	part_head part = { r->worker, 0 };
+	if (m->part)
+		memcpy(&part, m->bytes + m->part - 1, sizeof part);
+	if (!grow(m, sizeof part + sizeof head + r->bytes))
 		return false;
-	memmove(m->bytes + n, m->bytes, m->used);
-	memcpy(m->bytes, bytes, n);
-	m->used += n;
+	if (!m->part || part.worker != r->worker) {
+		part = (part_head){ r->worker, 0 };
+		m->part = 1 + m->used;
+		m->used += sizeof part;
+	}
+	part.bytes += sizeof head + r->bytes;
+	memcpy(m->bytes + m->part - 1, &part, sizeof part);
+	memcpy(m->bytes + m->used, &head, sizeof head);
+	memcpy(m->bytes + m->used + sizeof head, r->data, r->bytes);
+	m->used += sizeof head + r->bytes;
 	return true;
 }
 
 bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out)
 {
-	uint64_t part[2];
+	part_head part;
 	record_head head;
 	while (m->at == m->end) {
 		if (m->at == m->used)
 			return false;
-		memcpy(part, m->bytes + m->at, sizeof part);
-		m->worker = (uint32_t)part[0];
+		memcpy(&part, m->bytes + m->at, sizeof part);
+		m->worker = (uint32_t)part.worker;
 		m->at += sizeof part;
-		m->end = m->at + part[1];
+		m->end = m->at + part.bytes;
 	}
 	memcpy(&head, m->bytes + m->at, sizeof head);
 	m->at += sizeof head;

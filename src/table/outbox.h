@@ -73,6 +73,7 @@ uint32_t ob_task_workers(const ob_universe *u);
 typedef struct ob_mail {
 	char *bytes; // of all records that were handed over, by simulator
 	size_t used, max, at;
+	size_t part; // 1 + where the head of the part begins to which records are appended; 0 = there is none
 	uint32_t worker; // of those that are read
 	size_t end; // of its part
 } ob_mail;
@@ -85,9 +86,11 @@ typedef struct ob_mail_record {
 // Waits until all participants of the phase that are here have arrived, and copies what they have handed over. What does not bear its
 // checksum is blamed on its simulator (ob_step_blame). false: STOP.
 bool ob_mail_collect(ob_universe *u, ob_mail *m);
-// Puts bytes behind, or before, what the mail holds. false: no memory.
+// Empties it, and puts bytes behind what it holds. false: no memory.
+void ob_mail_clear(ob_mail *m);
 bool ob_mail_append(ob_mail *m, const void *bytes, size_t n);
-bool ob_mail_put_before(ob_mail *m, const void *bytes, size_t n);
+// Likewise a record, as ob_mail_next gives it. Into one mail by simulators, one after the other.
+bool ob_mail_append_record(ob_mail *m, const ob_mail_record *r);
 // The next record; false: there is none.
 bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out);
 void ob_mail_finish(ob_mail *m);

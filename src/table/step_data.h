@@ -173,6 +173,7 @@ typedef struct ob_step_data {
 	float (*bounds)[6];           // [object]: fat AABB, which holds it until it asks for another
 	ob_motion *result;            // [object]: what its island's solver found
 	uint32_t *effort;             // [object]: its share of what its island cost when it was solved last, as ob_island.work
+	uint32_t *home;               // [object]: of several ranks, 1 + the simulator that was given it last; 0 = none was
 	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none
 	struct ob_neighbours {
 		uint32_t offset, count; // range in neighbour_id; count UINT32_MAX = a query is pending

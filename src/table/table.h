@@ -42,6 +42,7 @@ typedef struct ob_universe_setup {
 	uint32_t workers;       // >= 1
 	uint32_t hulls;         // that objects may have, of the scene and created
 	uint32_t rank, ranks;   // of several machines' (sim/peers.h) this one; ranks 0 or 1: there is one
+	bool shares_contacts;   // of several ranks: as ob_universe_shares_contacts, the same on each
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
@@ -97,6 +98,13 @@ uint32_t ob_universe_simulators(const ob_universe *u);
 uint32_t ob_universe_rank(const ob_universe *u);
 uint32_t ob_universe_ranks(const ob_universe *u);
 bool ob_worker_is_here(const ob_universe *u, uint32_t worker);
+uint32_t ob_universe_rank_of(const ob_universe *u, uint32_t simulator);
+// Whether some rank wants what all pairs keep at any time, not only at the steps of ob_contacts_want.
+bool ob_universe_shares_contacts(const ob_universe *u);
+// Host, paused, each rank's alike: when so many steps are complete this rank is to have what all pairs keep, though its
+// simulators have not found it (sim/holdings.h). Without several ranks it always has.
+void ob_contacts_want(ob_universe *u, uint64_t step);
+uint64_t ob_contacts_wanted(const ob_universe *u); // the last such step
 // What is done so that simulators harm nobody: bits, 1 << ob_harden_measure.
 uint32_t ob_universe_harden(const ob_universe *u);
 // Whether simulators are contained (outbox.h).

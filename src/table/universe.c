@@ -96,6 +96,7 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 	}
 	u->rank = setup->rank;
 	u->ranks = setup->ranks ? setup->ranks : 1;
+	u->shares_contacts = setup->shares_contacts;
 	u->fd = ob_segment_create(e);
 	if (u->fd >= 0 && map_new(u, e) && fill(u, setup, e) && ob_segment_publish(u->fd, name, e)) {
 		ob_pages_track(u);
@@ -171,7 +172,23 @@ uint32_t ob_universe_ranks(const ob_universe *u)
 bool ob_worker_is_here(const ob_universe *u, uint32_t worker)
 {
 	const uint32_t simulators = ob_universe_simulators(u);
-	return worker >= simulators || worker / (simulators / u->ranks) == u->rank;
+	return worker >= simulators || ob_universe_rank_of(u, worker) == u->rank;
+}
+uint32_t ob_universe_rank_of(const ob_universe *u, uint32_t simulator)
+{
+	return simulator / (ob_universe_simulators(u) / u->ranks);
+}
+bool ob_universe_shares_contacts(const ob_universe *u)
+{
+	return u->shares_contacts;
+}
+void ob_contacts_want(ob_universe *u, uint64_t step)
+{
+	__atomic_store_n(&u->control->contacts_step, step, __ATOMIC_RELAXED);
+}
+uint64_t ob_contacts_wanted(const ob_universe *u)
+{
+	return __atomic_load_n(&u->control->contacts_step, __ATOMIC_RELAXED);
 }
 uint32_t ob_universe_harden(const ob_universe *u)
 {

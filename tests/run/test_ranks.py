@@ -63,6 +63,19 @@ class Ranks(program.Case):
 			with open(alone, encoding="utf-8") as a, open(shared, encoding="utf-8") as b:
 				self.assertEqual(a.read(), b.read())
 
+	def test_contacts_are_drawn(self):
+		"""What touches on other ranks, too."""
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "1.6", "--measure", "end", "--fps", "2", "--size", "160x120",
+			"--overlay", "contacts", "--workers", "1"]
+		with tempfile.TemporaryDirectory() as folder:
+			pictures = []
+			for name, ranks in ("alone", 1), ("shared", 3):
+				done = run((ranks, [*words, "--frames", os.path.join(folder, name)]))
+				self.assertEqual(done.returncode, 0, done.stderr)
+				with open(os.path.join(folder, name, "frame-000002.png"), "rb") as f:
+					pictures.append(f.read())
+			self.assertEqual(*pictures)
+
 	def test_goes_on_from_a_checkpoint(self):
 		words = [program.scene("falling_boxes"), "-D", "n=20"]
 		expected = program.report(*words, "--duration", "1", "--workers", "1")["state_hash"]

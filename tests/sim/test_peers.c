@@ -2,6 +2,7 @@
 // and object; and that one has left. The other rank is made up here.
 #include "check.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,12 +55,18 @@ static void close_two(little_scene *s, little_universe *l)
 	free(s);
 }
 
-static bool exchange(ob_peers *p, ob_universe *u, ob_mail *mail)
+static const uint64_t words[3] = { 1, 2, 3 };
+
+static const char *exchange(ob_peers *p, ob_universe *u, ob_mail *mail)
 {
-	static const uint64_t words[3] = { 1, 2, 3 };
-	mail->used = 0;
-	CHECK(ob_mail_append(mail, words, sizeof words));
-	return ob_peers_exchange(p, u, OB_PHASE_ISLANDS, ob_peers_digest(u, OB_PHASE_ISLANDS), mail);
+	const size_t *at;
+	CHECK(ob_peers_begin(mail) && ob_mail_append(mail, words, sizeof words));
+	const ob_peers_head head = { .phase = OB_PHASE_ISLANDS, .digest = ob_peers_digest(u, OB_PHASE_ISLANDS) };
+	const char *all = ob_peers_exchange(p, u, head, mail, &at);
+	for (int r = 0; all && r < 2; r++)
+		CHECK(at[r + 1] - at[r] == sizeof head + sizeof words &&
+		      memcmp(all + at[r] + sizeof head, words, sizeof words) == 0);
+	return all;
 }
 
 static void check_mail(void)
@@ -70,19 +77,19 @@ static void check_mail(void)
 	ob_peers p = { 0, 2, gather, &wire, false };
 	ob_mail mail = { 0 };
 	open_two(&s, &l);
-	const uint64_t both[6] = { 1, 2, 3, 1, 2, 3 };
-	CHECK(exchange(&p, l.u, &mail) && mail.used == sizeof both && memcmp(mail.bytes, both, sizeof both) == 0);
+	CHECK(exchange(&p, l.u, &mail));
 	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_OK && wire.calls == 1);
 	ob_mail_finish(&mail);
 	close_two(s, &l);
 }
 
 // A digest that differs, then the object in which the ranks differ: each tells all of its objects, in words.
-static void check_difference(size_t place, const char *named)
+// first: byte of the head, likewise.
+static void check_difference(size_t first, size_t place, const char *named)
 {
 	little_scene *s;
 	little_universe l;
-	echo wire = { .wrong = { 1 + 2 * sizeof(uint64_t), place } };
+	echo wire = { .wrong = { first, place } };
 	ob_peers p = { 0, 2, gather, &wire, false };
 	ob_mail mail = { 0 };
 	open_two(&s, &l);
@@ -105,10 +112,7 @@ static void check_digest(void)
 	ob_publish_motion(l.u, CRATE, &m);
 	const uint64_t moved = ob_peers_digest(l.u, OB_PHASE_ISLANDS);
 	CHECK(moved != before);
-	const ob_step_data *data = ob_universe_step_data(l.u);
-	ob_pair_record *touching = &data->record[data->pair[data->island_pair[data->island[0].first_pair]].record];
-	ob_pair_state *state = &touching->version[ob_pair_newest(touching, ob_step_count(l.u))];
-	state->impulse[0] = nextafter(state->impulse[0], 1);
+	ob_universe_step_data(l.u)->island[0].members++;
 	CHECK(ob_peers_digest(l.u, OB_PHASE_ISLANDS) != moved);
 	close_two(s, &l);
 }
@@ -155,8 +159,10 @@ static void check_joining(void)
 int main(void)
 {
 	check_mail();
-	check_difference(1 + CRATE * sizeof(uint64_t), "object \"crate\"");
-	check_difference(0, "otherwise");
+	check_difference(1 + offsetof(ob_peers_head, digest), 1 + CRATE * sizeof(uint64_t), "object \"crate\"");
+	check_difference(1 + offsetof(ob_peers_head, digest), 0, "otherwise");
+	check_difference(1 + offsetof(ob_peers_head, phase), 0, "otherwise");
+	check_difference(1 + offsetof(ob_peers_head, damaged), 0, "of a contact of object");
 	check_digest();
 	check_leaving();
 	check_joining();

@@ -1,0 +1,224 @@
+#include "sim/holdings.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/digest.h"
+
+enum { ALL = 0 }; // a holder
+
+struct ob_holdings {
+	uint16_t *holder; // [record]: 1 + a rank, or ALL
+	uint64_t (*digest)[2]; // [record], of each version that is here; 0 = it is not known
+	ob_mail out;
+};
+
+// A record on its way.
+typedef struct parcel {
+	uint32_t pair, reserved; // index
+	ob_pair_state state;
+	double impulse_b[OB_PAIR_ROWS];
+} parcel;
+
+ob_holdings *ob_holdings_create(const ob_universe *u)
+{
+	const uint32_t records = ob_universe_step_data(u)->pairs_max;
+	ob_holdings *h = calloc(1, sizeof *h);
+	if (!h)
+		return NULL;
+	h->holder = calloc(records, sizeof *h->holder);
+	h->digest = calloc(records, sizeof *h->digest);
+	if (h->holder && h->digest)
+		return h;
+	ob_holdings_destroy(h);
+	return NULL;
+}
+
+void ob_holdings_destroy(ob_holdings *h)
+{
+	if (!h)
+		return;
+	free(h->holder);
+	free(h->digest);
+	ob_mail_finish(&h->out);
+	free(h);
+}
+
+static uint64_t digest_of(const ob_pair_state *state)
+{
+	return ob_digest_words(state, sizeof *state);
+}
+
+void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, uint32_t rank)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const bool here = rank == ob_universe_rank(u) || rank == OB_ALL_RANKS;
+	h->holder[record] = rank == OB_ALL_RANKS ? ALL : (uint16_t)(1 + rank);
+	h->digest[record][version] = here ? digest_of(&data->record[record].version[version]) : 0;
+}
+
+// ---- what lies where
+
+// One past the last island of a chunk that is to be solved, or less where the universe is damaged.
+static uint32_t end_of_chunk(const ob_step_data *data, uint32_t chunk)
+{
+	const uint32_t end = data->chunk[chunk + 1];
+	return end < data->count->islands ? end : data->count->islands;
+}
+
+static uint32_t chunks_of(const ob_step_data *data)
+{
+	return data->count->chunks < data->objects_max ? data->count->chunks : 0;
+}
+
+static uint32_t owner_of(const ob_universe *u, uint32_t chunk)
+{
+	return ob_task_owner(chunk, ob_task_workers(u));
+}
+
+// The k-th pair of an island, if its solver reads what it keeps; NULL: it does not, or the universe is damaged.
+static const ob_pair_key *kept_pair(const ob_step_data *data, const ob_island *is, uint32_t k, uint32_t *pair)
+{
+	*pair = is->first_pair + k < data->pairs_max ? data->island_pair[is->first_pair + k] : UINT32_MAX;
+	if (*pair >= ob_pairs_end(data))
+		return NULL;
+	const ob_pair_key *key = &data->pair[*pair];
+	return key->record < data->pairs_max && (key->active || data->count->merged) ? key : NULL;
+}
+
+// The version of before the step; -1: there is none.
+static int version_of(const ob_universe *u, uint32_t record)
+{
+	return ob_pair_newest(&ob_universe_step_data(u)->record[record], ob_step_count(u));
+}
+
+// A body of its own for each of two is the experiments' (ghost.h).
+static size_t parcel_bytes(const ob_universe *u)
+{
+	const uint32_t solver = ob_universe_settings(u)->solver;
+	const bool two = solver == OB_SOLVER_GHOST || solver == OB_SOLVER_LAGGED;
+	return two ? sizeof(parcel) : offsetof(parcel, impulse_b);
+}
+
+static bool pack(ob_holdings *h, const ob_universe *u, uint32_t pair, uint32_t record)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const int version = version_of(u, record);
+	const size_t bytes = parcel_bytes(u);
+	parcel p = { .pair = pair };
+	if (version < 0)
+		return true;
+	p.state = data->record[record].version[version];
+	if (bytes == sizeof p)
+		memcpy(p.impulse_b, data->impulse_b[record][version], sizeof p.impulse_b);
+	return ob_mail_append(&h->out, &p, bytes);
+}
+
+// Takes what another rank has sent, if it is for this one: for all, or for who is noted to hold it by now.
+static void unpack(ob_holdings *h, const ob_universe *u, const char *from, size_t bytes)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const size_t each = parcel_bytes(u);
+	parcel c;
+	for (; bytes >= each; from += each, bytes -= each) {
+		memcpy(&c, from, each);
+		const uint32_t record = c.pair < ob_pairs_end(data) ? data->pair[c.pair].record : OB_NO_RECORD;
+		const int version = record < data->pairs_max ? version_of(u, record) : -1;
+		if (version < 0 || (h->holder[record] != ALL && h->holder[record] != 1 + ob_universe_rank(u)))
+			continue;
+		data->record[record].version[version] = c.state;
+		if (each == sizeof c)
+			memcpy(data->impulse_b[record][version], c.impulse_b, sizeof c.impulse_b);
+		h->digest[record][version] = digest_of(&c.state);
+	}
+}
+
+static bool exchange(ob_holdings *h, ob_universe *u, ob_peers *p, uint64_t what)
+{
+	const size_t *at;
+	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = what }, &h->out, &at);
+	for (uint32_t r = 0; all && r < p->ranks; r++)
+		if (r != p->rank)
+			unpack(h, u, all + at[r] + sizeof(ob_peers_head), at[r + 1] - at[r] - sizeof(ob_peers_head));
+	return all;
+}
+
+// Of an island whose solver is of rank "to": what others hold is theirs no longer. Counts what has moved, wherever.
+static bool move_pairs_of(ob_holdings *h, const ob_universe *u, const ob_island *is, uint32_t to, uint32_t *moved)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	bool fits = true;
+	uint32_t pair;
+	for (uint32_t k = 0; k < is->pairs; k++) {
+		const ob_pair_key *key = kept_pair(data, is, k, &pair);
+		const uint32_t holder = key ? h->holder[key->record] : ALL;
+		if (holder == ALL || holder == 1 + to)
+			continue;
+		++*moved;
+		if (holder == 1 + ob_universe_rank(u))
+			fits &= pack(h, u, pair, key->record);
+		h->holder[key->record] = (uint16_t)(1 + to);
+	}
+	return fits;
+}
+
+bool ob_holdings_move(ob_holdings *h, ob_universe *u, ob_peers *p)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t moved = 0;
+	bool fits = ob_peers_begin(&h->out);
+	for (uint32_t chunk = 0; chunk < chunks_of(data); chunk++) {
+		const uint32_t to = ob_universe_rank_of(u, owner_of(u, chunk)), end = end_of_chunk(data, chunk);
+		for (uint32_t i = data->chunk[chunk]; i < end; i++)
+			fits &= move_pairs_of(h, u, &data->island[i], to, &moved);
+	}
+	if (!fits)
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+	return !moved || exchange(h, u, p, OB_PEERS_MOVE);
+}
+
+bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	bool fits = ob_peers_begin(&h->out);
+	for (uint32_t pair = 0; pair < ob_pairs_end(data); pair++) {
+		const ob_pair_key *k = &data->pair[pair];
+		if (k->a == k->b || k->record >= data->pairs_max || h->holder[k->record] == ALL)
+			continue;
+		if (h->holder[k->record] == 1 + p->rank)
+			fits &= pack(h, u, pair, k->record);
+		h->holder[k->record] = ALL;
+	}
+	if (!fits)
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+	return exchange(h, u, p, OB_PEERS_GATHER);
+}
+
+static uint32_t damaged_in(const ob_holdings *h, const ob_universe *u, const ob_island *is)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t pair;
+	for (uint32_t k = 0; k < is->pairs; k++) {
+		const ob_pair_key *key = kept_pair(data, is, k, &pair);
+		const int version = key ? version_of(u, key->record) : -1;
+		const uint64_t expected = version < 0 ? 0 : h->digest[key->record][version];
+		if (expected && digest_of(&data->record[key->record].version[version]) != expected)
+			return key->a < data->objects_max ? key->a : 0;
+	}
+	return OB_NO_OBJECT;
+}
+
+uint32_t ob_holdings_damaged(const ob_holdings *h, const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	for (uint32_t chunk = 0; chunk < chunks_of(data); chunk++) {
+		const uint32_t end = ob_worker_is_here(u, owner_of(u, chunk)) ? end_of_chunk(data, chunk) : 0;
+		for (uint32_t i = data->chunk[chunk]; i < end; i++) {
+			const uint32_t object = damaged_in(h, u, &data->island[i]);
+			if (object != OB_NO_OBJECT)
+				return object;
+		}
+	}
+	return OB_NO_OBJECT;
+}

@@ -1,0 +1,39 @@
+// Where what pairs keep between steps is, of several ranks (peers.h): a record's contents are with the rank that solved
+// its island last, and nowhere else.
+//
+//                          rank 0     rank 1     rank 2
+//   island A, solved last    x                              on all: that the record is there, and whether they touch
+//   island B                            x
+//   B is rank 2's now                   x  ------->  x      before it is solved (move)
+//   all are wanted           x <------> x <------->  x      for a checkpoint, say (gather)
+//
+// All ranks know who holds what, for all know who has solved what. Who holds contents keeps their digest beside them:
+// in memory that simulators do not reach, so damage is found before it becomes a result.
+//
+// Thread-safety: the arranger's.
+#ifndef OB_SIM_HOLDINGS_H
+#define OB_SIM_HOLDINGS_H
+
+#include "sim/peers.h"
+
+typedef struct ob_holdings ob_holdings;
+
+// At the start all ranks have all. NULL: no memory.
+ob_holdings *ob_holdings_create(const ob_universe *u);
+void ob_holdings_destroy(ob_holdings *h); // NULL is allowed
+
+enum { OB_ALL_RANKS = UINT32_MAX };
+// This version of a record has new contents, which lie there if they are this rank's: those of the rank whose simulator
+// has found them, or of all.
+void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, uint32_t rank);
+
+// Before the islands of a step are solved, by all ranks: contents go to who solves them next. false: the step has
+// failed.
+bool ob_holdings_move(ob_holdings *h, ob_universe *u, ob_peers *p);
+// Between two steps, by all ranks: all of them have all contents. false: the step has failed.
+bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p);
+// One of the objects of a contact that a simulator of this rank is to solve, and whose contents are no longer what they
+// were; OB_NO_OBJECT: none is.
+uint32_t ob_holdings_damaged(const ob_holdings *h, const ob_universe *u);
+
+#endif

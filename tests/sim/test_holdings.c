@@ -1,0 +1,112 @@
+// What pairs keep, of several ranks: it goes to who needs it next and to no one else, whole; and damage to it is found.
+// The other rank is made up here.
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/holdings.h"
+#include "sim/little_universe.h"
+
+// Says as rank 1 what it begins with as rank 0, and then what rank 0 has said before.
+typedef struct other {
+	unsigned calls;
+	char said[1 << 12], all[1 << 13];
+	size_t kept, at[3];
+} other;
+
+static const char *gather(void *wire, const void *mine, size_t n, const size_t **at)
+{
+	other *w = wire;
+	const size_t head = sizeof(ob_peers_head);
+	w->calls++;
+	CHECK(n >= head && n - head <= sizeof w->said && n + head + w->kept <= sizeof w->all);
+	memcpy(w->all, mine, n);
+	memcpy(w->all + n, mine, head);
+	memcpy(w->all + n + head, w->said, w->kept);
+	w->at[1] = n;
+	w->at[2] = n + head + w->kept;
+	w->kept = n - head;
+	memcpy(w->said, (const char *)mine + head, w->kept);
+	*at = w->at;
+	return w->all;
+}
+
+typedef struct fixture {
+	little_scene *s;
+	little_universe l;
+	ob_holdings *h;
+	other wire;
+	ob_peers p;
+	uint32_t record;
+	int version;
+	ob_pair_state *state;
+} fixture;
+
+// A crate on the ground, about to be solved again.
+static void open_crate(fixture *f)
+{
+	f->s = little_scene_new();
+	ob_world_ground(&f->s->world);
+	ob_world_box(&f->s->world, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
+	little_open(&f->l, f->s);
+	little_run(&f->l, 5);
+	const ob_step_data *data = ob_universe_step_data(f->l.u);
+	const ob_pair_key *key = &data->pair[data->island_pair[data->island[0].first_pair]];
+	CHECK(data->count->chunks == 1 && key->active);
+	f->record = key->record;
+	f->version = ob_pair_newest(&data->record[f->record], ob_step_count(f->l.u));
+	f->state = &data->record[f->record].version[f->version];
+	f->h = ob_holdings_create(f->l.u);
+	f->wire = (other){ .calls = 0 };
+	f->p = (ob_peers){ 0, 2, gather, &f->wire, false };
+	ob_task_reset(f->l.u, 1, 1);
+}
+
+static void close_crate(fixture *f)
+{
+	ob_holdings_destroy(f->h);
+	little_close(&f->l);
+	free(f->s);
+}
+
+static void check_damage(void)
+{
+	fixture f;
+	open_crate(&f);
+	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, 0);
+	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
+	f.state->impulse[0] = nextafter(f.state->impulse[0], 1);
+	CHECK(ob_holdings_damaged(f.h, f.l.u) == 0); // the ground, the first of the two
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, 1); // it is another's
+	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
+	close_crate(&f);
+}
+
+// To all, once; then from another rank back to this one, once.
+static void check_ways(void)
+{
+	fixture f;
+	open_crate(&f);
+	const ob_pair_state before = *f.state;
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // all have it
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, 0);
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // its solver has it
+	CHECK(ob_holdings_gather(f.h, f.l.u, &f.p) && f.wire.calls == 1 && f.wire.kept > sizeof before);
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, 1);
+	memset(f.state, 0, sizeof *f.state);
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2 && f.wire.kept == 0);
+	CHECK(memcmp(f.state, &before, sizeof before) == 0);
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2);
+	f.state->gap[0] = nextafter(f.state->gap[0], 1);
+	CHECK(ob_holdings_damaged(f.h, f.l.u) == 0);
+	close_crate(&f);
+}
+
+int main(void)
+{
+	check_damage();
+	check_ways();
+	return check_end();
+}
