@@ -88,20 +88,28 @@ def ranks_of(launcher):
 	return [[pid, *below(pid)] for pid in sorted(p for p in below(launcher) if name_of(p) == "obsim")]
 
 
-def traces():
-	return {path for pattern in ("/dev/shm/*", "/tmp/ompi.*/*") for path in glob.glob(pattern)}
+def traces(pids):
+	"""Files that these processes leave unless somebody removes them: what they share, and their launcher's folder."""
+	found = {f"/tmp/ompi.{os.uname().nodename}.{os.getuid()}/pid.{pids[0]}"}
+	for pid in pids:
+		try:
+			with open(f"/proc/{pid}/maps", encoding="utf-8") as f:
+				found |= {line.split()[-1] for line in f if "/dev/shm/" in line and "(deleted)" not in line}
+		except OSError:
+			pass
+	return found
 
 
 def alive(pids):
 	return [pid for pid in pids if (stat(pid) or (0, "Z"))[1] != "Z"]
 
 
-def what_is_left(pids, before, folder, ranks, hit):
-	"""After a minute at most, for other runs come and go, too. Who is killed while it writes cannot take back what it has begun."""
+def what_is_left(pids, files, folder, ranks, hit):
+	"""After a minute at most. Who is killed while it writes cannot take back what it has begun."""
 	kept = {file_of(folder, r) for r in range(ranks)} | {file_of(folder, hit) + ".part"}
 	end = time.monotonic() + 60
 	while True:
-		left = [*alive(pids), *(traces() - before), *(set(glob.glob(os.path.join(folder, "*"))) - kept)]
+		left = [*alive(pids), *filter(os.path.exists, files), *(set(glob.glob(os.path.join(folder, "*"))) - kept)]
 		if not left or time.monotonic() > end:
 			return left
 		time.sleep(.01)
@@ -118,14 +126,15 @@ def whole(obsim, path):
 def kill_one(obsim, chance, name, took, folder):
 	"""Who was killed, after how many seconds the run had ended (s), what is wrong, and the checkpoint of a rank that was not hit;
 	None: it had ended before, or had not begun to step."""
-	ranks, workers, before = chance.randint(2, 4), chance.randint(1, 2), traces()
+	ranks, workers = chance.randint(2, 4), chance.randint(1, 2)
 	run = start(obsim, ranks, [*words_of(KILLED, name), "--workers", workers, "--checkpoint", file_of(folder, 0), "--every", ".1"])
 	time.sleep(chance.uniform(0, took[name]))
 	processes = ranks_of(run.pid)
 	if len(processes) < ranks or run.poll() is not None:
 		run.communicate(timeout=PATIENCE)
 		return None
-	hit, everyone = chance.randrange(ranks), below(run.pid)
+	hit, everyone = chance.randrange(ranks), [run.pid, *below(run.pid)]
+	files = traces(everyone)
 	victim = chance.choice(processes[hit])
 	who, at = name_of(victim), time.monotonic()
 	try:
@@ -134,17 +143,17 @@ def kill_one(obsim, chance, name, took, folder):
 		pass
 	run.communicate(timeout=PATIENCE)
 	ended, wrong = time.monotonic() - at, []
-	left = what_is_left(everyone, before, folder, ranks, hit)
+	left = what_is_left(everyone, files, folder, ranks, hit)
 	if left:
 		wrong.append(f"left: {left}")
 	if run.returncode == 0:
 		return None
-	files = [file_of(folder, r) for r in range(ranks) if r != hit]
-	if not any(map(os.path.exists, files)):
+	checkpoints = [file_of(folder, r) for r in range(ranks) if r != hit]
+	if not any(map(os.path.exists, checkpoints)):
 		return None
-	wrong += [f"no checkpoint: {f}" for f in files if not whole(obsim, f)]
+	wrong += [f"no checkpoint: {f}" for f in checkpoints if not whole(obsim, f)]
 	who = "arranger" if who == f"sim {ranks * workers}" else "simulator" if who.startswith("sim ") else {"obsim": "rank", "obsim-fork": "fork server"}.get(who, who)
-	return who, ended, wrong, chance.choice(files)
+	return who, ended, wrong, chance.choice(checkpoints)
 
 
 def kills(obsim, count):
@@ -172,7 +181,7 @@ def kills(obsim, count):
 		if faults:
 			print(f"{name}, {who} killed: {'; '.join(faults)}", flush=True)
 	ended.sort()
-	print(f"{dealt.total()} kills ({', '.join(f'{n} of a {who}' for who, n in dealt.items())}), {wrong} wrong; ended after "
+	print(f"{dealt.total()} kills ({', '.join(f'{who} {n}' for who, n in dealt.items())}), {wrong} wrong; ended after "
 		f"{ended[len(ended) // 2]:.2f} s in the median, {ended[-1]:.2f} s at most")
 	return wrong
 

@@ -405,8 +405,8 @@ static bool write_report(const run *r, const ob_report *p, ob_error *e)
 	return !q->json || write_json(q->json, p, e);
 }
 
-// Whether it is kept as it was left. Several ranks are left in the middle of a step, each in its own: there the last that
-// all have come to counts.
+// Whether it is kept as it was left. Several ranks are left in the middle of a step, each in its own: there the last
+// that all have come to counts.
 static bool is_end_kept(const run *r, bool done, bool interrupted)
 {
 	return r->checkpoints && r->kept != r->now.step && (done || (interrupted && r->ranks.ranks < 2));
@@ -481,8 +481,8 @@ static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 	return r->scene;
 }
 
-// One universe on several machines: simulators in processes that hand over what they find, an end where one dies, and on
-// this rank no more than that and its checkpoints; what is made of the run is rank 0's.
+// One universe on several machines: simulators in processes that hand over what they find, an end where one dies, and
+// on this rank no more than that and its checkpoints; what is made of the run is rank 0's.
 static bool share(run *r, ob_ranks ranks, ob_error *e)
 {
 	ob_run_request *q = &r->request;

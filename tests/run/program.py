@@ -19,6 +19,9 @@ OBSIM = os.environ["OBSIM"]
 SCENES = os.environ["SCENES"]
 MESHES = os.environ.get("MESHES") # whether obsim can read them
 FOR_EVER = "7e7"  # s to simulate, about as many as there may be: at rest, millions of steps pass in a second
+RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}  # for mpirun, on however few cores
+OLDER_PROCESSOR = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"  # what the C library believes with it (GLIBC_TUNABLES)
 PATIENCE = 600  # s, for one call; a sanitizer slows it down some ten times, and so may whoever else uses the machine
 
 LEAK_DETECTOR_FAILED = "LeakSanitizer has encountered a fatal error"

@@ -8,7 +8,7 @@ import unittest
 
 import program
 
-OTHER = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"}
+OTHER = {**os.environ, "GLIBC_TUNABLES": program.OLDER_PROCESSOR}
 VALUES = "import math; print([f(.001 * i) for i in range(1, 20000) for f in (math.sin, math.cos, math.exp, math.atan, math.log)])"
 RUNS = [
 	("falling_boxes", ["-D", "n=100", "--duration", "2"]),
