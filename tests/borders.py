@@ -35,14 +35,14 @@ ARROWS = {
     'measure': 'motion base',
     'reference': 'motion base',
     'plot': 'base',
-    'experiment': 'plot reference base',
+    'experiment': 'plot reference ranks base',
     'compare': 'experiment plot reference settings base',
     'world': 'hull motion elementary base',
     'engine': 'world sim ode table settings measure motion base',
     'lab': 'reference engine world plot experiment settings measure motion base',
     'render': 'measure mesh scene motion base',
     'record': 'measure mesh scene table settings motion base',
-    'paper': 'host measure render reference plot experiment scene table settings base',
+    'paper': 'host measure render reference plot experiment scene table settings ranks base',
     'serve': 'record measure mesh host scene table settings motion base',
     'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
 }
@@ -71,7 +71,7 @@ DUTIES = [
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|lab/attempt|paper/attempt|record/recording)\.c$', True),
+     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

@@ -13,6 +13,7 @@
 #include "lab/lab.h"
 #include "lab/report.h"
 #include "lab/tables.h"
+#include "ranks/ranks.h"
 
 // What the command line asks for
 typedef struct request {
@@ -192,12 +193,15 @@ int ob_command_lab(const ob_arguments *a)
 	ob_results results = { 0 }, asked = { 0 };
 	ob_error e;
 	int code = OB_EXIT_OK;
+	const bool first = ob_ranks_started().rank == 0; // who has the records, and tells of them
 	if (!r || !read_request(r, a, &e))
 		code = ob_command_fail(OB_EXIT_USAGE, r ? e.text : "out of memory");
-	else if (r->list)
+	else if (r->list && first)
 		ob_list_print(stdout, &r->plan.cases);
-	else if (!measure(r, &results, &e) || !ob_lab_report(&results, r->out, &e))
+	else if (!r->list && (!measure(r, &results, &e) || (first && !ob_lab_report(&results, r->out, &e))))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
+	else if (r->list || !first)
+		code = OB_EXIT_OK;
 	else if (!pick(&r->plan, &results, &asked))
 		code = ob_command_fail(OB_EXIT_FAILED, "out of memory");
 	else

@@ -9,6 +9,7 @@
 #include "paper/claims.h"
 #include "paper/paper.h"
 #include "paper/report.h"
+#include "ranks/ranks.h"
 
 enum { OBJECTS_MAX = 4096 }; // each is a process
 
@@ -70,11 +71,12 @@ int ob_command_paper(const ob_arguments *a)
 	plan.objects = (uint32_t)objects;
 	plan.experiments = (uint32_t)experiments;
 	int code;
+	const bool first = ob_ranks_started().rank == 0; // who has the records, and tells of them
 	if (!ob_paper_run(&plan, ob_version_commit, out, a->value[OB_OPTION_FRESH], &r, &e) ||
-	    !ob_paper_report(&r, out, &e))
+	    (first && !ob_paper_report(&r, out, &e)))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	else
-		code = tell(&r, out, a->value[OB_OPTION_JSON_OUT]);
+		code = !first ? OB_EXIT_OK : tell(&r, out, a->value[OB_OPTION_JSON_OUT]);
 	ob_records_finish(&r.records);
 	return code;
 }

@@ -135,7 +135,7 @@ bool ob_comparison_read_points(ob_comparison *c, const char *vary, ob_error *e);
 // Keys, worker counts, and what is skipped, of points whose objects, steps and seed are known.
 bool ob_comparison_plan(ob_comparison *c, ob_error *e);
 // Runs what the folder (NULL: nothing is kept) does not have; fresh: all. false and e: interrupted, or the folder
-// cannot be written.
+// cannot be written. On several ranks: as ob_experiment_run.
 bool ob_comparison_run(ob_comparison *c, const char *commit, const char *folder, bool fresh, ob_error *e);
 void ob_comparison_finish(ob_comparison *c);
 // The command line of one run, without the shell's quotes. Each string and the array malloc'd; NULL: no memory.

@@ -10,6 +10,7 @@
 //	ob_experiment_run ------>  one child process a trial (process.h): limits of time, crashes, Ctrl-C; a line of
 //	    |     ^                progress (progress.h) and, before anything runs, how long it will take
 //	    v     |                what the records have already is not run again
+//	    |     |                on several ranks at once, where mpirun has started them (spread.h)
 //	ob_records  <---------->   DIR/results.csv: a line for each trial, appended as trials end
 //	    |
 //	    v
@@ -148,12 +149,16 @@ bool ob_records_write(const ob_records *r, const ob_experiment *x, const char *p
 // ---- running
 
 // Makes the folder, with all above it, and reads its results.csv. Results of another commit or machine, or of what is
-// no results file, get a name of their own, and it is said so. folder NULL: nothing is kept.
+// no results file, get a name of their own, and it is said so. folder NULL: nothing is kept. On another rank than the
+// first: neither made nor read.
 bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *r, ob_error *e);
 // Runs what r does not have yet, and keeps it in r and in folder/results.csv (NULL: nowhere). Of the same case,
 // configuration and seed nothing is run again after a failure, but for what had less time than there is now. Says
 // before it begins how long it will take. false and e: interrupted, or the file cannot be written; what was done until
 // then is in both. From a process without other threads.
+// On several ranks (ranks/ranks.h) each calls it with the same schedule. The first gets all records, the same as alone but for
+// what they say of time, and writes the file; the others return, with none, when all is done. A trial waits for an earlier
+// one by which it might become needless.
 bool ob_experiment_run(const ob_experiment *x, const ob_trials *s, ob_records *r, const char *folder, ob_error *e);
 
 #endif

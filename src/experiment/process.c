@@ -40,6 +40,7 @@ typedef struct child {
 	int exit, answer, said; // file descriptors: readable at its exit, its answer, its standard error
 	double begun;
 	ob_process_cost cost; // so far
+	bool called_off; // by hear
 } child;
 
 static volatile sig_atomic_t interrupted;
@@ -75,6 +76,12 @@ void ob_processes_end(void)
 bool ob_processes_interrupted(void)
 {
 	return interrupted != 0;
+}
+
+void ob_processes_wait(int ear, double s)
+{
+	const struct timespec time = { (time_t)s, (long)(fmod(s, 1) * 1e9) };
+	ppoll(&(struct pollfd){ .fd = ear, .events = POLLIN }, 1, &time, &mask_before);
 }
 
 // A group of its own: Ctrl-C at a terminal reaches the parent alone, which decides. The child does not outlive it, and
@@ -182,21 +189,24 @@ static double time_left(const ob_process *p, child *c)
 // Waits for the child's end; false: its time is over, or the parent's is.
 static bool await(const ob_process *p, child *c, tail *t)
 {
-	struct pollfd polls[] = { { .fd = c->exit, .events = POLLIN }, { .fd = c->said, .events = POLLIN } };
+	struct pollfd polls[] = { { .fd = c->exit, .events = POLLIN },
+				  { .fd = c->said, .events = POLLIN },
+				  { .fd = p->hear ? p->ear : -1, .events = POLLIN } };
 	for (;;) {
 		double left = time_left(p, c), nap = fmax(fmin(left, tick_s), shortest_nap_s);
 		struct timespec time = { .tv_nsec = (long)(nap * 1e9) };
-		int n = ppoll(polls, 2, &time, &mask_before);
+		int n = ppoll(polls, 3, &time, &mask_before);
 		if (interrupted)
 			return false;
 		if (n > 0 && polls[1].revents && !listen_to(c->said, t))
 			polls[1].fd = -1;
 		if (n > 0 && polls[0].revents)
 			return true;
-		if (left <= 0)
+		c->called_off = n > 0 && polls[2].revents && !p->hear(p->of);
+		if (left <= 0 || c->called_off)
 			return false;
 		if (p->tick)
-			p->tick(p->tick_of);
+			p->tick(p->of);
 	}
 }
 
@@ -258,7 +268,7 @@ static ob_process_end finish(const ob_process *p, child *c, bool ended, tail *t,
 		end = OB_PROCESS_GAVE_UP;
 	if (told && !v.fine)
 		ob_fail(e, "%s", v.why.text);
-	if (!ended && interrupted) {
+	if (!ended && (interrupted || c->called_off)) {
 		ob_fail(e, "interrupted");
 		end = OB_PROCESS_INTERRUPTED;
 	} else if (!ended) {

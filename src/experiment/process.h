@@ -19,7 +19,11 @@ typedef struct ob_process {
 	size_t size; // of the answer; plain data
 	double cpu_limit_s, wall_limit_s; // 0 = none
 	void (*tick)(void *of); // a few times a second while the child runs; NULL = not wanted
-	void *tick_of;
+	// While the child runs, as soon as there is something to read from "ear"; false: the child shall end. NULL =
+	// not wanted
+	bool (*hear)(void *of);
+	int ear; // file descriptor
+	void *of;
 } ob_process;
 
 typedef enum ob_process_end {
@@ -27,7 +31,7 @@ typedef enum ob_process_end {
 	OB_PROCESS_GAVE_UP, // work was false
 	OB_PROCESS_CRASHED, // a signal ended it, or it ended without an answer
 	OB_PROCESS_OUT_OF_TIME,
-	OB_PROCESS_INTERRUPTED,
+	OB_PROCESS_INTERRUPTED, // by a signal to this process, or by hear
 	OB_PROCESS_NOT_STARTED
 } ob_process_end;
 
@@ -43,6 +47,9 @@ ob_process_end ob_process_run(const ob_process *p, void *answer, ob_process_cost
 void ob_processes_begin(void);
 void ob_processes_end(void);
 bool ob_processes_interrupted(void);
+// Between both: waits until there is something to read from a file descriptor, or for some seconds, or for such a
+// signal.
+void ob_processes_wait(int ear, double s);
 
 typedef struct ob_program_result {
 	int code; // exit status; 128 + number if a signal ended it

@@ -1,4 +1,4 @@
-// The trials of an experiment, one after the other, each in a process of its own.
+// The trials of an experiment, one after the other on each rank, each in a process of its own.
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,8 +11,10 @@
 #include "experiment/process.h"
 #include "experiment/progress.h"
 #include "experiment/result_line.h"
+#include "experiment/spread.h"
+#include "experiment/trial.h"
 
-static const double wall_for_cpu = 4; // a busy machine is not the trial's fault
+static const double tick_s = .2;
 static const double worth_telling_s = 5; // shorter runs are over before their estimate is read
 
 // ---- schedule
@@ -80,7 +82,7 @@ bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *
 	*r = (ob_records){ 0 };
 	ob_provenance_machine(r->machine, sizeof r->machine);
 	ob_provenance_commit(x->commit, r->commit, sizeof r->commit);
-	if (!folder)
+	if (!folder || ob_ranks_started().rank > 0) // the records are the first's
 		return true;
 	if (!ob_folder_make(folder, e))
 		return false;
@@ -104,31 +106,40 @@ typedef struct timing {
 	double ahead; // s, as guessed
 } timing;
 
+typedef enum trial_state { AHEAD, UNDER_WAY, DONE } trial_state;
+
+// A rank, and what it is at
+typedef struct seat {
+	bool joined, busy;
+	size_t trial;
+	double begun; // s
+} seat;
+
 typedef struct session {
 	const ob_experiment *experiment;
 	const ob_trials *trials;
 	ob_records *records;
 	FILE *file; // NULL: nothing is kept
 	const char *path;
+	trial_state *state; // [trial]
+	size_t first; // all trials before it are done
 	size_t *timing_of; // [trial]
 	timing *timing;
 	size_t timings;
 	size_t done, all;
-	double begun; // of the trial under way, s
-	char what[OB_CASE_KEY + OB_CONFIGURATION_KEY + 32];
+	uint32_t seats;
+	seat *seat; // [seats]: of each rank, this one first
+	ob_courier *courier; // to the others; NULL: there are none
+	bool failed; // and why, while a trial of this rank's ran
+	ob_error why;
 	ob_progress_view view;
 } session;
-
-static double wall_limit(const ob_experiment *x)
-{
-	return wall_for_cpu * x->limit_s;
-}
 
 // A record that came of less time than a trial has now
 static bool had_less(const ob_experiment *x, const ob_record *r)
 {
 	return r->failure == OB_FAILURE_TIME &&
-	       (x->limit_s <= 0 || (r->took_cpu_s < x->limit_s && r->took_s < wall_limit(x)));
+	       (x->limit_s <= 0 || (r->took_cpu_s < x->limit_s && r->took_s < ob_trial_wall_limit(x)));
 }
 
 // Does the trial have its record, or is a failure of an earlier repeat with the same seed known?
@@ -156,14 +167,18 @@ static size_t find_timing(session *s, const char *of)
 static bool prepare(session *s, ob_error *e)
 {
 	size_t n = s->trials->count;
+	s->state = calloc(n + 1, sizeof *s->state);
 	s->timing_of = calloc(n + 1, sizeof *s->timing_of);
 	s->timing = calloc(n + 1, sizeof *s->timing);
-	if (!s->timing_of || !s->timing)
+	s->seat = calloc(s->seats, sizeof *s->seat);
+	if (!s->state || !s->timing_of || !s->timing || !s->seat)
 		return ob_fail(e, "out of memory");
+	s->seat[0].joined = true;
 	for (size_t i = 0; i < n; i++) {
 		const ob_trial *t = &s->trials->trial[i];
 		s->timing_of[i] = find_timing(s, t->of);
-		if (is_done(s->experiment, s->records, t))
+		s->state[i] = is_done(s->experiment, s->records, t) ? DONE : AHEAD;
+		if (s->state[i] == DONE)
 			continue;
 		s->timing[s->timing_of[i]].ahead += t->guess_s;
 		s->all++;
@@ -175,7 +190,7 @@ static bool prepare(session *s, ob_error *e)
 static double guess_left(const session *s)
 {
 	timing all = { 0 };
-	double left = 0;
+	double left = 0, now = ob_clock_wall();
 	for (size_t i = 0; i < s->timings; i++) {
 		all.took += s->timing[i].took;
 		all.guessed += s->timing[i].guessed;
@@ -184,13 +199,20 @@ static double guess_left(const session *s)
 		const timing *p = s->timing[i].guessed > 0 ? &s->timing[i] : &all;
 		left += s->timing[i].ahead * (p->guessed > 0 ? p->took / p->guessed : 1);
 	}
-	return fmax(left - (ob_clock_wall() - s->begun), 0);
+	for (uint32_t i = 0; i < s->seats; i++)
+		left -= s->seat[i].busy ? now - s->seat[i].begun : 0;
+	return fmax(left, 0) / s->seats;
 }
 
 static void tick(void *of)
 {
 	session *s = of;
-	ob_progress_show(&s->view, (double)s->done, (double)s->all, guess_left(s), s->what);
+	char what[OB_CASE_KEY + OB_CONFIGURATION_KEY + 32] = "the other ranks";
+	for (uint32_t i = s->seats; i-- > 0;)
+		if (s->seat[i].busy)
+			snprintf(what, sizeof what, "%s, %s", s->trials->trial[s->seat[i].trial].of,
+				 s->trials->trial[s->seat[i].trial].configuration);
+	ob_progress_show(&s->view, (double)s->done, (double)s->all, guess_left(s), what);
 }
 
 static void announce(const session *s)
@@ -202,30 +224,7 @@ static void announce(const session *s)
 		fprintf(stderr, "obsim: %zu runs, about %s\n", s->all, time);
 }
 
-// ---- one trial
-
-typedef struct job {
-	const ob_experiment *experiment;
-	const ob_trial *trial;
-} job;
-
-static bool work(const void *with, void *answer, ob_error *e)
-{
-	const job *j = with;
-	return j->experiment->run(j->trial, answer, e);
-}
-
-static ob_record begin_record(const session *s, const ob_trial *t)
-{
-	ob_record r = { .repeat = t->repeat, .seed = t->seed };
-	memcpy(r.of, t->of, sizeof r.of);
-	memcpy(r.configuration, t->configuration, sizeof r.configuration);
-	memcpy(r.machine, s->records->machine, sizeof r.machine);
-	memcpy(r.commit, s->records->commit, sizeof r.commit);
-	for (int i = 0; i < OB_METRICS; i++)
-		r.metric[i] = NAN;
-	return r;
-}
+// ---- which trial comes next
 
 // The record of one so coarse that the trial takes at least as long, and that ran out of the time there is. NULL: none
 static const ob_record *coarser_out_of_time(const session *s, const ob_trial *t)
@@ -239,48 +238,39 @@ static const ob_record *coarser_out_of_time(const session *s, const ob_trial *t)
 	return NULL;
 }
 
-// false and e: it is not the trial that failed.
-static bool try(session *s, const ob_trial *t, ob_record *r, ob_error *e)
+static bool is_repeat(const ob_trial *a, const ob_trial *b)
 {
-	static const ob_failure failures[] = { [OB_PROCESS_GAVE_UP] = OB_FAILURE_ERROR,
-					       [OB_PROCESS_CRASHED] = OB_FAILURE_CRASH,
-					       [OB_PROCESS_OUT_OF_TIME] = OB_FAILURE_TIME };
-	const ob_experiment *x = s->experiment;
-	const ob_record *coarser = coarser_out_of_time(s, t);
-	if (coarser) {
-		r->failure = coarser->failure;
-		memcpy(r->reason, coarser->reason, sizeof r->reason);
-		r->took_s = coarser->took_s;
-		r->took_cpu_s = coarser->took_cpu_s;
-		return true;
-	}
-	job j = { x, t };
-	ob_process p = { .work = work,
-			 .with = &j,
-			 .size = sizeof *r,
-			 .cpu_limit_s = x->limit_s,
-			 .wall_limit_s = wall_limit(x),
-			 .tick = x->quiet ? NULL : tick,
-			 .tick_of = s };
-	ob_process_cost cost;
-	ob_error why = { "" };
-	if (!x->quiet)
-		tick(s);
-	ob_process_end end = ob_process_run(&p, r, &cost, &why);
-	r->took_s = cost.wall_s;
-	r->took_cpu_s = cost.cpu_s;
-	if (end == OB_PROCESS_INTERRUPTED || end == OB_PROCESS_NOT_STARTED)
-		return ob_fail(e, "%s", why.text);
-	if (end == OB_PROCESS_ANSWERED) {
-		r->failure = *r->reason ? OB_FAILURE_OUTCOME : OB_FAILURE_NONE;
-	} else {
-		r->failure = failures[end];
-		snprintf(r->reason, sizeof r->reason, "%.159s", *why.text ? why.text : "it failed without a word");
-	}
-	for (char *at = r->reason; (at = strpbrk(at, "\r\n"));)
-		*at = ' '; // a record is a line of the file
-	return true;
+	return a->seed == b->seed && !strcmp(a->configuration, b->configuration) && !strcmp(a->of, b->of);
 }
+
+// May what comes of an earlier one make this one needless? Then that must have come first, as it has where one rank
+// runs all.
+static bool depends_on(const session *s, const ob_trial *t, const ob_trial *earlier)
+{
+	const ob_experiment *x = s->experiment;
+	if (strcmp(t->of, earlier->of) != 0)
+		return false;
+	const ob_record r = ob_trial_record(s->records, earlier);
+	return is_repeat(t, earlier) || (x->is_finer && x->is_finer(t, &r));
+}
+
+// The count: what is ahead, if anything, waits for what is under way.
+static size_t find_next(session *s)
+{
+	const ob_trial *t = s->trials->trial;
+	while (s->first < s->trials->count && s->state[s->first] == DONE)
+		s->first++;
+	for (size_t i = s->first; i < s->trials->count; i++) {
+		bool free = s->state[i] == AHEAD;
+		for (size_t j = s->first; j < i && free; j++)
+			free = s->state[j] == DONE || !depends_on(s, &t[i], &t[j]);
+		if (free)
+			return i;
+	}
+	return s->trials->count;
+}
+
+// ---- what comes of it
 
 // What a trial with less time had left is no longer true.
 static void forget(ob_records *records, const ob_trial *t)
@@ -307,65 +297,195 @@ static bool keep(session *s, const ob_trial *t, const ob_record *r, ob_error *e)
 	       ob_fail(e, "%s cannot be written: %s", s->path, strerror(errno));
 }
 
-static bool run_trial(session *s, size_t i, ob_error *e)
+static bool complete(session *s, size_t i, const ob_record *r, double took, ob_error *e)
 {
 	const ob_trial *t = &s->trials->trial[i];
-	if (is_done(s->experiment, s->records, t))
-		return true;
-	snprintf(s->what, sizeof s->what, "%s, %s", t->of, t->configuration);
-	s->begun = ob_clock_wall();
-	ob_record r = begin_record(s, t);
-	if (!try(s, t, &r, e) || !keep(s, t, &r, e))
+	if (!keep(s, t, r, e))
 		return false;
 	timing *p = &s->timing[s->timing_of[i]];
-	p->took += ob_clock_wall() - s->begun;
+	p->took += took;
 	p->guessed += t->guess_s;
 	p->ahead -= t->guess_s;
+	s->state[i] = DONE;
 	s->done++;
 	// a failure makes the repeats that follow needless
-	for (size_t j = i + 1; r.failure && j < s->trials->count; j++) {
+	for (size_t j = i + 1; r->failure && j < s->trials->count; j++) {
 		const ob_trial *later = &s->trials->trial[j];
-		if (later->seed != t->seed || strcmp(later->configuration, t->configuration) ||
-		    strcmp(later->of, t->of))
+		if (s->state[j] == DONE || !is_repeat(later, t))
 			continue;
 		s->timing[s->timing_of[j]].ahead -= later->guess_s;
+		s->state[j] = DONE;
 		s->done++;
 	}
 	return true;
 }
 
-static bool run_all(session *s, ob_error *e)
+static bool end_trial(session *s, uint32_t rank, const ob_record *r, ob_error *e)
+{
+	seat *at = &s->seat[rank];
+	at->busy = false;
+	return complete(s, at->trial, r, ob_clock_wall() - at->begun, e);
+}
+
+// ---- who runs it
+
+// Gives a rank the next trial, if there is one.
+static bool hand_out(session *s, uint32_t rank, ob_error *e)
+{
+	for (;;) {
+		size_t i = find_next(s);
+		if (i == s->trials->count)
+			return true;
+		const ob_trial *t = &s->trials->trial[i];
+		const ob_record *coarser = coarser_out_of_time(s, t);
+		if (!coarser) {
+			s->state[i] = UNDER_WAY;
+			s->seat[rank] = (seat){ true, true, i, ob_clock_wall() };
+			return rank == 0 ||
+			       ob_courier_send(s->courier, rank,
+					       &(ob_spread_message){ .kind = OB_SPREAD_RUN, .trial = i }, e);
+		}
+		ob_record r = ob_trial_record(s->records, t);
+		r.failure = coarser->failure;
+		memcpy(r.reason, coarser->reason, sizeof r.reason);
+		r.took_s = coarser->took_s;
+		r.took_cpu_s = coarser->took_cpu_s;
+		if (!complete(s, i, &r, 0, e))
+			return false;
+	}
+}
+
+static bool admit(session *s, uint32_t rank, const ob_spread_message *m, ob_error *e)
+{
+	const ob_records *own = s->records;
+	if (strcmp(m->record.commit, own->commit) != 0)
+		return ob_fail(e, "rank %u is obsim %s, not %s: what is measured with different ones is not mixed",
+			       rank, m->record.commit, own->commit);
+	if (m->trial != ob_spread_digest(s->experiment, s->trials))
+		return ob_fail(e, "rank %u has other trials: give all ranks the same command", rank);
+	if (strcmp(m->record.machine, own->machine) != 0)
+		return ob_fail(
+			e, "rank %u has another machine (%s; %s), and what is measured on different ones is not mixed",
+			rank, m->record.machine, own->machine);
+	s->seat[rank].joined = true;
+	return true;
+}
+
+// What others have said; and work for those who have none, from that rank on
+static bool attend(session *s, uint32_t from, ob_error *e)
 {
 	bool fine = true;
+	for (bool more = s->courier; fine && more;) {
+		ob_spread_message m;
+		uint32_t rank;
+		ob_courier_news news = ob_courier_receive(s->courier, &m, &rank, e);
+		more = news == OB_COURIER_MESSAGE;
+		if (more && m.kind == OB_SPREAD_FAILED)
+			fine = ob_fail(e, "rank %u: %s", rank, m.record.reason);
+		else if (more)
+			fine = m.kind == OB_SPREAD_JOIN ? admit(s, rank, &m, e) : end_trial(s, rank, &m.record, e);
+		else
+			fine = news == OB_COURIER_NOTHING;
+	}
+	for (uint32_t rank = from; fine && rank < s->seats; rank++)
+		fine = !s->seat[rank].joined || s->seat[rank].busy || hand_out(s, rank, e);
+	return fine;
+}
+
+// While this rank's own trial runs
+static bool attend_to_others(void *of)
+{
+	session *s = of;
+	s->failed = !attend(s, 1, &s->why);
+	return !s->failed;
+}
+
+static bool run_own(session *s, ob_error *e)
+{
+	const ob_trial *t = &s->trials->trial[s->seat[0].trial];
+	const ob_process meanwhile = { .tick = s->experiment->quiet ? NULL : tick,
+				       .hear = s->courier ? attend_to_others : NULL,
+				       .ear = s->courier ? ob_courier_socket(s->courier) : -1,
+				       .of = s };
+	ob_record r = ob_trial_record(s->records, t);
+	if (!s->experiment->quiet)
+		tick(s);
+	if (ob_trial_run(s->experiment, t, &meanwhile, &r, e))
+		return end_trial(s, 0, &r, e);
+	return s->failed ? ob_fail(e, "%s", s->why.text) : false;
+}
+
+static bool have_joined(const session *s)
+{
+	uint32_t n = 0;
+	while (n < s->seats && s->seat[n].joined)
+		n++;
+	return n == s->seats;
+}
+
+static bool run_trials(session *s, ob_error *e)
+{
+	while (s->done < s->all || !have_joined(s)) {
+		if (!attend(s, 0, e))
+			return false;
+		if (s->seat[0].busy) {
+			if (!run_own(s, e))
+				return false;
+		} else if (s->done < s->all || !have_joined(s)) {
+			if (!s->experiment->quiet)
+				tick(s);
+			ob_processes_wait(ob_courier_socket(s->courier), tick_s);
+			if (ob_processes_interrupted())
+				return ob_fail(e, "interrupted");
+		}
+	}
+	for (uint32_t rank = 1; rank < s->seats; rank++)
+		if (!ob_courier_send(s->courier, rank, &(ob_spread_message){ .kind = OB_SPREAD_LEAVE }, e))
+			return false;
+	return true;
+}
+
+static bool run_all(session *s, ob_error *e)
+{
 	announce(s);
 	ob_processes_begin();
-	for (size_t i = 0; fine && i < s->trials->count; i++)
-		fine = run_trial(s, i, e);
-	bool interrupted = ob_processes_interrupted();
+	bool fine = run_trials(s, e), interrupted = ob_processes_interrupted();
 	ob_processes_end();
 	if (!s->experiment->quiet)
 		ob_progress_clear(&s->view);
-	if (!fine && interrupted)
-		ob_fail(e, "interrupted: %zu of %zu runs are done%s", s->done, s->all,
-			s->path ? ", and the same command goes on from there" : "");
-	return fine;
+	if (fine || (!interrupted && !s->courier))
+		return fine;
+	const ob_error why = *e;
+	return ob_fail(e, "%s: %zu of %zu runs are done%s", interrupted ? "interrupted" : why.text, s->done, s->all,
+		       s->path ? ", and the same command goes on from there" : "");
 }
 
 bool ob_experiment_run(const ob_experiment *x, const ob_trials *trials, ob_records *r, const char *folder, ob_error *e)
 {
-	session s = { .experiment = x, .trials = trials, .records = r, .begun = ob_clock_wall() };
+	const ob_ranks ranks = ob_ranks_started();
+	if (ranks.rank > 0)
+		return ob_spread_help(x, trials, r, &ranks, e);
+	session s = { .experiment = x, .trials = trials, .records = r, .seats = ranks.ranks };
 	char *path = folder ? ob_folder_path(folder, "results.csv") : NULL;
 	s.path = path;
 	// the file as it is now, without what was dropped; then a line for each trial
 	bool fine = prepare(&s, e) && (!path || ob_records_write(r, x, path, e));
 	if (fine && path && !(s.file = fopen(path, "ae")))
 		fine = ob_fail(e, "%s cannot be written: %s", path, strerror(errno));
+	if (fine && ranks.ranks > 1)
+		fine = (s.courier = ob_courier_start(&ranks, sizeof(ob_spread_message), e));
 	fine = fine && run_all(&s, e);
 	if (s.file)
 		fclose(s.file);
 	if (path && s.file && !ob_records_write(r, x, path, fine ? e : NULL))
 		fine = false;
+	if (!fine)
+		ob_courier_abandon(s.courier);
+	else if (s.courier)
+		fine = ob_courier_end(s.courier, e);
 	free(path);
+	free(s.state);
+	free(s.seat);
 	free(s.timing);
 	free(s.timing_of);
 	return fine;

@@ -22,7 +22,8 @@ ob_experiment ob_paper_experiment(const char *commit);
 bool ob_paper_schedule(const ob_paper_plan *p, ob_trials *s, ob_error *e);
 
 // Runs what the folder's results.csv does not have yet; fresh: all. false and e: interrupted, no memory, or nothing
-// could be run at all. Starts processes; from a process without other threads. The caller frees r->records.
+// could be run at all. On several ranks: as ob_experiment_run. Starts processes; from a process without other threads.
+// The caller frees r->records.
 bool ob_paper_run(const ob_paper_plan *p, const char *commit, const char *folder, bool fresh, ob_paper_results *r,
 		  ob_error *e);
 

@@ -23,6 +23,12 @@ typedef struct ob_wire_module {
 	void (*first)(const ob_wire_first *mine, ob_wire_first *all);
 	// From all into "all": "bytes[r]" of rank r, a multiple of 8, to at[r], likewise. mine: this one's
 	void (*rest)(const void *mine, char *all, const size_t *at, const size_t *bytes);
+	// Returns when the wire has taken it.
+	void (*send)(uint32_t to, const void *bytes, size_t n);
+	// Has a rank said something to this one? Who, and how many bytes
+	bool (*probe)(uint32_t *from, size_t *n);
+	// That, into as much room
+	void (*receive)(uint32_t from, void *to, size_t n);
 	void (*close)(void);
 } ob_wire_module;
 

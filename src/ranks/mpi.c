@@ -70,6 +70,31 @@ static void gather_rest(const void *mine, char *all, const size_t *at, const siz
 	wait_for(&r);
 }
 
+static void send_bytes(uint32_t to, const void *bytes, size_t n)
+{
+	MPI_Request r;
+	MPI_Isend(bytes, (int)n, MPI_BYTE, (int)to, 0, MPI_COMM_WORLD, &r);
+	wait_for(&r);
+}
+
+static bool probe(uint32_t *from, size_t *n)
+{
+	int there, size;
+	MPI_Status of;
+	MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &there, &of);
+	if (!there)
+		return false;
+	MPI_Get_count(&of, MPI_BYTE, &size);
+	*from = (uint32_t)of.MPI_SOURCE;
+	*n = (size_t)size;
+	return true;
+}
+
+static void receive_bytes(uint32_t from, void *to, size_t n)
+{
+	MPI_Recv(to, (int)n, MPI_BYTE, (int)from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+}
+
 static void close_mpi(void)
 {
 	MPI_Finalize();
@@ -81,4 +106,4 @@ _Static_assert(sizeof(ob_wire_first) % 8 == 0, "it goes over the wire in words")
 
 extern const ob_wire_module ob_wire_mpi;
 __attribute__((visibility("default")))
-const ob_wire_module ob_wire_mpi = { open_mpi, gather_first, gather_rest, close_mpi };
+const ob_wire_module ob_wire_mpi = { open_mpi, gather_first, gather_rest, send_bytes, probe, receive_bytes, close_mpi };

@@ -30,6 +30,12 @@ ob_ranks ob_ranks_started(void)
 	return rank < ranks ? (ob_ranks){ rank, ranks } : (ob_ranks){ 0, 1 };
 }
 
+void ob_ranks_forget(void)
+{
+	unsetenv("OMPI_COMM_WORLD_SIZE");
+	unsetenv("OMPI_COMM_WORLD_RANK");
+}
+
 static bool load(ob_wire *w, ob_error *e)
 {
 	w->library =
@@ -94,17 +100,16 @@ ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e)
 	return NULL;
 }
 
-// Room for what all have to say. false: there is no memory.
-static bool make_room(ob_wire *w)
+// Room for what is said, n bytes. false: there is no memory.
+static bool make_room(ob_wire *w, size_t n)
 {
-	if (w->at[w->ranks] <= w->max)
+	if (n <= w->max)
 		return true;
-	const size_t max = 2 * w->at[w->ranks];
-	char *larger = realloc(w->all, max);
+	char *larger = realloc(w->all, 2 * n);
 	if (!larger)
 		return false;
 	w->all = larger;
-	w->max = max;
+	w->max = 2 * n;
 	return true;
 }
 
@@ -127,7 +132,7 @@ const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t 
 		w->rest[r] = bytes - first;
 		more |= w->rest[r] > 0;
 	}
-	if (!make_room(w))
+	if (!make_room(w, w->at[w->ranks]))
 		return NULL;
 	for (uint32_t r = 0; r < w->ranks; r++)
 		if (w->first[r].bytes)
@@ -135,6 +140,19 @@ const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t 
 	if (more)
 		w->module->rest((const char *)mine + in_first(n), w->all, w->rest_at, w->rest);
 	*at = w->at;
+	return w->all;
+}
+
+void ob_wire_send(ob_wire *w, uint32_t to, const void *bytes, size_t n)
+{
+	w->module->send(to, bytes, n);
+}
+
+const void *ob_wire_receive(ob_wire *w, uint32_t *from, size_t *n)
+{
+	if (!w->module->probe(from, n) || !make_room(w, *n))
+		return NULL;
+	w->module->receive(*from, w->all, *n);
 	return w->all;
 }
 

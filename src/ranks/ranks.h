@@ -1,5 +1,5 @@
-// One universe on several machines: the processes that mpirun or srun has started together, its ranks, and the wire
-// between them.
+// The processes that mpirun has started together, its ranks, and the wire between them: for one universe on several
+// machines, and for the trials of an experiment (courier.h).
 //
 //   rank 0                                rank 1                                rank 2
 //   host, its simulators                  host, its simulators                  host, its simulators
@@ -23,6 +23,8 @@ typedef struct ob_ranks {
 
 // As Open MPI's mpirun has it. One rank: there is no launcher.
 ob_ranks ob_ranks_started(void);
+// For a process of this rank that is to do something alone, and so are the programs that it starts.
+void ob_ranks_forget(void);
 
 typedef struct ob_wire ob_wire;
 
@@ -33,6 +35,11 @@ ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e);
 // call. at: where each begins, and the end. Each rank must call it. NULL: no memory. Where a rank has gone, MPI ends
 // this one.
 const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t **at);
+// Says n bytes, at most 2 GB, to another rank; returns when the wire has taken them.
+void ob_wire_send(ob_wire *w, uint32_t to, const void *bytes, size_t n);
+// The next that another rank has said to this one, n bytes, which hold until the next call; of the same rank in its
+// order. NULL: nothing has come, or there is no memory for it.
+const void *ob_wire_receive(ob_wire *w, uint32_t *from, size_t *n);
 // Waits until all have come here. NULL is allowed.
 void ob_wire_close(ob_wire *w);
 

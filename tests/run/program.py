@@ -18,6 +18,8 @@ import unittest
 OBSIM = os.environ["OBSIM"]
 SCENES = os.environ["SCENES"]
 MESHES = os.environ.get("MESHES") # whether obsim can read them
+RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", # for mpirun
+	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}
 FOR_EVER = "7e7"  # s to simulate, about as many as there may be: at rest, millions of steps pass in a second
 RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
 	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}  # for mpirun, on however few cores
@@ -107,6 +109,15 @@ def comm(pid):
 			return f.read().rstrip("\n")
 	except OSError:
 		return ""
+
+
+def parent(pid):
+	"""Its parent's id; 0: it has ended."""
+	try:
+		with open(f"/proc/{pid}/stat") as f:
+			return int(f.read().rpartition(")")[2].split()[1])
+	except OSError:
+		return 0
 
 
 def simulators(parent):
