@@ -107,37 +107,37 @@ static void write_effort(ob_universe *u, uint32_t island, uint32_t share)
 		data->effort[data->member[is->first_member + i]] = share;
 }
 
-// All of a contact but what is kept of it. The version of its record that is to hold that; -1: none is.
-static int write_contact_key(ob_universe *u, const ob_found_contact *c)
+// All of a contact but what is kept of it. The record for that; OB_NO_RECORD: it needs none.
+static uint32_t write_contact_key(ob_universe *u, const ob_found_contact *c)
 {
-	ob_step_data *data = ob_universe_step_data(u);
-	ob_pair_key *k = &data->pair[c->pair];
+	ob_pair_key *k = &ob_universe_step_data(u)->pair[c->pair];
 	k->limit = c->limit;
 	k->active = c->active;
 	if (!c->kept)
-		return -1;
+		return OB_NO_RECORD;
 	if (k->record == OB_NO_RECORD)
-		k->record = ob_record_take(u);
-	if (k->record == OB_NO_RECORD) // no memory, and the step has failed
-		return -1;
-	ob_pair_record *record = &data->record[k->record];
-	return (int)(ob_pair_write(record, ob_step_count(u)) - record->version);
+		k->record = ob_record_take(u); // none where there is no memory, and the step has failed
+	return k->record;
 }
 
-static void write_contact_state(ob_universe *u, const ob_found_contact *c, int version)
+// Returns the version.
+static int write_contact_state(ob_universe *u, const ob_found_contact *c, uint32_t record)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t record = data->pair[c->pair].record;
-	data->record[record].version[version] = c->state;
+	ob_pair_record *to = &data->record[record];
+	ob_pair_state *p = ob_pair_write(to, ob_step_count(u));
+	const int version = (int)(p - to->version);
+	*p = c->state;
 	if (c->two_sided)
 		memcpy(data->impulse_b[record][version], c->impulse_b, sizeof c->impulse_b);
+	return version;
 }
 
 static void write_contact(ob_universe *u, const ob_found_contact *c)
 {
-	const int version = write_contact_key(u, c);
-	if (version >= 0)
-		write_contact_state(u, c, version);
+	const uint32_t record = write_contact_key(u, c);
+	if (record != OB_NO_RECORD)
+		write_contact_state(u, c, record);
 }
 
 static void write_touch(ob_universe *u, const touch_record *r)
@@ -504,15 +504,12 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 		return "has found a contact of bodies that it was not given";
 	if (!is_sound_contact(r, whole))
 		return "has found a contact that makes no sense";
-	const int version = write_contact_key(u, r);
-	if (version < 0)
+	const uint32_t record = write_contact_key(u, r);
+	if (record == OB_NO_RECORD)
 		return NULL;
-	if (whole)
-		write_contact_state(u, r, version);
-	else
-		data->record[k->record].version[version].points = 0; // for readers
+	const int version = whole ? write_contact_state(u, r, record) : -1;
 	if (c->holdings)
-		ob_holdings_note(c->holdings, u, k->record, version,
+		ob_holdings_note(c->holdings, u, record, version,
 				 ob_universe_shares_contacts(u) ? OB_ALL_RANKS : ob_universe_rank_of(u, from->worker));
 	return NULL;
 }
@@ -711,9 +708,8 @@ static bool fails(ob_committer *c, ob_universe *u)
 {
 	ob_mail_record r;
 	for (uint32_t rank = 0; rank < mails(c); rank++)
-		for (ob_mail m = mail_of(c, rank); ob_mail_next(u, &m, &r);)
-			if (r.kind == END)
-				note_end(u, &r);
+		for (ob_mail m = mail_of(c, rank); ob_mail_next_end(&m, &r);)
+			note_end(u, &r);
 	return ob_step_failed(u, NULL) != OB_STEP_OK;
 }
 

@@ -16,7 +16,7 @@ struct ob_holdings {
 
 // A record on its way.
 typedef struct parcel {
-	uint32_t pair, reserved; // index
+	uint32_t pair, stamp; // index; as ob_pair_record.stamp
 	ob_pair_state state;
 	double impulse_b[OB_PAIR_ROWS];
 } parcel;
@@ -50,12 +50,22 @@ static uint64_t digest_of(const ob_pair_state *state)
 	return ob_digest_words(state, sizeof *state);
 }
 
+// What is here of it is void: readers and solvers find none.
+static void give_away(const ob_universe *u, uint32_t record)
+{
+	uint32_t *stamp = ob_universe_step_data(u)->record[record].stamp;
+	stamp[0] = stamp[1] = 0;
+}
+
 void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, uint32_t rank)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const bool here = rank == ob_universe_rank(u) || rank == OB_ALL_RANKS;
+	const uint32_t before = h->holder[record];
 	h->holder[record] = rank == OB_ALL_RANKS ? ALL : (uint16_t)(1 + rank);
-	h->digest[record][version] = here ? digest_of(&data->record[record].version[version]) : 0;
+	if (version >= 0)
+		h->digest[record][version] = digest_of(&data->record[record].version[version]);
+	else if (before == ALL || before == 1 + ob_universe_rank(u))
+		give_away(u, record);
 }
 
 // ---- what lies where
@@ -109,6 +119,7 @@ static bool pack(ob_holdings *h, const ob_universe *u, uint32_t pair, uint32_t r
 	parcel p = { .pair = pair };
 	if (version < 0)
 		return true;
+	p.stamp = data->record[record].stamp[version];
 	p.state = data->record[record].version[version];
 	if (bytes == sizeof p)
 		memcpy(p.impulse_b, data->impulse_b[record][version], sizeof p.impulse_b);
@@ -124,13 +135,15 @@ static void unpack(ob_holdings *h, const ob_universe *u, const char *from, size_
 	for (; bytes >= each; from += each, bytes -= each) {
 		memcpy(&c, from, each);
 		const uint32_t record = c.pair < ob_pairs_end(data) ? data->pair[c.pair].record : OB_NO_RECORD;
-		const int version = record < data->pairs_max ? version_of(u, record) : -1;
-		if (version < 0 || (h->holder[record] != ALL && h->holder[record] != 1 + ob_universe_rank(u)))
+		if (record >= data->pairs_max ||
+		    (h->holder[record] != ALL && h->holder[record] != 1 + ob_universe_rank(u)))
 			continue;
-		data->record[record].version[version] = c.state;
+		data->record[record].version[0] = c.state;
+		data->record[record].stamp[0] = c.stamp;
+		data->record[record].stamp[1] = 0;
 		if (each == sizeof c)
-			memcpy(data->impulse_b[record][version], c.impulse_b, sizeof c.impulse_b);
-		h->digest[record][version] = digest_of(&c.state);
+			memcpy(data->impulse_b[record][0], c.impulse_b, sizeof c.impulse_b);
+		h->digest[record][0] = digest_of(&c.state);
 	}
 }
 
@@ -156,8 +169,10 @@ static bool move_pairs_of(ob_holdings *h, const ob_universe *u, const ob_island 
 		if (holder == ALL || holder == 1 + to)
 			continue;
 		++*moved;
-		if (holder == 1 + ob_universe_rank(u))
+		if (holder == 1 + ob_universe_rank(u)) {
 			fits &= pack(h, u, pair, key->record);
+			give_away(u, key->record);
+		}
 		h->holder[key->record] = (uint16_t)(1 + to);
 	}
 	return fits;

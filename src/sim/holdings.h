@@ -23,8 +23,8 @@ ob_holdings *ob_holdings_create(const ob_universe *u);
 void ob_holdings_destroy(ob_holdings *h); // NULL is allowed
 
 enum { OB_ALL_RANKS = UINT32_MAX };
-// This version of a record has new contents, which lie there if they are this rank's: those of the rank whose simulator
-// has found them, or of all.
+// A record has new contents, of the rank whose simulator has found them, or of all. version: where they are here; -1:
+// they are not.
 void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, uint32_t rank);
 
 // Before the islands of a step are solved, by all ranks: contents go to who solves them next. false: the step has

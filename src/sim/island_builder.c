@@ -373,21 +373,28 @@ typedef struct shares {
 	int shift; // of work, for loads of 32 bits
 } shares;
 
-// Who has solved most of its members last, or would by their ids, as what is created together lies together.
+// Who was given the object last; at first, as what is created together lies together, by its id.
+static uint32_t home_of(const builder *p, const shares *s, uint32_t id)
+{
+	const uint32_t home = p->data->home[id] - 1;
+	return home < s->count ? home : (uint32_t)((uint64_t)id * s->count / p->ids);
+}
+
+// That of most members.
 static uint32_t preferred_owner(const builder *p, const shares *s, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
-	uint32_t best = 0, most = 0;
+	const uint32_t *member = data->member + is->first_member;
+	uint32_t best = home_of(p, s, member[0]), most = 0;
+	if (is->members == 1)
+		return best;
 	for (uint32_t k = 0; k < is->members; k++) {
-		const uint32_t id = data->member[is->first_member + k], home = data->home[id] - 1,
-			       who = home < s->count ? home : (uint32_t)((uint64_t)id * s->count / p->ids);
-		if (++s->votes[who] > most)
-			best = who, most = s->votes[who];
+		const uint32_t home = home_of(p, s, member[k]);
+		if (++s->votes[home] > most)
+			best = home, most = s->votes[home];
 	}
-	for (uint32_t k = 0; k < is->members; k++) {
-		const uint32_t id = data->member[is->first_member + k], home = data->home[id] - 1;
-		s->votes[home < s->count ? home : (uint32_t)((uint64_t)id * s->count / p->ids)] = 0;
-	}
+	for (uint32_t k = 0; k < is->members; k++)
+		s->votes[home_of(p, s, member[k])] = 0;
 	return best;
 }
 

@@ -418,6 +418,26 @@ bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out)
 	return true;
 }
 
+bool ob_mail_next_end(ob_mail *m, ob_mail_record *out)
+{
+	enum { BYTES = sizeof(record_head) + sizeof(ob_outbox_end) };
+	part_head part;
+	record_head head;
+	while (m->at < m->used) {
+		memcpy(&part, m->bytes + m->at, sizeof part);
+		m->at += sizeof part + part.bytes;
+		if (part.bytes < BYTES) // more follows from the same simulator
+			continue;
+		memcpy(&head, m->bytes + m->at - BYTES, sizeof head);
+		if (head.kind != OB_OUTBOX_END || head.bytes != sizeof(ob_outbox_end))
+			continue;
+		*out = (ob_mail_record){ (uint32_t)part.worker, head.kind, head.bytes,
+					 m->bytes + m->at - sizeof(ob_outbox_end) };
+		return true;
+	}
+	return false;
+}
+
 void ob_mail_finish(ob_mail *m)
 {
 	free(m->bytes);
