@@ -36,10 +36,6 @@ typedef struct change_of_velocity {
 	ob_vec3 v, w;
 } change_of_velocity;
 
-// Nearly all sets are of one point. For them the compiler makes code of its own from the same text, in which the
-// numbers of points and rows are constants.
-#define PER_SIZE static inline __attribute__((always_inline))
-
 // The set of points that approach.
 typedef struct impact_set {
 	uint32_t bodies, points;
@@ -115,7 +111,7 @@ static void set_rates(impact_set *s, uint32_t *count)
 	}
 }
 
-PER_SIZE void add_changes(const impact_set *s, const double *x)
+static void add_changes(const impact_set *s, const double *x)
 {
 	memset(s->change, 0, s->bodies * sizeof *s->change);
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -132,7 +128,7 @@ PER_SIZE void add_changes(const impact_set *s, const double *x)
 }
 
 // What all rows have to reach, u, with the impulses x: the normal velocities are in excess of the law's.
-PER_SIZE void find_velocities(const impact_set *s, const double *x, double *u)
+static void find_velocities(const impact_set *s, const double *x, double *u)
 {
 	add_changes(s, x);
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -153,7 +149,7 @@ typedef struct projection {
 	double bound;
 } projection;
 
-PER_SIZE projection project(const impact_set *s, const point_rows *r, const double *x, const double *u)
+static projection project(const impact_set *s, const point_rows *r, const double *x, const double *u)
 {
 	projection p = { { ob_max(0, x[0] - r->rate * u[0]), 0, 0 }, { 0, 0 }, 0, 0 };
 	if (s->dims == 1)
@@ -167,7 +163,7 @@ PER_SIZE projection project(const impact_set *s, const point_rows *r, const doub
 }
 
 // m/s: by how much an iteration would change something
-PER_SIZE double residual(const impact_set *s, const double *x, const double *u)
+static double residual(const impact_set *s, const double *x, const double *u)
 {
 	double most = 0;
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -180,14 +176,14 @@ PER_SIZE double residual(const impact_set *s, const double *x, const double *u)
 }
 
 // Of n iterations, and of an elimination of so many rows. true: no more.
-PER_SIZE bool pay(const impact_set *s, uint64_t iterations, uint64_t rows)
+static bool pay(const impact_set *s, uint64_t iterations, uint64_t rows)
 {
 	const uint64_t work = WORK_OF_POINT * s->points * iterations + rows * rows * rows / ELIMINATED_PER_WORK;
 	return s->payer && s->payer->is_over(s->payer->with, work);
 }
 
 // All points at once, again and again.
-PER_SIZE void iterate(const impact_set *s, int iterations, double *x, double *u)
+static void iterate(const impact_set *s, int iterations, double *x, double *u)
 {
 	double most = INFINITY;
 	for (int n = 0; n < iterations && most > exact * s->largest && !pay(s, 1, 0); n++) {
@@ -213,7 +209,7 @@ typedef struct newton_system {
 	int open[MAX_DENSE_ROWS], opens; // rows of points that push: the others' impulses go to zero
 } newton_system;
 
-PER_SIZE double coupling(const point_rows *r, int i, const point_rows *q, int j)
+static double coupling(const point_rows *r, int i, const point_rows *q, int j)
 {
 	const double along = ob_dot(r->along[i], q->along[j]);
 	double sum = 0;
@@ -228,7 +224,7 @@ PER_SIZE double coupling(const point_rows *r, int i, const point_rows *q, int j)
 	return sum;
 }
 
-PER_SIZE void fill_matrix(const impact_set *s, newton_system *y)
+static void fill_matrix(const impact_set *s, newton_system *y)
 {
 	y->n = (int)s->points * s->dims;
 	for (int i = 0; i < y->n; i++)
@@ -238,7 +234,7 @@ PER_SIZE void fill_matrix(const impact_set *s, newton_system *y)
 }
 
 // Elimination with row pivots of the first n rows and columns; false: singular.
-PER_SIZE bool eliminate(newton_system *y, int n)
+static bool eliminate(newton_system *y, int n)
 {
 	for (int k = 0; k < n; k++) {
 		int pivot = k;
@@ -271,7 +267,7 @@ PER_SIZE bool eliminate(newton_system *y, int n)
 }
 
 // Row "row" is to reach zero velocity.
-PER_SIZE void put_stop(newton_system *y, int row, double u)
+static void put_stop(newton_system *y, int row, double u)
 {
 	memcpy(y->m[row], y->a[row], (unsigned)y->n * sizeof **y->m);
 	y->m[row][row] += proximity * y->a[row][row];
@@ -279,7 +275,7 @@ PER_SIZE void put_stop(newton_system *y, int row, double u)
 }
 
 // Rows "row" and the next: friction of magnitude mu x against z, which turns with the sliding velocity.
-PER_SIZE void put_sliding(newton_system *y, int row, const point_rows *r, const projection *p, const double *x)
+static void put_sliding(newton_system *y, int row, const point_rows *r, const projection *p, const double *x)
 {
 	const double k = p->bound / p->length, d[2] = { p->z[0] / p->length, p->z[1] / p->length };
 	for (int i = 0; i < 2; i++) {
@@ -299,7 +295,7 @@ PER_SIZE void put_sliding(newton_system *y, int row, const point_rows *r, const 
 }
 
 // Open rows and columns alone, where the others' steps are known.
-PER_SIZE bool eliminate_open(newton_system *y, const double *x)
+static bool eliminate_open(newton_system *y, const double *x)
 {
 	double others[MAX_DENSE_ROWS];
 	bool is_open[MAX_DENSE_ROWS];
@@ -326,7 +322,7 @@ PER_SIZE bool eliminate_open(newton_system *y, const double *x)
 	return true;
 }
 
-PER_SIZE bool newton_step(const impact_set *s, newton_system *y, const double *x, const double *u)
+static bool newton_step(const impact_set *s, newton_system *y, const double *x, const double *u)
 {
 	y->opens = 0;
 	for (uint32_t k = 0; k < s->points; k++) {
@@ -351,7 +347,7 @@ PER_SIZE bool newton_step(const impact_set *s, newton_system *y, const double *x
 // A whole step may lead through worse places to the solution, as which points push and which slide is changed; shorter
 // ones lead downhill alone. true: solved to rounding; false as soon as it comes where it has been, too. x: from where,
 // and the solution.
-PER_SIZE bool newton(const impact_set *s, newton_system *y, bool downhill, double *x, double *u)
+static bool newton(const impact_set *s, newton_system *y, bool downhill, double *x, double *u)
 {
 	double next[MAX_DENSE_ROWS], seen[MAX_NEWTON_STEPS], then = INFINITY;
 	find_velocities(s, x, u);
@@ -382,7 +378,7 @@ PER_SIZE bool newton(const impact_set *s, newton_system *y, bool downhill, doubl
 
 // Newton's method needs to begin where it is already known which points slide; where it does not come to an end,
 // iterations go on from the last place that they had reached.
-PER_SIZE void solve_cycles(const impact_set *s, double *x, double *u)
+static void solve_cycles(const impact_set *s, double *x, double *u)
 {
 	newton_system y;
 	double start[MAX_DENSE_ROWS];
@@ -398,17 +394,92 @@ PER_SIZE void solve_cycles(const impact_set *s, double *x, double *u)
 	}
 }
 
-static void solve_one_point(const impact_set *s, double *x, double *u)
+// ---- one point
+
+// The same for one point, of which nearly all sets are. Where friction cannot stop it, it slides afterwards in some
+// direction d, with friction against that: one unknown angle.
+typedef struct one_point {
+	double nn, nt[2], tt[3]; // J M^-1 J': of the normal, of both, of friction (11 12 22)
+	double n, t[2]; // m/s: what is to be reached, without an impulse; the point's sliding
+	double mu;
+} one_point;
+
+static double dot2(const double *a, const double *b)
 {
-	impact_set set = *s;
-	set.points = 1;
-	set.dims = 3;
-	solve_cycles(&set, x, u);
+	return a[0] * b[0] + a[1] * b[1];
 }
 
-static void solve_points(const impact_set *s, double *x, double *u)
+static one_point one_point_of(const impact_set *s)
 {
-	solve_cycles(s, x, u);
+	const point_rows *r = s->point;
+	return (one_point){
+		.nn = coupling(r, 0, r, 0),
+		.nt = { coupling(r, 0, r, 1), coupling(r, 0, r, 2) },
+		.tt = { coupling(r, 1, r, 1), coupling(r, 1, r, 2), coupling(r, 2, r, 2) },
+		.n = (1 + s->share * r->e) * r->before[0],
+		.t = { r->before[1], r->before[2] },
+		.mu = r->mu,
+	};
+}
+
+// The impulses that leave the point at rest along the plane. false: they are beyond its cone.
+static bool stop_point(const one_point *p, double *x)
+{
+	const double f[2] = { p->nt[0] / p->nn, p->nt[1] / p->nn }; // without the normal row
+	const double a = p->tt[0] - f[0] * p->nt[0], b = p->tt[1] - f[0] * p->nt[1], c = p->tt[2] - f[1] * p->nt[1];
+	const double t0 = p->t[0] - f[0] * p->n, t1 = p->t[1] - f[1] * p->n, inverse = 1 / (a * c - b * b);
+	x[1] = (b * t1 - c * t0) * inverse;
+	x[2] = (b * t0 - a * t1) * inverse;
+	x[0] = -(p->n + p->nt[0] * x[1] + p->nt[1] * x[2]) / p->nn;
+	return x[0] > 0 && x[1] * x[1] + x[2] * x[2] <= p->mu * p->mu * x[0] * x[0];
+}
+
+// By how much d (unit) has to be turned (rad) to be the direction in which friction along it lets the point slide: a
+// step of Newton's method. free: the sliding without friction, times nn.
+static double turn_of_sliding(const one_point *p, const double *free, const double *d)
+{
+	const double across[2] = { -d[1], d[0] };
+	const double td[2] = { p->tt[0] * d[0] + p->tt[1] * d[1], p->tt[1] * d[0] + p->tt[2] * d[1] };
+	const double along = dot2(d, td), aside = dot2(across, td), other = p->tt[0] + p->tt[2] - along;
+	const double push = dot2(d, p->nt), push_aside = dot2(across, p->nt);
+	const double slide = dot2(d, p->t), slide_aside = dot2(across, p->t);
+	const double miss = dot2(across, free) + p->mu * (p->n * aside - push * slide_aside);
+	const double slope = p->mu * (p->n * (other - along) - push_aside * slide_aside + push * slide) - dot2(d, free);
+	return -miss / slope;
+}
+
+// Impulses that let it slide, from the direction that it would take without friction.
+static void let_point_slide(const one_point *p, double *x)
+{
+	enum { MOST = 12, FIRST = 4 }; // steps of Newton's method; that may lead anywhere
+	const double rounding = 1e-16; // rad
+	const double free[2] = { p->t[0] * p->nn - p->n * p->nt[0], p->t[1] * p->nn - p->n * p->nt[1] };
+	const double size = sqrt(dot2(free, free));
+	double d[2] = { free[0] / size, free[1] / size }, last = INFINITY;
+	for (int k = 0; k < MOST; k++) {
+		const double turn = turn_of_sliding(p, free, d);
+		if (!(fabs(turn) > rounding) || (k >= FIRST && fabs(turn) >= last))
+			break;
+		const double turned[2] = { d[0] - turn * d[1], d[1] + turn * d[0] };
+		const double inverse = 1 / sqrt(dot2(turned, turned));
+		d[0] = inverse * turned[0], d[1] = inverse * turned[1];
+		last = fabs(turn);
+	}
+	x[0] = -p->n / (p->nn - p->mu * dot2(d, p->nt));
+	x[1] = -p->mu * x[0] * d[0];
+	x[2] = -p->mu * x[0] * d[1];
+}
+
+// false: x, which may be no number, does not fulfil the law: that has no solution, or one that was not found.
+static bool solve_one_point(const impact_set *s, double *x, double *u)
+{
+	const one_point p = one_point_of(s);
+	if (!(p.n < 0))
+		return true;
+	if (!stop_point(&p, x))
+		let_point_slide(&p, x);
+	find_velocities(s, x, u);
+	return residual(s, x, u) <= stalled * s->largest;
 }
 
 // The impulses x of the law.
@@ -422,12 +493,13 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 		return;
 	}
 	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
+	if (s->points == 1 && solve_one_point(&set, x, u))
+		return;
+	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
 	if (s->points > OB_IMPACT_MOST_POINTS)
 		iterate(&set, MAX_ITERATIONS, x, u);
-	else if (s->points == 1)
-		solve_one_point(&set, x, u);
 	else
-		solve_points(&set, x, u);
+		solve_cycles(&set, x, u);
 }
 
 // ---- energy
