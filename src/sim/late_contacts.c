@@ -121,22 +121,28 @@ static bool touched_in_step(const pair_check *c, ob_pair_key *k, const moving_pa
 	return false;
 }
 
+// Whether their relative velocity is constant.
+static bool fall_alike(const ob_motion *a, const ob_motion *b)
+{
+	return !((a->flags | b->flags) & OB_MOTION_SWINGS) && ob_equal(a->a, b->a);
+}
+
 // Positions and velocities of the bounding spheres of two bodies, which need no attitudes.
 typedef struct bounding_spheres {
 	ob_vec3 apart, v; // m, m/s, of the first from the second
 	double gap; // m
-	bool straight; // their relative velocity is constant: they have the same acceleration
+	bool straight; // their relative velocity is constant
 } bounding_spheres;
 
-static bounding_spheres bounding_spheres_of(const pair_check *c, const ob_pair_key *k)
+// On the motions ma and mb, when so many steps are complete.
+static bounding_spheres bounding_spheres_of(const pair_check *c, const ob_pair_key *k, const ob_motion *ma,
+					    const ob_motion *mb, uint64_t steps)
 {
-	const ob_motion *a = ob_result_of(c->u, k->a), *b = ob_result_of(c->u, k->b);
 	const ob_passport *pa = ob_passport_of(c->u, k->a), *pb = ob_passport_of(c->u, k->b);
-	const double time = (double)c->steps * c->h;
-	const bool parabolas = !((a->flags | b->flags) & OB_MOTION_SWINGS);
-	bounding_spheres out = { .straight = parabolas && ob_equal(a->a, b->a) };
-	out.apart = ob_sub(ob_centre_now(c->u, k->a, a, c->steps), ob_centre_now(c->u, k->b, b, c->steps));
-	out.v = ob_sub(ob_velocity_at(a, time), ob_velocity_at(b, time));
+	const double time = (double)steps * c->h;
+	bounding_spheres out = { .straight = fall_alike(ma, mb) };
+	out.apart = ob_sub(ob_centre_now(c->u, k->a, ma, steps), ob_centre_now(c->u, k->b, mb, steps));
+	out.v = ob_sub(ob_velocity_at(ma, time), ob_velocity_at(mb, time));
 	out.gap = ob_norm(out.apart) - ob_shape_radius(pa->shape, pa->size) - ob_shape_radius(pb->shape, pb->size);
 	return out;
 }
@@ -151,17 +157,24 @@ static double time_apart(const bounding_spheres *s, double contact)
 	return closing > 0 && d > 0 ? square / (closing + sqrt(d)) : INFINITY;
 }
 
-// Sets until when two bodies in flight stay clear of each other; false: not beyond the coming step.
-static bool set_clear_until(const pair_check *c, ob_pair_key *k, const bounding_spheres *round)
+// Steps until one of the two is due, both of which are in flight; 0: they are not.
+static double steps_in_flight(const pair_check *c, const ob_pair_key *k)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
-	double until = ob_min(a->due, b->due);
-	if (a->state != OB_SCHEDULE_AWAKE || b->state != OB_SCHEDULE_AWAKE || until <= (double)c->steps + 1 ||
-	    !round->straight)
+	const double until = ob_min(a->due, b->due);
+	return a->state == OB_SCHEDULE_AWAKE && b->state == OB_SCHEDULE_AWAKE && until > (double)c->steps
+		       ? until - (double)c->steps
+		       : 0;
+}
+
+// Sets until when two bodies in flight stay clear of each other: s, for which their flights keep apart. false: not
+// beyond the coming step.
+static bool set_clear_until(const pair_check *c, ob_pair_key *k, double apart)
+{
+	const double steps = steps_in_flight(c, k);
+	if (steps <= 1)
 		return false;
-	until = ob_min(until,
-		       (double)c->steps + floor(time_apart(round, contact_gap * c->s->island.unit.length) / c->h));
-	k->clear_until = (uint32_t)until;
+	k->clear_until = (uint32_t)((double)c->steps + ob_min(steps, floor(apart / c->h)));
 	k->clear_as_of = (uint32_t)c->steps;
 	return k->clear_until > c->steps;
 }
@@ -172,12 +185,19 @@ static bool is_clear(const ob_step_data *data, const ob_pair_key *k, uint64_t st
 	       data->schedule[k->b].since <= k->clear_as_of;
 }
 
+// For two in flight, until one of them is due or for some steps: so a pair that passes closely is looked at once.
 static bool touches_next(const pair_check *c, ob_pair_key *k, const moving_pair *now)
 {
+	enum { MOST_STEPS = 8 };
+	const bool straight = fall_alike(ob_result_of(c->u, k->a), ob_result_of(c->u, k->b));
+	const double steps = straight ? ob_max(1, ob_min(MOST_STEPS, steps_in_flight(c, k))) : 1;
 	double apart;
-	if (!isinf(time_of_contact(c, now, now->h, &apart)))
+	const double when = time_of_contact(c, now, steps * now->h, &apart);
+	if (when <= now->h)
 		return true;
 	k->limit = ob_max(k->limit, now->path + apart);
+	if (steps > 1)
+		set_clear_until(c, k, ob_min(when, steps * now->h));
 	return false;
 }
 
@@ -204,6 +224,19 @@ static double path_in_step(const pair_check *c, const ob_pair_key *k, double pat
 		      : 0;
 }
 
+// Whether the spheres may have met in the step that was solved: their way must be as long as they were apart before it
+// and are now.
+static bool may_have_met(const pair_check *c, const ob_pair_key *k, const bounding_spheres *now, double paths,
+			 bool solved)
+{
+	const double path = path_in_step(c, k, paths, solved);
+	if (path < now->gap)
+		return false;
+	const bounding_spheres before = bounding_spheres_of(c, k, ob_newest_motion(c->u, k->a),
+							    ob_newest_motion(c->u, k->b), ob_step_count(c->u));
+	return path >= now->gap + ob_max(0, before.gap);
+}
+
 // True if the bounding spheres are too far apart for a contact in the step that was solved, and in the coming one.
 static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double paths, double reach, bool solved)
 {
@@ -212,12 +245,22 @@ static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double 
 		return flies_above_plane(c, a->state == OB_SCHEDULE_PLANE ? k->b : k->a);
 	if (c->s->settings->narrow_phase == OB_NARROW_AABB)
 		return false;
-	bounding_spheres round = bounding_spheres_of(c, k);
-	if (round.gap <= contact_gap * c->s->island.unit.length ||
-	    (paths >= k->limit && path_in_step(c, k, paths, solved) >= round.gap))
+	const bounding_spheres round =
+		bounding_spheres_of(c, k, ob_result_of(c->u, k->a), ob_result_of(c->u, k->b), c->steps);
+	const double contact = contact_gap * c->s->island.unit.length;
+	if (round.gap <= contact || (paths >= k->limit && may_have_met(c, k, &round, paths, solved)))
 		return false;
+	const double apart = round.straight ? time_apart(&round, contact) : 0;
 	k->limit = ob_max(k->limit, paths + round.gap);
-	return k->limit - paths > reach || set_clear_until(c, k, &round);
+	return set_clear_until(c, k, apart) || apart > c->h || k->limit - paths > reach;
+}
+
+// Of two that nobody has solved in the step the forecast has said that they would not touch, and where they fall alike
+// that is exact.
+static bool went_as_forecast(const pair_check *c, const ob_pair_key *k)
+{
+	return c->data->result_island[k->a] == UINT32_MAX && c->data->result_island[k->b] == UINT32_MAX &&
+	       fall_alike(ob_newest_motion(c->u, k->a), ob_newest_motion(c->u, k->b));
 }
 
 // Sets late if the two touched in the step that was solved, and expected if they will in the coming one. left: m, what
@@ -225,7 +268,7 @@ static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double 
 static void check_shapes(const pair_check *c, ob_pair_key *k, double left, bool solved)
 {
 	moving_pair p = moving_pair_of(c, k);
-	k->late = solved && !k->in_island && left <= 0 && touched_in_step(c, k, &p);
+	k->late = solved && !k->in_island && left <= 0 && !went_as_forecast(c, k) && touched_in_step(c, k, &p);
 	bool on_plane = c->data->schedule[k->a].state == OB_SCHEDULE_PLANE ||
 			c->data->schedule[k->b].state == OB_SCHEDULE_PLANE;
 	if (!k->late && !on_plane && k->limit - p.path <= p.reach)
@@ -284,11 +327,9 @@ static double next_check(const ob_step_data *data, const ob_pair_key *k, uint64_
 		return INFINITY;
 	if (k->active || k->expected)
 		return (double)steps;
-	if (is_clear(data, k, steps))
-		return k->clear_until;
 	const double paths = ob_schedule_path(a, steps) + ob_schedule_path(b, steps),
-		     reach = (double)a->reach + (double)b->reach;
-	return step_of_limit(k, paths, reach, steps);
+		     reach = (double)a->reach + (double)b->reach, limit = step_of_limit(k, paths, reach, steps);
+	return is_clear(data, k, steps) ? ob_max(k->clear_until, limit) : limit;
 }
 
 // A pair's record lies anywhere, and so do those of its two objects: they are asked for some checks before.
