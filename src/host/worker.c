@@ -43,9 +43,8 @@ static int live(ob_universe *u, uint32_t worker)
 	ob_error e;
 	ob_wire *wire = NULL;
 	const bool arranges = ob_universe_contains(u) && worker == ob_universe_simulators(u);
-	const uint32_t here = ob_universe_simulators(u) / ob_universe_ranks(u); // of those, this rank's
 	int cpu = arranges ? -1 // where there is room
-			   : ob_cpu_pin(here ? worker % here : worker); // more workers than cores: in turn
+			   : ob_cpu_pin(worker); // more workers than cores, and several ranks on one machine: in turn
 	ob_ode_init();
 	ob_ode_thread_init();
 	ob_sim *s = ob_sim_create(u, worker, &e);

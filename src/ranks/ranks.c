@@ -17,23 +17,32 @@ struct ob_wire {
 	size_t max;
 };
 
-// otherwise: the environment does not say
-static uint32_t number(const char *name, uint32_t otherwise)
-{
-	const char *text = getenv(name);
-	return text ? (uint32_t)strtoul(text, NULL, 10) : otherwise;
-}
+// How launchers say it: a rank, and how many there are. srun gives tasks their number with PMIx alone: without it they
+// could not find each other, and the script of a batch job, which has a number of tasks, too, is none of them.
+static const char *const words[][2] = {
+	{ "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE" }, // mpirun; within a job of Slurm it is said otherwise, too
+	{ "PMIX_RANK", "SLURM_STEP_NUM_TASKS" }, // srun --mpi=pmix
+};
+enum { LAUNCHERS = sizeof words / sizeof *words };
 
 ob_ranks ob_ranks_started(void)
 {
-	const uint32_t ranks = number("OMPI_COMM_WORLD_SIZE", 1), rank = number("OMPI_COMM_WORLD_RANK", 0);
-	return rank < ranks ? (ob_ranks){ rank, ranks } : (ob_ranks){ 0, 1 };
+	for (int i = 0; i < LAUNCHERS; i++) {
+		const char *rank = getenv(words[i][0]), *ranks = getenv(words[i][1]);
+		if (!rank || !ranks)
+			continue;
+		const ob_ranks said = { (uint32_t)strtoul(rank, NULL, 10), (uint32_t)strtoul(ranks, NULL, 10) };
+		if (said.rank < said.ranks)
+			return said;
+	}
+	return (ob_ranks){ 0, 1 };
 }
 
 void ob_ranks_forget(void)
 {
-	unsetenv("OMPI_COMM_WORLD_SIZE");
-	unsetenv("OMPI_COMM_WORLD_RANK");
+	for (int i = 0; i < LAUNCHERS; i++)
+		for (int k = 0; k < 2; k++)
+			unsetenv(words[i][k]);
 }
 
 static bool load(ob_wire *w, ob_error *e)

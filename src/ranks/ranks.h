@@ -1,5 +1,5 @@
-// The processes that mpirun has started together, its ranks, and the wire between them: for one universe on several
-// machines, and for the trials of an experiment (courier.h).
+// The processes that mpirun or srun has started together, its ranks, and the wire between them: for one universe on
+// several machines, and for the trials of an experiment (courier.h).
 //
 //   rank 0                                rank 1                                rank 2
 //   host, its simulators                  host, its simulators                  host, its simulators
@@ -21,7 +21,7 @@ typedef struct ob_ranks {
 	uint32_t rank, ranks; // this one's number, from 0; how many there are
 } ob_ranks;
 
-// As Open MPI's mpirun has it. One rank: there is no launcher.
+// As Open MPI's mpirun has it, or Slurm's srun --mpi=pmix. One rank: there is no launcher.
 ob_ranks ob_ranks_started(void);
 // For a process of this rank that is to do something alone, and so are the programs that it starts.
 void ob_ranks_forget(void);

@@ -52,6 +52,14 @@ class Ranks(program.Case):
 				with self.subTest(scene=name, ranks=ranks, workers=workers):
 					self.assertEqual(self.hash_of((ranks, [*words, "--workers", workers])), alone)
 
+	@unittest.skipIf(len(os.sched_getaffinity(0)) < 2, "there is but one core")
+	def test_cores_of_their_own(self):
+		"""Ranks on one machine do not crowd on the same cores, if the launcher leaves them all."""
+		running = self.start_stepping_ranks([program.scene("gas"), "--duration", program.FOR_EVER, "--workers", "1"])
+		cores = [os.sched_getaffinity(pid) for pid in program.simulators(running.pid) if program.comm(pid) != "sim 3"]
+		self.assertEqual(len(cores), 3)
+		self.assertEqual(len(set.union(*cores)), min(3, len(os.sched_getaffinity(0))))
+
 	def test_files_are_of_the_first(self):
 		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", ".5"]
 		with tempfile.TemporaryDirectory() as folder:
