@@ -766,6 +766,22 @@ bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)
 	return ob_holdings_gather(c->holdings, u, p);
 }
 
+// Where the next record is to be written: motions and pairs lie anywhere.
+static void prefetch_next(const ob_universe *u, const ob_mail *m)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t kind;
+	const uint32_t *number = ob_mail_peek(m, &kind);
+	if (!number)
+		return;
+	if (kind == RESULT && *number < data->objects_max) {
+		ob_prefetch_slot(u, *number);
+		__builtin_prefetch(&data->schedule[*number], 1);
+	} else if (kind == CONTACT && *number < data->pairs_max) {
+		__builtin_prefetch(&data->pair[*number], 1);
+	}
+}
+
 void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
 {
 	ob_mail_record r = { 0 };
@@ -773,6 +789,7 @@ void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
 		return;
 	for (uint32_t rank = 0; rank < mails(c); rank++)
 		for (ob_mail m = mail_of(c, rank); ob_mail_next(u, &m, &r);) {
+			prefetch_next(u, &m);
 			const char *wrong = commit_record(c, u, phase, &r);
 			if (wrong) {
 				ob_step_blame(u, r.worker, wrong);

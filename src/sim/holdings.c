@@ -210,6 +210,19 @@ bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p)
 	return exchange(h, u, p, OB_PEERS_GATHER);
 }
 
+static void prefetch_kept(const ob_universe *u, const ob_island *is)
+{
+	enum { LINE = 64, MOST = 16 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t pair;
+	for (uint32_t k = 0; k < is->pairs && k < MOST; k++) {
+		const ob_pair_key *key = kept_pair(data, is, k, &pair);
+		const char *record = key ? (const char *)&data->record[key->record] : NULL;
+		for (size_t at = 0; record && at < sizeof(ob_pair_record); at += LINE)
+			__builtin_prefetch(record + at);
+	}
+}
+
 static uint32_t damaged_in(const ob_holdings *h, const ob_universe *u, const ob_island *is)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -230,6 +243,8 @@ uint32_t ob_holdings_damaged(const ob_holdings *h, const ob_universe *u)
 	for (uint32_t chunk = 0; chunk < chunks_of(data); chunk++) {
 		const uint32_t end = ob_worker_is_here(u, owner_of(u, chunk)) ? end_of_chunk(data, chunk) : 0;
 		for (uint32_t i = data->chunk[chunk]; i < end; i++) {
+			if (i + 1 < end)
+				prefetch_kept(u, &data->island[i + 1]);
 			const uint32_t object = damaged_in(h, u, &data->island[i]);
 			if (object != OB_NO_OBJECT)
 				return object;

@@ -244,7 +244,8 @@ static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
 	}
 }
 
-// A pair of two members is listed with its a. in_island holds from here to the next islands.
+// A pair of two members is listed with its a. in_island holds from here to the next islands. All of its pairs, in an
+// island or not, are to be checked when that is solved (late_contacts.h).
 static void list_pairs_of(builder *p, uint32_t id, uint32_t island, uint32_t *total)
 {
 	ob_step_data *data = p->data;
@@ -253,6 +254,8 @@ static void list_pairs_of(builder *p, uint32_t id, uint32_t island, uint32_t *to
 		ob_pair_key *k = &data->pair[at.pair];
 		if (!is_in_range(p, k) || (at.side && data->result_island[k->a] != NONE))
 			continue;
+		if (data->count->checks < data->pairs_max)
+			data->check[data->count->checks++] = at.pair;
 		const bool in_island = island_of_pair(p, k) == island && *total < data->pairs_max;
 		if (k->in_island != in_island)
 			k->in_island = in_island;
@@ -265,6 +268,7 @@ static void list_pairs(builder *p)
 {
 	ob_step_data *data = p->data;
 	uint32_t total = 0;
+	data->count->checks = 0;
 	for (uint32_t i = 0; i < data->count->islands; i++) {
 		ob_island *is = &data->island[i];
 		is->first_pair = total;

@@ -343,36 +343,63 @@ static void prefetch_check(const ob_universe *u, uint32_t i, uint32_t end)
 		ob_prefetch_schedule(u, &data->pair[data->check[i + OBJECTS_AHEAD]]);
 }
 
-// Its next step; and its pairs are to be checked, each listed once: that of two members with its a.
-static void note_solved(ob_universe *u, uint32_t id, const ob_calendar *solve, const ob_calendar *look)
+// When each object that was solved is due again.
+static void note_solved(ob_universe *u)
 {
-	ob_step_data *data = ob_universe_step_data(u);
-	ob_pair_place at;
-	ob_calendar_set(solve, id, data->schedule[id].due);
-	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
-		const uint32_t a = data->pair[at.pair].a;
-		if (data->count->checks == data->pairs_max || !ob_object_in_range(data, a))
-			return;
-		if (at.side && data->result_island[a] != UINT32_MAX)
-			continue;
-		ob_calendar_set(look, at.pair, UINT32_MAX);
-		data->check[data->count->checks++] = at.pair;
+	enum { AHEAD = 16 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar solve = ob_calendar_of_objects(u);
+	uint32_t members = 0;
+	for (uint32_t i = 0; i < data->count->islands; i++)
+		members += data->island[i].members;
+	for (uint32_t i = 0; i < members && i < data->objects_max; i++) {
+		if (i + AHEAD < members && i + AHEAD < data->objects_max)
+			__builtin_prefetch(&data->schedule[data->member[i + AHEAD]]);
+		if (ob_object_in_range(data, data->member[i]))
+			ob_calendar_set(&solve, data->member[i], data->schedule[data->member[i]].due);
 	}
+}
+
+// The pairs of what was solved are listed since then (island_builder.c), but for those that are new since, which have
+// an entry for now. What is in use no longer is left out.
+static void keep_listed(ob_universe *u)
+{
+	enum { AHEAD = 16 };
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	const uint32_t listed = ob_checks_count(data), end = ob_pairs_end(data);
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < listed; i++) {
+		const uint32_t pair = data->check[i];
+		if (i + AHEAD < listed) {
+			__builtin_prefetch(&data->pair[data->check[i + AHEAD]]);
+			__builtin_prefetch(&look.level.one[data->check[i + AHEAD]], 1);
+		}
+		if (pair >= end) {
+			data->count->failure = OB_STEP_DAMAGED;
+			break;
+		}
+		if (data->pair[pair].a == data->pair[pair].b)
+			continue;
+		ob_calendar_set(&look, pair, UINT32_MAX);
+		data->check[n++] = pair;
+	}
+	data->count->checks = n;
 }
 
 void ob_late_contacts_begin(ob_universe *u, bool solved)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar solve = ob_calendar_of_objects(u), look = ob_calendar_of_pairs(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
 	const uint64_t steps = ob_step_count(u) + solved;
 	ob_late_contacts_reset(u);
 	data->count->checked = (uint32_t)steps;
-	data->count->checks = 0;
-	for (uint32_t i = 0; solved && i < data->count->islands; i++)
-		for (uint32_t k = 0; k < data->island[i].members; k++) {
-			ob_prefetch_pairs_of(u, data->island[i].first_member + k);
-			note_solved(u, data->member[data->island[i].first_member + k], &solve, &look);
-		}
+	if (solved) {
+		note_solved(u);
+		keep_listed(u);
+	} else {
+		data->count->checks = 0;
+	}
 	const uint32_t first = data->count->checks;
 	data->count->checks += ob_calendar_list(&look, steps, data->check + first, data->pairs_max - first);
 	for (uint32_t i = first; i < data->count->checks; i++)

@@ -11,9 +11,10 @@
 
 #include "sim/commit.h"
 
-// By the scheduling worker, before pairs are checked: lists those that must be, in ob_step_data.check. They are
-// those whose turn it is (sim/calendar.h), and all of the objects that have been solved. solved: a step has been solved
-// and is not yet committed.
+// By the scheduling worker, before pairs are checked: lists those that must be, in ob_step_data.check, which holds
+// those of the objects that have been solved since their islands were built. They are those whose turn it is
+// (sim/calendar.h), and all of the objects that have been solved. solved: a step has been solved and is not yet
+// committed.
 void ob_late_contacts_begin(ob_universe *u, bool solved);
 // Checks first .. end-1 of them: sets expected, late and limit of each, and notes in ob_step_data.count whether any
 // contact is late.

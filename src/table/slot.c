@@ -45,6 +45,14 @@ void ob_prefetch_versions(const ob_universe *u, uint32_t id)
 	__builtin_prefetch(&u->passport[id].version);
 }
 
+void ob_prefetch_slot(const ob_universe *u, uint32_t id)
+{
+	enum { LINE = 64 };
+	const char *slot = (const char *)&u->slot[id];
+	for (size_t at = 0; at < sizeof u->slot[id]; at += LINE)
+		__builtin_prefetch(slot + at, 1);
+}
+
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 {
 	return p->shape == OB_SHAPE_HULL && p->hull < u->header.sizes.hulls ? u->hull + p->hull : NULL;
