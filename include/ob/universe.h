@@ -165,6 +165,9 @@ size_t ob_universe_list(char names[][OB_NAME_MAX], size_t max);
 void ob_universe_get_info(const ob_universe *u, ob_universe_info *out);
 // false: no such worker
 bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out);
+// The worker in which the object's simulator lives: which solved its island last, or to which it was moved; its own, where
+// each object has one. false: it has none, as what no force moves, or no worker has solved it yet.
+bool ob_universe_get_home(const ob_universe *u, uint32_t id, uint32_t *worker);
 // false: no object has this id now
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out);
 // Another number after each change of the passport, so that who has read it knows when to look again; 0: there is none.

@@ -86,6 +86,17 @@ static bool message(sending *s, ob_error *e)
 	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
 }
 
+static bool move(sending *s, ob_error *e)
+{
+	char *end;
+	const unsigned long worker = strtoul(s->word[1], &end, 10);
+	if (strspn(s->word[1], "0123456789") == 0 || *end || worker >= UINT32_MAX)
+		return ob_fail(e, "move: expected the number of a worker, got \"%s\"", s->word[1]);
+	s->request.kind = OB_REQUEST_MOVE;
+	s->request.worker = (uint32_t)worker;
+	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+}
+
 static const struct verb {
 	const char *name, *usage;
 	int words; // at least
@@ -96,6 +107,7 @@ static const struct verb {
 	{ "remove", "remove OBJECT", 1, false, remove_object },
 	{ "colour", "colour OBJECT '#rrggbb'", 2, false, colour },
 	{ "message", "message OBJECT VALUE ...", 1, true, message },
+	{ "move", "move OBJECT WORKER", 2, false, move },
 };
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
@@ -110,7 +122,7 @@ static const struct verb *find_verb(const char *name, ob_error *e)
 	if (name && near.best)
 		ob_fail(e, "unknown request '%s': did you mean %s?", name, near.best);
 	else
-		ob_fail(e, "expected what to ask for: obsim send NAME create, remove, colour or message");
+		ob_fail(e, "expected what to ask for: obsim send NAME create, remove, colour, message or move");
 	return NULL;
 }
 

@@ -20,6 +20,8 @@ typedef struct ob_top_worker {
 typedef struct ob_top_object {
 	uint32_t id;
 	bool moving; // has a motion that makes sense
+	bool housed; // in a worker, "home"
+	uint32_t home;
 	ob_passport passport;
 	ob_motion motion;
 	ob_vec3 position; // m, at the universe's time

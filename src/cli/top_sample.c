@@ -58,6 +58,7 @@ static void rate_workers(ob_top_sample *s)
 static void look_at_object(ob_top_object *o, const ob_universe *u, uint32_t id, double now)
 {
 	o->id = id;
+	o->housed = ob_universe_get_home(u, id, &o->home);
 	o->moving = ob_universe_get_motion(u, id, &o->motion);
 	if (!o->moving)
 		return;

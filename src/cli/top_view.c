@@ -138,7 +138,11 @@ static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 			    : (o->motion.flags & OB_MOTION_ASLEEP)    ? "asleep"
 			    : (o->motion.flags & OB_MOTION_FREE)      ? "free"
 								      : "awake";
-	int n = snprintf(line, sizeof line, "%5" PRIu32 " %s%*s %-8s %-6s", o->id, name, pad, "", shape, state);
+	char home[16] = "-";
+	if (o->housed)
+		snprintf(home, sizeof home, "%" PRIu32, o->home);
+	int n = snprintf(line, sizeof line, "%5" PRIu32 " %s%*s %-8s %-6s %6s", o->id, name, pad, "", shape, state,
+			 home);
 	if (o->moving)
 		snprintf(line + n, sizeof line - (size_t)n, " %8.4g %8.4g %8.4g %8.3g %8.3g", tidy(o->position.x),
 			 tidy(o->position.y), tidy(o->position.z), tidy(o->speed), tidy(o->spin));
@@ -170,7 +174,7 @@ static uint32_t fit(ob_top_view *view, uint32_t n, int less)
 static void write_objects(ob_top_view *view, ob_top_sample *s, FILE *f)
 {
 	put_line(view, f, "");
-	put_line(view, f, "   ID NAME         SHAPE    STATE       X m      Y m      Z m SPEED m/s SPIN r/s");
+	put_line(view, f, "   ID NAME         SHAPE    STATE  WORKER      X m      Y m      Z m SPEED m/s SPIN r/s");
 	uint32_t shown = fit(view, s->objects, 0);
 	if (s->objects > 0)
 		qsort(s->object, s->objects, sizeof *s->object, view->by_speed ? compare_speed : compare_id);

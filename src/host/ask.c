@@ -11,6 +11,7 @@
 
 #include "base/utf8.h"
 #include "host/host_state.h"
+#include "table/home.h"
 
 enum { PATIENCE_MS = 200, ANSWER_PATIENCE_MS = 10000, WAITING = 16 };
 
@@ -78,11 +79,29 @@ static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 		       : ob_fail(e, "a hull has at most %d corners", OB_HULL_CORNERS_MAX);
 }
 
+// Where it could live: the worker numbers that a pool has for so many objects
+static bool check_move(const ob_universe *u, const ob_request *r, const ob_passport *p, ob_error *e)
+{
+	const uint32_t simulators = ob_universe_simulators(u), ids = ob_universe_ids(u),
+		       workers = simulators < ids ? simulators : ids;
+	if (ob_universe_settings(u)->monolith)
+		return ob_fail(e, "in the one ODE world no object has a simulator");
+	if (ob_universe_settings(u)->one_per_object)
+		return ob_fail(e, "each object has a worker of its own, which nobody moves out of");
+	if (p->flags & (OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC | OB_OBJECT_FROZEN))
+		return ob_fail(e, "object %u (%.*s) does not move by forces, and has no simulator", r->id, OB_NAME_MAX,
+			       p->name);
+	return r->worker < workers ||
+	       ob_fail(e, "there is no worker %u for objects: they are 0 to %u", r->worker, workers - 1);
+}
+
 static bool check(const ob_host *h, ob_request *r, ob_error *e)
 {
 	ob_passport p;
-	if (r->kind > OB_REQUEST_MESSAGE)
+	if (r->kind > OB_REQUEST_MOVE)
 		return ob_fail(e, "unknown request");
+	if (r->kind != OB_REQUEST_MOVE && ob_universe_ranks(h->u) > 1)
+		return ob_fail(e, "of a universe on several ranks, objects can be moved and no more");
 	if (r->kind == OB_REQUEST_ADD)
 		return check_new(h, r, e);
 	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
@@ -91,7 +110,7 @@ static bool check(const ob_host *h, ob_request *r, ob_error *e)
 		return ob_fail(e, "a colour has parts from 0 to 1");
 	if (r->kind == OB_REQUEST_MESSAGE && (r->bytes > sizeof r->values || !ob_script_turn_of(h->u, r->id)))
 		return ob_fail(e, "object %u (%.*s) has no script to send a message to", r->id, OB_NAME_MAX, p.name);
-	return true;
+	return r->kind != OB_REQUEST_MOVE || check_move(h->u, r, &p, e);
 }
 
 static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
@@ -107,8 +126,12 @@ static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
 		ob_utf8_make_plain(r->def.passport.name);
 		r->def.path = NULL, r->def.force = NULL; // a scene's alone
 	}
-	if (check(h, r, e))
+	if (!check(h, r, e))
+		return;
+	if (r->kind != OB_REQUEST_MOVE)
 		ob_host_request(h, r, e);
+	else if (!ob_move_ask(h->u, r->id, r->worker))
+		ob_fail(e, "the move before is made with the next step: ask again");
 }
 
 void ob_ask_answer(ob_host *h, int socket)

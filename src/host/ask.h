@@ -1,9 +1,9 @@
-// How another program of the same user asks a running universe for something: to create, remove or colour an object, or
-// to send its script a message. A socket of the host, by the name of the universe, in the abstract namespace; a request
+// How another program of the same user asks a running universe for something: to create, remove or colour an object, to
+// send its script a message, or to move its simulator to another worker. A socket of the host, by the name of the universe, in the abstract namespace; a request
 // is one packet, and so is its answer.
 //
 // A request is carried out at the next step boundary (host/population.h); the answer says that it makes sense, and is
-// waiting. No byte of it is trusted.
+// waiting. Of several ranks, rank 0 is asked. No byte of it is trusted.
 #ifndef OB_HOST_ASK_H
 #define OB_HOST_ASK_H
 

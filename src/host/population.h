@@ -20,6 +20,7 @@ typedef enum ob_request_kind {
 	OB_REQUEST_REMOVE,
 	OB_REQUEST_COLOUR,
 	OB_REQUEST_MESSAGE, // to the object's script
+	OB_REQUEST_MOVE, // its simulator moves to a worker: done at once, of several ranks, too (table/home.h)
 } ob_request_kind;
 
 typedef struct ob_request {
@@ -28,6 +29,7 @@ typedef struct ob_request {
 	ob_object_def def; // to add
 	ob_hull_corners corners; // of a hull
 	float colour[4]; // linear
+	uint32_t worker; // to move to
 	uint32_t bytes; // of the message
 	unsigned char values[512]; // flat (scene/flat.h)
 } ob_request;

@@ -154,7 +154,7 @@ bool ob_supervisor_start(ob_host *h, ob_error *e)
 	h->wake_fd = eventfd(0, EFD_CLOEXEC);
 	if (h->wake_fd < 0)
 		return ob_fail(e, "cannot make an event for the supervisor: %s", strerror(errno));
-	if (ob_universe_ranks(h->u) == 1) // else only one rank would hear it
+	if (ob_universe_rank(h->u) == 0)
 		h->ask_fd = ob_ask_listen(ob_universe_name(h->u));
 	ob_interrupt_leave_to_main(&before);
 	int error = pthread_create(&h->supervisor, NULL, supervise, h);

@@ -7,6 +7,7 @@
 
 #include "sim/budget.h"
 #include "sim/holdings.h"
+#include "table/home.h"
 
 enum { NONE = UINT32_MAX };
 
@@ -379,7 +380,14 @@ static uint32_t owner_of_task(const ob_universe *u, uint32_t task)
 	return ob_task_owner(task, ob_task_workers(u));
 }
 
-static void give_islands(ob_committer *c, const ob_universe *u)
+static void note_home(ob_universe *u, const ob_island *is, uint32_t worker)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	for (uint32_t k = 0; k < is->members; k++)
+		ob_home_set(u, data->member[is->first_member + k], worker);
+}
+
+static void give_islands(ob_committer *c, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const bool own = ob_universe_settings(u)->one_per_object;
@@ -388,6 +396,8 @@ static void give_islands(ob_committer *c, const ob_universe *u)
 		for (uint32_t i = data->chunk[chunk]; i < data->chunk[chunk + 1]; i++) {
 			c->island_owner[i] = own ? data->member[data->island[i].first_member] : owner_of_task(u, chunk);
 			c->due += data->island[i].members;
+			if (!own)
+				note_home(u, &data->island[i], c->island_owner[i]);
 		}
 }
 

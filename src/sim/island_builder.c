@@ -6,6 +6,7 @@
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
 #include "sim/sort_ids.h"
+#include "table/home.h"
 
 enum { NONE = UINT32_MAX };
 enum { CHUNK_WORK_MIN = 48 }; // work of a chunk, some us: for less the gate would cost more than another worker gains
@@ -366,7 +367,7 @@ static void make_chunks(builder *p, uint32_t unsolved, uint64_t total)
 	data->count->chunks = chunks;
 }
 
-// ---- of several ranks
+// ---- of several ranks, or where simulators have been moved
 
 // Who shares the islands, and what each has so far.
 typedef struct shares {
@@ -402,6 +403,18 @@ static uint32_t preferred_owner(const builder *p, const shares *s, const ob_isla
 	return best;
 }
 
+// To which one of its members was moved, the first of several; UINT32_MAX: none was
+static uint32_t pin_of(const builder *p, const shares *s, const ob_island *is)
+{
+	const ob_step_data *data = p->data;
+	for (uint32_t k = 0; k < is->members; k++) {
+		const uint32_t who = data->pin[data->member[is->first_member + k]] - 1;
+		if (who < s->count)
+			return who;
+	}
+	return UINT32_MAX;
+}
+
 static uint32_t least_loaded(const shares *s)
 {
 	uint32_t best = 0;
@@ -414,13 +427,16 @@ static void give_island(builder *p, shares *s, uint32_t island)
 {
 	const ob_island *is = &p->data->island[island];
 	const uint32_t work = is->work >> s->shift;
-	uint32_t who = preferred_owner(p, s, is);
-	if (s->load[who] + work > s->most)
-		who = least_loaded(s);
+	uint32_t who = pin_of(p, s, is);
+	if (who == UINT32_MAX) {
+		who = preferred_owner(p, s, is);
+		if (s->load[who] + work > s->most)
+			who = least_loaded(s);
+	}
 	s->load[who] += work;
 	s->owner[island] = who;
 	for (uint32_t k = 0; k < is->members; k++)
-		p->data->home[p->data->member[is->first_member + k]] = 1 + who;
+		ob_home_set(p->u, p->data->member[is->first_member + k], who);
 }
 
 // A chunk for each simulator, of islands that it has solved before: what their pairs keep lies with its rank
@@ -465,7 +481,8 @@ static void deal_islands(builder *p)
 		total += data->island[i].work;
 		unsolved += !data->island[i].solved;
 	}
-	if (ob_universe_ranks(p->u) > 1)
+	data->count->shared = ob_universe_ranks(p->u) > 1 || ob_moves_were_made(p->u);
+	if (data->count->shared)
 		make_shares(p, unsolved, total);
 	else
 		make_chunks(p, unsolved, total);

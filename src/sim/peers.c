@@ -9,6 +9,7 @@
 #include "sim/broadphase.h"
 #include "sim/digest.h"
 #include "sim/late_contacts.h"
+#include "table/home.h"
 
 static const uint64_t LEAVING = UINT64_MAX; // a phase, too
 
@@ -155,7 +156,8 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 		}
 	}
 	for (uint32_t r = 1; r < p->ranks; r++) {
-		const ob_peers_head other = head_of(all, at, r);
+		ob_peers_head other = head_of(all, at, r);
+		other.move = first.move; // rank 0 alone is asked
 		if (memcmp(&first, &other, sizeof first) != 0) {
 			blame_rank(p, u, r);
 			return false;
@@ -176,13 +178,17 @@ bool ob_peers_begin(ob_mail *mail)
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
 {
 	head.step = ob_step_count(u);
+	head.move = p->rank == 0 ? ob_move_take(u) : 0;
 	memcpy(mail->bytes, &head, sizeof head);
 	const char *all = p->gather(p->wire, mail->bytes, mail->used, at);
 	if (!all) {
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 		return NULL;
 	}
-	return stand_together(p, u, all, *at) ? all : NULL;
+	if (!stand_together(p, u, all, *at))
+		return NULL;
+	ob_move_make(u, head_of(all, *at, 0).move);
+	return all;
 }
 
 void ob_peers_leave(ob_peers *p)

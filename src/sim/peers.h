@@ -21,6 +21,7 @@ typedef struct ob_peers_head {
 	uint64_t phase; // an ob_phase, or one of the next
 	uint64_t digest;
 	uint64_t damaged; // 1 + an object, what is kept of which is not what it was; 0: none is known
+	uint64_t move; // of rank 0: where a simulator is to move, as table/home.h; set by ob_peers_exchange
 } ob_peers_head;
 #define OB_PEERS_MOVE (UINT64_MAX - 1)
 #define OB_PEERS_GATHER (UINT64_MAX - 2)
@@ -31,7 +32,7 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
 bool ob_peers_begin(ob_mail *mail);
 // Sends the mail, which begins with a head, this one. Gives those of all ranks, heads and all, in their order: that of
 // rank r from at[r] to at[r + 1]; they hold until the next call. NULL: the others are elsewhere, or one has left, and
-// the step has failed.
+// the step has failed. The move that rank 0 was asked for is made.
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
 bool ob_peers_join(ob_peers *p, const ob_universe *u, ob_error *e);
 void ob_peers_leave(ob_peers *p);

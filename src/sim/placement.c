@@ -8,6 +8,7 @@
 #include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/sim.h"
+#include "table/home.h"
 #include "table/trace.h"
 
 // The object's schedule record has changed.
@@ -270,6 +271,7 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 	note_change(u, id);
 	if (ob_universe_traced(u))
 		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
+	ob_pin_drop(u, id);
 	ob_passport none = *ob_passport_of(u, id);
 	none.flags = 0;
 	ob_write_passport(u, id, &none);

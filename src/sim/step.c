@@ -54,6 +54,7 @@
 #include "sim/scripts.h"
 #include "sim/sim.h"
 #include "sim/state.h"
+#include "table/home.h"
 
 enum {
 	QUERIES_PER_WORKER = 16, // for fewer the gate would cost more than another worker gains
@@ -136,7 +137,7 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 	const uint32_t all = data->count->chunks;
 	uint32_t n = 0;
 	ob_task_reset(c->u, all, all);
-	if (!ob_commit_give(c->sim->committer, c->u, &c->sim->peers))
+	if (ob_universe_ranks(c->u) > 1 && !ob_commit_give(c->sim->committer, c->u, &c->sim->peers))
 		return false;
 	for (uint32_t w = 0; w < all; w++)
 		if (data->chunk[w] < data->chunk[w + 1])
@@ -151,7 +152,7 @@ static bool open_islands(const scheduler *c, ob_phase phase)
 {
 	const ob_step_data *data = c->data;
 	uint32_t n = 0;
-	if (ob_universe_ranks(c->u) > 1)
+	if (data->count->shared)
 		return open_shares(c, phase);
 	if (!c->settings->one_per_object) {
 		open_tasks(c, phase, data->count->chunks, data->count->chunks);
@@ -276,21 +277,41 @@ static void solve_island(ob_sim *s, uint32_t island, bool first)
 	ob_fault_chance(s);
 }
 
+// The next chunk: one's own if they are shared, else one that is claimed. To the contained they are dealt out so that
+// chunk w is worker w's.
+static bool next_chunk(const ob_sim *s, uint32_t *chunks, uint32_t *chunk)
+{
+	if (!s->data->count->shared || ob_universe_contains(s->u))
+		return ob_task_claim(s->u, chunk);
+	*chunk = s->worker;
+	return (*chunks)++ == 0 && s->worker < s->data->count->chunks;
+}
+
+static void note_home(const ob_sim *s, uint32_t island)
+{
+	const ob_island *is = &s->data->island[island];
+	for (uint32_t k = 0; k < is->members; k++)
+		ob_home_set(s->u, s->data->member[is->first_member + k], s->worker);
+}
+
 static void solve_islands(ob_sim *s)
 {
 	const ob_step_data *data = s->data;
-	uint32_t chunk, objects = 0;
+	const bool notes = !data->count->shared && !ob_universe_contains(s->u); // else who deals them does
+	uint32_t chunk, chunks = 0, objects = 0;
 	if (s->settings->one_per_object) {
 		solve_island(s, data->result_island[s->worker], true);
 		return;
 	}
-	while (ob_task_claim(s->u, &chunk)) {
+	while (next_chunk(s, &chunks, &chunk)) {
 		const uint32_t first = data->chunk[chunk], end = data->chunk[chunk + 1];
 		ob_span_chunk_begin(s);
 		for (uint32_t i = first; i < end; i++) {
 			if (i + 1 < end) // beyond it another worker writes what would be read here
 				ob_prefetch_island(s, i + 1);
 			solve_island(s, i, i == first);
+			if (notes)
+				note_home(s, i);
 			objects += data->island[i].members;
 		}
 		ob_span_chunk_end(s, chunk);
@@ -329,6 +350,8 @@ static ob_phase build_islands(const scheduler *c)
 {
 	struct ob_step_counts *count = c->data->count;
 	count->islands = 0;
+	if (ob_universe_ranks(c->u) == 1) // else the next message says so to all
+		ob_move_make(c->u, ob_move_take(c->u));
 	if (is_anybody_due(c))
 		ob_islands_build(c->u);
 	return count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
@@ -491,7 +514,8 @@ static ob_phase schedule(ob_sim *s, ob_phase finished)
 	return next;
 }
 
-// What the simulators of all ranks have handed over. The arranger alone resumes a run, each rank's for itself. false: STOP.
+// What the simulators of all ranks have handed over. The arranger alone resumes a run, each rank's for itself. false:
+// STOP.
 static bool commit(ob_sim *s, ob_phase phase)
 {
 	const bool alone = s->peers.ranks < 2 || phase == OB_PHASE_RESUME;

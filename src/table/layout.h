@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 23, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 24, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -27,6 +27,7 @@ typedef enum ob_area {
 	OB_AREA_PASSPORT_EVEN, // [capacity]
 	OB_AREA_HULL, // [hulls]
 	OB_AREA_STEP_CLOCK,
+	OB_AREA_PIN, // [capacity] as ob_step_data.pin
 	OB_AREA_REQUERY, // [capacity] ids
 	OB_AREA_REQUERY_BIT, // [capacity / 64] ids that are on the list
 	OB_AREA_COUNTS, // from here on: ob_step_data
@@ -114,6 +115,8 @@ typedef struct ob_control {
 	_Alignas(64) uint32_t deaths; // so far: times that simulators died
 	uint32_t frozen; // objects that were frozen for it
 	char last_death[OB_DEATH_MAX]; // as ob_universe_info
+	_Alignas(64) uint64_t move; // that is asked for (home.h); 0 = none
+	uint32_t pins; // objects that have one
 } ob_control;
 
 // How long steps take. The gate orders its writers, but any worker may raise longest_ns, and critical_ns grows after
@@ -148,7 +151,7 @@ static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT
 static_assert(sizeof(ob_run_settings) == 120, "run settings");
 static_assert(sizeof(ob_header) == 72 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 120 + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
-static_assert(sizeof(ob_control) == 512, "control");
+static_assert(sizeof(ob_control) == 576, "control");
 static_assert(sizeof(ob_worker_cell) == 512, "worker cell");
 static_assert(sizeof(ob_pair_state) == 256, "pair state");
 static_assert(sizeof(ob_pair_record) == 520, "pair record");

@@ -135,6 +135,16 @@ bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_inf
 	return true;
 }
 
+bool ob_universe_get_home(const ob_universe *u, uint32_t id, uint32_t *worker)
+{
+	ob_passport p;
+	if (!ob_universe_get_passport(u, id, &p) ||
+	    p.flags & (OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC | OB_OBJECT_FROZEN))
+		return false;
+	*worker = u->header.run.monolith ? 0 : u->header.run.one_per_object ? id : read32(&u->step_data.home[id]) - 1;
+	return *worker < u->header.sizes.workers;
+}
+
 // Copies plain data word by word: each word at least is whole.
 static void copy_words(void *to, const void *from, size_t bytes)
 {

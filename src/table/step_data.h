@@ -150,6 +150,7 @@ typedef struct ob_step_data {
 		uint32_t pairs_idle; // of these, not in use
 		uint32_t first_idle; // 1 + one of them, the first of a list
 		uint32_t islands, chunks, records_used;
+		uint32_t shared;     // 1 = chunk w is worker w's; 0 = chunks are claimed
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
 		uint32_t scheduler;  // the worker that scheduled last
 		uint32_t merged;     // 1 = islands that late contacts merged are being solved again
@@ -173,7 +174,9 @@ typedef struct ob_step_data {
 	float (*bounds)[6];           // [object]: fat AABB, which holds it until it asks for another
 	ob_motion *result;            // [object]: what its island's solver found
 	uint32_t *effort;             // [object]: its share of what its island cost when it was solved last, as ob_island.work
-	uint32_t *home;               // [object]: of several ranks, 1 + the simulator that was given it last; 0 = none was
+	uint32_t *home;               // [object]: 1 + the worker that was given it last (home.h); 0 = none was
+	uint32_t *pin;                // [object]: 1 + the worker that it was moved to; 0 = to none. No state of the run: what is put
+	                              // back from a checkpoint in memory is without it
 	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none
 	struct ob_neighbours {
 		uint32_t offset, count; // range in neighbour_id; count UINT32_MAX = a query is pending

@@ -60,6 +60,15 @@ def report(*words, **more):
 	return json.loads(done.stdout)
 
 
+def home_of(name, object):
+	"""The worker in which obsim top says that an object lives, as text; None: the universe, or the object, is not there."""
+	for line in call("top", name, "--once", "--interval", ".01").stdout.splitlines():
+		words = line.split()
+		if len(words) > 5 and words[0] == str(object) and words[2] in ("box", "sphere", "plane"):
+			return words[4]
+	return None
+
+
 def segment(name):
 	return "/dev/shm/obsim." + name
 

@@ -95,6 +95,31 @@ class Ranks(program.Case):
 				more = ["--resume", file, "--duration", "1", "--workers", "1", "--json", "-"]
 				self.assertEqual(self.hash_of((3, more)), expected)
 
+	def test_moves(self):
+		"""Simulators move from rank to rank, as rank 0 is asked."""
+		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "3", "--sleeping", "off"]
+		alone = program.report(*words, "--workers", "1")["state_hash"]
+		with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as said:
+			running = subprocess.Popen(command((2, [*words, "--workers", "2", "--pace", ".25", "--name", self.name, "--json", "-"])),
+				env=program.RANKS, stdin=subprocess.DEVNULL, stdout=out, stderr=said, text=True)
+			try:
+				self.assertTrue(program.wait_until(lambda: program.steps(self.name) > 0 or running.poll() is not None))
+				self.assertIsNone(running.poll())
+				moves, seen = 0, 0
+				while running.poll() is None:
+					box, worker = random.randint(1, 30), random.randint(0, 3)
+					moves += program.call("send", self.name, "move", box, worker).returncode == 0
+					home = program.home_of(self.name, box)
+					seen += home == str(worker)
+				self.assertEqual(running.wait(program.PATIENCE), 0)
+			finally:
+				running.kill()
+				running.wait()
+			self.assertGreater(moves, 1)
+			self.assertGreater(seen, 0)
+			out.seek(0)
+			self.assertEqual(json.load(out)["state_hash"], alone)
+
 	def test_refused(self):
 		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "1"]
 		for other, said in ((["--workers", "1", "--seed", "5"], "runs another scene"),

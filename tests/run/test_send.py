@@ -18,7 +18,8 @@ class Send(program.Case):
 		super().setUp()
 		with open(self.path("scene.lua"), "w") as f:
 			f.write(SCENE)
-		self.run_ = self.start_universe(self.path("scene.lua"), "--pace", "realtime", "--duration", program.FOR_EVER)
+		self.run_ = self.start_universe(self.path("scene.lua"), "--pace", "realtime", "--duration", program.FOR_EVER,
+			"--workers", "2")
 		self.assertTrue(program.wait_until(lambda: "listener" in self.objects()))
 
 	def tearDown(self):
@@ -52,8 +53,16 @@ class Send(program.Case):
 		self.send(self.name, "create", "hull { points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } } }", code=1, saying="four different points")
 		self.send(self.name, "create", "sphere { radius = -1 }", code=1, saying=r"sphere\.radius: expected a number above 0")
 		self.send(self.name, "colour", "new", "green", code=1, saying="#rrggbb")
+		self.send(self.name, "move", "listener", "1")
+		self.assertTrue(program.wait_until(lambda: program.home_of(self.name, 1) == "1"))
+		self.send(self.name, "move", "listener", "0")
+		self.assertTrue(program.wait_until(lambda: program.home_of(self.name, 1) == "0"))
+		self.assertEqual(program.home_of(self.name, 0), "-")
+		self.send(self.name, "move", "listener", "2", code=1, saying="there is no worker 2 for objects: they are 0 to 1")
+		self.send(self.name, "move", "listener", "x", code=1, saying='expected the number of a worker, got "x"')
+		self.send(self.name, "move", "0", "1", code=1, saying="has no simulator")
 		self.send("nobody", "remove", "x", code=1, saying="nobody")
-		for words, saying in ((), "no universe given"), ((self.name,), "create, remove, colour or message"), \
+		for words, saying in ((), "no universe given"), ((self.name,), "create, remove, colour, message or move"), \
 				((self.name, "remov", "x"), "did you mean remove"), ((self.name, "remove"), "remove OBJECT"):
 			self.send(*words, code=2, saying=saying)
 		self.run_.terminate()

@@ -1,0 +1,46 @@
+#include "table/home.h"
+
+#include "table/layout.h"
+
+// A move in one word: 1 + worker, object
+bool ob_move_ask(ob_universe *u, uint32_t object, uint32_t worker)
+{
+	uint64_t none = 0;
+	return __atomic_compare_exchange_n(&u->control->move, &none, (uint64_t)(1 + worker) << 32 | object, false,
+					   __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+}
+
+uint64_t ob_move_take(ob_universe *u)
+{
+	return __atomic_load_n(&u->control->move, __ATOMIC_RELAXED)
+		       ? __atomic_exchange_n(&u->control->move, 0, __ATOMIC_RELAXED)
+		       : 0;
+}
+
+void ob_move_make(ob_universe *u, uint64_t move)
+{
+	const uint32_t object = (uint32_t)move, pin = (uint32_t)(move >> 32);
+	ob_passport p;
+	if (pin == 0 || !ob_universe_get_passport(u, object, &p)) // it may have gone since
+		return;
+	u->control->pins += u->step_data.pin[object] == 0;
+	u->step_data.pin[object] = pin;
+	ob_home_set(u, object, pin - 1);
+}
+
+bool ob_moves_were_made(const ob_universe *u)
+{
+	return u->control->pins > 0;
+}
+
+void ob_pin_drop(ob_universe *u, uint32_t object)
+{
+	u->control->pins -= u->step_data.pin[object] != 0;
+	u->step_data.pin[object] = 0;
+}
+
+// Read by readers at any time.
+void ob_home_set(ob_universe *u, uint32_t object, uint32_t worker)
+{
+	__atomic_store_n(&u->step_data.home[object], 1 + worker, __ATOMIC_RELAXED);
+}
