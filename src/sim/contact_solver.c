@@ -11,6 +11,8 @@
 static const double wake_threshold = 2e-3; // m/s ..
 static const double max_wake_threshold = 1e-2; // m/s: .. where a partial substep is short, and raises it ..
 static const double max_wake_rate = 1; // 1/s: .. and, times the tolerance, at most
+static const double coarse_wake_share = .05; // .. or, in a coarse run, so much of the largest speed in the island, ..
+static const double coarse_wake_way = .1; // .. unless that moves something farther than so much of the tolerance
 static const uint32_t max_extra_iterations = 8; // times the run's number; only for changes above ..
 static const double extra_iteration_threshold = .05; // m/s
 static const int block_sweeps = 4;
@@ -194,20 +196,37 @@ static void settle(ob_sim *s, const ob_solver_iteration *last)
 	s->island.direct.gave_up = residual > nearly_settled * s->island.unit.speed;
 }
 
+// m/s, of any point of a body
+static double largest_speed(const ob_island_work *w)
+{
+	double most = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		most = ob_max(most, w->body[i].speed);
+	return most;
+}
+
+// m/s. A coarse run leaves more where something moves, for the next partial substep finds it; but no more where all is
+// slow, for there it would creep.
+static double wake_threshold_of(const ob_sim *s)
+{
+	const ob_island_work *w = &s->island;
+	const double wake = within_tolerance(s, wake_threshold * w->unit.speed, max_wake_rate / w->unit.time);
+	const double least = ob_min(max_wake_threshold * w->unit.speed,
+				    wake * w->substep / w->h); // what lasts shorter, moves less
+	if (w->coarseness == 1)
+		return least;
+	return ob_max(least, ob_min(coarse_wake_share * largest_speed(w), coarse_wake_way * w->tolerance / w->h));
+}
+
 void ob_solver_iterate(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
-	// What iterations leave in each substep adds up over a step: the fewer there are, the more each may leave,
-	// until it would creep by half the tolerance.
-	const double more = ob_max(1, .5 * w->coarseness);
-	const double wake = more * within_tolerance(s, wake_threshold * w->unit.speed, max_wake_rate / w->unit.time);
 	ob_solver_iteration iteration = {
 		.h = w->h,
 		.block_sweeps = block_sweeps,
 		.converged = converged * w->unit.speed,
-		.wake_threshold = ob_min(more * max_wake_threshold * w->unit.speed,
-					 wake * w->substep / w->h), // what lasts shorter, moves less
+		.wake_threshold = wake_threshold_of(s),
 		.impact_threshold = impact_threshold * w->unit.speed * w->h / w->substep,
 		.first = true,
 		.jacobi = is_jacobi(s),

@@ -92,7 +92,7 @@ static void test_heaps(const char *name, void (*add)(little_scene *, uint64_t), 
 		printf("%s, %g mm: worst %.3g mm, effort %.0f\n", name, 1e3 * tolerances[i], 1e3 * worst, effort[i]);
 		CHECK(i == 0 || effort[i] < effort[i - 1]);
 	}
-	CHECK(effort[TOLERANCES - 1] < .3 * effort[0]);
+	CHECK(effort[TOLERANCES - 1] < .2 * effort[0]);
 }
 
 // ---- what stands, and what rebounds
