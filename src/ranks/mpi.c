@@ -33,7 +33,7 @@ static double seconds(void)
 // share of what it has waited for: so a wait takes no more longer than that, and few wakings however long it is.
 static void wait_for(MPI_Request *r)
 {
-	static const double poll = 30e-6, shortest = 20e-6, longest = 2e-3, share = .125; // s
+	static const double poll = 30e-6, shortest = 20e-6, longest = 2e-3, share = .25; // s
 	const double begun = seconds();
 	int done = 0;
 	for (;;) {

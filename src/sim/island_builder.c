@@ -251,8 +251,10 @@ static void list_pairs_of(builder *p, uint32_t id, uint32_t island, uint32_t *to
 {
 	ob_step_data *data = p->data;
 	ob_pair_place at;
-	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+	for (uint32_t link = data->first_pair[id], next; ob_pair_at(data, link, &at); link = next) {
 		ob_pair_key *k = &data->pair[at.pair];
+		next = ob_pair_next(data, at);
+		ob_prefetch_link(p->u, next);
 		if (!is_in_range(p, k) || (at.side && data->result_island[k->a] != NONE))
 			continue;
 		if (data->count->checks < data->pairs_max)

@@ -32,7 +32,7 @@ static void prefetch_members(const ob_universe *u, const ob_island *is)
 	const ob_step_data *data = ob_universe_step_data(u);
 	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++)
 		if (data->member[is->first_member + k] < data->objects_max)
-			ob_prefetch_versions(u, data->member[is->first_member + k]);
+			ob_prefetch_slot(u, data->member[is->first_member + k]);
 }
 
 static uint64_t digest_island(const ob_universe *u, const ob_island *is, uint64_t sum)

@@ -25,6 +25,15 @@ void ob_prefetch_schedule(const ob_universe *u, const ob_pair_key *k)
 	}
 }
 
+void ob_prefetch_link(const ob_universe *u, uint32_t link)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (!link)
+		return;
+	__builtin_prefetch(&data->pair[(link - 1) / 2]);
+	__builtin_prefetch(&data->pair_links[(link - 1) / 2]);
+}
+
 void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i)
 {
 	enum { HEAD_AHEAD = 16, PAIR_AHEAD = 8 };
@@ -33,11 +42,7 @@ void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i)
 		__builtin_prefetch(&data->first_pair[data->member[i + HEAD_AHEAD]]);
 	if (i + PAIR_AHEAD >= data->objects_max || data->member[i + PAIR_AHEAD] >= data->objects_max)
 		return;
-	const uint32_t link = data->first_pair[data->member[i + PAIR_AHEAD]];
-	if (!link)
-		return;
-	__builtin_prefetch(&data->pair[(link - 1) / 2]);
-	__builtin_prefetch(&data->pair_links[(link - 1) / 2]);
+	ob_prefetch_link(u, data->first_pair[data->member[i + PAIR_AHEAD]]);
 }
 
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k)

@@ -13,5 +13,7 @@ void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k);
 
 // Where members of the islands are gone through, at place i of member[]: the first pairs of those that follow.
 void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i);
+// In a list of pairs (sim/pairs.h), the one that follows.
+void ob_prefetch_link(const ob_universe *u, uint32_t link);
 
 #endif

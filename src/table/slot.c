@@ -50,7 +50,7 @@ void ob_prefetch_slot(const ob_universe *u, uint32_t id)
 	enum { LINE = 64 };
 	const char *slot = (const char *)&u->slot[id];
 	for (size_t at = 0; at < sizeof u->slot[id]; at += LINE)
-		__builtin_prefetch(slot + at, 1);
+		__builtin_prefetch(slot + at);
 }
 
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)

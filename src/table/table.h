@@ -134,7 +134,7 @@ bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h);
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id);
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
 void ob_prefetch_versions(const ob_universe *u, uint32_t id); // which the two before read
-void ob_prefetch_slot(const ob_universe *u, uint32_t id); // all of it, to be written
+void ob_prefetch_slot(const ob_universe *u, uint32_t id); // all of it
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p); // NULL: it is no hull
 // The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);
