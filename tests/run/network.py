@@ -17,7 +17,7 @@ DELAYED = 1 << 20 # bytes of packets that are on their way at once in each direc
 
 
 def ip(*words):
-	subprocess.run([shutil.which("ip", path=PATH), *words], check=True, capture_output=True)
+	return subprocess.run([shutil.which("ip", path=PATH), *words], check=True, capture_output=True, text=True).stdout
 
 
 def open_tun(name):
@@ -100,6 +100,13 @@ class Link:
 	def inside(self, i):
 		"""What a command begins with that is to run there."""
 		return [shutil.which("ip", path=PATH), "netns", "exec", self.space[i]]
+
+	def processes(self):
+		"""Ids of all that live in either."""
+		return [int(pid) for space in self.space for pid in ip("netns", "pids", space).split()]
+
+	def cut(self):
+		ip("-n", self.space[1], "link", "set", self.device[1], "down")
 
 	def packets(self):
 		"""That the first has got."""
