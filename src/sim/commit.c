@@ -24,6 +24,13 @@ typedef enum record_kind {
 	POSTS,
 } record_kind;
 
+// A result whose acceleration is that of before the step, as it mostly is: without it.
+enum { ACCELERATION = offsetof(ob_motion, a), BEHIND_IT = ACCELERATION + sizeof(ob_vec3) };
+typedef struct steady_record {
+	uint32_t id, state, due, reserved; // as ob_found_result
+	unsigned char motion[sizeof(ob_motion) - sizeof(ob_vec3)];
+} steady_record;
+
 typedef struct bounds_record {
 	uint32_t id, reserved;
 	float box[6];
@@ -207,10 +214,23 @@ static uint32_t reserve_neighbours(ob_universe *u, uint32_t id, uint32_t total)
 
 // ---- by whoever has found it
 
+static void hand_over_result(ob_universe *u, const ob_found_result *r)
+{
+	const char *motion = (const char *)&r->motion;
+	steady_record steady = { r->id, r->state, r->due, 0, { 0 } };
+	if (memcmp(&r->motion.a, &ob_newest_motion(u, r->id)->a, sizeof r->motion.a) != 0) {
+		ob_outbox_put(u, RESULT, r, sizeof *r, NULL, 0);
+		return;
+	}
+	memcpy(steady.motion, motion, ACCELERATION);
+	memcpy(steady.motion + ACCELERATION, motion + BEHIND_IT, sizeof r->motion - BEHIND_IT);
+	ob_outbox_put(u, RESULT, &steady, sizeof steady, NULL, 0);
+}
+
 void ob_commit_result(ob_sim *s, const ob_found_result *r)
 {
 	if (ob_universe_contained(s->u))
-		ob_outbox_put(s->u, RESULT, r, sizeof *r, NULL, 0);
+		hand_over_result(s->u, r);
 	else
 		write_result(s->u, r);
 }
@@ -442,11 +462,27 @@ static bool owns_island(const ob_committer *c, uint32_t worker, uint32_t island)
 	return island < c->solved && c->island_owner[island] == worker;
 }
 
+// The whole result, of an object that there is; NULL: it is none.
+static const ob_found_result *result_of(const ob_universe *u, const ob_mail_record *from, ob_found_result *whole)
+{
+	const steady_record *steady = from->data;
+	char *motion = (char *)&whole->motion;
+	if ((from->bytes != sizeof *whole && from->bytes != sizeof *steady) || steady->id >= ob_universe_ids(u))
+		return NULL;
+	if (from->bytes == sizeof *whole)
+		return from->data;
+	whole->id = steady->id, whole->state = steady->state, whole->due = steady->due, whole->reserved = 0;
+	memcpy(motion, steady->motion, ACCELERATION);
+	whole->motion.a = ob_newest_motion(u, steady->id)->a;
+	memcpy(motion + BEHIND_IT, steady->motion + ACCELERATION, sizeof whole->motion - BEHIND_IT);
+	return whole;
+}
+
 static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
-	const ob_found_result *r = from->data;
-	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) ||
-	    !owns_island(c, from->worker, ob_universe_step_data(u)->result_island[r->id]) || c->had[r->id]++)
+	ob_found_result whole;
+	const ob_found_result *r = result_of(u, from, &whole);
+	if (!r || !owns_island(c, from->worker, ob_universe_step_data(u)->result_island[r->id]) || c->had[r->id]++)
 		return "has solved what it was not given";
 	if (!is_sound(&r->motion, u) || r->state < OB_SCHEDULE_AWAKE || r->state > OB_SCHEDULE_EQUILIBRIUM)
 		return "has found a motion that makes no sense";
