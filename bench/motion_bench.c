@@ -16,9 +16,9 @@ typedef struct subject {
 
 static subject subjects[BODIES];
 
-typedef double call(const subject *s, double t);
+typedef double call(subject *s, double t);
 
-static double rotate(const subject *s, double t)
+static double rotate(subject *s, double t)
 {
 	ob_quat q;
 	ob_vec3 w;
@@ -26,7 +26,7 @@ static double rotate(const subject *s, double t)
 	return q.w;
 }
 
-static double rotate_top(const subject *s, double t)
+static double rotate_top(subject *s, double t)
 {
 	ob_quat q;
 	ob_vec3 w;
@@ -34,7 +34,7 @@ static double rotate_top(const subject *s, double t)
 	return q.w;
 }
 
-static double rotate_planned(const subject *s, double t)
+static double rotate_planned(subject *s, double t)
 {
 	ob_quat q;
 	ob_vec3 w;
@@ -42,33 +42,33 @@ static double rotate_planned(const subject *s, double t)
 	return q.w;
 }
 
-static double at(const subject *s, double t)
+static double at(subject *s, double t)
 {
 	return ob_motion_at(&s->motion, s->inertia, t).pose.p.z;
 }
 
-static double at_rest(const subject *s, double t)
+static double at_rest(subject *s, double t)
 {
 	ob_motion m = s->motion;
 	m.w = ob_v3(0, 0, 0);
 	return ob_motion_at(&m, s->inertia, t).pose.p.z;
 }
 
-static double bounds(const subject *s, double t)
+static double bounds(subject *s, double t)
 {
 	double b[6];
 	ob_shape_bounds(OB_SHAPE_BOX, s->inertia, (ob_pose){ s->motion.p, s->motion.q }, b);
 	return b[0] + t;
 }
 
-static double swept(const subject *s, double t)
+static double swept(subject *s, double t)
 {
 	double b[6];
 	ob_motion_swept_bounds(&s->motion, OB_SHAPE_BOX, s->inertia, t, b);
 	return b[0];
 }
 
-static double closing(const subject *s, double t)
+static double closing(subject *s, double t)
 {
 	return ob_time_of_closing(s->inertia.x, -t, -9.81, 10);
 }

@@ -140,8 +140,12 @@ static void bench_plans(void)
 		flier[i] = random_flier(&seed, &spin[i]);
 	for (int b = 0; b < BATCHES; b++) {
 		double start = ob_clock_thread_cpu();
-		for (int i = 0; i < BODIES; i++)
+		for (int i = 0; i < BODIES; i++) {
+			ob_quat q;
+			ob_vec3 w;
 			ob_spin_plan(&spin[i], flier[i].q, flier[i].w, flier[i].inertia);
+			ob_spin_at(&spin[i], 1, &q, &w); // a long turn, or nothing would be planned
+		}
 		double between = ob_clock_thread_cpu();
 		for (int i = 0; i < BODIES; i++)
 			time += ob_landing_time(&flier[i], &ground, 0, 10);

@@ -207,8 +207,7 @@ typedef struct moving_shape {
 	const ob_placed *from; // at t = 0
 	ob_vec3 rate; // rad/s, in the frame of the shape
 	double speed; // rad/s
-	bool planned; // spin: from no attitude on; only long turns need it
-	ob_spin spin;
+	ob_spin spin; // from no attitude on
 } moving_shape;
 
 static void set_off(const ob_placed *x, moving_shape *o)
@@ -216,7 +215,7 @@ static void set_off(const ob_placed *x, moving_shape *o)
 	o->from = x;
 	o->rate = ob_rotate_back(&x->r, x->w);
 	o->speed = x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w); // it looks the same however it is turned
-	o->planned = false;
+	ob_spin_plan(&o->spin, ob_quat_identity(), o->rate, x->inertia);
 }
 
 static ob_quat turn_at(moving_shape *x, double t)
@@ -225,9 +224,6 @@ static ob_quat turn_at(moving_shape *x, double t)
 	ob_vec3 rate;
 	if (x->speed * t <= longest_short_turn)
 		return ob_drift_short_turn(x->rate, x->from->inertia, t);
-	if (!x->planned)
-		ob_spin_plan(&x->spin, ob_quat_identity(), x->rate, x->from->inertia);
-	x->planned = true;
 	ob_spin_at(&x->spin, t, &turn, &rate);
 	return turn;
 }

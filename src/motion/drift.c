@@ -5,17 +5,14 @@
 
 #include <stdbool.h>
 
-#include "motion/flight.h"
+#include "motion/magnus.h"
 #include "motion/spin.h"
 
 enum { TERMS = 22 };
 
 static const double negligible = 1e-17; // of a unit quaternion
 static const double longest_series = .2; // rad: beyond, the closed form, which then costs no more
-// rad: up to here what Magnus's expansion leaves out is below rounding: to order four; to order six with so many terms
-// of the rate's series
-static const double longest_of_order_four_held = .01, longest_held = .03; // rad: .. below 1e-11
-static const double longest_of_order_four = 1e-3, longest_of_six_terms = .01, longest_of_eight_terms = .03;
+static const double longest_of_order_four_held = .01, longest_held = .03; // rad: of Magnus's expansion, to 1e-11
 
 static bool same_moments(ob_vec3 j)
 {
@@ -62,68 +59,6 @@ static bool series(ob_vec3 w0, ob_vec3 j, double s, ob_quat *out)
 	return false;
 }
 
-// Euler's equations as dw/dt = (c.x w.y w.z, c.y w.z w.x, c.z w.x w.y).
-static ob_vec3 coupling_of(ob_vec3 j)
-{
-	const double inverse_all = 1 / (j.x * j.y * j.z);
-	return ob_v3((j.y - j.z) * (j.y * j.z) * inverse_all, (j.z - j.x) * (j.z * j.x) * inverse_all,
-		     (j.x - j.y) * (j.x * j.y) * inverse_all);
-}
-
-// The next coefficient of the rate's series, from those before, times "terms" (their number).
-static inline ob_vec3 next_rate(ob_vec3 coupling, const ob_vec3 *w, int terms)
-{
-	ob_vec3 sum = ob_v3(0, 0, 0);
-	for (int i = 0; i < terms; i++) {
-		const ob_vec3 a = w[i], b = w[terms - 1 - i];
-		sum = ob_add(sum, ob_v3(a.y * b.z, a.z * b.x, a.x * b.y));
-	}
-	return ob_v3(coupling.x * sum.x, coupling.y * sum.y, coupling.z * sum.z);
-}
-
-// The turn by a rotation vector that is so small that the series of the half angle's cosine and of sin(x) / x end soon.
-static ob_quat small_turn(ob_vec3 turn)
-{
-	const ob_vec3 half = ob_scale(turn, .5);
-	const double x = ob_norm2(half), over = 1 - x / 6 * (1 - x / 20 * (1 - x / 42));
-	return (ob_quat){ 1 - x / 2 * (1 - x / 12 * (1 - x / 30)), over * half.x, over * half.y, over * half.z };
-}
-
-// Magnus's expansion to order four, from the rate's series.
-static ob_vec3 turn_of_order_four(ob_vec3 w0, ob_vec3 j, double s)
-{
-	const ob_vec3 coupling = coupling_of(j);
-	ob_vec3 w[4] = { ob_scale(w0, s) }; // of the rate times s, each with its power of s
-	w[1] = next_rate(coupling, w, 1);
-	w[2] = ob_scale(next_rate(coupling, w, 2), .5);
-	w[3] = ob_scale(next_rate(coupling, w, 3), 1. / 3);
-	const ob_vec3 mean = ob_madd(ob_madd(ob_madd(w[0], .5, w[1]), 1. / 3, w[2]), .25, w[3]);
-	return ob_madd(mean, 1. / 12, ob_cross(w[0], ob_add(w[1], w[2])));
-}
-
-// Magnus's expansion to order six (Blanes, Casas, Oteo and Ros 2009, section 5.4) from the moments of the rate about
-// the middle, each the sum of its series, so many terms of it (a constant: the loops are unrolled).
-static inline __attribute__((always_inline)) ob_vec3 turn_of_order_six(ob_vec3 w0, ob_vec3 j, double s, int terms)
-{
-	enum { MOST = 8 };
-	const ob_vec3 coupling = coupling_of(j);
-	ob_vec3 w[MOST] = { ob_scale(w0, s) }; // as above
-	ob_vec3 mean = w[0], first = ob_v3(0, 0, 0), second = ob_scale(w[0], 1. / 12);
-#pragma GCC unroll 8
-	for (int k = 1; k < terms; k++) {
-		w[k] = ob_scale(next_rate(coupling, w, k), 1. / k);
-		mean = ob_madd(mean, 1. / (k + 1), w[k]);
-		first = ob_madd(first, 1. / (k + 2) - .5 / (k + 1), w[k]);
-		second = ob_madd(second, 1. / (k + 3) - 1. / (k + 2) + .25 / (k + 1), w[k]);
-	}
-	// The turn's equation has the rate on the right: that of its inverse has minus the rate on the left.
-	const ob_vec3 a1 = ob_madd(ob_scale(mean, -9. / 4), 15, second), a2 = ob_scale(first, -12),
-		      a3 = ob_madd(ob_scale(mean, 15), -180, second);
-	const ob_vec3 c1 = ob_cross(a1, a2), c2 = ob_scale(ob_cross(a1, ob_madd(c1, 2, a3)), -1. / 60);
-	const ob_vec3 left = ob_sub(ob_madd(c1, -20, a1), a3);
-	return ob_madd(mean, -1. / 240, ob_cross(left, ob_add(a2, c2)));
-}
-
 static bool any_moment(ob_vec3 j)
 {
 	return !(j.x > 0 && j.y > 0 && j.z > 0);
@@ -131,8 +66,8 @@ static bool any_moment(ob_vec3 j)
 
 ob_quat ob_drift_short_turn(ob_vec3 w, ob_vec3 inertia, double s)
 {
-	return small_turn(same_moments(inertia) || any_moment(inertia) ? ob_scale(w, s)
-								       : turn_of_order_four(w, inertia, s));
+	return same_moments(inertia) || any_moment(inertia) ? ob_magnus_small_turn(ob_scale(w, s))
+							    : ob_magnus_turn_of_order_four(w, inertia, s);
 }
 
 ob_quat ob_drift_turn(ob_vec3 w, ob_vec3 inertia, double s)
@@ -143,12 +78,8 @@ ob_quat ob_drift_turn(ob_vec3 w, ob_vec3 inertia, double s)
 		return turn;
 	if (same_moments(inertia) || any_moment(inertia))
 		return ob_quat_turn(turn, ob_scale(w, s));
-	if (turned < longest_of_order_four * longest_of_order_four)
-		return small_turn(turn_of_order_four(w, inertia, s));
-	if (turned < longest_of_six_terms * longest_of_six_terms)
-		return small_turn(turn_of_order_six(w, inertia, s, 6));
-	if (turned < longest_of_eight_terms * longest_of_eight_terms)
-		return small_turn(turn_of_order_six(w, inertia, s, 8));
+	if (turned < OB_MAGNUS_LONGEST * OB_MAGNUS_LONGEST)
+		return ob_magnus_turn(w, inertia, s);
 	if (turned < longest_series * longest_series && series(w, inertia, s, &turn))
 		return unit(turn);
 	ob_spin spin;
@@ -183,9 +114,9 @@ void ob_drift_held(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_o
 	}
 	const ob_mat3 r = ob_quat_matrix(q);
 	const ob_vec3 b = ob_rotate_back(&r, w);
-	*q_out = unit(ob_quat_mul(q, small_turn(turned < longest_of_order_four_held * longest_of_order_four_held
-							? turn_of_order_four(b, inertia, s)
-							: turn_of_order_six(b, inertia, s, 6))));
+	*q_out = unit(ob_quat_mul(q, turned < longest_of_order_four_held * longest_of_order_four_held
+					     ? ob_magnus_turn_of_order_four(b, inertia, s)
+					     : ob_magnus_turn_of_order_six(b, inertia, s)));
 	*w_out = rate_after(&r, b, inertia, *q_out);
 }
 

@@ -25,7 +25,7 @@ typedef struct ob_flier {
 	ob_vec3 p, v, a; // at s = 0
 	ob_quat q; // attitude at s = 0, which stays where spin is NULL
 	ob_vec3 w; // rad/s, world, at s = 0
-	const ob_spin *spin;
+	ob_spin *spin;
 	const ob_hull *hull; // of a hull
 } ob_flier;
 
@@ -40,8 +40,5 @@ typedef struct ob_half_space {
 // that bounds its fall: about ten evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does,
 // and at once where it has.
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until);
-
-// Bound of the angular speed (rad/s) of a free body that turns with w at q, at any time.
-double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
 #endif

@@ -5,16 +5,6 @@
 static const double near = 1e-11; // of the shape's radius: a point that is closer and comes down lands
 static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
-double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia)
-{
-	double least = ob_min(inertia.x, ob_min(inertia.y, inertia.z));
-	if (!(least > 0) || (inertia.x == inertia.y && inertia.y == inertia.z))
-		return ob_norm(w);
-	ob_mat3 r = ob_quat_matrix(q);
-	ob_vec3 b = ob_rotate_back(&r, w), l = ob_v3(inertia.x * b.x, inertia.y * b.y, inertia.z * b.z);
-	return sqrt(ob_min(ob_dot(l, b) / least, ob_norm2(l) / (least * least)));
-}
-
 // Euler: dw_i/dt = (I_j - I_k) / I_i w_j w_k, and the squares of the products add up to w^4 / 3 at most.
 static double turning_bound(ob_vec3 i, double w)
 {
@@ -183,7 +173,7 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 		s += ob_time_of_closing(height - radius, speed, a, until - s);
 	if (!(s <= until) || !known)
 		return s <= until ? s : INFINITY;
-	double spin = f->spin ? ob_spin_bound(f->q, f->w, f->inertia) : 0;
+	double spin = f->spin ? f->spin->fastest : 0;
 	double most = ob_max(0, -a) + h.reach * turning_bound(f->inertia, spin);
 	double tolerance = near * radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
 	for (int k = 0; k < most_advances && s <= until; k++) {
@@ -191,7 +181,7 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 		bool lands = false;
 		double t = advance(f, &h, n, s, height, speed, most, tolerance, &lands);
 		if (lands)
-			return s + t;
+			return k == 0 ? s : s + t;
 		s += ob_max(t, DBL_EPSILON * fabs(s));
 	}
 	return s <= until ? s : INFINITY;

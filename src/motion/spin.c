@@ -12,6 +12,7 @@
 #include <ob/motion.h>
 
 #include "elementary/elementary.h"
+#include "motion/magnus.h"
 
 // Moments closer than this are equal: over a thousand radians the difference stays below 1e-12 rad.
 static const double SAME = 1e-15;
@@ -138,16 +139,54 @@ static void plan_theta(ob_spin *spin, double size, ob_vec3 n, double i1, double 
 	spin->lift0 = lift_of(n0);
 }
 
+// Energy and momentum stay, and each bounds the rate b (body frame) by the least moment.
+static double fastest_of(ob_vec3 b, ob_vec3 i)
+{
+	const ob_vec3 l = ob_v3(i.x * b.x, i.y * b.y, i.z * b.z);
+	const double least = ob_min(i.x, ob_min(i.y, i.z));
+	if (!(least > 0) || (i.x == i.y && i.y == i.z))
+		return ob_norm(b);
+	return sqrt(ob_min(ob_dot(l, b) / least, ob_norm2(l) / (least * least)));
+}
+
+double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia)
+{
+	const ob_mat3 r = ob_quat_matrix(q);
+	return fastest_of(ob_rotate_back(&r, w), inertia);
+}
+
 void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {
-	double i[3], l[3], n[3];
-	get(inertia, i);
+	const ob_mat3 r = ob_quat_matrix(q);
 	spin->q = q;
+	spin->w = w;
+	spin->rate_0 = ob_rotate_back(&r, w);
+	spin->inertia = inertia;
+	spin->fastest = fastest_of(spin->rate_0, inertia);
+	spin->planned = false;
+	spin->last = 0;
+	spin->last_q = q;
+	spin->last_w = w;
+}
+
+// false: its rate is taken to stay.
+static bool is_ordinary(const ob_spin *spin)
+{
+	const ob_vec3 i = spin->inertia;
+	return i.x > 0 && i.y > 0 && i.z > 0 && ob_norm2(spin->w) > 1e-280; // squares of less would lose their digits
+}
+
+static void plan_long_turns(ob_spin *spin)
+{
+	const ob_quat q = spin->q;
+	const ob_vec3 w = spin->w, body = spin->rate_0;
+	double i[3], l[3], n[3];
+	get(spin->inertia, i);
+	spin->planned = true;
 	plan_turns(spin, w, ob_v3(0, 0, 0));
-	if (!(i[0] > 0 && i[1] > 0 && i[2] > 0 && ob_norm2(w) > 1e-280)) // squares below would lose their digits
+	if (!is_ordinary(spin))
 		return;
 	ob_mat3 r = ob_quat_matrix(q);
-	ob_vec3 body = ob_rotate_back(&r, w);
 	ob_vec3 momentum = ob_v3(i[0] * body.x, i[1] * body.y, i[2] * body.z);
 	get(momentum, l);
 	double size = ob_norm(momentum);
@@ -244,12 +283,45 @@ static void theta_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_o
 	*w_out = ob_rotate(&r, ob_v3(spin->rate.x * along.x, spin->rate.y * along.y, spin->rate.z * along.z));
 }
 
-void ob_spin_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
+// The rate follows from the momentum, which stays.
+static void short_turn_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 {
+	const ob_vec3 i = spin->inertia, b = spin->rate_0;
+	const ob_mat3 before = ob_quat_matrix(spin->q);
+	const ob_vec3 momentum = ob_rotate(&before, ob_v3(i.x * b.x, i.y * b.y, i.z * b.z));
+	*q_out = unit(ob_quat_mul(spin->q, ob_magnus_turn(b, i, s)));
+	const ob_mat3 r = ob_quat_matrix(*q_out);
+	const ob_vec3 l = ob_rotate_back(&r, momentum);
+	*w_out = ob_rotate(&r, ob_v3(l.x / i.x, l.y / i.y, l.z / i.z));
+}
+
+static void find_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
+{
+	if (s == 0) {
+		*q_out = spin->q;
+		*w_out = spin->w;
+		return;
+	}
+	if (is_ordinary(spin) && ob_norm2(spin->w) * s * s < OB_MAGNUS_LONGEST * OB_MAGNUS_LONGEST) {
+		short_turn_at(spin, s, q_out, w_out);
+		return;
+	}
+	if (!spin->planned)
+		plan_long_turns(spin);
 	if (spin->kind == OB_SPIN_THETA)
 		theta_at(spin, s, q_out, w_out);
 	else
 		turns_at(spin, s, q_out, w_out);
+}
+
+void ob_spin_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
+{
+	if (s != spin->last) {
+		find_at(spin, s, &spin->last_q, &spin->last_w);
+		spin->last = s;
+	}
+	*q_out = spin->last_q;
+	*w_out = spin->last_w;
 }
 
 void ob_rotate_free(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out)

@@ -1,7 +1,11 @@
-// Torque-free rotation of a rigid body in closed form, planned once and evaluated at any time.
-// Pure functions, thread-safe. Units: rad/s, kg m^2, s.
+// Torque-free rotation of a rigid body, evaluated at any time: over a short one by Magnus's expansion (magnus.h), over
+// a long one in closed form, whose constants are computed when they are first asked for. What comes out follows from
+// what the rotation was planned with and from the time alone. Pure functions but for that, so a plan is of one thread.
+// Units: rad/s, kg m^2, s.
 #ifndef OB_MOTION_SPIN_H
 #define OB_MOTION_SPIN_H
+
+#include <stdbool.h>
 
 #include <ob/vec.h>
 
@@ -14,7 +18,14 @@ typedef enum ob_spin_kind {
 
 typedef struct ob_spin {
 	ob_spin_kind kind;
+	bool planned; // the constants of long turns are known
 	ob_quat q; // attitude at s = 0, body to world
+	ob_vec3 w, rate_0; // rad/s, at s = 0: world frame, body frame
+	ob_vec3 inertia;
+	double fastest; // rad/s, at any time, or more
+	double last; // s, that was asked for last, and the answer
+	ob_quat last_q;
+	ob_vec3 last_w;
 
 	// OB_SPIN_TURNS: about a fixed axis of the world, after a turn about a fixed axis of the body
 	ob_vec3 world; // rad/s, world frame
@@ -37,10 +48,13 @@ typedef struct ob_spin {
 // q is a unit quaternion, w in the world frame. A moment that is not positive counts as "any": w stays constant.
 void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
+// Bound of the angular speed (rad/s) of a free body that turns with w at q, at any time.
+double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia);
+
 // |q|^2 - 1 to the last digit, of a q that is nearly a unit quaternion.
 double ob_quat_excess(ob_quat q);
 
 // Attitude and rate (world frame) at s, which may be negative.
-void ob_spin_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out);
+void ob_spin_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out);
 
 #endif

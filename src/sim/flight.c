@@ -230,12 +230,14 @@ ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *f, double t
 }
 
 // Bound of the speed of any point of the object between two instants of the flight (m/s).
-static double flight_speed_bound(const ob_passport *body, const ob_motion *f, double from, double until)
+static double flight_speed_bound(ob_sim *s, uint32_t id, const ob_motion *f, double from, double until)
 {
+	const ob_passport *body = ob_passport_of(s->u, id);
 	double begin = ob_norm(ob_madd(f->v, from - f->t0, f->a)), end = ob_norm(ob_madd(f->v, until - f->t0, f->a));
-	bool turns = body->shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0;
-	return ob_max(begin, end) +
-	       (turns ? ob_spin_bound(f->q, f->w, body->inertia) * ob_shape_radius(body->shape, body->size) : 0);
+	if (body->shape == OB_SHAPE_SPHERE || !(ob_norm2(f->w) > 0))
+		return ob_max(begin, end);
+	const ob_spin *spin = ob_rotation_cache_get(&s->rotations, id, f->q, f->w, body->inertia);
+	return ob_max(begin, end) + spin->fastest * ob_shape_radius(body->shape, body->size);
 }
 
 // Publishes the flight m that holds after the running step; m->path is that at the step's end. straight: it held from
@@ -249,7 +251,7 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, bool straight)
 	const double h = run->step_length, end = (double)step * h;
 	uint64_t due = m->flags & OB_MOTION_FREE ? (uint64_t)(m->valid_until / h) : step;
 	due -= (double)due * h > m->valid_until && due > step; // the quotient may have been rounded up
-	double last = (double)(due + 1) * h, reach = flight_speed_bound(body, m, end, last) * h;
+	double last = (double)(due + 1) * h, reach = flight_speed_bound(s, id, m, end, last) * h;
 	const double from = straight ? end - h : end;
 	// Of what turns the box is that of the bounding sphere, so its attitude need not be known.
 	ob_motion rest = { .p = ob_centre_at(m, from), .q = m->q, .v = ob_velocity_at(m, from), .w = m->w, .a = m->a };
@@ -340,7 +342,6 @@ static double flight_horizon(const ob_sim *s, uint32_t id, ob_vec3 v, ob_vec3 a)
 bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 {
 	const ob_run_settings *run = s->settings;
-	const ob_passport *body = ob_passport_of(s->u, id);
 	if (run->integrator == OB_INTEGRATOR_ODE) {
 		step_by_ode(s, id);
 		return true;
@@ -356,7 +357,7 @@ bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 	for (;;) {
 		m.valid_until = ob_min(horizon, plane_impact_time(s, id, &m, from, horizon, &plane));
 		double until = ob_min(m.valid_until, end);
-		m.path += flight_speed_bound(body, &m, since, until) * (until - since);
+		m.path += flight_speed_bound(s, id, &m, since, until) * (until - since);
 		if (!(m.valid_until < end))
 			break;
 		ob_state at = ob_ballistic_state(s, id, &m, until);

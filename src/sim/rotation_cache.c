@@ -30,7 +30,7 @@ void ob_rotation_cache_finish(ob_rotation_cache *p)
 	free(p->slot);
 }
 
-const ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia)
+ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {
 	ob_cached_rotation *cached = &p->slot[id & (p->slots - 1)];
 	rotation_key from = { q, w, inertia };

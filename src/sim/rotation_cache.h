@@ -18,6 +18,6 @@ bool ob_rotation_cache_create(ob_rotation_cache *p, uint32_t objects); // false:
 void ob_rotation_cache_finish(ob_rotation_cache *p);
 
 // The rotation of object id from (q, w) on. Valid until the next call.
-const ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia);
+ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
 #endif

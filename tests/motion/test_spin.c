@@ -119,8 +119,50 @@ static void test_same_bits(void)
 	}
 }
 
+// On either side of where the closed form takes over.
+static void test_short_turns(void)
+{
+	uint64_t seed = 4;
+	double worst = 0;
+	for (int k = 0; k < 2000; k++) {
+		ob_vec3 inertia = random_inertia(&seed), w0 = random_vector(&seed, 8), w;
+		ob_quat start = random_attitude(&seed), q;
+		const double s = within(&seed, -.06, .06) / ob_norm(w0);
+		long_rotation exact = long_of(start, w0);
+		long_advance(&exact, inertia, s);
+		ob_rotate_free(start, w0, inertia, s, &q, &w);
+		worst = fmax(worst, attitude_error(&exact, q));
+		check_conserved(start, w0, q, w, inertia);
+	}
+	printf("short turns: attitude within %.2g rad\n", worst);
+	CHECK_NEAR(worst, 0, 3e-15);
+}
+
+// What was asked before changes nothing.
+static void test_any_order(void)
+{
+	enum { TIMES = 6 };
+	static const double turn[TIMES] = { .01, 2, .01, 0, -2, .025 };
+	uint64_t seed = 5;
+	for (int k = 0; k < 200; k++) {
+		ob_vec3 inertia = random_inertia(&seed), w0 = random_vector(&seed, 8), w1, w2;
+		ob_quat start = random_attitude(&seed), q1, q2;
+		ob_spin spin;
+		ob_spin_plan(&spin, start, w0, inertia);
+		for (int i = 0; i < TIMES; i++) {
+			const double s = turn[i] / ob_norm(w0);
+			ob_spin_at(&spin, s, &q1, &w1);
+			ob_rotate_free(start, w0, inertia, s, &q2, &w2);
+			CHECK(q1.w == q2.w && q1.x == q2.x && q1.y == q2.y && q1.z == q2.z);
+			CHECK(w1.x == w2.x && w1.y == w2.y && w1.z == w2.z);
+		}
+	}
+}
+
 int main(void)
 {
+	test_short_turns();
+	test_any_order();
 	test_five_minutes();
 	test_random_against_reference();
 	test_composition();
