@@ -25,8 +25,9 @@ typedef struct packet {
 
 enum { ERROR = UINT32_MAX, END = UINT32_MAX - 1 }; // to its process, with a text; from its process
 
-// The core is a trial's, and messages are few: so long the wire may wait.
-enum { NAP_MS = 2 };
+// The core is a trial's, and messages are few: naps between looks at the wire grow with the time since the last
+// message, so that it waits little longer than that asks for.
+enum { NAP_SHARE = 8, NAP_MAX_MS = 16 };
 
 static _Noreturn void give_up(int socket, size_t size, const char *text)
 {
@@ -44,7 +45,7 @@ static _Noreturn void carry(const ob_ranks *ranks, int socket, size_t size)
 	ob_wire *w = ob_wire_open(ranks, &e);
 	if (!w)
 		give_up(socket, size, e.text);
-	for (;;) {
+	for (int quiet_ms = 0;;) {
 		const ssize_t n = recv(socket, &p, sizeof p, MSG_DONTWAIT);
 		if (n > 0 && p.rank == END)
 			break;
@@ -60,8 +61,13 @@ static _Noreturn void carry(const ob_ranks *ranks, int socket, size_t size)
 			memcpy(p.bytes, came, bytes);
 		if (came && send(socket, &p, size, MSG_NOSIGNAL) < 0)
 			_exit(1);
-		if (!came && n < 0)
-			poll(&(struct pollfd){ .fd = socket, .events = POLLIN }, 1, NAP_MS);
+		if (came || n > 0) {
+			quiet_ms = 0;
+			continue;
+		}
+		const int share = 1 + quiet_ms / NAP_SHARE, nap_ms = share < NAP_MAX_MS ? share : NAP_MAX_MS;
+		poll(&(struct pollfd){ .fd = socket, .events = POLLIN }, 1, nap_ms);
+		quiet_ms += quiet_ms < NAP_SHARE * NAP_MAX_MS ? nap_ms : 0;
 	}
 	ob_wire_close(w);
 	_exit(0);
