@@ -222,7 +222,7 @@ class Ranks(program.Case):
 		"""Three, as soon as each has made a step."""
 		running = subprocess.Popen(command((3, words)), env=program.RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
 			stderr=subprocess.PIPE, text=True)
-		self.addCleanup(lambda: (running.poll() is None and running.kill(), running.wait(), running.stdout.close(), running.stderr.close()))
+		self.addCleanup(lambda: (running.poll() is None and running.terminate(), running.wait(), running.stdout.close(), running.stderr.close()))
 		self.assertTrue(program.wait_until(lambda: self.have_stepped(running) or running.poll() is not None))
 		self.assertIsNone(running.poll(), "the run ended before it was looked at")
 		return running

@@ -32,7 +32,7 @@ class Network(program.Case):
 		launcher = ["mpirun", *(word for name, value in settings.items() for word in ("--mca", name, str(value)))]
 		running = subprocess.Popen([*link.inside(0), *launcher, "--host", ",".join(link.address), "-n", "2", program.OBSIM, "run", *words],
 			env=program.RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-		self.addCleanup(lambda: (running.poll() is None and running.kill(), running.wait(), running.stdout.close(), running.stderr.close()))
+		self.addCleanup(lambda: (running.poll() is None and running.terminate(), running.wait(), running.stdout.close(), running.stderr.close()))
 		return running
 
 	def test_same_bits(self):
