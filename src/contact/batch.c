@@ -22,6 +22,25 @@ void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)
 	*t2 = ob_cross(n, *t1);
 }
 
+ob_vec3 ob_friction_arm(const ob_vec3 *arm, const double *gap, int points, ob_vec3 n)
+{
+	const double near = 1e-3; // of the points' distance from their middle
+	ob_vec3 middle = { 0, 0, 0 };
+	double least = INFINITY, size = 0, sum = 0, height = 0;
+	for (int j = 0; j < points; j++) {
+		middle = ob_madd(middle, 1. / points, arm[j]);
+		least = ob_min(least, gap[j]);
+	}
+	for (int j = 0; j < points; j++)
+		size = ob_max(size, ob_norm(ob_sub(arm[j], middle)));
+	for (int j = 0; j < points; j++) {
+		const double above = gap[j] - least, share = above > 0 ? ob_max(0, 1 - above / (near * size)) : 1;
+		sum += share;
+		height += share * ob_dot(n, ob_sub(arm[j], middle));
+	}
+	return ob_madd(middle, height / sum, n);
+}
+
 void ob_batch_init(ob_batch *b, ob_batch_kind kind)
 {
 	memset(b, 0, offsetof(ob_batch, coupling)); // which is made before it is used
@@ -148,9 +167,9 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 	ob_tangents(n, &t1, &t2);
 	double radius = 0;
 	vec2 at[OB_POINTS] = { { 0 } };
-	for (int j = 0; j < in->points; j++) {
-		ca = ob_madd(ca, 1. / in->points, in->arm_a[j]);
-		cb = ob_madd(cb, 1. / in->points, in->arm_b[j]);
+	if (in->points > 0) {
+		ca = ob_friction_arm(in->arm_a, in->gap, in->points, n);
+		cb = ob_friction_arm(in->arm_b, in->gap, in->points, n);
 	}
 	for (int j = 0; j < OB_POINTS; j++) {
 		bool used = j < in->points;

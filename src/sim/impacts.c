@@ -309,6 +309,7 @@ static void look_ahead(ob_sim *s, uint32_t contact)
 	ob_island_work *w = &s->island;
 	const ob_contact *c = &w->contact[contact];
 	const unsigned mask = may_hit(w, c);
+	w->contact[contact].misses = false;
 	if (!mask)
 		return;
 	enum { WORK = 4 };
@@ -327,8 +328,10 @@ static void look_ahead(ob_sim *s, uint32_t contact)
 		in.threshold = threshold - 2 * slack / w->h;
 	}
 	const double first = ob_impact_time(b, l, &in, &at);
-	if (isinf(first))
+	if (isinf(first)) {
+		w->contact[contact].misses = true;
 		return;
+	}
 	ob_body_update_pose(w, c->a);
 	ob_body_update_pose(w, c->b);
 	ob_impact_instant i = { .contact = contact, .time = first, .joined = true };
@@ -340,6 +343,8 @@ static void look_ahead(ob_sim *s, uint32_t contact)
 		in.threshold = threshold;
 		if (ob_impact_time(b, l, &in, &at) <= w->h)
 			take_geometry(s, &i, &body_a, &body_b);
+	} else if (i.time >= w->h) {
+		w->contact[contact].misses = true;
 	}
 }
 
@@ -911,6 +916,22 @@ static void look_at_all(ob_sim *s, bool others)
 			look_ahead(s, i);
 }
 
+double ob_impacts_slack(const ob_sim *s, const ob_contact *contact, uint32_t point)
+{
+	const double share = .5, tolerance = s->settings->tolerance;
+	const ob_island_work *w = &s->island;
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
+	if (!contact->misses || b->impulse[point][l] > 0)
+		return 0;
+	const double gain = row_velocity(b, l, point, w->drift[ia], w->drift[ib]);
+	const double rate = row_velocity(b, l, point, w->v[ia], w->v[ib]) + gain;
+	if (!(rate < -(threshold_of(w, contact) + settling * w->substep / w->h * ob_max(0, -gain))))
+		return 0;
+	const double off = curvature(w, contact) + .5 * w->h * ob_max(0, -gain);
+	return tolerance > 0 ? ob_min(off, share * tolerance) : off;
+}
+
 void ob_impacts_begin(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -923,7 +944,7 @@ void ob_impacts_begin(ob_sim *s)
 	for (uint32_t i = 0; i < w->contacts && any; i++) {
 		ob_contact *c = &w->contact[i];
 		c->rebounds = 0;
-		c->as_of_instant = c->left_to_solver = false;
+		c->as_of_instant = c->left_to_solver = c->misses = false;
 	}
 }
 

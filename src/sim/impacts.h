@@ -28,6 +28,9 @@ void ob_impacts_begin(ob_sim *s);
 // All impacts within the partial substep: changes velocities, poses, and the geometry of the contacts that hit. true if
 // there were any. first: in the partial substep; later on, contacts of bodies that were hit are looked at alone.
 bool ob_impacts_resolve(ob_sim *s, bool first);
+// m: a point that approaches fast in a contact that misses may seem to close by so much, by its row, and is not closed by
+// the contact solver either: slowed down until it just touches, it would carry a load before it hits.
+double ob_impacts_slack(const ob_sim *s, const ob_contact *contact, uint32_t point);
 void ob_impacts_finish(ob_impacts *x);
 
 #endif

@@ -82,6 +82,7 @@ typedef struct ob_contact {
 	double slip, creep; // m, in this step; in the last second
 	uint32_t rebounds; // in the partial substep
 	bool left_to_solver; // its hits in the partial substep are those of too many points
+	bool misses; // what approaches fast has been followed through the partial substep, and does not close in it
 	bool as_of_instant; // its geometry is that of an instant in the running partial substep
 	bool began; // its bodies did not touch when the step began
 	bool mirror; // the second contact of a pair that is solved for each side apart: its own body is b

@@ -6,6 +6,7 @@
 #include "sim/bodies.h"
 #include "sim/contacts.h"
 #include "sim/ghost.h"
+#include "sim/impacts.h"
 #include "sim/profile.h"
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
@@ -101,15 +102,17 @@ static ob_vec3 normal_of(const ob_batch *b, uint32_t l)
 }
 
 // True where a point that carries no load will hit within the partial substep, faster than by what gravity adds in it.
-static bool is_hit(const ob_island_work *w, const ob_contact *contact)
+static bool is_hit(const ob_sim *s, const ob_contact *contact)
 {
+	const ob_island_work *w = &s->island;
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES;
 	for (uint32_t j = 0; j < contact->points; j++) {
 		double rate = row_velocity(b, l, j, w->v[contact->a], w->v[contact->b]) +
 			      row_velocity(b, l, j, w->dv[contact->a], w->dv[contact->b]);
 		double gap = b->gap[j][l] + row_velocity(b, l, j, w->d[contact->a], w->d[contact->b]);
-		if (b->impulse[j][l] == 0 && rate < -2 * w->max_acceleration * w->h && gap + w->h * rate < 0)
+		if (b->impulse[j][l] == 0 && rate < -2 * w->max_acceleration * w->h &&
+		    gap + ob_impacts_slack(s, contact, j) + w->h * rate < 0)
 			return true;
 	}
 	return false;
@@ -174,28 +177,32 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
-	const double share = old->since / (old->since + .5 * w->h), part = 1. / contact->points;
+	const double share = old->since / (old->since + .5 * w->h);
 	const ob_vec3 n = normal_of(b, l), start_n = between(old->normal, n, share);
 	const ob_vec3 va = ob_row_linear(w->v[ia]), vb = ob_row_linear(w->v[ib]), wa = ob_row_angular(w->v[ia]),
 		      wb = ob_row_angular(w->v[ib]), wa0 = start_rate(w, ia), wb0 = start_rate(w, ib);
-	ob_vec3 slide = { 0, 0, 0 }, slide_start = { 0, 0, 0 };
-	double most = 0;
+	const int points = (int)contact->points;
+	ob_vec3 arm_a0[OB_PAIR_POINTS], arm_b0[OB_PAIR_POINTS];
+	double gap[OB_PAIR_POINTS], most = 0;
 	uint32_t held_points = 0;
 	for (uint32_t j = 0; j < contact->points; j++) {
 		const int k = contact->was[j];
 		const ob_vec3 ra = contact->arm_a[j], rb = contact->arm_b[j];
-		ob_vec3 ra0 = k < 0 ? ob_madd(ra, -.5 * w->h, ob_cross(wa, ra)) : between(old->arm_a[k], ra, share);
-		ob_vec3 rb0 = k < 0 ? ob_madd(rb, -.5 * w->h, ob_cross(wb, rb)) : between(old->arm_b[k], rb, share);
+		arm_a0[j] = k < 0 ? ob_madd(ra, -.5 * w->h, ob_cross(wa, ra)) : between(old->arm_a[k], ra, share);
+		arm_b0[j] = k < 0 ? ob_madd(rb, -.5 * w->h, ob_cross(wb, rb)) : between(old->arm_b[k], rb, share);
 		ob_vec3 now = ob_sub(velocity_at(va, wa, ra), velocity_at(vb, wb, rb));
-		ob_vec3 start = ob_sub(velocity_at(va, wa0, ra0), velocity_at(vb, wb0, rb0));
+		ob_vec3 start = ob_sub(velocity_at(va, wa0, arm_a0[j]), velocity_at(vb, wb0, arm_b0[j]));
 		const double opens = ob_dot(n, now), added = opens - ob_dot(start_n, start);
 		const bool pressed = b->impulse[j][l] > 0, held = pressed && b->gap[j][l] < loose_gap * w->unit.length;
 		held_points += held;
 		b->turn[j][l] = ob_max(opens, held ? added : 0);
 		most = ob_max(most, ob_max(b->turn[j][l], pressed ? fabs(added) : 0));
-		slide = ob_madd(slide, part, now);
-		slide_start = ob_madd(slide_start, part, start);
+		gap[j] = b->gap[j][l];
 	}
+	ob_vec3 slide = ob_sub(velocity_at(va, wa, ob_friction_arm(contact->arm_a, gap, points, n)),
+			       velocity_at(vb, wb, ob_friction_arm(contact->arm_b, gap, points, n)));
+	const ob_vec3 slide_start = ob_sub(velocity_at(va, wa0, ob_friction_arm(arm_a0, gap, points, start_n)),
+					   velocity_at(vb, wb0, ob_friction_arm(arm_b0, gap, points, start_n)));
 	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
 		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
 	const ob_vec3 friction = ob_add(ob_scale(t1, b->impulse[4][l]), ob_scale(t2, b->impulse[5][l]));
@@ -227,7 +234,8 @@ static void find_at_midpoint(ob_sim *s, ob_contact *contact)
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES;
 	for (uint32_t j = 0; j < contact->points; j++)
-		b->gap[j][l] -= row_velocity(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
+		b->gap[j][l] += ob_impacts_slack(s, contact, j) -
+				row_velocity(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
 }
 
 static bool at_midpoint(const ob_island_work *w, const ob_contact *contact)
@@ -243,14 +251,15 @@ static bool concerns_turning(const ob_island_work *w, const ob_contact *contact)
 }
 
 // True where contacts turn and nothing hits their bodies.
-static bool all_go_on(const ob_island_work *w)
+static bool all_go_on(const ob_sim *s)
 {
+	const ob_island_work *w = &s->island;
 	bool any = false;
 	for (uint32_t i = 0; i < w->contacts; i++)
 		any |= w->contact[i].turns && w->contact[i].lane != OB_NO_LANE;
 	for (uint32_t i = 0; any && i < w->contacts; i++)
 		any = w->contact[i].lane == OB_NO_LANE || !concerns_turning(w, &w->contact[i]) ||
-		      !(w->contact[i].as_of_instant || is_hit(w, &w->contact[i]));
+		      !(w->contact[i].as_of_instant || is_hit(s, &w->contact[i]));
 	return any;
 }
 
@@ -273,7 +282,7 @@ void ob_midpoint_begin(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
-	if (!all_go_on(w)) {
+	if (!all_go_on(s)) {
 		leave_midpoint(s);
 		return;
 	}

@@ -44,13 +44,14 @@ enum {
 // Where a relation does not hold yet: it is measured there, and not asserted.
 static const unsigned faults[RELATIONS] = {
 	[RELATION_MIRRORED] = HEAP | STATICS | TABLES, [RELATION_TURNED] = HEAP | STATICS | TABLES | PUSHED,
-	[RELATION_TILTED] = HEAP | STATICS | TABLES,   [RELATION_MOVED] = HEAP | TABLES | PADDLES,
+	[RELATION_TILTED] = HEAP | STATICS | TABLES,   [RELATION_MOVED] = HEAP | TABLES | PADDLES | PUSHED,
 	[RELATION_BOOSTED] = HEAP | STATICS | PADDLES, [RELATION_LIFTED] = HEAP,
 	[RELATION_REFINED] = ALL & ~(SPINS | ROLL),    [RELATION_ENERGY] = HEAP,
 };
 // .. and with capsules and cylinders.
 static const unsigned round_faults[RELATIONS] = {
 	[RELATION_TURNED] = ROLL,
+	[RELATION_MOVED] = STATICS,
 	[RELATION_ENERGY] = STATICS,
 };
 // .. and with hulls.

@@ -154,6 +154,66 @@ static void check_hits(ob_shape shape, double slenderness, bool on_box, double h
 	free(s);
 }
 
+// A prism of n corners rolls over its edges down a slope, which it does for ever: each hit takes from the rate of turn
+// as Housner's does, and each edge gives back the same (McGeer 1990, "Passive dynamic walking", on the rimless wheel).
+// The rate over each edge is that of the one before. When it hits within a substep is another for each.
+static void check_wheel(int corners, double slope, double start, bool on_box)
+{
+	enum { SETTLED = 4 }; // frames after a hit
+	const double radius = .2, length = .3, half_angle = M_PI / corners, pitch = 2 * radius * sin(half_angle);
+	little_scene *s = little_scene_new();
+	s->run.gravity = ob_v3(g * sin(slope), 0, -g * cos(slope));
+	if (on_box)
+		ob_world_box(&s->world, 0, ob_v3(40, 1, .5), ob_v3(38, 0, -.5));
+	else
+		ob_world_ground(&s->world);
+	ob_vec3 corner[24];
+	for (int i = 0; i < 2 * corners; i++) {
+		const double angle = half_angle * (i / 2 * 2 + 1);
+		corner[i] = ob_v3(radius * sin(angle), (i % 2 - .5) * length, radius * cos(angle));
+	}
+	const ob_reference_rocker shape = { radius * sin(half_angle), radius * cos(half_angle), 0, g };
+	ob_world_body o = ob_world_hull(&s->world, 1, corner, 2 * (uint32_t)corners, ob_v3(0, 0, shape.height));
+	const ob_mat3 axes = ob_quat_matrix(o.state->pose.q);
+	const double inertia[] = { o.passport->inertia.x, o.passport->inertia.y, o.passport->inertia.z };
+	ob_reference_rocker r = shape;
+	for (int c = 0; c < 3; c++)
+		r.moment += axes.m[1][c] * axes.m[1][c] * inertia[c];
+	const double kept = ob_reference_rocker_ratio(&r), about_edge = r.moment + radius * radius;
+	const double given = 2 * g * pitch * sin(slope) / about_edge; // from edge to edge, (rad/s)^2
+	const double steady = kept * kept * given / (1 - kept * kept), rate = start * sqrt(steady);
+	o.state->w = ob_v3(0, rate, 0);
+	o.state->v = ob_v3(rate * r.height, 0, rate * r.half);
+	ob_world_material(&s->world, 1, 0);
+	little_universe l;
+	little_open(&l, s);
+	double last = rate * rate, worst = 0;
+	int hits = 0, since = 0;
+	for (int step = 0, edge = 0; step < 900; step++) {
+		little_run(&l, 1);
+		const ob_state now = little_state(&l, 1);
+		const double height = fmin(now.pose.p.z / radius, 1), angle = copysign(acos(height), -now.v.z);
+		// from where it lay to here gravity has done this
+		const double done = 2 * g * radius * (cos(slope - half_angle) - cos(slope + angle)) / about_edge;
+		const double first = now.w.y * now.w.y - done; // the rate when it lay, squared
+		const int over = (int)floor(now.pose.p.x / pitch);
+		since = over == edge ? since + 1 : 0;
+		edge = over;
+		if (hits < edge && since == SETTLED) {
+			hits++;
+			worst = fmax(worst, fabs(sqrt(first / (kept * kept * (last + given))) - 1));
+		}
+		if (since >= SETTLED || edge == 0)
+			last = first;
+	}
+	printf("wheel of %d corners on %s: %d hits, rate of turn after one off by %.4f %% at most\n", corners,
+	       on_box ? "a box" : "a plane", hits, 100 * worst);
+	CHECK(hits >= 25);
+	CHECK(worst <= 5e-4);
+	little_close(&l);
+	free(s);
+}
+
 // A disk rolls steadily on its rim for a second, its centre at rest: the moment of what carries it turns its angular
 // momentum, W^2 = g (a cos - h sin) / (sin (i cos - j h / a sin)); without slip its rate beyond W is -W (cos - h / a
 // sin).
@@ -210,6 +270,12 @@ int main(void)
 				check_hits(OB_SHAPE_BOX, slenderness[i], on_box, on_box ? .7 : 0, tolerance);
 				check_hits(OB_SHAPE_CYLINDER, slenderness[i], on_box, on_box ? .7 : 0, tolerance);
 			}
+	for (int on_box = 0; on_box < 2; on_box++) {
+		check_wheel(6, .15, 1, on_box);
+		check_wheel(6, .15, 1.1, on_box);
+		check_wheel(8, .12, 1, on_box);
+		check_wheel(10, .1, 1, on_box);
+	}
 	for (int i = 0; i < 4; i++)
 		check_refined(slenderness[i]);
 	for (uint32_t substeps = 4; substeps <= 256; substeps *= 4) {
