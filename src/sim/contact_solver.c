@@ -28,6 +28,12 @@ static const uint32_t max_settling_iterations = 512, max_failures = 4; // .. and
 static const double resting_gap = 1e-7; // m: a point that presses keeps its distance from the surface, if that is less
 static const double turning_gap = 3e-6; // m: the same where the geometry turns
 
+// A few contacts that go on as they did are solved to the end, whatever the order in which they are taken: what is left
+// of each partial substep, else, is a force that nothing exerts.
+static const uint32_t few_contacts = 2;
+static const double solved_few = 1e-12; // m/s: the wake threshold, unless the first iteration changes more than ..
+static const double smooth_change = .01; // m/s: .. this
+
 static const double impact_threshold = .1; // m/s: faster changes are impacts and not extrapolated by the warm start
 
 static const double slop = 1e-4, max_slop_share = 1. / 8; // m; of the tolerance
@@ -218,6 +224,14 @@ static double wake_threshold_of(const ob_sim *s)
 	return ob_max(least, ob_min(coarse_wake_share * largest_speed(w), coarse_wake_way * w->tolerance / w->h));
 }
 
+static bool few_touch(const ob_island_work *w)
+{
+	unsigned pairs = 0;
+	for (uint32_t i = 0; i < w->batches; i++)
+		pairs += lanes_count(w->batch[i].live);
+	return pairs <= few_contacts;
+}
+
 void ob_solver_iterate(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -235,6 +249,9 @@ void ob_solver_iterate(ob_sim *s)
 		.turning_gap = turning_gap * w->unit.length,
 		.dv = w->dv,
 	};
+	const double usual = iteration.wake_threshold;
+	if (w->coarseness == 1 && few_touch(w))
+		iteration.wake_threshold = ob_min(usual, solved_few * w->unit.speed);
 	bool any_active = true;
 	double residual = 0, changed;
 	ob_direct_begin_partial(&w->direct);
@@ -246,8 +263,11 @@ void ob_solver_iterate(ob_sim *s)
 		activate_ghosts(w);
 		w->iteration += 1 + (k == 0); // a gap, so that no body is active from the last partial substep
 		residual = solve_contacts(s, &iteration, &any_active, &changed);
-		if (iteration.first)
+		if (iteration.first) {
 			w->residual = ob_max(w->residual, changed);
+			if (changed > smooth_change * w->unit.speed)
+				iteration.wake_threshold = usual;
+		}
 		iteration.first = false;
 		iteration.block_tolerance = block_tolerance * residual;
 		if (!ob_direct_wanted(s, residual))

@@ -176,7 +176,8 @@ typedef struct ob_surfaces {
 // Memory grown as needed, never shrunk.
 typedef struct ob_island_work {
 	ob_units unit; // of the run, for thresholds
-	double tolerance, coarseness; // m, of the run, or the default; ob_run_settings_coarseness()
+	double tolerance, run_coarseness; // m, of the run, or the default; ob_run_settings_coarseness()
+	double coarseness; // of the island's step: of one that takes more substeps less, or its error would not fall
 	uint32_t rows, rows_max; // bodies + fixed bodies + row 0
 	uint32_t bodies; // rows 1 .. bodies
 	uint32_t first_ghost; // rows from here on are ghosts
@@ -236,7 +237,7 @@ static inline double ob_coarser(const ob_island_work *w, double usual, double bo
 // For a second of the default a coarse run waits, and remembers, so many s: its unit of time is longer, not its steps.
 static inline double ob_coarse_time(const ob_island_work *w)
 {
-	return w->unit.time / w->coarseness;
+	return w->unit.time / w->run_coarseness;
 }
 
 static inline ob_vec3 ob_row_linear(const double *row)

@@ -103,6 +103,8 @@ static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 static bool solve_step(ob_sim *s, const ob_island *is)
 {
 	ob_island_work *w = &s->island;
+	const double refined = (double)w->substeps / s->settings->substeps;
+	w->coarseness = ob_max(1, w->run_coarseness / ob_max(1, refined));
 	ob_profile_enter(s, OB_PROFILE_LOAD);
 	ob_touches_begin(s, is);
 	ob_bodies_load(s, is);

@@ -20,7 +20,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->worker = worker;
 		s->island.unit = ob_run_settings_units(run);
 		s->island.tolerance = OB_DEFAULT_TOLERANCE * s->island.unit.length;
-		s->island.coarseness = ob_run_settings_coarseness(run);
+		s->island.run_coarseness = s->island.coarseness = ob_run_settings_coarseness(run);
 		s->counters = *ob_worker_counters(u, worker); // another may have run them before
 		s->times.timed = s->times.wanted = run->timed;
 		s->span.traced = ob_universe_traced(u);

@@ -211,6 +211,7 @@ static void check_wheel(int corners, double slope, double start, bool on_box)
 	CHECK(hits >= 25);
 	CHECK(worst <= 5e-4);
 	little_close(&l);
+	free(s->world.hull);
 	free(s);
 }
 
