@@ -19,15 +19,14 @@ static uint32_t urgency_of(uint64_t step)
 	return step < UINT32_MAX ? UINT32_MAX - (uint32_t)step : 0;
 }
 
+// Another worker may have raised of_64 and not yet of_4096, which it will before the phase ends: so who finds the one
+// high enough need not look at the other.
 void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step)
 {
 	const uint32_t urgency = urgency_of(step);
 	c->level.one[i] = urgency;
-	if (c->level.of_64[i / 64] >= urgency)
-		return;
-	c->level.of_64[i / 64] = urgency;
-	if (c->level.of_4096[i / 4096] < urgency)
-		c->level.of_4096[i / 4096] = urgency;
+	if (ob_calendar_level_raise(&c->level.of_64[i / 64], urgency))
+		ob_calendar_level_raise(&c->level.of_4096[i / 4096], urgency);
 }
 
 static uint32_t most_of_64(const uint32_t *below)

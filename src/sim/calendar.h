@@ -13,7 +13,8 @@
 // the check of most pairs; here what is due comes in ascending order, as it lies in memory.
 //
 // They lie in the universe, among the areas that a checkpoint holds; after a restart from a file they are made anew
-// (sim/pairs.h). By the scheduling worker alone, or the host at a pause.
+// (sim/pairs.h). By the scheduling worker alone, or the host at a pause; but workers that check pairs enter, each for its
+// own, when those are to be checked again.
 #ifndef OB_SIM_CALENDAR_H
 #define OB_SIM_CALENDAR_H
 
@@ -28,7 +29,8 @@ typedef struct ob_calendar {
 ob_calendar ob_calendar_of_objects(const ob_universe *u);
 ob_calendar ob_calendar_of_pairs(const ob_universe *u);
 
-// The entry of i is for this step (from 0) from now on; UINT32_MAX or more: it has none.
+// The entry of i is for this step (from 0) from now on; UINT32_MAX or more: it has none. Several workers may set entries
+// of their own at the same time, while nobody lists any.
 void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step);
 // Is there an entry for this step, or for one before?
 bool ob_calendar_is_due(const ob_calendar *c, uint64_t step);

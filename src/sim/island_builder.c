@@ -108,8 +108,7 @@ static void involve_pair(builder *p, const ob_pair_key *k)
 		involve_link(p, k);
 }
 
-// Who must be solved in a new step, whatever comes near it, and those that such a pair involves: it has an entry for
-// now, or is one of what is due.
+// Who must be solved in a new step, whatever comes near it, and those that a pair involves which has an entry for now.
 static void involve_due(builder *p)
 {
 	const ob_step_data *data = p->data;
@@ -119,13 +118,8 @@ static void involve_due(builder *p)
 	const uint32_t n = ob_calendar_list(&solve, p->step, due, p->ids);
 	for (uint32_t i = 0; i < pairs; i++)
 		involve_pair(p, &data->pair[data->check[i]]);
-	for (uint32_t i = 0; i < n; i++) {
-		ob_pair_place at;
+	for (uint32_t i = 0; i < n; i++)
 		involve(p, due[i]);
-		for (uint32_t link = data->first_pair[due[i]]; ob_pair_at(data, link, &at);
-		     link = ob_pair_next(data, at))
-			involve_pair(p, &data->pair[at.pair]);
-	}
 }
 
 // Those that were solved in this step, and whom they have met.

@@ -406,31 +406,45 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 		ob_calendar_set(&look, data->check[i], UINT32_MAX);
 }
 
+// ---- the check
+
 static bool is_due(const ob_step_data *data, uint32_t id, uint64_t step)
 {
 	return data->schedule[id].state >= OB_SCHEDULE_AWAKE && data->schedule[id].due <= step;
 }
 
-// A pair of what is solved in the coming step needs no entry: it is checked when that is done.
+// Enters in the calendar when a pair that has been checked must be checked again. One of what is solved in the coming
+// step needs no entry: it is checked when that is done.
+static void enter_next_check(const ob_universe *u, uint32_t pair, uint64_t steps)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_pair_key *k = &data->pair[pair];
+	if (is_due(data, k->a, steps) || is_due(data, k->b, steps))
+		return;
+	const double next = next_check(data, k, steps);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	if (next < UINT32_MAX)
+		ob_calendar_set(&look, pair, (uint64_t)next);
+}
+
+// Of contained simulators, which cannot do so themselves.
+static void enter_next_checks(const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t end = ob_checks_count(data);
+	for (uint32_t i = 0; i < end; i++) {
+		prefetch_check(u, i, end);
+		enter_next_check(u, data->check[i], data->count->checked);
+	}
+}
+
 void ob_late_contacts_end(ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar look = ob_calendar_of_pairs(u);
-	const uint32_t steps = data->count->checked;
-	const uint32_t end = ob_checks_count(data);
-	for (uint32_t i = 0; i < end; i++) {
-		const ob_pair_key *k = &data->pair[data->check[i]];
-		prefetch_check(u, i, end);
-		if (is_due(data, k->a, steps) || is_due(data, k->b, steps))
-			continue;
-		const double next = next_check(data, k, steps);
-		if (next < UINT32_MAX)
-			ob_calendar_set(&look, data->check[i], (uint64_t)next);
-	}
+	if (ob_universe_contains(u))
+		enter_next_checks(u);
 	data->count->visits += data->count->checks;
 }
-
-// ---- the check
 
 // A pair, to be changed: a contained simulator changes a copy.
 static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *copy)
@@ -444,7 +458,9 @@ static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *c
 
 static void end_change(const pair_check *c, uint32_t i, const ob_pair_key *k)
 {
-	if (c->contained && memcmp(k, &c->data->pair[c->data->check[i]], sizeof *k) != 0)
+	if (!c->contained)
+		enter_next_check(c->u, c->data->check[i], c->steps);
+	else if (memcmp(k, &c->data->pair[c->data->check[i]], sizeof *k) != 0)
 		ob_commit_check(c->s->u, i, k);
 }
 

@@ -16,10 +16,11 @@
 // (sim/calendar.h), and all of the objects that have been solved. solved: a step has been solved and is not yet
 // committed.
 void ob_late_contacts_begin(ob_universe *u, bool solved);
-// Checks first .. end-1 of them: sets expected, late and limit of each, and notes in ob_step_data.count whether any
-// contact is late.
+// Checks first .. end-1 of them: sets expected, late and limit of each, enters in the calendar when it must be checked
+// again, and notes in ob_step_data.count whether any contact is late.
 void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved);
-// By the scheduling worker, when all of them are checked: enters in the calendar when each must be checked again.
+// By the scheduling worker, when all of them are checked. Contained simulators cannot write the calendar: the arranger
+// makes its entries here.
 void ob_late_contacts_end(ob_universe *u);
 
 #endif

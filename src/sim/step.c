@@ -24,10 +24,11 @@
 //   BROADPHASE_START  objects whose fat AABB    index, fat AABBs                  their lists of neighbours
 //   BROADPHASE          has changed
 //   SCRIPTS           an object's script    motions, passports                its cell
-//   FORECAST          256 pairs                 schedule records, motions         expected, limit of those pairs
+//   FORECAST          256 pairs                 schedule records, motions         expected, limit of those pairs, and
+//                                                                                   their entries in the calendar
 //   ISLANDS           a chunk of islands        motions and contacts as of        staged motions, fat AABBs, schedule
 //                                                 before the step                   records, contacts of after the step
-//   LATE_CONTACTS     256 pairs                 schedule records, motions         late, limit of those pairs
+//   LATE_CONTACTS     256 pairs                 schedule records, motions         likewise, and late
 //                                                 before the step and staged
 //   COPY              (worker per object) the   result of its island's solver     its own slot
 //                       worker's own object

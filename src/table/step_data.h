@@ -94,6 +94,19 @@ typedef struct ob_calendar_levels {
 	uint32_t *one, *of_64, *of_4096;
 } ob_calendar_levels;
 
+// Of several workers that raise a word the most urgent stays, whatever their order. false: it was as urgent already. The
+// gate orders it with whoever reads what has been raised, so relaxed will do.
+static inline bool ob_calendar_level_raise(uint32_t *level, uint32_t urgency)
+{
+	uint32_t seen = __atomic_load_n(level, __ATOMIC_RELAXED);
+	if (seen >= urgency)
+		return false;
+	while (seen < urgency &&
+	       !__atomic_compare_exchange_n(level, &seen, urgency, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+		;
+	return true;
+}
+
 // Schedule record: what the scheduler must know of an object, 24 bytes, so that it need not read the slots.
 typedef struct ob_schedule {
 	double path;    // m, when "since" steps were complete

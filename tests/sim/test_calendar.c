@@ -1,5 +1,6 @@
 // Calendars against a plain list of when everybody is due; and what runs arrange by them against a look at everybody in
 // each step, in what they find and in how much they look at.
+#include <pthread.h>
 #include <stdlib.h>
 
 #include "check.h"
@@ -43,6 +44,54 @@ static void test_entries(void)
 		for (uint32_t k = 0; k < listed; k++)
 			if (uniform(&seed) < .8)
 				due[found[k]] = UINT32_MAX, ob_calendar_set(&c, found[k], UINT32_MAX);
+	}
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
+typedef struct setter {
+	ob_calendar calendar;
+	const uint32_t *due; // [OBJECTS]
+	uint32_t number, of;
+	pthread_t thread;
+} setter;
+
+static void *set_own(void *arg)
+{
+	const setter *p = arg;
+	for (uint32_t i = p->number; i < OBJECTS; i += p->of)
+		ob_calendar_set(&p->calendar, i, p->due[i]);
+	return NULL;
+}
+
+// Workers that set entries at the same time, each its own among those of the others, lose none.
+static void test_entries_of_several(void)
+{
+	enum { SETTERS = 4 };
+	static uint32_t due[OBJECTS], found[OBJECTS];
+	uint64_t seed = 33;
+	little_scene *s = little_scene_new();
+	for (int i = 0; i < OBJECTS; i++)
+		ob_world_sphere(&s->world, 1, .1, ob_v3(i, 0, 0));
+	ob_universe *u = little_populate(s, 1);
+	const ob_calendar c = ob_calendar_of_objects(u);
+	setter all[SETTERS];
+	for (uint32_t run = 0; run < 50; run++) {
+		uint32_t wrong = 0, n = 0;
+		ob_calendar_clear(&c);
+		for (uint32_t i = 0; i < OBJECTS; i++)
+			due[i] = random_below(&seed, 100);
+		for (uint32_t k = 0; k < SETTERS; k++) {
+			all[k] = (setter){ .calendar = c, .due = due, .number = k, .of = SETTERS };
+			CHECK(pthread_create(&all[k].thread, NULL, set_own, &all[k]) == 0);
+		}
+		for (uint32_t k = 0; k < SETTERS; k++)
+			pthread_join(all[k].thread, NULL);
+		const uint32_t listed = ob_calendar_list(&c, run, found, OBJECTS);
+		for (uint32_t i = 0; i < OBJECTS; i++)
+			if (due[i] <= run)
+				wrong += n >= listed || found[n++] != i;
+		CHECK(wrong == 0 && n == listed);
 	}
 	ob_universe_destroy(u, true);
 	free(s);
@@ -135,6 +184,7 @@ static void test_cost_of_flights(void)
 int main(void)
 {
 	test_entries();
+	test_entries_of_several();
 	test_nothing_missed();
 	test_cost();
 	test_cost_of_flights();
