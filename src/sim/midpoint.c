@@ -58,8 +58,12 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	if ((a->surface && ob_norm2(ob_row_angular(w->v[contact->a])) > 0) ||
 	    (b->surface && ob_norm2(ob_row_angular(w->v[contact->b])) > 0))
 		return false; // of the first order, but for what is carried
-	return contact->lane != OB_NO_LANE && change_bound(w, contact) > least_change(w, 0) &&
-	       (load_of(w, contact) > 0 || ob_contact_gap(w, contact) < loose_gap * w->unit.length) &&
+	if (contact->lane == OB_NO_LANE)
+		return false;
+	const double change = change_bound(w, contact);
+	return change > least_change(w, 0) &&
+	       (load_of(w, contact) > 0 ||
+		ob_contact_gap(w, contact) < loose_gap * w->unit.length + 2 * w->h * change) &&
 	       ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness);
 }
 

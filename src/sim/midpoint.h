@@ -13,8 +13,9 @@
 // the way takes u to the constraint at the end. J_mid (u + v) / 2 = 0, so the impulse does no work. What was left of
 // the row's velocity at the start is taken away, not reversed. Normals may open, and friction may slip, as everywhere.
 //
-// Contacts that carry a load take part, of bodies that touch nothing that moves, and only where c is noticeable. A
-// partial substep in which something hits such a body is of the first order anyway: then it is moved as a whole.
+// Contacts that carry a load take part, or that are nearer than what turning moves their rows by, as where something
+// leaves what it rolled over; of bodies that touch nothing that moves, and only where c is noticeable. A partial substep
+// in which something hits such a body is of the first order anyway: then it is moved as a whole.
 #ifndef OB_SIM_MIDPOINT_H
 #define OB_SIM_MIDPOINT_H
 
