@@ -56,6 +56,7 @@ static const struct field {
 	FIELD(REAL, step_p99_s),
 	FIELD(REAL, step_max_s),
 	FIELD(REAL, critical_s),
+	FIELD(REAL, critical_16_s),
 	FIELD(REAL, work_s),
 	FIELD(REAL, held_s),
 	FIELD(REAL, gate_s),

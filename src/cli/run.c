@@ -322,6 +322,7 @@ static void report_time(const run *r, const ob_host_times *times, ob_report *p)
 	p->idle_s = timed ? (times->elapsed_s - times->wall_s) * (double)p->workers : NAN;
 	p->gate_s = timed ? times->gate_s - p->idle_s : NAN;
 	p->critical_s = timed ? times->critical_s : NAN;
+	p->critical_16_s = timed ? times->simulated_s : NAN;
 	// the renderer and the encoders have threads of their own
 	double beside = ob_clock_thread_cpu() - r->own_cpu - r->drawing_cpu;
 	p->renderer_cpu_s = r->frames > 0 ? fmax(0, times->host_cpu_s - beside) : 0;

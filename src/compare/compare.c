@@ -71,6 +71,10 @@ const ob_metric ob_compare_metric_table[OB_COMPARE_METRICS] = {
 	METRIC(OB_COMPARE_CRITICAL, "critical_s_per_step", "critical path", "µs", 1e6, "Where the time goes, per step",
 	       "in each phase the worker with the most to do, and scheduling: what the step would take with a core for "
 	       "every worker"),
+	METRIC(OB_COMPARE_SPEEDUP, "speedup_of_16", "speed-up, 16 workers", "1", 1, NULL,
+	       "work over the critical path of 16 simulated workers: how much faster the steps could be with a core "
+	       "for each "
+	       "of so many"),
 	METRIC(OB_COMPARE_WORK, "work_s_per_step", "work, all simulators", "µs", 1e6, NULL,
 	       "CPU time of everything but waiting, summed over all workers"),
 	METRIC(OB_COMPARE_GATE, "gate_s_per_step_and_worker", "at the gate, a worker", "µs", 1e6, NULL,
@@ -356,6 +360,7 @@ static void read_timed(const char *r, double *m)
 {
 	double steps = number(r, "steps"), workers = number(r, "workers");
 	m[OB_COMPARE_CRITICAL] = number(r, "critical_s") / steps;
+	m[OB_COMPARE_SPEEDUP] = number(r, "work_s") / number(r, "critical_16_s");
 	m[OB_COMPARE_WORK] = number(r, "work_s") / steps;
 	m[OB_COMPARE_GATE] = number(r, "gate_s") / steps / workers;
 	m[OB_COMPARE_GATE_CPU] = number(r, "gate_cpu_s") / steps;

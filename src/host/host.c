@@ -1,6 +1,7 @@
 #include "host/host.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -336,6 +337,12 @@ static void get_memory(const ob_host *h, ob_host_times *out)
 			    ob_memory_of_universe(ob_universe_name(h->u));
 }
 
+// Contained simulators, and those that have a worker each, do not.
+static bool tells_of_tasks(const ob_universe *u)
+{
+	return !ob_universe_contains(u) && !ob_universe_settings(u)->one_per_object;
+}
+
 void ob_host_get_times(ob_host *h, ob_host_times *out)
 {
 	const ob_latency *steps = ob_step_latency(h->u);
@@ -347,6 +354,7 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 		.step_p99_s = ob_latency_percentile(steps, .99),
 		.step_max_s = ob_latency_percentile(steps, 1),
 		.critical_s = 1e-9 * (double)ob_critical_path(h->u),
+		.simulated_s = tells_of_tasks(h->u) ? 1e-9 * (double)ob_simulated_path(h->u) : NAN,
 	};
 	get_memory(h, out);
 	out->deaths = h->restart.deaths;

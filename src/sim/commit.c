@@ -685,7 +685,7 @@ static const char *commit_end(ob_universe *u, const ob_mail_record *from)
 	ob_worker_set_objects(u, from->worker, end->objects);
 	if (end->late)
 		ob_late_contacts_note(u);
-	ob_phase_worked(u, end->worked_ns);
+	ob_phase_worked(u, end->worked_ns, end->worked_ns);
 	*ob_worker_counters(u, from->worker) = end->counters;
 	return NULL;
 }

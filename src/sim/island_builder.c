@@ -347,13 +347,19 @@ static void sort_by_work(builder *p)
 	permute_islands(p->data->island, from, n);
 }
 
+uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers)
+{
+	const uint64_t share = total / (16 * (uint64_t)workers) + 1;
+	return share > CHUNK_WORK_MIN ? share : CHUNK_WORK_MIN;
+}
+
 // Largest first, so that no worker starts on a large one when the others are done; small ones several at a time.
 static void make_chunks(builder *p, uint32_t unsolved, uint64_t total)
 {
 	ob_step_data *data = p->data;
-	uint64_t share = total / (16 * (uint64_t)ob_universe_workers(p->u)) + 1, filled = 0;
+	const uint64_t share = ob_islands_chunk_work(total, ob_universe_workers(p->u));
+	uint64_t filled = 0;
 	uint32_t chunks = 0;
-	share = share > CHUNK_WORK_MIN ? share : CHUNK_WORK_MIN;
 	for (uint32_t i = 0; i < unsolved; i++) {
 		if (i == 0 || filled >= share)
 			data->chunk[chunks++] = i, filled = 0;

@@ -11,5 +11,7 @@ void ob_islands_build(ob_universe *u);
 // Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join. The solutions of the
 // others stand; the chunks hold what must be solved again.
 void ob_islands_merge(ob_universe *u);
+// A chunk of so much work is closed, where that is all the work that so many workers share.
+uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers);
 
 #endif

@@ -24,13 +24,62 @@ void ob_profile_begin(ob_sim *s, ob_profile_section section)
 	if (!s->times.timed)
 		return;
 	memset(s->times.wall, 0, sizeof s->times.wall);
+	s->times.asking = 0;
 	s->times.section = section;
 	s->times.since = ob_clock_ns();
 	s->times.cpu = ob_clock_thread_cpu();
+	s->tasks.since = s->times.since;
+	s->tasks.cpu = s->times.cpu;
+	s->tasks.n = 0;
+	s->tasks.sum = s->tasks.told = 0;
 	if (!s->counters.since_ns)
 		return;
 	s->counters.gate_ns += s->times.since - s->counters.since_ns;
 	s->counters.gate_cpu_ns += (uint64_t)(1e9 * (s->times.cpu - s->times.cpu_end));
+}
+
+// Of the CPU time since the clock was read, its reading included, each of the tasks has its share. So one in which the
+// worker lost its core for a while counts for no more than they all took.
+static void share_out(ob_sim *s, double cpu)
+{
+	const double took = 1e9 * (cpu - s->tasks.cpu), share = s->tasks.sum ? took / (double)s->tasks.sum : 0;
+	for (uint32_t i = 0; i < s->tasks.n; i++) {
+		const uint32_t ns = (uint32_t)(share * s->tasks.ns[i]);
+		ob_task_took(s->u, s->tasks.task[i], ns);
+		s->tasks.told += ns;
+	}
+	s->tasks.cpu = cpu;
+	s->tasks.n = 0;
+	s->tasks.sum = 0;
+}
+
+// A worker that loses its core does so where it calls the system, as here: that is the time of no section, nor of a
+// task.
+static double ask_cpu_clock(ob_sim *s)
+{
+	count_section(s);
+	const double cpu = ob_clock_thread_cpu();
+	const uint64_t before = s->times.since;
+	s->times.since = s->tasks.since = ob_clock_ns();
+	s->times.asking += s->times.since - before;
+	return cpu;
+}
+
+void ob_profile_task(ob_sim *s, uint32_t task)
+{
+	enum { LONG_NS = 100000 }; // beside which reading the clock costs little
+	const uint64_t now = ob_clock_ns(), ns = now - s->tasks.since;
+	s->tasks.since = now;
+	s->tasks.task[s->tasks.n] = task;
+	s->tasks.ns[s->tasks.n++] = ns < UINT32_MAX ? (uint32_t)ns : UINT32_MAX;
+	s->tasks.sum += ns;
+	if (s->tasks.n == OB_TASKS_TIMED || s->tasks.sum > LONG_NS)
+		share_out(s, ask_cpu_clock(s));
+}
+
+uint64_t ob_profile_beside(const ob_sim *s, uint64_t worked)
+{
+	return worked > s->tasks.told ? worked - s->tasks.told : 0;
 }
 
 uint64_t ob_profile_end(ob_sim *s)
@@ -40,12 +89,13 @@ uint64_t ob_profile_end(ob_sim *s)
 		return 0;
 	count_section(s);
 	s->times.cpu_end = ob_clock_thread_cpu();
+	share_out(s, s->times.cpu_end);
 	double cpu = 1e9 * (s->times.cpu_end - s->times.cpu);
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
 		wall += (double)s->times.wall[i];
 	for (int i = 0; i < OB_PROFILE_SECTIONS && wall > 0; i++)
 		s->counters.time_ns[i] += (uint64_t)((double)s->times.wall[i] * ob_min(1, cpu / wall));
-	s->counters.held_ns += (uint64_t)ob_max(0, wall - cpu);
+	s->counters.held_ns += (uint64_t)ob_max(0, wall + (double)s->times.asking - cpu);
 	s->counters.since_ns = s->times.since;
 	return (uint64_t)cpu;
 }

@@ -21,6 +21,16 @@ static inline void ob_profile_enter(ob_sim *s, ob_profile_section section)
 // Returns ns of CPU since the beginning, 0 unless the run is timed.
 void ob_profile_begin(ob_sim *s, ob_profile_section section);
 uint64_t ob_profile_end(ob_sim *s);
+// The worker has done this task, and no other since the last one, or since the phase began. As for sections, the CPU clock
+// is read for several of them.
+void ob_profile_task(ob_sim *s, uint32_t task);
+static inline void ob_profile_task_done(ob_sim *s, uint32_t task)
+{
+	if (s->times.timed)
+		ob_profile_task(s, task);
+}
+// ns of CPU of the phase that has ended which were none of its tasks'.
+uint64_t ob_profile_beside(const ob_sim *s, uint64_t worked);
 
 // From now on, until ob_profile_hide, each section is a span in the trace. The first is LOAD. Returns now (ns).
 uint64_t ob_profile_show(ob_sim *s);

@@ -8,6 +8,7 @@
 #include "sim/commit.h"
 #include "sim/ode_baseline.h"
 #include "sim/pairs.h"
+#include "sim/profile.h"
 #include "sim/publish.h"
 
 // ---- who runs
@@ -53,8 +54,10 @@ void ob_scripts_run(ob_sim *s)
 	if (s->settings->one_per_object)
 		run_share(s, s->data->script_of[s->worker] - 1);
 	else
-		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK))
+		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK)) {
 			run_share(s, s->data->script_due[i]);
+			ob_profile_task_done(s, i);
+		}
 }
 
 bool ob_sim_awaits_requests(const ob_universe *u)

@@ -8,6 +8,8 @@
 #include "sim/sim.h"
 #include "table/trace.h"
 
+enum { OB_TASKS_TIMED = 64 };
+
 struct ob_sim {
 	ob_universe *u;
 	ob_step_data *data; // of u, the same for its whole life
@@ -38,8 +40,15 @@ struct ob_sim {
 		bool wanted; // either
 		ob_profile_section section; // that the time counts for
 		uint64_t since, wall[OB_PROFILE_SECTIONS]; // ns; of the running phase
+		uint64_t asking; // ns, wall, of the running phase: in which the CPU clock was read, of no section
 		double cpu, cpu_end; // s, when it began; when the one before ended
 	} times;
+	struct { // sim/profile.h: tasks that are done since its CPU clock was read
+		uint32_t n, task[OB_TASKS_TIMED], ns[OB_TASKS_TIMED]; // wall
+		uint64_t since, sum; // ns, wall: when the last one ended; of those
+		double cpu; // s, when it was read
+		uint64_t told; // ns of CPU: of all of the phase before
+	} tasks;
 	struct { // sim/profile.h
 		bool traced;
 		ob_trace_kind kind; // of level 0, that goes on

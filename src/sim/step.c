@@ -42,6 +42,7 @@
 #include "sim/budget.h"
 #include "sim/calendar.h"
 #include "sim/commit.h"
+#include "sim/critical_path.h"
 #include "sim/fault.h"
 #include "sim/island_solver.h"
 #include "sim/island_builder.h"
@@ -79,6 +80,7 @@ typedef struct step_phase {
 	ob_phase (*next)(const scheduler *c); // the serial part after it; which phase comes next
 	ob_profile_section section; // that a participant's time counts for, unless it says otherwise
 	ob_trace_kind span;
+	uint32_t per_worker; // for so many tasks one worker more takes part; 0: all that there are do
 } step_phase;
 
 // ---- who takes part
@@ -172,7 +174,8 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	const uint32_t all = ob_universe_simulators(c->u);
 	ob_late_contacts_begin(c->u, solved);
 	const uint32_t pairs = ob_checks_count(c->data);
-	const bool serial = pairs < PARALLEL_PAIRS || all == 1 || c->settings->one_per_object;
+	const bool alone = all == 1 && !c->settings->timed; // where time is taken, what could be shared is told apart
+	const bool serial = pairs < PARALLEL_PAIRS || alone || c->settings->one_per_object;
 	if (!pairs)
 		return false;
 	if (serial && c->sim) {
@@ -245,8 +248,10 @@ static void query_neighbours(ob_sim *s)
 	if (s->settings->one_per_object)
 		query(s, s->worker);
 	else
-		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK))
+		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK)) {
 			query(s, list[i]);
+			ob_profile_task_done(s, i);
+		}
 }
 
 static void check_pairs(ob_sim *s, bool solved)
@@ -256,6 +261,7 @@ static void check_pairs(ob_sim *s, bool solved)
 	while (ob_task_claim(s->u, &i)) {
 		uint32_t first = i * OB_LATE_CONTACTS_BATCH, end = first + OB_LATE_CONTACTS_BATCH;
 		ob_late_contacts_check(s, first, end < pairs ? end : pairs, solved);
+		ob_profile_task_done(s, i);
 	}
 }
 
@@ -311,6 +317,7 @@ static void solve_islands(ob_sim *s)
 			if (i + 1 < end) // beyond it another worker writes what would be read here
 				ob_prefetch_island(s, i + 1);
 			solve_island(s, i, i == first);
+			ob_profile_task_done(s, i);
 			if (notes)
 				note_home(s, i);
 			objects += data->island[i].members;
@@ -473,17 +480,17 @@ static ob_phase complete_step(const scheduler *c)
 
 // clang-format off
 static const step_phase phases[] = {
-	[OB_PHASE_RESUME]           = { NULL,            do_nothing,         after_resume,           OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE },
-	[OB_PHASE_BROADPHASE_START] = { open_broadphase, query_neighbours,   after_broadphase_start, OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
-	[OB_PHASE_SCRIPTS]          = { open_scripts,    ob_scripts_run,     after_scripts,          OB_PROFILE_SCRIPTS,    OB_TRACE_OBJECTS },
-	[OB_PHASE_FORECAST]         = { open_pairs,      forecast_contacts,  after_forecast,         OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
-	[OB_PHASE_ISLANDS]          = { open_islands,    solve_islands,      after_islands,          OB_PROFILE_LOAD,       OB_TRACE_SOLVE },
-	[OB_PHASE_BROADPHASE]       = { open_broadphase, query_neighbours,   after_broadphase,       OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
-	[OB_PHASE_LATE_CONTACTS]    = { open_pairs,      find_late_contacts, after_late_contacts,    OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
-	[OB_PHASE_COPY]             = { open_copy,       copy_result,        after_copy,             OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS },
-	[OB_PHASE_COMPLETE]         = { NULL,            NULL,               complete_step,          OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE },
-	[OB_PHASE_BASELINE]         = { open_baseline,   step_baseline,      after_baseline,         OB_PROFILE_SOLVE,      OB_TRACE_SOLVE },
-	[OB_PHASE_PAUSE]            = { open_pause,      NULL,               NULL,                   OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE },
+	[OB_PHASE_RESUME]           = { NULL,            do_nothing,         after_resume,           OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
+	[OB_PHASE_BROADPHASE_START] = { open_broadphase, query_neighbours,   after_broadphase_start, OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, QUERIES_PER_WORKER },
+	[OB_PHASE_SCRIPTS]          = { open_scripts,    ob_scripts_run,     after_scripts,          OB_PROFILE_SCRIPTS,    OB_TRACE_OBJECTS, SCRIPTS_PER_WORKER },
+	[OB_PHASE_FORECAST]         = { open_pairs,      forecast_contacts,  after_forecast,         OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },
+	[OB_PHASE_ISLANDS]          = { open_islands,    solve_islands,      after_islands,          OB_PROFILE_LOAD,       OB_TRACE_SOLVE, 0 },
+	[OB_PHASE_BROADPHASE]       = { open_broadphase, query_neighbours,   after_broadphase,       OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, QUERIES_PER_WORKER },
+	[OB_PHASE_LATE_CONTACTS]    = { open_pairs,      find_late_contacts, after_late_contacts,    OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },
+	[OB_PHASE_COPY]             = { open_copy,       copy_result,        after_copy,             OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },
+	[OB_PHASE_COMPLETE]         = { NULL,            NULL,               complete_step,          OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
+	[OB_PHASE_BASELINE]         = { open_baseline,   step_baseline,      after_baseline,         OB_PROFILE_SOLVE,      OB_TRACE_SOLVE, 0 },
+	[OB_PHASE_PAUSE]            = { open_pause,      NULL,               NULL,                   OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
 };
 // clang-format on
 
@@ -505,13 +512,14 @@ static ob_phase open_from(const scheduler *c, ob_phase phase)
 static ob_phase schedule(ob_sim *s, ob_phase finished)
 {
 	const scheduler c = { s->u, s, s->data, s->settings };
+	ob_critical_path_close(s->u, finished, phases[finished].per_worker);
 	ob_profile_begin(s, OB_PROFILE_SCHEDULE);
-	ob_phase_close(s->u);
 	ob_step_set_scheduler(s->u, s->worker);
 	const ob_phase due = next_phase(&c, finished);
 	ob_fault_chance(s);
 	const ob_phase next = open_from(&c, due);
-	ob_critical_add(s->u, ob_profile_end(s));
+	const uint64_t alone = ob_profile_end(s);
+	ob_critical_add(s->u, alone, alone);
 	return next;
 }
 
@@ -553,7 +561,8 @@ bool ob_step(ob_sim *s)
 	phases[phase].work(s);
 	ob_worker_set_object(s->u, s->worker, OB_NO_OBJECT);
 	ob_fault_chance(s);
-	ob_phase_worked(s->u, ob_profile_end(s));
+	const uint64_t worked = ob_profile_end(s);
+	ob_phase_worked(s->u, worked, ob_profile_beside(s, worked));
 	if (ob_universe_contained(s->u))
 		ob_outbox_end_of(s->u)->counters = s->counters;
 	else

@@ -95,6 +95,7 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_SCRIPT_CELL] = { ELEMENT(script_cell), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRIPT_DUE] = { ELEMENT(script_due), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
+	[OB_AREA_TASK_NS] = { ELEMENT(task_ns), PER_OBJECT, 1, 0 },
 	[OB_AREA_SCRIPT_TEXT] = { 1, PER_SCRIPT_BYTE, 1, 0 },
 	[OB_AREA_OUTBOX] = { 1, PER_OUTBOX_BYTE, 1, 0 },
 	[OB_AREA_TRACE_RING] = { sizeof(ob_trace_ring), PER_RING, 1, 0 },
@@ -266,6 +267,7 @@ static void bind_step_data(ob_universe *u)
 		.island_pair = (void *)(base + area[OB_AREA_ISLAND_PAIR]),
 		.chunk = (void *)(base + area[OB_AREA_CHUNK]),
 		.scratch = (void *)(base + area[OB_AREA_SCRATCH]),
+		.task_ns = (void *)(base + area[OB_AREA_TASK_NS]),
 	};
 	if (!u->header.sizes.script_cells)
 		return;

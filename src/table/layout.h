@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 24, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 25, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -65,6 +65,7 @@ typedef enum ob_area {
 	OB_AREA_SCRIPT_CELL, // [script_cells]
 	OB_AREA_SCRIPT_DUE, // [script_cells]
 	OB_AREA_SCRATCH,
+	OB_AREA_TASK_NS,
 	OB_AREA_SCRIPT_TEXT,
 	OB_AREA_OUTBOX, // of each worker; empty unless simulators are contained
 	OB_AREA_TRACE_RING, // from here on empty unless traced
@@ -119,12 +120,14 @@ typedef struct ob_control {
 	uint32_t pins; // objects that have one
 } ob_control;
 
-// How long steps take. The gate orders its writers, but any worker may raise longest_ns, and critical_ns grows after
-// the gate has opened: these two are atomic.
+// How long steps take. The gate orders its writers, but any worker may raise longest_ns and beside_ns, and the sums grow
+// after the gate has opened: all but begun_ns are atomic.
 typedef struct ob_step_clock {
 	_Alignas(64) uint64_t begun_ns; // when the running step began, ob_clock_ns
 	uint64_t longest_ns; // CPU of the worker with the most of it in the running phase; see above
+	uint64_t beside_ns; // of longest_ns's kind: of what is none of the phase's tasks
 	uint64_t critical_ns; // sum of these over all phases, and of scheduling; see above
+	uint64_t simulated_ns; // the same of OB_SIMULATED_WORKERS
 	ob_latency latency;
 } ob_step_clock;
 

@@ -45,30 +45,64 @@ const ob_latency *ob_step_latency(const ob_universe *u)
 	return &u->step_clock->latency;
 }
 
-void ob_phase_worked(ob_universe *u, uint64_t ns)
+static void raise_time(uint64_t *longest, uint64_t ns)
+{
+	uint64_t seen = __atomic_load_n(longest, __ATOMIC_RELAXED);
+	while (seen < ns && !__atomic_compare_exchange_n(longest, &seen, ns, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+		;
+}
+
+void ob_phase_worked(ob_universe *u, uint64_t ns, uint64_t beside)
 {
 	if (u->outbox) {
 		ob_outbox_end_of(u)->worked_ns = ns;
 		return;
 	}
-	uint64_t *longest = &u->step_clock->longest_ns, seen = __atomic_load_n(longest, __ATOMIC_RELAXED);
-	while (seen < ns && !__atomic_compare_exchange_n(longest, &seen, ns, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
-		;
+	raise_time(&u->step_clock->longest_ns, ns);
+	raise_time(&u->step_clock->beside_ns, beside);
 }
 
-void ob_phase_close(ob_universe *u)
+uint64_t ob_phase_close(ob_universe *u)
 {
-	ob_critical_add(u, __atomic_exchange_n(&u->step_clock->longest_ns, 0, __ATOMIC_RELAXED));
+	ob_critical_add(u, __atomic_exchange_n(&u->step_clock->longest_ns, 0, __ATOMIC_RELAXED), 0);
+	return __atomic_exchange_n(&u->step_clock->beside_ns, 0, __ATOMIC_RELAXED);
 }
 
-void ob_critical_add(ob_universe *u, uint64_t ns)
+void ob_critical_add(ob_universe *u, uint64_t ns, uint64_t simulated)
 {
 	__atomic_fetch_add(&u->step_clock->critical_ns, ns, __ATOMIC_RELAXED);
+	__atomic_fetch_add(&u->step_clock->simulated_ns, simulated, __ATOMIC_RELAXED);
 }
 
 uint64_t ob_critical_path(const ob_universe *u)
 {
 	return __atomic_load_n(&u->step_clock->critical_ns, __ATOMIC_RELAXED);
+}
+
+uint64_t ob_simulated_path(const ob_universe *u)
+{
+	return __atomic_load_n(&u->step_clock->simulated_ns, __ATOMIC_RELAXED);
+}
+
+static uint32_t *time_of_task(const ob_universe *u, uint32_t task)
+{
+	return &u->step_data.task_ns[task % ob_universe_ids(u)];
+}
+
+void ob_task_took(ob_universe *u, uint32_t task, uint32_t ns)
+{
+	if (!u->outbox)
+		__atomic_fetch_add(time_of_task(u, task), ns, __ATOMIC_RELAXED);
+}
+
+uint32_t ob_task_take_time(ob_universe *u, uint32_t task)
+{
+	return __atomic_exchange_n(time_of_task(u, task), 0, __ATOMIC_RELAXED);
+}
+
+uint32_t ob_task_count(const ob_universe *u)
+{
+	return __atomic_load_n(&u->control->claim_total, __ATOMIC_RELAXED);
 }
 
 void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu)

@@ -213,6 +213,7 @@ typedef struct ob_step_data {
 	uint32_t *island_pair;        // indices into pair[]
 	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
 	uint32_t *scratch;            // [4 * objects]: the scheduler's
+	uint32_t *task_ns;            // [object]: CPU that each task of the running phase has taken, in turns; of ob_task_took
 	// All NULL where the scene has no script.
 	ob_script_counts *script_counts;
 	uint32_t *script_of; // [object]: 1 + its cell; 0 = it has no script

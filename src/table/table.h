@@ -152,10 +152,19 @@ const ob_latency *ob_step_latency(const ob_universe *u);
 // The critical path, if the run is timed: what the steps would take if no worker ever had to wait for a core. Each
 // worker says before it arrives how long it has worked in the phase (ns of CPU); the scheduler closes the phase before
 // anything else, and adds the time that scheduling took. ob_critical_path: the sum so far (ns).
-void ob_phase_worked(ob_universe *u, uint64_t ns);
-void ob_phase_close(ob_universe *u);
-void ob_critical_add(ob_universe *u, uint64_t ns);
+//
+// Likewise for OB_SIMULATED_WORKERS, whatever their number is: each worker says which task has taken how long (any worker;
+// of a phase with more tasks than objects some are taken together), and how much of its time was none of a task's. How
+// tasks are dealt is up to whoever schedules (sim/critical_path.h): it takes the phase's tasks and what was beside them.
+enum { OB_SIMULATED_WORKERS = 16 };
+void ob_task_took(ob_universe *u, uint32_t task, uint32_t ns);
+uint32_t ob_task_take_time(ob_universe *u, uint32_t task); // ns; the next time it is 0
+uint32_t ob_task_count(const ob_universe *u); // of the phase, as ob_task_reset
+void ob_phase_worked(ob_universe *u, uint64_t ns, uint64_t beside);
+uint64_t ob_phase_close(ob_universe *u); // returns what was beside, of the worker with the most of it (ns)
+void ob_critical_add(ob_universe *u, uint64_t ns, uint64_t simulated);
 uint64_t ob_critical_path(const ob_universe *u);
+uint64_t ob_simulated_path(const ob_universe *u);
 
 // Worker cells. The worker itself calls announce once; the host refreshes the CPU time.
 void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu);

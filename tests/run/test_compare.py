@@ -43,6 +43,8 @@ class Compare(program.Case):
 			# measured along a run of its own, and put in
 			for metric in "worst_penetration_m", "energy_gain_max", "critical_s_per_step", "switches_per_step":
 				self.assertIsNotNone(metrics[metric]["median"], (key, metric))
+			told = key not in ("threads_each", "processes_each")
+			self.assertEqual(metrics["speedup_of_16"]["median"] is not None, told, key)
 			cost = metrics["cpu_s_per_body_and_step"]
 			self.assertLessEqual(cost["low"], cost["median"])
 			self.assertLessEqual(cost["median"], cost["high"])

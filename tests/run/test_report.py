@@ -12,7 +12,7 @@ KEYS = """objects steps simulated_s wall_s cpu_s body_step_cpu_us state_hash ene
 momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps frames workers isolation arch commit scene
 step substeps solver integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies iterations total_s
 frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
-islands_over energy_recovered narrow load box_tests step_p90_s step_max_s critical_s work_s held_s gate_s gate_cpu_s idle_s
+islands_over energy_recovered narrow load box_tests step_p90_s step_max_s critical_s critical_16_s work_s held_s gate_s gate_cpu_s idle_s
 elapsed_s host_cpu_s renderer_cpu_s switches deaths worker_memory_bytes separation_max_m separation_mean_m trace_events
 trace_lost resumed_s checkpoints checkpoint_bytes checkpoint_s faults fault_kinds faults_overwritten frozen""".split()
 
@@ -113,7 +113,7 @@ class Report(program.Case):
 			self.assertGreater(ends[key], 0, key)
 		self.assertLessEqual(ends["step_p50_s"], ends["step_p90_s"])
 		self.assertLessEqual(ends["step_p99_s"], ends["step_max_s"])
-		for key in "critical_s", "work_s", "held_s", "gate_s", "gate_cpu_s":
+		for key in "critical_s", "critical_16_s", "work_s", "held_s", "gate_s", "gate_cpu_s":
 			self.assertIsNone(ends[key], key)
 		self.assertGreater(parts["work_s"], 0)
 		for key in "state_hash", "energy_start", "energy_end", "penetration_max_m", "penetration_mean_m", "steps":
@@ -129,6 +129,13 @@ class Report(program.Case):
 			self.assertLess((r["work_s"] + r["held_s"] + r["gate_s"] + r["idle_s"]) / had, 1.05, way)
 			self.assertLessEqual(r["critical_s"], 1.01 * r["work_s"] + .01, way)
 			self.assertGreaterEqual(1.05 * r["critical_s"] + .01, r["work_s"] / r["workers"], way)
+			if "objects" in way:
+				self.assertIsNone(r["critical_16_s"])
+				continue
+			self.assertLessEqual(r["critical_16_s"], 1.05 * r["work_s"] + .01, way)
+			self.assertGreaterEqual(1.05 * r["critical_16_s"] + .01, r["work_s"] / 16, way)
+			if "monolith" in way: # its one task cannot be shared
+				self.assertGreaterEqual(1.05 * r["critical_16_s"] + .01, r["work_s"], way)
 
 	def test_monolith(self):
 		r = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3")
