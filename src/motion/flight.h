@@ -34,11 +34,11 @@ typedef struct ob_half_space {
 	double offset; // m: normal . x on the surface
 } ob_half_space;
 
-// The first instant in [from, until] (s) at which a point of the shape is on the plane and closes; infinity: none is.
-// A point that is within rounding of the plane at "from" and closes gives "from" itself. Spheres in closed form; boxes,
-// hulls, capsules and cylinders by conservative advancement of their corners and rims (Mirtich 1996), each with a curve
-// that bounds its fall: about ten evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does,
-// and at once where it has.
+// The first instant in [from, until] (s, both finite) at which a point of the shape is on the plane and closes;
+// infinity: none is. A point that is within rounding of the plane at "from" and closes gives "from" itself. Spheres in
+// closed form; boxes, hulls, capsules and cylinders by conservative advancement of their corners and rims (Mirtich
+// 1996), each with a curve that bounds its fall, and only while the bounding sphere is on the plane: two or three
+// evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does, and at once where it has.
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until);
 
 #endif

@@ -1,15 +1,29 @@
 #include "motion/flight.h"
 
 #include <float.h>
+#include <stdint.h>
 
 static const double near = 1e-11; // of the shape's radius: a point that is closer and comes down lands
 static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
-// Euler: dw_i/dt = (I_j - I_k) / I_i w_j w_k, and the squares of the products add up to w^4 / 3 at most.
-static double turning_bound(ob_vec3 i, double w)
+// How much the motion of a point that turns about the centre may bend, per metre from it, at rates of up to w (rad/s).
+// Euler: b_i' = c_i b_j b_k for the rate b in the frame of the body. With k the largest |c_i|, |b'| <= k w^2 / sqrt(3)
+// and |b''| <= 2/3 k^2 w^3, for sums of products of shares that add up to 1; in the world the rate's second derivative
+// has b x b' as well, and the arm's third is made of products of these.
+typedef struct bending {
+	ob_vec3 coupling; // c
+	double most, jerk; // 1/s^2, 1/s^3: of the arm's second and third derivative
+} bending;
+
+static bending bending_of(ob_vec3 i, double w)
 {
-	double k = ob_max(fabs(i.y - i.z) / i.x, ob_max(fabs(i.z - i.x) / i.y, fabs(i.x - i.y) / i.z));
-	return w * w * (1 + (i.x > 0 && i.y > 0 && i.z > 0 ? k / sqrt(3) : 0));
+	bending x = { .coupling = { 0, 0, 0 } };
+	if (i.x > 0 && i.y > 0 && i.z > 0)
+		x.coupling = ob_v3((i.y - i.z) / i.x, (i.z - i.x) / i.y, (i.x - i.y) / i.z);
+	const double k = ob_max(fabs(x.coupling.x), ob_max(fabs(x.coupling.y), fabs(x.coupling.z))), once = k / sqrt(3);
+	x.most = w * w * (1 + once);
+	x.jerk = w * w * w * (1 + 4 * once + 2. / 3 * k * k);
+	return x;
 }
 
 // A shape is the points around its centre, grown by a radius: a box its corners, a capsule the ends of its axis. A
@@ -91,49 +105,158 @@ static double rim_time(rim *x, double tolerance)
 	return low;
 }
 
-// When a point lands at least (s), that is so high and rises at this rate; *lands: it does so now.
-static void land_point(double gap, double rate, double most, double tolerance, double *least, bool *lands)
+// Two points side by side.
+typedef double pair __attribute__((vector_size(16)));
+typedef int64_t pair_mask __attribute__((vector_size(16)));
+
+enum { BLOCK = 4, PAIRS_MAX = OB_HULL_CORNERS_MAX / 2 }; // pairs that are worked on together
+
+// Points of the outline: how high (m), how fast they rise (m/s), and how that changes now (m/s^2).
+typedef struct points {
+	int pairs; // a multiple of BLOCK
+	pair gap[PAIRS_MAX], rate[PAIRS_MAX], bend[PAIRS_MAX];
+} points;
+
+static pair both(double x)
 {
-	const bool touches = gap <= tolerance;
-	const double t = fall_time(touches && (rate >= 0 || gap < 0) ? 0 : gap, rate, most);
-	if (t < *least)
-		*least = t, *lands = touches && rate < 0;
+	return (pair){ x, x };
 }
 
-// The same of a box's corners, when the first one does: side by side, for which of them rise and which come down nobody
-// can foretell. One that rises and never falls has a quotient by zero, which is no less than anything.
-static double land_corners(const double *gap, const double *rate, double most, double tolerance, bool *lands)
+static pair where(pair_mask m, pair x)
 {
-	enum { CORNERS = 8 };
-	double t[CORNERS], least = INFINITY;
-	for (int k = 0; k < CORNERS; k++) {
-		const bool falls = rate[k] < 0;
-		const double left = (gap[k] <= tolerance) & (!falls | (gap[k] < 0)) ? 0 : gap[k];
-		const double root = sqrt(rate[k] * rate[k] + 2 * most * left);
-		t[k] = (falls ? 2 * left : rate[k] + root) / (falls ? root - rate[k] : most);
+	return (pair)(m & (pair_mask)x);
+}
+
+static pair least_of(pair a, pair b)
+{
+	const pair_mask m = a < b;
+	return (pair)((m & (pair_mask)a) | (~m & (pair_mask)b));
+}
+
+static int least_index(const pair *of, int pairs)
+{
+	int index = 0;
+	double least = of[0][0];
+	for (int k = 0; k < pairs; k++)
+		for (int i = 0; i < 2; i++)
+			if (of[k][i] < least)
+				least = of[k][i], index = 2 * k + i;
+	return index;
+}
+
+// m: how high each point is at t if it falls with an acceleration of its own. false: none is below the plane.
+static bool heights_at(const points *x, const pair *fall, double t, pair *height)
+{
+	pair_mask below = { 0, 0 };
+	for (int k = 0; k < x->pairs; k += BLOCK)
+		for (int i = k; i < k + BLOCK; i++) {
+			height[i] = x->gap[i] + t * (x->rate[i] - .5 * t * fall[i]);
+			below |= (pair_mask)height[i];
+		}
+	return (below[0] | below[1]) < 0; // the sign
+}
+
+// Which of them is the first on the plane within *t (s); -1: none. From the end back: who is below the plane then was
+// on it before.
+static int first_to_land(const points *x, const pair *fall, double *t)
+{
+	pair height[PAIRS_MAX];
+	int first = -1;
+	while (heights_at(x, fall, *t, height)) {
+		const int deepest = least_index(height, x->pairs);
+		const double when = fall_time(x->gap[deepest / 2][deepest & 1], x->rate[deepest / 2][deepest & 1],
+					      fall[deepest / 2][deepest & 1]);
+		if (first >= 0 && !(when < *t))
+			break;
+		first = deepest;
+		*t = ob_min(*t, when);
 	}
-	for (int k = 0; k < CORNERS; k++)
-		if (t[k] < least)
-			least = t[k], *lands = gap[k] <= tolerance && rate[k] < 0;
-	return least;
+	return first;
 }
 
-// For how long no point of the outline lands, at least (s); *lands: one does then. height and speed: of the centre over
-// the plane. No point falls faster than with the acceleration "most".
-static double advance(const ob_flier *f, const outline *h, ob_vec3 n, double s, double height, double speed,
-		      double most, double tolerance, bool *lands)
+// When the lowest point lands if it bends as it does now, and some more; or what is left.
+static double guess_landing(const points *x, double left)
 {
+	static const double more = 1.1;
+	const int lowest = least_index(x->gap, x->pairs);
+	const double bend = x->bend[lowest / 2][lowest & 1];
+	return ob_min(left, more * fall_time(x->gap[lowest / 2][lowest & 1], x->rate[lowest / 2][lowest & 1],
+					     ob_max(0, -bend)));
+}
+
+// For how long no point lands, at least (s); *lands: one does then, to the tolerance. A point falls with the
+// acceleration "most" at most, and within t with what it has now and jerk t more: no lower than the parabola with a
+// third of that. The better t is guessed, the farther they reach.
+static double land_points(points *x, double most, double jerk, double tolerance, double left, bool *lands)
+{
+	pair fall[PAIRS_MAX];
+	pair_mask landed = { 0, 0 };
+	for (int k = 0; k < x->pairs; k += BLOCK)
+		for (int i = k; i < k + BLOCK; i++) {
+			const pair_mask touches = x->gap[i] <= tolerance, falls = x->rate[i] < 0;
+			landed |= touches & falls;
+			x->gap[i] = where(~(touches & (~falls | (x->gap[i] < 0))), x->gap[i]);
+		}
+	if ((*lands = landed[0] | landed[1]))
+		return 0;
+	const double until = guess_landing(x, left), more = jerk * until / 3;
+	for (int k = 0; k < x->pairs; k += BLOCK)
+		for (int i = k; i < k + BLOCK; i++) {
+			const pair down = more - x->bend[i];
+			fall[i] = least_of(both(most), where(down > 0, down));
+		}
+	double t = until;
+	const int k = first_to_land(x, fall, &t);
+	if (k < 0)
+		return until < left ? until : INFINITY;
+	const double rate = x->rate[k / 2][k & 1], bend = x->bend[k / 2][k & 1];
+	const double above = .5 * t * t * (fall[k / 2][k & 1] + bend + jerk * t / 3);
+	*lands = above <= tolerance && rate + t * (bend + .5 * t * jerk) < 0;
+	return t;
+}
+
+// Of the corners of a box: a value of the centre, and by how much it differs along each half side.
+static void box_points(double centre, ob_vec3 by, pair out[BLOCK])
+{
+	const pair x = { -by.x, by.x };
+	for (int k = 0; k < BLOCK; k++)
+		out[k] = centre + x + ((k & 1 ? by.y : -by.y) + (k & 2 ? by.z : -by.z));
+}
+
+// The same of a hull, and by how much it differs along each axis of its frame. What fills the last block never lands.
+static void hull_points(const ob_hull *hull, double centre, ob_vec3 by, points *x, pair *out)
+{
+	const int n = (int)hull->corners;
+	for (int k = 0; k < n; k++)
+		out[k / 2][k & 1] = centre + ob_dot(hull->corner[k], by);
+	x->pairs = (n + 2 * BLOCK - 1) / (2 * BLOCK) * BLOCK;
+	for (int k = n; k < 2 * x->pairs; k++)
+		out[k / 2][k & 1] = out == x->gap ? INFINITY : 0;
+}
+
+// The flight at s: of the centre, height and speed over the plane; "left" s until nobody asks any more.
+typedef struct instant {
+	double s, height, speed, left;
+} instant;
+
+// For how long no point of the outline lands, at least (s); *lands: one does then.
+static double advance(const ob_flier *f, const outline *h, const bending *bends, ob_vec3 n, instant now, double a,
+		      double tolerance, bool *lands)
+{
+	const double most = ob_max(0, -a) + h->reach * bends->most, height = now.height - h->radius;
 	ob_quat q = f->q;
 	ob_vec3 w = { 0, 0, 0 };
 	if (f->spin)
-		ob_spin_at(f->spin, s, &q, &w);
-	ob_mat3 r = ob_quat_matrix(q);
-	ob_vec3 normal = ob_rotate_back(&r, n), turning = ob_rotate_back(&r, ob_cross(n, w));
-	ob_vec3 up = component(h->half, normal), rise = component(h->half, turning);
-	double least = INFINITY;
+		ob_spin_at(f->spin, now.s, &q, &w);
+	const ob_mat3 r = ob_quat_matrix(q);
+	const ob_vec3 b = ob_rotate_back(&r, w), normal = ob_rotate_back(&r, n), turning = ob_cross(normal, b);
 	if (h->rim > 0) {
+		double least = INFINITY;
 		for (int side = -1; side < 2; side += 2) {
-			rim x = { height + side * up.z, speed + side * rise.z, most, { 0, 0, 0 }, { 0, 0, 0 } };
+			const double end = side * h->half.z;
+			rim x = {
+				height + end * normal.z, now.speed + end * turning.z, most, { 0, 0, 0 }, { 0, 0, 0 }
+			};
 			x.lean = ob_scale(ob_v3(normal.x, normal.y, 0), h->rim);
 			x.lean_rate = ob_scale(ob_v3(turning.x, turning.y, 0), h->rim);
 			least = ob_min(least, rim_time(&x, tolerance));
@@ -141,26 +264,27 @@ static double advance(const ob_flier *f, const outline *h, ob_vec3 n, double s, 
 		*lands = least == 0;
 		return least;
 	}
-	for (uint32_t k = 0; h->corners && k < h->corners->corners; k++) {
-		const ob_vec3 c = h->corners->corner[k];
-		land_point(height + ob_dot(c, normal), speed + ob_dot(c, turning), most, tolerance, &least, lands);
+	const ob_vec3 c = bends->coupling, gain = ob_v3(c.x * b.y * b.z, c.y * b.z * b.x, c.z * b.x * b.y);
+	const ob_vec3 turn = ob_add(ob_cross(normal, gain), ob_cross(turning, b));
+	points x;
+	if (h->corners) {
+		hull_points(h->corners, height, normal, &x, x.gap);
+		hull_points(h->corners, now.speed, turning, &x, x.rate);
+		hull_points(h->corners, a, turn, &x, x.bend);
+	} else {
+		box_points(height, component(h->half, normal), x.gap);
+		box_points(now.speed, component(h->half, turning), x.rate);
+		box_points(a, component(h->half, turn), x.bend);
+		x.pairs = BLOCK;
 	}
-	if (h->corners)
-		return least;
-	double gap[8], rate[8];
-	for (int k = 0; k < 8; k++) {
-		double x = k & 1 ? 1 : -1, y = k & 2 ? 1 : -1, z = k & 4 ? 1 : -1;
-		gap[k] = height + x * up.x + y * up.y + z * up.z;
-		rate[k] = speed + x * rise.x + y * rise.y + z * rise.z;
-	}
-	return land_corners(gap, rate, most, tolerance, lands);
+	return land_points(&x, most, h->reach * bends->jerk, tolerance, now.left, lands);
 }
 
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until)
 {
 	const ob_vec3 n = plane->normal;
 	outline h;
-	bool known = outline_of(f, &h);
+	const bool known = outline_of(f, &h);
 	const double radius = known ? ob_shape_radius(f->shape, f->size) : f->size.x;
 	const double p = ob_dot(n, f->p) - plane->offset, v = ob_dot(n, f->v), a = ob_dot(n, f->a);
 	if (known && h.reach == 0) {
@@ -168,20 +292,22 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 		if (first >= from)
 			return first;
 	}
-	double s = from, height = p + s * (v + .5 * s * a), speed = v + s * a;
-	if (height > radius)
-		s += ob_time_of_closing(height - radius, speed, a, until - s);
-	if (!(s <= until) || !known)
-		return s <= until ? s : INFINITY;
-	double spin = f->spin ? f->spin->fastest : 0;
-	double most = ob_max(0, -a) + h.reach * turning_bound(f->inertia, spin);
-	double tolerance = near * radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
+	const bending bends = bending_of(f->inertia, f->spin ? f->spin->fastest : 0);
+	const double tolerance = near * radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
+	double s = from;
 	for (int k = 0; k < most_advances && s <= until; k++) {
-		height = p + s * (v + .5 * s * a) - h.radius, speed = v + s * a;
+		double height = p + s * (v + .5 * s * a), speed = v + s * a;
+		if (height > radius) { // until then no point can land, and how it turns need not be known
+			s += ob_time_of_closing(height - radius, speed, a, until - s);
+			height = p + s * (v + .5 * s * a), speed = v + s * a;
+		}
+		if (!(s <= until) || !known)
+			break;
 		bool lands = false;
-		double t = advance(f, &h, n, s, height, speed, most, tolerance, &lands);
+		const instant now = { s, height, speed, until - s };
+		const double t = advance(f, &h, &bends, n, now, a, tolerance, &lands);
 		if (lands)
-			return k == 0 ? s : s + t;
+			return s + t;
 		s += ob_max(t, DBL_EPSILON * fabs(s));
 	}
 	return s <= until ? s : INFINITY;

@@ -9,7 +9,22 @@ typedef struct flight {
 	ob_flier f;
 	ob_spin spin;
 	ob_half_space plane;
+	ob_hull hull;
 } flight;
+
+// Any points: what is between them is not asked for.
+static void random_corners(flight *x, uint64_t *seed)
+{
+	ob_hull *h = &x->hull;
+	h->corners = 4 + (uint32_t)within(seed, 0, OB_HULL_CORNERS_MAX - 3);
+	h->radius = 0;
+	for (uint32_t k = 0; k < h->corners; k++) {
+		h->corner[k] = random_vector(seed, .5);
+		h->radius = fmax(h->radius, ob_norm(h->corner[k]));
+	}
+	x->f.size = ob_v3(h->radius, 0, 0);
+	x->f.hull = h;
+}
 
 // Upwards of an inclined plane, thrown and spinning.
 static void random_flight(flight *x, ob_shape shape, uint64_t *seed)
@@ -19,6 +34,8 @@ static void random_flight(flight *x, ob_shape shape, uint64_t *seed)
 	n = ob_scale(n, 1 / ob_norm(n));
 	x->plane = (ob_half_space){ n, within(seed, -5, 5) };
 	x->f = (ob_flier){ .shape = shape, .size = { a, b, c }, .inertia = random_inertia(seed) };
+	if (shape == OB_SHAPE_HULL)
+		random_corners(x, seed);
 	x->f.v = random_vector(seed, 3);
 	x->f.a = ob_madd(random_vector(seed, 1), uniform(seed) < .2 ? 5 : -5, n);
 	x->f.q = random_attitude(seed);
@@ -50,6 +67,12 @@ static double gap_at(const flight *x, double s)
 		return height - fabs(n.z) * size.y - size.x;
 	case OB_SHAPE_CYLINDER:
 		return height - fabs(n.z) * size.y - sqrt(n.x * n.x + n.y * n.y) * size.x;
+	case OB_SHAPE_HULL: {
+		double least = INFINITY;
+		for (uint32_t k = 0; k < f->hull->corners; k++)
+			least = fmin(least, height + ob_dot(f->hull->corner[k], n));
+		return least;
+	}
 	default:
 		return height - size.x;
 	}
@@ -113,10 +136,10 @@ static void test_spin_bound(uint64_t *seed)
 int main(void)
 {
 	uint64_t seed = 5;
-	static const ob_shape shapes[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER,
-					   OB_SHAPE_NONE };
-	for (int k = 0; k < 5000; k++)
-		check_landing(shapes[k % 5], &seed);
+	static const ob_shape shapes[] = { OB_SHAPE_SPHERE,   OB_SHAPE_BOX,  OB_SHAPE_CAPSULE,
+					   OB_SHAPE_CYLINDER, OB_SHAPE_HULL, OB_SHAPE_NONE };
+	for (int k = 0; k < 6000; k++)
+		check_landing(shapes[k % 6], &seed);
 	for (int k = 0; k < 500; k++)
 		test_spin_bound(&seed);
 	test_after_a_bounce();
