@@ -22,23 +22,33 @@ void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)
 	*t2 = ob_cross(n, *t1);
 }
 
-ob_vec3 ob_friction_arm(const ob_vec3 *arm, const double *gap, int points, ob_vec3 n)
+static ob_vec3 middle_of(const ob_vec3 *arm, int points)
+{
+	ob_vec3 middle = { 0, 0, 0 };
+	for (int j = 0; j < points; j++)
+		middle = ob_madd(middle, 1. / points, arm[j]);
+	return middle;
+}
+
+void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n, ob_vec3 *a,
+		      ob_vec3 *b)
 {
 	const double near = 1e-3; // of the points' distance from their middle
-	ob_vec3 middle = { 0, 0, 0 };
-	double least = INFINITY, size = 0, sum = 0, height = 0;
+	const ob_vec3 middle_a = middle_of(arm_a, points), middle_b = middle_of(arm_b, points);
+	double least = INFINITY, size2 = 0, sum = 0, height_a = 0, height_b = 0;
 	for (int j = 0; j < points; j++) {
-		middle = ob_madd(middle, 1. / points, arm[j]);
 		least = ob_min(least, gap[j]);
+		size2 = ob_max(size2, ob_norm2(ob_sub(arm_a[j], middle_a)));
 	}
-	for (int j = 0; j < points; j++)
-		size = ob_max(size, ob_norm(ob_sub(arm[j], middle)));
+	const double reach = near * sqrt(size2);
 	for (int j = 0; j < points; j++) {
-		const double above = gap[j] - least, share = above > 0 ? ob_max(0, 1 - above / (near * size)) : 1;
+		const double above = gap[j] - least, share = above <= 0 ? 1 : above < reach ? 1 - above / reach : 0;
 		sum += share;
-		height += share * ob_dot(n, ob_sub(arm[j], middle));
+		height_a += share * ob_dot(n, ob_sub(arm_a[j], middle_a));
+		height_b += share * ob_dot(n, ob_sub(arm_b[j], middle_b));
 	}
-	return ob_madd(middle, height / sum, n);
+	*a = ob_madd(middle_a, height_a / sum, n);
+	*b = ob_madd(middle_b, height_b / sum, n);
 }
 
 void ob_batch_init(ob_batch *b, ob_batch_kind kind)
@@ -167,10 +177,8 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 	ob_tangents(n, &t1, &t2);
 	double radius = 0;
 	vec2 at[OB_POINTS] = { { 0 } };
-	if (in->points > 0) {
-		ca = ob_friction_arm(in->arm_a, in->gap, in->points, n);
-		cb = ob_friction_arm(in->arm_b, in->gap, in->points, n);
-	}
+	if (in->points > 0)
+		ob_friction_arms(in->arm_a, in->arm_b, in->gap, in->points, n, &ca, &cb);
 	for (int j = 0; j < OB_POINTS; j++) {
 		bool used = j < in->points;
 		set3(b->ja[j], l, used ? ob_cross(in->arm_a[j], n) : ob_v3(0, 0, 0));

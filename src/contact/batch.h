@@ -58,7 +58,7 @@ typedef struct ob_batch {
 	unsigned active; // other lanes that changed a velocity by more than the wake threshold in the last iteration
 	lanes n[3], t1[3], t2[3]; // normal (b to a), tangents
 	lanes ja[4][3], jb[4][3]; // angular Jacobian of each normal: r x n
-	lanes fa1[3], fb1[3], fa2[3], fb2[3]; // angular Jacobian of friction: r x t, r as of ob_friction_arm
+	lanes fa1[3], fb1[3], fa2[3], fb2[3]; // angular Jacobian of friction: r x t, r as of ob_friction_arms
 	lanes ia[6], ib[6], ima, imb; // inverse inertia (world: xx xy xz yy yz zz), inverse masses
 	lanes ka, kb; // mass splitting: contacts of each body (1 when coloured)
 	lanes gap[4]; // m, as of the displacement rows' last reset
@@ -114,8 +114,9 @@ void ob_batch_clear(ob_batch *b, int l);
 void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2);
 // Where friction acts: in the middle of the points, at the height of the nearest ones, for there the bodies touch. A corner
 // that is a millimetre above the ground would lift the middle of all points, and what rolls over an edge would slip
-// there. arm, gap: m, of the points, at least one; n: their normal.
-ob_vec3 ob_friction_arm(const ob_vec3 *arm, const double *gap, int points, ob_vec3 n);
+// there. arm_a, arm_b, gap: m, of the points, at least one; n: their normal; a, b: m, from each centre.
+void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n, ob_vec3 *a,
+		      ob_vec3 *b);
 // Delassus matrices, for the mass splitting in ka, kb.
 void ob_batch_prepare(ob_batch *b);
 

@@ -9,6 +9,7 @@
 #include "sim/broadphase.h"
 #include "sim/equilibrium.h"
 #include "sim/flight.h"
+#include "sim/ghost.h"
 #include "sim/narrowphase.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
@@ -111,8 +112,8 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	w->surfaces.count = 0;
 	w->error = w->new_error = 0;
 	w->bodies = is->members;
-	// Fixed bodies, once per pair at most, and two ghosts for each of the other pairs.
-	uint32_t most = 1 + is->members + 2 * is->pairs;
+	// Fixed bodies, once per pair at most, or two ghosts for a pair.
+	const uint32_t most = 1 + is->members + (ob_ghosts_used(s) ? 2 : 1) * is->pairs;
 	reserve_rows(w, most);
 	ob_body_row *all[] = { w->v, w->dv, w->u, w->d, w->delta, w->drift };
 	for (int i = 0; i < 6; i++)

@@ -361,6 +361,7 @@ void ob_contact_find(ob_sim *s, ob_contact *contact)
 	}
 	contact->limit = contact->path + ob_min(tolerance, m.valid_path);
 	contact->since = when > 0 ? INFINITY : 0;
+	contact->found_for = w->h;
 	if (contact->lane == OB_NO_LANE)
 		take_lane(s, contact), old.points = 0;
 	else
@@ -416,13 +417,21 @@ static bool moves_alone(const ob_island_work *w, const ob_contact *contact, doub
 	       !w->body[contact->b].among_others && speed > standing * w->unit.speed;
 }
 
+// True where it would be found again as it is: its bodies have not moved since, nor been hit, and points were looked for
+// as far.
+static bool is_of_now(const ob_island_work *w, const ob_contact *contact)
+{
+	return contact->since == 0 && contact->found_for >= w->h && contact->lane != OB_NO_LANE &&
+	       !ob_contact_was_hit(w, contact);
+}
+
 // true: its geometry was found anew
 static bool update_contact(ob_sim *s, ob_contact *contact, double since, double ahead)
 {
 	const ob_island_work *w = &s->island;
 	const double speed = ob_contact_speed(w, contact);
 	contact->path += since * speed;
-	if ((contact->as_of_instant || contact->turns) && ahead > 0)
+	if ((contact->as_of_instant || contact->turns || is_of_now(w, contact)) && ahead > 0)
 		return false;
 	if (!(ahead > 0 && moves_alone(w, contact, speed)) &&
 	    !(contact->path + (speed + speed_gain(w, contact)) * ahead > contact->limit))
@@ -521,6 +530,12 @@ void ob_contacts_prepare(ob_sim *s)
 
 // ---- between the universe and the island
 
+// True of what the step before has left, not an earlier one.
+static bool is_newest(const ob_universe *u, const ob_pair_record *r, const ob_pair_state *p)
+{
+	return r->stamp[p - r->version] == ob_step_count(u) + 1;
+}
+
 static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k)
 {
 	ob_island_work *w = &s->island;
@@ -536,6 +551,8 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 	if (!p)
 		return;
 	contact->points = p->points;
+	if (p->of_now && contact->limit > -INFINITY && is_newest(s->u, &s->data->record[k->record], p))
+		contact->since = 0, contact->found_for = p->substep;
 	contact->creep = p->creep;
 	contact->disc_radius = p->disc_radius;
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++) {
@@ -632,7 +649,8 @@ static void store_impulses(const ob_island_work *w, const ob_contact *contact, d
 
 static void store_contact(const ob_island_work *w, const ob_contact *contact, ob_pair_state *p)
 {
-	*p = (ob_pair_state){ .points = contact->points,
+	*p = (ob_pair_state){ .points = (uint16_t)contact->points,
+			      .of_now = contact->since == 0,
 			      .substep = w->h,
 			      .creep = (float)contact->creep,
 			      .disc_radius = contact->disc_radius };

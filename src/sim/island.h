@@ -75,6 +75,7 @@ typedef struct ob_contact {
 	double path,
 		limit; // m: how far the two have moved, one from the other, in this step; until when the geometry holds
 	double since; // s, from when the geometry was found to the partial substep's start; infinity: unknown
+	double found_for; // s: length of the partial substep for which it was
 	bool turns; // its geometry turns noticeably within the partial substep (sim/midpoint.h)
 	double mu, e; // coefficients of friction and of restitution
 	double initial_depth,

@@ -203,10 +203,11 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		most = ob_max(most, ob_max(b->turn[j][l], pressed ? fabs(added) : 0));
 		gap[j] = b->gap[j][l];
 	}
-	ob_vec3 slide = ob_sub(velocity_at(va, wa, ob_friction_arm(contact->arm_a, gap, points, n)),
-			       velocity_at(vb, wb, ob_friction_arm(contact->arm_b, gap, points, n)));
-	const ob_vec3 slide_start = ob_sub(velocity_at(va, wa0, ob_friction_arm(arm_a0, gap, points, start_n)),
-					   velocity_at(vb, wb0, ob_friction_arm(arm_b0, gap, points, start_n)));
+	ob_vec3 at_a, at_b;
+	ob_friction_arms(contact->arm_a, contact->arm_b, gap, points, n, &at_a, &at_b);
+	ob_vec3 slide = ob_sub(velocity_at(va, wa, at_a), velocity_at(vb, wb, at_b));
+	ob_friction_arms(arm_a0, arm_b0, gap, points, start_n, &at_a, &at_b);
+	const ob_vec3 slide_start = ob_sub(velocity_at(va, wa0, at_a), velocity_at(vb, wb0, at_b));
 	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
 		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
 	const ob_vec3 friction = ob_add(ob_scale(t1, b->impulse[4][l]), ob_scale(t2, b->impulse[5][l]));
@@ -292,7 +293,8 @@ void ob_midpoint_begin(ob_sim *s)
 	}
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		ob_contact *contact = &w->contact[i];
-		if (contact->turns && !(contact->since >= 0 && contact->since < 2 * w->h))
+		const bool known = contact->since >= 0 && contact->since < 2 * w->h && contact->found_for >= w->h;
+		if (contact->turns && !known)
 			ob_contact_find(s, contact);
 		contact->turns &= contact->lane != OB_NO_LANE && contact->since < INFINITY;
 	}

@@ -25,7 +25,8 @@ typedef struct ob_pair_state {
 	double disc_radius;               // m, of a disc that they touch all over; 0: over the points' hull
 	ob_vec3 arm_a[OB_PAIR_POINTS];    // m
 	double gap[OB_PAIR_POINTS];        // m, separation now; < 0 is penetration
-	uint32_t points;                  // 0 .. 4; 0 = not touching
+	uint16_t points;                  // 0 .. 4; 0 = not touching
+	uint16_t of_now;                  // 1: its geometry was found where the bodies are when the version holds
 	float creep;                      // m, slip of the last second while friction should have held
 } ob_pair_state;
 

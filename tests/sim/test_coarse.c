@@ -172,8 +172,21 @@ static void test_energy(double tolerance)
 	free(s);
 }
 
+// A box that slides fast over another is looked at once in a step: when the next one begins, it is where it was found.
+static void test_looks_once(double tolerance)
+{
+	enum { SECONDS = 1 };
+	little_scene *s = tolerant(tolerance);
+	ob_world_box(&s->world, 0, ob_v3(20, 1, .1), ob_v3(0, 0, 4.9));
+	ob_world_box(&s->world, 1, ob_v3(.2, .2, .2), ob_v3(-10, 0, 5.2)).state->v = ob_v3(3, 0, 0);
+	const outcome o = watch(s, SECONDS);
+	printf("tolerance %g: %.0f looks in %d steps\n", tolerance, (double)o.count.narrowphase_tests, 60 * SECONDS);
+	CHECK(o.count.narrowphase_tests <= 60 * SECONDS);
+}
+
 int main(void)
 {
+	test_looks_once(50e-3);
 	test_sleeps_as_soon();
 	test_heaps("falling", add_falling, 4);
 	test_heaps("pile", add_pile, 3);
