@@ -35,7 +35,7 @@ static bool join(ob_sim *s, const ob_universe *u, ob_wire **wire, ob_error *e)
 	*wire = ob_wire_open(&own, e);
 	if (!*wire)
 		return false;
-	return ob_sim_join(s, &(ob_peers){ own.rank, own.ranks, gather, *wire, false }, e);
+	return ob_sim_join(s, &(ob_peers){ .rank = own.rank, .ranks = own.ranks, .gather = gather, .wire = *wire }, e);
 }
 
 static int live(ob_universe *u, uint32_t worker)

@@ -79,6 +79,23 @@ uint32_t ob_calendar_list(const ob_calendar *c, uint64_t step, uint32_t *list, u
 	return list_all(c, step, list, most);
 }
 
+uint32_t ob_calendar_first(const ob_calendar *c)
+{
+	uint32_t most = 0;
+	for (uint32_t top = 0; top < (c->end + 4095) / 4096; top++) {
+		if (c->level.of_4096[top] <= most)
+			continue;
+		for (uint32_t block = 64 * top; block < 64 * (top + 1); block++) {
+			if (c->level.of_64[block] <= most)
+				continue;
+			const uint32_t urgency = c->level.of_64[block] = most_of_64(c->level.one + 64 * (size_t)block);
+			most = urgency > most ? urgency : most;
+		}
+		c->level.of_4096[top] = most_of_64(c->level.of_64 + 64 * (size_t)top);
+	}
+	return UINT32_MAX - most;
+}
+
 void ob_calendar_clear(const ob_calendar *c)
 {
 	memset(c->level.one, 0, c->end * sizeof *c->level.one);

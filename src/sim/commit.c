@@ -41,8 +41,9 @@ typedef struct effort_record {
 } effort_record;
 
 typedef struct check_record {
-	uint32_t check; // its place in check[]
-	uint8_t expected, late, reserved[2];
+	uint32_t pair; // index
+	uint32_t check; // its place in check[] of the rank that has it there
+	uint8_t expected, late, reserved[6];
 	uint32_t clear_until, clear_as_of;
 	double limit;
 } check_record;
@@ -195,7 +196,7 @@ static void write_script(ob_universe *u, const script_record *r)
 static void write_check(ob_universe *u, const check_record *c)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	ob_pair_key *k = &data->pair[data->check[c->check]];
+	ob_pair_key *k = &data->pair[c->pair];
 	k->expected = c->expected;
 	k->late = c->late;
 	k->limit = c->limit;
@@ -312,7 +313,8 @@ void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, c
 
 void ob_commit_check(ob_universe *u, uint32_t check, const ob_pair_key *k)
 {
-	const check_record r = { .check = check,
+	const check_record r = { .pair = ob_universe_step_data(u)->check[check],
+				 .check = check,
 				 .expected = k->expected,
 				 .late = k->late,
 				 .clear_until = k->clear_until,
@@ -352,6 +354,9 @@ struct ob_committer {
 	ob_holdings *holdings;
 	uint32_t rank, ranks;
 	ob_mail out; // what the others get
+	// Pairs, by their index, that simulators of other ranks have had: that touched and do no longer; that were
+	// checked
+	ob_mail parted, checked;
 	const char *all; // what all have said; that of rank r begins at at[r]
 	const size_t *at;
 	uint32_t *island_owner; // [island]
@@ -387,6 +392,8 @@ void ob_committer_destroy(ob_committer *c)
 		return;
 	ob_mail_finish(&c->mail);
 	ob_mail_finish(&c->out);
+	ob_mail_finish(&c->parted);
+	ob_mail_finish(&c->checked);
 	ob_holdings_destroy(c->holdings);
 	free(c->island_owner);
 	free(c->query_owner);
@@ -397,7 +404,7 @@ void ob_committer_destroy(ob_committer *c)
 // Whose task it is in the running phase.
 static uint32_t owner_of_task(const ob_universe *u, uint32_t task)
 {
-	return ob_task_owner(task, ob_task_workers(u));
+	return ob_task_first(u) + ob_task_owner(task, ob_task_workers(u));
 }
 
 static void note_home(ob_universe *u, const ob_island *is, uint32_t worker)
@@ -534,6 +541,12 @@ static bool is_whole(const ob_committer *c, const ob_universe *u, const ob_mail_
 	return c->ranks < 2 || ob_universe_shares_contacts(u) || ob_worker_is_here(u, from->worker);
 }
 
+static void note_pair(ob_universe *u, ob_mail *list, uint32_t pair)
+{
+	if (!ob_mail_append(list, &pair, sizeof pair))
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+}
+
 static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const ob_found_contact *r = from->data;
@@ -546,11 +559,13 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 	const ob_pair_key *k = &data->pair[r->pair];
 	const uint32_t island =
 		data->result_island[k->a] != NONE ? data->result_island[k->a] : data->result_island[k->b];
-	if (!k->in_island || !owns_island(c, from->worker, island))
+	if ((!k->in_island && ob_worker_is_here(u, from->worker)) || !owns_island(c, from->worker, island))
 		return "has found a contact of bodies that it was not given";
 	if (!is_sound_contact(r, whole))
 		return "has found a contact that makes no sense";
 	const uint32_t record = write_contact_key(u, r);
+	if (!r->active && k->record != OB_NO_RECORD && !ob_worker_is_here(u, from->worker))
+		note_pair(u, &c->parted, r->pair);
 	if (record == OB_NO_RECORD)
 		return NULL;
 	const int version = whole ? write_contact_state(u, r, record) : -1;
@@ -642,15 +657,27 @@ static const char *commit_posts(ob_committer *c, ob_universe *u, const ob_mail_r
 	return NULL;
 }
 
-static const char *commit_check(ob_universe *u, const ob_mail_record *from)
+// What each rank has to check the others do not know.
+static bool was_given_check(const ob_universe *u, const ob_mail_record *from)
 {
 	const check_record *r = from->data;
-	if (from->bytes != sizeof *r || r->check >= ob_checks_count(ob_universe_step_data(u)) ||
-	    owner_of_task(u, r->check / OB_LATE_CONTACTS_BATCH) != from->worker)
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (!ob_worker_is_here(u, from->worker))
+		return r->pair < ob_pairs_end(data) && data->pair[r->pair].a != data->pair[r->pair].b;
+	return r->check < ob_checks_count(data) && data->check[r->check] == r->pair &&
+	       owner_of_task(u, r->check / OB_LATE_CONTACTS_BATCH) == from->worker;
+}
+
+static const char *commit_check(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const check_record *r = from->data;
+	if (from->bytes != sizeof *r || !was_given_check(u, from))
 		return "has checked what it was not given";
 	if (isnan(r->limit) || r->expected > 1 || r->late > 1)
 		return "has found about a pair what makes no sense";
 	write_check(u, r);
+	if (!ob_worker_is_here(u, from->worker))
+		note_pair(u, &c->checked, r->pair);
 	return NULL;
 }
 
@@ -682,9 +709,12 @@ static const char *commit_neighbours(ob_committer *c, ob_universe *u, const ob_m
 static const char *commit_end(ob_universe *u, const ob_mail_record *from)
 {
 	const ob_outbox_end *end = from->data;
+	ob_step_data *data = ob_universe_step_data(u);
 	ob_worker_set_objects(u, from->worker, end->objects);
 	if (end->late)
 		ob_late_contacts_note(u);
+	if (end->next_check && end->next_check - 1 < data->count->next_check)
+		data->count->next_check = end->next_check - 1;
 	ob_phase_worked(u, end->worked_ns, end->worked_ns);
 	*ob_worker_counters(u, from->worker) = end->counters;
 	return NULL;
@@ -714,7 +744,7 @@ static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase
 	case POSTS:
 		return scripts ? commit_posts(c, u, r) : "has asked for a script out of turn";
 	case CHECK:
-		return pairs ? commit_check(u, r) : "has checked a pair out of turn";
+		return pairs ? commit_check(c, u, r) : "has checked a pair out of turn";
 	case NEIGHBOURS:
 		return boxes ? commit_neighbours(c, u, r) : "has found neighbours out of turn";
 	default:
@@ -776,13 +806,25 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 	return ob_mail_collect(u, &c->mail);
 }
 
-// Of contacts the others get no more than that they are there, unless what is kept of them is wanted everywhere.
-static bool put_for_others(ob_mail *out, const ob_mail_record *r, bool contacts)
+// Whether the others know of a contact what they will be told: that it touches, and which rank keeps the rest of it.
+static bool is_known(const ob_committer *c, const ob_universe *u, const ob_found_contact *found)
 {
-	const uint32_t bytes = r->kind == CONTACT && !contacts && r->bytes > offsetof(ob_found_contact, state)
-				       ? offsetof(ob_found_contact, state)
-				       : r->bytes;
-	return ob_mail_append_record(out, &(ob_mail_record){ r->worker, r->kind, bytes, r->data });
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_pair_key *k = found->pair < ob_pairs_end(data) ? &data->pair[found->pair] : NULL;
+	return k && k->active && found->active && k->record != OB_NO_RECORD &&
+	       ob_holdings_here_alone(c->holdings, u, k->record);
+}
+
+// Of contacts the others get no more than that they are there, unless what is kept of them is wanted everywhere.
+static bool put_for_others(ob_committer *c, const ob_universe *u, const ob_mail_record *r)
+{
+	uint32_t bytes = r->bytes;
+	if (r->kind == CONTACT && !ob_universe_shares_contacts(u) && bytes >= offsetof(ob_found_contact, state)) {
+		if (is_known(c, u, r->data))
+			return true;
+		bytes = offsetof(ob_found_contact, state);
+	}
+	return ob_mail_append_record(&c->out, &(ob_mail_record){ r->worker, r->kind, bytes, r->data });
 }
 
 bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest)
@@ -792,7 +834,7 @@ bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase p
 	ob_mail_record r;
 	bool fits = ob_peers_begin(&c->out);
 	while (fits && ob_mail_next(u, &own, &r))
-		fits = put_for_others(&c->out, &r, ob_universe_shares_contacts(u));
+		fits = put_for_others(c, u, &r);
 	if (!fits)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 	const ob_peers_head head = { .phase = phase,
@@ -800,6 +842,25 @@ bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase p
 				     .damaged = damaged == OB_NO_OBJECT ? 0 : 1 + damaged };
 	c->all = fits ? ob_peers_exchange(p, u, head, &c->out, &c->at) : NULL;
 	return c->all;
+}
+
+static bool take_last(ob_mail *list, uint32_t *pair)
+{
+	if (!list->used)
+		return false;
+	list->used -= sizeof *pair;
+	memcpy(pair, list->bytes + list->used, sizeof *pair);
+	return true;
+}
+
+bool ob_commit_take_parted(ob_committer *c, uint32_t *pair)
+{
+	return take_last(&c->parted, pair);
+}
+
+bool ob_commit_take_checked(ob_committer *c, uint32_t *pair)
+{
+	return take_last(&c->checked, pair);
 }
 
 bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p)

@@ -62,8 +62,12 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase);
 // Checks what is in the mail, which is of all that take part in the phase, and writes it.
 void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase);
 
-// ---- by the arranger of one of several ranks; false: the step has failed
+// ---- by the arranger of one of several ranks; but where it says otherwise false: the step has failed
 
+// The next of the pairs that simulators of other ranks have said of that they touch no more, or that they have checked,
+// each said of once. false: that was all.
+bool ob_commit_take_parted(ob_committer *c, uint32_t *pair);
+bool ob_commit_take_checked(ob_committer *c, uint32_t *pair);
 // Before islands are solved: what pairs keep goes to who solves them.
 bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p);
 // Puts what the other ranks' simulators have handed over to what was collected. digest: ob_peers_digest.

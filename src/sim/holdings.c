@@ -5,11 +5,14 @@
 #include <string.h>
 
 #include "sim/digest.h"
+#include "table/home.h"
 
 enum { ALL = 0 }; // a holder
 
 struct ob_holdings {
-	uint16_t *holder; // [record]: 1 + a rank, or ALL
+	uint16_t *holder; // [record]: 1 + a rank, or ALL. Who is neither this one nor ALL may have given it to another
+			  // since
+	uint16_t *solver; // [object]: 1 + the rank that solved it last; 0 = none has yet. What touches it is held there
 	uint64_t (*digest)[2]; // [record], of each version that is here; 0 = it is not known
 	ob_mail out;
 };
@@ -17,6 +20,7 @@ struct ob_holdings {
 // A record on its way.
 typedef struct parcel {
 	uint32_t pair, stamp; // index; as ob_pair_record.stamp
+	double limit; // of its key
 	ob_pair_state state;
 	double impulse_b[OB_PAIR_ROWS];
 } parcel;
@@ -28,8 +32,9 @@ ob_holdings *ob_holdings_create(const ob_universe *u)
 	if (!h)
 		return NULL;
 	h->holder = calloc(records, sizeof *h->holder);
+	h->solver = calloc(ob_universe_capacity(u), sizeof *h->solver);
 	h->digest = calloc(records, sizeof *h->digest);
-	if (h->holder && h->digest)
+	if (h->holder && h->solver && h->digest)
 		return h;
 	ob_holdings_destroy(h);
 	return NULL;
@@ -40,6 +45,7 @@ void ob_holdings_destroy(ob_holdings *h)
 	if (!h)
 		return;
 	free(h->holder);
+	free(h->solver);
 	free(h->digest);
 	ob_mail_finish(&h->out);
 	free(h);
@@ -68,6 +74,11 @@ void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int
 		give_away(u, record);
 }
 
+bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record)
+{
+	return h->holder[record] == 1 + ob_universe_rank(u);
+}
+
 // ---- what lies where
 
 // One past the last island of a chunk that is to be solved, or less where the universe is damaged.
@@ -84,7 +95,7 @@ static uint32_t chunks_of(const ob_step_data *data)
 
 static uint32_t owner_of(const ob_universe *u, uint32_t chunk)
 {
-	return ob_task_owner(chunk, ob_task_workers(u));
+	return ob_task_first(u) + ob_task_owner(chunk, ob_task_workers(u));
 }
 
 // The k-th pair of an island, if its solver reads what it keeps; NULL: it does not, or the universe is damaged.
@@ -120,24 +131,36 @@ static bool pack(ob_holdings *h, const ob_universe *u, uint32_t pair, uint32_t r
 	if (version < 0)
 		return true;
 	p.stamp = data->record[record].stamp[version];
+	p.limit = data->pair[pair].limit;
 	p.state = data->record[record].version[version];
 	if (bytes == sizeof p)
 		memcpy(p.impulse_b, data->impulse_b[record][version], sizeof p.impulse_b);
 	return ob_mail_append(&h->out, &p, bytes);
 }
 
-// Takes what another rank has sent, if it is for this one: for all, or for who is noted to hold it by now.
-static void unpack(ob_holdings *h, const ob_universe *u, const char *from, size_t bytes)
+// Whether the pair is of an island that a simulator of this rank is to solve.
+static bool is_solved_here(const ob_universe *u, const ob_pair_key *k)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t id = data->schedule[k->a].state >= OB_SCHEDULE_AWAKE ? k->a : k->b;
+	return data->result_island[id] != UINT32_MAX && ob_worker_is_here(u, ob_home_of(u, id));
+}
+
+// Takes what another rank has sent, if it is for this one: for all, or of an island of its own.
+static void unpack(ob_holdings *h, const ob_universe *u, uint64_t what, const char *from, size_t bytes)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const size_t each = parcel_bytes(u);
 	parcel c;
 	for (; bytes >= each; from += each, bytes -= each) {
 		memcpy(&c, from, each);
-		const uint32_t record = c.pair < ob_pairs_end(data) ? data->pair[c.pair].record : OB_NO_RECORD;
-		if (record >= data->pairs_max ||
-		    (h->holder[record] != ALL && h->holder[record] != 1 + ob_universe_rank(u)))
+		ob_pair_key *k = c.pair < ob_pairs_end(data) ? &data->pair[c.pair] : NULL;
+		const uint32_t record = k ? k->record : OB_NO_RECORD;
+		if (record >= data->pairs_max || (what == OB_PEERS_MOVE && !is_solved_here(u, k)))
 			continue;
+		h->holder[record] = what == OB_PEERS_MOVE ? (uint16_t)(1 + ob_universe_rank(u)) : ALL;
+		if (!data->count->merged || what != OB_PEERS_MOVE) // else what is known of it is void
+			k->limit = c.limit;
 		data->record[record].version[0] = c.state;
 		data->record[record].stamp[0] = c.stamp;
 		data->record[record].stamp[1] = 0;
@@ -153,27 +176,44 @@ static bool exchange(ob_holdings *h, ob_universe *u, ob_peers *p, uint64_t what)
 	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = what }, &h->out, &at);
 	for (uint32_t r = 0; all && r < p->ranks; r++)
 		if (r != p->rank)
-			unpack(h, u, all + at[r] + sizeof(ob_peers_head), at[r + 1] - at[r] - sizeof(ob_peers_head));
+			unpack(h, u, what, all + at[r] + sizeof(ob_peers_head),
+			       at[r + 1] - at[r] - sizeof(ob_peers_head));
 	return all;
 }
 
-// Of an island whose solver is of rank "to": what others hold is theirs no longer. Counts what has moved, wherever.
-static bool move_pairs_of(ob_holdings *h, const ob_universe *u, const ob_island *is, uint32_t to, uint32_t *moved)
+// What is held here of the object, which rank "to" solves now: it lists the pairs of its island, and this rank does no
+// longer.
+static bool give_pairs_of(ob_holdings *h, const ob_universe *u, uint32_t id, uint32_t to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	bool fits = true;
-	uint32_t pair;
-	for (uint32_t k = 0; k < is->pairs; k++) {
-		const ob_pair_key *key = kept_pair(data, is, k, &pair);
-		const uint32_t holder = key ? h->holder[key->record] : ALL;
-		if (holder == ALL || holder == 1 + to)
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		ob_pair_key *k = &data->pair[at.pair];
+		k->in_island = 0;
+		if (k->record >= data->pairs_max || !ob_holdings_here_alone(h, u, k->record))
 			continue;
-		++*moved;
-		if (holder == 1 + ob_universe_rank(u)) {
-			fits &= pack(h, u, pair, key->record);
-			give_away(u, key->record);
-		}
-		h->holder[key->record] = (uint16_t)(1 + to);
+		fits &= pack(h, u, at.pair, k->record);
+		give_away(u, k->record);
+		h->holder[k->record] = (uint16_t)(1 + to);
+	}
+	return fits;
+}
+
+// Of an island that rank "to" solves. moved: whether another has solved any of its members before.
+static bool move_island(ob_holdings *h, const ob_universe *u, const ob_island *is, uint32_t to, bool *moved)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	bool fits = true;
+	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++) {
+		const uint32_t id = data->member[is->first_member + k];
+		const uint32_t from = id < data->objects_max ? h->solver[id] : 0;
+		if (id >= data->objects_max || from == 1 + to)
+			continue;
+		*moved |= from != 0;
+		if (from == 1 + ob_universe_rank(u))
+			fits &= give_pairs_of(h, u, id, to);
+		h->solver[id] = (uint16_t)(1 + to);
 	}
 	return fits;
 }
@@ -181,12 +221,11 @@ static bool move_pairs_of(ob_holdings *h, const ob_universe *u, const ob_island 
 bool ob_holdings_move(ob_holdings *h, ob_universe *u, ob_peers *p)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	uint32_t moved = 0;
-	bool fits = ob_peers_begin(&h->out);
+	bool moved = false, fits = ob_peers_begin(&h->out);
 	for (uint32_t chunk = 0; chunk < chunks_of(data); chunk++) {
 		const uint32_t to = ob_universe_rank_of(u, owner_of(u, chunk)), end = end_of_chunk(data, chunk);
 		for (uint32_t i = data->chunk[chunk]; i < end; i++)
-			fits &= move_pairs_of(h, u, &data->island[i], to, &moved);
+			fits &= move_island(h, u, &data->island[i], to, &moved);
 	}
 	if (!fits)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);

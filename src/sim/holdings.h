@@ -7,8 +7,8 @@
 //   B is rank 2's now                   x  ------->  x      before it is solved (move)
 //   all are wanted           x <------> x <------->  x      for a checkpoint, say (gather)
 //
-// All ranks know who holds what, for all know who has solved what. Who holds contents keeps their digest beside them:
-// in memory that simulators do not reach, so damage is found before it becomes a result.
+// All ranks know who has solved which object last, and there is what its pairs keep. Who holds contents keeps their
+// digest beside them: in memory that simulators do not reach, so damage is found before it becomes a result.
 //
 // Thread-safety: the arranger's.
 #ifndef OB_SIM_HOLDINGS_H
@@ -26,6 +26,8 @@ enum { OB_ALL_RANKS = UINT32_MAX };
 // A record has new contents, of the rank whose simulator has found them, or of all. version: where they are here; -1:
 // they are not.
 void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, uint32_t rank);
+// Whether it has them and no other rank does.
+bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record);
 
 // Before the islands of a step are solved, by all ranks: contents go to who solves them next. false: the step has
 // failed.

@@ -18,11 +18,12 @@ typedef struct builder {
 	ob_step_data *data;
 	uint32_t ids;
 	uint32_t *body; // [bodies], ascending when all are found
-	uint32_t bodies;
+	uint32_t bodies, members; // members: in islands, when these are listed
 	uint32_t *place; // [id]: where it is in body[]; true where that says the same
 	uint32_t *parent; // [id], of bodies
 	uint32_t *island_of; // [root]
 	bool merges; // islands that were solved apart are merged; else those of a new step are built
+	bool alone; // there is but this rank: it lists the pairs of all islands
 	uint64_t step; // that they are for
 } builder;
 
@@ -182,6 +183,7 @@ static void list_members(builder *p)
 		total += data->island[i].members;
 		data->island[i].members = 0;
 	}
+	p->members = total;
 	for (uint32_t i = 0; i < p->bodies; i++) {
 		const uint32_t id = p->body[i];
 		ob_island *is = &data->island[p->island_of[p->parent[id]]];
@@ -261,20 +263,39 @@ static void list_pairs_of(builder *p, uint32_t id, uint32_t island, uint32_t *to
 	}
 }
 
+// The object was given to a simulator of this rank last.
+static bool is_here(const builder *p, uint32_t id)
+{
+	return p->alone || ob_worker_is_here(p->u, ob_home_of(p->u, id));
+}
+
+static void list_pairs_of_island(builder *p, uint32_t i, uint32_t *total)
+{
+	ob_step_data *data = p->data;
+	ob_island *is = &data->island[i];
+	is->first_pair = *total;
+	for (uint32_t k = 0; k < is->members; k++) {
+		ob_prefetch_pairs_of(p->u, is->first_member + k);
+		list_pairs_of(p, data->member[is->first_member + k], i, total);
+	}
+	is->pairs = *total - is->first_pair;
+	sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
+}
+
+// In the order of member[]: islands may have been dealt by now. Of several ranks each lists those of its own islands.
 static void list_pairs(builder *p)
 {
 	ob_step_data *data = p->data;
 	uint32_t total = 0;
 	data->count->checks = 0;
-	for (uint32_t i = 0; i < data->count->islands; i++) {
+	for (uint32_t at = 0; at < p->members;) {
+		const uint32_t i = data->result_island[data->member[at]];
 		ob_island *is = &data->island[i];
-		is->first_pair = total;
-		for (uint32_t k = 0; k < is->members; k++) {
-			ob_prefetch_pairs_of(p->u, is->first_member + k);
-			list_pairs_of(p, data->member[is->first_member + k], i, &total);
-		}
-		is->pairs = total - is->first_pair;
-		sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
+		at += is->members;
+		if (is_here(p, data->member[is->first_member]))
+			list_pairs_of_island(p, i, &total);
+		else
+			is->first_pair = is->pairs = 0;
 	}
 	data->count->island_pairs = total;
 }
@@ -297,11 +318,12 @@ static void end_islands(builder *p)
 	data->count->island_pairs = 0;
 }
 
-// What its members have cost in the last step, and at least what islands of such a size do.
+// What its members have cost in the last step, and at least what islands of such a size do. Of several ranks none knows
+// the pairs of all.
 static uint32_t estimated_work(const builder *p, const ob_island *is)
 {
 	uint32_t sum = 1 + is->members + 8 * is->pairs;
-	for (uint32_t k = 0; is->pairs && k < is->members; k++)
+	for (uint32_t k = 0; (is->pairs || !p->alone) && k < is->members; k++)
 		sum += p->data->effort[p->data->member[is->first_member + k]];
 	return sum;
 }
@@ -506,6 +528,7 @@ static builder begin(ob_universe *u, bool merges)
 			  .parent = data->scratch + 2 * (size_t)ids,
 			  .island_of = data->scratch + 3 * (size_t)ids,
 			  .merges = merges,
+			  .alone = ob_universe_ranks(u) < 2,
 			  .step = ob_step_count(u) };
 }
 
@@ -514,9 +537,14 @@ static void finish(builder *p)
 	involve_linked(p);
 	ob_sort_ids(p->body, p->bodies, p->ids, p->place); // whose contents are no longer needed
 	list_members(p);
-	p->data->count->visits += p->bodies;
-	list_pairs(p);
-	deal_islands(p);
+	p->data->count->visits += p->members;
+	if (p->alone) {
+		list_pairs(p);
+		deal_islands(p);
+	} else { // whose they are says who lists their pairs
+		deal_islands(p);
+		list_pairs(p);
+	}
 }
 
 void ob_islands_build(ob_universe *u)

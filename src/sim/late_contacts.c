@@ -387,10 +387,34 @@ static void keep_listed(ob_universe *u)
 	data->count->checks = n;
 }
 
-void ob_late_contacts_begin(ob_universe *u, bool solved)
+// Of several ranks: one has listed the pair, for it has solved one of its objects. An entry that this one has is of
+// before then, and it does not know whether the pair was in an island.
+static bool is_listed_elsewhere(const ob_universe *u, uint32_t pair)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_pair_key *k = &data->pair[pair];
+	return ob_universe_ranks(u) > 1 &&
+	       (data->result_island[k->a] != UINT32_MAX || data->result_island[k->b] != UINT32_MAX);
+}
+
+// Those that have an entry for now, which they lose.
+static void list_entries(ob_universe *u, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const ob_calendar look = ob_calendar_of_pairs(u);
+	uint32_t n = data->count->checks;
+	const uint32_t first = n, listed = ob_calendar_list(&look, steps, data->check + first, data->pairs_max - first);
+	for (uint32_t i = first; i < first + listed; i++) {
+		ob_calendar_set(&look, data->check[i], UINT32_MAX);
+		if (!is_listed_elsewhere(u, data->check[i]))
+			data->check[n++] = data->check[i];
+	}
+	data->count->checks = n;
+}
+
+void ob_late_contacts_begin(ob_universe *u, bool solved)
+{
+	ob_step_data *data = ob_universe_step_data(u);
 	const uint64_t steps = ob_step_count(u) + solved;
 	ob_late_contacts_reset(u);
 	data->count->checked = (uint32_t)steps;
@@ -400,10 +424,7 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 	} else {
 		data->count->checks = 0;
 	}
-	const uint32_t first = data->count->checks;
-	data->count->checks += ob_calendar_list(&look, steps, data->check + first, data->pairs_max - first);
-	for (uint32_t i = first; i < data->count->checks; i++)
-		ob_calendar_set(&look, data->check[i], UINT32_MAX);
+	list_entries(u, steps);
 }
 
 // ---- the check
@@ -413,18 +434,23 @@ static bool is_due(const ob_step_data *data, uint32_t id, uint64_t step)
 	return data->schedule[id].state >= OB_SCHEDULE_AWAKE && data->schedule[id].due <= step;
 }
 
-// Enters in the calendar when a pair that has been checked must be checked again. One of what is solved in the coming
-// step needs no entry: it is checked when that is done.
+// The step for which a pair that has been checked has an entry in the calendar; UINT32_MAX: it needs none. One of what
+// is solved in the coming step does not: it is checked when that is done.
+static uint32_t entry_of(const ob_step_data *data, const ob_pair_key *k, uint64_t steps)
+{
+	if (is_due(data, k->a, steps) || is_due(data, k->b, steps))
+		return UINT32_MAX;
+	const double next = next_check(data, k, steps);
+	return next < UINT32_MAX ? (uint32_t)next : UINT32_MAX;
+}
+
 static void enter_next_check(const ob_universe *u, uint32_t pair, uint64_t steps)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const ob_pair_key *k = &data->pair[pair];
-	if (is_due(data, k->a, steps) || is_due(data, k->b, steps))
-		return;
-	const double next = next_check(data, k, steps);
 	const ob_calendar look = ob_calendar_of_pairs(u);
+	const uint32_t next = entry_of(data, &data->pair[pair], steps);
 	if (next < UINT32_MAX)
-		ob_calendar_set(&look, pair, (uint64_t)next);
+		ob_calendar_set(&look, pair, next);
 }
 
 // Of contained simulators, which cannot do so themselves.
@@ -446,6 +472,19 @@ void ob_late_contacts_end(ob_universe *u)
 	data->count->visits += data->count->checks;
 }
 
+// What is late all ranks merge, and what has an entry for the coming step they build islands of.
+void ob_late_contacts_take(ob_universe *u, uint32_t pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	const ob_pair_key *k = &data->pair[pair];
+	const uint32_t steps = data->count->checked;
+	if (k->late && data->count->checks < data->pairs_max)
+		data->check[data->count->checks++] = pair;
+	else if (entry_of(data, k, steps) <= steps)
+		ob_calendar_set(&look, pair, steps);
+}
+
 // A pair, to be changed: a contained simulator changes a copy.
 static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *copy)
 {
@@ -456,11 +495,24 @@ static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *c
 	return copy;
 }
 
+// Of several ranks, for which step the pair has its entry; that much the others are told of all pairs together. Whether
+// they must know this pair, even if nothing has changed: it links objects in the coming step; or who has listed it has
+// voided its limit (island_builder.c), which no other rank has.
+static bool must_be_told(const pair_check *c, const ob_pair_key *k)
+{
+	ob_outbox_end *end = ob_outbox_end_of(c->u);
+	const uint32_t next = entry_of(c->data, k, c->steps);
+	if (next < UINT32_MAX && (!end->next_check || next < end->next_check - 1))
+		end->next_check = 1 + next;
+	return next <= c->steps || (c->data->count->merged && isinf(k->limit));
+}
+
 static void end_change(const pair_check *c, uint32_t i, const ob_pair_key *k)
 {
 	if (!c->contained)
 		enter_next_check(c->u, c->data->check[i], c->steps);
-	else if (memcmp(k, &c->data->pair[c->data->check[i]], sizeof *k) != 0)
+	else if ((ob_universe_ranks(c->u) > 1 && must_be_told(c, k)) ||
+		 memcmp(k, &c->data->pair[c->data->check[i]], sizeof *k) != 0)
 		ob_commit_check(c->s->u, i, k);
 }
 

@@ -22,5 +22,7 @@ void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved
 // By the scheduling worker, when all of them are checked. Contained simulators cannot write the calendar: the arranger
 // makes its entries here.
 void ob_late_contacts_end(ob_universe *u);
+// By the arranger of one of several ranks, before that: another has checked the pair, and its key says what was found.
+void ob_late_contacts_take(ob_universe *u, uint32_t pair);
 
 #endif

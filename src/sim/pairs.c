@@ -7,6 +7,7 @@
 #include "sim/calendar.h"
 #include "sim/publish.h"
 #include "sim/sort_ids.h"
+#include "table/home.h"
 
 // ---- lists
 
@@ -69,6 +70,36 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 	put_aside(data, pair);
 }
 
+// Whether this rank checks the pair, where no other has solved one of its objects: a lives here, or b if a does not
+// move.
+static bool is_here(const ob_universe *u, const ob_pair_key *k)
+{
+	const uint32_t a = ob_universe_step_data(u)->schedule[k->a].state >= OB_SCHEDULE_AWAKE ? k->a : k->b;
+	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a));
+}
+
+// The pair is to be checked in this step. Of several ranks one enters it, and all know that; but what links objects all
+// enter: islands may be built before it is checked.
+static void enter_check(ob_universe *u, uint32_t pair, uint64_t step)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_pair_key *k = &data->pair[pair];
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	if (step < data->count->next_check)
+		data->count->next_check = (uint32_t)step;
+	if (is_here(u, k) || k->active || k->expected)
+		ob_calendar_set(&look, pair, step);
+}
+
+// One that is new since the islands were built that are solved. Of several ranks an entry does not do: in the check of
+// such a step each passes over those of what others have solved (late_contacts.c).
+static void list_check(ob_universe *u, uint32_t pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	if (ob_universe_ranks(u) > 1 && is_here(u, &data->pair[pair]) && data->count->checks < data->pairs_max)
+		data->check[data->count->checks++] = pair;
+}
+
 // One that is not in use. false: there is none, and the step has failed.
 static bool take_pair(ob_universe *u, uint32_t *pair)
 {
@@ -113,7 +144,7 @@ void ob_pairs_link(ob_universe *u)
 			continue;
 		}
 		link_pair(u, i);
-		ob_calendar_set(&look, i, step);
+		enter_check(u, i, step);
 		if (k->in_island || k->record != OB_NO_RECORD)
 			data->island_pair[data->count->island_pairs++] = i;
 	}
@@ -122,11 +153,10 @@ void ob_pairs_link(ob_universe *u)
 void ob_pairs_look(ob_universe *u, uint32_t id)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar look = ob_calendar_of_pairs(u);
 	ob_pair_place at;
 	for (uint32_t link = data->first_pair[id], n = 0; ob_pair_at(data, link, &at) && n < data->objects_max;
 	     link = ob_pair_next(data, at), n++)
-		ob_calendar_set(&look, at.pair, 0);
+		enter_check(u, at.pair, 0);
 }
 
 void ob_pair_release_record(ob_universe *u, ob_pair_key *k)
@@ -209,8 +239,9 @@ static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps
 		return;
 	data->pair[pair] = id < other ? new_pair(u, id, other, steps) : new_pair(u, other, id, steps);
 	link_pair(u, pair);
-	const ob_calendar look = ob_calendar_of_pairs(u);
-	ob_calendar_set(&look, pair, steps); // to be checked at once
+	enter_check(u, pair, steps); // at once
+	if (steps > ob_step_count(u))
+		list_check(u, pair);
 }
 
 // ---- what queries have found

@@ -19,31 +19,6 @@ static inline bool ob_has_pairs(const ob_step_data *data, uint32_t id)
 	return data->schedule[id].state >= OB_SCHEDULE_KINEMATIC;
 }
 
-// The pair's place in the list of its a (side 0) or b.
-typedef struct ob_pair_place {
-	uint32_t pair, side;
-} ob_pair_place;
-
-// For all pairs in the list of id: for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link =
-// ob_pair_next(data, at)). false: the list is over; or the link leads out of pair[], which is damage.
-static inline bool ob_pair_at(const ob_step_data *data, uint32_t link, ob_pair_place *at)
-{
-	if (!link)
-		return false;
-	*at = (ob_pair_place){ (link - 1) / 2, (link - 1) % 2 };
-	if (at->pair < data->pairs_max) {
-		data->count->visits++;
-		return true;
-	}
-	data->count->failure = OB_STEP_DAMAGED;
-	return false;
-}
-
-static inline uint32_t ob_pair_next(const ob_step_data *data, ob_pair_place at)
-{
-	return data->pair_links[at.pair].next[at.side];
-}
-
 // The pair's state before the step; NULL if it did not touch. Any worker, while islands are solved.
 const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_key *k);
 // Did its contact carry a load then?

@@ -7,6 +7,7 @@
 
 #include "elementary/elementary.h"
 #include "sim/broadphase.h"
+#include "sim/calendar.h"
 #include "sim/digest.h"
 #include "sim/late_contacts.h"
 #include "table/home.h"
@@ -38,8 +39,7 @@ static void prefetch_members(const ob_universe *u, const ob_island *is)
 static uint64_t digest_island(const ob_universe *u, const ob_island *is, uint64_t sum)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint64_t place = (uint64_t)is->first_pair << 32 | is->pairs;
-	sum = ob_digest_word(ob_digest_word(sum, (uint64_t)is->members << 32 | is->solved), place);
+	sum = ob_digest_word(sum, (uint64_t)is->members << 32 | is->solved);
 	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++) {
 		const uint32_t id = data->member[is->first_member + k];
 		sum = ob_digest_word(sum, id);
@@ -49,19 +49,17 @@ static uint64_t digest_island(const ob_universe *u, const ob_island *is, uint64_
 	return sum;
 }
 
-// Pairs lie in the same places on all ranks.
 static uint64_t digest_solve(const ob_universe *u, uint64_t sum)
 {
 	enum { AHEAD = 4 };
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t islands = islands_of(data), pairs = data->count->island_pairs;
+	const uint32_t islands = islands_of(data);
 	for (uint32_t i = 0; i < islands; i++) {
 		if (i + AHEAD < islands)
 			prefetch_members(u, &data->island[i + AHEAD]);
 		sum = digest_island(u, &data->island[i], sum);
 	}
-	const uint32_t words = (pairs < data->pairs_max ? pairs : data->pairs_max) / 2;
-	return ob_digest_word(sum, ob_digest_words(data->island_pair, words * sizeof(uint64_t)));
+	return sum;
 }
 
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
@@ -69,7 +67,7 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
 	const ob_step_data *data = ob_universe_step_data(u);
 	uint32_t queries;
 	const uint32_t *list = ob_requery_list(u, &queries);
-	uint64_t sum = ob_digest_word(ob_digest_word(queries, data->count->pairs), ob_checks_count(data));
+	uint64_t sum = ob_digest_word(queries, data->count->pairs);
 	for (uint32_t i = 0; i < queries; i++)
 		sum = ob_digest_word(sum, list[i]);
 	return phase == OB_PHASE_ISLANDS ? digest_solve(u, sum) : sum;
@@ -158,6 +156,7 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 	for (uint32_t r = 1; r < p->ranks; r++) {
 		ob_peers_head other = head_of(all, at, r);
 		other.move = first.move; // rank 0 alone is asked
+		other.next_check = first.next_check; // each of its own
 		if (memcmp(&first, &other, sizeof first) != 0) {
 			blame_rank(p, u, r);
 			return false;
@@ -168,6 +167,16 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 
 // ---- an exchange
 
+static void note_next_check(const ob_peers *p, ob_universe *u, const char *all, const size_t *at)
+{
+	uint64_t next = UINT32_MAX;
+	for (uint32_t r = 0; r < p->ranks; r++) {
+		const uint64_t of = head_of(all, at, r).next_check;
+		next = of < next ? of : next;
+	}
+	ob_universe_step_data(u)->count->next_check = (uint32_t)next;
+}
+
 bool ob_peers_begin(ob_mail *mail)
 {
 	const ob_peers_head empty = { 0 };
@@ -177,8 +186,10 @@ bool ob_peers_begin(ob_mail *mail)
 
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
 {
+	const ob_calendar look = ob_calendar_of_pairs(u);
 	head.step = ob_step_count(u);
-	head.move = p->rank == 0 ? ob_move_take(u) : 0;
+	head.move = p->rank == 0 && !p->move ? ob_move_take(u) : 0;
+	head.next_check = ob_calendar_first(&look);
 	memcpy(mail->bytes, &head, sizeof head);
 	const char *all = p->gather(p->wire, mail->bytes, mail->used, at);
 	if (!all) {
@@ -187,7 +198,9 @@ const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, o
 	}
 	if (!stand_together(p, u, all, *at))
 		return NULL;
-	ob_move_make(u, head_of(all, *at, 0).move);
+	if (head_of(all, *at, 0).move)
+		p->move = head_of(all, *at, 0).move;
+	note_next_check(p, u, all, *at);
 	return all;
 }
 

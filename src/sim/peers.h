@@ -4,7 +4,14 @@
 //
 //   arranger, at the end of a phase:  outboxes of its own simulators -> mail -> all ranks' mail -> commit
 //
-// But what pairs keep between steps, most of what simulators find, goes only where it is needed (holdings.h).
+// Pairs, which are many, each rank arranges alone, those of the islands that it solves:
+//
+//   what all ranks have alike               what is with one
+//   which pairs there are, and which touch  what touching pairs keep between steps (holdings.h)
+//   islands, their members, who solves them their pairs in the order of their solver (island_builder.c)
+//   when each object is due                 which pairs are to be checked, and when again (late_contacts.c)
+//
+// What the check of a pair has found goes to all, where it changes something or is to be acted upon.
 //
 // With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with. Where two
 // differ, all find out about which object, and the run ends. An arranger whose run is over, for whatever reason, says
@@ -22,6 +29,7 @@ typedef struct ob_peers_head {
 	uint64_t digest;
 	uint64_t damaged; // 1 + an object, what is kept of which is not what it was; 0: none is known
 	uint64_t move; // of rank 0: where a simulator is to move, as table/home.h; set by ob_peers_exchange
+	uint64_t next_check; // the first step for which the rank has a pair to check; set by ob_peers_exchange
 } ob_peers_head;
 #define OB_PEERS_MOVE (UINT64_MAX - 1)
 #define OB_PEERS_GATHER (UINT64_MAX - 2)
@@ -32,7 +40,8 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
 bool ob_peers_begin(ob_mail *mail);
 // Sends the mail, which begins with a head, this one. Gives those of all ranks, heads and all, in their order: that of
 // rank r from at[r] to at[r + 1]; they hold until the next call. NULL: the others are elsewhere, or one has left, and
-// the step has failed. The move that rank 0 was asked for is made.
+// the step has failed. Then all know the move that rank 0 was asked for (ob_peers.move), and for which step somebody
+// has a pair to check.
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
 bool ob_peers_join(ob_peers *p, const ob_universe *u, ob_error *e);
 void ob_peers_leave(ob_peers *p);

@@ -28,6 +28,7 @@ typedef struct ob_peers {
 	const char *(*gather)(void *wire, const void *mine, size_t n, const size_t **at);
 	void *wire;
 	bool parted; // one has left, and all know it
+	uint64_t move; // that rank 0 was asked for, as table/home.h, to be made before the next step's islands are built
 } ob_peers;
 // Of the arranger, before its first step: false and e, on all ranks, where one of them has other workers, objects or
 // settings, or computes other bits.

@@ -167,6 +167,24 @@ static bool open_islands(const scheduler *c, ob_phase phase)
 	return true;
 }
 
+// Of several ranks each checks what it has listed, and all hear of what it has found: so a phase of theirs none leaves
+// out.
+static bool open_own_pairs(const scheduler *c, ob_phase phase, uint32_t pairs)
+{
+	const uint32_t all = ob_universe_simulators(c->u), each = all / ob_universe_ranks(c->u),
+		       first = ob_universe_rank(c->u) * each,
+		       tasks = (pairs + OB_LATE_CONTACTS_BATCH - 1) / OB_LATE_CONTACTS_BATCH,
+		       workers = tasks < each ? tasks : each;
+	uint32_t *who = c->data->scratch;
+	ob_task_reset_from(c->u, tasks, first, workers);
+	for (uint32_t i = 0; i < workers; i++)
+		who[i] = first + i;
+	if (!workers) // somebody must be waited for, who is not here
+		who[0] = (first + each) % all;
+	ob_gate_open(c->u, phase, who, workers ? workers : 1);
+	return true;
+}
+
 // Few pairs are checked by the scheduling worker at once.
 static bool open_pairs(const scheduler *c, ob_phase phase)
 {
@@ -174,6 +192,8 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	const uint32_t all = ob_universe_simulators(c->u);
 	ob_late_contacts_begin(c->u, solved);
 	const uint32_t pairs = ob_checks_count(c->data);
+	if (ob_universe_ranks(c->u) > 1)
+		return open_own_pairs(c, phase, pairs);
 	const bool alone = all == 1 && !c->settings->timed; // where time is taken, what could be shared is told apart
 	const bool serial = pairs < PARALLEL_PAIRS || alone || c->settings->one_per_object;
 	if (!pairs)
@@ -346,22 +366,46 @@ static bool must_pause(const scheduler *c)
 	return ob_step_count(c->u) >= ob_gate_pause_step(c->u);
 }
 
-// An object must be solved in this step, or a pair be checked before it.
+// An object must be solved in this step, or a pair be checked before it, by whichever rank.
 static bool is_anybody_due(const scheduler *c)
 {
 	const uint64_t step = ob_step_count(c->u);
 	const ob_calendar solve = ob_calendar_of_objects(c->u), look = ob_calendar_of_pairs(c->u);
+	if (ob_universe_ranks(c->u) > 1)
+		return ob_calendar_is_due(&solve, step) || c->data->count->next_check <= step;
 	return ob_calendar_is_due(&solve, step) || ob_calendar_is_due(&look, step);
+}
+
+// Of several ranks the first is asked, and has told the others.
+static void make_move(const scheduler *c)
+{
+	if (ob_universe_ranks(c->u) == 1) {
+		ob_move_make(c->u, ob_move_take(c->u));
+	} else {
+		ob_move_make(c->u, c->sim->peers.move);
+		c->sim->peers.move = 0;
+	}
+}
+
+// Contacts of other ranks' islands of the step before: as island_builder.c has it of this one's.
+static void end_parted(const scheduler *c)
+{
+	uint32_t pair;
+	while (ob_commit_take_parted(c->sim->committer, &pair))
+		if (!c->data->pair[pair].active)
+			ob_pair_release_record(c->u, &c->data->pair[pair]);
 }
 
 static ob_phase build_islands(const scheduler *c)
 {
 	struct ob_step_counts *count = c->data->count;
 	count->islands = 0;
-	if (ob_universe_ranks(c->u) == 1) // else the next message says so to all
-		ob_move_make(c->u, ob_move_take(c->u));
-	if (is_anybody_due(c))
-		ob_islands_build(c->u);
+	make_move(c);
+	if (!is_anybody_due(c))
+		return OB_PHASE_COMPLETE;
+	if (ob_universe_ranks(c->u) > 1)
+		end_parted(c);
+	ob_islands_build(c->u);
 	return count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
 }
 
@@ -533,6 +577,8 @@ static bool commit(ob_sim *s, ob_phase phase)
 		return false;
 	if (alone || ob_commit_exchange(s->committer, s->u, &s->peers, phase, digest))
 		ob_commit_mail(s->committer, s->u, phase);
+	for (uint32_t pair; ob_commit_take_checked(s->committer, &pair);)
+		ob_late_contacts_take(s->u, pair);
 	return true;
 }
 

@@ -39,6 +39,12 @@ void ob_pin_drop(ob_universe *u, uint32_t object)
 	u->step_data.pin[object] = 0;
 }
 
+uint32_t ob_home_of(const ob_universe *u, uint32_t object)
+{
+	const uint32_t all = ob_universe_simulators(u), home = u->step_data.home[object] - 1;
+	return home < all ? home : (uint32_t)((uint64_t)object * all / ob_universe_ids(u));
+}
+
 // Read by readers at any time.
 void ob_home_set(ob_universe *u, uint32_t object, uint32_t worker)
 {

@@ -25,6 +25,8 @@ bool ob_moves_were_made(const ob_universe *u);
 // Another object takes this one's number. While the universe stands still.
 void ob_pin_drop(ob_universe *u, uint32_t object);
 
+// The home; at first, as what is created together lies together, by the object's number.
+uint32_t ob_home_of(const ob_universe *u, uint32_t object);
 // By who is given it, or gives it.
 void ob_home_set(ob_universe *u, uint32_t object, uint32_t worker);
 

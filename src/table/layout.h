@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 25, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 26, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -110,7 +110,7 @@ typedef struct ob_control {
 	uint32_t lives; // times that all simulators were restarted
 	uint32_t hulls; // one past the highest number that was ever written
 	_Alignas(64) uint64_t claim_next;
-	uint32_t claim_total, claim_workers;
+	uint32_t claim_total, claim_first, claim_workers;
 	_Alignas(64) uint64_t requery_count;
 	_Alignas(64) uint64_t neighbours_used;
 	_Alignas(64) uint32_t deaths; // so far: times that simulators died

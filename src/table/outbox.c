@@ -265,13 +265,19 @@ uint32_t ob_task_workers(const ob_universe *u)
 	return u->control->claim_workers;
 }
 
+uint32_t ob_task_first(const ob_universe *u)
+{
+	return u->control->claim_first;
+}
+
 bool ob_outbox_claim(ob_universe *u, uint32_t *index)
 {
 	ob_outbox *o = u->outbox;
-	const uint64_t total = u->control->claim_total, workers = u->control->claim_workers, round = o->next_task++;
+	const uint64_t total = u->control->claim_total, workers = u->control->claim_workers, round = o->next_task++,
+		       place = o->worker - u->control->claim_first;
 	if (!workers)
 		return false;
-	const uint64_t i = round * workers + (round % 2 ? workers - 1 - o->worker : o->worker);
+	const uint64_t i = round * workers + (round % 2 ? workers - 1 - place : place);
 	*index = (uint32_t)i;
 	return i < total;
 }

@@ -35,7 +35,8 @@ typedef struct ob_outbox_end {
 	uint64_t failure; // as of ob_step_fail
 	uint64_t work; // as of ob_step_work_add
 	uint64_t worked_ns; // as of ob_phase_worked
-	uint32_t late, reserved; // late: as of ob_late_contacts_note
+	uint32_t late; // as of ob_late_contacts_note
+	uint32_t next_check; // of several ranks: 1 + the first step for which a pair that it has checked has an entry; 0: none
 	uint32_t objects; // as of ob_worker_set_objects
 	uint32_t worked_on; // object that the last of the work went into
 	ob_counters counters;
@@ -67,8 +68,9 @@ bool ob_outbox_claim(ob_universe *u, uint32_t *index);
 
 // Whose task it is, of "workers" that share tasks in turns: 0 1 2 2 1 0 0 1 2 .. Largest first, they come out even.
 uint32_t ob_task_owner(uint32_t index, uint32_t workers);
-// How many share the tasks of the running phase.
+// How many share the tasks of the running phase, and the first of them.
 uint32_t ob_task_workers(const ob_universe *u);
+uint32_t ob_task_first(const ob_universe *u);
 
 typedef struct ob_mail {
 	char *bytes; // of all records that were handed over, by simulator

@@ -129,6 +129,12 @@ void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns)
 
 void ob_task_reset(ob_universe *u, uint32_t total, uint32_t workers)
 {
+	ob_task_reset_from(u, total, 0, workers);
+}
+
+void ob_task_reset_from(ob_universe *u, uint32_t total, uint32_t first, uint32_t workers)
+{
+	u->control->claim_first = first;
 	u->control->claim_workers = workers;
 	__atomic_store_n(&u->control->claim_total, total, __ATOMIC_RELAXED);
 	__atomic_store_n(&u->control->claim_next, 0, __ATOMIC_RELEASE);

@@ -173,6 +173,7 @@ typedef struct ob_step_data {
 		uint32_t checked;    // steps that were complete, or solved, when all pairs were checked last
 		uint32_t late;       // 1 = that check found a late contact; any worker may write it
 		uint32_t checks;     // pairs in check[]
+		uint32_t next_check; // of several ranks: no pair has an entry for a step before this one, on whichever
 		uint32_t island_pairs; // in island_pair[]
 		uint64_t visits;     // objects and pairs that arranging steps has looked at so far
 		uint32_t levels[64]; // objects per size class
@@ -255,6 +256,31 @@ static inline uint32_t ob_pairs_end(const ob_step_data *data)
 static inline uint32_t ob_checks_count(const ob_step_data *data)
 {
 	return data->count->checks < data->pairs_max ? data->count->checks : data->pairs_max;
+}
+
+// The pair's place in the list of its a (side 0) or b.
+typedef struct ob_pair_place {
+	uint32_t pair, side;
+} ob_pair_place;
+
+// For all pairs in the list of id: for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link =
+// ob_pair_next(data, at)). false: the list is over; or the link leads out of pair[], which is damage.
+static inline bool ob_pair_at(const ob_step_data *data, uint32_t link, ob_pair_place *at)
+{
+	if (!link)
+		return false;
+	*at = (ob_pair_place){ (link - 1) / 2, (link - 1) % 2 };
+	if (at->pair < data->pairs_max) {
+		data->count->visits++;
+		return true;
+	}
+	data->count->failure = OB_STEP_DAMAGED;
+	return false;
+}
+
+static inline uint32_t ob_pair_next(const ob_step_data *data, ob_pair_place at)
+{
+	return data->pair_links[at.pair].next[at.side];
 }
 
 // The torque (N m, world frame) that the object's script has set; 0 without a script.

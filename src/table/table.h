@@ -189,6 +189,8 @@ void ob_universe_count(const ob_universe *u, ob_counters *sum);
 // ---- tasks: indices 0 .. total-1, each given once per phase, to the worker that asks first
 // Contained simulators, workers 0 .. workers-1, share them in turns instead: ob_task_owner of outbox.h.
 void ob_task_reset(ob_universe *u, uint32_t total, uint32_t workers);
+// The same of contained simulators "first" .. first + workers - 1.
+void ob_task_reset_from(ob_universe *u, uint32_t total, uint32_t first, uint32_t workers);
 bool ob_task_claim(ob_universe *u, uint32_t *index);
 // Appends to the list of objects whose neighbours the broad phase must query again (any worker, any order).
 void ob_requery_append(ob_universe *u, uint32_t id);

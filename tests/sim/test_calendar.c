@@ -35,6 +35,10 @@ static void test_entries(void)
 			ob_calendar_set(&c, i, due[i]);
 		}
 		uint32_t n = 0, wrong = 0;
+		uint32_t first = UINT32_MAX;
+		for (uint32_t i = 0; i < OBJECTS; i++)
+			first = due[i] < first ? due[i] : first;
+		CHECK(ob_calendar_first(&c) == first);
 		const bool any = ob_calendar_is_due(&c, step);
 		const uint32_t listed = ob_calendar_list(&c, step, found, OBJECTS);
 		for (uint32_t i = 0; i < OBJECTS; i++)

@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ode/ode_body.h"
 #include "sim/holdings.h"
 #include "sim/little_universe.h"
+#include "table/layout.h"
 
 // Says as rank 1 what it begins with as rank 0, and then what rank 0 has said before.
 typedef struct other {
@@ -43,24 +45,38 @@ typedef struct fixture {
 	ob_pair_state *state;
 } fixture;
 
-// A crate on the ground, about to be solved again.
+enum { CRATE = 1 };
+
+// The simulator that is to solve the crate: of the rank of that number.
+static void give_crate_to(fixture *f, uint32_t simulator)
+{
+	ob_task_reset_from(f->l.u, 1, simulator, 1);
+}
+
+// A crate on the ground, about to be solved again by the first of two simulators, each of which is a rank's.
 static void open_crate(fixture *f)
 {
+	ob_error e;
 	f->s = little_scene_new();
 	ob_world_ground(&f->s->world);
 	ob_world_box(&f->s->world, 1, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
-	little_open(&f->l, f->s);
+	f->l = (little_universe){ .scene = f->s, .u = little_populate(f->s, 2) };
+	ob_ode_thread_init();
+	f->l.sim = ob_sim_create(f->l.u, 0, &e);
+	CHECK(f->l.sim);
 	little_run(&f->l, 5);
+	f->l.u->ranks = 2;
 	const ob_step_data *data = ob_universe_step_data(f->l.u);
 	const ob_pair_key *key = &data->pair[data->island_pair[data->island[0].first_pair]];
 	CHECK(data->count->chunks == 1 && key->active);
 	f->record = key->record;
 	f->version = ob_pair_newest(&data->record[f->record], ob_step_count(f->l.u));
 	f->state = &data->record[f->record].version[f->version];
+	data->result_island[CRATE] = 0;
 	f->h = ob_holdings_create(f->l.u);
 	f->wire = (other){ .calls = 0 };
-	f->p = (ob_peers){ 0, 2, gather, &f->wire, false };
-	ob_task_reset(f->l.u, 1, 1);
+	f->p = (ob_peers){ .ranks = 2, .gather = gather, .wire = &f->wire };
+	give_crate_to(f, 0);
 }
 
 static ob_pair_state *kept_state(const fixture *f)
@@ -91,7 +107,7 @@ static void check_damage(void)
 	close_crate(&f);
 }
 
-// To all, once; then from another rank back to this one, once.
+// To all, once; then to another rank, and from there back to this one, once each.
 static void check_ways(void)
 {
 	fixture f;
@@ -99,14 +115,22 @@ static void check_ways(void)
 	const ob_pair_state before = *f.state;
 	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // all have it
 	ob_holdings_note(f.h, f.l.u, f.record, f.version, 0);
+	CHECK(ob_holdings_here_alone(f.h, f.l.u, f.record));
 	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // its solver has it
 	CHECK(ob_holdings_gather(f.h, f.l.u, &f.p) && f.wire.calls == 1 && f.wire.kept > sizeof before);
-	ob_holdings_note(f.h, f.l.u, f.record, -1, 1);
-	CHECK(!kept_state(&f));
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2 && f.wire.kept == 0);
+	CHECK(!ob_holdings_here_alone(f.h, f.l.u, f.record));
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, 0);
+	give_crate_to(&f, 1);
+	f.wire.kept = 0; // the other has nothing to give
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2 && f.wire.kept > sizeof before);
+	CHECK(!kept_state(&f) && !ob_holdings_here_alone(f.h, f.l.u, f.record));
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2);
+	give_crate_to(&f, 0);
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 3 && f.wire.kept == 0);
 	f.state = kept_state(&f);
 	CHECK(f.state && memcmp(f.state, &before, sizeof before) == 0);
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2);
+	CHECK(ob_holdings_here_alone(f.h, f.l.u, f.record));
+	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 3);
 	f.state->gap[0] = nextafter(f.state->gap[0], 1);
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == 0);
 	close_crate(&f);

@@ -4,8 +4,10 @@
 
 #include "check.h"
 #include "little_universe.h"
+#include "sim/calendar.h"
 #include "sim/island_builder.h"
 #include "sim/pairs.h"
+#include "table/layout.h"
 
 #include "motion/random.h"
 
@@ -15,7 +17,9 @@ enum { BODIES = 300 };
 static void random_graph(ob_universe *u, uint64_t seed, double density)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
 	uint32_t n = 0;
+	ob_calendar_clear(&look); // the graph before may have had more pairs
 	for (uint32_t i = 0; i < BODIES; i++) {
 		double kind = uniform(&seed), path = within(&seed, 0, 10);
 		double reach = uniform(&seed) < .1 ? within(&seed, .1, 1) : within(&seed, 0, .05);
@@ -206,12 +210,55 @@ static void check_reunion(ob_universe *u, uint64_t seed)
 	check_order(ex, ex->count->islands - unsolved);
 }
 
+// The body that leads its island; UINT32_MAX: it is in none.
+static uint32_t leader_of(const ob_step_data *ex, uint32_t id)
+{
+	const uint32_t is = ex->result_island[id];
+	return is == UINT32_MAX ? is : ex->member[ex->island[is].first_member];
+}
+
+// Three ranks, one after the other, make the islands of one: each pair is listed by one of them, for its island and to
+// be checked, as it is there. Returns how many have pairs to check.
+static uint32_t check_ranks(ob_universe *u, uint64_t seed, double density)
+{
+	enum { RANKS = 3 };
+	const ob_step_data *ex = ob_universe_step_data(u);
+	static uint32_t leader[BODIES];
+	int *checks = calloc(ex->pairs_max, sizeof *checks), *inside = calloc(ex->pairs_max, sizeof *inside);
+	uint32_t wrong = 0, busy = 0;
+	CHECK(checks && inside);
+	for (uint32_t run = 0; run <= RANKS; run++) { // one alone, then each of three
+		u->ranks = run ? RANKS : 1;
+		u->rank = run ? run - 1 : 0;
+		memset(ex->home, 0, BODIES * sizeof *ex->home);
+		random_graph(u, seed, density);
+		ob_islands_build(u);
+		busy += run && ex->count->checks > 0;
+		for (uint32_t i = 0; i < ex->count->checks; i++)
+			checks[ex->check[i]] += run ? -1 : 1;
+		for (uint32_t i = 0; i < ex->count->island_pairs; i++)
+			inside[ex->island_pair[i]] += run ? -1 : 1;
+		for (uint32_t i = 0; i < BODIES; i++) {
+			leader[i] = run ? leader[i] : leader_of(ex, i);
+			wrong += leader[i] != leader_of(ex, i);
+		}
+	}
+	for (uint32_t i = 0; i < ex->pairs_max; i++)
+		wrong += checks[i] != 0 || inside[i] != 0;
+	CHECK(wrong == 0);
+	u->ranks = 1;
+	u->rank = 0;
+	free(checks);
+	free(inside);
+	return busy;
+}
+
 int main(void)
 {
 	little_scene *s = little_scene_new();
 	for (int i = 0; i < BODIES; i++)
 		ob_world_sphere(&s->world, 1, .1, ob_v3(i, 0, 0));
-	uint32_t largest = 0, smallest = UINT32_MAX;
+	uint32_t largest = 0, smallest = UINT32_MAX, busiest = 0;
 	for (uint32_t workers = 1; workers <= 3; workers += 2) {
 		ob_universe *u = little_populate(s, workers);
 		const ob_step_data *ex = ob_universe_step_data(u);
@@ -223,10 +270,13 @@ int main(void)
 			largest = ex->island[0].members > largest ? ex->island[0].members : largest;
 			smallest = ex->island[0].members < smallest ? ex->island[0].members : smallest;
 			check_reunion(u, seed);
+			const uint32_t busy = workers == 3 ? check_ranks(u, seed, .5 + .1 * (double)seed) : 0;
+			busiest = busy > busiest ? busy : busiest;
 		}
 		ob_universe_destroy(u, true);
 	}
 	CHECK(largest > 100 && smallest < 30); // from many small ones to nearly all in one
+	CHECK(busiest == 3);
 	free(s);
 	return check_end();
 }

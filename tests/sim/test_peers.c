@@ -74,7 +74,7 @@ static void check_mail(void)
 	little_scene *s;
 	little_universe l;
 	echo wire = { .calls = 0 };
-	ob_peers p = { 0, 2, gather, &wire, false };
+	ob_peers p = { .ranks = 2, .gather = gather, .wire = &wire };
 	ob_mail mail = { 0 };
 	open_two(&s, &l);
 	CHECK(exchange(&p, l.u, &mail));
@@ -90,7 +90,7 @@ static void check_difference(size_t first, size_t place, const char *named)
 	little_scene *s;
 	little_universe l;
 	echo wire = { .wrong = { first, place } };
-	ob_peers p = { 0, 2, gather, &wire, false };
+	ob_peers p = { .ranks = 2, .gather = gather, .wire = &wire };
 	ob_mail mail = { 0 };
 	open_two(&s, &l);
 	CHECK(!exchange(&p, l.u, &mail) && ob_step_failed(l.u, NULL) == OB_STEP_DAMAGED);
@@ -123,7 +123,7 @@ static void check_leaving(void)
 	little_scene *s;
 	little_universe l;
 	echo wire = { .calls = 0 };
-	ob_peers p = { 0, 2, gather, &wire, false };
+	ob_peers p = { .ranks = 2, .gather = gather, .wire = &wire };
 	ob_mail mail = { 0 };
 	open_two(&s, &l);
 	ob_peers_leave(&p);
@@ -144,13 +144,13 @@ static void check_joining(void)
 	little_universe l;
 	ob_error e;
 	echo same = { .calls = 0 };
-	ob_peers p = { 0, 2, gather, &same, false };
+	ob_peers p = { .ranks = 2, .gather = gather, .wire = &same };
 	open_two(&s, &l);
 	CHECK(ob_peers_join(&p, l.u, &e) && !p.parted);
 	static const char *const wrong[] = { "version", "workers", "settings", "scene", "bits" };
 	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
 		echo other = { .wrong = { 1 + i * sizeof(uint64_t) } };
-		p = (ob_peers){ 0, 2, gather, &other, false };
+		p = (ob_peers){ .ranks = 2, .gather = gather, .wire = &other };
 		CHECK(!ob_peers_join(&p, l.u, &e) && strstr(e.text, "rank 1") && strstr(e.text, wrong[i]) && p.parted);
 	}
 	close_two(s, &l);
