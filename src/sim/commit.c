@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sim/budget.h"
+#include "sim/digest.h"
 #include "sim/holdings.h"
 #include "table/home.h"
 
@@ -353,6 +354,7 @@ struct ob_committer {
 	// Of several ranks, else NULL, or 0
 	ob_holdings *holdings;
 	uint32_t rank, ranks;
+	uint64_t digest; // of what all that was solved so far was solved from (ob_peers_digest_object)
 	ob_mail out; // what the others get
 	// Pairs, by their index, that simulators of other ranks have had: that touched and do no longer; that were
 	// checked
@@ -494,6 +496,8 @@ static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_
 	if (!is_sound(&r->motion, u) || r->state < OB_SCHEDULE_AWAKE || r->state > OB_SCHEDULE_EQUILIBRIUM)
 		return "has found a motion that makes no sense";
 	c->due--;
+	if (c->ranks > 1)
+		c->digest = ob_peers_digest_object(u, r->id, c->digest);
 	write_result(u, r);
 	return NULL;
 }
@@ -838,7 +842,7 @@ bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase p
 	if (!fits)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 	const ob_peers_head head = { .phase = phase,
-				     .digest = digest,
+				     .digest = ob_digest_word(c->digest, digest),
 				     .damaged = damaged == OB_NO_OBJECT ? 0 : 1 + damaged };
 	c->all = fits ? ob_peers_exchange(p, u, head, &c->out, &c->at) : NULL;
 	return c->all;
@@ -873,36 +877,50 @@ bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)
 	return ob_holdings_gather(c->holdings, u, p);
 }
 
-// Where the next record is to be written: motions and pairs lie anywhere.
-static void prefetch_next(const ob_universe *u, const ob_mail *m)
+// Where a record is to be written soon: motions and pairs lie anywhere.
+static void prefetch_record(const ob_universe *u, const ob_mail_record *r)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	uint32_t kind;
-	const uint32_t *number = ob_mail_peek(m, &kind);
-	if (!number)
+	uint32_t number;
+	if (r->bytes < sizeof number)
 		return;
-	if (kind == RESULT && *number < data->objects_max) {
-		ob_prefetch_slot(u, *number);
-		__builtin_prefetch(&data->schedule[*number], 1);
-	} else if (kind == CONTACT && *number < data->pairs_max) {
-		__builtin_prefetch(&data->pair[*number], 1);
+	memcpy(&number, r->data, sizeof number);
+	if (r->kind == RESULT && number < data->objects_max) {
+		ob_prefetch_slot(u, number);
+		__builtin_prefetch(&data->schedule[number], 1);
+		__builtin_prefetch(&data->result_island[number]);
+	} else if (r->kind == CONTACT && number < data->pairs_max) {
+		__builtin_prefetch(&data->pair[number], 1);
 	}
+}
+
+// Of one rank. ahead: some records farther on than what is committed; worker: whose the last was.
+static bool commit_records(ob_committer *c, ob_universe *u, ob_phase phase, ob_mail m, uint32_t *worker)
+{
+	enum { AHEAD = 4 };
+	ob_mail ahead = m;
+	ob_mail_record r, soon;
+	for (uint32_t lead = 0; ob_mail_next(u, &m, &r); lead -= lead > 0) {
+		for (; lead < AHEAD && ob_mail_next(u, &ahead, &soon); lead++)
+			prefetch_record(u, &soon);
+		const char *wrong = commit_record(c, u, phase, &r);
+		*worker = r.worker;
+		if (wrong) {
+			ob_step_blame(u, r.worker, wrong);
+			return false;
+		}
+	}
+	return true;
 }
 
 void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
 {
-	ob_mail_record r = { 0 };
+	uint32_t worker = 0;
 	if (fails(c, u))
 		return;
 	for (uint32_t rank = 0; rank < mails(c); rank++)
-		for (ob_mail m = mail_of(c, rank); ob_mail_next(u, &m, &r);) {
-			prefetch_next(u, &m);
-			const char *wrong = commit_record(c, u, phase, &r);
-			if (wrong) {
-				ob_step_blame(u, r.worker, wrong);
-				return;
-			}
-		}
+		if (!commit_records(c, u, phase, mail_of(c, rank), &worker))
+			return;
 	if (c->due && ob_step_failed(u, NULL) == OB_STEP_OK)
-		ob_step_blame(u, r.worker, "or another has not done all that it was given");
+		ob_step_blame(u, worker, "or another has not done all that it was given");
 }

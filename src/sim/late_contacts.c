@@ -456,10 +456,17 @@ static void enter_next_check(const ob_universe *u, uint32_t pair, uint64_t steps
 // Of contained simulators, which cannot do so themselves.
 static void enter_next_checks(const ob_universe *u)
 {
+	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t end = ob_checks_count(data);
 	for (uint32_t i = 0; i < end; i++) {
-		prefetch_check(u, i, end);
+		if (i + PAIR_AHEAD < end)
+			__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
+		if (i + OBJECTS_AHEAD < end) {
+			const ob_pair_key *k = &data->pair[data->check[i + OBJECTS_AHEAD]];
+			__builtin_prefetch(&data->schedule[k->a]);
+			__builtin_prefetch(&data->schedule[k->b]);
+		}
 		enter_next_check(u, data->check[i], data->count->checked);
 	}
 }

@@ -27,39 +27,22 @@ static uint32_t islands_of(const ob_step_data *data)
 	return islands < data->objects_max ? islands : data->objects_max;
 }
 
-// Asks for the motions of the next island's members while those of one are looked at.
-static void prefetch_members(const ob_universe *u, const ob_island *is)
+static uint64_t digest_islands(const ob_universe *u, uint64_t sum)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
-	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++)
-		if (data->member[is->first_member + k] < data->objects_max)
-			ob_prefetch_slot(u, data->member[is->first_member + k]);
-}
-
-static uint64_t digest_island(const ob_universe *u, const ob_island *is, uint64_t sum)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	sum = ob_digest_word(sum, (uint64_t)is->members << 32 | is->solved);
-	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++) {
-		const uint32_t id = data->member[is->first_member + k];
-		sum = ob_digest_word(sum, id);
-		if (ob_object_in_range(data, id))
-			sum = ob_digest_word(sum, motion_digest(ob_newest_motion(u, id)));
-	}
-	return sum;
-}
-
-static uint64_t digest_solve(const ob_universe *u, uint64_t sum)
-{
-	enum { AHEAD = 4 };
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t islands = islands_of(data);
+	uint32_t members = 0;
 	for (uint32_t i = 0; i < islands; i++) {
-		if (i + AHEAD < islands)
-			prefetch_members(u, &data->island[i + AHEAD]);
-		sum = digest_island(u, &data->island[i], sum);
+		const ob_island *is = &data->island[i];
+		sum = ob_digest_word(sum, (uint64_t)is->first_member << 32 | is->members);
+		members += is->members < data->objects_max - members ? is->members : data->objects_max - members;
 	}
-	return sum;
+	return ob_digest_word(sum, ob_digest_words(data->member, members / 2 * sizeof(uint64_t)));
+}
+
+uint64_t ob_peers_digest_object(const ob_universe *u, uint32_t id, uint64_t sum)
+{
+	return ob_digest_word(sum + id, motion_digest(ob_newest_motion(u, id)));
 }
 
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
@@ -70,7 +53,7 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
 	uint64_t sum = ob_digest_word(queries, data->count->pairs);
 	for (uint32_t i = 0; i < queries; i++)
 		sum = ob_digest_word(sum, list[i]);
-	return phase == OB_PHASE_ISLANDS ? digest_solve(u, sum) : sum;
+	return phase == OB_PHASE_ISLANDS ? digest_islands(u, sum) : sum;
 }
 
 // ---- where ranks differ

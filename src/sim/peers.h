@@ -13,8 +13,8 @@
 //
 // What the check of a pair has found goes to all, where it changes something or is to be acted upon.
 //
-// With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with. Where two
-// differ, all find out about which object, and the run ends. An arranger whose run is over, for whatever reason, says
+// With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with, and those before
+// it. Where two differ, all find out about which object, and the run ends. An arranger whose run is over, for whatever reason, says
 // so in place of a mail, so nobody waits for it.
 #ifndef OB_SIM_PEERS_H
 #define OB_SIM_PEERS_H
@@ -34,8 +34,11 @@ typedef struct ob_peers_head {
 #define OB_PEERS_MOVE (UINT64_MAX - 1)
 #define OB_PEERS_GATHER (UINT64_MAX - 2)
 
-// What the phase begins with, before any of it is committed: who is to be solved, from which motions, or asked.
+// What the phase begins with, before any of it is committed: who is to be solved, with whom, or asked.
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
+// Likewise the motion from which an object was solved, as of before the step; sum: of those before it. By who commits what
+// came of it, who has it at hand: so ranks that differ in it find out with the next message, before the step is complete.
+uint64_t ob_peers_digest_object(const ob_universe *u, uint32_t id, uint64_t sum);
 // Empties the mail but for a head. false: no memory.
 bool ob_peers_begin(ob_mail *mail);
 // Sends the mail, which begins with a head, this one. Gives those of all ranks, heads and all, in their order: that of

@@ -424,16 +424,6 @@ bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out)
 	return true;
 }
 
-const uint32_t *ob_mail_peek(const ob_mail *m, uint32_t *kind)
-{
-	record_head head;
-	if (m->end < m->at + sizeof head + sizeof(uint32_t))
-		return NULL;
-	memcpy(&head, m->bytes + m->at, sizeof head);
-	*kind = head.kind;
-	return (const uint32_t *)(const void *)(m->bytes + m->at + sizeof head);
-}
-
 bool ob_mail_next_end(ob_mail *m, ob_mail_record *out)
 {
 	enum { BYTES = sizeof(record_head) + sizeof(ob_outbox_end) };

@@ -95,8 +95,6 @@ bool ob_mail_append(ob_mail *m, const void *bytes, size_t n);
 bool ob_mail_append_record(ob_mail *m, const ob_mail_record *r);
 // The next record; false: there is none.
 bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out);
-// The first word of the next record of the same simulator, and its kind, not yet checked; NULL: there is none.
-const uint32_t *ob_mail_peek(const ob_mail *m, uint32_t *kind);
 // The next that is the last of what a simulator has handed over in a phase, an ob_outbox_end; false: there is none.
 bool ob_mail_next_end(ob_mail *m, ob_mail_record *out);
 void ob_mail_finish(ob_mail *m);

@@ -105,15 +105,17 @@ static void check_digest(void)
 	little_scene *s;
 	little_universe l;
 	open_two(&s, &l);
-	const uint64_t before = ob_peers_digest(l.u, OB_PHASE_ISLANDS);
+	const uint64_t before = ob_peers_digest(l.u, OB_PHASE_ISLANDS),
+		       resting = ob_peers_digest_object(l.u, CRATE, before);
 	CHECK(ob_universe_step_data(l.u)->count->islands > 0 && ob_peers_digest(l.u, OB_PHASE_ISLANDS) == before);
 	ob_motion m = *ob_newest_motion(l.u, CRATE);
 	m.v.z = nextafter(m.v.z, 1);
 	ob_publish_motion(l.u, CRATE, &m);
-	const uint64_t moved = ob_peers_digest(l.u, OB_PHASE_ISLANDS);
-	CHECK(moved != before);
+	CHECK(ob_peers_digest_object(l.u, CRATE, before) != resting);
+	CHECK(ob_peers_digest_object(l.u, CRATE + 1, before) != resting);
+	CHECK(ob_peers_digest(l.u, OB_PHASE_ISLANDS) == before);
 	ob_universe_step_data(l.u)->island[0].members++;
-	CHECK(ob_peers_digest(l.u, OB_PHASE_ISLANDS) != moved);
+	CHECK(ob_peers_digest(l.u, OB_PHASE_ISLANDS) != before);
 	close_two(s, &l);
 }
 
