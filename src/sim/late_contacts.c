@@ -387,14 +387,12 @@ static void keep_listed(ob_universe *u)
 	data->count->checks = n;
 }
 
-// Of several ranks: one has listed the pair, for it has solved one of its objects. An entry that this one has is of
-// before then, and it does not know whether the pair was in an island.
-static bool is_listed_elsewhere(const ob_universe *u, uint32_t pair)
+// Of several ranks this one has entered the pair before another has listed it, which has solved one of its objects.
+static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const ob_pair_key *k = &data->pair[pair];
-	return ob_universe_ranks(u) > 1 &&
-	       (data->result_island[k->a] != UINT32_MAX || data->result_island[k->b] != UINT32_MAX);
+	return (data->result_island[k->a] != UINT32_MAX || data->result_island[k->b] != UINT32_MAX) &&
+	       !ob_pair_is_checked_here(u, k);
 }
 
 // Those that have an entry for now, which they lose.
@@ -406,7 +404,7 @@ static void list_entries(ob_universe *u, uint64_t steps)
 	const uint32_t first = n, listed = ob_calendar_list(&look, steps, data->check + first, data->pairs_max - first);
 	for (uint32_t i = first; i < first + listed; i++) {
 		ob_calendar_set(&look, data->check[i], UINT32_MAX);
-		if (!is_listed_elsewhere(u, data->check[i]))
+		if (!is_listed_elsewhere(u, &data->pair[data->check[i]]))
 			data->check[n++] = data->check[i];
 	}
 	data->count->checks = n;

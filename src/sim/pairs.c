@@ -70,12 +70,12 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 	put_aside(data, pair);
 }
 
-// Whether this rank checks the pair, where no other has solved one of its objects: a lives here, or b if a does not
-// move.
-static bool is_here(const ob_universe *u, const ob_pair_key *k)
+bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
 {
-	const uint32_t a = ob_universe_step_data(u)->schedule[k->a].state >= OB_SCHEDULE_AWAKE ? k->a : k->b;
-	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a));
+	const ob_step_data *data = ob_universe_step_data(u);
+	const bool a = data->result_island[k->a] != UINT32_MAX ||
+		       (data->result_island[k->b] == UINT32_MAX && data->schedule[k->a].state >= OB_SCHEDULE_AWAKE);
+	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
 }
 
 // The pair is to be checked in this step. Of several ranks one enters it, and all know that; but what links objects all
@@ -87,17 +87,8 @@ static void enter_check(ob_universe *u, uint32_t pair, uint64_t step)
 	const ob_calendar look = ob_calendar_of_pairs(u);
 	if (step < data->count->next_check)
 		data->count->next_check = (uint32_t)step;
-	if (is_here(u, k) || k->active || k->expected)
+	if (ob_pair_is_checked_here(u, k) || k->active || k->expected)
 		ob_calendar_set(&look, pair, step);
-}
-
-// One that is new since the islands were built that are solved. Of several ranks an entry does not do: in the check of
-// such a step each passes over those of what others have solved (late_contacts.c).
-static void list_check(ob_universe *u, uint32_t pair)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	if (ob_universe_ranks(u) > 1 && is_here(u, &data->pair[pair]) && data->count->checks < data->pairs_max)
-		data->check[data->count->checks++] = pair;
 }
 
 // One that is not in use. false: there is none, and the step has failed.
@@ -240,8 +231,6 @@ static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps
 	data->pair[pair] = id < other ? new_pair(u, id, other, steps) : new_pair(u, other, id, steps);
 	link_pair(u, pair);
 	enter_check(u, pair, steps); // at once
-	if (steps > ob_step_count(u))
-		list_check(u, pair);
 }
 
 // ---- what queries have found
