@@ -6,34 +6,30 @@
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
 #include "sim/sort_ids.h"
+#include "table/forest.h"
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };
+enum { LINKED_AT_ONCE = 64, LISTED_AT_ONCE = 32 }; // bodies, islands: a task of some ten us
 enum { CHUNK_WORK_MIN = 48 }; // work of a chunk, some us: for less the gate would cost more than another worker gains
 
-// What the scheduling worker builds islands with: the bodies that are involved, and a union-find forest of them, whose
-// roots are the lowest ids of their trees. Nothing is as long as there are objects, or pairs, and has to be cleared.
+// What islands are built with: the bodies that are involved, and a union-find forest of them, whose roots are the
+// lowest ids of their trees. Nothing is as long as there are objects, or pairs, and has to be cleared; but where much
+// of what there is moves, so that several workers find who is linked, each object is made a root before.
 typedef struct builder {
 	ob_universe *u;
 	ob_step_data *data;
 	uint32_t ids;
-	uint32_t *body; // [bodies], ascending when all are found
-	uint32_t bodies, members; // members: in islands, when these are listed
-	uint32_t *place; // [id]: where it is in body[]; true where that says the same
-	uint32_t *parent; // [id], of bodies
+	uint32_t *body; // [bodies], ascending when all are found; while several look for them ob_object_involve alone
+			// counts them
+	uint32_t bodies;
+	uint32_t *place; // [id], when islands are merged: where it is in body[], true where that says the same
+	uint32_t *parent; // [id], of bodies (table/forest.h)
 	uint32_t *island_of; // [root]
 	bool merges; // islands that were solved apart are merged; else those of a new step are built
 	bool alone; // there is but this rank: it lists the pairs of all islands
 	uint64_t step; // that they are for
 } builder;
-
-// A parent is below its child, so this ends, whatever somebody has written there.
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-	while (parent[i] < i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
 
 static bool is_dynamic(const builder *p, uint32_t id)
 {
@@ -57,6 +53,8 @@ static bool is_in_range(const builder *p, const ob_pair_key *k)
 	return ob_object_in_range(p->data, k->a) && ob_object_in_range(p->data, k->b);
 }
 
+// ---- who is involved, when islands are merged
+
 static bool is_involved(const builder *p, uint32_t id)
 {
 	const uint32_t i = p->place[id];
@@ -77,11 +75,7 @@ static void join(builder *p, uint32_t i, uint32_t j)
 {
 	involve(p, i);
 	involve(p, j);
-	uint32_t a = root_of(p->parent, i), b = root_of(p->parent, j);
-	if (a < b)
-		p->parent[b] = a;
-	else
-		p->parent[a] = b;
+	ob_forest_join(p->parent, i, j);
 }
 
 // The link makes both be solved in this step.
@@ -101,28 +95,6 @@ static bool is_link(const builder *p, const ob_pair_key *k)
 	       (p->merges ? k->active && is_asleep(p, k->a) && is_asleep(p, k->b) : k->active | k->expected);
 }
 
-// Of a new step: a pair that touches, or is expected to, with something that moves.
-static void involve_pair(builder *p, const ob_pair_key *k)
-{
-	if ((k->active | k->expected) && is_in_range(p, k) &&
-	    (ob_schedule_moves(&p->data->schedule[k->a]) || ob_schedule_moves(&p->data->schedule[k->b])))
-		involve_link(p, k);
-}
-
-// Who must be solved in a new step, whatever comes near it, and those that a pair involves which has an entry for now.
-static void involve_due(builder *p)
-{
-	const ob_step_data *data = p->data;
-	const ob_calendar solve = ob_calendar_of_objects(p->u), look = ob_calendar_of_pairs(p->u);
-	const uint32_t most = ob_pairs_end(data), pairs = ob_calendar_list(&look, p->step, data->check, most);
-	uint32_t *due = p->island_of; // not yet needed
-	const uint32_t n = ob_calendar_list(&solve, p->step, due, p->ids);
-	for (uint32_t i = 0; i < pairs; i++)
-		involve_pair(p, &data->pair[data->check[i]]);
-	for (uint32_t i = 0; i < n; i++)
-		involve(p, due[i]);
-}
-
 // Those that were solved in this step, and whom they have met.
 static void involve_solved(builder *p)
 {
@@ -140,7 +112,7 @@ static void involve_solved(builder *p)
 	}
 }
 
-// The lists grow while they are gone through: breadth first.
+// The list grows while it is gone through: breadth first.
 static void involve_linked(builder *p)
 {
 	const ob_step_data *data = p->data;
@@ -149,9 +121,82 @@ static void involve_linked(builder *p)
 		if (was_solved(p, p->body[i]))
 			continue;
 		for (uint32_t link = data->first_pair[p->body[i]]; ob_pair_at(data, link, &at);
-		     link = ob_pair_next(data, at))
+		     link = ob_pair_next(data, at)) {
+			data->count->visits++;
 			if (is_link(p, &data->pair[at.pair]))
 				join(p, data->pair[at.pair].a, data->pair[at.pair].b);
+		}
+	}
+}
+
+// ---- who is involved in a new step
+
+// true: it was in no island before. Where each object is a root several workers may, and another may have joined it to
+// a tree since; else it becomes one.
+static bool involve_new(const builder *p, uint32_t id)
+{
+	if (!ob_object_involve(p->u, id))
+		return false;
+	if (!p->data->count->rooted)
+		p->parent[id] = id;
+	return true;
+}
+
+// A pair that touches, or is expected to, with something that moves makes both be solved.
+static void involve_pair(const builder *p, const ob_pair_key *k)
+{
+	if (!(k->active | k->expected) || !is_in_range(p, k) ||
+	    (!ob_schedule_moves(&p->data->schedule[k->a]) && !ob_schedule_moves(&p->data->schedule[k->b])))
+		return;
+	const bool a = is_dynamic(p, k->a), b = is_dynamic(p, k->b);
+	if (a)
+		involve_new(p, k->a);
+	if (b)
+		involve_new(p, k->b);
+	if (a && b)
+		ob_forest_join(p->parent, k->a, k->b);
+}
+
+static void make_roots(const builder *p, uint32_t due)
+{
+	p->data->count->rooted = due >= OB_ISLANDS_MANY && due >= p->ids / 16;
+	for (uint32_t i = 0; p->data->count->rooted && i < p->ids; i++)
+		p->parent[i] = i;
+}
+
+// Who must be solved, whatever comes near it, and those that a pair involves which has an entry for now.
+static void involve_due(const builder *p)
+{
+	const ob_step_data *data = p->data;
+	const ob_calendar solve = ob_calendar_of_objects(p->u), look = ob_calendar_of_pairs(p->u);
+	const uint32_t most = ob_pairs_end(data), pairs = ob_calendar_list(&look, p->step, data->check, most);
+	uint32_t *due = p->island_of; // not yet needed
+	const uint32_t n = ob_calendar_list(&solve, p->step, due, p->ids);
+	make_roots(p, n);
+	for (uint32_t i = 0; i < n; i++)
+		involve_new(p, due[i]);
+	for (uint32_t i = 0; i < pairs; i++)
+		involve_pair(p, &data->pair[data->check[i]]);
+	data->count->due = data->count->involved;
+}
+
+// Joins the body to those that its links involve. What is new goes on a stack of the caller's, through place[]: its
+// links are followed by who has found it.
+static void follow_links(const builder *p, uint32_t id, uint32_t *stack, uint64_t *visits)
+{
+	const ob_step_data *data = p->data;
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		const ob_pair_key *k = &data->pair[at.pair];
+		const uint32_t other = at.side ? k->a : k->b;
+		++*visits;
+		if (!is_link(p, k))
+			continue;
+		if (involve_new(p, other)) {
+			p->place[other] = *stack;
+			*stack = other;
+		}
+		ob_forest_join(p->parent, k->a, k->b);
 	}
 }
 
@@ -159,7 +204,7 @@ static void involve_linked(builder *p)
 static bool stands(const builder *p, const ob_island *is)
 {
 	const uint32_t *member = p->data->member + is->first_member;
-	for (uint32_t k = 0; k < is->members; k++)
+	for (uint32_t k = 0; p->merges && k < is->members; k++)
 		if (!was_solved(p, member[k]) || p->data->result_island[member[k]] != p->data->result_island[member[0]])
 			return false;
 	return p->merges;
@@ -171,7 +216,7 @@ static void list_members(builder *p)
 	ob_step_data *data = p->data;
 	uint32_t n = 0, total = 0;
 	for (uint32_t i = 0; i < p->bodies; i++) {
-		const uint32_t id = p->body[i], root = p->parent[id] = root_of(p->parent, id);
+		const uint32_t id = p->body[i], root = p->parent[id] = ob_forest_root(p->parent, id);
 		if (root == id) {
 			p->island_of[id] = n;
 			data->island[n++] = (ob_island){ .first_member = 0 };
@@ -183,7 +228,6 @@ static void list_members(builder *p)
 		total += data->island[i].members;
 		data->island[i].members = 0;
 	}
-	p->members = total;
 	for (uint32_t i = 0; i < p->bodies; i++) {
 		const uint32_t id = p->body[i];
 		ob_island *is = &data->island[p->island_of[p->parent[id]]];
@@ -241,67 +285,136 @@ static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
 	}
 }
 
-// A pair of two members is listed with its a. in_island holds from here to the next islands. All of its pairs, in an
-// island or not, are to be checked when that is solved (late_contacts.h).
-static void list_pairs_of(builder *p, uint32_t id, uint32_t island, uint32_t *total)
+// What its members have cost in the last step, and at least what islands of such a size do. Of several ranks none knows
+// the pairs of all.
+static uint32_t estimated_work(const builder *p, const ob_island *is)
+{
+	uint32_t sum = 1 + is->members + 8 * is->pairs;
+	for (uint32_t k = 0; (is->pairs || !p->alone) && k < is->members; k++)
+		sum += p->data->effort[p->data->member[is->first_member + k]];
+	return sum;
+}
+
+// The pairs of an island, as they are found.
+typedef struct listing {
+	uint32_t n, pair[256]; // how many there are; the first of them
+	uint64_t visits;
+} listing;
+
+// A pair of two members is its a's; so each pair is listed, and written, by whoever lists one island.
+static bool is_listed_with(const builder *p, const ob_pair_key *k, uint32_t side)
+{
+	return is_in_range(p, k) && (!side || p->data->result_island[k->a] == NONE);
+}
+
+// The pair is to be checked when the island is solved (late_contacts.h). Of several ranks each checks what it has
+// listed, and has entries in its calendar that are not for it to check.
+static void list_check(const builder *p, uint32_t pair)
+{
+	ob_step_data *data = p->data;
+	const ob_calendar look = ob_calendar_of_pairs(p->u);
+	if (p->alone)
+		ob_calendar_set(&look, pair, p->step + 1);
+	else if (data->count->checks < data->pairs_max)
+		data->check[data->count->checks++] = pair;
+}
+
+// in_island holds from here to the next islands. All of its pairs are to be checked, in an island or not.
+static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listing *to)
 {
 	ob_step_data *data = p->data;
 	ob_pair_place at;
 	for (uint32_t link = data->first_pair[id], next; ob_pair_at(data, link, &at); link = next) {
 		ob_pair_key *k = &data->pair[at.pair];
 		next = ob_pair_next(data, at);
+		to->visits++;
 		ob_prefetch_link(p->u, next);
-		if (!is_in_range(p, k) || (at.side && data->result_island[k->a] != NONE))
+		if (!is_listed_with(p, k, at.side))
 			continue;
-		if (data->count->checks < data->pairs_max)
-			data->check[data->count->checks++] = at.pair;
-		const bool in_island = island_of_pair(p, k) == island && *total < data->pairs_max;
+		list_check(p, at.pair);
+		const bool in_island = island_of_pair(p, k) == island;
 		if (k->in_island != in_island)
 			k->in_island = in_island;
-		if (in_island)
-			data->island_pair[(*total)++] = at.pair;
+		if (!in_island)
+			continue;
+		if (to->n < sizeof to->pair / sizeof *to->pair)
+			to->pair[to->n] = at.pair;
+		to->n++;
 	}
+}
+
+// Of a large island, when it is known how many there are.
+static void list_all_again(const builder *p, const ob_island *is)
+{
+	const ob_step_data *data = p->data;
+	uint32_t n = 0;
+	for (uint32_t k = 0; k < is->members; k++) {
+		const uint32_t id = data->member[is->first_member + k];
+		ob_pair_place at;
+		for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at))
+			if (is_listed_with(p, &data->pair[at.pair], at.side) && data->pair[at.pair].in_island &&
+			    n < is->pairs)
+				data->island_pair[is->first_pair + n++] = at.pair;
+	}
+}
+
+static void list_pairs_of_island(const builder *p, uint32_t island, listing *to)
+{
+	ob_step_data *data = p->data;
+	ob_island *is = &data->island[island];
+	to->n = 0;
+	for (uint32_t k = 0; k < is->members; k++) {
+		ob_prefetch_pairs_of(p->u, is->first_member + k);
+		list_pairs_of(p, data->member[is->first_member + k], island, to);
+	}
+	is->first_pair = ob_island_pairs_reserve(p->u, to->n);
+	is->pairs = is->first_pair == NONE ? 0 : to->n;
+	if (to->n <= sizeof to->pair / sizeof *to->pair)
+		memcpy(data->island_pair + is->first_pair, to->pair, is->pairs * sizeof *to->pair);
+	else
+		list_all_again(p, is);
+	sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
+}
+
+static void list_pairs(const builder *p, uint32_t first, uint32_t end)
+{
+	listing found;
+	found.visits = 0;
+	for (uint32_t i = first; i < end; i++) {
+		ob_island *is = &p->data->island[i];
+		list_pairs_of_island(p, i, &found);
+		is->work = is->solved ? 0 : estimated_work(p, is);
+	}
+	ob_step_visited(p->u, found.visits);
 }
 
 // The object was given to a simulator of this rank last.
 static bool is_here(const builder *p, uint32_t id)
 {
-	return p->alone || ob_worker_is_here(p->u, ob_home_of(p->u, id));
+	return ob_worker_is_here(p->u, ob_home_of(p->u, id));
 }
 
-static void list_pairs_of_island(builder *p, uint32_t i, uint32_t *total)
+// Of several ranks each lists the pairs of its own islands, when all are dealt; in the order of member[].
+static void list_own_pairs(const builder *p)
 {
 	ob_step_data *data = p->data;
-	ob_island *is = &data->island[i];
-	is->first_pair = *total;
-	for (uint32_t k = 0; k < is->members; k++) {
-		ob_prefetch_pairs_of(p->u, is->first_member + k);
-		list_pairs_of(p, data->member[is->first_member + k], i, total);
-	}
-	is->pairs = *total - is->first_pair;
-	sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
-}
-
-// In the order of member[]: islands may have been dealt by now. Of several ranks each lists those of its own islands.
-static void list_pairs(builder *p)
-{
-	ob_step_data *data = p->data;
-	uint32_t total = 0;
+	listing found;
+	found.visits = 0;
 	data->count->checks = 0;
-	for (uint32_t at = 0; at < p->members;) {
+	for (uint32_t n = 0, at = 0; n < data->count->islands; n++) {
 		const uint32_t i = data->result_island[data->member[at]];
 		ob_island *is = &data->island[i];
 		at += is->members;
 		if (is_here(p, data->member[is->first_member]))
-			list_pairs_of_island(p, i, &total);
+			list_pairs_of_island(p, i, &found);
 		else
 			is->first_pair = is->pairs = 0;
 	}
-	data->count->island_pairs = total;
+	data->count->visits += found.visits;
 }
 
 // Of the step before: pairs are in no island any more, and those that touch no more need no record.
-static void end_islands(builder *p)
+static void end_islands(const builder *p)
 {
 	ob_step_data *data = p->data;
 	for (uint32_t i = 0; i < data->count->island_pairs && i < data->pairs_max; i++) {
@@ -316,16 +429,6 @@ static void end_islands(builder *p)
 	}
 	data->count->visits += data->count->island_pairs;
 	data->count->island_pairs = 0;
-}
-
-// What its members have cost in the last step, and at least what islands of such a size do. Of several ranks none knows
-// the pairs of all.
-static uint32_t estimated_work(const builder *p, const ob_island *is)
-{
-	uint32_t sum = 1 + is->members + 8 * is->pairs;
-	for (uint32_t k = 0; (is->pairs || !p->alone) && k < is->members; k++)
-		sum += p->data->effort[p->data->member[is->first_member + k]];
-	return sum;
 }
 
 // island[i] becomes what island[from[i]] was. from is overwritten.
@@ -498,8 +601,6 @@ static void deal_islands(builder *p)
 	const uint32_t n = data->count->islands;
 	uint64_t total = 0;
 	uint32_t unsolved = 0;
-	for (uint32_t i = 0; i < n; i++)
-		data->island[i].work = data->island[i].solved ? 0 : estimated_work(p, &data->island[i]);
 	sort_by_work(p);
 	for (uint32_t i = 0; i < n; i++) {
 		total += data->island[i].work;
@@ -515,11 +616,12 @@ static void deal_islands(builder *p)
 			data->result_island[data->member[data->island[i].first_member + m]] = i;
 }
 
-static builder begin(ob_universe *u, bool merges)
+// ---- in turn
+
+static builder builder_of(ob_universe *u, bool merges)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t ids = ob_universe_ids(u);
-	data->count->merged = merges;
 	return (builder){ .u = u,
 			  .data = data,
 			  .ids = ids,
@@ -532,32 +634,89 @@ static builder begin(ob_universe *u, bool merges)
 			  .step = ob_step_count(u) };
 }
 
-static void finish(builder *p)
+static void sort_members(builder *p)
 {
-	involve_linked(p);
 	ob_sort_ids(p->body, p->bodies, p->ids, p->place); // whose contents are no longer needed
 	list_members(p);
-	p->data->count->visits += p->members;
-	if (p->alone) {
-		list_pairs(p);
-		deal_islands(p);
-	} else { // whose they are says who lists their pairs
-		deal_islands(p);
-		list_pairs(p);
-	}
+	p->data->count->visits += p->bodies;
 }
 
-void ob_islands_build(ob_universe *u)
+void ob_islands_begin(ob_universe *u)
 {
-	builder p = begin(u, false);
+	struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	count->merged = 0;
+	count->involved = 0;
+	const builder p = builder_of(u, false);
 	end_islands(&p);
 	involve_due(&p);
-	finish(&p);
+}
+
+static uint32_t end_of_task(uint32_t task, uint32_t each, uint32_t all)
+{
+	return all - task * each < each ? all : (task + 1) * each;
+}
+
+uint32_t ob_islands_link_tasks(const ob_universe *u)
+{
+	return (ob_universe_step_data(u)->count->due + LINKED_AT_ONCE - 1) / LINKED_AT_ONCE;
+}
+
+void ob_islands_link(ob_universe *u, uint32_t task)
+{
+	const builder p = builder_of(u, false);
+	const uint32_t end = end_of_task(task, LINKED_AT_ONCE, p.data->count->due);
+	uint64_t visits = 0;
+	uint32_t stack = NONE;
+	for (uint32_t i = task * LINKED_AT_ONCE; i < end; i++) {
+		ob_prefetch_lists(u, p.body, i, end);
+		follow_links(&p, p.body[i], &stack, &visits);
+	}
+	while (stack != NONE) {
+		const uint32_t id = stack;
+		stack = p.place[id];
+		follow_links(&p, id, &stack, &visits);
+	}
+	ob_step_visited(u, visits);
+}
+
+void ob_islands_list_members(ob_universe *u)
+{
+	builder p = builder_of(u, false);
+	const uint32_t involved = p.data->count->involved;
+	p.bodies = involved < p.ids ? involved : p.ids;
+	sort_members(&p);
+}
+
+uint32_t ob_islands_list_tasks(const ob_universe *u)
+{
+	const bool alone = ob_universe_ranks(u) < 2; // else whose they are says who lists their pairs
+	return alone ? (ob_universe_step_data(u)->count->islands + LISTED_AT_ONCE - 1) / LISTED_AT_ONCE : 0;
+}
+
+void ob_islands_list_pairs(ob_universe *u, uint32_t task)
+{
+	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	const builder p = builder_of(u, count->merged);
+	list_pairs(&p, task * LISTED_AT_ONCE, end_of_task(task, LISTED_AT_ONCE, count->islands));
+}
+
+void ob_islands_deal(ob_universe *u)
+{
+	builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
+	for (uint32_t i = 0; !p.alone && i < p.data->count->islands; i++)
+		p.data->island[i].work = p.data->island[i].solved ? 0 : estimated_work(&p, &p.data->island[i]);
+	deal_islands(&p);
+	if (!p.alone)
+		list_own_pairs(&p);
 }
 
 void ob_islands_merge(ob_universe *u)
 {
-	builder p = begin(u, true);
+	struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	builder p = builder_of(u, true);
+	count->merged = 1;
 	involve_solved(&p);
-	finish(&p);
+	involve_linked(&p);
+	sort_members(&p);
+	count->island_pairs = 0;
 }

@@ -5,11 +5,28 @@
 
 #include "table/table.h"
 
+enum { OB_ISLANDS_MANY = 1024 }; // bodies that are due: for fewer the gate would cost more than other workers gain
+
 // Groups the objects that are due (ob_schedule.due), and those that they touch or are expected to, into islands, and the
-// islands into chunks of about equal work, largest first; of several ranks, into one for each simulator. Islands that an awake object touches, or is expected to, wake.
-void ob_islands_build(ob_universe *u);
-// Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join. The solutions of the
-// others stand; the chunks hold what must be solved again.
+// islands into chunks of about equal work, largest first; of several ranks, into one for each simulator. Islands that an
+// awake object touches, or is expected to, wake.
+//
+//   begin ──> link .. link ──> list members ──> list pairs .. list pairs ──> deal
+//             tasks, each once          ^       tasks, each once
+//                              merge ───┘
+//
+// By the scheduling worker. Tasks in any order; by several workers at the same time if each object is a root
+// (ob_step_counts.rooted), as it is where many are due. The islands are the same, and so are their orders of members and
+// pairs.
+void ob_islands_begin(ob_universe *u); // who is due
+uint32_t ob_islands_link_tasks(const ob_universe *u);
+void ob_islands_link(ob_universe *u, uint32_t task); // whom they are linked to
+void ob_islands_list_members(ob_universe *u);
+uint32_t ob_islands_list_tasks(const ob_universe *u);
+void ob_islands_list_pairs(ob_universe *u, uint32_t task);
+void ob_islands_deal(ob_universe *u);
+// Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join, and lists members. The
+// solutions of the others stand; the chunks hold what must be solved again.
 void ob_islands_merge(ob_universe *u);
 // A chunk of so much work is closed, where that is all the work that so many workers share.
 uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers);

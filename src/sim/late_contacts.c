@@ -360,8 +360,8 @@ static void note_solved(ob_universe *u)
 	}
 }
 
-// The pairs of what was solved are listed since then (island_builder.c), but for those that are new since, which have
-// an entry for now. What is in use no longer is left out.
+// Of several ranks: the pairs of what was solved here are listed since then (island_builder.c), and some that are new.
+// What is in use no longer is left out.
 static void keep_listed(ob_universe *u)
 {
 	enum { AHEAD = 16 };
@@ -395,7 +395,7 @@ static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
 	       !ob_pair_is_checked_here(u, k);
 }
 
-// Those that have an entry for now, which they lose.
+// Of several ranks: those that have an entry for now, which they lose.
 static void list_entries(ob_universe *u, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -413,15 +413,20 @@ static void list_entries(ob_universe *u, uint64_t steps)
 void ob_late_contacts_begin(ob_universe *u, bool solved)
 {
 	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
 	const uint64_t steps = ob_step_count(u) + solved;
 	ob_late_contacts_reset(u);
 	data->count->checked = (uint32_t)steps;
-	if (solved) {
+	if (solved)
 		note_solved(u);
-		keep_listed(u);
-	} else {
-		data->count->checks = 0;
+	if (ob_universe_ranks(u) == 1) {
+		data->count->checks = ob_calendar_list(&look, steps, data->check, data->pairs_max);
+		return;
 	}
+	if (solved)
+		keep_listed(u);
+	else
+		data->count->checks = 0;
 	list_entries(u, steps);
 }
 
@@ -446,9 +451,7 @@ static void enter_next_check(const ob_universe *u, uint32_t pair, uint64_t steps
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const ob_calendar look = ob_calendar_of_pairs(u);
-	const uint32_t next = entry_of(data, &data->pair[pair], steps);
-	if (next < UINT32_MAX)
-		ob_calendar_set(&look, pair, next);
+	ob_calendar_set(&look, pair, entry_of(data, &data->pair[pair], steps));
 }
 
 // Of contained simulators, which cannot do so themselves.

@@ -11,10 +11,9 @@
 
 #include "sim/commit.h"
 
-// By the scheduling worker, before pairs are checked: lists those that must be, in ob_step_data.check, which holds
-// those of the objects that have been solved since their islands were built. They are those whose turn it is
-// (sim/calendar.h), and all of the objects that have been solved. solved: a step has been solved and is not yet
-// committed.
+// By the scheduling worker, before pairs are checked: lists those whose turn it is (sim/calendar.h) in
+// ob_step_data.check, ascending. The pairs of objects that have been solved are among them: who has listed those of their
+// islands has entered them (island_builder.c). solved: a step has been solved and is not yet committed.
 void ob_late_contacts_begin(ob_universe *u, bool solved);
 // Checks first .. end-1 of them: sets expected, late and limit of each, enters in the calendar when it must be checked
 // again, and notes in ob_step_data.count whether any contact is late.

@@ -290,6 +290,7 @@ static void renew_pairs(ob_universe *u, uint32_t id, uint32_t *place, uint64_t s
 	     link = next) {
 		const ob_pair_key *k = &data->pair[at.pair];
 		const uint32_t other = at.side ? k->a : k->b;
+		data->count->visits++;
 		next = ob_pair_next(data, at);
 		if (!ob_object_in_range(data, other))
 			return;

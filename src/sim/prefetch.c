@@ -34,15 +34,20 @@ void ob_prefetch_link(const ob_universe *u, uint32_t link)
 	__builtin_prefetch(&data->pair_links[(link - 1) / 2]);
 }
 
-void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i)
+void ob_prefetch_lists(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end)
 {
 	enum { HEAD_AHEAD = 16, PAIR_AHEAD = 8 };
 	const ob_step_data *data = ob_universe_step_data(u);
-	if (i + HEAD_AHEAD < data->objects_max)
-		__builtin_prefetch(&data->first_pair[data->member[i + HEAD_AHEAD]]);
-	if (i + PAIR_AHEAD >= data->objects_max || data->member[i + PAIR_AHEAD] >= data->objects_max)
-		return;
-	ob_prefetch_link(u, data->first_pair[data->member[i + PAIR_AHEAD]]);
+	if (i + HEAD_AHEAD < end)
+		__builtin_prefetch(&data->first_pair[ids[i + HEAD_AHEAD]]);
+	if (i + PAIR_AHEAD < end && ids[i + PAIR_AHEAD] < data->objects_max)
+		ob_prefetch_link(u, data->first_pair[ids[i + PAIR_AHEAD]]);
+}
+
+void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_prefetch_lists(u, data->member, i, data->objects_max);
 }
 
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k)

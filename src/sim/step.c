@@ -2,12 +2,12 @@
 //
 //   host: objects placed or removed
 //     │
-//   BROADPHASE_START       ┌─────────── merge the islands that a late contact joins ───────────┐
-//     │                    v                                                                   │
-//   SCRIPTS            │                                                                   │
-//     │                │                                                                   │
-//   FORECAST ──(build)─> ISLANDS ──> BROADPHASE ──(merge pairs)──> LATE_CONTACTS ──(commit)────┤
-//     ^                                                                                        v
+//   BROADPHASE_START             ┌─────── merge the islands that a late contact joins ───────┐
+//     │                          v                                                           │
+//   SCRIPTS     ┌─> LINKS ──> LISTS ──(deal)──> ISLANDS ──> BROADPHASE ──(merge pairs)──> LATE_CONTACTS
+//     │         │                                                                            │
+//   FORECAST ───┘                                                                         (commit)
+//     ^                                                                                      v
 //     └──────(begin)─────────── COMPLETE <──────────────────────────────────────────────── COPY
 //                               │      ^
 //                      host <── PAUSE  └── nobody is due, and no pair comes near: the step is complete as it begins
@@ -26,6 +26,10 @@
 //   SCRIPTS           an object's script    motions, passports                its cell
 //   FORECAST          256 pairs                 schedule records, motions         expected, limit of those pairs, and
 //                                                                                   their entries in the calendar
+//   LINKS             64 bodies that are due,   pairs, schedule records           who is involved; the forest of them
+//                       and whom they lead to                                         (table/forest.h)
+//   LISTS             32 islands                pairs, schedule records,          their lists of pairs; of these,
+//                                                 members of all islands            in_island, limit, calendar entries
 //   ISLANDS           a chunk of islands        motions and contacts as of        staged motions, fat AABBs, schedule
 //                                                 before the step                   records, contacts of after the step
 //   LATE_CONTACTS     256 pairs                 schedule records, motions         likewise, and late
@@ -34,8 +38,8 @@
 //                       worker's own object
 //   BASELINE          (ODE's world) all objects all of it                         all of it
 //
-// A phase is skipped where nobody has anything to do, and the scheduling worker checks few pairs by itself: see the
-// open_ functions.
+// A phase is skipped where nobody has anything to do. The scheduling worker checks few pairs by itself, and finds the
+// islands of few bodies, of contained simulators, and where each object has a worker: see the open_ functions.
 #include <stdio.h>
 
 #include "sim/broadphase.h"
@@ -149,6 +153,25 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 			ob_worker_set_objects(c->u, w, 0);
 	ob_gate_open(c->u, phase, data->scratch, n);
 	return true;
+}
+
+// Where little is to be arranged, or others cannot write what they find, the scheduling worker does it at once.
+static bool open_arranging(const scheduler *c, ob_phase phase)
+{
+	const bool links = phase == OB_PHASE_LINKS;
+	const uint32_t tasks = links ? ob_islands_link_tasks(c->u) : ob_islands_list_tasks(c->u),
+		       all = ob_universe_simulators(c->u);
+	const bool alone = all == 1 && !c->settings->timed;
+	if (c->data->count->rooted && !alone && !c->settings->one_per_object && !ob_universe_contains(c->u)) {
+		open_tasks(c, phase, tasks, all);
+		return true;
+	}
+	for (uint32_t i = 0; i < tasks; i++)
+		if (links)
+			ob_islands_link(c->u, i);
+		else
+			ob_islands_list_pairs(c->u, i);
+	return false;
 }
 
 static bool open_islands(const scheduler *c, ob_phase phase)
@@ -295,6 +318,24 @@ static void find_late_contacts(ob_sim *s)
 	check_pairs(s, true);
 }
 
+static void link_bodies(ob_sim *s)
+{
+	uint32_t i;
+	while (ob_task_claim(s->u, &i)) {
+		ob_islands_link(s->u, i);
+		ob_profile_task_done(s, i);
+	}
+}
+
+static void list_pairs(ob_sim *s)
+{
+	uint32_t i;
+	while (ob_task_claim(s->u, &i)) {
+		ob_islands_list_pairs(s->u, i);
+		ob_profile_task_done(s, i);
+	}
+}
+
 static void solve_island(ob_sim *s, uint32_t island, bool first)
 {
 	bool shown = ob_span_island_begin(s, island, first);
@@ -405,8 +446,20 @@ static ob_phase build_islands(const scheduler *c)
 		return OB_PHASE_COMPLETE;
 	if (ob_universe_ranks(c->u) > 1)
 		end_parted(c);
-	ob_islands_build(c->u);
-	return count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
+	ob_islands_begin(c->u);
+	return OB_PHASE_LINKS;
+}
+
+static ob_phase after_links(const scheduler *c)
+{
+	ob_islands_list_members(c->u);
+	return OB_PHASE_LISTS;
+}
+
+static ob_phase after_lists(const scheduler *c)
+{
+	ob_islands_deal(c->u);
+	return c->data->count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
 }
 
 static ob_phase begin_step(const scheduler *c)
@@ -492,7 +545,7 @@ static ob_phase after_late_contacts(const scheduler *c)
 	*ob_worker_counters(c->u, c->sim->worker) = c->sim->counters; // before anybody may look
 	if (late) {
 		ob_islands_merge(c->u);
-		return OB_PHASE_ISLANDS;
+		return OB_PHASE_LISTS;
 	}
 	ob_results_commit(c->sim);
 	return OB_PHASE_COPY;
@@ -528,6 +581,8 @@ static const step_phase phases[] = {
 	[OB_PHASE_BROADPHASE_START] = { open_broadphase, query_neighbours,   after_broadphase_start, OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, QUERIES_PER_WORKER },
 	[OB_PHASE_SCRIPTS]          = { open_scripts,    ob_scripts_run,     after_scripts,          OB_PROFILE_SCRIPTS,    OB_TRACE_OBJECTS, SCRIPTS_PER_WORKER },
 	[OB_PHASE_FORECAST]         = { open_pairs,      forecast_contacts,  after_forecast,         OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },
+	[OB_PHASE_LINKS]            = { open_arranging,  link_bodies,        after_links,            OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
+	[OB_PHASE_LISTS]            = { open_arranging,  list_pairs,         after_lists,            OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
 	[OB_PHASE_ISLANDS]          = { open_islands,    solve_islands,      after_islands,          OB_PROFILE_LOAD,       OB_TRACE_SOLVE, 0 },
 	[OB_PHASE_BROADPHASE]       = { open_broadphase, query_neighbours,   after_broadphase,       OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, QUERIES_PER_WORKER },
 	[OB_PHASE_LATE_CONTACTS]    = { open_pairs,      find_late_contacts, after_late_contacts,    OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },

@@ -221,6 +221,33 @@ void ob_step_work_reset(ob_universe *u)
 	__atomic_store_n(&u->step_data.count->work, 0, __ATOMIC_RELAXED);
 }
 
+void ob_step_visited(ob_universe *u, uint64_t visits)
+{
+	__atomic_fetch_add(&u->step_data.count->visits, visits, __ATOMIC_RELAXED);
+}
+
+bool ob_object_involve(ob_universe *u, uint32_t id)
+{
+	const ob_step_data *data = &u->step_data;
+	if (__atomic_load_n(&data->result_island[id], __ATOMIC_RELAXED) != UINT32_MAX ||
+	    __atomic_exchange_n(&data->result_island[id], 0, __ATOMIC_RELAXED) != UINT32_MAX)
+		return false;
+	const uint32_t at = __atomic_fetch_add(&data->count->involved, 1, __ATOMIC_RELAXED);
+	if (at < ob_universe_ids(u))
+		data->scratch[at] = id;
+	return true;
+}
+
+uint32_t ob_island_pairs_reserve(ob_universe *u, uint32_t pairs)
+{
+	const ob_step_data *data = &u->step_data;
+	const uint32_t at = __atomic_fetch_add(&data->count->island_pairs, pairs, __ATOMIC_RELAXED);
+	if (at <= data->pairs_max && pairs <= data->pairs_max - at)
+		return at;
+	ob_step_fail(u, OB_STEP_DAMAGED, 0);
+	return UINT32_MAX;
+}
+
 void ob_late_contacts_reset(ob_universe *u)
 {
 	u->step_data.count->late = 0;

@@ -175,6 +175,9 @@ typedef struct ob_step_data {
 		uint32_t checks;     // pairs in check[]
 		uint32_t next_check; // of several ranks: no pair has an entry for a step before this one, on whichever
 		uint32_t island_pairs; // in island_pair[]
+		uint32_t involved;   // bodies that are in an island of the coming step, as far as they are found
+		uint32_t due;        // those of them that were found first, by what is due
+		uint32_t rooted;     // 1 = each object is the root of a tree before islands are built: several workers may
 		uint64_t visits;     // objects and pairs that arranging steps has looked at so far
 		uint32_t levels[64]; // objects per size class
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
@@ -270,10 +273,8 @@ static inline bool ob_pair_at(const ob_step_data *data, uint32_t link, ob_pair_p
 	if (!link)
 		return false;
 	*at = (ob_pair_place){ (link - 1) / 2, (link - 1) % 2 };
-	if (at->pair < data->pairs_max) {
-		data->count->visits++;
+	if (at->pair < data->pairs_max)
 		return true;
-	}
 	data->count->failure = OB_STEP_DAMAGED;
 	return false;
 }

@@ -26,6 +26,8 @@ typedef enum ob_phase {
 	OB_PHASE_BROADPHASE_START, // neighbours of objects that the host has placed or changed
 	OB_PHASE_SCRIPTS, // objects' scripts run
 	OB_PHASE_FORECAST, // which pairs may touch in the coming step?
+	OB_PHASE_LINKS, // who is in which island, where many are due
+	OB_PHASE_LISTS, // which pairs are in it
 	OB_PHASE_ISLANDS, // solve
 	OB_PHASE_BROADPHASE, // neighbours of objects whose fat AABB has changed
 	OB_PHASE_LATE_CONTACTS, // which pairs touched in this step that were in different islands?
@@ -205,6 +207,14 @@ ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object); // objec
 // Adds to the step's work; returns the sum of all workers so far. The scheduler resets it.
 uint64_t ob_step_work_add(ob_universe *u, uint64_t work);
 void ob_step_work_reset(ob_universe *u);
+// Adds to ob_step_counts.visits: any worker.
+void ob_step_visited(ob_universe *u, uint64_t visits);
+// The object is in an island of the coming step, of which it is not yet known which one: any worker. false: it was already.
+// They are listed in ob_step_data.scratch, in no order, so many as ob_step_counts.involved.
+bool ob_object_involve(ob_universe *u, uint32_t id);
+// Room for so many of an island's pairs in ob_step_data.island_pair: any worker. Returns where; UINT32_MAX: there is none,
+// which is damage.
+uint32_t ob_island_pairs_reserve(ob_universe *u, uint32_t pairs);
 // Whether a pair that has been checked is a late contact. The scheduler resets it; then any worker may note one.
 void ob_late_contacts_reset(ob_universe *u);
 void ob_late_contacts_note(ob_universe *u);

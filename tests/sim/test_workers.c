@@ -5,6 +5,7 @@
 #include "check.h"
 #include "little_universe.h"
 #include "ode/ode_body.h"
+#include "sim/island_builder.h"
 
 #include "motion/random.h"
 
@@ -30,6 +31,8 @@ static void *live(void *arg)
 	return NULL;
 }
 
+static bool arranged_together; // in the last step of the last run: so many were due that all workers built islands
+
 // The state's hash after so many steps; halfway they pause, and the last object goes away.
 static uint64_t run(const little_scene *s, uint32_t workers, uint64_t steps)
 {
@@ -53,6 +56,7 @@ static uint64_t run(const little_scene *s, uint32_t workers, uint64_t steps)
 	CHECK(ob_sim_failure(u) == NULL);
 	CHECK(ob_snapshot_take(&now, u, false, &e));
 	uint64_t hash = ob_measure_hash(&now);
+	arranged_together = ob_universe_step_data(u)->count->rooted;
 	ob_gate_stop(u);
 	for (uint32_t i = 0; i < workers; i++)
 		pthread_join(crowd[i].thread, NULL);
@@ -76,7 +80,7 @@ static little_scene *heap(ob_solver_kind solver, ob_integrator integrator)
 		ob_vec3 p = random_vector(&seed, .1), half = random_vector(&seed, .1);
 		p = ob_add(p, ob_v3(i % 4 * 1.1 - 1.6, i / 4 % 4 * 1.1 - 1.6, 1.2 + i / 16 * 1.1));
 		ob_world_body o = i % 5 == 0 ? ob_world_sphere(&s->world, 10, .3, p)
-					      : ob_world_box(&s->world, 20, ob_add(ob_v3(.3, .3, .3), half), p);
+					     : ob_world_box(&s->world, 20, ob_add(ob_v3(.3, .3, .3), half), p);
 		o.passport->restitution = i % 3 ? 0 : .5;
 		o.state->pose.q = random_attitude(&seed);
 	}
@@ -103,8 +107,36 @@ static void compare(ob_solver_kind solver, ob_integrator integrator, double tole
 	free(s);
 }
 
+// So many that fall on each other in one step, with late contacts, that all workers find who is in which island.
+static little_scene *crowd_of_balls(void)
+{
+	uint64_t seed = 2;
+	little_scene *s = little_scene_new();
+	ob_world_ground(&s->world);
+	for (int i = 0; i < LITTLE_MOST - 1; i++) {
+		ob_vec3 p = ob_v3(i % 20 * .41, i / 20 % 20 * .41, .25 + i / 400 * .41);
+		ob_world_sphere(&s->world, 10, .2, ob_add(p, random_vector(&seed, .02))).state->v =
+			random_vector(&seed, 3);
+	}
+	return s;
+}
+
+static void test_many(void)
+{
+	enum { STEPS = 6 };
+	little_scene *s = crowd_of_balls();
+	s->run.substeps = 1;
+	s->run.iterations = 4;
+	const uint64_t one = run(s, 1, STEPS);
+	CHECK(arranged_together);
+	for (uint32_t workers = 2; workers <= 5; workers += 3)
+		CHECK(run(s, workers, STEPS) == one);
+	free(s);
+}
+
 int main(void)
 {
+	test_many();
 	compare(OB_SOLVER_COLOURED, OB_INTEGRATOR_EXACT, 0, 240);
 	compare(OB_SOLVER_JACOBI, OB_INTEGRATOR_EXACT, 0, 240);
 	compare(OB_SOLVER_COLOURED, OB_INTEGRATOR_ODE, 0, 60);
