@@ -240,6 +240,19 @@ void ob_batch_solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_r
 	ob_kernel_best()->solve(b, iteration, u, v, d, delta);
 }
 
+bool ob_batch_is_lone(const ob_batch *b)
+{
+	const int l = __builtin_ctz(b->live | 1u << OB_LANES);
+	return l < OB_LANES && lanes_count(b->live) == 1 && b->isolated == b->live && b->kind == OB_KIND_FULL &&
+	       !(b->disc[l] > 0) && (b->ima[l] > 0) != (b->imb[l] > 0);
+}
+
+void ob_batch_solve_lone(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
+			 const ob_body_row *d)
+{
+	ob_kernel_best()->solve_lone(b, __builtin_ctz(b->live), iteration, u, v, d);
+}
+
 bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)
 {
 	return ob_kernel_best()->project(b, slop, beta, jacobi, d, delta);

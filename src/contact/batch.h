@@ -124,6 +124,11 @@ void ob_batch_prepare(ob_batch *b);
 // v: velocities at the substep's start.
 void ob_batch_solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		    const ob_body_row *d, ob_body_row *delta);
+// The first iteration where one lane is live, isolated, and has one body that moves while the rows of the other are
+// zeros: at once (contact/lone.h). What is not solved by it, b->solved says so, other iterations may follow.
+bool ob_batch_is_lone(const ob_batch *b);
+void ob_batch_solve_lone(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
+			 const ob_body_row *d);
 // Position projection: pushes penetrations beyond slop (m) apart by the share beta, in the displacements only:
 // velocities never see it. false: there were none.
 bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
@@ -144,6 +149,8 @@ typedef struct ob_kernel {
 	void (*prepare)(ob_batch *b);
 	void (*solve)(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		      const ob_body_row *d, ob_body_row *delta);
+	void (*solve_lone)(ob_batch *b, int l, const ob_solver_iteration *iteration, ob_body_row *u,
+			   const ob_body_row *v, const ob_body_row *d);
 	bool (*project)(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
 	void (*limit_prediction)(ob_batch *b, const double *cap_impulse, double cap_velocity);
 	void (*row_velocities)(const ob_batch *b, const ob_body_row *rows, lanes *r);

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "contact/lone.h"
 #include "contact/patch.h"
 
 static const int max_block_sweeps = 64;
@@ -793,4 +794,4 @@ static void row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r)
 	friction_velocities(b, OB_KIND_FULL, xa, xb, r);
 }
 
-const ob_kernel OB_KERNEL = { prepare, solve, project, limit_prediction, row_velocities, apply_impulses };
+const ob_kernel OB_KERNEL = { prepare, solve, solve_lone, project, limit_prediction, row_velocities, apply_impulses };
