@@ -307,22 +307,12 @@ static bool is_listed_with(const builder *p, const ob_pair_key *k, uint32_t side
 	return is_in_range(p, k) && (!side || p->data->result_island[k->a] == NONE);
 }
 
-// The pair is to be checked when the island is solved (late_contacts.h). Of several ranks each checks what it has
-// listed, and has entries in its calendar that are not for it to check.
-static void list_check(const builder *p, uint32_t pair)
-{
-	ob_step_data *data = p->data;
-	const ob_calendar look = ob_calendar_of_pairs(p->u);
-	if (p->alone)
-		ob_calendar_set(&look, pair, p->step + 1);
-	else if (data->count->checks < data->pairs_max)
-		data->check[data->count->checks++] = pair;
-}
-
-// in_island holds from here to the next islands. All of its pairs are to be checked, in an island or not.
+// in_island holds from here to the next islands. All of its pairs, in an island or not, are to be checked when that is
+// solved (late_contacts.h).
 static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listing *to)
 {
 	ob_step_data *data = p->data;
+	const ob_calendar look = ob_calendar_of_pairs(p->u);
 	ob_pair_place at;
 	for (uint32_t link = data->first_pair[id], next; ob_pair_at(data, link, &at); link = next) {
 		ob_pair_key *k = &data->pair[at.pair];
@@ -331,7 +321,7 @@ static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listin
 		ob_prefetch_link(p->u, next);
 		if (!is_listed_with(p, k, at.side))
 			continue;
-		list_check(p, at.pair);
+		ob_calendar_set(&look, at.pair, p->step + 1);
 		const bool in_island = island_of_pair(p, k) == island;
 		if (k->in_island != in_island)
 			k->in_island = in_island;
@@ -400,7 +390,6 @@ static void list_own_pairs(const builder *p)
 	ob_step_data *data = p->data;
 	listing found;
 	found.visits = 0;
-	data->count->checks = 0;
 	for (uint32_t n = 0, at = 0; n < data->count->islands; n++) {
 		const uint32_t i = data->result_island[data->member[at]];
 		ob_island *is = &data->island[i];

@@ -360,33 +360,6 @@ static void note_solved(ob_universe *u)
 	}
 }
 
-// Of several ranks: the pairs of what was solved here are listed since then (island_builder.c), and some that are new.
-// What is in use no longer is left out.
-static void keep_listed(ob_universe *u)
-{
-	enum { AHEAD = 16 };
-	ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar look = ob_calendar_of_pairs(u);
-	const uint32_t listed = ob_checks_count(data), end = ob_pairs_end(data);
-	uint32_t n = 0;
-	for (uint32_t i = 0; i < listed; i++) {
-		const uint32_t pair = data->check[i];
-		if (i + AHEAD < listed) {
-			__builtin_prefetch(&data->pair[data->check[i + AHEAD]]);
-			__builtin_prefetch(&look.level.one[data->check[i + AHEAD]], 1);
-		}
-		if (pair >= end) {
-			data->count->failure = OB_STEP_DAMAGED;
-			break;
-		}
-		if (data->pair[pair].a == data->pair[pair].b)
-			continue;
-		ob_calendar_set(&look, pair, UINT32_MAX);
-		data->check[n++] = pair;
-	}
-	data->count->checks = n;
-}
-
 // Of several ranks this one has entered the pair before another has listed it, which has solved one of its objects.
 static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
 {
@@ -395,18 +368,18 @@ static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
 	       !ob_pair_is_checked_here(u, k);
 }
 
-// Of several ranks: those that have an entry for now, which they lose.
-static void list_entries(ob_universe *u, uint64_t steps)
+// Such a pair loses its entry, as those that are checked get another.
+static void leave_to_others(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const ob_calendar look = ob_calendar_of_pairs(u);
-	uint32_t n = data->count->checks;
-	const uint32_t first = n, listed = ob_calendar_list(&look, steps, data->check + first, data->pairs_max - first);
-	for (uint32_t i = first; i < first + listed; i++) {
-		ob_calendar_set(&look, data->check[i], UINT32_MAX);
-		if (!is_listed_elsewhere(u, &data->pair[data->check[i]]))
+	const uint32_t listed = data->count->checks;
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < listed; i++)
+		if (is_listed_elsewhere(u, &data->pair[data->check[i]]))
+			ob_calendar_set(&look, data->check[i], UINT32_MAX);
+		else
 			data->check[n++] = data->check[i];
-	}
 	data->count->checks = n;
 }
 
@@ -419,15 +392,9 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 	data->count->checked = (uint32_t)steps;
 	if (solved)
 		note_solved(u);
-	if (ob_universe_ranks(u) == 1) {
-		data->count->checks = ob_calendar_list(&look, steps, data->check, data->pairs_max);
-		return;
-	}
-	if (solved)
-		keep_listed(u);
-	else
-		data->count->checks = 0;
-	list_entries(u, steps);
+	data->count->checks = ob_calendar_list(&look, steps, data->check, data->pairs_max);
+	if (ob_universe_ranks(u) > 1)
+		leave_to_others(u);
 }
 
 // ---- the check

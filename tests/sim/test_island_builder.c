@@ -250,11 +250,14 @@ static uint32_t check_ranks(ob_universe *u, uint64_t seed, double density)
 		memset(ex->home, 0, BODIES * sizeof *ex->home);
 		random_graph(u, seed, density);
 		build(u);
-		busy += run && ex->count->checks > 0;
-		for (uint32_t i = 0; run && i < ex->count->checks; i++)
-			checks[ex->check[i]]--;
-		for (uint32_t i = 0; !run && i < ex->count->pairs; i++) // one alone enters them in the calendar
-			checks[i] += ex->look.one[i] == UINT32_MAX - 1 - ob_step_count(u);
+		uint32_t entered = 0;
+		for (uint32_t i = 0; i < ex->count->pairs; i++) {
+			const bool now =
+				ex->look.one[i] == UINT32_MAX - 1 - ob_step_count(u); // an entry for when all is solved
+			entered += now;
+			checks[i] += !now ? 0 : run ? -1 : 1;
+		}
+		busy += run && entered > 0;
 		for (uint32_t i = 0; i < ex->count->island_pairs; i++)
 			inside[ex->island_pair[i]] += run ? -1 : 1;
 		for (uint32_t i = 0; i < BODIES; i++) {
