@@ -574,7 +574,7 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 		return NULL;
 	const int version = whole ? write_contact_state(u, r, record) : -1;
 	if (c->holdings)
-		ob_holdings_note(c->holdings, u, record, version,
+		ob_holdings_note(c->holdings, u, record, version, &r->state,
 				 ob_universe_shares_contacts(u) ? OB_ALL_RANKS : ob_universe_rank_of(u, from->worker));
 	return NULL;
 }
@@ -805,8 +805,10 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 		give_queries(c, u);
 	if (scripts)
 		give_scripts(c, u);
-	if (islands || boxes || scripts)
-		memset(c->had, 0, ob_universe_capacity(u) * sizeof *c->had);
+	if (islands || boxes)
+		memset(c->had, 0, ob_universe_ids(u) * sizeof *c->had);
+	if (scripts)
+		memset(c->had, 0, ob_universe_step_data(u)->script_cells * sizeof *c->had);
 	return ob_mail_collect(u, &c->mail);
 }
 

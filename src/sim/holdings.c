@@ -63,13 +63,13 @@ static void give_away(const ob_universe *u, uint32_t record)
 	stamp[0] = stamp[1] = 0;
 }
 
-void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, uint32_t rank)
+void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, const ob_pair_state *state,
+		      uint32_t rank)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t before = h->holder[record];
 	h->holder[record] = rank == OB_ALL_RANKS ? ALL : (uint16_t)(1 + rank);
 	if (version >= 0)
-		h->digest[record][version] = digest_of(&data->record[record].version[version]);
+		h->digest[record][version] = digest_of(state);
 	else if (before == ALL || before == 1 + ob_universe_rank(u))
 		give_away(u, record);
 }

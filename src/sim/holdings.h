@@ -23,9 +23,10 @@ ob_holdings *ob_holdings_create(const ob_universe *u);
 void ob_holdings_destroy(ob_holdings *h); // NULL is allowed
 
 enum { OB_ALL_RANKS = UINT32_MAX };
-// A record has new contents, of the rank whose simulator has found them, or of all. version: where they are here; -1:
-// they are not.
-void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, uint32_t rank);
+// A record has new contents, of the rank whose simulator has found them, or of all. version: where they are here, and
+// state: what was written there; -1: they are not.
+void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, const ob_pair_state *state,
+		      uint32_t rank);
 // Whether it has them and no other rank does.
 bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record);
 

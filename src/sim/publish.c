@@ -38,12 +38,29 @@ static void trace_state_change(ob_sim *s, uint32_t id, const ob_motion *next)
 		ob_trace_moves(s->u, s->worker, id, ob_newest_motion(s->u, id)->flags, next->flags);
 }
 
+// Islands come in the order of their work, so their members lie anywhere.
+static void prefetch_members(const ob_universe *u, uint32_t island)
+{
+	enum { MOST = 8 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_island *is = &data->island[island];
+	for (uint32_t k = 0; k < is->members && k < MOST; k++) {
+		const uint32_t id = data->member[is->first_member + k];
+		__builtin_prefetch(&data->schedule[id]);
+		__builtin_prefetch(&data->result_island[id], 1);
+		ob_prefetch_slot(u, id);
+	}
+}
+
 void ob_results_commit(ob_sim *s)
 {
+	enum { AHEAD = 4 };
 	ob_step_data *data = s->data;
 	bool others_copy = s->settings->one_per_object && !ob_universe_contains(s->u);
 	for (uint32_t i = 0; i < data->count->islands; i++) {
 		const ob_island *is = &data->island[i];
+		if (i + AHEAD < data->count->islands)
+			prefetch_members(s->u, i + AHEAD);
 		for (uint32_t k = 0; k < is->members; k++) {
 			uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;

@@ -98,11 +98,11 @@ static void check_damage(void)
 	fixture f;
 	open_crate(&f);
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
-	ob_holdings_note(f.h, f.l.u, f.record, f.version, 0);
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, f.state, 0);
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
 	f.state->impulse[0] = nextafter(f.state->impulse[0], 1);
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == 0); // the ground, the first of the two
-	ob_holdings_note(f.h, f.l.u, f.record, -1, 1); // it is another's
+	ob_holdings_note(f.h, f.l.u, f.record, -1, NULL, 1); // it is another's
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
 	close_crate(&f);
 }
@@ -114,12 +114,12 @@ static void check_ways(void)
 	open_crate(&f);
 	const ob_pair_state before = *f.state;
 	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // all have it
-	ob_holdings_note(f.h, f.l.u, f.record, f.version, 0);
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, f.state, 0);
 	CHECK(ob_holdings_here_alone(f.h, f.l.u, f.record));
 	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // its solver has it
 	CHECK(ob_holdings_gather(f.h, f.l.u, &f.p) && f.wire.calls == 1 && f.wire.kept > sizeof before);
 	CHECK(!ob_holdings_here_alone(f.h, f.l.u, f.record));
-	ob_holdings_note(f.h, f.l.u, f.record, f.version, 0);
+	ob_holdings_note(f.h, f.l.u, f.record, f.version, f.state, 0);
 	give_crate_to(&f, 1);
 	f.wire.kept = 0; // the other has nothing to give
 	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2 && f.wire.kept > sizeof before);
