@@ -4,6 +4,7 @@
 #include "contact/cylinder.h"
 #include "contact/hull_round.h"
 #include "contact/polytope.h"
+#include "contact/support.h"
 #include "motion/drift.h"
 #include "motion/spin.h"
 
@@ -242,13 +243,98 @@ static ob_placed placed_at(moving_shape *x, double t)
 	return y;
 }
 
-double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
+// rad/s, world, when it is at "now": its momentum stays.
+static ob_vec3 rate_at(const moving_shape *x, const ob_placed *now)
+{
+	const ob_vec3 i = x->from->inertia, b = x->rate;
+	if (!(x->speed > 0))
+		return ob_v3(0, 0, 0);
+	if (!(i.x > 0 && i.y > 0 && i.z > 0))
+		return x->from->w;
+	const ob_vec3 l = ob_rotate_back(&now->r, ob_rotate(&x->from->r, ob_v3(i.x * b.x, i.y * b.y, i.z * b.z)));
+	return ob_rotate(&now->r, ob_v3(l.x / i.x, l.y / i.y, l.z / i.z));
+}
+
+// m/s^2, of any point, by turning; of what has no end: infinity
+static double bend_of(const moving_shape *x)
+{
+	const double radius = ob_shape_radius(x->from->shape, x->from->size);
+	if (isinf(radius) || !(x->speed > 0))
+		return isinf(radius) ? INFINITY : 0;
+	return radius * ob_bending_of(x->from->inertia, x->spin.fastest).most;
+}
+
+// Two shapes at an instant, seen along a direction n from b to a: how far apart their centres are (m), how fast that
+// grows (m/s), how n turns as each of them sees it (1/s), and how much faster their points may come to close (m/s^2).
+typedef struct seen_along {
+	const ob_placed *a, *b;
+	ob_vec3 n, turn_a, turn_b;
+	double centres, rate, bend;
+} seen_along;
+
+// How far apart the shapes are at t, at least (m). Seen from a shape that turns n turns the other way: to first order
+// that is where its points are along n, and what else turning does to them is bounded. A concave function of t.
+static double apart_at(const seen_along *x, double t)
+{
+	const ob_vec3 na = ob_madd(x->n, t, x->turn_a), nb = ob_madd(x->n, t, x->turn_b);
+	return x->centres + t * (x->rate - .5 * t * x->bend) - ob_reach(x->a, ob_scale(na, -1)) - ob_reach(x->b, nb);
+}
+
+// Takes n for the direction *best if the shapes are farther apart along it than *most (m).
+static void try_direction(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_vec3 *best, double *most)
+{
+	const double least = 1e-6, length = ob_norm(n);
+	if (!(length > least)) // two axes are parallel, or there is none
+		return;
+	n = ob_scale(n, (ob_dot(n, ob_sub(a->p, b->p)) < 0 ? -1 : 1) / length);
+	const double apart = ob_apart_along(a, b, n);
+	if (apart > *most)
+		*most = apart, *best = n;
+}
+
+// A direction along which they are nearly as far apart as they are known to be (m), if there is one: that of before (or
+// 0), the axes of both, the line of their centres, what is across two axes. Returns how far they are along it.
+static double find_direction(const ob_placed *a, const ob_placed *b, double known, ob_vec3 *along)
+{
+	const double enough = .9 * known;
+	double most = -INFINITY;
+	try_direction(a, b, *along, along, &most);
+	for (int k = 0; k < 6 && most < enough; k++)
+		try_direction(a, b, ob_column(k < 3 ? &a->r : &b->r, k % 3), along, &most);
+	if (most < enough)
+		try_direction(a, b, ob_sub(a->p, b->p), along, &most);
+	for (int k = 0; k < 9 && most < enough; k++)
+		try_direction(a, b, ob_cross(ob_column(&a->r, k / 3), ob_column(&b->r, k % 3)), along, &most);
+	return most;
+}
+
+// For how long within h (s) the two, at least, stay farther apart than "near" (m); "certain" (s) of it is known.
+static double time_apart(seen_along *x, double near, double certain, double h)
+{
+	enum { NARROW = 2 };
+	const double farther = 4;
+	double low = 0, at_low = apart_at(x, 0) - near;
+	if (at_low <= 0 || apart_at(x, h) >= near)
+		return at_low <= 0 ? certain : h;
+	const double high = ob_min(h, farther * certain), at_high = apart_at(x, high) - near;
+	if (at_high >= 0)
+		return high;
+	for (int k = 0; k < NARROW && at_low > 0; k++) { // a chord is below it
+		low += (high - low) * (at_low / (at_low - at_high));
+		at_low = apart_at(x, low) - near;
+	}
+	return ob_max(certain, low);
+}
+
+double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double exact, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out)
 {
 	double t = 0, apart = 0;
 	moving_shape am, bm;
 	set_off(a, &am);
 	set_off(b, &bm);
+	seen_along x = { .n = { 0, 0, 0 }, .bend = bend_of(&am) + bend_of(&bm) };
+	const bool by_direction = isfinite(x.bend) && !find.of_boxes;
 	// A grazing flight takes many small advances; after so many, what is this near counts as touching.
 	for (int tries = 0; tries < 256 && t <= h; tries++) {
 		ob_placed at = placed_at(&am, t), bt = placed_at(&bm, t);
@@ -259,7 +345,17 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			return t;
 		if (out->points)
 			break;
-		t += (ob_max(out->separation, tolerance) - .5 * tolerance) / speed;
+		const double near = .5 * tolerance, certain = (ob_max(out->separation, tolerance) - near) / speed;
+		double advance = certain;
+		if (by_direction && t + certain < h && find_direction(&at, &bt, out->separation, &x.n) > near) {
+			x.a = &at, x.turn_a = ob_cross(x.n, rate_at(&am, &at));
+			x.b = &bt, x.turn_b = ob_cross(x.n, rate_at(&bm, &bt));
+			x.centres = ob_dot(x.n, ob_sub(at.p, bt.p)), x.rate = ob_dot(x.n, ob_sub(at.v, bt.v));
+			advance = time_apart(&x, near, certain, h - t);
+		}
+		t += advance;
+		if (t > exact && t < h && margin == tolerance && advance < .5 * exact)
+			return t;
 	}
 	if (t <= h) {
 		ob_placed at = placed_at(&am, t), bt = placed_at(&bm, t);

@@ -50,15 +50,19 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 typedef struct ob_manifold_finder {
 	void (*find)(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 	void *with;
+	bool of_boxes; // of axis-aligned ones in place of the shapes, which may touch where the shapes do not
 } ob_manifold_finder;
 
 // Time of impact by conservative advancement (Mirtich 1996), so that nothing passes through anything between two
-// collision tests: both shapes move at their constant v and turn freely. Returns the first time in [0, h] (s) at which
-// they are within tolerance (m), and in out the points up to margin (m) as of that time: what turns about the first
-// point to touch brings the next ones down within the same step. Infinity if they do not touch; then out has no points,
-// and separation is as of now. So it is where margin is tolerance and too many advances would be needed, beside what turns
-// fast: then the time is that until which they certainly do not touch. speed: bound of the closing speed of any two points (m/s) until then.
-double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
+// collision tests: both shapes move at their constant v and turn freely. They advance to where they may touch by the
+// speed at which any two points close at most, or by how the shapes reach along a direction that separates them.
+// Returns the first time in [0, h] (s) at which they are within tolerance (m), and in out the points up to margin (m)
+// as of that time: what turns about the first point to touch brings the next ones down within the same step. Infinity
+// if they do not touch; then out has no points, and separation is as of now. So it is where margin is tolerance and too
+// many advances would be needed, beside what turns fast: then the time is that until which they certainly do not touch;
+// and so is a time beyond "exact" (s), where closer advances than half of that would be needed. speed: bound of the
+// closing speed of any two points (m/s) until then.
+double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double exact, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out);
 
 #endif

@@ -46,8 +46,7 @@ ob_vec3 ob_support_between(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 	return ob_sub(ob_support(a, ob_scale(n, -1)), ob_support(b, n));
 }
 
-// How far the shape reaches from its centre along n, times n's length (m).
-static double reach(const ob_placed *x, ob_vec3 n)
+double ob_reach(const ob_placed *x, ob_vec3 n)
 {
 	const ob_vec3 z = ob_column(&x->r, 2);
 	const double along = fabs(ob_dot(z, n));
@@ -66,7 +65,7 @@ static double reach(const ob_placed *x, ob_vec3 n)
 
 double ob_apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 {
-	return ob_dot(n, ob_sub(a->p, b->p)) - reach(a, ob_scale(n, -1)) - reach(b, n);
+	return ob_dot(n, ob_sub(a->p, b->p)) - ob_reach(a, ob_scale(n, -1)) - ob_reach(b, n);
 }
 
 // ---- across an axis

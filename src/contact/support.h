@@ -9,6 +9,9 @@
 // hulls.
 ob_vec3 ob_support(const ob_placed *x, ob_vec3 n);
 
+// How far the shape reaches from its centre along n, times n's length (m): a convex function of n.
+double ob_reach(const ob_placed *x, ob_vec3 n);
+
 // From b's farthest point along n to a's farthest against it: the gradient of the separation along n.
 ob_vec3 ob_support_between(const ob_placed *a, const ob_placed *b, ob_vec3 n);
 

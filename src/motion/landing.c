@@ -6,26 +6,6 @@
 static const double near = 1e-11; // of the shape's radius: a point that is closer and comes down lands
 static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
-// How much the motion of a point that turns about the centre may bend, per metre from it, at rates of up to w (rad/s).
-// Euler: b_i' = c_i b_j b_k for the rate b in the frame of the body. With k the largest |c_i|, |b'| <= k w^2 / sqrt(3)
-// and |b''| <= 2/3 k^2 w^3, for sums of products of shares that add up to 1; in the world the rate's second derivative
-// has b x b' as well, and the arm's third is made of products of these.
-typedef struct bending {
-	ob_vec3 coupling; // c
-	double most, jerk; // 1/s^2, 1/s^3: of the arm's second and third derivative
-} bending;
-
-static bending bending_of(ob_vec3 i, double w)
-{
-	bending x = { .coupling = { 0, 0, 0 } };
-	if (i.x > 0 && i.y > 0 && i.z > 0)
-		x.coupling = ob_v3((i.y - i.z) / i.x, (i.z - i.x) / i.y, (i.x - i.y) / i.z);
-	const double k = ob_max(fabs(x.coupling.x), ob_max(fabs(x.coupling.y), fabs(x.coupling.z))), once = k / sqrt(3);
-	x.most = w * w * (1 + once);
-	x.jerk = w * w * w * (1 + 4 * once + 2. / 3 * k * k);
-	return x;
-}
-
 // A shape is the points around its centre, grown by a radius: a box its corners, a capsule the ends of its axis. A
 // cylinder's are the ends of its axis, with a rim about each.
 typedef struct outline {
@@ -240,7 +220,7 @@ typedef struct instant {
 } instant;
 
 // For how long no point of the outline lands, at least (s); *lands: one does then.
-static double advance(const ob_flier *f, const outline *h, const bending *bends, ob_vec3 n, instant now, double a,
+static double advance(const ob_flier *f, const outline *h, const ob_bending *bends, ob_vec3 n, instant now, double a,
 		      double tolerance, bool *lands)
 {
 	const double most = ob_max(0, -a) + h->reach * bends->most, height = now.height - h->radius;
@@ -292,7 +272,7 @@ double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double fro
 		if (first >= from)
 			return first;
 	}
-	const bending bends = bending_of(f->inertia, f->spin ? f->spin->fastest : 0);
+	const ob_bending bends = ob_bending_of(f->inertia, f->spin ? f->spin->fastest : 0);
 	const double tolerance = near * radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
 	double s = from;
 	for (int k = 0; k < most_advances && s <= until; k++) {

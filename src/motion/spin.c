@@ -155,6 +155,20 @@ double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia)
 	return fastest_of(ob_rotate_back(&r, w), inertia);
 }
 
+// With k the largest |c_i|, |b'| <= k w^2 / sqrt(3) and |b''| <= 2/3 k^2 w^3, for sums of products of shares that add
+// up to 1; in the world the rate's second derivative has b x b' as well, and the arm's third is made of products of
+// these.
+ob_bending ob_bending_of(ob_vec3 i, double w)
+{
+	ob_bending x = { .coupling = { 0, 0, 0 } };
+	if (i.x > 0 && i.y > 0 && i.z > 0)
+		x.coupling = ob_v3((i.y - i.z) / i.x, (i.z - i.x) / i.y, (i.x - i.y) / i.z);
+	const double k = ob_max(fabs(x.coupling.x), ob_max(fabs(x.coupling.y), fabs(x.coupling.z))), once = k / sqrt(3);
+	x.most = w * w * (1 + once);
+	x.jerk = w * w * w * (1 + 4 * once + 2. / 3 * k * k);
+	return x;
+}
+
 void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {
 	const ob_mat3 r = ob_quat_matrix(q);

@@ -51,6 +51,15 @@ void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia);
 // Bound of the angular speed (rad/s) of a free body that turns with w at q, at any time.
 double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
+// How much the path of a point may bend that turns freely about the centre, per metre from it, at angular speeds of up
+// to w (rad/s).
+typedef struct ob_bending {
+	ob_vec3 coupling; // c of Euler's equations b_i' = c_i b_j b_k, for the rate b in the frame of the body
+	double most, jerk; // 1/s^2, 1/s^3: of the second and third derivative of the arm
+} ob_bending;
+
+ob_bending ob_bending_of(ob_vec3 inertia, double w);
+
 // |q|^2 - 1 to the last digit, of a q that is nearly a unit quaternion.
 double ob_quat_excess(ob_quat q);
 

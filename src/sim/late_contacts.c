@@ -81,14 +81,15 @@ static double relative_speed(const ob_placed *a, const ob_placed *b, double h)
 	       ob_turning_speed(b->shape, b->size, b->inertia, ob_rotate_back(&b->r, b->w), h);
 }
 
-// First time at which the two touch within h (s) as they go on; apart: m, their distance now.
+// First time at which the two touch within h (s) as they go on, or beyond the step one before which they do not; apart:
+// m, their distance now.
 static double time_of_contact(const pair_check *c, const moving_pair *p, double h, double *apart)
 {
 	ob_manifold m;
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
 	double speed = relative_speed(a, b, h);
 	double gap = ob_min(contact_gap * c->s->island.unit.length, contact_gap_share * p->thin);
-	double when = ob_time_of_impact(a, b, ob_max(speed, 1e-9), h, gap, gap, ob_narrowphase_finder(c->s), &m);
+	double when = ob_time_of_impact(a, b, ob_max(speed, 1e-9), h, p->h, gap, gap, ob_narrowphase_finder(c->s), &m);
 	*apart = m.separation;
 	return when;
 }

@@ -123,7 +123,7 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 
 ob_manifold_finder ob_narrowphase_finder(ob_sim *s)
 {
-	return (ob_manifold_finder){ find_manifold, s };
+	return (ob_manifold_finder){ find_manifold, s, s->settings->narrow_phase == OB_NARROW_AABB };
 }
 
 double ob_narrowphase_rest_depth(const ob_sim *s, double thickness, bool pressed)
@@ -210,7 +210,8 @@ static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizo
 	place(s, contact->b, &b);
 	double near = ob_min(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
 	s->counters.swept_tests++;
-	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_finder(s), m);
+	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, horizon, near, reach,
+				 ob_narrowphase_finder(s), m);
 }
 
 double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *contact, double horizon)
