@@ -23,28 +23,35 @@ static ob_half_space half_space(const ob_universe *u, uint32_t plane)
 	return (ob_half_space){ n, ob_dot(n, m->p) };
 }
 
+// How the object turns in a flight; NULL: it does not, or that cannot be seen.
+static ob_spin *spin_of(ob_sim *s, uint32_t id, const ob_motion *f)
+{
+	const ob_passport *body = ob_passport_of(s->u, id);
+	return body->shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0
+		       ? ob_rotation_cache_get(&s->rotations, id, f->q, f->w, body->inertia)
+		       : NULL;
+}
+
 // The flight as motion/flight.h takes it. Objects that touch as axis-aligned boxes reach beyond their bounding sphere.
-static ob_flier landing_body(ob_sim *s, uint32_t id, const ob_motion *f)
+static ob_flier landing_body(ob_sim *s, uint32_t id, const ob_motion *f, ob_spin *spin)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);
 	ob_flier out = { body->shape, body->size, body->inertia, f->p, f->v,
-			 f->a,        f->q,       f->w,          NULL, ob_hull_of(s->u, body) };
+			 f->a,        f->q,       f->w,          spin, ob_hull_of(s->u, body) };
 	if (s->settings->narrow_phase == OB_NARROW_AABB) {
 		double reach = sqrt(3) * ob_shape_radius(body->shape, body->size);
 		out.shape = OB_SHAPE_NONE;
 		out.size = ob_v3(reach, 0, 0);
 	}
-	if (out.shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0)
-		out.spin = ob_rotation_cache_get(&s->rotations, id, f->q, f->w, body->inertia);
 	return out;
 }
 
 // When the flight first meets a plane (s), from an instant on; infinity: not until "until". plane: its id.
-static double plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight, double from, double until,
-				uint32_t *plane)
+static double plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight, ob_spin *spin, double from,
+				double until, uint32_t *plane)
 {
 	const ob_step_data *data = s->data;
-	ob_flier f = landing_body(s, id, flight);
+	ob_flier f = landing_body(s, id, flight, spin);
 	double first = INFINITY;
 	enum { WORK_OF_LANDING = 32 };
 	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(s); i++) {
@@ -179,13 +186,16 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 	const double approach = fastest_approach(body, point, points);
 	if (!(approach > contact_approach * s->island.unit.speed))
 		return false;
-	for (int k = 0; k < REFLECTIONS && fastest_approach(body, point, points) > reflected * approach; k++)
+	double left = approach;
+	for (int k = 0; k < REFLECTIONS && left > reflected * approach; k++) {
 		ob_impact_solve(body, 2, point, points, NULL); // few points, few times
+		left = fastest_approach(body, point, points);
+	}
 	if (points > 0)
 		ob_touches_note(s->u, id, plane, passport->mass * ob_dot(ob_sub(body[0].v, state->v), ground.normal),
 				ob_add(state->pose.p, point[0].arm_a));
 	state->v = body[0].v, state->w = body[0].w;
-	return fastest_approach(body, point, points) <= reflected * approach;
+	return left <= reflected * approach;
 }
 
 // ---- flight
@@ -230,20 +240,18 @@ ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *f, double t
 }
 
 // Bound of the speed of any point of the object between two instants of the flight (m/s).
-static double flight_speed_bound(ob_sim *s, uint32_t id, const ob_motion *f, double from, double until)
+static double flight_speed_bound(ob_sim *s, uint32_t id, const ob_motion *f, const ob_spin *spin, double from,
+				 double until)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);
 	double begin = ob_norm(ob_madd(f->v, from - f->t0, f->a)), end = ob_norm(ob_madd(f->v, until - f->t0, f->a));
-	if (body->shape == OB_SHAPE_SPHERE || !(ob_norm2(f->w) > 0))
-		return ob_max(begin, end);
-	const ob_spin *spin = ob_rotation_cache_get(&s->rotations, id, f->q, f->w, body->inertia);
-	return ob_max(begin, end) + spin->fastest * ob_shape_radius(body->shape, body->size);
+	return ob_max(begin, end) + (spin ? spin->fastest * ob_shape_radius(body->shape, body->size) : 0);
 }
 
 // Publishes the flight m that holds after the running step; m->path is that at the step's end. straight: it held from
 // the step's start on. Then its fat AABB need hold no more than the path, from that start to the end of the step that
 // visits it next: whatever throws it off its path makes a new one. After an impact it holds wherever the body was.
-static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, bool straight)
+static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *spin, bool straight)
 {
 	const ob_run_settings *run = s->settings;
 	const ob_passport *body = ob_passport_of(s->u, id);
@@ -251,7 +259,7 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, bool straight)
 	const double h = run->step_length, end = (double)step * h;
 	uint64_t due = m->flags & OB_MOTION_FREE ? (uint64_t)(m->valid_until / h) : step;
 	due -= (double)due * h > m->valid_until && due > step; // the quotient may have been rounded up
-	double last = (double)(due + 1) * h, reach = flight_speed_bound(s, id, m, end, last) * h;
+	double last = (double)(due + 1) * h, reach = flight_speed_bound(s, id, m, spin, end, last) * h;
 	const double from = straight ? end - h : end;
 	// Of what turns the box is that of the bounding sphere, so its attitude need not be known.
 	ob_motion rest = { .p = ob_centre_at(m, from), .q = m->q, .v = ob_velocity_at(m, from), .w = m->w, .a = m->a };
@@ -354,10 +362,12 @@ bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 	double from = ob_max(m.valid_until, since);
 	uint32_t plane = 0, impacts = 0;
 	m.path = ob_path_now(&m, step);
+	ob_spin *spin;
 	for (;;) {
-		m.valid_until = ob_min(horizon, plane_impact_time(s, id, &m, from, horizon, &plane));
+		spin = spin_of(s, id, &m);
+		m.valid_until = ob_min(horizon, plane_impact_time(s, id, &m, spin, from, horizon, &plane));
 		double until = ob_min(m.valid_until, end);
-		m.path += flight_speed_bound(s, id, &m, since, until) * (until - since);
+		m.path += flight_speed_bound(s, id, &m, spin, since, until) * (until - since);
 		if (!(m.valid_until < end))
 			break;
 		ob_state at = ob_ballistic_state(s, id, &m, until);
@@ -369,6 +379,6 @@ bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 	// After one impact, what was published before holds up to it; not up to the last of several.
 	m.flags = impacts < 2 ? OB_MOTION_FREE : 0;
 	s->counters.impacts += impacts;
-	publish_flight(s, id, &m, impacts == 0);
+	publish_flight(s, id, &m, spin, impacts == 0);
 	return true;
 }
