@@ -112,6 +112,7 @@ static void print_parts(const watched *r)
 	bench_print("critical path", "us/step", 1e6 * critical / (double)(r->steps - r->from));
 	const double simulated = r->after.simulated_s - r->before.simulated_s;
 	bench_print("critical path, 16 workers", "us/step", 1e6 * simulated / (double)(r->steps - r->from));
+	bench_print("arranged by one worker alone", "us/body-step", 1e6 * (r->after.alone_s - r->before.alone_s) / all);
 	bench_print("speed-up of 16 workers", "1", 1e-6 * sum * all / simulated);
 #define COUNT(what) bench_print("count: " #what, "1/body-step", (double)(b->what - a->what) / all)
 	COUNT(ballistic_advances);

@@ -354,6 +354,7 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 		.step_p99_s = ob_latency_percentile(steps, .99),
 		.step_max_s = ob_latency_percentile(steps, 1),
 		.critical_s = 1e-9 * (double)ob_critical_path(h->u),
+		.alone_s = 1e-9 * (double)ob_time_alone(h->u),
 		.simulated_s = tells_of_tasks(h->u) ? 1e-9 * (double)ob_simulated_path(h->u) : NAN,
 	};
 	get_memory(h, out);

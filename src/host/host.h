@@ -62,6 +62,7 @@ typedef struct ob_host_times {
 	double cpu_s; // CPU of the workers in that time; of processes as of the kernel's last tick, some ms ago
 	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
 	double critical_s; // if timed: critical path of all steps: the longest worker in each phase, and scheduling (CPU)
+	double alone_s; // of that, scheduling
 	double simulated_s; // likewise, of OB_SIMULATED_WORKERS workers (sim/critical_path.h); NaN where it is not told
 	double elapsed_s; // from the first go that stepped to the last pause, pauses included
 	uint32_t deaths; // times that simulators died, stalled, or failed

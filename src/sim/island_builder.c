@@ -10,7 +10,7 @@
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };
-enum { LINKED_AT_ONCE = 64, LISTED_AT_ONCE = 32 }; // bodies, islands: a task of some ten us
+enum { LINKED_AT_ONCE = 64 }; // bodies: likewise
 enum { CHUNK_WORK_MIN = 48 }; // work of a chunk, some us: for less the gate would cost more than another worker gains
 
 // What islands are built with: the bodies that are involved, and a union-find forest of them, whose roots are the
@@ -463,7 +463,7 @@ static void sort_by_work(builder *p)
 
 uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers)
 {
-	const uint64_t share = total / (16 * (uint64_t)workers) + 1;
+	const uint64_t share = total / (64 * (uint64_t)workers) + 1;
 	return share > CHUNK_WORK_MIN ? share : CHUNK_WORK_MIN;
 }
 
@@ -679,14 +679,14 @@ void ob_islands_list_members(ob_universe *u)
 uint32_t ob_islands_list_tasks(const ob_universe *u)
 {
 	const bool alone = ob_universe_ranks(u) < 2; // else whose they are says who lists their pairs
-	return alone ? (ob_universe_step_data(u)->count->islands + LISTED_AT_ONCE - 1) / LISTED_AT_ONCE : 0;
+	return alone ? (ob_universe_step_data(u)->count->islands + OB_ISLANDS_AT_ONCE - 1) / OB_ISLANDS_AT_ONCE : 0;
 }
 
 void ob_islands_list_pairs(ob_universe *u, uint32_t task)
 {
 	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
 	const builder p = builder_of(u, count->merged);
-	list_pairs(&p, task * LISTED_AT_ONCE, end_of_task(task, LISTED_AT_ONCE, count->islands));
+	list_pairs(&p, task * OB_ISLANDS_AT_ONCE, end_of_task(task, OB_ISLANDS_AT_ONCE, count->islands));
 }
 
 void ob_islands_deal(ob_universe *u)

@@ -5,7 +5,8 @@
 
 #include "table/table.h"
 
-enum { OB_ISLANDS_MANY = 1024 }; // bodies that are due: for fewer the gate would cost more than other workers gain
+enum { OB_ISLANDS_MANY = 256 }; // bodies that are due: for fewer the gate would cost more than other workers gain
+enum { OB_ISLANDS_AT_ONCE = 32 }; // of which something is listed, or published: some ten us
 
 // Groups the objects that are due (ob_schedule.due), and those that they touch or are expected to, into islands, and the
 // islands into chunks of about equal work, largest first; of several ranks, into one for each simulator. Islands that an

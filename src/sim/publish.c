@@ -52,26 +52,28 @@ static void prefetch_members(const ob_universe *u, uint32_t island)
 	}
 }
 
-void ob_results_commit(ob_sim *s)
+void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 {
 	enum { AHEAD = 4 };
-	ob_step_data *data = s->data;
-	bool others_copy = s->settings->one_per_object && !ob_universe_contains(s->u);
-	for (uint32_t i = 0; i < data->count->islands; i++) {
+	const ob_step_data *data = s->data;
+	const bool others_copy = s->settings->one_per_object && !ob_universe_contains(s->u);
+	int32_t woken = 0;
+	for (uint32_t i = first; i < end; i++) {
 		const ob_island *is = &data->island[i];
-		if (i + AHEAD < data->count->islands)
+		if (i + AHEAD < end)
 			prefetch_members(s->u, i + AHEAD);
 		for (uint32_t k = 0; k < is->members; k++) {
-			uint32_t id = data->member[is->first_member + k];
+			const uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;
-			data->count->awake += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
-			data->count->awake -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
+			woken += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
+			woken -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
 			if (others_copy && k > 0)
 				continue;
 			trace_state_change(s, id, ob_staged_motion(s->u, id));
 			ob_commit_motion(s->u, id);
 		}
 	}
+	ob_step_woken(s->u, woken);
 }
 
 void ob_result_copy(ob_sim *s, uint32_t id)

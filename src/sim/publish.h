@@ -22,8 +22,9 @@ bool ob_state_is_sane(const ob_state *s);
 void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due);
 // As staged, if the object's island was solved in this step and that is not yet committed; else as published.
 const ob_motion *ob_result_of(const ob_universe *u, uint32_t id);
-// By the scheduling worker: publishes all that was staged in slots; no object is in an island any more.
-void ob_results_commit(ob_sim *s);
+// Publishes all that was staged in slots for islands first .. end-1, by one worker or by several; their objects are in no
+// island any more.
+void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end);
 // By the worker of an object that another one has solved: publishes what that has left for it.
 void ob_result_copy(ob_sim *s, uint32_t id);
 

@@ -34,12 +34,14 @@
 //                                                 before the step                   records, contacts of after the step
 //   LATE_CONTACTS     256 pairs                 schedule records, motions         likewise, and late
 //                                                 before the step and staged
-//   COPY              (worker per object) the   result of its island's solver     its own slot
+//   COPY              32 islands                staged motions                    slots; no object is in an island
+//                     (worker per object) the   result of its island's solver     its own slot
 //                       worker's own object
 //   BASELINE          (ODE's world) all objects all of it                         all of it
 //
 // A phase is skipped where nobody has anything to do. The scheduling worker checks few pairs by itself, and finds the
-// islands of few bodies, of contained simulators, and where each object has a worker: see the open_ functions.
+// islands of few bodies, of contained simulators, and where each object has a worker; there it publishes, too: see the
+// open_ functions.
 #include <stdio.h>
 
 #include "sim/broadphase.h"
@@ -155,15 +157,20 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 	return true;
 }
 
-// Where little is to be arranged, or others cannot write what they find, the scheduling worker does it at once.
+// So much is solved in this step that all workers arrange it, and others can write what they find.
+static bool is_arranged_together(const scheduler *c)
+{
+	const bool alone = ob_universe_simulators(c->u) == 1 && !c->settings->timed;
+	return c->data->count->rooted && !alone && !c->settings->one_per_object && !ob_universe_contains(c->u);
+}
+
+// Else the scheduling worker does it at once.
 static bool open_arranging(const scheduler *c, ob_phase phase)
 {
 	const bool links = phase == OB_PHASE_LINKS;
-	const uint32_t tasks = links ? ob_islands_link_tasks(c->u) : ob_islands_list_tasks(c->u),
-		       all = ob_universe_simulators(c->u);
-	const bool alone = all == 1 && !c->settings->timed;
-	if (c->data->count->rooted && !alone && !c->settings->one_per_object && !ob_universe_contains(c->u)) {
-		open_tasks(c, phase, tasks, all);
+	const uint32_t tasks = links ? ob_islands_link_tasks(c->u) : ob_islands_list_tasks(c->u);
+	if (is_arranged_together(c)) {
+		open_tasks(c, phase, tasks, ob_universe_simulators(c->u));
 		return true;
 	}
 	for (uint32_t i = 0; i < tasks; i++)
@@ -240,11 +247,18 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	return true;
 }
 
-// With a worker per object: the objects that another one's worker has solved.
+// With a worker per object: the objects that another one's worker has solved. Else few islands are published at once.
 static bool open_copy(const scheduler *c, ob_phase phase)
 {
 	const ob_step_data *data = c->data;
+	const uint32_t islands = data->count->islands;
 	uint32_t n = 0;
+	if (is_arranged_together(c)) {
+		open_tasks(c, phase, (islands + OB_ISLANDS_AT_ONCE - 1) / OB_ISLANDS_AT_ONCE,
+			   ob_universe_simulators(c->u));
+		return true;
+	}
+	ob_results_commit(c->sim, 0, islands);
 	if (!c->settings->one_per_object || ob_universe_contains(c->u))
 		return false;
 	for (uint32_t i = 0; i < data->count->islands; i++)
@@ -388,9 +402,19 @@ static void solve_islands(ob_sim *s)
 	ob_worker_set_objects(s->u, s->worker, objects);
 }
 
-static void copy_result(ob_sim *s)
+static void publish_results(ob_sim *s)
 {
-	ob_result_copy(s, s->worker);
+	const uint32_t islands = s->data->count->islands;
+	uint32_t i;
+	if (s->settings->one_per_object) {
+		ob_result_copy(s, s->worker);
+		return;
+	}
+	while (ob_task_claim(s->u, &i)) {
+		const uint32_t first = i * OB_ISLANDS_AT_ONCE, end = first + OB_ISLANDS_AT_ONCE;
+		ob_results_commit(s, first, end < islands ? end : islands);
+		ob_profile_task_done(s, i);
+	}
 }
 
 static void step_baseline(ob_sim *s)
@@ -547,7 +571,6 @@ static ob_phase after_late_contacts(const scheduler *c)
 		ob_islands_merge(c->u);
 		return OB_PHASE_LISTS;
 	}
-	ob_results_commit(c->sim);
 	return OB_PHASE_COPY;
 }
 
@@ -586,7 +609,7 @@ static const step_phase phases[] = {
 	[OB_PHASE_ISLANDS]          = { open_islands,    solve_islands,      after_islands,          OB_PROFILE_LOAD,       OB_TRACE_SOLVE, 0 },
 	[OB_PHASE_BROADPHASE]       = { open_broadphase, query_neighbours,   after_broadphase,       OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, QUERIES_PER_WORKER },
 	[OB_PHASE_LATE_CONTACTS]    = { open_pairs,      find_late_contacts, after_late_contacts,    OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },
-	[OB_PHASE_COPY]             = { open_copy,       copy_result,        after_copy,             OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },
+	[OB_PHASE_COPY]             = { open_copy,       publish_results,    after_copy,             OB_PROFILE_PUBLISH,    OB_TRACE_OBJECTS, 0 },
 	[OB_PHASE_COMPLETE]         = { NULL,            NULL,               complete_step,          OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
 	[OB_PHASE_BASELINE]         = { open_baseline,   step_baseline,      after_baseline,         OB_PROFILE_SOLVE,      OB_TRACE_SOLVE, 0 },
 	[OB_PHASE_PAUSE]            = { open_pause,      NULL,               NULL,                   OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
@@ -617,8 +640,7 @@ static ob_phase schedule(ob_sim *s, ob_phase finished)
 	const ob_phase due = next_phase(&c, finished);
 	ob_fault_chance(s);
 	const ob_phase next = open_from(&c, due);
-	const uint64_t alone = ob_profile_end(s);
-	ob_critical_add(s->u, alone, alone);
+	ob_critical_add_alone(s->u, ob_profile_end(s));
 	return next;
 }
 

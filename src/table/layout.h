@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 26, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 27, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -128,6 +128,7 @@ typedef struct ob_step_clock {
 	uint64_t beside_ns; // of longest_ns's kind: of what is none of the phase's tasks
 	uint64_t critical_ns; // sum of these over all phases, and of scheduling; see above
 	uint64_t simulated_ns; // the same of OB_SIMULATED_WORKERS
+	uint64_t alone_ns; // of these what was scheduling
 	ob_latency latency;
 } ob_step_clock;
 

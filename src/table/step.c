@@ -74,6 +74,17 @@ void ob_critical_add(ob_universe *u, uint64_t ns, uint64_t simulated)
 	__atomic_fetch_add(&u->step_clock->simulated_ns, simulated, __ATOMIC_RELAXED);
 }
 
+void ob_critical_add_alone(ob_universe *u, uint64_t ns)
+{
+	ob_critical_add(u, ns, ns);
+	__atomic_fetch_add(&u->step_clock->alone_ns, ns, __ATOMIC_RELAXED);
+}
+
+uint64_t ob_time_alone(const ob_universe *u)
+{
+	return __atomic_load_n(&u->step_clock->alone_ns, __ATOMIC_RELAXED);
+}
+
 uint64_t ob_critical_path(const ob_universe *u)
 {
 	return __atomic_load_n(&u->step_clock->critical_ns, __ATOMIC_RELAXED);
@@ -219,6 +230,11 @@ uint64_t ob_step_work_add(ob_universe *u, uint64_t work)
 void ob_step_work_reset(ob_universe *u)
 {
 	__atomic_store_n(&u->step_data.count->work, 0, __ATOMIC_RELAXED);
+}
+
+void ob_step_woken(ob_universe *u, int32_t objects)
+{
+	__atomic_fetch_add(&u->step_data.count->awake, (uint32_t)objects, __ATOMIC_RELAXED);
 }
 
 void ob_step_visited(ob_universe *u, uint64_t visits)

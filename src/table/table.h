@@ -165,8 +165,10 @@ uint32_t ob_task_count(const ob_universe *u); // of the phase, as ob_task_reset
 void ob_phase_worked(ob_universe *u, uint64_t ns, uint64_t beside);
 uint64_t ob_phase_close(ob_universe *u); // returns what was beside, of the worker with the most of it (ns)
 void ob_critical_add(ob_universe *u, uint64_t ns, uint64_t simulated);
+void ob_critical_add_alone(ob_universe *u, uint64_t ns); // to both: one worker schedules
 uint64_t ob_critical_path(const ob_universe *u);
 uint64_t ob_simulated_path(const ob_universe *u);
+uint64_t ob_time_alone(const ob_universe *u); // what is scheduling in either
 
 // Worker cells. The worker itself calls announce once; the host refreshes the CPU time.
 void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu);
@@ -207,6 +209,8 @@ ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object); // objec
 // Adds to the step's work; returns the sum of all workers so far. The scheduler resets it.
 uint64_t ob_step_work_add(ob_universe *u, uint64_t work);
 void ob_step_work_reset(ob_universe *u);
+// Adds to ob_step_counts.awake: any worker.
+void ob_step_woken(ob_universe *u, int32_t objects);
 // Adds to ob_step_counts.visits: any worker.
 void ob_step_visited(ob_universe *u, uint64_t visits);
 // The object is in an island of the coming step, of which it is not yet known which one: any worker. false: it was already.

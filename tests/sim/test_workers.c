@@ -113,8 +113,8 @@ static little_scene *crowd_of_balls(void)
 	uint64_t seed = 2;
 	little_scene *s = little_scene_new();
 	ob_world_ground(&s->world);
-	for (int i = 0; i < LITTLE_MOST - 1; i++) {
-		ob_vec3 p = ob_v3(i % 20 * .41, i / 20 % 20 * .41, .25 + i / 400 * .41);
+	for (int i = 0; i < 2 * OB_ISLANDS_MANY; i++) {
+		ob_vec3 p = ob_v3(i % 16 * .41, i / 16 % 16 * .41, .25 + i / 256 * .41);
 		ob_world_sphere(&s->world, 10, .2, ob_add(p, random_vector(&seed, .02))).state->v =
 			random_vector(&seed, 3);
 	}
