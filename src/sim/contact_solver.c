@@ -5,6 +5,7 @@
 #include "sim/budget.h"
 #include "sim/conjugate.h"
 #include "sim/direct_solver.h"
+#include "sim/few_contacts.h"
 #include "sim/ghost.h"
 
 // Iterations. A change of velocity above the wake threshold makes a body active: its contacts are solved again.
@@ -29,10 +30,10 @@ static const double resting_gap = 1e-7; // m: a point that presses keeps its dis
 static const double turning_gap = 3e-6; // m: the same where the geometry turns
 
 // A few contacts that go on as they did are solved to the end, whatever the order in which they are taken: what is left
-// of each partial substep, else, is a force that nothing exerts.
-static const uint32_t few_contacts = 2;
+// of each partial substep, else, is a force that nothing exerts. How many: OB_FEW_CONTACTS.
 static const double solved_few = 1e-12; // m/s: the wake threshold, unless the first iteration changes more than ..
 static const double smooth_change = .01; // m/s: .. this
+static const uint32_t iterations_before_steps = 2; // for all of them at once
 
 static const double impact_threshold = .1; // m/s: faster changes are impacts and not extrapolated by the warm start
 
@@ -235,7 +236,13 @@ static bool few_touch(const ob_island_work *w)
 	unsigned pairs = 0;
 	for (uint32_t i = 0; i < w->batches; i++)
 		pairs += lanes_count(w->batch[i].live);
-	return pairs <= few_contacts;
+	return pairs <= OB_FEW_CONTACTS;
+}
+
+static void activate_all(ob_island_work *w)
+{
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		activate_body(w, i, w->iteration);
 }
 
 void ob_solver_iterate(ob_sim *s)
@@ -256,14 +263,23 @@ void ob_solver_iterate(ob_sim *s)
 		.dv = w->dv,
 	};
 	const double usual = iteration.wake_threshold;
-	if (w->coarseness == 1 && few_touch(w))
+	bool to_the_end = w->coarseness == 1 && few_touch(w);
+	if (to_the_end)
 		iteration.wake_threshold = ob_min(usual, solved_few * w->unit.speed);
+	enum { WORK_OF_STEP = 32 };
 	bool any_active = true;
 	double residual = 0, changed;
 	ob_direct_begin_partial(&w->direct);
 	for (uint32_t k = 0; k < max_extra_iterations * run->iterations && any_active && !ob_budget_spent(s); k++) {
-		if (k == run->iterations)
+		if (k == run->iterations) {
 			iteration.wake_threshold = extra_iteration_threshold * w->unit.speed;
+			to_the_end = false;
+		}
+		if (to_the_end && k >= iterations_before_steps && !iteration.jacobi && !iteration.ghosts) {
+			ob_budget_note(s, WORK_OF_STEP);
+			ob_few_contacts_step(w);
+			activate_all(w);
+		}
 		s->counters.solver_iterations++;
 		ob_ghosts_read(s, w->u, k);
 		activate_ghosts(w);
@@ -271,17 +287,18 @@ void ob_solver_iterate(ob_sim *s)
 		residual = solve_contacts(s, &iteration, &any_active, &changed);
 		if (iteration.first) {
 			w->residual = ob_max(w->residual, changed);
-			if (changed > smooth_change * w->unit.speed)
+			if (changed > smooth_change * w->unit.speed) {
 				iteration.wake_threshold = usual;
+				to_the_end = false;
+			}
 		}
 		iteration.first = false;
 		iteration.block_tolerance = block_tolerance * residual;
-		if (!ob_direct_wanted(s, residual))
-			continue;
-		ob_direct_solve(s);
-		any_active = true;
-		for (uint32_t i = 1; i <= w->bodies; i++)
-			activate_body(w, i, w->iteration);
+		if (ob_direct_wanted(s, residual)) {
+			ob_direct_solve(s);
+			any_active = true;
+			activate_all(w);
+		}
 	}
 	w->direct.used_last = w->direct.solves > 0;
 	if (ob_direct_settles(s, residual))
