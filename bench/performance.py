@@ -174,6 +174,21 @@ def scale(m):
                           note=f"mean {number(m.get(scene, engine, 'wall'))}")
 
 
+def shared(m):
+    def told(scene, quantity, what, end):
+        return m.get(scene, 'obsim 2 threads', quantity, setting=f'shared, {what}', duration=end)
+
+    alone = 'arranged by one worker alone'
+    landing = told('falling-10000', alone, 'landing', 2.)
+    work = told('falling-10000', 'cpu, timed', 'landing', 2.)
+    gain = told('falling-10000', 'speed-up of 16 workers', 'landing', 2.)
+    yield Promise('falling 10,000, landing: speed-up of 16 simulated workers', gain, 12, True)
+    yield Promise('falling 10,000, landing: share of the work that one worker arranges alone', landing / work, .02)
+    yield Promise('falling 10,000, landing: arranged by one worker alone, us per body-step', landing, .1)
+    yield Promise('sparse 10,000, in flight: arranged by one worker alone, us per body-step',
+                  told('sparse-10000', alone, 'in flight', 3.), .02)
+
+
 def pools(m):
     scenes = sorted({s for s, e, _, d in m.settings if e == 'obsim 2 processes' and not d})
     same = sum(len(set.union(*(m.texts(s, e, 'state') for e in SIDES_OF_OBSIM))) == 1 for s in scenes)
@@ -189,7 +204,7 @@ SIDES_OF_OBSIM = ['obsim', 'obsim 1 thread', 'obsim 1 process', 'obsim 2 threads
 
 def promises(m):
     text = head('what', 'target', 'measured', 'kept', '', texts=(0, 4))
-    for group in (flight, standing, heaps, hard, scale, pools):
+    for group in (flight, standing, heaps, hard, scale, shared, pools):
         for promise in group(m):
             text += promise.line()
     return text

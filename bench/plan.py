@@ -94,4 +94,6 @@ PARTS = [
     ('stack-10', 0, 20, 'standing'),
 ]
 CRITICAL = [('falling-1000', 10), ('falling-4000', 10)]
+# What 16 workers could gain, and what one arranges alone: (scene, from, to, what that is).
+SHARED = [('falling-10000', 1.2, 2, 'landing'), ('sparse-10000', .1, 3, 'in flight')]
 FUNCTIONS = [('falling-1000', 3), ('sparse-10000', 5), ('stack-10', 600)]

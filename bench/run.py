@@ -174,6 +174,12 @@ def profile(options, results):
             rows = [r for r in side.run('parts')[0] if r[0] in ('critical path', 'failed')]
             results.add(side, 1, rows)
             print(f"{scene:18} {name}, critical path {value_of(rows, 'critical path'):.4g} us", flush=True)
+    for scene, begin, end, what in plan.SHARED:
+        if wanted(scene, options.scenes):
+            side = Side(scene, 'obsim 2 threads', {'from': begin, 'duration': end}, f'shared, {what}')
+            told = 'cpu, timed', 'arranged by one worker alone', 'speed-up of 16 workers', 'failed'
+            results.add(side, 1, [r for r in side.run('parts')[0] if r[0] in told])
+            print(f'{scene:18} shared, {what}', flush=True)
     for scene, seconds in plan.FUNCTIONS:
         if wanted(scene, options.scenes):
             side = Side(scene, 'obsim', {'duration': seconds}, 'functions')
