@@ -369,18 +369,19 @@ static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
 	       !ob_pair_is_checked_here(u, k);
 }
 
-// Such a pair loses its entry, as those that are checked get another.
+// Such a pair is not checked here. All lose their entries, for those that are checked will get others: what the ranks
+// tell each other meanwhile is for which step there are any besides (peers.h).
 static void leave_to_others(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const ob_calendar look = ob_calendar_of_pairs(u);
 	const uint32_t listed = data->count->checks;
 	uint32_t n = 0;
-	for (uint32_t i = 0; i < listed; i++)
-		if (is_listed_elsewhere(u, &data->pair[data->check[i]]))
-			ob_calendar_set(&look, data->check[i], UINT32_MAX);
-		else
+	for (uint32_t i = 0; i < listed; i++) {
+		ob_calendar_set(&look, data->check[i], UINT32_MAX);
+		if (!is_listed_elsewhere(u, &data->pair[data->check[i]]))
 			data->check[n++] = data->check[i];
+	}
 	data->count->checks = n;
 }
 
