@@ -234,23 +234,34 @@ void ob_batch_prepare(ob_batch *b)
 	ob_kernel_best()->prepare(b);
 }
 
+static unsigned lone_lanes(const ob_batch *b, const ob_solver_iteration *iteration)
+{
+	unsigned found = 0;
+	if (b->kind != OB_KIND_FULL || iteration->jacobi || iteration->ghosts)
+		return 0;
+	for (unsigned left = b->live & b->isolated; left; left &= left - 1) {
+		const int l = __builtin_ctz(left);
+		found |= (unsigned)((b->ima[l] > 0) != (b->imb[l] > 0) && !(b->disc[l] > 0)) << l;
+	}
+	return found;
+}
+
 void ob_batch_solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		    const ob_body_row *d, ob_body_row *delta)
 {
-	ob_kernel_best()->solve(b, iteration, u, v, d, delta);
-}
-
-bool ob_batch_is_lone(const ob_batch *b)
-{
-	const int l = __builtin_ctz(b->live | 1u << OB_LANES);
-	return l < OB_LANES && lanes_count(b->live) == 1 && b->isolated == b->live && b->kind == OB_KIND_FULL &&
-	       !(b->disc[l] > 0) && (b->ima[l] > 0) != (b->imb[l] > 0);
-}
-
-void ob_batch_solve_lone(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
-			 const ob_body_row *d)
-{
-	ob_kernel_best()->solve_lone(b, __builtin_ctz(b->live), iteration, u, v, d);
+	const ob_kernel *kernel = ob_kernel_best();
+	const unsigned live = b->live, isolated = b->isolated, lone = lone_lanes(b, iteration);
+	const unsigned impact = iteration->first ? 0 : b->impact & lone;
+	b->live &= ~lone, b->isolated &= ~lone;
+	b->changed = b->residual = 0;
+	b->impact &= iteration->first ? 0 : ~0u;
+	b->solved = b->active = b->slides = b->sweeps = 0;
+	if (b->live)
+		kernel->solve(b, iteration, u, v, d, delta);
+	b->live = live, b->isolated = isolated;
+	b->impact |= impact;
+	for (unsigned left = lone; left; left &= left - 1)
+		kernel->solve_lone(b, __builtin_ctz(left), iteration, u, v, d);
 }
 
 bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta)

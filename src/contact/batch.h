@@ -112,23 +112,19 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in);
 void ob_batch_clear(ob_batch *b, int l);
 // The tangents that ob_batch_set uses, so that a friction force can be carried over from older ones.
 void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2);
-// Where friction acts: in the middle of the points, at the height of the nearest ones, for there the bodies touch. A corner
-// that is a millimetre above the ground would lift the middle of all points, and what rolls over an edge would slip
-// there. arm_a, arm_b, gap: m, of the points, at least one; n: their normal; a, b: m, from each centre.
+// Where friction acts: in the middle of the points, at the height of the nearest ones, for there the bodies touch. A
+// corner that is a millimetre above the ground would lift the middle of all points, and what rolls over an edge would
+// slip there. arm_a, arm_b, gap: m, of the points, at least one; n: their normal; a, b: m, from each centre.
 void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n, ob_vec3 *a,
 		      ob_vec3 *b);
 // Delassus matrices, for the mass splitting in ka, kb.
 void ob_batch_prepare(ob_batch *b);
 
 // One iteration: solves all lanes on the velocities u and displacements d as they are, and writes the changes back.
-// v: velocities at the substep's start.
+// v: velocities at the substep's start. Lanes that are isolated, with one body that does not answer to impulses, are
+// each solved by themselves (contact/lone.h).
 void ob_batch_solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		    const ob_body_row *d, ob_body_row *delta);
-// The first iteration where one lane is live, isolated, and has one body that moves while the rows of the other are
-// zeros: at once (contact/lone.h). What is not solved by it, b->solved says so, other iterations may follow.
-bool ob_batch_is_lone(const ob_batch *b);
-void ob_batch_solve_lone(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
-			 const ob_body_row *d);
 // Position projection: pushes penetrations beyond slop (m) apart by the share beta, in the displacements only:
 // velocities never see it. false: there were none.
 bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
@@ -149,6 +145,7 @@ typedef struct ob_kernel {
 	void (*prepare)(ob_batch *b);
 	void (*solve)(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		      const ob_body_row *d, ob_body_row *delta);
+	// Adds to what the batch says of its lanes.
 	void (*solve_lone)(ob_batch *b, int l, const ob_solver_iteration *iteration, ob_body_row *u,
 			   const ob_body_row *v, const ob_body_row *d);
 	bool (*project)(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);

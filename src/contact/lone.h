@@ -1,7 +1,7 @@
-// One contact of a body that touches nothing else, and of what does not move: solved to the end at once. The law is
-// that of a batch (contact/batch.h) for a lane that is isolated, and so is the limit surface (contact/patch.h); but
-// here the four points lie side by side in place of four pairs, so that a sweep over the rows, a step of Newton's
-// method and the four edges of a patch each are a few operations on vectors.
+// One contact of a body that touches nothing else, with what stands or moves as it is told: solved to the end at once.
+// The law is that of a batch (contact/batch.h) for a lane that is isolated, and so is the limit surface
+// (contact/patch.h); but here the four points lie side by side in place of four pairs, so that a sweep over the rows, a
+// step of Newton's method and the four edges of a patch each are a few operations on vectors.
 //
 // A sweep finds which points push and whether friction holds; then a step of Newton's method goes to where all rows of
 // those keep their law. Where friction slides it follows the load: it grows with the sum, turns as the slip does, and
@@ -489,7 +489,7 @@ static inline void lone_follow(const lone *p, double sum, lanes *by)
 // The rows of friction, which holds. What has no twist gets a row that asks for nothing.
 static inline void lone_hold_rows(const lone *p, lane_mask push, lanes *m, lanes *mf, double *r)
 {
-	const double proximity = 1 + 1e-9;
+	const double proximity = 1 + 1e-7;
 	for (int i = OB_POINTS; i < OB_ROWS; i++) {
 		m[i] = lanes_where(push, p->an[i]);
 		mf[i] = p->af[i];
@@ -507,7 +507,7 @@ static inline void lone_hold_rows(const lone *p, lane_mask push, lanes *m, lanes
 // A step of Newton's method, not past the place where the first point lets go.
 static inline void lone_leap(lone *p)
 {
-	const double proximity = 1e-9; // of a row's own coefficient
+	const double proximity = 1e-7; // of a row's own coefficient
 	const double sum = lone_sum(p->x);
 	if (!(sum > 0))
 		return;
@@ -561,21 +561,24 @@ typedef struct lone_impulses {
 static inline void lone_hasten(lone *p, const lone_impulses *from, lone_impulses *to, lone_impulses *by)
 {
 	const double slow = .03, most = 4; // a round's change, of the one before; what is added, of a change
-	const lanes scale_y = { p->diag_f[0], p->diag_f[1], p->diag_f[2] * p->radius, 0 };
-	const lanes fx = (p->x - from->x) * p->diag, fy = (p->y - from->y) * scale_y, gx = by->x * p->diag,
-		    gy = by->y * scale_y, ex = fx - gx, ey = fy - gy;
-	const double now = lone_sum(fx * fx + fy * fy), before = lone_sum(gx * gx + gy * gy),
-		     size = lone_sum(ex * ex + ey * ey);
+	const double twist = p->diag_f[2] * p->radius;
+	// The same whatever the tangents
+	const lanes weight_x = p->diag * p->diag, weight_y = { p->slide_rate2, p->slide_rate2, twist * twist, 0 };
+	const lanes fx = p->x - from->x, fy = p->y - from->y, ex = fx - by->x, ey = fy - by->y;
+	const double now = lone_sum(weight_x * fx * fx + weight_y * fy * fy),
+		     before = lone_sum(weight_x * by->x * by->x + weight_y * by->y * by->y),
+		     size = lone_sum(weight_x * ex * ex + weight_y * ey * ey);
 	const lone_impulses here = { p->x, p->y };
 	if (now > slow * slow * before && now < before && size > 0) {
-		const double share = lone_max(-most, lone_min(most, -lone_sum(fx * ex + fy * ey) / size));
+		const double share =
+			lone_max(-most, lone_min(most, -lone_sum(weight_x * fx * ex + weight_y * fy * ey) / size));
 		const lanes d = lanes_max(share * (p->x - to->x), -p->x);
 		for (int i = 0; i < OB_POINTS; i++)
 			lone_change_point(p, i, d[i]);
 		p->x += d;
 		lone_change_friction(p, share * (p->y - to->y));
 	}
-	by->x = here.x - from->x, by->y = here.y - from->y;
+	by->x = fx, by->y = fy;
 	*to = here;
 }
 
@@ -623,7 +626,7 @@ static inline void lone_load_pair(const ob_batch *b, int l, lone *p)
 	p->spin = 0;
 }
 
-// The body that moves, and the rows of J as seen from it
+// A body, and the rows of J as seen from it
 typedef struct lone_body {
 	uint32_t row;
 	double sign; // of what it does to the contact: 1 for body a
@@ -631,9 +634,8 @@ typedef struct lone_body {
 	lanes arm[3]; // of the normals: r x n
 } lone_body;
 
-static inline void lone_load_body(const ob_batch *b, int l, lone_body *o)
+static inline void lone_load_body(const ob_batch *b, int l, bool a, lone_body *o)
 {
-	const bool a = lone_get(&b->ima, l) > 0;
 	const lanes(*j)[3] = a ? b->ja : b->jb;
 	const lanes *f1 = a ? b->fa1 : b->fb1, *f2 = a ? b->fa2 : b->fb2;
 	o->row = a ? b->body_a[l] : b->body_b[l];
@@ -647,28 +649,50 @@ static inline void lone_load_body(const ob_batch *b, int l, lone_body *o)
 	}
 }
 
-static inline lanes lone_opening(const lone_body *o, const double *x)
+// J x: how fast the points open, and how the contact slides and spins.
+typedef struct lone_rates {
+	lanes opening, sliding;
+} lone_rates;
+
+static inline void lone_add_rates(const lone_body *o, const double *x, lone_rates *r)
 {
-	return lone_dot(o->n, x) + (o->arm[0] * x[3] + o->arm[1] * x[4] + o->arm[2] * x[5]);
+	r->opening += lone_dot(o->n, x) + (o->arm[0] * x[3] + o->arm[1] * x[4] + o->arm[2] * x[5]);
+	r->sliding += lone_vector(lone_dot(o->t1, x) + lone_dot(o->f1, x + 3),
+				  lone_dot(o->t2, x) + lone_dot(o->f2, x + 3), lone_dot(o->n, x + 3));
 }
 
-static inline lanes lone_sliding(const lone_body *o, const double *x)
+static inline bool lone_is_zero(const double *x)
 {
-	return lone_vector(lone_dot(o->t1, x) + lone_dot(o->f1, x + 3), lone_dot(o->t2, x) + lone_dot(o->f2, x + 3),
-			   lone_dot(o->n, x + 3));
+	return !lanes_bits((lanes_load(x) != 0) | (lanes_load(x + 4) != 0));
 }
 
-// m/s, at which each gap may close, as set_bias of kernel.c has it.
+// of: the body that moves by itself, and the other.
+static inline lone_rates lone_rates_of(const ob_batch *b, int l, const lone_body *o, const ob_body_row *rows)
+{
+	lone_rates r = { { 0 }, { 0 } };
+	const uint32_t other = o->sign > 0 ? b->body_b[l] : b->body_a[l];
+	lone_add_rates(o, rows[o->row], &r);
+	if (!lone_is_zero(rows[other])) {
+		lone_body told; // moves as it is told
+		lone_load_body(b, l, o->sign < 0, &told);
+		lone_add_rates(&told, rows[other], &r);
+	}
+	return r;
+}
+
+// m/s, at which each gap may close, as set_bias of kernel.c has it; found in the first iteration.
 static inline lanes lone_bias(const ob_batch *b, int l, const lone *p, const lone_body *o,
 			      const ob_solver_iteration *iteration, lanes now, const ob_body_row *d)
 {
+	if (!iteration->first)
+		return lone_four(b->bias, l);
 	const double h = iteration->h;
 	const bool turning = b->turning >> l & 1;
-	lanes bias = lone_four(b->gap, l) + lone_opening(o, d[o->row]);
+	lanes bias = lone_four(b->gap, l) + lone_rates_of(b, l, o, d).opening;
 	const double most = turning ? iteration->turning_gap : iteration->resting_gap;
 	const lane_mask held = (p->x > 0) & (bias < most);
 	if (b->elastic >> l & 1) {
-		const lanes gained = lone_opening(o, iteration->dv[o->row]);
+		const lanes gained = lone_rates_of(b, l, o, iteration->dv).opening;
 		bias += lanes_max(lanes_min(-.5 * h * gained, bias + h * now), lanes_of(0));
 	}
 	bias = lanes_where(~held, lanes_max(bias, lanes_of(0))) / h;
@@ -708,41 +732,49 @@ static void solve_lone(ob_batch *b, int l, const ob_solver_iteration *iteration,
 	lone p;
 	lone_body o;
 	lone_load_pair(b, l, &p);
-	lone_load_body(b, l, &o);
-	const lanes x = p.x, y = p.y, slip = lone_sliding(&o, v[o.row]), rate = lone_opening(&o, u[o.row]),
-		    bias = lone_bias(b, l, &p, &o, iteration, lone_opening(&o, v[o.row]), d);
-	const double slid[3] = { slip[0], slip[1], slip[2] };
+	lone_load_body(b, l, lone_get(&b->ima, l) > 0, &o);
+	const lone_rates now = lone_rates_of(b, l, &o, v), next = lone_rates_of(b, l, &o, u);
+	const lanes x = p.x, y = p.y, bias = lone_bias(b, l, &p, &o, iteration, now.opening, d);
 	double start[3];
-	lone_mul(p.mass, slid, start);
+	for (int c = 0; c < LONE_FRICTION; c++)
+		p.slip[c] = now.sliding[c];
+	lone_mul(p.mass, p.slip, start);
 	p.start = lone_vector(start[0], start[1], start[2]);
-	memcpy(p.slip, slid, sizeof p.slip);
-	p.short_n = -(rate + bias);
-	p.short_f = -lone_sliding(&o, u[o.row]);
+	p.short_n = -(next.opening + bias);
+	p.short_f = -next.sliding;
 	if (b->turning >> l & 1)
 		p.short_f -= lone_three(b->turn + OB_POINTS, l);
 	const unsigned used = lanes_bits(p.inv_diag > 0);
-	const bool hits = used & lanes_bits((rate < -iteration->impact_threshold) & (rate + bias < 0));
+	const bool hits = iteration->first &&
+			  used & lanes_bits((next.opening < -iteration->impact_threshold) & (next.opening + bias < 0));
 	const int rounds = lone_rounds(&p, iteration->converged);
 	const lanes dx = p.x - x, dy = p.y - y;
 	const double changed = lone_largest_change(&p, dx, dy);
 	lone_apply(b, l, &o, dx, dy, u[o.row]);
 	for (int i = 0; i < OB_POINTS; i++) {
-		lanes_put(&b->impulse_start[i], l, x[i]), lanes_put(&b->impulse[i], l, p.x[i]);
+		lanes_put(&b->impulse[i], l, p.x[i]);
 		lanes_put(&b->bias[i], l, bias[i]);
 	}
-	for (int i = 0; i < LONE_FRICTION; i++) {
-		lanes_put(&b->impulse_start[OB_POINTS + i], l, y[i]);
+	for (int i = 0; i < LONE_FRICTION; i++)
 		lanes_put(&b->impulse[OB_POINTS + i], l, p.y[i]);
+	if (iteration->first) {
+		for (int i = 0; i < OB_POINTS; i++)
+			lanes_put(&b->impulse_start[i], l, x[i]);
+		for (int i = 0; i < LONE_FRICTION; i++)
+			lanes_put(&b->impulse_start[OB_POINTS + i], l, y[i]);
 	}
+	const double jump = lone_largest_change(&p, p.x - lone_four(b->impulse_start, l),
+						p.y - lone_three(b->impulse_start + OB_POINTS, l));
 	lanes_put(&b->model.stretch, l, p.model.stretch);
-	b->impact = (unsigned)(hits || changed > impact2) << l;
-	b->slides = (unsigned)p.slides << l;
-	b->sweeps = (unsigned)rounds;
-	b->model.known = 0;
-	b->solved = (unsigned)(rounds <= LONE_ROUNDS) << l;
-	b->active = ~b->solved & (unsigned)(changed > wake2) << l;
-	b->changed = changed;
-	b->residual = b->solved ? 0 : changed;
+	const bool solved = rounds <= LONE_ROUNDS, wakes = !solved && changed > wake2;
+	b->model.known &= ~(1u << l);
+	b->impact |= (unsigned)(hits || jump > impact2) << l;
+	b->slides |= (unsigned)p.slides << l;
+	b->solved |= (unsigned)solved << l;
+	b->active |= (unsigned)wakes << l;
+	b->sweeps += (unsigned)rounds;
+	b->changed = lone_max(b->changed, changed);
+	b->residual = solved ? b->residual : lone_max(b->residual, changed);
 }
 
 #endif

@@ -115,9 +115,6 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 {
 	ob_island_work *w = &s->island;
 	double residual = 0, most = 0; // squares
-	// One body, on what does not move
-	const bool alone =
-		iteration->first && w->bodies == 1 && !w->surfaces.count && !iteration->jacobi && !iteration->ghosts;
 	*any_active = false;
 	for (uint32_t k = 0; k < w->batches; k++) {
 		const uint32_t i = w->batch_order[k];
@@ -128,10 +125,7 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 		enum { SWEEP = 2, ISOLATED_SWEEP = 16 }; // work: of a patch, at most
 		s->counters.pair_solves += pairs;
 		s->counters.frictionless_solves += b->kind & OB_KIND_FRICTIONLESS ? pairs : 0;
-		if (alone && ob_batch_is_lone(b))
-			ob_batch_solve_lone(b, iteration, w->u, w->v, w->d);
-		else
-			ob_batch_solve(b, iteration, w->u, w->v, w->d, w->delta);
+		ob_batch_solve(b, iteration, w->u, w->v, w->d, w->delta);
 		ob_budget_note(s, OB_LANES - pairs + (b->isolated ? ISOLATED_SWEEP : SWEEP) * b->sweeps);
 		*any_active |= activate_bodies(w, b);
 		residual = b->residual > residual ? b->residual : residual;

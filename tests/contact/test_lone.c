@@ -87,9 +87,8 @@ int main(void)
 		memcpy(&b, &a, sizeof b); // padding too
 		memcpy(&c, &a, sizeof c);
 		const ob_solver_iteration iteration = iteration_on(&a, true);
-		CHECK(ob_batch_is_lone(&b.batch));
-		ob_batch_solve(&a.batch, &iteration, a.u, a.v, a.d, a.delta);
-		ob_batch_solve_lone(&b.batch, &iteration, b.u, b.v, b.d);
+		ob_kernel_portable.solve(&a.batch, &iteration, a.u, a.v, a.d, a.delta);
+		ob_batch_solve(&b.batch, &iteration, b.u, b.v, b.d, b.delta);
 		ob_kernel_portable.solve_lone(&c.batch, l, &iteration, c.u, c.v, c.d);
 		CHECK(memcmp(&b.batch, &c.batch, sizeof b.batch) == 0);
 		CHECK(memcmp(b.u, c.u, sizeof b.u) == 0);
