@@ -39,6 +39,7 @@ void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *
 	for (int j = 0; j < points; j++) {
 		least = ob_min(least, gap[j]);
 		size2 = ob_max(size2, ob_norm2(ob_sub(arm_a[j], middle_a)));
+		size2 = ob_max(size2, ob_norm2(ob_sub(arm_b[j], middle_b))); // whichever body is a
 	}
 	const double reach = near * sqrt(size2);
 	for (int j = 0; j < points; j++) {

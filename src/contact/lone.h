@@ -284,7 +284,8 @@ static inline bool lone_holds(const lone *p, const lone_load *at, double bound, 
 static inline bool lone_project(lone *p, const double *pressure, double bound, double *hold)
 {
 	enum { MOST = 8 };
-	const double turned = 1 - 4e-4, close = 1e-9;
+	// To the end, or where it ends would depend on the way: on rounding, and so on how a scene is seen.
+	const double turned = 1 - 1e-9, close = 1e-12;
 	lone_model *m = &p->model;
 	const double stay[3] = { -hold[0], -hold[1], -hold[2] }, b2 = bound * bound, ib = 1 / lone_max(bound, 1e-300);
 	const double here[3] = { stay[0], stay[1], stay[2] - pressure[0] * stay[1] + pressure[1] * stay[0] };

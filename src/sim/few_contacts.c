@@ -6,7 +6,8 @@
 enum { MOST_ROWS = OB_FEW_CONTACTS * OB_ROWS, NO_BODY = UINT32_MAX };
 
 static const double at_limit = 1 - 1e-9; // of its bound: a larger friction impulse slides
-static const double compliance = 1e-9; // of a row's own response: rows of a face depend on each other
+// Of a row's own response, for rows of a face depend on each other; rounding grows by its inverse.
+static const double compliance = 1e-7;
 
 // A unit of one unknown: what it is on both bodies, and what it does to their velocities.
 typedef struct unknown {
