@@ -417,11 +417,12 @@ static bool moves_alone(const ob_island_work *w, const ob_contact *contact, doub
 	       !w->body[contact->b].among_others && speed > standing * w->unit.speed;
 }
 
-// True where it would be found again as it is: its bodies have not moved since, nor been hit, and points were looked for
-// as far.
-static bool is_of_now(const ob_island_work *w, const ob_contact *contact)
+// True where it would be found again as it is: its bodies have not moved since, nor been hit, and points were looked
+// for as far. A ghost goes on to where its body is read next.
+static bool is_of_now(const ob_sim *s, const ob_contact *contact)
 {
-	return contact->since == 0 && contact->found_for >= w->h && contact->lane != OB_NO_LANE &&
+	const ob_island_work *w = &s->island;
+	return contact->since == 0 && !ob_ghosts_used(s) && contact->found_for >= w->h && contact->lane != OB_NO_LANE &&
 	       !ob_contact_was_hit(w, contact);
 }
 
@@ -431,7 +432,7 @@ static bool update_contact(ob_sim *s, ob_contact *contact, double since, double 
 	const ob_island_work *w = &s->island;
 	const double speed = ob_contact_speed(w, contact);
 	contact->path += since * speed;
-	if ((contact->as_of_instant || contact->turns || is_of_now(w, contact)) && ahead > 0)
+	if ((contact->as_of_instant || contact->turns || is_of_now(s, contact)) && ahead > 0)
 		return false;
 	if (!(ahead > 0 && moves_alone(w, contact, speed)) &&
 	    !(contact->path + (speed + speed_gain(w, contact)) * ahead > contact->limit))
