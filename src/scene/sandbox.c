@@ -68,6 +68,13 @@ void ob_sandbox_fail(lua_State *L, const char *format, ...)
 	abort(); // lua_error does not return, but is not declared so
 }
 
+void ob_sandbox_extend(lua_State *L, unsigned instructions, double seconds)
+{
+	ob_sandbox *s = sandbox_of(L);
+	s->limit.instructions += instructions;
+	s->deadline += seconds;
+}
+
 static const char too_late[] = "stopped after 10 s: does it compute too much?";
 _Static_assert(OB_SANDBOX_SECONDS == 10, "said in too_late");
 

@@ -57,6 +57,8 @@ void *ob_sandbox_user(lua_State *L);
 int ob_sandbox_line(lua_State *L);
 // Raises "path:line: ..." ; never returns.
 _Noreturn void ob_sandbox_fail(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// What it does is of use: it may take so much more of both.
+void ob_sandbox_extend(lua_State *L, unsigned instructions, double seconds);
 // Counts work done outside the Lua machine, in instructions; raises an error at a limit.
 void ob_sandbox_spend(lua_State *L, unsigned instructions);
 
