@@ -184,12 +184,25 @@ static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair
 	return touching >= 0 ? touching : best;
 }
 
+// From b to a, across a face of one of them.
+static ob_vec3 face_normal(const ob_placed *a, const ob_placed *b, int face)
+{
+	const ob_vec3 n = ob_column(face < 3 ? &a->r : &b->r, face % 3);
+	return ob_dot(n, ob_sub(a->p, b->p)) < 0 ? ob_scale(n, -1) : n;
+}
+
+// From b to a, across an edge of each.
+static ob_vec3 edge_normal(const ob_placed *a, const ob_placed *b, int edge)
+{
+	const ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3)), d = ob_sub(b->p, a->p);
+	return ob_scale(n, (ob_dot(n, d) > 0 ? -1 : 1) / ob_norm(n));
+}
+
 // Two edges: the nearest points of the lines that carry them.
 static void edge_manifold(const ob_placed *a, const ob_placed *b, int edge, ob_manifold *m)
 {
 	int i = edge / 3, j = edge % 3;
-	ob_vec3 u = ob_column(&a->r, i), v = ob_column(&b->r, j), n = ob_cross(u, v), d = ob_sub(b->p, a->p);
-	n = ob_scale(n, (ob_dot(n, d) > 0 ? -1 : 1) / ob_norm(n));
+	const ob_vec3 u = ob_column(&a->r, i), v = ob_column(&b->r, j), n = edge_normal(a, b, edge);
 	double ha[3] = { a->size.x, a->size.y, a->size.z }, hb[3] = { b->size.x, b->size.y, b->size.z };
 	ob_vec3 pa = a->p, pb = b->p;
 	for (int k = 0; k < 3; k++) {
@@ -338,10 +351,13 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 	find_face_gaps(&f, &s);
 	out->points = 0;
 	out->separation = s.largest_face;
+	out->normal = face_normal(a, b, s.face);
 	if (s.largest_face > margin + nearby * f.thin)
 		return;
 	find_edge_gaps(&f, &s);
 	out->separation = ob_max(s.largest_face, s.largest_edge);
+	if (s.largest_edge > s.largest_face)
+		out->normal = edge_normal(a, b, s.edge);
 	if (out->separation > margin)
 		return;
 	const double rest = ob_min(a->rest_depth, b->rest_depth);

@@ -1,5 +1,7 @@
 #include "contact/manifold.h"
 
+#include <float.h>
+
 #include "contact/capsule.h"
 #include "contact/cylinder.h"
 #include "contact/hull_round.h"
@@ -229,17 +231,24 @@ static ob_quat turn_at(moving_shape *x, double t)
 	return turn;
 }
 
-static ob_placed placed_at(moving_shape *x, double t)
+static ob_placed placed_after(const moving_shape *x, double t, ob_quat turn)
 {
+	const ob_mat3 r = ob_quat_matrix(turn);
 	ob_placed y = *x->from;
 	y.p = ob_madd(y.p, t, y.v);
-	if (t > 0 && x->speed > 0) {
-		const ob_mat3 turn = ob_quat_matrix(turn_at(x, t));
-		for (int c = 0; c < 3; c++) {
-			ob_vec3 axis = ob_rotate(&x->from->r, ob_column(&turn, c));
-			y.r.m[0][c] = axis.x, y.r.m[1][c] = axis.y, y.r.m[2][c] = axis.z;
-		}
+	for (int c = 0; c < 3; c++) {
+		ob_vec3 axis = ob_rotate(&x->from->r, ob_column(&r, c));
+		y.r.m[0][c] = axis.x, y.r.m[1][c] = axis.y, y.r.m[2][c] = axis.z;
 	}
+	return y;
+}
+
+static ob_placed placed_at(moving_shape *x, double t)
+{
+	if (t > 0 && x->speed > 0)
+		return placed_after(x, t, turn_at(x, t));
+	ob_placed y = *x->from;
+	y.p = ob_madd(y.p, t, y.v);
 	return y;
 }
 
@@ -255,6 +264,21 @@ static ob_vec3 rate_at(const moving_shape *x, const ob_placed *now)
 	return ob_rotate(&now->r, ob_v3(l.x / i.x, l.y / i.y, l.z / i.z));
 }
 
+// To rounding, however far it has turned, and with its rate then.
+static ob_placed exactly_placed_at(const moving_shape *x, double t)
+{
+	const bool turns = x->speed > 0;
+	ob_placed y = placed_after(x, t, turns ? ob_drift_turn(x->rate, x->from->inertia, t) : ob_quat_identity());
+	y.w = turns ? rate_at(x, &y) : x->from->w;
+	return y;
+}
+
+// m/s, of any of its points by turning, at any time
+static double fastest_rim(const moving_shape *x)
+{
+	return x->speed > 0 ? x->spin.fastest * ob_shape_radius(x->from->shape, x->from->size) : 0;
+}
+
 // m/s^2, of any point, by turning; of what has no end: infinity
 static double bend_of(const moving_shape *x)
 {
@@ -264,8 +288,9 @@ static double bend_of(const moving_shape *x)
 	return radius * ob_bending_of(x->from->inertia, x->spin.fastest).most;
 }
 
-// Two shapes at an instant, seen along a direction n from b to a: how far apart their centres are (m), how fast that
-// grows (m/s), how n turns as each of them sees it (1/s), and how much faster their points may come to close (m/s^2).
+// Two shapes at an instant, seen along a direction n from b to a, which may turn: how far apart their centres are (m),
+// how fast that grows (m/s), how n turns as each of them sees it (1/s), and how much faster their points may come to
+// close (m/s^2).
 typedef struct seen_along {
 	const ob_placed *a, *b;
 	ob_vec3 n, turn_a, turn_b;
@@ -278,6 +303,56 @@ static double apart_at(const seen_along *x, double t)
 {
 	const ob_vec3 na = ob_madd(x->n, t, x->turn_a), nb = ob_madd(x->n, t, x->turn_b);
 	return x->centres + t * (x->rate - .5 * t * x->bend) - ob_reach(x->a, ob_scale(na, -1)) - ob_reach(x->b, nb);
+}
+
+// m/s, of the shape's points by turning
+static double rim_speed(const ob_placed *x)
+{
+	return x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w) * ob_shape_radius(x->shape, x->size);
+}
+
+static ob_vec3 turn_seen_by(const ob_placed *x, ob_vec3 n, ob_vec3 turn)
+{
+	return x->shape == OB_SHAPE_SPHERE ? turn : ob_add(turn, ob_cross(n, x->w));
+}
+
+// Along n, which turns at "turn" (1/s, across n). bend: m/s^2, of the points of both together; h: s, for which it
+// counts
+static seen_along look_along(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_vec3 turn, double bend, double h)
+{
+	const ob_vec3 apart = ob_sub(a->p, b->p), v = ob_sub(a->v, b->v);
+	const double turning = ob_norm(turn);
+	return (seen_along){ .a = a,
+			     .b = b,
+			     .n = n,
+			     .turn_a = turn_seen_by(a, n, turn),
+			     .turn_b = turn_seen_by(b, n, turn),
+			     .centres = ob_dot(n, apart),
+			     .rate = ob_dot(n, v) + ob_dot(turn, apart),
+			     .bend = ob_max(0, bend * (1 + h * turning) + 2 * (turning * (rim_speed(a) + rim_speed(b)) -
+									       ob_dot(turn, v))) };
+}
+
+// The axis of the shape that is most nearly across n: that of an edge which touches along n.
+static ob_vec3 axis_across(const ob_placed *x, ob_vec3 n)
+{
+	ob_vec3 best = ob_column(&x->r, 0);
+	for (int k = 1; k < 3; k++)
+		if (fabs(ob_dot(ob_column(&x->r, k), n)) < fabs(ob_dot(best, n)))
+			best = ob_column(&x->r, k);
+	return best;
+}
+
+// 1/s, at which n turns where it stays across an edge of each shape; 0 where these are nearly parallel.
+static ob_vec3 turn_with_edges(const ob_placed *a, const ob_placed *b, ob_vec3 n)
+{
+	const double least = .01;
+	const ob_vec3 u = axis_across(a, n), v = axis_across(b, n);
+	const double sine = ob_dot(n, ob_cross(u, v));
+	if (fabs(sine) < least)
+		return ob_v3(0, 0, 0);
+	const double along_u = -ob_dot(u, ob_cross(n, a->w)), along_v = -ob_dot(v, ob_cross(n, b->w));
+	return ob_scale(ob_sub(ob_scale(ob_cross(v, n), along_u), ob_scale(ob_cross(u, n), along_v)), 1 / sine);
 }
 
 // Takes n for the direction *best if the shapes are farther apart along it than *most (m).
@@ -324,6 +399,105 @@ static double time_apart(seen_along *x, double near, double certain, double h)
 		at_low = apart_at(x, low) - near;
 	}
 	return ob_max(certain, low);
+}
+
+// For how long within h (s) the two, which are apart now (m), stay so, at least: to the first zero of a function that
+// is concave, so that a chord ends early, and goes on late.
+static double time_to_close(const seen_along *x, double apart, double h)
+{
+	enum { NARROW = 5 };
+	double low = 0, at_low = apart, high = h, at_high = apart_at(x, h);
+	if (at_high >= 0)
+		return h;
+	for (int k = 0; k < NARROW; k++) {
+		const double next = low + (high - low) * (at_low / (at_low - at_high)), at_next = apart_at(x, next);
+		if (!(next > low) || !(at_next >= 0))
+			break;
+		const double beyond = at_next < at_low ? next + (next - low) * (at_next / (at_low - at_next)) : high;
+		low = next, at_low = at_next;
+		if (!(beyond < high))
+			continue;
+		const double at_beyond = apart_at(x, beyond);
+		if (at_beyond < 0)
+			high = beyond, at_high = at_beyond;
+		else
+			low = beyond, at_low = at_beyond;
+	}
+	return low;
+}
+
+// For how long within h (s) two that touch now part, at least; 0: they do not.
+static double time_of_parting(const seen_along *x, double apart, double h)
+{
+	const double shorter = .25, shortest = 1e-8 * h;
+	double t = h;
+	while (t > shortest && apart_at(x, t) < ob_max(apart, 0))
+		t *= shorter;
+	return t > shortest ? t : 0;
+}
+
+// For how long within h (s) the two stay apart, at least, or part if they touch: "apart" (m) along n, which stays in
+// the world, or turns with a face of one of them, or with edges of both, whichever tells most. What touches a face that
+// turns may part from it although it would not from a plane that stays. touch: they do. bend: m/s^2, of both
+static double time_clear(const ob_placed *a, const ob_placed *b, ob_vec3 n, double apart, double bend, bool touch,
+			 double h)
+{
+	enum { TURNS = 4 };
+	const ob_vec3 turn[TURNS] = { { 0, 0, 0 }, ob_cross(a->w, n), ob_cross(b->w, n), turn_with_edges(a, b, n) };
+	const double soon = h / 1024;
+	seen_along x[TURNS];
+	double most = -INFINITY, longest;
+	int best = 0;
+	for (int k = 0; k < TURNS; k++) {
+		x[k] = look_along(a, b, n, turn[k], bend, h);
+		const double then = apart_at(&x[k], soon);
+		if (then > most)
+			most = then, best = k;
+	}
+	longest = touch ? time_of_parting(&x[best], apart, h) : time_to_close(&x[best], apart, h);
+	for (int k = 0; k < TURNS && longest < soon; k++)
+		if (k != best)
+			longest = ob_max(longest,
+					 touch ? time_of_parting(&x[k], apart, h) : time_to_close(&x[k], apart, h));
+	return longest;
+}
+
+bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double exact, double margin,
+		      ob_manifold_finder find, double *when, ob_manifold *out)
+{
+	enum { MOST_ADVANCES = 64 };
+	moving_shape am, bm;
+	set_off(a, &am);
+	set_off(b, &bm);
+	const double bend = bend_of(&am) + bend_of(&bm);
+	const double speed = ob_max(ob_norm(ob_sub(a->v, b->v)) + fastest_rim(&am) + fastest_rim(&bm), DBL_MIN);
+	ob_vec3 n = { 0, 0, 0 };
+	double t = 0;
+	*when = INFINITY;
+	if (!isfinite(bend) || find.of_boxes)
+		return false;
+	for (int tries = 0; tries < MOST_ADVANCES; tries++) {
+		const ob_placed at = exactly_placed_at(&am, t), bt = exactly_placed_at(&bm, t);
+		const double left = h - t;
+		*out = (ob_manifold){ .valid_path = INFINITY };
+		find.find(find.with, &at, &bt, margin, out);
+		if (out->separation < -margin)
+			return false;
+		n = ob_norm2(out->normal) > 0 ? out->normal : n;
+		const double apart = find_direction(&at, &bt, out->separation, &n);
+		const bool touch = out->separation <= exact;
+		double clear = ob_max(0, out->separation - exact) / speed;
+		if (touch || apart > exact)
+			clear = ob_max(clear, time_clear(&at, &bt, n, apart, bend, touch, left));
+		if (clear >= left)
+			return true;
+		if (touch && clear == 0) {
+			*when = t;
+			return out->points > 0;
+		}
+		t += ob_max(clear, DBL_EPSILON * t);
+	}
+	return false;
 }
 
 double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double exact, double tolerance,

@@ -22,7 +22,8 @@ typedef struct ob_placed {
 } ob_placed;
 
 typedef struct ob_manifold {
-	ob_vec3 normal; // unit, from b to a
+	ob_vec3 normal; // unit, from b to a; where there are no points, if it is set at all, along which they are
+			// separate
 	int points; // 0 .. 4
 	ob_vec3 at[4]; // m, world, midway between the surfaces
 	double gap[4]; // m along the normal; < 0 penetrates
@@ -64,5 +65,12 @@ typedef struct ob_manifold_finder {
 // closing speed of any two points (m/s) until then.
 double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double exact, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out);
+
+// When two that move so first touch and go on into each other within h (s), to rounding: the instant at which they are
+// no farther apart than "exact" (m), and in out the points up to margin (m) then. Those that touch now may part. when:
+// infinity, if they stay apart. false: it could not be found, because they are in each other, or shapes or motions ask
+// for too many advances; then when and out mean nothing.
+bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double exact, double margin,
+		      ob_manifold_finder find, double *when, ob_manifold *out);
 
 #endif

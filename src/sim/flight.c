@@ -6,6 +6,7 @@
 #include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
+#include "sim/course.h"
 #include "sim/publish.h"
 #include "sim/touches.h"
 
@@ -347,38 +348,93 @@ static double flight_horizon(const ob_sim *s, uint32_t id, ob_vec3 v, ob_vec3 a)
 	return ob_min(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // for which it moves so far
 }
 
+static void take_rotation(ob_sim *s, ob_course *c)
+{
+	c->spin = spin_of(s, c->id, &c->m);
+	if (c->spin && !c->alone)
+		c->own = *c->spin, c->spin = &c->own;
+}
+
+// When it lands, from an instant on.
+static void find_landing(ob_sim *s, ob_course *c, double from)
+{
+	c->m.valid_until = ob_min(c->horizon, plane_impact_time(s, c->id, &c->m, c->spin, from, c->horizon, &c->plane));
+}
+
+void ob_course_begin(ob_sim *s, uint32_t id, bool alone, ob_course *c)
+{
+	const double h = s->settings->step_length;
+	const uint64_t step = ob_step_count(s->u);
+	c->id = id;
+	c->impacts = c->plane = 0;
+	c->alone = alone;
+	c->m = ob_ballistic_flight(s, id);
+	c->since = (double)step * h;
+	c->horizon = (double)(step + 1) * h + flight_horizon(s, id, ob_velocity_at(&c->m, c->since), c->m.a);
+	c->m.path = ob_path_now(&c->m, step);
+	take_rotation(s, c);
+	find_landing(s, c, ob_max(c->m.valid_until, c->since));
+}
+
+void ob_course_follow(ob_sim *s, ob_course *c, double until)
+{
+	c->m.path += flight_speed_bound(s, c->id, &c->m, c->spin, c->since, until) * (until - c->since);
+	c->since = until;
+}
+
+ob_state ob_course_state(ob_sim *s, const ob_course *c)
+{
+	const ob_motion *m = &c->m;
+	ob_state now = { { ob_centre_at(m, c->since), m->q }, ob_velocity_at(m, c->since), m->w };
+	ob_spin *spin = c->spin;
+	if (!spin && ob_norm2(m->w) > 0) // of a sphere
+		spin = ob_rotation_cache_get(&s->rotations, c->id, m->q, m->w, ob_passport_of(s->u, c->id)->inertia);
+	if (spin)
+		ob_spin_at(spin, c->since - m->t0, &now.pose.q, &now.w);
+	return now;
+}
+
+bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at)
+{
+	if (c->impacts++ == IMPACTS_PER_STEP)
+		return false;
+	c->m.t0 = c->since;
+	c->m.p = at->pose.p, c->m.q = at->pose.q, c->m.v = at->v, c->m.w = at->w;
+	take_rotation(s, c);
+	find_landing(s, c, c->since);
+	return true;
+}
+
+bool ob_course_rebound(ob_sim *s, ob_course *c)
+{
+	ob_state at = ob_course_state(s, c);
+	return apply_plane_impact(s, c->id, c->plane, &at) && ob_course_set_off(s, c, &at);
+}
+
+void ob_course_publish(ob_sim *s, ob_course *c)
+{
+	// After one impact, what was published before holds up to it; not up to the last of several.
+	c->m.flags = c->impacts < 2 ? OB_MOTION_FREE : 0;
+	publish_flight(s, c->id, &c->m, c->spin, c->impacts == 0);
+}
+
 bool ob_ballistic_advance(ob_sim *s, uint32_t id)
 {
-	const ob_run_settings *run = s->settings;
-	if (run->integrator == OB_INTEGRATOR_ODE) {
+	ob_course c;
+	if (s->settings->integrator == OB_INTEGRATOR_ODE) {
 		step_by_ode(s, id);
 		return true;
 	}
-	const uint64_t step = ob_step_count(s->u);
-	const double h = run->step_length, end = (double)(step + 1) * h;
-	ob_motion m = ob_ballistic_flight(s, id);
-	double since = (double)step * h;
-	const double horizon = end + flight_horizon(s, id, ob_velocity_at(&m, since), m.a);
-	double from = ob_max(m.valid_until, since);
-	uint32_t plane = 0, impacts = 0;
-	m.path = ob_path_now(&m, step);
-	ob_spin *spin;
+	const double end = (double)(ob_step_count(s->u) + 1) * s->settings->step_length;
+	ob_course_begin(s, id, true, &c);
 	for (;;) {
-		spin = spin_of(s, id, &m);
-		m.valid_until = ob_min(horizon, plane_impact_time(s, id, &m, spin, from, horizon, &plane));
-		double until = ob_min(m.valid_until, end);
-		m.path += flight_speed_bound(s, id, &m, spin, since, until) * (until - since);
-		if (!(m.valid_until < end))
+		ob_course_follow(s, &c, ob_min(c.m.valid_until, end));
+		if (!(c.m.valid_until < end))
 			break;
-		ob_state at = ob_ballistic_state(s, id, &m, until);
-		if (impacts++ == IMPACTS_PER_STEP || !apply_plane_impact(s, id, plane, &at))
+		if (!ob_course_rebound(s, &c))
 			return false;
-		m.p = at.pose.p, m.q = at.pose.q, m.v = at.v, m.w = at.w;
-		m.t0 = since = from = until;
 	}
-	// After one impact, what was published before holds up to it; not up to the last of several.
-	m.flags = impacts < 2 ? OB_MOTION_FREE : 0;
-	s->counters.impacts += impacts;
-	publish_flight(s, id, &m, spin, impacts == 0);
+	s->counters.impacts += c.impacts;
+	ob_course_publish(s, &c);
 	return true;
 }

@@ -1,6 +1,6 @@
 // Free flight. An object that touches nothing follows a closed form from the instant at which its flight began. When it
 // is solved, its next impact on a plane is computed ahead (conservative advancement), and no step solves it before that;
-// what else may touch it, the forecast sees (late_contacts.h).
+// what else may touch it, the forecast sees (late_contacts.h), and two that meet are moved together (meeting.h).
 //
 //   solved              not solved              solved
 //   ──┬───────────────┬───────────── … ──────┬──────────┬──

@@ -18,6 +18,7 @@
 #include "sim/frame.h"
 #include "sim/ghost.h"
 #include "sim/impacts.h"
+#include "sim/meeting.h"
 #include "sim/midpoint.h"
 #include "sim/pairs.h"
 #include "sim/profile.h"
@@ -154,22 +155,25 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 
 // ---- ballistic advance
 
-// True for a body near planes only, with no resting contact, that has no late contact in this step: a ballistic advance
-// may do. A body that bounces so low that the contact solver has had it goes on as a flight; one that has become slow
-// is left to come to rest.
+// True for a body near planes only, or two near each other and planes, with no resting contact, that have no late
+// contact in this step: a ballistic advance may do. What bounces so low that the contact solver has had it goes on as a
+// flight; what has become slow is left to come to rest.
 static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 {
 	const ob_step_data *data = s->data;
-	const uint32_t id = data->member[is->first_member];
-	if (is->members > 1 || (is->pairs && (data->count->merged || s->settings->integrator == OB_INTEGRATOR_ODE)))
+	const uint32_t *id = data->member + is->first_member;
+	if (is->members > 2 || (is->pairs && (data->count->merged || s->settings->integrator == OB_INTEGRATOR_ODE)))
 		return false;
-	if (data->script_of && ob_norm2(ob_script_torque(data, id)) > 0)
-		return false;
+	for (uint32_t i = 0; data->script_of && i < is->members; i++)
+		if (ob_norm2(ob_script_torque(data, id[i])) > 0)
+			return false;
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
-		uint32_t other = k->a == id ? k->b : k->a;
-		if (data->schedule[other].state != OB_SCHEDULE_PLANE ||
-		    (k->active && (ob_newest_motion(s->u, id)->rest_time > 0 || ob_pair_carried_load(s->u, k))))
+		const bool a = data->schedule[k->a].state == OB_SCHEDULE_PLANE,
+			   b = data->schedule[k->b].state == OB_SCHEDULE_PLANE;
+		const bool met = data->result_island[k->a] == data->result_island[k->b];
+		if ((!a && !b && !met) || (k->active && (ob_newest_motion(s->u, a ? k->b : k->a)->rest_time > 0 ||
+							 ob_pair_carried_load(s->u, k))))
 			return false;
 	}
 	return true;
@@ -191,10 +195,11 @@ static bool advance_ballistically(ob_sim *s, const ob_island *is)
 		return false;
 	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
 	ob_touches_begin(s, is);
-	if (!ob_ballistic_advance(s, s->data->member[is->first_member]))
+	const uint32_t *id = s->data->member + is->first_member;
+	if (is->members == 1 ? !ob_ballistic_advance(s, id[0]) : !ob_meeting_advance(s, id))
 		return false;
 	end_contacts(s, is);
-	s->counters.ballistic_advances++;
+	s->counters.ballistic_advances += is->members;
 	return true;
 }
 

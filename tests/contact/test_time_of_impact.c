@@ -1,4 +1,5 @@
-// When two moving shapes meet: never later than they do, whatever their speed and spin.
+// When two moving shapes meet: never later than they do, whatever their speed and spin; and to rounding, where that is
+// asked for.
 #include "contact/manifold.h"
 
 #include "check.h"
@@ -182,8 +183,90 @@ static void test_random(void)
 	CHECK(tried > 2000 && met > 500 && met < tried - 500);
 }
 
+// Until they touch they are apart, then they are not, to rounding; the other way round in time they part from there,
+// and do not touch again on the way back.
+static void check_touch(const ob_placed *a, const ob_placed *b, double h, int *met, int *lost)
+{
+	const double exact = 1e-13;
+	ob_manifold m;
+	double when, again;
+	if (!ob_time_of_touch(a, b, h, exact, 1e-6, shapes, &when, &m)) {
+		++*lost;
+		return;
+	}
+	for (int k = 0; k < 300; k++)
+		CHECK(separation(a, b, fmin(when, h) * k / 300) > 0);
+	if (isinf(when))
+		return;
+	++*met;
+	CHECK(when >= 0 && when <= h);
+	CHECK(m.points > 0);
+	CHECK_NEAR(separation(a, b, when), 0, 3e-13);
+	ob_placed back[2] = { moved(a, when), moved(b, when) };
+	for (int i = 0; i < 2; i++) {
+		ob_quat turn;
+		ob_vec3 rate;
+		const ob_placed *x = i ? b : a;
+		ob_rotate_free(ob_quat_identity(), ob_rotate_back(&x->r, x->w), x->inertia, when, &turn, &rate);
+		back[i].v = ob_scale(x->v, -1);
+		back[i].w = ob_scale(ob_rotate(&x->r, rate), -1);
+	}
+	if (ob_time_of_touch(&back[0], &back[1], when, 1e-12, 1e-6, shapes, &again, &m))
+		CHECK(isinf(again));
+	else
+		++*lost;
+}
+
+static void test_touch(void)
+{
+	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX };
+	uint64_t seed = 4;
+	int met = 0, lost = 0, tried = 0;
+	for (int i = 0; i < 4000; i++) {
+		ob_placed a = random_placed(&seed, shape[i % 4 != 0], 3), b = random_placed(&seed, shape[i % 4 > 1], 3);
+		const double h = within(&seed, .001, .02), speed = pow(10, within(&seed, 0, 3));
+		if (a.shape == OB_SHAPE_SPHERE)
+			a.size.y = a.size.z = 0;
+		if (b.shape == OB_SHAPE_SPHERE)
+			b.size.y = b.size.z = 0;
+		a.v = ob_scale(ob_add(ob_sub(b.p, a.p), random_vector(&seed, 1)), speed / 4);
+		b.v = random_vector(&seed, speed / 8);
+		a.w = random_vector(&seed, 20);
+		b.w = random_vector(&seed, 20);
+		a.inertia = random_inertia(&seed);
+		b.inertia = random_inertia(&seed);
+		if (separation(&a, &b, 0) <= 0)
+			continue;
+		tried++;
+		check_touch(&a, &b, h, &met, &lost);
+	}
+	printf("%d of %d touch, %d were not found\n", met, tried, lost);
+	CHECK(met > 500 && met < tried - 500);
+	CHECK(lost * 50 < tried);
+}
+
+// What lies on a turning plate and moves with it, or leaves it, parts from it; pressed, it touches.
+static void test_parting(void)
+{
+	ob_placed plate = place(OB_SHAPE_BOX, ob_v3(1, 1, .1), ob_v3(0, 0, 0), ob_quat_identity());
+	ob_placed cube = place(OB_SHAPE_BOX, ob_v3(.1, .1, .1), ob_v3(.5, 0, .1),
+			       ob_quat_turn(ob_quat_identity(), ob_v3(.6, .5, .1)));
+	cube.p.z += half_width(&cube, ob_v3(0, 0, 1));
+	plate.w = ob_v3(0, 2, 0); // its upper side goes down where the cube is, at 1 m/s or more
+	for (int k = 0; k < 5; k++) {
+		static const double v[5] = { 0, -.5, -.9, -1.3, -5 };
+		double when;
+		ob_manifold m;
+		cube.v.z = v[k];
+		CHECK(ob_time_of_touch(&cube, &plate, .01, 1e-13, 1e-6, shapes, &when, &m));
+		CHECK(k < 3 ? isinf(when) : when == 0 && m.points == 1);
+	}
+}
+
 int main(void)
 {
+	test_touch();
+	test_parting();
 	test_bullet();
 	test_margin();
 	test_touching_now();

@@ -1,0 +1,173 @@
+#include "sim/meeting.h"
+
+#include <float.h>
+
+#include "contact/impact.h"
+#include "contact/manifold.h"
+#include "motion/flight.h"
+#include "sim/course.h"
+#include "sim/ghost.h"
+#include "sim/narrowphase.h"
+#include "sim/touches.h"
+
+static const double least_approach = 1e-6; // m/s: what is slower is left to the contact solver
+static const double reflected = 1e-12; // of the approach: so much that is left is rounding
+static const double points_margin = 1e-6; // m: points of the contact, of which those hit that are as near as the first
+
+enum { REFLECTIONS = 32 };
+
+// Where the two touch.
+typedef struct meeting {
+	double time; // s; infinity: they do not
+	ob_manifold m; // then, and there
+} meeting;
+
+static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
+{
+	const ob_passport *p = ob_passport_of(s->u, c->id);
+	const ob_state now = ob_course_state(s, c);
+	return (ob_placed){ .shape = p->shape,
+			    .size = p->shape == OB_SHAPE_SPHERE ? ob_v3(p->size.x, 0, 0) : p->size,
+			    .p = now.pose.p,
+			    .r = ob_quat_matrix(now.pose.q),
+			    .v = v,
+			    .w = now.w,
+			    .inertia = p->inertia,
+			    .rest_depth = ob_narrowphase_rest_depth(s, ob_shape_thickness(p->shape, p->size), false),
+			    .far_future = ob_narrowphase_far_future(s),
+			    .hull = ob_hull_of(s->u, p) };
+}
+
+// m: what is so near touches, but for rounding.
+static double rounding_of(const ob_placed *x)
+{
+	return 8 * DBL_EPSILON * (ob_shape_radius(x->shape, x->size) + ob_norm(x->p));
+}
+
+// When the two first touch from where they have come to until an instant (s), as the second sees it. false: it could
+// not be found.
+static bool find_meeting(ob_sim *s, const ob_course c[2], double until, meeting *x)
+{
+	const double since = c[0].since;
+	const ob_vec3 none = { 0, 0, 0 }, v = ob_sub(ob_velocity_at(&c[0].m, since), ob_velocity_at(&c[1].m, since));
+	const ob_placed a = placed_of(s, &c[0], v), b = placed_of(s, &c[1], none);
+	const double exact = rounding_of(&a) + rounding_of(&b);
+	double when;
+	s->counters.swept_tests++;
+	if (!ob_time_of_touch(&a, &b, until - since, exact, points_margin * s->island.unit.length,
+			      ob_narrowphase_finder(s), &when, &x->m))
+		return false;
+	x->time = since + when;
+	const ob_vec3 gone = ob_sub(ob_centre_at(&c[1].m, x->time), b.p);
+	for (int j = 0; j < x->m.points && when < INFINITY; j++)
+		x->m.at[j] = ob_add(x->m.at[j], gone);
+	return true;
+}
+
+// What hits: points as near as the first, in one plane, as convex bodies touch.
+static uint32_t points_of(const ob_sim *s, const ob_manifold *m, const ob_state at[2], double mu, double e,
+			  ob_impact_point *point)
+{
+	const double near = OB_IMPACT_SIMULTANEOUS * s->island.unit.length;
+	double level = 0;
+	uint32_t n = 0;
+	for (int j = 0; j < m->points; j++)
+		if (m->gap[j] <= near)
+			level += ob_dot(m->normal, ob_sub(m->at[j], at[0].pose.p)), n++;
+	level /= n ? n : 1;
+	n = 0;
+	for (int j = 0; j < m->points; j++) {
+		const double off = level - ob_dot(m->normal, ob_sub(m->at[j], at[0].pose.p));
+		const ob_vec3 on = ob_madd(m->at[j], off, m->normal);
+		if (m->gap[j] <= near)
+			point[n++] = (ob_impact_point){ .b = 1,
+							.normal = m->normal,
+							.arm_a = ob_sub(on, at[0].pose.p),
+							.arm_b = ob_sub(on, at[1].pose.p),
+							.mu = mu,
+							.e = e };
+	}
+	return n;
+}
+
+// m/s: how fast the points approach at most
+static double fastest_approach(const ob_impact_body *body, const ob_impact_point *point, uint32_t points)
+{
+	double most = 0;
+	for (uint32_t k = 0; k < points; k++)
+		most = ob_max(most, -ob_impact_opening(body, &point[k]));
+	return most;
+}
+
+// Changes the velocities of both, where they have come to, by the impact of the points at which they touch. false: they
+// do not rebound.
+static bool apply_impact(ob_sim *s, const ob_course c[2], const ob_manifold *m, ob_state at[2])
+{
+	const ob_passport *p[2] = { ob_passport_of(s->u, c[0].id), ob_passport_of(s->u, c[1].id) };
+	const double mu = sqrt(p[0]->friction * p[1]->friction), e = ob_max(p[0]->restitution, p[1]->restitution);
+	ob_impact_point point[OB_PAIR_POINTS];
+	ob_impact_body body[2];
+	const uint32_t points = points_of(s, m, at, mu, e, point);
+	for (int i = 0; i < 2; i++) {
+		const ob_mat3 r = ob_quat_matrix(at[i].pose.q);
+		body[i] = (ob_impact_body){ .inv_mass = 1 / p[i]->mass, .v = at[i].v, .w = at[i].w };
+		ob_inverse_inertia(p[i]->inertia, &r, body[i].inv_inertia);
+	}
+	const double approach = fastest_approach(body, point, points);
+	double left = approach;
+	if (!(approach > least_approach * s->island.unit.speed))
+		return false;
+	for (int k = 0; k < REFLECTIONS && left > reflected * approach; k++) {
+		ob_impact_solve(body, 2, point, points, NULL); // few points, few times
+		left = fastest_approach(body, point, points);
+	}
+	ob_touches_note(s->u, c[0].id, c[1].id, p[0]->mass * ob_dot(ob_sub(body[0].v, at[0].v), m->normal),
+			ob_add(at[0].pose.p, point[0].arm_a));
+	for (int i = 0; i < 2; i++)
+		at[i].v = body[i].v, at[i].w = body[i].w;
+	return left <= reflected * approach;
+}
+
+static bool rebound_from_each_other(ob_sim *s, ob_course c[2], const ob_manifold *m)
+{
+	ob_state at[2] = { ob_course_state(s, &c[0]), ob_course_state(s, &c[1]) };
+	return apply_impact(s, c, m, at) && ob_course_set_off(s, &c[0], &at[0]) && ob_course_set_off(s, &c[1], &at[1]);
+}
+
+// From one impact to the next, until the step's end (s). impacts: how many there were.
+static bool follow(ob_sim *s, ob_course c[2], double end, uint32_t *impacts)
+{
+	for (*impacts = 0;; ++*impacts) {
+		ob_course *first = &c[c[1].m.valid_until < c[0].m.valid_until];
+		const double until = ob_min(first->m.valid_until, end);
+		meeting x;
+		if (!find_meeting(s, c, until, &x))
+			return false;
+		const bool meet = x.time < INFINITY;
+		for (int i = 0; i < 2; i++)
+			ob_course_follow(s, &c[i], meet ? x.time : until);
+		if (meet ? !rebound_from_each_other(s, c, &x.m) : until < end && !ob_course_rebound(s, first))
+			return false;
+		if (!meet && until == end)
+			return true;
+	}
+}
+
+bool ob_meeting_advance(ob_sim *s, const uint32_t id[2])
+{
+	const double end = (double)(ob_step_count(s->u) + 1) * s->settings->step_length;
+	ob_course c[2];
+	uint32_t impacts;
+	if (s->settings->integrator == OB_INTEGRATOR_ODE || s->settings->narrow_phase == OB_NARROW_AABB ||
+	    ob_ghosts_used(s) ||
+	    !(ob_max(ob_passport_of(s->u, id[0])->restitution, ob_passport_of(s->u, id[1])->restitution) > 0))
+		return false;
+	for (int i = 0; i < 2; i++)
+		ob_course_begin(s, id[i], false, &c[i]);
+	if (!ob_equal(c[0].m.a, c[1].m.a) || !follow(s, c, end, &impacts))
+		return false;
+	s->counters.impacts += impacts;
+	for (int i = 0; i < 2; i++)
+		ob_course_publish(s, &c[i]);
+	return true;
+}
