@@ -78,8 +78,8 @@ static double face_gap(const frame_pair *f, int axis)
 
 static void find_face_gaps(const frame_pair *f, axis_gaps *s)
 {
-	s->largest_face = -INFINITY;
-	for (int k = 0; k < FACES; k++) {
+	s->largest_face = s->gap[s->face = 0] = face_gap(f, 0);
+	for (int k = 1; k < FACES; k++) {
 		s->gap[k] = face_gap(f, k);
 		if (s->gap[k] > s->largest_face)
 			s->largest_face = s->gap[k], s->face = k;
@@ -89,6 +89,7 @@ static void find_face_gaps(const frame_pair *f, axis_gaps *s)
 static void find_edge_gaps(const frame_pair *f, axis_gaps *s)
 {
 	s->largest_edge = -INFINITY;
+	s->edge = 0;
 	for (int i = 0; i < 3; i++) {
 		int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
 		for (int j = 0; j < 3; j++) {
