@@ -36,6 +36,11 @@ typedef struct change_of_velocity {
 	ob_vec3 v, w;
 } change_of_velocity;
 
+// J M^-1 J' of one point: of the normal, of both, of friction (11 12 22)
+typedef struct point_matrix {
+	double nn, nt[2], tt[3];
+} point_matrix;
+
 // The set of points that approach.
 typedef struct impact_set {
 	uint32_t bodies, points;
@@ -44,6 +49,7 @@ typedef struct impact_set {
 	change_of_velocity *change; // [bodies]
 	double largest; // m/s, of the points
 	double share; // of e: 1, or 0 for the plastic impact
+	point_matrix one; // of a set of one point
 	const ob_impact_payer *payer; // or NULL
 } impact_set;
 
@@ -86,12 +92,27 @@ static void point_rows_init(point_rows *r, const ob_impact_body *body, const ob_
 	r->along[0] = p->normal;
 	ob_tangents(p->normal, &r->along[1], &r->along[2]);
 	for (int i = 0; i < 3; i++) {
-		r->about_a[i] = ob_cross(p->arm_a, r->along[i]);
-		r->about_b[i] = ob_cross(p->arm_b, r->along[i]);
-		r->turn_a[i] = times(a->inv_inertia, r->about_a[i]);
-		r->turn_b[i] = times(b->inv_inertia, r->about_b[i]);
+		if (a->inv_mass > 0) {
+			r->about_a[i] = ob_cross(p->arm_a, r->along[i]);
+			r->turn_a[i] = times(a->inv_inertia, r->about_a[i]);
+		}
+		if (b->inv_mass > 0) {
+			r->about_b[i] = ob_cross(p->arm_b, r->along[i]);
+			r->turn_b[i] = times(b->inv_inertia, r->about_b[i]);
+		}
 		r->before[i] = ob_dot(r->along[i], v);
 	}
+}
+
+// The same whichever body is a.
+static point_matrix point_matrix_of(const point_rows *r)
+{
+	double a[3][3];
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j <= i; j++)
+			a[i][j] = ob_dot(r->about_a[i], r->turn_a[j]) + ob_dot(r->about_b[i], r->turn_b[j]) +
+				  (i == j ? r->mass_a + r->mass_b : 0);
+	return (point_matrix){ a[0][0], { a[1][0], a[2][0] }, { a[1][1], a[2][1], a[2][2] } };
 }
 
 // A body with k points is a k-th of itself in each: so no iteration does too much (mass splitting: Tonge et al. 2012).
@@ -111,6 +132,14 @@ static void set_rates(impact_set *s, uint32_t *count)
 	}
 }
 
+// Of a set of one point: its matrix, and the rate that comes of it.
+static void set_matrix(impact_set *s)
+{
+	point_rows *r = s->point;
+	s->one = point_matrix_of(r);
+	r->rate = 1 / (s->one.nn + (s->dims == 3 ? s->one.tt[0] + s->one.tt[2] : 0));
+}
+
 static void add_changes(const impact_set *s, const double *x)
 {
 	memset(s->change, 0, s->bodies * sizeof *s->change);
@@ -119,17 +148,37 @@ static void add_changes(const impact_set *s, const double *x)
 		change_of_velocity *a = &s->change[r->a], *b = &s->change[r->b];
 		for (int i = 0; i < s->dims; i++) {
 			const double xi = x[k * (uint32_t)s->dims + (uint32_t)i];
-			a->v = ob_madd(a->v, r->mass_a * xi, r->along[i]);
-			a->w = ob_madd(a->w, xi, r->turn_a[i]);
-			b->v = ob_madd(b->v, -r->mass_b * xi, r->along[i]);
-			b->w = ob_madd(b->w, -xi, r->turn_b[i]);
+			if (r->mass_a > 0) {
+				a->v = ob_madd(a->v, r->mass_a * xi, r->along[i]);
+				a->w = ob_madd(a->w, xi, r->turn_a[i]);
+			}
+			if (r->mass_b > 0) {
+				b->v = ob_madd(b->v, -r->mass_b * xi, r->along[i]);
+				b->w = ob_madd(b->w, -xi, r->turn_b[i]);
+			}
 		}
 	}
+}
+
+static void find_velocities_of_one(const impact_set *s, const double *x, double *u)
+{
+	const point_rows *r = s->point;
+	const point_matrix *a = &s->one;
+	u[0] = r->before[0] + a->nn * x[0] + s->share * r->e * r->before[0];
+	if (s->dims == 1)
+		return;
+	u[0] += a->nt[0] * x[1] + a->nt[1] * x[2];
+	u[1] = r->before[1] + a->nt[0] * x[0] + a->tt[0] * x[1] + a->tt[1] * x[2];
+	u[2] = r->before[2] + a->nt[1] * x[0] + a->tt[1] * x[1] + a->tt[2] * x[2];
 }
 
 // What all rows have to reach, u, with the impulses x: the normal velocities are in excess of the law's.
 static void find_velocities(const impact_set *s, const double *x, double *u)
 {
+	if (s->points == 1) {
+		find_velocities_of_one(s, x, u);
+		return;
+	}
 	add_changes(s, x);
 	for (uint32_t k = 0; k < s->points; k++) {
 		const point_rows *r = &s->point[k];
@@ -399,7 +448,7 @@ static void solve_cycles(const impact_set *s, double *x, double *u)
 // The same for one point, of which nearly all sets are. Where friction cannot stop it, it slides afterwards in some
 // direction d, with friction against that: one unknown angle.
 typedef struct one_point {
-	double nn, nt[2], tt[3]; // J M^-1 J': of the normal, of both, of friction (11 12 22)
+	point_matrix a;
 	double n, t[2]; // m/s: what is to be reached, without an impulse; the point's sliding
 	double mu;
 } one_point;
@@ -413,24 +462,20 @@ static one_point one_point_of(const impact_set *s)
 {
 	const point_rows *r = s->point;
 	return (one_point){
-		.nn = coupling(r, 0, r, 0),
-		.nt = { coupling(r, 0, r, 1), coupling(r, 0, r, 2) },
-		.tt = { coupling(r, 1, r, 1), coupling(r, 1, r, 2), coupling(r, 2, r, 2) },
-		.n = (1 + s->share * r->e) * r->before[0],
-		.t = { r->before[1], r->before[2] },
-		.mu = r->mu,
+		.a = s->one, .n = (1 + s->share * r->e) * r->before[0], .t = { r->before[1], r->before[2] }, .mu = r->mu
 	};
 }
 
 // The impulses that leave the point at rest along the plane. false: they are beyond its cone.
 static bool stop_point(const one_point *p, double *x)
 {
-	const double f[2] = { p->nt[0] / p->nn, p->nt[1] / p->nn }; // without the normal row
-	const double a = p->tt[0] - f[0] * p->nt[0], b = p->tt[1] - f[0] * p->nt[1], c = p->tt[2] - f[1] * p->nt[1];
+	const double f[2] = { p->a.nt[0] / p->a.nn, p->a.nt[1] / p->a.nn }; // without the normal row
+	const double a = p->a.tt[0] - f[0] * p->a.nt[0], b = p->a.tt[1] - f[0] * p->a.nt[1],
+		     c = p->a.tt[2] - f[1] * p->a.nt[1];
 	const double t0 = p->t[0] - f[0] * p->n, t1 = p->t[1] - f[1] * p->n, inverse = 1 / (a * c - b * b);
 	x[1] = (b * t1 - c * t0) * inverse;
 	x[2] = (b * t0 - a * t1) * inverse;
-	x[0] = -(p->n + p->nt[0] * x[1] + p->nt[1] * x[2]) / p->nn;
+	x[0] = -(p->n + p->a.nt[0] * x[1] + p->a.nt[1] * x[2]) / p->a.nn;
 	return x[0] > 0 && x[1] * x[1] + x[2] * x[2] <= p->mu * p->mu * x[0] * x[0];
 }
 
@@ -439,9 +484,9 @@ static bool stop_point(const one_point *p, double *x)
 static double turn_of_sliding(const one_point *p, const double *free, const double *d)
 {
 	const double across[2] = { -d[1], d[0] };
-	const double td[2] = { p->tt[0] * d[0] + p->tt[1] * d[1], p->tt[1] * d[0] + p->tt[2] * d[1] };
-	const double along = dot2(d, td), aside = dot2(across, td), other = p->tt[0] + p->tt[2] - along;
-	const double push = dot2(d, p->nt), push_aside = dot2(across, p->nt);
+	const double td[2] = { p->a.tt[0] * d[0] + p->a.tt[1] * d[1], p->a.tt[1] * d[0] + p->a.tt[2] * d[1] };
+	const double along = dot2(d, td), aside = dot2(across, td), other = p->a.tt[0] + p->a.tt[2] - along;
+	const double push = dot2(d, p->a.nt), push_aside = dot2(across, p->a.nt);
 	const double slide = dot2(d, p->t), slide_aside = dot2(across, p->t);
 	const double miss = dot2(across, free) + p->mu * (p->n * aside - push * slide_aside);
 	const double slope = p->mu * (p->n * (other - along) - push_aside * slide_aside + push * slide) - dot2(d, free);
@@ -453,7 +498,7 @@ static void let_point_slide(const one_point *p, double *x)
 {
 	enum { MOST = 12, FIRST = 4 }; // steps of Newton's method; that may lead anywhere
 	const double rounding = 1e-16; // rad
-	const double free[2] = { p->t[0] * p->nn - p->n * p->nt[0], p->t[1] * p->nn - p->n * p->nt[1] };
+	const double free[2] = { p->t[0] * p->a.nn - p->n * p->a.nt[0], p->t[1] * p->a.nn - p->n * p->a.nt[1] };
 	const double size = sqrt(dot2(free, free));
 	double d[2] = { free[0] / size, free[1] / size }, last = INFINITY;
 	for (int k = 0; k < MOST; k++) {
@@ -465,7 +510,7 @@ static void let_point_slide(const one_point *p, double *x)
 		d[0] = inverse * turned[0], d[1] = inverse * turned[1];
 		last = fabs(turn);
 	}
-	x[0] = -p->n / (p->nn - p->mu * dot2(d, p->nt));
+	x[0] = -p->n / (p->a.nn - p->mu * dot2(d, p->a.nt));
 	x[1] = -p->mu * x[0] * d[0];
 	x[2] = -p->mu * x[0] * d[1];
 }
@@ -489,7 +534,7 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 	set.share = share;
 	if (s->points == 1 && s->dims == 1) { // a quotient
 		const point_rows *r = s->point;
-		x[0] = ob_max(0, -(1 + share * r->e) * r->before[0] / coupling(r, 0, r, 0));
+		x[0] = ob_max(0, -(1 + share * r->e) * r->before[0] / s->one.nn);
 		return;
 	}
 	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
@@ -605,7 +650,10 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 	gather_points(&s, body, point, points);
 	if (s.points && !pay(&s, 1, 0)) {
 		double *x = row, *u = x + 3 * points;
-		set_rates(&s, count);
+		if (s.points == 1)
+			set_matrix(&s);
+		else
+			set_rates(&s, count);
 		solve_law(&s, 1, x, u);
 		limit_energy(&s, x, u);
 		add_changes(&s, x);
