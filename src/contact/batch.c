@@ -174,12 +174,11 @@ static void set_patch(ob_batch *b, int l, const vec2 *p, int points, double disc
 
 void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 {
-	ob_vec3 n = in->normal, t1, t2, ca = { 0, 0, 0 }, cb = { 0, 0, 0 };
+	const ob_vec3 n = in->normal, ca = in->friction_a, cb = in->friction_b;
+	ob_vec3 t1, t2;
 	ob_tangents(n, &t1, &t2);
 	double radius = 0;
 	vec2 at[OB_POINTS] = { { 0 } };
-	if (in->points > 0)
-		ob_friction_arms(in->arm_a, in->arm_b, in->gap, in->points, n, &ca, &cb);
 	for (int j = 0; j < OB_POINTS; j++) {
 		bool used = j < in->points;
 		set3(b->ja[j], l, used ? ob_cross(in->arm_a[j], n) : ob_v3(0, 0, 0));
@@ -232,7 +231,8 @@ const ob_kernel *ob_kernel_best(void)
 
 void ob_batch_prepare(ob_batch *b)
 {
-	ob_kernel_best()->prepare(b);
+	if (b->dirty)
+		ob_kernel_best()->prepare(b);
 }
 
 static unsigned lone_lanes(const ob_batch *b, const ob_solver_iteration *iteration)
@@ -257,8 +257,10 @@ void ob_batch_solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_r
 	b->changed = b->residual = 0;
 	b->impact &= iteration->first ? 0 : ~0u;
 	b->solved = b->active = b->slides = b->sweeps = 0;
-	if (b->live)
+	if (b->live) {
+		ob_batch_prepare(b);
 		kernel->solve(b, iteration, u, v, d, delta);
+	}
 	b->live = live, b->isolated = isolated;
 	b->impact |= impact;
 	for (unsigned left = lone; left; left &= left - 1)
@@ -272,6 +274,8 @@ bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_bod
 
 void ob_batch_limit_prediction(ob_batch *b, const double *cap_impulse, double cap_velocity)
 {
+	if (b->impact)
+		ob_batch_prepare(b);
 	ob_kernel_best()->limit_prediction(b, cap_impulse, cap_velocity);
 }
 

@@ -46,7 +46,7 @@ typedef struct ob_batch {
 	uint32_t body_a[OB_LANES], body_b[OB_LANES]; // rows of the velocity arrays; 0 in an empty lane
 	ob_batch_kind kind;
 	unsigned live; // bit per lane in use
-	unsigned dirty; // the Delassus matrices must be made anew
+	unsigned dirty; // the Delassus matrices are not those of the lanes
 	unsigned impact; // lanes whose impulses jumped in this substep: not to be extrapolated
 	unsigned elastic; // lanes with restitution
 	unsigned isolated; // lanes whose bodies are in no other contact
@@ -102,6 +102,7 @@ typedef struct ob_batch_lane {
 	ob_vec3 normal;
 	int points;
 	const ob_vec3 *arm_a, *arm_b; // m, from each centre to the points
+	ob_vec3 friction_a, friction_b; // m, from each centre to where friction acts (ob_friction_arms)
 	const double *gap; // m
 	double disc_radius; // m, of ob_manifold
 	double mu, e;
@@ -117,7 +118,8 @@ void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2);
 // slip there. arm_a, arm_b, gap: m, of the points, at least one; n: their normal; a, b: m, from each centre.
 void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n, ob_vec3 *a,
 		      ob_vec3 *b);
-// Delassus matrices, for the mass splitting in ka, kb.
+// Delassus matrices, for the mass splitting in ka, kb, unless they are those of the lanes already. The functions below
+// do so where they need them, which lanes that are solved by themselves do not.
 void ob_batch_prepare(ob_batch *b);
 
 // One iteration: solves all lanes on the velocities u and displacements d as they are, and writes the changes back.
@@ -140,6 +142,12 @@ void ob_batch_apply_impulses(const ob_batch *b, const lanes *x, ob_body_row *row
 // bits
 
 static const double ob_no_contact = 1e3; // m: the gap of a point that is not there
+
+// Is there such a point?
+static inline bool ob_batch_has_point(const ob_batch *b, int l, int point)
+{
+	return b->gap[point][l] < .5 * ob_no_contact;
+}
 
 typedef struct ob_kernel {
 	void (*prepare)(ob_batch *b);

@@ -685,7 +685,7 @@ double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_im
 	const uint32_t ia = b->body_a[l], ib = b->body_b[l];
 	double first = INFINITY;
 	for (int i = 0; i < OB_POINTS; i++) {
-		if (!(b->inv_diag[i][l] > 0) || !(in->points >> i & 1))
+		if (!ob_batch_has_point(b, l, i) || !(in->points >> i & 1))
 			continue;
 		double rate = opening_of(b, i, l, at->v[ia], at->v[ib]);
 		if (rate > in->gain - in->threshold ||

@@ -576,9 +576,44 @@ PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_
 	b->solved = lanes_bits(isolated & ~open);
 }
 
+// What lane l alone does to one of its bodies: the sums of apply, in their order.
+static void apply_impulses_of(const ob_batch *b, int l, bool a, const lanes *d, ob_body_row *rows)
+{
+	const double sign = a ? 1 : -1, inv_mass = sign * lone_get(a ? &b->ima : &b->imb, l);
+	const lanes(*j)[3] = a ? b->ja : b->jb;
+	const lanes *f1 = a ? b->fa1 : b->fb1, *f2 = a ? b->fa2 : b->fb2, *inertia = a ? b->ia : b->ib;
+	double *row = rows[a ? b->body_a[l] : b->body_b[l]];
+	double x[OB_ROWS], turn[3], k[6];
+	for (int i = 0; i < OB_ROWS; i++)
+		x[i] = lone_get(&d[i], l);
+	for (int i = 0; i < 6; i++)
+		k[i] = sign * lone_get(&inertia[i], l);
+	const double sum = x[0] + x[1] + x[2] + x[3];
+	for (int c = 0; c < 3; c++) {
+		const double n = lone_get(&b->n[c], l);
+		row[c] += inv_mass * (n * sum + (lone_get(&b->t1[c], l) * x[4] + lone_get(&b->t2[c], l) * x[5]));
+		turn[c] = lone_get(&j[0][c], l) * x[0];
+		for (int i = 1; i < OB_POINTS; i++)
+			turn[c] += lone_get(&j[i][c], l) * x[i];
+		turn[c] += lone_get(&f1[c], l) * x[4] + lone_get(&f2[c], l) * x[5];
+		turn[c] += n * x[6];
+	}
+	row[3] += k[0] * turn[0] + k[1] * turn[1] + k[2] * turn[2];
+	row[4] += k[1] * turn[0] + k[3] * turn[1] + k[4] * turn[2];
+	row[5] += k[2] * turn[0] + k[4] * turn[1] + k[5] * turn[2];
+}
+
 // va, vb of apply for rows that may stand in several lanes: their changes are added one by one, in lane order.
 static void apply_impulses(const ob_batch *b, const lanes *d, ob_body_row *rows)
 {
+	if (lanes_count(b->live) == 1) {
+		const int l = __builtin_ctz(b->live);
+		if (b->ima[l] > 0)
+			apply_impulses_of(b, l, true, d, rows);
+		if (b->imb[l] > 0)
+			apply_impulses_of(b, l, false, d, rows);
+		return;
+	}
 	lanes da[6] = { 0 }, db[6] = { 0 };
 	apply(b, OB_KIND_FULL, d, da, db);
 	lanes linear[2][OB_LANES], rest[2][OB_LANES];
@@ -748,6 +783,8 @@ static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 	}
 	if (!lanes_bits(deep))
 		return false;
+	if (b->dirty)
+		prepare(b);
 	for (int i = 0; i < points; i++)
 		r[i] = -lanes_where(deep, r[i] * b->inv_diag[i]); // what each row alone would change, as in a sweep
 	for (int s = 0; s < 4; s++)

@@ -231,7 +231,7 @@ static inline void lone_move(double x, double y, double *m)
 }
 
 // The ellipsoid that touches at the slip d.
-static inline void lone_model_set(const lone_load *p, const double *slip, lone_model *o)
+static __attribute__((noinline)) void lone_model_set(const lone_load *p, const double *slip, lone_model *o)
 {
 	const double far_share = .02; // of what moves, that turns
 	double d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
@@ -506,7 +506,7 @@ static inline void lone_hold_rows(const lone *p, lane_mask push, lanes *m, lanes
 }
 
 // A step of Newton's method, not past the place where the first point lets go.
-static inline void lone_leap(lone *p)
+static __attribute__((noinline)) void lone_leap(lone *p)
 {
 	const double proximity = 1e-7; // of a row's own coefficient
 	const double sum = lone_sum(p->x);
@@ -599,38 +599,11 @@ static inline int lone_rounds(lone *p, double converged)
 
 // ---- between the batch and here
 
-static inline void lone_load_pair(const ob_batch *b, int l, lone *p)
-{
-	lanes diag = lone_four(b->diag, l), diag_f = lone_three(b->diag + OB_POINTS, l);
-	for (int i = 0; i < OB_ROWS; i++) {
-		p->an[i] = lone_four(b->coupling[i], l) * diag;
-		p->af[i] = lone_three(b->coupling[i] + OB_POINTS, l) * diag_f;
-	}
-	p->diag = diag;
-	p->inv_diag = lone_four(b->inv_diag, l);
-	p->near_s = lone_four(b->patch_s, l), p->near_t = lone_four(b->patch_t, l);
-	p->x = lone_four(b->impulse, l), p->y = lone_three(b->impulse + OB_POINTS, l);
-	for (int c = 0; c < LONE_FRICTION; c++)
-		p->diag_f[c] = diag_f[c];
-	for (int i = 0; i < 6; i++)
-		p->mass[i] = lone_get(&b->friction_mass[i], l);
-	for (int c = 0; c < 2; c++)
-		p->e1[c] = lone_get(&b->patch_e1[c], l), p->e2[c] = lone_get(&b->patch_e2[c], l);
-	p->mu = lone_get(&b->mu, l), p->radius = lone_get(&b->radius, l);
-	p->slide_rate2 = lone_get(&b->slide_rate2, l);
-	p->det = p->e1[0] * p->e2[1] - p->e1[1] * p->e2[0];
-	p->ratio = p->radius > 0 ? __builtin_sqrt((p->e2[0] * p->e2[0] + p->e2[1] * p->e2[1]) /
-						  (p->e1[0] * p->e1[0] + p->e1[1] * p->e1[1]))
-				 : 1;
-	p->model.known = p->slides = false;
-	p->model.stretch = lone_get(&b->model.stretch, l);
-	p->spin = 0;
-}
-
 // A body, and the rows of J as seen from it
 typedef struct lone_body {
 	uint32_t row;
 	double sign; // of what it does to the contact: 1 for body a
+	double inv_mass, inv_inertia[6];
 	double n[3], t1[3], t2[3], f1[3], f2[3];
 	lanes arm[3]; // of the normals: r x n
 } lone_body;
@@ -638,9 +611,12 @@ typedef struct lone_body {
 static inline void lone_load_body(const ob_batch *b, int l, bool a, lone_body *o)
 {
 	const lanes(*j)[3] = a ? b->ja : b->jb;
-	const lanes *f1 = a ? b->fa1 : b->fb1, *f2 = a ? b->fa2 : b->fb2;
+	const lanes *f1 = a ? b->fa1 : b->fb1, *f2 = a ? b->fa2 : b->fb2, *inv_inertia = a ? b->ia : b->ib;
 	o->row = a ? b->body_a[l] : b->body_b[l];
 	o->sign = a ? 1 : -1;
+	o->inv_mass = lone_get(a ? &b->ima : &b->imb, l);
+	for (int i = 0; i < 6; i++)
+		o->inv_inertia[i] = lone_get(&inv_inertia[i], l);
 	for (int c = 0; c < 3; c++) {
 		o->n[c] = o->sign * lone_get(&b->n[c], l);
 		o->t1[c] = o->sign * lone_get(&b->t1[c], l), o->t2[c] = o->sign * lone_get(&b->t2[c], l);
@@ -648,6 +624,77 @@ static inline void lone_load_body(const ob_batch *b, int l, bool a, lone_body *o
 		o->arm[c] = o->sign * (lanes){ lone_get(&j[0][c], l), lone_get(&j[1][c], l), lone_get(&j[2][c], l),
 					       lone_get(&j[3][c], l) };
 	}
+}
+
+// The inverse of A's block of friction: as invert_patch of kernel.c. tt: 44 45 46 55 56 66
+static inline void lone_invert_friction(lone *p, const double *tt)
+{
+	const double heavy = 1e-6, half = .5 * (tt[0] - tt[3]), least = heavy * (tt[0] + tt[3]);
+	const double most = .5 * (tt[0] + tt[3]) + __builtin_sqrt(half * half + tt[1] * tt[1]); // eigenvalue
+	const double twist = tt[5] > 0 ? tt[5] : least / lone_max(p->radius * p->radius, 1e-300);
+	const double c[6] = { tt[3] * twist - tt[4] * tt[4], tt[2] * tt[4] - tt[1] * twist,
+			      tt[1] * tt[4] - tt[3] * tt[2], tt[0] * twist - tt[2] * tt[2],
+			      tt[1] * tt[2] - tt[0] * tt[4], tt[0] * tt[3] - tt[1] * tt[1] };
+	const double det = tt[0] * c[0] + tt[1] * c[1] + tt[2] * c[2];
+	p->slide_rate2 = most * most;
+	if (p->radius > 0 && det > 0) {
+		const double inverse = 1 / det;
+		for (int i = 0; i < 6; i++)
+			p->mass[i] = c[i] * inverse;
+	} else { // a point has no twist
+		const double inverse = c[5] > 0 ? 1 / c[5] : 0;
+		p->mass[0] = tt[3] * inverse, p->mass[1] = -tt[1] * inverse, p->mass[3] = tt[0] * inverse;
+		p->mass[2] = p->mass[4] = p->mass[5] = 0;
+	}
+}
+
+// A, of the body that moves by itself.
+static __attribute__((noinline)) void lone_couple(const ob_batch *b, int l, const lone_body *o, lone *p)
+{
+	const double *k = o->inv_inertia;
+	const lane_mask used = lone_four(b->gap, l) < .5 * ob_no_contact;
+	const lanes turn[3] = { k[0] * o->arm[0] + k[1] * o->arm[1] + k[2] * o->arm[2],
+				k[1] * o->arm[0] + k[3] * o->arm[1] + k[4] * o->arm[2],
+				k[2] * o->arm[0] + k[4] * o->arm[1] + k[5] * o->arm[2] };
+	const double *about[LONE_FRICTION] = { o->f1, o->f2, o->n };
+	double turned[LONE_FRICTION][3], tt[6];
+	for (int c = 0; c < LONE_FRICTION; c++) {
+		const double *x = about[c];
+		lone_mul(k, x, turned[c]);
+		p->an[OB_POINTS + c] = lanes_where(used, turn[0] * x[0] + turn[1] * x[1] + turn[2] * x[2]);
+	}
+	for (int i = 0; i < OB_POINTS; i++) {
+		p->an[i] = lanes_where(used, turn[0][i] * o->arm[0] + turn[1][i] * o->arm[1] + turn[2][i] * o->arm[2] +
+						     o->inv_mass);
+		p->af[i] = lone_vector(p->an[4][i], p->an[5][i], p->an[6][i]);
+	}
+	for (int i = 0, n = 0; i < LONE_FRICTION; i++)
+		for (int j = i; j < LONE_FRICTION; j++, n++)
+			tt[n] = lone_dot(turned[i], about[j]) + (i == j && i < 2 ? o->inv_mass : 0);
+	p->af[4] = lone_vector(tt[0], tt[1], tt[2]);
+	p->af[5] = lone_vector(tt[1], tt[3], tt[4]);
+	p->af[6] = lone_vector(tt[2], tt[4], tt[5]);
+	p->diag = (lanes){ p->an[0][0], p->an[1][1], p->an[2][2], p->an[3][3] };
+	p->inv_diag = lanes_where(used, 1 / p->diag);
+	p->diag_f[0] = tt[0], p->diag_f[1] = tt[3], p->diag_f[2] = tt[5];
+	lone_invert_friction(p, tt);
+}
+
+static inline void lone_load_pair(const ob_batch *b, int l, const lone_body *o, lone *p)
+{
+	p->near_s = lone_four(b->patch_s, l), p->near_t = lone_four(b->patch_t, l);
+	p->x = lone_four(b->impulse, l), p->y = lone_three(b->impulse + OB_POINTS, l);
+	for (int c = 0; c < 2; c++)
+		p->e1[c] = lone_get(&b->patch_e1[c], l), p->e2[c] = lone_get(&b->patch_e2[c], l);
+	p->mu = lone_get(&b->mu, l), p->radius = lone_get(&b->radius, l);
+	p->det = p->e1[0] * p->e2[1] - p->e1[1] * p->e2[0];
+	p->ratio = p->radius > 0 ? __builtin_sqrt((p->e2[0] * p->e2[0] + p->e2[1] * p->e2[1]) /
+						  (p->e1[0] * p->e1[0] + p->e1[1] * p->e1[1]))
+				 : 1;
+	p->model.known = p->slides = false;
+	p->model.stretch = lone_get(&b->model.stretch, l);
+	p->spin = 0;
+	lone_couple(b, l, o, p);
 }
 
 // J x: how fast the points open, and how the contact slides and spins.
@@ -709,18 +756,15 @@ static inline double lone_largest_change(const lone *p, lanes dx, lanes dy)
 	return lone_max(most * most, lone_slip_change(p, dy));
 }
 
-static inline void lone_apply(const ob_batch *b, int l, const lone_body *o, lanes dx, lanes dy, double *u)
+static inline void lone_apply(const lone_body *o, lanes dx, lanes dy, double *u)
 {
-	const bool a = o->sign > 0;
-	const double inv_mass = lone_get(a ? &b->ima : &b->imb, l), sum = lone_sum(dx);
-	double inertia[6], turn[3], change[3];
-	for (int c = 0; c < 6; c++)
-		inertia[c] = lone_get(a ? &b->ia[c] : &b->ib[c], l);
+	const double sum = lone_sum(dx);
+	double turn[3], change[3];
 	for (int c = 0; c < 3; c++) {
-		u[c] += inv_mass * (o->n[c] * sum + o->t1[c] * dy[0] + o->t2[c] * dy[1]);
+		u[c] += o->inv_mass * (o->n[c] * sum + o->t1[c] * dy[0] + o->t2[c] * dy[1]);
 		turn[c] = lone_sum(o->arm[c] * dx) + o->f1[c] * dy[0] + o->f2[c] * dy[1] + o->n[c] * dy[2];
 	}
-	lone_mul(inertia, turn, change);
+	lone_mul(o->inv_inertia, turn, change);
 	for (int c = 0; c < 3; c++)
 		u[3 + c] += change[c];
 }
@@ -732,8 +776,8 @@ static void solve_lone(ob_batch *b, int l, const ob_solver_iteration *iteration,
 		     wake2 = iteration->wake_threshold * iteration->wake_threshold;
 	lone p;
 	lone_body o;
-	lone_load_pair(b, l, &p);
 	lone_load_body(b, l, lone_get(&b->ima, l) > 0, &o);
+	lone_load_pair(b, l, &o, &p);
 	const lone_rates now = lone_rates_of(b, l, &o, v), next = lone_rates_of(b, l, &o, u);
 	const lanes x = p.x, y = p.y, bias = lone_bias(b, l, &p, &o, iteration, now.opening, d);
 	double start[3];
@@ -751,7 +795,7 @@ static void solve_lone(ob_batch *b, int l, const ob_solver_iteration *iteration,
 	const int rounds = lone_rounds(&p, iteration->converged);
 	const lanes dx = p.x - x, dy = p.y - y;
 	const double changed = lone_largest_change(&p, dx, dy);
-	lone_apply(b, l, &o, dx, dy, u[o.row]);
+	lone_apply(&o, dx, dy, u[o.row]);
 	for (int i = 0; i < OB_POINTS; i++) {
 		lanes_put(&b->impulse[i], l, p.x[i]);
 		lanes_put(&b->bias[i], l, bias[i]);

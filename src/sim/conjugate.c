@@ -17,6 +17,8 @@ void ob_conjugate_begin(ob_island_work *w)
 	}
 	if (w->batches)
 		memset(c->direction, 0, w->batches * sizeof *c->direction);
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_prepare(&w->batch[i]);
 	c->last = 0;
 }
 

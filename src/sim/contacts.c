@@ -134,12 +134,17 @@ static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, co
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	contact->spin_lever_a = ob_spin_lever(a, normal, contact->arm_a, contact->points);
 	contact->spin_lever_b = ob_spin_lever(b, normal, contact->arm_b, contact->points);
+	if (contact->points > 0)
+		ob_friction_arms(contact->arm_a, contact->arm_b, gap, (int)contact->points, normal,
+				 &contact->friction_a, &contact->friction_b);
 	ob_batch_lane lane = { .body_a = contact->a,
 			       .body_b = contact->b,
 			       .normal = normal,
 			       .points = (int)contact->points,
 			       .arm_a = contact->arm_a,
 			       .arm_b = contact->arm_b,
+			       .friction_a = contact->friction_a,
+			       .friction_b = contact->friction_b,
 			       .gap = gap,
 			       .disc_radius = contact->disc_radius,
 			       .mu = contact->mu,
@@ -335,7 +340,6 @@ void ob_contact_set_geometry(ob_sim *s, ob_contact *contact, const ob_manifold *
 	saved_impulses old;
 	save_impulses(w, contact, &old);
 	put_points(w, contact, m, pa, pb, &old);
-	ob_batch_prepare(&w->batch[contact->lane / OB_LANES]);
 	contact->as_of_instant = true;
 	contact->limit = -INFINITY;
 }
@@ -483,11 +487,12 @@ static void order_batches(ob_island_work *w)
 static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 {
 	b->isolated = b->hit = 0;
-	for (int l = 0; l < OB_LANES; l++) {
+	for (unsigned left = b->live; left; left &= left - 1) {
+		const int l = __builtin_ctz(left);
 		const ob_body *m[2] = { &w->body[b->body_a[l]], &w->body[b->body_b[l]] };
 		bool isolated =
 			(m[0]->inv_mass == 0 || m[0]->in_reach <= 1) && (m[1]->inv_mass == 0 || m[1]->in_reach <= 1);
-		b->isolated |= (unsigned)isolated << l & b->live;
+		b->isolated |= (unsigned)isolated << l;
 		b->hit |= (unsigned)(m[0]->hit > 0 || m[1]->hit > 0) << l;
 		if (jacobi) {
 			lanes_put(&b->ka, l, ob_max(1, m[0]->contacts));
@@ -523,8 +528,8 @@ void ob_contacts_prepare(ob_sim *s)
 	for (uint32_t i = 0; i < w->batches; i++) {
 		ob_batch *b = &w->batch[i];
 		count_contacts(w, b, jacobi && w->counts_stale);
-		if (b->dirty || (jacobi && w->counts_stale))
-			ob_batch_prepare(b);
+		if (jacobi && w->counts_stale)
+			b->dirty = 1;
 	}
 	w->counts_stale = false;
 }

@@ -387,6 +387,8 @@ bool ob_direct_solve(ob_sim *s)
 	const double backtrack = .3, min_step = .5; // projection bends the direction: a smaller share is tried then
 	const double min_alpha = f->shape == OB_DIRECT_CYCLIC ? backtrack : 1e-3;
 	double alpha = 1, t;
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_prepare(&w->batch[i]);
 	find_row_velocities(w);
 	s->counters.direct_solves++;
 	enum { OF_TREES = 64, SPARSE = 640 }; // for each body, at most

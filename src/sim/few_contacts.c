@@ -126,7 +126,7 @@ static void add_contact(const ob_island_work *w, few *f, uint32_t lane)
 	if (spins)
 		f->brought[contact][6] = x6 / sum;
 	for (int i = 0; i < OB_POINTS; i++)
-		if (b->impulse[i][l] > 0 && b->inv_diag[i][l] > 0)
+		if (b->impulse[i][l] > 0 && ob_batch_has_point(b, (int)l, i))
 			add_unknown(w, f, contact, i, NULL);
 	if (!slides) {
 		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 1, 0 });

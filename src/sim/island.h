@@ -69,6 +69,7 @@ typedef struct ob_contact {
 	uint32_t colour;
 	uint32_t points;
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
+	ob_vec3 friction_a, friction_b; // m: where friction acts
 	int8_t was[OB_PAIR_POINTS]; // of each point: which one it was when the geometry was found before; -1: none
 	double disc_radius; // m, of the manifold
 	double spin_lever_a, spin_lever_b; // m, of its points (sim/relative_speed.h); 0 while they are apart

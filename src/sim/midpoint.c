@@ -204,8 +204,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		gap[j] = b->gap[j][l];
 	}
 	ob_vec3 at_a, at_b;
-	ob_friction_arms(contact->arm_a, contact->arm_b, gap, points, n, &at_a, &at_b);
-	ob_vec3 slide = ob_sub(velocity_at(va, wa, at_a), velocity_at(vb, wb, at_b));
+	ob_vec3 slide = ob_sub(velocity_at(va, wa, contact->friction_a), velocity_at(vb, wb, contact->friction_b));
 	ob_friction_arms(arm_a0, arm_b0, gap, points, start_n, &at_a, &at_b);
 	const ob_vec3 slide_start = ob_sub(velocity_at(va, wa0, at_a), velocity_at(vb, wb0, at_b));
 	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
