@@ -45,6 +45,7 @@ typedef struct lone {
 	double mu, radius, slide_rate2, e1[2], e2[2], ratio, det;
 	double spin; // rad/s, of the mean slip while it slides
 	bool slides;
+	int points; // the first of four
 	lone_model model;
 } lone;
 
@@ -403,6 +404,16 @@ static inline void lone_change_point(lone *p, int i, double d)
 	p->short_f -= p->af[i] * d;
 }
 
+static inline void lone_change_points(lone *p, lanes d)
+{
+#pragma GCC unroll 4
+	for (int i = 0; i < OB_POINTS; i++) {
+		if (i == p->points)
+			break;
+		lone_change_point(p, i, d[i]);
+	}
+}
+
 static inline void lone_change_friction(lone *p, lanes d)
 {
 	for (int c = 0; c < LONE_FRICTION; c++)
@@ -421,7 +432,10 @@ static inline double lone_slip_change(const lone *p, lanes d)
 static inline double lone_sweep(lone *p)
 {
 	double largest = 0, sum = 0, next[LONE_FRICTION];
+#pragma GCC unroll 4
 	for (int i = 0; i < OB_POINTS; i++) {
+		if (i == p->points)
+			break;
 		const double x = p->x[i], d = lone_max(-x, p->short_n[i] * p->inv_diag[i]);
 		lone_change_point(p, i, d);
 		p->x[i] = x + d;
@@ -434,12 +448,15 @@ static inline double lone_sweep(lone *p)
 	return lone_max(largest * largest, lone_slip_change(p, d));
 }
 
-// r becomes m^-1 r, by elimination without pivots. Of the first rows of the points; or, where friction holds, of its
-// rows, too, with the columns mf.
-static inline __attribute__((always_inline)) void lone_eliminate(lanes *m, lanes *mf, double *r, int rows)
+// r becomes m^-1 r, by elimination without pivots. Of the rows of the points, of which only those that push ask for
+// something; or, where friction holds, of its rows, too, with the columns mf.
+static inline __attribute__((always_inline)) void lone_eliminate(unsigned push, lanes *m, lanes *mf, double *r,
+								 int rows)
 {
 #pragma GCC unroll 7
 	for (int k = 0; k < rows; k++) {
+		if (k < OB_POINTS && !(push >> k & 1))
+			continue;
 		const double inverse = 1 / (k < OB_POINTS ? m[k][k] : mf[k][k - OB_POINTS]);
 		m[k] *= inverse, r[k] *= inverse;
 		if (rows > OB_POINTS)
@@ -513,30 +530,30 @@ static __attribute__((noinline)) void lone_leap(lone *p)
 	if (!(sum > 0))
 		return;
 	const lane_mask push = (p->x > 0) & (p->inv_diag > 0);
+	const unsigned pushing = lanes_bits(push);
 	lanes m[OB_ROWS], mf[OB_ROWS], by[LONE_FRICTION] = { { 0 } };
 	double r[OB_ROWS], share = 1;
-	const lanes missing = lanes_where(push, p->short_n);
 	if (p->slides)
 		lone_follow(p, sum, by);
 	for (int i = 0; i < OB_POINTS; i++) {
+		m[i] = mf[i] = lanes_of(0);
+		r[i] = 0;
+		if (!(pushing >> i & 1))
+			continue;
 		lanes row = p->an[i];
 		if (p->slides)
 			row += p->af[i][0] * by[0] + p->af[i][1] * by[1] + p->af[i][2] * by[2];
 		m[i] = lanes_where(push, row);
 		mf[i] = p->af[i];
 		m[i][i] += proximity * p->diag[i];
-		if (!push[i]) {
-			m[i] = mf[i] = lanes_of(0);
-			m[i][i] = 1;
-		}
-		r[i] = missing[i];
+		r[i] = p->short_n[i];
 	}
 	if (p->slides) {
-		lone_eliminate(m, mf, r, OB_POINTS);
+		lone_eliminate(pushing, m, mf, r, OB_POINTS);
 		r[4] = r[5] = r[6] = 0;
 	} else {
 		lone_hold_rows(p, push, m, mf, r);
-		lone_eliminate(m, mf, r, OB_ROWS);
+		lone_eliminate(pushing, m, mf, r, OB_ROWS);
 	}
 	for (int i = 0; i < OB_POINTS; i++)
 		if (p->x[i] + r[i] < 0)
@@ -546,8 +563,7 @@ static __attribute__((noinline)) void lone_leap(lone *p)
 	const lanes d = share * (lanes){ r[0], r[1], r[2], r[3] };
 	const lanes df = p->slides ? lone_vector(lone_sum(by[0] * d), lone_sum(by[1] * d), lone_sum(by[2] * d))
 				   : share * lone_vector(r[4], r[5], r[6]);
-	for (int i = 0; i < OB_POINTS; i++)
-		lone_change_point(p, i, d[i]);
+	lone_change_points(p, d);
 	p->x = lanes_max(p->x + d, lanes_of(0));
 	lone_change_friction(p, df);
 }
@@ -574,8 +590,7 @@ static inline void lone_hasten(lone *p, const lone_impulses *from, lone_impulses
 		const double share =
 			lone_max(-most, lone_min(most, -lone_sum(weight_x * fx * ex + weight_y * fy * ey) / size));
 		const lanes d = lanes_max(share * (p->x - to->x), -p->x);
-		for (int i = 0; i < OB_POINTS; i++)
-			lone_change_point(p, i, d[i]);
+		lone_change_points(p, d);
 		p->x += d;
 		lone_change_friction(p, share * (p->y - to->y));
 	}
@@ -676,6 +691,7 @@ static __attribute__((noinline)) void lone_couple(const ob_batch *b, int l, cons
 	p->af[6] = lone_vector(tt[2], tt[4], tt[5]);
 	p->diag = (lanes){ p->an[0][0], p->an[1][1], p->an[2][2], p->an[3][3] };
 	p->inv_diag = lanes_where(used, 1 / p->diag);
+	p->points = (int)lanes_count(lanes_bits(used));
 	p->diag_f[0] = tt[0], p->diag_f[1] = tt[3], p->diag_f[2] = tt[5];
 	lone_invert_friction(p, tt);
 }
