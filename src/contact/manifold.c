@@ -203,7 +203,7 @@ bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_
 
 // ---- time of impact
 
-static const double longest_short_turn = .2; // rad: off by less than 1e-5 rad
+static const double longest_short_turn = .2, longest_exact_turn = 1e-3; // rad: off by less than 1e-5 rad; by rounding
 
 // A shape on its way: v is constant, and it turns freely.
 typedef struct moving_shape {
@@ -221,35 +221,15 @@ static void set_off(const ob_placed *x, moving_shape *o)
 	ob_spin_plan(&o->spin, ob_quat_identity(), o->rate, x->inertia);
 }
 
-static ob_quat turn_at(moving_shape *x, double t)
+static ob_mat3 turned_by(const ob_mat3 *r, ob_quat turn)
 {
-	ob_quat turn;
-	ob_vec3 rate;
-	if (x->speed * t <= longest_short_turn)
-		return ob_drift_short_turn(x->rate, x->from->inertia, t);
-	ob_spin_at(&x->spin, t, &turn, &rate);
-	return turn;
-}
-
-static ob_placed placed_after(const moving_shape *x, double t, ob_quat turn)
-{
-	const ob_mat3 r = ob_quat_matrix(turn);
-	ob_placed y = *x->from;
-	y.p = ob_madd(y.p, t, y.v);
+	const ob_mat3 t = ob_quat_matrix(turn);
+	ob_mat3 out;
 	for (int c = 0; c < 3; c++) {
-		ob_vec3 axis = ob_rotate(&x->from->r, ob_column(&r, c));
-		y.r.m[0][c] = axis.x, y.r.m[1][c] = axis.y, y.r.m[2][c] = axis.z;
+		ob_vec3 axis = ob_rotate(r, ob_column(&t, c));
+		out.m[0][c] = axis.x, out.m[1][c] = axis.y, out.m[2][c] = axis.z;
 	}
-	return y;
-}
-
-static ob_placed placed_at(moving_shape *x, double t)
-{
-	if (t > 0 && x->speed > 0)
-		return placed_after(x, t, turn_at(x, t));
-	ob_placed y = *x->from;
-	y.p = ob_madd(y.p, t, y.v);
-	return y;
+	return out;
 }
 
 // rad/s, world, when it is at "now": its momentum stays.
@@ -264,13 +244,52 @@ static ob_vec3 rate_at(const moving_shape *x, const ob_placed *now)
 	return ob_rotate(&now->r, ob_v3(l.x / i.x, l.y / i.y, l.z / i.z));
 }
 
-// To rounding, however far it has turned, and with its rate then.
-static ob_placed exactly_placed_at(const moving_shape *x, double t)
+// A shape that is followed from instant to instant.
+typedef struct followed_shape {
+	moving_shape shape;
+	ob_placed now;
+	double t; // s
+	bool exactly; // to rounding, else to 1e-5 rad
+} followed_shape;
+
+static followed_shape follow_from_start(const ob_placed *x, bool exactly)
 {
-	const bool turns = x->speed > 0;
-	ob_placed y = placed_after(x, t, turns ? ob_drift_turn(x->rate, x->from->inertia, t) : ob_quat_identity());
-	y.w = turns ? rate_at(x, &y) : x->from->w;
-	return y;
+	followed_shape f = { .now = *x, .exactly = exactly };
+	set_off(x, &f.shape);
+	return f;
+}
+
+// As it is at t, turned from where it was at the start.
+static ob_mat3 turned_from_start(followed_shape *f, double t)
+{
+	const moving_shape *x = &f->shape;
+	ob_quat turn;
+	ob_vec3 rate;
+	if (f->exactly)
+		turn = ob_drift_turn(x->rate, f->now.inertia, t);
+	else if (x->speed * t <= longest_short_turn)
+		turn = ob_drift_short_turn(x->rate, f->now.inertia, t);
+	else
+		ob_spin_at(&f->shape.spin, t, &turn, &rate);
+	return turned_by(&x->from->r, turn);
+}
+
+// To a later instant.
+static void follow_to(followed_shape *f, double t)
+{
+	const moving_shape *x = &f->shape;
+	const double more = t - f->t, longest = f->exactly ? longest_exact_turn : longest_short_turn;
+	if (x->speed > 0 && more > 0) {
+		const bool far = f->exactly || x->speed * t > longest_short_turn;
+		if (far && f->t > 0 && x->spin.fastest * more < longest)
+			f->now.r = turned_by(&f->now.r, ob_drift_short_turn(ob_rotate_back(&f->now.r, f->now.w),
+									    f->now.inertia, more));
+		else
+			f->now.r = turned_from_start(f, t);
+		f->now.w = rate_at(x, &f->now);
+	}
+	f->now.p = ob_madd(x->from->p, t, x->from->v);
+	f->t = t;
 }
 
 // m/s, of any of its points by turning, at any time
@@ -384,7 +403,7 @@ static double find_direction(const ob_placed *a, const ob_placed *b, double know
 }
 
 // For how long within h (s) the two, at least, stay farther apart than "near" (m); "certain" (s) of it is known.
-static double time_apart(seen_along *x, double near, double certain, double h)
+static double time_apart(const seen_along *x, double near, double certain, double h)
 {
 	enum { NARROW = 2 };
 	const double farther = 4;
@@ -426,14 +445,17 @@ static double time_to_close(const seen_along *x, double apart, double h)
 	return low;
 }
 
-// For how long within h (s) two that touch now part, at least; 0: they do not.
+// For how long within h (s) two that touch now part, at least; 0: they do not. What a concave function loses at once it
+// never regains.
 static double time_of_parting(const seen_along *x, double apart, double h)
 {
-	const double shorter = .25, shortest = 1e-8 * h;
+	const double shorter = .25, shortest = 1e-8 * h, least = ob_max(apart, 0);
 	double t = h;
-	while (t > shortest && apart_at(x, t) < ob_max(apart, 0))
+	if (apart_at(x, shortest) < least)
+		return 0;
+	while (t > shortest && apart_at(x, t) < least)
 		t *= shorter;
-	return t > shortest ? t : 0;
+	return ob_max(t, shortest);
 }
 
 // For how long within h (s) the two stay apart, at least, or part if they touch: "apart" (m) along n, which stays in
@@ -462,40 +484,52 @@ static double time_clear(const ob_placed *a, const ob_placed *b, ob_vec3 n, doub
 	return longest;
 }
 
-bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double exact, double margin,
-		      ob_manifold_finder find, double *when, ob_manifold *out)
+// m: what is so near touches, but for rounding.
+static double rounding_of(const ob_placed *x)
+{
+	return 8 * DBL_EPSILON * (ob_shape_radius(x->shape, x->size) + ob_norm(x->p));
+}
+
+bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double margin, ob_manifold_finder find,
+		      double *when, ob_manifold *out)
 {
 	enum { MOST_ADVANCES = 64 };
-	moving_shape am, bm;
-	set_off(a, &am);
-	set_off(b, &bm);
-	const double bend = bend_of(&am) + bend_of(&bm);
-	const double speed = ob_max(ob_norm(ob_sub(a->v, b->v)) + fastest_rim(&am) + fastest_rim(&bm), DBL_MIN);
+	followed_shape at = follow_from_start(a, true), bt = follow_from_start(b, true);
+	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
+	const double speed =
+		ob_max(ob_norm(ob_sub(a->v, b->v)) + fastest_rim(&at.shape) + fastest_rim(&bt.shape), DBL_MIN);
+	const double exact = rounding_of(a) + rounding_of(b);
 	ob_vec3 n = { 0, 0, 0 };
-	double t = 0;
+	double t = 0, now = 0;
 	*when = INFINITY;
 	if (!isfinite(bend) || find.of_boxes)
 		return false;
 	for (int tries = 0; tries < MOST_ADVANCES; tries++) {
-		const ob_placed at = exactly_placed_at(&am, t), bt = exactly_placed_at(&bm, t);
 		const double left = h - t;
-		*out = (ob_manifold){ .valid_path = INFINITY };
-		find.find(find.with, &at, &bt, margin, out);
+		*out = (ob_manifold){ .normal = n, .valid_path = INFINITY };
+		find.find(find.with, &at.now, &bt.now, margin, out);
+		n = out->normal;
+		if (tries == 0)
+			now = out->separation;
 		if (out->separation < -margin)
 			return false;
-		n = ob_norm2(out->normal) > 0 ? out->normal : n;
-		const double apart = find_direction(&at, &bt, out->separation, &n);
+		const double apart = find_direction(&at.now, &bt.now, out->separation - exact, &n);
 		const bool touch = out->separation <= exact;
 		double clear = ob_max(0, out->separation - exact) / speed;
 		if (touch || apart > exact)
-			clear = ob_max(clear, time_clear(&at, &bt, n, apart, bend, touch, left));
-		if (clear >= left)
+			clear = ob_max(clear, time_clear(&at.now, &bt.now, n, apart, bend, touch, left));
+		if (clear >= left) {
+			out->points = 0;
+			out->separation = now;
 			return true;
+		}
 		if (touch && clear == 0) {
 			*when = t;
 			return out->points > 0;
 		}
 		t += ob_max(clear, DBL_EPSILON * t);
+		follow_to(&at, t);
+		follow_to(&bt, t);
 	}
 	return false;
 }
@@ -504,15 +538,17 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			 double margin, ob_manifold_finder find, ob_manifold *out)
 {
 	double t = 0, apart = 0;
-	moving_shape am, bm;
-	set_off(a, &am);
-	set_off(b, &bm);
-	seen_along x = { .n = { 0, 0, 0 }, .bend = bend_of(&am) + bend_of(&bm) };
-	const bool by_direction = isfinite(x.bend) && !find.of_boxes;
+	followed_shape at = follow_from_start(a, false), bt = follow_from_start(b, false);
+	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
+	const bool by_direction = isfinite(bend) && !find.of_boxes;
+	ob_vec3 n = { 0, 0, 0 };
 	// A grazing flight takes many small advances; after so many, what is this near counts as touching.
 	for (int tries = 0; tries < 256 && t <= h; tries++) {
-		ob_placed at = placed_at(&am, t), bt = placed_at(&bm, t);
-		find.find(find.with, &at, &bt, tolerance, out);
+		follow_to(&at, t);
+		follow_to(&bt, t);
+		out->normal = n;
+		find.find(find.with, &at.now, &bt.now, tolerance, out);
+		n = out->normal;
 		if (tries == 0)
 			apart = out->separation;
 		if (out->points && margin == tolerance)
@@ -521,10 +557,8 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			break;
 		const double near = .5 * tolerance, certain = (ob_max(out->separation, tolerance) - near) / speed;
 		double advance = certain;
-		if (by_direction && t + certain < h && find_direction(&at, &bt, out->separation, &x.n) > near) {
-			x.a = &at, x.turn_a = ob_cross(x.n, rate_at(&am, &at));
-			x.b = &bt, x.turn_b = ob_cross(x.n, rate_at(&bm, &bt));
-			x.centres = ob_dot(x.n, ob_sub(at.p, bt.p)), x.rate = ob_dot(x.n, ob_sub(at.v, bt.v));
+		if (by_direction && t + certain < h && find_direction(&at.now, &bt.now, out->separation, &n) > near) {
+			const seen_along x = look_along(&at.now, &bt.now, n, ob_v3(0, 0, 0), bend, h);
 			advance = time_apart(&x, near, certain, h - t);
 		}
 		t += advance;
@@ -532,8 +566,9 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			return t;
 	}
 	if (t <= h) {
-		ob_placed at = placed_at(&am, t), bt = placed_at(&bm, t);
-		find.find(find.with, &at, &bt, margin, out);
+		follow_to(&at, t);
+		follow_to(&bt, t);
+		find.find(find.with, &at.now, &bt.now, margin, out);
 		if (out->points)
 			return t;
 	}

@@ -66,11 +66,11 @@ typedef struct ob_manifold_finder {
 double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double exact, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out);
 
-// When two that move so first touch and go on into each other within h (s), to rounding: the instant at which they are
-// no farther apart than "exact" (m), and in out the points up to margin (m) then. Those that touch now may part. when:
-// infinity, if they stay apart. false: it could not be found, because they are in each other, or shapes or motions ask
-// for too many advances; then when and out mean nothing.
-bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double exact, double margin,
-		      ob_manifold_finder find, double *when, ob_manifold *out);
+// When two that move so first touch and go on into each other within h (s), to rounding, and in out the points up to
+// margin (m) then. Those that touch now may part. when: infinity, if they stay apart; then out has no points, and
+// separation is as of now. false: it could not be found, because they are in each other, or shapes or motions ask for
+// too many advances; then when and out mean nothing.
+bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double margin, ob_manifold_finder find,
+		      double *when, ob_manifold *out);
 
 #endif

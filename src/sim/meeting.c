@@ -1,7 +1,5 @@
 #include "sim/meeting.h"
 
-#include <float.h>
-
 #include "contact/impact.h"
 #include "contact/manifold.h"
 #include "motion/flight.h"
@@ -38,12 +36,6 @@ static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
 			    .hull = ob_hull_of(s->u, p) };
 }
 
-// m: what is so near touches, but for rounding.
-static double rounding_of(const ob_placed *x)
-{
-	return 8 * DBL_EPSILON * (ob_shape_radius(x->shape, x->size) + ob_norm(x->p));
-}
-
 // When the two first touch from where they have come to until an instant (s), as the second sees it. false: it could
 // not be found.
 static bool find_meeting(ob_sim *s, const ob_course c[2], double until, meeting *x)
@@ -51,11 +43,10 @@ static bool find_meeting(ob_sim *s, const ob_course c[2], double until, meeting 
 	const double since = c[0].since;
 	const ob_vec3 none = { 0, 0, 0 }, v = ob_sub(ob_velocity_at(&c[0].m, since), ob_velocity_at(&c[1].m, since));
 	const ob_placed a = placed_of(s, &c[0], v), b = placed_of(s, &c[1], none);
-	const double exact = rounding_of(&a) + rounding_of(&b);
 	double when;
 	s->counters.swept_tests++;
-	if (!ob_time_of_touch(&a, &b, until - since, exact, points_margin * s->island.unit.length,
-			      ob_narrowphase_finder(s), &when, &x->m))
+	if (!ob_time_of_touch(&a, &b, until - since, points_margin * s->island.unit.length, ob_narrowphase_finder(s),
+			      &when, &x->m))
 		return false;
 	x->time = since + when;
 	const ob_vec3 gone = ob_sub(ob_centre_at(&c[1].m, x->time), b.p);
