@@ -37,19 +37,42 @@ static uint32_t most_of_64(const uint32_t *below)
 	return most;
 }
 
+// Four side by side; compared as signed numbers, which every processor can.
+typedef int32_t quad __attribute__((vector_size(16)));
+typedef int64_t halves __attribute__((vector_size(16)));
+
+static int32_t as_signed(uint32_t urgency)
+{
+	return (int32_t)(urgency ^ UINT32_C(0x80000000));
+}
+
+// A bit for each of 64 that is at least so urgent.
+static uint64_t due_of_64(const uint32_t *below, uint32_t least)
+{
+	const int32_t low = as_signed(least), zero = as_signed(0);
+	uint64_t due = 0;
+	for (int k = 0; k < 64; k += 4) {
+		quad q;
+		memcpy(&q, below + k, sizeof q);
+		const quad is_due = ~((quad){ low, low, low, low } > (q ^ (quad){ zero, zero, zero, zero }));
+		const halves any = (halves)is_due;
+		if (!(any[0] | any[1]))
+			continue;
+		for (int i = 0; i < 4; i++)
+			due |= (uint64_t)(is_due[i] & 1) << (k + i);
+	}
+	return due;
+}
+
 // Those of 64 that are at least so urgent, behind the n that are listed; list NULL: whether there are any. Puts right
 // what the level above says of them.
 static uint32_t list_64(const ob_calendar *c, uint32_t block, uint32_t least, uint32_t *list, uint32_t n, uint32_t most)
 {
 	const uint32_t *one = c->level.one + 64 * (size_t)block;
 	*c->visits += 1;
-	for (uint32_t i = 0; i < 64 && n < most; i++) {
-		if (one[i] < least)
-			continue;
+	for (uint64_t due = due_of_64(one, least); due && n < most; due &= due - 1, n++)
 		if (list)
-			list[n] = 64 * block + i;
-		n++;
-	}
+			list[n] = 64 * block + (uint32_t)__builtin_ctzll(due);
 	c->level.of_64[block] = most_of_64(one);
 	return n;
 }
