@@ -45,11 +45,12 @@ double ob_jacobi_phase(double x, double y, double kc, double *mean)
 
 void ob_theta_plan(ob_theta *t, double nome, double alpha)
 {
-	double c = ob_cosh(2 * alpha), s = ob_sinh(2 * alpha), square = nome * nome, power = square;
-	double small = ob_exp(-2 * alpha);
+	const double less = -ob_expm1(-2 * alpha), small = 1 - less; // small = exp(-2 alpha), less to the last digits
+	const double c = .5 * (1 / small + small), s = .5 * less * (1 + small) / small, square = nome * nome;
+	double power = square;
 	t->real[0] = 1;
 	t->even[0] = 1 + small;
-	t->odd[0] = -ob_expm1(-2 * alpha);
+	t->odd[0] = less;
 	int n = 1;
 	for (; n < OB_THETA_TERMS; n++) { // power = q^(2 n)
 		t->real[n] = power * t->real[n - 1];

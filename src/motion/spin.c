@@ -102,8 +102,9 @@ static ob_quat lift_of(ob_vec3 n)
 static void azimuth_at(const ob_spin *spin, double s, const ob_theta_value *t, ob_vec3 n, double *cos_out,
 		       double *sin_out)
 {
-	double sl, cl, im = spin->side * t->im;
-	ob_sincos(spin->precession * s, &sl, &cl);
+	double sl = 0, cl = 1, im = spin->side * t->im;
+	if (s != 0)
+		ob_sincos(spin->precession * s, &sl, &cl);
 	double a = t->re * cl - im * sl, b = t->re * sl + im * cl;
 	double c = a * n.x + b * n.y, d = b * n.x - a * n.y, r = 1 / sqrt(c * c + d * d);
 	*cos_out = c * r;
