@@ -14,6 +14,7 @@
 enum { OB_WIRE_FIRST = 4000 };
 typedef struct ob_wire_first {
 	uint64_t bytes; // of all that it has to say
+	uint64_t more; // 1 = it has more than the first bytes to say to some rank
 	char text[OB_WIRE_FIRST]; // the first of them
 } ob_wire_first;
 
@@ -23,6 +24,11 @@ typedef struct ob_wire_module {
 	void (*first)(const ob_wire_first *mine, ob_wire_first *all);
 	// From all into "all": "bytes[r]" of rank r, a multiple of 8, to at[r], likewise. mine: this one's
 	void (*rest)(const void *mine, char *all, const size_t *at, const size_t *bytes);
+	// Likewise where each rank has something else to say to each: mine[r] to rank r
+	void (*deal_first)(const ob_wire_first *mine, ob_wire_first *all);
+	// mine: "mine_bytes[r]" to rank r, from mine_at[r] on
+	void (*deal_rest)(const char *mine, const size_t *mine_at, const size_t *mine_bytes, char *all,
+			  const size_t *at, const size_t *bytes);
 	// Returns when the wire has taken it.
 	void (*send)(uint32_t to, const void *bytes, size_t n);
 	// Has a rank said something to this one? Who, and how many bytes

@@ -6,7 +6,7 @@
 #include <time.h>
 
 static int ranks;
-static int *counts, *offsets;
+static int *counts, *offsets, *own_counts, *own_offsets;
 
 static bool open_mpi(uint32_t *rank, uint32_t *all)
 {
@@ -17,9 +17,11 @@ static bool open_mpi(uint32_t *rank, uint32_t *all)
 	MPI_Comm_size(MPI_COMM_WORLD, &ranks);
 	counts = calloc((size_t)ranks, sizeof *counts);
 	offsets = calloc((size_t)ranks, sizeof *offsets);
+	own_counts = calloc((size_t)ranks, sizeof *own_counts);
+	own_offsets = calloc((size_t)ranks, sizeof *own_offsets);
 	*rank = (uint32_t)own;
 	*all = (uint32_t)ranks;
-	return counts && offsets;
+	return counts && offsets && own_counts && own_offsets;
 }
 
 static double seconds(void)
@@ -56,17 +58,40 @@ static void gather_first(const ob_wire_first *mine, ob_wire_first *all)
 	wait_for(&r);
 }
 
-// In words of 8 bytes: so an int counts 16 GB.
+// Of 8 bytes: so an int counts 16 GB.
+static void in_words(const size_t *at, const size_t *bytes, int *offset, int *count)
+{
+	for (int i = 0; i < ranks; i++) {
+		count[i] = (int)(bytes[i] / 8);
+		offset[i] = (int)(at[i] / 8);
+	}
+}
+
 static void gather_rest(const void *mine, char *all, const size_t *at, const size_t *bytes)
 {
 	MPI_Request r;
 	int own;
 	MPI_Comm_rank(MPI_COMM_WORLD, &own);
-	for (int i = 0; i < ranks; i++) {
-		counts[i] = (int)(bytes[i] / 8);
-		offsets[i] = (int)(at[i] / 8);
-	}
+	in_words(at, bytes, offsets, counts);
 	MPI_Iallgatherv(mine, counts[own], MPI_UINT64_T, all, counts, offsets, MPI_UINT64_T, MPI_COMM_WORLD, &r);
+	wait_for(&r);
+}
+
+static void deal_first(const ob_wire_first *mine, ob_wire_first *all)
+{
+	MPI_Request r;
+	MPI_Ialltoall(mine, sizeof *mine / 8, MPI_UINT64_T, all, sizeof *all / 8, MPI_UINT64_T, MPI_COMM_WORLD, &r);
+	wait_for(&r);
+}
+
+static void deal_rest(const char *mine, const size_t *mine_at, const size_t *mine_bytes, char *all, const size_t *at,
+		      const size_t *bytes)
+{
+	MPI_Request r;
+	in_words(mine_at, mine_bytes, own_offsets, own_counts);
+	in_words(at, bytes, offsets, counts);
+	MPI_Ialltoallv(mine, own_counts, own_offsets, MPI_UINT64_T, all, counts, offsets, MPI_UINT64_T, MPI_COMM_WORLD,
+		       &r);
 	wait_for(&r);
 }
 
@@ -100,10 +125,13 @@ static void close_mpi(void)
 	MPI_Finalize();
 	free(counts);
 	free(offsets);
+	free(own_counts);
+	free(own_offsets);
 }
 
 _Static_assert(sizeof(ob_wire_first) % 8 == 0, "it goes over the wire in words");
 
 extern const ob_wire_module ob_wire_mpi;
 __attribute__((visibility("default")))
-const ob_wire_module ob_wire_mpi = { open_mpi, gather_first, gather_rest, send_bytes, probe, receive_bytes, close_mpi };
+const ob_wire_module ob_wire_mpi = { open_mpi,   gather_first, gather_rest,   deal_first, deal_rest,
+				     send_bytes, probe,        receive_bytes, close_mpi };

@@ -10,11 +10,12 @@ struct ob_wire {
 	void *library;
 	const ob_wire_module *module;
 	uint32_t ranks;
-	ob_wire_first mine, *first; // [ranks]
+	ob_wire_first *mine, *first; // [ranks]: to each, or to all the first; of each
 	size_t *at; // [ranks + 1]
 	size_t *rest_at, *rest; // [ranks]: behind the first bytes of each, where, how many
-	char *all;
-	size_t max;
+	size_t *mine_at, *mine_rest; // [ranks]: likewise, to each
+	char *all, *dealt; // what has come; the rest of what goes to each
+	size_t max, dealt_max;
 };
 
 // How launchers say it: a rank, and how many there are. srun gives tasks their number with PMIx alone: without it they
@@ -63,27 +64,34 @@ static ob_wire *create(uint32_t ranks)
 	if (!w)
 		return NULL;
 	w->ranks = ranks;
+	w->mine = calloc(ranks, sizeof *w->mine);
 	w->first = calloc(ranks, sizeof *w->first);
 	w->at = calloc(ranks + 1, sizeof *w->at);
 	w->rest_at = calloc(ranks, sizeof *w->rest_at);
 	w->rest = calloc(ranks, sizeof *w->rest);
+	w->mine_at = calloc(ranks, sizeof *w->mine_at);
+	w->mine_rest = calloc(ranks, sizeof *w->mine_rest);
 	return w;
 }
 
 static void destroy(ob_wire *w)
 {
+	free(w->mine);
 	free(w->first);
 	free(w->at);
 	free(w->rest_at);
 	free(w->rest);
+	free(w->mine_at);
+	free(w->mine_rest);
 	free(w->all);
+	free(w->dealt);
 	free(w);
 }
 
 static bool join(ob_wire *w, const ob_ranks *ranks, ob_error *e)
 {
 	uint32_t rank, all;
-	if (!w->first || !w->at || !w->rest_at || !w->rest)
+	if (!w->mine || !w->first || !w->at || !w->rest_at || !w->rest || !w->mine_at || !w->mine_rest)
 		return ob_fail(e, "out of memory");
 	if (!load(w, e))
 		return false;
@@ -109,16 +117,16 @@ ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e)
 	return NULL;
 }
 
-// Room for what is said, n bytes. false: there is no memory.
-static bool make_room(ob_wire *w, size_t n)
+// Room for n bytes. false: there is no memory.
+static bool make_room(char **room, size_t *max, size_t n)
 {
-	if (n <= w->max)
+	if (n <= *max)
 		return true;
-	char *larger = realloc(w->all, 2 * n);
+	char *larger = realloc(*room, 2 * n);
 	if (!larger)
 		return false;
-	w->all = larger;
-	w->max = 2 * n;
+	*room = larger;
+	*max = 2 * n;
 	return true;
 }
 
@@ -127,27 +135,78 @@ static size_t in_first(size_t bytes)
 	return bytes < OB_WIRE_FIRST ? bytes : OB_WIRE_FIRST;
 }
 
-const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t **at)
+static void put_first(ob_wire_first *to, const void *mine, size_t n)
 {
-	bool more = false;
-	w->mine.bytes = n;
+	to->bytes = n;
 	if (n)
-		memcpy(w->mine.text, mine, in_first(n));
-	w->module->first(&w->mine, w->first);
+		memcpy(to->text, mine, in_first(n));
+}
+
+// Where what comes of each rank goes, when the first bytes of each are here, which go there. false: there is no memory.
+static bool place_all(ob_wire *w)
+{
 	for (uint32_t r = 0; r < w->ranks; r++) {
 		const size_t bytes = w->first[r].bytes, first = in_first(bytes);
 		w->at[r + 1] = w->at[r] + bytes;
 		w->rest_at[r] = w->at[r] + first;
 		w->rest[r] = bytes - first;
-		more |= w->rest[r] > 0;
 	}
-	if (!make_room(w, w->at[w->ranks]))
-		return NULL;
+	if (!make_room(&w->all, &w->max, w->at[w->ranks]))
+		return false;
 	for (uint32_t r = 0; r < w->ranks; r++)
 		if (w->first[r].bytes)
 			memcpy(w->all + w->at[r], w->first[r].text, in_first(w->first[r].bytes));
+	return true;
+}
+
+const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t **at)
+{
+	bool more = false;
+	put_first(w->mine, mine, n);
+	w->module->first(w->mine, w->first);
+	if (!place_all(w))
+		return NULL;
+	for (uint32_t r = 0; r < w->ranks; r++)
+		more |= w->rest[r] > 0;
 	if (more)
 		w->module->rest((const char *)mine + in_first(n), w->all, w->rest_at, w->rest);
+	*at = w->at;
+	return w->all;
+}
+
+// What goes to each behind its first bytes, one behind the other. false: there is no memory.
+static bool place_mine(ob_wire *w, const void *const *mine, const size_t *bytes)
+{
+	size_t n = 0;
+	for (uint32_t r = 0; r < w->ranks; n += w->mine_rest[r++]) {
+		w->mine_at[r] = n;
+		w->mine_rest[r] = bytes[r] - in_first(bytes[r]);
+	}
+	if (!make_room(&w->dealt, &w->dealt_max, n))
+		return false;
+	for (uint32_t r = 0; r < w->ranks; r++)
+		if (w->mine_rest[r])
+			memcpy(w->dealt + w->mine_at[r], (const char *)mine[r] + OB_WIRE_FIRST, w->mine_rest[r]);
+	return true;
+}
+
+// Whether anybody says more than the first bytes to anybody no rank knows alone, so each says in them whether it does.
+const char *ob_wire_deal(ob_wire *w, const void *const *mine, const size_t *bytes, const size_t **at)
+{
+	bool more = false;
+	for (uint32_t r = 0; r < w->ranks; r++)
+		more |= bytes[r] > OB_WIRE_FIRST;
+	for (uint32_t r = 0; r < w->ranks; r++) {
+		put_first(&w->mine[r], mine[r], bytes[r]);
+		w->mine[r].more = more;
+	}
+	w->module->deal_first(w->mine, w->first);
+	for (uint32_t r = 0; r < w->ranks; r++)
+		more |= w->first[r].more != 0;
+	if (!place_all(w) || !place_mine(w, mine, bytes))
+		return NULL;
+	if (more)
+		w->module->deal_rest(w->dealt, w->mine_at, w->mine_rest, w->all, w->rest_at, w->rest);
 	*at = w->at;
 	return w->all;
 }
@@ -159,7 +218,7 @@ void ob_wire_send(ob_wire *w, uint32_t to, const void *bytes, size_t n)
 
 const void *ob_wire_receive(ob_wire *w, uint32_t *from, size_t *n)
 {
-	if (!w->module->probe(from, n) || !make_room(w, *n))
+	if (!w->module->probe(from, n) || !make_room(&w->all, &w->max, *n))
 		return NULL;
 	w->module->receive(*from, w->all, *n);
 	return w->all;

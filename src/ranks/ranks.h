@@ -35,6 +35,9 @@ ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e);
 // call. at: where each begins, and the end. Each rank must call it. NULL: no memory. Where a rank has gone, MPI ends
 // this one.
 const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t **at);
+// Likewise, of what each rank has to say to this one: this one has mine[r], bytes[r] of it, to say to rank r, itself
+// among them.
+const char *ob_wire_deal(ob_wire *w, const void *const *mine, const size_t *bytes, const size_t **at);
 // Says n bytes, at most 2 GB, to another rank; returns when the wire has taken them.
 void ob_wire_send(ob_wire *w, uint32_t to, const void *bytes, size_t n);
 // The next that another rank has said to this one, n bytes, which hold until the next call; of the same rank in its
