@@ -133,6 +133,8 @@ static void report_stall(ob_host *h, uint64_t step)
 static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupted_at)
 {
 	double now = ob_clock_wall();
+	if (ob_universe_ranks(h->u) > 1)
+		ob_universe_look_for_readers(h->u);
 	if (ob_stall_watch_look(stall, h))
 		report_stall(h, stall->step);
 	if (h->interrupted && *interrupted_at == 0)

@@ -25,7 +25,8 @@ void ob_move_make(ob_universe *u, uint64_t move)
 		return;
 	u->control->pins += u->step_data.pin[object] == 0;
 	u->step_data.pin[object] = pin;
-	ob_home_set(u, object, pin - 1);
+	if (u->ranks == 1) // else where it lives says who knows it (sim/halo.h): from when it is solved there
+		ob_home_set(u, object, pin - 1);
 }
 
 bool ob_moves_were_made(const ob_universe *u)

@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 27, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 28, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -118,6 +118,7 @@ typedef struct ob_control {
 	char last_death[OB_DEATH_MAX]; // as ob_universe_info
 	_Alignas(64) uint64_t move; // that is asked for (home.h); 0 = none
 	uint32_t pins; // objects that have one
+	uint32_t is_read; // 1 = another program has attached the universe, as of when the host looked last
 } ob_control;
 
 // How long steps take. The gate orders its writers, but any worker may raise longest_ns and beside_ns, and the sums grow

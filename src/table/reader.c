@@ -46,8 +46,10 @@ ob_universe *ob_universe_attach(const char *name, ob_error *e)
 		return NULL;
 	}
 	u->fd = ob_segment_open(name);
-	if (u->fd >= 0 ? map_segment(u, name, e) : ob_fail(e, "no universe \"%.60s\" on this machine", name))
+	if (u->fd >= 0 ? map_segment(u, name, e) : ob_fail(e, "no universe \"%.60s\" on this machine", name)) {
+		ob_segment_read(u->fd);
 		return u;
+	}
 	ob_universe_destroy(u, false);
 	return NULL;
 }

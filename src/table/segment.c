@@ -24,14 +24,35 @@ bool ob_segment_path(char path[OB_SEGMENT_PATH_MAX], const char *name)
 	return true;
 }
 
+// Bytes of the file that stand for something: its owner locks the first, its readers the second.
+enum { OWNER, READERS };
+
+static struct flock lock_of(short type, off_t byte)
+{
+	return (struct flock){ .l_type = type, .l_whence = SEEK_SET, .l_start = byte, .l_len = 1 };
+}
+
 static bool lock(int fd)
 {
-	return fcntl(fd, F_OFD_SETLK, &(struct flock){ .l_type = F_WRLCK, .l_whence = SEEK_SET }) == 0;
+	struct flock owner = lock_of(F_WRLCK, OWNER);
+	return fcntl(fd, F_OFD_SETLK, &owner) == 0;
 }
 
 bool ob_segment_is_owned(int fd)
 {
-	struct flock found = { .l_type = F_RDLCK, .l_whence = SEEK_SET };
+	struct flock found = lock_of(F_RDLCK, OWNER);
+	return fcntl(fd, F_OFD_GETLK, &found) == 0 && found.l_type != F_UNLCK;
+}
+
+void ob_segment_read(int fd)
+{
+	struct flock reader = lock_of(F_RDLCK, READERS);
+	fcntl(fd, F_OFD_SETLK, &reader);
+}
+
+bool ob_segment_is_read(int fd)
+{
+	struct flock found = lock_of(F_WRLCK, READERS);
 	return fcntl(fd, F_OFD_GETLK, &found) == 0 && found.l_type != F_UNLCK;
 }
 

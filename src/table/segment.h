@@ -35,6 +35,10 @@ int ob_segment_open(const char *name);
 bool ob_segment_peek(int fd, ob_header *out, uint64_t *bytes);
 // Whether somebody holds the lock, as of now.
 bool ob_segment_is_owned(int fd);
+// A reader says so as long as it has the file open; the owner asks whether anybody does. A lock of its own, likewise: it
+// hinders nobody.
+void ob_segment_read(int fd);
+bool ob_segment_is_read(int fd);
 // Removes every stale segment of this user.
 void ob_segment_remove_stale(void);
 

@@ -33,6 +33,11 @@ const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id)
 	return s->ring + __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_RING_VERSIONS;
 }
 
+uint64_t ob_motion_version(const ob_universe *u, uint32_t id)
+{
+	return __atomic_load_n(&u->slot[id].version, __ATOMIC_ACQUIRE);
+}
+
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id)
 {
 	const ob_passport_slot *s = u->passport + id;

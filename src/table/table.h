@@ -101,6 +101,9 @@ uint32_t ob_universe_rank(const ob_universe *u);
 uint32_t ob_universe_ranks(const ob_universe *u);
 bool ob_worker_is_here(const ob_universe *u, uint32_t worker);
 uint32_t ob_universe_rank_of(const ob_universe *u, uint32_t simulator);
+// Whether another program has attached the universe, as of when the host looked last, which has its file.
+void ob_universe_look_for_readers(ob_universe *u);
+bool ob_universe_is_read(const ob_universe *u);
 // Whether some rank wants what all pairs keep at any time, not only at the steps of ob_contacts_want.
 bool ob_universe_shares_contacts(const ob_universe *u);
 // Host, paused, each rank's alike: when so many steps are complete this rank is to have what all pairs keep, though its
@@ -134,6 +137,7 @@ void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
 bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h);
 // Direct views for the step, which the gate orders: the newest motion, the passport. Never for outside readers.
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id);
+uint64_t ob_motion_version(const ob_universe *u, uint32_t id); // how many motions of it have been published
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
 void ob_prefetch_versions(const ob_universe *u, uint32_t id); // which the two before read
 void ob_prefetch_slot(const ob_universe *u, uint32_t id); // all of it

@@ -178,6 +178,14 @@ uint32_t ob_universe_rank_of(const ob_universe *u, uint32_t simulator)
 {
 	return simulator / (ob_universe_simulators(u) / u->ranks);
 }
+void ob_universe_look_for_readers(ob_universe *u)
+{
+	__atomic_store_n(&u->control->is_read, ob_segment_is_read(u->fd), __ATOMIC_RELAXED);
+}
+bool ob_universe_is_read(const ob_universe *u)
+{
+	return __atomic_load_n(&u->control->is_read, __ATOMIC_RELAXED);
+}
 bool ob_universe_shares_contacts(const ob_universe *u)
 {
 	return u->shares_contacts;

@@ -82,6 +82,27 @@ static void test_link_to_universe(void)
 	ob_universe_destroy(u, true);
 }
 
+static bool is_read(ob_universe *u)
+{
+	ob_universe_look_for_readers(u);
+	return ob_universe_is_read(u);
+}
+
+// The owner knows whether anybody reads, and readers do not keep each other, or the next owner, from anything.
+static void test_readers(void)
+{
+	ob_error e;
+	ob_universe *u = create(name, &e);
+	CHECK(u && !is_read(u));
+	ob_universe *first = ob_universe_attach(name, &e), *second = ob_universe_attach(name, &e);
+	CHECK(first && second && is_read(u) && ob_universe_is_hosted(first));
+	ob_universe_detach(first);
+	CHECK(is_read(u));
+	ob_universe_detach(second);
+	CHECK(!is_read(u));
+	ob_universe_destroy(u, true);
+}
+
 // The name is removed by who owns it, and never the name of another that has come since.
 static void test_unlink(void)
 {
@@ -184,6 +205,7 @@ int main(void)
 	test_strangers();
 	test_link_to_universe();
 	test_unlink();
+	test_readers();
 	test_contention();
 	test_other_pid_namespace();
 	return check_end();
