@@ -176,8 +176,8 @@ static bool step_through(run *r, ob_error *e)
 		if (next == UINT64_MAX)
 			return true;
 		if (!ob_host_wait(r->host, e)) {
-			// Ctrl-C leaves it at a boundary, from where the report is made
-			if (ob_host_interrupted(r->host))
+			// Ctrl-C leaves it at a boundary, from where the report is made; of several ranks each alone
+			if (ob_host_interrupted(r->host) && r->ranks.ranks < 2)
 				take_snapshot(r, NULL);
 			return false;
 		}
@@ -338,7 +338,10 @@ static void report_separation(const run *r, ob_report *p)
 {
 	ob_snapshot s = { 0 };
 	ob_separation apart = { NAN, NAN, 0 };
-	if (ob_snapshot_take(&s, ob_host_universe(r->host), true, NULL))
+	ob_universe_info info;
+	ob_universe_get_info(ob_host_universe(r->host), &info);
+	const bool whole = r->ranks.ranks < 2 || r->now.step == info.step; // who is left alone lacks what others solve
+	if (whole && ob_snapshot_take(&s, ob_host_universe(r->host), true, NULL))
 		ob_measure_separation(&s, &apart, is_interrupted, r->host);
 	p->separation_max_m = apart.max_m;
 	p->separation_mean_m = apart.mean_m;

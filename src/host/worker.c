@@ -26,6 +26,11 @@ static const char *gather(void *wire, const void *mine, size_t n, const size_t *
 	return ob_wire_gather(wire, mine, n, at);
 }
 
+static const char *deal(void *wire, const void *const *mine, const size_t *bytes, const size_t **at)
+{
+	return ob_wire_deal(wire, mine, bytes, at);
+}
+
 // The arranger of a rank: joins those of the others. false and e: it cannot.
 static bool join(ob_sim *s, const ob_universe *u, ob_wire **wire, ob_error *e)
 {
@@ -35,7 +40,8 @@ static bool join(ob_sim *s, const ob_universe *u, ob_wire **wire, ob_error *e)
 	*wire = ob_wire_open(&own, e);
 	if (!*wire)
 		return false;
-	return ob_sim_join(s, &(ob_peers){ .rank = own.rank, .ranks = own.ranks, .gather = gather, .wire = *wire }, e);
+	const ob_peers peers = { .rank = own.rank, .ranks = own.ranks, .gather = gather, .deal = deal, .wire = *wire };
+	return ob_sim_join(s, &peers, e);
 }
 
 static int live(ob_universe *u, uint32_t worker)

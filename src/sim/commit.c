@@ -1,4 +1,4 @@
-#include "sim/commit.h"
+#include "sim/committer.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -6,24 +6,11 @@
 #include <string.h>
 
 #include "sim/budget.h"
-#include "sim/digest.h"
+#include "sim/halo.h"
 #include "sim/holdings.h"
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };
-
-typedef enum record_kind {
-	END = OB_OUTBOX_END,
-	RESULT,
-	BOUNDS,
-	EFFORT,
-	CONTACT,
-	CHECK,
-	NEIGHBOURS,
-	TOUCH,
-	SCRIPT,
-	POSTS,
-} record_kind;
 
 // A result whose acceleration is that of before the step, as it mostly is: without it.
 enum { ACCELERATION = offsetof(ob_motion, a), BEHIND_IT = ACCELERATION + sizeof(ob_vec3) };
@@ -40,14 +27,6 @@ typedef struct bounds_record {
 typedef struct effort_record {
 	uint32_t island, share;
 } effort_record;
-
-typedef struct check_record {
-	uint32_t pair; // index
-	uint32_t check; // its place in check[] of the rank that has it there
-	uint8_t expected, late, reserved[6];
-	uint32_t clear_until, clear_as_of;
-	double limit;
-} check_record;
 
 // A part of an object's neighbours: "count" of "total", from "first" on.
 typedef struct neighbours_record {
@@ -194,7 +173,7 @@ static void write_script(ob_universe *u, const script_record *r)
 	c->inbox_bytes = c->touches = 0;
 }
 
-static void write_check(ob_universe *u, const check_record *c)
+static void write_check(ob_universe *u, const ob_check_record *c)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	ob_pair_key *k = &data->pair[c->pair];
@@ -221,12 +200,12 @@ static void hand_over_result(ob_universe *u, const ob_found_result *r)
 	const char *motion = (const char *)&r->motion;
 	steady_record steady = { r->id, r->state, r->due, 0, { 0 } };
 	if (memcmp(&r->motion.a, &ob_newest_motion(u, r->id)->a, sizeof r->motion.a) != 0) {
-		ob_outbox_put(u, RESULT, r, sizeof *r, NULL, 0);
+		ob_outbox_put(u, OB_RECORD_RESULT, r, sizeof *r, NULL, 0);
 		return;
 	}
 	memcpy(steady.motion, motion, ACCELERATION);
 	memcpy(steady.motion + ACCELERATION, motion + BEHIND_IT, sizeof r->motion - BEHIND_IT);
-	ob_outbox_put(u, RESULT, &steady, sizeof steady, NULL, 0);
+	ob_outbox_put(u, OB_RECORD_RESULT, &steady, sizeof steady, NULL, 0);
 }
 
 void ob_commit_result(ob_sim *s, const ob_found_result *r)
@@ -245,7 +224,7 @@ void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6])
 	}
 	bounds_record r = { .id = id };
 	memcpy(r.box, box, sizeof r.box);
-	ob_outbox_put(u, BOUNDS, &r, sizeof r, NULL, 0);
+	ob_outbox_put(u, OB_RECORD_BOUNDS, &r, sizeof r, NULL, 0);
 }
 
 void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share)
@@ -253,7 +232,7 @@ void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share)
 	const effort_record r = { island,
 				  share < MOST_EFFORT ? share : MOST_EFFORT }; // so that sums stay within bounds
 	if (ob_universe_contained(s->u))
-		ob_outbox_put(s->u, EFFORT, &r, sizeof r, NULL, 0);
+		ob_outbox_put(s->u, OB_RECORD_EFFORT, &r, sizeof r, NULL, 0);
 	else
 		write_effort(s->u, island, r.share);
 }
@@ -269,7 +248,7 @@ static size_t contact_bytes(const ob_found_contact *c)
 void ob_commit_contact(ob_sim *s, const ob_found_contact *c)
 {
 	if (ob_universe_contained(s->u))
-		ob_outbox_put(s->u, CONTACT, c, contact_bytes(c), NULL, 0);
+		ob_outbox_put(s->u, OB_RECORD_CONTACT, c, contact_bytes(c), NULL, 0);
 	else
 		write_contact(s->u, c);
 }
@@ -278,7 +257,7 @@ void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse
 {
 	const touch_record r = { id, other, impulse, point };
 	if (ob_universe_contained(u))
-		ob_outbox_put(u, TOUCH, &r, sizeof r, NULL, 0);
+		ob_outbox_put(u, OB_RECORD_TOUCH, &r, sizeof r, NULL, 0);
 	else
 		write_touch(u, &r);
 }
@@ -304,25 +283,25 @@ void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, c
 	memcpy(r.random, c->random, sizeof r.random);
 	memcpy(r.colour, c->colour, sizeof r.colour);
 	memcpy(r.error, c->error, sizeof r.error);
-	ob_outbox_put(s->u, SCRIPT, &r, sizeof r, c->state, in_words(c->state_bytes));
+	ob_outbox_put(s->u, OB_RECORD_SCRIPT, &r, sizeof r, c->state, in_words(c->state_bytes));
 	for (uint32_t first = 0; first < c->outbox_bytes; first += POSTS_AT_ONCE) {
 		const uint32_t left = c->outbox_bytes - first, n = left < POSTS_AT_ONCE ? left : POSTS_AT_ONCE;
 		const posts_record part = { cell, first, n, 0 };
-		ob_outbox_put(s->u, POSTS, &part, sizeof part, c->outbox + first, n);
+		ob_outbox_put(s->u, OB_RECORD_POSTS, &part, sizeof part, c->outbox + first, n);
 	}
 }
 
 void ob_commit_check(ob_universe *u, uint32_t check, const ob_pair_key *k)
 {
-	const check_record r = { .pair = ob_universe_step_data(u)->check[check],
-				 .check = check,
-				 .expected = k->expected,
-				 .late = k->late,
-				 .clear_until = k->clear_until,
-				 .clear_as_of = k->clear_as_of,
-				 .limit = k->limit };
+	const ob_check_record r = { .pair = ob_universe_step_data(u)->check[check],
+				    .check = check,
+				    .expected = k->expected,
+				    .late = k->late,
+				    .clear_until = k->clear_until,
+				    .clear_as_of = k->clear_as_of,
+				    .limit = k->limit };
 	if (ob_universe_contained(u))
-		ob_outbox_put(u, CHECK, &r, sizeof r, NULL, 0);
+		ob_outbox_put(u, OB_RECORD_CHECK, &r, sizeof r, NULL, 0);
 	else
 		write_check(u, &r);
 }
@@ -342,32 +321,12 @@ void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint
 		memset(part, 0, sizeof part);
 		for (uint32_t i = 0; i < n; i++)
 			part[i] = ids[first + i];
-		ob_outbox_put(u, NEIGHBOURS, &r, sizeof r, part, (n + 1) / 2 * sizeof(uint64_t));
+		ob_outbox_put(u, OB_RECORD_NEIGHBOURS, &r, sizeof r, part, (n + 1) / 2 * sizeof(uint64_t));
 		first += n;
 	} while (first < count);
 }
 
 // ---- by the arranger
-
-struct ob_committer {
-	ob_mail mail; // of the simulators that are here
-	// Of several ranks, else NULL, or 0
-	ob_holdings *holdings;
-	uint32_t rank, ranks;
-	uint64_t digest; // of what all that was solved so far was solved from (ob_peers_digest_object)
-	ob_mail out; // what the others get
-	// Pairs, by their index, that simulators of other ranks have had: that touched and do no longer; that were
-	// checked
-	ob_mail parted, checked;
-	const char *all; // what all have said; that of rank r begins at at[r]
-	const size_t *at;
-	uint32_t *island_owner; // [island]
-	uint32_t *query_owner; // [object], or of scripts [cell]; NONE = none was given away
-	uint32_t *had; // [object]: results, or neighbours, that have come; [cell]: of what its script brings, 1 + bytes
-		       // of posts
-	uint32_t solved; // islands before this one are solved in this phase
-	uint32_t due; // results, queries, or scripts, that are still missing
-};
 
 ob_committer *ob_committer_create(const ob_universe *u)
 {
@@ -380,9 +339,7 @@ ob_committer *ob_committer_create(const ob_universe *u)
 	c->had = calloc(objects, sizeof *c->had);
 	c->rank = ob_universe_rank(u);
 	c->ranks = ob_universe_ranks(u);
-	if (c->ranks > 1)
-		c->holdings = ob_holdings_create(u);
-	if (c->island_owner && c->query_owner && c->had && (c->ranks < 2 || c->holdings))
+	if (c->island_owner && c->query_owner && c->had && (c->ranks < 2 || ob_committer_share(c, u)))
 		return c;
 	ob_committer_destroy(c);
 	return NULL;
@@ -393,10 +350,7 @@ void ob_committer_destroy(ob_committer *c)
 	if (!c)
 		return;
 	ob_mail_finish(&c->mail);
-	ob_mail_finish(&c->out);
-	ob_mail_finish(&c->parted);
-	ob_mail_finish(&c->checked);
-	ob_holdings_destroy(c->holdings);
+	ob_committer_finish_shared(c);
 	free(c->island_owner);
 	free(c->query_owner);
 	free(c->had);
@@ -471,8 +425,7 @@ static bool owns_island(const ob_committer *c, uint32_t worker, uint32_t island)
 	return island < c->solved && c->island_owner[island] == worker;
 }
 
-// The whole result, of an object that there is; NULL: it is none.
-static const ob_found_result *result_of(const ob_universe *u, const ob_mail_record *from, ob_found_result *whole)
+const ob_found_result *ob_committer_result_of(const ob_universe *u, const ob_mail_record *from, ob_found_result *whole)
 {
 	const steady_record *steady = from->data;
 	char *motion = (char *)&whole->motion;
@@ -487,18 +440,71 @@ static const ob_found_result *result_of(const ob_universe *u, const ob_mail_reco
 	return whole;
 }
 
+static bool was_given(ob_committer *c, const ob_universe *u, uint32_t worker, uint32_t id)
+{
+	return owns_island(c, worker, ob_universe_step_data(u)->result_island[id]) && !c->had[id]++;
+}
+
+// Each result of several ranks is counted as it comes, for not every rank knows the motion before; one that comes again
+// counts from the first.
+static void count_woken(ob_universe *u, uint32_t id, uint32_t state)
+{
+	const uint32_t before = ob_universe_step_data(u)->schedule[id].state;
+	ob_step_woken(u, (int32_t)(state != OB_SCHEDULE_ASLEEP) - (int32_t)(before != OB_SCHEDULE_ASLEEP));
+}
+
+static void note_before(ob_committer *c, const ob_universe *u, const ob_mail_record *from, uint32_t id)
+{
+	uint64_t *heard = &c->heard[ob_universe_rank_of(u, from->worker)];
+	bool whole;
+	*heard = ob_committer_digest_before(c, u, id, *heard, &whole);
+	if (!whole && !c->damaged)
+		c->damaged = OB_PEERS_MOTION | (1 + id);
+}
+
 static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
+	const bool restored = from->kind == OB_RECORD_RESTORED;
 	ob_found_result whole;
-	const ob_found_result *r = result_of(u, from, &whole);
-	if (!r || !owns_island(c, from->worker, ob_universe_step_data(u)->result_island[r->id]) || c->had[r->id]++)
+	const ob_found_result *r = ob_committer_result_of(u, from, &whole);
+	if (!r || !was_given(c, u, from->worker, r->id))
 		return "has solved what it was not given";
-	if (!is_sound(&r->motion, u) || r->state < OB_SCHEDULE_AWAKE || r->state > OB_SCHEDULE_EQUILIBRIUM)
+	if (!is_sound(&r->motion, u) || !ob_is_sound_state(r->state) ||
+	    (restored && (from->bytes != sizeof *r || ob_worker_is_here(u, from->worker))) ||
+	    (c->halo && !restored && !ob_halo_has(c->halo, r->id)))
 		return "has found a motion that makes no sense";
 	c->due--;
-	if (c->ranks > 1)
-		c->digest = ob_peers_digest_object(u, r->id, c->digest);
+	if (c->halo && !restored)
+		note_before(c, u, from, r->id);
+	if (c->halo) {
+		count_woken(u, r->id, r->state);
+		ob_halo_note(c->halo, r->id, &r->motion);
+	}
 	write_result(u, r);
+	return NULL;
+}
+
+static const char *commit_solved(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const ob_solved_record *r = from->data;
+	const uint32_t n = from->bytes / (uint32_t)sizeof *r->body;
+	if (from->bytes != n * sizeof *r->body || n > OB_SOLVED_AT_ONCE || ob_worker_is_here(u, from->worker))
+		return "has handed over what is unknown";
+	for (uint32_t i = 0; i < n; i++) {
+		const uint32_t id = r->body[i].id & ((1u << OB_SOLVED_ID_BITS) - 1),
+			       state = OB_SCHEDULE_AWAKE + (r->body[i].id >> OB_SOLVED_ID_BITS);
+		if (id >= ob_universe_ids(u) || !was_given(c, u, from->worker, id))
+			return "has solved what it was not given";
+		if (!ob_is_sound_state(state))
+			return "has found what makes no sense";
+		ob_schedule *s = &ob_universe_step_data(u)->schedule[id];
+		c->due--;
+		count_woken(u, id, state);
+		ob_halo_note(c->halo, id, NULL);
+		s->state = state;
+		s->since = (uint32_t)ob_step_count(u) + 1;
+		s->due = r->body[i].due;
+	}
 	return NULL;
 }
 
@@ -664,7 +670,7 @@ static const char *commit_posts(ob_committer *c, ob_universe *u, const ob_mail_r
 // What each rank has to check the others do not know.
 static bool was_given_check(const ob_universe *u, const ob_mail_record *from)
 {
-	const check_record *r = from->data;
+	const ob_check_record *r = from->data;
 	const ob_step_data *data = ob_universe_step_data(u);
 	if (!ob_worker_is_here(u, from->worker))
 		return r->pair < ob_pairs_end(data) && data->pair[r->pair].a != data->pair[r->pair].b;
@@ -674,7 +680,7 @@ static bool was_given_check(const ob_universe *u, const ob_mail_record *from)
 
 static const char *commit_check(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
-	const check_record *r = from->data;
+	const ob_check_record *r = from->data;
 	if (from->bytes != sizeof *r || !was_given_check(u, from))
 		return "has checked what it was not given";
 	if (isnan(r->limit) || r->expected > 1 || r->late > 1)
@@ -731,37 +737,39 @@ static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase
 		   pairs = phase == OB_PHASE_FORECAST || phase == OB_PHASE_LATE_CONTACTS,
 		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
 	switch (r->kind) {
-	case END:
+	case OB_RECORD_END:
 		return commit_end(u, r);
-	case RESULT:
+	case OB_RECORD_RESULT:
+	case OB_RECORD_RESTORED:
 		return islands ? commit_result(c, u, r) : "has solved what was not to be solved";
-	case BOUNDS:
+	case OB_RECORD_SOLVED:
+		return islands ? commit_solved(c, u, r) : "has solved what was not to be solved";
+	case OB_RECORD_BOUNDS:
 		return islands ? commit_bounds(c, u, r) : "has moved what was not to be moved";
-	case EFFORT:
+	case OB_RECORD_EFFORT:
 		return islands ? commit_effort(c, u, r) : "has counted what was not to be counted";
-	case CONTACT:
+	case OB_RECORD_CONTACT:
 		return islands ? commit_contact(c, u, r) : "has found a contact out of turn";
-	case TOUCH:
+	case OB_RECORD_TOUCH:
 		return islands ? commit_touch(c, u, r) : "has felt out of turn";
-	case SCRIPT:
+	case OB_RECORD_SCRIPT:
 		return scripts ? commit_script(c, u, r) : "has run a script out of turn";
-	case POSTS:
+	case OB_RECORD_POSTS:
 		return scripts ? commit_posts(c, u, r) : "has asked for a script out of turn";
-	case CHECK:
+	case OB_RECORD_CHECK:
 		return pairs ? commit_check(c, u, r) : "has checked a pair out of turn";
-	case NEIGHBOURS:
+	case OB_RECORD_NEIGHBOURS:
 		return boxes ? commit_neighbours(c, u, r) : "has found neighbours out of turn";
 	default:
 		return "has handed over what is unknown";
 	}
 }
 
-// The mail of a rank, to be read.
-static ob_mail mail_of(const ob_committer *c, uint32_t rank)
+ob_mail ob_committer_mail_of(const ob_committer *c, uint32_t rank)
 {
 	if (!c->all || rank == c->rank)
 		return (ob_mail){ .bytes = c->mail.bytes, .used = c->mail.used };
-	const size_t begin = c->at[rank] + sizeof(ob_peers_head);
+	const size_t begin = c->at[rank] + c->ahead;
 	return (ob_mail){ .bytes = (char *)c->all + begin, .used = c->at[rank + 1] - begin };
 }
 
@@ -788,7 +796,7 @@ static bool fails(ob_committer *c, ob_universe *u)
 {
 	ob_mail_record r;
 	for (uint32_t rank = 0; rank < mails(c); rank++)
-		for (ob_mail m = mail_of(c, rank); ob_mail_next_end(&m, &r);)
+		for (ob_mail m = ob_committer_mail_of(c, rank); ob_mail_next_end(&m, &r);)
 			note_end(u, &r);
 	return ob_step_failed(u, NULL) != OB_STEP_OK;
 }
@@ -812,73 +820,6 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 	return ob_mail_collect(u, &c->mail);
 }
 
-// Whether the others know of a contact what they will be told: that it touches, and which rank keeps the rest of it.
-static bool is_known(const ob_committer *c, const ob_universe *u, const ob_found_contact *found)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	const ob_pair_key *k = found->pair < ob_pairs_end(data) ? &data->pair[found->pair] : NULL;
-	return k && k->active && found->active && k->record != OB_NO_RECORD &&
-	       ob_holdings_here_alone(c->holdings, u, k->record);
-}
-
-// Of contacts the others get no more than that they are there, unless what is kept of them is wanted everywhere.
-static bool put_for_others(ob_committer *c, const ob_universe *u, const ob_mail_record *r)
-{
-	uint32_t bytes = r->bytes;
-	if (r->kind == CONTACT && !ob_universe_shares_contacts(u) && bytes >= offsetof(ob_found_contact, state)) {
-		if (is_known(c, u, r->data))
-			return true;
-		bytes = offsetof(ob_found_contact, state);
-	}
-	return ob_mail_append_record(&c->out, &(ob_mail_record){ r->worker, r->kind, bytes, r->data });
-}
-
-bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest)
-{
-	const uint32_t damaged = phase == OB_PHASE_ISLANDS ? ob_holdings_damaged(c->holdings, u) : OB_NO_OBJECT;
-	ob_mail own = mail_of(c, c->rank);
-	ob_mail_record r;
-	bool fits = ob_peers_begin(&c->out);
-	while (fits && ob_mail_next(u, &own, &r))
-		fits = put_for_others(c, u, &r);
-	if (!fits)
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-	const ob_peers_head head = { .phase = phase,
-				     .digest = ob_digest_word(c->digest, digest),
-				     .damaged = damaged == OB_NO_OBJECT ? 0 : 1 + damaged };
-	c->all = fits ? ob_peers_exchange(p, u, head, &c->out, &c->at) : NULL;
-	return c->all;
-}
-
-static bool take_last(ob_mail *list, uint32_t *pair)
-{
-	if (!list->used)
-		return false;
-	list->used -= sizeof *pair;
-	memcpy(pair, list->bytes + list->used, sizeof *pair);
-	return true;
-}
-
-bool ob_commit_take_parted(ob_committer *c, uint32_t *pair)
-{
-	return take_last(&c->parted, pair);
-}
-
-bool ob_commit_take_checked(ob_committer *c, uint32_t *pair)
-{
-	return take_last(&c->checked, pair);
-}
-
-bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p)
-{
-	return ob_holdings_move(c->holdings, u, p);
-}
-
-bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)
-{
-	return ob_holdings_gather(c->holdings, u, p);
-}
-
 // Where a record is to be written soon: motions and pairs lie anywhere.
 static void prefetch_record(const ob_universe *u, const ob_mail_record *r)
 {
@@ -887,11 +828,11 @@ static void prefetch_record(const ob_universe *u, const ob_mail_record *r)
 	if (r->bytes < sizeof number)
 		return;
 	memcpy(&number, r->data, sizeof number);
-	if (r->kind == RESULT && number < data->objects_max) {
+	if (r->kind == OB_RECORD_RESULT && number < data->objects_max) {
 		ob_prefetch_slot(u, number);
 		__builtin_prefetch(&data->schedule[number], 1);
 		__builtin_prefetch(&data->result_island[number]);
-	} else if (r->kind == CONTACT && number < data->pairs_max) {
+	} else if (r->kind == OB_RECORD_CONTACT && number < data->pairs_max) {
 		__builtin_prefetch(&data->pair[number], 1);
 	}
 }
@@ -921,8 +862,10 @@ void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
 	if (fails(c, u))
 		return;
 	for (uint32_t rank = 0; rank < mails(c); rank++)
-		if (!commit_records(c, u, phase, mail_of(c, rank), &worker))
+		if (!commit_records(c, u, phase, ob_committer_mail_of(c, rank), &worker))
 			return;
+	if (c->all && c->dealt_to_each)
+		ob_committer_compare_before(c);
 	if (c->due && ob_step_failed(u, NULL) == OB_STEP_OK)
 		ob_step_blame(u, worker, "or another has not done all that it was given");
 }

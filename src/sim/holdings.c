@@ -19,6 +19,7 @@ struct ob_holdings {
 
 // A record on its way.
 typedef struct parcel {
+	ob_parcel head;
 	uint32_t pair, stamp; // index; as ob_pair_record.stamp
 	double limit; // of its key
 	ob_pair_state state;
@@ -122,12 +123,12 @@ static size_t parcel_bytes(const ob_universe *u)
 	return two ? sizeof(parcel) : offsetof(parcel, impulse_b);
 }
 
-static bool pack(ob_holdings *h, const ob_universe *u, uint32_t pair, uint32_t record)
+static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t record)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const int version = version_of(u, record);
 	const size_t bytes = parcel_bytes(u);
-	parcel p = { .pair = pair };
+	parcel p = { .head = { OB_PARCEL_KEPT, (uint32_t)bytes }, .pair = pair };
 	if (version < 0)
 		return true;
 	p.stamp = data->record[record].stamp[version];
@@ -135,7 +136,7 @@ static bool pack(ob_holdings *h, const ob_universe *u, uint32_t pair, uint32_t r
 	p.state = data->record[record].version[version];
 	if (bytes == sizeof p)
 		memcpy(p.impulse_b, data->impulse_b[record][version], sizeof p.impulse_b);
-	return ob_mail_append(&h->out, &p, bytes);
+	return ob_mail_append(to, &p, bytes);
 }
 
 // Whether the pair is of an island that a simulator of this rank is to solve.
@@ -146,44 +147,37 @@ static bool is_solved_here(const ob_universe *u, const ob_pair_key *k)
 	return data->result_island[id] != UINT32_MAX && ob_worker_is_here(u, ob_home_of(u, id));
 }
 
-// Takes what another rank has sent, if it is for this one: for all, or of an island of its own.
-static void unpack(ob_holdings *h, const ob_universe *u, uint64_t what, const char *from, size_t bytes)
+// Writes what another rank has sent; rank: who has it from now on, or ALL.
+static bool take(ob_holdings *h, const ob_universe *u, const char *from, size_t bytes, uint16_t holder)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const size_t each = parcel_bytes(u);
 	parcel c;
-	for (; bytes >= each; from += each, bytes -= each) {
-		memcpy(&c, from, each);
-		ob_pair_key *k = c.pair < ob_pairs_end(data) ? &data->pair[c.pair] : NULL;
-		const uint32_t record = k ? k->record : OB_NO_RECORD;
-		if (record >= data->pairs_max || (what == OB_PEERS_MOVE && !is_solved_here(u, k)))
-			continue;
-		h->holder[record] = what == OB_PEERS_MOVE ? (uint16_t)(1 + ob_universe_rank(u)) : ALL;
-		if (!data->count->merged || what != OB_PEERS_MOVE) // else what is known of it is void
-			k->limit = c.limit;
-		data->record[record].version[0] = c.state;
-		data->record[record].stamp[0] = c.stamp;
-		data->record[record].stamp[1] = 0;
-		if (each == sizeof c)
-			memcpy(data->impulse_b[record][0], c.impulse_b, sizeof c.impulse_b);
-		h->digest[record][0] = digest_of(&c.state);
-	}
+	if (bytes != parcel_bytes(u))
+		return false;
+	memcpy(&c, from, bytes);
+	ob_pair_key *k = c.pair < ob_pairs_end(data) ? &data->pair[c.pair] : NULL;
+	const uint32_t record = k ? k->record : OB_NO_RECORD;
+	if (record >= data->pairs_max || (holder != ALL && !is_solved_here(u, k)))
+		return false;
+	h->holder[record] = holder;
+	k->limit = c.limit;
+	data->record[record].version[0] = c.state;
+	data->record[record].stamp[0] = c.stamp;
+	data->record[record].stamp[1] = 0;
+	if (bytes == sizeof c)
+		memcpy(data->impulse_b[record][0], c.impulse_b, sizeof c.impulse_b);
+	h->digest[record][0] = digest_of(&c.state);
+	return true;
 }
 
-static bool exchange(ob_holdings *h, ob_universe *u, ob_peers *p, uint64_t what)
+bool ob_holdings_take(ob_holdings *h, const ob_universe *u, const char *from, size_t bytes)
 {
-	const size_t *at;
-	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = what }, &h->out, &at);
-	for (uint32_t r = 0; all && r < p->ranks; r++)
-		if (r != p->rank)
-			unpack(h, u, what, all + at[r] + sizeof(ob_peers_head),
-			       at[r + 1] - at[r] - sizeof(ob_peers_head));
-	return all;
+	return take(h, u, from, bytes, (uint16_t)(1 + ob_universe_rank(u)));
 }
 
 // What is held here of the object, which rank "to" solves now: it lists the pairs of its island, and this rank does no
 // longer.
-static bool give_pairs_of(ob_holdings *h, const ob_universe *u, uint32_t id, uint32_t to)
+static bool give_pairs_of(ob_holdings *h, const ob_universe *u, uint32_t id, uint32_t to, ob_mail *mail)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	bool fits = true;
@@ -193,15 +187,15 @@ static bool give_pairs_of(ob_holdings *h, const ob_universe *u, uint32_t id, uin
 		k->in_island = 0;
 		if (k->record >= data->pairs_max || !ob_holdings_here_alone(h, u, k->record))
 			continue;
-		fits &= pack(h, u, at.pair, k->record);
+		fits &= pack(mail, u, at.pair, k->record);
 		give_away(u, k->record);
 		h->holder[k->record] = (uint16_t)(1 + to);
 	}
 	return fits;
 }
 
-// Of an island that rank "to" solves. moved: whether another has solved any of its members before.
-static bool move_island(ob_holdings *h, const ob_universe *u, const ob_island *is, uint32_t to, bool *moved)
+// Of an island that rank "to" solves.
+static bool move_island(ob_holdings *h, const ob_universe *u, const ob_island *is, uint32_t to, ob_mail *mail)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	bool fits = true;
@@ -210,43 +204,54 @@ static bool move_island(ob_holdings *h, const ob_universe *u, const ob_island *i
 		const uint32_t from = id < data->objects_max ? h->solver[id] : 0;
 		if (id >= data->objects_max || from == 1 + to)
 			continue;
-		*moved |= from != 0;
 		if (from == 1 + ob_universe_rank(u))
-			fits &= give_pairs_of(h, u, id, to);
+			fits &= give_pairs_of(h, u, id, to, mail);
 		h->solver[id] = (uint16_t)(1 + to);
 	}
 	return fits;
 }
 
-bool ob_holdings_move(ob_holdings *h, ob_universe *u, ob_peers *p)
+bool ob_holdings_move(ob_holdings *h, const ob_universe *u, ob_mail *mail)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	bool moved = false, fits = ob_peers_begin(&h->out);
+	bool fits = true;
 	for (uint32_t chunk = 0; chunk < chunks_of(data); chunk++) {
 		const uint32_t to = ob_universe_rank_of(u, owner_of(u, chunk)), end = end_of_chunk(data, chunk);
 		for (uint32_t i = data->chunk[chunk]; i < end; i++)
-			fits &= move_island(h, u, &data->island[i], to, &moved);
+			fits &= move_island(h, u, &data->island[i], to, &mail[to]);
 	}
-	if (!fits)
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-	return !moved || exchange(h, u, p, OB_PEERS_MOVE);
+	return fits;
 }
 
 bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	bool fits = ob_peers_begin(&h->out);
+	const size_t *at;
+	const char *taken;
+	bool fits = ob_peers_begin(&h->out), sound = true;
+	ob_parcel head;
 	for (uint32_t pair = 0; pair < ob_pairs_end(data); pair++) {
 		const ob_pair_key *k = &data->pair[pair];
 		if (k->a == k->b || k->record >= data->pairs_max || h->holder[k->record] == ALL)
 			continue;
 		if (h->holder[k->record] == 1 + p->rank)
-			fits &= pack(h, u, pair, k->record);
+			fits &= pack(&h->out, u, pair, k->record);
 		h->holder[k->record] = ALL;
 	}
-	if (!fits)
+	if (!fits) {
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-	return exchange(h, u, p, OB_PEERS_GATHER);
+		return false;
+	}
+	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_GATHER }, &h->out, &at);
+	for (uint32_t r = 0; all && sound && r < p->ranks; r++) {
+		const char *from = all + at[r] + sizeof(ob_peers_head);
+		size_t left = at[r + 1] - at[r] - sizeof(ob_peers_head);
+		while (r != p->rank && sound && (taken = ob_parcel_next(&from, &left, &head, &sound)))
+			sound = head.kind == OB_PARCEL_KEPT && take(h, u, taken, head.bytes, ALL);
+		if (!sound)
+			ob_peers_blame(p, u, r);
+	}
+	return all && sound;
 }
 
 static void prefetch_kept(const ob_universe *u, const ob_island *is)

@@ -30,9 +30,11 @@ void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int
 // Whether it has them and no other rank does.
 bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record);
 
-// Before the islands of a step are solved, by all ranks: contents go to who solves them next. false: the step has
-// failed.
-bool ob_holdings_move(ob_holdings *h, ob_universe *u, ob_peers *p);
+// Before the islands of a step are solved, by all ranks: contents go to who solves them next, what goes to rank r into
+// mail[r]. false: no memory.
+bool ob_holdings_move(ob_holdings *h, const ob_universe *u, ob_mail *mail);
+// Of those, a parcel from another rank: false: it makes no sense.
+bool ob_holdings_take(ob_holdings *h, const ob_universe *u, const char *parcel, size_t bytes);
 // Between two steps, by all ranks: all of them have all contents. false: the step has failed.
 bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p);
 // One of the objects of a contact that a simulator of this rank is to solve, and whose contents are no longer what they

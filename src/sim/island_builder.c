@@ -695,8 +695,12 @@ void ob_islands_deal(ob_universe *u)
 	for (uint32_t i = 0; !p.alone && i < p.data->count->islands; i++)
 		p.data->island[i].work = p.data->island[i].solved ? 0 : estimated_work(&p, &p.data->island[i]);
 	deal_islands(&p);
-	if (!p.alone)
-		list_own_pairs(&p);
+}
+
+void ob_islands_list_own_pairs(ob_universe *u)
+{
+	const builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
+	list_own_pairs(&p);
 }
 
 void ob_islands_merge(ob_universe *u)

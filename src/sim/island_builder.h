@@ -26,6 +26,8 @@ void ob_islands_list_members(ob_universe *u);
 uint32_t ob_islands_list_tasks(const ob_universe *u);
 void ob_islands_list_pairs(ob_universe *u, uint32_t task);
 void ob_islands_deal(ob_universe *u);
+// Of several ranks, after that, for there are no tasks that list pairs: those of the islands of this one's simulators.
+void ob_islands_list_own_pairs(ob_universe *u);
 // Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join, and lists members. The
 // solutions of the others stand; the chunks hold what must be solved again.
 void ob_islands_merge(ob_universe *u);

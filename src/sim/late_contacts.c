@@ -361,12 +361,13 @@ static void note_solved(ob_universe *u)
 	}
 }
 
-// Of several ranks this one has entered the pair before another has listed it, which has solved one of its objects.
+// Of several ranks this one has entered the pair before another has listed it, which has solved one of its objects; or
+// it has had one of them when it entered it, and has none now.
 static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	return (data->result_island[k->a] != UINT32_MAX || data->result_island[k->b] != UINT32_MAX) &&
-	       !ob_pair_is_checked_here(u, k);
+	const bool solved = data->result_island[k->a] != UINT32_MAX || data->result_island[k->b] != UINT32_MAX;
+	return solved ? !ob_pair_is_checked_here(u, k) : !ob_pair_is_known_here(u, k);
 }
 
 // Such a pair is not checked here. All lose their entries, for those that are checked will get others: what the ranks
@@ -437,7 +438,8 @@ static void enter_next_checks(const ob_universe *u)
 			__builtin_prefetch(&data->schedule[k->a]);
 			__builtin_prefetch(&data->schedule[k->b]);
 		}
-		enter_next_check(u, data->check[i], data->count->checked);
+		if (ob_pair_is_known_here(u, &data->pair[data->check[i]]))
+			enter_next_check(u, data->check[i], data->count->checked);
 	}
 }
 

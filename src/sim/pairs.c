@@ -70,6 +70,17 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 	put_aside(data, pair);
 }
 
+static bool lives_here(const ob_universe *u, uint32_t id)
+{
+	return ob_universe_step_data(u)->schedule[id].state >= OB_SCHEDULE_AWAKE &&
+	       ob_worker_is_here(u, ob_home_of(u, id));
+}
+
+bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k)
+{
+	return ob_universe_ranks(u) < 2 || lives_here(u, k->a) || lives_here(u, k->b);
+}
+
 bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -212,25 +223,41 @@ static double path_in_step(const ob_universe *u, uint32_t a, uint32_t b, double 
 		       : 0;
 }
 
-static ob_pair_key new_pair(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+// The path of both together beyond which they may touch (m).
+static double first_limit(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	double distance = pair_distance(u, a, b, steps);
 	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
 	// Nearer than they have moved in the step that was solved: they may have touched in it.
-	double limit = distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
-	return (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = limit };
+	return distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
 }
 
 static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t a = id < other ? id : other, b = id < other ? other : id;
 	uint32_t pair;
 	if (!take_pair(u, &pair))
 		return;
-	data->pair[pair] = id < other ? new_pair(u, id, other, steps) : new_pair(u, other, id, steps);
+	data->pair[pair] = (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = -INFINITY };
 	link_pair(u, pair);
 	enter_check(u, pair, steps); // at once
+	if (ob_universe_ranks(u) < 2)
+		data->pair[pair].limit = first_limit(u, a, b, steps);
+	else if (data->count->checks < data->pairs_max)
+		data->check[data->count->checks++] = pair;
+}
+
+void ob_pairs_measure(ob_universe *u, uint64_t steps)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t fresh = ob_checks_count(data);
+	for (uint32_t i = 0; i < fresh; i++) {
+		ob_pair_key *k = &data->pair[data->check[i]];
+		if (k->a != k->b && ob_pair_is_known_here(u, k))
+			k->limit = first_limit(u, k->a, k->b, steps);
+	}
 }
 
 // ---- what queries have found
@@ -319,6 +346,7 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 	const uint32_t ids = ob_universe_ids(u);
 	uint32_t count, n = 0, *queried = data->scratch, *place = data->scratch + ids;
 	const uint32_t *list = ob_requery_list(u, &count);
+	data->count->checks = 0;
 	if (!count)
 		return;
 	for (uint32_t i = 0; i < count && n < ids; i++)

@@ -40,11 +40,6 @@ static uint64_t digest_islands(const ob_universe *u, uint64_t sum)
 	return ob_digest_word(sum, ob_digest_words(data->member, members / 2 * sizeof(uint64_t)));
 }
 
-uint64_t ob_peers_digest_object(const ob_universe *u, uint32_t id, uint64_t sum)
-{
-	return ob_digest_word(sum + id, motion_digest(ob_newest_motion(u, id)));
-}
-
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -58,17 +53,17 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
 
 // ---- where ranks differ
 
-// The first object that moves otherwise on that rank than on rank 0; OB_NO_OBJECT: none does.
-static uint32_t find_object(const char *all, const size_t *at, uint32_t rank)
+// A rank of which that one has another motion of the object; its own number: none has, as far as both have any.
+static uint32_t find_other(const ob_peers *p, const char *all, const size_t *at, uint32_t rank, size_t object)
 {
-	uint64_t first, other;
-	for (size_t i = 0; at[0] + i < at[1] && at[rank] + i < at[rank + 1]; i += sizeof first) {
-		memcpy(&first, all + at[0] + i, sizeof first);
-		memcpy(&other, all + at[rank] + i, sizeof other);
-		if (first != other)
-			return (uint32_t)(i / sizeof first);
+	uint64_t own, other;
+	memcpy(&own, all + at[rank] + object * sizeof own, sizeof own);
+	for (uint32_t r = 0; own && r < p->ranks; r++) {
+		memcpy(&other, all + at[r] + object * sizeof other, sizeof other);
+		if (other && other != own)
+			return r;
 	}
-	return OB_NO_OBJECT;
+	return rank;
 }
 
 static void blame(const ob_peers *p, ob_universe *u, uint32_t rank, const char *text)
@@ -76,38 +71,43 @@ static void blame(const ob_peers *p, ob_universe *u, uint32_t rank, const char *
 	ob_step_blame(u, rank * (ob_universe_simulators(u) / p->ranks), text);
 }
 
-// All ranks come here together, for all have seen the same messages: each tells the others about every object.
+// All ranks come here together, for all have seen the same messages: each tells the others about every object that it
+// has (0: it has not). Names the first object.
 static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 {
 	const uint32_t ids = ob_universe_ids(u);
 	const unsigned long long step = ob_step_count(u) + 1;
 	const size_t *at;
 	char text[OB_STEP_BLAME_MAX];
-	uint32_t id = OB_NO_OBJECT;
+	uint32_t id = 0, other = rank;
 	uint64_t *mine = calloc(ids + 1, sizeof *mine);
 	for (uint32_t i = 0; mine && i < ids; i++)
-		mine[i] = motion_digest(ob_newest_motion(u, i));
+		mine[i] = p->missing && p->missing[i] ? 0 : motion_digest(ob_newest_motion(u, i));
 	const char *all = p->gather(p->wire, mine, mine ? ids * sizeof *mine : 0, &at);
 	free(mine);
-	if (all)
-		id = find_object(all, at, rank);
-	if (id < ids)
+	for (uint32_t r = 0; all && r < p->ranks; r++)
+		if (at[r + 1] - at[r] != ids * sizeof *mine)
+			all = NULL;
+	while (all && id < ids && (other = find_other(p, all, at, rank, id)) == rank)
+		id++;
+	if (other != rank)
 		snprintf(text, sizeof text,
-			 "is of rank %u, which has other bits than rank 0 in step %llu, first of object \"%s\"", rank,
-			 step, ob_passport_of(u, id)->name);
+			 "is of rank %u, which has other bits than rank %u in step %llu, first of object \"%s\"", rank,
+			 other, step, ob_passport_of(u, id)->name);
 	else
 		snprintf(text, sizeof text, "is of rank %u, which has arranged step %llu otherwise than rank 0", rank,
 			 step);
 	blame(p, u, rank, text);
 }
 
-// What it has kept of a contact has changed since.
-static void blame_memory(const ob_peers *p, ob_universe *u, uint32_t rank, uint64_t object)
+// What it has kept of a contact, or a motion, has changed since.
+static void blame_memory(const ob_peers *p, ob_universe *u, uint32_t rank, uint64_t damaged)
 {
+	const uint64_t object = (damaged & ~OB_PEERS_MOTION) - 1;
 	char text[OB_STEP_BLAME_MAX];
 	snprintf(text, sizeof text,
-		 "is of rank %u, which in step %llu has other bits than it had found of a contact of object \"%s\"",
-		 rank, (unsigned long long)ob_step_count(u) + 1,
+		 "is of rank %u, which in step %llu has other bits than it had found of %s object \"%s\"", rank,
+		 (unsigned long long)ob_step_count(u) + 1, damaged & OB_PEERS_MOTION ? "the motion of" : "a contact of",
 		 object < ob_universe_ids(u) ? ob_passport_of(u, (uint32_t)object)->name : "");
 	blame(p, u, rank, text);
 }
@@ -132,15 +132,16 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 	for (uint32_t r = 0; r < p->ranks; r++) {
 		const ob_peers_head other = head_of(all, at, r);
 		if (other.damaged) {
-			blame_memory(p, u, r, other.damaged - 1);
+			blame_memory(p, u, r, other.damaged);
 			return false;
 		}
 	}
-	for (uint32_t r = 1; r < p->ranks; r++) {
+	for (uint32_t r = 0; r < p->ranks; r++) {
 		ob_peers_head other = head_of(all, at, r);
 		other.move = first.move; // rank 0 alone is asked
 		other.next_check = first.next_check; // each of its own
-		if (memcmp(&first, &other, sizeof first) != 0) {
+		other.look = first.look;
+		if (other.differs || memcmp(&first, &other, sizeof first) != 0) {
 			blame_rank(p, u, r);
 			return false;
 		}
@@ -150,14 +151,25 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 
 // ---- an exchange
 
-static void note_next_check(const ob_peers *p, ob_universe *u, const char *all, const size_t *at)
+// The first of what some rank waits for.
+static void note_steps(ob_peers *p, ob_universe *u, const char *all, const size_t *at)
 {
-	uint64_t next = UINT32_MAX;
+	uint64_t check = UINT32_MAX, look = UINT64_MAX;
 	for (uint32_t r = 0; r < p->ranks; r++) {
-		const uint64_t of = head_of(all, at, r).next_check;
-		next = of < next ? of : next;
+		const ob_peers_head of = head_of(all, at, r);
+		check = of.next_check < check ? of.next_check : check;
+		look = of.look < look ? of.look : look;
 	}
-	ob_universe_step_data(u)->count->next_check = (uint32_t)next;
+	ob_universe_step_data(u)->count->next_check = (uint32_t)check;
+	p->look = look;
+}
+
+// A pause, as far as its step is known; or each step, where somebody may look at any time: scripts, readers, the trace.
+static uint64_t own_look(const ob_universe *u)
+{
+	const bool always = ob_universe_step_data(u)->script_counts || ob_universe_traced(u) ||
+			    ob_universe_shares_contacts(u) || ob_universe_is_read(u);
+	return always ? 0 : ob_gate_pause_step(u);
 }
 
 bool ob_peers_begin(ob_mail *mail)
@@ -167,24 +179,74 @@ bool ob_peers_begin(ob_mail *mail)
 	return ob_mail_append(mail, &empty, sizeof empty);
 }
 
-const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
+static void complete_head(const ob_peers *p, ob_universe *u, ob_peers_head *head)
 {
 	const ob_calendar look = ob_calendar_of_pairs(u);
-	head.step = ob_step_count(u);
-	head.move = p->rank == 0 && !p->move ? ob_move_take(u) : 0;
-	head.next_check = ob_calendar_first(&look);
-	memcpy(mail->bytes, &head, sizeof head);
-	const char *all = p->gather(p->wire, mail->bytes, mail->used, at);
+	head->step = ob_step_count(u);
+	head->move = p->rank == 0 && !p->move ? ob_move_take(u) : 0;
+	head->next_check = ob_calendar_first(&look);
+	head->look = own_look(u);
+}
+
+// all: what has come, which is given if all is well.
+static const char *take(ob_peers *p, ob_universe *u, const char *all, const size_t *at)
+{
 	if (!all) {
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 		return NULL;
 	}
-	if (!stand_together(p, u, all, *at))
+	if (!stand_together(p, u, all, at))
 		return NULL;
-	if (head_of(all, *at, 0).move)
-		p->move = head_of(all, *at, 0).move;
-	note_next_check(p, u, all, *at);
+	if (head_of(all, at, 0).move)
+		p->move = head_of(all, at, 0).move;
+	note_steps(p, u, all, at);
 	return all;
+}
+
+const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
+{
+	complete_head(p, u, &head);
+	memcpy(mail->bytes, &head, sizeof head);
+	const char *all = p->gather(p->wire, mail->bytes, mail->used, at);
+	return take(p, u, all, all ? *at : NULL);
+}
+
+const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
+{
+	const void **mine = calloc(p->ranks, sizeof *mine);
+	size_t *bytes = calloc(p->ranks, sizeof *bytes);
+	const bool fits = mine && bytes;
+	complete_head(p, u, &head);
+	for (uint32_t r = 0; fits && r < p->ranks; r++) {
+		memcpy(mail[r].bytes, &head, sizeof head);
+		mine[r] = mail[r].bytes;
+		bytes[r] = mail[r].used;
+	}
+	const char *all = fits ? p->deal(p->wire, mine, bytes, at) : NULL;
+	free(mine);
+	free(bytes);
+	return take(p, u, all, all ? *at : NULL);
+}
+
+const char *ob_parcel_next(const char **from, size_t *bytes, ob_parcel *p, bool *sound)
+{
+	const char *parcel = *from;
+	if (!*bytes)
+		return NULL;
+	*sound = *bytes >= sizeof *p;
+	if (*sound)
+		memcpy(p, parcel, sizeof *p);
+	*sound = *sound && p->bytes >= sizeof *p && p->bytes <= *bytes;
+	if (!*sound)
+		return NULL;
+	*from += p->bytes;
+	*bytes -= p->bytes;
+	return parcel;
+}
+
+void ob_peers_blame(const ob_peers *p, ob_universe *u, uint32_t rank)
+{
+	blame(p, u, rank, "is of a rank that has sent what makes no sense");
 }
 
 void ob_peers_leave(ob_peers *p)

@@ -27,25 +27,44 @@ typedef struct ob_peers_head {
 	uint64_t step; // set by ob_peers_exchange
 	uint64_t phase; // an ob_phase, or one of the next
 	uint64_t digest;
-	uint64_t damaged; // 1 + an object, what is kept of which is not what it was; 0: none is known
+	uint64_t damaged; // 1 + an object, what is kept of which is not what it was; 0: none is known; OB_PEERS_MOTION: its motion
+	uint64_t differs; // 1 = it has been told of motions that have begun otherwise than where it is
 	uint64_t move; // of rank 0: where a simulator is to move, as table/home.h; set by ob_peers_exchange
 	uint64_t next_check; // the first step for which the rank has a pair to check; set by ob_peers_exchange
+	uint64_t look; // the first step at which the rank is to have all motions; set by ob_peers_exchange
 } ob_peers_head;
 #define OB_PEERS_MOVE (UINT64_MAX - 1)
 #define OB_PEERS_GATHER (UINT64_MAX - 2)
+#define OB_PEERS_MEET (UINT64_MAX - 3)
+#define OB_PEERS_LOOK (UINT64_MAX - 4)
+#define OB_PEERS_MOTION (UINT64_C(1) << 63)
+
+// What ranks hand to each other between phases, parcel by parcel behind the head of a message.
+typedef enum ob_parcel_kind {
+	OB_PARCEL_KEPT, // what a pair keeps (holdings.h)
+	OB_PARCEL_BODY, // and the next: halo.h
+	OB_PARCEL_PAIR,
+} ob_parcel_kind;
+typedef struct ob_parcel {
+	uint32_t kind, bytes; // with this, which it begins with: a multiple of 8
+} ob_parcel;
 
 // What the phase begins with, before any of it is committed: who is to be solved, with whom, or asked.
 uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
-// Likewise the motion from which an object was solved, as of before the step; sum: of those before it. By who commits what
-// came of it, who has it at hand: so ranks that differ in it find out with the next message, before the step is complete.
-uint64_t ob_peers_digest_object(const ob_universe *u, uint32_t id, uint64_t sum);
 // Empties the mail but for a head. false: no memory.
 bool ob_peers_begin(ob_mail *mail);
 // Sends the mail, which begins with a head, this one. Gives those of all ranks, heads and all, in their order: that of
 // rank r from at[r] to at[r + 1]; they hold until the next call. NULL: the others are elsewhere, or one has left, and
 // the step has failed. Then all know the move that rank 0 was asked for (ob_peers.move), and for which step somebody
-// has a pair to check.
+// has a pair to check, or looks at all motions (ob_peers.look).
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
+// Likewise to each rank another, mail[rank].
+const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
+// The next parcel from "from" on, of so many bytes, which then begin behind it. NULL: there is none; *sound becomes false
+// where it makes no sense. p: its head.
+const char *ob_parcel_next(const char **from, size_t *bytes, ob_parcel *p, bool *sound);
+// The rank has sent what makes no sense: the step fails.
+void ob_peers_blame(const ob_peers *p, ob_universe *u, uint32_t rank);
 bool ob_peers_join(ob_peers *p, const ob_universe *u, ob_error *e);
 void ob_peers_leave(ob_peers *p);
 

@@ -26,8 +26,12 @@ void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);
 typedef struct ob_peers {
 	uint32_t rank, ranks;
 	const char *(*gather)(void *wire, const void *mine, size_t n, const size_t **at);
+	// Likewise what each has to say to this one; mine[r], bytes[r] of it, to rank r
+	const char *(*deal)(void *wire, const void *const *mine, const size_t *bytes, const size_t **at);
 	void *wire;
 	bool parted; // one has left, and all know it
+	uint64_t look; // the first step at which some rank is to have all motions (halo.h), as all ranks know it
+	const uint8_t *missing; // as ob_halo_missing; NULL: all are here
 	uint64_t move; // that rank 0 was asked for, as table/home.h, to be made before the next step's islands are built
 } ob_peers;
 // Of the arranger, before its first step: false and e, on all ranks, where one of them has other workers, objects or

@@ -146,8 +146,11 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 	const uint32_t all = data->count->chunks;
 	uint32_t n = 0;
 	ob_task_reset(c->u, all, all);
-	if (ob_universe_ranks(c->u) > 1 && !ob_commit_give(c->sim->committer, c->u, &c->sim->peers))
-		return false;
+	if (ob_universe_ranks(c->u) > 1) {
+		if (!ob_commit_give(c->sim->committer, c->u, &c->sim->peers))
+			return false;
+		ob_islands_list_own_pairs(c->u);
+	}
 	for (uint32_t w = 0; w < all; w++)
 		if (data->chunk[w] < data->chunk[w + 1])
 			data->scratch[n++] = w;
@@ -428,7 +431,11 @@ static void step_baseline(ob_sim *s)
 // The host may ask for a pause at a step that has just gone by: then the next one will do.
 static bool must_pause(const scheduler *c)
 {
-	return ob_step_count(c->u) >= ob_gate_pause_step(c->u);
+	const bool due = ob_step_count(c->u) >= ob_gate_pause_step(c->u);
+	if (ob_universe_ranks(c->u) < 2)
+		return due;
+	// Where motions are not here the host has asked too late for them: they come when others hear of it.
+	return due && (!ob_commit_is_partial(c->sim->committer) || ob_gate_stopped(c->u));
 }
 
 // An object must be solved in this step, or a pair be checked before it, by whichever rank.
@@ -517,7 +524,21 @@ static ob_phase after_resume(const scheduler *c)
 	count_awake(c);
 	if (c->settings->monolith)
 		ob_requery_reset(c->u); // ODE's world finds its own neighbours
+	if (ob_universe_ranks(c->u) > 1)
+		ob_commit_settle(c->sim->committer, c->u);
 	return OB_PHASE_BROADPHASE_START;
+}
+
+// false: the step has failed.
+static bool merge_pairs(const scheduler *c, uint64_t steps)
+{
+	ob_pairs_merge(c->u, steps);
+	if (ob_universe_ranks(c->u) < 2)
+		return true;
+	if (!ob_commit_meet(c->sim->committer, c->u, &c->sim->peers))
+		return false;
+	ob_pairs_measure(c->u, steps);
+	return true;
 }
 
 static ob_phase after_broadphase_start(const scheduler *c)
@@ -526,7 +547,8 @@ static ob_phase after_broadphase_start(const scheduler *c)
 	ob_requery_list(c->u, &queries);
 	if (!queries)
 		return begin_step(c);
-	ob_pairs_merge(c->u, ob_step_count(c->u));
+	if (!merge_pairs(c, ob_step_count(c->u)))
+		return OB_PHASE_PAUSE;
 	return !must_pause(c) && ob_scripts_due(c->u) ? OB_PHASE_SCRIPTS : OB_PHASE_FORECAST;
 }
 
@@ -536,6 +558,8 @@ static ob_phase after_scripts(const scheduler *c)
 	uint32_t queries;
 	if (ob_scripts_carry_out(c->sim))
 		count_awake(c);
+	if (ob_universe_ranks(c->u) > 1)
+		ob_commit_settle(c->sim->committer, c->u); // motions that scripts have changed
 	if (ob_scripts_have_requests(c->u))
 		return OB_PHASE_PAUSE;
 	if (c->settings->monolith)
@@ -557,8 +581,7 @@ static ob_phase after_islands(const scheduler *c)
 
 static ob_phase after_broadphase(const scheduler *c)
 {
-	ob_pairs_merge(c->u, ob_step_count(c->u) + 1);
-	return OB_PHASE_LATE_CONTACTS;
+	return merge_pairs(c, ob_step_count(c->u) + 1) ? OB_PHASE_LATE_CONTACTS : OB_PHASE_PAUSE;
 }
 
 static ob_phase after_late_contacts(const scheduler *c)
@@ -585,15 +608,23 @@ static ob_phase after_baseline(const scheduler *c)
 	return OB_PHASE_COMPLETE;
 }
 
+// Somebody looks at the universe: all ranks have all of it, as far as he wants it. false: the step has failed.
+static bool gather(const scheduler *c)
+{
+	ob_committer *with = c->sim->committer;
+	ob_peers *p = &c->sim->peers;
+	const uint64_t step = ob_step_count(c->u);
+	if (p->look <= step && ob_commit_is_partial(with) && !ob_commit_gather(with, c->u, p))
+		return false;
+	return ob_contacts_wanted(c->u) != step || ob_commit_share(with, c->u, p);
+}
+
 static ob_phase complete_step(const scheduler *c)
 {
 	const struct ob_step_counts *count = c->data->count;
 	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle, count->islands);
 	ob_step_work_reset(c->u);
-	if (ob_universe_ranks(c->u) > 1 && ob_contacts_wanted(c->u) == ob_step_count(c->u) &&
-	    !ob_commit_share(c->sim->committer, c->u, &c->sim->peers))
-		return OB_PHASE_PAUSE;
-	return begin_step(c);
+	return ob_universe_ranks(c->u) < 2 || gather(c) ? begin_step(c) : OB_PHASE_PAUSE;
 }
 
 // ---- the step

@@ -8,13 +8,14 @@
 #include "ode/ode_body.h"
 #include "sim/holdings.h"
 #include "sim/little_universe.h"
+#include "table/home.h"
 #include "table/layout.h"
 
-// Says as rank 1 what it begins with as rank 0, and then what rank 0 has said before.
+// As rank 1: says nothing of its own when all is gathered.
 typedef struct other {
 	unsigned calls;
-	char said[1 << 12], all[1 << 13];
-	size_t kept, at[3];
+	char all[1 << 13];
+	size_t said, at[3]; // said: bytes of parcels, by rank 0
 } other;
 
 static const char *gather(void *wire, const void *mine, size_t n, const size_t **at)
@@ -22,14 +23,12 @@ static const char *gather(void *wire, const void *mine, size_t n, const size_t *
 	other *w = wire;
 	const size_t head = sizeof(ob_peers_head);
 	w->calls++;
-	CHECK(n >= head && n - head <= sizeof w->said && n + head + w->kept <= sizeof w->all);
+	CHECK(n >= head && n + head <= sizeof w->all);
 	memcpy(w->all, mine, n);
 	memcpy(w->all + n, mine, head);
-	memcpy(w->all + n + head, w->said, w->kept);
 	w->at[1] = n;
-	w->at[2] = n + head + w->kept;
-	w->kept = n - head;
-	memcpy(w->said, (const char *)mine + head, w->kept);
+	w->at[2] = n + head;
+	w->said = n - head;
 	*at = w->at;
 	return w->all;
 }
@@ -40,6 +39,7 @@ typedef struct fixture {
 	ob_holdings *h;
 	other wire;
 	ob_peers p;
+	ob_mail mail[2]; // what has gone to each rank
 	uint32_t record;
 	int version;
 	ob_pair_state *state;
@@ -51,6 +51,7 @@ enum { CRATE = 1 };
 static void give_crate_to(fixture *f, uint32_t simulator)
 {
 	ob_task_reset_from(f->l.u, 1, simulator, 1);
+	ob_home_set(f->l.u, CRATE, simulator);
 }
 
 // A crate on the ground, about to be solved again by the first of two simulators, each of which is a rank's.
@@ -75,6 +76,7 @@ static void open_crate(fixture *f)
 	data->result_island[CRATE] = 0;
 	f->h = ob_holdings_create(f->l.u);
 	f->wire = (other){ .calls = 0 };
+	f->mail[0] = f->mail[1] = (ob_mail){ 0 };
 	f->p = (ob_peers){ .ranks = 2, .gather = gather, .wire = &f->wire };
 	give_crate_to(f, 0);
 }
@@ -89,8 +91,19 @@ static ob_pair_state *kept_state(const fixture *f)
 static void close_crate(fixture *f)
 {
 	ob_holdings_destroy(f->h);
+	ob_mail_finish(&f->mail[0]);
+	ob_mail_finish(&f->mail[1]);
 	little_close(&f->l);
 	free(f->s);
+}
+
+// Returns how many bytes go to the other rank.
+static size_t move(fixture *f)
+{
+	ob_mail_clear(&f->mail[0]);
+	ob_mail_clear(&f->mail[1]);
+	CHECK(ob_holdings_move(f->h, f->l.u, f->mail) && f->mail[0].used == 0);
+	return f->mail[1].used;
 }
 
 static void check_damage(void)
@@ -111,26 +124,30 @@ static void check_damage(void)
 static void check_ways(void)
 {
 	fixture f;
+	char parcel[512];
 	open_crate(&f);
 	const ob_pair_state before = *f.state;
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // all have it
+	CHECK(move(&f) == 0); // all have it
 	ob_holdings_note(f.h, f.l.u, f.record, f.version, f.state, 0);
 	CHECK(ob_holdings_here_alone(f.h, f.l.u, f.record));
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 0); // its solver has it
-	CHECK(ob_holdings_gather(f.h, f.l.u, &f.p) && f.wire.calls == 1 && f.wire.kept > sizeof before);
+	CHECK(move(&f) == 0); // its solver has it
+	CHECK(ob_holdings_gather(f.h, f.l.u, &f.p) && f.wire.calls == 1 && f.wire.said > sizeof before);
 	CHECK(!ob_holdings_here_alone(f.h, f.l.u, f.record));
 	ob_holdings_note(f.h, f.l.u, f.record, f.version, f.state, 0);
 	give_crate_to(&f, 1);
-	f.wire.kept = 0; // the other has nothing to give
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2 && f.wire.kept > sizeof before);
+	const size_t bytes = move(&f);
+	CHECK(bytes > sizeof before && bytes <= sizeof parcel);
+	memcpy(parcel, f.mail[1].bytes, bytes);
 	CHECK(!kept_state(&f) && !ob_holdings_here_alone(f.h, f.l.u, f.record));
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 2);
+	CHECK(move(&f) == 0);
+	CHECK(!ob_holdings_take(f.h, f.l.u, parcel, bytes)); // which is the other's now
 	give_crate_to(&f, 0);
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 3 && f.wire.kept == 0);
+	CHECK(move(&f) == 0 && !ob_holdings_take(f.h, f.l.u, parcel, bytes - 8));
+	CHECK(ob_holdings_take(f.h, f.l.u, parcel, bytes));
 	f.state = kept_state(&f);
 	CHECK(f.state && memcmp(f.state, &before, sizeof before) == 0);
 	CHECK(ob_holdings_here_alone(f.h, f.l.u, f.record));
-	CHECK(ob_holdings_move(f.h, f.l.u, &f.p) && f.wire.calls == 3);
+	CHECK(move(&f) == 0 && f.wire.calls == 1);
 	f.state->gap[0] = nextafter(f.state->gap[0], 1);
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == 0);
 	close_crate(&f);

@@ -1,0 +1,351 @@
+#include "sim/halo.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/digest.h"
+#include "table/home.h"
+
+// The digest of a motion that was published as this version of the body's; version 0: none is known.
+typedef struct known {
+	uint64_t version, digest;
+} known;
+
+enum { MOTION = 1, BEFORE };
+
+struct ob_halo {
+	uint32_t ranks;
+	bool partial; // some rank may lack some body's
+	uint8_t *missing; // [object]: MOTION = it is not here; BEFORE = no other than what was found in this step
+	uint8_t *owed; // [object], of this rank's: likewise what another may lack
+	uint16_t *owner; // [object]: 1 + the rank that solved it last, or is to solve it first; 0 = none does
+	known *known; // [object]
+	uint64_t *staged; // [object]: digest of what is staged of it
+	ob_mail *out; // [ranks]: what goes to each
+};
+
+// A body on its way: as of before the step, and, if it was solved in it, as of after it.
+typedef struct body_parcel {
+	ob_parcel head; // of this, or up to "after"
+	uint64_t id;
+	ob_schedule schedule;
+	ob_motion before, after;
+} body_parcel;
+
+// What is known of one of its pairs.
+typedef struct pair_parcel {
+	ob_parcel head;
+	uint32_t pair, clear_until, clear_as_of, reserved;
+	double limit;
+} pair_parcel;
+
+ob_halo *ob_halo_create(const ob_universe *u)
+{
+	const uint32_t objects = ob_universe_capacity(u);
+	ob_halo *h = calloc(1, sizeof *h);
+	if (!h)
+		return NULL;
+	h->ranks = ob_universe_ranks(u);
+	h->missing = calloc(objects, sizeof *h->missing);
+	h->owed = calloc(objects, sizeof *h->owed);
+	h->owner = calloc(objects, sizeof *h->owner);
+	h->known = calloc(objects, sizeof *h->known);
+	h->staged = calloc(objects, sizeof *h->staged);
+	h->out = calloc(h->ranks, sizeof *h->out);
+	if (h->missing && h->owed && h->owner && h->known && h->staged && h->out)
+		return h;
+	ob_halo_destroy(h);
+	return NULL;
+}
+
+void ob_halo_destroy(ob_halo *h)
+{
+	if (!h)
+		return;
+	for (uint32_t r = 0; h->out && r < h->ranks; r++)
+		ob_mail_finish(&h->out[r]);
+	free(h->missing);
+	free(h->owed);
+	free(h->owner);
+	free(h->known);
+	free(h->staged);
+	free(h->out);
+	free(h);
+}
+
+static bool is_dynamic(const ob_step_data *data, uint32_t id)
+{
+	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+}
+
+static uint32_t rank_of(const ob_universe *u, uint32_t id)
+{
+	return ob_universe_rank_of(u, ob_home_of(u, id));
+}
+
+void ob_halo_settle(ob_halo *h, ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		if (h->known[id].version != ob_motion_version(u, id))
+			h->known[id].version = 0; // another was published, which is as good
+		if (h->owner[id] || !is_dynamic(data, id))
+			continue;
+		ob_home_set(u, id, ob_home_of(u, id)); // else it would change with the number of objects
+		h->owner[id] = (uint16_t)(1 + rank_of(u, id));
+	}
+}
+
+bool ob_halo_has(const ob_halo *h, uint32_t id)
+{
+	return !h->missing[id];
+}
+
+bool ob_halo_has_found(const ob_halo *h, uint32_t id)
+{
+	return h->missing[id] != MOTION;
+}
+
+const uint8_t *ob_halo_missing(const ob_halo *h)
+{
+	return h->missing;
+}
+
+bool ob_halo_is_partial(const ob_halo *h)
+{
+	return h->partial;
+}
+
+void ob_halo_part(ob_halo *h)
+{
+	h->partial = true;
+}
+
+// ---- digests
+
+static uint64_t digest_of(const ob_motion *m)
+{
+	return ob_digest_words(m, sizeof *m);
+}
+
+bool ob_halo_digest(const ob_halo *h, const ob_universe *u, uint32_t id, uint64_t *digest)
+{
+	const known *k = &h->known[id];
+	*digest = digest_of(ob_newest_motion(u, id));
+	return !k->version || (k->version == ob_motion_version(u, id) && k->digest == *digest);
+}
+
+void ob_halo_note(ob_halo *h, uint32_t id, const ob_motion *staged)
+{
+	if (staged)
+		h->staged[id] = digest_of(staged);
+	h->missing[id] = !staged ? MOTION : h->missing[id] ? BEFORE : 0;
+}
+
+void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id)
+{
+	h->known[id] = (known){ ob_motion_version(u, id), h->staged[id] };
+	h->missing[id] = 0;
+	if (h->owed[id] == BEFORE)
+		h->owed[id] = 0;
+}
+
+// ---- who is told
+
+bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	memset(to, all, h->ranks * sizeof *to);
+	for (uint32_t link = all ? 0 : data->first_pair[id]; ob_pair_at(data, link, &at);
+	     link = ob_pair_next(data, at)) {
+		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
+		if (ob_object_in_range(data, other) && h->owner[other])
+			to[h->owner[other] - 1] = true;
+	}
+	to[ob_universe_rank(u)] = true;
+	if (all && h->owed[id])
+		h->owed[id] = BEFORE;
+	for (uint32_t r = 0; r < h->ranks; r++)
+		if (!to[r])
+			h->owed[id] = MOTION;
+	return all && h->owed[id];
+}
+
+// ---- parcels
+
+static bool was_solved(const ob_universe *u, uint32_t id)
+{
+	return ob_universe_step_data(u)->result_island[id] != UINT32_MAX;
+}
+
+// after: what was found in this step goes with it
+static bool pack_body(ob_mail *to, const ob_universe *u, uint32_t id, bool after)
+{
+	body_parcel b = { .head = { OB_PARCEL_BODY, after ? sizeof b : offsetof(body_parcel, after) },
+			  .id = id,
+			  .schedule = ob_universe_step_data(u)->schedule[id],
+			  .before = *ob_newest_motion(u, id) };
+	if (after)
+		b.after = *ob_staged_motion(u, id);
+	return ob_mail_append(to, &b, b.head.bytes);
+}
+
+static bool pack_pair(ob_mail *to, const ob_universe *u, uint32_t pair)
+{
+	const ob_pair_key *k = &ob_universe_step_data(u)->pair[pair];
+	const pair_parcel p = { { OB_PARCEL_PAIR, sizeof p }, pair, k->clear_until, k->clear_as_of, 0, k->limit };
+	return ob_mail_append(to, &p, sizeof p);
+}
+
+static bool take_body(ob_halo *h, ob_universe *u, const char *from, size_t bytes)
+{
+	const bool after = bytes == sizeof(body_parcel);
+	body_parcel b;
+	if (!after && bytes != offsetof(body_parcel, after))
+		return false;
+	memcpy(&b, from, bytes);
+	if (b.id >= ob_universe_ids(u))
+		return false;
+	const uint32_t id = (uint32_t)b.id;
+	if (!h->missing[id])
+		return true;
+	ob_publish_motion(u, id, &b.before);
+	h->known[id] = (known){ ob_motion_version(u, id), digest_of(&b.before) };
+	h->missing[id] = 0;
+	ob_universe_step_data(u)->schedule[id] = b.schedule;
+	if (after) {
+		ob_stage_motion(u, id, &b.after);
+		h->staged[id] = digest_of(&b.after);
+	}
+	return true;
+}
+
+static bool take_pair(const ob_universe *u, const char *from, size_t bytes)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	pair_parcel p;
+	if (bytes != sizeof p)
+		return false;
+	memcpy(&p, from, sizeof p);
+	if (p.pair >= ob_pairs_end(data))
+		return false;
+	ob_pair_key *k = &data->pair[p.pair];
+	k->limit = p.limit;
+	k->clear_until = p.clear_until;
+	k->clear_as_of = p.clear_as_of;
+	return true;
+}
+
+bool ob_halo_take(ob_halo *h, ob_universe *u, const char *parcel, const ob_parcel *head)
+{
+	return head->kind == OB_PARCEL_BODY ? take_body(h, u, parcel, head->bytes)
+					    : head->kind == OB_PARCEL_PAIR && take_pair(u, parcel, head->bytes);
+}
+
+// What the others have sent. false: the step has failed.
+static bool take_all(ob_halo *h, ob_universe *u, const ob_peers *p, const char *all, const size_t *at)
+{
+	const char *parcel;
+	ob_parcel head;
+	bool sound = true;
+	for (uint32_t r = 0; all && sound && r < p->ranks; r++) {
+		const char *from = all + at[r] + sizeof(ob_peers_head);
+		size_t left = at[r + 1] - at[r] - sizeof(ob_peers_head);
+		while (r != p->rank && sound && (parcel = ob_parcel_next(&from, &left, &head, &sound)))
+			sound = ob_halo_take(h, u, parcel, &head);
+		if (!sound)
+			ob_peers_blame(p, u, r);
+	}
+	return all && sound;
+}
+
+// ---- when
+
+bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t checks = ob_checks_count(data);
+	const size_t *at;
+	bool meet = false, fits = true;
+	for (uint32_t r = 0; r < h->ranks; r++)
+		fits &= ob_peers_begin(&h->out[r]);
+	for (uint32_t i = 0; h->partial && i < checks; i++) {
+		const ob_pair_key *k = &data->pair[data->check[i]];
+		if (!is_dynamic(data, k->a) || !is_dynamic(data, k->b) || rank_of(u, k->a) == rank_of(u, k->b))
+			continue;
+		meet = true;
+		for (int side = 0; side < 2; side++) {
+			const uint32_t id = side ? k->b : k->a, other = side ? k->a : k->b;
+			if (rank_of(u, id) == p->rank)
+				fits &= pack_body(&h->out[rank_of(u, other)], u, id, was_solved(u, id));
+		}
+	}
+	if (!fits) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return false;
+	}
+	return !meet ||
+	       take_all(h, u, p, ob_peers_deal(p, u, (ob_peers_head){ .phase = OB_PEERS_MEET }, h->out, &at), at);
+}
+
+// Rank "to" solves the body from now on.
+static bool give_body(const ob_halo *h, const ob_universe *u, uint32_t id, uint32_t to, ob_mail *out)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	bool fits = !h->partial || pack_body(out, u, id, false);
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
+		fits &= pack_pair(out, u, at.pair);
+		if (h->partial && ob_object_in_range(data, other) && is_dynamic(data, other) && rank_of(u, other) != to)
+			fits &= pack_body(out, u, other, data->count->merged && was_solved(u, other));
+	}
+	return fits;
+}
+
+bool ob_halo_move(ob_halo *h, const ob_universe *u, ob_mail *mail, bool *moved)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	bool fits = true;
+	uint32_t members = 0;
+	for (uint32_t i = 0; i < data->count->islands; i++)
+		members += data->island[i].members;
+	for (uint32_t i = 0; i < members && i < data->objects_max; i++) {
+		const uint32_t id = data->member[i];
+		if (!ob_object_in_range(data, id))
+			break;
+		const uint32_t from = h->owner[id], to = rank_of(u, id);
+		if (from == 1 + to)
+			continue;
+		*moved = true;
+		if (from == 1 + ob_universe_rank(u))
+			fits &= give_body(h, u, id, to, &mail[to]);
+		h->owner[id] = (uint16_t)(1 + to);
+		h->owed[id] = h->partial ? MOTION : 0;
+	}
+	return fits;
+}
+
+bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p)
+{
+	const uint32_t ids = ob_universe_ids(u);
+	const size_t *at;
+	bool fits = ob_peers_begin(&h->out[0]);
+	for (uint32_t id = 0; id < ids; id++)
+		if (h->owner[id] == 1 + p->rank && h->owed[id])
+			fits &= pack_body(&h->out[0], u, id, false);
+	if (!fits) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return false;
+	}
+	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_LOOK }, &h->out[0], &at);
+	if (!take_all(h, u, p, all, at))
+		return false;
+	h->partial = false;
+	memset(h->owed, 0, ids * sizeof *h->owed);
+	if (memchr(h->missing, MOTION, ids))
+		ob_step_fail(u, OB_STEP_DAMAGED, 0);
+	return ob_step_failed(u, NULL) == OB_STEP_OK;
+}

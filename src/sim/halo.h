@@ -1,0 +1,65 @@
+// Whose motions a rank has, of several (peers.h): those of the bodies that it has solved last, its own, and of their
+// neighbours, which it must know to check pairs: its halo. Of all others it knows when they are due, and where they
+// cannot leave (their fat AABBs), and no more.
+//
+//   rank 0's bodies    rank 1's bodies        o  its own       n  a neighbour: both are of one pair. All ranks know all
+//   o o o o o o o o  | n n . . . . . .  rank 0     pairs, so a body's owner knows who has to hear of it
+//   . . . . . . n n  | o o o o o o o o  rank 1
+//
+//   tell     a body was solved: its owner tells the motion to those who have neighbours of it, to all others that it
+//   was meet     a pair is new, its bodies of two ranks: each tells the other where its body is move     another rank
+//   solves the body from now on: it gets its motion and its neighbours', and what is known of its
+//            pairs
+//   gather   somebody looks at the universe (ob_peers.look): all ranks get all motions
+//
+// So it is whole on each rank where a host looks at it, at a pause, and no earlier. Where somebody looks after each
+// step, all are told all as it is solved.
+//
+// Of what a rank has it knows a digest, in memory that simulators do not reach, which is compared when the body is
+// solved next; and with it what who tells the motion has had.
+//
+// Thread-safety: the arranger's.
+#ifndef OB_SIM_HALO_H
+#define OB_SIM_HALO_H
+
+#include "sim/peers.h"
+
+typedef struct ob_halo ob_halo;
+
+// At the start all ranks have all. NULL: no memory.
+ob_halo *ob_halo_create(const ob_universe *u);
+void ob_halo_destroy(ob_halo *h); // NULL is allowed
+// After a pause, or scripts, by which motions were published that no simulator has found, the same on all ranks: what is
+// new gets an owner, where it has none.
+void ob_halo_settle(ob_halo *h, ob_universe *u);
+
+// Whether the body's motion is here, as of before the step; and once it was solved, what was found. Of all [objects]:
+// not 0 = the first is not.
+bool ob_halo_has(const ob_halo *h, uint32_t id);
+bool ob_halo_has_found(const ob_halo *h, uint32_t id);
+const uint8_t *ob_halo_missing(const ob_halo *h);
+// Whether any rank may lack any.
+bool ob_halo_is_partial(const ob_halo *h);
+void ob_halo_part(ob_halo *h); // from now on
+
+// A body of this rank's was solved: to[r] := whether rank r is told its motion; all: everybody is. Returns whether
+// somebody who is told may lack what it had before.
+bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to);
+// What another rank, or this one, says of a body that was solved: its motion, to be staged; or none, NULL.
+void ob_halo_note(ob_halo *h, uint32_t id, const ob_motion *staged);
+// What was staged of the body is published.
+void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id);
+// The digest of its motion of before the step. false: it is not what it was.
+bool ob_halo_digest(const ob_halo *h, const ob_universe *u, uint32_t id, uint64_t *digest);
+
+// By all ranks, when pairs have been added, those of ob_step_data.check; and between two steps. false: the step has
+// failed.
+bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p);
+bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p);
+// When islands have been dealt: what goes to rank r into mail[r]. moved: whether any rank has something to say. false:
+// no memory.
+bool ob_halo_move(ob_halo *h, const ob_universe *u, ob_mail *mail, bool *moved);
+// Of those, a parcel from another rank. false: it makes no sense.
+bool ob_halo_take(ob_halo *h, ob_universe *u, const char *parcel, const ob_parcel *head);
+
+#endif
