@@ -12,6 +12,7 @@
 #ifndef OB_CONTACT_LONE_H
 #define OB_CONTACT_LONE_H
 
+#include <math.h>
 #include <string.h>
 
 #include "contact/batch.h"
@@ -44,7 +45,7 @@ typedef struct lone {
 	double diag_f[LONE_FRICTION], mass[6]; // of A's block of friction; its inverse
 	double mu, radius, slide_rate2, e1[2], e2[2], ratio, det;
 	double spin; // rad/s, of the mean slip while it slides
-	bool slides;
+	bool slides, capped; // capped: the force of what slides is all that there may be; the ellipsoid allowed more
 	int points; // the first of four
 	lone_model model;
 } lone;
@@ -319,6 +320,7 @@ static inline bool lone_project(lone *p, const double *pressure, double bound, d
 	along = lone_dot(m->slip, qz) + m->slip[2] * (pressure[1] * qz[0] - pressure[0] * qz[1]);
 	const double scale = bound / n, force = __builtin_sqrt(qz[0] * qz[0] + qz[1] * qz[1]) * scale,
 		     within = scale * bound / lone_max(force, bound);
+	p->capped = force > bound;
 	hold[0] = -qz[0] * within, hold[1] = -qz[1] * within, hold[2] = -qz[2] * scale;
 	return along * along < turned * n2;
 }
@@ -480,7 +482,7 @@ static inline void lone_follow(const lone *p, double sum, lanes *by)
 	const double y[3] = { p->y[0], p->y[1], p->y[2] };
 	for (int c = 0; c < LONE_FRICTION; c++)
 		by[c] = lanes_of(y[c] * brought);
-	if (!(p->radius > 0) || !(t > 0))
+	if (!(p->radius > 0) || !(t > 0) || p->capped)
 		return;
 	double edges[2], centre[2], turned[6];
 	lone_pressure(p, sum, edges, centre);
@@ -555,6 +557,9 @@ static __attribute__((noinline)) void lone_leap(lone *p)
 		lone_hold_rows(p, push, m, mf, r);
 		lone_eliminate(pushing, m, mf, r, OB_ROWS);
 	}
+	for (int i = 0; i < OB_ROWS; i++)
+		if (!(lone_abs(r[i]) < INFINITY))
+			return; // rows that contradict each other: sweeps alone go on
 	for (int i = 0; i < OB_POINTS; i++)
 		if (p->x[i] + r[i] < 0)
 			share = lone_min(share, -p->x[i] / r[i]);
@@ -707,7 +712,7 @@ static inline void lone_load_pair(const ob_batch *b, int l, const lone_body *o, 
 	p->ratio = p->radius > 0 ? __builtin_sqrt((p->e2[0] * p->e2[0] + p->e2[1] * p->e2[1]) /
 						  (p->e1[0] * p->e1[0] + p->e1[1] * p->e1[1]))
 				 : 1;
-	p->model.known = p->slides = false;
+	p->model.known = p->slides = p->capped = false;
 	p->model.stretch = lone_get(&b->model.stretch, l);
 	p->spin = 0;
 	lone_couple(b, l, o, p);
