@@ -18,7 +18,7 @@
 
 // Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m.
 enum { LEVEL_ZERO = 33, LEVELS = 64 };
-enum { CELLS_AT_ONCE = 16 }; // whose objects are asked for together
+enum { CELLS_AT_ONCE = 32 }; // whose buckets, and then objects, are asked for together
 
 typedef struct cell {
 	int32_t level, x, y, z;
@@ -40,8 +40,9 @@ static bool is_plane(const ob_universe *u, uint32_t id)
 
 static int32_t coordinate(double x, double side)
 {
-	double c = floor(x / side);
-	return c < -1e9 ? -1000000000 : c > 1e9 ? 1000000000 : (int32_t)c;
+	const double c = ob_max(-1e9, ob_min(1e9, x / side));
+	const int32_t towards_zero = (int32_t)c;
+	return towards_zero - (c < towards_zero);
 }
 
 static double side_of(int level)
@@ -202,38 +203,43 @@ static void scan_cell(const ob_step_data *data, uint32_t id, const cell *at, uin
 	}
 }
 
-// Most buckets are empty. What lies in the others is asked for while the next ones are looked at.
-typedef struct found_cells {
-	uint32_t n, first[CELLS_AT_ONCE];
+// Cells to be looked at. Their buckets lie anywhere, and so do the objects in them: all are asked for before the first
+// is read.
+typedef struct cells_ahead {
+	uint32_t n, bucket[CELLS_AT_ONCE];
 	cell at[CELLS_AT_ONCE];
-} found_cells;
+} cells_ahead;
 
-static void scan_found(const ob_step_data *data, uint32_t id, found_cells *found, overlaps *a)
+static void scan_ahead(const ob_step_data *data, uint32_t id, cells_ahead *c, overlaps *a)
 {
-	for (uint32_t i = 0; i < found->n; i++)
-		scan_cell(data, id, &found->at[i], found->first[i], a);
-	found->n = 0;
+	uint32_t first[CELLS_AT_ONCE], found = 0;
+	for (uint32_t i = 0; i < c->n; i++) {
+		first[found] = data->bucket[c->bucket[i]];
+		if (!first[found]) // most are empty
+			continue;
+		__builtin_prefetch(&data->cell[first[found] - 1]);
+		__builtin_prefetch(data->bounds[first[found] - 1]);
+		c->at[found++] = c->at[i];
+	}
+	for (uint32_t i = 0; i < found; i++)
+		scan_cell(data, id, &c->at[i], first[i], a);
+	c->n = 0;
 }
 
-static void scan_cells(const ob_step_data *data, uint32_t id, int level, const cell *lo, const cell *hi, overlaps *a)
+static void scan_cells(const ob_step_data *data, uint32_t id, int level, const cell *lo, const cell *hi,
+		       cells_ahead *ahead, overlaps *a)
 {
-	found_cells found;
-	found.n = 0;
 	for (int32_t z = lo->z; z <= hi->z; z++)
 		for (int32_t y = lo->y; y <= hi->y; y++)
 			for (int32_t x = lo->x; x <= hi->x; x++) {
 				const cell at = { level, x, y, z };
-				const uint32_t first = data->bucket[bucket_of(data, at)];
-				if (!first)
-					continue;
-				__builtin_prefetch(&data->cell[first - 1]);
-				__builtin_prefetch(data->bounds[first - 1]);
-				found.at[found.n] = at;
-				found.first[found.n++] = first;
-				if (found.n == CELLS_AT_ONCE)
-					scan_found(data, id, &found, a);
+				const uint32_t bucket = bucket_of(data, at);
+				__builtin_prefetch(&data->bucket[bucket]);
+				ahead->at[ahead->n] = at;
+				ahead->bucket[ahead->n++] = bucket;
+				if (ahead->n == CELLS_AT_ONCE)
+					scan_ahead(data, id, ahead, a);
 			}
-	scan_found(data, id, &found, a);
 }
 
 // The cells of a class in which the centre of a box may lie that overlaps b; false: there are none.
@@ -259,6 +265,8 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 	const ob_step_data *data = ob_universe_step_data(u);
 	overlaps a = { out, 0, max, ob_universe_settings(u)->load, 0 };
 	const float *b = data->bounds[id];
+	cells_ahead ahead;
+	ahead.n = 0;
 	if (is_plane(u, id)) {
 		for (uint32_t j = 0; j < ob_universe_ids(u); j++)
 			if (indexed(&data->cell[j]) && below_plane(u, id, data->bounds[j]))
@@ -274,8 +282,9 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 		if (cells > there)
 			scan_level(data, id, level, &a);
 		else
-			scan_cells(data, id, level, &lo, &hi, &a);
+			scan_cells(data, id, level, &lo, &hi, &ahead, &a);
 	}
+	scan_ahead(data, id, &ahead, &a);
 	for (uint32_t k = 0; k < data->count->planes; k++)
 		if (below_plane(u, data->plane[k], b))
 			add_overlap(&a, data->plane[k]);

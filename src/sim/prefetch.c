@@ -56,6 +56,20 @@ void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k)
 	prefetch_object(s, k->b);
 }
 
+void ob_prefetch_members(const ob_universe *u, uint32_t i)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_island *is = &data->island[i];
+	for (uint32_t k = 0; k < is->members && k < PREFETCHED_MAX; k++)
+		ob_prefetch_versions(u, data->member[is->first_member + k]);
+}
+
+void ob_prefetch_query(const ob_universe *u, uint32_t id)
+{
+	__builtin_prefetch(ob_universe_step_data(u)->bounds[id]);
+	ob_prefetch_versions(u, id);
+}
+
 void ob_prefetch_island(ob_sim *s, uint32_t i)
 {
 	const ob_step_data *data = s->data;

@@ -4,8 +4,12 @@
 
 #include "sim/state.h"
 
-// Island i, which this worker solves next; of a large one the beginning.
+// Of island i, which this worker solves soon, where its motions and passports are found; then, when it is next, these. Of
+// a large one the beginning.
+void ob_prefetch_members(const ob_universe *u, uint32_t i);
 void ob_prefetch_island(ob_sim *s, uint32_t i);
+// Of an object whose neighbours are looked for soon: its box, and where its passport is found.
+void ob_prefetch_query(const ob_universe *u, uint32_t id);
 
 // Of a pair that is checked soon: the schedule records, and where its motions and passports are found; then these.
 void ob_prefetch_schedule(const ob_universe *u, const ob_pair_key *k);

@@ -303,12 +303,15 @@ static void query(ob_sim *s, uint32_t id)
 
 static void query_neighbours(ob_sim *s)
 {
+	enum { QUERIES_AHEAD = 3 };
 	uint32_t count, i;
 	const uint32_t *list = ob_requery_list(s->u, &count);
 	if (s->settings->one_per_object)
 		query(s, s->worker);
 	else
 		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK)) {
+			if (i + QUERIES_AHEAD < count)
+				ob_prefetch_query(s->u, list[i + QUERIES_AHEAD]);
 			query(s, list[i]);
 			ob_profile_task_done(s, i);
 		}
@@ -381,6 +384,7 @@ static void note_home(const ob_sim *s, uint32_t island)
 
 static void solve_islands(ob_sim *s)
 {
+	enum { MEMBERS_AHEAD = 4 };
 	const ob_step_data *data = s->data;
 	const bool notes = !data->count->shared && !ob_universe_contains(s->u); // else who deals them does
 	uint32_t chunk, chunks = 0, objects = 0;
@@ -392,7 +396,9 @@ static void solve_islands(ob_sim *s)
 		const uint32_t first = data->chunk[chunk], end = data->chunk[chunk + 1];
 		ob_span_chunk_begin(s);
 		for (uint32_t i = first; i < end; i++) {
-			if (i + 1 < end) // beyond it another worker writes what would be read here
+			if (i + MEMBERS_AHEAD < end) // beyond it another worker writes what would be read here
+				ob_prefetch_members(s->u, i + MEMBERS_AHEAD);
+			if (i + 1 < end)
 				ob_prefetch_island(s, i + 1);
 			solve_island(s, i, i == first);
 			ob_profile_task_done(s, i);
