@@ -25,6 +25,8 @@ double ob_cos(double x);
 double ob_tan(double x);
 // The bits of ob_sin and ob_cos, for one reduction
 void ob_sincos(double x, double *sine, double *cosine);
+// The same of two angles, which takes little longer than of one
+void ob_sincos_of_two(const double x[2], double sine[2], double cosine[2]);
 
 double ob_asin(double x);
 double ob_acos(double x);

@@ -63,10 +63,9 @@ void ob_theta_plan(ob_theta *t, double nome, double alpha)
 	t->terms = n;
 }
 
-ob_theta_value ob_theta_at(const ob_theta *t, double v)
+ob_theta_value ob_theta_at(const ob_theta *t, double s, double c)
 {
-	double s, c, sign = 1;
-	ob_sincos(v, &s, &c);
+	double sign = 1;
 	double c2 = c * c - s * s, s2 = 2 * s * c; // of 2 v: each term turns by it
 	ob_theta_value sum = { 0 };
 	for (int n = 0; n < t->terms; n++) {

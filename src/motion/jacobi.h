@@ -26,7 +26,8 @@ double ob_jacobi_phase(double x, double y, double kc, double *mean);
 
 // nome in [0, .9], alpha in [0, -log(nome) / 2]
 void ob_theta_plan(ob_theta *t, double nome, double alpha);
-ob_theta_value ob_theta_at(const ob_theta *t, double v);
+// sine, cosine: of v
+ob_theta_value ob_theta_at(const ob_theta *t, double sine, double cosine);
 // d/dalpha log theta_2(i alpha): a sum of positive terms, so exact to the last digits
 double ob_theta_slope(const ob_theta *t);
 

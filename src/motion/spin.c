@@ -98,13 +98,11 @@ static ob_quat lift_of(ob_vec3 n)
 }
 
 // Direction (cos, sin) of the turn about L that follows the lift: arg theta_1(v +- i alpha) + lambda s - arg(n1 + i
-// n2).
-static void azimuth_at(const ob_spin *spin, double s, const ob_theta_value *t, ob_vec3 n, double *cos_out,
+// n2). sl, cl: sine and cosine of lambda s
+static void azimuth_at(const ob_spin *spin, double sl, double cl, const ob_theta_value *t, ob_vec3 n, double *cos_out,
 		       double *sin_out)
 {
-	double sl = 0, cl = 1, im = spin->side * t->im;
-	if (s != 0)
-		ob_sincos(spin->precession * s, &sl, &cl);
+	double im = spin->side * t->im;
 	double a = t->re * cl - im * sl, b = t->re * sl + im * cl;
 	double c = a * n.x + b * n.y, d = b * n.x - a * n.y, r = 1 / sqrt(c * c + d * d);
 	*cos_out = c * r;
@@ -134,9 +132,11 @@ static void plan_theta(ob_spin *spin, double size, ob_vec3 n, double i1, double 
 	spin->side = i1 > i2 ? 1 : -1;
 	// At v = pi / 2 the azimuth turns at L / I2, of which the theta function has its logarithmic slope.
 	spin->precession = size / i2 + spin->side * spin->speed * ob_theta_slope(&spin->theta);
-	ob_theta_value t = ob_theta_at(&spin->theta, spin->phase);
+	double sine, cosine;
+	ob_sincos(spin->phase, &sine, &cosine);
+	ob_theta_value t = ob_theta_at(&spin->theta, sine, cosine);
 	ob_vec3 n0 = direction_at(spin, &t);
-	azimuth_at(spin, 0, &t, n0, &spin->cos0, &spin->sin0);
+	azimuth_at(spin, 0, 1, &t, n0, &spin->cos0, &spin->sin0);
 	spin->lift0 = lift_of(n0);
 }
 
@@ -282,10 +282,11 @@ static ob_vec3 unsort(const ob_spin *spin, double x, double y, double z)
 
 static void theta_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 {
-	double c, d;
-	ob_theta_value t = ob_theta_at(&spin->theta, spin->phase + spin->speed * s);
+	double c, d, sine[2], cosine[2];
+	ob_sincos_of_two((double[2]){ spin->phase + spin->speed * s, spin->precession * s }, sine, cosine);
+	ob_theta_value t = ob_theta_at(&spin->theta, sine[0], cosine[0]);
 	ob_vec3 n = direction_at(spin, &t);
-	azimuth_at(spin, s, &t, n, &c, &d);
+	azimuth_at(spin, sine[1], cosine[1], &t, n, &c, &d);
 	ob_quat back = { spin->lift0.w, -spin->lift0.x, -spin->lift0.y, -spin->lift0.z };
 	ob_quat turn = half_turn(c * spin->cos0 + d * spin->sin0, d * spin->cos0 - c * spin->sin0);
 	ob_quat sorted = ob_quat_mul(back, ob_quat_mul(turn, lift_of(n)));

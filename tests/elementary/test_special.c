@@ -4,6 +4,7 @@
 
 #include "check.h"
 #include "elementary/elementary.h"
+#include "motion/random.h"
 
 // The same number, with the same sign where it is 0
 static bool is(double a, double b)
@@ -23,6 +24,27 @@ static void check_odd_functions(void)
 	double sine, cosine;
 	ob_sincos(-0., &sine, &cosine);
 	CHECK(is(sine, -0.) && cosine == 1);
+}
+
+// Two at once have the bits of each.
+static void check_two_angles(void)
+{
+	static const double special[] = { 0,      -0.,  1e-300,   -1e-9,  1e-8, M_PI_4,   -M_PI_4,
+					  M_PI_2, M_PI, 524287.9, 524288, 1e22, INFINITY, NAN };
+	enum { SPECIAL = sizeof special / sizeof *special };
+	uint64_t seed = 5;
+	for (int i = 0; i < 200000; i++) {
+		double x[2], sine[2], cosine[2];
+		for (int k = 0; k < 2; k++)
+			x[k] = i < SPECIAL * SPECIAL ? special[k ? i % SPECIAL : i / SPECIAL]
+						     : ldexp(within(&seed, -1, 1), (int)within(&seed, -30, 22));
+		ob_sincos_of_two(x, sine, cosine);
+		for (int k = 0; k < 2; k++) {
+			double s, c;
+			ob_sincos(x[k], &s, &c);
+			CHECK(is(sine[k], s) && is(cosine[k], c));
+		}
+	}
 }
 
 static void check_domains(void)
@@ -84,6 +106,7 @@ static void check_pow(void)
 int main(void)
 {
 	check_odd_functions();
+	check_two_angles();
 	check_domains();
 	check_whole_powers();
 	check_atan2();
