@@ -1,6 +1,6 @@
-// One universe on several ranks: each has the whole of it and the same number of simulators, solves its share of each
-// phase, and commits what the simulators of all ranks have handed over, in the order of ranks. So each comes to the
-// same universe, and to that of one rank with as many simulators.
+// One universe on several ranks: each has the same number of simulators, solves its share of each phase, and commits
+// what the simulators of all ranks have handed over, as far as it concerns it, in the order of ranks. So each comes to
+// the same universe, of which it has a part (halo.h), and to that of one rank with as many simulators.
 //
 //   arranger, at the end of a phase:  outboxes of its own simulators -> mail -> all ranks' mail -> commit
 //
@@ -9,9 +9,11 @@
 //   what all ranks have alike               what is with one
 //   which pairs there are, and which touch  what touching pairs keep between steps (holdings.h)
 //   islands, their members, who solves them their pairs in the order of their solver (island_builder.c)
-//   when each object is due                 which pairs are to be checked, and when again (late_contacts.c)
+//   when each object is due, its fat AABB   which pairs are to be checked, and when again (late_contacts.c)
+//                                           motions, which its neighbours have, too (halo.h)
 //
-// What the check of a pair has found goes to all, where it changes something or is to be acted upon.
+// What the check of a pair has found goes to who has one of its objects, where it changes something, and to all, where
+// it says whom the pair links.
 //
 // With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with, and those before
 // it. Where two differ, all find out about which object, and the run ends. An arranger whose run is over, for whatever reason, says
