@@ -286,8 +286,10 @@ bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 		return false;
 	}
-	return !meet ||
-	       take_all(h, u, p, ob_peers_deal(p, u, (ob_peers_head){ .phase = OB_PEERS_MEET }, h->out, &at), at);
+	if (!meet)
+		return true;
+	const char *all = ob_peers_deal(p, u, (ob_peers_head){ .phase = OB_PEERS_MEET }, h->out, &at);
+	return take_all(h, u, p, all, at);
 }
 
 // Rank "to" solves the body from now on.
