@@ -14,6 +14,7 @@
 #ifndef OB_SIM_COMMIT_H
 #define OB_SIM_COMMIT_H
 
+#include "sim/halo.h"
 #include "sim/peers.h"
 #include "sim/state.h"
 #include "table/outbox.h"
@@ -72,17 +73,8 @@ bool ob_commit_take_checked(ob_committer *c, uint32_t *pair);
 bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p);
 // Puts what the other ranks' simulators have handed over to what was collected. digest: ob_peers_digest.
 bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest);
-// After a pause of the host, or scripts (halo.h).
-void ob_commit_settle(ob_committer *c, ob_universe *u);
-// When pairs have been added: who has a body of one knows the other's motion.
-bool ob_commit_meet(ob_committer *c, ob_universe *u, ob_peers *p);
-// Whether some motions are not on all ranks; between two steps: now all are. Of each object, 1 = its motion is not here.
-bool ob_commit_is_partial(const ob_committer *c);
-bool ob_commit_gather(ob_committer *c, ob_universe *u, ob_peers *p);
-const uint8_t *ob_commit_missing(const ob_committer *c);
-// Whether what the object's solver has found is here, to be published; and that it was.
-bool ob_commit_publishes(const ob_committer *c, uint32_t id);
-void ob_commit_published(ob_committer *c, const ob_universe *u, uint32_t id);
+// Which motions this rank has; NULL: there is but one.
+ob_halo *ob_commit_halo(const ob_committer *c);
 // Between two steps: all ranks have what all pairs keep.
 bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p);
 

@@ -121,7 +121,7 @@ static void find_concerned(ob_committer *c, const ob_universe *u, const ob_mail_
 	for (int side = 0; !all && side < 2; side++) {
 		const uint32_t id = side ? k->b : k->a;
 		if (data->schedule[id].state >= OB_SCHEDULE_AWAKE)
-			c->to[ob_universe_rank_of(u, ob_home_of(u, id))] = true;
+			c->to[ob_home_rank(u, id)] = true;
 	}
 }
 
@@ -251,39 +251,9 @@ bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p)
 	return all;
 }
 
-void ob_commit_settle(ob_committer *c, ob_universe *u)
+ob_halo *ob_commit_halo(const ob_committer *c)
 {
-	ob_halo_settle(c->halo, u);
-}
-
-bool ob_commit_meet(ob_committer *c, ob_universe *u, ob_peers *p)
-{
-	return ob_halo_meet(c->halo, u, p);
-}
-
-bool ob_commit_is_partial(const ob_committer *c)
-{
-	return ob_halo_is_partial(c->halo);
-}
-
-bool ob_commit_gather(ob_committer *c, ob_universe *u, ob_peers *p)
-{
-	return ob_halo_gather(c->halo, u, p);
-}
-
-const uint8_t *ob_commit_missing(const ob_committer *c)
-{
-	return ob_halo_missing(c->halo);
-}
-
-bool ob_commit_publishes(const ob_committer *c, uint32_t id)
-{
-	return ob_halo_has_found(c->halo, id);
-}
-
-void ob_commit_published(ob_committer *c, const ob_universe *u, uint32_t id)
-{
-	ob_halo_note_published(c->halo, u, id);
+	return c->halo;
 }
 
 bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)

@@ -4,7 +4,6 @@
 #define OB_SIM_COMMITTER_H
 
 #include "sim/commit.h"
-#include "sim/halo.h"
 #include "sim/holdings.h"
 
 typedef enum ob_record_kind {

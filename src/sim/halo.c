@@ -79,11 +79,6 @@ static bool is_dynamic(const ob_step_data *data, uint32_t id)
 	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
 }
 
-static uint32_t rank_of(const ob_universe *u, uint32_t id)
-{
-	return ob_universe_rank_of(u, ob_home_of(u, id));
-}
-
 void ob_halo_settle(ob_halo *h, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -93,7 +88,7 @@ void ob_halo_settle(ob_halo *h, ob_universe *u)
 		if (h->owner[id] || !is_dynamic(data, id))
 			continue;
 		ob_home_set(u, id, ob_home_of(u, id)); // else it would change with the number of objects
-		h->owner[id] = (uint16_t)(1 + rank_of(u, id));
+		h->owner[id] = (uint16_t)(1 + ob_home_rank(u, id));
 	}
 }
 
@@ -273,13 +268,14 @@ bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 		fits &= ob_peers_begin(&h->out[r]);
 	for (uint32_t i = 0; h->partial && i < checks; i++) {
 		const ob_pair_key *k = &data->pair[data->check[i]];
-		if (!is_dynamic(data, k->a) || !is_dynamic(data, k->b) || rank_of(u, k->a) == rank_of(u, k->b))
+		if (!is_dynamic(data, k->a) || !is_dynamic(data, k->b) ||
+		    ob_home_rank(u, k->a) == ob_home_rank(u, k->b))
 			continue;
 		meet = true;
 		for (int side = 0; side < 2; side++) {
 			const uint32_t id = side ? k->b : k->a, other = side ? k->a : k->b;
-			if (rank_of(u, id) == p->rank)
-				fits &= pack_body(&h->out[rank_of(u, other)], u, id, was_solved(u, id));
+			if (ob_home_rank(u, id) == p->rank)
+				fits &= pack_body(&h->out[ob_home_rank(u, other)], u, id, was_solved(u, id));
 		}
 	}
 	if (!fits) {
@@ -301,7 +297,8 @@ static bool give_body(const ob_halo *h, const ob_universe *u, uint32_t id, uint3
 	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
 		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
 		fits &= pack_pair(out, u, at.pair);
-		if (h->partial && ob_object_in_range(data, other) && is_dynamic(data, other) && rank_of(u, other) != to)
+		if (h->partial && ob_object_in_range(data, other) && is_dynamic(data, other) &&
+		    ob_home_rank(u, other) != to)
 			fits &= pack_body(out, u, other, data->count->merged && was_solved(u, other));
 	}
 	return fits;
@@ -318,7 +315,7 @@ bool ob_halo_move(ob_halo *h, const ob_universe *u, ob_mail *mail, bool *moved)
 		const uint32_t id = data->member[i];
 		if (!ob_object_in_range(data, id))
 			break;
-		const uint32_t from = h->owner[id], to = rank_of(u, id);
+		const uint32_t from = h->owner[id], to = ob_home_rank(u, id);
 		if (from == 1 + to)
 			continue;
 		*moved = true;

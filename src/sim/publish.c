@@ -56,8 +56,8 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 {
 	enum { AHEAD = 4 };
 	const ob_step_data *data = s->data;
-	const bool others_copy = s->settings->one_per_object && !ob_universe_contains(s->u),
-		   shared = ob_universe_ranks(s->u) > 1; // of several ranks who commits a result counts who wakes
+	const bool others_copy = s->settings->one_per_object && !ob_universe_contains(s->u);
+	ob_halo *halo = ob_universe_ranks(s->u) > 1 ? ob_commit_halo(s->committer) : NULL;
 	int32_t woken = 0;
 	for (uint32_t i = first; i < end; i++) {
 		const ob_island *is = &data->island[i];
@@ -66,7 +66,7 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 		for (uint32_t k = 0; k < is->members; k++) {
 			const uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;
-			if (shared && !ob_commit_publishes(s->committer, id))
+			if (halo && !ob_halo_has_found(halo, id))
 				continue;
 			woken += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
 			woken -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
@@ -74,11 +74,11 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 				continue;
 			trace_state_change(s, id, ob_staged_motion(s->u, id));
 			ob_commit_motion(s->u, id);
-			if (shared)
-				ob_commit_published(s->committer, s->u, id);
+			if (halo)
+				ob_halo_note_published(halo, s->u, id);
 		}
 	}
-	if (!shared)
+	if (!halo) // else who commits a result counts who wakes
 		ob_step_woken(s->u, woken);
 }
 

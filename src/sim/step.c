@@ -441,7 +441,7 @@ static bool must_pause(const scheduler *c)
 	if (ob_universe_ranks(c->u) < 2)
 		return due;
 	// Where motions are not here the host has asked too late for them: they come when others hear of it.
-	return due && (!ob_commit_is_partial(c->sim->committer) || ob_gate_stopped(c->u));
+	return due && (!ob_halo_is_partial(ob_commit_halo(c->sim->committer)) || ob_gate_stopped(c->u));
 }
 
 // An object must be solved in this step, or a pair be checked before it, by whichever rank.
@@ -531,7 +531,7 @@ static ob_phase after_resume(const scheduler *c)
 	if (c->settings->monolith)
 		ob_requery_reset(c->u); // ODE's world finds its own neighbours
 	if (ob_universe_ranks(c->u) > 1)
-		ob_commit_settle(c->sim->committer, c->u);
+		ob_halo_settle(ob_commit_halo(c->sim->committer), c->u);
 	return OB_PHASE_BROADPHASE_START;
 }
 
@@ -541,7 +541,7 @@ static bool merge_pairs(const scheduler *c, uint64_t steps)
 	ob_pairs_merge(c->u, steps);
 	if (ob_universe_ranks(c->u) < 2)
 		return true;
-	if (!ob_commit_meet(c->sim->committer, c->u, &c->sim->peers))
+	if (!ob_halo_meet(ob_commit_halo(c->sim->committer), c->u, &c->sim->peers))
 		return false;
 	ob_pairs_measure(c->u, steps);
 	return true;
@@ -565,7 +565,7 @@ static ob_phase after_scripts(const scheduler *c)
 	if (ob_scripts_carry_out(c->sim))
 		count_awake(c);
 	if (ob_universe_ranks(c->u) > 1)
-		ob_commit_settle(c->sim->committer, c->u); // motions that scripts have changed
+		ob_halo_settle(ob_commit_halo(c->sim->committer), c->u); // motions that scripts have changed
 	if (ob_scripts_have_requests(c->u))
 		return OB_PHASE_PAUSE;
 	if (c->settings->monolith)
@@ -617,12 +617,12 @@ static ob_phase after_baseline(const scheduler *c)
 // Somebody looks at the universe: all ranks have all of it, as far as he wants it. false: the step has failed.
 static bool gather(const scheduler *c)
 {
-	ob_committer *with = c->sim->committer;
+	ob_halo *halo = ob_commit_halo(c->sim->committer);
 	ob_peers *p = &c->sim->peers;
 	const uint64_t step = ob_step_count(c->u);
-	if (p->look <= step && ob_commit_is_partial(with) && !ob_commit_gather(with, c->u, p))
+	if (p->look <= step && ob_halo_is_partial(halo) && !ob_halo_gather(halo, c->u, p))
 		return false;
-	return ob_contacts_wanted(c->u) != step || ob_commit_share(with, c->u, p);
+	return ob_contacts_wanted(c->u) != step || ob_commit_share(c->sim->committer, c->u, p);
 }
 
 static ob_phase complete_step(const scheduler *c)

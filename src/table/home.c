@@ -46,6 +46,11 @@ uint32_t ob_home_of(const ob_universe *u, uint32_t object)
 	return home < all ? home : (uint32_t)((uint64_t)object * all / ob_universe_ids(u));
 }
 
+uint32_t ob_home_rank(const ob_universe *u, uint32_t object)
+{
+	return ob_universe_rank_of(u, ob_home_of(u, object));
+}
+
 // Read by readers at any time.
 void ob_home_set(ob_universe *u, uint32_t object, uint32_t worker)
 {

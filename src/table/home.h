@@ -27,6 +27,8 @@ void ob_pin_drop(ob_universe *u, uint32_t object);
 
 // The home; at first, as what is created together lies together, by the object's number.
 uint32_t ob_home_of(const ob_universe *u, uint32_t object);
+// The rank of which that is.
+uint32_t ob_home_rank(const ob_universe *u, uint32_t object);
 // By who is given it, or gives it.
 void ob_home_set(ob_universe *u, uint32_t object, uint32_t worker);
 
