@@ -95,6 +95,16 @@ typedef struct ob_solver_iteration {
 	const ob_body_row *dv; // change of v that is expected in the substep
 } ob_solver_iteration;
 
+// A pair's coefficients of friction and of restitution, from those of its bodies.
+static inline double ob_pair_friction(double a, double b)
+{
+	return sqrt(a * b);
+}
+static inline double ob_pair_restitution(double a, double b)
+{
+	return ob_max(a, b);
+}
+
 void ob_batch_init(ob_batch *b, ob_batch_kind kind);
 // What fills a lane. Empty points get no row.
 typedef struct ob_batch_lane {

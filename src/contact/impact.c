@@ -84,6 +84,14 @@ double ob_impact_opening(const ob_impact_body *body, const ob_impact_point *p)
 	return ob_dot(p->normal, relative_velocity(body, p));
 }
 
+double ob_impact_approach(const ob_impact_body *body, const ob_impact_point *point, uint32_t points)
+{
+	double most = 0;
+	for (uint32_t k = 0; k < points; k++)
+		most = ob_max(most, -ob_impact_opening(body, &point[k]));
+	return most;
+}
+
 static void point_rows_init(point_rows *r, const ob_impact_body *body, const ob_impact_point *p)
 {
 	const ob_impact_body *a = &body[p->a], *b = &body[p->b];
@@ -668,6 +676,19 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 		free(row);
 		free(count);
 	}
+}
+
+bool ob_impact_part(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
+		    double approach)
+{
+	enum { REFLECTIONS = 32 }; // at an instant
+	const double rounding = 1e-12; // of the approach: so much that is left
+	double left = approach;
+	for (int k = 0; k < REFLECTIONS && left > rounding * approach; k++) {
+		ob_impact_solve(body, bodies, point, points, NULL); // few points, few times
+		left = ob_impact_approach(body, point, points);
+	}
+	return left <= rounding * approach;
 }
 
 // ---- a lane of a batch

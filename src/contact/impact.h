@@ -42,6 +42,9 @@ double ob_impact_opening(const ob_impact_body *body, const ob_impact_point *poin
 // Sets of more points take far longer.
 enum { OB_IMPACT_MOST_POINTS = 36 };
 
+// m/s, at which the points approach at most; 0: none does
+double ob_impact_approach(const ob_impact_body *body, const ob_impact_point *point, uint32_t points);
+
 // Who pays: told of work as it is done, in units of some 30 ns, again and again. true: it is to end at once, with
 // whatever velocities it has found.
 typedef struct ob_impact_payer {
@@ -54,6 +57,11 @@ typedef struct ob_impact_payer {
 // payer: NULL = nobody.
 void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
 		     const ob_impact_payer *payer);
+
+// The same again and again until no point approaches, for few points. approach: m/s, of ob_impact_approach. false: some
+// still do, and the contact solver must part them.
+bool ob_impact_part(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
+		    double approach);
 
 // m: points that come within this when the first one hits, hit with it
 #define OB_IMPACT_SIMULTANEOUS 1e-7

@@ -439,7 +439,7 @@ static int call_near(lua_State *L)
 	uint32_t n = 0, work = 0;
 	ob_sandbox_spend(L, ids / 8);
 	for (uint32_t id = 0; id < ids; id++) {
-		if (r->data->schedule[id].state < OB_SCHEDULE_AWAKE || id == own_id ||
+		if (!ob_schedule_is_dynamic(&r->data->schedule[id]) || id == own_id ||
 		    is_far(r->data->bounds[id], here, radius))
 			continue;
 		m = ob_newest_motion(r->u, id);

@@ -127,8 +127,8 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	}
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
-		uint32_t fixed = data->schedule[k->a].state < OB_SCHEDULE_AWAKE   ? k->a
-				 : data->schedule[k->b].state < OB_SCHEDULE_AWAKE ? k->b
+		uint32_t fixed = !ob_schedule_is_dynamic(&data->schedule[k->a])   ? k->a
+				 : !ob_schedule_is_dynamic(&data->schedule[k->b]) ? k->b
 										  : UINT32_MAX;
 		if (fixed != UINT32_MAX && ob_surface_moves(ob_passport_of(s->u, fixed))) {
 			w->row_of[fixed] = w->rows;

@@ -120,7 +120,7 @@ static void find_concerned(ob_committer *c, const ob_universe *u, const ob_mail_
 	memset(c->to, all, c->ranks * sizeof *c->to);
 	for (int side = 0; !all && side < 2; side++) {
 		const uint32_t id = side ? k->b : k->a;
-		if (data->schedule[id].state >= OB_SCHEDULE_AWAKE)
+		if (ob_schedule_is_dynamic(&data->schedule[id]))
 			c->to[ob_home_rank(u, id)] = true;
 	}
 }

@@ -549,8 +549,8 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 	*contact = *from;
 	set_lane(w, contact, OB_NO_LANE);
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	contact->mu = sqrt(a->friction * b->friction);
-	contact->e = ob_max(a->restitution, b->restitution);
+	contact->mu = ob_pair_friction(a->friction, b->friction);
+	contact->e = ob_pair_restitution(a->restitution, b->restitution);
 	w->elastic |= contact->e > 0;
 	const ob_pair_state *p = ob_pair_state_before(s->u, k);
 	contact->began = !p;

@@ -6,14 +6,12 @@
 #include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
-#include "sim/course.h"
 #include "sim/publish.h"
 #include "sim/touches.h"
 
 // ---- impacts on planes
 
 static const double contact_approach = 1e-4; // m/s: a slower approach is left to the contact solver
-static const double reflected = 1e-12; // of the approach: so much that is left is rounding
 static const double on_plane_gap = 1e-9; // m, and more where coordinates are rounded: a point so near is on the plane
 
 static ob_half_space half_space(const ob_universe *u, uint32_t plane)
@@ -65,7 +63,7 @@ static double plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight,
 	return ob_max(first, from);
 }
 
-enum { SUPPORT_POINTS = 8, REFLECTIONS = 32 }; // at an instant; a body that needs more is left to the contact solver
+enum { SUPPORT_POINTS = 8 };
 
 // The points by which a body can stand on a plane with this normal: arms (m, world) from its centre. Returns how many.
 static int support_points(const ob_passport *body, ob_vec3 n, const ob_mat3 *r, ob_vec3 *arm)
@@ -146,15 +144,6 @@ static uint32_t points_on_plane(ob_units unit, const ob_passport *body, const ob
 	return lowest <= rounding ? found : 0;
 }
 
-// m/s: how fast the points approach at most
-static double fastest_approach(const ob_impact_body *body, const ob_impact_point *point, uint32_t points)
-{
-	double most = 0;
-	for (uint32_t k = 0; k < points; k++)
-		most = ob_max(most, -ob_impact_opening(body, &point[k]));
-	return most;
-}
-
 // m/s, of the plane's surface, in the plane
 static ob_vec3 running_velocity(const ob_universe *u, uint32_t plane, const ob_half_space *ground)
 {
@@ -171,8 +160,8 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 {
 	const ob_passport *passport = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);
 	const ob_half_space ground = half_space(s->u, plane);
-	const double mu = sqrt(passport->friction * other->friction),
-		     e = ob_max(passport->restitution, other->restitution);
+	const double mu = ob_pair_friction(passport->friction, other->friction),
+		     e = ob_pair_restitution(passport->restitution, other->restitution);
 	ob_impact_point point[SUPPORT_POINTS];
 	ob_impact_body body[2] = { { .inv_mass = 1 / passport->mass, .v = state->v, .w = state->w } };
 	body[1].v = running_velocity(s->u, plane, &ground);
@@ -184,19 +173,15 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 		points_on_plane(s->island.unit, passport, ob_hull_of(s->u, passport), &ground, state, point);
 	for (uint32_t k = 0; k < points; k++)
 		point[k].mu = mu, point[k].e = e;
-	const double approach = fastest_approach(body, point, points);
+	const double approach = ob_impact_approach(body, point, points);
 	if (!(approach > contact_approach * s->island.unit.speed))
 		return false;
-	double left = approach;
-	for (int k = 0; k < REFLECTIONS && left > reflected * approach; k++) {
-		ob_impact_solve(body, 2, point, points, NULL); // few points, few times
-		left = fastest_approach(body, point, points);
-	}
+	const bool parted = ob_impact_part(body, 2, point, points, approach);
 	if (points > 0)
 		ob_touches_note(s->u, id, plane, passport->mass * ob_dot(ob_sub(body[0].v, state->v), ground.normal),
 				ob_add(state->pose.p, point[0].arm_a));
 	state->v = body[0].v, state->w = body[0].w;
-	return left <= reflected * approach;
+	return parted;
 }
 
 // ---- flight

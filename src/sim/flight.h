@@ -1,6 +1,6 @@
 // Free flight. An object that touches nothing follows a closed form from the instant at which its flight began. When it
-// is solved, its next impact on a plane is computed ahead (conservative advancement), and no step solves it before that;
-// what else may touch it, the forecast sees (late_contacts.h), and two that meet are moved together (meeting.h).
+// is solved, its next impact on a plane is computed ahead (conservative advancement), and no step solves it before
+// that; what else may touch it, the forecast sees (late_contacts.h), and two that meet are moved together.
 //
 //   solved              not solved              solved
 //   ──┬───────────────┬───────────── … ──────┬──────────┬──
@@ -17,12 +17,42 @@ ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id);
 // As ob_state_now at an instant (s), to the last bit, with the worker's cached rotation.
 ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *flight, double time);
 
-// Moves an object without contacts through the running step, with its impacts on planes, and publishes its motion. false:
-// the contact solver must do it, and nothing was changed.
+// Moves an object without contacts through the running step, with its impacts on planes, and publishes its motion.
+// false: the contact solver must do it, and nothing was changed.
 bool ob_ballistic_advance(ob_sim *s, uint32_t id);
+// The same of two objects that are near nothing but each other and planes: their hits are made at their instants, and
+// each goes on as a flight (ballistic_pair.c). Without substeps, and without a frame: two that fall alike are straight
+// on their way to each other.
+bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2]);
 
 // Publishes the motion m of an object that must be solved in the next step, or rests until something comes near it: its
 // fat AABB for that step, from its state at the end of this one, its schedule record, and m, which gets its reach.
 void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);
+
+// ---- a flight within the running step: as far as it is known, from one impact to the next
+//
+//   begin ──> follow ──> rebound (on a plane), or set_off (as who has hit it leaves it) ──> follow ──> .. ──> publish
+
+typedef struct ob_course {
+	uint32_t id, impacts;
+	bool alone; // the rotation is the cache's: another course may take its place there
+	ob_motion m; // since the last impact; it meets a plane at valid_until, or is not known beyond
+	ob_spin *spin; // of m; NULL: it does not turn, or that cannot be seen
+	ob_spin own;
+	uint32_t plane; // that it meets
+	double since, horizon; // s: so far it has come; and no farther is it computed
+} ob_course;
+
+void ob_course_begin(ob_sim *s, uint32_t id, bool alone, ob_course *c);
+// To an instant (s) that is no later than m.valid_until.
+void ob_course_follow(ob_sim *s, ob_course *c, double until);
+// Where it has come to.
+ob_state ob_course_state(ob_sim *s, const ob_course *c);
+// It is hit there, and this is how it goes on. false: it has been hit too often for a step.
+bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at);
+// It has come to the plane. false: it does not rebound, or was hit too often.
+bool ob_course_rebound(ob_sim *s, ob_course *c);
+// At the step's end.
+void ob_course_publish(ob_sim *s, ob_course *c);
 
 #endif

@@ -76,7 +76,7 @@ void ob_halo_destroy(ob_halo *h)
 
 static bool is_dynamic(const ob_step_data *data, uint32_t id)
 {
-	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+	return ob_schedule_is_dynamic(&data->schedule[id]);
 }
 
 void ob_halo_settle(ob_halo *h, ob_universe *u)

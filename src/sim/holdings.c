@@ -143,7 +143,7 @@ static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t reco
 static bool is_solved_here(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t id = data->schedule[k->a].state >= OB_SCHEDULE_AWAKE ? k->a : k->b;
+	const uint32_t id = ob_schedule_is_dynamic(&data->schedule[k->a]) ? k->a : k->b;
 	return data->result_island[id] != UINT32_MAX && ob_worker_is_here(u, ob_home_of(u, id));
 }
 

@@ -33,7 +33,7 @@ typedef struct builder {
 
 static bool is_dynamic(const builder *p, uint32_t id)
 {
-	return p->data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+	return ob_schedule_is_dynamic(&p->data->schedule[id]);
 }
 
 // When islands are merged: it is in one of those that were solved. Until members are listed anew.

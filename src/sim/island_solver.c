@@ -18,7 +18,6 @@
 #include "sim/frame.h"
 #include "sim/ghost.h"
 #include "sim/impacts.h"
-#include "sim/meeting.h"
 #include "sim/midpoint.h"
 #include "sim/pairs.h"
 #include "sim/profile.h"
@@ -196,7 +195,7 @@ static bool advance_ballistically(ob_sim *s, const ob_island *is)
 	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
 	ob_touches_begin(s, is);
 	const uint32_t *id = s->data->member + is->first_member;
-	if (is->members == 1 ? !ob_ballistic_advance(s, id[0]) : !ob_meeting_advance(s, id))
+	if (is->members == 1 ? !ob_ballistic_advance(s, id[0]) : !ob_ballistic_pair_advance(s, id))
 		return false;
 	end_contacts(s, is);
 	s->counters.ballistic_advances += is->members;

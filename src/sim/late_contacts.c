@@ -404,7 +404,7 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 
 static bool is_due(const ob_step_data *data, uint32_t id, uint64_t step)
 {
-	return data->schedule[id].state >= OB_SCHEDULE_AWAKE && data->schedule[id].due <= step;
+	return ob_schedule_is_dynamic(&data->schedule[id]) && data->schedule[id].due <= step;
 }
 
 // The step for which a pair that has been checked has an entry in the calendar; UINT32_MAX: it needs none. One of what
@@ -497,7 +497,7 @@ static void end_change(const pair_check *c, uint32_t i, const ob_pair_key *k)
 
 static bool moves(const pair_check *c, uint32_t id)
 {
-	return c->data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+	return ob_schedule_is_dynamic(&c->data->schedule[id]);
 }
 
 // The motions of a pair are prefetched while those before it are checked.

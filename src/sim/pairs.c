@@ -72,7 +72,7 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 
 static bool lives_here(const ob_universe *u, uint32_t id)
 {
-	return ob_universe_step_data(u)->schedule[id].state >= OB_SCHEDULE_AWAKE &&
+	return ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[id]) &&
 	       ob_worker_is_here(u, ob_home_of(u, id));
 }
 
@@ -85,7 +85,7 @@ bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const bool a = data->result_island[k->a] != UINT32_MAX ||
-		       (data->result_island[k->b] == UINT32_MAX && data->schedule[k->a].state >= OB_SCHEDULE_AWAKE);
+		       (data->result_island[k->b] == UINT32_MAX && ob_schedule_is_dynamic(&data->schedule[k->a]));
 	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
 }
 
@@ -137,7 +137,7 @@ void ob_pairs_link(ob_universe *u)
 	data->count->first_idle = data->count->pairs_idle = data->count->island_pairs = data->count->checks = 0;
 	memset(data->first_pair, 0, ids * sizeof *data->first_pair);
 	for (uint32_t id = 0; id < ids; id++)
-		if (data->schedule[id].state >= OB_SCHEDULE_AWAKE)
+		if (ob_schedule_is_dynamic(&data->schedule[id]))
 			ob_calendar_set(&solve, id, data->schedule[id].due);
 	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
@@ -296,7 +296,7 @@ static bool strike_out(neighbour_set *s, uint32_t id)
 
 static bool is_immobile(const ob_step_data *data, uint32_t id)
 {
-	return data->schedule[id].state < OB_SCHEDULE_AWAKE;
+	return !ob_schedule_is_dynamic(&data->schedule[id]);
 }
 
 // Of two objects that were both queried, and have found each other, the lower one decides.

@@ -16,7 +16,7 @@ static void note_change(ob_universe *u, uint32_t id)
 {
 	const ob_schedule *s = &ob_universe_step_data(u)->schedule[id];
 	const ob_calendar solve = ob_calendar_of_objects(u);
-	ob_calendar_set(&solve, id, s->state >= OB_SCHEDULE_AWAKE ? s->due : UINT32_MAX);
+	ob_calendar_set(&solve, id, ob_schedule_is_dynamic(s) ? s->due : UINT32_MAX);
 	ob_pairs_look(u, id);
 }
 
@@ -261,7 +261,7 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 		const ob_pair_key *k = &data->pair[i];
 		uint32_t other = k->a == id ? k->b : k->a;
 		if ((k->a != id && k->b != id) || !k->active || other >= data->objects_max ||
-		    data->schedule[other].state < OB_SCHEDULE_AWAKE)
+		    !ob_schedule_is_dynamic(&data->schedule[other]))
 			continue;
 		wake_object(u, other);
 	}

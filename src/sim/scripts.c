@@ -75,7 +75,7 @@ bool ob_scripts_have_requests(const ob_universe *u)
 
 static bool moves(const ob_step_data *data, uint32_t id)
 {
-	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+	return ob_schedule_is_dynamic(&data->schedule[id]);
 }
 
 // The object goes on from here with other velocities, or under another force: what was computed ahead of it is void.

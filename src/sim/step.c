@@ -244,7 +244,7 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	uint32_t first = 0;
 	const uint32_t last = all - 1;
 	while (first < last &&
-	       c->data->schedule[first].state < OB_SCHEDULE_AWAKE) // pairs are checked where somebody is awake
+	       !ob_schedule_is_dynamic(&c->data->schedule[first])) // pairs are checked where somebody is awake
 		first++;
 	ob_gate_open(c->u, phase, &first, 1);
 	return true;

@@ -6,7 +6,7 @@
 static bool feels(const ob_step_data *data, uint32_t id)
 {
 	const uint32_t cell = data->script_of[id];
-	return cell && data->schedule[id].state >= OB_SCHEDULE_AWAKE &&
+	return cell && ob_schedule_is_dynamic(&data->schedule[id]) &&
 	       data->script_turn[cell - 1].flags & OB_SCRIPT_FEELS;
 }
 

@@ -19,20 +19,20 @@ enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
 // turned or moved go on otherwise.
 typedef struct ob_pair_state {
 	ob_vec3 normal;
-	ob_vec3 between;                  // m, from a's centre to b's: an arm of b is that of a less this
-	double impulse[OB_PAIR_ROWS];     // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
-	double substep;                   // s, length of the substep of those impulses
-	double disc_radius;               // m, of a disc that they touch all over; 0: over the points' hull
-	ob_vec3 arm_a[OB_PAIR_POINTS];    // m
-	double gap[OB_PAIR_POINTS];        // m, separation now; < 0 is penetration
-	uint16_t points;                  // 0 .. 4; 0 = not touching
-	uint16_t of_now;                  // 1: its geometry was found where the bodies are when the version holds
-	float creep;                      // m, slip of the last second while friction should have held
+	ob_vec3 between; // m, from a's centre to b's: an arm of b is that of a less this
+	double impulse[OB_PAIR_ROWS]; // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
+	double substep; // s, length of the substep of those impulses
+	double disc_radius; // m, of a disc that they touch all over; 0: over the points' hull
+	ob_vec3 arm_a[OB_PAIR_POINTS]; // m
+	double gap[OB_PAIR_POINTS]; // m, separation now; < 0 is penetration
+	uint16_t points; // 0 .. 4; 0 = not touching
+	uint16_t of_now; // 1: its geometry was found where the bodies are when the version holds
+	float creep; // m, slip of the last second while friction should have held
 } ob_pair_state;
 
 typedef struct ob_pair_record {
 	ob_pair_state version[2];
-	uint32_t stamp[2];        // 1 + steps that are complete when the version holds; 0 = never written
+	uint32_t stamp[2]; // 1 + steps that are complete when the version holds; 0 = never written
 } ob_pair_record;
 
 // Index of the newest version that held when so many steps were complete; -1: none. A version written in a step that is
@@ -65,27 +65,30 @@ static inline ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 
 // A pair of objects whose fat AABBs overlap. One that is not in use has a == b.
 typedef struct ob_pair_key {
-	uint32_t a, b;      // ids, a < b
-	uint32_t record;    // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
-	uint8_t active;     // 1 = touching: its record has points
-	uint8_t expected;   // 1 = apart, and expected to touch in the coming step
-	uint8_t late;       // 1 = a late contact: it touched in this step unexpectedly; both islands are merged and solved again
-	uint8_t in_island;  // 1 = its island's solver handles it in this step
-	double limit;       // m: the pair cannot touch before path_a + path_b exceeds this
-	uint32_t clear_until; // the pair cannot touch before this step (from 0) either, provided that neither object has
+	uint32_t a, b; // ids, a < b
+	uint32_t record; // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
+	uint8_t active; // 1 = touching: its record has points
+	uint8_t expected; // 1 = apart, and expected to touch in the coming step
+	uint8_t late; // 1 = a late contact: it touched in this step unexpectedly; both islands are merged and solved
+		      // again
+	uint8_t in_island; // 1 = its island's solver handles it in this step
+	double limit; // m: the pair cannot touch before path_a + path_b exceeds this
+	uint32_t
+		clear_until; // the pair cannot touch before this step (from 0) either, provided that neither object has
 	uint32_t clear_as_of; // published another motion since so many steps were complete
 } ob_pair_key;
 
-// For qsort: by their ids, ascending. Where pairs lie in pair[] is the run's own business, so whoever needs an order sorts.
+// For qsort: by their ids, ascending. Where pairs lie in pair[] is the run's own business, so whoever needs an order
+// sorts.
 static inline int ob_pairs_by_ids(const void *x, const void *y)
 {
 	const ob_pair_key *a = x, *b = y;
 	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
 }
 
-// A pair's place in the lists of pairs of its two objects (sim/pairs.h): [0] that of a, [1] that of b. Links are 1 + 2 times
-// the next pair's index, plus 1 if the list is that of its b; 0 ends. Of a pair that is not in use next[0] is 1 + the next
-// one of those.
+// A pair's place in the lists of pairs of its two objects (sim/pairs.h): [0] that of a, [1] that of b. Links are 1 + 2
+// times the next pair's index, plus 1 if the list is that of its b; 0 ends. Of a pair that is not in use next[0] is 1 +
+// the next one of those.
 typedef struct ob_pair_links {
 	uint32_t next[2], before[2];
 } ob_pair_links;
@@ -95,8 +98,8 @@ typedef struct ob_calendar_levels {
 	uint32_t *one, *of_64, *of_4096;
 } ob_calendar_levels;
 
-// Of several workers that raise a word the most urgent stays, whatever their order. false: it was as urgent already. The
-// gate orders it with whoever reads what has been raised, so relaxed will do.
+// Of several workers that raise a word the most urgent stays, whatever their order. false: it was as urgent already.
+// The gate orders it with whoever reads what has been raised, so relaxed will do.
 static inline bool ob_calendar_level_raise(uint32_t *level, uint32_t urgency)
 {
 	uint32_t seen = __atomic_load_n(level, __ATOMIC_RELAXED);
@@ -110,22 +113,28 @@ static inline bool ob_calendar_level_raise(uint32_t *level, uint32_t urgency)
 
 // Schedule record: what the scheduler must know of an object, 24 bytes, so that it need not read the slots.
 typedef struct ob_schedule {
-	double path;    // m, when "since" steps were complete
-	float reach;    // m, how far any of its points may get in a step, until it is solved again
+	double path; // m, when "since" steps were complete
+	float reach; // m, how far any of its points may get in a step, until it is solved again
 	uint32_t state; // OB_SCHEDULE_*
 	uint32_t since;
-	uint32_t due;   // the step (from 0) that must solve it, if nothing comes near before
+	uint32_t due; // the step (from 0) that must solve it, if nothing comes near before
 } ob_schedule;
 
 enum {
 	OB_SCHEDULE_ABSENT,
-	OB_SCHEDULE_PLANE,  // static; a ballistic advance ends before it meets the plane
+	OB_SCHEDULE_PLANE, // static; a ballistic advance ends before it meets the plane
 	OB_SCHEDULE_STATIC,
 	OB_SCHEDULE_KINEMATIC, // no simulator solves it; the host publishes its motions
 	OB_SCHEDULE_AWAKE,
 	OB_SCHEDULE_ASLEEP, // this state and the next: not solved until something comes near
 	OB_SCHEDULE_EQUILIBRIUM,
 };
+
+// Is it an object that a simulator solves?
+static inline bool ob_schedule_is_dynamic(const ob_schedule *s)
+{
+	return s->state >= OB_SCHEDULE_AWAKE;
+}
 
 // May it move in a step that nothing wakes it for?
 static inline bool ob_schedule_moves(const ob_schedule *s)
@@ -142,14 +151,14 @@ static inline double ob_schedule_path(const ob_schedule *s, uint64_t steps)
 
 typedef struct ob_island {
 	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
-	uint32_t first_pair, pairs;     // range in island_pair[]; sorted by (a, b)
-	uint32_t work;                  // estimated cost of solving it, in solver iterations of one pair
-	uint32_t solved;                // 1 = its solution of this step stands, unless a late contact involves one of its bodies
+	uint32_t first_pair, pairs; // range in island_pair[]; sorted by (a, b)
+	uint32_t work; // estimated cost of solving it, in solver iterations of one pair
+	uint32_t solved; // 1 = its solution of this step stands, unless a late contact involves one of its bodies
 } ob_island;
 
 typedef struct ob_index_cell {
-	uint32_t next;   // 1 + next object in the same bucket; 0 ends
-	int32_t level;   // size class of its bounds, from 1; 0 = not in the index
+	uint32_t next; // 1 + next object in the same bucket; 0 ends
+	int32_t level; // size class of its bounds, from 1; 0 = not in the index
 	int32_t x, y, z; // cell at that level
 	uint32_t before, after; // 1 + its neighbours in the list of all objects of that class; 0 = none
 } ob_index_cell;
@@ -160,65 +169,66 @@ enum { OB_STEP_BLAME_MAX = 200 }; // bytes of what a worker is blamed for
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {
-		uint32_t pairs;      // that were ever used at the same time: those in use lie before this one, not all without gaps
+		uint32_t pairs; // that were ever used at the same time: those in use lie before this one, not all
+				// without gaps
 		uint32_t pairs_idle; // of these, not in use
 		uint32_t first_idle; // 1 + one of them, the first of a list
 		uint32_t islands, chunks, records_used;
-		uint32_t shared;     // 1 = chunk w is worker w's; 0 = chunks are claimed
+		uint32_t shared; // 1 = chunk w is worker w's; 0 = chunks are claimed
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
-		uint32_t scheduler;  // the worker that scheduled last
-		uint32_t merged;     // 1 = islands that late contacts merged are being solved again
-		uint32_t awake;      // objects
-		uint32_t kinematic;  // objects
-		uint32_t checked;    // steps that were complete, or solved, when all pairs were checked last
-		uint32_t late;       // 1 = that check found a late contact; any worker may write it
-		uint32_t checks;     // pairs in check[]
+		uint32_t scheduler; // the worker that scheduled last
+		uint32_t merged; // 1 = islands that late contacts merged are being solved again
+		uint32_t awake; // objects
+		uint32_t kinematic; // objects
+		uint32_t checked; // steps that were complete, or solved, when all pairs were checked last
+		uint32_t late; // 1 = that check found a late contact; any worker may write it
+		uint32_t checks; // pairs in check[]
 		uint32_t next_check; // of several ranks: no pair has an entry for a step before this one, on whichever
 		uint32_t island_pairs; // in island_pair[]
-		uint32_t involved;   // bodies that are in an island of the coming step, as far as they are found
-		uint32_t due;        // those of them that were found first, by what is due
-		uint32_t rooted;     // 1 = each object is the root of a tree before islands are built: several workers may
-		uint64_t visits;     // objects and pairs that arranging steps has looked at so far
+		uint32_t involved; // bodies that are in an island of the coming step, as far as they are found
+		uint32_t due; // those of them that were found first, by what is due
+		uint32_t rooted; // 1 = each object is the root of a tree before islands are built: several workers may
+		uint64_t visits; // objects and pairs that arranging steps has looked at so far
 		uint32_t levels[64]; // objects per size class
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
 		uint32_t planes;
-		uint64_t failure;    // object << 32 | ob_step_failure, of ob_step_fail; 0 = none
-		uint64_t work;       // in the step so far (sim/budget.h)
-		uint32_t culprit;    // 1 + the worker that is to blame for damage; 0 = it is not known
+		uint64_t failure; // object << 32 | ob_step_failure, of ob_step_fail; 0 = none
+		uint64_t work; // in the step so far (sim/budget.h)
+		uint32_t culprit; // 1 + the worker that is to blame for damage; 0 = it is not known
 		char blamed_for[OB_STEP_BLAME_MAX];
-	} *count;
-	ob_schedule *schedule;        // [object]: written by its island's solver
-	float (*bounds)[6];           // [object]: fat AABB, which holds it until it asks for another
-	ob_motion *result;            // [object]: what its island's solver found
-	uint32_t *effort;             // [object]: its share of what its island cost when it was solved last, as ob_island.work
-	uint32_t *home;               // [object]: 1 + the worker that was given it last (home.h); 0 = none was
-	uint32_t *pin;                // [object]: 1 + the worker that it was moved to; 0 = to none. No state of the run: what is put
-	                              // back from a checkpoint in memory is without it
-	uint32_t *result_island;      // [object]: index of its island in the running step; UINT32_MAX = it is in none
+	} * count;
+	ob_schedule *schedule; // [object]: written by its island's solver
+	float (*bounds)[6]; // [object]: fat AABB, which holds it until it asks for another
+	ob_motion *result; // [object]: what its island's solver found
+	uint32_t *effort; // [object]: its share of what its island cost when it was solved last, as ob_island.work
+	uint32_t *home; // [object]: 1 + the worker that was given it last (home.h); 0 = none was
+	uint32_t *pin; // [object]: 1 + the worker that it was moved to; 0 = to none. No state of the run: what is put
+		       // back from a checkpoint in memory is without it
+	uint32_t *result_island; // [object]: index of its island in the running step; UINT32_MAX = it is in none
 	struct ob_neighbours {
 		uint32_t offset, count; // range in neighbour_id; count UINT32_MAX = a query is pending
-	} *neighbours;                // [object]
-	uint32_t *neighbour_id;       // arena
-	ob_index_cell *cell;          // [object]
-	uint32_t *bucket;             // [buckets]: 1 + first object; 0 = empty
-	uint32_t *plane;              // ids of planes: neighbours of every object
-	ob_pair_key *pair;            // in no order
-	ob_pair_links *pair_links;    // [pair]
-	uint32_t *first_pair;         // [object]: the first of its list of pairs, as ob_pair_links.next; none of what is static
-	ob_calendar_levels solve;     // [object]: when it is due
-	ob_calendar_levels look;      // [pair]: when it must be checked, unless no check could change anything
-	uint32_t *check;              // pairs to be checked in this phase
-	ob_pair_record *record;       // taken when a pair begins to touch
+	} * neighbours; // [object]
+	uint32_t *neighbour_id; // arena
+	ob_index_cell *cell; // [object]
+	uint32_t *bucket; // [buckets]: 1 + first object; 0 = empty
+	uint32_t *plane; // ids of planes: neighbours of every object
+	ob_pair_key *pair; // in no order
+	ob_pair_links *pair_links; // [pair]
+	uint32_t *first_pair; // [object]: the first of its list of pairs, as ob_pair_links.next; none of what is static
+	ob_calendar_levels solve; // [object]: when it is due
+	ob_calendar_levels look; // [pair]: when it must be checked, unless no check could change anything
+	uint32_t *check; // pairs to be checked in this phase
+	ob_pair_record *record; // taken when a pair begins to touch
 	double (*impulse_b)[2][OB_PAIR_ROWS]; // [record], of each version: of body b, where the two do not agree on one
-	                              // impulse (sim/ghost.h)
-	uint32_t *record_free;        // stack of free records
+					      // impulse (sim/ghost.h)
+	uint32_t *record_free; // stack of free records
 	ob_island *island;
-	uint32_t *member;             // [object]
-	uint32_t *island_pair;        // indices into pair[]
-	uint32_t *chunk;              // first island of each claimable chunk; chunk[chunks] ends
-	uint32_t *scratch;            // [4 * objects]: the scheduler's
-	uint32_t *task_ns;            // [object]: CPU that each task of the running phase has taken, in turns; of ob_task_took
+	uint32_t *member; // [object]
+	uint32_t *island_pair; // indices into pair[]
+	uint32_t *chunk; // first island of each claimable chunk; chunk[chunks] ends
+	uint32_t *scratch; // [4 * objects]: the scheduler's
+	uint32_t *task_ns; // [object]: CPU that each task of the running phase has taken, in turns; of ob_task_took
 	// All NULL where the scene has no script.
 	ob_script_counts *script_counts;
 	uint32_t *script_of; // [object]: 1 + its cell; 0 = it has no script
@@ -238,7 +248,8 @@ typedef enum ob_step_failure {
 	OB_STEP_OVERWORKED, // the step's budget of work is spent
 	OB_STEP_LEFT, // the run was stopped meanwhile
 	OB_STEP_MEMORY_FULL, // the memory file system has no more pages
-	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, somebody has written where it should not
+	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, somebody has written where it should
+			 // not
 } ob_step_failure;
 
 // Whether an id that was taken out of the shared memory is one; false: somebody has written where it should not.

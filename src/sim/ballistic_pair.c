@@ -1,24 +1,20 @@
-#include "sim/meeting.h"
+#include "sim/flight.h"
 
 #include "contact/impact.h"
 #include "contact/manifold.h"
 #include "motion/flight.h"
-#include "sim/course.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
 #include "sim/touches.h"
 
 static const double least_approach = 1e-6; // m/s: what is slower is left to the contact solver
-static const double reflected = 1e-12; // of the approach: so much that is left is rounding
 static const double points_margin = 1e-6; // m: points of the contact, of which those hit that are as near as the first
 
-enum { REFLECTIONS = 32 };
-
 // Where the two touch.
-typedef struct meeting {
+typedef struct touch {
 	double time; // s; infinity: they do not
 	ob_manifold m; // then, and there
-} meeting;
+} touch;
 
 static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
 {
@@ -38,7 +34,7 @@ static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
 
 // When the two first touch from where they have come to until an instant (s), as the second sees it. false: it could
 // not be found.
-static bool find_meeting(ob_sim *s, const ob_course c[2], double until, meeting *x)
+static bool find_touch(ob_sim *s, const ob_course c[2], double until, touch *x)
 {
 	const double since = c[0].since;
 	const ob_vec3 none = { 0, 0, 0 }, v = ob_sub(ob_velocity_at(&c[0].m, since), ob_velocity_at(&c[1].m, since));
@@ -81,21 +77,13 @@ static uint32_t points_of(const ob_sim *s, const ob_manifold *m, const ob_state 
 	return n;
 }
 
-// m/s: how fast the points approach at most
-static double fastest_approach(const ob_impact_body *body, const ob_impact_point *point, uint32_t points)
-{
-	double most = 0;
-	for (uint32_t k = 0; k < points; k++)
-		most = ob_max(most, -ob_impact_opening(body, &point[k]));
-	return most;
-}
-
 // Changes the velocities of both, where they have come to, by the impact of the points at which they touch. false: they
 // do not rebound.
 static bool apply_impact(ob_sim *s, const ob_course c[2], const ob_manifold *m, ob_state at[2])
 {
 	const ob_passport *p[2] = { ob_passport_of(s->u, c[0].id), ob_passport_of(s->u, c[1].id) };
-	const double mu = sqrt(p[0]->friction * p[1]->friction), e = ob_max(p[0]->restitution, p[1]->restitution);
+	const double mu = ob_pair_friction(p[0]->friction, p[1]->friction),
+		     e = ob_pair_restitution(p[0]->restitution, p[1]->restitution);
 	ob_impact_point point[OB_PAIR_POINTS];
 	ob_impact_body body[2];
 	const uint32_t points = points_of(s, m, at, mu, e, point);
@@ -104,19 +92,15 @@ static bool apply_impact(ob_sim *s, const ob_course c[2], const ob_manifold *m, 
 		body[i] = (ob_impact_body){ .inv_mass = 1 / p[i]->mass, .v = at[i].v, .w = at[i].w };
 		ob_inverse_inertia(p[i]->inertia, &r, body[i].inv_inertia);
 	}
-	const double approach = fastest_approach(body, point, points);
-	double left = approach;
+	const double approach = ob_impact_approach(body, point, points);
 	if (!(approach > least_approach * s->island.unit.speed))
 		return false;
-	for (int k = 0; k < REFLECTIONS && left > reflected * approach; k++) {
-		ob_impact_solve(body, 2, point, points, NULL); // few points, few times
-		left = fastest_approach(body, point, points);
-	}
+	const bool parted = ob_impact_part(body, 2, point, points, approach);
 	ob_touches_note(s->u, c[0].id, c[1].id, p[0]->mass * ob_dot(ob_sub(body[0].v, at[0].v), m->normal),
 			ob_add(at[0].pose.p, point[0].arm_a));
 	for (int i = 0; i < 2; i++)
 		at[i].v = body[i].v, at[i].w = body[i].w;
-	return left <= reflected * approach;
+	return parted;
 }
 
 static bool rebound_from_each_other(ob_sim *s, ob_course c[2], const ob_manifold *m)
@@ -131,8 +115,8 @@ static bool follow(ob_sim *s, ob_course c[2], double end, uint32_t *impacts)
 	for (*impacts = 0;; ++*impacts) {
 		ob_course *first = &c[c[1].m.valid_until < c[0].m.valid_until];
 		const double until = ob_min(first->m.valid_until, end);
-		meeting x;
-		if (!find_meeting(s, c, until, &x))
+		touch x;
+		if (!find_touch(s, c, until, &x))
 			return false;
 		const bool meet = x.time < INFINITY;
 		for (int i = 0; i < 2; i++)
@@ -144,14 +128,15 @@ static bool follow(ob_sim *s, ob_course c[2], double end, uint32_t *impacts)
 	}
 }
 
-bool ob_meeting_advance(ob_sim *s, const uint32_t id[2])
+bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2])
 {
 	const double end = (double)(ob_step_count(s->u) + 1) * s->settings->step_length;
 	ob_course c[2];
 	uint32_t impacts;
 	if (s->settings->integrator == OB_INTEGRATOR_ODE || s->settings->narrow_phase == OB_NARROW_AABB ||
 	    ob_ghosts_used(s) ||
-	    !(ob_max(ob_passport_of(s->u, id[0])->restitution, ob_passport_of(s->u, id[1])->restitution) > 0))
+	    !(ob_pair_restitution(ob_passport_of(s->u, id[0])->restitution, ob_passport_of(s->u, id[1])->restitution) >
+	      0))
 		return false;
 	for (int i = 0; i < 2; i++)
 		ob_course_begin(s, id[i], false, &c[i]);
