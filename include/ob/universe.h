@@ -71,7 +71,7 @@ typedef struct ob_passport {
 enum { // ob_motion.flags
 	OB_MOTION_FREE = 1 << 0,   // in free flight: up to t0, what was published before holds exactly
 	OB_MOTION_ASLEEP = 1 << 1, // asleep: every body of its island had been slow for long enough
-	OB_MOTION_STEADY = 1 << 2, // its contacts hold it, and the solver changed nothing about it in the last step
+	OB_MOTION_STEADY = 1 << 2, // its contacts hold it, and the solver changed nothing about it when the last step ended
 	OB_MOTION_EQUILIBRIUM = 1 << 3, // in equilibrium: it is not solved again until something touches it
 	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_EQUILIBRIUM, // either: it stays where it is
 	OB_MOTION_SWINGS = 1 << 4, // the centre goes about an ellipse, or to and fro, with a frequency; kinematic objects alone

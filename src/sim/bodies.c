@@ -106,7 +106,7 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
 	w->h = w->substep = run->step_length / w->substeps;
-	w->mass = w->recovered = w->residual = 0;
+	w->mass = w->recovered = w->residual = w->last_residual = 0;
 	w->projected = w->torques = false;
 	w->unpaced = w->time = 0;
 	w->surfaces.count = 0;
@@ -438,7 +438,7 @@ void ob_bodies_publish(ob_sim *s, uint32_t rest)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
 	uint64_t step = ob_step_count(s->u) + 1;
-	const bool confirmed = ob_equilibrium_confirmed(w);
+	const bool expected = ob_equilibrium_expected(w);
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		ob_body *body = &w->body[i];
 		ob_motion mo = { .t0 = step * run->step_length,
@@ -453,7 +453,7 @@ void ob_bodies_publish(ob_sim *s, uint32_t rest)
 				 .island = w->body[1].id,
 				 .substeps = body->next_substeps,
 				 .flags = (body->moved_freely ? OB_MOTION_FREE : 0) | rest |
-					  (confirmed && ob_equilibrium_body_steady(w, i) ? OB_MOTION_STEADY : 0) };
+					  (expected && ob_equilibrium_body_steady(w, i) ? OB_MOTION_STEADY : 0) };
 		if (!body->contacts)
 			mo.a = body->acceleration;
 		if (rest)

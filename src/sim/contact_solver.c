@@ -280,6 +280,7 @@ void ob_solver_iterate(ob_sim *s)
 		w->iteration += 1 + (k == 0); // a gap, so that no body is active from the last partial substep
 		residual = solve_contacts(s, &iteration, &any_active, &changed);
 		if (iteration.first) {
+			w->last_residual = changed;
 			w->residual = ob_max(w->residual, changed);
 			if (changed > smooth_change * w->unit.speed) {
 				iteration.wake_threshold = usual;

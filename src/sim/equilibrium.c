@@ -24,6 +24,12 @@ bool ob_equilibrium_confirmed(const ob_island_work *w)
 	return w->residual <= residual_threshold * w->unit.speed && !w->projected;
 }
 
+bool ob_equilibrium_expected(const ob_island_work *w)
+{
+	const bool alone = w->bodies == 1 && w->surfaces.count == 0;
+	return (alone ? w->last_residual : w->residual) <= residual_threshold * w->unit.speed && !w->projected;
+}
+
 bool ob_equilibrium_reached(const ob_island_work *w)
 {
 	if (!ob_equilibrium_confirmed(w))

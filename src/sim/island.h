@@ -219,7 +219,8 @@ typedef struct ob_island_work {
 	double h, h_min; // s (sim/adaptive_substep.h), of the running partial substep; of any but the last of a substep
 	double unpaced; // s: of which the contacts' paths do not know yet
 	double last_impact; // s into the partial substep: the last one's instant
-	double residual; // m/s: the most that a first iteration has changed a velocity in this step
+	double residual,
+		last_residual; // m/s: the most that a first iteration has changed a velocity in this step; the last one
 	bool projected; // penetrations were pushed apart in this step
 	double recovered; // J, what position projection has added in this step
 	uint32_t *row_of; // [object]: row in this island
