@@ -17,7 +17,7 @@
 #ifndef OB_CONTACT_BATCH_H
 #define OB_CONTACT_BATCH_H
 
-#include "contact/lanes.h"
+#include "elementary/lanes.h"
 #include "contact/manifold.h"
 
 enum { OB_POINTS = 4, OB_ROWS = 7 }; // contact points; rows: their normals, two of friction, one of twist

@@ -6,11 +6,10 @@
 #include "elementary/double2.h"
 #include "elementary/elementary.h"
 
+typedef double wide __attribute__((vector_size(16)));
+#include "elementary/sincos_wide.h"
+
 static const double QUARTER = 0x1.921fb54442d18p-1; // pi / 4
-static const double INVERSE = 0x1.45f306dc9c883p-1; // 2 / pi
-// pi / 2 in parts of 33 bits and a rest: their products with numbers of 20 bits are exact.
-static const double PART[4] = { 0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104 };
-static const double MODERATE = 0x1p19; // below it a quotient has 19 bits
 
 // The bits of 2 / pi, behind a word of zeros. The last of a double's is 2^-52 of 2^1023: 192 bits from there on.
 static const uint64_t TWO_OVER_PI[] = {
@@ -133,56 +132,19 @@ void ob_sincos(double x, double *sine, double *cosine)
 		*cosine = -*cosine;
 }
 
-// Two side by side, by the same operations in the same order: so each has the bits that it has alone.
-typedef double pair __attribute__((vector_size(16)));
-
-static inline pair both(double x)
-{
-	return (pair){ x, x };
-}
-
-static inline pair sum_of(pair a, pair b, pair *rest)
-{
-	const pair s = a + b, t = s - a;
-	*rest = (a - (s - t)) + (b - t);
-	return s;
-}
-
-// What reduce and sine_of and cosine_of do. n: the quarters
-static inline void sincos_of_pair(pair x, pair *n, pair *square, pair *sine, pair *cosine)
-{
-	pair b_rest, c_rest;
-	*n = (x * INVERSE + 0x1.8p52) - 0x1.8p52;
-	const pair b = sum_of(x - *n * PART[0], -*n * PART[1], &b_rest), c = sum_of(b, -*n * PART[2], &c_rest);
-	const pair more = c_rest + (b_rest - *n * PART[3]), h = c + more, l = more - (h - c), z = h * h;
-	const pair odd =
-		both(0x1.111111110f75fp-7) + z * (both(-0x1.a01a019bf28b4p-13) +
-						  z * (both(0x1.71de355f7915bp-19) +
-						       z * (both(-0x1.ae5e54dbfa739p-26) + z * 0x1.5d8e5779a76bbp-33)));
-	const pair even =
-		both(-0x1.6c16c16c15222p-10) +
-		z * (both(0x1.a01a019cbfd1ep-16) + z * (both(-0x1.27e4f81313d05p-22) +
-							z * (both(0x1.1ee9f19630fedp-29) - z * 0x1.8fb154d070a87p-37)));
-	const pair t = 134217729 * h, upper = t - (t - h), lower = h - upper; // as ob_double2_square
-	const pair z_rest = ((upper * upper - z) + 2 * upper * lower) + lower * lower, half = .5 * z, w = 1 - half;
-	*square = z;
-	*sine = h + (h * z * (both(-0x1.5555555555548p-3) + z * odd) + l * (1 - .5 * z));
-	*cosine = w + (((1 - w) - half) - .5 * z_rest + (z * z * (both(0x1.555555555554cp-5) + z * even) - h * l));
-}
-
 void ob_sincos_of_two(const double x[2], double sine[2], double cosine[2])
 {
-	pair n, square, s, c;
+	wide whole, square, s, c;
 	const bool moderate = fabs(x[0]) < MODERATE && fabs(x[1]) < MODERATE;
 	if (moderate)
-		sincos_of_pair((pair){ x[0], x[1] }, &n, &square, &s, &c);
-	if (!moderate || square[0] < 0x1p-54 || square[1] < 0x1p-54) {
+		sincos_wide((wide){ x[0], x[1] }, &whole, &square, &s, &c);
+	if (!moderate || square[0] < LEAST_SQUARE || square[1] < LEAST_SQUARE) {
 		ob_sincos(x[0], &sine[0], &cosine[0]);
 		ob_sincos(x[1], &sine[1], &cosine[1]);
 		return;
 	}
 	for (int i = 0; i < 2; i++) {
-		const unsigned quarters = (unsigned)(int)n[i];
+		const unsigned quarters = (unsigned)(int)(whole[i] - WHOLE);
 		sine[i] = quarters & 1 ? c[i] : s[i];
 		cosine[i] = quarters & 1 ? s[i] : c[i];
 		if (quarters & 2)

@@ -41,4 +41,16 @@ typedef struct ob_half_space {
 // evaluations of the spin, and 1e-11 m. Anything else: when its bounding sphere does, and at once where it has.
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until);
 
+enum { OB_LANDINGS = 16 };
+
+typedef struct ob_landing {
+	const ob_flier *flier; // each with a spin of its own, if any
+	const ob_half_space *plane;
+	double from, until;
+	double time; // what ob_landing_time gives
+} ob_landing;
+
+// Of up to OB_LANDINGS flights: their rotations, and the corners of boxes, are followed side by side.
+void ob_landing_times(ob_landing *of, int n);
+
 #endif

@@ -3,6 +3,9 @@
 #include <float.h>
 #include <stdint.h>
 
+#include "elementary/lanes.h"
+#include "motion/landing_lanes.h"
+
 static const double near = 1e-11; // of the shape's radius: a point that is closer and comes down lands
 static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
@@ -219,76 +222,204 @@ typedef struct instant {
 	double s, height, speed, left;
 } instant;
 
-// For how long no point of the outline lands, at least (s); *lands: one does then.
-static double advance(const ob_flier *f, const outline *h, const ob_bending *bends, ob_vec3 n, instant now, double a,
-		      double tolerance, bool *lands)
+// A flight that is followed to its landing.
+typedef struct search {
+	const ob_flier *f;
+	outline h;
+	bool known; // its shape
+	ob_vec3 n;
+	ob_bending bends;
+	double p, v, a; // of the centre, over the plane at s = 0
+	double radius, tolerance; // m
+	double until;
+	int advances;
+	instant now;
+} search;
+
+// m/s^2, with which any point may fall
+static double fastest_fall(const search *x)
 {
-	const double most = ob_max(0, -a) + h->reach * bends->most, height = now.height - h->radius;
-	ob_quat q = f->q;
-	ob_vec3 w = { 0, 0, 0 };
-	if (f->spin)
-		ob_spin_at(f->spin, now.s, &q, &w);
+	return ob_max(0, -x->a) + x->h.reach * x->bends.most;
+}
+
+static void attitude_of(const search *x, ob_quat *q, ob_vec3 *w)
+{
+	*q = x->f->q;
+	*w = ob_v3(0, 0, 0);
+	if (x->f->spin)
+		ob_spin_at(x->f->spin, x->now.s, q, w);
+}
+
+static double advance_rims(const search *x, ob_vec3 normal, ob_vec3 turning, bool *lands)
+{
+	double least = INFINITY;
+	for (int side = -1; side < 2; side += 2) {
+		const double end = side * x->h.half.z;
+		rim of = { .height = x->now.height - x->h.radius + end * normal.z,
+			   .rate = x->now.speed + end * turning.z,
+			   .most = fastest_fall(x) };
+		of.lean = ob_scale(ob_v3(normal.x, normal.y, 0), x->h.rim);
+		of.lean_rate = ob_scale(ob_v3(turning.x, turning.y, 0), x->h.rim);
+		least = ob_min(least, rim_time(&of, x->tolerance));
+	}
+	*lands = least == 0;
+	return least;
+}
+
+// For how long no point of the outline lands, at least (s); *lands: one does then.
+static double advance(const search *x, bool *lands)
+{
+	const outline *h = &x->h;
+	const double height = x->now.height - h->radius, speed = x->now.speed;
+	ob_quat q;
+	ob_vec3 w;
+	attitude_of(x, &q, &w);
 	const ob_mat3 r = ob_quat_matrix(q);
-	const ob_vec3 b = ob_rotate_back(&r, w), normal = ob_rotate_back(&r, n), turning = ob_cross(normal, b);
-	if (h->rim > 0) {
-		double least = INFINITY;
-		for (int side = -1; side < 2; side += 2) {
-			const double end = side * h->half.z;
-			rim x = {
-				height + end * normal.z, now.speed + end * turning.z, most, { 0, 0, 0 }, { 0, 0, 0 }
-			};
-			x.lean = ob_scale(ob_v3(normal.x, normal.y, 0), h->rim);
-			x.lean_rate = ob_scale(ob_v3(turning.x, turning.y, 0), h->rim);
-			least = ob_min(least, rim_time(&x, tolerance));
-		}
-		*lands = least == 0;
-		return least;
-	}
-	const ob_vec3 c = bends->coupling, gain = ob_v3(c.x * b.y * b.z, c.y * b.z * b.x, c.z * b.x * b.y);
+	const ob_vec3 b = ob_rotate_back(&r, w), normal = ob_rotate_back(&r, x->n), turning = ob_cross(normal, b);
+	if (h->rim > 0)
+		return advance_rims(x, normal, turning, lands);
+	const ob_vec3 c = x->bends.coupling, gain = ob_v3(c.x * b.y * b.z, c.y * b.z * b.x, c.z * b.x * b.y);
 	const ob_vec3 turn = ob_add(ob_cross(normal, gain), ob_cross(turning, b));
-	points x;
+	points of;
 	if (h->corners) {
-		hull_points(h->corners, height, normal, &x, x.gap);
-		hull_points(h->corners, now.speed, turning, &x, x.rate);
-		hull_points(h->corners, a, turn, &x, x.bend);
+		hull_points(h->corners, height, normal, &of, of.gap);
+		hull_points(h->corners, speed, turning, &of, of.rate);
+		hull_points(h->corners, x->a, turn, &of, of.bend);
 	} else {
-		box_points(height, component(h->half, normal), x.gap);
-		box_points(now.speed, component(h->half, turning), x.rate);
-		box_points(a, component(h->half, turn), x.bend);
-		x.pairs = BLOCK;
+		box_points(height, component(h->half, normal), of.gap);
+		box_points(speed, component(h->half, turning), of.rate);
+		box_points(x->a, component(h->half, turn), of.bend);
+		of.pairs = BLOCK;
 	}
-	return land_points(&x, most, h->reach * bends->jerk, tolerance, now.left, lands);
+	return land_points(&of, fastest_fall(x), h->reach * x->bends.jerk, x->tolerance, x->now.left, lands);
+}
+
+// false: it lands at *time, or not at all.
+static bool search_begin(search *x, const ob_landing *of, double *time)
+{
+	const ob_flier *f = of->flier;
+	*x = (search){ .f = f, .n = of->plane->normal, .until = of->until };
+	x->known = outline_of(f, &x->h);
+	x->radius = x->known ? ob_shape_radius(f->shape, f->size) : f->size.x;
+	x->p = ob_dot(x->n, f->p) - of->plane->offset, x->v = ob_dot(x->n, f->v), x->a = ob_dot(x->n, f->a);
+	x->now.s = of->from;
+	if (x->known && x->h.reach == 0) {
+		*time = ob_time_of_closing(x->p - x->radius, x->v, x->a, of->until);
+		if (*time >= of->from)
+			return false;
+	}
+	x->bends = ob_bending_of(f->inertia, f->spin ? f->spin->fastest : 0);
+	x->tolerance = near * x->radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(of->plane->offset));
+	return true;
+}
+
+// To the next instant at which its attitude must be known. false: it lands at *time, or not at all.
+static bool search_go_on(search *x, double *time)
+{
+	double s = x->now.s;
+	bool asks = false;
+	if (x->advances++ < most_advances && s <= x->until) {
+		double height = x->p + s * (x->v + .5 * s * x->a), speed = x->v + s * x->a;
+		if (height > x->radius) { // until then no point can land, and how it turns need not be known
+			s += ob_time_of_closing(height - x->radius, speed, x->a, x->until - s);
+			height = x->p + s * (x->v + .5 * s * x->a), speed = x->v + s * x->a;
+		}
+		asks = s <= x->until && x->known;
+		x->now = (instant){ s, height, speed, x->until - s };
+	}
+	*time = s <= x->until ? s : INFINITY;
+	return asks;
+}
+
+// Nothing lands for t. false: it has landed at *time.
+static bool search_advance(search *x, double t, bool lands, double *time)
+{
+	*time = x->now.s + t;
+	x->now.s += ob_max(t, DBL_EPSILON * fabs(x->now.s));
+	return !lands;
+}
+
+#ifdef OB_HAVE_MOTION_LANES
+static ob_falling_box falling_box(const search *x)
+{
+	ob_falling_box box = { .half = x->h.half,
+			       .normal = x->n,
+			       .coupling = x->bends.coupling,
+			       .height = x->now.height - x->h.radius,
+			       .speed = x->now.speed,
+			       .a = x->a,
+			       .most = fastest_fall(x),
+			       .jerk = x->h.reach * x->bends.jerk,
+			       .tolerance = x->tolerance,
+			       .left = x->now.left };
+	attitude_of(x, &box.q, &box.w);
+	return box;
+}
+// Of the first, as many as are boxes and can be advanced side by side; returns how many they are.
+static int advance_boxes(search *const *x, int n, double *t, bool *lands)
+{
+	ob_falling_box box[OB_LANES];
+	int boxes = 0;
+	while (boxes < n && boxes < OB_LANES && x[boxes]->f->shape == OB_SHAPE_BOX)
+		boxes++;
+	if (boxes < 2 || !__builtin_cpu_supports("avx2"))
+		return 0;
+	for (int i = 0; i < boxes; i++)
+		box[i] = falling_box(x[i]);
+	ob_landing_lanes_advance(box, boxes, t, lands);
+	return boxes;
+}
+#else
+static int advance_boxes(search *const *x, int n, double *t, bool *lands)
+{
+	return 0;
+}
+#endif
+
+static void advance_each(search *const *x, int n, double *t, bool *lands)
+{
+	for (int i = 0; i < n;) {
+		const int boxes = advance_boxes(x + i, n - i, t + i, lands + i);
+		if (!boxes)
+			t[i] = advance(x[i], &lands[i]);
+		i += boxes ? boxes : 1;
+	}
+}
+
+void ob_landing_times(ob_landing *of, int n)
+{
+	search all[OB_LANDINGS], *on[OB_LANDINGS];
+	bool searched[OB_LANDINGS], lands[OB_LANDINGS];
+	double t[OB_LANDINGS], s[OB_LANDINGS];
+	ob_spin *spin[OB_LANDINGS];
+	int left = 0;
+	for (int i = 0; i < n; i++) {
+		searched[i] = search_begin(&all[i], &of[i], &of[i].time);
+		left += searched[i];
+	}
+	while (left) {
+		int asked = 0, spins = 0;
+		for (int i = 0; i < n; i++) {
+			if (!searched[i] || !(searched[i] = search_go_on(&all[i], &of[i].time)))
+				continue;
+			on[asked++] = &all[i];
+			if (of[i].flier->spin)
+				s[spins] = all[i].now.s, spin[spins++] = of[i].flier->spin;
+		}
+		ob_spin_prepare(spin, s, spins);
+		advance_each(on, asked, t, lands);
+		left = 0;
+		for (int i = 0, k = 0; i < n; i++)
+			if (searched[i]) {
+				searched[i] = search_advance(&all[i], t[k], lands[k], &of[i].time);
+				left += searched[i], k++;
+			}
+	}
 }
 
 double ob_landing_time(const ob_flier *f, const ob_half_space *plane, double from, double until)
 {
-	const ob_vec3 n = plane->normal;
-	outline h;
-	const bool known = outline_of(f, &h);
-	const double radius = known ? ob_shape_radius(f->shape, f->size) : f->size.x;
-	const double p = ob_dot(n, f->p) - plane->offset, v = ob_dot(n, f->v), a = ob_dot(n, f->a);
-	if (known && h.reach == 0) {
-		double first = ob_time_of_closing(p - radius, v, a, until);
-		if (first >= from)
-			return first;
-	}
-	const ob_bending bends = ob_bending_of(f->inertia, f->spin ? f->spin->fastest : 0);
-	const double tolerance = near * radius + 8 * DBL_EPSILON * (ob_norm(f->p) + fabs(plane->offset));
-	double s = from;
-	for (int k = 0; k < most_advances && s <= until; k++) {
-		double height = p + s * (v + .5 * s * a), speed = v + s * a;
-		if (height > radius) { // until then no point can land, and how it turns need not be known
-			s += ob_time_of_closing(height - radius, speed, a, until - s);
-			height = p + s * (v + .5 * s * a), speed = v + s * a;
-		}
-		if (!(s <= until) || !known)
-			break;
-		bool lands = false;
-		const instant now = { s, height, speed, until - s };
-		const double t = advance(f, &h, &bends, n, now, a, tolerance, &lands);
-		if (lands)
-			return s + t;
-		s += ob_max(t, DBL_EPSILON * fabs(s));
-	}
-	return s <= until ? s : INFINITY;
+	ob_landing of = { .flier = f, .plane = plane, .from = from, .until = until };
+	ob_landing_times(&of, 1);
+	return of.time;
 }

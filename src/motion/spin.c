@@ -1,28 +1,86 @@
-// With n the direction of the momentum L in the body and I1, I2, I3 the moments, sorted so that n keeps to one side
-// of the third axis (n3 > 0), Jacobi's solution ("Sur la rotation d'un corps", 1849; Whittaker, "Analytical Dynamics",
-// 1937, section 69) is
-//	n1 = A1 cn(u), n2 = A2 sn(u), n3 = A3 dn(u), u = u0 + u' s.
-// The azimuth of the third axis about L turns at L (n1^2 / I1 + n2^2 / I2) / (n1^2 + n2^2), whose integral is
-//	lambda s + arg theta_1(v +- i alpha), v = pi u / (2 K),
-// alpha from sn(2 K alpha / pi, k') = A1 / |A2| (van Zon and Schofield, J. Comput. Phys. 225, 2007). From theta_1 and
-// theta_2 only directions are taken, and n is put on the curve of constant momentum and energy, so both are kept to
-// the last digits at any s.
 #include "motion/spin.h"
 
 #include <ob/motion.h>
 
 #include "elementary/elementary.h"
 #include "motion/magnus.h"
+#include "motion/spin_lanes.h"
+
+typedef double real;
+typedef int mask;
+#include "motion/theta.h"
 
 // Moments closer than this are equal: over a thousand radians the difference stays below 1e-12 rad.
 static const double SAME = 1e-15;
 // A direction this near (sine) to a principal axis is on it.
 static const double ON_AXIS = 1e-16;
 
-static double square(double x)
+// ---- of one body, what theta.h is made of
+
+static inline real real_of(double x)
 {
-	return x * x;
+	return x;
 }
+
+static inline real chosen(mask m, real yes, real no)
+{
+	return m ? yes : no;
+}
+
+static inline mask both_of(mask a, mask b)
+{
+	return a & b;
+}
+
+static inline int is_any(mask m)
+{
+	return m;
+}
+
+static inline real root_of(real x)
+{
+	return sqrt(x);
+}
+
+static inline real size_of(real x)
+{
+	return fabs(x);
+}
+
+static inline real signed_as(real size, real x)
+{
+	return copysign(size, x);
+}
+
+static inline real angle_of(real y, real x)
+{
+	return ob_atan2(y, x);
+}
+
+static inline real power_of_e(real x)
+{
+	return ob_exp(x);
+}
+
+static inline real power_of_e_less_1(real x)
+{
+	return ob_expm1(x);
+}
+
+static real excess_of(real w, real x, real y, real z)
+{
+	return ob_quat_excess((ob_quat){ w, x, y, z });
+}
+
+static inline void sines_of(real a, real b, real *sine_a, real *cosine_a, real *sine_b, real *cosine_b)
+{
+	double sine[2], cosine[2];
+	ob_sincos_of_two((double[2]){ a, b }, sine, cosine);
+	*sine_a = sine[0], *cosine_a = cosine[0];
+	*sine_b = sine[1], *cosine_b = cosine[1];
+}
+
+// ---- which kind of rotation it is
 
 static void get(ob_vec3 v, double out[3])
 {
@@ -55,8 +113,8 @@ static int plan_symmetric(ob_spin *spin, ob_vec3 momentum, const double l[3], co
 }
 
 // Sorts the axes: moments ascending, or descending where the momentum circles the axis of the smallest one; signs so
-// that the frame is right-handed and n3 >= 0.
-static void sort_axes(ob_spin *spin, const double n[3], const double inertia[3])
+// that the frame is right-handed and n3 >= 0. Component i is sign[i] times component axis[i] of the body.
+static void sort_axes(const double n[3], const double inertia[3], int axis[3], double sign[3])
 {
 	int o[3] = { 0, 1, 2 };
 	for (int i = 0; i < 2; i++)
@@ -67,77 +125,17 @@ static void sort_axes(ob_spin *spin, const double n[3], const double inertia[3])
 				o[j + 1] = swap;
 			}
 	double low = inertia[o[0]], mid = inertia[o[1]], high = inertia[o[2]];
-	if (square(n[o[0]]) * (mid / low - 1) > square(n[o[2]]) * (1 - mid / high)) {
+	if (squared(n[o[0]]) * (mid / low - 1) > squared(n[o[2]]) * (1 - mid / high)) {
 		int swap = o[0];
 		o[0] = o[2];
 		o[2] = swap;
 	}
 	int even = o[1] == (o[0] + 1) % 3;
 	for (int i = 0; i < 3; i++)
-		spin->axis[i] = o[i];
-	spin->sign[0] = 1;
-	spin->sign[2] = n[o[2]] < 0 ? -1 : 1;
-	spin->sign[1] = even ? spin->sign[2] : -spin->sign[2];
-}
-
-// Components of n along the sorted axes at phase v.
-static ob_vec3 direction_at(const ob_spin *spin, const ob_theta_value *t)
-{
-	double c = spin->root_kc * t->theta2, s = t->theta1, r = 1 / sqrt(c * c + s * s);
-	c *= r;
-	s *= r;
-	return ob_v3(spin->amplitude.x * c, spin->amplitude.y * s,
-		     spin->amplitude.z * sqrt(spin->mc + spin->m * c * c));
-}
-
-// The minimal turn that takes n to the third axis; well defined, for n3 >= 0.
-static ob_quat lift_of(ob_vec3 n)
-{
-	double r = 1 / sqrt(2 * (1 + n.z));
-	return (ob_quat){ (1 + n.z) * r, n.y * r, -n.x * r, 0 };
-}
-
-// Direction (cos, sin) of the turn about L that follows the lift: arg theta_1(v +- i alpha) + lambda s - arg(n1 + i
-// n2). sl, cl: sine and cosine of lambda s
-static void azimuth_at(const ob_spin *spin, double sl, double cl, const ob_theta_value *t, ob_vec3 n, double *cos_out,
-		       double *sin_out)
-{
-	double im = spin->side * t->im;
-	double a = t->re * cl - im * sl, b = t->re * sl + im * cl;
-	double c = a * n.x + b * n.y, d = b * n.x - a * n.y, r = 1 / sqrt(c * c + d * d);
-	*cos_out = c * r;
-	*sin_out = d * r;
-}
-
-// size = |L|; n = its direction along the sorted axes, i1, i2, i3 the moments there.
-static void plan_theta(ob_spin *spin, double size, ob_vec3 n, double i1, double i2, double i3)
-{
-	double s1 = square(n.x), s2 = square(n.y), s3 = square(n.z);
-	// Sums of positive terms: the amplitudes are exact to the last digits for any moments.
-	double sn2 = i1 * (i2 - i3) / (i2 * (i1 - i3)); // (A1 / A2)^2 = sn^2(2 K alpha / pi, k')
-	double cn2 = i3 * (i1 - i2) / (i2 * (i1 - i3)); // 1 - sn2
-	double a1 = sqrt(s1 + s2 * sn2), a2 = sqrt(s1 / sn2 + s2),
-	       a3 = sqrt(s3 + s2 * i3 * (i2 - i1) / (i2 * (i3 - i1)));
-	spin->amplitude = ob_v3(a1, i3 > i2 ? a2 : -a2, a3);
-	double bend = i3 * (i2 - i1) / (i1 * (i3 - i2)), outer = s3, inner = s1 * bend;
-	spin->m = ob_min(square(a1 / a3) * bend, 1);
-	// Where rounding alone decides how near the separatrix is, it is not nearer than the rounding.
-	spin->mc = ob_min(ob_max(outer - inner, 1e-17 * (outer + inner)) / square(a3), 1);
-	double kc = sqrt(spin->mc), k = sqrt(spin->m), mean, mean_c;
-	spin->root_kc = sqrt(kc);
-	spin->phase = ob_jacobi_phase(n.x / a1, n.y / spin->amplitude.y, kc, &mean);
-	const double shift = ob_jacobi_phase(sqrt(cn2), sqrt(sn2), k, &mean_c);
-	spin->speed = mean * size * a3 * sqrt((i3 - i1) / i1 * ((i3 - i2) / i2)) / i3;
-	ob_theta_plan(&spin->theta, ob_exp(-M_PI * mean / mean_c), shift * mean / mean_c);
-	spin->side = i1 > i2 ? 1 : -1;
-	// At v = pi / 2 the azimuth turns at L / I2, of which the theta function has its logarithmic slope.
-	spin->precession = size / i2 + spin->side * spin->speed * ob_theta_slope(&spin->theta);
-	double sine, cosine;
-	ob_sincos(spin->phase, &sine, &cosine);
-	ob_theta_value t = ob_theta_at(&spin->theta, sine, cosine);
-	ob_vec3 n0 = direction_at(spin, &t);
-	azimuth_at(spin, 0, 1, &t, n0, &spin->cos0, &spin->sin0);
-	spin->lift0 = lift_of(n0);
+		axis[i] = o[i];
+	sign[0] = 1;
+	sign[2] = n[o[2]] < 0 ? -1 : 1;
+	sign[1] = even ? sign[2] : -sign[2];
 }
 
 // Energy and momentum stay, and each bounds the rate b (body frame) by the least moment.
@@ -173,6 +171,7 @@ ob_bending ob_bending_of(ob_vec3 i, double w)
 void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {
 	const ob_mat3 r = ob_quat_matrix(q);
+	spin->kind = OB_SPIN_TURNS;
 	spin->q = q;
 	spin->w = w;
 	spin->rate_0 = ob_rotate_back(&r, w);
@@ -191,7 +190,8 @@ static bool is_ordinary(const ob_spin *spin)
 	return i.x > 0 && i.y > 0 && i.z > 0 && ob_norm2(spin->w) > 1e-280; // squares of less would lose their digits
 }
 
-static void plan_long_turns(ob_spin *spin)
+// The kind, and of OB_SPIN_THETA what its constants follow from.
+static void classify(ob_spin *spin, ob_theta_start *from)
 {
 	const ob_quat q = spin->q;
 	const ob_vec3 w = spin->w, body = spin->rate_0;
@@ -207,16 +207,42 @@ static void plan_long_turns(ob_spin *spin)
 	double size = ob_norm(momentum);
 	get(ob_scale(momentum, 1 / size), n);
 	for (int k = 0; k < 3; k++)
-		if (square(n[(k + 1) % 3]) + square(n[(k + 2) % 3]) <= square(ON_AXIS))
+		if (squared(n[(k + 1) % 3]) + squared(n[(k + 2) % 3]) <= squared(ON_AXIS))
 			return;
 	if (plan_symmetric(spin, ob_rotate(&r, momentum), l, i))
 		return;
 	spin->kind = OB_SPIN_THETA;
-	sort_axes(spin, n, i);
-	const int *o = spin->axis;
-	spin->rate = ob_v3(size / i[0], size / i[1], size / i[2]);
-	ob_vec3 sorted = ob_v3(spin->sign[0] * n[o[0]], spin->sign[1] * n[o[1]], spin->sign[2] * n[o[2]]);
-	plan_theta(spin, size, sorted, i[o[0]], i[o[1]], i[o[2]]);
+	int axis[3];
+	double sign[3], *k = spin->theta;
+	sort_axes(n, i, axis, sign);
+	*from = (ob_theta_start){ .size = size };
+	k[OB_THETA_START] = q.w, k[OB_THETA_START + 1] = q.x, k[OB_THETA_START + 2] = q.y, k[OB_THETA_START + 3] = q.z;
+	for (int j = 0; j < 9; j++)
+		k[OB_THETA_FRAME + j] = 0;
+	for (int j = 0; j < 3; j++) {
+		const int o = axis[j];
+		k[OB_THETA_RATE + j] = size / i[j];
+		k[OB_THETA_FRAME + 3 * o + j] = sign[j];
+		from->direction[j] = sign[j] * n[o];
+		from->inertia[j] = i[o];
+	}
+}
+
+static void plan_theta_of(ob_spin *spin, const ob_theta_start *from)
+{
+	ob_theta_series *t = &spin->series;
+	double count;
+	t->terms = plan_theta(spin->theta, t->plain, t->even, t->odd, &count, from->size,
+			      (vector){ from->direction[0], from->direction[1], from->direction[2] }, from->inertia[0],
+			      from->inertia[1], from->inertia[2]);
+}
+
+static void plan_long_turns(ob_spin *spin)
+{
+	ob_theta_start from;
+	classify(spin, &from);
+	if (spin->kind == OB_SPIN_THETA)
+		plan_theta_of(spin, &from);
 }
 
 static inline __attribute__((always_inline)) double excess(ob_quat q)
@@ -241,13 +267,10 @@ double ob_quat_excess(ob_quat q)
 	return excess(q);
 }
 
-// Unit norm without bias. 1 / sqrt(norm^2) rounds to 1 within two units of the last digit, so that what the product
-// adds would stay, and the rates turned by it would gain 2e-16 a call; the linear correction does not round so.
 static ob_quat unit(ob_quat q)
 {
-	q = ob_quat_normalize(q);
-	double s = .5 * ob_quat_excess(q);
-	return (ob_quat){ q.w - q.w * s, q.x - q.x * s, q.y - q.y * s, q.z - q.z * s };
+	const quaternion u = unit_of((quaternion){ q.w, q.x, q.y, q.z });
+	return (ob_quat){ u.w, u.x, u.y, u.z };
 }
 
 static void turns_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
@@ -259,44 +282,15 @@ static void turns_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_o
 	*w_out = ob_add(spin->world, ob_rotate(&r, spin->body));
 }
 
-// Quaternion about the third axis by the angle whose direction is (c, s).
-static ob_quat half_turn(double c, double s)
+static void long_turn_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 {
-	if (c > 0) {
-		double h = sqrt(.5 * (1 + c));
-		return (ob_quat){ h, 0, 0, .5 * s / h };
-	}
-	double h = copysign(sqrt(.5 * (1 - c)), s);
-	return (ob_quat){ .5 * s / h, 0, 0, h };
-}
-
-// From the sorted frame back to the body's axes.
-static ob_vec3 unsort(const ob_spin *spin, double x, double y, double z)
-{
-	double out[3];
-	out[spin->axis[0]] = spin->sign[0] * x;
-	out[spin->axis[1]] = spin->sign[1] * y;
-	out[spin->axis[2]] = spin->sign[2] * z;
-	return ob_v3(out[0], out[1], out[2]);
-}
-
-static void theta_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
-{
-	double c, d, sine[2], cosine[2];
-	ob_sincos_of_two((double[2]){ spin->phase + spin->speed * s, spin->precession * s }, sine, cosine);
-	ob_theta_value t = ob_theta_at(&spin->theta, sine[0], cosine[0]);
-	ob_vec3 n = direction_at(spin, &t);
-	azimuth_at(spin, sine[1], cosine[1], &t, n, &c, &d);
-	ob_quat back = { spin->lift0.w, -spin->lift0.x, -spin->lift0.y, -spin->lift0.z };
-	ob_quat turn = half_turn(c * spin->cos0 + d * spin->sin0, d * spin->cos0 - c * spin->sin0);
-	ob_quat sorted = ob_quat_mul(back, ob_quat_mul(turn, lift_of(n)));
-	ob_vec3 axis = unsort(spin, sorted.x, sorted.y, sorted.z);
-	ob_quat own = { sorted.w, axis.x, axis.y, axis.z };
-	ob_quat q = unit(ob_quat_mul(spin->q, own));
-	ob_vec3 along = unsort(spin, n.x, n.y, n.z);
-	ob_mat3 r = ob_quat_matrix(q);
-	*q_out = q;
-	*w_out = ob_rotate(&r, ob_v3(spin->rate.x * along.x, spin->rate.y * along.y, spin->rate.z * along.z));
+	const ob_theta_series *own = &spin->series;
+	const series t = { own->terms, own->even, own->odd, own->plain };
+	quaternion q;
+	vector w;
+	turn_theta(spin->theta, &t, s, &q, &w);
+	*q_out = (ob_quat){ q.w, q.x, q.y, q.z };
+	*w_out = ob_v3(w.x, w.y, w.z);
 }
 
 // The rate follows from the momentum, which stays.
@@ -311,6 +305,11 @@ static void short_turn_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3
 	*w_out = ob_rotate(&r, ob_v3(l.x / i.x, l.y / i.y, l.z / i.z));
 }
 
+static bool is_short(const ob_spin *spin, double s)
+{
+	return is_ordinary(spin) && ob_norm2(spin->w) * s * s < OB_MAGNUS_LONGEST * OB_MAGNUS_LONGEST;
+}
+
 static void find_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 {
 	if (s == 0) {
@@ -318,14 +317,14 @@ static void find_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 		*w_out = spin->w;
 		return;
 	}
-	if (is_ordinary(spin) && ob_norm2(spin->w) * s * s < OB_MAGNUS_LONGEST * OB_MAGNUS_LONGEST) {
+	if (is_short(spin, s)) {
 		short_turn_at(spin, s, q_out, w_out);
 		return;
 	}
 	if (!spin->planned)
 		plan_long_turns(spin);
 	if (spin->kind == OB_SPIN_THETA)
-		theta_at(spin, s, q_out, w_out);
+		long_turn_at(spin, s, q_out, w_out);
 	else
 		turns_at(spin, s, q_out, w_out);
 }
@@ -339,6 +338,54 @@ void ob_spin_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 	*q_out = spin->last_q;
 	*w_out = spin->last_w;
 }
+
+#ifdef OB_HAVE_MOTION_LANES
+// Of up to four, long turns all, which instant each is asked for. One alone is left as it is.
+static void turn_together(ob_spin *const *spin, const double *s, int n)
+{
+	ob_theta_start from[OB_LANES];
+	ob_spin *plan[OB_LANES], *turn[OB_LANES];
+	double when[OB_LANES];
+	int plans = 0, turns = 0;
+	if (n < 2)
+		return;
+	for (int i = 0; i < n; i++) {
+		ob_spin *x = spin[i];
+		const bool planned = x->planned;
+		if (!planned)
+			classify(x, &from[plans]);
+		if (!planned && x->kind == OB_SPIN_THETA)
+			plan[plans++] = x;
+		if (x->kind == OB_SPIN_THETA)
+			when[turns] = s[i], turn[turns++] = x;
+	}
+	if (plans == 1)
+		plan_theta_of(plan[0], from);
+	else if (plans)
+		ob_spin_lanes_plan(plan, from, plans);
+	if (turns > 1)
+		ob_spin_lanes_turn(turn, when, turns);
+}
+
+void ob_spin_prepare(ob_spin *const *spin, const double *s, int n)
+{
+	ob_spin *turn[OB_LANES];
+	double when[OB_LANES];
+	int turns = 0;
+	if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+		return;
+	for (int i = 0; i < n; i++) {
+		if (s[i] == spin[i]->last || s[i] == 0 || is_short(spin[i], s[i]))
+			continue;
+		when[turns] = s[i], turn[turns++] = spin[i];
+		if (turns == OB_LANES)
+			turn_together(turn, when, turns), turns = 0;
+	}
+	turn_together(turn, when, turns);
+}
+#else
+void ob_spin_prepare(ob_spin *const *spin, const double *s, int n) {}
+#endif
 
 void ob_rotate_free(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out)
 {

@@ -9,12 +9,41 @@
 
 #include <ob/vec.h>
 
-#include "motion/jacobi.h"
-
 typedef enum ob_spin_kind {
 	OB_SPIN_TURNS, // symmetric tops, spin about a principal axis, rest: two turns at constant rates
 	OB_SPIN_THETA, // three different moments
 } ob_spin_kind;
+
+// The constants of OB_SPIN_THETA, in the frame of the sorted axes where nothing else is said: numbers that lie side by
+// side, of which four rotations' are turned over into lanes.
+enum {
+	OB_THETA_START = 0, // attitude at s = 0
+	OB_THETA_RATE = 4, // momentum / moment along each axis of the body for a unit direction, rad/s
+	OB_THETA_AMPLITUDE = 7, // of cn, sn, dn in the direction of the momentum
+	OB_THETA_M = 10, // parameter of the elliptic functions k^2, 1 - k^2, and sqrt(k')
+	OB_THETA_MC,
+	OB_THETA_ROOT_KC,
+	OB_THETA_PHASE, // rad, rad/s: argument of the theta functions
+	OB_THETA_SPEED,
+	OB_THETA_PRECESSION, // rad/s, mean rate of turn about the momentum
+	OB_THETA_SIDE, // +1 or -1: sign of the imaginary shift
+	OB_THETA_COS0, // direction that the azimuth about the momentum has at s = 0
+	OB_THETA_SIN0,
+	OB_THETA_LIFT, // turn of the momentum's direction at s = 0 to the third axis
+	OB_THETA_FRAME = OB_THETA_LIFT + 4, // the body's axes by the sorted ones, a matrix by rows: 0, 1 and -1
+	OB_THETA_CONSTANTS = OB_THETA_FRAME + 9,
+};
+
+enum { OB_THETA_TERMS = 20 }; // enough for a complementary modulus down to 1e-16, where the nome is .88
+
+// The series of theta_1 and theta_2 at v and of theta_1 at v + i alpha, with their common factor 2 q^(1/4) left out
+// (and e^alpha / 2 more for the complex one): every use takes ratios or directions only.
+typedef struct ob_theta_series {
+	int terms;
+	double plain[OB_THETA_TERMS]; // q^(n (n + 1))
+	double even[OB_THETA_TERMS]; // q^(n (n + 1)) 2 cosh((2 n + 1) alpha) e^-alpha
+	double odd[OB_THETA_TERMS]; // q^(n (n + 1)) 2 sinh((2 n + 1) alpha) e^-alpha
+} ob_theta_series;
 
 typedef struct ob_spin {
 	ob_spin_kind kind;
@@ -31,18 +60,9 @@ typedef struct ob_spin {
 	ob_vec3 world; // rad/s, world frame
 	ob_vec3 body; // rad/s, body frame
 
-	// OB_SPIN_THETA, in the frame of the sorted axes: component i is sign[i] times component axis[i] of the body
-	int axis[3];
-	double sign[3];
-	ob_vec3 rate; // momentum / moment along each axis of the body for a unit direction, rad/s
-	ob_vec3 amplitude; // of cn, sn, dn in the direction of the momentum
-	double m, mc, root_kc; // parameter of the elliptic functions k^2, 1 - k^2, and sqrt(k')
-	double phase, speed; // rad, rad/s: argument of the theta functions
-	double precession; // rad/s, mean rate of turn about the momentum
-	double side; // +1 or -1: sign of the imaginary shift
-	double cos0, sin0; // direction that the azimuth about the momentum has at s = 0
-	ob_quat lift0; // turn of the momentum's direction at s = 0 to the third axis
-	ob_theta theta;
+	// OB_SPIN_THETA
+	double theta[OB_THETA_CONSTANTS];
+	ob_theta_series series;
 } ob_spin;
 
 // q is a unit quaternion, w in the world frame. A moment that is not positive counts as "any": w stays constant.
@@ -65,5 +85,8 @@ double ob_quat_excess(ob_quat q);
 
 // Attitude and rate (world frame) at s, which may be negative.
 void ob_spin_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out);
+// Makes ready what ob_spin_at is asked for next, of n different rotations at an instant each: four side by side where
+// they are long. It gives what it would have given without that.
+void ob_spin_prepare(ob_spin *const *spin, const double *s, int n);
 
 #endif

@@ -1,5 +1,6 @@
 // When flights come down on a plane, against their paths followed in small steps.
 #include <stdlib.h>
+#include <string.h>
 
 #include "check.h"
 #include "motion/flight.h"
@@ -121,6 +122,41 @@ static void test_after_a_bounce(void)
 	CHECK_NEAR(ob_landing_time(&box, &ground, 0, 1), 0, 0);
 }
 
+// Whoever flies beside a body: it lands when it lands alone.
+static void test_side_by_side(uint64_t *seed)
+{
+	static const ob_shape other[] = { OB_SHAPE_SPHERE, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER, OB_SHAPE_HULL,
+					  OB_SHAPE_NONE };
+	enum { OTHERS = sizeof other / sizeof *other };
+	static flight x[OB_LANDINGS], alone;
+	for (int k = 0; k < 4000; k++) {
+		const int n = 1 + (int)(OB_LANDINGS * uniform(seed));
+		const bool boxes = uniform(seed) < .8;
+		ob_landing of[OB_LANDINGS];
+		for (int i = 0; i < n; i++) {
+			const ob_shape shape =
+				boxes || uniform(seed) < .3 ? OB_SHAPE_BOX : other[(int)(OTHERS * uniform(seed))];
+			random_flight(&x[i], shape, seed);
+			if (x[i].f.spin)
+				x[i].f.spin = &x[i].spin;
+			of[i] = (ob_landing){ .flier = &x[i].f, .plane = &x[i].plane, .until = within(seed, 0, 3) };
+			if (uniform(seed) < .3) // as it lands, or later
+				of[i].from = ob_landing_time(&x[i].f, &x[i].plane, 0, of[i].until);
+			if (isinf(of[i].from))
+				of[i].from = within(seed, 0, of[i].until);
+		}
+		ob_landing_times(of, n);
+		for (int i = 0; i < n; i++) {
+			alone = x[i];
+			ob_spin_plan(&alone.spin, alone.f.q, alone.f.w, alone.f.inertia);
+			alone.f.spin = x[i].f.spin ? &alone.spin : NULL;
+			alone.f.hull = &alone.hull;
+			const double time = ob_landing_time(&alone.f, &alone.plane, of[i].from, of[i].until);
+			CHECK(memcmp(&time, &of[i].time, sizeof time) == 0);
+		}
+	}
+}
+
 static void test_spin_bound(uint64_t *seed)
 {
 	ob_quat q = random_attitude(seed), at;
@@ -143,5 +179,6 @@ int main(void)
 	for (int k = 0; k < 500; k++)
 		test_spin_bound(&seed);
 	test_after_a_bounce();
+	test_side_by_side(&seed);
 	return check_end();
 }

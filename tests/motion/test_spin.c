@@ -1,4 +1,6 @@
 // Torque-free rotation against a long double Taylor series, and what it must conserve.
+#include <string.h>
+
 #include <ob/motion.h>
 
 #include "check.h"
@@ -159,6 +161,53 @@ static void test_any_order(void)
 	}
 }
 
+// Any body: some do not turn, some have equal moments, some turn about an axis, some nearly about the middle one.
+static void random_rotation(uint64_t *seed, ob_spin *spin)
+{
+	const double kind = uniform(seed);
+	ob_vec3 inertia = random_inertia(seed), w = random_vector(seed, 8);
+	const ob_quat q = random_attitude(seed);
+	const ob_mat3 r = ob_quat_matrix(q);
+	if (kind < .05)
+		inertia.y = inertia.x;
+	else if (kind < .1)
+		w = ob_scale(ob_column(&r, 1), 5);
+	else if (kind < .15)
+		w = ob_v3(0, 0, 0);
+	else if (kind < .3)
+		w = ob_madd(ob_scale(random_vector(seed, 1), pow(10, within(seed, -15, -1))), 5,
+			    ob_column(&r, kind < .2));
+	ob_spin_plan(spin, q, w, inertia);
+}
+
+// Whoever is beside a body: it has the bits that it has alone.
+static void test_side_by_side(void)
+{
+	enum { MOST = 11 };
+	uint64_t seed = 6;
+	for (int k = 0; k < 3000; k++) {
+		const int n = 1 + (int)(MOST * uniform(&seed));
+		ob_spin spin[MOST], alone[MOST], *of[MOST];
+		double s[MOST];
+		for (int i = 0; i < n; i++) {
+			const double kind = uniform(&seed), far = pow(10, within(&seed, -4, 7));
+			random_rotation(&seed, &spin[i]);
+			s[i] = kind < .1 ? 0 : kind < .8 ? within(&seed, -2, 9) : kind < .9 ? far : -far;
+			alone[i] = spin[i];
+			of[i] = &spin[i];
+		}
+		ob_spin_prepare(of, s, n);
+		for (int again = 0; again < 2; again++)
+			for (int i = 0; i < n; i++) {
+				ob_quat q[2];
+				ob_vec3 w[2];
+				ob_spin_at(&spin[i], s[i] + again, &q[0], &w[0]);
+				ob_spin_at(&alone[i], s[i] + again, &q[1], &w[1]);
+				CHECK(memcmp(&q[0], &q[1], sizeof *q) == 0 && memcmp(&w[0], &w[1], sizeof *w) == 0);
+			}
+	}
+}
+
 int main(void)
 {
 	test_short_turns();
@@ -168,5 +217,6 @@ int main(void)
 	test_composition();
 	test_many_short_steps();
 	test_same_bits();
+	test_side_by_side();
 	return check_end();
 }

@@ -1,7 +1,7 @@
-// Four doubles side by side, one pair of objects per lane. No operation mixes lanes, so a lane's bits do not
+// Four doubles side by side, one body or pair of bodies per lane. No operation mixes lanes, so a lane's bits do not
 // depend on its neighbours, nor on the instruction set that the compiler picks.
-#ifndef OB_CONTACT_LANES_H
-#define OB_CONTACT_LANES_H
+#ifndef OB_ELEMENTARY_LANES_H
+#define OB_ELEMENTARY_LANES_H
 
 #include <stdint.h>
 #ifdef __AVX__
@@ -50,10 +50,17 @@ static inline lanes lanes_abs(lanes a)
 {
 	return (lanes)((lane_mask)a & INT64_MAX);
 }
+#if defined(__AVX__)
+static inline lanes lanes_sqrt(lanes a)
+{
+	return (lanes)_mm256_sqrt_pd((__m256d)a);
+}
+#else
 static inline lanes lanes_sqrt(lanes a)
 {
 	return (lanes){ __builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3]) };
 }
+#endif
 static inline double lanes_largest(lanes a)
 {
 	double most = a[0];
