@@ -106,7 +106,18 @@ static bool apply_impact(ob_sim *s, const ob_course c[2], const ob_manifold *m, 
 static bool rebound_from_each_other(ob_sim *s, ob_course c[2], const ob_manifold *m)
 {
 	ob_state at[2] = { ob_course_state(s, &c[0]), ob_course_state(s, &c[1]) };
-	return apply_impact(s, c, m, at) && ob_course_set_off(s, &c[0], &at[0]) && ob_course_set_off(s, &c[1], &at[1]);
+	if (!apply_impact(s, c, m, at) || !ob_course_set_off(s, &c[0], &at[0]) || !ob_course_set_off(s, &c[1], &at[1]))
+		return false;
+	ob_courses_find_landings(s, (ob_course *[]){ &c[0], &c[1] }, 2);
+	return true;
+}
+
+static bool rebound_from_plane(ob_sim *s, ob_course *c)
+{
+	if (!ob_course_rebound(s, c))
+		return false;
+	ob_courses_find_landings(s, &c, 1);
+	return true;
 }
 
 // From one impact to the next, until the step's end (s). impacts: how many there were.
@@ -121,7 +132,7 @@ static bool follow(ob_sim *s, ob_course c[2], double end, uint32_t *impacts)
 		const bool meet = x.time < INFINITY;
 		for (int i = 0; i < 2; i++)
 			ob_course_follow(s, &c[i], meet ? x.time : until);
-		if (meet ? !rebound_from_each_other(s, c, &x.m) : until < end && !ob_course_rebound(s, first))
+		if (meet ? !rebound_from_each_other(s, c, &x.m) : until < end && !rebound_from_plane(s, first))
 			return false;
 		if (!meet && until == end)
 			return true;
@@ -138,8 +149,7 @@ bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2])
 	    !(ob_pair_restitution(ob_passport_of(s->u, id[0])->restitution, ob_passport_of(s->u, id[1])->restitution) >
 	      0))
 		return false;
-	for (int i = 0; i < 2; i++)
-		ob_course_begin(s, id[i], false, &c[i]);
+	ob_courses_begin(s, id, c, 2);
 	if (!ob_equal(c[0].m.a, c[1].m.a) || !follow(s, c, end, &impacts))
 		return false;
 	s->counters.impacts += impacts;

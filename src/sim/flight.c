@@ -22,45 +22,19 @@ static ob_half_space half_space(const ob_universe *u, uint32_t plane)
 	return (ob_half_space){ n, ob_dot(n, m->p) };
 }
 
-// How the object turns in a flight; NULL: it does not, or that cannot be seen.
-static ob_spin *spin_of(ob_sim *s, uint32_t id, const ob_motion *f)
-{
-	const ob_passport *body = ob_passport_of(s->u, id);
-	return body->shape != OB_SHAPE_SPHERE && ob_norm2(f->w) > 0
-		       ? ob_rotation_cache_get(&s->rotations, id, f->q, f->w, body->inertia)
-		       : NULL;
-}
-
 // The flight as motion/flight.h takes it. Objects that touch as axis-aligned boxes reach beyond their bounding sphere.
-static ob_flier landing_body(ob_sim *s, uint32_t id, const ob_motion *f, ob_spin *spin)
+static ob_flier landing_body(const ob_sim *s, const ob_course *c)
 {
-	const ob_passport *body = ob_passport_of(s->u, id);
-	ob_flier out = { body->shape, body->size, body->inertia, f->p, f->v,
-			 f->a,        f->q,       f->w,          spin, ob_hull_of(s->u, body) };
+	const ob_passport *body = ob_passport_of(s->u, c->id);
+	const ob_motion *f = &c->m;
+	ob_flier out = { body->shape, body->size, body->inertia, f->p,    f->v,
+			 f->a,        f->q,       f->w,          c->spin, ob_hull_of(s->u, body) };
 	if (s->settings->narrow_phase == OB_NARROW_AABB) {
 		double reach = sqrt(3) * ob_shape_radius(body->shape, body->size);
 		out.shape = OB_SHAPE_NONE;
 		out.size = ob_v3(reach, 0, 0);
 	}
 	return out;
-}
-
-// When the flight first meets a plane (s), from an instant on; infinity: not until "until". plane: its id.
-static double plane_impact_time(ob_sim *s, uint32_t id, const ob_motion *flight, ob_spin *spin, double from,
-				double until, uint32_t *plane)
-{
-	const ob_step_data *data = s->data;
-	ob_flier f = landing_body(s, id, flight, spin);
-	double first = INFINITY;
-	enum { WORK_OF_LANDING = 32 };
-	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(s); i++) {
-		ob_budget_note(s, WORK_OF_LANDING);
-		ob_half_space ground = half_space(s->u, data->plane[i]);
-		double t = ob_landing_time(&f, &ground, from - flight->t0, ob_min(until, first) - flight->t0);
-		if (flight->t0 + t < first)
-			first = flight->t0 + t, *plane = data->plane[i];
-	}
-	return ob_max(first, from);
 }
 
 enum { SUPPORT_POINTS = 8 };
@@ -333,32 +307,66 @@ static double flight_horizon(const ob_sim *s, uint32_t id, ob_vec3 v, ob_vec3 a)
 	return ob_min(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // for which it moves so far
 }
 
+// How it turns, where that can be seen: by what the cache has of it, or from the beginning.
 static void take_rotation(ob_sim *s, ob_course *c)
 {
-	c->spin = spin_of(s, c->id, &c->m);
-	if (c->spin && !c->alone)
-		c->own = *c->spin, c->spin = &c->own;
+	const ob_passport *body = ob_passport_of(s->u, c->id);
+	const ob_motion *m = &c->m;
+	c->spin = body->shape != OB_SHAPE_SPHERE && ob_norm2(m->w) > 0 ? &c->own : NULL;
+	if (c->spin && !ob_rotation_cache_find(&s->rotations, c->id, m->q, m->w, body->inertia, c->spin))
+		ob_spin_plan(c->spin, m->q, m->w, body->inertia);
 }
 
-// When it lands, from an instant on.
-static void find_landing(ob_sim *s, ob_course *c, double from)
-{
-	c->m.valid_until = ob_min(c->horizon, plane_impact_time(s, c->id, &c->m, c->spin, from, c->horizon, &c->plane));
-}
-
-void ob_course_begin(ob_sim *s, uint32_t id, bool alone, ob_course *c)
+static void begin(ob_sim *s, uint32_t id, ob_course *c)
 {
 	const double h = s->settings->step_length;
 	const uint64_t step = ob_step_count(s->u);
 	c->id = id;
 	c->impacts = c->plane = 0;
-	c->alone = alone;
 	c->m = ob_ballistic_flight(s, id);
 	c->since = (double)step * h;
 	c->horizon = (double)(step + 1) * h + flight_horizon(s, id, ob_velocity_at(&c->m, c->since), c->m.a);
 	c->m.path = ob_path_now(&c->m, step);
 	take_rotation(s, c);
-	find_landing(s, c, ob_max(c->m.valid_until, c->since));
+}
+
+void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n)
+{
+	enum { WORK_OF_LANDING = 32 };
+	const ob_step_data *data = s->data;
+	ob_flier flier[OB_COURSES];
+	ob_landing of[OB_COURSES];
+	double from[OB_COURSES], first[OB_COURSES];
+	for (uint32_t k = 0; k < n; k++) {
+		flier[k] = landing_body(s, c[k]);
+		from[k] = ob_max(c[k]->m.valid_until, c[k]->since);
+		first[k] = INFINITY;
+	}
+	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(s); i++) {
+		const ob_half_space ground = half_space(s->u, data->plane[i]);
+		ob_budget_note(s, WORK_OF_LANDING * n);
+		for (uint32_t k = 0; k < n; k++)
+			of[k] = (ob_landing){ .flier = &flier[k],
+					      .plane = &ground,
+					      .from = from[k] - c[k]->m.t0,
+					      .until = ob_min(c[k]->horizon, first[k]) - c[k]->m.t0 };
+		ob_landing_times(of, (int)n);
+		for (uint32_t k = 0; k < n; k++)
+			if (c[k]->m.t0 + of[k].time < first[k])
+				first[k] = c[k]->m.t0 + of[k].time, c[k]->plane = data->plane[i];
+	}
+	for (uint32_t k = 0; k < n; k++)
+		c[k]->m.valid_until = ob_min(c[k]->horizon, ob_max(first[k], from[k]));
+}
+
+void ob_courses_begin(ob_sim *s, const uint32_t *id, ob_course *c, uint32_t n)
+{
+	ob_course *of[OB_COURSES];
+	for (uint32_t k = 0; k < n; k++) {
+		begin(s, id[k], &c[k]);
+		of[k] = &c[k];
+	}
+	ob_courses_find_landings(s, of, n);
 }
 
 void ob_course_follow(ob_sim *s, ob_course *c, double until)
@@ -385,8 +393,8 @@ bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at)
 		return false;
 	c->m.t0 = c->since;
 	c->m.p = at->pose.p, c->m.q = at->pose.q, c->m.v = at->v, c->m.w = at->w;
+	c->m.valid_until = c->since;
 	take_rotation(s, c);
-	find_landing(s, c, c->since);
 	return true;
 }
 
@@ -401,25 +409,56 @@ void ob_course_publish(ob_sim *s, ob_course *c)
 	// After one impact, what was published before holds up to it; not up to the last of several.
 	c->m.flags = c->impacts < 2 ? OB_MOTION_FREE : 0;
 	publish_flight(s, c->id, &c->m, c->spin, c->impacts == 0);
+	if (c->spin)
+		ob_rotation_cache_put(&s->rotations, c->id, c->spin);
 }
 
-bool ob_ballistic_advance(ob_sim *s, uint32_t id)
+// Makes ready where they have come to.
+static void prepare_states(ob_course *const *c, uint32_t n)
 {
-	ob_course c;
-	if (s->settings->integrator == OB_INTEGRATOR_ODE) {
-		step_by_ode(s, id);
-		return true;
-	}
+	ob_spin *spin[OB_COURSES];
+	double s[OB_COURSES];
+	int spins = 0;
+	for (uint32_t k = 0; k < n; k++)
+		if (c[k]->spin)
+			s[spins] = c[k]->since - c[k]->m.t0, spin[spins++] = c[k]->spin;
+	ob_spin_prepare(spin, s, spins);
+}
+
+void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
+{
 	const double end = (double)(ob_step_count(s->u) + 1) * s->settings->step_length;
-	ob_course_begin(s, id, true, &c);
-	for (;;) {
-		ob_course_follow(s, &c, ob_min(c.m.valid_until, end));
-		if (!(c.m.valid_until < end))
-			break;
-		if (!ob_course_rebound(s, &c))
-			return false;
+	ob_course c[OB_COURSES], *on[OB_COURSES];
+	uint32_t left = n;
+	for (uint32_t k = 0; k < n; k++) {
+		done[k] = true;
+		on[k] = &c[k];
 	}
-	s->counters.impacts += c.impacts;
-	ob_course_publish(s, &c);
-	return true;
+	if (s->settings->integrator == OB_INTEGRATOR_ODE) {
+		for (uint32_t k = 0; k < n; k++)
+			step_by_ode(s, id[k]);
+		return;
+	}
+	ob_courses_begin(s, id, c, n);
+	while (left) { // from one impact of each to the next
+		uint32_t hit = 0, off = 0;
+		for (uint32_t k = 0; k < left; k++) {
+			ob_course_follow(s, on[k], ob_min(on[k]->m.valid_until, end));
+			if (on[k]->m.valid_until < end)
+				on[hit++] = on[k];
+		}
+		prepare_states(on, hit);
+		for (uint32_t k = 0; k < hit; k++)
+			if (ob_course_rebound(s, on[k]))
+				on[off++] = on[k];
+			else
+				done[on[k] - c] = false;
+		ob_courses_find_landings(s, on, off);
+		left = off;
+	}
+	for (uint32_t k = 0; k < n; k++)
+		if (done[k]) {
+			s->counters.impacts += c[k].impacts;
+			ob_course_publish(s, &c[k]);
+		}
 }

@@ -9,6 +9,7 @@
 #ifndef OB_SIM_FLIGHT_H
 #define OB_SIM_FLIGHT_H
 
+#include "motion/flight.h"
 #include "sim/state.h"
 
 // The flight of an object without contacts at the start of the running step: the one published or, where its external
@@ -17,12 +18,15 @@ ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id);
 // As ob_state_now at an instant (s), to the last bit, with the worker's cached rotation.
 ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *flight, double time);
 
-// Moves an object without contacts through the running step, with its impacts on planes, and publishes its motion.
-// false: the contact solver must do it, and nothing was changed.
-bool ob_ballistic_advance(ob_sim *s, uint32_t id);
-// The same of two objects that are near nothing but each other and planes: their hits are made at their instants, and
-// each goes on as a flight (ballistic_pair.c). Without substeps, and without a frame: two that fall alike are straight
-// on their way to each other.
+enum { OB_COURSES = OB_LANDINGS }; // that are followed side by side, at most
+
+// Moves up to OB_COURSES objects without contacts through the running step, each with its impacts on planes, and
+// publishes their motions: what each does follows from itself alone. done, of each; false: the contact solver must do
+// it, and nothing was changed.
+void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done);
+// Of two objects that are near nothing but each other and planes: their hits are made at their instants, and each goes
+// on as a flight (ballistic_pair.c). Without substeps, and without a frame: two that fall alike are straight on their
+// way to each other.
 bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2]);
 
 // Publishes the motion m of an object that must be solved in the next step, or rests until something comes near it: its
@@ -31,11 +35,12 @@ void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);
 
 // ---- a flight within the running step: as far as it is known, from one impact to the next
 //
-//   begin ──> follow ──> rebound (on a plane), or set_off (as who has hit it leaves it) ──> follow ──> .. ──> publish
+//   begin ──> follow ──> rebound (on a plane), or set_off (as who has hit it leaves it) ──> publish
+//               ^                                │
+//               └──────── find_landings <────────┘
 
 typedef struct ob_course {
 	uint32_t id, impacts;
-	bool alone; // the rotation is the cache's: another course may take its place there
 	ob_motion m; // since the last impact; it meets a plane at valid_until, or is not known beyond
 	ob_spin *spin; // of m; NULL: it does not turn, or that cannot be seen
 	ob_spin own;
@@ -43,7 +48,10 @@ typedef struct ob_course {
 	double since, horizon; // s: so far it has come; and no farther is it computed
 } ob_course;
 
-void ob_course_begin(ob_sim *s, uint32_t id, bool alone, ob_course *c);
+// n: up to OB_COURSES, of different objects
+void ob_courses_begin(ob_sim *s, const uint32_t *id, ob_course *c, uint32_t n);
+// Where each goes from where it was hit.
+void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n);
 // To an instant (s) that is no later than m.valid_until.
 void ob_course_follow(ob_sim *s, ob_course *c, double until);
 // Where it has come to.

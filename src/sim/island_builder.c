@@ -11,7 +11,9 @@
 
 enum { NONE = UINT32_MAX };
 enum { LINKED_AT_ONCE = 64 }; // bodies: likewise
-enum { CHUNK_WORK_MIN = 48 }; // work of a chunk, some us: for less the gate would cost more than another worker gains
+// Work of a chunk. Some us: for less the gate would cost more than another worker gains. And if there are so many
+// chunks for each worker, of as many flights as are followed side by side.
+enum { CHUNK_WORK_MIN = 48, CHUNK_WORK_ABREAST = 160, CHUNKS_ABREAST = 4 };
 
 // What islands are built with: the bodies that are involved, and a union-find forest of them, whose roots are the
 // lowest ids of their trees. Nothing is as long as there are objects, or pairs, and has to be cleared; but where much
@@ -463,7 +465,12 @@ static void sort_by_work(builder *p)
 
 uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers)
 {
-	const uint64_t share = total / (64 * (uint64_t)workers) + 1;
+	const uint64_t least = total / (64 * (uint64_t)workers) + 1, few = total / (CHUNKS_ABREAST * (uint64_t)workers),
+		       share = least > few                ? least
+			       : few < CHUNK_WORK_ABREAST ? few
+							  : CHUNK_WORK_ABREAST;
+	if (workers == 1)
+		return UINT64_MAX;
 	return share > CHUNK_WORK_MIN ? share : CHUNK_WORK_MIN;
 }
 

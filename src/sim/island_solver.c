@@ -188,18 +188,40 @@ static void end_contacts(ob_sim *s, const ob_island *is)
 	}
 }
 
-static bool advance_ballistically(ob_sim *s, const ob_island *is)
+static bool advance_pair(ob_sim *s, const ob_island *is)
 {
-	if (!may_advance_ballistically(s, is))
+	if (is->members != 2 || !may_advance_ballistically(s, is))
 		return false;
 	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
 	ob_touches_begin(s, is);
-	const uint32_t *id = s->data->member + is->first_member;
-	if (is->members == 1 ? !ob_ballistic_advance(s, id[0]) : !ob_ballistic_pair_advance(s, id))
+	if (!ob_ballistic_pair_advance(s, s->data->member + is->first_member))
 		return false;
 	end_contacts(s, is);
 	s->counters.ballistic_advances += is->members;
 	return true;
+}
+
+void ob_islands_fly(ob_sim *s, uint32_t first, uint32_t n, bool *flown)
+{
+	const ob_step_data *data = s->data;
+	uint32_t lone[OB_ISLANDS_ABREAST], id[OB_ISLANDS_ABREAST], fly = 0;
+	bool done[OB_ISLANDS_ABREAST];
+	ob_budget_begin_share(s, data->member[data->island[first].first_member]);
+	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
+	for (uint32_t k = 0; k < n; k++) {
+		const ob_island *is = &data->island[first + k];
+		flown[k] = false;
+		if (is->members != 1 || !may_advance_ballistically(s, is))
+			continue;
+		ob_touches_begin(s, is);
+		lone[fly] = k, id[fly++] = data->member[is->first_member];
+	}
+	ob_ballistic_advance(s, id, fly, done);
+	for (uint32_t i = 0; i < fly; i++)
+		if ((flown[lone[i]] = done[i])) {
+			end_contacts(s, &data->island[first + lone[i]]);
+			s->counters.ballistic_advances++;
+		}
 }
 
 // ---- the step
@@ -220,7 +242,7 @@ void ob_island_solve(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &s->data->island[i];
 	ob_budget_begin_share(s, s->data->member[is->first_member]);
-	if (advance_ballistically(s, is))
+	if (advance_pair(s, is))
 		return;
 	const uint64_t before = cost_so_far(s);
 	s->island.in_field = false;

@@ -30,13 +30,41 @@ void ob_rotation_cache_finish(ob_rotation_cache *p)
 	free(p->slot);
 }
 
+static ob_cached_rotation *slot_of(ob_rotation_cache *p, uint32_t id)
+{
+	return &p->slot[id & (p->slots - 1)];
+}
+
+// An empty one holds no unit quaternion.
+static bool holds(const ob_cached_rotation *cached, const rotation_key *from)
+{
+	return memcmp(from, &cached->from, sizeof *from) == 0;
+}
+
 ob_spin *ob_rotation_cache_get(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia)
 {
-	ob_cached_rotation *cached = &p->slot[id & (p->slots - 1)];
-	rotation_key from = { q, w, inertia };
-	if (memcmp(&from, &cached->from, sizeof from)) { // an empty one holds no unit quaternion
+	ob_cached_rotation *cached = slot_of(p, id);
+	const rotation_key from = { q, w, inertia };
+	if (!holds(cached, &from)) {
 		cached->from = from;
 		ob_spin_plan(&cached->spin, q, w, inertia);
 	}
 	return &cached->spin;
+}
+
+bool ob_rotation_cache_find(ob_rotation_cache *p, uint32_t id, ob_quat q, ob_vec3 w, ob_vec3 inertia, ob_spin *out)
+{
+	const ob_cached_rotation *cached = slot_of(p, id);
+	const rotation_key from = { q, w, inertia };
+	if (!holds(cached, &from))
+		return false;
+	*out = cached->spin;
+	return true;
+}
+
+void ob_rotation_cache_put(ob_rotation_cache *p, uint32_t id, const ob_spin *spin)
+{
+	ob_cached_rotation *cached = slot_of(p, id);
+	cached->from = (rotation_key){ spin->q, spin->w, spin->inertia };
+	cached->spin = *spin;
 }

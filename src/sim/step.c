@@ -356,13 +356,22 @@ static void list_pairs(ob_sim *s)
 	}
 }
 
-static void solve_island(ob_sim *s, uint32_t island, bool first)
+// Of a chunk, whose beginning they may be.
+static void solve_abreast(ob_sim *s, uint32_t first, uint32_t n, bool begins)
 {
-	bool shown = ob_span_island_begin(s, island, first);
-	ob_island_solve(s, island);
-	if (shown)
-		ob_span_island_end(s, island);
-	ob_fault_chance(s);
+	bool flown[OB_ISLANDS_ABREAST];
+	bool shown = ob_span_island_begin(s, first, begins);
+	ob_islands_fly(s, first, n, flown);
+	for (uint32_t k = 0; k < n; k++) {
+		if (k)
+			shown = ob_span_island_begin(s, first + k, false);
+		if (!flown[k])
+			ob_island_solve(s, first + k);
+		if (shown)
+			ob_span_island_end(s, first + k);
+		ob_fault_chance(s);
+		ob_profile_task_done(s, first + k);
+	}
 }
 
 // The next chunk: one's own if they are shared, else one that is claimed. To the contained they are dealt out so that
@@ -382,29 +391,38 @@ static void note_home(const ob_sim *s, uint32_t island)
 		ob_home_set(s->u, s->data->member[is->first_member + k], s->worker);
 }
 
+// What of the islands from the first on is read from anywhere.
+static void prefetch_islands(ob_sim *s, uint32_t first, uint32_t n)
+{
+	for (uint32_t k = 0; k < n; k++)
+		ob_prefetch_island(s, first + k);
+}
+
 static void solve_islands(ob_sim *s)
 {
-	enum { MEMBERS_AHEAD = 4 };
 	const ob_step_data *data = s->data;
 	const bool notes = !data->count->shared && !ob_universe_contains(s->u); // else who deals them does
+	const uint32_t most = s->settings->freezes ? 1 : OB_ISLANDS_ABREAST; // what fails there has a budget of its own
 	uint32_t chunk, chunks = 0, objects = 0;
 	if (s->settings->one_per_object) {
-		solve_island(s, data->result_island[s->worker], true);
+		solve_abreast(s, data->result_island[s->worker], 1, true);
 		return;
 	}
 	while (next_chunk(s, &chunks, &chunk)) {
 		const uint32_t first = data->chunk[chunk], end = data->chunk[chunk + 1];
 		ob_span_chunk_begin(s);
-		for (uint32_t i = first; i < end; i++) {
-			if (i + MEMBERS_AHEAD < end) // beyond it another worker writes what would be read here
-				ob_prefetch_members(s->u, i + MEMBERS_AHEAD);
-			if (i + 1 < end)
-				ob_prefetch_island(s, i + 1);
-			solve_island(s, i, i == first);
-			ob_profile_task_done(s, i);
-			if (notes)
-				note_home(s, i);
-			objects += data->island[i].members;
+		for (uint32_t i = first, n; i < end; i += n) {
+			n = end - i < most ? end - i : most;
+			prefetch_islands(s, i, n);
+			// Beyond the chunk another worker writes what would be read here.
+			for (uint32_t k = i + n; k < i + 2 * n && k < end; k++)
+				ob_prefetch_members(s->u, k);
+			solve_abreast(s, i, n, i == first);
+			for (uint32_t k = i; k < i + n; k++) {
+				if (notes)
+					note_home(s, k);
+				objects += data->island[k].members;
+			}
 		}
 		ob_span_chunk_end(s, chunk);
 	}
