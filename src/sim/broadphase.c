@@ -24,13 +24,24 @@ typedef struct cell {
 	int32_t level, x, y, z;
 } cell;
 
-static uint32_t bucket_of(const ob_step_data *data, cell c)
+// Of the cells that differ in x alone
+static uint64_t hash_of_row(cell c)
 {
-	uint64_t h = (uint64_t)(uint32_t)c.x * 0x9E3779B97F4A7C15u ^ (uint64_t)(uint32_t)c.y * 0xC2B2AE3D27D4EB4Fu ^
-		     (uint64_t)(uint32_t)c.z * 0x165667B19E3779F9u ^ (uint64_t)(uint32_t)c.level << 58;
+	return (uint64_t)(uint32_t)c.y * 0xC2B2AE3D27D4EB4Fu ^ (uint64_t)(uint32_t)c.z * 0x165667B19E3779F9u ^
+	       (uint64_t)(uint32_t)c.level << 58;
+}
+
+static uint32_t bucket_in_row(const ob_step_data *data, uint64_t row, int32_t x)
+{
+	uint64_t h = (uint64_t)(uint32_t)x * 0x9E3779B97F4A7C15u ^ row;
 	h ^= h >> 29;
 	h *= 0xBF58476D1CE4E5B9u;
 	return (uint32_t)(h >> 32) & (data->buckets - 1);
+}
+
+static uint32_t bucket_of(const ob_step_data *data, cell c)
+{
+	return bucket_in_row(data, hash_of_row(c), c.x);
 }
 
 static bool is_plane(const ob_universe *u, uint32_t id)
@@ -38,16 +49,21 @@ static bool is_plane(const ob_universe *u, uint32_t id)
 	return ob_passport_of(u, id)->shape == OB_SHAPE_PLANE;
 }
 
-static int32_t coordinate(double x, double side)
+// per_metre: cells, a power of two
+static int32_t coordinate(double x, double per_metre)
 {
-	const double c = ob_max(-1e9, ob_min(1e9, x / side));
+	const double c = ob_max(-1e9, ob_min(1e9, x * per_metre));
 	const int32_t towards_zero = (int32_t)c;
 	return towards_zero - (c < towards_zero);
 }
 
-static double side_of(int level)
+// 2^n, written into the exponent: ldexp is a call of the library.
+static double power_of_two(int n)
 {
-	return ldexp(1, level - LEVEL_ZERO);
+	const uint64_t bits = (uint64_t)(1023 + n) << 52;
+	double x;
+	memcpy(&x, &bits, sizeof x);
+	return x;
 }
 
 static cell cell_of(const float *b)
@@ -57,9 +73,10 @@ static cell cell_of(const float *b)
 	frexpf(e, &level); // e = f 2^level, f in [.5, 1): the cell's side 2^level is not below e
 	level += LEVEL_ZERO;
 	level = level < 1 ? 1 : level >= LEVELS ? LEVELS - 1 : level;
-	double side = side_of(level);
-	return (cell){ level, coordinate(.5 * ((double)b[0] + b[3]), side),
-		       coordinate(.5 * ((double)b[1] + b[4]), side), coordinate(.5 * ((double)b[2] + b[5]), side) };
+	const double per_metre = power_of_two(LEVEL_ZERO - level);
+	return (cell){ level, coordinate(.5 * ((double)b[0] + b[3]), per_metre),
+		       coordinate(.5 * ((double)b[1] + b[4]), per_metre),
+		       coordinate(.5 * ((double)b[2] + b[5]), per_metre) };
 }
 
 static bool indexed(const ob_index_cell *c)
@@ -230,26 +247,29 @@ static void scan_cells(const ob_step_data *data, uint32_t id, int level, const c
 		       cells_ahead *ahead, overlaps *a)
 {
 	for (int32_t z = lo->z; z <= hi->z; z++)
-		for (int32_t y = lo->y; y <= hi->y; y++)
-			for (int32_t x = lo->x; x <= hi->x; x++) {
-				const cell at = { level, x, y, z };
-				const uint32_t bucket = bucket_of(data, at);
+		for (int32_t y = lo->y; y <= hi->y; y++) {
+			cell at = { level, lo->x, y, z };
+			const uint64_t row = hash_of_row(at);
+			for (; at.x <= hi->x; at.x++) {
+				const uint32_t bucket = bucket_in_row(data, row, at.x);
 				__builtin_prefetch(&data->bucket[bucket]);
 				ahead->at[ahead->n] = at;
 				ahead->bucket[ahead->n++] = bucket;
 				if (ahead->n == CELLS_AT_ONCE)
 					scan_ahead(data, id, ahead, a);
 			}
+		}
 }
 
 // The cells of a class in which the centre of a box may lie that overlaps b; false: there are none.
 static bool cells_around(const ob_step_data *data, const float *b, int level, cell *lo, cell *hi)
 {
-	const double side = side_of(level), h = .5 * side; // a centre lies at most half a side outside
+	const double per_metre = power_of_two(LEVEL_ZERO - level),
+		     h = power_of_two(level - LEVEL_ZERO - 1); // a centre lies at most half a side outside
 	const int32_t *low = data->count->level_low[level], *high = data->count->level_high[level];
 	int32_t from[3], to[3];
 	for (int c = 0; c < 3; c++) {
-		from[c] = coordinate(b[c] - h, side), to[c] = coordinate(b[3 + c] + h, side);
+		from[c] = coordinate(b[c] - h, per_metre), to[c] = coordinate(b[3 + c] + h, per_metre);
 		from[c] = from[c] > low[c] ? from[c] : low[c];
 		to[c] = to[c] < high[c] ? to[c] : high[c];
 		if (from[c] > to[c])

@@ -29,14 +29,6 @@ void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step)
 		ob_calendar_level_raise(&c->level.of_4096[i / 4096], urgency);
 }
 
-static uint32_t most_of_64(const uint32_t *below)
-{
-	uint32_t most = 0;
-	for (int i = 0; i < 64; i++)
-		most = below[i] > most ? below[i] : most;
-	return most;
-}
-
 // Four side by side; compared as signed numbers, which every processor can.
 typedef int32_t quad __attribute__((vector_size(16)));
 typedef int64_t halves __attribute__((vector_size(16)));
@@ -46,21 +38,50 @@ static int32_t as_signed(uint32_t urgency)
 	return (int32_t)(urgency ^ UINT32_C(0x80000000));
 }
 
-// A bit for each of 64 that is at least so urgent.
-static uint64_t due_of_64(const uint32_t *below, uint32_t least)
+static quad four_at(const uint32_t *from)
 {
-	const int32_t low = as_signed(least), zero = as_signed(0);
+	const int32_t zero = as_signed(0);
+	quad q;
+	memcpy(&q, from, sizeof q);
+	return q ^ (quad) { zero, zero, zero, zero };
+}
+
+static quad larger_of(quad a, quad b)
+{
+	const quad larger = a > b;
+	return (a & larger) | (b & ~larger);
+}
+
+static uint32_t largest_of(quad a)
+{
+	const int32_t b = a[0] > a[1] ? a[0] : a[1], c = a[2] > a[3] ? a[2] : a[3];
+	return (uint32_t)(b > c ? b : c) ^ UINT32_C(0x80000000);
+}
+
+static uint32_t most_of_64(const uint32_t *below)
+{
+	quad most = four_at(below);
+	for (int k = 4; k < 64; k += 4)
+		most = larger_of(four_at(below + k), most);
+	return largest_of(most);
+}
+
+// A bit for each of 64 that is at least so urgent. most: of them all
+static uint64_t due_of_64(const uint32_t *below, uint32_t least, uint32_t *most)
+{
+	const int32_t low = as_signed(least);
 	uint64_t due = 0;
+	quad largest = four_at(below);
 	for (int k = 0; k < 64; k += 4) {
-		quad q;
-		memcpy(&q, below + k, sizeof q);
-		const quad is_due = ~((quad){ low, low, low, low } > (q ^ (quad){ zero, zero, zero, zero }));
+		const quad q = four_at(below + k), is_due = ~((quad){ low, low, low, low } > q);
 		const halves any = (halves)is_due;
+		largest = larger_of(q, largest);
 		if (!(any[0] | any[1]))
 			continue;
 		for (int i = 0; i < 4; i++)
 			due |= (uint64_t)(is_due[i] & 1) << (k + i);
 	}
+	*most = largest_of(largest);
 	return due;
 }
 
@@ -68,12 +89,11 @@ static uint64_t due_of_64(const uint32_t *below, uint32_t least)
 // what the level above says of them.
 static uint32_t list_64(const ob_calendar *c, uint32_t block, uint32_t least, uint32_t *list, uint32_t n, uint32_t most)
 {
-	const uint32_t *one = c->level.one + 64 * (size_t)block;
 	*c->visits += 1;
-	for (uint64_t due = due_of_64(one, least); due && n < most; due &= due - 1, n++)
+	for (uint64_t due = due_of_64(c->level.one + 64 * (size_t)block, least, &c->level.of_64[block]);
+	     due && n < most; due &= due - 1, n++)
 		if (list)
 			list[n] = 64 * block + (uint32_t)__builtin_ctzll(due);
-	c->level.of_64[block] = most_of_64(one);
 	return n;
 }
 
