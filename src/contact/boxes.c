@@ -10,6 +10,8 @@ typedef struct frame_pair {
 	double t[3], tb[3]; // centre of b seen from a, a's frame; along b's axes
 	double ha[3], hb[3]; // half extents
 	double thin; // the least thickness of both
+	double rest; // m: so deep they may be in each other at rest
+	double discount; // m: so much more must an edge's axis separate than a face's
 } frame_pair;
 
 // How it changes with time.
@@ -27,10 +29,12 @@ typedef struct axis_gaps {
 } axis_gaps;
 
 static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
-static const double prefer_face = 1e-3; // of the thickness: an edge's axis must separate by so much more than a face's
+// An edge's axis must separate by so much more than a face's: of the thickness, and no more than two may be in each
+// other at rest, for so deep do they get before the edge holds them.
+static const double prefer_face = 1e-3;
 static const double prefer_face_when_deep = .02; // of the depth, beside it
 static const double nearby = .05; // of the thickness: boxes farther apart than that need no axes of edges
-static const double parallel_edges = 1e-4; // sin^2 of their angle
+static const double parallel_edges = 1e-10; // sin^2 of their angle
 static const double same_axis = .99; // cosine
 static const double same_depth = 1e-4; // of the reference box's least half extent: points that count as equally deep
 
@@ -42,6 +46,8 @@ static void frame_pair_init(frame_pair *f, const ob_placed *a, const ob_placed *
 	memcpy(f->hb, (double[3]){ b->size.x, b->size.y, b->size.z }, sizeof f->hb);
 	f->thin =
 		2 * ob_min(ob_min(f->ha[0], ob_min(f->ha[1], f->ha[2])), ob_min(f->hb[0], ob_min(f->hb[1], f->hb[2])));
+	f->rest = ob_min(a->rest_depth, b->rest_depth);
+	f->discount = ob_min(prefer_face * f->thin, f->rest);
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++) {
 			f->c[i][j] =
@@ -153,16 +159,15 @@ static double face_cosine(const frame_pair *f, int k, int l)
 // over a seam of two coplanar faces is not hit by the side of the next one. Of those that do not close at all, axes of
 // faces that touch count first: something else holds the boxes there. -1: no axis separates; crossing is set where the
 // boxes touch along two axes of faces that do not close: edge to edge, they may go on along either.
-static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair *f, const axis_gaps *s, double rest,
-			bool *crossing)
+static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair *f, const axis_gaps *s, bool *crossing)
 {
 	frame_rates d;
 	int open[AXES], n = 0, best = -1, touching = -1;
 	double latest = -1, largest = 0, steadiest = INFINITY;
-	const double never = ob_time_to_close(a, b, 1, 0);
+	const double never = ob_time_to_close(a, b, 1, 0), rest = f->rest;
 	*crossing = false;
 	for (int k = 0; k < AXES; k++)
-		if (s->gap[k] - (k < FACES ? 0 : prefer_face * f->thin) > -rest)
+		if (s->gap[k] - (k < FACES ? 0 : f->discount) > -rest)
 			open[n++] = k;
 	if (n == 0)
 		return -1;
@@ -171,7 +176,7 @@ static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair
 	frame_rates_init(&d, f, a, b);
 	for (int k = 0; k < n; k++) {
 		const int axis = open[k];
-		double gap = s->gap[axis] - (axis < FACES ? 0 : prefer_face * f->thin);
+		double gap = s->gap[axis] - (axis < FACES ? 0 : f->discount);
 		double rate = opening_rate(f, &d, axis);
 		double time = ob_time_to_close(a, b, gap + rest, rate);
 		if (time == never && axis < FACES && fabs(gap) <= rest) {
@@ -311,17 +316,29 @@ static int face_along(const ob_placed *a, const ob_placed *b, int edge)
 	return face;
 }
 
-static void face_manifold(const ob_placed *a, const ob_placed *b, int face, double margin, ob_manifold *m)
+// What lies over a face, as seen along its normal or, unless edge is -1, along that of two edges: then the place where
+// those cross is a corner of what is seen.
+static void face_manifold(const ob_placed *a, const ob_placed *b, int face, int edge, double margin, ob_manifold *m)
 {
 	bool of_b = face >= 3;
 	const ob_placed *ref = of_b ? b : a, *in = of_b ? a : b;
 	int r = face % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3;
-	double h[3] = { ref->size.x, ref->size.y, ref->size.z };
+	double h[3] = { ref->size.x, ref->size.y, ref->size.z }, along[3] = { 0, 0, 1 };
 	ob_vec3 n = ob_column(&ref->r, r), u = ob_column(&ref->r, r1), w = ob_column(&ref->r, r2);
-	if (ob_dot(n, ob_sub(in->p, ref->p)) < 0)
+	const double side = of_b ? 1 : -1;
+	const ob_vec3 up = edge < 0 ? ob_sub(in->p, ref->p) : ob_scale(edge_normal(a, b, edge), side);
+	if (ob_dot(n, up) < 0)
 		n = ob_scale(n, -1);
+	m->normal = ob_scale(edge < 0 ? n : up, side);
+	if (edge >= 0)
+		along[0] = ob_dot(up, u), along[1] = ob_dot(up, w), along[2] = ob_dot(up, n);
 	polygon p;
 	incident_face(ref, in, n, u, w, h[r], &p);
+	for (int k = 0; k < p.n; k++) {
+		p.z[k] /= along[2];
+		p.u[k] -= p.z[k] * along[0];
+		p.w[k] -= p.z[k] * along[1];
+	}
 	clip(&p, 0, 1, h[r1]);
 	clip(&p, 0, -1, h[r1]);
 	clip(&p, 1, 1, h[r2]);
@@ -335,11 +352,12 @@ static void face_manifold(const ob_placed *a, const ob_placed *b, int face, doub
 	p.n = kept;
 	if (p.n > 4)
 		reduce_to_four(&p, same_depth * ob_min(ref->size.x, ob_min(ref->size.y, ref->size.z)));
-	m->normal = ob_scale(n, of_b ? 1 : -1);
 	m->points = p.n;
 	for (int k = 0; k < p.n; k++) {
+		const double half = .5 * p.z[k];
 		m->gap[k] = p.z[k];
-		m->at[k] = ob_madd(ob_madd(ob_madd(ref->p, p.u[k], u), p.w[k], w), h[r] + .5 * p.z[k], n);
+		m->at[k] = ob_madd(ob_madd(ob_madd(ref->p, p.u[k] + half * along[0], u), p.w[k] + half * along[1], w),
+				   h[r] + half * along[2], n);
 	}
 }
 
@@ -361,21 +379,21 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 		out->normal = edge_normal(a, b, s.edge);
 	if (out->separation > margin)
 		return;
-	const double rest = ob_min(a->rest_depth, b->rest_depth);
-	int axis = closing_last(a, b, &f, &s, rest, &crossing);
-	out->valid_path = crossing ? rest : INFINITY;
+	int axis = closing_last(a, b, &f, &s, &crossing);
+	out->valid_path = crossing ? f.rest : INFINITY;
 	if (crossing)
 		return;
 	if (axis < 0) {
-		double more = prefer_face * f.thin - prefer_face_when_deep * s.largest_face;
+		double more = f.discount - prefer_face_when_deep * s.largest_face;
 		axis = s.largest_edge > s.largest_face + more ? FACES + s.edge : s.face;
 	}
 	bool edge = axis >= FACES;
-	// Edges that meet nearly along a face's normal: the face's points hold them apart, too, and with them what else
-	// is about to meet there.
+	// Edges that meet nearly along a face's normal: with the place where they cross goes what else is about to meet
+	// over the face, all of it along the edges' axis. Along the face's normal that place would run over the edges
+	// as the boxes pass each other, and deeper in than its velocity says.
 	int face = edge ? face_along(a, b, axis - FACES) : axis;
 	if (face >= 0)
-		face_manifold(a, b, face, margin, out);
+		face_manifold(a, b, face, edge ? axis - FACES : -1, margin, out);
 	if (edge && (face < 0 || !out->points))
 		edge_manifold(a, b, axis - FACES, out);
 }

@@ -5,10 +5,11 @@
 #include "elementary/elementary.h"
 
 static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
-static const double prefer_face = 1e-3; // of the thickness: an edge's axis must separate by so much more than a face's
+// An edge's axis must separate by so much more than a face's: of the thickness, and no more than at rest.
+static const double prefer_face = 1e-3;
 static const double prefer_face_when_deep = .02; // of the depth, beside it
 static const double nearby = .05; // of the thickness: shapes farther apart than that need no axes of edges
-static const double parallel_edges = 1e-4; // sin^2 of their angle
+static const double parallel_edges = 1e-10; // sin^2 of their angle
 static const double crossing_faces = .5; // cosine: faces that look so differently
 static const double as_low = 2e-9; // of the radius: corners that count as equally low
 static const double same_depth = 1e-4; // of half the thickness: points that count as equally deep
@@ -534,21 +535,35 @@ static uint32_t incident_face(const polytope *in, ob_vec3 n)
 	return best;
 }
 
-static void face_manifold(const polytope *ref, const polytope *in, uint32_t face, bool of_b, ob_vec3 origin,
-			  double margin, ob_manifold *m)
+// Of the two faces of an edge, the one that looks most against n.
+static uint32_t incident_face_of_edge(const polytope *in, uint32_t edge, ob_vec3 n)
+{
+	const ob_hull_edge *e = &in->shape->edge[edge];
+	return ob_dot(normal_of(in, e->right), n) < ob_dot(normal_of(in, e->left), n) ? e->right : e->left;
+}
+
+// What lies over a face, as seen along the axis: along the face's normal, or along that of two edges, one of them of
+// this face. Then the place where those cross is a corner of what is seen.
+static void face_manifold(const polytope *ref, const polytope *in, const axis *x, uint32_t face, bool of_b,
+			  ob_vec3 origin, double margin, ob_manifold *m)
 {
 	const ob_hull *top = ref->shape;
 	const uint32_t first = top->first[face], end = top->first[face + 1];
 	const ob_vec3 n = normal_of(ref, face), base = corner_of(ref, top->loop[first]);
-	const uint32_t incident = incident_face(in, n);
+	const ob_vec3 up = x->is_face ? n : ob_scale(x->normal, of_b ? 1 : -1);
+	const uint32_t incident =
+		x->is_face ? incident_face(in, n) : incident_face_of_edge(in, of_b ? x->edge_a : x->edge_b, n);
 	ob_vec3 u = ob_sub(corner_of(ref, top->loop[first + 1]), base);
 	u = ob_scale(u, 1 / ob_norm(u));
 	const ob_vec3 w = ob_cross(n, u);
+	const double along[3] = { x->is_face ? 0 : ob_dot(up, u), x->is_face ? 0 : ob_dot(up, w),
+				  x->is_face ? 1 : ob_dot(up, n) };
 	ob_polygon p;
 	p.n = 0;
 	for (uint32_t k = in->shape->first[incident]; k < in->shape->first[incident + 1]; k++) {
-		const ob_vec3 x = ob_sub(corner_of(in, in->shape->loop[k]), base);
-		polygon_put(&p, ob_dot(x, u), ob_dot(x, w), ob_dot(x, n));
+		const ob_vec3 at = ob_sub(corner_of(in, in->shape->loop[k]), base);
+		const double z = ob_dot(at, n) / along[2];
+		polygon_put(&p, ob_dot(at, u) - z * along[0], ob_dot(at, w) - z * along[1], z);
 	}
 	ob_vec3 from = { 0, 0, 0 };
 	for (uint32_t k = first; k < end && p.n; k++) {
@@ -561,12 +576,12 @@ static void face_manifold(const polytope *ref, const polytope *in, uint32_t face
 		if (!(p.z[k] <= margin))
 			polygon_drop(&p, k);
 	reduce_to_four(&p, same_depth * .5 * ref->thin);
-	m->normal = ob_scale(n, of_b ? 1 : -1);
+	m->normal = ob_scale(up, of_b ? 1 : -1);
 	m->points = p.n;
 	for (int k = 0; k < p.n; k++) {
 		const ob_vec3 on = ob_madd(ob_madd(base, p.u[k], u), p.w[k], w);
 		m->gap[k] = p.z[k];
-		m->at[k] = ob_add(origin, ob_madd(on, .5 * p.z[k], n));
+		m->at[k] = ob_add(origin, ob_madd(on, .5 * p.z[k], up));
 	}
 }
 
@@ -603,7 +618,7 @@ static void manifold_along(const polytope *a, const polytope *b, const axis *x, 
 	bool of_b = x->of_b;
 	const bool has_face = x->is_face || face_along(a, b, x, &face, &of_b);
 	if (has_face)
-		face_manifold(of_b ? b : a, of_b ? a : b, face, of_b, origin, margin, out);
+		face_manifold(of_b ? b : a, of_b ? a : b, x, face, of_b, origin, margin, out);
 	if (!x->is_face && (!has_face || !out->points))
 		edge_manifold(a, b, x, origin, out);
 }
@@ -633,7 +648,7 @@ void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double marg
 		return;
 	polytope_init(&a, pa, origin);
 	polytope_init(&b, pb, origin);
-	const double thin = ob_min(a.thin, b.thin), discount = prefer_face * thin;
+	const double thin = ob_min(a.thin, b.thin), discount = ob_min(prefer_face * thin, rest);
 	try_faces(&s, &a, &b, false, rest, &heights_a);
 	try_faces(&s, &b, &a, true, rest, &heights_b);
 	out->separation = s.face.gap;

@@ -114,7 +114,7 @@ static void test_diverged(void)
 	free(s);
 }
 
-// ODE's stepper cannot turn such a needle as it is thrown.
+// What carries a mass so small is no number, and ODE's stepper does not take it.
 static void test_engine(void)
 {
 	little_scene *s = little_scene_new();
@@ -122,9 +122,8 @@ static void test_engine(void)
 	s->run.step_length = 1;
 	s->run.tolerance = 0;
 	s->run.substeps = 8;
-	ob_world_box(&s->world, 490, ob_v3(3.5e-4, 5e5, 3.5e-4), ob_v3(0, 0, 0));
-	ob_world_body other = ob_world_box(&s->world, 2e14, ob_v3(.5, 5e5, 1e5), ob_v3(0, 0, 0));
-	other.state->pose.q = ob_quat_normalize((ob_quat){ .03, 0, -.6, 1 });
+	ob_world_box(&s->world, 1e-200, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
+	ob_world_ground(&s->world);
 	little_universe l;
 	little_open(&l, s);
 	expect_failure(&l, OB_STEP_ENGINE, 0, "ODE gave up in step 1 at object 0");
