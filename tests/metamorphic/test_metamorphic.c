@@ -56,8 +56,12 @@ static const unsigned round_faults[RELATIONS] = {
 };
 // .. and with hulls.
 static const unsigned hull_faults[RELATIONS] = {
-	[RELATION_TILTED] = STACK | PADDLES, [RELATION_BOOSTED] = STACK | TABLES, [RELATION_LIFTED] = STACK,
-	[RELATION_REORDERED] = TABLES,       [RELATION_REFRAMED] = TABLES,        [RELATION_ENERGY] = STATICS,
+	[RELATION_TILTED] = STACK | PADDLES,
+	[RELATION_BOOSTED] = STACK | TABLES,
+	[RELATION_LIFTED] = STACK,
+	[RELATION_REORDERED] = TABLES,
+	[RELATION_REFRAMED] = STACK | STATICS | TABLES,
+	[RELATION_ENERGY] = STATICS,
 };
 
 static bool is_asserted(const request *q, relation_id r, scene_kind k)
