@@ -3,6 +3,7 @@
 #include "contact/impact.h"
 #include "contact/manifold.h"
 #include "motion/flight.h"
+#include "sim/budget.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
 #include "sim/touches.h"
@@ -150,7 +151,9 @@ bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2])
 	      0))
 		return false;
 	ob_courses_begin(s, id, c, 2);
-	if (!ob_equal(c[0].m.a, c[1].m.a) || !follow(s, c, end, &impacts))
+	const bool parted = ob_equal(c[0].m.a, c[1].m.a) && follow(s, c, end, &impacts);
+	ob_budget_note(s, c[0].work + c[1].work);
+	if (!parted)
 		return false;
 	s->counters.impacts += impacts;
 	for (int i = 0; i < 2; i++)

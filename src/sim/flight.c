@@ -323,6 +323,7 @@ static void begin(ob_sim *s, uint32_t id, ob_course *c)
 	const uint64_t step = ob_step_count(s->u);
 	c->id = id;
 	c->impacts = c->plane = 0;
+	c->work = 0;
 	c->m = ob_ballistic_flight(s, id);
 	c->since = (double)step * h;
 	c->horizon = (double)(step + 1) * h + flight_horizon(s, id, ob_velocity_at(&c->m, c->since), c->m.a);
@@ -344,12 +345,13 @@ void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n)
 	}
 	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(s); i++) {
 		const ob_half_space ground = half_space(s->u, data->plane[i]);
-		ob_budget_note(s, WORK_OF_LANDING * n);
-		for (uint32_t k = 0; k < n; k++)
+		for (uint32_t k = 0; k < n; k++) {
+			c[k]->work += WORK_OF_LANDING;
 			of[k] = (ob_landing){ .flier = &flier[k],
 					      .plane = &ground,
 					      .from = from[k] - c[k]->m.t0,
 					      .until = ob_min(c[k]->horizon, first[k]) - c[k]->m.t0 };
+		}
 		ob_landing_times(of, (int)n);
 		for (uint32_t k = 0; k < n; k++)
 			if (c[k]->m.t0 + of[k].time < first[k])
@@ -435,8 +437,10 @@ void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
 		on[k] = &c[k];
 	}
 	if (s->settings->integrator == OB_INTEGRATOR_ODE) {
-		for (uint32_t k = 0; k < n; k++)
+		for (uint32_t k = 0; k < n; k++) {
+			ob_budget_begin_share(s, id[k]);
 			step_by_ode(s, id[k]);
+		}
 		return;
 	}
 	ob_courses_begin(s, id, c, n);
@@ -456,9 +460,13 @@ void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
 		ob_courses_find_landings(s, on, off);
 		left = off;
 	}
-	for (uint32_t k = 0; k < n; k++)
+	for (uint32_t k = 0; k < n; k++) {
+		ob_budget_begin_share(s, id[k]); // of its own, so that the sum does not depend on who is beside it
+		ob_budget_note(s, c[k].work);
+		ob_budget_spent(s);
 		if (done[k]) {
 			s->counters.impacts += c[k].impacts;
 			ob_course_publish(s, &c[k]);
 		}
+	}
 }

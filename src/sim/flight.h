@@ -45,6 +45,7 @@ typedef struct ob_course {
 	ob_spin *spin; // of m; NULL: it does not turn, or that cannot be seen
 	ob_spin own;
 	uint32_t plane; // that it meets
+	uint64_t work; // of looking for where it lands (sim/budget.h): whose share it is, notes it
 	double since, horizon; // s: so far it has come; and no farther is it computed
 } ob_course;
 

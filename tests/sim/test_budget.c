@@ -67,6 +67,27 @@ static void test_spent_in_flight(void)
 	}
 }
 
+// What is less than a grain is dropped for each share alone: how many fly beside each other, as a worker has them, adds
+// nothing to the sum.
+static void test_small_shares(void)
+{
+	little_scene *s = little_scene_new();
+	for (int i = 0; i < 32; i++)
+		ob_world_sphere(&s->world, 500, .5, ob_v3(9 * i, 0, 9));
+	for (int i = 0; i < 20; i++)
+		ob_world_ground(&s->world);
+	little_universe l;
+	little_open(&l, s);
+	ob_step_work_add(l.u, UINT64_C(1) << 40);
+	ob_gate_set_pause_step(l.u, 1);
+	ob_sim_resume(l.u);
+	while (!ob_gate_host_wait(l.u, 0))
+		ob_step(l.sim);
+	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_OK && ob_step_count(l.u) == 1);
+	little_close(&l);
+	free(s);
+}
+
 // What costs more counts for more; and once the budget is spent no two bodies touch any more, so that whoever looks at
 // many pairs comes to an end.
 static void test_collision_tests(void)
@@ -135,6 +156,7 @@ int main(void)
 {
 	test_spent();
 	test_spent_in_flight();
+	test_small_shares();
 	test_collision_tests();
 	test_diverged();
 	test_engine();
