@@ -6,7 +6,11 @@
 #include "elementary/elementary.h"
 
 typedef lanes wide;
+typedef lane_mask wide_mask;
+enum { WIDTH = OB_LANES };
 #include "elementary/sincos_wide.h"
+
+#include "elementary/arc_wide.h" // which needs it
 
 typedef lanes real;
 typedef lane_mask mask;
@@ -51,7 +55,15 @@ static inline real signed_as(real size, real x)
 
 static inline real angle_of(real y, real x)
 {
-	return (real){ ob_atan2(y[0], x[0]), ob_atan2(y[1], x[1]), ob_atan2(y[2], x[2]), ob_atan2(y[3], x[3]) };
+	const real up = lanes_abs(y), most = lanes_max(up, x), least = lanes_min(up, x);
+	const mask usual = (least >= 0x1p-120 * most) & (least > 0) & (most < 0x1p300) & (most > 0x1p-300);
+	const real one = lanes_of(1);
+	real angle = signed_as(angle_wide(chosen(usual, up, one), chosen(usual, x, one)), y);
+	const unsigned rare = 15 & ~lanes_bits(usual);
+	for (int l = 0; rare && l < OB_LANES; l++)
+		if (rare & 1u << l)
+			lanes_put(&angle, l, ob_atan2(y[l], x[l]));
+	return angle;
 }
 
 static inline real power_of_e(real x)
