@@ -274,14 +274,21 @@ static ob_mat3 turned_from_start(followed_shape *f, double t)
 	return turned_by(&x->from->r, turn);
 }
 
+// Whether it is turned from where it was last, to a later instant.
+static bool turns_on(const followed_shape *f, double t)
+{
+	const moving_shape *x = &f->shape;
+	const bool far = f->exactly || x->speed * t > longest_short_turn;
+	return far && f->t > 0 && x->spin.fastest * (t - f->t) < (f->exactly ? longest_exact_turn : longest_short_turn);
+}
+
 // To a later instant.
 static void follow_to(followed_shape *f, double t)
 {
 	const moving_shape *x = &f->shape;
-	const double more = t - f->t, longest = f->exactly ? longest_exact_turn : longest_short_turn;
+	const double more = t - f->t;
 	if (x->speed > 0 && more > 0) {
-		const bool far = f->exactly || x->speed * t > longest_short_turn;
-		if (far && f->t > 0 && x->spin.fastest * more < longest)
+		if (turns_on(f, t))
 			f->now.r = turned_by(&f->now.r, ob_drift_short_turn(ob_rotate_back(&f->now.r, f->now.w),
 									    f->now.inertia, more));
 		else
@@ -290,6 +297,21 @@ static void follow_to(followed_shape *f, double t)
 	}
 	f->now.p = ob_madd(x->from->p, t, x->from->v);
 	f->t = t;
+}
+
+// Whether its rotation is asked for at a later instant.
+static bool asks_for_rotation(const followed_shape *f, double t)
+{
+	const moving_shape *x = &f->shape;
+	return !f->exactly && x->speed * t > longest_short_turn && t > f->t && !turns_on(f, t);
+}
+
+static void follow_both_to(followed_shape *a, followed_shape *b, double t)
+{
+	if (asks_for_rotation(a, t) && asks_for_rotation(b, t))
+		ob_spin_prepare((ob_spin *[]){ &a->shape.spin, &b->shape.spin }, (double[]){ t, t }, 2);
+	follow_to(a, t);
+	follow_to(b, t);
 }
 
 // m/s, of any of its points by turning, at any time
@@ -528,8 +550,7 @@ bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double m
 			return out->points > 0;
 		}
 		t += ob_max(clear, DBL_EPSILON * t);
-		follow_to(&at, t);
-		follow_to(&bt, t);
+		follow_both_to(&at, &bt, t);
 	}
 	return false;
 }
@@ -544,8 +565,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 	ob_vec3 n = { 0, 0, 0 };
 	// A grazing flight takes many small advances; after so many, what is this near counts as touching.
 	for (int tries = 0; tries < 256 && t <= h; tries++) {
-		follow_to(&at, t);
-		follow_to(&bt, t);
+		follow_both_to(&at, &bt, t);
 		out->normal = n;
 		find.find(find.with, &at.now, &bt.now, tolerance, out);
 		n = out->normal;
@@ -566,8 +586,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			return t;
 	}
 	if (t <= h) {
-		follow_to(&at, t);
-		follow_to(&bt, t);
+		follow_both_to(&at, &bt, t);
 		find.find(find.with, &at.now, &bt.now, margin, out);
 		if (out->points)
 			return t;

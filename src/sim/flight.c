@@ -184,6 +184,15 @@ ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id)
 	return m;
 }
 
+// How it turns, by the worker's cache; NULL: it does not, or is told how.
+static ob_spin *cached_rotation(ob_sim *s, uint32_t id, const ob_motion *f, double time)
+{
+	const ob_passport *body = ob_passport_of(s->u, id);
+	if (ob_published_stands(f, body, time) || body->flags & OB_OBJECT_KINEMATIC || !(ob_norm2(f->w) > 0))
+		return NULL;
+	return ob_rotation_cache_get(&s->rotations, id, f->q, f->w, body->inertia);
+}
+
 ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *f, double time)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);
@@ -193,10 +202,27 @@ ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *f, double t
 		return ob_motion_at(f, body->inertia, time);
 	ob_motion m = { .t0 = f->t0, .p = f->p, .q = f->q, .v = f->v, .a = f->a };
 	ob_state now = ob_motion_at(&m, body->inertia, time);
-	if (ob_norm2(f->w) > 0)
-		ob_spin_at(ob_rotation_cache_get(&s->rotations, id, f->q, f->w, body->inertia), time - f->t0,
-			   &now.pose.q, &now.w);
+	ob_spin *spin = cached_rotation(s, id, f, time);
+	if (spin)
+		ob_spin_at(spin, time - f->t0, &now.pose.q, &now.w);
 	return now;
+}
+
+void ob_ballistic_prepare(ob_sim *s, const uint32_t *id, const ob_motion *const *f, double time, uint32_t n)
+{
+	ob_spin *spin[OB_COURSES];
+	double at[OB_COURSES];
+	int spins = 0;
+	for (uint32_t k = 0; k < n; k++) {
+		bool listed = false;
+		ob_spin *x = cached_rotation(s, id[k], f[k], time);
+		for (int i = 0; i < spins;
+		     i++) // a body of several pairs; of two bodies that have one place there the later
+			listed |= spin[i] == x;
+		if (x && !listed)
+			at[spins] = time - f[k]->t0, spin[spins++] = x;
+	}
+	ob_spin_prepare(spin, at, spins);
 }
 
 // Bound of the speed of any point of the object between two instants of the flight (m/s).

@@ -20,6 +20,10 @@ ob_state ob_ballistic_state(ob_sim *s, uint32_t id, const ob_motion *flight, dou
 
 enum { OB_COURSES = OB_LANDINGS }; // that are followed side by side, at most
 
+// Makes ready what ob_ballistic_state is asked for next, of n objects (up to OB_COURSES) at the same instant. It gives
+// what it would have given without that.
+void ob_ballistic_prepare(ob_sim *s, const uint32_t *id, const ob_motion *const *flight, double time, uint32_t n);
+
 // Moves up to OB_COURSES objects without contacts through the running step, each with its impacts on planes, and
 // publishes their motions: what each does follows from itself alone. done, of each; false: the contact solver must do
 // it, and nothing was changed.

@@ -296,17 +296,16 @@ static bool check_by_schedule(const pair_check *c, ob_pair_key *k)
 	return k->limit - paths > (double)a->reach + (double)b->reach;
 }
 
-// The same from the motions of both.
-static void check_by_motions(const pair_check *c, ob_pair_key *k)
+// The same from the motions of both. false: their shapes must be looked at; left: m, of the known distance.
+static bool check_by_motions(const pair_check *c, ob_pair_key *k, double *left, bool *solved)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
-	const bool solved = c->solved && (c->steps == 0 ||
-					  !is_clear(c->data, k, c->steps - 1)); // then they cannot have touched in it
+	// Where they are clear they cannot have touched in it.
+	*solved = c->solved && (c->steps == 0 || !is_clear(c->data, k, c->steps - 1));
 	const double paths = ob_schedule_path(a, c->steps) + ob_schedule_path(b, c->steps),
 		     reach = (double)a->reach + (double)b->reach;
-	const double left = k->limit - paths;
-	if (!spheres_exclude_contact(c, k, paths, reach, solved))
-		check_shapes(c, k, left, solved);
+	*left = k->limit - paths;
+	return spheres_exclude_contact(c, k, paths, reach, *solved);
 }
 
 // ---- which pairs, and when again
@@ -500,27 +499,71 @@ static bool moves(const pair_check *c, uint32_t id)
 	return ob_schedule_is_dynamic(&c->data->schedule[id]);
 }
 
+// Pairs whose shapes are to be looked at: how their bodies turn is found side by side.
+typedef struct shapes_ahead {
+	uint32_t n, check[OB_COURSES / 2];
+	ob_pair_key copy[OB_COURSES / 2]; // of contained simulators
+	double left[OB_COURSES / 2];
+	bool solved[OB_COURSES / 2];
+} shapes_ahead;
+
+static ob_pair_key *pair_ahead(const pair_check *c, shapes_ahead *x, uint32_t k)
+{
+	return c->contained ? &x->copy[k] : &c->data->pair[c->data->check[x->check[k]]];
+}
+
+static void prepare_shapes(const pair_check *c, shapes_ahead *x)
+{
+	uint32_t id[OB_COURSES];
+	const ob_motion *m[OB_COURSES];
+	for (uint32_t k = 0; k < x->n; k++) {
+		const ob_pair_key *pair = pair_ahead(c, x, k);
+		id[2 * k] = pair->a, id[2 * k + 1] = pair->b;
+	}
+	for (uint32_t k = 0; k < 2 * x->n; k++)
+		m[k] = ob_result_of(c->u, id[k]);
+	ob_ballistic_prepare(c->s, id, m, (double)c->steps * c->h, 2 * x->n);
+}
+
+static void check_shapes_ahead(const pair_check *c, shapes_ahead *x, bool *late)
+{
+	prepare_shapes(c, x);
+	for (uint32_t k = 0; k < x->n && !ob_budget_spent(c->s); k++) {
+		ob_pair_key *pair = pair_ahead(c, x, k);
+		check_shapes(c, pair, x->left[k], x->solved[k]);
+		*late |= pair->late;
+		end_change(c, x->check[k], pair);
+	}
+	x->n = 0;
+}
+
 // The motions of a pair are prefetched while those before it are checked.
 static void check_all_by_motions(const pair_check *c, const uint32_t *checks, uint32_t n, bool *late)
 {
 	enum { AHEAD = 4 };
 	const ob_step_data *data = c->data;
+	shapes_ahead x;
+	x.n = 0;
 	for (uint32_t i = 0; i < n + AHEAD; i++) {
 		if (i < n)
 			ob_prefetch_pair(c->s, &data->pair[data->check[checks[i]]]);
 		if (i < AHEAD)
 			continue;
-		ob_pair_key copy, *k = begin_change(c, checks[i - AHEAD], &copy);
+		ob_pair_key *k = begin_change(c, checks[i - AHEAD], &x.copy[x.n]);
 		if (i == AHEAD)
 			ob_budget_begin_share(c->s, moves(c, k->a) ? k->a : k->b);
 		if (ob_budget_spent(c->s))
 			return;
 		if (c->contained)
 			k->late = k->expected = 0; // as check_by_schedule has left it
-		check_by_motions(c, k);
-		*late |= k->late;
-		end_change(c, checks[i - AHEAD], k);
+		if (check_by_motions(c, k, &x.left[x.n], &x.solved[x.n]))
+			end_change(c, checks[i - AHEAD], k);
+		else
+			x.check[x.n++] = checks[i - AHEAD];
+		if (x.n == OB_COURSES / 2)
+			check_shapes_ahead(c, &x, late);
 	}
+	check_shapes_ahead(c, &x, late);
 }
 
 void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved)
