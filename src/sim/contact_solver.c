@@ -15,7 +15,7 @@ static const double max_wake_rate = 1; // 1/s: .. and, times the tolerance, at m
 static const double coarse_wake_share = .05; // .. or, in a coarse run, so much of the largest speed in the island, ..
 static const double coarse_wake_way = .1; // .. unless that moves something farther than so much of the tolerance
 static const uint32_t max_extra_iterations = 8; // times the run's number; only for changes above ..
-static const double extra_iteration_threshold = .05; // m/s
+static const double extra_iteration_threshold = .05; // m/s, with as many substeps as usual
 static const int block_sweeps = 4;
 static const double block_tolerance = .01; // of the residual: a block need not be solved more finely in an iteration
 static const int fine_block_sweeps = 8; // where the solution is wanted to the end
@@ -239,6 +239,13 @@ static void activate_all(ob_island_work *w)
 		activate_body(w, i, w->iteration);
 }
 
+// By how many times as many substeps as usual: what iterations leave in each of them adds up over the step, and where a
+// step is solved again with more, it has to become less.
+static double refinement(const ob_sim *s)
+{
+	return ob_max(1, (double)s->island.substeps / s->settings->substeps);
+}
+
 void ob_solver_iterate(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -266,7 +273,7 @@ void ob_solver_iterate(ob_sim *s)
 	ob_direct_begin_partial(&w->direct);
 	for (uint32_t k = 0; k < max_extra_iterations * run->iterations && any_active && !ob_budget_spent(s); k++) {
 		if (k == run->iterations) {
-			iteration.wake_threshold = extra_iteration_threshold * w->unit.speed;
+			iteration.wake_threshold = extra_iteration_threshold * w->unit.speed / refinement(s);
 			to_the_end = false;
 		}
 		if (to_the_end && k >= iterations_before_steps && !iteration.jacobi && !iteration.ghosts) {
