@@ -75,6 +75,8 @@ bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p);
 bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest);
 // Which motions this rank has; NULL: there is but one.
 ob_halo *ob_commit_halo(const ob_committer *c);
+// Whose region bodies are in; likewise.
+struct ob_regions *ob_commit_regions(const ob_committer *c);
 // Between two steps: all ranks have what all pairs keep.
 bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p);
 

@@ -5,18 +5,21 @@
 
 #include "sim/committer.h"
 #include "sim/digest.h"
+#include "sim/pairs.h"
+#include "sim/regions.h"
 #include "table/home.h"
 
 bool ob_committer_share(ob_committer *c, const ob_universe *u)
 {
 	c->holdings = ob_holdings_create(u);
 	c->halo = ob_halo_create(u);
+	c->regions = ob_regions_create(u);
 	c->dealt = calloc(c->ranks, sizeof *c->dealt);
 	c->solved_for = calloc(c->ranks, sizeof *c->solved_for);
 	c->to = calloc(c->ranks, sizeof *c->to);
 	c->told = calloc(c->ranks, sizeof *c->told);
 	c->heard = calloc(c->ranks, sizeof *c->heard);
-	return c->holdings && c->halo && c->dealt && c->solved_for && c->to && c->told && c->heard;
+	return c->holdings && c->halo && c->regions && c->dealt && c->solved_for && c->to && c->told && c->heard;
 }
 
 void ob_committer_finish_shared(ob_committer *c)
@@ -26,6 +29,7 @@ void ob_committer_finish_shared(ob_committer *c)
 	ob_mail_finish(&c->checked);
 	ob_holdings_destroy(c->holdings);
 	ob_halo_destroy(c->halo);
+	ob_regions_destroy(c->regions);
 	for (uint32_t r = 0; c->dealt && r < c->ranks; r++)
 		ob_mail_finish(&c->dealt[r]);
 	free(c->dealt);
@@ -233,10 +237,15 @@ static bool take_parcels(ob_committer *c, ob_universe *u, const char *from, size
 bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p)
 {
 	const size_t *at;
+	uint32_t fliers;
+	const uint32_t *flier = ob_regions_settle_fliers(c->regions, u, &fliers);
 	bool moved = false, fits = true;
 	for (uint32_t to = 0; to < c->ranks; to++)
 		fits &= ob_peers_begin(&c->dealt[to]);
-	fits = fits && ob_holdings_move(c->holdings, u, c->dealt) && ob_halo_move(c->halo, u, c->dealt, &moved);
+	fits = fits && ob_holdings_move(c->holdings, u, c->dealt) &&
+	       ob_halo_move(c->halo, u, flier, fliers, c->dealt, &moved);
+	for (uint32_t i = 0; i < fliers; i++)
+		ob_pairs_look(u, flier[i]); // who checks them has changed
 	if (!fits)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 	if (!fits || !moved)
@@ -254,6 +263,11 @@ bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p)
 ob_halo *ob_commit_halo(const ob_committer *c)
 {
 	return c->halo;
+}
+
+ob_regions *ob_commit_regions(const ob_committer *c)
+{
+	return c->regions;
 }
 
 bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)

@@ -48,6 +48,7 @@ struct ob_committer {
 	// Of several ranks, else NULL, or 0
 	ob_holdings *holdings;
 	ob_halo *halo;
+	struct ob_regions *regions;
 	uint32_t rank, ranks;
 	ob_mail out, *dealt; // what the others get: all the same, or [ranks] each its own ..
 	ob_solved_bodies *solved_for; // .. and is still to get

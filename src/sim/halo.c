@@ -19,6 +19,7 @@ struct ob_halo {
 	bool partial; // some rank may lack some body's
 	uint8_t *missing; // [object]: MOTION = it is not here; BEFORE = no other than what was found in this step
 	uint8_t *owed; // [object], of this rank's: likewise what another may lack
+	uint64_t *told; // [object], of this rank's: 1 << r = rank r is known to have it, of the first 64
 	uint16_t *owner; // [object]: 1 + the rank that solved it last, or is to solve it first; 0 = none does
 	known *known; // [object]
 	uint64_t *staged; // [object]: digest of what is staged of it
@@ -49,11 +50,12 @@ ob_halo *ob_halo_create(const ob_universe *u)
 	h->ranks = ob_universe_ranks(u);
 	h->missing = calloc(objects, sizeof *h->missing);
 	h->owed = calloc(objects, sizeof *h->owed);
+	h->told = calloc(objects, sizeof *h->told);
 	h->owner = calloc(objects, sizeof *h->owner);
 	h->known = calloc(objects, sizeof *h->known);
 	h->staged = calloc(objects, sizeof *h->staged);
 	h->out = calloc(h->ranks, sizeof *h->out);
-	if (h->missing && h->owed && h->owner && h->known && h->staged && h->out)
+	if (h->missing && h->owed && h->told && h->owner && h->known && h->staged && h->out)
 		return h;
 	ob_halo_destroy(h);
 	return NULL;
@@ -67,6 +69,7 @@ void ob_halo_destroy(ob_halo *h)
 		ob_mail_finish(&h->out[r]);
 	free(h->missing);
 	free(h->owed);
+	free(h->told);
 	free(h->owner);
 	free(h->known);
 	free(h->staged);
@@ -85,6 +88,8 @@ void ob_halo_settle(ob_halo *h, ob_universe *u)
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		if (h->known[id].version != ob_motion_version(u, id))
 			h->known[id].version = 0; // another was published, which is as good
+		if (!is_dynamic(data, id))
+			h->owner[id] = 0;
 		if (h->owner[id] || !is_dynamic(data, id))
 			continue;
 		ob_home_set(u, id, ob_home_of(u, id)); // else it would change with the number of objects
@@ -148,6 +153,16 @@ void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id)
 
 // ---- who is told
 
+static uint64_t bit_of(uint32_t rank)
+{
+	return rank < 64 ? UINT64_C(1) << rank : 0;
+}
+
+static void note_told(ob_halo *h, uint32_t id, uint32_t rank)
+{
+	h->told[id] |= bit_of(rank);
+}
+
 bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -162,9 +177,13 @@ bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool 
 	to[ob_universe_rank(u)] = true;
 	if (all && h->owed[id])
 		h->owed[id] = BEFORE;
-	for (uint32_t r = 0; r < h->ranks; r++)
+	h->told[id] = 0;
+	for (uint32_t r = 0; r < h->ranks; r++) {
 		if (!to[r])
 			h->owed[id] = MOTION;
+		else if (!all || !h->owed[id]) // else it may lack what was before
+			note_told(h, id, r);
+	}
 	return all && h->owed[id];
 }
 
@@ -273,9 +292,11 @@ bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 			continue;
 		meet = true;
 		for (int side = 0; side < 2; side++) {
-			const uint32_t id = side ? k->b : k->a, other = side ? k->a : k->b;
-			if (ob_home_rank(u, id) == p->rank)
-				fits &= pack_body(&h->out[ob_home_rank(u, other)], u, id, was_solved(u, id));
+			const uint32_t id = side ? k->b : k->a, to = ob_home_rank(u, side ? k->a : k->b);
+			if (ob_home_rank(u, id) != p->rank || h->told[id] & bit_of(to))
+				continue;
+			fits &= pack_body(&h->out[to], u, id, was_solved(u, id));
+			note_told(h, id, to);
 		}
 	}
 	if (!fits) {
@@ -304,7 +325,23 @@ static bool give_body(const ob_halo *h, const ob_universe *u, uint32_t id, uint3
 	return fits;
 }
 
-bool ob_halo_move(ob_halo *h, const ob_universe *u, ob_mail *mail, bool *moved)
+// It is solved by another rank from now on, if it is.
+static bool move_body(ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *mail, bool *moved)
+{
+	const uint32_t from = h->owner[id], to = ob_home_rank(u, id);
+	bool fits = true;
+	if (from == 1 + to)
+		return true;
+	*moved = true;
+	if (from == 1 + ob_universe_rank(u))
+		fits = give_body(h, u, id, to, &mail[to]);
+	h->owner[id] = (uint16_t)(1 + to);
+	h->owed[id] = h->partial ? MOTION : 0;
+	h->told[id] = 0;
+	return fits;
+}
+
+bool ob_halo_move(ob_halo *h, const ob_universe *u, const uint32_t *also, uint32_t count, ob_mail *mail, bool *moved)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	bool fits = true;
@@ -312,18 +349,12 @@ bool ob_halo_move(ob_halo *h, const ob_universe *u, ob_mail *mail, bool *moved)
 	for (uint32_t i = 0; i < data->count->islands; i++)
 		members += data->island[i].members;
 	for (uint32_t i = 0; i < members && i < data->objects_max; i++) {
-		const uint32_t id = data->member[i];
-		if (!ob_object_in_range(data, id))
+		if (!ob_object_in_range(data, data->member[i]))
 			break;
-		const uint32_t from = h->owner[id], to = ob_home_rank(u, id);
-		if (from == 1 + to)
-			continue;
-		*moved = true;
-		if (from == 1 + ob_universe_rank(u))
-			fits &= give_body(h, u, id, to, &mail[to]);
-		h->owner[id] = (uint16_t)(1 + to);
-		h->owed[id] = h->partial ? MOTION : 0;
+		fits &= move_body(h, u, data->member[i], mail, moved);
 	}
+	for (uint32_t i = 0; i < count; i++)
+		fits &= move_body(h, u, also[i], mail, moved);
 	return fits;
 }
 

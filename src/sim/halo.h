@@ -2,15 +2,18 @@
 // neighbours, which it must know to check pairs: its halo. Of all others it knows when they are due, and where they
 // cannot leave (their fat AABBs), and no more.
 //
-//   rank 0's bodies    rank 1's bodies        o  its own       n  a neighbour: both are of one pair. All ranks know all
-//   o o o o o o o o  | n n . . . . . .  rank 0     pairs, so a body's owner knows who has to hear of it
-//   . . . . . . n n  | o o o o o o o o  rank 1
+//   rank 0's bodies    rank 1's bodies
+//   o o o o o o o o  | n n . . . . . .     rank 0     o   its own
+//   . . . . . . n n  | o o o o o o o o     rank 1     n   a neighbour: both are of one pair
 //
-//   tell     a body was solved: its owner tells the motion to those who have neighbours of it, to all others that it
-//   was meet     a pair is new, its bodies of two ranks: each tells the other where its body is move     another rank
-//   solves the body from now on: it gets its motion and its neighbours', and what is known of its
-//            pairs
-//   gather   somebody looks at the universe (ob_peers.look): all ranks get all motions
+// All ranks know all pairs, so a body's owner knows who has to hear of it, and when:
+//
+//   - tell: a body was solved. Its owner tells the motion to those who have neighbours of it, to all others that it
+//   was.
+//   - meet: a pair is new, of two ranks' bodies. Each tells the other where its body is, if it has not before.
+//   - move: another rank solves the body from now on (regions.h). It gets its motion and its neighbours', and what is
+//     known of its pairs.
+//   - gather: somebody looks at the universe (ob_peers.look). All ranks get all motions.
 //
 // So it is whole on each rank where a host looks at it, at a pause, and no earlier. Where somebody looks after each
 // step, all are told all as it is solved.
@@ -29,8 +32,8 @@ typedef struct ob_halo ob_halo;
 // At the start all ranks have all. NULL: no memory.
 ob_halo *ob_halo_create(const ob_universe *u);
 void ob_halo_destroy(ob_halo *h); // NULL is allowed
-// After a pause, or scripts, by which motions were published that no simulator has found, the same on all ranks: what is
-// new gets an owner, where it has none.
+// After a pause, or scripts, by which motions were published that no simulator has found, the same on all ranks: what
+// is new gets an owner, where it has none.
 void ob_halo_settle(ob_halo *h, ob_universe *u);
 
 // Whether the body's motion is here, as of before the step; and once it was solved, what was found. Of all [objects]:
@@ -56,9 +59,9 @@ bool ob_halo_digest(const ob_halo *h, const ob_universe *u, uint32_t id, uint64_
 // failed.
 bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p);
 bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p);
-// When islands have been dealt: what goes to rank r into mail[r]. moved: whether any rank has something to say. false:
-// no memory.
-bool ob_halo_move(ob_halo *h, const ob_universe *u, ob_mail *mail, bool *moved);
+// When islands have been dealt: what goes to rank r into mail[r]. also: bodies that are in none and yet live with
+// another rank now. moved: whether any rank has something to say. false: no memory.
+bool ob_halo_move(ob_halo *h, const ob_universe *u, const uint32_t *also, uint32_t count, ob_mail *mail, bool *moved);
 // Of those, a parcel from another rank. false: it makes no sense.
 bool ob_halo_take(ob_halo *h, ob_universe *u, const char *parcel, const ob_parcel *head);
 

@@ -499,13 +499,14 @@ typedef struct shares {
 	uint32_t *owner; // [island]
 	uint32_t most; // load
 	int shift; // of work, for loads of 32 bits
+	ob_regions *regions; // NULL: there is but one rank
 } shares;
 
-// Who was given the object last; at first, as what is created together lies together, by its id.
+// Who is to solve the object: of several ranks, in whose region it is; else who was given it last.
 static uint32_t home_of(const builder *p, const shares *s, uint32_t id)
 {
-	const uint32_t home = p->data->home[id] - 1;
-	return home < s->count ? home : (uint32_t)((uint64_t)id * s->count / p->ids);
+	const uint32_t home = s->regions ? ob_regions_at(s->regions, id) : ob_home_of(p->u, id);
+	return home < s->count ? home : home % s->count;
 }
 
 // That of most members.
@@ -546,36 +547,55 @@ static uint32_t least_loaded(const shares *s)
 	return best;
 }
 
-static void give_island(builder *p, shares *s, uint32_t island)
+static void ask_for(builder *p, shares *s, uint32_t island)
 {
 	const ob_island *is = &p->data->island[island];
-	const uint32_t work = is->work >> s->shift;
-	uint32_t who = pin_of(p, s, is);
-	if (who == UINT32_MAX) {
-		who = preferred_owner(p, s, is);
-		if (s->load[who] + work > s->most)
-			who = least_loaded(s);
-	}
-	s->load[who] += work;
-	s->owner[island] = who;
-	for (uint32_t k = 0; k < is->members; k++)
-		ob_home_set(p->u, p->data->member[is->first_member + k], who);
+	const uint32_t pin = pin_of(p, s, is);
+	s->owner[island] = pin != UINT32_MAX ? pin : preferred_owner(p, s, is);
+	s->load[s->owner[island]] += is->work >> s->shift;
 }
 
-// A chunk for each simulator, of islands that it has solved before: what their pairs keep lies with its rank
-// (holdings.h). The largest are given first; where one would get a tenth more than its share, another does.
-static void make_shares(builder *p, uint32_t unsolved, uint64_t total)
+// Who has too much to do gives what another does sooner.
+static void give_island(builder *p, shares *s, uint32_t island)
+{
+	const ob_step_data *data = p->data;
+	const ob_island *is = &data->island[island];
+	const uint32_t work = is->work >> s->shift, asked = s->owner[island],
+		       to = s->load[asked] > s->most ? least_loaded(s) : asked;
+	const bool spills = to != asked && s->load[to] + work < s->load[asked] && pin_of(p, s, is) == UINT32_MAX;
+	if (spills) {
+		s->load[asked] -= work;
+		s->load[to] += work;
+		s->owner[island] = to;
+	}
+	for (uint32_t k = 0; k < is->members; k++) {
+		const uint32_t id = data->member[is->first_member + k];
+		ob_home_set(p->u, id, s->owner[island]);
+		if (s->regions)
+			ob_regions_note(s->regions, id, s->owner[island], 1 + data->effort[id], spills);
+	}
+}
+
+// A chunk for each simulator, of the islands of its region, or that it has solved before: what their pairs keep lies
+// with its rank (holdings.h). Where one would get a tenth more than its share, others do, the largest first.
+static void make_shares(builder *p, uint32_t unsolved, uint64_t total, ob_regions *regions)
 {
 	enum { SLACK = 10, WORTH_SHARING = 16 * CHUNK_WORK_MIN };
 	ob_step_data *data = p->data;
 	const uint32_t all = ob_universe_simulators(p->u), islands = data->count->islands;
-	shares s = { .count = all < p->ids ? all : p->ids, .load = p->body, .votes = p->place, .owner = p->island_of };
+	shares s = { .count = all < p->ids ? all : p->ids,
+		     .load = p->body,
+		     .votes = p->place,
+		     .owner = p->island_of,
+		     .regions = regions };
 	while (total >> s.shift > UINT32_MAX / 4)
 		s.shift++;
 	const uint64_t share = total / s.count + total / (s.count * SLACK) + 1;
 	s.most = (uint32_t)((share > WORTH_SHARING ? share : WORTH_SHARING) >> s.shift);
 	memset(s.load, 0, s.count * sizeof *s.load);
 	memset(s.votes, 0, s.count * sizeof *s.votes);
+	for (uint32_t i = 0; i < unsolved; i++)
+		ask_for(p, &s, i);
 	for (uint32_t i = 0; i < unsolved; i++)
 		give_island(p, &s, i);
 	memset(data->chunk, 0, (s.count + 1) * sizeof *data->chunk);
@@ -591,7 +611,7 @@ static void make_shares(builder *p, uint32_t unsolved, uint64_t total)
 }
 
 // The order in which islands are solved, and who solves which.
-static void deal_islands(builder *p)
+static void deal_islands(builder *p, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
 	const uint32_t n = data->count->islands;
@@ -604,7 +624,7 @@ static void deal_islands(builder *p)
 	}
 	data->count->shared = ob_universe_ranks(p->u) > 1 || ob_moves_were_made(p->u);
 	if (data->count->shared)
-		make_shares(p, unsolved, total);
+		make_shares(p, unsolved, total, regions);
 	else
 		make_chunks(p, unsolved, total);
 	for (uint32_t i = 0; i < n; i++)
@@ -696,12 +716,12 @@ void ob_islands_list_pairs(ob_universe *u, uint32_t task)
 	list_pairs(&p, task * OB_ISLANDS_AT_ONCE, end_of_task(task, OB_ISLANDS_AT_ONCE, count->islands));
 }
 
-void ob_islands_deal(ob_universe *u)
+void ob_islands_deal(ob_universe *u, ob_regions *regions)
 {
 	builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
 	for (uint32_t i = 0; !p.alone && i < p.data->count->islands; i++)
 		p.data->island[i].work = p.data->island[i].solved ? 0 : estimated_work(&p, &p.data->island[i]);
-	deal_islands(&p);
+	deal_islands(&p, regions);
 }
 
 void ob_islands_list_own_pairs(ob_universe *u)

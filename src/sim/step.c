@@ -59,6 +59,7 @@
 #include "sim/prefetch.h"
 #include "sim/profile.h"
 #include "sim/publish.h"
+#include "sim/regions.h"
 #include "sim/scripts.h"
 #include "sim/sim.h"
 #include "sim/state.h"
@@ -513,7 +514,10 @@ static ob_phase after_links(const scheduler *c)
 
 static ob_phase after_lists(const scheduler *c)
 {
-	ob_islands_deal(c->u);
+	ob_regions *regions = ob_universe_ranks(c->u) > 1 ? ob_commit_regions(c->sim->committer) : NULL;
+	if (regions && !c->data->count->merged)
+		ob_regions_renew(regions, c->u);
+	ob_islands_deal(c->u, regions);
 	return c->data->count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
 }
 
@@ -543,19 +547,28 @@ static void count_awake(const scheduler *c)
 	c->data->count->kinematic = kinematic;
 }
 
+// Of several ranks.
+static void settle(const scheduler *c)
+{
+	ob_regions_settle(ob_commit_regions(c->sim->committer), c->u);
+	ob_halo_settle(ob_commit_halo(c->sim->committer), c->u);
+}
+
 static ob_phase after_resume(const scheduler *c)
 {
 	count_awake(c);
 	if (c->settings->monolith)
 		ob_requery_reset(c->u); // ODE's world finds its own neighbours
 	if (ob_universe_ranks(c->u) > 1)
-		ob_halo_settle(ob_commit_halo(c->sim->committer), c->u);
+		settle(c);
 	return OB_PHASE_BROADPHASE_START;
 }
 
 // false: the step has failed.
 static bool merge_pairs(const scheduler *c, uint64_t steps)
 {
+	if (ob_universe_ranks(c->u) > 1)
+		ob_regions_follow(ob_commit_regions(c->sim->committer), c->u);
 	ob_pairs_merge(c->u, steps);
 	if (ob_universe_ranks(c->u) < 2)
 		return true;
@@ -583,7 +596,7 @@ static ob_phase after_scripts(const scheduler *c)
 	if (ob_scripts_carry_out(c->sim))
 		count_awake(c);
 	if (ob_universe_ranks(c->u) > 1)
-		ob_halo_settle(ob_commit_halo(c->sim->committer), c->u); // motions that scripts have changed
+		settle(c); // motions that scripts have changed
 	if (ob_scripts_have_requests(c->u))
 		return OB_PHASE_PAUSE;
 	if (c->settings->monolith)

@@ -1,6 +1,6 @@
-// Three ranks that know no more motions than they need: bodies move, meet and part, and go from rank to rank, at
-// random. Each rank always has its own and their neighbours', to the last bit, and after a gathering everybody's; what
-// it has not it does not take for known. And damage to what it has is found.
+// Three ranks that know no more motions than they need: bodies move, meet and part, and go from rank to rank, solved or
+// not, at random. Each rank always has its own and their neighbours', to the last bit, and after a gathering
+// everybody's; what it has not it does not take for known. And damage to what it has is found.
 #include "check.h"
 
 #include <pthread.h>
@@ -91,7 +91,7 @@ static void tell_on(story *s)
 	s->gathers = uniform(seed) < .2;
 	for (uint32_t id = 0; id < BODIES; id++) {
 		s->solved[id] = uniform(seed) < .5;
-		if (s->solved[id] && uniform(seed) < .1)
+		if (uniform(seed) < (s->solved[id] ? .1 : .03))
 			s->home[id] = any(seed, RANKS);
 		s->next[id] = s->now[id];
 		s->next[id].p.x = within(seed, -1, 1);
@@ -119,11 +119,13 @@ static void move(rank *r)
 	const story *s = r->s;
 	const size_t *at;
 	const char *parcel;
-	uint32_t n = 0;
+	uint32_t n = 0, left = 0, leaving[BODIES];
 	bool moved = false, sound = true;
 	ob_parcel head;
 	for (uint32_t id = 0; id < BODIES; id++) {
 		data->result_island[id] = s->solved[id] ? n : UINT32_MAX;
+		if (!s->solved[id] && ob_home_of(r->u, id) != s->home[id])
+			leaving[left++] = id, ob_home_set(r->u, id, s->home[id]);
 		if (!s->solved[id])
 			continue;
 		data->island[n] = (ob_island){ .first_member = n, .members = 1 };
@@ -133,13 +135,13 @@ static void move(rank *r)
 	data->count->islands = n;
 	for (uint32_t to = 0; to < RANKS; to++)
 		r->wrong += !ob_peers_begin(&r->mail[to]);
-	r->wrong += !ob_halo_move(r->h, r->u, r->mail, &moved);
+	r->wrong += !ob_halo_move(r->h, r->u, leaving, left, r->mail, &moved);
 	const char *all =
 		moved ? ob_peers_deal(&r->p, r->u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, r->mail, &at) : NULL;
 	for (uint32_t from = 0; all && from < RANKS; from++) {
 		const char *rest = all + at[from] + sizeof(ob_peers_head);
-		size_t left = at[from + 1] - at[from] - sizeof(ob_peers_head);
-		while (sound && from != r->number && (parcel = ob_parcel_next(&rest, &left, &head, &sound)))
+		size_t bytes = at[from + 1] - at[from] - sizeof(ob_peers_head);
+		while (sound && from != r->number && (parcel = ob_parcel_next(&rest, &bytes, &head, &sound)))
 			sound = ob_halo_take(r->h, r->u, parcel, &head);
 	}
 	r->wrong += !sound;

@@ -100,7 +100,7 @@ static void list_pairs_and_deal(ob_universe *u)
 {
 	for (uint32_t i = 0; i < ob_islands_list_tasks(u); i++)
 		ob_islands_list_pairs(u, i);
-	ob_islands_deal(u);
+	ob_islands_deal(u, NULL);
 	if (ob_universe_ranks(u) > 1)
 		ob_islands_list_own_pairs(u);
 }

@@ -1,0 +1,403 @@
+#include "sim/regions.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/pairs.h"
+#include "table/forest.h"
+#include "table/home.h"
+
+// Work (island_builder.h), of each body, for which a cut may be made anew: some hundred times what it takes each rank.
+enum { WORTH_A_CUT = 256 };
+static const double longer = 1.25; // a cut turns where bodies lie so much farther apart along another axis
+static const double beyond = .25; // of its fat AABB, by which a body must be beyond a cut
+
+// Bodies that touch.
+typedef struct group {
+	double at[3]; // m
+	double weight;
+	uint32_t root; // the lowest of their numbers
+} group;
+
+// What separates the simulators before one from those from it on. Each is a node of the tree of cuts.
+typedef struct cut {
+	uint32_t axis;
+	double at; // m
+} cut;
+
+struct ob_regions {
+	uint32_t simulators, each; // of all ranks, of each
+	bool is_cut;
+	uint32_t *home; // [object]: 1 + the simulator whose region it is in; 0 = it is no body
+	uint64_t *spent; // [object]: work of lately
+	cut *cut; // [simulator], from 1 on
+	double *room; // [simulator]: its share of all work, less that of bodies that were moved to it
+	uint64_t work, spilled; // given to simulators since the last cut; of it, to others than those of the region
+	uint32_t *mover; // bodies whose region is another since they were asked for
+	uint32_t movers;
+	uint8_t *moves; // [object]: 1 = it is one of them
+	uint32_t *parent; // [object], of groups (table/forest.h)
+	uint32_t *place; // [object]: of a root's group
+	group *group;
+};
+
+ob_regions *ob_regions_create(const ob_universe *u)
+{
+	const uint32_t objects = ob_universe_capacity(u);
+	ob_regions *r = calloc(1, sizeof *r);
+	if (!r)
+		return NULL;
+	r->simulators = ob_universe_simulators(u);
+	r->each = r->simulators / ob_universe_ranks(u);
+	r->home = calloc(objects, sizeof *r->home);
+	r->spent = calloc(objects, sizeof *r->spent);
+	r->mover = calloc(objects, sizeof *r->mover);
+	r->moves = calloc(objects, sizeof *r->moves);
+	r->cut = calloc(r->simulators, sizeof *r->cut);
+	r->room = calloc(r->simulators, sizeof *r->room);
+	r->parent = calloc(objects, sizeof *r->parent);
+	r->place = calloc(objects, sizeof *r->place);
+	r->group = calloc(objects, sizeof *r->group);
+	if (r->home && r->spent && r->mover && r->moves && r->cut && r->room && r->parent && r->place && r->group)
+		return r;
+	ob_regions_destroy(r);
+	return NULL;
+}
+
+void ob_regions_destroy(ob_regions *r)
+{
+	if (!r)
+		return;
+	free(r->home);
+	free(r->spent);
+	free(r->mover);
+	free(r->moves);
+	free(r->cut);
+	free(r->room);
+	free(r->parent);
+	free(r->place);
+	free(r->group);
+	free(r);
+}
+
+static bool is_dynamic(const ob_step_data *data, uint32_t id)
+{
+	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
+}
+
+// Where simulators first .. first + count - 1 are halved: between ranks, if they are several ranks'.
+static uint32_t middle_of(const ob_regions *r, uint32_t first, uint32_t count)
+{
+	return first + (count > r->each ? count / r->each / 2 * r->each : count / 2);
+}
+
+// ---- groups
+
+static void find_groups(ob_regions *r, const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	for (uint32_t id = 0; id < ids; id++)
+		r->parent[id] = id;
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		if (k->active && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
+		    is_dynamic(data, k->a) && is_dynamic(data, k->b))
+			ob_forest_join(r->parent, k->a, k->b);
+	}
+}
+
+// To which one of the body's group was moved, the first; UINT32_MAX: none was.
+static uint32_t pin_of(const ob_regions *r, const ob_step_data *data, uint32_t id)
+{
+	const uint32_t pin = data->pin[id] - 1;
+	return pin < r->simulators ? pin : UINT32_MAX;
+}
+
+static void add_body(group *g, const float *box, double weight)
+{
+	for (int c = 0; c < 3; c++)
+		g->at[c] += weight * ((double)box[c] + box[3 + c]) / 2;
+	g->weight += weight;
+}
+
+// Lists the groups, and what of all work is left for each simulator; returns how many there are. Those of which a body
+// was moved are listed no more: they are where it is.
+static uint32_t list_groups(ob_regions *r, const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	uint32_t n = 0, left = 0;
+	double all = 0;
+	memset(r->room, 0, r->simulators * sizeof *r->room);
+	for (uint32_t id = 0; id < ids; id++) {
+		if (!is_dynamic(data, id))
+			continue;
+		const uint32_t root = ob_forest_root(r->parent, id);
+		if (root == id) {
+			r->place[id] = n;
+			r->home[id] = 0;
+			r->group[n++] = (group){ .root = id };
+		}
+		if (!r->home[root])
+			r->home[root] = 1 + pin_of(r, data, id);
+		add_body(&r->group[r->place[root]], data->bounds[id], 1 + (double)r->spent[id]);
+	}
+	for (uint32_t i = 0; i < n; i++) {
+		group g = r->group[i];
+		const uint32_t pinned = r->home[g.root];
+		all += g.weight;
+		if (pinned) {
+			r->room[pinned - 1] -= g.weight;
+			continue;
+		}
+		for (int c = 0; c < 3; c++)
+			g.at[c] /= g.weight;
+		r->group[left++] = g;
+	}
+	for (uint32_t s = 0; s < r->simulators; s++)
+		r->room[s] = fmax(r->room[s] + all / r->simulators, 0);
+	return left;
+}
+
+// ---- cuts
+
+static bool is_before(const group *a, const group *b, uint32_t axis)
+{
+	return a->at[axis] != b->at[axis] ? a->at[axis] < b->at[axis] : a->root < b->root;
+}
+
+static const group *median_of(const group *a, const group *b, const group *c, uint32_t axis)
+{
+	if (is_before(b, a, axis)) {
+		const group *low = b;
+		b = a, a = low;
+	}
+	return is_before(b, c, axis) ? b : is_before(a, c, axis) ? c : a;
+}
+
+// Those before the pivot come first; returns how many they are, and how much they weigh.
+static uint32_t part(group *g, uint32_t n, uint32_t axis, double *weight)
+{
+	const group pivot = *median_of(&g[0], &g[n / 2], &g[n - 1], axis);
+	uint32_t before = 0;
+	*weight = 0;
+	for (uint32_t i = 0; i < n; i++) {
+		if (!is_before(&g[i], &pivot, axis))
+			continue;
+		const group moved = g[i];
+		g[i] = g[before];
+		g[before++] = moved;
+		*weight += moved.weight;
+	}
+	return before;
+}
+
+// Puts those first that weigh about so much, in their order along the axis; returns how many they are. A selection, as
+// by Hoare, Algorithm 65: Find, 1961.
+static uint32_t halve(group *g, uint32_t n, uint32_t axis, double weight)
+{
+	uint32_t first = 0, end = n;
+	while (end - first > 1) {
+		double found;
+		const uint32_t before = part(g + first, end - first, axis, &found);
+		if (!before) { // the pivot is the first of all
+			uint32_t least = first;
+			for (uint32_t i = first; i < end; i++)
+				least = is_before(&g[i], &g[least], axis) ? i : least;
+			const group moved = g[least];
+			g[least] = g[first];
+			g[first] = moved;
+			if (weight < moved.weight)
+				end = first + 1;
+			else
+				first++, weight -= moved.weight;
+		} else if (weight < found) {
+			end = first + before;
+		} else {
+			first += before, weight -= found;
+		}
+	}
+	return first < end && weight > g[first].weight / 2 ? first + 1 : first;
+}
+
+// Along which bodies lie farthest apart, on the average: one that has gone far turns no cut.
+static uint32_t longest_axis(const group *g, uint32_t n, uint32_t before)
+{
+	double weight = 0, middle[3] = { 0 }, distance[3] = { 0 };
+	for (uint32_t i = 0; i < n; i++)
+		weight += g[i].weight;
+	for (uint32_t i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++)
+			middle[c] += g[i].at[c] * (g[i].weight / weight);
+	for (uint32_t i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++)
+			distance[c] += fabs(g[i].at[c] - middle[c]) * (g[i].weight / weight);
+	uint32_t axis = before;
+	distance[before] *= longer;
+	for (uint32_t c = 0; c < 3; c++)
+		if (distance[c] > distance[axis])
+			axis = c;
+	return axis;
+}
+
+// Where the first m end and the others begin.
+static double middle_between(const group *g, uint32_t n, uint32_t m, uint32_t axis)
+{
+	double low = -INFINITY, high = INFINITY;
+	for (uint32_t i = 0; i < m; i++)
+		low = fmax(low, g[i].at[axis]);
+	for (uint32_t i = m; i < n; i++)
+		high = fmin(high, g[i].at[axis]);
+	return low + (high - low) / 2;
+}
+
+static void share_out(ob_regions *r, group *g, uint32_t n, uint32_t first, uint32_t count)
+{
+	if (count == 1) {
+		for (uint32_t i = 0; i < n; i++)
+			r->home[g[i].root] = 1 + first;
+		return;
+	}
+	const uint32_t middle = middle_of(r, first, count);
+	cut *c = &r->cut[middle];
+	double weight = 0, room = 0, left = 0;
+	for (uint32_t i = 0; i < n; i++)
+		weight += g[i].weight;
+	for (uint32_t s = first; s < first + count; s++)
+		room += r->room[s], left += s < middle ? r->room[s] : 0;
+	c->axis = n ? longest_axis(g, n, c->axis) : c->axis;
+	const uint32_t m = halve(g, n, c->axis, room > 0 ? weight * (left / room) : weight / 2);
+	if (m && m < n)
+		c->at = middle_between(g, n, m, c->axis);
+	share_out(r, g, m, first, middle - first);
+	share_out(r, g + m, n - m, middle, first + count - middle);
+}
+
+static void cut_anew(ob_regions *r, const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	find_groups(r, u);
+	share_out(r, r->group, list_groups(r, u), 0, r->simulators);
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
+		r->home[id] = is_dynamic(data, id) ? r->home[ob_forest_root(r->parent, id)] : 0;
+	r->is_cut = true;
+}
+
+// ---- who lives where
+
+// In whose region the box is; home: 1 + in whose it was; 0: in none.
+static uint32_t find_home(const ob_regions *r, const float *box, uint32_t home)
+{
+	uint32_t first = 0, count = r->simulators;
+	while (count > 1) {
+		const uint32_t middle = middle_of(r, first, count);
+		const cut *c = &r->cut[middle];
+		const double low = box[c->axis], high = box[3 + c->axis], margin = beyond * (high - low);
+		const double after = (low + high) / 2 - c->at;
+		const bool was_there = home > first && home <= first + count, second = !was_there      ? after > 0
+										       : home > middle ? after > -margin
+												       : after > margin;
+		count = second ? first + count - middle : middle - first;
+		first = second ? middle : first;
+	}
+	return first;
+}
+
+void ob_regions_settle(ob_regions *r, ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	uint32_t fresh = 0;
+	for (uint32_t id = 0; id < ids; id++) {
+		r->home[id] = is_dynamic(data, id) ? r->home[id] : 0;
+		fresh += is_dynamic(data, id) && !r->home[id];
+	}
+	if (!fresh)
+		return;
+	const bool first = !r->is_cut;
+	if (first) {
+		for (uint32_t id = 0; id < ids; id++)
+			r->spent[id] = data->effort[id];
+		cut_anew(r, u);
+	}
+	for (uint32_t id = 0; id < ids; id++) {
+		if (!is_dynamic(data, id) || (r->home[id] && !first))
+			continue;
+		if (!r->home[id])
+			r->home[id] = 1 + find_home(r, data->bounds[id], 0);
+		ob_home_set(u, id, r->home[id] - 1);
+		ob_pairs_look(u, id); // who checks them has changed
+	}
+}
+
+void ob_regions_follow(ob_regions *r, const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t n;
+	const uint32_t *list = ob_requery_list(u, &n);
+	for (uint32_t i = 0; i < n; i++) {
+		const uint32_t id = list[i];
+		if (!ob_object_in_range(data, id) || !r->home[id])
+			continue;
+		const uint32_t home = 1 + find_home(r, data->bounds[id], r->home[id]);
+		if (home != r->home[id] && !r->moves[id])
+			r->moves[id] = 1, r->mover[r->movers++] = id;
+		r->home[id] = home;
+	}
+}
+
+static bool touches(const ob_step_data *data, uint32_t id)
+{
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at))
+		if (data->pair[at.pair].active)
+			return true;
+	return false;
+}
+
+// Who touches something has something kept of it (holdings.h), and goes when its island is solved.
+const uint32_t *ob_regions_settle_fliers(ob_regions *r, ob_universe *u, uint32_t *count)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	*count = 0;
+	if (data->count->merged) // whose region is another now has been solved in this very step
+		return r->mover;
+	for (uint32_t i = 0; i < r->movers; i++) {
+		const uint32_t id = r->mover[i];
+		r->moves[id] = 0;
+		if (!r->home[id] || data->pin[id] || data->result_island[id] != UINT32_MAX || touches(data, id) ||
+		    ob_universe_rank_of(u, r->home[id] - 1) == ob_home_rank(u, id))
+			continue;
+		ob_home_set(u, id, r->home[id] - 1);
+		r->mover[(*count)++] = id;
+	}
+	r->movers = 0;
+	return r->mover;
+}
+
+void ob_regions_renew(ob_regions *r, const ob_universe *u)
+{
+	const uint32_t ids = ob_universe_ids(u);
+	if (r->work / WORTH_A_CUT < (uint64_t)ids * ob_universe_ranks(u))
+		return;
+	if (r->spilled)
+		cut_anew(r, u);
+	for (uint32_t id = 0; id < ids; id++)
+		r->spent[id] /= 2;
+	r->work = r->spilled = 0;
+}
+
+uint32_t ob_regions_at(const ob_regions *r, uint32_t id)
+{
+	return r->home[id] ? r->home[id] - 1 : 0;
+}
+
+void ob_regions_note(ob_regions *r, uint32_t id, uint32_t simulator, uint32_t work, bool spilled)
+{
+	r->home[id] = 1 + simulator;
+	r->spent[id] += work;
+	r->work += work;
+	r->spilled += spilled ? work : 0;
+}
