@@ -236,6 +236,28 @@ static uint32_t leader_of(const ob_step_data *ex, uint32_t id)
 	return is == UINT32_MAX ? is : ex->member[ex->island[is].first_member];
 }
 
+// Who has a tenth more than its share to do has no island that another would have done sooner. Returns whether any has
+// had.
+static bool check_shares(const ob_step_data *ex)
+{
+	enum { LITTLE = 16 * 48 }; // that is not worth sharing
+	uint64_t total = 0, load[BODIES] = { 0 };
+	uint32_t least = 0, moved = 0;
+	for (uint32_t w = 0; w < ex->count->chunks; w++) {
+		for (uint32_t i = ex->chunk[w]; i < ex->chunk[w + 1]; i++) {
+			load[w] += ex->island[i].work;
+			moved += ex->member[ex->island[i].first_member] * ex->count->chunks / BODIES != w;
+		}
+		total += load[w];
+		least = load[w] < load[least] ? w : least;
+	}
+	const uint64_t share = total / ex->count->chunks, most = share + share / 10 + 2;
+	for (uint32_t w = 0; w < ex->count->chunks; w++)
+		for (uint32_t i = ex->chunk[w]; i < ex->chunk[w + 1] && load[w] > most && load[w] > LITTLE; i++)
+			CHECK(load[least] + ex->island[i].work >= load[w]);
+	return moved > 0;
+}
+
 // Three ranks, one after the other, make the islands of one: each pair is listed by one of them, for its island and to
 // be checked, as it is there. Returns how many have pairs to check.
 static uint32_t check_ranks(ob_universe *u, uint64_t seed, double density)
@@ -244,14 +266,17 @@ static uint32_t check_ranks(ob_universe *u, uint64_t seed, double density)
 	const ob_step_data *ex = ob_universe_step_data(u);
 	static uint32_t leader[BODIES];
 	int *checks = calloc(ex->pairs_max, sizeof *checks), *inside = calloc(ex->pairs_max, sizeof *inside);
-	uint32_t wrong = 0, busy = 0;
+	uint32_t wrong = 0, busy = 0, moved = 0;
 	CHECK(checks && inside);
 	for (uint32_t run = 0; run <= RANKS; run++) { // one alone, then each of three
 		u->ranks = run ? RANKS : 1;
 		u->rank = run ? run - 1 : 0;
 		memset(ex->home, 0, BODIES * sizeof *ex->home);
 		random_graph(u, seed, density);
+		for (uint32_t i = 0; i < BODIES; i++)
+			ex->effort[i] = i < 100 ? 400 : i * 7 % 50;
 		build(u);
+		moved += run && check_shares(ex);
 		uint32_t entered = 0;
 		for (uint32_t i = 0; i < ex->count->pairs; i++) {
 			const bool now =
@@ -270,6 +295,8 @@ static uint32_t check_ranks(ob_universe *u, uint64_t seed, double density)
 	for (uint32_t i = 0; i < ex->pairs_max; i++)
 		wrong += checks[i] != 0 || inside[i] != 0;
 	CHECK(wrong == 0);
+	CHECK(moved == 0 || moved == RANKS);
+	memset(ex->effort, 0, BODIES * sizeof *ex->effort);
 	u->ranks = 1;
 	u->rank = 0;
 	free(checks);
