@@ -60,7 +60,7 @@ class Limits(program.Case):
 
 	def test_ode(self):
 		texts = {self.fail(hostile("ode_gives_up"), "--duration", "1", "--isolation", i, "--workers", w,
-				saying=r"^obsim: ODE gave up in step 1 at object 0 \(needle\)")
+				saying=r"^obsim: ODE gave up in step 1 at object 0 \(blade\)")
 			for i in ("thread", "process") for w in ("1", "2", "objects")}
 		self.assertEqual(len(texts), 1)
 
