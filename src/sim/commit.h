@@ -77,7 +77,7 @@ bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase p
 ob_halo *ob_commit_halo(const ob_committer *c);
 // Whose region bodies are in; likewise.
 struct ob_regions *ob_commit_regions(const ob_committer *c);
-// Between two steps: all ranks have what all pairs keep.
+// Between two steps: all ranks have what all pairs keep, and what is known of them, for a checkpoint.
 bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p);
 
 #endif

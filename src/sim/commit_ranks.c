@@ -272,5 +272,5 @@ ob_regions *ob_commit_regions(const ob_committer *c)
 
 bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)
 {
-	return ob_holdings_gather(c->holdings, u, p);
+	return ob_holdings_gather(c->holdings, u, p) && ob_halo_share_pairs(c->halo, u, p);
 }

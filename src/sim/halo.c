@@ -358,6 +358,31 @@ bool ob_halo_move(ob_halo *h, const ob_universe *u, const uint32_t *also, uint32
 	return fits;
 }
 
+// Who knows the pair best: the rank that has solved one of the two.
+static uint32_t owner_of_pair(const ob_halo *h, const ob_pair_key *k)
+{
+	return h->owner[k->a] ? h->owner[k->a] : h->owner[k->b];
+}
+
+bool ob_halo_share_pairs(ob_halo *h, ob_universe *u, ob_peers *p)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const size_t *at;
+	bool fits = ob_peers_begin(&h->out[0]);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		if (k->a != k->b && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
+		    owner_of_pair(h, k) == 1 + p->rank)
+			fits &= pack_pair(&h->out[0], u, i);
+	}
+	if (!fits) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return false;
+	}
+	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_GATHER }, &h->out[0], &at);
+	return take_all(h, u, p, all, at);
+}
+
 bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p)
 {
 	const uint32_t ids = ob_universe_ids(u);

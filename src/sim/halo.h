@@ -14,6 +14,7 @@
 //   - move: another rank solves the body from now on (regions.h). It gets its motion and its neighbours', and what is
 //     known of its pairs.
 //   - gather: somebody looks at the universe (ob_peers.look). All ranks get all motions.
+//   - share: somebody writes a checkpoint. All ranks get what is known of all pairs.
 //
 // So it is whole on each rank where a host looks at it, at a pause, and no earlier. Where somebody looks after each
 // step, all are told all as it is solved.
@@ -59,6 +60,9 @@ bool ob_halo_digest(const ob_halo *h, const ob_universe *u, uint32_t id, uint64_
 // failed.
 bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p);
 bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p);
+// Between two steps, too: until when each pair is known to be apart. A run that goes on from there must know as much,
+// for when a pair is looked at again is when it may begin to touch.
+bool ob_halo_share_pairs(ob_halo *h, ob_universe *u, ob_peers *p);
 // When islands have been dealt: what goes to rank r into mail[r]. also: bodies that are in none and yet live with
 // another rank now. moved: whether any rank has something to say. false: no memory.
 bool ob_halo_move(ob_halo *h, const ob_universe *u, const uint32_t *also, uint32_t count, ob_mail *mail, bool *moved);

@@ -21,7 +21,6 @@ struct ob_holdings {
 typedef struct parcel {
 	ob_parcel head;
 	uint32_t pair, stamp; // index; as ob_pair_record.stamp
-	double limit; // of its key
 	ob_pair_state state;
 	double impulse_b[OB_PAIR_ROWS];
 } parcel;
@@ -132,7 +131,6 @@ static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t reco
 	if (version < 0)
 		return true;
 	p.stamp = data->record[record].stamp[version];
-	p.limit = data->pair[pair].limit;
 	p.state = data->record[record].version[version];
 	if (bytes == sizeof p)
 		memcpy(p.impulse_b, data->impulse_b[record][version], sizeof p.impulse_b);
@@ -160,7 +158,6 @@ static bool take(ob_holdings *h, const ob_universe *u, const char *from, size_t 
 	if (record >= data->pairs_max || (holder != ALL && !is_solved_here(u, k)))
 		return false;
 	h->holder[record] = holder;
-	k->limit = c.limit;
 	data->record[record].version[0] = c.state;
 	data->record[record].stamp[0] = c.stamp;
 	data->record[record].stamp[1] = 0;

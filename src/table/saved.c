@@ -76,6 +76,7 @@ static void save_pairs(const ob_universe *u, ob_saved_universe *out)
 	qsort(out->pair, pairs, sizeof *out->pair, ob_pairs_by_ids);
 	for (uint32_t i = 0; i < pairs; i++) {
 		ob_pair_key *k = &out->pair[i];
+		k->in_island = 0; // that step is over
 		if (k->record == OB_NO_RECORD)
 			continue;
 		save_record(u, k->record, &out->record[records]);

@@ -127,6 +127,24 @@ class Ranks(program.Case):
 				more = ["--resume", file, "--duration", "1", "--workers", "1", "--json", "-"]
 				self.assertEqual(self.hash_of((3, more)), expected)
 
+	def test_checkpoints_are_alike(self):
+		"""That of each rank, whatever it has solved, is that of one process, but for when it was made and what was counted."""
+		def areas(file): # checkpoint/file.h, checkpoint/saved_run.c
+			with open(file, "rb") as f:
+				table = f.read(4096)[128:]
+			lines = [struct.unpack_from("=4Q", table, 32 * i) for i in range(18)]
+			return [(element, count, checksum) for i, (element, count, _, checksum) in enumerate(lines) if i not in (0, 4)]
+		for name, *more in ("falling_boxes", "-D", "n=20", "--sleeping", "off"), ("gas", "-D", "n=100"), ("machines",), ("pile",):
+			for seconds in ".4", "1.1":
+				with self.subTest(name=name, seconds=seconds), tempfile.TemporaryDirectory() as folder:
+					kept, alone = os.path.join(folder, "kept"), os.path.join(folder, "alone")
+					words = [program.scene(name), *more, "--duration", seconds, "--measure", "end", "--workers", "1", "--checkpoint"]
+					program.report(*words, alone)
+					done = run((3, [*words, kept]))
+					self.assertEqual(done.returncode, 0, done.stderr)
+					for file in kept, kept + ".1", kept + ".2":
+						self.assertEqual(areas(file), areas(alone))
+
 	def test_moves(self):
 		"""Simulators move from rank to rank, as rank 0 is asked."""
 		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "3", "--sleeping", "off"]
