@@ -83,11 +83,15 @@ class Policy(program.Case):
 	def test_frozen_goes_on(self):
 		"""What is frozen stays so in a checkpoint, and obsim top shows it."""
 		file = self.path("run.ck")
-		words = [*BOXES, *PROCESS, "--workers", "1", "--on-death", "freeze", "--fault", "segv:p=.001,seed=4"]
-		r = program.report(*words, "--checkpoint", file)
-		self.assertEqual(program.report("--resume", file, "--duration", "2")["bodies"], r["bodies"])
-		words[words.index("--duration") + 1] = program.FOR_EVER
-		run = self.start_universe(*words, "--sleeping", "off")
+		words = [program.scene("gas"), "-D", "n=40", "--measure", "end", *PROCESS, "--workers", "1", "--on-death", "freeze",
+			"--restarts", "9999/1e6"] # what moves for ever
+		frozen = 0
+		for seed in range(1, 7):
+			r = program.report(*words, "--duration", "10", "--fault", f"segv:p=.001,seed={seed}", "--checkpoint", file)
+			self.assertEqual(program.report("--resume", file, "--duration", "10.1")["bodies"], r["bodies"])
+			frozen += r["frozen"]
+		self.assertGreater(frozen, 0)
+		run = self.start_universe(*words, "--duration", program.FOR_EVER, "--pace", "10", "--fault", "segv:p=.001,seed=2")
 		look = lambda: program.call("top", self.name, "--once").stdout
 		self.assertTrue(program.wait_until(lambda: "objects frozen" in look()))
 		self.assertRegex(look(), r"deaths \d+, objects frozen \d+; the last: simulator 0 \(process \d+\) was killed by SIGSEGV")
