@@ -203,6 +203,8 @@ bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_
 
 // ---- time of impact
 
+enum { MOST_TRIES = 256 };
+
 static const double longest_short_turn = .2, longest_exact_turn = 1e-3; // rad: off by less than 1e-5 rad; by rounding
 
 // A shape on its way: v is constant, and it turns freely.
@@ -555,7 +557,7 @@ bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double m
 	return false;
 }
 
-double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double exact, double tolerance,
+double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out)
 {
 	double t = 0, apart = 0;
@@ -564,7 +566,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 	const bool by_direction = isfinite(bend) && !find.of_boxes;
 	ob_vec3 n = { 0, 0, 0 };
 	// A grazing flight takes many small advances; after so many, what is this near counts as touching.
-	for (int tries = 0; tries < 256 && t <= h; tries++) {
+	for (int tries = 0; tries < MOST_TRIES && t <= h; tries++) {
 		follow_both_to(&at, &bt, t);
 		out->normal = n;
 		find.find(find.with, &at.now, &bt.now, tolerance, out);
@@ -582,8 +584,6 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			advance = time_apart(&x, near, certain, h - t);
 		}
 		t += advance;
-		if (t > exact && t < h && margin == tolerance && advance < .5 * exact)
-			return t;
 	}
 	if (t <= h) {
 		follow_both_to(&at, &bt, t);
@@ -594,4 +594,84 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 	out->points = 0;
 	out->separation = apart;
 	return t <= h && margin == tolerance ? t : INFINITY;
+}
+
+// ---- a forecast
+
+// Until when (s) the two may be nearer than this (m): then their bounding spheres have parted for good.
+static double time_of_passing(const ob_placed *a, const ob_placed *b, double near)
+{
+	const ob_vec3 apart = ob_sub(a->p, b->p), v = ob_sub(a->v, b->v);
+	const double radii = ob_shape_radius(a->shape, a->size) + ob_shape_radius(b->shape, b->size) + near;
+	const double opening = ob_dot(apart, v), square = ob_norm2(v),
+		     d = opening * opening - square * (ob_norm2(apart) - radii * radii);
+	if (!(square > 0))
+		return INFINITY;
+	return d > 0 ? ob_max(0, (sqrt(d) - opening) / square) : 0;
+}
+
+// 1/s, at which n turns with what it is across: a face, or an edge of each.
+static ob_vec3 turn_with_features(const ob_placed *a, const ob_placed *b, ob_vec3 n)
+{
+	const double same = 1 - 1e-9;
+	for (int k = 0; k < 6; k++)
+		if (fabs(ob_dot(ob_column(k < 3 ? &a->r : &b->r, k % 3), n)) > same)
+			return ob_cross(k < 3 ? a->w : b->w, n);
+	return turn_with_edges(a, b, n);
+}
+
+// For how long within h (s) the two stay farther apart than "near" (m) along n, at least; "certain" (s) of it is known.
+// n stays, which tells more of what is far, or turns with what it is across, which tells more of what is close: there a
+// face comes nearer than its corners. Infinity: all of h, and farther than "far" (m).
+static double time_beyond(const ob_placed *a, const ob_placed *b, ob_vec3 n, double bend, double near, double far,
+			  double certain, double h)
+{
+	enum { NARROW = 4, LONGER = 8 };
+	seen_along x = look_along(a, b, n, ob_v3(0, 0, 0), bend, h);
+	if (apart_at(&x, h) >= far)
+		return INFINITY;
+	double high = ob_min(h, LONGER * certain), at_high = apart_at(&x, high) - near, low = 0, at_low;
+	const seen_along turning = look_along(a, b, n, turn_with_features(a, b, n), bend, high);
+	const double at_turned = apart_at(&turning, high) - near;
+	if (at_turned > at_high)
+		x = turning, at_high = at_turned;
+	if (at_high >= 0)
+		return high;
+	at_low = apart_at(&x, 0) - near;
+	for (int k = 0; k < NARROW && at_low > 0; k++) { // a chord is below it
+		low += (high - low) * (at_low / (at_low - at_high));
+		at_low = apart_at(&x, low) - near;
+	}
+	return ob_max(certain, low);
+}
+
+double ob_time_of_nearing(const ob_placed *a, const ob_placed *b, double speed, double h, double soon, double near,
+			  ob_manifold_finder find, double *apart)
+{
+	const double closer = .5 * near, least = .25 * soon;
+	followed_shape at = follow_from_start(a, false), bt = follow_from_start(b, false);
+	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
+	const bool by_direction = isfinite(bend) && !find.of_boxes;
+	const double end = by_direction ? ob_min(h, time_of_passing(a, b, near)) : h;
+	ob_manifold m;
+	ob_vec3 n = { 0, 0, 0 };
+	double t = 0;
+	for (int tries = 0; tries < MOST_TRIES && t <= end; tries++) {
+		follow_both_to(&at, &bt, t);
+		m = (ob_manifold){ .normal = n, .valid_path = INFINITY };
+		find.find(find.with, &at.now, &bt.now, near, &m);
+		n = m.normal;
+		if (tries == 0)
+			*apart = m.separation;
+		if (m.points)
+			return t;
+		const double certain = (ob_max(m.separation, near) - closer) / speed;
+		double advance = certain;
+		if (by_direction && t + certain < end && find_direction(&at.now, &bt.now, m.separation, &n) > closer)
+			advance = time_beyond(&at.now, &bt.now, n, bend, closer, near, certain, end - t);
+		t += advance;
+		if (t > soon && t < end && advance < least)
+			return t;
+	}
+	return t <= end ? t : INFINITY;
 }

@@ -60,11 +60,16 @@ typedef struct ob_manifold_finder {
 // Returns the first time in [0, h] (s) at which they are within tolerance (m), and in out the points up to margin (m)
 // as of that time: what turns about the first point to touch brings the next ones down within the same step. Infinity
 // if they do not touch; then out has no points, and separation is as of now. So it is where margin is tolerance and too
-// many advances would be needed, beside what turns fast: then the time is that until which they certainly do not touch;
-// and so is a time beyond "exact" (s), where closer advances than half of that would be needed. speed: bound of the
-// closing speed of any two points (m/s) until then.
-double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double exact, double tolerance,
+// many advances would be needed, beside what turns fast: then the time is that until which they certainly do not touch.
+// speed: bound of the closing speed of any two points (m/s) until then.
+double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, double h, double tolerance,
 			 double margin, ob_manifold_finder find, ob_manifold *out);
+
+// A forecast of the same, for as long as nothing is hit: the first time in [0, h] (s) at which the two are within
+// "near" (m), or nearly; infinity if they are not. Where it would take many advances to know, and beyond "soon" (s),
+// the time is that until which they certainly are not. apart: m, their distance now, at least.
+double ob_time_of_nearing(const ob_placed *a, const ob_placed *b, double speed, double h, double soon, double near,
+			  ob_manifold_finder find, double *apart);
 
 // When two that move so first touch and go on into each other within h (s), to rounding, and in out the points up to
 // margin (m) then. Those that touch now may part. when: infinity, if they stay apart; then out has no points, and

@@ -85,13 +85,10 @@ static double relative_speed(const ob_placed *a, const ob_placed *b, double h)
 // m, their distance now.
 static double time_of_contact(const pair_check *c, const moving_pair *p, double h, double *apart)
 {
-	ob_manifold m;
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
 	double speed = relative_speed(a, b, h);
 	double gap = ob_min(contact_gap * c->s->island.unit.length, contact_gap_share * p->thin);
-	double when = ob_time_of_impact(a, b, ob_max(speed, 1e-9), h, p->h, gap, gap, ob_narrowphase_finder(c->s), &m);
-	*apart = m.separation;
-	return when;
+	return ob_time_of_nearing(a, b, ob_max(speed, 1e-9), h, p->h, gap, ob_narrowphase_finder(c->s), apart);
 }
 
 // True if the two have passed through each other since the step began.

@@ -210,8 +210,7 @@ static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizo
 	place(s, contact->b, &b);
 	double near = ob_min(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
 	s->counters.swept_tests++;
-	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, horizon, near, reach,
-				 ob_narrowphase_finder(s), m);
+	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_finder(s), m);
 }
 
 double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *contact, double horizon)
