@@ -8,7 +8,6 @@
 #include "contact/polytope.h"
 #include "contact/support.h"
 #include "motion/drift.h"
-#include "motion/spin.h"
 
 static void one_point(ob_manifold *m, ob_vec3 normal, ob_vec3 at, double gap, double margin)
 {
@@ -205,7 +204,7 @@ bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_
 
 enum { MOST_TRIES = 256 };
 
-static const double longest_short_turn = .2, longest_exact_turn = 1e-3; // rad: off by less than 1e-5 rad; by rounding
+static const double longest_short_turn = .2; // rad: off by less than 1e-5 rad
 
 // A shape on its way: v is constant, and it turns freely.
 typedef struct moving_shape {
@@ -246,17 +245,16 @@ static ob_vec3 rate_at(const moving_shape *x, const ob_placed *now)
 	return ob_rotate(&now->r, ob_v3(l.x / i.x, l.y / i.y, l.z / i.z));
 }
 
-// A shape that is followed from instant to instant.
+// A shape that is followed from instant to instant, to 1e-5 rad.
 typedef struct followed_shape {
 	moving_shape shape;
 	ob_placed now;
 	double t; // s
-	bool exactly; // to rounding, else to 1e-5 rad
 } followed_shape;
 
-static followed_shape follow_from_start(const ob_placed *x, bool exactly)
+static followed_shape follow_from_start(const ob_placed *x)
 {
-	followed_shape f = { .now = *x, .exactly = exactly };
+	followed_shape f = { .now = *x };
 	set_off(x, &f.shape);
 	return f;
 }
@@ -267,9 +265,7 @@ static ob_mat3 turned_from_start(followed_shape *f, double t)
 	const moving_shape *x = &f->shape;
 	ob_quat turn;
 	ob_vec3 rate;
-	if (f->exactly)
-		turn = ob_drift_turn(x->rate, f->now.inertia, t);
-	else if (x->speed * t <= longest_short_turn)
+	if (x->speed * t <= longest_short_turn)
 		turn = ob_drift_short_turn(x->rate, f->now.inertia, t);
 	else
 		ob_spin_at(&f->shape.spin, t, &turn, &rate);
@@ -280,8 +276,8 @@ static ob_mat3 turned_from_start(followed_shape *f, double t)
 static bool turns_on(const followed_shape *f, double t)
 {
 	const moving_shape *x = &f->shape;
-	const bool far = f->exactly || x->speed * t > longest_short_turn;
-	return far && f->t > 0 && x->spin.fastest * (t - f->t) < (f->exactly ? longest_exact_turn : longest_short_turn);
+	const bool far = x->speed * t > longest_short_turn;
+	return far && f->t > 0 && x->spin.fastest * (t - f->t) < longest_short_turn;
 }
 
 // To a later instant.
@@ -305,7 +301,7 @@ static void follow_to(followed_shape *f, double t)
 static bool asks_for_rotation(const followed_shape *f, double t)
 {
 	const moving_shape *x = &f->shape;
-	return !f->exactly && x->speed * t > longest_short_turn && t > f->t && !turns_on(f, t);
+	return x->speed * t > longest_short_turn && t > f->t && !turns_on(f, t);
 }
 
 static void follow_both_to(followed_shape *a, followed_shape *b, double t)
@@ -316,19 +312,18 @@ static void follow_both_to(followed_shape *a, followed_shape *b, double t)
 	follow_to(b, t);
 }
 
-// m/s, of any of its points by turning, at any time
-static double fastest_rim(const moving_shape *x)
+// m/s^2, of any point of a shape that turns at up to "fastest" (rad/s); of what has no end: infinity
+static double bend_at(const ob_placed *x, double fastest)
 {
-	return x->speed > 0 ? x->spin.fastest * ob_shape_radius(x->from->shape, x->from->size) : 0;
+	const double radius = ob_shape_radius(x->shape, x->size);
+	if (isinf(radius) || !(fastest > 0))
+		return isinf(radius) ? INFINITY : 0;
+	return radius * ob_bending_of(x->inertia, fastest).most;
 }
 
-// m/s^2, of any point, by turning; of what has no end: infinity
 static double bend_of(const moving_shape *x)
 {
-	const double radius = ob_shape_radius(x->from->shape, x->from->size);
-	if (isinf(radius) || !(x->speed > 0))
-		return isinf(radius) ? INFINITY : 0;
-	return radius * ob_bending_of(x->from->inertia, x->spin.fastest).most;
+	return bend_at(x->from, x->speed > 0 ? x->spin.fastest : 0);
 }
 
 // Two shapes at an instant, seen along a direction n from b to a, which may turn: how far apart their centres are (m),
@@ -514,37 +509,75 @@ static double rounding_of(const ob_placed *x)
 	return 8 * DBL_EPSILON * (ob_shape_radius(x->shape, x->size) + ob_norm(x->p));
 }
 
-bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double margin, ob_manifold_finder find,
-		      double *when, ob_manifold *out)
+// rad/s, at any time
+static double fastest_of(const ob_turning *x)
+{
+	return x->spin ? x->spin->fastest : 0;
+}
+
+// m/s, at which any points of the two close at most
+static double fastest_closing(const ob_placed *a, double turning_a, const ob_placed *b, double turning_b)
+{
+	double speed = ob_norm(ob_sub(a->v, b->v));
+	if (turning_a > 0)
+		speed += turning_a * ob_shape_radius(a->shape, a->size);
+	if (turning_b > 0)
+		speed += turning_b * ob_shape_radius(b->shape, b->size);
+	return ob_max(speed, DBL_MIN);
+}
+
+static void turn_to(const ob_turning *turning, double t, ob_placed *now)
+{
+	ob_quat q;
+	if (!turning->spin)
+		return;
+	ob_spin_at(turning->spin, turning->since + t, &q, &now->w);
+	now->r = ob_quat_matrix(q);
+}
+
+// Where the two are at t, to rounding: side by side where their rotations are long.
+static void place_both(const ob_placed *a, const ob_placed *b, const ob_turning turning[2], double t, ob_placed now[2])
+{
+	if (turning[0].spin && turning[1].spin)
+		ob_spin_prepare((ob_spin *[]){ turning[0].spin, turning[1].spin },
+				(double[]){ turning[0].since + t, turning[1].since + t }, 2);
+	turn_to(&turning[0], t, &now[0]);
+	turn_to(&turning[1], t, &now[1]);
+	now[0].p = ob_madd(a->p, t, a->v);
+	now[1].p = ob_madd(b->p, t, b->v);
+}
+
+bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, const ob_turning turning[2], double h, double margin,
+		      ob_manifold_finder find, double *when, ob_manifold *out)
 {
 	enum { MOST_ADVANCES = 64 };
-	followed_shape at = follow_from_start(a, true), bt = follow_from_start(b, true);
-	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
-	const double speed =
-		ob_max(ob_norm(ob_sub(a->v, b->v)) + fastest_rim(&at.shape) + fastest_rim(&bt.shape), DBL_MIN);
+	const double turning_a = fastest_of(&turning[0]), turning_b = fastest_of(&turning[1]);
+	const double bend = bend_at(a, turning_a) + bend_at(b, turning_b),
+		     speed = fastest_closing(a, turning_a, b, turning_b);
+	ob_placed now[2] = { *a, *b };
 	const double exact = rounding_of(a) + rounding_of(b);
 	ob_vec3 n = { 0, 0, 0 };
-	double t = 0, now = 0;
+	double t = 0, first = 0;
 	*when = INFINITY;
 	if (!isfinite(bend) || find.of_boxes)
 		return false;
 	for (int tries = 0; tries < MOST_ADVANCES; tries++) {
 		const double left = h - t;
 		*out = (ob_manifold){ .normal = n, .valid_path = INFINITY };
-		find.find(find.with, &at.now, &bt.now, margin, out);
+		find.find(find.with, &now[0], &now[1], margin, out);
 		n = out->normal;
 		if (tries == 0)
-			now = out->separation;
+			first = out->separation;
 		if (out->separation < -margin)
 			return false;
-		const double apart = find_direction(&at.now, &bt.now, out->separation - exact, &n);
+		const double apart = find_direction(&now[0], &now[1], out->separation - exact, &n);
 		const bool touch = out->separation <= exact;
 		double clear = ob_max(0, out->separation - exact) / speed;
 		if (touch || apart > exact)
-			clear = ob_max(clear, time_clear(&at.now, &bt.now, n, apart, bend, touch, left));
+			clear = ob_max(clear, time_clear(&now[0], &now[1], n, apart, bend, touch, left));
 		if (clear >= left) {
 			out->points = 0;
-			out->separation = now;
+			out->separation = first;
 			return true;
 		}
 		if (touch && clear == 0) {
@@ -552,7 +585,7 @@ bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double m
 			return out->points > 0;
 		}
 		t += ob_max(clear, DBL_EPSILON * t);
-		follow_both_to(&at, &bt, t);
+		place_both(a, b, turning, t, now);
 	}
 	return false;
 }
@@ -561,7 +594,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			 double margin, ob_manifold_finder find, ob_manifold *out)
 {
 	double t = 0, apart = 0;
-	followed_shape at = follow_from_start(a, false), bt = follow_from_start(b, false);
+	followed_shape at = follow_from_start(a), bt = follow_from_start(b);
 	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
 	const bool by_direction = isfinite(bend) && !find.of_boxes;
 	ob_vec3 n = { 0, 0, 0 };
@@ -649,7 +682,7 @@ double ob_time_of_nearing(const ob_placed *a, const ob_placed *b, double speed, 
 			  ob_manifold_finder find, double *apart)
 {
 	const double closer = .5 * near, least = .25 * soon;
-	followed_shape at = follow_from_start(a, false), bt = follow_from_start(b, false);
+	followed_shape at = follow_from_start(a), bt = follow_from_start(b);
 	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
 	const bool by_direction = isfinite(bend) && !find.of_boxes;
 	const double end = by_direction ? ob_min(h, time_of_passing(a, b, near)) : h;

@@ -6,6 +6,8 @@
 #include <ob/hull.h>
 #include <ob/motion.h>
 
+#include "motion/spin.h"
+
 typedef struct ob_placed {
 	ob_shape shape;
 	ob_vec3 size;
@@ -71,11 +73,17 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 double ob_time_of_nearing(const ob_placed *a, const ob_placed *b, double speed, double h, double soon, double near,
 			  ob_manifold_finder find, double *apart);
 
+// How a shape turns: as this rotation does, "since" (s) after it began. NULL: it does not, or cannot be seen to.
+typedef struct ob_turning {
+	ob_spin *spin;
+	double since;
+} ob_turning;
+
 // When two that move so first touch and go on into each other within h (s), to rounding, and in out the points up to
 // margin (m) then. Those that touch now may part. when: infinity, if they stay apart; then out has no points, and
 // separation is as of now. false: it could not be found, because they are in each other, or shapes or motions ask for
 // too many advances; then when and out mean nothing.
-bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, double h, double margin, ob_manifold_finder find,
-		      double *when, ob_manifold *out);
+bool ob_time_of_touch(const ob_placed *a, const ob_placed *b, const ob_turning turning[2], double h, double margin,
+		      ob_manifold_finder find, double *when, ob_manifold *out);
 
 #endif

@@ -40,10 +40,11 @@ static bool find_touch(ob_sim *s, const ob_course c[2], double until, touch *x)
 	const double since = c[0].since;
 	const ob_vec3 none = { 0, 0, 0 }, v = ob_sub(ob_velocity_at(&c[0].m, since), ob_velocity_at(&c[1].m, since));
 	const ob_placed a = placed_of(s, &c[0], v), b = placed_of(s, &c[1], none);
+	const ob_turning turning[2] = { { c[0].spin, since - c[0].m.t0 }, { c[1].spin, since - c[1].m.t0 } };
 	double when;
 	s->counters.swept_tests++;
-	if (!ob_time_of_touch(&a, &b, until - since, points_margin * s->island.unit.length, ob_narrowphase_finder(s),
-			      &when, &x->m))
+	if (!ob_time_of_touch(&a, &b, turning, until - since, points_margin * s->island.unit.length,
+			      ob_narrowphase_finder(s), &when, &x->m))
 		return false;
 	x->time = since + when;
 	const ob_vec3 gone = ob_sub(ob_centre_at(&c[1].m, x->time), b.p);
