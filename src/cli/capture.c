@@ -42,8 +42,11 @@ uint64_t ob_frame_clock_step(const ob_frame_clock *c, bool *between)
 
 uint64_t ob_frame_clock_need(const ob_frame_clock *c, uint64_t now)
 {
+	ob_frame_clock later = *c; // those of now are drawn while the universe runs on
 	bool between;
-	uint64_t step = ob_frame_clock_step(c, &between);
+	uint64_t step;
+	while ((step = ob_frame_clock_step(&later, &between)) <= now)
+		later.next++;
 	if (step == UINT64_MAX)
 		return UINT64_MAX;
 	return between && step - 1 > now ? step - 1 : step;

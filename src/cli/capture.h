@@ -19,7 +19,7 @@ double ob_frame_clock_time(const ob_frame_clock *c); // s, of the next frame
 // The step at or after the next frame; its time lies in (step - 1, step]. UINT64_MAX when all frames are done.
 // *between: it does not fall on that step, so that the step before is needed, too.
 uint64_t ob_frame_clock_step(const ob_frame_clock *c, bool *between);
-// The first step after "now" that a frame needs to see; UINT64_MAX = none.
+// The first step after "now" that a frame needs to see, whether those of now have been drawn or not; UINT64_MAX = none.
 uint64_t ob_frame_clock_need(const ob_frame_clock *c, uint64_t now);
 
 typedef struct ob_capture ob_capture;

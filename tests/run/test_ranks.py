@@ -116,6 +116,19 @@ class Ranks(program.Case):
 					pictures.append(f.read())
 			self.assertEqual(*pictures)
 
+	def test_scripts_are_drawn(self):
+		"""The first rank alone draws, and it alone would pause for that: all come to the same scripts in the same step. A run
+		that begins later has a first frame, too."""
+		words = [program.scene("flock"), "--measure", "end", "--workers", "1"]
+		draws = ["--fps", "6", "--size", "64x48", "--json", "-"]
+		with tempfile.TemporaryDirectory() as folder:
+			whole = program.report(*words, "--duration", ".5")["state_hash"]
+			program.report(*words, "--duration", ".25", "--checkpoint", os.path.join(folder, "kept"))
+			for begin in words, ["--resume", os.path.join(folder, "kept"), *words[1:]]:
+				with self.subTest(begin=begin):
+					more = ["--duration", ".5", "--frames", os.path.join(folder, str(len(begin))), *draws]
+					self.assertEqual(self.hash_of((2, [*begin, *more])), whole)
+
 	def test_goes_on_from_a_checkpoint(self):
 		words = [program.scene("falling_boxes"), "-D", "n=20"]
 		expected = program.report(*words, "--duration", "1", "--workers", "1")["state_hash"]
