@@ -688,9 +688,10 @@ void ob_contacts_store(ob_sim *s)
 		found.limit = contact->limit - path + w->body[contact->a].path + w->body[contact->b].path;
 		found.active = active;
 		found.kept = active || k->active || ob_pair_state_before(s->u, k);
-		found.two_sided = mirror != NULL;
+		found.two_sided = ob_ghosts_used(s);
 		if (found.kept)
 			store_contact(w, contact, &found.state);
+		memset(found.impulse_b, 0, sizeof found.impulse_b); // where there is one side: not another pair's of before
 		if (found.kept && mirror)
 			store_impulses(w, mirror, found.impulse_b);
 		ob_commit_contact(s, &found);
