@@ -252,11 +252,12 @@ typedef struct followed_shape {
 	double t; // s
 } followed_shape;
 
-static followed_shape follow_from_start(const ob_placed *x)
+// In place: a rotation has room for much that is not known yet.
+static void follow_from_start(const ob_placed *x, followed_shape *f)
 {
-	followed_shape f = { .now = *x };
-	set_off(x, &f.shape);
-	return f;
+	f->now = *x;
+	f->t = 0;
+	set_off(x, &f->shape);
 }
 
 // As it is at t, turned from where it was at the start.
@@ -332,13 +333,22 @@ static double bend_of(const moving_shape *x)
 typedef struct seen_along {
 	const ob_placed *a, *b;
 	ob_vec3 n, turn_a, turn_b;
+	ob_vec3 apart, v; // m, m/s, of a from b
 	double centres, rate, bend;
+	bool boxes; // both: then these are what n has of each half side of a and of b (m), and how fast that changes
+	double half[6], turn[6];
 } seen_along;
 
 // How far apart the shapes are at t, at least (m). Seen from a shape that turns n turns the other way: to first order
 // that is where its points are along n, and what else turning does to them is bounded. A concave function of t.
 static double apart_at(const seen_along *x, double t)
 {
+	if (x->boxes) {
+		double reach = 0;
+		for (int k = 0; k < 6; k++)
+			reach += fabs(x->half[k] + t * x->turn[k]);
+		return x->centres + t * (x->rate - .5 * t * x->bend) - reach;
+	}
 	const ob_vec3 na = ob_madd(x->n, t, x->turn_a), nb = ob_madd(x->n, t, x->turn_b);
 	return x->centres + t * (x->rate - .5 * t * x->bend) - ob_reach(x->a, ob_scale(na, -1)) - ob_reach(x->b, nb);
 }
@@ -349,26 +359,60 @@ static double rim_speed(const ob_placed *x)
 	return x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w) * ob_shape_radius(x->shape, x->size);
 }
 
-static ob_vec3 turn_seen_by(const ob_placed *x, ob_vec3 n, ob_vec3 turn)
+static ob_vec3 turn_seen_by(const ob_placed *x, ob_vec3 n)
 {
-	return x->shape == OB_SHAPE_SPHERE ? turn : ob_add(turn, ob_cross(n, x->w));
+	return x->shape == OB_SHAPE_SPHERE ? ob_v3(0, 0, 0) : ob_cross(n, x->w);
 }
 
-// Along n, which turns at "turn" (1/s, across n). bend: m/s^2, of the points of both together; h: s, for which it
-// counts
-static seen_along look_along(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_vec3 turn, double bend, double h)
+// Along n, which stays. bend: m/s^2, of the points of both together
+static seen_along look_along(const ob_placed *a, const ob_placed *b, ob_vec3 n, double bend)
 {
-	const ob_vec3 apart = ob_sub(a->p, b->p), v = ob_sub(a->v, b->v);
+	seen_along x;
+	x.a = a, x.b = b, x.n = n;
+	x.turn_a = turn_seen_by(a, n);
+	x.turn_b = turn_seen_by(b, n);
+	x.apart = ob_sub(a->p, b->p);
+	x.v = ob_sub(a->v, b->v);
+	x.centres = ob_dot(n, x.apart);
+	x.rate = ob_dot(n, x.v);
+	x.bend = bend;
+	x.boxes = false;
+	return x;
+}
+
+static void project_sides(const ob_placed *x, ob_vec3 n, double out[3])
+{
+	const ob_vec3 along = ob_rotate_back(&x->r, n);
+	out[0] = x->size.x * along.x, out[1] = x->size.y * along.y, out[2] = x->size.z * along.z;
+}
+
+// For a forecast, which asks often and need not be exact: of two boxes, half sides along n.
+static void take_sides(seen_along *x)
+{
+	x->boxes = x->a->shape == OB_SHAPE_BOX && x->b->shape == OB_SHAPE_BOX;
+	if (!x->boxes)
+		return;
+	project_sides(x->a, x->n, x->half);
+	project_sides(x->b, x->n, x->half + 3);
+	project_sides(x->a, x->turn_a, x->turn);
+	project_sides(x->b, x->turn_b, x->turn + 3);
+}
+
+// The same where n turns at "turn" (1/s, across n). h: s, for which it counts
+static seen_along look_turning(const seen_along *still, ob_vec3 turn, double h)
+{
+	seen_along x = *still;
 	const double turning = ob_norm(turn);
-	return (seen_along){ .a = a,
-			     .b = b,
-			     .n = n,
-			     .turn_a = turn_seen_by(a, n, turn),
-			     .turn_b = turn_seen_by(b, n, turn),
-			     .centres = ob_dot(n, apart),
-			     .rate = ob_dot(n, v) + ob_dot(turn, apart),
-			     .bend = ob_max(0, bend * (1 + h * turning) + 2 * (turning * (rim_speed(a) + rim_speed(b)) -
-									       ob_dot(turn, v))) };
+	x.turn_a = ob_add(x.turn_a, turn);
+	x.turn_b = ob_add(x.turn_b, turn);
+	x.rate += ob_dot(turn, x.apart);
+	x.bend = ob_max(0, x.bend * (1 + h * turning) +
+				   2 * (turning * (rim_speed(x.a) + rim_speed(x.b)) - ob_dot(turn, x.v)));
+	if (x.boxes) {
+		project_sides(x.a, x.turn_a, x.turn);
+		project_sides(x.b, x.turn_b, x.turn + 3);
+	}
+	return x;
 }
 
 // The axis of the shape that is most nearly across n: that of an edge which touches along n.
@@ -489,8 +533,10 @@ static double time_clear(const ob_placed *a, const ob_placed *b, ob_vec3 n, doub
 	seen_along x[TURNS];
 	double most = -INFINITY, longest;
 	int best = 0;
+	x[0] = look_along(a, b, n, bend);
 	for (int k = 0; k < TURNS; k++) {
-		x[k] = look_along(a, b, n, turn[k], bend, h);
+		if (k)
+			x[k] = look_turning(&x[0], turn[k], h);
 		const double then = apart_at(&x[k], soon);
 		if (then > most)
 			most = then, best = k;
@@ -594,7 +640,9 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 			 double margin, ob_manifold_finder find, ob_manifold *out)
 {
 	double t = 0, apart = 0;
-	followed_shape at = follow_from_start(a), bt = follow_from_start(b);
+	followed_shape at, bt;
+	follow_from_start(a, &at);
+	follow_from_start(b, &bt);
 	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
 	const bool by_direction = isfinite(bend) && !find.of_boxes;
 	ob_vec3 n = { 0, 0, 0 };
@@ -613,7 +661,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 		const double near = .5 * tolerance, certain = (ob_max(out->separation, tolerance) - near) / speed;
 		double advance = certain;
 		if (by_direction && t + certain < h && find_direction(&at.now, &bt.now, out->separation, &n) > near) {
-			const seen_along x = look_along(&at.now, &bt.now, n, ob_v3(0, 0, 0), bend, h);
+			const seen_along x = look_along(&at.now, &bt.now, n, bend);
 			advance = time_apart(&x, near, certain, h - t);
 		}
 		t += advance;
@@ -660,11 +708,12 @@ static double time_beyond(const ob_placed *a, const ob_placed *b, ob_vec3 n, dou
 			  double certain, double h)
 {
 	enum { NARROW = 4, LONGER = 8 };
-	seen_along x = look_along(a, b, n, ob_v3(0, 0, 0), bend, h);
+	seen_along x = look_along(a, b, n, bend);
+	take_sides(&x);
 	if (apart_at(&x, h) >= far)
 		return INFINITY;
 	double high = ob_min(h, LONGER * certain), at_high = apart_at(&x, high) - near, low = 0, at_low;
-	const seen_along turning = look_along(a, b, n, turn_with_features(a, b, n), bend, high);
+	const seen_along turning = look_turning(&x, turn_with_features(a, b, n), high);
 	const double at_turned = apart_at(&turning, high) - near;
 	if (at_turned > at_high)
 		x = turning, at_high = at_turned;
@@ -682,7 +731,9 @@ double ob_time_of_nearing(const ob_placed *a, const ob_placed *b, double speed, 
 			  ob_manifold_finder find, double *apart)
 {
 	const double closer = .5 * near, least = .25 * soon;
-	followed_shape at = follow_from_start(a), bt = follow_from_start(b);
+	followed_shape at, bt;
+	follow_from_start(a, &at);
+	follow_from_start(b, &bt);
 	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
 	const bool by_direction = isfinite(bend) && !find.of_boxes;
 	const double end = by_direction ? ob_min(h, time_of_passing(a, b, near)) : h;
