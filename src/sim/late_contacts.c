@@ -261,12 +261,23 @@ static bool went_as_forecast(const pair_check *c, const ob_pair_key *k)
 	       fall_alike(ob_newest_motion(c->u, k->a), ob_newest_motion(c->u, k->b));
 }
 
+// Whether one who looks when nothing has been solved, as after a resume, would not come to look at the shapes: those may
+// have been looked at only because the spheres might have met. So a second look finds what the first has.
+static bool is_excluded(const pair_check *c, ob_pair_key *k, const moving_pair *p)
+{
+	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
+	const double reach = (double)a->reach + (double)b->reach;
+	return k->limit - p->path > reach || spheres_exclude_contact(c, k, p->path, reach, false);
+}
+
 // Sets late if the two touched in the step that was solved, and expected if they will in the coming one. left: m, what
 // is left of the known distance.
 static void check_shapes(const pair_check *c, ob_pair_key *k, double left, bool solved)
 {
 	moving_pair p = moving_pair_of(c, k);
 	k->late = solved && !k->in_island && left <= 0 && !went_as_forecast(c, k) && touched_in_step(c, k, &p);
+	if (!k->late && solved && is_excluded(c, k, &p))
+		return;
 	bool on_plane = c->data->schedule[k->a].state == OB_SCHEDULE_PLANE ||
 			c->data->schedule[k->b].state == OB_SCHEDULE_PLANE;
 	if (!k->late && !on_plane && k->limit - p.path <= p.reach)

@@ -84,6 +84,15 @@ def steps(name):
 		return 0
 
 
+def checkpoint_areas(file):
+	"""What a checkpoint holds, but for when it was made and what was counted: of each area elements, and their checksum
+	(checkpoint/file.h, checkpoint/saved_run.c)."""
+	with open(file, "rb") as f:
+		table = f.read(4096)[128:]
+	lines = [struct.unpack_from("=4Q", table, 32 * i) for i in range(18)]
+	return [(element, count, checksum) for i, (element, count, _, checksum) in enumerate(lines) if i not in (0, 4)]
+
+
 def processes(parent):
 	"""Ids of all processes that descend from this one now."""
 	children = {}

@@ -142,11 +142,6 @@ class Ranks(program.Case):
 
 	def test_checkpoints_are_alike(self):
 		"""That of each rank, whatever it has solved, is that of one process, but for when it was made and what was counted."""
-		def areas(file): # checkpoint/file.h, checkpoint/saved_run.c
-			with open(file, "rb") as f:
-				table = f.read(4096)[128:]
-			lines = [struct.unpack_from("=4Q", table, 32 * i) for i in range(18)]
-			return [(element, count, checksum) for i, (element, count, _, checksum) in enumerate(lines) if i not in (0, 4)]
 		for name, *more in ("falling_boxes", "-D", "n=20", "--sleeping", "off"), ("falling_boxes", "-D", "n=20", "--solver", "ghost"), \
 				("gas", "-D", "n=100"), ("machines",), ("pile",):
 			for seconds in ("1.5",) if "ghost" in more else (".4", "1.1"): # when records have been others' before
@@ -157,7 +152,7 @@ class Ranks(program.Case):
 					done = run((3, [*words, kept]))
 					self.assertEqual(done.returncode, 0, done.stderr)
 					for file in kept, kept + ".1", kept + ".2":
-						self.assertEqual(areas(file), areas(alone))
+						self.assertEqual(program.checkpoint_areas(file), program.checkpoint_areas(alone))
 
 	def test_moves(self):
 		"""Simulators move from rank to rank, as rank 0 is asked."""

@@ -83,6 +83,17 @@ class Resume(program.Case):
 				end = self.finish(*ways[2], "--duration", whole["simulated_s"])
 				self.assertEqual(figures(end), figures(whole))
 
+	def test_knows_as_much(self):
+		"""A step after it was taken up, at whatever step, all that the run keeps is what one in one piece has: which pairs have been
+		looked at how closely, too. So a look that is taken once more changes nothing."""
+		scene, other = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "kicked.lua"), self.path("other.ck")
+		for step in range(1, 16):
+			words = [scene, "--measure", "end", "--duration"]
+			program.report(*words, step / 15, "--checkpoint", self.file)
+			self.finish("--duration", (step + 1) / 15, *WAYS[step % len(WAYS)], "--checkpoint", self.file)
+			program.report(*words, (step + 1) / 15, "--checkpoint", other)
+			self.assertEqual(program.checkpoint_areas(self.file), program.checkpoint_areas(other), step)
+
 	def test_varying_forces(self):
 		"""A sine in flight, a pulse in flight, one on a rough floor where a box has slept, and one born late: the closed form's
 		momentum, and the same bits for any workers, after a resume in the middle of each pulse, and after kills."""
