@@ -425,11 +425,17 @@ static bool owns_island(const ob_committer *c, uint32_t worker, uint32_t island)
 	return island < c->solved && c->island_owner[island] == worker;
 }
 
+bool ob_committer_is_result(const ob_universe *u, const ob_mail_record *r)
+{
+	const steady_record *steady = r->data;
+	return (r->bytes == sizeof(ob_found_result) || r->bytes == sizeof *steady) && steady->id < ob_universe_ids(u);
+}
+
 const ob_found_result *ob_committer_result_of(const ob_universe *u, const ob_mail_record *from, ob_found_result *whole)
 {
 	const steady_record *steady = from->data;
 	char *motion = (char *)&whole->motion;
-	if ((from->bytes != sizeof *whole && from->bytes != sizeof *steady) || steady->id >= ob_universe_ids(u))
+	if (!ob_committer_is_result(u, from))
 		return NULL;
 	if (from->bytes == sizeof *whole)
 		return from->data;
@@ -484,6 +490,11 @@ static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_
 	return NULL;
 }
 
+static uint32_t id_of_solved(const ob_solved_record *r, uint32_t i)
+{
+	return r->body[i].id & ((1u << OB_SOLVED_ID_BITS) - 1);
+}
+
 static const char *commit_solved(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const ob_solved_record *r = from->data;
@@ -491,7 +502,7 @@ static const char *commit_solved(ob_committer *c, ob_universe *u, const ob_mail_
 	if (from->bytes != n * sizeof *r->body || n > OB_SOLVED_AT_ONCE || ob_worker_is_here(u, from->worker))
 		return "has handed over what is unknown";
 	for (uint32_t i = 0; i < n; i++) {
-		const uint32_t id = r->body[i].id & ((1u << OB_SOLVED_ID_BITS) - 1),
+		const uint32_t id = id_of_solved(r, i),
 			       state = OB_SCHEDULE_AWAKE + (r->body[i].id >> OB_SOLVED_ID_BITS);
 		if (id >= ob_universe_ids(u) || !was_given(c, u, from->worker, id))
 			return "has solved what it was not given";
@@ -820,32 +831,108 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 	return ob_mail_collect(u, &c->mail);
 }
 
-// Where a record is to be written soon: motions and pairs lie anywhere.
-static void prefetch_record(const ob_universe *u, const ob_mail_record *r)
+// ---- records, some before they are wanted
+
+static uint32_t first_word(const ob_mail_record *r)
+{
+	uint32_t word = UINT32_MAX;
+	if (r->bytes >= sizeof word)
+		memcpy(&word, r->data, sizeof word);
+	return word;
+}
+
+static void prefetch_body(const ob_committer *c, const ob_universe *u, uint32_t id, bool motion)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	uint32_t number;
-	if (r->bytes < sizeof number)
-		return;
-	memcpy(&number, r->data, sizeof number);
-	if (r->kind == OB_RECORD_RESULT && number < data->objects_max) {
-		ob_prefetch_slot(u, number);
-		__builtin_prefetch(&data->schedule[number], 1);
-		__builtin_prefetch(&data->result_island[number]);
-	} else if (r->kind == OB_RECORD_CONTACT && number < data->pairs_max) {
-		__builtin_prefetch(&data->pair[number], 1);
+	__builtin_prefetch(&data->schedule[id], 1);
+	__builtin_prefetch(&data->result_island[id]);
+	__builtin_prefetch(&c->had[id], 1);
+	if (c->halo)
+		ob_halo_prefetch(c->halo, id);
+	if (motion)
+		ob_prefetch_slot(u, id);
+}
+
+static void prefetch_solved(const ob_committer *c, const ob_universe *u, const ob_mail_record *r)
+{
+	const ob_solved_record *all = r->data;
+	for (uint32_t i = 0; i < r->bytes / sizeof *all->body && i < OB_SOLVED_AT_ONCE; i++) {
+		const uint32_t id = id_of_solved(all, i);
+		if (id < ob_universe_ids(u))
+			prefetch_body(c, u, id, false);
 	}
 }
 
-// Of one rank. ahead: some records farther on than what is committed; worker: whose the last was.
+// What a record is about.
+static void prefetch_subject(const ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool commits)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t number = first_word(r);
+	if (commits && r->kind == OB_RECORD_RESULT && number < data->objects_max)
+		prefetch_body(c, u, number, true);
+	else if ((r->kind == OB_RECORD_CONTACT || r->kind == OB_RECORD_CHECK) && number < data->pairs_max)
+		__builtin_prefetch(&data->pair[number], 1);
+	else if (commits && r->kind == OB_RECORD_SOLVED)
+		prefetch_solved(c, u, r);
+	else if (commits && r->kind == OB_RECORD_BOUNDS && number < data->objects_max)
+		__builtin_prefetch(data->bounds[number], 1);
+}
+
+// Where what is kept of a contact is; UINT32_MAX: nowhere.
+static uint32_t record_of(const ob_universe *u, const ob_mail_record *r)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t pair = first_word(r);
+	const uint32_t record = r->kind == OB_RECORD_CONTACT && pair < data->pairs_max ? data->pair[pair].record : NONE;
+	return record < data->pairs_max ? record : NONE;
+}
+
+static void prefetch_kept(const ob_committer *c, const ob_universe *u, const ob_mail_record *r)
+{
+	const uint32_t record = record_of(u, r);
+	if (record == NONE)
+		return;
+	if (c->holdings)
+		ob_holdings_prefetch(c->holdings, record);
+	if (r->bytes > offsetof(ob_found_contact, state))
+		__builtin_prefetch(ob_universe_step_data(u)->record[record].stamp, 1);
+}
+
+// The version that will be written.
+static void prefetch_version(const ob_universe *u, const ob_mail_record *r)
+{
+	enum { LINE = 64 };
+	const uint32_t record = record_of(u, r);
+	if (record == NONE || r->bytes <= offsetof(ob_found_contact, state))
+		return;
+	const ob_pair_record *kept = &ob_universe_step_data(u)->record[record];
+	const char *to = (const char *)&kept->version[ob_pair_newest(kept, ob_step_count(u)) == 0];
+	for (size_t at = 0; at < sizeof kept->version[0]; at += LINE)
+		__builtin_prefetch(to + at, 1);
+}
+
+bool ob_committer_next(const ob_committer *c, ob_universe *u, ob_record_reader *from, ob_mail_record *out)
+{
+	enum { MASK = OB_RECORDS_AHEAD - 1, KEPT = 10, VERSION = 5 };
+	while (from->read - from->taken < OB_RECORDS_AHEAD &&
+	       ob_mail_next(u, &from->mail, &from->ahead[from->read & MASK]))
+		prefetch_subject(c, u, &from->ahead[from->read++ & MASK], from->commits);
+	if (from->read == from->taken)
+		return false;
+	if (from->taken + KEPT < from->read)
+		prefetch_kept(c, u, &from->ahead[(from->taken + KEPT) & MASK]);
+	if (from->commits && from->taken + VERSION < from->read)
+		prefetch_version(u, &from->ahead[(from->taken + VERSION) & MASK]);
+	*out = from->ahead[from->taken++ & MASK];
+	return true;
+}
+
+// Of one rank. worker: whose the last was.
 static bool commit_records(ob_committer *c, ob_universe *u, ob_phase phase, ob_mail m, uint32_t *worker)
 {
-	enum { AHEAD = 4 };
-	ob_mail ahead = m;
-	ob_mail_record r, soon;
-	for (uint32_t lead = 0; ob_mail_next(u, &m, &r); lead -= lead > 0) {
-		for (; lead < AHEAD && ob_mail_next(u, &ahead, &soon); lead++)
-			prefetch_record(u, &soon);
+	ob_record_reader from = { .mail = m, .commits = true };
+	ob_mail_record r;
+	while (ob_committer_next(c, u, &from, &r)) {
 		const char *wrong = commit_record(c, u, phase, &r);
 		*worker = r.worker;
 		if (wrong) {

@@ -93,11 +93,13 @@ static bool put_solved(ob_committer *c, uint32_t worker, uint32_t to, const ob_f
 static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
 {
 	ob_found_result whole;
-	const ob_found_result *found = ob_committer_result_of(u, r, &whole);
-	if (!found || !ob_is_sound_state(found->state)) // who commits it finds out
+	ob_mail_record restored = { .worker = r->worker, .kind = OB_RECORD_RESTORED, .bytes = sizeof whole };
+	const ob_found_result *found = r->data; // as far as its motion, whether that is whole or not
+	if (!ob_committer_is_result(u, r) || !ob_is_sound_state(found->state)) // who commits it finds out
 		return true;
 	const bool restores = ob_halo_tell(c->halo, u, found->id, all, c->to);
-	const ob_mail_record restored = { r->worker, OB_RECORD_RESTORED, sizeof *found, found };
+	if (restores)
+		restored.data = ob_committer_result_of(u, r, &whole);
 	bool fits = true, kept; // whether it is what it was this rank finds out when it commits it
 	for (uint32_t to = 0; to < c->ranks; to++) {
 		if (to == c->rank)
@@ -154,14 +156,14 @@ static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers *p, ob
 {
 	const bool all = p->look <= ob_step_count(u) + 1; // somebody looks at motions when the step is complete
 	const uint64_t nothing = 0;
-	ob_mail own = ob_committer_mail_of(c, c->rank);
+	ob_record_reader own = { .mail = ob_committer_mail_of(c, c->rank) };
 	ob_mail_record r;
 	bool fits = true;
 	for (uint32_t to = 0; to < c->ranks; to++)
 		fits &= ob_peers_begin(&c->dealt[to]) && ob_mail_append(&c->dealt[to], &nothing, sizeof nothing);
 	memset(c->told, 0, c->ranks * sizeof *c->told);
 	memset(c->heard, 0, c->ranks * sizeof *c->heard);
-	while (fits && ob_mail_next(u, &own, &r))
+	while (fits && ob_committer_next(c, u, &own, &r))
 		fits = put_for_each(c, u, &r, all);
 	if (!fits) {
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);

@@ -6,6 +6,15 @@
 #include "sim/commit.h"
 #include "sim/holdings.h"
 
+// Records of a mail, read some before they are wanted: what they will be compared with, or written to, lies anywhere.
+enum { OB_RECORDS_AHEAD = 16 };
+typedef struct ob_record_reader {
+	ob_mail mail;
+	uint32_t read, taken; // records, so far
+	ob_mail_record ahead[OB_RECORDS_AHEAD];
+	bool commits; // they will be written
+} ob_record_reader;
+
 typedef enum ob_record_kind {
 	OB_RECORD_END = OB_OUTBOX_END,
 	OB_RECORD_RESULT,
@@ -71,10 +80,13 @@ struct ob_committer {
 	uint32_t due; // results, queries, or scripts, that are still missing
 };
 
+// Whether it is the result of an object that there is.
+bool ob_committer_is_result(const ob_universe *u, const ob_mail_record *r);
 // The whole result, of an object that there is; NULL: it is none.
 const ob_found_result *ob_committer_result_of(const ob_universe *u, const ob_mail_record *from, ob_found_result *whole);
-// The mail of a rank, to be read.
+// The mail of a rank, to be read; and its next record; false: there is none.
 ob_mail ob_committer_mail_of(const ob_committer *c, uint32_t rank);
+bool ob_committer_next(const ob_committer *c, ob_universe *u, ob_record_reader *from, ob_mail_record *out);
 
 static inline bool ob_is_sound_state(uint32_t state)
 {

@@ -15,10 +15,11 @@ typedef struct known {
 enum { MOTION = 1, BEFORE };
 
 struct ob_halo {
-	uint32_t ranks;
+	uint32_t rank, ranks;
 	bool partial; // some rank may lack some body's
 	uint8_t *missing; // [object]: MOTION = it is not here; BEFORE = no other than what was found in this step
 	uint8_t *owed; // [object], of this rank's: likewise what another may lack
+	uint8_t *inland; // [object], of this rank's: 1 = when it was given to a simulator it had no neighbour elsewhere
 	uint64_t *told; // [object], of this rank's: 1 << r = rank r is known to have it, of the first 64
 	uint16_t *owner; // [object]: 1 + the rank that solved it last, or is to solve it first; 0 = none does
 	known *known; // [object]
@@ -47,15 +48,17 @@ ob_halo *ob_halo_create(const ob_universe *u)
 	ob_halo *h = calloc(1, sizeof *h);
 	if (!h)
 		return NULL;
+	h->rank = ob_universe_rank(u);
 	h->ranks = ob_universe_ranks(u);
 	h->missing = calloc(objects, sizeof *h->missing);
 	h->owed = calloc(objects, sizeof *h->owed);
+	h->inland = calloc(objects, sizeof *h->inland);
 	h->told = calloc(objects, sizeof *h->told);
 	h->owner = calloc(objects, sizeof *h->owner);
 	h->known = calloc(objects, sizeof *h->known);
 	h->staged = calloc(objects, sizeof *h->staged);
 	h->out = calloc(h->ranks, sizeof *h->out);
-	if (h->missing && h->owed && h->told && h->owner && h->known && h->staged && h->out)
+	if (h->missing && h->owed && h->inland && h->told && h->owner && h->known && h->staged && h->out)
 		return h;
 	ob_halo_destroy(h);
 	return NULL;
@@ -69,6 +72,7 @@ void ob_halo_destroy(ob_halo *h)
 		ob_mail_finish(&h->out[r]);
 	free(h->missing);
 	free(h->owed);
+	free(h->inland);
 	free(h->told);
 	free(h->owner);
 	free(h->known);
@@ -163,12 +167,30 @@ static void note_told(ob_halo *h, uint32_t id, uint32_t rank)
 	h->told[id] |= bit_of(rank);
 }
 
+void ob_halo_prefetch(const ob_halo *h, uint32_t id)
+{
+	__builtin_prefetch(&h->known[id]);
+	__builtin_prefetch(&h->staged[id], 1);
+	__builtin_prefetch(&h->missing[id]);
+}
+
+bool ob_halo_is_elsewhere(const ob_halo *h, uint32_t id)
+{
+	return h && h->owner[id] && h->owner[id] != 1 + h->rank;
+}
+
+void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at)
+{
+	if (h)
+		h->inland[id] = !is_at;
+}
+
 bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	ob_pair_place at;
 	memset(to, all, h->ranks * sizeof *to);
-	for (uint32_t link = all ? 0 : data->first_pair[id]; ob_pair_at(data, link, &at);
+	for (uint32_t link = all || h->inland[id] ? 0 : data->first_pair[id]; ob_pair_at(data, link, &at);
 	     link = ob_pair_next(data, at)) {
 		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
 		if (ob_object_in_range(data, other) && h->owner[other])

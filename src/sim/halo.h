@@ -46,6 +46,13 @@ const uint8_t *ob_halo_missing(const ob_halo *h);
 bool ob_halo_is_partial(const ob_halo *h);
 void ob_halo_part(ob_halo *h); // from now on
 
+// It will be noted soon.
+void ob_halo_prefetch(const ob_halo *h, uint32_t id);
+
+// Who lists the pairs of a body that this rank is to solve sees whether a neighbour is elsewhere, another rank's: then
+// nobody need look for those when it is told. NULL is allowed.
+bool ob_halo_is_elsewhere(const ob_halo *h, uint32_t id);
+void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at);
 // A body of this rank's was solved: to[r] := whether rank r is told its motion; all: everybody is. Returns whether
 // somebody who is told may lack what it had before.
 bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to);

@@ -74,6 +74,12 @@ void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int
 		give_away(u, record);
 }
 
+void ob_holdings_prefetch(const ob_holdings *h, uint32_t record)
+{
+	__builtin_prefetch(&h->holder[record]);
+	__builtin_prefetch(h->digest[record], 1);
+}
+
 bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record)
 {
 	return h->holder[record] == 1 + ob_universe_rank(u);
@@ -251,16 +257,32 @@ bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p)
 	return all && sound;
 }
 
-static void prefetch_kept(const ob_universe *u, const ob_island *is)
+// What the pairs of an island keep is asked for in three steps: their keys, when what they keep was written, and it.
+typedef enum asked_for { KEYS, STAMPS, CONTENTS } asked_for;
+
+static void prefetch_kept(const ob_holdings *h, const ob_universe *u, const ob_island *is, asked_for what)
 {
 	enum { LINE = 64, MOST = 16 };
 	const ob_step_data *data = ob_universe_step_data(u);
 	uint32_t pair;
 	for (uint32_t k = 0; k < is->pairs && k < MOST; k++) {
+		if (what == KEYS) {
+			if (is->first_pair + k < data->pairs_max)
+				__builtin_prefetch(&data->pair[data->island_pair[is->first_pair + k]]);
+			continue;
+		}
 		const ob_pair_key *key = kept_pair(data, is, k, &pair);
-		const char *record = key ? (const char *)&data->record[key->record] : NULL;
-		for (size_t at = 0; record && at < sizeof(ob_pair_record); at += LINE)
-			__builtin_prefetch(record + at);
+		if (!key)
+			continue;
+		if (what == STAMPS) {
+			__builtin_prefetch(data->record[key->record].stamp);
+			__builtin_prefetch(h->digest[key->record]);
+			continue;
+		}
+		const int version = version_of(u, key->record);
+		const char *contents = (const char *)&data->record[key->record].version[version < 0 ? 0 : version];
+		for (size_t at = 0; at < sizeof(ob_pair_state); at += LINE)
+			__builtin_prefetch(contents + at);
 	}
 }
 
@@ -284,8 +306,11 @@ uint32_t ob_holdings_damaged(const ob_holdings *h, const ob_universe *u)
 	for (uint32_t chunk = 0; chunk < chunks_of(data); chunk++) {
 		const uint32_t end = ob_worker_is_here(u, owner_of(u, chunk)) ? end_of_chunk(data, chunk) : 0;
 		for (uint32_t i = data->chunk[chunk]; i < end; i++) {
-			if (i + 1 < end)
-				prefetch_kept(u, &data->island[i + 1]);
+			for (asked_for what = KEYS; what <= CONTENTS; what++) {
+				const uint32_t next = i + 2 * (1 + CONTENTS - what);
+				if (next < end)
+					prefetch_kept(h, u, &data->island[next], what);
+			}
 			const uint32_t object = damaged_in(h, u, &data->island[i]);
 			if (object != OB_NO_OBJECT)
 				return object;

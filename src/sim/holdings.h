@@ -27,6 +27,8 @@ enum { OB_ALL_RANKS = UINT32_MAX };
 // state: what was written there; -1: they are not.
 void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, const ob_pair_state *state,
 		      uint32_t rank);
+// They will be soon, or it will be asked whether they are here.
+void ob_holdings_prefetch(const ob_holdings *h, uint32_t record);
 // Whether it has them and no other rank does.
 bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record);
 

@@ -300,6 +300,7 @@ static uint32_t estimated_work(const builder *p, const ob_island *is)
 // The pairs of an island, as they are found.
 typedef struct listing {
 	uint32_t n, pair[256]; // how many there are; the first of them
+	ob_halo *halo; // of several ranks, else NULL
 	uint64_t visits;
 } listing;
 
@@ -316,11 +317,13 @@ static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listin
 	ob_step_data *data = p->data;
 	const ob_calendar look = ob_calendar_of_pairs(p->u);
 	ob_pair_place at;
+	bool at_border = false;
 	for (uint32_t link = data->first_pair[id], next; ob_pair_at(data, link, &at); link = next) {
 		ob_pair_key *k = &data->pair[at.pair];
 		next = ob_pair_next(data, at);
 		to->visits++;
 		ob_prefetch_link(p->u, next);
+		at_border |= is_in_range(p, k) && ob_halo_is_elsewhere(to->halo, at.side ? k->a : k->b);
 		if (!is_listed_with(p, k, at.side))
 			continue;
 		ob_calendar_set(&look, at.pair, p->step + 1);
@@ -333,6 +336,7 @@ static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listin
 			to->pair[to->n] = at.pair;
 		to->n++;
 	}
+	ob_halo_note_border(to->halo, id, at_border);
 }
 
 // Of a large island, when it is known how many there are.
@@ -372,6 +376,7 @@ static void list_pairs(const builder *p, uint32_t first, uint32_t end)
 {
 	listing found;
 	found.visits = 0;
+	found.halo = NULL;
 	for (uint32_t i = first; i < end; i++) {
 		ob_island *is = &p->data->island[i];
 		list_pairs_of_island(p, i, &found);
@@ -387,11 +392,12 @@ static bool is_here(const builder *p, uint32_t id)
 }
 
 // Of several ranks each lists the pairs of its own islands, when all are dealt; in the order of member[].
-static void list_own_pairs(const builder *p)
+static void list_own_pairs(const builder *p, ob_halo *halo)
 {
 	ob_step_data *data = p->data;
 	listing found;
 	found.visits = 0;
+	found.halo = halo;
 	for (uint32_t n = 0, at = 0; n < data->count->islands; n++) {
 		const uint32_t i = data->result_island[data->member[at]];
 		ob_island *is = &data->island[i];
@@ -498,6 +504,7 @@ typedef struct shares {
 	uint32_t *load, *votes; // [count]
 	uint32_t *owner; // [island]
 	uint32_t most; // load
+	bool pins; // some object has one
 	int shift; // of work, for loads of 32 bits
 	ob_regions *regions; // NULL: there is but one rank
 } shares;
@@ -531,7 +538,7 @@ static uint32_t preferred_owner(const builder *p, const shares *s, const ob_isla
 static uint32_t pin_of(const builder *p, const shares *s, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
-	for (uint32_t k = 0; k < is->members; k++) {
+	for (uint32_t k = 0; s->pins && k < is->members; k++) {
 		const uint32_t who = data->pin[data->member[is->first_member + k]] - 1;
 		if (who < s->count)
 			return who;
@@ -587,6 +594,7 @@ static void make_shares(builder *p, uint32_t unsolved, uint64_t total, ob_region
 		     .load = p->body,
 		     .votes = p->place,
 		     .owner = p->island_of,
+		     .pins = ob_moves_were_made(p->u),
 		     .regions = regions };
 	while (total >> s.shift > UINT32_MAX / 4)
 		s.shift++;
@@ -724,10 +732,10 @@ void ob_islands_deal(ob_universe *u, ob_regions *regions)
 	deal_islands(&p, regions);
 }
 
-void ob_islands_list_own_pairs(ob_universe *u)
+void ob_islands_list_own_pairs(ob_universe *u, ob_halo *halo)
 {
 	const builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
-	list_own_pairs(&p);
+	list_own_pairs(&p, halo);
 }
 
 void ob_islands_merge(ob_universe *u)

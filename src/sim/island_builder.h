@@ -3,6 +3,7 @@
 #ifndef OB_SIM_ISLAND_BUILDER_H
 #define OB_SIM_ISLAND_BUILDER_H
 
+#include "sim/halo.h"
 #include "sim/regions.h"
 
 enum { OB_ISLANDS_MANY = 256 }; // bodies that are due: for fewer the gate would cost more than other workers gain
@@ -28,7 +29,8 @@ void ob_islands_list_pairs(ob_universe *u, uint32_t task);
 // regions: of several ranks; NULL: there is but one.
 void ob_islands_deal(ob_universe *u, ob_regions *regions);
 // Of several ranks, after that, for there are no tasks that list pairs: those of the islands of this one's simulators.
-void ob_islands_list_own_pairs(ob_universe *u);
+// halo: is told which bodies are at borders.
+void ob_islands_list_own_pairs(ob_universe *u, ob_halo *halo);
 // Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join, and lists members. The
 // solutions of the others stand; the chunks hold what must be solved again.
 void ob_islands_merge(ob_universe *u);

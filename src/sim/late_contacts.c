@@ -261,8 +261,8 @@ static bool went_as_forecast(const pair_check *c, const ob_pair_key *k)
 	       fall_alike(ob_newest_motion(c->u, k->a), ob_newest_motion(c->u, k->b));
 }
 
-// Whether one who looks when nothing has been solved, as after a resume, would not come to look at the shapes: those may
-// have been looked at only because the spheres might have met. So a second look finds what the first has.
+// Whether one who looks when nothing has been solved, as after a resume, would not come to look at the shapes: those
+// may have been looked at only because the spheres might have met. So a second look finds what the first has.
 static bool is_excluded(const pair_check *c, ob_pair_key *k, const moving_pair *p)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
@@ -377,6 +377,21 @@ static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
 	return solved ? !ob_pair_is_checked_here(u, k) : !ob_pair_is_known_here(u, k);
 }
 
+static void prefetch_listed(const ob_universe *u, uint32_t i, uint32_t end)
+{
+	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (i + PAIR_AHEAD < end)
+		__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
+	if (i + OBJECTS_AHEAD >= end)
+		return;
+	const uint32_t a = data->pair[data->check[i + OBJECTS_AHEAD]].a,
+		       b = data->pair[data->check[i + OBJECTS_AHEAD]].b;
+	__builtin_prefetch(&data->result_island[a]);
+	__builtin_prefetch(&data->result_island[b]);
+	__builtin_prefetch(&data->home[a]);
+}
+
 // Such a pair is not checked here. All lose their entries, for those that are checked will get others: what the ranks
 // tell each other meanwhile is for which step there are any besides (peers.h).
 static void leave_to_others(ob_universe *u)
@@ -386,6 +401,7 @@ static void leave_to_others(ob_universe *u)
 	const uint32_t listed = data->count->checks;
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < listed; i++) {
+		prefetch_listed(u, i, listed);
 		ob_calendar_set(&look, data->check[i], UINT32_MAX);
 		if (!is_listed_elsewhere(u, &data->pair[data->check[i]]))
 			data->check[n++] = data->check[i];

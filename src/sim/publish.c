@@ -38,16 +38,21 @@ static void trace_state_change(ob_sim *s, uint32_t id, const ob_motion *next)
 		ob_trace_moves(s->u, s->worker, id, ob_newest_motion(s->u, id)->flags, next->flags);
 }
 
-// Islands come in the order of their work, so their members lie anywhere.
-static void prefetch_members(const ob_universe *u, uint32_t island)
+// Islands come in the order of their work, so their members lie anywhere. halo: of several ranks, else NULL
+static void prefetch_members(const ob_universe *u, const ob_halo *halo, uint32_t island)
 {
 	enum { MOST = 8 };
 	const ob_step_data *data = ob_universe_step_data(u);
 	const ob_island *is = &data->island[island];
 	for (uint32_t k = 0; k < is->members && k < MOST; k++) {
 		const uint32_t id = data->member[is->first_member + k];
-		__builtin_prefetch(&data->schedule[id]);
 		__builtin_prefetch(&data->result_island[id], 1);
+		if (halo) {
+			if (ob_halo_has_found(halo, id))
+				ob_prefetch_versions(u, id);
+			continue;
+		}
+		__builtin_prefetch(&data->schedule[id]);
 		ob_prefetch_slot(u, id);
 	}
 }
@@ -62,14 +67,16 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 	for (uint32_t i = first; i < end; i++) {
 		const ob_island *is = &data->island[i];
 		if (i + AHEAD < end)
-			prefetch_members(s->u, i + AHEAD);
+			prefetch_members(s->u, halo, i + AHEAD);
 		for (uint32_t k = 0; k < is->members; k++) {
 			const uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;
 			if (halo && !ob_halo_has_found(halo, id))
 				continue;
-			woken += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
-			woken -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
+			if (!halo) { // else who commits a result counts who wakes
+				woken += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
+				woken -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
+			}
 			if (others_copy && k > 0)
 				continue;
 			trace_state_change(s, id, ob_staged_motion(s->u, id));
@@ -78,7 +85,7 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 				ob_halo_note_published(halo, s->u, id);
 		}
 	}
-	if (!halo) // else who commits a result counts who wakes
+	if (!halo)
 		ob_step_woken(s->u, woken);
 }
 

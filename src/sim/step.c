@@ -150,7 +150,7 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 	if (ob_universe_ranks(c->u) > 1) {
 		if (!ob_commit_give(c->sim->committer, c->u, &c->sim->peers))
 			return false;
-		ob_islands_list_own_pairs(c->u);
+		ob_islands_list_own_pairs(c->u, ob_commit_halo(c->sim->committer));
 	}
 	for (uint32_t w = 0; w < all; w++)
 		if (data->chunk[w] < data->chunk[w + 1])

@@ -152,14 +152,27 @@ static bool is_true(const rank *r, uint32_t id)
 	return ob_halo_has(r->h, id) && memcmp(ob_newest_motion(r->u, id), &r->s->now[id], sizeof(ob_motion)) == 0;
 }
 
+// As who lists its pairs sees it (sim/island_builder.c).
+static void note_border(rank *r, uint32_t id)
+{
+	const ob_step_data *data = ob_universe_step_data(r->u);
+	ob_pair_place at;
+	bool is_at = false;
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at))
+		is_at |= ob_halo_is_elsewhere(r->h, at.side ? data->pair[at.pair].a : data->pair[at.pair].b);
+	ob_halo_note_border(r->h, id, is_at);
+}
+
 // The owner finds the next motion, for which it needs the last; who is told needs that, too, unless it is restored.
 static void solve(rank *r)
 {
 	story *s = r->s;
 	uint64_t digest;
 	for (uint32_t id = 0; id < BODIES; id++)
-		if (s->solved[id] && s->home[id] == r->number)
+		if (s->solved[id] && s->home[id] == r->number) {
+			note_border(r, id);
 			s->restored[id] = ob_halo_tell(r->h, r->u, id, s->all, s->told[id]);
+		}
 	if (!s->all)
 		ob_halo_part(r->h);
 	pthread_barrier_wait(&s->x.together);

@@ -102,7 +102,7 @@ static void list_pairs_and_deal(ob_universe *u)
 		ob_islands_list_pairs(u, i);
 	ob_islands_deal(u, NULL);
 	if (ob_universe_ranks(u) > 1)
-		ob_islands_list_own_pairs(u);
+		ob_islands_list_own_pairs(u, NULL);
 }
 
 static void build(ob_universe *u)
