@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,24 +25,40 @@ typedef struct cell {
 	int32_t level, x, y, z;
 } cell;
 
-// Of the cells that differ in x alone
-static uint64_t hash_of_row(cell c)
-{
-	return (uint64_t)(uint32_t)c.y * 0xC2B2AE3D27D4EB4Fu ^ (uint64_t)(uint32_t)c.z * 0x165667B19E3779F9u ^
-	       (uint64_t)(uint32_t)c.level << 58;
-}
+// Cells have places, of which eight share a bucket; those that differ in x alone follow each other. So a row of them is
+// read at once, from a bit for each place (ob_step_data.occupied): most cells are empty.
+enum { PLACES_PER_BUCKET = 8 };
 
-static uint32_t bucket_in_row(const ob_step_data *data, uint64_t row, int32_t x)
+// Of the cell of a row whose x is 0
+static uint32_t place_of_row(int32_t level, int32_t y, int32_t z)
 {
-	uint64_t h = (uint64_t)(uint32_t)x * 0x9E3779B97F4A7C15u ^ row;
+	uint64_t h = (uint64_t)(uint32_t)y * 0xC2B2AE3D27D4EB4Fu ^ (uint64_t)(uint32_t)z * 0x165667B19E3779F9u ^
+		     (uint64_t)(uint32_t)level << 58;
 	h ^= h >> 29;
 	h *= 0xBF58476D1CE4E5B9u;
-	return (uint32_t)(h >> 32) & (data->buckets - 1);
+	return (uint32_t)(h >> 32);
 }
 
-static uint32_t bucket_of(const ob_step_data *data, cell c)
+static uint32_t place_of(cell c)
 {
-	return bucket_in_row(data, hash_of_row(c), c.x);
+	return place_of_row(c.level, c.y, c.z) + (uint32_t)c.x;
+}
+
+// Of places that differ by a multiple of the buckets
+static uint32_t bucket_of(const ob_step_data *data, uint32_t place)
+{
+	return place & (data->buckets - 1);
+}
+
+// A power of two
+static uint32_t occupied_words(const ob_step_data *data)
+{
+	return data->buckets / (64 / PLACES_PER_BUCKET);
+}
+
+static uint64_t *occupied_word(const ob_step_data *data, uint32_t place)
+{
+	return &data->occupied[place / 64 & (occupied_words(data) - 1)];
 }
 
 static bool is_plane(const ob_universe *u, uint32_t id)
@@ -52,7 +69,10 @@ static bool is_plane(const ob_universe *u, uint32_t id)
 // per_metre: cells, a power of two
 static int32_t coordinate(double x, double per_metre)
 {
-	const double c = ob_max(-1e9, ob_min(1e9, x * per_metre));
+	const double farthest = 1e9, there = x * per_metre,
+		     c = fabs(there) < farthest ? there
+			 : there < 0            ? -farthest
+						: farthest;
 	const int32_t towards_zero = (int32_t)c;
 	return towards_zero - (c < towards_zero);
 }
@@ -105,11 +125,29 @@ static uint32_t checked_link(ob_step_data *data, uint32_t link)
 	return 0;
 }
 
+static uint32_t place_of_object(const ob_step_data *data, uint32_t id)
+{
+	const ob_index_cell *c = &data->cell[id];
+	return place_of((cell){ c->level, c->x, c->y, c->z });
+}
+
+// Whether any of those in the bucket has the same bit.
+static bool is_occupied(ob_step_data *data, uint32_t place)
+{
+	const uint32_t bits = PLACES_PER_BUCKET * data->buckets;
+	uint32_t link = data->bucket[bucket_of(data, place)];
+	for (uint32_t i = 0; checked_link(data, link) && i < data->objects_max; i++, link = data->cell[link - 1].next)
+		if (((place_of_object(data, link - 1) ^ place) & (bits - 1)) == 0)
+			return true;
+	return false;
+}
+
 // The host calls it, too: links are followed no farther than there are objects.
 static void unlink_object(ob_step_data *data, uint32_t id)
 {
 	ob_index_cell *c = &data->cell[id];
-	uint32_t *link = &data->bucket[bucket_of(data, (cell){ c->level, c->x, c->y, c->z })];
+	const uint32_t place = place_of_object(data, id);
+	uint32_t *link = &data->bucket[bucket_of(data, place)];
 	for (uint32_t i = 0; *link && *link != id + 1 && i < data->objects_max && checked_link(data, *link); i++)
 		link = &data->cell[*link - 1].next;
 	if (*link != id + 1 || c->level < 1 || c->level >= LEVELS) {
@@ -117,7 +155,10 @@ static void unlink_object(ob_step_data *data, uint32_t id)
 		return;
 	}
 	*link = c->next;
-	data->count->levels[c->level]--;
+	if (!is_occupied(data, place))
+		*occupied_word(data, place) &= ~(UINT64_C(1) << place % 64);
+	if (!--data->count->levels[c->level])
+		data->count->levels_used &= ~(UINT64_C(1) << c->level);
 	if (checked_link(data, c->after))
 		data->cell[c->after - 1].before = c->before;
 	if (checked_link(data, c->before))
@@ -150,15 +191,18 @@ void ob_index_put(ob_universe *u, uint32_t id)
 			return;
 		unlink_object(data, id);
 	}
-	uint32_t *head = &data->bucket[bucket_of(data, to)];
+	const uint32_t place = place_of(to);
+	uint32_t *head = &data->bucket[bucket_of(data, place)];
 	uint32_t *first = &data->count->level_first[to.level];
 	*c = (ob_index_cell){ *head, to.level, to.x, to.y, to.z, 0, *first };
 	*head = id + 1;
+	*occupied_word(data, place) |= UINT64_C(1) << place % 64;
 	if (checked_link(data, *first))
 		data->cell[*first - 1].before = id + 1;
 	*first = id + 1;
 	extend_level(data, to);
 	data->count->levels[to.level]++;
+	data->count->levels_used |= UINT64_C(1) << to.level;
 }
 
 void ob_index_remove(ob_universe *u, uint32_t id)
@@ -180,18 +224,33 @@ static bool below_plane(const ob_universe *u, uint32_t plane, const float *b)
 	return ob_dot(n, ob_sub(low, m->p)) <= 0;
 }
 
+// Four side by side, and whether all of them are true.
+typedef float quad __attribute__((vector_size(16)));
+typedef int32_t truths __attribute__((vector_size(16)));
+typedef int64_t halves __attribute__((vector_size(16)));
+
+static bool are_all(truths a)
+{
+	const halves both = (halves)a;
+	return (both[0] & both[1]) == -1;
+}
+
 // Ids of the objects whose boxes overlap the queried one; counts on when the array is full.
 typedef struct overlaps {
 	uint32_t *id, n, max;
 	uint32_t load; // of each test of two boxes
 	uint64_t tests;
+	quad upper, lower; // corners of the queried box: and no limit; no limit, and
 } overlaps;
 
-static bool test_overlap(overlaps *to, const float *a, const float *b)
+static bool test_overlap(overlaps *to, const float *b)
 {
+	quad low, high; // b[0 .. 3] and b[2 .. 5]
+	memcpy(&low, b, sizeof low);
+	memcpy(&high, b + 2, sizeof high);
 	to->tests++;
 	ob_synthetic_load(to->load);
-	return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
+	return are_all((low <= to->upper) & (high >= to->lower));
 }
 
 static void add_overlap(overlaps *a, uint32_t id)
@@ -204,56 +263,69 @@ static void add_overlap(overlaps *a, uint32_t id)
 static void scan_level(const ob_step_data *data, uint32_t id, int level, overlaps *a)
 {
 	for (uint32_t j = data->count->level_first[level]; j; j = data->cell[j - 1].after)
-		if (j - 1 != id && test_overlap(a, data->bounds[id], data->bounds[j - 1]))
+		if (j - 1 != id && test_overlap(a, data->bounds[j - 1]))
 			add_overlap(a, j - 1);
 }
 
+static truths place_in_space(const ob_index_cell *c)
+{
+	truths at;
+	_Static_assert(offsetof(ob_index_cell, z) == offsetof(ob_index_cell, level) + 3 * sizeof(int32_t),
+		       "four together");
+	memcpy(&at, &c->level, sizeof at);
+	return at;
+}
+
 // The objects of a cell that overlap, from the first link of its bucket on.
-static void scan_cell(const ob_step_data *data, uint32_t id, const cell *at, uint32_t first, overlaps *a)
+static void scan_cell(const ob_step_data *data, uint32_t id, truths at, uint32_t first, overlaps *a)
 {
 	for (uint32_t next = first; next; next = data->cell[next - 1].next) {
 		const uint32_t j = next - 1;
-		const ob_index_cell *c = &data->cell[j];
-		if (j != id && c->level == at->level && c->x == at->x && c->y == at->y && c->z == at->z &&
-		    test_overlap(a, data->bounds[id], data->bounds[j]))
+		if (are_all(place_in_space(&data->cell[j]) == at) && j != id && test_overlap(a, data->bounds[j]))
 			add_overlap(a, j);
 	}
 }
 
-// Cells to be looked at. Their buckets lie anywhere, and so do the objects in them: all are asked for before the first
-// is read.
+// Cells that are occupied. Their buckets lie anywhere, and so do the objects in them: all are asked for before the
+// first is read.
 typedef struct cells_ahead {
 	uint32_t n, bucket[CELLS_AT_ONCE];
-	cell at[CELLS_AT_ONCE];
+	truths at[CELLS_AT_ONCE];
 } cells_ahead;
 
 static void scan_ahead(const ob_step_data *data, uint32_t id, cells_ahead *c, overlaps *a)
 {
-	uint32_t first[CELLS_AT_ONCE], found = 0;
+	uint32_t first[CELLS_AT_ONCE];
 	for (uint32_t i = 0; i < c->n; i++) {
-		first[found] = data->bucket[c->bucket[i]];
-		if (!first[found]) // most are empty
+		first[i] = data->bucket[c->bucket[i]];
+		if (!first[i])
 			continue;
-		__builtin_prefetch(&data->cell[first[found] - 1]);
-		__builtin_prefetch(data->bounds[first[found] - 1]);
-		c->at[found++] = c->at[i];
+		__builtin_prefetch(&data->cell[first[i] - 1]);
+		__builtin_prefetch(data->bounds[first[i] - 1]);
 	}
-	for (uint32_t i = 0; i < found; i++)
-		scan_cell(data, id, &c->at[i], first[i], a);
+	for (uint32_t i = 0; i < c->n; i++)
+		scan_cell(data, id, c->at[i], first[i], a);
 	c->n = 0;
 }
 
-static void scan_cells(const ob_step_data *data, uint32_t id, int level, const cell *lo, const cell *hi,
-		       cells_ahead *ahead, overlaps *a)
+// Of at most 64 cells in each row
+static void scan_rows(const ob_step_data *data, uint32_t id, const cell *lo, const cell *hi, cells_ahead *ahead,
+		      overlaps *a)
 {
-	for (int32_t z = lo->z; z <= hi->z; z++)
-		for (int32_t y = lo->y; y <= hi->y; y++) {
-			cell at = { level, lo->x, y, z };
-			const uint64_t row = hash_of_row(at);
-			for (; at.x <= hi->x; at.x++) {
-				const uint32_t bucket = bucket_in_row(data, row, at.x);
+	const uint64_t *occupied = data->occupied, all = UINT64_MAX >> (63 - (hi->x - lo->x));
+	const uint32_t words = occupied_words(data);
+	const cell from = *lo;
+	for (int32_t z = from.z; z <= hi->z; z++)
+		for (int32_t y = from.y; y <= hi->y; y++) {
+			const uint32_t place = place_of((cell){ from.level, from.x, y, z }), shift = place % 64;
+			const uint64_t first = occupied[place / 64 & (words - 1)],
+				       second = occupied[(place / 64 + 1) & (words - 1)];
+			for (uint64_t bits = (first >> shift | second << 1 << (63 - shift)) & all; bits;
+			     bits &= bits - 1) {
+				const int i = __builtin_ctzll(bits);
+				const uint32_t bucket = bucket_of(data, place + (uint32_t)i);
 				__builtin_prefetch(&data->bucket[bucket]);
-				ahead->at[ahead->n] = at;
+				ahead->at[ahead->n] = (truths){ from.level, from.x + i, y, z };
 				ahead->bucket[ahead->n++] = bucket;
 				if (ahead->n == CELLS_AT_ONCE)
 					scan_ahead(data, id, ahead, a);
@@ -280,11 +352,24 @@ static bool cells_around(const ob_step_data *data, const float *b, int level, ce
 	return true;
 }
 
+static void scan_cells(const ob_step_data *data, uint32_t id, cell lo, const cell *hi, cells_ahead *ahead, overlaps *a)
+{
+	for (; hi->x - lo.x > 63; lo.x += 64)
+		scan_rows(data, id, &lo, &(cell){ lo.level, lo.x + 63, hi->y, hi->z }, ahead, a);
+	scan_rows(data, id, &lo, hi, ahead, a);
+}
+
 uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	overlaps a = { out, 0, max, ob_universe_settings(u)->load, 0 };
 	const float *b = data->bounds[id];
+	overlaps a = { out,
+		       0,
+		       max,
+		       ob_universe_settings(u)->load,
+		       0,
+		       { b[3], b[4], b[5], INFINITY },
+		       { -INFINITY, b[0], b[1], b[2] } };
 	cells_ahead ahead;
 	ahead.n = 0;
 	if (is_plane(u, id)) {
@@ -293,16 +378,17 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 				add_overlap(&a, j);
 		return a.n;
 	}
-	for (int level = 1; level < LEVELS; level++) {
+	for (uint64_t levels = data->count->levels_used; levels; levels &= levels - 1) {
+		const int level = __builtin_ctzll(levels);
 		cell lo, hi;
 		uint32_t there = data->count->levels[level];
-		if (!there || !cells_around(data, b, level, &lo, &hi))
+		if (!cells_around(data, b, level, &lo, &hi))
 			continue;
 		double cells = (hi.x - lo.x + 1.) * (hi.y - lo.y + 1.) * (hi.z - lo.z + 1.);
 		if (cells > there)
 			scan_level(data, id, level, &a);
 		else
-			scan_cells(data, id, level, &lo, &hi, &ahead, &a);
+			scan_cells(data, id, lo, &hi, &ahead, &a);
 	}
 	scan_ahead(data, id, &ahead, &a);
 	for (uint32_t k = 0; k < data->count->planes; k++)

@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 28, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 29, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -41,6 +41,7 @@ typedef enum ob_area {
 	OB_AREA_NEIGHBOUR_ID,
 	OB_AREA_CELL,
 	OB_AREA_BUCKET,
+	OB_AREA_OCCUPIED,
 	OB_AREA_PLANE,
 	OB_AREA_PAIR,
 	OB_AREA_PAIR_LINKS,

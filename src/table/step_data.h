@@ -190,6 +190,7 @@ typedef struct ob_step_data {
 		uint32_t rooted; // 1 = each object is the root of a tree before islands are built: several workers may
 		uint64_t visits; // objects and pairs that arranging steps has looked at so far
 		uint32_t levels[64]; // objects per size class
+		uint64_t levels_used; // a bit for each class that has any
 		uint32_t level_first[64]; // 1 + one of them, the first of a list
 		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
 		uint32_t planes;
@@ -212,6 +213,7 @@ typedef struct ob_step_data {
 	uint32_t *neighbour_id; // arena
 	ob_index_cell *cell; // [object]
 	uint32_t *bucket; // [buckets]: 1 + first object; 0 = empty
+	uint64_t *occupied; // [buckets / 8]: a bit for each eighth of a bucket: in one of its cells is an object
 	uint32_t *plane; // ids of planes: neighbours of every object
 	ob_pair_key *pair; // in no order
 	ob_pair_links *pair_links; // [pair]

@@ -152,10 +152,39 @@ static void test_extremes(void)
 	free(s);
 }
 
+// Boxes of all lengths along an axis, among many small ones in a row.
+static void test_rows(int axis)
+{
+	enum { BOXES = 300, STEP = 3 };
+	little_scene *s = little_scene_new();
+	for (int i = 0; i < BOXES; i++)
+		ob_world_sphere(&s->world, 1, .1, ob_v3(0, 0, 0));
+	ob_universe *u = little_populate(s, 1);
+	memset(there, 0, sizeof there);
+	for (uint32_t i = 0; i < BOXES; i++) {
+		float *b = ob_universe_step_data(u)->bounds[i];
+		const float length = i % STEP ? .9f : (float)i;
+		for (int c = 0; c < 3; c++)
+			b[c] = c == axis ? (float)i - 150 : .05f, b[3 + c] = b[c] + (c == axis ? length : .9f);
+		ob_index_put(u, i);
+		there[i] = true;
+	}
+	for (uint32_t i = 0; i < BOXES; i++) {
+		uint32_t out[BOXES], n = ob_index_query(u, i, out, BOXES, &tests), expected = 0;
+		for (uint32_t j = 0; j < BOXES; j++)
+			expected += neighbours(u, s, i, j);
+		CHECK(n == expected);
+	}
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
 int main(void)
 {
 	for (uint64_t seed = 1; seed <= 3; seed++)
 		test_against_all(seed);
 	test_extremes();
+	for (int axis = 0; axis < 3; axis++)
+		test_rows(axis);
 	return check_end();
 }
