@@ -29,10 +29,10 @@ static void claim_tasks(crew *c, ob_universe *u, uint32_t per_worker)
 static void claim_chunks(crew *c, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t unsolved = data->count->unsolved;
 	uint64_t total = 0, filled = 0, chunk = 0;
-	uint32_t unsolved = 0;
-	for (; unsolved < data->count->islands && !data->island[unsolved].solved; unsolved++)
-		total += data->island[unsolved].work;
+	for (uint32_t i = 0; i < unsolved; i++)
+		total += data->island[i].work;
 	const uint64_t most = ob_islands_chunk_work(total, OB_SIMULATED_WORKERS);
 	for (uint32_t i = 0; i < unsolved; i++) {
 		chunk += ob_task_take_time(u, i);

@@ -368,7 +368,7 @@ bool ob_halo_move(ob_halo *h, const ob_universe *u, const uint32_t *also, uint32
 	const ob_step_data *data = ob_universe_step_data(u);
 	bool fits = true;
 	uint32_t members = 0;
-	for (uint32_t i = 0; i < data->count->islands; i++)
+	for (uint32_t i = 0; i < data->count->unsolved; i++)
 		members += data->island[i].members;
 	for (uint32_t i = 0; i < members && i < data->objects_max; i++) {
 		if (!ob_object_in_range(data, data->member[i]))

@@ -97,20 +97,38 @@ static bool is_link(const builder *p, const ob_pair_key *k)
 	       (p->merges ? k->active && is_asleep(p, k->a) && is_asleep(p, k->b) : k->active | k->expected);
 }
 
-// Those that were solved in this step, and whom they have met.
-static void involve_solved(builder *p)
+// An island is solved again as a whole.
+static void involve_island_of(builder *p, uint32_t id)
+{
+	const uint32_t island = p->data->result_island[id];
+	if (island == NONE) {
+		involve(p, id);
+		return;
+	}
+	ob_island *is = &p->data->island[island];
+	const uint32_t *member = p->data->member + is->first_member;
+	if (!is->solved)
+		return;
+	is->solved = 0;
+	involve(p, member[0]);
+	for (uint32_t k = 1; k < is->members; k++)
+		join(p, member[0], member[k]);
+}
+
+// Those that have met somebody in this step, with their islands. The solutions of all other islands stand.
+static void involve_late(builder *p)
 {
 	const ob_step_data *data = p->data;
-	for (uint32_t i = 0; i < data->count->islands; i++) {
-		const uint32_t *member = data->member + data->island[i].first_member;
-		involve(p, member[0]);
-		for (uint32_t k = 1; k < data->island[i].members; k++)
-			join(p, member[0], member[k]);
-	}
+	for (uint32_t i = 0; i < data->count->islands; i++)
+		data->island[i].solved = 1;
 	for (uint32_t i = 0; i < ob_checks_count(data); i++) {
 		const ob_pair_key *k = &data->pair[data->check[i]];
-		if (k->late && is_in_range(p, k))
-			involve_link(p, k);
+		if (!k->late || !is_in_range(p, k))
+			continue;
+		for (int side = 0; side < 2; side++)
+			if (is_dynamic(p, side ? k->b : k->a))
+				involve_island_of(p, side ? k->b : k->a);
+		involve_link(p, k);
 	}
 }
 
@@ -202,27 +220,30 @@ static void follow_links(const builder *p, uint32_t id, uint32_t *stack, uint64_
 	}
 }
 
-// A solution stands if the island has the members that it had, and none of them has a late contact.
-static bool stands(const builder *p, const ob_island *is)
+// Finds the root of each body. Returns how many there are.
+static uint32_t count_trees(const builder *p)
 {
-	const uint32_t *member = p->data->member + is->first_member;
-	for (uint32_t k = 0; p->merges && k < is->members; k++)
-		if (!was_solved(p, member[k]) || p->data->result_island[member[k]] != p->data->result_island[member[0]])
-			return false;
-	return p->merges;
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < p->bodies; i++) {
+		const uint32_t id = p->body[i];
+		p->parent[id] = ob_forest_root(p->parent, id);
+		n += p->parent[id] == id;
+	}
+	return n;
 }
 
-// Numbers the trees by their lowest id and lists their members in ascending order.
+// Numbers the trees by their lowest id, as the first islands, and lists their members in ascending order, as the first.
 static void list_members(builder *p)
 {
 	ob_step_data *data = p->data;
 	uint32_t n = 0, total = 0;
 	for (uint32_t i = 0; i < p->bodies; i++) {
-		const uint32_t id = p->body[i], root = p->parent[id] = ob_forest_root(p->parent, id);
+		const uint32_t id = p->body[i], root = p->parent[id];
 		if (root == id) {
 			p->island_of[id] = n;
 			data->island[n++] = (ob_island){ .first_member = 0 };
 		}
+		data->result_island[id] = p->island_of[root];
 		data->island[p->island_of[root]].members++;
 	}
 	for (uint32_t i = 0; i < n; i++) {
@@ -232,37 +253,68 @@ static void list_members(builder *p)
 	}
 	for (uint32_t i = 0; i < p->bodies; i++) {
 		const uint32_t id = p->body[i];
-		ob_island *is = &data->island[p->island_of[p->parent[id]]];
+		ob_island *is = &data->island[data->result_island[id]];
 		data->member[is->first_member + is->members++] = id;
 	}
-	for (uint32_t i = 0; i < n; i++)
-		data->island[i].solved = stands(p, &data->island[i]);
-	for (uint32_t i = 0; i < p->bodies; i++)
-		data->result_island[p->body[i]] = p->island_of[p->parent[p->body[i]]];
-	for (uint32_t i = 0; p->merges && i < ob_checks_count(data); i++) {
-		const ob_pair_key *k = &data->pair[data->check[i]];
-		if (k->late && is_in_range(p, k))
-			data->island[data->result_island[is_dynamic(p, k->a) ? k->a : k->b]].solved = 0;
-	}
-	data->count->islands = n;
+	data->count->unsolved = n;
 }
 
-static bool is_solved_again(const builder *p, uint32_t island)
+// ---- islands that stand while others are merged
+
+// Leaves the first places to the others, and no gap behind those. Few have to go elsewhere, for which their members
+// would have to be looked up. Returns where they end.
+static uint32_t move_standing(const builder *p, uint32_t unsolved)
 {
-	return island != NONE && !p->data->island[island].solved;
+	ob_step_data *data = p->data;
+	const uint32_t before = data->count->islands;
+	uint32_t standing = 0, to = unsolved;
+	for (uint32_t i = 0; i < before; i++)
+		standing += data->island[i].solved;
+	const uint32_t end = unsolved + standing;
+	for (uint32_t i = 0; i < before; i++) {
+		const ob_island *is = &data->island[i];
+		if ((i >= unsolved && i < end) || !is->solved)
+			continue;
+		while (to < before && data->island[to].solved)
+			to++;
+		for (uint32_t k = 0; k < is->members; k++)
+			data->result_island[data->member[is->first_member + k]] = to;
+		data->island[to++] = *is;
+	}
+	return end;
 }
+
+// Puts their members behind those of the others, and their pairs to the front. buffers: scratch, and
+// ob_step_data.check, which have been read.
+static void move_lists_of_standing(const builder *p, uint32_t first, uint32_t end)
+{
+	ob_step_data *data = p->data;
+	uint32_t members = 0, pairs = 0, *member = p->place, *pair = data->check;
+	for (uint32_t i = first; i < end; i++) {
+		ob_island *is = &data->island[i];
+		memcpy(member + members, data->member + is->first_member, is->members * sizeof *member);
+		memcpy(pair + pairs, data->island_pair + is->first_pair, is->pairs * sizeof *pair);
+		is->first_member = p->bodies + members;
+		is->first_pair = pairs;
+		members += is->members;
+		pairs += is->pairs;
+	}
+	memcpy(data->member + p->bodies, member, members * sizeof *member);
+	memcpy(data->island_pair, pair, pairs * sizeof *pair);
+	data->count->island_pairs = pairs;
+}
+
+// ---- pairs
 
 // The island that solves a pair: pairs of its members, and of a member and what does not move; NONE if they cannot
 // touch in this step. What a step has found out about a pair is void if its island is solved again.
 static uint32_t island_of_pair(const builder *p, ob_pair_key *k)
 {
 	const uint32_t ia = p->data->result_island[k->a], ib = p->data->result_island[k->b], i = ia != NONE ? ia : ib;
-	if (p->merges && (is_solved_again(p, ia) || is_solved_again(p, ib)))
+	if (p->merges)
 		k->limit = -INFINITY;
 	if (i == NONE || (ia != ib && ((ia != NONE && ib != NONE) || (is_dynamic(p, k->a) && is_dynamic(p, k->b)))))
 		return NONE;
-	if (p->merges && p->data->island[i].solved)
-		return k->in_island ? i : NONE;
 	if (k->active)
 		return i;
 	const ob_schedule *a = &p->data->schedule[k->a], *b = &p->data->schedule[k->b];
@@ -304,10 +356,11 @@ typedef struct listing {
 	uint64_t visits;
 } listing;
 
-// A pair of two members is its a's; so each pair is listed, and written, by whoever lists one island.
+// A pair of two members is its a's, if that is to be solved; so each pair is listed, and written, by whoever lists one
+// island.
 static bool is_listed_with(const builder *p, const ob_pair_key *k, uint32_t side)
 {
-	return is_in_range(p, k) && (!side || p->data->result_island[k->a] == NONE);
+	return is_in_range(p, k) && (!side || !ob_is_to_be_solved(p->data, k->a));
 }
 
 // in_island holds from here to the next islands. All of its pairs, in an island or not, are to be checked when that is
@@ -380,7 +433,7 @@ static void list_pairs(const builder *p, uint32_t first, uint32_t end)
 	for (uint32_t i = first; i < end; i++) {
 		ob_island *is = &p->data->island[i];
 		list_pairs_of_island(p, i, &found);
-		is->work = is->solved ? 0 : estimated_work(p, is);
+		is->work = estimated_work(p, is);
 	}
 	ob_step_visited(p->u, found.visits);
 }
@@ -398,7 +451,7 @@ static void list_own_pairs(const builder *p, ob_halo *halo)
 	listing found;
 	found.visits = 0;
 	found.halo = halo;
-	for (uint32_t n = 0, at = 0; n < data->count->islands; n++) {
+	for (uint32_t n = 0, at = 0; n < data->count->unsolved; n++) {
 		const uint32_t i = data->result_island[data->member[at]];
 		ob_island *is = &data->island[i];
 		at += is->members;
@@ -443,13 +496,13 @@ static void permute_islands(ob_island *island, uint32_t *from, uint32_t n)
 	}
 }
 
-// The largest first, stable; islands that are not to be solved have no work. A radix sort: islands come by the ten
+// The largest first, stable, of those that are to be solved. A radix sort: islands come by the ten
 // thousand, and there are no more than two or three digits.
 static void sort_by_work(builder *p)
 {
 	enum { BITS = 8, DIGITS = 1 << BITS };
 	const ob_island *island = p->data->island;
-	uint32_t n = p->data->count->islands, *from = p->parent, *to = p->place,
+	uint32_t n = p->data->count->unsolved, *from = p->parent, *to = p->place,
 		 largest = 0; // whose contents are no longer needed
 	for (uint32_t i = 0; i < n; i++) {
 		from[i] = i;
@@ -481,9 +534,10 @@ uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers)
 }
 
 // Largest first, so that no worker starts on a large one when the others are done; small ones several at a time.
-static void make_chunks(builder *p, uint32_t unsolved, uint64_t total)
+static void make_chunks(builder *p, uint64_t total)
 {
 	ob_step_data *data = p->data;
+	const uint32_t unsolved = data->count->unsolved;
 	const uint64_t share = ob_islands_chunk_work(total, ob_universe_workers(p->u));
 	uint64_t filled = 0;
 	uint32_t chunks = 0;
@@ -585,11 +639,11 @@ static void give_island(builder *p, shares *s, uint32_t island)
 
 // A chunk for each simulator, of the islands of its region, or that it has solved before: what their pairs keep lies
 // with its rank (holdings.h). Where one would get a tenth more than its share, others do, the largest first.
-static void make_shares(builder *p, uint32_t unsolved, uint64_t total, ob_regions *regions)
+static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 {
 	enum { SLACK = 10, WORTH_SHARING = 16 * CHUNK_WORK_MIN };
 	ob_step_data *data = p->data;
-	const uint32_t all = ob_universe_simulators(p->u), islands = data->count->islands;
+	const uint32_t all = ob_universe_simulators(p->u), unsolved = data->count->unsolved;
 	shares s = { .count = all < p->ids ? all : p->ids,
 		     .load = p->body,
 		     .votes = p->place,
@@ -612,9 +666,9 @@ static void make_shares(builder *p, uint32_t unsolved, uint64_t total, ob_region
 	for (uint32_t w = 0; w < s.count; w++)
 		data->chunk[w + 1] += data->chunk[w];
 	memcpy(s.load, data->chunk, s.count * sizeof *s.load); // where the next of each goes
-	for (uint32_t i = 0; i < islands; i++)
-		p->parent[i < unsolved ? s.load[s.owner[i]]++ : i] = i;
-	permute_islands(data->island, p->parent, islands);
+	for (uint32_t i = 0; i < unsolved; i++)
+		p->parent[s.load[s.owner[i]]++] = i;
+	permute_islands(data->island, p->parent, unsolved);
 	data->count->chunks = s.count;
 }
 
@@ -622,19 +676,16 @@ static void make_shares(builder *p, uint32_t unsolved, uint64_t total, ob_region
 static void deal_islands(builder *p, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
-	const uint32_t n = data->count->islands;
+	const uint32_t n = data->count->unsolved;
 	uint64_t total = 0;
-	uint32_t unsolved = 0;
 	sort_by_work(p);
-	for (uint32_t i = 0; i < n; i++) {
+	for (uint32_t i = 0; i < n; i++)
 		total += data->island[i].work;
-		unsolved += !data->island[i].solved;
-	}
 	data->count->shared = ob_universe_ranks(p->u) > 1 || ob_moves_were_made(p->u);
 	if (data->count->shared)
-		make_shares(p, unsolved, total, regions);
+		make_shares(p, total, regions);
 	else
-		make_chunks(p, unsolved, total);
+		make_chunks(p, total);
 	for (uint32_t i = 0; i < n; i++)
 		for (uint32_t m = 0; m < data->island[i].members; m++)
 			data->result_island[data->member[data->island[i].first_member + m]] = i;
@@ -658,10 +709,9 @@ static builder builder_of(ob_universe *u, bool merges)
 			  .step = ob_step_count(u) };
 }
 
-static void sort_members(builder *p)
+static void sort_bodies(builder *p)
 {
 	ob_sort_ids(p->body, p->bodies, p->ids, p->place); // whose contents are no longer needed
-	list_members(p);
 	p->data->count->visits += p->bodies;
 }
 
@@ -708,27 +758,30 @@ void ob_islands_list_members(ob_universe *u)
 	builder p = builder_of(u, false);
 	const uint32_t involved = p.data->count->involved;
 	p.bodies = involved < p.ids ? involved : p.ids;
-	sort_members(&p);
+	sort_bodies(&p);
+	count_trees(&p);
+	list_members(&p);
+	p.data->count->islands = p.data->count->unsolved;
 }
 
 uint32_t ob_islands_list_tasks(const ob_universe *u)
 {
 	const bool alone = ob_universe_ranks(u) < 2; // else whose they are says who lists their pairs
-	return alone ? (ob_universe_step_data(u)->count->islands + OB_ISLANDS_AT_ONCE - 1) / OB_ISLANDS_AT_ONCE : 0;
+	return alone ? (ob_universe_step_data(u)->count->unsolved + OB_ISLANDS_AT_ONCE - 1) / OB_ISLANDS_AT_ONCE : 0;
 }
 
 void ob_islands_list_pairs(ob_universe *u, uint32_t task)
 {
 	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
 	const builder p = builder_of(u, count->merged);
-	list_pairs(&p, task * OB_ISLANDS_AT_ONCE, end_of_task(task, OB_ISLANDS_AT_ONCE, count->islands));
+	list_pairs(&p, task * OB_ISLANDS_AT_ONCE, end_of_task(task, OB_ISLANDS_AT_ONCE, count->unsolved));
 }
 
 void ob_islands_deal(ob_universe *u, ob_regions *regions)
 {
 	builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
-	for (uint32_t i = 0; !p.alone && i < p.data->count->islands; i++)
-		p.data->island[i].work = p.data->island[i].solved ? 0 : estimated_work(&p, &p.data->island[i]);
+	for (uint32_t i = 0; !p.alone && i < p.data->count->unsolved; i++)
+		p.data->island[i].work = estimated_work(&p, &p.data->island[i]);
 	deal_islands(&p, regions);
 }
 
@@ -743,8 +796,11 @@ void ob_islands_merge(ob_universe *u)
 	struct ob_step_counts *count = ob_universe_step_data(u)->count;
 	builder p = builder_of(u, true);
 	count->merged = 1;
-	involve_solved(&p);
+	involve_late(&p);
 	involve_linked(&p);
-	sort_members(&p);
-	count->island_pairs = 0;
+	sort_bodies(&p);
+	const uint32_t unsolved = count_trees(&p), end = move_standing(&p, unsolved);
+	move_lists_of_standing(&p, unsolved, end);
+	list_members(&p);
+	count->islands = end;
 }

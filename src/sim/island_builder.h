@@ -32,7 +32,8 @@ void ob_islands_deal(ob_universe *u, ob_regions *regions);
 // halo: is told which bodies are at borders.
 void ob_islands_list_own_pairs(ob_universe *u, ob_halo *halo);
 // Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join, and lists members. The
-// solutions of the others stand; the chunks hold what must be solved again.
+// solutions of the others stand, and so do their lists, and what is known of pairs that have nothing to do with those;
+// the chunks hold what must be solved again.
 void ob_islands_merge(ob_universe *u);
 // A chunk of so much work is closed, where that is all the work that so many workers share.
 uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers);

@@ -358,7 +358,7 @@ static void note_solved(ob_universe *u)
 	const ob_step_data *data = ob_universe_step_data(u);
 	const ob_calendar solve = ob_calendar_of_objects(u);
 	uint32_t members = 0;
-	for (uint32_t i = 0; i < data->count->islands; i++)
+	for (uint32_t i = 0; i < data->count->unsolved; i++)
 		members += data->island[i].members;
 	for (uint32_t i = 0; i < members && i < data->objects_max; i++) {
 		if (i + AHEAD < members && i + AHEAD < data->objects_max)

@@ -81,11 +81,17 @@ bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k)
 	return ob_universe_ranks(u) < 2 || lives_here(u, k->a) || lives_here(u, k->b);
 }
 
+// 2: its island is to be solved, 1: that stands, 0: it is in none.
+static int claim_of(const ob_step_data *data, uint32_t id)
+{
+	return ob_is_to_be_solved(data, id) ? 2 : data->result_island[id] != UINT32_MAX;
+}
+
 bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const bool a = data->result_island[k->a] != UINT32_MAX ||
-		       (data->result_island[k->b] == UINT32_MAX && ob_schedule_is_dynamic(&data->schedule[k->a]));
+	const int of_a = claim_of(data, k->a), of_b = claim_of(data, k->b);
+	const bool a = of_a != of_b ? of_a > of_b : ob_schedule_is_dynamic(&data->schedule[k->a]);
 	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
 }
 

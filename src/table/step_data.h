@@ -174,6 +174,7 @@ typedef struct ob_step_data {
 		uint32_t pairs_idle; // of these, not in use
 		uint32_t first_idle; // 1 + one of them, the first of a list
 		uint32_t islands, chunks, records_used;
+		uint32_t unsolved; // islands that are to be solved: they come first, and so do their members
 		uint32_t shared; // 1 = chunk w is worker w's; 0 = chunks are claimed
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
 		uint32_t scheduler; // the worker that scheduled last
@@ -261,6 +262,13 @@ static inline bool ob_object_in_range(const ob_step_data *data, uint32_t id)
 		return true;
 	data->count->failure = OB_STEP_DAMAGED;
 	return false;
+}
+
+// Whether the object is in an island that is to be solved, or was last: of those that late contacts have merged, if
+// they have.
+static inline bool ob_is_to_be_solved(const ob_step_data *data, uint32_t id)
+{
+	return data->result_island[id] < data->count->unsolved;
 }
 
 // Where pair[] ends: never more than it holds, whatever somebody has written.

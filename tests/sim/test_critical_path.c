@@ -75,6 +75,7 @@ static void test_islands(ob_universe *u)
 	for (uint32_t i = 0; i <= ISLANDS; i++)
 		data->island[i] = (ob_island){ .work = i < ISLANDS ? 1000 : 0, .solved = i == ISLANDS };
 	data->count->islands = ISLANDS + 1;
+	data->count->unsolved = ISLANDS;
 	take(u, 0, 0);
 	for (uint32_t i = 0; i < ISLANDS; i++)
 		ob_task_took(u, i, i < OB_SIMULATED_WORKERS ? 100 : 10);

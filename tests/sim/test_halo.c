@@ -132,7 +132,7 @@ static void move(rank *r)
 		data->member[n++] = id;
 		ob_home_set(r->u, id, s->home[id]);
 	}
-	data->count->islands = n;
+	data->count->islands = data->count->unsolved = n;
 	for (uint32_t to = 0; to < RANKS; to++)
 		r->wrong += !ob_peers_begin(&r->mail[to]);
 	r->wrong += !ob_halo_move(r->h, r->u, leaving, left, r->mail, &moved);

@@ -180,6 +180,39 @@ static void check_plan(const ob_step_data *ex)
 	check_order(ex, 0);
 }
 
+// All pairs lose their entries, so that it is seen which get one.
+static void forget_entries(ob_universe *u)
+{
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	for (uint32_t i = 0; i < ob_universe_step_data(u)->count->pairs; i++)
+		ob_calendar_set(&look, i, UINT32_MAX);
+}
+
+static bool is_solved_again(const ob_step_data *ex, uint32_t id)
+{
+	const uint32_t is = ex->result_island[id];
+	return is != UINT32_MAX && !ex->island[is].solved;
+}
+
+// Pairs of what is solved again are to be checked again, and no others. All that are in islands are in the list of one.
+static void check_lists_after_reunion(const ob_universe *u)
+{
+	const ob_step_data *ex = ob_universe_step_data(u);
+	uint32_t inside = 0, listed = 0;
+	for (uint32_t i = 0; i < ex->count->pairs; i++) {
+		const ob_pair_key *k = &ex->pair[i];
+		CHECK((ex->look.one[i] == UINT32_MAX - 1 - ob_step_count(u)) ==
+		      (is_solved_again(ex, k->a) || is_solved_again(ex, k->b)));
+		inside += k->in_island;
+	}
+	for (uint32_t i = 0; i < ex->count->islands; i++)
+		for (uint32_t k = 0; k < ex->island[i].pairs; k++, listed++) {
+			const ob_pair_key *pair = &ex->pair[ex->island_pair[ex->island[i].first_pair + k]];
+			CHECK(pair->in_island && ex->result_island[moves(ex, pair->a) ? pair->a : pair->b] == i);
+		}
+	CHECK(inside == listed && ex->count->island_pairs == listed);
+}
+
 // Some pairs of different islands meet, some members meet a fixed body, and some have fallen asleep meanwhile: islands
 // of more than one of the old are to be solved, the others stand.
 static void check_reunion(ob_universe *u, uint64_t seed)
@@ -211,8 +244,10 @@ static void check_reunion(ob_universe *u, uint64_t seed)
 	for (uint32_t i = 0; i < ex->count->pairs; i++)
 		ex->check[i] = i;
 	ex->count->checks = ex->count->pairs;
+	forget_entries(u);
 	ob_islands_merge(u);
 	list_pairs_and_deal(u);
+	check_lists_after_reunion(u);
 	uint32_t unsolved = 0;
 	for (uint32_t i = 0; i < ex->count->islands; i++) {
 		const ob_island *is = &ex->island[i];
