@@ -321,7 +321,7 @@ def pieces(m):
 # What a unit of work cannot do without: (part, what is counted, flops, bytes, how far away those lie). Counted by hand:
 # - an exchange of a pair with four points (contact/kernel.c): rates of seven rows 101, one sweep 156, impulses onto two
 #   bodies 141, limits 50; it reads 114 doubles of the pair and 24 of the bodies, and writes 8 and 12;
-# - a look at two boxes (contact/boxes.c): nine products of axes 135, fifteen axes of some 22, clipping a face against
+# - a look at two boxes (contact/boxes.h): nine products of axes 135, fifteen axes of some 22, clipping a face against
 #   four sides some 100; two poses and sizes read, a pair of four points written;
 # - a substep of a body: its turn as a quaternion and a matrix 110, prediction 24; its rows read and written;
 # - a member of an island: its motion and passport in, its motion out;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "contact/batch.h"
+#include "contact/kernel.h"
 #include "motion/flight.h"
 #include "motion/spin.h"
 #include "sim/broadphase.h"

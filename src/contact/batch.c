@@ -1,4 +1,4 @@
-#include "contact/batch.h"
+#include "contact/kernel.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -215,19 +215,6 @@ void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
 }
 
 // ---- the arithmetic, by the kernel for this processor
-
-const ob_kernel *ob_kernel_best(void)
-{
-#ifdef OB_HAVE_AVX512
-	if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
-		return &ob_kernel_avx512;
-#endif
-#ifdef OB_HAVE_AVX2
-	if (__builtin_cpu_supports("avx2"))
-		return &ob_kernel_avx2;
-#endif
-	return &ob_kernel_portable;
-}
 
 void ob_batch_prepare(ob_batch *b)
 {

@@ -148,9 +148,6 @@ void ob_batch_limit_prediction(ob_batch *b, const double *cap_impulse, double ca
 void ob_batch_row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r);
 // M^-1 J^T x: adds what the impulses x of all lanes do to the velocities.
 void ob_batch_apply_impulses(const ob_batch *b, const lanes *x, ob_body_row *rows);
-// ---- the arithmetic, compiled once per instruction set (kernel.c): for the functions above, and for tests of their
-// bits
-
 static const double ob_no_contact = 1e3; // m: the gap of a point that is not there
 
 // Is there such a point?
@@ -158,29 +155,5 @@ static inline bool ob_batch_has_point(const ob_batch *b, int l, int point)
 {
 	return b->gap[point][l] < .5 * ob_no_contact;
 }
-
-typedef struct ob_kernel {
-	void (*prepare)(ob_batch *b);
-	void (*solve)(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
-		      const ob_body_row *d, ob_body_row *delta);
-	// Adds to what the batch says of its lanes.
-	void (*solve_lone)(ob_batch *b, int l, const ob_solver_iteration *iteration, ob_body_row *u,
-			   const ob_body_row *v, const ob_body_row *d);
-	bool (*project)(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
-	void (*limit_prediction)(ob_batch *b, const double *cap_impulse, double cap_velocity);
-	void (*row_velocities)(const ob_batch *b, const ob_body_row *rows, lanes *r);
-	void (*apply_impulses)(const ob_batch *b, const lanes *x, ob_body_row *rows);
-} ob_kernel;
-
-extern const ob_kernel ob_kernel_portable;
-#ifdef OB_HAVE_AVX2
-extern const ob_kernel ob_kernel_avx2;
-#endif
-#ifdef OB_HAVE_AVX512
-extern const ob_kernel ob_kernel_avx512;
-#endif
-
-// The fastest that this processor runs.
-const ob_kernel *ob_kernel_best(void);
 
 #endif

@@ -1,9 +1,11 @@
-// The contact solver's arithmetic on a batch. Compiled once for each instruction set under the name OB_KERNEL (see
-// meson.build): no lane sees another and nothing is contracted, so the bits are the same.
-#include "contact/batch.h"
+// The contact solver's arithmetic on a batch, and that of two boxes. Compiled once for each instruction set under the
+// name OB_KERNEL (see meson.build): what is side by side is so in each of them, and nothing is contracted, so the bits
+// are the same.
+#include "contact/kernel.h"
 
 #include <string.h>
 
+#include "contact/boxes.h"
 #include "contact/lone.h"
 #include "contact/patch.h"
 
@@ -831,4 +833,4 @@ static void row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r)
 	friction_velocities(b, OB_KIND_FULL, xa, xb, r);
 }
 
-const ob_kernel OB_KERNEL = { prepare, solve, solve_lone, project, limit_prediction, row_velocities, apply_impulses };
+const ob_kernel OB_KERNEL = { prepare, solve, solve_lone, project, limit_prediction, row_velocities, apply_impulses, boxes };

@@ -5,6 +5,7 @@
 #include "contact/capsule.h"
 #include "contact/cylinder.h"
 #include "contact/hull_round.h"
+#include "contact/kernel.h"
 #include "contact/polytope.h"
 #include "contact/support.h"
 #include "motion/drift.h"
@@ -76,12 +77,6 @@ static box_side nearest_side(ob_vec3 l, ob_vec3 size)
 	}
 	double dx = fabs(l.x) - size.x, dy = fabs(l.y) - size.y, dz = fabs(l.z) - size.z;
 	return face_side(l, size, dx >= dy && dx >= dz ? 0 : dy >= dz ? 1 : 2);
-}
-
-double ob_time_to_close(const ob_placed *a, const ob_placed *b, double left, double rate)
-{
-	const double far = ob_min(a->far_future, b->far_future), latest = far > 0 ? far : INFINITY;
-	return left <= 0 ? 0 : rate < 0 ? ob_min(latest, -left / rate) : latest;
 }
 
 // Beyond a face's border the sphere meets an edge, unless it touches the face's plane and does not close along the
@@ -160,6 +155,11 @@ static void box_plane(const ob_placed *a, const ob_placed *plane, double margin,
 static void flip(ob_manifold *m)
 {
 	m->normal = ob_scale(m->normal, -1);
+}
+
+void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	ob_kernel_best()->boxes(a, b, margin, out);
 }
 
 typedef void pair_function(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);

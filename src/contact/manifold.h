@@ -43,7 +43,11 @@ typedef struct ob_manifold {
 bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 // s: until a gap (m) that changes at this rate (m/s) has closed; at most the far future of the two.
-double ob_time_to_close(const ob_placed *a, const ob_placed *b, double gap, double rate);
+static inline double ob_time_to_close(const ob_placed *a, const ob_placed *b, double gap, double rate)
+{
+	const double far = ob_min(a->far_future, b->far_future), latest = far > 0 ? far : INFINITY;
+	return gap <= 0 ? 0 : rate < 0 ? ob_min(latest, -gap / rate) : latest;
+}
 
 // The two boxes' part of it: separating axes (Gottschalk et al. 1996), the axis chosen by the time at which it
 // closes, face clipping (Sutherland and Hodgman 1974).

@@ -1,4 +1,4 @@
-// Hulls against planes, boxes and hulls. As between boxes (boxes.c), whose decisions these are for any polyhedron: the
+// Hulls against planes, boxes and hulls. As between boxes (boxes.h), whose decisions these are for any polyhedron: the
 // axes are the normals of faces, and those of two edges that are a face of the Minkowski difference (the arcs of their
 // normals cross: Gregorius 2013); of several axes that separate, the one that closes last decides; a face's points are
 // the other's face, clipped. Pure functions, thread-safe.

@@ -1,6 +1,6 @@
 // A contact that is solved at once by itself comes to the same impulses as in a batch with three empty lanes, on every
 // processor to the same bits.
-#include "contact/batch.h"
+#include "contact/kernel.h"
 
 #include "check.h"
 #include "scene.h"

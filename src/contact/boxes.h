@@ -1,14 +1,21 @@
-// Two boxes: which axis separates them, and where they touch along it.
+// Two boxes: which axis separates them, and where they touch along it. Three axes lie side by side, or four corners: no
+// lane sees another but where the largest of them is looked for. For contact/kernel.c.
+#ifndef OB_CONTACT_BOXES_H
+#define OB_CONTACT_BOXES_H
+
 #include <string.h>
 
 #include "contact/manifold.h"
 #include "contact/polytope.h"
+#include "elementary/lanes.h"
 
-// Everything that the axis tests need, in a's frame.
+// Everything that the axis tests need, in a's frame. Of the four lanes the last one is not in use.
 typedef struct frame_pair {
-	double c[3][3], q[3][3]; // b's axes in a's frame; their absolute values
-	double t[3], tb[3]; // centre of b seen from a, a's frame; along b's axes
-	double ha[3], hb[3]; // half extents
+	lanes a[3], b[3]; // components of a's axes in the world, and of b's
+	lanes c[3], q[3]; // those of b's axes in a's frame; their absolute values
+	lanes qt[3]; // .. turned over: those of a's axes in b's frame
+	lanes t, tb; // centre of b seen from a, a's frame; along b's axes
+	lanes ha, hb; // half extents
 	double thin; // the least thickness of both
 	double rest; // m: so deep they may be in each other at rest
 	double discount; // m: so much more must an edge's axis separate than a face's
@@ -23,7 +30,7 @@ enum { FACES = 6, AXES = 15 }; // axis 0..2: faces of a; 3..5: of b; 6 + 3 i + j
 
 // The separation along each axis (m), -infinity where edges are nearly parallel: there a face's axis says the same.
 typedef struct axis_gaps {
-	double gap[AXES];
+	lanes gap[AXES / 3]; // three axes each; -infinity in the last lane
 	double largest_face, largest_edge;
 	int face, edge; // whose they are
 } axis_gaps;
@@ -38,24 +45,40 @@ static const double parallel_edges = 1e-10; // sin^2 of their angle
 static const double same_axis = .99; // cosine
 static const double same_depth = 1e-4; // of the reference box's least half extent: points that count as equally deep
 
+static inline lanes lanes_of_three(double x, double y, double z)
+{
+	return (lanes){ x, y, z, z };
+}
+
+// Of a bit for each axis, the first; the last one if there is none, as where nothing is a number.
+static inline int first_axis(unsigned bits, int last)
+{
+	return __builtin_ctz(bits | 1u << last);
+}
+
 static void frame_pair_init(frame_pair *f, const ob_placed *a, const ob_placed *b)
 {
-	ob_vec3 t = ob_rotate_back(&a->r, ob_sub(b->p, a->p));
-	memcpy(f->t, (double[3]){ t.x, t.y, t.z }, sizeof f->t);
-	memcpy(f->ha, (double[3]){ a->size.x, a->size.y, a->size.z }, sizeof f->ha);
-	memcpy(f->hb, (double[3]){ b->size.x, b->size.y, b->size.z }, sizeof f->hb);
-	f->thin =
-		2 * ob_min(ob_min(f->ha[0], ob_min(f->ha[1], f->ha[2])), ob_min(f->hb[0], ob_min(f->hb[1], f->hb[2])));
+	const ob_vec3 apart = ob_sub(b->p, a->p), ha = a->size, hb = b->size;
+	lanes ct[4] = { { 0 } };
+	f->ha = lanes_of_three(ha.x, ha.y, ha.z);
+	f->hb = lanes_of_three(hb.x, hb.y, hb.z);
+	f->thin = 2 * ob_min(ob_min(ha.x, ob_min(ha.y, ha.z)), ob_min(hb.x, ob_min(hb.y, hb.z)));
 	f->rest = ob_min(a->rest_depth, b->rest_depth);
 	f->discount = ob_min(prefer_face * f->thin, f->rest);
-	for (int i = 0; i < 3; i++)
-		for (int j = 0; j < 3; j++) {
-			f->c[i][j] =
-				a->r.m[0][i] * b->r.m[0][j] + a->r.m[1][i] * b->r.m[1][j] + a->r.m[2][i] * b->r.m[2][j];
-			f->q[i][j] = fabs(f->c[i][j]);
-		}
+	for (int r = 0; r < 3; r++) {
+		f->a[r] = lanes_of_three(a->r.m[r][0], a->r.m[r][1], a->r.m[r][2]);
+		f->b[r] = lanes_of_three(b->r.m[r][0], b->r.m[r][1], b->r.m[r][2]);
+	}
+	f->t = f->a[0] * apart.x + f->a[1] * apart.y + f->a[2] * apart.z;
+	for (int i = 0; i < 3; i++) {
+		f->c[i] = a->r.m[0][i] * f->b[0] + a->r.m[1][i] * f->b[1] + a->r.m[2][i] * f->b[2];
+		f->q[i] = lanes_abs(f->c[i]);
+		ct[i] = f->c[i];
+	}
+	lanes_transpose(ct);
 	for (int j = 0; j < 3; j++)
-		f->tb[j] = t.x * f->c[0][j] + t.y * f->c[1][j] + t.z * f->c[2][j];
+		f->qt[j] = lanes_abs(ct[j]);
+	f->tb = f->t[0] * f->c[0] + f->t[1] * f->c[1] + f->t[2] * f->c[2];
 }
 
 // Both boxes move and turn: as a sees it, in its own frame.
@@ -63,7 +86,7 @@ static void frame_rates_init(frame_rates *d, const frame_pair *f, const ob_place
 {
 	ob_vec3 apart = ob_sub(b->p, a->p), v = ob_sub(ob_sub(b->v, a->v), ob_cross(a->w, apart));
 	ob_vec3 u = ob_rotate_back(&a->r, v), w = ob_rotate_back(&a->r, ob_sub(b->w, a->w));
-	memcpy(d->t, (double[3]){ u.x, u.y, u.z }, sizeof d->t);
+	d->t[0] = u.x, d->t[1] = u.y, d->t[2] = u.z;
 	for (int j = 0; j < 3; j++) {
 		ob_vec3 turn = ob_cross(w, ob_v3(f->c[0][j], f->c[1][j], f->c[2][j]));
 		d->c[0][j] = turn.x, d->c[1][j] = turn.y, d->c[2][j] = turn.z;
@@ -73,46 +96,43 @@ static void frame_rates_init(frame_rates *d, const frame_pair *f, const ob_place
 	}
 }
 
-static double face_gap(const frame_pair *f, int axis)
+static inline lanes without_last(lanes gap, lane_mask leave_out)
 {
-	int k = axis % 3;
-	return axis < 3 ? fabs(f->t[k]) - f->ha[k] -
-				  (f->q[k][0] * f->hb[0] + f->q[k][1] * f->hb[1] + f->q[k][2] * f->hb[2])
-			: fabs(f->tb[k]) - f->hb[k] -
-				  (f->q[0][k] * f->ha[0] + f->q[1][k] * f->ha[1] + f->q[2][k] * f->ha[2]);
+	return lanes_select(leave_out | (lane_mask){ 0, 0, 0, -1 }, lanes_of(-INFINITY), gap);
 }
 
 static void find_face_gaps(const frame_pair *f, axis_gaps *s)
 {
-	s->largest_face = s->gap[s->face = 0] = face_gap(f, 0);
-	for (int k = 1; k < FACES; k++) {
-		s->gap[k] = face_gap(f, k);
-		if (s->gap[k] > s->largest_face)
-			s->largest_face = s->gap[k], s->face = k;
-	}
+	const lanes *q = f->q, *qt = f->qt;
+	const lanes of_a = lanes_abs(f->t) - f->ha - (qt[0] * f->hb[0] + qt[1] * f->hb[1] + qt[2] * f->hb[2]),
+		    of_b = lanes_abs(f->tb) - f->hb - (q[0] * f->ha[0] + q[1] * f->ha[1] + q[2] * f->ha[2]);
+	const lane_mask none = { 0 };
+	s->gap[0] = without_last(of_a, none);
+	s->gap[1] = without_last(of_b, none);
+	s->largest_face = lanes_largest(lanes_max(s->gap[0], s->gap[1]));
+	const lanes most = lanes_of(s->largest_face);
+	s->face = first_axis(lanes_bits(s->gap[0] == most) | lanes_bits(s->gap[1] == most) << 3, FACES - 1);
 }
 
 static void find_edge_gaps(const frame_pair *f, axis_gaps *s)
 {
-	s->largest_edge = -INFINITY;
-	s->edge = 0;
+	const lanes hb1 = __builtin_shufflevector(f->hb, f->hb, 1, 2, 0, 3),
+		    hb2 = __builtin_shufflevector(f->hb, f->hb, 2, 0, 1, 3);
+	lanes *gap = s->gap + 2;
 	for (int i = 0; i < 3; i++) {
-		int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-		for (int j = 0; j < 3; j++) {
-			int j1 = (j + 1) % 3, j2 = (j + 2) % 3, axis = FACES + 3 * i + j;
-			double l2 = 1 - f->c[i][j] * f->c[i][j];
-			s->gap[axis] = -INFINITY;
-			if (l2 < parallel_edges)
-				continue;
-			double along = f->t[i2] * f->c[i1][j] - f->t[i1] * f->c[i2][j];
-			double gap = (fabs(along) - (f->ha[i1] * f->q[i2][j] + f->ha[i2] * f->q[i1][j] +
-						     f->hb[j1] * f->q[i][j2] + f->hb[j2] * f->q[i][j1])) /
-				     sqrt(l2);
-			s->gap[axis] = gap;
-			if (gap > s->largest_edge)
-				s->largest_edge = gap, s->edge = 3 * i + j;
-		}
+		const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+		const lanes q1 = __builtin_shufflevector(f->q[i], f->q[i], 1, 2, 0, 3),
+			    q2 = __builtin_shufflevector(f->q[i], f->q[i], 2, 0, 1, 3);
+		const lanes l2 = 1 - f->c[i] * f->c[i];
+		const lanes along = f->t[i2] * f->c[i1] - f->t[i1] * f->c[i2];
+		const lanes radii = f->ha[i1] * f->q[i2] + f->ha[i2] * f->q[i1] + hb1 * q2 + hb2 * q1;
+		gap[i] = without_last((lanes_abs(along) - radii) / lanes_sqrt(l2), l2 < parallel_edges);
 	}
+	s->largest_edge = lanes_largest(lanes_max(lanes_max(gap[0], gap[1]), gap[2]));
+	const lanes most = lanes_of(s->largest_edge);
+	s->edge = first_axis(lanes_bits(gap[0] == most) | lanes_bits(gap[1] == most) << 3 |
+				     lanes_bits(gap[2] == most) << 6,
+			     AXES - FACES - 1);
 }
 
 // d|c|/dt of b's axis j along a's axis i, at the most where it passes 0.
@@ -146,6 +166,11 @@ static double opening_rate(const frame_pair *f, const frame_rates *d, int axis)
 	return inv * (rate + (fabs(along) - radii) * f->c[i][j] * d->c[i][j] / l2);
 }
 
+static double gap_along(const axis_gaps *s, int axis)
+{
+	return s->gap[axis / 3][axis % 3];
+}
+
 // The cosine between the axes of two faces.
 static double face_cosine(const frame_pair *f, int k, int l)
 {
@@ -162,26 +187,26 @@ static double face_cosine(const frame_pair *f, int k, int l)
 static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair *f, const axis_gaps *s, bool *crossing)
 {
 	frame_rates d;
-	int open[AXES], n = 0, best = -1, touching = -1;
+	int best = -1, touching = -1;
+	unsigned open = 0;
 	double latest = -1, largest = 0, steadiest = INFINITY;
 	const double never = ob_time_to_close(a, b, 1, 0), rest = f->rest;
 	*crossing = false;
-	for (int k = 0; k < AXES; k++)
-		if (s->gap[k] - (k < FACES ? 0 : f->discount) > -rest)
-			open[n++] = k;
-	if (n == 0)
+	for (int k = 0; k < AXES / 3; k++)
+		open |= lanes_bits(s->gap[k] - (3 * k < FACES ? 0 : f->discount) > -rest) << 3 * k;
+	if (open == 0)
 		return -1;
-	if (n == 1)
-		return open[0];
+	if ((open & (open - 1)) == 0)
+		return __builtin_ctz(open);
 	frame_rates_init(&d, f, a, b);
-	for (int k = 0; k < n; k++) {
-		const int axis = open[k];
-		double gap = s->gap[axis] - (axis < FACES ? 0 : f->discount);
+	for (; open; open &= open - 1) {
+		const int axis = __builtin_ctz(open);
+		double gap = gap_along(s, axis) - (axis < FACES ? 0 : f->discount);
 		double rate = opening_rate(f, &d, axis);
 		double time = ob_time_to_close(a, b, gap + rest, rate);
 		if (time == never && axis < FACES && fabs(gap) <= rest) {
 			*crossing |= touching >= 0 && face_cosine(f, touching, axis) < same_axis;
-			if (fabs(rate) < steadiest || (fabs(rate) == steadiest && gap > s->gap[touching]))
+			if (fabs(rate) < steadiest || (fabs(rate) == steadiest && gap > gap_along(s, touching)))
 				steadiest = fabs(rate), touching = axis;
 		}
 		if (time > latest || (time == latest && gap > largest))
@@ -230,95 +255,99 @@ static void edge_manifold(const ob_placed *a, const ob_placed *b, int edge, ob_m
 	m->at[0] = ob_scale(ob_add(xa, xb), .5);
 }
 
-// A convex polygon in the reference face's plane: coordinates u, w in the face, z above it.
+// A convex polygon in the reference face's plane: of each corner u and w in the face, z above it.
+enum { POLYGON_MAX = 8 };
 typedef struct polygon {
-	double u[8], w[8], z[8];
+	lanes corner[POLYGON_MAX + 1]; // with room for one that is not kept
 	int n;
 } polygon;
 
-static void polygon_put(polygon *p, double u, double w, double z)
+static inline void polygon_put(polygon *p, lanes corner, bool keep)
 {
-	if (p->n < 8) {
-		p->u[p->n] = u, p->w[p->n] = w, p->z[p->n] = z;
-		p->n++;
-	}
+	p->corner[p->n] = corner;
+	p->n += keep && p->n < POLYGON_MAX;
 }
 
 // Cuts away what lies beyond limit on one side (sign) of one face axis (0 = u, 1 = w).
 static void clip(polygon *p, int axis, double sign, double limit)
 {
-	polygon out;
-	const double *x = axis ? p->w : p->u;
-	bool beyond = false;
-	for (int k = 0; k < p->n; k++)
-		beyond |= sign * x[k] - limit > 0;
-	if (!beyond)
+	double f[POLYGON_MAX]; // beyond
+	unsigned above = 0, below = 0;
+	for (int k = 0; k < p->n; k++) {
+		f[k] = sign * p->corner[k][axis] - limit;
+		above |= (unsigned)(f[k] > 0) << k;
+		below |= (unsigned)(f[k] < 0) << k;
+	}
+	if (!above)
 		return;
+	const unsigned next_above = above >> 1 | (above & 1) << (p->n - 1),
+		       next_below = below >> 1 | (below & 1) << (p->n - 1),
+		       crosses = (above & next_below) | (below & next_above);
+	polygon out;
 	out.n = 0;
 	for (int k = 0; k < p->n; k++) {
-		int next = k + 1 < p->n ? k + 1 : 0;
-		double f = sign * x[k] - limit, g = sign * x[next] - limit;
-		if (f <= 0)
-			polygon_put(&out, p->u[k], p->w[k], p->z[k]);
-		if ((f < 0 && g > 0) || (f > 0 && g < 0)) {
-			double s = f / (f - g);
-			polygon_put(&out, p->u[k] + s * (p->u[next] - p->u[k]), p->w[k] + s * (p->w[next] - p->w[k]),
-				    p->z[k] + s * (p->z[next] - p->z[k]));
+		polygon_put(&out, p->corner[k], !(above >> k & 1));
+		if (crosses >> k & 1) {
+			const int next = k + 1 < p->n ? k + 1 : 0;
+			const double s = f[k] / (f[k] - f[next]);
+			polygon_put(&out, p->corner[k] + s * (p->corner[next] - p->corner[k]), true);
 		}
 	}
-	*p = out;
+	p->n = out.n;
+	for (int k = 0; k < out.n; k++)
+		p->corner[k] = out.corner[k];
 }
 
 // Keeps the four points that span the largest area with one of the deepest among them.
 static void reduce_to_four(polygon *p, double tie)
 {
-	const unsigned keep = ob_widest_four(p->u, p->w, p->z, p->n, tie);
-	polygon out = { .n = 0 };
+	double u[POLYGON_MAX], w[POLYGON_MAX], z[POLYGON_MAX];
 	for (int k = 0; k < p->n; k++)
-		if (keep >> k & 1)
-			polygon_put(&out, p->u[k], p->w[k], p->z[k]);
-	*p = out;
+		u[k] = p->corner[k][0], w[k] = p->corner[k][1], z[k] = p->corner[k][2];
+	const unsigned keep = ob_widest_four(u, w, z, p->n, tie);
+	const int n = p->n;
+	p->n = 0;
+	for (int k = 0; k < n; k++)
+		polygon_put(p, p->corner[k], keep >> k & 1);
 }
 
-// The face of box "in" that looks most against n, in the reference face's coordinates.
-static void incident_face(const ob_placed *ref, const ob_placed *in, ob_vec3 n, ob_vec3 u, ob_vec3 w, double height,
-			  polygon *p)
+// The corners of the face of box "in" that looks most against n, as seen from the reference box; of: components of the
+// axes of "in"
+static void incident_face(const ob_placed *ref, const ob_placed *in, const lanes *of, ob_vec3 n, lanes corner[3])
 {
-	double h[3] = { in->size.x, in->size.y, in->size.z }, best = -1, sign = 1;
-	int k = 0;
-	for (int i = 0; i < 3; i++) {
-		double c = ob_dot(n, ob_column(&in->r, i));
-		if (fabs(c) > best)
-			best = fabs(c), k = i, sign = c > 0 ? -1 : 1;
-	}
-	int e1 = (k + 1) % 3, e2 = (k + 2) % 3;
-	ob_vec3 centre = ob_madd(ob_sub(in->p, ref->p), sign * h[k], ob_column(&in->r, k));
-	ob_vec3 f1 = ob_scale(ob_column(&in->r, e1), h[e1]), f2 = ob_scale(ob_column(&in->r, e2), h[e2]);
-	static const int s1[4] = { 1, -1, -1, 1 }, s2[4] = { 1, 1, -1, -1 };
-	p->n = 0;
-	for (int i = 0; i < 4; i++) {
-		ob_vec3 x = ob_madd(ob_madd(centre, s1[i], f1), s2[i], f2);
-		polygon_put(p, ob_dot(x, u), ob_dot(x, w), ob_dot(x, n) - height);
-	}
+	const lanes c = n.x * of[0] + n.y * of[1] + n.z * of[2], far = lanes_abs(c);
+	const double h[3] = { in->size.x, in->size.y, in->size.z };
+	int k = far[1] > far[0] ? 1 : 0;
+	k = far[2] > far[k] ? 2 : k;
+	const int e1 = (k + 1) % 3, e2 = (k + 2) % 3;
+	const ob_vec3 centre = ob_madd(ob_sub(in->p, ref->p), (c[k] > 0 ? -1 : 1) * h[k], ob_column(&in->r, k));
+	const ob_vec3 f1 = ob_scale(ob_column(&in->r, e1), h[e1]), f2 = ob_scale(ob_column(&in->r, e2), h[e2]);
+	const lanes s1 = { 1, -1, -1, 1 }, s2 = { 1, 1, -1, -1 };
+	corner[0] = centre.x + s1 * f1.x + s2 * f2.x;
+	corner[1] = centre.y + s1 * f1.y + s2 * f2.y;
+	corner[2] = centre.z + s1 * f1.z + s2 * f2.z;
+}
+
+static lanes dot_along(const lanes *x, ob_vec3 along)
+{
+	return x[0] * along.x + x[1] * along.y + x[2] * along.z;
 }
 
 // The face whose normal is nearest to that of two edges, if it is near enough: -1 otherwise.
-static int face_along(const ob_placed *a, const ob_placed *b, int edge)
+static int face_along(const frame_pair *f, const ob_placed *a, const ob_placed *b, int edge)
 {
-	ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3));
-	double best = along_face * ob_norm(n);
-	int face = -1;
-	for (int k = 0; k < 6; k++) {
-		double c = fabs(ob_dot(n, ob_column(k < 3 ? &a->r : &b->r, k % 3)));
-		if (c > best)
-			best = c, face = k;
-	}
-	return face;
+	const ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3));
+	const lanes of_a = lanes_abs(dot_along(f->a, n)), of_b = lanes_abs(dot_along(f->b, n));
+	const double most = lanes_largest(lanes_max(of_a, of_b));
+	if (!(most > along_face * ob_norm(n)))
+		return -1;
+	return first_axis(lanes_bits(of_a == most) | lanes_bits(of_b == most) << 3, FACES - 1);
 }
 
 // What lies over a face, as seen along its normal or, unless edge is -1, along that of two edges: then the place where
 // those cross is a corner of what is seen.
-static void face_manifold(const ob_placed *a, const ob_placed *b, int face, int edge, double margin, ob_manifold *m)
+static void face_manifold(const frame_pair *f, const ob_placed *a, const ob_placed *b, int face, int edge,
+			  double margin, ob_manifold *m)
 {
 	bool of_b = face >= 3;
 	const ob_placed *ref = of_b ? b : a, *in = of_b ? a : b;
@@ -332,57 +361,60 @@ static void face_manifold(const ob_placed *a, const ob_placed *b, int face, int 
 	m->normal = ob_scale(edge < 0 ? n : up, side);
 	if (edge >= 0)
 		along[0] = ob_dot(up, u), along[1] = ob_dot(up, w), along[2] = ob_dot(up, n);
-	polygon p;
-	incident_face(ref, in, n, u, w, h[r], &p);
-	for (int k = 0; k < p.n; k++) {
-		p.z[k] /= along[2];
-		p.u[k] -= p.z[k] * along[0];
-		p.w[k] -= p.z[k] * along[1];
-	}
+	lanes corner[3];
+	incident_face(ref, in, of_b ? f->a : f->b, n, corner);
+	const lanes z = (dot_along(corner, n) - h[r]) / along[2];
+	polygon p = { { dot_along(corner, u) - z * along[0], dot_along(corner, w) - z * along[1], z }, 4 };
+	lanes_transpose(p.corner);
 	clip(&p, 0, 1, h[r1]);
 	clip(&p, 0, -1, h[r1]);
 	clip(&p, 1, 1, h[r2]);
 	clip(&p, 1, -1, h[r2]);
-	int kept = 0;
-	for (int k = 0; k < p.n; k++)
-		if (p.z[k] <= margin) {
-			p.u[kept] = p.u[k], p.w[kept] = p.w[k], p.z[kept] = p.z[k];
-			kept++;
-		}
-	p.n = kept;
+	const int clipped = p.n;
+	p.n = 0;
+	for (int k = 0; k < clipped; k++)
+		polygon_put(&p, p.corner[k], p.corner[k][2] <= margin);
 	if (p.n > 4)
 		reduce_to_four(&p, same_depth * ob_min(ref->size.x, ob_min(ref->size.y, ref->size.z)));
+	lanes_transpose(p.corner);
+	const lanes gap = p.corner[2], half = .5 * gap, pu = p.corner[0] + half * along[0],
+		    pw = p.corner[1] + half * along[1], pn = h[r] + half * along[2];
+	lanes at[4] = { ref->p.x + pu * u.x + pw * w.x + pn * n.x, ref->p.y + pu * u.y + pw * w.y + pn * n.y,
+			ref->p.z + pu * u.z + pw * w.z + pn * n.z };
+	lanes_transpose(at);
 	m->points = p.n;
 	for (int k = 0; k < p.n; k++) {
-		const double half = .5 * p.z[k];
-		m->gap[k] = p.z[k];
-		m->at[k] = ob_madd(ob_madd(ob_madd(ref->p, p.u[k] + half * along[0], u), p.w[k] + half * along[1], w),
-				   h[r] + half * along[2], n);
+		m->gap[k] = gap[k];
+		m->at[k] = ob_v3(at[k][0], at[k][1], at[k][2]);
 	}
 }
 
-void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+static ob_vec3 axis_normal(const ob_placed *a, const ob_placed *b, const axis_gaps *s)
+{
+	return s->largest_edge > s->largest_face ? edge_normal(a, b, s->edge) : face_normal(a, b, s->face);
+}
+
+static void boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	frame_pair f;
 	axis_gaps s;
-	bool crossing;
+	bool crossing = false;
+	int axis = -1;
 	frame_pair_init(&f, a, b);
 	find_face_gaps(&f, &s);
+	s.largest_edge = -INFINITY;
+	if (s.largest_face <= margin + nearby * f.thin)
+		find_edge_gaps(&f, &s);
 	out->points = 0;
-	out->separation = s.largest_face;
-	out->normal = face_normal(a, b, s.face);
-	if (s.largest_face > margin + nearby * f.thin)
-		return;
-	find_edge_gaps(&f, &s);
 	out->separation = ob_max(s.largest_face, s.largest_edge);
-	if (s.largest_edge > s.largest_face)
-		out->normal = edge_normal(a, b, s.edge);
-	if (out->separation > margin)
+	if (out->separation <= margin) {
+		axis = closing_last(a, b, &f, &s, &crossing);
+		out->valid_path = crossing ? f.rest : INFINITY;
+	}
+	if (out->separation > margin || crossing) {
+		out->normal = axis_normal(a, b, &s);
 		return;
-	int axis = closing_last(a, b, &f, &s, &crossing);
-	out->valid_path = crossing ? f.rest : INFINITY;
-	if (crossing)
-		return;
+	}
 	if (axis < 0) {
 		double more = f.discount - prefer_face_when_deep * s.largest_face;
 		axis = s.largest_edge > s.largest_face + more ? FACES + s.edge : s.face;
@@ -391,9 +423,11 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 	// Edges that meet nearly along a face's normal: with the place where they cross goes what else is about to meet
 	// over the face, all of it along the edges' axis. Along the face's normal that place would run over the edges
 	// as the boxes pass each other, and deeper in than its velocity says.
-	int face = edge ? face_along(a, b, axis - FACES) : axis;
+	int face = edge ? face_along(&f, a, b, axis - FACES) : axis;
 	if (face >= 0)
-		face_manifold(a, b, face, edge ? axis - FACES : -1, margin, out);
+		face_manifold(&f, a, b, face, edge ? axis - FACES : -1, margin, out);
 	if (edge && (face < 0 || !out->points))
 		edge_manifold(a, b, axis - FACES, out);
 }
+
+#endif

@@ -1,0 +1,33 @@
+// The arithmetic that is compiled once per instruction set (kernel.c): for batch.h and manifold.h, and for tests of its
+// bits, which are the same for all.
+#ifndef OB_CONTACT_KERNEL_H
+#define OB_CONTACT_KERNEL_H
+
+#include "contact/batch.h"
+
+typedef struct ob_kernel {
+	void (*prepare)(ob_batch *b);
+	void (*solve)(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
+		      const ob_body_row *d, ob_body_row *delta);
+	// Adds to what the batch says of its lanes.
+	void (*solve_lone)(ob_batch *b, int l, const ob_solver_iteration *iteration, ob_body_row *u,
+			   const ob_body_row *v, const ob_body_row *d);
+	bool (*project)(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
+	void (*limit_prediction)(ob_batch *b, const double *cap_impulse, double cap_velocity);
+	void (*row_velocities)(const ob_batch *b, const ob_body_row *rows, lanes *r);
+	void (*apply_impulses)(const ob_batch *b, const lanes *x, ob_body_row *rows);
+	void (*boxes)(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+} ob_kernel;
+
+extern const ob_kernel ob_kernel_portable;
+#ifdef OB_HAVE_AVX2
+extern const ob_kernel ob_kernel_avx2;
+#endif
+#ifdef OB_HAVE_AVX512
+extern const ob_kernel ob_kernel_avx512;
+#endif
+
+// The fastest that this processor runs.
+const ob_kernel *ob_kernel_best(void);
+
+#endif
