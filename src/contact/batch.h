@@ -122,7 +122,17 @@ typedef struct ob_batch_lane {
 void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in);
 void ob_batch_clear(ob_batch *b, int l);
 // The tangents that ob_batch_set uses, so that a friction force can be carried over from older ones.
-void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2);
+static inline void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)
+{
+	if (fabs(n.z) > .7) {
+		double k = 1 / sqrt(n.y * n.y + n.z * n.z);
+		*t1 = ob_v3(0, -n.z * k, n.y * k);
+	} else {
+		double k = 1 / sqrt(n.x * n.x + n.y * n.y);
+		*t1 = ob_v3(-n.y * k, n.x * k, 0);
+	}
+	*t2 = ob_cross(n, *t1);
+}
 // Where friction acts: in the middle of the points, at the height of the nearest ones, for there the bodies touch. A
 // corner that is a millimetre above the ground would lift the middle of all points, and what rolls over an edge would
 // slip there. arm_a, arm_b, gap: m, of the points, at least one; n: their normal; a, b: m, from each centre.

@@ -8,6 +8,7 @@
 #include "contact/boxes.h"
 #include "contact/lone.h"
 #include "contact/patch.h"
+#include "contact/points.h"
 
 static const int max_block_sweeps = 64;
 static const int sweeps_of_a_round = 2; // of a block that is solved to the end: after each a step of Newton's method
@@ -833,4 +834,15 @@ static void row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r)
 	friction_velocities(b, OB_KIND_FULL, xa, xb, r);
 }
 
-const ob_kernel OB_KERNEL = { prepare, solve, solve_lone, project, limit_prediction, row_velocities, apply_impulses, boxes };
+const ob_kernel OB_KERNEL = {
+	.set = set_lane,
+	.friction_arms = friction_arms,
+	.prepare = prepare,
+	.solve = solve,
+	.solve_lone = solve_lone,
+	.project = project,
+	.limit_prediction = limit_prediction,
+	.row_velocities = row_velocities,
+	.apply_impulses = apply_impulses,
+	.boxes = boxes,
+};

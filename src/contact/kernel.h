@@ -6,6 +6,9 @@
 #include "contact/batch.h"
 
 typedef struct ob_kernel {
+	void (*set)(ob_batch *b, int l, const ob_batch_lane *in);
+	void (*friction_arms)(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n,
+			      ob_vec3 *a, ob_vec3 *b);
 	void (*prepare)(ob_batch *b);
 	void (*solve)(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		      const ob_body_row *d, ob_body_row *delta);

@@ -43,6 +43,36 @@ static void compare(const ob_kernel *x, const ob_kernel *y)
 	}
 }
 
+static void fill(const ob_kernel *k, const pair *p, ob_batch *b)
+{
+	ob_batch_lane in = { .normal = p->normal,
+			     .points = p->points,
+			     .arm_a = p->arm_a,
+			     .arm_b = p->arm_b,
+			     .gap = p->gap,
+			     .inv_inertia_a = p->a.inv_inertia,
+			     .inv_inertia_b = p->b.inv_inertia };
+	k->friction_arms(p->arm_a, p->arm_b, p->gap, p->points, p->normal, &in.friction_a, &in.friction_b);
+	for (int l = 0; l < OB_LANES; l++)
+		k->set(b, l, &in);
+}
+
+static void compare_lanes(const ob_kernel *x, const ob_kernel *y)
+{
+	uint64_t seed = 3;
+	for (int i = 0; i < 10000; i++) {
+		ob_batch a, b;
+		pair p = random_pair(&seed, 1);
+		memset(&a, 0, sizeof a);
+		memset(&b, 0, sizeof b);
+		for (int j = 0; j < p.points; j++)
+			p.gap[j] = within(&seed, -1e-3, 1e-3);
+		fill(x, &p, &a);
+		fill(y, &p, &b);
+		CHECK(memcmp(&a, &b, sizeof a) == 0);
+	}
+}
+
 // Boxes about as far apart as their margin is wide; some of them aligned, so that axes are parallel and gaps equal.
 static void compare_boxes(const ob_kernel *x, const ob_kernel *y)
 {
@@ -68,15 +98,20 @@ static void compare_boxes(const ob_kernel *x, const ob_kernel *y)
 	CHECK(touching > 5000);
 }
 
+static void compare_all(const ob_kernel *x, const ob_kernel *y)
+{
+	compare(x, y);
+	compare_lanes(x, y);
+	compare_boxes(x, y);
+}
+
 int main(void)
 {
 	if (ob_kernel_best() == &ob_kernel_portable)
 		return SKIPPED;
-	compare(ob_kernel_best(), &ob_kernel_portable);
-	compare_boxes(ob_kernel_best(), &ob_kernel_portable);
+	compare_all(ob_kernel_best(), &ob_kernel_portable);
 #ifdef OB_HAVE_AVX2
-	compare(&ob_kernel_avx2, &ob_kernel_portable); // it may be the second best
-	compare_boxes(&ob_kernel_avx2, &ob_kernel_portable);
+	compare_all(&ob_kernel_avx2, &ob_kernel_portable); // it may be the second best
 #endif
 	return check_end();
 }
