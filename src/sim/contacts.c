@@ -687,7 +687,7 @@ void ob_contacts_store(ob_sim *s)
 		found.pair = contact->key;
 		found.limit = contact->limit - path + w->body[contact->a].path + w->body[contact->b].path;
 		found.active = active;
-		found.kept = active || k->active || ob_pair_state_before(s->u, k);
+		found.kept = active || k->record != OB_NO_RECORD; // it may be of an earlier solution of the step
 		found.two_sided = ob_ghosts_used(s);
 		if (found.kept)
 			store_contact(w, contact, &found.state);

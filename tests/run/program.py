@@ -18,8 +18,6 @@ import unittest
 OBSIM = os.environ["OBSIM"]
 SCENES = os.environ["SCENES"]
 MESHES = os.environ.get("MESHES") # whether obsim can read them
-RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", # for mpirun
-	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}
 FOR_EVER = "7e7"  # s to simulate, about as many as there may be: at rest, millions of steps pass in a second
 RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
 	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}  # for mpirun, on however few cores
