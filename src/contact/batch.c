@@ -19,7 +19,8 @@ void ob_batch_clear(ob_batch *b, int l)
 	ob_batch_lane empty = {
 		.normal = { 0, 0, 1 }, .inv_inertia_a = none, .inv_inertia_b = none, .arm_a = &zero, .arm_b = &zero
 	};
-	ob_batch_set(b, l, &empty);
+	ob_vec3 friction_a, friction_b;
+	ob_batch_set(b, l, &empty, &friction_a, &friction_b);
 	b->live &= ~(1u << l);
 	for (int i = 0; i < OB_ROWS; i++) {
 		lanes_put(&b->impulse[i], l, 0);
@@ -35,9 +36,9 @@ void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *
 	ob_kernel_best()->friction_arms(arm_a, arm_b, gap, points, n, a, b);
 }
 
-void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in)
+void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in, ob_vec3 *friction_a, ob_vec3 *friction_b)
 {
-	ob_kernel_best()->set(b, l, in);
+	ob_kernel_best()->set(b, l, in, friction_a, friction_b);
 }
 
 void ob_batch_prepare(ob_batch *b)

@@ -112,14 +112,14 @@ typedef struct ob_batch_lane {
 	ob_vec3 normal;
 	int points;
 	const ob_vec3 *arm_a, *arm_b; // m, from each centre to the points
-	ob_vec3 friction_a, friction_b; // m, from each centre to where friction acts (ob_friction_arms)
 	const double *gap; // m
 	double disc_radius; // m, of ob_manifold
 	double mu, e;
 	double inv_mass_a, inv_mass_b;
 	const double *inv_inertia_a, *inv_inertia_b; // [6]
 } ob_batch_lane;
-void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in);
+// friction_a, friction_b: m, from each centre to where friction acts (ob_friction_arms), 0 where there are no points.
+void ob_batch_set(ob_batch *b, int l, const ob_batch_lane *in, ob_vec3 *friction_a, ob_vec3 *friction_b);
 void ob_batch_clear(ob_batch *b, int l);
 // The tangents that ob_batch_set uses, so that a friction force can be carried over from older ones.
 static inline void ob_tangents(ob_vec3 n, ob_vec3 *t1, ob_vec3 *t2)

@@ -6,7 +6,7 @@
 #include "contact/batch.h"
 
 typedef struct ob_kernel {
-	void (*set)(ob_batch *b, int l, const ob_batch_lane *in);
+	void (*set)(ob_batch *b, int l, const ob_batch_lane *in, ob_vec3 *friction_a, ob_vec3 *friction_b);
 	void (*friction_arms)(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n,
 			      ob_vec3 *a, ob_vec3 *b);
 	void (*prepare)(ob_batch *b);

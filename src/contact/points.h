@@ -5,18 +5,31 @@
 #include "contact/batch.h"
 #include "contact/patch.h"
 
-// out: x, y and z of the points, and their gaps; 0 and infinity where there is none
-static inline void load_points(const ob_vec3 *arm, const double *gap, int points, lanes *out, ob_vec3 *middle)
+// From one centre to the points.
+typedef struct arms {
+	lanes x[OB_POINTS]; // x, y and z, and the gaps; 0 and infinity where there is no point
+	ob_vec3 middle;
+} arms;
+
+static inline arms arms_to(const ob_vec3 *arm, const double *gap, int points)
 {
+	const double share = 1. / points;
 	lanes sum = { 0 };
+	arms out;
 	for (int j = 0; j < points; j++) {
-		out[j] = (lanes){ arm[j].x, arm[j].y, arm[j].z, gap[j] };
-		sum += 1. / points * out[j];
+		out.x[j] = (lanes){ arm[j].x, arm[j].y, arm[j].z, gap[j] };
+		sum += share * out.x[j];
 	}
 	for (int j = points; j < OB_POINTS; j++)
-		out[j] = (lanes){ 0, 0, 0, INFINITY };
-	lanes_transpose(out);
-	*middle = ob_v3(sum[0], sum[1], sum[2]);
+		out.x[j] = (lanes){ 0, 0, 0, INFINITY };
+	lanes_transpose(out.x);
+	out.middle = ob_v3(sum[0], sum[1], sum[2]);
+	return out;
+}
+
+static inline void points_from(const arms *r, ob_vec3 from, lanes *out)
+{
+	out[0] = r->x[0] - from.x, out[1] = r->x[1] - from.y, out[2] = r->x[2] - from.z;
 }
 
 static inline lanes points_along(const lanes *x, ob_vec3 n)
@@ -24,32 +37,29 @@ static inline lanes points_along(const lanes *x, ob_vec3 n)
 	return n.x * x[0] + n.y * x[1] + n.z * x[2];
 }
 
-static inline void move_points(const lanes *x, ob_vec3 from, lanes *out)
+static inline void find_friction(const arms *of_a, const arms *of_b, ob_vec3 n, ob_vec3 *a, ob_vec3 *b)
 {
-	out[0] = x[0] - from.x, out[1] = x[1] - from.y, out[2] = x[2] - from.z;
+	const double near = 1e-3; // of the points' distance from their middle
+	const lanes gap = of_a->x[3], above = gap + lanes_largest(-gap);
+	lanes xa[3], xb[3];
+	points_from(of_a, of_a->middle, xa);
+	points_from(of_b, of_b->middle, xb);
+	const lanes far = lanes_max(patch_dot(xa, xa), patch_dot(xb, xb)); // whichever body is a
+	const double reach = near * __builtin_sqrt(lanes_largest(lanes_where(gap < INFINITY, far)));
+	const lanes share = lanes_select(above <= 0, lanes_of(1), lanes_where(above < reach, 1 - above / reach));
+	lanes sum = lanes_of(0), of[OB_POINTS] = { share, share * points_along(xa, n), share * points_along(xb, n) };
+	lanes_transpose(of);
+	for (int j = 0; j < OB_POINTS; j++)
+		sum += of[j];
+	*a = ob_madd(of_a->middle, sum[1] / sum[0], n);
+	*b = ob_madd(of_b->middle, sum[2] / sum[0], n);
 }
 
 static void friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n,
 			  ob_vec3 *a, ob_vec3 *b)
 {
-	const double near = 1e-3; // of the points' distance from their middle
-	const lanes none = lanes_of(0);
-	lanes xa[OB_POINTS], xb[OB_POINTS];
-	ob_vec3 middle_a, middle_b;
-	load_points(arm_a, gap, points, xa, &middle_a);
-	load_points(arm_b, gap, points, xb, &middle_b);
-	move_points(xa, middle_a, xa);
-	move_points(xb, middle_b, xb);
-	const lanes far = lanes_max(patch_dot(xa, xa), patch_dot(xb, xb)), gaps = xa[3]; // whichever body is a
-	const double reach = near * __builtin_sqrt(lanes_largest(lanes_where(gaps < INFINITY, far)));
-	const lanes above = gaps + lanes_largest(-gaps);
-	const lanes share = lanes_select(above <= 0, lanes_of(1), lanes_where(above < reach, 1 - above / reach));
-	lanes sum = none, of[OB_POINTS] = { share, share * points_along(xa, n), share * points_along(xb, n), none };
-	lanes_transpose(of);
-	for (int j = 0; j < OB_POINTS; j++)
-		sum += of[j];
-	*a = ob_madd(middle_a, sum[1] / sum[0], n);
-	*b = ob_madd(middle_b, sum[2] / sum[0], n);
+	const arms of_a = arms_to(arm_a, gap, points), of_b = arms_to(arm_b, gap, points);
+	find_friction(&of_a, &of_b, n, a, b);
 }
 
 // ---- the patch
@@ -169,21 +179,23 @@ static inline void set_arms(lanes (*rows)[3], int l, const lanes *x, ob_vec3 n, 
 			lanes_put(&rows[j][c], l, turn[c][j]);
 }
 
-static void set_lane(ob_batch *b, int l, const ob_batch_lane *in)
+static void set_lane(ob_batch *b, int l, const ob_batch_lane *in, ob_vec3 *friction_a, ob_vec3 *friction_b)
 {
-	const ob_vec3 n = in->normal, ca = in->friction_a, cb = in->friction_b;
-	ob_vec3 t1, t2, middle;
-	lanes xa[OB_POINTS], xb[OB_POINTS], from[3];
+	const arms of_a = arms_to(in->arm_a, in->gap, in->points), of_b = arms_to(in->arm_b, in->gap, in->points);
+	const lane_mask used = of_a.x[3] < INFINITY;
+	const lanes gap = lanes_select(used, of_a.x[3], lanes_of(ob_no_contact));
+	const ob_vec3 n = in->normal;
+	ob_vec3 t1, t2, ca = { 0, 0, 0 }, cb = { 0, 0, 0 };
+	lanes from[3];
+	if (in->points > 0)
+		find_friction(&of_a, &of_b, n, &ca, &cb);
+	*friction_a = ca, *friction_b = cb;
 	ob_tangents(n, &t1, &t2);
-	load_points(in->arm_a, in->gap, in->points, xa, &middle);
-	load_points(in->arm_b, in->gap, in->points, xb, &middle);
-	const lane_mask used = xa[3] < INFINITY;
-	const lanes gap = lanes_select(used, xa[3], lanes_of(ob_no_contact));
-	set_arms(b->ja, l, xa, n, used);
-	set_arms(b->jb, l, xb, n, used);
+	set_arms(b->ja, l, of_a.x, n, used);
+	set_arms(b->jb, l, of_b.x, n, used);
 	for (int j = 0; j < OB_POINTS; j++)
 		lanes_put(&b->gap[j], l, gap[j]);
-	move_points(xa, ca, from);
+	points_from(&of_a, ca, from);
 	const lanes x = lanes_where(used, points_along(from, t1)), y = lanes_where(used, points_along(from, t2)),
 		    far = lanes_sqrt(x * x + y * y) / in->points;
 	set3(b->n, l, n);

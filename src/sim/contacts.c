@@ -134,17 +134,12 @@ static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, co
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	contact->spin_lever_a = ob_spin_lever(a, normal, contact->arm_a, contact->points);
 	contact->spin_lever_b = ob_spin_lever(b, normal, contact->arm_b, contact->points);
-	if (contact->points > 0)
-		ob_friction_arms(contact->arm_a, contact->arm_b, gap, (int)contact->points, normal,
-				 &contact->friction_a, &contact->friction_b);
 	ob_batch_lane lane = { .body_a = contact->a,
 			       .body_b = contact->b,
 			       .normal = normal,
 			       .points = (int)contact->points,
 			       .arm_a = contact->arm_a,
 			       .arm_b = contact->arm_b,
-			       .friction_a = contact->friction_a,
-			       .friction_b = contact->friction_b,
 			       .gap = gap,
 			       .disc_radius = contact->disc_radius,
 			       .mu = contact->mu,
@@ -153,7 +148,8 @@ static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, co
 			       .inv_mass_b = b->inv_mass,
 			       .inv_inertia_a = a->inv_inertia,
 			       .inv_inertia_b = b->inv_inertia };
-	ob_batch_set(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &lane);
+	ob_batch_set(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &lane, &contact->friction_a,
+		     &contact->friction_b);
 }
 
 // Before the geometry changes.
@@ -691,7 +687,8 @@ void ob_contacts_store(ob_sim *s)
 		found.two_sided = ob_ghosts_used(s);
 		if (found.kept)
 			store_contact(w, contact, &found.state);
-		memset(found.impulse_b, 0, sizeof found.impulse_b); // where there is one side: not another pair's of before
+		memset(found.impulse_b, 0,
+		       sizeof found.impulse_b); // where there is one side: not another pair's of before
 		if (found.kept && mirror)
 			store_impulses(w, mirror, found.impulse_b);
 		ob_commit_contact(s, &found);

@@ -83,9 +83,8 @@ static inline void put_pair(ob_batch *batch, int lane, const pair *p, uint32_t r
 			     .inv_mass_b = p->b.inv_mass,
 			     .inv_inertia_a = p->a.inv_inertia,
 			     .inv_inertia_b = p->b.inv_inertia };
-	if (p->points > 0)
-		ob_friction_arms(p->arm_a, p->arm_b, p->gap, p->points, p->normal, &in.friction_a, &in.friction_b);
-	ob_batch_set(batch, lane, &in);
+	ob_vec3 friction_a, friction_b;
+	ob_batch_set(batch, lane, &in, &friction_a, &friction_b);
 }
 
 static inline void random_row(uint64_t *seed, const body *b, ob_body_row row)

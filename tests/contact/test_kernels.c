@@ -43,7 +43,7 @@ static void compare(const ob_kernel *x, const ob_kernel *y)
 	}
 }
 
-static void fill(const ob_kernel *k, const pair *p, ob_batch *b)
+static void fill(const ob_kernel *k, const pair *p, ob_batch *b, ob_vec3 arm[4])
 {
 	ob_batch_lane in = { .normal = p->normal,
 			     .points = p->points,
@@ -52,9 +52,9 @@ static void fill(const ob_kernel *k, const pair *p, ob_batch *b)
 			     .gap = p->gap,
 			     .inv_inertia_a = p->a.inv_inertia,
 			     .inv_inertia_b = p->b.inv_inertia };
-	k->friction_arms(p->arm_a, p->arm_b, p->gap, p->points, p->normal, &in.friction_a, &in.friction_b);
+	k->friction_arms(p->arm_a, p->arm_b, p->gap, p->points, p->normal, &arm[0], &arm[1]);
 	for (int l = 0; l < OB_LANES; l++)
-		k->set(b, l, &in);
+		k->set(b, l, &in, &arm[2], &arm[3]);
 }
 
 static void compare_lanes(const ob_kernel *x, const ob_kernel *y)
@@ -67,9 +67,12 @@ static void compare_lanes(const ob_kernel *x, const ob_kernel *y)
 		memset(&b, 0, sizeof b);
 		for (int j = 0; j < p.points; j++)
 			p.gap[j] = within(&seed, -1e-3, 1e-3);
-		fill(x, &p, &a);
-		fill(y, &p, &b);
+		ob_vec3 of_a[4], of_b[4];
+		fill(x, &p, &a, of_a);
+		fill(y, &p, &b, of_b);
 		CHECK(memcmp(&a, &b, sizeof a) == 0);
+		CHECK(memcmp(of_a, of_b, sizeof of_a) == 0);
+		CHECK(memcmp(&of_a[0], &of_a[2], 2 * sizeof of_a[0]) == 0); // found by itself, and with the lane
 	}
 }
 
