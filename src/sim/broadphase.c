@@ -205,6 +205,26 @@ void ob_index_put(ob_universe *u, uint32_t id)
 	data->count->levels_used |= UINT64_C(1) << to.level;
 }
 
+void ob_index_prefetch(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end)
+{
+	enum { CELL_AHEAD = 12, LINKS_AHEAD = 6 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (i + CELL_AHEAD < end) {
+		__builtin_prefetch(&data->cell[ids[i + CELL_AHEAD]], 1);
+		__builtin_prefetch(data->bounds[ids[i + CELL_AHEAD]]);
+	}
+	if (i + LINKS_AHEAD >= end || ids[i + LINKS_AHEAD] >= data->objects_max)
+		return;
+	const ob_index_cell *c = &data->cell[ids[i + LINKS_AHEAD]];
+	if (!indexed(c))
+		return;
+	__builtin_prefetch(&data->bucket[bucket_of(data, place_of((cell){ c->level, c->x, c->y, c->z }))], 1);
+	if (c->before)
+		__builtin_prefetch(&data->cell[c->before - 1], 1);
+	if (c->after)
+		__builtin_prefetch(&data->cell[c->after - 1], 1);
+}
+
 void ob_index_remove(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);

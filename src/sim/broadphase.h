@@ -44,6 +44,8 @@ void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double 
 // Puts the object where its fat AABB is now (new or moved). Planes go to the list of planes.
 void ob_index_put(ob_universe *u, uint32_t id);
 void ob_index_remove(ob_universe *u, uint32_t id);
+// Where so many are put, at place i: what of those that follow lies anywhere is asked for.
+void ob_index_prefetch(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end);
 // All other objects whose boxes overlap that of id, in no particular order. Writes up to max ids, returns how many
 // there are. tests grows by the boxes that were compared.
 uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests);

@@ -90,11 +90,11 @@ static void involve_link(builder *p, const ob_pair_key *k)
 }
 
 // Whether the pair links what it touches. Sleepers that something has woken within a step wake those that they touch;
-// what is expected then is of the coming step.
+// what is expected then is of the coming step. Most pairs link nothing, so their objects are not looked at.
 static bool is_link(const builder *p, const ob_pair_key *k)
 {
-	return is_in_range(p, k) && is_dynamic(p, k->a) && is_dynamic(p, k->b) &&
-	       (p->merges ? k->active && is_asleep(p, k->a) && is_asleep(p, k->b) : k->active | k->expected);
+	return (p->merges ? k->active : k->active | k->expected) && is_in_range(p, k) && is_dynamic(p, k->a) &&
+	       is_dynamic(p, k->b) && (!p->merges || (is_asleep(p, k->a) && is_asleep(p, k->b)));
 }
 
 // An island is solved again as a whole.

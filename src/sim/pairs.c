@@ -5,6 +5,7 @@
 
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
+#include "sim/prefetch.h"
 #include "sim/publish.h"
 #include "sim/sort_ids.h"
 #include "table/home.h"
@@ -359,8 +360,10 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 		if (list[i] < ids)
 			queried[n++] = list[i];
 	ob_sort_ids(queried, n, ids, place);
-	for (uint32_t i = 0; i < n && ob_step_failed(u, NULL) == OB_STEP_OK; i++)
+	for (uint32_t i = 0; i < n && ob_step_failed(u, NULL) == OB_STEP_OK; i++) {
+		ob_prefetch_neighbours(u, queried, i, n);
 		renew_pairs(u, queried[i], place, steps);
+	}
 	ob_requery_reset(u);
 	ob_neighbours_reset(u);
 }

@@ -4,8 +4,8 @@
 
 #include "sim/state.h"
 
-// Of island i, which this worker solves soon, where its motions and passports are found; then, when it is next, these. Of
-// a large one the beginning.
+// Of island i, which this worker solves soon, where its motions and passports are found; then, when it is next, these.
+// Of a large one the beginning.
 void ob_prefetch_members(const ob_universe *u, uint32_t i);
 void ob_prefetch_island(ob_sim *s, uint32_t i);
 // Of an object whose neighbours are looked for soon: its box, and where its passport is found.
@@ -19,6 +19,8 @@ void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k);
 void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i);
 // The same where lists of pairs are gone through, at place i of so many ids.
 void ob_prefetch_lists(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end);
+// Where what queries have found becomes pairs, at place i of so many ids: the neighbours of those that follow.
+void ob_prefetch_neighbours(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end);
 // In a list of pairs (sim/pairs.h), the one that follows.
 void ob_prefetch_link(const ob_universe *u, uint32_t link);
 

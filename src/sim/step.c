@@ -116,9 +116,11 @@ static bool open_broadphase(const scheduler *c, ob_phase phase)
 	const uint32_t *list = ob_requery_list(c->u, &count);
 	if (!count)
 		return false;
-	for (uint32_t i = 0; i < count; i++)
+	for (uint32_t i = 0; i < count; i++) {
+		ob_index_prefetch(c->u, list, i, count);
 		if (ob_object_in_range(c->data, list[i]))
 			ob_index_put(c->u, list[i]);
+	}
 	if (c->settings->one_per_object)
 		ob_gate_open(c->u, phase, list, count);
 	else

@@ -50,12 +50,21 @@ void ob_prefetch_versions(const ob_universe *u, uint32_t id)
 	__builtin_prefetch(&u->passport[id].version);
 }
 
-void ob_prefetch_slot(const ob_universe *u, uint32_t id)
+static void prefetch_lines(const void *from, size_t bytes)
 {
 	enum { LINE = 64 };
-	const char *slot = (const char *)&u->slot[id];
-	for (size_t at = 0; at < sizeof u->slot[id]; at += LINE)
-		__builtin_prefetch(slot + at);
+	for (size_t at = 0; at < bytes; at += LINE)
+		__builtin_prefetch((const char *)from + at);
+}
+
+void ob_prefetch_slot(const ob_universe *u, uint32_t id)
+{
+	prefetch_lines(&u->slot[id], sizeof u->slot[id]);
+}
+
+void ob_prefetch_passport(const ob_universe *u, uint32_t id)
+{
+	prefetch_lines(&u->passport[id], sizeof u->passport[id]);
 }
 
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
