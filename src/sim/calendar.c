@@ -66,38 +66,61 @@ static uint32_t most_of_64(const uint32_t *below)
 	return largest_of(most);
 }
 
-// A bit for each of 64 that is at least so urgent. most: of them all
-static uint64_t due_of_64(const uint32_t *below, uint32_t least, uint32_t *most)
+// A bit for each of four that is false.
+static uint64_t false_of(quad a)
 {
-	const int32_t low = as_signed(least);
+	const halves both = (halves)~a;
+	const uint64_t x = (uint64_t)both[0], y = (uint64_t)both[1];
+	return (x & 1) | (x >> 62 & 2) | (y & 4) | (y >> 60 & 8);
+}
+
+// A bit for each of 64 that is at least so urgent. rest: the most urgent of the others
+static uint64_t due_of_64(const uint32_t *below, uint32_t least, uint32_t *rest)
+{
+	const int32_t low = as_signed(least), zero = as_signed(0);
+	const quad soonest = { low, low, low, low };
 	uint64_t due = 0;
-	quad largest = four_at(below);
-	for (int k = 0; k < 64; k += 4) {
-		const quad q = four_at(below + k), is_due = ~((quad){ low, low, low, low } > q);
-		const halves any = (halves)is_due;
-		largest = larger_of(q, largest);
-		if (!(any[0] | any[1]))
-			continue;
-		for (int i = 0; i < 4; i++)
-			due |= (uint64_t)(is_due[i] & 1) << (k + i);
+	quad largest = { zero, zero, zero, zero };
+	for (int k = 0; k < 64; k += 8) {
+		const quad q = four_at(below + k), r = four_at(below + k + 4), q_later = soonest > q,
+			   r_later = soonest > r, both = q_later & r_later;
+		const halves all = (halves)both;
+		if ((all[0] & all[1]) != -1)
+			due |= (false_of(q_later) | false_of(r_later) << 4) << k;
+		const quad q_larger = q_later & (q > largest);
+		largest = (q & q_larger) | (largest & ~q_larger);
+		const quad r_larger = r_later & (r > largest);
+		largest = (r & r_larger) | (largest & ~r_larger);
 	}
-	*most = largest_of(largest);
+	*rest = largest_of(largest);
 	return due;
 }
 
+// What is to become of the entries that are found.
+typedef enum found_entries { STAY, TAKEN } found_entries;
+
 // Those of 64 that are at least so urgent, behind the n that are listed; list NULL: whether there are any. Puts right
-// what the level above says of them.
-static uint32_t list_64(const ob_calendar *c, uint32_t block, uint32_t least, uint32_t *list, uint32_t n, uint32_t most)
+// what the level above says of them: nothing that is too much while there are any that stay.
+static uint32_t list_64(const ob_calendar *c, uint32_t block, uint32_t least, uint32_t *list, uint32_t n, uint32_t most,
+			found_entries then)
 {
+	uint32_t rest, *one = c->level.one + 64 * (size_t)block;
+	uint64_t due = due_of_64(one, least, &rest);
+	const bool any = due;
 	*c->visits += 1;
-	for (uint64_t due = due_of_64(c->level.one + 64 * (size_t)block, least, &c->level.of_64[block]);
-	     due && n < most; due &= due - 1, n++)
+	for (; due && n < most; due &= due - 1, n++) {
+		const uint32_t i = (uint32_t)__builtin_ctzll(due);
 		if (list)
-			list[n] = 64 * block + (uint32_t)__builtin_ctzll(due);
+			list[n] = 64 * block + i;
+		if (then == TAKEN)
+			one[i] = 0;
+	}
+	if (!any || (then == TAKEN && !due))
+		c->level.of_64[block] = rest;
 	return n;
 }
 
-static uint32_t list_all(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most)
+static uint32_t list_all(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most, found_entries then)
 {
 	const uint32_t least = urgency_of(step);
 	uint32_t n = 0;
@@ -106,7 +129,7 @@ static uint32_t list_all(const ob_calendar *c, uint64_t step, uint32_t *list, ui
 			continue;
 		for (uint32_t block = 64 * top; block < 64 * (top + 1) && n < most; block++)
 			if (c->level.of_64[block] >= least)
-				n = list_64(c, block, least, list, n, most);
+				n = list_64(c, block, least, list, n, most, then);
 		c->level.of_4096[top] = most_of_64(c->level.of_64 + 64 * (size_t)top);
 	}
 	return n;
@@ -114,12 +137,17 @@ static uint32_t list_all(const ob_calendar *c, uint64_t step, uint32_t *list, ui
 
 bool ob_calendar_is_due(const ob_calendar *c, uint64_t step)
 {
-	return list_all(c, step, NULL, 1) > 0;
+	return list_all(c, step, NULL, 1, STAY) > 0;
 }
 
 uint32_t ob_calendar_list(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most)
 {
-	return list_all(c, step, list, most);
+	return list_all(c, step, list, most, STAY);
+}
+
+uint32_t ob_calendar_take(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most)
+{
+	return list_all(c, step, list, most, TAKEN);
 }
 
 uint32_t ob_calendar_first(const ob_calendar *c)

@@ -36,6 +36,8 @@ void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step);
 bool ob_calendar_is_due(const ob_calendar *c, uint64_t step);
 // All that have such an entry, ascending, at most so many; returns how many. Their entries stay.
 uint32_t ob_calendar_list(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most);
+// The same, but they have none any more.
+uint32_t ob_calendar_take(const ob_calendar *c, uint64_t step, uint32_t *list, uint32_t most);
 // The first step for which there is an entry; UINT32_MAX: there is none.
 uint32_t ob_calendar_first(const ob_calendar *c);
 // There is no entry any more.

@@ -392,23 +392,22 @@ static void prefetch_listed(const ob_universe *u, uint32_t i, uint32_t end)
 	__builtin_prefetch(&data->home[a]);
 }
 
-// Such a pair is not checked here. All lose their entries, for those that are checked will get others: what the ranks
-// tell each other meanwhile is for which step there are any besides (peers.h).
+// Such a pair is not checked here.
 static void leave_to_others(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar look = ob_calendar_of_pairs(u);
 	const uint32_t listed = data->count->checks;
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < listed; i++) {
 		prefetch_listed(u, i, listed);
-		ob_calendar_set(&look, data->check[i], UINT32_MAX);
 		if (!is_listed_elsewhere(u, &data->pair[data->check[i]]))
 			data->check[n++] = data->check[i];
 	}
 	data->count->checks = n;
 }
 
+// All lose their entries, for those that are checked get others: so nobody finds a block of the calendar urgent because
+// of what was, and what ranks tell each other meanwhile is for which step there are any besides (peers.h).
 void ob_late_contacts_begin(ob_universe *u, bool solved)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -418,7 +417,7 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 	data->count->checked = (uint32_t)steps;
 	if (solved)
 		note_solved(u);
-	data->count->checks = ob_calendar_list(&look, steps, data->check, data->pairs_max);
+	data->count->checks = ob_calendar_take(&look, steps, data->check, data->pairs_max);
 	if (ob_universe_ranks(u) > 1)
 		leave_to_others(u);
 }

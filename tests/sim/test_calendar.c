@@ -15,7 +15,7 @@ static uint32_t random_below(uint64_t *seed, uint32_t n)
 	return (uint32_t)(uniform(seed) * n);
 }
 
-// Entries are set, put off and taken away at random while steps go by: each step finds exactly those that are due.
+// Entries are set, put off and taken at random while steps go by: each step finds exactly those that are due.
 static void test_entries(void)
 {
 	static uint32_t due[OBJECTS], found[OBJECTS];
@@ -40,11 +40,16 @@ static void test_entries(void)
 			first = due[i] < first ? due[i] : first;
 		CHECK(ob_calendar_first(&c) == first);
 		const bool any = ob_calendar_is_due(&c, step);
-		const uint32_t listed = ob_calendar_list(&c, step, found, OBJECTS);
+		const bool taken = uniform(&seed) < .5;
+		const uint32_t most = uniform(&seed) < .1 ? 1 + random_below(&seed, 20) : OBJECTS;
+		const uint32_t listed =
+			taken ? ob_calendar_take(&c, step, found, most) : ob_calendar_list(&c, step, found, most);
 		for (uint32_t i = 0; i < OBJECTS; i++)
-			if (due[i] <= step)
+			if (due[i] <= step && n < most)
 				wrong += n >= listed || found[n++] != i;
 		CHECK(wrong == 0 && n == listed && any == (n > 0));
+		for (uint32_t k = 0; k < listed && taken; k++)
+			due[found[k]] = UINT32_MAX;
 		for (uint32_t k = 0; k < listed; k++)
 			if (uniform(&seed) < .8)
 				due[found[k]] = UINT32_MAX, ob_calendar_set(&c, found[k], UINT32_MAX);
