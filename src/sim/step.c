@@ -539,11 +539,13 @@ static ob_phase begin_step(const scheduler *c)
 // How many objects are awake, and how many kinematic, after somebody has changed any.
 static void count_awake(const scheduler *c)
 {
+	const uint32_t ids = ob_universe_ids(c->u);
+	const ob_schedule *object = c->data->schedule;
 	uint32_t n = 0, kinematic = 0;
-	for (uint32_t id = 0; id < ob_universe_ids(c->u); id++) {
-		const ob_schedule *object = &c->data->schedule[id];
-		kinematic += object->state == OB_SCHEDULE_KINEMATIC;
-		n += object->state == OB_SCHEDULE_AWAKE || object->state == OB_SCHEDULE_EQUILIBRIUM;
+	for (uint32_t id = 0; id < ids; id++) {
+		const uint32_t state = object[id].state;
+		kinematic += state == OB_SCHEDULE_KINEMATIC;
+		n += state == OB_SCHEDULE_AWAKE || state == OB_SCHEDULE_EQUILIBRIUM;
 	}
 	c->data->count->awake = n;
 	c->data->count->kinematic = kinematic;
