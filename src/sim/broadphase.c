@@ -3,12 +3,10 @@
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <ob/motion.h>
 
-#include "base/allocate.h"
 #include "base/cpu.h"
 #include "motion/drift.h"
 #include "sim/commit.h"
@@ -572,16 +570,4 @@ void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double ma
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)
 {
 	return ob_universe_step_data(u)->neighbours[id].count == UINT32_MAX;
-}
-
-void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
-{
-	enum { USUALLY = 256 };
-	uint32_t near[USUALLY], n = ob_index_query(u, id, near, USUALLY, box_tests);
-	uint32_t *all = n <= USUALLY ? near : ob_allocate(n * sizeof *all);
-	if (all != near)
-		ob_index_query(u, id, all, n, box_tests);
-	ob_commit_neighbours(u, id, all, n);
-	if (all != near)
-		free(all);
 }

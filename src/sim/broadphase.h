@@ -50,9 +50,7 @@ void ob_index_prefetch(const ob_universe *u, const uint32_t *ids, uint32_t i, ui
 // there are. tests grows by the boxes that were compared.
 uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32_t max, uint64_t *tests);
 
-// Fills the object's list of neighbours. box_tests grows by the boxes that were compared. Any worker, after the
-// scheduling worker has updated the index.
-void ob_broadphase_query(ob_universe *u, uint32_t id, uint64_t *box_tests);
+// Whether it has a new fat AABB, and its neighbours are not yet known.
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id);
 
 #endif

@@ -28,10 +28,11 @@ typedef struct effort_record {
 	uint32_t island, share;
 } effort_record;
 
-// A part of an object's neighbours: "count" of "total", from "first" on.
+// An object's number of neighbours, and a part of what they change (ob_step_data.neighbour_id): "count" of "total",
+// from "first" on.
 typedef struct neighbours_record {
-	uint32_t id, total, first, count;
-	uint32_t of[];
+	uint32_t id, neighbours, total, first, count, reserved;
+	uint32_t change[];
 } neighbours_record;
 
 typedef struct touch_record {
@@ -56,7 +57,7 @@ typedef struct posts_record {
 	unsigned char part[];
 } posts_record;
 
-enum { NEIGHBOURS_AT_ONCE = 512, POSTS_AT_ONCE = 2048, MOST_EFFORT = 1 << 16 };
+enum { CHANGES_AT_ONCE = 512, POSTS_AT_ONCE = 2048, MOST_EFFORT = 1 << 16 };
 
 // ---- in place
 
@@ -184,13 +185,17 @@ static void write_check(ob_universe *u, const ob_check_record *c)
 	k->clear_as_of = c->clear_as_of;
 }
 
-// The object's range in the arena; NONE: it is full, and the step has failed.
-static uint32_t reserve_neighbours(ob_universe *u, uint32_t id, uint32_t total)
+// Room for so many changes in the arena; NULL: it is full, and the step has failed.
+static uint32_t *reserve_changes(ob_universe *u, uint32_t id, uint32_t neighbours, uint32_t total)
 {
-	const uint32_t offset = ob_neighbours_reserve(u, id, total);
-	ob_universe_step_data(u)->neighbours[id] =
-		(struct ob_neighbours){ offset == NONE ? 0 : offset, offset == NONE ? 0 : total };
-	return offset;
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t offset = ob_neighbours_reserve(u, id, 1 + total);
+	const bool full = offset == NONE;
+	data->neighbours[id] = (struct ob_neighbours){ full ? 0 : offset, full ? 0 : neighbours };
+	if (full)
+		return NULL;
+	data->neighbour_id[offset] = total;
+	return data->neighbour_id + offset + 1;
 }
 
 // ---- by whoever has found it
@@ -306,21 +311,21 @@ void ob_commit_check(ob_universe *u, uint32_t check, const ob_pair_key *k)
 		write_check(u, &r);
 }
 
-void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint32_t count)
+void ob_commit_neighbours(ob_universe *u, uint32_t id, uint32_t neighbours, const uint32_t *changes, uint32_t count)
 {
 	if (!ob_universe_contained(u)) {
-		const uint32_t offset = reserve_neighbours(u, id, count);
-		if (offset != NONE && count)
-			memcpy(ob_universe_step_data(u)->neighbour_id + offset, ids, count * sizeof *ids);
+		uint32_t *to = reserve_changes(u, id, neighbours, count);
+		if (to && count)
+			memcpy(to, changes, count * sizeof *changes);
 		return;
 	}
-	uint32_t first = 0, part[NEIGHBOURS_AT_ONCE];
+	uint32_t first = 0, part[CHANGES_AT_ONCE];
 	do {
-		const uint32_t left = count - first, n = left < NEIGHBOURS_AT_ONCE ? left : NEIGHBOURS_AT_ONCE;
-		const neighbours_record r = { id, count, first, n };
+		const uint32_t left = count - first, n = left < CHANGES_AT_ONCE ? left : CHANGES_AT_ONCE;
+		const neighbours_record r = { id, neighbours, count, first, n, 0 };
 		memset(part, 0, sizeof part);
 		for (uint32_t i = 0; i < n; i++)
-			part[i] = ids[first + i];
+			part[i] = changes[first + i];
 		ob_outbox_put(u, OB_RECORD_NEIGHBOURS, &r, sizeof r, part, (n + 1) / 2 * sizeof(uint64_t));
 		first += n;
 	} while (first < count);
@@ -711,16 +716,20 @@ static const char *commit_neighbours(ob_committer *c, ob_universe *u, const ob_m
 	const uint32_t ids = ob_universe_ids(u);
 	if (from->bytes < sizeof *r || r->id >= ids || c->query_owner[r->id] != from->worker)
 		return "has looked for neighbours of what it was not given";
-	if (r->count > NEIGHBOURS_AT_ONCE || from->bytes != sizeof *r + (r->count + 1) / 2 * sizeof(uint64_t) ||
-	    r->first != c->had[r->id] || r->total > ids || r->count > r->total - r->first || (!r->count && r->total))
+	if (r->count > CHANGES_AT_ONCE || from->bytes != sizeof *r + (r->count + 1) / 2 * sizeof(uint64_t) ||
+	    r->first != c->had[r->id] || r->first > r->total || r->neighbours > ids ||
+	    r->total > ids + ob_pairs_end(data) || r->count > r->total - r->first || (!r->count && r->total))
 		return wrong;
 	for (uint32_t i = 0; i < r->count; i++)
-		if (r->of[i] >= ids)
+		if (!ob_is_pair_change(data, r->id, r->change[i], ids))
 			return wrong;
-	if (r->first == 0 && reserve_neighbours(u, r->id, r->total) == NONE)
+	if (r->first && data->neighbour_id[data->neighbours[r->id].offset] != r->total)
+		return wrong;
+	if (r->first == 0 && !reserve_changes(u, r->id, r->neighbours, r->total))
 		return NULL;
 	if (r->count)
-		memcpy(data->neighbour_id + data->neighbours[r->id].offset + r->first, r->of, r->count * sizeof *r->of);
+		memcpy(data->neighbour_id + data->neighbours[r->id].offset + 1 + r->first, r->change,
+		       r->count * sizeof *r->change);
 	c->had[r->id] += r->count;
 	if (c->had[r->id] == r->total)
 		c->due--, c->query_owner[r->id] = NONE;

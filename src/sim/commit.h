@@ -48,7 +48,9 @@ void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse
 // By a contained simulator alone: others have run the script in place.
 void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, const ob_script_cell *c); // SCRIPTS
 void ob_commit_check(ob_universe *u, uint32_t check, const ob_pair_key *k); // FORECAST, LATE_CONTACTS
-void ob_commit_neighbours(ob_universe *u, uint32_t id, const uint32_t *ids, uint32_t count); // BROADPHASE
+// So many neighbours, and what that changes of its pairs (ob_step_data.neighbour_id).
+void ob_commit_neighbours(ob_universe *u, uint32_t id, uint32_t neighbours, const uint32_t *changes,
+			  uint32_t count); // BROADPHASE
 
 // With a worker per object: does the island's leader leave the object's motion in ob_step_data.result, not in its slot?
 bool ob_is_left_in_result(const ob_universe *u, uint32_t id);

@@ -184,6 +184,19 @@ static void make_roots(const builder *p, uint32_t due)
 		p->parent[i] = i;
 }
 
+// Of pairs with an entry for now: they lie anywhere, and so do their bodies.
+static void prefetch_due_pair(const ob_step_data *data, uint32_t i, uint32_t end)
+{
+	enum { PAIR_AHEAD = 16, BODIES_AHEAD = 8 };
+	if (i + PAIR_AHEAD < end)
+		__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
+	if (i + BODIES_AHEAD >= end)
+		return;
+	const ob_pair_key *k = &data->pair[data->check[i + BODIES_AHEAD]];
+	__builtin_prefetch(&data->schedule[k->a]);
+	__builtin_prefetch(&data->schedule[k->b]);
+}
+
 // Who must be solved, whatever comes near it, and those that a pair involves which has an entry for now.
 static void involve_due(const builder *p)
 {
@@ -195,8 +208,10 @@ static void involve_due(const builder *p)
 	make_roots(p, n);
 	for (uint32_t i = 0; i < n; i++)
 		involve_new(p, due[i]);
-	for (uint32_t i = 0; i < pairs; i++)
+	for (uint32_t i = 0; i < pairs; i++) {
+		prefetch_due_pair(data, i, pairs);
 		involve_pair(p, &data->pair[data->check[i]]);
+	}
 	data->count->due = data->count->involved;
 }
 

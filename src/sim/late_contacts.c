@@ -490,10 +490,13 @@ void ob_late_contacts_take(ob_universe *u, uint32_t pair)
 static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *copy)
 {
 	ob_pair_key *k = &c->data->pair[c->data->check[i]];
-	if (!c->contained)
-		return k;
-	*copy = *k;
-	return copy;
+	if (c->contained) {
+		*copy = *k;
+		return copy;
+	}
+	if (isnan(k->limit)) // it is new
+		k->limit = ob_pair_first_limit(c->u, k, c->steps);
+	return k;
 }
 
 // Of several ranks, for which step the pair has its entry; that much the others are told of all pairs together. Whether

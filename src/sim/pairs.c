@@ -1,10 +1,13 @@
 #include "sim/pairs.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
+#include "sim/commit.h"
 #include "sim/prefetch.h"
 #include "sim/publish.h"
 #include "sim/sort_ids.h"
@@ -230,10 +233,10 @@ static double path_in_step(const ob_universe *u, uint32_t a, uint32_t b, double 
 		       : 0;
 }
 
-// The path of both together beyond which they may touch (m).
-static double first_limit(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t steps)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t a = k->a, b = k->b;
 	double distance = pair_distance(u, a, b, steps);
 	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
 	// Nearer than they have moved in the step that was solved: they may have touched in it.
@@ -247,12 +250,10 @@ static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps
 	uint32_t pair;
 	if (!take_pair(u, &pair))
 		return;
-	data->pair[pair] = (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = -INFINITY };
+	data->pair[pair] = (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = NAN };
 	link_pair(u, pair);
 	enter_check(u, pair, steps); // at once
-	if (ob_universe_ranks(u) < 2)
-		data->pair[pair].limit = first_limit(u, a, b, steps);
-	else if (data->count->checks < data->pairs_max)
+	if (data->count->checks < data->pairs_max)
 		data->check[data->count->checks++] = pair;
 }
 
@@ -262,44 +263,12 @@ void ob_pairs_measure(ob_universe *u, uint64_t steps)
 	const uint32_t fresh = ob_checks_count(data);
 	for (uint32_t i = 0; i < fresh; i++) {
 		ob_pair_key *k = &data->pair[data->check[i]];
-		if (k->a != k->b && ob_pair_is_known_here(u, k))
-			k->limit = first_limit(u, k->a, k->b, steps);
+		if (k->a != k->b)
+			k->limit = ob_pair_is_known_here(u, k) ? ob_pair_first_limit(u, k, steps) : -INFINITY;
 	}
 }
 
-// ---- what queries have found
-
-// The neighbours that a query has found, each to be found again by its id, without an array that would have to be
-// cleared: place[id] is believed where of[place[id]] says the same (Briggs and Torczon, An efficient representation for
-// sparse sets, 1993).
-typedef struct neighbour_set {
-	uint32_t *of, count;
-	uint32_t *place; // [id]
-} neighbour_set;
-
-static neighbour_set neighbours_of(ob_step_data *data, uint32_t id, uint32_t *place)
-{
-	const struct ob_neighbours *p = &data->neighbours[id];
-	neighbour_set s = { data->neighbour_id + p->offset, p->count, place };
-	if ((uint64_t)p->offset + p->count > data->neighbours_max) {
-		data->count->failure = OB_STEP_DAMAGED;
-		s.count = 0;
-	}
-	for (uint32_t i = 0; i < s.count; i++)
-		if (ob_object_in_range(data, s.of[i]))
-			place[s.of[i]] = i;
-	return s;
-}
-
-// Whether it is one of them; then it is none any more.
-static bool strike_out(neighbour_set *s, uint32_t id)
-{
-	const uint32_t i = s->place[id];
-	if (i >= s->count || s->of[i] != id)
-		return false;
-	s->of[i] = OB_NO_OBJECT;
-	return true;
-}
+// ---- what queries find
 
 static bool is_immobile(const ob_step_data *data, uint32_t id)
 {
@@ -312,37 +281,108 @@ static bool decides(const ob_universe *u, uint32_t id, uint32_t other)
 	return id < other || !ob_requery_lists(u, other);
 }
 
-// Drops the object's pairs that its query has not found again, and adds those that are new. What is static keeps no
-// list of its pairs, and its query is made when it has come: then it has none.
-static void renew_pairs(ob_universe *u, uint32_t id, uint32_t *place, uint64_t steps)
+// Where id[] has it, which ascends; n: nowhere.
+static uint32_t place_of(const uint32_t *id, uint32_t n, uint32_t wanted)
+{
+	uint32_t first = 0, end = n;
+	while (first < end) {
+		const uint32_t middle = first + (end - first) / 2;
+		if (id[middle] < wanted)
+			first = middle + 1;
+		else
+			end = middle;
+	}
+	return first < n && id[first] == wanted ? first : n;
+}
+
+// Changes of an object's pairs: so many, of which as many are listed as there is room for.
+typedef struct changes {
+	uint32_t n, max, *list;
+} changes;
+
+static void add_change(changes *c, uint32_t change)
+{
+	if (c->n < c->max)
+		c->list[c->n] = change;
+	c->n++;
+}
+
+// Pairs that the query has not found again end, and new ones begin. found: n neighbours, ascending; had: [n] scratch.
+// What is static keeps no list of its pairs, and its query is made when it has come: then it has none.
+static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *found, uint32_t n, uint32_t *had,
+			  changes *to)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	memset(had, 0, n * sizeof *had);
+	for (uint32_t link = ob_has_pairs(data, id) ? data->first_pair[id] : 0; ob_pair_at(data, link, &at);
+	     link = ob_pair_next(data, at)) {
+		const ob_pair_key *k = &data->pair[at.pair];
+		ob_prefetch_link(u, ob_pair_next(data, at));
+		const uint32_t other = at.side ? k->a : k->b, place = place_of(found, n, other);
+		if (place < n)
+			had[place] = 1;
+		// A pair with a record stays until the step is over: it may have to be solved again.
+		else if (k->record == OB_NO_RECORD && decides(u, id, other))
+			add_change(to, OB_PAIR_ENDS | at.pair);
+	}
+	for (uint32_t i = 0; i < n; i++)
+		if (!had[i] && decides(u, id, found[i]) && (!is_immobile(data, id) || !is_immobile(data, found[i])))
+			add_change(to, found[i]);
+}
+
+void ob_pairs_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
+{
+	enum { USUALLY = 256 };
+	uint32_t few[3 * USUALLY], *found = few, room = USUALLY, n = ob_index_query(u, id, few, USUALLY, box_tests);
+	if (n > USUALLY) {
+		room = n;
+		found = ob_allocate(3 * (size_t)n * sizeof *found);
+		n = ob_index_query(u, id, found, n, box_tests);
+	}
+	uint32_t *had = found + room;
+	changes c = { .max = room, .list = had + room };
+	ob_sort_ids(found, n, ob_universe_ids(u), had);
+	compare_pairs(u, id, found, n, had, &c);
+	uint32_t *more = c.n > c.max ? ob_allocate(c.n * sizeof *more) : NULL;
+	if (more) {
+		c = (changes){ .max = c.n, .list = more };
+		compare_pairs(u, id, found, n, had, &c);
+	}
+	ob_commit_neighbours(u, id, n, c.list, c.n);
+	free(more);
+	if (found != few)
+		free(found);
+}
+
+// ---- what queries have found
+
+static void change_pairs(ob_universe *u, uint32_t id, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	neighbour_set found = neighbours_of(data, id, place);
-	ob_pair_place at;
-	data->count->visits += 1 + found.count;
-	for (uint32_t link = ob_has_pairs(data, id) ? data->first_pair[id] : 0, next; ob_pair_at(data, link, &at);
-	     link = next) {
-		const ob_pair_key *k = &data->pair[at.pair];
-		const uint32_t other = at.side ? k->a : k->b;
-		data->count->visits++;
-		next = ob_pair_next(data, at);
-		if (!ob_object_in_range(data, other))
-			return;
-		const bool stays = strike_out(&found, other);
-		// A pair with a record stays until the step is over: it may have to be solved again.
-		if (!stays && k->record == OB_NO_RECORD && decides(u, id, other))
-			drop_pair(u, at.pair);
+	const uint32_t ids = ob_universe_ids(u);
+	const uint32_t at = data->neighbours[id].offset, n = at < data->neighbours_max ? data->neighbour_id[at] : 0;
+	if (n >= data->neighbours_max - at) {
+		data->count->failure = OB_STEP_DAMAGED;
+		return;
 	}
-	uint32_t fresh = 0;
-	for (uint32_t i = 0; i < found.count; i++) {
-		const uint32_t other = found.of[i];
-		if (other != OB_NO_OBJECT && ob_object_in_range(data, other) && decides(u, id, other) &&
-		    (!is_immobile(data, id) || !is_immobile(data, other)))
-			found.of[fresh++] = other;
-	}
-	ob_sort_ids(found.of, fresh, ob_universe_ids(u), place); // which is no longer needed
-	for (uint32_t i = 0; i < fresh; i++)
-		add_pair(u, id, found.of[i], steps);
+	data->count->visits += 1 + n;
+	for (const uint32_t *change = data->neighbour_id + at + 1, *end = change + n; change < end; change++)
+		if (!ob_is_pair_change(data, id, *change, ids))
+			data->count->failure = OB_STEP_DAMAGED;
+		else if (*change & OB_PAIR_ENDS)
+			drop_pair(u, *change & ~OB_PAIR_ENDS);
+		else
+			add_pair(u, id, *change, steps);
+}
+
+static void prefetch_changes(const ob_step_data *data, const uint32_t *queried, uint32_t i, uint32_t n)
+{
+	enum { PLACE_AHEAD = 8, CHANGES_AHEAD = 4 };
+	if (i + PLACE_AHEAD < n)
+		__builtin_prefetch(&data->neighbours[queried[i + PLACE_AHEAD]]);
+	if (i + CHANGES_AHEAD < n && data->neighbours[queried[i + CHANGES_AHEAD]].offset < data->neighbours_max)
+		__builtin_prefetch(&data->neighbour_id[data->neighbours[queried[i + CHANGES_AHEAD]].offset]);
 }
 
 // In the order of ids, whatever the order in which workers have put them on the list and queries have found them: so
@@ -351,7 +391,7 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t ids = ob_universe_ids(u);
-	uint32_t count, n = 0, *queried = data->scratch, *place = data->scratch + ids;
+	uint32_t count, n = 0, *queried = data->scratch, *other = data->scratch + ids;
 	const uint32_t *list = ob_requery_list(u, &count);
 	data->count->checks = 0;
 	if (!count)
@@ -359,10 +399,10 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 	for (uint32_t i = 0; i < count && n < ids; i++)
 		if (list[i] < ids)
 			queried[n++] = list[i];
-	ob_sort_ids(queried, n, ids, place);
+	ob_sort_ids(queried, n, ids, other);
 	for (uint32_t i = 0; i < n && ob_step_failed(u, NULL) == OB_STEP_OK; i++) {
-		ob_prefetch_neighbours(u, queried, i, n);
-		renew_pairs(u, queried[i], place, steps);
+		prefetch_changes(data, queried, i, n);
+		change_pairs(u, queried[i], steps);
 	}
 	ob_requery_reset(u);
 	ob_neighbours_reset(u);

@@ -24,12 +24,18 @@ const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_ke
 // Did its contact carry a load then?
 bool ob_pair_carried_load(const ob_universe *u, const ob_pair_key *k);
 
-// Merges the neighbours of the objects on the requery list into the pairs, and empties the list. steps: that are
-// complete, or solved. Of several ranks: lists the new ones in ob_step_data.check, for not all know the motions of both
-// yet ..
+// Finds the object's neighbours, and what that changes of its pairs, which is handed over. box_tests grows by the boxes
+// that were compared. Any worker, after the scheduling worker has updated the index.
+void ob_pairs_query(ob_universe *u, uint32_t id, uint64_t *box_tests);
+// Makes the changes that queries of the objects on the requery list have brought, and empties the list. steps: that are
+// complete, or solved. Lists the new pairs in ob_step_data.check. How far apart they are, whoever checks them finds out
+// (limit: NAN) ..
 void ob_pairs_merge(ob_universe *u, uint64_t steps);
-// .. and, when those that need them do (halo.h), finds out how far apart they are.
+// .. or the scheduling worker, here: of several ranks not all know the motions of both, and then not until those that
+// need them do (halo.h).
 void ob_pairs_measure(ob_universe *u, uint64_t steps);
+// The path of both together beyond which they may touch (m).
+double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t steps);
 // Drops every pair of an object that goes away.
 void ob_pairs_drop(ob_universe *u, uint32_t id);
 // All pairs of the object are checked before its next step, for it moves otherwise from now on.

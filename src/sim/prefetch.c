@@ -50,39 +50,6 @@ void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i)
 	ob_prefetch_lists(u, data->member, i, data->objects_max);
 }
 
-// What add_pair reads of a neighbour, which may be anywhere.
-static void prefetch_neighbour(const ob_universe *u, uint32_t id)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	__builtin_prefetch(&data->schedule[id]);
-	__builtin_prefetch(&data->result_island[id]);
-	__builtin_prefetch(&data->first_pair[id], 1);
-	ob_prefetch_slot(u, id);
-	ob_prefetch_passport(u, id);
-}
-
-void ob_prefetch_neighbours(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end)
-{
-	enum { HEAD_AHEAD = 12, LIST_AHEAD = 6, OBJECTS_AHEAD = 3, MOST = 8 };
-	const ob_step_data *data = ob_universe_step_data(u);
-	if (i + HEAD_AHEAD < end) {
-		__builtin_prefetch(&data->neighbours[ids[i + HEAD_AHEAD]]);
-		__builtin_prefetch(&data->first_pair[ids[i + HEAD_AHEAD]], 1);
-	}
-	if (i + LIST_AHEAD < end) {
-		const uint32_t id = ids[i + LIST_AHEAD];
-		__builtin_prefetch(data->neighbour_id + data->neighbours[id].offset);
-		ob_prefetch_link(u, data->first_pair[id]);
-		prefetch_neighbour(u, id);
-	}
-	if (i + OBJECTS_AHEAD < end) {
-		const struct ob_neighbours *near = &data->neighbours[ids[i + OBJECTS_AHEAD]];
-		for (uint32_t k = 0; k < near->count && k < MOST && near->offset + (uint64_t)k < data->neighbours_max;
-		     k++)
-			prefetch_neighbour(u, data->neighbour_id[near->offset + k]);
-	}
-}
-
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k)
 {
 	prefetch_object(s, k->a);

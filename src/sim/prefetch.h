@@ -19,8 +19,6 @@ void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k);
 void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i);
 // The same where lists of pairs are gone through, at place i of so many ids.
 void ob_prefetch_lists(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end);
-// Where what queries have found becomes pairs, at place i of so many ids: the neighbours of those that follow.
-void ob_prefetch_neighbours(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end);
 // In a list of pairs (sim/pairs.h), the one that follows.
 void ob_prefetch_link(const ob_universe *u, uint32_t link);
 

@@ -21,8 +21,8 @@
 // takes part in.
 //
 //   phase             task of a worker          reads                             writes
-//   BROADPHASE_START  objects whose fat AABB    index, fat AABBs                  their lists of neighbours
-//   BROADPHASE          has changed
+//   BROADPHASE_START  objects whose fat AABB    index, fat AABBs, pairs           which of their pairs end, and which
+//   BROADPHASE          has changed                                                 begin
 //   SCRIPTS           an object's script    motions, passports                its cell
 //   FORECAST          256 pairs                 schedule records, motions         expected, limit of those pairs, and
 //                                                                                   their entries in the calendar
@@ -299,7 +299,7 @@ static void query(ob_sim *s, uint32_t id)
 	enum { TESTS_PER_WORK = 16 };
 	const uint64_t tests = s->counters.box_tests;
 	ob_budget_begin_share(s, id);
-	ob_broadphase_query(s->u, id, &s->counters.box_tests);
+	ob_pairs_query(s->u, id, &s->counters.box_tests);
 	ob_budget_note(s, (s->counters.box_tests - tests) / TESTS_PER_WORK);
 	ob_budget_spent(s);
 }
@@ -315,6 +315,7 @@ static void query_neighbours(ob_sim *s)
 		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK)) {
 			if (i + QUERIES_AHEAD < count)
 				ob_prefetch_query(s->u, list[i + QUERIES_AHEAD]);
+			ob_prefetch_lists(s->u, list, i, count);
 			query(s, list[i]);
 			ob_profile_task_done(s, i);
 		}
@@ -568,17 +569,18 @@ static ob_phase after_resume(const scheduler *c)
 	return OB_PHASE_BROADPHASE_START;
 }
 
-// false: the step has failed.
-static bool merge_pairs(const scheduler *c, uint64_t steps)
+// next: the phase after it. Who checks new pairs in that finds out how far apart they are; contained simulators would
+// have to hand it over. false: the step has failed.
+static bool merge_pairs(const scheduler *c, uint64_t steps, ob_phase next)
 {
+	const bool checked = next == OB_PHASE_FORECAST || next == OB_PHASE_LATE_CONTACTS;
 	if (ob_universe_ranks(c->u) > 1)
 		ob_regions_follow(ob_commit_regions(c->sim->committer), c->u);
 	ob_pairs_merge(c->u, steps);
-	if (ob_universe_ranks(c->u) < 2)
-		return true;
-	if (!ob_halo_meet(ob_commit_halo(c->sim->committer), c->u, &c->sim->peers))
+	if (ob_universe_ranks(c->u) > 1 && !ob_halo_meet(ob_commit_halo(c->sim->committer), c->u, &c->sim->peers))
 		return false;
-	ob_pairs_measure(c->u, steps);
+	if (!checked || ob_universe_contains(c->u))
+		ob_pairs_measure(c->u, steps);
 	return true;
 }
 
@@ -588,9 +590,8 @@ static ob_phase after_broadphase_start(const scheduler *c)
 	ob_requery_list(c->u, &queries);
 	if (!queries)
 		return begin_step(c);
-	if (!merge_pairs(c, ob_step_count(c->u)))
-		return OB_PHASE_PAUSE;
-	return !must_pause(c) && ob_scripts_due(c->u) ? OB_PHASE_SCRIPTS : OB_PHASE_FORECAST;
+	const ob_phase next = !must_pause(c) && ob_scripts_due(c->u) ? OB_PHASE_SCRIPTS : OB_PHASE_FORECAST;
+	return merge_pairs(c, ob_step_count(c->u), next) ? next : OB_PHASE_PAUSE;
 }
 
 // What moves otherwise now may touch others. Objects that are created or removed the host places at once.
@@ -622,7 +623,8 @@ static ob_phase after_islands(const scheduler *c)
 
 static ob_phase after_broadphase(const scheduler *c)
 {
-	return merge_pairs(c, ob_step_count(c->u) + 1) ? OB_PHASE_LATE_CONTACTS : OB_PHASE_PAUSE;
+	const ob_phase next = OB_PHASE_LATE_CONTACTS;
+	return merge_pairs(c, ob_step_count(c->u) + 1, next) ? next : OB_PHASE_PAUSE;
 }
 
 static ob_phase after_late_contacts(const scheduler *c)

@@ -62,11 +62,6 @@ void ob_prefetch_slot(const ob_universe *u, uint32_t id)
 	prefetch_lines(&u->slot[id], sizeof u->slot[id]);
 }
 
-void ob_prefetch_passport(const ob_universe *u, uint32_t id)
-{
-	prefetch_lines(&u->passport[id], sizeof u->passport[id]);
-}
-
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 {
 	return p->shape == OB_SHAPE_HULL && p->hull < u->header.sizes.hulls ? u->hull + p->hull : NULL;

@@ -62,6 +62,7 @@ static inline ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 }
 
 #define OB_NO_RECORD UINT32_MAX
+#define OB_PAIR_ENDS UINT32_C(0x80000000) // there are fewer pairs, and fewer objects
 
 // A pair of objects whose fat AABBs overlap. One that is not in use has a == b.
 typedef struct ob_pair_key {
@@ -209,9 +210,10 @@ typedef struct ob_step_data {
 		       // back from a checkpoint in memory is without it
 	uint32_t *result_island; // [object]: index of its island in the running step; UINT32_MAX = it is in none
 	struct ob_neighbours {
-		uint32_t offset, count; // range in neighbour_id; count UINT32_MAX = a query is pending
+		uint32_t offset, count; // place in neighbour_id; how many it has, UINT32_MAX = a query is pending
 	} * neighbours; // [object]
-	uint32_t *neighbour_id; // arena
+	uint32_t *neighbour_id; // arena: of each query how many changes it makes, and then these: pairs that end, as
+				// OB_PAIR_ENDS | index, and ids of new neighbours, ascending
 	ob_index_cell *cell; // [object]
 	uint32_t *bucket; // [buckets]: 1 + first object; 0 = empty
 	uint64_t *occupied; // [buckets / 8]: a bit for each eighth of a bucket: in one of its cells is an object
@@ -275,6 +277,16 @@ static inline bool ob_is_to_be_solved(const ob_step_data *data, uint32_t id)
 static inline uint32_t ob_pairs_end(const ob_step_data *data)
 {
 	return data->count->pairs < data->pairs_max ? data->count->pairs : data->pairs_max;
+}
+
+// Whether the object's query may bring such a change (neighbour_id). ids: of all objects
+static inline bool ob_is_pair_change(const ob_step_data *data, uint32_t id, uint32_t change, uint32_t ids)
+{
+	const uint32_t pair = change & ~OB_PAIR_ENDS;
+	if (!(change & OB_PAIR_ENDS))
+		return change != id && change < ids;
+	return pair < ob_pairs_end(data) && data->pair[pair].a != data->pair[pair].b &&
+	       (data->pair[pair].a == id || data->pair[pair].b == id);
 }
 
 static inline uint32_t ob_checks_count(const ob_step_data *data)

@@ -141,7 +141,6 @@ uint64_t ob_motion_version(const ob_universe *u, uint32_t id); // how many motio
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
 void ob_prefetch_versions(const ob_universe *u, uint32_t id); // which the two before read
 void ob_prefetch_slot(const ob_universe *u, uint32_t id); // all of it
-void ob_prefetch_passport(const ob_universe *u, uint32_t id); // likewise, as it was first
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p); // NULL: it is no hull
 // The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);

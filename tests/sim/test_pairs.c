@@ -40,8 +40,9 @@ static void look_around(ob_universe *u)
 	for (uint32_t i = 0; i < count; i++)
 		ob_index_put(u, list[i]);
 	for (uint32_t i = 0; i < count; i++)
-		ob_broadphase_query(u, list[i], &(uint64_t){ 0 });
+		ob_pairs_query(u, list[i], &(uint64_t){ 0 });
 	ob_pairs_merge(u, ob_step_count(u));
+	ob_pairs_measure(u, ob_step_count(u));
 	ob_requery_list(u, &count);
 	CHECK(count == 0);
 }
@@ -261,6 +262,38 @@ static void test_active_stays(void)
 }
 
 // The version before the step is read, the other written, however often the step is done.
+static uint32_t pairs_with(const ob_step_data *ex, uint32_t id)
+{
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < ex->count->pairs; i++)
+		n += ex->pair[i].a != ex->pair[i].b && (ex->pair[i].a == id || ex->pair[i].b == id);
+	return n;
+}
+
+// One object comes near more others than a query usually finds, and leaves them all.
+static void test_crowd(void)
+{
+	enum { CROWD = 400, ONE = 350 };
+	uint64_t seed = 5;
+	little_scene *s = little_scene_new();
+	for (int i = 0; i < CROWD; i++)
+		ob_world_sphere(&s->world, 1, .1, random_vector(&seed, 4));
+	ob_universe *u = little_populate(s, 1);
+	const ob_step_data *ex = ob_universe_step_data(u);
+	ob_motion m = *ob_newest_motion(u, ONE);
+	look_around(u);
+	ob_fat_aabb_renew(u, ONE, &(ob_state){ .pose = { m.p, m.q } }, 20);
+	look_around(u);
+	CHECK(pairs_with(ex, ONE) == CROWD - 1);
+	m.p = ob_v3(100, 0, 100);
+	ob_publish_motion(u, ONE, &m);
+	ob_fat_aabb_renew(u, ONE, &(ob_state){ .pose = { m.p, m.q } }, 0);
+	look_around(u);
+	CHECK(pairs_with(ex, ONE) == 0 && ob_step_failed(u, NULL) == OB_STEP_OK);
+	ob_universe_destroy(u, true);
+	free(s);
+}
+
 static void test_versions(void)
 {
 	ob_pair_record r;
@@ -333,6 +366,7 @@ int main(void)
 	test_merge();
 	test_order();
 	test_active_stays();
+	test_crowd();
 	test_versions();
 	test_fat_aabb();
 	test_column();
