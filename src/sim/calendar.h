@@ -13,8 +13,8 @@
 // the check of most pairs; here what is due comes in ascending order, as it lies in memory.
 //
 // They lie in the universe, among the areas that a checkpoint holds; after a restart from a file they are made anew
-// (sim/pairs.h). By the scheduling worker alone, or the host at a pause; but workers that check pairs enter, each for its
-// own, when those are to be checked again.
+// (sim/pairs.h). By the scheduling worker alone, or the host at a pause; but workers enter when objects that they have
+// solved are due again, and when pairs that they have checked are to be checked again, each for its own.
 #ifndef OB_SIM_CALENDAR_H
 #define OB_SIM_CALENDAR_H
 

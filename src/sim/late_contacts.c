@@ -351,23 +351,6 @@ static void prefetch_check(const ob_universe *u, uint32_t i, uint32_t end)
 		ob_prefetch_schedule(u, &data->pair[data->check[i + OBJECTS_AHEAD]]);
 }
 
-// When each object that was solved is due again.
-static void note_solved(ob_universe *u)
-{
-	enum { AHEAD = 16 };
-	const ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar solve = ob_calendar_of_objects(u);
-	uint32_t members = 0;
-	for (uint32_t i = 0; i < data->count->unsolved; i++)
-		members += data->island[i].members;
-	for (uint32_t i = 0; i < members && i < data->objects_max; i++) {
-		if (i + AHEAD < members && i + AHEAD < data->objects_max)
-			__builtin_prefetch(&data->schedule[data->member[i + AHEAD]]);
-		if (ob_object_in_range(data, data->member[i]))
-			ob_calendar_set(&solve, data->member[i], data->schedule[data->member[i]].due);
-	}
-}
-
 // Of several ranks this one has entered the pair before another has listed it, which has solved one of its objects; or
 // it has had one of them when it entered it, and has none now.
 static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
@@ -415,8 +398,6 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 	const uint64_t steps = ob_step_count(u) + solved;
 	ob_late_contacts_reset(u);
 	data->count->checked = (uint32_t)steps;
-	if (solved)
-		note_solved(u);
 	data->count->checks = ob_calendar_take(&look, steps, data->check, data->pairs_max);
 	if (ob_universe_ranks(u) > 1)
 		leave_to_others(u);

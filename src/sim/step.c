@@ -31,7 +31,8 @@
 //   LISTS             32 islands                pairs, schedule records,          their lists of pairs; of these,
 //                                                 members of all islands            in_island, limit, calendar entries
 //   ISLANDS           a chunk of islands        motions and contacts as of        staged motions, fat AABBs, schedule
-//                                                 before the step                   records, contacts of after the step
+//                                                 before the step                   records, their entries in the
+//                                                                                   calendar, contacts of after the step
 //   LATE_CONTACTS     256 pairs                 schedule records, motions         likewise, and late
 //                                                 before the step and staged
 //   COPY              32 islands                staged motions                    slots; no object is in an island
