@@ -478,15 +478,19 @@ static void list_own_pairs(const builder *p, ob_halo *halo)
 	data->count->visits += found.visits;
 }
 
-// Of the step before: pairs are in no island any more, and those that touch no more need no record.
+// Of the step before: pairs are in no island any more, and those that touch no more need no record. They lie anywhere,
+// and who has solved them has written them last.
 static void end_islands(const builder *p)
 {
+	enum { AHEAD = 16 };
 	ob_step_data *data = p->data;
 	for (uint32_t i = 0; i < data->count->island_pairs && i < data->pairs_max; i++) {
 		if (data->island_pair[i] >= data->pairs_max) {
 			data->count->failure = OB_STEP_DAMAGED;
 			return;
 		}
+		if (i + AHEAD < data->count->island_pairs)
+			__builtin_prefetch(&data->pair[data->island_pair[i + AHEAD]], 1);
 		ob_pair_key *k = &data->pair[data->island_pair[i]];
 		k->in_island = 0;
 		if (k->record != OB_NO_RECORD && !k->active)
