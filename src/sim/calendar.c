@@ -29,6 +29,13 @@ void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step)
 		ob_calendar_level_raise(&c->level.of_4096[i / 4096], urgency);
 }
 
+void ob_calendar_enter_due(const ob_universe *u, uint32_t id)
+{
+	const ob_schedule *s = &ob_universe_step_data(u)->schedule[id];
+	const ob_calendar solve = ob_calendar_of_objects(u);
+	ob_calendar_set(&solve, id, ob_schedule_is_dynamic(s) ? s->due : UINT32_MAX);
+}
+
 // Four side by side; compared as signed numbers, which every processor can.
 typedef int32_t quad __attribute__((vector_size(16)));
 typedef int64_t halves __attribute__((vector_size(16)));

@@ -32,6 +32,8 @@ ob_calendar ob_calendar_of_pairs(const ob_universe *u);
 // The entry of i is for this step (from 0) from now on; UINT32_MAX or more: it has none. Several workers may set entries
 // of their own at the same time, while nobody lists any.
 void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step);
+// The object's schedule record has changed: its entry is for the step in which that says it is due. As above.
+void ob_calendar_enter_due(const ob_universe *u, uint32_t id);
 // Is there an entry for this step, or for one before?
 bool ob_calendar_is_due(const ob_calendar *c, uint64_t step);
 // All that have such an entry, ascending, at most so many; returns how many. Their entries stay.

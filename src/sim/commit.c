@@ -69,18 +69,12 @@ bool ob_is_left_in_result(const ob_universe *u, uint32_t id)
 	       data->member[data->island[data->result_island[id]].first_member] != id;
 }
 
-static void enter_due(const ob_universe *u, uint32_t id, uint32_t step)
-{
-	const ob_calendar solve = ob_calendar_of_objects(u);
-	ob_calendar_set(&solve, id, step);
-}
-
 static void write_result(ob_universe *u, const ob_found_result *r)
 {
 	const ob_motion *m = &r->motion;
 	ob_step_data *data = ob_universe_step_data(u);
 	data->schedule[r->id] = (ob_schedule){ m->path, m->reach, r->state, m->step, r->due };
-	enter_due(u, r->id, r->due);
+	ob_calendar_enter_due(u, r->id);
 	if (ob_is_left_in_result(u, r->id))
 		data->result[r->id] = *m;
 	else
@@ -528,7 +522,7 @@ static const char *commit_solved(ob_committer *c, ob_universe *u, const ob_mail_
 		s->state = state;
 		s->since = (uint32_t)ob_step_count(u) + 1;
 		s->due = r->body[i].due;
-		enter_due(u, id, s->due);
+		ob_calendar_enter_due(u, id);
 	}
 	return NULL;
 }

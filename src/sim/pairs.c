@@ -147,8 +147,7 @@ void ob_pairs_link(ob_universe *u)
 	data->count->first_idle = data->count->pairs_idle = data->count->island_pairs = data->count->checks = 0;
 	memset(data->first_pair, 0, ids * sizeof *data->first_pair);
 	for (uint32_t id = 0; id < ids; id++)
-		if (ob_schedule_is_dynamic(&data->schedule[id]))
-			ob_calendar_set(&solve, id, data->schedule[id].due);
+		ob_calendar_enter_due(u, id);
 	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (k->a == k->b) {

@@ -14,9 +14,7 @@
 // The object's schedule record has changed.
 static void note_change(ob_universe *u, uint32_t id)
 {
-	const ob_schedule *s = &ob_universe_step_data(u)->schedule[id];
-	const ob_calendar solve = ob_calendar_of_objects(u);
-	ob_calendar_set(&solve, id, ob_schedule_is_dynamic(s) ? s->due : UINT32_MAX);
+	ob_calendar_enter_due(u, id);
 	ob_pairs_look(u, id);
 }
 

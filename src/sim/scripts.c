@@ -107,8 +107,7 @@ static void set_going(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
 	m.reach = (float)reach;
 	ob_schedule *schedule = &data->schedule[id];
 	*schedule = (ob_schedule){ ob_schedule_path(schedule, step), (float)reach, OB_SCHEDULE_AWAKE, m.step, m.step };
-	const ob_calendar solve = ob_calendar_of_objects(u);
-	ob_calendar_set(&solve, id, schedule->due);
+	ob_calendar_enter_due(u, id);
 	ob_pairs_look(u, id);
 	ob_fat_aabb_update(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach, 0);
 	ob_publish_motion(u, id, &m);
