@@ -85,31 +85,28 @@ bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k)
 	return ob_universe_ranks(u) < 2 || lives_here(u, k->a) || lives_here(u, k->b);
 }
 
-// 2: its island is to be solved, 1: that stands, 0: it is in none.
-static int claim_of(const ob_step_data *data, uint32_t id)
-{
-	return ob_is_to_be_solved(data, id) ? 2 : data->result_island[id] != UINT32_MAX;
-}
-
 bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
-	const int of_a = claim_of(data, k->a), of_b = claim_of(data, k->b);
-	const bool a = of_a != of_b ? of_a > of_b : ob_schedule_is_dynamic(&data->schedule[k->a]);
+	const bool a = ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[k->a]);
 	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
 }
 
-// The pair is to be checked in this step. Of several ranks one enters it, and all know that; but what links objects all
-// enter: islands may be built before it is checked.
+bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	return ob_schedule_is_dynamic(&data->schedule[k->a]) && ob_schedule_is_dynamic(&data->schedule[k->b]) &&
+	       ob_home_rank(u, k->a) != ob_home_rank(u, k->b);
+}
+
+// The pair is to be checked in this step. Of several ranks one enters it, and all know that.
 static void enter_check(ob_universe *u, uint32_t pair, uint64_t step)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const ob_pair_key *k = &data->pair[pair];
 	const ob_calendar look = ob_calendar_of_pairs(u);
-	if (step < data->count->next_check)
-		data->count->next_check = (uint32_t)step;
-	if (ob_pair_is_checked_here(u, k) || k->active || k->expected)
-		ob_calendar_set(&look, pair, step);
+	if (step < data->count->next_due)
+		data->count->next_due = (uint32_t)step;
+	ob_calendar_set(&look, pair, ob_pair_is_checked_here(u, k) ? step : UINT32_MAX);
 }
 
 // One that is not in use. false: there is none, and the step has failed.
@@ -168,6 +165,22 @@ void ob_pairs_look(ob_universe *u, uint32_t id)
 	for (uint32_t link = data->first_pair[id], n = 0; ob_pair_at(data, link, &at) && n < data->objects_max;
 	     link = ob_pair_next(data, at), n++)
 		enter_check(u, at.pair, 0);
+}
+
+void ob_pairs_follow(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		ob_pair_key *k = &data->pair[at.pair];
+		if (!ob_object_in_range(data, k->a) || !ob_object_in_range(data, k->b) ||
+		    !ob_pair_is_checked_here(u, k))
+			continue;
+		if (data->count->merged)
+			k->limit = -INFINITY;
+		ob_calendar_set(&look, at.pair, ob_step_count(u) + 1);
+	}
 }
 
 void ob_pair_release_record(ob_universe *u, ob_pair_key *k)

@@ -32,17 +32,22 @@ typedef struct ob_peers_head {
 	uint64_t damaged; // 1 + an object, what is kept of which is not what it was; 0: none is known; OB_PEERS_MOTION: its motion
 	uint64_t differs; // 1 = it has been told of motions that have begun otherwise than where it is
 	uint64_t move; // of rank 0: where a simulator is to move, as table/home.h; set by ob_peers_exchange
-	uint64_t next_check; // the first step for which the rank has a pair to check; set by ob_peers_exchange
-	uint64_t look; // the first step at which the rank is to have all motions; set by ob_peers_exchange
+	uint64_t next_due; // the first step for which the rank has an object to solve, or a pair to check; likewise
+	uint64_t look; // the first step at which the rank is to have all motions; likewise
+	uint64_t islands; // of the rank; likewise
+	int64_t woken; // of its bodies, less those that have fallen asleep, since it has said so last
 } ob_peers_head;
 #define OB_PEERS_MOVE (UINT64_MAX - 1)
 #define OB_PEERS_GATHER (UINT64_MAX - 2)
 #define OB_PEERS_MEET (UINT64_MAX - 3)
 #define OB_PEERS_LOOK (UINT64_MAX - 4)
+#define OB_PEERS_SHARE (UINT64_MAX - 5)
+#define OB_PEERS_CUT (UINT64_MAX - 6)
 #define OB_PEERS_MOTION (UINT64_C(1) << 63)
 
 // What ranks hand to each other between phases, parcel by parcel behind the head of a message.
 typedef enum ob_parcel_kind {
+	OB_PARCEL_HOMES, // bodies that go from the sender's rank to another (rank_islands.h)
 	OB_PARCEL_KEPT, // what a pair keeps (holdings.h)
 	OB_PARCEL_BODY, // and the next: halo.h
 	OB_PARCEL_PAIR,
@@ -51,14 +56,15 @@ typedef struct ob_parcel {
 	uint32_t kind, bytes; // with this, which it begins with: a multiple of 8
 } ob_parcel;
 
-// What the phase begins with, before any of it is committed: who is to be solved, with whom, or asked.
-uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
+// What the phase begins with, before any of it is committed, and all have alike: how many pairs there are, and who looks
+// for others.
+uint64_t ob_peers_digest(const ob_universe *u);
 // Empties the mail but for a head. false: no memory.
 bool ob_peers_begin(ob_mail *mail);
 // Sends the mail, which begins with a head, this one. Gives those of all ranks, heads and all, in their order: that of
 // rank r from at[r] to at[r + 1]; they hold until the next call. NULL: the others are elsewhere, or one has left, and
-// the step has failed. Then all know the move that rank 0 was asked for (ob_peers.move), and for which step somebody
-// has a pair to check, or looks at all motions (ob_peers.look).
+// the step has failed. Then all know the move that rank 0 was asked for (ob_peers.move), for which step somebody has
+// something to do, or looks at all motions (ob_peers.look), how many islands there are, and how many are awake.
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
 // Likewise to each rank another, mail[rank].
 const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
