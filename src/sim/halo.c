@@ -189,8 +189,10 @@ void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at)
 bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
+	const uint64_t told = data->count->merged ? h->told[id] : 0; // what is void
 	ob_pair_place at;
-	memset(to, all, h->ranks * sizeof *to);
+	for (uint32_t r = 0; r < h->ranks; r++)
+		to[r] = all || told & bit_of(r);
 	for (uint32_t link = all || h->inland[id] ? 0 : data->first_pair[id]; ob_pair_at(data, link, &at);
 	     link = ob_pair_next(data, at)) {
 		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
@@ -251,7 +253,7 @@ static bool take_body(ob_halo *h, ob_universe *u, const char *from, size_t bytes
 		return false;
 	if (b.home != UINT32_MAX)
 		ob_home_set(u, id, b.home);
-	if (b.before.step != ob_newest_motion(u, id)->step) {
+	if (memcmp(&b.before, ob_newest_motion(u, id), sizeof b.before) != 0) {
 		ob_publish_motion(u, id, &b.before);
 		h->known[id] = (known){ ob_motion_version(u, id), digest_of(&b.before) };
 	}
