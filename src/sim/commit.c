@@ -8,7 +8,7 @@
 #include "sim/budget.h"
 #include "sim/calendar.h"
 #include "sim/halo.h"
-#include "sim/pairs.h"
+#include "sim/pair_rank.h"
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };

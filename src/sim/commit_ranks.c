@@ -6,7 +6,7 @@
 #include "sim/committer.h"
 #include "sim/digest.h"
 #include "sim/island_builder.h"
-#include "sim/pairs.h"
+#include "sim/pair_rank.h"
 #include "table/home.h"
 
 bool ob_committer_share(ob_committer *c, const ob_universe *u)
@@ -227,6 +227,21 @@ static bool list_meetings(const ob_committer *c, const ob_universe *u, bool late
 			fits &= ob_mail_append(to, &pair, sizeof pair);
 	}
 	return fits;
+}
+
+void ob_commit_find_meetings(ob_committer *c, ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	bool fits = true;
+	ob_mail_clear(&c->meetings);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		if (k->expected && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
+		    ob_pair_is_across(u, k))
+			fits &= ob_mail_append(&c->meetings, &i, sizeof i);
+	}
+	if (!fits)
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 }
 
 void ob_commit_involve_meetings(ob_committer *c, ob_universe *u)

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "sim/calendar.h"
+#include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
 #include "sim/sort_ids.h"

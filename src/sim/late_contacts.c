@@ -11,6 +11,7 @@
 #include "sim/prefetch.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
+#include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"

@@ -8,10 +8,10 @@
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
 #include "sim/commit.h"
+#include "sim/pair_rank.h"
 #include "sim/prefetch.h"
 #include "sim/publish.h"
 #include "sim/sort_ids.h"
-#include "table/home.h"
 
 // ---- lists
 
@@ -72,30 +72,6 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 			unlink_side(data, pair, side, side ? k->b : k->a);
 	ob_calendar_set(&look, pair, UINT32_MAX);
 	put_aside(data, pair);
-}
-
-static bool lives_here(const ob_universe *u, uint32_t id)
-{
-	return ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[id]) &&
-	       ob_worker_is_here(u, ob_home_of(u, id));
-}
-
-bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k)
-{
-	return ob_universe_ranks(u) < 2 || lives_here(u, k->a) || lives_here(u, k->b);
-}
-
-bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
-{
-	const bool a = ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[k->a]);
-	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
-}
-
-bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	return ob_schedule_is_dynamic(&data->schedule[k->a]) && ob_schedule_is_dynamic(&data->schedule[k->b]) &&
-	       ob_home_rank(u, k->a) != ob_home_rank(u, k->b);
 }
 
 // The pair is to be checked in this step. Of several ranks one enters it, and all know that.
@@ -165,22 +141,6 @@ void ob_pairs_look(ob_universe *u, uint32_t id)
 	for (uint32_t link = data->first_pair[id], n = 0; ob_pair_at(data, link, &at) && n < data->objects_max;
 	     link = ob_pair_next(data, at), n++)
 		enter_check(u, at.pair, 0);
-}
-
-void ob_pairs_follow(ob_universe *u, uint32_t id)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar look = ob_calendar_of_pairs(u);
-	ob_pair_place at;
-	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
-		ob_pair_key *k = &data->pair[at.pair];
-		if (!ob_object_in_range(data, k->a) || !ob_object_in_range(data, k->b) ||
-		    !ob_pair_is_checked_here(u, k))
-			continue;
-		if (data->count->merged)
-			k->limit = -INFINITY;
-		ob_calendar_set(&look, at.pair, ob_step_count(u) + 1);
-	}
 }
 
 void ob_pair_release_record(ob_universe *u, ob_pair_key *k)

@@ -40,16 +40,6 @@ double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t 
 void ob_pairs_drop(ob_universe *u, uint32_t id);
 // All pairs of the object are checked before its next step, for it moves otherwise from now on.
 void ob_pairs_look(ob_universe *u, uint32_t id);
-// Of several ranks: whether this one has one of its objects, and so knows what is known of it. Others know that it is
-// there, and whether it touches.
-bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k);
-// Of several ranks: whether this one checks the pair: where a lives, or b if a does not move.
-bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k);
-// Of several ranks: whether the pair is of two ranks' bodies.
-bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k);
-// Of several ranks: the object was solved in this step, by another. Those of its pairs that are checked here are, when
-// it is over; what is known of their distance is void if islands have been merged.
-void ob_pairs_follow(ob_universe *u, uint32_t id);
 // Makes anew what follows from schedule[] and pair[], which somebody has filled: all lists, both calendars
 // (sim/calendar.h), and the list of the pairs of the last step's islands, of which those that touch no more have their
 // records taken away.

@@ -310,7 +310,7 @@ static uint32_t find_home(const ob_regions *r, const float *box, uint32_t home)
 	return first % r->used;
 }
 
-void ob_regions_settle(ob_regions *r, ob_universe *u)
+bool ob_regions_settle(ob_regions *r, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t ids = ob_universe_ids(u);
@@ -320,7 +320,7 @@ void ob_regions_settle(ob_regions *r, ob_universe *u)
 		fresh += is_dynamic(data, id) && !r->home[id];
 	}
 	if (!fresh)
-		return;
+		return false;
 	const bool first = !r->is_cut;
 	if (first) {
 		for (uint32_t id = 0; id < ids; id++)
@@ -336,6 +336,7 @@ void ob_regions_settle(ob_regions *r, ob_universe *u)
 		ob_calendar_enter_due(u, id);
 		ob_pairs_look(u, id); // who checks them has changed
 	}
+	return first;
 }
 
 void ob_regions_follow(ob_regions *r, const ob_universe *u)

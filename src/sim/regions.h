@@ -26,8 +26,9 @@ typedef struct ob_regions ob_regions;
 ob_regions *ob_regions_create(const ob_universe *u); // NULL: no memory
 void ob_regions_destroy(ob_regions *r); // NULL is allowed
 
-// After a pause, or scripts, by which bodies have come or gone: what is new gets a home, where it lives.
-void ob_regions_settle(ob_regions *r, ob_universe *u);
+// After a pause, or scripts, by which bodies have come or gone: what is new gets a home, where it lives. true: all have got
+// one, for it was the first time.
+bool ob_regions_settle(ob_regions *r, ob_universe *u);
 // Fat AABBs have changed: those on the requery list.
 void ob_regions_follow(ob_regions *r, const ob_universe *u);
 // What this rank's bodies have cost since the last cut; and of it, those that were given to others than those of the

@@ -567,7 +567,8 @@ static void count_awake(const scheduler *c)
 // Of several ranks.
 static void settle(const scheduler *c)
 {
-	ob_regions_settle(ob_commit_regions(c->sim->committer), c->u);
+	if (ob_regions_settle(ob_commit_regions(c->sim->committer), c->u))
+		ob_commit_find_meetings(c->sim->committer, c->u);
 	ob_halo_settle(ob_commit_halo(c->sim->committer), c->u);
 }
 

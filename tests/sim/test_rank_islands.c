@@ -12,6 +12,7 @@
 #include "sim/island_builder.h"
 #include "sim/little_ranks.h"
 #include "sim/little_universe.h"
+#include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/rank_islands.h"
 #include "table/home.h"
