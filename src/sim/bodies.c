@@ -100,6 +100,21 @@ static void reserve_rows(ob_island_work *w, uint32_t rows)
 	}
 }
 
+static void clear_rows(ob_island_work *w, uint32_t first, uint32_t end)
+{
+	ob_body_row *all[] = { w->v, w->dv, w->u, w->d, w->delta, w->drift };
+	for (int i = 0; i < 6; i++)
+		memset(all[i] + first, 0, (end - first) * sizeof *all[i]);
+}
+
+static void load_fixed_body(ob_sim *s, uint32_t id)
+{
+	ob_island_work *w = &s->island;
+	w->row_of[id] = w->rows;
+	clear_rows(w, w->rows, w->rows + 1);
+	load_body(s, w->rows++, id, false);
+}
+
 void ob_bodies_load(ob_sim *s, const ob_island *is)
 {
 	ob_step_data *data = s->data;
@@ -115,9 +130,7 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	// Fixed bodies, once per pair at most, or two ghosts for a pair.
 	const uint32_t most = 1 + is->members + (ob_ghosts_used(s) ? 2 : 1) * is->pairs;
 	reserve_rows(w, most);
-	ob_body_row *all[] = { w->v, w->dv, w->u, w->d, w->delta, w->drift };
-	for (int i = 0; i < 6; i++)
-		memset(all[i], 0, most * sizeof *all[i]);
+	clear_rows(w, 0, 1 + is->members);
 	memset(&w->body[0], 0, sizeof w->body[0]);
 	w->rows = 1;
 	for (uint32_t i = 0; i < is->members; i++) {
@@ -131,18 +144,18 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 				 : !ob_schedule_is_dynamic(&data->schedule[k->b]) ? k->b
 										  : UINT32_MAX;
 		if (fixed != UINT32_MAX && ob_surface_moves(ob_passport_of(s->u, fixed))) {
-			w->row_of[fixed] = w->rows;
-			load_body(s, w->rows, fixed, false);
-			ob_surface_add(s, w->rows++, i);
+			load_fixed_body(s, fixed);
+			ob_surface_add(s, w->rows - 1, i);
 			continue;
 		}
 		if (fixed == UINT32_MAX || (w->row_of[fixed] < w->rows && w->row_of[fixed] > w->bodies &&
 					    w->body[w->row_of[fixed]].id == fixed))
 			continue;
-		w->row_of[fixed] = w->rows;
-		load_body(s, w->rows++, fixed, false);
+		load_fixed_body(s, fixed);
 	}
 	w->first_ghost = w->rows;
+	if (ob_ghosts_used(s))
+		clear_rows(w, w->first_ghost, most);
 }
 
 // ---- attitudes
