@@ -538,11 +538,11 @@ static bool is_newest(const ob_universe *u, const ob_pair_record *r, const ob_pa
 	return r->stamp[p - r->version] == ob_step_count(u) + 1;
 }
 
-static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k)
+// The one that comes next, of which is known what it is between.
+static void load_contact(ob_sim *s, const ob_pair_key *k)
 {
 	ob_island_work *w = &s->island;
 	ob_contact *contact = &w->contact[w->contacts++];
-	*contact = *from;
 	set_lane(w, contact, OB_NO_LANE);
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	contact->mu = ob_pair_friction(a->friction, b->friction);
@@ -573,14 +573,15 @@ static void load_contact(ob_sim *s, const ob_contact *from, const ob_pair_key *k
 }
 
 // Each side is solved for itself, against a ghost of the other.
-static void load_with_ghosts(ob_sim *s, const ob_contact *contact, const ob_pair_key *k)
+static void load_with_ghosts(ob_sim *s, const ob_pair_key *k)
 {
-	ob_contact own = *contact, mirror = *contact;
-	own.b = ob_ghost_make(s, contact->b);
-	mirror.a = ob_ghost_make(s, contact->a);
-	mirror.mirror = true;
-	load_contact(s, &own, k);
-	load_contact(s, &mirror, k);
+	ob_contact *own = &s->island.contact[s->island.contacts], *mirror = own + 1;
+	*mirror = *own;
+	own->b = ob_ghost_make(s, own->b);
+	mirror->a = ob_ghost_make(s, mirror->a);
+	mirror->mirror = true;
+	load_contact(s, k);
+	load_contact(s, k);
 }
 
 static void link_adjacent(ob_island_work *w)
@@ -624,17 +625,18 @@ void ob_contacts_load(ob_sim *s, const ob_island *is)
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		uint32_t key = data->island_pair[is->first_pair + w->contact_order[i]];
 		const ob_pair_key *k = &data->pair[key];
-		ob_contact t = {
+		ob_contact *t = &w->contact[w->contacts];
+		*t = (ob_contact){
 			.key = key, .a = w->row_of[k->a], .b = w->row_of[k->b], .lane = OB_NO_LANE, .since = INFINITY
 		};
 		const uint32_t own = w->surfaces.count ? ob_surface_row(w, w->contact_order[i]) : 0;
 		if (own)
-			*(w->body[own].id == k->a ? &t.a : &t.b) = own;
-		t.limit = k->limit - w->body[t.a].path - w->body[t.b].path;
-		if (ob_ghosts_used(s) && t.a <= w->bodies && t.b <= w->bodies)
-			load_with_ghosts(s, &t, k);
+			*(w->body[own].id == k->a ? &t->a : &t->b) = own;
+		t->limit = k->limit - w->body[t->a].path - w->body[t->b].path;
+		if (ob_ghosts_used(s) && t->a <= w->bodies && t->b <= w->bodies)
+			load_with_ghosts(s, k);
 		else
-			load_contact(s, &t, k);
+			load_contact(s, k);
 	}
 	link_adjacent(w);
 	ob_surfaces_begin(s);
