@@ -513,8 +513,7 @@ static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_
 static const char *commit_bounds(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const bounds_record *r = from->data;
-	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) ||
-	    !solves(c, u, from->worker, r->id))
+	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) || !solves(c, u, from->worker, r->id))
 		return "has moved what it was not given";
 	for (int i = 0; i < 3; i++)
 		if (!(r->box[i] <= r->box[3 + i]) || isinf(r->box[i]) || isinf(r->box[3 + i]))

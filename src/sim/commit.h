@@ -71,8 +71,8 @@ void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase);
 // each said of once. false: that was all.
 bool ob_commit_take_parted(ob_committer *c, uint32_t *pair);
 bool ob_commit_take_checked(ob_committer *c, uint32_t *pair);
-// When bodies have got their homes: pairs that are expected to touch may be of two ranks' bodies, all of which know them,
-// from a checkpoint.
+// When bodies have got their homes: pairs that are expected to touch may be of two ranks' bodies, all of which know
+// them, from a checkpoint.
 void ob_commit_find_meetings(ob_committer *c, ob_universe *u);
 // Before islands are linked: those of its bodies that meet other ranks' are in islands.
 void ob_commit_involve_meetings(ob_committer *c, ob_universe *u);

@@ -213,7 +213,8 @@ static uint32_t pair_at(const ob_mail *list, size_t i)
 	return pair;
 }
 
-// Of the pairs that have linked two ranks' bodies, those that do: that have touched late, or else are expected to touch.
+// Of the pairs that have linked two ranks' bodies, those that do: that have touched late, or else are expected to
+// touch.
 static bool list_meetings(const ob_committer *c, const ob_universe *u, bool late, ob_mail *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);

@@ -53,9 +53,9 @@ struct ob_committer {
 	uint64_t damaged; // as ob_peers_head has it
 	bool differs; // likewise
 	int32_t woken; // likewise
-	// Pairs, by their index: that simulators of other ranks have found to touch no longer; that they have checked; that
-	// have linked two ranks' bodies since islands were built, and of those the ones that do; the last two are the same
-	// on all ranks.
+	// Pairs, by their index: that simulators of other ranks have found to touch no longer; that they have checked;
+	// that have linked two ranks' bodies since islands were built, and of those the ones that do; the last two are
+	// the same on all ranks.
 	ob_mail parted, checked, meetings, met;
 	const char *all; // what all have said; that of rank r begins at at[r], its records so many bytes on
 	const size_t *at;

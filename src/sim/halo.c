@@ -236,8 +236,9 @@ static bool pack_body(ob_mail *to, const ob_universe *u, uint32_t id, bool after
 static bool pack_pair(ob_mail *to, const ob_universe *u, uint32_t pair)
 {
 	const ob_pair_key *k = &ob_universe_step_data(u)->pair[pair];
-	const pair_parcel p = { { OB_PARCEL_PAIR, sizeof p }, pair, k->clear_until, k->clear_as_of, k->expected,
-			     k->limit };
+	const pair_parcel p = {
+		{ OB_PARCEL_PAIR, sizeof p }, pair, k->clear_until, k->clear_as_of, k->expected, k->limit
+	};
 	return ob_mail_append(to, &p, sizeof p);
 }
 

@@ -10,8 +10,8 @@
 //
 //   - tell: a body was solved. Its owner tells those who have neighbours of it.
 //   - meet: a pair is new, of two ranks' bodies. Each tells the other where its body is, if it has not before.
-//   - give: another rank solves the body from now on (regions.h). It gets its motion and its neighbours', and what is
-//     known of its pairs.
+//   - give: another rank solves the body from now on (rank_islands.h). It gets its motion and its neighbours', and
+//     what is known of its pairs.
 //   - gather: somebody looks at the universe (ob_peers.look). All ranks get all motions.
 //   - share: somebody writes a checkpoint. All ranks get what is known of all pairs.
 //

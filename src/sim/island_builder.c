@@ -674,8 +674,8 @@ static uint64_t share_of(uint64_t total, uint32_t count)
 static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
-	const uint32_t all = least_of(ob_universe_simulators(p->u), data->objects_max), unsolved = data->count->unsolved,
-		       each = ob_universe_simulators(p->u) / ob_universe_ranks(p->u),
+	const uint32_t all = least_of(ob_universe_simulators(p->u), data->objects_max),
+		       unsolved = data->count->unsolved, each = ob_universe_simulators(p->u) / ob_universe_ranks(p->u),
 		       first = least_of(ob_universe_rank(p->u) * each, all);
 	shares s = { .first = first,
 		     .count = least_of(least_of(each, all - first), p->ids),

@@ -10,8 +10,8 @@ enum { OB_ISLANDS_MANY = 256 }; // bodies that are due: for fewer the gate would
 enum { OB_ISLANDS_AT_ONCE = 32 }; // of which something is listed, or published: some ten us
 
 // Groups the objects that are due (ob_schedule.due), and those that they touch or are expected to, into islands, and
-// the islands into chunks of about equal work, largest first; of several ranks each does so with its own bodies, a chunk
-// for each of its simulators. Islands that an awake object touches, or is expected to, wake.
+// the islands into chunks of about equal work, largest first; of several ranks each does so with its own bodies, a
+// chunk for each of its simulators. Islands that an awake object touches, or is expected to, wake.
 //
 //   begin ──> link .. link ──> list members ──> list pairs .. list pairs ──> deal
 //             tasks, each once    ^             tasks, each once

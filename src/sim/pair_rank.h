@@ -13,8 +13,8 @@ bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k);
 bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k);
 // Whether the pair is of two ranks' bodies.
 bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k);
-// The object was solved in this step, by another rank. Those of its pairs that are checked here are, when it is over; what
-// is known of their distance is void if islands have been merged.
+// The object was solved in this step, by another rank. Those of its pairs that are checked here are, when it is over;
+// what is known of their distance is void if islands have been merged.
 void ob_pairs_follow(ob_universe *u, uint32_t id);
 
 #endif

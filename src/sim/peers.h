@@ -4,20 +4,21 @@
 //
 //   arranger, at the end of a phase:  outboxes of its own simulators -> mail -> all ranks' mail -> commit
 //
-// Pairs, which are many, each rank arranges alone, those of the islands that it solves:
+// A body is one rank's own, which arranges what concerns it:
 //
-//   what all ranks have alike               what is with one
-//   which pairs there are, and which touch  what touching pairs keep between steps (holdings.h)
-//   islands, their members, who solves them their pairs in the order of their solver (island_builder.c)
-//   when each object is due, its fat AABB   which pairs are to be checked, and when again (late_contacts.c)
-//                                           motions, which its neighbours have, too (halo.h)
+//   what all ranks have alike                what is with one
+//   each object's fat AABB, and its home     when it is due, in which island it is (rank_islands.h), its motion, which
+//   (table/home.h)                             its neighbours have, too (halo.h)
+//   which pairs there are, and which touch   when a pair is to be checked (pair_rank.h, late_contacts.c), what it keeps
+//                                              between steps while it touches (holdings.h)
+//   which pairs of two ranks' bodies are expected to touch, or have touched late
 //
-// What the check of a pair has found goes to who has one of its objects, where it changes something, and to all, where
-// it says whom the pair links.
+// What the check of a pair of two ranks' bodies has found goes to the other, where it changes something, and to all,
+// where it says that the pair links them.
 //
-// With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with, and those before
-// it. Where two differ, all find out about which object, and the run ends. An arranger whose run is over, for whatever reason, says
-// so in place of a mail, so nobody waits for it.
+// With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with, and those
+// before it. Where two differ, all find out about which object, and the run ends. An arranger whose run is over, for
+// whatever reason, says so in place of a mail, so nobody waits for it.
 #ifndef OB_SIM_PEERS_H
 #define OB_SIM_PEERS_H
 
@@ -56,8 +57,8 @@ typedef struct ob_parcel {
 	uint32_t kind, bytes; // with this, which it begins with: a multiple of 8
 } ob_parcel;
 
-// What the phase begins with, before any of it is committed, and all have alike: how many pairs there are, and who looks
-// for others.
+// What the phase begins with, before any of it is committed, and all have alike: how many pairs there are, and who
+// looks for others.
 uint64_t ob_peers_digest(const ob_universe *u);
 // Empties the mail but for a head. false: no memory.
 bool ob_peers_begin(ob_mail *mail);

@@ -130,7 +130,8 @@ static uint32_t rank_of(const ob_universe *u, uint32_t simulator)
 
 // ---- what this rank has
 
-// In whose region most of its bodies are, by their votes (Boyer and Moore, MJRTY: a fast majority vote algorithm, 1981).
+// In whose region most of its bodies are, by their votes (Boyer and Moore, MJRTY: a fast majority vote algorithm,
+// 1981).
 static void add_body(island *is, const ob_universe *u, const ob_regions *regions, uint32_t id)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -213,10 +214,9 @@ static bool may_spill(const ob_rank_islands *s, const ob_universe *u, const isla
 static bool write_summary(ob_rank_islands *s, ob_universe *u, const ob_regions *regions, const uint32_t *pair,
 			  uint32_t pairs, uint32_t fliers)
 {
-	summary own = { .islands = s->islands,
-			.moves = fliers > 0,
-			.least = UINT64_MAX,
-			.work = ob_regions_work_of(regions) };
+	summary own = {
+		.islands = s->islands, .moves = fliers > 0, .least = UINT64_MAX, .work = ob_regions_work_of(regions)
+	};
 	const size_t at = s->out.used;
 	bool fits = ob_mail_append(&s->out, &own, sizeof own);
 	fits = fits && (is_merging(u) || add_loads(s, u, &own.loads)) && add_ends(s, u, pair, pairs, &own.ends);

@@ -26,8 +26,8 @@ typedef struct ob_regions ob_regions;
 ob_regions *ob_regions_create(const ob_universe *u); // NULL: no memory
 void ob_regions_destroy(ob_regions *r); // NULL is allowed
 
-// After a pause, or scripts, by which bodies have come or gone: what is new gets a home, where it lives. true: all have got
-// one, for it was the first time.
+// After a pause, or scripts, by which bodies have come or gone: what is new gets a home, where it lives. true: all have
+// got one, for it was the first time.
 bool ob_regions_settle(ob_regions *r, ob_universe *u);
 // Fat AABBs have changed: those on the requery list.
 void ob_regions_follow(ob_regions *r, const ob_universe *u);
@@ -39,8 +39,8 @@ typedef struct ob_regions_work {
 ob_regions_work ob_regions_work_of(const ob_regions *r);
 // By all ranks alike, with the sums of all: cuts anew, if that is worth it. false: the step has failed.
 bool ob_regions_renew(ob_regions *r, ob_universe *u, ob_peers *p, const ob_regions_work *sum);
-// Before the islands of a step are given to ranks: bodies of this one's that touch nothing, and are in none of them, but
-// in another rank's region.
+// Before the islands of a step are given to ranks: bodies of this one's that touch nothing, and are in none of them,
+// but in another rank's region.
 const uint32_t *ob_regions_find_fliers(ob_regions *r, const ob_universe *u, uint32_t *count);
 // So much work goes to another rank for balance alone.
 void ob_regions_spill(ob_regions *r, uint64_t work);

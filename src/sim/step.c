@@ -522,8 +522,7 @@ static ob_phase build_islands(const scheduler *c)
 static ob_phase after_links(const scheduler *c)
 {
 	bool islands = true; // of whichever rank
-	if (ob_universe_ranks(c->u) > 1 &&
-	    !ob_commit_share_islands(c->sim->committer, c->u, &c->sim->peers, &islands))
+	if (ob_universe_ranks(c->u) > 1 && !ob_commit_share_islands(c->sim->committer, c->u, &c->sim->peers, &islands))
 		return OB_PHASE_PAUSE;
 	ob_islands_list_members(c->u);
 	return islands ? OB_PHASE_LISTS : OB_PHASE_COMPLETE;

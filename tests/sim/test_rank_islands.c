@@ -18,7 +18,15 @@
 #include "table/home.h"
 #include "table/layout.h"
 
-enum { RANKS = LITTLE_RANKS, EACH = 2, BODIES = 240, MOST_PAIRS = 4 * BODIES, SEEDS = 60, PINNED = 7, NONE = UINT32_MAX };
+enum {
+	RANKS = LITTLE_RANKS,
+	EACH = 2,
+	BODIES = 240,
+	MOST_PAIRS = 4 * BODIES,
+	SEEDS = 60,
+	PINNED = 7,
+	NONE = UINT32_MAX
+};
 
 // The same for all ranks, and what each has come to.
 typedef struct story {
@@ -75,8 +83,8 @@ static void begin_story(story *s)
 							     .b = b,
 							     .record = OB_NO_RECORD,
 							     .limit = 1e9,
-							     .active = !across && kind < .3,
-							     .expected = kind > .8 && !(s->asleep[a] && s->asleep[b]) };
+							     .active = !across && kind<.3, .expected = kind> .8 &&
+								       !(s->asleep[a] && s->asleep[b]) };
 		}
 }
 
@@ -104,8 +112,8 @@ static void flood(story *s)
 		s->lead[i] = awake[group[i]] ? group[i] : NONE;
 }
 
-// Late contacts, of bodies in islands and others: those of the islands that they join are solved again, and sleepers with
-// what they touch. Those that are solved again come to be the only ones with a leader.
+// Late contacts, of bodies in islands and others: those of the islands that they join are solved again, and sleepers
+// with what they touch. Those that are solved again come to be the only ones with a leader.
 static void flood_late(story *s)
 {
 	uint32_t group[BODIES];
@@ -258,7 +266,8 @@ static void check_step(story *s)
 	for (uint32_t r = 0; r < RANKS; r++)
 		total += s->load[r];
 	for (uint32_t r = 0; r < RANKS && !s->met && !s->pinned; r++)
-		CHECK(s->load[r] <= total / RANKS + total / (10 * RANKS) + 2 + s->largest || s->load[r] <= LITTLE + s->largest);
+		CHECK(s->load[r] <= total / RANKS + total / (10 * RANKS) + 2 + s->largest ||
+		      s->load[r] <= LITTLE + s->largest);
 	for (uint32_t id = 0; id < BODIES; id++) {
 		uint32_t pins = 0;
 		for (uint32_t k = 0; k < BODIES; k++)
