@@ -485,8 +485,9 @@ static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 	return r->scene;
 }
 
-// One universe on several machines: simulators in processes that hand over what they find, an end where one dies, and
-// on this rank no more than that and its checkpoints; what is made of the run is rank 0's.
+// One universe on several machines: simulators in processes that hand over what they find and can spoil nothing else,
+// for most of what a rank has no other compares; an end where one dies; and on this rank no more than that and its
+// checkpoints: what is made of the run is rank 0's.
 static bool share(run *r, ob_ranks ranks, ob_error *e)
 {
 	ob_run_request *q = &r->request;
@@ -495,9 +496,11 @@ static bool share(run *r, ob_ranks ranks, ob_error *e)
 			       "on several ranks a universe has object simulators in a pool: leave --arch monolith and "
 			       "--workers objects away");
 	if (q->harden >> OB_HARDEN_PRIVILEGES)
-		return ob_fail(e, "--harden: several ranks speak over the network: take outbox,checksum,pages at most");
+		return ob_fail(e,
+			       "--harden: several ranks always take outbox,checksum,pages, and as they speak over the "
+			       "network no more than that");
 	q->isolation = OB_ISOLATION_PROCESS;
-	q->harden |= 1 << OB_HARDEN_OUTBOX;
+	q->harden |= 1 << OB_HARDEN_OUTBOX | 1 << OB_HARDEN_CHECKSUM | 1 << OB_HARDEN_PAGES;
 	q->on_death = OB_ON_DEATH_ABORT;
 	q->patience = 1e9; // another rank may be slow
 	if (ranks.rank == 0)

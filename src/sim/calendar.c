@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "table/home.h"
+
 ob_calendar ob_calendar_of_objects(const ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -31,9 +33,14 @@ void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step)
 
 void ob_calendar_enter_due(const ob_universe *u, uint32_t id)
 {
-	const ob_schedule *s = &ob_universe_step_data(u)->schedule[id];
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_schedule *s = &data->schedule[id];
 	const ob_calendar solve = ob_calendar_of_objects(u);
-	ob_calendar_set(&solve, id, ob_schedule_is_dynamic(s) ? s->due : UINT32_MAX);
+	const uint32_t due = ob_schedule_is_dynamic(s) ? s->due : UINT32_MAX;
+	const bool here = ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, id));
+	ob_calendar_set(&solve, id, here ? due : UINT32_MAX);
+	if (!here && due < data->count->next_due)
+		data->count->next_due = due;
 }
 
 // Four side by side; compared as signed numbers, which every processor can.

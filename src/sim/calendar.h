@@ -4,10 +4,10 @@
 //   of_64      urgency, urgency, ..  urgency, ..
 //   one        urgency, urgency, ..                  of each: the sooner, the more; 0: it has no entry
 //
-// One says when each object must be solved (ob_schedule.due), one when each pair must be checked (sim/late_contacts.h).
-// Who looks for what is due goes down where that is said, so he reads some cache lines for each that he finds, and one
-// word in 4096 of the rest. A level that says too much, because an entry was put off, is put right by whoever goes down
-// there.
+// One says when each object must be solved (ob_schedule.due), one when each pair must be checked (sim/late_contacts.h);
+// of several ranks each of those that are its own. Who looks for what is due goes down where that is said, so he reads
+// some cache lines for each that he finds, and one word in 4096 of the rest. A level that says too much, because an
+// entry was put off, is put right by whoever goes down there.
 //
 // Turned down: a timing wheel, of lists. It follows three pointers for each entry that is set, which costs more than
 // the check of most pairs; here what is due comes in ascending order, as it lies in memory.
@@ -32,7 +32,8 @@ ob_calendar ob_calendar_of_pairs(const ob_universe *u);
 // The entry of i is for this step (from 0) from now on; UINT32_MAX or more: it has none. Several workers may set entries
 // of their own at the same time, while nobody lists any.
 void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step);
-// The object's schedule record has changed: its entry is for the step in which that says it is due. As above.
+// The object's schedule record has changed, or its home: its entry is for the step in which that says it is due, of
+// several ranks where it lives. As above.
 void ob_calendar_enter_due(const ob_universe *u, uint32_t id);
 // Is there an entry for this step, or for one before?
 bool ob_calendar_is_due(const ob_calendar *c, uint64_t step);

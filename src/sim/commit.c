@@ -8,7 +8,7 @@
 #include "sim/budget.h"
 #include "sim/calendar.h"
 #include "sim/halo.h"
-#include "sim/holdings.h"
+#include "sim/pair_rank.h"
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };
@@ -453,17 +453,26 @@ const ob_found_result *ob_committer_result_of(const ob_universe *u, const ob_mai
 	return whole;
 }
 
-static bool was_given(ob_committer *c, const ob_universe *u, uint32_t worker, uint32_t id)
+// Whether it was given the object's island: what other ranks' simulators were given those know, and here that it lives
+// there.
+static bool solves(const ob_committer *c, const ob_universe *u, uint32_t worker, uint32_t id)
 {
-	return owns_island(c, worker, ob_universe_step_data(u)->result_island[id]) && !c->had[id]++;
+	return ob_worker_is_here(u, worker) ? owns_island(c, worker, ob_universe_step_data(u)->result_island[id])
+					    : ob_home_rank(u, id) == ob_universe_rank_of(u, worker);
 }
 
-// Each result of several ranks is counted as it comes, for not every rank knows the motion before; one that comes again
-// counts from the first.
-static void count_woken(ob_universe *u, uint32_t id, uint32_t state)
+static bool was_given(ob_committer *c, const ob_universe *u, uint32_t worker, uint32_t id)
+{
+	return solves(c, u, worker, id) && !c->had[id]++;
+}
+
+// Of several ranks, which tell each other how many of theirs wake; a result that comes again counts from the first.
+static void count_woken(ob_committer *c, ob_universe *u, uint32_t id, uint32_t state)
 {
 	const uint32_t before = ob_universe_step_data(u)->schedule[id].state;
-	ob_step_woken(u, (int32_t)(state != OB_SCHEDULE_ASLEEP) - (int32_t)(before != OB_SCHEDULE_ASLEEP));
+	const int32_t woken = (int32_t)(state != OB_SCHEDULE_ASLEEP) - (int32_t)(before != OB_SCHEDULE_ASLEEP);
+	c->woken += woken;
+	ob_step_woken(u, woken);
 }
 
 static void note_before(ob_committer *c, const ob_universe *u, const ob_mail_record *from, uint32_t id)
@@ -483,46 +492,20 @@ static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_
 	if (!r || !was_given(c, u, from->worker, r->id))
 		return "has solved what it was not given";
 	if (!is_sound(&r->motion, u) || !ob_is_sound_state(r->state) ||
-	    (restored && (from->bytes != sizeof *r || ob_worker_is_here(u, from->worker))) ||
-	    (c->halo && !restored && !ob_halo_has(c->halo, r->id)))
+	    (restored && (from->bytes != sizeof *r || ob_worker_is_here(u, from->worker))))
 		return "has found a motion that makes no sense";
-	c->due--;
 	if (c->halo && !restored)
 		note_before(c, u, from, r->id);
-	if (c->halo) {
-		count_woken(u, r->id, r->state);
+	if (c->halo)
 		ob_halo_note(c->halo, r->id, &r->motion);
-	}
-	write_result(u, r);
-	return NULL;
-}
-
-static uint32_t id_of_solved(const ob_solved_record *r, uint32_t i)
-{
-	return r->body[i].id & ((1u << OB_SOLVED_ID_BITS) - 1);
-}
-
-static const char *commit_solved(ob_committer *c, ob_universe *u, const ob_mail_record *from)
-{
-	const ob_solved_record *r = from->data;
-	const uint32_t n = from->bytes / (uint32_t)sizeof *r->body;
-	if (from->bytes != n * sizeof *r->body || n > OB_SOLVED_AT_ONCE || ob_worker_is_here(u, from->worker))
-		return "has handed over what is unknown";
-	for (uint32_t i = 0; i < n; i++) {
-		const uint32_t id = id_of_solved(r, i),
-			       state = OB_SCHEDULE_AWAKE + (r->body[i].id >> OB_SOLVED_ID_BITS);
-		if (id >= ob_universe_ids(u) || !was_given(c, u, from->worker, id))
-			return "has solved what it was not given";
-		if (!ob_is_sound_state(state))
-			return "has found what makes no sense";
-		ob_schedule *s = &ob_universe_step_data(u)->schedule[id];
+	if (ob_worker_is_here(u, from->worker))
 		c->due--;
-		count_woken(u, id, state);
-		ob_halo_note(c->halo, id, NULL);
-		s->state = state;
-		s->since = (uint32_t)ob_step_count(u) + 1;
-		s->due = r->body[i].due;
-		ob_calendar_enter_due(u, id);
+	if (c->halo && ob_worker_is_here(u, from->worker))
+		count_woken(c, u, r->id, r->state);
+	write_result(u, r);
+	if (!ob_worker_is_here(u, from->worker)) {
+		ob_home_set(u, r->id, from->worker);
+		ob_pairs_follow(u, r->id);
 	}
 	return NULL;
 }
@@ -530,8 +513,7 @@ static const char *commit_solved(ob_committer *c, ob_universe *u, const ob_mail_
 static const char *commit_bounds(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const bounds_record *r = from->data;
-	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) ||
-	    !owns_island(c, from->worker, ob_universe_step_data(u)->result_island[r->id]))
+	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) || !solves(c, u, from->worker, r->id))
 		return "has moved what it was not given";
 	for (int i = 0; i < 3; i++)
 		if (!(r->box[i] <= r->box[3 + i]) || isinf(r->box[i]) || isinf(r->box[3 + i]))
@@ -586,14 +568,13 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 	    r->pair >= ob_pairs_end(data))
 		return "has found a contact that does not exist";
 	const ob_pair_key *k = &data->pair[r->pair];
-	const uint32_t island =
-		data->result_island[k->a] != NONE ? data->result_island[k->a] : data->result_island[k->b];
-	if ((!k->in_island && ob_worker_is_here(u, from->worker)) || !owns_island(c, from->worker, island))
+	const bool here = ob_worker_is_here(u, from->worker);
+	if ((here && !k->in_island) || !(solves(c, u, from->worker, k->a) || solves(c, u, from->worker, k->b)))
 		return "has found a contact of bodies that it was not given";
 	if (!is_sound_contact(r, whole))
 		return "has found a contact that makes no sense";
 	const uint32_t record = write_contact_key(u, r);
-	if (!r->active && k->record != OB_NO_RECORD && !ob_worker_is_here(u, from->worker))
+	if (!r->active && k->record != OB_NO_RECORD && !here)
 		note_pair(u, &c->parted, r->pair);
 	if (record == OB_NO_RECORD)
 		return NULL;
@@ -609,7 +590,7 @@ static const char *commit_touch(ob_committer *c, ob_universe *u, const ob_mail_r
 	const touch_record *r = from->data;
 	const ob_step_data *data = ob_universe_step_data(u);
 	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) || !data->script_of || !data->script_of[r->id] ||
-	    !owns_island(c, from->worker, data->result_island[r->id]))
+	    !solves(c, u, from->worker, r->id))
 		return "has felt for what it was not given";
 	if ((r->other >= ob_universe_ids(u) && r->other != OB_NO_OBJECT) || !isfinite(r->impulse) || !finite3(r->point))
 		return "has felt what makes no sense";
@@ -707,6 +688,8 @@ static const char *commit_check(ob_committer *c, ob_universe *u, const ob_mail_r
 	write_check(u, r);
 	if (!ob_worker_is_here(u, from->worker))
 		note_pair(u, &c->checked, r->pair);
+	if (c->ranks > 1 && (r->late || r->expected) && ob_pair_is_across(u, &ob_universe_step_data(u)->pair[r->pair]))
+		note_pair(u, &c->meetings, r->pair);
 	return NULL;
 }
 
@@ -746,8 +729,8 @@ static const char *commit_end(ob_universe *u, const ob_mail_record *from)
 	ob_worker_set_objects(u, from->worker, end->objects);
 	if (end->late)
 		ob_late_contacts_note(u);
-	if (end->next_check && end->next_check - 1 < data->count->next_check)
-		data->count->next_check = end->next_check - 1;
+	if (end->next_check && end->next_check - 1 < data->count->next_due)
+		data->count->next_due = end->next_check - 1;
 	ob_phase_worked(u, end->worked_ns, end->worked_ns);
 	*ob_worker_counters(u, from->worker) = end->counters;
 	return NULL;
@@ -765,8 +748,6 @@ static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase
 	case OB_RECORD_RESULT:
 	case OB_RECORD_RESTORED:
 		return islands ? commit_result(c, u, r) : "has solved what was not to be solved";
-	case OB_RECORD_SOLVED:
-		return islands ? commit_solved(c, u, r) : "has solved what was not to be solved";
 	case OB_RECORD_BOUNDS:
 		return islands ? commit_bounds(c, u, r) : "has moved what was not to be moved";
 	case OB_RECORD_EFFORT:
@@ -865,16 +846,6 @@ static void prefetch_body(const ob_committer *c, const ob_universe *u, uint32_t 
 		ob_prefetch_slot(u, id);
 }
 
-static void prefetch_solved(const ob_committer *c, const ob_universe *u, const ob_mail_record *r)
-{
-	const ob_solved_record *all = r->data;
-	for (uint32_t i = 0; i < r->bytes / sizeof *all->body && i < OB_SOLVED_AT_ONCE; i++) {
-		const uint32_t id = id_of_solved(all, i);
-		if (id < ob_universe_ids(u))
-			prefetch_body(c, u, id, false);
-	}
-}
-
 // What a record is about.
 static void prefetch_subject(const ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool commits)
 {
@@ -884,8 +855,6 @@ static void prefetch_subject(const ob_committer *c, const ob_universe *u, const 
 		prefetch_body(c, u, number, true);
 	else if ((r->kind == OB_RECORD_CONTACT || r->kind == OB_RECORD_CHECK) && number < data->pairs_max)
 		__builtin_prefetch(&data->pair[number], 1);
-	else if (commits && r->kind == OB_RECORD_SOLVED)
-		prefetch_solved(c, u, r);
 	else if (commits && r->kind == OB_RECORD_BOUNDS && number < data->objects_max)
 		__builtin_prefetch(data->bounds[number], 1);
 }

@@ -71,8 +71,13 @@ void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase);
 // each said of once. false: that was all.
 bool ob_commit_take_parted(ob_committer *c, uint32_t *pair);
 bool ob_commit_take_checked(ob_committer *c, uint32_t *pair);
-// Before islands are solved: what pairs keep goes to who solves them.
-bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p);
+// When bodies have got their homes: pairs that are expected to touch may be of two ranks' bodies, all of which know
+// them, from a checkpoint.
+void ob_commit_find_meetings(ob_committer *c, ob_universe *u);
+// Before islands are linked: those of its bodies that meet other ranks' are in islands.
+void ob_commit_involve_meetings(ob_committer *c, ob_universe *u);
+// Before their members are listed: each rank has those that it is to solve (rank_islands.h). islands: as there
+bool ob_commit_share_islands(ob_committer *c, ob_universe *u, ob_peers *p, bool *islands);
 // Puts what the other ranks' simulators have handed over to what was collected. digest: ob_peers_digest.
 bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest);
 // Which motions this rank has; NULL: there is but one.

@@ -5,8 +5,8 @@
 
 #include "sim/committer.h"
 #include "sim/digest.h"
-#include "sim/pairs.h"
-#include "sim/regions.h"
+#include "sim/island_builder.h"
+#include "sim/pair_rank.h"
 #include "table/home.h"
 
 bool ob_committer_share(ob_committer *c, const ob_universe *u)
@@ -15,11 +15,11 @@ bool ob_committer_share(ob_committer *c, const ob_universe *u)
 	c->halo = ob_halo_create(u);
 	c->regions = ob_regions_create(u);
 	c->dealt = calloc(c->ranks, sizeof *c->dealt);
-	c->solved_for = calloc(c->ranks, sizeof *c->solved_for);
+	c->rank_islands = ob_rank_islands_create(u);
 	c->to = calloc(c->ranks, sizeof *c->to);
 	c->told = calloc(c->ranks, sizeof *c->told);
 	c->heard = calloc(c->ranks, sizeof *c->heard);
-	return c->holdings && c->halo && c->regions && c->dealt && c->solved_for && c->to && c->told && c->heard;
+	return c->holdings && c->halo && c->regions && c->rank_islands && c->dealt && c->to && c->told && c->heard;
 }
 
 void ob_committer_finish_shared(ob_committer *c)
@@ -27,13 +27,15 @@ void ob_committer_finish_shared(ob_committer *c)
 	ob_mail_finish(&c->out);
 	ob_mail_finish(&c->parted);
 	ob_mail_finish(&c->checked);
+	ob_mail_finish(&c->meetings);
+	ob_mail_finish(&c->met);
 	ob_holdings_destroy(c->holdings);
 	ob_halo_destroy(c->halo);
 	ob_regions_destroy(c->regions);
+	ob_rank_islands_destroy(c->rank_islands);
 	for (uint32_t r = 0; c->dealt && r < c->ranks; r++)
 		ob_mail_finish(&c->dealt[r]);
 	free(c->dealt);
-	free(c->solved_for);
 	free(c->to);
 	free(c->told);
 	free(c->heard);
@@ -72,23 +74,6 @@ static uint32_t contact_bytes_for_others(const ob_committer *c, const ob_univers
 	return is_known(c, u, r->data) ? 0 : (uint32_t)offsetof(ob_found_contact, state);
 }
 
-static bool flush_solved(ob_committer *c, uint32_t worker, uint32_t to)
-{
-	ob_solved_bodies *s = &c->solved_for[to];
-	const ob_mail_record r = { worker, OB_RECORD_SOLVED, s->n * (uint32_t)sizeof *s->record.body, &s->record };
-	const bool fits = !s->n || ob_mail_append_record(&c->dealt[to], &r);
-	s->n = 0;
-	return fits;
-}
-
-static bool put_solved(ob_committer *c, uint32_t worker, uint32_t to, const ob_found_result *r)
-{
-	ob_solved_bodies *s = &c->solved_for[to];
-	s->record.body[s->n].id = r->id | (r->state - OB_SCHEDULE_AWAKE) << OB_SOLVED_ID_BITS;
-	s->record.body[s->n].due = r->due;
-	return ++s->n < OB_SOLVED_AT_ONCE || flush_solved(c, worker, to);
-}
-
 // all: everybody is told the motion; else those who have neighbours of the body.
 static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
 {
@@ -102,12 +87,8 @@ static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_reco
 		restored.data = ob_committer_result_of(u, r, &whole);
 	bool fits = true, kept; // whether it is what it was this rank finds out when it commits it
 	for (uint32_t to = 0; to < c->ranks; to++) {
-		if (to == c->rank)
+		if (to == c->rank || !c->to[to])
 			continue;
-		if (!c->to[to]) {
-			fits &= put_solved(c, r->worker, to, found);
-			continue;
-		}
 		if (!restores)
 			c->told[to] = ob_committer_digest_before(c, u, found->id, c->told[to], &kept);
 		fits &= ob_mail_append_record(&c->dealt[to], restores ? &restored : r);
@@ -115,20 +96,19 @@ static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_reco
 	return fits;
 }
 
-// Who must know what has come of a check: all, if it says whom the pair links; else who has one of its objects.
+// Who must know what has come of a check of two ranks' bodies: all, if it says that the pair links them, or did; else
+// who has one of them. Of others nobody must.
 static void find_concerned(ob_committer *c, const ob_universe *u, const ob_mail_record *r)
 {
 	const ob_check_record *found = r->data;
 	const ob_step_data *data = ob_universe_step_data(u);
 	const ob_pair_key *k =
 		r->bytes == sizeof *found && found->pair < ob_pairs_end(data) ? &data->pair[found->pair] : NULL;
-	const bool all = !k || k->active || k->expected || k->late || found->expected || found->late;
+	const bool across = k && ob_pair_is_across(u, k),
+		   all = across && (k->expected || k->late || found->expected || found->late);
 	memset(c->to, all, c->ranks * sizeof *c->to);
-	for (int side = 0; !all && side < 2; side++) {
-		const uint32_t id = side ? k->b : k->a;
-		if (ob_schedule_is_dynamic(&data->schedule[id]))
-			c->to[ob_home_rank(u, id)] = true;
-	}
+	for (int side = 0; across && side < 2; side++)
+		c->to[ob_home_rank(u, side ? k->b : k->a)] = true;
 }
 
 static bool put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
@@ -137,6 +117,8 @@ static bool put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_re
 	bool fits = true;
 	if (r->kind == OB_RECORD_RESULT)
 		return put_result(c, u, r, all);
+	if (r->kind == OB_RECORD_EFFORT) // it is of an island, which nobody else has
+		return true;
 	if (r->kind == OB_RECORD_CHECK)
 		find_concerned(c, u, r);
 	if (r->kind == OB_RECORD_CONTACT && !(told.bytes = contact_bytes_for_others(c, u, r)))
@@ -144,8 +126,6 @@ static bool put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_re
 	for (uint32_t to = 0; to < c->ranks; to++) {
 		if (to == c->rank || (r->kind == OB_RECORD_CHECK && !c->to[to]))
 			continue;
-		if (r->kind == OB_RECORD_END)
-			fits &= flush_solved(c, r->worker, to);
 		fits &= ob_mail_append_record(&c->dealt[to], &told);
 	}
 	return fits;
@@ -199,7 +179,9 @@ bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase p
 	const ob_peers_head head = { .phase = phase,
 				     .digest = digest,
 				     .damaged = damaged != OB_NO_OBJECT ? 1 + damaged : c->damaged,
-				     .differs = c->differs };
+				     .differs = c->differs,
+				     .woken = c->woken };
+	c->woken = 0;
 	c->dealt_to_each = islands || phase == OB_PHASE_FORECAST || phase == OB_PHASE_LATE_CONTACTS;
 	c->all = c->dealt_to_each ? deal_records(c, u, p, head) : say_to_all(c, u, p, head);
 	return c->all;
@@ -224,42 +206,77 @@ bool ob_commit_take_checked(ob_committer *c, uint32_t *pair)
 	return take_last(&c->checked, pair);
 }
 
-// false: they make no sense.
-static bool take_parcels(ob_committer *c, ob_universe *u, const char *from, size_t bytes)
+static uint32_t pair_at(const ob_mail *list, size_t i)
 {
-	const char *parcel;
-	ob_parcel head;
-	bool sound = true;
-	while (sound && (parcel = ob_parcel_next(&from, &bytes, &head, &sound)))
-		sound = head.kind == OB_PARCEL_KEPT ? ob_holdings_take(c->holdings, u, parcel, head.bytes)
-						    : ob_halo_take(c->halo, u, parcel, &head);
-	return sound;
+	uint32_t pair;
+	memcpy(&pair, list->bytes + i * sizeof pair, sizeof pair);
+	return pair;
 }
 
-bool ob_commit_give(ob_committer *c, ob_universe *u, ob_peers *p)
+// Of the pairs that have linked two ranks' bodies, those that do: that have touched late, or else are expected to
+// touch.
+static bool list_meetings(const ob_committer *c, const ob_universe *u, bool late, ob_mail *to)
 {
-	const size_t *at;
-	uint32_t fliers;
-	const uint32_t *flier = ob_regions_settle_fliers(c->regions, u, &fliers);
-	bool moved = false, fits = true;
-	for (uint32_t to = 0; to < c->ranks; to++)
-		fits &= ob_peers_begin(&c->dealt[to]);
-	fits = fits && ob_holdings_move(c->holdings, u, c->dealt) &&
-	       ob_halo_move(c->halo, u, flier, fliers, c->dealt, &moved);
-	for (uint32_t i = 0; i < fliers; i++)
-		ob_pairs_look(u, flier[i]); // who checks them has changed
+	const ob_step_data *data = ob_universe_step_data(u);
+	const size_t all = c->meetings.used / sizeof(uint32_t);
+	bool fits = true;
+	ob_mail_clear(to);
+	for (size_t i = 0; i < all; i++) {
+		const uint32_t pair = pair_at(&c->meetings, i);
+		const ob_pair_key *k = &data->pair[pair];
+		if ((late ? k->late : k->expected) && ob_pair_is_across(u, k))
+			fits &= ob_mail_append(to, &pair, sizeof pair);
+	}
+	return fits;
+}
+
+void ob_commit_find_meetings(ob_committer *c, ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	bool fits = true;
+	ob_mail_clear(&c->meetings);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		if (k->expected && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
+		    ob_pair_is_across(u, k))
+			fits &= ob_mail_append(&c->meetings, &i, sizeof i);
+	}
 	if (!fits)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-	if (!fits || !moved)
-		return fits;
-	const char *all = ob_peers_deal(p, u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, c->dealt, &at);
-	for (uint32_t r = 0; all && r < c->ranks; r++)
-		if (r != c->rank && !take_parcels(c, u, all + at[r] + sizeof(ob_peers_head),
-						  at[r + 1] - at[r] - sizeof(ob_peers_head))) {
-			ob_peers_blame(p, u, r);
-			return false;
-		}
-	return all;
+}
+
+void ob_commit_involve_meetings(ob_committer *c, ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (!list_meetings(c, u, false, &c->met)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return;
+	}
+	const ob_mail those = c->meetings; // from now on all that there are
+	c->meetings = c->met;
+	c->met = those;
+	for (size_t i = 0; i < c->meetings.used / sizeof(uint32_t); i++) {
+		const ob_pair_key *k = &data->pair[pair_at(&c->meetings, i)];
+		for (int side = 0; side < 2; side++)
+			if (ob_home_rank(u, side ? k->b : k->a) == c->rank)
+				ob_islands_involve(u, side ? k->b : k->a);
+	}
+}
+
+bool ob_commit_share_islands(ob_committer *c, ob_universe *u, ob_peers *p, bool *islands)
+{
+	const ob_rank_parts parts = { c->halo, c->holdings, c->regions };
+	if (!list_meetings(c, u, ob_universe_step_data(u)->count->merged, &c->met)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return false;
+	}
+	const uint32_t *pair = (const uint32_t *)(const void *)c->met.bytes,
+		       pairs = (uint32_t)(c->met.used / sizeof *pair);
+	if (!ob_rank_islands_share(c->rank_islands, u, p, &parts, pair, pairs, islands))
+		return false;
+	for (uint32_t i = 0; i < pairs; i++) // who hears of it no more would keep it for ever
+		ob_universe_step_data(u)->pair[pair[i]].late = 0;
+	return true;
 }
 
 ob_halo *ob_commit_halo(const ob_committer *c)

@@ -4,7 +4,7 @@
 #define OB_SIM_COMMITTER_H
 
 #include "sim/commit.h"
-#include "sim/holdings.h"
+#include "sim/rank_islands.h"
 
 // Records of a mail, read some before they are wanted: what they will be compared with, or written to, lies anywhere.
 enum { OB_RECORDS_AHEAD = 16 };
@@ -26,7 +26,8 @@ typedef enum ob_record_kind {
 	OB_RECORD_TOUCH,
 	OB_RECORD_SCRIPT,
 	OB_RECORD_POSTS,
-	OB_RECORD_SOLVED, // from here on by arrangers alone, in place of an OB_RECORD_RESULT
+	// By arrangers alone, in place of an OB_RECORD_RESULT: a whole ob_found_result, for who is to have this motion
+	// and may lack the one before.
 	OB_RECORD_RESTORED,
 } ob_record_kind;
 
@@ -38,36 +39,24 @@ typedef struct ob_check_record {
 	double limit;
 } ob_check_record;
 
-// What a rank hears of bodies that none of its own is near: OB_RECORD_SOLVED, of several at a time. Who may lack the
-// motion before, but is to have this one, gets an OB_RECORD_RESTORED, a whole ob_found_result.
-enum { OB_SOLVED_AT_ONCE = 64, OB_SOLVED_ID_BITS = 30 };
-typedef struct ob_solved_record {
-	struct {
-		uint32_t id; // the state above it, from OB_SCHEDULE_AWAKE on
-		uint32_t due;
-	} body[OB_SOLVED_AT_ONCE];
-} ob_solved_record;
-typedef struct ob_solved_bodies {
-	uint32_t n;
-	ob_solved_record record; // of the simulator whose records are put
-} ob_solved_bodies;
-
 struct ob_committer {
 	ob_mail mail; // of the simulators that are here
 	// Of several ranks, else NULL, or 0
 	ob_holdings *holdings;
 	ob_halo *halo;
-	struct ob_regions *regions;
+	ob_regions *regions;
+	ob_rank_islands *rank_islands;
 	uint32_t rank, ranks;
 	ob_mail out, *dealt; // what the others get: all the same, or [ranks] each its own ..
-	ob_solved_bodies *solved_for; // .. and is still to get
 	bool *to; // [ranks]: who is told a motion
 	uint64_t *told, *heard; // [ranks]: digests of what the motions that each is told, has told, began with
 	uint64_t damaged; // as ob_peers_head has it
 	bool differs; // likewise
-	// Pairs, by their index, that simulators of other ranks have had: that touched and do no longer; that were
-	// checked
-	ob_mail parted, checked;
+	int32_t woken; // likewise
+	// Pairs, by their index: that simulators of other ranks have found to touch no longer; that they have checked;
+	// that have linked two ranks' bodies since islands were built, and of those the ones that do; the last two are
+	// the same on all ranks.
+	ob_mail parted, checked, meetings, met;
 	const char *all; // what all have said; that of rank r begins at at[r], its records so many bytes on
 	const size_t *at;
 	size_t ahead;

@@ -1,6 +1,6 @@
 // Whose motions a rank has, of several (peers.h): those of the bodies that it has solved last, its own, and of their
-// neighbours, which it must know to check pairs: its halo. Of all others it knows when they are due, and where they
-// cannot leave (their fat AABBs), and no more.
+// neighbours, which it must know to check pairs: its halo. Of all others it knows where they cannot leave (their fat
+// AABBs), and no more: what it has of their motions may be of long ago.
 //
 //   rank 0's bodies    rank 1's bodies
 //   o o o o o o o o  | n n . . . . . .     rank 0     o   its own
@@ -8,11 +8,10 @@
 //
 // All ranks know all pairs, so a body's owner knows who has to hear of it, and when:
 //
-//   - tell: a body was solved. Its owner tells the motion to those who have neighbours of it, to all others that it
-//   was.
+//   - tell: a body was solved. Its owner tells those who have neighbours of it.
 //   - meet: a pair is new, of two ranks' bodies. Each tells the other where its body is, if it has not before.
-//   - move: another rank solves the body from now on (regions.h). It gets its motion and its neighbours', and what is
-//     known of its pairs.
+//   - give: another rank solves the body from now on (rank_islands.h). It gets its motion and its neighbours', and
+//     what is known of its pairs.
 //   - gather: somebody looks at the universe (ob_peers.look). All ranks get all motions.
 //   - share: somebody writes a checkpoint. All ranks get what is known of all pairs.
 //
@@ -37,11 +36,6 @@ void ob_halo_destroy(ob_halo *h); // NULL is allowed
 // is new gets an owner, where it has none.
 void ob_halo_settle(ob_halo *h, ob_universe *u);
 
-// Whether the body's motion is here, as of before the step; and once it was solved, what was found. Of all [objects]:
-// not 0 = the first is not.
-bool ob_halo_has(const ob_halo *h, uint32_t id);
-bool ob_halo_has_found(const ob_halo *h, uint32_t id);
-const uint8_t *ob_halo_missing(const ob_halo *h);
 // Whether any rank may lack any.
 bool ob_halo_is_partial(const ob_halo *h);
 void ob_halo_part(ob_halo *h); // from now on
@@ -56,8 +50,10 @@ void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at);
 // A body of this rank's was solved: to[r] := whether rank r is told its motion; all: everybody is. Returns whether
 // somebody who is told may lack what it had before.
 bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to);
-// What another rank, or this one, says of a body that was solved: its motion, to be staged; or none, NULL.
+// What another rank, or this one, says of a body that was solved: its motion, to be staged.
 void ob_halo_note(ob_halo *h, uint32_t id, const ob_motion *staged);
+// The next of other ranks' bodies of which a motion was staged, each once. false: that was all.
+bool ob_halo_take_heard(ob_halo *h, uint32_t *id);
 // What was staged of the body is published.
 void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id);
 // The digest of its motion of before the step. false: it is not what it was.
@@ -70,10 +66,11 @@ bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p);
 // Between two steps, too: until when each pair is known to be apart. A run that goes on from there must know as much,
 // for when a pair is looked at again is when it may begin to touch.
 bool ob_halo_share_pairs(ob_halo *h, ob_universe *u, ob_peers *p);
-// When islands have been dealt: what goes to rank r into mail[r]. also: bodies that are in none and yet live with
-// another rank now. moved: whether any rank has something to say. false: no memory.
-bool ob_halo_move(ob_halo *h, const ob_universe *u, const uint32_t *also, uint32_t count, ob_mail *mail, bool *moved);
-// Of those, a parcel from another rank. false: it makes no sense.
+// The body lives with that simulator from now on: all ranks hear of it.
+void ob_halo_rehome(ob_halo *h, ob_universe *u, uint32_t id, uint32_t simulator);
+// It was this rank's: what goes to where it lives now. false: no memory.
+bool ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *mail);
+// Of that, a parcel from another rank. false: it makes no sense.
 bool ob_halo_take(ob_halo *h, ob_universe *u, const char *parcel, const ob_parcel *head);
 
 #endif

@@ -12,7 +12,6 @@ enum { ALL = 0 }; // a holder
 struct ob_holdings {
 	uint16_t *holder; // [record]: 1 + a rank, or ALL. Who is neither this one nor ALL may have given it to another
 			  // since
-	uint16_t *solver; // [object]: 1 + the rank that solved it last; 0 = none has yet. What touches it is held there
 	uint64_t (*digest)[2]; // [record], of each version that is here; 0 = it is not known
 	ob_mail out;
 };
@@ -32,9 +31,8 @@ ob_holdings *ob_holdings_create(const ob_universe *u)
 	if (!h)
 		return NULL;
 	h->holder = calloc(records, sizeof *h->holder);
-	h->solver = calloc(ob_universe_capacity(u), sizeof *h->solver);
 	h->digest = calloc(records, sizeof *h->digest);
-	if (h->holder && h->solver && h->digest)
+	if (h->holder && h->digest)
 		return h;
 	ob_holdings_destroy(h);
 	return NULL;
@@ -45,7 +43,6 @@ void ob_holdings_destroy(ob_holdings *h)
 	if (!h)
 		return;
 	free(h->holder);
-	free(h->solver);
 	free(h->digest);
 	ob_mail_finish(&h->out);
 	free(h);
@@ -143,12 +140,11 @@ static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t reco
 	return ob_mail_append(to, &p, bytes);
 }
 
-// Whether the pair is of an island that a simulator of this rank is to solve.
+// Whether what touches is solved by this rank.
 static bool is_solved_here(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t id = ob_schedule_is_dynamic(&data->schedule[k->a]) ? k->a : k->b;
-	return data->result_island[id] != UINT32_MAX && ob_worker_is_here(u, ob_home_of(u, id));
+	return ob_worker_is_here(u, ob_home_of(u, ob_schedule_is_dynamic(&data->schedule[k->a]) ? k->a : k->b));
 }
 
 // Writes what another rank has sent; rank: who has it from now on, or ALL.
@@ -178,11 +174,10 @@ bool ob_holdings_take(ob_holdings *h, const ob_universe *u, const char *from, si
 	return take(h, u, from, bytes, (uint16_t)(1 + ob_universe_rank(u)));
 }
 
-// What is held here of the object, which rank "to" solves now: it lists the pairs of its island, and this rank does no
-// longer.
-static bool give_pairs_of(ob_holdings *h, const ob_universe *u, uint32_t id, uint32_t to, ob_mail *mail)
+bool ob_holdings_give(ob_holdings *h, const ob_universe *u, uint32_t id, ob_mail *mail)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t to = ob_home_rank(u, id);
 	bool fits = true;
 	ob_pair_place at;
 	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
@@ -193,35 +188,6 @@ static bool give_pairs_of(ob_holdings *h, const ob_universe *u, uint32_t id, uin
 		fits &= pack(mail, u, at.pair, k->record);
 		give_away(u, k->record);
 		h->holder[k->record] = (uint16_t)(1 + to);
-	}
-	return fits;
-}
-
-// Of an island that rank "to" solves.
-static bool move_island(ob_holdings *h, const ob_universe *u, const ob_island *is, uint32_t to, ob_mail *mail)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	bool fits = true;
-	for (uint32_t k = 0; k < is->members && is->first_member + k < data->objects_max; k++) {
-		const uint32_t id = data->member[is->first_member + k];
-		const uint32_t from = id < data->objects_max ? h->solver[id] : 0;
-		if (id >= data->objects_max || from == 1 + to)
-			continue;
-		if (from == 1 + ob_universe_rank(u))
-			fits &= give_pairs_of(h, u, id, to, mail);
-		h->solver[id] = (uint16_t)(1 + to);
-	}
-	return fits;
-}
-
-bool ob_holdings_move(ob_holdings *h, const ob_universe *u, ob_mail *mail)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	bool fits = true;
-	for (uint32_t chunk = 0; chunk < chunks_of(data); chunk++) {
-		const uint32_t to = ob_universe_rank_of(u, owner_of(u, chunk)), end = end_of_chunk(data, chunk);
-		for (uint32_t i = data->chunk[chunk]; i < end; i++)
-			fits &= move_island(h, u, &data->island[i], to, &mail[to]);
 	}
 	return fits;
 }

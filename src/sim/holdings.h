@@ -4,11 +4,11 @@
 //                          rank 0     rank 1     rank 2
 //   island A, solved last    x                              on all: that the record is there, and whether they touch
 //   island B                            x
-//   B is rank 2's now                   x  ------->  x      before it is solved (move)
+//   B is rank 2's now                   x  ------->  x      before it is solved (give)
 //   all are wanted           x <------> x <------->  x      for a checkpoint, say (gather)
 //
-// All ranks know who has solved which object last, and there is what its pairs keep. Who holds contents keeps their
-// digest beside them: in memory that simulators do not reach, so damage is found before it becomes a result.
+// All ranks know where each object lives (table/home.h), and there is what its pairs keep. Who holds contents keeps
+// their digest beside them: in memory that simulators do not reach, so damage is found before it becomes a result.
 //
 // Thread-safety: the arranger's.
 #ifndef OB_SIM_HOLDINGS_H
@@ -32,10 +32,10 @@ void ob_holdings_prefetch(const ob_holdings *h, uint32_t record);
 // Whether it has them and no other rank does.
 bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record);
 
-// Before the islands of a step are solved, by all ranks: contents go to who solves them next, what goes to rank r into
-// mail[r]. false: no memory.
-bool ob_holdings_move(ob_holdings *h, const ob_universe *u, ob_mail *mail);
-// Of those, a parcel from another rank: false: it makes no sense.
+// The object was this rank's, and lives with another now: what its pairs keep goes there, and this rank lists them no
+// longer. false: no memory.
+bool ob_holdings_give(ob_holdings *h, const ob_universe *u, uint32_t id, ob_mail *mail);
+// Of that, a parcel from another rank: false: it makes no sense.
 bool ob_holdings_take(ob_holdings *h, const ob_universe *u, const char *parcel, size_t bytes);
 // Between two steps, by all ranks: all of them have all contents. false: the step has failed.
 bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p);

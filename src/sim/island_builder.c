@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "sim/calendar.h"
+#include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
 #include "sim/sort_ids.h"
@@ -29,13 +30,19 @@ typedef struct builder {
 	uint32_t *parent; // [id], of bodies (table/forest.h)
 	uint32_t *island_of; // [root]
 	bool merges; // islands that were solved apart are merged; else those of a new step are built
-	bool alone; // there is but this rank: it lists the pairs of all islands
+	bool alone; // there is but this rank, so all bodies are its own
 	uint64_t step; // that they are for
 } builder;
 
 static bool is_dynamic(const builder *p, uint32_t id)
 {
 	return ob_schedule_is_dynamic(&p->data->schedule[id]);
+}
+
+// A body that this rank solves.
+static bool is_own(const builder *p, uint32_t id)
+{
+	return is_dynamic(p, id) && (p->alone || ob_worker_is_here(p->u, ob_home_of(p->u, id)));
 }
 
 // When islands are merged: it is in one of those that were solved. Until members are listed anew.
@@ -83,18 +90,19 @@ static void join(builder *p, uint32_t i, uint32_t j)
 // The link makes both be solved in this step.
 static void involve_link(builder *p, const ob_pair_key *k)
 {
-	if (is_dynamic(p, k->a) && is_dynamic(p, k->b))
+	if (is_own(p, k->a) && is_own(p, k->b))
 		join(p, k->a, k->b);
-	else
-		involve(p, is_dynamic(p, k->a) ? k->a : k->b);
+	else if (is_own(p, k->a) || is_own(p, k->b))
+		involve(p, is_own(p, k->a) ? k->a : k->b);
 }
 
 // Whether the pair links what it touches. Sleepers that something has woken within a step wake those that they touch;
-// what is expected then is of the coming step. Most pairs link nothing, so their objects are not looked at.
+// what is expected then is of the coming step. What links it to another rank's body is that rank's, too
+// (rank_islands.h). Most pairs link nothing, so their objects are not looked at.
 static bool is_link(const builder *p, const ob_pair_key *k)
 {
-	return (p->merges ? k->active : k->active | k->expected) && is_in_range(p, k) && is_dynamic(p, k->a) &&
-	       is_dynamic(p, k->b) && (!p->merges || (is_asleep(p, k->a) && is_asleep(p, k->b)));
+	return (p->merges ? k->active : k->active | k->expected) && is_in_range(p, k) && is_own(p, k->a) &&
+	       is_own(p, k->b) && (!p->merges || (is_asleep(p, k->a) && is_asleep(p, k->b)));
 }
 
 // An island is solved again as a whole.
@@ -126,7 +134,7 @@ static void involve_late(builder *p)
 		if (!k->late || !is_in_range(p, k))
 			continue;
 		for (int side = 0; side < 2; side++)
-			if (is_dynamic(p, side ? k->b : k->a))
+			if (is_own(p, side ? k->b : k->a))
 				involve_island_of(p, side ? k->b : k->a);
 		involve_link(p, k);
 	}
@@ -168,7 +176,7 @@ static void involve_pair(const builder *p, const ob_pair_key *k)
 	if (!(k->active | k->expected) || !is_in_range(p, k) ||
 	    (!ob_schedule_moves(&p->data->schedule[k->a]) && !ob_schedule_moves(&p->data->schedule[k->b])))
 		return;
-	const bool a = is_dynamic(p, k->a), b = is_dynamic(p, k->b);
+	const bool a = is_own(p, k->a), b = is_own(p, k->b);
 	if (a)
 		involve_new(p, k->a);
 	if (b)
@@ -354,8 +362,8 @@ static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
 	}
 }
 
-// What its members have cost in the last step, and at least what islands of such a size do. Of several ranks none knows
-// the pairs of all.
+// What its members have cost in the last step, and at least what islands of such a size do. Of several ranks its pairs
+// are listed when it is dealt.
 static uint32_t estimated_work(const builder *p, const ob_island *is)
 {
 	uint32_t sum = 1 + is->members + 8 * is->pairs;
@@ -394,7 +402,8 @@ static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listin
 		at_border |= is_in_range(p, k) && ob_halo_is_elsewhere(to->halo, at.side ? k->a : k->b);
 		if (!is_listed_with(p, k, at.side))
 			continue;
-		ob_calendar_set(&look, at.pair, p->step + 1);
+		if (p->alone || ob_pair_is_checked_here(p->u, k))
+			ob_calendar_set(&look, at.pair, p->step + 1);
 		const bool in_island = island_of_pair(p, k) == island;
 		if (k->in_island != in_island)
 			k->in_island = in_island;
@@ -453,14 +462,8 @@ static void list_pairs(const builder *p, uint32_t first, uint32_t end)
 	ob_step_visited(p->u, found.visits);
 }
 
-// The object was given to a simulator of this rank last.
-static bool is_here(const builder *p, uint32_t id)
-{
-	return ob_worker_is_here(p->u, ob_home_of(p->u, id));
-}
-
-// Of several ranks each lists the pairs of its own islands, when all are dealt; in the order of member[].
-static void list_own_pairs(const builder *p, ob_halo *halo)
+// Of several ranks, in the order of member[].
+static void list_dealt_pairs(const builder *p, ob_halo *halo)
 {
 	ob_step_data *data = p->data;
 	listing found;
@@ -468,12 +471,8 @@ static void list_own_pairs(const builder *p, ob_halo *halo)
 	found.halo = halo;
 	for (uint32_t n = 0, at = 0; n < data->count->unsolved; n++) {
 		const uint32_t i = data->result_island[data->member[at]];
-		ob_island *is = &data->island[i];
-		at += is->members;
-		if (is_here(p, data->member[is->first_member]))
-			list_pairs_of_island(p, i, &found);
-		else
-			is->first_pair = is->pairs = 0;
+		at += data->island[i].members;
+		list_pairs_of_island(p, i, &found);
 	}
 	data->count->visits += found.visits;
 }
@@ -573,9 +572,9 @@ static void make_chunks(builder *p, uint64_t total)
 
 // Who shares the islands, and what each has so far.
 typedef struct shares {
-	uint32_t count; // of simulators: no more than there are objects
+	uint32_t first, count; // simulators, of this rank: no more than there are objects
 	uint32_t *load, *votes; // [count]
-	uint32_t *owner; // [island]
+	uint32_t *owner; // [island]: of these simulators
 	uint32_t most; // load
 	bool pins; // some object has one
 	int shift; // of work, for loads of 32 bits
@@ -585,8 +584,9 @@ typedef struct shares {
 // Who is to solve the object: of several ranks, in whose region it is; else who was given it last.
 static uint32_t home_of(const builder *p, const shares *s, uint32_t id)
 {
-	const uint32_t home = s->regions ? ob_regions_at(s->regions, id) : ob_home_of(p->u, id);
-	return home < s->count ? home : home % s->count;
+	const uint32_t home = s->regions ? ob_regions_at(s->regions, id) : ob_home_of(p->u, id),
+		       place = home - s->first;
+	return place < s->count ? place : home % s->count;
 }
 
 // That of most members.
@@ -612,9 +612,9 @@ static uint32_t pin_of(const builder *p, const shares *s, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
 	for (uint32_t k = 0; s->pins && k < is->members; k++) {
-		const uint32_t who = data->pin[data->member[is->first_member + k]] - 1;
-		if (who < s->count)
-			return who;
+		const uint32_t pin = data->pin[data->member[is->first_member + k]];
+		if (pin && pin - 1 - s->first < s->count)
+			return pin - 1 - s->first;
 	}
 	return UINT32_MAX;
 }
@@ -649,21 +649,36 @@ static void give_island(builder *p, shares *s, uint32_t island)
 		s->owner[island] = to;
 	}
 	for (uint32_t k = 0; k < is->members; k++) {
-		const uint32_t id = data->member[is->first_member + k];
-		ob_home_set(p->u, id, s->owner[island]);
+		const uint32_t id = data->member[is->first_member + k], simulator = s->first + s->owner[island];
+		ob_home_set(p->u, id, simulator);
 		if (s->regions)
-			ob_regions_note(s->regions, id, s->owner[island], 1 + data->effort[id], spills);
+			ob_regions_note(s->regions, id, simulator, 1 + data->effort[id], spills);
 	}
 }
 
-// A chunk for each simulator, of the islands of its region, or that it has solved before: what their pairs keep lies
-// with its rank (holdings.h). Where one would get a tenth more than its share, others do, the largest first.
-static void make_shares(builder *p, uint64_t total, ob_regions *regions)
+static uint32_t least_of(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
+// Share of "total" for each of so many, a tenth more than that; less is not worth giving away.
+static uint64_t share_of(uint64_t total, uint32_t count)
 {
 	enum { SLACK = 10, WORTH_SHARING = 16 * CHUNK_WORK_MIN };
+	const uint64_t share = total / count + total / (count * SLACK) + 1;
+	return share > WORTH_SHARING ? share : WORTH_SHARING;
+}
+
+// A chunk for each simulator, of the islands of its region, or that it has solved before. Where one would get a tenth
+// more than its share, others do, the largest first.
+static void make_shares(builder *p, uint64_t total, ob_regions *regions)
+{
 	ob_step_data *data = p->data;
-	const uint32_t all = ob_universe_simulators(p->u), unsolved = data->count->unsolved;
-	shares s = { .count = all < p->ids ? all : p->ids,
+	const uint32_t all = least_of(ob_universe_simulators(p->u), data->objects_max),
+		       unsolved = data->count->unsolved, each = ob_universe_simulators(p->u) / ob_universe_ranks(p->u),
+		       first = least_of(ob_universe_rank(p->u) * each, all);
+	shares s = { .first = first,
+		     .count = least_of(least_of(each, all - first), p->ids),
 		     .load = p->body,
 		     .votes = p->place,
 		     .owner = p->island_of,
@@ -671,24 +686,25 @@ static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 		     .regions = regions };
 	while (total >> s.shift > UINT32_MAX / 4)
 		s.shift++;
-	const uint64_t share = total / s.count + total / (s.count * SLACK) + 1;
-	s.most = (uint32_t)((share > WORTH_SHARING ? share : WORTH_SHARING) >> s.shift);
+	memset(data->chunk, 0, (all + 1) * sizeof *data->chunk);
+	data->count->chunks = all;
+	if (!s.count) // a rank of more simulators than there can be objects
+		return;
+	s.most = (uint32_t)(share_of(total, s.count) >> s.shift);
 	memset(s.load, 0, s.count * sizeof *s.load);
 	memset(s.votes, 0, s.count * sizeof *s.votes);
 	for (uint32_t i = 0; i < unsolved; i++)
 		ask_for(p, &s, i);
 	for (uint32_t i = 0; i < unsolved; i++)
 		give_island(p, &s, i);
-	memset(data->chunk, 0, (s.count + 1) * sizeof *data->chunk);
 	for (uint32_t i = 0; i < unsolved; i++)
-		data->chunk[s.owner[i] + 1]++;
-	for (uint32_t w = 0; w < s.count; w++)
+		data->chunk[first + s.owner[i] + 1]++;
+	for (uint32_t w = 0; w < all; w++)
 		data->chunk[w + 1] += data->chunk[w];
-	memcpy(s.load, data->chunk, s.count * sizeof *s.load); // where the next of each goes
+	memcpy(s.load, data->chunk + first, s.count * sizeof *s.load); // where the next of each goes
 	for (uint32_t i = 0; i < unsolved; i++)
 		p->parent[s.load[s.owner[i]]++] = i;
 	permute_islands(data->island, p->parent, unsolved);
-	data->count->chunks = s.count;
 }
 
 // The order in which islands are solved, and who solves which.
@@ -728,10 +744,13 @@ static builder builder_of(ob_universe *u, bool merges)
 			  .step = ob_step_count(u) };
 }
 
-static void sort_bodies(builder *p)
+// When it is known who is involved.
+static builder builder_of_all(ob_universe *u)
 {
-	ob_sort_ids(p->body, p->bodies, p->ids, p->place); // whose contents are no longer needed
-	p->data->count->visits += p->bodies;
+	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	builder p = builder_of(u, count->merged);
+	p.bodies = count->involved < p.ids ? count->involved : p.ids;
+	return p;
 }
 
 void ob_islands_begin(ob_universe *u)
@@ -774,13 +793,14 @@ void ob_islands_link(ob_universe *u, uint32_t task)
 
 void ob_islands_list_members(ob_universe *u)
 {
-	builder p = builder_of(u, false);
-	const uint32_t involved = p.data->count->involved;
-	p.bodies = involved < p.ids ? involved : p.ids;
-	sort_bodies(&p);
-	count_trees(&p);
+	builder p = builder_of_all(u);
+	ob_sort_ids(p.body, p.bodies, p.ids, p.place); // whose contents are no longer needed
+	p.data->count->visits += p.bodies;
+	const uint32_t unsolved = count_trees(&p), end = p.merges ? move_standing(&p, unsolved) : unsolved;
+	if (p.merges)
+		move_lists_of_standing(&p, unsolved, end);
 	list_members(&p);
-	p.data->count->islands = p.data->count->unsolved;
+	p.data->count->islands = end;
 }
 
 uint32_t ob_islands_list_tasks(const ob_universe *u)
@@ -804,10 +824,10 @@ void ob_islands_deal(ob_universe *u, ob_regions *regions)
 	deal_islands(&p, regions);
 }
 
-void ob_islands_list_own_pairs(ob_universe *u, ob_halo *halo)
+void ob_islands_list_dealt_pairs(ob_universe *u, ob_halo *halo)
 {
 	const builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
-	list_own_pairs(&p, halo);
+	list_dealt_pairs(&p, halo);
 }
 
 void ob_islands_merge(ob_universe *u)
@@ -817,9 +837,59 @@ void ob_islands_merge(ob_universe *u)
 	count->merged = 1;
 	involve_late(&p);
 	involve_linked(&p);
-	sort_bodies(&p);
-	const uint32_t unsolved = count_trees(&p), end = move_standing(&p, unsolved);
-	move_lists_of_standing(&p, unsolved, end);
-	list_members(&p);
-	count->islands = end;
+	count->involved = p.bodies;
+}
+
+// ---- of several ranks
+
+uint64_t ob_islands_share(uint64_t total, uint32_t count)
+{
+	return share_of(total, count);
+}
+
+void ob_islands_involve(ob_universe *u, uint32_t id)
+{
+	struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	const builder p = builder_of(u, false);
+	involve_new(&p, id);
+	count->due = count->involved;
+}
+
+uint32_t ob_islands_bodies(ob_universe *u, const uint32_t **body, const uint32_t **root)
+{
+	const builder p = builder_of_all(u);
+	count_trees(&p);
+	*body = p.body;
+	*root = p.parent;
+	return p.bodies;
+}
+
+void ob_islands_drop(ob_universe *u, const uint8_t *leaves)
+{
+	builder p = builder_of_all(u);
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < p.bodies; i++) {
+		const uint32_t id = p.body[i];
+		if (leaves[ob_forest_root(p.parent, id)]) {
+			p.data->result_island[id] = NONE;
+			continue;
+		}
+		p.place[id] = n;
+		p.body[n++] = id;
+	}
+	p.data->count->involved = n;
+}
+
+void ob_islands_join(ob_universe *u, uint32_t a, uint32_t b)
+{
+	struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	builder p = builder_of_all(u);
+	if (p.merges) {
+		join(&p, a, b);
+		count->involved = p.bodies;
+		return;
+	}
+	involve_new(&p, a);
+	involve_new(&p, b);
+	ob_forest_join(p.parent, a, b);
 }

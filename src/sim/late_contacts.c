@@ -11,6 +11,7 @@
 #include "sim/prefetch.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
+#include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
@@ -253,11 +254,16 @@ static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double 
 	return set_clear_until(c, k, apart) || apart > c->h || k->limit - paths > reach;
 }
 
+static bool was_solved(const pair_check *c, uint32_t id)
+{
+	return c->data->schedule[id].since > ob_step_count(c->u);
+}
+
 // Of two that nobody has solved in the step the forecast has said that they would not touch, and where they fall alike
 // that is exact.
 static bool went_as_forecast(const pair_check *c, const ob_pair_key *k)
 {
-	return c->data->result_island[k->a] == UINT32_MAX && c->data->result_island[k->b] == UINT32_MAX &&
+	return !was_solved(c, k->a) && !was_solved(c, k->b) &&
 	       fall_alike(ob_newest_motion(c->u, k->a), ob_newest_motion(c->u, k->b));
 }
 
@@ -351,15 +357,6 @@ static void prefetch_check(const ob_universe *u, uint32_t i, uint32_t end)
 		ob_prefetch_schedule(u, &data->pair[data->check[i + OBJECTS_AHEAD]]);
 }
 
-// Of several ranks this one has entered the pair before another has listed it, which has solved one of its objects; or
-// it has had one of them when it entered it, and has none now.
-static bool is_listed_elsewhere(const ob_universe *u, const ob_pair_key *k)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	const bool solved = data->result_island[k->a] != UINT32_MAX || data->result_island[k->b] != UINT32_MAX;
-	return solved ? !ob_pair_is_checked_here(u, k) : !ob_pair_is_known_here(u, k);
-}
-
 static void prefetch_listed(const ob_universe *u, uint32_t i, uint32_t end)
 {
 	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
@@ -370,12 +367,12 @@ static void prefetch_listed(const ob_universe *u, uint32_t i, uint32_t end)
 		return;
 	const uint32_t a = data->pair[data->check[i + OBJECTS_AHEAD]].a,
 		       b = data->pair[data->check[i + OBJECTS_AHEAD]].b;
-	__builtin_prefetch(&data->result_island[a]);
-	__builtin_prefetch(&data->result_island[b]);
+	__builtin_prefetch(&data->schedule[a]);
+	__builtin_prefetch(&data->schedule[b]);
 	__builtin_prefetch(&data->home[a]);
 }
 
-// Such a pair is not checked here.
+// Pairs that this rank has entered when it had one of their objects, which lives elsewhere now.
 static void leave_to_others(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -383,7 +380,7 @@ static void leave_to_others(ob_universe *u)
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < listed; i++) {
 		prefetch_listed(u, i, listed);
-		if (!is_listed_elsewhere(u, &data->pair[data->check[i]]))
+		if (ob_pair_is_checked_here(u, &data->pair[data->check[i]]))
 			data->check[n++] = data->check[i];
 	}
 	data->count->checks = n;
@@ -441,7 +438,7 @@ static void enter_next_checks(const ob_universe *u)
 			__builtin_prefetch(&data->schedule[k->a]);
 			__builtin_prefetch(&data->schedule[k->b]);
 		}
-		if (ob_pair_is_known_here(u, &data->pair[data->check[i]]))
+		if (ob_universe_ranks(u) < 2 || ob_pair_is_checked_here(u, &data->pair[data->check[i]]))
 			enter_next_check(u, data->check[i], data->count->checked);
 	}
 }
@@ -454,17 +451,11 @@ void ob_late_contacts_end(ob_universe *u)
 	data->count->visits += data->count->checks;
 }
 
-// What is late all ranks merge, and what has an entry for the coming step they build islands of.
 void ob_late_contacts_take(ob_universe *u, uint32_t pair)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	const ob_calendar look = ob_calendar_of_pairs(u);
-	const ob_pair_key *k = &data->pair[pair];
-	const uint32_t steps = data->count->checked;
-	if (k->late && data->count->checks < data->pairs_max)
+	if (data->pair[pair].late && data->count->checks < data->pairs_max)
 		data->check[data->count->checks++] = pair;
-	else if (entry_of(data, k, steps) <= steps)
-		ob_calendar_set(&look, pair, steps);
 }
 
 // A pair, to be changed: a contained simulator changes a copy.

@@ -8,10 +8,10 @@
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
 #include "sim/commit.h"
+#include "sim/pair_rank.h"
 #include "sim/prefetch.h"
 #include "sim/publish.h"
 #include "sim/sort_ids.h"
-#include "table/home.h"
 
 // ---- lists
 
@@ -74,42 +74,15 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 	put_aside(data, pair);
 }
 
-static bool lives_here(const ob_universe *u, uint32_t id)
-{
-	return ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[id]) &&
-	       ob_worker_is_here(u, ob_home_of(u, id));
-}
-
-bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k)
-{
-	return ob_universe_ranks(u) < 2 || lives_here(u, k->a) || lives_here(u, k->b);
-}
-
-// 2: its island is to be solved, 1: that stands, 0: it is in none.
-static int claim_of(const ob_step_data *data, uint32_t id)
-{
-	return ob_is_to_be_solved(data, id) ? 2 : data->result_island[id] != UINT32_MAX;
-}
-
-bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	const int of_a = claim_of(data, k->a), of_b = claim_of(data, k->b);
-	const bool a = of_a != of_b ? of_a > of_b : ob_schedule_is_dynamic(&data->schedule[k->a]);
-	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
-}
-
-// The pair is to be checked in this step. Of several ranks one enters it, and all know that; but what links objects all
-// enter: islands may be built before it is checked.
+// The pair is to be checked in this step. Of several ranks one enters it, and all know that.
 static void enter_check(ob_universe *u, uint32_t pair, uint64_t step)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const ob_pair_key *k = &data->pair[pair];
 	const ob_calendar look = ob_calendar_of_pairs(u);
-	if (step < data->count->next_check)
-		data->count->next_check = (uint32_t)step;
-	if (ob_pair_is_checked_here(u, k) || k->active || k->expected)
-		ob_calendar_set(&look, pair, step);
+	if (step < data->count->next_due)
+		data->count->next_due = (uint32_t)step;
+	ob_calendar_set(&look, pair, ob_pair_is_checked_here(u, k) ? step : UINT32_MAX);
 }
 
 // One that is not in use. false: there is none, and the step has failed.

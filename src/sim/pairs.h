@@ -40,13 +40,6 @@ double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t 
 void ob_pairs_drop(ob_universe *u, uint32_t id);
 // All pairs of the object are checked before its next step, for it moves otherwise from now on.
 void ob_pairs_look(ob_universe *u, uint32_t id);
-// Of several ranks: whether this one has one of its objects, and so knows what is known of it. Others know that it is
-// there, and whether it links objects.
-bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k);
-// Of several ranks: whether this one checks the pair, if it is new or an object of it has been solved. In a step it is
-// who lists the pairs of its a's island, or of its b's if a's is none that is to be solved (island_builder.c), for
-// nobody else knows whether the pair is in that; else where a lives, or b if a does not move.
-bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k);
 // Makes anew what follows from schedule[] and pair[], which somebody has filled: all lists, both calendars
 // (sim/calendar.h), and the list of the pairs of the last step's islands, of which those that touch no more have their
 // records taken away.

@@ -19,28 +19,7 @@ static uint64_t motion_digest(const ob_motion *m)
 	return ob_digest_words(m, sizeof *m);
 }
 
-// A damaged universe is read here, too: nothing in it is followed unchecked.
-
-static uint32_t islands_of(const ob_step_data *data)
-{
-	const uint32_t chunks = data->count->chunks, islands = chunks < data->objects_max ? data->chunk[chunks] : 0;
-	return islands < data->objects_max ? islands : data->objects_max;
-}
-
-static uint64_t digest_islands(const ob_universe *u, uint64_t sum)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t islands = islands_of(data);
-	uint32_t members = 0;
-	for (uint32_t i = 0; i < islands; i++) {
-		const ob_island *is = &data->island[i];
-		sum = ob_digest_word(sum, (uint64_t)is->first_member << 32 | is->members);
-		members += is->members < data->objects_max - members ? is->members : data->objects_max - members;
-	}
-	return ob_digest_word(sum, ob_digest_words(data->member, members / 2 * sizeof(uint64_t)));
-}
-
-uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
+uint64_t ob_peers_digest(const ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	uint32_t queries;
@@ -48,19 +27,24 @@ uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase)
 	uint64_t sum = ob_digest_word(queries, data->count->pairs);
 	for (uint32_t i = 0; i < queries; i++)
 		sum = ob_digest_word(sum, list[i]);
-	return phase == OB_PHASE_ISLANDS ? digest_islands(u, sum) : sum;
+	return sum;
 }
 
 // ---- where ranks differ
 
-// A rank of which that one has another motion of the object; its own number: none has, as far as both have any.
+// What a rank has of an object: its motion, since so many steps, which of those that it does not need may be long ago.
+typedef struct motion_seen {
+	uint64_t since, digest;
+} motion_seen;
+
+// A rank that has another motion of the object than that one, from the same step on; its own number: none has.
 static uint32_t find_other(const ob_peers *p, const char *all, const size_t *at, uint32_t rank, size_t object)
 {
-	uint64_t own, other;
+	motion_seen own, other;
 	memcpy(&own, all + at[rank] + object * sizeof own, sizeof own);
-	for (uint32_t r = 0; own && r < p->ranks; r++) {
+	for (uint32_t r = 0; r < p->ranks; r++) {
 		memcpy(&other, all + at[r] + object * sizeof other, sizeof other);
-		if (other && other != own)
+		if (other.since == own.since && other.digest != own.digest)
 			return r;
 	}
 	return rank;
@@ -71,8 +55,8 @@ static void blame(const ob_peers *p, ob_universe *u, uint32_t rank, const char *
 	ob_step_blame(u, rank * (ob_universe_simulators(u) / p->ranks), text);
 }
 
-// All ranks come here together, for all have seen the same messages: each tells the others about every object that it
-// has (0: it has not). Names the first object.
+// All ranks come here together, for all have seen the same messages: each tells the others what it has of every object.
+// Names the first object.
 static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 {
 	const uint32_t ids = ob_universe_ids(u);
@@ -80,9 +64,9 @@ static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 	const size_t *at;
 	char text[OB_STEP_BLAME_MAX];
 	uint32_t id = 0, other = rank;
-	uint64_t *mine = calloc(ids + 1, sizeof *mine);
+	motion_seen *mine = calloc(ids + 1, sizeof *mine);
 	for (uint32_t i = 0; mine && i < ids; i++)
-		mine[i] = p->missing && p->missing[i] ? 0 : motion_digest(ob_newest_motion(u, i));
+		mine[i] = (motion_seen){ ob_newest_motion(u, i)->step, motion_digest(ob_newest_motion(u, i)) };
 	const char *all = p->gather(p->wire, mine, mine ? ids * sizeof *mine : 0, &at);
 	free(mine);
 	for (uint32_t r = 0; all && r < p->ranks; r++)
@@ -139,8 +123,10 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 	for (uint32_t r = 0; r < p->ranks; r++) {
 		ob_peers_head other = head_of(all, at, r);
 		other.move = first.move; // rank 0 alone is asked
-		other.next_check = first.next_check; // each of its own
+		other.next_due = first.next_due; // each of its own
 		other.look = first.look;
+		other.islands = first.islands;
+		other.woken = first.woken;
 		if (other.differs || memcmp(&first, &other, sizeof first) != 0) {
 			blame_rank(p, u, r);
 			return false;
@@ -151,16 +137,20 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 
 // ---- an exchange
 
-// The first of what some rank waits for.
+// The first of what some rank waits for, and what there is of all.
 static void note_steps(ob_peers *p, ob_universe *u, const char *all, const size_t *at)
 {
-	uint64_t check = UINT32_MAX, look = UINT64_MAX;
+	uint64_t due = UINT32_MAX, look = UINT64_MAX;
+	p->islands = 0;
 	for (uint32_t r = 0; r < p->ranks; r++) {
 		const ob_peers_head of = head_of(all, at, r);
-		check = of.next_check < check ? of.next_check : check;
+		due = of.next_due < due ? of.next_due : due;
 		look = of.look < look ? of.look : look;
+		p->islands += (uint32_t)of.islands;
+		if (r != p->rank)
+			ob_step_woken(u, (int32_t)of.woken);
 	}
-	ob_universe_step_data(u)->count->next_check = (uint32_t)check;
+	ob_universe_step_data(u)->count->next_due = (uint32_t)due;
 	p->look = look;
 }
 
@@ -181,10 +171,12 @@ bool ob_peers_begin(ob_mail *mail)
 
 static void complete_head(const ob_peers *p, ob_universe *u, ob_peers_head *head)
 {
-	const ob_calendar look = ob_calendar_of_pairs(u);
+	const ob_calendar solve = ob_calendar_of_objects(u), look = ob_calendar_of_pairs(u);
+	const uint32_t objects = ob_calendar_first(&solve), pairs = ob_calendar_first(&look);
 	head->step = ob_step_count(u);
 	head->move = p->rank == 0 && !p->move ? ob_move_take(u) : 0;
-	head->next_check = ob_calendar_first(&look);
+	head->next_due = objects < pairs ? objects : pairs;
+	head->islands = ob_universe_step_data(u)->count->islands;
 	head->look = own_look(u);
 }
 

@@ -4,20 +4,21 @@
 //
 //   arranger, at the end of a phase:  outboxes of its own simulators -> mail -> all ranks' mail -> commit
 //
-// Pairs, which are many, each rank arranges alone, those of the islands that it solves:
+// A body is one rank's own, which arranges what concerns it:
 //
-//   what all ranks have alike               what is with one
-//   which pairs there are, and which touch  what touching pairs keep between steps (holdings.h)
-//   islands, their members, who solves them their pairs in the order of their solver (island_builder.c)
-//   when each object is due, its fat AABB   which pairs are to be checked, and when again (late_contacts.c)
-//                                           motions, which its neighbours have, too (halo.h)
+//   what all ranks have alike                what is with one
+//   each object's fat AABB, and its home     when it is due, in which island it is (rank_islands.h), its motion, which
+//   (table/home.h)                             its neighbours have, too (halo.h)
+//   which pairs there are, and which touch   when a pair is to be checked (pair_rank.h, late_contacts.c), what it keeps
+//                                              between steps while it touches (holdings.h)
+//   which pairs of two ranks' bodies are expected to touch, or have touched late
 //
-// What the check of a pair has found goes to who has one of its objects, where it changes something, and to all, where
-// it says whom the pair links.
+// What the check of a pair of two ranks' bodies has found goes to the other, where it changes something, and to all,
+// where it says that the pair links them.
 //
-// With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with, and those before
-// it. Where two differ, all find out about which object, and the run ends. An arranger whose run is over, for whatever reason, says
-// so in place of a mail, so nobody waits for it.
+// With its mail each rank sends where it stands: step, phase, and a digest of what the phase began with, and those
+// before it. Where two differ, all find out about which object, and the run ends. An arranger whose run is over, for
+// whatever reason, says so in place of a mail, so nobody waits for it.
 #ifndef OB_SIM_PEERS_H
 #define OB_SIM_PEERS_H
 
@@ -32,17 +33,22 @@ typedef struct ob_peers_head {
 	uint64_t damaged; // 1 + an object, what is kept of which is not what it was; 0: none is known; OB_PEERS_MOTION: its motion
 	uint64_t differs; // 1 = it has been told of motions that have begun otherwise than where it is
 	uint64_t move; // of rank 0: where a simulator is to move, as table/home.h; set by ob_peers_exchange
-	uint64_t next_check; // the first step for which the rank has a pair to check; set by ob_peers_exchange
-	uint64_t look; // the first step at which the rank is to have all motions; set by ob_peers_exchange
+	uint64_t next_due; // the first step for which the rank has an object to solve, or a pair to check; likewise
+	uint64_t look; // the first step at which the rank is to have all motions; likewise
+	uint64_t islands; // of the rank; likewise
+	int64_t woken; // of its bodies, less those that have fallen asleep, since it has said so last
 } ob_peers_head;
 #define OB_PEERS_MOVE (UINT64_MAX - 1)
 #define OB_PEERS_GATHER (UINT64_MAX - 2)
 #define OB_PEERS_MEET (UINT64_MAX - 3)
 #define OB_PEERS_LOOK (UINT64_MAX - 4)
+#define OB_PEERS_SHARE (UINT64_MAX - 5)
+#define OB_PEERS_CUT (UINT64_MAX - 6)
 #define OB_PEERS_MOTION (UINT64_C(1) << 63)
 
 // What ranks hand to each other between phases, parcel by parcel behind the head of a message.
 typedef enum ob_parcel_kind {
+	OB_PARCEL_HOMES, // bodies that go from the sender's rank to another (rank_islands.h)
 	OB_PARCEL_KEPT, // what a pair keeps (holdings.h)
 	OB_PARCEL_BODY, // and the next: halo.h
 	OB_PARCEL_PAIR,
@@ -51,14 +57,15 @@ typedef struct ob_parcel {
 	uint32_t kind, bytes; // with this, which it begins with: a multiple of 8
 } ob_parcel;
 
-// What the phase begins with, before any of it is committed: who is to be solved, with whom, or asked.
-uint64_t ob_peers_digest(const ob_universe *u, ob_phase phase);
+// What the phase begins with, before any of it is committed, and all have alike: how many pairs there are, and who
+// looks for others.
+uint64_t ob_peers_digest(const ob_universe *u);
 // Empties the mail but for a head. false: no memory.
 bool ob_peers_begin(ob_mail *mail);
 // Sends the mail, which begins with a head, this one. Gives those of all ranks, heads and all, in their order: that of
 // rank r from at[r] to at[r + 1]; they hold until the next call. NULL: the others are elsewhere, or one has left, and
-// the step has failed. Then all know the move that rank 0 was asked for (ob_peers.move), and for which step somebody
-// has a pair to check, or looks at all motions (ob_peers.look).
+// the step has failed. Then all know the move that rank 0 was asked for (ob_peers.move), for which step somebody has
+// something to do, or looks at all motions (ob_peers.look), how many islands there are, and how many are awake.
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
 // Likewise to each rank another, mail[rank].
 const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);

@@ -26,8 +26,7 @@ void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state,
 const ob_motion *ob_result_of(const ob_universe *u, uint32_t id)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	uint32_t island = data->result_island[id];
-	if (island == UINT32_MAX)
+	if (data->schedule[id].since <= ob_step_count(u)) // it was solved in none since
 		return ob_newest_motion(u, id);
 	return ob_is_left_in_result(u, id) ? &data->result[id] : ob_staged_motion(u, id);
 }
@@ -48,13 +47,28 @@ static void prefetch_members(const ob_universe *u, const ob_halo *halo, uint32_t
 		const uint32_t id = data->member[is->first_member + k];
 		__builtin_prefetch(&data->result_island[id], 1);
 		if (halo) {
-			if (ob_halo_has_found(halo, id))
-				ob_prefetch_versions(u, id);
+			ob_prefetch_versions(u, id);
 			continue;
 		}
 		__builtin_prefetch(&data->schedule[id]);
 		ob_prefetch_slot(u, id);
 	}
+}
+
+static void publish(ob_sim *s, ob_halo *halo, uint32_t id)
+{
+	trace_state_change(s, id, ob_staged_motion(s->u, id));
+	ob_commit_motion(s->u, id);
+	if (halo)
+		ob_halo_note_published(halo, s->u, id);
+}
+
+// Bodies that other ranks have solved, as far as this one has heard.
+static void publish_heard(ob_sim *s, ob_halo *halo)
+{
+	uint32_t id;
+	while (ob_halo_take_heard(halo, &id))
+		publish(s, halo, id);
 }
 
 void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
@@ -71,21 +85,18 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 		for (uint32_t k = 0; k < is->members; k++) {
 			const uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;
-			if (halo && !ob_halo_has_found(halo, id))
-				continue;
 			if (!halo) { // else who commits a result counts who wakes
 				woken += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
 				woken -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
 			}
 			if (others_copy && k > 0)
 				continue;
-			trace_state_change(s, id, ob_staged_motion(s->u, id));
-			ob_commit_motion(s->u, id);
-			if (halo)
-				ob_halo_note_published(halo, s->u, id);
+			publish(s, halo, id);
 		}
 	}
-	if (!halo)
+	if (halo)
+		publish_heard(s, halo);
+	else
 		ob_step_woken(s->u, woken);
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/calendar.h"
 #include "sim/pairs.h"
 #include "table/forest.h"
 #include "table/home.h"
@@ -28,12 +29,14 @@ typedef struct cut {
 
 struct ob_regions {
 	uint32_t simulators, each; // of all ranks, of each
+	uint32_t used; // of those that have a region: no more than there are objects
 	bool is_cut;
 	uint32_t *home; // [object]: 1 + the simulator whose region it is in; 0 = it is no body
 	uint64_t *spent; // [object]: work of lately
 	cut *cut; // [simulator], from 1 on
 	double *room; // [simulator]: its share of all work, less that of bodies that were moved to it
-	uint64_t work, spilled; // given to simulators since the last cut; of it, to others than those of the region
+	ob_regions_work work;
+	ob_mail out;
 	uint32_t *mover; // bodies whose region is another since they were asked for
 	uint32_t movers;
 	uint8_t *moves; // [object]: 1 = it is one of them
@@ -50,6 +53,7 @@ ob_regions *ob_regions_create(const ob_universe *u)
 		return NULL;
 	r->simulators = ob_universe_simulators(u);
 	r->each = r->simulators / ob_universe_ranks(u);
+	r->used = r->simulators < objects ? r->simulators : objects;
 	r->home = calloc(objects, sizeof *r->home);
 	r->spent = calloc(objects, sizeof *r->spent);
 	r->mover = calloc(objects, sizeof *r->mover);
@@ -78,6 +82,7 @@ void ob_regions_destroy(ob_regions *r)
 	free(r->parent);
 	free(r->place);
 	free(r->group);
+	ob_mail_finish(&r->out);
 	free(r);
 }
 
@@ -257,7 +262,7 @@ static void share_out(ob_regions *r, group *g, uint32_t n, uint32_t first, uint3
 {
 	if (count == 1) {
 		for (uint32_t i = 0; i < n; i++)
-			r->home[g[i].root] = 1 + first;
+			r->home[g[i].root] = 1 + first % r->used;
 		return;
 	}
 	const uint32_t middle = middle_of(r, first, count);
@@ -302,10 +307,10 @@ static uint32_t find_home(const ob_regions *r, const float *box, uint32_t home)
 		count = second ? first + count - middle : middle - first;
 		first = second ? middle : first;
 	}
-	return first;
+	return first % r->used;
 }
 
-void ob_regions_settle(ob_regions *r, ob_universe *u)
+bool ob_regions_settle(ob_regions *r, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t ids = ob_universe_ids(u);
@@ -315,7 +320,7 @@ void ob_regions_settle(ob_regions *r, ob_universe *u)
 		fresh += is_dynamic(data, id) && !r->home[id];
 	}
 	if (!fresh)
-		return;
+		return false;
 	const bool first = !r->is_cut;
 	if (first) {
 		for (uint32_t id = 0; id < ids; id++)
@@ -328,8 +333,10 @@ void ob_regions_settle(ob_regions *r, ob_universe *u)
 		if (!r->home[id])
 			r->home[id] = 1 + find_home(r, data->bounds[id], 0);
 		ob_home_set(u, id, r->home[id] - 1);
+		ob_calendar_enter_due(u, id);
 		ob_pairs_look(u, id); // who checks them has changed
 	}
+	return first;
 }
 
 void ob_regions_follow(ob_regions *r, const ob_universe *u)
@@ -339,7 +346,7 @@ void ob_regions_follow(ob_regions *r, const ob_universe *u)
 	const uint32_t *list = ob_requery_list(u, &n);
 	for (uint32_t i = 0; i < n; i++) {
 		const uint32_t id = list[i];
-		if (!ob_object_in_range(data, id) || !r->home[id])
+		if (!ob_object_in_range(data, id) || !r->home[id] || !ob_worker_is_here(u, ob_home_of(u, id)))
 			continue;
 		const uint32_t home = 1 + find_home(r, data->bounds[id], r->home[id]);
 		if (home != r->home[id] && !r->moves[id])
@@ -358,35 +365,89 @@ static bool touches(const ob_step_data *data, uint32_t id)
 }
 
 // Who touches something has something kept of it (holdings.h), and goes when its island is solved.
-const uint32_t *ob_regions_settle_fliers(ob_regions *r, ob_universe *u, uint32_t *count)
+const uint32_t *ob_regions_find_fliers(ob_regions *r, const ob_universe *u, uint32_t *count)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	*count = 0;
-	if (data->count->merged) // whose region is another now has been solved in this very step
-		return r->mover;
 	for (uint32_t i = 0; i < r->movers; i++) {
 		const uint32_t id = r->mover[i];
 		r->moves[id] = 0;
 		if (!r->home[id] || data->pin[id] || data->result_island[id] != UINT32_MAX || touches(data, id) ||
-		    ob_universe_rank_of(u, r->home[id] - 1) == ob_home_rank(u, id))
+		    !ob_worker_is_here(u, ob_home_of(u, id)) || ob_worker_is_here(u, r->home[id] - 1))
 			continue;
-		ob_home_set(u, id, r->home[id] - 1);
 		r->mover[(*count)++] = id;
 	}
 	r->movers = 0;
 	return r->mover;
 }
 
-void ob_regions_renew(ob_regions *r, const ob_universe *u)
+void ob_regions_spill(ob_regions *r, uint64_t work)
+{
+	r->work.spilled += work;
+}
+
+void ob_regions_take(ob_regions *r, uint32_t id, uint32_t simulator)
+{
+	r->home[id] = 1 + simulator;
+}
+
+// ---- a new cut
+
+ob_regions_work ob_regions_work_of(const ob_regions *r)
+{
+	return r->work;
+}
+
+// What a body has cost.
+typedef struct cost {
+	uint64_t id, spent;
+} cost;
+
+// Each rank tells what its bodies have cost. false: the step has failed.
+static bool share_costs(ob_regions *r, ob_universe *u, ob_peers *p)
 {
 	const uint32_t ids = ob_universe_ids(u);
-	if (r->work / WORTH_A_CUT < (uint64_t)ids * ob_universe_ranks(u))
-		return;
-	if (r->spilled)
+	const size_t *at;
+	bool fits = ob_peers_begin(&r->out), sound = true;
+	for (uint32_t id = 0; id < ids; id++) {
+		const cost c = { id, r->spent[id] };
+		if (r->home[id] && ob_worker_is_here(u, ob_home_of(u, id)))
+			fits &= ob_mail_append(&r->out, &c, sizeof c);
+	}
+	if (!fits) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return false;
+	}
+	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_CUT }, &r->out, &at);
+	for (uint32_t rank = 0; all && sound && rank < p->ranks; rank++) {
+		const char *from = all + at[rank] + sizeof(ob_peers_head);
+		cost c;
+		for (; sound && from < all + at[rank + 1]; from += sizeof c) {
+			memcpy(&c, from, sizeof c);
+			sound = c.id < ids;
+			if (sound)
+				r->spent[c.id] = c.spent;
+		}
+		if (!sound)
+			ob_peers_blame(p, u, rank);
+	}
+	return all && sound;
+}
+
+bool ob_regions_renew(ob_regions *r, ob_universe *u, ob_peers *p, const ob_regions_work *sum)
+{
+	const uint32_t ids = ob_universe_ids(u);
+	if (sum->all / WORTH_A_CUT < (uint64_t)ids * ob_universe_ranks(u))
+		return true;
+	if (sum->spilled) {
+		if (!share_costs(r, u, p))
+			return false;
 		cut_anew(r, u);
+	}
 	for (uint32_t id = 0; id < ids; id++)
 		r->spent[id] /= 2;
-	r->work = r->spilled = 0;
+	r->work = (ob_regions_work){ 0 };
+	return true;
 }
 
 uint32_t ob_regions_at(const ob_regions *r, uint32_t id)
@@ -398,6 +459,6 @@ void ob_regions_note(ob_regions *r, uint32_t id, uint32_t simulator, uint32_t wo
 {
 	r->home[id] = 1 + simulator;
 	r->spent[id] += work;
-	r->work += work;
-	r->spilled += spilled ? work : 0;
+	r->work.all += work;
+	r->work.spilled += spilled ? work : 0;
 }

@@ -8,9 +8,9 @@
 //   |   1    |3 |      A body that moves on changes its region when it is well beyond the cut.
 //   +--------+--+
 //
-// All of it follows from what all ranks know: fat AABBs, which pairs touch, and who was given what. It says where a
-// body is to be solved next; islands are given to simulators accordingly (island_builder.h), and what is known of a
-// body goes with it then.
+// It says where each of a rank's bodies is to be solved next; islands are given to ranks accordingly (rank_islands.h),
+// and what is known of a body goes with it then. A cut follows from what all ranks know: fat AABBs, which pairs touch,
+// and, when they have told each other, what bodies have cost.
 //
 // A cut is made at the start; and again when what bodies have cost since makes up for it many times over, if
 // islands have had to be given to others than those whose region they are in, for the one had too much to do.
@@ -19,22 +19,33 @@
 #ifndef OB_SIM_REGIONS_H
 #define OB_SIM_REGIONS_H
 
-#include "table/table.h"
+#include "sim/peers.h"
 
 typedef struct ob_regions ob_regions;
 
 ob_regions *ob_regions_create(const ob_universe *u); // NULL: no memory
 void ob_regions_destroy(ob_regions *r); // NULL is allowed
 
-// After a pause, or scripts, by which bodies have come or gone: what is new gets a home, where it lives.
-void ob_regions_settle(ob_regions *r, ob_universe *u);
+// After a pause, or scripts, by which bodies have come or gone: what is new gets a home, where it lives. true: all have
+// got one, for it was the first time.
+bool ob_regions_settle(ob_regions *r, ob_universe *u);
 // Fat AABBs have changed: those on the requery list.
 void ob_regions_follow(ob_regions *r, const ob_universe *u);
-// Before the islands of a step are given to simulators: cuts anew, if that is worth it.
-void ob_regions_renew(ob_regions *r, const ob_universe *u);
-// When they are given: bodies that touch nothing, and are in none of them, but in another rank's region than they live
-// in, live there from now on.
-const uint32_t *ob_regions_settle_fliers(ob_regions *r, ob_universe *u, uint32_t *count);
+// What this rank's bodies have cost since the last cut; and of it, those that were given to others than those of the
+// region.
+typedef struct ob_regions_work {
+	uint64_t all, spilled;
+} ob_regions_work;
+ob_regions_work ob_regions_work_of(const ob_regions *r);
+// By all ranks alike, with the sums of all: cuts anew, if that is worth it. false: the step has failed.
+bool ob_regions_renew(ob_regions *r, ob_universe *u, ob_peers *p, const ob_regions_work *sum);
+// Before the islands of a step are given to ranks: bodies of this one's that touch nothing, and are in none of them,
+// but in another rank's region.
+const uint32_t *ob_regions_find_fliers(ob_regions *r, const ob_universe *u, uint32_t *count);
+// So much work goes to another rank for balance alone.
+void ob_regions_spill(ob_regions *r, uint64_t work);
+// The body has come from another rank, and lives here now.
+void ob_regions_take(ob_regions *r, uint32_t id, uint32_t simulator);
 
 // The simulator whose region the body is in.
 uint32_t ob_regions_at(const ob_regions *r, uint32_t id);

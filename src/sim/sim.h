@@ -31,7 +31,7 @@ typedef struct ob_peers {
 	void *wire;
 	bool parted; // one has left, and all know it
 	uint64_t look; // the first step at which some rank is to have all motions (halo.h), as all ranks know it
-	const uint8_t *missing; // as ob_halo_missing; NULL: all are here
+	uint32_t islands; // of all ranks, when those of a step are solved
 	uint64_t move; // that rank 0 was asked for, as table/home.h, to be made before the next step's islands are built
 } ob_peers;
 // Of the arranger, before its first step: false and e, on all ranks, where one of them has other workers, objects or

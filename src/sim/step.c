@@ -143,6 +143,15 @@ static bool open_scripts(const scheduler *c, ob_phase phase)
 	return true;
 }
 
+// To so many simulators that are here, of several ranks: if to none, others must be waited for all the same.
+static void open_gate_here(const scheduler *c, ob_phase phase, uint32_t *who, uint32_t n)
+{
+	const uint32_t all = ob_universe_simulators(c->u), each = all / ob_universe_ranks(c->u);
+	if (!n)
+		who[0] = (ob_universe_rank(c->u) + 1) * each % all; // who is elsewhere
+	ob_gate_open(c->u, phase, who, n ? n : 1);
+}
+
 // Each simulator has a chunk, which may be empty (island_builder.h).
 static bool open_shares(const scheduler *c, ob_phase phase)
 {
@@ -150,17 +159,14 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 	const uint32_t all = data->count->chunks;
 	uint32_t n = 0;
 	ob_task_reset(c->u, all, all);
-	if (ob_universe_ranks(c->u) > 1) {
-		if (!ob_commit_give(c->sim->committer, c->u, &c->sim->peers))
-			return false;
-		ob_islands_list_own_pairs(c->u, ob_commit_halo(c->sim->committer));
-	}
+	if (ob_universe_ranks(c->u) > 1)
+		ob_islands_list_dealt_pairs(c->u, ob_commit_halo(c->sim->committer));
 	for (uint32_t w = 0; w < all; w++)
 		if (data->chunk[w] < data->chunk[w + 1])
 			data->scratch[n++] = w;
 		else
 			ob_worker_set_objects(c->u, w, 0);
-	ob_gate_open(c->u, phase, data->scratch, n);
+	open_gate_here(c, phase, data->scratch, n);
 	return true;
 }
 
@@ -216,9 +222,7 @@ static bool open_own_pairs(const scheduler *c, ob_phase phase, uint32_t pairs)
 	ob_task_reset_from(c->u, tasks, first, workers);
 	for (uint32_t i = 0; i < workers; i++)
 		who[i] = first + i;
-	if (!workers) // somebody must be waited for, who is not here
-		who[0] = (first + each) % all;
-	ob_gate_open(c->u, phase, who, workers ? workers : 1);
+	open_gate_here(c, phase, who, workers);
 	return true;
 }
 
@@ -473,7 +477,7 @@ static bool is_anybody_due(const scheduler *c)
 	const uint64_t step = ob_step_count(c->u);
 	const ob_calendar solve = ob_calendar_of_objects(c->u), look = ob_calendar_of_pairs(c->u);
 	if (ob_universe_ranks(c->u) > 1)
-		return ob_calendar_is_due(&solve, step) || c->data->count->next_check <= step;
+		return c->data->count->next_due <= step;
 	return ob_calendar_is_due(&solve, step) || ob_calendar_is_due(&look, step);
 }
 
@@ -500,29 +504,35 @@ static void end_parted(const scheduler *c)
 static ob_phase build_islands(const scheduler *c)
 {
 	struct ob_step_counts *count = c->data->count;
+	const bool several = ob_universe_ranks(c->u) > 1;
 	count->islands = 0;
+	if (several)
+		c->sim->peers.islands = 0;
 	make_move(c);
 	if (!is_anybody_due(c))
 		return OB_PHASE_COMPLETE;
-	if (ob_universe_ranks(c->u) > 1)
+	if (several)
 		end_parted(c);
 	ob_islands_begin(c->u);
+	if (several)
+		ob_commit_involve_meetings(c->sim->committer, c->u);
 	return OB_PHASE_LINKS;
 }
 
 static ob_phase after_links(const scheduler *c)
 {
+	bool islands = true; // of whichever rank
+	if (ob_universe_ranks(c->u) > 1 && !ob_commit_share_islands(c->sim->committer, c->u, &c->sim->peers, &islands))
+		return OB_PHASE_PAUSE;
 	ob_islands_list_members(c->u);
-	return OB_PHASE_LISTS;
+	return islands ? OB_PHASE_LISTS : OB_PHASE_COMPLETE;
 }
 
 static ob_phase after_lists(const scheduler *c)
 {
-	ob_regions *regions = ob_universe_ranks(c->u) > 1 ? ob_commit_regions(c->sim->committer) : NULL;
-	if (regions && !c->data->count->merged)
-		ob_regions_renew(regions, c->u);
-	ob_islands_deal(c->u, regions);
-	return c->data->count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
+	const bool several = ob_universe_ranks(c->u) > 1;
+	ob_islands_deal(c->u, several ? ob_commit_regions(c->sim->committer) : NULL);
+	return several || c->data->count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
 }
 
 static ob_phase begin_step(const scheduler *c)
@@ -556,7 +566,8 @@ static void count_awake(const scheduler *c)
 // Of several ranks.
 static void settle(const scheduler *c)
 {
-	ob_regions_settle(ob_commit_regions(c->sim->committer), c->u);
+	if (ob_regions_settle(ob_commit_regions(c->sim->committer), c->u))
+		ob_commit_find_meetings(c->sim->committer, c->u);
 	ob_halo_settle(ob_commit_halo(c->sim->committer), c->u);
 }
 
@@ -636,7 +647,7 @@ static ob_phase after_late_contacts(const scheduler *c)
 	*ob_worker_counters(c->u, c->sim->worker) = c->sim->counters; // before anybody may look
 	if (late) {
 		ob_islands_merge(c->u);
-		return OB_PHASE_LISTS;
+		return after_links(c);
 	}
 	return OB_PHASE_COPY;
 }
@@ -666,9 +677,11 @@ static bool gather(const scheduler *c)
 static ob_phase complete_step(const scheduler *c)
 {
 	const struct ob_step_counts *count = c->data->count;
-	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle, count->islands);
+	const bool several = ob_universe_ranks(c->u) > 1;
+	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle,
+			 several ? c->sim->peers.islands : count->islands);
 	ob_step_work_reset(c->u);
-	return ob_universe_ranks(c->u) < 2 || gather(c) ? begin_step(c) : OB_PHASE_PAUSE;
+	return !several || gather(c) ? begin_step(c) : OB_PHASE_PAUSE;
 }
 
 // ---- the step
@@ -724,7 +737,7 @@ static ob_phase schedule(ob_sim *s, ob_phase finished)
 static bool commit(ob_sim *s, ob_phase phase)
 {
 	const bool alone = s->peers.ranks < 2 || phase == OB_PHASE_RESUME;
-	const uint64_t digest = alone ? 0 : ob_peers_digest(s->u, phase);
+	const uint64_t digest = alone ? 0 : ob_peers_digest(s->u);
 	if (!ob_commit_collect(s->committer, s->u, phase))
 		return false;
 	if (alone || ob_commit_exchange(s->committer, s->u, &s->peers, phase, digest))

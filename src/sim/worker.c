@@ -73,7 +73,6 @@ void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner)
 bool ob_sim_join(ob_sim *s, const ob_peers *p, ob_error *e)
 {
 	s->peers = *p;
-	s->peers.missing = ob_halo_missing(ob_commit_halo(s->committer));
 	return ob_peers_join(&s->peers, s->u, e);
 }
 

@@ -174,7 +174,7 @@ typedef struct ob_step_data {
 				// without gaps
 		uint32_t pairs_idle; // of these, not in use
 		uint32_t first_idle; // 1 + one of them, the first of a list
-		uint32_t islands, chunks, records_used;
+		uint32_t islands, chunks, records_used; // of several ranks, of this one
 		uint32_t unsolved; // islands that are to be solved: they come first, and so do their members
 		uint32_t shared; // 1 = chunk w is worker w's; 0 = chunks are claimed
 		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
@@ -185,7 +185,7 @@ typedef struct ob_step_data {
 		uint32_t checked; // steps that were complete, or solved, when all pairs were checked last
 		uint32_t late; // 1 = that check found a late contact; any worker may write it
 		uint32_t checks; // pairs in check[]
-		uint32_t next_check; // of several ranks: no pair has an entry for a step before this one, on whichever
+		uint32_t next_due; // of several ranks: nothing has an entry for a step before this one, on whichever
 		uint32_t island_pairs; // in island_pair[]
 		uint32_t involved; // bodies that are in an island of the coming step, as far as they are found
 		uint32_t due; // those of them that were found first, by what is due

@@ -142,6 +142,18 @@ class Ranks(program.Case):
 				more = ["--resume", file, "--duration", "1", "--workers", "1", "--json", "-"]
 				self.assertEqual(self.hash_of((3, more)), expected)
 
+	def test_goes_on_while_boxes_land(self):
+		"""From one process's checkpoints: what was about to touch is two ranks' now."""
+		with tempfile.TemporaryDirectory() as folder:
+			kept = os.path.join(folder, "kept")
+			for moment in 1.1, 1.2, 1.3:
+				program.report(program.scene("falling_boxes"), "-D", "n=300", "--duration", str(moment), "--workers", "1", "--measure", "end",
+					"--checkpoint", kept)
+				more = ["--resume", kept, "--duration", str(moment + .05), "--workers", "1", "--measure", "end"]
+				alone = program.report(*more)["state_hash"]
+				for ranks in 2, 3:
+					self.assertEqual(self.hash_of((ranks, [*more, "--json", "-"])), alone)
+
 	def test_checkpoints_are_alike(self):
 		"""That of each rank, whatever it has solved, is that of one process, but for when it was made and what was counted."""
 		later = ".4", "1.1" # when records have been others' before

@@ -1,31 +1,21 @@
 // Three ranks that know no more motions than they need: bodies move, meet and part, and go from rank to rank, solved or
 // not, at random. Each rank always has its own and their neighbours', to the last bit, and after a gathering
-// everybody's; what it has not it does not take for known. And damage to what it has is found.
+// everybody's. And damage to what it has is found.
 #include "check.h"
-
-#include <pthread.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "motion/random.h"
 #include "sim/halo.h"
+#include "sim/little_ranks.h"
 #include "sim/little_universe.h"
 #include "sim/pairs.h"
 #include "table/home.h"
 #include "table/layout.h"
 
-enum { RANKS = 3, BODIES = 40, STEPS = 60, MOST_PAIRS = 60, SEEDS = 20 };
-
-// What is said, by rank: to each.
-typedef struct exchange {
-	pthread_barrier_t together;
-	const void *said[RANKS][RANKS];
-	size_t bytes[RANKS][RANKS];
-} exchange;
+enum { RANKS = LITTLE_RANKS, BODIES = 40, STEPS = 60, MOST_PAIRS = 60, SEEDS = 20 };
 
 // What happens, the same for all ranks, and what is true.
 typedef struct story {
-	exchange x;
+	little_exchange x;
 	ob_motion now[BODIES], next[BODIES];
 	bool told[BODIES][RANKS], restored[BODIES], solved[BODIES];
 	uint32_t home[BODIES];
@@ -40,40 +30,10 @@ typedef struct rank {
 	uint32_t number, wrong, lacked;
 	ob_universe *u;
 	ob_halo *h;
+	little_wire wire;
 	ob_peers p;
 	ob_mail mail[RANKS];
-	char *heard;
-	size_t at[RANKS + 1];
 } rank;
-
-static const char *hear(rank *r)
-{
-	exchange *x = &r->s->x;
-	pthread_barrier_wait(&x->together);
-	for (uint32_t from = 0; from < RANKS; from++)
-		r->at[from + 1] = r->at[from] + x->bytes[from][r->number];
-	free(r->heard);
-	r->heard = malloc(r->at[RANKS]);
-	for (uint32_t from = 0; r->heard && from < RANKS; from++)
-		memcpy(r->heard + r->at[from], x->said[from][r->number], x->bytes[from][r->number]);
-	pthread_barrier_wait(&x->together);
-	return r->heard;
-}
-
-static const char *deal(void *wire, const void *const *mine, const size_t *bytes, const size_t **at)
-{
-	rank *r = wire;
-	memcpy(r->s->x.said[r->number], mine, sizeof r->s->x.said[0]);
-	memcpy(r->s->x.bytes[r->number], bytes, sizeof r->s->x.bytes[0]);
-	*at = r->at;
-	return hear(r);
-}
-
-static const char *gather(void *wire, const void *mine, size_t n, const size_t **at)
-{
-	const void *const same[RANKS] = { mine, mine, mine };
-	return deal(wire, same, (size_t[RANKS]){ n, n, n }, at);
-}
 
 static uint32_t any(uint64_t *seed, uint32_t of)
 {
@@ -113,43 +73,42 @@ static void link_pairs(const rank *r, uint32_t pairs)
 	ob_pairs_link(r->u);
 }
 
+// All know where bodies live; who had them gives them to who has them now.
 static void move(rank *r)
 {
 	ob_step_data *data = ob_universe_step_data(r->u);
 	const story *s = r->s;
 	const size_t *at;
 	const char *parcel;
-	uint32_t n = 0, left = 0, leaving[BODIES];
-	bool moved = false, sound = true;
+	uint32_t left = 0, leaving[BODIES];
+	bool sound = true;
 	ob_parcel head;
 	for (uint32_t id = 0; id < BODIES; id++) {
-		data->result_island[id] = s->solved[id] ? n : UINT32_MAX;
-		if (!s->solved[id] && ob_home_of(r->u, id) != s->home[id])
-			leaving[left++] = id, ob_home_set(r->u, id, s->home[id]);
-		if (!s->solved[id])
+		const uint32_t before = ob_home_of(r->u, id);
+		data->result_island[id] = s->solved[id] && s->home[id] == r->number ? 0 : UINT32_MAX;
+		if (before == s->home[id])
 			continue;
-		data->island[n] = (ob_island){ .first_member = n, .members = 1 };
-		data->member[n++] = id;
-		ob_home_set(r->u, id, s->home[id]);
+		ob_halo_rehome(r->h, r->u, id, s->home[id]);
+		if (before == r->number)
+			leaving[left++] = id;
 	}
-	data->count->islands = data->count->unsolved = n;
 	for (uint32_t to = 0; to < RANKS; to++)
 		r->wrong += !ob_peers_begin(&r->mail[to]);
-	r->wrong += !ob_halo_move(r->h, r->u, leaving, left, r->mail, &moved);
-	const char *all =
-		moved ? ob_peers_deal(&r->p, r->u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, r->mail, &at) : NULL;
+	for (uint32_t i = 0; i < left; i++)
+		r->wrong += !ob_halo_give(r->h, r->u, leaving[i], &r->mail[s->home[leaving[i]]]);
+	const char *all = ob_peers_deal(&r->p, r->u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, r->mail, &at);
 	for (uint32_t from = 0; all && from < RANKS; from++) {
 		const char *rest = all + at[from] + sizeof(ob_peers_head);
 		size_t bytes = at[from + 1] - at[from] - sizeof(ob_peers_head);
 		while (sound && from != r->number && (parcel = ob_parcel_next(&rest, &bytes, &head, &sound)))
 			sound = ob_halo_take(r->h, r->u, parcel, &head);
 	}
-	r->wrong += !sound;
+	r->wrong += !all || !sound;
 }
 
 static bool is_true(const rank *r, uint32_t id)
 {
-	return ob_halo_has(r->h, id) && memcmp(ob_newest_motion(r->u, id), &r->s->now[id], sizeof(ob_motion)) == 0;
+	return memcmp(ob_newest_motion(r->u, id), &r->s->now[id], sizeof(ob_motion)) == 0;
 }
 
 // As who lists its pairs sees it (sim/island_builder.c).
@@ -175,17 +134,19 @@ static void solve(rank *r)
 		}
 	if (!s->all)
 		ob_halo_part(r->h);
-	pthread_barrier_wait(&s->x.together);
+	little_meet(&r->wire);
 	for (uint32_t id = 0; id < BODIES; id++) {
 		if (!s->solved[id])
 			continue;
 		const bool told = s->told[id][r->number];
-		r->wrong += told && (!s->restored[id] || s->home[id] == r->number) && !is_true(r, id);
-		r->wrong += ob_halo_has(r->h, id) && (!is_true(r, id) || !ob_halo_digest(r->h, r->u, id, &digest));
+		const bool knows = told && (!s->restored[id] || s->home[id] == r->number);
+		r->wrong += knows && (!is_true(r, id) || !ob_halo_digest(r->h, r->u, id, &digest));
 		r->lacked += !told;
-		if (told)
-			ob_stage_motion(r->u, id, &s->next[id]);
-		ob_halo_note(r->h, id, told ? &s->next[id] : NULL);
+		if (!told)
+			continue;
+		ob_universe_step_data(r->u)->schedule[id].since = (uint32_t)ob_step_count(r->u) + 1;
+		ob_stage_motion(r->u, id, &s->next[id]);
+		ob_halo_note(r->h, id, &s->next[id]);
 	}
 }
 
@@ -201,13 +162,21 @@ static void meet(rank *r)
 
 static void publish(rank *r)
 {
-	for (uint32_t id = 0; id < BODIES; id++) {
-		ob_universe_step_data(r->u)->result_island[id] = UINT32_MAX;
-		if (!r->s->solved[id] || !ob_halo_has_found(r->h, id))
-			continue;
+	ob_step_data *data = ob_universe_step_data(r->u);
+	uint32_t id;
+	for (id = 0; id < BODIES; id++)
+		if (data->result_island[id] != UINT32_MAX) {
+			data->result_island[id] = UINT32_MAX;
+			ob_commit_motion(r->u, id);
+			ob_halo_note_published(r->h, r->u, id);
+		}
+	while (ob_halo_take_heard(r->h, &id)) {
+		r->wrong += r->s->home[id] == r->number || !r->s->solved[id];
 		ob_commit_motion(r->u, id);
 		ob_halo_note_published(r->h, r->u, id);
 	}
+	for (id = 0; id < BODIES; id++)
+		data->schedule[id].since = 0;
 }
 
 static void check(rank *r, bool everything)
@@ -221,7 +190,7 @@ static void check(rank *r, bool everything)
 		needed[s->pair[i].b] |= s->home[s->pair[i].a] == r->number;
 	}
 	for (uint32_t id = 0; id < BODIES; id++)
-		r->wrong += (needed[id] || ob_halo_has(r->h, id)) && !is_true(r, id);
+		r->wrong += needed[id] && !is_true(r, id);
 }
 
 static void *live(void *arg)
@@ -232,23 +201,23 @@ static void *live(void *arg)
 	for (int step = 0; step < STEPS; step++) {
 		if (r->number == 0)
 			tell_on(s);
-		pthread_barrier_wait(&s->x.together);
+		little_meet(&r->wire);
 		move(r);
 		solve(r);
 		meet(r);
-		pthread_barrier_wait(&s->x.together);
+		little_meet(&r->wire);
 		if (s->again) // as islands that late contacts merge
 			solve(r);
 		publish(r);
-		pthread_barrier_wait(&s->x.together);
+		little_meet(&r->wire);
 		if (r->number == 0)
 			for (uint32_t id = 0; id < BODIES; id++)
 				s->now[id] = s->solved[id] ? s->next[id] : s->now[id];
-		pthread_barrier_wait(&s->x.together);
+		little_meet(&r->wire);
 		if (s->gathers)
 			r->wrong += !ob_halo_gather(r->h, r->u, &r->p) || ob_halo_is_partial(r->h);
 		check(r, s->gathers);
-		pthread_barrier_wait(&s->x.together);
+		little_meet(&r->wire);
 	}
 	return NULL;
 }
@@ -260,13 +229,14 @@ static void check_story(const little_scene *scene, uint64_t seed, uint32_t *lack
 	pthread_t thread[RANKS];
 	memset(&s, 0, sizeof s);
 	s.seed = seed;
-	pthread_barrier_init(&s.x.together, NULL, RANKS);
+	little_exchange_open(&s.x);
 	for (uint32_t i = 0; i < RANKS; i++) {
 		r[i] = (rank){ .s = &s, .number = i, .u = little_populate(scene, RANKS) };
 		r[i].u->rank = i;
 		r[i].u->ranks = RANKS;
 		r[i].h = ob_halo_create(r[i].u);
-		r[i].p = (ob_peers){ .rank = i, .ranks = RANKS, .gather = gather, .deal = deal, .wire = &r[i] };
+		r[i].wire = (little_wire){ .x = &s.x, .rank = i };
+		r[i].p = little_peers(&r[i].wire);
 		link_pairs(&r[i], 0);
 		memset(ob_universe_step_data(r[i].u)->result_island, 0xff, BODIES * sizeof(uint32_t));
 	}
@@ -282,11 +252,11 @@ static void check_story(const little_scene *scene, uint64_t seed, uint32_t *lack
 		*lacked += r[i].lacked;
 		for (uint32_t to = 0; to < RANKS; to++)
 			ob_mail_finish(&r[i].mail[to]);
-		free(r[i].heard);
+		free(r[i].wire.heard);
 		ob_halo_destroy(r[i].h);
 		ob_universe_destroy(r[i].u, true);
 	}
-	pthread_barrier_destroy(&s.x.together);
+	little_exchange_close(&s.x);
 }
 
 static void check_damage(const little_scene *scene)

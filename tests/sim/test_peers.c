@@ -9,7 +9,7 @@
 #include "sim/little_universe.h"
 #include "sim/peers.h"
 
-enum { CRATE = 1 };
+enum { CRATE = 1, DIGEST_OF_CRATE = 1 + (2 * CRATE + 1) * sizeof(uint64_t) }; // 1 + the place of a byte of it
 
 // Says as rank 1 what rank 0 says, but for one bit.
 typedef struct echo {
@@ -61,7 +61,7 @@ static const char *exchange(ob_peers *p, ob_universe *u, ob_mail *mail)
 {
 	const size_t *at;
 	CHECK(ob_peers_begin(mail) && ob_mail_append(mail, words, sizeof words));
-	const ob_peers_head head = { .phase = OB_PHASE_ISLANDS, .digest = ob_peers_digest(u, OB_PHASE_ISLANDS) };
+	const ob_peers_head head = { .phase = OB_PHASE_ISLANDS, .digest = ob_peers_digest(u) };
 	const char *all = ob_peers_exchange(p, u, head, mail, &at);
 	for (int r = 0; all && r < 2; r++)
 		CHECK(at[r + 1] - at[r] == sizeof head + sizeof words &&
@@ -83,7 +83,7 @@ static void check_mail(void)
 	close_two(s, &l);
 }
 
-// A digest that differs, then the object in which the ranks differ: each tells all of its objects, in words.
+// A digest that differs, then the object in which the ranks differ: each tells of all objects since when, and what.
 // first: byte of the head, likewise.
 static void check_difference(size_t first, size_t place, const char *named)
 {
@@ -105,10 +105,17 @@ static void check_digest(void)
 	little_scene *s;
 	little_universe l;
 	open_two(&s, &l);
-	const uint64_t before = ob_peers_digest(l.u, OB_PHASE_ISLANDS);
-	CHECK(ob_universe_step_data(l.u)->count->islands > 0 && ob_peers_digest(l.u, OB_PHASE_ISLANDS) == before);
-	ob_universe_step_data(l.u)->island[0].members++;
-	CHECK(ob_peers_digest(l.u, OB_PHASE_ISLANDS) != before);
+	const uint64_t before = ob_peers_digest(l.u);
+	CHECK(ob_universe_step_data(l.u)->count->pairs > 0 && ob_peers_digest(l.u) == before);
+	ob_requery_append(l.u, CRATE);
+	const uint64_t asked = ob_peers_digest(l.u);
+	ob_requery_reset(l.u);
+	ob_requery_append(l.u, CRATE + 1);
+	CHECK(asked != before && ob_peers_digest(l.u) != asked && ob_peers_digest(l.u) != before);
+	ob_requery_reset(l.u);
+	ob_universe_step_data(l.u)->count->pairs++;
+	CHECK(ob_peers_digest(l.u) != before);
+	ob_universe_step_data(l.u)->count->pairs--;
 	close_two(s, &l);
 }
 
@@ -154,10 +161,12 @@ static void check_joining(void)
 int main(void)
 {
 	check_mail();
-	check_difference(1 + offsetof(ob_peers_head, digest), 1 + CRATE * sizeof(uint64_t), "object \"crate\"");
+	check_difference(1 + offsetof(ob_peers_head, digest), DIGEST_OF_CRATE, "object \"crate\"");
 	check_difference(1 + offsetof(ob_peers_head, digest), 0, "otherwise");
 	check_difference(1 + offsetof(ob_peers_head, phase), 0, "otherwise");
-	check_difference(1 + offsetof(ob_peers_head, differs), 1 + CRATE * sizeof(uint64_t), "object \"crate\"");
+	check_difference(1 + offsetof(ob_peers_head, differs), DIGEST_OF_CRATE, "object \"crate\"");
+	// Where one has it of another step it is no wonder that it has another.
+	check_difference(1 + offsetof(ob_peers_head, digest), DIGEST_OF_CRATE - sizeof(uint64_t), "otherwise");
 	check_difference(1 + offsetof(ob_peers_head, damaged), 0, "of a contact of object");
 	check_difference(1 + offsetof(ob_peers_head, damaged) + sizeof(uint64_t) - 1, 0, "");
 	check_digest();

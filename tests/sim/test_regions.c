@@ -202,15 +202,21 @@ static void check_mixing(ob_universe *u, world *w, uint64_t *seed)
 		if (i % 50 != 49)
 			continue;
 		write_world(u, w);
-		ob_regions_follow(r, u);
+		for (u->rank = 0; u->rank < RANKS; u->rank++) {
+			ob_regions_follow(r, u);
+			const uint32_t *flier = ob_regions_find_fliers(r, u, &left);
+			fliers += left;
+			for (uint32_t k = 0; k < left; k++) {
+				CHECK(ob_home_rank(u, flier[k]) == u->rank && flier[k] <= i && flier[k] + 50 > i);
+				CHECK(ob_universe_rank_of(u, ob_regions_at(r, flier[k])) != u->rank);
+				ob_regions_take(r, flier[k], ob_regions_at(r, flier[k]));
+				ob_home_set(u, flier[k], ob_regions_at(r, flier[k]));
+			}
+		}
+		u->rank = 0;
 		ob_requery_reset(u);
-		const uint32_t *flier = ob_regions_settle_fliers(r, u, &left);
-		fliers += left;
-		for (uint32_t k = 0; k < left; k++)
-			CHECK(ob_home_of(u, flier[k]) == ob_regions_at(r, flier[k]) && flier[k] <= i &&
-			      flier[k] + 50 > i);
 		for (uint32_t k = i + 1; k < BODIES; k++)
-			CHECK(ob_regions_at(r, k) == ob_home_of(u, k)); // nobody else
+			CHECK(ob_universe_rank_of(u, ob_regions_at(r, k)) == ob_home_rank(u, k)); // nobody else
 	}
 	ranks_of(u, r, rank);
 	CHECK(copies(u, rank) <= 1.5 * simple_copies(u, w) + 10);
@@ -218,11 +224,31 @@ static void check_mixing(ob_universe *u, world *w, uint64_t *seed)
 	ob_regions_destroy(r);
 }
 
+// The other ranks, which have noted the same of what bodies cost.
+typedef struct echo {
+	char *bytes;
+	size_t at[RANKS + 1];
+} echo;
+
+static const char *gather(void *wire, const void *mine, size_t n, const size_t **at)
+{
+	echo *w = wire;
+	w->bytes = realloc(w->bytes, RANKS * n);
+	for (size_t r = 0; r < RANKS && w->bytes; r++) {
+		memcpy(w->bytes + r * n, mine, n);
+		w->at[r + 1] = (r + 1) * n;
+	}
+	*at = w->at;
+	return w->bytes;
+}
+
 // What is near a corner costs much more: all of it is dealt again when that has gone on for a while, and no earlier.
 static void check_work(ob_universe *u, const world *w)
 {
 	static uint32_t work[BODIES], before[BODIES];
 	uint32_t changed = 0, rounds = 0;
+	echo wire = { .bytes = NULL };
+	ob_peers p = { .ranks = RANKS, .gather = gather, .wire = &wire };
 	memset(ob_universe_step_data(u)->home, 0, BODIES * sizeof(uint32_t));
 	ob_regions *r = ob_regions_create(u);
 	ob_regions_settle(r, u);
@@ -233,7 +259,8 @@ static void check_work(ob_universe *u, const world *w)
 	for (; !changed && rounds < 1000; rounds++) {
 		for (uint32_t i = 0; i < BODIES; i++)
 			ob_regions_note(r, i, ob_regions_at(r, i), work[i], rounds > 0);
-		ob_regions_renew(r, u);
+		const ob_regions_work sum = ob_regions_work_of(r);
+		CHECK(ob_regions_renew(r, u, &p, &sum));
 		for (uint32_t i = 0; i < BODIES; i++)
 			changed += before[i] != ob_regions_at(r, i);
 	}
@@ -241,6 +268,7 @@ static void check_work(ob_universe *u, const world *w)
 	check_whole(u, r);
 	check_shares(r, work, 900 * largest_group(u));
 	ob_regions_destroy(r);
+	free(wire.bytes);
 }
 
 // A body that was moved, and what touches it, is where it was moved to, and counts there.

@@ -1,0 +1,46 @@
+#include "sim/pair_rank.h"
+
+#include <math.h>
+
+#include "sim/calendar.h"
+#include "table/home.h"
+
+static bool lives_here(const ob_universe *u, uint32_t id)
+{
+	return ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[id]) &&
+	       ob_worker_is_here(u, ob_home_of(u, id));
+}
+
+bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k)
+{
+	return ob_universe_ranks(u) < 2 || lives_here(u, k->a) || lives_here(u, k->b);
+}
+
+bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
+{
+	const bool a = ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[k->a]);
+	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
+}
+
+bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	return ob_schedule_is_dynamic(&data->schedule[k->a]) && ob_schedule_is_dynamic(&data->schedule[k->b]) &&
+	       ob_home_rank(u, k->a) != ob_home_rank(u, k->b);
+}
+
+void ob_pairs_follow(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		ob_pair_key *k = &data->pair[at.pair];
+		if (!ob_object_in_range(data, k->a) || !ob_object_in_range(data, k->b) ||
+		    !ob_pair_is_checked_here(u, k))
+			continue;
+		if (data->count->merged)
+			k->limit = -INFINITY;
+		ob_calendar_set(&look, at.pair, ob_step_count(u) + 1);
+	}
+}

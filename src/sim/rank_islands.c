@@ -1,0 +1,642 @@
+#include "sim/rank_islands.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/calendar.h"
+#include "sim/island_builder.h"
+#include "sim/pairs.h"
+#include "table/forest.h"
+#include "table/home.h"
+
+enum { NONE = UINT32_MAX };
+
+// An island of this rank's bodies, as far as they are linked here.
+typedef struct island {
+	uint32_t root; // the body that it is named by
+	uint32_t to; // the simulator where it is to be solved
+	uint32_t votes; // how many more of its bodies are in that one's region than in others
+	uint32_t pinned; // the lowest of its bodies that were moved to a simulator; NONE: none was
+	uint64_t work;
+	bool meets; // another rank's
+	bool leaves;
+} island;
+
+// What a rank has to say, before so many loads and ends.
+typedef struct summary {
+	uint64_t islands, loads, ends;
+	uint64_t moves; // 1 = something goes to another rank, whatever the others say
+	uint64_t least; // work of the smallest island that may go to another; UINT64_MAX: none may
+	ob_regions_work work;
+} summary;
+
+// Work of islands that are to be solved by the rank.
+typedef struct load {
+	uint64_t rank, work;
+} load;
+
+// Of a body at a pair of two ranks': its island.
+typedef struct end {
+	uint32_t root, to, pinned, reserved; // as island
+	uint64_t work;
+} end;
+
+// A group of bodies that live with this simulator from now on.
+typedef struct homes_parcel {
+	ob_parcel head;
+	uint32_t simulator, count;
+	uint64_t solved; // 1 = they are an island, or of one, which is to be solved
+	struct {
+		uint32_t id, effort;
+	} body[];
+} homes_parcel;
+
+typedef struct leaving {
+	uint32_t id, island; // an index
+} leaving;
+
+struct ob_rank_islands {
+	uint32_t rank, ranks;
+	uint32_t islands;
+	island *island; // [object]
+	uint32_t *island_of; // [object], of a root
+	uint8_t *leaves; // [object]: 1 = it is the root of an island that leaves
+	uint32_t *parent; // [object]: of roots at borders (table/forest.h)
+	uint32_t *best; // [object]: of such, the end of its islands that has most
+	uint32_t *order; // [object]: islands that may go elsewhere
+	leaving *leaving; // [object]
+	uint32_t *moved; // [object]: bodies that have another home now
+	uint32_t moved_count;
+	uint64_t *load; // [ranks]
+	ob_mail out, ends; // ends: those of all pairs, in their order, a's and b's
+	ob_mail *dealt; // [ranks]
+};
+
+ob_rank_islands *ob_rank_islands_create(const ob_universe *u)
+{
+	const uint32_t objects = ob_universe_capacity(u);
+	ob_rank_islands *s = calloc(1, sizeof *s);
+	if (!s)
+		return NULL;
+	s->rank = ob_universe_rank(u);
+	s->ranks = ob_universe_ranks(u);
+	s->island = calloc(objects, sizeof *s->island);
+	s->island_of = calloc(objects, sizeof *s->island_of);
+	s->leaves = calloc(objects, sizeof *s->leaves);
+	s->parent = calloc(objects, sizeof *s->parent);
+	s->best = calloc(objects, sizeof *s->best);
+	s->order = calloc(objects, sizeof *s->order);
+	s->leaving = calloc(objects, sizeof *s->leaving);
+	s->moved = calloc(objects, sizeof *s->moved);
+	s->load = calloc(s->ranks, sizeof *s->load);
+	s->dealt = calloc(s->ranks, sizeof *s->dealt);
+	if (s->island && s->island_of && s->leaves && s->parent && s->best && s->order && s->leaving && s->moved &&
+	    s->load && s->dealt)
+		return s;
+	ob_rank_islands_destroy(s);
+	return NULL;
+}
+
+void ob_rank_islands_destroy(ob_rank_islands *s)
+{
+	if (!s)
+		return;
+	for (uint32_t r = 0; s->dealt && r < s->ranks; r++)
+		ob_mail_finish(&s->dealt[r]);
+	ob_mail_finish(&s->out);
+	ob_mail_finish(&s->ends);
+	free(s->island);
+	free(s->island_of);
+	free(s->leaves);
+	free(s->parent);
+	free(s->best);
+	free(s->order);
+	free(s->leaving);
+	free(s->moved);
+	free(s->load);
+	free(s->dealt);
+	free(s);
+}
+
+static bool is_merging(const ob_universe *u)
+{
+	return ob_universe_step_data(u)->count->merged;
+}
+
+static uint32_t rank_of(const ob_universe *u, uint32_t simulator)
+{
+	return ob_universe_rank_of(u, simulator);
+}
+
+// ---- what this rank has
+
+// In whose region most of its bodies are, by their votes (Boyer and Moore, MJRTY: a fast majority vote algorithm,
+// 1981).
+static void add_body(island *is, const ob_universe *u, const ob_regions *regions, uint32_t id)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t at = ob_regions_at(regions, id), pin = data->pin[id];
+	is->work += 1 + data->effort[id];
+	if (pin && pin <= ob_universe_simulators(u) && pin <= data->objects_max && id < is->pinned)
+		is->pinned = id;
+	if (!is->votes)
+		is->to = at;
+	is->votes = is->to == at ? is->votes + 1 : is->votes - 1;
+}
+
+static void find_islands(ob_rank_islands *s, ob_universe *u, const ob_regions *regions)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t *body, *root, n = ob_islands_bodies(u, &body, &root);
+	s->islands = 0;
+	for (uint32_t i = 0; i < n; i++)
+		if (root[body[i]] == body[i]) {
+			s->island_of[body[i]] = s->islands;
+			s->island[s->islands++] = (island){ .root = body[i], .pinned = NONE };
+		}
+	for (uint32_t i = 0; i < n; i++)
+		add_body(&s->island[s->island_of[root[body[i]]]], u, regions, body[i]);
+	for (uint32_t i = 0; i < s->islands; i++) {
+		island *is = &s->island[i];
+		if (is->pinned != NONE)
+			is->to = data->pin[is->pinned] - 1;
+		else if (is_merging(u) && rank_of(u, is->to) != s->rank) // it is solved here already
+			is->to = ob_home_of(u, is->root);
+	}
+}
+
+static uint32_t own_end(const ob_universe *u, const ob_pair_key *k, uint32_t rank)
+{
+	return ob_home_rank(u, k->a) == rank ? k->a : ob_home_rank(u, k->b) == rank ? k->b : NONE;
+}
+
+static bool add_ends(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, uint32_t pairs, uint64_t *ends)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t *body, *root;
+	bool fits = true;
+	ob_islands_bodies(u, &body, &root);
+	for (uint32_t i = 0; i < pairs; i++) {
+		const uint32_t id = own_end(u, &data->pair[pair[i]], s->rank);
+		if (id == NONE)
+			continue;
+		island *is = &s->island[s->island_of[root[id]]];
+		const end e = { .root = is->root, .to = is->to, .pinned = is->pinned, .work = is->work };
+		is->meets = true;
+		fits &= ob_mail_append(&s->out, &e, sizeof e);
+		++*ends;
+	}
+	return fits;
+}
+
+static bool add_loads(ob_rank_islands *s, const ob_universe *u, uint64_t *loads)
+{
+	bool fits = true;
+	memset(s->load, 0, s->ranks * sizeof *s->load);
+	for (uint32_t i = 0; i < s->islands; i++)
+		s->load[rank_of(u, s->island[i].to)] += s->island[i].work;
+	for (uint32_t r = 0; r < s->ranks; r++) {
+		const load of = { r, s->load[r] };
+		if (!of.work)
+			continue;
+		fits &= ob_mail_append(&s->out, &of, sizeof of);
+		++*loads;
+	}
+	return fits;
+}
+
+// What may go to another rank for no other reason than that this one has too much.
+static bool may_spill(const ob_rank_islands *s, const ob_universe *u, const island *is)
+{
+	return !is->meets && is->pinned == NONE && rank_of(u, is->to) == s->rank;
+}
+
+static bool write_summary(ob_rank_islands *s, ob_universe *u, const ob_regions *regions, const uint32_t *pair,
+			  uint32_t pairs, uint32_t fliers)
+{
+	summary own = {
+		.islands = s->islands, .moves = fliers > 0, .least = UINT64_MAX, .work = ob_regions_work_of(regions)
+	};
+	const size_t at = s->out.used;
+	bool fits = ob_mail_append(&s->out, &own, sizeof own);
+	fits = fits && (is_merging(u) || add_loads(s, u, &own.loads)) && add_ends(s, u, pair, pairs, &own.ends);
+	for (uint32_t i = 0; i < s->islands && !is_merging(u); i++) {
+		const island *is = &s->island[i];
+		own.moves |= !is->meets && rank_of(u, is->to) != s->rank;
+		if (may_spill(s, u, is) && is->work < own.least)
+			own.least = is->work;
+	}
+	if (fits)
+		memcpy(s->out.bytes + at, &own, sizeof own);
+	return fits;
+}
+
+// ---- what all have
+
+// What all ranks have said, together.
+typedef struct totals {
+	bool islands, moves;
+	uint64_t most; // work: a rank's share
+	ob_regions_work work;
+} totals;
+
+// The summary of a rank, if what follows it is as long as it says.
+static bool read_summary(const char *all, const size_t *at, uint32_t rank, summary *out)
+{
+	const size_t begin = at[rank] + sizeof(ob_peers_head), room = at[rank + 1] - begin;
+	if (at[rank + 1] < begin + sizeof *out)
+		return false;
+	memcpy(out, all + begin, sizeof *out);
+	return out->loads < room && out->ends < room &&
+	       room == sizeof *out + out->loads * sizeof(load) + out->ends * sizeof(end);
+}
+
+static const char *behind_summary(const char *all, const size_t *at, uint32_t rank)
+{
+	return all + at[rank] + sizeof(ob_peers_head) + sizeof(summary);
+}
+
+static bool read_loads(ob_rank_islands *s, const char *from, uint64_t loads)
+{
+	for (uint64_t i = 0; i < loads; i++) {
+		load of;
+		memcpy(&of, from + i * sizeof of, sizeof of);
+		if (of.rank >= s->ranks)
+			return false;
+		s->load[of.rank] += of.work;
+	}
+	return true;
+}
+
+static bool is_sound_end(const ob_universe *u, const end *e)
+{
+	return e->root < ob_universe_ids(u) && e->to < ob_universe_simulators(u);
+}
+
+// The next end that the rank has told.
+static bool take_end(ob_rank_islands *s, const ob_universe *u, const char **next, uint64_t *left, uint32_t rank)
+{
+	end e;
+	if (!left[rank])
+		return false;
+	memcpy(&e, next[rank], sizeof e);
+	next[rank] += sizeof e;
+	left[rank]--;
+	return is_sound_end(u, &e) && ob_mail_append(&s->ends, &e, sizeof e);
+}
+
+// false: some rank has told others than those of its bodies; or no memory.
+static bool read_ends(ob_rank_islands *s, const ob_universe *u, const char *all, const size_t *at, const uint32_t *pair,
+		      uint32_t pairs)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const char **next = calloc(s->ranks, sizeof *next);
+	uint64_t *left = calloc(s->ranks, sizeof *left);
+	bool sound = next && left;
+	for (uint32_t r = 0; sound && r < s->ranks; r++) {
+		summary of;
+		sound = read_summary(all, at, r, &of);
+		next[r] = behind_summary(all, at, r) + of.loads * sizeof(load);
+		left[r] = of.ends;
+	}
+	ob_mail_clear(&s->ends);
+	for (uint32_t i = 0; sound && i < pairs; i++)
+		for (int side = 0; sound && side < 2; side++) {
+			const ob_pair_key *k = &data->pair[pair[i]];
+			sound = take_end(s, u, next, left, ob_home_rank(u, side ? k->b : k->a));
+		}
+	free(next);
+	free(left);
+	return sound;
+}
+
+static end end_at(const ob_rank_islands *s, uint32_t i)
+{
+	end e;
+	memcpy(&e, s->ends.bytes + i * sizeof e, sizeof e);
+	return e;
+}
+
+// Who was moved is where it was moved to, the lowest of several; else who has more work.
+static bool is_better(const end *a, const end *b)
+{
+	if (a->pinned != b->pinned)
+		return a->pinned < b->pinned;
+	return a->work != b->work ? a->work > b->work : a->root < b->root;
+}
+
+// Joins the islands that meet. Returns whether any are of two ranks, as all are but those that others link, too.
+static bool join_islands(ob_rank_islands *s, uint32_t pairs)
+{
+	for (uint32_t i = 0; i < 2 * pairs; i++) {
+		const uint32_t root = end_at(s, i).root;
+		s->parent[root] = root;
+	}
+	for (uint32_t i = 0; i < pairs; i++)
+		ob_forest_join(s->parent, end_at(s, 2 * i).root, end_at(s, 2 * i + 1).root);
+	for (uint32_t i = 0; i < 2 * pairs; i++)
+		s->best[ob_forest_root(s->parent, end_at(s, i).root)] = i;
+	for (uint32_t i = 0; i < 2 * pairs; i++) {
+		const end e = end_at(s, i);
+		uint32_t *best = &s->best[ob_forest_root(s->parent, e.root)];
+		const end before = end_at(s, *best);
+		if (is_better(&e, &before))
+			*best = i;
+	}
+	for (uint32_t i = 0; i < s->islands; i++) {
+		island *is = &s->island[i];
+		if (is->meets)
+			is->to = end_at(s, s->best[ob_forest_root(s->parent, is->root)]).to;
+	}
+	return pairs > 0;
+}
+
+static uint32_t least_loaded(const ob_rank_islands *s)
+{
+	uint32_t best = 0;
+	for (uint32_t r = 1; r < s->ranks; r++)
+		best = s->load[r] < s->load[best] ? r : best;
+	return best;
+}
+
+// false: what some rank has said makes no sense, or no memory; then the step has failed.
+static bool add_up(ob_rank_islands *s, ob_universe *u, const ob_peers *p, const char *all, const size_t *at,
+		   const uint32_t *pair, uint32_t pairs, totals *t)
+{
+	uint64_t work = 0;
+	*t = (totals){ 0 };
+	memset(s->load, 0, s->ranks * sizeof *s->load);
+	for (uint32_t r = 0; r < s->ranks; r++) {
+		summary of;
+		if (!read_summary(all, at, r, &of) || !read_loads(s, behind_summary(all, at, r), of.loads)) {
+			ob_peers_blame(p, u, r);
+			return false;
+		}
+		t->islands |= of.islands > 0;
+		t->moves |= of.moves > 0;
+		t->work.all += of.work.all;
+		t->work.spilled += of.work.spilled;
+	}
+	if (!read_ends(s, u, all, at, pair, pairs)) {
+		ob_step_fail(u, OB_STEP_DAMAGED, 0);
+		return false;
+	}
+	t->moves |= join_islands(s, pairs);
+	for (uint32_t r = 0; r < s->ranks; r++)
+		work += s->load[r];
+	t->most = ob_islands_share(work, s->ranks);
+	for (uint32_t r = 0; r < s->ranks && !is_merging(u); r++) {
+		summary of;
+		read_summary(all, at, r, &of);
+		t->moves |= s->load[r] > t->most && of.least < s->load[r] - s->load[least_loaded(s)];
+	}
+	return true;
+}
+
+// ---- who has too much
+
+// Of this thread, by qsort.
+static _Thread_local const island *islands_compared;
+
+static int by_work(const void *a, const void *b)
+{
+	const island *x = &islands_compared[*(const uint32_t *)a], *y = &islands_compared[*(const uint32_t *)b];
+	if (x->work != y->work)
+		return x->work > y->work ? -1 : 1;
+	return x->root < y->root ? -1 : x->root > y->root;
+}
+
+// Of what others can take this rank gives as much of as of what is too much is its own.
+static void leave_room_to_others(ob_rank_islands *s, uint64_t most)
+{
+	uint64_t over = 0;
+	for (uint32_t r = 0; r < s->ranks; r++)
+		over += s->load[r] > most ? s->load[r] - most : 0;
+	const double share = (double)(s->load[s->rank] - most) / (double)over;
+	for (uint32_t r = 0; r < s->ranks; r++)
+		if (s->load[r] < most)
+			s->load[r] = most - (uint64_t)((double)(most - s->load[r]) * share);
+}
+
+// The largest first.
+static void spill(ob_rank_islands *s, const ob_universe *u, ob_regions *regions, uint64_t most)
+{
+	const uint32_t each = ob_universe_simulators(u) / s->ranks;
+	uint32_t n = 0;
+	if (s->load[s->rank] <= most)
+		return;
+	leave_room_to_others(s, most);
+	for (uint32_t i = 0; i < s->islands; i++)
+		if (may_spill(s, u, &s->island[i]))
+			s->order[n++] = i;
+	islands_compared = s->island;
+	qsort(s->order, n, sizeof *s->order, by_work);
+	for (uint32_t i = 0; i < n && s->load[s->rank] > most; i++) {
+		island *is = &s->island[s->order[i]];
+		const uint32_t to = least_loaded(s);
+		if (s->load[to] + is->work >= s->load[s->rank] || to * each >= ob_universe_capacity(u))
+			continue;
+		s->load[s->rank] -= is->work;
+		s->load[to] += is->work;
+		is->to = to * each;
+		ob_regions_spill(regions, is->work);
+	}
+}
+
+// ---- what moves
+
+static int by_island(const void *a, const void *b)
+{
+	const leaving *x = a, *y = b;
+	if (x->island != y->island)
+		return x->island < y->island ? -1 : 1;
+	return x->id < y->id ? -1 : x->id > y->id;
+}
+
+// Bodies of islands that another rank solves, island by island; returns how many.
+static uint32_t list_leaving(ob_rank_islands *s, ob_universe *u)
+{
+	const uint32_t *body, *root, bodies = ob_islands_bodies(u, &body, &root);
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < s->islands; i++) {
+		island *is = &s->island[i];
+		is->leaves = rank_of(u, is->to) != s->rank;
+		s->leaves[is->root] = is->leaves;
+	}
+	for (uint32_t i = 0; i < bodies; i++) {
+		const uint32_t k = s->island_of[root[body[i]]];
+		if (s->island[k].leaves)
+			s->leaving[n++] = (leaving){ body[i], k };
+	}
+	qsort(s->leaving, n, sizeof *s->leaving, by_island);
+	return n;
+}
+
+// All hear of it.
+static bool put_homes(ob_rank_islands *s, const ob_universe *u, const leaving *body, uint32_t n, uint32_t simulator,
+		      bool solved)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const homes_parcel h = { { OB_PARCEL_HOMES, (uint32_t)(sizeof h + n * sizeof *h.body) }, simulator, n, solved };
+	bool fits = true;
+	for (uint32_t r = 0; r < s->ranks; r++) {
+		fits &= ob_mail_append(&s->dealt[r], &h, sizeof h);
+		for (uint32_t i = 0; i < n; i++) {
+			const uint32_t of[2] = { body[i].id, data->effort[body[i].id] };
+			fits &= ob_mail_append(&s->dealt[r], of, sizeof of);
+		}
+	}
+	return fits;
+}
+
+static void rehome(ob_rank_islands *s, ob_universe *u, ob_halo *halo, uint32_t id, uint32_t simulator)
+{
+	ob_halo_rehome(halo, u, id, simulator);
+	s->moved[s->moved_count++] = id;
+}
+
+static bool give_bodies(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts)
+{
+	bool fits = true;
+	for (uint32_t i = 0; i < s->moved_count; i++) {
+		ob_mail *to = &s->dealt[ob_home_rank(u, s->moved[i])];
+		fits &= ob_holdings_give(parts->holdings, u, s->moved[i], to) &&
+			ob_halo_give(parts->halo, u, s->moved[i], to);
+	}
+	return fits;
+}
+
+// What leaves, to each rank; their homes come first.
+static bool pack(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const uint32_t *flier, uint32_t fliers)
+{
+	const uint32_t n = list_leaving(s, u);
+	bool fits = true;
+	s->moved_count = 0;
+	for (uint32_t r = 0; r < s->ranks; r++)
+		fits &= ob_peers_begin(&s->dealt[r]);
+	for (uint32_t i = 0, k; i < n; i = k) {
+		const uint32_t to = s->island[s->leaving[i].island].to;
+		for (k = i; k < n && s->leaving[k].island == s->leaving[i].island; k++)
+			rehome(s, u, parts->halo, s->leaving[k].id, to);
+		fits &= put_homes(s, u, s->leaving + i, k - i, to, true);
+	}
+	ob_islands_drop(u, s->leaves);
+	for (uint32_t i = 0; i < fliers; i++) {
+		const leaving one = { .id = flier[i] };
+		const uint32_t to = ob_regions_at(parts->regions, flier[i]);
+		rehome(s, u, parts->halo, flier[i], to);
+		fits &= put_homes(s, u, &one, 1, to, false);
+	}
+	return fits && give_bodies(s, u, parts);
+}
+
+// ---- what comes
+
+static bool take_homes(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const char *parcel, size_t bytes,
+		       uint32_t from)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	homes_parcel h;
+	uint32_t of[2], first = NONE;
+	if (bytes < sizeof h)
+		return false;
+	memcpy(&h, parcel, sizeof h);
+	if (h.simulator >= ob_universe_simulators(u) || h.count > ob_universe_ids(u) ||
+	    bytes != sizeof h + h.count * sizeof of)
+		return false;
+	for (uint32_t i = 0; i < h.count; i++) {
+		memcpy(of, parcel + sizeof h + i * sizeof of, sizeof of);
+		const uint32_t id = of[0];
+		if (id >= ob_universe_ids(u) || ob_home_rank(u, id) != from)
+			return false;
+		rehome(s, u, parts->halo, id, h.simulator);
+		if (rank_of(u, h.simulator) != s->rank)
+			continue;
+		data->effort[id] = of[1];
+		ob_regions_take(parts->regions, id, h.simulator);
+		first = first == NONE ? id : first;
+		if (h.solved)
+			ob_islands_join(u, first, id);
+	}
+	return true;
+}
+
+static bool take_parcels(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const char *from, size_t bytes,
+			 uint32_t rank)
+{
+	const char *parcel;
+	ob_parcel head;
+	bool sound = true;
+	while (sound && (parcel = ob_parcel_next(&from, &bytes, &head, &sound)))
+		switch (head.kind) {
+		case OB_PARCEL_HOMES:
+			sound = take_homes(s, u, parts, parcel, head.bytes, rank);
+			break;
+		case OB_PARCEL_KEPT:
+			sound = ob_holdings_take(parts->holdings, u, parcel, head.bytes);
+			break;
+		default:
+			sound = ob_halo_take(parts->halo, u, parcel, &head);
+		}
+	return sound;
+}
+
+// Bodies that have another home are due there, and whoever checks their pairs now does so at once.
+static void note_moved(const ob_rank_islands *s, ob_universe *u)
+{
+	for (uint32_t i = 0; i < s->moved_count; i++) {
+		ob_calendar_enter_due(u, s->moved[i]);
+		ob_pairs_look(u, s->moved[i]);
+	}
+}
+
+static bool move(ob_rank_islands *s, ob_universe *u, ob_peers *p, const ob_rank_parts *parts, const uint32_t *flier,
+		 uint32_t fliers)
+{
+	const size_t *at;
+	if (!pack(s, u, parts, flier, fliers)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return false;
+	}
+	const char *all = ob_peers_deal(p, u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, s->dealt, &at);
+	for (uint32_t r = 0; all && r < s->ranks; r++)
+		if (r != s->rank && !take_parcels(s, u, parts, all + at[r] + sizeof(ob_peers_head),
+						  at[r + 1] - at[r] - sizeof(ob_peers_head), r)) {
+			ob_peers_blame(p, u, r);
+			return false;
+		}
+	note_moved(s, u);
+	return all;
+}
+
+bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const ob_rank_parts *parts,
+			   const uint32_t *pair, uint32_t pairs, bool *islands)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const size_t *at;
+	uint32_t fliers = 0;
+	totals t;
+	*islands = true;
+	if (is_merging(u) && !pairs)
+		return true;
+	const uint32_t *flier = is_merging(u) ? NULL : ob_regions_find_fliers(parts->regions, u, &fliers);
+	find_islands(s, u, parts->regions);
+	if (!ob_peers_begin(&s->out) || !write_summary(s, u, parts->regions, pair, pairs, fliers)) {
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+		return false;
+	}
+	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_SHARE }, &s->out, &at);
+	if (!all || !add_up(s, u, p, all, at, pair, pairs, &t))
+		return false;
+	*islands = t.islands;
+	if (!is_merging(u))
+		spill(s, u, parts->regions, t.most);
+	if (t.moves && !move(s, u, p, parts, flier, fliers))
+		return false;
+	for (uint32_t i = 0; i < pairs; i++) {
+		const ob_pair_key *k = &data->pair[pair[i]];
+		if (ob_home_rank(u, k->a) == s->rank && ob_home_rank(u, k->b) == s->rank)
+			ob_islands_join(u, k->a, k->b);
+	}
+	return is_merging(u) || ob_regions_renew(parts->regions, u, p, &t.work);
+}
