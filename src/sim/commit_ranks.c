@@ -263,6 +263,19 @@ void ob_commit_involve_meetings(ob_committer *c, ob_universe *u)
 	}
 }
 
+// Islands have been shared out: what is late is so no longer, and of what is one rank's now the others hear no more, so
+// what they know is void. If it is two ranks' again, it has been checked before, and all have heard.
+static void forget_meetings(const ob_committer *c, ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	for (size_t i = 0; i < c->meetings.used / sizeof(uint32_t); i++) {
+		ob_pair_key *k = &data->pair[pair_at(&c->meetings, i)];
+		k->late = 0;
+		if (!ob_pair_is_across(u, k) && !ob_pair_is_known_here(u, k))
+			k->expected = 0;
+	}
+}
+
 bool ob_commit_share_islands(ob_committer *c, ob_universe *u, ob_peers *p, bool *islands)
 {
 	const ob_rank_parts parts = { c->halo, c->holdings, c->regions };
@@ -274,8 +287,7 @@ bool ob_commit_share_islands(ob_committer *c, ob_universe *u, ob_peers *p, bool 
 		       pairs = (uint32_t)(c->met.used / sizeof *pair);
 	if (!ob_rank_islands_share(c->rank_islands, u, p, &parts, pair, pairs, islands))
 		return false;
-	for (uint32_t i = 0; i < pairs; i++) // who hears of it no more would keep it for ever
-		ob_universe_step_data(u)->pair[pair[i]].late = 0;
+	forget_meetings(c, u);
 	return true;
 }
 
