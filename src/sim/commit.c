@@ -486,24 +486,24 @@ static void note_before(ob_committer *c, const ob_universe *u, const ob_mail_rec
 
 static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
-	const bool restored = from->kind == OB_RECORD_RESTORED;
+	const bool restored = from->kind == OB_RECORD_RESTORED, here = ob_worker_is_here(u, from->worker);
 	ob_found_result whole;
 	const ob_found_result *r = ob_committer_result_of(u, from, &whole);
 	if (!r || !was_given(c, u, from->worker, r->id))
 		return "has solved what it was not given";
 	if (!is_sound(&r->motion, u) || !ob_is_sound_state(r->state) ||
-	    (restored && (from->bytes != sizeof *r || ob_worker_is_here(u, from->worker))))
+	    (restored && (from->bytes != sizeof *r || here)))
 		return "has found a motion that makes no sense";
 	if (c->halo && !restored)
 		note_before(c, u, from, r->id);
 	if (c->halo)
 		ob_halo_note(c->halo, r->id, &r->motion);
-	if (ob_worker_is_here(u, from->worker))
+	if (here)
 		c->due--;
-	if (c->halo && ob_worker_is_here(u, from->worker))
+	if (c->halo && here)
 		count_woken(c, u, r->id, r->state);
 	write_result(u, r);
-	if (!ob_worker_is_here(u, from->worker)) {
+	if (!here) {
 		ob_home_set(u, r->id, from->worker);
 		ob_pairs_follow(u, r->id);
 	}
@@ -689,7 +689,7 @@ static const char *commit_check(ob_committer *c, ob_universe *u, const ob_mail_r
 	if (!ob_worker_is_here(u, from->worker))
 		note_pair(u, &c->checked, r->pair);
 	if (c->ranks > 1 && (r->late || r->expected) && ob_pair_is_across(u, &ob_universe_step_data(u)->pair[r->pair]))
-		note_pair(u, &c->meetings, r->pair);
+		note_pair(u, &c->links_across, r->pair);
 	return NULL;
 }
 

@@ -73,9 +73,9 @@ bool ob_commit_take_parted(ob_committer *c, uint32_t *pair);
 bool ob_commit_take_checked(ob_committer *c, uint32_t *pair);
 // When bodies have got their homes: pairs that are expected to touch may be of two ranks' bodies, all of which know
 // them, from a checkpoint.
-void ob_commit_find_meetings(ob_committer *c, ob_universe *u);
+void ob_commit_find_links_across(ob_committer *c, ob_universe *u);
 // Before islands are linked: those of its bodies that meet other ranks' are in islands.
-void ob_commit_involve_meetings(ob_committer *c, ob_universe *u);
+void ob_commit_involve_links_across(ob_committer *c, ob_universe *u);
 // Before their members are listed: each rank has those that it is to solve (rank_islands.h). islands: as there
 bool ob_commit_share_islands(ob_committer *c, ob_universe *u, ob_peers *p, bool *islands);
 // Puts what the other ranks' simulators have handed over to what was collected. digest: ob_peers_digest.

@@ -27,8 +27,8 @@ void ob_committer_finish_shared(ob_committer *c)
 	ob_mail_finish(&c->out);
 	ob_mail_finish(&c->parted);
 	ob_mail_finish(&c->checked);
-	ob_mail_finish(&c->meetings);
-	ob_mail_finish(&c->met);
+	ob_mail_finish(&c->links_across);
+	ob_mail_finish(&c->linked);
 	ob_holdings_destroy(c->holdings);
 	ob_halo_destroy(c->halo);
 	ob_regions_destroy(c->regions);
@@ -215,14 +215,14 @@ static uint32_t pair_at(const ob_mail *list, size_t i)
 
 // Of the pairs that have linked two ranks' bodies, those that do: that have touched late, or else are expected to
 // touch.
-static bool list_meetings(const ob_committer *c, const ob_universe *u, bool late, ob_mail *to)
+static bool list_links_across(const ob_committer *c, const ob_universe *u, bool late, ob_mail *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const size_t all = c->meetings.used / sizeof(uint32_t);
+	const size_t all = c->links_across.used / sizeof(uint32_t);
 	bool fits = true;
 	ob_mail_clear(to);
 	for (size_t i = 0; i < all; i++) {
-		const uint32_t pair = pair_at(&c->meetings, i);
+		const uint32_t pair = pair_at(&c->links_across, i);
 		const ob_pair_key *k = &data->pair[pair];
 		if ((late ? k->late : k->expected) && ob_pair_is_across(u, k))
 			fits &= ob_mail_append(to, &pair, sizeof pair);
@@ -230,33 +230,33 @@ static bool list_meetings(const ob_committer *c, const ob_universe *u, bool late
 	return fits;
 }
 
-void ob_commit_find_meetings(ob_committer *c, ob_universe *u)
+void ob_commit_find_links_across(ob_committer *c, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	bool fits = true;
-	ob_mail_clear(&c->meetings);
+	ob_mail_clear(&c->links_across);
 	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (k->expected && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
 		    ob_pair_is_across(u, k))
-			fits &= ob_mail_append(&c->meetings, &i, sizeof i);
+			fits &= ob_mail_append(&c->links_across, &i, sizeof i);
 	}
 	if (!fits)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 }
 
-void ob_commit_involve_meetings(ob_committer *c, ob_universe *u)
+void ob_commit_involve_links_across(ob_committer *c, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	if (!list_meetings(c, u, false, &c->met)) {
+	if (!list_links_across(c, u, false, &c->linked)) {
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 		return;
 	}
-	const ob_mail those = c->meetings; // from now on all that there are
-	c->meetings = c->met;
-	c->met = those;
-	for (size_t i = 0; i < c->meetings.used / sizeof(uint32_t); i++) {
-		const ob_pair_key *k = &data->pair[pair_at(&c->meetings, i)];
+	const ob_mail those = c->links_across; // from now on all that there are
+	c->links_across = c->linked;
+	c->linked = those;
+	for (size_t i = 0; i < c->links_across.used / sizeof(uint32_t); i++) {
+		const ob_pair_key *k = &data->pair[pair_at(&c->links_across, i)];
 		for (int side = 0; side < 2; side++)
 			if (ob_home_rank(u, side ? k->b : k->a) == c->rank)
 				ob_islands_involve(u, side ? k->b : k->a);
@@ -265,11 +265,11 @@ void ob_commit_involve_meetings(ob_committer *c, ob_universe *u)
 
 // Islands have been shared out: what is late is so no longer, and of what is one rank's now the others hear no more, so
 // what they know is void. If it is two ranks' again, it has been checked before, and all have heard.
-static void forget_meetings(const ob_committer *c, ob_universe *u)
+static void forget_links_across(const ob_committer *c, ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	for (size_t i = 0; i < c->meetings.used / sizeof(uint32_t); i++) {
-		ob_pair_key *k = &data->pair[pair_at(&c->meetings, i)];
+	for (size_t i = 0; i < c->links_across.used / sizeof(uint32_t); i++) {
+		ob_pair_key *k = &data->pair[pair_at(&c->links_across, i)];
 		k->late = 0;
 		if (!ob_pair_is_across(u, k) && !ob_pair_is_known_here(u, k))
 			k->expected = 0;
@@ -279,15 +279,15 @@ static void forget_meetings(const ob_committer *c, ob_universe *u)
 bool ob_commit_share_islands(ob_committer *c, ob_universe *u, ob_peers *p, bool *islands)
 {
 	const ob_rank_parts parts = { c->halo, c->holdings, c->regions };
-	if (!list_meetings(c, u, ob_universe_step_data(u)->count->merged, &c->met)) {
+	if (!list_links_across(c, u, ob_universe_step_data(u)->count->merged, &c->linked)) {
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 		return false;
 	}
-	const uint32_t *pair = (const uint32_t *)(const void *)c->met.bytes,
-		       pairs = (uint32_t)(c->met.used / sizeof *pair);
+	const uint32_t *pair = (const uint32_t *)(const void *)c->linked.bytes,
+		       pairs = (uint32_t)(c->linked.used / sizeof *pair);
 	if (!ob_rank_islands_share(c->rank_islands, u, p, &parts, pair, pairs, islands))
 		return false;
-	forget_meetings(c, u);
+	forget_links_across(c, u);
 	return true;
 }
 

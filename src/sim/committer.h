@@ -56,7 +56,7 @@ struct ob_committer {
 	// Pairs, by their index: that simulators of other ranks have found to touch no longer; that they have checked;
 	// that have linked two ranks' bodies since islands were built, and of those the ones that do; the last two are
 	// the same on all ranks.
-	ob_mail parted, checked, meetings, met;
+	ob_mail parted, checked, links_across, linked;
 	const char *all; // what all have said; that of rank r begins at at[r], its records so many bytes on
 	const size_t *at;
 	size_t ahead;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sim/digest.h"
+#include "sim/pair_rank.h"
 #include "table/home.h"
 
 // The digest of a motion that was published as this version of the body's; version 0: none is known.
@@ -318,8 +319,7 @@ bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 		fits &= ob_peers_begin(&h->out[r]);
 	for (uint32_t i = 0; h->partial && i < checks; i++) {
 		const ob_pair_key *k = &data->pair[data->check[i]];
-		if (!is_dynamic(data, k->a) || !is_dynamic(data, k->b) ||
-		    ob_home_rank(u, k->a) == ob_home_rank(u, k->b))
+		if (!ob_pair_is_across(u, k))
 			continue;
 		meet = true;
 		for (int side = 0; side < 2; side++) {
@@ -365,12 +365,6 @@ bool ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *
 	return fits;
 }
 
-// Who knows the pair best: the rank that has solved one of the two.
-static uint32_t owner_of_pair(const ob_halo *h, const ob_pair_key *k)
-{
-	return h->owner[k->a] ? h->owner[k->a] : h->owner[k->b];
-}
-
 bool ob_halo_share_pairs(ob_halo *h, ob_universe *u, ob_peers *p)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -379,7 +373,7 @@ bool ob_halo_share_pairs(ob_halo *h, ob_universe *u, ob_peers *p)
 	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (k->a != k->b && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
-		    owner_of_pair(h, k) == 1 + p->rank)
+		    ob_pair_is_checked_here(u, k))
 			fits &= pack_pair(&h->out[0], u, i);
 	}
 	if (!fits) {

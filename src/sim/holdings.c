@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sim/digest.h"
+#include "sim/pair_rank.h"
 #include "table/home.h"
 
 enum { ALL = 0 }; // a holder
@@ -140,13 +141,6 @@ static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t reco
 	return ob_mail_append(to, &p, bytes);
 }
 
-// Whether what touches is solved by this rank.
-static bool is_solved_here(const ob_universe *u, const ob_pair_key *k)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	return ob_worker_is_here(u, ob_home_of(u, ob_schedule_is_dynamic(&data->schedule[k->a]) ? k->a : k->b));
-}
-
 // Writes what another rank has sent; rank: who has it from now on, or ALL.
 static bool take(ob_holdings *h, const ob_universe *u, const char *from, size_t bytes, uint16_t holder)
 {
@@ -157,7 +151,7 @@ static bool take(ob_holdings *h, const ob_universe *u, const char *from, size_t 
 	memcpy(&c, from, bytes);
 	ob_pair_key *k = c.pair < ob_pairs_end(data) ? &data->pair[c.pair] : NULL;
 	const uint32_t record = k ? k->record : OB_NO_RECORD;
-	if (record >= data->pairs_max || (holder != ALL && !is_solved_here(u, k)))
+	if (record >= data->pairs_max || (holder != ALL && !ob_pair_is_checked_here(u, k)))
 		return false;
 	h->holder[record] = holder;
 	data->record[record].version[0] = c.state;

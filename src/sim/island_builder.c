@@ -661,8 +661,7 @@ static uint32_t least_of(uint32_t a, uint32_t b)
 	return a < b ? a : b;
 }
 
-// Share of "total" for each of so many, a tenth more than that; less is not worth giving away.
-static uint64_t share_of(uint64_t total, uint32_t count)
+uint64_t ob_islands_share(uint64_t total, uint32_t count)
 {
 	enum { SLACK = 10, WORTH_SHARING = 16 * CHUNK_WORK_MIN };
 	const uint64_t share = total / count + total / (count * SLACK) + 1;
@@ -690,7 +689,7 @@ static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 	data->count->chunks = all;
 	if (!s.count) // a rank of more simulators than there can be objects
 		return;
-	s.most = (uint32_t)(share_of(total, s.count) >> s.shift);
+	s.most = (uint32_t)(ob_islands_share(total, s.count) >> s.shift);
 	memset(s.load, 0, s.count * sizeof *s.load);
 	memset(s.votes, 0, s.count * sizeof *s.votes);
 	for (uint32_t i = 0; i < unsolved; i++)
@@ -841,11 +840,6 @@ void ob_islands_merge(ob_universe *u)
 }
 
 // ---- of several ranks
-
-uint64_t ob_islands_share(uint64_t total, uint32_t count)
-{
-	return share_of(total, count);
-}
 
 void ob_islands_involve(ob_universe *u, uint32_t id)
 {

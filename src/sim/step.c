@@ -515,7 +515,7 @@ static ob_phase build_islands(const scheduler *c)
 		end_parted(c);
 	ob_islands_begin(c->u);
 	if (several)
-		ob_commit_involve_meetings(c->sim->committer, c->u);
+		ob_commit_involve_links_across(c->sim->committer, c->u);
 	return OB_PHASE_LINKS;
 }
 
@@ -567,7 +567,7 @@ static void count_awake(const scheduler *c)
 static void settle(const scheduler *c)
 {
 	if (ob_regions_settle(ob_commit_regions(c->sim->committer), c->u))
-		ob_commit_find_meetings(c->sim->committer, c->u);
+		ob_commit_find_links_across(c->sim->committer, c->u);
 	ob_halo_settle(ob_commit_halo(c->sim->committer), c->u);
 }
 

@@ -160,7 +160,7 @@ static void write_world(rank *r)
 }
 
 // The pairs of two ranks' bodies that link them.
-static uint32_t list_meetings(const rank *r, bool late, uint32_t *pair)
+static uint32_t list_links_across(const rank *r, bool late, uint32_t *pair)
 {
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < r->s->pairs; i++) {
@@ -175,7 +175,7 @@ static void share(rank *r, bool late)
 {
 	uint32_t pair[MOST_PAIRS];
 	bool islands;
-	const uint32_t n = list_meetings(r, late, pair);
+	const uint32_t n = list_links_across(r, late, pair);
 	r->met = n;
 	r->wrong += !ob_rank_islands_share(r->islands, r->u, &r->p, &r->parts, pair, n, &islands) || !islands;
 	ob_islands_list_members(r->u);
@@ -187,7 +187,7 @@ static void build(rank *r)
 {
 	uint32_t pair[MOST_PAIRS];
 	ob_islands_begin(r->u);
-	const uint32_t n = list_meetings(r, false, pair);
+	const uint32_t n = list_links_across(r, false, pair);
 	for (uint32_t i = 0; i < n; i++) {
 		const ob_pair_key *k = &ob_universe_step_data(r->u)->pair[pair[i]];
 		for (int side = 0; side < 2; side++)
