@@ -256,6 +256,7 @@ static void reset_gate(ob_universe *u)
 	memset(u->gate_group, 0, (workers + 63) / 64 * sizeof *u->gate_group);
 	memset(u->gate_cell, 0, workers * sizeof *u->gate_cell);
 	ob_gate_prepare(u->gate, workers);
+	ob_outboxes_reset(u);
 }
 
 void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)

@@ -93,9 +93,6 @@ bool ob_outbox_enter(ob_universe *u, uint32_t worker)
 	static ob_outbox own; // a process is one simulator
 	const size_t each = u->header.sizes.outbox_bytes;
 	own = (ob_outbox){ .page = page_of(u, worker), .worker = worker };
-	own.signal = __atomic_load_n(&u->gate_cell[worker].taken, __ATOMIC_RELAXED);
-	own.page->signal = own.signal; // a predecessor may have left something else
-	own.done = u->gate_cell[worker].done;
 	own.summed = u->header.harden & 1 << OB_HARDEN_CHECKSUM;
 	if (u->header.harden & 1 << OB_HARDEN_PAGES &&
 	    (mprotect(u->base, u->header.bytes, PROT_READ) != 0 ||
@@ -103,6 +100,12 @@ bool ob_outbox_enter(ob_universe *u, uint32_t worker)
 		return false;
 	u->outbox = &own;
 	return true;
+}
+
+void ob_outboxes_reset(ob_universe *u)
+{
+	for (uint32_t w = 0; w < u->header.sizes.workers && u->header.sizes.outbox_bytes; w++)
+		__atomic_store_n(&page_of(u, w)->signal, 0, __ATOMIC_RELAXED);
 }
 
 // A counter of faults lies where they may strike it: its upper half says whether the lower one is what was counted. 0

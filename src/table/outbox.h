@@ -46,8 +46,8 @@ enum { OB_OUTBOX_END = 0 }; // its kind; all others are the module sim's
 
 // ---- the simulator's side
 
-// From here on this process hands over what it finds; with OB_HARDEN_PAGES it can write its own outbox and ring, no more.
-// false, and errno: it could not be done.
+// From here on this process, which has just been started, hands over what it finds; with OB_HARDEN_PAGES it can write
+// its own outbox and ring, no more. false, and errno: it could not be done.
 bool ob_outbox_enter(ob_universe *u, uint32_t worker);
 // Whether this process is a simulator that is contained so.
 bool ob_universe_contained(const ob_universe *u);

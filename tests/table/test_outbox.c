@@ -1,9 +1,13 @@
 // What a simulator hands over arrives as it was put. A word that was changed in its outbox is noticed with the measure
-// checksum, and blamed on it; without, it is taken for a result.
+// checksum, and blamed on it; without, it is taken for a result. What a dead simulator has left is not taken for what
+// its successor, which comes later, hands over.
 #include "../check.h"
 
+#include <pthread.h>
 #include <string.h>
+#include <time.h>
 
+#include "table/checkpoint.h"
 #include "table/layout.h"
 #include "table/outbox.h"
 
@@ -45,6 +49,51 @@ static void hand_over(uint32_t harden, bool spoil)
 	ob_universe_destroy(u, true);
 }
 
+static void hand_over_word(ob_universe *u, uint64_t word)
+{
+	CHECK(ob_outbox_enter(u, 0));
+	ob_outbox_begin(u);
+	ob_outbox_put(u, KIND, &word, sizeof word, NULL, 0);
+	ob_outbox_arrive(u);
+}
+
+enum { PREDECESSOR = 17, SUCCESSOR = 18 };
+
+static void *succeed(void *u)
+{
+	nanosleep(&(struct timespec){ .tv_nsec = 50000000 }, NULL); // the arranger waits by then
+	hand_over_word(u, SUCCESSOR);
+	return NULL;
+}
+
+static void die_and_succeed(void)
+{
+	ob_error e;
+	ob_mail mail = { 0 };
+	ob_mail_record got;
+	uint64_t word = 0;
+	pthread_t successor;
+	ob_universe_setup setup = {
+		.capacity = 1, .workers = 2, .isolation = "process", .harden = 1 << OB_HARDEN_OUTBOX
+	};
+	ob_universe *u = ob_universe_create(&setup, &e);
+	ob_checkpoint *c = u ? ob_checkpoint_create(u) : NULL;
+	CHECK(c && ob_checkpoint_take(c, u));
+	hand_over_word(u, PREDECESSOR);
+	ob_checkpoint_put_back(c, u);
+	u->gate_group[0].expected = 1;
+	pthread_create(&successor, NULL, succeed, u);
+	CHECK(ob_mail_collect(u, &mail));
+	pthread_join(successor, NULL);
+	CHECK(ob_step_failed(u, NULL) == OB_STEP_OK);
+	CHECK(ob_mail_next(u, &mail, &got) && got.kind == KIND && got.bytes == sizeof word);
+	memcpy(&word, got.data, sizeof word);
+	CHECK(word == SUCCESSOR);
+	ob_mail_finish(&mail);
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(u, true);
+}
+
 int main(void)
 {
 	const uint32_t plain = 1 << OB_HARDEN_OUTBOX, summed = plain | 1 << OB_HARDEN_CHECKSUM;
@@ -52,5 +101,6 @@ int main(void)
 	hand_over(plain, true);
 	hand_over(summed, false);
 	hand_over(summed, true);
+	die_and_succeed();
 	return check_end();
 }
