@@ -268,6 +268,8 @@ void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
 	put_control_back(&c->control, u->control);
 	u->control->lives++;
 	reset_gate(u);
-	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++) {
+		__atomic_store_n(&u->worker[w].working_on, 0, __ATOMIC_RELAXED);
 		__atomic_store_n(&u->worker[w].pid, 0, __ATOMIC_RELEASE);
+	}
 }

@@ -205,8 +205,8 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p);
 bool ob_trace_unprotect(ob_universe *u, uint32_t ring);
 // The last turn of the gate at which this contained simulator has arrived.
 uint32_t ob_outbox_turns_done(const ob_universe *u);
-// By the host after a restart, together with the gate: nothing has been handed over. Simulators come to the gate when
-// the arranger may wait there already, which would take what their predecessors have left for theirs.
+// By the host after a restart, together with the gate: nothing has been handed over, and none is busy. Simulators come
+// to the gate when the arranger may wait there already, which would take what their predecessors have left for theirs.
 void ob_outboxes_reset(ob_universe *u);
 // Whether a header that came from outside is one that this program would have planned, in a file of file_bytes.
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);

@@ -104,8 +104,10 @@ bool ob_outbox_enter(ob_universe *u, uint32_t worker)
 
 void ob_outboxes_reset(ob_universe *u)
 {
-	for (uint32_t w = 0; w < u->header.sizes.workers && u->header.sizes.outbox_bytes; w++)
+	for (uint32_t w = 0; w < u->header.sizes.workers && u->header.sizes.outbox_bytes; w++) {
 		__atomic_store_n(&page_of(u, w)->signal, 0, __ATOMIC_RELAXED);
+		__atomic_store_n(&page_of(u, w)->working_on, 0, __ATOMIC_RELAXED);
+	}
 }
 
 // A counter of faults lies where they may strike it: its upper half says whether the lower one is what was counted. 0

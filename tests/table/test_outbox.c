@@ -1,6 +1,6 @@
 // What a simulator hands over arrives as it was put. A word that was changed in its outbox is noticed with the measure
 // checksum, and blamed on it; without, it is taken for a result. What a dead simulator has left is not taken for what
-// its successor, which comes later, hands over.
+// its successor, which comes later, hands over or is busy with.
 #include "../check.h"
 
 #include <pthread.h>
@@ -66,6 +66,23 @@ static void *succeed(void *u)
 	return NULL;
 }
 
+// Whom its successor is not to be blamed with.
+static void die_busy(uint32_t harden)
+{
+	ob_error e;
+	ob_universe_setup setup = { .capacity = 9, .workers = 2, .isolation = "process", .harden = harden };
+	ob_universe *u = ob_universe_create(&setup, &e);
+	ob_checkpoint *c = u ? ob_checkpoint_create(u) : NULL;
+	CHECK(c && ob_checkpoint_take(c, u));
+	CHECK(!harden || ob_outbox_enter(u, 0));
+	ob_worker_set_object(u, 0, 5);
+	CHECK(ob_worker_object(u, 0) == 5);
+	ob_checkpoint_put_back(c, u);
+	CHECK(ob_worker_object(u, 0) == OB_NO_OBJECT);
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(u, true);
+}
+
 static void die_and_succeed(void)
 {
 	ob_error e;
@@ -101,6 +118,8 @@ int main(void)
 	hand_over(plain, true);
 	hand_over(summed, false);
 	hand_over(summed, true);
+	die_busy(0);
+	die_busy(plain);
 	die_and_succeed();
 	return check_end();
 }
