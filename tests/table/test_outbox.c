@@ -49,12 +49,14 @@ static void hand_over(uint32_t harden, bool spoil)
 	ob_universe_destroy(u, true);
 }
 
-static void hand_over_word(ob_universe *u, uint64_t word)
+static bool hand_over_word(ob_universe *u, uint64_t word)
 {
-	CHECK(ob_outbox_enter(u, 0));
+	if (!ob_outbox_enter(u, 0))
+		return false;
 	ob_outbox_begin(u);
 	ob_outbox_put(u, KIND, &word, sizeof word, NULL, 0);
 	ob_outbox_arrive(u);
+	return true;
 }
 
 enum { PREDECESSOR = 17, SUCCESSOR = 18 };
@@ -62,8 +64,7 @@ enum { PREDECESSOR = 17, SUCCESSOR = 18 };
 static void *succeed(void *u)
 {
 	nanosleep(&(struct timespec){ .tv_nsec = 50000000 }, NULL); // the arranger waits by then
-	hand_over_word(u, SUCCESSOR);
-	return NULL;
+	return hand_over_word(u, SUCCESSOR) ? u : NULL;
 }
 
 // Whom its successor is not to be blamed with.
@@ -90,18 +91,20 @@ static void die_and_succeed(void)
 	ob_mail_record got;
 	uint64_t word = 0;
 	pthread_t successor;
+	void *came;
 	ob_universe_setup setup = {
 		.capacity = 1, .workers = 2, .isolation = "process", .harden = 1 << OB_HARDEN_OUTBOX
 	};
 	ob_universe *u = ob_universe_create(&setup, &e);
 	ob_checkpoint *c = u ? ob_checkpoint_create(u) : NULL;
 	CHECK(c && ob_checkpoint_take(c, u));
-	hand_over_word(u, PREDECESSOR);
+	CHECK(hand_over_word(u, PREDECESSOR));
 	ob_checkpoint_put_back(c, u);
 	u->gate_group[0].expected = 1;
 	pthread_create(&successor, NULL, succeed, u);
 	CHECK(ob_mail_collect(u, &mail));
-	pthread_join(successor, NULL);
+	pthread_join(successor, &came);
+	CHECK(came);
 	CHECK(ob_step_failed(u, NULL) == OB_STEP_OK);
 	CHECK(ob_mail_next(u, &mail, &got) && got.kind == KIND && got.bytes == sizeof word);
 	memcpy(&word, got.data, sizeof word);
