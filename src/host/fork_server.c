@@ -316,7 +316,8 @@ _Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int lin
 // ---- the host's side
 
 static const double start_timeout = 10; // s to wait until it is ready
-static const double end_timeout = 5; // s to wait for the fork server's end, before and after it is killed
+static const double end_timeout = 5; // s to wait for the fork server's end
+static const double killed_timeout = 60; // s, once it is killed: the kernel takes back its memory, and its workers'
 static const long longest_pause_ns = 5000000;
 
 static const char *remedy(int error)
@@ -433,7 +434,7 @@ void ob_fork_server_stop(ob_fork_server *s)
 		ob_log_warn("the fork server (process %d, %s) does not end: killed", (int)s->pid,
 			    ob_state_word(ob_state_of_thread(s->pid, s->pid)));
 		kill(s->pid, SIGKILL); // and with it its workers
-		wait_for_end(s->pid, end_timeout);
+		wait_for_end(s->pid, killed_timeout);
 	}
 	free(s);
 }
