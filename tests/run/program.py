@@ -22,6 +22,7 @@ FOR_EVER = "7e7"  # s to simulate, about as many as there may be: at rest, milli
 RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
 	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}  # for mpirun, on however few cores
 OLDER_PROCESSOR = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"  # what the C library believes with it (GLIBC_TUNABLES)
+SANITIZED = bool(os.environ.get("SANITIZED"))
 PATIENCE = 600  # s, for one call; a sanitizer slows it down some ten times, and so may whoever else uses the machine
 
 LEAK_DETECTOR_FAILED = "LeakSanitizer has encountered a fatal error"
@@ -31,13 +32,19 @@ def scene(name):
 	return os.path.join(SCENES, name + ".lua")
 
 
+def ways(*all_of_them):
+	"""The ways to run one thing whose bits are compared; with a sanitizer, which looks at the code that all of them take, the
+	first and the last."""
+	return all_of_them[::len(all_of_them) - 1] if SANITIZED else all_of_them
+
+
 def call(*words, timeout=PATIENCE, **more):
 	"""obsim WORDS to its end; text in and out, without the lines of progress that a slow machine sees."""
 	more.setdefault("stdout", subprocess.PIPE)
 	more.setdefault("stderr", subprocess.PIPE)
 	done = subprocess.run([OBSIM, *map(str, words)], timeout=timeout, text=True, **more)
 	for _ in range(3): # gcc's leak detector now and then fails itself, at exit, among the threads of a graphics driver
-		if os.environ.get("SANITIZED") != "yes" or LEAK_DETECTOR_FAILED not in (done.stderr or ""):
+		if not SANITIZED or LEAK_DETECTOR_FAILED not in (done.stderr or ""):
 			break
 		done = subprocess.run([OBSIM, *map(str, words)], timeout=timeout, text=True, **more)
 	if done.stderr:

@@ -24,7 +24,7 @@ class Limits(program.Case):
 		self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
 		return done.stderr
 
-	@unittest.skipIf(os.environ.get("SANITIZED"), "a budget of 10^8 operations takes minutes with a sanitizer; test_budget has less")
+	@unittest.skipIf(program.SANITIZED, "a budget of 10^8 operations takes minutes with a sanitizer; test_budget has less")
 	def test_work(self):
 		self.fail(hostile("overworked"), "--duration", ".1", "--isolation", "process",
 			saying=r"^obsim: step 1 takes more work .* object 1 \(brick 1\)")
@@ -40,7 +40,7 @@ class Limits(program.Case):
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertNotIn("does not return", run.stderr.read())
 
-	@unittest.skipIf(os.environ.get("SANITIZED"), "a measure of 10^5 pairs takes minutes with a sanitizer")
+	@unittest.skipIf(program.SANITIZED, "a measure of 10^5 pairs takes minutes with a sanitizer")
 	def test_too_much_to_measure(self):
 		"""Penetration is left out, with one warning, and the rest of the run is there: its series, its checkpoint, and what goes on from that."""
 		series, checkpoint = self.path("s.csv"), self.path("c")

@@ -112,7 +112,7 @@ class Resume(program.Case):
 					varying_force = { kind = "linear", points = { { 0, 0, 0, 0 }, { 1, 0, 4, 0 }, { 1.5, 0, -4, 0 }, { 2, 0, 0, 0 } } } }""")
 		whole = program.report(scene)
 		self.assertIsNone(whole["energy_gain_max"])
-		for way in WAYS:
+		for way in program.ways(*WAYS):
 			self.assertEqual(program.report(scene, *way)["state_hash"], whole["state_hash"], way)
 		for at in ".5", "1.3", "2.5", "2.6", "2.9":
 			program.report(scene, "--duration", at, "--checkpoint", self.file)

@@ -443,7 +443,7 @@ box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script =
 			flushed = sum(r > 150 and g < 120 and b < 90 for r, g, b in zip(last[::3], last[1::3], last[2::3]))
 			self.assertGreater(flushed, 0, "no bird has flushed")
 		for isolation in "thread", "process":
-			for workers in 2, 3, 5, 8, "objects":
+			for workers in program.ways(2, 3, 5, 8, "objects"):
 				with self.subTest(isolation=isolation, workers=workers):
 					self.same(self.bits("--isolation", isolation, "--workers", workers), expected)
 		looked = program.report(*self.FLOCK, "--measure", "step")
@@ -451,7 +451,7 @@ box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script =
 
 	def test_killed(self):
 		expected = self.bits()
-		for workers in 1, 2, 8:
+		for workers in program.ways(1, 2, 8):
 			with self.subTest(workers=workers):
 				found = self.bits("--isolation", "process", "--workers", workers, "--fault", "kill:p=.0005,seed=3")
 				self.assertGreater(found[0]["deaths"], 0)
