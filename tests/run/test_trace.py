@@ -178,6 +178,10 @@ class Trace(program.Case):
 			self.assertEqual([e["args"]["frame"] for e in spans if e["name"] == name], list(range(6)))
 		self.assertIn("record", {e["name"] for e in spans})
 
+	def says(self, path, what):
+		with open(path, encoding="utf-8", errors="replace") as f:
+			return what in f.read()
+
 	def test_killed(self):
 		"""What a simulator did before it was killed is in the file, with the kill, and what its successor did."""
 		for workers in "2", "objects":
@@ -187,8 +191,9 @@ class Trace(program.Case):
 					"off", "--isolation", "process", "--workers", workers, "--trace", path)
 				grown = lambda: os.path.exists(path) and os.path.getsize(path) > 400000 # a hundred events for each worker
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
-				before = os.path.getsize(path)
 				os.kill(max(program.simulators(run.pid)), signal.SIGKILL)
+				self.assertTrue(program.wait_until(lambda: self.says(path, '"dies"'), program.PATIENCE))
+				before = os.path.getsize(path) # what was on its way when it died is in the file by then
 				grown = lambda: os.path.getsize(path) > before + 400000
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
 				run.send_signal(signal.SIGINT)
