@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """accuracy.py OBSIM FILE FOLDER [OPTION ...]: runs obsim lab with these options into FOLDER, and writes what came out into
-FILE: the tables between <!-- lab: NAME --> and <!-- end -->, and the diagrams that FILE shows from images/accuracy/.
+FILE: the tables between <!-- lab: NAME --> and <!-- end -->, and the diagrams that FILE shows from images/.
 
 All cases are run once at the engines' usual settings: that gives errors against targets, and errors are the same every
 time. obsim's are run at all settings of the audit, too. Swept, and repeated (--repeats), are the cases whose cost at equal
@@ -76,7 +76,7 @@ def refresh(path):
                   lambda m: m.group(1) + '\n' + TABLES[m.group(2)]() + '\n' + m.group(3), text, flags=re.S)
     with open(path, 'w', encoding='utf-8') as f:
         f.write(text)
-    for image in sorted(set(re.findall(r'\((images/accuracy/[\w.-]+)\)', text))):
+    for image in sorted(set(re.findall(r'\((images/[\w.-]+)\)', text))):
         target = os.path.join(os.path.dirname(os.path.abspath(path)), image)
         os.makedirs(os.path.dirname(target), exist_ok=True)
         shutil.copyfile(os.path.join(FOLDER, 'plots', os.path.basename(image)), target)

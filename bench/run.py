@@ -4,7 +4,7 @@
 run.py BUILD [OPTION ...]
 
   --mode short|full|tiny   short (the default): the shape of all that counts, in less than three minutes; full: every line
-                           of docs/performance.md; tiny: for the tests
+                           of docs/notebook/performance.md; tiny: for the tests
   --out FILE               results, a line for each quantity (bench.csv)
   --document FILE          afterwards its tables are written anew, by performance.py
   --scenes GLOB,...        only these, as "falling-*"

@@ -1,4 +1,4 @@
-// A run to HDF5: all that is needed to draw it again, and trajectories to compute with. docs/recordings.md describes
+// A run to HDF5: all that is needed to draw it again, and trajectories to compute with. docs/records.md describes
 // each dataset.
 //
 //   attributes, /settings, /scene, /cameras, /look    what was run, by which program; how it looks
