@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file.h"
+
 static const char magic[8] = { 'O', 'B', 'S', 'I', 'M', 'C', 'K', '1' };
 static const uint32_t byte_order = 0x01020304;
 enum { BORDER = 64 };
@@ -132,6 +134,9 @@ bool ob_checkpoint_plan(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, u
 		s.l[i] = (line){ .element = rule[i].element, .count = count[i], .offset = at };
 		at = next_border(at + rule[i].element * count[i]);
 	}
+	if (at > OB_CHECKPOINT_BYTES_MAX)
+		return ob_fail(e, "a checkpoint of %" PRIu64 " MiB: %" PRIu64 " MiB at most can be kept", at >> 20,
+			       OB_CHECKPOINT_BYTES_MAX >> 20);
 	if (!make_room(f, at, e))
 		return false;
 	memcpy(s.h.magic, magic, sizeof magic);
@@ -326,51 +331,36 @@ bool ob_checkpoint_parse(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, 
 	return check_areas(f, &s, rule, name, e);
 }
 
-// false: it ended before, or could not be read; errno is 0, or says why.
-static bool read_all(int fd, void *to, size_t size)
+static bool fail_read(const char *path, const ob_error *why, ob_error *e)
 {
-	char *at = to;
-	errno = 0;
-	while (size > 0) {
-		ssize_t n = read(fd, at, size);
-		if (n == 0 || (n < 0 && errno != EINTR))
-			return false;
-		at += n > 0 ? n : 0;
-		size -= n > 0 ? (size_t)n : 0;
-	}
-	return true;
+	return ob_fail(e, "%s: cannot read the checkpoint: %s", path, why->text);
 }
 
-static bool fail_read(const char *path, ob_error *e)
+static bool read_open(ob_checkpoint_file *f, int fd, size_t size, const ob_checkpoint_rule *rule, uint32_t areas,
+		      const char *path, ob_error *e)
 {
-	return ob_fail(e, "%s: cannot read the checkpoint: %s", path, errno ? strerror(errno) : "it became shorter");
-}
-
-static bool read_open(ob_checkpoint_file *f, int fd, const ob_checkpoint_rule *rule, uint32_t areas, const char *path,
-		      ob_error *e)
-{
-	struct stat st;
 	start s = { 0 };
-	if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode))
-		return ob_fail(e, "%s: this is no file, expected a checkpoint of obsim", path);
-	size_t size = (size_t)st.st_size, first = size < start_bytes(areas) ? size : start_bytes(areas);
-	if (!read_all(fd, &s, first))
-		return fail_read(path, e);
+	ob_error why;
+	const size_t first = size < start_bytes(areas) ? size : start_bytes(areas);
+	if (!ob_file_read(fd, &s, first, &why))
+		return fail_read(path, &why, e);
 	if (!check_start(&s, size, rule, areas, path, e) || !make_room(f, size, e))
 		return false;
 	memcpy(f->bytes, &s, first);
-	if (!read_all(fd, f->bytes + first, size - first))
-		return fail_read(path, e);
+	if (!ob_file_read(fd, f->bytes + first, size - first, &why))
+		return fail_read(path, &why, e);
 	return check_areas(f, &s, rule, path, e);
 }
 
 bool ob_checkpoint_read(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, uint32_t areas, const char *path,
 			ob_error *e)
 {
-	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe that nobody writes is no reason to wait
+	uint64_t size = 0;
+	ob_error why;
+	const int fd = ob_file_open(path, OB_CHECKPOINT_BYTES_MAX, &size, &why);
 	if (fd < 0)
-		return ob_fail(e, "%s: cannot read the checkpoint: %s", path, strerror(errno));
-	bool good = read_open(f, fd, rule, areas, path, e);
+		return fail_read(path, &why, e);
+	const bool good = read_open(f, fd, size, rule, areas, path, e);
 	close(fd);
 	return good;
 }

@@ -22,6 +22,9 @@
 
 #include <ob/error.h>
 
+// A larger file is neither written nor read: what is read lies in memory as a whole.
+#define OB_CHECKPOINT_BYTES_MAX ((uint64_t)960 << 20)
+
 // A change of what an area holds needs a new version.
 enum { OB_CHECKPOINT_VERSION = 5, OB_CHECKPOINT_AREAS_MAX = 32 };
 
@@ -46,7 +49,7 @@ typedef struct ob_checkpoint_file {
 } ob_checkpoint_file;
 
 // Makes room for areas of so many elements (area[].count), and sets area[].at. Memory is kept from one plan to the
-// next, and what was in it is still there. false and e: no memory.
+// next, and what was in it is still there. false and e: no memory, or larger than OB_CHECKPOINT_BYTES_MAX.
 bool ob_checkpoint_plan(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, uint32_t areas, const uint64_t *count,
 			const char *program, ob_error *e);
 // Computes the checksums, when the areas are filled in.

@@ -1,13 +1,10 @@
 #include "mesh/mesh.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "mesh/gltf.h"
 
@@ -181,37 +178,11 @@ bool ob_mesh_read(ob_mesh *m, const void *bytes, size_t size, ob_error *e)
 	return ob_fail(e, "a vertex of it lies more than 1000 km away, or is no number");
 }
 
-static unsigned char *read_all(int fd, size_t *size, ob_error *e)
-{
-	struct stat st;
-	if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) {
-		ob_fail(e, "it is no file");
-		return NULL;
-	}
-	if (st.st_size > OB_MESH_FILE_MAX) {
-		ob_fail(e, "it is larger than %d MiB", OB_MESH_FILE_MAX >> 20);
-		return NULL;
-	}
-	unsigned char *bytes = malloc((size_t)st.st_size + 1);
-	ssize_t n = 1;
-	for (*size = 0; bytes && n > 0 && *size<(size_t)st.st_size; *size += n> 0 ? (size_t)n : 0)
-		n = read(fd, bytes + *size, (size_t)st.st_size - *size);
-	if (bytes && n >= 0)
-		return bytes;
-	ob_fail(e, "%s", bytes ? strerror(errno) : "no memory");
-	free(bytes);
-	return NULL;
-}
-
 bool ob_mesh_load(ob_mesh *m, const char *path, ob_error *e)
 {
 	size_t size = 0;
-	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe without a writer must not hold it up
+	char *bytes = ob_file_load(path, OB_MESH_FILE_MAX, &size, e);
 	*m = (ob_mesh){ 0 };
-	if (fd < 0)
-		return ob_fail(e, "%s", strerror(errno));
-	unsigned char *bytes = read_all(fd, &size, e);
-	close(fd);
 	const bool good = bytes && ob_mesh_read(m, bytes, size, e);
 	free(bytes);
 	return good;

@@ -11,6 +11,8 @@
 
 // Changes where an older program, or this one with an older file, would take something for what it is not.
 enum { OB_RECORD_VERSION = 2 };
+// Times of states are in memory, all of them, while a record is read.
+enum { OB_RECORD_STATES_MAX = 1 << 24 };
 #define OB_RECORD_FORMAT "obsim record"
 
 typedef enum ob_record_event_kind { OB_RECORD_CREATED = 1, OB_RECORD_CHANGED, OB_RECORD_REMOVED } ob_record_event_kind;

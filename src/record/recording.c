@@ -2,19 +2,25 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/utf8.h"
 #include "record/layout.h"
 #include "table/layout.h"
 
 enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, HULLS_MAX = UINT16_MAX + 1, EVERY_MAX = 1 << 30 };
 enum { BYTES_AT_ONCE = 1 << 18 };
+// Limits of the first reading: seconds of CPU, one more for each so many bytes on the disk, and bytes of memory. The
+// clock allows so many times as long. A healthy record takes some 2 s of CPU for each 2^30 bytes.
+enum { SECONDS = 4, BYTES_PER_SECOND = 64 << 20, WALL_PER_CPU = 30, MEMORY = 768 << 20 };
 static const double number_max = 1e15; // of any in SI units
 
 // A dataset of compounds, read some at a time.
@@ -27,7 +33,7 @@ typedef struct list {
 } list;
 
 struct ob_recording {
-	char *path;
+	char *path; // for messages: the file is read through its descriptor
 	hid_t file; // negative: not there
 	uint64_t file_bytes;
 	ob_recording_info info;
@@ -43,6 +49,30 @@ struct ob_recording {
 static bool damaged(const ob_recording *r, const char *what, ob_error *e)
 {
 	return ob_fail(e, "%s: this record is damaged: %s", r->path, what);
+}
+
+// ---- links
+
+// Nothing in a record may name another file, or have code run: links lead to what lies in the file itself, datasets lie
+// there, too, and no filter has to be loaded.
+
+// Looks for a name of groups and of what is in them, link by link. false and e: one of them is not the file's own.
+static bool find(const ob_recording *r, const char *name, bool *there, ob_error *e)
+{
+	char what[96], part[64];
+	H5L_info_t link;
+	*there = true;
+	for (size_t n = 1; *there && n <= strlen(name); n++) {
+		if (name[n] && name[n] != '/')
+			continue;
+		snprintf(part, sizeof part, "%.*s", (int)n, name);
+		*there = H5Lexists(r->file, part, H5P_DEFAULT) > 0;
+		if (*there && (H5Lget_info(r->file, part, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)) {
+			snprintf(what, sizeof what, "/%s is a link to something else", part);
+			return damaged(r, what, e);
+		}
+	}
+	return true;
 }
 
 // ---- attributes
@@ -85,25 +115,38 @@ static bool read_attribute(hid_t at, const char *name, hid_t type, void *numbers
 
 // ---- datasets
 
+// True for one whose elements stand in the file as they are. Asked before all else: of a virtual dataset even the space
+// is looked up in the files that it names.
+static bool lies_in_file(hid_t set)
+{
+	hid_t how = H5Dget_create_plist(set);
+	const H5D_layout_t layout = H5Pget_layout(how);
+	const bool here = (layout == H5D_CHUNKED || layout == H5D_CONTIGUOUS) && H5Pget_external_count(how) == 0 &&
+			  H5Pget_nfilters(how) == 0;
+	H5Pclose(how);
+	return here;
+}
+
 // Opens one of the file's own, of this rank, all of whose elements are on the disk. Negative and e where it is none.
 static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind, int rank, uint64_t *count, ob_error *e)
 {
 	char what[80];
-	H5L_info_t link;
-	hid_t set = H5I_INVALID_HID;
-	if (H5Lget_info(r->file, name, &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD)
-		set = H5Dopen2(r->file, name, H5P_DEFAULT);
+	bool there = false;
+	if (!find(r, name, &there, e))
+		return H5I_INVALID_HID;
+	hid_t set = there ? H5Dopen2(r->file, name, H5P_DEFAULT) : H5I_INVALID_HID;
+	if (set >= 0 && !lies_in_file(set)) {
+		H5Dclose(set);
+		set = H5I_INVALID_HID;
+	}
 	if (set >= 0) {
-		hid_t type = H5Dget_type(set), space = H5Dget_space(set), how = H5Dget_create_plist(set);
+		hid_t type = H5Dget_type(set), space = H5Dget_space(set);
 		hssize_t points = H5Sget_simple_extent_npoints(space);
-		H5D_layout_t layout = H5Pget_layout(how);
 		uint64_t bytes = 0, stored = H5Dget_storage_size(set);
 		bool fits = H5Tget_class(type) == kind && H5Sget_simple_extent_ndims(space) == rank && points >= 0 &&
-			    (layout == H5D_CHUNKED || layout == H5D_CONTIGUOUS) && H5Pget_external_count(how) == 0 &&
 			    !__builtin_mul_overflow((uint64_t)points, (uint64_t)H5Tget_size(type), &bytes) &&
 			    bytes <= stored && stored <= r->file_bytes;
 		*count = (uint64_t)points;
-		H5Pclose(how);
 		H5Sclose(space);
 		H5Tclose(type);
 		if (fits)
@@ -161,7 +204,7 @@ static void *read_numbers(ob_recording *r, const char *name, H5T_class_t kind, h
 	hid_t set = open_set(r, name, kind, 1, &count, e);
 	if (set < 0)
 		return NULL;
-	void *numbers = calloc(count + 1, 8);
+	void *numbers = count <= OB_RECORD_STATES_MAX ? calloc(count + 1, 8) : NULL;
 	bool ok = numbers && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0;
 	H5Dclose(set);
 	if (!ok) {
@@ -294,9 +337,10 @@ static bool open_hulls(ob_recording *r, ob_error *e)
 {
 	list hulls = { .table = &ob_record_hulls, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
 	ob_snapshot *s = &r->now;
-	if (H5Lexists(r->file, hulls.table->label.name, H5P_DEFAULT) <= 0)
-		return true;
-	bool ok = open_list(r, &hulls, e);
+	bool there = false, ok = find(r, hulls.table->label.name, &there, e);
+	if (!there)
+		return ok;
+	ok = ok && open_list(r, &hulls, e);
 	if (ok && hulls.total > HULLS_MAX)
 		ok = damaged(r, "it has too many hulls", e);
 	if (ok && hulls.total > 0 && !(s->hull = calloc(HULLS_MAX, sizeof *s->hull)))
@@ -335,27 +379,29 @@ static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_t
 	return NULL;
 }
 
-// Its height, width and 4; false: it is none, or too large.
-static bool take_image_size(hid_t set, ob_mesh_image *image)
+// Its height, width and 4; false: it is none, too large, or has more pixels than so many.
+static bool take_image_size(hid_t set, uint64_t pixels, ob_mesh_image *image)
 {
 	hsize_t size[3] = { 0 };
 	hid_t space = H5Dget_space(set);
 	const bool fits = H5Sget_simple_extent_dims(space, size, NULL) == 3 && size[0] >= 1 &&
 			  size[0] <= OB_MESH_IMAGE_SIDE_MAX && size[1] >= 1 && size[1] <= OB_MESH_IMAGE_SIDE_MAX &&
-			  size[2] == 4;
+			  size[2] == 4 && size[0] * size[1] <= pixels;
 	image->height = (uint32_t)size[0];
 	image->width = (uint32_t)size[1];
 	H5Sclose(space);
 	return fits;
 }
 
-static bool open_image(ob_recording *r, const char *name, ob_mesh_image *image, ob_error *e)
+// pixels: how many the images of its mesh may have from here on.
+static bool open_image(ob_recording *r, const char *name, uint64_t *pixels, ob_mesh_image *image, ob_error *e)
 {
-	uint64_t pixels = 0;
-	hid_t set = open_set(r, name, H5T_INTEGER, 3, &pixels, e);
+	uint64_t numbers = 0;
+	hid_t set = open_set(r, name, H5T_INTEGER, 3, &numbers, e);
 	if (set < 0)
 		return false;
-	const bool fits = take_image_size(set, image);
+	const bool fits = take_image_size(set, *pixels, image);
+	*pixels -= fits ? (uint64_t)image->width * image->height : 0;
 	if (fits)
 		image->rgba = malloc(4 * (size_t)image->width * image->height);
 	const bool read =
@@ -370,10 +416,11 @@ static bool open_image(ob_recording *r, const char *name, ob_mesh_image *image, 
 static bool open_parts(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
 {
 	char name[48];
-	uint64_t parts = 0;
+	uint64_t parts = 0, pixels = OB_MESH_PIXELS_MAX;
 	snprintf(name, sizeof name, "meshes/%u/parts", number);
-	if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
-		return true;
+	bool there = false, ok = find(r, name, &there, e);
+	if (!ok || !there)
+		return ok;
 	m->part = read_mesh_table(r, number, &ob_record_mesh_parts, OB_MESH_PARTS_MAX, &parts, e);
 	m->image = calloc(OB_MESH_IMAGES_MAX, sizeof *m->image);
 	if (!m->part)
@@ -381,12 +428,9 @@ static bool open_parts(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e
 	if (!m->image)
 		return ob_fail(e, "%s: no memory for its meshes", r->path);
 	m->parts = (uint32_t)parts;
-	bool ok = true;
-	while (ok && m->images < OB_MESH_IMAGES_MAX) {
+	while (ok && there && m->images < OB_MESH_IMAGES_MAX) {
 		snprintf(name, sizeof name, "meshes/%u/images/%u", number, m->images + 1);
-		if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
-			break;
-		ok = open_image(r, name, &m->image[m->images++], e);
+		ok = find(r, name, &there, e) && (!there || open_image(r, name, &pixels, &m->image[m->images++], e));
 	}
 	return ok;
 }
@@ -412,18 +456,23 @@ static bool open_meshes(ob_recording *r, ob_error *e)
 {
 	ob_scene *s = &r->info.scene;
 	char name[32] = "meshes";
-	bool ok = true;
-	if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
-		return true;
+	size_t bytes = 0;
+	bool there = false, ok = find(r, name, &there, e);
+	if (!ok || !there)
+		return ok;
 	s->mesh = calloc(OB_SCENE_MESHES_MAX, sizeof *s->mesh);
 	if (!s->mesh)
 		return ob_fail(e, "%s: no memory for its meshes", r->path);
-	while (ok && s->meshes < OB_SCENE_MESHES_MAX) {
+	while (ok && there && s->meshes < OB_SCENE_MESHES_MAX) {
 		snprintf(name, sizeof name, "meshes/%u", s->meshes + 1);
-		if (H5Lexists(r->file, name, H5P_DEFAULT) <= 0)
+		ok = find(r, name, &there, e);
+		if (!ok || !there)
 			break;
 		s->meshes++;
 		ok = open_mesh(r, s->meshes, &s->mesh[s->meshes - 1], e);
+		bytes += ob_mesh_bytes(&s->mesh[s->meshes - 1]);
+		if (bytes > OB_SCENE_MESH_BYTES)
+			ok = damaged(r, "its meshes are too large together", e);
 	}
 	return ok;
 }
@@ -477,17 +526,14 @@ static bool check_format(const ob_recording *r, ob_error *e)
 		       r->path, number, OB_RECORD_VERSION);
 }
 
-static bool open_file(ob_recording *r, ob_error *e)
+// The file is read by its descriptor, so that what was checked is what is read, whatever has its name by now.
+static bool open_file(ob_recording *r, int fd, ob_error *e)
 {
-	struct stat s;
-	if (stat(r->path, &s) != 0 || access(r->path, R_OK) != 0)
-		return ob_fail(e, "%s: %s", r->path, strerror(errno));
-	if (!S_ISREG(s.st_mode))
-		return ob_fail(e, "%s: this is no file", r->path);
-	r->file_bytes = (uint64_t)s.st_size;
-	if (H5Fis_hdf5(r->path) <= 0)
+	char file[32];
+	snprintf(file, sizeof file, "/proc/self/fd/%d", fd);
+	if (H5Fis_hdf5(file) <= 0)
 		return ob_fail(e, "%s: this is no record of obsim: it is no HDF5 file", r->path);
-	r->file = H5Fopen(r->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+	r->file = H5Fopen(file, H5F_ACC_RDONLY, H5P_DEFAULT);
 	if (r->file < 0)
 		return ob_fail(e, "%s: this record cannot be opened: it is being written, cut short, or damaged",
 			       r->path);
@@ -495,9 +541,10 @@ static bool open_file(ob_recording *r, ob_error *e)
 	       open_meshes(r, e) && open_states(r, e);
 }
 
-static ob_recording *open_here(const char *path, ob_error *e)
+static ob_recording *open_here(const char *path, int fd, uint64_t bytes, ob_error *e)
 {
 	ob_hdf5_silence();
+	H5PLset_loading_state(0); // filters that this HDF5 does not have come from libraries that a folder holds
 	ob_recording *r = calloc(1, sizeof *r);
 	if (!r || !(r->path = strdup(path))) {
 		ob_fail(e, "%s: no memory", path);
@@ -505,10 +552,11 @@ static ob_recording *open_here(const char *path, ob_error *e)
 		return NULL;
 	}
 	r->file = H5I_INVALID_HID;
+	r->file_bytes = bytes;
 	r->events = (list){ .table = &ob_record_events, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
 	r->motions = (list){ .table = &ob_record_motions, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
 	r->state = UINT64_MAX;
-	if (open_file(r, e))
+	if (open_file(r, fd, e))
 		return r;
 	ob_recording_close(r);
 	return NULL;
@@ -517,10 +565,10 @@ static ob_recording *open_here(const char *path, ob_error *e)
 // ---- the first reading, by a child
 
 // Reads all that there is; e is empty if that works.
-static void read_to_end(const char *path, ob_error *e)
+static void read_to_end(const char *path, int fd, uint64_t bytes, ob_error *e)
 {
 	bool ended = false;
-	ob_recording *r = open_here(path, e);
+	ob_recording *r = open_here(path, fd, bytes, e);
 	if (!r)
 		return;
 	while (ob_recording_next(r, &ended, e))
@@ -530,30 +578,70 @@ static void read_to_end(const char *path, ob_error *e)
 	ob_recording_close(r);
 }
 
-static _Noreturn void be_child(const char *path, int to)
+static uint64_t address_space(void) // bytes; 0: it cannot be read
 {
-	struct stat s = { .st_size = 0 };
+	char text[32] = "";
+	const int fd = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+	const ssize_t n = fd < 0 ? -1 : read(fd, text, sizeof text - 1);
+	if (fd >= 0)
+		close(fd);
+	return n > 0 ? strtoull(text, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
+}
+
+// Bounds all that a damaged file can bring a process to: time, memory, files. The one descriptor that is left is that
+// by which HDF5 opens the file itself. A file with holes is as large as what is written of it.
+static void limit_child(int fd)
+{
+	struct stat st = { .st_blocks = 0 };
+	const int last = dup(fd);
+	close(last);
+	fstat(fd, &st);
+	const rlim_t seconds = SECONDS + (rlim_t)st.st_blocks * 512 / BYTES_PER_SECOND;
+	const rlim_t memory = address_space() + MEMORY;
+	setrlimit(RLIMIT_CPU, &(struct rlimit){ seconds, seconds + 1 });
+	setrlimit(RLIMIT_AS, &(struct rlimit){ memory, memory });
+	setrlimit(RLIMIT_CORE, &(struct rlimit){ 0, 0 });
+	setrlimit(RLIMIT_FSIZE, &(struct rlimit){ 0, 0 });
+	setrlimit(RLIMIT_NOFILE, &(struct rlimit){ (rlim_t)last + 1, (rlim_t)last + 1 });
+	signal(SIGALRM, SIG_DFL);
+	signal(SIGXCPU, SIG_DFL);
+	alarm((unsigned)(WALL_PER_CPU * seconds)); // it should never wait, but for the disk
+}
+
+static _Noreturn void be_child(const char *path, int fd, uint64_t bytes, int to, pid_t parent)
+{
 	ob_error e = { "" };
 	int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-	stat(path, &s);
-	rlim_t seconds = 60 + (rlim_t)s.st_size / 1000000;
-	setrlimit(RLIMIT_CPU, &(struct rlimit){ seconds, seconds });
-	setrlimit(RLIMIT_CORE, &(struct rlimit){ 0, 0 });
 	dup2(nowhere, STDERR_FILENO); // what a library says as it dies
-	read_to_end(path, &e);
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	if (getppid() != parent)
+		_exit(1); // it died before that
+	limit_child(fd);
+	read_to_end(path, fd, bytes, &e);
 	ssize_t written = write(to, e.text, sizeof e.text);
 	_exit(written == sizeof e.text ? 0 : 1);
 }
 
-static bool read_by_child(const char *path, ob_error *e)
+static bool fail_child(const char *path, int status, ob_error *e)
+{
+	const int death = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+	if (death == SIGXCPU || death == SIGALRM)
+		return ob_fail(e, "%s: this record is damaged: reading it takes longer than a record of its size may",
+			       path);
+	return ob_fail(e, "%s: this record is damaged: HDF5 cannot read it (%s)", path,
+		       death ? strsignal(death) : "and gives no reason");
+}
+
+static bool read_by_child(const char *path, int fd, uint64_t bytes, ob_error *e)
 {
 	int ends[2], status = 0;
 	ob_error said = { "" };
+	const pid_t parent = getpid();
 	if (pipe2(ends, O_CLOEXEC) != 0)
 		return ob_fail(e, "%s: no pipe: %s", path, strerror(errno));
 	pid_t child = fork();
 	if (child == 0)
-		be_child(path, ends[1]);
+		be_child(path, fd, bytes, ends[1], parent);
 	close(ends[1]);
 	size_t at = 0;
 	ssize_t n = 0;
@@ -567,14 +655,20 @@ static bool read_by_child(const char *path, ob_error *e)
 		;
 	said.text[sizeof said.text - 1] = 0;
 	if (at < sizeof said.text || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-		return ob_fail(e, "%s: this record is damaged: HDF5 cannot read it (%s)", path,
-			       WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "and gives no reason");
+		return fail_child(path, status, e);
 	return !said.text[0] || ob_fail(e, "%s", said.text);
 }
 
 ob_recording *ob_recording_open(const char *path, ob_error *e)
 {
-	return read_by_child(path, e) ? open_here(path, e) : NULL;
+	uint64_t bytes = 0;
+	ob_error why;
+	const int fd = ob_file_open(path, UINT64_MAX, &bytes, &why);
+	if (fd < 0)
+		return ob_fail(e, "%s: cannot read the record: %s", path, why.text), NULL;
+	ob_recording *r = read_by_child(path, fd, bytes, e) ? open_here(path, fd, bytes, e) : NULL;
+	close(fd);
+	return r;
 }
 
 const ob_recording_info *ob_recording_get_info(const ob_recording *r)
@@ -607,7 +701,7 @@ void ob_recording_close(ob_recording *r)
 static bool make_room(ob_snapshot *s, uint32_t count)
 {
 	if (count > s->count_max) {
-		uint32_t room = 2 * count;
+		const uint32_t room = count > 2 * s->count_max ? count : 2 * s->count_max;
 		ob_passport *passport = realloc(s->passport, room * sizeof *passport);
 		s->passport = passport ? passport : s->passport;
 		ob_motion *motion = realloc(s->motion, room * sizeof *motion);

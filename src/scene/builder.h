@@ -12,7 +12,6 @@
 #define OB_SCENE_OBJECTS_MAX 1000000
 #define OB_SCENE_OBJECT_INSTRUCTIONS 100 // what a file may use more for each object that it adds: of the Lua machine ..
 #define OB_SCENE_OBJECT_SECONDS 20e-6 // .. and of time
-#define OB_SCENE_MESH_BYTES (64u << 20) // of all meshes
 #define OB_SCENE_MESH_NAME_MAX 256 // bytes, with the final 0
 #define OB_SCENE_MATERIALS_MAX 256
 #define OB_SCENE_CAMERAS_MAX 64

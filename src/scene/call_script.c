@@ -1,11 +1,11 @@
 // script: the scripts of objects, by name, from files beside the scene or from the scene itself.
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <lauxlib.h>
 
+#include "base/file.h"
 #include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
@@ -44,21 +44,15 @@ static char *read_script(lua_State *L, const ob_builder *b, const char *where, c
 {
 	char path[PATH_MAX];
 	ob_builder_find_file(L, b, where, "script", name, path);
-	FILE *f = fopen(path, "rbe");
-	char *text = f ? malloc(OB_SCENE_SCRIPT_BYTES + 1) : NULL;
-	const size_t size = text ? fread(text, 1, OB_SCENE_SCRIPT_BYTES + 1, f) : 0;
-	const int error = f && !ferror(f) ? 0 : errno;
-	if (f)
-		fclose(f);
-	if (text && !error && size <= OB_SCENE_SCRIPT_BYTES && !memchr(text, 0, size)) {
-		text[size] = 0;
+	ob_error e;
+	size_t size = 0;
+	char *text = ob_file_load(path, OB_SCENE_SCRIPT_BYTES, &size, &e);
+	if (!text)
+		ob_sandbox_fail(L, "%s.script: cannot read %s: %s", where, path, e.text);
+	if (!memchr(text, 0, size))
 		return text;
-	}
 	free(text);
-	ob_sandbox_fail(L, "%s.script: cannot read %s: %s", where, path,
-			error  ? strerror(error)
-			: text ? "it is no text, or larger than 256 KiB"
-			       : "no memory");
+	ob_sandbox_fail(L, "%s.script: cannot read %s: it is no text", where, path);
 }
 
 // Lua itself reads it: what it says names the line.

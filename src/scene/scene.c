@@ -1,44 +1,22 @@
 #include "scene/scene.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "base/file.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 
 #define FILE_MAX ((size_t)4 << 20) // bytes of a scene file
 
-static char *fail_read(FILE *f, char *text, const char *path, const char *why, ob_error *e)
-{
-	fclose(f);
-	free(text);
-	ob_fail(e, "%s: cannot read the scene: %s", path, why);
-	return NULL;
-}
-
 // The whole file; the caller frees it.
 static char *read_file(const char *path, size_t *size, ob_error *e)
 {
-	struct stat st;
-	FILE *f = fopen(path, "rb");
-	if (!f) {
-		ob_fail(e, "%s: cannot read the scene: %s", path, strerror(errno));
-		return NULL;
-	}
-	if (fstat(fileno(f), &st) == 0 && S_ISDIR(st.st_mode))
-		return fail_read(f, NULL, path, "it is a directory", e);
-	char *text = malloc(FILE_MAX + 1);
+	ob_error why;
+	char *text = ob_file_load(path, FILE_MAX, size, &why);
 	if (!text)
-		return fail_read(f, NULL, path, "no memory", e);
-	*size = fread(text, 1, FILE_MAX + 1, f);
-	if (ferror(f))
-		return fail_read(f, text, path, strerror(errno), e);
-	if (*size > FILE_MAX)
-		return fail_read(f, text, path, "it is larger than 4 MiB", e);
-	fclose(f);
+		ob_fail(e, "%s: cannot read the scene: %s", path, why.text);
 	return text;
 }
 

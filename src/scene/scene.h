@@ -47,6 +47,7 @@ typedef struct ob_script_def {
 } ob_script_def;
 
 enum { OB_SCENE_MESHES_MAX = 255 }; // as passports can name
+#define OB_SCENE_MESH_BYTES (64u << 20) // of all meshes
 
 typedef struct ob_scene {
 	char title[128];

@@ -1,8 +1,11 @@
 // A record that is read back gives the snapshots that were recorded; what is no record, or a damaged one, gives one line.
 #include <hdf5.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "hull/hull.h"
@@ -269,6 +272,14 @@ static void huge_id(hid_t file)
 	set_member(file, "events", "id", H5T_NATIVE_UINT32, 2, &(uint32_t){ UINT32_MAX });
 }
 
+// The highest that there can be, of a plane which nothing else is said of.
+static void highest_id(hid_t file)
+{
+	const uint32_t id = (1 << 20) - 1;
+	set_member(file, "events", "id", H5T_NATIVE_UINT32, 0, &id);
+	set_member(file, "motions", "id", H5T_NATIVE_UINT32, 0, &id);
+}
+
 static void no_shape(hid_t file)
 {
 	set_member(file, "events", "shape", H5T_NATIVE_UINT32, 2, &(uint32_t){ 1000 });
@@ -368,7 +379,7 @@ static void test_damaged(void)
 		{ old, "of version 1" },
 		{ foreign, "no record of obsim" },
 		{ no_motions, "/motions is not as it should be" },
-		{ elsewhere, "/motions is not as it should be" },
+		{ elsewhere, "/motions is a link to something else" },
 		{ huge, "/time is not as it should be" },
 		{ nowhen, "times" },
 		{ too_many, "it lacks motions" },
@@ -398,6 +409,54 @@ static void test_damaged(void)
 	refuse(path, "this record is empty");
 }
 
+// Whatever a file names, what reads it stays small.
+static void test_little_memory(void)
+{
+	ob_error e = { "" };
+	struct rusage used;
+	bool ended = false;
+	change(highest_id);
+	ob_recording *r = ob_recording_open(path, &e);
+	while (r && ob_recording_next(r, &ended, &e))
+		;
+	CHECK(ended);
+	ob_recording_close(r);
+	CHECK(getrusage(RUSAGE_CHILDREN, &used) == 0 && used.ru_maxrss < 1000000); // kB
+}
+
+// In place of the C library's: while a record is read by a child, it goes no further than here.
+static int stuck = -1;
+
+unsigned alarm(unsigned seconds)
+{
+	(void)seconds;
+	if (stuck >= 0 && write(stuck, "", 1) == 1)
+		for (;;)
+			pause();
+	return 0;
+}
+
+// The child that reads has the pipe open as long as it lives: it does not outlive the program, however this ends.
+static void test_child_dies_with_the_program(void)
+{
+	int ends[2];
+	char byte;
+	ob_error e;
+	record(10);
+	CHECK(pipe(ends) == 0);
+	const pid_t program = fork();
+	if (program == 0) {
+		stuck = ends[1];
+		ob_recording_open(path, &e);
+		_exit(0);
+	}
+	close(ends[1]);
+	CHECK(read(ends[0], &byte, 1) == 1);
+	CHECK(kill(program, SIGKILL) == 0 && waitpid(program, NULL, 0) == program);
+	CHECK(read(ends[0], &byte, 1) == 0);
+	close(ends[0]);
+}
+
 static void test_no_record(void)
 {
 	record(10);
@@ -420,6 +479,8 @@ int main(void)
 	build_hulls();
 	test_same_snapshots();
 	test_damaged();
+	test_little_memory();
+	test_child_dies_with_the_program();
 	test_no_record();
 	unlink(path);
 	return check_end();

@@ -279,10 +279,10 @@ class Resume(program.Case):
 		os.mkfifo(self.path("pipe"))
 		for command in ["run", "--resume"], ["inspect"]:
 			self.refuse(*command, "nothing.ck", saying="nothing.ck: cannot read the checkpoint: No such file")
-			self.refuse(*command, "pipe", saying="pipe: this is no file")
-			self.refuse(*command, "/dev/zero", saying="/dev/zero: this is no file")
+			self.refuse(*command, "pipe", saying="pipe: cannot read the checkpoint: it is no file, but a pipe")
+			self.refuse(*command, "/dev/zero", saying="/dev/zero: cannot read the checkpoint: it is no file, but a pipe or a device")
 			self.refuse(*command, words[0], saying="no checkpoint of obsim")
-			self.refuse(*command, self.directory.name, saying="this is no file")
+			self.refuse(*command, self.directory.name, saying="it is no file, but a directory")
 
 	def test_damaged(self):
 		"""Any byte that is not as it was written, any that is missing or too many."""

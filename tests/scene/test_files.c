@@ -48,8 +48,8 @@ static void check_text_refused(const char *text, size_t size, const char *expect
 int main(void)
 {
 	check_refused("/nonexistent/scene.lua", "cannot read the scene: No such file or directory");
-	check_refused("/tmp", "cannot read the scene: it is a directory");
-	check_refused("/dev/zero", "larger than 4 MiB");
+	check_refused("/tmp", "cannot read the scene: it is no file, but a directory");
+	check_refused("/dev/zero", "it is no file, but a pipe or a device");
 	check_unreadable();
 	check_large();
 	check_text_refused("", 0, ":1: expected at least one object");
