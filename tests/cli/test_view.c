@@ -43,7 +43,8 @@ static ob_top_sample make_sample(void)
 	return s;
 }
 
-static char *show(ob_top_view *view, ob_top_sample *s)
+// Not inlined: gcc 12 would mistake the returned text for the variable that holds it.
+__attribute__((noinline)) static char *show(ob_top_view *view, ob_top_sample *s)
 {
 	char *text = NULL;
 	size_t length;

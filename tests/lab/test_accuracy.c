@@ -1,4 +1,4 @@
-// test_quick CASE: obsim at its usual settings keeps every promise of the case. Cost is not looked at.
+// accuracy CASE: obsim at its usual settings keeps every promise of the case. Cost is not looked at.
 #include <string.h>
 
 #include "check.h"
@@ -8,7 +8,7 @@ int main(int argc, char **argv)
 {
 	const ob_case *c = argc == 2 ? ob_case_find(argv[1]) : NULL;
 	if (!c) {
-		fprintf(stderr, "usage: test_quick CASE\n");
+		fprintf(stderr, "usage: accuracy CASE\n");
 		return 2;
 	}
 	const ob_engine_kind *kind = ob_engine_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
