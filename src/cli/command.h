@@ -9,6 +9,7 @@ enum ob_exit {
 	OB_EXIT_FAILED, // the run failed, or was interrupted
 	OB_EXIT_USAGE, // the command line, the scene, the checkpoint or the record is wrong
 	OB_EXIT_MISSED, // lab --check: a target was missed
+	OB_EXIT_BROKEN, // run, serve --check: what simulators share broke an invariant
 };
 
 // Each takes parsed arguments and returns an ob_exit; errors are already told on standard error.

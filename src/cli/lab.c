@@ -99,7 +99,7 @@ static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 		.list = a->value[OB_OPTION_LIST],
 		.fresh = a->value[OB_OPTION_FRESH],
 		.json = a->value[OB_OPTION_JSON_OUT],
-		.check = a->value[OB_OPTION_CHECK],
+		.check = a->value[OB_OPTION_CHECK_TARGETS],
 		.audit = a->value[OB_OPTION_AUDIT],
 	};
 	bool quick = a->value[OB_OPTION_QUICK];

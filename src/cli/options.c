@@ -115,6 +115,9 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 
 	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..",
 			      "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },
+	[OB_OPTION_CHECK] = { NULL, "check", NULL,
+			      "check what simulators share after each step; exit with 4 where it is wrong", RUN | SERVE,
+			      0 },
 
 	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
 	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only a quick subset", LAB | PAPER, 0 },
@@ -134,7 +137,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 			    0 },
 	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB | PAPER | COMPARE, 0 },
 	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print it as JSON", LAB | PAPER | INSPECT, 0 },
-	[OB_OPTION_CHECK] = { NULL, "check", NULL, "exit with 3 when obsim misses a target", LAB, 0 },
+	[OB_OPTION_CHECK_TARGETS] = { NULL, "check", NULL, "exit with 3 when obsim misses a target", LAB, 0 },
 
 	[OB_OPTION_ONCE] = { "The view", "once", NULL, "print once, for pipes, and end", TOP, 0 },
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
@@ -378,6 +381,7 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      f);
 	fprintf(f, "\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage%s.\n",
 		command == OB_COMMAND_LAB       ? ", 3 a target missed"
+		: command == OB_COMMAND_RUN || command == OB_COMMAND_SERVE ? " or scene, 4 --check found a fault"
 		: command == OB_COMMAND_INSPECT ? ", or no whole checkpoint"
 		: command == OB_COMMAND_EXPORT  ? ", or no whole record"
 						: " or scene");

@@ -441,6 +441,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.strict = a->value[OB_OPTION_STRICT] != NULL,
+		.check = a->value[OB_OPTION_CHECK] != NULL,
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
 			   : strcmp(measure, "profile") == 0        ? OB_MEASURE_PROFILE
 								    : OB_MEASURE_ENDS,
@@ -502,6 +503,7 @@ ob_host_config ob_request_host(const ob_run_request *r)
 				 .isolation = r->isolation,
 				 .workers = r->workers,
 				 .harden = r->harden,
+				 .check = r->check,
 				 .trace = r->trace,
 				 .patience = r->patience,
 				 .on_death = r->on_death,

@@ -40,6 +40,7 @@ typedef struct ob_run_request {
 	ob_run_settings run; // after ob_request_resolve
 	bool explain;
 	bool strict; // a missed tolerance is a failure
+	bool check; // what simulators share, after each step
 	ob_measure_when measure;
 	ob_frames_request frames;
 	double pace; // simulated seconds a second; OB_PACE_MAX

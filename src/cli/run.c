@@ -443,7 +443,7 @@ static int carry_out(run *r)
 	if (interrupted)
 		code = ob_command_fail(OB_EXIT_FAILED, "interrupted: the files hold what was done so far");
 	else if (!done)
-		code = ob_command_fail(OB_EXIT_FAILED, e.text);
+		code = ob_command_fail(ob_host_broke_invariant(r->host) ? OB_EXIT_BROKEN : OB_EXIT_FAILED, e.text);
 	// a sink that broke the run tells the same again when it is closed
 	if (!closed && (done || interrupted))
 		code = ob_command_fail(OB_EXIT_FAILED, e_close.text);

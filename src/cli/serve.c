@@ -86,7 +86,8 @@ static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
 	}
 	ob_server_stop(server);
 	ob_pace_end(&pace);
-	return ended ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e.text);
+	const int failed = ob_host_broke_invariant(h) ? OB_EXIT_BROKEN : OB_EXIT_FAILED;
+	return ended ? OB_EXIT_OK : ob_command_fail(failed, e.text);
 }
 
 // Until Ctrl-C

@@ -124,6 +124,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.hulls = c->run.monolith ? 0 : OB_SCENE_HULLS_MAX,
 		.isolation = spawn->name,
 		.traced = c->trace != NULL,
+		.checked = c->check,
 		.harden = c->harden,
 		.run = c->run,
 	};
@@ -292,6 +293,10 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 bool ob_host_interrupted(const ob_host *h)
 {
 	return h->interrupted;
+}
+bool ob_host_broke_invariant(const ob_host *h)
+{
+	return ob_step_failed(h->u, NULL) == OB_STEP_BROKEN;
 }
 const ob_universe *ob_host_universe(const ob_host *h)
 {

@@ -51,6 +51,7 @@ typedef struct ob_host_config {
 	uint32_t harden; // processes: measures so that simulators harm nobody (confine.h), bits, 1 << ob_harden_measure; 0 = none
 	ob_on_death on_death; // of simulators; a monolith's end ends the run in any case
 	ob_restart_limit limit;
+	bool check; // what simulators share is checked after each step (sim/invariants.h)
 	const char *trace; // file for the timeline of what workers and host do (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
 	const ob_saved_host *from; // where the run begins, checked (ob_saved_universe_check); NULL = the scene's start
@@ -90,6 +91,8 @@ bool ob_host_wait(ob_host *h, ob_error *e);
 // pairs keep, too, as it must to be saved there. Once at a time.
 void ob_host_want_contacts(ob_host *h, uint64_t step);
 bool ob_host_interrupted(const ob_host *h);
+// Whether that is because what simulators share breaks an invariant. After a wait.
+bool ob_host_broke_invariant(const ob_host *h);
 const ob_universe *ob_host_universe(const ob_host *h);
 const ob_roster *ob_host_roster(const ob_host *h);
 void ob_host_get_times(ob_host *h, ob_host_times *out);

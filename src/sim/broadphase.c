@@ -233,6 +233,36 @@ void ob_index_remove(ob_universe *u, uint32_t id)
 		unlink_object(data, id);
 }
 
+// Whether the object is in the bucket, once, and all that is there may be.
+static bool bucket_has(const ob_step_data *data, uint32_t bucket, uint32_t id)
+{
+	uint32_t times = 0, n = 0;
+	for (uint32_t link = data->bucket[bucket]; link; link = data->cell[link - 1].next) {
+		if (link > data->objects_max || !indexed(&data->cell[link - 1]) || n++ == data->objects_max)
+			return false;
+		times += link == id + 1;
+	}
+	return times == 1;
+}
+
+ob_index_place ob_index_find(const ob_universe *u, uint32_t id)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const ob_index_cell *c = &data->cell[id];
+	const bool plane = plane_at(data, id) < data->count->planes;
+	if (!indexed(c))
+		return plane ? OB_INDEX_PLANE : OB_INDEX_NOWHERE;
+	if (plane || c->level < 0 || c->level >= LEVELS)
+		return OB_INDEX_BROKEN;
+	const cell to = cell_of(data->bounds[id]);
+	const uint32_t place = place_of_object(data, id);
+	const bool found =
+		bucket_has(data, bucket_of(data, place), id) && *occupied_word(data, place) >> place % 64 & 1;
+	const bool current = ob_broadphase_query_pending(u, id) ||
+			     (c->level == to.level && c->x == to.x && c->y == to.y && c->z == to.z);
+	return found && current ? OB_INDEX_CELL : OB_INDEX_BROKEN;
+}
+
 static bool below_plane(const ob_universe *u, uint32_t plane, const float *b)
 {
 	const ob_motion *m = ob_newest_motion(u, plane);
@@ -570,4 +600,11 @@ void ob_fat_aabb_sweep(ob_universe *u, uint32_t id, const double *box, double ma
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id)
 {
 	return ob_universe_step_data(u)->neighbours[id].count == UINT32_MAX;
+}
+
+void ob_broadphase_remove(ob_universe *u, uint32_t id)
+{
+	ob_index_remove(u, id);
+	ob_requery_drop(u, id);
+	ob_universe_step_data(u)->neighbours[id].count = 0; // none is pending
 }

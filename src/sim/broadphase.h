@@ -44,6 +44,10 @@ void ob_fat_aabb_renew(ob_universe *u, uint32_t id, const ob_state *now, double 
 // Puts the object where its fat AABB is now (new or moved). Planes go to the list of planes.
 void ob_index_put(ob_universe *u, uint32_t id);
 void ob_index_remove(ob_universe *u, uint32_t id);
+// Where a search for the object finds it. NOWHERE: it is not in the index. BROKEN: it is, and no search of the cell
+// that holds its box's centre finds it. The scheduling worker, or the host at a pause.
+typedef enum ob_index_place { OB_INDEX_NOWHERE, OB_INDEX_CELL, OB_INDEX_PLANE, OB_INDEX_BROKEN } ob_index_place;
+ob_index_place ob_index_find(const ob_universe *u, uint32_t id);
 // Where so many are put, at place i: what of those that follow lies anywhere is asked for.
 void ob_index_prefetch(const ob_universe *u, const uint32_t *ids, uint32_t i, uint32_t end);
 // All other objects whose boxes overlap that of id, in no particular order. Writes up to max ids, returns how many
@@ -52,5 +56,8 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 
 // Whether it has a new fat AABB, and its neighbours are not yet known.
 bool ob_broadphase_query_pending(const ob_universe *u, uint32_t id);
+// Removes an object that goes away from the index and from the requery list: else its query would be made, and would
+// find pairs of an absent object. The host, at a pause.
+void ob_broadphase_remove(ob_universe *u, uint32_t id);
 
 #endif

@@ -51,6 +51,7 @@
 #include "sim/commit.h"
 #include "sim/critical_path.h"
 #include "sim/fault.h"
+#include "sim/invariants.h"
 #include "sim/island_solver.h"
 #include "sim/island_builder.h"
 #include "sim/late_contacts.h"
@@ -593,7 +594,7 @@ static bool merge_pairs(const scheduler *c, uint64_t steps, ob_phase next)
 		return false;
 	if (!checked || ob_universe_contains(c->u))
 		ob_pairs_measure(c->u, steps);
-	return true;
+	return ob_invariants_check(c->u, OB_INVARIANTS_AFTER_MERGE);
 }
 
 static ob_phase after_broadphase_start(const scheduler *c)
@@ -681,7 +682,9 @@ static ob_phase complete_step(const scheduler *c)
 	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle,
 			 several ? c->sim->peers.islands : count->islands);
 	ob_step_work_reset(c->u);
-	return !several || gather(c) ? begin_step(c) : OB_PHASE_PAUSE;
+	if ((several && !gather(c)) || !ob_invariants_check(c->u, OB_INVARIANTS_AFTER_STEP))
+		return OB_PHASE_PAUSE;
+	return begin_step(c);
 }
 
 // ---- the step
@@ -791,6 +794,8 @@ void ob_sim_resume(ob_universe *u)
 {
 	const scheduler c = { u, NULL, ob_universe_step_data(u), ob_universe_settings(u) };
 	const uint32_t arranger = ob_universe_simulators(u);
+	if (!ob_invariants_check(u, OB_INVARIANTS_AT_RESUME)) // it stays paused, and ob_sim_failure says why
+		return;
 	ob_step_begin(u);
 	if (ob_universe_contains(u))
 		ob_gate_open(u, OB_PHASE_RESUME, &arranger, 1);
@@ -897,6 +902,10 @@ const char *ob_sim_failure(const ob_universe *u)
 		return text;
 	case OB_STEP_OVERWORKED:
 		tell_of_work(u, object, step, text, sizeof text);
+		return text;
+	case OB_STEP_BROKEN:
+		snprintf(text, sizeof text, "what simulators share is wrong when %llu steps are complete: %.*s",
+			 step - 1, (int)sizeof data->count->blamed_for - 1, data->count->blamed_for);
 		return text;
 	case OB_STEP_LEFT:
 		return ob_universe_ranks(u) > 1 ? "another rank has left the run" : "the run was stopped";

@@ -97,7 +97,8 @@ typedef struct ob_header {
 	char name[OB_NAME_MAX];
 	char isolation[16];
 	ob_run_settings run;
-	uint32_t harden, zero; // bits, 1 << ob_harden_measure
+	uint32_t harden; // bits, 1 << ob_harden_measure
+	uint32_t checked; // 1 = as ob_universe_setup.checked
 } ob_header;
 
 // What changes as the run goes on. Counters that several workers hit have a cache line each.

@@ -179,6 +179,23 @@ bool ob_requery_lists(const ob_universe *u, uint32_t id)
 	return __atomic_load_n(&u->requery_bit[id / 64], __ATOMIC_RELAXED) >> id % 64 & 1;
 }
 
+void ob_requery_drop(ob_universe *u, uint32_t id)
+{
+	uint32_t n, i = 0;
+	const uint32_t *list = ob_requery_list(u, &n);
+	const uint64_t bit = UINT64_C(1) << id % 64;
+	if (!(__atomic_fetch_and(&u->requery_bit[id / 64], ~bit, __ATOMIC_RELAXED) & bit))
+		return;
+	while (i < n && list[i] != id)
+		i++;
+	if (i == n) {
+		u->step_data.count->failure = OB_STEP_DAMAGED;
+		return;
+	}
+	u->requery[i] = list[n - 1];
+	__atomic_store_n(&u->control->requery_count, n - 1, __ATOMIC_RELEASE);
+}
+
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count)
 {
 	const uint64_t n = __atomic_load_n(&u->control->requery_count, __ATOMIC_ACQUIRE),
@@ -284,6 +301,13 @@ void ob_step_blame(ob_universe *u, uint32_t worker, const char *what)
 		return;
 	count->failure = OB_STEP_DAMAGED;
 	count->culprit = worker + 1;
+	snprintf(count->blamed_for, sizeof count->blamed_for, "%s", what);
+}
+
+void ob_step_break(ob_universe *u, const char *what)
+{
+	struct ob_step_counts *count = u->step_data.count;
+	count->failure = OB_STEP_BROKEN;
 	snprintf(count->blamed_for, sizeof count->blamed_for, "%s", what);
 }
 

@@ -253,6 +253,7 @@ typedef enum ob_step_failure {
 	OB_STEP_OVERWORKED, // the step's budget of work is spent
 	OB_STEP_LEFT, // the run was stopped meanwhile
 	OB_STEP_MEMORY_FULL, // the memory file system has no more pages
+	OB_STEP_BROKEN, // what simulators share breaks an invariant (sim/invariants.h)
 	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, somebody has written where it should
 			 // not
 } ob_step_failure;

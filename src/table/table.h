@@ -48,6 +48,7 @@ typedef struct ob_universe_setup {
 	const char *isolation;  // "thread" | "process": for readers to show
 	ob_run_settings run;
 	bool traced;            // with rings for a trace (trace.h)
+	bool checked; // what simulators share is checked after each step (sim/invariants.h)
 	uint32_t harden;        // bits, 1 << ob_harden_measure; with OUTBOX the last of the workers is the arranger (outbox.h)
 	uint32_t script_cells; // objects that can have a script at the same time (script_data.h); 0: none
 	uint32_t script_bytes; // of the scripts' texts: an ob_script_directory, and what it points at
@@ -114,6 +115,7 @@ uint64_t ob_contacts_wanted(const ob_universe *u); // the last such step
 uint32_t ob_universe_harden(const ob_universe *u);
 // Whether simulators are contained (outbox.h).
 bool ob_universe_contains(const ob_universe *u);
+bool ob_universe_checked(const ob_universe *u); // as it was set up
 const char *ob_universe_name(const ob_universe *u);
 uint32_t ob_universe_version(void); // of the layout that this program has
 void ob_universe_set_state(ob_universe *u, ob_universe_state s);
@@ -202,6 +204,8 @@ void ob_task_reset_from(ob_universe *u, uint32_t total, uint32_t first, uint32_t
 bool ob_task_claim(ob_universe *u, uint32_t *index);
 // Appends to the list of objects whose neighbours the broad phase must query again (any worker, any order).
 void ob_requery_append(ob_universe *u, uint32_t id);
+// Takes an object off the list, if it is there. The host, at a pause.
+void ob_requery_drop(ob_universe *u, uint32_t id);
 // The list so far; reset empties it. Only for the scheduler.
 const uint32_t *ob_requery_list(const ob_universe *u, uint32_t *count);
 void ob_requery_reset(ob_universe *u);
@@ -228,6 +232,9 @@ void ob_late_contacts_reset(ob_universe *u);
 void ob_late_contacts_note(ob_universe *u);
 // The step fails because this worker has written, or handed over, what it should not: by the arranger.
 void ob_step_blame(ob_universe *u, uint32_t worker, const char *what);
+// The step fails with OB_STEP_BROKEN: what simulators share breaks an invariant, which this line names (cut where it is
+// too long). The scheduling worker, or the host at a pause.
+void ob_step_break(ob_universe *u, const char *what);
 // A record for a pair that begins to touch: any worker. Its two versions bear no stamp. There are as many as pairs.
 // OB_NO_RECORD: no memory, which is a failure of the step.
 uint32_t ob_record_take(ob_universe *u);

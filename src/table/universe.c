@@ -40,6 +40,7 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 	snprintf(h->isolation, sizeof h->isolation, "%s", setup->isolation);
 	h->run = setup->run;
 	h->harden = setup->harden;
+	h->checked = setup->checked;
 }
 
 // The segment's first contents, before anybody can find it.
@@ -198,6 +199,11 @@ uint64_t ob_contacts_wanted(const ob_universe *u)
 {
 	return __atomic_load_n(&u->control->contacts_step, __ATOMIC_RELAXED);
 }
+bool ob_universe_checked(const ob_universe *u)
+{
+	return u->header.checked;
+}
+
 uint32_t ob_universe_harden(const ob_universe *u)
 {
 	return u->header.harden;

@@ -42,7 +42,7 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 	static int made;
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-sim-%d-%d", (int)getpid(), made++);
-	ob_universe_setup setup = { .name = name, .capacity = s->capacity ? s->capacity : s->world.objects, .workers = workers, .hulls = s->world.hulls, .isolation = "thread", .harden = s->harden, .run = s->run };
+	ob_universe_setup setup = { .name = name, .capacity = s->capacity ? s->capacity : s->world.objects, .workers = workers, .hulls = s->world.hulls, .isolation = "thread", .checked = s->checked, .harden = s->harden, .run = s->run };
 	ob_error e;
 	ob_ode_init();
 	ob_universe *u = ob_universe_create(&setup, &e);

@@ -25,6 +25,7 @@ enum { LITTLE_MOST = 2048 }; // objects
 typedef struct little_scene {
 	ob_run_settings run; // the program's own, but no sleeping; its gravity is what counts
 	uint32_t capacity; // 0: as many as there are objects
+	bool checked; // invariants are checked after each step
 	uint32_t harden; // measures, bits of 1 << ob_harden_measure
 	ob_world world;
 	ob_passport passport[LITTLE_MOST]; // the world's

@@ -45,6 +45,7 @@ complete -c obsim -n $both -l load -x -d 'numbers added up in each box test'
 
 set -l lives '__fish_seen_subcommand_from run serve'
 complete -c obsim -n $lives -l arch -x -a 'obs monolith' -d 'one simulator per object, or one world'
+complete -c obsim -n $lives -l check -d 'check what simulators share after each step'
 complete -c obsim -n $lives -l isolation -x -a 'thread process' -d 'what a worker is'
 complete -c obsim -n $lives -l name -x -d 'name of the universe'
 complete -c obsim -n $lives -l patience -x -d 'seconds that a step may take'
