@@ -264,7 +264,7 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 		wake_object(u, other);
 	}
 	ob_pairs_drop(u, id);
-	ob_index_remove(u, id);
+	ob_broadphase_remove(u, id);
 	data->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
 	note_change(u, id);
 	if (ob_universe_traced(u))
