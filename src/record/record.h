@@ -31,8 +31,9 @@ typedef struct ob_record_facts {
 
 typedef struct ob_recorder ob_recorder;
 // Creates an HDF5 file, or replaces one. NULL and e on failure. The file is whole after each append: a later reader
-// finds all states up to then, also when the process crashes later, and when the disk is full. Killed in the midst of
-// an append it may be unreadable: 1 of 60 kills of a writer that did nothing else.
+// finds all states up to then, also when the process crashes later, and when the disk is full. A file without room for
+// the first state is removed. Killed in the midst of an append it may be unreadable: 1 of 60 kills of a writer that did
+// nothing else.
 ob_recorder *ob_recorder_create(const char *path, const ob_record_facts *facts, ob_error *e);
 // One more state. false and e: the disk is full, ...
 bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e);

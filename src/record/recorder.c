@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -246,10 +247,15 @@ static bool append_list(list *l, const void *items, hsize_t count)
 	return ok;
 }
 
-// At most, that count more take of the file.
+static uint64_t chunks(uint64_t count, uint64_t in_chunk)
+{
+	return (count + in_chunk - 1) / in_chunk;
+}
+
+// The chunks that count more begin, bytes.
 static uint64_t list_bytes(const list *l, uint64_t count)
 {
-	return (count + l->chunk) * l->bytes;
+	return (chunks(l->rows + count, l->chunk) - chunks(l->rows, l->chunk)) * l->chunk * l->bytes;
 }
 
 static bool finish_list(list *l)
@@ -292,10 +298,11 @@ struct ob_recorder {
 	objects objects;
 	list events, motions, hulls;
 	preallocation allocated;
-	hsize_t chunk_ids; // in a chunk of the columns
-	uint64_t row_bytes; // at most, of one append to one such chunk of each column
+	hsize_t chunk_ids, chunk_rows[COLUMNS]; // in a chunk of the columns
+	uint32_t written_count; // ids of the row before, 0: there is none
 	uint32_t count; // ids that have columns
 	hsize_t rows;
+	bool failed;
 	double *numbers; // [count * 4], one row of one dataset
 	uint8_t *asleep; // [count]
 	ob_record_motion *known; // [count]: what was written last of each id, zeroed where it means nothing
@@ -323,7 +330,7 @@ static bool create_column(ob_recorder *r, int i)
 	hsize_t chunk = row < CHUNK_BYTES ? CHUNK_BYTES / row : 1;
 	if (chunk > 1024)
 		chunk = 1024;
-	r->row_bytes += chunk * row;
+	r->chunk_rows[i] = chunk;
 	const double none = NAN;
 	const uint8_t absent = ABSENT;
 	const void *fill = i == ASLEEP ? (const void *)&absent : width ? &none : NULL;
@@ -529,6 +536,7 @@ ob_recorder *ob_recorder_create(const char *path, const ob_record_facts *about, 
 		return r;
 	else
 		ob_hdf5_fail(e, path, "create the record");
+	r->failed = true;
 	ob_recorder_close(r, NULL);
 	return NULL;
 }
@@ -697,6 +705,19 @@ static bool append_row(ob_recorder *r, int column, const void *row)
 	return ok;
 }
 
+// The chunks that one more row begins, bytes.
+static uint64_t row_bytes(const ob_recorder *r)
+{
+	uint64_t bytes = 0;
+	for (int i = 0; i < COLUMNS; i++) {
+		const uint64_t width = (uint64_t)columns[i].width, ids = width ? r->chunk_ids : 1;
+		const uint64_t all = width ? chunks(r->count, ids) : 1, before = width ? chunks(r->written_count, ids) : 1;
+		const uint64_t begun = r->rows % r->chunk_rows[i] == 0 ? all : all - before;
+		bytes += begun * r->chunk_rows[i] * ids * (width ? width : 1) * H5Tget_size(column_type(i));
+	}
+	return bytes;
+}
+
 // Columns for all that are there.
 static bool grow(ob_recorder *r, const ob_snapshot *s)
 {
@@ -706,14 +727,16 @@ static bool grow(ob_recorder *r, const ob_snapshot *s)
 	return count <= r->count || (grow_objects(&r->objects, count) && make_room(r, count));
 }
 
-bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
+static bool append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 {
 	haddr_t used = 0;
 	if (!grow(r, s))
 		return ob_fail(e, "%s: no memory to record %u objects", r->path, s->count);
-	uint64_t more = r->row_bytes * (1 + r->count / r->chunk_ids) + list_bytes(&r->events, 2 * r->count) +
-			list_bytes(&r->motions, r->count) + list_bytes(&r->hulls, count_new_hulls(r, s)) + INDEX_BYTES +
-			r->count * sizeof(ob_passport);
+	if (r->rows == OB_RECORD_STATES_MAX)
+		return ob_fail(e, "%s: a record has room for %d states: record { every = N } records fewer", r->path,
+			       OB_RECORD_STATES_MAX);
+	uint64_t more = row_bytes(r) + list_bytes(&r->events, 2 * r->count) + list_bytes(&r->motions, r->count) +
+			list_bytes(&r->hulls, count_new_hulls(r, s)) + INDEX_BYTES + r->count * sizeof(ob_passport);
 	if (H5Fget_eoa(r->file, &used) >= 0 && !preallocate(&r->allocated, r->path, used, more, e))
 		return false;
 	bool ok = append_hulls(r, s) && append_events(r, s) && append_motions(r, s);
@@ -722,7 +745,23 @@ bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 	if (!ok || H5Fflush(r->file, H5F_SCOPE_GLOBAL) < 0)
 		return ob_hdf5_fail(e, r->path, "append to the record");
 	r->rows++;
+	r->written_count = r->count;
 	return true;
+}
+
+bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
+{
+	const bool good = append(r, s, e);
+	r->failed |= !good;
+	return good;
+}
+
+// Removes a file that has no state, for there was no room for one.
+static void remove_useless(const ob_recorder *r)
+{
+	struct stat st;
+	if (r->failed && r->rows == 0 && r->path && lstat(r->path, &st) == 0 && S_ISREG(st.st_mode))
+		unlink(r->path);
 }
 
 bool ob_recorder_close(ob_recorder *r, ob_error *e)
@@ -743,6 +782,7 @@ bool ob_recorder_close(ob_recorder *r, ob_error *e)
 	ok &= close_preallocation(&r->allocated, ob_hdf5_length(r->path));
 	if (!ok)
 		ob_hdf5_fail(e, r->path, "close the record");
+	remove_useless(r);
 	free(r->path);
 	free(r->numbers);
 	free(r->asleep);
