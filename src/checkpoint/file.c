@@ -117,7 +117,7 @@ static uint64_t next_border(uint64_t at)
 	return (at + BORDER - 1) / BORDER * BORDER;
 }
 
-// Where the areas lie, as the table says.
+// Points the areas to where the table says that they lie.
 static void set_areas(ob_checkpoint_file *f, const start *s)
 {
 	f->areas = s->h.areas;

@@ -10,7 +10,7 @@
 #include <jpeglib.h>
 #include <png.h>
 
-// Of a progressive JPEG, each of which goes over the whole picture.
+// Limit of scans of a JPEG: each goes over the whole picture.
 enum { JPEG_SCANS_MAX = 64 };
 
 // false and e, or room for the pixels.
@@ -120,7 +120,7 @@ static _Noreturn void leave_jpeg(j_common_ptr jpeg)
 	longjmp(s->left_at, 1);
 }
 
-// What libjpeg would make up, such as what is cut off, is refused.
+// Refuses a picture of which libjpeg would make up a part, such as one that is cut off.
 static void hear_jpeg(j_common_ptr jpeg, int level)
 {
 	if (level < 0)
