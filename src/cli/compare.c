@@ -10,7 +10,9 @@
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "compare/compare.h"
+#include "plot/plot.h"
 #include "ranks/ranks.h"
+#include "render/render.h"
 
 enum { USUAL_REPEATS = 3, WIDTH_LEAST = 80, WIDTH_MOST = 100 };
 
@@ -126,6 +128,7 @@ static bool prepare(ob_comparison *c, const ob_arguments *a, ob_error *e)
 	bool fine = pass_on(c, a, e);
 	for (uint32_t i = 0; fine && i < c->points; i++)
 		fine = load_point(&c->point[i], a, e);
+	fine = fine && (!c->drawn || (ob_render_check(e) && ob_plot_check(e)));
 	return fine && ob_comparison_plan(c, e);
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "base/spelling.h"
 #include "cli/command.h"
 #include "cli/quantity.h"
@@ -13,6 +14,7 @@
 #include "lab/lab.h"
 #include "lab/report.h"
 #include "lab/tables.h"
+#include "plot/plot.h"
 #include "ranks/ranks.h"
 
 // What the command line asks for
@@ -75,6 +77,23 @@ static bool read_engines(ob_engine_list *l, const char *names, ob_error *e)
 	return ob_fail(e, "--engines: no engine '%s', only: %s", word, all);
 }
 
+// Engines that were named must be there; of all, the others are left out with a warning.
+static bool check_engines(ob_engine_list *l, bool named, ob_error *e)
+{
+	size_t there = 0;
+	for (size_t i = 0; i < l->count; i++) {
+		const ob_engine_kind *k = l->of[i];
+		if (!k->check || k->check(e))
+			l->of[there++] = k;
+		else if (named)
+			return false;
+		else
+			ob_log_warn("without %s: %s", k->title, e->text);
+	}
+	l->count = there;
+	return true;
+}
+
 static bool check(const request *r, const ob_arguments *a, ob_error *e)
 {
 	char word[64];
@@ -121,7 +140,8 @@ static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 		    ob_number_count("repeats", a->value[OB_OPTION_REPEATS], 1, OB_REPEATS, &repeats, e) &&
 		    ob_number_real("limit", a->value[OB_OPTION_LIMIT], 0, 1e6, &r->limit, e);
 	r->plan.repeats = (uint32_t)repeats;
-	return fine && check(r, a, e);
+	return fine && check(r, a, e) &&
+	       (r->list || (check_engines(&r->plan.engines, engines && strcmp(engines, "all") != 0, e) && ob_plot_check(e)));
 }
 
 static bool is_asked(const ob_lab_plan *p, const ob_result *r)

@@ -26,6 +26,7 @@ typedef struct ob_engine_kind {
 	// J since the start: potential energy that pushing penetrations apart has added. NULL = the engine does not tell
 	double (*recovered)(const ob_engine *p);
 	void (*destroy)(ob_engine *p); // NULL is allowed
+	bool (*check)(ob_error *e); // true if its library can be loaded; NULL = it is part of the program
 	ob_world_drive drives; // the most that it is to be given
 	bool hulls; // it takes convex hulls
 } ob_engine_kind;

@@ -12,8 +12,8 @@ extern const ob_engine_kind ob_engine_obsim_lag;
 extern const ob_engine_kind ob_engine_ode_quick; // ode.c
 extern const ob_engine_kind ob_engine_ode_world;
 extern const ob_engine_kind ob_engine_ode_advised;
-extern const ob_engine_kind ob_engine_bullet; // bullet.c
-extern const ob_engine_kind ob_engine_mujoco; // mujoco.c
+extern const ob_engine_kind ob_engine_bullet; // parts.c
+extern const ob_engine_kind ob_engine_mujoco;
 
 // What ODE keeps for a thread lives as long as any engine of that thread needs it.
 void ob_engine_ode_enter(void);

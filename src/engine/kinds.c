@@ -11,10 +11,10 @@ const ob_engine_kind *const ob_engine_kinds[] = {
 	&ob_engine_ode_quick,
 	&ob_engine_ode_advised,
 	&ob_engine_ode_world,
-#ifdef OB_HAVE_BULLET
+#ifdef OB_BULLET_VERSION
 	&ob_engine_bullet,
 #endif
-#ifdef OB_HAVE_MUJOCO
+#ifdef OB_MUJOCO_VERSION
 	&ob_engine_mujoco,
 #endif
 	NULL,

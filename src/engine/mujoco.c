@@ -20,7 +20,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "engine/engines.h"
+#include "engine/part.h"
 
 enum {
 	CONTACTS_PER_BODY = 12, // at most, on average: memory for their rows grows with the square of the bodies
@@ -309,14 +309,6 @@ static void get(const ob_engine *p, ob_state *state)
 	}
 }
 
-const ob_engine_kind ob_engine_mujoco = {
-	.name = "mujoco",
-	.title = "MuJoCo",
-	.version = OB_MUJOCO_VERSION,
-	.usual = { .step_length = 1. / 60, .substeps = 8, .iterations = 100 }, // its defaults: about 2 ms, at most 100
-	.iteration_choice = { 1, 2, 5, 10, 20, 50, 100 },
-	.create = create,
-	.step = step,
-	.get = get,
-	.destroy = destroy,
+OB_PART(ob_engine_part) = {
+	OB_PART_HEAD(ob_engine_part), .create = create, .step = step, .get = get, .destroy = destroy
 };

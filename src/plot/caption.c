@@ -1,8 +1,8 @@
-#include "plot/caption.h"
-
 #include <cairo.h>
 #include <math.h>
 #include <stddef.h>
+
+#include "plot/part.h"
 
 // In units of the size of the type.
 static const double pad_x = .75, pad_y = .45, gap = 1, margin = .9, corner = .35;
@@ -52,7 +52,7 @@ static void blend(uint8_t *rgba, int width, cairo_surface_t *surface, int left, 
 	}
 }
 
-bool ob_plot_caption(uint8_t *rgba, int width, int height, const char *title, const char *time, ob_error *e)
+bool ob_cairo_caption(uint8_t *rgba, int width, int height, const char *title, const char *time, ob_error *e)
 {
 	double size = fmax(11, .028 * height);
 	int left = (int)(margin * size), room = width - left, high = (int)ceil(size * (1 + 2 * pad_y));

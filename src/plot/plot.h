@@ -64,6 +64,8 @@ typedef struct ob_plot {
 	double width, height; // px; 0 = 760 x 480; a legend below, or long titles, make it higher
 } ob_plot;
 
+// True if PNG can be painted: cairo is there. false and e with the package that is missing. Maps nothing.
+bool ob_plot_check(ob_error *e);
 bool ob_plot_svg(const ob_plot *p, const char *path, ob_error *e);
 bool ob_plot_png(const ob_plot *p, const char *path, double zoom, ob_error *e);
 // The SVG as a string, to be put into a page; free() it. NULL and e: no memory.

@@ -2,23 +2,8 @@
 #include <cairo.h>
 #include <math.h>
 
-#include "plot/drawing.h"
 #include "plot/font.h"
-
-#ifdef __SANITIZE_ADDRESS__ // fontconfig keeps what cairo has asked it for until the process ends
-__attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
-__attribute__((visibility("default"))) const char *__lsan_default_options(void);
-
-const char *__lsan_default_suppressions(void)
-{
-	return "leak:libfontconfig";
-}
-
-const char *__lsan_default_options(void)
-{
-	return "print_suppressions=0";
-}
-#endif
+#include "plot/part.h"
 
 static void set_paint(cairo_t *c, ob_paint paint)
 {
@@ -102,24 +87,19 @@ static void paint(cairo_t *c, const ob_drawing *d)
 	}
 }
 
-bool ob_plot_png(const ob_plot *p, const char *path, double zoom, ob_error *e)
+static bool draw(const ob_drawing *d, const char *path, double zoom, ob_error *e)
 {
-	ob_drawing d = { 0 };
-	bool ok = ob_plot_layout(p, &d, e);
-	if (ok) {
-		zoom = zoom > 0 ? fmin(zoom, 8) : 1;
-		cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(d.width * zoom),
-								      (int)ceil(d.height * zoom));
-		cairo_t *c = cairo_create(surface);
-		cairo_scale(c, zoom, zoom);
-		paint(c, &d);
-		cairo_status_t status = cairo_status(c);
-		if (!status)
-			status = cairo_surface_write_to_png(surface, path);
-		cairo_destroy(c);
-		cairo_surface_destroy(surface);
-		ok = !status || ob_fail(e, "cannot write %s: %s", path, cairo_status_to_string(status));
-	}
-	ob_drawing_finish(&d);
-	return ok;
+	cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(d->width * zoom),
+							      (int)ceil(d->height * zoom));
+	cairo_t *c = cairo_create(surface);
+	cairo_scale(c, zoom, zoom);
+	paint(c, d);
+	cairo_status_t status = cairo_status(c);
+	if (!status)
+		status = cairo_surface_write_to_png(surface, path);
+	cairo_destroy(c);
+	cairo_surface_destroy(surface);
+	return !status || ob_fail(e, "cannot write %s: %s", path, cairo_status_to_string(status));
 }
+
+OB_PART(ob_plot_part) = { OB_PART_HEAD(ob_plot_part), .png = draw, .caption = ob_cairo_caption };

@@ -1,4 +1,4 @@
-// What the module that knows MPI offers, by the name OB_WIRE_MODULE_ENTRY.
+// The part of obsim that calls MPI (base/part.h): obsim-mpi.so.
 #ifndef OB_RANKS_MODULE_H
 #define OB_RANKS_MODULE_H
 
@@ -6,8 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define OB_WIRE_MODULE "obsim-mpi.so"
-#define OB_WIRE_MODULE_ENTRY "ob_wire_mpi"
+#include "base/part.h"
 
 // Of each rank's share of an exchange: how long it is, and its first bytes. So what is short needs one message, not
 // two; as long as Open MPI sends at once, without asking the receiver.
@@ -19,6 +18,7 @@ typedef struct ob_wire_first {
 } ob_wire_first;
 
 typedef struct ob_wire_module {
+	ob_part_head head;
 	bool (*open)(uint32_t *rank, uint32_t *ranks);
 	// all[r] := what rank r has in "mine"
 	void (*first)(const ob_wire_first *mine, ob_wire_first *all);

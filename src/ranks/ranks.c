@@ -1,13 +1,11 @@
 #include "ranks/ranks.h"
 
-#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "ranks/module.h"
 
 struct ob_wire {
-	void *library;
 	const ob_wire_module *module;
 	uint32_t ranks;
 	ob_wire_first *mine, *first; // [ranks]: to each, or to all the first; of each
@@ -46,18 +44,6 @@ void ob_ranks_forget(void)
 			unsetenv(words[i][k]);
 }
 
-static bool load(ob_wire *w, ob_error *e)
-{
-	w->library =
-		dlopen(OB_WIRE_MODULE, RTLD_NOW | RTLD_GLOBAL); // global: MPI loads parts of itself, which look for it
-	if (!w->library)
-		return ob_fail(e,
-			       "several ranks need MPI: %s; install libopenmpi3, and an obsim that was built with it",
-			       dlerror());
-	w->module = dlsym(w->library, OB_WIRE_MODULE_ENTRY);
-	return w->module || ob_fail(e, "%s is another obsim's: %s", OB_WIRE_MODULE, dlerror());
-}
-
 static ob_wire *create(uint32_t ranks)
 {
 	ob_wire *w = calloc(1, sizeof *w);
@@ -93,7 +79,9 @@ static bool join(ob_wire *w, const ob_ranks *ranks, ob_error *e)
 	uint32_t rank, all;
 	if (!w->mine || !w->first || !w->at || !w->rest_at || !w->rest || !w->mine_at || !w->mine_rest)
 		return ob_fail(e, "out of memory");
-	if (!load(w, e))
+	// global: MPI loads parts of itself, which look for its symbols
+	w->module = ob_part_load("mpi", sizeof *w->module, true, "libopenmpi3", e);
+	if (!w->module)
 		return false;
 	if (!w->module->open(&rank, &all))
 		return ob_fail(e, "MPI does not start");

@@ -1,6 +1,6 @@
 // Frames: draws snapshots off-screen through EGL. Reads, never writes, the universe.
-// One renderer belongs to one thread. Without EGL at build time render_null.c stands in: create fails with a clear
-// error.
+// One renderer belongs to one thread. What draws is a part that create loads; where it or EGL is missing, create fails
+// with one line.
 #ifndef OB_RENDER_RENDER_H
 #define OB_RENDER_RENDER_H
 
@@ -25,7 +25,9 @@ typedef struct ob_render_setup {
 } ob_render_setup;
 
 typedef struct ob_renderer ob_renderer;
-bool ob_render_available(void);
+
+// True if what draws can be loaded; false and e with the packages that are missing. Maps nothing.
+bool ob_render_check(ob_error *e);
 // NULL and e (with the list of what was tried) on failure.
 ob_renderer *ob_renderer_create(const ob_render_setup *r, const ob_look_def *look, ob_error *e);
 void ob_renderer_destroy(ob_renderer *r);

@@ -1,4 +1,4 @@
-#include "render/render.h"
+#include "render/part.h"
 
 #include <stdlib.h>
 
@@ -8,6 +8,7 @@
 static const double occlusion_height = .8; // m above the ground, up to which a body occludes it
 
 struct ob_renderer {
+	ob_renderer_base base;
 	ob_render_setup setup;
 	ob_look_def look;
 	ob_context context;
@@ -19,12 +20,24 @@ struct ob_renderer {
 	ob_overlay overlay;
 };
 
-bool ob_render_available(void)
+static void destroy(ob_renderer *r)
 {
-	return true;
+	if (!r)
+		return;
+	if (r->context.context && ob_context_make_current(&r->context, NULL)) {
+		ob_passes_destroy(&r->passes);
+		ob_targets_destroy(&r->targets);
+	}
+	ob_context_destroy(&r->context);
+	ob_draw_list_finish(&r->list);
+	ob_instances_finish(&r->casters);
+	ob_instances_finish(&r->near_ground);
+	ob_instances_finish(&r->visible);
+	ob_overlay_finish(&r->overlay);
+	free(r);
 }
 
-ob_renderer *ob_renderer_create(const ob_render_setup *setup, const ob_look_def *look, ob_error *e)
+static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look, ob_error *e)
 {
 	if (setup->width < 1 || setup->height < 1 || setup->samples < 1) {
 		ob_fail(e, "frames of %dx%d with %d samples: expected at least 1 of each", setup->width, setup->height,
@@ -47,25 +60,8 @@ ob_renderer *ob_renderer_create(const ob_render_setup *setup, const ob_look_def 
 			return r;
 		}
 	}
-	ob_renderer_destroy(r);
+	destroy(r);
 	return NULL;
-}
-
-void ob_renderer_destroy(ob_renderer *r)
-{
-	if (!r)
-		return;
-	if (r->context.context && ob_context_make_current(&r->context, NULL)) {
-		ob_passes_destroy(&r->passes);
-		ob_targets_destroy(&r->targets);
-	}
-	ob_context_destroy(&r->context);
-	ob_draw_list_finish(&r->list);
-	ob_instances_finish(&r->casters);
-	ob_instances_finish(&r->near_ground);
-	ob_instances_finish(&r->visible);
-	ob_overlay_finish(&r->overlay);
-	free(r);
 }
 
 static bool casts_shadow(const ob_draw_item *body, const void *ortho)
@@ -129,7 +125,7 @@ static bool draw_share(ob_renderer *r, const ob_camera_def *c, double t, const o
 	return true;
 }
 
-bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
+static bool draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
 		      uint8_t *rgba, ob_error *e)
 {
 	ob_frame f = { 0 };
@@ -157,3 +153,5 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 	GLenum error = glGetError();
 	return error == GL_NO_ERROR ? true : ob_fail(e, "the OpenGL driver reported error 0x%x while drawing", error);
 }
+
+OB_PART(ob_render_part) = { OB_PART_HEAD(ob_render_part), .create = create, .destroy = destroy, .draw = draw };

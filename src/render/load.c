@@ -1,0 +1,35 @@
+// The renderer as the program sees it: loads the part that draws.
+#include "render/part.h"
+
+#define PACKAGES "libegl1, libopengl0 and libgl1-mesa-dri"
+
+static const ob_render_part *part_of(const ob_renderer *r)
+{
+	return ((const ob_renderer_base *)r)->part;
+}
+
+bool ob_render_check(ob_error *e)
+{
+	return ob_part_check("render", PACKAGES, e);
+}
+
+ob_renderer *ob_renderer_create(const ob_render_setup *r, const ob_look_def *look, ob_error *e)
+{
+	const ob_render_part *part = ob_part_load("render", sizeof *part, false, PACKAGES, e);
+	ob_renderer *created = part ? part->create(r, look, e) : NULL;
+	if (created)
+		((ob_renderer_base *)created)->part = part;
+	return created;
+}
+
+void ob_renderer_destroy(ob_renderer *r)
+{
+	if (r)
+		part_of(r)->destroy(r);
+}
+
+bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
+		      uint8_t *rgba, ob_error *e)
+{
+	return part_of(r)->draw(r, prev, now, t, c, rgba, e);
+}
