@@ -1,85 +1,48 @@
 #!/usr/bin/env python3
-"""figures.py OBSIM [FILE ...]: measures the tables that stand in FILEs between <!-- figures: NAME --> and <!-- end -->, and
-writes them there anew; without a FILE prints all tables. On an otherwise idle machine; times are medians of three runs.
+"""Measures obsim's published figures once, and writes them wherever they stand: figures.py measure OBSIM | write | check
+
+measure   runs all experiments on an otherwise idle machine (half an hour) and keeps the results, with commit and machine, in
+          docs/notebook/data/figures.json
+write     renders tables, sentences and diagrams from that file into the documents, between <!-- figures: NAME --> and
+          <!-- end -->, and into docs/images (draw_plot of a build with tests: build*/tools/draw_plot, or --draw PROGRAM)
+check     tells where documents or diagrams differ from the file; exit 1 if any does
 """
 import json
+import math
 import os
+import pathlib
 import re
 import statistics
 import subprocess
 import sys
 import tempfile
 
-BENCH = os.path.dirname(os.path.abspath(__file__))
-SCENES = os.path.join(BENCH, '..', 'scenes')
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SCENES, BENCH = ROOT / 'scenes', ROOT / 'bench'
+DATA = ROOT / 'docs/notebook/data/figures.json'
+DOCUMENTS = [ROOT / 'README.md', ROOT / 'docs/experiments.md', ROOT / 'docs/notebook/figures.md']
 RUNS = 3
 SEEDS = 12  # of the error tables: one heap is an anecdote
+OBSIM = None  # the program that is measured
 
 
 def scene(name):
-    return os.path.join(SCENES, name + '.lua')
+    return str(SCENES / (name + '.lua'))
 
 
 def run(*words, runs=RUNS):
-    """The report of a run; its times are medians."""
+    """The report of a run; its times are medians, and 'cpu_spread' the least and the most CPU."""
     reports = []
     for _ in range(runs):
         done = subprocess.run([OBSIM, 'run', *words, '--json', '-'], capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f'obsim run {" ".join(words)}: {done.stderr}')
         reports.append(json.loads(done.stdout))
+    cpu = [r['cpu_s'] for r in reports]
     for key in ('cpu_s', 'wall_s', 'total_s', 'body_step_cpu_us', 'startup_s', 'memory_bytes'):
         reports[0][key] = statistics.median(r[key] for r in reports)
+    reports[0]['cpu_spread'] = [min(cpu), max(cpu)]
     return reports[0]
-
-
-def row(*cells):
-    return '| ' + ' | '.join(str(c) for c in cells) + ' |\n'
-
-
-def head(*cells):
-    return row(*cells) + row(*['---'] + ['--:'] * (len(cells) - 1))
-
-
-def machine():
-    """Where this was measured."""
-    with open('/proc/cpuinfo', encoding='utf-8') as f:
-        model = re.search(r'model name\s*: (.*)', f.read()).group(1)
-    r = run(scene('cradle'), '--duration', '.1')
-    return f"Measured on {len(os.sched_getaffinity(0))} cores ({model}), commit {r['commit']}.\n"
-
-
-def compared(*words):
-    """What obsim compare says of the falling boxes: the verdict, then the table, in at most 100 columns."""
-    done = subprocess.run([OBSIM, 'compare', 'scenes/falling_boxes.lua', *words], capture_output=True, text=True, check=True,
-                          cwd=os.path.join(SCENES, '..'))
-    return '```\n' + done.stdout + '```\n'
-
-
-def compare():
-    """The whole of it."""
-    return compared()
-
-
-def varied():
-    """While they fly, land and pile up; a hundred, and a thousand."""
-    return compared('--vary', 'n=100,1000', '--duration', '3')
-
-
-def summary():
-    """The verdict of the README: one world, threads and processes in the same scene, five rows."""
-    configurations = [('one ODE world', ['--arch', 'monolith']), ('threads', ['--isolation', 'thread']),
-                      ('processes', ['--isolation', 'process']),
-                      ('a process for each object', ['--isolation', 'process', '--workers', 'objects'])]
-    reports = [run(scene('falling_boxes'), *words, '--measure', 'end') for _, words in configurations]
-    errors = [run(scene('falling_boxes'), *words, runs=1) for _, words in configurations]
-    text = head('100 falling boxes, 10 s', *(title for title, _ in configurations))
-    text += row('CPU per body and step, µs', *(f"{r['body_step_cpu_us']:.2f}" for r in reports))
-    text += row('wall per simulated second, ms', *(f"{1e3 * r['wall_s'] / r['simulated_s']:.1f}" for r in reports))
-    text += row('deepest penetration, mm', *(f"{1e3 * r['worst_penetration_m']:.3g}" for r in errors))
-    text += row('memory, MB', *(f"{r['memory_bytes'] / 1e6:.0f}" for r in reports))
-    text += row('state after it', *(f"`{r['state_hash'][:8]}`" for r in reports))
-    return text
 
 
 def spread(values, digits):
@@ -87,11 +50,81 @@ def spread(values, digits):
     return f'{statistics.median(values):.{digits}g} ({min(values):.{digits}g}–{max(values):.{digits}g})'
 
 
+# -- Experiments: each returns plain data, a table as {'head': [..], 'rows': [[..], ..]} or numbers for a diagram.
+
+def machine():
+    with open('/proc/cpuinfo', encoding='utf-8') as f:
+        model = re.search(r'model name\s*: (.*)', f.read()).group(1)
+    r = run(scene('cradle'), '--duration', '.1')
+    return {'cores': len(os.sched_getaffinity(0)), 'model': model, 'commit': r['commit'], 'runs': RUNS, 'seeds': SEEDS}
+
+
+CONFIGURATIONS = {
+    'one ODE world': ['--arch', 'monolith'],
+    'threads': ['--isolation', 'thread'],
+    'processes': ['--isolation', 'process'],
+    'a process per object': ['--isolation', 'process', '--workers', 'objects'],
+}
+LANDING = ['--duration', '3']  # boxes fly, land and pile up; later they rest, and resting costs object simulators nothing
+
+
+def growth():
+    """CPU and wall over the number of objects."""
+    counts = (10, 30, 100, 300, 1000, 3000, 10000)
+    curves = {}
+    for name, words in CONFIGURATIONS.items():
+        curves[name] = []
+        for n in counts:
+            if n > 1000 and name == 'a process per object':
+                continue
+            r = run(scene('falling_boxes'), '-D', f'n={n}', *LANDING, *words, '--measure', 'end')
+            scale = 1e6 / (n * r['simulated_s'])
+            curves[name].append({'n': n, 'cpu_us': r['cpu_s'] * scale, 'low': r['cpu_spread'][0] * scale,
+                                 'high': r['cpu_spread'][1] * scale, 'wall': r['wall_s'] / r['simulated_s'],
+                                 'memory_mb': r['memory_bytes'] / 1e6, 'hash': r['state_hash'][:8]})
+    return curves
+
+
+def price():
+    """CPU over the deepest penetration: tolerances of the object simulators, steps of the one world."""
+    settings = [('threads', f'{t} mm', ['--isolation', 'thread', '--tolerance', f'{t}mm']) for t in (50, 10, 1, .1)]
+    settings += [('processes', f'{t} mm', ['--isolation', 'process', '--tolerance', f'{t}mm']) for t in (50, 10, 1, .1)]
+    settings += [('one ODE world', f'1/{n} s', ['--arch', 'monolith', '--step', f'1/{n}'])
+                 for n in (60, 120, 240, 480, 960, 1920)]
+    curves = {}
+    for name, label, words in settings:
+        cpu, depth, rest = [], [], []
+        for seed in range(1, SEEDS + 1):
+            words_of_seed = [scene('falling_boxes'), *LANDING, *words, '--seed', str(seed)]
+            measured = run(*words_of_seed, runs=1)
+            undisturbed = run(*words_of_seed, '--measure', 'end', runs=1)
+            cpu.append(1e6 * undisturbed['cpu_s'] / (100 * undisturbed['simulated_s']))
+            depth.append(1e3 * measured['worst_penetration_m'])
+            rest.append(1e3 * measured['penetration_mean_m'])
+        curves.setdefault(name, []).append({'setting': label, 'cpu_us': cpu, 'depth_mm': depth, 'mean_mm': rest})
+    return curves
+
+
+def compared(*words):
+    """The verdict of obsim compare on the falling boxes, then its table, in at most 100 columns."""
+    done = subprocess.run([OBSIM, 'compare', 'scenes/falling_boxes.lua', *words], capture_output=True, text=True, check=True,
+                          cwd=ROOT)
+    return {'text': done.stdout}
+
+
+def compare():
+    return compared()
+
+
+def varied():
+    """A hundred and a thousand, while they fly, land and pile up."""
+    return compared('--vary', 'n=100,1000', *LANDING)
+
+
 def error_of(name, title):
-    text = head(title, 'CPU, ms per simulated s', 'deepest penetration, mm', 'mean at the end, mm')
-    configurations = [('object simulators, 1 substep', ['--substeps', '1'])]
-    configurations += [(f'object simulators, {n} substeps', ['--substeps', str(n)]) for n in (2, 4, 8, 16, 32)]
-    configurations += [('object simulators, as they come (1 mm)', [])]
+    rows = []
+    configurations = [(f'object simulators, {n} substep{"s" if n > 1 else ""}', ['--substeps', str(n)]) for n in (1, 2, 4, 8, 16, 32)]
+    configurations += [('object simulators, default (1 mm)', [])]
     configurations += [(f'object simulators, tolerance {t}', ['--tolerance', t]) for t in ('10mm', '.1mm')]
     configurations += [(f'one ODE world, steps of 1/{n} s', ['--arch', 'monolith', '--step', f'1/{n}'])
                        for n in (60, 240, 960)]
@@ -100,13 +133,13 @@ def error_of(name, title):
         reports = [run(scene(name), *words, *seed, runs=1) for seed in seeds]
         undisturbed = [run(scene(name), *words, *seed, '--measure', 'end', runs=1) for seed in seeds]
         cpu = statistics.median(1e3 * r['cpu_s'] / r['simulated_s'] for r in undisturbed)
-        text += row(what, f'{cpu:.1f}', spread([1e3 * r['worst_penetration_m'] for r in reports], 3),
-                    spread([1e3 * r['penetration_mean_m'] for r in reports], 2))
-    return text
+        rows.append([what, f'{cpu:.1f}', spread([1e3 * r['worst_penetration_m'] for r in reports], 3),
+                     spread([1e3 * r['penetration_mean_m'] for r in reports], 2)])
+    return {'head': [title, 'CPU, ms per simulated s', 'deepest penetration, mm', 'mean at the end, mm'], 'rows': rows}
 
 
 def error_falling():
-    """Speed against error: more substeps here, shorter steps there."""
+    """Speed against error: more substeps for object simulators, shorter steps for one world."""
     return error_of('falling_boxes', f'100 falling boxes, 10 s, {SEEDS} seeds')
 
 
@@ -116,73 +149,204 @@ def error_stack():
 
 
 def bits():
-    """The same bits, whoever computes them."""
+    """The state after a run, for each isolation and number of workers."""
     configurations = [[isolation, workers] for isolation in ('thread', 'process') for workers in ('1', '2', '3', '8', 'objects')]
-    text = head('scene', 'duration, s', 'configurations', 'state after it', 'equal')
+    rows = []
     for name in ('falling_boxes', 'stack', 'pile', 'cradle', 'sparse'):
         reports = [run(scene(name), '--isolation', isolation, '--workers', workers, '--measure', 'end', runs=1)
                    for isolation, workers in configurations]
         hashes = sorted({r['state_hash'] for r in reports})
-        text += row(name, f"{reports[0]['simulated_s']:g}", len(configurations), ' '.join(hashes), 'no' if hashes[1:] else 'yes')
-    return text
+        rows.append([name, f"{reports[0]['simulated_s']:g}", str(len(configurations)), ' '.join(hashes), 'no' if hashes[1:] else 'yes'])
+    return {'head': ['scene', 'duration, s', 'configurations', 'state after it', 'equal'], 'rows': rows}
 
 
 def counts():
     """How many simulators a machine bears."""
-    text = head('1 s of falling boxes', 'start-up, s', 'wall per step, ms', 'CPU per body and step, µs', 'memory, MB')
+    rows = []
     for what, words in (('1000 simulators, a pool of 2', ['-D', 'n=1000']),
                         ('1000, one per process', ['-D', 'n=1000', '--isolation', 'process', '--workers', 'objects']),
                         ('1000, one per thread', ['-D', 'n=1000', '--workers', 'objects']),
                         ('4000, one per thread', ['-D', 'n=4000', '--workers', 'objects']),
                         ('10000, a pool of 2', ['-D', 'n=10000'])):
         r = run(scene('falling_boxes'), '--duration', '1', '--measure', 'end', *words)
-        text += row(what, f"{r['startup_s']:.2f}", f"{1e3 * r['wall_s'] / r['steps']:.1f}",
-                    f"{r['body_step_cpu_us']:.2f}", f"{r['memory_bytes'] / 1e6:.0f}")
-    return text
+        rows.append([what, f"{r['startup_s']:.2f}", f"{1e3 * r['wall_s'] / r['steps']:.1f}",
+                     f"{r['body_step_cpu_us']:.2f}", f"{r['memory_bytes'] / 1e6:.0f}"])
+    return {'head': ['1 s of falling boxes', 'start-up, s', 'wall per step, ms', 'CPU per body and step, µs', 'memory, MB'], 'rows': rows}
 
 
 def shapes():
     """What a pile costs, by the shape of its bodies: each seed is another pile."""
-    text = head(f'200 bodies, 3 s, {SEEDS} seeds', 'CPU per body and step, µs', 'over boxes', 'deepest penetration, mm')
-    boxes = 0
+    rows, boxes = [], 0
     for what, words in (('boxes', ()), *((f'hulls of {n} points', ('-D', f'points={n}')) for n in (8, 12, 20)),
                         ('boxes of .5 m, upright: columns, not a heap', ('-D', 'upright=true'))):
-        reports = [run(os.path.join(BENCH, 'shapes.lua'), *words, '--workers', '1', '--seed', str(seed), runs=1)
+        reports = [run(str(BENCH / 'shapes.lua'), *words, '--workers', '1', '--seed', str(seed), runs=1)
                    for seed in range(1, SEEDS + 1)]
         cost = [r['body_step_cpu_us'] for r in reports]
         boxes = boxes or statistics.median(cost)
-        text += row(what, spread(cost, 3), f'{statistics.median(cost) / boxes:.2f}',
-                    spread([1e3 * r['worst_penetration_m'] for r in reports], 3))
-    return text
+        rows.append([what, spread(cost, 3), f'{statistics.median(cost) / boxes:.2f}',
+                     spread([1e3 * r['worst_penetration_m'] for r in reports], 3)])
+    return {'head': [f'200 bodies, 3 s, {SEEDS} seeds', 'CPU per body and step, µs', 'over boxes', 'deepest penetration, mm'], 'rows': rows}
 
 
 def capture():
     """Frames to PNG, four samples a pixel, drawn by whatever EGL finds."""
-    text = head('60 frames of 100 falling boxes to PNG', 'frames per second')
+    rows = []
     for size in ('640x480', '1280x720', '1920x1080'):
         with tempfile.TemporaryDirectory() as folder:
             r = run(scene('falling_boxes'), '--duration', '1', '--frames', folder, '--size', size, '--measure', 'end')
-        text += row(size, f"{r['frames'] / r['total_s']:.1f}")
-    return text
+        rows.append([size, f"{r['frames'] / r['total_s']:.1f}"])
+    return {'head': ['60 frames of 100 falling boxes to PNG', 'frames per second'], 'rows': rows}
 
 
-TABLES = {f.__name__: f for f in (machine, summary, compare, varied, error_falling, error_stack, bits, counts, shapes, capture)}
+EXPERIMENTS = (machine, growth, price, compare, varied, error_falling, error_stack, bits, counts, shapes, capture)
 
 
-def refresh(path):
-    with open(path, encoding='utf-8') as f:
-        text = f.read()
-    text = re.sub(r'(<!-- figures: (\w+) -->\n).*?(<!-- end -->)',
-                  lambda m: m.group(1) + '\n' + TABLES[m.group(2)]() + '\n' + m.group(3), text, flags=re.S)
-    with open(path, 'w', encoding='utf-8') as f:
-        f.write(text)
+# -- Rendering: everything below computes from the file alone.
+
+def table(data):
+    rows = [data['head'], ['---'] + ['--:'] * (len(data['head']) - 1), *data['rows']]
+    return ''.join('| ' + ' | '.join(row) + ' |\n' for row in rows)
 
 
-if len(sys.argv) < 2:
-    sys.exit(__doc__)
-OBSIM = os.path.abspath(sys.argv[1])
-for file in sys.argv[2:]:
-    refresh(file)
-if len(sys.argv) == 2:
-    for table in TABLES.values():
-        print(table())
+def origin(data):
+    m = data['machine']
+    return f"Measured on {m['cores']} cores ({m['model']}), commit {m['commit']}.\n"
+
+
+def at(curve, n, key):
+    return next(p[key] for p in curve if p['n'] == n)
+
+
+def reach(curve):
+    """The number of objects at which a simulated second takes a second, rounded to one digit; '10,000 or more' at the end."""
+    logs = [(math.log(p['n']), math.log(p['wall'])) for p in curve]
+    for (n0, w0), (n1, w1) in zip(logs, logs[1:]):
+        if w0 < 0 <= w1:
+            n = math.exp(n0 + (n1 - n0) * -w0 / (w1 - w0))
+            digit = 10 ** math.floor(math.log10(n))
+            return f'about {int(round(n / digit) * digit):,}'
+    return f"{curve[-1]['n']:,} or more" if logs[-1][1] < 0 else f"fewer than {curve[0]['n']:,}"
+
+
+def middle(point, key):
+    return statistics.median(point[key])
+
+
+def number(x):
+    return f'{x:.2g}' if x < 100 else f'{x:.0f}'
+
+
+def crossing(one, many):
+    """The deepest penetration (mm) below which many are cheaper than one: both curves are straight in logarithms."""
+    def cost(curve, depth):
+        points = sorted((math.log(middle(p, 'depth_mm')), math.log(middle(p, 'cpu_us'))) for p in curve)
+        for (d0, c0), (d1, c1) in zip(points, points[1:]):
+            if d0 <= depth <= d1:
+                return c0 + (c1 - c0) * (depth - d0) / (d1 - d0)
+        return points[0][1] if depth < points[0][0] else points[-1][1]  # constant beyond the ends
+    deep = math.log(max(middle(p, 'depth_mm') for p in one))
+    steps = [deep - .01 * i for i in range(2000)]
+    return next((math.exp(d) for d in steps if cost(many, d) < cost(one, d)), 0)
+
+
+def verdict(data):
+    """When a simulator per object is worth it, in sentences that follow from the figures."""
+    grown, priced = data['growth'], data['price']
+    pool, each, world = grown['threads'], grown['a process per object'], grown['one ODE world']
+    same = all(len({at(grown[c], p['n'], 'hash') for c in ('threads', 'processes')}) == 1 for p in pool)
+    ratio = sorted(at(grown['processes'], p['n'], 'cpu_us') / p['cpu_us'] for p in pool if p['n'] >= 100)
+    usual = priced['one ODE world'][0]
+    default = next(p for p in priced['threads'] if p['setting'] == '1 mm')
+    return '\n'.join([
+        f"- **Threads or processes?** {'Both end in the same bits.' if same else 'Their results differ.'} A pool of processes"
+        f" takes {ratio[0]:.2f} to {ratio[-1]:.2f} times the CPU of a pool of threads.",
+        f"- **A process per object?** It takes {at(each, 100, 'cpu_us') / at(pool, 100, 'cpu_us'):.1f} times the CPU of the pool"
+        f" with 100 objects, {at(each, 1000, 'cpu_us') / at(pool, 1000, 'cpu_us'):.1f} times with 1,000.",
+        f"- **One world or many?** At 60 Hz one ODE world takes {100 * middle(usual, 'cpu_us') / middle(default, 'cpu_us'):.0f} %"
+        f" of the simulators' CPU, and boxes sink {number(middle(usual, 'depth_mm'))} mm into each other in place of"
+        f" {number(middle(default, 'depth_mm'))}. Where they may sink less than {number(crossing(priced['one ODE world'], priced['threads']))} mm,"
+        f" the simulators are cheaper.",
+        f"- **How many in real time?** On {data['machine']['cores']} cores: {reach(pool)} in a pool, {reach(each)} with a process"
+        f" each, {reach(world)} in one world (while boxes land; at rest they cost simulators nothing).",
+    ]) + '\n'
+
+
+TITLES = {'growth': 'CPU of a simulated second, by the number of objects', 'price': 'CPU of a simulated second, by the error'}
+
+
+def label(name, point):
+    """Settings stand beside one of two curves that coincide."""
+    return '' if name == 'processes' else ' ' + point['setting']
+
+
+def diagrams(data):
+    """{file: description for draw_plot}"""
+    where = f"falling boxes, 3 s while they land; {data['machine']['cores']} cores, commit {data['machine']['commit'][:7]}"
+    styles = {'one ODE world': 0, 'threads': 2, 'processes': 5, 'a process per object': 7}
+    head = 'title {}\nsubtitle {}\nx log {}\ny log CPU per body and simulated second (µs)\n'
+    usual, default = data['price']['one ODE world'][0], next(p for p in data['price']['threads'] if p['setting'] == '1 mm')
+    depth = f"deepest penetration {number(middle(default, 'depth_mm'))} mm, in one world {number(middle(usual, 'depth_mm'))} mm"
+    growth_text = head.format(TITLES['growth'], f"{where}; medians of {data['machine']['runs']}; {depth}", 'objects')
+    for name, curve in data['growth'].items():
+        growth_text += f'series {styles[name]} {name}\n'
+        growth_text += ''.join(f"point {p['n']} {p['cpu_us']:.6g} {p['low']:.6g} {p['high']:.6g}\n" for p in curve)
+    price_text = head.format(TITLES['price'], '100 ' + where + f"; medians of {data['machine']['seeds']} seeds", 'deepest penetration (mm)')
+    for name, curve in data['price'].items():
+        price_text += f'series {styles[name]} {name}\n'
+        price_text += ''.join(f"point {middle(p, 'depth_mm'):.6g} {middle(p, 'cpu_us'):.6g} 0 0{label(name, p)}\n" for p in curve)
+    return {'docs/images/cost-objects.svg': growth_text, 'docs/images/cost-error.svg': price_text}
+
+
+def blocks(data):
+    found = {name: table(data[name]) for name in ('error_falling', 'error_stack', 'bits', 'counts', 'shapes', 'capture')}
+    found |= {name: '```\n' + data[name]['text'] + '```\n' for name in ('compare', 'varied')}
+    return found | {'machine': origin(data), 'verdict': verdict(data)}
+
+
+def rendered(text, made):
+    return re.sub(r'(<!-- figures: (\w+) -->\n).*?(<!-- end -->)',
+                  lambda m: m.group(1) + '\n' + made[m.group(2)] + '\n' + m.group(3), text, flags=re.S)
+
+
+def draw(program, description):
+    return subprocess.run([program], input=description, capture_output=True, text=True, check=True).stdout
+
+
+def wanted(program):
+    """(path, its text by the data) of all documents and diagrams."""
+    data = json.loads(DATA.read_text(encoding='utf-8'))
+    made = blocks(data)
+    for path in DOCUMENTS:
+        yield path, rendered(path.read_text(encoding='utf-8'), made)
+    for name, description in diagrams(data).items():
+        yield ROOT / name, draw(program, description)
+
+
+def main():
+    global OBSIM
+    words = sys.argv[1:]
+    program = None
+    if '--draw' in words:
+        i = words.index('--draw')
+        program = words[i + 1]
+        del words[i:i + 2]
+    if len(words) == 2 and words[0] == 'measure':
+        OBSIM = os.path.abspath(words[1])
+        data = {e.__name__: e() for e in EXPERIMENTS}
+        DATA.write_text(json.dumps(data, indent=1, ensure_ascii=False) + '\n', encoding='utf-8')
+        return 0
+    program = program or next((str(p) for p in sorted(ROOT.glob('build*/tools/draw_plot'))), None)
+    if words not in (['write'], ['check']) or not program:
+        sys.exit(__doc__)
+    wrong = 0
+    for path, text in wanted(program):
+        if words == ['write']:
+            path.write_text(text, encoding='utf-8')
+        elif not path.exists() or path.read_text(encoding='utf-8') != text:
+            print(f'{path.relative_to(ROOT)} differs from {DATA.relative_to(ROOT)}: python3 bench/figures.py write')
+            wrong = 1
+    return wrong
+
+
+if __name__ == '__main__':
+    sys.exit(main())
