@@ -220,7 +220,7 @@ void ob_checkpoint_seal(ob_checkpoint_file *f)
 bool ob_checkpoint_write(const ob_checkpoint_file *f, const char *path, ob_error *e)
 {
 	char real[PATH_MAX], part[PATH_MAX + 8];
-	if (!realpath(path, real)) // what is behind a link is replaced, not the link
+	if (!realpath(path, real)) // replaces the file behind a link, not the link
 		snprintf(real, sizeof real, "%s", path);
 	snprintf(part, sizeof part, "%s.part", real);
 	int fd = open_part(part, e);

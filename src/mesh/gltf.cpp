@@ -27,7 +27,7 @@ enum { DEPTH_MAX = 32, STRIDE_MAX = 65536 };
 // both.
 enum { WORK_MAX = 4 * 3 * OB_MESH_TRIANGLES_MAX, WORK_OF_PART = 16 };
 
-// What is wrong with a file, on its way out of here.
+// Error text of a damaged file, thrown.
 struct fault {
 	std::string text;
 };

@@ -1,4 +1,4 @@
-// What cairo paints, as the program sees it: loads the part that calls it.
+// PNG and captions as the program sees them: loads the part that calls cairo.
 #include <math.h>
 
 #include "plot/caption.h"

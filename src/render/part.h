@@ -13,7 +13,7 @@ typedef struct ob_render_part {
 		     uint8_t *rgba, ob_error *e);
 } ob_render_part;
 
-// How each renderer begins.
+// First member of each renderer.
 typedef struct ob_renderer_base {
 	const ob_render_part *part;
 } ob_renderer_base;

@@ -1,6 +1,6 @@
 // Frames: draws snapshots off-screen through EGL. Reads, never writes, the universe.
-// One renderer belongs to one thread. What draws is a part that create loads; where it or EGL is missing, create fails
-// with one line.
+// One renderer belongs to one thread. ob_renderer_create loads the part that draws, and fails with one line if the
+// part or EGL is missing.
 #ifndef OB_RENDER_RENDER_H
 #define OB_RENDER_RENDER_H
 

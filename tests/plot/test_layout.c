@@ -1,4 +1,4 @@
-// What holds for every diagram, however awkward: no text covers another, nothing is cut, every number is finite.
+// Properties of every diagram, however awkward: no text covers another, nothing is cut, every number is finite.
 #include <string.h>
 
 #include "../check.h"
