@@ -26,6 +26,7 @@ enum { DEPTH_MAX = 32, STRIDE_MAX = 65536 };
 // What reading a file may cost, in corners of triangles and so many for each part: nodes that share a mesh multiply
 // both.
 enum { WORK_MAX = 4 * 3 * OB_MESH_TRIANGLES_MAX, WORK_OF_PART = 16 };
+enum { JSON_OBJECTS_MAX = 65536 }; // each becomes up to 3.5 kB
 
 // Error text of a damaged file, thrown.
 struct fault {
@@ -39,11 +40,12 @@ struct fault {
 
 // ---- before tinygltf reads it
 
-// It goes as deep as brackets do, and copies all bytes for each buffer: both are counted here.
+// Counts brackets and buffers: tinygltf goes as deep as brackets do, makes a large structure of each, and copies all
+// bytes for each buffer.
 void look_through(const char *json, size_t size)
 {
 	std::string text, key;
-	size_t depth = 0, buffers = 0;
+	size_t depth = 0, buffers = 0, objects = 0;
 	for (size_t i = 0; i < size; i++) {
 		const char c = json[i];
 		if (c == '"') {
@@ -60,6 +62,8 @@ void look_through(const char *json, size_t size)
 		} else if (c == '{' || c == '[') {
 			if (++depth > DEPTH_MAX)
 				fail("its JSON is nested too deeply");
+			if (++objects > JSON_OBJECTS_MAX)
+				fail("its JSON has more than " + std::to_string(JSON_OBJECTS_MAX) + " objects and lists");
 			buffers += depth == 3 && c == '{' && key == "buffers";
 		} else if ((c == '}' || c == ']') && depth > 0) {
 			depth--;
@@ -268,7 +272,7 @@ struct release {
 };
 
 struct picture {
-	int image; // of the file
+	size_t at, bytes; // in the file's buffer
 	bool surface; // green and blue are numbers
 	uint32_t width, height;
 	std::unique_ptr<uint8_t, release> rgba;
@@ -285,7 +289,8 @@ struct builder {
 	std::vector<picture> pictures;
 	std::vector<uint32_t> known,
 		known_in; // by the number in the primitive: that in vertex, and of which round it is
-	size_t indices = 0, pixels = 0; // of all groups, of all pictures
+	size_t indices = 0; // of all groups
+	size_t pixels = 0, picture_bytes = 0; // of all pictures, packed
 	uint32_t round = 0;
 	size_t work = 0;
 };
@@ -365,25 +370,31 @@ float share(double x)
 	return static_cast<float>(fmin(fmax(x, 0), 1)); // of NaN: 0
 }
 
-// 1 + the number of the picture that a texture shows, which is read where it is new.
+// Returns 1 + the number of the picture that a texture shows, and reads it where it is new. Images of the same bytes are
+// one picture. No byte is unpacked more often than it can be used: as a colour, and as a surface.
 uint8_t picture_of(builder &b, const tinygltf::Model &model, int index, bool surface)
 {
 	const tinygltf::Image &image = at(model.images, index, "picture");
 	ob_mesh_image read;
 	ob_error e;
-	for (size_t i = 0; i < b.pictures.size(); i++)
-		if (b.pictures[i].image == index && b.pictures[i].surface == surface)
-			return static_cast<uint8_t>(i + 1);
-	if (b.pictures.size() == OB_MESH_IMAGES_MAX)
-		fail("it has more than " + std::to_string(OB_MESH_IMAGES_MAX) + " pictures");
 	if (image.bufferView < 0)
 		fail("a picture of it lies in another file: expected all in one");
 	const tinygltf::BufferView &view = at(model.bufferViews, image.bufferView, "buffer view");
 	const std::vector<unsigned char> &data = buffer_of(model, view, "pictures");
+	for (size_t i = 0; i < b.pictures.size(); i++) {
+		const picture &p = b.pictures[i];
+		if (p.at == view.byteOffset && p.bytes == view.byteLength && p.surface == surface)
+			return static_cast<uint8_t>(i + 1);
+	}
+	if (b.pictures.size() == OB_MESH_IMAGES_MAX)
+		fail("it has more than " + std::to_string(OB_MESH_IMAGES_MAX) + " pictures");
+	b.picture_bytes += view.byteLength;
+	if (b.picture_bytes > 2 * data.size())
+		fail("its pictures overlap in the file");
 	b.pictures.reserve(b.pictures.size() + 1); // so that what is read is owned at once
 	if (!ob_image_read(&read, data.data() + view.byteOffset, view.byteLength, OB_MESH_PIXELS_MAX - b.pixels, &e))
 		fail(e.text);
-	b.pictures.push_back({ index, surface, read.width, read.height, std::unique_ptr<uint8_t, release>(read.rgba) });
+	b.pictures.push_back({ view.byteOffset, view.byteLength, surface, read.width, read.height, std::unique_ptr<uint8_t, release>(read.rgba) });
 	b.pixels += static_cast<size_t>(read.width) * read.height;
 	return static_cast<uint8_t>(b.pictures.size());
 }

@@ -75,6 +75,9 @@ static bool decode_png(png_source *s, ob_mesh_image *out, size_t most)
 		return false;
 	png_set_read_fn(s->png, s, take_bytes);
 	png_set_user_limits(s->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); // make_room says it in our words
+	// Passes over all chunks but those of pixels, palette and transparency: texts and profiles are packed, and each may
+	// become a thousand times as large.
+	png_set_keep_unknown_chunks(s->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
 	png_read_info(s->png, s->info);
 	const png_uint_32 height = png_get_image_height(s->png, s->info);
 	if (!make_room(out, png_get_image_width(s->png, s->info), height, most, s->e))

@@ -5,6 +5,8 @@
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 
+enum { MESH_INSTRUCTIONS = 10000, MESH_BYTES = 64 }; // what reading one counts as, and so many bytes of it as one more
+
 static size_t bytes_of_all(const ob_scene *s)
 {
 	size_t bytes = 0;
@@ -41,6 +43,7 @@ uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob
 		ob_sandbox_fail(L, "%s.mesh: cannot read %s: %s", where, path, e.text);
 	m->key = key;
 	s->meshes++; // from here on it is freed with the scene
+	ob_sandbox_spend(L, MESH_INSTRUCTIONS + (unsigned)(ob_mesh_bytes(m) / MESH_BYTES));
 	if (!ob_mesh_place(m, source->scale, source->pose, &e))
 		ob_sandbox_fail(L, "%s.mesh: cannot place %s: %s", where, path, e.text);
 	if (bytes_of_all(s) > OB_SCENE_MESH_BYTES)

@@ -15,7 +15,7 @@
 #include "base/random.h"
 #include "mesh/mesh.h"
 
-enum { SEEDS_MAX = 8, BYTES_MAX = 1 << 20, CHANGES = 5 };
+enum { SEEDS_MAX = 12, BYTES_MAX = 1 << 20, CHANGES = 5 };
 
 // Put in place of numbers, and anywhere else
 static const char *const words[] = {
@@ -79,11 +79,14 @@ static uint32_t below(uint32_t n)
 static void read_seeds(const char *folder)
 {
 	const glb_cube_buffer cube = glb_cube_of(1);
-	const picture png = grey_png(), jpeg = orange_jpeg();
+	const picture png = grey_png(), jpeg = orange_jpeg(), wordy = wordy_png();
 	static const char both[] = "\"baseColorTexture\":{\"index\":0},\"metallicRoughnessTexture\":{\"index\":0}";
 	seed[seeds++] = glb_make(GLB_CUBE, &cube, sizeof cube);
 	seed[seeds++] = textured_cube(&png, both, TEXTURES);
 	seed[seeds++] = textured_cube(&jpeg, both, TEXTURES);
+	seed[seeds++] = textured_cube(&wordy, both, TEXTURES);
+	seed[seeds++] = sharing_cube(&png, 3, 0);
+	seed[seeds++] = sharing_cube(&jpeg, 3, 1);
 	DIR *d = opendir(folder);
 	for (struct dirent *entry; d && (entry = readdir(d)) && seeds < SEEDS_MAX;) {
 		char path[1024];

@@ -2,10 +2,12 @@
 #ifndef OB_TESTS_MESH_PICTURES_H
 #define OB_TESTS_MESH_PICTURES_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include <jpeglib.h>
 #include <png.h>
+#include <zlib.h>
 
 #include "check.h"
 #include "glb.h"
@@ -38,6 +40,37 @@ static inline picture grey_png(void)
 	for (int i = 0; i < WIDTH * HEIGHT; i++)
 		pixel[i / WIDTH][i % WIDTH] = shade(i % WIDTH, i / WIDTH);
 	CHECK(png_image_write_to_memory(&image, p.bytes, &p.size, 0, pixel, 0, NULL));
+	return p;
+}
+
+static inline void put_png_chunk(picture *p, size_t at, const char *kind, const void *bytes, size_t size)
+{
+	if (p->size + size + 12 > sizeof p->bytes)
+		return;
+	memmove(p->bytes + at + size + 12, p->bytes + at, p->size - at);
+	put_big_endian(p->bytes + at, (uint32_t)size);
+	memcpy(p->bytes + at + 4, kind, 4);
+	memcpy(p->bytes + at + 8, bytes, size);
+	put_big_endian(p->bytes + at + 8 + size, (uint32_t)crc32(0, p->bytes + at + 4, (uInt)size + 4));
+	p->size += size + 12;
+}
+
+// The grey one with chunks that are no pixels, as many as there is room for: texts and profiles that would become 8 MB
+// each, and chunks that nobody knows.
+static inline picture wordy_png(void)
+{
+	enum { AFTER_HEAD = 33, UNPACKED = 7900000, CHUNKS = 7 };
+	static const char *const kinds[] = { "zTXt", "zTXt", "zTXt", "iTXt", "iCCP", "zTXt", "teSt" };
+	picture p = grey_png();
+	unsigned char *zeros = calloc(UNPACKED, 1), packed[PICTURE_MAX / CHUNKS] = "k\0\0";
+	for (int i = 0; zeros && i < CHUNKS; i++) {
+		const bool international = strcmp(kinds[i], "iTXt") == 0;
+		memcpy(packed, international ? "k\0\1\0\0\0" : "k\0\0", international ? 6 : 3);
+		uLongf size = sizeof packed - 6;
+		CHECK(compress2(packed + (international ? 6 : 3), &size, zeros, UNPACKED, 9) == Z_OK);
+		put_png_chunk(&p, AFTER_HEAD, kinds[i], packed, size + (international ? 6 : 3));
+	}
+	free(zeros);
 	return p;
 }
 
@@ -74,6 +107,41 @@ static inline picture orange_jpeg(void)
 }
 
 #define TEXTURES "\"textures\":[{\"source\":0,\"sampler\":0}],\"samplers\":[{\"wrapS\":33071,\"wrapT\":33648}],"
+
+// A file of a cube with so many images, a material and a primitive each, that begin at the same byte of the file; each is
+// so many bytes longer than the one before.
+static inline glb sharing_cube(const picture *p, int images, size_t longer)
+{
+	struct {
+		glb_cube_buffer cube;
+		unsigned char picture[2 * PICTURE_MAX];
+	} b = { .cube = glb_cube_of(1) };
+	enum { ROOM = 1 << 16 };
+	char *text = malloc(ROOM);
+	int n = 0;
+	const size_t size = sizeof b.cube + p->size + (size_t)images * longer;
+	memcpy(b.picture, p->bytes, p->size);
+#define EACH(...) \
+	for (int i = 0; i < images; i++) \
+		n += snprintf(text + n, (size_t)(ROOM - n), __VA_ARGS__)
+	n += snprintf(text, ROOM, "{\"nodes\":[{\"mesh\":0}],\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[");
+	EACH("%s{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":%d}", i ? "," : "", i);
+	n += snprintf(text + n, (size_t)(ROOM - n), "]}],\"materials\":[");
+	EACH("%s{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":%d}}}", i ? "," : "", i);
+	n += snprintf(text + n, (size_t)(ROOM - n), "],\"textures\":[");
+	EACH("%s{\"source\":%d}", i ? "," : "", i);
+	n += snprintf(text + n, (size_t)(ROOM - n), "],\"images\":[");
+	EACH("%s{\"bufferView\":%d,\"mimeType\":\"image/png\"}", i ? "," : "", 2 + i);
+	n += snprintf(text + n, (size_t)(ROOM - n), "],\"bufferViews\":[{\"buffer\":0,\"byteLength\":96},{\"buffer\":0,\"byteOffset\":96,\"byteLength\":72}");
+	EACH(",{\"buffer\":0,\"byteOffset\":168,\"byteLength\":%zu}", p->size + (size_t)i * longer);
+#undef EACH
+	snprintf(text + n, (size_t)(ROOM - n),
+		 "],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":8,\"type\":\"VEC3\"},{\"bufferView\":1,"
+		 "\"componentType\":5123,\"count\":36,\"type\":\"SCALAR\"}],\"buffers\":[{\"byteLength\":%zu}]}", size);
+	glb g = glb_make(text, &b, size);
+	free(text);
+	return g;
+}
 
 // A file of a cube with coordinates of a texture (here 0, 1, 2 .. and .25) and one picture; more: of the JSON, before
 // what all have in common. values: of the material's.

@@ -299,6 +299,36 @@ static void pictures_that_are_none_are_refused(void)
 		"neither PNG nor JPEG");
 }
 
+// A thousand times, for which there would be no time if the rest were read, too.
+static void nothing_but_pixels_is_read(void)
+{
+	const picture png = wordy_png();
+	CHECK(png.size > PICTURE_MAX / 2);
+	for (int i = 0; i < 1000; i++) {
+		ob_mesh m = read_textured(&png, "\"baseColorTexture\":{\"index\":0}", TEXTURES);
+		CHECK(m.images == 1 && m.image[0].width == WIDTH && m.image[0].rgba[4] == shade(1, 0));
+		ob_mesh_finish(&m);
+	}
+}
+
+static void bytes_are_a_picture_once(void)
+{
+	const picture png = grey_png();
+	ob_error e = { "" };
+	ob_mesh m;
+	glb g = sharing_cube(&png, 200, 0);
+	CHECK(ob_mesh_read(&m, g.bytes, g.size, &e) && m.images == 1 && m.parts == 1 && m.indices == 200 * 36);
+	ob_mesh_finish(&m);
+	free(g.bytes);
+	g = sharing_cube(&png, 2, 1);
+	CHECK(ob_mesh_read(&m, g.bytes, g.size, &e) && m.images == 2 && m.parts == 2);
+	ob_mesh_finish(&m);
+	free(g.bytes);
+	g = sharing_cube(&png, 200, 1);
+	CHECK(!ob_mesh_read(&m, g.bytes, g.size, &e) && strstr(e.text, "its pictures overlap in the file"));
+	free(g.bytes);
+}
+
 static void strips_fans_and_both_sides(void)
 {
 	// One face of the cube, as a strip, as a fan, and as what is seen from both sides; in our frame it lies at y =
@@ -391,7 +421,7 @@ static void what_is_no_mesh_is_refused(void)
 static void what_would_be_large_is_refused(void)
 {
 	const glb_cube_buffer cube = glb_cube_of(1);
-	enum { DEEP = 200000, NODES = 16000 };
+	enum { DEEP = 200000, NODES = 16000, OBJECTS = 66000 };
 	char *text = malloc(OB_MESH_JSON_MAX + 100);
 	int n = sprintf(text, "{\"extras\":");
 	memset(text + n, '[', DEEP);
@@ -405,6 +435,11 @@ static void what_would_be_large_is_refused(void)
 		n += sprintf(text + n, "%s{\"mesh\":0}", i ? "," : "");
 	sprintf(text + n, "]}");
 	refuse(text, &cube, sizeof cube, "more than 500000 vertices");
+	n = sprintf(text, "{" ONE_MESH GLB_CUBE_REST ",\"materials\":[{}");
+	for (int i = 0; i < OBJECTS; i++)
+		n += sprintf(text + n, ",{}");
+	sprintf(text + n, "]}");
+	refuse(text, &cube, sizeof cube, "more than 65536 objects and lists");
 	free(text);
 }
 
@@ -417,6 +452,8 @@ int main(void)
 	pictures_lie_on_it();
 	what_is_no_mesh_is_refused();
 	pictures_that_are_none_are_refused();
+	nothing_but_pixels_is_read();
+	bytes_are_a_picture_once();
 	what_would_be_large_is_refused();
 	return check_end();
 }
