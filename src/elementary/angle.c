@@ -1,4 +1,5 @@
-// sin, cos, tan: the angle less its multiple of pi / 2, as two doubles; then a polynomial on [-pi / 4, pi / 4].
+// sin, cos, tan: subtracts the nearest multiple of pi / 2 in two doubles, then evaluates a polynomial on [-pi / 4, pi /
+// 4].
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -11,7 +12,7 @@ typedef double wide __attribute__((vector_size(16)));
 
 static const double QUARTER = 0x1.921fb54442d18p-1; // pi / 4
 
-// The bits of 2 / pi, behind a word of zeros. The last of a double's is 2^-52 of 2^1023: 192 bits from there on.
+// Bits of 2 / pi, behind a word of zeros. The last bit of a double is 2^-52 of 2^1023: 192 bits from there on.
 static const uint64_t TWO_OVER_PI[] = {
 	0,
 	0xa2f9836e4e441529,
@@ -35,14 +36,14 @@ static const uint64_t TWO_OVER_PI[] = {
 	0x56033046fc7b6bab,
 };
 
-// 64 bits from this one on (0: the first)
+// Returns 64 bits from number `first` on (0: the first).
 static uint64_t bits_at(int first)
 {
 	const int word = first / 64, shift = first % 64;
 	return shift ? TWO_OVER_PI[word] << shift | TWO_OVER_PI[word + 1] >> (64 - shift) : TWO_OVER_PI[word];
 }
 
-// A fraction of 128 bits, f / 2^128, times pi / 2
+// Multiplies a fraction of 128 bits, f / 2^128, by pi / 2.
 static ob_double2 turned(unsigned __int128 f)
 {
 	int zeros = 0;
@@ -53,8 +54,9 @@ static ob_double2 turned(unsigned __int128 f)
 				(ob_double2){ 0x1.921fb54442d18p0, 0x1.1a62633145c07p-54 });
 }
 
-// x = m 2^e, times those 192 bits of 2 / pi that do not make multiples of four quarters and can still be seen (Payne
-// and Hanek 1983). Of the product's lowest 192 bits the first two are the quarters, the others the fraction of one.
+// Multiplies x = m 2^e by 192 bits of 2 / pi (Payne and Hanek 1983). Higher bits make multiples of four quarters; lower
+// ones are too small to matter. In the lowest 192 bits of the product, the first two are the quarters, the others the
+// fraction of one.
 static unsigned reduce_large(double x, ob_double2 *r)
 {
 	int e;
@@ -66,7 +68,7 @@ static unsigned reduce_large(double x, ob_double2 *r)
 	unsigned quarters = (unsigned)(top >> 62);
 	unsigned __int128 fraction = (unsigned __int128)(top << 2 | (uint64_t)middle >> 62) << 64 |
 				     ((uint64_t)middle << 2 | (uint64_t)low >> 62);
-	const bool more = fraction >> 127; // than half a quarter: as far below the next
+	const bool more = fraction >> 127; // than half a quarter: use the distance to the next one
 	if (more) {
 		fraction = -fraction;
 		quarters++;
@@ -77,7 +79,7 @@ static unsigned reduce_large(double x, ob_double2 *r)
 	return x < 0 ? -quarters : quarters;
 }
 
-// x less the nearest multiple of pi / 2, and that multiple, modulo 4. x finite.
+// Subtracts the nearest multiple of pi / 2 from x, and returns that multiple modulo 4. x is finite.
 static unsigned reduce(double x, ob_double2 *r)
 {
 	*r = (ob_double2){ x, 0 };
@@ -92,7 +94,7 @@ static unsigned reduce(double x, ob_double2 *r)
 	return (unsigned)(int)n;
 }
 
-// |r| <= pi / 4, to a quarter of a unit in the last place
+// |r| <= pi / 4; accurate to a quarter of a unit in the last place
 static inline ob_double2 sine_of(ob_double2 r)
 {
 	const double z = r.h * r.h;
@@ -182,7 +184,7 @@ double ob_tan(double x)
 	const unsigned quarters = reduce(x, &r);
 	const ob_double2 s = sine_of(r), c = cosine_of(r), above = quarters & 1 ? c : s, below = quarters & 1 ? s : c;
 	if (above.h == 0 || fabs(above.h) < 0x1p-500)
-		return above.h; // x is 0, or so small that it is its tangent
+		return above.h; // x is 0, or so small that it equals its tangent
 	const double q = above.h / below.h;
 	const ob_double2 back = ob_double2_product(q, below.h);
 	const double t = q + ((above.h - back.h) - back.l + above.l - q * below.l) / below.h;

@@ -1,4 +1,4 @@
-// atan2, asin, acos: the angle of a point less that of the nearest of 16 directions, by a short polynomial.
+// atan2, asin, acos: subtracts the angle of the nearest of 16 directions, then evaluates a short polynomial.
 #include <math.h>
 #include <stdbool.h>
 
@@ -24,17 +24,18 @@ static ob_double2 angle_below(ob_double2 a, ob_double2 b)
 	const double p = -0x1.5555555555555p-2 +
 			 z * (0x1.99999999982edp-3 +
 			      z * (-0x1.24924913dea21p-3 + z * (0x1.c71bc387bcap-4 - z * 0x1.72cba59826084p-4)));
-	const ob_double2 s = ob_double2_quick_sum(DIRECTION[k].h, u); // |u| <= 1 / 32, and k is 0 or DIRECTION larger
+	// |u| <= 1 / 32, and k is 0 or DIRECTION is larger
+	const ob_double2 s = ob_double2_quick_sum(DIRECTION[k].h, u);
 	return ob_double2_quick_sum(s.h, s.l + (DIRECTION[k].l + (u * z * p + rest * (1 - z))));
 }
 
 static ob_double2 less(ob_double2 a, ob_double2 b)
 {
-	const ob_double2 s = ob_double2_quick_sum(a.h, -b.h); // a is larger wherever this is called
+	const ob_double2 s = ob_double2_quick_sum(a.h, -b.h); // a is larger in all calls
 	return ob_double2_quick_sum(s.h, s.l + (a.l - b.l));
 }
 
-// The angle of the point (x, y), x of any sign, y >= 0, in [0, pi]
+// Angle of the point (x, y) in [0, pi]; x of any sign, y >= 0.
 static double angle_of(ob_double2 y, ob_double2 x)
 {
 	const bool left = x.h < 0;
@@ -47,14 +48,15 @@ static double angle_of(ob_double2 y, ob_double2 x)
 	return angle.h;
 }
 
-// The same of doubles of any size, neither of them NaN or both zero
+// Same for doubles of any size, neither NaN, not both zero.
 static double angle_of_any(double y, double x)
 {
 	const double most = fabs(x) > y ? fabs(x) : y;
 	double least = fabs(x) > y ? y : fabs(x);
 	if (isinf(most))
 		return angle_of((ob_double2){ isinf(y), 0 }, (ob_double2){ copysign(isinf(x) != 0, x), 0 });
-	if (least < 0x1p-120 * most) { // an axis, to the last digit, or so near the first that the angle is its tangent
+	// an axis to the last digit, or so near the first that the angle equals its tangent
+	if (least < 0x1p-120 * most) {
 		if (y == least && x > 0)
 			return y / x;
 		return y == least ? HALF_TURN.h : QUARTER_TURN.h;

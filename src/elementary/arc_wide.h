@@ -1,6 +1,8 @@
-// The angles of several points side by side, by the operations of ob_atan2 in the same order: so each has the bits that
-// it has alone. Text for vectors of one width, of which whoever includes it has named the type, the type of a
-// comparison and the number: typedef double wide, typedef int64_t wide_mask, enum { WIDTH }.
+// Angles of several points side by side, by the operations of ob_atan2 in the same order: each lane has the bits of
+// ob_atan2.
+//
+// Text for vectors of one width. The including file first names the vector type, the type of a comparison, and the
+// width: typedef double wide, typedef int64_t wide_mask, enum { WIDTH }.
 #ifndef OB_ELEMENTARY_ARC_WIDE_H
 #define OB_ELEMENTARY_ARC_WIDE_H
 
@@ -66,7 +68,7 @@ static inline wide2 angle_below_wide(wide a, wide b)
 	return wide2_quick_sum(s.h, s.l + (l + (u * z * p + rest * (1 - z))));
 }
 
-// Of points (x, y) with both coordinates positive, neither of which is extreme, nor 2^-120 of the other.
+// Angles of points (x, y). Both coordinates are positive and not extreme; neither is below 2^-120 of the other.
 static inline wide angle_wide(wide y, wide x)
 {
 	const wide_mask steep = y > x;

@@ -1,4 +1,4 @@
-// The directions to which angles are compared (arc.c).
+// Directions that angles are compared with (arc.c).
 #ifndef OB_ELEMENTARY_DIRECTIONS_H
 #define OB_ELEMENTARY_DIRECTIONS_H
 

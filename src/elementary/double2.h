@@ -18,14 +18,14 @@ static inline ob_double2 ob_double2_sum(double a, double b)
 	return (ob_double2){ s, (a - (s - t)) + (b - t) };
 }
 
-// The same where |a| >= |b|, or a is 0
+// Same for |a| >= |b|, or a = 0.
 static inline ob_double2 ob_double2_quick_sum(double a, double b)
 {
 	const double s = a + b;
 	return (ob_double2){ s, b - (s - a) };
 }
 
-// The upper 26 bits
+// Upper 26 bits of a.
 static inline double ob_double2_upper(double a)
 {
 	const double t = 134217729 * a; // 2^27 + 1
@@ -46,7 +46,7 @@ static inline ob_double2 ob_double2_square(double a)
 	return (ob_double2){ p, ((h * h - p) + 2 * h * l) + l * l };
 }
 
-// a b, to 2^-102 of it
+// a b, to a relative 2^-102
 static inline ob_double2 ob_double2_times(ob_double2 a, ob_double2 b)
 {
 	const ob_double2 p = ob_double2_product(a.h, b.h);

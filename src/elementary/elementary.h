@@ -1,14 +1,16 @@
-// Elementary functions that give the same bits on every processor, with any C library and any compiler: they are made
-// of additions, multiplications, divisions and square roots alone, which IEEE 754 rounds exactly, in an order that
-// -ffp-contract=off keeps. A C library's own do not: glibc takes fused operations where the processor has them, and the
-// last bit is another one then. Whatever enters the state calls these; tests/elementary/ reads from the built modules
-// that it does. (sqrt, fma, floor, fmod, ldexp and the like are exact in every library.)
+// Elementary functions with the same bits on every processor, with any C library and any compiler. They consist of
+// additions, multiplications, divisions and square roots alone, which IEEE 754 rounds exactly; -ffp-contract=off keeps
+// their order. A C library's own functions differ: glibc uses fused operations if the processor has them, which changes
+// the last bit. All code that computes state calls these; tests/elementary/ checks the built modules for it. (sqrt,
+// fma, floor, fmod, ldexp and the like are exact in every library.)
 //
-// Errors are those of the result before it is rounded to a double, plus that: below .51 units in the last place for
-// exp, log, log2, log10, pow, atan2, asin and acos, below .8 for sin and cos, 1.1 for tan and expm1, 2.5 for
-// sinh, cosh and tanh, over all of the range (tests/elementary/test_accuracy.c compares with MPFR), in the default
-// rounding mode. What is not finite, zeros and their signs are as annex F of C17 has them; floating-point exceptions
-// and errno are not.
+// Errors are bounded in units in the last place, over the whole range, in the default rounding mode.
+// exp, log, log2, log10, pow, atan2, asin and acos: below .51.
+// sin and cos: below .8.
+// tan and expm1: below 1.1.
+// sinh, cosh and tanh: below 2.5.
+// tests/elementary/test_accuracy.c compares with MPFR. Infinities, NaN, zeros and their signs follow annex F of C17;
+// floating-point exceptions and errno do not.
 //
 // Sources: Muller, "Elementary Functions" (3rd ed., 2016); Cody and Waite, "Software Manual for the Elementary
 // Functions" (1980), for reductions in parts; Payne and Hanek, SIGNUM Newsletter 18 (1983), for large angles; Tang, ACM
@@ -23,9 +25,9 @@
 double ob_sin(double x);
 double ob_cos(double x);
 double ob_tan(double x);
-// The bits of ob_sin and ob_cos, for one reduction
+// Sine and cosine by one reduction, with the bits of ob_sin and ob_cos.
 void ob_sincos(double x, double *sine, double *cosine);
-// The same of two angles, which takes little longer than of one
+// Same for two angles; takes little longer than for one.
 void ob_sincos_of_two(const double x[2], double sine[2], double cosine[2]);
 
 double ob_asin(double x);

@@ -1,4 +1,4 @@
-// exp, log and what is made of them: a table for the first bits, a short polynomial for the others, in pairs of
+// exp, log and functions made of them: a table for the first bits, a short polynomial for the rest, in pairs of
 // doubles.
 #include <math.h>
 #include <stdbool.h>
@@ -44,8 +44,8 @@ static const ob_double2 POWER[32] = {
 	{ 0x1.f50765b6e454p0, 0x1.9d3e12dd8a18bp-54 },
 };
 
-// By intervals of [2^-.5, 2^.5): the reciprocal c of about their middle, in 9 bits, and -log(c), the first part a
-// multiple of 2^-42.
+// Intervals of [2^-.5, 2^.5): the reciprocal c of about the middle, in 9 bits, and -log(c). The first part of -log(c)
+// is a multiple of 2^-42.
 static const struct {
 	double c, h, l;
 } INTERVAL[64] = {
@@ -114,7 +114,7 @@ static const struct {
 	{ 0x1.7p-1, 0x1.522ae0738ap-2, 0x1.ebe708164c759p-45 },
 	{ 0x1.6cp-1, 0x1.5d5bddf596p-2, -0x1.a0b2a08a465dcp-47 },
 };
-static const uint64_t FIRST = UINT64_C(0x3fe6a00000000000); // the bits of where the first begins, 181 / 256
+static const uint64_t FIRST = UINT64_C(0x3fe6a00000000000); // bits of the start of the first interval, 181 / 256
 
 static uint64_t bits_of(double x)
 {
@@ -130,13 +130,14 @@ static double double_of(uint64_t bits)
 	return x;
 }
 
-// m 2^n, m from .5 to 4
+// Returns m 2^n; m from .5 to 4.
 static double scaled(double m, int n)
 {
 	return n > -1000 && n < 1000 ? m * double_of((uint64_t)(n + 1023) << 52) : ldexp(m, n);
 }
 
-// e^x = 2^n (1 + p) t with a power t of the table, p in [-.011, .011]; |x| < 800. As x = (32 n + j) log(2) / 32 + r.
+// Reduces e^x to 2^n (1 + p) t with a power t of the table, p in [-.011, .011]; |x| < 800. Uses x = (32 n + j) log(2) /
+// 32 + r.
 static int reduce(ob_double2 x, ob_double2 *t, double *p)
 {
 	const double whole = (x.h * 0x1.71547652b82fep5 + 0x1.8p52) - 0x1.8p52;
@@ -189,7 +190,7 @@ double ob_expm1(double x)
 
 double ob_sinh(double x)
 {
-	if (fabs(x) > 700) { // e^x may be too large, where half of it is not
+	if (fabs(x) > 700) { // e^x may overflow although half of it does not
 		const double root = ob_exp(.5 * fabs(x));
 		return copysign(.5 * root * root, x);
 	}
@@ -215,7 +216,7 @@ double ob_tanh(double x)
 	return copysign(e / (e + 2), x);
 }
 
-// log(x), to 2^-66 of it; x > 0 and finite. As log(2^k m) with m c = 1 + r for a c of the table.
+// log(x), to a relative 2^-66; x > 0 and finite. Uses log(2^k m) with m c = 1 + r for a c of the table.
 static ob_double2 log_of(double x)
 {
 	int k = 0;
@@ -228,7 +229,7 @@ static ob_double2 log_of(double x)
 	k += (int)((int64_t)past >> 52);
 	const double m = double_of(bits_of(x) - (past & UINT64_C(0xfff) << 52)), c = INTERVAL[i].c;
 	const double upper =
-		double_of(bits_of(m) & ~UINT64_C(0xffffffff)); // its product with c is exact, as the other's
+		double_of(bits_of(m) & ~UINT64_C(0xffffffff)); // its product with c is exact, as is the other's
 	const ob_double2 r = ob_double2_sum(upper * c - 1, (m - upper) * c);
 	const ob_double2 square = ob_double2_square(r.h);
 	const double p = 0x1.555555555553ep-2 +
@@ -245,7 +246,7 @@ static ob_double2 log_of(double x)
 	return ob_double2_quick_sum(b.h, low);
 }
 
-// NaN, or an infinity: where the logarithm is no number. 0 elsewhere
+// Returns NaN or an infinity if the logarithm is not a number, 0 otherwise.
 static double without_log(double x)
 {
 	if (x == 0)

@@ -1,4 +1,4 @@
-// Four doubles side by side, one body or pair of bodies per lane. No operation mixes lanes, so a lane's bits do not
+// Four doubles side by side, one body or pair of bodies per lane. No operation mixes lanes. So a lane's bits do not
 // depend on its neighbours, nor on the instruction set that the compiler picks.
 #ifndef OB_ELEMENTARY_LANES_H
 #define OB_ELEMENTARY_LANES_H
@@ -21,7 +21,7 @@ static inline lanes lanes_select(lane_mask m, lanes yes, lanes no)
 {
 	return (lanes)((m & (lane_mask)yes) | (~m & (lane_mask)no));
 }
-// a > b ? a : b, and a < b ? a : b, as the processor's own instructions define it
+// a > b ? a : b, and a < b ? a : b, as the processor's instructions define them
 #if defined(__AVX__)
 static inline lanes lanes_max(lanes a, lanes b)
 {
@@ -41,7 +41,7 @@ static inline lanes lanes_min(lanes a, lanes b)
 	return lanes_select(a < b, a, b);
 }
 #endif
-// x, or 0
+// x where m is true, 0 elsewhere
 static inline lanes lanes_where(lane_mask m, lanes x)
 {
 	return (lanes)(m & (lane_mask)x);
@@ -68,7 +68,7 @@ static inline double lanes_largest(lanes a)
 		most = a[l] > most ? a[l] : most;
 	return most;
 }
-// Four numbers that lie side by side, at any address
+// Loads four consecutive numbers from any address.
 static inline lanes lanes_load(const double *from)
 {
 	lanes x;
@@ -79,13 +79,13 @@ static inline void lanes_store(double *to, lanes x)
 {
 	__builtin_memcpy(to, &x, sizeof x);
 }
-// Writes lane l alone. (x[l] = y is compiled by clang, where l is not constant, to a copy of the whole and back, which
-// waits for the store in between.)
+// Writes lane l alone. (For a variable l, clang compiles x[l] = y to a copy of the whole vector and back, which waits
+// for the store in between.)
 static inline void lanes_put(lanes *x, int l, double y)
 {
 	__builtin_memcpy((char *)x + (unsigned)l * sizeof y, &y, sizeof y);
 }
-// Turns four by four numbers over: x[i][l] becomes x[l][i].
+// Transposes four by four numbers: x[i][l] becomes x[l][i].
 static inline void lanes_transpose(lanes *x)
 {
 	lanes a = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6), b = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
@@ -95,18 +95,18 @@ static inline void lanes_transpose(lanes *x)
 	x[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
 	x[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
-// Lane l is true where bit l is set
+// Lane l is true if bit l is set.
 static inline lane_mask lanes_mask(unsigned bits)
 {
 	lane_mask bit = { 1, 2, 4, 8 };
 	return (bit & (int64_t)bits) != 0;
 }
-// How many bits are set. (Without an instruction for it, gcc's own is a call of its library.)
+// Number of bits set. (On processors without an instruction for it, gcc's builtin calls its library.)
 static inline unsigned lanes_count(unsigned bits)
 {
 	return (unsigned)(UINT64_C(0x4332322132212110) >> 4 * (bits & 15)) & 7;
 }
-// Bit l is set where lane l of m is true
+// Bit l is set if lane l of m is true.
 #if defined(__AVX__)
 static inline unsigned lanes_bits(lane_mask m)
 {

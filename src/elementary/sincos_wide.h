@@ -1,5 +1,5 @@
-// Sine and cosine of several angles side by side, by the operations of ob_sincos in the same order: so each has the
-// bits that it has alone. Text for vectors of one width, which whoever includes it has named: typedef double wide.
+// Sine and cosine of several angles side by side, by the operations of ob_sincos in the same order: each lane has the
+// bits of ob_sincos. Text for vectors of one width; the including file first names the type: typedef double wide.
 #ifndef OB_ELEMENTARY_SINCOS_WIDE_H
 #define OB_ELEMENTARY_SINCOS_WIDE_H
 
@@ -7,8 +7,8 @@ static const double INVERSE = 0x1.45f306dc9c883p-1; // 2 / pi
 // pi / 2 in parts of 33 bits and a rest: their products with numbers of 20 bits are exact.
 static const double PART[4] = { 0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104 };
 static const double MODERATE = 0x1p19; // below it a quotient has 19 bits
-static const double LEAST_SQUARE = 0x1p-54; // of an angle: a smaller one is its sine
-static const double WHOLE = 0x1.8p52; // a number that is added to it is rounded to a whole one, which are its last bits
+static const double LEAST_SQUARE = 0x1p-54; // of an angle: below it, the angle equals its sine
+static const double WHOLE = 0x1.8p52; // adding it rounds a number to a whole one, which fills its last bits
 
 static inline wide wide_of(double x)
 {
@@ -22,8 +22,8 @@ static inline wide wide_sum(wide a, wide b, wide *rest)
 	return s;
 }
 
-// x: moderate. whole: the quarters, as above; square: of what is left; sine and cosine are of that, and right where the
-// square is not too small.
+// x: moderate. whole: the quarters, as above. square: square of the remainder. sine and cosine: of the remainder; valid
+// unless the square is too small.
 static inline void sincos_wide(wide x, wide *whole, wide *square, wide *sine, wide *cosine)
 {
 	wide b_rest, c_rest;

@@ -1,7 +1,6 @@
-// The C library's names for these functions. A program that is linked with this file defines them itself, and the
-// dynamic linker prefers a program's definitions to a library's: so Lua (math.sin, x ^ y), ODE and qhull, which call
-// them by these names, get the same bits on every processor, too. tests/elementary/ compares what they import with what
-// is here.
+// The C library's names for these functions. A program linked with this file defines them itself, and the dynamic
+// linker prefers a program's definitions to a library's. So Lua (math.sin, x ^ y), ODE and qhull, which call these
+// names, get the same bits on every processor, too. tests/elementary/ compares their imports with this file.
 #include <math.h>
 
 #include "elementary/elementary.h"
