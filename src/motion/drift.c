@@ -1,6 +1,6 @@
-// Euler's equations J dw/dt = (J w) x w and dq/dt = q w / 2 are quadratic, so the coefficients of their power series
-// follow from those before by sums of products (Moore, "Interval Analysis", 1966, section 11.1). The series is taken
-// until its terms vanish; where that takes too many, the closed form is.
+// Euler's equations J dw/dt = (J w) x w and dq/dt = q w / 2 are quadratic. So the coefficients of their power series
+// follow from the earlier ones by sums of products (Moore, "Interval Analysis", 1966, section 11.1). The series is
+// summed until its terms vanish; if that takes too many terms, the closed form is used.
 #include "motion/drift.h"
 
 #include <stdbool.h>
@@ -10,9 +10,10 @@
 
 enum { TERMS = 22 };
 
-static const double negligible = 1e-17; // of a unit quaternion
-static const double longest_series = .2; // rad: beyond, the closed form, which then costs no more
-static const double longest_of_order_four_held = .01, longest_held = .03; // rad: of Magnus's expansion, to 1e-11
+static const double negligible = 1e-17; // relative to a unit quaternion
+static const double longest_series = .2; // rad: for longer turns the closed form costs no more
+// rad: limits of Magnus's expansion, for an error of 1e-11
+static const double longest_of_order_four_held = .01, longest_held = .03;
 
 static bool same_moments(ob_vec3 j)
 {
@@ -27,10 +28,10 @@ static ob_quat unit(ob_quat q)
 	return (ob_quat){ q.w - q.w * s, q.x - q.x * s, q.y - q.y * s, q.z - q.z * s };
 }
 
-// False: the terms do not vanish soon enough.
+// Returns false if the terms do not vanish soon enough.
 static bool series(ob_vec3 w0, ob_vec3 j, double s, ob_quat *out)
 {
-	// Of the rate times s, and of the turn; each with its power of s.
+	// Coefficients of the rate times s, and of the turn; each with its power of s.
 	double wx[TERMS], wy[TERMS], wz[TERMS], q0[TERMS], q1[TERMS], q2[TERMS], q3[TERMS];
 	wx[0] = s * w0.x, wy[0] = s * w0.y, wz[0] = s * w0.z;
 	q0[0] = 1, q1[0] = q2[0] = q3[0] = 0;
@@ -88,8 +89,8 @@ ob_quat ob_drift_turn(ob_vec3 w, ob_vec3 inertia, double s)
 	return turn;
 }
 
-// After a turn, in the frame of the body, from the attitude r and the rate b (body frame): the rate follows from the
-// momentum, which stays.
+// Rate after a turn, from the attitude r and the rate b (all in the body frame): it follows from the momentum, which
+// stays.
 static ob_vec3 rate_after(const ob_mat3 *r, ob_vec3 b, ob_vec3 j, ob_quat after)
 {
 	const ob_mat3 now = ob_quat_matrix(after);
@@ -135,10 +136,10 @@ double ob_drift_bound(ob_vec3 w, ob_vec3 inertia, double s)
 	const double rate = ob_norm(w), least = rate * s * inverse_root3;
 	if (rate == 0 || same_moments(j) || any_moment(j))
 		return rate;
-	// Those of a body: none exceeds the sum of the others, so k below is not more than this.
+	// Moments of a real body: none exceeds the sum of the others, so k below is at most this.
 	if (least < slight && j.x <= j.y + j.z && j.y <= j.z + j.x && j.z <= j.x + j.y)
 		return rate * (1 + least / (1 - slight));
-	// dw_i/dt = (J_j - J_k) / J_i w_j w_k, and the squares of the products add up to w^4 / 3 at most: d(1/w)/dt is
+	// dw_i/dt = (J_j - J_k) / J_i w_j w_k, and the squares of the products sum to at most w^4 / 3: d(1/w)/dt is
 	// bounded.
 	double k = ob_max(fabs(j.y - j.z) / j.x, ob_max(fabs(j.z - j.x) / j.y, fabs(j.x - j.y) / j.z)) * inverse_root3;
 	double grown = k * rate * s;

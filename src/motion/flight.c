@@ -2,7 +2,7 @@
 
 #include "elementary/elementary.h"
 
-// 1 - cos without loss near 0
+// 1 - cos x without cancellation near 0
 static double versine(double x)
 {
 	const double half = ob_sin(.5 * x);
@@ -43,8 +43,8 @@ ob_state ob_motion_at(const ob_motion *m, ob_vec3 inertia, double t)
 	return out;
 }
 
-// Shoemake's spherical-linear interpolation (SIGGRAPH 1985) along the shorter way, as the fraction f of the turn that
-// takes a to b: exact for small turns too.
+// Shoemake's spherical-linear interpolation (SIGGRAPH 1985) along the shorter way, as the fraction f of the turn from a
+// to b: exact for small turns too.
 static ob_quat between(ob_quat a, ob_quat b, double f)
 {
 	ob_quat turn = ob_quat_mul(b, (ob_quat){ a.w, -a.x, -a.y, -a.z });
@@ -68,8 +68,8 @@ ob_pose ob_motion_between(const ob_motion *prev, const ob_motion *next, ob_vec3 
 	return (ob_pose){ ob_madd(prev->p, f, ob_sub(next->p, prev->p)), between(prev->q, next->q, f) };
 }
 
-// gap + v t + a t^2 / 2 without loss where the terms cancel (Kahan 2004, "On the cost of floating-point computation
-// without extra-precise arithmetic")
+// Evaluates gap + v t + a t^2 / 2 without cancellation errors (Kahan 2004, "On the cost of floating-point computation
+// without extra-precise arithmetic").
 static double discriminant(double gap, double v, double a)
 {
 	double product = 2 * a * gap;
@@ -88,7 +88,7 @@ double ob_time_of_closing(double gap, double v, double a, double s)
 	if (d > 0)
 		t = v < 0 ? 2 * gap / (sqrt(d) - v) : (-v - sqrt(d)) / a;
 	else
-		t = a < 0 ? -v / a : INFINITY; // overlaps throughout, and falls back from then on; or never gets there
+		t = a < 0 ? -v / a : INFINITY; // overlaps throughout, and falls back from then on; or never closes
 	return t <= s ? t : INFINITY;
 }
 

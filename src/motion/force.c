@@ -17,7 +17,7 @@ ob_force *ob_force_copy(const ob_force *f)
 	return copy;
 }
 
-// N s, of the line between two points, from a to b
+// Impulse (N s) of the line between two points, from a to b.
 static ob_vec3 line_impulse(const ob_path_point *p, const ob_path_point *q, double a, double b)
 {
 	const double middle = (.5 * (a + b) - p->t) / (q->t - p->t);

@@ -1,4 +1,4 @@
-// Forces that change in time, as a row of constants: of each step, the mean, so that its impulse is exact. Pure
+// Forces that vary in time, as a sequence of constants: the mean of each step, so that its impulse is exact. Pure
 // functions, thread-safe.
 #ifndef OB_MOTION_FORCE_H
 #define OB_MOTION_FORCE_H
@@ -6,12 +6,12 @@
 #include "motion/path.h"
 
 typedef enum ob_force_kind {
-	OB_FORCE_SINE, // sin(frequency t + phase) of the force
-	OB_FORCE_PULSE, // the force, from an instant until another
-	OB_FORCE_LINEAR, // from point to point; the first and the last hold before and after
+	OB_FORCE_SINE, // force times sin(frequency t + phase)
+	OB_FORCE_PULSE, // the force, between two instants
+	OB_FORCE_LINEAR, // linear between points; the first and the last hold before and after
 } ob_force_kind;
 
-// t is the time since the object's first instant.
+// Force over time. t is the time since the object's first instant.
 typedef struct ob_force {
 	ob_force_kind kind;
 	ob_vec3 force; // N
@@ -21,11 +21,11 @@ typedef struct ob_force {
 	ob_path_point *point; // [points]: s, N; ascending
 } ob_force;
 
-// N, over a step of h (s)
+// Mean force (N) over a step of h (s).
 ob_vec3 ob_force_mean(const ob_force *f, double h, uint64_t step);
-// The next step whose mean may be another; UINT64_MAX: none.
+// Next step whose mean may differ; UINT64_MAX: none.
 uint64_t ob_force_next(const ob_force *f, double h, uint64_t step);
-// As ob_path_copy
+// Copies into one block; see ob_path_copy.
 ob_force *ob_force_copy(const ob_force *f);
 
 #endif

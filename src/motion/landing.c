@@ -6,13 +6,13 @@
 #include "elementary/lanes.h"
 #include "motion/landing_lanes.h"
 
-static const double near = 1e-11; // of the shape's radius: a point that is closer and comes down lands
+static const double near = 1e-11; // relative to the shape's radius: a falling point below this height lands
 static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
-// A shape is the points around its centre, grown by a radius: a box its corners, a capsule the ends of its axis. A
-// cylinder's are the ends of its axis, with a rim about each.
+// Outline: points around the centre, grown by a radius. A box has its corners, a capsule the ends of its axis. A
+// cylinder has the ends of its axis, with a rim about each.
 typedef struct outline {
-	ob_vec3 half; // m, of the box of the points
+	ob_vec3 half; // m, half extents of the box of the points
 	double radius; // m, of each
 	double reach; // m, of a point from the centre
 	double rim; // m
@@ -41,15 +41,15 @@ static ob_vec3 component(ob_vec3 half, ob_vec3 n)
 	return ob_v3(half.x * n.x, half.y * n.y, half.z * n.z);
 }
 
-// When a point lands that is this high and rises at this rate, if it falls with the acceleration "most" (s).
+// Time (s) to land of a point at this height and rate of rising, if it falls with the acceleration "most".
 static double fall_time(double gap, double rate, double most)
 {
 	double root = sqrt(rate * rate + 2 * most * gap);
 	return rate < 0 ? 2 * gap / (root - rate) : most > 0 ? (rate + root) / most : INFINITY;
 }
 
-// A rim: its centre's height and rate of rising; what of the normal is across its axis, and how fast that changes,
-// times its radius (m, m/s). Its lowest point is as far below the centre as the first is long.
+// Rim of a cylinder: height and rate of rising of its centre (m, m/s). `lean`: the part of the normal across its axis,
+// times its radius, and the rate of that (m, m/s). The lowest point is |lean| below the centre.
 typedef struct rim {
 	double height, rate, most;
 	ob_vec3 lean, lean_rate;
@@ -60,8 +60,8 @@ static double lowest_of_rim(const rim *x, double t)
 	return x->height + t * (x->rate - .5 * t * x->most) - ob_norm(ob_madd(x->lean, t, x->lean_rate));
 }
 
-// For how long no point of the rim lands, at least (s). Its lowest point's height is bounded by a concave function of
-// time: between two times below it, so that the chord's zero is early and the tangent's zero is late.
+// Lower bound (s) of the time until a point of the rim lands. A concave function of time bounds the lowest point's
+// height: between two times below it, so the chord's zero is early and the tangent's zero is late.
 static double rim_time(rim *x, double tolerance)
 {
 	enum { NARROW = 12 };
@@ -92,9 +92,9 @@ static double rim_time(rim *x, double tolerance)
 typedef double pair __attribute__((vector_size(16)));
 typedef int64_t pair_mask __attribute__((vector_size(16)));
 
-enum { BLOCK = 4, PAIRS_MAX = OB_HULL_CORNERS_MAX / 2 }; // pairs that are worked on together
+enum { BLOCK = 4, PAIRS_MAX = OB_HULL_CORNERS_MAX / 2 }; // pairs processed together
 
-// Points of the outline: how high (m), how fast they rise (m/s), and how that changes now (m/s^2).
+// Points of the outline: heights (m), their rates (m/s), and their present accelerations (m/s^2).
 typedef struct points {
 	int pairs; // a multiple of BLOCK
 	pair gap[PAIRS_MAX], rate[PAIRS_MAX], bend[PAIRS_MAX];
@@ -127,7 +127,7 @@ static int least_index(const pair *of, int pairs)
 	return index;
 }
 
-// m: how high each point is at t if it falls with an acceleration of its own. false: none is below the plane.
+// Height (m) of each point at t if it falls with an acceleration of its own. Returns false if none is below the plane.
 static bool heights_at(const points *x, const pair *fall, double t, pair *height)
 {
 	pair_mask below = { 0, 0 };
@@ -139,8 +139,8 @@ static bool heights_at(const points *x, const pair *fall, double t, pair *height
 	return (below[0] | below[1]) < 0; // the sign
 }
 
-// Which of them is the first on the plane within *t (s); -1: none. From the end back: who is below the plane then was
-// on it before.
+// Returns the point that is first on the plane within *t (s); -1: none. Goes backwards: a point below the plane at the
+// end was on it before.
 static int first_to_land(const points *x, const pair *fall, double *t)
 {
 	pair height[PAIRS_MAX];
@@ -157,7 +157,7 @@ static int first_to_land(const points *x, const pair *fall, double *t)
 	return first;
 }
 
-// When the lowest point lands if it bends as it does now, and some more; or what is left.
+// Estimates the landing of the lowest point from its present acceleration and a margin; at most the remaining time.
 static double guess_landing(const points *x, double left)
 {
 	static const double more = 1.1;
@@ -167,9 +167,9 @@ static double guess_landing(const points *x, double left)
 					     ob_max(0, -bend)));
 }
 
-// For how long no point lands, at least (s); *lands: one does then, to the tolerance. A point falls with the
-// acceleration "most" at most, and within t with what it has now and jerk t more: no lower than the parabola with a
-// third of that. The better t is guessed, the farther they reach.
+// Lower bound (s) of the time until a point lands; *lands: one does then, to the tolerance. A point falls with the
+// acceleration "most" at most, and within t with its present one plus jerk t: no lower than the parabola with a third
+// of that. A better guess of t makes the bound reach farther.
 static double land_points(points *x, double most, double jerk, double tolerance, double left, bool *lands)
 {
 	pair fall[PAIRS_MAX];
@@ -198,7 +198,7 @@ static double land_points(points *x, double most, double jerk, double tolerance,
 	return t;
 }
 
-// Of the corners of a box: a value of the centre, and by how much it differs along each half side.
+// Values at the corners of a box: value of the centre, and its change along each half side.
 static void box_points(double centre, ob_vec3 by, pair out[BLOCK])
 {
 	const pair x = { -by.x, by.x };
@@ -206,7 +206,7 @@ static void box_points(double centre, ob_vec3 by, pair out[BLOCK])
 		out[k] = centre + x + ((k & 1 ? by.y : -by.y) + (k & 2 ? by.z : -by.z));
 }
 
-// The same of a hull, and by how much it differs along each axis of its frame. What fills the last block never lands.
+// Same for a hull: changes along each axis of its frame. Padding of the last block never lands.
 static void hull_points(const ob_hull *hull, double centre, ob_vec3 by, points *x, pair *out)
 {
 	const int n = (int)hull->corners;
@@ -217,26 +217,26 @@ static void hull_points(const ob_hull *hull, double centre, ob_vec3 by, points *
 		out[k / 2][k & 1] = out == x->gap ? INFINITY : 0;
 }
 
-// The flight at s: of the centre, height and speed over the plane; "left" s until nobody asks any more.
+// Flight at an instant s: height and speed of the centre over the plane; `left`: remaining time (s) of the search.
 typedef struct instant {
 	double s, height, speed, left;
 } instant;
 
-// A flight that is followed to its landing.
+// Search for the landing of a flight.
 typedef struct search {
 	const ob_flier *f;
 	outline h;
-	bool known; // its shape
+	bool known; // its shape is known
 	ob_vec3 n;
 	ob_bending bends;
-	double p, v, a; // of the centre, over the plane at s = 0
+	double p, v, a; // the centre, over the plane at s = 0
 	double radius, tolerance; // m
 	double until;
 	int advances;
 	instant now;
 } search;
 
-// m/s^2, with which any point may fall
+// Largest downward acceleration of any point (m/s^2).
 static double fastest_fall(const search *x)
 {
 	return ob_max(0, -x->a) + x->h.reach * x->bends.most;
@@ -266,7 +266,7 @@ static double advance_rims(const search *x, ob_vec3 normal, ob_vec3 turning, boo
 	return least;
 }
 
-// For how long no point of the outline lands, at least (s); *lands: one does then.
+// Lower bound (s) of the time until a point of the outline lands; *lands: one does then.
 static double advance(const search *x, bool *lands)
 {
 	const outline *h = &x->h;
@@ -294,7 +294,7 @@ static double advance(const search *x, bool *lands)
 	return land_points(&of, fastest_fall(x), h->reach * x->bends.jerk, x->tolerance, x->now.left, lands);
 }
 
-// false: it lands at *time, or not at all.
+// Returns false if the search is over: it lands at *time, or not at all.
 static bool search_begin(search *x, const ob_landing *of, double *time)
 {
 	const ob_flier *f = of->flier;
@@ -313,14 +313,15 @@ static bool search_begin(search *x, const ob_landing *of, double *time)
 	return true;
 }
 
-// To the next instant at which its attitude must be known. false: it lands at *time, or not at all.
+// Advances to the next instant that needs the attitude. Returns false if the search is over: it lands at *time, or not
+// at all.
 static bool search_go_on(search *x, double *time)
 {
 	double s = x->now.s;
 	bool asks = false;
 	if (x->advances++ < most_advances && s <= x->until) {
 		double height = x->p + s * (x->v + .5 * s * x->a), speed = x->v + s * x->a;
-		if (height > x->radius) { // until then no point can land, and how it turns need not be known
+		if (height > x->radius) { // until then no point can land, and the attitude is not needed
 			s += ob_time_of_closing(height - x->radius, speed, x->a, x->until - s);
 			height = x->p + s * (x->v + .5 * s * x->a), speed = x->v + s * x->a;
 		}
@@ -331,7 +332,7 @@ static bool search_go_on(search *x, double *time)
 	return asks;
 }
 
-// Nothing lands for t. false: it has landed at *time.
+// Advances by t without a landing. Returns false if it has landed at *time.
 static bool search_advance(search *x, double t, bool lands, double *time)
 {
 	*time = x->now.s + t;
@@ -355,7 +356,7 @@ static ob_falling_box falling_box(const search *x)
 	attitude_of(x, &box.q, &box.w);
 	return box;
 }
-// Of the first, as many as are boxes and can be advanced side by side; returns how many they are.
+// Advances the leading flights that are boxes side by side; returns their number.
 static int advance_boxes(search *const *x, int n, double *t, bool *lands)
 {
 	ob_falling_box box[OB_LANES];

@@ -1,4 +1,4 @@
-// As advance and land_points of landing.c have it, corner by corner instead of two corners at a time.
+// Same operations as advance and land_points of landing.c, corner by corner instead of two corners at a time.
 #include "motion/landing_lanes.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static inline vector by_component(vector a, vector b)
 	return (vector){ a.x * b.x, a.y * b.y, a.z * b.z };
 }
 
-// Into the frame of a body with attitude q, as ob_rotate_back and ob_quat_matrix have it
+// Turns into the frame of a body with attitude q, as ob_rotate_back and ob_quat_matrix do.
 static inline void turn_back(lanes w, vector q, const vector *from, int n, vector *to)
 {
 	const lanes x = q.x, y = q.y, z = q.z;
@@ -37,7 +37,7 @@ static inline void turn_back(lanes w, vector q, const vector *from, int n, vecto
 	}
 }
 
-// Of the corners: a value of the centre, and by how much it differs along each half side.
+// Values at the corners: value of the centre, and its change along each half side.
 static inline void corners_of(lanes centre, vector by, lanes *out)
 {
 	for (int k = 0; k < CORNERS; k++)
@@ -51,7 +51,7 @@ static inline lanes fall_time(lanes gap, lanes rate, lanes most)
 			    lanes_select(most > 0, (rate + root) / most, lanes_of(INFINITY)));
 }
 
-// A corner, with the acceleration that it is taken to fall with.
+// Corner, and its assumed acceleration.
 typedef struct corner {
 	lanes gap, rate, bend, fall;
 } corner;
@@ -62,7 +62,7 @@ static inline corner chosen(lane_mask m, corner a, corner b)
 			 lanes_select(m, a.bend, b.bend), lanes_select(m, a.fall, b.fall) };
 }
 
-// Which corner is the first on the plane within *t, in the lanes of "on"; returns in which there is one.
+// Finds the corner that is first on the plane within *t, in the lanes of "on"; returns the lanes that have one.
 static inline lane_mask first_to_land(const corner *of, lane_mask on, lanes *t, corner *first)
 {
 	lane_mask found = { 0 };
@@ -80,7 +80,7 @@ static inline lane_mask first_to_land(const corner *of, lane_mask on, lanes *t, 
 		const lanes when = fall_time(deepest.gap, deepest.rate, deepest.fall);
 		on &= (below < 0) & ~(found & ~(when < *t));
 		*first = chosen(on, deepest, *first);
-		// ob_min of both
+		// as ob_min
 		const lanes sooner = lanes_select(when == when, lanes_select(*t < when, *t, when), *t);
 		*t = lanes_select(on, sooner, *t);
 		found |= on;

@@ -1,7 +1,7 @@
 #include "motion/magnus.h"
 
-// rad: up to here what is left out is below rounding: of order four; of order six with so many terms of the rate's
-// series
+// rad: up to here the truncation error is below rounding. The first: order four; the second: order six with so many
+// terms of the rate's series.
 static const double longest_of_order_four = 1e-3, longest_of_six_terms = .01;
 
 // Euler's equations as dw/dt = (c.x w.y w.z, c.y w.z w.x, c.z w.x w.y).
@@ -12,7 +12,7 @@ static ob_vec3 coupling_of(ob_vec3 j)
 		     (j.x - j.y) * (j.x * j.y) * inverse_all);
 }
 
-// The next coefficient of the rate's series, from those before, times "terms" (their number).
+// Next coefficient of the rate's series, from the earlier ones, times "terms" (their number).
 static inline ob_vec3 next_rate(ob_vec3 coupling, const ob_vec3 *w, int terms)
 {
 	ob_vec3 sum = ob_v3(0, 0, 0);
@@ -23,7 +23,7 @@ static inline ob_vec3 next_rate(ob_vec3 coupling, const ob_vec3 *w, int terms)
 	return ob_v3(coupling.x * sum.x, coupling.y * sum.y, coupling.z * sum.z);
 }
 
-// The turn by a rotation vector that is so small that the series of the half angle's cosine and of sin(x) / x end soon.
+// Turn by a small rotation vector: the series of the half angle's cosine and of sin(x) / x end soon.
 ob_quat ob_magnus_small_turn(ob_vec3 turn)
 {
 	const ob_vec3 half = ob_scale(turn, .5);
@@ -35,7 +35,7 @@ ob_quat ob_magnus_small_turn(ob_vec3 turn)
 static ob_vec3 order_four(ob_vec3 w0, ob_vec3 j, double s)
 {
 	const ob_vec3 coupling = coupling_of(j);
-	ob_vec3 w[4] = { ob_scale(w0, s) }; // of the rate times s, each with its power of s
+	ob_vec3 w[4] = { ob_scale(w0, s) }; // coefficients of the rate times s, each with its power of s
 	w[1] = next_rate(coupling, w, 1);
 	w[2] = ob_scale(next_rate(coupling, w, 2), .5);
 	w[3] = ob_scale(next_rate(coupling, w, 3), 1. / 3);
@@ -43,8 +43,8 @@ static ob_vec3 order_four(ob_vec3 w0, ob_vec3 j, double s)
 	return ob_madd(mean, 1. / 12, ob_cross(w[0], ob_add(w[1], w[2])));
 }
 
-// To order six (Blanes, Casas, Oteo and Ros 2009, section 5.4) from the moments of the rate about
-// the middle, each the sum of its series, so many terms of it (a constant: the loops are unrolled).
+// To order six (Blanes, Casas, Oteo and Ros 2009, section 5.4) from the moments of the rate about the middle. Each is
+// the sum of its series with so many terms (a constant: the loops are unrolled).
 static inline __attribute__((always_inline)) ob_vec3 order_six(ob_vec3 w0, ob_vec3 j, double s, int terms)
 {
 	enum { MOST = 8 };
@@ -58,7 +58,7 @@ static inline __attribute__((always_inline)) ob_vec3 order_six(ob_vec3 w0, ob_ve
 		first = ob_madd(first, 1. / (k + 2) - .5 / (k + 1), w[k]);
 		second = ob_madd(second, 1. / (k + 3) - 1. / (k + 2) + .25 / (k + 1), w[k]);
 	}
-	// The turn's equation has the rate on the right: that of its inverse has minus the rate on the left.
+	// The turn's equation has the rate on the right; the inverse has minus the rate on the left.
 	const ob_vec3 a1 = ob_madd(ob_scale(mean, -9. / 4), 15, second), a2 = ob_scale(first, -12),
 		      a3 = ob_madd(ob_scale(mean, 15), -180, second);
 	const ob_vec3 c1 = ob_cross(a1, a2), c2 = ob_scale(ob_cross(a1, ob_madd(c1, 2, a3)), -1. / 60);

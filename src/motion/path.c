@@ -45,14 +45,14 @@ bool ob_path_fits(const ob_path *path, double h, uint32_t *which)
 	return true;
 }
 
-// Mean slope from a point to the next, of one component
+// Mean slope from a point to the next, of one component.
 static double slope(double from, double to, double steps, double h)
 {
 	return (to - from) / (steps * h);
 }
 
-// The velocity at a point between two slopes that makes nothing overshoot: their harmonic mean, and rest where the way
-// turns back or stands (Fritsch and Butland 1984, SIAM J. Sci. Stat. Comput. 5).
+// Velocity at a point between two slopes that avoids overshoot: their harmonic mean, and 0 if the direction reverses or
+// one slope is 0 (Fritsch and Butland 1984, SIAM J. Sci. Stat. Comput. 5).
 static double smooth(double before, double after)
 {
 	return before * after > 0 ? 2 * before * after / (before + after) : 0;
@@ -73,10 +73,10 @@ static ob_vec3 velocity_at(const ob_path *path, uint32_t i, double h)
 		     smooth(slope(p.z, q.z, a, h), slope(q.z, r.z, b, h)));
 }
 
-// The first of two accelerations, for s1 and s2 (s), that lead from p at v to q at w.
+// First of two accelerations, over s1 and s2 (s), that lead from p at v to q at w.
 static ob_vec3 first_acceleration(ob_vec3 p, ob_vec3 v, ob_vec3 q, ob_vec3 w, double s1, double s2)
 {
-	// v + a1 s1 + a2 s2 = w and p + v (s1 + s2) + a1 s1 (s1 / 2 + s2) + a2 s2^2 / 2 = q, without a2
+	// v + a1 s1 + a2 s2 = w and p + v (s1 + s2) + a1 s1 (s1 / 2 + s2) + a2 s2^2 / 2 = q, with a2 eliminated
 	const ob_vec3 way = ob_madd(ob_sub(q, p), -(s1 + s2), v), gain = ob_scale(ob_sub(w, v), .5 * s2);
 	return ob_scale(ob_sub(way, gain), 2 / (s1 * (s1 + s2)));
 }
@@ -92,7 +92,7 @@ bool ob_path_turn(ob_quat from, ob_quat to, ob_vec3 *turn)
 	return r.w > 1e-9;
 }
 
-// The attitude and the rate of a piece that begins so long (s) after point i, of s to the next.
+// Attitude and rate of a piece that begins `since` (s) after point i; s: time to the next point.
 static void turn_piece(const ob_path *path, uint32_t i, double since, double s, ob_path_piece *piece)
 {
 	ob_vec3 turn;

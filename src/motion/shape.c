@@ -2,7 +2,7 @@
 
 #include <float.h>
 
-// Half extents of the axis-aligned box round a shape of attitude q.
+// Half extents of the axis-aligned bounding box of a shape at attitude q.
 static ob_vec3 half_extents(ob_shape shape, ob_vec3 size, ob_quat q)
 {
 	double half[3] = { 0 };
@@ -13,7 +13,7 @@ static ob_vec3 half_extents(ob_shape shape, ob_vec3 size, ob_quat q)
 		case OB_SHAPE_NONE:
 			break;
 		case OB_SHAPE_SPHERE:
-		case OB_SHAPE_HULL: // the ball that holds it: ob_hull_bounds is tight
+		case OB_SHAPE_HULL: // bounding ball: ob_hull_bounds is tight
 			half[i] = size.x;
 			break;
 		case OB_SHAPE_BOX:
@@ -25,7 +25,7 @@ static ob_vec3 half_extents(ob_shape shape, ob_vec3 size, ob_quat q)
 		case OB_SHAPE_CAPSULE:
 			half[i] = size.x + fabs(m[2]) * size.y;
 			break;
-		case OB_SHAPE_CYLINDER: // a disc reaches as far as its plane leans towards the axis
+		case OB_SHAPE_CYLINDER: // extent of a disc: by how much its plane leans towards the axis
 			half[i] = size.x * sqrt(m[0] * m[0] + m[1] * m[1]) + fabs(m[2]) * size.y;
 			break;
 		}
@@ -92,7 +92,7 @@ static double height(double p, double v, double a, double t)
 	return a != 0 ? copysign(INFINITY, a) : v != 0 ? copysign(INFINITY, v * t) : p;
 }
 
-// Extremes of the parabola over [t0, t0 + s], widened by half and by what rounding may hide, in the instant too.
+// Extremes of the parabola over [t0, t0 + s], widened by half and by possible rounding errors, also of the instant.
 static void sweep(double p, double v, double a, double t0, double s, double half, double *low, double *high)
 {
 	double end = height(p, v, a, s), turn = a != 0 ? -v / a : 0, slack = 0;
@@ -109,7 +109,7 @@ static void sweep(double p, double v, double a, double t0, double s, double half
 	*high += half + slack;
 }
 
-// Extremes of all of the ellipse with frequency f, widened as those of the parabola.
+// Extremes of the whole ellipse with frequency f, widened as those of the parabola.
 static void surround(double p, double v, double a, double f, double half, double *low, double *high)
 {
 	const double centre = p + a / (f * f), sine = v / f, cosine = a / (f * f),

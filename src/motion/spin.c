@@ -15,7 +15,7 @@ static const double SAME = 1e-15;
 // A direction this near (sine) to a principal axis is on it.
 static const double ON_AXIS = 1e-16;
 
-// ---- of one body, what theta.h is made of
+// ---- interface of theta.h for one body
 
 static inline real real_of(double x)
 {
@@ -80,7 +80,7 @@ static inline void sines_of(real a, real b, real *sine_a, real *cosine_a, real *
 	*sine_b = sine[1], *cosine_b = cosine[1];
 }
 
-// ---- which kind of rotation it is
+// ---- kinds of rotation
 
 static void get(ob_vec3 v, double out[3])
 {
@@ -97,7 +97,7 @@ static void plan_turns(ob_spin *spin, ob_vec3 world, ob_vec3 body)
 }
 
 // The pair of equal moments decides: L / I of the pair in the world, the rest about the third axis of the body. With
-// three equal moments the rest is zero. False: no two are equal.
+// three equal moments the rest is zero. Returns false if no two are equal.
 static int plan_symmetric(ob_spin *spin, ob_vec3 momentum, const double l[3], const double inertia[3])
 {
 	for (int k = 0; k < 3; k++) {
@@ -112,8 +112,8 @@ static int plan_symmetric(ob_spin *spin, ob_vec3 momentum, const double l[3], co
 	return 0;
 }
 
-// Sorts the axes: moments ascending, or descending where the momentum circles the axis of the smallest one; signs so
-// that the frame is right-handed and n3 >= 0. Component i is sign[i] times component axis[i] of the body.
+// Sorts the axes: moments ascending, or descending if the momentum circles the axis of the smallest one; signs so that
+// the frame is right-handed and n3 >= 0. Component i is sign[i] times component axis[i] of the body.
 static void sort_axes(const double n[3], const double inertia[3], int axis[3], double sign[3])
 {
 	int o[3] = { 0, 1, 2 };
@@ -138,7 +138,7 @@ static void sort_axes(const double n[3], const double inertia[3], int axis[3], d
 	sign[1] = even ? sign[2] : -sign[2];
 }
 
-// Energy and momentum stay, and each bounds the rate b (body frame) by the least moment.
+// Energy and momentum are constant; each bounds the rate b (body frame) by the least moment.
 static double fastest_of(ob_vec3 b, ob_vec3 i)
 {
 	const ob_vec3 l = ob_v3(i.x * b.x, i.y * b.y, i.z * b.z);
@@ -155,8 +155,8 @@ double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia)
 }
 
 // With k the largest |c_i|, |b'| <= k w^2 / sqrt(3) and |b''| <= 2/3 k^2 w^3, for sums of products of shares that add
-// up to 1; in the world the rate's second derivative has b x b' as well, and the arm's third is made of products of
-// these.
+// up to 1. In the world frame the second derivative of the rate also has b x b'; the arm's third derivative consists of
+// products of these.
 ob_bending ob_bending_of(ob_vec3 i, double w)
 {
 	ob_bending x = { .coupling = { 0, 0, 0 } };
@@ -183,14 +183,14 @@ void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia)
 	spin->last_w = w;
 }
 
-// false: its rate is taken to stay.
+// Returns false for a rate that is treated as constant.
 static bool is_ordinary(const ob_spin *spin)
 {
 	const ob_vec3 i = spin->inertia;
-	return i.x > 0 && i.y > 0 && i.z > 0 && ob_norm2(spin->w) > 1e-280; // squares of less would lose their digits
+	return i.x > 0 && i.y > 0 && i.z > 0 && ob_norm2(spin->w) > 1e-280; // smaller squares would lose digits
 }
 
-// The kind, and of OB_SPIN_THETA what its constants follow from.
+// Determines the kind, and for OB_SPIN_THETA the input of its constants.
 static void classify(ob_spin *spin, ob_theta_start *from)
 {
 	const ob_quat q = spin->q;
@@ -250,7 +250,7 @@ static inline __attribute__((always_inline)) double excess(ob_quat q)
 	return fma(q.w, q.w, fma(q.x, q.x, fma(q.y, q.y, fma(q.z, q.z, -1))));
 }
 
-// The same bits in one call, where the processor can: the library has one for each product.
+// Same bits in one call, if the processor has fused operations: otherwise each product is a library call.
 #ifdef __x86_64__
 __attribute__((target("fma"))) static double excess_by_processor(ob_quat q)
 {
@@ -293,7 +293,7 @@ static void long_turn_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 
 	*w_out = ob_v3(w.x, w.y, w.z);
 }
 
-// The rate follows from the momentum, which stays.
+// The rate follows from the momentum, which is constant.
 static void short_turn_at(const ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 {
 	const ob_vec3 i = spin->inertia, b = spin->rate_0;
@@ -340,7 +340,7 @@ void ob_spin_at(ob_spin *spin, double s, ob_quat *q_out, ob_vec3 *w_out)
 }
 
 #ifdef OB_HAVE_MOTION_LANES
-// Of up to four, long turns all, which instant each is asked for. One alone is left as it is.
+// Evaluates up to four long turns, each at its own instant. A single one is left for later.
 static void turn_together(ob_spin *const *spin, const double *s, int n)
 {
 	ob_theta_start from[OB_LANES];
@@ -389,7 +389,7 @@ void ob_spin_prepare(ob_spin *const *spin, const double *s, int n) {}
 
 void ob_rotate_free(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_out, ob_vec3 *w_out)
 {
-	if (s == 0 || ob_norm2(w) == 0) { // exactly what was published, and quickly for all that is at rest
+	if (s == 0 || ob_norm2(w) == 0) { // exactly the published attitude, and fast for all bodies at rest
 		*q_out = q;
 		*w_out = w;
 		return;

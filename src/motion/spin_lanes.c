@@ -1,4 +1,4 @@
-// No lane sees another and nothing is contracted, so a body's bits are those that it has alone.
+// Lanes are independent and nothing is contracted, so a body's bits are those of a scalar evaluation.
 #include "motion/spin_lanes.h"
 
 #include <math.h>
@@ -10,13 +10,13 @@ typedef lane_mask wide_mask;
 enum { WIDTH = OB_LANES };
 #include "elementary/sincos_wide.h"
 
-#include "elementary/arc_wide.h" // which needs it
+#include "elementary/arc_wide.h" // needs the types above
 
 typedef lanes real;
 typedef lane_mask mask;
 #include "motion/theta.h"
 
-// ---- of four bodies, what theta.h is made of
+// ---- interface of theta.h for four bodies
 
 static inline real real_of(double x)
 {
@@ -76,7 +76,7 @@ static inline real power_of_e_less_1(real x)
 	return (real){ ob_expm1(x[0]), ob_expm1(x[1]), ob_expm1(x[2]), ob_expm1(x[3]) };
 }
 
-// Here alone fused operations are meant.
+// The only place with fused operations.
 __attribute__((target("avx2,fma"))) static real excess_of(real w, real x, real y, real z)
 {
 	const __m256d sum = _mm256_fmadd_pd((__m256d)z, (__m256d)z, (__m256d)lanes_of(-1));
@@ -111,7 +111,7 @@ static inline void sines_of(real a, real b, real *sine_a, real *cosine_a, real *
 	sines_of_lanes(b, sine_b, cosine_b);
 }
 
-// ---- four rotations turned over into lanes, and back
+// ---- transposition of four rotations into lanes, and back
 
 enum { BLOCK = 4 };
 _Static_assert(OB_THETA_CONSTANTS % BLOCK == 0 && OB_THETA_TERMS % BLOCK == 0,
@@ -142,7 +142,7 @@ void ob_spin_lanes_plan(ob_spin *const *spin, const ob_theta_start *from, int n)
 	double *to[4][OB_LANES];
 	lanes x[8], k[OB_THETA_CONSTANTS], plain[OB_THETA_TERMS], even[OB_THETA_TERMS], odd[OB_THETA_TERMS], count;
 	for (int l = 0; l < OB_LANES; l++)
-		begin[l] = &from[l < n ? l : 0].size; // a lane that nobody is in does what the first does
+		begin[l] = &from[l < n ? l : 0].size; // an unused lane repeats the first
 	load_blocks(begin, 8, x);
 	const int terms = plan_theta(k, plain, even, odd, &count, x[0], (vector){ x[1], x[2], x[3] }, x[4], x[5], x[6]);
 	for (int i = terms; i % BLOCK; i++)
@@ -158,7 +158,7 @@ void ob_spin_lanes_plan(ob_spin *const *spin, const ob_theta_start *from, int n)
 	store_blocks(odd, terms, to[3], n);
 }
 
-// A series, with 0 for what a body does not have of it.
+// Loads a series, padded with 0 to the longest of the lanes.
 static inline void load_series(const double *const from[OB_LANES], lanes count, int terms, lanes *x)
 {
 	load_blocks(from, terms, x);

@@ -1,17 +1,16 @@
 // Free rotation of a body with three different moments. With n the direction of the momentum L in the body and I1, I2,
 // I3 the moments, sorted so that n keeps to one side of the third axis (n3 > 0), Jacobi's solution ("Sur la rotation
 // d'un corps", 1849; Whittaker, "Analytical Dynamics", 1937, section 69) is
-//	n1 = A1 cn(u), n2 = A2 sn(u), n3 = A3 dn(u), u = u0 + u' s.
-// The azimuth of the third axis about L turns at L (n1^2 / I1 + n2^2 / I2) / (n1^2 + n2^2), whose integral is
-//	lambda s + arg theta_1(v +- i alpha), v = pi u / (2 K),
-// alpha from sn(2 K alpha / pi, k') = A1 / |A2| (van Zon and Schofield, J. Comput. Phys. 225, 2007). From theta_1 and
-// theta_2 only directions are taken, and n is put on the curve of constant momentum and energy, so both are kept to
-// the last digits at any s. Elliptic integrals by the arithmetic-geometric mean, and the theta series of Jacobi
-// (Fundamenta Nova, 1829).
+//      n1 = A1 cn(u), n2 = A2 sn(u), n3 = A3 dn(u), u = u0 + u' s.
+// The azimuth of the third axis about L turns at L (n1^2 / I1 + n2^2 / I2) / (n1^2 + n2^2), with the integral
+//      lambda s + arg theta_1(v +- i alpha), v = pi u / (2 K), alpha from sn(2 K alpha / pi, k') = A1 / |A2|
+// (van Zon and Schofield, J. Comput. Phys. 225, 2007). Only directions are taken from theta_1 and theta_2, and n is put
+// on the curve of constant momentum and energy, so both are preserved to the last digits at any s. Elliptic integrals
+// use the arithmetic-geometric mean and the theta series of Jacobi (Fundamenta Nova, 1829).
 //
-// Text that is compiled for one body (spin.c) and for four side by side (spin_lanes.c), with the same operations in the
-// same order, so that each body has the bits that it has alone. Whoever includes it has named the type of a number,
-// real, and that of a comparison's result, mask, and defines what is declared first.
+// Text compiled for one body (spin.c) and for four side by side (spin_lanes.c), with the same operations in the same
+// order: each lane has the bits of a single body. The including file first names the type of a number, real, and that
+// of a comparison's result, mask, and defines the functions declared first.
 #ifndef OB_MOTION_THETA_H
 #define OB_MOTION_THETA_H
 
@@ -39,9 +38,9 @@ typedef struct quaternion {
 	real w, x, y, z;
 } quaternion;
 
-// The series of theta_1 and theta_2 at v and of theta_1 at v + i alpha, as ob_theta_series.
+// Series of theta_1 and theta_2 at v and of theta_1 at v + i alpha, as ob_theta_series.
 typedef struct series {
-	int terms; // the most of any
+	int terms; // longest of all lanes
 	const real *even, *odd, *plain;
 } series;
 
@@ -82,7 +81,7 @@ enum { MEAN_STEPS = 12 }; // from b = 1e-300 the mean converges in 10
 // A phase on its way to F(phi, k): see phases.
 typedef struct phase {
 	real x, y, half_turns, scale;
-	real a, b; // of the mean
+	real a, b; // arithmetic-geometric mean
 	mask on;
 } phase;
 
@@ -99,7 +98,7 @@ static inline phase phase_begin(real x, real y, real kc)
 }
 
 // One of Landen's ascending transformations (Abramowitz and Stegun 1964, 17.6.8): tan(phi' - phi) = (b / a) tan(phi).
-// The angle is kept as half turns and a direction with x >= 0, which needs no tangent to be finite. With it a step of
+// The angle is stored as half turns and a direction with x >= 0, so no tangent has to be finite. Also makes a step of
 // Gauss towards the mean.
 static inline void phase_step(phase *p)
 {
@@ -125,9 +124,8 @@ static inline real phase_end(const phase *p)
 }
 
 // Incomplete integrals F(phi, k) for the angles phi of two directions (x, y), as the phases F M(1, k') = pi F / (2 K):
-// phi = pi / 2 gives pi / 2. kc = k' = sqrt(1 - k^2) > 0. A phase lies in [-pi / 2, 3 pi / 2]. Their means M(1, k'),
-// the arithmetic-geometric mean that each comes by, with which K(k) = pi / (2 M(1, k')), stay in "a". Two at once, for
-// each step waits for the one before.
+// phi = pi / 2 gives pi / 2. kc = k' = sqrt(1 - k^2) > 0. A phase lies in [-pi / 2, 3 pi / 2]. The arithmetic-geometric
+// means M(1, k') stay in "a": K(k) = pi / (2 M(1, k')). Two at once, as each step waits for the one before.
 static inline void phases(phase *p, phase *q)
 {
 	for (int i = 0; i < MEAN_STEPS && (is_any(p->on) || is_any(q->on)); i++) {
@@ -136,12 +134,12 @@ static inline void phases(phase *p, phase *q)
 	}
 }
 
-// The series' coefficients: nome in [0, .9], alpha in [0, -log(nome) / 2]. Returns how many there are, of each; what is
-// beyond the last of one is 0.
+// Coefficients of the series: nome in [0, .9], alpha in [0, -log(nome) / 2]. Returns their number; count: number for
+// each lane, with 0 beyond it.
 static inline int series_plan(real nome, real alpha, real *plain, real *even, real *odd, real *count)
 {
 	const real less = -power_of_e_less_1(-2 * alpha),
-		   small = 1 - less; // small = exp(-2 alpha), less to the last digits
+		   small = 1 - less; // small = exp(-2 alpha), less = 1 - small to the last digits
 	const real c = .5 * (1 / small + small), s = .5 * less * (1 + small) / small, square = nome * nome;
 	real power = square; // q^(2 n)
 	mask on = power == power;
@@ -164,11 +162,11 @@ static inline int series_plan(real nome, real alpha, real *plain, real *even, re
 	return n;
 }
 
-// s, c: of v
+// s, c: sine and cosine of v
 static inline theta_value theta_at(const series *t, real s, real c)
 {
 	double sign = 1;
-	const real c2 = c * c - s * s, s2 = 2 * s * c; // of 2 v: each term turns by it
+	const real c2 = c * c - s * s, s2 = 2 * s * c; // of 2 v: the turn from a term to the next
 	theta_value sum = { real_of(0), real_of(0), real_of(0), real_of(0) };
 	for (int n = 0; n < t->terms; n++) {
 		sum.theta1 += sign * t->plain[n] * s;
@@ -196,7 +194,7 @@ static inline real theta_slope(const series *t)
 
 // ---- the rotation. k: its constants, OB_THETA_..
 
-// Components of n along the sorted axes where the theta functions are t.
+// Components of n along the sorted axes, from the theta functions t.
 static inline vector direction_at(const real *k, const theta_value *t)
 {
 	const real x = k[OB_THETA_ROOT_KC] * t->theta2, y = t->theta1, r = 1 / root_of(x * x + y * y);
@@ -205,7 +203,7 @@ static inline vector direction_at(const real *k, const theta_value *t)
 			 k[OB_THETA_AMPLITUDE + 2] * root_of(k[OB_THETA_MC] + k[OB_THETA_M] * c * c) };
 }
 
-// The minimal turn that takes n to the third axis; well defined, for n3 >= 0.
+// Minimal turn from n to the third axis; well defined, as n3 >= 0.
 static inline quaternion lift_of(vector n)
 {
 	const real r = 1 / root_of(2 * (1 + n.z));
@@ -239,7 +237,7 @@ static inline int plan_theta(real *k, real *plain, real *even, real *odd, real *
 	k[OB_THETA_AMPLITUDE + 2] = a3;
 	const real bend = i3 * (i2 - i1) / (i1 * (i3 - i2)), outer = s3, inner = s1 * bend;
 	k[OB_THETA_M] = least_of(squared(a1 / a3) * bend, real_of(1));
-	// Where rounding alone decides how near the separatrix is, it is not nearer than the rounding.
+	// If rounding alone decides the distance to the separatrix, that distance is not below the rounding.
 	k[OB_THETA_MC] = least_of(most_of(outer - inner, 1e-17 * (outer + inner)) / squared(a3), real_of(1));
 	const real kc = root_of(k[OB_THETA_MC]), modulus = root_of(k[OB_THETA_M]);
 	k[OB_THETA_ROOT_KC] = root_of(kc);
@@ -253,7 +251,7 @@ static inline int plan_theta(real *k, real *plain, real *even, real *odd, real *
 				       count),
 			   even, odd, plain };
 	k[OB_THETA_SIDE] = chosen(i1 > i2, real_of(1), real_of(-1));
-	// At v = pi / 2 the azimuth turns at L / I2, of which the theta function has its logarithmic slope.
+	// At v = pi / 2 the azimuth turns at L / I2, which includes the logarithmic slope of the theta function.
 	k[OB_THETA_PRECESSION] = size / i2 + k[OB_THETA_SIDE] * k[OB_THETA_SPEED] * theta_slope(&t);
 	real sine, cosine, none, one;
 	sines_of(k[OB_THETA_PHASE], k[OB_THETA_PHASE], &sine, &cosine, &none, &one);
@@ -268,7 +266,7 @@ static inline int plan_theta(real *k, real *plain, real *even, real *odd, real *
 	return t.terms;
 }
 
-// Quaternion about the third axis by the angle whose direction is (c, s).
+// Quaternion of the turn about the third axis by the angle with direction (c, s).
 static inline quaternion half_turn(real c, real s)
 {
 	const mask ahead = c > 0;
@@ -277,7 +275,7 @@ static inline quaternion half_turn(real c, real s)
 	return (quaternion){ chosen(ahead, larger, other), real_of(0), real_of(0), chosen(ahead, other, larger) };
 }
 
-// From the sorted frame back to the body's axes.
+// Turns from the sorted frame back to the body's axes.
 static inline vector unsorted(const real *k, vector v)
 {
 	const real *f = k + OB_THETA_FRAME;
@@ -285,8 +283,8 @@ static inline vector unsorted(const real *k, vector v)
 			 f[6] * v.x + f[7] * v.y + f[8] * v.z };
 }
 
-// Unit norm without bias. 1 / sqrt(norm^2) rounds to 1 within two units of the last digit, so that what the product
-// adds would stay, and the rates turned by it would gain 2e-16 a call; the linear correction does not round so.
+// Unit norm without bias. 1 / sqrt(norm^2) rounds to 1 within two units of the last digit. The error of a product would
+// then stay, and rates turned by it would gain 2e-16 a call; the linear correction does not round so.
 static inline quaternion unit_of(quaternion q)
 {
 	const real r = 1 / root_of(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
