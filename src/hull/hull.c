@@ -11,14 +11,14 @@ static_assert(sizeof(ob_hull_edge) == 4 && OB_HULL_CORNERS_MAX <= UINT8_MAX && O
 	      "indices of corners and faces have a byte");
 
 static const double thinnest = 1e-6; // of the radius
-static const double noise = 1e-13; // of a tensor's trace: off its diagonal, or between two moments
-static const double rounding = 1e-14; // of the radius: a centre that is so near to the origin is the origin
+static const double noise = 1e-13; // relative to a tensor's trace: off-diagonal terms, or differences of moments
+static const double rounding = 1e-14; // of the radius: a centre so near to the origin counts as the origin
 
 static const char too_flat[] = "expected points that are not all in one plane, and no thinner than 1e-6 of their size";
 
 // ---- qhull
 
-// A face as qhull finds it: its corners, in no order.
+// Face as qhull finds it: its corners, in no order.
 typedef struct raw_face {
 	ob_vec3 normal;
 	uint32_t corners;
@@ -26,14 +26,14 @@ typedef struct raw_face {
 } raw_face;
 
 typedef struct raw_hull {
-	ob_vec3 *point; // sorted, each once
+	ob_vec3 *point; // sorted, without duplicates
 	size_t points;
 	bool *is_corner; // [points]
 	uint32_t faces;
 	raw_face face[OB_HULL_FACES_MAX];
 } raw_hull;
 
-// Lexicographic, so that the order in which points are given makes no difference.
+// Lexicographic, so that the order of the given points makes no difference.
 static int by_place(const void *pa, const void *pb)
 {
 	const ob_vec3 *a = pa, *b = pb;
@@ -69,8 +69,8 @@ static void take_faces(qhT *qh, raw_hull *h)
 	}
 }
 
-// Marks the corners among the points; with faces, where every point is one, takes these, too. false: qhull has found no
-// hull.
+// Marks the corners among the points. with_faces: every point is a corner; stores faces, too. Returns false if qhull
+// finds no hull.
 static bool run_qhull(raw_hull *h, bool with_faces)
 {
 	char *said = NULL, command[] = "qhull";
@@ -115,7 +115,7 @@ static void keep_corners(raw_hull *h)
 
 // ---- faces and edges
 
-// The corners of a face in their order round its middle, counterclockwise along the normal.
+// Sorts the corners of a face counterclockwise around its normal.
 static void order_corners(const ob_vec3 *corner, raw_face *f)
 {
 	ob_vec3 middle = ob_v3(0, 0, 0);
@@ -134,7 +134,7 @@ static void order_corners(const ob_vec3 *corner, raw_face *f)
 	}
 }
 
-// Newell's normal of a polygon (Sutherland, Sproull and Schumacker 1974): of all its corners alike.
+// Newell's normal of a polygon (Sutherland, Sproull and Schumacker 1974): weights all corners alike.
 static ob_vec3 newell(const ob_hull *h, uint32_t f)
 {
 	ob_vec3 n = ob_v3(0, 0, 0);
@@ -158,7 +158,7 @@ static void set_planes(ob_hull *h)
 	}
 }
 
-// Each edge is found from the face that has it from the lower to the higher corner; the other has it the other way.
+// Finds each edge from the face that has it from the lower to the higher corner; the other face has it reversed.
 static bool find_edges(ob_hull *h)
 {
 	enum { NONE = OB_HULL_FACES_MAX };
@@ -213,7 +213,7 @@ typedef struct integrals {
 	double second[3][3]; // m^5, of x_i x_j
 } integrals;
 
-// Sums over the tetrahedra of the origin and each triangle of each face: exact.
+// Sums, exactly, over the tetrahedra of the origin and each triangle of each face.
 static integrals integrate(const ob_hull *h)
 {
 	integrals out = { 0 };
@@ -248,7 +248,7 @@ static double snapped(double x, double least)
 	return fabs(x) < least ? 0 : x;
 }
 
-// Jacobi's rotations: the axes of the symmetric matrix m become the columns of r, and m diagonal.
+// Jacobi's rotations: the axes of the symmetric matrix m become the columns of r, and m becomes diagonal.
 static void diagonalise(double m[3][3], double r[3][3])
 {
 	enum { SWEEPS = 30 };
@@ -279,7 +279,7 @@ static void diagonalise(double m[3][3], double r[3][3])
 			}
 }
 
-// Of a rotation (Shepperd 1978).
+// Quaternion of a rotation matrix (Shepperd 1978).
 static ob_quat quaternion_of(double r[3][3])
 {
 	const double trace = r[0][0] + r[1][1] + r[2][2];
@@ -299,7 +299,7 @@ static ob_quat quaternion_of(double r[3][3])
 	return ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
 }
 
-// Moments that are equal but for rounding become equal: such a body turns at a constant rate.
+// Makes moments equal that differ by rounding alone: such a body turns at a constant rate.
 static void make_equal(double m[3][3], double least)
 {
 	const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3;
@@ -315,8 +315,8 @@ static void make_equal(double m[3][3], double least)
 	}
 }
 
-// Moves the corners to the centre of mass, then turns them into the principal frame. from: where the origin of the
-// corners was.
+// Moves the corners to the centre of mass, then turns them into the principal frame. from: former origin of the
+// corners.
 static void set_frame(ob_hull *h, ob_vec3 from)
 {
 	enum { ROUNDS = 2 };
@@ -349,7 +349,7 @@ static void set_frame(ob_hull *h, ob_vec3 from)
 		h->corner[k] = ob_rotate_back(&turn, h->corner[k]);
 }
 
-// Stops where it is more than "enough".
+// Width along n; stops above `enough`.
 static double width_along(const ob_hull *h, ob_vec3 n, double enough)
 {
 	double low = INFINITY, high = -INFINITY;
@@ -360,7 +360,7 @@ static double width_along(const ob_hull *h, ob_vec3 n, double enough)
 	return high - low;
 }
 
-// The least width lies across a face, or across two edges (Houle and Toussaint 1988).
+// Least width: across a face, or across two edges (Houle and Toussaint 1988).
 static double least_width(const ob_hull *h)
 {
 	double least = INFINITY;
@@ -399,7 +399,8 @@ static ob_vec3 middle_of_bounds(const ob_vec3 *point, size_t n)
 	return ob_scale(ob_add(low, high), .5);
 }
 
-// The faces of the corners alone. One that lies on an edge of the others, but for rounding, may turn out to be none.
+// Takes the faces of the corners alone. A corner that lies on an edge of the others, but for rounding, may turn out to
+// be none.
 static bool take_corners(raw_hull *raw)
 {
 	enum { ROUNDS = 4 };
@@ -414,7 +415,7 @@ static bool take_corners(raw_hull *raw)
 	return false;
 }
 
-// The points are moved so that the corners' middle is the origin, where they have all their digits.
+// Moves the points so that the corners' middle is the origin, which preserves most digits.
 static bool build(raw_hull *raw, ob_hull *out, ob_error *e)
 {
 	const ob_vec3 middle = middle_of_bounds(raw->point, raw->points);
