@@ -108,7 +108,7 @@ ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p
 	return ob_world_add(w, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
 }
 
-// The number of the hull, which several bodies may share.
+// Number of the hull; several bodies may share one.
 static uint32_t add_hull(ob_world *w, const ob_hull *h)
 {
 	for (uint32_t i = 0; i < w->hulls; i++)
@@ -154,7 +154,8 @@ void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed)
 	}
 }
 
-// Of the volume of a box with these half extents: a cylinder as high as that, or a capsule twice as long as thick.
+// Size with the volume of a box of these half extents: a cylinder of the same height, or a capsule twice as long as
+// thick.
 static ob_vec3 size_of_volume(ob_shape shape, ob_vec3 half)
 {
 	const double radius = ob_pow(8 * half.x * half.y * half.z / (10. / 3 * M_PI), 1. / 3);
@@ -171,7 +172,7 @@ static ob_world_body solid_of_any_size(ob_world *w, ob_shape shape, ob_vec3 p, u
 	return b;
 }
 
-// The side of the square that n stand in
+// Side of the square that holds n bodies.
 static uint32_t side_of(uint32_t n)
 {
 	return (uint32_t)ceil(sqrt(n));
