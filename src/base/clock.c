@@ -52,7 +52,7 @@ ob_hang_clock ob_hang_clock_start(void)
 
 double ob_hang_clock_tick(ob_hang_clock *c)
 {
-	static const double most = .2; // s from one call to the next
+	static const double most = .2; // s between two calls
 	double now = ob_clock_wall(), past = now - c->seen;
 	c->seen = now;
 	c->waited += past < most ? past : most;

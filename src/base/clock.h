@@ -9,19 +9,19 @@ double ob_clock_wall(void); // s, monotonic
 uint64_t ob_clock_ns(void); // the same clock, ns
 double ob_clock_thread_cpu(void); // s, CPU of the calling thread
 double ob_clock_process_cpu(void);
-// ns of CPU used by thread tid / process pid of this machine; 0 when it is gone
+// CPU time (ns) of thread tid / process pid of this machine; 0 if it has ended
 uint64_t ob_clock_cpu_of_thread(pid_t tid);
 uint64_t ob_clock_cpu_of_process(pid_t pid);
 
-// The hang clock: how long a wait has lasted, of the time in which this process ran. Where it stood still between two
-// calls of tick, because it was stopped (Ctrl-Z) or the machine was suspended, only as much counts as lies between
-// calls at their usual pace, a fifth of a second. So tick must be called more often than that while one waits.
+// Hang clock: duration of a wait, in time in which this process ran. A pause between two calls of tick (Ctrl-Z, machine
+// suspended) counts as a fifth of a second at most, the longest usual pace of calls. Call tick more often than that
+// while waiting.
 typedef struct ob_hang_clock {
 	double seen, waited; // s
 } ob_hang_clock;
 
 ob_hang_clock ob_hang_clock_start(void);
-// Seconds waited so far.
+// Returns the seconds waited so far.
 double ob_hang_clock_tick(ob_hang_clock *c);
 
 #endif

@@ -59,7 +59,7 @@ void ob_csv_end(ob_csv *c)
 	c->filled = false;
 }
 
-// The cell at r->at without its quotes; *more tells whether another follows in the same record. NULL: not CSV.
+// Returns the cell at r->at without its quotes. *more: another cell follows in the same record. NULL: not CSV.
 static char *read_cell(ob_csv_reader *r, bool *more)
 {
 	char *begin = r->at, *to = r->at, *from = r->at;

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-// Starts as { .f = file }; each cell puts the comma before itself. Errors stay in the file (ferror).
+// Start with { .f = file }; each cell writes the comma before itself. Errors stay in the file (ferror).
 typedef struct ob_csv {
 	FILE *f;
 	bool filled; // the record has a cell
@@ -15,21 +15,21 @@ typedef struct ob_csv {
 
 void ob_csv_text(ob_csv *c, const char *text);
 void ob_csv_count(ob_csv *c, uint64_t n);
-// As many digits (15 to 17) as it takes to read the same bits back; NaN is an empty cell.
+// Writes the fewest digits (15 to 17) that read back as the same bits; NaN is an empty cell.
 void ob_csv_number(ob_csv *c, double v);
-// Several numbers in one cell, with a space between.
+// Writes several numbers into one cell, with spaces between.
 void ob_csv_numbers(ob_csv *c, const double *v, size_t count);
-void ob_csv_end(ob_csv *c); // of the record
+void ob_csv_end(ob_csv *c); // ends the record
 
-// Starts as { .at = text }. The text, which ends with 0, is taken apart where it stands.
+// Start with { .at = text }. The text ends with 0 and is split in place.
 typedef struct ob_csv_reader {
-	char *at; // what has not been read; *at is 0 after the last record
-	int record; // number of the record that was read last, from 1
+	char *at; // unread text; *at is 0 after the last record
+	int record; // number of the last record read, from 1
 } ob_csv_reader;
 
-// Reads the next record (line ends: LF, CR or CR LF); cell[i], i < min(cells, max), point into the text. Returns how
-// many cells the record has (may exceed max); 0 where it is not CSV: a quoted cell does not end, or goes on behind its
-// quote.
+// Reads the next record (line ends: LF, CR or CR LF); cell[i], i < min(cells, max), point into the text. Returns the
+// number of cells in the record (may exceed max); 0 if it is not CSV: an unterminated quoted cell, or text behind its
+// closing quote.
 size_t ob_csv_read(ob_csv_reader *r, char **cell, size_t max);
 
 #endif

@@ -1,5 +1,5 @@
-// A hash of bytes that is the same on every machine: FNV-1a of 64 bits (Fowler, Noll and Vo). It tells what differs by
-// chance, not what somebody has made to look the same. Pure function.
+// A hash of bytes that is the same on every machine: FNV-1a of 64 bits (Fowler, Noll and Vo). It detects accidental
+// differences, not forged ones. Pure function.
 #ifndef OB_BASE_HASH_H
 #define OB_BASE_HASH_H
 
@@ -8,7 +8,7 @@
 
 #define OB_HASH_BEGIN UINT64_C(0xcbf29ce484222325) // the hash of nothing
 
-// Of what "hash" is the hash of, and these bytes behind it.
+// Continues a hash with these bytes.
 static inline uint64_t ob_hash_on(uint64_t hash, const void *bytes, size_t size)
 {
 	for (const unsigned char *at = bytes; size > 0; size--)

@@ -9,7 +9,7 @@
 
 static int notes = 1;
 
-// One write per line, so that lines of several processes do not mix.
+// One write a line, so that lines of several processes do not mix.
 static void put(const char *kind, const char *format, va_list args)
 {
 	char line[1200];

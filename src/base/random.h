@@ -1,6 +1,5 @@
 // Random numbers that are the same on every machine: SplitMix64 (Steele, Lea and Flood 2014). The state is a single
-// number, which every draw changes; any value is a good seed.
-// Thread-safety: one thread per state.
+// number, changed by every draw; any value is a good seed. Thread-safety: one thread per state.
 #ifndef OB_BASE_RANDOM_H
 #define OB_BASE_RANDOM_H
 

@@ -11,7 +11,7 @@ static int smaller(int a, int b)
 
 int ob_spelling_distance(const char *a, const char *b)
 {
-	int rows[3][LENGTH_MAX + 1]; // the last three lines of the table of distances of prefixes
+	int rows[3][LENGTH_MAX + 1]; // last three rows of the table of distances of prefixes
 	int na = (int)strnlen(a, LENGTH_MAX), nb = (int)strnlen(b, LENGTH_MAX);
 	int *before = rows[0], *above = rows[1], *line = rows[2];
 	for (int j = 0; j <= nb; j++)
@@ -32,7 +32,7 @@ int ob_spelling_distance(const char *a, const char *b)
 	return line[nb];
 }
 
-// distance: from which on a word cannot be a slip of the hand
+// distance: too many edits for a slip of the hand
 ob_spelling ob_spelling_start(const char *word)
 {
 	size_t n = strlen(word);
@@ -42,11 +42,11 @@ ob_spelling ob_spelling_start(const char *word)
 void ob_spelling_offer(ob_spelling *s, const char *known)
 {
 	int d = ob_spelling_distance(s->word, known);
-	// A word that was cut short ("dur" for "duration") is near, however much is missing.
+	// A truncated word ("dur" for "duration") is near, at any length of the missing part.
 	size_t n = strlen(s->word);
 	if (n >= 3 && strncmp(s->word, known, n) == 0)
 		d = smaller(d, 1);
-	// The same number of edits: the first in the order of the alphabet, so that the answer is always the same.
+	// Equal distance: prefer alphabetical order, so that the answer is always the same.
 	if (d < s->distance || (s->best && d == s->distance && strcmp(known, s->best) < 0)) {
 		s->best = known;
 		s->distance = d;

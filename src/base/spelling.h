@@ -7,15 +7,15 @@
 #define OB_BASE_SPELLING_H
 
 typedef struct ob_spelling {
-	const char *word; // as it was written
-	const char *best; // the nearest so far; NULL = none is near enough to be meant
+	const char *word; // as written
+	const char *best; // the nearest so far; NULL: none is near enough
 	int distance;     // edits from word to best
 } ob_spelling;
 
 ob_spelling ob_spelling_start(const char *word);
 void ob_spelling_offer(ob_spelling *s, const char *known);
 
-// How many insertions, deletions, replacements and swaps of neighbours turn a into b (optimal string alignment,
+// Number of insertions, deletions, replacements and swaps of neighbours that turn a into b (optimal string alignment,
 // Damerau 1964), both cut at 63 bytes.
 int ob_spelling_distance(const char *a, const char *b);
 

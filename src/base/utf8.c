@@ -17,7 +17,7 @@ size_t ob_utf8_length(const char *s)
 
 uint32_t ob_utf8_decode(const char *s, size_t *bytes)
 {
-	static const unsigned char payload[] = { 0, 0x7f, 0x1f, 0x0f, 0x07 }; // of the first byte, by length
+	static const unsigned char payload[] = { 0, 0x7f, 0x1f, 0x0f, 0x07 }; // bits of the first byte, by length
 	size_t n = ob_utf8_length(s);
 	*bytes = n ? n : 1;
 	if (!n)
@@ -50,7 +50,7 @@ bool ob_utf8_is_plain(uint32_t code)
 
 void ob_utf8_make_plain(char *text)
 {
-	while (*text >= ' ' && *text < 0x7f) // as most texts to their end
+	while (*text >= ' ' && *text < 0x7f) // fast path: most texts are plain ASCII
 		text++;
 	char *to = text;
 	for (const char *from = text; *from;) {
