@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define UNSET UINT32_MAX // of counts, choices and switches; NaN of reals
+#define UNSET UINT32_MAX // in counts, choices and switches; NaN in reals
 
 #define MEMBER(member) .offset = offsetof(ob_run_settings, member)
 
@@ -101,7 +101,7 @@ void ob_run_settings_overlay(ob_run_settings *s, const ob_run_settings *layer)
 	}
 }
 
-// What a monolith does not have.
+// Rejects settings that a monolith does not support.
 static bool check_monolith(const ob_run_settings *layer, ob_error *e)
 {
 	static const ob_setting_id of_objects[] = { OB_SETTING_TOLERANCE, OB_SETTING_SOLVER, OB_SETTING_LAG,
@@ -120,7 +120,7 @@ bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, o
 	if (asked.monolith) {
 		if (!check_monolith(layer, e))
 			return false;
-		// as environments usually step: once a step
+		// once a step, as usual in virtual environments
 		s->substeps = 1;
 		s->iterations = OB_DEFAULT_MONOLITH_ITERATIONS;
 	}
@@ -138,7 +138,7 @@ bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, o
 		s->lag = 0;
 	}
 	if (s->tolerance > 0 && s->integrator == OB_INTEGRATOR_ODE) {
-		// with n substeps ODE's stepper falls short by g H^2 / (2 n) in a step of length H
+		// With n substeps, ODE's stepper falls short by g H^2 / (2 n) in a step of length H.
 		double short_by = .5 * ob_norm(s->gravity) * s->step_length * s->step_length;
 		while (short_by / s->substeps > s->tolerance && 2 * s->substeps <= OB_MAX_SUBSTEPS)
 			s->substeps *= 2;
@@ -167,10 +167,10 @@ static bool in_range(const ob_run_settings *s, const ob_setting *t)
 	const uint32_t count = t->kind == OB_SETTING_REAL ? 0 : *(const uint32_t *)at;
 	switch (t->kind) {
 	case OB_SETTING_REAL:
-		if (t->offset == offsetof(ob_run_settings, tolerance) && real == 0) // none
+		if (t->offset == offsetof(ob_run_settings, tolerance) && real == 0) // no tolerance
 			return true;
 		return real >= t->least && real <= t->most && !(t->above && real == t->least);
-	case OB_SETTING_COUNT: // more substeps than one may ask for are what ODE's stepper may need
+	case OB_SETTING_COUNT: // ODE's stepper may need more substeps than a caller may request
 		return count >= t->least &&
 		       count <= (t->offset == offsetof(ob_run_settings, substeps) ? OB_MAX_SUBSTEPS : t->most);
 	case OB_SETTING_CHOICE:
@@ -184,7 +184,7 @@ bool ob_run_settings_check(const ob_run_settings *s, ob_error *e)
 {
 	if (!isfinite(ob_norm2(s->gravity)))
 		return ob_fail(e, "gravity is not finite");
-	if (s->fault.probability != 0) // that is asked for anew
+	if (s->fault.probability != 0) // drawn anew
 		return ob_fail(e, "a fault is asked for");
 	for (int i = 0; i < OB_SETTINGS; i++)
 		if (!in_range(s, &ob_setting_table[i]))
