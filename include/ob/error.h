@@ -1,16 +1,16 @@
-// One way to say what went wrong: a function that can fail takes an ob_error and fills in one line for a
-// person, with the place and the remedy. NULL is allowed where the caller does not want the text.
+// Error texts: a function that can fail takes an ob_error and fills in one line for a person, with the place and the
+// remedy. Callers that do not want the text pass NULL.
 #ifndef OB_ERROR_H
 #define OB_ERROR_H
 
-#pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
+#pragma GCC visibility push(default) // libobsim exports the declarations of its installed headers alone
 
 typedef struct ob_error {
 	char text[1024];
 } ob_error;
 
-// printf into e->text, one line of UTF-8 in which nothing controls a terminal: names and paths in it may be anybody's.
-// Returns 0, so that "return ob_fail(e, ...)" works for bool, and for pointers as NULL
+// Prints into e->text: one line of UTF-8 without characters that control a terminal, as names and paths in it may come
+// from anywhere. Returns 0, so that "return ob_fail(e, ...)" works for bool, and for pointers as NULL.
 int ob_fail(ob_error *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #pragma GCC visibility pop

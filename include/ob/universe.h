@@ -1,14 +1,12 @@
-// The universe as readers see it: what exists, where it is, how it moves.
+// The universe for readers: existence, poses and motions of objects.
 //
-// A universe is one block of POSIX shared memory, made by a host process. It holds, for each object, a
-// passport (what it is; changes rarely) and a motion (how it moves, valid from an instant on). A reader
-// attaches read-only, copies what it needs without locks, and evaluates motions at its own time with the
-// functions of <ob/motion.h>.
+// A universe is one block of POSIX shared memory, made by a host process. For each object it holds body properties
+// (ob_passport; they rarely change) and a motion (valid from an instant on). A reader attaches read-only, copies
+// records without locks, and evaluates motions at its own time with the functions of <ob/motion.h>.
 //
-// Thread-safety: any number of threads and processes may read at once; an ob_universe handle itself is
-// immutable after attach and may be shared between threads. Readers never block a writer and never write.
-// Everything that is read is validated; no byte of the table can crash a reader.
-// Units: SI, radians. Frame: right-handed world frame, z up.
+// Thread-safety: any number of threads and processes may read at once; an ob_universe handle itself is immutable after
+// attach and may be shared between threads. Readers never block a writer and never write. All data read is validated;
+// no byte of the table can crash a reader. Units: SI, radians. Frame: right-handed world frame, z up.
 #ifndef OB_UNIVERSE_H
 #define OB_UNIVERSE_H
 
@@ -20,9 +18,9 @@
 #include <ob/vec.h>
 
 #define OB_NAME_MAX 48 // bytes of a universe's or object's name, with the final 0
-#define OB_DEATH_MAX 248 // bytes of what is said of a simulator's death, with the final 0
+#define OB_DEATH_MAX 248 // bytes of the description of a simulator's death, with the final 0
 
-#pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
+#pragma GCC visibility push(default) // libobsim exports the declarations of its installed headers alone
 
 typedef enum ob_shape {
 	OB_SHAPE_NONE,
@@ -31,28 +29,30 @@ typedef enum ob_shape {
 	OB_SHAPE_PLANE,    // infinite; through the origin of its pose, solid below its +z axis; always static
 	OB_SHAPE_CAPSULE,  // size.x = radius, size.y = half length of the cylinder part; axis = body z
 	OB_SHAPE_CYLINDER, // size.x = radius, size.y = half length; axis = body z
-	OB_SHAPE_HULL,     // of points (ob/hull.h); size = radius of the ball that holds it, half its least width, radius
-			   // of the ball in it, both balls about the centre of mass
+	// of points (ob/hull.h); size = radius of the bounding ball, half the least width, radius of the inscribed
+	// ball, both balls about the centre of mass
+	OB_SHAPE_HULL,
 } ob_shape;
 
 enum { // ob_passport.flags
 	OB_OBJECT_PRESENT = 1 << 0, // exists now; a slot without it is free
 	OB_OBJECT_STATIC = 1 << 1,  // never moves; mass and inertia are 0
 	OB_OBJECT_FROZEN = 1 << 2,  // static since its simulator died
-	OB_OBJECT_KINEMATIC = 1 << 3, // moves as it is told, whatever touches it; mass and inertia are 0
-	OB_OBJECT_PRESCRIBED = OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC, // no force moves it
-	OB_OBJECT_MESH_COLOUR = 1 << 4, // its mesh's colours are shown, not its own
-	OB_OBJECT_MESH_SURFACE = 1 << 5, // the same of roughness and metal
+	OB_OBJECT_KINEMATIC = 1 << 3, // follows a prescribed motion, unaffected by contacts; mass and inertia are 0
+	OB_OBJECT_PRESCRIBED = OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC, // unaffected by forces
+	OB_OBJECT_MESH_COLOUR = 1 << 4, // shown with its mesh's colours, not its own
+	OB_OBJECT_MESH_SURFACE = 1 << 5, // shown with its mesh's roughness and metal
 };
 
-// What an object is. 184 bytes.
+// Body properties of an object. 184 bytes.
 typedef struct ob_passport {
 	uint32_t id;          // index of the object in the table, from 0
-	uint32_t generation;  // grows each time the slot is given to another object
+	uint32_t generation;  // grows each time the slot is reused for another object
 	uint32_t flags;       // OB_OBJECT_*
-	uint8_t shape;        // ob_shape: as what it collides, and what it looks like unless it has a mesh
-	uint8_t mesh;         // 1 + the number of the scene's mesh that it looks like; 0 = none. Who draws has the meshes
-	uint16_t hull;        // of a hull: which of the universe's (ob_universe_get_hull)
+	uint8_t shape;        // ob_shape: collision shape; also drawn unless it has a mesh
+	// 1 + the number of the scene's mesh that is drawn instead; 0 = none. Viewers load the meshes
+	uint8_t mesh;
+	uint16_t hull;        // OB_SHAPE_HULL: number of the universe's hull (ob_universe_get_hull)
 	ob_vec3 size;         // m, see ob_shape
 	double mass;          // kg; 0 = static
 	ob_vec3 inertia;      // kg m^2, principal moments in the body frame; 0 = static
@@ -62,25 +62,27 @@ typedef struct ob_passport {
 	char name[OB_NAME_MAX];
 	union {
 		ob_vec3 force;            // N, world frame: constant, acts at the centre
-		ob_vec3 surface_velocity; // m/s, body frame, of what is prescribed: at which its surface runs, as a belt's does
+		ob_vec3 surface_velocity; // m/s, body frame, prescribed objects: speed of the surface, as of a belt
 	};
-	float roughness;      // 0..1, of its surface to the eye: 0 = polished, 1 = matt
-	float metal;          // 0..1: whether it reflects as metals do, in its own colour
+	float roughness;      // 0..1, of its surface when drawn: 0 = polished, 1 = matt
+	float metal;          // 0..1: 1 = reflects as metals do, in its own colour
 } ob_passport;
 
 enum { // ob_motion.flags
-	OB_MOTION_FREE = 1 << 0,   // in free flight: up to t0, what was published before holds exactly
-	OB_MOTION_ASLEEP = 1 << 1, // asleep: every body of its island had been slow for long enough
-	OB_MOTION_STEADY = 1 << 2, // its contacts hold it, and the solver changed nothing about it when the last step ended
-	OB_MOTION_EQUILIBRIUM = 1 << 3, // in equilibrium: it is not solved again until something touches it
+	OB_MOTION_FREE = 1 << 0,   // in free flight: up to t0, the previous motion holds exactly
+	OB_MOTION_ASLEEP = 1 << 1, // asleep: all bodies of its island have been slow for long enough
+	// held by its contacts; the solver changed nothing about it at the end of the last step
+	OB_MOTION_STEADY = 1 << 2,
+	OB_MOTION_EQUILIBRIUM = 1 << 3, // in equilibrium: skipped by the solver until something touches it
 	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_EQUILIBRIUM, // either: it stays where it is
-	OB_MOTION_SWINGS = 1 << 4, // the centre goes about an ellipse, or to and fro, with a frequency; kinematic objects alone
+	// the centre moves along an ellipse, or to and fro, with a frequency; kinematic objects alone
+	OB_MOTION_SWINGS = 1 << 4,
 };
 
-// How an object moves from t0 on, unless touched. 176 bytes: the payload of one slot version.
+// Motion of an object from t0 on, unless a contact changes it. 176 bytes: the payload of one slot version.
 typedef struct ob_motion {
-	double t0;          // s, the instant of the state below: of a flight, when it began
-	double valid_until; // s, the closed form holds so long, unless another object interferes
+	double t0;          // s, the instant of the state below; start of a flight
+	double valid_until; // s, end of validity of the closed form, unless another object interferes
 	ob_vec3 p;          // m, centre of mass
 	ob_quat q;          // body to world
 	ob_vec3 v;          // m/s
@@ -91,13 +93,13 @@ typedef struct ob_motion {
 	uint32_t flags;     // OB_MOTION_*
 	union {
 		struct {
-			float rest_time; // s, rest timer: how long it has been slower than the sleeping threshold
-			uint32_t island; // lowest id of the island in which it was solved
+			float rest_time; // s, rest timer: time below the sleeping threshold
+			uint32_t island; // lowest id in the island that solved it
 		};
 		double frequency; // rad/s, if it swings: then a is the acceleration at t0
 	};
-	float reach;        // m, how much of that path each step adds at most, until something else is published
-	uint32_t substeps;  // that its island asks for in the next step, where a tolerance chooses; 0 = none yet
+	float reach;        // m, most that each step adds to that path, until the next publication
+	uint32_t substeps;  // requested by its island for the next step, if a tolerance chooses; 0 = none yet
 } ob_motion;
 
 typedef enum ob_universe_state {
@@ -105,10 +107,10 @@ typedef enum ob_universe_state {
 	OB_UNIVERSE_RUNNING,
 	OB_UNIVERSE_FINISHED, // ended as planned; the table stays as it was at the end
 	OB_UNIVERSE_FAILED,
-	OB_UNIVERSE_LOST,     // another program has cut its memory short: nothing of it can be read any more
+	OB_UNIVERSE_LOST,     // another program has truncated its memory: nothing of it can be read any more
 } ob_universe_state;
 
-// Facts of a run that do not change once it has started, and its clock.
+// Facts of a run that are constant once it has started, and its clock.
 typedef struct ob_universe_info {
 	char name[OB_NAME_MAX];
 	char isolation[16];   // "thread" or "process"
@@ -124,10 +126,10 @@ typedef struct ob_universe_info {
 	ob_universe_state state;
 	uint32_t awake;       // dynamic objects that are not asleep
 	uint32_t pairs;       // pairs whose bounds overlap
-	uint32_t islands;     // groups that were solved together in the last step
+	uint32_t islands;     // groups solved together in the last step
 	uint32_t deaths;      // times that simulators died or stalled
-	uint32_t frozen;      // objects that stay where they are since then (OB_OBJECT_FROZEN)
-	char last_death[OB_DEATH_MAX]; // which it was, and of what; "" = none
+	uint32_t frozen;      // objects frozen by them (OB_OBJECT_FROZEN)
+	char last_death[OB_DEATH_MAX]; // the simulator and its cause of death; "" = none
 	uint32_t hulls;       // hulls are numbered 0 .. hulls-1; more may come
 	uint64_t created;     // ns since 1970: no other universe has the same name and instant
 } ob_universe_info;
@@ -139,7 +141,7 @@ typedef struct ob_worker_info {
 	uint64_t cpu_ns;     // CPU time used so far, refreshed by the host about twice a second
 } ob_worker_info;
 
-// A point where two objects touch, for overlays.
+// Contact point of two objects, for overlays.
 typedef struct ob_contact_point {
 	uint32_t a, b;       // ids, a < b
 	ob_vec3 position;    // m, world
@@ -153,32 +155,33 @@ typedef struct ob_universe ob_universe;
 // universe, or another layout version.
 ob_universe *ob_universe_attach(const char *name, ob_error *e);
 void ob_universe_detach(ob_universe *u); // NULL is allowed
-// Whether the host of an attached universe, or what cleans up after it, is still there; otherwise it stays as it is.
+// True while the host of an attached universe, or the process that cleans up after it, exists. Otherwise the universe
+// no longer changes.
 bool ob_universe_is_hosted(const ob_universe *u);
 
-// Names of the universes on this machine, newest first; returns how many there are (may exceed max).
+// Names of the universes on this machine, newest first. Returns their number (may exceed max).
 size_t ob_universe_list(char names[][OB_NAME_MAX], size_t max);
 
-// To be called at the beginning of each look at the universe: it also asks the system whether all of the universe's memory
-// is still there. If not, the state is OB_UNIVERSE_LOST from now on, and all that follows returns false, or 0. Memory that
-// is cut short in the middle of a look, by a program of the same user, ends the reader (SIGBUS).
+// Call at the beginning of each read of the universe: it also checks with the system that all of the universe's memory
+// exists. If not, the state is OB_UNIVERSE_LOST from now on, and all functions below return false, or 0. If a program
+// of the same user truncates the memory during a read, the reader ends (SIGBUS).
 void ob_universe_get_info(const ob_universe *u, ob_universe_info *out);
-// false: no such worker
+// Returns false if there is no such worker.
 bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out);
-// The worker in which the object's simulator lives: which solved its island last, or to which it was moved; its own, where
-// each object has one. false: it has none, as what no force moves, or no worker has solved it yet.
+// Home worker of the object's simulator: the one that solved its island last, or to which it was moved; its own, if
+// each object has one. Returns false without one: objects unaffected by forces, or not yet solved.
 bool ob_universe_get_home(const ob_universe *u, uint32_t id, uint32_t *worker);
-// false: no object has this id now
+// Returns false if no object has this id now.
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out);
-// Another number after each change of the passport, so that who has read it knows when to look again; 0: there is none.
+// Version of the body properties: changes with them, so a reader can tell that its copy is outdated; 0: no such object.
 uint64_t ob_universe_get_passport_version(const ob_universe *u, uint32_t id);
-// The newest published motion; never torn. false: no such object, or its bytes do not make sense.
+// Newest published motion; never torn. Returns false if there is no such object, or its bytes are implausible.
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out);
-// The fat AABB (m, xmin ymin zmin xmax ymax zmax) that holds the object until it publishes another; a plane's is infinite.
-// Each number is whole, but while the universe runs a reader may find some numbers of a new box beside some of the old.
-// false: no such object, or its numbers do not make sense.
+// Fat AABB (m, xmin ymin zmin xmax ymax zmax) that contains the object until it publishes another; a plane's is
+// infinite. Each number is whole, but while the universe runs a reader may get some numbers of a new box beside some of
+// the old. Returns false if there is no such object, or its numbers are implausible.
 bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6]);
-// Contact points of the last completed step; returns how many there are (may exceed max).
+// Contact points of the last completed step; returns their number (may exceed max).
 size_t ob_universe_get_contacts(const ob_universe *u, ob_contact_point *out, size_t max);
 
 #pragma GCC visibility pop

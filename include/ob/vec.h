@@ -1,7 +1,7 @@
-// Vectors, quaternions and 3x3 matrices in double precision: the types that every module speaks.
+// Vectors, quaternions and 3x3 matrices in double precision, used by all modules.
 //
-// Frames: right-handed, z up, SI units. A quaternion (w, x, y, z) of norm 1 turns body coordinates
-// into world coordinates. Matrices are row-major. All functions are pure and thread-safe.
+// Frames: right-handed, z up, SI units. A quaternion (w, x, y, z) of norm 1 turns body coordinates into world
+// coordinates. Matrices are row-major. All functions are pure and thread-safe.
 #ifndef OB_VEC_H
 #define OB_VEC_H
 
@@ -12,8 +12,8 @@ typedef struct ob_vec3 {
 	double x, y, z;
 } ob_vec3;
 
-// The smaller, the larger; of equal ones b, and where one is no number, the other. fmin and fmax are calls of the library
-// where the compiler does not know which zero they return, and all registers are saved around them.
+// The smaller, the larger; b if they are equal; if one is NaN, the other. The compiler turns fmin and fmax into library
+// calls, as the zero that they return is not specified, and all registers are saved around these calls.
 static inline double ob_min(double a, double b)
 {
 	const double least = a < b ? a : b;
@@ -75,7 +75,7 @@ static inline ob_mat3 ob_quat_matrix(ob_quat q)
 		{ 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) },
 	} };
 }
-// M v: body to world, for the matrix of a pose
+// M v: body to world, M the matrix of a pose
 static inline ob_vec3 ob_rotate(const ob_mat3 *r, ob_vec3 v)
 {
 	return ob_v3(r->m[0][0] * v.x + r->m[0][1] * v.y + r->m[0][2] * v.z,
@@ -89,10 +89,10 @@ static inline ob_vec3 ob_rotate_back(const ob_mat3 *r, ob_vec3 v)
 		     r->m[0][1] * v.x + r->m[1][1] * v.y + r->m[2][1] * v.z,
 		     r->m[0][2] * v.x + r->m[1][2] * v.y + r->m[2][2] * v.z);
 }
-// Column i: the body's axis i in world coordinates
+// Column i: the body's axis i in world coordinates.
 static inline ob_vec3 ob_column(const ob_mat3 *r, int i) { return ob_v3(r->m[0][i], r->m[1][i], r->m[2][i]); }
 
-#pragma GCC visibility push(default) // libobsim shows what its installed headers declare, nothing else
+#pragma GCC visibility push(default) // libobsim exports the declarations of its installed headers alone
 
 // q turned by the rotation vector th (rad, world frame): exp(th) q, normalised
 ob_quat ob_quat_turn(ob_quat q, ob_vec3 th);
