@@ -2,16 +2,17 @@
 
 #include <math.h>
 
-// The joints of half an arch, from the crown down: what lies between the crown and a joint, and where the joint is.
+// Joints of half an arch, from the crown down: the part between the crown and each joint, and the joint's place.
 enum { JOINTS_MAX = 512 };
 typedef struct half_arch {
 	int joints;
 	double inner, outer; // m, radii
 	double sine[JOINTS_MAX], cosine[JOINTS_MAX];
-	double weight[JOINTS_MAX], moment[JOINTS_MAX]; // for a unit of weight an area: m^2, m^3 about the centre
+	// of that part, with a unit of weight per area: m^2, m^3 about the centre
+	double weight[JOINTS_MAX], moment[JOINTS_MAX];
 } half_arch;
 
-// A voussoir is a quadrilateral: its area, and its moment about the vertical through the centre, by triangles.
+// Voussoirs are quadrilaterals: computes their areas, and moments about the vertical through the centre, by triangles.
 static half_arch cut(int voussoirs, double radius, double thickness)
 {
 	half_arch h = { .joints = voussoirs / 2, .inner = radius - .5 * thickness, .outer = radius + .5 * thickness };
@@ -33,8 +34,8 @@ static half_arch cut(int voussoirs, double radius, double thickness)
 }
 
 // The thrust crosses the crown at a moment Q about the centre, and each joint at (Q + moment) / (weight cosine + thrust
-// sine) from it. Returns how much the least Q that joints ask for is above the greatest that they allow, for a
-// horizontal thrust.
+// sine) from it. Returns, for a horizontal thrust, the largest lower bound of Q minus the smallest upper bound over all
+// joints.
 static double excess(const half_arch *h, double thrust)
 {
 	double least = h->inner * thrust, greatest = h->outer * thrust;

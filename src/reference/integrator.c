@@ -5,7 +5,8 @@
 
 enum { STAGES = 7, STEPS = 1000000 };
 
-// Dormand and Prince's tableau: the last stage is the solution of order 5; "error" is what it differs from that of 4.
+// Dormand and Prince's tableau: the last stage is the solution of order 5; "error" is its difference from the solution
+// of order 4.
 static const double tableau[STAGES][STAGES - 1] = {
 	{ 0 },
 	{ 1. / 5 },
@@ -18,7 +19,7 @@ static const double tableau[STAGES][STAGES - 1] = {
 static const double error_weight[STAGES] = { 71. / 57600,      0,          -71. / 16695, 71. / 1920,
 					     -17253. / 339200, 22. / 525., -1. / 40 };
 
-// One step of length h: fills next[], and the largest error of a component over the tolerance.
+// One step of length h: fills next[]; returns the largest ratio of a component's error to the tolerance.
 static double try_step(const ob_reference_system *s, double h, const double *y, double *next)
 {
 	double rate[STAGES][OB_REFERENCE_STATES], worst = 0;

@@ -20,7 +20,7 @@ double ob_reference_apex(double height, double e, int k)
 
 double ob_reference_impact_time(double height, double g, double e, int k)
 {
-	double falls = 1, power = 1; // in times of the first fall
+	double falls = 1, power = 1; // in units of the first fall
 	for (int i = 1; i < k; i++) {
 		power *= e;
 		falls += 2 * power;
@@ -30,7 +30,8 @@ double ob_reference_impact_time(double height, double g, double e, int k)
 
 ob_reference_pair ob_reference_impact(double mass_a, double mass_b, ob_reference_pair before, double e)
 {
-	double share_a = isinf(mass_b) ? 1 : isinf(mass_a) ? 0 : mass_b / (mass_a + mass_b); // of the change
+	// share of the velocity change
+	double share_a = isinf(mass_b) ? 1 : isinf(mass_a) ? 0 : mass_b / (mass_a + mass_b);
 	double share_b = isinf(mass_b) ? 0 : isinf(mass_a) ? 1 : mass_a / (mass_a + mass_b);
 	double change = (1 + e) * (before.b - before.a);
 	return (ob_reference_pair){ before.a + share_a * change, before.b - share_b * change };
@@ -52,8 +53,7 @@ double ob_reference_friction_angle(double mu)
 	return atan(mu);
 }
 
-// The first instant after from + fine / 2 at which a function crosses 0; until: it does not before. Sampled, then
-// halved.
+// First instant after from + fine / 2 at which a function crosses 0; until: none before. Samples, then bisects.
 static double crossing(double (*f)(const double *of, double t), const double *of, double from, double until,
 		       double fine)
 {
@@ -71,13 +71,14 @@ static double crossing(double (*f)(const double *of, double t), const double *of
 	return until;
 }
 
-// of: velocity of the block at "since", its acceleration, since, velocity amplitude of the table, its frequency
+// Parameters: velocity of the block at "since", its acceleration, since, velocity amplitude of the table, its
+// frequency.
 static double slip_at(const double *of, double t)
 {
 	return of[0] + of[1] * (t - of[2]) - of[3] * cos(of[4] * t);
 }
 
-// of: the table's acceleration amplitude, its frequency, and the limit: negative when friction holds no more
+// Parameters: the table's acceleration amplitude, its frequency, and the limit. Negative: friction no longer holds.
 static double grip_at(const double *of, double t)
 {
 	return of[2] - fabs(of[0] * sin(of[1] * t));
@@ -91,7 +92,7 @@ ob_reference_shaken ob_reference_shaken_block(double amplitude, double frequency
 	double now = 0;
 	bool sticks = fabs(v - fastest) < 1e-12 * fastest;
 	while (now < t) {
-		const double table = fastest * frequency; // of its acceleration, -table sin
+		const double table = fastest * frequency; // its acceleration is -table sin
 		if (sticks) {
 			const double grip[3] = { table, frequency, limit };
 			const double end =
@@ -104,7 +105,7 @@ ob_reference_shaken ob_reference_shaken_block(double amplitude, double frequency
 				break;
 		}
 		const double ahead =
-			fastest * cos(frequency * (now + fine)) - b.v; // of the table; it drags the block along
+			fastest * cos(frequency * (now + fine)) - b.v; // the table's; it drags the block along
 		const double slip[5] = { b.v, ahead > 0 ? limit : -limit, now, fastest, frequency };
 		const double end = crossing(slip_at, slip, now, t, fine), s = end - now;
 		b.x += b.v * s + .5 * slip[1] * s * s;

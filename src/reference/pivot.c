@@ -10,7 +10,7 @@ typedef struct swing {
 	double alpha, c, k, from;
 } swing;
 
-// With angle = from (1 - s^2): the rate vanishes like s where it starts from rest.
+// Substitutes angle = from (1 - s^2): the rate vanishes like s at a start from rest.
 static double time_element(double s, const void *with)
 {
 	const swing *w = with;

@@ -4,12 +4,12 @@
 
 #include "reference/integrator.h"
 
-// Means over the surface: of the direction u / |u| from the instantaneous centre, and of the distance |u|
+// Means over the surface: direction u / |u| from the instantaneous centre, and distance |u|.
 typedef struct means {
 	double x, y, distance;
 } means;
 
-// ---- a rectangle, in closed form: primitives in both coordinates of x / r, and of r
+// ---- a rectangle, in closed form: primitives of x / r, and of r, in both coordinates
 
 static double primitive_direction(double x, double y)
 {
@@ -40,7 +40,7 @@ static means rectangle_means(const ob_reference_plate *p, double cx, double cy)
 	return m;
 }
 
-// Far from the instantaneous centre the closed form cancels, and the integrand is smooth.
+// Far from the instantaneous centre, the closed form cancels and the integrand is smooth.
 static void rectangle_from_afar(const ob_reference_plate *p, double vx, double vy, double w, double *x, double *y,
 				double *turn)
 {
@@ -57,7 +57,7 @@ static void rectangle_from_afar(const ob_reference_plate *p, double vx, double v
 	}
 }
 
-// ---- a disc: polar coordinates about the instantaneous centre, at distance d of the disc's own along -x
+// ---- a disc: polar coordinates about the instantaneous centre, at distance d from the disc's centre along -x
 
 static means disc_means(double radius, double d)
 {
@@ -98,7 +98,7 @@ void ob_reference_plate_friction(const ob_reference_plate *p, double vx, double 
 	} else if (w != 0) {
 		double cx = -vy / w, cy = vx / w, d = hypot(cx, cy), sign = w > 0 ? 1 : -1;
 		means m = p->disc ? disc_means(size, d) : rectangle_means(p, cx, cy);
-		if (p->disc) { // from the centre of rotation towards the disc's
+		if (p->disc) { // from the centre of rotation towards the disc's centre
 			double along = m.x;
 			m.x = d > 0 ? -along * cx / d : 0;
 			m.y = d > 0 ? -along * cy / d : 0;
@@ -114,7 +114,7 @@ void ob_reference_plate_friction(const ob_reference_plate *p, double vx, double 
 
 typedef struct slide {
 	ob_reference_plate plate;
-	double stopped; // m/s: slower than this, nothing is left to integrate
+	double stopped; // m/s: below this, it has stopped
 } slide;
 
 enum { X, Y, ANGLE, VX, VY, W, STATES };

@@ -1,7 +1,7 @@
 // Axes sorted so that the momentum circles the third: moments I1, I2, I3 ascending or descending, n = I w / L, n3 > 0.
-//	w1 = A1 cn(u), w2 = A2 sn(u), w3 = A3 dn(u), u = u0 + u' t
-// The attitude is (turn by chi about L) (smallest turn that takes n to L): with Euler's angles chi = phi + psi, so
-//	chi' = phi' + w3 - phi' cos(theta) = w3 + (I1 w1^2 + I2 w2^2) / (L (1 + n3)),
+//      w1 = A1 cn(u), w2 = A2 sn(u), w3 = A3 dn(u), u = u0 + u' t
+// The attitude is (turn by chi about L) (smallest turn from n to L). With Euler's angles chi = phi + psi, so
+//      chi' = phi' + w3 - phi' cos(theta) = w3 + (I1 w1^2 + I2 w2^2) / (L (1 + n3)),
 // an even function of u of period 2 K, without a pole near the real axis.
 #include "reference/spin.h"
 
@@ -24,7 +24,7 @@ static void matrix_of(const real q[4], real m[3][3])
 	}
 }
 
-// From the largest component (Shepperd 1978).
+// Quaternion from the largest component (Shepperd 1978).
 static ob_quat quaternion_of(const real m[3][3])
 {
 	real trace = m[0][0] + m[1][1] + m[2][2], q[4];
@@ -48,7 +48,7 @@ static ob_quat quaternion_of(const real m[3][3])
 	return (ob_quat){ (double)(q[0] * r), (double)(q[1] * r), (double)(q[2] * r), (double)(q[3] * r) };
 }
 
-// The smallest turn that takes n to the third axis (Rodrigues 1840); n[2] > -1.
+// Smallest turn from n to the third axis (Rodrigues 1840); n[2] > -1.
 static void lift_of(const real n[3], real m[3][3])
 {
 	real r = 1 / (1 + n[2]);
@@ -94,7 +94,7 @@ static void plan_means(ob_reference_spin *s, real k)
 	for (;; n++) {
 		s->mean[n] = a;
 		s->half[n] = c;
-		if (n == OB_REFERENCE_MEANS - 1 || fabsl(c) < 1e-10L * a) // a is the mean to c^2
+		if (n == OB_REFERENCE_MEANS - 1 || fabsl(c) < 1e-10L * a) // a equals the mean to c^2
 			break;
 		real next = .5L * (a + b);
 		c = .5L * (a - b);
@@ -134,7 +134,7 @@ static real turn_rate(const ob_reference_spin *s, real u)
 	return w[2] + (s->moment[0] * w[0] * w[0] + s->moment[1] * w[1] * w[1]) / (s->momentum * (1 + n[2]));
 }
 
-// Coefficient k of the cosines from points samples of half a period, both ends included. cosine: [2 * points], of a
+// Coefficient k of the cosine series, from samples of half a period, both ends included. cosine: [2 * points], of a
 // whole turn.
 static real harmonic(const real *sample, const real *cosine, int points, int k)
 {
@@ -176,7 +176,7 @@ static real turn_at(const ob_reference_spin *s, real t)
 
 // ---- planning
 
-// x in the sorted frame from x in the body.
+// Converts x from the body's frame to the sorted one.
 static void to_sorted(const ob_reference_spin *s, const real x[3], real out[3])
 {
 	for (int i = 0; i < 3; i++)

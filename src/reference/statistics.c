@@ -5,7 +5,7 @@
 
 static const double confidence = .95;
 
-// Probability that |T| < t. The series is finite for whole degrees of freedom.
+// Probability of |T| < t. The series is finite for whole degrees of freedom.
 static double student_within(int freedom, double t)
 {
 	double angle = atan(t / sqrt(freedom)), c = cos(angle), term = freedom % 2 ? c : 1, sum = 0;
@@ -37,8 +37,8 @@ static int ascending(const void *x, const void *y)
 	return a < b ? -1 : a > b;
 }
 
-// How many values at each end lie outside the interval of the median: the largest k such that at most k of n fair coins
-// show heads with a probability up to half of what is left; -1 if there is none.
+// Number of values at each end outside the interval of the median: the largest k such that at most k of n fair coins
+// show heads with a probability up to half of the rest; -1 if there is none.
 static long outside(size_t n)
 {
 	double each = exp(-(double)n * M_LN2), sum = 0;
@@ -75,7 +75,7 @@ ob_statistics ob_reference_summarise(size_t n, double *x)
 	if (n == 0)
 		return s;
 	s.mean = mean_of(n, x);
-	if (isnan(s.mean)) // infinities of both signs, or no numbers
+	if (isnan(s.mean)) // infinities of both signs, or NaN
 		return s;
 	qsort(x, n, sizeof *x, ascending);
 	s.least = x[0];

@@ -1,5 +1,5 @@
-// Statistics over seeds, where motion is chaotic and a single run proves nothing; lines through points; orders of
-// convergence. Pure functions, thread-safe.
+// Statistics over seeds, as single runs of chaotic motion prove nothing; lines through points; orders of convergence.
+// Pure functions, thread-safe.
 #ifndef OB_REFERENCE_STATISTICS_H
 #define OB_REFERENCE_STATISTICS_H
 
@@ -13,26 +13,27 @@ typedef struct ob_statistics {
 	double median_low, median_high; // at least 95 %, from the order statistics (Thompson 1936); NAN for n < 6
 } ob_statistics;
 
-// x is sorted on the way. n = 0 gives NAN everywhere. NaN in x spoils all that it would enter: it stays NaN.
+// Sorts x. n = 0 gives NAN everywhere. NaN in x turns every result that depends on it into NaN.
 ob_statistics ob_reference_summarise(size_t n, double *x);
 
-// The t that Student's distribution with so many degrees of freedom stays within, on both sides, with probability p
-// (Abramowitz and Stegun 1964, 26.7.3 and 26.7.4); 0 < p < 1.
+// Quantile t of Student's distribution with so many degrees of freedom: |T| <= t with probability p (Abramowitz and
+// Stegun 1964, 26.7.3 and 26.7.4); 0 < p < 1.
 double ob_reference_student(int freedom, double p);
 
 typedef struct ob_line {
 	size_t n;
 	double slope, intercept;
 	double slope_low, slope_high; // 95 %, Student's t with n - 2 degrees of freedom; NAN for n < 3
-	double squares; // what is left over: the sum of the squared distances in y
+	double squares; // residual: sum of the squared distances in y
 	double mean_y;
 } ob_line;
 
-// NAN everywhere for n < 2, or where all x are the same. (Gauss 1809; the interval as in Draper and Smith 1966.)
+// Least-squares line; NAN everywhere for n < 2, or if all x are equal. (Gauss 1809; the interval as in Draper and Smith
+// 1966.)
 ob_line ob_reference_line(size_t n, const double *x, const double *y);
 
-// Order at which errors against a known reference fall: the slope of log error over log h, by least squares over the
-// points with error > floor (where rounding rules the order means nothing). NAN with less than two of them.
+// Convergence order of errors against a known reference: the slope of log error over log h, by least squares over the
+// points with error > floor (below it, rounding dominates). NAN with fewer than two such points.
 double ob_reference_order(size_t n, const double *h, const double *error, double floor);
 
 #endif
