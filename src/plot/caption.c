@@ -36,7 +36,7 @@ static double paint(cairo_t *c, double size, const char *title, const char *time
 	return write(c, x + gap * size, y, time, CAIRO_FONT_WEIGHT_NORMAL) + size * pad_x;
 }
 
-// surface: premultiplied, a word 0xaarrggbb a pixel
+// surface: premultiplied, one word 0xaarrggbb per pixel
 static void blend(uint8_t *rgba, int width, cairo_surface_t *surface, int left, int top)
 {
 	const uint8_t *data = cairo_image_surface_get_data(surface);
@@ -58,10 +58,10 @@ bool ob_cairo_caption(uint8_t *rgba, int width, int height, const char *title, c
 	int left = (int)(margin * size), room = width - left, high = (int)ceil(size * (1 + 2 * pad_y));
 	int top = height - high - left;
 	if (room < 1 || top < 0)
-		return true; // no text would be legible
+		return true; // any text would be illegible
 	cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, room, high);
 	cairo_t *c = cairo_create(surface);
-	double wide = paint(c, size, title, time); // to see how wide it is
+	double wide = paint(c, size, title, time); // measures its width
 	cairo_set_operator(c, CAIRO_OPERATOR_SOURCE);
 	cairo_set_source_rgba(c, 0, 0, 0, 0);
 	cairo_paint(c);

@@ -6,7 +6,7 @@
 
 #include "plot/font.h"
 
-// Room for "more" elements in *array; false where there is no memory.
+// Makes room for "more" elements in *array; returns false if memory runs out.
 static bool reserve_elements(ob_drawing *d, void **array, size_t size, size_t count, size_t more, size_t *max)
 {
 	if (count + more > *max) {
@@ -43,7 +43,7 @@ static bool add_item(ob_drawing *d, ob_item item, const ob_dot *dot, size_t coun
 	return true;
 }
 
-// The offset of a copy, cleaned; 0 for "".
+// Offset of a clean copy; 0 for "".
 static size_t keep_text(ob_drawing *d, const char *text)
 {
 	size_t length = strlen(text);
@@ -165,7 +165,7 @@ ob_series_style ob_palette_style(int number, bool hollow)
 	return style;
 }
 
-// Corners of a regular figure, or of a star where every second one lies nearer; the first at an angle (turns)
+// Corners of a regular figure, or of a star (every second corner lies nearer); the first at an angle (turns).
 static void draw_polygon(ob_drawing *d, ob_dot at, int corners, double turn, double radius, double inner, ob_pen pen)
 {
 	ob_dot dot[12];
@@ -195,7 +195,7 @@ void ob_palette_marker(ob_drawing *d, ob_dot at, const ob_series_style *style)
 	case 3: // diamond
 		draw_polygon(d, at, 4, 0, r * 1.35, r * 1.35, pen);
 		break;
-	case 4: // triangle on its head
+	case 4: // inverted triangle
 		draw_polygon(d, at, 3, .5, r * 1.35, r * 1.35, pen);
 		break;
 	case 5: // pentagon

@@ -49,7 +49,7 @@ static const struct {
 enum { WIDTH_UNKNOWN = 1000 };
 static const char ellipsis[] = "\u2026";
 
-// Of the character at s, as it is drawn: what XML does not allow is replaced, too.
+// Code point of the character at s as drawn: replaces characters that XML does not allow, too.
 static uint32_t decode(const char *s, size_t *bytes)
 {
 	uint32_t code = ob_utf8_decode(s, bytes);
@@ -93,7 +93,7 @@ void ob_font_clean_text(const char *text, char *to, size_t room)
 	to[used] = 0;
 }
 
-// Bytes of text that fit into width px; with "words" only up to the end of a word, if that is not nothing.
+// Number of bytes of text that fit into width px; with "words" only up to the end of a word, unless that gives 0.
 static size_t fitting_bytes(const char *text, double width, double size, bool bold, bool words)
 {
 	size_t fit = 0, word = 0;

@@ -26,13 +26,13 @@ static ob_tick *add_tick(ob_ticks *t, double value, bool major)
 	return &t->tick[t->count++];
 }
 
-// A number with a minus that is as wide as a plus
+// Prints a number with a minus as wide as a plus.
 static void print_number(char *to, size_t room, double v, int decimals, const char *behind)
 {
 	snprintf(to, room, "%s%.*f%s", v < 0 ? "\u2212" : "", decimals, fabs(v), behind);
 }
 
-// The step of 1, 2, 5 x 10^k that is nearest above "least", and its k
+// Smallest step of 1, 2, 5 x 10^k from "least" up, and its k.
 static double nice_step(double least, int *power)
 {
 	*power = (int)floor(log10(least));
@@ -46,7 +46,7 @@ static double nice_step(double least, int *power)
 	return pow(10, *power);
 }
 
-// Ticks at multiples of a step. On a logarithmic axis the values are placed by their logarithms.
+// Adds ticks at multiples of a step. On a logarithmic axis, values are placed by their logarithms.
 static void add_steps(ob_ticks *t, double from, double to, int wanted)
 {
 	int power;
@@ -106,7 +106,7 @@ static void label_decimal(ob_tick *tick, int digit, int power, bool plain)
 	}
 }
 
-// Decades, or every so many of them where there are many; 1-2-5 where there are few.
+// Adds decades: every n-th if there are many; 1-2-5 if there are few.
 static void add_decades(ob_ticks *t, int wanted)
 {
 	static const int strides[] = { 1, 2, 3, 5, 10, 20, 50, 100, 200 };
@@ -234,13 +234,13 @@ static void choose_range(ob_side *s)
 		s->least = -.5;
 		s->most = fmax((double)a->categories, 1) - .5;
 		s->fixed = true;
-	} else if (!(s->least <= s->most)) { // nothing on it
+	} else if (!(s->least <= s->most)) { // no values on it
 		s->least = ob_frame_logarithmic(s) ? 1 : 0;
 		s->most = ob_frame_logarithmic(s) ? 10 : 1;
 	}
 }
 
-// Not beyond a range that was asked for
+// True inside a fixed range, and without one.
 static bool is_within(const ob_side *s, double v)
 {
 	return !isfinite(v) || is_low(s, v) || !s->fixed || (v >= s->least && v <= s->most);
@@ -290,7 +290,7 @@ void ob_frame_band(const ob_side *s, bool high, double *inner, double *outer)
 	*outer = *inner + away * thickness(high ? s->high : s->low);
 }
 
-// px of a lane's middle
+// Middle of a lane (px).
 static double lane_at(const ob_side *s, bool high, int lane)
 {
 	double inner, outer;
@@ -307,7 +307,7 @@ double ob_frame_at(const ob_side *s, double value)
 	double along = ob_ticks_along(&s->ticks, bounded(value));
 	if (s->axis->scale == OB_SCALE_CATEGORY && s->vertical)
 		along = 1 - along; // downwards
-	along = fmin(fmax(along, -4), 5); // far beyond a fixed range is beyond it
+	along = fmin(fmax(along, -4), 5); // far outside a fixed range
 	return s->begin + along * (s->end - s->begin);
 }
 
@@ -318,7 +318,7 @@ double ob_frame_mark(const ob_side *s, double value)
 	return is_low(s, value) ? inner : ob_frame_at(s, value);
 }
 
-// Moves points of a band into lanes, so that those which are close along the rim lie beside each other.
+// Moves points of a band into lanes, so that points close along the rim lie side by side.
 static void spread_over_lanes(ob_frame *f, ob_side *s, bool high)
 {
 	ob_band *band = high ? &s->high : &s->low;
@@ -357,7 +357,7 @@ static void place_side(ob_side *s, double begin, double end)
 void ob_frame_place(ob_frame *f, ob_rect outer)
 {
 	f->outer = outer;
-	// the second time with as many lanes as the first has found to be needed
+	// the second time with the number of lanes found by the first
 	for (int pass = 0; pass < 2; pass++) {
 		place_side(&f->x, outer.x0, outer.x1);
 		place_side(&f->y, outer.y1, outer.y0);

@@ -1,11 +1,11 @@
-// From a plot to a drawing: headings, the legend's place, axes, data, labels.
+// Turns a plot into a drawing: headings, the legend's place, axes, data, labels.
 #include <math.h>
 #include <stdio.h>
 
 #include "plot/frame.h"
 #include "plot/font.h"
 
-// ---- axes: what surrounds the data, and what lies behind them
+// ---- axes: surroundings and background of the data
 
 static const double tick_font = 11.5, axis_font = 12.5, category_font = 12; // px
 enum { TICK = 5, MINOR = 3, AWAY = 4, CATEGORY_ROW = 16 }; // px
@@ -36,14 +36,14 @@ static double widest_tick(const ob_frame *f, double limit)
 	return fmin(widest, limit);
 }
 
-// px that the labels of y need at the left
+// Width (px) needed by the labels of y at the left.
 static double axes_left(const ob_frame *f, double width)
 {
 	double label = f->plot->y.label && *f->plot->y.label ? axis_font + 10 : 2;
 	return label + widest_tick(f, width * .45) + TICK + AWAY;
 }
 
-// px that the labels of x need beyond the right end
+// Width (px) needed by the labels of x beyond the right end.
 static double axes_right(const ob_frame *f)
 {
 	double beyond = f->x.high.used ? 14 : 0;
@@ -55,10 +55,10 @@ static double axes_right(const ob_frame *f)
 	return beyond + 4;
 }
 
-// Labels of one axis that the next one must not touch
+// Labels of one axis that the next one must not touch.
 enum { SEEN_LOW, SEEN_HIGH, SEEN_TICK, SEEN };
 
-// A label beside its tick, unless it would touch one of those before.
+// Draws a label beside its tick, unless it would touch an earlier one.
 static void draw_tick_label(ob_drawing *d, const ob_side *s, double at, const ob_tick *t, double rim_at, ob_rect *seen,
 			    int what)
 {
@@ -82,7 +82,7 @@ static ob_rect band_rect(const ob_frame *f, const ob_side *s, bool high)
 	return s->vertical ? (ob_rect){ o.x0, from, o.x1, to } : (ob_rect){ from, o.y0, to, o.y1 };
 }
 
-// Behind all else
+// Draws the bands, behind all else.
 static void draw_bands(const ob_frame *f, ob_drawing *d)
 {
 	const ob_side *sides[] = { &f->x, &f->y };
@@ -128,7 +128,7 @@ static void draw_categories(const ob_frame *f, ob_drawing *d)
 {
 	const ob_side *s = &f->y;
 	double every =
-		ceil(s->axis->categories * CATEGORY_ROW / 1.4 / fmax(s->begin - s->end, 1)); // only where there is room
+		ceil(s->axis->categories * CATEGORY_ROW / 1.4 / fmax(s->begin - s->end, 1)); // only if there is room
 	for (size_t i = 0; i < s->axis->categories; i++) {
 		double at = ob_frame_at(s, (double)i);
 		ob_draw_line(d, f->area.x0, snapped(at), f->area.x1, snapped(at), grid);
@@ -156,7 +156,7 @@ static void draw_grid(const ob_frame *f, ob_drawing *d)
 	}
 }
 
-// Cut where it does not fit
+// Draws a label, cut if it does not fit.
 static void draw_axis_label(ob_drawing *d, const char *label, double x, double y, double room, bool turned)
 {
 	char line[200];
@@ -187,7 +187,7 @@ static void draw_axes(const ob_frame *f, ob_drawing *d)
 
 // ---- data
 
-// Cuts a line to a rectangle (Liang and Barsky 1984). false: nothing of it is inside.
+// Clips a line to a rectangle (Liang and Barsky 1984). Returns false if it lies outside.
 static bool clip_line(ob_rect r, ob_dot *from, ob_dot *to)
 {
 	double dx = to->x - from->x, dy = to->y - from->y, enter = 0, leave = 1;
@@ -209,7 +209,7 @@ static bool clip_line(ob_rect r, ob_dot *from, ob_dot *to)
 	return true;
 }
 
-// The next point of the same series that a line goes to; NULL: there is none.
+// Next point of the same series joined by a line; NULL: none.
 static const ob_spot *next_joined(const ob_frame *f, size_t i)
 {
 	for (size_t j = i + 1; j < f->spots && f->spot[j].series == f->spot[i].series; j++) {
@@ -220,7 +220,7 @@ static const ob_spot *next_joined(const ob_frame *f, size_t i)
 	return NULL;
 }
 
-// In the band of zeros points lie in lanes, which mean nothing: no line from one to the other
+// True if both lie in the band of zeros: lanes there have no meaning, so no line joins them.
 static bool are_zero(const ob_frame *f, const ob_spot *a, const ob_spot *b)
 {
 	return a->at.y > f->area.y1 && b->at.y > f->area.y1;
@@ -230,7 +230,7 @@ static void draw_lines(const ob_frame *f, ob_drawing *d, const ob_plot_series *s
 {
 	ob_series_style style = ob_palette_style(s->style, s->hollow);
 	ob_pen pen = { .stroke = style.paint, .width = style.width, .dash = style.dash };
-	ob_dot run[128]; // pieces that follow one another, so that dashes go on over their joints
+	ob_dot run[128]; // consecutive pieces, so that dashes continue over their joints
 	size_t length = 0;
 	for (size_t i = 0; i < f->spots; i++) {
 		const ob_plot_point *p = f->spot[i].point;
@@ -313,7 +313,7 @@ static void draw_mark(const ob_frame *f, ob_drawing *d, const ob_plot_mark *m)
 		ob_draw_line(d, o.x0, at, o.x1, at, pen);
 }
 
-// Behind the axes
+// Draws tints, behind the axes.
 static void draw_tints(const ob_frame *f, ob_drawing *d)
 {
 	ob_rect o = f->outer;
@@ -330,8 +330,8 @@ static void draw_tints(const ob_frame *f, ob_drawing *d)
 	}
 }
 
-// Target lines, curves, markers, error bars, crosses: the series of style 0 last, so that nothing covers them. Notes
-// what labels must not cover. false: no memory.
+// Draws target lines, curves, markers, error bars, crosses: the series of style 0 last, so that nothing covers them.
+// Records areas that labels must not cover. Returns false if memory runs out.
 static bool draw_curves(ob_frame *f, ob_drawing *d)
 {
 	const ob_plot *p = f->plot;
@@ -360,7 +360,7 @@ static bool is_taken(const ob_frame *f, ob_rect box)
 	return false;
 }
 
-// How many lines of curves and targets cross a box
+// Number of lines of curves and targets that cross a box.
 static int crossings(const ob_frame *f, ob_rect box)
 {
 	int count = 0;
@@ -386,7 +386,7 @@ static bool put_label(ob_frame *f, ob_drawing *d, double x, double y, const char
 	return ob_frame_take(f, ob_drawing_box(x, y, text, "", type));
 }
 
-// Along its line, where it covers least; where it would cover another text or a marker, not at all.
+// Labels a target along its line, at the place that covers least; omits the label if it would cover a text or a marker.
 static bool label_mark(ob_frame *f, ob_drawing *d, const ob_plot_mark *m)
 {
 	if (!m->label || !*m->label || !isfinite(m->at))
@@ -420,7 +420,7 @@ static bool label_mark(ob_frame *f, ob_drawing *d, const ob_plot_mark *m)
 	return least == 1 << 20 || put_label(f, d, best_x, best_y, text, type);
 }
 
-// Where the label of a point may be: in the band that the point lies in, if it does.
+// Area available to the label of a point: the band of the point, if it lies in one.
 static ob_rect label_room(const ob_frame *f, const ob_spot *s)
 {
 	ob_rect r = f->outer, a = f->area;
@@ -429,7 +429,7 @@ static ob_rect label_room(const ob_frame *f, const ob_spot *s)
 	return r;
 }
 
-// Beside a point, in the first of eight places where it covers nothing.
+// Labels a point in the first of eight places that covers nothing.
 static bool label_spot(ob_frame *f, ob_drawing *d, const ob_spot *s)
 {
 	static const struct {
@@ -454,7 +454,7 @@ static bool label_spot(ob_frame *f, ob_drawing *d, const ob_spot *s)
 	return true;
 }
 
-// The ends of curves first, for they say the most; then all others.
+// Labels the ends of curves first, as they matter most; then all others.
 static bool label_spots(ob_frame *f, ob_drawing *d, bool ends)
 {
 	for (size_t i = 0; i < f->spots; i++) {
@@ -466,7 +466,7 @@ static bool label_spots(ob_frame *f, ob_drawing *d, bool ends)
 	return true;
 }
 
-// Labels of targets and points, where there is room for them. false: no memory.
+// Draws labels of targets and points as far as there is room. Returns false if memory runs out.
 static bool draw_labels(ob_frame *f, ob_drawing *d)
 {
 	for (size_t i = 0; i < f->plot->marks; i++)
@@ -480,10 +480,10 @@ static bool draw_labels(ob_frame *f, ob_drawing *d)
 enum { SAMPLE = 26, SAMPLE_GAP = 7, BETWEEN = 20, ROW = 18, LINE = 14, LINES = 3, COLUMN = 186 }; // px, but for LINES
 static const double legend_font = 12; // px
 
-// Outside of the data, at the right where there is room, else below.
+// Legend outside the data: at the right if there is room, else below.
 typedef struct legend {
 	const ob_frame *frame;
-	size_t entries; // 0: none is needed; the last is for the crosses where there are any
+	size_t entries; // 0: none is needed; the last is for crosses, if there are any
 	bool below;
 	double width, height; // px
 } legend;
@@ -494,7 +494,7 @@ static const char *entry_title(const legend *l, size_t i)
 	return i == p->series_count ? "failed" : p->series[i].title;
 }
 
-// Draws (or with d NULL only measures) the lines of one entry; returns how many.
+// Draws the lines of one entry (with d NULL, only measures them); returns their number.
 static int entry_lines(const legend *l, size_t i, double width, ob_drawing *d, double x, double y, double *widest)
 {
 	const char *rest = entry_title(l, i);
@@ -526,7 +526,7 @@ static void draw_sample(const legend *l, size_t i, ob_drawing *d, double x, doub
 	ob_palette_marker(d, middle, &style);
 }
 
-// Walks over the entries as they are placed; draws them if d is not NULL. Returns the height.
+// Walks over the entries in their places; draws them if d is not NULL. Returns the height.
 static double place_entries(const legend *l, double room, ob_drawing *d, double left, double top, double *widest)
 {
 	double x = 0, y = 0;
@@ -554,7 +554,7 @@ static double place_entries(const legend *l, double room, ob_drawing *d, double 
 	return l->entries ? y + (l->below ? ROW : 0) : 0;
 }
 
-// For a diagram of this width, the data of which are about "height" high
+// Plans the legend for a diagram of this width, with data of about this height.
 static legend plan_legend(const ob_frame *f, double width, double height)
 {
 	size_t count = f->plot->series_count;
@@ -580,7 +580,7 @@ static void draw_legend(const legend *l, ob_drawing *d, double x, double y)
 enum { RIM = 14, WIDTH = 760, HEIGHT = 480, WIDTH_LEAST = 240, AREA_LEAST = 130, HEADING_LINES = 3, GAP = 12 }; // px
 static const double title_font = 15, subtitle_font = 11;
 
-// Draws the lines of a heading from y on; returns where it ends.
+// Draws the lines of a heading from y on; returns the y of their end.
 static double draw_heading(ob_drawing *d, const char *text, double y, double size, bool bold, ob_paint paint)
 {
 	char line[400];
@@ -593,7 +593,7 @@ static double draw_heading(ob_drawing *d, const char *text, double y, double siz
 	return y;
 }
 
-// Where the data go: margins as the labels of the axes need them, which in turn depend on the room that is left.
+// Places the data: margins depend on the axes' labels, and these on the remaining room.
 static void place_frame(ob_frame *f, ob_drawing *d, const legend *l, double top, double height)
 {
 	double right = l->entries && !l->below ? l->width + GAP + 4 : 0;

@@ -1,11 +1,11 @@
-// Diagrams: axes with units, curves, markers, a legend; as SVG and (painted by cairo) PNG from one description. The same
-// description gives the same bytes. Pure but for the files that it writes; any thread.
+// Diagrams: axes with units, curves, markers, a legend; as SVG and (painted by cairo) PNG from one description. The
+// same description gives the same bytes. Pure except for the files that it writes; any thread.
 //
-// Texts are UTF-8. Any number is allowed: on a logarithmic axis what is zero or less lies in a band of its own at the
-// lower rim, named "0", and an axis with nothing on it gets a range of its own.
+// Texts are UTF-8. Any number is allowed. On a logarithmic axis, values of zero or less lie in a band of their own at
+// the lower rim, named "0"; an axis without values gets a default range.
 //
-// Colours of the SVG can be overruled by the page that it is put into: what is drawn has the classes f-NAME (fill) and
-// s-NAME (stroke), where NAME is paper, ink, muted, grid, band, good, meadow or c0 .. c7 (series).
+// A page that includes the SVG can override its colours: items have the classes f-NAME (fill) and s-NAME (stroke),
+// where NAME is paper, ink, muted, grid, band, good, meadow or c0 .. c7 (series).
 #ifndef OB_PLOT_PLOT_H
 #define OB_PLOT_PLOT_H
 
@@ -33,26 +33,27 @@ typedef struct ob_plot_axis {
 typedef struct ob_plot_point {
 	double x, y;
 	double low, high; // error bar in y; both 0: none
-	bool failed; // drawn as a cross, in a band at the rim where x or y is not finite
-	const char *label; // next to the marker, where there is room; NULL = none
-	const char *hint; // shown by a browser under the pointer; NULL = the series, the label and the values
+	bool failed; // drawn as a cross; in a band at the rim if x or y is not finite
+	const char *label; // next to the marker, if there is room; NULL = none
+	const char *hint; // tooltip in a browser; NULL = the series, the label and the values
 } ob_plot_point;
 
 typedef struct ob_plot_series {
 	const char *title; // NULL: not in the legend
 	size_t count;
 	const ob_plot_point *point;
-	int style; // colour, marker and dash of the palette; the same number looks the same in every plot. 0 is drawn
-	           // boldest and on top; negative: a grey guide without markers
-	bool line; // joins the points that did not fail
-	bool hollow; // markers not filled, the line finely dotted: the same thing, otherwise set
+	// colour, marker and dash of the palette; the same in every plot. 0 is drawn boldest and on top; negative: a
+	// grey guide without markers
+	int style;
+	bool line; // joins successful points
+	bool hollow; // open markers, finely dotted line: same subject with another setting
 } ob_plot_series;
 
 typedef struct ob_plot_mark {
 	double at;
-	bool vertical; // a line at x = at, else at y = at
+	bool vertical; // line at x = at; otherwise at y = at
 	const char *label; // "target"; NULL = none
-	bool tinted; // the side below it, or left of it, is where to be
+	bool tinted; // tint the desirable side, below or left of the line
 } ob_plot_mark;
 
 typedef struct ob_plot {
@@ -68,7 +69,7 @@ typedef struct ob_plot {
 bool ob_plot_check(ob_error *e);
 bool ob_plot_svg(const ob_plot *p, const char *path, ob_error *e);
 bool ob_plot_png(const ob_plot *p, const char *path, double zoom, ob_error *e);
-// The SVG as a string, to be put into a page; free() it. NULL and e: no memory.
+// Returns the SVG as a string for a page; free() it. NULL and e: out of memory.
 char *ob_plot_svg_text(const ob_plot *p, ob_error *e);
 
 #endif

@@ -1,4 +1,4 @@
-// The painter of PNG: cairo.
+// PNG painter, by cairo.
 #include <cairo.h>
 #include <math.h>
 
@@ -43,8 +43,8 @@ static double text_advance(cairo_t *c, const char *text, double size)
 	return extents.x_advance;
 }
 
-// In the font that stands in for Liberation Sans here. One that is wider than the layout has it is set smaller, not
-// squeezed.
+// Paints a text in the local replacement of Liberation Sans. If that font is wider than the layout assumed, the text
+// gets smaller, not squeezed.
 static void paint_text(cairo_t *c, const ob_drawing *d, const ob_item *item)
 {
 	const ob_type *t = &item->type;
@@ -69,7 +69,7 @@ static void paint_text(cairo_t *c, const ob_drawing *d, const ob_item *item)
 
 static void paint(cairo_t *c, const ob_drawing *d)
 {
-	// glyphs are not hinted to the pixel grid, so that they are as wide at every zoom
+	// no hinting to the pixel grid, so that glyphs have the same width at every zoom
 	cairo_font_options_t *options = cairo_font_options_create();
 	cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
 	cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

@@ -1,5 +1,5 @@
-// The painter of SVG: texts stay texts (they can be selected, searched for and read aloud), in the reader's font and at
-// its own width, for which the layout has left room.
+// SVG painter: texts stay texts (selectable, searchable, readable aloud), in the reader's font and at its own width;
+// the layout has left room for it.
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -9,9 +9,9 @@
 #include "plot/drawing.h"
 #include "plot/font.h"
 
-// A text that grows. Numbers are written by hand: printf's depend on the locale.
+// A growing text. Numbers are formatted here, as printf depends on the locale.
 typedef struct paper {
-	FILE *out; // a memory stream
+	FILE *out; // memory stream
 	const ob_drawing *drawing;
 } paper;
 
@@ -104,7 +104,7 @@ static bool is_alike(const ob_item *a, const ob_item *b)
 	       a->pen.width == b->pen.width && a->pen.dash == b->pen.dash;
 }
 
-// Paths that follow one another with the same pen become one element. Returns how many.
+// Merges consecutive paths with the same pen into one element. Returns their number.
 static size_t write_paths(paper *p, size_t i)
 {
 	size_t last = i;
