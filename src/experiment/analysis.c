@@ -54,8 +54,8 @@ bool ob_records_have(const ob_records *r, const char *of, const char *configurat
 	return have;
 }
 
-// ---- cost at equal error. The lower envelope of the points in the plane of cost and error is the chain of those that
-// no other point beats in both: from point to point costlier and more exact.
+// ---- cost at equal error. The lower envelope of the points in the plane of cost and error is the chain of points that
+// no other beats in both: from point to point costlier and more accurate.
 
 static int by_cost(const void *a, const void *b)
 {
@@ -65,8 +65,8 @@ static int by_cost(const void *a, const void *b)
 	return (p->error > q->error) - (p->error < q->error);
 }
 
-// Where the straight line between two points in log-log comes down to the error. A point without any error has no
-// logarithm: there the line is a step.
+// Cost at which the straight line in log-log between two points reaches the error. A point without error has no
+// logarithm: the line is a step there.
 static double between(ob_cost_point above, ob_cost_point below, double error)
 {
 	if (!(below.error > 0) || !(error > 0))
@@ -78,7 +78,7 @@ static double between(ob_cost_point above, ob_cost_point below, double error)
 double ob_cost_at_error(ob_cost_point *point, size_t count, double error)
 {
 	qsort(point, count, sizeof *point, by_cost);
-	ob_cost_point last = { NAN, INFINITY }; // on the envelope
+	ob_cost_point last = { NAN, INFINITY }; // last point on the envelope
 	for (size_t i = 0; i < count; i++) {
 		if (point[i].error >= last.error)
 			continue;

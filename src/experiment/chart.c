@@ -74,7 +74,7 @@ ob_plot_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, 
 	snprintf(text->label, sizeof text->label, "%s", label);
 	snprintf(text->hint, sizeof text->hint, "%s", hint);
 	ob_plot_point *p = &c->point[c->points++];
-	// any text says that there is one, until its place is known
+	// any text marks that there is one, until its address is known
 	*p = (ob_plot_point){ .x = x, .y = y, .label = *label ? "" : NULL, .hint = *hint ? "" : NULL };
 	c->series[c->plot.series_count - 1].count++;
 	return p;

@@ -1,5 +1,5 @@
-// A diagram that is made point by point, and written to files and into pages. What it says is copied, so it may come
-// from anywhere. One thread at a time per chart.
+// A diagram built point by point, and written to files and into pages. It copies all texts, so they may come from
+// anywhere. One thread at a time per chart.
 #ifndef OB_EXPERIMENT_CHART_H
 #define OB_EXPERIMENT_CHART_H
 
@@ -13,7 +13,7 @@ typedef struct ob_chart_text {
 } ob_chart_text;
 
 typedef struct ob_chart {
-	ob_plot plot; // its points are in place after ob_chart_plot
+	ob_plot plot; // complete with its points after ob_chart_plot
 	size_t points, points_max;
 	ob_plot_point *point; // of all series
 	ob_chart_text *text;
@@ -26,19 +26,18 @@ typedef struct ob_chart {
 	char title[160], subtitle[640], x_label[128], y_label[128], mark_label[64];
 } ob_chart;
 
-ob_chart *ob_chart_new(void); // NULL: no memory
+ob_chart *ob_chart_new(void); // NULL: out of memory
 void ob_chart_free(ob_chart *c);
-// A series of no points yet; points are added to the last one. One that stays empty is left out. title "" = not in the
-// legend
+// Begins a series; points are added to the last one. Empty series are left out. title "" = not in the legend
 ob_plot_series *ob_chart_begin(ob_chart *c, int style, bool hollow, const char *title);
-// The point may be changed until the next is added. label, hint "" = none
+// Adds a point, which may be changed until the next is added. label, hint "" = none
 ob_plot_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, const char *hint);
 
-// The finished diagram; NULL: there is nothing to show.
+// The finished diagram; NULL: it is empty.
 const ob_plot *ob_chart_plot(ob_chart *c);
-// DIR/plots/NAME.svg and .png; the folder is made. Frees c. Nothing to show (NULL, or no points) is no error.
+// Writes DIR/plots/NAME.svg and .png, and makes the folder. Frees c. An empty chart (NULL, or no points) is no error.
 bool ob_chart_write(ob_chart *c, const char *dir, const char *name, ob_error *e);
-// As SVG, within a page; frees c.
+// Writes it as SVG into a page; frees c.
 void ob_chart_html(ob_chart *c, ob_page *p);
 
 #endif

@@ -1,4 +1,4 @@
-// The folder in which an experiment keeps what it measures, what is written there, and where results come from.
+// The folder of an experiment's results, file output in it, and the provenance of results.
 #ifndef OB_EXPERIMENT_FOLDER_H
 #define OB_EXPERIMENT_FOLDER_H
 
@@ -8,20 +8,20 @@
 
 #include <ob/error.h>
 
-// Makes the folder of --out, with all above it: like mkdir -p.
+// Makes the folder of --out, with its parents, like mkdir -p.
 bool ob_folder_make(const char *folder, ob_error *e);
-// The path of a file in the folder, malloc'd; ends the program when there is no memory for it.
+// Path of a file in the folder, malloc'd; ends the program if memory runs out.
 char *ob_folder_path(const char *folder, const char *name);
 
-// Writes a file beside the one of this name, which it then replaces: whoever looks sees the old one or the new one.
+// Replaces a file atomically, through a temporary file beside it: readers see the old one or the new one.
 bool ob_file_replace(const char *path, void (*write)(FILE *f, const void *with), const void *with, ob_error *e);
 bool ob_folder_write(const char *folder, const char *name, void (*write)(FILE *f, const void *with), const void *with,
 		     ob_error *e);
 
-// Processor, cores that may be used, kernel
+// Processor, usable cores, kernel.
 void ob_provenance_machine(char *to, size_t room);
-// The commit of the program. Where that does not tell what was built ("unknown", or files differed from it: "..+"), the
-// hash of the program's file stands behind it.
+// Commit of the program. If that does not identify the build ("unknown", or modified files: "..+"), the hash of the
+// program's file follows it.
 void ob_provenance_commit(const char *commit, char *to, size_t room);
 
 #endif

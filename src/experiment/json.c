@@ -104,7 +104,7 @@ void ob_json_null(ob_json *j, const char *key)
 	fputs("null", j->f);
 }
 
-// Behind the string that opens at s; NULL if it does not end.
+// Skips the string that opens at s; NULL if it does not end.
 static const char *skip_string(const char *s)
 {
 	for (s++; *s && *s != '"'; s++) {
@@ -125,7 +125,7 @@ const char *ob_json_find(const char *text, const char *key)
 		const char *name = s + 1;
 		s = skip_string(s);
 		if (!s || *s != ':')
-			continue; // a value, or the end of a torn text
+			continue; // a value, or the end of a truncated text
 		s += 1 + strspn(s + 1, " ");
 		if (strncmp(name, key, length) == 0 && name[length] == '"')
 			return s;

@@ -1,5 +1,5 @@
-// JSON, as much as reports need: objects and lists of strings and numbers. A library for it would be one more package
-// to install for a hundred lines, and none prints a double so that it reads back to the same bits unless told how.
+// JSON as far as reports need it: objects and lists of strings and numbers. A library would be one more package to
+// install, to save a hundred lines. By default, none prints a double so that it reads back to the same bits.
 #ifndef OB_EXPERIMENT_JSON_H
 #define OB_EXPERIMENT_JSON_H
 
@@ -10,25 +10,25 @@
 typedef struct ob_json {
 	FILE *f;
 	int depth;
-	bool filled; // something stands in the object that is open
+	bool filled; // the open object has a member
 } ob_json;
 
-// key NULL: the outermost object, or a member of a list. Two spaces a level, one member a line.
+// Opens an object. key NULL: the outermost object, or a member of a list. Two spaces a level, one member a line.
 void ob_json_open(ob_json *j, const char *key);
 void ob_json_close(ob_json *j); // ends the file's last line, too
-// A list: its members have no key
+// Opens a list: its members have no key.
 void ob_json_open_list(ob_json *j, const char *key);
 void ob_json_close_list(ob_json *j);
-// Control characters are escaped; bytes that are no UTF-8 are taken as Latin-1.
+// Escapes control characters; reads bytes that are not UTF-8 as Latin-1.
 void ob_json_string(ob_json *j, const char *key, const char *value);
 void ob_json_number(ob_json *j, const char *key, double value); // %.17g; null unless finite
 void ob_json_count(ob_json *j, const char *key, uint64_t value);
 void ob_json_true(ob_json *j, const char *key, bool value);
 void ob_json_null(ob_json *j, const char *key);
 
-// Readers of one flat object, as written above: where the value of key begins; NULL = no such member.
+// Reading one flat object, as written above: start of the value of key; NULL = no such member.
 const char *ob_json_find(const char *text, const char *key);
-// The string value at "at", without escapes; false: no string, or size bytes are too few.
+// Reads the string value at "at", without escapes. Returns false if it is no string, or longer than size bytes.
 bool ob_json_read_string(const char *at, char *out, size_t size);
 
 #endif

@@ -59,13 +59,13 @@ void ob_page_text(ob_page *p, const char *text)
 	}
 }
 
-// Is v better read as digits than with an exponent?
+// True if v is easier to read as digits than with an exponent.
 static bool is_plain(double v)
 {
 	return v == 0 || (fabs(v) >= 9.995e-4 && fabs(v) < 99950);
 }
 
-// Three digits, as "0.412", "35.9", "12400"
+// Prints three digits, as "0.412", "35.9", "12400".
 static void print_plain(char *to, size_t room, double v)
 {
 	int before = v == 0 ? 1 : (int)floor(log10(fabs(v) * 1.0005)) + 1; // digits before the point
@@ -80,7 +80,7 @@ static void print_plain(char *to, size_t room, double v)
 	}
 }
 
-// v = mantissa times ten to the power, rounded to three digits
+// Splits v into a mantissa and a power of ten, rounded to three digits.
 static int split(double v, double *mantissa)
 {
 	char text[40];
@@ -105,7 +105,7 @@ void ob_page_print_unit(char *to, size_t room, const char *unit)
 	}
 }
 
-// "1e-6", not "1e-06"
+// Prints "1e-6", not "1e-06".
 static void print_short(char *to, size_t room, double v)
 {
 	double mantissa;

@@ -1,5 +1,5 @@
-// HTML as it is written, for all reports: templates with slots, texts with what needs it escaped, numbers as people
-// read them, one style. One thread at a time per page.
+// HTML output of all reports: templates with slots, escaped texts, readable numbers, one style. One thread at a time
+// per page.
 #ifndef OB_EXPERIMENT_PAGE_H
 #define OB_EXPERIMENT_PAGE_H
 
@@ -10,24 +10,24 @@ typedef struct ob_page {
 	FILE *out;
 } ob_page;
 
-// What stands in a template as {{name}}
+// Value of {{name}} in a template.
 typedef struct ob_page_slot {
 	const char *name;
 	void (*write)(ob_page *p, const void *with);
 } ob_page_slot;
 
 void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, size_t slots, const void *with);
-// The style sheet of every report, for between <style> and </style>: light and dark, screen and paper
+// Writes the style sheet of all reports, for between <style> and </style>: light and dark, screen and paper.
 void ob_page_style(ob_page *p);
 
-// printf of markup; the arguments must not need escaping
+// printf of markup; the arguments must not need escaping.
 void ob_page_markup(ob_page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ob_page_text(ob_page *p, const char *text);
 
-// A number of three digits with its unit as text: "0.5 mm²" from "mm^2"; unit "1" = a bare number, a dash for NaN
+// Prints a number of three digits with its unit: "0.5 mm²" from "mm^2"; unit "1" = a bare number, a dash for NaN.
 void ob_page_print_quantity(char *to, size_t room, double v, const char *unit);
 
-// The unit alone, with raised digits
+// Prints the unit alone, with superscript digits.
 void ob_page_print_unit(char *to, size_t room, const char *unit);
 
 #endif

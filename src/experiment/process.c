@@ -23,13 +23,13 @@ static const int grace_ms = 2000; // from SIGTERM to SIGKILL
 static const int stops[] = { SIGINT, SIGTERM, SIGHUP };
 enum { STOPS = sizeof stops / sizeof *stops, PROGRAM_TEXT = 1 << 20 };
 
-// What stands before the answer in the pipe; what follows it may be of any type.
+// Header of the answer in the pipe; the following bytes may be of any type.
 typedef struct verdict {
 	_Alignas(max_align_t) bool fine;
 	ob_error why;
 } verdict;
 
-// The end of what a child wrote to standard error
+// Tail of a child's standard error.
 typedef struct tail {
 	char text[512];
 	size_t length;
@@ -40,7 +40,7 @@ typedef struct child {
 	int exit, answer, said; // file descriptors: readable at its exit, its answer, its standard error
 	double begun;
 	ob_process_cost cost; // so far
-	bool called_off; // by hear
+	bool called_off; // by `hear`
 } child;
 
 static volatile sig_atomic_t interrupted;
@@ -52,7 +52,7 @@ static void on_signal(int number)
 	interrupted = number;
 }
 
-// Signals come only while a child is awaited, so that none is missed.
+// Signals are accepted only while waiting for a child, so that none is missed.
 void ob_processes_begin(void)
 {
 	struct sigaction action = { .sa_handler = on_signal };
@@ -68,7 +68,7 @@ void ob_processes_begin(void)
 
 void ob_processes_end(void)
 {
-	sigprocmask(SIG_SETMASK, &mask_before, NULL); // what waits is still taken by on_signal
+	sigprocmask(SIG_SETMASK, &mask_before, NULL); // on_signal still takes pending ones
 	for (int i = 0; i < STOPS; i++)
 		sigaction(stops[i], &actions_before[i], NULL);
 }
@@ -84,13 +84,13 @@ void ob_processes_wait(int ear, double s)
 	ppoll(&(struct pollfd){ .fd = ear, .events = POLLIN }, 1, &time, &mask_before);
 }
 
-// A group of its own: Ctrl-C at a terminal reaches the parent alone, which decides. The child does not outlive it, and
-// nothing that it says gets between the parent's lines.
+// Prepares a child. It has its own process group: Ctrl-C at a terminal reaches the parent alone, which decides. The
+// child does not outlive the parent, and its output does not mix with the parent's lines.
 static void begin_child(pid_t parent, int said)
 {
 	setpgid(0, 0);
 	prctl(PR_SET_PDEATHSIG, SIGTERM);
-	if (getppid() != parent) // it died before the line above
+	if (getppid() != parent) // the parent died before the line above
 		_exit(1);
 	int nothing = open("/dev/null", O_RDWR);
 	dup2(nothing, STDIN_FILENO);
@@ -139,7 +139,7 @@ static bool start(const ob_process *p, const void *answer, child *c, ob_error *e
 	close(said[1]);
 	fcntl(said[0], F_SETFL, O_NONBLOCK);
 	if (c->pid > 0) {
-		setpgid(c->pid, c->pid); // whoever of the two comes first
+		setpgid(c->pid, c->pid); // parent and child both set it: either may be first
 		c->exit = pidfd_open(c->pid, 0);
 	}
 	if (c->exit >= 0)
@@ -154,7 +154,7 @@ static bool start(const ob_process *p, const void *answer, child *c, ob_error *e
 	return ob_fail(e, "cannot start a process: %s", strerror(why));
 }
 
-// Reads what there is and keeps the end of it; false when nothing more will come.
+// Reads available output and keeps the end of it; returns false at its end.
 static bool listen_to(int fd, tail *t)
 {
 	char more[256];
@@ -172,13 +172,13 @@ static bool listen_to(int fd, tail *t)
 	}
 }
 
-// s until one of the limits may be reached
+// Seconds until one of the limits may be reached.
 static double time_left(const ob_process *p, child *c)
 {
 	double left = INFINITY;
 	c->cost.wall_s = ob_clock_wall() - c->begun;
 	c->cost.cpu_s =
-		fmax(c->cost.cpu_s, 1e-9 * (double)ob_clock_cpu_of_process(c->pid)); // which is 0 when it is gone
+		fmax(c->cost.cpu_s, 1e-9 * (double)ob_clock_cpu_of_process(c->pid)); // which is 0 once it has ended
 	if (p->cpu_limit_s > 0)
 		left = p->cpu_limit_s - c->cost.cpu_s;
 	if (p->wall_limit_s > 0)
@@ -186,7 +186,7 @@ static double time_left(const ob_process *p, child *c)
 	return left;
 }
 
-// Waits for the child's end; false: its time is over, or the parent's is.
+// Waits for the child's end; returns false if its time is over, or the parent's is.
 static bool await(const ob_process *p, child *c, tail *t)
 {
 	struct pollfd polls[] = { { .fd = c->exit, .events = POLLIN },
@@ -210,7 +210,7 @@ static bool await(const ob_process *p, child *c, tail *t)
 	}
 }
 
-// Asks the whole group to end, waits a little for its first, and kills what is left.
+// Requests the end of the whole group, waits a little for its first process, and kills the rest.
 static void end_group(const child *c, bool ended)
 {
 	struct pollfd exit = { .fd = c->exit, .events = POLLIN };
@@ -221,7 +221,7 @@ static void end_group(const child *c, bool ended)
 	kill(-c->pid, SIGKILL);
 }
 
-// The last line that was said
+// Last line of the output.
 static const char *last_line(tail *t)
 {
 	while (t->length > 0 && strchr("\n\r ", t->text[t->length - 1]))
@@ -302,14 +302,14 @@ ob_process_end ob_process_run(const ob_process *p, void *answer, ob_process_cost
 	return end;
 }
 
-// ---- this program, afresh
+// ---- this program, started anew
 
 typedef struct text {
 	char *bytes;
 	size_t length;
 } text;
 
-// false at the end of the pipe. What is over PROGRAM_TEXT is read, so that the child goes on, and dropped.
+// Returns false at the end of the pipe. Beyond PROGRAM_TEXT, output is read and dropped, so that the child can go on.
 static bool collect_some(int fd, text *t)
 {
 	char buffer[4096];
@@ -334,7 +334,7 @@ static void collect(int out, int said, text texts[2])
 	}
 }
 
-// The last line that begins with "obsim: ", without that
+// Finds the last line that begins with "obsim: ", and removes that prefix.
 static void find_complaint(const char *said, char to[256])
 {
 	static const char mark[] = "obsim: ";

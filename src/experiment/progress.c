@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 
-static const double elsewhere_s = 30; // between two lines where standard error is no terminal
+static const double elsewhere_s = 30; // between two lines if standard error is no terminal
 
 void ob_progress_print_time(char *text, size_t size, double s)
 {
@@ -46,7 +46,7 @@ void ob_progress_show(ob_progress_view *v, double done, double all, double left_
 		fprintf(stderr, "\r\033[K%.*s", terminal_columns() - 1, line);
 		v->shown = now;
 	} else if (v->shown == 0) {
-		v->shown = now; // what is soon over says nothing
+		v->shown = now; // short operations print nothing
 	} else if (now - v->shown >= elsewhere_s) {
 		fprintf(stderr, "%s\n", line);
 		v->shown = now;

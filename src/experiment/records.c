@@ -60,7 +60,7 @@ void ob_records_finish(ob_records *r)
 
 static const char *const failures[OB_FAILURES] = { "", "outcome", "error", "crash", "time" };
 
-// Columns in front of the definition's own, and behind its metrics
+// Columns in front of the definition's own, and behind its metrics.
 static const char *const first[] = { "experiment", "case", "configuration", "repeat", "seed" };
 static const char *const last[] = { "note", "failure", "reason", "took_s", "took_cpu_s", "machine", "commit" };
 enum { FIRST = sizeof first / sizeof *first, LAST = sizeof last / sizeof *last };
@@ -140,7 +140,7 @@ bool ob_records_write(const ob_records *r, const ob_experiment *x, const char *p
 	return ob_file_replace(path, put_all, &(all){ r, x }, e);
 }
 
-// A file as it is read, record by record
+// Reader of a file, record by record.
 typedef struct reader {
 	const char *path;
 	ob_csv_reader csv;
@@ -150,7 +150,7 @@ typedef struct reader {
 
 enum { CELLS_MAX = FIRST + LAST + 2 * OB_METRICS };
 
-// Where the head of a file has each column; -1: nowhere
+// Position of each column in the head of a file; -1: absent.
 typedef struct head {
 	int first[FIRST], metric[OB_METRICS], last[LAST];
 } head;
@@ -177,7 +177,7 @@ static bool read_head(const reader *r, const ob_experiment *x, head *h, ob_error
 	return true;
 }
 
-// Nothing is not a number.
+// An empty cell is NaN.
 static bool number(const reader *r, int column, const char *name, double *out, ob_error *e)
 {
 	char *text = r->cell[column], *end = text;
@@ -258,7 +258,7 @@ static bool read_text(ob_records *to, const ob_experiment *x, const char *path, 
 	return true;
 }
 
-// Without a last line that does not end. No cell has a line end in it, so each line is a record.
+// Ignores an unterminated last line. Cells contain no line ends, so each line is a record.
 static char *read_whole_lines(const char *path, bool *missing, ob_error *e)
 {
 	FILE *f = fopen(path, "re");
@@ -270,7 +270,7 @@ static char *read_whole_lines(const char *path, bool *missing, ob_error *e)
 	char *text = NULL;
 	size_t room = 0;
 	errno = 0;
-	ssize_t length = getdelim(&text, &room, 0, f); // there is no 0 in it
+	ssize_t length = getdelim(&text, &room, 0, f); // it contains no 0
 	bool fine = length >= 0 && !ferror(f);
 	char *end = fine ? strrchr(text, '\n') : NULL;
 	if (!fine)

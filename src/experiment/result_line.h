@@ -1,4 +1,4 @@
-// The lines of a file of records, for those who append to it. Internal to the module.
+// Lines of a file of records, for appending to it. Internal to the module.
 #ifndef OB_EXPERIMENT_RESULT_LINE_H
 #define OB_EXPERIMENT_RESULT_LINE_H
 

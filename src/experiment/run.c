@@ -1,4 +1,4 @@
-// The trials of an experiment, one after the other on each rank, each in a process of its own.
+// Runs the trials of an experiment, one after the other on each rank, each in a process of its own.
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -59,7 +59,7 @@ void ob_trials_finish(ob_trials *s)
 
 // ---- the folder
 
-// Results of another program or machine are not mixed with these: their file gets a number.
+// Results of another program or machine are not mixed with these: renames their file with a number.
 static bool set_aside(const char *folder, const char *file, ob_error *e)
 {
 	for (int i = 1;; i++) {
@@ -82,7 +82,7 @@ bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *
 	*r = (ob_records){ 0 };
 	ob_provenance_machine(r->machine, sizeof r->machine);
 	ob_provenance_commit(x->commit, r->commit, sizeof r->commit);
-	if (!folder || ob_ranks_started().rank > 0) // the records are the first's
+	if (!folder || ob_ranks_started().rank > 0) // the first rank has the records
 		return true;
 	if (!ob_folder_make(folder, e))
 		return false;
@@ -97,18 +97,18 @@ bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *
 	return fine;
 }
 
-// ---- what is left to do, and how long it takes
+// ---- remaining trials, and their time
 
-// Trials of one case: what is known of the time that they take
+// Known times of the trials of one case.
 typedef struct timing {
 	const char *of;
-	double took, guessed; // s, of those that have run
-	double ahead; // s, as guessed
+	double took, guessed; // s, of completed ones
+	double ahead; // s, guessed
 } timing;
 
 typedef enum trial_state { AHEAD, UNDER_WAY, DONE } trial_state;
 
-// A rank, and what it is at
+// A rank, and its current trial.
 typedef struct seat {
 	bool joined, busy;
 	size_t trial;
@@ -119,7 +119,7 @@ typedef struct session {
 	const ob_experiment *experiment;
 	const ob_trials *trials;
 	ob_records *records;
-	FILE *file; // NULL: nothing is kept
+	FILE *file; // NULL: no file
 	const char *path;
 	trial_state *state; // [trial]
 	size_t first; // all trials before it are done
@@ -128,21 +128,21 @@ typedef struct session {
 	size_t timings;
 	size_t done, all;
 	uint32_t seats;
-	seat *seat; // [seats]: of each rank, this one first
+	seat *seat; // [seats]: one per rank, this one first
 	ob_courier *courier; // to the others; NULL: there are none
-	bool failed; // and why, while a trial of this rank's ran
+	bool failed; // while a trial of this rank ran, and why
 	ob_error why;
 	ob_progress_view view;
 } session;
 
-// A record that came of less time than a trial has now
+// True if the record came from less time than a trial has now.
 static bool had_less(const ob_experiment *x, const ob_record *r)
 {
 	return r->failure == OB_FAILURE_TIME &&
 	       (x->limit_s <= 0 || (r->took_cpu_s < x->limit_s && r->took_s < ob_trial_wall_limit(x)));
 }
 
-// Does the trial have its record, or is a failure of an earlier repeat with the same seed known?
+// True if the trial has its record, or a failure of an earlier repeat with the same seed is known.
 static bool is_done(const ob_experiment *x, const ob_records *records, const ob_trial *t)
 {
 	for (size_t i = 0; i < records->count; i++) {
@@ -157,7 +157,7 @@ static bool is_done(const ob_experiment *x, const ob_records *records, const ob_
 
 static size_t find_timing(session *s, const char *of)
 {
-	for (size_t i = s->timings; i > 0; i--) // a case's trials mostly stand together
+	for (size_t i = s->timings; i > 0; i--) // a case's trials are mostly adjacent
 		if (!strcmp(s->timing[i - 1].of, of))
 			return i - 1;
 	s->timing[s->timings].of = of;
@@ -186,7 +186,7 @@ static bool prepare(session *s, ob_error *e)
 	return true;
 }
 
-// What remains, by how fast each case was so far; one of which nothing is known goes as all others do.
+// Estimates the remaining time from the speed of each case so far; a case without data is as fast as all others.
 static double guess_left(const session *s)
 {
 	timing all = { 0 };
@@ -224,9 +224,9 @@ static void announce(const session *s)
 		fprintf(stderr, "obsim: %zu runs, about %s\n", s->all, time);
 }
 
-// ---- which trial comes next
+// ---- the next trial
 
-// The record of one so coarse that the trial takes at least as long, and that ran out of the time there is. NULL: none
+// Record of a trial so coarse that this one takes at least as long, and that ran out of the available time. NULL: none
 static const ob_record *coarser_out_of_time(const session *s, const ob_trial *t)
 {
 	const ob_experiment *x = s->experiment;
@@ -243,8 +243,8 @@ static bool is_repeat(const ob_trial *a, const ob_trial *b)
 	return a->seed == b->seed && !strcmp(a->configuration, b->configuration) && !strcmp(a->of, b->of);
 }
 
-// May what comes of an earlier one make this one needless? Then that must have come first, as it has where one rank
-// runs all.
+// True if the result of an earlier trial may make this one unnecessary. The earlier one must then come first, as it
+// does if one rank runs all.
 static bool depends_on(const session *s, const ob_trial *t, const ob_trial *earlier)
 {
 	const ob_experiment *x = s->experiment;
@@ -254,7 +254,7 @@ static bool depends_on(const session *s, const ob_trial *t, const ob_trial *earl
 	return is_repeat(t, earlier) || (x->is_finer && x->is_finer(t, &r));
 }
 
-// The count: what is ahead, if anything, waits for what is under way.
+// Returns the count if none can start: those left, if any, wait for running ones.
 static size_t find_next(session *s)
 {
 	const ob_trial *t = s->trials->trial;
@@ -270,9 +270,9 @@ static size_t find_next(session *s)
 	return s->trials->count;
 }
 
-// ---- what comes of it
+// ---- results
 
-// What a trial with less time had left is no longer true.
+// Drops outdated records of trials that had less time.
 static void forget(ob_records *records, const ob_trial *t)
 {
 	size_t kept = 0;
@@ -308,7 +308,7 @@ static bool complete(session *s, size_t i, const ob_record *r, double took, ob_e
 	p->ahead -= t->guess_s;
 	s->state[i] = DONE;
 	s->done++;
-	// a failure makes the repeats that follow needless
+	// a failure makes the following repeats unnecessary
 	for (size_t j = i + 1; r->failure && j < s->trials->count; j++) {
 		const ob_trial *later = &s->trials->trial[j];
 		if (s->state[j] == DONE || !is_repeat(later, t))
@@ -327,7 +327,7 @@ static bool end_trial(session *s, uint32_t rank, const ob_record *r, ob_error *e
 	return complete(s, at->trial, r, ob_clock_wall() - at->begun, e);
 }
 
-// ---- who runs it
+// ---- execution
 
 // Gives a rank the next trial, if there is one.
 static bool hand_out(session *s, uint32_t rank, ob_error *e)
@@ -371,7 +371,7 @@ static bool admit(session *s, uint32_t rank, const ob_spread_message *m, ob_erro
 	return true;
 }
 
-// What others have said; and work for those who have none, from that rank on
+// Handles messages from other ranks, then gives work to idle ones, from that rank on.
 static bool attend(session *s, uint32_t from, ob_error *e)
 {
 	bool fine = true;
@@ -392,7 +392,7 @@ static bool attend(session *s, uint32_t from, ob_error *e)
 	return fine;
 }
 
-// While this rank's own trial runs
+// Called while this rank's own trial runs.
 static bool attend_to_others(void *of)
 {
 	session *s = of;
@@ -468,7 +468,7 @@ bool ob_experiment_run(const ob_experiment *x, const ob_trials *trials, ob_recor
 	session s = { .experiment = x, .trials = trials, .records = r, .seats = ranks.ranks };
 	char *path = folder ? ob_folder_path(folder, "results.csv") : NULL;
 	s.path = path;
-	// the file as it is now, without what was dropped; then a line for each trial
+	// the current file without dropped records; then a line for each trial
 	bool fine = prepare(&s, e) && (!path || ob_records_write(r, x, path, e));
 	if (fine && path && !(s.file = fopen(path, "ae")))
 		fine = ob_fail(e, "%s cannot be written: %s", path, strerror(errno));

@@ -7,7 +7,7 @@
 #include "experiment/process.h"
 #include "experiment/trial.h"
 
-static const double look_s = 1; // while nothing is heard
+static const double look_s = 1; // between polls while no message comes
 static const double grace_s = 60; // after which it leaves by itself
 
 uint64_t ob_spread_digest(const ob_experiment *x, const ob_trials *s)
@@ -26,9 +26,9 @@ uint64_t ob_spread_digest(const ob_experiment *x, const ob_trials *s)
 
 typedef struct helper {
 	ob_courier *courier;
-	ob_spread_message last; // what the first has said
-	ob_courier_news news; // of it
-	ob_error why; // it has gone
+	ob_spread_message last; // from the first rank
+	ob_courier_news news; // kind of the last message
+	ob_error why; // reason for which the first has gone
 } helper;
 
 static bool hear(void *of)
@@ -36,10 +36,10 @@ static bool hear(void *of)
 	helper *h = of;
 	uint32_t from;
 	h->news = ob_courier_receive(h->courier, &h->last, &from, &h->why);
-	return h->news == OB_COURIER_NOTHING; // while a trial runs the first has nothing to say
+	return h->news == OB_COURIER_NOTHING; // the first sends nothing while a trial runs
 }
 
-// false: something came in between
+// Returns false if interrupted.
 static bool await_order(helper *h, ob_error *e)
 {
 	while (hear(h) && !ob_processes_interrupted())
@@ -67,8 +67,8 @@ static bool help(helper *h, const ob_experiment *x, const ob_trials *s, const ob
 	}
 }
 
-// The launcher may have interrupted all, and kills the rest as soon as one has left: that must be the first, who has
-// something to keep and to say.
+// The launcher may have interrupted all ranks, and kills the rest as soon as one leaves. The first must leave first, as
+// it has results to store and to report.
 static void fail(helper *h, const ob_error *why)
 {
 	ob_spread_message said = { .kind = OB_SPREAD_FAILED };

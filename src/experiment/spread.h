@@ -1,14 +1,14 @@
-// The trials of an experiment on several ranks. The first has the records and the file, and hands out one trial after
-// the other, to itself as well; the others run what they are given. Internal to the module.
+// Trials of an experiment on several ranks. The first has the records and the file, and hands out one trial after the
+// other, to itself as well; the others run them. Internal to the module.
 //
-//	rank 0 (run.c)                                each other (ob_spread_help)
-//	    <-------- JOIN, a digest of its schedule --------
-//	    --------- RUN trial 17 ------------------------->  in a process of its own
-//	    <-------- RAN trial 17, its record --------------
-//	    --------- LEAVE: all is done ------------------->
+//      rank 0 (run.c)                                each other (ob_spread_help)
+//          <-------- JOIN, a digest of its schedule --------
+//          --------- RUN trial 17 ------------------------->  in a process of its own
+//          <-------- RAN trial 17, its record --------------
+//          --------- LEAVE: all is done ------------------->
 //
-// Nobody waits for the slowest but at the end. Who fails says FAILED instead, or is interrupted, or dies: then the
-// first ends with an error, and the launcher ends the others; what has come to the first by then is in the file.
+// Ranks wait for the slowest only at the end. A rank that fails sends FAILED instead, or is interrupted, or dies. The
+// first rank then ends with an error, and the launcher ends the others; the file has all results received by then.
 #ifndef OB_EXPERIMENT_SPREAD_H
 #define OB_EXPERIMENT_SPREAD_H
 
@@ -26,13 +26,13 @@ typedef enum ob_spread_kind {
 typedef struct ob_spread_message {
 	ob_spread_kind kind;
 	uint64_t trial; // its number in the schedule; JOIN: the digest
-	ob_record record; // RAN: of the trial; JOIN: only machine and commit; FAILED: only the reason
+	ob_record record; // RAN: of the trial; JOIN: machine and commit alone; FAILED: the reason alone
 } ob_spread_message;
 _Static_assert(sizeof(ob_spread_message) <= OB_COURIER_BYTES, "it fits");
 
-// Where two ranks have the same, a trial's number means the same to both.
+// Digest of a schedule: two ranks with the same one agree on the numbers of trials.
 uint64_t ob_spread_digest(const ob_experiment *x, const ob_trials *s);
-// What another rank than the first does. false and e: interrupted, or the others cannot be reached.
+// Work of a rank other than the first. Returns false and e if interrupted, or if the others cannot be reached.
 bool ob_spread_help(const ob_experiment *x, const ob_trials *s, const ob_records *own, const ob_ranks *ranks,
 		    ob_error *e);
 

@@ -10,7 +10,7 @@
 typedef struct cell {
 	char *text, *small; // NULL = empty
 	const char *class, *link;
-	bool heading; // its row has no other
+	bool heading; // the only cell of its row
 } cell;
 
 struct ob_table {
@@ -118,7 +118,7 @@ void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s
 	ob_table_small(t, "%s to %s", low, high);
 }
 
-// The cell as one text; malloc'd
+// The cell as one text; malloc'd.
 static char *text_of(const ob_table *t, size_t i)
 {
 	char *text = NULL;
@@ -129,10 +129,10 @@ static char *text_of(const ob_table *t, size_t i)
 	return text;
 }
 
-// The first column, and those from "from" up to "to"
+// Prints the first column, and those from "from" up to "to".
 static void print_row(const ob_table *t, FILE *f, size_t row, size_t from, size_t to, const size_t *width)
 {
-	int trailing = 0; // spaces that nothing has followed yet
+	int trailing = 0; // pending spaces
 	for (size_t i = 0; i < to; i = i + 1 < from ? from : i + 1) {
 		char *text = text_of(t, row + i);
 		int room = (int)(width[i] - ob_utf8_count(text)), before = t->align[i] == 'r' ? room : 0;

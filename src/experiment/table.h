@@ -1,4 +1,4 @@
-// A table, cell by cell, once for all forms: text on a terminal, Markdown, HTML. One thread at a time per table.
+// A table, built once cell by cell for all formats: text on a terminal, Markdown, HTML. One thread at a time per table.
 #ifndef OB_EXPERIMENT_TABLE_H
 #define OB_EXPERIMENT_TABLE_H
 
@@ -11,26 +11,25 @@
 
 typedef struct ob_table ob_table;
 
-// align: a letter for each column, l or r. NULL: no memory.
+// align: a letter for each column, l or r. NULL: out of memory.
 ob_table *ob_table_new(const char *align);
 void ob_table_free(ob_table *t);
-// The next cell; the first row is the head. A cell for which there is no memory stays empty.
+// Adds the next cell; the first row is the head. A cell without memory stays empty.
 void ob_table_add(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// A row that is one heading; between rows that are complete
+// Adds a row that is one heading, between complete rows.
 void ob_table_heading(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// Of the last cell:
-// what stands small below it in HTML, and in brackets behind it elsewhere
+// Adds a small text to the last cell: below it in HTML, in brackets behind it elsewhere.
 void ob_table_small(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void ob_table_class(ob_table *t, const char *class); // in HTML: "met", "missed", "best"; a string that stays
-void ob_table_link(ob_table *t, const char *id); // in HTML: leads to #id; a string that stays
+void ob_table_class(ob_table *t, const char *class); // in HTML: "met", "missed", "best"; a static string
+void ob_table_link(ob_table *t, const char *id); // in HTML: link to #id; a static string
 
-// A median in the metric's unit for people, with its interval, where there is one
+// Adds a median in the metric's unit for people, with its interval, if there is one.
 void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s);
 
-// width: of a line, in characters; columns that have no room stand in a further panel below, behind the first column
-// again. 0 = no limit
+// width: characters of a line; columns that do not fit follow in a further panel below, behind the first column again.
+// 0 = no limit
 void ob_table_print(const ob_table *t, FILE *f, size_t width);
 void ob_table_markdown(const ob_table *t, FILE *f);
 void ob_table_html(const ob_table *t, ob_page *p);

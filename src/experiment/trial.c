@@ -5,7 +5,7 @@
 
 #include "ranks/ranks.h"
 
-static const double wall_for_cpu = 4; // a busy machine is not the trial's fault
+static const double wall_for_cpu = 4; // a slow machine is not the trial's fault
 
 typedef struct job {
 	const ob_experiment *experiment;
@@ -15,7 +15,7 @@ typedef struct job {
 static bool work(const void *with, void *answer, ob_error *e)
 {
 	const job *j = with;
-	ob_ranks_forget(); // a trial is alone, however many make the experiment
+	ob_ranks_forget(); // a trial is alone, even in an experiment on several ranks
 	return j->experiment->run(j->trial, answer, e);
 }
 
