@@ -17,16 +17,16 @@ struct ob_courier {
 	size_t size; // of a packet
 };
 
-// What goes through the socket: a message, or a word of the courier's own
+// Packet in the socket: a message, or the courier's own control word.
 typedef struct packet {
-	uint32_t rank; // to, or from; or what follows
+	uint32_t rank; // destination or source; or a control word
 	char bytes[OB_COURIER_BYTES];
 } packet;
 
 enum { ERROR = UINT32_MAX, END = UINT32_MAX - 1 }; // to its process, with a text; from its process
 
-// The core is a trial's, and messages are few: naps between looks at the wire grow with the time since the last
-// message, so that it waits little longer than that asks for.
+// The core belongs to a trial, and messages are rare. Naps between polls of the wire grow with the time since the last
+// message, so the added delay is a small share of that time.
 enum { NAP_SHARE = 8, NAP_MAX_MS = 16 };
 
 static _Noreturn void give_up(int socket, size_t size, const char *text)
@@ -52,7 +52,7 @@ static _Noreturn void carry(const ob_ranks *ranks, int socket, size_t size)
 		if (n > 0)
 			ob_wire_send(w, p.rank, p.bytes, bytes);
 		else if (n == 0 || (errno != EAGAIN && errno != EINTR))
-			_exit(1); // its process has gone
+			_exit(1); // its process has ended
 		size_t size_came;
 		const void *came = ob_wire_receive(w, &p.rank, &size_came);
 		if (came && size_came != bytes)
@@ -80,7 +80,7 @@ static void begin(pid_t parent)
 	signal(SIGHUP, SIG_IGN);
 	prctl(PR_SET_NAME, "obsim-courier");
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
-	if (getppid() != parent) // it died before the line above
+	if (getppid() != parent) // the parent died before the line above
 		_exit(1);
 }
 

@@ -31,8 +31,8 @@ static double seconds(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// MPI polls while it waits; here only for a moment, for the core may be a simulator's, and then after naps, each a
-// share of what it has waited for: so a wait takes no more longer than that, and few wakings however long it is.
+// MPI polls while it waits. Here polling is short, as the core may be a simulator's; then come naps, each a share of
+// the time waited. So a wait is prolonged by at most that share, with few wakings for any duration.
 static void wait_for(MPI_Request *r)
 {
 	static const double poll = 30e-6, shortest = 20e-6, longest = 2e-3, share = .25; // s
@@ -58,7 +58,7 @@ static void gather_first(const ob_wire_first *mine, ob_wire_first *all)
 	wait_for(&r);
 }
 
-// Of 8 bytes: so an int counts 16 GB.
+// Lengths in units of 8 bytes, so that an int counts 16 GB.
 static void in_words(const size_t *at, const size_t *bytes, int *offset, int *count)
 {
 	for (int i = 0; i < ranks; i++) {

@@ -8,18 +8,18 @@
 struct ob_wire {
 	const ob_wire_module *module;
 	uint32_t ranks;
-	ob_wire_first *mine, *first; // [ranks]: to each, or to all the first; of each
+	ob_wire_first *mine, *first; // [ranks]: headers to each rank, or to all in the first; headers received
 	size_t *at; // [ranks + 1]
-	size_t *rest_at, *rest; // [ranks]: behind the first bytes of each, where, how many
-	size_t *mine_at, *mine_rest; // [ranks]: likewise, to each
-	char *all, *dealt; // what has come; the rest of what goes to each
+	size_t *rest_at, *rest; // [ranks]: offset and length of each rank's bytes after the first ones
+	size_t *mine_at, *mine_rest; // [ranks]: the same for bytes to each rank
+	char *all, *dealt; // received data; the rest of the bytes to each rank
 	size_t max, dealt_max;
 };
 
-// How launchers say it: a rank, and how many there are. srun gives tasks their number with PMIx alone: without it they
-// could not find each other, and the script of a batch job, which has a number of tasks, too, is none of them.
+// Environment variables of launchers: rank, number of ranks. srun requires PMIx: without it, tasks cannot find each
+// other. The script of a batch job, which also has a number of tasks, is not a rank.
 static const char *const words[][2] = {
-	{ "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE" }, // mpirun; within a job of Slurm it is said otherwise, too
+	{ "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE" }, // mpirun; in a Slurm job it sets other variables, too
 	{ "PMIX_RANK", "SLURM_STEP_NUM_TASKS" }, // srun --mpi=pmix
 };
 enum { LAUNCHERS = sizeof words / sizeof *words };
@@ -105,7 +105,7 @@ ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e)
 	return NULL;
 }
 
-// Room for n bytes. false: there is no memory.
+// Makes room for n bytes. Returns false if memory runs out.
 static bool make_room(char **room, size_t *max, size_t n)
 {
 	if (n <= *max)
@@ -130,7 +130,8 @@ static void put_first(ob_wire_first *to, const void *mine, size_t n)
 		memcpy(to->text, mine, in_first(n));
 }
 
-// Where what comes of each rank goes, when the first bytes of each are here, which go there. false: there is no memory.
+// Places the shares of all ranks after their headers have arrived, and copies their first bytes. Returns false if
+// memory runs out.
 static bool place_all(ob_wire *w)
 {
 	for (uint32_t r = 0; r < w->ranks; r++) {
@@ -162,7 +163,7 @@ const char *ob_wire_gather(ob_wire *w, const void *mine, size_t n, const size_t 
 	return w->all;
 }
 
-// What goes to each behind its first bytes, one behind the other. false: there is no memory.
+// Collects the bytes to each rank after the first ones. Returns false if memory runs out.
 static bool place_mine(ob_wire *w, const void *const *mine, const size_t *bytes)
 {
 	size_t n = 0;
@@ -178,7 +179,7 @@ static bool place_mine(ob_wire *w, const void *const *mine, const size_t *bytes)
 	return true;
 }
 
-// Whether anybody says more than the first bytes to anybody no rank knows alone, so each says in them whether it does.
+// No rank alone knows if any rank sends more than the first bytes, so each header states it for its sender.
 const char *ob_wire_deal(ob_wire *w, const void *const *mine, const size_t *bytes, const size_t **at)
 {
 	bool more = false;
