@@ -10,11 +10,11 @@
 #include "base/log.h"
 #include "ode/ode_geom.h"
 
-// ---- what ODE keeps per process: its initialisation and its message handlers
+// ---- ODE's state per process: initialisation and message handlers
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
-// ODE repeats itself thousands of times a second ("LCP internal error, s <= 0"): the first one is news.
+// ODE repeats a message thousands of times a second ("LCP internal error, s <= 0"): only the first is reported.
 static void on_message(int number, const char *format, va_list args)
 {
 	static atomic_flag told = ATOMIC_FLAG_INIT;
@@ -26,7 +26,7 @@ static void on_message(int number, const char *format, va_list args)
 }
 
 static _Thread_local jmp_buf *way_out; // NULL: ODE must not fail here
-static void *_Atomic abandoned; // the last, which points to the one before
+static void *_Atomic abandoned; // the last one; each points to the one before
 
 void ob_ode_abandon(void **thing)
 {
@@ -62,7 +62,7 @@ static void on_error(int number, const char *format, va_list args)
 	abort();
 }
 
-// ODE does not look whether it has got what it asked for.
+// ODE does not check its allocations: this one does not return without memory.
 static void *reallocate(void *old, dsizeint old_bytes, dsizeint bytes)
 {
 	(void)old_bytes;
@@ -82,7 +82,7 @@ static void init_ode(void)
 	}
 }
 
-// A child of fork inherits both the flag and what it stands for.
+// A child of fork inherits both the flag and the state that it stands for.
 void ob_ode_init(void)
 {
 	pthread_once(&once, init_ode);
@@ -100,8 +100,8 @@ void ob_ode_thread_finish(void)
 }
 
 #ifdef __SANITIZE_THREAD__
-// ODE hands memory that a geometry no longer needs (it is destroyed, or has a body now) to the next one, of any thread,
-// by a locked exchange. Debian's library is not built for ThreadSanitizer, which sees the hand-over but not the lock.
+// ODE passes unused memory of a geometry (destroyed, or attached to a body now) to the next one, of any thread, by a
+// locked exchange. Debian's library is not built for ThreadSanitizer, which sees the transfer but not the lock.
 const char *__tsan_default_suppressions(void);
 __attribute__((visibility("default"))) const char *__tsan_default_suppressions(void)
 {
@@ -114,7 +114,7 @@ __attribute__((visibility("default"))) const char *__tsan_default_suppressions(v
 struct ob_ode_stepper {
 	void *abandoned; // first
 	bool gave_up;
-	dWorldID world; // empty: the working memory of all the others is its
+	dWorldID world; // empty: its working memory is used by all the others
 	dThreadingImplementationID threading;
 };
 
@@ -133,8 +133,9 @@ ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass)
 	return ob_v3(m.I[0], m.I[5], m.I[10]);
 }
 
-// Without this each world would use the process's own, whose job list is not locked: worlds of different threads then
-// corrupt it. And each world would reserve 128 kB for its first step, where a free body needs 1.
+// Creates shared working memory. Without it each world would use the process's own, with an unlocked job list: worlds
+// of different threads would corrupt it. Each world would also reserve 128 kB for its first step, where a free body
+// needs 1.
 ob_ode_stepper *ob_ode_stepper_create(void)
 {
 	ob_ode_stepper *s = ob_allocate_zeroed(sizeof *s);

@@ -1,28 +1,28 @@
-// One object's own ODE world, body and geom. With ode_world.h the only code that includes <ode/ode.h>.
-// Thread-safety: one thread at a time per handle; different handles may be used at once.
+// ODE world, body and geom of one object. With ode_world.h the only code that includes <ode/ode.h>. Thread-safety: one
+// thread at a time per handle; different handles may be used at once.
 #ifndef OB_ODE_BODY_H
 #define OB_ODE_BODY_H
 
 #include <ob/motion.h>
 
-// Process-wide; call before any other, once per process (after fork in a child). Idempotent, thread-safe.
+// Initialises ODE; call before all other functions, once per process (after fork in a child). Idempotent, thread-safe.
 void ob_ode_init(void);
-// Once in each thread that uses ODE, and when it ends.
+// Call once in each thread that uses ODE, and when it ends.
 void ob_ode_thread_init(void);
 void ob_ode_thread_finish(void);
 
 // Mass properties of a homogeneous shape of given mass, by ODE. Returns principal moments (kg m^2).
 ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass);
 
-// What stepping needs beside a world: working memory and a list of jobs. One for each thread that steps bodies; all of
-// its worlds share it, and it goes after them. NULL: no memory.
+// Shared resources of stepping: working memory and a list of jobs. One for each thread that steps bodies; all of its
+// worlds share it, and it is destroyed after them. NULL: out of memory.
 typedef struct ob_ode_stepper ob_ode_stepper;
 ob_ode_stepper *ob_ode_stepper_create(void);
 void ob_ode_stepper_destroy(ob_ode_stepper *s);
 
-// Runs step(context), in which ODE may give up: its assertions call what must not return. false: it has. The working
-// memory of that step is then in no state to be freed: its owner begins with a pointer, and abandons itself, so that it
-// is still known. The thread's own; not to be nested.
+// Runs step(context), in which ODE may give up: its assertions call functions that must not return. Returns false if it
+// has given up. The step's working memory is then in no state to be freed; its owner, which starts with a pointer,
+// abandons itself and stays reachable through it. The thread's own; not to be nested.
 bool ob_ode_try(void (*step)(void *context), void *context);
 _Noreturn void ob_ode_give_up(void); // from within step
 void ob_ode_abandon(void **thing);
@@ -31,10 +31,11 @@ typedef struct ob_ode_body ob_ode_body;
 // World, body, geom: about 1.4 kB. Static objects get no world.
 ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_stepper *s);
 void ob_ode_body_destroy(ob_ode_body *b);
-// Writes the state back to the body (the closed form is the truth, ODE's body follows it).
+// Writes the state back to the body (the closed form is authoritative, ODE's body follows it).
 void ob_ode_body_set(ob_ode_body *b, const ob_state *s);
 // Advances by ODE's own dWorldStep over h (s) under gravity and the impulse j (N s), angular impulse l (N m s, world
-// frame, about the centre), both spread evenly over h; state in, state out. false: ODE gave up, and the state stays.
+// frame, about the centre), both spread evenly over h; state in, state out. Returns false if ODE gave up; the state is
+// then unchanged.
 bool ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h);
 
 #endif

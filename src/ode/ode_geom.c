@@ -14,7 +14,7 @@ dGeomID ob_ode_geom_create(dSpaceID space, ob_shape shape, ob_vec3 size)
 	case OB_SHAPE_CYLINDER:
 		return dCreateCylinder(space, size.x, 2 * size.y);
 	case OB_SHAPE_NONE:
-	case OB_SHAPE_HULL: // nothing collides with it: worlds with hulls are refused, and a body of its own needs none
+	case OB_SHAPE_HULL: // no collisions: worlds with hulls are rejected, and a separate body needs no geometry
 		break;
 	}
 	return NULL;

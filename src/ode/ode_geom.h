@@ -1,4 +1,4 @@
-// Inside the module ode only: a geometry of ODE from our shapes.
+// ODE geometries of our shapes. Internal to the module.
 #ifndef OB_ODE_GEOM_H
 #define OB_ODE_GEOM_H
 
@@ -6,11 +6,11 @@
 
 #include <ob/motion.h>
 
-// space may be 0; NULL for OB_SHAPE_NONE and for a hull
+// Creates a geometry. space may be 0; returns NULL for OB_SHAPE_NONE and for a hull.
 dGeomID ob_ode_geom_create(dSpaceID space, ob_shape shape, ob_vec3 size);
-// For a geometry without a body (static objects, single tests).
+// Places a geometry without a body (static objects, single tests).
 void ob_ode_geom_place(dGeomID g, ob_pose pose);
-// Zero mass for a plane or no shape.
+// Mass properties; zero mass for a plane or no shape.
 dMass ob_ode_mass(ob_shape shape, ob_vec3 size, double mass);
 
 #endif

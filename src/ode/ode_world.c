@@ -17,14 +17,14 @@ static void set_contact(dContactGeom *c, dGeomID a, dGeomID b, const double *at,
 	}
 }
 
-// The corner of a box (ODE's order: least and most along each axis) that bit k of "which" says for axis k.
+// Corner of a box (ODE's order: least and most along each axis); bit k of "which" selects the end of axis k.
 static void corner(const double *box, unsigned which, double *at)
 {
 	for (int k = 0; k < 3; k++)
 		at[k] = box[2 * k + (which >> k & 1)];
 }
 
-// sign: 1 where the box belongs to the pair's a.
+// sign: 1 if the box belongs to the pair's a.
 static int box_plane(dGeomID a, dGeomID b, const double *box, dGeomID plane, double sign, dContactGeom *point)
 {
 	dVector4 face; // n . x = d
@@ -49,9 +49,9 @@ static int box_plane(dGeomID a, dGeomID b, const double *box, dGeomID plane, dou
 	return n;
 }
 
-// Where the axis-aligned boxes round two geometries overlap: the four corners of the overlap across the axis along
-// which it is least, with normals along that axis, from b to a. A plane stays a plane: against it, the four lowest
-// corners of the other's box that are below it. Returns how many of the four there are. Normals as dCollide has them.
+// Contacts of the axis-aligned boxes of two geometries: the four corners of the overlap across the axis along which it
+// is least. A plane stays a plane: against it, the four lowest corners of the other's box, as far as they are below it.
+// Returns the number of points, four at most. Normals from b to a, as dCollide has them.
 static int collide_aabbs(dGeomID a, dGeomID b, dContactGeom point[4])
 {
 	dReal box_a[6], box_b[6];
@@ -68,7 +68,7 @@ static int collide_aabbs(dGeomID a, dGeomID b, dContactGeom point[4])
 		overlap[2 * k + 1] = box_a[2 * k + 1] < box_b[2 * k + 1] ? box_a[2 * k + 1] : box_b[2 * k + 1];
 		if (overlap[2 * k + 1] < overlap[2 * k])
 			return 0;
-		// the way out for a: up or down along this axis
+		// separation of a along this axis: upwards or downwards
 		double up = box_b[2 * k + 1] - box_a[2 * k], down = box_a[2 * k + 1] - box_b[2 * k];
 		if ((up < down ? up : down) < depth) {
 			depth = up < down ? up : down;
@@ -91,7 +91,7 @@ static int collide_aabbs(dGeomID a, dGeomID b, dContactGeom point[4])
 
 // ---- the world
 
-enum { PAIR_POINTS = 4, CAP_POINTS = 8 }; // on a cap, ODE lists 8 points round its rim: the first 4 lie on one side
+enum { PAIR_POINTS = 4, CAP_POINTS = 8 }; // on a cap, ODE lists 8 points around its rim: the first 4 lie on one side
 
 struct object {
 	dBodyID body; // NULL: static, or no such object
@@ -105,7 +105,7 @@ struct object {
 	ob_state placed; // of static objects
 };
 
-// The two objects of a contact, the lower id first, and its points as ODE found them.
+// Two objects in contact, the lower id first, and their points as found by ODE.
 struct contact_pair {
 	struct object *a, *b;
 	int points;
@@ -124,9 +124,9 @@ struct ob_ode_world {
 	double substep; // s, of the last step
 	struct object *object;
 	struct contact_pair *pair;
-	struct contact_pair **order; // the pairs by their ids: they themselves are too big to be moved about
+	struct contact_pair **order; // pairs by their ids: they are too big to be moved about
 	size_t pairs, pairs_max;
-	bool full, gave_up; // the last step: no room for its pairs; it did not come to its end
+	bool full, gave_up; // last step: pairs did not fit; it was not completed
 };
 
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
@@ -270,7 +270,7 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 	}
 }
 
-// Sleepers that lean on what goes: their boxes overlap.
+// Wakes sleepers that lean on the object: their boxes overlap.
 static void wake_both(void *data, dGeomID a, dGeomID b)
 {
 	(void)data;
@@ -287,10 +287,10 @@ void ob_ode_world_remove(ob_ode_world *w, uint32_t id)
 	if (m->geom)
 		dSpaceCollide2(m->geom, (dGeomID)w->space, NULL, wake_both);
 	clear_object(m);
-	w->pairs = 0; // the last contacts may name it
+	w->pairs = 0; // the last contacts may refer to it
 }
 
-// If there is no room, the step ends here: there may be any number of pairs to come.
+// Ends the step if there is no room: any number of pairs may follow.
 static struct contact_pair *next_pair(ob_ode_world *w)
 {
 	if (w->pairs == w->pairs_max) {
@@ -346,7 +346,7 @@ static void collide_pair(void *data, dGeomID one, dGeomID other)
 		p->point[i] = point[i];
 }
 
-// Joints in the order of the ids, whatever the space has made of its lists: a run is repeated bit by bit.
+// Orders joints by ids, independent of the space's lists: a run repeats bit by bit.
 static int by_ids(const void *x, const void *y)
 {
 	const struct contact_pair *p = *(struct contact_pair *const *)x, *q = *(struct contact_pair *const *)y;
@@ -355,7 +355,7 @@ static int by_ids(const void *x, const void *y)
 	return (p->b->id > q->b->id) - (p->b->id < q->b->id);
 }
 
-// m/s, world frame
+// Surface velocity (m/s, world frame).
 static ob_vec3 surface_velocity(const struct object *m)
 {
 	const dReal *q = m->body ? dBodyGetQuaternion(m->body) : NULL;
@@ -363,7 +363,7 @@ static ob_vec3 surface_velocity(const struct object *m)
 	return ob_rotate(&r, m->surface_velocity);
 }
 
-// The first body is carried along at a velocity (m/s), as far as that lies in the plane of the contact.
+// Carries the first body along at a velocity (m/s), as far as that lies in the plane of the contact.
 static void run_surface(dContact *c, ob_vec3 velocity)
 {
 	const ob_vec3 n = ob_v3(c->geom.normal[0], c->geom.normal[1], c->geom.normal[2]);
@@ -399,7 +399,7 @@ static void create_contact_joints(ob_ode_world *w, struct contact_pair *p, doubl
 	p->a->touching = p->b->touching = true;
 }
 
-// A step of ODE's, with all that may fail in it.
+// One ODE step, with all operations that may fail.
 typedef struct world_step {
 	ob_ode_world *world;
 	double h; // s
@@ -417,12 +417,12 @@ static void collide_and_step(void *context)
 	for (uint32_t id = 0; id < w->setup.objects; id++) {
 		struct object *m = &w->object[id];
 		if (!is_awake(m))
-			continue; // ODE would keep the forces on a sleeper until it wakes
+			continue; // ODE would accumulate forces on a sleeper until it wakes
 		m->touching = false;
 		dBodySetForce(m->body, m->force.x, m->force.y, m->force.z);
 		dBodySetTorque(m->body, m->torque.x, m->torque.y, m->torque.z);
 	}
-	// Slower than what gravity adds in two steps is rest, not an impact.
+	// Slower than two steps of gravity counts as rest, not as an impact.
 	double bounce_speed = 2 * x->h * ob_norm(w->setup.gravity);
 	for (size_t i = 0; i < w->pairs; i++)
 		create_contact_joints(w, w->order[i], bounce_speed);
@@ -442,7 +442,7 @@ bool ob_ode_world_step(ob_ode_world *w, double h)
 	return !w->gave_up;
 }
 
-// Infinite where something is no number.
+// Measure of wildness; infinite if a number is NaN.
 static double wildness(dBodyID body)
 {
 	const dReal *p = dBodyGetPosition(body), *v = dBodyGetLinearVel(body), *o = dBodyGetAngularVel(body);
