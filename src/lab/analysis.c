@@ -70,7 +70,7 @@ const ob_result *ob_lab_analysis_promised(const ob_lab_analysis *d, const ob_cas
 	const ob_result *r = d->own ? ob_lab_analysis_usual(d, c, d->own) : NULL;
 	for (size_t i = 0; !r && i < d->engines; i++)
 		if (!strcmp(d->engine[i]->name,
-			    "obsim-lag")) // the case of late partners is promised for those who are not
+			    "obsim-lag")) // the case's target holds for engines without late partners
 			r = find(d, c, d->engine[i], 0);
 	return r;
 }

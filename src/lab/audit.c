@@ -22,7 +22,7 @@ static bool is_setting(const ob_run_settings *s, int setting)
 	return s->tolerance == 0 && s->substeps == substeps_of(setting);
 }
 
-// What ran out of time says nothing.
+// Ignores results that ran out of time.
 static const ob_result *find(const ob_lab_analysis *d, const ob_case *c, int setting)
 {
 	for (size_t i = 0; i < d->results->count; i++) {
@@ -45,7 +45,7 @@ static void keep(ob_audit_rise *worst, int figure, int setting, double by)
 		*worst = (ob_audit_rise){ figure, setting, by };
 }
 
-// A run that fails at the finer setting is as bad as its first figure can be.
+// A run that fails at the finer setting counts as infinitely bad in its first figure.
 static void compare(ob_audit *a, const ob_case *c, int coarse, int fine)
 {
 	const ob_case_result *from = &a->result[coarse]->outcome, *to = &a->result[fine]->outcome;
@@ -69,7 +69,7 @@ ob_audit ob_lab_audit(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_audit a = { .above = { .figure = -1 }, .below = { .figure = -1 } };
 	double h[OB_AUDIT_SUBSTEPS], error[OB_AUDIT_SUBSTEPS];
-	int coarser = -1; // of the same knob
+	int coarser = -1; // index of the coarser value of the same setting
 	for (int i = 0; i < OB_AUDIT_SETTINGS; i++) {
 		a.result[i] = find(d, c, i);
 		a.ratio[i] = a.result[i] ? ob_lab_analysis_ratio(a.result[i]) : NAN;
@@ -88,7 +88,7 @@ ob_audit ob_lab_audit(const ob_lab_analysis *d, const ob_case *c)
 		least = fmin(least, error[i]);
 		most = fmax(most, error[i]);
 	}
-	bool flat = most <= 1 && most < noticeable * least; // as good as it need be from the first
+	bool flat = most <= 1 && most < noticeable * least; // good enough from the first value
 	a.order = flat ? NAN : ob_reference_order(OB_AUDIT_SUBSTEPS, h, error, rounding);
 	return a;
 }

@@ -1,7 +1,7 @@
-// A hard case: worlds to run, what is looked at after each frame, and the figures that come out, each with its target.
+// A hard case: worlds to run, observations after each frame, and the resulting figures, each with its target.
 //
-// A case may consist of several runs (100 aims at a wall, three stacks); its figures are the worst over all of them,
-// but for those that are averaged. Cases know no engine: they see states.
+// A case may consist of several runs (100 aims at a wall, three stacks). Its figures are the worst over all of them,
+// except for averaged ones. Cases do not depend on engines: they read states.
 #ifndef OB_LAB_CASE_H
 #define OB_LAB_CASE_H
 
@@ -14,23 +14,23 @@ enum { OB_FIGURES = 8 }; // per case, at most
 typedef struct ob_figure_def {
 	const char *name; // "worst penetration"
 	const char *unit; // "mm", "1" for a ratio, "J", "rad"; as printed
-	double target; // at most this much, in that unit, at 60 Hz; NAN = shown, but not promised
+	double target; // upper bound, in that unit, at 60 Hz; NAN = shown, but not promised
 	const char *
-		reference; // what it is compared with, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
+		reference; // basis of comparison, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
 } ob_figure_def;
 
-// One run of a case with one engine, while it goes on.
+// State of one run of a case with one engine.
 typedef struct ob_case_run_state {
 	const struct ob_case *of;
-	uint32_t run; // which of the case's runs
-	uint64_t frame; // frames gone by: 0 before the first step
+	uint32_t run; // number of the run within the case
+	uint64_t frame; // completed frames: 0 before the first step
 	double time; // s
-	const ob_world *world; // as it began
+	const ob_world *world; // body properties and states now: input of measure/
 	ob_snapshot now; // passports and states now: measure/ takes it
 	double figure[OB_FIGURES]; // start at 0; in the case's units
-	double memory[64]; // the case's own, zeroed before each run
+	double memory[64]; // for the case's own use, zeroed before each run
 	double *body_memory; // [objects][8], likewise
-	const char *failed; // why the run counts as failed: "fell", "passed through"; NULL = it did not
+	const char *failed; // reason for which the run counts as failed: "fell", "passed through"; NULL = success
 	ob_run_settings settings;
 } ob_case_run_state;
 
@@ -39,16 +39,16 @@ typedef struct ob_case {
 	const char *name; // as on the command line: "stack-10"
 	const char *title; // "Stack of 10"
 	const char *setup; // one or two sentences for the reader of the report
-	const char *others; // what other engines were seen to reach
+	const char *others; // figures seen with other engines
 	bool quick; // belongs to the subset that runs with the tests
-	bool compared; // one of those whose cost at equal error is tabled
-	bool sleeps; // what rests may sleep, whatever the settings
+	bool compared; // its cost at equal error is tabulated
+	bool sleeps; // bodies at rest may sleep, whatever the settings
 	double duration, step; // s
 	uint32_t runs;
-	uint32_t figures; // the first is the one that plots show
+	uint32_t figures; // plots show the first
 	ob_figure_def figure[OB_FIGURES];
-	unsigned averaged; // bit per figure: its mean over the runs counts, not the worst of them (a share)
-	void (*build)(ob_world *w, uint32_t run); // with ob_world_* of world/world.h
+	unsigned averaged; // bit per figure: the mean over the runs counts, not the worst (a share)
+	void (*build)(ob_world *w, uint32_t run); // uses ob_world_* of world/world.h
 	void (*observe)(ob_case_run_state *t); // after each frame, and once before the first; NULL = nothing
 	void (*judge)(ob_case_run_state *t); // at the end of each run
 } ob_case;
@@ -56,15 +56,15 @@ typedef struct ob_case {
 extern const ob_case *const ob_cases[]; // in the order of their rows; ends with NULL
 const ob_case *ob_case_find(const char *name);
 
-// Runs all of a case's runs with one engine. false and e: the engine could not be made, or there is no memory.
-// A run ends early when it has failed. Where the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or
-// rad/s) all figures are infinite.
+// Runs all of a case's runs with one engine. Returns false and e if the engine could not be created, or memory ran out.
+// A run ends at its first failure. If the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or rad/s), all
+// figures are infinite.
 typedef struct ob_case_result {
 	double figure[OB_FIGURES];
-	double conserved[OB_CONSERVED]; // worst of all runs; NAN: the case's worlds do not keep it
+	double conserved[OB_CONSERVED]; // worst of all runs; NAN: not conserved in the case's worlds
 	double cpu_s, wall_s; // of stepping alone
 	double body_seconds; // dynamic bodies times simulated time
-	char failed[96]; // "" = it did not
+	char failed[96]; // reason; "" = success
 } ob_case_result;
 bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out, ob_error *e);
 

@@ -18,7 +18,7 @@ static void append(char *to, size_t room, const char *format, ...)
 	va_end(args);
 }
 
-// In a case, or, where none is named, in the chart as it is so far
+// True if the engine has results in a case, or, with none named, in the chart so far.
 static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_case *of, const ob_engine_kind *k)
 {
 	for (size_t i = 0; of && i < d->results->count; i++)
@@ -35,7 +35,7 @@ static void add_configuration(ob_chart *c, const ob_lab_analysis *d, const ob_ca
 	char *to = c->subtitle;
 	size_t room = sizeof c->subtitle;
 	append(to, room, "%sframes of 1/%.0f s", *to ? " \u00b7 " : "", of ? 1 / of->step : 60);
-	bool obsim = false; // its variants are alike in this
+	bool obsim = false; // its variants count alike here
 	for (size_t i = 0; i < d->engines; i++) {
 		const ob_engine_kind *k = d->engine[i];
 		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_lab_analysis_is_obsim(k)))
@@ -62,9 +62,9 @@ void ob_lab_chart_setting(const ob_result *r, char *to, size_t room)
 		snprintf(to, room, "%.0f Hz", s->substeps / s->step_length);
 }
 
-// ---- error over cost, and over substeps: a curve an engine
+// ---- error over cost, and over substeps: a curve per engine
 
-// How the results of one engine fall into series
+// Families that split the results of one engine into series.
 typedef enum family { FAMILY_STEPS, FAMILY_TOLERANCE, FAMILY_ITERATIONS, FAMILIES } family;
 
 static family family_of(const ob_result *r)
@@ -87,7 +87,7 @@ static int by_fineness(const void *a, const void *b)
 	return (one > other) - (one < other);
 }
 
-// The results of one series in their order; returns how many.
+// Collects the results of one series in their order; returns their number.
 static size_t gather(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k, family f,
 		     const ob_result **list)
 {
@@ -146,7 +146,7 @@ static void mark_target(ob_chart *chart, const ob_case *c)
 	chart->plot.marks = 1;
 }
 
-// Nothing to show is no chart.
+// Returns NULL for an empty chart.
 static ob_chart *end_curves(ob_chart *chart, const ob_result **list)
 {
 	free(list);
@@ -178,7 +178,7 @@ ob_chart *ob_lab_chart_cost(const ob_lab_analysis *d, const ob_case *c)
 	if (!chart)
 		return NULL;
 	snprintf(chart->title, sizeof chart->title, "%s: error against cost", c->title);
-	bool others = false; // points off the curves, of other numbers of iterations
+	bool others = false; // there are points off the curves, with other numbers of iterations
 	for (size_t i = 0; i < chart->plot.series_count; i++)
 		others |= chart->series[i].count && !chart->series[i].title;
 	snprintf(chart->subtitle, sizeof chart->subtitle,
@@ -194,7 +194,7 @@ ob_chart *ob_lab_chart_cost(const ob_lab_analysis *d, const ob_case *c)
 	return chart;
 }
 
-// Behind an engine's name: the order at which its error falls
+// Appends the observed order to an engine's name.
 static void name_order(const ob_engine_kind *k, const ob_result *const *list, size_t count, char *to, size_t room)
 {
 	double h[64], error[64], largest = 0;
@@ -213,7 +213,7 @@ static void name_order(const ob_engine_kind *k, const ob_result *const *list, si
 		snprintf(to, room, "%s", k->title);
 }
 
-// Errors that fall as the first power of the step, from the coarsest one of the first engine's
+// Adds a guide line of first order, from the coarsest point of the first engine.
 static void add_guide(ob_chart *chart)
 {
 	const ob_plot_series *s = chart->series;
@@ -226,7 +226,7 @@ static void add_guide(ob_chart *chart)
 	}
 	if (!first || first == last)
 		return;
-	double x = first->x, y = first->y, end = last->x; // points move as others are added
+	double x = first->x, y = first->y, end = last->x; // adding points moves earlier ones
 	ob_chart_begin(chart, -1, false, "first order");
 	ob_chart_add(chart, x, y, "", "");
 	ob_chart_add(chart, end, y * x / end, "", "");
@@ -250,7 +250,7 @@ ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d, const ob_case *c)
 	if (!chart)
 		return NULL;
 	for (size_t i = 0; i < chart->points; i++)
-		chart->point[i].label = NULL; // the axis says it
+		chart->point[i].label = NULL; // the axis has this information
 	add_guide(chart);
 	snprintf(chart->title, sizeof chart->title, "%s: order of convergence", c->title);
 	add_configuration(chart, d, c);
@@ -264,11 +264,11 @@ ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d, const ob_case *c)
 	return chart;
 }
 
-// ---- all cases, one below the other; and what reading late costs
+// ---- all cases, one below the other; and the cost of reading late
 
 static const double row_height = 19; // px
 
-// Is there something to show of a case: a target, and results of obsim (and of "beside", unless it is NULL)?
+// True if a case has a target, and results of obsim (and of "beside", unless it is NULL).
 static bool has_row(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *beside)
 {
 	const ob_result *own = ob_lab_analysis_promised(d, c);
@@ -288,7 +288,8 @@ static void add_row(ob_chart *chart, const ob_result *r, double at)
 	p->failed = !isfinite(ratio);
 }
 
-// One series: the results at usual settings of an engine (NULL: what obsim promises), "dodge" rows off its own
+// Adds one series: the results at usual settings of an engine (NULL: those promised by obsim), "dodge" rows off its
+// own.
 static void add_engine(ob_chart *chart, const ob_lab_analysis *d, const ob_engine_kind *k, const ob_engine_kind *beside,
 		       double dodge)
 {

@@ -24,16 +24,16 @@ ob_conservation ob_conservation_begin(const ob_world *w)
 		mass += p->mass;
 	}
 	c.centre = ob_scale(c.centre, mass > 0 ? 1 / mass : 0);
-	c.driven = ob_world_drives(w) != OB_WORLD_DRIVES_NOTHING; // what does work may add energy
+	c.driven = ob_world_drives(w) != OB_WORLD_DRIVES_NOTHING; // driven bodies may add energy
 	c.worst[OB_CONSERVED_ENERGY] = c.driven ? NAN : 0;
 	c.worst[OB_CONSERVED_MOMENTUM] = c.worst[OB_CONSERVED_ANGULAR] = c.closed ? 0 : NAN;
 	return c;
 }
 
-// Sums over the bodies of a snapshot
+// Sums over the bodies of a snapshot.
 typedef struct sums {
 	ob_vec3 momentum, angular;
-	double energy; // J, with that of gravity and of constant forces
+	double energy; // J, including gravity's and constant forces'
 	double scale[OB_CONSERVED];
 } sums;
 

@@ -35,7 +35,7 @@ static const ob_metric metrics[OB_LAB_METRICS] = {
 	FIGURE(8),
 };
 
-// A number with as many digits as it takes to read the same bits back
+// Prints a number with as many digits as needed to read the same bits back.
 static int print_exact(char *to, size_t room, const char *name, double v)
 {
 	char text[32];
@@ -95,7 +95,7 @@ bool ob_lab_read_configuration(const char *text, const ob_case *c, const ob_engi
 	return true;
 }
 
-// What the keys of a trial or a record mean
+// Meaning of the keys of a trial or a record.
 typedef struct meaning {
 	const ob_case *of;
 	const ob_engine_kind *engine;
@@ -127,7 +127,7 @@ static bool run(const ob_trial *t, ob_record *out, ob_error *e)
 	return true;
 }
 
-// Is it finer, with all else no coarser?
+// True if it is finer, and nothing else is coarser.
 static bool is_finer(const ob_trial *t, const ob_record *than)
 {
 	meaning a, b;
@@ -149,7 +149,7 @@ static int by_place(const ob_record *a, const ob_record *b)
 			       &(ob_result){ .of = n.of, .engine = n.engine, .settings = n.settings });
 }
 
-// ---- what the file says beside keys and metrics
+// ---- columns of the file beside keys and metrics
 
 enum { ROW, ENGINE, VERSION, STEP, SUBSTEPS, ITERATIONS, TOLERANCE, LAG, COST, FIGURES, COLUMNS };
 static const char *const columns[COLUMNS] = { "row",         "engine",   "engine_version",
@@ -157,7 +157,7 @@ static const char *const columns[COLUMNS] = { "row",         "engine",   "engine
 					      "tolerance_m", "lag",      "cpu_s_per_body_and_simulated_s",
 					      "figures" };
 
-// "1 worst penetration (mm, at most 0.5); 2 drift (mm)"
+// Prints "1 worst penetration (mm, at most 0.5); 2 drift (mm)".
 static void describe_figures(const ob_case *c, char *to, size_t room)
 {
 	size_t n = 0;
@@ -220,7 +220,7 @@ static uint32_t count_bodies(const ob_case *c)
 	return bodies;
 }
 
-// s that a case takes with an engine that works through a body's substep in two microseconds
+// Time (s) of a case, assuming an engine that takes two microseconds for a substep of a body.
 static double guess(const ob_case *c, uint32_t bodies, const ob_run_settings *s)
 {
 	static const double start = .02, body_substep = 2e-6;

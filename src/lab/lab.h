@@ -1,5 +1,5 @@
-// The lab as an experiment (experiment/experiment.h): hard cases, each with engines at settings. Pure but for what is
-// run in trials; any thread.
+// The lab as an experiment (experiment/experiment.h): hard cases, each with engines at settings. Pure except for the
+// work of trials; any thread.
 #ifndef OB_LAB_LAB_H
 #define OB_LAB_LAB_H
 
@@ -8,7 +8,7 @@
 #include "lab/result.h"
 #include "lab/sweep.h"
 
-// Metrics of a record; those of figures are in the case's units.
+// Metrics of a record; figures are in the case's units.
 enum {
 	OB_LAB_CPU,
 	OB_LAB_WALL,
@@ -25,19 +25,20 @@ typedef struct ob_lab_plan {
 	uint32_t repeats; // 1 .. OB_REPEATS
 } ob_lab_plan;
 
-// commit: of the program; limit: s of CPU time for a trial
+// commit: of the program; limit: CPU time of a trial (s).
 ob_experiment ob_lab_experiment(const char *commit, double limit);
-// Case by case; within a case engines and settings take turns, repeat by repeat. false and e: no memory
+// Schedules case by case; within a case engines and settings alternate, repeat by repeat. Returns false and e if memory
+// runs out.
 bool ob_lab_schedule(const ob_lab_plan *p, ob_trials *to, ob_error *e);
 
-// "obsim substeps=8 iterations=16": an engine and its settings as one text, and back. A zero is left out. false and e:
-// not understood
+// Prints an engine and its settings as one text, "obsim substeps=8 iterations=16", without zeros; the other direction
+// parses it. Returns false and e if it is not valid.
 void ob_lab_print_configuration(char *to, size_t room, const ob_engine_kind *k, const ob_run_settings *s);
 bool ob_lab_read_configuration(const char *text, const ob_case *c, const ob_engine_kind **k, ob_run_settings *s,
 			       ob_error *e);
 
-// Records as results: medians of the times, and the worst of the figures. false and e: no memory, or they are not of
-// this program's cases and engines. Finish to in either case.
+// Converts records to results: medians of the times, and the worst of the figures. Returns false and e if memory runs
+// out, or if they do not belong to this program's cases and engines. Finish `to` in either case.
 bool ob_lab_results(const ob_records *from, ob_results *to, ob_error *e);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "experiment/page.h"
 
-// Adds what is chosen, and keeps the order.
+// Adds the chosen cases, and preserves the order.
 static bool add(ob_case_list *l, bool (*chosen)(const ob_case *c, const char *word), const char *word)
 {
 	ob_case_list all = { 0 };
@@ -96,7 +96,7 @@ void ob_list_print(FILE *f, const ob_case_list *l)
 	for (size_t i = 0; i < l->count; i++) {
 		const ob_case *c = l->of[i];
 		fprintf(f, "%3d  %-*s %c  %-*s", c->row, name, c->name, c->quick ? '*' : ' ', title, c->title);
-		int indent = 2; // of a case's first target; each other has a line of its own
+		int indent = 2; // indentation of a case's first target; each other has a line of its own
 		for (uint32_t j = 0; j < c->figures; j++) {
 			if (isnan(c->figure[j].target))
 				continue;

@@ -1,5 +1,5 @@
-// What cases look at in a trial: bodies now and at the start, the energy, the worst so far. No function but
-// ob_look_keep changes anything.
+// Observations of cases in a trial: bodies now and at the start, the energy, the worst so far. Only ob_look_keep and
+// ob_look_keep_all modify their arguments.
 #ifndef OB_LAB_LOOK_H
 #define OB_LAB_LOOK_H
 
@@ -7,16 +7,16 @@
 
 ob_state ob_look_at(const ob_case_run_state *t, uint32_t id);
 ob_vec3 ob_look_moved(const ob_case_run_state *t, uint32_t id); // m, since the start
-bool ob_look_moves(const ob_case_run_state *t, uint32_t id); // forces move it
+bool ob_look_moves(const ob_case_run_state *t, uint32_t id); // unaffected bodies (static, kinematic): false
 double ob_look_energy(const ob_case_run_state *t); // J; potential energy is 0 at z = 0
-double ob_look_farthest(const ob_case_run_state *t); // m: the farthest that a body is from where it started
-// Some centre is a metre below the level ground: through it, not just deep in it.
+double ob_look_farthest(const ob_case_run_state *t); // m: largest distance of a body from its start
+// True if a centre is a metre below the level ground: through it, not just deep in it.
 bool ob_look_fell_through(const ob_case_run_state *t);
-double ob_look_gravity(const ob_case_run_state *t); // m/s^2, its size
+double ob_look_gravity(const ob_case_run_state *t); // m/s^2, magnitude
 
-// Makes the figure the larger of the two. NaN counts as larger than all, and stays.
+// Sets the figure to the larger of the two. NaN counts as the largest, and stays.
 void ob_look_keep(double *figure, double value);
-// The same for all figures of two runs.
+// Same for all figures of two runs.
 void ob_look_keep_all(double *figure, const double *value);
 
 #endif

@@ -9,10 +9,10 @@
 #include "lab/tables.h"
 #include "report_texts.h"
 
-// ---- what a hurried reader sees: the verdict, cost at equal error, every promise
+// ---- summary: the verdict, cost at equal error, all targets
 
 typedef struct lead {
-	int compared, ahead, within; // cases; those where obsim is not ahead, but within twice the cost of the best
+	int compared, ahead, within; // cases; those without obsim ahead, but within twice the cost of the best
 } lead;
 
 static double best_other_cost(const ob_lab_analysis *d, const ob_lab_analysis_equal *q)
@@ -64,7 +64,7 @@ static void write_cards(ob_page *p, const void *with)
 		       runs, failed);
 }
 
-// Names of the rows that are missed, so that nobody has to look for them
+// Lists the rows with missed targets, so that they are easy to find.
 static void write_missed(ob_page *p, const ob_lab_analysis *d)
 {
 	int missed = 0;
@@ -153,7 +153,7 @@ static ob_chart *convergence_chart(const ob_lab_analysis *d, size_t i)
 	return c ? ob_lab_chart_convergence(d, c) : NULL;
 }
 
-// A section that stands only if it has a chart
+// Begins a section, if it has a chart.
 static bool begin_section(ob_page *p, const ob_chart *chart, const char *id, const char *title, const char *text)
 {
 	if (chart)
@@ -278,7 +278,7 @@ static void write_others(ob_page *p, const void *with)
 	ob_page_text(p, ((const report_case *)with)->of->others);
 }
 
-// A case's own: over cost, but where it is about reading late
+// Chart of a case: error over cost, or over delay in the case of late partners.
 static ob_chart *case_chart(const ob_lab_analysis *d, const ob_case *c)
 {
 	return c == ob_case_find("lag") ? ob_lab_chart_lag(d) : ob_lab_chart_cost(d, c);

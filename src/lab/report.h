@@ -1,4 +1,4 @@
-// The lab's report: diagrams, and one page that explains itself to whoever has never heard of obsim.
+// The lab's report: diagrams, and one self-contained page for readers new to obsim.
 #ifndef OB_LAB_REPORT_H
 #define OB_LAB_REPORT_H
 
@@ -6,12 +6,12 @@
 
 #include "lab/result.h"
 
-// Writes DIR/report.html (self-contained: no script, no network), DIR/plots/NAME.svg and .png, the tables DIR/rows.md,
-// conserved.md, audit.md, equal.md and equal.csv; the folders are made.
-// The same results give the same files. One thread at a time per directory.
+// Writes DIR/report.html (self-contained: no script, no network), DIR/plots/NAME.svg and .png, and the tables
+// DIR/rows.md, conserved.md, audit.md, equal.md and equal.csv; makes the folders. The same results give the same files.
+// One thread at a time per directory.
 bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e);
 
-// The results for other programs. version: of this one
+// Writes the results for other programs. version: of this one
 void ob_lab_write_json(const ob_results *r, const char *version, FILE *f);
 
 #endif

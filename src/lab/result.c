@@ -27,7 +27,7 @@ static int by_number(double a, double b)
 	return (a > b) - (a < b);
 }
 
-// From coarse to fine; chosen by a tolerance behind chosen by hand.
+// From coarse to fine; tolerances after explicit substeps.
 static int by_settings(const ob_run_settings *a, const ob_run_settings *b)
 {
 	int order = (a->tolerance > 0) - (b->tolerance > 0);
@@ -103,7 +103,7 @@ void ob_result_repeat(ob_result *r, const ob_case_result *again)
 	ob_conservation_keep(o->conserved, again->conserved);
 	if (!*o->failed)
 		memcpy(o->failed, again->failed, sizeof o->failed);
-	if (isnan(again->body_seconds)) // it did not come to its end
+	if (isnan(again->body_seconds)) // it was not completed
 		o->body_seconds = NAN;
 }
 

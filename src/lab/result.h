@@ -22,21 +22,21 @@ typedef struct ob_results {
 	char commit[64];
 } ob_results;
 
-// CPU seconds per body and simulated second
+// CPU seconds per body and simulated second.
 static inline double ob_result_cost(const ob_result *r)
 {
 	return r->outcome.cpu_s / r->outcome.body_seconds;
 }
 
-// By case, engine and setting, from coarse to fine; < 0, 0 or > 0
+// Orders by case, engine and setting, from coarse to fine; < 0, 0 or > 0
 int ob_result_order(const ob_result *a, const ob_result *b);
 ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engine_kind *k, const ob_run_settings *s);
-bool ob_results_add(ob_results *r, const ob_result *one); // at its place in the order; false: no memory
-// One more repeat of the same: medians and worst figures follow. No effect when there are OB_REPEATS already.
+bool ob_results_add(ob_results *r, const ob_result *one); // in order; false: out of memory
+// Adds one more repeat: updates medians and worst figures. No effect if there are OB_REPEATS already.
 void ob_result_repeat(ob_result *r, const ob_case_result *again);
 void ob_results_finish(ob_results *r);
 
-// The cheapest cost (s of CPU per body and simulated second) at which an engine keeps figure 0 of a case at or below
+// Cheapest cost (s of CPU per body and simulated second) at which an engine keeps figure 0 of a case at or below
 // "error" (ob_cost_at_error). NAN: never.
 double ob_cost_at(const ob_results *r, const ob_case *c, const ob_engine_kind *k, double error);
 

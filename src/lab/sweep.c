@@ -11,7 +11,7 @@ static const struct {
 	double metres;
 } lengths[] = { { "nm", 1e-9 }, { "um", 1e-6 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "m", 1 } };
 
-// "5mm", ".5 mm", "1e-4m"
+// Reads "5mm", ".5 mm", "1e-4m".
 static bool read_length(const char *text, double *out, ob_error *e)
 {
 	char *end;
@@ -122,7 +122,7 @@ static void add(collection *c, ob_run_settings s)
 
 static void add_products(collection *to, const ob_sweep *s, const ob_run_settings *usual)
 {
-	// of what is not swept, the usual value is the only one; so is 0 iterations, of an engine that has none
+	// a setting that is not swept has its usual value alone; engines without iterations have 0
 	size_t substeps = s->substeps ? s->substeps : 1;
 	size_t iterations = s->iterations && usual->iterations ? s->iterations : 1;
 	for (size_t i = 0; i < substeps; i++) {
@@ -142,7 +142,7 @@ static void add_products(collection *to, const ob_sweep *s, const ob_run_setting
 size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_kind *k,
 			 ob_run_settings to[OB_SWEEP_SETTINGS])
 {
-	bool late = k->usual.lag > 0; // an engine whose partners are late: it has a case of its own
+	bool late = k->usual.lag > 0; // an engine with late partners has a case of its own
 	if (late != (strcmp(c->name, "lag") == 0))
 		return 0;
 	ob_run_settings usual = k->usual;
@@ -150,7 +150,7 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_ki
 	collection all = { to, 0 };
 	const ob_sweep *sweep = s->own ? sensible() : s;
 	if (late) {
-		usual.lag = 0; // what is promised
+		usual.lag = 0; // the promised setting
 		add(&all, usual);
 		for (size_t i = 0; i < sweep->lags; i++) {
 			usual.lag = sweep->lag_list[i];

@@ -25,7 +25,7 @@ static ob_table *new_table(const char *align)
 	return t;
 }
 
-// ---- every promised figure
+// ---- all promised figures
 
 static bool others_ran(const ob_lab_analysis *d, const ob_case *c)
 {
@@ -112,7 +112,7 @@ void ob_lab_print_rows(FILE *f, const ob_lab_analysis *d, bool markdown)
 	print_table(f, ob_lab_table_rows(d), markdown);
 }
 
-// ---- what is conserved
+// ---- conserved quantities
 
 static bool conserves_all(const ob_result *r)
 {
@@ -178,7 +178,7 @@ static bool is_shown(const ob_lab_analysis *d, const ob_case *c)
 	return c->compared && ob_lab_analysis_ran(d, c);
 }
 
-// Whoever took part in a case that is compared; obsim itself comes first.
+// Collects the engines in compared cases; obsim itself comes first.
 static size_t gather(const ob_lab_analysis *d, size_t place[OB_LAB_ANALYSIS_ENGINES])
 {
 	size_t count = 0;
@@ -195,13 +195,13 @@ static size_t gather(const ob_lab_analysis *d, size_t place[OB_LAB_ANALYSIS_ENGI
 	return count;
 }
 
-// Variants of obsim's coupling are shown, not ranked.
+// Variants of obsim's coupling are shown, but not ranked.
 static bool is_ranked(const ob_lab_analysis *d, const ob_engine_kind *k)
 {
 	return k == d->own || !ob_lab_analysis_is_obsim(k);
 }
 
-// An engine that never gets there; in a page: how far it does, and at what cost
+// Adds an engine that never reaches the error; in a page: its least error, and the cost of that.
 static void add_never(ob_table *t, const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k, bool in_page)
 {
 	quantity error, cost;
@@ -262,12 +262,12 @@ ob_table *ob_lab_table_equal(const ob_lab_analysis *d, bool in_page, bool short_
 	return t;
 }
 
-// How often obsim is ahead of all other engines, and how far behind at worst
+// Prints the number of cases with obsim ahead of all other engines, and its worst ratio otherwise.
 static void print_sum(FILE *f, const ob_lab_analysis *d)
 {
 	int cases = 0, ahead = 0, never = 0;
 	double worst = 0;
-	if (!ob_lab_analysis_count_others(d)) // ahead of nobody
+	if (!ob_lab_analysis_count_others(d)) // no other engine
 		return;
 	for (const ob_case *const *c = ob_cases; *c; c++) {
 		if (!is_shown(d, *c) || !d->own)

@@ -5,7 +5,7 @@
 #include "lab/look.h"
 #include "world/world.h"
 
-// Faster than anything in any case, and what falls without end, within its time. m/s and rad/s
+// m/s and rad/s: faster than any motion in any case, including endless falls within its time.
 static const double absurd = 1e5;
 
 static bool finite_vector(ob_vec3 v)
@@ -27,7 +27,7 @@ static const char *insane(const ob_case_run_state *t)
 	return NULL;
 }
 
-// The snapshot as an engine without a universe can give it: states at this very time.
+// Takes the snapshot of an engine without a universe: states at this very time.
 static void take(ob_case_run_state *t, const ob_state *state)
 {
 	t->now.step = t->frame;
@@ -41,7 +41,7 @@ static void take(ob_case_run_state *t, const ob_state *state)
 	}
 }
 
-// What of the world the engine cannot be given; NULL: it takes all of it.
+// Name of a feature of the world that the engine lacks; NULL: none.
 static const char *lacks(const ob_engine_kind *kind, const ob_world *w)
 {
 	if (kind->drives < ob_world_drives(w))
@@ -49,7 +49,7 @@ static const char *lacks(const ob_engine_kind *kind, const ob_world *w)
 	return w->hulls && !kind->hulls ? "takes no hulls" : NULL;
 }
 
-// Runs to the end or to the first failure that the case or an insane state shows. Only stepping is timed.
+// Runs to the end or to the first failure, by the case's judgement or an invalid state. Only stepping is timed.
 static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind *kind, ob_state *state,
 		  ob_case_result *out, ob_error *e)
 {
@@ -95,7 +95,7 @@ static double body_seconds(const ob_case_run_state *t)
 	return bodies * t->time;
 }
 
-// The worst over the runs, or their mean
+// Adds the worst over the runs, or their mean.
 static void add_figures(const ob_case *c, double *sum, const double *figure)
 {
 	for (uint32_t i = 0; i < c->figures; i++) {

@@ -1,4 +1,4 @@
-// Out of balance by one in a thousand, where what rests may sleep: slow is not at rest.
+// Out of balance by one in a thousand, with sleeping enabled: slow bodies are not at rest.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
@@ -7,7 +7,7 @@
 
 static const double mu = .5, more = 1e-3;
 static const ob_vec3 block = { .5, .5, .25 }; // m, half
-enum { ON_PLANE = 1, ON_BOX = 3 }; // the blocks' ids, each after what it lies on
+enum { ON_PLANE = 1, ON_BOX = 3 }; // the blocks' ids, each after its support
 
 static void build_pull(ob_world *w, uint32_t run)
 {
@@ -22,7 +22,7 @@ static void build_pull(ob_world *w, uint32_t run)
 	ob_world_material(w, mu, 0);
 }
 
-// m/s^2: of both blocks, along x of what they lie on
+// Acceleration (m/s^2) of both blocks, along x of their support.
 static double pull_acceleration(const ob_case_run_state *t)
 {
 	return more * mu * ob_look_gravity(t);
@@ -101,7 +101,7 @@ const ob_case ob_case_unbalanced_incline = {
 	UNBALANCED_CASE,
 };
 
-// ---- a brick whose centre is just beyond the edge of its table
+// ---- a brick with its centre just beyond the edge of its table
 
 static const ob_vec3 brick = { .5, .25, .1 }; // m, half
 

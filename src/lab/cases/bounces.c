@@ -1,10 +1,10 @@
-// Balls that bounce off the ground.
+// Balls bouncing on the ground.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
 #include "world/world.h"
 
-enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // of body 1 in ob_case_run_state.memory
+enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // body 1's state in ob_case_run_state.memory
 
 static void build_ball(ob_world *w, double radius, double e)
 {
@@ -13,7 +13,7 @@ static void build_ball(ob_world *w, double radius, double e)
 	ob_world_material(w, .5, e);
 }
 
-// Counts the times that body 1 turned from falling to rising.
+// Counts the turns of body 1 from falling to rising.
 static int bounces(ob_case_run_state *t)
 {
 	double v = ob_look_at(t, 1).v.z;
@@ -37,7 +37,7 @@ static void build_bounce(ob_world *w, uint32_t run)
 
 static void observe_bounce(ob_case_run_state *t)
 {
-	double scale = t->world->passport[1].mass * ob_look_gravity(t); // of a drop of 1 m
+	double scale = t->world->passport[1].mass * ob_look_gravity(t); // J, a drop of 1 m
 	if (!t->frame)
 		t->memory[MEMORY_APEX] = ob_look_energy(t);
 	bounces(t);
@@ -76,7 +76,7 @@ static void build_apexes(ob_world *w, uint32_t run)
 	build_ball(w, .1, .8);
 }
 
-// The apex of each flight as its highest frame tells it: the rest of the rise is v^2 / 2 g.
+// Apex of each flight, from its highest frame: the rest of the rise is v^2 / 2 g.
 static void observe_apexes(ob_case_run_state *t)
 {
 	int k = bounces(t);

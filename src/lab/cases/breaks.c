@@ -1,4 +1,4 @@
-// The break: a ball hits fifteen that touch in a triangle, along its line of symmetry. What comes of it is symmetric.
+// The break: a ball hits fifteen touching balls in a triangle, along its line of symmetry. The result is symmetric.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "measure/measure.h"
@@ -37,7 +37,7 @@ static void build_break_rough(ob_world *w, uint32_t run)
 	build_break_of(w, .2, restitution[run]);
 }
 
-// Of velocities and of those of the surfaces: how far two balls are from being each other's image in the plane y = 0
+// Largest deviation, over velocities and surface speeds, of two balls from mirror images in the plane y = 0.
 static double asymmetry(const ob_case_run_state *t, uint32_t a, uint32_t b)
 {
 	ob_state p = ob_look_at(t, a), q = ob_look_at(t, b);

@@ -1,4 +1,4 @@
-// The one list of cases, in the order of their rows. Each stands in a file of its group in this folder.
+// List of all cases, in the order of their rows. Each is in a file of its group in this folder.
 #ifndef OB_LAB_CASES_CASES_H
 #define OB_LAB_CASES_CASES_H
 

@@ -1,5 +1,5 @@
-// What stands on things that move as they are told: on shaking tables, belts, turntables; and stacks and piles that a
-// table keeps from coming to rest.
+// Bodies on driven supports: shaking tables, belts, turntables; and stacks and piles that a table keeps from coming to
+// rest.
 #include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/heap.h"
@@ -11,7 +11,7 @@
 // ---- shaking tables
 
 enum { TABLES = 6 };
-static const double grip[TABLES] = { .1, .2, .3, .39, .41, .8 }; // friction; what sticks all the time needs .4
+static const double grip[TABLES] = { .1, .2, .3, .39, .41, .8 }; // friction; sticking all the time needs .4
 static const double amplitude = .1; // m
 
 static double frequency(double g)
@@ -137,7 +137,7 @@ const ob_case ob_case_belts = {
 enum { TURNTABLES = 21 };
 static const double rate = 2; // rad/s
 
-static double share(uint32_t i) // of the limit
+static double share(uint32_t i) // relative to the limit
 {
 	return .9525 + .005 * i;
 }
@@ -158,7 +158,7 @@ static void build_turntables(ob_world *w, uint32_t run)
 	ob_world_material(w, .5, 0);
 }
 
-// The limit is found between the last box that stays and the first that does not.
+// The limit lies between the last box that stays and the first that does not.
 static void judge_turntables(ob_case_run_state *t)
 {
 	const double c = cos(rate * t->time), s = sin(rate * t->time);
@@ -197,13 +197,13 @@ const ob_case ob_case_turntables = {
 	.judge = judge_turntables,
 };
 
-// ---- stacks and piles that are shaken
+// ---- shaken stacks and piles
 
 enum { SEEDS = 5 }; // a run for each
 enum { STACK_WORST, STACK_CREEP, STACK_FALLEN, STACK_MEAN, STACK_FIGURES };
-enum { MEMORY_SUM, MEMORY_FRAMES }; // m: of the mean penetrations so far
+enum { MEMORY_SUM, MEMORY_FRAMES }; // m: sum of the mean penetrations so far
 
-// A table whose top is z = 0 goes to and fro along x from an end of its way on, where it is at rest. It is body 0.
+// A table with its top at z = 0 swings along x, starting at rest at one end. It is body 0.
 static void build_shaken_table(ob_world *w, double half, double acceleration)
 {
 	ob_world_body table = ob_world_box(w, 0, ob_v3(half, half, .5), ob_v3(-amplitude, 0, -.5));

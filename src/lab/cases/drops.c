@@ -1,5 +1,5 @@
-// What is dropped exactly flat, on a face or on an edge below its centre, goes straight up again: the points that hit
-// do so at once, and no order among them may show.
+// Bodies dropped exactly flat, on a face or on an edge below the centre, rise straight up again: the points hit at
+// once, and their order must not show.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
@@ -15,7 +15,7 @@ enum {
 static const ob_vec3 half[PROPORTIONS] = { { .25, .25, .25 }, { .4, .4, .1 }, { .1, .1, .4 }, { .1, .2, .4 } }; // m
 static const double restitution[RESTITUTIONS] = { .2, .5, .8, 1 }, friction[FRICTIONS] = { 0, .3, 1 };
 static const double height = 1; // m, of the lowest point
-enum { BOUNCES = 2 }; // that are looked at
+enum { BOUNCES = 2 }; // observed ones
 enum { MEMORY_LAST, MEMORY_BOUNCES };
 
 typedef struct drop {
@@ -31,7 +31,7 @@ static drop drop_of(int i)
 		       .mu = friction[i / KINDS / PROPORTIONS / RESTITUTIONS] };
 }
 
-// The pair's friction is to be mu, beside a ground of friction 1.
+// Sets the body's friction so that the pair's is mu, with a ground of friction 1.
 static void lift(ob_world_body b, int i, double lowest, ob_vec3 turn)
 {
 	drop d = drop_of(i);
@@ -69,7 +69,7 @@ static void build_drops_box(ob_world *w, uint32_t run)
 	build_drops(w, true);
 }
 
-// Round ones, in the place of proportions: a cylinder on its face, the same on its side, a capsule on its side
+// Round shapes, instead of proportions: a cylinder on its face, the same on its side, a capsule on its side.
 enum { ROUND_KINDS = 3 };
 
 static void build_round_drops(ob_world *w, uint32_t run)
@@ -85,13 +85,13 @@ static void build_round_drops(ob_world *w, uint32_t run)
 
 enum { SIDEWAYS, SPIN, APEX, DROP_FIGURES };
 
-// What body id is, as the drop that it is
+// Number of the drop of body id.
 static int which(const ob_case_run_state *t, uint32_t id)
 {
 	return (int)id - (t->world->passport[0].flags & OB_OBJECT_STATIC ? 1 : 0);
 }
 
-// A flight's apex is where its height and speed say.
+// A flight's apex follows from its height and speed.
 static void observe_drop(ob_case_run_state *t, uint32_t id, double *figure)
 {
 	drop d = drop_of(which(t, id));

@@ -7,14 +7,14 @@
 
 static const ob_vec3 away = { 10e3, 0, 0 }; // m
 
-// m: the farthest apart that body "near" and its double "far" are, less the distance that they started with.
+// m: largest distance of body "near" from its double "far", minus their initial distance.
 static double apart(const ob_case_run_state *t, uint32_t near, uint32_t far)
 {
 	return ob_norm(ob_sub(ob_look_moved(t, far), ob_look_moved(t, near)));
 }
 
-// Each stack has a slab of its own to stand on, before it in the order of ids, so that the iterations of both run in the
-// same order and differ by nothing but the place.
+// Each stack has a slab of its own, before it in the order of ids, so that the iterations of both run in the same order
+// and only the place differs.
 enum { STACK = 10, FAR_SLAB = STACK + 1 };
 
 static void build_slab_and_stack(ob_world *w, ob_vec3 foot)

@@ -1,4 +1,4 @@
-// Fast rotation near others: past them without touching, and into them.
+// Fast rotation near others: passing without contact, and hitting.
 #include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
@@ -10,8 +10,8 @@
 enum { SPINNERS = 4 };
 static const double drift = -4e-4; // m/s
 
-// The first three spin about an axis that points to the ball, but for a fifth; the last is slender, and its ends pass.
-// The balls drift nearer by 8 mm.
+// The first three spin about an axis towards the ball, but for a fifth; the last is slender, and its ends pass the
+// ball. The balls drift nearer by 8 mm.
 static void build_near(ob_world *w, uint32_t run)
 {
 	static const ob_shape shape[SPINNERS] = { OB_SHAPE_BOX, OB_SHAPE_CYLINDER, OB_SHAPE_CAPSULE, OB_SHAPE_BOX };
@@ -27,7 +27,7 @@ static void build_near(ob_world *w, uint32_t run)
 	}
 }
 
-// I w of one body
+// Angular momentum I w of one body.
 static ob_vec3 spin_of(const ob_case_run_state *t, uint32_t id, const ob_state *s)
 {
 	ob_mat3 r = ob_quat_matrix(s->pose.q);
@@ -47,7 +47,7 @@ static void observe_near(ob_case_run_state *t)
 	}
 }
 
-// Half a turn of each component of the attitude is missed by none that turns.
+// Every rotating body passes half a turn of each component of the attitude.
 static void judge_near(ob_case_run_state *t)
 {
 	for (uint32_t id = 0; id < 2 * SPINNERS; id += 2) {

@@ -1,4 +1,4 @@
-// What flies and touches nothing.
+// Free flight without contacts.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"

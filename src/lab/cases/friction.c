@@ -25,7 +25,7 @@ static void build_slide(ob_world *w, uint32_t run)
 	build_block(w, 1.01 * ob_reference_friction_angle(mu));
 }
 
-// m, of the block along the slope, downwards and sideways
+// Displacement (m) of the block along the slope, downwards and sideways.
 static void crept(const ob_case_run_state *t, double *down, double *aside)
 {
 	ob_mat3 r = ob_quat_matrix(t->world->state[0].pose.q);
@@ -94,8 +94,8 @@ const ob_case ob_case_incline_slide = {
 enum { HEADINGS = 12, MEMORY_SPEED = 0, MEMORY_STOPS = 1 };
 static const double speed = 3; // m/s
 
-// All in one world, 4 m apart. Headings 15 degrees apart, every other one turned round: along both axes and both
-// diagonals, and into every quadrant.
+// All in one world, 4 m apart. Headings 15 degrees apart, every other one reversed: along both axes and both diagonals,
+// and into every quadrant.
 static void build_sliding(ob_world *w, uint32_t run)
 {
 	ob_world_ground(w);
@@ -107,7 +107,7 @@ static void build_sliding(ob_world *w, uint32_t run)
 	ob_world_material(w, mu, 0);
 }
 
-// A block stops between frames: when what is left of its speed is gone, at the rate at which it goes.
+// A block stops between frames: when its last speed has fallen to 0 at its deceleration.
 static void observe_sliding(ob_case_run_state *t)
 {
 	for (uint32_t i = 1; i <= HEADINGS; i++) {

@@ -1,5 +1,5 @@
-// Two bodies that meet head-on: 12 runs, over shape, ratio of masses and restitution. Shared by the cases that look at
-// the same impact near the origin, far from it, and with a partner's state that is late.
+// Head-on impact of two bodies: 12 runs, over shape, ratio of masses and restitution. Shared by the cases of the same
+// impact near the origin, far from it, and with a partner's late state.
 #ifndef OB_LAB_CASES_HEAD_ON_H
 #define OB_LAB_CASES_HEAD_ON_H
 
@@ -8,17 +8,17 @@
 enum { OB_HEAD_ON_RUNS = 12 };
 
 typedef struct ob_head_on {
-	double ratio; // of the second mass to the first, which is 1 kg
+	double ratio; // second mass over the first, which is 1 kg
 	double e;
 	uint32_t shape; // ob_shape
 } ob_head_on;
 
 ob_head_on ob_head_on_of(uint32_t run);
-// Adds the pair to a world without gravity: both 1 m wide, the first comes in at 1 m/s along x.
+// Adds the pair to a world without gravity: both are 1 m wide, and the first comes in at 1 m/s along x.
 void ob_head_on_build(ob_world *w, uint32_t run, ob_vec3 at);
-// m/s, the scene's own scale being 1 m/s: how far both velocities, of bodies "first" and first + 1, are from Newton's.
+// Error (m/s) of the velocities of bodies "first" and first + 1 against Newton's; the scene's scale is 1 m/s.
 double ob_head_on_error(const ob_case_run_state *t, uint32_t first);
-// They went through each other, or never met.
+// True if they passed through each other, or never touched.
 bool ob_head_on_missed(const ob_case_run_state *t, uint32_t first);
 
 #endif

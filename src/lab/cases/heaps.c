@@ -1,4 +1,4 @@
-// Heaps: pyramids that stand, piles that drop.
+// Heaps: standing pyramids, dropped piles.
 #include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/cases/stand.h"
@@ -51,10 +51,10 @@ const ob_case ob_case_pyramid_15 = {
 	OB_STAND_CASE,
 };
 
-enum { SEEDS = 5 }; // what drops is chaotic: a run for each, and the worst counts
+enum { SEEDS = 5 }; // dropping is chaotic: a run for each, and the worst counts
 
-// A loose grid: .25 and .3 m between boxes, moved by up to 5 cm and turned by up to .15 rad about each axis; the lowest
-// centres half a metre above where they come to rest.
+// A loose grid: .25 and .3 m between boxes, displaced by up to 5 cm and turned by up to .15 rad about each axis. The
+// lowest centres are half a metre above their final place.
 static void build_pile_of(ob_world *w, double e, uint32_t run)
 {
 	uint64_t seed = 17 + run;

@@ -1,22 +1,22 @@
-// A wall that a ball hits every half second: no body of it rests for longer, and whoever saves work by leaving alone
-// what is in equilibrium gains little.
+// A wall hit by a ball every half second: none of its bodies rests for longer, so an engine that skips bodies in
+// equilibrium gains little.
 //
-// Body 0 is the ground, then come the bricks, then the balls. The weight of a ball is carried by a force of its own, so
-// that it flies on a straight line: from one side and from the other, each at another brick. It bounces off, and its
-// way back is free.
+// Body 0 is the ground, then come the bricks, then the balls. A constant force balances the weight of a ball, so that
+// it flies on a straight line, from alternating sides, each towards another brick. It bounces off, and its way back is
+// free.
 #include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "measure/measure.h"
 #include "world/world.h"
 
-enum { ROWS = 6, ROW_BRICKS = 5, BRICKS = 27, BALLS = 19, SEEDS = 5 }; // every other row has a brick less
+enum { ROWS = 6, ROW_BRICKS = 5, BRICKS = 27, BALLS = 19, SEEDS = 5 }; // every other row has one brick less
 enum { WORST, GROWTH, DRIFT, FALLEN, MISSED, FIGURES };
 enum { MEMORY_LOWEST }; // J
 static const double every = .5, speed = 6, radius = .15, ball_mass = 20; // s, m/s, m, kg
-static const ob_vec3 half = { .5, .25, .25 }; // m, of a brick of 500 kg
+static const ob_vec3 half = { .5, .25, .25 }; // m, half size of a brick of 500 kg
 
-// Bricks in an order of their own for each run (Fisher and Yates), by their bodies' ids.
+// Shuffles the bricks for each run (Fisher and Yates); returns their bodies' ids.
 static void draw_aims(uint32_t aim[BRICKS], uint64_t *seed)
 {
 	for (uint32_t i = 0; i < BRICKS; i++) {
@@ -82,7 +82,7 @@ static void observe_hits(ob_case_run_state *t)
 		t->failed = "fell";
 }
 
-// A ball has hit when it flies back.
+// A ball has hit once it flies back.
 static void judge_hits(ob_case_run_state *t)
 {
 	for (uint32_t id = 1 + BRICKS; id < t->world->objects; id++)

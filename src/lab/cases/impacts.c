@@ -21,7 +21,7 @@ void ob_head_on_build(ob_world *w, uint32_t run, ob_vec3 at)
 	w->gravity = ob_v3(0, 0, 0);
 	for (int i = 0; i < 2; i++) {
 		double mass = i ? h.ratio : 1;
-		ob_vec3 p = ob_madd(at, 1.537 * i, ob_v3(1, 0, 0)); // they meet within a frame, not at its end
+		ob_vec3 p = ob_madd(at, 1.537 * i, ob_v3(1, 0, 0)); // they touch within a frame, not at its end
 		ob_world_body b = h.shape == OB_SHAPE_BOX ? ob_world_box(w, mass, ob_v3(.5, .5, .5), p)
 							  : ob_world_sphere(w, mass, .5, p);
 		b.passport->friction = .3;
@@ -89,7 +89,7 @@ const ob_case ob_case_head_on = {
 
 enum { CRADLE = 5 };
 
-// Those that come in touch each other; those at rest touch each other; .7 m between.
+// Incoming balls touch each other, as do those at rest; .7 m between.
 static void build_cradle(ob_world *w, int incoming)
 {
 	w->gravity = ob_v3(0, 0, 0);

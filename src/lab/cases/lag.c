@@ -1,4 +1,4 @@
-// What it costs to read a partner late: the head-on pair, with the lag of the run's settings.
+// Cost of reading a partner late: the head-on pair, with the lag of the run's settings.
 #include "lab/cases/cases.h"
 #include "lab/cases/head_on.h"
 #include "lab/look.h"

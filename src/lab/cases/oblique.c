@@ -1,5 +1,5 @@
-// Ten thousand oblique hits at random: a sphere on a sphere, on a box, on a capsule, on a plane. All in free space,
-// each pair in a cell of its own.
+// Ten thousand random oblique hits: a sphere on a sphere, on a box, on a capsule, on a plane. All in free space, each
+// pair in a cell of its own.
 #include "base/random.h"
 #include "lab/cases/cases.h"
 #include "lab/look.h"
@@ -10,12 +10,12 @@ enum { PARTNERS = 4, HITS = 2500, SIDE = 50 };
 static const double cell = 8, hit_by = .18; // m, s
 static const ob_shape partner[PARTNERS] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_PLANE };
 
-// A hit, drawn anew from its seed by whoever needs it
+// A hit, drawn anew from its seed on each use.
 typedef struct hit {
-	ob_reference_sphere a, b; // before; b: of a sphere, or fixed
-	ob_vec3 point, normal; // where they touch; from b to a
-	ob_pose pose; // of b at the hit
-	ob_vec3 size; // of b
+	ob_reference_sphere a, b; // before; b: a sphere, or fixed
+	ob_vec3 point, normal; // contact point; from b to a
+	ob_pose pose; // pose of b at the hit
+	ob_vec3 size; // size of b
 	double e, mu, time; // s
 } hit;
 
@@ -28,7 +28,7 @@ static ob_vec3 unit(uint64_t *seed)
 	return ob_scale(v, 1 / ob_norm(v));
 }
 
-// A point of b's surface and the normal there, in the frame of b
+// Draws a point of b's surface and the normal there, in the frame of b.
 static void draw_point(hit *h, ob_shape shape, uint64_t *seed)
 {
 	h->normal = ob_v3(0, 0, 1);
@@ -80,7 +80,7 @@ static hit draw(uint32_t run, uint32_t i)
 	return h;
 }
 
-// Body i of the first HITS is the sphere of hit i, body HITS + i what it hits (a plane: body HITS, of all).
+// Body i of the first HITS is the sphere of hit i, body HITS + i its target (a plane: body HITS, for all).
 static void build_oblique(ob_world *w, uint32_t run)
 {
 	w->gravity = ob_v3(0, 0, 0);
@@ -106,7 +106,7 @@ static void build_oblique(ob_world *w, uint32_t run)
 	}
 }
 
-// Over the speed of the two against each other at the point where they touch
+// Error over the relative speed at the contact point.
 static double error(const ob_case_run_state *t, uint32_t id, const ob_reference_sphere *exact, double scale)
 {
 	ob_state s = ob_look_at(t, id);

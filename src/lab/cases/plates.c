@@ -1,5 +1,5 @@
-// Thin plates and discs that slide and spin at once: each element of the surface has friction of its own, so that
-// sliding slows the spinning down, and spinning the sliding, and both end together.
+// Thin plates and discs that slide and spin at once. Each element of the surface has friction of its own: sliding slows
+// the spinning, spinning slows the sliding, and both end together.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
@@ -7,7 +7,7 @@
 #include "world/world.h"
 
 enum { RATIOS = 7 };
-static const double ratio[RATIOS] = { .05, .2, .5, 1, 2, 5, 20 }; // speed over that of the rim
+static const double ratio[RATIOS] = { .05, .2, .5, 1, 2, 5, 20 }; // speed over the rim's
 static const double mu = .25, speed = 2, thin = 1e-3; // m/s: both speeds together; m: half the thickness
 static const double attitude = .3, heading = 1.1; // rad
 
@@ -84,7 +84,7 @@ static double turned_from(const ob_case_run_state *t, uint32_t id)
 	return 2 * remainder(atan2(b.z, b.w) - atan2(a.z, a.w), M_PI);
 }
 
-// Errors of one body's way and turn, over its own
+// Errors of one body's displacement and turn, relative to its own.
 static void compare(const ob_case_run_state *t, uint32_t id, double *way, double *turn)
 {
 	const ob_passport *p = &t->world->passport[id];

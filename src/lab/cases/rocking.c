@@ -1,4 +1,4 @@
-// Blocks and cylinders that rock: on one edge or point of the rim until they stand, then on the opposite one.
+// Rocking blocks and cylinders: on one edge or point of the rim until upright, then on the opposite one.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/pivot.h"
@@ -7,7 +7,7 @@
 static const double height = .5, depth = .3, rough = 2; // m: half height and half depth; friction: they do not slip
 enum { MEMORY_TILT, MEMORY_RATE, MEMORY_HITS, MEMORY_FRAME, MEMORY_QUARTER, MEMORY_RATIO };
 
-// Tilted about y by half of the angle at which it would topple, on its edge or rim towards +x
+// Tilts by half of the toppling angle about y, on the edge or rim towards +x.
 static void tilt(ob_world_body b, double half, double x)
 {
 	double angle = .5 * atan2(half, height);
@@ -52,14 +52,14 @@ static double tilt_of(ob_quat q)
 	return atan2(r.m[0][2], r.m[2][2]);
 }
 
-// The rate, squared, at which it would hit if no energy were lost
+// Rate, squared, at the impact without loss of energy.
 static double rate_of_hit(const ob_reference_rocker *r, const ob_state *s)
 {
 	double arm = r->half * r->half + r->height * r->height;
 	return (ob_norm2(s->v) + r->moment * ob_norm2(s->w) + 2 * r->g * (s->pose.p.z - r->height)) / (r->moment + arm);
 }
 
-// Errors of the quarter period and of the ratio at the first so many hits; of the energy until the first
+// Errors of the quarter period and of the ratio at the first hits; error of the energy until the first.
 static void observe_rocker(ob_case_run_state *t, uint32_t id, int hits, double *quarter, double *ratio, double *loss)
 {
 	ob_reference_rocker r = rocker_of(t, id);
@@ -152,7 +152,7 @@ const ob_case ob_case_rocking_cylinders = {
 	.judge = judge_rockers,
 };
 
-// ---- a disk that rolls on its rim, its centre at rest
+// ---- a disk rolling on its rim, its centre at rest
 
 static const double radius = .5, half_thick = .025, lean = 10 * M_PI / 180; // m, rad
 enum { MEMORY_AZIMUTH, MEMORY_TURNED, MEMORY_ENERGY };

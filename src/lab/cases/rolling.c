@@ -1,4 +1,4 @@
-// Spheres that roll: under a box that is pushed, out of a slide, down a slope.
+// Rolling spheres: under a pushed box, after sliding, down a slope.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
@@ -103,7 +103,7 @@ static void build_slip_to_roll(ob_world *w, uint32_t run)
 
 enum { MEMORY_SLIP, MEMORY_ROLLS }; // m/s in the last frame; s
 
-// Rolling begins between frames: where the slip would vanish that is still there, at the rate at which it shrinks.
+// Rolling begins between frames: when the last slip has fallen to 0 at its rate.
 static void observe_slip_to_roll(ob_case_run_state *t)
 {
 	ob_state b = ob_look_at(t, 1);

@@ -197,7 +197,7 @@ const ob_case ob_case_mixed_pile = {
 	.judge = ob_heap_judge,
 };
 
-// ---- many small ones: how often the tolerance is kept
+// ---- many small ones: frequency of meeting the tolerance
 
 static void build_random_heap(ob_world *w, uint32_t run)
 {

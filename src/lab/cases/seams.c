@@ -1,4 +1,4 @@
-// Over ten seams: fixed boxes side by side whose upper faces lie in one plane are one floor.
+// Over ten seams: fixed boxes side by side, with their upper faces in one plane, act as one floor.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/mechanics.h"
@@ -26,7 +26,7 @@ static void build_sliders(ob_world *w, uint32_t run)
 	ob_world_material(w, mu, 0);
 }
 
-// What is round lies with its axis across the lane, and rolls from the start.
+// Round bodies lie with their axes across the lane, and roll from the start.
 static void build_rollers(ob_world *w, uint32_t run)
 {
 	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_CYLINDER, OB_SHAPE_CAPSULE };

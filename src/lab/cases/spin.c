@@ -4,8 +4,8 @@
 #include "reference/spin.h"
 #include "world/world.h"
 
-// A flat box, for a body with moments 1 : 2 : 3 has no thickness; the moments are set exactly. It spins about its
-// middle axis, the unstable one.
+// A flat box, as a body with moments 1 : 2 : 3 has no thickness; sets the moments exactly. It spins about its middle
+// axis, the unstable one.
 static void build_spin(ob_world *w, uint32_t run)
 {
 	w->gravity = ob_v3(0, 0, 0);

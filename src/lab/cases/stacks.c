@@ -1,4 +1,4 @@
-// Stacks: of equal cubes, and with a heavy one on top.
+// Stacks of equal cubes, and stacks with a heavy one on top.
 #include "lab/cases/cases.h"
 #include "lab/cases/stand.h"
 #include "world/world.h"
@@ -26,7 +26,7 @@ static void build_stack_40(ob_world *w, uint32_t run)
 	build_stack(w, 40, run);
 }
 
-// n cubes of 1000 kg under one that is "ratio" times as heavy
+// Stacks n cubes of 1000 kg under one that is "ratio" times as heavy.
 static void build_heavy(ob_world *w, int n, double ratio, uint32_t run)
 {
 	build_stack(w, n + 1, run);

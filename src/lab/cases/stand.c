@@ -2,7 +2,7 @@
 
 #include "lab/look.h"
 
-enum { MEMORY_SUM, MEMORY_FRAMES }; // m: of the mean penetrations so far
+enum { MEMORY_SUM, MEMORY_FRAMES }; // m: sum of the mean penetrations so far
 
 void ob_stand_observe(ob_case_run_state *t)
 {

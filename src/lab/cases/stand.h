@@ -1,4 +1,4 @@
-// What is measured of anything that shall stand: stacks, pyramids, a heavy body on a light one.
+// Observations of standing structures: stacks, pyramids, a heavy body on a light one.
 #ifndef OB_LAB_CASES_STAND_H
 #define OB_LAB_CASES_STAND_H
 

@@ -1,4 +1,4 @@
-// On which side of the edge: bricks over a table's rim, two cards that lean on each other, an arch.
+// On the stable or the unstable side of a limit: bricks over a table's edge, two leaning cards, an arch.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
 #include "reference/arch.h"
@@ -35,8 +35,8 @@ static void judge_falls(ob_case_run_state *t)
 
 enum { BRICKS = 4 };
 
-// They balance on the edge, where what is a rounding error at first grows e-fold three times a second: 3 s are not
-// enough for it to show. "more": share of the reach by which every brick is farther out than balance allows
+// They balance on the edge. A rounding error grows e-fold three times a second; in 3 s it stays invisible. "more":
+// share of the reach by which every brick is farther out than balance allows
 static void build_bricks(ob_world *w, double more)
 {
 	ob_world_box(w, 0, ob_v3(2, .5, .5), ob_v3(-2, 0, -.5)); // the table: its edge at x = 0
@@ -95,12 +95,13 @@ const ob_case ob_case_overhang_over = {
 };
 
 // Cards of 1 m x 1 m x 20 mm that lean at 30 degrees to the vertical; their inner upper edges touch at x = 0. "share"
-// of the friction that they need with the ground; between themselves they are rough.
+// is relative to the friction that they need on the ground; the cards' own contact is rough.
 static void build_cards(ob_world *w, double share)
 {
 	const double angle = M_PI / 6, length = 1, thickness = .02, rough = 2;
 	double mu = share * ob_reference_cards_grip(angle, length, thickness);
-	ob_vec3 along = ob_v3(sin(angle), 0, cos(angle)), inner = ob_v3(cos(angle), 0, -sin(angle)); // of the left one
+	// axes of the left one
+	ob_vec3 along = ob_v3(sin(angle), 0, cos(angle)), inner = ob_v3(cos(angle), 0, -sin(angle));
 	ob_vec3 edge = ob_add(ob_scale(along, .5 * length), ob_scale(inner, .5 * thickness));
 	ob_vec3 foot = ob_sub(ob_scale(inner, .5 * thickness), ob_scale(along, .5 * length));
 	ob_world_ground(w);
@@ -162,7 +163,7 @@ const ob_case ob_case_a_frame_slides = {
 
 enum { VOUSSOIRS = 20 };
 
-// "share" of the thickness with which it can just stand
+// "share" is relative to the least stable thickness.
 static void build_arch(ob_world *w, double share)
 {
 	static const double radius = 5, half_depth = .5; // m

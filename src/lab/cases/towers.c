@@ -1,11 +1,11 @@
-// Structures with many cycles, which stand for a minute, awake.
+// Structures with many cycles that stand for a minute, awake.
 #include "lab/cases/cases.h"
 #include "lab/cases/stand.h"
 #include "world/world.h"
 
 enum { LAYERS = 100, PYRAMID = 15 };
 
-// Two planks a layer, across those below
+// Two planks a layer, across those below.
 static void build_crib(ob_world *w, uint32_t run)
 {
 	static const ob_vec3 along_x = { .6, .12, .04 }, along_y = { .12, .6, .04 }; // m, half
@@ -29,7 +29,7 @@ static void build_pyramid(ob_world *w, uint32_t run)
 			ob_world_box(w, 1000, ob_v3(.5, .5, .5), ob_v3(0, i - .5 * (PYRAMID - row - 1), .5 + row));
 }
 
-// Six times a second: nothing of it is fast.
+// Observes six times a second: no motion in it is fast.
 static void observe_tower(ob_case_run_state *t)
 {
 	if (t->frame % 10 == 0)

@@ -1,4 +1,4 @@
-// What is fast must not pass through what is thin: boxes at a wall, and at each other.
+// Fast bodies must not pass through thin ones: boxes at a wall, and at each other.
 //
 // A hundred aims share a world, each in a lane of its own, 40 m from the next; a run has one speed. Every box would be
 // at its aim 3 to 4 m from its start.
@@ -9,14 +9,14 @@
 
 enum { AIMS = 100, SIDE = 10 };
 static const double lane = 40; // m
-static const double far_enough = 5; // m of way: by then it has hit
+static const double far_enough = 5; // m travelled: by then it has hit
 
 static ob_vec3 middle_of(int aim)
 {
 	return ob_v3(0, lane * (aim % SIDE), lane * (aim / SIDE));
 }
 
-// Turned and spinning at random, up to a tenth off its course, it flies so that its centre would be at "target" after
+// Shoots a box with random attitude and spin, up to a tenth off course, so that its centre would be at "target" after
 // "way" metres.
 static void build_shot(ob_world *w, uint64_t *seed, ob_vec3 target, double speed, double way)
 {
@@ -53,7 +53,7 @@ static void build_thin_wall(ob_world *w, uint32_t run)
 	ob_world_material(w, .3, 0);
 }
 
-// Half inside is as bad as through. Beyond the wall's rim nothing counts.
+// Half inside is as bad as through. Beyond the wall's rim, positions do not count.
 static void observe_thin_wall(ob_case_run_state *t)
 {
 	double speed = wall_speed[t->run];
@@ -129,7 +129,7 @@ static void build_bullets(ob_world *w, uint32_t run)
 	ob_world_material(w, .3, 0);
 }
 
-// They have passed when they have changed sides. A pair that hits and then slips round each other is slower.
+// They have passed each other once their sides are swapped. A pair that hits and then slips past each other is slower.
 static void observe_bullets(ob_case_run_state *t)
 {
 	double speed = bullet_speed[t->run];
