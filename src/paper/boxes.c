@@ -5,13 +5,13 @@
 
 #include "base/random.h"
 
-static const double spacing = 1.8; // m: more than the longest diagonal, so that no two boxes start in contact
+static const double spacing = 1.8; // m: exceeds the longest diagonal, so that no two boxes start in contact
 static const double lowest = 1.5; // m
 static const double density = 1000, friction = .5;
 static const double least_side = .2, most_side = 1; // m
 enum { LEVELS = 4 };
 
-// Evenly over all attitudes (Shoemake 1992)
+// Uniform over all attitudes (Shoemake 1992).
 static ob_quat draw_attitude(uint64_t *state)
 {
 	double u = ob_splitmix_real(state), a = 2 * M_PI * ob_splitmix_real(state),

@@ -1,4 +1,4 @@
-// The paper's figures with ours in them.
+// The paper's figures, with ours added.
 #include <math.h>
 
 #include "paper/report.h"

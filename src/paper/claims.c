@@ -6,13 +6,13 @@
 #include "paper/trial.h"
 #include "paper/words.h"
 
-// What a claim is judged by
+// Evidence for a claim.
 typedef struct evidence {
 	const ob_paper_results *here, *paper; // measured; printed in the paper
 	ob_paper_claim *claim;
 } evidence;
 
-// The three things that "runtime" can mean
+// Three meanings of "runtime".
 enum { RUNTIMES = 3 };
 static const struct {
 	ob_paper_metric metric;
@@ -24,10 +24,10 @@ static const struct {
 };
 
 static const double half = .5, tenfold = 10;
-static const double doubled = 2; // a test that costs an environment this much more is a reason not to use it
-static const double flat = .1; // exponent: what grows less counts as constant
-enum { GROWTH_LEAST = 3 }; // runs, for an interval
-static const double load_far = 10; // times the paper's load: beyond that its figure says nothing about this claim
+static const double doubled = 2; // ratio of costs from which a test is too expensive to use
+static const double flat = .1; // exponent: slower growth counts as constant
+enum { GROWTH_LEAST = 3 }; // runs needed for an interval
+static const double load_far = 10; // times the paper's load: beyond that, its figure does not apply to this claim
 
 const char *ob_paper_verdict_text(ob_paper_verdict v)
 {
@@ -36,7 +36,7 @@ const char *ob_paper_verdict_text(ob_paper_verdict v)
 	return texts[v];
 }
 
-// Do all of the interval's ratios lie on this side? Not if it is unknown.
+// True if the whole interval of ratios lies on this side; false if it is unknown.
 static bool below(const ob_paper_ratio *r, double limit)
 {
 	return r->high < limit;
@@ -47,13 +47,13 @@ static bool above(const ob_paper_ratio *r, double limit)
 	return r->low > limit;
 }
 
-// One run that something else has disturbed does not move it.
+// The median is robust against one disturbed run.
 static double median(const ob_paper_results *r, ob_paper_scenario s, ob_paper_metric m)
 {
 	return ob_paper_summarise(r, s, m).median;
 }
 
-// "1.2 ms instead of 3.4 ms, 0.35 times (.. to ..)"
+// Writes "1.2 ms instead of 3.4 ms, 0.35 times (.. to ..)".
 static void say_pair(ob_paper_claim *c, const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b,
 		     ob_paper_metric m, const ob_paper_ratio *ratio)
 {
@@ -150,7 +150,7 @@ static void judge_cpu(const evidence *c)
 	say_itself(c, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU);
 }
 
-// What the load would be without a structure that sorts space
+// Writes the load without a spatial sorting structure.
 static void say_all_pairs(const evidence *c)
 {
 	double pairs = .5 * c->here->objects * (c->here->objects - 1.);
@@ -160,7 +160,7 @@ static void say_all_pairs(const evidence *c)
 	       ob_word_number(1 + pairs * c->here->sum_s / alone).text);
 }
 
-// By CPU time, which other programs disturb least: where there is one simulator, it is the step's, too.
+// Judges by CPU time, the least disturbed by other programs: with one simulator, it is the step's, too.
 static void judge_load(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
@@ -212,8 +212,8 @@ static void judge_kept(const evidence *c)
 	OB_SAY(claim->itself, "It has no run with another test.");
 }
 
-// By the CPU time of the busiest simulator, which must get through its step before the next begins. The pace itself
-// would tell more of what else the machine had to do.
+// Judges by the CPU time of the busiest simulator, which must finish its step before the next begins. The pace itself
+// depends more on other load of the machine.
 static void judge_obb(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;

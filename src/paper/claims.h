@@ -1,5 +1,5 @@
-// The paper's claims, and what the measurements make of them. The verdict and every figure in its text follow from the
-// data by the rules in claims.c. Pure functions.
+// The paper's claims, and verdicts from the measurements. The verdict and every figure in its text follow from the data
+// by the rules in claims.c. Pure functions.
 #ifndef OB_PAPER_CLAIMS_H
 #define OB_PAPER_CLAIMS_H
 
@@ -9,18 +9,18 @@ typedef enum ob_paper_verdict {
 	OB_PAPER_HOLDS,
 	OB_PAPER_ONLY_IF,
 	OB_PAPER_FAILS,
-	OB_PAPER_OPEN, // the measurements cannot tell
+	OB_PAPER_OPEN, // the measurements are inconclusive
 	OB_PAPER_VERDICTS
 } ob_paper_verdict;
 
 enum { OB_PAPER_CLAIMS = 8 };
 
 typedef struct ob_paper_claim {
-	const char *key, *says, *where; // what the paper says, and where
+	const char *key, *says, *where; // the paper's statement, and its place
 	ob_paper_verdict verdict;
-	char condition[320]; // of ONLY_IF: what follows "only if"
-	char because[1000]; // what was measured
-	char itself[400]; // what the paper's own tables say about it
+	char condition[320]; // ONLY_IF: text after "only if"
+	char because[1000]; // measured evidence
+	char itself[400]; // evidence from the paper's own tables
 } ob_paper_claim;
 
 // "holds", "holds only if", ..

@@ -13,8 +13,8 @@ enum { PAPER_EXPERIMENTS = 15, GROWING = 2, SUMS = 20000 };
 
 static const uint32_t full_sizes[] = { 8, 16, 32, 64, 128, 256 }, quick_sizes[] = { 4, 8, 16 };
 static const ob_paper_scenario growing[GROWING] = { OB_PAPER_COMMON, OB_PAPER_OBS };
-static const double start_s = .4; // that starting and ending take beside what is measured
-static const double limit_s = 300; // CPU of a trial: many times what the largest takes
+static const double start_s = .4; // overhead of starting and ending
+static const double limit_s = 300; // CPU of a trial: many times the largest
 
 ob_paper_plan ob_paper_plan_full(void)
 {
@@ -33,7 +33,7 @@ static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 	bool growth = ob_paper_is_growth(t->of, &objects);
 	ob_paper_trial one = { ob_paper_scenario_of(out), objects, t->seed, p->alone_s, growth ? 0 : p->watched_s };
 	bool fine = ob_paper_trial_run(&one, out->metric, e);
-	if (fine && *e->text) // nothing was drawn
+	if (fine && *e->text) // no frame was drawn
 		snprintf(out->note, sizeof out->note, "%.63s", e->text);
 	return fine;
 }
@@ -82,7 +82,7 @@ bool ob_paper_schedule(const ob_paper_plan *p, ob_trials *s, ob_error *e)
 	for (int scenario = 0; fine && scenario < OB_PAPER_SCENARIOS; scenario++)
 		fine = add_trial(p, s, false, p->objects, scenario, 0);
 	fine = fine && ob_trials_repeat(s, from, p->experiments, OB_ORDER_ROTATED, true);
-	// Sizes in an order that is not that of time: a machine that becomes slower does not look like growth.
+	// Shuffles the sizes in time, so that a machine that slows down does not look like growth.
 	for (uint32_t repeat = 0; repeat < p->repeats; repeat++)
 		for (uint32_t i = 0; fine && i < p->sizes * GROWING; i++) {
 			uint32_t at = (i / GROWING * 5 + repeat) % (uint32_t)p->sizes;

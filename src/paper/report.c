@@ -16,7 +16,7 @@ typedef struct table_plan {
 	size_t columns;
 	struct {
 		const char *head;
-		bool paper; // as printed there, else measured here
+		bool paper; // as printed in the paper; otherwise measured here
 		ob_paper_metric metric;
 	} column[COLUMNS];
 } table_plan;
@@ -186,7 +186,7 @@ static void write_claims(ob_page *p, const void *with)
 	}
 }
 
-// Medians of all scenarios
+// Writes medians of all scenarios.
 static void write_medians(ob_page *p, const void *with)
 {
 	static const ob_paper_metric shown[] = { OB_PAPER_STEP,  OB_PAPER_TOTAL, OB_PAPER_ONE, OB_PAPER_BUSIEST,
@@ -232,7 +232,7 @@ static void write_tables(ob_page *p, const void *with)
 	write_tables_of(p, with, true);
 }
 
-// "With the load, OBS takes .. the CPU time that it takes without"
+// Writes "With the load, OBS takes .. the CPU time that it takes without".
 static void write_pair(ob_page *p, const ob_paper_report_model *m, const char *what, ob_paper_scenario a,
 		       ob_paper_scenario b, ob_paper_metric metric)
 {

@@ -1,4 +1,4 @@
-// What the experiment is told as: one page that explains itself, its diagrams, Markdown, JSON.
+// Report of the experiment: one self-contained page, its diagrams, Markdown, JSON.
 #ifndef OB_PAPER_REPORT_H
 #define OB_PAPER_REPORT_H
 
@@ -8,16 +8,16 @@
 #include "experiment/table.h"
 #include "paper/claims.h"
 
-// Writes DIR/report.html (self-contained: no script, no network), tables.md, and plots/NAME.svg and .png. DIR is there.
-// The same results give the same files. One thread at a time per directory.
+// Writes DIR/report.html (self-contained: no script, no network), tables.md, and plots/NAME.svg and .png into an
+// existing DIR. The same results give the same files. One thread at a time per directory.
 bool ob_paper_report(const ob_paper_results *r, const char *dir, ob_error *e);
 
-// Claims, means and all runs as one object of JSON.
+// Writes claims, means and all runs as one object of JSON.
 void ob_paper_write_json(const ob_paper_results *r, const char *version, FILE *f);
 
-// ---- the parts of the report, for its own files and their tests
+// ---- parts of the report, for its own files and their tests
 
-// Measured, printed in the paper, and judged
+// Measured results, the paper's, and verdicts.
 typedef struct ob_paper_report_model {
 	const ob_paper_results *here;
 	ob_paper_results paper;
@@ -27,14 +27,14 @@ typedef struct ob_paper_report_model {
 ob_paper_report_model ob_paper_report_model_make(const ob_paper_results *r);
 void ob_paper_report_model_finish(ob_paper_report_model *m);
 
-// Tables 1 to 5 of the paper with ours beside them, then what it never ran
+// Tables 1 to 5 of the paper with ours beside them, then scenarios that it never ran.
 enum { OB_PAPER_TABLES = 7 };
-// NULL: no memory
+// NULL: out of memory.
 ob_table *ob_paper_table_make(const ob_paper_report_model *m, int table);
 
-// The paper's figures with ours in them.
+// The paper's figures, with ours added.
 enum { OB_PAPER_CHARTS = 6 };
 const char *ob_paper_chart_name(int chart); // in files, and in the page
-ob_chart *ob_paper_chart_make(const ob_paper_report_model *m, int chart); // NULL: nothing to show, or no memory
+ob_chart *ob_paper_chart_make(const ob_paper_report_model *m, int chart); // NULL: nothing to show, or out of memory
 
 #endif

@@ -5,7 +5,7 @@
 #include <string.h>
 
 enum { PAPER_LOAD = 1000, PUBLISHED = 15 };
-enum { GROWTH_MAX = 256, PREFERENCE_LEAST = 8 }; // runs, so that a preference means something
+enum { GROWTH_MAX = 256, PREFERENCE_LEAST = 8 }; // runs needed for a meaningful preference
 static const double odds = 10;
 static const char growth_prefix[] = "growth-", experiment_prefix[] = "experiment-";
 
@@ -186,8 +186,8 @@ ob_paper_growth ob_paper_grow(const ob_paper_results *r, ob_paper_scenario s, ob
 		.logarithmic = ob_reference_line(n, log_objects, y),
 		.power = ob_reference_line(n, log_objects, log_y),
 	};
-	// As many parameters in both: of Akaike's criterion, the logarithm of the squares remains. Squares that are
-	// nothing but rounding prove no more than others of that size.
+	// Both models have as many parameters, so Akaike's criterion reduces to the logarithm of the squares. Squares
+	// at the level of rounding do not distinguish the models.
 	double floor = 1e-24 * (double)n * pow(g.linear.mean_y, 2);
 	g.favour = .5 * (double)n * log((g.logarithmic.squares + floor) / (g.linear.squares + floor));
 	return g;

@@ -11,23 +11,23 @@
 #include "paper/boxes.h"
 #include "paper/viewer.h"
 
-static const double slowest_frame = 10; // s: so long it is waited for one at least
+static const double slowest_frame = 10; // s: minimum wait for the first frame
 
 typedef struct session {
 	const ob_paper_trial *trial;
 	const ob_paper_setup *setup;
 	ob_scene scene;
 	ob_host *host;
-	ob_viewer *viewer; // NULL = nobody looks
+	ob_viewer *viewer; // NULL = none
 	ob_snapshot now;
 	uint64_t steps;
-	double due; // wall time at which the next step begins
+	double due; // wall time of the next step's start
 } session;
 
-// What the simulators had used up at a moment
+// Times used by the simulators up to now.
 typedef struct reading {
 	double wall, stepping, total, *worker; // s
-	double own; // CPU of this process: host, viewer, and simulators that are threads
+	double own; // CPU of this process: host, viewer, and simulator threads
 	uint64_t steps, box_tests;
 } reading;
 
@@ -68,7 +68,7 @@ static void wait_until(double due)
 		;
 }
 
-// One step when its time has come. Who is late begins at once and does not hurry to catch up: the environment is slow.
+// Steps when it is due. A late step begins at once and does not catch up: the environment is slow.
 static bool step(session *c, ob_error *e)
 {
 	double now = ob_clock_wall();
@@ -125,7 +125,7 @@ static bool measure_alone(session *c, double *metric, ob_error *e)
 	c->due = ob_clock_wall();
 	double begun = c->due;
 	fine = fine && steps_for(c, c->trial->alone_s, e);
-	// to the end of the last step's turn
+	// to the end of the last step's slot
 	double wall = fmax(c->due, ob_clock_wall()) - begun;
 	fine = fine && take_reading(c, &to, e);
 	if (fine)
@@ -135,7 +135,7 @@ static bool measure_alone(session *c, double *metric, ob_error *e)
 	return fine;
 }
 
-// Without a renderer the rest of the trial counts all the same: e then says why there is none.
+// Without a renderer the rest of the trial is valid all the same; e has the reason.
 static bool measure_watched(session *c, double *metric, ob_error *e)
 {
 	reading from = { 0 }, to = { 0 };

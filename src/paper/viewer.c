@@ -6,7 +6,7 @@
 struct ob_viewer {
 	const ob_scene *scene;
 	pthread_t thread;
-	pthread_mutex_t lock; // guards what follows, up to the empty line
+	pthread_mutex_t lock; // guards the following fields, up to the empty line
 	pthread_cond_t drawn;
 	ob_snapshot newest;
 	uint64_t frames;
@@ -26,7 +26,7 @@ static void fail(ob_viewer *v, const ob_error *why)
 	pthread_mutex_unlock(&v->lock);
 }
 
-// A copy of what is newest; false: it is time to end.
+// Copies the newest snapshot; returns false at the end.
 static bool fetch(ob_viewer *v, ob_error *e)
 {
 	pthread_mutex_lock(&v->lock);

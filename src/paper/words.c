@@ -31,7 +31,7 @@ ob_word ob_word_value(double v, ob_paper_metric m)
 	return w;
 }
 
-// "1.9 to 2.4"; nothing where it is not known
+// "1.9 to 2.4"; empty if unknown
 static ob_word interval(double low, double high)
 {
 	ob_word w = { "no interval" };

@@ -1,4 +1,4 @@
-// Sentences with figures in them. Each appends to a text in an array, and cuts off what has no room.
+// Sentences with figures. Each function appends to a text in an array, and truncates at its end.
 #ifndef OB_PAPER_WORDS_H
 #define OB_PAPER_WORDS_H
 
@@ -11,7 +11,7 @@ typedef struct ob_word {
 	char text[80];
 } ob_word;
 
-// Three digits; a dash for what is not known
+// Three digits; a dash for unknown values.
 ob_word ob_word_number(double v);
 ob_word ob_word_value(double v, ob_paper_metric m); // in the metric's unit: "1.25 ms"
 ob_word ob_word_ratio(const ob_paper_ratio *r); // "2.1 times (1.9 to 2.4)"
