@@ -1,4 +1,4 @@
-// What a comparison runs, and what is read from its runs.
+// Runs of a comparison, and values read from them.
 #include "compare/compare.h"
 
 #include <inttypes.h>
@@ -21,7 +21,7 @@ const ob_configuration ob_configuration_table[OB_CONFIGURATIONS] = {
 					 NULL },
 	[OB_CONFIGURATION_GROUPS] = { "process_groups", "groups of 60", "obs", "process", OB_WORKERS_GROUPS, 0, false,
 				      NULL },
-	// more than these make one workstation wait for its scheduler alone
+	// with more than these, scheduling dominates on one workstation
 	[OB_CONFIGURATION_THREADS_EACH] = { "threads_each", "thread each", "obs", "thread", OB_WORKERS_EACH, 4096,
 					    false, NULL },
 	[OB_CONFIGURATION_PROCESSES_EACH] = { "processes_each", "process each", "obs", "process", OB_WORKERS_EACH, 1024,
@@ -124,7 +124,7 @@ static bool is_monolith(ob_configuration_id id)
 	return id == OB_CONFIGURATION_MONOLITH || id == OB_CONFIGURATION_MONOLITH_OTHER;
 }
 
-// The kind of trial that measures it
+// Kind of trial that measures a metric.
 static ob_compare_kind kind_of(ob_compare_metric m)
 {
 	switch (m) {
@@ -140,7 +140,7 @@ static ob_compare_kind kind_of(ob_compare_metric m)
 	}
 }
 
-// Object simulators end in the same bits however they are run: one of them is measured for all. The pool always runs.
+// Object simulators end in the same bits in any configuration: one is measured for all. The pool always runs.
 static ob_configuration_id measured_for(ob_configuration_id id)
 {
 	return is_monolith(id)                           ? id
@@ -191,7 +191,7 @@ static uint32_t count_workers(ob_worker_count count, uint32_t objects, uint32_t 
 	return 1;
 }
 
-// Of hardened ones, only if their measures are to be priced.
+// Hardened configurations run only if their measures are to be priced.
 static bool is_asked(const ob_comparison *c, ob_configuration_id id)
 {
 	const char *list = ob_configuration_table[id].harden;
@@ -241,7 +241,7 @@ bool ob_comparison_plan(ob_comparison *c, ob_error *e)
 	for (uint32_t i = 0; i < c->points; i++) {
 		ob_sweep_point *p = &c->point[i];
 		plan_point(c, p);
-		// a scene that was changed, or another option, is another case
+		// a changed scene, or another option, is another case
 		int n = snprintf(p->key, sizeof p->key, "%.80s%s%s", slash ? slash + 1 : c->scene,
 				 *p->define ? " " : "", p->define);
 		snprintf(p->key + n, sizeof p->key - (size_t)n, " @%016" PRIx64,
@@ -305,7 +305,7 @@ typedef struct job {
 	ob_compare_kind kind;
 } job;
 
-// The report of a run, malloc'd; NULL and e, if it did not end well
+// Report of a run, malloc'd; NULL and e if it failed.
 static char *run_once(const ob_trial *t, bool timed, ob_error *e)
 {
 	const job *j = t->what;
@@ -331,7 +331,7 @@ static double number(const char *report, const char *key)
 	return end != at ? x : NAN;
 }
 
-// What an undisturbed run says of cost, and of the state that it ended in
+// Reads cost and final state from an undisturbed run.
 static void read_undisturbed(const char *r, double *m)
 {
 	double steps = number(r, "steps"), objects = number(r, "objects"), simulated = number(r, "simulated_s");
@@ -355,7 +355,7 @@ static void read_undisturbed(const char *r, double *m)
 	m[OB_COMPARE_SEPARATION] = number(r, "separation_mean_m");
 }
 
-// What a run with clocks in the simulators says of where their time goes
+// Reads the shares of time from a run with clocks in the simulators.
 static void read_timed(const char *r, double *m)
 {
 	double steps = number(r, "steps"), workers = number(r, "workers");
@@ -404,7 +404,8 @@ static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 
 // ---- schedule
 
-// Seconds that a trial takes, roughly: object simulators take some microseconds for a body and step, workers start up
+// Estimates the seconds of a trial: object simulators take some microseconds for a body and step, plus the workers'
+// start.
 static double guess(const job *j)
 {
 	static const double body_step_s = 4e-6, thread_s = 2e-4, process_s = 2e-3, process_own_s = .02, frame_s = .03;
@@ -429,8 +430,8 @@ static bool add_trial(ob_trials *s, const job *j, uint32_t seed)
 
 typedef job jobs[OB_SWEEP_POINTS][OB_CONFIGURATIONS][OB_COMPARE_KINDS];
 
-// Repeat by repeat, seed by seed, point by point, to and fro, so that what else the machine does meets all alike; then
-// what is run once.
+// Schedules repeat by repeat, seed by seed, point by point, to and fro, so that other load of the machine affects all
+// alike; then the trials that run once.
 static bool schedule(const ob_comparison *c, jobs *all, ob_trials *s)
 {
 	bool fine = true;
@@ -456,7 +457,7 @@ static bool schedule(const ob_comparison *c, jobs *all, ob_trials *s)
 	return fine;
 }
 
-// A folder may hold more than was asked for: other points, repeats, seeds.
+// Picks the scheduled records: a folder may hold more, of other points, repeats, seeds.
 static bool pick(ob_records *to, const ob_records *from, const ob_trials *s)
 {
 	memcpy(to->machine, from->machine, sizeof to->machine);
@@ -505,7 +506,7 @@ void ob_comparison_finish(ob_comparison *c)
 	ob_records_finish(&c->records);
 }
 
-// ---- what came of it
+// ---- results
 
 static ob_spread spread_of(const ob_statistics *s)
 {
@@ -555,7 +556,7 @@ ob_configuration_id ob_configuration_without(ob_configuration_id id)
 	}
 }
 
-// A run with frames may fail where nothing can be drawn.
+// Runs with frames may fail on machines that cannot draw.
 const char *ob_comparison_failure(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id)
 {
 	const ob_record *failed = NULL;
@@ -573,7 +574,7 @@ bool ob_comparison_is_done(const ob_comparison *c, const ob_sweep_point *p, ob_c
 	       !ob_comparison_failure(c, p, id);
 }
 
-// The record's object simulators; NULL: it is a monolith's, or failed, or another case's
+// Object simulators of the record; NULL: it is a monolith's, or failed, or another case's.
 static const ob_configuration *object_simulators_of(const ob_sweep_point *p, const ob_record *r)
 {
 	size_t n = strcspn(r->configuration, ",");

@@ -1,4 +1,4 @@
-// A comparison as a text and as JSON.
+// Comparison as text and as JSON.
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -36,7 +36,7 @@ static void add_cell(ob_table *t, const ob_metric *m, ob_spread x, bool interval
 		ob_table_small(t, "%s – %s", low, high);
 }
 
-// One line for the configurations listed; nothing where none has it.
+// Adds a row for the configurations listed, if at least one has the metric.
 static void add_metric(ob_table *t, const ob_comparison *c, const ob_sweep_point *p, const int *id, int n,
 		       ob_compare_metric metric, bool intervals)
 {
@@ -70,7 +70,7 @@ static bool is_known(const ob_comparison *c, const ob_sweep_point *p, ob_compare
 	return false;
 }
 
-// The state that the first seed ends in; "" = it was not run
+// Final state of the first seed; "" = not run.
 static const char *state_of(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id)
 {
 	for (uint32_t r = 0; r < c->repeats; r++) {
@@ -151,7 +151,7 @@ ob_table *ob_comparison_prices(const ob_comparison *c, const ob_sweep_point *p)
 
 // ---- the text
 
-// In lines of at most this width, unless a word is longer
+// Prints lines of at most this width, unless a word is longer.
 static void print_wrapped(FILE *f, const char *text, size_t width)
 {
 	size_t used = 0;
@@ -190,7 +190,7 @@ static void print_point(const ob_comparison *c, const ob_sweep_point *p, FILE *f
 	snprintf(line, sizeof line, "%.300s%s%s: %" PRIu32 " objects, %" PRIu64 " steps of %g s, %g s simulated; %s%s",
 		 c->scene, *p->define ? " " : "", p->define, p->objects, p->steps, p->step, p->simulated, runs,
 		 c->repeats * c->seeds > 1 ? "; medians" : "");
-	ob_utf8_make_plain(line); // a file's name may be anybody's
+	ob_utf8_make_plain(line); // file names may contain anything
 	fputc('\n', f);
 	print_wrapped(f, line, width);
 	fputc('\n', f);

@@ -1,4 +1,4 @@
-// A comparison as a folder: one page that answers first and explains then, its diagrams, its figures.
+// Comparison as a folder: one page with the answer first and explanations after it, its diagrams, its figures.
 #include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
@@ -24,7 +24,7 @@ static ob_chart *begin_chart(const ob_comparison *c, const char *define)
 	return d;
 }
 
-// The configurations that ran, downwards; returns how many.
+// Lists the configurations that ran, downwards; returns their number.
 static int list_configurations(ob_chart *d, const ob_comparison *c, const ob_sweep_point *p, int id[OB_CONFIGURATIONS])
 {
 	int n = 0;
@@ -105,7 +105,7 @@ static ob_chart *chart_latency(const ob_comparison *c, const ob_sweep_point *p)
 	return d;
 }
 
-// Cost over the number of objects; NULL where that does not vary
+// Cost over the number of objects; NULL if that does not vary.
 static ob_chart *chart_growth(const ob_comparison *c)
 {
 	bool grows = false;
@@ -245,7 +245,7 @@ static void write_point(ob_page *p, const ob_comparison *c, const ob_sweep_point
 	ob_page_markup(p, "<section>\n<h2>%" PRIu32 " objects%s", at->objects, *at->define ? ", " : "");
 	ob_page_text(p, at->define);
 	ob_page_markup(p, "</h2>\n");
-	if (at != last_point(c)) { // whose answer stands at the top
+	if (at != last_point(c)) { // its answer is at the top
 		write_paragraph(p, v.headline);
 		write_paragraph(p, v.answer);
 		write_paragraph(p, v.architecture);
@@ -302,7 +302,7 @@ static void write_json(FILE *f, const void *with)
 	ob_comparison_write_json(with, f);
 }
 
-// "cost", or of one point among several "cost-n-100"
+// Prints "cost", or "cost-n-100" for one point among several.
 static const char *name_file(char to[160], const char *of, const char *define)
 {
 	snprintf(to, 160, "%s%s%s", of, *define ? "-" : "", define);

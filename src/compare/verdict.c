@@ -1,4 +1,4 @@
-// What a comparison says, by rules: nothing here is known before the runs are.
+// Verdict of a comparison, by rules: it depends on the runs alone.
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
@@ -6,8 +6,8 @@
 #include "compare/compare.h"
 #include "experiment/page.h"
 
-enum { runs_least = 3 }; // fewer say nothing
-static const double alike = .05; // ratios that reach to within this of 1 count as no difference
+enum { runs_least = 3 }; // fewer are inconclusive
+static const double alike = .05; // ratios within this of 1 count as no difference
 
 __attribute__((format(printf, 3, 4))) static void say(char *to, size_t room, const char *format, ...)
 {
@@ -22,7 +22,7 @@ typedef struct phrase {
 	char text[48];
 } phrase;
 
-// The median of a metric with its unit
+// Median of a metric with its unit.
 static phrase value(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_compare_metric m)
 {
 	const ob_metric *metric = &ob_compare_metric_table[m];
@@ -32,7 +32,7 @@ static phrase value(const ob_comparison *c, const ob_sweep_point *p, ob_configur
 	return to;
 }
 
-// " (0.98 to 1.02)"; nothing for a single run
+// " (0.98 to 1.02)"; empty for a single run.
 static phrase range(ob_spread r)
 {
 	phrase to = { "" };
@@ -46,7 +46,7 @@ static ob_spread cost_over_pool(const ob_comparison *c, const ob_sweep_point *p,
 	return ob_comparison_ratio(c, p, id, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
 }
 
-// Which of the two pools is cheaper, if any; and whether the objects should share workers at all.
+// Names the cheaper of the two pools, if any, and compares it with a worker per object.
 static void write_headline(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
 {
 	ob_spread r = cost_over_pool(c, p, OB_CONFIGURATION_PROCESSES);
