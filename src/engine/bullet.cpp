@@ -1,15 +1,15 @@
-// Bullet as its users set it up. btDbvtBroadphase and btSequentialImpulseConstraintSolver at their defaults (warm
-// start, friction along the direction of slip), with what mends known weaknesses:
+// Bullet with the setup of its users. btDbvtBroadphase and btSequentialImpulseConstraintSolver at their defaults (warm
+// start, friction along the direction of slip), with remedies for known weaknesses:
 // - contact points of convex shapes and of planes by perturbation, as in SimBenchmark (Kang and Hwangbo 2018): else a
 //   box on a plane gets one new point a step, and stacks fall;
 // - continuous collision as in Bullet's own CcdPhysicsDemo: a body that moves by its inner radius in a step is followed
 //   by a sphere of .8 of that;
 // - the implicit gyroscopic term in body coordinates, Bullet's best and its default;
-// - shapes at Bullet's own margins (.04 m, or a tenth of the thinnest side where that is less), which lie within the
-//   size that is asked for;
-// - where something bounces, what Bullet's author advises (Coumans, bullet3 issue 3094): contacts act on touch, not
+// - shapes at Bullet's own margins (.04 m, or a tenth of the thinnest side if that is less), which lie within the
+//   given size;
+// - with restitution, the advice of Bullet's author (Coumans, bullet3 issue 3094): contacts act on touch, not
 //   before, and no penetration is turned into velocity. Otherwise a ball with e = 1 loses all of its energy at 240 Hz,
-//   or doubles it. Where everything bounces for ever, penetration is left alone, as in SimBenchmark.
+//   or doubles it. If all bodies are elastic, penetration is left alone, as in SimBenchmark.
 #include <math.h> // C++'s own must not come in with C linkage
 #include <memory>
 #include <new>
@@ -25,7 +25,8 @@ extern "C" {
 #include "engine/drive.h"
 }
 
-// Declared in the order in which they are made: destroyed the other way round, the bodies by hand before their world.
+// Members are declared in the order of creation, and destroyed in reverse; bodies are deleted by hand before their
+// world.
 struct ob_engine {
 	btDefaultCollisionConfiguration configuration;
 	btCollisionDispatcher dispatcher;
@@ -65,7 +66,7 @@ static btTransform transform(const ob_pose &p)
 	return btTransform(btQuaternion(btScalar(q.x), btScalar(q.y), btScalar(q.z), btScalar(q.w)), vector(p.p));
 }
 
-// One rule for all of the process, as Bullet has it.
+// One rule per process, as Bullet requires.
 static btScalar pair_friction(const btCollisionObject *a, const btCollisionObject *b)
 {
 	return btSqrt(a->getFriction() * b->getFriction());
@@ -159,8 +160,8 @@ static void place_driven(ob_engine *p)
 	}
 }
 
-// Called within a step, after Bullet has drawn the velocities of kinematic bodies from two transforms: a turn by less
-// than half a milliradian is none in single precision.
+// Called within a step, after Bullet has derived the velocities of kinematic bodies from two transforms: in single
+// precision, a turn below half a milliradian would be lost.
 static void give_velocities(btDynamicsWorld *world, btScalar h)
 {
 	(void)h;
@@ -208,7 +209,7 @@ extern "C" void ob_bullet_destroy(ob_engine *p)
 	delete p;
 }
 
-// Of time that it is not to divide itself, Bullet makes one step.
+// Without subdivision of time, Bullet makes one step.
 extern "C" bool ob_bullet_step(ob_engine *p, ob_error *e)
 {
 	(void)e;

@@ -1,4 +1,4 @@
-// Inside the module engine only: the engines that kinds.c lists. Each file that makes them has its own struct ob_engine.
+// Engines listed in kinds.c. Each file that makes them has its own struct ob_engine. Internal to the module.
 #ifndef OB_ENGINE_ENGINES_H
 #define OB_ENGINE_ENGINES_H
 
@@ -15,7 +15,7 @@ extern const ob_engine_kind ob_engine_ode_advised;
 extern const ob_engine_kind ob_engine_bullet; // parts.c
 extern const ob_engine_kind ob_engine_mujoco;
 
-// What ODE keeps for a thread lives as long as any engine of that thread needs it.
+// ODE's data of a thread lives as long as any engine of that thread needs it.
 void ob_engine_ode_enter(void);
 void ob_engine_ode_leave(void);
 

@@ -1,16 +1,17 @@
 // MuJoCo, set up as its documentation advises for bodies that rest on each other:
 // - elliptic friction cones, the Newton solver with a tolerance far below the default, and impratio 10, its recipe
-//   against slip ("Modeling", Preventing slip). What is left of slip could be removed by its noslip iterations, which
-//   it advises only where the rest does not do.
+//   against slip ("Modeling", Preventing slip). Its noslip iterations could remove the remaining slip; it advises
+//   them only if the other measures are not enough.
 // - Contacts are springs. Their solref is as stiff as it advises: a time constant of two time steps, critically damped;
 //   solimp is the default.
 // - Semi-implicit Euler at about 2 ms, the default of both: eight substeps of a frame at 60 Hz.
-// - Friction of a pair is the larger of the two bodies' in MuJoCo. Pairs where that is not sqrt(mu_a mu_b), or where
-//   restitutions differ, are declared one by one, which it allows for some ten thousand.
-// - It knows no restitution. A pair with e > 0 gets a spring that gives back e of the speed: natural frequency 1 / (two
-//   time steps), damping ratio -ln e / sqrt(pi^2 + ln^2 e). That holds for one contact between free bodies, and the
+// - Friction of a pair is the larger of the two bodies' in MuJoCo. Pairs with another sqrt(mu_a mu_b), or with
+// different
+//   restitutions, are declared one by one, which it allows for some ten thousand.
+// - It has no restitution. A pair with e > 0 gets a spring that gives back e of the speed: natural frequency 1 / (two
+//   time steps), damping ratio -ln e / sqrt(pi^2 + ln^2 e). This is exact for one contact between free bodies, and the
 //   bodies sink into each other for about six time steps.
-// - It has no sleeping, and no rolling friction is asked for (condim 3).
+// - It has no sleeping, and rolling friction is not requested (condim 3).
 //
 // The model is made as MJCF text in memory. Each object is a body with the index id + 1, and a joint if it moves.
 #include <setjmp.h>
@@ -23,7 +24,7 @@
 #include "engine/part.h"
 
 enum {
-	CONTACTS_PER_BODY = 12, // at most, on average: memory for their rows grows with the square of the bodies
+	CONTACTS_PER_BODY = 12, // average limit: memory for their rows grows with the square of the bodies
 	CONTACTS_LEAST = 200,
 	DECLARED_MOST = 10000, // pairs
 };
@@ -31,13 +32,13 @@ enum {
 struct ob_engine {
 	mjModel *model;
 	mjData *data;
-	ob_state *start; // [objects], and for ever of what does not move
+	ob_state *start; // [objects], constant for static ones
 	ob_vec3 *force; // [objects], N
 	uint32_t substeps, objects;
 };
 
-// MuJoCo's own handlers write a log into the working folder, and the one for errors ends the program. An error inside
-// of try_* returns to it, with what was said; a body of data that it was working on can only be freed.
+// MuJoCo's own handlers write a log into the working folder, and the one for errors ends the program. Instead, an error
+// inside try_* returns to it with the message. mjData that was in use can only be freed.
 static _Thread_local jmp_buf *rescue;
 static _Thread_local char complaint[200];
 
@@ -52,7 +53,7 @@ static void note_error(const char *text)
 
 static void ignore_warning(const char *text)
 {
-	(void)text; // what matters is counted in mjData
+	(void)text; // mjData counts the relevant ones
 }
 
 static bool try_model(ob_engine *p, const mjVFS *files, ob_error *e)
@@ -88,8 +89,8 @@ static bool moves(const ob_passport *o)
 	return !(o->flags & OB_OBJECT_STATIC) && o->mass > 0;
 }
 
-// The time constant and the damping ratio of a pair's spring, or -stiffness and -damping, which a spring without
-// damping cannot be said without.
+// Writes the time constant and the damping ratio of a pair's spring, or -stiffness and -damping, the only form for a
+// spring without damping.
 static void write_solref(FILE *f, double e, double h)
 {
 	double frequency = 1 / (2 * h), ratio = 1;
@@ -134,8 +135,8 @@ static bool usual_pair(const ob_passport *a, const ob_passport *b)
 	return a->friction == b->friction && a->restitution == b->restitution;
 }
 
-// Pairs that MuJoCo would give another friction or restitution; false: too many of them. What it finds by itself
-// between the two bodies has to be excluded, or they would touch twice.
+// Writes the pairs for which MuJoCo would combine another friction or restitution; returns false if they are too many.
+// Its automatic contacts between the two bodies are excluded, or they would touch twice.
 static bool write_pairs(FILE *f, const ob_world *w, double h)
 {
 	uint32_t declared = 0;
@@ -219,7 +220,7 @@ static void destroy(ob_engine *p)
 	free(p);
 }
 
-// A free joint's first velocities are the world's, the other three the body's own.
+// A free joint's first three velocities are in the world frame, the other three in the body frame.
 static void put(ob_engine *p, uint32_t id, const ob_passport *o, const ob_state *s)
 {
 	p->start[id] = *s;
@@ -262,7 +263,7 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *
 	return NULL;
 }
 
-// MuJoCo goes on when its lists are full, and starts from the beginning when it has become unstable.
+// MuJoCo continues when its lists are full, and resets when it has become unstable.
 static bool sound(const ob_engine *p, ob_error *e)
 {
 	static const struct {

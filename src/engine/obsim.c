@@ -1,4 +1,4 @@
-// obsim's own object simulators, in the caller's thread: a universe with one worker, and host and worker take turns.
+// obsim's own object simulators, in the caller's thread: a universe with one worker; host and worker alternate.
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ struct ob_engine {
 	bool driven; // some are kinematic
 };
 
-// The worker's turns until the gate pauses.
+// Runs the worker until the gate pauses.
 static void work(const ob_engine *p)
 {
 	ob_sim_resume(p->u);
@@ -29,7 +29,7 @@ static bool sound(const ob_engine *p, ob_error *e)
 	return !failure || ob_fail(e, "%s", failure);
 }
 
-// The universe loses its name at once: nobody else is to see it, and it goes with the process however that ends.
+// Unlinks the universe's name at once: it is private, and vanishes with the process however that ends.
 static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run, ob_error *e)
 {
 	static unsigned made;
@@ -47,7 +47,7 @@ static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run,
 	return u;
 }
 
-// Kinematic bodies go on as they are told. w: of the engine's creation; NULL afterwards
+// Prescribes the motion of kinematic bodies. w: from the engine's creation; NULL afterwards
 static void prescribe(ob_engine *p, const ob_world *w)
 {
 	for (uint32_t i = 0; i < p->objects && p->driven; i++)
@@ -66,7 +66,7 @@ static void destroy(ob_engine *p)
 	ob_engine_ode_leave();
 }
 
-// The first turn, with no step in it, lets all objects look around: it belongs to setting up.
+// The first turn, without a step, runs the broad phase of all objects: it belongs to the setup.
 static ob_engine *create(const ob_world *w, const ob_run_settings *run, ob_error *e)
 {
 	ob_engine *p = calloc(1, sizeof *p);
@@ -120,7 +120,7 @@ static double recovered(const ob_engine *p)
 	return sum.recovered;
 }
 
-// With a tolerance each island takes as many substeps as that asks for, but not fewer than the settings say.
+// With a tolerance each island chooses its substeps, at least as many as in the settings.
 static bool resolve(const ob_world *w, const ob_run_settings *s, ob_run_settings *run, ob_error *e)
 {
 	bool chosen = s->substeps == 0;

@@ -1,17 +1,18 @@
-// ODE as most of its users have it: one world that holds everything (ode/ode_world.h). Three engines take it as it
-// comes: QuickStep, the same with a hash space, and dWorldStep.
+// ODE with the setup of most of its users: one world that holds everything (ode/ode_world.h). Three engines use its
+// defaults: QuickStep, the same with a hash space, and dWorldStep.
 //
 // "ode-advised" is QuickStep as ODE's manual ("World", "Concepts") and its demonstration of box stacks
 // (demo_boxstack.cpp) set it up against jitter and near-singular systems:
 // - dWorldSetContactSurfaceLayer .001: the manual's own figure "to prevent jittering problems due to contacts being
 //   repeatedly made and broken";
-// - dWorldSetContactMaxCorrectingVel .1, as in the demonstration, against "popping" of what is deeply embedded;
+// - dWorldSetContactMaxCorrectingVel .1, as in the demonstration, against "popping" of deeply embedded bodies;
 // - dWorldSetCFM 1e-5 per kg of the lightest body. The demonstration's 1e-5 is for bodies of about a kilogram;
 //   under a tonne it would give way by centimetres;
-// - ERP .2, twenty iterations with an over-relaxation of 1.3, gyroscopic torques, and auto-disabling where sleeping is
-//   asked for: what the manual recommends is the default already.
-// What it recommends, but costs energy that bodies should keep, is left out: damping, and a soft contact. Its warm
-// start is a choice when ODE is compiled, and not made.
+// - ERP .2, twenty iterations with an over-relaxation of 1.3, gyroscopic torques, and auto-disabling if sleeping is
+//   requested: these recommendations of the manual are the defaults already.
+//
+// Recommendations that dissipate energy are left out: damping, and a soft contact. Its warm start is a compile-time
+// option, and not set.
 #include <math.h>
 #include <stdlib.h>
 
@@ -52,7 +53,7 @@ static void destroy(ob_engine *p)
 	ob_engine_ode_leave();
 }
 
-// setup: what the kinds differ in. Its iterations are QuickStep's; 0 = dWorldStep
+// setup: differences between the kinds. Its iterations are QuickStep's; 0 = dWorldStep
 static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_ode_world_setup setup, ob_error *e)
 {
 	if (!(s->step_length > 0) || !s->substeps) {
