@@ -48,18 +48,18 @@ static double plane_and_solid(const ob_solid *plane, const ob_solid *s)
 	return ob_solid_extent(s, ob_scale(n, -1)) - ob_dot(n, ob_sub(s->p, plane->p));
 }
 
-// Distance of two segments, centres d apart, unit directions u and v, half lengths hu and hv (Lumelsky 1985).
+// Distance of two segments, with centres d apart, unit directions u and v, half lengths hu and hv (Lumelsky 1985).
 static double between_segments(ob_vec3 d, ob_vec3 u, double hu, ob_vec3 v, double hv)
 {
 	double c = ob_dot(u, v), du = ob_dot(d, u), dv = ob_dot(d, v), sine2 = 1 - c * c;
-	// d points from the first to the second: the first's nearest point lies at s u, the second's at d + t v
+	// d points from the first to the second: the first's nearest point lies at s u, the second's at d + t v.
 	double s = sine2 > 1e-12 ? clamp((du - c * dv) / sine2, -hu, hu) : clamp(du, -hu, hu);
 	double t = clamp(c * s - dv, -hv, hv);
 	s = clamp(du + c * t, -hu, hu);
 	return ob_norm(ob_sub(ob_madd(d, t, v), ob_scale(u, s)));
 }
 
-// Two crossing segments leave each other sideways, so that the radii alone count: exact in every position.
+// Two crossing segments separate sideways, so that the radii alone count: exact in every position.
 static double capsules(const ob_solid *a, const ob_solid *b)
 {
 	return a->size.x + b->size.x -
@@ -78,7 +78,7 @@ static double sphere_and_cylinder(const ob_solid *sphere, const ob_solid *cylind
 
 // ---- boxes with boxes and capsules
 
-enum { BREAKS = 8 }; // both ends of a segment, and where it crosses the 6 planes of a box's faces
+enum { BREAKS = 8 }; // both ends of a segment, and its crossings of the 6 planes of a box's faces
 
 static void sort_two(double *low, double *high)
 {
@@ -98,7 +98,7 @@ static double depth_of_boxes(const ob_solid *a, const ob_solid *b)
 			    : k < 6 ? ob_column(&b->r, k - 3)
 				    : ob_cross(ob_column(&a->r, (k - 6) / 3), ob_column(&b->r, (k - 6) % 3));
 		double length = ob_norm(n);
-		if (length < 1e-6) // parallel edges: the faces' normals say the same
+		if (length < 1e-6) // parallel edges: the faces' normals cover this direction
 			continue;
 		double overlap = (ob_solid_extent(a, n) + ob_solid_extent(b, n) - fabs(ob_dot(d, n))) / length;
 		if (overlap < least)
@@ -109,7 +109,7 @@ static double depth_of_boxes(const ob_solid *a, const ob_solid *b)
 	return least;
 }
 
-// Half the slope in s of the squared distance of the point c + s u (box frame) from the box. Grows with s.
+// Half the derivative in s of the squared distance of the point c + s u (box frame) from the box. Grows with s.
 static double distance_slope(const double c[3], const double u[3], const double h[3], double s)
 {
 	double sum = 0;
@@ -120,8 +120,8 @@ static double distance_slope(const double c[3], const double u[3], const double 
 	return sum;
 }
 
-// Distance of the segment c + s u, |s| <= half, from the box. The slope is linear between neighbouring breaks, so
-// the interval in which it changes its sign gives the nearest point exactly.
+// Distance of the segment c + s u, |s| <= half, from the box. The slope is linear between neighbouring breaks, so the
+// interval with its change of sign gives the nearest point exactly.
 static double segment_from_box(const double c[3], const double u[3], double half, const double h[3])
 {
 	double breaks[BREAKS] = { -half, half };
@@ -151,7 +151,7 @@ static double segment_from_box(const double c[3], const double u[3], double half
 	return sqrt(sum);
 }
 
-// How deep the segment itself is in the box: the faces of box minus segment lie across the box's axes, and across the
+// Depth of the segment itself in the box: the faces of box minus segment lie across the box's axes, and across the
 // products of its edges with the segment.
 static double segment_in_box(const double c[3], const double u[3], double half, const double h[3])
 {
@@ -186,7 +186,8 @@ static double depth_of_capsule_and_box(const ob_solid *capsule, const ob_solid *
 	double h[3] = { box->size.x, box->size.y, box->size.z };
 	double half = core_length(capsule);
 	double distance = segment_from_box(c, u, half, h);
-	if (distance > 1e-12 * (h[0] + h[1] + h[2])) // else rounding: the nearest point found may be where it enters
+	// otherwise rounding: the nearest point found may be the segment's entry
+	if (distance > 1e-12 * (h[0] + h[1] + h[2]))
 		return capsule->size.x - distance;
 	return capsule->size.x + fmax(segment_in_box(c, u, half, h), 0);
 }
@@ -199,10 +200,10 @@ static double depth_of_capsule_and_box(const ob_solid *capsule, const ob_solid *
 //
 // and n stands for -n, too: all solids but hulls are symmetric.
 //
-// The function is smooth but for kinks where n lies along an axis of a solid, or in the plane across one (a box's edges
-// and a cylinder's rims and mantle cast their projections there), and its least value often lies in a kink. So the
-// search takes the axes and their products as they are, walks each plane of kinks in one dimension, and looks for
-// smooth minima in two, from an even scatter of starts.
+// The function is smooth except for kinks: n along an axis of a solid, or in the plane across one (projections of a
+// box's edges and of a cylinder's rims and mantle). Its minimum often lies in a kink. So the search tries the axes and
+// their products directly, walks each plane of kinks in one dimension, and looks for smooth minima in two, from an even
+// scatter of starts.
 
 enum { AXES_MAX = 1 + OB_HULL_EDGES_MAX, PLANE_STARTS = 16, SPHERE_STARTS = 48, TURNS = 8 };
 
@@ -269,7 +270,7 @@ static void span_across(ob_vec3 n, ob_vec3 *u, ob_vec3 *v)
 static void refine_angle(struct search *s, ob_vec3 u, ob_vec3 v, double low, double high)
 {
 	const double golden = .6180339887498949;
-	for (int i = 0; i < 45; i++) { // the angle to 4e-10 of the first bracket
+	for (int i = 0; i < 45; i++) { // narrows the angle to 4e-10 of the first bracket
 		double left = high - golden * (high - low), right = low + golden * (high - low);
 		double at_left = overlap(s, ob_madd(ob_scale(u, cos(left)), sin(left), v));
 		double at_right = overlap(s, ob_madd(ob_scale(u, cos(right)), sin(right), v));
@@ -282,7 +283,7 @@ static void refine_angle(struct search *s, ob_vec3 u, ob_vec3 v, double low, dou
 	try_direction(s, unit(ob_madd(ob_scale(u, cos(middle)), sin(middle), v)));
 }
 
-// The directions across one axis: half a circle, since n and -n give one projection.
+// Walks the directions across one axis: half a circle, since n and -n give one projection.
 static void walk_plane(struct search *s, ob_vec3 axis)
 {
 	const double angle = M_PI / PLANE_STARTS;
@@ -296,12 +297,12 @@ static void walk_plane(struct search *s, ob_vec3 axis)
 			refine_angle(s, u, v, (i - 1) * angle, (i + 1) * angle);
 }
 
-// Pattern search (Hooke and Jeeves 1961): TURNS steps round n, turned a little each time so that no descent is missed
-// for good; the step halves when none helps.
+// Pattern search (Hooke and Jeeves 1961): TURNS steps around n, rotated a little each time so that no descent is missed
+// for good; halves the step when none helps.
 static void descend_from(struct search *s, ob_vec3 n, double step)
 {
 	double least = overlap(s, n), phase = 0;
-	while (step > 1e-5) { // smooth: the overlap is within the square of that
+	while (step > 1e-5) { // smooth: the overlap's error is the square of that
 		ob_vec3 u, v, from = n;
 		span_across(n, &u, &v);
 		bool better = false;
@@ -323,7 +324,7 @@ static void descend_from(struct search *s, ob_vec3 n, double step)
 	try_direction(s, n);
 }
 
-// The three best of an even scatter over half the sphere (Fibonacci lattice), and the best so far.
+// Descends from the three best of an even scatter over half the sphere (Fibonacci lattice), and from the best so far.
 static void search_sphere(struct search *s)
 {
 	ob_vec3 start[3];
@@ -368,7 +369,7 @@ double ob_depth_search(const ob_solid *a, const ob_solid *b)
 				try_direction(&s, unit(n));
 		}
 	}
-	if (s.least <= 0) // one projection apart is enough
+	if (s.least <= 0) // one separating projection is enough
 		return s.least;
 	for (int i = 0; i < s.axes; i++)
 		walk_plane(&s, s.axis[i]);
@@ -383,7 +384,7 @@ double ob_depth(const ob_solid *a, const ob_solid *b)
 {
 	if (a->shape > b->shape)
 		return ob_depth(b,
-				a); // from here on a's shape comes first in sphere, box, plane, capsule, cylinder, hull
+				a); // from here on: order sphere, box, plane, capsule, cylinder, hull
 	if (a->shape == OB_SHAPE_NONE || (a->shape == OB_SHAPE_PLANE && b->shape == OB_SHAPE_PLANE))
 		return -INFINITY;
 	if (a->shape == OB_SHAPE_PLANE)

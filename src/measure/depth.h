@@ -1,4 +1,4 @@
-// How deep two convex solids are in each other: the length of the shortest way out. Pure, thread-safe.
+// Penetration depth of two convex solids: the length of the shortest way out. Pure, thread-safe.
 #ifndef OB_MEASURE_DEPTH_H
 #define OB_MEASURE_DEPTH_H
 
@@ -10,20 +10,20 @@ typedef struct ob_solid {
 	ob_vec3 size; // m, see ob_shape
 	ob_vec3 p; // m, centre
 	ob_mat3 r; // body to world
-	const ob_hull *hull; // of a hull
+	const ob_hull *hull; // OB_SHAPE_HULL
 } ob_solid;
 
-// m; <= 0: they do not overlap. Its size is then only a lower bound of the distance, negated.
-// Spheres, capsules, planes and boxes in any pair but two planes (-infinity), and cylinders with spheres and planes:
-// closed forms, exact to rounding (boxes by their separating axes: Gottschalk, Lin and Manocha 1996); so are hulls with
-// all but cylinders (hull_depth.h). Cylinders with boxes, capsules, hulls and cylinders: ob_depth_search.
+// Depth (m); <= 0: no overlap, and its negative is a lower bound of the distance. Closed forms, exact to rounding, for
+// spheres, capsules, planes and boxes in any pair but two planes (-infinity), and for cylinders with spheres and
+// planes. Boxes use separating axes (Gottschalk, Lin and Manocha 1996). Hulls with all but cylinders have closed forms,
+// too (hull_depth.h). Cylinders with boxes, capsules, hulls and cylinders: ob_depth_search.
 double ob_depth(const ob_solid *a, const ob_solid *b);
 
-// The same for any two solids but planes, by a search over directions for the least overlap of their projections. Every
+// Same for any two solids but planes, by a search over directions for the least overlap of their projections. Every
 // direction gives an upper bound, so the result is never too small; it is too large by less than 1e-7 of their size.
 double ob_depth_search(const ob_solid *a, const ob_solid *b);
 
-// How far the solid reaches from its centre along the unit direction n (m): its support function. Not for planes.
+// Extent (m) of the solid from its centre along the unit direction n: its support function. Not for planes.
 double ob_solid_extent(const ob_solid *s, ob_vec3 n);
 
 #endif

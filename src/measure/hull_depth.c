@@ -8,7 +8,7 @@ typedef struct edge {
 	ob_vec3 at, way, left, right; // a point, m; unit outward normals of its faces
 } edge;
 
-// In the world's axes, about the origin that both share.
+// Polyhedron in the world's axes, about the origin that both share.
 typedef struct polyhedron {
 	uint32_t corners, faces, edges;
 	ob_vec3 centre;
@@ -78,14 +78,14 @@ static double overlap(const polyhedron *a, const polyhedron *b, ob_vec3 n)
 	return -lowest(a, ob_scale(n, -1)) - lowest(b, n); // n from a to b
 }
 
-// Is n, across the edge, between the normals of its faces?
+// True if n, across the edge, lies between the normals of its faces.
 static bool is_between(const edge *e, ob_vec3 n)
 {
 	const double whole = ob_dot(ob_cross(e->left, e->right), e->way) < 0 ? -1 : 1;
 	return whole * ob_dot(ob_cross(e->left, n), e->way) >= 0 && whole * ob_dot(ob_cross(n, e->right), e->way) >= 0;
 }
 
-// Whether some normal n of the edge has n . d >= least; d unit.
+// True if a normal n of the edge has n . d >= least; d unit.
 static bool reaches(const edge *e, ob_vec3 d, double least)
 {
 	if (least <= 0 || ob_dot(e->left, d) >= least || ob_dot(e->right, d) >= least)
@@ -140,7 +140,8 @@ static double from_segment(ob_vec3 x, ob_vec3 from, ob_vec3 to)
 	return ob_norm(ob_sub(x, ob_madd(from, s, way)));
 }
 
-// Of the point from the hull (its frame); < 0 inside. Where it is over no face that it is above, an edge is nearest.
+// Signed distance of the point from the hull (its frame); < 0 inside. A point above a face, but not over any such
+// face's area, is nearest to an edge.
 static double signed_distance(const ob_hull *h, ob_vec3 x)
 {
 	double inside = -INFINITY, nearest = INFINITY;
@@ -165,8 +166,8 @@ static double signed_distance(const ob_hull *h, ob_vec3 x)
 	return nearest;
 }
 
-// The least over the segment c + s u, |s| <= half, by golden section (Kiefer 1953): the distance from a convex solid is
-// a convex function of place.
+// Least distance over the segment c + s u, |s| <= half, by golden section (Kiefer 1953): the distance from a convex
+// solid is a convex function of place.
 static double least_distance(const ob_hull *h, ob_vec3 c, ob_vec3 u, double half)
 {
 	enum { ROUNDS = 60 };
@@ -185,7 +186,7 @@ static double least_distance(const ob_hull *h, ob_vec3 c, ob_vec3 u, double half
 	return least;
 }
 
-// How deep the segment is in the hull, along the faces' normals and across its edges and the segment.
+// Depth of the segment in the hull, along the faces' normals and across its edges and the segment.
 static double segment_depth(const ob_hull *h, ob_vec3 c, ob_vec3 u, double half)
 {
 	double least = INFINITY;

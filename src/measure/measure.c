@@ -87,12 +87,12 @@ uint64_t ob_measure_hash(const ob_snapshot *s)
 
 // ---- penetration
 //
-// Boxes that overlap are found in a tree: a node holds the boxes of a range, its children the halves of the range along
-// the axis on which the centres are spread most. Two nodes apart have no pair in common.
+// A tree finds overlapping boxes: a node holds the boxes of a range, its children the halves of the range along the
+// axis with the largest spread of centres. Two nodes without overlap have no pair in common.
 
 enum { LEAF = 8, ASKED_EVERY = 256 };
 
-// What looking at pairs costs, in tests of two boxes, some 2 ns; and what it may cost.
+// Cost of the depth of a pair, in tests of two boxes, some 2 ns each; and the limit.
 enum { WORK_OF_DEPTH = 32, WORK_OF_SEARCH = 8192 };
 static const uint64_t most_work = UINT64_C(1) << 31;
 
@@ -102,7 +102,7 @@ struct box {
 };
 
 struct item {
-	uint32_t id, overlaps; // overlaps: others whose boxes do
+	uint32_t id, overlaps; // overlaps: number of others with overlapping boxes
 	bool fixed;
 	ob_solid solid;
 };
@@ -114,7 +114,7 @@ struct node {
 };
 
 struct effort {
-	uint64_t work, asked; // asked: work when stop was asked last
+	uint64_t work, asked; // asked: work at the last call of stop
 	bool (*stop)(void *context);
 	void *context;
 	bool stopped;
@@ -180,7 +180,7 @@ static bool boxes_overlap(const double *a, const double *b)
 	return true;
 }
 
-// Fills item[] with the solids of finite size, each of which has a box, from the front and the planes from the back.
+// Fills item[] with solids: those of finite size, each with a box, from the front, and planes from the back.
 static void collect_solids(const ob_snapshot *s, struct item *item, struct box *box, uint32_t *solids, uint32_t *planes)
 {
 	*solids = *planes = 0;
@@ -226,7 +226,7 @@ static double greater(double a, double b)
 	return a > b ? a : b;
 }
 
-// Bounds of all boxes of a node; returns the axis along which their centres are spread most.
+// Bounds all boxes of a node; returns the axis with the largest spread of centres.
 static int bound_boxes(struct node *n, const struct box *box)
 {
 	double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
@@ -246,7 +246,7 @@ static int bound_boxes(struct node *n, const struct box *box)
 	return widest;
 }
 
-// Quickselect (Hoare 1961): the first half of the boxes before all of the second, along the axis. No two are equal.
+// Quickselect (Hoare 1961): the first half of the boxes before all of the second, along the axis. No two compare equal.
 static void split_boxes(struct box *box, uint32_t count, int axis)
 {
 	uint32_t low = 0, high = count - 1, half = count / 2;
@@ -392,7 +392,7 @@ static ob_solid solid_of(const ob_snapshot *s, uint32_t id)
 	return (ob_solid){ p->shape, p->size, state.pose.p, ob_quat_matrix(state.pose.q), ob_snapshot_hull(s, id) };
 }
 
-// Impulse (N s) of all points of the contact at *i, which follow one another; *i is set behind them.
+// Impulse (N s) of all points of the contact at *i, which are consecutive; moves *i behind them.
 static double contact_impulse(const ob_snapshot *s, size_t *i)
 {
 	const ob_contact_point *first = &s->contact[*i];

@@ -48,7 +48,7 @@ static void drop_hulls(ob_snapshot *s)
 	s->hulls = 0;
 }
 
-// Room for the hulls of a universe, which never change: those that are there already stay, and others may come.
+// Makes room for the hulls of a universe, which never change: present ones stay, and others may come.
 static bool expect_hulls(ob_snapshot *s, uint64_t created, uint32_t hulls)
 {
 	if (s->created != created)
@@ -70,7 +70,7 @@ static bool take_hull(ob_snapshot *s, const ob_universe *u, const ob_passport *p
 {
 	if (p->shape != OB_SHAPE_HULL || (p->hull < s->hulls && s->hull[p->hull]))
 		return true;
-	// one that has come since the universe was asked how many there are
+	// it may have come since the number of hulls was read
 	ob_hull *h = expect_hulls(s, s->created, p->hull + 1u) ? malloc(sizeof *h) : NULL;
 	if (!h)
 		return ob_fail(e, "no memory for the hull of object %u", p->id);
@@ -82,7 +82,7 @@ static bool take_hull(ob_snapshot *s, const ob_universe *u, const ob_passport *p
 	return true;
 }
 
-// An object that vanishes between two looks is absent; one that stays without a state is broken.
+// An object that vanishes between two reads is absent; one that stays without a state is broken.
 static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_error *e)
 {
 	ob_passport *p = &s->passport[id], again;
@@ -102,7 +102,7 @@ static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_er
 static bool take_contacts(ob_snapshot *s, const ob_universe *u, ob_error *e)
 {
 	size_t found = ob_universe_get_contacts(u, s->contact, s->contacts_max);
-	if (found > s->contacts_max) { // some room more: the universe of a viewer goes on meanwhile
+	if (found > s->contacts_max) { // some extra room: the universe of a viewer goes on meanwhile
 		if (!grow_contacts(s, found + found / 4 + 64))
 			return ob_fail(e, "no memory for %zu contact points", found);
 		found = ob_universe_get_contacts(u, s->contact, s->contacts_max);
