@@ -8,7 +8,7 @@
 
 enum { DEVICES_MAX = 32 };
 
-// What has been tried, as one line for the user.
+// Attempts so far, as one line for the user.
 typedef struct attempts {
 	char text[800];
 } attempts;
@@ -46,7 +46,7 @@ static bool has(const char *list, const char *extension)
 	return false;
 }
 
-// A display is shared by all renderers of the process that chose it, so it is never terminated.
+// All renderers of the process share a display, so it is never terminated.
 static bool open_display(ob_context *c, EGLDisplay display, const char *name, attempts *tried)
 {
 	static const EGLint wanted[] = { EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE };

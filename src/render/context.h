@@ -10,7 +10,8 @@ typedef struct ob_context {
 	void *display, *context; // EGLDisplay, EGLContext
 } ob_context;
 
-// device as in ob_render_setup; e lists every platform that was tried and why it failed. Current on success.
+// Creates a context, which becomes current. device as in ob_render_setup; e lists every platform that was tried and why
+// it failed.
 bool ob_context_create(ob_context *c, const char *device, ob_error *e);
 bool ob_context_make_current(const ob_context *c, ob_error *e);
 void ob_context_destroy(ob_context *c);

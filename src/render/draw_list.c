@@ -4,11 +4,11 @@
 
 // ---- the view of a camera
 
-// Farther than this nothing is drawn: the fog has hidden it (see fog_ranges in frame.c).
+// Objects farther away are not drawn: the fog has hidden them (see fog_ranges in frame.c).
 static const double far_ranges = 60, far_least = 2000; // camera ranges; m
 static const double steepest = 89 * M_PI / 180; // rad: a level horizon needs a direction that is not vertical
 
-// Azimuth and elevation, turned and limited, as a direction.
+// Direction after pan and tilt, limited.
 static ob_vec3 turned(ob_vec3 direction, double pan, double tilt)
 {
 	double azimuth = atan2(direction.y, direction.x) + pan;
@@ -63,11 +63,11 @@ void ob_view_projection(const ob_view *v, float m[16])
 
 // ---- bodies
 
-static const double bevel_share = .1, bevel_most = .05; // of the smallest half size; m
-static const double medium_px = 7, fine_px = 45; // radius on the screen from which rounder meshes are used
+static const double bevel_share = .1, bevel_most = .05; // relative to the smallest half size; m
+static const double medium_px = 7, fine_px = 45; // screen radius from which rounder meshes are used
 
-// Where object i is at t. Between two publications the older one is needed; without it the body stands where the
-// newer one begins.
+// Pose of object i at t. Between two publications it needs the older one; without it the body rests at the start of the
+// newer motion.
 static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t i, double t)
 {
 	const ob_motion *m = &now->motion[i];
@@ -79,7 +79,8 @@ static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t
 	if (!same)
 		return (ob_pose){ m->p, m->q };
 	ob_motion before = prev->motion[i];
-	if (before.t0 < prev->time && !(m->flags & OB_MOTION_FREE)) { // it flew so far, and what came then is not known
+	// it flew until then; its motion after that is unknown
+	if (before.t0 < prev->time && !(m->flags & OB_MOTION_FREE)) {
 		ob_pose then = ob_motion_at(&before, inertia, prev->time).pose;
 		before.p = then.p;
 		before.q = then.q;
@@ -88,7 +89,7 @@ static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t
 	return ob_motion_between(&before, m, inertia, t);
 }
 
-// NULL: it looks as it collides.
+// NULL: drawn as its collision shape.
 static const ob_mesh *look_of(const ob_draw_list *b, const ob_passport *p)
 {
 	return p->mesh > 0 && p->mesh <= b->meshes ? &b->mesh[p->mesh - 1] : NULL;
@@ -126,15 +127,15 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 
 // ---- automatic cameras
 
-// Weighted fourth moments rather than extremes: no single body makes the camera jump, and one that leaves for good is
+// Weighted fourth moments instead of extremes: no single body makes the camera jump, and one that leaves for good is
 // left behind.
 static const double lost_ranges =
-	1.5; // camera ranges: farther away from where it looked first a body counts less and less
+	1.5; // camera ranges: bodies farther from the initial target have less and less weight
 static const double spread =
-	2.05; // to a side of the picture, in one-sided fourth moments; of an even crowd 1.78 holds all
-static const double nearest = .3; // of the first picture: it comes no nearer
+	2.05; // distance to a side of the picture, in one-sided fourth moments; 1.78 holds all of an even crowd
+static const double nearest = .3; // relative to the initial distance: it comes no nearer
 
-// How far bodies reach beyond two opposite sides of a pyramid of view with its tip in their middle (see call_camera.c).
+// Extent of bodies beyond two opposite sides of a view pyramid with its tip in their middle (see call_camera.c).
 typedef struct reach {
 	double high, low; // m
 } reach;
@@ -172,7 +173,7 @@ static double fourth_power(double x)
 	return x * x * (x * x);
 }
 
-// Along an axis of the picture, where half of the angle that may be filled has this tangent
+// Extent along an axis of the picture; `tangent` is that of half of the angle that may be filled.
 static reach reach_of(const crowd *all, ob_vec3 axis, double tangent)
 {
 	const double slant = hypot(1, tangent);
@@ -188,8 +189,8 @@ static reach reach_of(const crowd *all, ob_vec3 axis, double tangent)
 	return (reach){ spread * pow(high, .25), spread * pow(low, .25) };
 }
 
-// How far along an axis the tip stands beside the middle, so far away, for as much room in the picture on one side as
-// on the other: where there is room to spare, a narrower pyramid holds the bodies as well, which is found by iterating.
+// Offset of the tip from the middle along an axis, at this distance, for equal room on both sides of the picture. With
+// spare room, a narrower pyramid holds the bodies as well; iteration finds it.
 static double centre(const crowd *all, ob_vec3 axis, double tangent, double away)
 {
 	reach r = reach_of(all, axis, tangent);
@@ -207,7 +208,7 @@ ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, in
 	const ob_view *v = &all.view;
 	find_middle(&all);
 	if (!(all.weight >= .5))
-		return to; // nothing moves, or all is lost
+		return to; // no body moves, or all are lost
 	reach x = reach_of(&all, v->right, v->tan_x), y = reach_of(&all, v->up, v->tan_y);
 	double away = fmax((x.high + x.low) / (2 * v->tan_x), (y.high + y.low) / (2 * v->tan_y));
 	away = fmax(away, nearest * v->range);
@@ -217,7 +218,7 @@ ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, in
 	return to;
 }
 
-// Equal distances in the order of ids: the same frame gives the same bytes.
+// Equal distances in the order of ids, so that the same frame gives the same bytes.
 static int by_distance(const void *a, const void *b)
 {
 	const ob_draw_item *x = a, *y = b;
@@ -273,7 +274,7 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 	ob_vec3 at = ob_sub(pose->p, eye), size = p->size;
 	double r = size.x, rounding = 0;
 	ob_vec3 core = { 0, 0, 0 };
-	if (look) { // its mesh has metres, and so has a hull's
+	if (look) { // meshes and hulls are in metres
 		r = 0;
 		core = ob_v3(1, 1, 1);
 		rounding -= p->flags & OB_OBJECT_MESH_COLOUR ? 1 : 0;

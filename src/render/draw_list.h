@@ -1,5 +1,5 @@
-// What is drawn at one instant, without OpenGL: the view of the camera, the bodies where they are then, instances of
-// those that pass a test (frustum culling, say), and the segments of overlays. One thread at a time per list.
+// Contents of a picture at one instant, without OpenGL: the view of the camera, the bodies' poses, instances of those
+// that pass a test (frustum culling, say), and the segments of overlays. One thread at a time per list.
 #ifndef OB_RENDER_DRAW_LIST_H
 #define OB_RENDER_DRAW_LIST_H
 
@@ -13,17 +13,17 @@
 typedef struct ob_view {
 	ob_vec3 eye; // m
 	ob_vec3 right, up, forward; // unit
-	double tan_x, tan_y; // of half the angles of view
+	double tan_x, tan_y; // tangents of half the angles of view
 	double near_plane, far_plane; // m
-	double range; // m, from the eye to what it looks at: the scale of the picture
+	double range; // m, from the eye to its target: the scale of the picture
 } ob_view;
 
-// The camera at time t (s): travelled, panned and tilted since 0.
+// View of the camera at time t (s): travelled, panned and tilted since 0.
 ob_view ob_view_of_camera(const ob_camera_def *c, double t, int width, int height);
-// The ball (centre, radius in m) is at least partly in the frustum.
+// True if the ball (centre, radius in m) is at least partly in the frustum.
 bool ob_view_in_frustum(const ob_view *v, ob_vec3 centre, double radius);
-// Column-major: positions relative to the eye to clip coordinates. y points down the picture, so that the first row
-// read back is the top one; triangles that were counter-clockwise come out clockwise.
+// Column-major matrix from positions relative to the eye to clip coordinates. y points down the picture, so that the
+// first row read back is the top one; counter-clockwise triangles become clockwise.
 void ob_view_projection(const ob_view *v, float m[16]);
 
 // ---- bodies
@@ -32,7 +32,7 @@ enum { OB_PLANES_MAX = 16 };
 
 typedef struct ob_draw_item {
 	ob_pose pose;
-	double radius; // m, of the sphere that holds it
+	double radius; // m, of its bounding sphere
 	double distance; // m, squared, from the eye; set by ob_draw_list_sort
 	uint32_t id; // index into the snapshot
 } ob_draw_item;
@@ -52,13 +52,14 @@ typedef struct ob_draw_list {
 typedef struct ob_instance {
 	float position_radius[4]; // m: centre relative to the eye; radius of the ball that thickens the core
 	float attitude[4]; // x y z w
-	float core[4]; // m: half size; width of a box's rounded edges, 0 = not a box; of a mesh less than 0: -1 if its
-		       // colours are shown, -2 if its surface is
-	float colour[4]; // linear; 15 times its metal, whole, and then its roughness, below 1
+	// m: half size; width of a box's rounded edges, 0 = not a box. Negative for a mesh: -1 = shown with its
+	// colours, -2 = with its surface
+	float core[4];
+	float colour[4]; // linear; last: 15 times its metal, whole, plus its roughness, below 1
 } ob_instance;
 
-// Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1. After the meshes of the shapes come
-// those of the snapshot's hulls, and then the scene's.
+// Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1. Order of meshes: the shapes', the
+// snapshot's hulls, the scene's.
 typedef struct ob_instances {
 	ob_instance *instance;
 	uint32_t meshes;
@@ -66,28 +67,28 @@ typedef struct ob_instances {
 	uint32_t capacity, meshes_max;
 } ob_instances;
 
-// Evaluates all motions at time t (s); prev may be NULL. false: out of memory. b starts zeroed.
+// Evaluates all motions at time t (s); prev may be NULL. b starts zeroed. Returns false if memory runs out.
 bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t);
-// An automatic camera where it sees what moves now, in a picture of this shape; any other as it is. A pure function of
-// where bodies are, and smooth in it, so that a picture depends on nothing but its time.
+// Moves an automatic camera so that it sees the moving bodies in a picture of this shape; returns any other unchanged.
+// A pure and smooth function of the bodies' positions, so that a picture depends on its time alone.
 ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, int width, int height);
-// Nearest to the eye first, so that what is hidden is not shaded.
+// Nearest to the eye first, so that hidden surfaces are not shaded.
 void ob_draw_list_sort(ob_draw_list *b, ob_vec3 eye);
 void ob_draw_list_finish(ob_draw_list *b);
 
-// Which bodies to take: called with each.
+// Filter: called with each body; true = draw it.
 typedef bool (*ob_draw_filter)(const ob_draw_item *body, const void *context);
-// Fills out with the bodies that pass. false: out of memory. out starts zeroed.
+// Fills out with the bodies that pass. out starts zeroed. Returns false if memory runs out.
 bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *v, int height, ob_draw_filter filter,
 		       const void *context);
 void ob_instances_finish(ob_instances *i);
 
 // ---- overlays: bounding boxes and contacts, as lines and dots of constant width on the screen
 
-// As shaders/segment.vert reads it. 44 bytes.
+// Layout of shaders/segment.vert. 44 bytes.
 typedef struct ob_segment {
 	float from[3], to[3]; // m, relative to the eye; equal: a dot
-	float colour[4]; // as shown (sRGB), alpha
+	float colour[4]; // displayed colour (sRGB), alpha
 	float width; // px
 } ob_segment;
 
@@ -96,7 +97,7 @@ typedef struct ob_overlay {
 	size_t count, capacity;
 } ob_overlay;
 
-// Each replaces what o held; false: out of memory. o starts zeroed.
+// Each replaces the contents of o, which starts zeroed. Returns false if memory runs out.
 bool ob_overlay_boxes(ob_overlay *o, const ob_draw_list *b, const ob_view *v);
 bool ob_overlay_contacts(ob_overlay *o, const ob_snapshot *s, const ob_view *v, int height);
 void ob_overlay_finish(ob_overlay *o);

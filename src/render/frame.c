@@ -3,7 +3,7 @@
 // ---- orthographic projections of the maps
 
 enum { MARGIN = 4 }; // texels kept free at each side, for the filter
-static const double reach_ranges = 6; // camera ranges: shadows are drawn so far
+static const double reach_ranges = 6; // camera ranges: limit of shadows
 
 typedef struct rect {
 	double low_x, low_y, high_x, high_y;
@@ -24,7 +24,7 @@ static bool overlaps(const rect *r, double x, double y, double reach)
 	return x + reach >= r->low_x && x - reach <= r->high_x && y + reach >= r->low_y && y - reach <= r->high_y;
 }
 
-// The frustum down to depth (m), in the map's plane.
+// Frustum down to depth (m), in the map's plane.
 static rect visible_rect(const ob_ortho *m, const ob_view *v, double depth)
 {
 	rect r = nothing;
@@ -38,7 +38,7 @@ static rect visible_rect(const ob_ortho *m, const ob_view *v, double depth)
 	return r;
 }
 
-// Depth (m) of the farthest body in sight, as far as shadows are drawn.
+// Depth (m) of the farthest visible body, within the limit of shadows.
 static double depth_in_sight(const ob_draw_list *b, const ob_view *v)
 {
 	double depth = v->range, most = reach_ranges * v->range;
@@ -51,7 +51,7 @@ static double depth_in_sight(const ob_draw_list *b, const ob_view *v)
 	return fmin(1.5 * depth, most);
 }
 
-// The least of the sizes 2^(k/6) that holds need (m) and the margin.
+// Smallest of the sizes 2^(k/6) that holds need (m) and the margin.
 static double stepped_size(double need, int texels)
 {
 	double half = fmax(need, .05) * texels / (texels - 2 * MARGIN - 2);
@@ -81,7 +81,7 @@ ob_ortho ob_ortho_fit(ob_vec3 z, const ob_draw_list *b, const ob_view *v, int te
 		m.z_low = fmin(m.z_low, up - body->radius);
 		m.z_high = fmax(m.z_high, up + body->radius);
 	}
-	if (m.z_low > m.z_high) { // nothing casts
+	if (m.z_low > m.z_high) { // no casters
 		cast = frustum;
 		m.z_low = -1;
 		m.z_high = 1;
@@ -123,8 +123,9 @@ void ob_ortho_matrix(const ob_ortho *m, ob_vec3 eye, float out[16])
 
 static const double fog_ranges = 9, fog_least = 150; // camera ranges; m: distance of the fog
 static const float sunshine[3] = { 1.95f, 1.82f, 1.60f }; // irradiance / pi, relative to a white of 1
-static const float from_sky = .52f, from_ground = .45f; // the same, of a sky of 1 and a ground of 1
-static const double sun_radius = .025; // rad: half the angle of the sun's disc; wider than ours, as through thin haze
+static const float from_sky = .52f, from_ground = .45f; // same, of a sky of 1 and a ground of 1
+// rad: half the angle of the sun's disc; wider than the real one, as through thin haze
+static const double sun_radius = .025;
 static const double golden = 2.39996322972865332; // rad, the golden angle
 
 static void set_vec4(float to[4], ob_vec3 v, double w)
@@ -170,7 +171,7 @@ static void set_lighting(ob_frame_block *k, const ob_look_def *look, ob_vec3 sun
 	k->shadow_texel[3] = (float)(.5 * deep / m->half_y);
 }
 
-// The third row of the occlusion map's matrix is the height over the ground, in m.
+// Third row of the occlusion map's matrix: the height over the ground, in m.
 static void set_occlusion(ob_frame *f, const ob_draw_list *b)
 {
 	ob_vec3 up = ob_v3(0, 0, 1), foot = ob_v3(0, 0, 0);
@@ -189,7 +190,7 @@ static void set_occlusion(ob_frame *f, const ob_draw_list *b)
 	m[14] = (float)(ob_dot(f->view.eye, up) - f->level);
 }
 
-// A point of the sun's disc: Vogel's spiral, the middle for a single picture.
+// Point of the sun's disc: Vogel's spiral, the middle for a single picture.
 static ob_vec3 sun_of_share(const ob_look_def *look, const ob_frame_share *s)
 {
 	double length = ob_norm(look->sun);
@@ -204,7 +205,7 @@ static ob_vec3 sun_of_share(const ob_look_def *look, const ob_frame_share *s)
 	return ob_scale(sun, 1 / ob_norm(sun));
 }
 
-// Directions spread evenly over the sky: a height in each band, and the golden angle round.
+// Directions spread evenly over the sky: a height in each band, azimuths by the golden angle.
 static void set_sky(ob_frame *f, const ob_draw_list *b, const ob_frame_share *s, int texels)
 {
 	f->sky_maps = s->sky_maps;

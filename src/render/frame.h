@@ -1,23 +1,23 @@
-// What all shaders of one frame share (camera, sun, sky, ground), and where the shadow map and the occlusion map lie:
-// rectangles fitted to what is seen. Pure functions.
+// Shared data of all shaders of one frame (camera, sun, sky, ground), and the extents of the shadow map and the
+// occlusion map: rectangles fitted to the visible scene. Pure functions.
 #ifndef OB_RENDER_FRAME_H
 #define OB_RENDER_FRAME_H
 
 #include "render/draw_list.h"
 
-// The orthographic projection of a map: its axes, centre and half sides. Sizes come in steps of 2^(1/6) and the centre
-// in whole texels, so that shadows do not crawl while the scene moves.
+// Orthographic projection of a map: its axes, centre and half sides. Sizes come in steps of 2^(1/6) and the centre in
+// whole texels, so that shadows do not crawl while the scene moves.
 typedef struct ob_ortho {
 	ob_vec3 x, y, z; // unit; z towards the light
 	double centre_x, centre_y;
 	double half_x, half_y; // m
-	double z_low, z_high; // m along z: what casts lies between
+	double z_low, z_high; // m along z: range of casters
 } ob_ortho;
 
-// For light from direction z (unit), over the bodies that can be seen or whose shadow can be seen.
+// Fits a map for light from direction z (unit) to the bodies that are visible or cast a visible shadow.
 ob_ortho ob_ortho_fit(ob_vec3 z, const ob_draw_list *b, const ob_view *v, int texels);
 bool ob_ortho_contains(const ob_ortho *m, const ob_draw_item *body);
-// Column-major: positions relative to the eye to 0..1; z grows away from the light.
+// Column-major matrix from positions relative to the eye to 0..1; z grows away from the light.
 void ob_ortho_matrix(const ob_ortho *m, ob_vec3 eye, float out[16]);
 
 enum { OB_SHADOW_TEXELS = 1792, OB_OCCLUSION_TEXELS = 256, OB_SKY_MAPS_MAX = 12 };
@@ -31,11 +31,11 @@ typedef struct ob_frame_block {
 	float sky_map[OB_SKY_MAPS_MAX][16], sky_ray[OB_SKY_MAPS_MAX][4];
 } ob_frame_block;
 
-// One picture of several that are averaged: each has its own place in the pixel, its own point of the sun, and its own
-// directions of the sky. Of a single one, number is 0 and count 1.
+// One picture of several that are averaged: each has its own offset in the pixel, its own point of the sun, and its own
+// directions of the sky. For a single picture, number is 0 and count 1.
 typedef struct ob_frame_share {
 	int number, count;
-	int sky_maps; // directions of the sky that are looked at, up to OB_SKY_MAPS_MAX
+	int sky_maps; // number of sampled sky directions, up to OB_SKY_MAPS_MAX
 } ob_frame_share;
 
 typedef struct ob_frame {
@@ -43,8 +43,8 @@ typedef struct ob_frame {
 	ob_ortho shadow; // seen from the sun
 	ob_ortho sky[OB_SKY_MAPS_MAX];
 	int sky_maps;
-	ob_ortho occlusion; // of the ground by what is near to it, seen from above
-	int ground; // index of the plane that is the ground; -1 = none
+	ob_ortho occlusion; // occlusion of the ground by near bodies, seen from above
+	int ground; // index of the ground plane; -1 = none
 	double level; // m, height of the ground along occlusion.z
 	ob_frame_block block;
 } ob_frame;

@@ -5,7 +5,7 @@
 
 enum { VERTICES_MAX = 16384, INDICES_MAX = 65536 };
 
-// Round the axis; multiples of 4, so that a ball has an equator.
+// Segments around the axis; multiples of 4, so that a ball has an equator.
 static const int segments_of_level[OB_MESH_LEVELS] = { 12, 24, 48 };
 
 static uint16_t vertex(ob_mesh_set *s, float cx, float cy, float cz, float nx, float ny, float nz)
@@ -33,7 +33,7 @@ static uint16_t box_at(uint16_t first, int corner, int axis)
 	return (uint16_t)(first + 3 * corner + axis);
 }
 
-// Each corner has three vertices, one a face.
+// Builds a box: each corner has three vertices, one per face.
 static void build_box(ob_mesh_set *s)
 {
 	uint16_t first = (uint16_t)s->vertices;
@@ -71,7 +71,7 @@ static uint16_t ring_of_ball(ob_mesh_set *s, int n, double latitude, float end)
 	return first;
 }
 
-// The ball, cut at its equator: the lower half belongs to the core's lower end, the upper half to its upper end.
+// Builds a ball, cut at its equator: the lower half belongs to the core's lower end, the upper half to its upper end.
 static void build_round(ob_mesh_set *s, int n)
 {
 	int quarter = n / 4;

@@ -10,7 +10,7 @@
 
 typedef struct source {
 	const char *name, *vertex, *fragment;
-	const char *define; // NULL = nothing else
+	const char *define; // NULL = no more
 } source;
 
 static const source sources[OB_PROGRAMS] = {
@@ -28,7 +28,7 @@ static const source sources[OB_PROGRAMS] = {
 	[OB_PROGRAM_RESOLVE] = { "resolve", shader_sky_vert, shader_resolve_frag, NULL },
 };
 
-// Mesa without a GPU: shaders then choose what is cheaper.
+// Mesa without a GPU: shaders then choose cheaper methods.
 static bool is_software_renderer(void)
 {
 	const char *name = (const char *)glGetString(GL_RENDERER);
@@ -54,7 +54,7 @@ static bool compile_shader(GLuint program, GLenum stage, const source *s, ob_lig
 	const char *text = stage == GL_VERTEX_SHADER ? s->vertex : s->fragment;
 	GLuint shader = glCreateShader(stage);
 	GLint good = 0;
-	// After #version, which must come first.
+	// Inserts after #version, which must come first.
 	const char *body = strchr(text, '\n') + 1;
 	static const char *const define[] = { [OB_LIGHT_DRAFT] = "#define OB_DRAFT\n",
 					      [OB_LIGHT_AVERAGED] = "#define OB_AVERAGED\n",
@@ -71,7 +71,7 @@ static bool compile_shader(GLuint program, GLenum stage, const source *s, ob_lig
 			stage == GL_VERTEX_SHADER ? "vertex" : "fragment", log);
 	}
 	glAttachShader(program, shader);
-	glDeleteShader(shader); // lives on with the program
+	glDeleteShader(shader); // the program keeps it alive
 	return good;
 }
 
@@ -149,7 +149,7 @@ static GLuint create_texture(GLenum attachment, GLenum inner, GLenum format, GLe
 	return id;
 }
 
-// A colour of floats, as large as the frame.
+// Creates a float colour texture, as large as the frame.
 static GLuint create_float_texture(GLenum inner, const ob_targets *t)
 {
 	GLuint id;
@@ -223,7 +223,7 @@ static bool create_maps(ob_targets *t, ob_error *e)
 	return true;
 }
 
-// One picture, and the sum; both with the depth that the plain colour target has.
+// Creates the textures of one picture and the sum; both use the depth of the plain colour target.
 static bool create_sum(ob_targets *t, ob_error *e)
 {
 	t->one = create_framebuffer();
@@ -306,7 +306,7 @@ static bool create_meshes(ob_passes *p, ob_error *e)
 	return built ? true : ob_fail(e, "out of memory");
 }
 
-// form: GL_SRGB8_ALPHA8 or GL_RGBA8. Smaller ones of it are made for what is far away.
+// form: GL_SRGB8_ALPHA8 or GL_RGBA8. Mipmaps serve distant surfaces.
 static GLuint create_image(const ob_mesh_image *image, GLint form)
 {
 	GLuint id;
@@ -473,7 +473,7 @@ static void upload_instances(const ob_passes *p, const ob_instances *i)
 		     GL_STREAM_DRAW);
 }
 
-// Points the instances' attributes at those from "first" on.
+// Points the instances' attributes at the data from "first" on.
 static void set_instances(uint32_t first)
 {
 	const size_t at = first * sizeof(ob_instance);
@@ -507,7 +507,7 @@ static void bind_image(GLenum unit, GLuint image, const uint8_t wrap[2])
 	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, modes[wrap[1]]);
 }
 
-// The parts of a mesh with images, each with its own.
+// Draws the parts of a mesh with images, each with its own.
 static void draw_textured(const ob_passes *p, const ob_look_buffers *l, GLsizei count)
 {
 	size_t first = 0;
@@ -539,7 +539,7 @@ static void draw_looks(const ob_passes *p, const ob_instances *i, bool in_colour
 	}
 }
 
-// Draws what upload_instances has uploaded. in_colour: the program is OB_PROGRAM_BODY.
+// Draws the instances uploaded by upload_instances. in_colour: the program is OB_PROGRAM_BODY.
 static void draw_instances(const ob_passes *p, const ob_instances *i, bool in_colour)
 {
 	for (uint32_t k = 0; k < OB_MESHES; k++) {
@@ -598,7 +598,7 @@ static void blur_occlusion(const ob_passes *p, const ob_targets *t, int from, fl
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-// Seen from below, the nearest thing counts: the greatest occlusion.
+// Seen from below, the nearest surface counts: the greatest occlusion.
 void ob_passes_occlusion_map(const ob_passes *p, const ob_targets *t, const ob_instances *low)
 {
 	upload_instances(p, low);
@@ -626,7 +626,8 @@ static void set_vec3_uniform(GLuint program, const char *name, ob_vec3 v)
 	glUniform3f(glGetUniformLocation(program, name), (float)v.x, (float)v.y, (float)v.z);
 }
 
-// Coordinates in a map (column-major 4x4, from positions relative to the eye) of points of a plane, from their own.
+// Sets the matrix from a plane's own coordinates to coordinates in a map (column-major 4x4, from positions relative to
+// the eye).
 static void set_plane_to_map(GLuint program, const char *name, const float m[16], ob_vec3 foot, ob_vec3 x, ob_vec3 y)
 {
 	const ob_vec3 from[3] = { x, y, foot };
@@ -638,8 +639,8 @@ static void set_plane_to_map(GLuint program, const char *name, const float m[16]
 	glUniformMatrix3fv(glGetUniformLocation(program, name), 1, GL_FALSE, to);
 }
 
-// Where in the plane what the shadow map holds can cast shadows: low x, low y, high x, high y, m from the foot along
-// the plane's axes, within reach.
+// Part of the plane on which casters in the shadow map can cast shadows: low x, low y, high x, high y, m from the foot
+// along the plane's axes, within reach.
 static void find_patch(const ob_frame *f, ob_vec3 foot, ob_vec3 n, ob_vec3 x, ob_vec3 y, float patch[4])
 {
 	const ob_ortho *m = &f->shadow;
@@ -670,7 +671,7 @@ static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, c
 	ob_vec3 n = ob_column(&r, 2), x = ob_column(&r, 0), y = ob_column(&r, 1), d = ob_sub(pose->p, f->view.eye);
 	double height = -ob_dot(d, n);
 	if (height <= 0)
-		return; // from below there is nothing to see
+		return; // invisible from below
 	ob_vec3 foot = ob_scale(n, -height), on_plane = ob_sub(foot, d);
 	float patch[4];
 	find_patch(f, foot, n, x, y, patch);
@@ -690,7 +691,7 @@ static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, c
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, far ? 10 : 4);
 }
 
-// Over a level ground the sky is drawn in the rows from its horizon on only: llvmpipe shades what is hidden, too.
+// Above a level ground, draws the sky only in the rows from its horizon on: llvmpipe shades hidden pixels, too.
 static void draw_sky(const ob_passes *p, const ob_targets *t, const ob_frame *f, const ob_draw_list *b)
 {
 	int rows = t->height;
@@ -698,7 +699,7 @@ static void draw_sky(const ob_passes *p, const ob_targets *t, const ob_frame *f,
 	if (height > 0) {
 		double longest = sqrt(1 + f->view.tan_x * f->view.tan_x + f->view.tan_y * f->view.tan_y);
 		double lowest =
-			-1.1 * longest * height / f->view.far_plane; // rise of a ray that still passes the ground's end
+			-1.1 * longest * height / f->view.far_plane; // slope of a ray that just passes the ground's end
 		double up = -f->block.ray_up[2]; // rows run down
 		double end = ceil(.5 * t->height * (1 + (f->view.forward.z - lowest) / up));
 		rows = (int)fmax(0, fmin(t->height, end));
@@ -766,7 +767,7 @@ void ob_passes_resolve(const ob_passes *p, const ob_targets *t)
 {
 	glBindFramebuffer(GL_FRAMEBUFFER, t->plain);
 	glDisable(GL_DEPTH_TEST);
-	glDepthMask(GL_FALSE); // overlays are hidden by what the last picture left
+	glDepthMask(GL_FALSE); // the depth of the last picture hides overlays
 	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SOURCE);
 	glBindTexture(GL_TEXTURE_2D, t->sum_colour);
 	glBindVertexArray(p->empty_array);

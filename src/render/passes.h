@@ -1,6 +1,6 @@
-// The OpenGL side of a frame (3.3 core, linked through GLVND: libOpenGL exports every core function): shader programs,
-// whose sources are shaders/*, embedded at build time; render targets; buffers, and the passes that draw from them. A
-// current context is needed.
+// OpenGL side of a frame (3.3 core, linked through GLVND: libOpenGL exports every core function): shader programs from
+// shaders/*, embedded at build time; render targets; buffers, and the passes that draw from them. Needs a current
+// context.
 #ifndef OB_RENDER_PASSES_H
 #define OB_RENDER_PASSES_H
 
@@ -14,13 +14,13 @@
 
 typedef enum ob_program {
 	OB_PROGRAM_BODY,
-	OB_PROGRAM_TEXTURED, // a body, with images on it
+	OB_PROGRAM_TEXTURED, // a body with images
 	OB_PROGRAM_SHADOW,
 	OB_PROGRAM_SKY_SHADOW,
 	OB_PROGRAM_OCCLUSION,
 	OB_PROGRAM_BLUR,
 	OB_PROGRAM_PLANE,
-	OB_PROGRAM_FAR_PLANE, // where no shadow falls
+	OB_PROGRAM_FAR_PLANE, // without shadows
 	OB_PROGRAM_SKY,
 	OB_PROGRAM_SEGMENT,
 	OB_PROGRAM_ADD,
@@ -38,22 +38,22 @@ enum { // texture units
 	OB_UNIT_SURFACE_IMAGE,
 };
 
-// How light is computed: see shaders/light.glsl.
+// Methods of lighting: see shaders/light.glsl.
 typedef enum ob_light {
 	OB_LIGHT_DRAFT,
 	OB_LIGHT_AVERAGED,
 	OB_LIGHT_WHOLE,
 } ob_light;
 
-// What a renderer of this quality does with this context's driver.
+// Method for this quality with this context's driver.
 ob_light ob_light_choose(ob_quality quality);
 int ob_light_sky_maps(ob_light light);
 
-// Compiles and links all programs; the frame block is bound to uniform buffer 0. A current context is needed.
+// Compiles and links all programs; the frame block is bound to uniform buffer 0. Needs a current context.
 bool ob_programs_create(GLuint program[OB_PROGRAMS], ob_light light, ob_error *e);
 void ob_programs_destroy(GLuint program[OB_PROGRAMS]);
 
-// ---- render targets: colour (multisampled and plain; of one picture and of the sum), and the maps
+// ---- render targets: colour (multisampled and plain; one picture and the sum), and the maps
 
 typedef struct ob_targets {
 	int width, height, samples;
@@ -61,19 +61,19 @@ typedef struct ob_targets {
 	GLuint plain_colour, multi_colour, depth; // renderbuffers
 	GLuint shadow, shadow_depth; // shadow map: framebuffer and depth texture
 	GLuint plain_sampler; // reads the shadow map without comparison
-	GLuint occlusion[2], occlusion_texture[2]; // occlusion map, and what it is blurred through
+	GLuint occlusion[2], occlusion_texture[2]; // occlusion map, and the intermediate target of its blur
 	int sky_maps, sky_texels;
 	GLuint sky, sky_depth; // framebuffer, and an array of depth textures
 	GLuint one, one_colour, sum, sum_colour; // of averaged pictures: framebuffers and float textures; else 0
 } ob_targets;
 
-// samples is lowered to what the driver offers; of averaged pictures it does not count.
+// Creates the targets. samples is lowered to the driver's limit, and ignored for averaged pictures.
 bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_light light, ob_error *e);
 void ob_targets_destroy(ob_targets *t);
 
 // ---- passes
 
-// A mesh of the scene
+// Buffers of a mesh of the scene.
 typedef struct ob_look_buffers {
 	const ob_mesh *mesh;
 	GLuint array, vertices, indices;
@@ -85,39 +85,39 @@ typedef struct ob_passes {
 	GLuint frame_block;
 	GLuint body_array, vertices, indices, instances;
 	GLuint segment_array, segments;
-	GLuint empty_array; // for what is made from gl_VertexID alone
+	GLuint empty_array; // for geometry made from gl_VertexID alone
 	ob_mesh_range mesh[OB_MESHES];
 	GLuint hull_array, hull_vertices;
-	uint32_t hulls, known_hulls; // of the snapshot; those of them that were there
+	uint32_t hulls, known_hulls; // number in the snapshot, number uploaded
 	uint64_t hulls_of; // the snapshot's ob_snapshot.created
-	uint32_t *hull_first; // [hulls + 1]: vertices of each, in hull_vertices
+	uint32_t *hull_first; // [hulls + 1]: first vertex of each, in hull_vertices
 	uint32_t looks; // meshes of the scene
 	ob_look_buffers *look; // [looks]
-	GLuint white; // the texture of what has none
+	GLuint white; // texture of parts without one
 } ob_passes;
 
 // mesh: the scene's, which must outlive p.
 bool ob_passes_create(ob_passes *p, ob_light light, const ob_mesh *mesh, uint32_t meshes, ob_error *e);
 void ob_passes_destroy(ob_passes *p);
 
-// Meshes of the hulls that the snapshot has; false: out of memory.
+// Builds meshes of the snapshot's hulls; returns false if memory runs out.
 bool ob_passes_take_hulls(ob_passes *p, const ob_snapshot *s);
 void ob_passes_begin(const ob_passes *p, const ob_frame_block *block);
-// The shadow map, from all that casts.
+// Draws the shadow map, from all casters.
 void ob_passes_shadow_map(const ob_passes *p, const ob_targets *t, const ob_instances *casters);
-// The map of direction number layer of the sky, from all that casts there.
+// Draws the map of sky direction number `layer`, from all casters there.
 void ob_passes_sky_map(const ob_passes *p, const ob_targets *t, int layer, const ob_instances *casters);
-// The occlusion map, from what is near the ground.
+// Draws the occlusion map, from bodies near the ground.
 void ob_passes_occlusion_map(const ob_passes *p, const ob_targets *t, const ob_instances *low);
-// The colour target, without overlays.
+// Draws the colour target, without overlays.
 void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
 		      const ob_frame *f, const ob_look_def *look);
-// One of count averaged pictures: adds it to the sum, which the first clears.
+// Adds one of count averaged pictures to the sum; the first clears it.
 void ob_passes_add(const ob_passes *p, const ob_targets *t, int number, int count);
-// The average, to the colour target.
+// Writes the average to the colour target.
 void ob_passes_resolve(const ob_passes *p, const ob_targets *t);
 void ob_passes_overlay(const ob_passes *p, const ob_overlay *o, bool hidden_by_bodies);
-// rgba: width * height * 4 bytes, top row first
+// Reads the picture. rgba: width * height * 4 bytes, top row first
 void ob_passes_read(const ob_targets *t, uint8_t *rgba);
 
 #endif

@@ -15,12 +15,13 @@ typedef enum ob_quality {
 typedef struct ob_render_setup {
 	int width, height;
 	ob_quality quality;
-	int samples; // draft: multisampling, 1 = none; fine: pictures that are averaged
+	int samples; // draft: multisampling, 1 = none; fine: number of averaged pictures
 	const char *device; // NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0",
 			    // "1", ..
 	bool overlay_aabb, overlay_contacts;
-	const ob_mesh *mesh; // [meshes], the scene's, which must outlive the renderer: what objects look like by the
-			     // number in their passports. One whose number is beyond these looks as it collides
+	// [meshes], the scene's, which must outlive the renderer; objects refer to them by the number in their body
+	// properties. One with a number beyond these is drawn as its collision shape
+	const ob_mesh *mesh;
 	uint32_t meshes;
 } ob_render_setup;
 
@@ -31,21 +32,21 @@ bool ob_render_check(ob_error *e);
 // NULL and e (with the list of what was tried) on failure.
 ob_renderer *ob_renderer_create(const ob_render_setup *r, const ob_look_def *look, ob_error *e);
 void ob_renderer_destroy(ob_renderer *r);
-// Draws the snapshot "now" as camera c sees it at time t (s). prev: the snapshot one step earlier, for times between
+// Draws the snapshot "now" as seen by camera c at time t (s). prev: the snapshot one step earlier, for times between
 // steps (NULL: t is now->time). Fills rgba (width * height * 4 bytes, top row first).
 bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
 		      uint8_t *rgba, ob_error *e);
 
-// Sinks: where finished frames go. Encoding runs in the sink's own thread; put() blocks when 8 frames wait.
+// Sinks: destinations of finished frames. Encoding runs in the sink's own thread; put() blocks while 8 frames wait.
 typedef struct ob_sink ob_sink;
-// DIR/frame-000000.png ..., tEXt: simulated time. Frames of an earlier run are removed, but for those before "first",
-// the number of the first that will come.
+// Writes DIR/frame-000000.png ..., tEXt: simulated time. Removes frames of an earlier run, except for those before
+// "first", the number of the first new one.
 ob_sink *ob_sink_png(const char *dir, int w, int h, uint64_t first, ob_error *e);
-// rgb24 to a pipe; name: of it, for errors, as long as the sink lives
+// Writes rgb24 to a pipe; name: the name of the pipe in errors; valid as long as the sink
 ob_sink *ob_sink_raw(int fd, const char *name, int w, int h, ob_error *e);
 ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e); // through ffmpeg
 bool ob_sink_put(ob_sink *s, uint64_t frame, double time, const uint8_t *rgba, ob_error *e);
-// Waits for all frames, closes. false and e if any frame was not written whole. Frees s either way.
+// Waits for all frames, closes. Returns false and e if any frame was not written whole. Frees s either way.
 bool ob_sink_close(ob_sink *s, ob_error *e);
 
 #endif

@@ -96,7 +96,7 @@ static bool draw_overlays(ob_renderer *r, const ob_snapshot *now, const ob_view 
 	return true;
 }
 
-// The maps of one picture, and the picture itself. false: out of memory.
+// Draws the maps of one picture, and the picture itself. Returns false if memory runs out.
 static bool draw_share(ob_renderer *r, const ob_camera_def *c, double t, const ob_frame_share *share, ob_frame *f)
 {
 	const ob_passes *p = &r->passes;

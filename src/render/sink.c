@@ -17,7 +17,7 @@ typedef struct slot {
 	uint8_t *rgba;
 } slot;
 
-// Slots travel from free to waiting to a worker and back; all lists are guarded by lock.
+// Slots circulate from free to waiting to a worker and back; lock guards all lists.
 struct ob_sink {
 	const ob_sink_kind *kind;
 	void *state;
@@ -32,7 +32,7 @@ struct ob_sink {
 	ob_error error; // the first one, when failed
 };
 
-// Takes the oldest waiting frame; -1 when the sink closes and none is left. Holds the lock.
+// Takes the oldest waiting frame; -1 when the sink closes and none is left. Called with the lock held.
 static int take_frame(ob_sink *s)
 {
 	while (!s->waiting_count && !s->closing)
@@ -55,7 +55,7 @@ static void return_slot(ob_sink *s, int which, bool good, const ob_error *e)
 	pthread_cond_signal(&s->has_room);
 }
 
-// After a failure frames are dropped: close reports it.
+// Drops frames after a failure; close reports it.
 static void *run_worker(void *sink)
 {
 	ob_sink *s = sink;
@@ -93,7 +93,7 @@ static void free_sink(ob_sink *s)
 	free(s);
 }
 
-// Workers take no signals: those are for the main thread, and a reader that has gone is an error, not a death.
+// Workers block signals: these are for the main thread, and a closed pipe is an error, not a reason to die.
 static bool start_workers(ob_sink *s, int workers)
 {
 	sigset_t before;

@@ -1,5 +1,5 @@
-// Frames as PNG files: compressed lightly and without filters (5 times faster than libpng's defaults for half as much
-// again in size), complete or absent, and the same bytes for the same frame.
+// Frames as PNG files: light compression without filters (5 times faster than libpng's defaults, for half as much again
+// in size), complete or absent, and the same bytes for the same frame.
 #include <dirent.h>
 #include <errno.h>
 #include <png.h>
@@ -21,7 +21,7 @@ typedef struct png_state {
 
 typedef struct png_target {
 	FILE *file;
-	int error; // errno of the first write that failed
+	int error; // errno of the first failed write
 } png_target;
 
 static void write_bytes(png_structp png, png_bytep data, size_t size)
@@ -55,7 +55,7 @@ static void write_info(png_structp png, png_infop info, int w, int h, double tim
 	png_set_filler(png, 0, PNG_FILLER_AFTER); // skips alpha
 }
 
-// false: t->error says why, or it is 0 and there was no memory.
+// Returns false with the reason in t->error, or 0 there if memory ran out.
 static bool encode(png_target *t, int w, int h, const ob_sink_frame *frame)
 {
 	png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, give_up, quiet);
@@ -73,7 +73,7 @@ static bool encode(png_target *t, int w, int h, const ob_sink_frame *frame)
 	return done;
 }
 
-// Under another name until it is whole: whoever watches the directory sees only complete frames.
+// Uses a temporary name until it is complete: programs that watch the directory see complete frames only.
 static bool write_png(void *state, int w, int h, const ob_sink_frame *frame, ob_error *e)
 {
 	const png_state *s = state;
@@ -126,7 +126,8 @@ static bool make_directory(const char *dir)
 	return false;
 }
 
-// "frame-", six digits or more, ".png", as this sink names them, or what a killed run left of one; from "first" on.
+// True for "frame-", six digits or more, ".png", as this sink names them, and for temporary files of a killed run; from
+// "first" on.
 static bool is_frame(const char *name, uint64_t first)
 {
 	if (strncmp(name, "frame-", 6) != 0)
@@ -137,7 +138,7 @@ static bool is_frame(const char *name, uint64_t first)
 	       (strcmp(end, ".png") == 0 || strcmp(end, ".png.part") == 0);
 }
 
-// Frames of an earlier run would mix with the new ones when that run was longer.
+// Removes frames of an earlier run: if that was longer, they would mix with the new ones.
 static void remove_old_frames(const char *dir, uint64_t first)
 {
 	DIR *d = opendir(dir);

@@ -16,11 +16,12 @@ extern char **environ;
 typedef struct video {
 	pid_t pid;
 	int pipe; // to ffmpeg's standard input
-	FILE *messages; // what ffmpeg says
+	FILE *messages; // ffmpeg's messages
 	char path[4096];
 } video;
 
-// The first line that ffmpeg wrote: with -loglevel error that is its reason. Without the "[part @ address]" before it.
+// First line of ffmpeg's messages: with -loglevel error the reason of a failure. Removes the "[part @ address]" before
+// it.
 static bool read_reason(FILE *f, char *line, int size)
 {
 	rewind(f);
@@ -46,7 +47,7 @@ static void close_pipe(video *v)
 	v->pipe = -1;
 }
 
-// Where ffmpeg takes no more, it has ended or will, and has said why.
+// If ffmpeg accepts no more, it has ended or will, with its reason in the messages.
 static bool write_video(void *state, int w, int h, const ob_sink_frame *frame, ob_error *e)
 {
 	video *v = state;
@@ -70,7 +71,7 @@ static bool finish_video(void *state, bool good, ob_error *e)
 	while (waitpid(v->pid, &status, 0) < 0 && errno == EINTR)
 		;
 	char reason[512];
-	// It says nothing but errors, and ends with 0 even if the last bytes, which it writes as it closes, find no
+	// Success: no messages, and status 0. The status alone is 0 even if the last bytes, written at the end, find no
 	// room.
 	bool ended_well =
 		!read_reason(v->messages, reason, sizeof reason) && WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -81,7 +82,8 @@ static bool finish_video(void *state, bool good, ob_error *e)
 	return ended_well;
 }
 
-// ffmpeg is in a process group of its own: Ctrl-C is for obsim, which then closes the pipe, and the file ends whole.
+// Starts ffmpeg in a process group of its own: Ctrl-C is for obsim, which then closes the pipe, and the file is
+// complete.
 static int spawn(video *v, const char *const argv[], int input)
 {
 	posix_spawn_file_actions_t files;
@@ -104,7 +106,7 @@ static int spawn(video *v, const char *const argv[], int input)
 	return error;
 }
 
-// Most players want 4:2:0 colour, which needs an even width and height: an odd one is padded.
+// Most players need 4:2:0 colour, which requires an even width and height: odd ones are padded.
 static int start_ffmpeg(video *v, int input, int w, int h, double fps)
 {
 	char size[32], rate[32], target[sizeof v->path + 8];
