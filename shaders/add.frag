@@ -1,5 +1,5 @@
 #version 330 core
-// One of the pictures that are averaged.
+// Adds one of the averaged pictures.
 precision highp float;
 uniform highp sampler2D source;
 uniform float share;

@@ -36,7 +36,7 @@ void main()
 	float rises = dot(n, v_up), across = max(dot(n, to_eye), 0.);
 	vec3 light = sun_colour.rgb * (max(dot(n, v_sun), 0.) * sunlight(v_shadow));
 
-	// Of the ground's light less comes up near it, of the sky's what is not hidden.
+	// Near the ground, less of its light and only the visible part of the sky's arrive.
 #ifdef OB_DRAFT
 	float open = v_open_fog.x;
 #else
@@ -45,7 +45,8 @@ void main()
 	float above = .5 + .5 * rises;
 	vec3 ambient = mix(ambient_down.rgb * v_open_fog.x, ambient_up.rgb * open, above);
 
-	// A microfacet surface: the glint of the sun (GGX, with Karis's visibility, 2013), and what is mirrored (Lagarde 2011).
+	// A microfacet surface: the glint of the sun (GGX, with Karis's visibility, 2013), and reflections (Lagarde
+	// 2011).
 	float facing = max(dot(n, half_way), 0.);
 	float wide = (facing * facing * s.gloss.x + 1.) * max(dot(to_eye, half_way), .1);
 	vec3 glint = s.shine * min(s.gloss.y / (wide * wide), 24.);

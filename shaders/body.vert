@@ -1,5 +1,5 @@
 #version 330 core
-// Lighting is done in the body's own axes: sun and sky are turned into them here, once a vertex, and the pixel's normal
+// Lighting in the body's own axes: sun and sky are turned into them here, once a vertex, so that the pixel's normal
 // needs no turning. A box's edges are rounded by bending its normal near them.
 #include "frame.glsl"
 #include "instance.glsl"
@@ -7,15 +7,15 @@
 out vec3 v_local;       // box: position, m; else: normal
 out vec3 v_to_eye;
 out vec3 v_shadow;      // shadow-map coordinates
-out vec2 v_open_fog;    // share of the ground's light that comes up; fog
-flat out vec4 v_half;   // of v_local; 1 / width of the rounding
+out vec2 v_open_fog;    // share of the ground's light that arrives; fog
+flat out vec4 v_half;   // half size of v_local's box; 1 / width of the rounding
 flat out vec3 v_sun, v_up;
 #ifdef OB_TEXTURED
-out vec2 v_place;         // in the images
-flat out vec4 v_paint;    // which they multiply: colour; metal and roughness, as shown_paint()
-flat out vec2 v_by_mesh;  // 1 where they do, of colour and of surface, else 0
+out vec2 v_place;         // texture coordinates
+flat out vec4 v_paint;    // factors of the images: colour; metal and roughness, as shown_paint()
+flat out vec2 v_by_mesh;  // 1 if the mesh's images provide colour and surface, else 0
 #else
-flat out vec3 v_matt, v_shine, v_edge; // of the Surface
+flat out vec3 v_matt, v_shine, v_edge; // members of Surface
 flat out vec4 v_gloss;
 #endif
 #ifndef OB_DRAFT
@@ -44,11 +44,11 @@ void main()
 	v_gloss = s.gloss;
 #endif
 
-	// The shadow is looked up off the surface, farther where light grazes: no acne, and contacts stay attached.
+	// Samples the shadow off the surface, farther at grazing light: no acne, and contacts stay attached.
 	float facing = clamp(dot(n, sun.xyz), 0., 1.);
 	v_shadow = (shadow_map * vec4(p + n * (sun.w * (.6 + 1.4 * sqrt(1. - facing * facing))), 1.)).xyz;
 
-	// Near the ground less of the sky is seen, and what is seen of the ground lies in shadow.
+	// Near the ground, less of the sky is visible, and the visible ground lies in shadow.
 	float height = (occlusion_map * vec4(p, 1.)).z;
 	v_open_fog.x = mix(1., .4 + .6 * clamp(1. - exp2(-3. * height), 0., 1.), sky_horizon.w);
 	v_open_fog.y = fog(p);

@@ -1,5 +1,5 @@
-// What all passes of one frame share. Mirrors ob_frame_block in src/render/frame.h.
-// Positions are in metres, world axes, relative to the eye: floats then hold millimetres anywhere in the world.
+// Shared by all passes of one frame. Mirrors ob_frame_block in src/render/frame.h. Positions are in metres, world axes,
+// relative to the eye: floats then resolve millimetres anywhere in the world.
 precision highp float;
 
 layout(std140) uniform Frame {
@@ -15,13 +15,13 @@ layout(std140) uniform Frame {
 	vec4 sky_horizon;   // w: 1 with a ground, 0 without
 	vec4 ambient_up;    // irradiance / pi from above and from below
 	vec4 ambient_down;
-	vec4 ground_shine;  // radiance of the sunlit ground, as polished things mirror it
+	vec4 ground_shine;  // radiance of the sunlit ground, as seen in polished surfaces
 	vec4 viewport;      // px: width, height; 1 / width, 1 / height
-	vec4 shadow_texel;  // 1 / texels of the shadow map; zw: radius of the penumbra, in the map, of what hangs one of the
-	                    // map's depths above
-	mat4 sky_map[12];   // as shadow_map, seen from directions of the sky
+	// 1 / texels of the shadow map; zw: radius of the penumbra, in the map, of a caster one map depth above
+	vec4 shadow_texel;
+	mat4 sky_map[12];   // same as shadow_map, seen from directions of the sky
 	vec4 sky_ray[12];   // unit, towards there; w: texel of the map, m
 };
 
-// How much fog lies between the eye and p.
+// Share of fog between the eye and p.
 float fog(vec3 p) { return 1. - exp2(-dot(p, p) * sky_top.w); }

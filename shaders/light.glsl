@@ -1,7 +1,7 @@
-// Light of the sun and of the sky through their shadow maps, and the way to the screen. Three ways:
-//   OB_DRAFT     one look at the sun's map; the sky is hidden by what is near the ground only. For drawing in software.
-//   OB_AVERAGED  one of many pictures that are averaged, each with its own point of the sun and directions of the sky.
-//   else         all of it in one picture: shadows that grow softer with the distance (percentage-closer soft shadows,
+// Light of the sun and of the sky through their shadow maps, and the output to the screen. Three methods:
+//   OB_DRAFT     one sample of the sun's map; only bodies near the ground hide the sky. For software rendering.
+//   OB_AVERAGED  one of many averaged pictures, each with its own point of the sun and directions of the sky.
+//   else         all in one picture: shadows that soften with the distance (percentage-closer soft shadows,
 //                Fernando 2005), and a dozen directions of the sky. For a GPU.
 uniform highp sampler2DShadow shadow_depth;
 
@@ -45,7 +45,7 @@ vec2 in_disc(int i, int n, float turn)
 
 float sunlight(vec3 m)
 {
-	// Neighbouring pixels look at other points: gradient noise (Jimenez 2014).
+	// Neighbouring pixels sample other points: gradient noise (Jimenez 2014).
 	float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(.06711056, .00583715))));
 	vec2 widest = max(shadow_texel.zw * m.z, 1.5 * shadow_texel.xy);
 	float depth = 0., found = 0.;
@@ -79,15 +79,15 @@ float open_sky(vec3 p, vec3 n)
 }
 #endif
 
-// What a mirror shows in a direction that rises by up (sine): the sky, or the sunlit ground; the rougher, the more of
-// each. sharp: of the horizon; lift: how much higher it looks.
+// Reflection in a direction that rises by up (sine): the sky, or the sunlit ground; with roughness, a mix of both.
+// sharp: sharpness of the horizon; lift: shift of the direction upwards.
 vec3 surroundings(float up, float sharp, float lift)
 {
 	float high = clamp(up + lift, 0., 1.);
 	return mix(ground_shine.rgb, mix(sky_horizon.rgb, sky_top.rgb, high * (2. - high)), clamp(.5 + up * sharp, 0., 1.));
 }
 
-// Highlights are compressed, colours below stay what they are (Khronos PBR Neutral, 2024).
+// Compresses highlights; darker colours stay unchanged (Khronos PBR Neutral, 2024).
 vec3 tone(vec3 c)
 {
 	float low = min(c.r, min(c.g, c.b));
@@ -98,7 +98,7 @@ vec3 tone(vec3 c)
 	return mix(vec3(shown), c, 1. / (.15 * (peak - shown) + 1.));
 }
 
-// Linear to sRGB by square roots instead of powers; within a code of the standard curve.
+// Linear to sRGB by square roots instead of powers; within one code of the standard curve.
 vec3 encode(vec3 c)
 {
 	vec3 s1 = sqrt(c);
@@ -109,7 +109,8 @@ vec4 shown(vec3 lit, float fogged)
 {
 	lit = mix(lit, sky_horizon.rgb, fogged);
 #ifdef OB_AVERAGED
-	return vec4(min(lit, 4.), 1.); // linear: the average is shown (resolve.frag); no glint outshines its neighbours
+	// linear: resolve.frag shows the average; the limit keeps a glint from outshining its neighbours
+	return vec4(min(lit, 4.), 1.);
 #else
 	return vec4(encode(tone(lit)), 1.);
 #endif

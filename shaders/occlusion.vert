@@ -1,5 +1,5 @@
 #version 330 core
-// Seen from below the ground: how near to it something is.
+// Seen from below the ground: distance of the nearest body.
 #include "frame.glsl"
 #include "instance.glsl"
 out float v_height;

@@ -2,19 +2,19 @@
 #include "frame.glsl"
 #include "light.glsl"
 uniform vec3 foot, normal, axis_x, axis_y;
-uniform vec2 grid_foot;         // m: where the foot lies in the 10 m cell of the grid
+uniform vec2 grid_foot;         // m: the foot's place in the 10 m cell of the grid
 uniform vec4 colour;            // linear; w: 1 with grid
 uniform mat3 shadow_of;         // (along x, along y, 1) to the coordinates of the shadow map
 #ifdef OB_DRAFT
 uniform mat3 occlusion_of;
-uniform float occlusion_share;  // how much contacts darken: 0 where the occlusion map is not of this plane
+uniform float occlusion_share;  // darkening by contacts: 0 if the occlusion map is for another plane
 uniform sampler2D occlusion;
 #endif
 in vec2 v_at;
 out vec4 pixel;
 
-// How much of the pixel the nearest line covers, with its footprint as a box. Where footprints are wider than the
-// lines' distance the result is even, and fades: neither flicker near nor moire far away.
+// Share of the pixel covered by the nearest line, with a box filter over its footprint. Footprints wider than the
+// lines' distance give an even result, which fades: no flicker near, no moire far away.
 vec2 lines(vec2 at, vec2 sharp, float distance, float width)
 {
 	vec2 cell = at / distance;

@@ -1,16 +1,16 @@
 #version 330 core
-// A plane as far as one can see: the patch where shadows fall, and, with other light, the ring round it.
+// A plane up to the horizon: the patch with shadows, and, with other light, the ring around it.
 #include "frame.glsl"
 uniform vec3 foot, axis_x, axis_y; // m: the point of the plane nearest to the eye; unit axes
 uniform vec4 patch_ends;           // m from the foot, along the axes: low x, low y, high x, high y
-uniform float reach;               // m, half side of the square that is drawn
+uniform float reach;               // m, half side of the drawn square
 
 out vec2 v_at; // m from the foot, along the axes
 
 void main()
 {
 #ifdef OB_FAR
-	int corner = (gl_VertexID >> 1) & 3; // of ten: inside, outside, inside .. once round
+	int corner = (gl_VertexID >> 1) & 3; // ten vertices: inside, outside, inside .. once round
 	bool outside = (gl_VertexID & 1) == 1, right = corner == 1 || corner == 2, up = corner >= 2;
 	vec4 ends = outside ? vec4(-reach, -reach, reach, reach) : patch_ends;
 #else

@@ -1,5 +1,5 @@
 #version 330 core
-// The average of pictures, to the screen.
+// Writes the average of the pictures to the screen.
 #include "frame.glsl"
 #include "light.glsl"
 uniform highp sampler2D source;

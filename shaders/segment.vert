@@ -1,5 +1,5 @@
 #version 330 core
-// A line of constant width on the screen, with round ends; of length zero it is a dot.
+// A line of constant width on the screen, with round ends; with length zero, a dot.
 #include "frame.glsl"
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
@@ -13,7 +13,7 @@ flat out vec4 v_colour;
 void main()
 {
 	vec4 a = view_projection * vec4(from, 1.), b = view_projection * vec4(to, 1.);
-	// Cut at the near plane, where the screen position of an end behind the eye would make no sense.
+	// Clips at the near plane: the screen position of an end behind the eye would be invalid.
 	float da = a.z + a.w, db = b.z + b.w;
 	if (da < 0. && db > 0.)
 		a = mix(a, b, da / (da - db));
@@ -31,8 +31,8 @@ void main()
 	v_at = vec2(s.x < 0. ? -reach : size + reach, s.y * reach);
 	v_length_radius = vec2(size, radius);
 	v_colour = colour;
-	// A little towards the eye: a box's own edges are not hidden by the box.
-	// Divided here, so that what lies between the corners is linear on the screen.
+	// Moves it a little towards the eye, so that a box does not hide its own edges. Divides here, so that values
+	// between the corners are linear on the screen.
 	gl_Position = vec4(end.xy / end.w + shift / half_size, end.z / end.w - .0004, 1.);
 	if (da <= 0. && db <= 0.)
 		gl_Position = vec4(0., 0., 2., 1.);

@@ -1,8 +1,8 @@
-// What light meets, of a colour (linear), a share of metal and a roughness.
+// Reflection of light by a colour (linear), a share of metal and a roughness.
 struct Surface {
-	vec3 matt;         // colour of what is scattered
-	vec3 shine, edge;  // reflectance at right angles; what it grows by where one looks along the surface
-	vec4 gloss;        // of the glint: its sharpness less 1, its strength; of what is mirrored: see surroundings()
+	vec3 matt;         // diffuse colour
+	vec3 shine, edge;  // reflectance at right angles; its growth towards grazing angles
+	vec4 gloss;        // sharpness of the glint minus 1, its strength; reflections: see surroundings()
 };
 
 Surface surface_of(vec3 colour, float metal, float rough)
