@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""accuracy.py OBSIM FILE FOLDER [OPTION ...]: runs obsim lab with these options into FOLDER, and writes what came out into
-FILE: the tables between <!-- lab: NAME --> and <!-- end -->, and the diagrams that FILE shows from images/.
+"""accuracy.py OBSIM FILE FOLDER [OPTION ...]: runs obsim lab with these options into FOLDER, and writes the results
+into FILE: the tables between <!-- lab: NAME --> and <!-- end -->, and the diagrams that FILE shows from images/.
 
-All cases are run once at the engines' usual settings: that gives errors against targets, and errors are the same every
-time. obsim's are run at all settings of the audit, too. Swept, and repeated (--repeats), are the cases whose cost at equal
-error is tabled, and the one of late partners.
+All cases run once at the engines' usual settings, for errors against targets, as errors are the same every time. obsim
+also runs them at all settings of the audit. The cases with cost at equal error, and the one of late partners, are swept
+and repeated (--repeats).
 
-What FOLDER has already is not run again. On an otherwise idle machine; it takes some twenty minutes, and ten more for
-each repeat.
+Results that FOLDER has already are not measured again. Needs an otherwise idle machine; it takes some twenty minutes,
+and ten more for each repeat.
 """
 import csv
 import os
@@ -27,7 +27,7 @@ def results():
 
 
 def machine():
-    """What was measured, where."""
+    """Machine and commit of the measurement."""
     rows = results()
     cases, engines = len({r['case'] for r in rows}), len({r['engine'] for r in rows})
     return f"{len(rows)} runs of {cases} cases with {engines} engines; {rows[0]['machine']}; commit {rows[0]['commit']}.\n"
@@ -50,9 +50,9 @@ def equal():
 
 
 def failed():
-    """Of other engines at their usual settings: what did not come to an end worth measuring."""
+    """Failed runs of other engines at their usual settings."""
     first, text = {}, ''
-    for r in results():  # each engine's settings stand together; the usual ones of others are the coarsest
+    for r in results():  # each engine's settings are adjacent; the usual ones of others are the coarsest
         first.setdefault((r['engine'], r['case']), r)
     for engine in dict.fromkeys(engine for engine, _ in first if not engine.startswith('obsim')):
         said = [f"`{case}` {r['reason']}" for (e, case), r in first.items() if e == engine and r['reason']]

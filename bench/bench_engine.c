@@ -1,11 +1,11 @@
-// One run of one engine in one scene, in a process of its own: what bench/run.py measures with.
+// Runs one engine in one scene, in a process of its own, for bench/run.py.
 //
 //   bench_engine SCENE ENGINE time|look|parts [KEY=VALUE ...]
 //
-// ENGINE: one of the lab's, "ode-hash", or "host" for obsim through its host, which alone can tell of its parts. KEY:
-// duration, step (s), substeps, iterations, tolerance (m), sleeping, workers, processes; from (s), parts alone; what is
-// not said is the engine's and the scene's own.
-// Exit: 0 done; 1 the engine failed, which the last line says; 2 it was told something that makes no sense.
+// ENGINE: one of the lab's, "ode-hash", or "host" for obsim through its host, the only one that reports its parts. KEY:
+// duration, step (s), substeps, iterations, tolerance (m), sleeping, workers, processes; from (s), parts alone.
+// Defaults are the engine's and the scene's own. Exit: 0 done; 1 the engine failed, with the reason in the last line; 2
+// invalid arguments.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -14,7 +14,7 @@ static int measure(ob_renderer *r, const ob_snapshot *s, const ob_render_setup *
 	ob_camera_def camera = test_scene_camera(ob_v3(-22, -26, 15), ob_v3(0, 0, 0));
 	camera.velocity = ob_v3(.05, 0, 0);
 	ob_error e;
-	if (!ob_renderer_draw(r, NULL, s, 0, &camera, rgba, &e)) { // the first compiles the shaders
+	if (!ob_renderer_draw(r, NULL, s, 0, &camera, rgba, &e)) { // the first picture compiles the shaders
 		fprintf(stderr, "%s\n", e.text);
 		return 1;
 	}

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""compare.py A.csv B.csv: what changed from A to B beyond the noise, of two files that bench/run.py wrote.
+"""compare.py A.csv B.csv: changes from A to B beyond the noise, in two files written by bench/run.py.
 
-Other engines stand for the machine, for their code is the same: obsim's times are held against the median of what
-theirs have become, and no change counts that is smaller than the largest that one of theirs shows. Of the rest, a time
-has changed when the repeats say so (Mann and Whitney 1947, two-sided, at 1 %) and its median differs by more than 5 %;
-memory, when its median does by more than 5 %; an error, which is the same in every repeat, when it is more than twice as
-large, or less than half.
+Other engines, whose code is the same, calibrate the machine: obsim's times are compared relative to the median change
+of theirs. A change counts only if it exceeds the largest deviation of one of theirs. In addition, a time has changed if
+the repeats show it (Mann and Whitney 1947, two-sided, at 1 %) and its median differs by more than 5 %. Memory has
+changed if its median differs by more than 5 %; an error, equal in all repeats, if it more than doubles or halves.
 
 Exit: 0 nothing became worse, 1 something did, 2 the files cannot be compared.
 """
@@ -16,12 +15,12 @@ import math
 import statistics
 import sys
 
-LEVEL, LEAST = .01, .05  # of the test; of the medians
-# Times, and what tells of the machine
+LEVEL, LEAST = .01, .05  # for the test; for the medians
+# Times, and quantities of the machine.
 CONTROL = {'cpu': 'cpu', 'wall': 'wall', 'median step': 'wall', 'start-up': 'wall'}
 NOISELESS = 1e-12  # errors below are round-off
 PLAIN = {'bodies', 'steps', 'state', 'failed'}
-PROFILE = ('part: ', 'count: ', 'function: ', 'cpu, timed', 'critical path')  # taken once, for a look at them
+PROFILE = ('part: ', 'count: ', 'function: ', 'cpu, timed', 'critical path')  # taken once, for information
 
 
 def give_up(why):
@@ -44,7 +43,7 @@ def read(path):
 
 @functools.cache
 def ways(n, m, u):
-    """Of n values among m others: the orders in which u pairs stand the other way round."""
+    """Number of orders of n values among m others with u inverted pairs."""
     if u < 0 or (not n or not m) and u:
         return 0
     if not n or not m:
@@ -61,7 +60,7 @@ def mann_whitney(a, b):
 
 
 def of_machine(a, b, quantity):
-    """The factor by which other engines' time has changed, and the largest factor by which one of them is off that."""
+    """Factor by which other engines' time has changed, and the largest deviation of one of them from it."""
     ratios = [statistics.median(b[k][quantity]) / statistics.median(a[k][quantity]) for k in a.keys() & b.keys()
               if not k[1].startswith('obsim') and a[k].get(quantity) and b[k].get(quantity)]
     factor = statistics.median(ratios) if ratios else 1.
@@ -69,7 +68,7 @@ def of_machine(a, b, quantity):
 
 
 def verdict(quantity, a, b, controls):
-    """The ratio of medians, and whether that is a change."""
+    """Ratio of medians, and True if that is a change."""
     old, new = abs(statistics.median(a)), abs(statistics.median(b))
     if quantity in CONTROL:
         factor, noise = controls[CONTROL[quantity]]
@@ -85,7 +84,7 @@ def verdict(quantity, a, b, controls):
 
 
 def compare(a, b):
-    """How many quantities of obsim became worse, and how many were compared."""
+    """Number of obsim's quantities that became worse, and number compared."""
     controls = {q: of_machine(a, b, q) for q in ('cpu', 'wall')}
     for quantity, (factor, noise) in controls.items():
         print(f'machine: {quantity} of other engines is {factor:.3f} times what it was, '

@@ -1,8 +1,8 @@
-// How soon a simulator's death is noticed, and how soon the run steps again: a thousand balls that fall onto each
-// other, in processes, of which one is killed at a random moment, some dozens of times.
+// Delay until a simulator's death is noticed, and until the run steps again: a thousand balls fall onto each other, in
+// processes; one is killed at a random moment, some dozens of times.
 //
 //   detection   from the kill to the supervisor's request for a restart
-//   stepping    from the kill to the first step that is completed after the restart
+//   stepping    from the kill to the first step completed after the restart
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -55,7 +55,7 @@ static void *deal(void *argument)
 	killer *k = argument;
 	srand(1);
 	while (k->dealt < k->deaths) {
-		sleep_for(.3 + .2 * rand() / RAND_MAX); // so that the run gets on
+		sleep_for(.3 + .2 * rand() / RAND_MAX); // lets the run continue
 		k->dealt += kill_one(k, k->dealt);
 	}
 	k->over = true;

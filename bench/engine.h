@@ -1,9 +1,9 @@
-// One run of one engine in one scene: what it costs, or how far off it is. Prints a line for each quantity:
+// One run of one engine in one scene: its cost, or its error. Prints a line for each quantity:
 //
 //   quantity<TAB>unit<TAB>value
 //
-// Time is that of stepping alone: making the world, and looking at it, is not counted. A run that is looked at takes no
-// times, for looking fills the caches with something else.
+// Times are of stepping alone, without making the world and observing it. A run with observations gives no times, as
+// observing fills the caches with other data.
 #ifndef BENCH_ENGINE_H
 #define BENCH_ENGINE_H
 
@@ -11,26 +11,26 @@
 
 typedef struct bench_order {
 	const bench_scene *scene;
-	double from, duration; // s: parts are told of what comes after "from"
+	double from, duration; // s: parts are measured after "from"
 	ob_run_settings settings;
-	uint32_t workers; // through the host: of the pool
+	uint32_t workers; // through the host: size of the pool
 	bool processes; // through the host: workers are processes
 } bench_order;
 
-// An engine in this thread. false and e: it could not be made, or gave up.
+// Runs an engine in this thread. Returns false and e if it could not be created, or gave up.
 bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e);
 bool bench_look(const bench_order *o, const ob_engine_kind *kind, ob_error *e);
-// obsim as a user runs it: a host with a pool of workers, nobody looking on.
+// Runs obsim as a user does: a host with a pool of workers, without observers.
 bool bench_time_host(const bench_order *o, ob_error *e);
-// Likewise: the share of each part of the step in the CPU time, and how much of what was done.
+// Same run: the share of each part of the step in the CPU time, and counts of operations.
 bool bench_parts(const bench_order *o, ob_error *e);
 
 void bench_print(const char *quantity, const char *unit, double value);
-void bench_print_state(uint64_t hash); // of the bits of the state at the end: the same run gives the same
-uint32_t bench_bodies(const ob_world *w); // that move
-// Inertia of all bodies as the host computes it: then whoever runs the scene ends in the same bits.
+void bench_print_state(uint64_t hash); // hash of the state's bits at the end: the same run gives the same
+uint32_t bench_bodies(const ob_world *w); // number of moving bodies
+// Builds the scene with the inertia that the host computes: all runs of the scene then end in the same bits.
 void bench_build(const bench_order *o, ob_world *w);
-// Bytes that this process has written to, shared segments included, programs and libraries not
+// Bytes that this process has written to, including shared segments, without programs and libraries.
 double bench_memory(void);
 
 #endif

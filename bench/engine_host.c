@@ -13,13 +13,13 @@ static ob_object_def *define(const ob_world *w)
 	return def;
 }
 
-// The host goes by itself from "from" to the end; the first go, to step 0, lets all objects look around.
+// The host runs by itself from "from" to the end; the first run, to step 0, does the broad phase of all objects.
 typedef struct watched {
 	ob_world w;
 	ob_scene scene;
 	ob_host *h;
 	double bodies;
-	uint64_t from, steps; // until where nothing counts; in all
+	uint64_t from, steps; // end of the part that is not measured; total
 	ob_host_times before, after;
 	ob_counters counted_before, counted_after;
 } watched;

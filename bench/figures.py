@@ -46,7 +46,7 @@ def run(*words, runs=RUNS):
 
 
 def spread(values, digits):
-    """Median, and the least and the most of all seeds."""
+    """Median, minimum and maximum over all seeds."""
     return f'{statistics.median(values):.{digits}g} ({min(values):.{digits}g}–{max(values):.{digits}g})'
 
 
@@ -144,7 +144,7 @@ def error_falling():
 
 
 def error_stack():
-    """The same of a stack that stands, all awake; a seed is another set of offsets."""
+    """Same for a standing stack, all awake; a seed is another set of offsets."""
     return error_of('stack', f'stack of 10, 20 s, {SEEDS} seeds')
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""How soon a run of many objects has ended after SIGTERM, whatever it is in the middle of: its start, steps, measures.
+"""Delay of a run of many objects from SIGTERM to its end, at any point: its start, steps, measurements.
 
     interrupt.py OBSIM [OBJECTS [TIMES]] [OBSIM'S OPTION ...]
 
-Of each run: after how much CPU the signal came, how long the program lived on, and what CPU it used in that time (of threads;
-on a machine with other work that tells more than the clock).
+For each run: the CPU time before the signal, the time until the program ended, and the CPU time that it used meanwhile
+(over all threads; on a busy machine that is more reliable than the clock).
 """
 
 import os
@@ -19,7 +19,7 @@ SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scenes"
 
 
 def cpu_ms(pid):
-	"""Of all threads so far."""
+	"""CPU time of all threads so far."""
 	sum_ns = 0
 	for task in os.listdir(f"/proc/{pid}/task"):
 		try:

@@ -1,4 +1,4 @@
-// ns a call of the closed forms: the best of many short batches of CPU time, so that other load hardly counts.
+// Time (ns) per call of the closed forms: the best of many short batches of CPU time, so that other load hardly counts.
 #include <stdio.h>
 
 #include <ob/motion.h>
@@ -83,7 +83,7 @@ static void measure(const char *what, call *f)
 		best = fmin(best, ob_clock_thread_cpu() - start);
 	}
 	printf("%-44s %7.1f ns\n", what, best / CALLS * 1e9);
-	if (sum == 1.5) // keeps the calls
+	if (sum == 1.5) // keeps the calls from being optimised away
 		puts("");
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""performance.py RESULTS.csv ... [FILE]: writes the tables that stand in FILE between <!-- performance: NAME --> and
-<!-- end --> anew, from what bench/run.py --mode full has measured; without FILE prints them all. Of what several
-results tell, the last one counts: so a few scenes can be measured again.
+"""performance.py RESULTS.csv ... [FILE]: rewrites the tables between <!-- performance: NAME --> and <!-- end --> in
+FILE from results of bench/run.py --mode full; without FILE prints them all. Among several results for the same, the
+last counts: so a few scenes can be measured again.
 """
 import collections
 import csv
@@ -12,12 +12,12 @@ import sys
 
 
 class Measured:
-    """All values of the file, found by what they are of."""
+    """All values of the file, by their keys."""
 
     def __init__(self, paths):
         self.rows = {}  # (scene, engine, setting, duration, quantity): [values]
         self.settings = {}  # (scene, engine, setting, duration): knobs
-        self.places = []  # [machine, commit, day], each once
+        self.places = []  # [machine, commit, day], without duplicates
         for path in paths:
             self.read(path)
 
@@ -38,7 +38,7 @@ class Measured:
         return [float(v) for v in found]
 
     def get(self, *what, **how):
-        """The median; NaN where it was not measured."""
+        """Median; NaN if not measured."""
         values = self.values(*what, **how)
         return statistics.median(values) if values else math.nan
 
@@ -49,14 +49,14 @@ class Measured:
         return set(self.rows.get((scene, engine, 'usual', 0., quantity), []))
 
     def equal(self, scene, engine):
-        """The setting by which an engine was measured at equal error; "" if none was."""
+        """Setting at which an engine was measured at equal error; "" if none."""
         return next((s for sc, e, s, _ in self.settings if (sc, e) == (scene, engine) and '<=' in s), '')
 
     def cost(self, scene, engine, **how):
         return self.get(scene, engine, 'cpu', **how)
 
     def ours(self, scene, **how):
-        """Of obsim as its users run it, or, where that was not measured, as the lab does, which stops at each step."""
+        """Value of obsim through its host, as users run it; otherwise of the lab, which stops at each step."""
         cost = self.cost(scene, 'obsim 1 thread', **how)
         return self.cost(scene, 'obsim', **how) if math.isnan(cost) else cost
 
@@ -82,10 +82,10 @@ def spread(values):
     return f'{statistics.median(values):.3g} ({min(values):.3g}–{max(values):.3g})'
 
 
-# ---- what was to be shown
+# ---- targets
 
 class Promise:
-    """A line of the list: a figure, and the bound that it was to keep."""
+    """A line of the list: a figure, and its bound."""
 
     def __init__(self, what, value, bound, at_least=False, note=''):
         self.what, self.value, self.bound, self.at_least, self.note = what, value, bound, at_least, note
@@ -210,7 +210,7 @@ def promises(m):
     return text
 
 
-# ---- all that was measured
+# ---- all measurements
 
 def errors_of(m, scene, engine, setting, duration):
     named = {q: v for (s, e, st, d, q), v in m.rows.items() if (s, e, st, d) == (scene, engine, setting, duration)}
@@ -238,7 +238,7 @@ ENGINES = [('obsim', ''), ('ode-quick', 'ODE QuickStep'), ('bullet', 'Bullet'), 
 
 
 def first_error(m, scene, engine, duration):
-    """The figure that a scene is about, in its unit, or why there is none."""
+    """Main figure of a scene, in its unit, or the reason for its absence."""
     failed = m.failed(scene, engine, duration=duration)
     if failed:
         return failed.split(' (')[0]
@@ -250,7 +250,7 @@ def first_error(m, scene, engine, duration):
 
 
 def usual(m):
-    """A row for each scene: cost and error of each engine as it comes."""
+    """A row for each scene: cost and error of each engine at its defaults."""
     text = head('scene', *[title or 'obsim' for _, title in ENGINES], 'error')
     for scene, duration in dict.fromkeys((s, d) for s, _, setting, d in m.settings if setting == 'usual' and s):
         cells, what = [], ''
@@ -272,7 +272,7 @@ def equal(m):
 
 
 def windows(m):
-    """[(scene, setting, duration)] of which parts were told."""
+    """[(scene, setting, duration)] with measured parts."""
     return [(s, st, d) for s, _, st, d in m.settings if (s, 'obsim 1 thread', st, d, 'cpu, timed') in m.rows]
 
 
@@ -318,15 +318,15 @@ def pieces(m):
         for what, value in pieces_of(m).items())
 
 
-# What a unit of work cannot do without: (part, what is counted, flops, bytes, how far away those lie). Counted by hand:
+# Lower bounds for a unit of work: (part, counted unit, flops, bytes, distance of those in memory). Counted by hand:
 # - an exchange of a pair with four points (contact/kernel.c): rates of seven rows 101, one sweep 156, impulses onto two
 #   bodies 141, limits 50; it reads 114 doubles of the pair and 24 of the bodies, and writes 8 and 12;
-# - a look at two boxes (contact/boxes.h): nine products of axes 135, fifteen axes of some 22, clipping a face against
-#   four sides some 100; two poses and sizes read, a pair of four points written;
+# - narrow phase of two boxes (contact/boxes.h): nine products of axes 135, fifteen axes of some 22, clipping a face
+#   against four sides some 100; two poses and sizes read, a pair of four points written;
 # - a substep of a body: its turn as a quaternion and a matrix 110, prediction 24; its rows read and written;
-# - a member of an island: its motion and passport in, its motion out;
-# - a visit of what flies: a plan of its rotation 400, ten evaluations of it on the way to the ground, 110 each; its motion,
-#   passport and box, and those of a neighbour.
+# - a body of an island: its motion and body properties in, its motion out;
+# - a visit of a flying body: a plan of its rotation 400, ten evaluations of it on the way to the ground, 110 each; its
+#   motion, body properties and box, and those of a neighbour.
 UNITS = [
     ('solve', 'pair_solves', 448, 1264, 'near'),
     ('narrowphase', 'narrowphase_tests', 565, 700, 'near'),
@@ -339,7 +339,7 @@ UNITS = [
 
 
 def floor(m):
-    """Each part against the time that its arithmetic, or its memory, would take at best."""
+    """Each part against the least time of its arithmetic, or its memory traffic."""
     machine = pieces_of(m)
     if not machine:
         return ''

@@ -1,6 +1,6 @@
-"""What bench/run.py measures: scenes, the sides that are compared in each, and the errors at which they are compared."""
+"""Plan of bench/run.py: scenes, the sides compared in each, and the errors at which they are compared."""
 
-# Sides: the engine that bench_engine knows, and what it is told.
+# Sides: the engine of bench_engine, and its options.
 SIDES = {
     'obsim': ('obsim', {}),  # in the caller's thread, one worker
     'obsim 1 thread': ('host', {'workers': 1}),
@@ -18,8 +18,8 @@ SIDES = {
 POOLS = ['obsim 1 thread', 'obsim 1 process', 'obsim 2 threads', 'obsim 2 processes']
 OTHERS = ['ode-quick', 'bullet']
 
-# Scenes at their usual settings: (scene, sides, knobs for all). Where a scene is run for less than its own duration it
-# says so. "looks": False where looking at every frame would take longer than all else.
+# Scenes at their usual settings: (scene, sides, knobs for all). Scenes that run for less than their own duration have
+# it among the knobs. "looks": False if observing every frame would take longer than all else.
 FULL = [
     ('sparse-10000', ['obsim', *POOLS, 'ode-quick', 'ode-hash', 'bullet'], {}),
     ('sparse-10000', ['obsim', 'obsim 1 thread', 'ode-quick', 'ode-hash', 'bullet'], {'duration': 3}),
@@ -62,9 +62,9 @@ TINY = [  # for the tests
     ('falling-8', ['obsim'], {'duration': .2}),
 ]
 
-# The cheapest setting of each side that keeps errors below bounds: (scene, simulated s by which the settings are put in
-# order, {side: {error: bound}}). It is looked for among the knobs below, cheapest first, and then measured as the others.
-# obsim has to keep all targets of the lab's case, the others the error that the comparison is about.
+# Cheapest setting of each side that keeps errors below bounds: (scene, simulated s for ordering the settings by cost,
+# {side: {error: bound}}). It is searched among the knobs below, cheapest first, and then measured like the others.
+# obsim has to keep all targets of the lab's case, the others the error of the comparison.
 SAG, WORST, GROWTH = 'worst penetration', 'worst penetration at any moment', 'growth of energy'
 EQUAL = [
     ('stack-10', 20, {'obsim': {SAG: .5}, 'bullet': {SAG: 1}, 'ode-quick': {SAG: 1}}),
@@ -84,8 +84,8 @@ KNOBS = {
     'bullet': [{'substeps': n, 'iterations': i} for n in (1, 2, 4, 8, 16) for i in (5, 10, 20, 50)],
 }
 
-# Where the time goes: (scene, from, to, what that is), one worker, usual settings; whole runs by function; and scenes whose
-# critical path is told for one worker and for two: what their steps would take on cores of their own.
+# Profile: (scene, from, to, description), one worker, usual settings; whole runs by function; and scenes with the
+# critical path for one worker and for two: the duration of their steps on cores of their own.
 PARTS = [
     ('falling-1000', 0, 2, 'landing'),
     ('falling-1000', 8, 10, 'at rest'),
@@ -94,6 +94,6 @@ PARTS = [
     ('stack-10', 0, 20, 'standing'),
 ]
 CRITICAL = [('falling-1000', 10), ('falling-4000', 10)]
-# What 16 workers could gain, and what one arranges alone: (scene, from, to, what that is).
+# Potential gain of 16 workers, and the serial part of the arranger: (scene, from, to, description).
 SHARED = [('falling-10000', 1.2, 2, 'landing'), ('sparse-10000', .1, 3, 'in flight')]
 FUNCTIONS = [('falling-1000', 3), ('sparse-10000', 5), ('stack-10', 600)]

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""One universe on several ranks of this machine, for longer than the tests have time: does every run end in the bits of one process?
+"""Long test of one universe on several ranks of this machine: every run must end in the bits of one process.
 
-    ranks.py OBSIM kills [N]     N times (50) a process of some rank is killed at some moment, and the run taken up again
-    ranks.py OBSIM stops [N]     N times (10) all processes of a rank are stopped for some seconds, and let go on
+    ranks.py OBSIM kills [N]     N times (50) kills a process of a random rank at a random moment, and resumes the run
+    ranks.py OBSIM stops [N]     N times (10) stops all processes of a rank for some seconds, and continues them
     ranks.py OBSIM matrix        scenes, ranks, workers, isolation
 
-kills: 2 to 4 ranks of 1 or 2 workers; what is killed is the rank itself, its fork server, its arranger or a simulator. The run
-must end within seconds, no process, universe or other file be left, and each other rank have a checkpoint that is whole; one of
-them, drawn, is taken up by a drawn number of ranks. A run that is hit before it has kept its first checkpoint is begun anew.
-Where Open MPI's launcher does not end though all that it has started has (docs/reliability.md), it is killed, and counted.
+kills: 2 to 4 ranks of 1 or 2 workers; the victim is the rank itself, its fork server, its arranger or a simulator. The
+run must end within seconds, without leaving a process, universe or other file, and each other rank must have a complete
+checkpoint. A random one of them is resumed by a random number of ranks. A run hit before its first checkpoint is
+started again. Open MPI's launcher may hang after all its processes have ended (docs/reliability.md); it is then killed,
+and counted.
 
 Needs mpirun. Exits with 1 if a hash is wrong, a run fails, or anything is left.
 """
@@ -33,7 +34,7 @@ KILLED = {"falling_boxes": ["-D", "n=60", "--duration", "4"], "pile": ["--durati
 MATRIX = {"falling_boxes": ["-D", "n=1000", "--duration", "1"], "sparse": ["-D", "n=1000", "--duration", "1"],
 	"pile": ["--duration", "1"], "cradle": ["--duration", "2"], "flock": ["--duration", "2"], "machines": ["--duration", "2"]}
 PATIENCE = 600 # s, for one run
-LAUNCHER_PATIENCE = 30 # s, when all that it has started has ended
+LAUNCHER_PATIENCE = 30  # s, once all processes that it started have ended
 
 
 def words_of(scenes, name):
@@ -53,7 +54,7 @@ def hash_of(obsim, ranks, words):
 
 
 def stat(pid):
-	"""Its parent and its state; None: it is gone."""
+	"""Parent and state of a process; None: it has ended."""
 	try:
 		with open(f"/proc/{pid}/stat", encoding="utf-8") as f:
 			words = f.read().rpartition(")")[2].split()
@@ -71,7 +72,7 @@ def name_of(pid):
 
 
 def below(parent):
-	"""All processes that descend from this one."""
+	"""All descendants of a process."""
 	children = collections.defaultdict(list)
 	for path in glob.glob("/proc/[0-9]*"):
 		pid = int(os.path.basename(path))
@@ -87,12 +88,12 @@ def below(parent):
 
 
 def ranks_of(launcher):
-	"""Of each rank its processes, the rank itself first; in the order of ranks."""
+	"""Processes of each rank, the rank itself first; in the order of ranks."""
 	return [[pid, *below(pid)] for pid in sorted(p for p in below(launcher) if name_of(p) == "obsim")]
 
 
 def traces(pids):
-	"""Files that these processes leave unless somebody removes them: what they share, and their launcher's folder."""
+	"""Files left by these processes unless removed: shared memory, and their launcher's folder."""
 	found = {launcher_folder(pids[0])}
 	for pid in pids:
 		try:
@@ -112,7 +113,7 @@ def launcher_folder(launcher):
 
 
 def end_of(run, pids):
-	"""When the launcher had ended, or else the last of what it has started, and whether it had to be killed then."""
+	"""Time at which the launcher had ended, or else the last of its processes, and True if it had to be killed then."""
 	began = last = time.monotonic()
 	while True:
 		try:
@@ -132,7 +133,7 @@ def end_of(run, pids):
 
 
 def what_is_left(pids, files, folder, ranks, hit):
-	"""After a minute at most. Who is killed while it writes cannot take back what it has begun."""
+	"""Leftovers after a minute at most. A process killed while writing cannot remove its unfinished files."""
 	kept = {file_of(folder, r) for r in range(ranks)} | {file_of(folder, hit) + ".part"}
 	end = time.monotonic() + 60
 	while True:
@@ -151,8 +152,8 @@ def whole(obsim, path):
 
 
 def kill_one(obsim, chance, name, took, folder):
-	"""Whether the launcher had to be killed; and who was, after how many seconds the run had ended, what is wrong, and the
-	checkpoint of a rank that was not hit; None: it had ended before, or had not begun to step."""
+	"""True if the launcher had to be killed; then the victim, the seconds until the end of the run, an error, and the
+	checkpoint of a rank that was not hit. None: the run had ended before, or had not begun to step."""
 	ranks, workers = chance.randint(2, 4), chance.randint(1, 2)
 	run = start(obsim, ranks, [*words_of(KILLED, name), "--workers", workers, "--checkpoint", file_of(folder, 0), "--every", ".1"])
 	time.sleep(chance.uniform(0, took[name]))

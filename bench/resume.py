@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Puts runs down at random moments, takes them up in another way, and compares how they end; what a checkpoint costs.
+"""Interrupts runs at random moments, resumes them in another configuration, and compares their ends; measures the cost
+of a checkpoint.
 
 resume.py OBSIM [--moments N] [--seed N] [--cost]
 
-Each moment is one of a scene's steps; workers and isolation are drawn for both parts. Exit 1 if a run ends in other bits.
+Each moment is one of a scene's steps; workers and isolation are random for both parts. Exit 1 if a run ends in other
+bits.
 """
 import argparse
 import json

@@ -1,22 +1,21 @@
 #!/usr/bin/env python3
-"""Measures obsim against other engines: what a body costs per step, and how far off it is.
+"""Measures obsim against other engines: cost of a body per step, and errors.
 
 run.py BUILD [OPTION ...]
 
-  --mode short|full|tiny   short (the default): the shape of all that counts, in less than three minutes; full: every line
+  --mode short|full|tiny   short (the default): the essential quantities, in less than three minutes; full: every line
                            of docs/notebook/performance.md; tiny: for the tests
   --out FILE               results, a line for each quantity (bench.csv)
-  --document FILE          afterwards its tables are written anew, by performance.py
+  --document FILE          rewrites its tables afterwards, by performance.py
   --scenes GLOB,...        only these, as "falling-*"
   --engines GLOB,...       only these, as "obsim*,bullet"
-  --repeats N              runs of each (5; of what takes longer than 6 s: 3, than 20 s: 2, than
-                           a minute: 1)
+  --repeats N              runs of each (5; 3 if longer than 6 s, 2 if longer than 20 s, 1 if longer than a minute)
   --no-look                times alone
   --no-equal               full: no search for settings of equal error
 
-Sides take turns, repeat by repeat, so that a busy minute of the machine hits all alike; each run is a process of its own.
-Times are of stepping alone. Errors are taken from one more run of each, for looking disturbs what is timed; the state at
-the end shows that repeats are the same run. Compare two files with compare.py.
+Sides alternate, repeat by repeat, so that a busy minute of the machine affects all alike; each run is a process of its
+own. Times are of stepping alone. Errors come from one more run of each, as observing disturbs the times; the final
+state shows that repeats are the same run. Compare two files with compare.py.
 """
 import argparse
 import csv
@@ -33,7 +32,7 @@ import plan
 COLUMNS = ['date', 'commit', 'machine', 'scene', 'duration', 'engine', 'setting', 'knobs', 'repeat', 'quantity', 'unit',
            'value']
 LIMIT = 600  # s, of a run
-REPEATS = {60: 1, 20: 2, 6: 3}  # of what takes longer than so many s
+REPEATS = {60: 1, 20: 2, 6: 3}  # number of repeats for runs longer than so many s
 
 
 def machine():
@@ -43,14 +42,14 @@ def machine():
 
 
 def commit(build):
-    """Of the program that is measured."""
+    """Commit of the measured program."""
     done = subprocess.run([os.path.join(build, 'obsim'), '--version'], capture_output=True, text=True, check=False)
     found = re.search(r'\b[0-9a-f]{12}\+?', done.stdout)
     return found.group(0) if found else 'unknown'
 
 
 class Side:
-    """An engine in a scene with its settings, and all that has been measured of it."""
+    """An engine in a scene with its settings, and all its measurements."""
 
     def __init__(self, scene, name, knobs, setting):
         self.scene, self.name, self.knobs, self.setting = scene, name, knobs, setting
@@ -60,14 +59,14 @@ class Side:
         return ' '.join(f'{k}={v:g}' for k, v in sorted(self.knobs.items()))
 
     def run(self, what):
-        """[(quantity, unit, value)], and how long it took; the last is "failed" where it did."""
+        """[(quantity, unit, value)], and the duration; the last quantity of a failed run is "failed"."""
         engine, more = plan.SIDES[self.name]
         words = [f'{k}={v:.17g}' for k, v in {**self.knobs, **more}.items()]
         begin = os.times().elapsed
         try:
             done = subprocess.run([TOOL, self.scene, engine, what, *words], capture_output=True, text=True, timeout=LIMIT,
                                   check=False)
-            if 'no engine' in done.stderr:  # Bullet need not be there
+            if 'no engine' in done.stderr:  # Bullet is optional
                 return [['failed', '', 'not built']], 0.
             if done.returncode not in (0, 1):
                 sys.exit(f"{self.scene}, {self.name}: {done.stderr.strip() or f'exit {done.returncode}'}")
@@ -78,7 +77,7 @@ class Side:
 
 
 class Results:
-    """The file: it grows line by line, so that what was measured is there when a run is broken off."""
+    """The file: it grows line by line, so that an interrupted run leaves its results."""
 
     def __init__(self, path, build):
         self.file = open(path, 'w', encoding='utf-8', newline='')
@@ -109,11 +108,11 @@ def say(side, what, rows):
 
 
 def measure(sides, options, results):
-    """Repeat by repeat; first of all the errors."""
+    """Measures repeat by repeat; errors first."""
     for side in sides:
         engine, _ = plan.SIDES[side.name]
         if options.no_look or engine == 'host' or re.search(r'-\d{6,}$', side.scene):
-            continue  # a host ends in the same bits; of a hundred thousand bodies looking takes longer than stepping
+            continue  # a host ends in the same bits; observing a hundred thousand bodies takes longer than stepping
         rows, _ = side.run('look')
         results.add(side, 0, rows)
         say(side, 'look', rows)
@@ -132,7 +131,7 @@ def keeps(rows, bounds):
 
 
 def cheapest(scene, seconds, name, bounds, results):
-    """The first of the settings, cheapest first, that keeps all errors; None: none does."""
+    """First of the settings, cheapest first, that keeps all errors; None: none does."""
     setting = ', '.join(f'{error} <= {most:g}' for error, most in bounds.items())
     tried = []
     for knobs in plan.KNOBS[name]:
@@ -150,7 +149,7 @@ def cheapest(scene, seconds, name, bounds, results):
 
 
 def equal(options, results):
-    """How many sides took part."""
+    """Number of sides that took part."""
     count = 0
     for scene, seconds, sides in plan.EQUAL:
         if wanted(scene, options.scenes):
@@ -162,7 +161,7 @@ def equal(options, results):
 
 
 def profile(options, results):
-    """obsim's parts and functions, and what its pieces cost by themselves."""
+    """obsim's parts and functions, and the cost of its components by themselves."""
     for scene, begin, end, what in plan.PARTS:
         if wanted(scene, options.scenes):
             side = Side(scene, 'obsim 1 thread', {'from': begin, 'duration': end}, what)
@@ -190,7 +189,7 @@ def profile(options, results):
 
 
 def functions(side):
-    """Shares of CPU time as perf samples them; none where there is no perf."""
+    """Shares of CPU time sampled by perf; none without perf."""
     with tempfile.TemporaryDirectory() as folder:
         data = os.path.join(folder, 'perf.data')
         words = [TOOL, side.scene, side.name, 'time', side.words()]

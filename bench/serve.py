@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""How a served universe fares with many viewers: bench/serve.py OBSIM [--viewers 50] [--objects 1000] [--seconds 60].
+"""Load test of a served universe with many viewers: bench/serve.py OBSIM [--viewers 50] [--objects 1000] [--seconds
+60].
 
-All viewers are this one program. Staleness is how much later, for its simulated time, a message arrives than the soonest of the
-second around it; so it counts the server's interval, the way, and what the stepping is late itself. A message has arrived when
-the kernel has it for the viewer; how much later this program reads it is told beside, as is by how much the last viewer has the
-same message later than the first, which is the server's alone. Prints one line a figure.
+All viewers are this one program. Staleness is the delay of a message, for its simulated time, relative to the fastest
+within a second. So it includes the server's interval, the transport, and the lateness of the stepping itself. A message
+has arrived when the kernel has it for the viewer. The delay until this program reads it is reported separately, as is
+the delay of the last viewer after the first for the same message, which is the server's alone. Prints one line a
+figure.
 """
 import argparse
 import atexit
@@ -23,9 +25,9 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOTIONS, VOID = 1, 1
-RATE, LIFE = 20, 10  # 1/s: objects that viewers create; s, after which they remove them
-SO_TIMESTAMPNS = 35  # Linux; Python does not name it
-CONTINUED, BINARY, TEXT, CLOSE, PING, PONG = 0, 2, 1, 8, 9, 10  # what a frame is (RFC 6455, 5.2)
+RATE, LIFE = 20, 10  # 1/s: objects that viewers create; s, lifetime until they remove them
+SO_TIMESTAMPNS = 35  # Linux; Python has no name for it
+CONTINUED, BINARY, TEXT, CLOSE, PING, PONG = 0, 2, 1, 8, 9, 10  # kinds of frames (RFC 6455, 5.2)
 
 
 class Viewer:
@@ -50,7 +52,7 @@ class Viewer:
         if not data:
             sys.exit('a viewer was dropped, without a reason')
         now = time.time()
-        if more:  # when the last of the bytes came
+        if more:  # arrival of the last bytes
             seconds, nanoseconds = struct.unpack('qq', more[0][2])
             self.read_late.append(now - seconds - 1e-9 * nanoseconds)
             now -= self.read_late[-1]
@@ -89,12 +91,12 @@ class Viewer:
             flags, _, simulated, removed, created, _ = struct.unpack_from('<xB2xfdIII', self.whole)
             self.came.append((now, simulated))
             if flags & VOID:
-                self.told_anew += len(self.came) > 2  # not where it begins
+                self.told_anew += len(self.came) > 2  # not at the beginning
                 return
             self.removed += removed
             self.created += created
             at = 28 + 4 * removed
-            for _ in range(created):  # there are no hulls among them, which are longer
+            for _ in range(created):  # they include no hulls, which are longer
                 *new, name = struct.unpack_from('<II2xB', self.whole, at)
                 self.news.append(new)
                 at += 48 + name
@@ -102,7 +104,7 @@ class Viewer:
     def send(self, kind, payload):
         n = len(payload)
         size = bytes([0x80 | n]) if n < 126 else bytes([0x80 | 126]) + struct.pack('>H', n)
-        self.socket.sendall(bytes([0x80 | kind]) + size + bytes(4) + payload)  # masked by zeros: as it is
+        self.socket.sendall(bytes([0x80 | kind]) + size + bytes(4) + payload)  # masked by zeros: unchanged
 
 
 def serve(obsim, objects):
@@ -112,7 +114,7 @@ def serve(obsim, objects):
 
 
 def cpu(pid):
-    """CPU seconds so far: of the simulators, the server, and all else of the program, and of this one."""
+    """CPU seconds so far, by simulators, the server, the rest of the program, and this one."""
     spent = dict(simulators=0, server=0, rest=0, viewers=time.process_time())
     for thread in pathlib.Path(f'/proc/{pid}/task').iterdir():
         name, _, words = (thread / 'stat').read_text().partition('(')[2].rpartition(')')
@@ -124,7 +126,7 @@ def cpu(pid):
 
 def watch(obsim, viewers, objects, seconds):
     run, port = serve(obsim, objects)
-    atexit.register(run.terminate)  # also where a viewer is dropped
+    atexit.register(run.terminate)  # also if a viewer is dropped
     selector = selectors.DefaultSelector()
     all_ = [Viewer(port, selector) for _ in range(viewers)]
     begin = time.monotonic()

@@ -1,5 +1,5 @@
-// Slot torture, long: 1e8 publications (or the number given) read by 4 threads, then by 4 processes, and by 4 processes
-// whose writer is killed 500 times. Exits 1 if any copy was torn, went backward, or was refused.
+// Slot torture, long: 4 threads, then 4 processes read 1e8 publications (or the number given), then 4 processes whose
+// writer is killed 500 times. Exits 1 if a copy was torn, went backward, or was refused.
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,18 +1,23 @@
 #!/usr/bin/env python3
-"""What breaks is broken on purpose, again and again, and every run must end in the state of an undisturbed one.
+"""Breaks parts on purpose, again and again; every run must end in the state of an undisturbed one.
 
-    soak.py OBSIM blows [KILLS SEGVS EXITS STOPS]    simulators die in so many ways (40 20 10 5)
-    soak.py OBSIM hosts [HOSTS SERVERS BOTH]         hosts and fork servers are killed (40 10 4), and runs taken up again
-    soak.py OBSIM scribble [RUNS]                    simulators store words where they can, hardened and not (60 runs of each)
-    soak.py OBSIM hour [HOURS]                       one run of 1000 balls, for hours (1), whose simulators die all the time
+    soak.py OBSIM blows [KILLS SEGVS EXITS STOPS]    simulators die in these ways (40 20 10 5)
+    soak.py OBSIM hosts [HOSTS SERVERS BOTH]         hosts and fork servers are killed (40 10 4), and runs resumed
+    soak.py OBSIM scribble [RUNS]                    simulators store random words, hardened and not (60 runs of each)
+    soak.py OBSIM hour [HOURS]                       one run of 1000 balls, for hours (1), with simulators that keep dying
 
-blows: a stack and a pyramid on a table that shakes, a pile, falling boxes, boxes with scripts, in turns with two workers and
-with one for each object. They come at random moments, one or two at once; SIGSTOP stands for a hang; exits come from within
-(--fault). hosts: a run writes a checkpoint thirty times a second. When it has ended, and another has started, no process of it
-and no universe is left; what is on the disk is a checkpoint, and ends, taken up again, in the same bits. scribble: 1, 10 or 500
-words at a time; hardened, a run ends in the same bits; not hardened it may be wrong, or give up with one line, but its host lives.
-hour: at the pace of reality, so that as many steps without faults, by one thread, take minutes; memory, descriptors and mappings of
-host and fork server stay what they were after the first tenth.
+blows: a stack and a pyramid on a shaking table, a pile, falling boxes, boxes with scripts, alternately with two workers
+and with one for each object. Blows come at random moments, one or two at once; SIGSTOP emulates a hang; exits come from
+within (--fault).
+
+hosts: a run writes a checkpoint thirty times a second. When it has ended, and another has started, none of its
+processes and universes may be left. The checkpoint on disk must be valid, and a resumed run must end in the same bits.
+
+scribble: 1, 10 or 500 words at a time. A hardened run ends in the same bits. Without hardening it may be wrong, or give
+up with one line, but its host survives.
+
+hour: in real time, so that as many steps without faults, by one thread, take minutes; memory, descriptors and mappings
+of host and fork server stay at their values after the first tenth.
 
 Prints a line for each kind, and exits with 1 if a hash is wrong, a run fails, or anything is left behind.
 """
@@ -86,7 +91,7 @@ folder = tempfile.TemporaryDirectory()
 
 
 def path(scene):
-	"""Of one of obsim's scenes, or of those here."""
+	"""Path of one of obsim's scenes, or of those here."""
 	if scene not in WRITTEN:
 		return f"{HERE}/../scenes/{scene}.lua"
 	file = os.path.join(folder.name, f"{scene}.lua")
@@ -126,7 +131,7 @@ def end(pid, number=signal.SIGKILL):
 
 
 def gone(pids, seconds=120):
-	"""Those of the processes that are still there after a while; zombies are not."""
+	"""Those of the processes that remain after a while; zombies do not count."""
 	until = time.monotonic() + seconds
 	while True:
 		left = []
@@ -142,7 +147,7 @@ def gone(pids, seconds=120):
 
 
 class Undisturbed:
-	"""How each scene ends, and how long that takes with so many workers."""
+	"""Final state of each scene, and its duration with so many workers."""
 
 	def __init__(self, obsim, scenes=tuple(SCENES), part=1):
 		self.hash, self.took = {}, {}
@@ -157,7 +162,7 @@ class Undisturbed:
 
 
 def strike(host, number, pause):
-	"""One simulator is hit, or two at once. Returns how many."""
+	"""Hits one simulator, or two at once. Returns their number."""
 	time.sleep(pause)
 	victims = simulators(host.pid)
 	if host.poll() is not None:
@@ -191,7 +196,7 @@ def blows(obsim, wanted):
 
 
 def killed_run(obsim, scene, way, victims, pause, file, name):
-	"""A run whose host, fork server, or both are killed: what is wrong afterwards."""
+	"""Runs with host, fork server, or both killed; returns the errors found afterwards."""
 	host = run(obsim, *scene_words(scene), *way, "--checkpoint", file, "--every", ".033", "--name", name)
 	time.sleep(pause)
 	servers = children(host.pid)
@@ -200,7 +205,7 @@ def killed_run(obsim, scene, way, victims, pause, file, name):
 	if host.poll() is None:
 		for pid in hit if victims != "both" else []:
 			end(pid)
-		if victims == "both": # neither has time to clean up after the other
+		if victims == "both":  # neither has time to clean up after the other
 			for pid in hit:
 				end(pid, signal.SIGSTOP)
 			for pid in hit:

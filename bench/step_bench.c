@@ -1,6 +1,6 @@
-// What the parts of a step cost by themselves: an exchange of a pair's impulses, a plan of a motion, the broad phase
-// per publication; and what the machine can do at best, for the floor below all of that. The best of many short batches
-// of CPU time, so that other load hardly counts.
+// Cost of the parts of a step by themselves: an exchange of a pair's impulses, a plan of a motion, the broad phase per
+// publication; and the machine's best rates, as a lower bound of all that. The best of many short batches of CPU time,
+// so that other load hardly counts.
 //
 // Lines: what<TAB>unit<TAB>value
 #include <stdio.h>
@@ -17,7 +17,7 @@
 
 enum { BATCHES = 60 };
 
-static volatile double sink; // keeps what is computed
+static volatile double sink; // keeps results from being optimised away
 
 static void print(const char *what, const char *unit, double value)
 {
@@ -29,7 +29,7 @@ static void print(const char *what, const char *unit, double value)
 
 typedef double wide __attribute__((vector_size(32)));
 
-// Eight independent chains of a multiplication and an addition, as no solver has them.
+// Eight independent chains of a multiplication and an addition: more than any solver has.
 #ifdef __x86_64__
 #define FOR_WIDE __attribute__((target("avx2")))
 #else
@@ -52,7 +52,7 @@ FOR_WIDE static double multiply(int rounds)
 	return sum[0] + sum[1] + sum[2] + sum[3];
 }
 
-// A copy within so many bytes, read and written once each: B/s
+// Rate (B/s) of a copy within so many bytes, read and written once each.
 static double copy_rate(size_t bytes)
 {
 	size_t half = bytes / 2;
@@ -90,7 +90,7 @@ static void bench_machine(void)
 
 // ---- the pair kernel
 
-// Four pairs, at velocities that the last exchange has not seen: every sweep has something to do.
+// Four pairs, at velocities that the last iteration has not seen: every sweep has work.
 static void bench_kernel(const char *what, const ob_kernel *k, ob_batch_kind kind)
 {
 	enum { SCENES = 8, ROUNDS = 500 };
@@ -115,7 +115,7 @@ static void bench_kernel(const char *what, const ob_kernel *k, ob_batch_kind kin
 
 // ---- plans of motions
 
-// A box of half extents up to 1 m, thrown up from about 5 m, and how it turns.
+// A box of half extents up to 1 m, thrown up from about 5 m, with a random spin.
 static ob_flier random_flier(uint64_t *seed, ob_spin *spin)
 {
 	ob_flier f = { .shape = OB_SHAPE_BOX, .a = ob_v3(0, 0, -9.81), .q = random_attitude(seed), .spin = spin };
@@ -144,7 +144,7 @@ static void bench_plans(void)
 			ob_quat q;
 			ob_vec3 w;
 			ob_spin_plan(&spin[i], flier[i].q, flier[i].w, flier[i].inertia);
-			ob_spin_at(&spin[i], 1, &q, &w); // a long turn, or nothing would be planned
+			ob_spin_at(&spin[i], 1, &q, &w); // a long turn, to force the plan
 		}
 		double between = ob_clock_thread_cpu();
 		for (int i = 0; i < BODIES; i++)
@@ -159,7 +159,7 @@ static void bench_plans(void)
 
 // ---- the broad phase
 
-// n spheres in a square, each of them moving on by a fifth of its size and asking who is near.
+// n spheres in a square; each moves by a fifth of its size and queries its neighbours.
 static void bench_index(uint32_t n)
 {
 	ob_error e;

@@ -1,5 +1,5 @@
-// What the table costs: publishing and reading a slot, and the gate per object in a pool and with one worker per
-// object. Medians of several runs, on an otherwise idle machine. The targets stand beside the figures.
+// Cost of the table: publishing and reading a slot, and the gate per object in a pool and with one worker per object.
+// Medians of several runs, on an otherwise idle machine. Targets are printed beside the figures.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +38,7 @@ static ob_universe *create(uint32_t workers, const char *isolation)
 	return u;
 }
 
-// ---- slots: 64 objects in turn, so that the figures are those of a warm cache
+// ---- slots: 64 objects in turn, for the figures of a warm cache
 
 static void bench_slots(void)
 {
@@ -82,9 +82,9 @@ static void bench_slots(void)
 
 typedef struct board {
 	ob_universe *u;
-	uint64_t gates; // still to pass
-	bool pool; // workers claim objects; else each has its own
-	uint32_t stride; // participants: every stride-th worker
+	uint64_t gates; // remaining gates
+	bool pool; // workers claim objects; otherwise each has its own
+	uint32_t stride; // participants are every stride-th worker
 	uint32_t participants[OBJECTS];
 } board;
 
