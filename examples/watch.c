@@ -1,4 +1,4 @@
-// Prints where the objects of a running universe are: watch NAME (as `obsim top` shows it).
+// Prints the poses of a running universe's objects: watch NAME (as `obsim top` shows it).
 // cc watch.c $(pkg-config --cflags --libs obsim) -o watch
 #include <stdio.h>
 
@@ -20,8 +20,8 @@ int main(int argc, char **argv)
 		ob_passport passport;
 		ob_motion motion;
 		if (!ob_universe_get_passport(u, id, &passport) || !ob_universe_get_motion(u, id, &motion))
-			continue; // nobody has this id
-		// A motion holds from its own instant on: we may ask for any later one.
+			continue; // the id is free
+		// A motion holds from its own instant on: any later one may be evaluated.
 		ob_state now = ob_motion_at(&motion, passport.inertia, info.time);
 		printf("%u %s %.6f %.6f %.6f\n", id, passport.name, now.pose.p.x, now.pose.p.y, now.pose.p.z);
 	}
