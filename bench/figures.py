@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Measures obsim's published figures once, and writes them wherever they stand: figures.py measure OBSIM | write | check
+"""Measures obsim's published figures once, and writes them into the documents: figures.py measure OBSIM | write | check
 
-measure   runs all experiments on an otherwise idle machine (half an hour) and keeps the results, with commit and machine, in
+measure   runs all experiments on an otherwise idle machine (half an hour) and stores the results, with commit and machine, in
           docs/notebook/data/figures.json
 write     renders tables, sentences and diagrams from that file into the documents, between <!-- figures: NAME --> and
           <!-- end -->, and into docs/images (draw_plot of a build with tests: build*/tools/draw_plot, or --draw PROGRAM)
-check     tells where documents or diagrams differ from the file; exit 1 if any does
+check     lists differences between documents or diagrams and the file; exit 1 if there are any
 """
 import json
 import math
@@ -22,8 +22,8 @@ SCENES, BENCH = ROOT / 'scenes', ROOT / 'bench'
 DATA = ROOT / 'docs/notebook/data/figures.json'
 DOCUMENTS = [ROOT / 'README.md', ROOT / 'docs/experiments.md', ROOT / 'docs/notebook/figures.md']
 RUNS = 3
-SEEDS = 12  # of the error tables: one heap is an anecdote
-OBSIM = None  # the program that is measured
+SEEDS = 12  # for the error tables: a single heap is an anecdote
+OBSIM = None  # the measured program
 
 
 def scene(name):
@@ -31,7 +31,7 @@ def scene(name):
 
 
 def run(*words, runs=RUNS):
-    """The report of a run; its times are medians, and 'cpu_spread' the least and the most CPU."""
+    """Report of a run; its times are medians, and 'cpu_spread' is the minimum and maximum of CPU."""
     reports = []
     for _ in range(runs):
         done = subprocess.run([OBSIM, 'run', *words, '--json', '-'], capture_output=True, text=True)
@@ -149,7 +149,7 @@ def error_stack():
 
 
 def bits():
-    """The state after a run, for each isolation and number of workers."""
+    """State after a run, for each isolation and number of workers."""
     configurations = [[isolation, workers] for isolation in ('thread', 'process') for workers in ('1', '2', '3', '8', 'objects')]
     rows = []
     for name in ('falling_boxes', 'stack', 'pile', 'cradle', 'sparse'):
@@ -161,7 +161,7 @@ def bits():
 
 
 def counts():
-    """How many simulators a machine bears."""
+    """Number of simulators that a machine supports."""
     rows = []
     for what, words in (('1000 simulators, a pool of 2', ['-D', 'n=1000']),
                         ('1000, one per process', ['-D', 'n=1000', '--isolation', 'process', '--workers', 'objects']),
@@ -175,7 +175,7 @@ def counts():
 
 
 def shapes():
-    """What a pile costs, by the shape of its bodies: each seed is another pile."""
+    """Cost of a pile by the shape of its bodies: each seed is another pile."""
     rows, boxes = [], 0
     for what, words in (('boxes', ()), *((f'hulls of {n} points', ('-D', f'points={n}')) for n in (8, 12, 20)),
                         ('boxes of .5 m, upright: columns, not a heap', ('-D', 'upright=true'))):
@@ -189,7 +189,7 @@ def shapes():
 
 
 def capture():
-    """Frames to PNG, four samples a pixel, drawn by whatever EGL finds."""
+    """Frames to PNG, four samples a pixel, drawn by the device that EGL finds."""
     rows = []
     for size in ('640x480', '1280x720', '1920x1080'):
         with tempfile.TemporaryDirectory() as folder:

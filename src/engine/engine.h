@@ -28,8 +28,8 @@ typedef struct ob_engine_kind {
 	double (*recovered)(const ob_engine *p);
 	void (*destroy)(ob_engine *p); // NULL is allowed
 	bool (*check)(ob_error *e); // true if its library can be loaded; NULL = it is part of the program
-	ob_world_drive drives; // the most that it is to be given
-	bool hulls; // it takes convex hulls
+	ob_world_drive drives; // most general motion that it supports
+	bool hulls; // supports convex hulls
 } ob_engine_kind;
 
 // All engines built in, in the order of legends; ends with NULL.

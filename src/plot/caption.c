@@ -4,7 +4,7 @@
 
 #include "plot/part.h"
 
-// In units of the size of the type.
+// Relative to the font size.
 static const double pad_x = .75, pad_y = .45, gap = 1, margin = .9, corner = .35;
 
 static void round_rectangle(cairo_t *c, double width, double height, double r)

@@ -27,9 +27,9 @@ typedef struct ob_render_setup {
 
 typedef struct ob_renderer ob_renderer;
 
-// True if what draws can be loaded; false and e with the packages that are missing. Maps nothing.
+// True if the drawing part can be loaded; false and e with the packages that are missing. Maps nothing.
 bool ob_render_check(ob_error *e);
-// NULL and e (with the list of what was tried) on failure.
+// Returns NULL and e, with all attempts, on failure.
 ob_renderer *ob_renderer_create(const ob_render_setup *r, const ob_look_def *look, ob_error *e);
 void ob_renderer_destroy(ob_renderer *r);
 // Draws the snapshot "now" as seen by camera c at time t (s). prev: the snapshot one step earlier, for times between
