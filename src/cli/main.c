@@ -53,7 +53,7 @@ static int unknown_command(const char *name)
 	return ob_command_fail(OB_EXIT_USAGE, e.text);
 }
 
-// What was printed is what the command was for. A reader that has gone knows why it did.
+// The output is the purpose of a command. A closed pipe is no error: its reader left on purpose.
 static int close_output(int code)
 {
 	ob_error e;

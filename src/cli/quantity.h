@@ -19,8 +19,8 @@ typedef struct ob_quantity {
 	char text[32];
 } ob_quantity;
 
-// Three digits and the prefix that fits: 1.24e-6 "s" reads "1.24 us". Returns q->text; "-" for NaN. What is smaller than
-// a pico-unit is 0.
+// Three digits and the prefix that fits: 1.24e-6 "s" reads "1.24 us". Returns q->text; "-" for NaN. Values below a
+// pico-unit are 0.
 const char *ob_quantity_text(ob_quantity *q, double value, const char *unit);
 
 #endif

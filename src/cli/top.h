@@ -1,5 +1,5 @@
-// What top knows of a universe at one instant with the rates since the one before (top_sample.c), and how that reads as
-// lines of text (top_view.c).
+// Sample of a universe at one instant with the rates since the one before (top_sample.c), and its lines of text
+// (top_view.c).
 #ifndef OB_CLI_TOP_H
 #define OB_CLI_TOP_H
 

@@ -12,8 +12,8 @@
 
 enum { LINE_MAX_BYTES = 512, NAME_WIDTH = 12, WORKERS_AT_A_GLANCE = 4, WORKER_HEADING = 2 };
 
-// One line, cut at the screen's width. What counts is characters, but only names have any beyond ASCII, and those
-// stand in a column of their own that is padded by width.
+// Prints one line, cut at the screen's width in characters. Only names have any beyond ASCII, in a column of their own
+// that is padded by width.
 static void put_line(ob_top_view *view, FILE *f, const char *line)
 {
 	mbstate_t state = { 0 };
@@ -119,7 +119,7 @@ static void put_workers(ob_top_view *view, const ob_top_sample *s, uint32_t from
 	}
 }
 
-// What is nothing but rounding reads as 0.
+// Shows values at the level of rounding errors as 0.
 static double tidy(double x)
 {
 	return fabs(x) < 1e-6 ? 0 : x;
@@ -161,7 +161,7 @@ static int compare_speed(const void *a, const void *b)
 	return x != y ? (x < y) - (x > y) : compare_id(a, b);
 }
 
-// Where a list of n begins and how much of it fits below what is written, less some lines
+// Number of lines of a list of n that fit below the text so far, minus some; limits the scroll position to it.
 static uint32_t fit(ob_top_view *view, uint32_t n, int less)
 {
 	int room = view->lines - view->written - less;
