@@ -195,7 +195,7 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host
 	else if (!load(h, from, e))
 		return false;
 	ob_restart_prepare(h);
-	ob_restart_checkpoint(h, true, false);
+	ob_restart_checkpoint(h, false);
 	return true;
 }
 

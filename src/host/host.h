@@ -91,7 +91,7 @@ bool ob_host_wait(ob_host *h, ob_error *e);
 // pairs keep, too, as it must to be saved there. Once at a time.
 void ob_host_want_contacts(ob_host *h, uint64_t step);
 bool ob_host_interrupted(const ob_host *h);
-// Whether that is because what simulators share breaks an invariant. After a wait.
+// True if the run ended because what simulators share breaks an invariant. After a wait.
 bool ob_host_broke_invariant(const ob_host *h);
 const ob_universe *ob_host_universe(const ob_host *h);
 const ob_roster *ob_host_roster(const ob_host *h);

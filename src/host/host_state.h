@@ -29,10 +29,9 @@ typedef struct ob_freeze {
 // See restart.h.
 typedef struct ob_restart_state {
 	ob_checkpoint *checkpoint; // NULL: the death of a worker is a failure
-	atomic_bool current; // the checkpoint holds the objects that exist now
+	atomic_bool current; // the checkpoint is whole, and what came after it can be done again
 	atomic_bool requested; // the latest death says why
 	double taken_at, cost; // s, wall: when the checkpoint was taken, and how long that took
-	double began, spent; // s, wall: since when checkpoints are possible; the time that all of them have taken
 	double progress_at; // s, wall: when a checkpoint was last farther than the one before
 	unsigned attempts, deaths; // restarts since then; deaths since the start
 	uint64_t half_way; // steps: half of what was made when simulators died last

@@ -6,6 +6,7 @@
 #include <urcu/wfcqueue.h>
 
 #include "base/log.h"
+#include "host/journal.h"
 #include "host/rcu_tsan.h"
 #include "ode/ode_body.h"
 #include "scene/random.h"
@@ -42,10 +43,10 @@ struct ob_population {
 	uint32_t kinematic, pushed; // objects: those with a force that changes in time
 	uint64_t next_prescribed; // the step at which one of them is to be told how it goes on
 	bool changed;
-	bool asked; // by somebody outside, in the last update
 	uint32_t first_free; // no slot below it is free
 	uint32_t created; // objects that scripts have created, and that exist
 	ob_hulls hulls;
+	ob_journal journal; // of requests since the population was kept
 	struct {
 		slot *slots; // NULL: none kept
 		size_t next;
@@ -406,14 +407,15 @@ static void change_on_request(ob_population *p, const ob_request *r)
 	}
 }
 
-static void add_asked_for(ob_population *p, ob_request *r)
+static void add_asked_for(ob_population *p, const ob_request *r)
 {
 	ob_error e;
-	ob_passport *pass = &r->def.passport;
+	ob_object_def def = r->def;
+	ob_passport *pass = &def.passport;
 	if (pass->shape == OB_SHAPE_HULL && r->corners.count && !ob_hulls_give(&p->hulls, &r->corners, pass, &e))
 		ob_log_warn("object \"%s\" was not added: %s", pass->name, e.text);
 	else
-		add_on_request(p, &r->def, NULL);
+		add_on_request(p, &def, NULL);
 }
 
 static void publish_roster(ob_population *p)
@@ -475,9 +477,36 @@ static void prescribe_all(ob_population *p)
 	push_all(p);
 }
 
+static void carry_out_request(ob_population *p, const ob_request *r)
+{
+	if (r->kind == OB_REQUEST_ADD)
+		add_asked_for(p, r);
+	else if (r->id < ob_universe_capacity(p->u) && p->slots[r->id].generation == r->generation &&
+		 p->slots[r->id].use == SLOT_PRESENT)
+		change_on_request(p, r);
+}
+
+// After a restart first those that were carried out before, in the same pauses; new ones wait until that is done.
+static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
+{
+	const ob_script_counts *scripts = ob_universe_step_data(p->u)->script_counts;
+	ob_journal_place at = { step, scripts && scripts->ran_for == step + 1, UINT32_MAX };
+	const ob_request *again;
+	ob_request r;
+	while ((again = ob_journal_again(&p->journal, &at)))
+		carry_out_request(p, again);
+	if (ob_journal_next_step(&p->journal) < UINT64_MAX || !ob_requests_waiting(q))
+		return;
+	at.pause = p->journal.pauses++;
+	while (ob_requests_take(q, &r)) {
+		if (p->kept.slots)
+			ob_journal_note(&p->journal, &at, &r);
+		carry_out_request(p, &r);
+	}
+}
+
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 {
-	ob_request r;
 	for (; p->next < p->event_count && p->events[p->next].step <= step; p->next++) {
 		event *due = &p->events[p->next];
 		const ob_object_def *def = &p->scene->object[due->id];
@@ -487,15 +516,7 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 			remove_scheduled(p, due->id);
 	}
 	carry_out_scripts(p);
-	p->asked = false;
-	while (ob_requests_take(q, &r)) {
-		p->asked = true;
-		if (r.kind == OB_REQUEST_ADD)
-			add_asked_for(p, &r);
-		else if (r.id < ob_universe_capacity(p->u) && p->slots[r.id].generation == r.generation &&
-			 p->slots[r.id].use == SLOT_PRESENT)
-			change_on_request(p, &r);
-	}
+	carry_out_requests(p, step, q);
 	bool changed = p->changed;
 	prescribe_all(p);
 	if (changed)
@@ -503,14 +524,9 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	return changed;
 }
 
-bool ob_population_repeats(const ob_population *p)
+bool ob_population_is_checkpoint_due(const ob_population *p)
 {
-	return p->scene->scripts > 0;
-}
-
-bool ob_population_was_asked(const ob_population *p)
-{
-	return p->asked;
+	return ob_journal_is_full(&p->journal);
 }
 
 bool ob_population_keep(ob_population *p)
@@ -527,6 +543,7 @@ bool ob_population_keep(ob_population *p)
 	p->kept.kinematic = p->kinematic;
 	p->kept.pushed = p->pushed;
 	p->kept.hulls = p->hulls.count;
+	ob_journal_clear(&p->journal);
 	return true;
 }
 
@@ -541,13 +558,16 @@ void ob_population_put_back(ob_population *p)
 	p->kinematic = p->kept.kinematic;
 	p->pushed = p->kept.pushed;
 	p->hulls.count = p->kept.hulls; // the same come again, as they were
+	ob_journal_rewind(&p->journal);
 	publish_roster(p);
 }
 
 uint64_t ob_population_next_step(const ob_population *p)
 {
-	const uint64_t timetable = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX;
-	return timetable < p->next_prescribed ? timetable : p->next_prescribed;
+	const uint64_t timetable = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX,
+		       again = ob_journal_next_step(&p->journal),
+		       first = timetable < p->next_prescribed ? timetable : p->next_prescribed;
+	return first < again ? first : again;
 }
 
 // ---- saved
@@ -715,5 +735,6 @@ void ob_population_destroy(ob_population *p)
 	free(p->slots);
 	ob_hulls_finish(&p->hulls);
 	free(p->kept.slots);
+	ob_journal_finish(&p->journal);
 	free(p);
 }

@@ -7,6 +7,7 @@
 #define OB_HOST_POPULATION_H
 
 #include "host/hulls.h"
+#include "host/request.h"
 #include "host/roster.h"
 #include "scene/scene.h"
 #include "table/table.h"
@@ -14,25 +15,6 @@
 // Requests to add, remove or colour objects, or to send them a message, kept until the next step boundary: a wait-free queue of liburcu. Any number of
 // threads push, one takes.
 typedef struct ob_requests ob_requests;
-
-typedef enum ob_request_kind {
-	OB_REQUEST_ADD,
-	OB_REQUEST_REMOVE,
-	OB_REQUEST_COLOUR,
-	OB_REQUEST_MESSAGE, // to the object's script
-	OB_REQUEST_MOVE, // its simulator moves to a worker: done at once, of several ranks, too (table/home.h)
-} ob_request_kind;
-
-typedef struct ob_request {
-	uint32_t kind; // ob_request_kind
-	uint32_t id, generation; // of the object, unless one is added
-	ob_object_def def; // to add
-	ob_hull_corners corners; // of a hull
-	float colour[4]; // linear
-	uint32_t worker; // to move to
-	uint32_t bytes; // of the message
-	unsigned char values[512]; // flat (scene/flat.h)
-} ob_request;
 
 ob_requests *ob_requests_create(void); // NULL: out of memory
 void ob_requests_destroy(ob_requests *q);
@@ -56,14 +38,12 @@ bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_erro
 
 // Carries out what the timetable has due at this step or before, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
-// For a checkpoint in memory (table/checkpoint.h): keeps what it knows beside the universe, and puts it back. So what
-// the timetable and scripts do is done again by a run that begins anew there.
+// For a checkpoint in memory (table/checkpoint.h): keeps what it knows beside the universe, and puts it back. What the
+// timetable, scripts and requests do after that is done again by a run that begins anew there (host/journal.h).
 bool ob_population_keep(ob_population *p); // false: out of memory
 void ob_population_put_back(ob_population *p);
-// Whether it does: where the scene has scripts.
-bool ob_population_repeats(const ob_population *p);
-// Whether the last update has carried out requests that came from outside, which nobody repeats.
-bool ob_population_was_asked(const ob_population *p);
+// True if another checkpoint is due: much would be done again, or there was no memory to note it.
+bool ob_population_is_checkpoint_due(const ob_population *p);
 // The next step at which something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);
 

@@ -14,8 +14,7 @@
 enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once, ..
 static const double attempts_timeout = 10; // s, .. and others for so long
 static const double checkpoint_interval = .25; // s, between checkpoints
-static const double checkpoint_share = .05; // of the time, that checkpoints may take, ..
-static const double allowance = 1; // s, .. this much aside, where objects are added and removed
+static const double checkpoint_share = .05; // of the time, that checkpoints may take
 static const double kill_timeout = 10; // s to wait until killed processes are gone, ..
 static const double interrupted_kill_timeout = .05; // .. and after Ctrl-C
 
@@ -27,7 +26,7 @@ void ob_restart_prepare(ob_host *h)
 		r->checkpoint = ob_checkpoint_create(h->u);
 	if (h->limit.deaths)
 		r->when = calloc(h->limit.deaths, sizeof *r->when);
-	r->began = r->progress_at = ob_clock_wall();
+	r->progress_at = ob_clock_wall();
 }
 
 void ob_restart_finish(ob_host *h)
@@ -54,26 +53,21 @@ bool ob_restart_checkpoint_due(const ob_host *h)
 	double now = ob_clock_wall();
 	if (!r->checkpoint)
 		return false;
-	if (!r->current)
-		return r->spent <= checkpoint_share * (now - r->began) + allowance;
-	if (ob_step_count(h->u) >= ob_restart_next_step(h))
+	if (ob_population_is_checkpoint_due(h->population) || ob_step_count(h->u) >= ob_restart_next_step(h))
 		return true;
 	return now - r->taken_at >= fmax(checkpoint_interval, r->cost / checkpoint_share);
 }
 
-void ob_restart_checkpoint(ob_host *h, bool changed, bool frozen)
+void ob_restart_checkpoint(ob_host *h, bool frozen)
 {
 	ob_restart_state *r = &h->restart;
-	r->current &= !changed;
-	if (!frozen && !ob_restart_checkpoint_due(h))
+	if (!r->checkpoint || (!frozen && !ob_restart_checkpoint_due(h)))
 		return;
 	double began = ob_clock_wall();
 	bool progress = frozen || ob_step_count(h->u) > ob_checkpoint_step(r->checkpoint);
-	r->current = ob_checkpoint_take(r->checkpoint, h->u) &&
-		     (!ob_population_repeats(h->population) || ob_population_keep(h->population));
+	r->current = ob_checkpoint_take(r->checkpoint, h->u) && ob_population_keep(h->population);
 	r->taken_at = ob_clock_wall();
 	r->cost = r->taken_at - began;
-	r->spent += r->cost;
 	if (progress) {
 		r->attempts = 0;
 		r->progress_at = r->taken_at;
@@ -125,7 +119,9 @@ void ob_restart_request(ob_host *h, const ob_death *d)
 	pthread_mutex_unlock(&h->failure_lock);
 	if (first && !r->requested) {
 		ob_error text;
-		ob_host_set_failure(h, "%s", describe(h, &text));
+		const bool missed = r->checkpoint && !hangs;
+		ob_host_set_failure(h, "%s%s", describe(h, &text),
+				    missed ? "; there was no memory for a checkpoint" : "");
 	}
 	ob_gate_stop(h->u); // the others leave, and the host wakes
 }
@@ -281,10 +277,7 @@ static bool give_up(ob_host *h)
 	ob_restart_state *r = &h->restart;
 	ob_error text;
 	const uint32_t kept = r->deaths < OB_DEATHS_KEPT ? r->deaths : OB_DEATHS_KEPT;
-	if (!r->current)
-		ob_host_set_failure(h, "%s; objects had been added or removed since the last checkpoint",
-				    describe(h, &text));
-	else if (is_over_limit(h))
+	if (is_over_limit(h))
 		ob_host_set_failure(h,
 				    "%s; giving up: simulators died more than %u times within %g s (--restarts), "
 				    "%u of the last %u times this one",
@@ -319,8 +312,7 @@ bool ob_restart(ob_host *h)
 		    (unsigned long long)step);
 	back_off(h);
 	ob_checkpoint_put_back(r->checkpoint, h->u);
-	if (ob_population_repeats(h->population))
-		ob_population_put_back(h->population);
+	ob_population_put_back(h->population);
 	r->requested = false;
 	if (h->interrupted)
 		return false;

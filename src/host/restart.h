@@ -1,6 +1,6 @@
 // Restart from a checkpoint. A process dies alone, but leaves what it computed with in the universe, perhaps half
-// changed. So all workers are killed, the universe is put back to the last checkpoint, and new workers go on from there;
-// they come to the same bits as if no worker had died.
+// changed. So all workers are killed, the universe is put back to the last checkpoint, and new workers go on from
+// there; they come to the same bits as if no worker had died.
 //
 //   host, in wait              supervisor                  fork server               workers
 //   pause: checkpoint          .                           .                         ... | ... | ...
@@ -13,14 +13,16 @@
 //   restart  ------------------------------------------->  fork  ------------------> ... | ... | ...
 //   they are ready: runs on
 //
-// A checkpoint is taken at a pause: when objects have been added or removed, or else four times a second, but not so
-// often that checkpoints take more than a twentieth of the time; after a restart, half way to where simulators died. A stall (host.h) asks for a restart, too.
+// A checkpoint is taken at a pause, four times a second, but not so often that checkpoints take more than a twentieth
+// of the time; where a thousand requests have been carried out since the last; and after a restart half way to where
+// simulators died. What the timetable, scripts and requests have changed since then is done again, in the same pauses
+// (journal.h). A stall (host.h) asks for a restart, too.
 //
 // Freezing (ob_on_death): the objects of whom has died, or of the island that has failed, are noted with the number of
 // steps that were complete. Then all is as above; the run pauses where that many are complete again, the objects become
-// static, and a checkpoint is taken. So they stand where they stood when their simulator died, wherever the checkpoint was,
-// and where it dies in the same step of every run, all runs end in the same bits. Threads restart, too: when they have
-// left, which they do unless they hang.
+// static, and a checkpoint is taken. So they stand where they stood when their simulator died, wherever the checkpoint
+// was, and where it dies in the same step of every run, all runs end in the same bits. Threads restart, too: when they
+// have left, which they do unless they hang.
 //
 // The run fails where a restart is impossible or of no use, or not wanted:
 //   - where it is to abort, or simulators have died more often than its limit allows;
@@ -28,7 +30,7 @@
 //   - with a monolith, whose world lies in its worker's own memory;
 //   - when workers have died again and again for ten seconds and the run has not got past its checkpoint, for then the
 //     simulator itself is likely to be the cause;
-//   - when so many objects have been added and removed that there was no time for a checkpoint since.
+//   - when there is no memory for a checkpoint, or for the requests since.
 //
 // Thread-safety: ob_restart_request may be called by any thread, the rest by the one that goes and waits.
 #ifndef OB_HOST_RESTART_H
@@ -38,8 +40,8 @@
 
 // Makes ready. Without it, or with no memory for it, a request is a failure.
 void ob_restart_prepare(ob_host *h);
-// At a pause, takes a checkpoint if one is due; changed = objects were added or removed; frozen = some were frozen.
-void ob_restart_checkpoint(ob_host *h, bool changed, bool frozen);
+// At a pause, takes a checkpoint if one is due, or objects were frozen.
+void ob_restart_checkpoint(ob_host *h, bool frozen);
 // The step at which the run pauses for one in any case; UINT64_MAX: none.
 uint64_t ob_restart_next_step(const ob_host *h);
 // Whether it is time for a pause to take a checkpoint.

@@ -56,10 +56,8 @@ static void begin_interval(ob_host *h)
 {
 	ob_interval *interval = &h->interval;
 	uint64_t step = ob_step_count(h->u);
-	const bool changed = ob_population_update(h->population, step, h->requests), frozen = ob_restart_freeze(h);
-	const bool beyond_recall =
-		ob_population_repeats(h->population) ? ob_population_was_asked(h->population) : changed;
-	ob_restart_checkpoint(h, beyond_recall, frozen);
+	ob_population_update(h->population, step, h->requests);
+	ob_restart_checkpoint(h, ob_restart_freeze(h));
 	ob_host_tell_of_scripts(h);
 	if (h->started && step >= h->target)
 		return;

@@ -22,7 +22,7 @@ struct ob_checkpoint {
 	int fd; // the universe's: it tells which pages are in use
 	step_control control;
 	ob_motion *motion; // [ids]
-	ob_passport *passport; // [ids], where scripts may change them in a step; else NULL
+	ob_passport *passport; // [ids]
 	size_t passports_max;
 	uint32_t ids, ids_max;
 	range *kept; // ascending
@@ -145,8 +145,6 @@ static bool take_motions(ob_checkpoint *c, const ob_universe *u)
 // One that was never written is all 0.
 static bool take_passports(ob_checkpoint *c, const ob_universe *u)
 {
-	if (!u->step_data.script_cells)
-		return true;
 	if (!grow((void **)&c->passport, sizeof *c->passport, c->ids, &c->passports_max))
 		return false;
 	for (uint32_t id = 0; id < c->ids; id++)
@@ -217,7 +215,7 @@ static void put_motions_back(const ob_checkpoint *c, ob_universe *u)
 static void put_passports_back(const ob_checkpoint *c, ob_universe *u)
 {
 	static const ob_passport none = { 0 };
-	for (uint32_t id = 0; u->step_data.script_cells && id < ob_universe_ids(u); id++) {
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		ob_passport now;
 		const ob_passport *then = id < c->ids ? &c->passport[id] : &none;
 		if (ob_passport_read(u, id, &now) && memcmp(&now, then, sizeof now) != 0)

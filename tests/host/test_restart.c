@@ -143,7 +143,7 @@ static void leave_with_0(int number)
 	_exit(0);
 }
 
-// Where objects are added and removed a checkpoint is taken at once, as far as there is time.
+// Objects that the timetable adds and removes after a checkpoint are added and removed again.
 static void test_visitors(void)
 {
 	ob_scene s = busy_heap(BALLS);
@@ -152,6 +152,52 @@ static void test_visitors(void)
 		s.object[i].dies = i % 2 ? s.object[i].born + 1 : INFINITY;
 	}
 	test_deaths("visitors", &s, 2, SIGKILL, false);
+	free(s.object);
+}
+
+// Adds and removes balls by requests at some steps. Kills a simulator in the step after each, long after the checkpoint,
+// which is that of the start: nothing is due before the end.
+static uint64_t end_of_requests(const ob_scene *s, bool kills, unsigned *deaths)
+{
+	enum { FIRST = 20, EACH = 15, LAST = 200 };
+	ob_host_config c = little_config(s, OB_ISOLATION_PROCESS, 2);
+	ob_host_times times;
+	ob_error e = { "" };
+	ob_host *h = ob_host_start(s, &c, &e);
+	h->restart.cost = 1e9; // s, of the last checkpoint: the next is due when this is a small part of the time
+	for (uint64_t step = FIRST; step <= LAST; step += EACH) {
+		ob_object_def d = ball("visitor", .3, .001 * (double)step, 2);
+		ob_passport p = { 0 };
+		ob_host_go(h, step);
+		CHECK(ob_host_wait(h, &e) && ob_host_request_add(h, &d, &e));
+		if (ob_universe_get_passport(ob_host_universe(h), (uint32_t)(step / EACH), &p))
+			ob_host_request_remove(h, p.id, p.generation);
+		if (!kills)
+			continue;
+		ob_host_go(h, step + 1);
+		CHECK(ob_host_wait(h, &e));
+		kill(pid_of_worker(ob_host_universe(h), step % 2), SIGKILL);
+		while (!h->restart.requested && !h->failed)
+			pause_ms(1);
+	}
+	ob_host_go(h, STEPS);
+	CHECK(ob_host_wait(h, &e));
+	if (*e.text)
+		fprintf(stderr, "%s\n", e.text);
+	ob_host_get_times(h, &times);
+	*deaths = times.deaths;
+	const uint64_t hash = hash_of(h);
+	ob_host_stop(h);
+	return hash;
+}
+
+static void test_requested(void)
+{
+	ob_scene s = busy_heap(BALLS);
+	unsigned deaths;
+	const uint64_t expected = end_of_requests(&s, false, &deaths);
+	CHECK(deaths == 0);
+	CHECK(end_of_requests(&s, true, &deaths) == expected && deaths > 10);
 	free(s.object);
 }
 
@@ -328,6 +374,7 @@ int main(void)
 	test_deaths("heap", &s, 2, SIGSTOP, false);
 	free(s.object);
 	test_visitors();
+	test_requested();
 	test_killed_in_a_pause();
 	test_frozen();
 	test_stopped_before_it_is_ready();

@@ -1,0 +1,63 @@
+#include "host/journal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void ob_journal_finish(ob_journal *j)
+{
+	free(j->entry);
+}
+
+bool ob_journal_is_full(const ob_journal *j)
+{
+	enum { MOST = 1024 }; // some 3 MB
+	return j->lost || (j->count >= MOST && j->next == j->count);
+}
+
+void ob_journal_clear(ob_journal *j)
+{
+	if (j->next)
+		memmove(j->entry, j->entry + j->next, (j->count - j->next) * sizeof *j->entry);
+	j->count -= j->next;
+	j->next = 0;
+	j->lost = false;
+}
+
+void ob_journal_rewind(ob_journal *j)
+{
+	j->next = 0;
+}
+
+uint64_t ob_journal_next_step(const ob_journal *j)
+{
+	return j->next < j->count ? j->entry[j->next].at.step : UINT64_MAX;
+}
+
+const ob_request *ob_journal_again(ob_journal *j, ob_journal_place *at)
+{
+	if (j->next == j->count)
+		return NULL;
+	const ob_journal_entry *e = &j->entry[j->next];
+	if (e->at.step != at->step || e->at.after_scripts != at->after_scripts ||
+	    (at->pause != UINT32_MAX && e->at.pause != at->pause))
+		return NULL;
+	at->pause = e->at.pause;
+	j->next++;
+	return &e->request;
+}
+
+void ob_journal_note(ob_journal *j, const ob_journal_place *at, const ob_request *r)
+{
+	if (j->count == j->room) {
+		const size_t room = 2 * j->room + 16;
+		ob_journal_entry *more = realloc(j->entry, room * sizeof *more);
+		if (!more) {
+			j->lost = true;
+			return;
+		}
+		j->entry = more;
+		j->room = room;
+	}
+	j->entry[j->count++] = (ob_journal_entry){ *at, *r };
+	j->next = j->count;
+}

@@ -1,0 +1,48 @@
+// Journal: requests that a run has carried out since its last checkpoint in memory, with the place of each. A run that
+// restarts from there carries them out again, in the same places, so it comes to the same bits.
+//
+//   requests ──(carried out)──> entry .. entry │           note: behind all others
+//                                 next ────────┘           restart: next = the first; again: each in its place
+//
+// A place is a pause: the step, whether that step's scripts have run, and which of several pauses there.
+//
+// Thread-safety: the host's thread only.
+#ifndef OB_HOST_JOURNAL_H
+#define OB_HOST_JOURNAL_H
+
+#include "host/request.h"
+
+typedef struct ob_journal_place {
+	uint64_t step; // that many are complete
+	uint32_t after_scripts; // 1 = scripts have run before the coming step, and the pause is theirs
+	uint32_t pause; // number of the pause among those that have carried out any
+} ob_journal_place;
+
+typedef struct ob_journal_entry {
+	ob_journal_place at;
+	ob_request request;
+} ob_journal_entry;
+
+typedef struct ob_journal {
+	ob_journal_entry *entry; // [count]
+	size_t count, room, next; // next: those before it are carried out
+	uint32_t pauses; // that have carried out any
+	bool lost; // there was no memory for an entry: no restart can repeat it
+} ob_journal;
+
+void ob_journal_finish(ob_journal *j);
+// True if the journal is as long as it should get, or an entry was lost: a checkpoint is due.
+bool ob_journal_is_full(const ob_journal *j);
+// A checkpoint was taken: forgets what is carried out.
+void ob_journal_clear(ob_journal *j);
+// The run begins again there.
+void ob_journal_rewind(ob_journal *j);
+// The step of the next entry to be carried out again; UINT64_MAX: none is.
+uint64_t ob_journal_next_step(const ob_journal *j);
+// The next entry of this pause's, to be carried out again; NULL: there is none. at: of a pause, whose number is found;
+// pause UINT32_MAX at its first call.
+const ob_request *ob_journal_again(ob_journal *j, ob_journal_place *at);
+// Notes a request that is carried out for the first time: none is to be carried out again.
+void ob_journal_note(ob_journal *j, const ob_journal_place *at, const ob_request *r);
+
+#endif
