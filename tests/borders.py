@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Keeps the borders of the modules: who may include what, who alone may do what, that no files include each other in a
-circle, and how long a file or a function may be. Prints the place of each violation; exit 1 if there is any.
+"""Keeps the borders of the modules: permitted includes, duties reserved to some files, no circles of includes, and
+maximum lengths of files and functions. Prints the place of each violation; exit 1 if there is any.
 
 borders.py ROOT    checks ROOT/src
 First it plants one violation of each kind in a tree of its own, and fails if it does not see it.
@@ -10,7 +10,7 @@ import re
 import sys
 import tempfile
 
-# Where a file or a function is longer, it holds more than one concept or sequence.
+# A longer file or function holds more than one concept or sequence.
 FILE_LINES = 1000
 FUNCTION_LINES = 80
 
@@ -50,7 +50,7 @@ BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['repor
          'paper': ['paper_texts.h'],
          'serve': ['content_table.h']}  # written by the build, so without a folder
 
-# What only some files may do: (what, pattern, where it may stand, in code without comments and strings?).
+# Duties reserved to some files: (duty, pattern, permitted files, True: search code without comments and strings).
 DUTIES = [
     ('include <ode/...>', r'#\s*include\s*<ode/', r'src/ode/', True),
     ('include EGL or OpenGL', r'#\s*include\s*<(EGL|GL|GLES\w*)/', r'src/render/', True),
@@ -67,7 +67,8 @@ DUTIES = [
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
-    # Simulators are started by host/spawn_*.c (processes through its fork_server); the rest are helpers of one module each.
+    # Simulators are started by host/spawn_*.c (processes through its fork_server); the rest are helpers of one module
+    # each.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
@@ -86,13 +87,13 @@ def without_comments(text):
 
 
 def without_strings(text):
-    """Includes keep their names: they are no strings."""
+    """Blanks strings; names in includes stay."""
     return '\n'.join(line if re.match(r'\s*#\s*include', line) else
                      re.sub(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'', blank, line) for line in text.split('\n'))
 
 
 def included(code):
-    """(line, name) of each file that these lines include by a name in quotes."""
+    """(line, name) of each include with a name in quotes."""
     for number, line in enumerate(code, 1):
         match = re.match(r'\s*#\s*include\s*"([^"]*)"', line)
         if match:
@@ -124,7 +125,7 @@ def check_duties(name, plain, code):
 
 
 def circles(files, edges):
-    """Groups of files that lead to each other: lists in the order of names. edges: {file: {file it leads to: line}}."""
+    """Groups of files that lead to each other: lists in the order of names. edges: {file: {target: line}}."""
     reach = {}
     for start in files:
         found, todo = set(), [start]
@@ -187,7 +188,7 @@ def check(root):
     return found + list(check_circles(codes))
 
 
-# One violation of each kind, and the line where it is seen (None: at the first file of its circle); then what must not be taken for one.
+# One violation of each kind, and its line (None: at the first file of its circle); then code that must not be reported.
 PLANTED = [
     ('src/motion/a.c', '\n#include "sim/sim.h"\n', 2),
     ('src/measure/a.h', '#include "table/slot.h"\n', 1),
@@ -237,7 +238,7 @@ ALLOWED = [
 
 
 def prove():
-    """The violations that this script is blind to, and the innocent lines that it blames."""
+    """Violations that this script misses, and permitted lines that it reports."""
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
         for name, text, *_ in PLANTED + ALLOWED:

@@ -1,4 +1,5 @@
-// The whole test framework: CHECK counts, and a failed one says where and what. main ends with CHECK_END.
+// The whole test framework: CHECK counts checks; a failed one prints its place and expression. main ends with
+// CHECK_END.
 #ifndef OB_TESTS_CHECK_H
 #define OB_TESTS_CHECK_H
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""fused.py BUILD: whether the compiler, told of a processor with fused multiply-adds, makes any that the source does not
-ask for: bits would then depend on how obsim was built. Looks at the assembler text of what plans a body's turn; an fma() of the
-source becomes another instruction than those looked for.
+"""fused.py BUILD: fails if the compiler, with a processor that has fused multiply-adds, generates any that the source
+does not request: bits would then depend on the build of obsim. It reads the assembler text of the code that plans a
+body's turn; an fma() of the source becomes another instruction than those searched.
 """
 import json
 import os

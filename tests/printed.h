@@ -1,4 +1,4 @@
-// What a function prints into a file, held against what it should: FILE *f = begin(); print(f); expect(f, "...");
+// Compares the printed output of a function with the expected one: FILE *f = begin(); print(f); expect(f, "...");
 #ifndef OB_TESTS_PRINTED_H
 #define OB_TESTS_PRINTED_H
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env -S python3 -IS
-"""private_shm.py PROGRAM ARGUMENT ..: runs a test with a /dev/shm of its own, in a mount namespace, so that tests on one
-machine do not meet there. Where that is not allowed it is everybody's, and names of its own keep the test apart.
+"""private_shm.py PROGRAM ARGUMENT ..: runs a test with a /dev/shm of its own, in a mount namespace, so that tests on
+one machine do not interfere. If that is not allowed, /dev/shm is shared, and unique names keep the tests apart.
 
 PRIVATE_SHM in the environment: options for the memory file system (tmpfs), such as size=32m.
 """
@@ -21,7 +21,7 @@ def write(path, text):
 
 
 def enter_namespace():
-	"""As one's own user and group in a user namespace, where the outer one does not allow to mount."""
+	"""Enters a user namespace with the same user and group, if the outer one does not allow mounts."""
 	if libc.unshare(CLONE_NEWNS) == 0:
 		return True
 	user, group = os.geteuid(), os.getegid()

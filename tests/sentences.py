@@ -2,7 +2,7 @@
 """Counts sentences of comments and documents that open with a word which makes readers search for the subject, and long
 sentences of documents. Prints a line for each folder above its ceiling; exit 1 if there is any.
 
-sentences.py ROOT [-v] [FOLDER...]    checks ROOT, or only the folders named; -v: prints a line for each folder and sentence
+sentences.py ROOT [-v] [FOLDER...]    checks ROOT, or only the folders named; -v: lists all folders and sentences
 First it plants violations in a tree of its own, and fails if it does not see each of them.
 """
 import ast
@@ -185,7 +185,7 @@ def measure(root):
 
 
 def above(name, folder):
-    """Why a folder is above its ceilings: a list of texts."""
+    """Reasons for which a folder is above its ceilings: a list of texts."""
     found = []
     ceiling = CEILINGS.get(name, CEILING)
     if folder.share() > ceiling:
@@ -215,7 +215,7 @@ PLANTED = [
 
 
 def prove():
-    """The planted lines that this script judges wrongly."""
+    """Planted lines that this script judges wrongly."""
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
         for number, (name, text, count, lines) in enumerate(PLANTED):

@@ -1,4 +1,5 @@
-// Files from anybody: whatever is no regular file, or larger than allowed, is refused at once, and nothing waits for it.
+// Files from untrusted sources: anything but a regular file, or a larger one than allowed, is refused at once, without
+// waiting.
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>

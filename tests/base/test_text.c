@@ -36,7 +36,7 @@ static void test_csv_round_trip(void)
 	char *at = cell[2];
 	for (int i = 0; i < NUMBERS; i++)
 		CHECK(strtod(at, &at) == numbers[i]);
-	CHECK(!*at && strncmp(cell[2], "0 0.1 0.333", 11) == 0); // no digit more than it takes
+	CHECK(!*at && strncmp(cell[2], "0 0.1 0.333", 11) == 0); // only as many digits as needed
 	free(text);
 }
 
@@ -71,7 +71,7 @@ static void test_utf8(void)
 		{ "\xf4\x8f\xbf\xbf", 4, 0x10ffff },
 		{ "\xff", 0, OB_UTF8_REPLACEMENT },
 		{ "\x80", 0, OB_UTF8_REPLACEMENT },
-		{ "\xc3", 0, OB_UTF8_REPLACEMENT }, // cut short
+		{ "\xc3", 0, OB_UTF8_REPLACEMENT }, // truncated
 		{ "\xe2\x88", 0, OB_UTF8_REPLACEMENT },
 		{ "\xc0\xaf", 0, OB_UTF8_REPLACEMENT }, // overlong
 		{ "\xe0\x80\xaf", 0, OB_UTF8_REPLACEMENT },
@@ -97,7 +97,7 @@ static void check_plain(const char *text, const char *plain)
 	CHECK(strcmp(copy, plain) == 0);
 }
 
-// What reaches a terminal as text is text there.
+// Text for a terminal stays text there.
 static void test_plain(void)
 {
 	check_plain("", "");
@@ -105,12 +105,12 @@ static void test_plain(void)
 		    "a box, k\xc3\xb6ln \xe2\x88\x92 \xf0\x9f\x93\xa6");
 	check_plain("a\033[2J\nb\tc\x7f", "a [2J b c ");
 	check_plain("a\xc2\x9b"
-		    "31mb", // CSI, of Latin-1
+		    "31mb", // CSI of Latin-1
 		    "a?31mb");
 	check_plain("\x9b"
-		    "31m\xff\xe2\x88", // as a byte; cut short
+		    "31m\xff\xe2\x88", // as a byte; truncated
 		    "?31m???");
-	check_plain("exe.\xe2\x80\xaegnp", "exe.?gnp"); // from right to left
+	check_plain("exe.\xe2\x80\xaegnp", "exe.?gnp"); // right-to-left override
 	check_plain("a\xe2\x81\xa6\xe2\x80\xa8\xe2\x80\x8f\xd8\x9c", "a????");
 	ob_error e;
 	ob_fail(&e, "%s: %s", "x\033]0;t\a", "\xc2\x85");

@@ -1,5 +1,5 @@
-// What a comparison says of made-up runs: each answer has to follow from the figures, and change with them. What each
-// run is told to do.
+// Verdicts of a comparison from made-up runs: each answer must follow from the figures, and change with them. Options
+// of each run.
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -89,7 +89,7 @@ static void test_ratio(void)
 {
 	ob_comparison *c = make(1.2, 3, RUNS);
 	const ob_sweep_point *p = c->point;
-	// run by run the drift of the machine cancels out
+	// run by run, the drift of the machine cancels out
 	ob_spread r = ob_comparison_ratio(c, p, OB_CONFIGURATION_PROCESSES, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
 	CHECK_NEAR(r.median, 1.2, 1e-12);
 	CHECK_NEAR(r.low, 1.2, 1e-12);
@@ -100,7 +100,7 @@ static void test_ratio(void)
 	CHECK(isnan(
 		ob_comparison_ratio(c, p, OB_CONFIGURATION_GROUPS, OB_CONFIGURATION_THREADS, OB_COMPARE_COST).median));
 	CHECK_NEAR(ob_comparison_spread(c, p, OB_CONFIGURATION_THREADS, OB_COMPARE_EXPLAINED).median, .95, 1e-12);
-	// what is measured along one run of object simulators holds for all of them
+	// errors measured along one run of object simulators hold for all of them
 	CHECK(isnan(ob_comparison_spread(c, p, OB_CONFIGURATION_PROCESSES, OB_COMPARE_WORST).median));
 	add(c, OB_CONFIGURATION_THREADS, OB_COMPARE_MEASURED, 0, .004, "0123456789abcdef");
 	CHECK_NEAR(ob_comparison_spread(c, p, OB_CONFIGURATION_PROCESSES, OB_COMPARE_WORST).median, .004, 0);
@@ -108,7 +108,7 @@ static void test_ratio(void)
 	finish(c);
 }
 
-// Words and numbers alone, a blank between them
+// Squeezes to words and numbers, with a blank between them.
 static void squeeze(char *text)
 {
 	char *to = text;
@@ -131,7 +131,7 @@ static void test_text(void)
 	CHECK(strstr(v.sum, "95.0 %"));
 	CHECK(!strstr(v.answer, "groups of"));
 	CHECK(strstr(v.answer, "1.00 times the CPU of a pool of threads (1.00 to 1.00)"));
-	// asked for the other way round, it is still boxes against shapes
+	// requested the other way round, it is still boxes against shapes
 	c->narrow = "aabb";
 	c->other = "obb";
 	ob_verdict_make(&v, c, c->point);
@@ -139,7 +139,7 @@ static void test_text(void)
 	finish(c);
 }
 
-// Each measure's price is over the same run without it, run by run.
+// The price of a measure is relative to the same run without it, run by run.
 static void add_containment(ob_comparison *c, ob_configuration_id id, double cpu, double wall)
 {
 	fill(c, id, cpu);
@@ -155,7 +155,7 @@ static void test_prices(void)
 	ob_comparison *c = make(1, 3, RUNS);
 	ob_table *t = ob_comparison_prices(c, c->point);
 	CHECK(!t);
-	for (int i = 0; i < RUNS; i++) { // of the plain pool
+	for (int i = 0; i < RUNS; i++) { // the plain pool's
 		ob_record *r = &c->records.record[2 * RUNS + i];
 		CHECK(!strcmp(r->configuration, "processes"));
 		r->metric[OB_COMPARE_CPU] = r->metric[OB_COMPARE_WALL] = 1 + .5 * i;
@@ -186,7 +186,7 @@ static void test_agreement(void)
 {
 	ob_comparison *c = make(1, 3, RUNS);
 	const ob_sweep_point *p = c->point;
-	for (size_t i = 0; i < c->records.count; i++) { // these need not
+	for (size_t i = 0; i < c->records.count; i++) { // these are optional
 		ob_record *r = &c->records.record[i];
 		if (!strcmp(r->configuration, "threads_other") || !strcmp(r->configuration, "monolith"))
 			strcpy(r->note, r->configuration);
@@ -196,7 +196,7 @@ static void test_agreement(void)
 	CHECK(!strcmp(last->configuration, "processes"));
 	strcpy(last->note, "another");
 	CHECK(!ob_comparison_agrees(c, p));
-	last->seed = 5; // where another state is to be expected
+	last->seed = 5; // another state is expected
 	CHECK(ob_comparison_agrees(c, p));
 	add(c, OB_CONFIGURATION_THREADS, OB_COMPARE_MEASURED, 0, .004, "another");
 	CHECK(!ob_comparison_agrees(c, p));
@@ -267,7 +267,7 @@ static void test_one_run(void)
 	finish(c);
 }
 
-// ---- what each run is told to do
+// ---- options of each run
 
 static bool says(char **argv, const char *word)
 {

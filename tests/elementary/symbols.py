@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
-"""What the built modules and the libraries under them import of the mathematics of the C library: of what enters the
-state, only functions that IEEE 754 rounds exactly, so that the bits do not depend on the processor.
+"""Checks the mathematical functions that built modules and their libraries import from the C library. Code that
+computes state may use only functions that IEEE 754 rounds exactly, so that the bits do not depend on the processor.
 
-symbols.py NM OBSIM MODULE.a...    the program, and the modules whose results enter the state
+symbols.py NM OBSIM MODULE.a...    the program, and the modules that compute state
 """
 import re
 import subprocess
 import sys
 
-# Exact, or rounded as IEEE 754 says, in every library.
+# Exact, or rounded by IEEE 754, in every library.
 EXACT = {"ceil", "copysign", "fabs", "fdim", "floor", "fma", "fmax", "fmin", "fmod", "frexp", "ilogb", "ldexp", "llrint",
 	"llround", "logb", "lrint", "lround", "modf", "nearbyint", "nextafter", "remainder", "rint", "round", "roundeven",
 	"scalbln", "scalbn", "sqrt", "trunc"}
-# Of the libraries that compute what enters the state; each must be there, or this looks for the wrong names.
+# Libraries that compute state; each must be present, or this searches for the wrong names.
 LIBRARIES = ["libode", "liblua", "libqhull"]
 
 
 def symbols(nm, file, *options):
-	"""The names that nm prints of this file, without versions."""
+	"""Names that nm prints for this file, without versions."""
 	lines = subprocess.run([nm, *options, file], check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
 	return {line.split()[-1].partition("@")[0] for line in lines if re.match(r"[0-9a-f ]* \w \S", line)}
 

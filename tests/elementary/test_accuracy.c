@@ -1,5 +1,5 @@
-// How far the functions are from what MPFR finds with 200 bits, in units in the last place of the double next to it:
-// not farther than elementary.h says, over ranges where each is used and over all doubles.
+// Errors of the functions against MPFR with 200 bits, in units in the last place of the nearest double. They must stay
+// within the bounds of elementary.h, over the usual ranges and over all doubles.
 #include <float.h>
 #include <mpfr.h>
 #include <stdint.h>
@@ -13,7 +13,7 @@ enum { DRAWS = 10000, BITS = 200 };
 
 static uint64_t seed = 1;
 
-// Any double in [low, high], all exponents alike
+// Any double in [low, high], all exponents alike.
 static double any_double(double low, double high)
 {
 	double x;
@@ -29,8 +29,8 @@ static double drawn(double low, double high, int k)
 	return k % 2 && isfinite(low) && isfinite(high) ? ob_splitmix_within(&seed, low, high) : any_double(low, high);
 }
 
-// Units in the last place between what was got and what is right. What rounds to an infinity is to be one, or the
-// largest double.
+// Units in the last place between the result and the exact value. A value that rounds to an infinity must give that, or
+// the largest double.
 static double error_of(double got, const mpfr_t right)
 {
 	const double nearest = mpfr_get_d(right, MPFR_RNDN);
@@ -133,7 +133,7 @@ static void check_functions_of_one(void)
 	}
 }
 
-// The doubles next to multiples of pi / 2, where the reduction loses most; the last is the nearest of all, 2^-61 off
+// Doubles next to multiples of pi / 2, where the reduction loses most; the last is the nearest of all, 2^-61 off
 // (Muller, "Elementary Functions", section 11.3.2).
 static void check_near_quarters(void)
 {

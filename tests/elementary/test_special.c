@@ -1,4 +1,4 @@
-// What is exact, and what annex F of C17 says of zeros, infinities and what is no number.
+// Exact results, and the rules of annex F of C17 for zeros, infinities and NaN.
 #include <float.h>
 #include <stdbool.h>
 
@@ -6,7 +6,7 @@
 #include "elementary/elementary.h"
 #include "motion/random.h"
 
-// The same number, with the same sign where it is 0
+// True for the same number, with the same sign if it is 0.
 static bool is(double a, double b)
 {
 	return isnan(b) ? isnan(a) : a == b && signbit(a) == signbit(b);

@@ -1,4 +1,4 @@
-// Small worlds for tests of engines, and running them.
+// Small worlds for tests of engines.
 #ifndef OB_TESTS_PEER_LITTLE_WORLD_H
 #define OB_TESTS_PEER_LITTLE_WORLD_H
 
@@ -7,7 +7,7 @@
 enum { LITTLE_MOST = 256 }; // objects
 
 typedef struct little_world {
-	ob_world world; // as it began
+	ob_world world; // initial state
 	ob_state now[LITTLE_MOST]; // after little_run
 } little_world;
 
@@ -19,11 +19,11 @@ uint32_t little_ground(little_world *l);
 uint32_t little_cube(little_world *l, double mass, double half, ob_vec3 p);
 uint32_t little_sphere(little_world *l, double mass, double radius, ob_vec3 p);
 
-// Makes an engine with its usual settings but for the number of substeps (0: those, too); a failure ends the test.
+// Makes an engine with its usual settings except for the number of substeps (0: usual, too); a failure ends the test.
 ob_engine *little_make(const ob_engine_kind *kind, const little_world *l, uint32_t substeps);
-// "seconds" on, then a look at the states.
+// Steps for so many seconds, then reads the states.
 void little_step(const ob_engine_kind *kind, ob_engine *p, little_world *l, double seconds);
-// All of it: make, step, destroy.
+// Makes, steps and destroys an engine.
 void little_run(const ob_engine_kind *kind, little_world *l, uint32_t substeps, double seconds);
 
 #endif

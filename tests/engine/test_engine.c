@@ -1,5 +1,5 @@
-// Every engine alike: what it is given is what it simulates. The bounds are wide enough for the crudest of them at its
-// usual iterations, and narrow enough that another friction, restitution, size, mass or force would fall outside.
+// All engines simulate the given world alike. The bounds are wide enough for the crudest of them at its usual
+// iterations. They are narrow enough to detect another friction, restitution, size, mass or force.
 //
 // test_engine NAME    77 (skipped): not built in
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static bool is(const char *name)
 	return strcmp(kind->name, name) == 0;
 }
 
-// Each with its lowest point .1 m above the ground; those that stand come to rest where they stand.
+// Each has its lowest point .1 m above the ground; stable ones come to rest upright.
 static void rest(void)
 {
 	little_world *l = little_world_new();
@@ -40,8 +40,8 @@ static void rest(void)
 	little_world_free(l);
 }
 
-// A capsule that stands on its end for a moment, and a ball that slips at first: it ends up rolling with 5/7 of its
-// speed, which is its inertia.
+// A capsule that stands on its end for a moment, and a ball that slips at first. The ball ends up rolling with 5/7 of
+// its speed, which tests its inertia.
 static void upright_and_rolling(void)
 {
 	little_world *l = little_world_new();
@@ -56,7 +56,7 @@ static void upright_and_rolling(void)
 	little_world_free(l);
 }
 
-// Two equal spheres and e = 1: they exchange their velocities, or at least keep what they have together.
+// Two equal spheres and e = 1: they exchange their velocities, or at least conserve the total.
 static void meeting(void)
 {
 	little_world *l = little_world_new();
@@ -66,9 +66,9 @@ static void meeting(void)
 	l->world.state[a].v.x = 3;
 	little_run(kind, l, 0, 1);
 	double sum = l->now[a].v.x + l->now[b].v.x;
-	if (!is("obsim-lag")) // each computes its own impulse, from what it knows of the other
+	if (!is("obsim-lag")) // each computes its own impulse, from its view of the other
 		CHECK_NEAR(sum, 3, 1e-5);
-	if (is("obsim-ghost")) { // each takes the other for infinitely heavy
+	if (is("obsim-ghost")) { // each treats the other as infinitely heavy
 		CHECK_NEAR(l->now[a].v.x, -3, .1);
 		CHECK_NEAR(l->now[b].v.x, 6, .1);
 	} else if (!is("obsim-lag")) {
@@ -79,7 +79,7 @@ static void meeting(void)
 	little_world_free(l);
 }
 
-// Force and mass, and that a frame is a frame however it is divided.
+// Force and mass; and a frame's result does not depend on its substeps.
 static void force(uint32_t substeps)
 {
 	little_world *l = little_world_new();
@@ -90,7 +90,7 @@ static void force(uint32_t substeps)
 	little_run(kind, l, substeps, 1);
 	ob_state s = l->now[pushed], f = l->now[fallen];
 	CHECK_NEAR(s.v.x, 3, 1e-4);
-	CHECK_NEAR(s.pose.p.x, 1.5, 1.5 / 60 + 1e-4); // a first-order step is up to h a t / 2 off
+	CHECK_NEAR(s.pose.p.x, 1.5, 1.5 / 60 + 1e-4); // the error of a first-order step is up to h a t / 2
 	CHECK_NEAR(s.v.y, -2, 1e-4);
 	CHECK_NEAR(f.v.x, 0, 1e-6);
 	CHECK_NEAR(f.v.y, -2, 1e-4);
@@ -99,7 +99,7 @@ static void force(uint32_t substeps)
 	little_world_free(l);
 }
 
-// sqrt(.16) = .4 for the pair: the product would be .16, the mean .58.
+// The pair's friction is sqrt(.16) = .4: the product would be .16, the mean .58.
 static void friction(void)
 {
 	little_world *l = little_world_new();
@@ -116,7 +116,7 @@ static void friction(void)
 	little_world_free(l);
 }
 
-// The larger of 0 and .8: back to .64 of the height. Looked at over the time about the apex.
+// The larger of 0 and .8: back to .64 of the height, over the time around the apex.
 static void bounce(void)
 {
 	little_world *l = little_world_new();
@@ -135,8 +135,8 @@ static void bounce(void)
 	little_world_free(l);
 }
 
-// A plane is where its pose puts it: a wall at x = 2 that looks back, and a floor at z = 1 that is tilted by less than
-// what friction holds.
+// A plane lies at its pose: a wall at x = 2 that faces back, and a floor at z = 1 with a slope below the angle of
+// friction.
 static void planes(void)
 {
 	little_world *l = little_world_new();
@@ -158,7 +158,7 @@ static void planes(void)
 	little_world_free(l);
 }
 
-// Two at once, in one thread; and what cannot be made says why.
+// Two at once, in one thread; and a failed creation gives a reason.
 static void life(void)
 {
 	little_world *l = little_world_new();
@@ -184,7 +184,7 @@ static void life(void)
 	little_world_free(l);
 }
 
-// Substeps by a tolerance, which only obsim can do: a stack may sag by that much.
+// Substeps by a tolerance, which only obsim supports: a stack may sag by that much.
 static void tolerance(void)
 {
 	little_world *l = little_world_new();
@@ -208,7 +208,7 @@ static void tolerance(void)
 	little_world_free(l);
 }
 
-// A heap that tumbles, twice: the same bits, whatever ran before in the process.
+// A tumbling heap, twice: the same bits, whatever ran before in the process.
 static void again(void)
 {
 	little_world *l = little_world_new();
@@ -225,7 +225,7 @@ static void again(void)
 	little_world_free(l);
 }
 
-// Rests and is asked for rest: the same state to the last bit, frame after frame.
+// A body at rest with sleeping enabled: the same state to the last bit, frame after frame.
 static void sleep_on(void)
 {
 	if (is("mujoco")) // has no sleeping
@@ -247,8 +247,8 @@ static void sleep_on(void)
 	little_world_free(l);
 }
 
-// Two tables are where they are told to be, one that swings and one that turns as it goes up, whatever stands on them;
-// cubes ride along, for friction holds them.
+// Two tables follow their prescribed motions under any load, one swinging and one turning as it rises; cubes ride along
+// by friction.
 static void driven(void)
 {
 	if (kind->drives < OB_WORLD_DRIVES_BODIES)
@@ -271,7 +271,7 @@ static void driven(void)
 	CHECK_NEAR(table[SWINGS].pose.p.x, exact, 1e-5); // single precision
 	CHECK_NEAR(table[TURNS].pose.p.z, -.1 + 2 * climb, 1e-5);
 	CHECK_NEAR(table[TURNS].pose.q.z, sin(rate), 1e-5);
-	if (!is("obsim-ghost")) { // which answers contacts as if alone
+	if (!is("obsim-ghost")) { // it treats each contact alone
 		CHECK_NEAR(l->now[rider].pose.p.x, exact, .02);
 		CHECK_NEAR(l->now[rider].v.x, -.3 * f * sin(2 * f), .05);
 		CHECK_NEAR(l->now[turned].pose.p.x, 5 + .2 * cos(2 * rate), .02);

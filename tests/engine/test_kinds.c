@@ -1,4 +1,4 @@
-// The list of engines: found by name, each with all that a legend and a sweep need, and none like another.
+// List of engines: found by name, each with all data for a legend and a sweep, and all different.
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 #include "../check.h"
 
-// What falls into a heap shows any difference between two engines.
+// A collapsing heap shows any difference between two engines.
 static void differ(void)
 {
 	static ob_state end[16][LITTLE_MOST];
@@ -27,7 +27,7 @@ static void differ(void)
 	little_world_free(l);
 }
 
-// A world's bodies have the inertia that the host would give them, but for rounding.
+// A world's bodies have the inertia that the host would compute, up to rounding.
 static void inertia(void)
 {
 	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
@@ -54,7 +54,7 @@ int main(void)
 		CHECK((*k)->usual.step_length > 0 && (*k)->usual.substeps > 0);
 		bool usual_is_a_choice = !(*k)->usual.iterations;
 		for (int i = 0; (*k)->iteration_choice[i]; i++) {
-			CHECK(i < 7); // 0 ends
+			CHECK(i < 7); // 0 ends the list
 			CHECK(!i || (*k)->iteration_choice[i] > (*k)->iteration_choice[i - 1]);
 			usual_is_a_choice |= (*k)->iteration_choice[i] == (*k)->usual.iterations;
 		}

@@ -1,4 +1,4 @@
-// The line of progress, which is the same for all commands.
+// Line of progress, common to all commands.
 #include <math.h>
 #include <string.h>
 

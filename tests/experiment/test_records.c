@@ -1,4 +1,4 @@
-// Records: their file, and what they say together.
+// Records: their file, and their analysis.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,7 +75,7 @@ static void test_file(const char *path)
 {
 	ob_records out = { 0 }, in = { 0 };
 	ob_error e;
-	CHECK(ob_records_read(&in, &x, path, &e) && in.count == 0); // there is none
+	CHECK(ob_records_read(&in, &x, path, &e) && in.count == 0); // a missing file
 	fill(&out);
 	CHECK(ob_records_write(&out, &x, path, &e) && ob_records_read(&in, &x, path, &e));
 	CHECK(in.count == out.count);
@@ -115,7 +115,7 @@ static void refuse(const char *path, const char *text, const char *saying)
 	CHECK(strstr(e.text, saying));
 }
 
-// The file with some text replaced by another, which has to be refused
+// Replaces a text in the file; reading must fail.
 static void refuse_changed(const char *path, const char *whole, const char *old, const char *new, const char *saying)
 {
 	const char *at = strstr(whole, old);
@@ -126,7 +126,7 @@ static void refuse_changed(const char *path, const char *whole, const char *old,
 	free(changed);
 }
 
-// What cannot be written whole leaves the old file as it is, and nothing beside it.
+// A failed write leaves the old file as it is, and nothing beside it.
 static void test_full_disk(const char *path, const ob_records *r, const char *whole)
 {
 	char beside[80];
@@ -158,7 +158,7 @@ static void test_broken_file(const char *path)
 		refuse_changed(path, whole, "e-300", "e-300x", ":2: error_m");
 		refuse_changed(path, whole, ",crash,", ",bored,", "no failure 'bored'");
 		size_t n = strlen(whole);
-		for (size_t cut = 1; cut < n; cut++) { // a line that was being written is left out
+		for (size_t cut = 1; cut < n; cut++) { // a truncated line is ignored
 			ob_records r = { 0 };
 			write_text(path, whole, n - cut);
 			if (ob_records_read(&r, &x, path, &e))

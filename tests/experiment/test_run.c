@@ -1,4 +1,4 @@
-// Trials that do what no trial should, each in its process; and the experiment that goes on after them, and is resumed.
+// Trials that misbehave in every way, each in its process; the experiment goes on after them, and is resumed.
 #include <math.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ static const ob_metric metrics[] = {
 	{ .key = "error_m", .title = "error", .unit = "mm", .scale = 1e3, .target = 1 },
 };
 
-// A trial does what its case is called.
+// Does what the name of the case says.
 static bool run(const ob_trial *t, ob_record *out, ob_error *e)
 {
 	volatile unsigned i = 0;
@@ -29,7 +29,7 @@ static bool run(const ob_trial *t, ob_record *out, ob_error *e)
 		fprintf(stderr, "something else\nbody 3 is no body\n");
 		abort();
 	}
-	if (!strcmp(t->of, "chatter")) // more than a pipe holds
+	if (!strcmp(t->of, "chatter")) // more than a pipe's capacity
 		for (int n = 0; n < 5000; n++)
 			fprintf(stderr, "line %d of many, each as boring as the one before\n", n);
 	if (!strcmp(t->of, "kill"))
@@ -42,7 +42,7 @@ static bool run(const ob_trial *t, ob_record *out, ob_error *e)
 		pause();
 	while (!strcmp(t->of, "busy"))
 		i++;
-	if (!strcmp(t->of, "orphan") && fork() == 0) // whom nobody would end
+	if (!strcmp(t->of, "orphan") && fork() == 0) // a child that nothing else would end
 		for (;;)
 			pause();
 	return strcmp(t->of, "impossible") || ob_fail(e, "no such tolerance");
@@ -85,7 +85,7 @@ static ob_record once(const char *of, double limit)
 	if (!fine)
 		fprintf(stderr, "%s: %s\n", of, e.text);
 	CHECK(fine && r.count == 1);
-	CHECK(waitpid(-1, NULL, WNOHANG) < 0); // nobody is left
+	CHECK(waitpid(-1, NULL, WNOHANG) < 0); // no child is left
 	ob_record one = r.count ? r.record[0] : (ob_record){ 0 };
 	ob_records_finish(&r);
 	ob_trials_finish(&s);
@@ -114,12 +114,12 @@ static void test_outcomes(void)
 	expect("chatter", 20, OB_FAILURE_CRASH,
 	       "ended with status 7: line 4999 of many, each as boring as the one before");
 	expect("hang", .1, OB_FAILURE_TIME, "ran longer than 0.4 s");
-	ob_record r = once("busy", .1); // on a machine that has little time for it, the other limit ends it
+	ob_record r = once("busy", .1); // on a machine with little time for it, the other limit ends it
 	CHECK(r.failure == OB_FAILURE_TIME);
 	CHECK(r.took_cpu_s >= .1 ? strstr(r.reason, "0.1 s of CPU") : strstr(r.reason, "0.4 s"));
 }
 
-// A schedule with repeats, whose folder says what is done already
+// A schedule with repeats; the folder's results are not measured again.
 static void test_resume(const char *folder)
 {
 	ob_experiment x = make(.05);
@@ -133,7 +133,7 @@ static void test_resume(const char *folder)
 	CHECK(ob_trials_repeat(&s, 0, 3, OB_ORDER_SAME, false) && s.count == 12);
 	CHECK(ob_experiment_open(&x, folder, &r, &e) && r.count == 0);
 	CHECK(ob_experiment_run(&x, &s, &r, folder, &e));
-	CHECK(r.count == 6); // what failed is not asked again
+	CHECK(r.count == 6); // failures are not repeated
 	const ob_record *coarse = ob_records_find(&r, "hang", "1", 0, 0),
 			*fine = ob_records_find(&r, "hang", "2", 0, 0);
 	CHECK(coarse && fine && coarse->took_s == fine->took_s && fine->failure == OB_FAILURE_TIME); // untried
@@ -152,7 +152,7 @@ static void test_resume(const char *folder)
 	ob_records_finish(&r);
 	ob_trials_finish(&s);
 
-	x.commit = "another"; // its results are put aside
+	x.commit = "another"; // its results are set aside
 	char aside[128];
 	snprintf(aside, sizeof aside, "%s/results-1.csv", folder);
 	CHECK(ob_experiment_open(&x, folder, &r, &e) && r.count == 0 && access(aside, R_OK) == 0);
@@ -184,14 +184,14 @@ static void test_interrupted(const char *folder)
 	add(&s, "interrupt", "1");
 	CHECK(ob_experiment_open(&x, folder, &r, &e));
 	CHECK(!ob_experiment_run(&x, &s, &r, folder, &e) && strstr(e.text, "interrupted: 1 of 2"));
-	CHECK(r.count == 1); // what was done is there
+	CHECK(r.count == 1); // completed ones are there
 	ob_records_finish(&r);
 	CHECK(ob_experiment_open(&x, folder, &r, &e) && r.count == 1);
 	CHECK(!ob_experiment_run(&x, &s, &r, "/no/such/folder", &e) && strstr(e.text, "/no/such/folder"));
 	ob_records_finish(&r);
 	ob_trials_finish(&s);
 	ob_processes_begin();
-	CHECK(!ob_processes_interrupted()); // told once
+	CHECK(!ob_processes_interrupted()); // reported once
 	ob_processes_end();
 }
 

@@ -33,7 +33,7 @@ static void test_forms(void)
 	ob_table_free(t);
 }
 
-// A heading goes over all columns, and makes none wider.
+// A heading spans all columns, and widens none.
 static void test_heading(void)
 {
 	ob_table *t = ob_table_new("lr");
@@ -54,7 +54,7 @@ static void test_heading(void)
 	ob_table_free(t);
 }
 
-// What does not fit stands below, behind the first column again.
+// Columns that do not fit follow below, behind the first column again.
 static void test_panels(void)
 {
 	ob_table *t = ob_table_new("lrrr");

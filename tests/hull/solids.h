@@ -1,4 +1,4 @@
-// The five regular solids, of edge length 1 about the origin.
+// The five regular solids, with edge length 1, about the origin.
 #ifndef OB_TESTS_SOLIDS_H
 #define OB_TESTS_SOLIDS_H
 
@@ -8,7 +8,7 @@ typedef struct solid {
 	const char *name;
 	int corners, faces, edges;
 	double volume, inertia, inner,
-		radius; // m^3; m^2, of a kilogram, about any axis; m, of the spheres in it and about it
+		radius; // m^3; m^2, per kilogram, about any axis; m, of the inscribed and circumscribed spheres
 	ob_vec3 corner[20];
 } solid;
 

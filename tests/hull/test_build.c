@@ -1,5 +1,5 @@
-// Hulls of points: the regular solids against their closed forms, the same hull from the same points however they are
-// given, hulls of many kinds that hold together, and points that have none.
+// Hulls of points: regular solids against their closed forms; the same hull from the same points in any form;
+// consistent hulls of many kinds; points without a hull.
 #include "hull/hull.h"
 
 #include <stdlib.h>
@@ -61,7 +61,7 @@ static void check_solids(void)
 
 // ---- any hull
 
-// Everything that a hull says of itself holds, and all of these points are in it.
+// Checks that a hull is consistent, and contains all of these points.
 static void check_whole(const ob_hull *h, const ob_vec3 *point, size_t n)
 {
 	const double near = 1e-11 * h->radius;
@@ -191,7 +191,7 @@ static void check_elsewhere(uint64_t *seed, const ob_hull *h, const ob_vec3 *poi
 	CHECK_NEAR(there.thickness, h->thickness, 1e-10 * h->radius);
 }
 
-// The corners as they were given: points of the caller's, of which the same hull is built.
+// The corners as given: some of the caller's points, which give the same hull.
 static void check_corners(const ob_hull *h, const ob_vec3 *point, size_t n)
 {
 	ob_hull_corners c;
@@ -229,7 +229,7 @@ static void check_many(void)
 	}
 }
 
-// ---- none
+// ---- points without a hull
 
 static void check_none(void)
 {

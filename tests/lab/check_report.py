@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""check_report.py WRITER: the report that WRITER writes is whole, well-formed, leads nowhere outside, and is the same
-each time."""
+"""check_report.py WRITER: WRITER's report is complete, well-formed, without outside links, and the same each time."""
 import html.parser
 import pathlib
 import re
@@ -61,7 +60,7 @@ def main():
     plots = {name for name in first if name.startswith('plots/')}
     assert {'plots/stack-10.svg', 'plots/stack-10.png', 'plots/order-pile.svg', 'plots/all-cases.svg',
             'plots/all-ghost.svg', 'plots/lag.svg'} <= plots, plots
-    # each diagram once, but for that of late partners, which has a section and a case
+    # each diagram once, except the one of late partners, which has a section and a case
     cases = checker.ids.count('stack-10') and page.count('<section id=')
     assert cases > 30 and checker.svgs == len(plots) / 2 + 1 and checker.tables == 4 + 2 * cases, (cases, checker.svgs)
     print(f'{cases} cases, {len(plots)} plots, {len(page) / 1e6:.2f} MB')

@@ -139,7 +139,7 @@ ob_state exact_halt(const ob_world *w, uint32_t id, double t)
 	return s;
 }
 
-// Stopped from the first: only where it ends is looked at.
+// At rest from the first: only the final state is read.
 ob_state exact_plate(const ob_world *w, uint32_t id, double t)
 {
 	ob_state s = w->state[id];
@@ -149,7 +149,7 @@ ob_state exact_plate(const ob_world *w, uint32_t id, double t)
 	ob_reference_plate plate = { p->shape == OB_SHAPE_CYLINDER, p->size.x, p->size.y, p->friction, -w->gravity.z };
 	ob_reference_plate_state start = { .vx = s.v.x, .vy = s.v.y, .w = s.w.z };
 	start.angle = 2 * atan2(s.pose.q.z, s.pose.q.w);
-	if (t > 1.99) { // earlier ones cost time, and nobody looks
+	if (t > 1.99) { // earlier ones would take time, and are not read
 		ob_reference_plate_state end = ob_reference_plate_slide(&plate, start, t);
 		s.pose.p = ob_add(s.pose.p, ob_v3(end.x, end.y, 0));
 		s.pose.q = ob_quat_turn(s.pose.q, ob_v3(0, 0, end.angle - start.angle));

@@ -6,7 +6,7 @@ struct ob_engine {
 	const ob_world *world; // lives as long as the engine in every trial
 	exact_motion motion;
 	double step;
-	int frame, last; // from "last" on something is wrong
+	int frame, last; // faulty from frame "last" on
 };
 
 static exact_motion in_use;

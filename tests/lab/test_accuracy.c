@@ -1,4 +1,4 @@
-// accuracy CASE: obsim at its usual settings keeps every promise of the case. Cost is not looked at.
+// accuracy CASE: obsim at its usual settings meets all targets of the case. Cost is ignored.
 #include <string.h>
 
 #include "check.h"
@@ -13,7 +13,7 @@ int main(int argc, char **argv)
 	}
 	const ob_engine_kind *kind = ob_engine_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
 	ob_run_settings settings = kind->usual;
-	settings.lag = 0; // the promise of those who read late holds for those who do not
+	settings.lag = 0; // the targets hold for engines without late partners
 	ob_case_result out;
 	ob_error e = { "" };
 	if (!ob_case_run(c, kind, &settings, &out, &e)) {

@@ -1,4 +1,4 @@
-// The audit of made-up results: what rises is seen and named, what is as small as it need be is not.
+// Audit of made-up results: rises are found and named; errors at the level of rounding are not.
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 static ob_results made;
 
-// obsim in a case at a tolerance (m), or at so many substeps: all figures at "error" times their targets
+// obsim in a case at a tolerance (m), or at so many substeps: all figures at "error" times their targets.
 static ob_result *add(const char *name, double tolerance, uint32_t substeps, double error)
 {
 	ob_result r = { .of = ob_case_find(name), .engine = ob_engine_find("obsim") };
@@ -29,15 +29,15 @@ static ob_audit audit(const char *name)
 	return ob_lab_audit(&d, ob_case_find(name));
 }
 
-// First order in the substeps, from above the target to below
+// First order in the substeps, from above the target to below.
 static void test_falls(void)
 {
 	for (uint32_t n = 4; n <= 256; n *= 2)
 		add("apexes", 0, n, 64. / n);
 	add("apexes", 1e-2, 0, 3);
-	add("apexes", 1e-3, 0, 3.1); // as good as the same
-	add("apexes", 1e-5, 0, .5); // one in between was not run
-	add("apexes", 1e-3, 8, 99); // the usual setting is none of the audit
+	add("apexes", 1e-3, 0, 3.1); // practically the same
+	add("apexes", 1e-5, 0, .5); // the one between was not run
+	add("apexes", 1e-3, 8, 99); // the usual setting is not part of the audit
 	ob_audit a = audit("apexes");
 	CHECK(a.measured == 10 && a.above.figure < 0 && a.below.figure < 0);
 	CHECK_NEAR(a.order, 1, 1e-9);
@@ -52,12 +52,12 @@ static void test_rises(void)
 	add("bounce", 0, 4, .1);
 	add("bounce", 0, 8, .4);
 	add("bounce", 0, 16, 1e-5);
-	add("bounce", 0, 32, 9e-4); // as small as rounding
+	add("bounce", 0, 32, 9e-4); // at the level of rounding
 	ob_audit a = audit("bounce");
 	CHECK(a.above.figure == 0 && a.above.setting == 2 && a.below.figure == 0 && a.below.setting == 5);
 	CHECK_NEAR(a.above.times, 3, 1e-12);
 	CHECK_NEAR(a.below.times, 4, 1e-12);
-	add("bounce", 0, 64, .5)->outcome.figure[1] = 2; // of a target of 0 nothing is below
+	add("bounce", 0, 64, .5)->outcome.figure[1] = 2; // nothing is below a target of 0
 	a = audit("bounce");
 	CHECK(a.above.figure == 1 && isinf(a.above.times));
 }

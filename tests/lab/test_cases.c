@@ -1,5 +1,5 @@
-// Cases are measuring instruments: each must read nearly zero for the exact motion, and must not be content with an
-// engine that stands still, sees no contacts, or goes mad.
+// Cases are measuring instruments: each must read nearly zero for the exact motion, and must reject an engine that
+// stands still, has no contacts, or diverges.
 #include <string.h>
 
 #include "check.h"
@@ -42,7 +42,7 @@ static ob_case_result outcome(const ob_case *c, const ob_engine_kind *kind)
 	return out;
 }
 
-// All promised figures within their targets.
+// True if all promised figures are within their targets.
 static bool met(const ob_case *c, const ob_case_result *out)
 {
 	for (uint32_t i = 0; i < c->figures; i++)
@@ -59,11 +59,11 @@ static void print(const ob_case *c, const ob_engine_kind *kind, const ob_case_re
 	fprintf(stderr, " %s\n", *out->failed ? out->failed : "did not fail");
 }
 
-// What each case is fed: its exact motion, and which of the broken engines are right there: one where nothing shall
-// move, or one without contacts where there are none.
+// Input of each case: its exact motion, and the broken engines that are right there: one if nothing shall move, or one
+// without contacts if there are none.
 typedef struct expectation {
 	const char *name;
-	exact_motion motion; // NULL: not known in closed form
+	exact_motion motion; // NULL: no closed form known
 	enum { ALL_WRONG, FROZEN_IS_RIGHT, BLIND_IS_RIGHT } broken;
 } expectation;
 
@@ -143,7 +143,7 @@ static const expectation expected[] = {
 	{ "arch-falls", NULL, ALL_WRONG },
 };
 
-static double deepest_at_start; // m, of all runs
+static double deepest_at_start; // m, over all runs
 
 static void look_at_start(ob_case_run_state *t)
 {
@@ -158,8 +158,8 @@ static void accept(ob_case_run_state *t)
 	(void)t;
 }
 
-// No case begins with bodies in each other: an engine is not to be blamed for what it was given. (In SimBenchmark's
-// rolling scene all are .02 mm deep in what they stand on.)
+// No case begins with penetrations: an engine is not responsible for its input. (In SimBenchmark's rolling scene all
+// are .02 mm deep in their supports.)
 static void test_start(const ob_case *c)
 {
 	ob_case start = *c;
@@ -190,7 +190,7 @@ static void test_broken(const ob_case *c, const ob_engine_kind *kind, bool is_ri
 	CHECK(met(c, &out) == is_right);
 }
 
-// What an engine itself breaks is said, and no figure looks good.
+// A broken engine is reported, and no figure looks good.
 static void test_mad(const ob_case *c, const ob_engine_kind *kind, const char *why)
 {
 	ob_case_result out = outcome(c, kind);
@@ -200,7 +200,7 @@ static void test_mad(const ob_case *c, const ob_engine_kind *kind, const char *w
 	CHECK(out.body_seconds > 0);
 }
 
-// ---- calibration: errors of a known size must read as such
+// ---- calibration: errors of a known size must be measured as such
 
 static ob_state one_millimetre_off(const ob_world *w, uint32_t id, double t)
 {
@@ -263,7 +263,7 @@ static ob_state bouncing_high(const ob_world *w, uint32_t id, double t)
 static const struct calibration {
 	const char *name;
 	uint32_t figure;
-	double expected; // in the figure's unit
+	double expected; // in the unit of the figure
 	exact_motion motion;
 } calibrations[] = {
 	{ "projectile", 0, 1e-3, one_millimetre_off },

@@ -1,4 +1,4 @@
-// The watch on what is conserved: which worlds keep what, and errors of a known size must read as such.
+// Conservation checks: quantities conserved by each kind of world; errors of a known size must be measured as such.
 #include "lab/conservation.h"
 
 #include "check.h"
@@ -22,7 +22,7 @@ static void take(scene *s, double t)
 	}
 }
 
-// Two boxes far apart in free space, one of which spins
+// Two boxes far apart in free space, one of them spinning.
 static scene pair(void)
 {
 	scene s = { .world = { .gravity = { 0, 0, 0 } } };
@@ -55,7 +55,7 @@ static void test_closed(void)
 	ob_world_finish(&s.world);
 }
 
-// A ball that falls and gets back more than it had, some of it by being pushed out of the ground
+// A ball that falls and gets back more energy than it had, some of it from being pushed out of the ground.
 static void test_open(void)
 {
 	scene s = { .world = { .gravity = { 0, 0, -10 } } };
@@ -65,18 +65,18 @@ static void test_open(void)
 	CHECK(!c.closed && isnan(c.worst[OB_CONSERVED_MOMENTUM]) && isnan(c.worst[OB_CONSERVED_ANGULAR]));
 	take(&s, 0);
 	ob_conservation_look(&c, &s.now, 0);
-	s.world.state[1].pose.p.z = .4; // a fall of .6 m, and nothing left of it
+	s.world.state[1].pose.p.z = .4; // a fall of .6 m, then at rest
 	take(&s, 1);
 	ob_conservation_look(&c, &s.now, 0);
 	CHECK(c.worst[OB_CONSERVED_ENERGY] == 0);
-	s.world.state[1].pose.p.z = .6; // up by 4 J, of which 3 were told
+	s.world.state[1].pose.p.z = .6; // up by 4 J, of which 3 were reported
 	take(&s, 2);
 	ob_conservation_look(&c, &s.now, 3);
 	CHECK_NEAR(c.worst[OB_CONSERVED_ENERGY], 1 / (20 * .5), 1e-12);
 	ob_world_finish(&s.world);
 }
 
-// A constant force pulls: the world is not closed, and the force's work is no gain.
+// A constant force acts: the world is not closed, and the force's work is no gain.
 static void test_pulled(void)
 {
 	scene s = pair();

@@ -1,4 +1,4 @@
-// The report, of results that are made up: what it concludes, and that it is written whole.
+// Report of made-up results: its conclusions, and its complete files.
 //
 // test_report       the conclusions
 // test_report DIR   writes the report there, for check_report.py
@@ -53,7 +53,7 @@ static ob_result *add(const ob_case *c, int kind, uint32_t substeps, double figu
 	return r;
 }
 
-// Between 0 and 1, by two numbers
+// Value between 0 and 1, from two numbers.
 static double shade(unsigned a, unsigned b)
 {
 	unsigned h = (a * 2654435761u) ^ (b * 2246822519u);
@@ -62,7 +62,7 @@ static double shade(unsigned a, unsigned b)
 	return (h >> 8 & 0xffff) / 65536.;
 }
 
-// A curve of one engine in one case: "error" times the target at its first setting, falling by an order
+// Adds a curve of one engine in one case: "error" times the target at its first setting, falling by an order.
 static void add_curve(const ob_case *c, unsigned row, int kind, double error, double order, double cost)
 {
 	for (uint32_t n = 1, i = 0; n <= 32; n *= 2, i++) {
@@ -113,14 +113,14 @@ static void check_rows(void)
 	add(stack, OWN, 8, .5, 1e-6);
 	add(taller, OWN, 8, .5, 1e-6)->outcome.figure[0] = 1e3; // row 14, as the stack of 10
 	add(spin, OWN, 8, .5, 1e-6);
-	add(spin, OWN, 16, 9, 1e-6); // not at usual settings: does not count
+	add(spin, OWN, 16, 9, 1e-6); // not at usual settings: ignored
 	ob_lab_analysis d = ob_lab_analyse(&made);
 	ob_lab_analysis_rows rows = ob_lab_analysis_count_rows(&d);
 	CHECK(rows.measured == 2 && rows.met == 1);
 	CHECK(ob_lab_analysis_meets_all(&results[0]) && !ob_lab_analysis_meets_all(&results[1]));
 	CHECK_NEAR(ob_lab_analysis_ratio(&results[2]), .5 * 1.6, 1e-12); // its third figure
 	CHECK_NEAR(ob_lab_analysis_ratio(&results[1]), 2000, 1e-9);
-	const ob_case *wall = named("thin-wall"); // nothing but targets of 0
+	const ob_case *wall = named("thin-wall"); // all targets are 0
 	CHECK(ob_lab_analysis_ratio(add(wall, OWN, 8, 0, 1e-6)) == 0);
 	results[--made.count].outcome.figure[1] = 3;
 	CHECK(isinf(ob_lab_analysis_ratio(&results[made.count])) && !ob_lab_analysis_meets_all(&results[made.count]));
@@ -161,13 +161,13 @@ static void check_equal(void)
 	CHECK_NEAR(q.error, c->figure[0].target, 0);
 	CHECK_NEAR(q.own, 1e-6, 1e-18);
 	CHECK(q.cost[1] > 1e-6 && q.cost[1] <= 7e-6);
-	results[2].outcome.cpu_s = 5e-6; // now the other one gets there at half the cost
+	results[2].outcome.cpu_s = 5e-6; // now the other one reaches it at half the cost
 	results[1].outcome.cpu_s = 1e-6;
 	CHECK(!ob_lab_analysis_compare(&d, c).ahead);
-	results[0].outcome.figure[0] = 3 * c->figure[0].target; // obsim misses what the other one reaches
+	results[0].outcome.figure[0] = 3 * c->figure[0].target; // obsim misses the level of the other one
 	q = ob_lab_analysis_compare(&d, c);
 	CHECK(q.is_target && !q.ahead && isnan(q.own));
-	results[2].outcome.figure[0] = 9 * c->figure[0].target; // nobody gets there: at obsim's own
+	results[2].outcome.figure[0] = 9 * c->figure[0].target; // no engine reaches it: at obsim's own
 	q = ob_lab_analysis_compare(&d, c);
 	CHECK(!q.is_target && q.ahead && isnan(q.cost[1]));
 	CHECK_NEAR(q.error, 3 * c->figure[0].target, 0);
@@ -207,7 +207,7 @@ static void check_page(void)
 	CHECK(!strcmp(text, "a &lt;&amp;&gt; b&lt;&amp;&gt;"));
 }
 
-// Reports of nothing, and of one result, are written too; a place that cannot be written to is an error.
+// Reports of nothing, and of one result, are written too; an unwritable place is an error.
 static void check_little(void)
 {
 	char dir[] = "/tmp/obsim-report-XXXXXX", name[64];

@@ -1,4 +1,4 @@
-// Results: their order, how they come from records, what is read off them.
+// Results: their order, their conversion from records, values read from them.
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,7 +82,7 @@ static void add_record(ob_records *to, const char *of, const char *configuration
 	CHECK(ob_records_add(to, &r));
 }
 
-// From the experiment's records to results
+// Converts the experiment's records to results.
 static void test_records(void)
 {
 	ob_records from = { .machine = "A processor", .commit = "c0ffee" };
@@ -130,7 +130,7 @@ static void test_schedule(void)
 	ob_trials s = { 0 };
 	CHECK(ob_list_add_cases(&p.cases, "projectile") && ob_list_engines(&p.engines, "obsim,ode-quick", word));
 	CHECK(ob_sweep_parse(&p.sweep, "substeps=1,2", &e) && ob_lab_schedule(&p, &s, &e));
-	// the usual settings of each, and those that are swept; then the same again
+	// the usual settings of each, and the swept ones; then the same again
 	CHECK(s.count >= 8 && s.count % 2 == 0 && !strcmp(s.trial[0].of, "projectile"));
 	for (size_t i = 0; i < s.count; i++)
 		CHECK(s.trial[i].guess_s > 0 && s.trial[i].repeat == (i >= s.count / 2));

@@ -1,4 +1,4 @@
-// Settings to be swept, and cases and engines by name.
+// Swept settings, and cases and engines by name.
 #include <string.h>
 
 #include "check.h"
@@ -39,7 +39,7 @@ static void test_settings(void)
 	n = sweep("iterations=5,50,substeps=1,4", "pile", "ode-quick");
 	CHECK(n == 5 && has(n, 1, 5, 0) && has(n, 4, 5, 0) && has(n, 1, 50, 0) && has(n, 4, 50, 0) &&
 	      has(n, quick.substeps, quick.iterations, 0));
-	CHECK(sweep("iterations=5,50", "pile", "ode-world") == 1); // which has none
+	CHECK(sweep("iterations=5,50", "pile", "ode-world") == 1); // it has none
 	CHECK(sweep("tolerance=5mm", "pile", "ode-quick") == 1);
 	n = sweep("tolerance=5mm,.5 mm,2e-6m,7um", "pile", "obsim");
 	CHECK(n == 5 && has(n, 0, 64, 5e-3) && has(n, 0, 64, 5e-4) &&

@@ -57,7 +57,7 @@ static void test_tables(void)
 	ob_lab_print_equal(f, &d, false);
 	expect_in(f, (const char *[]){ "Case", "at an error of", "0.5 mm", "4 (2\u00d7)", "never", "4 (0.67\u00d7)",
 				       "obsim is ahead in 1 of 2; at worst it takes 1.5 times as long.", NULL });
-	ob_results alone = { 0 }; // ahead of nobody
+	ob_results alone = { 0 }; // no other engine
 	CHECK(ob_results_add(&alone, &list[0]));
 	ob_lab_analysis own = ob_lab_analyse(&alone);
 	f = begin();

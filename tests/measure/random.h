@@ -1,4 +1,4 @@
-// The same poses and sizes in each run of the tests.
+// Random numbers that give the same poses and sizes in each run of the tests.
 #ifndef OB_TESTS_MEASURE_RANDOM_H
 #define OB_TESTS_MEASURE_RANDOM_H
 

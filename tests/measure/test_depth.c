@@ -1,4 +1,4 @@
-// Depths against closed forms, and the closed forms against the search, which knows none of them.
+// Depths against closed forms, and the closed forms against the search, which is independent of them.
 #include "random.h"
 
 #include "../check.h"
@@ -33,7 +33,7 @@ static void planes(void)
 	ob_vec3 n = ob_v3(sin(.3), 0, cos(.3));
 	struct {
 		ob_shape shape;
-		double reach; // of the body tilted by .3 against z, along n
+		double reach; // extent along n of the body tilted by .3 against z
 	} of[] = { { OB_SHAPE_SPHERE, .2 },
 		   { OB_SHAPE_BOX, .2 * sin(.3) + .4 * cos(.3) },
 		   { OB_SHAPE_CAPSULE, .2 + .3 * cos(.3) },
@@ -70,7 +70,7 @@ static void cylinders(void)
 	CHECK_NEAR(ob_depth(&standing, &capsule), .01, 1e-12); // lying on the cap
 }
 
-// Closed form against search for random pairs that overlap, both ways round.
+// Closed form against search for random overlapping pairs, in both orders.
 static void agree(ob_shape one, ob_shape other, double tolerance)
 {
 	uint64_t seed = 20240601;
@@ -92,7 +92,7 @@ static void agree(ob_shape one, ob_shape other, double tolerance)
 	CHECK(overlaps > 100);
 }
 
-// Shallow contacts with cylinders against a dense scatter of directions, which can only be too large.
+// Shallow contacts with cylinders against a dense scatter of directions, whose result can only be too large.
 static void shallow(ob_shape other)
 {
 	enum { DIRECTIONS = 100000 };

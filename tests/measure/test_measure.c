@@ -1,4 +1,4 @@
-// Energy, momenta, hash and penetration of snapshots made by hand.
+// Energy, momenta, hash and penetration of handmade snapshots.
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +35,7 @@ static void test_energy(void)
 	motions[0].p = ob_v3(1, 2, 3);
 	motions[0].v = ob_v3(0, 3, 4);
 	CHECK_NEAR(ob_measure_energy(&s, g), 2 * 25 / 2. + 2 * 10 * 3, 1e-12);
-	// body x lies along world y: it turns about its own axis of .7
+	// body x lies along world y: it turns about its own axis with moment .7
 	passports[1].inertia = ob_v3(.7, .1, .2);
 	motions[1].q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, M_PI / 2));
 	motions[1].w = ob_v3(0, 2, 0);
@@ -45,7 +45,7 @@ static void test_energy(void)
 	CHECK_NEAR(ob_measure_energy(&s, g), 25 + 60 + .5 * .7 * 4, 1e-12);
 	passports[0].force = ob_v3(4, 0, -1); // its work from the origin: 4 * 1 - 1 * 3
 	CHECK_NEAR(ob_measure_energy(&s, g), 25 + 60 + .5 * .7 * 4 - 1, 1e-12);
-	passports[0].flags = 0; // gone
+	passports[0].flags = 0; // absent
 	CHECK_NEAR(ob_measure_energy(&s, g), .5 * .7 * 4, 1e-12);
 }
 
@@ -68,7 +68,7 @@ static void test_momenta(void)
 	CHECK_NEAR(l.z, 0, 1e-15);
 }
 
-// A motion that was published a second ago counts as it is now; one asleep counts as it was.
+// A motion published a second ago counts at its present state; a sleeping one at its published state.
 static void test_state_is_of_the_snapshot(void)
 {
 	ob_snapshot s = snapshot(2);
@@ -84,7 +84,7 @@ static void test_state_is_of_the_snapshot(void)
 	CHECK_NEAR(flying.v.z, -10, 1e-15);
 	CHECK_NEAR(asleep.pose.p.z, 100, 0);
 	passports[1].flags = 0;
-	CHECK_NEAR(ob_measure_energy(&s, ob_v3(0, 0, -10)), 2 * 10 * 100 + 4, 1e-11); // as at its start
+	CHECK_NEAR(ob_measure_energy(&s, ob_v3(0, 0, -10)), 2 * 10 * 100 + 4, 1e-11); // energy at its start
 }
 
 static void test_hash(void)
@@ -93,20 +93,20 @@ static void test_hash(void)
 	uint64_t first = ob_measure_hash(&s);
 	CHECK(first == ob_measure_hash(&s));
 	motions[1].w.z = -0.;
-	CHECK(first != ob_measure_hash(&s)); // bits, not values
+	CHECK(first != ob_measure_hash(&s)); // hashes bits, not values
 	motions[1].w.z = 0;
 	motions[2].q.z = nextafter(0, 1);
 	CHECK(first != ob_measure_hash(&s));
 	motions[2].q.z = 0;
 	passports[2].friction = .3;
 	motions[2].rest_time = 1;
-	CHECK(first == ob_measure_hash(&s)); // not a matter of the state
+	CHECK(first == ob_measure_hash(&s)); // not part of the state
 	passports[2].flags = 0;
 	uint64_t two = ob_measure_hash(&s);
 	CHECK(two != first);
 	passports[2].flags = passports[1].flags;
 	passports[1].flags = 0;
-	CHECK(ob_measure_hash(&s) != two); // another id is left
+	CHECK(ob_measure_hash(&s) != two); // another id remains
 	s.count = 0;
 	CHECK(ob_measure_hash(&s) == 0xcbf29ce484222325u); // FNV's offset: nothing hashed
 }
@@ -117,7 +117,7 @@ static void test_penetration_by_hand(void)
 	passports[0] = (ob_passport){ .id = 0, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE };
 	passports[1] = (ob_passport){
 		.id = 1, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_BOX, .size = { 5, 5, 1 }
-	}; // in the plane, but static like it
+	}; // in the plane, but static as well
 	motions[2].p = ob_v3(20, 0, .49);
 	motions[3].p = ob_v3(0, 0, 1.47);
 	motions[4].p = ob_v3(.96, 0, 1.7);
@@ -133,7 +133,7 @@ static void test_penetration_by_hand(void)
 	CHECK(out.pairs == 0 && out.max_m == 0 && out.mean_m == 0);
 }
 
-// The sweep finds what looking at every pair finds.
+// The sweep finds the same pairs as a test of all pairs.
 static void test_penetration_of_many(void)
 {
 	ob_snapshot s = snapshot(MANY);
@@ -174,8 +174,7 @@ static bool stop_now(void *context)
 	return true;
 }
 
-// Crowds: it says when it is too much, and hears that it is to stop; a field as large, in which few overlap, is
-// measured.
+// Crowds: it reports excess, and obeys a request to stop; a field as large, with few overlaps, is measured.
 static void test_penetration_of_crowds(void)
 {
 	enum { CROWD = 12000 };
@@ -226,12 +225,12 @@ static void test_separation(void)
 	s.contact = point;
 	s.contacts = 5;
 	ob_measure_separation(&s, &apart, NULL, NULL);
-	CHECK(apart.pairs == 2); // the fourth names what is not there, the last bears nothing
+	CHECK(apart.pairs == 2); // the fourth refers to an absent object, the last has no impulse
 	CHECK_NEAR(apart.max_m, .25, 1e-12);
 	CHECK_NEAR(apart.mean_m, .125, 1e-12);
 }
 
-// As many contacts of cylinders as nobody can look at: it says so, and hears that it is to stop.
+// More contacts of cylinders than can be measured: it reports that, and obeys a request to stop.
 static void test_separation_of_crowds(void)
 {
 	enum { CROWD = 400000 };

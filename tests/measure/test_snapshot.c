@@ -1,4 +1,4 @@
-// Snapshots of a real universe: what is taken, what is missing, what does not make sense.
+// Snapshots of a real universe: contents, missing objects, implausible data.
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>

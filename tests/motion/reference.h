@@ -1,5 +1,5 @@
-// Torque-free rotation the slow way, for comparison: Taylor series of order 24 of Euler's equations and of the
-// attitude, in long double. It shares nothing with the closed form. And the measures of error.
+// Torque-free rotation by brute force, for comparison: Taylor series of order 24 of Euler's equations and of the
+// attitude, in long double. Independent of the closed form. Also the measures of error.
 #ifndef OB_TESTS_MOTION_REFERENCE_H
 #define OB_TESTS_MOTION_REFERENCE_H
 

@@ -1,4 +1,4 @@
-// Drift against the closed form, and over many steps against what must stay.
+// Drift against the closed form, and over many steps against conserved quantities.
 #include "check.h"
 #include "motion/drift.h"
 #include "motion/spin.h"
@@ -11,7 +11,7 @@ static double apart(ob_quat a, ob_quat b)
 	return fabs(a.w - s * b.w) + fabs(a.x - s * b.x) + fabs(a.y - s * b.y) + fabs(a.z - s * b.z);
 }
 
-// Moments of homogeneous bodies: no one exceeds the sum of the other two.
+// Moments of homogeneous bodies: none exceeds the sum of the other two.
 static ob_vec3 random_moments(uint64_t *seed, int kind)
 {
 	double x = pow(10, within(seed, -2, 1)), y = kind > 0 ? x : pow(10, within(seed, -2, 1));
@@ -44,7 +44,7 @@ static void check_against_closed_form(void)
 	CHECK(beyond <= 1e-14);
 }
 
-// Turns of up to .2 rad for less are off by a fiftieth of their fifth power.
+// The cheaper version for turns of up to .2 rad: its error is at most a fiftieth of their fifth power.
 static void check_short_turns(void)
 {
 	uint64_t seed = 3;
@@ -56,7 +56,7 @@ static void check_short_turns(void)
 	}
 }
 
-// The drift of what is held: the attitude is off by 1e-11 at most, and momentum is kept as exactly.
+// Drift of held bodies: the attitude error is at most 1e-11, and momentum is conserved as exactly.
 static void check_held(void)
 {
 	uint64_t seed = 4;

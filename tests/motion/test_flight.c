@@ -1,4 +1,4 @@
-// Motions in time: the parabola, what lies between two publications, and when a gap closes.
+// Motions in time: the parabola, states between two publications, and the time at which a gap closes.
 #include <ob/motion.h>
 
 #include "check.h"
@@ -40,7 +40,7 @@ static void test_known_throw(void)
 	CHECK_NEAR(s.pose.q.z, sin(.25), 1e-15);
 }
 
-// To publish again on the way changes nothing.
+// Publishing again on the way changes nothing.
 static void test_republishing(void)
 {
 	uint64_t seed = 6;
@@ -126,7 +126,7 @@ static void test_closing_known(void)
 	CHECK(ob_time_of_closing(-.1, -1, 0, 10) == 0);
 	CHECK(ob_time_of_closing(0, 0, -9.81, 10) == 0);
 	CHECK(ob_time_of_closing(0, 0, 0, 10) == INFINITY);
-	CHECK(ob_time_of_closing(-.1, 1, 0, 10) == INFINITY); // overlapping, but on its way out
+	CHECK(ob_time_of_closing(-.1, 1, 0, 10) == INFINITY); // overlapping, but separating
 	CHECK_NEAR(ob_time_of_closing(-.375, 2, -4, 10), .75, 1e-15); // out at .25, back at .75
 	CHECK_NEAR(ob_time_of_closing(-.1, 1, -10, 10), .1, 1e-15); // never out: closes again from the turn on
 	CHECK(ob_time_of_closing(INFINITY, -1, 0, 10) == INFINITY);
@@ -134,7 +134,7 @@ static void test_closing_known(void)
 	CHECK(ob_time_of_closing(1, NAN, -1, 10) == INFINITY);
 }
 
-// Whatever comes back closes the gap, at a closing rate, and nothing before it does. Gaps down to 1e-15 m and the
+// Any body that comes back closes the gap, at a closing rate, and no earlier root exists. Gaps down to 1e-15 m and the
 // nearly grazing ones must keep their digits.
 static void test_closing_random(void)
 {

@@ -1,4 +1,4 @@
-// Forces that change in time: the mean of each step against the integral, and when it changes next.
+// Forces that vary in time: the mean of each step against the integral, and the time of the next change.
 #include "motion/force.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static double value(const ob_force *f, double t)
 	return f->point[f->points - 1].p.x;
 }
 
-// Each step's mean is that of a thousand samples, and steps that are passed over have that of the one before.
+// Each step's mean is that of a thousand samples, and skipped steps have that of the one before.
 static void check_means(const ob_force *f, double h, uint64_t steps)
 {
 	enum { SAMPLES = 1000 };

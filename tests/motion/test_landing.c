@@ -1,4 +1,4 @@
-// When flights come down on a plane, against their paths followed in small steps.
+// Landing times on a plane, against paths followed in small steps.
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ typedef struct flight {
 	ob_hull hull;
 } flight;
 
-// Any points: what is between them is not asked for.
+// Any points: the surface between them is not needed.
 static void random_corners(flight *x, uint64_t *seed)
 {
 	ob_hull *h = &x->hull;
@@ -27,7 +27,7 @@ static void random_corners(flight *x, uint64_t *seed)
 	x->f.hull = h;
 }
 
-// Upwards of an inclined plane, thrown and spinning.
+// Above an inclined plane, thrown and spinning.
 static void random_flight(flight *x, ob_shape shape, uint64_t *seed)
 {
 	double a = within(seed, .05, .5), b = within(seed, .05, .5), c = within(seed, .05, .5);
@@ -48,7 +48,7 @@ static void random_flight(flight *x, ob_shape shape, uint64_t *seed)
 	x->f.spin = ob_norm2(x->f.w) > 0 ? &x->spin : NULL;
 }
 
-// m, of the lowest point over the plane
+// Height (m) of the lowest point over the plane.
 static double gap_at(const flight *x, double s)
 {
 	const ob_flier *f = &x->f;
@@ -92,12 +92,12 @@ static void check_landing(ob_shape shape, uint64_t *seed)
 	if (isinf(landing))
 		return;
 	CHECK_NEAR(gap_at(&x, landing), 0, 1e-9);
-	// looked for from an instant before, it is the same; a millisecond after a landing there may be another
+	// searched from an instant before, it is the same; a millisecond after a landing there may be another
 	CHECK_NEAR(ob_landing_time(&x.f, &x.plane, .7 * landing, until), landing, 1e-9);
 	CHECK(isinf(ob_landing_time(&x.f, &x.plane, 0, .9 * landing)));
 }
 
-// A corner that has just struck, and leaves: not the same again, but when it or another comes back.
+// A corner that has just struck, and leaves: the next landing, of this corner or another, counts.
 static void test_after_a_bounce(void)
 {
 	ob_flier ball = { .shape = OB_SHAPE_SPHERE, .size = { .5, 0, 0 }, .p = { 0, 0, .5 }, .v = { 0, 0, 3 } };
@@ -114,7 +114,7 @@ static void test_after_a_bounce(void)
 	box.spin = &spin;
 	double first = ob_landing_time(&box, &ground, 0, 1);
 	CHECK(first < .6 && first > .57);
-	box.shape = OB_SHAPE_CYLINDER; // whose rim reaches as far as the box's edges do
+	box.shape = OB_SHAPE_CYLINDER; // its rim reaches as far as the box's edges
 	CHECK_NEAR(ob_landing_time(&box, &ground, 0, 1), first, 1e-9);
 	box.v.z = -1;
 	CHECK_NEAR(ob_landing_time(&box, &ground, 0, 1), 0, 0);
@@ -122,7 +122,7 @@ static void test_after_a_bounce(void)
 	CHECK_NEAR(ob_landing_time(&box, &ground, 0, 1), 0, 0);
 }
 
-// Whoever flies beside a body: it lands when it lands alone.
+// A body lands at the same time beside any others as alone.
 static void test_side_by_side(uint64_t *seed)
 {
 	static const ob_shape other[] = { OB_SHAPE_SPHERE, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER, OB_SHAPE_HULL,
@@ -140,7 +140,7 @@ static void test_side_by_side(uint64_t *seed)
 			if (x[i].f.spin)
 				x[i].f.spin = &x[i].spin;
 			of[i] = (ob_landing){ .flier = &x[i].f, .plane = &x[i].plane, .until = within(seed, 0, 3) };
-			if (uniform(seed) < .3) // as it lands, or later
+			if (uniform(seed) < .3) // at its landing, or later
 				of[i].from = ob_landing_time(&x[i].f, &x[i].plane, 0, of[i].until);
 			if (isinf(of[i].from))
 				of[i].from = within(seed, 0, of[i].until);

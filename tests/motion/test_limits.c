@@ -1,4 +1,4 @@
-// Where the general rotation degenerates: equal moments, principal axes, the separatrix, rest, nonsense.
+// Degenerate cases of the general rotation: equal moments, principal axes, the separatrix, rest, nonsense.
 #include <ob/motion.h>
 
 #include "check.h"
@@ -25,7 +25,7 @@ static ob_vec3 permuted(double a, double b, double c, int k)
 	return ob_v3(v[k % 3], v[(k + 1) % 3], v[(k + 2) % 3]);
 }
 
-// Two moments equal, and then apart by ever less: one formula must go over into the other.
+// Two moments equal, and then less and less apart: one formula must pass into the other.
 static void test_symmetric(void)
 {
 	uint64_t seed = 4;
@@ -57,7 +57,7 @@ static void test_spherical(void)
 	CHECK_NEAR(ob_norm(ob_sub(w, w0)), 0, 1e-15);
 }
 
-// Exactly along an axis nothing wobbles, not even about the intermediate one.
+// Exactly along an axis the rotation is steady, even about the intermediate one.
 static void test_principal_axes(void)
 {
 	for (int k = 0; k < 9; k++) {
@@ -71,8 +71,8 @@ static void test_principal_axes(void)
 	}
 }
 
-// Off an axis by ever less. The stable axes stay exact for long; the intermediate one is left after a time that grows
-// like the logarithm, and before the reference's own digits are used up the turn must be right.
+// Closer and closer to an axis. The stable axes stay exact for long. The intermediate one is left after a time that
+// grows like the logarithm; the turn must be right until the reference's own digits are used up.
 static void test_near_axes(void)
 {
 	double worst = 0, flips = 0;
@@ -93,8 +93,8 @@ static void test_near_axes(void)
 	CHECK(flips == 15);
 }
 
-// On the separatrix and about it: L^2 = 2 E I2, then off by ever less to either side, for a time in which an error of
-// the start grows a thousand times at most.
+// On the separatrix and near it: L^2 = 2 E I2, then less and less off to either side, for a time in which an initial
+// error grows a thousand times at most.
 static void test_separatrix(void)
 {
 	double worst = 0;
@@ -135,7 +135,7 @@ static void test_slow_and_fast(void)
 		worst = fmax(worst, turn_error(start, w0, ob_scale(inertia, pow(10, -k)), 2 * pow(10, -k)));
 	}
 	CHECK_NEAR(worst, 0, 1e-14);
-	for (int k = -330; k <= -150; k += 10) { // the squares of such rates are no numbers any more
+	for (int k = -330; k <= -150; k += 10) { // squares of such rates underflow
 		ob_vec3 w0 = ob_scale(ob_v3(.3, 1, -.2), pow(10, k));
 		ob_rotate_free(start, w0, inertia, 1e9, &q, &w);
 		CHECK(w.x == w0.x && w.y == w0.y && w.z == w0.z);
@@ -143,7 +143,7 @@ static void test_slow_and_fast(void)
 	}
 }
 
-// A reader may meet any bytes: the call returns, whatever it returns.
+// A reader may read any bytes: the call returns, with any result.
 static void test_nonsense(void)
 {
 	const double odd[] = { 0, -1, NAN, INFINITY, 1e308, 5e-324, 1 };

@@ -1,4 +1,4 @@
-// Paths of kinematic objects: ellipses against sines, splines through their points, and boxes that hold them.
+// Paths of kinematic objects: ellipses against sines, splines through their points, and bounding boxes.
 #include "motion/path.h"
 
 #include <stdlib.h>
@@ -122,14 +122,15 @@ static ob_quat about_z(double degrees)
 	return (ob_quat){ cos(degrees * M_PI / 360), 0, 0, sin(degrees * M_PI / 360) };
 }
 
-// Attitudes are those of the points, and between them as far as the time is; the shortest way, and none where there is none.
+// Attitudes are those of the points, and between them in proportion to the time; the shortest way, and an error if
+// there is none.
 static void test_turns(void)
 {
 	ob_path_point door[] = { { 0, { 0, 0, 0 }, about_z(0) },
 				 { 1, { 0, 0, 0 }, about_z(90) },
 				 { 1.5, { 0, 0, 0 }, about_z(90) },
 				 { 3, { 0, 0, 0 }, about_z(-60) },
-				 { 4, { 0, 0, 0 }, about_z(360) } }; // which is that of 0, with the other sign
+				 { 4, { 0, 0, 0 }, about_z(360) } }; // equal to that of 0, with the other sign
 	const double h = 1. / 60;
 	const struct {
 		double t, degrees, rate;

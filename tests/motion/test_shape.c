@@ -1,4 +1,4 @@
-// Boxes round shapes, still and moving: nothing sticks out, and still ones are tight.
+// Bounding boxes of shapes, still and moving: they contain the shapes, and still ones are tight.
 #include <float.h>
 
 #include <ob/motion.h>
@@ -9,7 +9,7 @@
 static const ob_shape SHAPES[] = { OB_SHAPE_NONE, OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
 enum { KINDS = sizeof SHAPES / sizeof *SHAPES };
 
-// The point of a shape (body frame) that reaches farthest along d, from the shapes' definitions in ob/universe.h.
+// Farthest point of a shape (body frame) along d, from the shapes' definitions in ob/universe.h.
 static ob_vec3 farthest(ob_shape shape, ob_vec3 size, ob_vec3 d)
 {
 	double n = ob_norm(d), flat = sqrt(d.x * d.x + d.y * d.y), up = copysign(size.y, d.z);
@@ -84,7 +84,7 @@ static void test_known(void)
 	CHECK(ob_shape_thickness(OB_SHAPE_CYLINDER, ob_v3(3, 1, 0)) == 2);
 }
 
-// Not one digit may stick out, at any moment of the sweep, for the plane either.
+// The box contains the shape to the last digit, at any moment of the sweep, for the plane too.
 static void test_swept_holds(void)
 {
 	uint64_t seed = 11;
@@ -106,7 +106,7 @@ static void test_swept_holds(void)
 	}
 }
 
-// As small as promised: a body that does not turn is swept tightly, the vertex of its parabola included.
+// Tight as promised: the sweep of a body that does not turn is tight, the vertex of its parabola included.
 static void test_swept_tight(void)
 {
 	ob_vec3 size = ob_v3(.5, .25, 1);

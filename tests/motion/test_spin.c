@@ -1,4 +1,4 @@
-// Torque-free rotation against a long double Taylor series, and what it must conserve.
+// Torque-free rotation against a long double Taylor series, and conserved quantities.
 #include <string.h>
 
 #include <ob/motion.h>
@@ -43,8 +43,8 @@ static void test_five_minutes(void)
 	CHECK_NEAR(worst_rate, 0, 1e-10);
 }
 
-// Random bodies. Near the separatrix any error of the start grows exponentially, so the bound follows from how much
-// the reference itself moves when the start moves by a few units of the last digit.
+// Random bodies. Near the separatrix any initial error grows exponentially. So the bound follows from the change of the
+// reference itself when its start moves by a few units of the last digit.
 static void test_random_against_reference(void)
 {
 	uint64_t seed = 1;
@@ -84,7 +84,7 @@ static void test_composition(void)
 	}
 }
 
-// Ten minutes at 60 Hz by repeated short turns: rounding may not build up into energy.
+// Ten minutes at 60 Hz by repeated short turns: rounding errors must not accumulate in the energy.
 static void test_many_short_steps(void)
 {
 	ob_vec3 inertia = ob_v3(1, 2, 3), w0 = ob_v3(.05, 5, .02), w = w0;
@@ -121,7 +121,7 @@ static void test_same_bits(void)
 	}
 }
 
-// On either side of where the closed form takes over.
+// On either side of the limit of the closed form.
 static void test_short_turns(void)
 {
 	uint64_t seed = 4;
@@ -140,7 +140,7 @@ static void test_short_turns(void)
 	CHECK_NEAR(worst, 0, 3e-15);
 }
 
-// What was asked before changes nothing.
+// Earlier evaluations change nothing.
 static void test_any_order(void)
 {
 	enum { TIMES = 6 };
@@ -180,7 +180,7 @@ static void random_rotation(uint64_t *seed, ob_spin *spin)
 	ob_spin_plan(spin, q, w, inertia);
 }
 
-// Whoever is beside a body: it has the bits that it has alone.
+// A body has the same bits beside any others as alone.
 static void test_side_by_side(void)
 {
 	enum { MOST = 11 };

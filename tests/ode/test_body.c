@@ -1,4 +1,4 @@
-// One object's own world: mass properties, a step, and that worlds of different threads do not disturb each other.
+// One object's own world: mass properties, a step, and independence of worlds in different threads.
 #include <pthread.h>
 #include <string.h>
 
@@ -55,14 +55,14 @@ static void test_step(void)
 	CHECK_NEAR(s.pose.p.z, 3 + h * s.v.z, 1e-14);
 	ob_vec3 v = s.v;
 	ob_ode_body_step(b, &s, ob_v3(0, 0, 0), ob_v3(0, 0, 0), h);
-	CHECK_NEAR(s.v.x, v.x, 1e-14); // the impulse was of that step alone
+	CHECK_NEAR(s.v.x, v.x, 1e-14); // the impulse acted in that step alone
 	ob_ode_body_destroy(b);
 	ob_ode_body_destroy(NULL);
 	ob_ode_stepper_destroy(stepper);
 	ob_ode_stepper_destroy(NULL);
 }
 
-// A body made anew for every step goes where one that lives on goes: the state is all there is.
+// A body created anew for every step moves like one that lives on: the state is complete.
 static void test_bodies_are_replaceable(void)
 {
 	ob_ode_stepper *stepper = ob_ode_stepper_create();

@@ -1,4 +1,4 @@
-// The world of the ODE baseline: fall, rest, bounce, sleep, contacts, objects that come and go, the same bits again.
+// World of the ODE baseline: fall, rest, bounce, sleep, contacts, objects added and removed, the same bits again.
 #include <string.h>
 
 #include "ode/ode_body.h"
@@ -69,7 +69,7 @@ static void test_fall(void)
 	ob_ode_world_destroy(NULL);
 }
 
-// What lies on the ground is pushed up by as much as gravity pulls it down, and points have the lower id first.
+// Contact forces balance gravity for bodies on the ground, and points have the lower id first.
 static void test_contacts(uint32_t iterations)
 {
 	ob_ode_world *w = world(iterations, false);
@@ -124,7 +124,7 @@ static void test_sleep_and_removal(void)
 	ob_state later = get(w, 2, &asleep, &touching);
 	CHECK(memcmp(&s, &later, sizeof s) == 0); // to the bit
 	ob_ode_world_remove(w, 1); // its support
-	ob_ode_world_remove(w, 1); // again: nothing
+	ob_ode_world_remove(w, 1); // again: no effect
 	run(w, 240);
 	s = get(w, 2, &asleep, &touching);
 	CHECK_NEAR(s.pose.p.z, .5, .01);
@@ -135,7 +135,7 @@ static void test_sleep_and_removal(void)
 	ob_ode_world_destroy(w);
 }
 
-// Each shape stays where it stands, on the ground and on a box.
+// Each shape stays upright, on the ground and on a box.
 static void test_standing(ob_shape shape)
 {
 	ob_ode_world *w = world(20, false);
@@ -164,7 +164,7 @@ static void tower(ob_state out[OBJECTS])
 	ob_ode_world_destroy(w);
 }
 
-// More than 8 iterations: rows are shuffled, yet a second world of the process runs as the first did.
+// More than 8 iterations: rows are shuffled, yet a second world of the process runs like the first.
 static void test_same_bits(void)
 {
 	static ob_state a[OBJECTS], b[OBJECTS];
@@ -174,8 +174,8 @@ static void test_same_bits(void)
 	CHECK(a[OBJECTS - 1].pose.p.z < 1.1 * (OBJECTS - 1) - 1); // it came down
 }
 
-// A cube on its edge, held up by the lower face of the box round it; one beside it that touches only its box is pushed
-// away, though there is air between them.
+// A cube on its edge, supported by the lower face of its bounding box; one beside it that touches only its box is
+// pushed away, though they are separated.
 static void test_boxed(void)
 {
 	ob_ode_world_setup setup = { .gravity = { 0, 0, -10 }, .iterations = 20, .objects = OBJECTS, .boxed = true };
@@ -184,7 +184,7 @@ static void test_boxed(void)
 	ob_ode_world_add(w, &plane, &(ob_state){ .pose = { { 0, 0, 0 }, ob_quat_identity() } });
 	ob_passport p = { .id = 1, .shape = OB_SHAPE_BOX, .size = { .5, .5, .5 }, .mass = 1, .friction = .5 };
 	p.inertia = ob_ode_inertia(p.shape, p.size, p.mass);
-	double half = .5 * (cos(.6) + sin(.6)); // of the box round a cube that has turned by .6 rad
+	double half = .5 * (cos(.6) + sin(.6)); // bounding box of a cube turned by .6 rad
 	ob_quat turned = ob_quat_turn(ob_quat_identity(), ob_v3(.6, 0, 0));
 	ob_ode_world_add(w, &p, &(ob_state){ .pose = { { 0, 0, half + .01 }, turned } });
 	bool asleep, touching;
@@ -197,7 +197,7 @@ static void test_boxed(void)
 	ob_ode_world_add(w, &p, &(ob_state){ .pose = { { 0, half + .45, .5 }, ob_quat_identity() } });
 	uint64_t tests = ob_ode_world_box_tests(w);
 	ob_ode_world_step(w, 1. / 60);
-	CHECK(ob_ode_world_box_tests(w) == tests + 3); // each with the ground, and both
+	CHECK(ob_ode_world_box_tests(w) == tests + 3); // each with the ground, and the two
 	ob_contact_point point[16];
 	double depth[16];
 	CHECK(ob_ode_world_contacts(w, point, depth, 16) == 12);
@@ -207,7 +207,7 @@ static void test_boxed(void)
 	ob_ode_world_destroy(w);
 }
 
-// What ODE's own assertions refuse ends the world's life, not the program's; others go on.
+// A failed assertion of ODE ends its world, not the program; others go on.
 static void test_giving_up(void)
 {
 	bool full = true;
@@ -226,7 +226,7 @@ static void test_giving_up(void)
 	ob_ode_world_destroy(other);
 }
 
-// More pairs than fit: the object that has most of them is named.
+// More pairs than fit: the object with most of them is named.
 static void test_full(void)
 {
 	bool full = false, stepped = true;
@@ -247,7 +247,7 @@ static void test_full(void)
 	ob_ode_world_destroy(w);
 }
 
-// A lift takes a box up, and a belt along, at their own speeds.
+// A lift carries a box up, and a belt carries one along, at their own speeds.
 static void test_driven(void)
 {
 	ob_ode_world *w = world(20, true);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""check_report.py WRITER: the report that WRITER writes is whole and well-formed, leads nowhere outside, is the same
-each time, and has the counterparts of the paper's tables and figures."""
+"""check_report.py WRITER: WRITER's report is complete and well-formed, without outside links, the same each time, and
+has the counterparts of the paper's tables and figures."""
 import html.parser
 import pathlib
 import re

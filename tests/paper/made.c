@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-// In [-1, 1], the same each time
+// Value in [-1, 1], the same each time.
 static double noise(unsigned seed)
 {
 	return sin(12.9898 * seed + 4.1414 * sin(78.233 * seed));
@@ -42,7 +42,7 @@ ob_paper_results made_alike(void)
 	return r;
 }
 
-// The experiments of a scenario; their factor may depend on which it is.
+// Scales the experiments of a scenario; the factor may depend on the experiment's number.
 static void scale_each(ob_paper_results *r, ob_paper_scenario s, ob_paper_metric m, double even, double odd)
 {
 	uint32_t objects;

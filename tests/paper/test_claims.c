@@ -1,4 +1,4 @@
-// Each claim's verdicts, each from data that were made up for it, and what the text says then.
+// Verdicts of each claim, each from data made up for it, and the text for them.
 #include <string.h>
 
 #include "../check.h"
@@ -16,7 +16,7 @@ static const ob_paper_claim *judged(const ob_paper_results *r, const char *key)
 	return NULL;
 }
 
-// Only what is conditional has a condition, and it is none of the others' text.
+// Only a conditional verdict has a condition, which is not repeated in the other texts.
 static void expect(const ob_paper_results *r, const char *key, ob_paper_verdict verdict, const char *condition)
 {
 	const ob_paper_claim *c = judged(r, key);
@@ -142,9 +142,9 @@ static void test_load(void)
 	      strncmp(judged(&r, "load")->condition, "1 to 29", 7) == 0); // 9000 / 3
 	made_scale(&r, OB_PAPER_COMMON_LOAD, OB_PAPER_TOTAL, 3);
 	expect(&r, "load", OB_PAPER_HOLDS, NULL);
-	CHECK(strncmp(judged(&r, "load")->itself, "7.0", 3) == 0); // not ten, by its own tables
+	CHECK(strncmp(judged(&r, "load")->itself, "7.0", 3) == 0); // not ten, by the paper's own tables
 	CHECK(strstr(judged(&r, "load")->because, "pairs") == NULL);
-	made_scatter(&r, OB_PAPER_COMMON_LOAD, OB_PAPER_TOTAL, .6); // 7 to 16: ten, or not
+	made_scatter(&r, OB_PAPER_COMMON_LOAD, OB_PAPER_TOTAL, .6); // the interval 7 to 16 includes ten
 	expect(&r, "load", OB_PAPER_HOLDS, NULL);
 	made_scatter(&r, OB_PAPER_COMMON_LOAD, OB_PAPER_TOTAL, 5);
 	expect(&r, "load", OB_PAPER_OPEN, NULL);
@@ -170,10 +170,10 @@ static void test_obb(void)
 	CHECK(strstr(judged(&r, "obb")->because, "OBB is affordable without OBS") != NULL);
 	made_scale(&r, OB_PAPER_OBS_OBB, OB_PAPER_STEP, .5);
 	expect(&r, "obb", OB_PAPER_ONLY_IF, "a shorter step is meant");
-	for (int q = 0; q < 2; q++) // a busy machine slows one of them down: that is no merit of the other's
+	for (int q = 0; q < 2; q++) // a busy machine slows one of them down: the other gets no credit for it
 		made_scale(&r, q ? OB_PAPER_COMMON_OBB : OB_PAPER_COMMON, OB_PAPER_PACE, .7);
 	expect(&r, "obb", OB_PAPER_ONLY_IF, "a shorter step is meant");
-	made_scale(&r, OB_PAPER_COMMON_OBB, OB_PAPER_BUSIEST, 16.7); // of 16.7 ms
+	made_scale(&r, OB_PAPER_COMMON_OBB, OB_PAPER_BUSIEST, 16.7); // out of 16.7 ms
 	expect(&r, "obb", OB_PAPER_OPEN, NULL);
 	made_scale(&r, OB_PAPER_COMMON_OBB, OB_PAPER_BUSIEST, 2);
 	expect(&r, "obb", OB_PAPER_HOLDS, NULL);
@@ -204,7 +204,7 @@ static void test_growth(void)
 	ob_records_finish(&r.records);
 }
 
-// A machine that failed some runs must not shift pairs against each other.
+// Failed runs must not shift pairs against each other.
 static void test_failed_runs(void)
 {
 	ob_paper_results r = made_alike();
@@ -219,7 +219,7 @@ static void test_failed_runs(void)
 	ob_records_finish(&r.records);
 }
 
-// Nothing measured, nothing claimed
+// Without measurements there are no claims.
 static void test_nothing(void)
 {
 	ob_paper_results r = { .objects = 64, .experiments = 15 };

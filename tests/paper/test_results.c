@@ -1,4 +1,4 @@
-// Means, ratios and growth against figures worked out by hand; the paper's own tables against the means it states.
+// Means, ratios and growth against figures computed by hand; the paper's own tables against its stated means.
 #include "../check.h"
 #include "made.h"
 
@@ -6,7 +6,7 @@ static void test_published(void)
 {
 	ob_paper_results p = ob_paper_published();
 	CHECK(p.records.count == 45);
-	// what the paper's text says: .007 s, 234 fps, 50.28 %; .045 s, 153 fps, 52.33 %; .001 s, 239 fps, 20.94 %
+	// stated in the paper's text: .007 s, 234 fps, 50.28 %; .045 s, 153 fps, 52.33 %; .001 s, 239 fps, 20.94 %
 	static const double said[3][3] = { { .007, 234, .5028 }, { .045, 153, .5233 }, { .001, 239, .2094 } };
 	static const double digits[3] = { .0005, 1, .00006 };
 	for (int s = 0; s < 3; s++) {
@@ -68,7 +68,7 @@ static void test_growth(void)
 	g = ob_paper_grow(&r, OB_PAPER_OBS, OB_PAPER_DEMAND);
 	CHECK_NEAR(g.logarithmic.slope, .01, .002);
 	CHECK(ob_paper_prefers(&g) == -1);
-	g.linear.n = 4; // by so few, nothing is preferred
+	g.linear.n = 4; // too few for a preference
 	CHECK(ob_paper_prefers(&g) == 0);
 	CHECK(ob_paper_grow(&r, OB_PAPER_COMMON, OB_PAPER_DEMAND).power.n == 0);
 	ob_records_finish(&r.records);

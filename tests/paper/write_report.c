@@ -1,4 +1,4 @@
-// write_report DIR: the report of results that nobody measured, for check_report.py.
+// write_report DIR: the report of made-up results, for check_report.py.
 #include <stdio.h>
 #include <string.h>
 

@@ -21,7 +21,7 @@ static double uniform(void) // 0 .. 1, the same in every run
 	return (state >> 8) / 16777216.;
 }
 
-// "count" curves of "points" points over many decades; every fifth point failed
+// Makes "count" curves of "points" points over many decades; every fifth point failed.
 static void fill(awkward *a, size_t count, size_t points)
 {
 	static const char *labels[] = { "1", "2", "4", "8", "16 substeps", "240 Hz" };

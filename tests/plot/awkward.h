@@ -1,4 +1,4 @@
-// Diagrams that nobody would draw: one point, no range, no data, NaN, the largest numbers, the longest titles.
+// Awkward diagrams: one point, no range, no data, NaN, the largest numbers, the longest titles.
 #ifndef OB_TESTS_AWKWARD_H
 #define OB_TESTS_AWKWARD_H
 
@@ -15,7 +15,7 @@ typedef struct awkward {
 	const char *category[AWKWARD_CATEGORIES];
 } awkward;
 
-// Fills in the i-th; false: there are no more. What it holds is valid until it is filled again.
+// Fills in the i-th; returns false beyond the last. The contents are valid until it is filled again.
 bool awkward_make(awkward *a, int i);
 
 #endif

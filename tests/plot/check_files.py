@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""check_files.py WRITER: what WRITER writes is well-formed XML and PNG, and the same in every run and locale."""
+"""check_files.py WRITER: the files of WRITER are well-formed XML and PNG, and the same in every run and locale."""
 import os
 import pathlib
 import struct

@@ -1,4 +1,4 @@
-// Properties of every diagram, however awkward: no text covers another, nothing is cut, every number is finite.
+// Properties of every diagram, however awkward: texts do not overlap, nothing is cut, every number is finite.
 #include <string.h>
 
 #include "../check.h"
@@ -101,7 +101,7 @@ static const ob_plot plot = { .title = "Title",
 			      .series = &curve,
 			      .series_count = 1 };
 
-// What failed and what is zero have bands of their own; what is not a number, and did not fail, is not there.
+// Failed points and zeros have bands of their own; values that are NaN without a failure are left out.
 static void check_bands(void)
 {
 	ob_drawing d = { 0 };
@@ -140,7 +140,7 @@ static void check_crosses(void)
 	ob_drawing_finish(&d);
 }
 
-// A target of zero has all of the band of zeros on its good side.
+// A target of zero has the whole band of zeros on its good side.
 static void check_zero_target(void)
 {
 	ob_drawing d = { 0 };
@@ -180,12 +180,12 @@ static void check_lines(void)
 			   "c\u00b5\xc0\x80",
 			   line, sizeof line);
 	CHECK(!strcmp(line, "a b?c\u00b5??"));
-	ob_font_clean_text("\u00b5\u00b5", line, 4); // no half letters
+	ob_font_clean_text("\u00b5\u00b5", line, 4); // no partial letters
 	CHECK(!strcmp(line, "\u00b5"));
 }
 
-// No font that a text may be shown in is wider than the layout has it: nothing has to be squeezed. Fonts that are not
-// here are stood in for by those that are.
+// No font that may show a text is wider than the layout assumes: nothing has to be squeezed. Installed fonts replace
+// missing ones.
 static void check_fonts(void)
 {
 	static const char *const families[] = { "Liberation Sans", "Arial", "Helvetica", "DejaVu Sans", "sans-serif" };

@@ -3,7 +3,7 @@
 #include "../check.h"
 #include "plot/frame.h"
 
-// All labels of an axis, in their order, with ^ before an exponent
+// All labels of an axis, in order, with ^ before an exponent.
 static const char *labels(const ob_ticks *t)
 {
 	static char all[1000];
@@ -44,7 +44,7 @@ static void check_labels(void)
 	check(OB_SCALE_LOG2, .25, 1, 8, false, "0.25 0.5 1");
 }
 
-// Any range: at least two labels, all on the axis, in order, where their values are
+// Any range: at least two labels, all on the axis, in order, at their values.
 static void check_ranges(void)
 {
 	int few = 0, astray = 0, disordered = 0;

@@ -20,7 +20,7 @@ int main(int argc, char **argv)
 	}
 	ob_error e = { "" };
 	awkward_make(&a, 0);
-	// a place that cannot be written to is an error with its name
+	// an unwritable place is an error that names it
 	if (ob_plot_svg(&a.plot, "/dev/null/x.svg", &e) || ob_plot_png(&a.plot, "/dev/null/x.png", 1, &e) || !e.text[0])
 		return 1;
 	return argc != 2;

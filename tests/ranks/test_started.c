@@ -1,4 +1,4 @@
-// Which rank a launcher has said that this is, as Open MPI 4.1.4 and Slurm 22.05 say it.
+// Rank of this process in the environment variables of Open MPI 4.1.4 and Slurm 22.05.
 #include "check.h"
 
 #include <stdbool.h>
@@ -10,7 +10,7 @@ static const char *const all[] = { "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE
 				   "SLURM_NTASKS",         "SLURM_PROCID",         "SLURM_STEP_NUM_TASKS" };
 enum { WORDS = sizeof all / sizeof *all };
 
-// said: of each of these words; NULL: it is not there
+// said: value of each of these variables; NULL: unset
 static bool is_started(const char *const said[WORDS], uint32_t rank, uint32_t ranks)
 {
 	for (int i = 0; i < WORDS; i++)
@@ -33,7 +33,7 @@ int main(void)
 	CHECK(is_started((const char *[WORDS]){ NULL, NULL, NULL, "2", "1", "2" }, 0,
 			 1)); // srun --mpi=none: each alone
 	CHECK(is_started((const char *[WORDS]){ NULL, NULL, NULL, "2", "0", NULL }, 0, 1)); // the script of a batch job
-	CHECK(is_started((const char *[WORDS]){ "4", "4" }, 0, 1)); // makes no sense
+	CHECK(is_started((const char *[WORDS]){ "4", "4" }, 0, 1)); // inconsistent
 	CHECK(is_started((const char *[WORDS]){ "2", "4", "2", "2", "1", "2" }, 2, 4));
 	ob_ranks_forget();
 	const ob_ranks alone = ob_ranks_started();

@@ -1,4 +1,5 @@
-// Closed forms of mechanics against the equations of motion integrated in small steps, and against what they conserve.
+// Closed forms of mechanics against the equations of motion integrated in small steps, and against conserved
+// quantities.
 #include "reference/mechanics.h"
 
 #include "check.h"
@@ -23,7 +24,7 @@ static void test_parabola(void)
 	}
 }
 
-// Follows the ball from impact to impact with nothing but v^2 = 2 g h and v -> e v.
+// Follows the ball from impact to impact, by v^2 = 2 g h and v -> e v alone.
 static void follow(double height, double e, int impacts)
 {
 	long double speed = sqrtl(2 * (long double)g * height), now = speed / g;
@@ -53,8 +54,8 @@ static void test_limit_of_bounces(void)
 
 // ---- impacts: against a stiff spring integrated in small steps
 
-// Two masses with a spring between them while they overlap, which pushes back e^2 times as hard when it relaxes: the
-// work that it gives back is e^2 of what it took. Verlet.
+// Two masses with a spring between them while they overlap; it pushes back e^2 times as hard when it relaxes. So it
+// returns e^2 of the work that it took. Verlet.
 static ob_reference_pair through_a_spring(double a, double b, ob_reference_pair v, double e)
 {
 	const double stiffness = 1e4, h = 1e-6;
@@ -101,7 +102,7 @@ static void test_laws(void)
 	CHECK(swap.a == 0 && swap.b == 1);
 }
 
-// One pair after the other, until none approaches, in either order.
+// Collides one pair after the other, until none approaches, in either order.
 static void collide_until_apart(int n, double *v, int backwards)
 {
 	for (int again = 1; again;) {
@@ -133,7 +134,7 @@ static void test_cradle(void)
 			}
 }
 
-// ---- friction: the contact's friction is found anew in each small step
+// ---- friction: each small step computes the contact's friction anew
 
 static const double r = .37, m = 2.3; // m, kg, of a ball
 
@@ -141,7 +142,7 @@ typedef struct ball {
 	double x, v, spin; // m, m/s, rad/s
 } ball;
 
-// What friction does within h: it brings the slip to nothing if it can, else it pushes with all it has.
+// Friction within h: it stops the slip if it can, otherwise it acts at its limit.
 static void rub(ball *b, double pull, double normal, double mu, double h)
 {
 	double inertia = .4 * m * r * r, slip = b->v + h * pull / m - b->spin * r;
@@ -164,7 +165,7 @@ static void test_slip_to_roll(void)
 			CHECK_NEAR(b.v, at.speed, 1e-4);
 			CHECK_NEAR(b.spin * r, at.surface, 1e-4);
 			CHECK_NEAR(b.x, at.distance, 1e-4);
-			// the line of contact keeps its angular momentum
+			// angular momentum about the line of contact is conserved
 			CHECK_NEAR(at.speed + .4 * at.surface, v, 1e-12);
 		}
 		rub(&b, 0, m * g, mu, h);
@@ -182,7 +183,7 @@ static void test_slopes(void)
 		double a = ob_reference_ball_incline(g, angle, mu);
 		CHECK_NEAR(b.v, a, 1e-8 * g);
 		CHECK_NEAR(b.spin * r, i % 2 ? a : 2.5 * mu * g * cos(angle), 1e-8 * g);
-		// a block: no spin to take
+		// a block: without spin
 		double sticks = ob_reference_friction_angle(.5);
 		CHECK_NEAR(tan(sticks), .5, 1e-15);
 		CHECK(ob_reference_incline(g, sticks * .999, .5) == 0 &&
@@ -226,7 +227,7 @@ static void test_push(void)
 
 // ---- statics: centres of mass and torques, added up body by body
 
-// Above every edge the centre of all bricks higher up lies right over it.
+// The centre of all bricks above an edge lies right over it.
 static void test_overhang(void)
 {
 	CHECK_NEAR(ob_reference_overhang(4), 25. / 24, 1e-15);
@@ -271,7 +272,7 @@ static void test_cards(void)
 	CHECK(ob_reference_cards_grip(atan(.1), 1, .1) < 1e-15); // the centre stands over the foot
 }
 
-// Against small steps: the velocity follows the table's as fast as friction lets it.
+// Against small steps: the velocity approaches the table's as fast as friction allows.
 static void test_shaken(void)
 {
 	static const double mu[] = { .05, .2, .35, .5 };
@@ -292,7 +293,7 @@ static void test_shaken(void)
 	}
 }
 
-// The force on the ball is friction's, which turns it: m v' = F, I w' = -R z x F, v = R w x z + rate z x p.
+// Only friction acts on the ball, and turns it: m v' = F, I w' = -R z x F, v = R w x z + rate z x p.
 static void test_turntable_ball(void)
 {
 	const double rate = 2, h = 1e-5;

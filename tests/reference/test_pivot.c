@@ -1,4 +1,4 @@
-// What turns about a pivot against integration in small steps, and against what the motion conserves.
+// Bodies that turn about a pivot, against integration in small steps, and against conserved quantities.
 #include <ob/vec.h>
 
 #include "reference/pivot.h"
@@ -8,7 +8,7 @@
 
 static const double g = 9.81;
 
-// Verlet in steps of 1e-5 s from rest
+// Verlet in steps of 1e-5 s from rest.
 static void test_rocker(double half, double height)
 {
 	ob_reference_rocker r = { half, height, (half * half + height * height) / 3, g };
@@ -28,7 +28,7 @@ static void test_rocker(double half, double height)
 	CHECK_NEAR(ob_reference_rocker_ratio(&r), 1 - 1.5 * sin(alpha) * sin(alpha), 1e-14);
 }
 
-// Of slender blocks acosh(1 / (1 - angle / alpha)) over the rate (Housner 1963)
+// For slender blocks acosh(1 / (1 - angle / alpha)) over the rate (Housner 1963).
 static void test_slender(void)
 {
 	ob_reference_rocker r = { 1e-3, 1, 1. / 3, g };

@@ -1,11 +1,11 @@
-// Sliding and spinning plates against brute force over the surface, and against what is known of them.
+// Sliding and spinning plates against brute force over the surface, and against known results.
 #include "reference/plate.h"
 
 #include "check.h"
 
 static const double g = 9.81;
 
-// Midpoints of a grid of 1000 x 1000
+// Midpoints of a grid of 1000 x 1000.
 static void brute(const ob_reference_plate *p, double vx, double vy, double w, double *ax, double *ay, double *turn)
 {
 	enum { N = 1000 };
@@ -39,7 +39,7 @@ static void test_friction(ob_reference_plate p, double vx, double vy, double w)
 	CHECK_NEAR(turn, bturn, 5e-3);
 }
 
-// The closed form of a rectangle and the sum from afar meet where one takes over from the other.
+// The closed form of a rectangle and the sum from afar agree at the change from one to the other.
 static void test_take_over(void)
 {
 	ob_reference_plate p = { false, .5, .1, .3, g };
@@ -59,7 +59,7 @@ static void test_slides(void)
 	// turning alone: 2/3 mu m g radius of friction against m radius^2 / 2
 	end = ob_reference_plate_slide(&disc, (ob_reference_plate_state){ .w = 5 }, 10);
 	CHECK_NEAR(end.angle, 25 / (2 * 4. / 3 * .25 * g / .4), 1e-6);
-	// the ratio of the end, whatever the start
+	// the final ratio, from any start
 	for (int i = 0; i < 3; i++) {
 		static const double v[] = { .5, 2, 4 };
 		double t = 10, ratio = 0;

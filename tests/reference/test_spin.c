@@ -1,4 +1,4 @@
-// Torque-free rotation against a Taylor series in long double, which knows nothing of elliptic functions.
+// Torque-free rotation against a Taylor series in long double, independent of elliptic functions.
 #include "reference/spin.h"
 
 #include "check.h"
@@ -7,8 +7,8 @@
 
 static double worst;
 
-// The series makes five steps a radian and errs by some 1e-18 in each. Near the separatrix that grows, as a start that
-// is moved by as much would.
+// The series makes five steps a radian, with errors of some 1e-18 in each. Near the separatrix they grow like an equal
+// change of the start.
 static void check_at(ob_quat q0, ob_vec3 w0, ob_vec3 inertia, double t)
 {
 	ob_reference_spin spin;

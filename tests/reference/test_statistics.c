@@ -1,5 +1,5 @@
 // Means, medians and their intervals against tables and by drawing many samples; lines against a published example;
-// orders of convergence of quadrature rules, whose own are known.
+// orders of convergence of quadrature rules with known order.
 #include "reference/statistics.h"
 
 #include "check.h"
@@ -58,7 +58,7 @@ static void test_median_interval(void)
 	CHECK(s.median_low == 1 && s.median_high == 6);
 }
 
-// How often the intervals hold the truth: 95 % for the mean of normal values, at least 95 % for the median of any.
+// Coverage of the intervals: 95 % for the mean of normal values, at least 95 % for the median of any.
 static void test_coverage(void)
 {
 	enum { TRIALS = 4000, N = 12 };
@@ -150,7 +150,7 @@ static void test_quadrature(void)
 		}
 }
 
-// Where rounding rules the error, there is no order.
+// No order is reported if rounding dominates the error.
 static void test_no_order(void)
 {
 	const double h[3] = { 1, .5, .25 }, error[3] = { 2, 2, 2 };

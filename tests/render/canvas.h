@@ -1,4 +1,4 @@
-// A small renderer and its picture, for tests that look at pixels.
+// A small renderer and its picture, for tests that read pixels.
 #ifndef OB_TESTS_RENDER_CANVAS_H
 #define OB_TESTS_RENDER_CANVAS_H
 
@@ -14,7 +14,7 @@ typedef struct canvas {
 	uint8_t *rgba;
 } canvas;
 
-// Exits with 77 (skipped) where this machine cannot draw.
+// Exits with 77 (skipped) on machines that cannot draw.
 static inline canvas canvas_open(bool aabb, bool contacts)
 {
 	ob_render_setup setup = { .width = CANVAS_WIDTH,
@@ -57,7 +57,7 @@ static inline double canvas_mean(const canvas *c, int x, int y, int r, int k)
 	return sum / ((2 * r + 1) * (2 * r + 1));
 }
 
-// Centre of the pixels whose red exceeds their green and blue by more than 40, in px; returns how many there are.
+// Centre of the pixels whose red exceeds their green and blue by more than 40, in px; returns their number.
 static inline int canvas_find_red(const canvas *c, double *x, double *y)
 {
 	int n = 0;

@@ -1,5 +1,5 @@
-// Objects that look like meshes: a mesh of a cube gives the picture of the cube, whatever it collides as; who paints
-// it, and what its images do.
+// Objects with meshes: a mesh of a cube gives the picture of the cube, with any collision shape; sources of its
+// colours, and effects of its images.
 #include <string.h>
 
 #include "canvas.h"
@@ -13,7 +13,7 @@ static ob_camera_def camera(void)
 	return test_scene_camera(ob_v3(3, -7, 4), ob_v3(0, 0, 1));
 }
 
-// The faces of a cube as a hull has them, at distance half (m) from the origin.
+// Faces of a cube as a hull has them, at distance half (m) from the origin.
 static ob_hull hull_of_cube(double half)
 {
 	ob_vec3 corner[8];
@@ -43,7 +43,7 @@ static ob_mesh mesh_of_hull(const ob_hull *h, const float colour[3], float surfa
 	return m;
 }
 
-// All of it has one image of colours and one of roughness and metal, each of a single pixel.
+// Gives the whole mesh one image of colours and one of roughness and metal, each of a single pixel.
 static void put_images(ob_mesh *m, const uint8_t colour[4], const uint8_t surface[4])
 {
 	m->image = calloc(2, sizeof *m->image);
@@ -56,7 +56,7 @@ static void put_images(ob_mesh *m, const uint8_t colour[4], const uint8_t surfac
 	CHECK(ob_mesh_makes_sense(m));
 }
 
-static const ob_mesh *looks; // of the next picture
+static const ob_mesh *looks; // for the next picture
 static uint32_t looks_count;
 
 // One object of this shape and colour on the ground, tilted.
@@ -79,7 +79,7 @@ static uint8_t *picture(ob_shape shape, ob_vec3 size, const float colour[3], uin
 	test_scene_add(&s, shape, size, ob_v3(0, 0, 1.6), ob_quat_turn(ob_quat_identity(), ob_v3(.4, .2, .7)), colour);
 	s.passport[1].mesh = mesh;
 	s.passport[1].flags |= flags;
-	s.passport[1].roughness = .25f; // a whole surface as vertices have it
+	s.passport[1].roughness = .25f; // a whole surface, as vertices have it
 	s.hulls = hull ? 1 : 0;
 	s.hull = &hull;
 	canvas_draw(&c, NULL, &s, 0, &from);
@@ -135,12 +135,12 @@ int main(void)
 	printf("%g %g\n", difference(by_mesh, as_box), difference(as_ball, as_box));
 	CHECK(difference(by_mesh, as_box) < .1 * difference(as_ball, as_box)); // a box has rounded edges
 	CHECK(difference(other, as_hull) > 1);
-	CHECK(same(beyond, as_ball)); // a mesh that nobody has is not drawn: it looks as it collides
+	CHECK(same(beyond, as_ball)); // an unknown mesh is not drawn: the collision shape is
 	printf("%g %g %g\n", difference(by_images, as_hull), difference(own_colour, as_hull),
 	       difference(own_surface, as_hull));
 	CHECK(difference(by_images, as_hull) < .1 && difference(own_colour, as_hull) < .1 &&
 	      difference(own_surface, as_hull) < .1);
-	CHECK(same(no_paint, as_hull)); // images multiply what the mesh says, and it says nothing
+	CHECK(same(no_paint, as_hull)); // images multiply the mesh's paint, and it has none
 	uint8_t *const all[] = { as_box,      as_hull, as_ball,   by_mesh,    by_object,   unpainted, other,
 				 among_hulls, beyond,  by_images, own_colour, own_surface, no_paint };
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)

@@ -1,11 +1,11 @@
-// Meshes: closed, seen from outside, and as large as the shape.
+// Meshes: closed, facing outwards, and as large as the shape.
 #include <stdlib.h>
 
 #include "../check.h"
 #include "ob/vec.h"
 #include "render/mesh.h"
 
-// Volume by the divergence theorem, with a core of half size 1 x 1 x 2 and a ball of the given radius: it is right only
+// Volume by the divergence theorem, with a core of half size 1 x 1 x 2 and a ball of the given radius. It is right only
 // if no triangle is missing, doubled or turned inside out.
 static double volume(const ob_mesh_set *s, int kind, double core_xy, double radius)
 {

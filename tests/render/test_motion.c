@@ -24,7 +24,7 @@ static double column(canvas *c, const ob_snapshot *prev, const ob_snapshot *now,
 	return x;
 }
 
-// Frames do not fall on steps: a step of 1/4 s, looked at in between.
+// Frames between steps: a step of 1/4 s, drawn in between.
 static void between_steps(void)
 {
 	canvas c = canvas_open(false, false);
@@ -35,12 +35,12 @@ static void between_steps(void)
 	double end = column(&c, &before, &after, 1.25);
 	CHECK(end > start + 100);
 	CHECK_NEAR((quarter - start) / (end - start), .25, .03);
-	CHECK_NEAR(column(&c, NULL, &after, 1.1), end, .01); // without the earlier one: where the newer begins
+	CHECK_NEAR(column(&c, NULL, &after, 1.1), end, .01); // without the earlier one: at the start of the newer
 	before.passport[1].generation = 7; // another object had the slot
 	CHECK_NEAR(column(&c, &before, &after, 1.1), end, .01);
 	test_scene_finish(&before);
 	test_scene_finish(&after);
-	// A motion that has begun is followed by its closed form.
+	// A motion that has begun follows its closed form.
 	box_at(&after, 1, -2, 4);
 	CHECK_NEAR(column(&c, NULL, &after, 2), end, 1);
 	test_scene_finish(&after);
@@ -101,7 +101,7 @@ static void far_from_the_origin(void)
 	canvas_close(&c);
 }
 
-// How far up (or along another axis) in the picture the bodies reach: least and most, -1 and 1 at its edges
+// Extent of the bodies upwards (or along another axis) in the picture: least and most, -1 and 1 at its edges.
 static void find_extent(const ob_draw_list *list, const ob_view *v, ob_vec3 axis, double tangent, double *least,
 			double *most)
 {
@@ -113,8 +113,8 @@ static void find_extent(const ob_draw_list *list, const ob_view *v, ob_vec3 axis
 	}
 }
 
-// What lies flat leaves as much room above it as below, though its near edge looks larger than its far one; what is
-// tall the same at its sides.
+// Flat scenes leave as much room above as below, though the near edge looks larger than the far one; tall ones the same
+// at their sides.
 static void automatic_cameras_centre(void)
 {
 	for (int tall = 0; tall < 2; tall++) {
@@ -134,7 +134,7 @@ static void automatic_cameras_centre(void)
 		double low, high, left, right;
 		find_extent(&list, &v, v.up, v.tan_y, &low, &high);
 		find_extent(&list, &v, v.right, v.tan_x, &left, &right);
-		CHECK_NEAR(high + low, 0, .2); // a tenth of the picture, for the far edge counts as the near one
+		CHECK_NEAR(high + low, 0, .2); // a tenth of the picture, as the far edge counts like the near one
 		CHECK_NEAR(right + left, 0, .05);
 		CHECK(low > -1 && high < 1 && left > -1 && right < 1);
 		CHECK(tall ? high - low > 1.5 && right - left < 1 : high - low < 1.2 && right - left > 1.5);

@@ -1,4 +1,4 @@
-// What stands in the picture: sky above, the body in the middle, its shadow, overlays; the same bytes again.
+// Contents of the picture: sky above, the body in the middle, its shadow, overlays; the same bytes again.
 #include <string.h>
 
 #include "canvas.h"
@@ -11,7 +11,8 @@ static void one_box(ob_snapshot *s, ob_shape shape, double lift)
 	test_scene_add(s, shape, ob_v3(1, 1, 1), ob_v3(0, 0, 1 + lift), ob_quat_identity(), red);
 }
 
-// From the south: the sun of test_scene_look stands to the right and before the box, so the shadow falls left, behind.
+// From the south: the sun of test_scene_look is to the right of and in front of the box, so the shadow falls left,
+// behind.
 static ob_camera_def south(void)
 {
 	return test_scene_camera(ob_v3(0, -9, 3), ob_v3(0, 0, 1));
@@ -30,7 +31,7 @@ static void sky_body_and_shadow(void)
 	CHECK(canvas_mean(&c, 160, 90, 8, 0) > canvas_mean(&c, 160, 90, 8, 1) + 60); // red in the middle
 	double shadow = canvas_mean(&c, 120, 113, 2, 1), lit = canvas_mean(&c, 230, 113, 2, 1);
 	CHECK(shadow < .75 * lit);
-	CHECK(canvas_mean(&c, 60, 120, 2, 1) > shadow * 1.3); // and elsewhere there is none
+	CHECK(canvas_mean(&c, 60, 120, 2, 1) > shadow * 1.3); // and elsewhere none
 	for (int i = 3; i < 4 * CANVAS_WIDTH * CANVAS_HEIGHT; i += 4)
 		if (c.rgba[i] != 255) {
 			CHECK(c.rgba[i] == 255);
@@ -68,7 +69,7 @@ static void no_acne(void)
 	ob_camera_def camera = test_scene_camera(ob_v3(1, -5, 5), ob_v3(0, 0, 2));
 	one_box(&s, OB_SHAPE_BOX, 0);
 	canvas_draw(&c, NULL, &s, 0, &camera);
-	// On the lit top no pixel differs from its neighbour by more than shading can.
+	// On the lit top, neighbouring pixels differ by no more than shading can cause.
 	int worst = 0;
 	for (int y = 84; y < 96; y++)
 		for (int x = 130; x < 180; x++) {

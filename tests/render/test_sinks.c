@@ -1,4 +1,4 @@
-// Sinks: every frame once, whole, in order, the same bytes; and errors where the disk, the reader or ffmpeg fails.
+// Sinks: every frame once, whole, in order, the same bytes; and errors if the disk, the reader or ffmpeg fails.
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -60,7 +60,7 @@ static size_t slurp(const char *path, uint8_t *data, size_t most)
 	return n;
 }
 
-// The frame's number and row order come back from the file, and the time from its text chunk.
+// The file has the frame's number and row order, and the time in its text chunk.
 static void check_png(const char *path, int frame)
 {
 	FILE *f = fopen(path, "rb");
@@ -103,7 +103,7 @@ static void png_is_complete(void)
 	}
 	CHECK(same == FRAMES);
 	check_png(path, FRAMES - 1);
-	// A shorter run into the same directory leaves none of the longer one's, and nothing of the user's is touched.
+	// A shorter run into the same directory removes the longer one's frames, and no file of the user.
 	snprintf(path, sizeof path, "%s/frame-notes.txt", dir[0]);
 	fclose(fopen(path, "w"));
 	ob_sink *s = ob_sink_png(dir[0], W, H, 0, &e);
@@ -134,7 +134,7 @@ static void png_errors(void)
 	setrlimit(RLIMIT_FSIZE, &before);
 	CHECK(!put && !closed);
 	CHECK(strstr(e.text, "full/frame-0000") && strstr(e.text, "File too large"));
-	CHECK(files_in(dir) == 0); // nothing half-written stays
+	CHECK(files_in(dir) == 0); // no partial file stays
 }
 
 typedef struct reader {

@@ -1,4 +1,4 @@
-// Settings of a run: defaults, layers on top of each other, what each architecture and solver makes of them.
+// Settings of a run: defaults, layers on top of each other, and their resolution for each architecture and solver.
 #include <string.h>
 
 #include "check.h"
@@ -6,7 +6,7 @@
 
 static ob_run_settings layer;
 
-// A layer with one setting
+// A layer with one setting.
 static const ob_run_settings *with(ob_setting_id id, double value)
 {
 	const ob_setting *s = &ob_setting_table[id];
@@ -80,7 +80,7 @@ static void test_exactness(void)
 	with(OB_SETTING_TOLERANCE, .1e-3);
 	layer.integrator = OB_INTEGRATOR_ODE;
 	CHECK(resolve(&s, &layer) && s.substeps == 16); // g H^2 / 2 = 1.36 mm
-	for (double step = 1. / 480; step <= 10; step *= 2) { // never more than can be counted, whatever the step
+	for (double step = 1. / 480; step <= 10; step *= 2) { // never more than can be counted, at any step
 		s = ob_run_settings_default();
 		with(OB_SETTING_TOLERANCE, .1e-3);
 		layer.integrator = OB_INTEGRATOR_ODE;
@@ -95,7 +95,7 @@ static void test_exactness(void)
 	CHECK(resolve(&s, with(OB_SETTING_SOLVER, OB_SOLVER_GHOST)) && s.tolerance == 0 && s.substeps == 8);
 	s = ob_run_settings_default();
 	with(OB_SETTING_SOLVER, OB_SOLVER_GHOST);
-	layer.tolerance = 2e-3; // asked for, so kept
+	layer.tolerance = 2e-3; // explicit, so it stays
 	CHECK(resolve(&s, &layer) && s.tolerance == 2e-3);
 	check_refused(ob_run_settings_default(), with(OB_SETTING_ITERATIONS, 0), "--arch monolith");
 }
