@@ -1,5 +1,5 @@
-"""test_bench.py BENCH BUILD: a tiny run writes the file that it should; compare.py finds a change that was planted, takes
-noise for noise, and says in one line what is wrong with what it cannot read; performance.py fills a page.
+"""test_bench.py BENCH BUILD: a tiny run writes its file; compare.py finds a planted change, ignores noise, and rejects
+invalid files with one line; performance.py fills a page.
 """
 import csv
 import os
@@ -110,7 +110,7 @@ def test_compare(folder):
     write(b, 4, {(engine, q): 1.3 for engine in ('obsim', 'bullet', 'ode-quick') for q in ('cpu', 'wall')})
     compare(a, b, 0, '0 worse')  # the machine was slower
     write(b, 5, {('bullet', 'wall'): 2., ('obsim', 'wall'): 1.3, ('obsim', 'cpu'): 1.15})
-    assert 'wall:' not in compare(a, b, 1, '2 worse').stdout  # of walls the machine allows no word
+    assert 'wall:' not in compare(a, b, 1, '2 worse').stdout  # the machine is too noisy to judge wall times
     write(b, 6, failing=True)
     compare(a, b, 1, 'it fell')
 

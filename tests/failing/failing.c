@@ -1,13 +1,13 @@
-// Loaded before a program (LD_PRELOAD), makes one of its calls fail, as it may anywhere: FAIL_CALL=KIND:N, the Nth call
-// of a kind in the program or in one of its processes, counted on through fork; with N = 0 none. FAIL_MARK=PATH: a file
-// that gets a line when the call fails, and one with the number of calls when a process ends.
+// Loaded before a program (LD_PRELOAD), makes one of its calls fail, as any may: FAIL_CALL=KIND:N, the Nth call of a
+// kind in the program or in one of its processes, counted on through fork; with N = 0 none. FAIL_MARK=PATH: a file that
+// gets a line when the call fails, and one with the number of calls when a process ends.
 //
 //   alloc   malloc, calloc, realloc, aligned_alloc: no memory
 //   fork    fork, pthread_create: no room for a task
 //   mmap    mmap: no address space
 //   open    open, fopen, shm_open, opendir, socketpair, eventfd, signalfd: no descriptor left
 //   write   write, pwrite, ftruncate, posix_fallocate: no space left
-#undef _FILE_OFFSET_BITS // else open is but another name of open64
+#undef _FILE_OFFSET_BITS // otherwise open would be another name of open64
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
@@ -25,7 +25,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#pragma GCC visibility push(default) // what stands in the way of libc
+#pragma GCC visibility push(default) // replacements of libc's functions
 
 enum kind { ALLOC, FORK, MMAP, OPEN, WRITE, KINDS };
 static const char *const names[KINDS] = { "alloc", "fork", "mmap", "open", "write" };
@@ -81,7 +81,7 @@ static void *next(const char *name)
 	return dlsym(RTLD_NEXT, name);
 }
 
-// ---- memory: glibc's own under their other names, for dlsym itself allocates
+// ---- memory: glibc's own under their other names, as dlsym itself allocates
 
 void *__libc_malloc(size_t);
 void *__libc_calloc(size_t, size_t);

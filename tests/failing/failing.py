@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""The Nth allocation, fork, mapping, open or write of a short run fails, for every N: one clear error and exit code 1 (2 while
-the scene is read), or the run goes on and ends in the right bits; nothing is left behind, and nobody dies of it.
+"""Makes the Nth allocation, fork, mapping, open or write of a short run fail, for every N. The run must end with one
+clear error and exit code 1 (2 while the scene is read), or go on and end in the right bits. Nothing may be left behind,
+and no process may crash.
 
     failing.py OBSIM LIBRARY SCENES [KIND ...] [--every K [--first N]]
 
-LIBRARY is failing.c, built. With --every K, of allocations, of which a run makes hundreds, each Kth is tried, from the Nth
-on, which is drawn and printed unless given: so different runs of the tests try different ones.
+LIBRARY is failing.c, built. A run makes hundreds of allocations: with --every K, each Kth is tried, from the Nth on. N
+is random and printed unless given, so different runs of the tests try different ones.
 """
 
 import argparse
@@ -28,7 +29,7 @@ class Run:
 		self.name = f"failing-{os.getpid()}"
 
 	def once(self, kind, n, isolation):
-		"""(what it returned, whether the call failed, how many there were)."""
+		"""(exit status, True if the call failed, number of calls)."""
 		mark = os.path.join(self.folder, "mark")
 		words = [self.a.obsim, "run", os.path.join(self.a.scenes, "stack.lua"), "--duration", ".05", "--workers", "2", "--isolation", isolation,
 			"--name", self.name, "--json", os.path.join(self.folder, "out.json"), "--series", os.path.join(self.folder, "s.csv"),
@@ -50,7 +51,7 @@ class Run:
 
 	def faults(self, done, right):
 		said = [l for l in done.stderr.split("\n") if l]
-		if done.returncode not in (0, 1, 2):  # 2: it happens while the scene is read
+		if done.returncode not in (0, 1, 2):  # 2: a failure while the scene is read
 			yield f"exit code {done.returncode}"
 		if done.returncode and sum(l.startswith("obsim: ") and not l.startswith("obsim: warning") for l in said) != 1:
 			yield "not one error"

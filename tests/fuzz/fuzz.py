@@ -3,11 +3,12 @@
 
     fuzz.py OBSIM KIND ... [--count N | --hours H] [--seed S] [--keep DIR]
 
-KIND is one of: scenes (generated, edge values in all fields), lua (mutants of the shipped scenes), words (command lines),
-checkpoints (mutants of a run's own), recordings (the same), records (mutants of the results that compare keeps). Each case is a process of its
-own. Whatever comes in, it must end by itself with 0, 1 or 2; say what is wrong in lines that begin "obsim: "; leave no
-universe behind; send no control character to a terminal; and compute no longer than its CPU time allows. What does not is
-kept in DIR (fuzz-kept) with the command that does it again, and the exit code is 1.
+KIND is one of: scenes (generated, edge values in all fields), lua (mutants of the shipped scenes), words (command
+lines), checkpoints (mutants of a run's own), recordings (the same), records (mutants of the results of compare). Each
+case is a process of its own. With any input, it must end by itself with 0, 1 or 2, and report errors in lines that
+begin "obsim: ". It must leave no universe behind, send no control character to a terminal, and compute no longer than
+its CPU time allows. Failing cases are stored in DIR (fuzz-kept) with a command that repeats them, and the exit code is
+1.
 
 For hours, all kinds in turn, on a build with sanitizers:
 
@@ -15,8 +16,8 @@ For hours, all kinds in turn, on a build with sanitizers:
     export UBSAN_OPTIONS=halt_on_error=1 ASAN_OPTIONS=intercept_tls_get_addr=0 LSAN_OPTIONS=suppressions=$PWD/tests/leaks.txt
     setarch -R python3 tests/fuzz/fuzz.py build-asan/obsim all --hours 8 --seed $RANDOM
 
-Segments, meshes, requests, and checkpoints whose checksums are right are read in the fuzzer's own process, up to a million in some minutes:
-tests/fuzz/segments.c, meshes.c, requests.c, tests/checkpoint/test_hostile.c.
+Segments, meshes, requests, and checkpoints with valid checksums are read in the fuzzer's own process, up to a million
+in some minutes: tests/fuzz/segments.c, meshes.c, requests.c, tests/checkpoint/test_hostile.c.
 """
 
 import argparse
@@ -40,8 +41,8 @@ sys.path.insert(0, os.path.join(HERE, "..", "run"))
 import glb
 
 SCENES = os.path.join(HERE, "..", "..", "scenes")
-CPU_SECONDS = 60  # of one case: a step's whole budget is some 5 s, and a sanitizer takes ten times as long
-WALL_SECONDS = 1800  # what waits for ever; a machine may be as overloaded as it likes
+CPU_SECONDS = 60  # per case: a step's whole budget is some 5 s, and a sanitizer takes ten times as long
+WALL_SECONDS = 1800  # detects endless waits; generous for overloaded machines
 OUTPUT_MAX = 1 << 20  # bytes
 
 EDGES = [0., -0., 5e-324, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, .01, .1, .5, 1., 1.5, 3., 10., 100., 1e3, 1e6, 1e7, 1e9,
@@ -49,11 +50,11 @@ EDGES = [0., -0., 5e-324, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, .01, .1, .5, 1
 
 
 class Scenes:
-	"""Generated scenes. Mostly within what is allowed, so that they run; now and then anything."""
+	"""Generated scenes. Mostly valid, so that they run; now and then anything."""
 
 	def __init__(self, r):
 		self.r = r
-		self.scripts, self.hulls = 0, False  # how many the scene has, and whether it has any
+		self.scripts, self.hulls = 0, False  # number of the scene's scripts, True if it has hulls
 
 	def number(self, low, high, wild=.004):
 		r = self.r
@@ -75,21 +76,21 @@ class Scenes:
 		return "{" + ", ".join(self.number(low, high, .001) for _ in range(3)) + "}"
 
 	def size(self):
-		"""Of metres, mostly: what is absurd in all directions just flies by."""
+		"""In metres, mostly: bodies with absurd sizes in all directions just fly by."""
 		return self.number(1e-4, 1e6) if self.r.random() < .05 else repr(self.r.uniform(.05, 2))
 
 	def place(self):
 		return self.vector(-1e7, 1e7) if self.r.random() < .1 else self.vector(-3, 3)
 
 	def one_of(self, right, wrong):
-		"""A scene with one fault is refused and computes nothing, so faults are rare."""
+		"""A scene with one fault is rejected without a step, so faults are rare."""
 		return self.r.choice(wrong if self.r.random() < .005 else right)
 
 	def maybe(self, chance, name, value):
 		return [f"{name} = {value()}"] if self.r.random() < chance else []
 
 	def hull_points(self):
-		"""Corners, most of them of bodies; some flat, tiny, huge, or the same point again and again."""
+		"""Corners, mostly of bodies; some flat, tiny, huge, or repetitions of one point."""
 		r = self.r
 		kind = r.choice(["few", "many", "box", "prism", "round"] if r.random() < .9 else ["flat", "line", "same", "tiny", "huge", "crowd"])
 		if kind == "crowd":
@@ -162,13 +163,13 @@ class Scenes:
 		return fields + ([f"length = {self.size()}"] if kind in ("capsule", "cylinder") else [])
 
 	def mesh(self):
-		"""What a body looks like: the files lie beside the scene."""
+		"""Mesh of a body: the files lie beside the scene."""
 		path = self.one_of(["ball.glb", "lane.glb"], ["none.glb", "../ball.glb", "/etc/passwd", "scene.lua", ""])
 		fields = [f"mesh = '{path}'"] + self.maybe(.3, "mesh_scale", lambda: self.number(1e-9, 1e6)) + self.maybe(.3, "mesh_at", self.place)
 		return fields + self.maybe(.3, "mesh_rotation", lambda: f"{{ axis = {self.vector(-1, 1)}, degrees = {self.number(-36000, 36000)} }}")
 
 	def motion(self, static):
-		"""How a body moves, or is moved."""
+		"""Prescribed or initial motion of a body."""
 		r = self.r
 		fields = []
 		kinematic = not static and r.random() < .15
@@ -225,7 +226,7 @@ class Scenes:
 		r.shuffle(fields)
 		return f"{kind} {{ {', '.join(fields)} }}"
 
-	# What scripts may do, and what they had better not.
+	# Calls of scripts, valid and invalid.
 	DEEDS = ["while true do end", "local t = {} for i = 1, 1e7 do t[i] = ('x'):rep(1000) .. i end", "local s = 'x' while true do s = s .. s end",
 		"sphere { radius = .1, at = { random(-2, 2), random(-2, 2), 3 } }", "for i = 1, 40 do box { size = { .1, .1, .1 }, at = { i, 0, 2 } } end",
 		"sphere { radius = .1, at = { self:position() }, script = 's0' }", "self:remove()", "for _, o in ipairs(near(1e9)) do o:remove() end",
@@ -255,7 +256,7 @@ class Scenes:
 	def head(self):
 		r = self.r
 		fields = self.maybe(.7, "step", lambda: self.number(1e-4, 10) if r.random() < .3 else r.choice(["1/60", "1/30", "1/240"]))
-		many = r.random() < .05  # substeps: what is wild takes as many as it may, and most of a campaign's time
+		many = r.random() < .05  # substeps: wild scenes take the maximum, and most of a campaign's time
 		fields += self.maybe(.8, "substeps", lambda: str(self.one_of([32, 256, 1000] if many else [1, 1, 2, 4, 8], [1001, 0])))
 		if not any(f.startswith("substeps") for f in fields):
 			fields += self.maybe(.9, "tolerance", lambda: self.number(1e-6 if many else .01, 1))
@@ -283,7 +284,7 @@ class Scenes:
 		return f"material {name} {{ {', '.join(fields)} }}"
 
 	def look(self, kind):
-		"""What is seen, and from where."""
+		"""Look and cameras."""
 		r = self.r
 		if kind == "record":
 			return f"record {{ every = {self.one_of([1, 2, 1000000], [0, -1, 1e9])} }}"
@@ -388,7 +389,7 @@ class Lua:
 			f.write(mutate(self.r, text, self.TOKENS, 3))
 
 	def case(self, folder):
-		"""A scene, with what it reads beside it; of a scene with scripts, often these."""
+		"""Mutates a scene, copied with the files that it reads; often its scripts, if it has any."""
 		name = self.r.choice(self.scenes)
 		path, beside = os.path.join(folder, name), os.path.join(folder, name[:-4])
 		shutil.copy(os.path.join(SCENES, name), folder)
@@ -400,7 +401,7 @@ class Lua:
 
 
 class Words:
-	"""Command lines: every option that --help knows, with values that fit it or do not."""
+	"""Command lines: every option of --help, with valid and invalid values."""
 
 	VALUES = ["", "0", "-1", "1", "2", "1e300", "nan", "inf", "1/0", "1/60", "0x10", "objects", "thread", "process", "monolith", "1mm", "1e-400m", "aabb,contacts",
 		"/dev/full", "/dev/null", "/nonexistent/x", ".", "-", "a,b", "100000", "4294967296", "99999999999999999999", "\x1b[31m", "\udcff", "x" * 300, "%s%n",
@@ -424,7 +425,7 @@ class Words:
 			words += r.choice([[option, r.choice(self.VALUES)], [f"{option}={r.choice(self.VALUES)}"], [option], [r.choice(self.VALUES)]])
 		if command == "run" and r.random() < .8:
 			words.insert(1, os.path.join(SCENES, "stack.lua"))
-			words += ["--duration", ".02"]  # the last one counts, or is refused
+			words += ["--duration", ".02"]  # the last one counts, or is rejected
 		if command == "top":
 			words += ["--once", "--interval", ".05"]
 		if command == "send":
@@ -433,7 +434,7 @@ class Words:
 
 
 class Files:
-	"""Mutants of files that the program itself has written, given back to it."""
+	"""Mutants of files written by the program itself."""
 
 	SCENES = ["stack", "machines", "solids", "flock"]
 	NUMBERS = [struct.pack("<d", x) for x in (0, -1, .5, 3, 1e-300, 1e300, -1e300, math.inf, -math.inf, math.nan)] + \
@@ -453,7 +454,7 @@ class Files:
 					self.seeds.append(f.read())
 
 	def renumbered(self, data, areas):
-		"""Numbers become others where they stand, in areas (from, to) that are as likely as each other."""
+		"""Changes numbers in place, in areas (from, to) of equal probability."""
 		data = bytearray(data)
 		for _ in range(self.r.randint(1, 3)):
 			number = self.r.choice(self.NUMBERS)
@@ -476,7 +477,7 @@ class Files:
 		return self.command(path, folder)
 
 
-CRC64 = []  # of each byte: ECMA-182, reflected
+CRC64 = []  # table by byte: ECMA-182, reflected
 for crc in range(256):
 	for _ in range(8):
 		crc = crc >> 1 ^ (0xc96c5795d7870f42 if crc & 1 else 0)
@@ -495,7 +496,7 @@ class Checkpoints(Files):
 	HEADER, LINE = 128, 32  # checkpoint/file.h
 
 	def mutant(self):
-		"""Half of them with checksums that are right."""
+		"""Half of them have valid checksums."""
 		if self.r.random() < .5:
 			return super().mutant()
 		seed = self.r.choice(self.seeds)
@@ -519,7 +520,7 @@ class Recordings(Files):
 	WRITTEN_BY = "--record"
 
 	def known(self, obsim):
-		"""And one of a mesh with a picture on it, where obsim reads such."""
+		"""Adds a mesh with a picture, if obsim reads such."""
 		super().known(obsim)
 		with tempfile.TemporaryDirectory() as folder:
 			path, scene = os.path.join(folder, "file"), os.path.join(folder, "scene.lua")
@@ -563,7 +564,7 @@ def limit():
 
 
 def faults(done, name):
-	"""What a run must not do."""
+	"""Violations in a finished run."""
 	text = (done.stdout + done.stderr).decode("utf-8", "replace")
 	if done.returncode not in (0, 1, 2):
 		yield f"exit code {done.returncode}" + (f" ({signal.Signals(-done.returncode).name})" if -65 < done.returncode < 0 else "")
@@ -628,7 +629,7 @@ def main():
 	longest = 0, "none"
 	codes = {}
 	for s in signal.SIGINT, signal.SIGTERM:
-		signal.signal(s, signal.default_int_handler)  # what has been done so far is told
+		signal.signal(s, signal.default_int_handler)  # reports the results so far
 	try:
 		while time.monotonic() < until if until else i < a.first + a.count:
 			for n in names:

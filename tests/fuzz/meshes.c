@@ -1,11 +1,10 @@
-// Hostile glTF files: mutants of good ones, read in this process. Each is refused in a word, or becomes a mesh that
-// makes sense; none may crash, run without end, or ask for more memory than a file of its size is worth. 20000 in a
-// minute or so:
+// Hostile glTF files: mutants of good ones, read in this process. Each is rejected with a message, or becomes a
+// consistent mesh; none may crash, hang, or allocate more memory than is reasonable for its size. 20000 in a minute or
+// so:
 //
 //   meshes FOLDER [COUNT [SEED]]    mutants of FOLDER/*.glb, and of cubes with and without pictures
 //
-// tinygltf, libpng and libjpeg have no sanitizers in them; with those of this program (build-asan) what they hand over
-// is watched.
+// tinygltf, libpng and libjpeg are built without sanitizers; those of this program (build-asan) check their output.
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +16,7 @@
 
 enum { SEEDS_MAX = 12, BYTES_MAX = 1 << 20, CHANGES = 5 };
 
-// Put in place of numbers, and anywhere else
+// Replacements of numbers, and of other parts.
 static const char *const words[] = {
 	"-1",
 	"0",
@@ -110,7 +109,7 @@ static uint32_t big_endian(const unsigned char *at)
 	return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-// In one part of a PNG of so many bytes: a number or some bytes of it, and its checksum is made right again.
+// Changes one part of a PNG of so many bytes, a number or some bytes, and corrects its checksum.
 static void change_png(unsigned char *png, size_t size)
 {
 	static const uint32_t numbers[] = { 0, 1, 2, 255, 4096, 4097, 65535, 0x7fffffff, 0x80000000, 0xffffffff };
@@ -130,7 +129,7 @@ static void change_png(unsigned char *png, size_t size)
 		put_big_endian(png + at + 8 + length, (uint32_t)crc32(0, png + at + 4, (uInt)(length + 4)));
 }
 
-// The picture in a file's buffer, if it has one: another number, another byte, or nothing from somewhere on.
+// Changes the picture in a file's buffer, if it has one: a number, a byte, or a cut.
 static void change_picture(unsigned char *buffer, size_t size)
 {
 	unsigned char *png = memmem(buffer, size, "\x89PNG\r\n\x1a\n", 8);
@@ -147,7 +146,7 @@ static void change_picture(unsigned char *buffer, size_t size)
 		memset(at + place, 0, left - place);
 }
 
-// The next number of the text from "at" on: its length, and its place in *at; 0: there is none.
+// Finds the next number of the text from "at" on: its length, and its place in *at; 0: none.
 static size_t find_number(const char *text, size_t size, size_t *at)
 {
 	static const char digits[] = "0123456789.-";
@@ -159,7 +158,7 @@ static size_t find_number(const char *text, size_t size, size_t *at)
 	return n;
 }
 
-// In the JSON, of which *size bytes are there and room is enough: a number, or a few bytes, become a word.
+// Replaces a number or a few bytes of the JSON by a word. *size: its bytes; the buffer is large enough.
 static void change_text(char *text, size_t *size)
 {
 	const char *word = words[below(sizeof words / sizeof *words)];

@@ -1,6 +1,6 @@
-// Hostile records, made with HDF5 itself: whatever can lead out of a file, in place of each thing that is in one. Each
-// record is refused in a line, or read; neither opens another file or looks for a library to load. A bait lies
-// where they lead, and inotify tells who takes it. Thousands in some minutes:
+// Hostile records, made with HDF5 itself: each feature that refers outside a file, in place of each of its objects.
+// Each record is rejected with a line, or read; neither may open another file or search for a library to load. A bait
+// lies at each target, and inotify reports accesses to it. Thousands in some minutes:
 //
 //   recordings [COUNT [SEED]]    each way at each place, and then COUNT records with several of them
 #include <errno.h>
@@ -119,7 +119,7 @@ static void to_another(hid_t file, const char *name)
 	H5Lcreate_hard(file, place[below(places)], file, name, H5P_DEFAULT, H5P_DEFAULT);
 }
 
-// Another dataset of the same type and space, made in this way; or one of doubles in place of a group.
+// Puts another dataset of the same type and space, made in this way; or one of doubles in place of a group.
 static void put_dataset(hid_t file, const char *name, hid_t how, bool fill)
 {
 	const hsize_t one = 4;
@@ -163,7 +163,7 @@ static void made_of_bait(hid_t file, const char *name)
 	put_dataset(file, name, how, false);
 }
 
-// As that of any filter which HDF5 does not have, which it would look for in a folder of libraries.
+// Stands for a filter that HDF5 does not have: it would search a folder of libraries for it.
 static size_t pass(unsigned flags, size_t n, const unsigned *value, size_t bytes, size_t *room, void **buffer)
 {
 	(void)flags, (void)n, (void)value, (void)room, (void)buffer;

@@ -1,6 +1,6 @@
-// Hostile requests: what any program of the same user may send to a running universe (host/ask.h). Each is refused in a
-// word, or carried out; the run goes on, or ends with a line that says why, and never crashes. Some thousand in a
-// minute:
+// Hostile requests, as any program of the same user may send to a running universe (host/ask.h). Each is rejected with a
+// message, or carried out; the run goes on, or ends with a line that gives the reason, and never crashes. Some thousand
+// in a minute:
 //
 //   requests [COUNT [SEED]]
 #include <math.h>
@@ -117,7 +117,7 @@ static ob_host *start(const ob_scene *s, const char *name)
 	return h;
 }
 
-// Whether the run went on.
+// True if the run went on.
 static bool step(ob_host *h)
 {
 	ob_universe_info info;

@@ -1,5 +1,5 @@
-// Hostile segments: a reader that is attached to a universe, or attaches to it, gets whatever lies there. It may
-// refuse; it may never crash, run without end, or hand on what makes no sense. A million in a minute or so:
+// Hostile segments: a reader that is attached to a universe, or attaches to it, reads arbitrary bytes. It may refuse;
+// it may never crash, hang, or return implausible data. A million in a minute or so:
 //
 //   segments [COUNT [SEED]]
 #include <stdlib.h>
@@ -17,7 +17,7 @@
 
 enum { OBJECTS = 12, HULLS = 2, WORKERS = 3, CHANGES = 24, CONTACTS = 64 };
 
-// What lies where a change goes, so that it can be undone: copying the whole segment back would take most of the time.
+// Original bytes of a change, to undo it: copying the whole segment back would take most of the time.
 typedef struct change {
 	uint64_t at, was;
 } change;
@@ -47,7 +47,7 @@ static void fill(ob_universe *u)
 				  .mass = i ? 1 : 0,
 				  .inertia = { .1, .2, .3 } };
 		ob_motion m = { .q = { 1, 0, 0, 0 },
-				.p = { 1.2 * i, 0, 1 }, // apart: what their depth costs is not of interest
+				.p = { 1.2 * i, 0, 1 }, // apart: the cost of penetrations is not tested here
 				.v = { 1, 0, 0 },
 				.w = { 1, 2, 3 },
 				.valid_until = INFINITY };
@@ -106,7 +106,7 @@ static void read_hulls(const ob_universe *u)
 	}
 }
 
-// What an observer makes of a snapshot.
+// Measures a snapshot as an observer does.
 static void measure(const ob_snapshot *s, ob_vec3 gravity)
 {
 	ob_penetration depth;
@@ -125,7 +125,7 @@ static void measure(const ob_snapshot *s, ob_vec3 gravity)
 	ob_measure_separation(s, &apart, NULL, NULL);
 }
 
-// All that a viewer asks for, and what it computes of it.
+// Reads all data that a viewer reads, and computes with it.
 static void read_all(const ob_universe *u, ob_snapshot *s)
 {
 	ob_universe_info info;
@@ -163,7 +163,7 @@ static void read_all(const ob_universe *u, ob_snapshot *s)
 		measure(s, info.gravity);
 }
 
-// Mostly where something lies; edge values as often as random ones.
+// Mostly places in use; edge values as often as random ones.
 static uint64_t random_value(uint64_t *r)
 {
 	static const uint64_t edges[] = { 0,
@@ -196,7 +196,7 @@ static uint64_t random_place(const ob_universe *u, uint64_t *r)
 	const uint64_t *area = u->header.area;
 	uint64_t x = ob_splitmix(r), i = (x >> 32) % (OB_AREAS + 1);
 	uint64_t from = i == OB_AREAS ? 0 : area[i], to = i + 1 < OB_AREAS ? area[i + 1] : u->header.bytes;
-	uint64_t used = i == OB_AREA_HULL ? HULLS * sizeof(ob_hull) : 4096; // little of an area is in use
+	uint64_t used = i == OB_AREA_HULL ? HULLS * sizeof(ob_hull) : 4096; // only a small part of an area is in use
 	used = to - from < used ? to - from : used;
 	return used < 8 ? 0 : from + x % (used / 8) * 8; // an area may be empty
 }
@@ -237,7 +237,7 @@ int main(int argc, char **argv)
 		int n = 1 + (int)(ob_splitmix(&r) % CHANGES);
 		scribble(u, &r, undo, n);
 		read_all(before, &s);
-		if (i % 8 == 0) { // to map it takes longer than all the rest
+		if (i % 8 == 0) { // mapping it takes longer than all the rest
 			ob_universe *after = ob_universe_attach(name, &e);
 			refused += !after;
 			if (after)

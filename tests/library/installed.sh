@@ -1,6 +1,6 @@
 #!/bin/sh
-# installed.sh SOURCE BUILD CC..: installs into an empty root, compiles the example against what lies there alone,
-# and looks at what the library shows to others.
+# installed.sh SOURCE BUILD CC..: installs into an empty root, compiles the example against the installed files
+# alone, and checks the symbols that the library exports.
 set -eu
 source=$1 build=$2
 shift 2

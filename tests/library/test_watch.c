@@ -1,4 +1,4 @@
-// The example program, as another process, reads a universe that this one has made: by its name alone.
+// The example program, as another process, reads a universe made by this one, by its name alone.
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ static void place(ob_universe *u, uint32_t id, const char *name, ob_vec3 p, ob_v
 	ob_publish_motion(u, id, &m);
 }
 
-// Runs watch; what it says goes to text, its wait status comes back.
+// Runs watch; returns its wait status, with its output in text.
 static int watch(const char *program, const char *universe, char *text, size_t size)
 {
 	char command[4096];
@@ -58,10 +58,10 @@ int main(int argc, char **argv)
 	CHECK(watch(argv[1], name, text, sizeof text) == 0);
 	CHECK(strstr(text, "1 ball 2.000000 2.000000 2.500000\n"));
 	CHECK(strstr(text, "4 far -1000.000000 0.000000 0.250000\n"));
-	CHECK(!strstr(text, "\n0 ") && !strstr(text, "\n2 ")); // nobody has these ids
+	CHECK(!strstr(text, "\n0 ") && !strstr(text, "\n2 ")); // free ids
 	ob_universe_destroy(u, true);
 
-	CHECK(watch(argv[1], name, text, sizeof text) != 0); // it is gone, and so says watch
+	CHECK(watch(argv[1], name, text, sizeof text) != 0); // the universe is gone, and watch reports it
 	CHECK(strstr(text, name));
 	return check_end();
 }

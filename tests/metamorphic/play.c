@@ -23,7 +23,7 @@ typedef struct worker {
 typedef struct player {
 	const random_scene *scene;
 	uint64_t steps; // of the run
-	ob_quat frame[SCENE_BODIES]; // of hulls: of their principal axes, in the frame of their points
+	ob_quat frame[SCENE_BODIES]; // principal axes of hulls, in the frame of their points
 	ob_universe *u;
 	ob_sim *sim; // NULL: workers have threads of their own
 	uint32_t workers;
@@ -74,7 +74,7 @@ static void add_body(ob_world *w, player *p, uint32_t i)
 		ob_world_kinematic(o);
 }
 
-// What speeds up does so through the first half of a way that takes four times as long as the run.
+// Speeds up through the first half of a path that takes four times as long as the run.
 static void prescribe(const player *p, uint32_t i)
 {
 	const scene_body *b = &p->scene->body[i];
@@ -84,7 +84,7 @@ static void prescribe(const player *p, uint32_t i)
 	ob_path_point point[2] = { { .t = 0, .p = b->state.pose.p },
 				   { .t = time, .p = ob_madd(b->state.pose.p, .25 * time * time, p->scene->lift) } };
 	const ob_path lift = { .points = 2, .point = point };
-	const ob_path *own = b->path.frequency > 0 ? &b->path : NULL; // NULL: on with its velocities
+	const ob_path *own = b->path.frequency > 0 ? &b->path : NULL; // NULL: constant velocities
 	ob_sim_prescribe(p->u, i, b->driven ? own : &lift, 0);
 }
 
@@ -187,7 +187,7 @@ static void close_player(player *p)
 typedef struct budget {
 	ob_vec3 momentum, spin;
 	double energy, least; // J: at the start; the least since, net
-	double all_momentum, all_spin, to_lose; // what errors are shares of
+	double all_momentum, all_spin, to_lose; // scales of the errors
 } budget;
 
 static double energy_of(const player *p)

@@ -14,7 +14,7 @@ static const double pi = 3.14159265358979323846;
 typedef struct dice {
 	uint64_t seed;
 	unsigned shapes;
-	double size; // m, of the scene's bodies
+	double size; // m, scale of the scene's bodies
 	double density, friction, restitution;
 } dice;
 
@@ -23,7 +23,7 @@ static double decades(dice *d, double low, double high)
 	return pow(10, within(&d->seed, low, high));
 }
 
-// Along x and y, drawn in turn: in which order a compiler calls what gives it its arguments is its own affair.
+// Draws x and y in separate statements: the order in which a compiler evaluates arguments is unspecified.
 static ob_vec3 level_within(dice *d, double low, double high, double z)
 {
 	double x = within(&d->seed, low, high), y = within(&d->seed, low, high);
@@ -94,7 +94,7 @@ static void put_point(scene_body *b, double x, double y, double z)
 	b->point[b->points++] = ob_v3(x, y, z);
 }
 
-// Corners of a regular polygon, the first at a random angle, or at the axis.
+// Puts the corners of a regular polygon, the first at a random angle, or at the axis.
 static void put_polygon(scene_body *b, dice *d, int corners, double radius, double z)
 {
 	double first = within(&d->seed, -3, 3);
@@ -157,7 +157,7 @@ static double hull_volume(const scene_body *b)
 	return ob_hull_build(b->point, b->points, &h, &e) ? h.volume : 0;
 }
 
-// Of half extents "half", about its centre of mass.
+// Draws a hull of half extents "half", about its centre of mass.
 static void draw_hull(scene_body *b, dice *d, ob_vec3 half, bool prism)
 {
 	do {
@@ -184,7 +184,7 @@ static void draw_hull(scene_body *b, dice *d, ob_vec3 half, bool prism)
 
 // ---- bodies
 
-// Extents of a third to the whole of the scene's size.
+// Adds a body with extents of a third to the whole of the scene's size.
 static scene_body *add_any(random_scene *s, dice *d, unsigned shapes, ob_vec3 p)
 {
 	double x = d->size * within(&d->seed, .33, 1), y = d->size * within(&d->seed, .33, 1);
@@ -196,7 +196,7 @@ static scene_body *add_any(random_scene *s, dice *d, unsigned shapes, ob_vec3 p)
 	return b;
 }
 
-// A box with level faces, or a prism where hulls are drawn.
+// Adds a box with level faces, or a prism if hulls are drawn.
 static scene_body *add_level(random_scene *s, dice *d, ob_vec3 half, ob_vec3 p)
 {
 	scene_body *b = add(s, d, OB_SHAPE_BOX, half, p);
@@ -215,7 +215,7 @@ static void add_ground(random_scene *s, dice *d)
 		b->friction = 0;
 }
 
-// The i-th cell of a grid of two by two by as many layers as it takes, about the vertical axis.
+// The i-th cell of a grid of two by two by as many layers as needed, about the vertical axis.
 static ob_vec3 cell(int i)
 {
 	return ob_v3(i % 2 - .5, i / 2 % 2 - .5, i / 4);
@@ -445,7 +445,7 @@ random_scene scene_draw(scene_kind kind, uint64_t seed, unsigned shapes)
 		random_scene *, dice *) = { draw_hits,  draw_spins, draw_bounce, draw_heap,    draw_statics, draw_stack,
 					    draw_slide, draw_roll,  draw_tables, draw_paddles, draw_pushed };
 	random_scene s = { .run = ob_run_settings_default() };
-	enum { FIRST_KINDS = 8 }; // more kinds leave the scenes of these as they are
+	enum { FIRST_KINDS = 8 }; // further kinds do not change the scenes of these
 	dice d = { .seed = seed * FIRST_KINDS + kind % FIRST_KINDS + ((uint64_t)(kind / FIRST_KINDS) << 32),
 		   .shapes = shapes };
 	double e = uniform(&d.seed), which = uniform(&d.seed);
@@ -481,7 +481,7 @@ static void print_vector(FILE *out, const char *field, ob_vec3 v)
 		fprintf(out, ", %s = { %.17g, %.17g, %.17g }", field, v.x, v.y, v.z);
 }
 
-// As sines and circles, which are what is drawn.
+// Prints sines and circles, the only paths that are drawn.
 static void print_path(FILE *out, const scene_body *b)
 {
 	const double f = b->path.frequency;

@@ -6,23 +6,23 @@
 #include "motion/random.h"
 
 static const double tolerance = 1e-9; // m
-static const double disturbance = 1e-12; // m, of the twin
+static const double disturbance = 1e-12; // m, for the twin
 static const double pi = 3.14159265358979323846;
 
 const char *const relation_name[RELATIONS] = { "again",   "workers",   "mirrored", "turned",  "tilted", "moved",
 					       "boosted", "reordered", "rescaled", "refined", "far",    "momentum",
 					       "spin",    "energy",    "lifted",   "reframed" };
 
-// ---- one scene seen otherwise
+// ---- one scene, transformed
 
-// Where the original's p is, the other has length * turn (mirror p) + shift + boost t.
+// A position p of the original becomes length * turn (mirror p) + shift + boost t.
 typedef struct view {
 	bool mirror; // x to -x, first
 	ob_quat turn;
-	ob_vec3 shift, boost, lift; // in the other's units
-	ob_quat frame; // of hulls: the other's points are turned by this
-	double length, time, mass; // the other's numbers for one of the original's
-	uint32_t id[SCENE_BODIES]; // of the original's bodies
+	ob_vec3 shift, boost, lift; // in units of the transformed scene
+	ob_quat frame; // for hulls: turns the points of the transformed scene
+	double length, time, mass; // factors from the original's numbers
+	uint32_t id[SCENE_BODIES]; // id of each of the original's bodies
 } view;
 
 static view same_view(const random_scene *s)
@@ -39,14 +39,14 @@ static ob_vec3 see_vector(const view *o, ob_vec3 x)
 	return ob_rotate(&r, ob_v3(o->mirror ? -x.x : x.x, x.y, x.z));
 }
 
-// Of an angular velocity, whose mirror image turns the other way.
+// Transforms an angular velocity; its mirror image turns the other way.
 static ob_vec3 see_axial(const view *o, ob_vec3 x)
 {
 	ob_mat3 r = ob_quat_matrix(o->turn);
 	return ob_rotate(&r, o->mirror ? ob_v3(x.x, -x.y, -x.z) : x);
 }
 
-// The body is mirrored in its own x, too, of which no shape takes notice.
+// The body is mirrored in its own x, too, which leaves all shapes unchanged.
 static ob_quat see_attitude(const view *o, ob_quat q)
 {
 	return ob_quat_mul(o->turn, o->mirror ? (ob_quat){ q.w, q.x, -q.y, -q.z } : q);
@@ -65,7 +65,7 @@ static ob_state see_state(const view *o, const scene_body *b, ob_state s, double
 	return r;
 }
 
-// From the body's own frame, mirrored as its attitude is, to the same.
+// Transforms from the body's own frame, mirrored like its attitude, to the same.
 static ob_vec3 see_own(const view *o, const scene_body *b, ob_vec3 x)
 {
 	const ob_mat3 r = ob_quat_matrix(o->frame);
@@ -123,8 +123,8 @@ static double sample_time(const random_scene *s, int sample, uint64_t steps)
 	return (double)((uint64_t)(sample + 1) * steps / PLAY_SAMPLES) * s->run.step_length;
 }
 
-// m, in the original's units: how far the other run is from the original's as it should be seen; infinity where it
-// could not be run.
+// Distance (m, in the original's units) of the other run from the transformed original; infinity if it could not be
+// run.
 static double difference(const random_scene *s, const played *base, const played *other, const view *o, int sample,
 			 uint64_t steps)
 {
@@ -148,7 +148,7 @@ static ob_vec3 random_direction(uint64_t *seed)
 	return ob_scale(x, 1 / ob_norm(x));
 }
 
-// Another place and another attitude: rounding disturbs both.
+// Displaces positions and attitudes: rounding disturbs both.
 static random_scene twin_of(const random_scene *s, uint64_t seed, double sign)
 {
 	random_scene t = *s;
@@ -199,8 +199,8 @@ static void turn(const random_scene *s, uint64_t *seed, view *o)
 					       : ob_quat_turn(o->turn, ob_scale(up, within(seed, -pi, pi)));
 }
 
-// A direction along all planes, which must be the same to what glides along them at any speed: without friction. false:
-// there is something else, or nothing left.
+// Finds a direction along all planes, for frictionless bodies gliding along them: speed in it must make no difference.
+// Returns false if there are other bodies, or no such direction.
 static bool along_planes(const random_scene *s, uint64_t *seed, ob_vec3 *direction)
 {
 	ob_vec3 along = random_direction(seed);
@@ -260,7 +260,7 @@ static void reorder(const random_scene *s, uint64_t *seed, view *o)
 	}
 }
 
-// By powers of four, so that no number is rounded. Gravity stays.
+// Rescales by powers of four, so that no number is rounded. Gravity stays.
 static void rescale(uint64_t *seed, view *o)
 {
 	int k = (int)within(seed, 1, 4);
@@ -304,7 +304,7 @@ static bool make_view(relation_id r, const random_scene *s, uint64_t *seed, view
 	}
 }
 
-// A box that turns in the distance, and falls if things fall.
+// Adds a distant rotating box, which falls in scenes with gravity.
 static void add_far_body(random_scene *s, uint64_t *seed)
 {
 	scene_body b = { .shape = OB_SHAPE_BOX, .size = { .1, .2, .3 }, .mass = 1, .friction = .5, .restitution = .5 };
@@ -343,7 +343,7 @@ static void judge_view(const original *o, const view *v, uint64_t steps, judged 
 	j->limit = tolerance;
 }
 
-// Substeps 8, 16, 32: what the second doubling changes, over what the first does.
+// Substeps 8, 16, 32: change by the second doubling over change by the first.
 static void judge_refined(const original *o, uint64_t steps, judged *j)
 {
 	played run[3];
@@ -363,7 +363,7 @@ static void judge_refined(const original *o, uint64_t steps, judged *j)
 	j->limit = 1;
 }
 
-// Energy may come from outside.
+// True if energy may come from outside.
 static bool is_worked_on(const random_scene *s)
 {
 	for (uint32_t i = 0; i < s->bodies; i++)
@@ -377,7 +377,7 @@ static double limit_of(relation_id r, const original *o)
 	return r == RELATION_MOMENTUM || (r == RELATION_SPIN && !o->base.touched) ? 1e-12 : 1e-9;
 }
 
-enum { FIRST_RELATIONS = 14 }; // more relations leave the numbers that these draw as they are
+enum { FIRST_RELATIONS = 14 }; // further relations do not change the numbers drawn for these
 
 judged relation_judge(relation_id r, const original *o, uint64_t seed, uint64_t steps)
 {

@@ -4,10 +4,10 @@ typedef struct shrinking {
 	random_scene scene;
 	relation_id relation;
 	uint64_t seed, steps;
-	int left; // of the scenes that may still be tried
+	int left; // number of scenes that may still be tried
 } shrinking;
 
-// Keeps the simpler scene if the relation does not hold for it either.
+// Keeps the simpler scene if it violates the relation as well.
 static bool try(shrinking *p, const random_scene *simpler)
 {
 	if (p->left-- <= 0)
@@ -38,7 +38,7 @@ static bool drop_bodies(shrinking *p)
 	return any;
 }
 
-// digits: of the numbers
+// Rounds to so many digits.
 static double rounded(double x, int digits)
 {
 	char text[40];
@@ -60,7 +60,7 @@ static ob_quat rounded_attitude(ob_quat q, int digits)
 
 enum { SIMPLER = 13 };
 
-// The i-th way to make a body simpler; false: there is nothing to do.
+// Simplifies a body in the i-th way; returns false if that changes nothing.
 static bool simplify(scene_body *b, int way)
 {
 	const scene_body was = *b;
@@ -128,7 +128,7 @@ static void round_body(scene_body *b, int digits)
 	if (b->shape != OB_SHAPE_HULL)
 		b->size = rounded_vector(b->size, digits);
 	else if (!scene_make_hull(b))
-		b->mass = NAN; // and so no scene
+		b->mass = NAN; // an invalid scene
 	b->mass = rounded(b->mass, digits);
 	b->friction = rounded(b->friction, digits);
 	b->restitution = rounded(b->restitution, digits);

@@ -1,4 +1,4 @@
-// A scene for which a relation does not hold, made as simple as it gets while the relation still does not.
+// Simplifies a scene that violates a relation, as long as it still does.
 #ifndef OB_TESTS_METAMORPHIC_SHRINK_H
 #define OB_TESTS_METAMORPHIC_SHRINK_H
 

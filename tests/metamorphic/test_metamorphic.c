@@ -1,9 +1,11 @@
-// Random scenes run twice, the second time seen otherwise; and what a run must keep. Prints a table of relations and
-// kinds of scenes: tried, counted (a twin stayed near), failed, the worst.
+// Random scenes run twice, the second time transformed; and quantities conserved in a run. Prints a table of relations
+// and kinds of scenes: tried, counted (a twin stayed near), failed, the worst.
+//
 //   metamorphic [--seeds A..B] [--relation NAME] [--kind NAME] [--shapes sphere,box,capsule,cylinder,hull] [--steps N]
 //               [--shrink] [--scene FILE.lua] [--kept FILE.lua ...]
-// Without --relation: all. With --suite, relations are asserted but where "faults" says that they do not hold yet, and
-// what fails is printed. --kept: files of scenes whose first line names the relation and its seed, as --shrink prints
+//
+// Without --relation: all. With --suite, relations are asserted except those that "faults" lists as violated, and
+// failures are printed. --kept: files of scenes whose first line names the relation and its seed, as --shrink prints
 // them.
 #include <stdlib.h>
 #include <string.h>
@@ -41,20 +43,20 @@ enum {
 	ALL = (1 << SCENE_KINDS) - 1
 };
 
-// Where a relation does not hold yet: it is measured there, and not asserted.
+// Relations that do not hold yet: measured, but not asserted.
 static const unsigned faults[RELATIONS] = {
 	[RELATION_MIRRORED] = HEAP | STATICS | TABLES, [RELATION_TURNED] = HEAP | STATICS | TABLES | PUSHED,
 	[RELATION_TILTED] = HEAP | STATICS | TABLES,   [RELATION_MOVED] = HEAP | TABLES | PADDLES | PUSHED,
 	[RELATION_BOOSTED] = HEAP | STATICS | PADDLES, [RELATION_LIFTED] = HEAP,
 	[RELATION_REFINED] = ALL & ~(SPINS | ROLL),    [RELATION_ENERGY] = HEAP,
 };
-// .. and with capsules and cylinders.
+// Same, with capsules and cylinders.
 static const unsigned round_faults[RELATIONS] = {
 	[RELATION_TURNED] = ROLL,
 	[RELATION_MOVED] = STATICS,
 	[RELATION_ENERGY] = STATICS,
 };
-// .. and with hulls.
+// Same, with hulls.
 static const unsigned hull_faults[RELATIONS] = {
 	[RELATION_TILTED] = STACK | PADDLES,
 	[RELATION_BOOSTED] = STACK | TABLES,
@@ -140,7 +142,7 @@ static void print_table(void)
 				       (unsigned long)sum[r][k].worst_seed);
 }
 
-// A relation that counts few scenes says little.
+// A relation that counts few scenes proves little.
 static void check_shares(void)
 {
 	for (int r = 0; r < RELATIONS; r++) {
@@ -159,7 +161,7 @@ static void try_all(const request *q)
 	print_table();
 }
 
-// A scene that once failed.
+// Runs a scene that once failed.
 static void try_kept(const request *q, const char *path)
 {
 	char name[32];
