@@ -19,16 +19,16 @@ static const char magic[8] = { 'O', 'B', 'S', 'I', 'M', 'C', 'K', '1' };
 static const uint32_t byte_order = 0x01020304;
 enum { BORDER = 64 };
 
-// The first four fields and the program stay where they are in all versions.
+// The first four fields and the program have the same place in all versions.
 typedef struct header {
 	char magic[8];
 	uint32_t byte_order;
 	uint32_t version;
-	uint64_t bytes; // of the whole file
+	uint64_t bytes; // size of the whole file
 	char program[64]; // text that ends with a 0
 	uint32_t areas;
 	uint32_t zero[7];
-	uint64_t checksum; // of header and table, taken with 0 here
+	uint64_t checksum; // over header and table, with 0 here
 } header;
 
 typedef struct line {
@@ -36,9 +36,9 @@ typedef struct line {
 	uint64_t count, offset, checksum;
 } line;
 
-typedef struct start { // of the file
+typedef struct start { // the start of the file
 	header h;
-	line l[OB_CHECKPOINT_AREAS_MAX]; // no more of them are in the file than it has areas
+	line l[OB_CHECKPOINT_AREAS_MAX]; // a file has as many as it has areas
 } start;
 
 static size_t start_bytes(uint32_t areas)
@@ -117,7 +117,7 @@ static uint64_t next_border(uint64_t at)
 	return (at + BORDER - 1) / BORDER * BORDER;
 }
 
-// Points the areas to where the table says that they lie.
+// Points the areas to their places in the table.
 static void set_areas(ob_checkpoint_file *f, const start *s)
 {
 	f->areas = s->h.areas;
@@ -145,7 +145,7 @@ bool ob_checkpoint_plan(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, u
 	s.h.bytes = at;
 	memcpy(f->bytes, &s, start_bytes(areas));
 	set_areas(f, &s);
-	uint64_t end = start_bytes(areas); // zeros from the end of each part to the next border
+	uint64_t end = start_bytes(areas); // fills with zeros from the end of each part to the next border
 	for (uint32_t i = 0; i <= areas; i++) {
 		memset(f->bytes + end, 0, next_border(end) - end);
 		end = i < areas ? s.l[i].offset + s.l[i].element * s.l[i].count : end;
@@ -161,7 +161,7 @@ void ob_checkpoint_finish(ob_checkpoint_file *f)
 
 // ---- writing
 
-// The new file beside path, empty, and nobody else's while it is open. < 0 and e on failure.
+// Opens the new file beside path, empty, for exclusive use. Returns < 0 and e on failure.
 static int open_part(const char *part, ob_error *e)
 {
 	struct stat opened, named;
@@ -170,7 +170,7 @@ static int open_part(const char *part, ob_error *e)
 		ob_fail(e, "%s: %s", part, strerror(errno));
 		return -1;
 	}
-	// whoever has the lock may already have given the file its name
+	// an earlier holder of the lock may already have renamed the file
 	bool own = fstat(fd, &opened) == 0 && S_ISREG(opened.st_mode) && flock(fd, LOCK_EX | LOCK_NB) == 0 &&
 		   lstat(part, &named) == 0 && named.st_ino == opened.st_ino && named.st_dev == opened.st_dev;
 	if (own && ftruncate(fd, 0) == 0)
@@ -192,7 +192,7 @@ static bool write_all(int fd, const char *bytes, size_t size)
 	return true;
 }
 
-// So that the new name is on the disk, too. A folder that cannot be opened for that (no permission to list it) is no
+// Writes the new name to the disk, too. A folder that cannot be opened for that (no permission to list it) is no
 // failure: the file is whole under either name.
 static void sync_folder(const char *path)
 {
@@ -220,7 +220,7 @@ void ob_checkpoint_seal(ob_checkpoint_file *f)
 bool ob_checkpoint_write(const ob_checkpoint_file *f, const char *path, ob_error *e)
 {
 	char real[PATH_MAX], part[PATH_MAX + 8];
-	if (!realpath(path, real)) // replaces the file behind a link, not the link
+	if (!realpath(path, real)) // replaces the target of a link, not the link
 		snprintf(real, sizeof real, "%s", path);
 	snprintf(part, sizeof part, "%s.part", real);
 	int fd = open_part(part, e);
@@ -242,7 +242,7 @@ bool ob_checkpoint_write(const ob_checkpoint_file *f, const char *path, ob_error
 
 // ---- reading
 
-// One line of text that came from outside, without anything that could move a terminal's cursor.
+// Copies one line of text from outside, without characters that could move a terminal's cursor.
 static void copy_program(char to[64], const char *from)
 {
 	memset(to, 0, 64);
@@ -276,7 +276,7 @@ static bool line_makes_sense(const line *l, const ob_checkpoint_rule *rule, uint
 	       l->offset == at && at <= size && l->count <= (size - at) / rule->element;
 }
 
-// The start of a file of so many bytes.
+// Checks the start of a file of so many bytes.
 static bool check_start(const start *s, size_t size, const ob_checkpoint_rule *rule, uint32_t areas, const char *name,
 			ob_error *e)
 {
@@ -294,7 +294,7 @@ static bool check_start(const start *s, size_t size, const ob_checkpoint_rule *r
 	return true;
 }
 
-// From where a part ends to the next border.
+// True if zeros follow from the end of a part to the next border.
 static bool zeros_follow(const ob_checkpoint_file *f, uint64_t end)
 {
 	for (uint64_t at = end; at < next_border(end); at++)
@@ -303,7 +303,7 @@ static bool zeros_follow(const ob_checkpoint_file *f, uint64_t end)
 	return true;
 }
 
-// The rest of it, once it is in memory.
+// Checks the rest, once it is in memory.
 static bool check_areas(ob_checkpoint_file *f, const start *s, const ob_checkpoint_rule *rule, const char *name,
 			ob_error *e)
 {

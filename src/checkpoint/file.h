@@ -9,8 +9,8 @@
 // header's is of itself and the table. Nothing that is read is believed before it has been compared with the length of
 // the file.
 //
-// A file is replaced as a whole: what is new is written beside it, to FILE.part, and takes its name when it is on the
-// disk. A reader finds either the old one or the new one, and so does who comes after a power failure.
+// A file is replaced as a whole: new contents are written beside it, to FILE.part, which takes its name when it is on
+// the disk. A reader finds either the old one or the new one, also after a power failure.
 //
 // Thread-safety: one thread at a time per file.
 #ifndef OB_CHECKPOINT_FILE_H
@@ -22,10 +22,10 @@
 
 #include <ob/error.h>
 
-// A larger file is neither written nor read: what is read lies in memory as a whole.
+// Limit for writing and reading: a file is read into memory as a whole.
 #define OB_CHECKPOINT_BYTES_MAX ((uint64_t)960 << 20)
 
-// A change of what an area holds needs a new version.
+// A change of an area's contents needs a new version.
 enum { OB_CHECKPOINT_VERSION = 5, OB_CHECKPOINT_AREAS_MAX = 32 };
 
 typedef struct ob_checkpoint_rule {
@@ -39,28 +39,29 @@ typedef struct ob_checkpoint_area {
 	uint64_t count;
 } ob_checkpoint_area;
 
-// In memory, as it is on disk. Starts zeroed.
+// The file in memory, with the layout on disk. Starts zeroed.
 typedef struct ob_checkpoint_file {
-	char *bytes; // what the allocator gave
+	char *bytes; // as allocated
 	size_t size, room;
 	uint32_t areas;
 	ob_checkpoint_area area[OB_CHECKPOINT_AREAS_MAX];
 	char program[64]; // that wrote it
 } ob_checkpoint_file;
 
-// Makes room for areas of so many elements (area[].count), and sets area[].at. Memory is kept from one plan to the
-// next, and what was in it is still there. false and e: no memory, or larger than OB_CHECKPOINT_BYTES_MAX.
+// Makes room for areas of so many elements (area[].count), and sets area[].at. Memory is reused from one plan to the
+// next, and preserves its contents. Returns false and e if memory runs out, or it is larger than
+// OB_CHECKPOINT_BYTES_MAX.
 bool ob_checkpoint_plan(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, uint32_t areas, const uint64_t *count,
 			const char *program, ob_error *e);
-// Computes the checksums, when the areas are filled in.
+// Computes the checksums, once the areas are filled in.
 void ob_checkpoint_seal(ob_checkpoint_file *f);
-// Replaces the file at path by what is sealed. false and e: it is as it was.
+// Replaces the file at path by the sealed contents. Returns false and e on failure; the old file is unchanged.
 bool ob_checkpoint_write(const ob_checkpoint_file *f, const char *path, ob_error *e);
-// Reads and checks the file at path. false and e, which begins with the path: it cannot be read, is no checkpoint, of
-// another version, cut short, or damaged.
+// Reads and checks the file at path. Returns false and e, which begins with the path: unreadable, not a checkpoint,
+// another version, truncated, or damaged.
 bool ob_checkpoint_read(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, uint32_t areas, const char *path,
 			ob_error *e);
-// The same of bytes in memory, which are copied; name is for messages.
+// Same for bytes in memory, which are copied; name is for messages.
 bool ob_checkpoint_parse(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, uint32_t areas, const void *bytes,
 			 size_t size, const char *name, ob_error *e);
 void ob_checkpoint_finish(ob_checkpoint_file *f);

@@ -27,11 +27,11 @@ typedef enum saved_area {
 	AREA_SCRIPT_TURNS,
 	AREA_SCRIPT_CELLS,
 	AREA_SCRIPT_TEXTS,
-	AREA_HULLS, // that are not the scene's
+	AREA_HULLS, // without the scene's
 	AREAS
 } saved_area;
 
-// All that is no array.
+// All scalar data.
 typedef struct facts {
 	uint64_t created, step, events, seed;
 	uint32_t has_seed, checked;

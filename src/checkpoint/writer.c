@@ -16,11 +16,11 @@ struct ob_checkpoint_writer {
 	uint64_t chances; // for a fault
 	ob_checkpoint_file file;
 	pthread_t thread;
-	bool writing; // the thread has to be joined; what follows is its own until then
-	bool failed; // the last
+	bool writing; // the thread has to be joined; the following fields belong to it until then
+	bool failed; // the last one
 	ob_error error;
-	double time; // s, simulated, of what is written
-	double asked; // s, wall: when the run came for the file
+	double time; // s, simulated, of the current checkpoint
+	double asked; // s, wall: time of the run's request for the file
 	ob_checkpoint_sums sums;
 };
 
@@ -34,7 +34,7 @@ ob_checkpoint_writer *ob_checkpoint_writer_create(const char *path, const ob_fau
 	return w;
 }
 
-// As on a full disk.
+// Emulates a full disk.
 static bool fails_on_request(ob_checkpoint_writer *w)
 {
 	uint64_t random;

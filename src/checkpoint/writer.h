@@ -21,17 +21,17 @@ typedef struct ob_checkpoint_writer ob_checkpoint_writer;
 typedef struct ob_checkpoint_sums {
 	uint64_t written;
 	uint64_t bytes; // of the last
-	uint64_t faults; // that were injected: checkpoints that were not written
-	double held_s; // for which the run stood still, waiting or filling in: from file to write
+	uint64_t faults; // injected ones: checkpoints that were not written
+	double held_s; // duration for which the run stood still, waiting or filling in: from file to write
 } ob_checkpoint_sums;
 
-// path is kept, not copied; fault: NOSPACE, at each checkpoint. NULL: no memory.
+// path is not copied, and must stay valid; fault: NOSPACE, at each checkpoint. Returns NULL if memory runs out.
 ob_checkpoint_writer *ob_checkpoint_writer_create(const char *path, const ob_fault_plan *fault);
-// The file to fill in, as soon as the last is written.
+// File to fill in; waits until the last is written.
 ob_checkpoint_file *ob_checkpoint_writer_file(ob_checkpoint_writer *w);
 // Writes it. time: s, simulated, for messages.
 void ob_checkpoint_writer_write(ob_checkpoint_writer *w, double time);
-// Waits, and frees w; NULL is allowed. false and e: the last checkpoint could not be written.
+// Waits, and frees w; NULL is allowed. Returns false and e if the last checkpoint could not be written.
 bool ob_checkpoint_writer_close(ob_checkpoint_writer *w, ob_checkpoint_sums *sums, ob_error *e);
 
 #endif

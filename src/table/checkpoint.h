@@ -20,12 +20,12 @@
 
 typedef struct ob_checkpoint ob_checkpoint;
 
-// NULL: no memory, or the universe's name is gone.
+// NULL: out of memory, or the universe's name is gone.
 ob_checkpoint *ob_checkpoint_create(const ob_universe *u);
-// false: no memory; nothing can then be put back.
+// Returns false if memory runs out; nothing can then be put back.
 bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u);
 void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u);
-// Steps that were complete.
+// Number of complete steps at the checkpoint.
 uint64_t ob_checkpoint_step(const ob_checkpoint *c);
 void ob_checkpoint_destroy(ob_checkpoint *c); // NULL is allowed
 

@@ -1,14 +1,14 @@
 // A union-find forest over indices, which several workers grow at the same time. Its roots are the lowest indices of their
 // trees, so it ends the same in whatever order trees are joined.
 //
-//   parent   0  1  1  0  4        a parent is below its child: so each walk to a root ends, whatever somebody has
-//            ^  ^__|  |  ^        written there
+//   parent   0  1  1  0  4        a parent is below its child: so each walk to a root ends, even after
+//            ^  ^__|  |  ^        stray writes
 //            |________|  |
 //
-// A root is given a parent by a compare-and-swap, which one of several succeeds with; the others begin again from the roots
-// that there are now. What is no root any more gets but parents further up in its own tree, for which a plain store will
-// do: an older one that comes late is an ancestor, too. The gate orders all of it with who reads the forest afterwards, so
-// relaxed will do.
+// A root is given a parent by a compare-and-swap; one of several workers succeeds, and the others begin again from the
+// present roots. An index that is no longer a root only gets parents further up in its own tree, so a plain store is
+// enough: an older one that comes late is an ancestor, too. The gate orders all of it with later readers of the forest,
+// so relaxed is enough.
 #ifndef OB_TABLE_FOREST_H
 #define OB_TABLE_FOREST_H
 

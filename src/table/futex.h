@@ -1,4 +1,4 @@
-// Futexes on words in shared memory. A word may be waited for, and its waiters woken, where it is mapped read-only.
+// Futexes on words in shared memory. Waiting and waking also work where the word is mapped read-only.
 #ifndef OB_TABLE_FUTEX_H
 #define OB_TABLE_FUTEX_H
 
@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-// Never FUTEX_PRIVATE_FLAG: the words lie in shared memory. bits: which waiters of the word.
+// Never FUTEX_PRIVATE_FLAG: the words lie in shared memory. bits: selects waiters of the word.
 static inline void ob_futex_wait(const uint32_t *word, uint32_t seen, uint32_t bits, const struct timespec *until)
 {
 	syscall(SYS_futex, word, FUTEX_WAIT_BITSET, seen, until, NULL, bits);

@@ -41,7 +41,7 @@ void ob_gate_prepare(ob_gate *g, uint32_t workers)
 
 // ---- workers
 
-// done: the last turn at which the worker arrived. A contained simulator keeps it for itself.
+// done: the last turn at which the worker arrived. A contained simulator stores it in its own memory.
 static bool has_turn(const ob_gate *g, const ob_gate_cell *cell, uint32_t done)
 {
 	return load_acquire(&cell->turn) != done || load_acquire(&g->stop);
@@ -104,7 +104,7 @@ bool ob_gate_arrive(ob_universe *u, uint32_t worker)
 	return __atomic_sub_fetch(&g->groups_left, 1, __ATOMIC_ACQ_REL) == 0;
 }
 
-// ---- the opener: the scheduler or the host, alone, for every worker waits
+// ---- the opener: the scheduler or the host, alone, as all workers wait
 
 // Atomic only for ob_gate_waits_for, which the host may call at any time.
 static void set_expected(ob_gate_group *group, uint64_t workers)
@@ -126,15 +126,15 @@ static void set_all_expected(ob_universe *u, uint32_t groups)
 								       : (UINT64_C(1) << workers % 64) - 1);
 }
 
-// Writes the turn into the cells of a half's participants, then wakes those of them that sleep.
+// Writes the turn into the cells of a half's participants, then wakes the sleeping ones.
 static void open_half(ob_universe *u, uint32_t first, ob_gate_half *half, uint32_t part, uint32_t turn)
 {
 	for (uint32_t rest = part; rest; rest &= rest - 1)
 		__atomic_store_n(&u->gate_cell[first + (uint32_t)__builtin_ctz(rest)].turn, turn, __ATOMIC_RELEASE);
 	__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
-	// A read-modify-write, not a load: of it and the waiter's "or", the second sees the first.
+	// A read-modify-write, not a load: the second of this and the waiter's "or" observes the first.
 	uint32_t wake = __atomic_fetch_or(&half->asleep, 0, __ATOMIC_SEQ_CST) & part;
-	if (ob_universe_contains(u)) // simulators cannot say that they sleep
+	if (ob_universe_contains(u)) // contained simulators cannot record that they sleep
 		wake = part;
 	if (wake)
 		ob_futex_wake(&half->word, wake);
@@ -166,7 +166,7 @@ void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, 
 		taking_part += expected_of(u->gate_group + i) != 0;
 	__atomic_store_n(&g->groups_left, taking_part, __ATOMIC_RELAXED);
 	__atomic_store_n(&g->phase, phase, __ATOMIC_RELAXED);
-	if (__atomic_load_n(&g->host_turn, __ATOMIC_RELAXED) & 1) // a worker that opens must not take away STOP's bit
+	if (__atomic_load_n(&g->host_turn, __ATOMIC_RELAXED) & 1) // an opening worker must not clear STOP's bit
 		__atomic_fetch_and(&g->host_turn, ~UINT32_C(1), __ATOMIC_RELAXED);
 	uint32_t turn = ++g->turn;
 	for (uint32_t i = 0; i < groups && taking_part; i++) {

@@ -1,4 +1,4 @@
-// The gate: how the workers of a universe, threads or processes, pass from phase to phase together.
+// The gate leads the workers of a universe, threads or processes, from phase to phase together.
 //
 //            worker's cell            group of 64 workers                         gate
 //          +---------------+     +------------------------+      last bit    +-------------+  last group:
@@ -26,11 +26,11 @@
 // asleep with sequentially consistent read-modify-writes: the second of them sees what the other wrote. Only the waiter
 // clears its bit, when it has its turn: an opener that takes no part itself may be so late that its turn is long over,
 // and must not clear a bit that a worker has set for the next. A late opener can at most wake a worker for nothing, which
-// then waits again. Where every worker has a core, it spins on its cell for SPIN_NS before it sleeps (waking a core costs
+// then waits again. If every worker has a core, it spins on its cell for SPIN_NS before it sleeps (waking a core costs
 // some 30 us).
 //
-// Contained simulators cannot write here: they arrive through their outboxes, keep "done" for themselves, and are always
-// woken. The arranger is the last to arrive in each phase.
+// Contained simulators cannot write here: they arrive through their outboxes, keep "done" in their own memory, and are
+// always woken. The arranger is the last to arrive in each phase.
 //
 // STOP is a flag of its own, set for good; setting it moves every word and wakes every waiter.
 #ifndef OB_TABLE_GATE_H
@@ -40,13 +40,13 @@
 #include <stdint.h>
 
 typedef struct ob_gate {
-	_Alignas(64) uint32_t turn; // of the last opening; the opener's
+	_Alignas(64) uint32_t turn; // last opening; written by the opener
 	uint32_t phase; // ob_phase of that turn
 	uint32_t spin; // 1 = every worker has a core of its own
-	_Alignas(64) uint32_t groups_left; // groups of which a worker has still to arrive
+	_Alignas(64) uint32_t groups_left; // groups with workers still to arrive
 	_Alignas(64) uint32_t stop; // sticky
 	_Alignas(64) uint32_t host_turn; // futex word: bit 0 = the host has the turn; bit 1 moves it at STOP
-	uint32_t awaited; // of contained simulators: 1 + the one whose outbox the arranger waits for (outbox.h)
+	uint32_t awaited; // contained simulators: 1 + the one whose outbox the arranger waits for (outbox.h)
 } ob_gate;
 
 typedef struct ob_gate_half {
@@ -63,12 +63,12 @@ typedef struct ob_gate_group {
 typedef struct ob_gate_cell {
 	_Alignas(64) uint32_t turn; // the last turn given to this worker
 	uint32_t done; // the last turn at which it arrived
-	uint32_t taken; // of a contained simulator: hand-overs that the arranger has copied
+	uint32_t taken; // contained simulators: outbox records copied by the arranger
 } ob_gate_cell;
 
 static_assert(sizeof(ob_gate) == 256 && sizeof(ob_gate_group) == 128 && sizeof(ob_gate_cell) == 64, "gate");
 
-// On zeroed memory, by the creator, or by the host after a restart: the host has the turn.
+// Prepares the gate in zeroed memory (creator), or after a restart (host): the host has the turn.
 void ob_gate_prepare(ob_gate *g, uint32_t workers);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include "table/layout.h"
 
-// A move in one word: 1 + worker, object
+// A move in one word: 1 + worker, object.
 bool ob_move_ask(ob_universe *u, uint32_t object, uint32_t worker)
 {
 	uint64_t none = 0;
@@ -21,11 +21,13 @@ void ob_move_make(ob_universe *u, uint64_t move)
 {
 	const uint32_t object = (uint32_t)move, pin = (uint32_t)(move >> 32);
 	ob_passport p;
-	if (pin == 0 || !ob_universe_get_passport(u, object, &p)) // it may have gone since
+	if (pin == 0 || !ob_universe_get_passport(u, object, &p)) // the object may have been removed since
 		return;
 	u->control->pins += u->step_data.pin[object] == 0;
 	u->step_data.pin[object] = pin;
-	if (u->ranks == 1) // else where it lives says who knows it (sim/halo.h): from when it is solved there
+	// on several ranks, the home also determines which rank has the object (sim/halo.h): it changes when that rank
+	// solves it
+	if (u->ranks == 1)
 		ob_home_set(u, object, pin - 1);
 }
 
@@ -51,7 +53,7 @@ uint32_t ob_home_rank(const ob_universe *u, uint32_t object)
 	return ob_universe_rank_of(u, ob_home_of(u, object));
 }
 
-// Read by readers at any time.
+// Atomic, as readers read it at any time.
 void ob_home_set(ob_universe *u, uint32_t object, uint32_t worker)
 {
 	__atomic_store_n(&u->step_data.home[object], 1 + worker, __ATOMIC_RELAXED);

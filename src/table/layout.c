@@ -17,7 +17,7 @@ static uint32_t power_of_two_from(uint32_t least)
 	return n;
 }
 
-// How many elements an area has: so many times one of the sizes, and some more.
+// Number of elements of an area: a multiple of one of the sizes, and some more.
 typedef struct area_rule {
 	size_t element; // bytes
 	enum {
@@ -150,7 +150,7 @@ uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t 
 	return area_bytes(&few, area) / rules[area].element;
 }
 
-// All rings together hold half a million events, 16 MiB, unless there are so many workers that each has the least.
+// All rings together hold half a million events, 16 MiB, unless so many workers get the minimum each.
 static uint32_t ring_events(uint32_t workers)
 {
 	enum { ALL = 1 << 19, LEAST = 256, MOST = 1 << 16 };
@@ -160,7 +160,7 @@ static uint32_t ring_events(uint32_t workers)
 	return n;
 }
 
-// All there can be of some hundred objects; 128 for each of more.
+// All possible pairs of some hundred objects; 128 for each of more.
 static uint32_t most_pairs(uint32_t capacity)
 {
 	enum { LEAST = 8192, ALL = 1 << 18, EACH = 128, MOST = 1 << 30 };
@@ -170,7 +170,7 @@ static uint32_t most_pairs(uint32_t capacity)
 	return n < MOST ? (uint32_t)n : MOST;
 }
 
-// A phase's results of a pool's worker fit in, mostly; of one of many, those of its object.
+// Usually enough for a phase's results of a pool's worker; for a worker per object, those of its object.
 static uint32_t outbox_bytes(uint32_t workers)
 {
 	enum { FEW = 64, LARGE = 1 << 18, SMALL = 1 << 14 };
@@ -187,7 +187,7 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 				      .script_bytes = p->script_bytes };
 	h->sizes.pairs_max = most_pairs(capacity);
 	h->sizes.buckets = power_of_two_from(2 * capacity);
-	h->sizes.neighbours_max = 2 * h->sizes.pairs_max + capacity; // either of a pair may find the other
+	h->sizes.neighbours_max = 2 * h->sizes.pairs_max + capacity; // either object of a pair may find the other
 	h->sizes.trace_events = p->traced ? ring_events(workers) : 0;
 	h->sizes.outbox_bytes = p->contained ? outbox_bytes(workers) : 0;
 	uint64_t at = OB_LAYOUT_PAGE;
@@ -204,7 +204,7 @@ uint64_t ob_layout_likely_bytes(const ob_header *h)
 	ob_layout_sizes likely = h->sizes;
 	likely.pairs_max = PAIRS_PER_OBJECT * likely.capacity;
 	likely.neighbours_max = likely.pairs_max;
-	likely.hulls = 0; // those that there are have their pages before the run
+	likely.hulls = 0; // existing ones have their pages before the run
 	uint64_t sum = OB_LAYOUT_PAGE;
 	for (int i = 0; i < OB_AREAS; i++)
 		sum += area_bytes(&likely, (ob_area)i);

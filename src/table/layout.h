@@ -1,10 +1,10 @@
-// The layout of the shared segment: what lies where. Offsets only, for every process maps it elsewhere.
+// Layout of the shared segment. Offsets only, as each process maps it elsewhere.
 //
 //   0        header: written once by the creator, the magic last
 //   area[]   one run of equal elements each, on page borders, in the order of ob_area
 //
-// Capacities are generous, for a page that nobody touches costs nothing. A change of any struct here or in the
-// public headers needs a new OB_LAYOUT_VERSION.
+// Capacities are generous, as untouched pages cost nothing. A change of any struct here or in the public headers needs
+// a new OB_LAYOUT_VERSION.
 #ifndef OB_TABLE_LAYOUT_H
 #define OB_TABLE_LAYOUT_H
 
@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 29, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: what pages.h takes at once
+enum { OB_LAYOUT_VERSION = 29, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -68,7 +68,7 @@ typedef enum ob_area {
 	OB_AREA_SCRATCH,
 	OB_AREA_TASK_NS,
 	OB_AREA_SCRIPT_TEXT,
-	OB_AREA_OUTBOX, // of each worker; empty unless simulators are contained
+	OB_AREA_OUTBOX, // per worker; empty unless simulators are contained
 	OB_AREA_TRACE_RING, // from here on empty unless traced
 	OB_AREA_TRACE_EVENT, // rings of the workers, then of the host
 	OB_AREA_TRACE_SINCE, // [capacity] ns
@@ -77,20 +77,20 @@ typedef enum ob_area {
 
 typedef struct ob_layout_sizes {
 	uint32_t capacity, workers, pairs_max, buckets, neighbours_max;
-	uint32_t trace_events; // of each worker's ring, a power of two; 0 = not traced
-	uint32_t outbox_bytes; // of each worker, whole pages; 0 = simulators are not contained (outbox.h)
+	uint32_t trace_events; // size of each worker's ring, a power of two; 0 = not traced
+	uint32_t outbox_bytes; // size per worker, whole pages; 0 = simulators are not contained (outbox.h)
 	uint32_t hulls;
 	uint32_t script_cells; // objects that can have a script at the same time; 0 = the scene has none
-	uint32_t script_bytes; // of their texts, with the directory
+	uint32_t script_bytes; // size of their texts, with the directory
 } ob_layout_sizes;
 
-// The first two fields stay where they are in all versions. Whatever has the same magic is owned by its lock
+// The first two fields have the same place in all versions. A file with the same magic is owned through its lock
 // (segment.h).
 typedef struct ob_header {
 	uint64_t magic;
 	uint32_t version;
 	int32_t host_pid;
-	uint64_t bytes; // of the whole segment
+	uint64_t bytes; // size of the whole segment
 	uint64_t created; // ns, CLOCK_REALTIME
 	uint64_t area[OB_AREAS]; // offsets
 	ob_layout_sizes sizes;
@@ -101,7 +101,7 @@ typedef struct ob_header {
 	uint32_t checked; // 1 = as ob_universe_setup.checked
 } ob_header;
 
-// What changes as the run goes on. Counters that several workers hit have a cache line each.
+// State that changes as the run goes on. Counters that several workers update have a cache line each.
 typedef struct ob_control {
 	_Alignas(64) uint64_t step;
 	uint64_t pause_step;
@@ -109,29 +109,29 @@ typedef struct ob_control {
 	uint32_t state; // ob_universe_state
 	uint32_t ids, objects;
 	uint32_t awake, pairs, islands;
-	uint32_t lives; // times that all simulators were restarted
-	uint32_t hulls; // one past the highest number that was ever written
+	uint32_t lives; // number of restarts of all simulators
+	uint32_t hulls; // one past the highest number ever written
 	_Alignas(64) uint64_t claim_next;
 	uint32_t claim_total, claim_first, claim_workers;
 	_Alignas(64) uint64_t requery_count;
 	_Alignas(64) uint64_t neighbours_used;
-	_Alignas(64) uint32_t deaths; // so far: times that simulators died
-	uint32_t frozen; // objects that were frozen for it
+	_Alignas(64) uint32_t deaths; // number of deaths of simulators so far
+	uint32_t frozen; // objects frozen by them
 	char last_death[OB_DEATH_MAX]; // as ob_universe_info
-	_Alignas(64) uint64_t move; // that is asked for (home.h); 0 = none
-	uint32_t pins; // objects that have one
-	uint32_t is_read; // 1 = another program has attached the universe, as of when the host looked last
+	_Alignas(64) uint64_t move; // requested move (home.h); 0 = none
+	uint32_t pins; // objects with a pin
+	uint32_t is_read; // 1 = another program has attached the universe, when the host checked last
 } ob_control;
 
-// How long steps take. The gate orders its writers, but any worker may raise longest_ns and beside_ns, and the sums grow
+// Durations of steps. The gate orders its writers, but any worker may raise longest_ns and beside_ns, and the sums grow
 // after the gate has opened: all but begun_ns are atomic.
 typedef struct ob_step_clock {
-	_Alignas(64) uint64_t begun_ns; // when the running step began, ob_clock_ns
-	uint64_t longest_ns; // CPU of the worker with the most of it in the running phase; see above
-	uint64_t beside_ns; // of longest_ns's kind: of what is none of the phase's tasks
+	_Alignas(64) uint64_t begun_ns; // start of the running step, ob_clock_ns
+	uint64_t longest_ns; // CPU time of the busiest worker in the running phase; see above
+	uint64_t beside_ns; // same for work outside the phase's tasks
 	uint64_t critical_ns; // sum of these over all phases, and of scheduling; see above
-	uint64_t simulated_ns; // the same of OB_SIMULATED_WORKERS
-	uint64_t alone_ns; // of these what was scheduling
+	uint64_t simulated_ns; // same for OB_SIMULATED_WORKERS
+	uint64_t alone_ns; // share of scheduling in these
 	ob_latency latency;
 } ob_step_clock;
 
@@ -139,19 +139,20 @@ typedef struct ob_worker_cell {
 	_Alignas(64) uint64_t cpu_ns;
 	int32_t pid, tid, cpu;
 	uint32_t objects;
-	uint32_t working_on; // 1 + the object that the worker is busy with; 0 = none, or it is contained (outbox.c)
+	uint32_t working_on; // 1 + the object that the worker is processing; 0 = none, or it is contained (outbox.c)
 	_Alignas(64) ob_counters counters;
-	uint64_t faults[OB_FAULT_KINDS]; // injected
+	uint64_t faults[OB_FAULT_KINDS]; // injected faults
 } ob_worker_cell;
 
-// The writer's words, the reader's word. trace.h has the drawing. A page each, which its writer alone may be let write.
+// The writer's words, the reader's word; trace.h has the drawing. A page each, so that the writer alone can have write
+// access to its own.
 typedef struct ob_trace_ring {
 	_Alignas(OB_LAYOUT_PAGE) uint64_t written;
 	uint64_t taken_seen, lost, doing;
 	_Alignas(64) uint64_t taken;
 } ob_trace_ring;
 
-// The rings of the host are large, for objects may be added by the thousand.
+// The rings of the host are large, as objects may be added by the thousand.
 enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
@@ -164,14 +165,14 @@ static_assert(sizeof(ob_pair_state) == 256, "pair state");
 static_assert(sizeof(ob_pair_record) == 520, "pair record");
 static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "step data");
 
-// A process's view of a mapped segment. Immutable once made; forked children go on using it.
+// A process's view of a mapped segment. Immutable once made; forked children continue to use it.
 struct ob_universe {
 	char *base;
 	int fd; // of the segment; its owner's, and all that forked from it, share the lock
 	uint32_t rank, ranks; // its owner's (table.h)
 	bool shares_contacts; // likewise
-	bool lost; // a reader's: its file was found to be too short (reader.c)
-	uint64_t *taken; // bit per chunk whose pages this process has asked for (pages.h); NULL: a reader
+	bool lost; // a reader's: its file was found truncated (reader.c)
+	uint64_t *taken; // bit per chunk whose pages this process has reserved (pages.h); NULL: a reader
 	ob_header header; // private copy, validated: later changes to the shared one have no effect
 	ob_control *control;
 	ob_gate *gate;
@@ -187,39 +188,41 @@ struct ob_universe {
 	uint64_t *requery_bit;
 	ob_step_data step_data;
 	char *outbox_area;
-	struct ob_outbox *outbox; // of this process, a contained simulator; NULL: it writes in place
+	struct ob_outbox *outbox; // if this process is a contained simulator; NULL: it writes in place
 	ob_trace_ring *trace_ring; // these three only if traced
 	ob_trace_event *trace_event;
 	uint64_t *trace_since;
 };
 
-// What a layout is planned for.
+// Input of a layout.
 typedef struct ob_layout_plan_of {
 	uint32_t capacity, workers, hulls;
 	bool traced, contained;
 	uint32_t script_cells, script_bytes;
 } ob_layout_plan_of;
 
-// Fills sizes (from what is given), offsets and bytes.
+// Fills sizes (from the input), offsets and bytes.
 void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p);
-// Lets this process, whose mapping is read-only otherwise, write the ring of its own trace. false, and errno.
+// Makes this process's own trace ring writable; the rest of its mapping stays read-only. Returns false, and errno.
 bool ob_trace_unprotect(ob_universe *u, uint32_t ring);
-// The last turn of the gate at which this contained simulator has arrived.
+// Last turn of the gate at which this contained simulator has arrived.
 uint32_t ob_outbox_turns_done(const ob_universe *u);
-// By the host after a restart, together with the gate: nothing has been handed over, and none is busy. Simulators come
-// to the gate when the arranger may wait there already, which would take what their predecessors have left for theirs.
+// Called by the host after a restart, together with the gate: outboxes are empty, and no simulator is busy. Simulators
+// may come to the gate when the arranger already waits there; it would otherwise take data left by their predecessors
+// for theirs.
 void ob_outboxes_reset(ob_universe *u);
-// Whether a header that came from outside is one that this program would have planned, in a file of file_bytes.
+// True if a header from outside is one that this program would have planned, in a file of file_bytes.
 bool ob_layout_valid(const ob_header *h, uint64_t file_bytes);
-// Bytes that a full universe with a few contacts per object will touch: what the memory file system must have free.
+// Bytes that a full universe with a few contacts per object will touch: minimum of free space in the memory file
+// system.
 uint64_t ob_layout_likely_bytes(const ob_header *h);
-// Bytes of an element of an area; how many of them the first ids objects have, where it grows with the objects, else,
-// where it is of a fixed size, all; none where it grows with pairs or neighbours.
+// Bytes of an element of an area. Number of elements for the first ids objects: proportional if it grows with the
+// objects; all if it has a fixed size; none if it grows with pairs or neighbours.
 uint64_t ob_layout_element(ob_area area);
 uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t ids);
-// A copy of the newest passport; false: there has never been one. Any reader.
+// Copies the newest body properties; returns false if there have never been any. Any reader.
 bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out);
-// Whether the numbers of a record that came from outside could be those of an object.
+// True if the numbers of a record from outside are plausible for an object.
 bool ob_passport_makes_sense(const ob_passport *p, uint32_t id);
 bool ob_motion_makes_sense(const ob_motion *m);
 // Points the view at a mapping of u->header's layout.

@@ -9,8 +9,8 @@
 
 enum { LANES = 4, LOOK_AGAIN_MS = 100 };
 
-// FNV's way (xor, multiply) on words, in lanes that do not wait for each other: any one word that differs makes another
-// sum, and so do several but for one chance in 2^64.
+// FNV's operations (xor, multiply) on words, in independent lanes. Any single differing word changes the sum; several
+// do with all but one chance in 2^64.
 typedef struct checksum {
 	uint64_t lane[LANES];
 	size_t words;
@@ -19,7 +19,7 @@ typedef struct checksum {
 static const uint64_t prime = 0x9E3779B97F4A7C15u;
 
 typedef struct outbox_page {
-	_Alignas(64) uint32_t signal; // hand-overs so far
+	_Alignas(64) uint32_t signal; // completed outboxes so far
 	uint32_t last; // 1 = this one is the arrival
 	uint32_t turn; // of the gate
 	uint32_t bytes; // of records
@@ -33,18 +33,18 @@ typedef struct record_head {
 	uint32_t kind, bytes;
 } record_head;
 
-// In a mail, what a simulator has handed over at a time.
+// Head of a simulator's records of one outbox in a mail.
 typedef struct part_head {
-	uint64_t worker, bytes; // of records behind this
+	uint64_t worker, bytes; // size of the records behind this
 } part_head;
 
-// Of this process: what is between two phases is not in the universe.
+// State of this process between two phases; it is not in the universe.
 typedef struct ob_outbox {
 	outbox_page *page;
 	uint32_t worker, signal, done; // done: the last turn at which it arrived
 	uint32_t next_task;
-	bool stopped; // nobody takes anything any more
-	bool summed; // the checksum is of the records, too, not of the turn alone
+	bool stopped; // the arranger has stopped
+	bool summed; // the checksum covers the records, not the turn alone
 	size_t used;
 	checksum sum;
 	ob_outbox_end end;
@@ -110,8 +110,7 @@ void ob_outboxes_reset(ob_universe *u)
 	}
 }
 
-// A counter of faults lies where they may strike it: its upper half says whether the lower one is what was counted. 0
-// is 0.
+// A counter of faults lies in memory that they may overwrite: its upper half verifies the lower one. 0 is 0.
 static uint64_t sealed(uint32_t count)
 {
 	return (uint64_t)(count * UINT32_C(0x9E3779B1)) << 32 | count;
@@ -121,7 +120,7 @@ void ob_fault_note(ob_universe *u, uint32_t worker, ob_fault_kind kind)
 {
 	uint64_t *at = u->outbox ? &u->outbox->page->faults[kind] : &u->worker[worker].faults[kind];
 	const uint64_t seen = __atomic_load_n(at, __ATOMIC_RELAXED);
-	if (seen == sealed((uint32_t)seen)) // else it stays what it is: overwritten
+	if (seen == sealed((uint32_t)seen)) // otherwise it stays as it is: overwritten
 		__atomic_store_n(at, sealed((uint32_t)seen + 1), __ATOMIC_RELAXED);
 }
 
@@ -205,7 +204,7 @@ static void hand_over(ob_universe *u, bool last)
 		ob_futex_wake(&page->signal, ~UINT32_C(0));
 }
 
-// The outbox is full: until the arranger has copied it.
+// Waits until the arranger has copied the full outbox.
 static void wait_until_taken(ob_universe *u)
 {
 	ob_outbox *o = u->outbox;
@@ -289,7 +288,7 @@ bool ob_outbox_claim(ob_universe *u, uint32_t *index)
 
 // ---- the arranger's side
 
-// Sleeps until the simulator has signalled. false: STOP.
+// Sleeps until the simulator has signalled. Returns false on STOP.
 static bool wait_for_signal(ob_universe *u, uint32_t worker, uint32_t taken)
 {
 	uint32_t *signal = &page_of(u, worker)->signal;
@@ -303,7 +302,7 @@ static bool wait_for_signal(ob_universe *u, uint32_t worker, uint32_t taken)
 	return !ob_gate_stopped(u);
 }
 
-// Room for so many bytes more.
+// Makes room for so many more bytes.
 static bool grow(ob_mail *m, size_t more)
 {
 	if (m->used + more <= m->max)
@@ -317,7 +316,7 @@ static bool grow(ob_mail *m, size_t more)
 	return true;
 }
 
-// Copies what the simulator has handed over. NULL, or what is wrong with it.
+// Copies the simulator's outbox. Returns NULL, or a description of the error.
 static const char *take(ob_universe *u, ob_mail *m, uint32_t worker, bool *last)
 {
 	const outbox_page *page = page_of(u, worker);
@@ -406,7 +405,7 @@ bool ob_mail_append_record(ob_mail *m, const ob_mail_record *r)
 	return true;
 }
 
-// As much of what follows as was read: mails are long, and read once.
+// Prefetches as many bytes as were just read: mails are long, and read once.
 static void prefetch_behind(const ob_mail *m, size_t bytes)
 {
 	enum { AHEAD = 1024, LINE = 64 };

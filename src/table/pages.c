@@ -10,9 +10,9 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-// ---- taking them
+// ---- reservation
 
-// Whether /dev/shm shall be full when this chunk is to be taken: a fault that was asked for.
+// True if an injected fault makes /dev/shm full at this chunk.
 static bool fails(ob_universe *u, uint64_t chunk)
 {
 	uint64_t random;
@@ -31,7 +31,7 @@ static bool take_chunk(ob_universe *u, uint64_t chunk)
 		return true;
 	if (fails(u, chunk))
 		return false;
-	// EINVAL: a kernel before 5.14 does not know it, and pages come when they are touched
+	// EINVAL: kernels before 5.14 lack it, and pages come when they are touched
 	if (madvise(u->base + at, left < OB_LAYOUT_CHUNK ? left : OB_LAYOUT_CHUNK, MADV_POPULATE_WRITE) != 0 &&
 	    errno != EINVAL)
 		return false;
@@ -65,8 +65,8 @@ bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e)
 	bool fine = true;
 	for (int i = OB_AREA_SLOT; i < OB_AREAS && fine; i++) {
 		const ob_area area = (ob_area)i;
-		// a passport's second version most objects never have, and outboxes are seldom full; cells are taken
-		// one by one
+		// most objects never have a second version of their body properties, and outboxes are seldom full;
+		// cells are taken one by one
 		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_OUTBOX && area != OB_AREA_SCRIPT_CELL)
 			fine = ob_pages_take(u, area, 0, ob_layout_elements_of(&u->header.sizes, area, ids));
 	}
@@ -96,7 +96,7 @@ bool ob_reserve_record(ob_universe *u, uint32_t record)
 	return ob_pages_take(u, OB_AREA_RECORD, record, 1) && (!two || ob_pages_take(u, OB_AREA_IMPULSE_B, record, 1));
 }
 
-// ---- missing ones
+// ---- missing pages
 
 enum { TRACKED = 16 };
 static const ob_universe *tracked[TRACKED];
@@ -142,7 +142,7 @@ static const ob_universe *find(const char *address)
 	return NULL;
 }
 
-// Only what a signal handler may call; in one piece, for others may be writing.
+// Uses only functions allowed in a signal handler; writes in one piece, as others may be writing.
 static void say_missing(const ob_universe *u)
 {
 	char line[512];
@@ -155,14 +155,14 @@ static void say_missing(const ob_universe *u)
 	(void)ignored;
 }
 
-// Several threads may come here at once: the first says it and ends them all.
+// Several threads may come here at once: the first reports it and ends them all.
 static void on_missing_page(int number, siginfo_t *info, void *context)
 {
 	static int ending;
 	(void)context;
 	const ob_universe *u = find(info->si_addr);
 	if (!u) {
-		signal(number, SIG_DFL); // the instruction is tried again, and ends the process
+		signal(number, SIG_DFL); // the instruction is retried, and ends the process
 		return;
 	}
 	while (__atomic_exchange_n(&ending, 1, __ATOMIC_SEQ_CST))

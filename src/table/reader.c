@@ -1,4 +1,4 @@
-// The reader's side: attaching, and reading. Nothing in the table is trusted: offsets come from the validated private
+// The reader's side: attaching, and reading. No data in the table is trusted: offsets come from the validated private
 // copy of the header; ids, counts and floating-point numbers are checked as they are read.
 #include <errno.h>
 #include <stdlib.h>
@@ -74,8 +74,7 @@ static uint32_t least(uint32_t a, uint32_t b)
 	return a < b ? a : b;
 }
 
-// Of a universe that this process has attached: whether it has found its segment cut short. What follows does not touch
-// it.
+// True if an attached universe's segment was found truncated. Functions below do not touch it then.
 static bool is_lost(const ob_universe *u)
 {
 	return __atomic_load_n(&u->lost, __ATOMIC_RELAXED);
@@ -147,7 +146,7 @@ bool ob_universe_get_home(const ob_universe *u, uint32_t id, uint32_t *worker)
 	return *worker < u->header.sizes.workers;
 }
 
-// Copies plain data word by word: each word at least is whole.
+// Copies plain data word by word: at least each word is whole.
 static void copy_words(void *to, const void *from, size_t bytes)
 {
 	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
@@ -174,8 +173,8 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 	if (!ob_passport_read(u, id, &p) || !(p.flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(&p, id) ||
 	    (p.shape == OB_SHAPE_HULL && p.hull >= u->header.sizes.hulls))
 		return false;
-	*out = p; // never one that makes no sense: a snapshot takes for present what stands there
-	ob_utf8_make_plain(out->name); // whatever a reader does with it, it reaches no terminal as a command
+	*out = p; // never implausible data: a snapshot treats it as present
+	ob_utf8_make_plain(out->name); // so that no name can act as a terminal command
 	return true;
 }
 
@@ -186,8 +185,8 @@ uint64_t ob_universe_get_passport_version(const ob_universe *u, uint32_t id)
 	return __atomic_load_n(&u->passport[id].version, __ATOMIC_ACQUIRE);
 }
 
-// Written before any passport names it, and never again: a copy that is not whole comes from damage, and makes no
-// sense.
+// Hulls are written before any body properties refer to them, and never again: an inconsistent copy comes from damage,
+// and is rejected.
 bool ob_universe_get_hull(const ob_universe *u, uint32_t hull, ob_hull *out)
 {
 	if (hull >= u->header.sizes.hulls)
@@ -223,13 +222,14 @@ bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6])
 	return sense;
 }
 
-// ---- contact points, from the pair records of the last completed step. While the universe runs, a worker may rewrite
-// the list of pairs at the same time: every value is checked, and a copy that the next step has overtaken is taken
-// again. While the universe is paused, the result is exact.
+// ---- contact points, from the pair records of the last completed step
+//
+// While the universe runs, a worker may rewrite the list of pairs at the same time: every value is checked, and a copy
+// overtaken by the next step is read again. While the universe is paused, the result is exact.
 
 enum { CONTACT_TRIES = 4 };
 
-// The version that holds after "step": it bears that stamp, or, where both objects sleep, the newest stamp before it.
+// Version that holds after "step": with that stamp, or, if both objects sleep, the newest stamp before it.
 static bool newest_version(const ob_universe *u, const ob_pair_key *key, uint64_t step, ob_pair_state *out)
 {
 	const ob_pair_record *r = u->step_data.record + key->record;
@@ -260,8 +260,8 @@ static bool point_makes_sense(const ob_contact_point *c)
 	       isfinite(c->impulse);
 }
 
-// Copies of all pairs that touch, sorted by their ids: where they lie is the run's own business, and differs after a
-// restart from a file. The caller frees; NULL: there are none, or no memory.
+// Copies of all touching pairs, sorted by ids: their places depend on the run, and change after a restart from a file.
+// The caller frees; NULL: none, or out of memory.
 static ob_pair_key *touching_pairs(const ob_step_data *x, size_t *n)
 {
 	const uint32_t end = __atomic_load_n(&x->count->pairs, __ATOMIC_RELAXED);

@@ -1,4 +1,4 @@
-// A universe as it is saved: what of it decides how it goes on, as plain arrays, to be written to a file and put into a
+// A saved universe: the state that determines how it goes on, as plain arrays, to be written to a file and put into a
 // universe of other capacity, workers and isolation.
 //
 //                     saved                                 put back
@@ -21,10 +21,10 @@
 
 #include "table/table.h"
 
-// What a pair keeps from step to step, as of its newest version.
+// State of a pair that is kept from step to step, in its newest version.
 typedef struct ob_saved_record {
 	ob_pair_state state;
-	double impulse_b[OB_PAIR_ROWS]; // of body b, where the two do not agree on one impulse
+	double impulse_b[OB_PAIR_ROWS]; // impulse on body b, if the two do not agree on one
 	uint32_t stamp; // 1 + steps that were complete when it came to hold
 	uint32_t zero;
 } ob_saved_record;
@@ -45,7 +45,7 @@ typedef struct ob_saved_universe {
 	uint32_t script_cells; // length of the next two
 	ob_script_turn *script_turn;
 	ob_script_cell *script_cell;
-	uint32_t script_bytes; // of the texts, with their directory, which must be the same when it goes on
+	uint32_t script_bytes; // size of the texts, with their directory; must be the same when resumed
 	char *script_text;
 } ob_saved_universe;
 

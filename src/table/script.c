@@ -1,10 +1,10 @@
-// The cells of scripted objects (script_data.h): given and taken by the host while the universe is paused.
+// Cells of scripted objects (script_data.h): allocated and freed by the host while the universe is paused.
 #include <string.h>
 
 #include "table/layout.h"
 #include "table/pages.h"
 
-// The first free one; the number of cells: there is none.
+// First free cell; the number of cells if there is none.
 static uint32_t free_cell(const ob_step_data *data)
 {
 	uint32_t cell = 0;

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 static const char folder[] = "/dev/shm", prefix[] = "obsim.";
-enum { ATTEMPTS = 3 }; // at a name that somebody else may be clearing away at this moment
+enum { ATTEMPTS = 3 }; // tries, as another process may be removing the name at this moment
 enum { HOW = O_NONBLOCK | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC };
 
 bool ob_segment_path(char path[OB_SEGMENT_PATH_MAX], const char *name)
@@ -24,7 +24,7 @@ bool ob_segment_path(char path[OB_SEGMENT_PATH_MAX], const char *name)
 	return true;
 }
 
-// Bytes of the file that stand for something: its owner locks the first, its readers the second.
+// Lock bytes of the file: its owner locks the first, its readers the second.
 enum { OWNER, READERS };
 
 static struct flock lock_of(short type, off_t byte)
@@ -67,7 +67,7 @@ int ob_segment_create(ob_error *e)
 	return -1;
 }
 
-// Opens what has this path, if it is a regular file; waits for nobody.
+// Opens the file of this path without waiting, if it is a regular one.
 static int open_file(const char *path, int access_mode)
 {
 	struct stat s;
@@ -108,7 +108,7 @@ void ob_segment_unlink(int fd, const char *name)
 {
 	char path[sizeof folder + sizeof prefix + OB_NAME_MAX];
 	size_t n = strnlen(name, OB_NAME_MAX - 1), at = sizeof folder - 1;
-	memcpy(path, folder, at); // snprintf is not among the functions that a signal handler may call
+	memcpy(path, folder, at); // snprintf is not allowed in a signal handler
 	path[at++] = '/';
 	memcpy(path + at, prefix, sizeof prefix - 1);
 	memcpy(path + at + sizeof prefix - 1, name, n);
@@ -130,7 +130,7 @@ static void remove_if_stale(const char *path)
 	close(fd);
 }
 
-// The next name in the folder that could be a universe's; NULL: no more.
+// Next name in the folder that could be a universe's; NULL: no more.
 static const char *next_name(DIR *d)
 {
 	const size_t skip = sizeof prefix - 1;

@@ -21,22 +21,22 @@
 
 enum { OB_SEGMENT_PATH_MAX = OB_NAME_MAX + 16 };
 
-// false: not a name (empty, too long, or with other characters than A-Z a-z 0-9 . _ -).
+// Returns false for an invalid name (empty, too long, or with other characters than A-Z a-z 0-9 . _ -).
 bool ob_segment_path(char path[OB_SEGMENT_PATH_MAX], const char *name);
-// A new file in shared memory, without a name and locked. -1 and e on failure.
+// Creates a file in shared memory, without a name and locked. Returns -1 and e on failure.
 int ob_segment_create(ob_error *e);
-// Links it under its name, after it has cleared away a stale segment of that name. false and e: the name is taken.
+// Links it under its name, after removing a stale segment of that name. Returns false and e if the name is taken.
 bool ob_segment_publish(int fd, const char *name, ob_error *e);
-// The owner: removes the name, if it is still this file's. Async-signal-safe.
+// For the owner: removes the name, if it is still this file's. Async-signal-safe.
 void ob_segment_unlink(int fd, const char *name);
-// Opens a segment for reading; -1: there is no regular file of this name that may be read.
+// Opens a segment for reading; -1: no readable regular file of this name.
 int ob_segment_open(const char *name);
-// Reads the header; false: too short to have one. bytes = the file's length.
+// Reads the header; returns false if the file is too short. bytes = the file's length.
 bool ob_segment_peek(int fd, ob_header *out, uint64_t *bytes);
-// Whether somebody holds the lock, as of now.
+// True if another process holds the lock, as of now.
 bool ob_segment_is_owned(int fd);
-// A reader says so as long as it has the file open; the owner asks whether anybody does. A lock of its own, likewise: it
-// hinders nobody.
+// A reader holds this lock as long as it has the file open; the owner checks if there are any. A lock of its own; it
+// hinders no process.
 void ob_segment_read(int fd);
 bool ob_segment_is_read(int fd);
 // Removes every stale segment of this user.

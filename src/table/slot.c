@@ -78,7 +78,7 @@ bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h)
 	return true;
 }
 
-// From an object's even passport to its odd one.
+// Distance from an object's even body properties to its odd ones.
 static ptrdiff_t stride_of(const ob_universe *u, uint32_t id)
 {
 	return (const char *)&u->passport[id].odd - (const char *)(u->passport_even + id);
@@ -91,7 +91,7 @@ bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out)
 
 void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p)
 {
-	// Reading a passport that was never written would touch a page of the even ones.
+	// Reading body properties that were never written would touch a page of the even ones.
 	bool known = __atomic_load_n(&u->passport[id].version, __ATOMIC_RELAXED);
 	uint32_t was = known ? ob_passport_of(u, id)->flags & OB_OBJECT_PRESENT : 0, is = p->flags & OB_OBJECT_PRESENT;
 	ob_ring_publish(&u->passport[id].version, u->passport_even + id, stride_of(u, id), sizeof *p, p);

@@ -1,4 +1,4 @@
-// The slot: how one writer hands whole records to any number of readers without a lock.
+// The slot: one writer passes whole records to any number of readers without a lock.
 //
 //            version = 6             a record's place is its version modulo 2
 //                |
@@ -10,15 +10,16 @@
 //            (The words are staged; the store of the version commits them. Until then they may be staged again.)
 //   reader   v = version;  load-acquire each word of ring[v];  take it if version is still v, else again
 //
-// Why a copy is never torn: the place of v is written again for version v + 2, which begins after version v + 1
-// was stored. A reader that met one word of v + 2 has, by acquire and release on that word, also seen v + 1, so
-// its second load of the version finds that, and it reads again. There is no state in between: a writer that is
-// preempted or killed anywhere leaves the last version readable, and its successor fills the same place anew.
-// Every word is atomic by itself, so there is no data race in the sense of C11, and no fence is needed.
+// A copy is never torn: the place of v is written again for version v + 2, which begins after version v + 1 was stored.
+// A reader that saw one word of v + 2 has, by acquire and release on that word, also seen v + 1, so its second load of
+// the version finds that, and it reads again. There is no state in between: a writer that is preempted or killed
+// anywhere leaves the last version readable, and its successor fills the same place anew. Every word is atomic by
+// itself, so there is no data race in the sense of C11, and no fence is needed.
 //
-// Why two places suffice: a reader that is too late reads again, and what it then takes is newer. It would starve only
-// beside a writer that publishes without pause; simulators publish once a step. Within the step, where the gate orders
-// both, no place is written while a worker reads it: what was newest when a step began is overwritten in the next step at the earliest.
+// Two places suffice: a reader that is too late reads again, and gets a newer version. It would starve only beside a
+// writer that publishes without pause; simulators publish once a step. Within the step, where the gate orders both, no
+// place is written while a worker reads it: the newest version at the beginning of a step is overwritten in the next
+// step at the earliest.
 //
 // One writer at a time; readers in any thread or process.
 #ifndef OB_TABLE_SLOT_H
@@ -30,7 +31,7 @@
 
 enum {
 	OB_RING_VERSIONS = 2,
-	OB_RING_TRIES = 100000, // readers give up then: only a damaged table gets there
+	OB_RING_TRIES = 100000, // readers give up then: it takes a damaged table
 };
 
 typedef struct ob_slot {
@@ -38,8 +39,8 @@ typedef struct ob_slot {
 	ob_motion ring[OB_RING_VERSIONS];
 } ob_slot;
 
-// Odd versions: an object's first passport is also its only one, unless its slot is given to another. The even ones have
-// an area of their own, of which then no page is ever touched.
+// Odd versions: an object's first body properties are also its only ones, unless its slot is reused. The even ones have
+// an area of their own, whose pages then stay untouched.
 typedef struct ob_passport_slot {
 	uint64_t version;
 	ob_passport odd;
@@ -52,7 +53,7 @@ static_assert(sizeof(ob_passport_slot) == 192, "passport slot");
 
 typedef uint64_t __attribute__((may_alias)) ob_word;
 
-// The place of a version; even: that of version 0, stride: bytes from there to that of version 1.
+// Place of a version. even: place of version 0; stride: bytes from there to the place of version 1.
 static inline ob_word *ob_ring_place(const void *even, ptrdiff_t stride, uint64_t version)
 {
 	return (ob_word *)((char *)(uintptr_t)even + (ptrdiff_t)(version % OB_RING_VERSIONS) * stride);

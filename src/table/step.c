@@ -1,6 +1,6 @@
 #include <stdio.h>
 
-// What the workers of a step share beside the slots: the clock, tasks to claim, the list of bodies to requery, the
+// Shared data of the workers in a step beside the slots: the clock, tasks to claim, the list of bodies to requery, the
 // arena of neighbours, and the workers' own cells. Only the scheduler resets; the gate orders that.
 #include "base/clock.h"
 #include "table/layout.h"
@@ -161,7 +161,7 @@ bool ob_task_claim(ob_universe *u, uint32_t *index)
 	return i < total;
 }
 
-// The bits keep an id from being listed twice, so the list has room for all that may come.
+// The bits keep an id from being listed twice, so the list has room for all ids.
 void ob_requery_append(ob_universe *u, uint32_t id)
 {
 	uint64_t bit = UINT64_C(1) << id % 64;
@@ -231,7 +231,7 @@ ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object)
 		failure = ob_outbox_end_of(u)->failure;
 	uint32_t blamed = (uint32_t)(failure >> 32);
 	if (failure && (!(failure & UINT32_MAX) || blamed >= u->header.sizes.capacity))
-		failure = OB_STEP_DAMAGED; // nobody fails a step so
+		failure = OB_STEP_DAMAGED; // an invalid failure
 	if (object)
 		*object = blamed;
 	return (ob_step_failure)(failure & UINT32_MAX);
@@ -239,7 +239,7 @@ ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object)
 
 uint64_t ob_step_work_add(ob_universe *u, uint64_t work)
 {
-	if (u->outbox) // what others do meanwhile is added when all have arrived
+	if (u->outbox) // others' work is added once all have arrived
 		return u->step_data.count->work + (ob_outbox_end_of(u)->work += work);
 	return __atomic_add_fetch(&u->step_data.count->work, work, __ATOMIC_RELAXED);
 }
@@ -297,7 +297,7 @@ void ob_late_contacts_note(ob_universe *u)
 void ob_step_blame(ob_universe *u, uint32_t worker, const char *what)
 {
 	struct ob_step_counts *count = u->step_data.count;
-	if (count->culprit) // the first stays
+	if (count->culprit) // the first is kept
 		return;
 	count->failure = OB_STEP_DAMAGED;
 	count->culprit = worker + 1;

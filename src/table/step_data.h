@@ -1,5 +1,5 @@
-// What the object simulators of one universe share within a step. Plain data in shared memory; the gate orders every
-// access: the phase fixes which worker may access what (the table above sim/step.c).
+// Shared data of one universe's object simulators within a step. Plain data in shared memory; the gate orders every
+// access: the phase determines each worker's access rights (the table above sim/step.c).
 #ifndef OB_TABLE_STEP_DATA_H
 #define OB_TABLE_STEP_DATA_H
 
@@ -12,21 +12,20 @@
 
 enum { OB_PAIR_POINTS = 4, OB_PAIR_ROWS = 7 };
 
-// What a pair of touching objects keeps from one step to the next: contact points, and the impulses that warm-start the
-// solver. 256 bytes.
-// a < b are ids; the normal points from b to a. Lever arms run from the centres to the contact point, world frame,
-// as of the last collision test. All of it is kept in full: what is rounded in world axes would make a scene that is
-// turned or moved go on otherwise.
+// State of a pair of touching objects, kept from step to step: contact points, and the impulses that warm-start the
+// solver. 256 bytes. a < b are ids; the normal points from b to a. Lever arms run from the centres to the contact
+// point, world frame, as of the last collision test. All values have full precision: rounding in world axes would make
+// a turned or moved scene evolve differently.
 typedef struct ob_pair_state {
 	ob_vec3 normal;
 	ob_vec3 between; // m, from a's centre to b's: an arm of b is that of a less this
 	double impulse[OB_PAIR_ROWS]; // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
-	double substep; // s, length of the substep of those impulses
+	double substep; // m, radius of a disc contact; 0: contact over the points' hull
 	double disc_radius; // m, of a disc that they touch all over; 0: over the points' hull
 	ob_vec3 arm_a[OB_PAIR_POINTS]; // m
 	double gap[OB_PAIR_POINTS]; // m, separation now; < 0 is penetration
 	uint16_t points; // 0 .. 4; 0 = not touching
-	uint16_t of_now; // 1: its geometry was found where the bodies are when the version holds
+	uint16_t of_now; // 1: its geometry was found for the bodies' poses when the version holds
 	float creep; // m, slip of the last second while friction should have held
 } ob_pair_state;
 
@@ -46,8 +45,8 @@ static inline int ob_pair_newest(const ob_pair_record *r, uint64_t steps)
 	return newest;
 }
 
-// A pair's state when so many steps were complete; NULL if it was never touched until then. A step's solver reads that,
-// and writes the other version, which holds when one more step is complete; so a step can be solved again.
+// State of a pair when so many steps were complete; NULL if it had never touched until then. A step's solver reads
+// that, and writes the other version, which holds when one more step is complete; so a step can be solved again.
 static inline const ob_pair_state *ob_pair_before(const ob_pair_record *r, uint64_t steps)
 {
 	int k = ob_pair_newest(r, steps);
@@ -64,14 +63,14 @@ static inline ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 #define OB_NO_RECORD UINT32_MAX
 #define OB_PAIR_ENDS UINT32_C(0x80000000) // there are fewer pairs, and fewer objects
 
-// A pair of objects whose fat AABBs overlap. One that is not in use has a == b.
+// A pair of objects whose fat AABBs overlap. An unused one has a == b.
 typedef struct ob_pair_key {
 	uint32_t a, b; // ids, a < b
 	uint32_t record; // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
 	uint8_t active; // 1 = touching: its record has points
 	uint8_t expected; // 1 = apart, and expected to touch in the coming step
-	uint8_t late; // 1 = a late contact: it touched in this step unexpectedly; both islands are merged and solved
-		      // again
+	// 1 = a late contact: it touched in this step unexpectedly; both islands are merged and solved again
+	uint8_t late;
 	uint8_t in_island; // 1 = its island's solver handles it in this step
 	double limit; // m: the pair cannot touch before path_a + path_b exceeds this
 	uint32_t
@@ -79,28 +78,27 @@ typedef struct ob_pair_key {
 	uint32_t clear_as_of; // published another motion since so many steps were complete
 } ob_pair_key;
 
-// For qsort: by their ids, ascending. Where pairs lie in pair[] is the run's own business, so whoever needs an order
-// sorts.
+// For qsort: by ids, ascending. Places in pair[] depend on the run, so code that needs an order sorts.
 static inline int ob_pairs_by_ids(const void *x, const void *y)
 {
 	const ob_pair_key *a = x, *b = y;
 	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
 }
 
-// A pair's place in the lists of pairs of its two objects (sim/pairs.h): [0] that of a, [1] that of b. Links are 1 + 2
-// times the next pair's index, plus 1 if the list is that of its b; 0 ends. Of a pair that is not in use next[0] is 1 +
-// the next one of those.
+// A pair's place in the lists of pairs of its two objects (sim/pairs.h): [0] in that of a, [1] in that of b. Links are
+// 1 + 2 times the next pair's index, plus 1 if the list is that of its b; 0 ends. next[0] of an unused pair is 1 + the
+// next unused one.
 typedef struct ob_pair_links {
 	uint32_t next[2], before[2];
 } ob_pair_links;
 
-// A calendar (sim/calendar.h), of objects or of pairs: how urgent each of them is, and the most of 64 and of 4096.
+// A calendar (sim/calendar.h), of objects or of pairs: urgency of each, and the maximum of 64 and of 4096.
 typedef struct ob_calendar_levels {
 	uint32_t *one, *of_64, *of_4096;
 } ob_calendar_levels;
 
-// Of several workers that raise a word the most urgent stays, whatever their order. false: it was as urgent already.
-// The gate orders it with whoever reads what has been raised, so relaxed will do.
+// Raises a word to an urgency; with several workers the maximum stays, in any order. Returns false if it was as urgent
+// already. The gate orders it with readers of raised words, so relaxed is enough.
 static inline bool ob_calendar_level_raise(uint32_t *level, uint32_t urgency)
 {
 	uint32_t seen = __atomic_load_n(level, __ATOMIC_RELAXED);
@@ -112,39 +110,39 @@ static inline bool ob_calendar_level_raise(uint32_t *level, uint32_t urgency)
 	return true;
 }
 
-// Schedule record: what the scheduler must know of an object, 24 bytes, so that it need not read the slots.
+// Schedule record: the scheduler's data of an object, 24 bytes, so that it need not read the slots.
 typedef struct ob_schedule {
 	double path; // m, when "since" steps were complete
-	float reach; // m, how far any of its points may get in a step, until it is solved again
+	float reach; // m, bound on the displacement of its points per step, until it is solved again
 	uint32_t state; // OB_SCHEDULE_*
 	uint32_t since;
-	uint32_t due; // the step (from 0) that must solve it, if nothing comes near before
+	uint32_t due; // step (from 0) that must solve it, unless another body comes near before
 } ob_schedule;
 
 enum {
 	OB_SCHEDULE_ABSENT,
-	OB_SCHEDULE_PLANE, // static; a ballistic advance ends before it meets the plane
+	OB_SCHEDULE_PLANE, // static; a ballistic advance ends before contact with the plane
 	OB_SCHEDULE_STATIC,
 	OB_SCHEDULE_KINEMATIC, // no simulator solves it; the host publishes its motions
 	OB_SCHEDULE_AWAKE,
-	OB_SCHEDULE_ASLEEP, // this state and the next: not solved until something comes near
+	OB_SCHEDULE_ASLEEP, // this state and the next: skipped until another body comes near
 	OB_SCHEDULE_EQUILIBRIUM,
 };
 
-// Is it an object that a simulator solves?
+// True for an object that a simulator solves.
 static inline bool ob_schedule_is_dynamic(const ob_schedule *s)
 {
 	return s->state >= OB_SCHEDULE_AWAKE;
 }
 
-// May it move in a step that nothing wakes it for?
+// True if it may move in a step without being woken.
 static inline bool ob_schedule_moves(const ob_schedule *s)
 {
 	return s->state == OB_SCHEDULE_AWAKE || s->state == OB_SCHEDULE_KINEMATIC;
 }
 
-// Upper bound of an object's path (m) when "steps" steps are complete: it grows by its reach in each step in which
-// it is not solved.
+// Upper bound of an object's path (m) when "steps" steps are complete: it grows by its reach in each step that does not
+// solve it.
 static inline double ob_schedule_path(const ob_schedule *s, uint64_t steps)
 {
 	return s->path + ((double)steps - s->since) * (double)s->reach;
@@ -154,7 +152,7 @@ typedef struct ob_island {
 	uint32_t first_member, members; // range in member[]; sorted by id, the first leads
 	uint32_t first_pair, pairs; // range in island_pair[]; sorted by (a, b)
 	uint32_t work; // estimated cost of solving it, in solver iterations of one pair
-	uint32_t solved; // 1 = its solution of this step stands, unless a late contact involves one of its bodies
+	uint32_t solved; // 1 = its solution of this step is valid, unless a late contact involves one of its bodies
 } ob_island;
 
 typedef struct ob_index_cell {
@@ -164,77 +162,80 @@ typedef struct ob_index_cell {
 	uint32_t before, after; // 1 + its neighbours in the list of all objects of that class; 0 = none
 } ob_index_cell;
 
-enum { OB_STEP_BLAME_MAX = 200 }; // bytes of what a worker is blamed for
+enum { OB_STEP_BLAME_MAX = 200 }; // bytes of a blame's text
 
 // The areas, as pointers into this process's mapping (made once per process by the table module).
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {
-		uint32_t pairs; // that were ever used at the same time: those in use lie before this one, not all
-				// without gaps
-		uint32_t pairs_idle; // of these, not in use
-		uint32_t first_idle; // 1 + one of them, the first of a list
-		uint32_t islands, chunks, records_used; // of several ranks, of this one
-		uint32_t unsolved; // islands that are to be solved: they come first, and so do their members
+		uint32_t pairs; // maximum ever used at the same time: used ones lie before this index, with gaps
+		uint32_t pairs_idle; // unused ones among these
+		uint32_t first_idle; // 1 + one of them, the head of a list
+		uint32_t islands, chunks, records_used; // several ranks: of this one
+		uint32_t unsolved; // islands to be solved: they come first, and so do their bodies
 		uint32_t shared; // 1 = chunk w is worker w's; 0 = chunks are claimed
-		int32_t records_free; // on the stack; below 0: so many were asked for when it was empty
+		int32_t records_free; // on the stack; below 0: requests made when it was empty
 		uint32_t scheduler; // the worker that scheduled last
 		uint32_t merged; // 1 = islands that late contacts merged are being solved again
 		uint32_t awake; // objects
 		uint32_t kinematic; // objects
-		uint32_t checked; // steps that were complete, or solved, when all pairs were checked last
+		uint32_t checked; // steps that were complete, or solved, at the last check of all pairs
 		uint32_t late; // 1 = that check found a late contact; any worker may write it
 		uint32_t checks; // pairs in check[]
-		uint32_t next_due; // of several ranks: nothing has an entry for a step before this one, on whichever
+		uint32_t next_due; // several ranks: no calendar has an entry before this step
 		uint32_t island_pairs; // in island_pair[]
-		uint32_t involved; // bodies that are in an island of the coming step, as far as they are found
-		uint32_t due; // those of them that were found first, by what is due
-		uint32_t rooted; // 1 = each object is the root of a tree before islands are built: several workers may
-		uint64_t visits; // objects and pairs that arranging steps has looked at so far
+		uint32_t involved; // bodies in islands of the coming step, found so far
+		uint32_t due; // those of them that were found first, as they are due
+		// 1 = each object is the root of a tree before islands are built, so that several workers can build
+		// them
+		uint32_t rooted;
+		uint64_t visits; // objects and pairs visited by scheduling so far
 		uint32_t levels[64]; // objects per size class
-		uint64_t levels_used; // a bit for each class that has any
-		uint32_t level_first[64]; // 1 + one of them, the first of a list
-		int32_t level_low[64][3], level_high[64][3]; // cells between which all of them lie
+		uint64_t levels_used; // a bit for each class in use
+		uint32_t level_first[64]; // 1 + one of them, the head of a list
+		int32_t level_low[64][3], level_high[64][3]; // bounds of all their cells
 		uint32_t planes;
-		uint64_t failure; // object << 32 | ob_step_failure, of ob_step_fail; 0 = none
+		uint64_t failure; // object << 32 | ob_step_failure, from ob_step_fail; 0 = none
 		uint64_t work; // in the step so far (sim/budget.h)
-		uint32_t culprit; // 1 + the worker that is to blame for damage; 0 = it is not known
+		uint32_t culprit; // 1 + the worker to blame for damage; 0 = unknown
 		char blamed_for[OB_STEP_BLAME_MAX];
 	} * count;
 	ob_schedule *schedule; // [object]: written by its island's solver
-	float (*bounds)[6]; // [object]: fat AABB, which holds it until it asks for another
-	ob_motion *result; // [object]: what its island's solver found
-	uint32_t *effort; // [object]: its share of what its island cost when it was solved last, as ob_island.work
-	uint32_t *home; // [object]: 1 + the worker that was given it last (home.h); 0 = none was
-	uint32_t *pin; // [object]: 1 + the worker that it was moved to; 0 = to none. No state of the run: what is put
-		       // back from a checkpoint in memory is without it
-	uint32_t *result_island; // [object]: index of its island in the running step; UINT32_MAX = it is in none
+	float (*bounds)[6]; // [object]: fat AABB, valid until it requests another
+	ob_motion *result; // [object]: result of its island's solver
+	uint32_t *effort; // [object]: its share of its island's cost at the last solution, as ob_island.work
+	uint32_t *home; // [object]: 1 + the worker that had it last (home.h); 0 = none
+	// [object]: 1 + the worker that it was moved to; 0 = none. Not part of the run's state: a checkpoint in memory
+	// does not restore it
+	uint32_t *pin;
+	uint32_t *result_island; // [object]: index of its island in the running step; UINT32_MAX = none
 	struct ob_neighbours {
-		uint32_t offset, count; // place in neighbour_id; how many it has, UINT32_MAX = a query is pending
+		uint32_t offset, count; // place in neighbour_id; their number, UINT32_MAX = a query is pending
 	} * neighbours; // [object]
-	uint32_t *neighbour_id; // arena: of each query how many changes it makes, and then these: pairs that end, as
-				// OB_PAIR_ENDS | index, and ids of new neighbours, ascending
+	// arena: for each query its number of changes, then these: pairs that end, as OB_PAIR_ENDS | index, and ids of
+	// new neighbours, ascending
+	uint32_t *neighbour_id;
 	ob_index_cell *cell; // [object]
 	uint32_t *bucket; // [buckets]: 1 + first object; 0 = empty
-	uint64_t *occupied; // [buckets / 8]: a bit for each eighth of a bucket: in one of its cells is an object
+	uint64_t *occupied; // [buckets / 8]: a bit for each eighth of a bucket: one of its cells has an object
 	uint32_t *plane; // ids of planes: neighbours of every object
-	ob_pair_key *pair; // in no order
+	ob_pair_key *pair; // unordered
 	ob_pair_links *pair_links; // [pair]
-	uint32_t *first_pair; // [object]: the first of its list of pairs, as ob_pair_links.next; none of what is static
+	uint32_t *first_pair; // [object]: the first of its list of pairs, as ob_pair_links.next; none for static ones
 	ob_calendar_levels solve; // [object]: when it is due
 	ob_calendar_levels look; // [pair]: when it must be checked, unless no check could change anything
 	uint32_t *check; // pairs to be checked in this phase
 	ob_pair_record *record; // taken when a pair begins to touch
-	double (*impulse_b)[2][OB_PAIR_ROWS]; // [record], of each version: of body b, where the two do not agree on one
-					      // impulse (sim/ghost.h)
+	// [record], for each version: impulse on body b, if the two do not agree on one (sim/ghost.h)
+	double (*impulse_b)[2][OB_PAIR_ROWS];
 	uint32_t *record_free; // stack of free records
 	ob_island *island;
 	uint32_t *member; // [object]
 	uint32_t *island_pair; // indices into pair[]
 	uint32_t *chunk; // first island of each claimable chunk; chunk[chunks] ends
 	uint32_t *scratch; // [4 * objects]: the scheduler's
-	uint32_t *task_ns; // [object]: CPU that each task of the running phase has taken, in turns; of ob_task_took
-	// All NULL where the scene has no script.
+	uint32_t *task_ns; // [object]: CPU time of each task of the running phase, in turns; see ob_task_took
+	// All NULL unless the scene has scripts.
 	ob_script_counts *script_counts;
 	uint32_t *script_of; // [object]: 1 + its cell; 0 = it has no script
 	ob_script_turn *script_turn; // [script_cells]
@@ -248,17 +249,16 @@ typedef enum ob_step_failure {
 	OB_STEP_OK,
 	OB_STEP_PAIRS_FULL,
 	OB_STEP_NEIGHBOURS_FULL,
-	OB_STEP_DIVERGED, // a state became NaN, or larger than any that can be meant
+	OB_STEP_DIVERGED, // a state became NaN, or implausibly large
 	OB_STEP_ENGINE, // ODE gave up
 	OB_STEP_OVERWORKED, // the step's budget of work is spent
 	OB_STEP_LEFT, // the run was stopped meanwhile
 	OB_STEP_MEMORY_FULL, // the memory file system has no more pages
-	OB_STEP_BROKEN, // what simulators share breaks an invariant (sim/invariants.h)
-	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, somebody has written where it should
-			 // not
+	OB_STEP_BROKEN, // shared data breaks an invariant (sim/invariants.h)
+	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, a stray write
 } ob_step_failure;
 
-// Whether an id that was taken out of the shared memory is one; false: somebody has written where it should not.
+// True if an id read from the shared memory is valid; false: a stray write.
 static inline bool ob_object_in_range(const ob_step_data *data, uint32_t id)
 {
 	if (id < data->objects_max)
@@ -267,20 +267,19 @@ static inline bool ob_object_in_range(const ob_step_data *data, uint32_t id)
 	return false;
 }
 
-// Whether the object is in an island that is to be solved, or was last: of those that late contacts have merged, if
-// they have.
+// True if the object is in an island to be solved, or solved last; if late contacts have merged islands, these count.
 static inline bool ob_is_to_be_solved(const ob_step_data *data, uint32_t id)
 {
 	return data->result_island[id] < data->count->unsolved;
 }
 
-// Where pair[] ends: never more than it holds, whatever somebody has written.
+// End of the used part of pair[]: within its capacity, even if overwritten.
 static inline uint32_t ob_pairs_end(const ob_step_data *data)
 {
 	return data->count->pairs < data->pairs_max ? data->count->pairs : data->pairs_max;
 }
 
-// Whether the object's query may bring such a change (neighbour_id). ids: of all objects
+// True if the object's query may return such a change (neighbour_id). ids: number of all objects
 static inline bool ob_is_pair_change(const ob_step_data *data, uint32_t id, uint32_t change, uint32_t ids)
 {
 	const uint32_t pair = change & ~OB_PAIR_ENDS;
@@ -295,13 +294,14 @@ static inline uint32_t ob_checks_count(const ob_step_data *data)
 	return data->count->checks < data->pairs_max ? data->count->checks : data->pairs_max;
 }
 
-// The pair's place in the list of its a (side 0) or b.
+// Place of a pair in the list of its a (side 0) or b.
 typedef struct ob_pair_place {
 	uint32_t pair, side;
 } ob_pair_place;
 
-// For all pairs in the list of id: for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link =
-// ob_pair_next(data, at)). false: the list is over; or the link leads out of pair[], which is damage.
+// Iterates over the pairs in the list of id: for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at);
+// link = ob_pair_next(data, at)). Returns false at the end of the list, or if the link leads out of pair[], which is
+// damage.
 static inline bool ob_pair_at(const ob_step_data *data, uint32_t link, ob_pair_place *at)
 {
 	if (!link)
@@ -318,7 +318,7 @@ static inline uint32_t ob_pair_next(const ob_step_data *data, ob_pair_place at)
 	return data->pair_links[at.pair].next[at.side];
 }
 
-// The torque (N m, world frame) that the object's script has set; 0 without a script.
+// Torque (N m, world frame) set by the object's script; 0 without a script.
 static inline ob_vec3 ob_script_torque(const ob_step_data *data, uint32_t id)
 {
 	const uint32_t cell = data->script_of ? data->script_of[id] : 0;

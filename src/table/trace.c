@@ -25,7 +25,7 @@ uint32_t ob_trace_supervisor(const ob_universe *u)
 	return u->header.sizes.workers + 1;
 }
 
-// The first event and the number of events of a ring.
+// First event and number of events of a ring.
 static ob_trace_event *events_of(const ob_universe *u, uint32_t ring, uint32_t *size)
 {
 	uint32_t each = u->header.sizes.trace_events, workers = u->header.sizes.workers;
@@ -53,7 +53,7 @@ static void put(ob_universe *u, uint32_t ring, const ob_trace_event *e)
 	ob_trace_event *event = events_of(u, ring, &size);
 	ob_trace_ring *r = u->trace_ring + ring;
 	uint64_t n = __atomic_load_n(&r->written, __ATOMIC_RELAXED);
-	// the reader's word is looked at once in a round, not at each event: it lies in the reader's cache line
+	// the reader's word is read once in a round, not at each event: it lies in the reader's cache line
 	if (n - r->taken_seen >= size)
 		r->taken_seen = __atomic_load_n(&r->taken, __ATOMIC_ACQUIRE);
 	if (n - r->taken_seen >= size) {
@@ -107,15 +107,15 @@ void ob_trace_birth(ob_universe *u, uint32_t id)
 
 void ob_trace_death(ob_universe *u, uint32_t id, uint32_t flags_before)
 {
-	if (!(ob_passport_of(u, id)->flags & OB_OBJECT_PRESCRIBED)) // what never moves is in no state
+	if (!(ob_passport_of(u, id)->flags & OB_OBJECT_PRESCRIBED)) // static and kinematic objects have no state
 		change(u, ob_trace_host(u), id, ob_trace_motion_of(flags_before), OB_TRACE_ABSENT);
 	ob_trace_span(u, ob_trace_host(u), OB_TRACE_DEATH, ob_trace_since(u, id), id, 0);
 }
 
 // ---- the reader
 
-// A writer in another process may have put anything into its words: a ring that claims to be more than full is damaged,
-// and what is in it is passed over.
+// A writer in another process may have stored anything in its words: a ring that claims to be more than full is
+// damaged, and its contents are skipped.
 uint32_t ob_trace_take(ob_universe *u, uint32_t ring, ob_trace_event *out, uint32_t max)
 {
 	uint32_t size, n = 0;
@@ -123,7 +123,7 @@ uint32_t ob_trace_take(ob_universe *u, uint32_t ring, ob_trace_event *out, uint3
 	ob_trace_ring *r = u->trace_ring + ring;
 	uint64_t taken = __atomic_load_n(&r->taken, __ATOMIC_RELAXED);
 	uint64_t ready = __atomic_load_n(&r->written, __ATOMIC_ACQUIRE) - taken;
-	if (ready > size) { // no ring has so many
+	if (ready > size) { // more than the ring's size
 		__atomic_store_n(&r->taken, taken + ready, __ATOMIC_RELEASE);
 		return 0;
 	}
@@ -149,7 +149,7 @@ uint64_t ob_trace_since(const ob_universe *u, uint32_t id)
 	return __atomic_load_n(u->trace_since + id, __ATOMIC_RELAXED);
 }
 
-// It may have come and gone between two looks of the reader.
+// The object may have been added and removed between two reads.
 bool ob_trace_name(const ob_universe *u, uint32_t id, char name[OB_NAME_MAX])
 {
 	ob_passport p;

@@ -1,5 +1,5 @@
-// The trace: what each worker did when, as spans in a ring of its own in the universe, for the host to write to a file
-// while the run goes on. Only where ob_universe_setup.traced asked for it; an event then costs some 10 ns and the reading
+// The trace records the activities of each worker, as spans in a ring of its own in the universe. The host writes them
+// to a file while the run goes on. Only with ob_universe_setup.traced; an event then costs some 10 ns and the reading
 // of a clock.
 //
 //        worker 0         worker 1              host            supervisor
@@ -17,7 +17,7 @@
 
 #include <ob/universe.h>
 
-// Times are ob_clock_ns. Kinds of lower level enclose those of higher level on the same track.
+// Times are from ob_clock_ns. Kinds of lower level enclose those of higher level on the same track.
 typedef enum ob_trace_kind {
 	OB_TRACE_NONE,
 	OB_TRACE_WAIT,     // at the gate
@@ -30,12 +30,12 @@ typedef enum ob_trace_kind {
 	OB_TRACE_STATE,    // object a has been in a state until now; b = ob_trace_state before | state after << 8
 	OB_TRACE_BIRTH,    // of object a
 	OB_TRACE_DEATH,    // of object a
-	OB_TRACE_KILLED,   // worker a ended before STOP; b = by which signal, 0 = it left
+	OB_TRACE_KILLED,   // worker a ended before STOP; b = its signal, 0 = it exited
 	OB_TRACE_SNAPSHOT, // the host copies all motions
 	OB_TRACE_MEASURE,  // energy, momentum, penetration
-	OB_TRACE_RECORD,   // to HDF5
+	OB_TRACE_RECORD,   // writing to HDF5
 	OB_TRACE_DRAW,     // frame a
-	OB_TRACE_ENCODE,   // frame a is handed to the encoders
+	OB_TRACE_ENCODE,   // queueing frame a for encoding
 	OB_TRACE_KINDS
 } ob_trace_kind;
 
@@ -51,7 +51,7 @@ typedef struct ob_trace_event {
 	uint64_t begin, end; // ns
 	uint32_t kind;       // ob_trace_kind
 	uint32_t a, b;       // by kind
-	uint32_t step;       // that was being computed
+	uint32_t step;       // step being computed
 } ob_trace_event;
 
 bool ob_universe_traced(const ob_universe *u);
@@ -61,11 +61,11 @@ uint32_t ob_trace_rings(const ob_universe *u);
 uint32_t ob_trace_host(const ob_universe *u);
 uint32_t ob_trace_supervisor(const ob_universe *u);
 
-// Writers, each on its own ring, and only where the universe is traced.
-// A span from begin until now; its step is the one after those that are complete. Returns now.
+// For writers, each on its own ring, and only if the universe is traced. Writes a span from begin until now; its step
+// is the one after the complete ones. Returns now.
 uint64_t ob_trace_span(ob_universe *u, uint32_t ring, ob_trace_kind kind, uint64_t begin, uint32_t a, uint32_t b);
-// What the writer does from now on, in case that it dies before it can write the span. NONE = nothing. Writing a span does
-// not change it.
+// Records the writer's current span, in case it dies before it can write it. NONE = nothing. Writing a span does not
+// change it.
 void ob_trace_doing(ob_universe *u, uint32_t ring, ob_trace_kind kind, uint64_t begin);
 // Called by the worker that publishes the motion of object id, with the flags (OB_MOTION_*) of the motion before and of
 // this one: one event if the object's state, as an ob_trace_motion, has changed.
@@ -74,15 +74,15 @@ void ob_trace_moves(ob_universe *u, uint32_t ring, uint32_t id, uint32_t flags_b
 void ob_trace_birth(ob_universe *u, uint32_t id);
 void ob_trace_death(ob_universe *u, uint32_t id, uint32_t flags_before);
 
-// The reader. Copies the oldest events that it has not had, at most max; returns how many.
+// For the reader. Copies its oldest new events, at most max; returns their number.
 uint32_t ob_trace_take(ob_universe *u, uint32_t ring, ob_trace_event *out, uint32_t max);
 uint64_t ob_trace_lost(const ob_universe *u, uint32_t ring);
-// What the ring's writer is in the middle of; kind NONE: nothing.
+// Unfinished span of the ring's writer; kind NONE: nothing.
 ob_trace_event ob_trace_unfinished(const ob_universe *u, uint32_t ring);
-// Since when object id has been as it is (ns).
+// Time (ns) of the last change of state of object id.
 uint64_t ob_trace_since(const ob_universe *u, uint32_t id);
 ob_trace_motion ob_trace_motion_of(uint32_t flags);
-// The name of object id, or of the last object that had this id; false: there has been none.
+// Name of object id, or of the last object that had this id; returns false if there has been none.
 bool ob_trace_name(const ob_universe *u, uint32_t id, char name[OB_NAME_MAX]);
 
 #endif

@@ -12,7 +12,7 @@
 #include "table/pages.h"
 #include "table/segment.h"
 
-// A full memory file system would end the run with SIGBUS in the middle of a step: better not to begin.
+// Checks free space before the start: a full memory file system would end the run with SIGBUS in the middle of a step.
 static bool check_room(int fd, uint64_t needed, ob_error *e)
 {
 	struct statvfs s;
@@ -43,7 +43,7 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 	h->checked = setup->checked;
 }
 
-// The segment's first contents, before anybody can find it.
+// Initialises the segment before other processes can find it.
 static bool fill(ob_universe *u, const ob_universe_setup *setup, ob_error *e)
 {
 	uint32_t workers = u->header.sizes.workers;
@@ -226,7 +226,7 @@ void ob_universe_set_state(ob_universe *u, ob_universe_state s)
 	__atomic_store_n(&u->control->state, s, __ATOMIC_RELEASE);
 }
 
-// Byte by byte, for a reader may read at the same time: it may get some of each text, and no more than that.
+// Byte by byte, as a reader may read at the same time: it may get a mix of both texts, and no more than that.
 void ob_universe_note_death(ob_universe *u, const char *what)
 {
 	ob_control *c = u->control;
