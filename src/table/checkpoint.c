@@ -11,7 +11,7 @@ typedef struct range {
 	uint64_t begin, end;
 } range;
 
-// What one step leaves for the next in ob_control. The rest of it goes on in a new life, or others write it at any time
+// Part of ob_control that a step leaves for the next. The rest goes on after a restart, or others write it at any time
 // (a death, the state).
 typedef struct step_control {
 	uint64_t step, claim_next, requery_count, neighbours_used;
@@ -27,7 +27,7 @@ struct ob_checkpoint {
 	uint32_t ids, ids_max;
 	range *kept; // ascending
 	size_t ranges, ranges_max;
-	char *bytes; // of all of them, one after the other
+	char *bytes; // contents of all ranges, one after the other
 	size_t bytes_max;
 };
 
@@ -110,7 +110,7 @@ static bool keep(ob_checkpoint *c, const ob_universe *u, range r, size_t *bytes)
 	return true;
 }
 
-// Pages that are taken and hold nothing yet are left out: what is in use and not kept is put back as zeros.
+// Skips reserved pages without contents: pages in use that were not copied are put back as zeros.
 static bool take_areas(ob_checkpoint *c, const ob_universe *u)
 {
 	range all = step_areas(u), r;
@@ -211,7 +211,7 @@ static void put_motions_back(const ob_checkpoint *c, ob_universe *u)
 	}
 }
 
-// What has come since then has no passport, and is not there.
+// Restores body properties; objects added since then become absent.
 static void put_passports_back(const ob_checkpoint *c, ob_universe *u)
 {
 	static const ob_passport none = { 0 };

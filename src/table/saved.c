@@ -65,7 +65,7 @@ static void save_record(const ob_universe *u, uint32_t record, ob_saved_record *
 		memcpy(out->impulse_b, data->impulse_b[record][newest], sizeof out->impulse_b);
 }
 
-// Sorted by their ids: where they lie in pair[] is the run's own business.
+// Saves pairs sorted by ids, as their places in pair[] depend on the run.
 static void save_pairs(const ob_universe *u, ob_saved_universe *out)
 {
 	const ob_step_data *data = &u->step_data;
@@ -76,7 +76,7 @@ static void save_pairs(const ob_universe *u, ob_saved_universe *out)
 	qsort(out->pair, pairs, sizeof *out->pair, ob_pairs_by_ids);
 	for (uint32_t i = 0; i < pairs; i++) {
 		ob_pair_key *k = &out->pair[i];
-		k->in_island = 0; // that step is over
+		k->in_island = 0; // the step has ended
 		if (k->record == OB_NO_RECORD)
 			continue;
 		save_record(u, k->record, &out->record[records]);
@@ -84,7 +84,7 @@ static void save_pairs(const ob_universe *u, ob_saved_universe *out)
 	}
 }
 
-// What scripts ask for in a step is over.
+// Saves scripts without the requests of the last step, which have been carried out.
 static void save_scripts(const ob_universe *u, ob_saved_universe *out)
 {
 	const ob_step_data *data = &u->step_data;

@@ -29,12 +29,12 @@ typedef struct ob_saved_record {
 	uint32_t zero;
 } ob_saved_record;
 
-// The arrays belong to whoever made them.
+// The arrays belong to their creator.
 typedef struct ob_saved_universe {
 	uint64_t step; // complete
 	uint32_t checked; // ob_step_counts.checked
 	uint32_t ids, planes, pairs, records; // lengths of the arrays
-	ob_passport *passport; // [ids], all 0 where there is no object; so are the next four
+	ob_passport *passport; // [ids], all 0 for absent objects; so are the next four
 	ob_motion *motion;
 	ob_schedule *schedule;
 	float (*bounds)[6];
@@ -49,14 +49,14 @@ typedef struct ob_saved_universe {
 	char *script_text;
 } ob_saved_universe;
 
-// Fills in step, checked and the lengths, for arrays to be made.
+// Sets step, checked and the lengths, for allocating the arrays.
 void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out);
 // Fills arrays of these lengths.
 void ob_universe_save(const ob_universe *u, ob_saved_universe *out);
-// Whether arrays that came from outside could be those of a universe: ids, counts, kinds, finite numbers. false and e
-// names what could not.
+// True if arrays from outside are plausible for a universe: ids, counts, kinds, finite numbers. Returns false and e,
+// naming the first that is not.
 bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e);
-// Into a universe that is new, of ids capacity at least. false and e: it has no room for so many pairs.
+// Loads it into a new universe, with a capacity of at least ids. Returns false and e if it has no room for the pairs.
 bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e);
 
 #endif

@@ -1,8 +1,8 @@
-// What scripts keep in the universe: each scripted object has a cell, numbered apart from ids, so that objects without
-// a script cost nothing.
+// Data of scripts in the universe: each scripted object has a cell, numbered apart from ids, so that objects without a
+// script cost nothing.
 //
-//   script_of[object] ──> 1 + cell ──> script_turn[cell]   when it runs: 24 bytes, looked at before each step
-//                                      script_cell[cell]   state, mail, what touched it, what it has asked for
+//   script_of[object] ──> 1 + cell ──> script_turn[cell]   when it runs: 24 bytes, read before each step
+//                                      script_cell[cell]   state, mail, contacts, requests
 //   script_text                        the texts of all scripts, written once by the host
 //
 // Ordered by the gate, like all data of the step: while scripts run, a worker writes the cells of the objects that it
@@ -16,10 +16,10 @@
 
 enum {
 	OB_SCRIPTS_MAX = 64, // texts of a universe
-	OB_SCRIPT_STATE_BYTES = 1024, // of an object's state
-	OB_SCRIPT_INBOX_BYTES = 1536, // of messages that wait for an object
-	OB_SCRIPT_OUTBOX_BYTES = 4096, // of what an object asks for in a step: messages, creations, removals
-	OB_SCRIPT_TOUCHES = 16, // contacts of an object that begin in a step and are told to it
+	OB_SCRIPT_STATE_BYTES = 1024, // maximum of an object's state
+	OB_SCRIPT_INBOX_BYTES = 1536, // maximum of pending messages of an object
+	OB_SCRIPT_OUTBOX_BYTES = 4096, // maximum of an object's requests in a step: messages, creations, removals
+	OB_SCRIPT_TOUCHES = 16, // contacts of an object that begin in a step and are reported to it
 	OB_SCRIPT_ERROR_BYTES = 192,
 };
 
@@ -27,8 +27,8 @@ enum { // ob_script_turn.flags
 	OB_SCRIPT_STARTED = 1 << 0, // on_start is over
 	OB_SCRIPT_STOPPED = 1 << 1, // by an error, which the cell holds: it never runs again
 	OB_SCRIPT_EACH_STEP = 1 << 2, // it has an on_step
-	OB_SCRIPT_TOUCHED = 1 << 3, // the cell has contacts to tell
-	OB_SCRIPT_MAIL = 1 << 4, // .. and messages
+	OB_SCRIPT_TOUCHED = 1 << 3, // the cell has new contacts
+	OB_SCRIPT_MAIL = 1 << 4, // the cell has messages
 	OB_SCRIPT_LEAVING = 1 << 5, // another script removes its object: on_stop is due
 	OB_SCRIPT_FEELS = 1 << 6, // it has an on_contact
 };
@@ -47,19 +47,19 @@ typedef struct ob_script_touch {
 	ob_vec3 point; // m
 } ob_script_touch;
 
-enum { // ob_script_cell.asks: what a script has asked for itself in the running step
+enum { // ob_script_cell.asks: requests of a script for its own object in the running step
 	OB_SCRIPT_ASKS_FORCE = 1 << 0,
 	OB_SCRIPT_ASKS_TORQUE = 1 << 1,
 	OB_SCRIPT_ASKS_PUSH = 1 << 2, // push and twist hold
 	OB_SCRIPT_ASKS_COLOUR = 1 << 3,
-	OB_SCRIPT_ASKS_POST = 1 << 4, // the outbox holds something
+	OB_SCRIPT_ASKS_POST = 1 << 4, // the outbox is not empty
 	OB_SCRIPT_ASKS_ERROR = 1 << 5, // it has failed just now
 };
 
 typedef struct ob_script_cell {
-	uint64_t random[4]; // of its random numbers
+	uint64_t random[4]; // state of its random numbers
 	ob_vec3 torque; // N m, world frame, acts until the script sets another
-	ob_vec3 force, next_torque, push, twist; // asked for: N, N m, N s, N m s
+	ob_vec3 force, next_torque, push, twist; // requested: N, N m, N s, N m s
 	float colour[4];
 	uint32_t asks;
 	uint32_t state_bytes, inbox_bytes, outbox_bytes, touches, failed_step;
@@ -68,15 +68,15 @@ typedef struct ob_script_cell {
 	unsigned char state[OB_SCRIPT_STATE_BYTES], inbox[OB_SCRIPT_INBOX_BYTES], outbox[OB_SCRIPT_OUTBOX_BYTES];
 } ob_script_cell;
 
-// What stands in an outbox, one after the other; in an inbox, the same with the sender in place of the addressee.
-// What is said: the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull.
+// Record of an outbox, one after the other; in an inbox, the same with the sender in place of the addressee. Contents:
+// the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull.
 typedef enum ob_script_post_kind { OB_SCRIPT_MESSAGE, OB_SCRIPT_REMOVE, OB_SCRIPT_CREATE } ob_script_post_kind;
 
 typedef struct ob_script_post {
 	uint32_t kind; // ob_script_post_kind
-	uint32_t bytes; // that follow, in whole words of 8: `used` of them are said
-	uint32_t used, line; // line: of the script, where it is asked for
-	uint32_t object, generation; // whom it is for, or to be removed
+	uint32_t bytes; // length of the contents, in whole words of 8: `used` of them are valid
+	uint32_t used, line; // line: place of the request in the script
+	uint32_t object, generation; // addressee, or object to be removed
 } ob_script_post;
 
 // At the start of the area of texts.
@@ -88,7 +88,7 @@ typedef struct ob_script_directory {
 	} text[OB_SCRIPTS_MAX];
 } ob_script_directory;
 
-// Of the run so far, and of the phase in which scripts run.
+// Counts of the run so far, and of the phase in which scripts run.
 typedef struct ob_script_counts {
 	uint32_t cells; // one past the highest that was ever used
 	uint32_t due; // length of the list of cells that run in this step
