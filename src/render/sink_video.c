@@ -11,8 +11,6 @@
 
 #include "render/sink.h"
 
-extern char **environ;
-
 typedef struct video {
 	pid_t pid;
 	int pipe; // to ffmpeg's standard input

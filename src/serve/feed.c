@@ -258,8 +258,8 @@ static void put_object(ob_message *out, const ob_feed_source *source, const know
 				       (p->flags & OB_OBJECT_MESH_COLOUR ? OB_FEED_MESH_COLOUR : 0) |
 				       (p->flags & OB_OBJECT_MESH_SURFACE ? OB_FEED_MESH_SURFACE : 0));
 	ob_message_put_u8(out, (unsigned)name);
-	ob_message_put_u8(out, (unsigned)lround(15 * fminf(fmaxf(p->roughness, 0), 1)) |
-				       16 * (unsigned)lround(15 * fminf(fmaxf(p->metal, 0), 1)));
+	ob_message_put_u8(out, (unsigned)lroundf(15 * fminf(fmaxf(p->roughness, 0), 1)) |
+				       16 * (unsigned)lroundf(15 * fminf(fmaxf(p->metal, 0), 1)));
 	put_vec3(out, p->size);
 	put_vec3(out, p->inertia);
 	for (int i = 0; i < 3; i++)

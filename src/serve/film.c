@@ -283,9 +283,7 @@ ob_message *ob_film_make(ob_recording *r, const char *path, ob_error *e)
 		   .objects = ob_message_new(true),
 		   .events = ob_message_new(true) };
 	ob_message *out = NULL;
-	if (!f.feed || !f.told || !f.objects || !f.events)
-		ob_fail(e, "%s: no memory to show it", path);
-	else if (tell_all(&f, path, e) && !(out = pack(&f)))
+	if (!f.feed || !f.told || !f.objects || !f.events || (tell_all(&f, path, e) && !(out = pack(&f))))
 		ob_fail(e, "%s: no memory to show it", path);
 	ob_feed_destroy(f.feed);
 	ob_message_release(f.told);
