@@ -1,4 +1,4 @@
--- Machines that move as they are told, whatever stands on them: two belts, a lift, a turntable, a shaking table, a paddle.
+-- Driven machines, which move the same under any load: two belts, a lift, a turntable, a shaking table, a paddle.
 local speed = param("speed", 1.2, { min = 0, max = 5 }) -- m/s, of the belts
 local rate = param("rate", 2.2, { min = 0, max = 20 }) -- rad/s, of the turntable
 local shakes = param("shakes", 1.25, { min = .01, max = 20 }) -- times a second
@@ -32,7 +32,7 @@ for row = 0, 2 do
 	end
 end
 
--- A turntable keeps what is near its axis, and throws off what is not.
+-- A turntable keeps bodies near its axis, and throws off others.
 cylinder { name = "turntable", kind = "kinematic", material = "machine", radius = 1.5, length = .3, at = { -3.3, -1.3, .45 }, spin = { 0, 0, rate } }
 cylinder { static = true, material = "machine", radius = .3, length = .3, at = { -3.3, -1.3, .15 } }
 for i = 0, 5 do
@@ -44,7 +44,7 @@ for i = 0, 5 do
 	}
 end
 
--- A table shakes: what is tall falls over, what is flat slides, what is round rolls.
+-- A shaking table: tall bodies fall over, flat ones slide, round ones roll.
 box {
 	name = "shaking table", kind = "kinematic", material = "machine", size = { 2.4, 1.8, .16 }, at = { .4, -1.5, .5 },
 	path = { kind = "sine", amplitude = { .11, 0, 0 }, frequency = shakes },

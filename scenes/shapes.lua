@@ -1,4 +1,4 @@
--- Shapes: everything that a scene can hold. Spheres, boxes, capsules and cylinders rain on a ramp before a slope. Some
+-- Shapes: all kinds of objects in a scene. Spheres, boxes, capsules and cylinders rain on a ramp before a slope. Some
 -- are born while others already lie, and the gate at the foot of the ramp is taken away after three seconds.
 --   -D n=48    how many fall
 local n = param("n", 48, { min = 0, max = 10000 })
@@ -38,7 +38,7 @@ for i = 0, n - 1 do
 		at = { -3.8 + .9 * (i % 3), -.9 + .9 * (i // 3 % 3), 4 + .8 * (i // 9 % 3) },
 		q = random_rotation(),
 		spin = { random(-2, 2), random(-2, 2), random(-2, 2) },
-		born = 1.5 * (i // 27), -- the next shower, where the one before has fallen out of the way
+		born = 1.5 * (i // 27), -- the next shower, once the one before has fallen out of the way
 	}
 end
 

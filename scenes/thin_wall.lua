@@ -1,6 +1,6 @@
 -- Thin wall: a small box is shot at a fixed wall of two centimetres, without gravity. It must not come through.
 --   -D speed=100.0    m/s
---   --seed 1          another aim: where it hits, how it is turned, how it spins
+--   --seed 1          another aim: place of the hit, attitude, spin
 local speed = param("speed", 100.0, { min = .01, max = 100000 })
 
 scene { title = "Thin wall", duration = 1, gravity = { 0, 0, 0 } }

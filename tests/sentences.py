@@ -19,17 +19,15 @@ CEILING = 2  # percent of sentences that may open so
 
 # Folders not yet rewritten, and the percentage they may have until they are. It only falls.
 CEILINGS = {
-    'README.md': 10, 'docs': 13, 'docs/design': 17, 'docs/notebook': 15, 'scenes': 7,
-    'src/cli': 17, 'src/contact': 18, 'src/host': 15, 'src/mesh': 17, 'src/record': 16, 'src/scene': 15,
-    'src/script': 16, 'src/serve': 20, 'src/sim': 21, 'tests/checkpoint': 17, 'tests/cli': 16,
-    'tests/contact': 16, 'tests/host': 13, 'tests/mesh': 16, 'tests/record': 20, 'tests/run': 17, 'tests/scene': 4,
-    'tests/serve': 29, 'tests/sim': 18, 'tests/table': 15, 'tools': 16,
+    'README.md': 10, 'docs': 12, 'docs/design': 17, 'docs/notebook': 15, 'src/cli': 17, 'src/contact': 18,
+    'src/host': 15, 'src/mesh': 17, 'src/record': 16, 'src/scene': 15, 'src/script': 16, 'src/serve': 20,
+    'src/sim': 21, 'tests/contact': 16, 'tests/host': 13, 'tests/run': 17, 'tests/serve': 29, 'tests/sim': 18,
 }
 
 # Documents: the number of words that nine of ten sentences do not exceed, and folders not yet there.
 LONG = 25
 LONG_CEILINGS = {
-    'README.md': 29, 'docs': 28, 'docs/design': 31, 'docs/notebook': 34,
+    'docs': 26, 'docs/design': 31, 'docs/notebook': 34,
 }
 
 # Folders whose subfolders are counted apart.

@@ -9,7 +9,7 @@ import sys
 
 PASSED = {'OK', 'EXPECTEDFAIL'}
 SKIPPED = {'SKIP', 'IGNORED'}
-LINES = 40  # of what a failed test printed: its summary and the checks before
+LINES = 40  # kept of the output of a failed test: its summary and the checks before
 SLOWEST = 20
 
 

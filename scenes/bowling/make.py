@@ -47,7 +47,7 @@ class Part:
         for i, (r, z, dr, dz) in enumerate(profile):
             turns = [2 * math.pi * k / segments for k in range(segments)]
             up = 1 - i / (len(profile) - 1)
-            shift = 0 if r > 1e-9 else math.copysign(.5, -z) # of the tip of each triangle at a pole: to the middle of its base
+            shift = 0 if r > 1e-9 else math.copysign(.5, -z) # moves the tip of each triangle at a pole to the middle of its base
             rings.append([self.vertex((r * math.cos(t), r * math.sin(t), z), (dz * math.cos(t), dz * math.sin(t), -dr), ((k + shift) / segments, up))
                           for k, t in enumerate(turns + turns[:1] * (self.picture is not None))])
         for low, high in zip(rings, rings[1:]):
@@ -61,7 +61,7 @@ class Part:
 
 
 def write(name, parts, place=(0, 0, 0)):
-    """place: of the model in the file, as the translation of its node."""
+    """place: position of the model in the file, as the translation of its node."""
     linear = lambda c: ((c + .055) / 1.055) ** 2.4 if c > .04045 else c / 12.92
     buffer, views, accessors, primitives, materials, images = b'', [], [], [], [], []
 
@@ -174,7 +174,7 @@ def grain():
 
 
 def marble():
-    """What a ball shows all round: swirls, and three holes."""
+    """Picture of a ball: swirls, and three holes."""
     width, height, shades = 512, 256, 63
     warp = [Noise(seed, (8, 8, 8)) for seed in (11, 12, 13)]
     veins = Noise(14, (16, 16, 16))

@@ -1,4 +1,4 @@
-// The file of a checkpoint: what is written is read, and nothing else is.
+// The file of a checkpoint: written contents are read back, and only those.
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,7 +66,7 @@ static void test_there_and_back(void)
 	ob_checkpoint_finish(&back);
 }
 
-// No byte is without a checksum, and none may be missing or added.
+// Every byte has a checksum, and none may be missing or added.
 static void test_every_byte(void)
 {
 	ob_checkpoint_file f = { 0 }, back = { 0 };
@@ -117,7 +117,7 @@ static void test_foreign(void)
 	ob_checkpoint_finish(&f);
 }
 
-// What cannot be written leaves what is there, and nothing beside it.
+// A failed write leaves the old file, and nothing beside it.
 static void test_failed_writes(void)
 {
 	ob_checkpoint_file f = { 0 }, back = { 0 };
@@ -139,12 +139,12 @@ static void test_failed_writes(void)
 	CHECK(!ob_checkpoint_write(&f, path_of("b"), &e) && strstr(e.text, "another run writes it"));
 	CHECK(access(path_of("b.part"), F_OK) == 0); // it is another's
 	close(other);
-	CHECK(ob_checkpoint_write(&f, path_of("b"), &e)); // what a killed run has left is no obstacle
+	CHECK(ob_checkpoint_write(&f, path_of("b"), &e)); // a killed run's leftover is no obstacle
 	CHECK(!ob_checkpoint_write(&f, path_of("no/folder"), &e) && strstr(e.text, "No such file"));
 
 	CHECK(symlink("b", path_of("link")) == 0);
 	fill(&f, 11);
-	CHECK(ob_checkpoint_write(&f, path_of("link"), &e)); // what is behind it is replaced
+	CHECK(ob_checkpoint_write(&f, path_of("link"), &e)); // replaces the link's target
 	struct stat s;
 	CHECK(lstat(path_of("link"), &s) == 0 && S_ISLNK(s.st_mode));
 	CHECK(ob_checkpoint_read(&back, rules, AREAS, path_of("b"), &e) && back.area[1].count == 11);

@@ -1,5 +1,5 @@
-// Checkpoints that somebody has made up, with checksums that are right: each is refused, or is a run that begins, steps
-// or fails with a line of text. None crashes its reader, and none hangs it. A million in some minutes:
+// Invented checkpoints, with valid checksums: each is rejected, or is a run that begins, steps or fails with a line of
+// text. None crashes its reader, and none hangs it. A million in some minutes:
 //
 //   test_checkpoint_hostile [COUNT [SEED]]
 #include <ctype.h>
@@ -12,10 +12,10 @@
 #include "checkpoint/saved_run.h"
 #include "scene/scene.h"
 
-enum { MUTANTS = 20000, EACH_RUNS = 40, STEPS = 8 }; // one run for so many that make sense
+enum { MUTANTS = 20000, EACH_RUNS = 40, STEPS = 8 }; // one run for so many valid ones
 
-// Something of each kind: all shapes, contacts, scripts with state, mail, contacts and objects of their making, what is
-// driven, what comes and goes.
+// Something of each kind: all shapes, contacts, scripts with state, mail, contacts and created objects, driven bodies,
+// objects added and removed.
 static const char text[] =
 	"local n = param('n', 6)\n"
 	"scene { step = .01, substeps = 2, iterations = 4, room = 4 }\n"
@@ -84,7 +84,7 @@ static void make(ob_checkpoint_file *f)
 		fprintf(stderr, "%s\n", e.text);
 }
 
-// A digit of a text becomes another one, so that the text still means something.
+// Changes a digit of a text, so that the text stays valid.
 static void spoil_text(char *at, uint64_t bytes)
 {
 	for (uint64_t i = draw(bytes), n = 0; n < bytes; n++, i = (i + 1) % bytes)
@@ -94,7 +94,7 @@ static void spoil_text(char *at, uint64_t bytes)
 		}
 }
 
-// One number of one area becomes one that could hurt.
+// Changes one number of one area to a harmful one.
 static void spoil(ob_checkpoint_file *f)
 {
 	static const double numbers[] = { 0, -1, 1e300, -1e300, 1e-300, INFINITY, -INFINITY, NAN, .5, 3 };
@@ -124,7 +124,7 @@ static void spoil(ob_checkpoint_file *f)
 	}
 }
 
-// Begins the run that the file tells of, with its own scene and settings, and lets it step. It may fail, but must end.
+// Begins the run of the file, with its own scene and settings, and lets it step. It may fail, but must end.
 static bool step(const ob_saved_run *r)
 {
 	ob_error e = { "" };
@@ -141,7 +141,7 @@ static bool step(const ob_saved_run *r)
 	return went;
 }
 
-// The next event of the timetable would add an object that is there, or has been removed.
+// The next event of the timetable would add an object that exists, or has been removed.
 static void test_timetable(ob_saved_run *r)
 {
 	const uint64_t events = r->host.population.events;
@@ -172,7 +172,7 @@ int main(int argc, char **argv)
 		for (uint32_t n = 1 + draw(3); n > 0; n--)
 			spoil(&good);
 		if (memcmp(good.bytes, kept, (size_t)((char *)good.area[0].at - good.bytes)) ==
-		    0) // else that is what was spoilt
+		    0) // otherwise the damage is there
 			ob_checkpoint_seal(&good);
 		bool fine = ob_saved_run_parse(&r, &bad, good.bytes, good.size, "bad", &e);
 		CHECK(fine || strncmp(e.text, "bad: ", 5) == 0);

@@ -45,7 +45,7 @@ static void test_counts(void)
 	CHECK(count_frames(.01, 60, 1. / 60, 1, &seen) == 0);
 }
 
-// Where both are multiples of one another there is never an interpolation.
+// If one is a multiple of the other, frames need no interpolation.
 static void test_on_steps(void)
 {
 	ob_frame_clock c = ob_frame_clock_make(36000, 60, 1. / 60, 0);

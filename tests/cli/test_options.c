@@ -1,4 +1,4 @@
-// The command line, word by word: what is taken, and what each mistake is told.
+// The command line, word by word: accepted words, and the message for each mistake.
 #include <string.h>
 
 #include "check.h"
@@ -51,7 +51,7 @@ static void test_taken(void)
 	CHECK(strcmp(a.value[OB_OPTION_DURATION], "2") == 0);
 	CHECK(strcmp(a.value[OB_OPTION_JSON], "-") == 0);
 	CHECK(strcmp(a.value[OB_OPTION_SEED], "-1") ==
-	      0); // a value; whether it is a good one is for the request to say
+	      0); // a value; the request validates it
 	CHECK(!a.value[OB_OPTION_STEP] && !a.value[OB_OPTION_HELP]);
 	ob_options_finish(&a);
 	CHECK(parse(&a, OB_COMMAND_RUN, "--harden s.lua", copy, &e)); // its value stands behind a =, or not at all

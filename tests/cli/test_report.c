@@ -1,4 +1,4 @@
-// Reports as JSON: what is written reads back to the same bits, and is JSON whatever stands in it.
+// Reports as JSON: values read back to the same bits, and any text gives valid JSON.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

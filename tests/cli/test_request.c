@@ -107,7 +107,7 @@ static void test_taken(void)
 	CHECK(!r.harden && read_line("s --harden --isolation process", &r, &e) && r.harden == OB_HARDEN_ALL);
 	CHECK(read_line("s --harden=limits,calls --isolation process", &r, &e));
 	CHECK(r.harden == (1 << OB_HARDEN_LIMITS | 1 << OB_HARDEN_CALLS));
-	CHECK(read_line("s --harden=pages --isolation process", &r, &e)); // which need the outbox
+	CHECK(read_line("s --harden=pages --isolation process", &r, &e)); // pages need the outbox
 	CHECK(r.harden == (1 << OB_HARDEN_OUTBOX | 1 << OB_HARDEN_PAGES));
 	CHECK(read_line("s --seed 18446744073709551615", &r, &e));
 	CHECK(r.scene_options.has_seed && r.scene_options.seed == UINT64_MAX);

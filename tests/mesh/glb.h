@@ -64,7 +64,7 @@ static inline glb_cube_buffer glb_cube_of(float half)
 	return b;
 }
 
-// What all files of a cube have in common, behind their nodes, primitives and materials.
+// Common part of all files of a cube, behind their nodes, primitives and materials.
 #define GLB_CUBE_REST \
 	"\"asset\":{\"version\":\"2.0\"},\"accessors\":[" \
 	"{\"bufferView\":0,\"componentType\":5126,\"count\":8,\"type\":\"VEC3\",\"min\":[-1,-1,-1],\"max\":[1,1,1]}," \

@@ -31,7 +31,7 @@ static inline void put_big_endian(unsigned char *at, uint32_t value)
 		at[i] = (unsigned char)(value >> (24 - 8 * i));
 }
 
-// Of one channel, grey.
+// Picture with one channel, grey.
 static inline picture grey_png(void)
 {
 	uint8_t pixel[HEIGHT][WIDTH];
@@ -143,8 +143,8 @@ static inline glb sharing_cube(const picture *p, int images, size_t longer)
 	return g;
 }
 
-// A file of a cube with coordinates of a texture (here 0, 1, 2 .. and .25) and one picture; more: of the JSON, before
-// what all have in common. values: of the material's.
+// File of a cube with texture coordinates (here 0, 1, 2 .. and .25) and one picture. more: further JSON, before the
+// common part. values: those of the material.
 static inline glb textured_cube(const picture *p, const char *values, const char *more)
 {
 	struct {

@@ -1,5 +1,4 @@
-// Binary glTF files: where nodes place their triangles, which way these look, what paints them, what pictures lie on
-// them; and files that are none.
+// Binary glTF files: places, orientations, colours and pictures of their triangles; and invalid files.
 #include <math.h>
 #include <zlib.h>
 
@@ -199,7 +198,7 @@ static void pictures_lie_on_it(void)
 		const uint8_t *pixel = m.image[0].rgba + 4 * i, grey = shade(i % WIDTH, i / WIDTH);
 		CHECK(pixel[0] == grey && pixel[1] == grey && pixel[2] == grey && pixel[3] == 255);
 	}
-	// What has it comes first, then what has none
+	// parts with it come first, then those without
 	CHECK(m.parts == 2 && m.part[0].indices == 36 && m.part[0].colour == 1 && m.part[0].surface == 0);
 	CHECK(m.part[0].wrap[0] == OB_MESH_CLAMP && m.part[0].wrap[1] == OB_MESH_MIRROR);
 	CHECK(m.part[1].indices == 36 && m.part[1].colour == 0 && m.part[1].surface == 0);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""test_read.py PROGRAM: what PROGRAM records is read by h5py as the documentation says. Exit 77 (skipped) without h5py."""
+"""test_read.py PROGRAM: h5py reads the records of PROGRAM as documented. Exit 77 (skipped) without h5py."""
 import os
 import subprocess
 import sys

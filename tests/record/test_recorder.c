@@ -1,4 +1,4 @@
-// What is recorded is read back through HDF5, by this program or by another, also when the writer was killed.
+// Records can be read back through HDF5, by this program or by another, also if the writer was killed.
 #include <hdf5.h>
 #include <signal.h>
 #include <stdlib.h>

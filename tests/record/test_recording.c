@@ -1,4 +1,4 @@
-// A record that is read back gives the snapshots that were recorded; what is no record, or a damaged one, gives one line.
+// Reading a record gives the recorded snapshots; a damaged record, or another file, gives one line.
 #include <hdf5.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -27,7 +27,7 @@ static void build_hulls(void)
 	CHECK(ob_hull_build(point, 4, &tetrahedron, &e) && ob_hull_build(point, 6, &prism, &e));
 }
 
-// What there is at a state: 0 a plane, 1 a ball in flight that rebounds every 50 states, 2 moves each step, 3 comes at
+// Objects at each state: 0 a plane, 1 a ball in flight that rebounds every 50 states, 2 moves each step, 3 comes at
 // state 20, changes colour at 40 and goes at 60, from 80 on another has its id; 39 comes at the end. 2 is a hull, and 3 is one,
 // of another number, from 80 on.
 static ob_snapshot at(uint64_t state)
@@ -127,7 +127,7 @@ static void record(uint64_t states)
 	CHECK(ob_recorder_close(r, &e));
 }
 
-// What is drawn of an object: all else of a motion is the simulators' own.
+// Compares the drawn part of a motion: the rest is the simulators' own.
 static bool same_motion(const ob_motion *a, const ob_motion *b)
 {
 	return a->t0 == b->t0 && a->valid_until == b->valid_until && memcmp(&a->p, &b->p, sizeof a->p) == 0 &&

@@ -1,4 +1,4 @@
-// Where points fall in the picture of a camera.
+// Projects points into the picture of a camera.
 #ifndef OB_TESTS_SCENE_PROJECT_H
 #define OB_TESTS_SCENE_PROJECT_H
 

@@ -1,5 +1,5 @@
-// What scenes may use works and is the same each time; what runs long in C is stopped in time; several threads may
-// load at once.
+// Functions available to scenes work and give the same results each time; long-running C functions are stopped in time;
+// several threads may load at once.
 #include <pthread.h>
 
 #include "base/clock.h"

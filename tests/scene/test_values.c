@@ -1,4 +1,4 @@
-// What a scene says is what the definitions hold: units, masses, attitudes, colours, defaults.
+// Values of a scene arrive in its definitions: units, masses, attitudes, colours, defaults.
 #include <stdlib.h>
 
 #include "check.h"
@@ -105,7 +105,7 @@ static void check_shapes(void)
 	ob_scene_free(s);
 }
 
-// Where the body's axis (1, 0, 0) or (0, 0, 1) points in the world.
+// Direction of the body's axis (1, 0, 0) or (0, 0, 1) in the world.
 static ob_vec3 axis(const ob_object_def *o, int i)
 {
 	ob_mat3 r = ob_quat_matrix(o->state.pose.q);

@@ -27,7 +27,7 @@ static inline ob_scene *load_text(const char *text, ob_error *e)
 	return load_bytes(text, strlen(text), NULL, e);
 }
 
-// A scene that must load: what is wrong with it goes to standard error.
+// Loads a scene that must be valid; errors go to standard error.
 static inline ob_scene *load_good(const char *text)
 {
 	ob_error e = { "" };

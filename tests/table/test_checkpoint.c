@@ -1,5 +1,5 @@
-// A universe that is put back is as it was when it was taken, whatever has been done to it in between, and its readers
-// never see a torn motion.
+// A restored universe equals the one that was copied, after any changes in between, and its readers never see a torn
+// motion.
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -30,7 +30,7 @@ static ob_universe *make(void)
 	return u;
 }
 
-// All numbers of a motion tell the same, so that a torn one shows.
+// All numbers of a motion are equal, so that a torn one shows.
 static ob_motion motion(double x)
 {
 	ob_motion m = { .t0 = x, .p = ob_v3(x, x, x), .v = ob_v3(x, x, x), .w = ob_v3(x, x, x), .a = ob_v3(x, x, x) };
@@ -47,7 +47,7 @@ static void publish_all(ob_universe *u, double x)
 	}
 }
 
-// The areas of the step, byte by byte, without the scheduler's scratch
+// The areas of the step, byte by byte, without the scheduler's scratch.
 static char *step_bytes(const ob_universe *u, size_t *n)
 {
 	*n = u->header.area[OB_AREA_SCRATCH] - u->header.area[OB_AREA_REQUERY];
@@ -64,7 +64,7 @@ static void scatter(ob_universe *u, unsigned seed, int times)
 	}
 }
 
-// Another life: steps, claims, pages that were not in use, and a gate that has been stopped in the middle of a phase.
+// Changes the universe: steps, claims, pages that were not in use, and a gate stopped in the middle of a phase.
 static void go_astray(ob_universe *u, unsigned seed)
 {
 	uint32_t index;
@@ -116,7 +116,7 @@ static void test_put_back(void)
 	ob_neighbours_reserve(u, 0, 10);
 	ob_step_complete(u, 9, 8, 7);
 	char *bytes = step_bytes(u, &n), *kept = malloc(n);
-	memcpy(kept, bytes, n); // by which all pages come into use
+	memcpy(kept, bytes, n); // brings all pages into use
 	for (unsigned life = 0; life < 5; life++) {
 		if (life % 2 == 0)
 			CHECK(ob_checkpoint_take(c, u) && ob_checkpoint_step(c) == 1);
@@ -192,8 +192,8 @@ static void *note_deaths(void *argument)
 	return NULL;
 }
 
-// Simulators may die while the universe is paused: checkpoints neither mind that nor forget them. (What the thread
-// sanitizer finds ends the test.)
+// Simulators may die while the universe is paused: checkpoints are unaffected, and preserve the deaths. (A finding of
+// the thread sanitizer ends the test.)
 static void test_deaths(void)
 {
 	pthread_t thread;

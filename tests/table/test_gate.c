@@ -1,5 +1,5 @@
-// The gate: every phase runs in exactly those who take part, once each, and the scheduler sees what they wrote
-// before it opens the next. Arguments: threads|processes, workers, phases. Every 500 phases the host has the turn.
+// The gate: every phase runs in exactly its participants, once each, and the scheduler sees their writes before it
+// opens the next. Arguments: threads|processes, workers, phases. Every 500 phases the host has the turn.
 #include "../check.h"
 
 #include <stdlib.h>
@@ -29,7 +29,7 @@ static uint32_t next_random(board *b)
 	return (uint32_t)(b->random >> 33);
 }
 
-// Everyone, one, a random part, or a run of neighbours, so that groups are full, split, and empty.
+// All workers, one, a random part, or a run of neighbours, so that groups are full, split, and empty.
 static const uint32_t *choose(board *b, uint32_t workers)
 {
 	uint32_t kind = next_random(b) % 4, n = 0, first = next_random(b) % workers;

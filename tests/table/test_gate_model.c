@@ -1,10 +1,10 @@
-// The gate explored exhaustively, as the slot is (test_slot_model.c): its own code, two workers and the host, in every
-// interleaving, with stores that become visible late (total store order), where a worker may be killed between any two
-// accesses, and the gate stopped at any time. Each phase runs in exactly those who take part, once; exactly one
-// schedules the next, after all have arrived; nobody sleeps for ever: neither where the gate is opened, nor where the
-// host has the turn, nor where it is stopped. Variants that are broken on purpose are caught.
+// The gate explored exhaustively, like the slot (test_slot_model.c): its own code, two workers and the host, in every
+// interleaving, with delayed stores (total store order). A worker may be killed between any two accesses, and the gate
+// may be stopped at any time. Each phase runs in exactly its participants, once; exactly one worker schedules the next,
+// after all have arrived. No thread sleeps for ever: when the gate is opened, when the host has the turn, or when it is
+// stopped. Broken variants are detected.
 //
-// A kill is answered as the host does: STOP, all leave, and the restart begins with a new gate, so it has no part here.
+// After a kill the host stops the gate, all leave, and the restart begins with a new gate, so it has no part here.
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,13 +17,13 @@
 #include "table/layout.h"
 #include "table/outbox.h"
 
-// ---- what the gate's code does to memory is taken over by the explorer
+// ---- the explorer executes the memory accesses of the gate's code
 
 enum change { SET, OR, AND, ADD };
 
 static uint64_t load(const void *at, size_t bytes);
 static void store(void *at, size_t bytes, uint64_t value);
-static uint64_t change(void *at, size_t bytes, enum change how, uint64_t x); // gives what was there
+static uint64_t change(void *at, size_t bytes, enum change how, uint64_t x); // returns the previous value
 static void sleep_on(const uint32_t *word, uint32_t seen, uint32_t bits, const struct timespec *until);
 static void wake_sleepers(const uint32_t *word, uint32_t bits);
 
@@ -47,29 +47,29 @@ static void wake_sleepers(const uint32_t *word, uint32_t bits);
 enum {
 	WORKERS = 2,
 	HOST = WORKERS,
-	STOPPER, // a thread of the host: the supervisor, that was told of a death, or Ctrl-C
+	STOPPER, // a thread of the host: the supervisor after a death, or Ctrl-C
 	THREADS,
 	BUFFER = 16,
 	DEPTH_MAX = 2048,
 	STACK = 64 << 10,
-	SAVED = 3 << 10, // of a stack at most ..
-	BELOW = 512, // .. with what may lie below the frame of who yields
+	SAVED = 3 << 10, // size of a saved stack
+	BELOW = 512, // part of it below the frame of the yielding thread
 	SEEN = 1 << 22
 };
 
 enum variant {
 	SOUND,
 	WORD_STANDS, // an opening does not move the futex word
-	OPENER_CLEARS, // who wakes sleepers takes their bits away
-	LATE_DONE, // a worker notes the turn as done when it has arrived already
+	OPENER_CLEARS, // the waker clears the bits of sleepers
+	LATE_DONE, // a worker records the turn as done after its arrival
 	STOP_WORD_STANDS, // STOP does not move the words
-	STOP_TAKEN, // an opening takes away what STOP has told the host
+	STOP_TAKEN, // an opening overwrites STOP's signal to the host
 	VARIANTS
 };
 
 enum fate { LIVES, STOPPED_ANY_TIME, KILLED_ANY_TIME };
 
-// What is explored: phases by who takes part (bit per worker; 0: the host has the turn).
+// Scenario: phases by their participants (bit per worker; 0: the host has the turn).
 static struct scenario {
 	const char *what;
 	uint32_t id[WORKERS]; // in one half of a group, in two, in two groups
@@ -92,7 +92,7 @@ static ob_universe universe = {
 
 static struct thread {
 	ucontext_t context;
-	uint64_t history; // of what it has done and read, since it was last where it had nothing in hand
+	uint64_t history; // hash of its actions and reads, since it was last without pending state
 	struct {
 		void *at;
 		size_t bytes;
@@ -103,10 +103,10 @@ static struct thread {
 	const uint32_t *asleep_on; // NULL: it is awake
 	uint32_t bits;
 	bool done, killed;
-	char *top; // of its stack in use: it grows down
+	char *top; // top of the used part of its stack: it grows down
 } threads[THREADS];
 
-// What the phases should be and are, known at once to all.
+// Expected and actual state of the phases, visible to all at once.
 static struct {
 	uint32_t opened; // phases so far; a turn of the host counts as one
 	uint32_t invited, ran, arrived; // bit per worker
@@ -149,7 +149,7 @@ static uint64_t get(const void *at, size_t bytes)
 	return value;
 }
 
-// What others read when they have their turn alone.
+// True for words that others read only in turns of their own.
 static bool is_opener_word(const void *at)
 {
 	return at == &shared.group[0].expected || at == &shared.group[1].expected || at == &shared.gate.phase;
@@ -188,7 +188,7 @@ static bool is_sleeping(const void *at, size_t offset)
 	return false;
 }
 
-// Nobody notices a store before it leaves the buffer, so it is no choice of its own.
+// A store is invisible until it leaves the buffer, so it is no choice of its own.
 static void put_into_buffer(void *at, size_t bytes, uint64_t value)
 {
 	struct thread *t = &threads[running];
@@ -230,10 +230,10 @@ static uint64_t change(void *at, size_t bytes, enum change how, uint64_t x)
 // The kernel compares the word and lets the thread sleep as one.
 static void sleep_on(const uint32_t *word, uint32_t expected, uint32_t bits, const struct timespec *until)
 {
-	(void)until; // a wake that comes too late is none here
+	(void)until; // late wakes are not modelled
 	yield_drained();
 	struct thread *t = &threads[running];
-	t->history = 1; // whatever comes of it, it looks at everything anew
+	t->history = 1; // after any wake, it reads everything anew
 	if (*word != expected)
 		return;
 	t->asleep_on = word;
@@ -272,7 +272,7 @@ static void open_next(void)
 static void work(uint32_t me)
 {
 	for (;;) {
-		threads[running].history = 0; // it has nothing in hand, and knows nothing
+		threads[running].history = 0; // it has no pending state
 		const ob_phase phase = ob_gate_wait(&universe, scenario->id[me]);
 		if (phase == OB_PHASE_STOP)
 			return;
@@ -330,7 +330,7 @@ static void begin(void)
 	universe.header.sizes.workers = scenario->id[WORKERS - 1] + 1;
 	universe.step_data.count = &shared.count;
 	ob_gate_prepare(&shared.gate, universe.header.sizes.workers);
-	shared.gate.spin = 0; // to spin is to look more often
+	shared.gate.spin = 0; // spinning is just reading more often
 	for (int i = 0; i < THREADS; i++) {
 		getcontext(&threads[i].context);
 		threads[i].context.uc_stack.ss_sp = stacks[i];
@@ -350,7 +350,7 @@ static bool may_run(int i)
 }
 
 // Choices of a state: thread i goes on (i), a store of it becomes visible (THREADS + i), a worker is killed (2 THREADS;
-// which one is all the same).
+// all are equivalent).
 enum { CHOICES = 2 * THREADS + 1 };
 
 static bool is_possible(uint16_t c)
@@ -362,7 +362,7 @@ static bool is_possible(uint16_t c)
 	return scenario->fate == KILLED_ANY_TIME && !threads[0].killed && !threads[0].done;
 }
 
-// The oldest store becomes visible; where it is of what others use when they have their turn alone, with the next one.
+// Makes the oldest store visible; if it concerns words that others read only in turns of their own, the next one, too.
 static void let_out(struct thread *t)
 {
 	bool alone = false;
@@ -387,7 +387,7 @@ static void carry_out(uint16_t c)
 	}
 }
 
-// Whether the state is new.
+// Returns true for a new state.
 static bool note_state(void)
 {
 	const ob_gate *g = &shared.gate;
@@ -437,13 +437,13 @@ static bool all_left(void)
 	return true;
 }
 
-// All that a choice changes. Stacks are put back where they were, so what points into them stays right.
+// All that a choice changes. Stacks are restored to their places, so pointers into them stay valid.
 static struct moment {
 	__typeof__(shared) shared;
 	__typeof__(now) now;
 	struct thread threads[THREADS];
 	char stack[THREADS][SAVED];
-	uint16_t next; // choice to be tried
+	uint16_t next; // next choice to try
 } * moments;
 
 static size_t used_of(int i)
@@ -472,7 +472,7 @@ static void go_back_to(const struct moment *m)
 		memcpy(threads[i].top, m->stack[i], used_of(i));
 }
 
-// All choices of all states, depth first, until something is found.
+// Visits all choices of all states, depth first, up to the first finding.
 static void visit_all(void)
 {
 	uint32_t depth = 0;
@@ -503,7 +503,7 @@ static void visit_all(void)
 	}
 }
 
-// Whether something was found.
+// Returns true if it found an error.
 static bool explore(const struct scenario *what, enum variant v)
 {
 	scenario = what;

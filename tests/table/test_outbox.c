@@ -1,6 +1,6 @@
-// What a simulator hands over arrives as it was put. A word that was changed in its outbox is noticed with the measure
-// checksum, and blamed on it; without, it is taken for a result. What a dead simulator has left is not taken for what
-// its successor, which comes later, hands over or is busy with.
+// Records of a simulator arrive as they were put. A word changed in its outbox is detected with the measure checksum,
+// and blamed on it; without, it counts as a result. Data left by a dead simulator is not taken for records of its
+// successor, nor for the object that it is processing.
 #include "../check.h"
 
 #include <pthread.h>
@@ -15,7 +15,7 @@ enum { KIND = 7, WORDS = 5 };
 
 static const uint64_t sent[WORDS] = { 1, 2, 3, UINT64_MAX, 1234567 };
 
-// Hands over one record and collects it, both in this process; spoil: after it was put.
+// Submits one record and collects it, both in this process; spoil: after it was put.
 static void hand_over(uint32_t harden, bool spoil)
 {
 	ob_error e;
@@ -67,7 +67,7 @@ static void *succeed(void *u)
 	return hand_over_word(u, SUCCESSOR) ? u : NULL;
 }
 
-// Whom its successor is not to be blamed with.
+// Dies busy with an object that its successor must not be blamed with.
 static void die_busy(uint32_t harden)
 {
 	ob_error e;

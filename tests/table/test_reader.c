@@ -1,4 +1,4 @@
-// What a reader makes of a damaged table: it may refuse, it may never crash or hand on nonsense. And contact points.
+// Reading a damaged table: a reader may refuse, it may never crash or return nonsense. Also contact points.
 #include "../check.h"
 
 #include <fcntl.h>
@@ -76,7 +76,7 @@ static void test_contacts(void)
 	ob_universe *u = create_filled();
 	for (int i = 0; i < 5; i++)
 		ob_step_complete(u, 0, 0, 0);
-	touch(u, 0, 2, 5, 5 + 1); // of the last step
+	touch(u, 0, 2, 5, 5 + 1); // from the last step
 	touch(u, 1, 3, 6, 4 + 1); // out of date: no longer solved
 	ob_contact_point c[8];
 	CHECK(ob_universe_get_contacts(u, c, 8) == 2);
@@ -86,7 +86,7 @@ static void test_contacts(void)
 	ob_publish_motion(u, 3, &asleep);
 	CHECK(ob_universe_get_contacts(u, c, 8) == 2);
 	ob_publish_motion(u, 6, &asleep);
-	CHECK(ob_universe_get_contacts(u, c, 8) == 4); // both sleep: what they last felt still holds
+	CHECK(ob_universe_get_contacts(u, c, 8) == 4); // both sleep: their last contact state still holds
 	ob_step_data *x = ob_universe_step_data(u);
 	x->record[0].version[5 & 1].arm_a[0].x = NAN;
 	CHECK(ob_universe_get_contacts(u, c, 8) == 3);
@@ -124,7 +124,7 @@ static void read_everything(const ob_universe *r)
 	}
 }
 
-// Random bytes over random places, before and after a reader has attached.
+// Writes random bytes at random places, before and after a reader has attached.
 static void test_damage(void)
 {
 	ob_error e;
@@ -179,7 +179,7 @@ static void test_strangers(void)
 	shm_unlink(path);
 }
 
-// A universe that is cut short between two looks: a reader is told, reads nothing more of it, and lives.
+// A universe truncated between two reads: a reader detects it, reads nothing more of it, and survives.
 static void test_cut_short(void)
 {
 	ob_error e;
@@ -200,7 +200,7 @@ static void test_cut_short(void)
 		CHECK(!ob_universe_get_motion(r, 0, &m) && !ob_universe_get_passport(r, 0, &p));
 		CHECK(!ob_universe_get_bounds(r, 0, bounds) && !ob_universe_get_worker(r, 0, &w));
 		CHECK(ob_universe_get_contacts(r, c, 4) == 0);
-		CHECK(ftruncate(u->fd, (off_t)u->header.bytes) == 0); // what has been cut off does not come back
+		CHECK(ftruncate(u->fd, (off_t)u->header.bytes) == 0); // the removed part does not come back
 		ob_universe_get_info(r, &info);
 		CHECK(info.state == OB_UNIVERSE_LOST);
 		ob_universe_detach(r);

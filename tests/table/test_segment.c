@@ -1,4 +1,5 @@
-// Who owns a segment's name: what lies there is refused or cleared away, two never own one name, and nobody waits.
+// Ownership of a segment's name: files of that name are refused or removed, two processes never own one name, and none
+// waits.
 #include "../check.h"
 
 #include <fcntl.h>
@@ -22,7 +23,7 @@ static ob_universe *create(const char *as, ob_error *e)
 	return ob_universe_create(&setup, e);
 }
 
-// Something else lies under the name: other names are not affected, this one is refused, and what lies there stays.
+// Another kind of file has the name: other names are not affected, this one is refused, and the file stays.
 static void check_stranger(const char *what)
 {
 	ob_error e = { "" };
@@ -69,7 +70,7 @@ static void test_strangers(void)
 	check_stranger("other file");
 }
 
-// A link to a universe that runs is not the universe's name.
+// A link to a running universe is not the universe's name.
 static void test_link_to_universe(void)
 {
 	ob_error e = { "" };
@@ -88,7 +89,7 @@ static bool is_read(ob_universe *u)
 	return ob_universe_is_read(u);
 }
 
-// The owner knows whether anybody reads, and readers do not keep each other, or the next owner, from anything.
+// The owner can tell if there are readers, and readers do not block each other, or the next owner.
 static void test_readers(void)
 {
 	ob_error e;
@@ -103,7 +104,7 @@ static void test_readers(void)
 	ob_universe_destroy(u, true);
 }
 
-// The name is removed by who owns it, and never the name of another that has come since.
+// The owner removes its name, and never the name of a later universe.
 static void test_unlink(void)
 {
 	ob_error e;
@@ -154,7 +155,7 @@ static void test_contention(void)
 		int status;
 		CHECK(wait(&status) > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0);
 	}
-	ob_universe *u = create(name, &e); // what the last one left is no obstacle
+	ob_universe *u = create(name, &e); // the last one's leftover is no obstacle
 	CHECK(u);
 	ob_universe_destroy(u, true);
 	CHECK(access(file, F_OK) != 0);

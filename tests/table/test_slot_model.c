@@ -1,10 +1,10 @@
 // The slot explored exhaustively: its own code, a writer that may be killed before any of its stores, its successor,
-// and a reader, in every interleaving, with stores that become visible late, as on processors with store buffers (total
-// store order; Owens, Sarkar and Sewell 2009). Every copy is of one version, none is older than one that was complete
-// before. Variants that are broken on purpose are caught.
+// and a reader, in every interleaving, with delayed stores, as on processors with store buffers (total store order;
+// Owens, Sarkar and Sewell 2009). Every copy is of one version, none is older than one that was complete before. Broken
+// variants are detected.
 //
-// Each execution is made anew from its choices (stateless search, Godefroid 1997); a state is left where it has been
-// seen: memory, buffers, and of each thread the values that it has read, which determine where it is.
+// Each execution is replayed from its choices (stateless search, Godefroid 1997). A state seen before is abandoned: it
+// consists of memory, buffers, and the values read by each thread, which determine its place.
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,13 +39,13 @@ static struct {
 
 static struct thread {
 	ucontext_t context;
-	uint64_t history; // of what it has read and stored
+	uint64_t history; // hash of its reads and stores
 	struct {
 		uint64_t *at, value;
 	} buffer[BUFFER];
 	uint32_t buffered;
 	bool done, killed;
-	uint64_t read[2]; // by a reader: the first and the second copy
+	uint64_t read[2]; // a reader's first and second copy
 } threads[THREADS];
 
 static enum variant { SOUND, VERSION_FIRST, ONE_PLACE } variant;
@@ -173,7 +173,7 @@ static void carry_out(uint16_t c)
 	}
 }
 
-// Whether the state is new.
+// Returns true for a new state.
 static bool note_state(void)
 {
 	uint64_t h = mix(1, slot.version);
@@ -220,7 +220,7 @@ static void execute(void)
 	}
 }
 
-// The next choice of the last state that has one: it is found by replaying what came before.
+// Finds the next choice of the last state that has one, by replaying the choices before.
 static bool backtrack(void)
 {
 	while (depth > 0) {

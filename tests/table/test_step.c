@@ -1,5 +1,5 @@
-// Claims of tasks, what the check for late contacts notes, the requery list and the arena of neighbours, under 8 threads and
-// 8 processes.
+// Claims of tasks, notes of late contacts, the requery list and the arena of neighbours, under 8 threads and 8
+// processes.
 #include "../check.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@ enum { WORKERS = 8, OBJECTS = 5000, EACH = 3 };
 typedef struct board {
 	ob_universe *u;
 	uint32_t claimed[OBJECTS];
-	uint32_t arena[64 * OBJECTS + 65536]; // who got each word
+	uint32_t arena[64 * OBJECTS + 65536]; // owner of each word
 	uint32_t refused;
 } board;
 

@@ -1,4 +1,4 @@
-// STOP ends every wait, whatever the gate is doing; a host that waits in vain comes back after its timeout.
+// STOP ends every wait, at any state of the gate; a host without a turn returns after its timeout.
 #include "../check.h"
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// The trace's rings: what is written is read, in order and whole, or counted as lost; from threads, from processes, and
-// from processes that are killed.
+// The trace's rings: written events are read, in order and whole, or counted as lost; from threads, from processes, and
+// from killed processes.
 #include "../check.h"
 
 #include <signal.h>
@@ -32,7 +32,7 @@ static ob_universe *create(uint32_t workers, bool traced)
 	return u;
 }
 
-// Event n of a ring says so in each of its words.
+// Event n of a ring has n in each of its words.
 static void tell(ob_universe *u, uint32_t ring, uint32_t n)
 {
 	ob_trace_doing(u, ring, OB_TRACE_SOLVE, 1000 + n);
@@ -48,7 +48,7 @@ static int write_many(void *shared, uint32_t worker)
 	return 0;
 }
 
-// How many there were, of which none may be torn or come before one that is older.
+// Reads a ring; returns the number of events. wrong: torn ones, and ones out of order.
 static uint32_t read_ring(ob_universe *u, uint32_t ring, uint32_t *next, uint32_t *wrong)
 {
 	static ob_trace_event taken[BATCH];
@@ -111,7 +111,7 @@ static void test_full(void)
 	ob_universe_destroy(u, true);
 }
 
-// Killed at any point, it leaves whole events, and what it was doing.
+// A process killed at any point leaves whole events, and its current activity.
 static void test_killed(void)
 {
 	uint32_t wrong = 0, idle = 0, total = 0;
@@ -165,7 +165,7 @@ static void test_states(void)
 	ob_universe_destroy(u, true);
 }
 
-// Untraced, nothing is reserved; traced, a reader that attaches finds its way all the same.
+// Untraced, nothing is reserved; traced, a reader can attach all the same.
 static void test_layout(void)
 {
 	ob_error e;

@@ -122,7 +122,7 @@ static void test_names(void)
 	ob_universe_destroy(u, true);
 }
 
-// A host that dies without a word leaves its segment; the next creation, by any name, clears it away.
+// A host that dies without cleaning up leaves its segment; the next creation, by any name, removes it.
 static void test_stale(void)
 {
 	ob_error e;
@@ -145,7 +145,7 @@ static void test_stale(void)
 	ob_universe_destroy(u, true);
 }
 
-// Capacity costs address space, not memory: 100,000 objects, of which none is there.
+// Capacity costs address space, not memory: 100,000 objects, none of them present.
 static void test_sparse(void)
 {
 	ob_universe *u = create(100000);

@@ -16,7 +16,7 @@ enum { WORDS = sizeof(ob_motion) / sizeof(uint64_t) };
 typedef struct arena {
 	ob_slot slot;
 	_Alignas(64) uint32_t over;
-	_Alignas(64) uint32_t ready; // readers that stand at the slot
+	_Alignas(64) uint32_t ready; // readers that are ready
 	_Alignas(64) torture_result sum;
 } arena;
 
@@ -120,7 +120,7 @@ static pid_t start_writer(ob_slot *s)
 
 torture_result torture_run_killed(uint32_t readers, uint32_t kills)
 {
-	enum { PUBLISHES = 20 }; // before it is killed
+	enum { PUBLISHES = 20 }; // minimum before a kill
 	arena *a = shared_memory(sizeof *a);
 	worker_group g = { .processes = true, .count = readers, .run = reader, .shared = a };
 	torture_result r = { .failed = readers };

@@ -30,7 +30,7 @@ static bool start_process(worker_group_member *m)
 {
 	m->pid = fork();
 	if (m->pid == 0) {
-		prctl(PR_SET_PDEATHSIG, SIGKILL); // a test that is timed out leaves no one behind
+		prctl(PR_SET_PDEATHSIG, SIGKILL); // a test that times out leaves no process behind
 		_exit(m->group->run(m->group->shared, m->number));
 	}
 	return m->pid > 0;

@@ -20,14 +20,14 @@ struct worker_group {
 	bool processes;
 	uint32_t count;
 	int (*run)(void *shared, uint32_t number); // 0 = fine
-	void *shared; // memory that forked children share
+	void *shared; // memory shared with forked children
 	worker_group_member *member;
 };
 
-// Zeroed memory that forked children share. Never freed: the tests end.
+// Zeroed memory shared with forked children. Never freed: the tests end.
 void *shared_memory(size_t bytes);
 bool worker_group_start(worker_group *g);
-// Waits for all; returns how many failed (a killed process counts).
+// Waits for all; returns the number of failed ones (a killed process counts).
 uint32_t worker_group_join(worker_group *g);
 
 #endif
