@@ -684,8 +684,3 @@ bool ob_gltf_read(ob_mesh *m, const unsigned char *bytes, size_t size, ob_error 
 	ob_mesh_finish(m);
 	return false;
 }
-
-bool ob_gltf_is_there(void)
-{
-	return true;
-}

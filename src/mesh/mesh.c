@@ -44,11 +44,6 @@ void ob_mesh_finish(ob_mesh *m)
 	*m = (ob_mesh){ 0 };
 }
 
-bool ob_mesh_can_read(void)
-{
-	return ob_gltf_is_there();
-}
-
 // ---- numbers
 
 static bool lies_within(const float *v, int n, float low, float high)
@@ -170,7 +165,10 @@ bool ob_mesh_read(ob_mesh *m, const void *bytes, size_t size, ob_error *e)
 	*m = (ob_mesh){ 0 };
 	if (size > OB_MESH_FILE_MAX)
 		return ob_fail(e, "it is larger than %d MiB", OB_MESH_FILE_MAX >> 20);
-	if (!check_header(bytes, size, e) || !ob_gltf_read(m, bytes, size, e))
+	const ob_gltf_part *part = NULL;
+	if (check_header(bytes, size, e))
+		part = ob_part_load("gltf", sizeof *part, false, "libtinygltf2d and libjpeg62-turbo", e);
+	if (!part || !part->read(m, bytes, size, e))
 		return false;
 	if (ob_mesh_makes_sense(m))
 		return true;

@@ -68,7 +68,6 @@ float ob_surface_pack(float roughness, float metal);
 bool ob_mesh_load(ob_mesh *m, const char *path, ob_error *e);
 // The same of a file's bytes.
 bool ob_mesh_read(ob_mesh *m, const void *bytes, size_t size, ob_error *e);
-bool ob_mesh_can_read(void); // false: this program was built without what reads such files
 // Makes it scale times as large, turns and then moves it. false and e: a vertex comes to lie more than 1000 km away.
 bool ob_mesh_place(ob_mesh *m, double scale, ob_pose pose, ob_error *e);
 // Whether what came from elsewhere is one: counts within the limits, indices of vertices, parts, numbers. Sets the

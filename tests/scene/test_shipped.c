@@ -140,10 +140,10 @@ int main(int argc, char **argv)
 	check_count("shapes", NULL, 52, false);
 	check_count("flock", NULL, 67, false);
 	check_count("flock", "n=200", 207, false);
-	if (ob_mesh_can_read()) {
-		check_count("bowling", NULL, 13, false);
-		check_seeds("bowling", false);
-	}
+#ifdef MESHES
+	check_count("bowling", NULL, 13, false);
+	check_seeds("bowling", false);
+#endif
 	check_seeds("flock", true);
 	check_count("machines", NULL, 42, false);
 	check_seeds("machines", true);
