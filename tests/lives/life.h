@@ -1,0 +1,46 @@
+// Random lives: a small scene, as Lua, and what comes to it from outside while it runs, step by step.
+//
+// A life follows from its seed alone; objects and events can be left out of it, one by one, to shrink it.
+#ifndef OB_TESTS_LIVES_LIFE_H
+#define OB_TESTS_LIVES_LIFE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { LIFE_STEPS = 300, LIFE_OBJECTS = 12, LIFE_EVENTS = 40, LIFE_TEXT = 8192 };
+
+typedef enum life_event_kind {
+	LIFE_CREATE,
+	LIFE_REMOVE,
+	LIFE_CREATE_REMOVE, // one object, in one pause
+	LIFE_REPLACE, // removes one and creates another, in one pause
+	LIFE_MESSAGE,
+	LIFE_COLOUR,
+	LIFE_FREEZE,
+	LIFE_PAUSE, // the run stands still once more, at the same step
+	LIFE_KILL, // a simulator, while the run stands or soon after
+	LIFE_RESUME, // the run is put down, and taken up again
+	LIFE_EVENT_KINDS
+} life_event_kind;
+
+typedef struct life_event {
+	uint32_t step, kind;
+	uint64_t seed; // draws the rest
+} life_event;
+
+// Objects and events that are left; bits.
+typedef struct life_parts {
+	uint64_t objects, events;
+} life_parts;
+
+typedef struct life {
+	uint64_t seed;
+	bool scripts;
+	char text[LIFE_TEXT]; // the scene's
+	uint32_t objects, events; // before any is left out; events: left
+	life_event event[LIFE_EVENTS]; // by step
+} life;
+
+void life_make(life *l, uint64_t seed, life_parts left);
+
+#endif

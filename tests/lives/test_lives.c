@@ -1,0 +1,149 @@
+// Random lives: objects are created and removed by the timetable, by scripts and on request, messages are sent, objects
+// freeze, runs stand still, are put down and resumed, and simulators are killed. All ways to run a life end in the same
+// bits, and what simulators share keeps its invariants (sim/invariants.h).
+//   lives [--seeds A..B] [--way N] [--verbose 1] [--kept FILE]
+// A life that fails is shrunk and printed: as a line for kept/lives.txt, and as its scene. Exits with 1 if any failed.
+// --verbose names lives whose scene asks for too much, which end early, alike in all ways.
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "check.h"
+#include "way.h"
+
+static const char *const way_name[] = { WAY_NAMES };
+static const char *const event_name[] = {
+	"create", "remove", "create and remove", "replace", "message", "colour", "freeze", "pause", "kill", "resume"
+};
+
+static const life_parts everything = { UINT64_MAX, UINT64_MAX };
+
+static bool verbose; // lives that end early are named, too
+
+typedef struct sums {
+	uint64_t lives, failed, ended, deaths, objects;
+} sums;
+
+// True if the life does not end alike in the way, or breaks an invariant in it.
+static bool fails(uint64_t seed, life_parts left, way w, outcome *expected, outcome *found)
+{
+	life l;
+	life_make(&l, seed, left);
+	*expected = way_run(&l, WAY_THREADS);
+	*found = w == WAY_THREADS ? *expected : way_run(&l, w);
+	return !outcomes_agree(expected, found);
+}
+
+// Leaves out one part after the other, as long as it fails. A failure that does not come each time is asked for twice.
+static life_parts shrink(uint64_t seed, way w)
+{
+	life_parts left = everything;
+	outcome a, b;
+	for (uint32_t i = 0; i < LIFE_EVENTS + LIFE_OBJECTS; i++) {
+		life_parts fewer = left;
+		if (i < LIFE_EVENTS)
+			fewer.events &= ~(UINT64_C(1) << (LIFE_EVENTS - 1 - i));
+		else
+			fewer.objects &= ~(UINT64_C(1) << (i - LIFE_EVENTS));
+		if (fails(seed, fewer, w, &a, &b) || fails(seed, fewer, w, &a, &b))
+			left = fewer;
+	}
+	return left;
+}
+
+static void print_outcome(const char *name, const outcome *o)
+{
+	if (o->failed)
+		printf("  %s: %s\n", name, o->text);
+	else
+		printf("  %s: %016" PRIx64 ", %u objects, %u deaths\n", name, o->hash, o->objects, o->deaths);
+}
+
+static void print(uint64_t seed, life_parts left, way w, const outcome *expected, const outcome *found)
+{
+	life l;
+	life_make(&l, seed, left);
+	printf("%" PRIu64 " %" PRIx64 " %" PRIx64 " %d\n", seed, left.objects, left.events, w);
+	print_outcome(way_name[WAY_THREADS], expected);
+	print_outcome(way_name[w], found);
+	for (uint32_t i = 0; i < l.events; i++)
+		printf("  step %u: %s\n", l.event[i].step, event_name[l.event[i].kind]);
+	printf("%s\n", l.text);
+	fflush(stdout);
+}
+
+static void run_life(uint64_t seed, way first, way last, sums *s)
+{
+	life l;
+	outcome expected, found;
+	life_make(&l, seed, everything);
+	expected = way_run(&l, WAY_THREADS);
+	s->lives++;
+	s->ended += expected.failed;
+	if (expected.failed && verbose)
+		printf("%" PRIu64 ": %s\n", seed, expected.text);
+	s->objects += expected.objects;
+	for (way w = first; w <= last; w++) {
+		found = w == WAY_THREADS ? expected : way_run(&l, w);
+		s->deaths += found.deaths;
+		CHECK(outcomes_agree(&expected, &found));
+		if (outcomes_agree(&expected, &found))
+			continue;
+		s->failed++;
+		print(seed, everything, w, &expected, &found);
+		const life_parts left = shrink(seed, w);
+		printf("shrunk: ");
+		fails(seed, left, w, &expected, &found);
+		print(seed, left, w, &expected, &found);
+		return;
+	}
+}
+
+// Each line: seed, objects and events that are left, way, as they are printed.
+static void run_kept(const char *path)
+{
+	FILE *f = fopen(path, "r");
+	char line[200];
+	CHECK(f);
+	while (f && fgets(line, sizeof line, f)) {
+		uint64_t seed;
+		life_parts left;
+		unsigned w;
+		outcome expected, found;
+		if (sscanf(line, "%" SCNu64 " %" SCNx64 " %" SCNx64 " %u", &seed, &left.objects, &left.events, &w) !=
+			    4 ||
+		    w >= WAYS)
+			continue;
+		const bool failed = fails(seed, left, (way)w, &expected, &found);
+		CHECK(!failed);
+		if (failed)
+			print(seed, left, (way)w, &expected, &found);
+	}
+	if (f)
+		fclose(f);
+}
+
+int main(int argc, char **argv)
+{
+	uint64_t first = 1, last = 0;
+	way from = WAY_THREADS, to = WAYS - 1;
+	sums s = { 0 };
+	for (int i = 1; i + 1 < argc; i += 2) {
+		if (!strcmp(argv[i], "--seeds") && sscanf(argv[i + 1], "%" SCNu64 "..%" SCNu64, &first, &last) == 2)
+			continue;
+		if (!strcmp(argv[i], "--way"))
+			from = to = (way)(atoi(argv[i + 1]) % WAYS);
+		else if (!strcmp(argv[i], "--verbose"))
+			verbose = atoi(argv[i + 1]);
+		else if (!strcmp(argv[i], "--kept"))
+			run_kept(argv[i + 1]);
+	}
+	for (uint64_t seed = first; seed <= last; seed++)
+		run_life(seed, from, to, &s);
+	printf("%" PRIu64 " lives, %" PRIu64 " objects at their ends, %" PRIu64 " deaths of simulators, %" PRIu64
+	       " ended by their own work, %" PRIu64 " failed\n",
+	       s.lives, s.objects, s.deaths, s.ended, s.failed);
+	return check_failed > 0;
+}
