@@ -3,6 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/clock.h"
+#include "serve/door.h"
+
 enum { CHUNK = 32768, HEADERS = 2048 };
 
 // ---- whose pages
@@ -71,10 +74,11 @@ static bool write_head(head *h)
 
 static int end_transaction(struct lws *wsi)
 {
+	ob_door_move(wsi, OB_AT_IDLE, ob_clock_wall());
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-static int refuse(struct lws *wsi, unsigned status, const char *text)
+static bool write_refusal(struct lws *wsi, unsigned status, const char *text)
 {
 	head h;
 	unsigned char body[LWS_PRE + 256];
@@ -83,9 +87,27 @@ static int refuse(struct lws *wsi, unsigned status, const char *text)
 	if (status == HTTP_STATUS_METHOD_NOT_ALLOWED)
 		add(&h, "allow:", "GET, HEAD");
 	memcpy(body + LWS_PRE, text, n);
-	if (!write_head(&h) || lws_write(wsi, body + LWS_PRE, n, LWS_WRITE_HTTP_FINAL) < 0)
-		return -1;
-	return end_transaction(wsi);
+	return write_head(&h) && lws_write(wsi, body + LWS_PRE, n, LWS_WRITE_HTTP_FINAL) >= 0;
+}
+
+static int refuse(struct lws *wsi, unsigned status, const char *text)
+{
+	return write_refusal(wsi, status, text) ? end_transaction(wsi) : -1;
+}
+
+// Refuses a request that may have a body, which is not read: the connection ends.
+static int refuse_body(struct lws *wsi, unsigned status, const char *text)
+{
+	write_refusal(wsi, status, text);
+	return -1;
+}
+
+static bool has_body(struct lws *wsi)
+{
+	char length[24];
+	const int n = lws_hdr_copy(wsi, length, sizeof length, WSI_TOKEN_HTTP_CONTENT_LENGTH);
+	return n < 0 || (n > 0 && strspn(length, "0") < (size_t)n) ||
+	       lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0;
 }
 
 // By default a content is kept, but asked for by its tag each time.
@@ -112,7 +134,9 @@ int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path,
 	const ob_content *c = find(strcmp(path, "/") == 0 ? "/index.html" : path, own);
 	*a = (ob_http_answer){ .content = NULL };
 	if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
-		return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, "only GET and HEAD are answered here\n");
+		return refuse_body(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, "only GET and HEAD are answered here\n");
+	if (has_body(wsi))
+		return refuse_body(wsi, HTTP_STATUS_REQ_ENTITY_TOO_LARGE, "requests have no body here\n");
 	if (!c)
 		return refuse(wsi, HTTP_STATUS_NOT_FOUND, "there is nothing of this name here\n");
 	if (lws_hdr_copy(wsi, header, sizeof header, WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 &&
@@ -155,6 +179,7 @@ int ob_http_go_on(struct lws *wsi, ob_http_answer *a)
 	if (lws_write(wsi, buffer + LWS_PRE, n, ends ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < (int)n)
 		return -1;
 	a->at += n;
+	ob_door_move(wsi, OB_AT_ANSWER, ob_clock_wall());
 	if (!ends) {
 		lws_callback_on_writable(wsi);
 		return 0;

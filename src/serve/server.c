@@ -3,7 +3,9 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/random.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -11,6 +13,7 @@
 #include "base/hash.h"
 #include "base/interrupt.h"
 #include "serve/client.h"
+#include "serve/door.h"
 #include "serve/facts.h"
 #include "serve/feed.h"
 #include "serve/film_page.h"
@@ -22,7 +25,12 @@ static const double share = .3; // .. of the time at most that looking may take
 static const double detail_interval = .25; // s, between two of the statistics, and of what is inspected
 static const double commands_rate = 200, creations_rate = 40; // 1/s, of one client
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
-enum { SEND_BUFFER = 1 << 18 }; // bytes: what the kernel keeps for a client; more would only be old when it comes
+static const double door_interval = .25; // s, between two looks at what has come in
+enum {
+	SEND_BUFFER = 1 << 18, // bytes: what the kernel keeps for a client; more would only be old when it comes
+	PLACES_MAX = 512, // connections that are no viewers
+	OTHER_FILES = 128, // that the program has open beside its connections
+};
 
 // What a content of this server's own is made of
 typedef struct own_content {
@@ -44,7 +52,8 @@ struct ob_server {
 	bool ending;
 
 	struct lws_context *context; // and all below: the thread's own
-	lws_sorted_usec_list_t tick;
+	lws_sorted_usec_list_t tick, door_tick;
+	ob_door door;
 	ob_feed *feed;
 	ob_client *clients;
 	uint32_t count;
@@ -254,6 +263,8 @@ static int let_in(const ob_server *s, struct lws *wsi)
 static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const char *path)
 {
 	const char *why = NULL;
+	ob_door_move(wsi, OB_AT_ANSWER, ob_clock_wall());
+	lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); // else the library ends a long answer, whoever takes it how fast
 	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback))
 		why = "this is not the name of this server";
 	else if ((strcmp(path, film_path) == 0 || strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
@@ -263,6 +274,26 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 		return ob_http_answer_request(wsi, a, path, s->own);
 	lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, why);
 	return -1;
+}
+
+// Lets a connection change to WebSocket, and to nothing else that the library speaks. Other than 0: it is closed.
+static int confirm_upgrade(struct lws *wsi)
+{
+	char to[16];
+	// the header is gone where the library itself has refused, and what it hands over is, too
+	const int size = lws_hdr_copy(wsi, to, sizeof to, WSI_TOKEN_UPGRADE);
+	if (size > 0 && strcasecmp(to, "websocket") == 0)
+		return 0;
+	if (size > 0)
+		lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, "a connection can be upgraded to websocket only");
+	return -1;
+}
+
+static void look_at_door(lws_sorted_usec_list_t *tick)
+{
+	ob_server *s = lws_container_of(tick, ob_server, door_tick);
+	ob_door_look(&s->door, ob_clock_wall());
+	lws_sul_schedule(s->context, 0, &s->door_tick, look_at_door, (lws_usec_t)(1e6 * door_interval));
 }
 
 static void enter(ob_server *s, ob_client *c, struct lws *wsi)
@@ -279,6 +310,7 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 			  .creations = { creations_rate, now } };
 	s->clients = c;
 	s->count++;
+	ob_door_move(wsi, OB_AT_VIEWER, now);
 	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
 	ob_universe_get_info(ob_host_universe(s->host), &info);
 	send_one(c, ob_facts_welcome(&s->config, &info, s->own));
@@ -327,6 +359,15 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 	ob_server *s = lws_context_user(lws_get_context(wsi));
 	session *now = user;
 	switch (reason) {
+	case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+		return !ob_door_enter(&s->door, wsi, ob_clock_wall());
+	case LWS_CALLBACK_WSI_DESTROY:
+		ob_door_leave(&s->door, wsi);
+		return 0;
+	case LWS_CALLBACK_RAW_ADOPT: // of CONNECT, from which on the library parses nothing
+		return -1;
+	case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+		return confirm_upgrade(wsi);
 	case LWS_CALLBACK_HTTP:
 		return answer(s, wsi, &now->answer, in);
 	case LWS_CALLBACK_HTTP_WRITEABLE:
@@ -409,10 +450,28 @@ static bool is_free(const ob_listen *l, ob_error *e)
 	       ob_fail(e, "--listen %s:%d: %s (port 0 is one that is free)", l->address, l->port, strerror(error));
 }
 
+// Makes sure that the process may open as many files as there are places, and some more.
+static bool may_open(uint32_t connections, uint32_t viewers, ob_error *e)
+{
+	struct rlimit r;
+	const rlim_t needed = connections + OTHER_FILES;
+	if (getrlimit(RLIMIT_NOFILE, &r) != 0 || r.rlim_cur >= needed)
+		return true;
+	r.rlim_cur = needed < r.rlim_max ? needed : r.rlim_max;
+	return (r.rlim_cur == needed && setrlimit(RLIMIT_NOFILE, &r) == 0) ||
+	       ob_fail(e, "--viewers %u: they need %u open files, and this process may have %u: raise ulimit -n", viewers,
+		       (unsigned)needed, (unsigned)r.rlim_max);
+}
+
 static bool open_context(ob_server *s, ob_error *e)
 {
 	const ob_listen *listen = &s->config.listen;
-	if (!is_free(listen, e))
+	const uint32_t viewers = s->config.viewers, places = 64 + 2 * viewers;
+	s->door.places = places < PLACES_MAX ? places : PLACES_MAX;
+	s->door.share = s->door.places / 2;
+	// some more than there are places: what is pushed out is closed a moment later
+	const uint32_t connections = viewers + 2 * s->door.places;
+	if (!is_free(listen, e) || !may_open(connections, viewers, e))
 		return false;
 	lws_set_log_level(LLL_ERR | LLL_WARN, note_complaint);
 	struct lws_context_creation_info info = {
@@ -424,9 +483,11 @@ static bool open_context(ob_server *s, ob_error *e)
 		.uid = (uid_t)-1,
 		.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
 			   (listen->six ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
-		.fd_limit_per_thread = s->config.viewers + 64,
-		.timeout_secs = 20,
-		.keepalive_timeout = 20,
+		.fd_limit_per_thread = connections,
+		.max_http_header_pool2 = connections,
+		.timeout_secs = OB_DOOR_REQUEST,
+		.timeout_secs_ah_idle = OB_DOOR_REQUEST,
+		.keepalive_timeout = OB_DOOR_IDLE,
 		.retry_and_idle_policy = &patience,
 		.vhost_name = "obsim",
 	};
@@ -511,6 +572,7 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 	if (ready) {
 		if (s->feed)
 			lws_sul_schedule(s->context, 0, &s->tick, look, 1);
+		lws_sul_schedule(s->context, 0, &s->door_tick, look_at_door, 1);
 		ob_interrupt_leave_to_main(&before);
 		int failure = pthread_create(&s->thread, NULL, serve, s);
 		pthread_sigmask(SIG_SETMASK, &before, NULL);

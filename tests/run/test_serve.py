@@ -201,6 +201,111 @@ class Serve(Case):
 		except ConnectionError:
 			return None
 
+	def exchange(self, data):
+		"""All that the server answers to these bytes until it closes."""
+		with socket.create_connection(("127.0.0.1", self.port), timeout=program.PATIENCE) as s:
+			got = b""
+			try:
+				s.sendall(data)
+				while more := s.recv(1 << 16):
+					got += more
+			except ConnectionError:
+				pass
+		return got
+
+	def test_upgrades(self):
+		"""A connection becomes a WebSocket or stays HTTP/1.1, whatever it asks for."""
+		self.serve()
+		witness = self.viewer()
+		preface = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes(3) + b"\4\0\0\0\0\0" # and an empty SETTINGS frame
+		head = f"GET /universe HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\nConnection: Upgrade, HTTP2-Settings\r\n" \
+			"HTTP2-Settings: AAMAAABkAARAAAAAAAIAAAAA\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+		for names in ("h2c",), ("H2C",), ("raw",), ("nonsense",), ("TLS/1.0, HTTP/1.1",), ("h2c, websocket",), ("websocket, h2c",), ("h2c", "websocket"), \
+				("websocket", "h2c"), ("x" * 300,), ("",):
+			upgrades = "".join(f"Upgrade: {name}\r\n" for name in names)
+			got = self.exchange((head + upgrades + "Connection: close\r\n\r\n").encode() + preface)
+			self.assertNotIn(b" 101 ", got, names)
+			self.assertRegex(got, rb"\A(HTTP/1\.[01] [34]\d\d |\Z)", names)
+		for start in b"", f"CONNECT 127.0.0.1:{self.port} HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n\r\n".encode():
+			self.assertRegex(self.exchange(start + preface), rb"\A(HTTP/1\.[01] 4\d\d |\Z)")
+		for name in "websocket", "WebSocket", "WEBSOCKET":
+			s = socket.create_connection(("127.0.0.1", self.port), timeout=program.PATIENCE)
+			self.addCleanup(s.close)
+			s.sendall((head + f"Upgrade: {name}\r\nSec-WebSocket-Protocol: obsim\r\n\r\n").encode())
+			self.assertIn(b" 101 ", s.recv(100), name)
+		since = witness.time
+		witness.until(lambda: witness.time > since)
+		self.end()
+
+	def hold(self, count, first, address="127.0.0.1"):
+		"""So many connections that have begun a request, or whatever else, and go on with nothing."""
+		held = []
+		for _ in range(count):
+			s = socket.create_connection((address, self.port), timeout=program.PATIENCE)
+			self.addCleanup(s.close)
+			s.sendall(first)
+			held.append(s)
+		return held
+
+	def test_slow(self):
+		"""However many connections are slow, in whatever they are in the middle of, a new viewer comes in."""
+		self.serve()
+		request = f"GET /main.js HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n"
+		for first in b"", b"G", (request + "X: ").encode(), (request + "\r\n").encode(), (request + "Content-Length: 1000000\r\n\r\n").encode(), \
+				(request + "\r\nGET /main.js HT").encode(), b"CONNECT a:1 HTTP/1.1\r\n\r\n":
+			self.hold(200, first)
+			self.viewer().close()
+		self.end()
+
+	def test_deadline(self):
+		"""A request that comes a byte at a time ends, however steadily it comes."""
+		self.serve()
+		s, = self.hold(1, b"GET / HTTP/1.1\r\n")
+		def has_ended():
+			time.sleep(.2)
+			try:
+				s.sendall(b"X")
+				return False
+			except ConnectionError:
+				return True
+		self.assertTrue(program.wait_until(has_ended))
+		self.end()
+
+	def test_bodies(self):
+		"""No request has a body, and what follows one is not taken for another request."""
+		self.serve()
+		for method, body in ("GET", "Content-Length: 43"), ("HEAD", "Content-Length: 43"), ("GET", "Transfer-Encoding: chunked"), ("POST", "Content-Length: 43"), \
+				("GET", "Content-Length: 99999999999999999999999999999"), ("GET", "Content-Length: -1"), ("POST", "X: y"):
+			got = self.exchange(f"{method} / HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n{body}\r\n\r\nGET /main.js HTTP/1.1\r\nHost: a\r\n\r\n".encode())
+			self.assertRegex(got, rb"\AHTTP/1\.1 4(05|13) ", (method, body))
+			self.assertEqual(got.count(b"HTTP/1.1 "), 1, (method, body))
+		self.end()
+
+	def test_compression(self):
+		"""No extension is agreed on, so no frame can be larger than it is."""
+		self.serve()
+		v = Viewer(self.port, headers=["Sec-WebSocket-Extensions: permessage-deflate; client_max_window_bits"])
+		self.addCleanup(v.close)
+		v.send_frame(OPEN | 0x40, b"\0" * 100)
+		self.assertIn(self.closed(v), (1002, None))
+		self.end()
+
+	def test_pipeline(self):
+		"""Requests that come at once are answered one after the other, each whole."""
+		self.serve()
+		paths = ["/main.js", "/style.css", "/nothing", "/", "/main.js"]
+		got = self.exchange("".join(f"GET {p} HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n" + ("Connection: close\r\n" if i == 4 else "") + "\r\n"
+			for i, p in enumerate(paths)).encode())
+		statuses = []
+		while got:
+			head, _, got = got.partition(b"\r\n\r\n")
+			statuses.append(int(head.split()[1]))
+			size = int(next(l for l in head.lower().split(b"\r\n") if l.startswith(b"content-length:")).split()[1])
+			self.assertGreaterEqual(len(got), size)
+			got = got[size:]
+		self.assertEqual(statuses, [200, 200, 404, 200, 200])
+		self.end()
+
 	def test_nonsense(self):
 		self.serve()
 		v = self.viewer()
