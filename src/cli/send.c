@@ -57,7 +57,7 @@ static bool create(sending *s, ob_error *e)
 		else if (def->path || def->force)
 			fine = ob_fail(e,
 				       "create: expected neither path nor varying_force: a scene's objects have them");
-		fine = fine && ob_ask(s->universe, &s->request, e);
+		fine = fine && ob_ask(s->u, &s->request, e);
 	}
 	ob_scene_free(scene);
 	return fine;
@@ -66,7 +66,7 @@ static bool create(sending *s, ob_error *e)
 static bool remove_object(sending *s, ob_error *e)
 {
 	s->request.kind = OB_REQUEST_REMOVE;
-	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
 }
 
 static bool colour(sending *s, ob_error *e)
@@ -74,7 +74,7 @@ static bool colour(sending *s, ob_error *e)
 	s->request.kind = OB_REQUEST_COLOUR;
 	if (!ob_scene_read_colour(s->word[1], s->request.colour))
 		return ob_fail(e, "colour: expected \"#rrggbb\", got \"%s\"", s->word[1]);
-	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
 }
 
 static bool message(sending *s, ob_error *e)
@@ -83,7 +83,7 @@ static bool message(sending *s, ob_error *e)
 	for (int i = 1; s->word[i]; i++)
 		if (!ob_scene_put_value(s->word[i], s->request.values, &s->request.bytes, sizeof s->request.values))
 			return ob_fail(e, "message: at most %zu bytes can be sent", sizeof s->request.values);
-	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
 }
 
 static bool move(sending *s, ob_error *e)
@@ -94,7 +94,7 @@ static bool move(sending *s, ob_error *e)
 		return ob_fail(e, "move: expected the number of a worker, got \"%s\"", s->word[1]);
 	s->request.kind = OB_REQUEST_MOVE;
 	s->request.worker = (uint32_t)worker;
-	return find_object(s, s->word[0], e) && ob_ask(s->universe, &s->request, e);
+	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
 }
 
 static const struct verb {

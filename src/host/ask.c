@@ -5,7 +5,9 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -13,7 +15,7 @@
 #include "host/host_state.h"
 #include "table/home.h"
 
-enum { PATIENCE_MS = 200, ANSWER_PATIENCE_MS = 10000, WAITING = 16 };
+enum { ANSWER_PATIENCE_MS = 10000, WAITING = 16 };
 
 static const char magic[8] = { 'O', 'B', 'S', 'I', 'M', 'A', 'S', '1' };
 
@@ -32,16 +34,37 @@ static socklen_t address_of(const char *universe, struct sockaddr_un *a)
 
 // ---- the universe's side
 
-int ob_ask_listen(const char *universe)
+// Everything that the universe waits for: its socket, and the callers that have said nothing yet.
+static bool watch(int events, int fd)
 {
-	struct sockaddr_un a;
-	const socklen_t n = address_of(universe, &a);
-	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-	if (fd >= 0 && (bind(fd, (struct sockaddr *)&a, n) != 0 || listen(fd, WAITING) != 0)) {
-		close(fd);
-		return -1;
-	}
-	return fd;
+	return epoll_ctl(events, EPOLL_CTL_ADD, fd, &(struct epoll_event){ .events = EPOLLIN, .data.fd = fd }) == 0;
+}
+
+bool ob_asked_listen(ob_asked *a, const char *universe, ob_error *e)
+{
+	struct sockaddr_un address;
+	const socklen_t n = address_of(universe, &address);
+	*a = (ob_asked){ .events = epoll_create1(EPOLL_CLOEXEC),
+			 .socket = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0) };
+	if (a->events >= 0 && a->socket >= 0 && bind(a->socket, (struct sockaddr *)&address, n) == 0 &&
+	    listen(a->socket, WAITING) == 0 && watch(a->events, a->socket))
+		return true;
+	const int error = errno;
+	ob_asked_close(a);
+	return ob_fail(e, "obsim send cannot reach universe \"%s\": %s", universe,
+		       error == EADDRINUSE ? "another process has taken its address; end that one, or choose another --name"
+					   : strerror(error));
+}
+
+void ob_asked_close(ob_asked *a)
+{
+	for (uint32_t i = 0; i < a->count; i++)
+		close(a->caller[i]);
+	if (a->socket >= 0)
+		close(a->socket);
+	if (a->events >= 0)
+		close(a->events);
+	*a = (ob_asked){ .events = -1, .socket = -1 };
 }
 
 static bool is_ours(int fd)
@@ -134,29 +157,86 @@ static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
 		ob_fail(e, "the move before is made with the next step: ask again");
 }
 
-void ob_ask_answer(ob_host *h, int socket)
+static void end_call(int fd, const ob_error *e)
 {
-	ob_error e = { "" };
-	packet p;
-	const int fd = accept4(socket, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-	struct pollfd ready = { .fd = fd, .events = POLLIN };
-	if (fd < 0)
-		return;
-	if (!is_ours(fd))
-		ob_fail(&e, "this universe belongs to another user");
-	else if (poll(&ready, 1, PATIENCE_MS) == 1) // for the supervisor has other things to do
-		carry_out(h, &p, recv(fd, &p, sizeof p, 0), &e);
-	else
-		ob_fail(&e, "nothing was asked for");
-	const ssize_t ignored = send(fd, &e, sizeof e, MSG_NOSIGNAL | MSG_DONTWAIT);
+	const ssize_t ignored = send(fd, e, sizeof *e, MSG_NOSIGNAL | MSG_DONTWAIT);
 	(void)ignored;
 	close(fd);
 }
 
+static void drop(ob_asked *a, uint32_t i)
+{
+	memmove(&a->caller[i], &a->caller[i + 1], (--a->count - i) * sizeof a->caller[0]);
+}
+
+// Lets a caller wait; where there are too many, the one that has been silent for longest makes room.
+static void take_in(ob_asked *a)
+{
+	ob_error e;
+	const int fd = accept4(a->socket, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+	if (fd < 0)
+		return;
+	if (!is_ours(fd)) {
+		ob_fail(&e, "this universe belongs to another user");
+		end_call(fd, &e);
+		return;
+	}
+	if (a->count == OB_ASKED_CALLERS) {
+		ob_fail(&e, "nothing was asked for");
+		end_call(a->caller[0], &e);
+		drop(a, 0);
+	}
+	if (watch(a->events, fd))
+		a->caller[a->count++] = fd;
+	else
+		close(fd);
+}
+
+static void answer(ob_host *h, ob_asked *a, int fd)
+{
+	ob_error e = { "" };
+	packet p;
+	for (uint32_t i = 0; i < a->count; i++) {
+		if (a->caller[i] != fd)
+			continue;
+		carry_out(h, &p, recv(fd, &p, sizeof p, MSG_DONTWAIT), &e);
+		end_call(fd, &e);
+		drop(a, i);
+		return;
+	}
+}
+
+void ob_asked_answer(ob_host *h, ob_asked *a)
+{
+	struct epoll_event ready[OB_ASKED_CALLERS];
+	const int n = epoll_wait(a->events, ready, OB_ASKED_CALLERS, 0);
+	for (int i = 0; i < n; i++) // callers first: each that is ready is answered before another may push it out
+		if (ready[i].data.fd != a->socket)
+			answer(h, a, ready[i].data.fd);
+	for (int i = 0; i < n; i++)
+		if (ready[i].data.fd == a->socket)
+			take_in(a);
+}
+
 // ---- the other side
 
-static bool ask(int fd, const char *universe, const ob_request *r, ob_error *e)
+// True if the universe's host itself listens there: any process may take an address that is free.
+static bool is_host(int fd, const ob_universe *u, ob_error *e)
 {
+	struct ucred who;
+	socklen_t n = sizeof who;
+	ob_universe_info info;
+	ob_universe_get_info(u, &info);
+	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && (who.uid == geteuid() || geteuid() == 0) &&
+	    (who.pid == info.host_pid || who.pid == 0)) // 0: of a namespace that does not see it
+		return true;
+	return ob_fail(e, "universe \"%s\" is not asked: process %d of user %u listens at its address, not its host %d",
+		       ob_universe_name(u), (int)who.pid, (unsigned)who.uid, (int)info.host_pid);
+}
+
+static bool ask(int fd, const ob_universe *u, const ob_request *r, ob_error *e)
+{
+	const char *universe = ob_universe_name(u);
 	struct sockaddr_un a;
 	const socklen_t n = address_of(universe, &a);
 	packet p = { .size = sizeof *r };
@@ -166,6 +246,8 @@ static bool ask(int fd, const char *universe, const ob_request *r, ob_error *e)
 	memcpy(&p.request, r, sizeof *r);
 	if (connect(fd, (struct sockaddr *)&a, n) != 0)
 		return ob_fail(e, "universe \"%s\" takes no requests: %s", universe, strerror(errno));
+	if (!is_host(fd, u, e))
+		return false;
 	if (send(fd, &p, sizeof p, MSG_NOSIGNAL) != sizeof p || poll(&answered, 1, ANSWER_PATIENCE_MS) != 1 ||
 	    recv(fd, &answer, sizeof answer, 0) != sizeof answer)
 		return ob_fail(e, "universe \"%s\" does not answer", universe);
@@ -174,12 +256,14 @@ static bool ask(int fd, const char *universe, const ob_request *r, ob_error *e)
 	return !*answer.text || ob_fail(e, "universe \"%s\": %s", universe, answer.text);
 }
 
-bool ob_ask(const char *universe, const ob_request *r, ob_error *e)
+bool ob_ask(const ob_universe *u, const ob_request *r, ob_error *e)
 {
+	const struct timeval patience = { .tv_sec = ANSWER_PATIENCE_MS / 1000 }; // to connect, and to send
 	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
 	if (fd < 0)
 		return ob_fail(e, "no socket: %s", strerror(errno));
-	const bool fine = ask(fd, universe, r, e);
+	setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+	const bool fine = ask(fd, u, r, e);
 	close(fd);
 	return fine;
 }

@@ -9,12 +9,23 @@
 
 #include "host/host.h"
 
-// The socket on which the universe of this name is asked; < 0: there cannot be one, and nobody can ask.
-int ob_ask_listen(const char *universe);
-// Takes one request from the socket, checks it, and answers.
-void ob_ask_answer(ob_host *h, int socket);
+enum { OB_ASKED_CALLERS = 64 }; // that have said nothing yet
 
-// The other side: asks the universe of this name. false and e: it refuses, or cannot be asked.
-bool ob_ask(const char *universe, const ob_request *r, ob_error *e);
+// The universe's side. The supervisor's thread only.
+typedef struct ob_asked {
+	int events; // readable when there is something to do; < 0: the universe cannot be asked
+	int socket;
+	int caller[OB_ASKED_CALLERS]; // the oldest first
+	uint32_t count;
+} ob_asked;
+
+// Listens at the address of the universe of this name. false and e: it cannot be asked.
+bool ob_asked_listen(ob_asked *a, const char *universe, ob_error *e);
+// Checks and answers every request that has come, and lets callers in. Waits for none of them.
+void ob_asked_answer(ob_host *h, ob_asked *a);
+void ob_asked_close(ob_asked *a); // one that does not listen is allowed
+
+// The other side: asks a universe, once it is sure that its host listens. false and e: it refuses, or cannot be asked.
+bool ob_ask(const ob_universe *u, const ob_request *r, ob_error *e);
 
 #endif

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "host/ask.h"
 #include "host/host.h"
 #include "host/population.h"
 #include "host/spawn.h"
@@ -58,7 +59,7 @@ struct ob_host {
 	bool supervised;
 	atomic_bool dismissed; // the supervisor is to end
 	int wake_fd, interrupt_fd; // ends the supervisor; SIGINT and its kin
-	int ask_fd; // by which other programs ask for something (host/ask.h)
+	ob_asked asked; // by which other programs ask for something
 	atomic_uint running_workers; // that have not ended
 	atomic_bool interrupted, failed, ending;
 	pthread_mutex_t failure_lock;

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "base/log.h"
 #include "host/ask.h"
 #include "host/host_state.h"
 #include "host/restart.h"
@@ -119,7 +120,7 @@ static bool handle_events(ob_host *h, struct pollfd fds[5])
 		ob_host_pause_early(h);
 	}
 	if (fds[4].revents)
-		ob_ask_answer(h, h->ask_fd);
+		ob_asked_answer(h, &h->asked);
 	return true;
 }
 
@@ -131,7 +132,7 @@ static void *supervise(void *argument)
 		{ .fd = h->spawn->fd(h->group), .events = POLLIN },
 		{ .fd = ob_fork_server_fd(h->fork_server) }, // only POLLHUP
 		{ .fd = h->interrupt_fd, .events = POLLIN },
-		{ .fd = h->ask_fd, .events = POLLIN },
+		{ .fd = h->asked.events, .events = POLLIN },
 	};
 	double refreshed = 0;
 	pthread_setname_np(pthread_self(), "supervisor");
@@ -154,8 +155,9 @@ bool ob_supervisor_start(ob_host *h, ob_error *e)
 	h->wake_fd = eventfd(0, EFD_CLOEXEC);
 	if (h->wake_fd < 0)
 		return ob_fail(e, "cannot make an event for the supervisor: %s", strerror(errno));
-	if (ob_universe_rank(h->u) == 0)
-		h->ask_fd = ob_ask_listen(ob_universe_name(h->u));
+	ob_error why;
+	if (ob_universe_rank(h->u) == 0 && !ob_asked_listen(&h->asked, ob_universe_name(h->u), &why))
+		ob_log_warn("%s", why.text);
 	ob_interrupt_leave_to_main(&before);
 	int error = pthread_create(&h->supervisor, NULL, supervise, h);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -178,7 +180,5 @@ void ob_supervisor_stop(ob_host *h)
 	if (h->wake_fd >= 0)
 		close(h->wake_fd);
 	h->wake_fd = -1;
-	if (h->ask_fd >= 0)
-		close(h->ask_fd);
-	h->ask_fd = -1;
+	ob_asked_close(&h->asked);
 }

@@ -89,7 +89,7 @@ static ob_request good_object(void)
 }
 
 // What no scene could hold never comes into the run, where it would end it.
-static void test_no_numbers(const char *name)
+static void test_no_numbers(const ob_universe *u)
 {
 	const double bad[] = { NAN, INFINITY, -INFINITY };
 	for (int i = 0; i < 3; i++) {
@@ -98,9 +98,9 @@ static void test_no_numbers(const char *name)
 		force.def.passport.force.y = bad[i];
 		place.def.state.pose.p.x = bad[i];
 		colour.def.passport.colour[2] = (float)bad[i];
-		CHECK(!ob_ask(name, &force, &e) && strstr(e.text, "force"));
-		CHECK(!ob_ask(name, &place, &e) && strstr(e.text, "position"));
-		CHECK(!ob_ask(name, &colour, &e) && strstr(e.text, "colour"));
+		CHECK(!ob_ask(u, &force, &e) && strstr(e.text, "force"));
+		CHECK(!ob_ask(u, &place, &e) && strstr(e.text, "position"));
+		CHECK(!ob_ask(u, &colour, &e) && strstr(e.text, "colour"));
 	}
 }
 
@@ -143,13 +143,13 @@ int main(int argc, char **argv)
 	ob_host *h = start(s, name);
 	bool goes = step(h);
 	CHECK(goes);
-	test_no_numbers(name);
+	test_no_numbers(ob_host_universe(h));
 	CHECK(step(h));
 	for (long i = 0; i < count && h; i++) {
 		ob_request r = good();
 		for (uint32_t n = draw(4); n > 0; n--)
 			spoil(&r);
-		const bool fine = ob_ask(name, &r, &e);
+		const bool fine = ob_ask(ob_host_universe(h), &r, &e);
 		CHECK(fine || e.text[0]);
 		taken += fine;
 		if (i % TOGETHER == 0)

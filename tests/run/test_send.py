@@ -1,5 +1,6 @@
 """obsim send: another program asks a running universe."""
 
+import os
 import socket
 import unittest
 
@@ -39,7 +40,7 @@ class Send(program.Case):
 			self.assertRegex(done.stderr, saying)
 
 	def test_all(self):
-		self.send(self.name, "message", "listener", "hello", "3", "2.5", "true", "--", "-1")
+		self.send(self.name, "message", "listener", "hello", "3", "2.5", "true", "-1", "-.5", "--", "-x")
 		self.send(self.name, "create", "sphere { name = 'new', radius = .2, at = { 0, 3, 2 } }")
 		self.assertTrue(program.wait_until(lambda: "new" in self.objects()))
 		self.send(self.name, "create", "hull { name = 'shard', points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, at = { 0, 6, 2 } }")
@@ -66,7 +67,40 @@ class Send(program.Case):
 				((self.name, "remov", "x"), "did you mean remove"), ((self.name, "remove"), "remove OBJECT"):
 			self.send(*words, code=2, saying=saying)
 		self.run_.terminate()
-		self.assertIn("got false hello 3 2.5 true -1", self.run_.communicate(timeout=program.PATIENCE)[1])
+		self.assertIn("got false hello 3 2.5 true -1 -0.5 -x", self.run_.communicate(timeout=program.PATIENCE)[1])
+
+	def call_silently(self, count):
+		"""So many programs that connect and say nothing."""
+		for _ in range(count):
+			s = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+			self.addCleanup(s.close)
+			s.connect("\0obsim." + self.name) # blocks while too many wait to be let in
+
+	def test_silent(self):
+		"""However many callers say nothing, none is waited for: all of them are still there when another is answered."""
+		self.call_silently(18)
+		silent = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+		self.addCleanup(silent.close)
+		silent.connect("\0obsim." + self.name)
+		self.send(self.name, "colour", "crate", "#00ff00")
+		silent.setblocking(False)
+		with self.assertRaises(BlockingIOError):
+			silent.recv(1)
+		self.call_silently(200)
+		self.send(self.name, "colour", "crate", "#ff0000")
+		self.assertIsNone(self.run_.poll())
+
+	def test_squatter(self):
+		"""A process that has the address first is not believed, and the run says so."""
+		name = self.name + "x"
+		with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as s:
+			s.bind("\0obsim." + name)
+			s.listen()
+			run = program.start("run", self.path("scene.lua"), "--pace", "realtime", "--duration", program.FOR_EVER, "--name", name)
+			self.assertTrue(program.wait_until(lambda: program.steps(name) > 0 or run.poll() is not None))
+			self.send(name, "remove", "crate", code=1, saying=f"process {os.getpid()} of user \\d+ listens at its address, not its host {run.pid}")
+			run.terminate()
+			self.assertIn(f'obsim send cannot reach universe "{name}": another process has taken its address', run.communicate(timeout=program.PATIENCE)[1])
 
 	def test_rubbish(self):
 		"""Whatever else comes to the socket is refused, and the run goes on."""
