@@ -274,6 +274,12 @@ static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_erro
 	return set(a, id, value, e);
 }
 
+// True of -1 and -.5, which are values: no option is a digit.
+static bool is_negative(const char *text)
+{
+	return text[0] == '-' && strchr("0123456789", text[1 + (text[1] == '.')]) && text[1 + (text[1] == '.')];
+}
+
 bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **argv, ob_error *e)
 {
 	*a = (ob_arguments){ .command = command };
@@ -286,7 +292,7 @@ bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **
 	for (int i = 0; i < argc; i++) {
 		if (!only_operands && strcmp(argv[i], "--") == 0) {
 			only_operands = true;
-		} else if (!only_operands && argv[i][0] == '-' && argv[i][1]) {
+		} else if (!only_operands && argv[i][0] == '-' && argv[i][1] && !is_negative(argv[i])) {
 			if (!take_option(a, argc, argv, &i, e))
 				return false;
 		} else if (a->operand && command != OB_COMMAND_LAB && command != OB_COMMAND_SEND &&
@@ -323,7 +329,7 @@ static const struct {
 	  "Runs a scene as one world, as threads and as processes, and prints one table." },
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
-	{ OB_COMMAND_SEND, "obsim send NAME create|remove|colour|message ...",
+	{ OB_COMMAND_SEND, "obsim send NAME create|remove|colour|message|move ...",
 	  "Asks a running universe to change an object, or tells its script." },
 	{ OB_COMMAND_EXPORT, "obsim export FILE.h5 PAGE.html",
 	  "Makes a page of what was recorded, which any browser plays by itself." },
@@ -368,7 +374,8 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		fputs("\nobsim send NAME create 'sphere { radius = .3, at = { 0, 0, 5 } }'   as a scene says it\n"
 		      "obsim send NAME remove OBJECT                                        by its name or number\n"
 		      "obsim send NAME colour OBJECT '#rrggbb'\n"
-		      "obsim send NAME message OBJECT VALUE ...                             for its on_message; -- before a -1\n",
+		      "obsim send NAME message OBJECT VALUE ...                             for its on_message\n"
+		      "obsim send NAME move OBJECT WORKER                                   its simulator, to another worker\n",
 		      f);
 	if (command == OB_COMMAND_SERVE)
 		fputs("\nobsim serve --replay FILE.h5 [--listen ADDR:PORT] shows what was recorded, to each viewer at "
