@@ -33,9 +33,14 @@ def enter_namespace():
 	return True
 
 
+def keep_mounts():
+	"""Keeps mounts from other namespaces. In a chroot "/" may be no mount point: the mount that holds /dev/shm is enough."""
+	return any(libc.mount(None, path, None, MS_REC | MS_PRIVATE, None) == 0 for path in (b"/", b"/dev/shm", b"/dev"))
+
+
 def main():
 	options = os.environ.get("PRIVATE_SHM", "").encode() or None
-	if enter_namespace() and libc.mount(None, b"/", None, MS_REC | MS_PRIVATE, None) == 0:
+	if enter_namespace() and keep_mounts():
 		libc.mount(b"tmpfs", b"/dev/shm", b"tmpfs", MS_NOSUID | MS_NODEV, options)
 	os.execvp(sys.argv[1], sys.argv[1:])
 
