@@ -68,7 +68,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				 "seconds that a step may take before simulators count as stalled (60)", RUN | SERVE,
 				 0 },
 	[OB_OPTION_ON_DEATH] = { NULL, "on-death", OB_ON_DEATH_NAMES,
-				 "what comes of a simulator's death: a restart, or its objects freeze (restart)",
+				 "what a death or failure does: restart, freeze, or end (restart; serve: keep)",
 				 RUN | SERVE, 0 },
 	[OB_OPTION_RESTARTS] = { NULL, "restarts", "N/S",
 				     "end the run at more than N deaths within S seconds (no limit)", RUN | SERVE, 0 },

@@ -266,9 +266,11 @@ static bool read_deaths(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	if (policy && !ob_setting_find(OB_ON_DEATH_NAMES, policy, &value))
 		return ob_fail(e, "--on-death %s: expected one of %s", policy, OB_ON_DEATH_NAMES);
 	r->on_death = (ob_on_death)value;
-	if (r->on_death == OB_ON_DEATH_FREEZE && r->asked.monolith == 1)
-		return ob_fail(e, "--on-death freeze: a monolith is one simulator, without which nothing goes on; leave "
-				  "--arch monolith away");
+	if (ob_on_death_freezes_failed(r->on_death) && r->asked.monolith == 1)
+		return ob_fail(e,
+			       "--on-death %s: a monolith is one simulator, without which nothing goes on; leave "
+			       "--arch monolith away",
+			       policy);
 	if (!limit)
 		return true;
 	const char *slash = strchr(limit, '/');

@@ -151,6 +151,8 @@ int ob_command_serve(const ob_arguments *a)
 	}
 	q.server.scene = scene;
 	ob_host_config config = ob_request_host(&q.run);
+	if (!a->value[OB_OPTION_ON_DEATH] && !config.run.monolith && !scene->scripts) // neither can be frozen
+		config.on_death = OB_ON_DEATH_KEEP;
 	config.spare = q.room;
 	// a motion carries its step as 32 bits
 	uint64_t last =

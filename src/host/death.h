@@ -10,8 +10,15 @@ typedef enum ob_on_death {
 	OB_ON_DEATH_RESTART, // all go on from the last checkpoint, and end in the same bits
 	OB_ON_DEATH_FREEZE, // .. and the objects of the dead one stay where they were; an island that fails, too
 	OB_ON_DEATH_ABORT, // the run ends
+	OB_ON_DEATH_KEEP, // as RESTART, but an island that fails is frozen: no object ends the run
 } ob_on_death;
-#define OB_ON_DEATH_NAMES "restart|freeze|abort"
+#define OB_ON_DEATH_NAMES "restart|freeze|abort|keep"
+
+// True if an object that cannot be solved (OB_DEATH_FAILURE) is frozen with its island; else it ends the universe.
+static inline bool ob_on_death_freezes_failed(ob_on_death policy)
+{
+	return policy == OB_ON_DEATH_FREEZE || policy == OB_ON_DEATH_KEEP;
+}
 
 typedef enum ob_death_cause {
 	OB_DEATH_SIGNAL,

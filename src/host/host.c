@@ -47,11 +47,11 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "harden: only object simulators in processes can be contained");
 	if (c->ranks.ranks > 1 && (!has_outboxes(c) || c->workers == 0 || c->on_death != OB_ON_DEATH_ABORT))
 		return ob_fail(e, "ranks: take simulators in a pool, with outboxes, and let a death end the run");
-	if (c->on_death == OB_ON_DEATH_FREEZE && r->monolith)
+	if (ob_on_death_freezes_failed(c->on_death) && r->monolith)
 		return ob_fail(e, "on death: a monolith is one simulator, without which there is nothing to go on");
 	if (c->limit.deaths > OB_RESTART_LIMIT_MAX || (c->limit.deaths && !(c->limit.seconds > 0)))
 		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
-	if (scene->scripts && c->on_death == OB_ON_DEATH_FREEZE)
+	if (scene->scripts && ob_on_death_freezes_failed(c->on_death))
 		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
 	if (r->monolith && scene->hulls > 0) // of ODE's convex geometries few collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
@@ -129,7 +129,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.run = c->run,
 	};
 	setup.run.one_per_object = one_per_object;
-	setup.run.freezes = c->on_death == OB_ON_DEATH_FREEZE;
+	setup.run.freezes = ob_on_death_freezes_failed(c->on_death);
 	setup.workers += has_outboxes(c); // the arranger
 	ob_script_directory *texts = NULL;
 	if (scene->scripts) {

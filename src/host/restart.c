@@ -21,7 +21,7 @@ static const double interrupted_kill_timeout = .05; // .. and after Ctrl-C
 void ob_restart_prepare(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
-	const bool possible = h->spawn->own_memory || h->on_death == OB_ON_DEATH_FREEZE;
+	const bool possible = h->spawn->own_memory || ob_on_death_freezes_failed(h->on_death);
 	if (possible && h->on_death != OB_ON_DEATH_ABORT && !ob_universe_settings(h->u)->monolith)
 		r->checkpoint = ob_checkpoint_create(h->u);
 	if (h->limit.deaths)
@@ -304,7 +304,9 @@ bool ob_restart(ob_host *h)
 	if (!end_all_workers(h))
 		return false;
 	describe(h, &text);
-	if (h->on_death == OB_ON_DEATH_FREEZE && !plan_freeze(h, &text)) {
+	const bool freezes = latest(r)->cause == OB_DEATH_FAILURE ? ob_on_death_freezes_failed(h->on_death)
+								  : h->on_death == OB_ON_DEATH_FREEZE;
+	if (freezes && !plan_freeze(h, &text)) {
 		ob_host_set_failure(h, "%s", text.text);
 		return false;
 	}

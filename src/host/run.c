@@ -224,7 +224,7 @@ static void report_damage(ob_host *h, const char *damage)
 static void report_failure(ob_host *h, const char *failure)
 {
 	ob_death d = { .cause = OB_DEATH_FAILURE, .worker = OB_NO_WORKER, .step = ob_step_count(h->u) + 1 };
-	if (h->on_death != OB_ON_DEATH_FREEZE || !ob_sim_failed_alone(h->u, &d.object)) {
+	if (!ob_on_death_freezes_failed(h->on_death) || !ob_sim_failed_alone(h->u, &d.object)) {
 		ob_host_set_failure(h, "%s", failure);
 		return;
 	}

@@ -37,6 +37,14 @@ class Policy(program.Case):
 			self.assertEqual([e["args"]["step"] for e in events], [d["step"] for d in report["death_list"]])
 			self.assertTrue(all(e["args"]["what"].endswith("its last words: " + ABORTS) for e in events))
 
+	def test_keep(self):
+		"""What cannot be solved is frozen, while kills restart, freeze nothing, and leave the bits as they were."""
+		r = program.report(BLADE, "--duration", "3", "--on-death", "keep")
+		self.assertGreater(r["frozen"], 0)
+		r = program.report(*BOXES, *PROCESS, "--workers", "2", "--fault", "kill:p=.004,seed=3", "--on-death", "keep")
+		self.assertGreater(r["deaths"], 0)
+		self.assertEqual((r["frozen"], r["state_hash"]), (0, program.report(*BOXES)["state_hash"]))
+
 	def test_abort(self):
 		done = program.call("run", *BOXES, *PROCESS, "--on-death", "abort", "--fault", "kill:p=.01,seed=2", "--json", self.path("r"))
 		self.assertRegex(done.stderr, r"^obsim: simulator \d \(process \d+\) was killed by SIGKILL")
@@ -99,7 +107,7 @@ class Policy(program.Case):
 		run.wait(program.PATIENCE)
 
 	def test_what_is_refused(self):
-		for words, saying in (["--on-death", "retire"], "restart|freeze|abort"), (["--restarts", "5"], "as in 5/10"), \
+		for words, saying in (["--on-death", "retire"], "restart|freeze|abort|keep"), (["--restarts", "5"], "as in 5/10"), \
 				(["--restarts", "0/5"], "restarts"), (["--restarts", "5/-1"], "restarts"), \
 				(["--restarts", "5/10", "--on-death", "abort"], "nothing is restarted"), \
 				(["--arch", "monolith", "--on-death", "freeze"], "monolith"):

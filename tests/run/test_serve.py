@@ -78,6 +78,14 @@ class Serve(Case):
 		self.assertEqual([o["frozen"] for o in late.objects.values()].count(True), 1)
 		self.end(saying="was killed by SIGKILL")
 
+	def test_keeps(self):
+		"""Unless told otherwise, what cannot be solved is frozen, and viewers are shown so; the universe goes on."""
+		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "ode_gives_up.lua"))
+		v = self.viewer()
+		v.until(lambda: any(o["frozen"] for o in v.objects.values()))
+		v.until(lambda: v.told["statistics"]["step"] > 3 and v.told["statistics"]["frozen"] > 0)
+		self.end(saying="frozen: object 0 (blade)")
+
 	def test_clock(self):
 		self.serve("--paused")
 		v = self.viewer()

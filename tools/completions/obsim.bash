@@ -26,7 +26,7 @@ _obsim()
 	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
 	--narrow) mapfile -t COMPREPLY < <(compgen -W 'obb aabb' -- "$word") ;;
 	--measure) mapfile -t COMPREPLY < <(compgen -W 'step profile end' -- "$word") ;;
-	--on-death) mapfile -t COMPREPLY < <(compgen -W 'restart freeze abort' -- "$word") ;;
+	--on-death) mapfile -t COMPREPLY < <(compgen -W 'restart freeze abort keep' -- "$word") ;;
 	--restarts) mapfile -t COMPREPLY < <(compgen -W '5/10' -- "$word") ;;
 	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
 	--quality) mapfile -t COMPREPLY < <(compgen -W 'draft fine' -- "$word") ;;

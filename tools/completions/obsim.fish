@@ -49,7 +49,7 @@ complete -c obsim -n $lives -l check -d 'check what simulators share after each 
 complete -c obsim -n $lives -l isolation -x -a 'thread process' -d 'what a worker is'
 complete -c obsim -n $lives -l name -x -d 'name of the universe'
 complete -c obsim -n $lives -l patience -x -d 'seconds that a step may take'
-complete -c obsim -n $lives -l on-death -x -a 'restart freeze abort' -d 'what comes of a death'
+complete -c obsim -n $lives -l on-death -x -a 'restart freeze abort keep' -d 'what comes of a death'
 complete -c obsim -n $lives -l restarts -x -a '5/10' -d 'deaths within seconds'
 complete -c obsim -n $lives -l pace -x -a 'realtime max .1 10' -d 'simulated seconds a second of the clock'
 
