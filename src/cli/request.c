@@ -12,6 +12,7 @@
 #include "base/spelling.h"
 #include "cli/quantity.h"
 #include "plot/plot.h"
+#include "record/record.h"
 
 enum { WORKERS_MAX = 65536, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
 
@@ -461,7 +462,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
 	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && read_harden(r, a, e) &&
 	       read_deaths(r, a, e) &&
-	       check_name(r->name, e) && read_frames(&r->frames, a, e) && check_outputs(a, e) &&
+	       (!r->record || ob_record_check(e)) && check_name(r->name, e) && read_frames(&r->frames, a, e) && check_outputs(a, e) &&
 	       read_checkpoint(r, a, e) && read_fault(r, a->value[OB_OPTION_FAULT], e);
 }
 

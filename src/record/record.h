@@ -30,6 +30,9 @@ typedef struct ob_record_facts {
 } ob_record_facts;
 
 typedef struct ob_recorder ob_recorder;
+
+// True if HDF5 can be loaded; false and e with the package that is missing. Maps nothing.
+bool ob_record_check(ob_error *e);
 // Creates an HDF5 file, or replaces one. NULL and e on failure. The file is whole after each append: a later reader
 // finds all states up to then, also when the process crashes later, and when the disk is full. A file without room for
 // the first state is removed. Killed in the midst of an append it may be unreadable: 1 of 60 kills of a writer that did

@@ -1,4 +1,4 @@
-#include "record/record.h"
+#include "record/part.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -293,6 +293,7 @@ static const struct column {
 };
 
 struct ob_recorder {
+	ob_record_base base;
 	char *path;
 	hid_t file, set[COLUMNS]; // negative: not there
 	objects objects;
@@ -513,7 +514,7 @@ static bool make_room(ob_recorder *r, uint32_t count)
 	return true;
 }
 
-ob_recorder *ob_recorder_create(const char *path, const ob_record_facts *about, ob_error *e)
+ob_recorder *ob_hdf5_recorder_create(const char *path, const ob_record_facts *about, ob_error *e)
 {
 	ob_hdf5_silence();
 	ob_recorder *r = calloc(1, sizeof *r);
@@ -537,7 +538,7 @@ ob_recorder *ob_recorder_create(const char *path, const ob_record_facts *about, 
 	else
 		ob_hdf5_fail(e, path, "create the record");
 	r->failed = true;
-	ob_recorder_close(r, NULL);
+	ob_hdf5_recorder_close(r, NULL);
 	return NULL;
 }
 
@@ -749,7 +750,7 @@ static bool append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 	return true;
 }
 
-bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
+bool ob_hdf5_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 {
 	const bool good = append(r, s, e);
 	r->failed |= !good;
@@ -764,7 +765,7 @@ static void remove_useless(const ob_recorder *r)
 		unlink(r->path);
 }
 
-bool ob_recorder_close(ob_recorder *r, ob_error *e)
+bool ob_hdf5_recorder_close(ob_recorder *r, ob_error *e)
 {
 	if (!r)
 		return true;

@@ -1,4 +1,4 @@
-#include "record/recording.h"
+#include "record/part.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -33,6 +33,7 @@ typedef struct list {
 } list;
 
 struct ob_recording {
+	ob_record_base base;
 	char *path; // for messages: the file is read through its descriptor
 	hid_t file; // negative: not there
 	uint64_t file_bytes;
@@ -558,7 +559,7 @@ static ob_recording *open_here(const char *path, int fd, uint64_t bytes, ob_erro
 	r->state = UINT64_MAX;
 	if (open_file(r, fd, e))
 		return r;
-	ob_recording_close(r);
+	ob_hdf5_recording_close(r);
 	return NULL;
 }
 
@@ -571,11 +572,11 @@ static void read_to_end(const char *path, int fd, uint64_t bytes, ob_error *e)
 	ob_recording *r = open_here(path, fd, bytes, e);
 	if (!r)
 		return;
-	while (ob_recording_next(r, &ended, e))
+	while (ob_hdf5_recording_next(r, &ended, e))
 		;
 	if (ended)
 		e->text[0] = 0;
-	ob_recording_close(r);
+	ob_hdf5_recording_close(r);
 }
 
 static uint64_t address_space(void) // bytes; 0: it cannot be read
@@ -659,7 +660,7 @@ static bool read_by_child(const char *path, int fd, uint64_t bytes, ob_error *e)
 	return !said.text[0] || ob_fail(e, "%s", said.text);
 }
 
-ob_recording *ob_recording_open(const char *path, ob_error *e)
+ob_recording *ob_hdf5_recording_open(const char *path, ob_error *e)
 {
 	uint64_t bytes = 0;
 	ob_error why;
@@ -671,12 +672,12 @@ ob_recording *ob_recording_open(const char *path, ob_error *e)
 	return r;
 }
 
-const ob_recording_info *ob_recording_get_info(const ob_recording *r)
+const ob_recording_info *ob_hdf5_recording_get_info(const ob_recording *r)
 {
 	return &r->info;
 }
 
-void ob_recording_close(ob_recording *r)
+void ob_hdf5_recording_close(ob_recording *r)
 {
 	if (!r)
 		return;
@@ -788,7 +789,7 @@ static bool check_new(const ob_recording *r, uint64_t first, list *events, ob_er
 	return true;
 }
 
-bool ob_recording_next(ob_recording *r, bool *ended, ob_error *e)
+bool ob_hdf5_recording_next(ob_recording *r, bool *ended, ob_error *e)
 {
 	*ended = r->state + 1 == r->info.states;
 	if (*ended)
@@ -817,12 +818,12 @@ bool ob_recording_next(ob_recording *r, bool *ended, ob_error *e)
 	return check_new(r, first, &r->events, e);
 }
 
-const ob_snapshot *ob_recording_state(const ob_recording *r)
+const ob_snapshot *ob_hdf5_recording_state(const ob_recording *r)
 {
 	return &r->now;
 }
 
-uint64_t ob_recording_population(const ob_recording *r)
+uint64_t ob_hdf5_recording_population(const ob_recording *r)
 {
 	return r->population;
 }
