@@ -330,7 +330,7 @@ static const struct {
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
 	{ OB_COMMAND_SEND, "obsim send NAME create|remove|colour|message|move ...",
-	  "Asks a running universe to change an object, or tells its script." },
+	  "Changes objects of a running universe, or sends messages." },
 	{ OB_COMMAND_EXPORT, "obsim export FILE.h5 PAGE.html",
 	  "Makes a page of what was recorded, which any browser plays by itself." },
 	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",

@@ -118,7 +118,7 @@ static int serve_replay(const ob_arguments *a)
 	serve_request q;
 	ob_error e;
 	const char *path = a->value[OB_OPTION_REPLAY];
-	ob_recording *r = read_replay_request(&q, a, &e) ? ob_recording_open(path, &e) : NULL;
+	ob_recording *r = ob_serve_check(&e) && read_replay_request(&q, a, &e) ? ob_recording_open(path, &e) : NULL;
 	ob_message *film = r ? ob_film_make(r, path, &e) : NULL;
 	int code;
 	if (film) {
@@ -142,7 +142,7 @@ int ob_command_serve(const ob_arguments *a)
 		return serve_replay(a);
 	serve_request q;
 	ob_error e;
-	if (!read_request(&q, a, &e))
+	if (!ob_serve_check(&e) || !read_request(&q, a, &e))
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	ob_scene *scene = ob_scene_load(q.run.scene, &q.run.scene_options, &e);
 	if (!scene || !ob_request_resolve(&q.run, scene, &e)) {

@@ -46,6 +46,9 @@ enum { OB_SERVER_STUCK = 20 }; // s
 
 typedef struct ob_server ob_server;
 
+// True if libwebsockets can be loaded; false and e with the package that is missing. Maps nothing.
+bool ob_serve_check(ob_error *e);
+
 // The host and the pace must outlive it; of a film there are none. NULL and e on failure.
 ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e);
 // Where the page is, with its token, if there is one.

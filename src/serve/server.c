@@ -18,7 +18,7 @@
 #include "serve/feed.h"
 #include "serve/film_page.h"
 #include "serve/http.h"
-#include "serve/serve.h"
+#include "serve/part.h"
 
 static const double interval = 1. / 60; // s, between two looks at the universe
 static const double share = .3; // .. of the time at most that looking may take
@@ -39,6 +39,7 @@ typedef struct own_content {
 } own_content;
 
 struct ob_server {
+	ob_server_base base;
 	ob_server_config config;
 	ob_host *host;
 	ob_pace *pace;
@@ -554,7 +555,7 @@ static void release_own(ob_server *s)
 	free(s->own);
 }
 
-ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
+static ob_server *start_server(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
 {
 	ob_server *s = calloc(1, sizeof *s);
 	sigset_t before;
@@ -589,12 +590,12 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 	return NULL;
 }
 
-const char *ob_server_url(const ob_server *s)
+static const char *url_of(const ob_server *s)
 {
 	return s->url;
 }
 
-void ob_server_stop(ob_server *s)
+static void stop_server(ob_server *s)
 {
 	if (!s)
 		return;
@@ -609,3 +610,5 @@ void ob_server_stop(ob_server *s)
 	pthread_mutex_destroy(&s->lock);
 	free(s);
 }
+
+OB_PART(ob_serve_part) = { OB_PART_HEAD(ob_serve_part), .start = start_server, .url = url_of, .stop = stop_server };

@@ -10,7 +10,7 @@ import unittest
 
 import program
 
-OPTIONAL = r"lib(cairo|EGL|OpenGL|hdf5|Bullet|mujoco|tinygltf|jpeg)|obsim-\w+\.so"
+OPTIONAL = r"lib(cairo|EGL|OpenGL|hdf5|Bullet|mujoco|websockets|tinygltf|jpeg)|obsim-\w+\.so"
 
 
 def mapped(pid):
@@ -42,6 +42,7 @@ class Parts(program.Case):
 		stack = program.scene("stack")
 		self.refused("render", "run", stack, "--frames", "frames")
 		self.refused("render", "paper", "--quick")
+		self.refused("serve", "serve", stack)
 		self.refused("hdf5", "run", stack, "--record", "stack.h5")
 		self.refused("cairo", "lab", "head-on", "--engines", "obsim", "--sweep", "none")
 		self.refused("bullet", "lab", "head-on", "--engines", "bullet")

@@ -1,0 +1,29 @@
+// The server as the program sees it: loads the part that calls libwebsockets.
+#include "serve/part.h"
+
+#define PACKAGE "libwebsockets17"
+
+bool ob_serve_check(ob_error *e)
+{
+	return ob_part_check("serve", PACKAGE, e);
+}
+
+ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
+{
+	const ob_serve_part *part = ob_part_load("serve", sizeof *part, false, PACKAGE, e);
+	ob_server *s = part ? part->start(c, h, pace, e) : NULL;
+	if (s)
+		((ob_server_base *)s)->part = part;
+	return s;
+}
+
+const char *ob_server_url(const ob_server *s)
+{
+	return ((const ob_server_base *)s)->part->url(s);
+}
+
+void ob_server_stop(ob_server *s)
+{
+	if (s)
+		((ob_server_base *)s)->part->stop(s);
+}
