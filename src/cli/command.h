@@ -23,6 +23,7 @@ int ob_command_serve(const ob_arguments *a);
 int ob_command_send(const ob_arguments *a);
 int ob_command_export(const ob_arguments *a);
 int ob_command_draw_replay(const ob_arguments *a); // run with --replay: what was recorded, instead of a scene
+int ob_command_rerun(const ob_arguments *a); // run with --replay-requests
 
 // One line on standard error, "obsim: ..."; returns code.
 int ob_command_fail(int code, const char *text);

@@ -71,7 +71,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				 "what a death or failure does: restart, freeze, or end (restart; serve: keep)",
 				 RUN | SERVE, 0 },
 	[OB_OPTION_RESTARTS] = { NULL, "restarts", "N/S",
-				     "end the run at more than N deaths within S seconds (no limit)", RUN | SERVE, 0 },
+				 "end the run at more than N deaths within S seconds (no limit)", RUN | SERVE, 0 },
 	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", RUN | SERVE, 0 },
 
 	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max",
@@ -93,7 +93,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				"fine: soft shadows, light of the sky; takes some 20 times as long (draft)", RUN, 0 },
 	[OB_OPTION_SAMPLES] = { NULL, "samples", "N", "samples a pixel (draft: 4; fine: 16)", RUN, 0 },
 	[OB_OPTION_CAMERA] = { NULL, "camera", "NAME", "which of the scene's cameras (the first)", RUN, 0 },
-	[OB_OPTION_OVERLAY] = { NULL, "overlay", "LIST", "draw over it: aabb, contacts, caption; several with commas", RUN, 0 },
+	[OB_OPTION_OVERLAY] = { NULL, "overlay", "LIST", "draw over it: aabb, contacts, caption; several with commas",
+				RUN, 0 },
 	[OB_OPTION_GPU] = { NULL, "gpu", "WHICH", "surfaceless, or the number of a GPU (the first that works)", RUN,
 			    0 },
 
@@ -112,6 +113,11 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
 	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN, 0 },
 	[OB_OPTION_REPLAY] = { NULL, "replay", "FILE", "show what was recorded, instead of a scene", RUN | SERVE, 0 },
+
+	[OB_OPTION_LOG_REQUESTS] = { NULL, "log-requests", "FILE",
+				     "what viewers and programs ask for, and the state every second", SERVE, 0 },
+	[OB_OPTION_REPLAY_REQUESTS] = { NULL, "replay-requests", "FILE",
+					"carry out what serve has logged, and compare states", RUN, 0 },
 
 	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..",
 			      "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },

@@ -543,6 +543,8 @@ int ob_command_run(const ob_arguments *a)
 {
 	if (a->value[OB_OPTION_REPLAY])
 		return ob_command_draw_replay(a);
+	if (a->value[OB_OPTION_REPLAY_REQUESTS])
+		return ob_command_rerun(a);
 	run r = { .begun = ob_clock_wall() };
 	ob_error e;
 	ob_host_config config = { 0 };

@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/quantity.h"
 #include "cli/request.h"
+#include "cli/rerun.h"
 #include "cli/version.h"
 #include "serve/film.h"
 
@@ -22,6 +23,7 @@ typedef struct serve_request {
 	ob_server_config server;
 	uint32_t room; // for objects that viewers add
 	bool paused;
+	ob_request_log *log; // NULL: none
 } serve_request;
 
 static bool read_count(const ob_arguments *a, ob_option_id id, uint32_t most, uint32_t *out, ob_error *e)
@@ -47,14 +49,16 @@ static bool read_request(serve_request *q, const ob_arguments *a, ob_error *e)
 }
 
 // Lets the universe run at its pace until Ctrl-C, and on a duration's end lets it stand, still to be looked at.
-static bool live(ob_host *h, ob_pace *pace, const ob_run_request *q, uint64_t last, ob_error *e)
+static bool live(ob_host *h, ob_pace *pace, const serve_request *s, uint64_t last, ob_error *e)
 {
-	uint64_t done = 0, batch = 1;
+	const ob_run_request *q = &s->run;
+	uint64_t done = 0, batch = 1, next_state = 0;
 	double began = ob_clock_wall();
 	bool at_once = false;
 	ob_host_go(h, 0);
 	while (ob_host_wait(h, e)) {
 		double took = ob_clock_wall() - began;
+		ob_rerun_log_state(s->log, h, &next_state);
 		if (at_once && took < .5 * go_time)
 			batch *= 2;
 		else if (took > 2 * go_time && batch > 1)
@@ -82,7 +86,7 @@ static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
 	if (server) {
 		printf("%s is at %s\nCtrl-C ends it.\n", q->server.scene->title, ob_server_url(server));
 		fflush(stdout);
-		ended = live(h, &pace, &q->run, last, &e);
+		ended = live(h, &pace, q, last, &e);
 	}
 	ob_server_stop(server);
 	ob_pace_end(&pace);
@@ -159,9 +163,14 @@ int ob_command_serve(const ob_arguments *a)
 		a->value[OB_OPTION_DURATION] ? ob_request_steps(q.run.duration, q.run.run.step_length) : UINT32_MAX - 2;
 	signal(SIGPIPE, SIG_IGN);
 	ob_interrupt_watch(); // before there is anything that Ctrl-C would leave behind
-	ob_host *h = ob_host_start(scene, &config, &e);
+	const char *path = a->value[OB_OPTION_LOG_REQUESTS];
+	const ob_request_log_head head = ob_rerun_head(&q.run, scene, q.room);
+	config.log = q.log = path ? ob_request_log_create(path, &head, &e) : NULL;
+	ob_host *h = !path || q.log ? ob_host_start(scene, &config, &e) : NULL;
 	int code = h ? carry_out(h, &q, last) : ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_host_stop(h);
+	if (!ob_request_log_close(q.log, &e))
+		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_interrupt_release();
 	ob_scene_free(scene);
 	return code;

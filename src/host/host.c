@@ -177,8 +177,9 @@ static bool check_paths(const ob_scene *scene, double step_length, ob_error *e)
 }
 
 // Those of the scene's start, or of where the run is to go on.
-static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host *from, ob_error *e)
+static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_config *config, ob_error *e)
 {
+	const ob_saved_host *from = config->from;
 	if (!check_paths(scene, ob_universe_settings(h->u)->step_length, e) ||
 	    !ob_universe_reserve(h->u, scene->objects, e))
 		return false;
@@ -194,6 +195,12 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_saved_host
 		ob_population_update(h->population, 0, h->requests);
 	else if (!load(h, from, e))
 		return false;
+	h->log = config->log;
+	ob_population_set_log(h->population, config->log);
+	if (config->replay &&
+	    (!ob_population_replay(h->population, config->replay->request, config->replay->requests) ||
+	     !ob_restart_replay(h, config->replay)))
+		return ob_fail(e, "out of memory");
 	ob_restart_prepare(h);
 	ob_restart_checkpoint(h, false);
 	return true;
@@ -281,7 +288,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
 	// the fork server first: it and its children shall inherit as little as possible
 	h->fork_server = h->u ? ob_fork_server_start(h->u, ob_worker_live, e) : NULL;
-	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, config->from, e) ||
+	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, config, e) ||
 	    !start_workers(h, e)) {
 		ob_host_stop(h);
 		return NULL;

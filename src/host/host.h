@@ -54,6 +54,8 @@ typedef struct ob_host_config {
 	bool check; // what simulators share is checked after each step (sim/invariants.h)
 	const char *trace; // file for the timeline of what workers and host do (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
+	ob_request_log *log; // of what comes from outside; NULL = none. It must outlive the host
+	const ob_logged_requests *replay; // that is carried out once more, each request in its place; NULL = none
 	const ob_saved_host *from; // where the run begins, checked (ob_saved_universe_check); NULL = the scene's start
 } ob_host_config;
 

@@ -54,6 +54,7 @@ struct ob_host {
 	ob_requests *requests;
 	ob_population *population;
 	ob_timeline *timeline; // NULL = not traced
+	ob_request_log *log; // NULL = none
 
 	pthread_t supervisor;
 	bool supervised;

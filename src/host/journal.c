@@ -14,6 +14,19 @@ bool ob_journal_is_full(const ob_journal *j)
 	return j->lost || (j->count >= MOST && j->next == j->count);
 }
 
+bool ob_journal_load(ob_journal *j, const ob_journal_entry *entry, size_t count)
+{
+	if (!count)
+		return true;
+	j->entry = malloc(count * sizeof *entry);
+	if (!j->entry)
+		return false;
+	memcpy(j->entry, entry, count * sizeof *entry);
+	j->count = j->room = count;
+	j->pauses = entry[count - 1].at.pause + 1;
+	return true;
+}
+
 void ob_journal_clear(ob_journal *j)
 {
 	if (j->next)

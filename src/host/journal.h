@@ -33,6 +33,8 @@ typedef struct ob_journal {
 void ob_journal_finish(ob_journal *j);
 // True if the journal is as long as it should get, or an entry was lost: a checkpoint is due.
 bool ob_journal_is_full(const ob_journal *j);
+// Before the run begins: these are to be carried out, as if it had been restarted. false: no memory.
+bool ob_journal_load(ob_journal *j, const ob_journal_entry *entry, size_t count);
 // A checkpoint was taken: forgets what is carried out.
 void ob_journal_clear(ob_journal *j);
 // The run begins again there.

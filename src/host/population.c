@@ -47,6 +47,7 @@ struct ob_population {
 	uint32_t created; // objects that scripts have created, and that exist
 	ob_hulls hulls;
 	ob_journal journal; // of requests since the population was kept
+	ob_request_log *log; // NULL: none
 	struct {
 		slot *slots; // NULL: none kept
 		size_t next;
@@ -501,8 +502,10 @@ static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
 	while (ob_requests_take(q, &r)) {
 		if (p->kept.slots)
 			ob_journal_note(&p->journal, &at, &r);
+		ob_request_log_request(p->log, &at, &r);
 		carry_out_request(p, &r);
 	}
+	ob_request_log_flush(p->log);
 }
 
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
@@ -522,6 +525,16 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 	if (changed)
 		publish_roster(p);
 	return changed;
+}
+
+bool ob_population_replay(ob_population *p, const ob_journal_entry *entry, size_t count)
+{
+	return ob_journal_load(&p->journal, entry, count);
+}
+
+void ob_population_set_log(ob_population *p, ob_request_log *log)
+{
+	p->log = log;
 }
 
 bool ob_population_is_checkpoint_due(const ob_population *p)
@@ -574,10 +587,12 @@ uint64_t ob_population_next_step(const ob_population *p)
 
 void ob_population_count_saved(const ob_population *p, ob_saved_population *out)
 {
-	uint32_t ids = ob_universe_ids(p->u);
-	*out = (ob_saved_population){ .events = p->next,
-				      .count = ids > p->scene->objects ? ids : p->scene->objects,
-				      .hulls = p->hulls.count - p->hulls.of_scene };
+	const uint32_t ids = ob_universe_ids(p->u);
+	uint32_t count = ob_universe_capacity(p->u);
+	// Slots that were used before the run was resumed count, too: their next objects are of later generations.
+	while (count > ids && count > p->scene->objects && !p->slots[count - 1].generation)
+		count--;
+	*out = (ob_saved_population){ .events = p->next, .count = count, .hulls = p->hulls.count - p->hulls.of_scene };
 }
 
 void ob_population_save(const ob_population *p, ob_saved_population *out)

@@ -8,6 +8,7 @@
 
 #include "host/hulls.h"
 #include "host/request.h"
+#include "host/request_log.h"
 #include "host/roster.h"
 #include "scene/scene.h"
 #include "table/table.h"
@@ -36,6 +37,10 @@ void ob_population_destroy(ob_population *p);
 // there already is not believed. false and e: the scene has none of this kind. Any thread.
 bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_error *e);
 
+// Before the first step: requests that are to be carried out, each in its place. false: no memory.
+bool ob_population_replay(ob_population *p, const ob_journal_entry *entry, size_t count);
+// Requests that are carried out for the first time are logged from now on; NULL: no more.
+void ob_population_set_log(ob_population *p, ob_request_log *log);
 // Carries out what the timetable has due at this step or before, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
 // For a checkpoint in memory (table/checkpoint.h): keeps what it knows beside the universe, and puts it back. What the

@@ -151,7 +151,7 @@ uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT])
 static bool add_freeze(ob_restart_state *r, ob_freeze f)
 {
 	for (uint32_t i = 0; i < r->freezes; i++)
-		if (r->freeze[i].id == f.id)
+		if (r->freeze[i].id == f.id && r->freeze[i].generation == f.generation)
 			return true;
 	if (r->freezes == r->freezes_max) {
 		const uint32_t more = 2 * r->freezes_max + 16;
@@ -200,6 +200,16 @@ static bool plan_freeze(ob_host *h, ob_error *text)
 	return frozen > 0 || d->cause != OB_DEATH_FAILURE;
 }
 
+bool ob_restart_replay(ob_host *h, const ob_logged_requests *l)
+{
+	for (uint32_t i = 0; i < l->freezes; i++)
+		if (l->freeze[i].id >= ob_universe_capacity(h->u) ||
+		    !add_freeze(&h->restart,
+				(ob_freeze){ l->freeze[i].step, l->freeze[i].id, l->freeze[i].generation }))
+			return false;
+	return true;
+}
+
 bool ob_restart_freeze(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
@@ -209,8 +219,10 @@ bool ob_restart_freeze(ob_host *h)
 		const ob_freeze f = r->freeze[i];
 		if (f.step > step)
 			r->freeze[left++] = f;
-		else if (ob_passport_of(h->u, f.id)->generation == f.generation)
-			frozen += ob_sim_freeze(h->u, f.id);
+		else if (ob_passport_of(h->u, f.id)->generation == f.generation && ob_sim_freeze(h->u, f.id)) {
+			ob_request_log_freeze(h->log, step, f.id, f.generation);
+			frozen++;
+		}
 	}
 	r->freezes = left;
 	r->frozen += frozen;

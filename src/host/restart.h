@@ -50,6 +50,8 @@ bool ob_restart_checkpoint_due(const ob_host *h);
 void ob_restart_request(ob_host *h, const ob_death *d);
 // The words of a worker that has been ended, if it is the one that the request is about.
 void ob_restart_add_words(ob_host *h, const ob_worker_end *end);
+// Before the first step: what a log says was frozen is to be frozen again. false: no memory.
+bool ob_restart_replay(ob_host *h, const ob_logged_requests *l);
 // At a pause: freezes what is to be frozen at this step. true: some was.
 bool ob_restart_freeze(ob_host *h);
 // After a request: restarts all workers; they then stand at the gate, the universe at a pause. false: the run has failed,

@@ -212,7 +212,7 @@ static bool happen(run *r, const life_event *event)
 		freeze_any(r, &seed);
 		return true;
 	case LIFE_PAUSE:
-		return stand_at(r, event->step);
+		return stand_at(r, ob_step_count(universe(r)));
 	case LIFE_KILL:
 		return kill_any(r, &seed);
 	case LIFE_RESUME:

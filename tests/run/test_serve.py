@@ -373,6 +373,39 @@ class Serve(Case):
 			s.close()
 		self.end()
 
+	def test_log(self):
+		"""What viewers have asked for, carried out again in other ways to run, comes to the same states."""
+		log, words = self.path("requests"), ("-D", "n=20")
+		self.serve(*words, "--isolation", "process", "--workers", "2", "--check", "--log-requests", log, scene="falling_boxes")
+		v = self.viewer()
+		for i in range(12):
+			created = len(v.created)
+			v.send(do="create", shape="sphere", size=[.2, 0, 0], at=[i % 3, 0, 2], mass=1, velocity=[0, 0, 1])
+			v.until(lambda: len(v.created) > created)
+			if i % 3 == 0:
+				v.send(do="remove", id=v.created[-1], generation=v.objects[v.created[-1]]["generation"])
+			if i == 6:
+				os.kill(program.simulators(self.run_.pid)[0], signal.SIGKILL)
+		end = v.time + 1
+		v.until(lambda: v.time > end)
+		self.end(saying="was killed by SIGKILL")
+		scene = program.scene("falling_boxes")
+		for way in ("--workers", "1"), ("--isolation", "process", "--workers", "2", "--harden"):
+			done = program.call("run", scene, *words, *way, "--check", "--replay-requests", log)
+			self.assertEqual((done.returncode, done.stderr), (0, ""))
+			self.assertRegex(done.stdout, r"16 requests carried out again, 0 objects frozen; \d+ states are those of the log")
+		self.refuse("run", scene, "-D", "n=21", "--replay-requests", log, saying="another scene, seed, -D or settings")
+		self.refuse("run", scene, *words, "--replay-requests", log, "--json", "-", saying="--json")
+		with open(log, "rb") as f:
+			whole = f.read()
+		with open(log, "wb") as f:
+			f.write(whole[:-5000] + b"\xff" * 5000)
+		self.refuse("run", scene, *words, "--replay-requests", log, saying="makes no sense")
+		with open(log, "wb") as f:
+			f.write(whole[:20])
+		self.refuse("run", scene, *words, "--replay-requests", log, saying="no log of requests")
+		self.refuse("run", scene, "--replay-requests", self.path("none"), saying="No such file")
+
 	def test_wrong_words(self):
 		stack = program.scene("stack")
 		for listen in "8080", "127.0.0.1", "127.0.0.1:x", "127.0.0.1:70000", "nowhere:80", ":80", "[::1:80", "1.2.3.4:5:6":

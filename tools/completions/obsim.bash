@@ -38,7 +38,7 @@ _obsim()
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--fault) mapfile -t COMPREPLY < <(compgen -W 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= nopages:p= abort:p=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
-	--video | --raw | --record | --series | --json | --trace | --checkpoint | --resume | --replay) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+	--video | --raw | --record | --series | --json | --trace | --checkpoint | --resume | --replay | --log-requests | --replay-requests) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--define | -D | --vary | --duration | --every | --step | --seed | --substeps | --iterations | --lag | --load | --patience | --name | --fps | --samples | \
 		--camera | --interval | --repeats | --seeds | --limit | --objects) ;;
 	*)

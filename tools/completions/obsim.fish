@@ -58,6 +58,7 @@ complete -c obsim -n $serve -l listen -x -a '127.0.0.1:8080 127.0.0.1:0' -d 'whe
 complete -c obsim -n $serve -l paused -d 'stand still until a viewer lets it run'
 complete -c obsim -n $serve -l readonly -d 'viewers may look, and change nothing'
 complete -c obsim -n $serve -l viewers -x -d 'viewers at a time'
+complete -c obsim -n $serve -l log-requests -r -F -d 'what viewers ask for, and the state'
 complete -c obsim -n $serve -l room -x -d 'objects that viewers may add'
 complete -c obsim -n $serve -l replay -r -F -d 'show what was recorded'
 complete -c obsim -n '__fish_seen_subcommand_from export' -F
@@ -68,6 +69,7 @@ complete -c obsim -n $run -l explain -d 'what was modelled, what not, and what i
 complete -c obsim -n $run -l trace -r -F -d 'what each worker did when, for ui.perfetto.dev'
 complete -c obsim -n $run -l checkpoint -r -F -d 'what the run needs to go on'
 complete -c obsim -n $run -l every -x -d 'simulated seconds between checkpoints'
+complete -c obsim -n $run -l replay-requests -r -F -d 'carry out what serve has logged'
 complete -c obsim -n $run -l resume -r -F -d 'go on from a checkpoint'
 complete -c obsim -n $run -l fault -x -a 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= nopages:p= abort:p=' -d 'simulators that fail'
 complete -c obsim -n $run -l frames -x -a '(__fish_complete_directories)' -d 'write PNG files'

@@ -1,0 +1,177 @@
+#include "host/request_log.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "host/population.h"
+
+static const char magic[8] = { 'O', 'B', 'S', 'I', 'M', 'R', 'Q', '1' };
+
+typedef enum record_kind { A_REQUEST, A_FREEZE, A_STATE } record_kind;
+
+typedef struct record {
+	uint32_t kind, id, generation, zero;
+	uint64_t hash;
+	ob_journal_entry entry; // of a freeze and a state its step alone
+} record;
+
+typedef struct file_head {
+	char magic[8];
+	uint64_t record_size; // as this program has it
+	ob_request_log_head head;
+} file_head;
+
+struct ob_request_log {
+	FILE *file;
+	const char *path;
+	bool failed;
+};
+
+// ---- written
+
+static void append(ob_request_log *l, const void *bytes, size_t n)
+{
+	l->failed |= fwrite(bytes, 1, n, l->file) != n;
+}
+
+ob_request_log *ob_request_log_create(const char *path, const ob_request_log_head *head, ob_error *e)
+{
+	ob_request_log *l = calloc(1, sizeof *l);
+	file_head h = { .record_size = sizeof(record), .head = *head };
+	memcpy(h.magic, magic, sizeof magic);
+	h.head.run.fault = (ob_fault_plan){ 0 };
+	if (l)
+		l->file = fopen(path, "wbe");
+	if (!l || !l->file) {
+		free(l);
+		ob_fail(e, "%s: %s", path, strerror(errno));
+		return NULL;
+	}
+	l->path = path;
+	append(l, &h, sizeof h);
+	return l;
+}
+
+void ob_request_log_request(ob_request_log *l, const ob_journal_place *at, const ob_request *r)
+{
+	if (!l)
+		return;
+	const record x = { .kind = A_REQUEST, .entry = { *at, *r } };
+	append(l, &x, sizeof x);
+}
+
+void ob_request_log_freeze(ob_request_log *l, uint64_t step, uint32_t id, uint32_t generation)
+{
+	if (!l)
+		return;
+	const record x = { .kind = A_FREEZE, .id = id, .generation = generation, .entry.at.step = step };
+	append(l, &x, sizeof x);
+}
+
+void ob_request_log_state(ob_request_log *l, uint64_t step, uint64_t hash)
+{
+	if (!l)
+		return;
+	const record x = { .kind = A_STATE, .hash = hash, .entry.at.step = step };
+	append(l, &x, sizeof x);
+	ob_request_log_flush(l);
+}
+
+void ob_request_log_flush(ob_request_log *l)
+{
+	if (l)
+		l->failed |= fflush(l->file) != 0;
+}
+
+bool ob_request_log_close(ob_request_log *l, ob_error *e)
+{
+	if (!l)
+		return true;
+	bool fine = fclose(l->file) == 0 && !l->failed;
+	if (!fine)
+		ob_fail(e, "%s: the log of requests is not whole: %s", l->path, strerror(errno));
+	free(l);
+	return fine;
+}
+
+// ---- read
+
+static bool grown(void **array, size_t element, uint32_t n)
+{
+	void *more = realloc(*array, element * ((size_t)n + 1));
+	if (more)
+		*array = more;
+	return more;
+}
+
+static bool makes_sense(const ob_request *r)
+{
+	ob_error e;
+	if (r->kind > OB_REQUEST_MESSAGE || r->bytes > sizeof r->values)
+		return false;
+	return r->kind != OB_REQUEST_ADD || (!r->def.path && !r->def.force && !r->def.script && !r->def.state_bytes &&
+					     r->corners.count <= OB_HULL_CORNERS_MAX && ob_object_check(&r->def, &e));
+}
+
+// false: it makes no sense, or there is no memory
+static bool take(ob_logged_requests *l, const record *x)
+{
+	const uint64_t step = x->entry.at.step;
+	while (x->kind != A_STATE && l->states && l->state[l->states - 1].step == step)
+		l->states--; // a run that stands at this step carries out all that came then
+	switch (x->kind) {
+	case A_REQUEST:
+		if (!makes_sense(&x->entry.request) || !grown((void **)&l->request, sizeof *l->request, l->requests))
+			return false;
+		l->request[l->requests++] = x->entry;
+		return true;
+	case A_FREEZE:
+		if (!grown((void **)&l->freeze, sizeof *l->freeze, l->freezes))
+			return false;
+		l->freeze[l->freezes++] = (ob_logged_freeze){ step, x->id, x->generation };
+		return true;
+	case A_STATE:
+		if (!grown((void **)&l->state, sizeof *l->state, l->states))
+			return false;
+		l->state[l->states++] = (ob_logged_state){ step, x->hash };
+		return true;
+	default:
+		return false;
+	}
+}
+
+static bool read_records(ob_logged_requests *l, FILE *f, const char *path, ob_error *e)
+{
+	file_head h;
+	record x;
+	uint64_t last = 0;
+	if (fread(&h, sizeof h, 1, f) != 1 || memcmp(h.magic, magic, sizeof magic) != 0 || h.record_size != sizeof x)
+		return ob_fail(e, "%s: it is no log of requests of this version of obsim", path);
+	l->head = h.head;
+	for (uint32_t n = 0; fread(&x, sizeof x, 1, f) == 1; n++) {
+		if (x.entry.at.step < last || !take(l, &x))
+			return ob_fail(e, "%s: record %u makes no sense", path, n);
+		last = x.entry.at.step;
+	}
+	return true;
+}
+
+bool ob_request_log_read(ob_logged_requests *out, const char *path, ob_error *e)
+{
+	*out = (ob_logged_requests){ 0 };
+	FILE *f = fopen(path, "rbe");
+	if (!f)
+		return ob_fail(e, "%s: %s", path, strerror(errno));
+	const bool fine = read_records(out, f, path, e);
+	fclose(f);
+	return fine;
+}
+
+void ob_logged_requests_finish(ob_logged_requests *l)
+{
+	free(l->request);
+	free(l->freeze);
+	free(l->state);
+}
