@@ -1,4 +1,4 @@
-// What processes and threads use, as the kernel counts it in /proc: memory and context switches.
+// Resource use of processes and threads, from the kernel's /proc: memory and context switches.
 #ifndef OB_HOST_ACCOUNTING_H
 #define OB_HOST_ACCOUNTING_H
 
@@ -9,13 +9,13 @@
 // Bytes: proportional share (PSS) of a process's private and file-backed pages, without shared memory segments.
 // 0 when the process is gone.
 size_t ob_memory_of_process(pid_t pid);
-// Bytes of the universe's segment that have been touched by anyone.
+// Bytes of the universe's segment that any process has touched.
 size_t ob_memory_of_universe(const char *name);
 // Context switches of thread tid of process pid, voluntary and involuntary ones together; 0 when it is gone.
 uint64_t ob_switches_of_thread(pid_t pid, pid_t tid);
 // The kernel's letter for the state of that thread (proc(5), stat); 0 when it is gone.
 char ob_state_of_thread(pid_t pid, pid_t tid);
-// What such a letter means: "stopped by a signal", say.
+// Returns the meaning of such a letter: "stopped by a signal", say.
 const char *ob_state_word(char state);
 
 #endif

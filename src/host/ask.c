@@ -21,7 +21,7 @@ static const char magic[8] = { 'O', 'B', 'S', 'I', 'M', 'A', 'S', '1' };
 
 typedef struct packet {
 	char magic[8];
-	uint64_t size; // of a request, as this program has it
+	uint64_t size; // size of a request in this program
 	ob_request request;
 } packet;
 
@@ -34,7 +34,8 @@ static socklen_t address_of(const char *universe, struct sockaddr_un *a)
 
 // ---- the universe's side
 
-// Everything that the universe waits for: its socket, and the callers that have said nothing yet.
+// Adds a file descriptor to the events that the universe waits for: its socket, and callers that have not sent a
+// request.
 static bool watch(int events, int fd)
 {
 	return epoll_ctl(events, EPOLL_CTL_ADD, fd, &(struct epoll_event){ .events = EPOLLIN, .data.fd = fd }) == 0;
@@ -102,7 +103,7 @@ static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 		       : ob_fail(e, "a hull has at most %d corners", OB_HULL_CORNERS_MAX);
 }
 
-// Where it could live: the worker numbers that a pool has for so many objects
+// Checks the target of a move: the worker numbers that a pool has for its number of objects.
 static bool check_move(const ob_universe *u, const ob_request *r, const ob_passport *p, ob_error *e)
 {
 	const uint32_t simulators = ob_universe_simulators(u), ids = ob_universe_ids(u),
@@ -147,7 +148,7 @@ static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
 	if (r->kind == OB_REQUEST_ADD) {
 		r->def.passport.name[OB_NAME_MAX - 1] = 0;
 		ob_utf8_make_plain(r->def.passport.name);
-		r->def.path = NULL, r->def.force = NULL; // a scene's alone
+		r->def.path = NULL, r->def.force = NULL; // only a scene has them
 	}
 	if (!check(h, r, e))
 		return;
@@ -169,7 +170,7 @@ static void drop(ob_asked *a, uint32_t i)
 	memmove(&a->caller[i], &a->caller[i + 1], (--a->count - i) * sizeof a->caller[0]);
 }
 
-// Lets a caller wait; where there are too many, the one that has been silent for longest makes room.
+// Accepts a caller. If there are too many, closes the one that has been silent longest.
 static void take_in(ob_asked *a)
 {
 	ob_error e;
@@ -210,7 +211,7 @@ void ob_asked_answer(ob_host *h, ob_asked *a)
 {
 	struct epoll_event ready[OB_ASKED_CALLERS];
 	const int n = epoll_wait(a->events, ready, OB_ASKED_CALLERS, 0);
-	for (int i = 0; i < n; i++) // callers first: each that is ready is answered before another may push it out
+	for (int i = 0; i < n; i++) // callers first: each ready one is answered before a new caller may take its place
 		if (ready[i].data.fd != a->socket)
 			answer(h, a, ready[i].data.fd);
 	for (int i = 0; i < n; i++)
@@ -220,7 +221,7 @@ void ob_asked_answer(ob_host *h, ob_asked *a)
 
 // ---- the other side
 
-// True if the universe's host itself listens there: any process may take an address that is free.
+// True if the universe's host itself listens there: any process may bind a free address.
 static bool is_host(int fd, const ob_universe *u, ob_error *e)
 {
 	struct ucred who;
@@ -228,7 +229,7 @@ static bool is_host(int fd, const ob_universe *u, ob_error *e)
 	ob_universe_info info;
 	ob_universe_get_info(u, &info);
 	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && (who.uid == geteuid() || geteuid() == 0) &&
-	    (who.pid == info.host_pid || who.pid == 0)) // 0: of a namespace that does not see it
+	    (who.pid == info.host_pid || who.pid == 0)) // 0: in a PID namespace that is not visible here
 		return true;
 	return ob_fail(e, "universe \"%s\" is not asked: process %d of user %u listens at its address, not its host %d",
 		       ob_universe_name(u), (int)who.pid, (unsigned)who.uid, (int)info.host_pid);
@@ -258,7 +259,7 @@ static bool ask(int fd, const ob_universe *u, const ob_request *r, ob_error *e)
 
 bool ob_ask(const ob_universe *u, const ob_request *r, ob_error *e)
 {
-	const struct timeval patience = { .tv_sec = ANSWER_PATIENCE_MS / 1000 }; // to connect, and to send
+	const struct timeval patience = { .tv_sec = ANSWER_PATIENCE_MS / 1000 }; // limit of connect and send
 	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
 	if (fd < 0)
 		return ob_fail(e, "no socket: %s", strerror(errno));

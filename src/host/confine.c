@@ -45,7 +45,7 @@ static bool gain_no_more(void)
 	return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0;
 }
 
-// A change of the user forgets that the process dies with its parent.
+// Drops root. A change of user resets the parent-death signal, so it is set again.
 static bool drop_root(void)
 {
 	const pid_t parent = getppid();
@@ -59,7 +59,7 @@ static bool drop_root(void)
 	if (syscall(SYS_capset, &head, none) != 0 || prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
 		return false;
 	if (getppid() != parent)
-		_exit(EXIT_FAILURE); // it died in the meantime
+		_exit(EXIT_FAILURE); // the parent died in the meantime
 	return true;
 }
 
@@ -88,7 +88,8 @@ static bool limit_resources(void)
 #define ARGUMENT(i) LOAD(args[i]) // its lower half: these machines are little-endian
 #define RETURN(what) BPF_STMT(BPF_RET | BPF_K, what)
 #define ALLOW(call) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_##call, 0, 1), RETURN(SECCOMP_RET_ALLOW)
-// Only with this value of an argument; with none of these bits set in it. What does not pass is killed.
+// Allow a call only with this value of an argument, or with none of these bits set in it. Other arguments kill the
+// process.
 #define ALLOW_WITH(call, i, value) \
 	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_##call, 0, 4), ARGUMENT(i), \
 		BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, 1), RETURN(SECCOMP_RET_ALLOW), \
@@ -106,7 +107,7 @@ static bool filter_system_calls(void)
 		BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, MACHINE, 1, 0),
 		RETURN(SECCOMP_RET_KILL_PROCESS),
 		LOAD(nr),
-		// waiting, time
+		// waiting, clocks
 		ALLOW(futex),
 		ALLOW(sched_yield),
 		ALLOW(clock_gettime),
@@ -114,17 +115,17 @@ static bool filter_system_calls(void)
 		ALLOW(nanosleep),
 		ALLOW(gettimeofday),
 		ALLOW(restart_syscall),
-		// memory; none that is run as code
+		// memory, without execution
 		ALLOW(brk),
 		ALLOW(munmap),
 		ALLOW(mremap),
 		ALLOW(madvise),
 		ALLOW(getrandom),
-		ALLOW(sysinfo), // qsort() asks how much there is
+		ALLOW(sysinfo), // qsort() reads the size of memory
 		ALLOW_WITHOUT(mmap, 2, PROT_EXEC),
 		// messages and the end, abort() included; signals to itself alone
 		ALLOW_WITH(write, 0, STDERR_FILENO),
-		ALLOW_WITH(writev, 0, STDERR_FILENO), // what glibc says before abort()
+		ALLOW_WITH(writev, 0, STDERR_FILENO), // glibc's message before abort()
 		ALLOW(getpid),
 		ALLOW(gettid),
 		ALLOW(rt_sigaction),

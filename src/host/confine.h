@@ -1,24 +1,25 @@
-// What a hardened run takes from its simulators' processes, once each is ready for the gate, by its
-// measures (ob_harden_measure):
+// Restrictions of a hardened run on its simulators' processes, by measure (ob_harden_measure). They apply once a
+// process is ready for the gate:
 //
-//   outbox      the right to write results in place: they are handed over (table/outbox.h). Not from the arranger
-//   checksum    .. with a checksum, so that stores to where they lie are noticed
-//   pages       the universe: mapped read-only, but for its own outbox. Not from the arranger, who writes it
-//   privileges  root: where the host is root, its simulators are nobody; all capabilities are dropped, and none can come
-//               back (no_new_privs)
-//   limits      resources: no core file, no process or thread, no file beside standard error, half of the machine's memory
-//   calls       system calls: all but those by which a simulator waits, asks for the time or for memory, and ends (seccomp,
-//               which takes no_new_privs with it)
+//   outbox      no right to write results in place: they pass through an outbox (table/outbox.h); not for the arranger
+//   checksum    a checksum with each result, so that stray stores to its memory are detected
+//   pages       the universe is mapped read-only, except the process's own outbox; the arranger may write it all
+//   privileges  root: under a root host, its simulators run as user nobody; all capabilities are dropped for good
+//               (no_new_privs)
+//   limits      resources: no core file, no process or thread, no file beside standard error, half of the machine's
+//               memory
+//   calls       system calls: only those for waiting, time, memory and the end of the process (seccomp, which sets
+//               no_new_privs)
 //
-// Checksum and pages need the outbox; the others stand alone.
-// What does something else is ended by the kernel: SIGSEGV for a store, SIGSYS for a system call. All are then
-// restarted from the checkpoint, as after any death (restart.h).
+// Checksum and pages need the outbox; the others stand alone. The kernel ends a process that breaks a rule: SIGSEGV for
+// a store, SIGSYS for a system call. All workers are then restarted from the checkpoint, as after any death
+// (restart.h).
 #ifndef OB_HOST_CONFINE_H
 #define OB_HOST_CONFINE_H
 
 #include "table/table.h"
 
-// The calling process, for good. false and e: something cannot be taken from it.
+// Restricts the calling process for good. false and e: a restriction cannot be set.
 bool ob_confine(ob_universe *u, uint32_t worker, ob_error *e);
 
 #endif

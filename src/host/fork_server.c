@@ -35,18 +35,18 @@ typedef struct fork_request {
 typedef struct server {
 	ob_universe *u;
 	ob_worker_run run;
-	int link, children_fd; // the host; SIGCHLD
-	int words_in, words_out; // what workers write on standard error, and where they write it
+	int link, children_fd; // link: to the host; children_fd: SIGCHLD
+	int words_in, words_out; // workers write standard error to words_out; words_in: where the fork server reads it
 	uint32_t workers;
 	pid_t *pid; // [workers]; 0 = none
-	char (*words)[OB_LAST_WORDS]; // [workers]: the last of it
+	char (*words)[OB_LAST_WORDS]; // [workers]: the end of that text
 } server;
 
 enum { LINK_FD = 3, SEGMENT_FD = 4 };
 #define NO_WORKER UINT32_MAX
 
-// The fork server needs nothing that the host has open: no file of a recorder, no device of a renderer, no terminal
-// input. It keeps the universe's segment, which it owns beside the host.
+// Closes all inherited files but the universe's segment, which the fork server owns beside the host. It needs no file
+// of a recorder, no device of a renderer, no terminal input.
 static bool close_inherited_files(ob_universe *u, int link)
 {
 	int null = open("/dev/null", O_RDWR);
@@ -54,7 +54,7 @@ static bool close_inherited_files(ob_universe *u, int link)
 		dup2(null, STDIN_FILENO);
 		dup2(null, STDOUT_FILENO);
 	}
-	// first out of the way of each other
+	// moves both aside first, so that neither overwrites the other
 	link = fcntl(link, F_DUPFD, SEGMENT_FD + 1);
 	int segment = fcntl(ob_universe_fd(u), F_DUPFD, SEGMENT_FD + 1);
 	if (link < 0 || segment < 0 || dup2(link, LINK_FD) < 0 || dup2(segment, SEGMENT_FD) < 0)
@@ -64,7 +64,8 @@ static bool close_inherited_files(ob_universe *u, int link)
 	return true;
 }
 
-// With the default actions, a signal to the whole process group would end the fork server, which has to clean up.
+// Sets the actions of ending signals. With the defaults, a signal to the process group would end the fork server before
+// it cleans up.
 static void set_signals(void (*on_end)(int))
 {
 	static const int ends[] = { SIGINT, SIGTERM, SIGHUP, SIGQUIT };
@@ -100,7 +101,7 @@ static uint32_t worker_of(const server *s, pid_t pid)
 	return w;
 }
 
-// Adds to them what a worker has written; the oldest fall out.
+// Appends a worker's new text; the oldest drops out.
 static void keep_words(char kept[OB_LAST_WORDS], const char *text, size_t n)
 {
 	const size_t most = OB_LAST_WORDS - 1;
@@ -119,7 +120,7 @@ static void keep_words(char kept[OB_LAST_WORDS], const char *text, size_t n)
 	kept[before + n] = 0;
 }
 
-// To standard error, as far as it takes it now. A pipe that is ready takes a page without blocking.
+// Writes to standard error as much as it takes now. A pipe that is ready takes a page without blocking.
 static void hand_on(const char *text, size_t n)
 {
 	enum { PAGE = 4096 };
@@ -135,7 +136,7 @@ static void hand_on(const char *text, size_t n)
 	}
 }
 
-// One worker's, of what has been written; false: there is nothing more now.
+// Reads one worker's text; false: there is no more now.
 static bool take_words(const server *s)
 {
 	char text[1 << 14], control[CMSG_SPACE(sizeof(struct ucred))];
@@ -157,14 +158,14 @@ static bool take_words(const server *s)
 	return true;
 }
 
-// All that was written before now, by a worker that has died among others; no more, for some may write without an end.
+// Reads all text written before now, in a limited number of reads: a worker may write without end.
 static void take_all_words(const server *s)
 {
 	for (int i = 0; i < 64 && take_words(s); i++)
 		;
 }
 
-// Whole lines, if there are any, as one line with | between them, and nothing in it that a terminal would obey.
+// Turns whole lines, if there are any, into one line with | between them, free of control characters.
 static void last_lines(char words[OB_LAST_WORDS])
 {
 	size_t n = strlen(words);
@@ -200,7 +201,7 @@ static void report_end(int link, const ob_worker_end *end)
 	} while (n < 0 && errno == EINTR);
 }
 
-// Its first report: whether it can do what it is for; error = errno.
+// First report: error = errno, 0 if the fork server is ready.
 static void report_ready(int link, int error)
 {
 	report_end(link, &(ob_worker_end){ .worker = NO_WORKER, .error = error });
@@ -209,7 +210,7 @@ static void report_ready(int link, int error)
 static void fork_simulators(server *s, fork_request r)
 {
 	pid_t self = getpid();
-	int error = 0; // once a fork has failed, the rest is not tried
+	int error = 0; // after a failed fork, the rest is not tried
 	for (uint32_t w = r.first; w < s->workers && w - r.first < r.count; w++) {
 		pid_t pid = error ? -1 : fork();
 		if (pid == 0)
@@ -252,7 +253,7 @@ static void reap(server *s)
 	}
 }
 
-// The host has closed the link or is dead. The name is removed first, for it would outlive all processes.
+// Cleans up when the host has closed the link or is dead. Removes the name first: it would outlive all processes.
 _Noreturn static void clean_up(const server *s)
 {
 	ob_universe_unlink(s->u);
@@ -295,7 +296,7 @@ _Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int lin
 	prctl(PR_SET_NAME, "obsim-fork");
 	set_signals(SIG_IGN);
 	signal(SIGCHLD, SIG_DFL);
-	signal(SIGBUS, SIG_DFL); // of a simulator: the host says what it means
+	signal(SIGBUS, SIG_DFL); // in a simulator: the host explains the signal
 	sigemptyset(&child);
 	sigaddset(&child, SIGCHLD);
 	sigprocmask(SIG_SETMASK, &child, NULL);
@@ -315,9 +316,9 @@ _Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int lin
 
 // ---- the host's side
 
-static const double start_timeout = 10; // s to wait until it is ready
+static const double start_timeout = 10; // s to wait until the fork server is ready
 static const double end_timeout = 5; // s to wait for the fork server's end
-static const double killed_timeout = 60; // s, once it is killed: the kernel takes back its memory, and its workers'
+static const double killed_timeout = 60; // s after the kill: the kernel reclaims its memory, and its workers'
 static const long longest_pause_ns = 5000000;
 
 static const char *remedy(int error)
@@ -325,7 +326,7 @@ static const char *remedy(int error)
 	return error == EMFILE ? "; raise the limit (ulimit -n)" : "";
 }
 
-// Waits for its first report. 0 = it is ready; else errno.
+// Waits for the fork server's first report. 0 = it is ready; else errno.
 static int wait_until_ready(const ob_fork_server *s)
 {
 	ob_hang_clock clock = ob_hang_clock_start();
@@ -338,7 +339,7 @@ static int wait_until_ready(const ob_fork_server *s)
 		if (n > 0)
 			return first.error;
 		if (n == 0 || errno != EINTR)
-			return ECHILD; // it has ended
+			return ECHILD; // the fork server has ended
 	}
 	return ETIMEDOUT;
 }
@@ -408,7 +409,7 @@ bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end)
 	return true;
 }
 
-// Whether the fork server has ended within so many seconds. One that somebody has stopped is not waited for.
+// True if the fork server ends within the timeout (s). Returns at once if it is stopped by a signal.
 static bool wait_for_end(pid_t pid, double timeout)
 {
 	ob_hang_clock clock = ob_hang_clock_start();
@@ -433,7 +434,7 @@ void ob_fork_server_stop(ob_fork_server *s)
 	if (!wait_for_end(s->pid, end_timeout)) {
 		ob_log_warn("the fork server (process %d, %s) does not end: killed", (int)s->pid,
 			    ob_state_word(ob_state_of_thread(s->pid, s->pid)));
-		kill(s->pid, SIGKILL); // and with it its workers
+		kill(s->pid, SIGKILL); // its workers die with it
 		wait_for_end(s->pid, killed_timeout);
 	}
 	free(s);

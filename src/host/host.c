@@ -20,7 +20,7 @@
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
 static const double default_patience = 60, least_start_patience = 5; // s
-static const double rank_leave_timeout = 3600; // s: rank 0 may have much to write; one that dies ends the others
+static const double rank_leave_timeout = 3600; // s: rank 0 may have much to write; the death of a rank ends the others
 static const double interrupted_leave_timeout = .02; // s: Ctrl-C does not wait for the end of a long step
 
 static bool has_outboxes(const ob_host_config *c)
@@ -53,7 +53,7 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
 	if (scene->scripts && ob_on_death_freezes_failed(c->on_death))
 		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
-	if (r->monolith && scene->hulls > 0) // of ODE's convex geometries few collide with each other
+	if (r->monolith && scene->hulls > 0) // few of ODE's convex geometries collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))
@@ -72,7 +72,8 @@ static void raise_task_limit(void)
 	}
 }
 
-// The texts of all scripts with their directory, as the universe keeps them; NULL: no memory. The caller frees it.
+// Returns the texts of all scripts with their directory, as the universe keeps them; NULL: no memory. The caller frees
+// it.
 static ob_script_directory *script_texts(const ob_scene *scene, uint32_t *bytes)
 {
 	uint32_t size = sizeof(ob_script_directory);
@@ -176,7 +177,7 @@ static bool check_paths(const ob_scene *scene, double step_length, ob_error *e)
 	return true;
 }
 
-// Those of the scene's start, or of where the run is to go on.
+// Places the objects of the scene's start, or of the saved run.
 static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_config *config, ob_error *e)
 {
 	const ob_saved_host *from = config->from;
@@ -206,7 +207,8 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	return true;
 }
 
-// One that does not get ready is as one that is stalled: all are started again, where that is possible.
+// Fails the start because of a worker that does not get ready. It counts as stalled: all are started again where
+// possible.
 static bool fail_start(ob_host *h, uint32_t worker, double patience, ob_error *e)
 {
 	pid_t server = ob_fork_server_pid(h->fork_server);
@@ -242,7 +244,7 @@ bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 	return true;
 }
 
-// Workers that die before they are ready are restarted, too.
+// Waits for all workers. Workers that die before they are ready are restarted, too.
 static bool wait_until_ready(ob_host *h, ob_error *e)
 {
 	bool ready = ob_host_wait_for_workers(h, e);
@@ -286,7 +288,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	raise_task_limit();
 	h->u = make_universe(scene, config, h->spawn, e);
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
-	// the fork server first: it and its children shall inherit as little as possible
+	// the fork server first: it and its children inherit as little as possible
 	h->fork_server = h->u ? ob_fork_server_start(h->u, ob_worker_live, e) : NULL;
 	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, config, e) ||
 	    !start_workers(h, e)) {
@@ -349,7 +351,7 @@ static void get_memory(const ob_host *h, ob_host_times *out)
 			    ob_memory_of_universe(ob_universe_name(h->u));
 }
 
-// Contained simulators, and those that have a worker each, do not.
+// True if workers count tasks. Contained simulators, and those of one object each, do not.
 static bool tells_of_tasks(const ob_universe *u)
 {
 	return !ob_universe_contains(u) && !ob_universe_settings(u)->one_per_object;
@@ -405,7 +407,7 @@ bool ob_host_count_saved(ob_host *h, ob_saved_host *out)
 	return true;
 }
 
-// Times are those of the process that took them: they are not saved.
+// Saves the run. Times belong to this process and are not saved.
 void ob_host_save(ob_host *h, ob_saved_host *out)
 {
 	ob_universe_save(h->u, &out->universe);

@@ -2,13 +2,13 @@
 // them, and ends them. spawn_thread.c and spawn_process.c are the only files that know which it is.
 //
 //   ob_host_start   universe, fork server, objects of t = 0, workers; all stand at the gate
-//   ob_host_go      the gate opens; the workers run on by themselves until the step asked for
-//   ob_host_wait    the caller sleeps until they stand there; objects that are to be added or removed on the way, by
-//                   timetable or on request, are so in pauses that the caller does not see
+//   ob_host_go      the gate opens; the workers run on by themselves until the requested step
+//   ob_host_wait    the caller sleeps until they stand there; objects are added and removed on the way, by timetable or
+//                   on request, in pauses that the caller does not see
 //   ob_host_stop    all workers leave; the universe is removed
 //
-// One per object: worker i runs object i. A slot that is empty has its (sleeping) worker, too, so that an object can be
-// added in it.
+// One per object: worker i runs object i. An empty slot has its (sleeping) worker, too, so that an object can be added
+// in it.
 //
 // Thread-safety: start, go, wait, get_times and stop are one thread's; the rest may be called by any thread.
 // start forks: call it before other threads take locks that a child could need (EGL, above all).
@@ -22,8 +22,8 @@
 #include "host/population.h"
 #include "table/saved.h"
 
-// A run at a step boundary: all that it needs to go on, beside its scene and its settings. The arrays belong to whoever
-// made them.
+// Saved run at a step boundary: all that it needs to go on, beside its scene and its settings. The arrays belong to
+// their creator.
 typedef struct ob_saved_host {
 	ob_saved_universe universe;
 	ob_saved_population population;
@@ -32,8 +32,8 @@ typedef struct ob_saved_host {
 
 typedef enum ob_isolation { OB_ISOLATION_THREAD, OB_ISOLATION_PROCESS } ob_isolation;
 
-// More deaths than so many within so long end the run (OTP's restart intensity); deaths 0: only deaths that bring the run
-// nowhere do (restart.h).
+// Limit of deaths within some seconds; more end the run (OTP's restart intensity). deaths 0: only deaths that prevent
+// progress do (restart.h).
 typedef struct ob_restart_limit {
 	uint32_t deaths;
 	double seconds; // wall
@@ -44,19 +44,19 @@ typedef struct ob_host_config {
 	const char *name; // of the universe; NULL = obsim-<pid>
 	ob_isolation isolation;
 	uint32_t workers; // 0 = one per object; a monolith has one in any case
-	ob_ranks ranks; // of one universe on several machines, each with so many workers, in processes; ranks 0 or 1: one
-	bool shares_contacts; // of several ranks: each has what all pairs keep, after each step
+	ob_ranks ranks; // of one universe, each with as many workers, in processes; ranks 0 or 1: one
+	bool shares_contacts; // with several ranks: each has the state of all contacts after each step
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
 	double patience; // s without a completed step after which the run counts as stalled (stall.h); 0 = 60
-	uint32_t harden; // processes: measures so that simulators harm nobody (confine.h), bits, 1 << ob_harden_measure; 0 = none
-	ob_on_death on_death; // of simulators; a monolith's end ends the run in any case
+	uint32_t harden; // measures that confine processes (confine.h): bits, 1 << ob_harden_measure; 0 = none
+	ob_on_death on_death; // policy for deaths of simulators; a monolith's end ends the run in any case
 	ob_restart_limit limit;
-	bool check; // what simulators share is checked after each step (sim/invariants.h)
-	const char *trace; // file for the timeline of what workers and host do (timeline.h); NULL = none
+	bool check; // checks the state that simulators share after each step (sim/invariants.h)
+	const char *trace; // file for the timeline of workers and host (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
-	ob_request_log *log; // of what comes from outside; NULL = none. It must outlive the host
-	const ob_logged_requests *replay; // that is carried out once more, each request in its place; NULL = none
-	const ob_saved_host *from; // where the run begins, checked (ob_saved_universe_check); NULL = the scene's start
+	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
+	const ob_logged_requests *replay; // requests to carry out again, each in its place; NULL = none
+	const ob_saved_host *from; // start of the run, checked (ob_saved_universe_check); NULL = the scene's start
 } ob_host_config;
 
 typedef struct ob_host_times {
@@ -66,10 +66,10 @@ typedef struct ob_host_times {
 	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
 	double critical_s; // if timed: critical path of all steps: the longest worker in each phase, and scheduling (CPU)
 	double alone_s; // of that, scheduling
-	double simulated_s; // likewise, of OB_SIMULATED_WORKERS workers (sim/critical_path.h); NaN where it is not told
+	double simulated_s; // likewise, of OB_SIMULATED_WORKERS workers (sim/critical_path.h); NaN: unmeasured
 	double elapsed_s; // from the first go that stepped to the last pause, pauses included
 	uint32_t deaths; // times that simulators died, stalled, or failed
-	uint32_t frozen; // objects that stay where they are for it
+	uint32_t frozen; // objects that stay in place because of that
 	double gate_s; // if timed: all workers' waiting at the gate in that time, pauses included (wall)
 	double host_cpu_s; // CPU of the host's process since then, without its workers: renderer, recorder, measures
 	uint64_t switches; // context switches of workers since then
@@ -81,37 +81,39 @@ typedef struct ob_host ob_host;
 
 // The scene must outlive the host.
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e);
-// Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there. The first
-// go may be to step 0: the first broad phase runs, and nothing moves.
-// A process that dies or stalls does not end the run, unless it is to: all simulators are restarted from the last
-// checkpoint, which the caller does not see, and come to the same bits (restart.h says where that is not possible). Where
-// what fails is frozen, the run goes on with it as it was when the last step was complete.
-// wait: false and e when a simulator died and could not be restarted, the run diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
+// Lets the universe run until "step" steps are complete (returns at once) / waits until it stands there. The first go
+// may be to step 0: the first broad phase runs, and nothing moves. A process that dies or stalls does not end the run,
+// unless the policy says so. All simulators are restarted from the last checkpoint, unseen by the caller, and come to
+// the same bits (restart.h lists exceptions). Where failing objects are frozen, the run goes on with them as they were
+// when the last step was complete. wait: false and e when a simulator died and could not be restarted, the run
+// diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
-// Between a wait and the next go, on each of several ranks alike: when so many steps are complete this one has what all
-// pairs keep, too, as it must to be saved there. Once at a time.
+// Requests the state of all contacts at this step, as a save there needs it. Call it between a wait and the next go, on
+// each of several ranks alike, for one step at a time.
 void ob_host_want_contacts(ob_host *h, uint64_t step);
 bool ob_host_interrupted(const ob_host *h);
-// True if the run ended because what simulators share breaks an invariant. After a wait.
+// True if the run ended because the simulators' shared state breaks an invariant. After a wait.
 bool ob_host_broke_invariant(const ob_host *h);
 const ob_universe *ob_host_universe(const ob_host *h);
 const ob_roster *ob_host_roster(const ob_host *h);
 void ob_host_get_times(ob_host *h, ob_host_times *out);
-// The last deaths, oldest first, OB_DEATHS_KEPT of them at most; returns how many.
+// Copies the last deaths, oldest first, OB_DEATHS_KEPT of them at most; returns their number.
 uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT]);
-// Requests, carried out at the next step boundary. id comes back through the roster. Any thread.
-// false: no memory, or, add, the definition makes no sense, and e says why. remove: nothing happens if another generation has the id by then.
+// Requests, carried out at the next step boundary. The id of an added object appears in the roster. Any thread. false:
+// no memory, or, for add, an invalid definition, explained by e. remove: nothing happens if another generation has the
+// id by then.
 bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e);
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation);
-// Any of them: as ob_host_request_add, whose check it makes. Any thread.
+// Requests of any kind, checked as by ob_host_request_add. Any thread.
 bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e);
-// With a trace: what the calling thread, the one that starts and stops the host, has done since begin (ob_clock_ns).
+// With a trace: records an activity of the calling thread, the one that starts and stops the host, since begin
+// (ob_clock_ns).
 void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t number);
 // Ends the trace's file; stop does so, too. false and e if it is not whole. Without a trace: true, and no events.
 bool ob_host_end_trace(ob_host *h, ob_timeline_sums *sums, ob_error *e);
-// Saves the run as it stands: first the lengths of the arrays, then the arrays. Between a wait and the next go.
-// false: it does not stand at a step boundary, or its world is a monolith's, of which ODE shows too little.
+// Saves the run as it stands: first the lengths of the arrays, then the arrays. Between a wait and the next go. false:
+// it does not stand at a step boundary, or it is a monolith, whose state ODE does not expose in full.
 bool ob_host_count_saved(ob_host *h, ob_saved_host *out);
 void ob_host_save(ob_host *h, ob_saved_host *out);
 // Ends all workers and removes the universe. Always succeeds; NULL is allowed.

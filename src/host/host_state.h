@@ -1,4 +1,4 @@
-// What host.c, run.c, supervisor.c and restart.c share: the host itself.
+// State of the host, shared by host.c, run.c, supervisor.c and restart.c.
 #ifndef OB_HOST_HOST_STATE_H
 #define OB_HOST_HOST_STATE_H
 
@@ -11,17 +11,17 @@
 #include "host/spawn.h"
 #include "table/checkpoint.h"
 
-enum { OB_SCRIPTS_TOLD = 20 }; // errors of scripts that are told one by one
+enum { OB_SCRIPTS_TOLD = 20 }; // errors of scripts that are logged one by one
 
 // A run interval: from one opening of the gate to the next pause. Host and supervisor may both make it end early.
 typedef struct ob_interval {
 	pthread_mutex_t lock;
 	bool running, halted; // halted: there will be no other
-	uint64_t end; // the step at which it pauses
-	uint64_t most; // the same when it began: no step goes beyond
+	uint64_t end; // step at which it pauses
+	uint64_t most; // end at its beginning: no step goes beyond
 } ob_interval;
 
-// An object that is to be frozen as it is when so many steps are complete.
+// An object to freeze when that number of steps is complete.
 typedef struct ob_freeze {
 	uint64_t step;
 	uint32_t id, generation;
@@ -30,17 +30,17 @@ typedef struct ob_freeze {
 // See restart.h.
 typedef struct ob_restart_state {
 	ob_checkpoint *checkpoint; // NULL: the death of a worker is a failure
-	atomic_bool current; // the checkpoint is whole, and what came after it can be done again
-	atomic_bool requested; // the latest death says why
+	atomic_bool current; // the checkpoint is whole, and all later changes can be done again
+	atomic_bool requested; // the latest death is the cause
 	double taken_at, cost; // s, wall: when the checkpoint was taken, and how long that took
 	double progress_at; // s, wall: when a checkpoint was last farther than the one before
 	unsigned attempts, deaths; // restarts since then; deaths since the start
-	uint64_t half_way; // steps: half of what was made when simulators died last
+	uint64_t half_way; // steps: half the progress before the last death
 	ob_death last[OB_DEATHS_KEPT]; // the latest is last[(deaths - 1) % OB_DEATHS_KEPT]; under failure_lock
 	double *when; // [limit.deaths]: s, wall, of the last deaths, in turn; NULL = no limit
-	ob_freeze *freeze; // [freezes]: objects that are to be frozen; by id within a step
+	ob_freeze *freeze; // [freezes]: objects to freeze; by id within a step
 	uint32_t freezes, freezes_max, frozen; // frozen: so far
-	_Atomic uint64_t cpu; // ns, of the workers that are gone
+	_Atomic uint64_t cpu; // ns, of workers that have ended
 	uint64_t switches; // theirs
 } ob_restart_state;
 
@@ -60,8 +60,8 @@ struct ob_host {
 	bool supervised;
 	atomic_bool dismissed; // the supervisor is to end
 	int wake_fd, interrupt_fd; // ends the supervisor; SIGINT and its kin
-	ob_asked asked; // by which other programs ask for something
-	atomic_uint running_workers; // that have not ended
+	ob_asked asked; // requests of other programs
+	atomic_uint running_workers; // workers that have not ended
 	atomic_bool interrupted, failed, ending;
 	pthread_mutex_t failure_lock;
 	ob_error failure; // the first cause; valid once failed
@@ -69,9 +69,9 @@ struct ob_host {
 	ob_restart_state restart;
 	ob_interval interval;
 	struct {
-		uint32_t failed, told, more; // as counted when it was looked last; of whom it was said; not said
+		uint32_t failed, told, more; // failed: at the last check; told: logged; more: not logged
 		uint64_t who[OB_SCRIPTS_TOLD]; // generation << 32 | id
-	} scripts; // that errors have stopped
+	} scripts; // scripts that errors have stopped
 	uint64_t target; // the caller's
 	bool started; // the gate was opened once
 	double patience; // s
@@ -82,9 +82,9 @@ struct ob_host {
 	double interval_start; // s, wall
 	bool cpu_counted; // cpu_before holds
 	uint64_t cpu_before; // ns, all workers when stepping began
-	uint64_t switches_before; // of all workers then
-	double own_cpu_before; // s, of the whole process then
-	double first_start, last_end; // s, wall: of the first interval that stepped; of the last one
+	uint64_t switches_before; // all workers' when stepping began
+	double own_cpu_before; // s, of the whole process, when stepping began
+	double first_start, last_end; // s, wall: start of the first interval that stepped; end of the last one
 	double gate_before; // s, all workers' waiting when the first interval began
 	double startup, wall; // s
 };
@@ -93,7 +93,7 @@ struct ob_host {
 
 // Notes the cause (the first one stays) and stops the gate, so that all workers leave. Any thread.
 void ob_host_set_failure(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
-// Tells the workers to leave. Any thread.
+// Orders the workers to leave. Any thread.
 void ob_host_halt(ob_host *h);
 // Warns of scripts that were stopped since the last call. Paused.
 void ob_host_tell_of_scripts(ob_host *h);
@@ -109,8 +109,8 @@ uint64_t ob_host_count_switches(const ob_host *h);
 // If timed: for how long all workers together have waited at the gate until "now" (s, wall), while the universe stands.
 double ob_host_gate_time(const ob_host *h, double now);
 
-// ---- supervisor.c: a thread of the host that learns of workers' deaths, of signals, and of the fork server's end, and
-// keeps the workers' CPU times in the universe up to date. It sleeps in poll otherwise.
+// ---- supervisor.c: a thread of the host that handles workers' deaths, signals, and the fork server's end, and keeps
+// the workers' CPU times in the universe up to date. It sleeps in poll otherwise.
 
 bool ob_supervisor_start(ob_host *h, ob_error *e);
 void ob_supervisor_stop(ob_host *h); // allowed if it was never started

@@ -19,7 +19,7 @@ void ob_hulls_finish(ob_hulls *h)
 	free(h->corners);
 }
 
-// UINT32_MAX: it is not there.
+// UINT32_MAX: not found.
 static uint32_t find(const ob_hulls *h, const ob_hull *hull)
 {
 	for (uint32_t i = 0; i < h->count; i++)

@@ -13,7 +13,7 @@
 #include "host/request.h"
 
 typedef struct ob_journal_place {
-	uint64_t step; // that many are complete
+	uint64_t step; // number of complete steps
 	uint32_t after_scripts; // 1 = scripts have run before the coming step, and the pause is theirs
 	uint32_t pause; // number of the pause among those that have carried out any
 } ob_journal_place;
@@ -25,26 +25,26 @@ typedef struct ob_journal_entry {
 
 typedef struct ob_journal {
 	ob_journal_entry *entry; // [count]
-	size_t count, room, next; // next: those before it are carried out
-	uint32_t pauses; // that have carried out any
+	size_t count, room, next; // next: entries before it are carried out
+	uint32_t pauses; // pauses that have carried out any
 	bool lost; // there was no memory for an entry: no restart can repeat it
 } ob_journal;
 
 void ob_journal_finish(ob_journal *j);
 // True if the journal is as long as it should get, or an entry was lost: a checkpoint is due.
 bool ob_journal_is_full(const ob_journal *j);
-// Before the run begins: these are to be carried out, as if it had been restarted. false: no memory.
+// Before the run begins: adds entries to carry out, as if it had been restarted. false: no memory.
 bool ob_journal_load(ob_journal *j, const ob_journal_entry *entry, size_t count);
-// A checkpoint was taken: forgets what is carried out.
+// Forgets all entries that are carried out, after a checkpoint.
 void ob_journal_clear(ob_journal *j);
-// The run begins again there.
+// Starts over: the run begins again from the checkpoint.
 void ob_journal_rewind(ob_journal *j);
-// The step of the next entry to be carried out again; UINT64_MAX: none is.
+// Step of the next entry to carry out again; UINT64_MAX: none.
 uint64_t ob_journal_next_step(const ob_journal *j);
-// The next entry of this pause's, to be carried out again; NULL: there is none. at: of a pause, whose number is found;
-// pause UINT32_MAX at its first call.
+// Next entry to carry out again in this pause; NULL: none. at: a pause, whose number is found; pause UINT32_MAX at the
+// first call.
 const ob_request *ob_journal_again(ob_journal *j, ob_journal_place *at);
-// Notes a request that is carried out for the first time: none is to be carried out again.
+// Notes a request when it is carried out for the first time; none may be left to carry out again.
 void ob_journal_note(ob_journal *j, const ob_journal_place *at, const ob_request *r);
 
 #endif

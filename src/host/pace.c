@@ -30,7 +30,7 @@ ob_pace_state ob_pace_get(ob_pace *p)
 	return state;
 }
 
-// Under the lock. The line begins anew with the next wait.
+// Wakes the waiting thread. Under the lock. The line begins anew with the next wait.
 static void tell(ob_pace *p)
 {
 	p->allowed = 0;
@@ -62,7 +62,7 @@ void ob_pace_allow(ob_pace *p, uint64_t steps)
 	pthread_mutex_unlock(&p->lock);
 }
 
-// Under the lock: the step that is due now, and how long (s) until one more is than are done.
+// Step that is due now. wait: s until a step beyond "done" is due. Under the lock.
 static uint64_t due_step(ob_pace *p, uint64_t done, double step_length, double *wait)
 {
 	double now = ob_clock_wall(), each = step_length / p->state.rate;

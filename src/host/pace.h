@@ -1,9 +1,9 @@
-// The pace of a run: how much simulated time passes in a second of the wall clock, and whether any does. Whoever lets
-// the universe run asks before it does so; whoever looks on may pause, step, or change the rate.
+// The pace of a run: simulated time per second of the wall clock, or paused. The thread that runs the universe waits
+// for the pace; viewers pause, step, or change the rate.
 //
 //                        due step
-//       rate 1         /        .  where the universe cannot keep up, it falls behind by at most OB_PACE_BEHIND of
-//                    /   .         wall time: then the line is drawn anew from where it is, and time has slipped
+//       rate 1         /        .  a universe that cannot keep up falls behind by at most OB_PACE_BEHIND of
+//                    /   .         wall time. Then the line restarts where the universe is, and time has slipped
 //                  /  .
 //                / .  done steps
 //
@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define OB_PACE_BEHIND .1 // s
-#define OB_PACE_MAX INFINITY // the rate of "as fast as it can"
+#define OB_PACE_MAX INFINITY // the rate of "as fast as possible"
 
 typedef struct ob_pace_state {
 	double rate; // simulated seconds a second, > 0; OB_PACE_MAX
@@ -24,7 +24,7 @@ typedef struct ob_pace_state {
 } ob_pace_state;
 
 typedef struct ob_pace {
-	pthread_mutex_t lock; // guards what follows
+	pthread_mutex_t lock; // guards the fields below
 	pthread_cond_t changed;
 	ob_pace_state state;
 	uint64_t allowed; // steps that may still be made while it is paused
@@ -34,15 +34,15 @@ typedef struct ob_pace {
 } ob_pace;
 
 void ob_pace_begin(ob_pace *p, double rate, bool paused);
-void ob_pace_end(ob_pace *p); // nobody waits any more
+void ob_pace_end(ob_pace *p); // no thread waits any more
 
 ob_pace_state ob_pace_get(ob_pace *p);
 void ob_pace_set_rate(ob_pace *p, double rate);
 void ob_pace_set_paused(ob_pace *p, bool paused);
 void ob_pace_allow(ob_pace *p, uint64_t steps); // more, while it is paused
 
-// The step up to which a universe that has done so many steps of step_length (s) may run; waits for at most "patience"
-// (s) until that is more than it has done. UINT64_MAX: as far as it likes.
+// Step up to which a universe with "done" complete steps of step_length (s) may run. Waits for at most "patience" (s)
+// until that is more than "done". UINT64_MAX: no limit.
 uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, double patience);
 
 #endif

@@ -23,12 +23,12 @@ typedef struct event {
 typedef enum slot_use { SLOT_FREE, SLOT_RESERVED, SLOT_PRESENT } slot_use; // saved as these numbers
 
 typedef struct slot {
-	uint32_t generation; // of its latest object
+	uint32_t generation; // its latest object's
 	unsigned char use; // slot_use
 	bool removal_scheduled : 1; // the timetable will remove its object
 	bool created : 1; // by a script
-	bool driven : 1; // by the path, or the force that changes in time, of the scene's object of this id
-	bool kinematic : 1; // is counted as such, whatever its passport, which others can write, says now
+	bool driven : 1; // by its path or time-dependent force, those of the scene's object of this id
+	bool kinematic : 1; // counted as kinematic, whatever its passport, which others can write, says now
 	uint32_t born; // step
 } slot;
 static_assert(sizeof(slot) == 12, "all objects have one, and what is kept of it");
@@ -40,13 +40,13 @@ struct ob_population {
 	slot *slots; // [capacity]
 	event *events; // the timetable: ascending by step; at one step removals first
 	size_t event_count, next;
-	uint32_t kinematic, pushed; // objects: those with a force that changes in time
-	uint64_t next_prescribed; // the step at which one of them is to be told how it goes on
+	uint32_t kinematic, pushed; // numbers of objects; pushed: with a time-dependent force
+	uint64_t next_prescribed; // step of the next change of their prescribed motion
 	bool changed;
 	uint32_t first_free; // no slot below it is free
-	uint32_t created; // objects that scripts have created, and that exist
+	uint32_t created; // existing objects that scripts have created
 	ob_hulls hulls;
-	ob_journal journal; // of requests since the population was kept
+	ob_journal journal; // requests since the population was kept
 	ob_request_log *log; // NULL: none
 	struct {
 		slot *slots; // NULL: none kept
@@ -176,7 +176,7 @@ bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_erro
 	return true;
 }
 
-// Hulls are the universe's, meshes the scene's.
+// Checks references to hulls of the universe and meshes of the scene.
 static bool check_parts(const ob_population *p, const ob_passport *pass, ob_error *e)
 {
 	const ob_hull *h = ob_hull_of(p->u, pass);
@@ -190,7 +190,7 @@ static bool check_parts(const ob_population *p, const ob_passport *pass, ob_erro
 
 // ---- changes
 
-// Numbers of its own for each object that ever has the slot.
+// Gives each object its own random numbers, also when it reuses a slot.
 static void seed_random(const ob_population *p, uint32_t id, uint64_t random[4])
 {
 	ob_random r;
@@ -208,7 +208,7 @@ static void give_script(ob_population *p, uint32_t id, const ob_object_def *def,
 		ob_log_warn("object \"%s\" has no script: no room for it", def->passport.name);
 }
 
-// state: of its script, def->state_bytes
+// state: the script's, def->state_bytes
 static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, const unsigned char *state)
 {
 	ob_passport pass = def->passport;
@@ -274,7 +274,7 @@ static void remove_scheduled(ob_population *p, uint32_t id)
 	p->first_free = id < p->first_free ? id : p->first_free;
 }
 
-// Into the lowest free slot, which it returns; UINT32_MAX: there is none, and a warning says so.
+// Adds an object in the lowest free slot, which it returns; UINT32_MAX: there is none, and a warning is logged.
 static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const unsigned char *state)
 {
 	const uint32_t capacity = ob_universe_capacity(p->u);
@@ -298,15 +298,15 @@ static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const
 	ob_object_def named = *def;
 	char *name = named.passport.name;
 	const size_t n = strnlen(name, OB_NAME_MAX);
-	if (n > 0 && n < OB_NAME_MAX - 12 && name[n - 1] == '#') // a script's, which does not know its id
+	if (n > 0 && n < OB_NAME_MAX - 12 && name[n - 1] == '#') // a script's name: it does not know the id
 		snprintf(name + n, OB_NAME_MAX - n, "%u", id);
 	add_object(p, id, &named, state);
 	return id;
 }
 
-// ---- what scripts ask for
+// ---- requests of scripts
 
-// It has asked for what cannot be: its script is stopped, and says why.
+// Stops a script after an invalid request, with an error that explains it.
 static void stop_script(ob_population *p, uint32_t cell, uint32_t line, const char *why)
 {
 	ob_step_data *data = ob_universe_step_data(p->u);
@@ -320,7 +320,7 @@ static void stop_script(ob_population *p, uint32_t cell, uint32_t line, const ch
 	data->script_counts->failed++;
 }
 
-// The corners of a hull are what is left of the post.
+// Builds the hull, if any. The rest of the post is its corners.
 static bool take_hull(ob_population *p, ob_object_def *def, const ob_script_post *post, ob_error *e)
 {
 	const size_t before = sizeof *def + def->state_bytes, bytes = post->used - before;
@@ -333,7 +333,7 @@ static bool take_hull(ob_population *p, ob_object_def *def, const ob_script_post
 	return ob_hulls_give(&p->hulls, &corners, &def->passport, e);
 }
 
-// What lies in the universe is not taken for granted.
+// Creates an object for a script. Data in the universe is not trusted.
 static void create_for_script(ob_population *p, uint32_t cell, const ob_script_post *post)
 {
 	const ob_step_data *data = ob_universe_step_data(p->u);
@@ -342,7 +342,7 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 	if (data->script_turn[cell].flags & OB_SCRIPT_STOPPED || post->used < sizeof def)
 		return;
 	memcpy(&def, post + 1, sizeof def);
-	def.path = NULL, def.force = NULL; // the scene's alone
+	def.path = NULL, def.force = NULL; // only a scene has them
 	if (post->used - sizeof def < def.state_bytes || def.script > data->script_text->scripts)
 		return;
 	if (!ob_population_find_look(p, &def, &e) || !take_hull(p, &def, post, &e) || !ob_object_check(&def, &e)) {
@@ -392,7 +392,7 @@ static void carry_out_scripts(ob_population *p)
 	}
 }
 
-// One that exists.
+// Carries out a request for an object that exists.
 static void change_on_request(ob_population *p, const ob_request *r)
 {
 	ob_passport pass = *ob_passport_of(p->u, r->id);
@@ -442,7 +442,7 @@ static void publish_roster(ob_population *p)
 	p->changed = false;
 }
 
-// Forces that change in time, for the step that comes.
+// Sets forces that change in time, for the coming step.
 static void push_all(ob_population *p)
 {
 	const double h = ob_universe_settings(p->u)->step_length;
@@ -463,7 +463,7 @@ static void push_all(ob_population *p)
 	}
 }
 
-// How kinematic objects go on from this step.
+// Sets the prescribed motion of kinematic objects from this step on.
 static void prescribe_all(ob_population *p)
 {
 	uint32_t left = p->kinematic;
@@ -487,7 +487,8 @@ static void carry_out_request(ob_population *p, const ob_request *r)
 		change_on_request(p, r);
 }
 
-// After a restart first those that were carried out before, in the same pauses; new ones wait until that is done.
+// Carries out requests. After a restart, first those that were carried out before, in the same pauses; new ones wait
+// until then.
 static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
 {
 	const ob_script_counts *scripts = ob_universe_step_data(p->u)->script_counts;
@@ -570,7 +571,7 @@ void ob_population_put_back(ob_population *p)
 	p->created = p->kept.created;
 	p->kinematic = p->kept.kinematic;
 	p->pushed = p->kept.pushed;
-	p->hulls.count = p->kept.hulls; // the same come again, as they were
+	p->hulls.count = p->kept.hulls; // hulls added later come again, unchanged
 	ob_journal_rewind(&p->journal);
 	publish_roster(p);
 }
@@ -605,7 +606,7 @@ void ob_population_save(const ob_population *p, ob_saved_population *out)
 		memcpy(out->hull, p->hulls.corners, out->hulls * sizeof *out->hull);
 }
 
-// What so many events of the timetable make of the slots, which are as they were planned.
+// Applies the first events of the timetable to the slots, which are as planned at the start.
 static void follow_timetable(ob_population *p, uint64_t events)
 {
 	for (uint64_t i = 0; i < events; i++) {
@@ -615,8 +616,8 @@ static void follow_timetable(ob_population *p, uint64_t events)
 	}
 }
 
-// Whether a slot that the timetable has left so can be as it was saved: scripts and requests may have removed its
-// object, and have given a free slot to another. An event finds what it was planned for.
+// True if a slot that the timetable has left so may have been saved so. Scripts and requests may have removed its
+// object, and have added another in a free slot. An event finds the object that it was planned for.
 static bool follows(const slot *planned, const ob_saved_slot *s)
 {
 	if (s->removal_scheduled != planned->removal_scheduled)
@@ -634,7 +635,7 @@ static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot 
 	       (!present || pass->generation == s->generation);
 }
 
-// What the saved objects are made of is checked as if they were added now.
+// Checks the parts of the saved objects as if they were added now.
 static bool check_objects(const ob_population *p, ob_error *e)
 {
 	for (uint32_t id = 0; id < ob_universe_ids(p->u); id++) {
@@ -647,14 +648,14 @@ static bool check_objects(const ob_population *p, ob_error *e)
 	return true;
 }
 
-// The first step boundary at or after t (s), round-off aside
+// First step boundary at or after t (s), except for round-off.
 static uint64_t step_at(double t, double step_length)
 {
 	double k = ceil(t / step_length - 1e-6);
 	return k <= 0 ? 0 : k < 1e18 ? (uint64_t)k : UINT64_MAX;
 }
 
-// A path is the scene's, and so is the object that has one: the first in its slot.
+// Restores the path of an object. Only the scene's objects have one, each the first in its slot.
 static void load_path(ob_population *p, uint32_t id)
 {
 	const double h = ob_universe_settings(p->u)->step_length;

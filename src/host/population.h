@@ -1,5 +1,5 @@
-// Which objects exist: those of the scene, added and removed by its timetable, and those added and removed on request.
-// Writes passports, places objects, and keeps the roster up to date.
+// Population of a universe: objects of the scene, added and removed by its timetable, and objects added and removed on
+// request. Writes passports, places objects, and keeps the roster up to date.
 //
 // Thread-safety: the host's thread only, and only while the universe is starting or paused; but requests may be pushed by
 // any thread at any time.
@@ -13,8 +13,8 @@
 #include "scene/scene.h"
 #include "table/table.h"
 
-// Requests to add, remove or colour objects, or to send them a message, kept until the next step boundary: a wait-free queue of liburcu. Any number of
-// threads push, one takes.
+// Requests to add, remove or colour objects, or to send them a message, kept until the next step boundary: a wait-free
+// queue of liburcu. Any number of threads push, one takes.
 typedef struct ob_requests ob_requests;
 
 ob_requests *ob_requests_create(void); // NULL: out of memory
@@ -25,7 +25,7 @@ bool ob_requests_waiting(ob_requests *q);
 
 typedef struct ob_population ob_population;
 
-// true if the definition is valid: known shape, finite numbers, mass where it moves. e says what is not.
+// True if the definition is valid: known shape, finite numbers, mass where it moves. Else e names the error.
 bool ob_object_check(const ob_object_def *def, ob_error *e);
 
 // Slots 0 .. scene->objects-1 are the scene's; the rest of the table is for objects added later. All three must outlive
@@ -33,28 +33,28 @@ bool ob_object_check(const ob_object_def *def, ob_error *e);
 ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r, ob_error *e);
 void ob_population_destroy(ob_population *p);
 
-// The mesh of the scene that an object which comes from outside asks to look like, into its passport; a number that is
-// there already is not believed. false and e: the scene has none of this kind. Any thread.
+// Finds the scene's mesh for the look of an object from outside, and sets it in the passport. A number in the passport
+// is ignored. false and e: the scene has none of this kind. Any thread.
 bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_error *e);
 
-// Before the first step: requests that are to be carried out, each in its place. false: no memory.
+// Before the first step: adds requests to carry out, each in its place. false: no memory.
 bool ob_population_replay(ob_population *p, const ob_journal_entry *entry, size_t count);
-// Requests that are carried out for the first time are logged from now on; NULL: no more.
+// From now on, logs requests that are carried out for the first time; NULL: stops logging.
 void ob_population_set_log(ob_population *p, ob_request_log *log);
-// Carries out what the timetable has due at this step or before, then the requests. true: objects were added or removed.
+// Carries out the timetable up to this step, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
-// For a checkpoint in memory (table/checkpoint.h): keeps what it knows beside the universe, and puts it back. What the
-// timetable, scripts and requests do after that is done again by a run that begins anew there (host/journal.h).
+// For a checkpoint in memory (table/checkpoint.h): keeps the state that is not in the universe, and puts it back. Later
+// changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h).
 bool ob_population_keep(ob_population *p); // false: out of memory
 void ob_population_put_back(ob_population *p);
-// True if another checkpoint is due: much would be done again, or there was no memory to note it.
+// True if another checkpoint is due: much would be repeated, or there was no memory to note it.
 bool ob_population_is_checkpoint_due(const ob_population *p);
 // The next step at which something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);
 
-// What of it is saved with a universe, beside the scene: 8 bytes a slot.
+// Saved state of a slot, beside universe and scene: 8 bytes.
 typedef struct ob_saved_slot {
-	uint32_t generation; // of its latest object
+	uint32_t generation; // its latest object's
 	uint8_t use; // 0 = free, 1 = reserved: the timetable has another event for it, 2 = present
 	uint8_t removal_scheduled; // 1 = the timetable will remove its object
 	uint8_t created; // 1 = by a script
@@ -62,17 +62,17 @@ typedef struct ob_saved_slot {
 } ob_saved_slot;
 
 typedef struct ob_saved_population {
-	uint64_t events; // of the timetable, that have been carried out
-	uint32_t count; // slots that were ever used, or will be by the timetable: the scene's at least
+	uint64_t events; // of the timetable, carried out so far
+	uint32_t count; // slots that were ever used, or will be by the timetable: at least the scene's
 	ob_saved_slot *slot; // [count]
-	uint32_t hulls; // that have come since the run began
+	uint32_t hulls; // hulls added since the run began
 	ob_hull_corners *hull; // [hulls]
 } ob_saved_population;
 
-// Fills in events, count and hulls, for the arrays to be made; then the arrays.
+// Fills in events, count and hulls, so that the caller can make the arrays; then fills the arrays.
 void ob_population_count_saved(const ob_population *p, ob_saved_population *out);
 void ob_population_save(const ob_population *p, ob_saved_population *out);
-// Instead of the first update, after ob_universe_load. false and e: it is not that of this scene and universe.
+// Replaces the first update, after ob_universe_load. false and e: the data does not fit this scene and universe.
 bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error *e);
 
 #endif

@@ -1,5 +1,5 @@
-// liburcu orders memory with its own assembly and a system call, which ThreadSanitizer does not see; these macros tell it.
-// before: everything so far happens before a matching "after" of the same address. Nothing in other builds.
+// Memory order of liburcu for ThreadSanitizer, which does not see its assembly and system call. before: everything so
+// far happens before a matching "after" of the same address. Empty in other builds.
 #ifndef OB_HOST_RCU_TSAN_H
 #define OB_HOST_RCU_TSAN_H
 

@@ -1,4 +1,4 @@
-// Requests to a running universe from outside: what viewers, other programs and the host's own threads ask for.
+// Requests of viewers, other programs and the host's own threads to a running universe.
 #ifndef OB_HOST_REQUEST_H
 #define OB_HOST_REQUEST_H
 
@@ -9,16 +9,16 @@ typedef enum ob_request_kind {
 	OB_REQUEST_REMOVE,
 	OB_REQUEST_COLOUR,
 	OB_REQUEST_MESSAGE, // to the object's script
-	OB_REQUEST_MOVE, // its simulator moves to a worker: done at once, of several ranks, too (table/home.h)
+	OB_REQUEST_MOVE, // its simulator moves to a worker: done at once, with several ranks, too (table/home.h)
 } ob_request_kind;
 
 typedef struct ob_request {
 	uint32_t kind; // ob_request_kind
-	uint32_t id, generation; // of the object, unless one is added
+	uint32_t id, generation; // of the object; unused for an object to add
 	ob_object_def def; // to add
 	ob_hull_corners corners; // of a hull
 	float colour[4]; // linear
-	uint32_t worker; // to move to
+	uint32_t worker; // target of the move
 	uint32_t bytes; // of the message
 	unsigned char values[512]; // flat (scene/flat.h)
 } ob_request;

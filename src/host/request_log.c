@@ -14,12 +14,12 @@ typedef enum record_kind { A_REQUEST, A_FREEZE, A_STATE } record_kind;
 typedef struct record {
 	uint32_t kind, id, generation, zero;
 	uint64_t hash;
-	ob_journal_entry entry; // of a freeze and a state its step alone
+	ob_journal_entry entry; // a freeze and a state use its step alone
 } record;
 
 typedef struct file_head {
 	char magic[8];
-	uint64_t record_size; // as this program has it
+	uint64_t record_size; // in this program
 	ob_request_log_head head;
 } file_head;
 
@@ -115,12 +115,12 @@ static bool makes_sense(const ob_request *r)
 					     r->corners.count <= OB_HULL_CORNERS_MAX && ob_object_check(&r->def, &e));
 }
 
-// false: it makes no sense, or there is no memory
+// false: an invalid record, or no memory
 static bool take(ob_logged_requests *l, const record *x)
 {
 	const uint64_t step = x->entry.at.step;
 	while (x->kind != A_STATE && l->states && l->state[l->states - 1].step == step)
-		l->states--; // a run that stands at this step carries out all that came then
+		l->states--; // a replay carries out all requests at this step before it compares
 	switch (x->kind) {
 	case A_REQUEST:
 		if (!makes_sense(&x->entry.request) || !grown((void **)&l->request, sizeof *l->request, l->requests))

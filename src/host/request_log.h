@@ -1,8 +1,7 @@
-// Request log: a file with all that came to a run from outside, in order: requests, objects that were frozen, and
-// hashes of the state in between. A run of the same scene that carries them out in the same places ends in the same
-// bits.
+// Request log: a file with all input of a run from outside, in order: requests, objects that were frozen, and hashes of
+// the state in between. A run of the same scene that carries them out in the same places ends in the same bits.
 //
-//   head │ record │ record │ ..       a record for each, as it lies in memory: for the same version of obsim alone
+//   head │ record │ record │ ..       a record for each, in its layout in memory: for the same version of obsim only
 //
 // Thread-safety: the host's thread only.
 #ifndef OB_HOST_REQUEST_LOG_H
@@ -11,7 +10,7 @@
 #include "host/journal.h"
 #include "settings/settings.h"
 
-// The run that is logged. A replay has the same.
+// Describes the logged run. A replay has the same.
 typedef struct ob_request_log_head {
 	ob_run_settings run; // resolved, without faults
 	uint64_t seed; // of the scene
@@ -24,7 +23,7 @@ typedef struct ob_request_log ob_request_log;
 
 // Replaces the file. NULL and e: it cannot be written.
 ob_request_log *ob_request_log_create(const char *path, const ob_request_log_head *head, ob_error *e);
-// Each is NULL-safe and appends a record. A file that cannot be written is said once, at the end.
+// Each is NULL-safe and appends a record. Write errors are reported once, by close.
 void ob_request_log_request(ob_request_log *l, const ob_journal_place *at, const ob_request *r);
 void ob_request_log_freeze(ob_request_log *l, uint64_t step, uint32_t id, uint32_t generation);
 void ob_request_log_state(ob_request_log *l, uint64_t step, uint64_t hash);
@@ -41,7 +40,7 @@ typedef struct ob_logged_freeze {
 	uint32_t id, generation;
 } ob_logged_freeze;
 
-// What a log holds, checked as requests from outside are: steps ascend, definitions make sense.
+// Contents of a log, checked like requests from outside: steps ascend, definitions are valid.
 typedef struct ob_logged_requests {
 	ob_request_log_head head;
 	ob_journal_entry *request; // [requests]
@@ -50,8 +49,7 @@ typedef struct ob_logged_requests {
 	uint32_t requests, freezes, states;
 } ob_logged_requests;
 
-// Finish it in either case. false and e: no whole log of this version. A record that was cut short at the end is left
-// out.
+// Finish it in either case. false and e: no whole log of this version. A truncated record at the end is left out.
 bool ob_request_log_read(ob_logged_requests *out, const char *path, ob_error *e);
 void ob_logged_requests_finish(ob_logged_requests *l);
 

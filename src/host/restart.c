@@ -11,12 +11,12 @@
 #include "host/host_state.h"
 #include "sim/sim.h"
 
-enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once, ..
-static const double attempts_timeout = 10; // s, .. and others for so long
+enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once
+static const double attempts_timeout = 10; // s, for further attempts
 static const double checkpoint_interval = .25; // s, between checkpoints
-static const double checkpoint_share = .05; // of the time, that checkpoints may take
-static const double kill_timeout = 10; // s to wait until killed processes are gone, ..
-static const double interrupted_kill_timeout = .05; // .. and after Ctrl-C
+static const double checkpoint_share = .05; // share of the time that checkpoints may take
+static const double kill_timeout = 10; // s to wait until killed processes are gone
+static const double interrupted_kill_timeout = .05; // s, same after Ctrl-C
 
 void ob_restart_prepare(ob_host *h)
 {
@@ -36,8 +36,8 @@ void ob_restart_finish(ob_host *h)
 	free(h->restart.freeze);
 }
 
-// Where simulators die again and again, half of the way that they made last is likely to be made: so the run gets on,
-// however soon they die.
+// Next step with a checkpoint. If simulators die again and again, it lies half as far ahead as their last progress. So
+// the run advances, however soon they die.
 uint64_t ob_restart_next_step(const ob_host *h)
 {
 	const ob_restart_state *r = &h->restart;
@@ -81,7 +81,7 @@ static ob_death *latest(ob_restart_state *r)
 	return &r->last[(r->deaths - 1) % OB_DEATHS_KEPT];
 }
 
-// The latest, as it is said to people.
+// Describes the latest death for messages.
 static const char *describe(ob_host *h, ob_error *text)
 {
 	pthread_mutex_lock(&h->failure_lock);
@@ -90,7 +90,7 @@ static const char *describe(ob_host *h, ob_error *text)
 	return text->text;
 }
 
-// Whether this death, the newest, is one too many.
+// True if the newest death exceeds the limit.
 static bool is_over_limit(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
@@ -165,8 +165,8 @@ static bool add_freeze(ob_restart_state *r, ob_freeze f)
 	return true;
 }
 
-// Notes which objects the latest death freezes, before anything is put back. text: their names are added. false: none
-// can be frozen, and without that the run would fail again.
+// Notes the objects that the latest death freezes, before the checkpoint is put back, and appends their names to text.
+// false: none can be frozen, and without that the run would fail again.
 static bool plan_freeze(ob_host *h, ob_error *text)
 {
 	enum { SHOWN = 3 };
@@ -258,14 +258,14 @@ static bool end_all_workers(ob_host *h)
 	return h->running_workers == 0 && !h->failed;
 }
 
-// Simulators that die at once are restarted about once a second.
+// Slows restarts of simulators that die at once to about one a second.
 static void back_off(const ob_host *h)
 {
 	for (int i = 0; i < 10 && h->restart.attempts > QUICK_ATTEMPTS && !h->interrupted; i++)
 		nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
 }
 
-// Keeps what the dead workers have used, for the sums of the run.
+// Keeps the resource use of dead workers, for the sums of the run.
 static void save_accounts(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
@@ -275,7 +275,7 @@ static void save_accounts(ob_host *h)
 		ob_worker_set_cpu(h->u, w, 0);
 }
 
-// How many of the deaths that are kept were this one's worker's.
+// Number of kept deaths of the latest death's worker.
 static uint32_t count_alike(const ob_restart_state *r)
 {
 	uint32_t n = 0;

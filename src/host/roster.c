@@ -7,10 +7,10 @@
 
 #include "host/rcu_tsan.h"
 
-// An entry as it is kept: of its name, no more than there is.
+// Entry as it is stored: names take only their own length.
 typedef struct kept {
 	uint32_t id, generation;
-	uint32_t name; // where it begins in the snapshot's names
+	uint32_t name; // offset in the snapshot's names
 	uint8_t script;
 	bool own_worker;
 } kept;

@@ -1,9 +1,9 @@
-// The roster: which objects exist now, under which name, and which worker runs them. For threads of the host's own process
+// The roster: all objects that exist now, with their names and workers. For threads of the host's own process
 // (renderer, recorder, command line); other processes read the passports in the universe.
 //
 // A snapshot is immutable; a change publishes a new one under RCU (liburcu, membarrier flavour) and frees the old one
-// when its last reader has left. Readers copy out, never wait, and may be any number of threads: a thread is made
-// known to RCU by its first read, and forgotten when it ends. One writer at a time.
+// when its last reader has left. Readers copy out, never wait, and may be any number of threads. A thread registers
+// with RCU at its first read, and is unregistered when it ends. One writer at a time.
 #ifndef OB_HOST_ROSTER_H
 #define OB_HOST_ROSTER_H
 
@@ -12,21 +12,21 @@
 typedef struct ob_roster_entry {
 	uint32_t id, generation;
 	uint8_t script; // 1 + its number in the scene; 0: none
-	bool own_worker; // whose number is its id; else a pool's, whichever claims the object's island
+	bool own_worker; // its number is the id; else one of a pool, whichever claims the object's island
 	char name[OB_NAME_MAX];
 } ob_roster_entry;
 
 typedef struct ob_roster ob_roster;
 
 ob_roster *ob_roster_create(void); // empty; NULL: out of memory
-// No reader may be left.
+// All readers must have left.
 void ob_roster_destroy(ob_roster *r);
 // Writer: replaces the whole roster by n entries, ascending by id; they are copied. false: out of memory.
 bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n);
 
-// Readers. number: grows with each publication, so that who has seen one knows when to look again.
+// Readers. number: grows with each publication, so that a reader can detect a change.
 uint64_t ob_roster_number(const ob_roster *r);
-// copy: the first max entries, ascending by id; returns how many there are (may exceed max).
+// copy: the first max entries, ascending by id; returns the number of entries (may exceed max).
 size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max);
 // false: no object of this id, or name, exists now
 bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out);

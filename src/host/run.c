@@ -1,4 +1,4 @@
-// From go to wait: run intervals between pauses, what is done in the pauses, and the detection of stalls.
+// From go to wait: run intervals between pauses, the work done in pauses, and stall detection.
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,8 +12,8 @@
 #include "host/stall.h"
 #include "sim/sim.h"
 
-static const double poll_interval = .05; // s, between checks of a run that does not pause, ..
-enum { LOOKS_PER_POLL = 5 }; // .. in which it is asked so often whether Ctrl-C has come
+static const double poll_interval = .05; // s, between checks of a run that does not pause
+enum { LOOKS_PER_POLL = 5 }; // checks for Ctrl-C in each of these intervals
 static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C
 
 void ob_host_set_failure(ob_host *h, const char *format, ...)
@@ -98,7 +98,7 @@ static void end_interval(ob_host *h)
 	h->last_end = h->interval_start + wall;
 }
 
-// After a request to restart. If another one comes at once, the interval counts as running, and is restarted again.
+// Restarts after a request. If another request comes at once, the interval counts as running, and is restarted again.
 static void restart_interval(ob_host *h)
 {
 	end_interval(h);
@@ -126,8 +126,8 @@ static void report_stall(ob_host *h, uint64_t step)
 	ob_restart_request(h, &d);
 }
 
-// Not paused yet: detects a stall, and makes the interval end early if somebody waits for a pause. false: interrupted,
-// and the step does not end.
+// Between pauses: detects a stall, and ends the interval early if a thread waits for a pause. false: interrupted, and
+// the step does not end.
 static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupted_at)
 {
 	double now = ob_clock_wall();
@@ -154,7 +154,7 @@ void ob_host_want_contacts(ob_host *h, uint64_t step)
 	ob_contacts_want(h->u, step);
 }
 
-// Says once of each object whose script an error has stopped, in whichever life of the simulators.
+// Warns once of each object whose script an error has stopped, across restarts.
 static void tell_of_script(ob_host *h, uint32_t cell)
 {
 	const ob_step_data *data = ob_universe_step_data(h->u);
@@ -200,7 +200,7 @@ static bool at_interval_end(ob_host *h)
 	return there;
 }
 
-// What simulators have written is not taken for granted: what makes no sense is as if one of them had died.
+// Returns the damage in data that simulators wrote, which is not trusted; NULL: none. Damage counts as a death.
 static const char *find_damage(const ob_host *h)
 {
 	if (ob_step_count(h->u) > h->interval.most)
@@ -219,8 +219,8 @@ static void report_damage(ob_host *h, const char *damage)
 	ob_restart_request(h, &d);
 }
 
-// A step that cannot be solved, because of what an object is or does: as if its simulator had died, where that is frozen;
-// else it is the end.
+// Reports a step that cannot be solved because of an object. Counts as the simulator's death where such an object is
+// frozen; else the run ends.
 static void report_failure(ob_host *h, const char *failure)
 {
 	ob_death d = { .cause = OB_DEATH_FAILURE, .worker = OB_NO_WORKER, .step = ob_step_count(h->u) + 1 };
@@ -245,7 +245,7 @@ static bool result_of_run(ob_host *h, ob_error *e)
 	return false;
 }
 
-// Whether the host has the turn, after a while at most.
+// True if the host gets its turn within one poll interval.
 static bool wait_for_turn(const ob_host *h)
 {
 	bool turn = false;
@@ -264,7 +264,7 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 	while (h->interval.running && !h->failed) {
 		bool turn = wait_for_turn(h);
 		const char *failure = turn ? ob_sim_failure(h->u) : NULL;
-		if (h->restart.requested) { // the gate was stopped for it: this is not a pause
+		if (h->restart.requested) { // the gate was stopped for the restart: this is not a pause
 			restart_interval(h);
 			stall = ob_stall_watch_start(h);
 			if (h->interrupted)
@@ -281,7 +281,7 @@ bool ob_host_wait(ob_host *h, ob_error *e)
 			if (turn)
 				nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL);
 			if (!check_progress(h, &stall, &interrupted_at)) {
-				ob_host_halt(h); // while the report is made, workers leave
+				ob_host_halt(h); // workers leave while the report is made
 				break;
 			}
 		}

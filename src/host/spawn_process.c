@@ -10,10 +10,10 @@
 struct ob_worker_group {
 	ob_fork_server *fork_server;
 	const ob_universe *u;
-	uint32_t workers, ended; // workers: that are here
+	uint32_t workers, ended; // workers: of this rank
 };
 
-// Those of this rank: its simulators, and the arranger.
+// Forks the workers of this rank: its simulators, and the arranger.
 static bool fork_workers(ob_worker_group *g)
 {
 	const uint32_t all = ob_universe_workers(g->u), simulators = ob_universe_simulators(g->u),
@@ -32,7 +32,7 @@ static int process_fd(const ob_worker_group *g)
 static bool process_next_end(ob_worker_group *g, ob_worker_end *end)
 {
 	bool got = ob_fork_server_next_end(g->fork_server, end);
-	if (got) // else nothing may be written: a restart may be under way
+	if (got) // else no write is allowed: a restart may be under way
 		g->ended++;
 	return got;
 }
@@ -53,7 +53,7 @@ static uint64_t process_cpu(const ob_worker_info *w)
 	return ob_clock_cpu_of_process(w->pid);
 }
 
-// The fork server kills those that do not leave in time, when it is stopped.
+// Waits for the ends. A worker that does not leave in time is killed when the fork server is stopped.
 static bool process_join(ob_worker_group *g, double timeout)
 {
 	ob_worker_end end;

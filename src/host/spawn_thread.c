@@ -13,7 +13,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 
-// Thousands of threads must fit; a few may be as deep as a usual program's (the monolith is one of them).
+// Stack sizes: thousands of threads must fit; a few, the monolith among them, may be as deep as a usual program's.
 enum { MANY_WORKERS = 64, SMALL_STACK = 256 << 10, USUAL_STACK = 8 << 20 };
 
 typedef struct worker_thread {
@@ -51,7 +51,7 @@ static int thread_fd(const ob_worker_group *g)
 static bool thread_next_end(ob_worker_group *g, ob_worker_end *end)
 {
 	bool got = read(g->ends[0], end, sizeof *end) == sizeof *end;
-	if (got) // else nothing may be written: a restart may be under way
+	if (got) // else no write is allowed: a restart may be under way
 		g->ended++;
 	return got;
 }

@@ -6,10 +6,9 @@
 #include "host/accounting.h"
 #include "host/host_state.h"
 
-enum { SHOWN = 4, MOST_FACTOR = 10 }; // of patience: what a run waits for simulators that get no core
+enum { SHOWN = 4, MOST_FACTOR = 10 }; // MOST_FACTOR: times patience, limit for simulators that get no core
 
-// The workers that the step waits for: those that the gate waits for or, where it waits for none, the one that
-// schedules.
+// Workers that block the step: those that the gate waits for or, if it waits for none, the one that schedules.
 typedef struct blockers {
 	uint32_t worker[SHOWN], shown, more;
 } blockers;
@@ -18,7 +17,7 @@ static blockers find_blockers(const ob_host *h)
 {
 	blockers b = { .shown = 0 };
 	uint32_t scheduler = ob_step_scheduler(h->u);
-	bool waits = false; // else all have arrived, and the last of them has not opened the gate again
+	bool waits = false; // else all have arrived, and the last has not yet opened the gate again
 	for (uint32_t w = 0; w < h->workers && !waits; w++)
 		waits = ob_gate_waits_for(h->u, w);
 	for (uint32_t w = 0; w < h->workers; w++) {
@@ -52,7 +51,7 @@ static bool one_is_runnable(const ob_host *h)
 
 bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
 {
-	static const double busy = .02; // of a core: with less than that nobody computes
+	static const double busy = .02; // of a core: below that nothing computes
 	uint64_t step = ob_step_count(h->u);
 	if (step != s->step) {
 		*s = ob_stall_watch_start(h);
@@ -70,7 +69,7 @@ bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
 	return s->counted > h->patience || waited > MOST_FACTOR * h->patience;
 }
 
-// ---- who it is
+// ---- blocking workers
 
 uint32_t ob_stall_first(const ob_host *h)
 {

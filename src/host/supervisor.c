@@ -40,7 +40,7 @@ static void describe_worker(const ob_host *h, const ob_worker_end *end, char *te
 	snprintf(text + n, size - (size_t)n, "process %d)", end->pid);
 }
 
-// How a process has ended that was not to end.
+// Requests a restart after the unexpected end of a process.
 static void request_restart(ob_host *h, const ob_worker_end *end, const char *worker)
 {
 	const unsigned long long step = ob_step_count(h->u);
@@ -170,7 +170,7 @@ bool ob_supervisor_start(ob_host *h, ob_error *e)
 void ob_supervisor_stop(ob_host *h)
 {
 	uint64_t one = 1;
-	h->dismissed = true; // which it sees soon enough should it not be woken
+	h->dismissed = true; // seen soon enough even without a wake-up
 	if (h->supervised) {
 		ssize_t ignored = write(h->wake_fd, &one, sizeof one);
 		(void)ignored;

@@ -13,8 +13,8 @@
 
 enum { PERIOD_MS = 50, TAKEN_AT_ONCE = 4096 };
 
-// A span arrives when it ends, so inner ones arrive before the outer one, which the file must have first: they wait for
-// it.
+// State of one ring. A span arrives when it ends, so inner spans arrive before the outer one. They wait for it, because
+// the file must have the outer one first.
 typedef struct ring_state {
 	ob_trace_event *waiting;
 	uint32_t count, room;
@@ -30,7 +30,7 @@ struct ob_timeline {
 	uint64_t *state_until; // [capacity] ns: end of the last span of each object
 	uint64_t events, lost;
 	pthread_t thread;
-	pthread_mutex_t lock; // over ended
+	pthread_mutex_t lock; // guards ended
 	pthread_cond_t end;
 	bool ended;
 	ob_trace_event taken[TAKEN_AT_ONCE];
@@ -82,7 +82,7 @@ static void put(ob_timeline *t, uint32_t ring, const ob_trace_event *e)
 	uint32_t capacity = ob_universe_capacity(t->u);
 	bool objects = e->kind == OB_TRACE_STATE || e->kind == OB_TRACE_BIRTH || e->kind == OB_TRACE_DEATH;
 	if (objects ? e->a >= capacity : e->kind == OB_TRACE_KILLED && e->a >= ob_universe_workers(t->u))
-		return; // a damaged event: no writer of this program makes such a one
+		return; // a damaged event: this program writes none like it
 	if (objects || e->kind == OB_TRACE_KILLED) {
 		if (e->kind == OB_TRACE_BIRTH)
 			ob_trace_file_name_object(t->file, e->a);
@@ -100,7 +100,7 @@ static void put(ob_timeline *t, uint32_t ring, const ob_trace_event *e)
 	}
 }
 
-// Takes all that is in a ring now; events that come in the meantime may be left for the next time.
+// Takes all events now in a ring; later ones may stay for the next time.
 static void drain(ob_timeline *t, uint32_t ring)
 {
 	uint32_t n;
@@ -119,14 +119,14 @@ static void drain(ob_timeline *t, uint32_t ring)
 	t->ring[ring].lost = lost;
 }
 
-// The host's ring first, so that an object is known as added before workers' events of its states come.
+// Drains the host's ring first, so that an object is known as added before workers' events of its states.
 static void drain_all(ob_timeline *t)
 {
 	for (uint32_t ring = ob_trace_rings(t->u); ring-- > 0;)
 		drain(t, ring);
 }
 
-// true when the end came within the period
+// true if the end came within the period
 static bool wait_for_end(ob_timeline *t)
 {
 	struct timespec until;
@@ -203,7 +203,7 @@ ob_timeline *ob_timeline_start(ob_universe *u, const char *path, ob_error *e)
 	return NULL;
 }
 
-// Writes the spans that have no end yet: what workers are doing, and the states of objects.
+// Writes the unfinished spans: current activity of workers, and states of objects.
 static void put_unfinished(ob_timeline *t, const ob_trace_event *doing, uint64_t now)
 {
 	for (uint32_t ring = 0; ring < ob_universe_workers(t->u); ring++) {
@@ -234,7 +234,7 @@ static void finish_file(ob_timeline *t)
 {
 	uint32_t workers = ob_universe_workers(t->u);
 	ob_trace_event *doing = calloc(workers, sizeof *doing);
-	// first what workers are doing, then the complete spans: a span that ends in between counts as complete
+	// activity of workers before the complete spans: a span that ends in between counts as complete
 	for (uint32_t w = 0; doing && w < workers; w++)
 		doing[w] = ob_trace_unfinished(t->u, w);
 	drain_all(t);

@@ -18,15 +18,15 @@ enum {
 	WORKERS_PID = 2,
 	OBJECTS_PID = 3,
 	SUPERVISOR_TID = 5,
-	FIRST_TID = 10 // of the workers, and then of the objects: ids of threads are the file's own
+	FIRST_TID = 10 // of the workers, then of the objects: thread ids are the file's own
 };
 
 struct ob_trace_file {
 	const ob_universe *u;
 	const char *path;
-	int fd, error; // errno of the first write that failed
-	bool streamed; // a pipe: what is written stays
-	off_t end; // of the events in the file
+	int fd, error; // errno of the first failed write
+	bool streamed; // a pipe: written text cannot be overwritten
+	off_t end; // end of the events in the file
 	uint32_t workers;
 	bool monolith;
 	uint64_t zero; // ns
@@ -34,9 +34,9 @@ struct ob_trace_file {
 	char text[BUFFER];
 };
 
-// ---- text; printf takes ten times as long, and there are a million events
+// ---- text; printf takes ten times as long, for a million events
 
-// Of the text, the events stay; what stands behind them is written over by the next events.
+// Writes the text. Its events stay; the next events overwrite the rest.
 static void write_text(ob_trace_file *f, size_t events)
 {
 	for (size_t done = 0; done < f->used && !f->error;) {
@@ -87,7 +87,7 @@ static void add_eighths(ob_trace_file *f, uint64_t n)
 	add(f, parts[n % 8]);
 }
 
-// In quotes. Bytes that are no UTF-8 are taken as Latin-1.
+// Adds a string in quotes. Bytes that are no UTF-8 count as Latin-1.
 static void add_string(ob_trace_file *f, const char *text)
 {
 	static const char hex[] = "0123456789abcdef";
@@ -188,7 +188,7 @@ static void put_state(ob_trace_file *f, const ob_trace_event *e)
 	track t = of_object(f, e->a);
 	if (before >= OB_TRACE_MOTIONS)
 		return;
-	// the monolith does not say which objects touch
+	// the monolith does not report contacts
 	begin_span(f, t, f->monolith && before != OB_TRACE_ASLEEP ? "awake" : names[before], e);
 	end(f);
 	if (after == OB_TRACE_ASLEEP || (before == OB_TRACE_ASLEEP && after != OB_TRACE_ABSENT)) {
@@ -220,7 +220,7 @@ static const char *name_of(const ob_trace_file *f, const ob_trace_event *e)
 	return e->kind == OB_TRACE_SOLVE && f->monolith ? "world" : names[e->kind];
 }
 
-// What the numbers of a kind mean.
+// Adds the numbers of an event under the names of its kind.
 static void add_arguments(ob_trace_file *f, const ob_trace_event *e, bool unfinished)
 {
 	size_t start = f->used;
@@ -264,7 +264,7 @@ void ob_trace_file_put(ob_trace_file *f, uint32_t ring, const ob_trace_event *e,
 
 void ob_trace_file_put_death(ob_trace_file *f, uint32_t ring, const char *what, uint64_t step, uint64_t when)
 {
-	char cut[500]; // the longest event: the buffer is empty, and holds it however much of it must be escaped
+	char cut[500]; // the longest event: the buffer is empty, and holds it even if all of it must be escaped
 	snprintf(cut, sizeof cut, "%s", what);
 	ob_trace_file_flush(f);
 	begin_instant(f, of_ring(f, ring), "why it died", when);
@@ -344,7 +344,7 @@ ob_trace_file *ob_trace_file_open(const char *path, const ob_universe *u, ob_err
 		return NULL;
 	}
 	f->streamed = lseek(f->fd, 0, SEEK_CUR) < 0;
-	// something must stand before the first comma; an importer shows it nowhere
+	// an event must stand before the first comma; importers show it nowhere
 	add(f, "{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n");
 	add(f, "{\"ph\":\"M\",\"pid\":1,\"name\":\"process_labels\",\"args\":{\"labels\":\"obsim\"}}");
 	name_tracks(f);

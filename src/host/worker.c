@@ -15,7 +15,7 @@
 
 static _Thread_local jmp_buf no_memory;
 
-// Out of whatever the worker is in the middle of; what that holds is not given back.
+// Leaves from any point of the worker's code; memory held there is not freed.
 static void leave_without_memory(void)
 {
 	longjmp(no_memory, 1);
@@ -31,7 +31,7 @@ static const char *deal(void *wire, const void *const *mine, const size_t *bytes
 	return ob_wire_deal(wire, mine, bytes, at);
 }
 
-// The arranger of a rank: joins those of the others. false and e: it cannot.
+// Connects the arranger of a rank to those of the others. false and e: it cannot.
 static bool join(ob_sim *s, const ob_universe *u, ob_wire **wire, ob_error *e)
 {
 	const ob_ranks own = { ob_universe_rank(u), ob_universe_ranks(u) };
@@ -49,8 +49,8 @@ static int live(ob_universe *u, uint32_t worker)
 	ob_error e;
 	ob_wire *wire = NULL;
 	const bool arranges = ob_universe_contains(u) && worker == ob_universe_simulators(u);
-	int cpu = arranges ? -1 // where there is room
-			   : ob_cpu_pin(worker); // more workers than cores, and several ranks on one machine: in turn
+	int cpu = arranges ? -1 // any core
+			   : ob_cpu_pin(worker); // in turn, where workers or ranks of this machine exceed its cores
 	ob_ode_init();
 	ob_ode_thread_init();
 	ob_sim *s = ob_sim_create(u, worker, &e);
@@ -65,7 +65,7 @@ static int live(ob_universe *u, uint32_t worker)
 		}
 	}
 	if (s)
-		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from here on it is ready for the gate
+		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from now on it is ready for the gate
 	bool ready = s && ob_confine(u, worker, &e) && (!arranges || join(s, u, &wire, &e));
 	if (ready)
 		ob_sim_run(s);
