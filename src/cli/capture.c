@@ -13,7 +13,7 @@
 
 ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first)
 {
-	// 1e-9 of a frame: products like .1 s * 30 / s may fall short of the whole number that is meant
+	// 1e-9 of a frame: products like .1 s * 30 / s may fall short of the intended whole number
 	return (ob_frame_clock){
 		.fps = fps,
 		.step = step,
@@ -42,7 +42,7 @@ uint64_t ob_frame_clock_step(const ob_frame_clock *c, bool *between)
 
 uint64_t ob_frame_clock_need(const ob_frame_clock *c, uint64_t now)
 {
-	ob_frame_clock later = *c; // those of now are drawn while the universe runs on
+	ob_frame_clock later = *c; // current frames are drawn while the universe runs on
 	bool between;
 	uint64_t step;
 	while ((step = ob_frame_clock_step(&later, &between)) <= now)
@@ -59,7 +59,7 @@ struct ob_capture {
 	uint64_t first; // frame that is drawn
 	ob_renderer *renderer;
 	ob_camera_def camera;
-	const char *title; // of the scene, for the caption; NULL = none
+	const char *title; // the scene's, for the caption; NULL = none
 	int width, height;
 	ob_sink *sink[SINKS_MAX];
 	int sinks;

@@ -1,36 +1,36 @@
-// Frames of a run: draws those that fall due between two snapshots, and hands them to the sinks.
+// Frames of a run: draws the frames due between two snapshots, and passes them to the sinks.
 #ifndef OB_CLI_CAPTURE_H
 #define OB_CLI_CAPTURE_H
 
 #include "cli/request.h"
 #include "render/render.h"
 
-// When frames are due: frame f at f / fps, whatever the step. Pure.
+// Clock of frames: frame f is due at f / fps, whatever the step. Pure.
 typedef struct ob_frame_clock {
 	double fps, step; // 1/s, s
 	uint64_t frames; // in the whole run
 	uint64_t next; // the frame that is due next; == frames: all done
 } ob_frame_clock;
 
-// A duration has floor(duration * fps) frames: 600 for 10 s at 60, the first at 0, none at the end itself.
-// first: the step at which the run begins, from which on there are frames.
+// A duration has floor(duration * fps) frames: 600 for 10 s at 60, the first at 0, none at the end itself. first: step
+// at which the run begins, and its frames.
 ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first);
 double ob_frame_clock_time(const ob_frame_clock *c); // s, of the next frame
 // The step at or after the next frame; its time lies in (step - 1, step]. UINT64_MAX when all frames are done.
-// *between: it does not fall on that step, so that the step before is needed, too.
+// *between: the frame falls between two steps, so that the step before is needed, too.
 uint64_t ob_frame_clock_step(const ob_frame_clock *c, bool *between);
-// The first step after "now" that a frame needs to see, whether those of now have been drawn or not; UINT64_MAX = none.
+// First step after "now" that a frame needs, whether or not the current ones have been drawn; UINT64_MAX = none.
 uint64_t ob_frame_clock_need(const ob_frame_clock *c, uint64_t now);
 
 typedef struct ob_capture ob_capture;
 
 // Call after the host has started: processes must be forked before there is a renderer.
-// first: the step at which the run begins.
+// first: step at which the run begins.
 ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, double duration, double step,
 			    uint64_t first, ob_error *e);
-// Spans of drawing and handing over go into this host's trace.
+// Adds spans of drawing and output to this host's trace.
 void ob_capture_trace(ob_capture *c, ob_host *host);
-// The first step after "now" that is to be shown; UINT64_MAX = none
+// First step after "now" to show; UINT64_MAX = none
 uint64_t ob_capture_need(const ob_capture *c, uint64_t now);
 // Draws all frames up to now->time. prev: one step earlier, or older (then no frame is due between); NULL at the start.
 bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *now, ob_error *e);

@@ -1,4 +1,4 @@
-// The commands of obsim, and what they tell the shell.
+// The commands of obsim, and their exit codes.
 #ifndef OB_CLI_COMMAND_H
 #define OB_CLI_COMMAND_H
 
@@ -9,10 +9,10 @@ enum ob_exit {
 	OB_EXIT_FAILED, // the run failed, or was interrupted
 	OB_EXIT_USAGE, // the command line, the scene, the checkpoint or the record is wrong
 	OB_EXIT_MISSED, // lab --check: a target was missed
-	OB_EXIT_BROKEN, // run, serve --check: what simulators share broke an invariant
+	OB_EXIT_BROKEN, // run, serve --check: the simulators' shared state broke an invariant
 };
 
-// Each takes parsed arguments and returns an ob_exit; errors are already told on standard error.
+// Each takes parsed arguments and returns an ob_exit; it has printed errors on standard error.
 int ob_command_run(const ob_arguments *a);
 int ob_command_compare(const ob_arguments *a);
 int ob_command_top(const ob_arguments *a);
@@ -22,7 +22,7 @@ int ob_command_inspect(const ob_arguments *a);
 int ob_command_serve(const ob_arguments *a);
 int ob_command_send(const ob_arguments *a);
 int ob_command_export(const ob_arguments *a);
-int ob_command_draw_replay(const ob_arguments *a); // run with --replay: what was recorded, instead of a scene
+int ob_command_draw_replay(const ob_arguments *a); // run with --replay: draws a record instead of a scene
 int ob_command_rerun(const ob_arguments *a); // run with --replay-requests
 
 // One line on standard error, "obsim: ..."; returns code.

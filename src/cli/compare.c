@@ -1,4 +1,4 @@
-// obsim compare: reads what is asked; compare/ does the rest.
+// obsim compare: reads the command line; compare/ does the rest.
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@
 
 enum { USUAL_REPEATS = 3, WIDTH_LEAST = 80, WIDTH_MOST = 100 };
 
-// Options of obsim run that each run of the comparison gets, as they are
+// Options of obsim run that each run of the comparison gets unchanged
 static bool is_passed_on(ob_option_id id)
 {
 	switch (id) {
@@ -25,7 +25,7 @@ static bool is_passed_on(ob_option_id id)
 	case OB_OPTION_NARROW:
 	case OB_OPTION_SEED:
 	case OB_OPTION_HARDEN:
-		return false; // compare passes its own
+		return false; // set by compare itself
 	default:
 		return (ob_option_table[id].commands & OB_COMMAND_RUN) &&
 		       (ob_option_table[id].commands & OB_COMMAND_COMPARE) && id != OB_OPTION_JSON &&
@@ -67,7 +67,7 @@ static bool pass_on(ob_comparison *c, const ob_arguments *a, ob_error *e)
 	return fine;
 }
 
-// Each value is tried on the scene before anything runs.
+// Loads the scene with a value of the sweep. Each value is tried before anything runs.
 static bool load_point(ob_sweep_point *p, const ob_arguments *a, ob_error *e)
 {
 	ob_arguments own = *a;
@@ -187,7 +187,7 @@ int ob_command_compare(const ob_arguments *a)
 	else if (!ob_comparison_run(c, ob_version_commit, a->value[OB_OPTION_OUT], a->value[OB_OPTION_FRESH], &e))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	else
-		code = ob_ranks_started().rank > 0 ? OB_EXIT_OK : report(c, a); // the first has the records
+		code = ob_ranks_started().rank > 0 ? OB_EXIT_OK : report(c, a); // rank 0 has the records
 	ob_comparison_finish(c);
 	free(c);
 	return code;

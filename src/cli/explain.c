@@ -6,7 +6,7 @@
 
 #include "cli/quantity.h"
 
-// One line: a thing, and what there is to say about it.
+// Prints one line: an item and its description.
 __attribute__((format(printf, 3, 4))) static void line(FILE *f, const char *thing, const char *format, ...)
 {
 	va_list list;
@@ -17,7 +17,7 @@ __attribute__((format(printf, 3, 4))) static void line(FILE *f, const char *thin
 	va_end(list);
 }
 
-// What the scene's objects have that a part of the step would have to model.
+// Traits of the scene's objects that a part of the step would have to model.
 typedef struct traits {
 	uint32_t bodies, round, rough, elastic, forced, varying;
 } traits;

@@ -1,4 +1,4 @@
-// obsim export: a page of what was recorded.
+// obsim export: a page of a record.
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static bool check_operands(const ob_arguments *a, ob_error *e)
 	return true;
 }
 
-// The whole page, in memory; NULL and e.
+// Makes the whole page in memory; NULL and e.
 static ob_message *make_page(const char *path, ob_error *e)
 {
 	ob_recording *r = ob_recording_open(path, e);

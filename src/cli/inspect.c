@@ -1,4 +1,4 @@
-// obsim inspect: what a checkpoint holds.
+// obsim inspect: the contents of a checkpoint.
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "experiment/json.h"
 #include "measure/measure.h"
 
-// The figures that are not in the file as they are.
+// Figures derived from the file's contents.
 typedef struct summary {
 	uint64_t objects, bodies, asleep, touching;
 	double time; // s

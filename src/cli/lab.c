@@ -1,5 +1,5 @@
-// obsim lab: hard cases x engines x settings. What is measured is kept in the folder's file of results, so that the
-// same command goes on where it was broken off.
+// obsim lab: hard cases x engines x settings. The folder's file of results keeps all measurements, so that the same
+// command resumes where it was interrupted.
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@
 #include "plot/plot.h"
 #include "ranks/ranks.h"
 
-// What the command line asks for
+// Request of the command line
 typedef struct request {
 	ob_lab_plan plan;
 	double limit; // s
@@ -25,7 +25,7 @@ typedef struct request {
 	bool list, fresh, json, check, audit;
 } request;
 
-// Of "stak" no case is near, but what many begin with is.
+// Suggests a case family: "stak" has no similar case, but a prefix of many cases is similar.
 static bool suggest_family(const char *word, ob_error *e)
 {
 	ob_spelling s = ob_spelling_start(word);
@@ -77,7 +77,8 @@ static bool read_engines(ob_engine_list *l, const char *names, ob_error *e)
 	return ob_fail(e, "--engines: no engine '%s', only: %s", word, all);
 }
 
-// Engines that were named must be there; of all, the others are left out with a warning.
+// Checks that engines are available. Engines named on the command line must be; others that are missing are left
+// out with a warning.
 static bool check_engines(ob_engine_list *l, bool named, ob_error *e)
 {
 	size_t there = 0;
@@ -99,7 +100,7 @@ static bool check(const request *r, const ob_arguments *a, ob_error *e)
 	char word[64];
 	ob_engine_list own;
 	bool has_own = false;
-	ob_list_engines(&own, "obsim,obsim-lag", word); // those who promise something
+	ob_list_engines(&own, "obsim,obsim-lag", word); // the engines with accuracy targets
 	for (size_t i = 0; i < r->plan.engines.count; i++)
 		for (size_t j = 0; j < own.count; j++)
 			has_own |= r->plan.engines.of[i] == own.of[j];
@@ -130,7 +131,7 @@ static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 		engines = engines ? engines : "obsim";
 		sweep = OB_AUDIT_SWEEP;
 	}
-	// a minute's look: what obsim promises, beside one other engine, each as its users run it
+	// a quick look of a minute: obsim's targets, and one other engine, each with its users' usual settings
 	if (quick && !engines)
 		engines = "obsim,obsim-lag,ode-quick";
 	if (quick && !sweep)
@@ -154,7 +155,7 @@ static bool is_asked(const ob_lab_plan *p, const ob_result *r)
 	return of && engine;
 }
 
-// The results with the cases and engines of this call
+// Picks the results with the cases and engines of this call
 static bool pick(const ob_lab_plan *p, const ob_results *from, ob_results *to)
 {
 	memcpy(to->machine, from->machine, sizeof to->machine);
@@ -213,7 +214,7 @@ int ob_command_lab(const ob_arguments *a)
 	ob_results results = { 0 }, asked = { 0 };
 	ob_error e;
 	int code = OB_EXIT_OK;
-	const bool first = ob_ranks_started().rank == 0; // who has the records, and tells of them
+	const bool first = ob_ranks_started().rank == 0; // rank 0 has the records, and prints reports
 	if (!r || !read_request(r, a, &e))
 		code = ob_command_fail(OB_EXIT_USAGE, r ? e.text : "out of memory");
 	else if (r->list && first)

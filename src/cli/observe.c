@@ -115,7 +115,8 @@ static bool is_interrupted(void *host)
 	return ob_host_interrupted(host);
 }
 
-// Where that is too much to measure, the run goes on without: the worst is not known any more, also after a resume.
+// Measures penetration. If that is too much work, the run goes on without: the worst is unknown from then on, also
+// after a resume.
 static bool measure_penetration(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e)
 {
 	ob_error why;

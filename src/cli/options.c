@@ -164,8 +164,8 @@ static int unknown(const ob_arguments *a, const char *name, ob_error *e)
 	return ob_fail(e, "unknown option --%s: --help lists the options", name);
 }
 
-// The values that an argument like "obs|monolith" allows; upper case in it means that anything may stand there. A word
-// of earlier versions becomes the word of today.
+// Checks a value against an argument like "obs|monolith"; upper case in that allows anything. Replaces a word of
+// earlier versions by the current one.
 static bool check_choice(const ob_option *o, const char **value, ob_error *e)
 {
 	if (!o->argument || !strchr(o->argument, '|') || strpbrk(o->argument, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
@@ -242,7 +242,7 @@ static int find_short(const ob_arguments *a, char letter)
 	return -1;
 }
 
-// One option at *at; moves *at over a value that stands by itself.
+// Parses one option at *at; moves *at past a value in an argument of its own.
 static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_error *e)
 {
 	const char *text = argv[*at], *value = NULL;
@@ -280,7 +280,7 @@ static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_erro
 	return set(a, id, value, e);
 }
 
-// True of -1 and -.5, which are values: no option is a digit.
+// True for -1 and -.5, which are values: no option is a digit.
 static bool is_negative(const char *text)
 {
 	return text[0] == '-' && strchr("0123456789", text[1 + (text[1] == '.')]) && text[1 + (text[1] == '.')];

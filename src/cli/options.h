@@ -20,7 +20,7 @@ typedef enum ob_command_bit {
 	OB_COMMAND_EXPORT = 256,
 } ob_command_bit;
 
-// In the order in which help shows them.
+// In the order of the help.
 typedef enum ob_option_id {
 	OB_OPTION_DEFINE,
 	OB_OPTION_VARY,
@@ -97,8 +97,8 @@ typedef enum ob_option_id {
 typedef struct ob_option {
 	const char *group; // heading in the help; NULL = under the one before
 	const char *name; // without the dashes
-	// NULL = a flag; "[=WHAT]" = one that may have a value, behind a = alone; lower-case words with | between them are
-	// the only values allowed
+	// NULL = a flag; "[=WHAT]" = an optional value, only after "="; lower-case words with | between them are the
+	// only values allowed
 	const char *argument;
 	const char *help;
 	unsigned commands; // ob_command_bit
@@ -116,8 +116,8 @@ typedef struct ob_arguments {
 	const char **operands; // all, in order: only lab, send and export take more than one; NULL ends
 } ob_arguments;
 
-// Reads argv[0 .. argc-1] (what follows the command's name). The strings stay argv's. false and e on misuse.
-// Free with ob_options_finish in either case.
+// Parses argv[0 .. argc-1] (after the command's name). The strings stay argv's. false and e on misuse. Free with
+// ob_options_finish in either case.
 bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **argv, ob_error *e);
 void ob_options_finish(ob_arguments *a);
 

@@ -1,4 +1,4 @@
-// obsim paper: the paper's experiment, its tables and figures, and what becomes of its claims.
+// obsim paper: the paper's experiment, its tables and figures, and the verdict on its claims.
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,7 +74,7 @@ int ob_command_paper(const ob_arguments *a)
 	plan.objects = (uint32_t)objects;
 	plan.experiments = (uint32_t)experiments;
 	int code;
-	const bool first = ob_ranks_started().rank == 0; // who has the records, and tells of them
+	const bool first = ob_ranks_started().rank == 0; // rank 0 has the records, and prints reports
 	if (!ob_paper_run(&plan, ob_version_commit, out, a->value[OB_OPTION_FRESH], &r, &e) ||
 	    (first && !ob_paper_report(&r, out, &e)))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);

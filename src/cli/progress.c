@@ -16,10 +16,10 @@ enum { SILENCE_MS = 2000, PERIOD_MS = 200 };
 
 struct ob_progress {
 	const ob_universe *universe;
-	uint64_t first, steps; // when it began; of the whole run
+	uint64_t first, steps; // first: step at the beginning; steps: the whole run's
 	double begun; // s
 	pthread_t thread;
-	pthread_mutex_t lock; // over over
+	pthread_mutex_t lock; // guards over
 	pthread_cond_t ended;
 	bool over;
 };
@@ -85,7 +85,7 @@ ob_progress *ob_progress_begin(const ob_universe *u, uint64_t steps)
 	pthread_cond_init(&p->ended, &monotonic);
 	pthread_condattr_destroy(&monotonic);
 
-	// signals are for the main thread, which knows how to end the run
+	// leaves signals to the main thread, which ends the run
 	sigset_t before;
 	ob_interrupt_leave_to_main(&before);
 	int failed = pthread_create(&p->thread, NULL, run, p);

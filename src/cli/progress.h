@@ -1,5 +1,4 @@
-// The line on a terminal that says how far a long run has come. Its own thread looks into the universe, so that
-// nothing else has to pause for it.
+// Progress line of a long run on a terminal. Its own thread reads the universe, so that nothing has to pause for it.
 #ifndef OB_CLI_PROGRESS_H
 #define OB_CLI_PROGRESS_H
 
@@ -9,9 +8,9 @@
 
 typedef struct ob_progress ob_progress;
 
-// NULL where standard error is no terminal, and nothing is shown in the first two seconds.
-// u must live until the end is called. steps: of the whole run.
+// NULL if standard error is no terminal. Nothing is shown in the first two seconds.
+// u must live until ob_progress_end. steps: number of the whole run.
 ob_progress *ob_progress_begin(const ob_universe *u, uint64_t steps);
-void ob_progress_end(ob_progress *p); // takes the line away; NULL is allowed
+void ob_progress_end(ob_progress *p); // removes the line; NULL is allowed
 
 #endif

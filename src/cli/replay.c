@@ -1,4 +1,4 @@
-// obsim run --replay: frames of what was recorded.
+// obsim run --replay: frames of a record.
 #include <errno.h>
 #include <inttypes.h>
 #include <signal.h>
@@ -13,11 +13,11 @@ typedef struct drawing {
 	ob_replay_request request;
 	ob_recording *recording;
 	ob_capture *capture;
-	ob_snapshot before; // the state before the last one
+	ob_snapshot before; // previous state
 } drawing;
 
-// As many as the run drew, as far as its states go. A state counts as a step of the run, so that what lies between two
-// is drawn from both.
+// Draws as many frames as the run did, as far as its states go. A state counts as a step of the run, so that frames
+// between two states are drawn from both.
 static bool draw_all(drawing *d, ob_error *e)
 {
 	bool ended = false;

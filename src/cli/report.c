@@ -9,7 +9,7 @@
 
 #include "base/utf8.h"
 
-// One list for the writer and the reader; its names are a promise to scripts.
+// One list for the writer and the reader; its names are a stable interface for scripts.
 static const struct field {
 	const char *key;
 	enum kind { TEXT, COUNT, REAL } kind;
@@ -150,7 +150,7 @@ void ob_report_write_json(const ob_report *r, FILE *f)
 	ob_json_close(&j);
 }
 
-// The smallest number of substeps with which at least this share of the island-steps were solved.
+// Smallest number of substeps with which at least this share of the island-steps were solved.
 static uint64_t quantile(const ob_counters *c, double share)
 {
 	uint64_t all = 0, sum = 0;
@@ -244,7 +244,7 @@ static void print_setup(const ob_report *r, FILE *f)
 	const char *plural = r->workers == 1 ? "" : r->isolation[0] == 't' ? "s" : "es";
 	char scene[sizeof r->scene];
 	memcpy(scene, r->scene, sizeof scene);
-	ob_utf8_make_plain(scene); // a file's name may be anybody's
+	ob_utf8_make_plain(scene); // a file's name may hold any bytes
 	fprintf(f, "%s: %" PRIu64 " objects, %" PRIu64 " steps, %g s simulated", scene, r->objects, r->steps,
 		r->simulated_s);
 	if (!isnan(r->resumed_s))
@@ -257,7 +257,7 @@ static void print_setup(const ob_report *r, FILE *f)
 		print_simulators(r, plural, f);
 }
 
-// Simulated by this process (s)
+// Time (s) that this process simulated
 static double own_time(const ob_report *r)
 {
 	return isnan(r->resumed_s) ? r->simulated_s : r->simulated_s - r->resumed_s;

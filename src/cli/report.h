@@ -1,4 +1,4 @@
-// The report of a run: what people and programs are told at its end. docs/obsim.1 defines each figure.
+// The report of a run: its results for people and programs. docs/obsim.1 defines each figure.
 #ifndef OB_CLI_REPORT_H
 #define OB_CLI_REPORT_H
 
@@ -19,30 +19,30 @@ typedef struct ob_report {
 	char commit[64];
 	char state_hash[24]; // 16 hex digits
 	uint64_t objects, bodies; // present at the end: all; those that move
-	uint64_t steps, substeps, iterations, lag, seed, workers; // substeps 0: as a tolerance chose
-	uint64_t load, box_tests; // numbers added up in each test of two boxes; how many tests there were
+	uint64_t steps, substeps, iterations, lag, seed, workers; // substeps 0: chosen by a tolerance
+	uint64_t load, box_tests; // numbers added up in each test of two boxes; number of tests
 	uint64_t frames;
 	uint64_t checkpoints, checkpoint_bytes; // written; of the last
-	uint64_t trace_events, trace_lost; // told by all; of them not in the file
+	uint64_t trace_events, trace_lost; // events of all; events that the file lacks
 	uint64_t memory_bytes;
-	uint64_t substeps_min, substeps_median, substeps_max; // of island-steps, where a tolerance chose; else 0
+	uint64_t substeps_min, substeps_median, substeps_max; // substeps of island-steps, if a tolerance chose; else 0
 	uint64_t islands_redone, islands_over;
 	double tolerance, error_reached; // m
 	double energy_recovered; // J
 	double step, simulated_s;
-	double resumed_s; // s, simulated: where this process took the run over; NaN = it began it
-	double checkpoint_s; // s, wall: for which checkpoints held the run up; NaN = none asked for
+	double resumed_s; // s, simulated: start of a process that resumed the run; NaN = it began it
+	double checkpoint_s; // s, wall: pauses for checkpoints; NaN = none requested
 	double wall_s, cpu_s, total_s;
 	double body_step_cpu_us;
 	double startup_s, step_p50_s, step_p90_s, step_p99_s, step_max_s;
 	double critical_s, critical_16_s, work_s, held_s, gate_s, gate_cpu_s, idle_s, elapsed_s; // of all workers; NaN unless timed
 	double host_cpu_s, renderer_cpu_s;
-	char fault_kinds[160]; // "kill 3, exit 1": as many as were injected of each; "" = none
+	char fault_kinds[160]; // "kill 3, exit 1": injected faults by kind; "" = none
 	uint64_t faults; // of all kinds
-	uint64_t faults_overwritten; // counters of faults that simulators have written over: there were more
-	uint64_t switches, deaths, frozen, worker_memory_bytes; // frozen: objects, for deaths
-	ob_death death[OB_DEATHS_KEPT]; // the last of them, oldest first, ..
-	uint32_t deaths_told; // .. so many
+	uint64_t faults_overwritten; // counters of faults that simulators have overwritten: there were more
+	uint64_t switches, deaths, frozen, worker_memory_bytes; // frozen: objects, because of deaths
+	ob_death death[OB_DEATHS_KEPT]; // the last of them, oldest first
+	uint32_t deaths_told; // number of entries in death
 	double energy_start, energy_end, energy_gain_max;
 	double momentum_error;
 	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;
@@ -52,10 +52,10 @@ typedef struct ob_report {
 
 void ob_report_write_json(const ob_report *r, FILE *f);
 
-// Few aligned lines for a person.
+// Prints some aligned lines for a person.
 void ob_report_print(const ob_report *r, FILE *f);
 
-// Only the members, for an object that the caller has open.
+// Writes only the members, into an object that the caller has opened.
 void ob_report_write_members(const ob_report *r, ob_json *j);
 
 // Fills the figures of the tolerance, and the workers' time if the run was timed, from counters summed over all workers.
@@ -63,7 +63,7 @@ void ob_report_count(ob_report *r, const ob_counters *c, bool timed);
 // Fills the figures of faults.
 void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS], uint32_t overwritten);
 
-// Whether a tolerance was asked for or is the default, and an island's error stayed above it.
+// True if a tolerance is set or the default, and an island's error stayed above it.
 bool ob_report_missed_tolerance(const ob_report *r);
 
 typedef struct ob_explained {
@@ -75,7 +75,7 @@ typedef struct ob_explained {
 	double cpu_s; // of all workers
 } ob_explained;
 
-// Says what a run modelled, what it left out and why, and what each section of its steps cost.
+// Explains what a run modelled, what it left out and why, and the cost of each section of its steps.
 void ob_explain_print(const ob_explained *x, FILE *f);
 
 #endif

@@ -41,14 +41,14 @@ static bool copy_path(char copy[PATH_MAX], const char *option, const char *path,
 	return n < PATH_MAX ? true : ob_fail(e, "--%s: the path is too long", option);
 }
 
-// Whether making the directory "made" makes dir on the way
+// True if making the directory "made" makes dir on the way
 static bool is_made(const char *dir, const char *made)
 {
 	size_t n = strlen(dir);
 	return made && strncmp(made, dir, n) == 0 && (made[n] == '/' || !made[n]);
 }
 
-// A file that may be written: its directory is there, or will be when "made" is; NULL = nothing will
+// Checks that a file may be written: its directory exists, or will once "made" does; NULL = none will be made
 static bool check_file(const char *option, const char *path, const char *made, ob_error *e)
 {
 	char copy[PATH_MAX];
@@ -71,7 +71,7 @@ static bool check_file(const char *option, const char *path, const char *made, o
 	return true;
 }
 
-// A directory for frames: made when it is missing, with all above it.
+// Checks a directory for frames: it will be made if missing, with all its parents.
 static bool check_directory(const char *option, const char *path, ob_error *e)
 {
 	struct stat s;
@@ -119,7 +119,7 @@ static bool check_outputs(const ob_arguments *a, ob_error *e)
 	return true;
 }
 
-// A checkpoint is written beside its file, which it then replaces: that must be a file, or nothing yet.
+// Checks the file of a checkpoint, which is written beside it and then replaces it: a regular file, or none yet.
 static bool check_checkpoint(const char *path, ob_error *e)
 {
 	struct stat s;
@@ -144,7 +144,7 @@ static bool read_checkpoint(ob_run_request *r, const ob_arguments *a, ob_error *
 	return real(a, OB_OPTION_EVERY, 1e9, &r->every, e) && check_checkpoint(r->checkpoint, e);
 }
 
-// What belongs to the run that goes on.
+// Refuses options that belong to the run that is resumed.
 static bool check_resumed(const ob_arguments *a, ob_error *e)
 {
 	static const ob_option_id kept[] = { OB_OPTION_STEP,      OB_OPTION_SEED,     OB_OPTION_ARCH,
@@ -247,7 +247,7 @@ static bool read_harden(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	if (!ob_harden_read(&r->harden, a->value[OB_OPTION_HARDEN], e))
 		return false;
-	if (a->command == OB_COMMAND_COMPARE) // which has it as configurations
+	if (a->command == OB_COMMAND_COMPARE) // compare sets it by configurations
 		r->harden = 0;
 	if (r->harden && r->asked.monolith == 1)
 		return ob_fail(e,
@@ -257,7 +257,7 @@ static bool read_harden(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
-// What becomes of the run when simulators die, and how often they may: "5/10" is five times within ten seconds.
+// Reads the policy for deaths of simulators, and their limit: "5/10" is five deaths within ten seconds.
 static bool read_deaths(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	const char *policy = a->value[OB_OPTION_ON_DEATH], *limit = a->value[OB_OPTION_RESTARTS];
@@ -334,7 +334,7 @@ static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
-// One of "a+b+c"; moves *at behind it.
+// Reads one kind of "a+b+c"; moves *at past it.
 static bool read_fault_kind(ob_fault_plan *f, const char **at, ob_error *e)
 {
 	char word[16];
@@ -348,7 +348,7 @@ static bool read_fault_kind(ob_fault_plan *f, const char **at, ob_error *e)
 	return true;
 }
 
-// One "name=value"; moves *at behind it.
+// Reads one "name=value"; moves *at past it.
 static bool read_fault_number(ob_fault_plan *f, const char **at, ob_error *e)
 {
 	char word[64], *value;
@@ -373,7 +373,7 @@ static bool read_fault_number(ob_fault_plan *f, const char **at, ob_error *e)
 	return true;
 }
 
-// "kill+exit:p=.001,seed=7"
+// Reads faults: "kill+exit:p=.001,seed=7"
 static bool read_fault(ob_run_request *r, const char *text, ob_error *e)
 {
 	ob_fault_plan f = { .seed = 1, .words = 1, .sleep_ms = 20 };
@@ -412,7 +412,7 @@ static bool check_name(const char *name, ob_error *e)
 	return true;
 }
 
-// What is run runs as fast as it can, and what people look at as they live, unless something else is said.
+// Reads the pace. By default, run is as fast as possible, and serve runs in real time.
 static bool read_pace(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	const char *text = a->value[OB_OPTION_PACE];
@@ -541,7 +541,7 @@ bool ob_request_check_camera(const ob_frames_request *f, const ob_scene *s, ob_e
 	return ob_fail(e, "--camera %s: the scene has none of this name, only: %s", name, all);
 }
 
-// What the run is now known to be, against what is asked of it.
+// Checks the resolved run against the request.
 static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
 	if (r->run.monolith && r->explain)

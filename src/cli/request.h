@@ -1,4 +1,4 @@
-// What the command line asks of a run: checked, but not yet joined with what the scene says.
+// Request of the command line for a run: checked, but not yet merged with the scene.
 #ifndef OB_CLI_REQUEST_H
 #define OB_CLI_REQUEST_H
 
@@ -11,8 +11,8 @@
 
 typedef struct ob_frames_request {
 	bool wanted; // any of the three below
-	const char *dir, *video, *raw; // NULL = not asked for; raw "-" = standard output
-	const char *gpu, *camera; // NULL = the renderer's choice, the scene's first
+	const char *dir, *video, *raw; // NULL = not requested; raw "-" = standard output
+	const char *gpu, *camera; // NULL = the renderer's choice, the scene's first camera
 	double fps; // per simulated second
 	ob_quality quality;
 	int width, height, samples;
@@ -22,11 +22,11 @@ typedef struct ob_frames_request {
 typedef enum ob_measure_when {
 	OB_MEASURE_STEPS, // each step
 	OB_MEASURE_ENDS, // the start and the end
-	OB_MEASURE_PROFILE, // these, and where the workers' time goes
+	OB_MEASURE_PROFILE, // start and end, and the workers' time by section
 } ob_measure_when;
 
 typedef struct ob_run_request {
-	const char *scene; // path; NULL until a resumed run knows it
+	const char *scene; // path; NULL until a resumed run sets it
 	ob_scene_options scene_options;
 	const char *name; // of the universe; NULL = the host's choice
 	ob_isolation isolation;
@@ -36,47 +36,48 @@ typedef struct ob_run_request {
 	double patience; // s, for a step; 0 = the host's choice
 	ob_on_death on_death;
 	ob_restart_limit limit; // of deaths
-	ob_run_settings asked; // a layer: what the command line leaves alone is unset
+	ob_run_settings asked; // a layer: settings that are not on the command line are unset
 	ob_run_settings run; // after ob_request_resolve
 	bool explain;
 	bool strict; // a missed tolerance is a failure
-	bool check; // what simulators share, after each step
+	bool check; // checks the simulators' shared state after each step
 	ob_measure_when measure;
 	ob_frames_request frames;
 	double pace; // simulated seconds a second; OB_PACE_MAX
-	const char *record, *series, *trace, *json; // paths; NULL = not asked for; json "-" = standard output
-	const char *checkpoint, *resume; // paths; NULL = not asked for
+	const char *record, *series, *trace, *json; // paths; NULL = not requested; json "-" = standard output
+	const char *checkpoint, *resume; // paths; NULL = not requested
 	double every; // s, simulated, between checkpoints
 	ob_fault_plan fault; // to inject; zeroed = none
 } ob_run_request;
 
-// false and e on what is no number, out of range, contradictory, or names a directory that is not there.
+// false and e on malformed numbers, values out of range, contradictions, or missing directories.
 // The strings stay those of a.
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 
-// Where the command line is silent, the scene decides: fills the duration and the settings of the run.
+// Fills duration and settings from the scene where the command line leaves them open. false and e when the result
+// cannot be run.
 // false and e when the result cannot be run.
 bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e);
 
-// The same of a run that goes on from a checkpoint, whose settings it keeps; s is the scene of saved, which must
-// outlive r.
+// The same for a run that resumes from a checkpoint and keeps its settings; s is the scene of saved, which must outlive
+// r.
 bool ob_request_resume(ob_run_request *r, const ob_saved_run *saved, const ob_scene *s, ob_error *e);
 
-// What is asked of a run that is drawn again from its record; --replay is given.
+// Request to draw a run again from its record; --replay is given.
 typedef struct ob_replay_request {
 	const char *record; // path
 	double duration; // s from the run's start at which to end; 0 = the record's end
 	ob_frames_request frames;
 } ob_replay_request;
 
-// false and e when there is a scene beside --replay, or another option than those that are allowed.
+// false and e when there is a scene beside --replay, or an option that is not allowed.
 bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e);
-// false and e on what means nothing to a replay, or is wrong otherwise.
+// false and e on options that have no meaning for a replay, or other errors.
 bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e);
-// false and e when none of the cameras has the name that is asked for.
+// false and e when no camera has the requested name.
 bool ob_request_check_camera(const ob_frames_request *f, const ob_scene *s, ob_error *e);
 
-// What it asks of the host; of a resolved one.
+// Configuration of the host for a resolved request.
 ob_host_config ob_request_host(const ob_run_request *r);
 
 // Steps in a duration: the first step boundary at or after its end.

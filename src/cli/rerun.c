@@ -41,7 +41,7 @@ void ob_rerun_log_state(ob_request_log *log, const ob_host *h, uint64_t *next)
 	}
 }
 
-// Runs from state to state that the log has. false and e: the run failed, or came to another.
+// Runs from state to state of the log. false and e: the run failed, or reached a different state.
 static bool compare_states(ob_host *h, const ob_logged_requests *l, ob_error *e)
 {
 	uint64_t hash = 0;
@@ -62,7 +62,7 @@ static bool compare_states(ob_host *h, const ob_logged_requests *l, ob_error *e)
 	return true;
 }
 
-// It ends where the log does, and writes nothing.
+// Refuses options without effect: a replay ends with the log, and writes no files.
 static bool check_options(const ob_arguments *a, ob_error *e)
 {
 	static const ob_option_id useless[] = { OB_OPTION_DURATION, OB_OPTION_FRAMES,     OB_OPTION_VIDEO,

@@ -1,13 +1,13 @@
-// Logs of requests (host/request_log.h): which run they are of, and the run that carries them out again.
+// Logs of requests (host/request_log.h): their heads, states, and the run that carries them out again.
 #ifndef OB_CLI_RERUN_H
 #define OB_CLI_RERUN_H
 
 #include "cli/request.h"
 
-// The head of a log of this run. spare: slots for objects that come on request.
+// Returns the head of a log of this run. spare: slots for objects added on request.
 ob_request_log_head ob_rerun_head(const ob_run_request *r, const ob_scene *s, uint32_t spare);
-// Logs the state from step *next on, and sets the step for the next. The universe stands still at a step boundary. log
-// NULL: nothing.
+// Logs the state if step *next has come, and advances *next. The universe stands still at a step boundary. log NULL:
+// does nothing.
 void ob_rerun_log_state(ob_request_log *log, const ob_host *h, uint64_t *next);
 
 #endif

@@ -23,23 +23,23 @@
 typedef struct run {
 	ob_run_request request;
 	ob_ranks ranks;
-	char own_checkpoint[PATH_MAX]; // of a rank that is not the first
+	char own_checkpoint[PATH_MAX]; // set on ranks other than 0
 	ob_scene *scene;
 	ob_host *host;
 	ob_capture *capture; // NULL = no frames
 	ob_recorder *recorder; // NULL = none
 	ob_pace pace;
 	ob_observer observer;
-	ob_snapshot now, prev; // prev: the last one before now, for what is drawn between both
-	ob_saved_run saved; // that it goes on from; else zeroed
-	ob_checkpoint_file saved_file; // what saved points into
+	ob_snapshot now, prev; // prev: the snapshot before now, for frames between both
+	ob_saved_run saved; // start of a resumed run; else zeroed
+	ob_checkpoint_file saved_file; // storage of saved
 	ob_checkpoint_writer *checkpoints; // NULL = none
 	uint64_t first; // step at which this process began
 	uint64_t steps; // to do, from the start of the run
-	uint64_t every, kept; // steps from one checkpoint to the next; that of the last one; UINT64_MAX = none yet
+	uint64_t every, kept; // every: steps between checkpoints; kept: step of the last one; UINT64_MAX = none yet
 	uint64_t frames;
 	double begun; // s
-	double own_cpu, drawing_cpu; // s of this thread: when stepping began; while it drew
+	double own_cpu, drawing_cpu; // CPU time of this thread (s): when stepping began; while it drew
 	ob_timeline_sums trace;
 	ob_checkpoint_sums checkpoint_sums;
 } run;
@@ -54,7 +54,7 @@ static uint64_t next_checkpoint(const run *r)
 	return earlier((r->now.step / r->every + 1) * r->every, r->steps);
 }
 
-// The next step boundary that somebody wants to see; UINT64_MAX when the run is done.
+// Next step boundary that an output needs; UINT64_MAX when the run is done.
 static uint64_t next_boundary(const run *r)
 {
 	uint64_t now = r->now.step, next = r->steps;
@@ -71,7 +71,7 @@ static uint64_t next_boundary(const run *r)
 	return next;
 }
 
-// What is done with the newest snapshot, while the universe steps on.
+// Uses the newest snapshot while the universe steps on.
 static bool use_snapshot(run *r, ob_error *e)
 {
 	const ob_snapshot *prev = r->now.step > r->first ? &r->prev : NULL;
@@ -114,7 +114,7 @@ static bool measures_all(const run *r)
 	return r->request.measure == OB_MEASURE_STEPS && (!r->request.resume || r->saved.figures.each_step);
 }
 
-// Of the step of the newest snapshot, where the universe stands.
+// Writes a checkpoint of the newest snapshot's step, where the universe stands.
 static void keep_checkpoint(run *r)
 {
 	const ob_run_request *q = &r->request;
@@ -138,14 +138,14 @@ static void keep_checkpoint(run *r)
 	r->kept = r->now.step;
 }
 
-// Of several ranks each keeps one from its first step on, for any may be left without the others.
+// True if a checkpoint is due. Each of several ranks writes one from its first step on, for any may survive the others.
 static bool is_checkpoint_due(const run *r)
 {
 	return r->checkpoints && r->now.step != r->kept && r->now.step % r->every == 0 &&
 	       (r->now.step > r->first || r->ranks.ranks > 1);
 }
 
-// How far of the way to the next boundary the clock lets it go
+// Returns how far the clock lets the run go towards the next boundary
 static uint64_t keep_pace(run *r, uint64_t next)
 {
 	uint64_t due = next;
@@ -176,7 +176,7 @@ static bool step_through(run *r, ob_error *e)
 		if (next == UINT64_MAX)
 			return true;
 		if (!ob_host_wait(r->host, e)) {
-			// Ctrl-C leaves it at a boundary, from where the report is made; of several ranks each alone
+			// Ctrl-C leaves it at a boundary, which the report uses; several ranks stop at different ones
 			if (ob_host_interrupted(r->host) && r->ranks.ranks < 2)
 				take_snapshot(r, NULL);
 			return false;
@@ -186,11 +186,11 @@ static bool step_through(run *r, ob_error *e)
 	}
 }
 
-// Everything that is written along the run. After the host's start, which forks.
+// Opens all outputs of the run. After the host's start, which forks.
 static bool open_outputs(run *r, ob_error *e)
 {
 	const ob_run_request *q = &r->request;
-	if (q->frames.wanted) { // first, for it makes directories
+	if (q->frames.wanted) { // first: it makes directories
 		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->run.step_length, r->first, e);
 		if (!r->capture)
 			return false;
@@ -210,7 +210,7 @@ static bool open_outputs(run *r, ob_error *e)
 					  .duration = q->duration,
 					  .commit = ob_version_commit };
 		ob_universe_get_info(ob_host_universe(r->host), &facts.universe);
-		facts.universe.capacity = r->scene->objects; // slots that are spare have columns once they are used
+		facts.universe.capacity = r->scene->objects; // spare slots get columns once they are used
 		r->recorder = ob_recorder_create(q->record, &facts, e);
 		if (!r->recorder)
 			return false;
@@ -218,7 +218,7 @@ static bool open_outputs(run *r, ob_error *e)
 	return true;
 }
 
-// Closes all, whatever fails; e holds the first failure.
+// Closes all, even after failures; e holds the first failure.
 static bool close_outputs(run *r, ob_error *e)
 {
 	bool fine = true;
@@ -244,7 +244,7 @@ static void count_objects(const ob_snapshot *s, ob_report *p)
 	}
 }
 
-// Steps times bodies since a time (s), of those that come and go only while they are there
+// Steps times bodies since a time (s); counts temporary bodies only while they exist
 static double body_steps(const run *r, double since)
 {
 	double sum = 0;
@@ -257,7 +257,7 @@ static double body_steps(const run *r, double since)
 	return sum;
 }
 
-// Simulated, when this process began (s)
+// Simulated time (s) when this process began
 static double first_time(const run *r)
 {
 	return (double)r->first * r->request.run.step_length;
@@ -318,7 +318,7 @@ static void report_time(const run *r, const ob_host_times *times, ob_report *p)
 	p->step_p99_s = times->step_p99_s;
 	p->step_max_s = times->step_max_s;
 	p->elapsed_s = times->elapsed_s;
-	// each worker stands at the gate while the host looks at what they have done
+	// workers wait at the gate while the host examines the state
 	p->idle_s = timed ? (times->elapsed_s - times->wall_s) * (double)p->workers : NAN;
 	p->gate_s = timed ? times->gate_s - p->idle_s : NAN;
 	p->critical_s = timed ? times->critical_s : NAN;
@@ -340,7 +340,7 @@ static void report_separation(const run *r, ob_report *p)
 	ob_separation apart = { NAN, NAN, 0 };
 	ob_universe_info info;
 	ob_universe_get_info(ob_host_universe(r->host), &info);
-	const bool whole = r->ranks.ranks < 2 || r->now.step == info.step; // who is left alone lacks what others solve
+	const bool whole = r->ranks.ranks < 2 || r->now.step == info.step; // else others' data is missing
 	if (whole && ob_snapshot_take(&s, ob_host_universe(r->host), true, NULL))
 		ob_measure_separation(&s, &apart, is_interrupted, r->host);
 	p->separation_max_m = apart.max_m;
@@ -409,14 +409,14 @@ static bool write_report(const run *r, const ob_report *p, ob_error *e)
 	return !q->json || write_json(q->json, p, e);
 }
 
-// Whether it is kept as it was left. Several ranks are left in the middle of a step, each in its own: there the last
-// that all have come to counts.
+// True if the end gets a checkpoint. After an interrupt, several ranks stop within different steps: the last step that
+// all completed counts.
 static bool is_end_kept(const run *r, bool done, bool interrupted)
 {
 	return r->checkpoints && r->kept != r->now.step && (done || (interrupted && r->ranks.ranks < 2));
 }
 
-// Each rank for itself: nobody knows which of them are left.
+// Prints the command to resume. Each rank prints it, because none can tell which ranks survive.
 static void tell_of_checkpoint(const run *r)
 {
 	if (r->checkpoint_sums.written > 0)
@@ -424,7 +424,7 @@ static void tell_of_checkpoint(const run *r)
 			    (double)r->kept * r->request.run.step_length, r->request.checkpoint);
 }
 
-// From the running host to its report. Returns an ob_exit.
+// Carries out the run, from the running host to its report. Returns an ob_exit.
 static int carry_out(run *r)
 {
 	ob_error e = { "" }, e_close, e_report;
@@ -444,7 +444,7 @@ static int carry_out(run *r)
 		code = ob_command_fail(OB_EXIT_FAILED, "interrupted: the files hold what was done so far");
 	else if (!done)
 		code = ob_command_fail(ob_host_broke_invariant(r->host) ? OB_EXIT_BROKEN : OB_EXIT_FAILED, e.text);
-	// a sink that broke the run tells the same again when it is closed
+	// a sink that broke the run reports its error again when it is closed
 	if (!closed && (done || interrupted))
 		code = ob_command_fail(OB_EXIT_FAILED, e_close.text);
 	if (!done && closed && r->ranks.ranks > 1)
@@ -462,7 +462,7 @@ static int carry_out(run *r)
 	return code;
 }
 
-// The scene of the run, and what is asked of it, joined. NULL and e on failure.
+// Reads the scene of the run, and merges it with the request. NULL and e on failure.
 static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 {
 	ob_run_request *q = &r->request;
@@ -485,9 +485,9 @@ static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 	return r->scene;
 }
 
-// One universe on several machines: simulators in processes that hand over what they find and can spoil nothing else,
-// for most of what a rank has no other compares; an end where one dies; and on this rank no more than that and its
-// checkpoints: what is made of the run is rank 0's.
+// Sets up a rank of a universe on several machines. Simulators are processes with outboxes, so that they cannot damage
+// shared state: most of a rank's data is compared with no other's. The run ends when one dies. Ranks other than 0 write
+// only checkpoints: all other output is rank 0's.
 static bool share(run *r, ob_ranks ranks, ob_error *e)
 {
 	ob_run_request *q = &r->request;
@@ -505,10 +505,10 @@ static bool share(run *r, ob_ranks ranks, ob_error *e)
 	q->patience = 1e9; // another rank may be slow
 	if (ranks.rank == 0)
 		return true;
-	q->name = NULL; // for the first may be on this machine
+	q->name = NULL; // rank 0 may be on this machine
 	q->frames.wanted = q->explain = false;
 	q->record = q->json = q->series = q->trace = NULL;
-	if (q->checkpoint) { // its own, for the same reason
+	if (q->checkpoint) { // its own file, for the same reason
 		const int n = snprintf(r->own_checkpoint, sizeof r->own_checkpoint, "%s.%u", q->checkpoint, ranks.rank);
 		if (n < 0 || (size_t)n >= sizeof r->own_checkpoint)
 			return ob_fail(e, "--checkpoint: the name is too long");
@@ -556,7 +556,7 @@ int ob_command_run(const ob_arguments *a)
 	prepare(&r, &config);
 
 	signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message
-	ob_interrupt_watch(); // before there is anything that Ctrl-C would leave behind
+	ob_interrupt_watch(); // before there is anything to clean up after Ctrl-C
 	r.host = ob_host_start(r.scene, &config, &e);
 	int code = r.host ? carry_out(&r) : ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_host_stop(r.host);

@@ -1,4 +1,4 @@
-// obsim send: asks a running universe for something, from another terminal or a program.
+// obsim send: sends a request to a running universe, from another terminal or a program.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,11 +11,11 @@
 typedef struct sending {
 	const char *universe;
 	ob_universe *u;
-	const char *const *word; // behind the verb; NULL ends
+	const char *const *word; // after the verb; NULL ends
 	ob_request request;
 } sending;
 
-// By its number or its name.
+// Finds an object by its number or its name.
 static bool find_object(sending *s, const char *text, ob_error *e)
 {
 	char *end;
@@ -40,7 +40,7 @@ static bool find_object(sending *s, const char *text, ob_error *e)
 			 : ob_fail(e, "universe \"%s\" has no object \"%s\"", s->universe, text);
 }
 
-// As the scene says it: one call, or several.
+// Creates objects with the syntax of scenes: one call, or several.
 static bool create(sending *s, ob_error *e)
 {
 	const char *text = s->word[0];

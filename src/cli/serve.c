@@ -1,4 +1,4 @@
-// obsim serve: one scene that runs while people look at it, and change it, from their browsers.
+// obsim serve: one scene that runs while people view and change it in their browsers.
 #include "serve/serve.h"
 
 #include <math.h>
@@ -15,8 +15,8 @@
 #include "cli/version.h"
 #include "serve/film.h"
 
-static const double patience = .05; // s, in which requests are heard while nothing is due
-static const double go_time = .02; // s that the universe is let run at once where it runs as fast as it can
+static const double patience = .05; // s, in which requests are taken while no step is due
+static const double go_time = .02; // s that the universe runs between checks if it is not paced
 
 typedef struct serve_request {
 	ob_run_request run;
@@ -48,7 +48,7 @@ static bool read_request(serve_request *q, const ob_arguments *a, ob_error *e)
 	       read_count(a, OB_OPTION_ROOM, 1000000, &q->room, e);
 }
 
-// Lets the universe run at its pace until Ctrl-C, and on a duration's end lets it stand, still to be looked at.
+// Runs the universe at its pace until Ctrl-C. After the duration's end it stands still for viewers.
 static bool live(ob_host *h, ob_pace *pace, const serve_request *s, uint64_t last, ob_error *e)
 {
 	const ob_run_request *q = &s->run;
@@ -67,10 +67,10 @@ static bool live(ob_host *h, ob_pace *pace, const serve_request *s, uint64_t las
 		at_once = due == UINT64_MAX && done < last;
 		due = at_once ? done + batch : due;
 		due = due < last ? due : last;
-		if (done == last) // its end has come, and it is still looked at
+		if (done == last) // the end is reached, and viewers stay
 			nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * patience) }, NULL);
 		began = ob_clock_wall();
-		ob_host_go(h, due); // where nothing is due, requests are heard all the same
+		ob_host_go(h, due); // while no step is due, requests are still taken
 		done = due;
 	}
 	return ob_host_interrupted(h);
@@ -94,7 +94,7 @@ static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
 	return ended ? OB_EXIT_OK : ob_command_fail(failed, e.text);
 }
 
-// Until Ctrl-C
+// Serves until Ctrl-C
 static int show_film(const serve_request *q, ob_error *e)
 {
 	ob_server *server = ob_server_start(&q->server, NULL, NULL, e);
@@ -162,7 +162,7 @@ int ob_command_serve(const ob_arguments *a)
 	uint64_t last =
 		a->value[OB_OPTION_DURATION] ? ob_request_steps(q.run.duration, q.run.run.step_length) : UINT32_MAX - 2;
 	signal(SIGPIPE, SIG_IGN);
-	ob_interrupt_watch(); // before there is anything that Ctrl-C would leave behind
+	ob_interrupt_watch(); // before there is anything to clean up after Ctrl-C
 	const char *path = a->value[OB_OPTION_LOG_REQUESTS];
 	const ob_request_log_head head = ob_rerun_head(&q.run, scene, q.room);
 	config.log = q.log = path ? ob_request_log_create(path, &head, &e) : NULL;

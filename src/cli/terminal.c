@@ -42,7 +42,7 @@ bool ob_terminal_enter(void)
 {
 	if (tcgetattr(STDIN_FILENO, &before) != 0)
 		return false;
-	// signals come only while a key is awaited, so that none is missed
+	// signals come only while the terminal waits for a key, so that none is missed
 	struct sigaction action = { .sa_handler = on_signal };
 	sigset_t mask;
 	sigemptyset(&mask);
@@ -90,7 +90,7 @@ void ob_terminal_show(const char *text, size_t length)
 		say(text, n);
 		say(clear_line, sizeof clear_line - 1);
 		if (!last)
-			say("\r\n", 2); // not behind the last, or the screen would scroll
+			say("\r\n", 2); // not after the last line, or the screen would scroll
 		text += end ? n + 1 : n;
 		length -= end ? n + 1 : n;
 	}
@@ -120,7 +120,7 @@ static ob_key name_key(const char *bytes)
 	return OB_KEY_NONE;
 }
 
-// One key: a character, or a whole escape sequence, which a terminal sends in one piece
+// Reads one key: a character, or a whole escape sequence, which a terminal sends in one piece
 static ob_key read_key(void)
 {
 	char bytes[8] = "";

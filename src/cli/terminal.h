@@ -1,5 +1,5 @@
-// A terminal as top needs it: the alternate screen, keys without Enter, its size. Plain ANSI sequences (ECMA-48), which
-// every terminal of this century understands; a library for them would be one more package.
+// Terminal for top: alternate screen, keys without Enter, size. Plain ANSI sequences (ECMA-48), which all current
+// terminals support; a library for them would be one more package.
 #ifndef OB_CLI_TERMINAL_H
 #define OB_CLI_TERMINAL_H
 
@@ -7,9 +7,9 @@
 #include <stddef.h>
 
 typedef enum ob_key {
-	OB_KEY_NONE, // nothing was pressed in time
+	OB_KEY_NONE, // no key was pressed in time
 	OB_KEY_RESIZE, // the screen has another size
-	OB_KEY_QUIT, // q, Ctrl-C, a signal to end, or the terminal is gone
+	OB_KEY_QUIT, // q, Ctrl-C, a signal to end, or the terminal is closed
 	OB_KEY_UP,
 	OB_KEY_DOWN,
 	OB_KEY_PAGE_UP,
@@ -20,7 +20,7 @@ typedef enum ob_key {
 	OB_KEY_SORT, // s
 } ob_key;
 
-// Standard input and output must be a terminal. Everything is put back by leave, and by signals that end the process.
+// Standard input and output must be a terminal. ob_terminal_leave restores it, and so do signals that end the process.
 bool ob_terminal_enter(void);
 void ob_terminal_leave(void);
 void ob_terminal_size(int *columns, int *lines);
