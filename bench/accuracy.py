@@ -50,14 +50,18 @@ def equal():
 
 
 def failed():
-    """Failed runs of other engines at their usual settings."""
-    first, text = {}, ''
+    """Failed runs of other engines at their usual settings: a row for each case."""
+    first = {}
     for r in results():  # each engine's settings are adjacent; the usual ones of others are the coarsest
         first.setdefault((r['engine'], r['case']), r)
-    for engine in dict.fromkeys(engine for engine, _ in first if not engine.startswith('obsim')):
-        said = [f"`{case}` {r['reason']}" for (e, case), r in first.items() if e == engine and r['reason']]
-        text += f"- {engine}: {'; '.join(said) or 'none'}\n"
-    return text or '- no other engine took part\n'
+    engines = list(dict.fromkeys(engine for engine, _ in first if not engine.startswith('obsim')))
+    reasons = {key: r['reason'] for key, r in first.items() if key[0] in engines and r['reason']}
+    if not reasons:
+        return 'No other engine failed.\n' if engines else 'No other engine took part.\n'
+    lines = [['Case', *engines], ['---'] * (1 + len(engines))]
+    for case in dict.fromkeys(case for _, case in reasons):
+        lines.append([f'`{case}`', *[reasons.get((engine, case), '') for engine in engines]])
+    return ''.join('| ' + ' | '.join(line) + ' |\n' for line in lines)
 
 
 def lab(*words):

@@ -252,7 +252,7 @@ ob_table *ob_lab_table_equal(const ob_lab_analysis *d, bool in_page, bool short_
 		ob_table_add(t, "%s", (*c)->title);
 		ob_table_link(t, (*c)->name);
 		print(&text, q.error, (*c)->figure[0].unit);
-		ob_table_add(t, "%s%s", isnan(q.error) ? "nobody's" : text.text, q.is_target ? "" : " *");
+		ob_table_add(t, "%s%s", isnan(q.error) ? "no engine's" : text.text, q.is_target ? "" : " *");
 		for (size_t i = 0; i < engines; i++)
 			if (isnan(q.cost[place[i]]))
 				add_never(t, d, *c, d->engine[place[i]], in_page);
@@ -294,7 +294,7 @@ void ob_lab_print_equal(FILE *f, const ob_lab_analysis *d, bool markdown)
 	if (!t)
 		return;
 	fputs("Microseconds of CPU per body and simulated second; in brackets: over obsim's. The error is the\n"
-	      "target or, where nobody reaches that (*), obsim's smallest.\n\n",
+	      "target or, where no engine reaches it (*), obsim's smallest.\n\n",
 	      f);
 	print_table(f, t, markdown);
 	print_sum(f, d);
