@@ -20,7 +20,7 @@ CEILING = 2  # percent of sentences that may open so
 # Folders not yet rewritten, and the percentage they may have until they are. It only falls.
 CEILINGS = {
     'README.md': 10, 'docs': 12, 'docs/design': 17, 'docs/notebook': 15, 'src/contact': 18,
-    'src/mesh': 17, 'src/record': 16, 'src/scene': 15, 'src/script': 16, 'src/serve': 20,
+    'src/scene': 15, 'src/script': 16, 'src/serve': 20,
     'src/sim': 21, 'tests/contact': 16, 'tests/host': 13, 'tests/run': 17, 'tests/serve': 29, 'tests/sim': 18,
 }
 

@@ -1,6 +1,6 @@
-// glTF through tinygltf, which turns its JSON into structures and checks little more than their form. So what may be
-// large is bounded before it is called (look_through), it may open no other file and decodes no picture (image.c does),
-// and every index, count and place in the file is checked here before it is used.
+// glTF through tinygltf, which turns the JSON into structures and checks little more than its form. So sizes are
+// bounded before the call (look_through); tinygltf may open no other file and decodes no picture (image.c does). Every
+// index, count and offset in the file is checked here before use.
 #include <math.h> // C++'s own must not come in with C linkage
 #include <exception>
 #include <memory>
@@ -23,8 +23,8 @@ namespace
 {
 
 enum { DEPTH_MAX = 32, STRIDE_MAX = 65536 };
-// What reading a file may cost, in corners of triangles and so many for each part: nodes that share a mesh multiply
-// both.
+// Limit of the work to read a file: corners of triangles, plus WORK_OF_PART for each part. Nodes that share a mesh
+// multiply both.
 enum { WORK_MAX = 4 * 3 * OB_MESH_TRIANGLES_MAX, WORK_OF_PART = 16 };
 enum { JSON_OBJECTS_MAX = 65536 }; // each becomes up to 3.5 kB
 
@@ -38,10 +38,10 @@ struct fault {
 	throw fault{ text };
 }
 
-// ---- before tinygltf reads it
+// ---- checks before tinygltf
 
-// Counts brackets and buffers: tinygltf goes as deep as brackets do, makes a large structure of each, and copies all
-// bytes for each buffer.
+// Counts brackets and buffers: tinygltf recurses once a bracket, makes a large structure of each, and copies all bytes
+// for each buffer.
 void look_through(const char *json, size_t size)
 {
 	std::string text, key;
@@ -78,7 +78,7 @@ bool starts_with(const std::string &text, const char *with)
 	return text.compare(0, strlen(with), with) == 0;
 }
 
-// Extensions without which a file cannot be drawn as it is meant.
+// Refuses files with required extensions that are not supported here.
 void check_extensions(const tinygltf::Model &model)
 {
 	for (const std::string &name : model.extensionsRequired)
@@ -129,7 +129,7 @@ struct numbers {
 	bool normalized;
 };
 
-// What a buffer view lies in, if all of it does.
+// Returns the buffer of a view, if the buffer holds all of it.
 const std::vector<unsigned char> &buffer_of(const tinygltf::Model &model, const tinygltf::BufferView &view,
 					    const char *what)
 {
@@ -191,7 +191,7 @@ vec triple(const numbers &n, size_t i)
 	return { number(n, i, 0), number(n, i, 1), number(n, i, 2) };
 }
 
-// ---- where nodes place what they have
+// ---- transforms of nodes
 
 vec operator-(vec a, vec b)
 {
@@ -210,7 +210,7 @@ double dot(vec a, vec b)
 	return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Columns and a place: p is x p.x + y p.y + z p.z + at.
+// Columns and a translation: p is x p.x + y p.y + z p.z + at.
 struct transform {
 	vec x, y, z, at;
 };
@@ -232,15 +232,15 @@ transform after(const transform &t, const transform &first)
 	return { turned(t, first.x), turned(t, first.y), turned(t, first.z), moved(t, first.at) };
 }
 
-// Normals go by the cofactors, which are those of the inverse, transposed, but for a factor; its sign is that of the
-// volume, so that they point outward from what is mirrored, too.
+// Normals transform by the cofactors, which equal the transposed inverse times a factor. Its sign is the sign of the
+// volume, so that normals of mirrored meshes point outward, too.
 transform of_normals(const transform &t)
 {
 	const double side = dot(t.x, cross(t.y, t.z)) < 0 ? -1 : 1;
 	return { side * cross(t.y, t.z), side * cross(t.z, t.x), side * cross(t.x, t.y), { 0, 0, 0 } };
 }
 
-// y points up there; z does here.
+// y points up in glTF; z does here.
 const transform upright = { { 1, 0, 0 }, { 0, 0, 1 }, { 0, -1, 0 }, { 0, 0, 0 } };
 
 transform of_node(const tinygltf::Node &n)
@@ -265,7 +265,7 @@ transform of_node(const tinygltf::Node &n)
 	return t;
 }
 
-// ---- the mesh as it grows
+// ---- the growing mesh
 
 struct release {
 	void operator()(uint8_t *bytes) const { free(bytes); }
@@ -273,7 +273,7 @@ struct release {
 
 struct picture {
 	size_t at, bytes; // in the file's buffer
-	bool surface; // green and blue are numbers
+	bool surface; // a surface: green and blue are numbers
 	uint32_t width, height;
 	std::unique_ptr<uint8_t, release> rgba;
 };
@@ -288,7 +288,7 @@ struct builder {
 	std::vector<group> groups;
 	std::vector<picture> pictures;
 	std::vector<uint32_t> known,
-		known_in; // by the number in the primitive: that in vertex, and of which round it is
+		known_in; // by index in the primitive: index in vertex, and its round
 	size_t indices = 0; // of all groups
 	size_t pixels = 0, picture_bytes = 0; // of all pictures, packed
 	uint32_t round = 0;
@@ -302,7 +302,7 @@ void spend(builder &b, size_t more)
 		fail("it has more parts, or more triangles, than are read here");
 }
 
-// The number of the group of these images.
+// Returns the number of the group of these images.
 size_t group_of(builder &b, const ob_mesh_part &part)
 {
 	size_t i = 0;
@@ -350,28 +350,28 @@ void move_to(builder &b, ob_mesh *m)
 		m->image[m->images++] = { p.width, p.height, p.rgba.release() };
 }
 
-// ---- what is on triangles
+// ---- materials of triangles
 
-// u and v are each x u + y v + at, of those of the file.
+// u and v are each x u + y v + at, of the file's u and v.
 struct coordinates {
 	int set;
 	double u[3], v[3];
 };
 
-// What is on the triangles of a primitive.
+// Material of a primitive's triangles.
 struct paint {
 	float colour[3], surface; // below 0: the object's
 	ob_mesh_part part;
-	coordinates where; // of its images
+	coordinates where; // in its images
 };
 
 float share(double x)
 {
-	return static_cast<float>(fmin(fmax(x, 0), 1)); // of NaN: 0
+	return static_cast<float>(fmin(fmax(x, 0), 1)); // NaN becomes 0
 }
 
-// Returns 1 + the number of the picture that a texture shows, and reads it where it is new. Images of the same bytes are
-// one picture. No byte is unpacked more often than it can be used: as a colour, and as a surface.
+// Returns 1 + the number of a texture's picture, and reads it if it is new. Images of the same bytes are one picture.
+// No byte is unpacked more than twice: once as a colour, once as a surface.
 uint8_t picture_of(builder &b, const tinygltf::Model &model, int index, bool surface)
 {
 	const tinygltf::Image &image = at(model.images, index, "picture");
@@ -391,7 +391,7 @@ uint8_t picture_of(builder &b, const tinygltf::Model &model, int index, bool sur
 	b.picture_bytes += view.byteLength;
 	if (b.picture_bytes > 2 * data.size())
 		fail("its pictures overlap in the file");
-	b.pictures.reserve(b.pictures.size() + 1); // so that what is read is owned at once
+	b.pictures.reserve(b.pictures.size() + 1); // so that a picture has an owner as soon as it is read
 	if (!ob_image_read(&read, data.data() + view.byteOffset, view.byteLength, OB_MESH_PIXELS_MAX - b.pixels, &e))
 		fail(e.text);
 	b.pictures.push_back({ view.byteOffset, view.byteLength, surface, read.width, read.height, std::unique_ptr<uint8_t, release>(read.rgba) });
@@ -415,7 +415,7 @@ double member(const tinygltf::Value &v, const char *name, size_t k, double other
 	return one.IsNumber() ? one.GetNumberAsDouble() : otherwise;
 }
 
-// As the extension KHR_texture_transform has it: scaled, turned, then moved.
+// Applies the extension KHR_texture_transform: scale, rotation, offset.
 coordinates coordinates_of(const tinygltf::TextureInfo &info)
 {
 	const auto found = info.extensions.find("KHR_texture_transform");
@@ -430,7 +430,7 @@ coordinates coordinates_of(const tinygltf::TextureInfo &info)
 		 { -s * x, c * y, member(t, "offset", 1, 0) } };
 }
 
-// Images of one part lie on it in the same way.
+// Adds an image. All images of a part share one mapping.
 void add_texture(builder &b, const tinygltf::Model &model, const tinygltf::TextureInfo &info, bool surface, paint &out)
 {
 	const tinygltf::Texture &t = at(model.textures, info.index, "texture");
@@ -464,7 +464,7 @@ paint paint_of(builder &b, const tinygltf::Model &model, const tinygltf::Primiti
 
 // ---- triangles
 
-// The vertices of one primitive, which the triangles of one side share where they can.
+// Vertices of one primitive. Triangles of one side share them where possible.
 struct corners {
 	numbers position, normal, colour, texture;
 	bool has_normal, has_colour, has_texture;
@@ -496,7 +496,7 @@ uint32_t add_vertex(builder &b, const corners &c, uint32_t i, vec n)
 	return static_cast<uint32_t>(b.vertex.size() - 1);
 }
 
-// As the primitive's normal says, or, where that is none, as that of the triangle.
+// Adds a corner with the primitive's normal or, where it has none, the triangle's.
 uint32_t corner(builder &b, const corners &c, uint32_t i, vec flat, double side)
 {
 	const vec own = c.has_normal ? turned(c.place_of_normal, triple(c.normal, i)) : vec{ 0, 0, 0 };
@@ -517,7 +517,7 @@ void add_triangle(builder &b, const corners &c, const uint32_t i[3], double side
 		cross(moved(c.place, triple(c.position, i[1])) - a, moved(c.place, triple(c.position, i[2])) - a);
 	const double size = dot(flat, flat);
 	if (!(size > 0 && size < INFINITY))
-		return; // it has no face
+		return; // a degenerate triangle
 	if (b.indices == 3 * static_cast<size_t>(OB_MESH_TRIANGLES_MAX))
 		fail("it has more than " + std::to_string(OB_MESH_TRIANGLES_MAX) + " triangles");
 	for (int k = 0; k < 3; k++)
@@ -525,7 +525,7 @@ void add_triangle(builder &b, const corners &c, const uint32_t i[3], double side
 	b.indices += 3;
 }
 
-// Vertices of another primitive, or of its other side, are others.
+// Starts a new set of vertices: a primitive, or its other side, shares none with earlier ones.
 void begin_round(builder &b, size_t vertices)
 {
 	b.round++;
@@ -533,7 +533,7 @@ void begin_round(builder &b, size_t vertices)
 	b.known_in.resize(b.known.size());
 }
 
-// As lists, strips or fans; mirrored ones turn round. side: 1, or -1 for what is seen from behind.
+// Adds lists, strips or fans; mirrored ones are reversed. side: 1, or -1 for the back.
 void add_triangles(builder &b, const corners &c, const std::vector<uint32_t> &list, int mode, double side)
 {
 	const bool turn = (dot(c.place.x, cross(c.place.y, c.place.z)) < 0) != (side < 0);
@@ -636,7 +636,7 @@ std::vector<int> roots_of(const tinygltf::Model &model)
 	return roots;
 }
 
-// Each node once: they are trees (glTF 2.0, 3.5.2), and no circle.
+// Adds each node once: nodes must form trees (glTF 2.0, 3.5.2), without a cycle.
 void add_scene(builder &out, const tinygltf::Model &model)
 {
 	struct visit {

@@ -14,8 +14,8 @@ typedef struct ob_gltf_part {
 	bool (*read)(ob_mesh *m, const unsigned char *bytes, size_t size, ob_error *e); // ob_gltf_read
 } ob_gltf_part;
 
-// bytes: a binary glTF file of version 2, whose headers are right. The arrays come from malloc; the radius is not set.
-// false and e, and nothing in m: it has no triangles, too many, or makes no sense.
+// Reads a binary glTF file of version 2, whose headers have been checked. The arrays come from malloc; the radius is
+// not set. false and e, and nothing in m: no triangles, too many, or invalid data.
 bool ob_gltf_read(ob_mesh *m, const unsigned char *bytes, size_t size, ob_error *e);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-// PNG and JPEG through libpng and libjpeg, which leave where they fail by longjmp: so what must be freed lies in a
-// structure, outside of the function that they leave.
+// PNG and JPEG through libpng and libjpeg, which leave by longjmp on errors. So data that must be freed lies in a
+// structure outside of the function that they leave.
 #include "mesh/image.h"
 
 #include <setjmp.h>
@@ -10,10 +10,10 @@
 #include <jpeglib.h>
 #include <png.h>
 
-// Limit of scans of a JPEG: each goes over the whole picture.
+// Limit of scans of a JPEG: each covers the whole picture.
 enum { JPEG_SCANS_MAX = 64 };
 
-// false and e, or room for the pixels.
+// Allocates the pixels, or returns false and e.
 static bool make_room(ob_mesh_image *out, uint32_t width, uint32_t height, size_t most, ob_error *e)
 {
 	if (width > OB_MESH_IMAGE_SIDE_MAX || height > OB_MESH_IMAGE_SIDE_MAX)
@@ -58,7 +58,7 @@ static _Noreturn void leave_png(png_structp png, png_const_charp text)
 	png_longjmp(png, 1);
 }
 
-// 8 bits of red, green, blue and alpha, whatever the file has.
+// Converts any format to 8 bits of red, green, blue and alpha.
 static void set_rgba(const png_source *s)
 {
 	png_set_expand(s->png);
@@ -74,9 +74,9 @@ static bool decode_png(png_source *s, ob_mesh_image *out, size_t most)
 	if (setjmp(png_jmpbuf(s->png)))
 		return false;
 	png_set_read_fn(s->png, s, take_bytes);
-	png_set_user_limits(s->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); // make_room says it in our words
-	// Passes over all chunks but those of pixels, palette and transparency: texts and profiles are packed, and each may
-	// become a thousand times as large.
+	png_set_user_limits(s->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); // make_room checks sizes, with its own message
+	// Skips all chunks but those of pixels, palette and transparency. Texts and profiles are compressed, and each
+	// may become a thousand times as large.
 	png_set_keep_unknown_chunks(s->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
 	png_read_info(s->png, s->info);
 	const png_uint_32 height = png_get_image_height(s->png, s->info);
@@ -123,7 +123,7 @@ static _Noreturn void leave_jpeg(j_common_ptr jpeg)
 	longjmp(s->left_at, 1);
 }
 
-// Refuses a picture of which libjpeg would make up a part, such as one that is cut off.
+// Refuses damaged pictures, truncated ones among them, for which libjpeg would make up data.
 static void hear_jpeg(j_common_ptr jpeg, int level)
 {
 	if (level < 0)

@@ -1,4 +1,4 @@
-// Inside the module mesh only: pictures of glTF files, which are PNG or JPEG.
+// Inside the module mesh only: PNG and JPEG pictures of glTF files.
 #ifndef OB_MESH_IMAGE_H
 #define OB_MESH_IMAGE_H
 
@@ -8,8 +8,8 @@
 extern "C" {
 #endif
 
-// Profiles and gammas in it are ignored, as glTF asks (2.0, 3.8.3). most: pixels. false and e, and nothing in "out": it
-// is neither, larger, or damaged. rgba comes from malloc.
+// Reads a picture. Ignores its profiles and gammas, as glTF demands (2.0, 3.8.3). most: pixels. false and e, and
+// nothing in "out": another format, too large, or damaged. rgba comes from malloc.
 bool ob_image_read(ob_mesh_image *out, const unsigned char *bytes, size_t size, size_t most, ob_error *e);
 
 #ifdef __cplusplus

@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "mesh/gltf.h"
 
-static const float farthest = 1e6f; // m, of a vertex along an axis
+static const float farthest = 1e6f; // m, largest coordinate of a vertex
 
 float ob_surface_pack(float roughness, float metal)
 {
@@ -135,7 +135,7 @@ static uint32_t word_at(const unsigned char *bytes, size_t at)
 	return bytes[at] | (uint32_t)bytes[at + 1] << 8 | (uint32_t)bytes[at + 2] << 16 | (uint32_t)bytes[at + 3] << 24;
 }
 
-// The header of 12 bytes, and that of the first part, which is JSON (glTF 2.0, 4.4).
+// Checks the header of 12 bytes, and the first chunk's, which is JSON (glTF 2.0, 4.4).
 static bool check_header(const unsigned char *bytes, size_t size, ob_error *e)
 {
 	enum { HEADERS = 20, JSON = 0x4e4f534a };

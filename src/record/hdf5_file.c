@@ -3,15 +3,15 @@
 #include <stdio.h>
 #include <string.h>
 
-// And no cleaning up by HDF5 when the process exits: once a write has failed, that crashes (1.10.8). We close what we
-// open.
+// Disables HDF5's own cleanup when the process exits, too: after a failed write it crashes (1.10.8). We close all that
+// we open.
 void ob_hdf5_silence(void)
 {
 	H5dont_atexit();
 	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-// HDF5's drivers quote the system: "..., errno = 28, error message = 'No space left on device', ..."
+// Finds the system's reason in HDF5's error: "..., errno = 28, error message = 'No space left on device', ..."
 static herr_t find_reason(unsigned depth, const H5E_error2_t *error, void *data)
 {
 	(void)depth;
@@ -112,7 +112,7 @@ hid_t ob_hdf5_dataset(hid_t in, const ob_hdf5_label *label, hid_t type, int rank
 		H5Pset_chunk(how, rank, chunk);
 	}
 	hid_t space = H5Screate_simple(rank, dims, most);
-	// each append touches a chunk for each chunk_ids ids, and all of these should stay in memory
+	// an append writes one chunk for each chunk_ids ids, and all of these should stay in memory
 	hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
 	H5Pset_chunk_cache(access, CACHE_SLOTS, CACHE_BYTES, 1);
 	hid_t set = H5Dcreate2(in, label->name, type, space, H5P_DEFAULT, how, access);

@@ -1,4 +1,4 @@
-// Inside the module record only: what we use of HDF5, with errors as one line for a person.
+// Inside the module record only: the used subset of HDF5, with errors as one line for a person.
 #ifndef OB_RECORD_HDF5_FILE_H
 #define OB_RECORD_HDF5_FILE_H
 
@@ -6,26 +6,26 @@
 
 #include <ob/universe.h>
 
-// A dataset's meaning, written into it as attributes.
+// Meaning of a dataset, stored as its attributes.
 typedef struct ob_hdf5_label {
 	const char *name, *units, *frame, *description; // frame: NULL where it means nothing
 } ob_hdf5_label;
 
-// No output of HDF5 itself on the terminal from here on (process-wide).
+// Silences HDF5's own messages on the terminal from now on (process-wide).
 void ob_hdf5_silence(void);
-// Says in e that "doing" failed, and the system's reason, as HDF5 noted it in the last call that failed. Returns false.
+// Sets e: "doing" failed, and the system's reason, as HDF5 noted it in the last failed call. Returns false.
 bool ob_hdf5_fail(ob_error *e, const char *path, const char *doing);
 
-// What of the closed file HDF5 uses (bytes); 0 if it cannot be read.
+// Bytes of the closed file that HDF5 uses; 0 if it cannot be read.
 uint64_t ob_hdf5_length(const char *path);
 
-// Strings of fixed length, padded with zeros. The caller closes the type.
+// Type of strings of fixed length, padded with zeros. The caller closes the type.
 hid_t ob_hdf5_string_type(size_t length);
 bool ob_hdf5_attribute_text(hid_t at, const char *name, const char *text);
 bool ob_hdf5_attribute_numbers(hid_t at, const char *name, const double *number, size_t numbers);
 bool ob_hdf5_attribute_count(hid_t at, const char *name, uint64_t count);
-// A dataset of rank dimensions dims[]; the first grows without limit if chunk_rows > 0, in chunks of so many rows, and
-// the second if chunk_ids > 0. Zero or fill where never written. Negative on failure.
+// Creates a dataset of rank dimensions dims[]. The first grows without limit if chunk_rows > 0, in chunks of that many
+// rows, and the second if chunk_ids > 0. Unwritten elements are zero or fill. Negative on failure.
 hid_t ob_hdf5_dataset(hid_t in, const ob_hdf5_label *label, hid_t type, int rank, const hsize_t *dims,
 		      hsize_t chunk_rows, hsize_t chunk_ids, const void *fill);
 

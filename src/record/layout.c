@@ -2,7 +2,7 @@
 
 #include <assert.h>
 
-// Whoever adds a member to one of these structures decides here whether a record needs it to be drawn again.
+// A new member of one of these structures may be needed to draw a record again: decide here.
 static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
 static_assert(sizeof(ob_hull) == 7008, "members of /hulls");
 static_assert(sizeof(ob_camera_def) == 152 && sizeof(ob_look_def) == 64, "members of /cameras and /look");

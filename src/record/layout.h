@@ -1,6 +1,6 @@
-// Inside the module record only: what the compound datasets of a record hold, member by member, by which the recorder
-// writes them and the recording reads them back. HDF5 finds members by their names: a member that an older file lacks
-// reads as zero, and one that this program does not know is passed over.
+// Inside the module record only: members of a record's compound datasets, for the recorder that writes them and the
+// recording that reads them. HDF5 finds members by name: a member that an older file lacks reads as zero, and an
+// unknown one is skipped.
 #ifndef OB_RECORD_LAYOUT_H
 #define OB_RECORD_LAYOUT_H
 
@@ -9,21 +9,21 @@
 #include "record/hdf5_file.h"
 #include "scene/scene.h"
 
-// Changes where an older program, or this one with an older file, would take something for what it is not.
+// Increase it when an older program, or this one with an older file, would misread data.
 enum { OB_RECORD_VERSION = 2 };
-// Times of states are in memory, all of them, while a record is read.
+// While a record is read, the times of all its states are in memory.
 enum { OB_RECORD_STATES_MAX = 1 << 24 };
 #define OB_RECORD_FORMAT "obsim record"
 
 typedef enum ob_record_event_kind { OB_RECORD_CREATED = 1, OB_RECORD_CHANGED, OB_RECORD_REMOVED } ob_record_event_kind;
 
-// An object came, is something else than before, or went.
+// An object was added, changed, or removed.
 typedef struct ob_record_event {
 	uint64_t step;
 	double time; // s
 	uint32_t kind; // ob_record_event_kind
 	uint32_t zero;
-	ob_passport passport; // what it is from then on, or was
+	ob_passport passport; // its passport from then on, or until then
 } ob_record_event;
 
 typedef enum ob_record_type {
@@ -37,7 +37,7 @@ typedef enum ob_record_type {
 	OB_RECORD_VEC3,
 	OB_RECORD_QUAT, // w x y z
 	OB_RECORD_PAIR, // float[2]
-	OB_RECORD_RGB, // float[3], linear; or a place or a direction
+	OB_RECORD_RGB, // float[3], linear; also positions and directions
 	OB_RECORD_RGBA,
 	OB_RECORD_NAME, // char[OB_NAME_MAX], UTF-8, padded with zeros
 	OB_RECORD_EDGE, // ob_hull_edge
@@ -47,7 +47,7 @@ typedef struct ob_record_member {
 	const char *name;
 	ob_record_type type;
 	size_t offset; // in the structure
-	size_t length; // of an array of these; 0: it is none
+	size_t length; // of an array; 0: not an array
 } ob_record_member;
 
 typedef struct ob_record_table {
@@ -57,20 +57,20 @@ typedef struct ob_record_table {
 	const ob_record_member *member;
 } ob_record_table;
 
-// How an object moves from then on.
+// Motion of an object from then on.
 typedef struct ob_record_motion {
 	uint32_t id, zero;
 	ob_motion motion;
 } ob_record_motion;
 
-// A hull, and the number that passports bear.
+// A hull, and its number in passports.
 typedef struct ob_record_hull {
 	uint32_t number, zero;
 	ob_hull hull;
 } ob_record_hull;
 
 extern const ob_record_table ob_record_events; // ob_record_event
-extern const ob_record_table ob_record_motions; // ob_record_motion: what of it decides where the object is
+extern const ob_record_table ob_record_motions; // ob_record_motion: only the members that determine the pose
 extern const ob_record_table ob_record_hulls; // ob_record_hull
 extern const ob_record_table ob_record_cameras; // ob_camera_def
 extern const ob_record_table ob_record_look; // ob_look_def

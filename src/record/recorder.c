@@ -13,10 +13,10 @@
 
 // ---- preallocation
 
-// HDF5 writes in place and in no order that would survive a disk that fills up half way: the file would be lost. So
-// blocks are allocated before HDF5 needs them, and what is refused is refused while the file is whole.
+// HDF5 writes in place, in an order that does not survive a full disk: the file would be lost. So blocks are allocated
+// before HDF5 needs them, and a failed allocation leaves the file whole.
 typedef struct preallocation {
-	int fd; // of our own, for this only; < 0: closed
+	int fd; // opened for this only; < 0: closed
 	uint64_t bytes; // allocated to the file
 } preallocation;
 
@@ -28,24 +28,24 @@ static bool open_preallocation(preallocation *p, const char *path)
 	return p->fd >= 0;
 }
 
-// Allocates "more" bytes beyond the "used" ones; false and e with the system's reason.
+// Allocates "more" bytes beyond "used"; false and e with the system's reason.
 static bool preallocate(preallocation *p, const char *path, uint64_t used, uint64_t more, ob_error *e)
 {
 	if (used + more <= p->bytes)
 		return true;
 	uint64_t want = used + more + PREALLOCATED_AT_ONCE;
 	int error = posix_fallocate(p->fd, 0, (off_t)want);
-	if (error) { // the last of a nearly full disk
+	if (error) { // the last bytes of a nearly full disk
 		want = used + more;
 		error = posix_fallocate(p->fd, 0, (off_t)want);
 	}
-	if (error && error != EINVAL && error != EOPNOTSUPP) // pipes and odd file systems: HDF5 will see
+	if (error && error != EINVAL && error != EOPNOTSUPP) // pipes and unusual file systems: HDF5 will report errors
 		return ob_fail(e, "%s: cannot append to the record: %s", path, strerror(error));
 	p->bytes = want;
 	return true;
 }
 
-// Gives back what lies beyond "used" bytes.
+// Frees the bytes beyond "used".
 static bool close_preallocation(preallocation *p, uint64_t used)
 {
 	if (p->fd < 0)
@@ -56,13 +56,13 @@ static bool close_preallocation(preallocation *p, uint64_t used)
 	return ok;
 }
 
-// ---- /objects: what the recorded objects are
+// ---- /objects: properties of the recorded objects
 
 enum kind { INTEGER, NUMBER, VECTOR, NAME, SHAPE, FLAG };
 enum { SHAPE_MAX = 12, FACTS = 10 };
 enum { IDS_AT_ONCE = 8 }; // at least, in a chunk of a dataset that may grow by ids
 
-// A fact of a passport and where it lies in it.
+// A fact of a passport, and its offset there.
 static const struct fact {
 	ob_hdf5_label label;
 	enum kind kind;
@@ -94,8 +94,8 @@ static const struct fact {
 
 typedef struct objects {
 	uint32_t count;
-	hid_t group, set[FACTS]; // negative: not there
-	ob_passport *written; // [count]: the last that had each id, also when it has gone
+	hid_t group, set[FACTS]; // negative: missing
+	ob_passport *written; // [count]: the latest object of each id, even after its removal
 } objects;
 
 static hid_t fact_type(enum kind kind)
@@ -165,7 +165,7 @@ static bool write_fact(const objects *o, int i, char *buffer)
 	return ok;
 }
 
-// More columns, of nobody.
+// Adds columns without objects.
 static bool grow_objects(objects *o, uint32_t count)
 {
 	ob_passport *grown = realloc(o->written, count * sizeof *grown);
@@ -208,13 +208,13 @@ enum { LIST_CHUNK = 1 << 16 }; // bytes
 
 typedef struct list {
 	const ob_record_table *table;
-	hid_t set, type; // negative: not there; type: in memory
-	size_t bytes; // of one, in the file
+	hid_t set, type; // negative: missing; type: in memory
+	size_t bytes; // of one element, in the file
 	hsize_t rows;
 	hsize_t chunk; // rows
 } list;
 
-// Nothing of it is there yet, but it may be finished.
+// A list that is not created yet, but may be finished.
 static list list_of(const ob_record_table *table)
 {
 	return (list){ .table = table, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
@@ -252,7 +252,7 @@ static uint64_t chunks(uint64_t count, uint64_t in_chunk)
 	return (count + in_chunk - 1) / in_chunk;
 }
 
-// The chunks that count more begin, bytes.
+// Bytes of the chunks that count more elements begin.
 static uint64_t list_bytes(const list *l, uint64_t count)
 {
 	return (chunks(l->rows + count, l->chunk) - chunks(l->rows, l->chunk)) * l->chunk * l->bytes;
@@ -270,7 +270,7 @@ static bool finish_list(list *l)
 
 enum { TIME, STEP, MOTIONS_UNTIL, POSITION, ATTITUDE, VELOCITY, ANGULAR_VELOCITY, ASLEEP, COLUMNS };
 enum { CHUNK_BYTES = 1 << 16, ABSENT = 255 };
-enum { INDEX_BYTES = 1 << 18 }; // more than HDF5 adds to its indices of chunks with one append
+enum { INDEX_BYTES = 1 << 18 }; // upper bound of the growth of HDF5's chunk indices in one append
 
 // A dataset that grows by one row with each append.
 static const struct column {
@@ -295,22 +295,22 @@ static const struct column {
 struct ob_recorder {
 	ob_record_base base;
 	char *path;
-	hid_t file, set[COLUMNS]; // negative: not there
+	hid_t file, set[COLUMNS]; // negative: missing
 	objects objects;
 	list events, motions, hulls;
 	preallocation allocated;
 	hsize_t chunk_ids, chunk_rows[COLUMNS]; // in a chunk of the columns
-	uint32_t written_count; // ids of the row before, 0: there is none
+	uint32_t written_count; // ids in the previous row, 0: there is none
 	uint32_t count; // ids that have columns
 	hsize_t rows;
 	bool failed;
 	double *numbers; // [count * 4], one row of one dataset
 	uint8_t *asleep; // [count]
-	ob_record_motion *known; // [count]: what was written last of each id, zeroed where it means nothing
-	ob_record_motion *fresh; // [count]: what is new in a row
+	ob_record_motion *known; // [count]: last written motion of each id, zeroed where unused
+	ob_record_motion *fresh; // [count]: new motions of a row
 	ob_record_event *event; // [count * 2]
 	uint32_t known_hulls;
-	bool *knows_hull; // [known_hulls]: it is in the file
+	bool *knows_hull; // [known_hulls]: true if it is in the file
 };
 
 static hid_t column_type(int column)
@@ -320,8 +320,8 @@ static hid_t column_type(int column)
 							 : H5T_NATIVE_DOUBLE;
 }
 
-// Chunks of about 64 kB, of at least one row and at most 1024: a file of few objects does not become one of many
-// chunks. Not compressed: a chunk grows with each append, and packed anew each time it would leave holes behind.
+// Creates a column in chunks of about 64 kB, with at least one row and at most 1024, so that a file of few objects has
+// few chunks. Not compressed: a chunk grows with each append, and repacking it each time would leave holes.
 static bool create_column(ob_recorder *r, int i)
 {
 	int width = columns[i].width, rank = !width ? 1 : width == 1 ? 2 : 3;
@@ -353,7 +353,7 @@ static bool write_text(hid_t file, const char *name, const char *description, co
 	return ok;
 }
 
-// The parameters that the scene was given, a line each.
+// Writes the scene's parameters, a line each.
 static bool write_parameters(hid_t file, const ob_scene_options *o)
 {
 	size_t size = 0, at = 0;
@@ -368,7 +368,7 @@ static bool write_parameters(hid_t file, const ob_scene_options *o)
 	return ok;
 }
 
-// A dataset of a table, complete.
+// Writes a dataset of a table as a whole.
 static bool write_table(hid_t file, const ob_record_table *table, const void *items, hsize_t count)
 {
 	hid_t packed = ob_record_type_in_file(table), type = ob_record_type_in_memory(table);
@@ -494,7 +494,7 @@ static bool create_file(ob_recorder *r, const ob_record_facts *about)
 	return H5Fflush(r->file, H5F_SCOPE_GLOBAL) >= 0 && open_preallocation(&r->allocated, r->path);
 }
 
-// Room for so many ids in memory.
+// Grows the arrays in memory to this number of ids.
 static bool make_room(ob_recorder *r, uint32_t count)
 {
 	double *numbers = realloc(r->numbers, count * 4 * sizeof *numbers);
@@ -542,7 +542,7 @@ ob_recorder *ob_hdf5_recorder_create(const char *path, const ob_record_facts *ab
 	return NULL;
 }
 
-// ---- what is new
+// ---- new entries
 
 static bool is_present(const ob_snapshot *s, uint32_t id)
 {
@@ -560,7 +560,7 @@ static void note_event(ob_recorder *r, const ob_snapshot *s, ob_record_event_kin
 	r->event[(*events)++] = (ob_record_event){ .step = s->step, .time = s->time, .kind = kind, .passport = *p };
 }
 
-// Enters passports that are new or have changed, and who has gone.
+// Appends new, changed and removed passports.
 static bool append_events(ob_recorder *r, const ob_snapshot *s)
 {
 	hsize_t events = 0;
@@ -572,7 +572,7 @@ static bool append_events(ob_recorder *r, const ob_snapshot *s)
 		if (was && !same) {
 			note_event(r, s, OB_RECORD_REMOVED, known, &events);
 			known->flags &=
-				~(uint32_t)OB_OBJECT_PRESENT; // what it was stays entered: its past is in the file
+				~(uint32_t)OB_OBJECT_PRESENT; // the old passport stays: its past is in the file
 		}
 		if (now && !same)
 			memset(&r->known[id], 0, sizeof r->known[id]);
@@ -598,7 +598,7 @@ static uint32_t count_new_hulls(const ob_recorder *r, const ob_snapshot *s)
 	return count;
 }
 
-// Enters hulls that objects have for the first time.
+// Appends hulls when objects have them for the first time.
 static bool append_hulls(ob_recorder *r, const ob_snapshot *s)
 {
 	bool ok = true;
@@ -620,7 +620,7 @@ static bool append_hulls(ob_recorder *r, const ob_snapshot *s)
 	return ok;
 }
 
-// Of a motion, what is recorded.
+// The recorded members of a motion.
 static ob_record_motion recorded(uint32_t id, const ob_motion *m)
 {
 	return (ob_record_motion){ .id = id,
@@ -652,7 +652,7 @@ static bool append_motions(ob_recorder *r, const ob_snapshot *s)
 
 // ---- columns
 
-// One object's numbers of one column.
+// Copies one object's numbers for one column.
 static void copy_vector(int column, const ob_state *s, double *to)
 {
 	ob_vec3 v = column == POSITION ? s->pose.p : column == VELOCITY ? s->v : s->w;
@@ -663,7 +663,7 @@ static void copy_vector(int column, const ob_state *s, double *to)
 		memcpy(to, (double[]){ v.x, v.y, v.z }, 3 * sizeof *to);
 }
 
-// The row of one column, in memory of the snapshot or the recorder.
+// Returns the row of one column, in memory of the snapshot or the recorder.
 static const void *row_of(ob_recorder *r, int column, const ob_snapshot *s)
 {
 	int width = columns[column].width;
@@ -706,7 +706,7 @@ static bool append_row(ob_recorder *r, int column, const void *row)
 	return ok;
 }
 
-// The chunks that one more row begins, bytes.
+// Bytes of the chunks that one more row begins.
 static uint64_t row_bytes(const ob_recorder *r)
 {
 	uint64_t bytes = 0;
@@ -719,7 +719,7 @@ static uint64_t row_bytes(const ob_recorder *r)
 	return bytes;
 }
 
-// Columns for all that are there.
+// Grows the columns to the number of objects.
 static bool grow(ob_recorder *r, const ob_snapshot *s)
 {
 	uint32_t count = s->count;
@@ -757,7 +757,7 @@ bool ob_hdf5_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 	return good;
 }
 
-// Removes a file that has no state, for there was no room for one.
+// Removes a file without a state, for which there was no room.
 static void remove_useless(const ob_recorder *r)
 {
 	struct stat st;

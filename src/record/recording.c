@@ -18,31 +18,31 @@
 
 enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, HULLS_MAX = UINT16_MAX + 1, EVERY_MAX = 1 << 30 };
 enum { BYTES_AT_ONCE = 1 << 18 };
-// Limits of the first reading: seconds of CPU, one more for each so many bytes on the disk, and bytes of memory. The
-// clock allows so many times as long. A healthy record takes some 2 s of CPU for each 2^30 bytes.
+// Limits of the first reading: seconds of CPU, plus one for each BYTES_PER_SECOND on the disk, and bytes of memory. The
+// limit of wall time is WALL_PER_CPU times as long. A healthy record takes about 2 s of CPU for each 2^30 bytes.
 enum { SECONDS = 4, BYTES_PER_SECOND = 64 << 20, WALL_PER_CPU = 30, MEMORY = 768 << 20 };
-static const double number_max = 1e15; // of any in SI units
+static const double number_max = 1e15; // largest of any number in SI units
 
-// A dataset of compounds, read some at a time.
+// A dataset of compounds, read in blocks.
 typedef struct list {
 	const ob_record_table *table;
-	hid_t set, type; // negative: not there
-	uint64_t total, first, held; // there are; of those in memory
-	uint64_t room; // .. at most
+	hid_t set, type; // negative: missing
+	uint64_t total, first, held; // total: in the dataset; first, held: the block in memory
+	uint64_t room; // largest block
 	char *item; // [held], of table->size
 } list;
 
 struct ob_recording {
 	ob_record_base base;
 	char *path; // for messages: the file is read through its descriptor
-	hid_t file; // negative: not there
+	hid_t file; // negative: missing
 	uint64_t file_bytes;
 	ob_recording_info info;
 	double *time; // [states]
 	uint64_t *step, *motions_until; // [states]
 	list events, motions;
-	uint64_t state; // the one it has come to; UINT64_MAX: none yet
-	uint64_t event, motion; // the first that belongs to a later state
+	uint64_t state; // current state; UINT64_MAX: none yet
+	uint64_t event, motion; // first ones of a later state
 	ob_snapshot now;
 	uint64_t population;
 };
@@ -54,10 +54,10 @@ static bool damaged(const ob_recording *r, const char *what, ob_error *e)
 
 // ---- links
 
-// Nothing in a record may name another file, or have code run: links lead to what lies in the file itself, datasets lie
+// Nothing in a record may name another file, or load code: links lead to objects in the file itself, datasets lie
 // there, too, and no filter has to be loaded.
 
-// Looks for a name of groups and of what is in them, link by link. false and e: one of them is not the file's own.
+// Looks up a name of groups and their members, link by link. false and e: one of the links leaves the file.
 static bool find(const ob_recording *r, const char *name, bool *there, ob_error *e)
 {
 	char what[96], part[64];
@@ -116,8 +116,8 @@ static bool read_attribute(hid_t at, const char *name, hid_t type, void *numbers
 
 // ---- datasets
 
-// True for one whose elements stand in the file as they are. Asked before all else: of a virtual dataset even the space
-// is looked up in the files that it names.
+// True if the dataset's elements are stored unfiltered in the file. Checked before all else: for a virtual dataset,
+// even a query of its size opens the files that it names.
 static bool lies_in_file(hid_t set)
 {
 	hid_t how = H5Dget_create_plist(set);
@@ -128,7 +128,7 @@ static bool lies_in_file(hid_t set)
 	return here;
 }
 
-// Opens one of the file's own, of this rank, all of whose elements are on the disk. Negative and e where it is none.
+// Opens a dataset of the file itself with this rank, all on the disk. Negative and e: there is none.
 static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind, int rank, uint64_t *count, ob_error *e)
 {
 	char what[80];
@@ -179,7 +179,7 @@ static void close_list(list *l)
 	free(l->item);
 }
 
-// Item i < total; NULL: it cannot be read.
+// Returns item i < total; NULL: it cannot be read.
 static const void *item_at(list *l, uint64_t i)
 {
 	if (i < l->first || i >= l->first + l->held) {
@@ -198,7 +198,7 @@ static const void *item_at(list *l, uint64_t i)
 	return l->item + (i - l->first) * l->table->size;
 }
 
-// All of a dataset of numbers, of which "rows" are needed, or, 0, as many as there are.
+// Reads a dataset of numbers as a whole; limits *rows to its length.
 static void *read_numbers(ob_recording *r, const char *name, H5T_class_t kind, hid_t type, uint64_t *rows, ob_error *e)
 {
 	uint64_t count;
@@ -275,7 +275,7 @@ static bool camera_makes_sense(ob_camera_def *c)
 {
 	uint8_t automatic;
 	memcpy(&automatic, &c->automatic, sizeof automatic);
-	c->automatic = automatic != 0; // a byte from outside may be no bool
+	c->automatic = automatic != 0; // the byte may be an invalid bool
 	c->name[OB_NAME_MAX - 1] = 0;
 	ob_utf8_make_plain(c->name);
 	return finite3(c->eye) && finite3(c->target) && finite3(c->velocity) && fabs(c->pan) <= number_max &&
@@ -312,7 +312,7 @@ static bool open_look(ob_recording *r, ob_error *e)
 	if (item) {
 		uint8_t grid = (uint8_t)item[offsetof(ob_look_def, grid)];
 		memcpy(look, item, sizeof *look);
-		memcpy(&look->grid, &(bool){ grid != 0 }, sizeof look->grid); // a byte from outside may be no bool
+		memcpy(&look->grid, &(bool){ grid != 0 }, sizeof look->grid); // the byte may be an invalid bool
 	}
 	if (ok && !(item && is_colour(look->sky_top, 3) && is_colour(look->sky_horizon, 3) &&
 		    is_colour(look->ground_colour, 3) && finite3(look->sun)))
@@ -333,7 +333,7 @@ static bool take_recorded_hull(ob_recording *r, const ob_record_hull *h, ob_erro
 	return true;
 }
 
-// Records of before there were hulls lack them.
+// Opens the hulls. Records older than hulls lack them.
 static bool open_hulls(ob_recording *r, ob_error *e)
 {
 	list hulls = { .table = &ob_record_hulls, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
@@ -355,7 +355,7 @@ static bool open_hulls(ob_recording *r, ob_error *e)
 	return ok;
 }
 
-// All items of a table of a mesh, into memory of its own; NULL: it cannot be read, or they are too many.
+// Reads all items of a mesh's table into new memory; NULL: it cannot be read, or has too many.
 static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_table *table, uint64_t most,
 			     uint64_t *count, ob_error *e)
 {
@@ -380,7 +380,7 @@ static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_t
 	return NULL;
 }
 
-// Its height, width and 4; false: it is none, too large, or has more pixels than so many.
+// Reads the size of an image: height, width and 4. false: not an image, too large, or more than this number of pixels.
 static bool take_image_size(hid_t set, uint64_t pixels, ob_mesh_image *image)
 {
 	hsize_t size[3] = { 0 };
@@ -394,7 +394,7 @@ static bool take_image_size(hid_t set, uint64_t pixels, ob_mesh_image *image)
 	return fits;
 }
 
-// pixels: how many the images of its mesh may have from here on.
+// pixels: how many more pixels the images of its mesh may have.
 static bool open_image(ob_recording *r, const char *name, uint64_t *pixels, ob_mesh_image *image, ob_error *e)
 {
 	uint64_t numbers = 0;
@@ -413,7 +413,7 @@ static bool open_image(ob_recording *r, const char *name, uint64_t *pixels, ob_m
 	return read || damaged(r, "its meshes make no sense", e);
 }
 
-// Meshes without images lack both.
+// Opens parts and images of a mesh; meshes without images lack both.
 static bool open_parts(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
 {
 	char name[48];
@@ -452,7 +452,7 @@ static bool open_mesh(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
 	return ob_mesh_makes_sense(m) || damaged(r, "its meshes make no sense", e);
 }
 
-// Records of scenes without meshes lack the group.
+// Opens the meshes. Records of scenes without meshes lack the group.
 static bool open_meshes(ob_recording *r, ob_error *e)
 {
 	ob_scene *s = &r->info.scene;
@@ -527,7 +527,8 @@ static bool check_format(const ob_recording *r, ob_error *e)
 		       r->path, number, OB_RECORD_VERSION);
 }
 
-// The file is read by its descriptor, so that what was checked is what is read, whatever has its name by now.
+// Opens the file by its descriptor, so that the checked file is the one that is read, even if its name now belongs to
+// another.
 static bool open_file(ob_recording *r, int fd, ob_error *e)
 {
 	char file[32];
@@ -545,7 +546,7 @@ static bool open_file(ob_recording *r, int fd, ob_error *e)
 static ob_recording *open_here(const char *path, int fd, uint64_t bytes, ob_error *e)
 {
 	ob_hdf5_silence();
-	H5PLset_loading_state(0); // filters that this HDF5 does not have come from libraries that a folder holds
+	H5PLset_loading_state(0); // filters unknown to this HDF5 would be loaded as libraries from a folder
 	ob_recording *r = calloc(1, sizeof *r);
 	if (!r || !(r->path = strdup(path))) {
 		ob_fail(e, "%s: no memory", path);
@@ -565,7 +566,7 @@ static ob_recording *open_here(const char *path, int fd, uint64_t bytes, ob_erro
 
 // ---- the first reading, by a child
 
-// Reads all that there is; e is empty if that works.
+// Reads the whole record; e is empty on success.
 static void read_to_end(const char *path, int fd, uint64_t bytes, ob_error *e)
 {
 	bool ended = false;
@@ -589,8 +590,8 @@ static uint64_t address_space(void) // bytes; 0: it cannot be read
 	return n > 0 ? strtoull(text, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
 }
 
-// Bounds all that a damaged file can bring a process to: time, memory, files. The one descriptor that is left is that
-// by which HDF5 opens the file itself. A file with holes is as large as what is written of it.
+// Limits the damage that a corrupt file can do to a process: time, memory, files. One descriptor remains, with which
+// HDF5 opens the file itself. The size of a sparse file is that of its allocated blocks.
 static void limit_child(int fd)
 {
 	struct stat st = { .st_blocks = 0 };
@@ -606,17 +607,17 @@ static void limit_child(int fd)
 	setrlimit(RLIMIT_NOFILE, &(struct rlimit){ (rlim_t)last + 1, (rlim_t)last + 1 });
 	signal(SIGALRM, SIG_DFL);
 	signal(SIGXCPU, SIG_DFL);
-	alarm((unsigned)(WALL_PER_CPU * seconds)); // it should never wait, but for the disk
+	alarm((unsigned)(WALL_PER_CPU * seconds)); // it should never wait, except for the disk
 }
 
 static _Noreturn void be_child(const char *path, int fd, uint64_t bytes, int to, pid_t parent)
 {
 	ob_error e = { "" };
 	int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-	dup2(nowhere, STDERR_FILENO); // what a library says as it dies
+	dup2(nowhere, STDERR_FILENO); // messages of a library that dies
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
 	if (getppid() != parent)
-		_exit(1); // it died before that
+		_exit(1); // the parent died before that
 	limit_child(fd);
 	read_to_end(path, fd, bytes, &e);
 	ssize_t written = write(to, e.text, sizeof e.text);
@@ -775,7 +776,7 @@ static bool take_motion(ob_recording *r, const ob_record_motion *m, ob_error *e)
 	return true;
 }
 
-// Who came in this state moves, too, or stands somewhere.
+// Checks that each object added in this state has a motion, or stands somewhere.
 static bool check_new(const ob_recording *r, uint64_t first, list *events, ob_error *e)
 {
 	for (uint64_t i = first; i < r->event; i++) {
