@@ -38,7 +38,7 @@ static inline ob_scene little_scene(uint32_t balls)
 	return s;
 }
 
-// Balls that fall onto each other, and keep all pairs busy.
+// Balls that fall onto each other, and keep all contacts busy.
 static inline ob_scene busy_heap(uint32_t balls)
 {
 	ob_scene s = little_scene(balls);

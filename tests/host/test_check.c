@@ -1,5 +1,5 @@
-// A run that is checked ends where what simulators share is wrong, and says what; one that is not wrong ends in the
-// same bits as one that is not checked.
+// A checked run ends where the simulators' shared state is wrong, and explains it; a correct one ends in the same bits
+// as an unchecked one.
 #include <string.h>
 
 #include "check.h"
@@ -9,7 +9,7 @@
 
 enum { BALLS = 30, STEPS = 150 };
 
-// false and e as ob_host_wait. damage: a link of the first ball's list of pairs is changed half way. hash: at the end
+// false and e as ob_host_wait. damage: changes a link of the first ball's list of contacts half way. hash: at the end
 static bool run(const ob_host_config *c, bool damage, uint64_t *hash, bool *broken, ob_error *e)
 {
 	ob_scene s = falling_heap(BALLS);

@@ -1,11 +1,10 @@
-// Hardened simulators: the bits are the same; what is scribbled over all that one of them can write of the universe is
-// noticed or of no effect, and never gets into the result; the culprit is named. Each measure alone is in force, and
+// Hardened simulators: the bits are the same. Random writes to all memory of the universe that one of them can write
+// are detected or without effect, and never reach the result; the culprit is named. Each measure alone is in force, and
 // changes no bits.
 //
-// Words are written from outside, at any instant (process_vm_writev goes by the protection of the pages, as the
-// simulator's own stores do).
-// Arguments: first seed, seeds, "all" for the simulators' own memory, too, where a store may make a simulator
-// miscalculate.
+// Words are written from outside, at any instant (process_vm_writev obeys the protection of the pages, as the
+// simulator's own stores do). Arguments: first seed, seeds, "all" to include the simulators' own memory, where a store
+// may make a simulator miscalculate.
 #include <inttypes.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -23,7 +22,7 @@ typedef struct scribbler {
 	ob_host *h;
 	uint64_t random;
 	int words;
-	bool own_memory; // too
+	bool own_memory; // include the simulators' own memory
 	atomic_bool over;
 	atomic_uint written;
 } scribbler;
@@ -34,7 +33,7 @@ static uint64_t draw(scribbler *s, uint64_t below)
 	return (s->random >> 20) % below;
 }
 
-// A word among those that the process can write; 0: there is none any more.
+// Chooses a word among those that the process can write; 0: there is none any more.
 static uint64_t choose_word(scribbler *s, pid_t pid)
 {
 	char path[64], line[400], rights[5];
@@ -84,7 +83,7 @@ static void *scribble_along(void *argument)
 	return NULL;
 }
 
-// 0: the run has failed.
+// Returns the hash at the end; 0: the run has failed.
 static uint64_t run(const ob_scene *scene, ob_host_config *c, scribbler *s, uint32_t *deaths)
 {
 	ob_error e = { "" };
@@ -133,7 +132,7 @@ static void test_same_bits(const ob_scene *s, uint64_t expected)
 
 // ---- each measure
 
-// A number of /proc/PID/FILE behind a word at the start of a line; -1: there is none.
+// Returns the number in /proc/PID/FILE after a word at the start of a line; -1: there is none.
 static int64_t number_of(pid_t pid, const char *file, const char *word, int base)
 {
 	char path[64], line[400];
@@ -148,7 +147,7 @@ static int64_t number_of(pid_t pid, const char *file, const char *word, int base
 	return found;
 }
 
-// Bytes that the process shares with others, the universe, and of these those that it can write.
+// Counts the bytes that the process shares with others (the universe), and those of them that it can write.
 static void count_shared(pid_t pid, uint64_t *all, uint64_t *writable)
 {
 	char path[64], line[400], rights[5];
@@ -168,7 +167,7 @@ static void count_shared(pid_t pid, uint64_t *all, uint64_t *writable)
 static void check_in_force(const ob_universe *u, uint32_t measures)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-	const bool filtered = false; // sanitizers make calls of their own, which confine.c lets them make
+	const bool filtered = false; // sanitizers make system calls of their own, which confine.c allows
 #else
 	const bool filtered = true;
 #endif

@@ -1,5 +1,5 @@
-// The fork server and its worker processes: 200 start and leave; a death is reported with its cause; when the host is
-// killed, nothing is left.
+// The fork server and its worker processes: 200 start and leave; a death is reported with its cause; after the host is
+// killed, no process is left.
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,8 +66,8 @@ static void test_deaths(void)
 	static const uint32_t victims[] = { 3, 0, 2 };
 	for (int i = 0; i < 3; i++) {
 		pid_t pid = pid_of_worker(u, victims[i]);
-		pause_ms(20); // it sleeps at the gate by now, most likely
-		kill(pid, SIGINT); // Ctrl-C is the host's to handle
+		pause_ms(20); // most likely, it sleeps at the gate by now
+		kill(pid, SIGINT); // only the host handles Ctrl-C
 		kill(pid, signals[i]);
 		CHECK(next_end(s, g, WAIT_MS, &end) && end.worker == victims[i] && end.pid == pid);
 		CHECK(end.signal == signals[i]);
@@ -83,7 +83,7 @@ static void test_deaths(void)
 	ob_universe_destroy(u, true);
 }
 
-// Writes so many lines on standard error, and dies in the middle of what it does.
+// Writes a number of lines on standard error, and dies in the middle of its work.
 static int talk(ob_universe *u, uint32_t worker)
 {
 	static const int lines[] = { 0, 1, 3, 5000 };
@@ -95,7 +95,8 @@ static int talk(ob_universe *u, uint32_t worker)
 	abort();
 }
 
-// What each has said comes with its end, the last lines whole; and on standard error, where nobody else may stop it.
+// Each end reports the worker's last words, the last lines whole. They also reach standard error, where no reader can
+// block a worker.
 static void test_last_words(void)
 {
 	ob_error e = { "" };
@@ -104,7 +105,7 @@ static void test_last_words(void)
 	int before = dup(STDERR_FILENO), said[2];
 	if (pipe(said) != 0)
 		abort();
-	dup2(said[1], STDERR_FILENO); // a pipe that nobody reads yet
+	dup2(said[1], STDERR_FILENO); // a pipe without a reader yet
 	ob_universe *u = make_universe(name, 4);
 	ob_fork_server *k = ob_fork_server_start(u, talk, &e);
 	dup2(before, STDERR_FILENO);
@@ -137,7 +138,7 @@ static void test_last_words(void)
 
 _Noreturn static void run_host(const ob_spawn *s, const char *name, uint32_t workers, int ready)
 {
-	prctl(PR_SET_PDEATHSIG, SIGKILL); // should the test be ended
+	prctl(PR_SET_PDEATHSIG, SIGKILL); // if the test is ended
 	ob_error e;
 	ob_universe *u = make_universe(name, workers);
 	ob_fork_server *k = ob_fork_server_start(u, idle_worker, &e);

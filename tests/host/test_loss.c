@@ -1,5 +1,5 @@
-// What goes wrong while a universe runs: a simulator is killed and cannot be restarted, or stalls, Ctrl-C comes once or
-// twice, the fork server or the host is killed.
+// Failures of a running universe: a simulator is killed and cannot be restarted, or stalls, Ctrl-C comes once or twice,
+// the fork server or the host is killed.
 #include <pthread.h>
 #include <string.h>
 
@@ -34,14 +34,14 @@ static void *strike(void *argument)
 	return NULL;
 }
 
-// A run that ends before its time; e is the reason.
+// A run that ends early; e is the reason.
 static void run_to_its_end(ob_host *h, ob_error *e)
 {
 	ob_host_go(h, FOR_EVER);
 	CHECK(!ob_host_wait(h, e));
 }
 
-// A run that goes on until a line has been written to standard error, which is what e then holds.
+// A run until a line is written to standard error; e holds the line.
 static void run_until_said(ob_host *h, ob_error *e)
 {
 	FILE *said = tmpfile();
@@ -60,7 +60,7 @@ static void run_until_said(ob_host *h, ob_error *e)
 	fclose(said);
 }
 
-// Calls "run" on a host of which "victim" gets the signal some time after that.
+// Calls "run" on a host and sends "victim" a signal some time later.
 static void strike_during(ob_host *h, int after_ms, pid_t victim, int signal_number, void (*run)(ob_host *, ob_error *),
 			  ob_error *e)
 {
@@ -85,7 +85,7 @@ static void test_killed_simulator(void)
 	strike_during(h, 50, pid_of_worker(ob_host_universe(h), 0), SIGKILL, run_to_its_end, &e);
 	CHECK(strstr(e.text, "simulator 0 ") && strstr(e.text, "SIGKILL") && !ob_host_interrupted(h));
 	printf("%s\n", e.text);
-	CHECK(!ob_host_wait(h, &e)); // stays so
+	CHECK(!ob_host_wait(h, &e)); // fails again
 	ob_host_stop(h);
 	CHECK(!segment_exists(name) && waitpid(-1, NULL, WNOHANG) < 0);
 	free(s.object);
@@ -100,12 +100,12 @@ static void test_killed_fork_server(void)
 	strike_during(h, 50, fork_server_of_this(), SIGKILL, run_to_its_end, &e);
 	CHECK(strstr(e.text, "fork server"));
 	ob_host_stop(h);
-	CHECK(nothing_left("test-none")); // its orphans came to this process
+	CHECK(nothing_left("test-none")); // its orphans became children of this process
 	free(s.object);
 }
 
-// A simulator stalls while it has work, in a run whose objects fall for as long as one likes, are solved in every step,
-// and are so many that each worker has some. All are restarted. False: another simulator was named, which still computes.
+// Stalls a simulator that has work. The objects of the run fall endlessly, are solved in every step, and are so many
+// that each worker has some. All are restarted. False: another simulator was named, which still computes.
 static bool stall(uint32_t workers, uint32_t victim, double patience)
 {
 	ob_scene s = little_scene(200);
@@ -130,7 +130,7 @@ static bool stall(uint32_t workers, uint32_t victim, double patience)
 	return found;
 }
 
-// A stalled simulator is named when the timeout is over, which is longer where the machine is too slow for a short one.
+// A stalled simulator is named after the timeout, which grows if the machine is too slow for a short one.
 static void test_stalled_simulator(uint32_t workers, uint32_t victim)
 {
 	bool found = false;
@@ -139,7 +139,7 @@ static void test_stalled_simulator(uint32_t workers, uint32_t victim)
 	CHECK(found);
 }
 
-// A simulator stalls while it has nothing to do: the run goes on without it, to its end, and leaves nothing behind.
+// A simulator stalls while it has no work: the run goes on without it, to its end, and leaves nothing behind.
 static void test_stalled_idle_simulator(uint32_t workers, uint32_t victim)
 {
 	ob_scene s = little_scene(6);
@@ -178,7 +178,7 @@ static void test_interrupt(ob_isolation isolation, int signal_number, bool aslee
 	CHECK(ob_host_interrupted(h) && strstr(e.text, "interrupted"));
 	uint64_t step = steps_of(h);
 	pause_ms(20);
-	CHECK(steps_of(h) == step); // it stands
+	CHECK(steps_of(h) == step); // it stands still
 	ob_host_stop(h);
 	sigaction(signal_number, NULL, &now);
 	CHECK(now.sa_handler == SIG_DFL);
@@ -187,7 +187,7 @@ static void test_interrupt(ob_isolation isolation, int signal_number, bool aslee
 
 _Noreturn static void run_host(ob_isolation isolation, const char *name, int ready)
 {
-	prctl(PR_SET_PDEATHSIG, SIGKILL); // should the test be ended
+	prctl(PR_SET_PDEATHSIG, SIGKILL); // if the test is ended
 	ob_scene s = little_scene(40);
 	ob_host_config c = little_config(&s, isolation, isolation == OB_ISOLATION_PROCESS ? 0 : 2);
 	ob_error e;
@@ -200,10 +200,10 @@ _Noreturn static void run_host(ob_isolation isolation, const char *name, int rea
 	ssize_t ignored = write(ready, "r", 1);
 	(void)ignored;
 	for (;;)
-		pause(); // as if busy elsewhere: it does not wait
+		pause(); // busy elsewhere: it does not wait
 }
 
-// The host dies while its simulators run: by SIGKILL, or by a second Ctrl-C when the first was not heeded.
+// The host dies while its simulators run: by SIGKILL, or by a second Ctrl-C when it does not react to the first.
 static void test_dying_host(ob_isolation isolation, int signal_number, int blows)
 {
 	int ready[2];
@@ -217,7 +217,7 @@ static void test_dying_host(ob_isolation isolation, int signal_number, int blows
 	CHECK(read(ready[0], &byte, 1) == 1);
 	pause_ms(50);
 	int dealt = 0;
-	do { // two signals that come before the host has run once count as one: hence more, if need be
+	do { // two signals before the host has run once count as one: so more are sent if need be
 		kill(host, signal_number);
 		pause_ms(20);
 		dealt++;

@@ -1,5 +1,5 @@
-// As many as are promised: 1000 simulators one per process, 4000 one per thread, 10,000 objects on a pool of 2. Fewer
-// under ThreadSanitizer, to which a fork costs .1 s, and a thread 4 MB.
+// Promised sizes: 1000 simulators one per process, 4000 one per thread, 10,000 objects on a pool of 2. Fewer under
+// ThreadSanitizer, for which a fork takes .1 s, and a thread 4 MB.
 #include "check.h"
 #include "little_scene.h"
 #include "workers.h"

@@ -1,6 +1,6 @@
-// What an object costs in memory, all of it: simulators, universe and host, with and without ODE worlds of their own, and,
-// in processes, the last state, from which they are restarted. The run of ten objects is taken off: what every run needs,
-// however small. Each run is in a process of its own, which finds no memory that another has left behind.
+// Memory of an object in total: simulators, universe and host, with and without ODE worlds of their own, and, with
+// processes, the checkpoint for restarts. The memory of a run of ten objects is subtracted, as the share of every run.
+// Each run is in a process of its own, which finds no memory left by another.
 #include "../check.h"
 
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-// Simulators move from worker to worker, and the run ends in the bits of one in which none does.
+// Simulators move from worker to worker, and the run ends in the bits of one without moves.
 #include "check.h"
 #include "host/host_state.h"
 #include "little_scene.h"
@@ -33,7 +33,7 @@ static uint64_t hash_of(const ob_host *h)
 	return hash;
 }
 
-// seed 0: nobody moves. kill_at: a simulator is killed each time so many steps have been made; 0 = none is
+// seed 0: no moves. kill_at: a simulator is killed after each such number of steps; 0 = none
 static uint64_t end_of(const ob_scene *s, const ob_host_config *c, unsigned seed, uint64_t kill_at)
 {
 	ob_error e = { "" };
@@ -75,7 +75,7 @@ static uint32_t objects_of(const ob_host *h, uint32_t worker)
 	return info.objects;
 }
 
-// All of them to one worker, which then has all the work, also when another one has been killed.
+// All move to one worker, which then has all the work, also when another one has been killed.
 static void test_moved(const ob_scene *s, ob_isolation isolation, uint32_t harden)
 {
 	ob_host_config c = little_config(s, isolation, WORKERS);
@@ -109,7 +109,7 @@ static void test_moved(const ob_scene *s, ob_isolation isolation, uint32_t harde
 	ob_host_stop(h);
 }
 
-// Who comes into a number that was another's lives where nobody has moved it.
+// An object that reuses the number of another does not inherit its move.
 static void test_number_again(void)
 {
 	ob_scene s = busy_heap(BALLS);
@@ -123,7 +123,7 @@ static void test_number_again(void)
 	CHECK(ob_host_request_remove(h, 7, p.generation));
 	step_to(h, 2);
 	CHECK(!ob_universe_get_passport(h->u, 7, &p) && !ob_moves_were_made(h->u));
-	CHECK(ob_move_ask(h->u, 7, 2)); // it has gone before this is made
+	CHECK(ob_move_ask(h->u, 7, 2)); // the object is removed before the move is carried out
 	step_to(h, 3);
 	CHECK(!ob_moves_were_made(h->u));
 	ob_host_stop(h);

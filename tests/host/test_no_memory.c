@@ -1,4 +1,4 @@
-// A simulator finds no more memory: the run ends in order with a line that says so, with threads and with processes.
+// A simulator runs out of memory: the run ends in order with a line that says so, with threads and with processes.
 #include <string.h>
 #include <sys/resource.h>
 
@@ -22,7 +22,7 @@ static void test_run(ob_isolation isolation)
 	for (uint32_t w = 0; w < 2; w++) {
 		pid_t pid = pid_of_worker(ob_host_universe(h), w);
 		CHECK(prlimit(pid, RLIMIT_DATA, NULL, &before) == 0);
-		none = (struct rlimit){ 4096, before.rlim_max }; // 0 would be taken for unlimited
+		none = (struct rlimit){ 4096, before.rlim_max }; // 0 would mean unlimited
 		CHECK(prlimit(pid, RLIMIT_DATA, &none, NULL) == 0);
 	}
 	ob_host_go(h, 150);
@@ -40,7 +40,7 @@ _Noreturn static void leave(void)
 	_exit(9);
 }
 
-// Without anybody to tell, and with somebody.
+// Without a handler, and with one.
 static void test_allocate(bool told, int code)
 {
 	int status;

@@ -1,4 +1,4 @@
-// Simulators are killed, or stopped, at any instant, and the run ends in the same bits as if nobody had touched it.
+// Simulators are killed, or stopped, at any instant, and the run ends in the same bits as an undisturbed one.
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -12,13 +12,13 @@
 #include "workers.h"
 
 #ifdef __SANITIZE_THREAD__
-enum { BALLS = 15 }; // a fork costs it .1 s
+enum { BALLS = 15 }; // a fork takes .1 s there
 #else
 enum { BALLS = 40 };
 #endif
 enum { STEPS = 400 };
 
-// FNV-1a over what is there at the end.
+// FNV-1a over the state at the end.
 static uint64_t hash_of(const ob_host *h)
 {
 	const ob_universe *u = ob_host_universe(h);
@@ -34,7 +34,7 @@ static uint64_t hash_of(const ob_host *h)
 	return hash;
 }
 
-// Deals blows to the simulators of a host, each at some instant after it was asked for.
+// Strikes the simulators of a host, each blow at some instant after its request.
 typedef struct killer {
 	ob_host *h;
 	uint32_t workers;
@@ -73,8 +73,8 @@ static void *kill_when_asked(void *argument)
 	return NULL;
 }
 
-// Runs to the end, and asks for a blow "blows" times on the way; each comes before the next is asked for, and before
-// the end.
+// Runs to the end, and requests a blow "blows" times on the way; each comes before the next request, and before the
+// end.
 static uint64_t end_of(const ob_scene *s, const ob_host_config *c, killer *k, unsigned blows, uint32_t *deaths)
 {
 	ob_error e = { "" };
@@ -95,7 +95,7 @@ static uint64_t end_of(const ob_scene *s, const ob_host_config *c, killer *k, un
 		ob_host_go(h, step);
 		bool went = ob_host_wait(h, &e);
 		CHECK(went);
-		CHECK(steps_of(h) == step); // never seen going back
+		CHECK(steps_of(h) == step); // it never goes back
 		if (!went)
 			printf("%s\n", e.text);
 		if (blows)
@@ -130,7 +130,7 @@ static void test_deaths(const char *what, const ob_scene *s, uint32_t workers, i
 	printf("%s, %u workers, signal %d: %u restarts\n", what, workers, signal, sum);
 }
 
-// A simulator that ends of its own accord, whatever it says of that, is as one that was killed.
+// A simulator that exits by itself, with any code, counts as one that was killed.
 static void leave_with_7(int number)
 {
 	(void)number;
@@ -155,8 +155,8 @@ static void test_visitors(void)
 	free(s.object);
 }
 
-// Adds and removes balls by requests at some steps. Kills a simulator in the step after each, long after the checkpoint,
-// which is that of the start: nothing is due before the end.
+// Adds and removes balls by requests at some steps. Kills a simulator in the step after each, long after the
+// checkpoint, which is that of the start: no other is due before the end.
 static uint64_t end_of_requests(const ob_scene *s, bool kills, unsigned *deaths)
 {
 	enum { FIRST = 20, EACH = 15, LAST = 200 };
@@ -164,7 +164,7 @@ static uint64_t end_of_requests(const ob_scene *s, bool kills, unsigned *deaths)
 	ob_host_times times;
 	ob_error e = { "" };
 	ob_host *h = ob_host_start(s, &c, &e);
-	h->restart.cost = 1e9; // s, of the last checkpoint: the next is due when this is a small part of the time
+	h->restart.cost = 1e9; // s, of the last checkpoint: the next is due when this is a small share of the time
 	for (uint64_t step = FIRST; step <= LAST; step += EACH) {
 		ob_object_def d = ball("visitor", .3, .001 * (double)step, 2);
 		ob_passport p = { 0 };
@@ -225,8 +225,8 @@ static void test_killed_in_a_pause(void)
 	free(s.object);
 }
 
-// A simulator that dies in a certain step is frozen as it was when the last one before was complete, whenever checkpoints
-// were taken.
+// Freezes a simulator that dies in a certain step as it was when the step before was complete, independent of
+// checkpoints.
 static uint64_t end_without(const ob_scene *s, uint32_t victim, uint64_t step, int delay_ms, ob_state *frozen)
 {
 	ob_host_config c = little_config(s, OB_ISOLATION_PROCESS, 0);
@@ -268,7 +268,7 @@ static void test_frozen(void)
 	free(s.object);
 }
 
-// Stops the first child that is neither of the two, as soon as it is there.
+// Stops the first child that is neither of the two, as soon as it exists.
 _Noreturn static void stop_next_child(pid_t parent, const pid_t known[2])
 {
 	char path[64];
@@ -287,7 +287,7 @@ _Noreturn static void stop_next_child(pid_t parent, const pid_t known[2])
 	_exit(1);
 }
 
-// A simulator is stopped before it is ready, in a restart: that is no end either.
+// A simulator is stopped before it is ready, in a restart: the run still goes on.
 static void test_stopped_before_it_is_ready(void)
 {
 	ob_scene s = busy_heap(BALLS);
@@ -334,7 +334,7 @@ static void test_interrupted(void)
 	free(s.object);
 }
 
-// Where each simulator that is restarted dies of the same, the run gives up: here of a damaged table.
+// If each restarted simulator dies of the same cause, the run gives up: here because of a damaged table.
 static void test_again_and_again(void)
 {
 	ob_scene s = busy_heap(BALLS);
@@ -352,7 +352,7 @@ static void test_again_and_again(void)
 	CHECK(!ob_host_wait(h, &e) && !ob_host_interrupted(h));
 	printf("%s\n", e.text);
 #if !defined(__SANITIZE_ADDRESS__) && \
-	!defined(__SANITIZE_THREAD__) // which make a report and an exit code of the signal
+	!defined(__SANITIZE_THREAD__) // which turn the signal into a report and an exit code
 	CHECK(strstr(e.text, "killed by SIG") && strstr(e.text, "; giving up: simulators failed "));
 #endif
 	ob_host_stop(h);

@@ -1,4 +1,4 @@
-// The universe's memory runs out, or is cut short by somebody, before a run and in the middle of one: one line that
+// The universe's memory runs out, or is truncated from outside, before a run and in the middle of one: one line that
 // says so, exit code 1, nothing left.
 //
 // Only with a small /dev/shm of its own: PRIVATE_SHM=size=32m tests/private_shm.py PROGRAM.
@@ -13,7 +13,7 @@
 
 enum { SIZE_MIB = 32, SKIPPED = 77, BALLS = 150 };
 
-// Whether this is the /dev/shm that was asked for, small and nobody else's.
+// True if this /dev/shm is small and private, as requested.
 static bool is_private(void)
 {
 	struct statvfs s;
@@ -37,7 +37,7 @@ static void cut_short(void)
 
 static void leave_alone(void) {}
 
-// In a process: a run that something happens to. Exit 0: nothing came of it.
+// Runs a host in a process of its own, and harms it. Exit 0: without consequences.
 _Noreturn static void run_host(ob_isolation isolation, uint32_t workers, void (*harm)(void), int said)
 {
 	ob_scene s = falling_heap(BALLS);
@@ -60,7 +60,7 @@ _Noreturn static void run_host(ob_isolation isolation, uint32_t workers, void (*
 	_exit(!went);
 }
 
-// What the run said is one line with this in it, or nothing.
+// The run's output is one line with this in it, or empty.
 static void check_harm(ob_isolation isolation, uint32_t workers, void (*harm)(void), const char *saying)
 {
 	char text[2000];
@@ -92,7 +92,7 @@ static void *read_missing_page(void *universe)
 	return (void *)(uintptr_t)p->id;
 }
 
-// Threads that miss pages at once say so once.
+// Threads that miss pages at the same time report it once.
 static void test_many_miss(void)
 {
 	for (int i = 0; i < TIMES; i++) {
@@ -122,7 +122,7 @@ static void test_many_miss(void)
 	}
 }
 
-// There is not even room to begin.
+// There is too little room to begin.
 static void test_start(void)
 {
 	ob_scene s = falling_heap(BALLS);
@@ -135,7 +135,7 @@ static void test_start(void)
 	free(s.object);
 }
 
-// What is reserved is there, whoever comes for it later.
+// Reserved memory is available, whichever thread uses it later.
 static void test_reserved(void)
 {
 	ob_error e;

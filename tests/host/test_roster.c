@@ -28,7 +28,7 @@ static void *read_on(void *argument)
 	uint32_t newest = 0;
 	while (!over) {
 		size_t n = ob_roster_copy(r, seen, ENTRIES);
-		// round g holds 1 + g mod ENTRIES entries, all of generation g
+		// generation g has 1 + g mod ENTRIES entries, all of generation g
 		mixed += n != 1 + seen[0].generation % ENTRIES || seen[0].generation < newest;
 		newest = seen[0].generation;
 		for (size_t i = 0; i < n; i++)
@@ -106,13 +106,13 @@ static void test_requests(void)
 		taken++;
 		in_order = in_order && r.id == next[r.def.passport.id]++;
 	}
-	CHECK(in_order); // of each pusher
+	CHECK(in_order); // for each pusher
 	for (int i = 0; i < PUSHERS; i++)
 		pthread_join(thread[i], NULL);
 	CHECK(!ob_requests_waiting(queue));
 	ob_requests_push(queue, &r);
 	CHECK(ob_requests_waiting(queue));
-	ob_requests_destroy(queue); // with one left in it: the leak checker looks
+	ob_requests_destroy(queue); // with one left in it: the leak checker would report it
 }
 
 int main(void)

@@ -1,5 +1,5 @@
-// Runs, start to end, in both isolations: steps are complete where they should be, births, deaths and requests fall on
-// their step, times make sense, and nothing stays behind.
+// Runs, start to end, in both isolations: the requested steps are completed, births, deaths and requests take effect at
+// their step, times are plausible, and nothing is left.
 #include <pthread.h>
 #include <string.h>
 
@@ -43,8 +43,8 @@ static void test_plain(ob_isolation isolation, uint32_t workers)
 	CHECK(reach(h, 0));
 	CHECK(ob_universe_get_motion(u, 1, &m) && m.p.z == 1 && m.v.z == 0);
 	CHECK(reach(h, 1) && reach(h, 2) && reach(h, 30));
-	CHECK(reach(h, 30)); // is there already
-	ob_host_go(h, 12); // was there before
+	CHECK(reach(h, 30)); // it is there already
+	ob_host_go(h, 12); // an earlier step
 	CHECK(ob_host_wait(h, NULL) && steps_of(h) == 30);
 	CHECK(ob_universe_get_motion(u, 5, &m));
 	CHECK_NEAR(ob_motion_at(&m, ob_v3(1, 1, 1), .3).pose.p.z, 1 - .5 * 9.81 * .09, 1e-9);
@@ -54,7 +54,7 @@ static void test_plain(ob_isolation isolation, uint32_t workers)
 	CHECK(info.workers == (workers ? workers : 6) && !ob_host_interrupted(h));
 	ob_host_times t;
 	CHECK(reach(h, 3000));
-	do // the clock of a process that still runs elsewhere moves by ticks
+	do // the clock of a process that runs on another core moves by ticks
 		ob_host_get_times(h, &t);
 	while (t.cpu_s == 0 && ob_clock_wall() - began < 60);
 	double elapsed = ob_clock_wall() - began;
@@ -111,14 +111,14 @@ static void *ask(void *argument)
 	asker *a = argument;
 	pause_ms(30);
 	bool ok = ob_host_request_add(a->h, &a->def, NULL) && ob_host_request_remove(a->h, 1, 1);
-	for (int i = 0; i < 500; i++) { // nobody: but each makes the run pause at its next step
+	for (int i = 0; i < 500; i++) { // removes no object, but makes the run pause at its next step
 		ok = ok && ob_host_request_remove(a->h, 12345, 1);
 		pause_us(i);
 	}
 	return ok ? a : NULL;
 }
 
-// Requests from another thread, in the middle of a run that goes on for long
+// Requests from another thread, in the middle of a long run
 static void test_requests(ob_isolation isolation, uint32_t workers)
 {
 	ob_scene s = little_scene(2);
@@ -136,7 +136,7 @@ static void test_requests(ob_isolation isolation, uint32_t workers)
 	CHECK(reach(h, workers ? 40000 : 4000));
 	pthread_join(thread, &ok);
 	CHECK(ok != NULL);
-	CHECK(reach(h, steps_of(h) + 1)); // should they have come too late for the long run
+	CHECK(reach(h, steps_of(h) + 1)); // if they came too late for the long run
 	CHECK(ob_roster_find_name(ob_host_roster(h), "newcomer", &entry) && entry.id == 3 && entry.generation == 1);
 	CHECK(entry.own_worker == !workers);
 	CHECK(!is_there(h, 1) && is_there(h, 2));

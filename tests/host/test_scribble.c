@@ -1,6 +1,5 @@
-// Whatever is written into the universe while a run goes on, the host neither crashes nor hangs: the run ends, as it
-// should or with a message. What comes out of it may be wrong; that simulators cannot write where they should not is
-// another test's.
+// Random writes into the universe during a run neither crash nor hang the host: the run ends, normally or with a
+// message. Its results may be wrong; test_contain.c tests that simulators cannot write where they should not.
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
@@ -23,7 +22,7 @@ static uint64_t draw(uint64_t below)
 	return (random_state >> 20) % below;
 }
 
-// Balls that fall onto each other, some of which come and go: the host changes what exists.
+// Balls that fall onto each other, some of them temporary: the host changes the set of objects.
 static ob_scene heap(void)
 {
 	ob_scene s = little_scene(BALLS);
@@ -36,7 +35,7 @@ static ob_scene heap(void)
 	return s;
 }
 
-// Runs, looks at the universe now and then, and ends. Exit code 0 or 1: what happened is told, or nothing did.
+// Runs, reads the universe now and then, and ends. Exit code 0 or 1: without an error, or with its message.
 static int run(const ob_scene *s)
 {
 	ob_error e = { "" };
@@ -80,7 +79,7 @@ static uint64_t *map_segment(size_t *bytes, int *fd)
 	return base == MAP_FAILED ? NULL : base;
 }
 
-// One word somewhere in the pages that are in use; the first, which is read before anything else, is left as it is.
+// Overwrites one word somewhere in the used pages. The first page, which is read before anything else, stays as it is.
 static void scribble(uint64_t *word, size_t bytes, int fd)
 {
 	enum { PAGE = 4096, KINDS = 4 };
@@ -130,7 +129,7 @@ static void test_words(int words, uint64_t seed)
 	free(s.object);
 }
 
-// The host goes by what it knows itself: an object whose passport denies that it is kinematic is still counted as such.
+// The host relies on its own data: an object whose passport denies that it is kinematic still counts as kinematic.
 static int run_with_false_passport(const ob_scene *s)
 {
 	ob_error e = { "" };

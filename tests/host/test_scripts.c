@@ -1,6 +1,6 @@
-// Scripts that run at the same time: whichever worker runs whose, the same comes of it. What one reads of another, what
-// they send each other, what they create and remove, and their contacts meet in the universe here, so the thread
-// sanitizer is to see them (tests/run/test_scripts.py has what each call does).
+// Concurrent scripts: the result is the same whichever workers run them. Their reads of each other, messages,
+// creations, removals and contacts share the universe here, for the thread sanitizer (tests/run/test_scripts.py tests
+// each call).
 #include <string.h>
 
 #include "base/hash.h"
@@ -46,10 +46,10 @@ static const char text[] =
 typedef struct outcome {
 	uint64_t hash, scripts_state;
 	uint32_t objects;
-	bool greeted; // a bird has heard of others
+	bool greeted; // a bird has received a message
 } outcome;
 
-// What scripts keep is in no hash of a universe.
+// Adds the state that scripts keep, which is in no hash of a universe.
 static void look_at_cells(const ob_universe *u, outcome *o)
 {
 	const ob_step_data *x = ob_universe_step_data(u);

@@ -1,5 +1,5 @@
-// The timeline's file: what found no room is said in it, what cannot be written is an error, and odd names stay JSON.
-// (That the file as a whole is what importers accept, tests/run/test_trace.py looks at.)
+// The timeline's file: it reports lost events, write errors are errors, and odd names stay valid JSON.
+// (tests/run/test_trace.py checks that importers accept the file as a whole.)
 #include <string.h>
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ static const char *file_text(void)
 	return text;
 }
 
-// Lines of the file that hold it: an event has a line.
+// Counts the lines of the file with this text: an event has a line.
 static uint32_t count(const char *what)
 {
 	char line[1024];
@@ -62,7 +62,7 @@ static void test_lost(void)
 	ob_universe_destroy(u, true);
 }
 
-// Inner spans end first, but have to stand behind the outer one.
+// Inner spans end first, but must stand after the outer one.
 static void test_order(void)
 {
 	ob_universe *u = create();

@@ -1,5 +1,5 @@
-// For the tests that start and kill workers. Nothing here or there asserts how long something takes: a wait ends when what
-// it waits for has happened, and gives up after a time that no machine needs.
+// For the tests that start and kill workers. No test asserts a duration: a wait ends when its event has happened, and
+// gives up after a time that no machine needs.
 #ifndef OB_TESTS_HOST_WORKERS_H
 #define OB_TESTS_HOST_WORKERS_H
 
@@ -67,7 +67,7 @@ static inline pid_t pid_of_worker(const ob_universe *u, uint32_t worker)
 	return 0;
 }
 
-// Orphans of the test's children become its own, so that the test sees them end.
+// Adopts orphans of the test's children, so that the test sees them end.
 static inline void adopt_orphans(void)
 {
 	prctl(PR_SET_CHILD_SUBREAPER, 1);
