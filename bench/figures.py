@@ -264,9 +264,9 @@ def verdict(data):
         f" with 100 objects, {at(each, 1000, 'cpu_us') / at(pool, 1000, 'cpu_us'):.1f} times with 1,000.",
         f"- **One world or many?** At 60 Hz one ODE world takes {100 * middle(usual, 'cpu_us') / middle(default, 'cpu_us'):.0f} %"
         f" of the simulators' CPU, and boxes sink {number(middle(usual, 'depth_mm'))} mm into each other in place of"
-        f" {number(middle(default, 'depth_mm'))}. Where they may sink less than {number(crossing(priced['one ODE world'], priced['threads']))} mm,"
-        f" the simulators are cheaper.",
-        f"- **How many in real time?** On {data['machine']['cores']} cores: {reach(pool)} in a pool, {reach(each)} with a process"
+        f" {number(middle(default, 'depth_mm'))}. Below"
+        f" {number(crossing(priced['one ODE world'], priced['threads']))} mm of penetration the simulators are cheaper.",
+        f"- **Objects in real time?** On {data['machine']['cores']} cores: {reach(pool)} in a pool, {reach(each)} with a process"
         f" each, {reach(world)} in one world (while boxes land; at rest they cost simulators nothing).",
     ]) + '\n'
 
