@@ -183,9 +183,9 @@ def shared(m):
     work = told('falling-10000', 'cpu, timed', 'landing', 2.)
     gain = told('falling-10000', 'speed-up of 16 workers', 'landing', 2.)
     yield Promise('falling 10,000, landing: speed-up of 16 simulated workers', gain, 12, True)
-    yield Promise('falling 10,000, landing: share of the work that one worker arranges alone', landing / work, .02)
-    yield Promise('falling 10,000, landing: arranged by one worker alone, us per body-step', landing, .1)
-    yield Promise('sparse 10,000, in flight: arranged by one worker alone, us per body-step',
+    yield Promise('falling 10,000, landing: share of the work that one worker schedules alone', landing / work, .02)
+    yield Promise('falling 10,000, landing: scheduled by one worker alone, us per body-step', landing, .1)
+    yield Promise('sparse 10,000, in flight: scheduled by one worker alone, us per body-step',
                   told('sparse-10000', alone, 'in flight', 3.), .02)
 
 
@@ -203,7 +203,7 @@ SIDES_OF_OBSIM = ['obsim', 'obsim 1 thread', 'obsim 1 process', 'obsim 2 threads
 
 
 def promises(m):
-    text = head('what', 'target', 'measured', 'kept', '', texts=(0, 4))
+    text = head('figure', 'target', 'measured', 'kept', '', texts=(0, 4))
     for group in (flight, standing, heaps, hard, scale, shared, pools):
         for promise in group(m):
             text += promise.line()
