@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Load test of a served universe with many viewers: bench/serve.py OBSIM [--viewers 50] [--objects 1000] [--seconds
-60].
+60]. With --slow N instead: how soon a new viewer is served while N clients send a request a byte a second.
 
 All viewers are this one program. Staleness is the delay of a message, for its simulated time, relative to the fastest
 within a second. So it includes the server's interval, the transport, and the lateness of the stepping itself. A message
 has arrived when the kernel has it for the viewer. The delay until this program reads it is reported separately, as is
 the delay of the last viewer after the first for the same message, which is the server's alone. Prints one line a
 figure.
+
+A slow client that is closed comes again at once. A new viewer, twice a second, has been served when the first message
+of the universe has arrived whole, from the moment at which it connects.
 """
 import argparse
 import atexit
@@ -21,6 +24,7 @@ import socket
 import struct
 import subprocess
 import sys
+import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -155,6 +159,51 @@ def watch(obsim, viewers, objects, seconds):
     return all_, spent, simulated, first, made, gone
 
 
+def drip(port, clients, stop):
+    """Sends a byte a second of each client's request, all in one thread."""
+    request = b'GET /main.js HTTP/1.1\r\nHost: a\r\nX: ' + b'x' * 10000
+    held = [None] * clients
+    sent = [0] * clients
+    while not stop.is_set():
+        for i in range(clients):
+            try:
+                if held[i] is None:
+                    held[i], sent[i] = socket.create_connection(('127.0.0.1', port), timeout=60), 0
+                    held[i].setblocking(False)
+                sent[i] += held[i].send(request[sent[i]:sent[i] + 1])
+            except OSError:  # closed, or pushed out: it comes again at its next turn
+                held[i] = None
+            if stop.wait(1 / clients):
+                break
+    for s in filter(None, held):
+        s.close()
+
+
+def serve_among_slow(obsim, slow, seconds):
+    """Seconds until each new viewer has its first message."""
+    run, port = serve(obsim, 20)
+    atexit.register(run.terminate)
+    stop = threading.Event()
+    dripping = threading.Thread(target=drip, args=(port, slow, stop))
+    dripping.start()
+    waited, end = [], time.monotonic() + 3 + seconds
+    time.sleep(3)  # until all have come
+    while time.monotonic() < end:
+        selector, began = selectors.DefaultSelector(), time.monotonic()
+        viewer = Viewer(port, selector)
+        while not viewer.came and time.monotonic() - began < 60:
+            selector.select(60)
+            viewer.read()
+        waited.append(time.monotonic() - began)
+        viewer.socket.close()
+        time.sleep(.5)
+    stop.set()
+    dripping.join()
+    run.terminate()
+    run.wait()
+    return waited
+
+
 def print_times(what, seconds):
     ms = sorted(1e3 * s for s in seconds)
     print(f'{what}_ms p50 {ms[len(ms) // 2]:.1f} p99 {ms[int(.99 * len(ms))]:.1f} max {ms[-1]:.1f}')
@@ -166,7 +215,11 @@ def main():
     parser.add_argument('--viewers', type=int, default=50)
     parser.add_argument('--objects', type=int, default=1000)
     parser.add_argument('--seconds', type=float, default=60)
+    parser.add_argument('--slow', type=int)
     a = parser.parse_args()
+    if a.slow is not None:
+        print_times(f'served_among_{a.slow}_slow', serve_among_slow(a.obsim, a.slow, a.seconds))
+        return
     alone = watch(a.obsim, 1, a.objects, a.seconds / 3)
     all_, spent, simulated, first, made, gone = watch(a.obsim, a.viewers, a.objects, a.seconds)
     soonest, by_time = {}, collections.defaultdict(list)
