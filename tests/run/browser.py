@@ -12,7 +12,7 @@ import urllib.request
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 PATIENCE = 120 # s
-# Chromium's own traffic is switched off: it has nothing to do with what is tested.
+# Chromium's own traffic is switched off: the tests do not need it.
 ARGUMENTS = ["--headless=new", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
 	"--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 	"--disable-dev-shm-usage", "--hide-scrollbars"]
@@ -74,7 +74,7 @@ class Browser:
 		return self.ask("POST", "/execute/sync", {"script": script, "args": list(args)})
 
 	def wait(self, expression, patience=PATIENCE):
-		"""Until the expression is true; returns its value."""
+		"""Waits until the expression is true; returns its value."""
 		end = time.monotonic() + patience
 		while True:
 			value = self.run(f"return {expression}")
@@ -98,7 +98,8 @@ class Browser:
 		self.pointer(("move", x, y), ("down", 0), ("up", 0))
 
 	def touch(self, *fingers):
-		"""Fingers that go down together, and along their ways: each a list of places (x, y); who has fewer is up sooner."""
+		"""Fingers that go down together, and their paths: each a list of places (x, y); one with fewer places
+		goes up sooner."""
 		def way(places):
 			steps = [{"type": "pointerMove", "duration": 0 if i == 0 else 50, "x": int(x), "y": int(y)} for i, (x, y) in enumerate(places)]
 			return [steps[0], {"type": "pointerDown", "button": 0}, *steps[1:], {"type": "pointerUp", "button": 0}]

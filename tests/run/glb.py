@@ -1,4 +1,4 @@
-"""A binary glTF file of a cube, as a program that knows nothing of obsim would write it."""
+"""A binary glTF file of a cube, as any other program would write it."""
 
 import json
 import struct
@@ -20,8 +20,8 @@ def png(rows):
 
 
 def cube(half, colour=None, mode=4, picture=None, shine=False):
-	"""Its bytes; half: m; colour: linear RGB of its material, else it has none; picture: on it, upright as seen along y, once on
-	each of those faces; shine: that says how rough and metallic it is, too."""
+	"""Its bytes; half: m; colour: linear RGB of its material, else it has none; picture: on it, upright as seen
+	along y, once on each of those faces; shine: the picture also sets roughness and metal."""
 	data = b"".join(struct.pack("<3f", *(half * x for x in c)) for c in CORNERS) + struct.pack("<36H", *TRIANGLES)
 	primitive = {"attributes": {"POSITION": 0}, "indices": 1, "mode": mode}
 	text = {"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [primitive]}], "buffers": [{"byteLength": len(data)}],

@@ -13,7 +13,7 @@ import time
 
 PATH = os.environ.get("PATH", "") + ":/usr/sbin:/sbin"
 NET = "10.99.7"
-DELAYED = 1 << 20 # bytes of packets that are on their way at once in each direction, at most; more are lost
+DELAYED = 1 << 20 # limit of bytes of packets under way in each direction; more are lost
 
 
 def ip(*words):
@@ -21,7 +21,7 @@ def ip(*words):
 
 
 def open_tun(name):
-	"""A network device whose packets are read and written here, by a descriptor."""
+	"""A network device whose packets are read and written through a descriptor."""
 	set_interface, tun, no_information = 0x400454ca, 1, 0x1000 # linux/if_tun.h
 	fd = os.open("/dev/net/tun", os.O_RDWR | os.O_NONBLOCK)
 	fcntl.ioctl(fd, set_interface, struct.pack("16sH22x", name.encode(), tun | no_information))
@@ -29,7 +29,7 @@ def open_tun(name):
 
 
 class Relay(threading.Thread):
-	"""Hands what comes from either device to the other, so many seconds later: the kernel may have no netem."""
+	"""Forwards packets between both devices, after a delay (s): the kernel may have no netem."""
 
 	def __init__(self, devices, delay):
 		super().__init__()
@@ -68,7 +68,8 @@ class Relay(threading.Thread):
 
 
 class Link:
-	"""Namespaces, their devices and addresses, by number. Raises OSError or CalledProcessError where there can be none."""
+	"""Namespaces, their devices and addresses, by number. Raises OSError or CalledProcessError if they cannot be
+	created."""
 
 	def __init__(self, name, delay):
 		"""delay: s, one way; None: a cable"""
@@ -98,17 +99,17 @@ class Link:
 		self.stack.callback(self.relay.stop)
 
 	def inside(self, i):
-		"""What a command begins with that is to run there."""
+		"""Words before a command that is to run there."""
 		return [shutil.which("ip", path=PATH), "netns", "exec", self.space[i]]
 
 	def processes(self):
-		"""Ids of all that live in either."""
+		"""Ids of all processes in either."""
 		return [int(pid) for space in self.space for pid in ip("netns", "pids", space).split()]
 
 	def cut(self):
 		ip("-n", self.space[1], "link", "set", self.device[1], "down")
 
 	def packets(self):
-		"""That the first has got."""
+		"""Number of packets that the first has received."""
 		return int(subprocess.run([*self.inside(0), "cat", f"/sys/class/net/{self.device[0]}/statistics/rx_packets"], check=True,
 			stdout=subprocess.PIPE).stdout)

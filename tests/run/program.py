@@ -1,6 +1,6 @@
-"""The built obsim as a program: runs it as a user would, with a limit on time, and looks at what it leaves behind.
+"""The built obsim as a program: runs it as a user would, with a limit on time, and checks the remains.
 
-Where it lies, and where the scenes lie, comes from the environment (OBSIM, SCENES), which meson sets.
+The environment names the program and the scenes (OBSIM, SCENES); meson sets it.
 """
 
 import glob
@@ -17,13 +17,13 @@ import unittest
 
 OBSIM = os.environ["OBSIM"]
 SCENES = os.environ["SCENES"]
-MESHES = os.environ.get("MESHES") # whether obsim can read them
-FOR_EVER = "7e7"  # s to simulate, about as many as there may be: at rest, millions of steps pass in a second
+MESHES = os.environ.get("MESHES") # set if obsim can read them
+FOR_EVER = "7e7"  # s to simulate, about the largest possible duration: at rest, millions of steps pass in a second
 RANKS = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
 	"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}  # for mpirun, on however few cores
-OLDER_PROCESSOR = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"  # what the C library believes with it (GLIBC_TUNABLES)
+OLDER_PROCESSOR = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"  # the C library then uses none of these instructions (GLIBC_TUNABLES)
 SANITIZED = bool(os.environ.get("SANITIZED"))
-PATIENCE = 600  # s, for one call; a sanitizer slows it down some ten times, and so may whoever else uses the machine
+PATIENCE = 600  # s, for one call; a sanitizer slows it down about ten times, and so may other users of the machine
 
 LEAK_DETECTOR_FAILED = "LeakSanitizer has encountered a fatal error"
 
@@ -33,17 +33,17 @@ def scene(name):
 
 
 def ways(*all_of_them):
-	"""The ways to run one thing whose bits are compared; with a sanitizer, which looks at the code that all of them take, the
-	first and the last."""
+	"""Ways to run one thing whose bits are compared. With a sanitizer, which checks the code that all of them
+	share, only the first and the last."""
 	return all_of_them[::len(all_of_them) - 1] if SANITIZED else all_of_them
 
 
 def call(*words, timeout=PATIENCE, **more):
-	"""obsim WORDS to its end; text in and out, without the lines of progress that a slow machine sees."""
+	"""obsim WORDS to its end; text in and out, without the lines of progress that a slow machine prints."""
 	more.setdefault("stdout", subprocess.PIPE)
 	more.setdefault("stderr", subprocess.PIPE)
 	done = subprocess.run([OBSIM, *map(str, words)], timeout=timeout, text=True, **more)
-	for _ in range(3): # gcc's leak detector now and then fails itself, at exit, among the threads of a graphics driver
+	for _ in range(3): # gcc's leak detector itself sometimes fails, at exit, among the threads of a graphics driver
 		if not SANITIZED or LEAK_DETECTOR_FAILED not in (done.stderr or ""):
 			break
 		done = subprocess.run([OBSIM, *map(str, words)], timeout=timeout, text=True, **more)
@@ -66,7 +66,8 @@ def report(*words, **more):
 
 
 def home_of(name, object):
-	"""The worker in which obsim top says that an object lives, as text; None: the universe, or the object, is not there."""
+	"""The worker of an object according to obsim top, as text; None: the universe, or the object, does not
+	exist."""
 	for line in call("top", name, "--once", "--interval", ".01").stdout.splitlines():
 		words = line.split()
 		if len(words) > 5 and words[0] == str(object) and words[2] in ("box", "sphere", "plane"):
@@ -90,7 +91,7 @@ def steps(name):
 
 
 def checkpoint_areas(file):
-	"""What a checkpoint holds, but for when it was made and what was counted: of each area elements, and their checksum
+	"""Contents of a checkpoint without its time and its counters: the elements of each area, and their checksum
 	(checkpoint/file.h, checkpoint/saved_run.c)."""
 	with open(file, "rb") as f:
 		table = f.read(4096)[128:]
@@ -126,7 +127,7 @@ def alive(pid):
 
 
 def comm(pid):
-	"""The name that the process goes by; "": it has ended."""
+	"""Command name of the process; "": it has ended."""
 	try:
 		with open(f"/proc/{pid}/comm") as f:
 			return f.read().rstrip("\n")
@@ -135,7 +136,7 @@ def comm(pid):
 
 
 def parent(pid):
-	"""Its parent's id; 0: it has ended."""
+	"""Id of its parent; 0: it has ended."""
 	try:
 		with open(f"/proc/{pid}/stat") as f:
 			return int(f.read().rpartition(")")[2].split()[1])
@@ -157,7 +158,7 @@ def fork_server(parent):
 
 
 def end(pid):
-	"""Kills it, if it is still there."""
+	"""Kills the process, if it still exists."""
 	try:
 		os.kill(pid, signal.SIGKILL)
 		return True
@@ -166,7 +167,7 @@ def end(pid):
 
 
 def wait_until(condition, seconds=PATIENCE):
-	"""Whether the condition became true. Patient, for how fast a machine is no business of these tests."""
+	"""True once the condition holds. Patient: these tests do not depend on the speed of a machine."""
 	end = time.monotonic() + seconds
 	while not condition():
 		if time.monotonic() > end:
@@ -176,7 +177,7 @@ def wait_until(condition, seconds=PATIENCE):
 
 
 class Case(unittest.TestCase):
-	"""A test in an empty directory of its own, which must leave no universe behind."""
+	"""A test in an empty directory of its own; no universe may be left."""
 
 	def setUp(self):
 		self.directory = tempfile.TemporaryDirectory(prefix="obsim-test-")
@@ -187,7 +188,7 @@ class Case(unittest.TestCase):
 		self.assertFalse(os.path.exists(segment(self.name)), "the universe's memory is left behind")
 
 	def open_terminal(self):
-		"""The two ends of a terminal. Before anything is started: a bare chroot may have none (no /dev/pts)."""
+		"""The two ends of a terminal. Call it first: a bare chroot may have none (no /dev/pts)."""
 		try:
 			return pty.openpty()
 		except OSError as error:
@@ -197,7 +198,7 @@ class Case(unittest.TestCase):
 		return os.path.join(self.directory.name, name)
 
 	def start_universe(self, *words, command="run"):
-		"""A run under self.name, as soon as it is under way."""
+		"""Starts a run under self.name, and returns once it is under way."""
 		run = start(command, *words, "--name", self.name)
 		self.addCleanup(lambda: (run.poll() is None and run.kill(), run.wait(), run.stdout.close(), run.stderr.close()))
 		self.assertTrue(wait_until(lambda: os.path.exists(segment(self.name)) or run.poll() is not None))
@@ -205,14 +206,14 @@ class Case(unittest.TestCase):
 		return run
 
 	def start_stepping(self, *words):
-		"""The same, as soon as it has made a step: all its processes are there."""
+		"""The same, once it has made a step: all its processes exist."""
 		run = self.start_universe(*words)
 		self.assertTrue(wait_until(lambda: steps(self.name) > 0 or run.poll() is not None))
 		self.assertIsNone(run.poll(), "the run ended before it was looked at")
 		return run
 
 	def refuse(self, *words, saying, code=2):
-		"""obsim WORDS must end with this code and one line that holds the text."""
+		"""obsim WORDS must end with this code and one line with the text."""
 		done = call(*words, cwd=self.directory.name)
 		self.assertEqual(done.returncode, code, f"{words}: {done.stderr}")
 		self.assertIn(saying, done.stderr, words)

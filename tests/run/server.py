@@ -20,7 +20,7 @@ class Refused(Exception):
 
 
 class Viewer:
-	"""A WebSocket client that keeps a copy of the universe, as little as tests need."""
+	"""A WebSocket client that keeps the part of the universe that tests need."""
 
 	def __init__(self, port, path="/universe", headers=(), address="127.0.0.1"):
 		self.socket = socket.create_connection((address, port), timeout=program.PATIENCE)
@@ -64,7 +64,7 @@ class Viewer:
 		self.send_frame(OPEN, json.dumps(command).encode())
 
 	def receive(self):
-		"""The next message; it is followed. Raises EOFError with the reason when the server closes."""
+		"""Receives the next message, and applies it. Raises EOFError with the reason when the server closes."""
 		whole = b""
 		while True:
 			first, n = self.take(2)
@@ -148,7 +148,7 @@ class Case(program.Case):
 		return self.serve_file(program.scene(scene), *words)
 
 	def serve_file(self, path, *words):
-		"""The same of any scene."""
+		"""The same for any scene."""
 		self.run_ = self.start_universe(path, *(words or ("--listen", "127.0.0.1:0")), command="serve")
 		where, _, token = self.run_.stdout.readline().rsplit(" ", 1)[1].strip().partition("#token=")
 		self.port = int(where.rstrip("/").rsplit(":", 1)[1])

@@ -28,7 +28,7 @@ SCENES = {
 
 class Broken(program.Case):
 	def test_each(self):
-		name = "broken-%d" % os.getpid() # others may be running
+		name = "broken-%d" % os.getpid() # other tests may be running
 		for what, (text, saying) in SCENES.items():
 			with self.subTest(what):
 				path = self.path("broken.lua")

@@ -1,4 +1,4 @@
-"""The comparison: all configurations, one verdict and one table, the same bits; and what it says where it cannot."""
+"""The comparison: all configurations, one verdict and one table, the same bits; and its errors."""
 
 import csv
 import json
@@ -40,7 +40,7 @@ class Compare(program.Case):
 		self.assertEqual({runs[w]["narrow"] for w in OTHER}, {"aabb"})
 		for key in SOLO + OTHER:
 			metrics = runs[key]["metrics"]
-			# measured along a run of its own, and put in
+			# measured along a run of its own, and merged
 			for metric in "worst_penetration_m", "energy_gain_max", "critical_s_per_step", "switches_per_step":
 				self.assertIsNotNone(metrics[metric]["median"], (key, metric))
 			told = key not in ("threads_each", "processes_each")
@@ -65,7 +65,7 @@ class Compare(program.Case):
 	def test_options_reach_whom_they_concern(self):
 		_, c = self.compare(program.scene("stack"), "-D", "n=2", "--duration", ".1", "--solver", "jacobi", "--iterations", "3",
 			"--step", "1/120", "--narrow", "aabb", "--load", "5", "--repeats", "1")
-		# each says how it was run: the same commands, by themselves, tell what came of the options
+		# each names its command: the same commands, by themselves, show the effect of the options
 		commands = {key: run["command"] for key, run in c["points"][0]["configurations"].items()}
 		self.assertEqual({run["samples"][0]["steps"] for run in c["points"][0]["configurations"].values()}, {12})
 		runs = {key: program.report(*[word for word in commands[key][2:] if word != "--json=-"][:-2], commands[key][-1])
@@ -113,12 +113,12 @@ class Compare(program.Case):
 		second = self.rows("out")
 		took = lambda rows: {(r["configuration"], r["repeat"], r["seed"]): r["took_s"] for r in rows}
 		self.assertGreater(len(second), len(first))
-		self.assertLessEqual(took(first).items(), took(second).items()) # nothing was run again
+		self.assertLessEqual(took(first).items(), took(second).items()) # no run was repeated
 		self.assertEqual(program.call(*words, "--repeats", "2", "--fresh").returncode, 0)
 		third = self.rows("out")
 		self.assertEqual(took(third).keys(), took(second).keys())
 		self.assertFalse(took(third).items() & took(second).items())
-		# a scene that was changed is not what was run
+		# a changed scene is another run
 		with open(self.path("own.lua"), "a") as f:
 			f.write("-- another\n")
 		self.assertEqual(program.call(*words, "--repeats", "1").returncode, 0)
@@ -180,7 +180,7 @@ class Compare(program.Case):
 		os.kill(run.pid, signal.SIGTERM)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		said = run.stderr.read()
-		self.assertRegex(said, r"obsim: \d+ runs, about ") # before it begins
+		self.assertRegex(said, r"obsim: \d+ runs, about ") # before the first run
 		self.assertIn("interrupted", said)
 		run.stdout.close()
 		run.stderr.close()

@@ -1,4 +1,4 @@
-"""Simulators are killed at random, and the run ends in the same bits as one that nobody touched."""
+"""Simulators are killed at random, and the run ends in the same bits as an undisturbed one."""
 
 import json
 import random
@@ -18,7 +18,7 @@ BLOWS = 4
 
 class Deaths(program.Case):
 	def struck(self, words, took):
-		"""A run during which simulators die: its report, and how many were struck."""
+		"""A run during which simulators die: its report, and the number of kills."""
 		run = program.start("run", *words, "--isolation", "process", "--json", "-", "--name", self.name)
 		struck = 0
 		for _ in range(BLOWS):
@@ -29,7 +29,7 @@ class Deaths(program.Case):
 		out, said = run.communicate(timeout=program.PATIENCE)
 		self.assertEqual(run.returncode, 0, said)
 		report = json.loads(out)
-		# whoever dies when the last step is complete is not needed again
+		# a simulator that dies after the last step is not restarted
 		restarts = said.count("restarting all simulators from the checkpoint of step")
 		self.assertIn(report["deaths"] - restarts, (0, 1), said)
 		return report, struck

@@ -1,6 +1,6 @@
-"""Commands of the README and the guides run as they are written, one document after another, each in a folder of its own
-that holds the scenes which the document shows (Lua blocks that begin with `-- NAME.lua`). Pictures are drawn small and what
-takes minutes is shortened by the words of SHORTER; a command that is left to run (`&`, `obsim serve`) ends with its document.
+"""Commands of the README and the guides run as they are written, one document after another, each in a folder of its
+own with the document's scenes (Lua blocks that begin with `-- NAME.lua`). Pictures are drawn small, and long commands
+are shortened by the words of SHORTER. A command that is left to run (`&`, `obsim serve`) ends with its document.
 """
 
 import os
@@ -30,7 +30,7 @@ def commands_of(text):
 
 
 def scenes_of(text):
-	"""(name, text) of each Lua block that says how its file is called."""
+	"""(name, text) of each Lua block that begins with its file's name."""
 	for block in re.findall(r"```lua\n(.*?)```", text, re.DOTALL):
 		match = re.match(r"-- (\w+\.lua)\b", block)
 		if match:

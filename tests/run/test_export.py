@@ -1,7 +1,7 @@
-"""A recorded run in browsers: as one page that needs nobody, and served, to each viewer at a time of their own. What they see is
-what the renderer drew.
+"""A recorded run in browsers: as one page without a server, and served, to each viewer at a time of its own. They show
+the renderer's pictures.
 
-Where OBSIM_PICTURES names a directory, what was seen is kept there.
+If OBSIM_PICTURES names a directory, screenshots are kept there.
 """
 
 import base64
@@ -28,8 +28,8 @@ hull { points = { { 0, 0, 0 }, { .7, 0, 0 }, { 0, .6, 0 }, { .3, .1, .6 } }, at 
 """
 MESHED = 'sphere { radius = .25, at = { -1.2, -2.6, 1.5 }, velocity = { 0, 1, 0 }, spin = { 3, 1, 0 }, mesh = "cube.glb" }'
 TIMES = .4, 49 / 60 + .005, 1.75  # s: in the air, between two steps, at rest
-# Of 255, the mean difference, and the share of pixels that are off by more than FAR. Edges, of which the ground's grid has
-# most, lie a share of a pixel apart where browser and renderer have not the same rasterizer.
+# Tolerances of 255: the mean difference, and the share of pixels that are off by more than FAR. Edges, which the
+# ground's grid has most of, lie a share of a pixel apart where browser and renderer have different rasterizers.
 MEAN, FAR, FAR_SHARE = 2.5, 40, .02
 
 # Both pictures as the browser decodes them: the mean difference, and the share of pixels that are off by more than FAR.
@@ -124,7 +124,7 @@ class Pages(Case):
 		self.addCleanup(self.driver.end)
 
 	def open(self, url, ready="obsim.frames() > 3"):
-		b = browser.Browser(self.driver, 540, 460) # small: without a GPU, what is drawn is what this test costs
+		b = browser.Browser(self.driver, 540, 460) # small: without a GPU, drawing takes most of this test's time
 		self.addCleanup(b.close)
 		b.go(url)
 		b.wait(ready)
@@ -149,7 +149,7 @@ class Pages(Case):
 		self.assertEqual(b.console(), [])
 
 	def play(self, b):
-		"""It plays, pauses, goes back and on, and says of what is picked how it was at that time."""
+		"""It plays, pauses, goes back and on, and shows the state of a picked object at that time."""
 		self.assertEqual(b.run("return document.title"), "Some <fall> & come – obsim")
 		there = lambda name: b.run("return [...obsim.universe.objects.values()].some((o) => o.name.startsWith(arguments[0]))", name)
 		b.key(" ")
@@ -171,7 +171,7 @@ class Pages(Case):
 		self.assertEqual(b.run("return document.querySelectorAll('#marks i').length"), 2)
 		b.run("const t = document.querySelector('#time'); t.value = 1; t.dispatchEvent(new Event('input'))")
 		self.assertEqual(b.run("return obsim.universe.time"), 1)
-		b.key("n")  # nobody creates anything here
+		b.key("n")  # objects cannot be created here
 		self.assertTrue(b.run("return document.querySelector('#maker').hidden"))
 		self.seek(b, 1.95)
 		b.key(" ")
@@ -184,7 +184,7 @@ class Pages(Case):
 		return found["mean"], found["off"]
 
 	def check_pictures(self, b):
-		"""At three times it shows what the run itself drew then."""
+		"""At three times it shows the run's own picture of that time."""
 		size = "{}x{}".format(*b.run("const c = document.querySelector('#picture'); return [c.width, c.height]"))
 		drawn = None
 		for time in TIMES:
@@ -196,7 +196,7 @@ class Pages(Case):
 			done = program.call("run", self.scene, "--frames", folder, "--fps", repr(1 / time), "--size", size, "--duration", "4",
 				"--measure", "end")
 			self.assertEqual(done.returncode, 0, done.stderr)
-			with open(os.path.join(folder, "frame-000001.png"), "rb") as f: # which is at 1 / fps
+			with open(os.path.join(folder, "frame-000001.png"), "rb") as f: # the frame at 1 / fps
 				drawn = f.read()
 			mean, off = self.compare(b, drawn)
 			self.keep(f"drawn-{time:.2f}.png", drawn)
@@ -206,7 +206,7 @@ class Pages(Case):
 			self.assertLess(off, FAR_SHARE)
 
 	def test_served(self):
-		"""Two viewers of one recording, each at a time of their own."""
+		"""Two viewers of one recording, each at a time of its own."""
 		self.start_replay()
 		one, other = (self.open(f"http://127.0.0.1:{self.port}/") for _ in range(2))
 		self.seek(one, .25)

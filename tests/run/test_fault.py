@@ -1,4 +1,4 @@
-"""Faults that are asked for: simulators fail, the report says how often, and the run ends in the same bits."""
+"""Injected faults: simulators fail, the report counts the failures, and the run ends in the same bits."""
 
 import re
 import unittest
@@ -10,14 +10,14 @@ BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--mea
 
 class Fault(program.Case):
 	def faulty(self, *words):
-		"""The report of a run with faults, and how many of each kind."""
+		"""The report of a run with faults, and their number by kind."""
 		done = program.report(*BOXES, *words)
 		kinds = {kind: int(n) for kind, n in re.findall(r"(\w+) (\d+)", done["fault_kinds"])}
 		self.assertEqual(sum(kinds.values()), done["faults"])
 		return done, kinds
 
 	def test_deaths(self):
-		"""Also of those that die while all others wait for what they schedule."""
+		"""Includes deaths of simulators that schedule, while all others wait for the schedule."""
 		whole = program.report(*BOXES)
 		self.assertEqual((whole["faults"], whole["fault_kinds"]), (0, ""))
 		seen = {}
@@ -47,12 +47,12 @@ class Fault(program.Case):
 			self.assertEqual(done["deaths"], 0)
 
 	def test_same_faults(self):
-		"""One worker fails at the same chances each time."""
+		"""One worker fails at the same random instants each time."""
 		words = "--workers", "1", "--fault", "slow:p=.02,ms=1,seed=5"
 		self.assertEqual(self.faulty(*words)[1], self.faulty(*words)[1])
 
 	def test_scribbling(self):
-		"""Whatever it writes, the host ends in order: the run goes on, or says why it does not."""
+		"""After random writes the host ends in order: the run goes on, or explains its end."""
 		for seed in range(1, 4):
 			done = program.call("run", *BOXES, "--isolation", "process", "--workers", "2", "--patience", "1", "--fault",
 				f"scribble:p=.003,words=5,seed={seed}", "--name", self.name)

@@ -1,4 +1,4 @@
-"""Files that are given to obsim: none but regular ones are read, by whatever command; and records on a disk that is full."""
+"""Files given to obsim: each command reads only regular files; and records on a full disk."""
 
 import os
 import shutil
@@ -21,7 +21,7 @@ class Files(unittest.TestCase):
 		return os.path.join(self.directory.name, name)
 
 	def test_none_but_regular_files(self):
-		"""One line each, at once: a pipe that nobody writes is waited for by nobody."""
+		"""One line each, at once: no command waits for a pipe without a writer."""
 		os.mkfifo(self.path("pipe"))
 		os.symlink("pipe", self.path("link"))
 		os.symlink("nothing", self.path("dangling"))
@@ -47,7 +47,8 @@ class Files(unittest.TestCase):
 			self.assertIn("it is no file, but a pipe", done.stderr)
 
 	def record_on(self, kilobytes, scene):
-		"""Records a run on a disk of its own of that size; the record is where the test finds it afterwards, if there is one."""
+		"""Records a run on a disk of its own of that size, and copies the record, if there is one, for the
+		test."""
 		os.makedirs(self.path("disk"), exist_ok=True)
 		command = 'mount -t tmpfs -o size="$1"k none "$2" || exit 77; "$3" run "$4" --duration 1 --record "$2/r.h5"; code=$?; cp "$2/r.h5" "$5"; exit $code'
 		done = subprocess.run(["unshare", "-r", "-m", "sh", "-c", command, "sh", str(kilobytes), self.path("disk"), program.OBSIM, program.scene(scene),
@@ -57,7 +58,8 @@ class Files(unittest.TestCase):
 		return done
 
 	def test_full_disk(self):
-		"""However full the disk is, a record holds the states up to then, one at least; where it cannot, there is none."""
+		"""On a full disk, a record holds the states up to then, at least one; without room for one there is no
+		record."""
 		if not shutil.which("unshare"):
 			self.skipTest("no unshare")
 		outcomes = set()

@@ -1,4 +1,4 @@
-"""Frames: as many as there should be, each at its time, the same bytes each time, whatever runs the scene."""
+"""Frames: the right number, each at its time, the same bytes each time, whatever runs the scene."""
 
 import glob
 import hashlib
@@ -87,7 +87,7 @@ class Frames(program.Case):
 		self.assertEqual(r["frames"], 12)
 
 	def test_directories_are_made(self):
-		"""Files may lie in what --frames makes."""
+		"""Files may lie in a directory that --frames creates."""
 		report = program.report(*BOXES, *SIZE, "--duration", ".1", "--frames", self.path("a/b/c"), "--raw", self.path("a/r"),
 			"--series", self.path("a/b/s.csv"))
 		self.assertEqual(len(os.listdir(self.path("a/b/c"))), report["frames"])
@@ -102,7 +102,7 @@ class Frames(program.Case):
 		self.assertIn(b"frames", done.stderr) # the report gives way
 
 	def test_reader_leaves(self):
-		"""A pipe that nobody reads any more ends the run with a message, not with silence."""
+		"""A pipe whose reader has gone ends the run with a message."""
 		run = program.start("run", *BOXES, *SIZE, "--duration", "1000", "--raw", "-", "--name", self.name)
 		run.stdout.close()
 		self.assertEqual(run.wait(program.PATIENCE), 1)
@@ -115,7 +115,7 @@ class Frames(program.Case):
 		done = program.call("run", *BOXES, *SIZE, "--video", self.path("v.xyz"), "--duration", "1")
 		self.assertEqual(done.returncode, 1)
 		self.assertRegex(done.stderr, r"^obsim: \S*v.xyz: ffmpeg failed: .*format")
-		self.assertNotIn("@ 0x", done.stderr)  # the temporary folder may be called anything
+		self.assertNotIn("@ 0x", done.stderr)  # the temporary folder may have any name
 
 	@unittest.skipUnless(shutil.which("ffmpeg") and shutil.which("ffprobe"), "ffmpeg is not installed")
 	def test_video(self):

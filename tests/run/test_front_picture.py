@@ -1,5 +1,5 @@
-"""The picture at the top of the README is what the program draws: it is drawn again, smaller and of fewer pictures, and both
-are compared where they are as coarse as a thumbnail. Another Mesa draws other edges, and not another picture.
+"""The README's first picture is the program's: it is drawn again, smaller and with fewer samples, and both are compared
+as thumbnails. Another Mesa draws other edges, but the same picture.
 """
 
 import os
@@ -13,7 +13,7 @@ import program
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 FRONT = os.path.join(ROOT, "docs", "images", "falling_boxes.png")
 WIDE, HIGH = 64, 36 # cells of the thumbnail
-MEAN, MOST = 3, 32 # of 255: how far cells may be off
+MEAN, MOST = 3, 32 # tolerance of cells, of 255
 
 
 def rows_of_png(path):
@@ -80,7 +80,7 @@ class FrontPicture(program.Case):
 		off = [abs(a - b) for a, b in zip(front, self.draw("--quality", "fine", "--samples", "8"))]
 		self.assertLess(sum(off) / len(off), MEAN)
 		self.assertLess(max(off), MOST)
-		# and it would be seen if it were not: another seed, another picture
+		# a different picture fails: another seed, another picture
 		other = [abs(a - b) for a, b in zip(front, self.draw("--samples", "1", "--seed", "2"))]
 		self.assertGreater(sum(other) / len(other), 3 * MEAN)
 

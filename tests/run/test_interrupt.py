@@ -1,4 +1,4 @@
-"""Ctrl-C and its kin: the run ends at once, its files are whole, its report says so, nothing is left."""
+"""Ctrl-C and similar signals: the run ends at once, its files are whole, its report says so, nothing is left."""
 
 import json
 import os
@@ -10,7 +10,7 @@ import unittest
 
 import program
 
-# Whoever started the tests may ignore hang-ups (nohup), and obsim would then rightly do so, too.
+# The tests may run under nohup, where obsim would rightly ignore hang-ups, too.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HEAVY = [program.scene("falling_boxes"), "-D", "n=2000", "--duration", program.FOR_EVER]
@@ -19,7 +19,7 @@ LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_
 
 class Interrupt(program.Case):
 	def interrupt(self, *words, number=signal.SIGINT, when=lambda: True):
-		"""The report of a run that is interrupted a moment after it is so far."""
+		"""The report of a run that is interrupted a moment after the condition holds."""
 		run = self.start_stepping(*LONG, "--json", self.path("r.json"), *words)
 		self.assertTrue(program.wait_until(when))
 		time.sleep(.3)
@@ -41,7 +41,7 @@ class Interrupt(program.Case):
 					self.interrupt("--isolation", isolation, number=number)
 
 	def test_one_leg(self):
-		"""Also a run that looks at nothing on its way knows how far it came."""
+		"""A run without measures on its way also reports its progress."""
 		report = self.interrupt("--measure", "end")
 		self.assertGreater(report["simulated_s"], 0)
 

@@ -1,4 +1,4 @@
-"""Kills without warning: of the host, of a simulator, of the fork server. Nothing is left."""
+"""Kills without warning: the host, a simulator, the fork server. Nothing is left."""
 
 import glob
 import os
@@ -43,7 +43,7 @@ class Killed(program.Case):
 				self.check_nothing_left(below)
 
 	def test_simulator_of_a_monolith(self):
-		"""There is nothing to go back to: the run fails, naming the simulator that died, and ends in order."""
+		"""There is no checkpoint: the run fails, names the simulator that died, and ends in order."""
 		run = self.start_stepping(*LONG, "--isolation", "process", "--arch", "monolith")
 		below = program.processes(run.pid)
 		os.kill(program.simulators(run.pid)[0], signal.SIGKILL)
@@ -52,7 +52,7 @@ class Killed(program.Case):
 		self.check_nothing_left(below)
 
 	def test_stopped_fork_server(self):
-		"""It is not waited for: the run ends in order, and takes it and its simulators along."""
+		"""A stopped fork server is killed: the run ends in order, with all simulators."""
 		for way in WAYS:
 			with self.subTest(way=way):
 				run = self.start_stepping(*LONG, *way)
@@ -64,7 +64,8 @@ class Killed(program.Case):
 				self.check_nothing_left(below)
 
 	def test_stranger_under_a_name(self):
-		"""What any user can put there blocks nobody, and is told of where its name is asked for."""
+		"""A FIFO with a universe's name, which any user can create, blocks no run, and is an error for that
+		name."""
 		os.mkfifo(program.segment(self.name))
 		self.addCleanup(lambda: os.path.exists(program.segment(self.name)) and os.unlink(program.segment(self.name)))
 		program.report(program.scene("stack"), "--duration", ".1")
@@ -73,7 +74,7 @@ class Killed(program.Case):
 		os.unlink(program.segment(self.name))
 
 	def test_stale_is_cleared(self):
-		"""What a killed host and fork server leave together, the next run removes."""
+		"""The next run removes the remains of a killed host and fork server."""
 		run = self.start_stepping(*LONG)
 		below = program.processes(run.pid)
 		for pid in [run.pid, *below]:

@@ -1,4 +1,4 @@
-"""The lab as a program: what it writes, that it goes on where it stopped, and what it tells a script."""
+"""The lab as a program: its files, its resumption, and its output for scripts."""
 
 import csv
 import json
@@ -154,7 +154,7 @@ class Lab(program.Case):
 
 	def test_check(self):
 		self.lab("lab", "projectile", "--engines", "obsim,ode-quick", "--sweep", "none", "--check")
-		# what is out of time has missed its targets
+		# a run out of time misses its targets
 		words = ["lab", "stack-40", "--engines", "obsim", "--sweep", "none", "--check", "--limit"]
 		done = self.lab(*words, ".01", code=3)
 		self.assertIn("obsim: 3 targets missed", done.stderr)
@@ -164,12 +164,12 @@ class Lab(program.Case):
 		self.assertEqual((late["failure"], late["figure1"], late["bodies_times_simulated_s"]), ("time", "", ""))
 		self.assertEqual(late["cpu_s_per_body_and_simulated_s"], "")
 		self.lab(*words, ".005", code=3)
-		self.assertEqual(self.rows()[-1], late) # less time is no reason to try again
+		self.assertEqual(self.rows()[-1], late) # a lower limit is no reason to try again
 		self.lab(*words, ".02", code=3)
 		self.assertRegex(self.rows()[-1]["reason"], r"ran longer than (0.02 s of CPU|0.08 s)$")
 
 	def test_quick(self):
-		"""Quick is a look at the usual settings, beside one other engine: nobody asks for hours in this way."""
+		"""--quick tests the usual settings, beside one other engine, in a short time."""
 		self.lab("lab", "--quick", "--limit", ".001")
 		rows = self.rows()
 		self.assertEqual({r["engine"] for r in rows}, {"obsim", "obsim-lag", "ode-quick"})
@@ -186,7 +186,7 @@ class Lab(program.Case):
 				run.send_signal(number)
 				self.assertEqual(run.wait(program.PATIENCE), 1)
 				said = run.stderr.read()
-				self.assertRegex(said, r"^obsim: 4 runs, about \d+ ") # before it begins
+				self.assertRegex(said, r"^obsim: 4 runs, about \d+ ") # before the first run
 				self.assertIn("interrupted", said)
 				self.assertFalse(any(map(program.alive, below)))
 				before = self.rows()
@@ -197,7 +197,7 @@ class Lab(program.Case):
 				os.remove(self.path("out/results.csv"))
 
 	def test_killed(self):
-		"""Nothing is left running, and what was done is there."""
+		"""Nothing is left running, and finished results are saved."""
 		run = self.start("lab", "projectile", "pile", "--engines", "obsim", "--sweep", "substeps=1024")
 		self.assertTrue(program.wait_until(lambda: os.path.exists(self.path("out/results.csv")), program.PATIENCE))
 		time.sleep(.3)

@@ -1,4 +1,4 @@
-"""Scenes that ask for more than can be computed: one line that names the objects and the step, exit code 1, nothing left
+"""Scenes that exceed the limits of computation: one line that names the objects and the step, exit code 1, nothing left
 behind; and scenes that are the same in every run."""
 
 import json
@@ -17,7 +17,7 @@ def hostile(name):
 
 class Limits(program.Case):
 	def fail(self, *words, saying):
-		"""obsim run WORDS ends with this one line, whoever works."""
+		"""obsim run WORDS ends with this one line, in each configuration."""
 		done = program.call("run", *words, "--name", self.name)
 		self.assertEqual(done.returncode, 1, done.stderr)
 		self.assertRegex(done.stderr, saying)
@@ -33,7 +33,8 @@ class Limits(program.Case):
 		self.fail(hostile("busy_scripts"), "--duration", ".02", saying=r"^obsim: step 1 takes more work .* object \d+ \(sphere#\d+\) would need millions of instructions of scripts")
 
 	def test_crowd(self):
-		"""Two hundred thousand spheres in one heap: too many pairs for a step and for a measure, which both hear SIGTERM."""
+		"""Two hundred thousand spheres in one heap: too many pairs for a step and for a measure, which both
+		react to SIGTERM."""
 		run = self.start_universe(hostile("crowd"), "--duration", ".05")
 		time.sleep(.5)
 		run.send_signal(signal.SIGTERM)
@@ -42,7 +43,8 @@ class Limits(program.Case):
 
 	@unittest.skipIf(program.SANITIZED, "a measure of 10^5 pairs takes minutes with a sanitizer")
 	def test_too_much_to_measure(self):
-		"""Penetration is left out, with one warning, and the rest of the run is there: its series, its checkpoint, and what goes on from that."""
+		"""Penetration is left out, with one warning, and the rest of the run is there: its series, its
+		checkpoint, and its resumption."""
 		series, checkpoint = self.path("s.csv"), self.path("c")
 		done = program.call("run", hostile("rods"), "--duration", ".05", "--series", series, "--checkpoint", checkpoint, "--json", "-", "--name", self.name)
 		self.assertEqual(done.returncode, 0, done.stderr)
@@ -65,14 +67,14 @@ class Limits(program.Case):
 		self.assertEqual(len(texts), 1)
 
 	def test_few_descriptors(self):
-		"""However few files may be open: one line, or it runs."""
+		"""With any limit of open files: one line, or it runs."""
 		ran = set()
 		for files in [*range(3, 24), 28, 32, 40]:
 			for isolation in ["thread"], ["process"], ["process", "--harden"]:
 				done = program.call("run", program.scene("stack"), "--duration", ".05", "--workers", "2", "--isolation", *isolation,
 					"--series", self.path("s.csv"), "--trace", self.path("t.json"), "--checkpoint", self.path("c"), "--json", self.path("j"),
 					"--name", self.name, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files)))
-				if files == 3 and not done.stderr: # not even its libraries can be opened, of which the loader tells nobody
+				if files == 3 and not done.stderr: # the loader cannot open libraries, and prints nothing
 					continue
 				ran.add((done.returncode, *isolation))
 				self.assertIn(done.returncode, (0, 1, 2, 127), (files, done.stderr)) # 127: the loader's
@@ -82,7 +84,7 @@ class Limits(program.Case):
 		self.assertLessEqual({(c, *i) for c in (0, 1) for i in (["thread"], ["process"], ["process", "--harden"])}, ran)
 
 	def test_nothing_touches(self):
-		"""What the sanitizers found."""
+		"""A crash that the sanitizers found."""
 		program.report(hostile("no_contacts"), "--duration", ".1")
 
 	def test_many_substeps(self):

@@ -1,4 +1,4 @@
-"""Objects that look like meshes: drawn as these, they move as they did, and a file that is none ends in one line."""
+"""Objects with meshes: drawn as these, their motion unchanged; and an invalid file ends in one line."""
 
 import os
 import unittest
@@ -12,7 +12,7 @@ SIZE = ["--size", "96x64", "--samples", "1", "--fps", "10", "--duration", ".2"]
 
 
 def difference(a, b):
-	"""Of two pictures, per channel, of 255."""
+	"""Difference of two pictures, per channel, of 255."""
 	return sum(abs(x - y) for x, y in zip(a, b, strict=True)) / len(a)
 
 
@@ -59,7 +59,7 @@ class Meshes(program.Case):
 		looks, _ = self.frames("picture", "ground {}\ncamera 'main' { eye = { 0, -9, 1.2 }, target = { 0, 0, 1.2 }, fov = 22 }\n"
 			"sphere { radius = .2, at = { 0, 0, 1.2 }, static = true, mesh = 'cube.glb' }\n")
 		at = lambda x, y: tuple(looks[3 * (96 * y + x):][:3])
-		quarters = at(38, 22), at(58, 22), at(38, 42), at(58, 42) # of the first frame: red, green, blue, and grey
+		quarters = at(38, 22), at(58, 22), at(38, 42), at(58, 42) # in the first frame: red, green, blue, and grey
 		for k, pixel in enumerate(quarters[:3]):
 			self.assertGreater(pixel[k], 1.5 * max(pixel[:k] + pixel[k + 1:]), quarters)
 		self.assertLess(max(quarters[3]), 1.3 * min(quarters[3]), quarters)

@@ -5,7 +5,7 @@ import unittest
 
 import program
 
-# An EGL without any vendor's library, as on a server where none is installed
+# An EGL without a vendor's library, as on a server without one
 BLIND = {**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null", "__EGL_VENDOR_LIBRARY_DIRS": "/dev/null"}
 
 

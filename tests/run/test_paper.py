@@ -1,4 +1,4 @@
-"""The paper's experiment as a program: few and short runs, and all that is made of them."""
+"""The paper's experiment as a program: few and short runs, and all results from them."""
 
 import csv
 import json
@@ -51,7 +51,7 @@ class Paper(program.Case):
 		self.assertEqual(len(kept), len(runs))
 		self.assertEqual({row["seed"] for row in kept if row["series"] == "experiment"}, {"1", "2"})
 
-		# what is there is not run again, and one more experiment is that of another seed alone
+		# finished runs are not repeated, and one more experiment differs in the seed alone
 		again = program.call("paper", "--quick", "--json", "--objects", "5", "--out", out, "--repeats", "3")
 		self.assertEqual(again.returncode, 0, again.stderr)
 		more = json.loads(again.stdout)["runs"]
@@ -59,7 +59,7 @@ class Paper(program.Case):
 		self.assertEqual([r for r in more if r["seed"] < 3 and r in runs], runs)
 
 	def check_figures(self, run):
-		"""What must hold of the three runtimes, of CPU and of pace by what they mean."""
+		"""Checks the relations of the three runtimes, of CPU and of pace that follow from their definitions."""
 		simulators = 1 if run["scenario"].startswith("common") else run["objects"]
 		self.assertAlmostEqual(run["cpu_per_simulator_s"] * simulators, run["total_cpu_s"], delta=1e-12)
 		self.assertGreater(run["total_cpu_s"], 0)

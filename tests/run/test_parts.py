@@ -1,5 +1,5 @@
-"""Optional libraries: the program maps none until it needs one, worker processes map none, and without its parts
-(obsim-NAME.so) each command that needs one says so in one line, exit 2, while all else works.
+"""Optional libraries: the program maps none until it needs one, worker processes map none. Without its parts
+(obsim-NAME.so) each command that needs one fails in one line, exit 2, while all else works.
 """
 
 import os

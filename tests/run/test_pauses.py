@@ -1,4 +1,4 @@
-"""A run that stands still for longer than its patience, because somebody has stopped it, goes on as if nothing had been."""
+"""A run that is stopped by a signal for longer than its patience goes on as if it had not been."""
 
 import os
 import signal

@@ -1,4 +1,5 @@
-"""What becomes of a run whose simulators die: all restart, their objects freeze, or it ends; and what is said of each death."""
+"""Policies for deaths of simulators: all restart, their objects freeze, or the run ends; and the report of each
+death."""
 
 import json
 import os
@@ -15,7 +16,7 @@ ABORTS = "an assertion failed, as it was to (--fault abort)"
 
 class Policy(program.Case):
 	def test_last_words(self):
-		"""The culprit, its step and what it said: on standard error, in the report, in the trace."""
+		"""The failed simulator, its step and its last words: on standard error, in the report, in the trace."""
 		trace, whole = self.path("trace.json"), program.report(*BOXES)
 		for more in [], ["--harden"]:
 			done = program.call("run", *BOXES, *PROCESS, "--workers", "2", "--fault", "abort:p=.004,seed=3", *more, "--json", "-",
@@ -38,7 +39,8 @@ class Policy(program.Case):
 			self.assertTrue(all(e["args"]["what"].endswith("its last words: " + ABORTS) for e in events))
 
 	def test_keep(self):
-		"""What cannot be solved is frozen, while kills restart, freeze nothing, and leave the bits as they were."""
+		"""Objects that cannot be solved are frozen, while kills restart, freeze nothing, and leave the bits as
+		they were."""
 		r = program.report(BLADE, "--duration", "3", "--on-death", "keep")
 		self.assertGreater(r["frozen"], 0)
 		r = program.report(*BOXES, *PROCESS, "--workers", "2", "--fault", "kill:p=.004,seed=3", "--on-death", "keep")
@@ -54,7 +56,7 @@ class Policy(program.Case):
 		self.assertEqual((report["outcome"], report["deaths"], len(report["death_list"])), ("failed", 1, 1))
 
 	def test_restarts(self):
-		"""More deaths than allowed: it gives up, and says who died, how often."""
+		"""More deaths than allowed: it gives up, and counts the deaths of the simulator."""
 		words = [*BOXES, *PROCESS, "--workers", "1", "--fault", "exit:p=.005,seed=5", "--restarts"]
 		done = program.call("run", *words, "2/1e6", "--name", self.name)
 		self.assertEqual(done.returncode, 1)
@@ -64,12 +66,13 @@ class Policy(program.Case):
 		self.assertEqual(program.call("run", *words, "9999/1e6").returncode, 0)
 
 	def test_freeze(self):
-		"""The objects of whom dies stay, and the run goes on; in which step he dies a second time depends on the checkpoints."""
+		"""The objects of a dead simulator stay, and the run goes on; the step of a second death depends on the
+		checkpoints."""
 		words = [*BOXES, *PROCESS, "--on-death", "freeze"]
 		whole = program.report(*BOXES)
 		for workers, fault in ("1", "segv:p=.001"), ("objects", "exit:p=.0001"):
 			frozen = 0
-			for seed in range(1, 7): # who dies between two objects dies in nobody's name
+			for seed in range(1, 7): # a simulator that dies between two objects freezes none
 				done = program.report(*words, "--workers", workers, "--fault", f"{fault},seed={seed}")
 				frozen += done["frozen"]
 				self.assertEqual(done["bodies"], whole["bodies"] - done["frozen"])
@@ -89,10 +92,10 @@ class Policy(program.Case):
 		self.assertEqual(seen, {(r["state_hash"], r["frozen"])})
 
 	def test_frozen_goes_on(self):
-		"""What is frozen stays so in a checkpoint, and obsim top shows it."""
+		"""Frozen objects stay frozen in a checkpoint, and obsim top shows it."""
 		file = self.path("run.ck")
 		words = [program.scene("gas"), "-D", "n=40", "--measure", "end", *PROCESS, "--workers", "1", "--on-death", "freeze",
-			"--restarts", "9999/1e6"] # what moves for ever
+			"--restarts", "9999/1e6"] # moves for ever
 		frozen = 0
 		for seed in range(1, 7):
 			r = program.report(*words, "--duration", "10", "--fault", f"segv:p=.001,seed={seed}", "--checkpoint", file)

@@ -1,5 +1,5 @@
-"""A scene ends in the same bits on processors with and without fused multiplication and addition: here, with the C
-library told to do without it."""
+"""A scene ends in the same bits on processors with and without fused multiply-add: here, the C library is told not to
+use it."""
 
 import os
 import subprocess
@@ -25,7 +25,7 @@ RUNS = [
 
 
 def values(environment):
-	"""What functions of the C library return, as Python calls them."""
+	"""Results of functions of the C library, as called by Python."""
 	return subprocess.run([sys.executable, "-c", VALUES], env=environment, check=True, stdout=subprocess.PIPE).stdout
 
 

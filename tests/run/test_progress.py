@@ -1,4 +1,4 @@
-"""The progress line: on a terminal, for what takes longer than two seconds, and gone at the end."""
+"""The progress line: on a terminal, for runs of more than two seconds, and gone at the end."""
 
 import os
 import re
@@ -12,7 +12,7 @@ import program
 
 class Progress(program.Case):
 	def run_on_terminal(self, *words, until=None):
-		"""What it writes; when that has matched until, it is interrupted."""
+		"""Returns the output; interrupts the run once the output matches "until"."""
 		leader, terminal = self.open_terminal()
 		run = subprocess.Popen([program.OBSIM, "run", *words, "--name", self.name], stdout=subprocess.DEVNULL, stderr=terminal)
 		os.close(terminal)

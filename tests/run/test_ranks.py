@@ -1,5 +1,6 @@
-"""One universe on several ranks, all of them on this machine: the bits of one process, files of rank 0 alone, and one error
-for all where a rank is different, or dies; then each of the others has a checkpoint, from which any number of ranks go on."""
+"""One universe on several ranks, all of them on this machine: the bits of one process, files of rank 0 alone, and one
+error for all if a rank is different, or dies. Then each of the others has a checkpoint, from which any number of ranks
+resume."""
 
 import fcntl
 import json
@@ -23,12 +24,12 @@ SCENES = {
 	"machines": ["--duration", "1"],
 	"flock": ["--duration", "1"],
 }
-# Found touching in a first solution, and no longer in the last: as its step 25 ends.
+# In contact in the first solution of its step 25, and not in the last.
 PARTED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "parted")
 
 
 def command(*groups):
-	"""mpirun with so many ranks of each group, each with its own words."""
+	"""mpirun with this number of ranks of each group, each with its own words."""
 	words = []
 	for ranks, more in groups:
 		words += [":"] if words else []
@@ -56,8 +57,8 @@ class Ranks(program.Case):
 					self.assertEqual(self.hash_of((ranks, [*words, "--workers", workers])), alone)
 
 	def test_bodies_come_and_go(self):
-		"""From one rank's neighbours to another's, by far in a step: what collides is in islands of several ranks' bodies, which
-		meet and part, and there are no two steps with the same neighbours."""
+		"""Bodies move from one rank's neighbours to another's, by far in a step. Colliding bodies are in
+		islands of several ranks' bodies, which merge and split, and no two steps have the same neighbours."""
 		for speed, duration in (3, 2), (100, .25):
 			words = [program.scene("gas"), "-D", f"speed={speed}", "--duration", duration, "--measure", "end", "--json", "-"]
 			alone = program.report(*words[:-2], "--workers", "1")["state_hash"]
@@ -66,7 +67,8 @@ class Ranks(program.Case):
 					self.assertEqual(self.hash_of((ranks, [*words, "--workers", workers])), alone)
 
 	def test_is_whole_where_somebody_looks(self):
-		"""What others solve far from a rank's own bodies grows old there, but not while a program reads its universe."""
+		"""Motions that other ranks solve far from a rank's own bodies grow old there, unless a program reads
+		its universe."""
 		running, bodies = self.start_stepping_ranks([program.scene("sparse"), "--duration", program.FOR_EVER, "--workers", "1",
 			"--sleeping", "off", "--measure", "end"]), 200
 		segment = program.segment(f"obsim-{self.ranks_of(running)[0][0]}")
@@ -74,7 +76,7 @@ class Ranks(program.Case):
 			control, slots = (struct.unpack_from("=Q", memory, 32 + 8 * area)[0] for area in (0, 5)) # table/layout.h, table/slot.h
 
 			def age():
-				"""Steps for which some motion has held no longer."""
+				"""Steps since some motion expired."""
 				step, ends = struct.unpack_from("=Q", memory, control)[0], []
 				for slot in range(slots + 360, slots + 360 * (1 + bodies), 360): # all but the ground
 					version = struct.unpack_from("=Q", memory, slot)[0]
@@ -88,7 +90,7 @@ class Ranks(program.Case):
 
 	@unittest.skipIf(len(os.sched_getaffinity(0)) < 2, "there is but one core")
 	def test_cores_of_their_own(self):
-		"""Ranks on one machine do not crowd on the same cores, if the launcher leaves them all."""
+		"""Ranks on one machine spread over its cores, if the launcher permits them all."""
 		running = self.start_stepping_ranks([program.scene("gas"), "--duration", program.FOR_EVER, "--workers", "1"])
 		cores = [os.sched_getaffinity(pid) for pid in program.simulators(running.pid) if program.comm(pid) != "sim 3"]
 		self.assertEqual(len(cores), 3)
@@ -106,7 +108,7 @@ class Ranks(program.Case):
 				self.assertEqual(a.read(), b.read())
 
 	def test_contacts_are_drawn(self):
-		"""What touches on other ranks, too."""
+		"""Contacts of other ranks are drawn, too."""
 		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "1.6", "--measure", "end", "--fps", "2", "--size", "160x120",
 			"--overlay", "contacts", "--workers", "1"]
 		with tempfile.TemporaryDirectory() as folder:
@@ -119,8 +121,8 @@ class Ranks(program.Case):
 			self.assertEqual(*pictures)
 
 	def test_scripts_are_drawn(self):
-		"""The first rank alone draws, and it alone would pause for that: all come to the same scripts in the same step. A run
-		that begins later has a first frame, too."""
+		"""Rank 0 alone draws, and it alone would pause for that: all ranks reach the same scripts in the same
+		step. A resumed run has a first frame, too."""
 		words = [program.scene("flock"), "--measure", "end", "--workers", "1"]
 		draws = ["--fps", "6", "--size", "64x48", "--json", "-"]
 		with tempfile.TemporaryDirectory() as folder:
@@ -143,7 +145,7 @@ class Ranks(program.Case):
 				self.assertEqual(self.hash_of((3, more)), expected)
 
 	def test_goes_on_while_boxes_land(self):
-		"""From one process's checkpoints: what was about to touch is two ranks' now."""
+		"""From one process's checkpoints: bodies about to touch belong to two ranks now."""
 		with tempfile.TemporaryDirectory() as folder:
 			kept = os.path.join(folder, "kept")
 			for moment in 1.1, 1.2, 1.3:
@@ -155,8 +157,8 @@ class Ranks(program.Case):
 					self.assertEqual(self.hash_of((ranks, [*more, "--json", "-"])), alone)
 
 	def test_checkpoints_are_alike(self):
-		"""That of each rank, whatever it has solved, is that of one process, but for when it was made and what was counted."""
-		later = ".4", "1.1" # when records have been others' before
+		"""The checkpoint of each rank equals that of one process, except for its time and its counters."""
+		later = ".4", "1.1" # records have changed their rank before
 		for name, more, moments in ("falling_boxes", ["-D", "n=20", "--sleeping", "off"], later), \
 				("falling_boxes", ["-D", "n=20", "--solver", "ghost"], ["1.5"]), ("gas", ["-D", "n=100"], later), ("machines", [], later), \
 				("pile", [], later), (PARTED, ["--narrow", "aabb"], [".4166"]):
@@ -171,7 +173,7 @@ class Ranks(program.Case):
 						self.assertEqual(program.checkpoint_areas(file), program.checkpoint_areas(alone))
 
 	def test_moves(self):
-		"""Simulators move from rank to rank, as rank 0 is asked."""
+		"""Simulators move from rank to rank, by requests to rank 0."""
 		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "3", "--sleeping", "off"]
 		alone = program.report(*words, "--workers", "1")["state_hash"]
 		with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as said:
@@ -207,8 +209,8 @@ class Ranks(program.Case):
 				self.assertIn(said, done.stderr)
 
 	def test_no_wrong_result(self):
-		"""Where simulators of one rank write what they should not, the run ends with an error, or in the right bits: they can reach
-		nothing but what they hand over."""
+		"""If simulators of one rank write where they should not, the run ends with an error, or in the right
+		bits: they can change nothing but their own results."""
 		words = [program.scene("gas"), "--duration", "2", "--workers", "1", "--isolation", "process", "--measure", "end",
 			"--json", "-"]
 		right, ended = self.hash_of((2, words)), 0
@@ -222,7 +224,7 @@ class Ranks(program.Case):
 		self.assertGreater(ended, 0)
 
 	def test_another_processor(self):
-		"""The second rank is told to do without fused operations, as on an older processor."""
+		"""The second rank uses no fused operations, as on an older processor."""
 		words = [program.scene("flock"), "--duration", "1", "--workers", "1", "--measure", "end", "--json", "-"]
 		older = ["env", "GLIBC_TUNABLES=" + program.OLDER_PROCESSOR, program.OBSIM, "run", *words]
 		launched = [*command((1, words)), ":", "-n", "1", *older]
@@ -232,8 +234,8 @@ class Ranks(program.Case):
 		self.assertEqual(json.loads(done.stdout)["state_hash"], program.report(*words[:-4], "--measure", "end")["state_hash"])
 
 	def test_one_wrong_bit(self):
-		"""The last bit of each velocity in the second rank's memory. Where it comes too late it is overwritten, and of what lies far
-		from all that this rank solves nobody takes notice: so they come again, as motions are published."""
+		"""Flips the last bit of each velocity in the second rank's memory. A late flip is overwritten, and a
+		flip far from all bodies of this rank has no effect. So flips are repeated, as motions are published."""
 		words = [program.scene("gas"), "--duration", program.FOR_EVER, "--workers", "1", "--measure", "end"]
 		running, bodies = self.start_stepping_ranks(words), 200
 		segment = program.segment(f"obsim-{self.ranks_of(running)[1][0]}")
@@ -261,8 +263,9 @@ class Ranks(program.Case):
 		self.assertIn("another rank has left the run", said)
 
 	def test_goes_on_after_a_death(self):
-		"""Whichever process of a rank is killed, at whatever moment: the run ends, nothing is left of it but checkpoints, and from
-		that of any other rank it comes to the same end. Real time passes, so that it has not ended before."""
+		"""A random process of a rank is killed at a random moment. The run ends, only checkpoints are left, and
+		the checkpoint of any other rank leads to the same end. The run keeps real time, so that it has not
+		ended before."""
 		words = [program.scene("falling_boxes"), "-D", "n=20", "--sleeping", "off", "--measure", "end"]
 		right = program.report(*words, "--duration", "4", "--workers", "1")["state_hash"]
 		for victim, again in ("obsim", 2), ("obsim-fork", 4), ("sim 3", 3):
@@ -278,7 +281,7 @@ class Ranks(program.Case):
 				self.assertNotEqual(running.returncode, 0)
 				files = [kept, kept + ".1", kept + ".2"]
 				self.check_nothing_left(below)
-				# who is killed while it writes cannot take back what it has begun
+				# a rank that is killed while it writes leaves its unfinished file
 				self.assertLessEqual({os.path.join(folder, name) for name in os.listdir(folder)}, {*files, files[hit] + ".part"})
 				others = [file for file in files if file != files[hit]]
 				for file in others:
@@ -300,7 +303,7 @@ class Ranks(program.Case):
 		self.assertEqual(json.loads(out)["state_hash"], right)
 
 	def start_stepping_ranks(self, words):
-		"""Three, as soon as each has made a step."""
+		"""Starts three ranks, and returns once each has made a step."""
 		running = subprocess.Popen(command((3, words)), env=program.RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
 			stderr=subprocess.PIPE, text=True)
 		self.addCleanup(lambda: (running.poll() is None and running.terminate(), running.wait(), running.stdout.close(), running.stderr.close()))
@@ -315,7 +318,7 @@ class Ranks(program.Case):
 
 	@staticmethod
 	def ranks_of(running):
-		"""Of each rank its processes, the rank itself first; mpirun starts them in their order."""
+		"""Processes of each rank, the rank itself first; mpirun starts the ranks in order."""
 		first = [pid for pid in program.processes(running.pid) if program.comm(pid) == "obsim"]
 		return [[pid, *program.processes(pid)] for pid in sorted(first)]
 

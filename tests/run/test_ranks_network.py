@@ -1,5 +1,5 @@
-"""One universe on two machines: network namespaces of this one, with a cable between them, or a link that takes a millisecond; and
-a cable that is cut."""
+"""One universe on two machines: two network namespaces, with a cable between them, or a link that takes a millisecond;
+and a cut cable."""
 
 import json
 import os
@@ -10,7 +10,7 @@ import network
 import program
 
 WORDS = [program.scene("falling_boxes"), "-D", "n=60", "--sleeping", "off", "--measure", "end"]
-SOON = {"oob_tcp_keepalive_time": 5, "oob_tcp_keepalive_intvl": 1, "oob_tcp_keepalive_probes": 5} # s, s: as docs/obsim.1 has it
+SOON = {"oob_tcp_keepalive_time": 5, "oob_tcp_keepalive_intvl": 1, "oob_tcp_keepalive_probes": 5} # s, s: as in docs/obsim.1
 
 
 class Network(program.Case):
@@ -23,8 +23,8 @@ class Network(program.Case):
 		return link
 
 	def start(self, link, *words):
-		"""mpirun in the one, which starts a rank there and one in the other."""
-		agent = self.path("agent") # in the place of ssh, with its words
+		"""mpirun in one namespace; it starts a rank there and one in the other."""
+		agent = self.path("agent") # replaces ssh, with the same arguments
 		with open(agent, "w", encoding="utf-8") as f:
 			f.write(f'#!/bin/sh\nshift\nexec {" ".join(link.inside(1))} sh -c "$*"\n')
 		os.chmod(agent, 0o700)
@@ -49,7 +49,7 @@ class Network(program.Case):
 				link.close()
 
 	def test_a_machine_goes_silent(self):
-		"""Nothing says that it has gone, but that nothing comes from it any more. Both end, and have their checkpoints."""
+		"""A cut cable sends no error; packets just stop. Both ranks end, and have their checkpoints."""
 		right = program.report(*WORDS, "--duration", "4", "--workers", "1")["state_hash"]
 		link, kept = self.link(None), self.path("kept")
 		running = self.start(link, *WORDS, "--duration", "4", "--pace", "1", "--workers", "1", "--checkpoint", kept, "--every", ".1")

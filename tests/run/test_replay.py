@@ -52,7 +52,7 @@ class Replay(program.Case):
 		return pictures(self.path(folder))
 
 	def test_same_pictures(self):
-		"""Of each step, and of times between two, with any camera."""
+		"""Pictures of each step, and of times between two, with any camera."""
 		for words in (BOXES, [self.write_scene(1)]):
 			record = self.record(*words)
 			for view in (["--fps", "60"], ["--fps", "50", "--overlay", "aabb"], ["--fps", "23", "--camera", "travelling"]):
@@ -65,7 +65,7 @@ class Replay(program.Case):
 				self.assertEqual(was, now, (words, view))
 
 	def test_sparse(self):
-		"""Where not each step was recorded, those that were give the same pictures."""
+		"""If only some steps were recorded, these give the same pictures."""
 		scene = self.write_scene(4)
 		record = self.record(scene)
 		was, now = self.draw("was", scene, "--fps", "15"), self.draw("now", "--replay", record, "--fps", "15")
@@ -88,7 +88,7 @@ class Replay(program.Case):
 		self.assertIn(b"7 frames", done.stderr)
 
 	def test_resumed(self):
-		"""What goes on from a checkpoint has a record of its own, which begins there."""
+		"""A resumed run has a record of its own, which begins at the checkpoint."""
 		checkpoint = self.path("c")
 		program.report(*BOXES[:3], "--duration", ".3", "--checkpoint", checkpoint)
 		record = self.path("late.h5")

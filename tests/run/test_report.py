@@ -1,4 +1,4 @@
-"""The report: its keys are a promise, its figures make sense, and the manual names them all."""
+"""The report: its keys are stable, its figures are plausible, and the manual names them all."""
 
 import csv
 import json
@@ -58,7 +58,7 @@ class Report(program.Case):
 		self.assertLess(coarse["substeps_max"], fine["substeps_max"])
 
 	def test_missed_tolerance(self):
-		"""Impacts that would need more substeps than there are."""
+		"""Impacts that need more substeps than the limit."""
 		words = ["run", program.scene("falling_boxes"), "-D", "n=20", "--duration", "1.2", "--measure", "end"]
 		for strict, code in ([], 0), (["--strict"], 1):
 			done = program.call(*words, "--tolerance", "1um", *strict)
@@ -97,7 +97,7 @@ class Report(program.Case):
 		self.assertEqual(r["worst_penetration_m"], 0)
 
 	def test_momentum(self):
-		"""A closed scene has a momentum error, and it is that of rounding."""
+		"""A closed scene has a momentum error at the level of rounding."""
 		r = program.report(program.scene("cradle"))
 		self.assertIsNotNone(r["momentum_error"])
 		self.assertLess(r["momentum_error"], 1e-12)
@@ -121,7 +121,7 @@ class Report(program.Case):
 			self.assertEqual(parts[key], every[key], key)
 
 	def test_where_the_time_goes(self):
-		"""Working, waiting for a core, waiting at the gate: together it is the time that the workers had."""
+		"""Working, waiting for a core, waiting at the gate: together this is all of the workers' time."""
 		for way in ["--workers", "2"], ["--workers", "objects"], ["--workers", "2", "--isolation", "process"], ["--arch", "monolith"]:
 			r = program.report(program.scene("falling_boxes"), "-D", "n=60", "--duration", "4", "--measure", "profile", *way)
 			had = r["workers"] * r["elapsed_s"]

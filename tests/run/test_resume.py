@@ -1,5 +1,5 @@
-"""A run that is put down and taken up again ends in the same bits and the same figures, whatever runs either part, and
-whatever ended the first. A checkpoint on disk is whole at any instant, or refused in one line."""
+"""A run that is interrupted and resumed ends in the same bits and the same figures, in any configuration of either
+part, after any kind of end of the first. A checkpoint on disk is whole at any instant, or refused in one line."""
 
 import csv
 import json
@@ -15,7 +15,7 @@ import unittest
 
 import program
 
-# Of one process, or of how it was run; all other figures of a resumed run are those of a run in one piece.
+# Figures of one process, or of its configuration; all others of a resumed run equal those of an uninterrupted one.
 OWN = {"isolation", "workers", "wall_s", "cpu_s", "total_s", "body_step_cpu_us", "startup_s", "step_p50_s", "step_p90_s",
 	"step_p99_s", "step_max_s", "elapsed_s", "host_cpu_s", "renderer_cpu_s", "switches", "worker_memory_bytes", "memory_bytes",
 	"resumed_s", "faults", "fault_kinds", "checkpoints", "checkpoint_bytes", "checkpoint_s", "box_tests"}
@@ -41,7 +41,7 @@ SCENES = {
 
 
 def figures(report):
-	"""What must be the same. Workers add up the energy each, so that its sum is not the same to the last bit."""
+	"""Figures that must be equal. Each worker sums its energy, so the total differs in the last bits."""
 	energy = report["energy_recovered"]
 	return {k: f"{energy:.9g}" if k == "energy_recovered" else v for k, v in report.items() if k not in OWN}
 
@@ -65,7 +65,7 @@ class Resume(program.Case):
 		return program.report("--resume", file or self.file, *words)
 
 	def test_same_end(self):
-		"""Put down at a random moment, twice, and taken up in other ways."""
+		"""Interrupted at two random moments, and resumed in other configurations."""
 		chance = random.Random(1)
 		for name in SCENES:
 			whole = program.report(*self.words(name))
@@ -84,8 +84,8 @@ class Resume(program.Case):
 				self.assertEqual(figures(end), figures(whole))
 
 	def test_knows_as_much(self):
-		"""A step after it was taken up, at whatever step, all that the run keeps is what one in one piece has: which pairs have been
-		looked at how closely, too. So a look that is taken once more changes nothing."""
+		"""A step after a resume, at any step, the run's whole state is that of an uninterrupted one, including
+		the results of narrow-phase checks. So a repeated check changes nothing."""
 		scene, other = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "kicked.lua"), self.path("other.ck")
 		for step in range(1, 16):
 			words = [scene, "--measure", "end", "--duration"]
@@ -147,7 +147,7 @@ class Resume(program.Case):
 			self.assertAlmostEqual(float(line["momentum_z"]), 5 * min(max(t - 1.5, 0), .2), delta=1e-9)
 
 	def test_again_and_again(self):
-		"""A run in thirty pieces, each with a checkpoint of its own, from its scene, which is gone by then."""
+		"""A run in thirty pieces, each from the checkpoint of the one before; the scene's file is deleted."""
 		words = self.words("come_and_go")
 		whole = program.report(*words)
 		program.report(*words, "--duration", ".01", "--checkpoint", self.file)
@@ -157,7 +157,7 @@ class Resume(program.Case):
 		self.assertEqual(figures(self.finish("--duration", whole["simulated_s"])), figures(whole))
 
 	def test_solvers(self):
-		"""What each solver keeps of a pair is kept, and settings and parameters are those of the first part."""
+		"""Each solver's warm-start data is saved, and settings and parameters are those of the first part."""
 		for more in ["--solver", "jacobi"], ["--solver", "lagged", "--lag", "3"], ["--solver", "ghost"], ["--integrator", "ode"], \
 				["--substeps", "3", "--iterations", "7"], ["--narrow", "aabb"], ["--sleeping", "off"], ["--tolerance", ".1mm"]:
 			with self.subTest(more=more):
@@ -167,7 +167,7 @@ class Resume(program.Case):
 				self.assertEqual(figures(self.finish("--duration", "1.8", "--isolation", "process")), figures(whole))
 
 	def test_measured_at_the_ends(self):
-		"""Only what was measured at each step of both parts is told as the largest of all steps."""
+		"""Only figures measured at each step of both parts are reported as maxima."""
 		words = self.words("cradle")
 		whole = program.report(*words, "--measure", "end")
 		for first, second in ("end", "end"), ("end", "step"), ("step", "end"):
@@ -181,11 +181,11 @@ class Resume(program.Case):
 		self.assertEqual(r["checkpoint_bytes"], os.path.getsize(self.file))
 		self.assertGreater(r["checkpoint_s"], 0)
 		self.assertEqual(os.listdir(self.directory.name).count("run.ck.part"), 0)
-		# nothing is left to do: the same report again
+		# no work is left: the same report again
 		self.assertEqual(figures(self.finish()), figures(r))
 
 	def test_interrupted(self):
-		"""Ctrl-C and its kin leave a checkpoint of the step at which they ended the run."""
+		"""Ctrl-C and similar signals leave a checkpoint of the step at which they ended the run."""
 		for number in signal.SIGINT, signal.SIGTERM:
 			run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=40", "--duration", program.FOR_EVER, "--sleeping", "off",
 				"--checkpoint", self.file, "--every", "1e6", "--json", self.path("r.json"), "--isolation", "process")
@@ -207,7 +207,7 @@ class Resume(program.Case):
 		resumed = 0
 		for i in range(12):
 			run = program.start("run", *words, "--checkpoint", self.file, "--every", "1/60", *WAYS[i % len(WAYS)])
-			if i % 2: # from the first checkpoint on; else at any time, also while it starts
+			if i % 2: # from the first checkpoint on; else at any time, also during the start
 				self.assertTrue(program.wait_until(lambda: os.path.exists(self.file) or run.poll() is not None))
 			time.sleep(.02 * i)
 			below = program.processes(run.pid)
@@ -225,8 +225,8 @@ class Resume(program.Case):
 		self.assertGreater(resumed, 3)
 
 	def test_full_disk(self):
-		"""A disk that fills up costs the checkpoints, not the run; the last whole one stays. What is asked for and not there at
-		the end is a failure."""
+		"""A full disk costs the checkpoints, not the run; the last whole one stays. A requested checkpoint that
+		is missing at the end is a failure."""
 		words = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "1"]
 		program.report(*words, "--checkpoint", self.file)
 		before = self.inspect()
@@ -237,7 +237,7 @@ class Resume(program.Case):
 		self.assertEqual(self.inspect(), before)
 
 	def test_output_goes_on(self):
-		"""What is written begins at the time of the checkpoint; frames are numbered as in a run in one piece."""
+		"""Output begins at the time of the checkpoint; frames are numbered as in an uninterrupted run."""
 		words = self.words("come_and_go")
 		program.report(*words, "--series", self.path("whole.csv"))
 		program.report(*words, "--duration", ".5", "--series", self.path("first.csv"), "--checkpoint", self.file)
@@ -285,7 +285,7 @@ class Resume(program.Case):
 			self.refuse(*command, self.directory.name, saying="it is no file, but a directory")
 
 	def test_damaged(self):
-		"""Any byte that is not as it was written, any that is missing or too many."""
+		"""Any changed byte, any missing or additional ones."""
 		program.report(*self.words("cradle")[:1], "--duration", ".1", "--checkpoint", self.file)
 		with open(self.file, "rb") as f:
 			good = f.read()
@@ -311,7 +311,7 @@ class Resume(program.Case):
 		self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 	def test_two_runs_one_file(self):
-		"""Whoever comes second to one file is told so; neither harms the other's checkpoints."""
+		"""The second run with one file is refused; neither damages the other's checkpoints."""
 		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "2", "--measure", "end", "--checkpoint", self.file, "--every", "1/60"]
 		runs = [program.start("run", *words) for _ in range(2)]
 		for run in runs:

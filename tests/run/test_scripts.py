@@ -1,5 +1,5 @@
-"""Scripts of objects, end to end: what they can do, what stops them and nothing else, and that a run comes to the same bits
-whoever runs them and however often simulators die."""
+"""Scripts of objects, end to end: their abilities, their limits, and the same bits in any configuration and with any
+deaths of simulators."""
 
 import math
 import re
@@ -19,13 +19,13 @@ class Scripts(program.Case):
 		return self.path(name)
 
 	def run_scene(self, text, *words, code=0):
-		"""What obsim says of a scene with this text."""
+		"""Runs a scene with this text; returns the output."""
 		done = program.call("run", self.write("scene.lua", text), *words)
 		self.assertEqual(done.returncode, code, done.stderr)
 		return done.stderr
 
 	def one(self, script, *words, object="mass = 2", scene="duration = 1", code=0):
-		"""The same with one ball that has this script, far above the ground; what it prints is in the answer."""
+		"""Runs one ball with this script, far above the ground; returns the output with what it prints."""
 		return self.run_scene(f"""
 scene {{ {scene} }}
 ground {{}}
@@ -34,12 +34,12 @@ sphere {{ name = "ball", radius = .5, at = {{ 0, 0, 1000 }}, script = "it", {obj
 """, *words, code=code)
 
 	def numbers(self, said, word):
-		"""The numbers behind a word that was printed."""
+		"""Numbers after a printed word."""
 		found = re.findall(rf"^obsim: {word} (.*)$", said, re.M)
 		self.assertTrue(found, said)
 		return [[float(x) for x in line.split()] for line in found]
 
-	# ---- what they do
+	# ---- abilities
 
 	def test_constant_force(self):
 		"""A force holds until another is set: a parabola."""
@@ -107,7 +107,7 @@ sphere { radius = .2, at = { 3, 4, 1.2 }, mass = 2, restitution = .8, script = "
 		self.assertIn("obsim: by ground true false", said)
 
 	def test_contact_of_two(self):
-		"""Both are told, with the same impulse, and of one contact once while it lasts."""
+		"""Both receive the event, with the same impulse, and once for each contact."""
 		said = self.run_scene("""
 scene { duration = 1, gravity = { 0, 0, 0 } }
 script("ball", "function on_contact(other, impulse) print(self:name(), impulse) end")
@@ -158,7 +158,7 @@ sphere { name = "close", radius = .1, at = { 1, 0, 8 } }
 		self.assertIn("obsim: near close wall \n", said)
 
 	def test_colour(self):
-		"""It is in the universe: the next script to ask for the object's looks is a reader."""
+		"""The colour is in the universe: the next script that reads the object's look sees it."""
 		self.assertEqual(self.one("function on_start() self:colour('#ff0000') self:colour { 0, .5, 1 } end"), "")
 		self.assertIn("self.colour: expected a colour", self.one("function on_start() self:colour('red') end"))
 
@@ -234,7 +234,7 @@ sphere { radius = .1, at = { 9, 9, 9 }, script = "tap" }
 	def report_of(self, text, *words):
 		return program.report(self.write("scene.lua", text), *ROOMY, *words)
 
-	# ---- what stops them
+	# ---- limits
 
 	def test_limits(self):
 		"""Each of these stops its script, with object, file and line, and nothing else."""
@@ -294,7 +294,8 @@ for i = 1, 5 do sphere { name = i == 3 and "bad" or "good " .. i, radius = .1, a
 		self.assertEqual(said.count("warning"), 1)
 
 	def test_hardened(self):
-		"""Simulators that cannot write the universe hand over all that scripts ask for, are told, and fail of."""
+		"""Simulators that cannot write the universe pass on all requests of scripts, receive events, and fail
+		properly."""
 		scene = """
 scene { duration = 1, room = 9 }
 ground {}
@@ -324,7 +325,7 @@ sphere { name = "bad", radius = .5, at = { 4, 0, .6 }, script = "bomb" }
 				self.assertEqual(sorted(said.splitlines()), sorted(expected.splitlines()))
 
 	def test_refused(self):
-		"""What is wrong before the run is an error of the scene, or of how it is asked for."""
+		"""Errors before the run are errors of the scene, or of the command line."""
 		for field, expected in {
 			"script = 'none.lua'": r"scene\.lua:1: sphere\.script: cannot read .*none\.lua: No such file",
 			"script = '../x.lua'": r"expected a file in the folder of the scene",
@@ -340,14 +341,15 @@ sphere { name = "bad", radius = .5, at = { 4, 0, .6 }, script = "bomb" }
 				self.assertRegex(said, expected)
 
 	def test_confined(self):
-		"""What is no outbox does not keep scripts from writing the universe."""
+		"""Measures without the outbox let scripts write the universe."""
 		hashes = {program.report(*self.FLOCK, *ROOMY, "--isolation", "process", *more)["state_hash"]
 			for more in ([], ["--harden=privileges,limits,calls"])}
 		self.assertEqual(len(hashes), 1)
 		self.one("function on_start() print('said', 1) end", "--isolation", "process", "--harden=privileges,limits,calls")
 
 	def test_turning_path(self):
-		"""What a path turns is where its attitudes say, before and after a restart, and throws off what stands on it."""
+		"""An object that a path turns has the path's attitude, before and after a restart, and throws off
+		objects that stand on it."""
 		scene = self.write("scene.lua", """
 scene { duration = 4 }
 ground {}
@@ -388,7 +390,7 @@ sphere { radius = .1, at = { 9, 9, .1 }, script = "it" }
 			self.assertAlmostEqual(found, expected, 9)
 
 	def test_monolith_contact(self):
-		"""Told once while it lasts, asleep or not, and again after a leap."""
+		"""One event while a contact lasts, asleep or not, and another after a jump."""
 		said = self.run_scene("""
 scene { duration = 6 }
 ground {}
@@ -417,7 +419,7 @@ box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script =
 
 	# ---- the same bits
 
-	# A hundred birds that steer, and flush where they touch something; and drops that are made and go.
+	# A hundred birds that steer, and change colour on contact; and drops that are created and removed.
 	FLOCK = [program.scene("flock"), "-D", "n=100", "--duration", "4.5"]
 
 	def bits(self, *words):
@@ -458,7 +460,8 @@ box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script =
 				self.same(found, expected)
 
 	def test_hardened_same_bits(self):
-		"""Of simulators that hand over what scripts ask for; that are killed, and scribble over what they hand over."""
+		"""With simulators that pass on requests of scripts; with kills, and with random writes to their
+		results."""
 		flock = [program.scene("flock"), "-D", "n=30", "--duration", "2.5", *ROOMY]
 		expected = program.report(*flock)
 		for words in (["--workers", 1], ["--workers", "objects"], ["--workers", 2, "--fault", "kill:p=.001,seed=3"],
@@ -497,7 +500,7 @@ sphere { name = "mother", radius = .1, at = { 0, 5, .1 }, script = "grow" }
 """
 
 	def test_hulls_same_bits(self):
-		"""Hulls come with numbers that are the same whoever creates them, who dies, and where the run goes on."""
+		"""Hulls have the same numbers in any configuration, after deaths, and after a resume."""
 		scene = self.write("crystals.lua", self.CRYSTALS)
 		expected = program.report(scene, *ROOMY, "--workers", 1)
 		self.assertGreater(expected["objects"], 6)
@@ -513,7 +516,7 @@ sphere { name = "mother", radius = .1, at = { 0, 5, .1 }, script = "grow" }
 		self.assertEqual(found["state_hash"], expected["state_hash"])
 
 	def test_too_many_hulls(self):
-		"""A universe keeps all hulls that it has ever had, up to a limit that the script is told of."""
+		"""A universe keeps all hulls that it ever had, up to a limit, which is an error of the script."""
 		said = self.run_scene("""
 scene { duration = 3, step = 1 / 600, room = 30, gravity = { 0, 0, 0 } }
 script("brief", "function on_start() self:remove() end")

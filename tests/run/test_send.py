@@ -1,4 +1,4 @@
-"""obsim send: another program asks a running universe."""
+"""obsim send: another program sends requests to a running universe."""
 
 import os
 import socket
@@ -70,14 +70,14 @@ class Send(program.Case):
 		self.assertIn("got false hello 3 2.5 true -1 -0.5 -x", self.run_.communicate(timeout=program.PATIENCE)[1])
 
 	def call_silently(self, count):
-		"""So many programs that connect and say nothing."""
+		"""Connects a number of times, and sends nothing."""
 		for _ in range(count):
 			s = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
 			self.addCleanup(s.close)
-			s.connect("\0obsim." + self.name) # blocks while too many wait to be let in
+			s.connect("\0obsim." + self.name) # blocks while too many wait for accept
 
 	def test_silent(self):
-		"""However many callers say nothing, none is waited for: all of them are still there when another is answered."""
+		"""Silent callers delay no request: all of them are still connected when another is answered."""
 		self.call_silently(18)
 		silent = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
 		self.addCleanup(silent.close)
@@ -91,7 +91,7 @@ class Send(program.Case):
 		self.assertIsNone(self.run_.poll())
 
 	def test_squatter(self):
-		"""A process that has the address first is not believed, and the run says so."""
+		"""A process that binds the address first is detected, and the run warns."""
 		name = self.name + "x"
 		with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as s:
 			s.bind("\0obsim." + name)
@@ -103,7 +103,7 @@ class Send(program.Case):
 			self.assertIn(f'obsim send cannot reach universe "{name}": another process has taken its address', run.communicate(timeout=program.PATIENCE)[1])
 
 	def test_rubbish(self):
-		"""Whatever else comes to the socket is refused, and the run goes on."""
+		"""Other data on the socket is refused, and the run goes on."""
 		for rubbish in b"", b"x", b"OBSIMAS1" + bytes(500), bytes(100000):
 			with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as s:
 				s.settimeout(program.PATIENCE)

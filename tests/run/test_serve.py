@@ -1,4 +1,4 @@
-"""obsim serve: pages over HTTP, the universe over WebSockets, and what strangers try."""
+"""obsim serve: pages over HTTP, the universe over WebSockets, and attacks."""
 
 import os
 import random
@@ -37,7 +37,8 @@ class Serve(Case):
 		self.end()
 
 	def test_life(self):
-		"""Somebody creates and removes; the others see it; what falls comes to rest where the table says."""
+		"""One viewer creates and removes objects; the others see it; a falling object comes to rest at the
+		right height."""
 		self.serve("--pace", "max")
 		one, other = self.viewer(), self.viewer()
 		before = len(one.objects)
@@ -51,7 +52,7 @@ class Serve(Case):
 		other.send(do="inspect", id=new)
 		other.until(lambda: other.told.get("details", {}).get("id") == new)
 		self.assertAlmostEqual(other.told["details"]["p"][2], other.objects[new]["p"][2], delta=1e-4)
-		other.send(do="remove", id=new, generation=one.objects[new]["generation"] + 1) # another's
+		other.send(do="remove", id=new, generation=one.objects[new]["generation"] + 1) # another object's
 		other.send(do="remove", id=new, generation=one.objects[new]["generation"])
 		for v in one, other:
 			v.until(lambda: new not in v.objects)
@@ -60,7 +61,7 @@ class Serve(Case):
 		self.end()
 
 	def test_frozen(self):
-		"""An object whose simulator has died stays where it was, and viewers are told so, also who comes later."""
+		"""An object whose simulator has died stays in place, and all viewers are notified, later ones, too."""
 		self.serve("-D", "n=8", "--isolation", "process", "--workers", "objects", "--on-death", "freeze", "--room", "0",
 			scene="falling_boxes")
 		v = self.viewer()
@@ -79,7 +80,7 @@ class Serve(Case):
 		self.end(saying="was killed by SIGKILL")
 
 	def test_keeps(self):
-		"""Unless told otherwise, what cannot be solved is frozen, and viewers are shown so; the universe goes on."""
+		"""By default, objects that cannot be solved are frozen, and viewers see it; the universe goes on."""
 		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "ode_gives_up.lua"))
 		v = self.viewer()
 		v.until(lambda: any(o["frozen"] for o in v.objects.values()))
@@ -114,7 +115,7 @@ class Serve(Case):
 
 	@unittest.skipUnless(program.MESHES, "built without tinygltf")
 	def test_meshes(self):
-		"""What objects look like is content under its hash, for who has the token."""
+		"""A mesh is content under its hash, for holders of the token."""
 		with open(self.path("cube.glb"), "wb") as f:
 			f.write(glb.cube(.5, (1, 0, 0), picture=glb.QUARTERS))
 		with open(self.path("scene.lua"), "w") as f:
@@ -222,7 +223,7 @@ class Serve(Case):
 		return got
 
 	def test_upgrades(self):
-		"""A connection becomes a WebSocket or stays HTTP/1.1, whatever it asks for."""
+		"""A connection becomes a WebSocket or stays HTTP/1.1, whatever it requests."""
 		self.serve()
 		witness = self.viewer()
 		preface = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes(3) + b"\4\0\0\0\0\0" # and an empty SETTINGS frame
@@ -246,7 +247,7 @@ class Serve(Case):
 		self.end()
 
 	def hold(self, count, first, address="127.0.0.1"):
-		"""So many connections that have begun a request, or whatever else, and go on with nothing."""
+		"""Opens connections that begin a request and then send nothing."""
 		held = []
 		for _ in range(count):
 			s = socket.create_connection((address, self.port), timeout=program.PATIENCE)
@@ -256,7 +257,7 @@ class Serve(Case):
 		return held
 
 	def test_slow(self):
-		"""However many connections are slow, in whatever they are in the middle of, a new viewer comes in."""
+		"""With any number of slow connections, in any state, a new viewer can connect."""
 		self.serve()
 		request = f"GET /main.js HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n"
 		for first in b"", b"G", (request + "X: ").encode(), (request + "\r\n").encode(), (request + "Content-Length: 1000000\r\n\r\n").encode(), \
@@ -280,7 +281,7 @@ class Serve(Case):
 		self.end()
 
 	def test_bodies(self):
-		"""No request has a body, and what follows one is not taken for another request."""
+		"""No request has a body, and bytes after one are not parsed as another request."""
 		self.serve()
 		for method, body in ("GET", "Content-Length: 43"), ("HEAD", "Content-Length: 43"), ("GET", "Transfer-Encoding: chunked"), ("POST", "Content-Length: 43"), \
 				("GET", "Content-Length: 99999999999999999999999999999"), ("GET", "Content-Length: -1"), ("POST", "X: y"):
@@ -299,7 +300,7 @@ class Serve(Case):
 		self.end()
 
 	def test_pipeline(self):
-		"""Requests that come at once are answered one after the other, each whole."""
+		"""Requests that arrive together are answered in order, each whole."""
 		self.serve()
 		paths = ["/main.js", "/style.css", "/nothing", "/", "/main.js"]
 		got = self.exchange("".join(f"GET {p} HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n" + ("Connection: close\r\n" if i == 4 else "") + "\r\n"
@@ -339,7 +340,7 @@ class Serve(Case):
 		self.end()
 
 	def test_random_bytes(self):
-		"""Whatever comes, before and after the handshake, the run and another viewer do not notice."""
+		"""Random bytes, before and after the handshake, affect neither the run nor another viewer."""
 		self.serve()
 		witness, draw = self.viewer(), random.Random(1)
 		for i in range(60):
@@ -364,7 +365,7 @@ class Serve(Case):
 		self.end()
 
 	def test_stuck(self):
-		"""One that never reads does not keep others from seeing what comes."""
+		"""A viewer that never reads does not delay others."""
 		self.serve("-D", "n=200", scene="falling_boxes")
 		stuck = [Viewer(self.port) for _ in range(5)]
 		v = self.viewer()
@@ -374,7 +375,7 @@ class Serve(Case):
 		self.end()
 
 	def test_log(self):
-		"""What viewers have asked for, carried out again in other ways to run, comes to the same states."""
+		"""Viewers' requests, carried out again in other configurations, lead to the same states."""
 		log, words = self.path("requests"), ("-D", "n=20")
 		self.serve(*words, "--isolation", "process", "--workers", "2", "--check", "--log-requests", log, scene="falling_boxes")
 		v = self.viewer()

@@ -1,5 +1,5 @@
-"""Experiments on several ranks, all of them on this machine: the records of one process but for their times, written and told
-by the first alone; and what is left where a rank dies."""
+"""Experiments on several ranks, all of them on this machine: the records of one process except for their times, written
+and printed by rank 0 alone; and the remains after a rank dies."""
 
 import csv
 import json
@@ -16,7 +16,7 @@ TIMES = ["cpu_s", "wall_s", "cpu_s_per_body_and_simulated_s", "took_s", "took_cp
 
 
 def command(*groups):
-	"""mpirun with so many ranks of each group, each with its own words."""
+	"""mpirun with this number of ranks of each group, each with its own words."""
 	words = ["mpirun"]
 	for ranks, more in groups:
 		words += [":"] if len(words) > 1 else []
@@ -56,10 +56,10 @@ class Spread(program.Case):
 		self.assertEqual([r for r in after if r["substeps"] != "2"], before)
 		self.assertEqual(len(after) - len(before), 3 * 2 * 2)
 		program.call(*more, "--out", self.path("three"))
-		self.assertEqual(self.rows("three"), after) # nothing was left to do
+		self.assertEqual(self.rows("three"), after) # no work was left
 
 	def test_out_of_time(self):
-		"""What is finer than what ran out of time is not tried: so it waits for that, wherever it runs."""
+		"""Settings finer than one that ran out of time are not tried: they wait for it, on any rank."""
 		words = ["lab", "pile", "pile-elastic", "--engines", "ode-quick", "--sweep", "substeps=1,2,4,8", "--limit", ".01"]
 		self.spread((3, [*words, "--out", "three"]))
 		for case in {r["case"] for r in self.rows("three")}:
@@ -115,7 +115,7 @@ class Spread(program.Case):
 		for rank, number, says in ((0, signal.SIGKILL, "process rank 0 .* on signal 9"),
 				(2, signal.SIGKILL, "process rank 2 .* on signal 9"),
 				(2, signal.SIGTERM, r"obsim: rank 2: interrupted: \d+ of 14 runs are done, and the same command goes on from there"),
-				(None, signal.SIGTERM, None)): # mpirun gives all one second, in which rank 0 may not come to say it
+				(None, signal.SIGTERM, None)): # mpirun gives all one second, which may be too short for rank 0's message
 			with self.subTest(rank=rank, number=number):
 				run = self.start((3, [*LONG, "--out", "out", "--fresh"]))
 				self.under_way(run)

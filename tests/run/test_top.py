@@ -18,7 +18,7 @@ LONG = ["--duration", program.FOR_EVER, "--measure", "end", "--sleeping", "off"]
 
 
 def read_screen(fd, until, seconds=program.PATIENCE):
-	"""What a terminal is sent, until the text comes or time is over."""
+	"""Output to a terminal, until the text comes or the time is over."""
 	seen, end = "", time.monotonic() + seconds
 	while until not in seen and time.monotonic() < end:
 		if select.select([fd], [], [], .1)[0]:
@@ -30,13 +30,13 @@ def read_screen(fd, until, seconds=program.PATIENCE):
 
 
 def in_line(pid, thread):
-	"""Seconds for which the process's thread of this name has stood in line for a core until now."""
+	"""Seconds for which the process's thread of this name has waited for a core so far."""
 	for task in glob.glob(f"/proc/{pid}/task/*"):
 		try:
 			with open(task + "/comm") as name, open(task + "/schedstat") as times:
 				if name.read().strip() == thread:
 					return 1e-9 * int(times.read().split()[1])
-		except OSError:  # gone, or a kernel that does not tell
+		except OSError:  # gone, or a kernel without these counters
 			continue
 	return 0
 
@@ -67,7 +67,7 @@ class Top(program.Case):
 		self.end(run)
 
 	def test_busy(self):
-		"""A worker that has always something to do is seen to be busy."""
+		"""A worker that always has work is shown as busy."""
 		run = self.run_universe(program.scene("pile"), "--workers", "1")
 		began, waited = time.monotonic(), in_line(run.pid, "sim 0")
 		done = program.call("top", self.name, "--once", "--interval", "2")
@@ -89,7 +89,7 @@ class Top(program.Case):
 		run = self.run_universe(program.scene("stack"))
 		done = program.call("top", "nonesuch")
 		self.assertEqual(done.returncode, 1)
-		self.assertIn(self.name, done.stderr) # which there are
+		self.assertIn(self.name, done.stderr) # the existing universes
 		near = program.call("top", self.name + "x")
 		self.assertIn("did you mean obsim top " + self.name, near.stderr)
 		self.end(run)
@@ -121,7 +121,7 @@ class Top(program.Case):
 		self.end(run)
 
 	def test_universe_ends(self):
-		"""The screen stays, and says that it is over."""
+		"""The screen stays, and shows the end."""
 		leader, terminal = self.open_terminal()
 		run = self.run_universe(program.scene("stack"))
 		top = subprocess.Popen([program.OBSIM, "top", self.name, "--interval", ".2"], stdin=terminal, stdout=terminal,

@@ -1,4 +1,4 @@
-"""--trace: a file that importers of the Trace Event Format accept, with all that happened in it."""
+"""--trace: a file that importers of the Trace Event Format accept, with all events of the run."""
 
 import collections
 import json
@@ -18,7 +18,7 @@ PARTS = {"ballistic", "load", "narrowphase", "impacts", "solve", "move", "projec
 
 class Trace(program.Case):
 	def read(self, path):
-		"""The file's events by track, after a look at what the format asks of each."""
+		"""The file's events by track; checks the format of each."""
 		with open(path) as f:
 			whole = json.load(f)
 		self.assertEqual(set(whole), {"displayTimeUnit", "traceEvents", "otherData"})
@@ -51,7 +51,8 @@ class Trace(program.Case):
 		return tracks
 
 	def check_nesting(self, events):
-		"""Sorted by time as importers do, stably, each span lies in the one around it or behind it. Adds its depth."""
+		"""After a stable sort by time, as importers do, each span lies in the one around it or after it. Adds
+		its depth."""
 		around = []
 		for e in sorted(events, key=lambda e: e["ts"]):
 			while around and around[-1]["ts"] + around[-1].get("dur", 0) <= e["ts"]:
@@ -126,7 +127,7 @@ class Trace(program.Case):
 				self.assertEqual(names["measure"], r["steps"] + 1)
 
 	def test_explained(self):
-		"""Both look at the clock at the same places."""
+		"""Both read the clock at the same places."""
 		done = program.call("run", program.scene("pile"), "--duration", ".5", "--explain", "--trace", self.path("t.json"))
 		self.assertEqual((done.returncode, done.stderr), (0, ""))
 		self.check(self.path("t.json"), 1000)
@@ -183,7 +184,7 @@ class Trace(program.Case):
 			return what in f.read()
 
 	def test_killed(self):
-		"""What a simulator did before it was killed is in the file, with the kill, and what its successor did."""
+		"""The file has a simulator's events before it was killed, the kill, and its successor's events."""
 		for workers in "2", "objects":
 			with self.subTest(workers=workers):
 				path = self.path(workers + ".json")
@@ -193,7 +194,7 @@ class Trace(program.Case):
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
 				os.kill(max(program.simulators(run.pid)), signal.SIGKILL)
 				self.assertTrue(program.wait_until(lambda: self.says(path, '"dies"'), program.PATIENCE))
-				before = os.path.getsize(path) # what was on its way when it died is in the file by then
+				before = os.path.getsize(path) # by then, the file has the events that were under way at its death
 				grown = lambda: os.path.getsize(path) > before + 400000
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
 				run.send_signal(signal.SIGINT)
@@ -207,8 +208,8 @@ class Trace(program.Case):
 				self.assertGreater(sum(t > 0 for t in ends), 10)
 
 	def test_host_killed(self):
-		"""A host that is killed ends nothing any more, and the file is whole all the same, but for a kill between two pages of a
-		write (trace_file.h), which is rare: then all events but the last are there."""
+		"""A host that is killed ends no span, and the file is whole all the same, except after a kill between
+		two pages of a write (trace_file.h), which is rare: then only the last events are missing."""
 		torn = 0
 		for i in range(8):
 			path = self.path(f"{i}.json")
@@ -230,7 +231,7 @@ class Trace(program.Case):
 		self.assertLessEqual(torn, 1)
 
 	def test_pipe(self):
-		"""What cannot be written over gets its end when there is one."""
+		"""A file that cannot be overwritten gets its end once."""
 		os.mkfifo(self.path("pipe"))
 		run = program.start("run", program.scene("stack"), "--duration", ".1", "--trace", self.path("pipe"))
 		with open(self.path("pipe")) as f:

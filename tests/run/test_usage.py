@@ -1,4 +1,4 @@
-"""What a user gets wrong: one line that says what and how to mend it, exit code 2, nothing left behind."""
+"""Errors of users: one line with the cause and the remedy, exit code 2, nothing left behind."""
 
 import os
 import resource
@@ -50,7 +50,7 @@ class Usage(program.Case):
 				self.assertEqual((done.returncode, done.stderr), (0, ""))
 				self.assertIn("Usage: obsim", done.stdout)
 				self.assertTrue(all(len(line) <= 120 for line in done.stdout.splitlines()))
-		# help wins over what else is missing
+		# help takes precedence over missing arguments
 		self.assertEqual(program.call("run", "--help").returncode, 0)
 
 	def test_version(self):

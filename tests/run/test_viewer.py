@@ -1,6 +1,6 @@
-"""The viewer in browsers: two people look at one universe, each from a viewpoint of their own, and one of them changes it.
+"""The viewer in browsers: two people view one universe, each from a viewpoint of their own, and one of them changes it.
 
-Where OBSIM_PICTURES names a directory, what they saw is kept there.
+If OBSIM_PICTURES names a directory, screenshots are kept there.
 """
 
 import os
@@ -36,13 +36,13 @@ class Viewer(server.Case):
 			b.picture(os.path.join(folder, name))
 
 	def drawn(self, b):
-		"""The picture without what stands round it, with all that has been asked for."""
+		"""The picture without the page around it, with all requested content."""
 		frames = b.run("return obsim.frames()")
 		b.wait(f"obsim.frames() > {frames} + 1")
 		return b.run("return document.querySelector('#picture').toDataURL()")
 
 	def still(self, b):
-		"""The same, once it has come to stand."""
+		"""The same, once it no longer changes."""
 		pictures = [None]
 		def again():
 			pictures.append(self.drawn(b))
@@ -77,7 +77,7 @@ class Viewer(server.Case):
 
 	@unittest.skipUnless(program.MESHES, "built without tinygltf")
 	def test_meshes(self):
-		"""What looks like a mesh is drawn as that, and picked as what it is."""
+		"""An object with a mesh is drawn with it, and picked by its collision shape."""
 		for name, mesh in ("cube.glb", glb.cube(1, (0, .5, 0))), ("picture.glb", glb.cube(1, (1, 1, 1), picture=glb.QUARTERS)):
 			with open(self.path(name), "wb") as f:
 				f.write(mesh)
@@ -89,7 +89,7 @@ class Viewer(server.Case):
 		self.serve_file(self.path("scene.lua"))
 		b = self.open()
 		b.wait("obsim.drawing().looks.size === 2 && obsim.frames() > 6")
-		# Where no sphere reaches: the one's own colour comes before its mesh's, the other shows its mesh's
+		# Beyond the spheres: the one's own colour takes precedence over its mesh's, the other shows its mesh's
 		seen = b.run("""const from = document.querySelector('#picture'), c = new OffscreenCanvas(from.width, from.height).getContext('2d', { willReadFrequently: true });
 			c.drawImage(from, 0, 0);
 			const perMetre = from.height / 2 / (Math.tan(arguments[0] / 2) * 5); // at the cubes' faces
@@ -106,7 +106,7 @@ class Viewer(server.Case):
 		self.end()
 
 	def test_frozen(self):
-		"""What is frozen is shown in a frame of its own, without being asked for, and says so."""
+		"""A frozen object is marked, and the page counts and explains it, by default."""
 		self.serve("-D", "n=8", "--isolation", "process", "--workers", "objects", "--on-death", "freeze", "--room", "0",
 			scene="falling_boxes")
 		b, witness = self.open(), self.viewer()
@@ -174,7 +174,7 @@ class Viewer(server.Case):
 		angles = lambda: b.run("return [obsim.camera.azimuth, obsim.camera.elevation, obsim.camera.range]")
 		before = angles()
 		b.touch([(350, 300), (400, 300), (450, 300), (450, 300), (490, 280), (530, 260)], [(650, 300), (600, 300), (550, 300)])
-		after = angles() # together, then one is up, and the other goes round as if it had come alone
+		after = angles() # together; then one goes up, and the other orbits as if it had come alone
 		for a, expected in zip(after, (before[0] - 80 * .006, before[1] + 40 * .006, before[2] * 3)):
 			self.assertAlmostEqual(a, expected, delta=.02 * abs(expected))
 		self.assertTrue(b.run("return document.querySelector('#details').hidden"))
@@ -185,7 +185,7 @@ class Viewer(server.Case):
 		self.end()
 
 	def test_follows(self):
-		"""The viewpoint goes along with what is picked, and round it, until it is moved away."""
+		"""The viewpoint follows a picked object, and orbits it, until it is moved away."""
 		self.serve("-D", "n=8", "--paused", scene="flock")
 		b = self.open()
 		bird = b.run("return [...obsim.universe.objects.values()].find((o) => o.name === 'bird 3').id")

@@ -1,4 +1,4 @@
--- Ten thousand scripts that each compute for long, in each step, and stay below what one of them may.
+-- Ten thousand scripts that each compute for long, in each step, and stay below the limit of a single one.
 script("busy", [[
 function on_step(dt)
 	for i = 1, 220000 do local x = i * i end

@@ -1,5 +1,5 @@
--- With --narrow aabb: boxes and cylinders that are a kilometre inside each other, and hit at all their points, without
--- end. Their impacts are most of the work.
+-- With --narrow aabb: boxes and cylinders overlap by a kilometre, and hit at all their points, without end. Most of the
+-- work is impacts.
 scene { gravity = { 0, 0, -9.81 } }
 plane { normal = { -1, 0, .01 } }
 box { restitution = 5e-6, size = { 2, .5, .0025 }, at = { 3, 0, 0 }, density = 1000 }

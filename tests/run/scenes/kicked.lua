@@ -1,4 +1,4 @@
--- Boxes that are kicked in flight, in a small room and in long steps: many are looked at again and again.
+-- Boxes that are kicked in flight, in a small room and in long steps: many pairs are checked again and again.
 scene { step = 1/15, seed = 3, room = 4, sleeping = false }
 script("kicker", [[
 function on_start() self:wake(random(.05, .4)) end

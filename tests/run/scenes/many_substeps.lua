@@ -1,4 +1,4 @@
--- With steps of a second ODE's stepper would need more substeps than there may be to keep a tolerance.
+-- With steps of a second, ODE's stepper needs more substeps than allowed to keep a tolerance.
 scene { solver = "ghost", integrator = "ode", step = 1, substeps = 1 }
 ground {}
 box { size = { 1, 1e-3, 1 } }

@@ -1,5 +1,5 @@
--- Places, velocities and forces by every function of mathematics that scenes and scripts can call: a last bit that one of
--- them has otherwise is seen in where the balls are.
+-- Places, velocities and forces by every function of mathematics that scenes and scripts can call. A different last bit
+-- in one of them changes where the balls are.
 local functions = { "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log" }
 
 script("dancer", [[

@@ -1,4 +1,4 @@
--- A small thing is slow and touches nothing: whether it may sleep is asked of an island without contacts.
+-- A small slow body without contacts: the equilibrium test has an island without contacts.
 scene { step = 1.7060352351207824, substeps = 1 }
 sun { towards = {0.001, -0.9036812725542089, 1e-300} }
 local q = random_rotation()

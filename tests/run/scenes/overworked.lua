@@ -1,4 +1,4 @@
--- A column of bricks, heavy on light, that slide: with as many substeps and iterations as there may be, in a single step.
+-- A column of sliding bricks, heavy on light: with the largest numbers of substeps and iterations, in a single step.
 scene { step = 1 / 60, substeps = 1000, iterations = 100000 }
 ground {}
 for i = 1, 40 do

@@ -1,5 +1,5 @@
--- Boxes that overlap from the start. In its 25th step, told apart by their AABBs, two touch as islands are solved for the first time, and no
--- longer as they are solved again, and yet again with others.
+-- Boxes that overlap from the start. In its 25th step, with contacts by AABBs, two are in contact when islands are
+-- solved for the first time, and no longer when they are solved again, and once more with others.
 scene { gravity = { 0, 0, -9.81 }, step = 1/60, iterations = 50, solver = "jacobi", seed = 7, room = 4 }
 plane { normal = { 0.0156623, 0.399139, 1 }, at = { -1, -1, -0.5 }, restitution = 0, friction = 0.3 }
 box { size = { 1, 1, 1 }, at = { -0.0665824, -0.435602, 1.00046 }, density = 5000, restitution = 0, friction = 0.3 }

@@ -1,6 +1,6 @@
--- Long rods side by side, across the axes: each one's box overlaps those of all others, of which none touches it. A step
--- has little work with them, a measure of their penetration would have to look at all pairs. The spheres are there since
--- a larger scene may have more pairs.
+-- Long rods side by side, across the axes: the AABB of each overlaps all others, but no two touch. A step has little
+-- work with them, a measure of their penetration would check all pairs. The spheres raise the limit of pairs, which
+-- grows with the scene.
 scene { gravity = { 0, 0, 0 } }
 for i = 0, 739 do
 	cylinder { radius = .01, length = 100, at = { .03 * (i % 40), .03 * (i // 40), 0 }, q = { .88, .325, -.325, 0 } }
