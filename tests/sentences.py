@@ -19,7 +19,7 @@ CEILING = 2  # percent of sentences that may open so
 
 # Folders not yet rewritten, and the percentage they may have until they are. It only falls.
 CEILINGS = {
-    'README.md': 10, 'docs': 12, 'docs/design': 17, 'src/contact': 18,
+    'docs/design': 17, 'src/contact': 18,
     'src/scene': 15, 'src/script': 16, 'src/serve': 20,
     'src/sim': 21, 'tests/contact': 16, 'tests/serve': 29, 'tests/sim': 18,
 }
@@ -27,7 +27,7 @@ CEILINGS = {
 # Documents: the number of words that nine of ten sentences do not exceed, and folders not yet there.
 LONG = 25
 LONG_CEILINGS = {
-    'docs': 26, 'docs/design': 31,
+    'docs/design': 31,
 }
 
 # Folders whose subfolders are counted apart.
