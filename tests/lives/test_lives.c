@@ -1,9 +1,10 @@
 // Random lives: objects are created and removed by the timetable, by scripts and on request, messages are sent, objects
 // freeze, runs stand still, are put down and resumed, and simulators are killed. All ways to run a life end in the same
 // bits, and what simulators share keeps its invariants (sim/invariants.h).
-//   lives [--seeds A..B] [--way N] [--verbose 1] [--kept FILE]
+//   lives [--seeds A..B] [--way N] [--verbose 1] [--kept FILE] [--print SEED]
 // A life that fails is shrunk and printed: as a line for kept/lives.txt, and as its scene. Exits with 1 if any failed.
-// --verbose names lives whose scene asks for too much, which end early, alike in all ways.
+// --print: the scene alone, for ranks.py. --verbose names lives whose scene asks for too much, which end early, alike
+// in all ways.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,6 +126,14 @@ static void run_kept(const char *path)
 		fclose(f);
 }
 
+static void print_scene(uint64_t seed)
+{
+	life l;
+	life_make(&l, seed, everything);
+	fputs(l.text, stdout);
+	exit(0);
+}
+
 int main(int argc, char **argv)
 {
 	uint64_t first = 1, last = 0;
@@ -135,6 +144,8 @@ int main(int argc, char **argv)
 			continue;
 		if (!strcmp(argv[i], "--way"))
 			from = to = (way)(atoi(argv[i + 1]) % WAYS);
+		else if (!strcmp(argv[i], "--print"))
+			print_scene(strtoull(argv[i + 1], NULL, 10));
 		else if (!strcmp(argv[i], "--verbose"))
 			verbose = atoi(argv[i + 1]);
 		else if (!strcmp(argv[i], "--kept"))
