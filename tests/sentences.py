@@ -21,7 +21,7 @@ CEILING = 2  # percent of sentences that may open so
 CEILINGS = {
     'docs/design': 17, 'src/contact': 18,
     'src/scene': 15, 'src/script': 16, 'src/serve': 20,
-    'src/sim': 21, 'tests/contact': 16, 'tests/serve': 29, 'tests/sim': 18,
+    'src/sim': 21, 'tests/serve': 29, 'tests/sim': 18,
 }
 
 # Documents: the number of words that nine of ten sentences do not exceed, and folders not yet there.

@@ -1,10 +1,10 @@
-// What is true of two convex shapes by simple and slow means, whatever they are: for tests of their closed forms.
+// Properties of two convex shapes by simple and slow methods, for tests of their closed forms.
 #ifndef OB_TESTS_CONTACT_CONVEX_H
 #define OB_TESTS_CONTACT_CONVEX_H
 
 #include "placed.h"
 
-// How far the shape reaches from its centre along the unit direction n (m); infinity: without end.
+// Extent of the shape from its centre along the unit direction n (m); infinity: without end.
 static inline double reach(const ob_placed *x, ob_vec3 n)
 {
 	ob_vec3 l = ob_rotate_back(&x->r, n);
@@ -28,7 +28,7 @@ static inline double reach(const ob_placed *x, ob_vec3 n)
 	}
 }
 
-// How far the shapes are apart along the unit direction n, from b to a (m): never more than their distance.
+// Separation of the shapes along the unit direction n, from b to a (m): never more than their distance.
 static inline double apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 {
 	return ob_dot(n, ob_sub(a->p, b->p)) - reach(a, ob_scale(n, -1)) - reach(b, n);
@@ -39,7 +39,7 @@ static inline double limited(double x, double limit)
 	return fmax(-limit, fmin(limit, x));
 }
 
-// The shape's point that is nearest to x.
+// Nearest point of the shape to x.
 static inline ob_vec3 nearest_in(const ob_placed *s, ob_vec3 x)
 {
 	ob_vec3 l = ob_rotate_back(&s->r, ob_sub(x, s->p)), core = { 0, 0, 0 };
@@ -75,8 +75,8 @@ static inline double distance_from_above(const ob_placed *a, const ob_placed *b,
 	return ob_norm(ob_sub(x, y));
 }
 
-// The direction along which the shapes are farthest apart, or overlap least: directions at random, then a pattern
-// search round the best (Hooke and Jeeves 1961). From below, never too much. Not for planes.
+// Largest separation over all directions, negative if the shapes overlap: random directions, then a pattern search
+// round the best (Hooke and Jeeves 1961). From below, never too large. Not for planes.
 static inline double farthest_apart(uint64_t *seed, const ob_placed *a, const ob_placed *b, int directions)
 {
 	double best = -INFINITY;

@@ -1,4 +1,4 @@
-// Two bodies in contact, made up at random, as the pair kernel sees them.
+// Two random bodies in contact, as the contact kernel sees them.
 #ifndef OB_TESTS_CONTACT_PAIR_H
 #define OB_TESTS_CONTACT_PAIR_H
 
@@ -47,7 +47,7 @@ static inline body random_body(uint64_t *seed, double mass)
 	return out;
 }
 
-// Points in a plane across a random normal. mass_ratio: of b; infinity makes it fixed.
+// Points in a plane across a random normal. mass_ratio: b's; infinity makes it fixed.
 static inline pair random_pair(uint64_t *seed, double mass_ratio)
 {
 	pair p = { .normal = random_direction(seed) };
@@ -104,7 +104,7 @@ static inline ob_vec3 angular(const double *row)
 	return ob_v3(row[3], row[4], row[5]);
 }
 
-// kg m/s; 0 of what is fixed
+// kg m/s; 0 for a fixed body
 static inline ob_vec3 momentum(const body *b, const double *row)
 {
 	return b->inv_mass > 0 ? ob_scale(linear(row), b->mass) : ob_v3(0, 0, 0);

@@ -1,4 +1,4 @@
-// Shapes in space for the tests of contact geometry, and what is true of them by simple means.
+// Shapes in space for the tests of contact geometry, and their properties by simple methods.
 #ifndef OB_TESTS_CONTACT_PLACED_H
 #define OB_TESTS_CONTACT_PLACED_H
 
@@ -33,7 +33,7 @@ static inline ob_placed random_placed(uint64_t *seed, ob_shape shape, double spr
 	return place(shape, size, p, random_attitude(seed));
 }
 
-// Moves a scene of two shapes as one rigid body: what is between them turns with it.
+// Moves a scene of two shapes as one rigid body, which keeps their relative pose.
 typedef struct rigid {
 	ob_vec3 p;
 	ob_quat q;
@@ -61,7 +61,7 @@ static inline ob_placed rigid_place(const rigid *g, ob_shape shape, ob_vec3 size
 	return place(shape, size, rigid_point(g, p), ob_quat_mul(g->q, q));
 }
 
-// How far x lies outside the shape (m); <= 0 inside. Spheres, boxes, planes. Outside a box's corner: too small.
+// Distance of x from the shape (m); <= 0 inside. Spheres, boxes, planes. Outside a box's corner: too small.
 static inline double outside(const ob_placed *s, ob_vec3 x)
 {
 	ob_vec3 l = ob_rotate_back(&s->r, ob_sub(x, s->p));

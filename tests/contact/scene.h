@@ -27,7 +27,7 @@ static inline void put(scene *s, int lane)
 	put_pair(&s->batch, lane, &s->p[lane], row_a(lane), row_b(s, lane));
 }
 
-// Four pairs that touch, overlap or nearly touch, at random velocities, pressed together by "push" m/s.
+// Four pairs in contact, overlap or near contact, at random velocities, pressed together by "push" m/s.
 static inline void random_scene_of(scene *s, uint64_t *seed, double push, ob_batch_kind kind)
 {
 	memset(s, 0, sizeof *s);
@@ -55,7 +55,7 @@ static inline void random_scene(scene *s, uint64_t *seed, double push)
 	random_scene_of(s, seed, push, OB_KIND_FULL);
 }
 
-// An iteration as the contact solver makes them.
+// An iteration with the contact solver's parameters.
 static inline ob_solver_iteration iteration_on(const scene *s, bool first)
 {
 	return (ob_solver_iteration){ .h = substep,

@@ -1,4 +1,4 @@
-// The pair kernel: both sides get the same, no lane sees another, impulses stay where they may be.
+// The contact kernel: impulses on both sides are equal, lanes are independent, impulses stay within their bounds.
 #include "contact/batch.h"
 
 #include "check.h"
@@ -54,7 +54,7 @@ static void test_both_sides(void)
 				CHECK(s.u[row_a(l) + 1][0] == 0);
 		}
 		for (int c = 0; c < 6; c++)
-			CHECK(s.u[0][c] == 0); // what does not move
+			CHECK(s.u[0][c] == 0); // fixed bodies
 	}
 	CHECK(pressed > 2000);
 }
@@ -81,7 +81,7 @@ static void test_solution(void)
 	}
 }
 
-// One point pressed on the ground sideways: it sticks below the cone, slides along its own direction on it.
+// One point pressed on the ground sideways: it sticks below the cone's limit, and slides along its own direction at it.
 static void test_friction(void)
 {
 	uint64_t seed = 3;
@@ -119,8 +119,8 @@ static bool same_rows(const ob_body_row *x, const ob_body_row *y)
 	return memcmp(x, y, 2 * sizeof *x) == 0;
 }
 
-// The same pair alone and beside three others, in each lane: the same bits. alone: bodies that touch nothing else are
-// solved to the end, which takes as many sweeps as that pair needs.
+// The same contact alone and beside three others, in each lane: the same bits. alone: bodies without other contacts are
+// solved to convergence, which takes as many sweeps as that contact needs.
 static void check_lanes(uint64_t *seed, unsigned alone, ob_batch_kind kind)
 {
 	scene s;
@@ -154,7 +154,7 @@ static void test_lanes(void)
 		check_lanes(&seed, i % 2 ? (unsigned)(16 * uniform(&seed)) : 0, (ob_batch_kind)(i / 2 % OB_KINDS));
 }
 
-// What a kind leaves out is not missed: the same as by the kernel for everything.
+// Specialised kernels give the same results as the general one.
 static void test_kinds(void)
 {
 	uint64_t seed = 10;
@@ -180,7 +180,7 @@ static void test_kinds(void)
 	}
 }
 
-// The rates of the rows are what impulses along them change by A.
+// The rates of the rows are the changes of velocity by unit impulses, A.
 static void test_rates(void)
 {
 	uint64_t seed = 11;
@@ -224,7 +224,7 @@ static void random_star(star *t, uint64_t *seed, double push)
 		pair *p = &s->p[l];
 		*p = random_pair(seed, 1);
 		p->b = t->middle;
-		for (int j = 0; j < p->points; j++) // the same point seen from both centres
+		for (int j = 0; j < p->points; j++) // the same point, relative to both centres
 			p->arm_b[j] = ob_sub(ob_add(p->a.p, p->arm_a[j]), t->middle.p);
 		put_pair(&s->batch, l, p, 2 + (uint32_t)l, 1);
 		random_row(seed, &p->a, s->v[2 + l]);
@@ -246,7 +246,7 @@ static double star_energy(const star *t, const ob_body_row *rows)
 	return sum;
 }
 
-// What the rows carry together, against what they carry one by one
+// Checks the total momentum of the rows against the sum of single contacts.
 static void check_star(const star *t, const ob_body_row *rows, const ob_body_row *before)
 {
 	ob_vec3 m = { 0, 0, 0 }, l = { 0, 0, 0 };
@@ -263,7 +263,7 @@ static void check_star(const star *t, const ob_body_row *rows, const ob_body_row
 	CHECK_NEAR(ob_norm(l) / scale, 0, 1e-13);
 }
 
-// All changes come from the same published state and are published together: the split masses together are the body.
+// All changes start from the same published state and are published together: the split masses add up to the body's.
 static void test_jacobi(void)
 {
 	uint64_t seed = 5;
@@ -285,7 +285,7 @@ static void test_jacobi(void)
 	}
 }
 
-// Overlaps are pushed apart in the displacements, by the share asked for; velocities and impulses do not hear of it.
+// Overlaps are reduced in the displacements by the requested share; velocities and impulses do not change.
 static void test_project(void)
 {
 	uint64_t seed = 6;
@@ -309,11 +309,11 @@ static void test_project(void)
 				check_conserved(p, none, s.d + row_a(l), 4e-15);
 		}
 		ob_batch_project(&s.batch, slop, share, true, none, s.delta);
-		CHECK(memcmp(s.d + 1, s.delta + 1, sizeof s.d - sizeof s.d[0]) == 0); // Jacobi: the same, put aside
+		CHECK(memcmp(s.d + 1, s.delta + 1, sizeof s.d - sizeof s.d[0]) == 0); // Jacobi: the same, stored apart
 	}
 }
 
-// What an impact made of the impulses is taken back to within the cap; pairs without one keep theirs.
+// Impulses of an impact are taken back to within the cap; contacts without one keep theirs.
 static void test_cap(void)
 {
 	uint64_t seed = 7;
@@ -330,7 +330,7 @@ static void test_cap(void)
 			bool impact = solved.impact >> l & 1;
 			capped += impact;
 			for (int k = 0; k < OB_ROWS; k++) {
-				const double arm = k == 6 ? s.batch.radius[l] : 1; // of the twist: N m s, and m/s at the arm
+				const double arm = k == 6 ? s.batch.radius[l] : 1; // twist: N m s, and m/s at the arm
 				const double most = fmax(cap[l] * arm, .05 / (s.batch.diag[k][l] * arm));
 				CHECK(impact || s.batch.impulse[k][l] == solved.impulse[k][l]);
 				CHECK(!impact || fabs(s.batch.impulse[k][l]) <= most * (1 + 1e-12));
@@ -340,7 +340,7 @@ static void test_cap(void)
 	CHECK(capped > 500);
 }
 
-// What the impulses did to the bodies, pushed back, leaves what was there before.
+// Applying the negated impulses restores the velocities of before.
 static void test_push(void)
 {
 	uint64_t seed = 8;

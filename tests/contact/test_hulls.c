@@ -1,6 +1,5 @@
-// Hulls against every shape: the separation is what no direction beats, however slowly it is looked for; points lie
-// between the two surfaces; a cuboid has the contacts of the box; swapped and turned pairs have swapped and turned
-// contacts.
+// Hulls against every shape: no direction has a larger separation, even in a slow search; points lie between the two
+// surfaces; a cuboid hull has the contacts of the box; swapped and rotated pairs have swapped and rotated contacts.
 #include "check.h"
 #include "hull/hull.h"
 
@@ -9,7 +8,7 @@
 enum { HULLS = 12 };
 static ob_hull hull[HULLS];
 
-// Of few corners and of many, flat and long.
+// Makes hulls of few corners and of many, flat and long.
 static void make_hulls(uint64_t *seed)
 {
 	for (int i = 0; i < HULLS; i++) {
@@ -45,7 +44,7 @@ static ob_placed random_shape(uint64_t *seed, ob_shape shape)
 	return x;
 }
 
-// Moves b along a random direction until the two are "gap" apart along the best direction of those that are tried.
+// Moves b along a random direction until the two are "gap" apart along the best direction tried.
 static void bring_near(uint64_t *seed, const ob_placed *a, ob_placed *b, double gap)
 {
 	const ob_vec3 d = random_direction(seed);
@@ -85,7 +84,7 @@ static double both_ways(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 	return fmax(apart_along(a, b, n), apart_along(a, b, ob_scale(n, -1)));
 }
 
-// Along every axis that two polyhedra could have (Gottschalk et al. 1996), without leaving any out.
+// Largest separation along all axes that two polyhedra can have (Gottschalk et al. 1996).
 static double every_axis(const ob_placed *a, const ob_placed *b)
 {
 	static ob_vec3 n[OB_HULL_FACES_MAX], ea[OB_HULL_EDGES_MAX], eb[OB_HULL_EDGES_MAX];
@@ -106,7 +105,7 @@ static double every_axis(const ob_placed *a, const ob_placed *b)
 
 static double worst_above, worst_below;
 
-// Every point is midway between the two surfaces along the normal, as far as its gap says: neither shape ends before.
+// Every point is midway between the two surfaces along the normal, at half its gap from each.
 static void check_points(const ob_placed *a, const ob_placed *b, const ob_manifold *m)
 {
 	CHECK_NEAR(ob_norm(m->normal), 1, 1e-12);
@@ -128,9 +127,9 @@ static void check_pair(uint64_t *seed, ob_shape shape, double gap)
 	CHECK(ob_manifold_find(&b, &a, .02, &swapped));
 	const bool edged = shape == OB_SHAPE_BOX || shape == OB_SHAPE_HULL;
 	double best = edged ? every_axis(&a, &b) : farthest_apart(seed, &a, &b, 100);
-	if (m.points && !edged) // the best direction may be a ridge that a search does not climb to its end
+	if (m.points && !edged) // the best direction may be a ridge, which a search does not always climb to its end
 		best = fmax(best, apart_along(&a, &b, m.normal));
-	if (best < .02) { // what is farther apart is not looked at closely
+	if (best < .02) { // farther pairs have no exact separation
 		CHECK(m.separation <= best + 1e-9);
 		CHECK(m.separation >= best - 1e-9);
 		worst_above = fmax(worst_above, m.separation - best);
@@ -158,7 +157,7 @@ static void check_pairs(void)
 	}
 }
 
-// Of a plane: the lowest corner, and points on it.
+// Planes: the lowest corner, and points on it.
 static void check_planes(void)
 {
 	uint64_t seed = 11;
@@ -205,7 +204,8 @@ static bool same_points(const ob_manifold *a, const ob_manifold *b)
 	return same;
 }
 
-// As a box against every shape, and as a hull: the same separation, and but for a few close calls the same points.
+// Cuboids as boxes against every shape, and as hulls: the same separation, and, with a few exceptions near ties, the
+// same points.
 static void check_cuboids(void)
 {
 	static const ob_shape with[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };

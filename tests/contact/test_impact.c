@@ -1,5 +1,5 @@
-// Impacts: what goes in comes out. Momentum to rounding, Newton's and Coulomb's law at the points that hit, energy
-// never more, and no point before another.
+// Impacts: momentum is conserved to rounding, Newton's and Coulomb's laws hold at the points that hit, energy never
+// grows, and the order of points is irrelevant.
 #include "contact/impact.h"
 
 #include <stdlib.h>
@@ -91,7 +91,7 @@ static hit random_hit(uint64_t *seed, double mass_ratio)
 	return h;
 }
 
-// One point: the impulse can be told from the change of velocity. It obeys Newton's law to the last digits, or energy
+// Impact at one point: the change of velocity gives the impulse. It obeys Newton's law to the last digits, or energy
 // would grow; and Coulomb's.
 static bool check_one_point(const hit *h)
 {
@@ -105,7 +105,7 @@ static bool check_one_point(const hit *h)
 	CHECK(ob_norm(friction) <= p->mu * normal * (1 + 1e-12) + 1e-11 * normal + 1e-14 * h->of[0].mass);
 	bool newton = fabs(out + p->e * in) <= 1e-10 * (scale + fabs(in));
 	if (!newton) {
-		CHECK(out < -p->e * in); // less than the law's, as it would bring energy
+		CHECK(out < -p->e * in); // less than by the law, which would add energy
 		CHECK_NEAR(energy_of(h, h->after) / energy_of(h, h->before), 1, 1e-12);
 		return false;
 	}
@@ -116,12 +116,12 @@ static bool check_one_point(const hit *h)
 	return true;
 }
 
-// Any masses, inertias and points, with and without friction.
+// Random masses, inertias and points, with and without friction.
 static void test_random(void)
 {
 	uint64_t seed = 1;
 	int hits = 0, single = 0, limited = 0;
-	int missed = 0; // the law, for a set of points that Newton's method has not solved to the end
+	int missed = 0; // violations of the law for a set of points that Newton's method has not solved to the end
 	for (int i = 0; i < 20000; i++) {
 		double ratio = i % 4 == 3 ? INFINITY : pow(10, within(&seed, -3, 3));
 		hit h = random_hit(&seed, ratio);
@@ -152,7 +152,7 @@ static void test_random(void)
 	CHECK(limited < single / 4);
 }
 
-// Balls on one line, 1:1 to 1:1000, with the textbook's answer.
+// Balls on one line, 1:1 to 1:1000, against the textbook's solution.
 static void test_central(void)
 {
 	static const double ratio[] = { 1, 2, 1000, 1e-3 }, restitution[] = { 0, .5, .8, 1 };
@@ -175,8 +175,8 @@ static void test_central(void)
 	}
 }
 
-// A box of any proportions that comes down flat on a face or an edge, with any friction: up again at e times its speed,
-// not to the side, and without a spin.
+// A box of any proportions that lands flat on a face or an edge, with any friction: it rebounds at e times its speed,
+// without sideways motion or spin.
 static void test_flat(void)
 {
 	uint64_t seed = 5;
@@ -200,7 +200,7 @@ static void test_flat(void)
 	}
 }
 
-// The same points in any order, and turned by any angle, give the same velocities.
+// The same points in any order, and rotated by any angle, give the same velocities.
 static void test_order_and_turn(void)
 {
 	uint64_t seed = 6;
@@ -246,7 +246,7 @@ static void test_order_and_turn(void)
 	}
 }
 
-// ---- the instant, by the rows of a batch
+// ---- time of impact, from the rows of a batch
 
 typedef struct approach {
 	pair p;
@@ -274,7 +274,7 @@ static approach falling_point(double gap, double speed)
 	return x;
 }
 
-// The instant of a falling ball's parabola.
+// Time of impact of a falling ball's parabola.
 static void test_instant(void)
 {
 	uint64_t seed = 3;
@@ -286,7 +286,7 @@ static void test_instant(void)
 	}
 }
 
-// Out of reach, too slow, opening, or already on its way by a displacement: nothing, or the right instant.
+// Out of reach, too slow, opening, or already displaced: none, or the right time.
 static void test_pending(void)
 {
 	approach x = falling_point(.01, 9);
@@ -312,7 +312,7 @@ static bool pay(void *with, uint64_t work)
 	return p->work > p->left;
 }
 
-// A plate that comes down on its many points: whoever pays is told of all work, and when it is over it ends at once.
+// A plate that lands on its many points: the work is reported to the callback, which can stop the impact at once.
 static void test_payer(void)
 {
 	enum { SIDE = 8 };

@@ -1,11 +1,11 @@
-// Whatever the processor: the kernels for each instruction set give the same bits.
+// The kernels for each instruction set give the same bits.
 #include "contact/kernel.h"
 
 #include "check.h"
 #include "placed.h"
 #include "scene.h"
 
-enum { SKIPPED = 77 }; // what meson takes for it
+enum { SKIPPED = 77 }; // meson's exit code for it
 
 static void run(const ob_kernel *k, scene *s, bool jacobi)
 {
@@ -33,7 +33,7 @@ static void compare(const ob_kernel *x, const ob_kernel *y)
 			ob_batch_clear(&a.batch, (int)(OB_LANES * uniform(&seed)));
 		a.batch.elastic = (unsigned)(16 * uniform(&seed));
 		a.batch.isolated = (unsigned)(16 * uniform(&seed));
-		memcpy(&b, &a, sizeof b); // padding too
+		memcpy(&b, &a, sizeof b); // padding included
 		run(x, &a, i / OB_KINDS % 2);
 		run(y, &b, i / OB_KINDS % 2);
 		CHECK(memcmp(&a.batch, &b.batch, sizeof a.batch) == 0);
@@ -72,11 +72,12 @@ static void compare_lanes(const ob_kernel *x, const ob_kernel *y)
 		fill(y, &p, &b, of_b);
 		CHECK(memcmp(&a, &b, sizeof a) == 0);
 		CHECK(memcmp(of_a, of_b, sizeof of_a) == 0);
-		CHECK(memcmp(&of_a[0], &of_a[2], 2 * sizeof of_a[0]) == 0); // found by itself, and with the lane
+		CHECK(memcmp(&of_a[0], &of_a[2], 2 * sizeof of_a[0]) == 0); // found alone, and with the lane
 	}
 }
 
-// Boxes about as far apart as their margin is wide; some of them aligned, so that axes are parallel and gaps equal.
+// Boxes with separations about the width of their margin; some of them aligned, so that axes are parallel and gaps
+// equal.
 static void compare_boxes(const ob_kernel *x, const ob_kernel *y)
 {
 	uint64_t seed = 2;

@@ -1,12 +1,12 @@
-// A contact that is solved at once by itself comes to the same impulses as in a batch with three empty lanes, on every
-// processor to the same bits.
+// A contact that is solved by itself has the same impulses as in a batch with three empty lanes, with the same bits on
+// every processor.
 #include "contact/kernel.h"
 
 #include "check.h"
 #include "scene.h"
 
-// The four corners of a face, of which the last two are a little farther away, or much: what is loaded is an edge, or
-// little more than that.
+// The four corners of a face, the last two of which are slightly farther away, or much: an edge or little more carries
+// the load.
 static void set_face(pair *p, uint64_t *seed)
 {
 	ob_vec3 t1, t2, middle = ob_madd(p->arm_a[0], within(seed, -.1, .1), p->normal);
@@ -23,8 +23,8 @@ static void set_face(pair *p, uint64_t *seed)
 	p->points = OB_POINTS;
 }
 
-// One lane with a body that moves, and one that does not; the others are empty. In the middle of a substep, such as
-// contacts are that go on: some turn, some are hit.
+// One lane with a moving and a fixed body; the others are empty. In the middle of a substep, like persisting contacts:
+// some rotate, some have impacts.
 static int random_lone(scene *s, uint64_t *seed)
 {
 	const int l = (int)(OB_LANES * uniform(seed));
@@ -57,7 +57,7 @@ static int random_lone(scene *s, uint64_t *seed)
 	return l;
 }
 
-// No gap closes farther than it may, no point that leaves it pushes, and what holds does not slip.
+// No gap closes farther than allowed, no point that separates has an impulse, and no sticking point slips.
 static void check_law(const scene *s, int l)
 {
 	const ob_batch *b = &s->batch;
@@ -96,8 +96,8 @@ static double apart(const scene *a, const scene *b, int l)
 	return most;
 }
 
-// A box that rattles on an edge, nearly at rest, as a run of a million boxes had it: its ellipsoid allows a greater
-// force than there may be, so that what slides does not follow the load as the ellipsoid would have it.
+// A box that rattles on an edge, nearly at rest, from a run of a million boxes. Its ellipsoid exceeds the limit of the
+// force, so that the sliding force does not follow the load as the ellipsoid alone would have it.
 static void test_force_at_its_limit(void)
 {
 	static const double inverse[6] = { .040403251748610529, -.0099510494517476584, 3.7450526271528756e-07,
@@ -152,7 +152,7 @@ int main(void)
 	for (int i = 0; i < SCENES; i++) {
 		scene a, b, c;
 		const int l = random_lone(&a, &seed);
-		memcpy(&b, &a, sizeof b); // padding too
+		memcpy(&b, &a, sizeof b); // padding included
 		memcpy(&c, &a, sizeof c);
 		const ob_solver_iteration iteration = iteration_on(&a, true);
 		ob_kernel_portable.solve(&a.batch, &iteration, a.u, a.v, a.d, a.delta);

@@ -1,4 +1,4 @@
-// Where two shapes touch, against scenes whose answer is known by construction, in random places and attitudes.
+// Contacts of two shapes, against scenes with known solutions, in random places and attitudes.
 #include <string.h>
 
 #include "check.h"
@@ -11,7 +11,7 @@ static void check_vector(ob_vec3 a, ob_vec3 b, double tolerance)
 	CHECK_NEAR(ob_norm(ob_sub(a, b)), 0, tolerance);
 }
 
-// One point, as known; and the same seen from the other side.
+// Checks for a single known point; also with the shapes swapped.
 static void check_point(const ob_placed *a, const ob_placed *b, ob_vec3 normal, ob_vec3 at, double gap)
 {
 	for (int swapped = 0; swapped < 2; swapped++) {
@@ -45,7 +45,7 @@ static void test_sphere_with_sphere_and_plane(void)
 	}
 }
 
-// The sphere's centre stands over a face, an edge or a corner: outwards there is a cone of directions.
+// The sphere's centre is over a face, an edge or a corner: outside it, there is a cone of directions.
 static void test_sphere_outside_box(void)
 {
 	uint64_t seed = 2;
@@ -53,7 +53,7 @@ static void test_sphere_outside_box(void)
 		rigid g = random_rigid(&seed);
 		ob_vec3 size = random_size(&seed);
 		double h[3] = { size.x, size.y, size.z }, on[3], out[3];
-		int fixed = 1 + i % 3, first = i / 3 % 3; // coordinates at the box's border: face, edge, corner
+		int fixed = 1 + i % 3, first = i / 3 % 3; // coordinates on the box's border: face, edge, corner
 		for (int c = 0; c < 3; c++) {
 			bool at_border = (c + 3 - first) % 3 < fixed;
 			double side = uniform(&seed) < .5 ? -1 : 1;
@@ -70,7 +70,7 @@ static void test_sphere_outside_box(void)
 	}
 }
 
-// The centre is inside: the nearest face pushes it out.
+// The centre is inside: the normal is that of the nearest face.
 static void test_sphere_inside_box(void)
 {
 	uint64_t seed = 3;
@@ -127,7 +127,7 @@ static void test_box_on_plane(void)
 	}
 }
 
-// Two boxes lie flat on each other: the corners of the common rectangle.
+// Two boxes lie flat on each other: the corners of their common rectangle.
 static void test_boxes_flat(void)
 {
 	uint64_t seed = 5;
@@ -157,7 +157,7 @@ static void test_boxes_flat(void)
 	}
 }
 
-// A corner of a stands over a face of b; two edges cross over each other.
+// A corner of a is over a face of b; two edges cross.
 static void test_boxes_on_corner_and_edge(void)
 {
 	uint64_t seed = 6;
@@ -165,7 +165,7 @@ static void test_boxes_on_corner_and_edge(void)
 		rigid g = random_rigid(&seed);
 		double gap = within(&seed, -.01, .02), turn = within(&seed, -3, 3);
 		ob_placed b = rigid_place(&g, OB_SHAPE_BOX, ob_v3(2, 2, 1), ob_v3(0, 0, 0), ob_quat_identity());
-		// turned so that the body diagonal of a unit cube stands upright
+		// rotated so that the body diagonal of a unit cube is vertical
 		ob_quat upright = ob_quat_turn(ob_quat_turn(ob_quat_identity(), ob_v3(M_PI / 4, 0, 0)),
 					       ob_v3(0, -atan(sqrt(.5)), 0));
 		ob_quat q = ob_quat_turn(upright, ob_v3(0, 0, turn));
@@ -185,7 +185,7 @@ static void test_boxes_on_corner_and_edge(void)
 	}
 }
 
-// Of two axes that separate, the one that closes last is the one along which they meet.
+// With two separating axes, the normal is the one that closes last.
 static void test_boxes_meet_along(void)
 {
 	ob_placed b = place(OB_SHAPE_BOX, ob_v3(.5, .5, .5), ob_v3(0, 0, 0), ob_quat_identity());
@@ -199,14 +199,14 @@ static void test_boxes_meet_along(void)
 	CHECK_NEAR(m.normal.x, 1, tiny);
 }
 
-// How far the shapes are apart along the unit direction n, from b to a (m)
+// Separation of the shapes along the unit direction n, from b to a (m)
 static double gap_along(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 {
 	return ob_dot(n, ob_sub(a->p, b->p)) - half_width(a, n) - half_width(b, n);
 }
 
-// What holds for any point: it lies on both shapes, and within the margin. Edges of two boxes that pass each other
-// beyond their ends have no such point, but the gap along their normal.
+// Checks any point: it lies on both shapes, and within the margin. Edges of two boxes that cross beyond their ends have
+// no such point, but the gap along their normal.
 static void check_each_point(const ob_placed *a, const ob_placed *b, double margin, const ob_manifold *m)
 {
 	bool boxes = a->shape == OB_SHAPE_BOX && b->shape == OB_SHAPE_BOX;
@@ -224,7 +224,7 @@ static void check_each_point(const ob_placed *a, const ob_placed *b, double marg
 	}
 }
 
-// Both sides see the same, unless two axes separate equally far: then each side takes its own.
+// Both orders give the same result, unless two axes separate equally far: then each order takes its own.
 static void check_both_sides(const ob_placed *a, const ob_placed *b, double margin, int *ties)
 {
 	ob_manifold m, n;
@@ -290,7 +290,7 @@ static void test_box_separation(void)
 	CHECK(apart > 300 && deep > 300);
 }
 
-// A separation of two boxes whose nearest parts are a face and a corner, or crossed edges, is the distance itself.
+// If the nearest features are a face and a corner, or crossed edges, the separation of two boxes is their distance.
 static void test_box_separation_tight(void)
 {
 	ob_quat tilted = ob_quat_turn(ob_quat_identity(), ob_v3(.3, .4, 0));

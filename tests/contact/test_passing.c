@@ -1,6 +1,6 @@
-// Two bodies that pass each other, held by nothing but the points that are found between them: as long as none of these
-// closes below zero, the bodies get no deeper into each other than they may be at rest, however they move. Boxes, hulls
-// and both, all ways round and nearly flat on each other, slow and fast.
+// Two bodies that pass each other, held apart only by the contact points found between them. As long as none of these
+// closes below zero, the bodies penetrate no deeper than they may at rest, in any motion. Boxes, hulls and both, in all
+// attitudes and nearly flat on each other, slow and fast.
 #include "check.h"
 #include "hull/hull.h"
 #include "placed.h"
@@ -49,7 +49,7 @@ static double opening(const ob_placed *a, const ob_placed *b, const ob_manifold 
 	return ob_dot(m->normal, ob_sub(va, vb));
 }
 
-// a is pushed off along the normal as fast as it takes for no point to close below zero within h. true: it was
+// Pushes a off along the normal, so that no point closes below zero within h. true: a push was needed
 static bool hold(ob_placed *a, const ob_placed *b, double h)
 {
 	const double speed = ob_norm(ob_sub(a->v, b->v)) + 2 * (ob_norm(a->w) + ob_norm(b->w));
@@ -61,7 +61,7 @@ static bool hold(ob_placed *a, const ob_placed *b, double h)
 	return push > 0;
 }
 
-// m: how deep they get into each other within t, held every h (s)
+// m: deepest penetration within t, with contacts applied every h (s)
 static double deepest(ob_placed a, ob_placed b, double t, double h, int *held)
 {
 	double most = 0;
@@ -76,7 +76,7 @@ static double deepest(ob_placed a, ob_placed b, double t, double h, int *held)
 	return most;
 }
 
-// Moves a until the two are a hair apart.
+// Moves a until the separation is a hair.
 static void bring_near(ob_placed *a, const ob_placed *b)
 {
 	const double hair = 1e-4; // m
@@ -106,7 +106,7 @@ static void set_moving(uint64_t *seed, double speed, ob_placed *x)
 	x->w = random_vector(seed, 2);
 }
 
-// What is left out between two instants is of second order in h; what is of first order would be millimetres here.
+// The error between two instants is of second order in h; first order would be millimetres here.
 static void test_passing(attitude kind, bool hull_a, bool hull_b)
 {
 	enum { PAIRS = 250 };

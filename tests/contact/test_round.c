@@ -1,4 +1,4 @@
-// Where capsules and cylinders touch what there is, against slow means that know nothing of their closed forms.
+// Contacts of capsules and cylinders with all shapes, against slow methods without closed forms.
 #include "check.h"
 #include "convex.h"
 
@@ -19,7 +19,7 @@ typedef struct two {
 	ob_placed a, b;
 } two;
 
-// Number k of a sequence of random pairs; where "near", a is brought to about this distance from b (m).
+// Number k of a sequence of random pairs; if "near", a is moved to about this distance from b (m).
 static two random_two(uint64_t *seed, int k, bool near, double distance)
 {
 	two t;
@@ -32,7 +32,7 @@ static two random_two(uint64_t *seed, int k, bool near, double distance)
 	return t;
 }
 
-// The separation is the distance while the shapes are apart, and no direction has less overlap where they are not.
+// The separation is the distance while the shapes are apart; if they overlap, no direction has less overlap.
 static void test_separation(void)
 {
 	uint64_t seed = 1;
@@ -53,7 +53,7 @@ static void test_separation(void)
 		}
 	}
 	CHECK(apart > 1000);
-	CHECK(slow < apart / 50); // projections between what is nearly parallel take longer
+	CHECK(slow < apart / 50); // projections between nearly parallel surfaces take longer
 }
 
 static ob_vec3 point_of_rim(const ob_placed *cylinder, ob_vec3 n)
@@ -63,8 +63,8 @@ static ob_vec3 point_of_rim(const ob_placed *cylinder, ob_vec3 n)
 		       cylinder->size.x / ob_norm(side), side);
 }
 
-// Cylinders of which two rims are nearest, at a known distance along a known direction. Those that stand almost alike,
-// a little beside each other, overlap by as little along many others: of these the ridge is long and almost flat.
+// Cylinders whose rims are nearest, at a known distance along a known direction. Cylinders that are almost parallel,
+// slightly beside each other, overlap by as little along many directions: the ridge is long and almost flat.
 static void test_rims(void)
 {
 	uint64_t seed = 8;
@@ -88,8 +88,8 @@ static void test_rims(void)
 	}
 }
 
-// The first point's gap is the separation, no gap is beyond the margin, all points lie between the surfaces, and none
-// is there twice.
+// The first point's gap is the separation, no gap exceeds the margin, all points lie between the surfaces, and none is
+// a duplicate.
 static void test_points(void)
 {
 	uint64_t seed = 2;
@@ -115,7 +115,7 @@ static void test_points(void)
 	}
 }
 
-// ties: where a point lies on a border of what counts, rounding may decide.
+// ties: rounding may decide about a point on the limit of the margin.
 static void check_same(const ob_manifold *m, const ob_manifold *n, const rigid *g, double sign, int *ties)
 {
 	CHECK_NEAR(n->separation, m->separation, tiny);
@@ -149,7 +149,7 @@ static ob_placed turned(const rigid *g, const ob_placed *x)
 	return y;
 }
 
-// The same from the other side and in a turned world.
+// The same with the shapes swapped and in a rotated world.
 static void test_invariance(void)
 {
 	const rigid still = { { 0, 0, 0 }, ob_quat_identity() };
@@ -167,7 +167,8 @@ static void test_invariance(void)
 	CHECK(ties < 6);
 }
 
-// On a way past each other the separation changes by no more than the way, and the normal turns smoothly while apart.
+// On a path past each other the separation changes by no more than the path's length, and the normal changes smoothly
+// while the shapes are apart.
 static void test_continuity(void)
 {
 	uint64_t seed = 4;
@@ -206,7 +207,7 @@ static void check_two_points(const ob_placed *a, const ob_placed *b, ob_vec3 n, 
 	}
 }
 
-// What lies along something else touches it at two points: at the ends of what lies side by side.
+// A capsule along another shape has two contact points: at the ends of their overlap.
 static void test_capsule_lies(void)
 {
 	uint64_t seed = 5;
@@ -247,7 +248,7 @@ static ob_placed ground(const rigid *g)
 	return rigid_place(g, OB_SHAPE_PLANE, ob_v3(0, 0, 0), ob_v3(0, 0, 0), ob_quat_identity());
 }
 
-// A cylinder stands on four points of its rim, leans on the lowest point of its rim, and lies on the two ends of a
+// A cylinder stands on four points of its rim, tilts on the lowest point of its rim, and lies on the two ends of a
 // line.
 static void test_cylinder_on_plane(void)
 {
@@ -301,7 +302,7 @@ static void test_pressed_side(void)
 	}
 }
 
-// Two cylinders stand on each other: on the rim of the smaller, or on the lens that their caps have in common.
+// Two cylinders stand on each other: contacts on the smaller rim, or on the lens that their caps share.
 static void test_caps(void)
 {
 	uint64_t seed = 8;
@@ -327,7 +328,7 @@ static void test_caps(void)
 	}
 }
 
-// A cylinder that falls past the edge of a box, a little beside it, is not stopped by it; one that comes down on it is.
+// The edge of a box does not stop a cylinder that falls past it, slightly beside it, but one that lands on it.
 static void test_passes_by(void)
 {
 	ob_placed box = place(OB_SHAPE_BOX, ob_v3(.5, .5, .5), ob_v3(0, 0, 0), ob_quat_identity());

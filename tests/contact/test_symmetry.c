@@ -1,5 +1,5 @@
-// Where two shapes touch does not depend on who looks: turned, mirrored, moved, boosted, or with the two taken in the
-// other order, a manifold has the same points. Boxes at random, and flat on each other, where axes tie.
+// Contacts of two shapes are invariant: rotated, mirrored, moved, boosted, or with the two swapped, a manifold has the
+// same points. Random boxes, and boxes flat on each other, where axes tie.
 #include "check.h"
 #include "placed.h"
 
@@ -26,7 +26,7 @@ static ob_placed seen(const view *w, const ob_placed *s)
 		p.x = -p.x;
 	out.p = rigid_point(&w->moved, p);
 	for (int c = 0; c < 3;
-	     c++) { // a mirrored axis of a box is as good as its negative: the frame stays right-handed
+	     c++) { // a box's axis may be negated: the frame stays right-handed
 		ob_vec3 axis = seen_vector(w, ob_column(&s->r, c));
 		if (w->mirrored && c == 0)
 			axis = ob_scale(axis, -1);
@@ -39,7 +39,7 @@ static ob_placed seen(const view *w, const ob_placed *s)
 	return out;
 }
 
-// Farthest that a point of m, as seen, is from the nearest of n (m).
+// Largest distance of a point of m, in the view, from the nearest of n (m).
 static double points_apart(const view *w, const ob_manifold *m, const ob_manifold *n)
 {
 	double most = 0;
@@ -56,7 +56,7 @@ static double points_apart(const view *w, const ob_manifold *m, const ob_manifol
 	return most;
 }
 
-// Whether both see the same.
+// True if both views give the same result.
 static bool same(const ob_placed *a, const ob_placed *b, double margin, const view *w)
 {
 	ob_manifold m = { .valid_path = INFINITY }, n = m;
@@ -107,8 +107,8 @@ static void test_random(ob_shape sa, ob_shape sb)
 	CHECK(touching > 3000 && failed == 0);
 }
 
-// On each other, in all proportions, turned about the vertical by any angle, by a quarter, or not; a hair apart or in
-// each other; at rest or not.
+// Boxes on each other, in all proportions, rotated about the vertical by any angle, by a quarter, or not; a hair apart
+// or overlapping; at rest or not.
 static void test_flat(double tilt, bool rests)
 {
 	uint64_t seed = 2;

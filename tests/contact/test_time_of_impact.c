@@ -1,5 +1,4 @@
-// When two moving shapes meet: never later than they do, whatever their speed and spin; and to rounding, where that is
-// asked for.
+// Time of impact of two moving shapes: never too late, at any speed and spin; and exact to rounding, where requested.
 #include "contact/manifold.h"
 
 #include "check.h"
@@ -27,7 +26,7 @@ static ob_placed moved(const ob_placed *x, double t)
 	return y;
 }
 
-// m; negative where they overlap
+// m; negative if they overlap
 static double separation(const ob_placed *a, const ob_placed *b, double t)
 {
 	ob_placed at = moved(a, t), bt = moved(b, t);
@@ -67,17 +66,17 @@ static void test_bullet(void)
 		CHECK(t <= exact && t >= exact - tolerance / v);
 		CHECK(m.points == 1);
 		CHECK_NEAR(m.normal.x, -1, 1e-12);
-		CHECK_NEAR(m.gap[0], v * (exact - t), 1e-12); // as of the meeting
+		CHECK_NEAR(m.gap[0], v * (exact - t), 1e-12); // at the impact
 		t = ob_time_of_impact(&ball, &wall, v, .9 * exact, tolerance, .5, shapes, &m);
 		CHECK(isinf(t));
 		CHECK(m.points == 0);
-		CHECK_NEAR(m.separation, .5 - .1 - .01, 1e-12); // as of now
+		CHECK_NEAR(m.separation, .5 - .1 - .01, 1e-12); // now
 		ball.v = ob_v3(-v, 0, 0);
 		CHECK(isinf(ob_time_of_impact(&ball, &wall, v, .1, tolerance, .5, shapes, &m)));
 	}
 }
 
-// A square plate lands with one edge first: the points of the others come with it, as far as the margin goes.
+// A square plate lands with one edge first: the manifold includes other points up to the margin.
 static void test_margin(void)
 {
 	ob_quat tilted = ob_quat_turn(ob_quat_identity(), ob_v3(0, .05, 0));
@@ -104,8 +103,8 @@ static void test_touching_now(void)
 	}
 }
 
-// A cube that has hit a thin wall with one corner turns so fast, just off it, that its way cannot be followed to its
-// end in one search: what comes down next must not be taken for what never touches.
+// A cube that has hit a thin wall with one corner rotates so fast, just off it, that one search cannot follow its path
+// to the end: the next impact must not be missed.
 static void test_turning_fast(void)
 {
 	const ob_placed wall = place(OB_SHAPE_BOX, ob_v3(.01, 4, 4), ob_v3(0, 0, 0), ob_quat_identity());
@@ -125,7 +124,7 @@ static void test_turning_fast(void)
 	}
 }
 
-// Up to the time forecast nothing comes so near; what is forecast soon does, but for a grazing pass.
+// Up to the forecast nothing comes this near; soon after it, something does, except for a grazing pass.
 static void check_forecast(const ob_placed *a, const ob_placed *b, double h, double near)
 {
 	const double soon = .3 * h, speed = closing_speed(a, b);
@@ -141,7 +140,7 @@ static void check_forecast(const ob_placed *a, const ob_placed *b, double h, dou
 		CHECK(separation(a, b, free) <= near + 1e-9 || separation(a, b, free) < .02);
 }
 
-// Random shapes, speeds and spins: up to the time found nothing overlaps, and then they are near.
+// Random shapes, speeds and spins: up to the time of impact they do not overlap, and then they are near.
 static void check_meeting(const ob_placed *a, const ob_placed *b, double h, int *met)
 {
 	ob_manifold m;
@@ -156,7 +155,7 @@ static void check_meeting(const ob_placed *a, const ob_placed *b, double h, int 
 		CHECK(separation(a, b, fmin(free, h) * k / 300) > 0);
 	check_forecast(a, b, h, tolerance);
 	if (isinf(t)) {
-		ob_manifold now; // at the same margin, for what is farther apart has a lower bound that depends on it
+		ob_manifold now; // at the same margin, on which the lower bound of larger separations depends
 		ob_manifold_find(a, b, tolerance, &now);
 		CHECK(m.points == 0);
 		CHECK_NEAR(m.separation, now.separation, 1e-12);
@@ -167,7 +166,7 @@ static void check_meeting(const ob_placed *a, const ob_placed *b, double h, int 
 	CHECK(m.points > 0);
 	double near = separation(a, b, t);
 	CHECK(near <= .05);
-	// Far more often than not they are within the tolerance; a grazing pass may stop a little short of it.
+	// Mostly they are within the tolerance; a grazing pass may stop slightly before it.
 	CHECK(near <= tolerance + 1e-9 || near < .02);
 }
 
@@ -214,7 +213,7 @@ static ob_quat attitude_of(const ob_placed *x)
 	return (ob_quat){ scale * q[best].w, scale * q[best].x, scale * q[best].y, scale * q[best].z };
 }
 
-// As they turn freely.
+// With free rotation.
 static bool touch(const ob_placed *a, const ob_placed *b, double h, double *when, ob_manifold *m)
 {
 	const ob_placed *x[2] = { a, b };
@@ -228,8 +227,8 @@ static bool touch(const ob_placed *a, const ob_placed *b, double h, double *when
 	return ob_time_of_touch(a, b, turning, h, 1e-6, shapes, when, m);
 }
 
-// Until they touch they are apart, then they are not, to rounding; the other way round in time they part from there,
-// and do not touch again on the way back.
+// Until the contact they are apart, then they are not, to rounding. In reversed time they separate from there, and have
+// no other contact on the way back.
 static void check_touch(const ob_placed *a, const ob_placed *b, double h, int *met, int *lost)
 {
 	ob_manifold m;
@@ -289,7 +288,8 @@ static void test_touch(void)
 	CHECK(lost * 50 < tried);
 }
 
-// What lies on a turning plate and moves with it, or leaves it, parts from it; pressed, it touches.
+// A body that lies on a rotating plate and moves with it, or leaves it, separates from it; if pressed on it, it is in
+// contact.
 static void test_parting(void)
 {
 	ob_placed plate = place(OB_SHAPE_BOX, ob_v3(1, 1, .1), ob_v3(0, 0, 0), ob_quat_identity());
