@@ -20,7 +20,7 @@ CEILING = 2  # percent of sentences that may open so
 # Folders not yet rewritten, and the percentage they may have until they are. It only falls.
 CEILINGS = {
     'docs/design': 17, 'src/contact': 18,
-    'src/scene': 15, 'src/script': 16, 'src/serve': 20,
+    'src/scene': 4, 'src/script': 6, 'src/serve': 20,
     'src/sim': 21, 'tests/serve': 29, 'tests/sim': 18,
 }
 

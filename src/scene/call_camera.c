@@ -1,4 +1,4 @@
-// camera "main" { eye = ..., target = ... }, and the place of a camera that shall see everything.
+// camera "main" { eye = ..., target = ... }, and the place of a camera that frames all objects.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,9 +10,9 @@
 #include "scene/text.h"
 
 #define RADIANS (M_PI / 180)
-#define ASPECT (16. / 9) // of the picture that a framing camera is placed for
-#define MARGIN 1.06 // air round the objects, as a factor of their size in the picture
-#define SPREAD .2 // m to the side that an object may come to lie, for each metre that it falls
+#define ASPECT (16. / 9) // picture for which a framing camera is placed
+#define MARGIN 1.06 // space around the objects, as a factor of their size in the picture
+#define SPREAD .2 // m to the side that an object may move, for each metre of its fall
 
 typedef struct camera_fields {
 	ob_vec3 eye, target, from, velocity;
@@ -105,7 +105,7 @@ int ob_scene_call_camera(lua_State *L)
 
 typedef struct view {
 	ob_vec3 right, up, forward; // unit
-	double tan_x, tan_y; // of half the angles that may be filled
+	double tan_x, tan_y; // half the usable angles
 } view;
 
 static view look(ob_vec3 from, double fov)
@@ -119,8 +119,8 @@ static view look(ob_vec3 from, double fov)
 	return v;
 }
 
-// A pyramid of view with its tip (x, y, z) in the axes of the view holds a sphere if the sphere is inside each of its
-// four sides: right <= x - z tan_x, left <= -x - z tan_x, above <= y - z tan_y, below <= -y - z tan_y.
+// A pyramid of view with its apex (x, y, z) in the view's axes holds a sphere if the sphere is inside each of its four
+// sides: right <= x - z tan_x, left <= -x - z tan_x, above <= y - z tan_y, below <= -y - z tan_y.
 typedef struct fit {
 	double left, right, below, above; // m, the largest so far
 	double near, far; // m, depths between which the spheres lie
@@ -138,7 +138,7 @@ static void fit_sphere(fit *f, const view *v, ob_vec3 p, double r)
 	f->far = fmax(f->far, z + r);
 }
 
-// The highest level ground, where falling objects end; -infinity where there is none, or nothing falls.
+// Height of the highest level ground, where falling objects end; -infinity without one, or if nothing falls.
 static double ground_height(const ob_scene *s)
 {
 	double height = -INFINITY;
@@ -150,7 +150,7 @@ static double ground_height(const ob_scene *s)
 	return height;
 }
 
-// All objects, and the places on the ground where they may come to lie.
+// Fits all objects, and the places on the ground that they may reach.
 static fit fit_objects(const ob_scene *s, const view *v)
 {
 	fit f = { -INFINITY, -INFINITY, -INFINITY, -INFINITY, INFINITY, -INFINITY };
@@ -173,7 +173,8 @@ static fit fit_objects(const ob_scene *s, const view *v)
 	return f;
 }
 
-// Puts the tip as near as opposite sides allow: where those that need more room meet, midway between the others.
+// Puts the apex as near as opposite sides permit: at the limit of the pair that needs more room, midway between the
+// others.
 static void frame(const ob_scene *s, ob_camera_draft *c)
 {
 	view v = look(c->from, c->def.fov);

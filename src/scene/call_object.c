@@ -1,4 +1,4 @@
-// material, box, hull, sphere, capsule, cylinder, plane, ground: the objects, and what several of them have in common.
+// material, box, hull, sphere, capsule, cylinder, plane, ground: the objects, and their shared code.
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -34,7 +34,7 @@ static const ob_material not_given = {
 	.metal = NAN,
 };
 
-// How a surface looks where the scene does not say, by a word in the name of its material.
+// Default finish of a surface, by a word in the name of its material.
 static const struct finish {
 	const char *word;
 	double roughness, metal;
@@ -105,15 +105,15 @@ int ob_scene_call_material(lua_State *L)
 	return 1;
 }
 
-enum { UNSAID = UINT32_MAX, DYNAMIC = 0, STATIC, KINEMATIC }; // body.kind; the numbers of its choices
+enum { UNSAID = UINT32_MAX, DYNAMIC = 0, STATIC, KINEMATIC }; // UNSAID: not set; others: indices in choices
 
 #define FRICTION .5
 #define DENSITY 1000. // kg/m^3
 
-// What a call may say; NaN = not said.
+// Fields of a call; NaN = not set.
 typedef struct body {
 	const char *name, *material, *script;
-	ob_flat state; // of the script
+	ob_flat state; // the script's
 	ob_vec3 size, at, velocity, spin, force, normal, surface_velocity;
 	uint32_t kind;
 	double radius, length, height, mass, density, friction, restitution, roughness, metal, born, dies;
@@ -122,10 +122,10 @@ typedef struct body {
 	ob_vec3 mesh_at;
 	double mesh_scale;
 	ob_points points;
-	const ob_hull *hull; // in the scene; NULL: it is none
+	const ob_hull *hull; // in the scene; NULL: another shape
 	float colour[4];
 	bool fixed, grid, path, varying_force;
-	bool own_colour, own_surface; // said by it or its material
+	bool own_colour, own_surface; // set by the object or its material
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
@@ -181,7 +181,7 @@ static const ob_field ground_fields[] = {
 	F(grid, .kind = OB_FIELD_BOOLEAN),
 	SURFACE,
 };
-#define STATE_BYTES 1024 // as many as the universe keeps of an object (table/script_data.h)
+#define STATE_BYTES 1024 // the universe's size for an object's state (table/script_data.h)
 #define READ(L, where, fields, to) \
 	unsigned char state_bytes[STATE_BYTES]; \
 	(to)->state = (ob_flat){ state_bytes, 0, sizeof state_bytes }; \
@@ -214,7 +214,7 @@ static const char *const palette[] = { "#e4572e", "#f3a712", "#29a19c", "#3f7cac
 				       "#d1495b", "#edae49", "#66a182", "#8d6a9f", "#c8b8a6" };
 static const char static_colour[] = "#9a9fa5";
 
-// Names are kept in a table of the registry, with the line of the object that bears them.
+// Registers a name, with the line of its object, in a table of the registry.
 static void take_name(lua_State *L, const char *kind, const char *name)
 {
 	if (strchr(name, '#'))
@@ -271,7 +271,7 @@ static _Noreturn void fail_material(lua_State *L, const ob_builder *b, const cha
 	ob_sandbox_fail(L, "%s.material: expected a material declared before, got \"%s\"", kind, name);
 }
 
-// What is said at the object comes first, then its material's, then the default.
+// Applies the object's own values first, then its material's, then the default.
 static void apply_material(lua_State *L, const ob_builder *b, const char *kind, body *d)
 {
 	const ob_material *m = d->material ? ob_builder_material(b, d->material) : &not_given;
@@ -364,7 +364,7 @@ static void find_kind(lua_State *L, const char *kind, body *d)
 		d->kind = d->fixed ? STATIC : DYNAMIC;
 }
 
-// "at" is where the points' origin is; a body's own frame is at its centre of mass, along its principal axes.
+// Sets the body's frame, at its centre of mass along its principal axes. "at" is the place of the points' origin.
 static void take_hull_frame(const ob_scene *s, const ob_hull *h, ob_object_def *o)
 {
 	const ob_mat3 r = ob_quat_matrix(o->state.pose.q);
@@ -373,7 +373,7 @@ static void take_hull_frame(const ob_scene *s, const ob_hull *h, ob_object_def *
 	o->state.pose.q = ob_quat_mul(o->state.pose.q, h->frame);
 }
 
-// A mesh lies in the frame that the scene's author sees; of a hull, the body's is another.
+// Source of a mesh in the frame of the scene's author. The body frame of a hull is another.
 static ob_mesh_source source_of_mesh(const body *d)
 {
 	ob_mesh_source source = { .file = d->mesh, .scale = isnan(d->mesh_scale) ? 1 : d->mesh_scale };
@@ -479,7 +479,7 @@ static void grow_hulls(lua_State *L, ob_builder *b)
 	b->hulls_room = room;
 }
 
-// The scene's hull of these points; objects of the same points share it.
+// Finds or adds the hull of these points; objects with the same points share it.
 static const ob_hull *find_hull(lua_State *L, ob_builder *b, const ob_points *p)
 {
 	ob_scene *s = b->scene;
@@ -532,7 +532,7 @@ int ob_scene_call_cylinder(lua_State *L)
 	return 0;
 }
 
-// The shortest turn from +z to the unit vector n.
+// The shortest rotation from +z to the unit vector n.
 static ob_quat turn_to(ob_vec3 n)
 {
 	if (n.z < -1 + 1e-12)

@@ -1,5 +1,5 @@
-// param(name, default [, { min =, max =, choices = }]): a value that the command line may replace (-D name=value), where
-// it is a number or an expression that gives one (-D name=1/3).
+// param(name, default [, { min =, max =, choices = }]): a value that the command line may replace (-D name=value), by a
+// number or an expression with a number as result (-D name=1/3).
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static const ob_field limit_fields[] = {
 	OB_FIELD(limits, max, .name = "max", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
 };
 
-// The text after "name=" in the last -D of that name; NULL where there is none.
+// Text after "name=" in the last -D of that name; NULL: there is none.
 static const char *defined(const ob_scene_options *o, const char *name)
 {
 	size_t n = strlen(name);
@@ -49,8 +49,8 @@ static const char *check_name(lua_State *L)
 	return name;
 }
 
-// Pushes a new table of all mathematics, by their names and as "math" (pi/6, math.pi/6), but no random numbers: what a -D
-// says takes none from the scene.
+// Pushes a new table of all mathematics, by their names and as "math" (pi/6, math.pi/6), but without random numbers: a
+// -D must not change the scene's sequence.
 static void push_mathematics(lua_State *L)
 {
 	lua_newtable(L);
@@ -65,7 +65,7 @@ static void push_mathematics(lua_State *L)
 	lua_setfield(L, -2, "random");
 }
 
-// Pushes the number that an expression of Lua gives: 1/3, 2^10, pi/6. false: it gives none, and something else is pushed.
+// Pushes the number that an expression of Lua yields: 1/3, 2^10, pi/6. false: another result is pushed.
 static bool push_expression(lua_State *L, const char *text)
 {
 	lua_pushfstring(L, "return (%s\n)", text);
@@ -105,7 +105,7 @@ static void push_defined(lua_State *L, const char *name, const char *text)
 		lua_pushnumber(L, lua_tonumber(L, -1));
 }
 
-// The number at the top against { min =, max = } at index 3.
+// Checks the number at the top against { min =, max = } at index 3.
 static void check_number(lua_State *L, const char *name)
 {
 	char where[OB_NAME_MAX + 8];
@@ -119,7 +119,7 @@ static void check_number(lua_State *L, const char *name)
 		ob_sandbox_fail(L, "%s: expected a number of at most %.10g, got %.10g", where, l.max, x);
 }
 
-// The text at the top against { "one", "two" } at index 3.
+// Checks the text at the top against { "one", "two" } at index 3.
 static void check_choice(lua_State *L, const char *name)
 {
 	char known[160] = "";

@@ -1,4 +1,4 @@
-// scene, record, sky, sun: what holds for the whole run and its look.
+// scene, record, sky, sun: settings of the whole run and its look.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +12,7 @@ typedef struct scene_fields {
 	uint64_t seed;
 	uint32_t room;
 	ob_vec3 gravity;
-	ob_run_settings run; // what the scene leaves alone is unset
+	ob_run_settings run; // settings that the scene does not set are unset
 } scene_fields;
 
 #define F(member, ...) OB_FIELD(scene_fields, member, .name = #member, __VA_ARGS__)
@@ -25,7 +25,7 @@ static const ob_field own_fields[] = {
 };
 #undef F
 
-// What a run is made of is the command line's choice alone: architecture, narrow phase, load.
+// The command line alone chooses architecture, narrow phase and load.
 static const ob_setting_id settings[] = { OB_SETTING_STEP,       OB_SETTING_TOLERANCE,  OB_SETTING_SUBSTEPS,
 					  OB_SETTING_ITERATIONS, OB_SETTING_SOLVER,     OB_SETTING_LAG,
 					  OB_SETTING_INTEGRATOR, OB_SETTING_SLEEPING };
@@ -59,7 +59,7 @@ static void list_fields(ob_field field[OWN_FIELDS + SETTINGS])
 	}
 }
 
-// Random numbers drawn before the seed is set would come from another seed.
+// Sets the seed, but not after random numbers were drawn: they came from another seed.
 static void set_seed(lua_State *L, ob_builder *b, uint64_t seed)
 {
 	if (seed == b->scene->seed || b->options->has_seed)

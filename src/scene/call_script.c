@@ -11,7 +11,7 @@
 #include "scene/sandbox.h"
 #include "scene/text.h"
 
-enum { SCRIPTS_MAX = 64 }; // as many as a universe holds (table/script_data.h)
+enum { SCRIPTS_MAX = 64 }; // limit of a universe (table/script_data.h)
 
 static bool is_file(const char *text)
 {
@@ -30,7 +30,7 @@ static const char *last_part(const char *path)
 	return slash ? slash + 1 : path;
 }
 
-// A scene reaches no file but those that lie with it.
+// A scene can access only files in its own folder.
 void ob_builder_find_file(lua_State *L, const ob_builder *b, const char *where, const char *field, const char *name,
 			  char path[PATH_MAX])
 {
@@ -39,7 +39,7 @@ void ob_builder_find_file(lua_State *L, const ob_builder *b, const char *where, 
 	snprintf(path, PATH_MAX, "%.*s%s", (int)(last_part(b->path) - b->path), b->path, name);
 }
 
-// Into memory of its own.
+// Reads a script into new memory.
 static char *read_script(lua_State *L, const ob_builder *b, const char *where, const char *name)
 {
 	char path[PATH_MAX];
@@ -55,7 +55,7 @@ static char *read_script(lua_State *L, const ob_builder *b, const char *where, c
 	ob_sandbox_fail(L, "%s.script: cannot read %s: it is no text", where, path);
 }
 
-// Lua itself reads it: what it says names the line.
+// Compiles the text with Lua, whose message names the line.
 static void check_text(lua_State *L, const char *where, const ob_script_def *s)
 {
 	char chunk[OB_NAME_MAX + 1];
@@ -67,7 +67,7 @@ static void check_text(lua_State *L, const char *where, const ob_script_def *s)
 	lua_pop(L, 1);
 }
 
-// text becomes the scene's.
+// Takes ownership of text.
 static uint32_t add_script(lua_State *L, ob_builder *b, const char *where, const char *name, char *text)
 {
 	ob_scene *s = b->scene;
@@ -94,7 +94,7 @@ static uint32_t find_script(const ob_scene *s, const char *name)
 	return 0;
 }
 
-// The same text, told in a loop, is one script.
+// Finds a script by its text: the same text, declared in a loop, is one script.
 static uint32_t find_text(const ob_scene *s, const char *text)
 {
 	for (uint32_t i = 0; i < s->scripts; i++)

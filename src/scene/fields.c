@@ -18,12 +18,12 @@
 #include "scene/text.h"
 #include "settings/settings.h"
 
-// The value of one field lies at the top of the stack while it is read.
+// Reader of one field, whose value is at the top of the stack.
 typedef struct reader {
 	lua_State *L;
 	const char *where;
 	const ob_field *field;
-	void *to; // the field's own place in the target
+	void *to; // the field in the target
 } reader;
 
 _Noreturn void ob_fields_fail(lua_State *L, const char *where, const char *field, const char *expected, int index)
@@ -130,7 +130,7 @@ static void read_text(const reader *r)
 	*(const char **)r->to = text;
 }
 
-// Exactly count numbers, nothing else: {1, 2, 3}
+// Reads exactly count numbers: {1, 2, 3}
 static bool list(lua_State *L, size_t count, double *out)
 {
 	if (!lua_istable(L, -1) || lua_rawlen(L, -1) != count)
@@ -162,7 +162,7 @@ static void read_vector(const reader *r)
 	*(ob_vec3 *)r->to = ob_v3(x[0], x[1], x[2]);
 }
 
-// The memory is Lua's, which keeps it until the next list is read.
+// Reads points into memory that Lua owns, valid until the next list is read.
 static void read_points(const reader *r)
 {
 	lua_State *L = r->L;
@@ -186,7 +186,8 @@ static void read_points(const reader *r)
 	*(ob_points *)r->to = (ob_points){ at, (uint32_t)n };
 }
 
-// Scaled by its largest part first, so that squares neither vanish nor overflow; false where there is no direction.
+// Normalises a vector. Scales it by its largest component first, so that squares neither underflow nor overflow; false:
+// it has no direction.
 static bool make_unit(double *x, int n)
 {
 	double largest = 0, sum = 0;
@@ -340,7 +341,7 @@ static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *
 	ob_sandbox_fail(L, "%s.%.40s: unknown field, expected one of %s", where, name, known);
 }
 
-// The key lies at index -2. Positional values cannot be meant: every field has a name.
+// Checks a key, at index -2. Positional values are errors: every field has a name.
 static void check_name(lua_State *L, const char *where, const ob_field *field, size_t count)
 {
 	if (lua_type(L, -2) != LUA_TSTRING) {
@@ -362,7 +363,7 @@ static void check_name(lua_State *L, const char *where, const ob_field *field, s
 	fail_unknown(L, where, name, field, count);
 }
 
-// Pushes the field's value, which may stand under its former name; false: it is not there.
+// Pushes the field's value, which may have its former name; false: it is missing.
 static bool push_value(lua_State *L, int index, const char *where, const ob_field *field)
 {
 	const char *former = ob_setting_former(field->name);

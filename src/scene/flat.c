@@ -133,7 +133,7 @@ void ob_flat_push_table(lua_State *L, const unsigned char *bytes, uint32_t size)
 	}
 }
 
-// Bytes of the value that begins there; 0: it makes no sense.
+// Bytes of the value that begins there; 0: invalid.
 static uint32_t length(const unsigned char *bytes, uint32_t size)
 {
 	uint16_t n = 0;
@@ -170,7 +170,7 @@ static uint32_t key_bytes(lua_State *L, int key, unsigned char to[KEY_BYTES], co
 	return k.size;
 }
 
-// Where the key's value begins; 0: it is not there.
+// Offset of the key's value; 0: not found.
 static uint32_t find(const ob_flat *f, const unsigned char *key, uint32_t n)
 {
 	for (uint32_t at = 0; at < f->size;) {
@@ -203,7 +203,7 @@ void ob_flat_set(lua_State *L, ob_flat *f, int key, int value, const char *what)
 			memmove(f->bytes + at - n, f->bytes + at + old, f->size - at - old), f->size -= n + old;
 		return;
 	}
-	if (at && old == 9 && lua_type(L, value) == LUA_TNUMBER) { // in place, the case that happens most
+	if (at && old == 9 && lua_type(L, value) == LUA_TNUMBER) { // in place, the most frequent case
 		ob_flat one = { f->bytes + at, 0, 9 };
 		ob_flat_put(L, value, &one, what);
 		return;
@@ -213,7 +213,7 @@ void ob_flat_set(lua_State *L, ob_flat *f, int key, int value, const char *what)
 	memcpy(f->bytes + f->size, k, n);
 	f->size += n;
 	const uint32_t kept = f->size;
-	f->size = before; // as it was, if the value does not fit
+	f->size = before; // the old table, if the value does not fit
 	ob_flat rest = { f->bytes + kept, 0, f->room - kept };
 	ob_flat_put(L, value, &rest, what);
 	f->size = kept + rest.size;

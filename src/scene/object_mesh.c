@@ -1,11 +1,11 @@
-// What objects look like: meshes from files beside the scene.
+// Looks of objects: meshes from files beside the scene.
 #include <stdlib.h>
 #include <string.h>
 
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 
-enum { MESH_INSTRUCTIONS = 10000, MESH_BYTES = 64 }; // what reading one counts as, and so many bytes of it as one more
+enum { MESH_INSTRUCTIONS = 10000, MESH_BYTES = 64 }; // cost of reading one, plus one instruction for each MESH_BYTES
 
 static size_t bytes_of_all(const ob_scene *s)
 {
@@ -42,7 +42,7 @@ uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob
 	if (!ob_mesh_load(m, path, &e))
 		ob_sandbox_fail(L, "%s.mesh: cannot read %s: %s", where, path, e.text);
 	m->key = key;
-	s->meshes++; // from here on it is freed with the scene
+	s->meshes++; // from now on it is freed with the scene
 	ob_sandbox_spend(L, MESH_INSTRUCTIONS + (unsigned)(ob_mesh_bytes(m) / MESH_BYTES));
 	if (!ob_mesh_place(m, source->scale, source->pose, &e))
 		ob_sandbox_fail(L, "%s.mesh: cannot place %s: %s", where, path, e.text);

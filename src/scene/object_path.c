@@ -1,5 +1,5 @@
-// What an object is told to do in time: the path of a kinematic one, { kind = "sine", amplitude = {.1, 0, 0}, frequency
-// = 2 } and so on; and forces that change.
+// Prescribed behaviour of an object in time: the path of a kinematic one, { kind = "sine", amplitude = {.1, 0, 0},
+// frequency = 2 } and so on; and forces that change.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,9 +9,9 @@
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 
-enum { SINE, CIRCLE, SPLINE }; // the numbers of the choices
+enum { SINE, CIRCLE, SPLINE }; // numbers of the choices
 
-// What the table may say; NaN = not said.
+// Fields of the table; NaN = not set.
 typedef struct draft {
 	uint32_t kind;
 	ob_vec3 amplitude, centre, axis;
@@ -37,7 +37,7 @@ typedef struct said_field {
 	unsigned needed, allowed; // bit per kind
 } said_field;
 
-// What a kind does not need is not to be said; what it needs is.
+// Checks the fields of a kind: required ones are set, and others are not.
 static void check_for_kind(lua_State *L, const char *where, int kind, const char *name, const said_field *fields,
 			   size_t n)
 {
@@ -89,7 +89,7 @@ static void make_circle(lua_State *L, const char *where, const draft *d, ob_obje
 	keep_path(L, where, o, &path);
 }
 
-enum { PLACED = 4, TURNED = 8 }; // numbers of a point: its time and place, and its attitude
+enum { PLACED = 4, TURNED = 8 }; // numbers of a point: time and place; with attitude
 
 // {t, x, y, z} at the top of the stack, or with {.., qw, qx, qy, qz}; each of x, y, z up to "most"
 static bool read_point(lua_State *L, double most, int numbers, ob_path_point *out)
@@ -110,8 +110,8 @@ static bool read_point(lua_State *L, double most, int numbers, ob_path_point *ou
 	return good;
 }
 
-// The points of the table at the top of the stack. Returns how many there are. turns: whether they have attitudes;
-// NULL: they are to have none.
+// Reads the points of the table at the top of the stack; returns their number. turns: set if they have attitudes; NULL:
+// attitudes are errors.
 static uint32_t read_points(lua_State *L, const char *where, double most, ob_path_point point[OB_PATH_POINTS_MAX],
 			    bool *turns)
 {
@@ -143,7 +143,7 @@ static uint32_t read_points(lua_State *L, const char *where, double most, ob_pat
 	return (uint32_t)n;
 }
 
-// From the attitude that the object has, in which it is to stand still by itself.
+// Makes rotations from the object's initial attitude, at which it must be at rest.
 static void make_turns(lua_State *L, const char *where, const draft *d, ob_object_def *o, ob_path_point *point,
 		       uint32_t n)
 {

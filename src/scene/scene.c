@@ -10,7 +10,7 @@
 
 #define FILE_MAX ((size_t)4 << 20) // bytes of a scene file
 
-// The whole file; the caller frees it.
+// Reads the whole file; the caller frees it.
 static char *read_file(const char *path, size_t *size, ob_error *e)
 {
 	ob_error why;
@@ -20,7 +20,7 @@ static char *read_file(const char *path, size_t *size, ob_error *e)
 	return text;
 }
 
-// What editors and shells put before the first line: a byte order mark, "#!...". Blanks leave the numbers of lines.
+// Blanks a byte order mark and "#!..." before the first line, which keeps line numbers.
 static void blank_start(char *text, size_t size)
 {
 	size_t i = 0;
@@ -106,7 +106,7 @@ static bool build(ob_builder *b, const char *path, ob_error *e)
 	return ob_builder_place_cameras(b) || ob_fail(e, "%s: no memory", path);
 }
 
-// The scene of this text, which becomes its own; NULL: reading it has failed, and e says so.
+// Makes a scene of this text and takes ownership of it; NULL: the text could not be read, and e explains it.
 static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_scene_options *o, ob_error *e)
 {
 	static const ob_scene_options none = { 0 };

@@ -1,4 +1,4 @@
-// Text between a scene and a person: what a value looks like in a message, and what may be a name.
+// Text between a scene and a person: values in messages, and rules of names.
 #ifndef OB_SCENE_TEXT_H
 #define OB_SCENE_TEXT_H
 
@@ -14,7 +14,8 @@
 // "nothing", "-3", "nan", "\"wood\"", "{1, 0, -2}", "a table", "a function"
 void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE]);
 
-// Offers a word of scenes; American spelling and words of other simulators, far in letters, are near in meaning.
+// Offers a word of scenes for correction. American spelling and words of other simulators differ in letters, but are
+// near in meaning.
 void ob_text_offer(ob_spelling *s, const char *known);
 
 // Valid UTF-8 of plain characters alone (base/utf8.h); text[size] is 0.

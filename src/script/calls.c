@@ -1,4 +1,4 @@
-// What a script can call.
+// Functions that a script can call.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +27,7 @@ static ob_flat_object *object_at(lua_State *L, int index, const char *call)
 	return o;
 }
 
-// Only the script's own object can be asked to do something.
+// Checks that the argument is the script's own object: only that one takes orders.
 static ob_script_runner *own(lua_State *L, const char *call)
 {
 	ob_script_runner *r = runner_of(L);
@@ -48,7 +48,7 @@ static double number_at(lua_State *L, int index, const char *call, double most)
 	return x;
 }
 
-// x, y, z from this index on, or a table {x, y, z} there. Returns how many values it took.
+// Reads x, y, z from this index on, or a table {x, y, z} there. Returns the number of values taken.
 static int vector_at(lua_State *L, int index, const char *call, double most, ob_vec3 *out)
 {
 	double x[3];
@@ -82,9 +82,9 @@ static void push_object(lua_State *L, const ob_script_runner *r, uint32_t id)
 	luaL_setmetatable(L, OB_FLAT_OBJECT);
 }
 
-// ---- asking any object
+// ---- reading any object
 
-// Its passport; NULL: it is gone.
+// Its passport; NULL: the object is gone.
 static const ob_passport *passport_of(const ob_script_runner *r, const ob_flat_object *o)
 {
 	if (o->id >= ob_universe_ids(r->u) || r->data->schedule[o->id].state == OB_SCHEDULE_ABSENT)
@@ -126,7 +126,7 @@ static int call_mass(lua_State *L)
 	return p != NULL;
 }
 
-// The centre alone, for which no turning need be computed.
+// Returns the centre alone, which needs no rotation.
 static int call_position(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
@@ -176,7 +176,7 @@ static int call_attitude(lua_State *L)
 	return 1 + push_vector(L, ob_v3(s.pose.q.x, s.pose.q.y, s.pose.q.z));
 }
 
-// From the object's axes to the world's.
+// Rotates from the object's axes to the world's.
 static int call_turned(lua_State *L)
 {
 	ob_state s;
@@ -188,7 +188,7 @@ static int call_turned(lua_State *L)
 	return push_vector(L, ob_rotate(&m, v));
 }
 
-// ---- what the own object does
+// ---- orders to the own object
 
 static int call_force(lua_State *L)
 {
@@ -206,7 +206,7 @@ static int call_torque(lua_State *L)
 	return 0;
 }
 
-// At the centre, or at a point, where it turns the object as well.
+// Pushes at the centre, or at a point, which also adds spin.
 static int call_push(lua_State *L)
 {
 	ob_script_runner *r = own(L, "push");
@@ -256,7 +256,7 @@ static int call_wake(lua_State *L)
 	return 0;
 }
 
-// ---- what is done at the step's end: messages, creations, removals
+// ---- requests for the step's end: messages, creations, removals
 
 static ob_script_post *begin_post(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, uint32_t id,
 				  uint32_t generation)
@@ -281,7 +281,7 @@ static ob_flat rest_of(const ob_script_cell *c)
 static void end_post(const ob_script_runner *r, ob_script_post *post, const ob_flat *f)
 {
 	post->used = f->size;
-	post->bytes = (f->size + 7) / 8 * 8; // the outbox is a multiple of that
+	post->bytes = (f->size + 7) / 8 * 8; // the outbox holds multiples of that
 	memset(f->bytes + f->size, 0, post->bytes - f->size);
 	r->cell->outbox_bytes += (uint32_t)sizeof *post + post->bytes;
 	r->cell->asks |= OB_SCRIPT_ASKS_POST;
@@ -316,7 +316,7 @@ static int call_remove(lua_State *L)
 	return 0;
 }
 
-// A hull takes longer than other objects; all others have no points.
+// Cost of points: a hull takes longer than other objects, which have no points.
 static unsigned cost_of_points(lua_State *L)
 {
 	enum { EACH = 100 };
@@ -329,7 +329,7 @@ static unsigned cost_of_points(lua_State *L)
 	return EACH * points;
 }
 
-// Upvalue 1 is the scene's function, which puts the object into the runner's scene; 2 its name.
+// Creates an object. Upvalue 1 is the scene's function, which puts the object into the runner's scene; 2 its name.
 static int call_create(lua_State *L)
 {
 	ob_script_runner *r = runner_of(L);
@@ -339,7 +339,7 @@ static int call_create(lua_State *L)
 	const bool named = lua_istable(L, 1) && lua_getfield(L, 1, "name") != LUA_TNIL;
 	lua_settop(L, 1);
 	lua_pushnil(L);
-	lua_setfield(L, LUA_REGISTRYINDEX, "scene.names"); // names are the host's to give
+	lua_setfield(L, LUA_REGISTRYINDEX, "scene.names"); // only the host assigns names
 	r->scene.objects = r->scene.states_bytes = r->scene.hulls = 0;
 	ob_sandbox_spend(L, cost_of_points(L));
 	lua_tocfunction(L, lua_upvalueindex(1))(L);
@@ -353,7 +353,7 @@ static int call_create(lua_State *L)
 		ob_sandbox_fail(L, "%s: expected neither born nor dies: it is created now, and removed on request",
 				kind);
 	if (!named)
-		snprintf(def->passport.name, sizeof def->passport.name, "%s#", kind); // and its id
+		snprintf(def->passport.name, sizeof def->passport.name, "%s#", kind); // the host appends its id
 	ob_script_post *post = begin_post(L, r, OB_SCRIPT_CREATE, 0, 0);
 	ob_flat f = rest_of(r->cell);
 	const ob_hull_corners *corners = r->scene.hulls ? &r->scene.hull_corners[0] : NULL;
@@ -372,7 +372,7 @@ static int call_create(lua_State *L)
 	return 0;
 }
 
-// ---- the world around
+// ---- the environment
 
 static int call_time(lua_State *L)
 {
@@ -404,7 +404,7 @@ typedef struct near_object {
 
 enum { NEAR_MAX = 256 };
 
-// Into a list of the nearest, in the order of distance and id. work: grows by how many had to make room.
+// Inserts into a list of the nearest, in the order of distance and id. work: grows by the number of moved entries.
 static uint32_t insert(near_object *list, uint32_t n, near_object o, uint32_t *work)
 {
 	const uint32_t last = n < NEAR_MAX ? n : NEAR_MAX;
@@ -427,7 +427,7 @@ static bool is_far(const float *b, ob_vec3 p, double radius)
 	       b[2] > p.z + radius || b[5] < p.z - radius;
 }
 
-// Objects that move and whose centres are within the radius, nearest first.
+// Returns dynamic objects whose centres are within the radius, nearest first.
 static int call_near(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
@@ -460,7 +460,7 @@ static int call_near(lua_State *L)
 	return 1;
 }
 
-// ray(from, direction [, length]): the object, the distance, the normal; nothing: it meets none.
+// ray(from, direction [, length]): the object, the distance, the normal; nothing without a hit.
 static int call_ray(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
@@ -479,7 +479,7 @@ static int call_ray(lua_State *L)
 	return 2 + push_vector(L, hit.normal);
 }
 
-// ---- self.state, and what belongs to all objects
+// ---- self.state, and methods of all objects
 
 static int state_get(lua_State *L)
 {
@@ -493,7 +493,7 @@ static int state_set(lua_State *L)
 	return 0;
 }
 
-// pairs(self.state), and of a frozen table: upvalue 1 is the scene's.
+// pairs() of self.state and of frozen tables; upvalue 1 is the scene's.
 static int call_pairs(lua_State *L)
 {
 	if (luaL_testudata(L, 1, "state")) {

@@ -1,8 +1,8 @@
-// What a text leaves behind when it has been read stays as it is: so a script keeps nothing but what its objects keep
-// in self.state, and it does not matter which worker, or which life of a worker, runs it.
+// Freezes all values that a text leaves behind once it has been read. So a script keeps only the state of its objects
+// in self.state, and any worker, also a restarted one, can run it.
 //
-// A table is frozen in place: its contents move into another, from where they are read by its metatable, which scripts
-// cannot reach. An outer local cannot be guarded so; its value is noted, and compared after each call.
+// A table is frozen in place: its contents move into another, from which its metatable, which scripts cannot access,
+// reads them. An outer local cannot be guarded so; its value is noted, and compared after each call.
 #include <stdlib.h>
 
 #include <lauxlib.h>
@@ -26,7 +26,7 @@ static int frozen_length(lua_State *L)
 	return 1;
 }
 
-// Pushes the contents of the table at this index; false, and nothing: it is not frozen.
+// Pushes the contents of the table at this index; false, and nothing: not frozen.
 static bool push_contents(lua_State *L, int index)
 {
 	index = lua_absindex(L, index);
@@ -41,7 +41,7 @@ static bool push_contents(lua_State *L, int index)
 
 static void visit(lua_State *L, ob_interpreter *p, int index);
 
-// The table at the top becomes an empty one with its contents behind it, which are left at the top in its place.
+// Replaces the table at the top by an empty one with its contents behind it, and leaves the contents at the top.
 static void freeze_table(lua_State *L)
 {
 	const int table = lua_gettop(L);
@@ -56,7 +56,7 @@ static void freeze_table(lua_State *L)
 		lua_pushnil(L);
 		lua_rawset(L, table);
 	}
-	if (lua_getmetatable(L, table)) // of the globals, for those that are unknown
+	if (lua_getmetatable(L, table)) // globals have one for unknown names
 		lua_setmetatable(L, table + 1);
 	lua_newtable(L);
 	lua_pushvalue(L, table + 1);
@@ -86,7 +86,7 @@ static void visit_table(lua_State *L, ob_interpreter *p, int index)
 	lua_pop(L, 1);
 }
 
-// The value at the top is that of an outer local; it stays there.
+// Watches the outer local whose value is at the top, and leaves it there.
 static void watch(lua_State *L, ob_interpreter *p, int function, int upvalue)
 {
 	if (p->watched_count == p->watched_room) {
@@ -101,12 +101,13 @@ static void watch(lua_State *L, ob_interpreter *p, int function, int upvalue)
 	lua_pushvalue(L, function);
 	w->function = luaL_ref(L, LUA_REGISTRYINDEX);
 	lua_pushvalue(L, -1);
-	w->value = luaL_ref(L, LUA_REGISTRYINDEX); // LUA_REFNIL of nil
+	w->value = luaL_ref(L, LUA_REGISTRYINDEX); // LUA_REFNIL for nil
 	w->upvalue = upvalue;
 	p->watched_count++;
 }
 
-// A local that several functions share is watched for each: it is compared more often than it need be.
+// Watches the locals of a function. A local that several functions share is watched for each, and compared more often
+// than necessary.
 static void visit_function(lua_State *L, ob_interpreter *p, int index)
 {
 	const char *name;
@@ -114,7 +115,7 @@ static void visit_function(lua_State *L, ob_interpreter *p, int index)
 		lua_pushglobaltable(L);
 		const bool environment = lua_rawequal(L, -1, -2);
 		lua_pop(L, 1);
-		if (*name && !environment) // C functions have nameless ones
+		if (*name && !environment) // names in C functions are empty
 			watch(L, p, index, i);
 		if (*name)
 			visit(L, p, -1);
@@ -122,7 +123,7 @@ static void visit_function(lua_State *L, ob_interpreter *p, int index)
 	}
 }
 
-// Tables and functions that were visited are keys of the table at index 1 of the stack.
+// Visits a value. Visited tables and functions are keys of the table at index 1 of the stack.
 static void visit(lua_State *L, ob_interpreter *p, int index)
 {
 	index = lua_absindex(L, index);

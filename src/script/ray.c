@@ -4,7 +4,7 @@
 #include "motion/flight.h"
 #include "script/runner.h"
 
-// In the frame of the object: the first t > 0 at which the ray enters, or infinity; and the normal there.
+// Object frame: the first t > 0 at which the ray enters, or infinity; and the normal there.
 static double enter_sphere(ob_vec3 centre, double radius, ob_vec3 p, ob_vec3 d, ob_vec3 *n)
 {
 	const ob_vec3 m = ob_sub(p, centre);
@@ -37,7 +37,7 @@ static double enter_box(ob_vec3 half, ob_vec3 p, ob_vec3 d, ob_vec3 *n)
 	return first > 0 && first <= last ? first : INFINITY;
 }
 
-// The wall of an upright cylinder.
+// Wall of an upright cylinder.
 static double enter_wall(double radius, double half, ob_vec3 p, ob_vec3 d, ob_vec3 *n)
 {
 	const double a = d.x * d.x + d.y * d.y, b = p.x * d.x + p.y * d.y, c = p.x * p.x + p.y * p.y - radius * radius;
@@ -105,7 +105,7 @@ static double enter(const ob_passport *o, ob_vec3 p, ob_vec3 d, ob_vec3 *n)
 	}
 }
 
-// Does the ray meet the object's fat AABB?
+// True if the ray intersects the object's fat AABB.
 static bool may_meet(const float *b, ob_vec3 p, ob_vec3 d, double length)
 {
 	const double at[] = { p.x, p.y, p.z }, to[] = { d.x, d.y, d.z };
@@ -139,7 +139,7 @@ bool ob_ray_cast(const ob_universe *u, ob_vec3 from, ob_vec3 direction, double l
 		ob_vec3 n = { 0 };
 		const double t =
 			enter(o, ob_rotate_back(&r, ob_sub(from, s.pose.p)), ob_rotate_back(&r, direction), &n);
-		if (!(t < hit->distance)) // of two at the same distance the lower id
+		if (!(t < hit->distance)) // at equal distances the lower id
 			continue;
 		*hit = (ob_ray_hit){ id, t, ob_rotate(&r, n) };
 		found = true;

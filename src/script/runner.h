@@ -1,4 +1,4 @@
-// What the files of this module share: a runner, and the call that it is in.
+// Shared by the files of this module: a runner, and its current call.
 #ifndef OB_SCRIPT_RUNNER_H
 #define OB_SCRIPT_RUNNER_H
 
@@ -19,48 +19,48 @@ typedef enum ob_handler {
 	OB_HANDLERS
 } ob_handler;
 
-// A local variable at the outside of a text, which must stay as it is: that of a function, by its number.
+// A local variable outside of functions in a text, which must not change: an upvalue of a function, by its number.
 typedef struct ob_watched {
 	int function, upvalue, value; // function, value: references in the registry
 } ob_watched;
 
 typedef struct ob_interpreter {
-	ob_sandbox *sandbox; // NULL: not made yet
+	ob_sandbox *sandbox; // NULL: not created yet
 	int handler[OB_HANDLERS]; // references; LUA_NOREF: the script has none
-	ob_flat_object *self; // what the script calls self
+	ob_flat_object *self; // the script's self
 	ob_watched *watched;
 	uint32_t watched_count, watched_room;
-	ob_error broken; // why the text itself cannot be run; empty: it can
+	ob_error broken; // why the text itself cannot run; empty: it can
 } ob_interpreter;
 
 struct ob_script_runner {
 	ob_builder builder; // first: the functions that scripts share with scenes find it in the runner's place
-	ob_scene scene; // in which they put what a script creates
+	ob_scene scene; // for objects that a script creates
 	ob_universe *u;
 	const ob_step_data *data;
 	const ob_run_settings *settings;
 	ob_interpreter interpreter[OB_SCRIPTS_MAX];
-	// Of the running call; turn NULL: a text is being read.
+	// Data of the running call; turn NULL: a text is being read.
 	ob_script_turn *turn;
 	ob_script_cell *cell;
 	ob_flat state; // the cell's
 	uint64_t step;
-	uint64_t instructions; // of all calls of this turn
-	bool ended; // it has asked for its own removal
+	uint64_t instructions; // by all calls of this turn
+	bool ended; // it has requested its own removal
 };
 
-// Adds all that a script can call to a sandbox: globals, and the methods of objects. A lua_CFunction of no arguments,
-// after ob_library_open. Pushes nothing; self is set.
+// Adds all functions for scripts to a sandbox: globals, and methods of objects. A lua_CFunction without arguments,
+// after ob_library_open. Pushes nothing; sets self.
 int ob_script_calls_open(lua_State *L);
-// Freezes what a text has left behind: its globals, the tables that it can reach, and its outer locals, which are
-// noted.
+// Freezes all values that a text has left behind: its globals, the tables reachable from it, and its outer locals,
+// which are noted.
 void ob_script_freeze(lua_State *L, ob_interpreter *p);
-// Raises an error if an outer local is not what it was.
+// Raises an error if an outer local has changed.
 void ob_script_check_frozen(lua_State *L, const ob_interpreter *p);
-// A plain copy of the table at this index, which may be frozen, takes its place.
+// Replaces the table at this index, which may be frozen, by a plain copy.
 void ob_script_thaw(lua_State *L, int index);
 
-// The first object other than this one that a ray meets, within its length: from a point, in a unit direction.
+// The first hit of a ray with another object within its length: from a point, in a unit direction.
 typedef struct ob_ray_hit {
 	uint32_t id;
 	double distance; // m
