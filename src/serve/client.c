@@ -18,7 +18,7 @@ static void drop_last(ob_client_queue *q)
 
 bool ob_client_queue_put(ob_client_queue *q, ob_message *m)
 {
-	// a message that is larger than the limit is taken where nothing else waits
+	// a message above the limit is accepted into an empty queue
 	if (q->count == OB_CLIENT_QUEUE || (q->count > 0 && q->bytes + m->size > OB_CLIENT_BYTES)) {
 		while (q->count > (q->sent > 0)) // half a message cannot be taken back
 			drop_last(q);
@@ -45,7 +45,7 @@ bool ob_client_write(ob_client *v)
 		ob_message *m = first(q);
 		size_t n = m->size - q->sent < CHUNK ? m->size - q->sent : CHUNK;
 		bool begins = q->sent == 0, ends = q->sent + n == m->size;
-		// a copy, for the library writes its own before the bytes, which other viewers still need
+		// a copy, for the library writes its own header before the bytes, which other viewers still need
 		memcpy(buffer + LWS_PRE, m->bytes + q->sent, n);
 		enum lws_write_protocol kind = m->text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY;
 		if (lws_write(v->wsi, buffer + LWS_PRE, n,

@@ -46,7 +46,7 @@ static const char *const names[FIELDS] = { "do",         "shape",       "name", 
 					   "attitude",   "velocity",    "spin",      "colour", "mass",
 					   "friction",   "restitution", "roughness", "metal",  "id",
 					   "generation", "steps",       "rate",      "on" };
-// Which numbers a field has (0: a word), and between what they must lie
+// Number count of a field (0: a word), and their range
 static const struct {
 	int count;
 	double low, high;
@@ -72,7 +72,7 @@ typedef struct reading {
 	ob_error *e;
 	bool failed;
 	int depth; // of objects and lists
-	int field; // -1: none of ours
+	int field; // -1: unknown
 	unsigned given; // bits: fields
 	char word[3][OB_NAME_MAX]; // do, shape, name
 	double value[FIELDS][4];
@@ -215,7 +215,7 @@ static bool make_object(reading *r, ob_object_def *def)
 			return fail(r, "expected a unit quaternion", "attitude") == 0;
 		def->state.pose.q = ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
 	}
-	// names reach terminals and pages
+	// names appear in terminals and pages
 	for (const char *s = r->word[NAME]; *s;) {
 		size_t bytes;
 		uint32_t code = ob_utf8_decode(s, &bytes);
@@ -259,10 +259,10 @@ static bool make(reading *r, ob_command *c)
 	return c->kind != OB_DO_NOTHING;
 }
 
-// The parser takes numbers of twenty digits at most, with those of the exponent, while pages write small ones in more.
+// The parser takes numbers of at most twenty digits, with the exponent's; pages write small ones with more.
 enum { DIGITS = 17 };
 
-// A copy without the digits of fractions that are too many, which tell nothing; returns its size.
+// Copies without the insignificant digits of long fractions; returns the copy's size.
 static size_t shorten_fractions(char *to, const char *json, size_t size)
 {
 	size_t n = 0;
@@ -290,7 +290,7 @@ bool ob_command_read(ob_command *c, const char *json, size_t size, ob_error *e)
 	*c = (ob_command){ .kind = OB_DO_NOTHING };
 	if (size > OB_COMMAND_BYTES_MAX)
 		return ob_fail(e, "a command of %zu bytes: at most %d are read", size, OB_COMMAND_BYTES_MAX);
-	while (size > 0 && strchr(" \t\r\n", json[size - 1]) && json[size - 1]) // the parser ends with the object
+	while (size > 0 && strchr(" \t\r\n", json[size - 1]) && json[size - 1]) // the parser stops after the object
 		size--;
 	size = shorten_fractions(text, json, size);
 	lejp_construct(&parser, take, &r, NULL, 0);

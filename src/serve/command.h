@@ -1,16 +1,16 @@
-// What viewers ask for: a JSON object each, as {"do": "create", "shape": "box", "size": [.5, .5, .5], "at": [0, 0, 3]}.
+// Requests of viewers: a JSON object each, as {"do": "create", "shape": "box", "size": [.5, .5, .5], "at": [0, 0, 3]}.
 //
-//      create    shape (box, sphere, capsule, cylinder), size (m, as ob_shape says), at (m), mass (kg); and if it likes
+//      create    shape (box, sphere, capsule, cylinder), size (m, as ob_shape says), at (m), mass (kg); optionally
 //                attitude (w x y z), velocity (m/s), spin (rad/s), colour (linear RGB), friction, restitution,
 //                roughness, metal, name
 //      remove    id, generation
 //      pause, resume
 //      step      steps (1), while it is paused
-//      rate      rate (s a s); 0: as fast as it can
+//      rate      rate (s a s); 0: as fast as possible
 //      contacts  on
 //      inspect   id
 //
-// Nothing else may stand in it, and no byte of it is trusted. Pure; any thread.
+// Other members are errors, and no byte is trusted. Pure; any thread.
 #ifndef OB_SERVE_COMMAND_H
 #define OB_SERVE_COMMAND_H
 
@@ -34,13 +34,13 @@ typedef struct ob_command {
 	ob_object_def def; // create
 	uint32_t id, generation; // remove, inspect
 	uint32_t steps; // step
-	double rate; // rate; 0: as fast as it can
+	double rate; // rate; 0: as fast as possible
 	bool on; // contacts
 } ob_command;
 
 enum { OB_COMMAND_BYTES_MAX = 2048 };
 
-// false and e, for the viewer, where it makes no sense.
+// false and e, for the viewer, if it is invalid.
 bool ob_command_read(ob_command *c, const char *json, size_t size, ob_error *e);
 
 #endif

@@ -20,7 +20,7 @@ const ob_content *ob_content_at(size_t i)
 	return i < sizeof contents / sizeof *contents ? &contents[i] : NULL;
 }
 
-// A number of at most 15 digits; false: none is there.
+// Reads a number of at most 15 digits; false: none is there.
 static bool take_number(const char **s, uint64_t *out)
 {
 	int digits = 0;
@@ -44,7 +44,7 @@ ob_range_kind ob_content_range(const char *header, size_t size, size_t *first, s
 	bool has_to = take_number(&s, &to);
 	if (*s || (!has_from && !has_to) || (has_from && has_to && to < from))
 		return OB_RANGE_ALL;
-	if (!has_from) { // the last bytes
+	if (!has_from) { // a suffix range
 		if (to == 0)
 			return OB_RANGE_NONE;
 		*first = to < size ? size - (size_t)to : 0;

@@ -1,5 +1,5 @@
-// The content server's content: what a viewer is made of (page, style, scripts, and the shaders of shaders/, the same
-// that the renderer draws with), built into the program. Pure; any thread.
+// Contents of the content server: the viewer's page, style, scripts, and the shaders of shaders/, which the renderer
+// uses, too. They are built into the program. Pure; any thread.
 #ifndef OB_SERVE_CONTENT_H
 #define OB_SERVE_CONTENT_H
 
@@ -12,20 +12,19 @@ typedef struct ob_content {
 	const char *tag; // entity tag with its quotes: hash of the bytes
 	const unsigned char *bytes;
 	size_t size;
-	bool lasting; // its path says its bytes, so it need not be asked for again
+	bool lasting; // its path contains its hash, so a browser need not revalidate it
 } ob_content;
 
-// NULL: nothing is there. Paths of requests begin with '/'; all scripts in one, for a page that needs nobody, are
-// "all.js".
+// NULL: not found. Paths of requests begin with '/'. "all.js" holds all scripts in one, for a page in a single file.
 const ob_content *ob_content_find(const char *path);
-const ob_content *ob_content_at(size_t i); // the ones that there are; NULL: no more
+const ob_content *ob_content_at(size_t i); // all contents by index; NULL: no more
 
 typedef enum ob_range_kind { OB_RANGE_ALL, OB_RANGE_PART, OB_RANGE_NONE } ob_range_kind;
 
-// What of size bytes a Range header asks for (RFC 9110, 14.2): one range of bytes; of anything else, all. Part: from
-// the byte "first" up to, but without, "end". None: it lies outside.
+// Range of size bytes that a Range header requests (RFC 9110, 14.2): one range of bytes; for any other header, all.
+// Part: from the byte "first" up to, but without, "end". None: it lies outside.
 ob_range_kind ob_content_range(const char *header, size_t size, size_t *first, size_t *end);
-// Whether a list of entity tags (If-None-Match) has this one.
+// True if a list of entity tags (If-None-Match) has this one.
 bool ob_content_has_tag(const char *header, const char *tag);
 
 #endif

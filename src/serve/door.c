@@ -8,9 +8,9 @@
 struct ob_visit {
 	ob_visit *next; // entered before it
 	struct lws *wsi;
-	unsigned char address[16]; // IPv6; IPv4 as ::ffff:a.b.c.d; of other networks the /64, which one host has to itself
+	unsigned char address[16]; // IPv6; IPv4 as ::ffff:a.b.c.d; of other networks the /64, which belongs to one host
 	ob_door_state state;
-	double since, active; // s: when the state began, and when the client last did what it asks for
+	double since, active; // s: beginning of the state, and the client's last progress in it
 };
 
 static void find_address(struct lws *wsi, unsigned char address[16])
@@ -34,7 +34,7 @@ static bool takes_place(const ob_visit *v)
 	return v->state < OB_AT_VIEWER;
 }
 
-// Places that an address has; address: NULL: all addresses.
+// Counts the places of an address; address: NULL: of all.
 static uint32_t count(const ob_door *d, const unsigned char *address)
 {
 	uint32_t n = 0;
@@ -64,7 +64,7 @@ static void end(ob_visit *v, double now)
 	lws_set_timeout(v->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
 }
 
-// Closes what has been in its state for longest, of an address.
+// Closes the connection of an address that has been in its state for longest.
 static void push_out(ob_door *d, const unsigned char *address, double now)
 {
 	ob_visit *longest = NULL;

@@ -1,14 +1,14 @@
-// The door: every connection that is not a viewer's, from the moment it is accepted. A connection is in one state at a
-// time, and each state but a viewer's has a deadline, so no client keeps a place by being slow:
+// The door: all connections other than viewers, from their acceptance on. A connection is in one state at a time, and
+// each state but a viewer's has a deadline, so no slow client keeps a place:
 //
 //      accepted ──> request ──> answer ──> idle        request: its head must be whole in OB_DOOR_REQUEST
 //                   ^   |                   |          answer:  the client takes some of it every OB_DOOR_ANSWER
 //                   |   +──> viewer         |          idle:    another request's head is whole in OB_DOOR_IDLE
 //                   +───────────────────────+
 //
-// Places are limited, in all and for each address. A new connection is always let in: beyond a limit it takes the place
-// of the connection that has been in its state for longest, of its own address or of the address with the most. So
-// whoever holds many places loses them first, and a client that completes its request is served.
+// Places are limited, in total and per address. A new connection is always accepted: beyond a limit it replaces the
+// connection that has been in its state for longest, of its own address or of the address with the most. So an address
+// with many places loses them first, and a client that completes its request is served.
 //
 // The server's thread only.
 #ifndef OB_SERVE_DOOR_H
@@ -35,13 +35,13 @@ typedef enum ob_door_state {
 typedef struct ob_visit ob_visit;
 
 typedef struct ob_door {
-	uint32_t places, share; // at most: in all, and of one address
+	uint32_t places, share; // limits: in total, and per address
 	ob_visit *visits;
 } ob_door;
 
-// Takes in a connection that was just accepted, and closes another if that makes one too many. now: s. false: no memory.
+// Enters a connection that was just accepted, and closes another beyond a limit. now: s. false: no memory.
 bool ob_door_enter(ob_door *d, struct lws *wsi, double now);
-// Moves a connection to another state, or, of an answer, notes that the client took some of it.
+// Moves a connection to another state, or, in an answer, notes the client's progress.
 void ob_door_move(struct lws *wsi, ob_door_state state, double now);
 // Forgets a connection that has ended. One that never entered is allowed.
 void ob_door_leave(ob_door *d, struct lws *wsi);

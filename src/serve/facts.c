@@ -57,7 +57,7 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *
 	ob_message_print(m, "],\"meshes\":[");
 	for (uint32_t i = 0; mesh && i < scene->meshes; i++) {
 		ob_message_print(m, i ? "," : "");
-		ob_message_put_json(m, mesh[i].path + 1); // as the page sees it
+		ob_message_put_json(m, mesh[i].path + 1); // the path in the page
 	}
 	ob_message_print(m, "]}}");
 	return m;

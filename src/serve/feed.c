@@ -5,40 +5,40 @@
 
 #include <ob/motion.h>
 
-static const double tolerated = 1. / 256; // of the radius ..
-static const double unseen = .25 / 60; // s: .. and, of what is looked at as it goes, so much of the way
-static const double v_unit = 1e-3, w_unit = 2e-3; // m/s, rad/s: of what is told in 16 bits
+static const double tolerated = 1. / 256; // of the radius
+static const double unseen = .25 / 60; // s: also the share of the motion of a moving object
+static const double v_unit = 1e-3, w_unit = 2e-3; // m/s, rad/s: units of 16-bit velocities
 
-enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24 }; // bytes of a message, of its counts
+enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24 }; // offsets of counts in a message
 
-// An object as viewers know it
+// State of an object as sent to viewers
 typedef struct known {
 	uint32_t id, generation;
-	bool announced, told; // it was, its motion was
+	bool announced, told; // announced: the object was sent; told: its motion was
 	bool fixed;
 	double radius; // m
 	ob_passport passport;
-	uint64_t passport_version; // looked at before the passport was
+	uint64_t passport_version; // read before the passport
 	ob_feed_kind kind;
-	ob_motion motion; // the last one told
-	double seen_t0; // s, of the last one looked at ..
-	uint32_t seen_step; // .. and when it was published: what begins in a step may be published anew, as a flight
+	ob_motion motion; // last one sent
+	double seen_t0; // s, of the last one examined
+	uint32_t seen_step; // step of its publication: a flight that begins within the step may replace it
 } known;
 
 struct ob_feed {
-	const ob_universe *u; // NULL: the source is another
+	const ob_universe *u; // NULL: another source
 	const ob_roster *roster;
 	ob_feed_source source;
-	uint64_t roster_number; // of what was told
+	uint64_t roster_number; // of the last one sent
 	known *object; // ascending by id
 	size_t objects;
 	ob_roster_entry *entry;
 	size_t entry_room;
 	ob_contact_point *contact;
 	size_t contact_room;
-	double time; // s, simulated: last told
-	ob_pace_state pace; // last told
-	bool lost; // memory ran out, and viewers may have missed something: all is told anew
+	double time; // s, simulated: last one sent
+	ob_pace_state pace; // last one sent
+	bool lost; // memory ran out, and viewers may lack something: the whole state is sent again
 };
 
 // ---- a universe as a source: "of" is the feed
@@ -130,7 +130,7 @@ static ob_feed_kind kind_of(const known *k, const ob_motion *m, double step_leng
 	return m->valid_until - m->t0 > 1.001 * step_length ? OB_FEED_FREE : OB_FEED_TURNS;
 }
 
-// How far (m) any point of the object is from where viewers take it to be, as its motion m begins.
+// Deviation (m): largest distance of a point of the object from viewers' prediction, at the beginning of its motion m.
 static double off(const known *k, const ob_motion *m)
 {
 	const ob_motion *told = &k->motion;
@@ -172,7 +172,7 @@ static bool is_wide(const known *k)
 	return k->kind >= OB_FEED_FREE || !fits(k->motion.v, v_unit) || !fits(k->motion.w, w_unit);
 }
 
-// As it is told: from now on viewers foretell from rounded velocities, and so does the feed.
+// Stores the motion as sent: viewers extrapolate from rounded velocities, and so does the feed.
 static void know(known *k, const ob_motion *m, ob_feed_kind kind)
 {
 	k->told = true;
@@ -196,7 +196,7 @@ static void put_short_vec3(ob_message *out, ob_vec3 v, double one)
 	put_i16(out, v.z / one);
 }
 
-// before: the id of the motion put before; UINT32_MAX: none
+// before: the id of the previous motion in the message; UINT32_MAX: none
 static void put_motion(ob_message *out, const known *k, double time, uint32_t *before)
 {
 	const ob_motion *m = &k->motion;
@@ -228,12 +228,12 @@ static void put_motion(ob_message *out, const known *k, double time, uint32_t *b
 	}
 }
 
-// ---- what exists
+// ---- objects
 
 static void put_hull(ob_message *out, const ob_feed_source *source, uint32_t number)
 {
 	ob_hull h;
-	if (!source->hull(source->of, number, &h)) // spoilt by a simulator that went wrong
+	if (!source->hull(source->of, number, &h)) // corrupted by a faulty simulator
 		h.corners = h.faces = 0;
 	ob_message_put_u8(out, h.corners);
 	ob_message_put_u8(out, h.faces);
@@ -286,7 +286,7 @@ static bool read_roster(ob_feed *f, size_t *entries)
 	}
 }
 
-// Tells who has gone, then who has come, and how many that are; the list is then as the roster. false: out of memory.
+// Sends removed, then created objects, and their number; the list then equals the roster. false: out of memory.
 static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
 {
 	size_t entries, kept = 0;
@@ -312,7 +312,7 @@ static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
 					.generation = entry->generation,
 					.passport_version = f->source.passport_version(f->source.of, entry->id) };
 			at++;
-			// it may have gone again since the roster was read: then the next one says so
+			// it may have been removed since the roster was read: the next roster shows it
 			if (!f->source.passport(f->source.of, fresh.id, &fresh.passport) ||
 			    fresh.passport.generation != fresh.generation)
 				continue;
@@ -340,7 +340,7 @@ static bool looks_alike(const ob_passport *a, const ob_passport *b)
 	       a->metal == b->metal && a->flags == b->flags;
 }
 
-// Tells of those who look otherwise than they were told to, as of who has come; returns how many.
+// Sends objects whose look has changed, in the form of new ones; returns their number.
 static uint32_t tell_looks(ob_feed *f, ob_message *out)
 {
 	uint32_t told = 0;
@@ -355,7 +355,7 @@ static uint32_t tell_looks(ob_feed *f, ob_message *out)
 		if (looks_alike(&now, &k->passport))
 			continue;
 		k->passport = now;
-		if ((now.flags & OB_OBJECT_STATIC) != 0 && !k->fixed) { // it is frozen: where it stands is told again
+		if ((now.flags & OB_OBJECT_STATIC) != 0 && !k->fixed) { // it was frozen: its pose is sent again
 			k->fixed = true;
 			k->told = false;
 		}

@@ -10,8 +10,8 @@
 #include "serve/facts.h"
 #include "serve/feed.h"
 
-enum { ANEW_AT_LEAST = 1 << 16, ANEW_AFTER = 4 }; // bytes; times the size of what all is when told anew
-static const size_t bytes_max = 1u << 30; // as it comes to lie in a browser's memory
+enum { ANEW_AT_LEAST = 1 << 16, ANEW_AFTER = 4 }; // bytes; times the size of a whole state
+static const size_t bytes_max = 1u << 30; // limit of a browser's memory
 
 // ---- a recording as a source: "of" is the recording
 
@@ -48,8 +48,8 @@ static bool recorded_passport(const void *of, uint32_t id, ob_passport *out)
 	return is_present(s, id);
 }
 
-// A record has no versions. What can look otherwise is a colour, whose it is, and what is frozen: its channels, to
-// 2^-20, a bit, and another number where it is a mesh's are the version.
+// Version of the look. A record has no versions, so it is made of the values that can change: frozen or not, the
+// colour's channels, to 2^-20, and its source, the object or its mesh.
 static uint64_t recorded_passport_version(const void *of, uint32_t id)
 {
 	const ob_snapshot *s = ob_recording_state(of);
@@ -89,10 +89,10 @@ typedef struct film {
 	ob_feed *feed;
 	ob_message *told; // messages with their lengths
 	ob_message *objects, *events; // elements of JSON arrays
-	ob_passport *passport; // [ids]: as of the last state
+	ob_passport *passport; // [ids]: in the last state
 	uint32_t ids;
-	size_t since; // bytes told since all was told anew
-	size_t whole; // bytes of that
+	size_t since; // bytes since the last whole state
+	size_t whole; // bytes of that state
 } film;
 
 static void put(ob_message *to, const ob_message *m)
@@ -108,7 +108,7 @@ static void note_event(film *f, double time, int came, uint32_t id, const ob_pas
 	ob_message_print(f->events, "]");
 }
 
-// Who came and went with this state, for the time bar and for who picks them.
+// Notes objects added and removed in this state, for the time bar and for the details of picked ones.
 static bool note_population(film *f)
 {
 	const ob_snapshot *s = ob_recording_state(f->recording);
@@ -146,7 +146,7 @@ static bool tell_state(film *f)
 		return false; // there is always news: the time
 	put(f->told, m);
 	f->since += m->size;
-	f->whole = f->whole ? f->whole : m->size; // the first tells all
+	f->whole = f->whole ? f->whole : m->size; // the first is a whole state
 	ob_message_release(m);
 	if (f->since <= ANEW_AFTER * f->whole + ANEW_AT_LEAST)
 		return true;
@@ -197,7 +197,7 @@ static bool put_meshes(const ob_scene *s, ob_message *out)
 	return ok;
 }
 
-// What comes first: both JSON messages, and what does not change.
+// Writes the head: both JSON messages, and constant data.
 static bool put_head(const film *f, ob_message *out)
 {
 	const ob_recording_info *i = ob_recording_get_info(f->recording);
@@ -228,7 +228,7 @@ static bool put_head(const film *f, ob_message *out)
 	return ok;
 }
 
-// Adds what deflate makes of some bytes to out.
+// Compresses some bytes with deflate, and adds the result to out.
 static bool deflate_some(z_stream *z, const unsigned char *bytes, size_t size, bool last, ob_message *out)
 {
 	unsigned char buffer[1 << 15];

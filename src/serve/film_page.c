@@ -5,7 +5,7 @@
 
 #include "serve/content.h"
 
-// What of index.html is replaced
+// Parts of index.html that are replaced
 enum { MARK_RECORDING, MARK_ICON, MARK_STYLE, MARK_SCRIPT, MARKS };
 static const char *const marks[MARKS] = {
 	"<meta name=\"recording\" content=\"\">\n",
@@ -28,7 +28,7 @@ static void put_content(ob_message *to, const char *before, const char *path, co
 	put_text(to, after);
 }
 
-// Where the page has the mark, which it must.
+// Offset of the mark in the page, which must have it.
 static size_t find(const ob_content *page, const char *mark)
 {
 	const unsigned char *at = memmem(page->bytes, page->size, mark, strlen(mark));
@@ -36,7 +36,7 @@ static size_t find(const ob_content *page, const char *mark)
 	return (size_t)(at - page->bytes);
 }
 
-// In base64 (RFC 4648, 4).
+// Appends base64 (RFC 4648, 4).
 static void put_base64(ob_message *to, const unsigned char *bytes, size_t size)
 {
 	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -72,7 +72,7 @@ ob_message *ob_film_page_served(void)
 	return whole_or_none(m);
 }
 
-// The shaders and the film, as elements that are found by their ids (film.js, drawing.js).
+// Adds the shaders and the film, as elements that film.js and drawing.js find by their ids.
 static void put_recording(ob_message *m, const ob_message *film)
 {
 	put_text(m, "<meta name=\"recording\" content=\"#recording\">\n");
@@ -95,7 +95,7 @@ ob_message *ob_film_page_whole(const ob_message *film)
 	size_t from = 0;
 	if (!m)
 		return NULL;
-	for (int i = 0; i < MARKS; i++) { // in the order in which the page has them
+	for (int i = 0; i < MARKS; i++) { // in the order of the page
 		size_t at = find(page, marks[i]);
 		assert(at >= from);
 		ob_message_put(m, page->bytes + from, at - from);

@@ -4,9 +4,9 @@
 
 #include "serve/message.h"
 
-// As a server hands it out, which hands out scripts, style and shaders, too, and the film as "recording".
+// The page of a server, which serves scripts, style and shaders, too, and the film as "recording".
 ob_message *ob_film_page_served(void);
-// With all of these in it, so that it needs nobody. NULL: out of memory.
+// The page with all of these in it, without a server. NULL: out of memory.
 ob_message *ob_film_page_whole(const ob_message *film);
 
 #endif

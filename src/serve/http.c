@@ -8,9 +8,9 @@
 
 enum { CHUNK = 32768, HEADERS = 2048 };
 
-// ---- whose pages
+// ---- origin
 
-// host[:port] is the address, localhost, or another name of the loopback, and the port is ours.
+// True if host[:port] is the address, localhost, or another name of the loopback, and the port is the server's.
 static bool is_own_name(const char *host, const char *address, int port)
 {
 	const char *const names[] = { "localhost", "127.0.0.1", "[::1]", address };
@@ -35,7 +35,7 @@ bool ob_http_is_ours(struct lws *wsi, const char *address, int port, bool any_na
 	if (!any_name && !is_own_name(host, address, port))
 		return false;
 	if (lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) == 0)
-		return true; // no page: a program of its own
+		return true; // not a page but a program
 	snprintf(expected, sizeof expected, "http://%s", host);
 	return lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN) > 0 && strcmp(origin, expected) == 0;
 }
@@ -110,7 +110,7 @@ static bool has_body(struct lws *wsi)
 	       lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0;
 }
 
-// By default a content is kept, but asked for by its tag each time.
+// By default browsers keep a content, but revalidate its tag each time.
 static void add_caching(head *h, const ob_content *c)
 {
 	add(h, "etag:", c->tag);

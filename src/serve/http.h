@@ -7,17 +7,17 @@
 
 #include "serve/content.h"
 
-// What is still to be sent of an answer
+// Rest of an answer
 typedef struct ob_http_answer {
 	const ob_content *content; // NULL: nothing
 	size_t at, end;
 } ob_http_answer;
 
-// Does the Host header name this server, and Origin, where there is one, a page of it? address: that it listens on;
-// port; any_name: the token decides, not the name.
+// True if the Host header names this server, and Origin, if there is one, a page of it. address: the server's;
+// any_name: the token decides, the name does not.
 bool ob_http_is_ours(struct lws *wsi, const char *address, int port, bool any_name);
-// Both return what the library's callback has to: other than 0 ends the connection.
-// own: contents that come before those of content.h; ends with one without a path.
+// Both return the value of the library's callback: other than 0 ends the connection. own: contents that take precedence
+// over content.h; ends with one without a path.
 int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path, const ob_content *own);
 int ob_http_go_on(struct lws *wsi, ob_http_answer *a);
 

@@ -1,4 +1,4 @@
-// The server as the program sees it: loads the part that calls libwebsockets.
+// Loader of the server: loads the part that calls libwebsockets.
 #include "serve/part.h"
 
 #define PACKAGE "libwebsockets17"

@@ -1,5 +1,5 @@
-// Bytes on their way to viewers. One message may wait in the queues of many; the last to let go frees it. Numbers are
-// little-endian. One thread's.
+// Bytes on their way to viewers. One message may be in the queues of many; the last release frees it. Numbers are
+// little-endian. One thread at a time.
 #ifndef OB_SERVE_MESSAGE_H
 #define OB_SERVE_MESSAGE_H
 
@@ -12,7 +12,7 @@ typedef struct ob_message {
 	size_t size, room;
 	uint32_t holders;
 	bool text; // UTF-8; else binary
-	bool failed; // out of memory: something is missing
+	bool failed; // out of memory: data is missing
 } ob_message;
 
 ob_message *ob_message_new(bool text); // held once; NULL: out of memory
@@ -24,8 +24,8 @@ void ob_message_put_u8(ob_message *m, unsigned value);
 void ob_message_put_u32(ob_message *m, uint32_t value);
 void ob_message_put_f32(ob_message *m, double value);
 void ob_message_put_f64(ob_message *m, double value);
-void ob_message_set_u32(ob_message *m, size_t at, uint32_t value); // in what was put already
-// The same as printf; a string in it that comes from outside is one that ob_message_put_json has made harmless.
+void ob_message_set_u32(ob_message *m, size_t at, uint32_t value); // overwrites earlier data
+// Like printf; strings from outside must first be escaped by ob_message_put_json.
 void ob_message_print(ob_message *m, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ob_message_put_json(ob_message *m, const char *string); // with its quotes
 

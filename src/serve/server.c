@@ -20,21 +20,21 @@
 #include "serve/http.h"
 #include "serve/part.h"
 
-static const double interval = 1. / 60; // s, between two looks at the universe
-static const double share = .3; // .. of the time at most that looking may take
-static const double detail_interval = .25; // s, between two of the statistics, and of what is inspected
-static const double commands_rate = 200, creations_rate = 40; // 1/s, of one client
+static const double interval = 1. / 60; // s, between two reads of the universe
+static const double share = .3; // limit of their share of the time
+static const double detail_interval = .25; // s, between two statistics, and details of inspected objects
+static const double commands_rate = 200, creations_rate = 40; // 1/s, per client
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
-static const double door_interval = .25; // s, between two looks at what has come in
+static const double door_interval = .25; // s, between two checks of deadlines
 enum {
-	SEND_BUFFER = 1 << 18, // bytes: what the kernel keeps for a client; more would only be old when it comes
-	PLACES_MAX = 512, // connections that are no viewers
-	OTHER_FILES = 128, // that the program has open beside its connections
+	SEND_BUFFER = 1 << 18, // bytes: the kernel's buffer for a client; in a larger one, messages would grow old
+	PLACES_MAX = 512, // connections other than viewers
+	OTHER_FILES = 128, // open files of the program beside its connections
 };
 
-// What a content of this server's own is made of
+// Storage of a content of this server's own
 typedef struct own_content {
-	ob_message *bytes; // a film's are not its own
+	ob_message *bytes; // a film's bytes belong to its caller
 	char path[40], tag[24];
 } own_content;
 
@@ -44,15 +44,15 @@ struct ob_server {
 	ob_host *host;
 	ob_pace *pace;
 	char token[33], url[160];
-	int port; // that it was given
-	own_content *own_bytes; // what belongs to own
-	ob_content *own; // of a film its page and itself, else the scene's meshes; ends with one without a path
+	int port; // the actual port
+	own_content *own_bytes; // storage of own
+	ob_content *own; // a film's page and the film itself, else the scene's meshes; ends with one without a path
 
 	pthread_t thread;
 	pthread_mutex_t lock; // guards ending
 	bool ending;
 
-	struct lws_context *context; // and all below: the thread's own
+	struct lws_context *context; // this and all below: the thread's own
 	lws_sorted_usec_list_t tick, door_tick;
 	ob_door door;
 	ob_feed *feed;
@@ -61,13 +61,13 @@ struct ob_server {
 	double details_at; // s
 };
 
-// What the library keeps for a connection: half of it for pages, half for a viewer
+// The library's data for a connection: half of it for pages, half for a viewer
 typedef struct session {
 	ob_http_answer answer;
 	ob_client client;
 } session;
 
-// ---- telling
+// ---- sending
 
 static void send_to(ob_client *c, ob_message *m)
 {
@@ -78,7 +78,7 @@ static void send_to(ob_client *c, ob_message *m)
 	lws_callback_on_writable(c->wsi);
 }
 
-// Lets go of a message that was made for sending.
+// Sends a message to all, and releases it.
 static void send_all(ob_server *s, ob_message *m, bool contacts)
 {
 	for (ob_client *c = m ? s->clients : NULL; c; c = c->next) {
@@ -134,7 +134,7 @@ static void look(lws_sorted_usec_list_t *tick)
 	lws_sul_schedule(s->context, 0, &s->tick, look, (lws_usec_t)(1e6 * wait));
 }
 
-// ---- listening
+// ---- receiving
 
 static bool may(ob_server *s, ob_client *c)
 {
@@ -225,7 +225,7 @@ static int hear(ob_server *s, ob_client *c, const char *bytes, size_t size)
 	return 0;
 }
 
-// ---- coming and going
+// ---- connections
 
 static bool has_token(const ob_server *s, struct lws *wsi)
 {
@@ -236,12 +236,12 @@ static bool has_token(const ob_server *s, struct lws *wsi)
 	const char *value = lws_get_urlarg_by_name(wsi, "token=", text, sizeof text);
 	if (!value || strlen(value) != strlen(s->token))
 		return false;
-	for (size_t i = 0; s->token[i]; i++) // takes as long wherever they differ
+	for (size_t i = 0; s->token[i]; i++) // takes constant time, wherever they differ
 		differ |= (unsigned)(s->token[i] ^ value[i]);
 	return differ == 0;
 }
 
-// Before the handshake is answered. Other than 0: it is refused, and why has been said.
+// Before the answer to the handshake. Other than 0: refused, with an answer.
 static int let_in(const ob_server *s, struct lws *wsi)
 {
 	const char *why = NULL;
@@ -265,7 +265,7 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 {
 	const char *why = NULL;
 	ob_door_move(wsi, OB_AT_ANSWER, ob_clock_wall());
-	lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); // else the library ends a long answer, whoever takes it how fast
+	lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); // else the library ends a long answer, at any speed
 	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback))
 		why = "this is not the name of this server";
 	else if ((strcmp(path, film_path) == 0 || strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
@@ -277,11 +277,11 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 	return -1;
 }
 
-// Lets a connection change to WebSocket, and to nothing else that the library speaks. Other than 0: it is closed.
+// Accepts an upgrade to WebSocket, and to no other protocol of the library. Other than 0: it is closed.
 static int confirm_upgrade(struct lws *wsi)
 {
 	char to[16];
-	// the header is gone where the library itself has refused, and what it hands over is, too
+	// the header is missing where the library itself has refused; such connections are closed, too
 	const int size = lws_hdr_copy(wsi, to, sizeof to, WSI_TOKEN_UPGRADE);
 	if (size > 0 && strcasecmp(to, "websocket") == 0)
 		return 0;
@@ -365,7 +365,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 	case LWS_CALLBACK_WSI_DESTROY:
 		ob_door_leave(&s->door, wsi);
 		return 0;
-	case LWS_CALLBACK_RAW_ADOPT: // of CONNECT, from which on the library parses nothing
+	case LWS_CALLBACK_RAW_ADOPT: // after CONNECT, from which on the library parses nothing
 		return -1;
 	case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
 		return confirm_upgrade(wsi);
@@ -410,7 +410,7 @@ static void *serve(void *argument)
 	return NULL;
 }
 
-// The library's last complaint while a server starts
+// The library's last message while a server starts
 static __thread char complaint[200];
 
 static void note_complaint(int level, const char *line)
@@ -433,7 +433,7 @@ static bool make_token(ob_server *s, ob_error *e)
 	return true;
 }
 
-// Asked before the library is, which tells less of why not, and leaks.
+// Checks the address before the library does, whose errors explain less, and which leaks.
 static bool is_free(const ob_listen *l, ob_error *e)
 {
 	struct sockaddr_in four = { .sin_family = AF_INET, .sin_port = htons((uint16_t)l->port) };
@@ -451,7 +451,7 @@ static bool is_free(const ob_listen *l, ob_error *e)
 	       ob_fail(e, "--listen %s:%d: %s (port 0 is one that is free)", l->address, l->port, strerror(error));
 }
 
-// Makes sure that the process may open as many files as there are places, and some more.
+// Ensures that the process may open as many files as there are places, and some more.
 static bool may_open(uint32_t connections, uint32_t viewers, ob_error *e)
 {
 	struct rlimit r;
@@ -470,7 +470,7 @@ static bool open_context(ob_server *s, ob_error *e)
 	const uint32_t viewers = s->config.viewers, places = 64 + 2 * viewers;
 	s->door.places = places < PLACES_MAX ? places : PLACES_MAX;
 	s->door.share = s->door.places / 2;
-	// some more than there are places: what is pushed out is closed a moment later
+	// more than the places: a replaced connection is closed a moment later
 	const uint32_t connections = viewers + 2 * s->door.places;
 	if (!is_free(listen, e) || !may_open(connections, viewers, e))
 		return false;
@@ -503,13 +503,13 @@ static bool open_context(ob_server *s, ob_error *e)
 	return true;
 }
 
-// By which a browser knows that it has the same already.
+// Entity tag, by which a browser recognises contents that it has.
 static uint64_t hash_of(const ob_message *m)
 {
 	return ob_hash_on(OB_HASH_BEGIN, m->bytes, m->size);
 }
 
-// Content number i of the server's own; path: NULL: its hash names it. bytes: must last as long as the server.
+// Adds content number i of the server's own; path: NULL: its hash names it. bytes: must last as long as the server.
 static void add_own(ob_server *s, uint32_t i, const char *path, const char *type, const ob_message *bytes)
 {
 	own_content *o = &s->own_bytes[i];

@@ -1,4 +1,4 @@
-// What waits for a viewer: in order, never without end, and let go of.
+// Queue of messages to a viewer: in order, bounded, and released.
 #include "check.h"
 
 #include "serve/client.h"
@@ -22,9 +22,9 @@ static void test_limits(void)
 	CHECK(small->holders == OB_CLIENT_QUEUE + 1 && q.bytes == 10 * OB_CLIENT_QUEUE);
 	CHECK(!ob_client_queue_put(&q, small) && q.count == 0 && q.bytes == 0 && small->holders == 1);
 	CHECK(ob_client_queue_put(&q, large) && !ob_client_queue_put(&q, small) && q.count == 0);
-	CHECK(ob_client_queue_put(&q, huge) && q.count == 1); // or a large universe could never be told
+	CHECK(ob_client_queue_put(&q, huge) && q.count == 1); // or a large universe could never be sent
 	q.sent = 1000;
-	CHECK(!ob_client_queue_put(&q, small) && q.count == 1 && huge->holders == 2); // half of it is gone already
+	CHECK(!ob_client_queue_put(&q, small) && q.count == 1 && huge->holders == 2); // half of it is sent already
 	ob_client_queue_clear(&q);
 	CHECK(q.count == 0 && q.sent == 0 && huge->holders == 1 && large->holders == 1);
 	ob_message_release(small);

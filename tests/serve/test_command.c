@@ -1,4 +1,4 @@
-// Commands of viewers: what they mean, and that nothing else is taken for one.
+// Commands of viewers: their meaning, and refusal of all other input.
 #include "check.h"
 
 #include <stdlib.h>
@@ -29,7 +29,7 @@ static void test_meaning(void)
 	CHECK(p->friction == .25 && p->restitution == .5 && strcmp(p->name, "B\xc3\xa4r") == 0 && isinf(c.def.dies));
 	CHECK(reads("{\"do\":\"create\",\"shape\":\"sphere\",\"size\":[1,0,0],\"at\":[0,0,9],\"mass\":1}", &c));
 	CHECK(strcmp(c.def.passport.name, "sphere") == 0 && c.def.passport.friction == .5 && c.def.state.pose.q.w == 1);
-	// as a page writes what is small
+	// small numbers as written by a page
 	CHECK(reads("{\"do\":\"create\",\"shape\":\"sphere\",\"size\":[1,0,0],\"at\":[-0.000123456789012345678,1e-7,"
 		    "1.25E+2],\"mass\":0.30000000000000000000000001e1,\"name\":\"\\\"0.000000000000000000000012345\"}",
 		    &c));
@@ -101,7 +101,7 @@ static void test_nonsense(void)
 	}
 }
 
-// Random bytes, and commands in which some bytes are others
+// Random bytes, and commands with random changes
 static void test_bytes(void)
 {
 	static const char model[] = "{" BOX ",\"velocity\":[1,2,3],\"name\":\"abc\"}";
@@ -118,7 +118,7 @@ static void test_bytes(void)
 			if (i % 2 || ob_splitmix(&seed) % 30 == 0)
 				text[k] = (char)ob_splitmix(&seed);
 		}
-		char *copy = malloc(n + 1); // of its own, so that a sanitizer sees what is read behind it
+		char *copy = malloc(n + 1); // of its exact size, so that a sanitizer detects reads behind it
 		memcpy(copy, text, n);
 		copy[n] = 0;
 		if (ob_command_read(&c, copy, n, &e) && c.kind == OB_DO_CREATE)

@@ -1,4 +1,4 @@
-// The content: what there is, and which of its bytes a request asks for.
+// The contents, and ranges of their bytes that requests name.
 #include "check.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-// What viewers are told: a viewer that foretells from it is never far off, and one that comes late knows the same.
+// The feed: a viewer's prediction is never far off, and a late viewer has the same state.
 #include "check.h"
 
 #include <stdlib.h>
@@ -109,7 +109,7 @@ static void hear_motion(reader *r, copy *c, uint32_t *before)
 	}
 }
 
-// Lets go of m.
+// Applies m, and releases it.
 static void hear(copy *c, ob_message *m)
 {
 	if (!m)
@@ -156,7 +156,8 @@ static bool advance(ob_host *h, uint64_t step)
 	return fine;
 }
 
-// Each step: how far (m) is what a viewer shows from where it is? Bounded by what is tolerated, of the balls' .1 m.
+// Checks each step's deviation (m) between a viewer's poses and the real ones, against the tolerance for the balls' .1
+// m.
 static void check_shown(const copy *c, const ob_host *h)
 {
 	for (uint32_t id = 0; id < IDS; id++) {
@@ -211,7 +212,7 @@ int main(void)
 			CHECK(ob_host_request_add(h, &newcomer, &e));
 		if (step == 150)
 			CHECK(ob_host_request_remove(h, 5, 1) &&
-			      ob_host_request_remove(h, 6, 7)); // nobody of generation 7 is there
+			      ob_host_request_remove(h, 6, 7)); // no object of generation 7 exists
 		if (step == 350)
 			for (uint32_t id = 20; id < 22; id++) {
 				const ob_request red = {

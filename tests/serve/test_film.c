@@ -1,4 +1,4 @@
-// A recording as a page plays it: every message whole, all told anew now and then, and the page that holds it.
+// A recording as a page plays it: every message whole, whole states now and then, and the page that holds it.
 #include "check.h"
 
 #include <stdlib.h>
@@ -15,7 +15,7 @@ enum { OBJECTS = 30, STATES = 400 };
 static const double step_length = .01;
 static char path[64];
 
-// Object 0 stands; the last comes in the middle; the rest go round, so that something is told of them again and again.
+// Object 0 stands; the last is added in the middle; the rest circle, so that their motions are sent again and again.
 static void record(void)
 {
 	static ob_passport passport[OBJECTS];

@@ -1,11 +1,11 @@
-// A viewer's own viewpoint: it goes round a target (drag), moves (right button, shift, two fingers, arrows), turns its head
-// (alt, or keys), comes nearer and goes away (wheel, pinch). Until it is taken hold of, an automatic one goes along with what
-// moves.
+// A viewer's own viewpoint: it orbits a target (drag), moves (right button, shift, two fingers, arrows), turns its head
+// (alt, or keys), comes nearer and goes away (wheel, pinch). Until the user moves it, an automatic one follows moving
+// objects.
 const STEEPEST = 89 * Math.PI / 180;
-const LOST_RANGES = 1.5, SPREAD = 2.05, NEAREST = 0.3; // of an automatic viewpoint: see src/render/draw_list.c
+const LOST_RANGES = 1.5, SPREAD = 2.05, NEAREST = 0.3; // for an automatic viewpoint: see src/render/draw_list.c
 const NARROWEST = 1.3; // width over height, below which the angle of view grows with the height
-const FADE = 0.2; // s, in which a viewpoint comes to what it is to go along with ..
-const NEAR = 30; // .. as near as so many of its radii
+const FADE = 0.2; // s, in which a viewpoint approaches a followed object
+const NEAR = 30; // distance to it, in radii
 
 const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -59,7 +59,7 @@ export class Camera {
 		this.following = false;
 	}
 
-	// It goes along with a body at p from now on, and round it, until it is moved away.
+	// From now on it follows a body at p, and orbits it, until it is moved away.
 	get holds() { return this.off !== null; }
 	hold(p, radius) {
 		this.following = false;
@@ -74,7 +74,7 @@ export class Camera {
 		this.range = this.near + left * (this.range - this.near);
 	}
 
-	// Where it sees what moves, as ob_camera_follow of the renderer.
+	// Places the viewpoint to see moving objects, as ob_camera_follow of the renderer.
 	follow(bodies, width, height) {
 		const v = this.view(width, height), { target, range } = this.first, moving = [];
 		let all = 0, middle = [0, 0, 0];
@@ -93,7 +93,7 @@ export class Camera {
 			const d = add(p, middle, -1);
 			return { right: dot(d, v.right), up: dot(d, v.up), ahead: dot(d, v.forward), radius, share: weight / all };
 		});
-		// How far they reach beyond the sides of a pyramid of view, along an axis of the picture
+		// Extent of bodies beyond the sides of a pyramid of view, along an axis of the picture
 		const reach = (axis, tangent) => {
 			const slant = Math.hypot(1, tangent);
 			let high = 0, low = 0;
@@ -126,14 +126,14 @@ export class Camera {
 		};
 	}
 
-	// The direction through a point of the picture, x and y from -1 to 1.
+	// Direction through a point of the picture, x and y from -1 to 1.
 	ray(x, y, width, height) {
 		const v = this.view(width, height);
 		return unit(add(add(v.forward, v.right, x * v.tanX), v.up, y * v.tanY));
 	}
 }
 
-// Mouse, touch and keys. onClick(x, y): a press without a way, in CSS pixels.
+// Mouse, touch and keys. onClick(x, y): a press without motion, in CSS pixels.
 export function control(canvas, camera, onClick) {
 	const fingers = new Map();
 	let way = 0, mode = 'orbit', spread = 0;
@@ -179,7 +179,7 @@ export function control(canvas, camera, onClick) {
 		if (fingers.delete(e.pointerId) && way < 5 && e.type === 'pointerup' && e.button === 0)
 			onClick(e.clientX, e.clientY);
 		if (fingers.size === 1)
-			mode = 'orbit'; // as one finger does, whatever two did
+			mode = 'orbit'; // as with one finger, after any gesture of two
 	};
 	canvas.addEventListener('pointerup', up);
 	canvas.addEventListener('pointercancel', up);
@@ -190,7 +190,7 @@ export function control(canvas, camera, onClick) {
 	}, { passive: false });
 }
 
-// Keys that move while they are held: true if it is one.
+// Moves by keys while they are held; true if the key is one of these.
 export function moveByKey(camera, key) {
 	const s = 0.06 * camera.range;
 	const moves = {

@@ -4,7 +4,8 @@ import { BOX, CAPSULE, CYLINDER, HULL, PLANE } from './universe.js';
 import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
 
-const SHADOW_TEXELS = 1792, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: kept free at each side, for the filter
+const SHADOW_TEXELS = 1792, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: border for the
+                                                                                  // filter
 const SKY_MAPS = 12; // as in light.glsl
 const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4, UNIT_COLOUR_IMAGE = 5, UNIT_SURFACE_IMAGE = 6;
 const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes it
@@ -30,7 +31,7 @@ const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 const unit = (a) => scale(a, 1 / Math.hypot(...a));
 
 async function text(path) {
-	const here = document.getElementById(path); // a page that is one file has it
+	const here = document.getElementById(path); // a page in a single file has it
 	if (here)
 		return here.textContent;
 	const answer = await fetch(path);
@@ -39,7 +40,7 @@ async function text(path) {
 	return answer.text();
 }
 
-// The shaders are written for OpenGL 3.3; the same text is GLSL ES 3.00 behind another first line.
+// Compiles a shader. Their text is written for OpenGL 3.3; with another first line it is GLSL ES 3.00.
 function compile(gl, kind, name, source, defines) {
 	const shader = gl.createShader(kind);
 	const head = '#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2DShadow;\n' + defines;
@@ -118,7 +119,7 @@ function orthoMatrix(m, eye) {
 	];
 }
 
-// Where in a plane shadows can fall: low x, low y, high x, high y, m from the foot along the plane's axes.
+// Bounds of possible shadows in a plane: low x, low y, high x, high y, m from the foot along the plane's axes.
 function patchEnds(f, foot, x, y, n) {
 	const m = f.shadow, reach = f.view.far, slope = dot(m.z, n);
 	if (slope < 0.02)
@@ -160,7 +161,7 @@ function meshOf(body, v, height) {
 function putInstance(out, at, body, eye) {
 	const s = body.size, bevel = (smallest) => Math.min(BEVEL_SHARE * smallest, BEVEL_MOST);
 	let r = s[0], core = [0, 0, 0], rounding = 0;
-	if (body.mesh) // it has metres, and so has a hull's
+	if (body.mesh) // a mesh's and a hull's vertices are in metres
 		[r, core, rounding] = [0, [1, 1, 1], -(body.meshColour ? 1 : 0) - (body.meshSurface ? 2 : 0)];
 	else if (body.shape === BOX)
 		[r, core, rounding] = [0, s, bevel(Math.min(...s))];
@@ -176,7 +177,8 @@ function putInstance(out, at, body, eye) {
 }
 
 export class Drawing {
-	// light: "draft" is cheap, "whole" has soft shadows and the sky's light; none: by what the browser draws with.
+	// light: "draft" is cheap, "whole" has soft shadows and the sky's light; by default chosen by the browser's
+	// renderer.
 	constructor(canvas, light) {
 		this.canvas = canvas;
 		const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, preserveDrawingBuffer: true });
@@ -224,7 +226,9 @@ export class Drawing {
 		this.meshes = set.meshes;
 		this.hulls = new Map(); // number -> { array, count }
 		this.looks = new Map(); // number -> { array, count, radius, buffers, parts, textures }: meshes of the scene
-		this.white = this.createImage({ width: 1, height: 1, bytes: new Uint8Array(4).fill(255) }, gl.RGBA8); // of what has none
+		this.white = this.createImage({ width: 1, height: 1, bytes: new Uint8Array(4).fill(255) }, gl.RGBA8); // for
+		                                                                                                      // no
+		                                                                                                      // image
 		this.frameBlock = gl.createBuffer();
 		this.instances = gl.createBuffer();
 		this.segments = gl.createBuffer();
@@ -297,7 +301,8 @@ export class Drawing {
 
 	// ---- a frame
 
-	// bodies: { shape, size, p, q, radius, shown: linear RGB; mesh: of looks, if it looks like one }; look: the scene's (welcome). overlay: see drawSegments.
+	// bodies: { shape, size, p, q, radius, shown: linear RGB; mesh: one of looks, if it has one }; look: the
+	// scene's (welcome). overlay: see drawSegments.
 	draw(bodies, view, look, overlay) {
 		const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
 		const solid = bodies.filter((b) => b.shape !== PLANE), planes = bodies.filter((b) => b.shape === PLANE);
@@ -347,7 +352,7 @@ export class Drawing {
 		gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.frameBlock);
 	}
 
-	// The mesh of a hull, made when it is first drawn.
+	// The mesh of a hull, made at its first use.
 	hullMesh(hull) {
 		const gl = this.gl;
 		let mesh = this.hulls.get(hull.number);
@@ -376,7 +381,7 @@ export class Drawing {
 		return id;
 	}
 
-	// A mesh of the scene, as it is told.
+	// Adds a mesh of the scene, in the message's form.
 	addMesh({ number, vertices, indices, parts, images }) {
 		const gl = this.gl, look = { array: gl.createVertexArray(), count: indices.length, radius: 0, buffers: [gl.createBuffer(), gl.createBuffer()], parts, textures: [] };
 		for (const { colour, surface } of parts) {
@@ -520,7 +525,7 @@ export class Drawing {
 		for (const [from, x, y] of [[0, 1, 0], [1, 0, 1]]) {
 			this.target(this.occlusion[1 - from].framebuffer, OCCLUSION_TEXELS, OCCLUSION_TEXELS);
 			gl.activeTexture(gl.TEXTURE0 + UNIT_OCCLUSION);
-			gl.bindTexture(gl.TEXTURE_2D, null); // it is drawn into
+			gl.bindTexture(gl.TEXTURE_2D, null); // it is the target
 			gl.activeTexture(gl.TEXTURE0 + UNIT_SOURCE);
 			gl.bindTexture(gl.TEXTURE_2D, this.occlusion[from].texture);
 			gl.uniform2f(uniform('direction'), x / OCCLUSION_TEXELS, y / OCCLUSION_TEXELS);
@@ -558,11 +563,11 @@ export class Drawing {
 		this.drawSky(f, width, height);
 		for (const [number, kind] of [[UNIT_SHADOW, gl.TEXTURE_2D], [UNIT_PLAIN, gl.TEXTURE_2D], [UNIT_SKY, gl.TEXTURE_2D_ARRAY]]) {
 			gl.activeTexture(gl.TEXTURE0 + number);
-			gl.bindTexture(kind, null); // it will be drawn into
+			gl.bindTexture(kind, null); // it will be the target
 		}
 	}
 
-	// Over a level ground from its horizon on only: software shades what is hidden, too.
+	// Draws the sky, over a level ground only from its horizon on: software rendering shades hidden pixels, too.
 	drawSky(f, width, height) {
 		const gl = this.gl, v = f.view, over = f.ground ? v.eye[2] - f.ground.p[2] : 0;
 		let first = 0;
@@ -582,7 +587,7 @@ export class Drawing {
 		const [x, y, n] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
 		const d = sub(b.p, f.view.eye), height = -dot(d, n);
 		if (height <= 0)
-			return; // from below there is nothing to see
+			return; // nothing is visible from below
 		const foot = scale(n, -height), onPlane = sub(foot, d), colour = isGround ? look.ground : b.shown;
 		const cell = (a) => a - 10 * Math.round(a / 10);
 		const toMap = (m) => [x, y, foot].flatMap((v, column) => [0, 1, 2].map((row) =>
@@ -621,10 +626,10 @@ export class Drawing {
 
 // ---- overlays
 
-// Half the sides of the box along the world's axes that holds a body.
+// Half extents, along the world's axes, of the box around a body.
 export function halfBounds(b) {
 	const s = b.size;
-	if (b.shape === HULL) { // about its centre of mass, as wide as the wider side
+	if (b.shape === HULL) { // around its centre of mass, as wide as the wider side
 		const turnedCorners = b.hull.corners.map((c) => turned(b.q, c));
 		return [0, 1, 2].map((k) => Math.max(...turnedCorners.map((c) => Math.abs(c[k]))));
 	}

@@ -1,13 +1,13 @@
-// A recording that plays by itself (src/serve/film.h): what a universe would have told, with a clock of the viewer's own,
-// which goes back as well as on.
+// A recording that plays by itself (src/serve/film.h): the messages of a universe, with a clock of the viewer's own,
+// which runs backwards, too.
 import { FREE, STANDS, normalize, poseAt } from './motion.js';
 import { Universe, between } from './universe.js';
 
 const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b, MESH_BEGINS = 3; // of a message
-const JUMP = 1; // s: farther on, it begins where all is told anew
-const NEWS = 0.15; // s of wall time between two of what is told about the object that is picked
+const JUMP = 1; // s: for a longer jump, it begins at a whole state
+const NEWS = 0.15; // s of wall time between two details of the picked object
 
-// "#id": an element of this page that holds the recording, in base64; else where it is to be fetched.
+// source: "#id", an element of this page that holds the recording in base64; else an address to fetch.
 async function load(source) {
 	let packed;
 	if (source.startsWith('#')) {
@@ -28,9 +28,9 @@ export class Film extends Universe {
 		super(null);
 		this.source = source;
 		this.steps = []; // { time, data, anew }: messages, in the order of their times
-		this.shown = -1; // index of the last one that was heard ..
-		this.since = this.heard = 0; // s: .. the time of the one before, and its own
-		this.facts = new Map(); // of objects: what is not told with their motions
+		this.shown = -1; // index of the last applied message
+		this.since = this.heard = 0; // s: times of the message before it, and its own
+		this.facts = new Map(); // of objects: details that are not in their motions
 		this.inspected = undefined;
 		this.newsAt = 0;
 	}
@@ -62,7 +62,7 @@ export class Film extends Universe {
 		super.tell(name, detail);
 	}
 
-	// Hears what was told up to time t, and once more, so that what happens between two states is known.
+	// Applies messages up to time t, and one more, for the motion between two states.
 	seek(t) {
 		this.time = Math.max(this.begin, Math.min(this.end, t));
 		const { rate, paused } = this;
@@ -71,7 +71,7 @@ export class Film extends Universe {
 		while (this.heard < this.time && this.shown + 1 < this.steps.length) {
 			const step = this.steps[++this.shown];
 			if (step.anew)
-				continue; // that is for who begins there
+				continue; // only for a start there
 			this.since = this.heard;
 			this.heard = step.time;
 			this.hear(step.data);
@@ -79,7 +79,7 @@ export class Film extends Universe {
 		Object.assign(this, { rate, paused });
 	}
 
-	// Where all was told anew, unless that is behind where it is on its way.
+	// Begins at a whole state, unless playing on from the current one is shorter.
 	begins(index) {
 		if (this.shown >= 0 && this.time >= this.since && index <= this.shown)
 			return;
@@ -99,7 +99,8 @@ export class Film extends Universe {
 		return this.time;
 	}
 
-	// As the renderer draws it between two states (ob_motion_between): what flew on is where it flew, what did not went straight.
+	// Pose between two states as in the renderer (ob_motion_between): a flight is continued, other motions are
+	// interpolated.
 	pose(body, t = this.time) {
 		const { motion: now, before } = body;
 		if (!now || !before || t >= now.t0)
@@ -152,7 +153,7 @@ export class Film extends Universe {
 	}
 }
 
-// rad/s, world, of the turn from a to b in s.
+// rad/s, world, of the rotation from a to b in s.
 function rateOf(a, b, s) {
 	const [w, x, y, z] = normalize([
 		b[0] * a[0] + b[1] * a[1] + b[2] * a[2] + b[3] * a[3],

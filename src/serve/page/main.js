@@ -1,4 +1,4 @@
-// The viewer: a window of its own into the universe that obsim serves.
+// The viewer: a user's own window into the universe that obsim serves.
 import { Camera, control, moveByKey } from './camera.js';
 import { Drawing, boxSegments, contactSegments, edgeColour, halfBounds } from './drawing.js';
 import { Film } from './film.js';
@@ -10,7 +10,7 @@ const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
 const HINT = 'drag to go round · right button to move · wheel to come nearer · click an object to know it · ? for more';
 const HINT_TOUCH = 'drag to go round · two fingers to move and come nearer · tap an object to know it';
-const AGAIN = [0.5, 1, 2, 5]; // s: when to look for a lost server
+const AGAIN = [0.5, 1, 2, 5]; // s: waits before attempts to reconnect
 
 const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
@@ -19,7 +19,7 @@ const recording = document.querySelector('meta[name=recording]').content;
 const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel();
 let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0, framesTold = 0, shown = '';
 
-// ---- what is seen
+// ---- the picture
 
 function bodies() {
 	const out = [];
@@ -44,7 +44,7 @@ function overlay(list, view) {
 	return out;
 }
 
-// The viewpoint goes along with what is picked, if it is asked to.
+// Follows the picked object with the viewpoint, if requested.
 function accompany(list, seconds) {
 	const body = camera.holds && list.find((b) => b.id === picked);
 	if (body)
@@ -67,7 +67,7 @@ function frame(now) {
 		camera.follow(list, width, height);
 	accompany(list, seconds);
 	const view = camera.view(width, height);
-	// What is the same is not drawn again: a universe that is paused costs nothing.
+	// An unchanged picture is not drawn again: a paused universe costs nothing.
 	const { on } = panel, seen = [universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
 		on.contacts].join();
 	if (seen !== shown)
@@ -78,9 +78,9 @@ function frame(now) {
 	requestAnimationFrame(frame);
 }
 
-// ---- what is pointed at
+// ---- picking
 
-// The same for a hull: the ray, in its frame, against the planes of all faces.
+// Hit of a ray with a hull: the ray, in its frame, against the planes of all faces.
 function hitHull(b, from, ray) {
 	let enter = -Infinity, leave = Infinity, normal = null;
 	for (const face of b.hull.faces) {
@@ -101,7 +101,7 @@ function hitHull(b, from, ray) {
 	return { s: enter, normal: turned(b.q, normal.map((x) => x / l)) };
 }
 
-// m along the ray to the body's surface, and its normal there; null: it passes by. Capsules and cylinders as their boxes.
+// m along the ray to the body's surface, and its normal there; null: no hit. Capsules and cylinders as their boxes.
 function hit(b, from, ray) {
 	const d = turned(b.q, [0, 1, 2].map((k) => from[k] - b.p[k]), -1), r = turned(b.q, ray, -1);
 	if (b.shape === PLANE) {
@@ -176,7 +176,7 @@ function throwOne() {
 	universe.send({ ...command, at: [0, 1, 2].map((k) => from[k] + ahead * f[k]), velocity: f.map((x) => THROWN * x) });
 }
 
-// ---- what is asked
+// ---- requests
 
 panel.addEventListener('pause', () => universe.send({ do: universe.paused ? 'resume' : 'pause' }));
 panel.addEventListener('step', () => universe.send({ do: 'step' }));
@@ -215,7 +215,7 @@ document.addEventListener('keydown', (e) => {
 });
 control(canvas, camera, click);
 
-// ---- what is told
+// ---- messages
 
 universe.addEventListener('welcome', (e) => {
 	look = e.detail;
@@ -230,7 +230,8 @@ universe.addEventListener('welcome', (e) => {
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
 });
-// Meshes are content, which a browser keeps; a recording tells its own. Until they are here objects look as they collide.
+// Fetches meshes, which a browser keeps as contents; a recording holds its own. Until they arrive, objects show their
+// collision shapes.
 async function fetchMeshes(paths) {
 	drawing.forgetMeshes();
 	await Promise.all(paths.map(async (path) => {

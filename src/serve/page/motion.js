@@ -1,8 +1,9 @@
-// How a told motion goes on: a parabola, or an ellipse with a frequency, and a turn at constant rate or the free rotation of a rigid body. Quaternions are
-// w x y z and turn the body's axes to the world's, as in <ob/vec.h>.
+// Continuation of a received motion: a parabola, or an ellipse with a frequency, and rotation at constant rate or the
+// free rotation of a rigid body. Quaternions are w x y z and rotate from the body's axes to the world's, as in
+// <ob/vec.h>.
 
 export const STANDS = 0, TURNS = 1, FREE = 2, SWINGS = 3;
-const RADIANS_A_STEP = 0.05; // of Runge and Kutta's fourth order: 1e-8 rad in a radian
+const RADIANS_A_STEP = 0.05; // for Runge and Kutta's method of fourth order: 1e-8 rad in a radian
 
 export const multiply = (a, b) => [
 	a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
@@ -16,14 +17,14 @@ export function normalize(q) {
 	return [q[0] * s, q[1] * s, q[2] * s, q[3] * s];
 }
 
-// v turned by q; by its inverse with sign -1.
+// v rotated by q; by its inverse with sign -1.
 export function turned(q, v, sign = 1) {
 	const [w, x, y, z] = [q[0] * sign, q[1], q[2], q[3]];
 	const tx = y * v[2] - z * v[1] + w * v[0], ty = z * v[0] - x * v[2] + w * v[1], tz = x * v[1] - y * v[0] + w * v[2];
 	return [v[0] + 2 * (y * tz - z * ty), v[1] + 2 * (z * tx - x * tz), v[2] + 2 * (x * ty - y * tx)];
 }
 
-// q turned by the rotation vector w s (world).
+// q rotated by the rotation vector w s (world).
 function turnedBy(q, w, s) {
 	const angle = Math.hypot(w[0], w[1], w[2]) * s;
 	const share = Math.abs(angle) > 1e-6 ? Math.sin(angle / 2) / angle * s : s / 2;
@@ -64,7 +65,7 @@ function centreAfter(m, s) {
 	return [0, 1, 2].map((k) => m.p[k] + along * m.v[k] + aside * m.a[k]);
 }
 
-// Where a body is at time t (s) by motion m: { p, q }.
+// Pose of a body at time t (s) by motion m: { p, q }.
 export function poseAt(m, inertia, t) {
 	const s = t - m.t0;
 	if (m.kind === STANDS || s === 0)
@@ -72,7 +73,7 @@ export function poseAt(m, inertia, t) {
 	const p = centreAfter(m, s);
 	if (m.kind !== FREE || isEven(inertia))
 		return { p, q: turnedBy(m.q, m.w, s) };
-	// from where it was asked for last, if that was before
+	// continues from the last call, if that was earlier
 	const from = m.last && s >= 0 && m.last.s <= s ? m.last : { s: 0, q: m.q };
 	m.momentum ??= momentumOf(m.q, m.w, inertia);
 	m.last = { s, q: rotatedFree(from.q, m.momentum, inertia, s - from.s) };

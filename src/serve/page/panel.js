@@ -1,4 +1,4 @@
-// What stands round the picture: the clock, the tools, and all about the object that is picked. Knows nothing of drawing.
+// Controls around the picture: the clock, the tools, and details of the picked object. Independent of drawing.
 
 const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, metal
 	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
@@ -8,7 +8,7 @@ const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c:
 	Escape: 'deselect' };
 
 const MARKS_MOST = 400; // on the time bar
-const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // what small screens leave out of the facts
+const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // details that small screens leave out
 
 const $ = (selector) => document.querySelector(selector);
 const number = (x, digits = 3) => (Math.abs(x) < 5e-4 ? '0' : Number(x.toPrecision(digits)).toString());
@@ -17,7 +17,7 @@ const vector = (v) => v.map((x) => number(x)).join('  ');
 export class Panel extends EventTarget {
 	constructor() {
 		super();
-		this.off = new Set(); // what is not to be had here
+		this.off = new Set(); // unavailable controls
 		this.on = { make: false, boxes: false, contacts: false, help: false };
 		document.addEventListener('click', (e) => {
 			const button = e.target.closest('[data-do]');
@@ -35,7 +35,7 @@ export class Panel extends EventTarget {
 
 	tell(name, detail) { this.dispatchEvent(new CustomEvent(name, { detail })); }
 
-	// true: the key was one of ours
+	// Handles a key; true: it has a meaning here.
 	key(key) {
 		const what = KEYS[key.length === 1 ? key.toLowerCase() : key];
 		if (what)
@@ -56,7 +56,8 @@ export class Panel extends EventTarget {
 		this.tell(what, this.on[what]);
 	}
 
-	// What would be made now, but for where: { shape, size, mass, colour .. } of a command, and how high over the place.
+	// Object to create, without its place: { shape, size, mass, colour .. } of a command, and its height over the
+	// place.
 	get wanted() {
 		const value = (name) => $(`#maker [name=${name}]`).value;
 		const s = Number(value('size')), shape = value('shape');
@@ -85,15 +86,15 @@ export class Panel extends EventTarget {
 		this.pool = `one of ${w.workers} ${w.isolation === 'process' ? 'processes' : 'threads'}`;
 	}
 
-	// Whether the viewpoint goes along with what is picked
+	// Shows if the viewpoint follows the picked object
 	follows(on) { $('[data-do=follow]').setAttribute('aria-pressed', on); }
 
-	// Frames in a second; in software there are few.
+	// Shows frames per second; software rendering has few.
 	speed(frames, software) {
 		$('#speed').textContent = `${frames} frames/s${software ? ', drawn without a GPU' : ''}`;
 	}
 
-	// What is looked at is a recording: it has a time bar, and nobody changes it.
+	// Shows the controls of a recording: a time bar, and none that change objects.
 	film(f) {
 		const span = f.end - f.begin || 1;
 		document.body.classList.add('film');
@@ -134,7 +135,7 @@ export class Panel extends EventTarget {
 			$('#rate').value = option.value;
 	}
 
-	// null: nothing is picked
+	// null: none is picked
 	details(d) {
 		$('#details').hidden = !d;
 		if (!d)
@@ -161,7 +162,7 @@ export class Panel extends EventTarget {
 		}));
 	}
 
-	// For some seconds, or, with none, until the next
+	// Shows a notice for some seconds, or, with none, until the next
 	notice(text, seconds = 4) {
 		clearTimeout(this.fading);
 		$('#notice').textContent = text;

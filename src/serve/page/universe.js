@@ -1,15 +1,15 @@
-// The viewer's copy of the universe: what the server has told of it (src/serve/feed.h), and the time at which to look.
+// The viewer's copy of the universe: the state that the server has sent (src/serve/feed.h), and the time shown.
 import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
 
-const DELAY = 0.05; // s of wall time by which it looks later than it is told, so that what is told next is there in time
-const PULL = 5; // 1/s: how fast its clock is drawn to the universe's
-const LOST = 0.5, SETTLED = 1e-4; // s: farther off, it is set; and nearer, where time stands
+const DELAY = 0.05; // s of wall time by which the shown time lags, so that messages arrive before they are needed
+const PULL = 5; // 1/s: rate at which its clock approaches the universe's
+const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
 const MOTIONS = 1, CONTACTS = 2, MESH = 3, VOID = 1, PAUSED = 2; // of a message
 const MESH_HEAD = 12, MESH_VERTEX = 12; // bytes; floats
 const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
-const BLEND = 0.08; // s, simulated, in which what was foretold goes over to what came
+const BLEND = 0.08; // s, simulated, to blend a prediction into a new motion
 
 export const SPHERE = 1, BOX = 2, PLANE = 3, CAPSULE = 4, CYLINDER = 5, HULL = 6;
 
@@ -47,14 +47,14 @@ export class Universe extends EventTarget {
 		this.url = url;
 		this.objects = new Map();
 		this.contacts = [];
-		this.told = 0; // s: newest time that was told
-		this.toldAt = 0; // s of wall time, when
-		this.speed = 0; // simulated seconds a second, as they come
-		this.time = 0; // s: at which the viewer looks
+		this.told = 0; // s: newest received time
+		this.toldAt = 0; // s of wall time of its arrival
+		this.speed = 0; // simulated seconds a second, measured
+		this.time = 0; // s: the shown time
 		this.rate = 1;
 		this.paused = false;
 		this.bytes = this.messages = 0;
-		this.news = 0; // grows when something that is seen is told
+		this.news = 0; // grows with each received change
 	}
 
 	connect() {
@@ -97,7 +97,7 @@ export class Universe extends EventTarget {
 		this.paused = (flags & PAUSED) !== 0;
 		if (flags & VOID) {
 			this.objects.clear();
-			this.toldAt = 0; // what came before says nothing of how fast time passes
+			this.toldAt = 0; // messages before tell nothing about the rate of time
 			this.speed = Number.isFinite(this.rate) ? this.rate : 1;
 		}
 		for (let i = 0; i < removed; i++)
@@ -119,7 +119,7 @@ export class Universe extends EventTarget {
 		const id = r.u32(), generation = r.u32(), shape = r.u8(), flags = r.u8(), bytes = r.u8(), surface = r.u8();
 		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = shape === HULL ? hearHull(r) : null;
 		const mesh = flags & LOOKS ? r.u8() : 0, name = r.text(bytes);
-		const known = this.objects.get(id); // it looks otherwise, and moves as it did
+		const known = this.objects.get(id); // with another look and the same motion
 		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, mesh, meshColour: (flags & MESH_COLOUR) !== 0, meshSurface: (flags & MESH_SURFACE) !== 0, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
 	}
 
@@ -165,7 +165,7 @@ export class Universe extends EventTarget {
 		this.contacts = Array.from({ length: n }, () => ({ p: r.vec3(), n: r.vec3(), impulse: r.f32() }));
 	}
 
-	// The clock follows what is told, however fast that goes.
+	// The clock follows received times, at any rate.
 	follow(time) {
 		const now = performance.now() / 1000, since = now - this.toldAt;
 		if (since > 1e-4 && this.toldAt > 0) {
@@ -176,7 +176,7 @@ export class Universe extends EventTarget {
 		this.toldAt = now;
 	}
 
-	// To be called once a frame: the time that it shows.
+	// Advances the shown time; call it once a frame.
 	advance(seconds) {
 		const speed = this.paused ? 0 : this.speed;
 		const goal = this.told + speed * Math.min(performance.now() / 1000 - this.toldAt - DELAY, 0.25);
@@ -188,7 +188,7 @@ export class Universe extends EventTarget {
 		return this.time;
 	}
 
-	// Where a body is at that time; null: not told yet.
+	// Pose of a body at that time; null: not received yet.
 	pose(body, t = this.time) {
 		const { motion: now, before } = body;
 		if (!now || !before)
@@ -196,7 +196,7 @@ export class Universe extends EventTarget {
 		if (t < now.t0)
 			return poseAt(before, body.inertia, t);
 		const pose = poseAt(now, body.inertia, t), share = (t - now.t0) / BLEND;
-		// what flew may have flown into something: that is not shown
+		// an earlier flight may have ended in a collision: it is not blended
 		return share < 1 && before.kind === TURNS ? between(poseAt(before, body.inertia, t), pose, share) : pose;
 	}
 }
@@ -211,7 +211,7 @@ function hearHull(r) {
 	};
 }
 
-// A share of the way from one pose to another.
+// Interpolates between two poses.
 export function between(a, b, share) {
 	const sign = a.q[0] * b.q[0] + a.q[1] * b.q[1] + a.q[2] * b.q[2] + a.q[3] * b.q[3] < 0 ? -1 : 1;
 	return {
