@@ -104,6 +104,18 @@ static uint32_t scripted_objects(const ob_scene *scene)
 	return n;
 }
 
+// Workers of all ranks' pools: no more than objects that may exist, as an object has one worker at a time.
+static uint32_t pool_workers(const ob_host_config *c, uint32_t capacity)
+{
+	const uint32_t ranks = c->ranks.ranks ? c->ranks.ranks : 1, most = (capacity + ranks - 1) / ranks;
+	if (c->workers <= most)
+		return c->workers * ranks;
+	if (c->ranks.rank == 0)
+		ob_log_note("%u workers for at most %u objects: %u are started, more would have nothing to do", c->workers,
+			    capacity, most);
+	return most * ranks;
+}
+
 static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c, const ob_spawn *spawn, ob_error *e)
 {
 	bool one_per_object = c->workers == 0 && !c->run.monolith;
@@ -116,9 +128,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 	ob_universe_setup setup = {
 		.name = c->name,
 		.capacity = capacity,
-		.workers = one_per_object    ? capacity
-			   : c->run.monolith ? 1
-					     : c->workers * (c->ranks.ranks ? c->ranks.ranks : 1),
+		.workers = one_per_object ? capacity : c->run.monolith ? 1 : pool_workers(c, capacity),
 		.rank = c->ranks.rank,
 		.ranks = c->ranks.ranks,
 		.shares_contacts = c->shares_contacts,

@@ -32,6 +32,17 @@ class Limits(program.Case):
 			saying=r"^obsim: step 1 takes more work .* object 1 \(box#1\)")
 		self.fail(hostile("busy_scripts"), "--duration", ".02", saying=r"^obsim: step 1 takes more work .* object \d+ \(sphere#\d+\) would need millions of instructions of scripts")
 
+	def test_idle_workers(self):
+		"""As many workers are started as objects may exist, however many are asked for."""
+		words = program.scene("falling_boxes"), "-D", "n=10", "--duration", ".5"
+		one, many = program.report(*words, "--workers", "1"), program.report(*words, "--workers", "4096")
+		self.assertEqual((many["state_hash"], many["workers"]), (one["state_hash"], 11 + 64))
+		run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=10", "--duration", program.FOR_EVER, "--workers", "500",
+			"--isolation", "process")
+		self.assertEqual(len(program.simulators(run.pid)), 11 + 64)
+		run.terminate()
+		run.wait(program.PATIENCE)
+
 	def test_crowd(self):
 		"""Two hundred thousand spheres in one heap: too many pairs for a step and for a measure, which both
 		react to SIGTERM."""
