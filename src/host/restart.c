@@ -217,7 +217,7 @@ bool ob_restart_freeze(ob_host *h)
 	uint32_t left = 0, frozen = 0;
 	for (uint32_t i = 0; i < r->freezes; i++) {
 		const ob_freeze f = r->freeze[i];
-		if (f.step > step)
+		if (f.step > step || ob_population_next_step(h->population) <= step) // it may not be there again yet
 			r->freeze[left++] = f;
 		else if (ob_passport_of(h->u, f.id)->generation == f.generation && ob_sim_freeze(h->u, f.id)) {
 			ob_request_log_freeze(h->log, step, f.id, f.generation);

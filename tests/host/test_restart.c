@@ -268,6 +268,37 @@ static void test_frozen(void)
 	free(s.object);
 }
 
+// An object that diverges at once, and came in a later pause of the same step than others, is frozen in the first restart.
+static void test_frozen_newcomer(ob_isolation isolation)
+{
+	ob_scene s = little_scene(2);
+	ob_host_config c = little_config(&s, isolation, 2);
+	ob_error e = { "" };
+	ob_host_times times;
+	c.on_death = OB_ON_DEATH_KEEP;
+	c.spare = 8;
+	ob_host *h = ob_host_start(&s, &c, &e);
+	ob_object_def guest = ball("guest", 5, 5, 9), wild = ball("wild", 7, 7, 1);
+	wild.state.v = ob_v3(0, 0, 9e14);
+	wild.passport.force = ob_v3(0, 0, 1e17);
+	for (uint64_t step = 0; step <= 20; step += 20) {
+		ob_host_go(h, step);
+		CHECK(ob_host_wait(h, &e));
+		wild.state.pose.p.x += 2;
+		for (int i = 0; i < 3; i++) {
+			CHECK(ob_host_request_add(h, i < 2 ? &guest : &wild, &e));
+			ob_host_go(h, step); // a pause of its own
+			CHECK(ob_host_wait(h, &e));
+		}
+	}
+	ob_host_go(h, 40);
+	CHECK(ob_host_wait(h, &e) && steps_of(h) == 40);
+	ob_host_get_times(h, &times);
+	CHECK(times.deaths == 2 && times.frozen == 2);
+	ob_host_stop(h);
+	free(s.object);
+}
+
 // Stops the first child that is neither of the two, as soon as it exists.
 _Noreturn static void stop_next_child(pid_t parent, const pid_t known[2])
 {
@@ -377,6 +408,8 @@ int main(void)
 	test_requested();
 	test_killed_in_a_pause();
 	test_frozen();
+	test_frozen_newcomer(OB_ISOLATION_THREAD);
+	test_frozen_newcomer(OB_ISOLATION_PROCESS);
 	test_stopped_before_it_is_ready();
 	test_interrupted();
 	test_again_and_again();
