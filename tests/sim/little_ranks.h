@@ -1,4 +1,4 @@
-// Several ranks for tests, each a thread: what they say to each other, by an ob_peers whose wire is a little_wire.
+// Several ranks for tests, each a thread: they exchange messages by an ob_peers whose wire is a little_wire.
 #ifndef OB_TESTS_SIM_LITTLE_RANKS_H
 #define OB_TESTS_SIM_LITTLE_RANKS_H
 
@@ -10,7 +10,7 @@
 
 enum { LITTLE_RANKS = 3 };
 
-// What is said, by rank: to each.
+// Messages of a round, by sender: one to each rank.
 typedef struct little_exchange {
 	pthread_barrier_t together;
 	const void *said[LITTLE_RANKS][LITTLE_RANKS];

@@ -9,7 +9,7 @@
 //   ... little_state(&l, 1) ...
 //   little_close(&l);
 //
-// What fails on the way ends the test with a message.
+// A failure ends the test with a message.
 #ifndef OB_TESTS_SIM_LITTLE_UNIVERSE_H
 #define OB_TESTS_SIM_LITTLE_UNIVERSE_H
 
@@ -21,7 +21,7 @@
 
 enum { LITTLE_MOST = 2048 }; // objects
 
-// Bodies are built with ob_world_box(&s->world, ...) and its like, at most LITTLE_MOST: what they return stays valid.
+// Bodies are built with ob_world_box(&s->world, ...) and its like, at most LITTLE_MOST: returned pointers stay valid.
 typedef struct little_scene {
 	ob_run_settings run; // the program's own, but no sleeping; its gravity is what counts
 	uint32_t capacity; // 0: as many as there are objects
@@ -38,7 +38,7 @@ typedef struct little_universe {
 	const little_scene *scene;
 	ob_universe *u;
 	ob_sim *sim;
-	ob_snapshot now; // of the last look
+	ob_snapshot now; // read last
 } little_universe;
 
 // A universe with all objects in place, before its first step; for tests that bring their own workers.

@@ -81,8 +81,8 @@ static outcome play(const little_scene *s, bool call)
 	return out;
 }
 
-// A ball's landing is closed form, from where its flight began: when it was computed does not matter. Where the contact
-// solver has had it, it does to rounding: the solver is given what the fat AABBs have found.
+// A ball's landing is closed form, from the start of its flight: the time of computation does not matter. After the
+// contact solver it matters to rounding: the solver gets the pairs found by fat AABBs.
 static void test_balls(void)
 {
 	uint64_t seed = 21, visits = 0, called = 0;
@@ -100,7 +100,7 @@ static void test_balls(void)
 	CHECK(visits * 8 < called);
 }
 
-// Nothing is missed: what a missed event would leave is deep in something.
+// Nothing is missed: a missed event would leave a deep penetration.
 static void test_nothing_missed(void)
 {
 	uint64_t seed = 22, visits = 0, called = 0;
@@ -138,7 +138,7 @@ static void test_new_plane(void)
 	free(s);
 }
 
-// What hops too low for the contact solver to let go of it flies on by itself, and comes to rest as ever.
+// A body that hops too low to leave the contact solver flies on by itself, and comes to rest as usual.
 static void test_low_hops(void)
 {
 	uint64_t seed = 23, taken_off = 0;

@@ -60,7 +60,8 @@ static outcome play(little_scene *s, int steps)
 	return out;
 }
 
-// Nothing else acts: all that can be kept is. What rebounds little may rattle, which is left to the contact solver.
+// Nothing else acts: momentum, angular momentum and energy are conserved. Low rebounds may rattle: the contact solver
+// has those.
 static void test_in_space(bool elastic)
 {
 	uint64_t seed = 1, hits = 0, solved = 0;

@@ -1,5 +1,5 @@
-// A step has a budget of work: when it is spent the run fails, nothing of the step is published, and those are named
-// that it went into. What diverges ends a run in the same way, and so does ODE where it gives up.
+// A step has a budget of work: when it is spent the run fails, nothing of the step is published, and the failure
+// names the bodies that spent it. Divergence ends a run in the same way, and so does a failure of ODE.
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "sim/narrowphase.h"
 #include "little_universe.h"
 
-// What the failure says; the state of the step before stands.
+// Checks the failure's message; the state of the previous step stands.
 static void expect_failure(little_universe *l, ob_step_failure why, uint32_t object, const char *saying)
 {
 	uint64_t before = ob_step_count(l->u);
@@ -67,8 +67,8 @@ static void test_spent_in_flight(void)
 	}
 }
 
-// What is less than a grain is dropped for each share alone: how many fly beside each other, as a worker has them, adds
-// nothing to the sum.
+// Each share drops its remainder below a grain: the number of flights beside each other on a worker adds nothing to the
+// sum.
 static void test_small_shares(void)
 {
 	little_scene *s = little_scene_new();
@@ -88,8 +88,8 @@ static void test_small_shares(void)
 	free(s);
 }
 
-// What costs more counts for more; and once the budget is spent no two bodies touch any more, so that whoever looks at
-// many pairs comes to an end.
+// Dearer tests count for more. Once the budget is spent no two bodies touch any more, so that a loop over many pairs
+// ends.
 static void test_collision_tests(void)
 {
 	little_scene *s = little_scene_new();
@@ -135,7 +135,7 @@ static void test_diverged(void)
 	free(s);
 }
 
-// What carries a mass so small is no number, and ODE's stepper does not take it.
+// The carrier of a mass so small becomes NaN, and ODE's stepper rejects it.
 static void test_engine(void)
 {
 	little_scene *s = little_scene_new();

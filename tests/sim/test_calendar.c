@@ -141,7 +141,7 @@ static void test_nothing_missed(void)
 	CHECK(hash[0] == hash[1]);
 }
 
-// What rests beside those that move costs no look: so many more visits in the same run.
+// Number of visits in the same run with so many bodies at rest: a resting body is not visited.
 static uint64_t visits_with(uint32_t at_rest)
 {
 	little_scene *s = thrown(20, 3);
@@ -166,7 +166,7 @@ static void test_cost(void)
 	CHECK(among_many == alone);
 }
 
-// Of balls in flight few are due in a step: what is looked at follows them, not those that fly on.
+// Few balls in flight are due in a step: the number of visits follows these, not the balls that fly on.
 static void test_cost_of_flights(void)
 {
 	enum { BALLS = 1200, STEPS = 120, LOOKS = 16 };

@@ -95,7 +95,7 @@ static void test_heaps(const char *name, void (*add)(little_scene *, uint64_t), 
 	CHECK(effort[TOLERANCES - 1] < .2 * effort[0]);
 }
 
-// ---- what stands, and what rebounds
+// ---- standing and rebounding bodies
 
 static void test_stack(double tolerance)
 {
@@ -134,8 +134,8 @@ static long steps_to_sleep(double tolerance)
 	return steps;
 }
 
-// What has come to rest is left alone as soon as with the default, though the unit of time is longer. How it tumbles before
-// that is another matter: a tenth.
+// Bodies that have come to rest sleep as soon as with the default, though the unit of time is longer. They may tumble a
+// tenth longer before.
 static void test_sleeps_as_soon(void)
 {
 	const long usual = steps_to_sleep(tolerances[0]);

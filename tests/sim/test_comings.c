@@ -1,5 +1,5 @@
 // Objects come and go at random, several in one pause, in slots that are used again, between steps in which they move,
-// touch and rest: what simulators share keeps its invariants (sim/invariants.h).
+// touch and rest: shared data keep their invariants (sim/invariants.h).
 #include <stdlib.h>
 #include <string.h>
 

@@ -29,7 +29,7 @@ static void take(ob_universe *u, uint32_t tasks, uint32_t ns)
 		ob_task_took(u, i, ns);
 }
 
-// Whoever is free takes the next task; few tasks are for few workers; what was taken once counts once.
+// The first free worker takes the next task; few tasks go to few workers; each task counts once.
 static void test_tasks(ob_universe *u)
 {
 	take(u, 32, 10);
@@ -54,7 +54,7 @@ static void test_many(ob_universe *u)
 	CHECK(path_of(u, OB_PHASE_LATE_CONTACTS, 0) == 10 * OBJECTS);
 }
 
-// What the longest does beside its tasks comes to them, and what one worker does alone.
+// The critical path includes the longest worker's time beside its tasks, and the serial part.
 static void test_beside(ob_universe *u)
 {
 	const uint64_t before = ob_critical_path(u);

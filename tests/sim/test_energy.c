@@ -82,7 +82,7 @@ static void report(const char *what, uint32_t substeps, growth g)
 	CHECK(g.net <= 1e-9);
 }
 
-// What goes over an edge turns about it, opens again, or leaves: whatever comes first, the edge's push does no work.
+// A body that goes over an edge turns about it, opens again, or leaves: in any order, the edge's push does no work.
 static void test_edges(double friction)
 {
 	double most = 0;

@@ -1,5 +1,5 @@
-// A tolerance instead of substeps: what is reached is below it, what is reported covers what can be measured, and what
-// is thrown away leaves no trace.
+// A tolerance instead of substeps: the reached error is below it, the reported error covers the measured one, and a
+// rejected attempt leaves no trace.
 #include <stdlib.h>
 
 #include "check.h"
@@ -20,7 +20,7 @@ static little_scene *tolerant(double tolerance)
 typedef struct outcome {
 	double worst, rests; // m, measured at the step boundaries; in the mean of the pairs, at the end
 	ob_counters count;
-	ob_state top; // of the last object
+	ob_state top; // last object
 } outcome;
 
 static outcome watch(little_scene *s, double duration)
@@ -40,7 +40,7 @@ static outcome watch(little_scene *s, double duration)
 	return o;
 }
 
-// What is reported is no smaller than what can be seen from outside, and below what was asked for.
+// The reported error is no smaller than the one measured from outside, and below the tolerance.
 static void check_kept(const outcome *o, double tolerance)
 {
 	CHECK(o->count.error <= tolerance);
@@ -118,8 +118,8 @@ static void test_random_heaps(void)
 	}
 }
 
-// Boxes that land on each other: where an island is solved again with more substeps, its error falls with them, though
-// iterations end before all is at rest.
+// Boxes that land on each other: the error of an island that is solved again falls with its substeps, though iterations
+// end before all is at rest.
 static void test_falling(void)
 {
 	enum { SEEDS = 36, BOXES = 60 };
@@ -152,7 +152,7 @@ static void test_heap(void)
 }
 
 // A rebound that would go higher than the tolerance is made: the last apexes are where the law has them.
-// Boxes of all sizes that fall in columns: what is never in one island must not be in each other either.
+// Boxes of all sizes that fall in columns: bodies that never share an island must not overlap either.
 static void test_columns(void)
 {
 	for (uint64_t seed = 1; seed <= 12; seed++) {
@@ -193,7 +193,7 @@ static void test_rebounds(void)
 	free(s);
 }
 
-// What comes to rest needs one substep in the end.
+// A body that comes to rest needs one substep in the end.
 static void test_rest_is_cheap(void)
 {
 	little_scene *s = tolerant(.5e-3);
@@ -214,7 +214,7 @@ static void test_rest_is_cheap(void)
 	free(s);
 }
 
-// What is round and rolls straight on looks the same from step to step: one substep, and no collision tests.
+// A round body that rolls straight on has the same contact in each step: one substep, and no collision tests.
 static void test_rolling_is_cheap(ob_shape shape)
 {
 	const double radius = .2, speed = 1;

@@ -92,8 +92,8 @@ static void test_alone_or_not(void)
 	free(s);
 }
 
-// A flight ends when the host puts the object elsewhere, in whichever step, or when an impact turns it round: what comes
-// after starts from there.
+// A flight ends when the host puts the object elsewhere, in whichever step, or when an impact turns it round: the next
+// flight starts from there.
 static void test_new_flights(void)
 {
 	for (uint64_t steps = 0; steps < 4; steps++) {
@@ -113,7 +113,7 @@ static void test_new_flights(void)
 	}
 }
 
-// Ten minutes in weightlessness: what is published is still where the first throw leads.
+// Ten minutes in weightlessness: the published motion still follows the first throw.
 static void test_long(void)
 {
 	little_scene *s = thrown_box(OB_INTEGRATOR_EXACT, 8);

@@ -65,7 +65,7 @@ static ob_state pushed(double force, ob_integrator integrator, uint32_t monolith
 	return end;
 }
 
-// Coulomb (1785): what is pushed by less than mu m g stays, and may sleep; by more, a = F / m - mu g.
+// Coulomb (1785): a body pushed by less than mu m g stays, and may sleep; by more, a = F / m - mu g.
 static void test_friction(void)
 {
 	bool asleep;
@@ -146,8 +146,7 @@ static double shaken_error(double h, bool sliding, double *speed_error)
 	return error;
 }
 
-// The mean of each step gives its impulse, so the velocity has no error; that of the place is h^2 / 12 (F(t) - F(0)) /
-// m.
+// The mean of each step gives its impulse, so the velocity has no error; the position's is h^2 / 12 (F(t) - F(0)) / m.
 static void test_sine(void)
 {
 	static const double h[] = { .1, .05, .025 };
@@ -165,7 +164,7 @@ static void test_sine(void)
 	}
 }
 
-// What sleeps wakes when a force begins, flies off with J / m, and rests again where friction stops it.
+// A sleeping body wakes when a force begins, moves off with J / m, and rests again when friction stops it.
 static void test_pulse(void)
 {
 	const double h = 1. / 60, m = 2, mu = .5;

@@ -1,12 +1,12 @@
-// What is frozen stands where it was, and is an obstacle to all others; where failures are frozen each island has a
-// budget of its own.
+// A frozen body stands where it was, and is an obstacle to all others; if failures are frozen each island has a budget
+// of its own.
 #include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
 #include "little_universe.h"
 
-// One in the air, above another that lies on the ground: what is above comes to rest on what was frozen.
+// A body frozen in the air: the body above it falls and comes to rest on it.
 static void test_obstacle(void)
 {
 	little_scene *s = little_scene_new();

@@ -69,7 +69,7 @@ static void ghosts_are_wrong(void)
 	CHECK(o.velocity > .1);
 }
 
-// Against what does not move both are right: that is why the mistake goes unseen for long.
+// Both sides are right against a fixed body: a reason why the mistake stays unseen for long.
 static void grounds_are_ghosts(void)
 {
 	for (uint32_t solver = OB_SOLVER_GHOST; solver <= OB_SOLVER_LAGGED; solver++) {
@@ -86,7 +86,7 @@ static void grounds_are_ghosts(void)
 	}
 }
 
-// A stack comes over many steps: what is kept from one step to the next must be each side's own.
+// A stack over many steps: each side must keep its own warm-start impulses.
 static void stacks_run_on(void)
 {
 	for (uint32_t solver = OB_SOLVER_GHOST; solver <= OB_SOLVER_LAGGED; solver++) {

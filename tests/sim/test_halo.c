@@ -13,13 +13,13 @@
 
 enum { RANKS = LITTLE_RANKS, BODIES = 40, STEPS = 60, MOST_PAIRS = 60, SEEDS = 20 };
 
-// What happens, the same for all ranks, and what is true.
+// Events, the same for all ranks, and the expected state.
 typedef struct story {
 	little_exchange x;
 	ob_motion now[BODIES], next[BODIES];
 	bool told[BODIES][RANKS], restored[BODIES], solved[BODIES];
 	uint32_t home[BODIES];
-	uint32_t pairs, fresh; // of them the last
+	uint32_t pairs, fresh; // the last of them are fresh
 	ob_pair_key pair[MOST_PAIRS];
 	bool all, again, gathers;
 	uint64_t seed;
@@ -41,8 +41,8 @@ static uint32_t any(uint64_t *seed, uint32_t of)
 	return i < of ? i : of - 1;
 }
 
-// Who is solved, by whom, and to what; which pairs there are then. A fifth of the bodies is fast: of their pairs none
-// lasts.
+// Draws the bodies to solve, their solvers and new states, and the pairs after that. A fifth of the bodies is fast:
+// none of their pairs lasts.
 static void tell_on(story *s)
 {
 	uint64_t *seed = &s->seed;
@@ -73,7 +73,7 @@ static void link_pairs(const rank *r, uint32_t pairs)
 	ob_pairs_link(r->u);
 }
 
-// All know where bodies live; who had them gives them to who has them now.
+// All ranks know the bodies' homes; the previous owner sends a body to the new one.
 static void move(rank *r)
 {
 	ob_step_data *data = ob_universe_step_data(r->u);
@@ -122,7 +122,7 @@ static void note_border(rank *r, uint32_t id)
 	ob_halo_note_border(r->h, id, is_at);
 }
 
-// The owner finds the next motion, for which it needs the last; who is told needs that, too, unless it is restored.
+// The owner computes the next motion from the last one; receivers need the last one, too, unless it is restored.
 static void solve(rank *r)
 {
 	story *s = r->s;

@@ -1,5 +1,5 @@
-// What pairs keep, of several ranks: it goes to who needs it next and to no one else, whole; and damage to it is found.
-// The other rank is made up here.
+// Pair records of several ranks: each goes to the rank that needs it next and to no other, whole; damage is detected.
+// The test plays the other rank.
 #include "check.h"
 
 #include <stdlib.h>
@@ -39,7 +39,7 @@ typedef struct fixture {
 	ob_holdings *h;
 	other wire;
 	ob_peers p;
-	ob_mail mail; // what has gone to the other rank
+	ob_mail mail; // sent to the other rank
 	uint32_t record;
 	int version;
 	ob_pair_state *state;
@@ -47,7 +47,7 @@ typedef struct fixture {
 
 enum { CRATE = 1 };
 
-// The simulator that is to solve the crate: of the rank of that number.
+// Sets the simulator that solves the crate: the one of the rank with that number.
 static void give_crate_to(fixture *f, uint32_t simulator)
 {
 	ob_task_reset_from(f->l.u, 1, simulator, 1);
@@ -139,7 +139,7 @@ static void check_ways(void)
 	memcpy(parcel, f.mail.bytes, bytes);
 	CHECK(!kept_state(&f) && !ob_holdings_here_alone(f.h, f.l.u, f.record));
 	CHECK(move(&f) == 0);
-	CHECK(!ob_holdings_take(f.h, f.l.u, parcel, bytes)); // which is the other's now
+	CHECK(!ob_holdings_take(f.h, f.l.u, parcel, bytes)); // the other rank owns it now
 	give_crate_to(&f, 0);
 	CHECK(!ob_holdings_take(f.h, f.l.u, parcel, bytes - 8));
 	CHECK(ob_holdings_take(f.h, f.l.u, parcel, bytes));

@@ -91,7 +91,7 @@ static double difference(build *scene, double time, int *objects)
 			const ob_state a = little_state(&u[0], (uint32_t)id), b = little_state(&u[1], (uint32_t)id);
 			const ob_mat3 ra = ob_quat_matrix(a.pose.q), rb = ob_quat_matrix(b.pose.q);
 			now = fmax(now, ob_norm(ob_sub(a.pose.p, b.pose.p)));
-			for (int i = 0; i < 3; i++) // of points a metre from the centre
+			for (int i = 0; i < 3; i++) // points a metre from the centre
 				now = fmax(now, ob_norm(ob_sub(ob_column(&ra, i), ob_column(&rb, i))));
 		}
 		most = fmax(most, now);

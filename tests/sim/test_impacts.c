@@ -58,7 +58,7 @@ static void test_flat_box(double friction, double tilt)
 typedef struct collision {
 	bool slower; // they hit
 	bool sides; // they have changed sides
-	double parting; // of the speed at which they met
+	double parting; // share of the speed at which they met
 	double gained; // energy, relative
 } collision;
 
@@ -89,8 +89,8 @@ static collision collide(uint64_t *seed, double speed, uint32_t substeps)
 	return out;
 }
 
-// Some corners slip past each other, and the two fly on as they turn round each other; whether they do is known from
-// runs that are made in a hundred times as many substeps. Where they hardly part along their line, either is right.
+// Some corners slip past each other, and the two fly on as they turn round each other; runs in a
+// hundred times as many substeps say if they do. If they hardly part along their line, either is right.
 static void test_collisions(double speed, int aims)
 {
 	uint64_t seed = 19;
@@ -311,7 +311,7 @@ static void test_oblique(ob_shape other, int hits)
 
 // ---- a break
 
-// Fifteen balls in a triangle, touching, hit by a sixteenth along its axis: what comes of it is as symmetric as it was.
+// Fifteen balls in a triangle, touching, hit by a sixteenth along its axis: the result keeps the symmetry.
 static void test_break(double e, double mu, double gravity, double turn)
 {
 	little_scene *s = little_scene_new();

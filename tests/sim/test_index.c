@@ -57,7 +57,7 @@ static bool neighbours(const ob_universe *u, const little_scene *s, uint32_t i, 
 	return true;
 }
 
-static uint64_t tests; // of boxes, so far
+static uint64_t tests; // box tests so far
 
 static void check_queries(const ob_universe *u, const little_scene *s, uint32_t *found)
 {

@@ -1,5 +1,5 @@
-// Kinematic bodies and belts: what they carry, throw, drag and hit, against closed forms, and against the same in
-// another frame of reference.
+// Kinematic bodies and belts: bodies that they carry, throw, drag and hit, against closed forms, and against the same
+// in another frame of reference.
 #include <stdlib.h>
 
 #include "check.h"
@@ -28,7 +28,7 @@ static little_scene *usual_scene(void)
 
 // ---- a shaking table
 
-// How far (m) a block is off after "time" on a table that shakes, and how far it has gone at most.
+// Error (m) of a block's position after "time" on a table that shakes; way: its largest displacement.
 static double shaken_error(double mu, double amplitude, double frequency, uint32_t substeps, double time, double *way)
 {
 	little_scene *s = usual_scene();
@@ -62,8 +62,8 @@ static void test_shaking_table(void)
 	}
 }
 
-// What nothing holds along a surface stands over it, and slip that turns round turns no force round: no partial substep
-// ends there, though rounding has the box a little above the table or in it.
+// A body without friction stays in place over a moving surface, and a reversal of slip reverses no force: no partial
+// substep ends there, though rounding has the box a little above the table or in it.
 static void test_smooth_table(void)
 {
 	uint64_t most = 0;
@@ -132,7 +132,7 @@ static void test_belt(void)
 	}
 }
 
-// A belt of finite length: what comes to its end falls off it.
+// A belt of finite length: a body that comes to its end falls off it.
 static void test_end_of_belt(void)
 {
 	little_scene *s = usual_scene();
@@ -160,7 +160,7 @@ static ob_world_body on_turntable(little_scene *s, double rate, double radius, d
 	return b;
 }
 
-// How far (m) a box has gone, in the frame of the turntable, when that has turned so often.
+// Displacement (m) of a box in the frame of the turntable, after so many turns.
 static double gone(double rate, double radius, double mu, double turns)
 {
 	little_scene *s = usual_scene();
@@ -298,7 +298,7 @@ static void test_lift(void)
 	CHECK_NEAR(lifted.z - height, heavy.z, 1e-6);
 }
 
-// ---- what leaves a lift that falls faster than things fall, and comes down on it again
+// ---- bodies that leave a lift falling faster than g, and come down on it again
 
 typedef struct carried {
 	double amplitude, frequency;
@@ -554,7 +554,7 @@ static void test_bounces_on_turntable(void)
 	}
 }
 
-// What sleeps is woken and pushed away by what comes along, and what stands beside it is not.
+// A moving body wakes and pushes a sleeping one in its way, and not the one beside it.
 static void test_wakes(void)
 {
 	little_scene *s = usual_scene();

@@ -1,5 +1,5 @@
-// What slides or rolls off something round, or over an edge, leaves it where nothing presses it on any more, and flies
-// on along its tangent: as it has let go, the rows of the contact still turn, and must not push it.
+// A body that slides or rolls off something round, or over an edge, leaves it as the normal force ends, and flies on
+// along its tangent: the rows of the contact still turn after that, and must not push it.
 #include <stdlib.h>
 
 #include "check.h"

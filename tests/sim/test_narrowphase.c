@@ -23,7 +23,7 @@ static little_scene *neighbours(ob_narrow_phase narrow)
 	return s;
 }
 
-// How far the boxes round the two objects are apart along the axis that parts them best (m).
+// Gap (m) of the boxes round the two objects along the axis with the largest gap.
 static double gap_between_boxes(const little_universe *l)
 {
 	double a[6], b[6], most = -INFINITY;
@@ -57,7 +57,7 @@ static void test_gap_between(ob_narrow_phase narrow)
 	free(s);
 }
 
-// What falls onto the ground comes to lie on its box: a ball on its lowest point, a turned cube above it.
+// A body that falls onto the ground comes to lie on its box: a ball on its lowest point, a turned cube above it.
 static void test_on_the_ground(ob_narrow_phase narrow)
 {
 	little_scene *s = little_scene_new();

@@ -1,4 +1,4 @@
-// The other architecture against the same table: what it publishes, and objects that come and go.
+// The other architecture against the same table: its published motions, and objects that come and go.
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -85,7 +85,7 @@ static void test_flight(uint32_t substeps)
 	CHECK(ob_universe_get_bounds(u, 1, bounds));
 	CHECK(bounds[2] < now.p.z - .5 - 10 * H && bounds[5] > now.p.z + .5); // until the next step
 	CHECK_NEAR(now.path, 5 + 5 * H, .01);
-	CHECK(ob_universe_get_motion(u, 0, &now) && now.step == 0); // what is static is left as it was placed
+	CHECK(ob_universe_get_motion(u, 0, &now) && now.step == 0); // static objects stay as placed
 	CHECK(ob_ode_baseline_awake(m) == 1 && ob_ode_baseline_pairs(m) == 0);
 	ob_ode_baseline_destroy(m);
 	ob_ode_baseline_destroy(NULL);

@@ -32,7 +32,7 @@ static void shuffle(uint64_t *seed, uint32_t *id, uint32_t n)
 	}
 }
 
-// What a BROADPHASE phase does: objects to requery go into the index and are queried, then the pairs are merged.
+// Runs a BROADPHASE phase: objects to requery go into the index and are queried, then the pairs are merged.
 static void look_around(ob_universe *u)
 {
 	uint32_t count;
@@ -78,7 +78,7 @@ static uint32_t pairs_in_use(const ob_step_data *ex)
 	return ex->count->pairs - ex->count->pairs_idle;
 }
 
-// How many times the list of an object has this pair.
+// Number of times that the list of an object has this pair.
 static int times_listed(const ob_step_data *ex, uint32_t id, uint32_t pair)
 {
 	int times = 0;
@@ -88,7 +88,7 @@ static int times_listed(const ob_step_data *ex, uint32_t id, uint32_t pair)
 	return times;
 }
 
-// How many there are of two objects, each of them once in the lists of those that may move.
+// Number of pairs of two objects; each must be once in the list of each movable one.
 static uint32_t pairs_of(const ob_step_data *ex, uint32_t a, uint32_t b)
 {
 	uint32_t n = 0;

@@ -1,5 +1,5 @@
-// What arrangers of several ranks tell each other: the mail of all in their order; where two differ, which rank, step
-// and object; and that one has left. The other rank is made up here.
+// Messages between the schedulers of several ranks: the mail of all in their order; rank, step and object of a
+// difference; and notices of leaving. The test plays the other rank.
 #include "check.h"
 
 #include <stddef.h>
@@ -119,7 +119,7 @@ static void check_digest(void)
 	close_two(s, &l);
 }
 
-// Who leaves says so once; who hears it leaves, too, and says nothing more.
+// A leaving rank sends one notice; a rank that receives it leaves, too, and sends nothing more.
 static void check_leaving(void)
 {
 	little_scene *s;
@@ -165,7 +165,7 @@ int main(void)
 	check_difference(1 + offsetof(ob_peers_head, digest), 0, "otherwise");
 	check_difference(1 + offsetof(ob_peers_head, phase), 0, "otherwise");
 	check_difference(1 + offsetof(ob_peers_head, differs), DIGEST_OF_CRATE, "object \"crate\"");
-	// Where one has it of another step it is no wonder that it has another.
+	// A digest of another step may differ.
 	check_difference(1 + offsetof(ob_peers_head, digest), DIGEST_OF_CRATE - sizeof(uint64_t), "otherwise");
 	check_difference(1 + offsetof(ob_peers_head, damaged), 0, "of a contact of object");
 	check_difference(1 + offsetof(ob_peers_head, damaged) + sizeof(uint64_t) - 1, 0, "");

@@ -80,7 +80,7 @@ typedef struct course {
 	double scale; // J, what there is to lose
 	double gross, net; // growth over the start, relative; net of what pushing penetrations apart has raised
 	double rise; // net, over the least so far
-	double lost, lost_spin; // of momentum and angular momentum, relative to the sum of all bodies'
+	double lost, lost_spin; // momentum and angular momentum, relative to the sum of all bodies'
 } course;
 
 // Above the lowest that anything can lie
@@ -136,7 +136,7 @@ int main(int argc, char **argv)
 		free(s);
 		CHECK(c.gross <= 1e-5);
 		CHECK(c.net <= 1e-9);
-		// What rests and is hit loses its support at the partial substep's start, not at the instant of the impact.
+		// A resting body that is hit loses its support at the partial substep's start, not at the impact.
 		CHECK(c.rise <= 3e-4);
 		if (kind == FREE) {
 			CHECK(c.lost <= 1e-13);

@@ -1,7 +1,7 @@
-// Three ranks make the islands of one: of random bodies and pairs, each island is one rank's, whole, and its pairs are
-// listed there and nowhere else; all ranks know who lives where; bodies that meet another rank's are solved with those,
-// in a step and when late contacts merge what was solved; no rank has too much to do; and who was moved is where it was
-// moved to. What is expected is found anew, by a flood over all pairs.
+// Three ranks form the same islands as one. Random bodies and pairs: each island is one rank's, whole, and its pairs
+// are listed there and nowhere else; all ranks know the bodies' homes; bodies that meet another rank's are solved with
+// those, in a step and when late contacts merge islands; no rank is overloaded; and moved bodies are at the rank that
+// they were moved to. The expected islands are found by a flood over all pairs.
 #include "check.h"
 
 #include <stdlib.h>
@@ -60,7 +60,7 @@ static uint32_t any(uint64_t *seed, uint32_t of)
 	return i < of ? i : of - 1;
 }
 
-// What touches is one rank's, so bodies are linked where they live; what is expected to touch may be of two.
+// Touching bodies are one rank's: they are linked at home. Bodies expected to touch may belong to two.
 static void begin_story(story *s)
 {
 	const bool few = uniform(&s->seed) < .5;
@@ -257,11 +257,11 @@ static void clear(story *s)
 	s->largest = 0;
 }
 
-// Of the step: no rank has more than a tenth over its share, and one island; who was moved is there, unless several of
-// its island were.
+// Checks the step: no rank exceeds its share by more than a tenth and one island; a moved body is at its new rank,
+// unless several of its island were moved.
 static void check_step(story *s)
 {
-	enum { LITTLE = 16 * 48 }; // that is not worth sharing
+	enum { LITTLE = 16 * 48 }; // not worth sharing
 	uint64_t total = 0;
 	check(s);
 	for (uint32_t r = 0; r < RANKS; r++)

@@ -1,11 +1,11 @@
-// What a solve may read is what it reads: before the simulators solve their islands, all else that they could see is
-// hidden from them, filled with 0xff or not there at all, and the universe ends in the same bits. Left to each are
+// A solve reads only its permitted data: before the simulators solve their islands, all other data are hidden from
+// them, filled with 0xff or unmapped, and the universe ends in the same bits. Each keeps
 //
-//   settings, the step's counts, the plan of its own islands, passports, hulls, and whatever no simulator solves;
-//   of its own islands' members all that is kept of them; of their pairs the key, and the record of before the step.
+//   settings, the step's counts, the plan of its own islands, passports, hulls, and all bodies that no simulator
+//   solves; all data of its own islands' members; the keys of their pairs, and the pairs' records from before the step.
 //
-// So whoever solves an island far away needs to be sent no more than that. The simulators are contained: processes that
-// hand over what they find (table/outbox.h), so that what is hidden from one is still there for all others.
+// So a remote solver of an island needs no more than that. The simulators are contained: processes that hand over their
+// results (table/outbox.h), so that data hidden from one are still there for all others.
 #include "check.h"
 
 #include <signal.h>
@@ -30,7 +30,7 @@ typedef enum hidden {
 	TOO_MUCH, // the records of their pairs, too, which they do need
 } hidden;
 
-// What a simulator's islands need, by element.
+// Elements that a simulator's islands need.
 typedef struct needed {
 	bool *object, *mine, *pair, *record, *island, *place, *pair_place; // mine: those of object that are members
 } needed;
@@ -45,7 +45,7 @@ static uint64_t end_of(const ob_universe *u, ob_area area)
 	return area + 1 < OB_AREAS ? u->header.area[area + 1] : u->header.bytes;
 }
 
-// Maps an area anew: what is written to it then stays here, or nobody can read it, or it is everybody's again.
+// Maps an area anew: private to this process, unreadable, or shared again.
 static void map(const ob_universe *u, ob_area area, int protection, int flags)
 {
 	const uint64_t at = u->header.area[area], bytes = end_of(u, area) - at;
@@ -62,7 +62,7 @@ static void fill(const ob_universe *u, ob_area area, uint32_t elements, const bo
 			memset(u->base + u->header.area[area] + i * each, 0xff, each);
 }
 
-// Of the records that are needed, the version of before the step alone.
+// Keeps only the version from before the step of each needed record.
 static void fill_versions(const ob_universe *u, const needed *n, hidden what)
 {
 	const ob_step_data *data = &u->step_data;
@@ -151,7 +151,7 @@ static void show(const ob_universe *u)
 		map(u, unread[i], PROT_READ | PROT_WRITE, MAP_SHARED);
 }
 
-// ---- who is hidden from what
+// ---- hidden data of each simulator
 
 static bool *flags(uint32_t n)
 {
@@ -231,7 +231,7 @@ static uint64_t run_apart(little_scene *s, hidden what)
 	return hash;
 }
 
-// As a process: whether it ends in that hash. One whose simulators cannot see enough may end in any way.
+// Runs in a process: true if it ends in that hash. With too much hidden, it may end in any way.
 static bool ends_in(little_scene *s, hidden what, uint64_t hash)
 {
 	int status = -1;

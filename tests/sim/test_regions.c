@@ -1,4 +1,4 @@
-// Regions of random worlds: every rank finds the same; what touches is in one; each simulator has its share of the
+// Regions of random worlds: every rank finds the same; touching bodies share one; each simulator has its share of the
 // work, as far as islands allow; and few bodies have neighbours of another rank's, compared with the best of simple
 // cuts. As bodies mix, and work gathers in a corner, so it stays.
 #include <math.h>
@@ -45,7 +45,7 @@ static bool overlap(const place *a, const place *b)
 	return near;
 }
 
-// Which of those that overlap touch follows from their numbers.
+// The ids of overlapping bodies decide if they touch.
 static void write_world(ob_universe *u, const world *w)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -69,7 +69,7 @@ static void write_world(ob_universe *u, const world *w)
 	ob_pairs_link(u);
 }
 
-// Of how many bodies others than their own have neighbours, once for each of those.
+// Number of copies: bodies with neighbours on other ranks, counted once for each of those ranks.
 static uint32_t copies(const ob_universe *u, const uint32_t *rank)
 {
 	static bool has[BODIES][RANKS];
@@ -242,7 +242,7 @@ static const char *gather(void *wire, const void *mine, size_t n, const size_t *
 	return w->bytes;
 }
 
-// What is near a corner costs much more: all of it is dealt again when that has gone on for a while, and no earlier.
+// Bodies near a corner cost much more: regions are drawn again after a while of that, and no earlier.
 static void check_work(ob_universe *u, const world *w)
 {
 	static uint32_t work[BODIES], before[BODIES];

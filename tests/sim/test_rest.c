@@ -71,7 +71,7 @@ static void test_no_sleep(void)
 	free(s);
 }
 
-// What is in equilibrium costs nothing, though nothing may sleep, and goes on as soon as it is touched.
+// A body in equilibrium costs nothing, though nothing may sleep, and goes on as soon as it is touched.
 static void test_still(void)
 {
 	little_scene *s = little_scene_new();
@@ -192,7 +192,7 @@ static void test_added(void)
 	free(s);
 }
 
-// ---- rest is a balance of forces: what is just short of it goes on, however slowly; what is just within it rests
+// ---- rest is a balance of forces: a body just short of it goes on, however slowly; one just within it rests
 
 // Steps until all moving bodies of the scene rest; 0: they do not within "seconds".
 static uint64_t steps_to_rest(little_scene *s, double seconds)

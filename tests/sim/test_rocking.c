@@ -65,7 +65,7 @@ static double check_block(double slenderness, bool on_box, uint32_t substeps)
 	return lost;
 }
 
-// At the second order, to the shortest substeps: what is neglected in one of them must not add up in so many more.
+// Second order down to the shortest substeps: the neglected terms must not add up in so many more.
 static void check_refined(double slenderness)
 {
 	double lost = check_block(slenderness, false, 8);
@@ -76,8 +76,8 @@ static void check_refined(double slenderness)
 	}
 }
 
-// A brick whose centre is a little beyond the edge that it lies on: it topples about that edge. Of what turns it, its
-// centre's distance from the edge, the first .1 mm that the edge is off would take a fifth.
+// A brick whose centre is a little beyond the edge that it lies on: it topples about that edge. An error of the
+// edge of .1 mm would take a fifth of its lever, the distance of the centre from the edge.
 static void check_toppling(double beyond, double tolerance, uint32_t substeps)
 {
 	const ob_vec3 half = ob_v3(.5, .25, .1);

@@ -66,7 +66,7 @@ static void test_rolls_off(ob_shape shape)
 	free(s);
 }
 
-// Spins about the vertical where nothing brakes it, for a point has no arm: that moves no surface, and is no rest.
+// Spins about the vertical without a brake, for a point has no arm: spinning moves no surface, and is no rest.
 static void test_spins_on(ob_shape shape, double mu, double spin)
 {
 	little_scene *s = little_scene_new();
@@ -77,7 +77,7 @@ static void test_spins_on(ob_shape shape, double mu, double spin)
 	o.state->w = ob_v3(0, 0, spin);
 	const uint32_t id = o.passport->id;
 	ob_world_material(&s->world, mu, 0);
-	s->run.sleeping = spin > .01; // what is slower may sleep
+	s->run.sleeping = spin > .01; // slower bodies may sleep
 	little_universe u;
 	little_open(&u, s);
 	little_run(&u, 120);
@@ -86,8 +86,8 @@ static void test_spins_on(ob_shape shape, double mu, double spin)
 	free(s);
 }
 
-// rad, by which the axis of a cylinder that stands on a slope has turned after two seconds; turn: of the cylinder
-// about its axis.
+// rad, by which the axis of a cylinder that stands on a slope has turned after two seconds; turn: the
+// cylinder's, about its axis.
 static double tips(double slope, double turn)
 {
 	const ob_quat q = about(0, slope, 0);

@@ -1,5 +1,5 @@
-// Seams: what slides or rolls over exactly coplanar tiles goes as far as on one plane, and keeps its height, in any
-// direction and over tiles that may move, too. A step that is higher than what rest may sink still stops it.
+// Seams: a body that slides or rolls over exactly coplanar tiles goes as far as on one plane, and keeps its height, in
+// any direction and over tiles that may move, too. A step higher than the depth allowed at rest still stops it.
 #include <stdlib.h>
 
 #include "check.h"
@@ -9,8 +9,8 @@ static const double g = 9.81; // m/s^2
 
 // A floor of tiles, whose axes are turned about the vertical, and something that starts in the middle of one of them.
 typedef struct course {
-	double turn, heading; // rad: of the tiles; of the velocity against them
-	double attitude; // rad: of what slides against the tiles
+	double turn, heading; // rad: the tiles'; the velocity's against them
+	double attitude; // rad: the sliding body's against the tiles
 	double speed, friction; // m/s
 	double tile; // m, side
 	int along, across; // tiles
@@ -79,7 +79,7 @@ static passage pass(const course *c, double time)
 	return out;
 }
 
-// way_error: of the way, and of how far it comes off its heading; highest: m, hop.
+// way_error: relative, of the way and of its sideways deviation; highest: m, hop.
 static void check_slide(const char *what, const course *c, double way_error, double highest)
 {
 	const double l = c->scale > 0 ? c->scale : 1, time = c->speed / (c->friction * g) + .5;
@@ -140,7 +140,7 @@ static void test_boxes_slide(void)
 	check_slide("little box", &c, 1e-4, 1e-5);
 }
 
-// What they gain or lose comes from sinking by micrometres where the load goes over from one tile to the next.
+// Boxes gain or lose by sinking micrometres while the load goes over from one tile to the next.
 static void test_boxes_without_friction(void)
 {
 	for (double v = .5; v <= 8; v *= 4) {

@@ -1,6 +1,5 @@
-// Plates that slide and spin: each surface element has a cone of friction of its own. How far they get, and by which
-// angle they turn, is compared with the plate's equations of motion, integrated by small steps over a fine grid of
-// elements.
+// Plates that slide and spin: each surface element has a cone of friction of its own. Their way and their angle are
+// compared with the plate's equations of motion, integrated by small steps over a fine grid of elements.
 #include <stdlib.h>
 
 #include "check.h"
@@ -77,7 +76,7 @@ static void slide_to_rest(const plate *p, const double *start, double *s)
 
 typedef struct slide {
 	plate p;
-	double ratio, direction; // v/(w R), R: radius of gyration; of the velocity, from the plate's longer side
+	double ratio, direction; // v/(w R), R: radius of gyration; the velocity's, from the plate's longer side
 	bool on_box;
 	uint32_t substeps;
 } slide;

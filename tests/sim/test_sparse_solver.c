@@ -71,7 +71,7 @@ static bool solve(frame *f, ob_sparse_solver *t, uint32_t most)
 	return true;
 }
 
-// M dv = sum of J^T x for each body. That J dv + e x = y for each row is how x is made.
+// M dv = sum of J^T x for each body. J dv + e x = y holds for each row by construction of x.
 static void check_frame(uint64_t *seed, ob_sparse_solver *t)
 {
 	frame f;
@@ -96,7 +96,7 @@ static void check_frame(uint64_t *seed, ob_sparse_solver *t)
 		}
 }
 
-// A chain costs one product a body, in whatever order its links are told; where each touches each, it costs too much.
+// A chain costs one product a body, in any order of its links; a clique costs too much.
 static void test_cost(ob_sparse_solver *t)
 {
 	ob_sparse_begin(t, MANY);

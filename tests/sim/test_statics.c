@@ -1,5 +1,5 @@
-// What stands beyond the cases of the lab: energy and drift of stacks, heavy on light, a stack that drops onto itself,
-// bricks at the full overhang and cards just held by friction, to a millimetre.
+// Standing structures beyond the cases of the lab: energy and drift of stacks, heavy on light, a stack that drops onto
+// itself, bricks at the full overhang and cards just held by friction, to a millimetre.
 #include <stdlib.h>
 
 #include "check.h"
@@ -9,7 +9,7 @@
 typedef struct outcome {
 	double deepest, drift, sunk; // m: at any moment; the farthest that a body got aside; and down
 	double deepest_end; // m
-	double gained; // of the energy, at most
+	double gained; // share of the energy, at most
 	bool asleep; // some body
 } outcome;
 
@@ -96,7 +96,7 @@ static void lay_bricks(little_scene *s, double stretch)
 	}
 }
 
-// How far any brick has moved after 20 s (m).
+// Largest displacement of a brick after 20 s (m).
 static double bricks_moved(double stretch)
 {
 	little_scene *s = little_scene_new();
@@ -135,7 +135,7 @@ static void lean_card(little_scene *s, double angle)
 	ob_world_box(&s->world, 1, ob_v3(.5 * thickness, .3, .5 * length), ob_sub(foot, from_centre)).state->pose.q = q;
 }
 
-// How far any card has moved in so many seconds (m), with this friction between card and ground.
+// Largest displacement of a card in so many seconds (m), with this friction between card and ground.
 static double cards_moved(double angle, double mu, double time)
 {
 	const double rough = 1; // between the cards: holds any push up to 45 degrees

@@ -8,8 +8,8 @@
 #include "motion/random.h"
 #include "sim/state.h"
 
-// How far any body has moved (m), at most, in so many seconds, in which nothing may sleep; and whether all are in
-// equilibrium then.
+// Largest displacement of a body (m) in so many seconds, in which nothing may sleep; rests: all are in equilibrium
+// then.
 static double moved(little_scene *s, double seconds, bool *rests)
 {
 	little_universe l;
@@ -138,7 +138,7 @@ static uint64_t direct_solves(const little_universe *l)
 	return sum.direct_solves;
 }
 
-// The bricks turn back now and then, each slow for a moment: that is no rest.
+// The bricks turn back now and then, each slow for a moment: a reversal is no rest.
 static void test_wall_that_was_hit(void)
 {
 	little_scene *s = wall_to_be_hit();

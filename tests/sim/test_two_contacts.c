@@ -1,6 +1,6 @@
-// What moves evenly on two others, or on one that gives way: accelerations in closed form, kept to rounding, since a
-// few contacts are solved to the end. A sphere that rolls in a groove, a block that slides down a wedge that slides
-// away, a cylinder that rolls on a plank that is pulled.
+// Bodies that move evenly on two others, or on one that gives way: accelerations in closed form, kept to rounding,
+// since a few contacts are solved to the end. A sphere that rolls in a groove, a block that slides down a wedge that
+// slides away, a cylinder that rolls on a plank that is pulled.
 #include <stdlib.h>
 
 #include "check.h"

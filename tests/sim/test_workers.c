@@ -1,4 +1,4 @@
-// Whoever solves what, the bits are the same: one worker, two, three, or one for each object, in threads.
+// The bits do not depend on the workers: one, two, three, or one for each object, in threads.
 #include <pthread.h>
 #include <stdlib.h>
 
