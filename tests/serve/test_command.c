@@ -118,7 +118,7 @@ static void test_bytes(void)
 			if (i % 2 || ob_splitmix(&seed) % 30 == 0)
 				text[k] = (char)ob_splitmix(&seed);
 		}
-		char *copy = malloc(n + 1); // of its exact size, so that a sanitizer detects reads behind it
+		char *copy = malloc(n + 1); // exact size: a sanitizer detects reads behind it
 		memcpy(copy, text, n);
 		copy[n] = 0;
 		if (ob_command_read(&c, copy, n, &e) && c.kind == OB_DO_CREATE)
