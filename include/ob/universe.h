@@ -105,7 +105,7 @@ typedef struct ob_motion {
 typedef enum ob_universe_state {
 	OB_UNIVERSE_STARTING,
 	OB_UNIVERSE_RUNNING,
-	OB_UNIVERSE_FINISHED, // ended as planned; the table stays as it was at the end
+	OB_UNIVERSE_FINISHED, // ended as planned: no step follows
 	OB_UNIVERSE_FAILED,
 	OB_UNIVERSE_LOST,     // another program has truncated its memory: nothing of it can be read any more
 } ob_universe_state;

@@ -67,8 +67,10 @@ static bool live(ob_host *h, ob_pace *pace, const serve_request *s, uint64_t las
 		at_once = due == UINT64_MAX && done < last;
 		due = at_once ? done + batch : due;
 		due = due < last ? due : last;
-		if (done == last) // the end is reached, and viewers stay
+		if (done == last) { // the end is reached, and viewers stay
+			ob_host_finish(h);
 			nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * patience) }, NULL);
+		}
 		began = ob_clock_wall();
 		ob_host_go(h, due); // while no step is due, requests are still taken
 		done = due;

@@ -89,6 +89,9 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 // diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
+// States to readers that no step will follow (OB_UNIVERSE_FINISHED). Workers stay, and requests are still taken by go.
+// Call it after a wait; again has no effect.
+void ob_host_finish(ob_host *h);
 // Requests the state of all contacts at this step, as a save there needs it. Call it between a wait and the next go, on
 // each of several ranks alike, for one step at a time.
 void ob_host_want_contacts(ob_host *h, uint64_t step);

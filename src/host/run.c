@@ -149,6 +149,12 @@ void ob_host_go(ob_host *h, uint64_t step)
 		begin_interval(h);
 }
 
+void ob_host_finish(ob_host *h)
+{
+	if (!h->failed)
+		ob_universe_set_state(h->u, OB_UNIVERSE_FINISHED);
+}
+
 void ob_host_want_contacts(ob_host *h, uint64_t step)
 {
 	ob_contacts_want(h->u, step);

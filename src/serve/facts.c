@@ -72,9 +72,9 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 		ob_message_print(
 			m,
 			"{\"statistics\":{\"viewers\":%u,\"objects\":%u,\"awake\":%u,\"pairs\":%u,\"islands\":%u,"
-			"\"step\":%llu,\"frozen\":%u}}",
+			"\"step\":%llu,\"frozen\":%u,\"ended\":%s}}",
 			viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
-			info.frozen);
+			info.frozen, info.state == OB_UNIVERSE_FINISHED ? "true" : "false");
 	return m;
 }
 

@@ -10,7 +10,7 @@
 // {"welcome": title, isolation, gravity, look, cameras, paths of meshes ..}: the first message. mesh: contents of the
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
 ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info, const ob_content *mesh);
-// {"statistics": objects, awake, pairs, islands, step, viewers}
+// {"statistics": objects, awake, pairs, islands, step, viewers, ended ..}
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
 // {"details": name, state, mass, island, worker ..}, or that the object is gone
 ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t id);

@@ -181,6 +181,20 @@ class Serve(Case):
 		self.assertFalse(v.paused)
 		self.end()
 
+	def test_duration(self):
+		"""At the end of its duration a universe says so, to viewers and to readers, and can still be viewed."""
+		self.serve("--duration", ".3")
+		v = self.viewer()
+		v.until(lambda: v.told.get("statistics", {}).get("ended"))
+		self.assertEqual(v.told["statistics"]["step"], program.steps(self.name))
+		self.assertIn(f"{self.name}: finished,", program.call("top", self.name, "--once", "--interval", ".01").stdout)
+		late = self.viewer()
+		late.until(lambda: late.told.get("statistics", {}).get("ended"))
+		v.send(do="create", shape="box", size=[.2, .2, .2], at=[4, 0, 1], mass=5, name="visitor")
+		late.until(lambda: any(o["name"] == "visitor" for o in late.objects.values()))
+		self.assertIn(f"{self.name}: finished,", program.call("top", self.name, "--once", "--interval", ".01").stdout)
+		self.end()
+
 	def test_full(self):
 		self.serve("--viewers", "2")
 		self.viewer()

@@ -123,7 +123,7 @@ export class Panel extends EventTarget {
 
 	statistics(s) {
 		$('#statistics').textContent = `${s.objects} objects, ${s.awake} awake, ${s.islands} islands, ` +
-			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}${s.frozen ? `, ${s.frozen} frozen` : ''}`;
+			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}${s.frozen ? `, ${s.frozen} frozen` : ''}${s.ended ? ', ended' : ''}`;
 	}
 
 	clock(time, rate, paused) {
