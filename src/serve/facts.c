@@ -1,6 +1,8 @@
 #include "serve/facts.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "motion/flight.h"
 
@@ -75,6 +77,30 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 			"\"step\":%llu,\"frozen\":%u,\"ended\":%s}}",
 			viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
 			info.frozen, info.state == OB_UNIVERSE_FINISHED ? "true" : "false");
+	return m;
+}
+
+ob_message *ob_facts_frozen(ob_host *h, uint64_t *since)
+{
+	ob_death deaths[OB_DEATHS_KEPT];
+	const uint32_t n = ob_host_get_deaths(h, deaths);
+	ob_error text;
+	ob_message *m = NULL;
+	for (uint32_t i = 0; i < n && !m; i++) {
+		const ob_death *d = &deaths[i];
+		if (d->when <= *since || d->frozen == 0)
+			continue;
+		*since = d->when;
+		m = ob_message_new(true);
+		if (!m)
+			return NULL;
+		ob_death_print(d, text.text, sizeof text.text);
+		size_t end = strlen(text.text);
+		snprintf(text.text + end, sizeof text.text - end, "; frozen for it: %u", d->frozen);
+		ob_message_print(m, "{\"notice\":");
+		ob_message_put_json(m, text.text);
+		ob_message_print(m, "}");
+	}
 	return m;
 }
 

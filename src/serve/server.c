@@ -59,6 +59,7 @@ struct ob_server {
 	ob_client *clients;
 	uint32_t count;
 	double details_at; // s
+	uint64_t frozen_told; // ns: time of the latest failure that viewers were sent
 };
 
 // The library's data for a connection: half of it for pages, half for a viewer
@@ -127,6 +128,7 @@ static void look(lws_sorted_usec_list_t *tick)
 	if (contacts)
 		send_all(s, ob_feed_contacts(s->feed), true);
 	if (details && s->clients) {
+		send_all(s, ob_facts_frozen(s->host, &s->frozen_told), false);
 		send_all(s, ob_facts_statistics(s->host, s->count), false);
 		s->details_at = begin + detail_interval;
 	}

@@ -85,6 +85,8 @@ class Serve(Case):
 		v = self.viewer()
 		v.until(lambda: any(o["frozen"] for o in v.objects.values()))
 		v.until(lambda: v.told["statistics"]["step"] > 3 and v.told["statistics"]["frozen"] > 0)
+		v.until(lambda: "notice" in v.told)
+		self.assertRegex(v.told["notice"], r"^ODE gave up in step \d+ at object 0 \(blade\).*; frozen for it: [12]$")
 		self.end(saying="frozen: object 0 (blade)")
 
 	def test_clock(self):

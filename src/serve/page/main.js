@@ -254,6 +254,7 @@ universe.addEventListener('details', (e) => {
 		panel.details(e.detail);
 });
 universe.addEventListener('error', (e) => panel.notice(e.detail));
+universe.addEventListener('notice', (e) => panel.notice(e.detail, 15));
 universe.addEventListener('close', (e) => {
 	const wait = AGAIN[Math.min(tries++, AGAIN.length - 1)];
 	panel.notice(`${e.detail || 'the server does not answer'}; trying again`, 0);
