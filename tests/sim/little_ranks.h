@@ -35,7 +35,7 @@ static inline void little_exchange_close(little_exchange *x)
 	pthread_barrier_destroy(&x->together);
 }
 
-// All ranks come here.
+// Barrier of all ranks.
 static inline void little_meet(little_wire *w)
 {
 	pthread_barrier_wait(&w->x->together);

@@ -78,7 +78,7 @@ void little_close(little_universe *l)
 	ob_universe_destroy(l->u, true);
 }
 
-// The worker and the host take turns in one thread: the host's comes when the gate pauses.
+// The worker and the host alternate in one thread: the host runs when the gate pauses.
 void little_run(little_universe *l, uint64_t steps)
 {
 	ob_error e;

@@ -1,4 +1,4 @@
-// A universe for tests: objects by hand, one worker in the test's own thread.
+// A universe for tests: objects made by hand, one worker in the test's own thread.
 //
 //   little_scene *s = little_scene_new();
 //   ob_world_ground(&s->world);
@@ -23,9 +23,9 @@ enum { LITTLE_MOST = 2048 }; // objects
 
 // Bodies are built with ob_world_box(&s->world, ...) and its like, at most LITTLE_MOST: returned pointers stay valid.
 typedef struct little_scene {
-	ob_run_settings run; // the program's own, but no sleeping; its gravity is what counts
-	uint32_t capacity; // 0: as many as there are objects
-	bool checked; // invariants are checked after each step
+	ob_run_settings run; // the program's own, but no sleeping; its gravity applies
+	uint32_t capacity; // 0: the number of objects
+	bool checked; // checks invariants after each step
 	uint32_t harden; // measures, bits of 1 << ob_harden_measure
 	ob_world world;
 	ob_passport passport[LITTLE_MOST]; // the world's
@@ -46,14 +46,14 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers);
 
 void little_open(little_universe *l, const little_scene *s);
 void little_close(little_universe *l);
-// So many steps on, then a look.
+// Runs a number of steps, then takes a snapshot.
 void little_run(little_universe *l, uint64_t steps);
 void little_run_to(little_universe *l, double time); // s
-// Puts an object of the scene (at a free id), or takes it away, between two runs.
+// Adds an object of the scene (at a free id), or removes it, between two runs.
 void little_put(little_universe *l, uint32_t id);
 void little_take_away(little_universe *l, uint32_t id);
 
-ob_state little_state(const little_universe *l, uint32_t id); // as of the last look
+ob_state little_state(const little_universe *l, uint32_t id); // as of the last snapshot
 double little_energy(const little_universe *l); // J
 ob_penetration little_penetration(const little_universe *l);
 bool little_asleep(const little_universe *l, uint32_t id);

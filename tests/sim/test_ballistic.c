@@ -1,5 +1,5 @@
-// Flights that no step solves until they end: as good as if every object were solved in every step, and for balls the
-// same to the last bit.
+// Flights that no step solves until they end: as accurate as if every object were solved in every step, and for balls
+// the same to the last bit.
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 
 enum { STEPS = 90 };
 
-// A few things thrown about over a floor and beside a wall, near each other or not.
+// A few bodies thrown over a floor and beside a wall, near each other or not.
 static little_scene *thrown(uint64_t *seed, bool balls, double room)
 {
 	little_scene *s = little_scene_new();
@@ -35,7 +35,7 @@ static little_scene *thrown(uint64_t *seed, bool balls, double room)
 	return s;
 }
 
-// All that fly are solved in the next step, and compute their impacts from there.
+// Makes all flying bodies due in the next step, from which they compute their impacts.
 static void call_all(ob_universe *u)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
@@ -47,12 +47,12 @@ static void call_all(ob_universe *u)
 		ob_publish_motion(u, id, &m);
 		ex->schedule[id].due = (uint32_t)ob_step_count(u);
 	}
-	ob_pairs_link(u); // calendars follow what the schedule says
+	ob_pairs_link(u); // calendars follow the schedule
 }
 
 typedef struct outcome {
 	double deepest, growth; // m; relative
-	uint64_t hash, advances, solved; // solved: bodies in steps that were left to the contact solver
+	uint64_t hash, advances, solved; // solved: bodies in steps of the contact solver
 	double energy; // J, at the end
 } outcome;
 
@@ -121,7 +121,7 @@ static void test_nothing_missed(void)
 	CHECK(by_itself < 2 * each_step + 1e-3);
 }
 
-// A plane that comes up under what flies is met all the same.
+// A new plane under a flying body is hit all the same.
 static void test_new_plane(void)
 {
 	little_scene *s = little_scene_new();

@@ -5,7 +5,7 @@
 #include "little_universe.h"
 #include "motion/random.h"
 
-// Two that are thrown at each other, turning; over a floor, from which they may bounce.
+// Two bodies thrown at each other, rotating; over a floor, from which they may bounce.
 static little_scene *thrown(uint64_t *seed, double e, bool floor)
 {
 	little_scene *s = little_scene_new();
@@ -111,7 +111,7 @@ static void test_falling(void)
 	CHECK(deepest < 1e-9);
 }
 
-// Balls without friction turn on as they did, whatever they hit.
+// Balls without friction keep their rotation in any hit.
 static void test_attitudes(void)
 {
 	little_scene *s = little_scene_new();

@@ -28,7 +28,7 @@ static void expect_failure(little_universe *l, ob_step_failure why, uint32_t obj
 		fprintf(stderr, "%s\n", text ? text : "no failure");
 }
 
-// A few bodies are solved for a last grain of work, as if the rest of the step had taken all the others.
+// A few bodies are solved for a last grain of work, as if the rest of the step had spent all the others.
 static void test_spent(void)
 {
 	little_scene *s = little_scene_new();
@@ -45,7 +45,7 @@ static void test_spent(void)
 	free(s);
 }
 
-// The last grain of work goes into what flies alone: past so many planes, or in so many substeps of ODE's stepper.
+// The last grain of work is spent by a lone flight: past many planes, or in many substeps of ODE's stepper.
 static void test_spent_in_flight(void)
 {
 	for (int by_ode = 0; by_ode < 2; by_ode++) {

@@ -1,5 +1,5 @@
-// Calendars against a plain list of when everybody is due; and what runs arrange by them against a look at everybody in
-// each step, in what they find and in how much they look at.
+// Calendars against a plain list of due steps; and schedules of runs by calendars against a check of all bodies in each
+// step, in their results and in their number of checks.
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -15,7 +15,7 @@ static uint32_t random_below(uint64_t *seed, uint32_t n)
 	return (uint32_t)(uniform(seed) * n);
 }
 
-// Entries are set, put off and taken at random while steps go by: each step finds exactly those that are due.
+// Entries are set, postponed and removed at random while steps go by: each step finds exactly the due ones.
 static void test_entries(void)
 {
 	static uint32_t due[OBJECTS], found[OBJECTS];
@@ -106,7 +106,7 @@ static void test_entries_of_several(void)
 	free(s);
 }
 
-// Balls that are thrown up and bounce, some of which meet.
+// Balls that are thrown up and bounce, some of which collide.
 static little_scene *thrown(uint32_t balls, double spacing)
 {
 	uint64_t seed = 32;
@@ -118,7 +118,7 @@ static little_scene *thrown(uint32_t balls, double spacing)
 	return s;
 }
 
-// The same run, but that everybody, and every pair, is looked at in each step: the same bits, so nothing was missed.
+// The same run with a check of each body and each pair in each step: the same bits, so nothing was missed.
 static void test_nothing_missed(void)
 {
 	uint64_t hash[2];
@@ -150,7 +150,7 @@ static uint64_t visits_with(uint32_t at_rest)
 		ob_world_box(&s->world, 1, ob_v3(.2, .2, .2), ob_v3(100 + 3. * (i % 40), 3. * (i / 40), .2));
 	little_universe l;
 	little_open(&l, s);
-	little_run(&l, 60); // all of those sleep by now
+	little_run(&l, 60); // all of the resting ones sleep by now
 	const uint64_t before = ob_universe_step_data(l.u)->count->visits;
 	little_run(&l, 60);
 	const uint64_t visits = ob_universe_step_data(l.u)->count->visits - before;
@@ -185,7 +185,7 @@ static void test_cost_of_flights(void)
 	const uint64_t visits = data->count->visits - before;
 	CHECK(solved > BALLS);
 	CHECK(visits <= LOOKS * solved);
-	CHECK(LOOKS * solved < (uint64_t)BALLS * STEPS); // or that would say little
+	CHECK(LOOKS * solved < (uint64_t)BALLS * STEPS); // or the comparison would mean little
 	little_close(&l);
 	free(s);
 }

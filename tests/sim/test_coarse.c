@@ -1,4 +1,4 @@
-// Tolerances above the default: each is kept, and what it leaves room for is not computed.
+// Tolerances above the default: each is kept, and coarser ones need less computation.
 #include <stdlib.h>
 
 #include "check.h"
@@ -9,7 +9,7 @@
 static const double tolerances[] = { 1e-3, 5e-3, 20e-3, 50e-3 }; // m
 enum { TOLERANCES = sizeof tolerances / sizeof *tolerances };
 
-// As the program runs it when a tolerance is asked for.
+// Settings of the program with this tolerance.
 static little_scene *tolerant(double tolerance)
 {
 	little_scene *s = little_scene_new();
@@ -147,7 +147,7 @@ static void test_sleeps_as_soon(void)
 	}
 }
 
-// Rebounds without loss keep the energy, of what turns and of what hits in the air, however coarse the tolerance.
+// Rebounds without loss keep the energy, of rotation and of hits in the air, too, with any tolerance.
 static void test_energy(double tolerance)
 {
 	uint64_t seed = 7;
@@ -172,7 +172,7 @@ static void test_energy(double tolerance)
 	free(s);
 }
 
-// A box that slides fast over another is looked at once in a step: when the next one begins, it is where it was found.
+// A box that slides fast over another is checked once in a step: at the next step's start, its pose is the one found.
 static void test_looks_once(double tolerance)
 {
 	enum { SECONDS = 1 };

@@ -50,7 +50,7 @@ static void create(life *x, uint32_t id)
 		ob_sim_prescribe(x->l.u, id, NULL, 0);
 }
 
-// Creates, removes or freezes so many objects, the same ones more than once.
+// Creates, removes or freezes objects, the same ones more than once.
 static void change(life *x, uint32_t changes)
 {
 	while (changes-- > 0) {
@@ -93,7 +93,7 @@ static void test_life(uint64_t seed)
 	free(s);
 }
 
-// Each list, broken by hand, is found out.
+// Damage to each list is detected.
 static void test_broken(void)
 {
 	little_scene *s = little_scene_new();

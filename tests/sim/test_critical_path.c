@@ -67,7 +67,8 @@ static void test_beside(ob_universe *u)
 	CHECK(ob_critical_path(u) - before == 107);
 }
 
-// Islands are put into chunks as if for so many workers: here one each, which all but the last two workers have once.
+// Islands are put into chunks as for the simulated workers: here one each, which all but the last two workers have
+// once.
 static void test_islands(ob_universe *u)
 {
 	enum { ISLANDS = 2 * OB_SIMULATED_WORKERS - 2 };

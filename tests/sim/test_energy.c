@@ -1,4 +1,4 @@
-// Frictional contact never adds energy, but for what pushing penetrations apart raises, and that is counted.
+// Frictional contact never adds energy, except for the potential energy of penetrations pushed apart, which is counted.
 #include <stdlib.h>
 
 #include "check.h"
@@ -114,7 +114,7 @@ static double between_lowest(const ob_state *x, ob_vec3 half, double *lowest)
 	return second - *lowest;
 }
 
-// A box falls from one corner, which slides over smooth ground: until another one comes down, nothing is won.
+// A box falls from one corner, which slides over smooth ground: until another one hits, energy does not grow.
 static void test_smooth_corner(void)
 {
 	double most = 0;

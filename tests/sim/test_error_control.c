@@ -18,7 +18,7 @@ static little_scene *tolerant(double tolerance)
 }
 
 typedef struct outcome {
-	double worst, rests; // m, measured at the step boundaries; in the mean of the pairs, at the end
+	double worst, rests; // m, largest at the step boundaries; in the mean of the contacts, at the end
 	ob_counters count;
 	ob_state top; // last object
 } outcome;
@@ -82,7 +82,7 @@ static outcome heap(double tolerance)
 	return watch(s, 4);
 }
 
-// Boxes and spheres at random, as the program runs them when a tolerance is asked for.
+// Random boxes and spheres, with the program's settings for a tolerance.
 static little_scene *random_heap(uint64_t seed, double tolerance)
 {
 	little_scene *s = tolerant(tolerance);
@@ -99,7 +99,7 @@ static little_scene *random_heap(uint64_t seed, double tolerance)
 	return s;
 }
 
-// A tolerance is kept, by what can be measured from outside, and a smaller one rests no deeper.
+// A tolerance is kept, as measured from outside, and a smaller one gives no deeper rest.
 static void test_random_heaps(void)
 {
 	enum { SEEDS = 6 };
@@ -146,7 +146,7 @@ static void test_heap(void)
 	check_kept(&fine, .5e-3);
 	CHECK(fine.count.body_substeps > coarse.count.body_substeps);
 	CHECK(fine.count.islands_redone > coarse.count.islands_redone);
-	// most steps are easy: not everything pays for the worst
+	// most steps are easy: not all pay for the hardest
 	uint64_t easy = fine.count.chosen[0] + fine.count.chosen[1];
 	CHECK(easy > fine.count.island_steps / 2);
 }
@@ -273,7 +273,7 @@ static uint64_t hash(ob_integrator integrator, bool fresh)
 	return h;
 }
 
-// ODE's bodies and the scratch memory keep nothing of a solution that was thrown away.
+// ODE's bodies and the scratch memory keep nothing of a rejected solution.
 static void test_no_trace(void)
 {
 	CHECK(hash(OB_INTEGRATOR_EXACT, true) == hash(OB_INTEGRATOR_EXACT, false));

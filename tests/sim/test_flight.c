@@ -1,4 +1,4 @@
-// Objects that touch nothing: the closed form, and ODE's own stepper with its error of the first order.
+// Objects without contacts: the closed form, and ODE's own stepper with its error of the first order.
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,7 +72,7 @@ static void test_by_ode(void)
 	CHECK(error_at_two_seconds(OB_INTEGRATOR_EXACT, 1) < 1e-12);
 }
 
-// An object that touches nothing is nobody's business: others far away change no bit of it.
+// Other objects far away change no bit of an object without contacts.
 static void test_alone_or_not(void)
 {
 	little_scene *s = thrown_box(OB_INTEGRATOR_EXACT, 8);
@@ -129,7 +129,8 @@ static void test_long(void)
 	free(s);
 }
 
-// A kept plan, one that another object has pushed out, and one whose object starts anew give the bits of a fresh one.
+// A cached rotation, one that another object has replaced, and one whose object starts anew give the bits of a fresh
+// one.
 static void test_kept_plans(void)
 {
 	enum { OBJECTS = 5, STARTS = 3 };

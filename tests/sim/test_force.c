@@ -1,5 +1,5 @@
-// A force of an object's own: constant, in flight, in contact, in both architectures, and while asleep; and changing in
-// time, as the host sets it.
+// A force on an object: constant, in flight, in contact, in both architectures, and while asleep; and time-dependent,
+// as set by the host.
 #include <stdlib.h>
 
 #include "check.h"
@@ -8,7 +8,7 @@
 
 static const double g = 9.81; // m/s^2
 
-// m, from where s = (v + a t / 2) t says, after 2 s in flight
+// m, deviation from s = (v + a t / 2) t after 2 s in flight
 static double flight_error(ob_integrator integrator, uint32_t monolith)
 {
 	little_scene *s = little_scene_new();
@@ -80,11 +80,11 @@ static void test_friction(void)
 		CHECK_NEAR(moved.pose.p.x / (.6 * way), 1, integrator == OB_INTEGRATOR_EXACT ? .003 : .01);
 		CHECK_NEAR(moved.pose.p.y / (.8 * way), 1, integrator == OB_INTEGRATOR_EXACT ? .003 : .01);
 	}
-	// ODE's friction is a pyramid along x and y: along the diagonal it holds more, along an axis as much
+	// ODE's friction is a pyramid along x and y: stronger along the diagonal, equal along an axis
 	CHECK(ob_norm(pushed(2 * limit, OB_INTEGRATOR_EXACT, 1, &asleep).v) > 1);
 }
 
-// A force that lifts what lies on the ground, and one that presses it against a ceiling without gravity.
+// A force that lifts a body off the ground, and one that presses it against a ceiling without gravity.
 static void test_against_gravity(void)
 {
 	little_scene *s = little_scene_new();
@@ -98,7 +98,7 @@ static void test_against_gravity(void)
 	little_run_to(&l, 3);
 	CHECK_NEAR(little_state(&l, 1).pose.p.z, 1.25, 1e-3);
 	CHECK(little_asleep(&l, 1));
-	// it has lost what the force put in on the way, and no energy came from nowhere
+	// it has lost the energy of the force's work on the way, and gained none
 	CHECK_NEAR(little_energy(&l) - energy, -50 * 1.25, .05);
 	little_close(&l);
 	free(s);
@@ -108,7 +108,7 @@ static void test_against_gravity(void)
 
 static const ob_vec3 none = { 0, 0, 0 };
 
-// So many steps, with what the host does before each.
+// Runs a number of steps, and sets the force before each, as the host does.
 static void run_under(little_universe *l, uint32_t id, const ob_force *f, double h, uint64_t steps)
 {
 	for (uint64_t i = 0; i < steps; i++) {

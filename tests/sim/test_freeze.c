@@ -32,7 +32,7 @@ static void test_obstacle(void)
 	free(s);
 }
 
-// Those that lie on it wake, and stay, when what they lie on is frozen; those below carry nothing any more.
+// When a body is frozen, those on it wake, and stay; those below it carry no load any more.
 static void test_stack(void)
 {
 	little_scene *s = little_scene_new();
@@ -54,7 +54,7 @@ static void test_stack(void)
 	free(s);
 }
 
-// The others' work, however much it was, is not this island's.
+// Other islands' work does not count against this island's budget.
 static void test_budget(bool freezes)
 {
 	little_scene *s = little_scene_new();

@@ -20,7 +20,7 @@ static slope incline(double angle)
 	return (slope){ q, ob_column(&r, 0), ob_column(&r, 2) };
 }
 
-// When a speed that falls evenly gets to zero, from two samples of it, h apart, the second one at time t.
+// Zero of a linearly falling speed, from two samples, h apart, the second one at time t.
 static double zero_of(double before, double now, double h, double t)
 {
 	return t + h * now / (before - now);
@@ -95,7 +95,7 @@ static void ball_on_incline(double share)
 enum { BOX = 1, BALL = 2, BALLS = 25 };
 static const double push = 150; // N
 
-// Velocities as the closed form says, along the push.
+// Squared error of the velocity along the push, against the closed form.
 static double squared_error(const little_universe *l, uint32_t id, ob_vec3 direction, double a)
 {
 	double t = l->scene->run.step_length * (double)ob_step_count(l->u);

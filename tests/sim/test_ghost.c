@@ -1,4 +1,4 @@
-// The two solvers that are there to be measured against the right ones: neighbours as ghosts, and read late.
+// The two deliberately inexact solvers, compared with the right ones: neighbours as ghosts, and read late.
 #include <stdlib.h>
 
 #include "check.h"

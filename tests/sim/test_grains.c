@@ -1,4 +1,4 @@
-// Clouds of small things that fall fast and close together: each has few neighbours, whatever all of them do together.
+// Clouds of small bodies that fall fast and close together: each has few neighbours, whatever the cloud does.
 #include <stdlib.h>
 
 #include "check.h"

@@ -1,6 +1,6 @@
-// Three ranks that know no more motions than they need: bodies move, meet and part, and go from rank to rank, solved or
-// not, at random. Each rank always has its own and their neighbours', to the last bit, and after a gathering
-// everybody's. And damage to what it has is found.
+// Three ranks with only the motions that they need: bodies move, collide, separate, and change their rank, solved or
+// not, at random. Each rank always has its own bodies' and their neighbours' motions, to the last bit, and after a
+// gathering all. Damage to them is detected.
 #include "check.h"
 
 #include "motion/random.h"
@@ -111,7 +111,7 @@ static bool is_true(const rank *r, uint32_t id)
 	return memcmp(ob_newest_motion(r->u, id), &r->s->now[id], sizeof(ob_motion)) == 0;
 }
 
-// As who lists its pairs sees it (sim/island_builder.c).
+// The view of the rank that lists its pairs (sim/island_builder.c).
 static void note_border(rank *r, uint32_t id)
 {
 	const ob_step_data *data = ob_universe_step_data(r->u);
@@ -206,7 +206,7 @@ static void *live(void *arg)
 		solve(r);
 		meet(r);
 		little_meet(&r->wire);
-		if (s->again) // as islands that late contacts merge
+		if (s->again) // like islands that late contacts merge
 			solve(r);
 		publish(r);
 		little_meet(&r->wire);
@@ -267,7 +267,7 @@ static void check_damage(const little_scene *scene)
 	ob_motion m = *ob_newest_motion(u, 0);
 	uint64_t before, after;
 	ob_halo_settle(h, u);
-	CHECK(ob_halo_digest(h, u, 0, &before)); // nothing is known of what the host has published
+	CHECK(ob_halo_digest(h, u, 0, &before)); // the host's publications have no digest
 	ob_stage_motion(u, 0, &m);
 	ob_halo_note(h, 0, &m);
 	ob_commit_motion(u, 0);
@@ -276,8 +276,8 @@ static void check_damage(const little_scene *scene)
 	((unsigned char *)ob_newest_motion(u, 0))[sizeof m / 2] ^= 1;
 	CHECK(!ob_halo_digest(h, u, 0, &after) && after != before);
 	ob_publish_motion(u, 0, &m);
-	CHECK(!ob_halo_digest(h, u, 0, &after) && after == before); // it is not that which was found
-	ob_halo_settle(h, u); // but the host's
+	CHECK(!ob_halo_digest(h, u, 0, &after) && after == before); // it differs from the published one
+	ob_halo_settle(h, u); // the host's applies
 	CHECK(ob_halo_digest(h, u, 0, &after) && after == before);
 	ob_halo_destroy(h);
 	ob_universe_destroy(u, true);
@@ -291,7 +291,7 @@ int main(void)
 		ob_world_sphere(&scene->world, 1, .1, ob_v3(i, 0, 0));
 	for (uint64_t seed = 1; seed <= SEEDS; seed++)
 		check_story(scene, seed, &lacked);
-	CHECK(lacked > SEEDS * STEPS); // else all would have known all
+	CHECK(lacked > SEEDS * STEPS); // else all ranks would have had all motions
 	check_damage(scene);
 	free(scene);
 	return check_end();

@@ -11,7 +11,7 @@ static void test_pile(double e)
 {
 	uint64_t seed = 1;
 	little_scene *s = little_scene_new();
-	s->run.tolerance = 1e-3; // as the program's own settings have it
+	s->run.tolerance = 1e-3; // the program's own setting
 	ob_world_ground(&s->world);
 	for (int i = 0; i < 216; i++) {
 		ob_vec3 p = ob_v3((i % 6 - 2.5) * .75, (i / 6 % 6 - 2.5) * .75, .75 + .8 * (i / 36));
@@ -70,7 +70,7 @@ static double land(uint64_t seed, int columns)
 	return deepest;
 }
 
-// The worst of so many hits is a matter of chance, from seed to seed twice as much: five heaps, and the middle one.
+// The worst of many hits varies at random, by a factor of two between seeds: five heaps, and the median.
 static void test_landings(void)
 {
 	enum { HEAPS = 5 };

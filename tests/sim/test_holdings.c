@@ -11,7 +11,7 @@
 #include "table/home.h"
 #include "table/layout.h"
 
-// As rank 1: says nothing of its own when all is gathered.
+// The wire of rank 1: sends nothing of its own when all is gathered.
 typedef struct other {
 	unsigned calls;
 	char all[1 << 13];
@@ -54,7 +54,7 @@ static void give_crate_to(fixture *f, uint32_t simulator)
 	ob_home_set(f->l.u, CRATE, simulator);
 }
 
-// A crate on the ground, about to be solved again by the first of two simulators, each of which is a rank's.
+// A crate on the ground, about to be solved again by the first of two simulators, one of each rank.
 static void open_crate(fixture *f)
 {
 	ob_error e;
@@ -96,7 +96,7 @@ static void close_crate(fixture *f)
 	free(f->s);
 }
 
-// Returns how many bytes go to the other rank.
+// Returns the number of bytes sent to the other rank.
 static size_t move(fixture *f)
 {
 	ob_mail_clear(&f->mail);
@@ -113,7 +113,7 @@ static void check_damage(void)
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
 	f.state->impulse[0] = nextafter(f.state->impulse[0], 1);
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == 0); // the ground, the first of the two
-	ob_holdings_note(f.h, f.l.u, f.record, -1, NULL, 1); // it is another's
+	ob_holdings_note(f.h, f.l.u, f.record, -1, NULL, 1); // the record belongs to the other rank
 	CHECK(ob_holdings_damaged(f.h, f.l.u) == OB_NO_OBJECT);
 	close_crate(&f);
 }

@@ -22,7 +22,7 @@ static void stand(ob_solver_kind solver, double platform_mass, double limit)
 	little_open(&l, s);
 	double deepest = 0;
 	uint32_t most = 0,
-		 landed = 0; // islands, at any moment; when all have landed, and nothing is in equilibrium yet
+		 landed = 0; // islands, at any moment; after all have landed, before any equilibrium
 	for (int step = 0; step < 300; step++) {
 		little_run(&l, 1);
 		uint32_t islands = ob_universe_step_data(l.u)->count->islands;

@@ -1,5 +1,5 @@
-// Hulls: a box that is given as a hull of its corners moves as the box does; heaps of hulls rest, as deep in each other
-// as boxes are; momentum and energy; slopes, hits, stacks, what rolls over edges and what spins, by closed forms.
+// Hulls: a box made as a hull of its corners moves like the box; heaps of hulls rest with the penetration of boxes;
+// momentum and energy; slopes, hits, stacks, rolling over edges and spinning, by closed forms.
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ static void throw_one(little_scene *s, bool hull)
 	b.passport->restitution = .3;
 }
 
-// On a table, and on what stands there: no planes.
+// On a table, and on bodies that stand there: no planes.
 static void tumble_on_boxes(little_scene *s, bool hull)
 {
 	cuboid(s, hull, 0, ob_v3(5, 5, .5), ob_v3(0, 0, -.5));
@@ -120,7 +120,7 @@ static void boxes_as_hulls(void)
 	}
 }
 
-// The hull of so many points on an ellipsoid.
+// The hull of this number of points on an ellipsoid.
 static ob_world_body pebble(little_scene *s, uint64_t *seed, int points, ob_vec3 p)
 {
 	ob_vec3 point[16];
@@ -135,7 +135,7 @@ static ob_world_body pebble(little_scene *s, uint64_t *seed, int points, ob_vec3
 	return b;
 }
 
-// Nothing is deeper in another than the tolerance, energy does not rise, and in the end all lies still.
+// Penetration stays below the tolerance, energy does not rise, and in the end all lie still.
 static void heap(void)
 {
 	enum { PEBBLES = 48 };
@@ -163,7 +163,7 @@ static void heap(void)
 	finish(&l, s);
 }
 
-// Elastic hulls without friction that fly through each other's midst: momentum, angular momentum and energy stay.
+// Elastic hulls without friction that fly through the same space: momentum, angular momentum and energy are conserved.
 static void swarm(void)
 {
 	enum { BODIES = 10 };
@@ -252,7 +252,7 @@ static void slides(const ob_vec3 *corner, uint32_t corners)
 	finish(&l, s);
 }
 
-// Dropped onto a face: it comes back to e^2 of the height. Onto a corner: Newton's law holds there.
+// Dropped onto a face: it rebounds to e^2 of the height. Onto a corner: Newton's law holds there.
 static void rebounds(const solid *x, double e, bool flat)
 {
 	const double t = .449, v = g * t, height = .5 * v * t; // just before a step ends: no other corner follows
@@ -269,7 +269,7 @@ static void rebounds(const solid *x, double e, bool flat)
 	little_open(&l, s);
 	little_run(&l, (uint64_t)ceil(60 * t));
 	const ob_state now = little_state(&l, 1);
-	const double up = now.v.z + g * (l.now.time - t); // at the hit; the rate of turn stays, all moments are equal
+	const double up = now.v.z + g * (l.now.time - t); // at the hit; constant spin: all moments are equal
 	CHECK_NEAR(up + ob_cross(now.w, arm).z, e * v, 1e-9);
 	if (flat) {
 		CHECK_NEAR(now.pose.p.z + arm.z + .5 * now.v.z * now.v.z / g, e * e * height, 1e-9);
@@ -330,8 +330,8 @@ static void stack_of_prisms(int sides)
 	finish(&l, s);
 }
 
-// A prism of many sides rolls down a slope over its edges: a pendulum on each, which loses at the next what Housner's
-// law says, (I + R^2 cos 2 alpha) / (I + R^2) of the rate being left. All of a kilogram.
+// A prism of many sides rolls down a slope over its edges: a pendulum on each. At the next edge it keeps a share of its
+// rate by Housner's law, (I + R^2 cos 2 alpha) / (I + R^2). Its mass is a kilogram.
 typedef struct rolling {
 	int sides, edges; // has; has gone over
 	double radius, moment, slope;
@@ -397,7 +397,7 @@ static void rolls(int sides, double slope)
 	finish(&l, s);
 }
 
-// A cone on its tip goes round as a heavy symmetric top, at the slower of the two even rates.
+// A cone on its tip precesses like a heavy symmetric top, at the slower of the two steady rates.
 static void top(int sides, double rate, double tilt)
 {
 	ob_vec3 corner[32];

@@ -29,8 +29,8 @@ static void test_spaced_row(double speed)
 	free(s);
 }
 
-// A flat box that bounces on its edges and corners turns from each to the next and keeps its energy, or loses some to
-// friction and where it comes to lie.
+// A flat box that bounces on its edges and corners rotates from each to the next and keeps its energy, or loses some to
+// friction and final rest.
 static void test_flat_box(double friction, double tilt)
 {
 	little_scene *s = little_scene_new();
@@ -56,7 +56,7 @@ static void test_flat_box(double friction, double tilt)
 }
 
 typedef struct collision {
-	bool slower; // they hit
+	bool slower; // than they hit
 	bool sides; // they have changed sides
 	double parting; // share of the speed at which they met
 	double gained; // energy, relative
@@ -114,8 +114,8 @@ static void test_collisions(double speed, int aims)
 
 typedef enum ground_kind { GROUND_PLANE, GROUND_STATIC_BOX, GROUND_FREE_BOX } ground_kind;
 
-// A box of any proportions that comes down flat on a face or an edge leaves straight up at e times its speed, whatever
-// the friction, and does not turn. "turn": about the vertical.
+// A box of any proportions that lands flat on a face or an edge leaves straight up at e times its speed, with any
+// friction, and does not rotate. "turn": about the vertical.
 static void test_flat_landing(ground_kind ground, bool edge, double turn, uint64_t seed)
 {
 	little_scene *s = little_scene_new();
@@ -141,7 +141,7 @@ static void test_flat_landing(ground_kind ground, bool edge, double turn, uint64
 	for (int step = 0; step < 60 * until; step++) {
 		little_run(&l, 1);
 		ob_state x = little_state(&l, 1);
-		if (x.v.z > 0 && apex == 0) // of this parabola
+		if (x.v.z > 0 && apex == 0) // the parabola's
 			apex = x.pose.p.z + x.v.z * x.v.z / 2 / 9.81 - low;
 		sideways = fmax(sideways, hypot(x.v.x, x.v.y));
 		spin = fmax(spin, ob_norm(x.w));
@@ -214,8 +214,8 @@ static ob_vec3 spin_momentum(const ob_passport *p, const ob_state *x)
 	return ob_rotate(&r, ob_v3(p->inertia.x * w.x, p->inertia.y * w.y, p->inertia.z * w.z));
 }
 
-// The law from the states before and after, at whatever step it was: impulse and point follow from the sphere's change
-// of momentum and the instant. Returns the worst violation, relative to the approach; < 0: no hit.
+// Checks the law from the states before and after the hit's step: impulse and point follow from the sphere's change of
+// momentum and the time of the hit. Returns the worst violation, relative to the approach; < 0: no hit.
 static double oblique_error(uint64_t *seed, ob_shape other)
 {
 	double e, mu, worst = -1;
@@ -236,8 +236,8 @@ static double oblique_error(uint64_t *seed, ob_shape other)
 		if (ob_norm(push) == 0)
 			continue;
 		if (after.impacts - before.impacts != 1)
-			break; // they met again before the step's end
-		// The instant: both parabolas of the sphere meet then (straight lines without gravity).
+			break; // they collided again before the step's end
+		// Time of the hit: both parabolas of the sphere intersect then (straight lines without gravity).
 		ob_vec3 dv = ob_sub(a1.v, a0.v), gone = ob_sub(a1.pose.p, a0.pose.p);
 		double h = s->run.step_length, rest = ob_dot(ob_sub(gone, ob_scale(a0.v, h)), dv) / ob_norm2(dv),
 		       t = h - rest;
@@ -270,7 +270,7 @@ static double oblique_error(uint64_t *seed, ob_shape other)
 		ob_vec3 friction = ob_madd(push, -normal, n), slip = ob_madd(u1, -out, n);
 		worst = fabs(out + e * in) / scale;
 		if (out < -e * in && little_energy(&l) >= energy * (1 - 1e-12))
-			worst = 0; // Newton's law would bring energy
+			worst = 0; // Newton's law would add energy
 		worst = fmax(worst, (ob_norm(friction) - mu * normal) / pa->mass / scale);
 		if (ob_norm(slip) > 1e-6 * scale) { // slides on: friction at its bound, against it
 			worst = fmax(worst, fabs(ob_norm(friction) - mu * normal) / pa->mass / scale);
@@ -348,7 +348,7 @@ static void test_break(double e, double mu, double gravity, double turn)
 	free(s);
 }
 
-// A heavy ball knocks a light one, which floats, onto the ground within the step: neither was to come near it.
+// A heavy ball knocks a light one, which floats, onto the ground within the step: neither was forecast to come near it.
 static void test_knocked_onto_ground(void)
 {
 	little_scene *s = little_scene_new();

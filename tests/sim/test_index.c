@@ -1,4 +1,5 @@
-// The hash grid against looking at everyone: sizes over six decades, objects that move, grow, go and come back, planes.
+// The hash grid against a check of all pairs: sizes over six decades, objects that move, grow, are removed and added,
+// planes.
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,7 +30,7 @@ static bool is_plane(uint32_t id)
 	return id >= BODIES;
 }
 
-// Some corner of the box lies on or below the plane.
+// True if a corner of the box lies on or below the plane.
 static bool reaches_below(const ob_state *plane, const float *b)
 {
 	ob_mat3 r = ob_quat_matrix(ob_quat_normalize(plane->pose.q));
@@ -76,8 +77,8 @@ static void check_queries(const ob_universe *u, const little_scene *s, uint32_t 
 		}
 		CHECK(n == count);
 		uint32_t few[2] = { ALL, ALL };
-		CHECK(ob_index_query(u, i, few, 1, &tests) == n); // says how many there are
-		CHECK(few[1] == ALL); // and writes no more than asked for
+		CHECK(ob_index_query(u, i, few, 1, &tests) == n); // returns the full number
+		CHECK(few[1] == ALL); // and writes no more than requested
 		*found += n;
 	}
 }

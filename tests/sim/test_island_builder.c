@@ -1,4 +1,4 @@
-// Islands against a flood fill over the pairs that touch or are expected to.
+// Islands against a flood fill over the pairs in contact, or expected to be.
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 
 enum { BODIES = 300 };
 
-// Bodies and pairs by hand: nothing but schedule records and pairs matters to the builder.
+// Bodies and pairs made by hand: the builder uses only schedule records and pairs.
 static void random_graph(ob_universe *u, uint64_t seed, double density)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
@@ -23,7 +23,7 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 	for (uint32_t i = 0; i < BODIES; i++) {
 		double kind = uniform(&seed), path = within(&seed, 0, 10);
 		double reach = uniform(&seed) < .1 ? within(&seed, .1, 1) : within(&seed, 0, .05);
-		ex->neighbours[i] = (struct ob_neighbours){ 0, 0 }; // nobody has asked
+		ex->neighbours[i] = (struct ob_neighbours){ 0, 0 }; // not queried
 		ex->schedule[i] = (ob_schedule){ .path = path, .reach = (float)reach, .state = OB_SCHEDULE_AWAKE };
 		if (kind < .1)
 			ex->schedule[i].state = OB_SCHEDULE_STATIC;
@@ -55,7 +55,7 @@ static void random_graph(ob_universe *u, uint64_t seed, double density)
 
 typedef struct flood {
 	uint32_t island[BODIES]; // lowest id of the group
-	bool united[BODIES]; // by lowest id: made of several that had been solved apart, or met something fixed
+	bool united[BODIES]; // by lowest id: merged after separate solves, or hit a fixed body
 } flood;
 
 static bool moves(const ob_step_data *ex, uint32_t id)
@@ -116,7 +116,7 @@ static void check_members(const ob_step_data *ex, const flood *f, const ob_islan
 {
 	const uint32_t *member = ex->member + is->first_member;
 	uint32_t group = f->island[member[0]], count = 0;
-	CHECK(group == member[0]); // the lowest leads
+	CHECK(group == member[0]); // the lowest id leads
 	for (uint32_t i = 0; i < BODIES; i++)
 		if (moves(ex, i) && f->island[i] == group) {
 			CHECK(count < is->members && member[count] == i);
@@ -144,7 +144,7 @@ static void check_island_pairs(const ob_step_data *ex, const flood *f, const ob_
 	CHECK(count == is->pairs);
 }
 
-// Chunks of what is to be solved, largest first.
+// Chunks of unsolved islands, largest first.
 static void check_order(const ob_step_data *ex, uint32_t solved)
 {
 	uint32_t n = ex->count->islands - solved;
@@ -178,7 +178,7 @@ static void check_plan(const ob_step_data *ex)
 	check_order(ex, 0);
 }
 
-// All pairs lose their entries, so that it is seen which get one.
+// Clears the entries of all pairs, so that new ones are visible.
 static void forget_entries(ob_universe *u)
 {
 	const ob_calendar look = ob_calendar_of_pairs(u);
@@ -192,7 +192,7 @@ static bool is_solved_again(const ob_step_data *ex, uint32_t id)
 	return is != UINT32_MAX && !ex->island[is].solved;
 }
 
-// Pairs of what is solved again are to be checked again, and no others. All that are in islands are in the list of one.
+// Pairs of islands solved again are checked again, and no others. All pairs in islands are in one list.
 static void check_lists_after_reunion(const ob_universe *u)
 {
 	const ob_step_data *ex = ob_universe_step_data(u);
@@ -211,8 +211,8 @@ static void check_lists_after_reunion(const ob_universe *u)
 	CHECK(inside == listed && ex->count->island_pairs == listed);
 }
 
-// Some pairs of different islands meet, some members meet a fixed body, and some have fallen asleep meanwhile: islands
-// of more than one of the old are to be solved, the others stand.
+// Some pairs of different islands are in new contact, some bodies with a fixed one, and some have fallen asleep
+// meanwhile: islands merged from several are solved again, the others stand.
 static void check_reunion(ob_universe *u, uint64_t seed)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
@@ -258,7 +258,7 @@ static void check_reunion(ob_universe *u, uint64_t seed)
 		const ob_pair_key *k = &ex->pair[i];
 		uint32_t id = moves(ex, k->a) ? k->a : k->b, is = ex->result_island[id];
 		if (is != UINT32_MAX && !ex->island[is].solved)
-			CHECK(isinf(k->limit)); // nothing that was found in the step holds
+			CHECK(isinf(k->limit)); // no result of the step holds
 	}
 	check_order(ex, ex->count->islands - unsolved);
 }

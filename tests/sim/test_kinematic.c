@@ -17,7 +17,7 @@ static void done(little_universe *l, little_scene *s)
 	free(s);
 }
 
-// With the tolerance that the program has unless it is told otherwise
+// Settings with the program's default tolerance
 static little_scene *usual_scene(void)
 {
 	little_scene *s = little_scene_new();
@@ -215,8 +215,8 @@ static void test_ball_on_turntable(void)
 
 // ---- frames of reference
 
-// A box tumbles onto a table and slides; "along": the velocity of all of it; lift: m/s^2, at which the table goes up,
-// from below, instead of so much more gravity.
+// A box tumbles onto a table and slides. "along": velocity of the whole scene; lift: m/s^2, upward acceleration of the
+// table, from below, instead of that much more gravity.
 static ob_state tumble(ob_vec3 along, bool moving, int steps, ob_vec3 *table_p)
 {
 	little_scene *s = usual_scene();
@@ -253,7 +253,7 @@ static void test_boost(void)
 	}
 }
 
-// A stack on a lift that goes up ever faster is as one under more gravity: a top box hit from the side slides as far.
+// A stack on an accelerating lift is like one under more gravity: a top box hit from the side slides as far.
 static ob_vec3 slid_on_lift(double gravity, const ob_path *path, double *height)
 {
 	little_scene *s = usual_scene();
@@ -321,7 +321,7 @@ static double flight_height(const carried *c, double t)
 	return c->z + c->v * (t - c->since) - .5 * g * (t - c->since) * (t - c->since);
 }
 
-// The instant in between at which a body that flies comes down on the table
+// Time between these two at which a flying body lands on the table
 static double landing(const carried *c, double from, double to)
 {
 	for (int i = 0; i < 60; i++) {
@@ -331,7 +331,7 @@ static double landing(const carried *c, double from, double to)
 	return to;
 }
 
-// The lowest point of what lies on the table, at t, if it is asked for in small steps.
+// Lowest point of a body on the table at t; call it in small steps.
 static double carried_height(carried *c, double before, double t)
 {
 	const double share = g / (c->amplitude * c->frequency * c->frequency);
@@ -507,8 +507,7 @@ static void test_paddle(void)
 	}
 }
 
-// A paddle that turns meets a ball that waits: (1 + e) times the velocity of the place where it meets it, along its
-// normal.
+// A rotating paddle hits a ball at rest: (1 + e) times the velocity of the point of contact, along its normal.
 static void test_turning_paddle(void)
 {
 	static const struct {
@@ -535,7 +534,7 @@ static void test_turning_paddle(void)
 	}
 }
 
-// An elastic ball goes on bouncing on a smooth plate, however fast that turns below it.
+// An elastic ball goes on bouncing on a smooth plate, at any speed of the plate's rotation.
 static void test_bounces_on_turntable(void)
 {
 	for (double rate = 1; rate <= 1000; rate *= 10) {

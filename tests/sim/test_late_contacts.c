@@ -1,5 +1,5 @@
-// Objects that are hit within a step and hit something else in the same step: no forecast sees it, the check for late
-// contacts does.
+// Objects that are hit within a step and hit another in the same step: no forecast includes it, the check for late
+// contacts finds it.
 #include <stdlib.h>
 
 #include "check.h"
@@ -37,7 +37,7 @@ static void test_row(void)
 	free(s);
 }
 
-// Sleepers that are hit by what was hit wake up and are part of the step in which it happens.
+// Sleepers hit by a body that was itself hit wake up and take part in the same step.
 static void test_sleepers(void)
 {
 	little_scene *s = little_scene_new();
@@ -64,7 +64,7 @@ static void test_sleepers(void)
 	free(s);
 }
 
-// Clouds of fast boxes and spheres in a narrow room: nothing gets through anything, momentum and energy are kept.
+// Clouds of fast boxes and spheres in a narrow room: no body passes through another, momentum and energy are kept.
 static void test_clouds(void)
 {
 	uint64_t merges = 0;

@@ -16,10 +16,10 @@ static ob_quat lying(void)
 	return ob_quat_turn(ob_quat_identity(), ob_v3(M_PI / 2, 0, 0));
 }
 
-// A body of radius r, whose squared radius of gyration is "gyration" r^2 where it rolls and 0 where it slides, goes off
-// a support of radius R from rest at "start" from the top. Its centre leaves the circle of R + r at the cosine
-// 2 cos(start) / (3 + gyration), by energy and the balance of forces across (Routh 1905), with v^2 = g (R + r) cosine.
-// By how much of it the speed along x, which is the same from there on, is off.
+// A body of radius r, with squared radius of gyration "gyration" r^2 if it rolls and 0 if it slides, leaves a support
+// of radius R from rest at "start" from the top. Its centre leaves the circle of R + r at the cosine 2 cos(start) / (3
+// + gyration), by energy and the balance of normal forces (Routh 1905), with v^2 = g (R + r) cosine. Returns the
+// relative error of the speed along x, which is constant from there on.
 static double off(support on, bool rolls, ob_shape shape, double start)
 {
 	const double support_radius = on == EDGE ? 0 : 1, r = .25, away = support_radius + r;
@@ -48,8 +48,8 @@ static double off(support on, bool rolls, ob_shape shape, double start)
 	return result;
 }
 
-// Friction of a coefficient that never slips ends within a partial substep, as the load does, and is taken to last for
-// all of it.
+// Friction with a coefficient that never slips ends within a partial substep, as the load does, and is modelled to last
+// for all of it.
 static void check_leaving(support on, bool rolls, ob_shape shape)
 {
 	double worst = 0;

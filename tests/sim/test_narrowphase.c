@@ -1,4 +1,4 @@
-// What touches what: the shapes as they are, or the boxes along the axes round them; and what a box test costs.
+// Contacts of objects: by their shapes, or by their AABBs; and the cost of a box test.
 #include <stdlib.h>
 
 #include "base/cpu.h"
@@ -45,14 +45,14 @@ static void test_gap_between(ob_narrow_phase narrow)
 	ob_universe_count(l.u, &c);
 	ob_vec3 apart = ob_sub(little_state(&l, 1).pose.p, little_state(&l, 0).pose.p);
 	if (narrow == OB_NARROW_AABB) {
-		CHECK_NEAR(gap_between_boxes(&l), 0, 1e-3); // pushed as far as it had to be
+		CHECK_NEAR(gap_between_boxes(&l), 0, 1e-3); // pushed no farther than necessary
 		CHECK(c.box_tests > before.box_tests);
 	} else {
 		CHECK_NEAR(apart.x, .9, 0);
 		CHECK_NEAR(apart.y, .9, 0);
 		CHECK(c.box_tests == before.box_tests);
 	}
-	CHECK(before.box_tests >= 2); // each has looked at the other
+	CHECK(before.box_tests >= 2); // each has tested the other
 	little_close(&l);
 	free(s);
 }
@@ -72,14 +72,14 @@ static void test_on_the_ground(ob_narrow_phase narrow)
 	CHECK_NEAR(little_state(&l, 1).pose.p.z, .5, 1e-3);
 	double height = little_state(&l, 2).pose.p.z, box = .5 * (cos(.3) + sin(.3));
 	if (narrow == OB_NARROW_AABB)
-		CHECK_NEAR(height, box, 2e-3); // four corners of the box carry it, so nothing turns it
+		CHECK_NEAR(height, box, 2e-3); // four corners of the box carry it, so it does not rotate
 	else
 		CHECK_NEAR(height, .5, 2e-3);
 	little_close(&l);
 	free(s);
 }
 
-// The separation of the boxes is a lower bound of that of the shapes, and the same as of the boxes by hand.
+// The AABBs' separation is a lower bound of the shapes', and equals that of boxes made by hand.
 static void test_find(void)
 {
 	ob_mat3 turned = ob_quat_matrix(ob_quat_turn(ob_quat_identity(), ob_v3(.4, .7, -.2)));
@@ -114,7 +114,7 @@ static double least_time(uint32_t load)
 	return least;
 }
 
-// A hundred times as many numbers take far longer: the compiler has left the sum alone.
+// A hundred times as many numbers take far longer: the compiler has not removed the sum.
 static void test_synthetic_load(void)
 {
 	CHECK(least_time(100000) > 20 * least_time(1000));

@@ -1,4 +1,4 @@
-// However many objects a worker steps, it keeps no more ODE bodies than its share; a body made again steps like the first.
+// A worker keeps no more ODE bodies than its share, with any number of objects; a recreated body steps like the first.
 #include <stdlib.h>
 
 #include "check.h"

@@ -1,5 +1,4 @@
-// Pairs are those whose boxes overlap, whichever object was queried and in whatever order; each has a record of its own
-// while it touches.
+// Pairs are those whose boxes overlap, for any order of queries; each has a record of its own while it is in contact.
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,7 +46,7 @@ static void look_around(ob_universe *u)
 	CHECK(count == 0);
 }
 
-// These objects move to where the seed says, in this order.
+// Moves these objects, in this order, to places that the seed determines.
 static void move(ob_universe *u, const uint32_t *id, uint32_t n, uint64_t seed)
 {
 	for (uint32_t i = 0; i < n; i++) {
@@ -117,7 +116,7 @@ static void check_pairs(const ob_universe *u)
 	CHECK(ob_step_failed(u, NULL) == OB_STEP_OK);
 }
 
-// Each record is one pair's or free: none is lost, none given away twice.
+// Each record belongs to one pair or is free: none is lost, none is assigned twice.
 static void check_records(const ob_universe *u)
 {
 	const ob_step_data *ex = ob_universe_step_data(u);
@@ -140,7 +139,7 @@ static void check_records(const ob_universe *u)
 	free(used);
 }
 
-// Between steps the records of pairs that do not touch are released; then some share of the pairs begins to touch.
+// Between steps the records of pairs without contact are released; then a share of the pairs comes into contact.
 static void touch(ob_universe *u, uint64_t *seed, double share)
 {
 	ob_step_data *ex = ob_universe_step_data(u);
@@ -160,7 +159,7 @@ static void touch(ob_universe *u, uint64_t *seed, double share)
 	check_records(u);
 }
 
-// A pair that may touch before its members have moved by the distance between them has a limit that is too high.
+// No limit may exceed the distance of the pair: it could be in contact before its members have moved that far.
 static void check_limits(const ob_universe *u)
 {
 	const ob_step_data *ex = ob_universe_step_data(u);
@@ -227,7 +226,7 @@ static void test_order(void)
 	free(s);
 }
 
-// A pair in touch is let go when it touches no more, not because its members' boxes have parted.
+// A pair in contact is released when the contact ends, not when its members' boxes separate.
 static void test_active_stays(void)
 {
 	uint64_t seed = 4;
@@ -308,12 +307,12 @@ static void test_versions(void)
 			CHECK(ob_pair_before(&r, step) == before);
 		}
 		CHECK(ob_pair_before(&r, step + 1) != before && ob_pair_before(&r, step + 1)->points == step + 20);
-		CHECK(ob_pair_before(&r, step + 7) == ob_pair_before(&r, step + 1)); // kept while nobody writes
-		step += step == 3; // steps may be left out
+		CHECK(ob_pair_before(&r, step + 7) == ob_pair_before(&r, step + 1)); // kept while not written
+		step += step == 3; // steps may be skipped
 	}
 }
 
-// The fat AABB of what moves along x reaches as far ahead as it gets in two steps, and nowhere else farther than at
+// The fat AABB of a body that moves along x extends ahead by its way in two steps, and elsewhere no farther than at
 // rest.
 static void test_fat_aabb(void)
 {
@@ -339,14 +338,14 @@ static void test_fat_aabb(void)
 	ob_fat_aabb_update(u, 0, &now, 0, 0); // it stopped, and the box is no larger than a box at rest may be
 	CHECK(!memcmp(old, box, sizeof old));
 	now.pose.p.x = 4 * reach;
-	ob_fat_aabb_update(u, 0, &now, 0, 4 * reach); // it has left it; the new one holds what it left behind
+	ob_fat_aabb_update(u, 0, &now, 0, 4 * reach); // it has left it; the new one covers the old place
 	CHECK_NEAR(box[0], -r - margin, 1e-6);
 	CHECK_NEAR(box[3], now.pose.p.x + r + margin, 1e-6);
 	ob_universe_destroy(u, true);
 	free(s);
 }
 
-// The column in which something fell is given up after a while, though it is no wider than what has fallen.
+// The column of a fallen body's fat AABBs is released after a while, though it is no wider than the body.
 static void test_column(void)
 {
 	little_scene *s = little_scene_new();

@@ -11,7 +11,7 @@
 
 enum { CRATE = 1, DIGEST_OF_CRATE = 1 + (2 * CRATE + 1) * sizeof(uint64_t) }; // 1 + the place of a byte of it
 
-// Says as rank 1 what rank 0 says, but for one bit.
+// Sends as rank 1 what rank 0 sends, except for one bit.
 typedef struct echo {
 	size_t wrong[2]; // byte of each message in turn, 1 + its place; 0: none
 	bool leaves; // instead
@@ -30,7 +30,7 @@ static const char *gather(void *wire, const void *mine, size_t n, const size_t *
 	memcpy(w->all + n, mine, n);
 	if (wrong)
 		w->all[n + wrong - 1] ^= 1;
-	if (w->leaves) // as ob_peers_leave has it
+	if (w->leaves) // like ob_peers_leave
 		memset(w->all + n + sizeof(uint64_t), 0xff, sizeof(uint64_t));
 	w->at[1] = n;
 	w->at[2] = 2 * n;
@@ -83,7 +83,7 @@ static void check_mail(void)
 	close_two(s, &l);
 }
 
-// A digest that differs, then the object in which the ranks differ: each tells of all objects since when, and what.
+// A digest that differs, then the object in which the ranks differ: each sends the digests and steps of all objects.
 // first: byte of the head, likewise.
 static void check_difference(size_t first, size_t place, const char *named)
 {

@@ -1,4 +1,4 @@
-// Boxes of any size and shape on one of a hundred metres: they stand, and slide as far as Coulomb says.
+// Boxes of any size and shape on one of a hundred metres: they stand, and slide as far as by Coulomb's law.
 #include <stdlib.h>
 
 #include "check.h"

@@ -1,5 +1,6 @@
-// Two bodies that begin inside each other, where nothing else acts, are pushed apart: momentum and angular momentum
-// stay, and energy does not grow, while they turn and slide past each other. Random pairs, each given by its seed.
+// Two bodies that overlap at the start, without external forces, are pushed apart: momentum and angular momentum are
+// conserved, and energy does not grow, while they rotate and slide past each other. Random pairs, each given by its
+// seed.
 //   sim_push_apart [FIRST SEED] [SEEDS]
 #include <stdlib.h>
 
@@ -10,7 +11,7 @@
 
 static const double depth = 2e-3; // m, at the start
 
-// Its surface is at right angles to x, where x is at most. Returns by how much.
+// Adds a body whose surface is normal to x at its largest x, which is returned.
 static double add_body(little_scene *s, uint64_t *seed, ob_vec3 p)
 {
 	static const ob_shape shapes[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };

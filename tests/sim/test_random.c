@@ -1,6 +1,6 @@
-// Whatever the scene: contact and friction take energy and never add any, nothing is lost of momentum that nothing
-// outside has taken, and every state is a number. Random scenes of 2 to 12 boxes and spheres, each given by its seed:
-// a third in free space, a third between six walls, a third between six walls with gravity.
+// In any scene, contact and friction dissipate energy and never add any, momentum changes by external forces alone, and
+// every state is finite. Random scenes of 2 to 12 boxes and spheres, each given by its seed: a third in free space, a
+// third between six walls, a third between six walls with gravity.
 //   sim_random [FIRST SEED] [SEEDS]      5000 seeds are a million steps
 #include <stdlib.h>
 
@@ -77,13 +77,13 @@ static little_scene *random_scene(uint64_t seed, int kind)
 }
 
 typedef struct course {
-	double scale; // J, what there is to lose
+	double scale; // J, energy above the minimum
 	double gross, net; // growth over the start, relative; net of what pushing penetrations apart has raised
 	double rise; // net, over the least so far
 	double lost, lost_spin; // momentum and angular momentum, relative to the sum of all bodies'
 } course;
 
-// Above the lowest that anything can lie
+// Energy above the lowest possible
 static double energy_to_lose(const little_universe *l)
 {
 	double sum = 0;

@@ -28,7 +28,7 @@ enum {
 	NONE = UINT32_MAX
 };
 
-// The same for all ranks, and what each has come to.
+// Shared by all ranks: the input, and each rank's results.
 typedef struct story {
 	little_exchange x;
 	uint64_t seed;
@@ -36,8 +36,8 @@ typedef struct story {
 	uint32_t pairs, home[BODIES], effort[BODIES], pin[BODIES];
 	bool asleep[BODIES];
 	ob_pair_key pair[MOST_PAIRS];
-	uint32_t lead[BODIES]; // the lowest of its island, as it should be; NONE: it is in none
-	uint32_t solver[BODIES], leader[BODIES], listed[MOST_PAIRS]; // as it is
+	uint32_t lead[BODIES]; // expected: lowest id of the island; NONE: in no island
+	uint32_t solver[BODIES], leader[BODIES], listed[MOST_PAIRS]; // actual
 	uint32_t homes[RANKS][BODIES];
 	uint64_t load[RANKS], largest;
 	uint32_t moved, met, islands;
@@ -96,7 +96,7 @@ static void join_all(uint32_t *lead, uint32_t a, uint32_t b)
 		lead[i] = lead[i] == high ? low : lead[i];
 }
 
-// Those linked to somebody awake, by what links in a step.
+// Groups linked to an awake body by the links of a step.
 static void flood(story *s)
 {
 	static bool awake[BODIES];
@@ -113,15 +113,15 @@ static void flood(story *s)
 		s->lead[i] = awake[group[i]] ? group[i] : NONE;
 }
 
-// Late contacts, of bodies in islands and others: those of the islands that they join are solved again, and sleepers
-// with what they touch. Those that are solved again come to be the only ones with a leader.
+// Late contacts, of bodies in islands and others: the bodies of the islands that they join are solved again, and so are
+// sleepers with their contacts. Afterwards only these have a leader.
 static void flood_late(story *s)
 {
 	uint32_t group[BODIES];
 	bool again[BODIES] = { false };
 	for (uint32_t i = 0; i < BODIES; i++)
 		group[i] = s->lead[i] == NONE ? i : s->lead[i];
-	for (uint32_t i = 0; i < s->pairs; i++) // sleepers that nobody has woken
+	for (uint32_t i = 0; i < s->pairs; i++) // sleepers that no contact has woken
 		if (s->pair[i].active && s->lead[s->pair[i].a] == NONE && s->lead[s->pair[i].b] == NONE)
 			join_all(group, s->pair[i].a, s->pair[i].b);
 	for (uint32_t i = 0; i < s->pairs; i++)
@@ -149,7 +149,7 @@ static void write_world(rank *r)
 		data->schedule[i] = (ob_schedule){ .state = s->asleep[i] ? OB_SCHEDULE_ASLEEP : OB_SCHEDULE_AWAKE,
 						   .due = s->asleep[i] ? UINT32_MAX : 0 };
 		data->result_island[i] = UINT32_MAX;
-		data->effort[i] = s->home[i] / EACH == r->p.rank ? s->effort[i] : 0; // nobody else knows
+		data->effort[i] = s->home[i] / EACH == r->p.rank ? s->effort[i] : 0; // other ranks do not have it
 		data->pin[i] = s->pin[i];
 		ob_halo_rehome(r->parts.halo, r->u, i, s->home[i]);
 		ob_regions_take(r->parts.regions, i, s->home[i]);
@@ -159,7 +159,7 @@ static void write_world(rank *r)
 	ob_pairs_link(r->u);
 }
 
-// The pairs of two ranks' bodies that link them.
+// Lists the pairs that link bodies of two ranks.
 static uint32_t list_links_across(const rank *r, bool late, uint32_t *pair)
 {
 	uint32_t n = 0;
@@ -199,7 +199,7 @@ static void build(rank *r)
 	share(r, false);
 }
 
-// One rank after the other says what it has.
+// Each rank in turn publishes its results.
 static void tell(rank *r)
 {
 	const ob_step_data *data = ob_universe_step_data(r->u);
@@ -278,7 +278,7 @@ static void check_step(story *s)
 	}
 }
 
-// Some pairs touch late that are in no island.
+// Brings some pairs outside of islands into late contact.
 static void touch_late(story *s)
 {
 	for (uint32_t i = 0; i < s->pairs; i++) {
@@ -378,7 +378,7 @@ int main(void)
 		pthread_join(thread[i], NULL);
 	for (uint32_t i = 0; i < RANKS; i++)
 		close_rank(&r[i]);
-	CHECK(s.all_met > SEEDS && s.all_moved > SEEDS); // else nothing has been tried
+	CHECK(s.all_met > SEEDS && s.all_moved > SEEDS); // else nothing has been tested
 	little_exchange_close(&s.x);
 	free(scene);
 	return check_end();

@@ -27,7 +27,7 @@ enum { SIMULATORS = 3, STEPS = 240 };
 typedef enum hidden {
 	NOTHING,
 	REST,
-	TOO_MUCH, // the records of their pairs, too, which they do need
+	TOO_MUCH, // also the records of their pairs, which they need
 } hidden;
 
 // Elements that a simulator's islands need.
@@ -35,10 +35,10 @@ typedef struct needed {
 	bool *object, *mine, *pair, *record, *island, *place, *pair_place; // mine: those of object that are members
 } needed;
 
-// Moving objects that were hidden from a simulator which had an island to solve, over all steps; shared by all.
+// Number of moving objects hidden from a simulator with an island to solve, over all steps; shared by all.
 static uint64_t *hidden_objects;
 
-// ---- what is hidden
+// ---- hidden data
 
 static uint64_t end_of(const ob_universe *u, ob_area area)
 {
@@ -161,7 +161,7 @@ static bool *flags(uint32_t n)
 	return made;
 }
 
-// One that solves without seeing the rest. false: the run is over.
+// A simulator that solves with the rest hidden. false: the run is over.
 static bool step_blindly(ob_sim *s, ob_universe *u, uint32_t simulator, hidden what)
 {
 	const ob_step_data *data = &u->step_data;
@@ -195,7 +195,7 @@ _Noreturn static void live(ob_universe *u, uint32_t simulator, hidden what)
 	_exit(0);
 }
 
-// The arranger would wait for it.
+// Ends the arranger, which would wait for the dead simulator.
 static void on_death(int signal)
 {
 	static const char text[] = "a simulator has died: it has read what was hidden from it\n";
@@ -205,13 +205,13 @@ static void on_death(int signal)
 	_exit(1);
 }
 
-// The hash after so many steps, with three simulators in processes of their own.
+// The hash after a number of steps, with three simulators in processes of their own.
 static uint64_t run_apart(little_scene *s, hidden what)
 {
 	ob_error e;
 	s->harden = 1 << OB_HARDEN_OUTBOX;
 	little_universe l = { .scene = s, .u = little_populate(s, SIMULATORS + 1) };
-	ob_universe_unlink(l.u); // nobody else opens it, and it may end in any way
+	ob_universe_unlink(l.u); // no other process opens it, and it may end in any way
 	signal(SIGCHLD, on_death);
 	fflush(NULL);
 	for (uint32_t w = 0; w < SIMULATORS; w++)
@@ -246,7 +246,7 @@ static bool ends_in(little_scene *s, hidden what, uint64_t hash)
 	return status == 0;
 }
 
-// Boxes and balls that fall on each other and on what moves or does not, and a few that fly alone.
+// Boxes and balls that fall on each other and on moving and static bodies, and a few that fly alone.
 static little_scene *heap(void)
 {
 	uint64_t seed = 1;

@@ -22,7 +22,7 @@ typedef struct place {
 typedef struct world {
 	double side[3]; // m
 	place body[BODIES];
-	bool touches; // some of those that overlap do
+	bool touches; // some of the overlapping pairs are in contact
 } world;
 
 static void fill(world *w, uint64_t *seed)
@@ -101,7 +101,7 @@ static void sort(const world *w, uint32_t *id, uint32_t n, int axis)
 	qsort(id, n, sizeof *id, along);
 }
 
-// The fewest of slices along an axis, and of halves of halves along two.
+// The smallest number of copies for slices along an axis, and for halves of halves along two.
 static uint32_t simple_copies(const ob_universe *u, const world *w)
 {
 	static uint32_t id[BODIES], rank[BODIES];
@@ -153,7 +153,7 @@ static void check_whole(const ob_universe *u, const ob_regions *r)
 	CHECK(cut == 0);
 }
 
-// Each has its share of what "weight" says, but for some groups: each of the cuts above it may be so far off.
+// Each simulator has its share of "weight", except for some groups: each of the cuts above may err by one.
 static void check_shares(const ob_regions *r, const uint32_t *weight, uint32_t most)
 {
 	double sum = 0, load[SIMULATORS] = { 0 };
@@ -184,7 +184,7 @@ static void check_cut(ob_universe *u, const world *w)
 	u->rank = 0;
 }
 
-// All bodies go elsewhere, some at a time.
+// All bodies move elsewhere, some at a time.
 static void check_mixing(ob_universe *u, world *w, uint64_t *seed)
 {
 	static uint32_t rank[BODIES];
@@ -216,7 +216,7 @@ static void check_mixing(ob_universe *u, world *w, uint64_t *seed)
 		u->rank = 0;
 		ob_requery_reset(u);
 		for (uint32_t k = i + 1; k < BODIES; k++)
-			CHECK(ob_universe_rank_of(u, ob_regions_at(r, k)) == ob_home_rank(u, k)); // nobody else
+			CHECK(ob_universe_rank_of(u, ob_regions_at(r, k)) == ob_home_rank(u, k)); // no other rank
 	}
 	ranks_of(u, r, rank);
 	CHECK(copies(u, rank) <= 1.5 * simple_copies(u, w) + 10);
@@ -224,7 +224,7 @@ static void check_mixing(ob_universe *u, world *w, uint64_t *seed)
 	ob_regions_destroy(r);
 }
 
-// The other ranks, which have noted the same of what bodies cost.
+// The other ranks, which have noted the same costs of bodies.
 typedef struct echo {
 	char *bytes;
 	size_t at[RANKS + 1];
@@ -271,7 +271,7 @@ static void check_work(ob_universe *u, const world *w)
 	free(wire.bytes);
 }
 
-// A body that was moved, and what touches it, is where it was moved to, and counts there.
+// A moved body, and its contacts, are at its target, and count there.
 static void check_pins(ob_universe *u)
 {
 	static uint32_t weight[BODIES];

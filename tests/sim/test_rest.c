@@ -1,4 +1,4 @@
-// Coming to rest, asleep or awake, by either kind of solver and either integrator; waking, going away, coming.
+// Coming to rest, asleep or awake, by either kind of solver and either integrator; waking, removal, addition.
 #include <stdlib.h>
 
 #include "check.h"
@@ -19,7 +19,7 @@ static uint32_t awake(const little_universe *l)
 	return info.awake;
 }
 
-// A stack of five falls asleep, sleeps on without moving by a bit, and wakes all through when a box hits its top.
+// A stack of five falls asleep, sleeps on without moving by a bit, and wakes as a whole when a box hits its top.
 static void test_sleep(ob_solver_kind solver)
 {
 	little_scene *s = little_scene_new();
@@ -48,7 +48,7 @@ static void test_sleep(ob_solver_kind solver)
 	CHECK(woke);
 	little_run_to(&l, 6);
 	CHECK(ob_norm(ob_sub(little_state(&l, 5).pose.p, top.pose.p)) > .005); // it was hit: 18 mm with 512 substeps
-	if (solver == OB_SOLVER_COLOURED) { // with Jacobi iterations a stack that was hit sways on for long
+	if (solver == OB_SOLVER_COLOURED) { // with Jacobi iterations a stack that was hit sways for long
 		little_run_to(&l, 20);
 		CHECK(all_asleep(&l));
 		CHECK(awake(&l) == 0);
@@ -57,7 +57,7 @@ static void test_sleep(ob_solver_kind solver)
 	free(s);
 }
 
-// Without the permission nothing sleeps.
+// Sleeping must be enabled.
 static void test_no_sleep(void)
 {
 	little_scene *s = little_scene_new();
@@ -99,7 +99,7 @@ static void test_still(void)
 	free(s);
 }
 
-// Ten cubes on top of each other, which nothing lets sleep, come to equilibrium, each of them, at the run's usual
+// Ten cubes on top of each other, with sleeping disabled, come to equilibrium, each of them, at the run's usual
 // substeps.
 static void test_still_stack(void)
 {
@@ -115,7 +115,7 @@ static void test_still_stack(void)
 	free(s);
 }
 
-// Nor do cubes that lean on several others need to be solved for ever: a pyramid stands, and where it was built.
+// Cubes that rest on several others need no solving in equilibrium either: a pyramid stands where it was built.
 static void test_still_pyramid(uint32_t substeps)
 {
 	little_scene *s = little_scene_new();
@@ -136,7 +136,7 @@ static void test_still_pyramid(uint32_t substeps)
 	free(s);
 }
 
-// The lowest of three cubes goes away: the others fall at once, freely, by its height, asleep or not.
+// The lowest of three cubes is removed: the others fall at once, freely, by its height, asleep or not.
 static void test_support_removed(bool sleeping)
 {
 	little_scene *s = little_scene_new();
@@ -219,7 +219,7 @@ static little_scene *resting_scene(bool sleeping)
 	return s;
 }
 
-// A block on a plane, pulled by "share" of what friction holds.
+// A block on a plane, pulled by "share" of the friction limit.
 static little_scene *pulled(double share, double friction, bool sleeping)
 {
 	little_scene *s = resting_scene(sleeping);
@@ -231,7 +231,7 @@ static little_scene *pulled(double share, double friction, bool sleeping)
 	return s;
 }
 
-// .. on an incline.
+// The same on an incline.
 static little_scene *inclined(double share, double friction, bool sleeping)
 {
 	little_scene *s = resting_scene(sleeping);
@@ -244,7 +244,7 @@ static little_scene *inclined(double share, double friction, bool sleeping)
 	return s;
 }
 
-// A block of which "share" of one half stands out over an edge.
+// A block with "share" of one half beyond an edge.
 static little_scene *overhanging(double share, bool sleeping)
 {
 	little_scene *s = resting_scene(sleeping);
@@ -253,7 +253,7 @@ static little_scene *overhanging(double share, bool sleeping)
 	return s;
 }
 
-// A rod that leans on its lower edge, its centre beyond it or short of it by a thousandth of its width.
+// A rod on its lower edge, its centre beyond it or short of it by a thousandth of its width.
 static little_scene *leaning(double share, bool sleeping)
 {
 	little_scene *s = resting_scene(sleeping);
@@ -281,7 +281,7 @@ static void test_balance(bool sleeping)
 	CHECK(!steps_to_rest(leaning(under, sleeping), .5)); // back, onto its foot
 }
 
-// Nothing brakes a ball that rolls: it goes on, as slow as it is.
+// A rolling ball without resistance goes on, at any speed.
 static void test_slow_roll(void)
 {
 	little_scene *s = resting_scene(true);
@@ -299,7 +299,7 @@ static void test_heap_sleeps(uint64_t seed)
 	CHECK(steps_to_rest(s, 10));
 }
 
-// Capsules and cylinders, lying and standing, settle on the plane where their shape says.
+// Capsules and cylinders, lying and standing, settle on the plane in the attitude of their shape.
 static void test_round_shapes(void)
 {
 	static const struct {

@@ -1,5 +1,5 @@
 // A block that stands tilted on one edge and falls back: its motion is that of a physical pendulum about the edge,
-// theta'' = -(m g r / I) sin(alpha - theta), until the other edge hits. Nothing is lost before that.
+// theta'' = -(m g r / I) sin(alpha - theta), until the other edge hits. No energy is lost before that.
 #include <stdlib.h>
 
 #include "check.h"
@@ -13,7 +13,7 @@ typedef struct rocking_block {
 
 static const double g = 9.81;
 
-// s, from rest at the start until the tilt is "tilt"; the root of its speed is taken out of the integral.
+// s, from rest at the start until the tilt is "tilt"; a substitution removes the singularity at zero speed.
 static double time_to(const rocking_block *b, double tilt)
 {
 	const int n = 4000;
@@ -25,7 +25,7 @@ static double time_to(const rocking_block *b, double tilt)
 	return sum;
 }
 
-// Returns the share of the energy that is lost until just before it hits.
+// Returns the share of the energy lost until just before the hit.
 static double check_block(double slenderness, bool on_box, uint32_t substeps)
 {
 	rocking_block b = { .half_width = .1, .half_height = .1 * slenderness };
@@ -106,7 +106,7 @@ static void check_toppling(double beyond, double tolerance, uint32_t substeps)
 	free(s);
 }
 
-// Rate of turn of the block about an edge that it hits the ground with, squared, if no energy is lost until then.
+// Squared angular velocity of the block at the hit of an edge on the ground, if no energy is lost until then.
 static double rate_of_hit(const ob_reference_rocker *r, const ob_state *s)
 {
 	return (ob_norm2(s->v) + r->moment * ob_norm2(s->w) + 2 * g * (s->pose.p.z - r->height)) /

@@ -1,4 +1,4 @@
-// Cylinders and capsules on planes: they bounce as high as they should, roll off an edge and fall, and a cylinder that
+// Cylinders and capsules on planes: they bounce to the right height, roll off an edge and fall, and a cylinder that
 // stands on a slope tips over where its rim no longer carries it.
 #include <stdlib.h>
 
@@ -126,7 +126,7 @@ int main(void)
 		test_spins_on(OB_SHAPE_SPHERE, .6, spin);
 	}
 	const double critical = atan(.4);
-	for (double turn = 0; turn < 1.5; turn += .35) { // whichever way the cylinder is turned
+	for (double turn = 0; turn < 1.5; turn += .35) { // for any rotation of the cylinder
 		CHECK(tips(.995 * critical, turn) < 1e-6);
 		CHECK(tips(1.02 * critical, turn) > .1);
 	}

@@ -7,16 +7,16 @@
 
 static const double g = 9.81; // m/s^2
 
-// A floor of tiles, whose axes are turned about the vertical, and something that starts in the middle of one of them.
+// A floor of tiles, whose axes are rotated about the vertical, and a body that starts in the middle of one of them.
 typedef struct course {
 	double turn, heading; // rad: the tiles'; the velocity's against them
 	double attitude; // rad: the sliding body's against the tiles
 	double speed, friction; // m/s
 	double tile; // m, side
 	int along, across; // tiles
-	double tile_mass; // kg; 0: they do not move, and lie on nothing
+	double tile_mass; // kg; 0: static
 	double step; // m, by which every tile but the first row is higher
-	ob_vec3 size; // of what slides; a sphere's radius in x
+	ob_vec3 size; // the sliding body's; a sphere's radius in x
 	ob_shape shape;
 	double scale; // of all lengths; speeds go with its root
 } course;
@@ -92,7 +92,7 @@ static void check_slide(const char *what, const course *c, double way_error, dou
 	CHECK(p.aside <= 2 * way_error * way);
 }
 
-// Without friction, or rolling: nothing is lost.
+// Without friction, or rolling: no energy is lost.
 static void check_free(const char *what, const course *c, double time, double speed_error)
 {
 	const double l = c->scale > 0 ? c->scale : 1;
@@ -195,7 +195,7 @@ static void test_tiles_that_move(void)
 	check_slide("box on loose tiles", &c, 1e-2, 1e-4);
 }
 
-// A millimetre is a step, whatever the speed; for a ball, too, which it throws up.
+// A millimetre is a step, at any speed; for a ball, too, which it throws up.
 static void test_steps(void)
 {
 	for (double v = 1; v <= 2; v *= 2) {

@@ -1,4 +1,4 @@
-// The elimination where joints close cycles against the equations that it solves, and what it refuses.
+// The elimination for closed cycles of joints, against the equations that it solves, and its refusals.
 #include "sim/sparse_solver.h"
 
 #include <string.h>
@@ -33,7 +33,7 @@ static void random_joint(ob_joint *j, uint64_t *seed)
 	}
 }
 
-// More joints than bodies, some of them to what does not move.
+// More joints than bodies, some of them to fixed bodies.
 static void random_frame(frame *f, uint64_t *seed)
 {
 	memset(f, 0, sizeof *f);

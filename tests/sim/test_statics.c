@@ -7,7 +7,7 @@
 #include "reference/mechanics.h"
 
 typedef struct outcome {
-	double deepest, drift, sunk; // m: at any moment; the farthest that a body got aside; and down
+	double deepest, drift, sunk; // m: at any moment; largest sideways motion of a body; and down
 	double deepest_end; // m
 	double gained; // share of the energy, at most
 	bool asleep; // some body
@@ -80,7 +80,7 @@ static void test_rattled_stack(void)
 	CHECK(o.drift <= 10e-3);
 }
 
-// ---- bricks: 1 m long, each shifted by "stretch" times what the harmonic series allows
+// ---- bricks: 1 m long, each shifted by "stretch" times the limit of the harmonic series
 
 enum { BRICKS = 4 };
 

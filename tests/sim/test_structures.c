@@ -1,6 +1,6 @@
-// Structures whose contacts close cycles stand where they were built, to the last micrometre, whatever they are: towers
-// of planks, pyramids of bricks that touch, walls of random bricks, portals. That costs little: they are in equilibrium
-// at once, and while one sways from a hit, no equilibrium is looked for.
+// Structures whose contacts close cycles stand where they were built, to the last micrometre: towers of planks,
+// pyramids of bricks in contact, walls of random bricks, portals. That costs little: they are in equilibrium at once,
+// and while one sways from a hit, no equilibrium is searched.
 #include <stdlib.h>
 
 #include "check.h"
@@ -46,7 +46,7 @@ static little_scene *on_ground(void)
 	return s;
 }
 
-// Layers of planks, so many side by side, each across the one below.
+// Layers of planks, each layer across the one below.
 static little_scene *crib_tower(int layers, int planks)
 {
 	little_scene *s = on_ground();
@@ -59,7 +59,7 @@ static little_scene *crib_tower(int layers, int planks)
 	return s;
 }
 
-// pitch: m, from one cube of a metre to the next; at 1 they touch.
+// pitch: m, from one cube of a metre to the next; at 1 they are in contact.
 static little_scene *pyramid(int rows, double pitch)
 {
 	little_scene *s = on_ground();

@@ -9,7 +9,7 @@
 
 enum { BODIES = 7, ROWS_MAX = BODIES * OB_JOINT_ROWS };
 
-// Body k hangs on up[k]; on nothing: -1. A fixed body holds body 0 and body 2.
+// Body k is linked to up[k]; -1: to none. A fixed body holds body 0 and body 2.
 typedef struct tree {
 	int up[BODIES];
 	double inertia[BODIES][6][6];
@@ -110,7 +110,7 @@ static void check_tree(uint64_t *seed)
 		}
 }
 
-// A row said twice is carried by both alike.
+// A duplicate row: both carry the same load.
 static void test_said_twice(void)
 {
 	ob_link link = {

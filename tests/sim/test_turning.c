@@ -1,5 +1,5 @@
-// Bodies that turn fast near others: without a touch they turn as in free flight, and nothing gets into what stands
-// beside them.
+// Bodies that rotate fast near others: without a contact they rotate as in free flight, and none penetrates the bodies
+// beside it.
 #include <stdlib.h>
 
 #include "check.h"
@@ -14,7 +14,7 @@ static ob_vec3 momentum_of(const little_universe *l, uint32_t id)
 	return ob_rotate(&r, ob_v3(inertia.x * w.x, inertia.y * w.y, inertia.z * w.z));
 }
 
-// A body of this shape turns at "rate" (rad/s) for 20 s, 10 mm from a ball that it never touches.
+// A body of this shape rotates at "rate" (rad/s) for 20 s, 10 mm from a ball, without a contact.
 static void check_beside_ball(ob_shape shape, ob_vec3 size, ob_vec3 axis, double rate)
 {
 	little_scene *s = little_scene_new();
@@ -40,7 +40,7 @@ static void check_beside_ball(ob_shape shape, ob_vec3 size, ob_vec3 axis, double
 	free(s);
 }
 
-// A rod turns obliquely at 50 rad/s within reach of a box that stands beside it, e = 1 or 0.
+// A rod rotates obliquely at 50 rad/s within reach of a box that stands beside it, e = 1 or 0.
 static void check_rod_beside_box(double e, double offset, double tilt)
 {
 	little_scene *s = little_scene_new();

@@ -102,8 +102,8 @@ static void check_plank(void)
 	free(s);
 }
 
-// A box that slides and turns down a rough groove, aslant, as three or four corners hold it: iterations and steps for
-// all contacts at once end after a few, however the slip's direction turns.
+// A box that slides and rotates down a rough groove, obliquely, on three or four corners: iterations and steps for all
+// contacts at once end after a few, for any change of the slip's direction.
 static void check_iterations(void)
 {
 	const double half = M_PI / 4, slope = .6, most = 6; // in each substep, of each body

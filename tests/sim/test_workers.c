@@ -31,9 +31,9 @@ static void *live(void *arg)
 	return NULL;
 }
 
-static bool arranged_together; // in the last step of the last run: so many were due that all workers built islands
+static bool arranged_together; // in the last step of the last run, all workers built islands
 
-// The state's hash after so many steps; halfway they pause, and the last object goes away.
+// The state's hash after a number of steps; halfway they pause, and the last object is removed.
 static uint64_t run(const little_scene *s, uint32_t workers, uint64_t steps)
 {
 	ob_universe *u = little_populate(s, workers);
@@ -101,13 +101,13 @@ static void compare(ob_solver_kind solver, ob_integrator integrator, double tole
 	s->run.one_per_object = 1;
 	CHECK(run(s, s->world.objects, steps) == one);
 	s->run.one_per_object = 0;
-	s->world.state[5].v.x += 1e-15; // a hash that does not see this says nothing
+	s->world.state[5].v.x += 1e-15; // a hash that ignores this would be useless
 	s->world.state[5].pose.p.x += 1e-15;
 	CHECK(run(s, 1, steps) != one);
 	free(s);
 }
 
-// So many that fall on each other in one step, with late contacts, that all workers find who is in which island.
+// Many balls that fall on each other in one step, with late contacts, so that all workers build the islands.
 static little_scene *crowd_of_balls(void)
 {
 	uint64_t seed = 2;
