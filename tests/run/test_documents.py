@@ -61,11 +61,17 @@ class Documents(program.Case):
 					with self.subTest(document=document, command=command):
 						self.run_one(command, left_running)
 		finally:
-			for process in left_running:
-				process.terminate()
-				process.communicate(timeout=program.PATIENCE)
+			self.end(left_running)
+
+	def end(self, left_running):
+		while left_running:
+			process = left_running.pop()
+			process.terminate()
+			process.communicate(timeout=program.PATIENCE)
 
 	def run_one(self, command, left_running):
+		if "--replay-requests" in command: # a log is whole when its run has ended
+			self.end(left_running)
 		background = command.endswith("&") or " serve " in command or "--pace realtime" in command
 		command = command.rstrip("& ")
 		words = [program.OBSIM, *shlex.split(command if background else shortened(command))[1:]]
