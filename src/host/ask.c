@@ -98,9 +98,12 @@ static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 		return true;
 	if (ob_universe_hulls(h->u) == 0)
 		return ob_fail(e, "the one ODE world has no hulls");
-	return r->corners.count <= OB_HULL_CORNERS_MAX
-		       ? ob_hull_build(r->corners.at, r->corners.count, &hull, e)
-		       : ob_fail(e, "a hull has at most %d corners", OB_HULL_CORNERS_MAX);
+	if (r->corners.count > OB_HULL_CORNERS_MAX)
+		return ob_fail(e, "a hull has at most %d corners", OB_HULL_CORNERS_MAX);
+	if (!ob_hull_build(r->corners.at, r->corners.count, &hull, e))
+		return false;
+	r->def.passport.size = ob_hull_size(&hull);
+	return true;
 }
 
 // Checks the target of a move: the worker numbers that a pool has for its number of objects.

@@ -9,7 +9,9 @@
 #include "host/journal.h"
 #include "host/rcu_tsan.h"
 #include "ode/ode_body.h"
+#include "scene/object_limits.h"
 #include "scene/random.h"
+#include "sim/publish.h"
 #include "sim/sim.h"
 
 // An entry of the timetable.
@@ -118,46 +120,22 @@ bool ob_requests_waiting(ob_requests *q)
 
 // ---- checks
 
-static bool finite3(ob_vec3 v)
+static bool name_fault(const ob_passport *p, const ob_error *why, ob_error *e)
 {
-	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+	return ob_fail(e, "object \"%s\": %s", p->name, why->text);
 }
 
-static bool check_shape(const ob_passport *p, ob_error *e)
+static bool check_name(const ob_passport *p, ob_error *e)
 {
-	bool needs_y = p->shape != OB_SHAPE_SPHERE, needs_z = p->shape == OB_SHAPE_BOX || p->shape == OB_SHAPE_HULL;
-	if (p->shape <= OB_SHAPE_NONE || p->shape > OB_SHAPE_HULL)
-		return ob_fail(e, "object \"%.*s\": unknown shape %u", OB_NAME_MAX, p->name, p->shape);
-	if (p->shape == OB_SHAPE_PLANE)
-		return (p->flags & OB_OBJECT_PRESCRIBED) == OB_OBJECT_STATIC ||
-		       ob_fail(e, "object \"%.*s\": a plane must be static", OB_NAME_MAX, p->name);
-	if (!finite3(p->size) || !(p->size.x > 0) || (needs_y && !(p->size.y > 0)) || (needs_z && !(p->size.z > 0)))
-		return ob_fail(e, "object \"%.*s\": size must be positive", OB_NAME_MAX, p->name);
-	return true;
+	return memchr(p->name, 0, OB_NAME_MAX) ||
+	       ob_fail(e, "object %u: its name is longer than %d characters", p->id, OB_NAME_MAX - 1);
 }
 
 bool ob_object_check(const ob_object_def *def, ob_error *e)
 {
-	const ob_passport *p = &def->passport;
-	const ob_state *s = &def->state;
-	ob_quat q = s->pose.q;
-	double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-	if (!memchr(p->name, 0, OB_NAME_MAX))
-		return ob_fail(e, "object %u: its name is longer than %d characters", p->id, OB_NAME_MAX - 1);
-	if (!check_shape(p, e))
-		return false;
-	if (!(p->flags & OB_OBJECT_PRESCRIBED) && !(p->mass > 0 && isfinite(p->mass)))
-		return ob_fail(e, "object \"%s\": mass must be positive (or the object static or kinematic)", p->name);
-	if (!finite3(s->pose.p) || !finite3(s->v) || !finite3(s->w) || !(fabs(norm2 - 1) < 1e-6))
-		return ob_fail(e, "object \"%s\": position, attitude and velocities must be finite", p->name);
-	if (!finite3(p->force))
-		return ob_fail(e, "object \"%s\": its force, or the velocity of its surface, must be finite", p->name);
-	for (int i = 0; i < 4; i++)
-		if (!(p->colour[i] >= 0 && p->colour[i] <= 1))
-			return ob_fail(e, "object \"%s\": a colour has parts from 0 to 1", p->name);
-	if (!(p->friction >= 0 && isfinite(p->friction)) || !(p->restitution >= 0 && p->restitution <= 1))
-		return ob_fail(e, "object \"%s\": friction must be >= 0, restitution in 0..1", p->name);
-	return true;
+	ob_error why;
+	return check_name(&def->passport, e) &&
+	       (ob_object_def_check(def, &why) || name_fault(&def->passport, &why, e));
 }
 
 bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_error *e)
@@ -188,6 +166,16 @@ static bool check_parts(const ob_population *p, const ob_passport *pass, ob_erro
 	return ob_fail(e, "object \"%s\": it has no hull of this universe", pass->name);
 }
 
+// Principal moments (kg m^2); 0 where no force moves it.
+static ob_vec3 inertia_of(const ob_population *p, const ob_passport *pass)
+{
+	if (pass->flags & OB_OBJECT_PRESCRIBED)
+		return ob_v3(0, 0, 0);
+	if (pass->shape == OB_SHAPE_HULL)
+		return ob_scale(ob_hull_of(p->u, pass)->inertia, pass->mass);
+	return ob_ode_inertia((ob_shape)pass->shape, pass->size, pass->mass);
+}
+
 // ---- changes
 
 // Gives each object its own random numbers, also when it reuses a slot.
@@ -215,14 +203,9 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	pass.id = id;
 	pass.generation = ++p->slots[id].generation;
 	pass.flags |= OB_OBJECT_PRESENT;
-	if (pass.flags & OB_OBJECT_PRESCRIBED) {
+	if (pass.flags & OB_OBJECT_PRESCRIBED)
 		pass.mass = 0;
-		pass.inertia = ob_v3(0, 0, 0);
-	} else if (pass.shape == OB_SHAPE_HULL) {
-		pass.inertia = ob_scale(ob_hull_of(p->u, &pass)->inertia, pass.mass);
-	} else {
-		pass.inertia = ob_ode_inertia((ob_shape)pass.shape, pass.size, pass.mass);
-	}
+	pass.inertia = inertia_of(p, &pass);
 	ob_write_passport(p->u, id, &pass);
 	ob_sim_place(p->u, id, &def->state);
 	p->slots[id].use = SLOT_PRESENT;
@@ -635,16 +618,37 @@ static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot 
 	       (!present || pass->generation == s->generation);
 }
 
-// Checks the parts of the saved objects as if they were added now.
+static bool is_near(double a, double b)
+{
+	return fabs(a - b) <= 1e-9 * fabs(b);
+}
+
+// A saved object is checked as a new one is, but for where it has come to.
+static bool check_object(const ob_population *p, uint32_t id, ob_error *e)
+{
+	const ob_passport *pass = ob_passport_of(p->u, id);
+	const ob_motion *m = ob_newest_motion(p->u, id);
+	ob_error why;
+	if (!check_name(pass, e))
+		return false;
+	if (!ob_passport_check(pass, &why))
+		return name_fault(pass, &why, e);
+	if (!check_parts(p, pass, e))
+		return false;
+	const ob_vec3 inertia = inertia_of(p, pass);
+	if (!is_near(pass->inertia.x, inertia.x) || !is_near(pass->inertia.y, inertia.y) ||
+	    !is_near(pass->inertia.z, inertia.z))
+		return ob_fail(e, "object \"%s\": its inertia is not that of its shape", pass->name);
+	return ob_state_is_sane(&(ob_state){ { m->p, m->q }, m->v, m->w }) ||
+	       ob_fail(e, "object \"%s\": its motion makes no sense", pass->name);
+}
+
+// Checks saved objects, with their parts.
 static bool check_objects(const ob_population *p, ob_error *e)
 {
-	for (uint32_t id = 0; id < ob_universe_ids(p->u); id++) {
-		const ob_motion *m = ob_newest_motion(p->u, id);
-		ob_object_def def = { .passport = *ob_passport_of(p->u, id), .state = { { m->p, m->q }, m->v, m->w } };
-		if (def.passport.flags & OB_OBJECT_PRESENT &&
-		    (!ob_object_check(&def, e) || !check_parts(p, &def.passport, e)))
+	for (uint32_t id = 0; id < ob_universe_ids(p->u); id++)
+		if (ob_passport_of(p->u, id)->flags & OB_OBJECT_PRESENT && !check_object(p, id, e))
 			return false;
-	}
 	return true;
 }
 

@@ -25,7 +25,7 @@ bool ob_requests_waiting(ob_requests *q);
 
 typedef struct ob_population ob_population;
 
-// True if the definition is valid: known shape, finite numbers, mass where it moves. Else e names the error.
+// True if the object is within the limits (scene/object_limits.h); e names it, and what is not.
 bool ob_object_check(const ob_object_def *def, ob_error *e);
 
 // Slots 0 .. scene->objects-1 are the scene's; the rest of the table is for objects added later. All three must outlive

@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/utf8.h"
 #include "record/layout.h"
+#include "scene/object_limits.h"
 #include "table/layout.h"
 
 enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, HULLS_MAX = UINT16_MAX + 1, EVERY_MAX = 1 << 30 };
@@ -721,11 +722,9 @@ static bool make_room(ob_snapshot *s, uint32_t count)
 
 static bool passport_makes_sense(const ob_passport *p)
 {
-	bool sized = p->size.x >= 0 && p->size.y >= 0 && p->size.z >= 0;
-	return ob_passport_makes_sense(p, p->id) && p->shape != OB_SHAPE_NONE && p->flags & OB_OBJECT_PRESENT &&
-	       sized && finite3(p->size) && finite3(p->inertia) && p->inertia.x >= 0 && p->inertia.y >= 0 &&
-	       p->inertia.z >= 0 && p->mass <= number_max && is_colour(p->colour, 4) && p->roughness >= 0 &&
-	       p->roughness <= 1 && p->metal >= 0 && p->metal <= 1;
+	ob_error e;
+	return ob_passport_makes_sense(p, p->id) && p->flags & OB_OBJECT_PRESENT && ob_passport_check(p, &e) &&
+	       p->inertia.x >= 0 && p->inertia.y >= 0 && p->inertia.z >= 0;
 }
 
 static bool has_its_hull(const ob_snapshot *s, const ob_passport *p)

@@ -10,13 +10,14 @@
 #include "hull/hull.h"
 #include "scene/builder.h"
 #include "scene/flat.h"
+#include "scene/object_limits.h"
 #include "scene/sandbox.h"
 #include "scene/text.h"
 
 // ---- material "wood" { friction = .5, density = 600 }
 
 static const ob_field material_fields[] = {
-	OB_FIELD(ob_material, friction, .name = "friction", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1000),
+	OB_FIELD(ob_material, friction, .name = "friction", .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST),
 	OB_FIELD(ob_material, restitution, .name = "restitution", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
 	OB_FIELD(ob_material, density, .name = "density", .kind = OB_FIELD_NUMBER, .low = 0, .above = true,
 		 .high = 1e9),
@@ -129,27 +130,29 @@ typedef struct body {
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
-#define EXTENT(member) F(member, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e6, .required = true)
+#define EXTENT(member) \
+	F(member, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = OB_LENGTH_MOST, .required = true)
+#define WITHIN(member, most) F(member, .kind = OB_FIELD_VECTOR, .low = -(most), .high = most)
 #define SURFACE \
 	F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
-		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1000), \
-		F(surface_velocity, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
+		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST), \
+		WITHIN(surface_velocity, OB_SPEED_MOST), \
 		F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), F(colour, .kind = OB_FIELD_COLOUR), \
 		F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
 		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1)
 #define PLACE \
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
-		F(at, .kind = OB_FIELD_VECTOR, .low = -1e7, .high = 1e7), \
+		WITHIN(at, OB_PLACE_MOST), \
 		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
 		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
 		F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT)
 #define MOVING \
-	F(mass, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e15), \
+	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), \
 		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
 		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
-		F(velocity, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
-		F(spin, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
-		F(force, .kind = OB_FIELD_VECTOR, .low = -1e15, .high = 1e15), \
+		WITHIN(velocity, OB_SPEED_MOST), \
+		WITHIN(spin, OB_SPIN_MOST), \
+		WITHIN(force, OB_FORCE_MOST), \
 		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
 		F(path, .kind = OB_FIELD_TABLE), F(varying_force, .kind = OB_FIELD_TABLE), \
 		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
@@ -160,14 +163,14 @@ typedef struct body {
 		F(mesh_rotation, .kind = OB_FIELD_ROTATION)
 
 static const ob_field box_fields[] = {
-	F(size, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e6, .required = true),
+	F(size, .kind = OB_FIELD_VECTOR, .low = OB_LENGTH_LEAST, .high = OB_LENGTH_MOST, .required = true),
 	PLACE,
 	MOVING,
 	SURFACE,
 	LOOKS,
 };
 static const ob_field hull_fields[] = {
-	F(points, .kind = OB_FIELD_POINTS, .low = -1e6, .high = 1e6, .required = true),
+	F(points, .kind = OB_FIELD_POINTS, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST, .required = true),
 	PLACE,
 	MOVING,
 	SURFACE,
@@ -177,7 +180,7 @@ static const ob_field sphere_fields[] = { EXTENT(radius), PLACE, MOVING, SURFACE
 static const ob_field long_fields[] = { EXTENT(radius), EXTENT(length), PLACE, MOVING, SURFACE, LOOKS };
 static const ob_field plane_fields[] = { F(normal, .kind = OB_FIELD_DIRECTION), PLACE, SURFACE };
 static const ob_field ground_fields[] = {
-	F(height, .kind = OB_FIELD_NUMBER, .low = -1e7, .high = 1e7),
+	F(height, .kind = OB_FIELD_NUMBER, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST),
 	F(grid, .kind = OB_FIELD_BOOLEAN),
 	SURFACE,
 };
@@ -391,12 +394,11 @@ static ob_mesh_source source_of_mesh(const body *d)
 static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec3 size, body *d)
 {
 	ob_builder *b = ob_sandbox_user(L);
+	ob_error e;
 	find_kind(L, kind, d);
 	check_together(L, kind, d);
 	apply_material(L, b, kind, d);
 	double mass = d->kind != DYNAMIC ? 0 : isnan(d->mass) ? d->density * volume(shape, size, d->hull) : d->mass;
-	if (d->kind == DYNAMIC && !(mass >= 1e-12 && mass <= 1e15))
-		ob_sandbox_fail(L, "%s.mass: expected from 1e-12 to 1e+15 kg, got %.4g", kind, mass);
 	const ob_mesh_source source = source_of_mesh(d);
 	const uint8_t mesh = d->mesh && !b->options->joining ? ob_builder_mesh(L, b, kind, &source) : 0;
 	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
@@ -445,6 +447,8 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 		ob_builder_read_force(L, kind, o);
 		lua_pop(L, 1);
 	}
+	if (!ob_object_def_check(o, &e))
+		ob_sandbox_fail(L, "%s.%s", kind, e.text);
 	return o;
 }
 

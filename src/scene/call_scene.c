@@ -18,7 +18,7 @@ typedef struct scene_fields {
 #define F(member, ...) OB_FIELD(scene_fields, member, .name = #member, __VA_ARGS__)
 static const ob_field own_fields[] = {
 	F(title, .kind = OB_FIELD_TEXT, .high = sizeof((ob_scene *)0)->title - 1),
-	F(gravity, .kind = OB_FIELD_VECTOR, .low = -1e4, .high = 1e4),
+	F(gravity, .kind = OB_FIELD_VECTOR, .low = -OB_GRAVITY_MOST, .high = OB_GRAVITY_MOST),
 	F(duration, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
 	F(room, .kind = OB_FIELD_COUNT, .low = 0, .high = OB_SCENE_ROOM_MAX),
 	F(seed, .kind = OB_FIELD_WHOLE, .low = 0, .high = 0x1p53),

@@ -7,6 +7,7 @@
 #include <lauxlib.h>
 
 #include "scene/builder.h"
+#include "scene/object_limits.h"
 #include "scene/sandbox.h"
 
 enum { SINE, CIRCLE, SPLINE }; // numbers of the choices
@@ -25,7 +26,7 @@ static const ob_field path_fields[] = {
 	F(amplitude, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6),
 	F(frequency, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e4),
 	F(phase, .kind = OB_FIELD_NUMBER, .low = -1e3, .high = 1e3),
-	F(centre, .kind = OB_FIELD_VECTOR, .low = -1e7, .high = 1e7),
+	F(centre, .kind = OB_FIELD_VECTOR, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST),
 	F(axis, .kind = OB_FIELD_DIRECTION),
 	F(points, .kind = OB_FIELD_TABLE),
 	F(loop, .kind = OB_FIELD_BOOLEAN),
@@ -165,7 +166,7 @@ static void make_spline(lua_State *L, const char *where, const draft *d, ob_obje
 {
 	ob_path_point point[OB_PATH_POINTS_MAX];
 	bool turns;
-	const uint32_t n = read_points(L, where, 1e7, point, &turns);
+	const uint32_t n = read_points(L, where, OB_PLACE_MOST, point, &turns);
 	const ob_vec3 first = point[0].p, last = point[n - 1].p;
 	if (d->loop && (first.x != last.x || first.y != last.y || first.z != last.z))
 		ob_sandbox_fail(L, "%s.loop: expected the last point where the first one is", where);
@@ -206,7 +207,7 @@ typedef struct force_draft {
 #define G(member, ...) OB_FIELD(force_draft, member, .name = #member, __VA_ARGS__)
 static const ob_field force_fields[] = {
 	G(kind, .kind = OB_FIELD_CHOICE, .choices = "sine|pulse|linear", .required = true),
-	G(force, .kind = OB_FIELD_VECTOR, .low = -1e15, .high = 1e15),
+	G(force, .kind = OB_FIELD_VECTOR, .low = -OB_FORCE_MOST, .high = OB_FORCE_MOST),
 	G(frequency, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e4),
 	G(phase, .kind = OB_FIELD_NUMBER, .low = -1e3, .high = 1e3),
 	G(from, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9),
@@ -239,7 +240,7 @@ void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o)
 	luaL_checkstack(L, 8, "nested too deep");
 	ob_fields_read(L, -1, where, force_fields, sizeof force_fields / sizeof *force_fields, &d);
 	check_force(L, where, &d);
-	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, 1e15, point, NULL) : 0;
+	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, OB_FORCE_MOST, point, NULL) : 0;
 	const ob_force f = { .kind = (ob_force_kind)d.kind,
 			     .force = points ? ob_v3(0, 0, 0) : d.force,
 			     .frequency = isnan(d.frequency) ? 0 : 2 * M_PI * d.frequency,

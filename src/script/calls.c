@@ -6,6 +6,7 @@
 #include <lauxlib.h>
 
 #include "motion/flight.h"
+#include "scene/object_limits.h"
 #include "scene/text.h"
 #include "script/runner.h"
 
@@ -181,7 +182,7 @@ static int call_turned(lua_State *L)
 {
 	ob_state s;
 	ob_vec3 v;
-	vector_at(L, 2, "turned", 1e15, &v);
+	vector_at(L, 2, "turned", OB_FORCE_MOST, &v);
 	if (!state_of(L, "turned", &s))
 		return 0;
 	const ob_mat3 m = ob_quat_matrix(s.pose.q);
@@ -193,7 +194,7 @@ static int call_turned(lua_State *L)
 static int call_force(lua_State *L)
 {
 	ob_script_runner *r = own(L, "force");
-	vector_at(L, 2, "force", 1e15, &r->cell->force);
+	vector_at(L, 2, "force", ob_force_most(ob_passport_of(r->u, r->turn->object)), &r->cell->force);
 	r->cell->asks |= OB_SCRIPT_ASKS_FORCE;
 	return 0;
 }
@@ -201,24 +202,35 @@ static int call_force(lua_State *L)
 static int call_torque(lua_State *L)
 {
 	ob_script_runner *r = own(L, "torque");
-	vector_at(L, 2, "torque", 1e15, &r->cell->next_torque);
+	vector_at(L, 2, "torque", ob_torque_most(ob_passport_of(r->u, r->turn->object)), &r->cell->next_torque);
 	r->cell->asks |= OB_SCRIPT_ASKS_TORQUE;
 	return 0;
+}
+
+// Adds to what pushes, or twists, the object in this step.
+static void add_up(lua_State *L, const char *call, ob_vec3 more, double most, ob_vec3 *sum)
+{
+	const ob_vec3 all = ob_add(*sum, more);
+	const double largest = fmax(fabs(all.x), fmax(fabs(all.y), fabs(all.z)));
+	if (!(largest <= most))
+		ob_sandbox_fail(L, "%s: expected at most %g along an axis in a step, got %g", call, most, largest);
+	*sum = all;
 }
 
 // Pushes at the centre, or at a point, which also adds spin.
 static int call_push(lua_State *L)
 {
 	ob_script_runner *r = own(L, "push");
+	const ob_passport *p = ob_passport_of(r->u, r->turn->object);
 	ob_vec3 push, at;
 	ob_state s;
-	const int taken = vector_at(L, 2, "push", 1e12, &push);
+	const int taken = vector_at(L, 2, "push", OB_FORCE_MOST, &push);
 	if (!lua_isnoneornil(L, 2 + taken)) {
-		vector_at(L, 2 + taken, "push", 1e9, &at);
+		vector_at(L, 2 + taken, "push", OB_PLACE_MOST, &at);
 		if (state_of(L, "push", &s))
-			r->cell->twist = ob_add(r->cell->twist, ob_cross(ob_sub(at, s.pose.p), push));
+			add_up(L, "push", ob_cross(ob_sub(at, s.pose.p), push), ob_torque_most(p), &r->cell->twist);
 	}
-	r->cell->push = ob_add(r->cell->push, push);
+	add_up(L, "push", push, ob_force_most(p), &r->cell->push);
 	r->cell->asks |= OB_SCRIPT_ASKS_PUSH;
 	return 0;
 }
@@ -227,8 +239,8 @@ static int call_twist(lua_State *L)
 {
 	ob_script_runner *r = own(L, "twist");
 	ob_vec3 twist;
-	vector_at(L, 2, "twist", 1e12, &twist);
-	r->cell->twist = ob_add(r->cell->twist, twist);
+	vector_at(L, 2, "twist", OB_FORCE_MOST, &twist);
+	add_up(L, "twist", twist, ob_torque_most(ob_passport_of(r->u, r->turn->object)), &r->cell->twist);
 	r->cell->asks |= OB_SCRIPT_ASKS_PUSH;
 	return 0;
 }

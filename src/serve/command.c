@@ -1,11 +1,13 @@
 #include "serve/command.h"
 
+#include <float.h>
 #include <libwebsockets.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/utf8.h"
+#include "scene/object_limits.h"
 
 static const char *const kinds[OB_DO_KINDS] = {
 	[OB_DO_CREATE] = "create",     [OB_DO_REMOVE] = "remove",   [OB_DO_PAUSE] = "pause",
@@ -46,22 +48,22 @@ static const char *const names[FIELDS] = { "do",         "shape",       "name", 
 					   "attitude",   "velocity",    "spin",      "colour", "mass",
 					   "friction",   "restitution", "roughness", "metal",  "id",
 					   "generation", "steps",       "rate",      "on" };
-// Number count of a field (0: a word), and their range
+// Numbers of a field (0: a word), and their range; those of an object are limited as all objects are
 static const struct {
 	int count;
 	double low, high;
 } numbers[FIELDS] = {
-	[SIZE] = { 3, 0, 1e4 },
-	[AT] = { 3, -1e9, 1e9 },
+	[SIZE] = { 3, -DBL_MAX, DBL_MAX },
+	[AT] = { 3, -DBL_MAX, DBL_MAX },
 	[ATTITUDE] = { 4, -1, 1 },
-	[VELOCITY] = { 3, -1e5, 1e5 },
-	[SPIN] = { 3, -1e4, 1e4 },
-	[COLOUR] = { 3, 0, 1 },
-	[MASS] = { 1, 1e-9, 1e12 },
-	[FRICTION] = { 1, 0, 1e3 },
-	[RESTITUTION] = { 1, 0, 1 },
-	[ROUGHNESS] = { 1, 0, 1 },
-	[METAL] = { 1, 0, 1 },
+	[VELOCITY] = { 3, -DBL_MAX, DBL_MAX },
+	[SPIN] = { 3, -DBL_MAX, DBL_MAX },
+	[COLOUR] = { 3, -DBL_MAX, DBL_MAX },
+	[MASS] = { 1, -DBL_MAX, DBL_MAX },
+	[FRICTION] = { 1, -DBL_MAX, DBL_MAX },
+	[RESTITUTION] = { 1, -DBL_MAX, DBL_MAX },
+	[ROUGHNESS] = { 1, -DBL_MAX, DBL_MAX },
+	[METAL] = { 1, -DBL_MAX, DBL_MAX },
 	[ID] = { 1, 0, 4294967294. },
 	[GENERATION] = { 1, 0, 4294967295. },
 	[STEPS] = { 1, 1, 1e6 },
@@ -224,7 +226,7 @@ static bool make_object(reading *r, ob_object_def *def)
 		s += bytes;
 	}
 	snprintf(def->passport.name, sizeof def->passport.name, "%s", *r->word[NAME] ? r->word[NAME] : shapes[shape]);
-	return true;
+	return ob_object_def_check(def, r->e);
 }
 
 static bool make(reading *r, ob_command *c)

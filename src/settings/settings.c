@@ -11,7 +11,7 @@
 const ob_setting ob_setting_table[OB_SETTINGS] = {
 	[OB_SETTING_ARCHITECTURE] = { "arch", OB_SETTING_CHOICE, MEMBER(monolith), .unit = "",
 				      .names = OB_ARCHITECTURE_NAMES },
-	[OB_SETTING_STEP] = { "step", OB_SETTING_REAL, MEMBER(step_length), 0, 10, .above = true, .unit = "s" },
+	[OB_SETTING_STEP] = { "step", OB_SETTING_REAL, MEMBER(step_length), 1e-9, 10, .unit = "s" },
 	[OB_SETTING_TOLERANCE] = { "tolerance", OB_SETTING_REAL, MEMBER(tolerance), 1e-6, 1, .unit = "m" },
 	[OB_SETTING_SUBSTEPS] = { "substeps", OB_SETTING_COUNT, MEMBER(substeps), 1, 1000, .unit = "" },
 	[OB_SETTING_ITERATIONS] = { "iterations", OB_SETTING_COUNT, MEMBER(iterations), 0, 100000, .unit = "" },
@@ -182,8 +182,10 @@ static bool in_range(const ob_run_settings *s, const ob_setting *t)
 
 bool ob_run_settings_check(const ob_run_settings *s, ob_error *e)
 {
-	if (!isfinite(ob_norm2(s->gravity)))
-		return ob_fail(e, "gravity is not finite");
+	const ob_vec3 g = s->gravity;
+	if (!(fmax(fabs(g.x), fmax(fabs(g.y), fabs(g.z))) <= OB_GRAVITY_MOST) || isnan(g.x + g.y + g.z))
+		return ob_fail(e, "gravity: expected up to %g m/s^2 along each axis, got %g, %g, %g", OB_GRAVITY_MOST,
+			       g.x, g.y, g.z);
 	if (s->fault.probability != 0) // drawn anew
 		return ob_fail(e, "a fault is asked for");
 	for (int i = 0; i < OB_SETTINGS; i++)

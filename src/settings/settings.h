@@ -114,6 +114,7 @@ ob_units ob_run_settings_units(const ob_run_settings *s);
 // Defaults. An explicit tolerance chooses the substeps from ob_run_settings_least_substeps() up.
 #define OB_DEFAULT_STEP (1. / 60) // s
 #define OB_DEFAULT_TOLERANCE 1e-3 // m
+#define OB_GRAVITY_MOST 1e4 // m/s^2 along each axis
 enum {
 	OB_DEFAULT_SUBSTEPS = 8,
 	OB_DEFAULT_ITERATIONS = 16, // object simulators

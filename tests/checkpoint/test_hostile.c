@@ -153,6 +153,31 @@ static void test_timetable(ob_saved_run *r)
 	r->host.population.events = events;
 }
 
+// Bodies that no scene could have: too small, too heavy, with another inertia than their shape's.
+static void test_bodies(ob_saved_run *r)
+{
+	static const double numbers[] = { 1e-320, 1e-160, 1e-20, 1e20, 1e160 };
+	uint32_t id = 0;
+	while (id < r->host.universe.ids && !(r->host.universe.passport[id].mass > 0))
+		id++;
+	CHECK(id < r->host.universe.ids);
+	ob_passport *p = &r->host.universe.passport[id];
+	const ob_passport kept = *p;
+	for (int i = 0; i < 5; i++) {
+		p->size = ob_scale(kept.size, numbers[i]);
+		CHECK(!step(r));
+		*p = kept;
+		p->mass *= numbers[i];
+		CHECK(!step(r));
+		p->inertia = ob_scale(kept.inertia, numbers[i]);
+		CHECK(!step(r));
+		p->mass = kept.mass;
+		CHECK(!step(r));
+		*p = kept;
+	}
+	CHECK(step(r));
+}
+
 int main(int argc, char **argv)
 {
 	const long mutants = argc > 1 ? atol(argv[1]) : MUTANTS;
@@ -165,6 +190,7 @@ int main(int argc, char **argv)
 	memcpy(kept, good.bytes, good.size);
 	CHECK(ob_saved_run_parse(&r, &bad, kept, good.size, "good", NULL) && step(&r));
 	test_timetable(&r);
+	test_bodies(&r);
 	ob_saved_run_close(&r, &bad);
 	for (long i = 0; i < mutants; i++) {
 		ob_error e = { "" };

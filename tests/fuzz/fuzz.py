@@ -177,14 +177,14 @@ class Scenes:
 		if static:
 			return [r.choice(["static = true", "kind = 'static'"])]
 		if not moved:
-			fields += self.maybe(.5, "velocity", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
-		fields += self.maybe(.4, "spin", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-9, 9))
+			fields += self.maybe(.5, "velocity", lambda: self.vector(-1e5, 1e5) if r.random() < .2 else self.vector(-9, 9))
+		fields += self.maybe(.4, "spin", lambda: self.vector(-1e4, 1e4) if r.random() < .2 else self.vector(-9, 9))
 		if kinematic:
 			return fields + ["kind = 'kinematic'"] + ([f"path = {self.path()}"] if moved else [])
-		fields += self.maybe(.2, "force", lambda: self.vector(-1e6, 1e6) if r.random() < .8 else self.vector(-1e15, 1e15))
+		fields += self.maybe(.2, "force", lambda: self.vector(-1e4, 1e4) if r.random() < .8 else self.vector(-1e7, 1e7))
 		fields += self.maybe(.1, "varying_force", self.varying_force)
 		weight = r.random()
-		fields += [f"mass = {self.number(1e-12, 1e15)}"] if weight < .3 else []
+		fields += [f"mass = {self.number(1e-12, 1e12)}"] if weight < .3 else []
 		fields += [f"density = {self.number(1e-3, 1e9)}"] if .3 < weight < .4 else []
 		return fields
 
@@ -212,7 +212,7 @@ class Scenes:
 			if .3 < turned < .5:
 				fields.append(f"rotation = {{ axis = {self.vector(-1, 1)}, degrees = {self.number(-36000, 36000)} }}")
 		if fixed or "kind = 'kinematic'" in fields:
-			fields += self.maybe(.3, "surface_velocity", lambda: self.vector(-1e6, 1e6) if r.random() < .2 else self.vector(-3, 3))
+			fields += self.maybe(.3, "surface_velocity", lambda: self.vector(-1e5, 1e5) if r.random() < .2 else self.vector(-3, 3))
 		if self.scripts and kind != "ground" and r.random() < .5 and not any(f.startswith("varying_force") for f in fields):
 			fields.append(f"script = '{self.one_of([f's{r.randrange(self.scripts)}', 'drop.lua'], ['none.lua', 's9', 'self:remove()'])}'")
 			fields += self.maybe(.3, "state", lambda: self.one_of(["{}", "{ a = 1, b = 'x', c = true }", "{ 1, 2, 3 }"], ["{ a = {} }", "{ a = ('x'):rep(2000) }", "7"]))

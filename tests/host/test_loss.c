@@ -115,7 +115,7 @@ static bool stall(uint32_t workers, uint32_t victim, double patience)
 	c.patience = patience;
 	c.run.integrator = OB_INTEGRATOR_ODE; // no ballistic advance
 	for (uint32_t i = 1; i < s.objects; i++)
-		s.object[i].state.pose.p.z = 1e9;
+		s.object[i].state.pose.p.z = 1e6;
 	ob_host *h = ob_host_start(&s, &c, &e);
 	strcpy(name, ob_universe_name(ob_host_universe(h)));
 	pid_t pid = pid_of_worker(ob_host_universe(h), victim);

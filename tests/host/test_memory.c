@@ -60,7 +60,7 @@ int main(void)
 {
 	check("threads", OB_ISOLATION_THREAD, 1, OB_INTEGRATOR_EXACT, 1500);
 	check("threads", OB_ISOLATION_THREAD, 2, OB_INTEGRATOR_EXACT, 1500);
-	check("processes", OB_ISOLATION_PROCESS, 2, OB_INTEGRATOR_EXACT, 1750);
+	check("processes", OB_ISOLATION_PROCESS, 2, OB_INTEGRATOR_EXACT, 1950);
 	check("threads, ODE worlds", OB_ISOLATION_THREAD, 1, OB_INTEGRATOR_ODE, 4000);
 	check("processes, ODE worlds", OB_ISOLATION_PROCESS, 2, OB_INTEGRATOR_ODE, 4000);
 	return check_end();

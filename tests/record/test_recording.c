@@ -58,10 +58,12 @@ static ob_snapshot at(uint64_t state)
 			motion[id].valid_until = 1;
 	}
 	passport[2].shape = OB_SHAPE_HULL;
+	passport[2].size = ob_v3(.3, .2, .1);
 	passport[2].hull = 5;
 	hull[5] = &tetrahedron;
 	if (state >= 80) {
 		passport[3].shape = OB_SHAPE_HULL;
+		passport[3].size = passport[2].size;
 		passport[3].hull = 1;
 		hull[1] = &prism;
 	}
@@ -285,6 +287,18 @@ static void no_shape(hid_t file)
 	set_member(file, "events", "shape", H5T_NATIVE_UINT32, 2, &(uint32_t){ 1000 });
 }
 
+static void heavy(hid_t file)
+{
+	set_member(file, "events", "mass", H5T_NATIVE_DOUBLE, 2, &(double){ 1e300 });
+}
+
+static void tiny(hid_t file)
+{
+	hid_t vector = H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, (hsize_t[]){ 3 });
+	set_member(file, "events", "size", vector, 2, (double[]){ 1e-160, 1, 1 });
+	H5Tclose(vector);
+}
+
 static void twice(hid_t file)
 {
 	set_member(file, "events", "id", H5T_NATIVE_UINT32, 2, &(uint32_t){ 1 });
@@ -387,6 +401,8 @@ static void test_damaged(void)
 		{ stranger, "a motion makes no sense" },
 		{ huge_id, "its events make no sense" },
 		{ no_shape, "an object makes no sense" },
+		{ heavy, "an object makes no sense" },
+		{ tiny, "an object makes no sense" },
 		{ twice, "comes twice" },
 		{ flat, "its cameras make no sense" },
 		{ no_hulls, "an object makes no sense" },

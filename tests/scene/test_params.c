@@ -25,8 +25,8 @@ static void refused(const char *text, const char *define, const char *expected)
 		fprintf(stderr, "  expected %s\n  got %s\n", expected, e.text);
 }
 
-static const char whole[] = "sphere { radius = param('n', 100) }";
-static const char real[] = "sphere { radius = param('r', .5, { min = .1, max = 1e6 }) }";
+static const char whole[] = "sphere { radius = param('n', 100), mass = 1 }";
+static const char real[] = "sphere { radius = param('r', .5, { min = .1, max = 1e6 }), mass = 1 }";
 static const char text[] = "sphere { radius = #param('t', 'ab') }";
 static const char flag[] = "sphere { radius = param('f', false) and 2 or 1 }";
 static const char choice[] = "sphere { radius = #param('c', 'one', { 'one', 'three' }) }";

@@ -1,4 +1,4 @@
--- expect: :3: sphere.radius: expected a number above 0
+-- expect: :3: sphere.radius: expected a number from 1e-06 to 1000000
 local function add(r)
   sphere { radius = r }
 end

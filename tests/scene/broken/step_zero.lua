@@ -1,2 +1,2 @@
--- expect: :2: scene.step: expected a number above 0, up to 10, got 0
+-- expect: :2: scene.step: expected a number from 1e-09 to 10, got 0
 scene { step = 0 }

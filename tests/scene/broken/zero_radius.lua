@@ -1,2 +1,2 @@
--- expect: :2: sphere.radius: expected a number above 0, up to 1000000, got 0
+-- expect: :2: sphere.radius: expected a number from 1e-06 to 1000000, got 0
 sphere { radius = 0 }

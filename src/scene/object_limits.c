@@ -1,0 +1,139 @@
+#include "scene/object_limits.h"
+
+#include <math.h>
+
+static bool within(const char *property, const char *unit, double least, double most, double value, ob_error *e)
+{
+	return (value >= least && value <= most) || // false for NaN
+	       ob_fail(e, "%s: expected from %.10g to %.10g%s, got %.10g%s", property, least, most, unit, value, unit);
+}
+
+static bool within3(const char *property, const char *unit, double most, ob_vec3 v, ob_error *e)
+{
+	return within(property, unit, -most, most, v.x, e) && within(property, unit, -most, most, v.y, e) &&
+	       within(property, unit, -most, most, v.z, e);
+}
+
+static bool is_length(double value, ob_error *e)
+{
+	return within("size", " m", OB_LENGTH_LEAST, OB_LENGTH_MOST, value, e);
+}
+
+static bool check_size(const ob_passport *p, ob_error *e)
+{
+	const ob_vec3 s = p->size;
+	switch (p->shape) {
+	case OB_SHAPE_SPHERE:
+		return is_length(s.x, e);
+	case OB_SHAPE_BOX:
+		return is_length(2 * s.x, e) && is_length(2 * s.y, e) && is_length(2 * s.z, e);
+	case OB_SHAPE_CAPSULE:
+	case OB_SHAPE_CYLINDER:
+		return is_length(s.x, e) && is_length(2 * s.y, e);
+	case OB_SHAPE_HULL: // its ball, its width; the ball in it is a quarter of that, or more
+		return is_length(s.x, e) && is_length(2 * s.y, e) && within("size", " m", .25 * s.y, s.x, s.z, e);
+	case OB_SHAPE_PLANE:
+		return (p->flags & OB_OBJECT_PRESCRIBED) == OB_OBJECT_STATIC ||
+		       ob_fail(e, "plane: expected to be static");
+	default:
+		return ob_fail(e, "shape: expected from %d to %d, got %u", OB_SHAPE_SPHERE, OB_SHAPE_HULL, p->shape);
+	}
+}
+
+// A needle turns about its axis with too little inertia beside the others for all to be told apart.
+static bool check_slenderness(const ob_passport *p, ob_error *e)
+{
+	const ob_vec3 s = p->size;
+	double longest = 1, least = 1; // of a ball
+	if (p->shape == OB_SHAPE_BOX)
+		longest = fmax(s.x, fmax(s.y, s.z)), least = fmin(s.x, fmin(s.y, s.z));
+	else if (p->shape == OB_SHAPE_CYLINDER)
+		longest = fmax(s.x, s.y), least = fmin(s.x, s.y);
+	else if (p->shape == OB_SHAPE_CAPSULE)
+		longest = s.x + s.y, least = s.x;
+	else if (p->shape == OB_SHAPE_HULL)
+		longest = s.x, least = s.y;
+	return within("size", " times as long as wide", 1, OB_SLENDERNESS_MOST, longest / least, e);
+}
+
+static bool check_surface(const ob_passport *p, ob_error *e)
+{
+	for (int i = 0; i < 4; i++)
+		if (!within("colour", "", 0, 1, p->colour[i], e))
+			return false;
+	return within("friction", "", 0, OB_FRICTION_MOST, p->friction, e) &&
+	       within("restitution", "", 0, 1, p->restitution, e) && within("roughness", "", 0, 1, p->roughness, e) &&
+	       within("metal", "", 0, 1, p->metal, e);
+}
+
+bool ob_passport_check(const ob_passport *p, ob_error *e)
+{
+	if (!check_size(p, e) || !check_surface(p, e))
+		return false;
+	if (p->flags & OB_OBJECT_PRESCRIBED)
+		return within3("surface_velocity", " m/s", OB_SPEED_MOST, p->surface_velocity, e);
+	return check_slenderness(p, e) && within("mass", " kg", OB_MASS_LEAST, OB_MASS_MOST, p->mass, e) &&
+	       within3("force", " N", ob_force_most(p), p->force, e);
+}
+
+static bool check_start(const ob_passport *p, const ob_state *s, ob_error *e)
+{
+	const ob_quat q = s->pose.q;
+	if (!within3("at", " m", OB_PLACE_MOST, s->pose.p, e) || !within3("velocity", " m/s", OB_SPEED_MOST, s->v, e) ||
+	    !within3("spin", " rad/s", OB_SPIN_MOST, s->w, e))
+		return false;
+	if (!(fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-6))
+		return ob_fail(e, "attitude: expected a unit quaternion");
+	if (p->shape == OB_SHAPE_PLANE)
+		return true;
+	const double radius = ob_shape_radius((ob_shape)p->shape, p->size);
+	return within("spin", " m/s at its surface", 0, OB_SPEED_MOST, ob_norm(s->w) * radius, e);
+}
+
+static bool check_path(const ob_path *path, const ob_state *start, ob_error *e)
+{
+	const double swing = path->frequency > 0 ? ob_norm(path->a) / path->frequency : 0;
+	ob_vec3 turn;
+	for (uint32_t i = 0; i + 1 < path->points; i++) {
+		const ob_path_point *from = &path->point[i], *to = from + 1;
+		const double t = to->t - from->t;
+		if (!within("path", " m/s", 0, OB_SPEED_MOST, ob_norm(ob_sub(to->p, from->p)) / t, e))
+			return false;
+		if (path->turns && ob_path_turn(from->q, to->q, &turn) &&
+		    !within("path", " rad/s", 0, OB_SPIN_MOST, ob_norm(turn) / t, e))
+			return false;
+	}
+	return path->points > 0 || within("path", " m/s", 0, OB_SPEED_MOST, hypot(ob_norm(start->v), swing), e);
+}
+
+// The largest force in its course, beside the constant one.
+static bool check_varying_force(const ob_force *f, const ob_passport *p, ob_error *e)
+{
+	const ob_vec3 rest = p->force;
+	for (uint32_t i = 0; i <= f->points; i++) {
+		const ob_vec3 now = i < f->points ? f->point[i].p : f->force;
+		const ob_vec3 sum =
+			ob_v3(fabs(now.x) + fabs(rest.x), fabs(now.y) + fabs(rest.y), fabs(now.z) + fabs(rest.z));
+		if (!within3("varying_force", " N", ob_force_most(p), sum, e))
+			return false;
+	}
+	return true;
+}
+
+bool ob_object_def_check(const ob_object_def *def, ob_error *e)
+{
+	const ob_passport *p = &def->passport;
+	return ob_passport_check(p, e) && (!def->path || check_path(def->path, &def->state, e)) &&
+	       check_start(p, &def->state, e) && (!def->force || check_varying_force(def->force, p, e));
+}
+
+double ob_force_most(const ob_passport *p)
+{
+	return p->mass > 0 ? fmin(OB_FORCE_MOST, OB_ACCELERATION_MOST * p->mass) : OB_FORCE_MOST;
+}
+
+double ob_torque_most(const ob_passport *p)
+{
+	const double least = fmin(p->inertia.x, fmin(p->inertia.y, p->inertia.z));
+	return least > 0 ? fmin(OB_FORCE_MOST, OB_ACCELERATION_MOST * least) : OB_FORCE_MOST;
+}

@@ -1,0 +1,33 @@
+// Limits of objects: what they are, where they begin, and what may act on them. Scenes, scripts, viewers, requests,
+// checkpoints and records all pass them before an object is simulated or shown.
+//
+// Lengths keep fourteen orders of magnitude to where the simulators' numbers were seen to fail: an object
+// of 1e-20 m and a kilogram makes its neighbours diverge. Pure functions, thread-safe.
+#ifndef OB_SCENE_OBJECT_LIMITS_H
+#define OB_SCENE_OBJECT_LIMITS_H
+
+#include "scene/scene.h"
+
+#define OB_LENGTH_LEAST 1e-6 // m: an edge, a radius, a length, a hull's width; the smallest tolerance
+#define OB_LENGTH_MOST 1e6 // m
+#define OB_SLENDERNESS_MOST 1e4 // of what forces move: its longest extent by its least
+#define OB_MASS_LEAST 1e-12 // kg
+#define OB_MASS_MOST 1e12 // kg: 1 km of water
+#define OB_PLACE_MOST 1e7 // m from the origin along each axis: a double has steps of 2e-9 m there
+#define OB_SPEED_MOST 1e5 // m/s along each axis, and of the surface by spin
+#define OB_SPIN_MOST 1e4 // rad/s
+#define OB_FORCE_MOST 1e15 // N
+#define OB_ACCELERATION_MOST 1e6 // m/s^2 along each axis, by a force; rad/s^2, by a torque
+#define OB_FRICTION_MOST 1e3
+
+// False and e, as "mass: expected from 1e-12 to 1e+12 kg, got 0 kg". The inertia is not looked at: these limits bound it.
+bool ob_passport_check(const ob_passport *p, ob_error *e);
+// Likewise of an object before it begins, with its passport, its path and its force.
+bool ob_object_def_check(const ob_object_def *def, ob_error *e);
+
+// The most that may act on an object along each axis: a force (N) or an impulse (N s), a torque (N m) or an angular
+// impulse (N m s). They change its speed, or its spin, by OB_ACCELERATION_MOST in a second, or at once.
+double ob_force_most(const ob_passport *p);
+double ob_torque_most(const ob_passport *p);
+
+#endif
