@@ -17,7 +17,7 @@ ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uin
 	return (ob_frame_clock){
 		.fps = fps,
 		.step = step,
-		.frames = (uint64_t)floor(duration * fps + 1e-9),
+		.frames = (uint64_t)fmax(1, floor(duration * fps + 1e-9)),
 		.next = (uint64_t)ceil((double)first * step * fps * (1 - 1e-12) - 1e-9),
 	};
 }

@@ -12,8 +12,8 @@ typedef struct ob_frame_clock {
 	uint64_t next; // the frame that is due next; == frames: all done
 } ob_frame_clock;
 
-// A duration has floor(duration * fps) frames: 600 for 10 s at 60, the first at 0, none at the end itself. first: step
-// at which the run begins, and its frames.
+// A duration has floor(duration * fps) frames: 600 for 10 s at 60, the first at 0, none at the end itself. A duration
+// shorter than a frame has one, at 0. first: step at which the run begins, and its frames.
 ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first);
 double ob_frame_clock_time(const ob_frame_clock *c); // s, of the next frame
 // The step at or after the next frame; its time lies in (step - 1, step]. UINT64_MAX when all frames are done.
