@@ -271,9 +271,10 @@ static void print_cost(const ob_report *r, FILE *f)
 		ob_quantity_text(&b, r->wall_s / simulated, "s"));
 	if (r->wall_s > 0)
 		fprintf(f, " (%.3g x real time)", simulated / r->wall_s);
-	fprintf(f, "\n  CPU          %s of the simulators, %s per simulated second, %s per body and step",
-		ob_quantity_text(&a, r->cpu_s, "s"), ob_quantity_text(&b, r->cpu_s / simulated, "s"),
-		ob_quantity_text(&c, 1e-6 * r->body_step_cpu_us, "s"));
+	fprintf(f, "\n  CPU          %s of the simulators, %s per simulated second", ob_quantity_text(&a, r->cpu_s, "s"),
+		ob_quantity_text(&b, r->cpu_s / simulated, "s"));
+	if (isfinite(r->body_step_cpu_us))
+		fprintf(f, ", %s per body and step", ob_quantity_text(&c, 1e-6 * r->body_step_cpu_us, "s"));
 	if (r->frames > 0)
 		fprintf(f, "; drawing took %s besides", ob_quantity_text(&a, r->renderer_cpu_s, "s"));
 	fputc('\n', f);

@@ -365,7 +365,8 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->deaths = times.deaths;
 	p->frozen = times.frozen;
 	p->deaths_told = ob_host_get_deaths(r->host, p->death);
-	p->body_step_cpu_us = 1e6 * times.cpu_s / body_steps(r, first_time(r));
+	const double steps = body_steps(r, first_time(r));
+	p->body_step_cpu_us = steps > 0 ? 1e6 * times.cpu_s / steps : NAN;
 }
 
 static bool write_json(const char *path, const ob_report *p, ob_error *e)

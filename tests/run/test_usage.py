@@ -1,5 +1,6 @@
 """Errors of users: one line with the cause and the remedy, exit code 2, nothing left behind."""
 
+import json
 import os
 import resource
 import subprocess
@@ -42,6 +43,16 @@ class Usage(program.Case):
 		self.refuse("run", "missing.lua", saying="missing.lua")
 		self.refuse("compare", "missing.lua", saying="missing.lua")
 		self.refuse("run", self.directory.name, saying=self.directory.name)
+
+	def test_static_objects_alone(self):
+		"""Nothing moves: there is no cost per body, in the text as in JSON."""
+		with open(self.path("still.lua"), "w", encoding="utf-8") as f:
+			f.write("ground {} box { size = { 1, 1, 1 }, static = true }")
+		done = program.call("run", self.path("still.lua"), "--duration", ".1", "--json", self.path("r.json"))
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		self.assertNotRegex(done.stdout, r"\b(inf|nan)\b|per body")
+		with open(self.path("r.json"), encoding="utf-8") as f:
+			self.assertIsNone(json.load(f)["body_step_cpu_us"])
 
 	def test_help(self):
 		for words in ["--help"], ["help"], ["-h"], ["run", "--help"], ["compare", "-h"], ["top", "--help"], ["help", "run"]:
