@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "cli/quantity.h"
 
 static bool all_stay(const ob_scene *s)
 {
@@ -129,13 +130,27 @@ static bool measure_penetration(ob_observer *o, const ob_snapshot *s, const ob_h
 	return true;
 }
 
+// Warns of objects that begin inside each other, by more than what contacts explain.
+static void warn_of_overlap(const ob_observer *o, const ob_snapshot *s, const ob_host *host)
+{
+	static const double much = 10; // tolerances
+	const double tolerance = ob_universe_settings(ob_host_universe(host))->tolerance;
+	ob_quantity depth;
+	if (o->now.max_m > much * (tolerance > 0 ? tolerance : OB_DEFAULT_TOLERANCE))
+		ob_log_warn("\"%s\" (object %" PRIu32 ") and \"%s\" (object %" PRIu32
+			    ") begin %s inside each other: move them apart",
+			    s->passport[o->now.worst_a].name, o->now.worst_a, s->passport[o->now.worst_b].name,
+			    o->now.worst_b, ob_quantity_text(&depth, o->now.max_m, "m"));
+}
+
 bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e)
 {
 	if (o->started && s->step == o->last_step)
 		return true;
 	o->energy = ob_measure_energy(s, o->gravity);
 	ob_vec3 momentum = ob_measure_momentum(s);
-	if (!o->started)
+	const bool begins = !o->started;
+	if (begins)
 		start(o, s, momentum);
 	o->last_step = s->step;
 	o->energy_top = fmax(o->energy_top, o->energy);
@@ -144,6 +159,8 @@ bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *ho
 			fmax(o->momentum_error, ob_norm(ob_sub(momentum, o->momentum_start)) / o->momentum_scale);
 	if (!measure_penetration(o, s, host, e))
 		return false;
+	if (begins)
+		warn_of_overlap(o, s, host);
 	if (o->now.max_m > o->worst) {
 		o->worst = o->now.max_m;
 		o->worst_time = s->time;

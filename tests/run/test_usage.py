@@ -44,6 +44,14 @@ class Usage(program.Case):
 		self.refuse("compare", "missing.lua", saying="missing.lua")
 		self.refuse("run", self.directory.name, saying=self.directory.name)
 
+	def test_overlap_at_the_start(self):
+		"""Objects that begin deep inside each other are named, and the run goes on."""
+		with open(self.path("deep.lua"), "w", encoding="utf-8") as f:
+			f.write("for i, x in ipairs { 0, .2, 5, 5.999 } do box { name = 'b' .. i, size = { 1, 1, 1 }, at = { x, 0, 0 } } end")
+		done = program.call("run", self.path("deep.lua"), "--duration", ".1")
+		self.assertEqual(done.returncode, 0)
+		self.assertRegex(done.stderr, r'^[^\n]*"b1" \(object 0\) and "b2" \(object 1\) begin 800 mm inside each other')
+
 	def test_static_objects_alone(self):
 		"""Nothing moves: there is no cost per body, in the text as in JSON."""
 		with open(self.path("still.lua"), "w", encoding="utf-8") as f:
