@@ -44,6 +44,8 @@ typedef struct ob_sink ob_sink;
 ob_sink *ob_sink_png(const char *dir, int w, int h, uint64_t first, ob_error *e);
 // Writes rgb24 to a pipe; name: the name of the pipe in errors; valid as long as the sink
 ob_sink *ob_sink_raw(int fd, const char *name, int w, int h, ob_error *e);
+// True if ffmpeg is there; else false, and e names the package.
+bool ob_video_check(ob_error *e);
 ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e); // through ffmpeg
 bool ob_sink_put(ob_sink *s, uint64_t frame, double time, const uint8_t *rgba, ob_error *e);
 // Waits for all frames, closes. Returns false and e if any frame was not written whole. Frees s either way.

@@ -131,6 +131,21 @@ static void discard(video *v)
 	free(v);
 }
 
+// Looks through PATH as posix_spawnp does.
+bool ob_video_check(ob_error *e)
+{
+	const char *path = getenv("PATH");
+	char file[4096];
+	for (path = path ? path : "/bin:/usr/bin"; *path; path += *path == ':') {
+		const size_t n = strcspn(path, ":");
+		snprintf(file, sizeof file, "%.*s/ffmpeg", (int)n, n ? path : ".");
+		if (access(file, X_OK) == 0)
+			return true;
+		path += n;
+	}
+	return ob_fail(e, "--video: ffmpeg is missing: install ffmpeg, or write PNG files (--frames)");
+}
+
 ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e)
 {
 	static const ob_sink_kind kind = { write_video, finish_video };
@@ -147,8 +162,7 @@ ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e)
 	v->pipe = ends[1];
 	if (error) {
 		close(ends[1]);
-		ob_fail(e, "%.400s: cannot start ffmpeg: %s%s", path, strerror(error),
-			error == ENOENT ? " (Debian: apt install ffmpeg; or write PNG frames)" : "");
+		ob_fail(e, "%.400s: cannot start ffmpeg: %s", path, strerror(error));
 		discard(v);
 		return NULL;
 	}

@@ -241,7 +241,8 @@ static void video(void)
 	}
 	char *search = strdup(getenv("PATH"));
 	setenv("PATH", base, 1);
-	CHECK(!ob_sink_video(path, W, H, 60, &e) && strstr(e.text, "apt install ffmpeg"));
+	CHECK(!ob_video_check(&e) && strstr(e.text, "install ffmpeg"));
+	CHECK(!ob_sink_video(path, W, H, 60, &e) && strstr(e.text, "cannot start ffmpeg"));
 	setenv("PATH", search, 1);
 	free(search);
 }

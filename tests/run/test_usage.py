@@ -62,6 +62,14 @@ class Usage(program.Case):
 		with open(self.path("r.json"), encoding="utf-8") as f:
 			self.assertIsNone(json.load(f)["body_step_cpu_us"])
 
+	def test_video_without_ffmpeg(self):
+		"""Refused before anything is begun."""
+		done = subprocess.run([program.OBSIM, "run", STACK, "--video", self.path("v.mp4"), "--record", self.path("r.h5")],
+			env={**os.environ, "PATH": self.directory.name}, capture_output=True, text=True, timeout=program.PATIENCE)
+		self.assertEqual((done.returncode, done.stdout), (2, ""))
+		self.assertRegex(done.stderr, r"^obsim: --video: [^\n]*install ffmpeg[^\n]*\n\Z")
+		self.assertEqual(os.listdir(self.directory.name), [])
+
 	def test_help(self):
 		for words in ["--help"], ["help"], ["-h"], ["run", "--help"], ["compare", "-h"], ["top", "--help"], ["help", "run"]:
 			with self.subTest(words=words):
