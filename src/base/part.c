@@ -9,47 +9,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/own_file.h"
+
 #define STRING(x) #x
 #define NAME(x) STRING(x)
 
-// Cuts the last name off a path; false at the root.
-static bool climb(char *path)
-{
-	char *slash = strrchr(path, '/');
-	if (!slash || slash == path)
-		return false;
-	*slash = '\0';
-	return true;
-}
-
-static bool is_there(char *path, const char *folder, const char *below, const char *name)
-{
-	return snprintf(path, PATH_MAX, "%s%s/obsim-%s.so", folder, below, name) < PATH_MAX && access(path, F_OK) == 0;
-}
-
-// The root of the build tree is the nearest folder above the program in which ninja works.
-static bool find(char path[PATH_MAX], const char *name)
-{
-	char folder[PATH_MAX], ninja[PATH_MAX + 16];
-	ssize_t n = readlink("/proc/self/exe", folder, sizeof folder - 1);
-	if (n <= 0)
-		return false;
-	folder[n] = '\0';
-	climb(folder);
-	if (is_there(path, folder, "", name) || is_there(path, folder, "/" OB_PARTS_FROM_PROGRAM, name))
-		return true;
-	do {
-		snprintf(ninja, sizeof ninja, "%s/build.ninja", folder);
-		if (access(ninja, F_OK) == 0)
-			return is_there(path, folder, "", name);
-	} while (climb(folder));
-	return false;
-}
-
 static void *open_library(const char *name, bool global, const char *package, ob_error *e)
 {
-	char path[PATH_MAX];
-	if (!find(path, name)) {
+	char path[PATH_MAX], file[NAME_MAX];
+	snprintf(file, sizeof file, "obsim-%s.so", name);
+	if (!ob_own_file_find(path, OB_PARTS_FROM_PROGRAM, ".", file)) {
 		ob_fail(e, "obsim-%s.so is missing: this obsim was built or installed without it; it needs %s", name, package);
 		return NULL;
 	}

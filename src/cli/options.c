@@ -409,6 +409,6 @@ void ob_options_overview(FILE *f)
 		fprintf(f, "  %-38s %s\n", commands[i].usage, commands[i].what);
 	fputs("\n  obsim COMMAND --help                   The options of a command.\n"
 	      "  obsim --version                        Version, commit and libraries.\n\n"
-	      "Try: obsim run scenes/falling_boxes.lua -D n=100\n",
+	      "Try: obsim run falling_boxes -D n=100\n",
 	      f);
 }

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/cpu.h"
+#include "base/own_file.h"
 #include "base/spelling.h"
 #include "cli/quantity.h"
 #include "plot/plot.h"
@@ -426,6 +427,17 @@ static bool read_pace(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
+// Path of a scene: of that file, or of the scene of this name that comes with obsim. Valid until the next call.
+static const char *find_scene(const char *name)
+{
+	static char path[PATH_MAX];
+	char file[NAME_MAX];
+	if (!name || strchr(name, '/') || access(name, F_OK) == 0 ||
+	    snprintf(file, sizeof file, "%s.lua", name) >= (int)sizeof file)
+		return name;
+	return ob_own_file_find(path, OB_SCENES_FROM_PROGRAM, OB_SCENES_FROM_BUILD, file) ? path : name;
+}
+
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	static const char *const verbs[] = {
@@ -435,10 +447,10 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	if (resume && !check_resumed(a, e))
 		return false;
 	if (!a->operand && !resume)
-		return ob_fail(e, "no scene given: obsim %s scenes/falling_boxes.lua", verbs[a->command]);
+		return ob_fail(e, "no scene given: obsim %s falling_boxes", verbs[a->command]);
 	const char *isolation = a->value[OB_OPTION_ISOLATION], *measure = a->value[OB_OPTION_MEASURE];
 	*r = (ob_run_request){
-		.scene = a->operand,
+		.scene = find_scene(a->operand),
 		.resume = resume,
 		.scene_options = { .defines = a->define, .define_count = a->defines },
 		.name = a->value[OB_OPTION_NAME],

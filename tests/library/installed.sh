@@ -19,6 +19,9 @@ if "$root/watch" no-such-universe 2>"$root/said"; then
 fi
 grep -q no-such-universe "$root/said" || { echo "watch does not name it: $(cat "$root/said")"; exit 1; }
 
+"$(find "$root" -path '*/bin/obsim')" run stack --duration .02 --json - 2>/dev/null | grep -q "\"$root.*/scenes/stack.lua\"" ||
+	{ echo "the installed obsim does not find its scenes"; exit 1; }
+
 nm -D --defined-only "$library" | awk '$2 ~ /[TDBR]/ { print $3 }' | sort >"$root/shown"
 cat "$source"/include/ob/*.h | grep -o '\bob_[a-z_]*(' | tr -d '(' | sort -u >"$root/declared"
 extra=$(comm -23 "$root/shown" "$root/declared")

@@ -43,6 +43,18 @@ class Usage(program.Case):
 		self.refuse("run", "missing.lua", saying="missing.lua")
 		self.refuse("compare", "missing.lua", saying="missing.lua")
 		self.refuse("run", self.directory.name, saying=self.directory.name)
+		self.refuse("run", "falling_bxes", saying="falling_bxes")
+
+	def test_scenes_of_obsim(self):
+		"""The command that the help proposes works anywhere; a file of the name that is given comes first."""
+		(proposed,) = [line.split()[2:] for line in program.call("--help").stdout.splitlines() if line.startswith("Try:")]
+		words = [*proposed, "--duration", ".02"]
+		done = program.call(*words, cwd=self.directory.name)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		name = words[1]
+		with open(self.path(name), "w", encoding="utf-8") as f:
+			f.write("no scene")
+		self.assertEqual(program.call(*words, cwd=self.directory.name).returncode, 2)
 
 	def test_overlap_at_the_start(self):
 		"""Objects that begin deep inside each other are named, and the run goes on."""
