@@ -71,7 +71,8 @@ struct ob_host {
 	struct {
 		uint32_t failed, told, more; // failed: at the last check; told: logged; more: not logged
 		uint64_t who[OB_SCRIPTS_TOLD]; // generation << 32 | id
-	} scripts; // scripts that errors have stopped
+		uint64_t warned; // bit i: script i was warned of
+	} scripts; // scripts that errors have stopped, or that have no effect
 	uint64_t target; // the caller's
 	bool started; // the gate was opened once
 	double patience; // s

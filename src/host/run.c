@@ -160,6 +160,16 @@ void ob_host_want_contacts(ob_host *h, uint64_t step)
 	ob_contacts_want(h->u, step);
 }
 
+// Warns once of each script that does something without effect.
+static void tell_warning(ob_host *h, const ob_script_turn *turn, const char *warning)
+{
+	const uint64_t bit = (uint64_t)1 << (turn->script - 1) % OB_SCRIPTS_MAX;
+	if (!(h->scripts.warned & bit))
+		ob_log_warn("the script of object %u (%.*s): %s", turn->object, OB_NAME_MAX,
+			    ob_passport_of(h->u, turn->object)->name, warning);
+	h->scripts.warned |= bit;
+}
+
 // Warns once of each object whose script an error has stopped, across restarts.
 static void tell_of_script(ob_host *h, uint32_t cell)
 {
@@ -168,6 +178,10 @@ static void tell_of_script(ob_host *h, uint32_t cell)
 	char error[OB_SCRIPT_ERROR_BYTES + 1] = "";
 	memcpy(error, data->script_cell[cell].error, OB_SCRIPT_ERROR_BYTES);
 	ob_utf8_make_plain(error);
+	if (!(turn->flags & OB_SCRIPT_STOPPED)) {
+		tell_warning(h, turn, error);
+		return;
+	}
 	const uint64_t who = (uint64_t)turn->generation << 32 | turn->object;
 	for (uint32_t i = 0; i < h->scripts.told; i++)
 		if (h->scripts.who[i] == who)
@@ -192,7 +206,8 @@ void ob_host_tell_of_scripts(ob_host *h)
 		return;
 	h->scripts.failed = count->failed;
 	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
-		if (data->script_turn[i].script && data->script_turn[i].flags & OB_SCRIPT_STOPPED &&
+		if (data->script_turn[i].script &&
+		    data->script_turn[i].flags & (OB_SCRIPT_STOPPED | OB_SCRIPT_WARNED) &&
 		    data->script_turn[i].object < data->objects_max)
 			tell_of_script(h, i);
 }

@@ -65,9 +65,18 @@ static ob_random *scene_random(lua_State *L)
 	return &b->random;
 }
 
+// Arguments may be text, which is read as numbers.
+static void spend_text(lua_State *L)
+{
+	for (int i = 1; i <= 2; i++)
+		if (lua_type(L, i) == LUA_TSTRING)
+			ob_sandbox_spend(L, (unsigned)lua_rawlen(L, i));
+}
+
 int ob_scene_call_random(lua_State *L)
 {
 	int n = lua_gettop(L);
+	spend_text(L);
 	if (n != 0 && n != 2)
 		ob_sandbox_fail(L, "random: expected random() or random(low, high), got %d value%s", n,
 				n == 1 ? "" : "s");
@@ -93,6 +102,7 @@ int ob_scene_call_random_rotation(lua_State *L)
 int ob_scene_call_random_integer(lua_State *L)
 {
 	int n = lua_gettop(L);
+	spend_text(L);
 	if (n == 0)
 		return ob_scene_call_random(L);
 	lua_Integer low = n > 1 ? luaL_checkinteger(L, 1) : 1, high = luaL_checkinteger(L, n > 1 ? 2 : 1);

@@ -15,8 +15,21 @@
 #define CHUNK "scene"
 // A few long operations between two looks at the clock, each below some milliseconds: well under a second together.
 #define HOOK_EVERY 100
-#define STRING_BYTES 64 // of a new string, that count as an instruction
+#define BYTES_MADE 4 // of a new string, that count as an instruction: they may be digits of numbers
+#define BYTES_COMPARED 256 // of two strings, that count as an instruction
+#define SHORT_STRING 80 // bytes of a block, for a string that Lua may keep once for all its users, made or not
+#define SMALL_TABLE 256 // bytes of a block
+#define COLLECTED_BYTES 64 // of memory, that count as an instruction when all of it is searched for garbage
+#define SEARCHED_BYTES 1024 // of a table, empty or not, that count as an instruction when all of it is gone through
+#define TABLE_BYTES 64 // of a new table, that count as an instruction
+#define BITS_DIVIDED 32 // between two numbers, that count as an instruction of their remainder
+#define DIGITS 12 // instructions, to write a number as text
 #define LARGE ((size_t)64 << 10) // bytes: filling such a block takes long enough to look at the clock
+
+typedef struct ob_sandbox_sizes {
+	size_t longest[2]; // bytes of the two longest strings
+	size_t table; // bytes of the largest new block that may be a table
+} ob_sandbox_sizes;
 
 struct ob_sandbox {
 	lua_State *L;
@@ -31,7 +44,15 @@ struct ob_sandbox {
 	int refused_line;
 	int error_line;
 	bool lacked_memory;
+	bool collects; // it may, for want of memory
+	bool exhausted; // it may not, and had to: refused until the call ends
+	const void *refused_for; // the block that was refused last, for which Lua collects garbage and asks again
+	size_t refused_size;
+	ob_sandbox_sizes outside, made; // by the text that was read; and with what the call has made
 };
+
+// The sandbox that runs in this thread, for strcoll.
+static _Thread_local ob_sandbox *running;
 
 static ob_sandbox *sandbox_of(lua_State *L)
 {
@@ -78,6 +99,17 @@ void ob_sandbox_extend(lua_State *L, unsigned instructions, double seconds)
 static const char too_late[] = "stopped after 10 s: does it compute too much?";
 _Static_assert(OB_SANDBOX_SECONDS == 10, "said in too_late");
 
+static void hook(lua_State *L, lua_Debug *d);
+
+// The same where no error can be raised: the next instruction does it.
+static void spend_silently(ob_sandbox *s, size_t instructions)
+{
+	const bool was_within = s->instructions <= s->limit.instructions;
+	s->instructions += instructions;
+	if (was_within && s->instructions > s->limit.instructions && s->L && lua_gethook(s->L))
+		lua_sethook(s->L, hook, LUA_MASKCOUNT, 1);
+}
+
 void ob_sandbox_spend(lua_State *L, unsigned instructions)
 {
 	ob_sandbox *s = sandbox_of(L);
@@ -88,9 +120,55 @@ void ob_sandbox_spend(lua_State *L, unsigned instructions)
 		ob_sandbox_fail(L, "%s", too_late);
 }
 
+size_t ob_sandbox_string_max(lua_State *L)
+{
+	return sandbox_of(L)->limit.string;
+}
+
+const char *ob_sandbox_out_of_string(lua_State *L)
+{
+	return sandbox_of(L)->limit.out_of_string;
+}
+
+// Any instruction may compare two strings of the same length, which nothing announces: each counts as if it did, with
+// the longest that there may be two of. A clock does as well where there is one.
 static void hook(lua_State *L, lua_Debug *d)
 {
-	ob_sandbox_spend(L, HOOK_EVERY);
+	const ob_sandbox *s = sandbox_of(L);
+	const size_t compared = s->deadline < INFINITY ? 0 : s->made.longest[1] / BYTES_COMPARED;
+	ob_sandbox_spend(L, HOOK_EVERY * (1 + (unsigned)compared));
+}
+
+// Lua's order of strings, piece by piece between zero bytes: by bytes in any locale, and counted.
+__attribute__((visibility("default"))) int strcoll(const char *a, const char *b)
+{
+	if (running && *a == *b)
+		spend_silently(running, 1 + strlen(a) / BYTES_COMPARED);
+	return strcmp(a, b);
+}
+
+// Begins the text of each number with a fraction, in Lua: "a" .. 1.5 is one instruction, with no other call in it.
+__attribute__((visibility("default"))) size_t strspn(const char *text, const char *accepted)
+{
+	size_t n = 0;
+	if (running)
+		spend_silently(running, DIGITS);
+	while (text[n] && strchr(accepted, text[n]))
+		n++;
+	return n;
+}
+
+// The remainder in Lua, a % b: long work where one is huge and the other tiny. It is exact with any precision.
+__attribute__((visibility("default"))) double fmod(double a, double b)
+{
+	if (running && isfinite(a) && b != 0 && fabs(a) > fabs(b))
+		spend_silently(running, (size_t)(ilogb(a) - ilogb(b)) / BITS_DIVIDED);
+	return (double)fmodl(a, b);
+}
+
+void ob_sandbox_spend_search(lua_State *L)
+{
+	ob_sandbox_spend(L, (unsigned)(sandbox_of(L)->made.table / SEARCHED_BYTES));
 }
 
 // Asking for the line allocates nothing, so it may be done inside the allocator.
@@ -99,6 +177,42 @@ static void *refuse(ob_sandbox *s, const char *why)
 	s->refused = why;
 	s->refused_line = s->L ? ob_sandbox_line(s->L) : 0;
 	return NULL;
+}
+
+// Lua asks twice, and has collected all garbage in between: a second time for the same counts as that work. In a
+// sandbox that has run before, garbage depends on what it has run, so there it is no second time.
+static void *refuse_for_memory(ob_sandbox *s, const void *block, size_t size)
+{
+	const bool again = s->refused_size == size && s->refused_for == block;
+	s->refused_for = block;
+	s->refused_size = again ? 0 : size;
+	s->exhausted |= !s->collects;
+	if (!again)
+		spend_silently(s, s->limit.memory / COLLECTED_BYTES);
+	return refuse(s, s->limit.out_of_memory);
+}
+
+// Short strings are made or found, depending on what was there before, so they count as nothing but their instruction.
+static void count_string(ob_sandbox *s, size_t size)
+{
+	if (size <= SHORT_STRING)
+		return;
+	spend_silently(s, size / BYTES_MADE);
+	size_t *longest = s->made.longest;
+	if (size > longest[0])
+		longest[1] = longest[0], longest[0] = size;
+	else if (size > longest[1])
+		longest[1] = size;
+}
+
+// Smaller blocks may be Lua's own, which it has from earlier calls or makes now.
+static void count_table(ob_sandbox *s, size_t size)
+{
+	if (size <= SMALL_TABLE)
+		return;
+	spend_silently(s, size / TABLE_BYTES);
+	if (size > s->made.table)
+		s->made.table = size;
 }
 
 // lua_Alloc. For a new block, old says what kind of thing it is for.
@@ -111,13 +225,12 @@ static void *allocate(void *user, void *block, size_t old, size_t size)
 		s->memory -= had;
 		return NULL;
 	}
+	const bool string = !block && old == LUA_TSTRING;
 	if (size > had) {
-		if (!block && old == LUA_TSTRING)
-			s->instructions += size / STRING_BYTES; // for it has to be written, too
-		if (!block && old == LUA_TSTRING && size > OB_SANDBOX_STRING)
-			return refuse(s, "a string grew beyond 1 MiB");
-		if (s->memory - had + size > s->limit.memory)
-			return refuse(s, s->limit.out_of_memory);
+		if (string && size > s->limit.string)
+			return refuse(s, s->limit.out_of_string);
+		if (s->exhausted || s->memory - had + size > s->limit.memory)
+			return refuse_for_memory(s, block, size);
 		if (size > LARGE && s->deadline < INFINITY && ob_clock_wall() > s->deadline)
 			return refuse(s, too_late);
 	}
@@ -126,6 +239,10 @@ static void *allocate(void *user, void *block, size_t old, size_t size)
 		s->memory += size - had;
 	else if (size > had)
 		return refuse(s, "no memory left on this machine");
+	if (string)
+		count_string(s, size);
+	else if (!block)
+		count_table(s, size);
 	return moved ? moved : block; // Lua relies on shrinking, which then costs nothing but room
 }
 
@@ -157,9 +274,11 @@ ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, 
 {
 	static const ob_sandbox_limits of_scenes = {
 		.memory = OB_SANDBOX_MEMORY,
+		.string = OB_SANDBOX_STRING,
 		.instructions = OB_SANDBOX_INSTRUCTIONS,
 		.seconds = OB_SANDBOX_SECONDS,
 		.out_of_memory = "the scene needs more than 64 MiB of memory",
+		.out_of_string = "a string grew beyond 1 MiB",
 		.out_of_instructions = "stopped after 50 million instructions: does a loop never end?",
 	};
 	_Static_assert(OB_SANDBOX_MEMORY == (size_t)64 << 20 && OB_SANDBOX_INSTRUCTIONS == 50000000, "said above");
@@ -174,6 +293,7 @@ ob_sandbox *ob_sandbox_create_limited(const char *path, const ob_sandbox_limits 
 		return ob_fail(e, "%s: no memory", path), NULL;
 	s->path = path;
 	s->user = user;
+	s->collects = true;
 	s->limit = *limits;
 	s->deadline = limits->seconds < INFINITY ? ob_clock_wall() + limits->seconds : INFINITY;
 	s->L = lua_newstate(allocate, s);
@@ -226,17 +346,26 @@ bool ob_sandbox_offer(ob_sandbox *s, const char *library, const char *name, lua_
 	return status == LUA_OK || report(s, status, e);
 }
 
+static int call_counted(ob_sandbox *s, int arguments, int handler)
+{
+	ob_sandbox *const before = running;
+	running = s;
+	lua_sethook(s->L, hook, LUA_MASKCOUNT, HOOK_EVERY); // which begins to count anew
+	const int status = lua_pcall(s->L, arguments, 0, handler);
+	lua_sethook(s->L, NULL, 0, 0);
+	running = before;
+	return status;
+}
+
 bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e)
 {
 	if (size && text[0] == LUA_SIGNATURE[0])
 		return ob_fail(e, "%s:1: expected Lua text, got compiled Lua", s->path);
 	lua_pushcfunction(s->L, note_line);
 	int status = luaL_loadbufferx(s->L, text, size, "=" CHUNK, "t");
-	if (status == LUA_OK) {
-		lua_sethook(s->L, hook, LUA_MASKCOUNT, HOOK_EVERY);
-		status = lua_pcall(s->L, 0, 0, 1);
-		lua_sethook(s->L, NULL, 0, 0);
-	}
+	if (status == LUA_OK)
+		status = call_counted(s, 0, 1);
+	s->outside = s->made;
 	if (status != LUA_OK)
 		return report(s, status, e);
 	lua_settop(s->L, 0);
@@ -255,12 +384,23 @@ bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e)
 	lua_pushcfunction(L, note_line);
 	lua_insert(L, handler);
 	s->instructions = 0;
-	lua_sethook(L, hook, LUA_MASKCOUNT, HOOK_EVERY); // which begins to count anew
-	const int status = lua_pcall(L, arguments, 0, handler);
+	s->exhausted = false;
+	s->made = s->outside;
+	const int status = call_counted(s, arguments, handler);
 	if (status != LUA_OK)
 		return report(s, status, e);
 	lua_settop(L, 0);
 	return true;
+}
+
+void ob_sandbox_limit_instructions(ob_sandbox *s, uint64_t instructions)
+{
+	s->limit.instructions = instructions;
+}
+
+void ob_sandbox_forbid_collection(ob_sandbox *s)
+{
+	s->collects = false;
 }
 
 bool ob_sandbox_lacked_memory(const ob_sandbox *s)

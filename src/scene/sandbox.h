@@ -1,7 +1,8 @@
 // The sandbox: a Lua 5.4 state that can compute and call what it is given, and nothing else.
 //
 // No files, no system, no loading of code, no metatables, no coroutines, no protected calls. Bounded in memory,
-// in instructions and in time; everything that runs long inside one instruction is guarded in library.c.
+// in instructions and in time. Work that is done inside one instruction counts as instructions: calls of Lua's library
+// by their arguments, before they do it (library.c), strings by their bytes (sandbox.c).
 // The same scene gives the same run on any machine: pairs() has a fixed order (library.c), random numbers a seed.
 //
 // Every error is one line, "path:line: text". A sandbox belongs to one thread; several may exist at once.
@@ -24,9 +25,10 @@ typedef struct ob_sandbox ob_sandbox;
 // What may be used: by all that a sandbox runs, and with ob_sandbox_call by one call.
 typedef struct ob_sandbox_limits {
 	size_t memory; // bytes
+	size_t string; // bytes, one string
 	uint64_t instructions;
 	double seconds; // wall clock; INFINITY: the same on any machine
-	const char *out_of_memory, *out_of_instructions; // what the errors say
+	const char *out_of_memory, *out_of_string, *out_of_instructions; // what the errors say
 } ob_sandbox_limits;
 
 // path: for messages; open: builds the globals (ob_library_open); user: what ob_sandbox_user gives to the functions that
@@ -48,6 +50,10 @@ bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e);
 lua_State *ob_sandbox_lua(ob_sandbox *s);
 bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e);
 bool ob_sandbox_lacked_memory(const ob_sandbox *s);
+// What each of the next calls may take.
+void ob_sandbox_limit_instructions(ob_sandbox *s, uint64_t instructions);
+// The next calls may not collect garbage for want of memory: it then runs out, where a new sandbox might go on.
+void ob_sandbox_forbid_collection(ob_sandbox *s);
 // How many the last call took, as far as it came.
 uint64_t ob_sandbox_instructions(const ob_sandbox *s);
 
@@ -59,8 +65,12 @@ int ob_sandbox_line(lua_State *L);
 _Noreturn void ob_sandbox_fail(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // What it does is of use: it may take so much more of both.
 void ob_sandbox_extend(lua_State *L, unsigned instructions, double seconds);
-// Counts work done outside the Lua machine, in instructions; raises an error at a limit.
+// Counts work done outside the Lua machine, in instructions; raises an error at a limit. One for each 20 ns or so.
 void ob_sandbox_spend(lua_State *L, unsigned instructions);
+// Counts a walk through the largest table that there may be: one that was emptied has its size still.
+void ob_sandbox_spend_search(lua_State *L);
+size_t ob_sandbox_string_max(lua_State *L); // bytes
+const char *ob_sandbox_out_of_string(lua_State *L); // what is said of a longer one
 
 // lua_CFunction, no arguments: builds the globals of a fresh state, the harmless part of Lua's libraries (library.c).
 int ob_library_open(lua_State *L);

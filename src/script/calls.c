@@ -83,6 +83,22 @@ static void push_object(lua_State *L, const ob_script_runner *r, uint32_t id)
 	luaL_setmetatable(L, OB_FLAT_OBJECT);
 }
 
+// Warns where the own object is one that no force moves.
+static void warn_unmoved(lua_State *L, const ob_script_runner *r, const char *call)
+{
+	const uint32_t flags = ob_passport_of(r->u, r->turn->object)->flags;
+	if (flags & OB_OBJECT_PRESCRIBED)
+		ob_script_warn(L, "self:%s has no effect: the object is %s, did you mean kind = \"dynamic\"?", call,
+			       flags & OB_OBJECT_KINEMATIC ? "kinematic" : "static");
+}
+
+// A getter that is given values was meant to set them.
+static void warn_arguments(lua_State *L, const char *call, const char *instead)
+{
+	if (lua_gettop(L) > 1)
+		ob_script_warn(L, "%s takes no values and sets nothing%s", call, instead);
+}
+
 // ---- reading any object
 
 // Its passport; NULL: the object is gone.
@@ -101,18 +117,21 @@ static double now_of(const ob_script_runner *r)
 
 static int call_exists(lua_State *L)
 {
+	warn_arguments(L, "exists", "");
 	lua_pushboolean(L, passport_of(runner_of(L), object_at(L, 1, "exists")) != NULL);
 	return 1;
 }
 
 static int call_id(lua_State *L)
 {
+	warn_arguments(L, "id", "");
 	lua_pushinteger(L, object_at(L, 1, "id")->id);
 	return 1;
 }
 
 static int call_name(lua_State *L)
 {
+	warn_arguments(L, "name", "");
 	const ob_passport *p = passport_of(runner_of(L), object_at(L, 1, "name"));
 	if (p)
 		lua_pushlstring(L, p->name, strnlen(p->name, OB_NAME_MAX));
@@ -121,6 +140,7 @@ static int call_name(lua_State *L)
 
 static int call_mass(lua_State *L)
 {
+	warn_arguments(L, "mass", "");
 	const ob_passport *p = passport_of(runner_of(L), object_at(L, 1, "mass"));
 	if (p)
 		lua_pushnumber(L, p->mass);
@@ -130,6 +150,7 @@ static int call_mass(lua_State *L)
 // Returns the centre alone, which needs no rotation.
 static int call_position(lua_State *L)
 {
+	warn_arguments(L, "position", ": self:push moves an object");
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, "position");
 	const ob_passport *p = passport_of(r, o);
@@ -142,6 +163,7 @@ static int call_position(lua_State *L)
 
 static int call_velocity(lua_State *L)
 {
+	warn_arguments(L, "velocity", ": self:push changes it");
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, "velocity");
 	const ob_passport *p = passport_of(r, o);
@@ -157,6 +179,7 @@ static bool state_of(lua_State *L, const char *call, ob_state *out)
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, call);
 	const ob_passport *p = passport_of(r, o);
+	ob_sandbox_spend(L, 8);
 	if (p)
 		*out = ob_published_at(ob_newest_motion(r->u, o->id), p, now_of(r));
 	return p;
@@ -164,12 +187,14 @@ static bool state_of(lua_State *L, const char *call, ob_state *out)
 
 static int call_spin(lua_State *L)
 {
+	warn_arguments(L, "spin", ": self:twist changes it");
 	ob_state s;
 	return state_of(L, "spin", &s) ? push_vector(L, s.w) : 0;
 }
 
 static int call_attitude(lua_State *L)
 {
+	warn_arguments(L, "attitude", ": self:twist turns an object");
 	ob_state s;
 	if (!state_of(L, "attitude", &s))
 		return 0;
@@ -194,6 +219,7 @@ static int call_turned(lua_State *L)
 static int call_force(lua_State *L)
 {
 	ob_script_runner *r = own(L, "force");
+	warn_unmoved(L, r, "force");
 	vector_at(L, 2, "force", ob_force_most(ob_passport_of(r->u, r->turn->object)), &r->cell->force);
 	r->cell->asks |= OB_SCRIPT_ASKS_FORCE;
 	return 0;
@@ -202,6 +228,7 @@ static int call_force(lua_State *L)
 static int call_torque(lua_State *L)
 {
 	ob_script_runner *r = own(L, "torque");
+	warn_unmoved(L, r, "torque");
 	vector_at(L, 2, "torque", ob_torque_most(ob_passport_of(r->u, r->turn->object)), &r->cell->next_torque);
 	r->cell->asks |= OB_SCRIPT_ASKS_TORQUE;
 	return 0;
@@ -224,6 +251,7 @@ static int call_push(lua_State *L)
 	const ob_passport *p = ob_passport_of(r->u, r->turn->object);
 	ob_vec3 push, at;
 	ob_state s;
+	warn_unmoved(L, r, "push");
 	const int taken = vector_at(L, 2, "push", OB_FORCE_MOST, &push);
 	if (!lua_isnoneornil(L, 2 + taken)) {
 		vector_at(L, 2 + taken, "push", OB_PLACE_MOST, &at);
@@ -239,6 +267,7 @@ static int call_twist(lua_State *L)
 {
 	ob_script_runner *r = own(L, "twist");
 	ob_vec3 twist;
+	warn_unmoved(L, r, "twist");
 	vector_at(L, 2, "twist", OB_FORCE_MOST, &twist);
 	add_up(L, "twist", twist, ob_torque_most(ob_passport_of(r->u, r->turn->object)), &r->cell->twist);
 	r->cell->asks |= OB_SCRIPT_ASKS_PUSH;
@@ -249,6 +278,7 @@ static int call_colour(lua_State *L)
 {
 	static const ob_field field = { .name = "colour", .kind = OB_FIELD_COLOUR, .required = true };
 	ob_script_runner *r = own(L, "colour");
+	ob_sandbox_spend(L, 50);
 	lua_settop(L, 2);
 	ob_script_thaw(L, 2);
 	lua_newtable(L);
@@ -353,7 +383,7 @@ static int call_create(lua_State *L)
 	lua_pushnil(L);
 	lua_setfield(L, LUA_REGISTRYINDEX, "scene.names"); // only the host assigns names
 	r->scene.objects = r->scene.states_bytes = r->scene.hulls = 0;
-	ob_sandbox_spend(L, cost_of_points(L));
+	ob_sandbox_spend(L, 500 + cost_of_points(L));
 	lua_tocfunction(L, lua_upvalueindex(1))(L);
 	ob_object_def *def = &r->scene.object[0];
 	if (def->path || def->force) {
@@ -394,18 +424,20 @@ static int call_time(lua_State *L)
 
 static int call_find(lua_State *L)
 {
+	enum { FIND_AT_ONCE = 64 };
 	const ob_script_runner *r = runner_of(L);
 	const char *name = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : NULL;
 	if (!name)
 		ob_sandbox_fail(L, "find: expected the name of an object");
 	for (uint32_t id = 0; id < ob_universe_ids(r->u); id++) {
+		if (id % FIND_AT_ONCE == 0)
+			ob_sandbox_spend(L, FIND_AT_ONCE / 2);
 		if (r->data->schedule[id].state == OB_SCHEDULE_ABSENT ||
 		    strncmp(ob_passport_of(r->u, id)->name, name, OB_NAME_MAX) != 0)
 			continue;
 		push_object(L, r, id);
 		return 1;
 	}
-	ob_sandbox_spend(L, ob_universe_ids(r->u) / 8);
 	return 0;
 }
 
@@ -454,6 +486,7 @@ static int call_near(lua_State *L)
 		if (!ob_schedule_is_dynamic(&r->data->schedule[id]) || id == own_id ||
 		    is_far(r->data->bounds[id], here, radius))
 			continue;
+		work += 16;
 		m = ob_newest_motion(r->u, id);
 		const double s = t - m->t0;
 		const ob_vec3 there = ob_published_stands(m, ob_passport_of(r->u, id), t)
@@ -463,7 +496,7 @@ static int call_near(lua_State *L)
 		if (d2 <= radius * radius)
 			n = insert(list, n, (near_object){ d2, id }, &work);
 	}
-	ob_sandbox_spend(L, work / 8);
+	ob_sandbox_spend(L, work / 8 + 10 * n);
 	lua_createtable(L, (int)n, 0);
 	for (uint32_t i = 0; i < n; i++) {
 		push_object(L, r, list[i].id);
@@ -493,14 +526,23 @@ static int call_ray(lua_State *L)
 
 // ---- self.state, and methods of all objects
 
+// The bytes of the state are searched for the key.
+static const ob_flat *searched_state(lua_State *L)
+{
+	const ob_flat *s = &runner_of(L)->state;
+	ob_sandbox_spend(L, 1 + s->size / 32);
+	return s;
+}
+
 static int state_get(lua_State *L)
 {
-	ob_flat_get(L, &runner_of(L)->state, 2);
+	ob_flat_get(L, searched_state(L), 2);
 	return 1;
 }
 
 static int state_set(lua_State *L)
 {
+	searched_state(L);
 	ob_flat_set(L, &runner_of(L)->state, 2, 3, "self.state");
 	return 0;
 }
@@ -509,7 +551,7 @@ static int state_set(lua_State *L)
 static int call_pairs(lua_State *L)
 {
 	if (luaL_testudata(L, 1, "state")) {
-		const ob_flat *s = &runner_of(L)->state;
+		const ob_flat *s = searched_state(L);
 		ob_flat_push_table(L, s->bytes, s->size);
 		lua_replace(L, 1);
 	} else {
@@ -552,6 +594,7 @@ static int object_text(lua_State *L)
 {
 	const ob_script_runner *r = ob_sandbox_user(L);
 	const ob_flat_object *o = object_at(L, 1, "tostring");
+	ob_sandbox_spend(L, 24);
 	const ob_passport *p = r->turn ? passport_of(r, o) : NULL;
 	lua_pushfstring(L, "object %d%s%s%s", (int)o->id, p ? " (" : "", p ? p->name : "", p ? ")" : "");
 	return 1;

@@ -176,6 +176,7 @@ void ob_script_check_frozen(lua_State *L, const ob_interpreter *p)
 {
 	for (uint32_t i = 0; i < p->watched_count; i++) {
 		const ob_watched *w = &p->watched[i];
+		ob_sandbox_spend(L, 4);
 		lua_rawgeti(L, LUA_REGISTRYINDEX, w->function);
 		const char *name = lua_getupvalue(L, -1, w->upvalue);
 		lua_rawgeti(L, LUA_REGISTRYINDEX, w->value);
@@ -196,7 +197,7 @@ void ob_script_thaw(lua_State *L, int index)
 	if (!push_contents(L, index))
 		lua_pushvalue(L, index);
 	for (lua_pushnil(L); lua_next(L, copy + 1);) {
-		ob_sandbox_spend(L, 1);
+		ob_sandbox_spend(L, 8);
 		ob_script_thaw(L, -1);
 		lua_pushvalue(L, -2);
 		lua_insert(L, -2);

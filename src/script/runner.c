@@ -1,10 +1,12 @@
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <lauxlib.h>
 
+#include "base/spelling.h"
 #include "script/runner.h"
 
 static const char *const handler_names[OB_HANDLERS] = {
@@ -18,6 +20,43 @@ static int open_all(lua_State *L)
 {
 	ob_library_open(L);
 	return ob_script_calls_open(L);
+}
+
+void ob_script_warn(lua_State *L, const char *format, ...)
+{
+	ob_script_runner *r = ob_sandbox_user(L);
+	if (!r->turn || *r->warning.text || r->turn->flags & OB_SCRIPT_WARNED)
+		return;
+	char text[sizeof r->warning.text];
+	va_list args;
+	va_start(args, format);
+	vsnprintf(text, sizeof text, format, args);
+	va_end(args);
+	ob_fail(&r->warning, "%s:%d: %s", r->data->script_text->text[r->turn->script - 1].name, ob_sandbox_line(L),
+		text);
+}
+
+// A function on_... that is no handler is one misspelt. Index 1: the globals.
+static void find_misspelt(lua_State *L, ob_interpreter *p, const char *path)
+{
+	for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1)) {
+		const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : "";
+		if (strncmp(name, "on", 2) != 0 || !lua_isfunction(L, -1) || lua_iscfunction(L, -1))
+			continue;
+		ob_spelling near = ob_spelling_start(name);
+		for (int i = 0; i < OB_HANDLERS; i++)
+			ob_spelling_offer(&near, handler_names[i]);
+		if (!near.best || near.distance == 0 || near.distance > 2)
+			continue;
+		lua_Debug d;
+		lua_pushvalue(L, -1);
+		lua_getinfo(L, ">S", &d);
+		if (!*p->warning.text || d.linedefined < p->misspelt_line) {
+			p->misspelt_line = d.linedefined;
+			ob_fail(&p->warning, "%s:%d: %.40s: no event calls a function of this name, did you mean %s?",
+				path, d.linedefined, name, near.best);
+		}
+	}
 }
 
 // Called protected: takes the handlers out of the globals, and freezes the rest.
@@ -36,6 +75,7 @@ static int finish_text(lua_State *L)
 		else
 			lua_pop(L, 1);
 	}
+	find_misspelt(L, p, p->name);
 	lua_pushliteral(L, "self");
 	lua_rawget(L, 1);
 	p->self = lua_touserdata(L, -1);
@@ -55,18 +95,22 @@ static ob_interpreter *interpreter_of(ob_script_runner *r, uint32_t script)
 {
 	static const ob_sandbox_limits limits = {
 		.memory = OB_SCRIPT_MEMORY,
+		.string = OB_SCRIPT_STRING,
 		.instructions = OB_SCRIPT_INSTRUCTIONS,
 		.seconds = INFINITY, // for all machines stop at the same place
 		.out_of_memory = "the script needs more than 4 MiB of memory",
+		.out_of_string = "a string grew beyond 64 KiB",
 		.out_of_instructions = "stopped after a million instructions: does a loop never end?",
 	};
-	_Static_assert(OB_SCRIPT_MEMORY == 4 << 20 && OB_SCRIPT_INSTRUCTIONS == 1000000, "said above");
+	_Static_assert(OB_SCRIPT_MEMORY == 4 << 20 && OB_SCRIPT_STRING == 64 << 10 && OB_SCRIPT_INSTRUCTIONS == 1000000,
+		       "said above");
 	const ob_script_directory *d = r->data->script_text;
 	ob_interpreter *p = &r->interpreter[script];
 	if (p->sandbox || *p->broken.text)
 		return p;
 	for (int i = 0; i < OB_HANDLERS; i++)
 		p->handler[i] = LUA_NOREF;
+	p->name = d->text[script].name;
 	p->sandbox = ob_sandbox_create_limited(d->text[script].name, &limits, open_all, r, &p->broken);
 	if (!p->sandbox)
 		return p;
@@ -90,6 +134,14 @@ static ob_interpreter *interpreter_of(ob_script_runner *r, uint32_t script)
 
 // ---- calls
 
+// Calls what lies below so many arguments at the top of the stack.
+static bool call_counted(ob_script_runner *r, ob_interpreter *p, int arguments, ob_error *e)
+{
+	const bool fine = ob_sandbox_call(p->sandbox, arguments, e);
+	r->instructions += ob_sandbox_instructions(p->sandbox);
+	return fine;
+}
+
 // Calls the handler, if the script has it, with the arguments at the top of the stack.
 static bool call(ob_script_runner *r, ob_interpreter *p, ob_handler h, int arguments, ob_error *e)
 {
@@ -100,9 +152,7 @@ static bool call(ob_script_runner *r, ob_interpreter *p, ob_handler h, int argum
 	}
 	lua_rawgeti(L, LUA_REGISTRYINDEX, p->handler[h]);
 	lua_insert(L, -1 - arguments);
-	const bool fine = ob_sandbox_call(p->sandbox, arguments, e);
-	r->instructions += ob_sandbox_instructions(p->sandbox);
-	return fine;
+	return call_counted(r, p, arguments, e);
 }
 
 // Called protected, for memory may run out: the arguments of a message, and the call.
@@ -161,7 +211,7 @@ static bool call_with(lua_CFunction f, delivery *d, ob_error *e)
 	lua_State *L = ob_sandbox_lua(d->p->sandbox);
 	lua_pushcfunction(L, f);
 	lua_pushlightuserdata(L, d);
-	return ob_sandbox_call(d->p->sandbox, 1, e);
+	return call_counted(d->r, d->p, 1, e);
 }
 
 static bool tell_mail(ob_script_runner *r, ob_interpreter *p, ob_error *e)
@@ -202,14 +252,14 @@ static int check_frozen(lua_State *L)
 	return 0;
 }
 
-static bool is_still_frozen(ob_interpreter *p, ob_error *e)
+static bool is_still_frozen(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 {
 	lua_State *L = ob_sandbox_lua(p->sandbox);
 	if (!p->watched_count)
 		return true;
 	lua_pushcfunction(L, check_frozen);
 	lua_pushlightuserdata(L, p);
-	return ob_sandbox_call(p->sandbox, 1, e);
+	return call_counted(r, p, 1, e);
 }
 
 // Removes the object that the script is of: the host does, at once.
@@ -256,7 +306,7 @@ static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 			return false;
 		leave(r);
 	}
-	return is_still_frozen(p, e);
+	return is_still_frozen(r, p, e);
 }
 
 static bool attempt(ob_script_runner *r, const ob_script_turn *turn, ob_error *e)
@@ -274,7 +324,19 @@ static bool attempt(ob_script_runner *r, const ob_script_turn *turn, ob_error *e
 	c->push = c->twist = ob_v3(0, 0, 0);
 	*p->self = (ob_flat_object){ turn->object, turn->generation };
 	r->ended = false;
+	r->warning = p->warning;
 	return call_all(r, p, e);
+}
+
+// Tells once of each object what its script does in vain.
+static void pass_on_warning(const ob_script_runner *r, ob_script_turn *t, ob_script_cell *c)
+{
+	if (!*r->warning.text || t->flags & OB_SCRIPT_WARNED)
+		return;
+	t->flags |= OB_SCRIPT_WARNED;
+	c->asks |= OB_SCRIPT_ASKS_ERROR;
+	c->failed_step = (uint32_t)r->step;
+	snprintf(c->error, sizeof c->error, "%.*s", OB_SCRIPT_ERROR_BYTES - 1, r->warning.text);
 }
 
 uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c)
@@ -295,8 +357,11 @@ uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c
 		r->turn = t;
 		r->state = (ob_flat){ c->state, state_bytes, OB_SCRIPT_STATE_BYTES };
 		memcpy(r->builder.random.s, c->random, sizeof c->random);
-		if (attempt(r, &before, &e))
+		if (attempt(r, &before, &e)) {
+			pass_on_warning(r, t, c);
+			ob_sandbox_forbid_collection(p->sandbox); // from now on it holds garbage of others
 			break;
+		}
 		// An interpreter that has run others may have less memory left than a new one, which decides.
 		const bool memory = p->sandbox && ob_sandbox_lacked_memory(p->sandbox);
 		if (!*p->broken.text)

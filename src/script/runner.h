@@ -30,6 +30,9 @@ typedef struct ob_interpreter {
 	ob_flat_object *self; // the script's self
 	ob_watched *watched;
 	uint32_t watched_count, watched_room;
+	const char *name; // of its text
+	int misspelt_line;
+	ob_error warning; // the first statement without effect in the text; empty: none was found
 	ob_error broken; // why the text itself cannot run; empty: it can
 } ob_interpreter;
 
@@ -46,8 +49,12 @@ struct ob_script_runner {
 	ob_flat state; // the cell's
 	uint64_t step;
 	uint64_t instructions; // by all calls of this turn
+	ob_error warning; // the first call without effect
 	bool ended; // it has requested its own removal
 };
+
+// Notes, as "name:line: text", a call without effect; the first is kept.
+void ob_script_warn(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // Adds all functions for scripts to a sandbox: globals, and methods of objects. A lua_CFunction without arguments,
 // after ob_library_open. Pushes nothing; sets self.

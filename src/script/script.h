@@ -16,6 +16,7 @@
 
 #define OB_SCRIPT_INSTRUCTIONS 1000000 // instructions of the Lua machine, per call
 #define OB_SCRIPT_MEMORY ((size_t)4 << 20) // bytes, of an interpreter
+#define OB_SCRIPT_STRING ((size_t)64 << 10) // bytes, one string
 
 typedef struct ob_script_runner ob_script_runner;
 

@@ -600,7 +600,7 @@ static const char *commit_touch(ob_committer *c, ob_universe *u, const ob_mail_r
 
 static bool is_sound_script(const script_record *r, size_t bytes)
 {
-	enum { FLAGS = 2 * OB_SCRIPT_FEELS - 1, ASKS = 2 * OB_SCRIPT_ASKS_ERROR - 1 };
+	enum { FLAGS = 2 * OB_SCRIPT_WARNED - 1, ASKS = 2 * OB_SCRIPT_ASKS_ERROR - 1 };
 	return bytes >= sizeof *r && r->state_bytes <= OB_SCRIPT_STATE_BYTES &&
 	       bytes == sizeof *r + in_words(r->state_bytes) && r->outbox_bytes <= OB_SCRIPT_OUTBOX_BYTES &&
 	       r->outbox_bytes % 8 == 0 && !(r->flags & ~(uint32_t)FLAGS) && !(r->asks & ~(uint32_t)ASKS) &&

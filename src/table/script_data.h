@@ -31,6 +31,7 @@ enum { // ob_script_turn.flags
 	OB_SCRIPT_MAIL = 1 << 4, // the cell has messages
 	OB_SCRIPT_LEAVING = 1 << 5, // another script removes its object: on_stop is due
 	OB_SCRIPT_FEELS = 1 << 6, // it has an on_contact
+	OB_SCRIPT_WARNED = 1 << 7, // what it does is of no effect, as the cell's error says
 };
 
 typedef struct ob_script_turn {
@@ -53,7 +54,7 @@ enum { // ob_script_cell.asks: requests of a script for its own object in the ru
 	OB_SCRIPT_ASKS_PUSH = 1 << 2, // push and twist hold
 	OB_SCRIPT_ASKS_COLOUR = 1 << 3,
 	OB_SCRIPT_ASKS_POST = 1 << 4, // the outbox is not empty
-	OB_SCRIPT_ASKS_ERROR = 1 << 5, // it has failed just now
+	OB_SCRIPT_ASKS_ERROR = 1 << 5, // the script has failed just now, or is warned of
 };
 
 typedef struct ob_script_cell {
@@ -94,7 +95,7 @@ typedef struct ob_script_counts {
 	uint32_t due; // length of the list of cells that run in this step
 	uint32_t ran_for; // 1 + the step (from 0) before which scripts have run
 	uint32_t requests; // creations and removals in the outboxes of that list, which the host carries out now
-	uint32_t failed; // objects whose script was stopped by an error
+	uint32_t failed; // objects whose script was stopped by an error, and those whose script is warned of
 	uint32_t lost; // messages that found their addressee's inbox full
 	uint64_t calls; // of objects' scripts
 } ob_script_counts;

@@ -241,7 +241,7 @@ sphere { radius = .1, at = { 9, 9, 9 }, script = "tap" }
 		cases = {
 			"function on_step()\n while true do end end": r"it:2: stopped after a million instructions",
 			"function on_start()\n\n local t = {} for i = 1, 1e9 do t[i] = i end end": r"it:3: the script needs more than 4 MiB",
-			"function on_start() local t = 'x' for i = 1, 99 do t = t .. t end end": r"it:1: a string grew beyond 1 MiB",
+			"function on_start() local t = 'x' for i = 1, 99 do t = t .. t end end": r"it:1: a string grew beyond 64 KiB",
 			"function on_wake()\n local t t.x = 1 end function on_start() self:wake(.1) end": r"it:2: attempt to index",
 			"function on_start() self:force(1, 2) end": r"it:1: force: expected a number, up to [\d.e+]+, got nothing",
 			"function on_start() self:force(0 / 0, 1, 2) end": r"it:1: force: expected a number, up to [\d.e+]+, got nan",
@@ -284,6 +284,46 @@ sphere { radius = .1, at = { 9, 9, 9 }, script = "tap" }
 				said = self.one(script, scene="duration = .2, room = 3")
 				self.assertEqual(said.count("\n"), 1, said)
 				self.assertRegex(said, r"^obsim: warning: the script of object 1 \(ball\) was stopped at [\d.]+ s: .*" + expected)
+
+	def test_no_effect(self):
+		"""What a script does in vain is said once of the script, with object, file, line and remedy; it goes on."""
+		cases = {
+			("function on_start() end\nfunction on_stp(dt) end", "mass = 2"): r"it:2: on_stp: no event calls a function of this name, did you mean on_step\?",
+			("function onContact(other) end", "mass = 2"): r"it:1: onContact: no event calls a function of this name, did you mean on_contact\?",
+			("function on_step()\n self:force(1, 2, 3) end", "kind = 'kinematic'"):
+				r'it:2: self:force has no effect: the object is kinematic, did you mean kind = "dynamic"\?',
+			("function on_step() self:push(1, 2, 3) end", "kind = 'static'"): r"it:1: self:push has no effect: the object is static",
+			("function on_step() self:velocity(1, 2, 3) end", "mass = 2"): r"it:1: velocity takes no values and sets nothing: self:push",
+		}
+		for (script, object), expected in cases.items():
+			for words in [], HARDENED:
+				with self.subTest(script=script, words=words):
+					said = self.run_scene(f"""
+scene {{ duration = .2 }}
+ground {{}}
+script("it", [[{script}]])
+for i = 1, 3 do sphere {{ name = "ball " .. i, radius = .5, at = {{ 2 * i, 0, 1000 }}, script = "it", {object} }} end
+""", *words)
+					self.assertEqual(said.count("\n"), 1, said)
+					self.assertRegex(said, r"^obsim: warning: the script of object \d \(ball \d\): " + expected)
+		for script in "function on_start() print('at', self:position()) end", "function once() end function on_start() once() end":
+			self.assertNotIn("warning", self.one(script))
+
+	def test_work_counts(self):
+		"""What is done in one instruction counts for its length: all of these are stopped by their count, none by a clock."""
+		for work in ("local t = {} for i = 1, 9999 do t[i] = i end while true do table.insert(t, 1, 0) table.remove(t, 1) end",
+				"local s, n = ('a'):rep(60000), 0 local t = s .. 'b' s = s .. 'a' while true do n = s < t end",
+				"local s, n = ('\\0'):rep(60000), 0 local t = s .. 'b' s = s .. 'a' while true do n = s < t end",
+				"local s, n = ('a'):rep(60000), 0 local t = 'b' .. s s = 'b' .. s while true do n = s == t end",
+				"local s, n = ('1'):rep(60000), 0 while true do n = tonumber(s) end",
+				"local t, n = {} for i = 1, 9999 do t[i] = '' end while true do n = table.concat(t) end",
+				"local n while true do n = (''):rep(60000) end",
+				"local next = ('a'):rep(60000):gmatch('b') while true do next() end",
+				"local t = {} for i = 1, 9e9 do t[i % 40000] = {} end",
+				"while true do find('nobody') end"):
+			with self.subTest(work=work):
+				said = self.one("function on_start()\n" + work + " end", scene="duration = .1")
+				self.assertRegex(said, r"it:2: stopped after a million instructions")
 
 	def test_one_stops_others_go_on(self):
 		said = self.run_scene("""

@@ -1,0 +1,2 @@
+-- expect: :2: tabel: unknown name
+local t = tabel
