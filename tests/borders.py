@@ -70,7 +70,7 @@ DUTIES = [
     # Simulators are started by host/spawn_*.c (processes through its fork_server); the rest are helpers of one module
     # each.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
-     r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|serve/server)\.c$', True),
+     r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|ranks/mpi|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
      r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording|base/part)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),

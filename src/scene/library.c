@@ -1,4 +1,4 @@
-// What the sandbox offers of Lua's own libraries: a list of what is known to be harmless, guards where one call could
+// Lua's own libraries, as far as the sandbox offers them: a list of what is known to be harmless, guards where one call could
 // run without end, and a clear word where a scene asks for something else.
 #include <math.h>
 #include <stdint.h>

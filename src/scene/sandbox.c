@@ -15,13 +15,13 @@
 #define CHUNK "scene"
 // A few long operations between two looks at the clock, each below some milliseconds: well under a second together.
 #define HOOK_EVERY 100
-#define BYTES_MADE 4 // of a new string, that count as an instruction: they may be digits of numbers
-#define BYTES_COMPARED 256 // of two strings, that count as an instruction
+#define BYTES_MADE 4 // bytes of a new string per instruction; they may be digits of numbers
+#define BYTES_COMPARED 256 // bytes of two strings per instruction
 #define SHORT_STRING 80 // bytes of a block, for a string that Lua may keep once for all its users, made or not
 #define SMALL_TABLE 256 // bytes of a block
-#define COLLECTED_BYTES 64 // of memory, that count as an instruction when all of it is searched for garbage
-#define SEARCHED_BYTES 1024 // of a table, empty or not, that count as an instruction when all of it is gone through
-#define TABLE_BYTES 64 // of a new table, that count as an instruction
+#define COLLECTED_BYTES 64 // bytes of memory per instruction of a garbage collection
+#define SEARCHED_BYTES 1024 // bytes of a table, empty or not, per instruction of a walk through it
+#define TABLE_BYTES 64 // bytes of a new table per instruction
 #define BITS_DIVIDED 32 // between two numbers, that count as an instruction of their remainder
 #define DIGITS 12 // instructions, to write a number as text
 #define LARGE ((size_t)64 << 10) // bytes: filling such a block takes long enough to look at the clock

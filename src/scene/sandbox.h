@@ -22,13 +22,13 @@
 
 typedef struct ob_sandbox ob_sandbox;
 
-// What may be used: by all that a sandbox runs, and with ob_sandbox_call by one call.
+// Limits: of all that a sandbox runs, and with ob_sandbox_call by one call.
 typedef struct ob_sandbox_limits {
 	size_t memory; // bytes
 	size_t string; // bytes, one string
 	uint64_t instructions;
 	double seconds; // wall clock; INFINITY: the same on any machine
-	const char *out_of_memory, *out_of_string, *out_of_instructions; // what the errors say
+	const char *out_of_memory, *out_of_string, *out_of_instructions; // texts of the errors
 } ob_sandbox_limits;
 
 // path: for messages; open: builds the globals (ob_library_open); user: what ob_sandbox_user gives to the functions that
@@ -50,11 +50,11 @@ bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e);
 lua_State *ob_sandbox_lua(ob_sandbox *s);
 bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e);
 bool ob_sandbox_lacked_memory(const ob_sandbox *s);
-// What each of the next calls may take.
+// Limits each of the next calls.
 void ob_sandbox_limit_instructions(ob_sandbox *s, uint64_t instructions);
 // The next calls may not collect garbage for want of memory: it then runs out, where a new sandbox might go on.
 void ob_sandbox_forbid_collection(ob_sandbox *s);
-// How many the last call took, as far as it came.
+// Instructions of the last call, as far as it came.
 uint64_t ob_sandbox_instructions(const ob_sandbox *s);
 
 // For functions called from Lua:
@@ -63,14 +63,14 @@ void *ob_sandbox_user(lua_State *L);
 int ob_sandbox_line(lua_State *L);
 // Raises "path:line: ..." ; never returns.
 _Noreturn void ob_sandbox_fail(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
-// What it does is of use: it may take so much more of both.
+// Raises both limits by so much, for useful work.
 void ob_sandbox_extend(lua_State *L, unsigned instructions, double seconds);
 // Counts work done outside the Lua machine, in instructions; raises an error at a limit. One for each 20 ns or so.
 void ob_sandbox_spend(lua_State *L, unsigned instructions);
 // Counts a walk through the largest table that there may be: one that was emptied has its size still.
 void ob_sandbox_spend_search(lua_State *L);
 size_t ob_sandbox_string_max(lua_State *L); // bytes
-const char *ob_sandbox_out_of_string(lua_State *L); // what is said of a longer one
+const char *ob_sandbox_out_of_string(lua_State *L); // error text for a longer one
 
 // lua_CFunction, no arguments: builds the globals of a fresh state, the harmless part of Lua's libraries (library.c).
 int ob_library_open(lua_State *L);
