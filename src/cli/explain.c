@@ -106,7 +106,7 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 	line(f, "recovery", "%.3g J of potential energy, from pushing penetrations apart", c->recovered);
 	if (x->settings->tolerance > 0)
 		line(f, "tolerance",
-		     "%" PRIu64 " islands were solved, %" PRIu64 " solutions thrown away for being too coarse",
+		     "%" PRIu64 " islands were solved, %" PRIu64 " solutions rejected as too coarse",
 		     c->island_steps, c->islands_redone);
 	else
 		line(f, "tolerance", "none: every island takes %" PRIu32 " substeps", x->settings->substeps);
@@ -127,8 +127,8 @@ static void explain_rest(const ob_run_request *q, const ob_scene *scene, FILE *f
 static void print_costs(const ob_explained *x, FILE *f)
 {
 	static const char *const what[OB_PROFILE_SECTIONS] = {
-		[OB_PROFILE_BROADPHASE] = "who is near whom",
-		[OB_PROFILE_SCHEDULE] = "pairs, islands, and who solves them",
+		[OB_PROFILE_BROADPHASE] = "broad-phase queries",
+		[OB_PROFILE_SCHEDULE] = "pairs, islands, and their workers",
 		[OB_PROFILE_BALLISTIC] = "closed forms of flight",
 		[OB_PROFILE_LOAD] = "islands out of the universe, and back",
 		[OB_PROFILE_NARROWPHASE] = "collision tests",
@@ -136,7 +136,7 @@ static void print_costs(const ob_explained *x, FILE *f)
 		[OB_PROFILE_SOLVE] = "iterations of the contact solver",
 		[OB_PROFILE_MOVE] = "turning, predicting, displacing",
 		[OB_PROFILE_PROJECT] = "penetrations pushed apart",
-		[OB_PROFILE_PUBLISH] = "motions into their slots",
+		[OB_PROFILE_PUBLISH] = "publication of motions",
 		[OB_PROFILE_SCRIPTS] = "objects' scripts",
 	};
 	double rest = x->cpu_s;
@@ -148,7 +148,7 @@ static void print_costs(const ob_explained *x, FILE *f)
 			100 * s / x->cpu_s, what[i]);
 	}
 	rest = fmax(0, rest);
-	fprintf(f, "    %-11s %10s %5.1f %%  waiting for each other, and what these clocks cost\n", "gate",
+	fprintf(f, "    %-11s %10s %5.1f %%  waiting for each other, and the cost of these clocks\n", "gate",
 		ob_quantity_text(&q, rest, "s"), 100 * rest / x->cpu_s);
 }
 

@@ -388,7 +388,7 @@ static bool read_fault(ob_run_request *r, const char *text, ob_error *e)
 		if (!read_fault_number(&f, &text, e))
 			return false;
 	if (!(f.probability > 0))
-		return ob_fail(e, "--fault: expected how probable a fault is at each chance, as in kill:p=.001");
+		return ob_fail(e, "--fault: expected the probability of a fault at each chance, as in kill:p=.001");
 	const uint32_t anywhere = 1u << OB_FAULT_SLOW | 1u << OB_FAULT_NOSPACE | 1u << OB_FAULT_NOPAGES;
 	if (f.kinds & ~anywhere && r->isolation != OB_ISOLATION_PROCESS)
 		return ob_fail(

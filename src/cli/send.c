@@ -122,7 +122,7 @@ static const struct verb *find_verb(const char *name, ob_error *e)
 	if (name && near.best)
 		ob_fail(e, "unknown request '%s': did you mean %s?", name, near.best);
 	else
-		ob_fail(e, "expected what to ask for: obsim send NAME create, remove, colour, message or move");
+		ob_fail(e, "expected a request: obsim send NAME create, remove, colour, message or move");
 	return NULL;
 }
 

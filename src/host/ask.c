@@ -91,7 +91,7 @@ static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 	ob_hull hull;
 	if (!known || r->def.script || r->def.state_bytes)
 		return ob_fail(e,
-			       "only boxes, spheres, capsules, cylinders and hulls without a script can be created so");
+			       "only boxes, spheres, capsules, cylinders and hulls without a script can be created by requests");
 	if (!ob_population_find_look(h->population, &r->def, e))
 		return false;
 	if (shape != OB_SHAPE_HULL)
@@ -114,7 +114,7 @@ static bool check_move(const ob_universe *u, const ob_request *r, const ob_passp
 	if (ob_universe_settings(u)->monolith)
 		return ob_fail(e, "in the one ODE world no object has a simulator");
 	if (ob_universe_settings(u)->one_per_object)
-		return ob_fail(e, "each object has a worker of its own, which nobody moves out of");
+		return ob_fail(e, "each object has a worker of its own, and cannot move");
 	if (p->flags & (OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC | OB_OBJECT_FROZEN))
 		return ob_fail(e, "object %u (%.*s) does not move by forces, and has no simulator", r->id, OB_NAME_MAX,
 			       p->name);
@@ -128,7 +128,7 @@ static bool check(const ob_host *h, ob_request *r, ob_error *e)
 	if (r->kind > OB_REQUEST_MOVE)
 		return ob_fail(e, "unknown request");
 	if (r->kind != OB_REQUEST_MOVE && ob_universe_ranks(h->u) > 1)
-		return ob_fail(e, "of a universe on several ranks, objects can be moved and no more");
+		return ob_fail(e, "on several ranks, objects can only be moved");
 	if (r->kind == OB_REQUEST_ADD)
 		return check_new(h, r, e);
 	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
@@ -158,7 +158,7 @@ static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
 	if (r->kind != OB_REQUEST_MOVE)
 		ob_host_request(h, r, e);
 	else if (!ob_move_ask(h->u, r->id, r->worker))
-		ob_fail(e, "the move before is made with the next step: ask again");
+		ob_fail(e, "an earlier move takes effect at the next step: send this one again");
 }
 
 static void end_call(int fd, const ob_error *e)
@@ -186,7 +186,7 @@ static void take_in(ob_asked *a)
 		return;
 	}
 	if (a->count == OB_ASKED_CALLERS) {
-		ob_fail(&e, "nothing was asked for");
+		ob_fail(&e, "no request was received");
 		end_call(a->caller[0], &e);
 		drop(a, 0);
 	}
@@ -234,7 +234,7 @@ static bool is_host(int fd, const ob_universe *u, ob_error *e)
 	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && (who.uid == geteuid() || geteuid() == 0) &&
 	    (who.pid == info.host_pid || who.pid == 0)) // 0: in a PID namespace that is not visible here
 		return true;
-	return ob_fail(e, "universe \"%s\" is not asked: process %d of user %u listens at its address, not its host %d",
+	return ob_fail(e, "universe \"%s\" gets no request: process %d of user %u listens at its address, not its host %d",
 		       ob_universe_name(u), (int)who.pid, (unsigned)who.uid, (int)info.host_pid);
 }
 

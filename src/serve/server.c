@@ -141,7 +141,7 @@ static void look(lws_sorted_usec_list_t *tick)
 static bool may(ob_server *s, ob_client *c)
 {
 	if (s->config.look_only)
-		tell_error(c, "viewers of this universe may only look");
+		tell_error(c, "viewers of this universe may change nothing");
 	return !s->config.look_only;
 }
 
@@ -151,7 +151,7 @@ static void create(ob_server *s, ob_client *c, const ob_object_def *def)
 	if (!ob_allowance_take(&c->creations, ob_clock_wall(), creations_rate))
 		tell_error(c, "too many objects in a second: try again");
 	else if (ob_roster_copy(ob_host_roster(s->host), NULL, 0) >= ob_universe_capacity(ob_host_universe(s->host)))
-		tell_error(c, "the universe is full: remove something first");
+		tell_error(c, "the universe is full: remove an object first");
 	else if (!ob_host_request_add(s->host, def, &e))
 		tell_error(c, e.text);
 }
@@ -249,7 +249,7 @@ static int let_in(const ob_server *s, struct lws *wsi)
 	const char *why = NULL;
 	unsigned status = HTTP_STATUS_FORBIDDEN;
 	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback)) {
-		why = "only pages of this server may look at this universe";
+		why = "only pages of this server may connect to this universe";
 	} else if (!has_token(s, wsi)) {
 		why = "the token is missing or wrong: use the address that obsim serve has printed";
 	} else if (s->count >= s->config.viewers) {

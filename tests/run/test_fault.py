@@ -87,7 +87,7 @@ class Fault(program.Case):
 		self.assertGreater(failed, 0)
 
 	def test_what_is_refused(self):
-		for text, saying in ("kil:p=.1", "expected some of kill|segv"), ("kill", "how probable"), ("kill:p", "expected p="), ("kill:p=2", "at most 1"), \
+		for text, saying in ("kil:p=.1", "expected some of kill|segv"), ("kill", "expected the probability"), ("kill:p", "expected p="), ("kill:p=2", "at most 1"), \
 				("kill:p=.1,word=3", "expected p=, seed="), ("kill+:p=.1", "expected some of"), ("nospace:p=.1", "is for --checkpoint"):
 			self.refuse("run", *BOXES, "--isolation", "process", "--fault", text, saying=saying)
 		self.refuse("run", *BOXES, "--fault", "kill:p=.1", saying="--isolation process")

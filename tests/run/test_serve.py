@@ -179,7 +179,7 @@ class Serve(Case):
 		self.assertTrue(v.told["welcome"]["look_only"])
 		v.send(do="pause")
 		v.until(lambda: "error" in v.told)
-		self.assertIn("only look", v.told["error"])
+		self.assertIn("change nothing", v.told["error"])
 		self.assertFalse(v.paused)
 		self.end()
 
@@ -410,7 +410,7 @@ class Serve(Case):
 		for way in ("--workers", "1"), ("--isolation", "process", "--workers", "2", "--harden"):
 			done = program.call("run", scene, *words, *way, "--check", "--replay-requests", log)
 			self.assertEqual((done.returncode, done.stderr), (0, ""))
-			self.assertRegex(done.stdout, r"16 requests carried out again, 0 objects frozen; \d+ states are those of the log")
+			self.assertRegex(done.stdout, r"16 requests carried out again, 0 objects frozen; \d+ states equal those of the log")
 		self.refuse("run", scene, "-D", "n=21", "--replay-requests", log, saying="another scene, seed, -D or settings")
 		self.refuse("run", scene, *words, "--replay-requests", log, "--json", "-", saying="--json")
 		with open(log, "rb") as f:
