@@ -427,7 +427,7 @@ static bool read_pace(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
-// Path of a scene: of that file, or of the scene of this name that comes with obsim. Valid until the next call.
+// Path of a scene: the file with this name, or the scene of this name that comes with obsim. Valid until the next call.
 static const char *find_scene(const char *name)
 {
 	static char path[PATH_MAX];

@@ -263,7 +263,7 @@ static int rank(lua_State *L, int index)
 	}
 }
 
-// Bytes, not the collation of some locale.
+// Compares bytes, independent of the locale's collation.
 static bool string_less(lua_State *L)
 {
 	size_t n, m;
@@ -351,7 +351,7 @@ static int list_pairs(lua_State *L)
 
 // ---- no addresses: where things lie in memory differs from run to run, and a scene could compute with it
 
-// Pushes what tostring gives: of a table or a function the name of its type alone.
+// Pushes the result of tostring: for a table or a function only the name of its type.
 static const char *push_text(lua_State *L, int index, size_t *size)
 {
 	switch (lua_type(L, index)) {
@@ -403,7 +403,7 @@ static double charge_format(lua_State *L)
 	return units;
 }
 
-// print: a note on standard error, where it cannot mix with what the run writes.
+// print: a note on standard error, apart from the run's output.
 static int print(lua_State *L)
 {
 	char line[1000];

@@ -1,5 +1,5 @@
-// Limits of objects: what they are, where they begin, and what may act on them. Scenes, scripts, viewers, requests,
-// checkpoints and records all pass them before an object is simulated or shown.
+// Limits on properties, places and loads of objects. Scenes, scripts, viewers, requests, checkpoints and records all
+// pass them before an object is simulated or shown.
 //
 // Lengths keep fourteen orders of magnitude to where the simulators' numbers were seen to fail: an object
 // of 1e-20 m and a kilogram makes its neighbours diverge. Pure functions, thread-safe.
@@ -10,7 +10,7 @@
 
 #define OB_LENGTH_LEAST 1e-6 // m: an edge, a radius, a length, a hull's width; the smallest tolerance
 #define OB_LENGTH_MOST 1e6 // m
-#define OB_SLENDERNESS_MOST 1e4 // of what forces move: its longest extent by its least
+#define OB_SLENDERNESS_MOST 1e4 // longest extent by least, of a body that forces move
 #define OB_MASS_LEAST 1e-12 // kg
 #define OB_MASS_MOST 1e12 // kg: 1 km of water
 #define OB_PLACE_MOST 1e7 // m from the origin along each axis: a double has steps of 2e-9 m there

@@ -1,4 +1,4 @@
-// The sandbox: a Lua 5.4 state that can compute and call what it is given, and nothing else.
+// The sandbox: a Lua 5.4 state that can only compute and call the functions that it is given.
 //
 // No files, no system, no loading of code, no metatables, no coroutines, no protected calls. Bounded in memory,
 // in instructions and in time. Work that is done inside one instruction counts as instructions: calls of Lua's library
@@ -17,7 +17,7 @@
 
 #define OB_SANDBOX_MEMORY ((size_t)64 << 20) // bytes, all that Lua holds
 #define OB_SANDBOX_STRING ((size_t)1 << 20) // bytes, one string
-#define OB_SANDBOX_INSTRUCTIONS 50000000 // of the Lua machine
+#define OB_SANDBOX_INSTRUCTIONS 50000000 // instructions of the Lua machine
 #define OB_SANDBOX_SECONDS 10 // s, wall clock
 
 typedef struct ob_sandbox ob_sandbox;
@@ -31,8 +31,8 @@ typedef struct ob_sandbox_limits {
 	const char *out_of_memory, *out_of_string, *out_of_instructions; // texts of the errors
 } ob_sandbox_limits;
 
-// path: for messages; open: builds the globals (ob_library_open); user: what ob_sandbox_user gives to the functions that
-// are called from Lua. Path and user are kept, not copied. NULL and e when there is no memory.
+// path: for messages; open: builds the globals (ob_library_open); user: the result of ob_sandbox_user in functions
+// called from Lua. Path and user are kept, not copied. NULL and e when there is no memory.
 ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, ob_error *e);
 // The same with limits of its own.
 ob_sandbox *ob_sandbox_create_limited(const char *path, const ob_sandbox_limits *limits, lua_CFunction open, void *user,
@@ -44,9 +44,9 @@ bool ob_sandbox_offer(ob_sandbox *s, const char *library, const char *name, lua_
 // Runs Lua text (not bytecode); false and e when it fails.
 bool ob_sandbox_run(ob_sandbox *s, const char *text, size_t size, ob_error *e);
 
-// The Lua state, for whoever calls functions of the text that has run. ob_sandbox_call: the function and so many
-// arguments lie at the top of the stack, which is empty afterwards; false and e when it fails. memory: as
-// ob_sandbox_run, whether it was memory that ran out may be asked afterwards.
+// The Lua state, for callers of functions of the text that has run. ob_sandbox_call: the function and its arguments are
+// at the top of the stack, which is empty afterwards; false and e when it fails. lacked_memory: true if the last run or
+// call failed for lack of memory.
 lua_State *ob_sandbox_lua(ob_sandbox *s);
 bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e);
 bool ob_sandbox_lacked_memory(const ob_sandbox *s);
@@ -59,7 +59,7 @@ uint64_t ob_sandbox_instructions(const ob_sandbox *s);
 
 // For functions called from Lua:
 void *ob_sandbox_user(lua_State *L);
-// The line of the scene that is running; 0 where none is.
+// The line of the scene that is running; 0: none.
 int ob_sandbox_line(lua_State *L);
 // Raises "path:line: ..." ; never returns.
 _Noreturn void ob_sandbox_fail(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -90,14 +90,14 @@ static void close_interpreter(ob_interpreter *p)
 	*p = (ob_interpreter){ .sandbox = NULL };
 }
 
-// The interpreter of a text; where the text cannot be run, its `broken` says why.
+// The interpreter of a text; if the text cannot run, its `broken` explains why.
 static ob_interpreter *interpreter_of(ob_script_runner *r, uint32_t script)
 {
 	static const ob_sandbox_limits limits = {
 		.memory = OB_SCRIPT_MEMORY,
 		.string = OB_SCRIPT_STRING,
 		.instructions = OB_SCRIPT_INSTRUCTIONS,
-		.seconds = INFINITY, // for all machines stop at the same place
+		.seconds = INFINITY, // all machines stop at the same place
 		.out_of_memory = "the script needs more than 4 MiB of memory",
 		.out_of_string = "a string grew beyond 64 KiB",
 		.out_of_instructions = "stopped after a million instructions: does a loop never end?",
@@ -221,7 +221,7 @@ static bool tell_mail(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 	for (uint32_t at = 0; good && !r->ended && at + sizeof(ob_script_post) <= c->inbox_bytes;) {
 		const ob_script_post *post = (const ob_script_post *)(const void *)(c->inbox + at);
 		at += (uint32_t)sizeof *post + post->bytes;
-		if (post->used > post->bytes || at > OB_SCRIPT_INBOX_BYTES) // not what was sent
+		if (post->used > post->bytes || at > OB_SCRIPT_INBOX_BYTES) // not the data that was sent
 			break;
 		if (p->handler[OB_HANDLER_MESSAGE] != LUA_NOREF)
 			good = call_with(tell_message, &(delivery){ r, p, post, NULL }, e);
@@ -262,7 +262,7 @@ static bool is_still_frozen(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 	return call_counted(r, p, 1, e);
 }
 
-// Removes the object that the script is of: the host does, at once.
+// Removes the script's object: the host does, at once.
 static void leave(ob_script_runner *r)
 {
 	ob_script_cell *c = r->cell;
@@ -270,13 +270,13 @@ static void leave(ob_script_runner *r)
 				      .object = r->turn->object,
 				      .generation = r->turn->generation };
 	if (c->outbox_bytes + sizeof post > OB_SCRIPT_OUTBOX_BYTES)
-		c->outbox_bytes = 0; // what it has said last is lost
+		c->outbox_bytes = 0; // its last requests are lost
 	memcpy(c->outbox + c->outbox_bytes, &post, sizeof post);
 	c->outbox_bytes += (uint32_t)sizeof post;
 	c->asks |= OB_SCRIPT_ASKS_POST;
 }
 
-// All that is due, in this order.
+// Makes all due calls, in this order.
 static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 {
 	ob_script_turn *t = r->turn;
@@ -293,7 +293,7 @@ static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 	if (flags & OB_SCRIPT_TOUCHED && !tell_touches(r, p, e))
 		return false;
 	if (wake <= r->step && flags & OB_SCRIPT_STARTED) {
-		if (t->wake == wake) // and no other was asked for meanwhile
+		if (t->wake == wake) // and no other wake-up was requested meanwhile
 			t->wake = UINT32_MAX;
 		if (!call(r, p, OB_HANDLER_WAKE, 0, e))
 			return false;
@@ -353,7 +353,7 @@ uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c
 	r->step = ob_step_count(r->u);
 	for (int again = 0;; again++) {
 		ob_interpreter *p = interpreter_of(r, before.script - 1);
-		r->instructions = 0; // what an attempt without memory has taken depends on who made it
+		r->instructions = 0; // the cost of an attempt without memory depends on the worker
 		r->turn = t;
 		r->state = (ob_flat){ c->state, state_bytes, OB_SCRIPT_STATE_BYTES };
 		memcpy(r->builder.random.s, c->random, sizeof c->random);
