@@ -10,7 +10,7 @@ import program
 
 BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
 PROCESS = ["--isolation", "process"]
-BLADE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "ode_gives_up.lua")
+BRICKS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "overworked.lua")
 ABORTS = "an assertion failed, as it was to (--fault abort)"
 
 
@@ -41,7 +41,7 @@ class Policy(program.Case):
 	def test_keep(self):
 		"""Objects that cannot be solved are frozen, while kills restart, freeze nothing, and leave the bits as
 		they were."""
-		r = program.report(BLADE, "--duration", "3", "--on-death", "keep")
+		r = program.report(BRICKS, "--duration", ".05", "--on-death", "keep")
 		self.assertGreater(r["frozen"], 0)
 		r = program.report(*BOXES, *PROCESS, "--workers", "2", "--fault", "kill:p=.004,seed=3", "--on-death", "keep")
 		self.assertGreater(r["deaths"], 0)
@@ -80,15 +80,15 @@ class Policy(program.Case):
 			self.assertGreater(frozen, 0, workers)
 
 	def test_freeze_what_fails(self):
-		"""An object at which ODE gives up: the same in threads and processes, with any number of workers."""
+		"""An island that takes too much work: the same in threads and processes, with any number of workers."""
 		seen = set()
-		for isolation, workers in ("thread", "1"), ("thread", "2"), ("thread", "objects"), ("process", "2"), ("process", "objects"):
-			r = program.report(BLADE, "--duration", "3", "--isolation", isolation, "--workers", workers, "--on-death", "freeze")
+		for isolation, workers in ("thread", "1"), ("thread", "objects"), ("process", "2"):
+			r = program.report(BRICKS, "--duration", ".05", "--isolation", isolation, "--workers", workers, "--on-death", "freeze")
 			self.assertEqual([d["cause"] for d in r["death_list"]], ["failure"] * r["deaths"])
-			self.assertEqual((r["steps"], r["death_list"][0]["name"]), (3, "blade"))
+			self.assertEqual((r["steps"], r["death_list"][0]["name"]), (3, "brick 1"))
 			seen.add((r["state_hash"], r["frozen"]))
 		self.assertEqual(len(seen), 1)
-		r = program.report(BLADE, "--duration", "3", *PROCESS, "--harden", "--workers", "2", "--on-death", "freeze")
+		r = program.report(BRICKS, "--duration", ".05", *PROCESS, "--harden", "--workers", "2", "--on-death", "freeze")
 		self.assertEqual(seen, {(r["state_hash"], r["frozen"])})
 
 	def test_frozen_goes_on(self):

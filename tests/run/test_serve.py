@@ -81,13 +81,13 @@ class Serve(Case):
 
 	def test_keeps(self):
 		"""By default, objects that cannot be solved are frozen, and viewers see it; the universe goes on."""
-		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "ode_gives_up.lua"))
+		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "overworked.lua"))
 		v = self.viewer()
 		v.until(lambda: any(o["frozen"] for o in v.objects.values()))
 		v.until(lambda: v.told["statistics"]["step"] > 3 and v.told["statistics"]["frozen"] > 0)
 		v.until(lambda: "notice" in v.told)
-		self.assertRegex(v.told["notice"], r"^ODE gave up in step \d+ at object 0 \(blade\).*; frozen for it: [12]$")
-		self.end(saying="frozen: object 0 (blade)")
+		self.assertRegex(v.told["notice"], r"^step \d+ takes more work than a step may: object 1 \(brick 1\).*; frozen for it: 40$")
+		self.end(saying="frozen: object 1 (brick 1)")
 
 	def test_clock(self):
 		self.serve("--paused")
