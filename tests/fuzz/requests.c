@@ -110,7 +110,7 @@ static void test_sizes(const ob_universe *u)
 	const double bad[] = { 5e-324, 1e-160, 1e-40, 1e-7, 1e7, 1e160, 1e300 };
 	for (int i = 0; i < 7; i++) {
 		ob_error e = { "" };
-		for (uint8_t shape = OB_SHAPE_SPHERE; shape <= OB_SHAPE_HULL; shape++) {
+		for (uint32_t shape = OB_SHAPE_SPHERE; shape <= OB_SHAPE_HULL; shape++) {
 			ob_request size = good_object(), mass = good_object();
 			size.def.passport.shape = mass.def.passport.shape = shape;
 			size.def.passport.size = ob_v3(bad[i], bad[i], bad[i]);

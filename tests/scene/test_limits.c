@@ -54,7 +54,7 @@ static void check_lengths(void)
 	d.passport.shape = OB_SHAPE_BOX;
 	for (int i = 0; i < 3; i++)
 		check_range(&d, x[i], OB_LENGTH_LEAST / 2, OB_LENGTH_MOST / 2, "size");
-	for (uint8_t shape = OB_SHAPE_CAPSULE; shape <= OB_SHAPE_CYLINDER; shape++) {
+	for (uint32_t shape = OB_SHAPE_CAPSULE; shape <= OB_SHAPE_CYLINDER; shape++) {
 		d.passport.shape = shape;
 		check_range(&d, x[0], OB_LENGTH_LEAST, OB_LENGTH_MOST, "size");
 		check_range(&d, x[1], OB_LENGTH_LEAST / 2, OB_LENGTH_MOST / 2, "size");
