@@ -24,8 +24,8 @@ typedef struct ob_part_head {
 
 // Defines the table of a module: OB_PART(ob_plot_part) = { OB_PART_HEAD(ob_plot_part), .png = draw };
 #define OB_PART(type) \
-	extern const type OB_PART_ENTRY; \
-	__attribute__((visibility("default"))) const type OB_PART_ENTRY
+	extern __attribute__((visibility("default"))) const type OB_PART_ENTRY; \
+	const type OB_PART_ENTRY
 #define OB_PART_HEAD(type) .head = { OB_VERSION, sizeof(type) }
 
 // Loads obsim-NAME.so; returns its table of "bytes" bytes, which begins with ob_part_head. A module stays loaded. global:

@@ -21,8 +21,8 @@
 #include <btBulletDynamicsCommon.h>
 
 extern "C" {
-#include "engine/bullet.h"
 #include "engine/drive.h"
+#include "engine/part.h"
 }
 
 // Members are declared in the order of creation, and destroyed in reverse; bodies are deleted by hand before their
@@ -192,7 +192,7 @@ static void set_up(ob_engine *b, const ob_world *w, const ob_run_settings *s)
 		add(b, w, &w->passport[i], &w->state[i], s->sleeping);
 }
 
-extern "C" ob_engine *ob_bullet_create(const ob_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	try {
 		auto b = std::make_unique<ob_engine>();
@@ -204,13 +204,13 @@ extern "C" ob_engine *ob_bullet_create(const ob_world *w, const ob_run_settings 
 	}
 }
 
-extern "C" void ob_bullet_destroy(ob_engine *p)
+static void destroy(ob_engine *p)
 {
 	delete p;
 }
 
 // Without subdivision of time, Bullet makes one step.
-extern "C" bool ob_bullet_step(ob_engine *p, ob_error *e)
+static bool step(ob_engine *p, ob_error *e)
 {
 	(void)e;
 	for (uint32_t k = 0; k < p->substeps; k++) {
@@ -224,7 +224,7 @@ extern "C" bool ob_bullet_step(ob_engine *p, ob_error *e)
 	return true;
 }
 
-extern "C" void ob_bullet_get(const ob_engine *p, ob_state *state)
+static void get(const ob_engine *p, ob_state *state)
 {
 	for (size_t i = 0; i < p->body.size(); i++) {
 		const btRigidBody *b = p->body[i].get();
@@ -234,4 +234,8 @@ extern "C" void ob_bullet_get(const ob_engine *p, ob_state *state)
 		state[i].v = vector(b->getLinearVelocity());
 		state[i].w = vector(b->getAngularVelocity());
 	}
+}
+
+extern "C" {
+OB_PART(ob_engine_part) = { OB_PART_HEAD(ob_engine_part), .create = create, .step = step, .get = get, .destroy = destroy };
 }

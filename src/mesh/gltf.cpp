@@ -665,7 +665,7 @@ void add_scene(builder &out, const tinygltf::Model &model)
 
 } // namespace
 
-bool ob_gltf_read(ob_mesh *m, const unsigned char *bytes, size_t size, ob_error *e)
+static bool read_gltf(ob_mesh *m, const unsigned char *bytes, size_t size, ob_error *e)
 {
 	try {
 		tinygltf::Model model;
@@ -683,4 +683,8 @@ bool ob_gltf_read(ob_mesh *m, const unsigned char *bytes, size_t size, ob_error 
 	}
 	ob_mesh_finish(m);
 	return false;
+}
+
+extern "C" {
+OB_PART(ob_gltf_part) = { OB_PART_HEAD(ob_gltf_part), .read = read_gltf };
 }
