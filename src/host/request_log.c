@@ -4,8 +4,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/file.h"
 #include "host/population.h"
+
+#define BYTES_MAX ((uint64_t)960 << 20) // of a log that is read
 
 static const char magic[8] = { 'O', 'B', 'S', 'I', 'M', 'R', 'Q', '1' };
 
@@ -161,9 +165,16 @@ static bool read_records(ob_logged_requests *l, FILE *f, const char *path, ob_er
 bool ob_request_log_read(ob_logged_requests *out, const char *path, ob_error *e)
 {
 	*out = (ob_logged_requests){ 0 };
-	FILE *f = fopen(path, "rbe");
-	if (!f)
+	uint64_t bytes;
+	ob_error why;
+	const int fd = ob_file_open(path, BYTES_MAX, &bytes, &why);
+	if (fd < 0)
+		return ob_fail(e, "%s: %s", path, why.text);
+	FILE *f = fdopen(fd, "rb");
+	if (!f) {
+		close(fd);
 		return ob_fail(e, "%s: %s", path, strerror(errno));
+	}
 	const bool fine = read_records(out, f, path, e);
 	fclose(f);
 	return fine;
