@@ -19,7 +19,7 @@
 #define SANITIZED 0
 #endif
 
-// What a pair was found in.
+// Places in which a pair was found.
 enum { LISTED_BY_A = 1, LISTED_BY_B = 2, IDLE = 4 };
 
 typedef struct check {
@@ -184,7 +184,7 @@ static bool check_index(const check *c)
 
 // ---- pairs
 
-// Of the object: each pair is its own, in use, linked back, and there once.
+// Each pair in the object's list is its own, in use, linked back, and there once.
 static bool check_list(const check *c, uint32_t id)
 {
 	const ob_step_data *data = c->data;

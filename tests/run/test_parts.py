@@ -18,11 +18,6 @@ def mapped(pid):
 		return sorted(set(re.findall(OPTIONAL, f.read())))
 
 
-def children_of(pid):
-	with open(f"/proc/{pid}/task/{pid}/children", encoding="ascii") as f:
-		return [int(child) for child in f.read().split()]
-
-
 class Parts(program.Case):
 	def alone(self, *words):
 		"""The program in a folder without its parts."""
@@ -63,10 +58,9 @@ class Parts(program.Case):
 		run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--isolation", "process", "--workers", "2",
 			"--duration", program.FOR_EVER, "--frames", self.path("frames"), "--size", "64x36")
 		self.assertTrue(program.wait_until(lambda: "EGL" in mapped(run.pid)))
-		helpers = children_of(run.pid)
-		workers = [pid for helper in helpers for pid in children_of(helper)]
+		workers = program.simulators(run.pid)
 		self.assertGreaterEqual(len(workers), 2)
-		for pid in helpers + workers:
+		for pid in [program.fork_server(run.pid), *workers]:
 			self.assertEqual(mapped(pid), [])
 		run.terminate()
 		run.wait()
