@@ -5,7 +5,7 @@
 
 void ob_batch_init(ob_batch *b, ob_batch_kind kind)
 {
-	memset(b, 0, offsetof(ob_batch, coupling)); // which is made before it is used
+	memset(b, 0, offsetof(ob_batch, coupling)); // coupling is computed before its use
 	b->kind = kind;
 	for (int i = 0; i < 4; i++)
 		b->gap[i] = lanes_of(ob_no_contact);

@@ -1,12 +1,13 @@
-// Cylinders against what they can meet: exact convex solids with a disc for a cap, a line for a side and a circle for a
-// rim, never polygons. Planes and spheres in closed form. Against a box, a capsule or another cylinder the directions
-// are tried along which two of their features can touch: the cap's and the faces' normals, those across the axis and an
-// edge or another axis, and the best of those across each axis and each edge, where an arc meets a corner, an edge or
-// an arc (contact/support.h); two rims by Newton's method. Pure functions, thread-safe.
+// Contacts of cylinders. They are exact convex solids with a disc for a cap, a line for a side and a circle for a rim,
+// never polygons. Planes and spheres are in closed form. Against a box, a capsule, another cylinder or a hull, the
+// search tries the directions along which two features can touch: normals of caps and faces, and those across the axis
+// and an edge or another axis. Then it tries the best direction across each axis and each edge, along which an arc
+// meets a corner, an edge or an arc (contact/support.h), and that of two rims, by Newton's method. Pure functions,
+// thread-safe.
 //
-// out as of ob_manifold_find: the normal points to a, the cylinder. The separation is the distance where it is no more
-// than the margin, but for a rim beside a box's corner, where it is a lower bound. Of several directions that separate
-// the shapes, the one that closes last is the normal, as between boxes.
+// out: as for ob_manifold_find. The normal points to a, the cylinder. The separation is the distance if it is at most
+// the margin; for a rim beside a box's corner it is a lower bound. Among several separating directions the one that
+// closes last is the normal, as between boxes.
 #ifndef OB_CONTACT_CYLINDER_H
 #define OB_CONTACT_CYLINDER_H
 

@@ -1,8 +1,8 @@
-// Hulls against spheres and capsules: a segment, or a point, that is grown by its radius. The nearest points of segment
-// and polyhedron in closed form: an end and a face, or the segment and an edge. Pure functions, thread-safe.
+// Contacts of hulls with spheres and capsules: a point or a segment, grown by its radius. The nearest points of segment
+// and polyhedron are in closed form: an end and a face, or the segment and an edge. Pure functions, thread-safe.
 //
-// out as of ob_manifold_find: the normal points to a, the sphere or capsule; the separation is the distance itself
-// while the segment is outside the hull. What rolls or slides over coplanar faces meets no seam, as on boxes.
+// out: as for ob_manifold_find. The normal points to a, the sphere or capsule. The separation is the distance itself
+// while the segment is outside the hull. A body that rolls or slides over coplanar faces hits no seam, as on boxes.
 #ifndef OB_CONTACT_HULL_ROUND_H
 #define OB_CONTACT_HULL_ROUND_H
 

@@ -1,5 +1,5 @@
-// The arithmetic that is compiled once per instruction set (kernel.c): for batch.h and manifold.h, and for tests of its
-// bits, which are the same for all.
+// Arithmetic that is compiled once per instruction set (kernel.c), for batch.h and manifold.h. Tests compare its bits,
+// which are the same for all.
 #ifndef OB_CONTACT_KERNEL_H
 #define OB_CONTACT_KERNEL_H
 
@@ -12,7 +12,8 @@ typedef struct ob_kernel {
 	void (*prepare)(ob_batch *b);
 	void (*solve)(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		      const ob_body_row *d, ob_body_row *delta);
-	// Adds to what the batch says of its lanes.
+	// Adds lane l to the batch's results of the iteration: impact, slides, solved, active, sweeps, changed,
+	// residual.
 	void (*solve_lone)(ob_batch *b, int l, const ob_solver_iteration *iteration, ob_body_row *u,
 			   const ob_body_row *v, const ob_body_row *d);
 	bool (*project)(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
@@ -30,7 +31,7 @@ extern const ob_kernel ob_kernel_avx2;
 extern const ob_kernel ob_kernel_avx512;
 #endif
 
-// The fastest that this processor runs.
+// Returns the fastest kernel that this processor runs.
 const ob_kernel *ob_kernel_best(void);
 
 #endif

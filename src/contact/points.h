@@ -1,13 +1,14 @@
-// A pair's points side by side: where its friction acts, and what fills its lane of a batch. For contact/kernel.c.
+// Contact points of a pair side by side: the place where its friction acts, and its lane of a batch. For
+// contact/kernel.c.
 #ifndef OB_CONTACT_POINTS_H
 #define OB_CONTACT_POINTS_H
 
 #include "contact/batch.h"
 #include "contact/patch.h"
 
-// From one centre to the points.
+// Vectors from one centre to the points.
 typedef struct arms {
-	lanes x[OB_POINTS]; // x, y and z, and the gaps; 0 and infinity where there is no point
+	lanes x[OB_POINTS]; // x, y, z and the gap of each point; 0 and infinity for an absent one
 	ob_vec3 middle;
 } arms;
 
@@ -39,12 +40,12 @@ static inline lanes points_along(const lanes *x, ob_vec3 n)
 
 static inline void find_friction(const arms *of_a, const arms *of_b, ob_vec3 n, ob_vec3 *a, ob_vec3 *b)
 {
-	const double near = 1e-3; // of the points' distance from their middle
+	const double near = 1e-3; // relative to the points' distance from their mean
 	const lanes gap = of_a->x[3], above = gap + lanes_largest(-gap);
 	lanes xa[3], xb[3];
 	points_from(of_a, of_a->middle, xa);
 	points_from(of_b, of_b->middle, xb);
-	const lanes far = lanes_max(patch_dot(xa, xa), patch_dot(xb, xb)); // whichever body is a
+	const lanes far = lanes_max(patch_dot(xa, xa), patch_dot(xb, xb)); // symmetric in a and b
 	const double reach = near * __builtin_sqrt(lanes_largest(lanes_where(gap < INFINITY, far)));
 	const lanes share = lanes_select(above <= 0, lanes_of(1), lanes_where(above < reach, 1 - above / reach));
 	lanes sum = lanes_of(0), of[OB_POINTS] = { share, share * points_along(xa, n), share * points_along(xb, n) };
@@ -83,8 +84,8 @@ static vec2 mean2(vec2 a, double f, vec2 b, double g)
 	return (vec2){ f * a.x + g * b.x, f * a.y + g * b.y };
 }
 
-// Half edges of a parallelogram like the four points, which are taken in the order around them: the one that encloses
-// most. The three orders lie side by side, the last one twice.
+// Half edges of a parallelogram in place of four points, taken in the order around them: the one that encloses the
+// largest area. The three orders are computed side by side, the last one twice.
 static void edges_of_four(lanes x, lanes y, vec2 *e1, vec2 *e2)
 {
 	const lanes qx = .25 * x, qy = .25 * y;
@@ -100,7 +101,7 @@ static void edges_of_four(lanes x, lanes y, vec2 *e1, vec2 *e2)
 	*e2 = (vec2){ across_x[best], across_y[best] };
 }
 
-// .. with the second moment of the triangle's area. One edge is along the longest side.
+// Half edges of a parallelogram with the second moment of the triangle's area; one is along the longest side.
 static void edges_of_three(const vec2 *p, vec2 *e1, vec2 *e2)
 {
 	double longest = -1;
@@ -115,7 +116,7 @@ static void edges_of_three(const vec2 *p, vec2 *e1, vec2 *e2)
 	}
 }
 
-// Points in a row make an edge: a parallelogram that is thin.
+// Makes e1 the longer half edge, and e2 counterclockwise of it. Collinear points get a thin parallelogram.
 static void set_thickness(vec2 *e1, vec2 *e2)
 {
 	const double thinnest = .01;
@@ -135,13 +136,13 @@ static void set_thickness(vec2 *e1, vec2 *e2)
 		*e2 = (vec2){ -e2->x, -e2->y };
 }
 
-// x, y: the points, about their mean, along the tangents; 0 where there is none
+// x, y: points from their mean, along the tangents (m); 0 for an absent one
 static void set_patch(ob_batch *b, int l, lanes x, lanes y, int points, double disc)
 {
 	const vec2 p[OB_POINTS] = { { x[0], y[0] }, { x[1], y[1] }, { x[2], y[2] }, { x[3], y[3] } };
 	vec2 e1 = { 0, 0 }, e2 = { 0, 0 };
 	if (disc > 0)
-		e1.x = e2.y = __builtin_sqrt(.75) * disc; // its second moment
+		e1.x = e2.y = __builtin_sqrt(.75) * disc; // a square with its second moment
 	else if (points == 4)
 		edges_of_four(x, y, &e1, &e2);
 	else if (points == 3)
@@ -169,7 +170,7 @@ static inline void set3(lanes *x, int l, ob_vec3 v)
 	lanes_put(&x[2], l, v.z);
 }
 
-// The rows' angular Jacobians, arm x n; 0 where there is no point
+// Angular Jacobians of the normal rows, arm x n; 0 for an absent point
 static inline void set_arms(lanes (*rows)[3], int l, const lanes *x, ob_vec3 n, lane_mask used)
 {
 	const lanes turn[3] = { lanes_where(used, x[1] * n.z - x[2] * n.y), lanes_where(used, x[2] * n.x - x[0] * n.z),

@@ -1,10 +1,11 @@
 #include "contact/support.h"
 
-static const double flat = 1e-12; // of a unit vector's part across an axis: less has no direction
-static const double converged = 1e-14; // of the shapes' size, what is left of a gradient
-static const double rounding = 1e-14; // of the shapes' size
-static const double flattest = 1e-9; // of the shapes' size, of a curvature that a step is measured by
-static const double beside_jump = 1e-13; // of a turn's tangent: so near to a jump the slope is that of its side
+static const double flat = 1e-12; // part of a unit vector across an axis: a smaller one has no direction
+static const double converged = 1e-14; // relative to the shapes' size: gradient that counts as 0
+static const double rounding = 1e-14; // relative to the shapes' size
+static const double flattest = 1e-9; // relative to the shapes' size: least curvature by which a step is scaled
+static const double beside_jump = 1e-13; // relative distance (tangent) from a jump at which the slope is that of its
+					 // side
 static const double widest = 1e4; // tangent of the largest turn of a climb
 
 static ob_vec3 unit(ob_vec3 v)
@@ -70,12 +71,12 @@ double ob_apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 
 // ---- across an axis
 
-// A shape for directions p + t q, with p and q of unit length and across each other.
+// Shape as seen along directions p + t q, with perpendicular unit vectors p and q.
 typedef struct slice {
 	const ob_placed *x;
-	double turn; // -1: it is looked at from the other side
+	double turn; // -1: seen from the other side
 	ob_vec3 p, q; // in the shape's frame
-	double half[3]; // m: of the box that is in the shape, to which what is round is added; 0: of a hull
+	double half[3]; // m: half extents of the box inside the shape, to which round parts are added; 0 for a hull
 	double radius; // m, of a cylinder's rim
 } slice;
 
@@ -91,7 +92,7 @@ static slice slice_of(const ob_placed *x, double turn, ob_vec3 p, ob_vec3 q)
 	return s;
 }
 
-// By what the shape takes part in the slope: its farthest point from its centre, along q - t p. A ball has none.
+// The shape's part of the slope: its support point, from its centre, along q - t p. A ball adds nothing.
 static double part_of_slope(const slice *s, double t)
 {
 	const ob_vec3 n = ob_madd(s->p, t, s->q), d = ob_madd(s->q, -t, s->p);
@@ -106,8 +107,8 @@ static double part_of_slope(const slice *s, double t)
 	return across > flat ? sum + s->radius * (n.x * d.x + n.y * d.y) / across : sum;
 }
 
-// Where the slope jumps, as the farthest point goes from one end of the shape to the other: t, added to jump. Returns
-// how many there are then.
+// Adds to jump the values of t at which the slope jumps: the support point changes from one end of the shape to the
+// other. Returns the number of jumps.
 static int add_jumps(const slice *s, double jump[6], int n)
 {
 	const double p[3] = { s->p.x, s->p.y, s->p.z }, q[3] = { s->q.x, s->q.y, s->q.z };
@@ -117,7 +118,7 @@ static int add_jumps(const slice *s, double jump[6], int n)
 	return n;
 }
 
-// The derivative of the separation along p + t q, but for a positive factor; apart: of the centres, along p and q.
+// Derivative of the separation along p + t q, up to a positive factor. apart: m, of the centres along p and q.
 static double slope_at(const slice *a, const slice *b, const double apart[2], double t)
 {
 	return apart[1] - t * apart[0] - part_of_slope(a, t) - part_of_slope(b, t);
@@ -152,7 +153,7 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 		if (at_high == 0)
 			return unit(ob_madd(p, high, q));
 	}
-	// The top is often where the slope jumps; elsewhere a jump is kept out of what is bracketed.
+	// The maximum is often at a jump of the slope; any other jump is excluded from the bracket.
 	double jump[6];
 	const int jumps = add_jumps(&of_b, jump, add_jumps(&of_a, jump, 0));
 	for (int k = 0; k < jumps; k++) {
@@ -170,9 +171,9 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 			return unit(ob_madd(p, jump[k], q));
 		low = after, at_low = at_after;
 	}
-	// Regula falsi in the form of Illinois (Dowell and Jarratt 1971): an end that is kept twice weighs less.
+	// Illinois form of regula falsi (Dowell and Jarratt 1971): an end that is kept twice counts half.
 	double weigh_low = 1, weigh_high = 1;
-	int kept = 0; // the end that was kept: -1 low, 1 high
+	int kept = 0; // end that was kept: -1 low, 1 high
 	for (int i = 0; i < NARROW && fabs(high - low) > 2e-16 * (1 + fabs(low)); i++) {
 		const double share = weigh_low * at_low / (weigh_low * at_low - weigh_high * at_high);
 		const double mid = low + (high - low) * (i % 8 == 7 ? .5 : share),
@@ -192,7 +193,7 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 
 // ---- two rims
 
-// Adds what the rim of x curves the separation by along n, in the basis p, q across n: xx, xy, yy.
+// Adds the rim's part of the curvature of the separation at n, in the basis p, q across n: xx, xy, yy.
 static void add_curvature(const ob_placed *x, ob_vec3 n, ob_vec3 p, ob_vec3 q, double m[3])
 {
 	ob_vec3 d = ob_column(&x->r, 2), t = ob_cross(d, n);
@@ -205,7 +206,7 @@ static void add_curvature(const ob_placed *x, ob_vec3 n, ob_vec3 p, ob_vec3 q, d
 	m[2] += k * tq * tq;
 }
 
-// A cap's normal is a place where the separation has no derivative: what is uphill from there, if anything is.
+// Leaves a cap's normal d, where the separation has no derivative: returns a better direction nearby, or n.
 static ob_vec3 off_axis(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_vec3 d)
 {
 	if (ob_norm2(ob_cross(n, d)) > 1e-16)
@@ -221,13 +222,13 @@ static ob_vec3 off_axis(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_ve
 	return n;
 }
 
-// What lies uphill, in a basis across n: of the slope g and the curvature m (xx, xy, yy, of a hill positive), Newton's
-// step, as if the surface were curved as much downwards where it is curved upwards: along a ridge it is flat, and may
-// be curved either way.
+// Newton's step uphill, in a basis across n, from the slope g and the curvature m (xx, xy, yy; positive on a hill).
+// Principal curvatures count by their magnitude, at least "least": along a ridge the surface is nearly flat, and may be
+// curved either way.
 static void newton_step(const double g[2], const double m[3], double least, double step[2])
 {
 	const double mean = .5 * (m[0] + m[2]), half = .5 * (m[0] - m[2]), root = sqrt(half * half + m[1] * m[1]);
-	double x = m[1], y = root - half; // along the direction of the larger curvature, mean + root
+	double x = m[1], y = root - half; // direction of the larger curvature, mean + root
 	if (half > 0)
 		x = root + half, y = m[1];
 	const double l = sqrt(x * x + y * y);
@@ -262,7 +263,7 @@ ob_vec3 ob_climb_rims(const ob_placed *a, const ob_placed *b, ob_vec3 from)
 			ob_vec3 at_next = ob_support_between(a, b, next);
 			double gain = ob_dot(next, at_next) - gap,
 			       left = ob_norm2(ob_madd(at_next, -ob_dot(next, at_next), next));
-			// near the top a gain drowns in rounding, the slope does not
+			// near the maximum a gain is lost in rounding, the slope is not
 			better = gain > rounding * size ||
 				 (gain > -rounding * size && left < slope[0] * slope[0] + slope[1] * slope[1]);
 			if (better)

@@ -1,29 +1,29 @@
-// Which point of a convex shape lies farthest along a direction, and along which direction two shapes are farthest
-// apart (or overlap least). Pure functions, thread-safe.
+// Support functions of convex shapes, and the direction along which two shapes are farthest apart, or overlap least.
+// Pure functions, thread-safe.
 #ifndef OB_CONTACT_SUPPORT_H
 #define OB_CONTACT_SUPPORT_H
 
 #include "contact/manifold.h"
 
-// The point of the shape that lies farthest along n (world; need not be of unit length). Boxes, cylinders, capsules,
-// hulls.
+// Support point: the farthest point of the shape along n (world frame, any length). Boxes, cylinders, capsules, hulls.
 ob_vec3 ob_support(const ob_placed *x, ob_vec3 n);
 
-// How far the shape reaches from its centre along n, times n's length (m): a convex function of n.
+// Extent of the shape from its centre along n, times the length of n (m): a convex function of n.
 double ob_reach(const ob_placed *x, ob_vec3 n);
 
-// From b's farthest point along n to a's farthest against it: the gradient of the separation along n.
+// Vector from b's support point along n to a's against n (m): the gradient of the separation along n.
 ob_vec3 ob_support_between(const ob_placed *a, const ob_placed *b, ob_vec3 n);
 
-// How far the shapes are apart along the unit direction n, from b to a (m): never more than their distance.
+// Separation of the shapes along the unit direction n, from b to a (m): never more than their distance.
 double ob_apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n);
 
-// The best direction across the unit vector e, uphill from "from": of the two shapes seen along e, the nearest features
-// (a circle's or an ellipse's arc and a corner, an edge or another arc). The separation of two convex shapes that are
-// apart has one maximum on the half circle; the zero of its derivative is bracketed and found to rounding.
+// Climbs from "from" to the direction of largest separation across the unit vector e. The features that meet there, as
+// seen along e, are an arc of a circle or an ellipse, and a corner, an edge or another arc. If two convex shapes are
+// apart, their separation has one maximum on the half circle. The zero of its derivative is bracketed, and found to
+// rounding.
 ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_vec3 from);
 
-// The best direction for two rims, uphill from "from": Newton's method on the sphere of directions.
+// Climbs from "from" to the direction of largest separation of two rims: Newton's method on the sphere of directions.
 ob_vec3 ob_climb_rims(const ob_placed *a, const ob_placed *b, ob_vec3 from);
 
 #endif
