@@ -1,6 +1,6 @@
-// The contact solver's arithmetic on a batch, and that of two boxes. Compiled once for each instruction set under the
-// name OB_KERNEL (see meson.build): what is side by side is so in each of them, and nothing is contracted, so the bits
-// are the same.
+// Arithmetic of the contact solver on a batch, and of two boxes. Compiled once per instruction set under the name
+// OB_KERNEL (see meson.build). All versions compute the same lanes side by side and contract no operations, so their
+// bits are the same.
 #include "contact/kernel.h"
 
 #include <string.h>
@@ -11,12 +11,12 @@
 #include "contact/points.h"
 
 static const int max_block_sweeps = 64;
-static const int sweeps_of_a_round = 2; // of a block that is solved to the end: after each a step of Newton's method
-static const int coarse_block_sweeps = 2; // of a block that will be solved again in the next iteration
-static const double min_projection = .01; // of the slop: shallower penetrations are not pushed, or that would never end
+static const int sweeps_of_a_round = 2; // sweeps per step of Newton's method, in a block that is solved to the end
+static const int coarse_block_sweeps = 2; // sweeps of a block that the next iteration will solve again
+static const double min_projection = .01; // relative to the slop: shallower penetrations stay, else it never ends
 
-// The rows of a pair depend on its kind alone. Each kind has a kernel of its own, made by the compiler from the same
-// text: where "kind" is a constant, what is not in use falls away.
+// Rows depend on the pair's kind alone. The compiler makes a kernel for each kind from the same text: for a constant
+// "kind" it removes unused rows.
 #define PER_KIND static inline __attribute__((always_inline))
 
 PER_KIND int points_of(ob_batch_kind kind)
@@ -47,12 +47,12 @@ static inline lanes dot3(const lanes *a, const lanes *b)
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// The inverse of A's block of friction, for a contact at one point: it has no twist.
+// Inverts A's block of friction for a contact at one point, which has no twist.
 static inline void invert_point(ob_batch *b, lanes a44, lanes a55, lanes a45)
 {
 	const lanes none = lanes_of(0), half = .5 * (a44 - a55);
 	lanes det = a44 * a55 - a45 * a45, inverse = lanes_select(det > 0, 1 / det, none);
-	lanes most = .5 * (a44 + a55) + lanes_sqrt(half * half + a45 * a45); // eigenvalue
+	lanes most = .5 * (a44 + a55) + lanes_sqrt(half * half + a45 * a45); // largest eigenvalue
 	b->friction_mass[0] = a55 * inverse;
 	b->friction_mass[1] = -a45 * inverse;
 	b->friction_mass[3] = a44 * inverse;
@@ -67,7 +67,8 @@ static inline void invert_point(ob_batch *b, lanes a44, lanes a55, lanes a45)
 	b->slide_rate2 = most * most;
 }
 
-// Friction and twist. What cannot be turned has a row that changes nothing; here it counts as very heavy.
+// Inverts A's block of friction and twist. If neither body can be turned about the normal, the twist's row has no
+// effect, and counts as very heavy.
 static inline void invert_patch(ob_batch *b, lanes a44, lanes a55, lanes a66, lanes a45, lanes a46, lanes a56)
 {
 	const double heavy = 1e-6;
@@ -82,7 +83,7 @@ static inline void invert_patch(ob_batch *b, lanes a44, lanes a55, lanes a66, la
 		b->friction_mass[i] = lanes_select(patch, m[i] / det, b->friction_mass[i]);
 }
 
-// moves_a, moves_b: some lane's body does.
+// moves_a, moves_b: some lane's body a, or b, can move.
 PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind, bool moves_a, bool moves_b)
 {
 	const lanes *ja[7] = { b->ja[0], b->ja[1], b->ja[2], b->ja[3], b->fa1, b->fa2, b->n };
@@ -103,12 +104,12 @@ PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind, bool moves_a, bool m
 			if (moves_b)
 				s += dot3(xb, jb[j]) * b->kb;
 			if ((i < 4 && j < 4) || (i == j && i < 6))
-				s += mass; // the same direction: normals, and each tangent with itself
+				s += mass; // rows along one direction: two normals, or a tangent with itself
 			a[i][j] = a[j][i] = s;
 		}
 		b->diag[i] = a[i][i];
 		lane_mask used = a[i][i] > 0;
-		if (i < OB_POINTS) // a point that is not used has no row
+		if (i < OB_POINTS) // an absent point has no row
 			used &= b->gap[i] < .5 * ob_no_contact;
 		b->inv_diag[i] = lanes_select(used, 1 / a[i][i], lanes_of(0));
 	}
@@ -151,7 +152,7 @@ static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes 
 	o[5] = rest[1];
 }
 
-// From components by body to rows by body: columns 0..3 of the four rows, and columns 4..7.
+// Transposes components by body to rows by body: columns 0..3 (linear) and columns 4..7 (rest).
 static inline void transpose_bodies(const lanes *x, lanes *linear, lanes *rest)
 {
 	for (int l = 0; l < OB_LANES; l++)
@@ -173,7 +174,7 @@ static inline void scatter(ob_body_row *rows, const uint32_t *index, const lanes
 	}
 }
 
-// Body 0 and static bodies may stand in several lanes of one batch: their rows stay zero, whoever writes last.
+// Body 0 and static bodies may be in several lanes of a batch: their rows stay zero, whichever lane writes last.
 static inline void gather_both(const ob_batch *b, const ob_body_row *rows, lanes *xa, lanes *xb)
 {
 	gather(rows, b->body_a, xa);
@@ -221,7 +222,7 @@ PER_KIND void apply(const ob_batch *b, ob_batch_kind kind, const lanes *d, lanes
 		vb[3 + c] -= x[c];
 }
 
-// Normal rows of J (xa, xb): how fast each point's gap opens (m/s)
+// Normal rows of J (xa, xb): opening velocity of each point (m/s).
 PER_KIND void normal_velocities(const ob_batch *b, ob_batch_kind kind, const lanes *xa, const lanes *xb, lanes *r)
 {
 	lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
@@ -230,7 +231,7 @@ PER_KIND void normal_velocities(const ob_batch *b, ob_batch_kind kind, const lan
 		r[i] = nd + dot3(b->ja[i], xa + 3) - dot3(b->jb[i], xb + 3);
 }
 
-// Rows of friction and twist of J (xa, xb): how fast the contact slides (m/s) and spins (rad/s).
+// Rows of friction and twist of J (xa, xb): sliding (m/s) and spin (rad/s) of the contact.
 PER_KIND void friction_velocities(const ob_batch *b, ob_batch_kind kind, const lanes *xa, const lanes *xb, lanes *r)
 {
 	if (in_use(kind, 4)) {
@@ -244,7 +245,7 @@ PER_KIND void friction_velocities(const ob_batch *b, ob_batch_kind kind, const l
 	}
 }
 
-// Row i's impulse changed by d: what the rows are still short of.
+// Updates the steps of all rows after a change d of row i's impulse.
 PER_KIND void couple(const ob_batch *b, ob_batch_kind kind, int i, lanes d, lanes *step)
 {
 	for (int j = 0; j < OB_ROWS; j++)
@@ -252,7 +253,7 @@ PER_KIND void couple(const ob_batch *b, ob_batch_kind kind, int i, lanes d, lane
 			step[j] -= b->coupling[i][j] * d;
 }
 
-// The square of the most that a change of friction does to the slip, m/s: the same whatever the tangents.
+// Upper bound on the square of the change of slip (m/s) by a change of friction: the same whatever the tangents.
 static inline lanes square_of_slip(const ob_batch *b, lanes d4, lanes d5)
 {
 	return (d4 * d4 + d5 * d5) * b->slide_rate2;
@@ -264,7 +265,7 @@ typedef struct friction_state {
 	patch_search search;
 } friction_state;
 
-// Impulses that would undo the slip with which the substep began.
+// Computes impulses that would undo the slip with which the substep began.
 static void begin_search(const ob_batch *b, ob_batch_kind kind, friction_state *f)
 {
 	lanes va[6], vb[6], start[OB_ROWS] = { 0 };
@@ -275,12 +276,12 @@ static void begin_search(const ob_batch *b, ob_batch_kind kind, friction_state *
 	f->search.begun = 1;
 }
 
-// The direction in which lanes slip: that of the slip that there is, unless it is too small to tell; else what the
-// impulses that would hold ask for.
+// Renews the ellipsoid of the lanes "due", for the direction of the substep's mean slip. If this is too small to tell,
+// it is the direction that the impulses "hold" resist.
 static void renew_model(const ob_batch *b, const lanes *x, lanes sum, lane_mask due, const lanes *slip,
 			friction_state *f, const lanes *hold)
 {
-	const double telling = 1e-4; // of what friction may change in the substep
+	const double telling = 1e-4; // relative to the change that friction can make in the substep
 	patch_load load;
 	lanes mean[3], asked[3], stay[3] = { -hold[0], -hold[1], -hold[2] };
 	patch_load_set(b, x, sum, &load);
@@ -294,11 +295,11 @@ static void renew_model(const ob_batch *b, const lanes *x, lanes sum, lane_mask 
 	patch_model_set(&load, due, mean, f->model);
 }
 
-// Lanes in which "hold" is too much: within the limit surface they slip.
+// Limits "hold" in the lanes "outside", where it exceeds the limit surface: they slip.
 static __attribute__((noinline)) void let_slip(const ob_batch *b, ob_batch_kind kind, const lanes *x, lanes sum,
 					       lane_mask outside, const lanes *slip, friction_state *f, lanes *hold)
 {
-	const double same_pressure = 1e-9; // half edges: moved by less, its centre stays
+	const double same_pressure = 1e-9; // half edges: a smaller shift of the centre of pressure counts as none
 	lanes bound = b->mu * sum, pressure[2];
 	lane_mask none = outside & ~(bound > 0);
 	if (!f->search.begun)
@@ -315,7 +316,7 @@ static __attribute__((noinline)) void let_slip(const ob_batch *b, ob_batch_kind 
 	f->search.slides |= lanes_bits(none);
 }
 
-// Friction and twist of patches, at once: the impulses that hold, or those that the limit surface allows.
+// Solves friction and twist of patches together: impulses that hold, or those that the limit surface permits.
 static inline void solve_patch(const ob_batch *b, ob_batch_kind kind, lane_mask patch, const lanes *x, lanes sum,
 			       const lanes *step, friction_state *f, lanes *next)
 {
@@ -331,13 +332,13 @@ static inline void solve_patch(const ob_batch *b, ob_batch_kind kind, lane_mask 
 	}
 }
 
-// Friction at a point, x, to the end: the impulse within the disc that leaves the least slip. A point that slides has
-// (A + t) x = load, |x| = bound, t = slip over impulse, by Newton's method in 1/|x|.
+// Solves friction at a point, x, to the end: the impulse within the disc that leaves the least slip. A sliding point
+// has (A + t) x = load, |x| = bound, t = slip over impulse: Newton's method in 1/|x|.
 static inline void solve_point(const ob_batch *b, lane_mask outside, lanes bound, const lanes *x, const lanes *step,
 			       lanes *next)
 {
 	enum { MOST = 16 };
-	const double close = 1e-13; // of the bound
+	const double close = 1e-13; // relative to the bound
 	const lanes a = b->diag[4], c = b->diag[5], m = b->coupling[4][5] * c;
 	const lanes load[2] = { a * (x[4] + step[4]) + m * x[5], m * x[4] + c * (x[5] + step[5]) };
 	lanes t = lanes_of(0);
@@ -356,8 +357,9 @@ static inline void solve_point(const ob_batch *b, lane_mask outside, lanes bound
 		next[i] = lanes_select(outside & ~(bound > 0), lanes_of(0), next[i]);
 }
 
-// Friction at a point or at the centroid: what holds it; where that is too much, on the disc. The way there is the same
-// in all directions, whatever the masses, or the slip's direction would depend on that of the tangents.
+// Friction at a point or at the centroid: the impulse that holds, or if that is too large, one on the disc. The step to
+// the disc has the same scale in all directions, whatever the masses; else the slip's direction would depend on the
+// tangents.
 static inline void solve_disc(const ob_batch *b, lane_mask point, lanes bound, const lanes *x, const lanes *step,
 			      lanes *change)
 {
@@ -376,11 +378,11 @@ static inline void solve_disc(const ob_batch *b, lane_mask point, lanes bound, c
 	change[0] = d4, change[1] = d5;
 }
 
-// A sweep of projected Gauss-Seidel inside the block: x are impulses, step what each row alone would change of its own
-// impulse, -(J v) / A_ii. Kept that way, little stands between one row's change and the next one's: a maximum, a
-// product, a difference. Where the two bodies touch nothing else, friction and twist are one block of rows.
-// Lanes that are not open keep their impulses. Returns the square of the largest change of a velocity.
-// patches: some lane's two bodies touch nothing else.
+// Sweep of projected Gauss-Seidel inside the block. x: impulses; step: change of its own impulse that each row alone
+// would make, -(J v) / A_ii. In this form few operations separate one row's change from the next: a maximum, a product,
+// a difference. If the two bodies touch nothing else, friction and twist are one block of rows. Lanes that are not open
+// keep their impulses. Returns the square of the largest change of a velocity. patches: the bodies of some lane touch
+// nothing else.
 PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, lane_mask open, friction_state *f,
 			   lanes *x, lanes *step)
 {
@@ -426,7 +428,7 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 	return lanes_max(largest, spin * spin);
 }
 
-// d becomes m^-1 d, by elimination without pivots.
+// Replaces d by m^-1 d, by elimination without pivots.
 PER_KIND void eliminate(ob_batch_kind kind, int rows, lanes (*m)[OB_ROWS], lanes *d)
 {
 #pragma GCC unroll 7
@@ -458,13 +460,13 @@ PER_KIND void eliminate(ob_batch_kind kind, int rows, lanes (*m)[OB_ROWS], lanes
 	}
 }
 
-// From impulses that sweeps have brought near to the end, a step of Newton's method to where the law is kept: points
-// that push reach their velocity, and friction that holds stops the slip; or, where it slides, it keeps its direction
-// and its share of the load. Not past the place where the first point lets go; the next sweep sees to the law. Rows of
-// a face depend on each other: of all steps it is as good as the shortest.
+// Step of Newton's method, from impulses that sweeps have brought near the solution. Points under load reach their
+// velocity. Friction that holds stops the slip; friction that slides keeps its direction and its share of the load. The
+// step ends where the first point lets go; the next sweep restores the law. Rows of a face depend on each other: the
+// step is nearly the shortest of all that solve them.
 PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask to, lanes *x, lanes *step)
 {
-	const double proximity = 1e-9; // of a row's own coefficient
+	const double proximity = 1e-9; // relative to a row's own coefficient
 	const lanes one = lanes_of(1), none = lanes_of(0);
 	const bool slides = !holds && in_use(kind, 4);
 	const int rows = holds && in_use(kind, 6) ? 7 : holds && in_use(kind, 4) ? 6 : points_of(kind);
@@ -481,7 +483,7 @@ PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask 
 	for (int i = 0; i < rows; i++) {
 		if (!in_use(kind, i))
 			continue;
-		lanes with = none; // what a unit of load does to this row by the friction that it brings
+		lanes with = none; // effect on this row of the friction, which follows the load
 		if (slides)
 			for (int j = OB_POINTS; j < OB_ROWS; j++)
 				if (in_use(kind, j))
@@ -544,9 +546,9 @@ PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const fr
 	return (patch & lanes_mask(f->search.slides)) | (~patch & disc);
 }
 
-// Sweeps a block until it is solved, up to the iteration's number of sweeps; fewer if it changes so much that another
-// iteration will follow. An isolated lane has no later iteration to mend what is left over, so it is solved to the end.
-// alone: there is such a lane. Sets the number of sweeps, and which isolated lanes have been solved.
+// Sweeps a block until it is solved, up to the iteration's number of sweeps. Ends sooner if the block changes so much
+// that another iteration will follow. An isolated lane has no later iteration to correct a residual, so it is solved to
+// the end. alone: there is such a lane. Sets the number of sweeps, and the isolated lanes that are solved.
 PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_solver_iteration *iteration,
 			  friction_state *f, lanes *x, const lanes *r)
 {
@@ -579,7 +581,7 @@ PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_
 	b->solved = lanes_bits(isolated & ~open);
 }
 
-// What lane l alone does to one of its bodies: the sums of apply, in their order.
+// Applies the impulses of lane l to one of its bodies: the sums of apply, in their order.
 static void apply_impulses_of(const ob_batch *b, int l, bool a, const lanes *d, ob_body_row *rows)
 {
 	const double sign = a ? 1 : -1, inv_mass = sign * lone_get(a ? &b->ima : &b->imb, l);
@@ -606,7 +608,7 @@ static void apply_impulses_of(const ob_batch *b, int l, bool a, const lanes *d, 
 	row[5] += k[2] * turn[0] + k[4] * turn[1] + k[5] * turn[2];
 }
 
-// va, vb of apply for rows that may stand in several lanes: their changes are added one by one, in lane order.
+// As apply, for bodies that may be in several lanes: adds their changes one by one, in lane order.
 static void apply_impulses(const ob_batch *b, const lanes *d, ob_body_row *rows)
 {
 	if (lanes_count(b->live) == 1) {
@@ -641,11 +643,11 @@ PER_KIND void write_changes(const ob_batch *b, ob_batch_kind kind, bool jacobi, 
 	scatter_both(b, v, va, vb);
 }
 
-// How far each gap may close in the substep, as a velocity. The points of a resting contact are each where rounding
-// left them, and would take turns for ever to close what is left: they stay. Restitution is exact in time, so an
-// elastic point must not be stopped early: a body that falls freely closes less than its final velocity says, by half
-// of what it gains. A point at the surface that does not leave has no such way to fall. Where nothing else mends it, a
-// point that opens now may close as fast again: what pushes it then, over the substep, does no work.
+// Sets the velocity at which each gap may close in the substep. Points of a resting contact keep the gaps that rounding
+// left: they would take turns for ever to close them. Restitution is exact in time, so an elastic point must not be
+// stopped early. A body in free fall closes less than its final velocity says, by half of what it gains. A point at the
+// surface that does not leave has no room for such a fall. In an isolated lane, a point that opens now may close as
+// fast again: over the substep, the push that turns it back does no work.
 PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, const ob_body_row *v,
 		       const ob_body_row *d)
 {
@@ -685,7 +687,7 @@ PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteratio
 		b->bias[i] = lanes_select(lanes_mask(alone), lanes_max(b->bias[i], now[i]), b->bias[i]);
 }
 
-// The square of the most that a row's velocity would change (m/s) if its impulse alone did.
+// Square of the largest change of a row's velocity (m/s), as if each impulse acted alone.
 PER_KIND lanes largest_change(const ob_batch *b, ob_batch_kind kind, const lanes *change)
 {
 	lanes most = lanes_of(0);
@@ -727,7 +729,7 @@ PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iterat
 	if (b->isolated) {
 		friction_state friction = { .v = v, .model = &b->model };
 		b->model.known =
-			iteration->first ? 0 : b->model.known; // once in a substep, unless nothing else will mend it
+			iteration->first ? 0 : b->model.known; // made once in a substep; again if the slip turns
 		solve_block(b, kind, true, iteration, &friction, x, r);
 		b->slides = friction.search.slides & b->live;
 	} else {
@@ -789,7 +791,7 @@ static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 	if (b->dirty)
 		prepare(b);
 	for (int i = 0; i < points; i++)
-		r[i] = -lanes_where(deep, r[i] * b->inv_diag[i]); // what each row alone would change, as in a sweep
+		r[i] = -lanes_where(deep, r[i] * b->inv_diag[i]); // change by each row alone, as in a sweep
 	for (int s = 0; s < 4; s++)
 		for (int i = 0; i < points; i++) {
 			lanes change = lanes_max(-x[i], r[i]);

@@ -1,14 +1,14 @@
-// One contact of a body that touches nothing else, with what stands or moves as it is told: solved to the end at once.
-// The law is that of a batch (contact/batch.h) for a lane that is isolated, and so is the limit surface
-// (contact/patch.h); but here the four points lie side by side in place of four pairs, so that a sweep over the rows, a
-// step of Newton's method and the four edges of a patch each are a few operations on vectors.
+// Solver for a contact of a body that touches nothing else, with a static or kinematic one: solves it to the end at
+// once. The law is that of an isolated lane of a batch (contact/batch.h), with the same limit surface
+// (contact/patch.h). Here the four points lie side by side in place of four pairs. So a sweep over the rows, a step of
+// Newton's method and the four edges of a patch are a few vector operations each.
 //
-// A sweep finds which points push and whether friction holds; then a step of Newton's method goes to where all rows of
-// those keep their law. Where friction slides it follows the load: it grows with the sum, turns as the slip does, and
-// moves with the centre of pressure. What it does not know, how the shape of the loaded part changes, two rounds tell
-// (Anderson 1965, of depth one).
+// A sweep finds the points under load, and whether friction holds. Then a step of Newton's method makes all their rows
+// obey the law. Sliding friction follows the load: it grows with the sum, turns with the slip, and moves with the
+// centre of pressure. The step does not include the change of the loaded part's shape; an extrapolation from two rounds
+// does (Anderson 1965, of depth one).
 //
-// Part of kernel.c: compiled once for each instruction set, nothing contracted.
+// Part of kernel.c: compiled once for each instruction set, with no operations contracted.
 #ifndef OB_CONTACT_LONE_H
 #define OB_CONTACT_LONE_H
 
@@ -19,34 +19,34 @@
 #include "contact/patch.h"
 
 enum {
-	LONE_FRICTION = 3, // rows: along the tangents, and twist
-	LONE_ROUNDS = 64, // at most: what does not come to an end is left to iterations
+	LONE_FRICTION = 3, // rows: two tangents and the twist
+	LONE_ROUNDS = 64, // maximum; beyond it, iterations go on
 };
 
-// Where the centre of pressure is, and the part that is loaded (contact/patch.h).
+// Centre of pressure, and the loaded part of the patch (contact/patch.h).
 typedef struct lone_load {
 	double edges[2], pressure[2]; // centre of pressure: in half edges; m from the centroid
 	double centre[2], e1[2], e2[2], slope[2], spread;
 } lone_load;
 
-// The ellipsoid in place of the limit surface (contact/batch.h).
+// Ellipsoid in place of the limit surface (contact/batch.h).
 typedef struct lone_model {
 	double surface[6], inverse[6], slip[3], edges[2], stretch;
 	bool known;
 } lone_model;
 
 typedef struct lone {
-	lanes an[OB_ROWS], af[OB_ROWS]; // A: each row's coupling with the points; with friction
-	lanes diag, inv_diag, near_s, near_t; // of the points; where they are, in half edges
+	lanes an[OB_ROWS], af[OB_ROWS]; // A: coupling of each row with the points; with the rows of friction
+	lanes diag, inv_diag, near_s, near_t; // A's diagonal for the points, and its inverse; points in half edges
 	lanes x, y; // impulses of the points; of friction
-	lanes short_n, short_f; // m/s, rad/s, that the rows are short of
-	lanes start; // impulses that would undo the slip of the substep's start
-	double slip[LONE_FRICTION]; // that slip
-	double diag_f[LONE_FRICTION], mass[6]; // of A's block of friction; its inverse
+	lanes short_n, short_f; // m/s, rad/s: velocity that each row still lacks
+	lanes start; // impulses that would undo the slip at the substep's start
+	double slip[LONE_FRICTION]; // slip at the substep's start: m/s, rad/s
+	double diag_f[LONE_FRICTION], mass[6]; // A's block of friction: diagonal, inverse
 	double mu, radius, slide_rate2, e1[2], e2[2], ratio, det;
-	double spin; // rad/s, of the mean slip while it slides
-	bool slides, capped; // capped: the force of what slides is all that there may be; the ellipsoid allowed more
-	int points; // the first of four
+	double spin; // rad/s: spin of the mean slip while the contact slides
+	bool slides, capped; // capped: friction is at its bound; the ellipsoid permitted more
+	int points; // number of points: the first lanes
 	lone_model model;
 } lone;
 
@@ -64,7 +64,7 @@ static inline lanes lone_four(const lanes *x, int l)
 	return (lanes){ lone_get(&x[0], l), lone_get(&x[1], l), lone_get(&x[2], l), lone_get(&x[3], l) };
 }
 
-// Of what there are three, the fourth repeats the third: nothing reads it.
+// Three components; lane 3 repeats the last, and is not read.
 static inline lanes lone_vector(double x, double y, double z)
 {
 	return (lanes){ x, y, z, z };
@@ -107,7 +107,7 @@ static inline void lone_mul(const double *s, const double *x, double *o)
 	o[2] = s[2] * x[0] + s[4] * x[1] + s[5] * x[2];
 }
 
-// L D L^T of t a + s
+// Factors L D L^T of t a + s
 typedef struct lone_factors {
 	double l1, l2, l3, i0, i1, i2;
 } lone_factors;
@@ -141,7 +141,7 @@ static inline double lone_sign(double x)
 	return x < 0 ? -1 : 1;
 }
 
-// In half edges, and m from the centroid
+// Computes the centre of pressure: in half edges, and in m from the centroid.
 static inline void lone_pressure(const lone *p, double sum, double *edges, double *at)
 {
 	const double inverse = 1 / lone_max(sum, 1e-300);
@@ -151,7 +151,7 @@ static inline void lone_pressure(const lone *p, double sum, double *edges, doubl
 	at[1] = edges[0] * p->e1[1] + edges[1] * p->e2[1];
 }
 
-// edges, pressure: set.
+// Computes the loaded part, as patch_load_set. edges and pressure are set.
 static inline void lone_load_set(const lone *p, lone_load *o)
 {
 	const double thinnest = .01, thin = .05, kern = 1. / 3, smallest = .01;
@@ -176,12 +176,12 @@ static inline void lone_load_set(const lone *p, lone_load *o)
 	o->spread = l1 * (kern - ks * ks) + l2 * (kern - kt * kt) - 2 * ks * kt * skew;
 }
 
-// D, its gradient and its bound at a slip (v, w) about the centre of the loaded part.
+// D, its gradient and its bound (patch_slip) at a slip (v, w) about the centre of the loaded part.
 typedef struct lone_slip {
 	double power, grad[3], bound[6];
 } lone_slip;
 
-// The centre of rotation is not far away: four edges at once.
+// Computes it for a centre of rotation nearby: four edges at once.
 static inline void lone_slip_near(const lone_load *p, const double *v, double w, lone_slip *o)
 {
 	const lanes side1 = { -1, 1, 1, -1 }, side2 = { -1, -1, 1, 1 };
@@ -206,7 +206,7 @@ static inline void lone_slip_near(const lone_load *p, const double *v, double w,
 	o->bound[5] = (o->grad[2] - kx * v[0] - ky * v[1]) * iw;
 }
 
-// It is: four nodes.
+// Computes it for a distant centre of rotation, by four nodes.
 static inline void lone_slip_far(const lone_load *p, const double *v, double w, lone_slip *o)
 {
 	const double at = 0.57735026918962576;
@@ -232,10 +232,10 @@ static inline void lone_move(double x, double y, double *m)
 	m[4] += x * m[3] - y * m[1];
 }
 
-// The ellipsoid that touches at the slip d.
+// Makes the ellipsoid that touches the limit surface at a slip.
 static __attribute__((noinline)) void lone_model_set(const lone_load *p, const double *slip, lone_model *o)
 {
-	const double far_share = .02; // of what moves, that turns
+	const double far_share = .02; // share of rotation in the slip
 	double d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
 	const double size = lone_abs(p->e1[0]) + lone_abs(p->e1[1]) + lone_abs(p->e2[0]) + lone_abs(p->e2[1]);
 	double v[2] = { d[0] - d[2] * p->centre[1], d[1] + d[2] * p->centre[0] };
@@ -269,7 +269,7 @@ static __attribute__((noinline)) void lone_model_set(const lone_load *p, const d
 
 // ---- friction
 
-// Within the limit surface for sure, without looking at it.
+// True if the impulses "hold" are certainly within the limit surface, without evaluating it.
 static inline bool lone_holds(const lone *p, const lone_load *at, double bound, const double *hold)
 {
 	const double kern = .28, *e1 = p->e1, *e2 = p->e2, s = at->edges[0], t = at->edges[1];
@@ -282,11 +282,11 @@ static inline bool lone_holds(const lone *p, const lone_load *at, double bound, 
 	return f2 <= b2 && 4 * b2 * twist * twist * reach2 <= room * room && (as + bt <= kern || l1 == 0);
 }
 
-// As patch_project does: returns whether the slip has left the direction in which the ellipsoid touches.
+// As patch_project. Returns true if the slip has left the direction in which the ellipsoid touches.
 static inline bool lone_project(lone *p, const double *pressure, double bound, double *hold)
 {
 	enum { MOST = 8 };
-	// To the end, or where it ends would depend on the way: on rounding, and so on how a scene is seen.
+	// Iterates to the end: an early end would depend on rounding, and so on the axes of the scene.
 	const double turned = 1 - 1e-9, close = 1e-12;
 	lone_model *m = &p->model;
 	const double stay[3] = { -hold[0], -hold[1], -hold[2] }, b2 = bound * bound, ib = 1 / lone_max(bound, 1e-300);
@@ -325,7 +325,7 @@ static inline bool lone_project(lone *p, const double *pressure, double bound, d
 	return along * along < turned * n2;
 }
 
-// What would hold is too much: within the limit surface it slips. slip: that there is
+// Limits "hold", which exceeds the limit surface: the contact slips. slip: the present one.
 static inline void lone_let_slip(lone *p, lone_load *load, double sum, const double *slip, double *hold)
 {
 	const double telling = 1e-4, same_pressure = 1e-9;
@@ -354,7 +354,7 @@ static inline void lone_let_slip(lone *p, lone_load *load, double sum, const dou
 	m->known = !lone_project(p, load->pressure, bound, hold);
 }
 
-// A point that slides: as solve_point of kernel.c. Sets stretch.
+// Friction of a sliding point, as solve_point of kernel.c. Sets stretch.
 static inline void lone_slide_point(lone *p, double bound, double *next)
 {
 	enum { MOST = 16 };
@@ -374,7 +374,7 @@ static inline void lone_slide_point(lone *p, double bound, double *next)
 	p->model.stretch = t;
 }
 
-// The impulses of friction that hold, or those that the limit allows.
+// Computes impulses of friction that hold, or those that the limit permits.
 static inline void lone_friction(lone *p, double sum, double *next)
 {
 	const double bound = p->mu * sum, missing[3] = { p->short_f[0], p->short_f[1], p->short_f[2] };
@@ -423,14 +423,14 @@ static inline void lone_change_friction(lone *p, lanes d)
 	p->y += d;
 }
 
-// The square of the most that friction's change does to the slip
+// Upper bound on the square of the change of slip by a change of friction
 static inline double lone_slip_change(const lone *p, lanes d)
 {
 	const double spin = d[2] * p->diag_f[2] * p->radius;
 	return lone_max((d[0] * d[0] + d[1] * d[1]) * p->slide_rate2, spin * spin);
 }
 
-// Returns the square of the largest change of a velocity.
+// Sweeps once over the rows. Returns the square of the largest change of a velocity.
 static inline double lone_sweep(lone *p)
 {
 	double largest = 0, sum = 0, next[LONE_FRICTION];
@@ -450,8 +450,8 @@ static inline double lone_sweep(lone *p)
 	return lone_max(largest * largest, lone_slip_change(p, d));
 }
 
-// r becomes m^-1 r, by elimination without pivots. Of the rows of the points, of which only those that push ask for
-// something; or, where friction holds, of its rows, too, with the columns mf.
+// Replaces r by m^-1 r, by elimination without pivots. Includes the rows of points under load ("push"). If friction
+// holds, it includes the rows of friction, with the columns mf.
 static inline __attribute__((always_inline)) void lone_eliminate(unsigned push, lanes *m, lanes *mf, double *r,
 								 int rows)
 {
@@ -475,7 +475,7 @@ static inline __attribute__((always_inline)) void lone_eliminate(unsigned push, 
 	}
 }
 
-// By a unit of load at each point: the friction that it brings. Of a point it keeps its share alone.
+// Friction added by a unit of load at each point. At a single point it keeps its share of the load.
 static inline void lone_follow(const lone *p, double sum, lanes *by)
 {
 	const double brought = 1 / sum, t = p->model.stretch, bound = p->mu * sum, same = 1 / (bound * bound);
@@ -506,7 +506,7 @@ static inline void lone_follow(const lone *p, double sum, lanes *by)
 	by[2] = p->mass[2] * z0 + p->mass[4] * z1 + p->mass[5] * z2;
 }
 
-// The rows of friction, which holds. What has no twist gets a row that asks for nothing.
+// Sets the rows of friction that holds. Without twist, the twist's row has no effect.
 static inline void lone_hold_rows(const lone *p, lane_mask push, lanes *m, lanes *mf, double *r)
 {
 	const double proximity = 1 + 1e-7;
@@ -524,10 +524,10 @@ static inline void lone_hold_rows(const lone *p, lane_mask push, lanes *m, lanes
 	r[6] = 0;
 }
 
-// A step of Newton's method, not past the place where the first point lets go.
+// Takes a step of Newton's method, up to the place where the first point lets go.
 static __attribute__((noinline)) void lone_leap(lone *p)
 {
-	const double proximity = 1e-7; // of a row's own coefficient
+	const double proximity = 1e-7; // relative to a row's own coefficient
 	const double sum = lone_sum(p->x);
 	if (!(sum > 0))
 		return;
@@ -559,7 +559,7 @@ static __attribute__((noinline)) void lone_leap(lone *p)
 	}
 	for (int i = 0; i < OB_ROWS; i++)
 		if (!(lone_abs(r[i]) < INFINITY))
-			return; // rows that contradict each other: sweeps alone go on
+			return; // rows contradict each other: sweeps alone go on
 	for (int i = 0; i < OB_POINTS; i++)
 		if (p->x[i] + r[i] < 0)
 			share = lone_min(share, -p->x[i] / r[i]);
@@ -573,18 +573,19 @@ static __attribute__((noinline)) void lone_leap(lone *p)
 	lone_change_friction(p, df);
 }
 
-// Impulses, or changes of them
+// Impulses of points and of friction, or changes of them
 typedef struct lone_impulses {
 	lanes x, y;
 } lone_impulses;
 
-// Where rounds have become slow, each changes what the one before has changed, and by a share of it: the two tell where
-// that ends. to, by: impulses after the last round, and its change.
+// Extrapolates slow rounds: if each change is a share of the one before, two rounds give the limit. from: impulses
+// before this round; to, by: impulses after the last round, and its change. Updates to and by.
 static inline void lone_hasten(lone *p, const lone_impulses *from, lone_impulses *to, lone_impulses *by)
 {
-	const double slow = .03, most = 4; // a round's change, of the one before; what is added, of a change
+	const double slow = .03, most = 4; // ratio of a round's change to the one before; limit of the added part,
+					   // relative to a change
 	const double twist = p->diag_f[2] * p->radius;
-	// The same whatever the tangents
+	// Weights that do not depend on the tangents
 	const lanes weight_x = p->diag * p->diag, weight_y = { p->slide_rate2, p->slide_rate2, twist * twist, 0 };
 	const lanes fx = p->x - from->x, fy = p->y - from->y, ex = fx - by->x, ey = fy - by->y;
 	const double now = lone_sum(weight_x * fx * fx + weight_y * fy * fy),
@@ -603,7 +604,8 @@ static inline void lone_hasten(lone *p, const lone_impulses *from, lone_impulses
 	*to = here;
 }
 
-// Rounds of a sweep and a step, to the end. Returns their number; one more than there may be where there is none.
+// Alternates sweeps and steps until a sweep changes less than "converged" (m/s). Returns the number of rounds;
+// LONE_ROUNDS + 1: not converged.
 static inline int lone_rounds(lone *p, double converged)
 {
 	lone_impulses to = { { 0 }, { 0 } }, by = to;
@@ -617,15 +619,15 @@ static inline int lone_rounds(lone *p, double converged)
 	return LONE_ROUNDS + 1;
 }
 
-// ---- between the batch and here
+// ---- between the batch and this solver
 
-// A body, and the rows of J as seen from it
+// A body, and the rows of J from its side
 typedef struct lone_body {
 	uint32_t row;
-	double sign; // of what it does to the contact: 1 for body a
+	double sign; // sign of its part in the contact: 1 for body a
 	double inv_mass, inv_inertia[6];
 	double n[3], t1[3], t2[3], f1[3], f2[3];
-	lanes arm[3]; // of the normals: r x n
+	lanes arm[3]; // angular Jacobians of the normals: r x n
 } lone_body;
 
 static inline void lone_load_body(const ob_batch *b, int l, bool a, lone_body *o)
@@ -646,11 +648,11 @@ static inline void lone_load_body(const ob_batch *b, int l, bool a, lone_body *o
 	}
 }
 
-// The inverse of A's block of friction: as invert_patch of kernel.c. tt: 44 45 46 55 56 66
+// Inverts A's block of friction, as invert_patch of kernel.c. tt: 44 45 46 55 56 66
 static inline void lone_invert_friction(lone *p, const double *tt)
 {
 	const double heavy = 1e-6, half = .5 * (tt[0] - tt[3]), least = heavy * (tt[0] + tt[3]);
-	const double most = .5 * (tt[0] + tt[3]) + __builtin_sqrt(half * half + tt[1] * tt[1]); // eigenvalue
+	const double most = .5 * (tt[0] + tt[3]) + __builtin_sqrt(half * half + tt[1] * tt[1]); // largest eigenvalue
 	const double twist = tt[5] > 0 ? tt[5] : least / lone_max(p->radius * p->radius, 1e-300);
 	const double c[6] = { tt[3] * twist - tt[4] * tt[4], tt[2] * tt[4] - tt[1] * twist,
 			      tt[1] * tt[4] - tt[3] * tt[2], tt[0] * twist - tt[2] * tt[2],
@@ -668,7 +670,7 @@ static inline void lone_invert_friction(lone *p, const double *tt)
 	}
 }
 
-// A, of the body that moves by itself.
+// Computes A, from the one body that impulses move.
 static __attribute__((noinline)) void lone_couple(const ob_batch *b, int l, const lone_body *o, lone *p)
 {
 	const double *k = o->inv_inertia;
@@ -718,7 +720,7 @@ static inline void lone_load_pair(const ob_batch *b, int l, const lone_body *o, 
 	lone_couple(b, l, o, p);
 }
 
-// J x: how fast the points open, and how the contact slides and spins.
+// J x: opening of the points (m/s), sliding (m/s) and spin (rad/s) of the contact.
 typedef struct lone_rates {
 	lanes opening, sliding;
 } lone_rates;
@@ -735,21 +737,21 @@ static inline bool lone_is_zero(const double *x)
 	return !lanes_bits((lanes_load(x) != 0) | (lanes_load(x + 4) != 0));
 }
 
-// of: the body that moves by itself, and the other.
+// Rates of the contact by the motions of both bodies. o: the body that impulses move.
 static inline lone_rates lone_rates_of(const ob_batch *b, int l, const lone_body *o, const ob_body_row *rows)
 {
 	lone_rates r = { { 0 }, { 0 } };
 	const uint32_t other = o->sign > 0 ? b->body_b[l] : b->body_a[l];
 	lone_add_rates(o, rows[o->row], &r);
 	if (!lone_is_zero(rows[other])) {
-		lone_body told; // moves as it is told
+		lone_body told; // the other body, with its prescribed motion
 		lone_load_body(b, l, o->sign < 0, &told);
 		lone_add_rates(&told, rows[other], &r);
 	}
 	return r;
 }
 
-// m/s, at which each gap may close, as set_bias of kernel.c has it; found in the first iteration.
+// Speed (m/s) at which each gap may close, as in set_bias of kernel.c; computed in the first iteration.
 static inline lanes lone_bias(const ob_batch *b, int l, const lone *p, const lone_body *o,
 			      const ob_solver_iteration *iteration, lanes now, const ob_body_row *d)
 {
@@ -770,7 +772,7 @@ static inline lanes lone_bias(const ob_batch *b, int l, const lone *p, const lon
 	return b->hit >> l & 1 ? bias : lanes_max(bias, now);
 }
 
-// The square of the most that a row's velocity would change if its impulse alone did
+// Square of the largest change of a row's velocity (m/s), as if each impulse acted alone
 static inline double lone_largest_change(const lone *p, lanes dx, lanes dy)
 {
 	const double most = lanes_largest(lanes_abs(dx) * p->diag);

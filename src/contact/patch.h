@@ -1,29 +1,28 @@
-// Friction of a patch: what two bodies that touch over an area can do to each other along it.
+// Friction of a patch: force and twist between two bodies that touch over an area.
 //
 // Every surface element has its own cone of friction. So force and torque share one limit: the wrench (f1, f2, twist)
 // about the patch's centroid lies in the convex set
 //
-//      C = { lambda : lambda u <= D(u) for all u },    D(u) = mu * integral of p |u(x)| dA    (power lost at the slip
-//      u)
+//      C = { lambda : lambda u <= D(u) for all u },    D(u) = mu * integral of p |u(x)| dA,
 //
-// whose border is the limit surface (Goyal, Ruina, Papadopoulos 1991). A patch that slides does so where power lost is
-// largest: lambda = -grad D(u). Within C it sticks.
+// whose border is the limit surface (Goyal, Ruina, Papadopoulos 1991). D is the power lost at the slip u. A patch that
+// slides does so with the largest loss of power: lambda = -grad D(u). Within C it sticks.
 //
-// Pressure p. Rigid bodies leave it open but for its resultant and its centre, which are those of the normal impulses.
-// Taken is the simplest without tension: linear over the patch while the centre of pressure lies in its kern; beyond
-// that, linear over a part of it that shrinks towards the loaded edge, corner or rim, so that the contact of an edge
-// and of a corner are its limits.
+// Pressure p: rigid bodies determine its resultant and its centre alone, which are those of the normal impulses. It is
+// taken as the simplest one without tension: linear over the patch while the centre of pressure lies in its kern.
+// Beyond that it is linear over a part that shrinks towards the loaded edge, corner or rim; contacts of an edge and of
+// a corner are its limits.
 //
 // D and its derivatives are exact for a parallelogram. With u as the coordinate, F = u/|u| and |u| are homogeneous
-// about the centre of rotation, u = 0, so the integrals over the area are integrals along its border (Euler's theorem
-// and Gauss's), and along an edge at the distance H from u = 0
+// about the centre of rotation, u = 0. So the integrals over the area are integrals along its border (theorems of Euler
+// and Gauss). Along an edge at the distance H from u = 0 they follow from
 //
-//      integral of ds/r = ln((r1 + r2 + L)/(r1 + r2 - L)),   r^2 = s^2 + H^2,
+//      integral of ds/r = ln((r1 + r2 + L)/(r1 + r2 - L)),   r^2 = s^2 + H^2.
 //
-// from which all others follow. A disc is a regular polygon of twelve corners with the disc's second moment, turned so
-// that it looks the same along the slip whatever the axes are. Where the centre of rotation is far away four nodes do.
+// A disc is a regular polygon of twelve corners with the disc's second moment. It is turned so that it looks the same
+// along the slip whatever the axes are. For a distant centre of rotation four nodes suffice.
 //
-// Four lanes at a time, no lane sees another. Unit load: everything here is for mu * (sum of normal impulses) = 1.
+// Four lanes at a time; no operation mixes lanes. Unit load: everything here is for mu * (sum of normal impulses) = 1.
 // Symmetric matrices: 11 12 13 22 23 33.
 #ifndef OB_CONTACT_PATCH_H
 #define OB_CONTACT_PATCH_H
@@ -35,16 +34,16 @@
 enum { PATCH_CORNERS = 12 };
 
 typedef struct patch_load {
-	lanes pressure[2], edges[2]; // centre of pressure: m; in terms of the half edges
-	lanes centre[2], e1[2], e2[2]; // m: of the loaded part, from the centroid; half edges
-	lanes slope[2]; // 1/m, relative pressure: 1 + slope x, x from the centre
-	lanes radius; // m, of a loaded disc; 0: a parallelogram
+	lanes pressure[2], edges[2]; // centre of pressure: m from the centroid; in half edges
+	lanes centre[2], e1[2], e2[2]; // m: centre of the loaded part, from the centroid; its half edges
+	lanes slope[2]; // 1/m: gradient of the relative pressure, which is 1 + slope x, with x from the centre
+	lanes radius; // m: radius of a loaded disc; 0: a parallelogram
 	lanes spread; // m^2: mean square distance from the centre of pressure
 	bool any_disc;
 } patch_load;
 
-// D and its gradient at a slip u. bound: grad D(u) = bound u, the sum of all elements with their weights at u; D^2 is
-// nowhere more than D(u) times this form.
+// D and its gradient at a slip u. bound: matrix with grad D(u) = bound u, the sum of all elements with their weights at
+// u. D^2 is nowhere more than D(u) times this quadratic form.
 typedef struct patch_slip {
 	lanes power, grad[3], bound[6];
 } patch_slip;
@@ -78,11 +77,11 @@ static inline void patch_solve(lanes t, const lanes *a, const lanes *s, const la
 	x[0] = y[0] * i0 - l1 * x[1] - l2 * x[2];
 }
 
-// ln((s + d) / (s - d)), with s - d as "down". Not by libm: the same bits everywhere.
+// ln((s + d) / (s - d)), with s - d as "down". Without libm: the same bits everywhere.
 static inline lanes patch_log(lanes d, lanes s, lanes down)
 {
 	typedef uint64_t words __attribute__((vector_size(32)));
-	const double at_two_to_52 = 0x1p52 + 1023; // the exponent becomes a number as the low bits of one
+	const double at_two_to_52 = 0x1p52 + 1023; // makes the exponent, as the low bits of a number, a number
 	lanes y = (s + d) / down;
 	words bits = (words)y;
 	lanes m = (lanes)((bits & 0xfffffffffffff) | 0x3ff0000000000000);
@@ -103,11 +102,11 @@ static inline lanes patch_sign(lanes x)
 	return lanes_select(x < 0, lanes_of(-1), lanes_of(1));
 }
 
-// The pressure that the normal impulses x make: sum of them is "sum".
+// Sets the pressure under the normal impulses x. sum: total of the four.
 static inline void patch_load_set(const ob_batch *b, const lanes *x, lanes sum, patch_load *o)
 {
-	const double thinnest = .01, thin = .05; // a loaded part's width, of its length
-	const double kern = 1. / 3, disc_kern = .244; // a little less than 1/4, for the polygon's corners
+	const double thinnest = .01, thin = .05; // width of a loaded part, relative to its length
+	const double kern = 1. / 3, disc_kern = .244; // just below 1/4, for the polygon's corners
 	const lanes one = lanes_of(1), smallest = lanes_of(.01);
 	lanes inverse = 1 / lanes_max(sum, lanes_of(1e-300));
 	lanes s = (x[0] * b->patch_s[0] + x[1] * b->patch_s[1] + x[2] * b->patch_s[2] + x[3] * b->patch_s[3]) * inverse;
@@ -121,7 +120,7 @@ static inline void patch_load_set(const ob_batch *b, const lanes *x, lanes sum, 
 	lanes ls = lanes_max((1 - as) / (1 - ks), smallest), lt = lanes_max((1 - at) / (1 - kt), smallest);
 	lanes ratio = lanes_sqrt((e2[0] * e2[0] + e2[1] * e2[1]) / (e1[0] * e1[0] + e1[1] * e1[1]));
 	ls = lanes_max(ls, thinnest * ratio * lt), lt = lanes_max(lt, thinnest / ratio * ls);
-	// Across what is thin the load is even, or rounding would be seen: the pressure's rise is steep there.
+	// Load is even across a thin part: the pressure is so steep there that rounding would show.
 	ks = lanes_where(ls >= thin * ratio * lt, ks * patch_sign(s));
 	kt = lanes_where(ratio * lt >= thin * ls, kt * patch_sign(t));
 	lanes det = e1[0] * e2[1] - e1[1] * e2[0], slope_s = 3 * ks / (ls * det), slope_t = 3 * kt / (lt * det);
@@ -157,7 +156,7 @@ static inline void patch_load_set(const ob_batch *b, const lanes *x, lanes sum, 
 	o->spread = l1 * (kern - ks * ks) + l2 * (kern - kt * kt) - 2 * ks * kt * skew;
 }
 
-// The centre of pressure, m from the centroid. Returns how far it has moved since the ellipsoid was made, in half
+// Computes the centre of pressure, in m from the centroid. Returns its shift since the ellipsoid was made, in half
 // edges.
 static inline lanes patch_pressure(const ob_batch *b, const lanes *x, lanes sum, const ob_patch_model *m, lanes *at)
 {
@@ -169,7 +168,7 @@ static inline lanes patch_pressure(const ob_batch *b, const lanes *x, lanes sum,
 	return lanes_abs(s - m->pressure[0]) + lanes_abs(t - m->pressure[1]);
 }
 
-// The slip that would be answered with the wrench if elements weighed the same all over the patch.
+// Slip that the wrench x would resist if all elements of the patch had the same weight.
 static inline void patch_first_slip(const patch_load *p, const lanes *x, lanes *d)
 {
 	d[2] = (x[2] - p->pressure[0] * x[1] + p->pressure[1] * x[0]) / p->spread;
@@ -183,13 +182,13 @@ typedef struct patch_sums {
 	lanes force[2], power, weight; // integrals of p u/|u|, p |u|, p/|u|
 } patch_sums;
 
-// From the corner u1 to u2, at distances r1 and r2 from the centre of rotation. at: relative pressure there; slope: its
-// gradient in u.
+// Adds the edge from the corner u1 to u2, at distances r1 and r2 from the centre of rotation. at: relative pressure at
+// that centre; slope: its gradient in u.
 static inline void patch_add_edge(const lanes *u1, lanes r1, const lanes *u2, lanes r2, lanes at, const lanes *slope,
 				  patch_sums *o)
 {
 	lanes dx = u2[0] - u1[0], dy = u2[1] - u1[1], length = lanes_sqrt(dx * dx + dy * dy);
-	lanes inverse = 1 / (length + 1e-300), ex = dx * inverse, ey = dy * inverse; // along; (ey, -ex) points outwards
+	lanes inverse = 1 / (length + 1e-300), ex = dx * inverse, ey = dy * inverse; // edge; (ey, -ex) points outwards
 	lanes h = u1[0] * ey - u1[1] * ex, s1 = u1[0] * ex + u1[1] * ey, s2 = u2[0] * ex + u2[1] * ey, h2 = h * h;
 	lanes sum = r1 + r2 + 1e-30, down = lanes_max(sum - length, 1e-16 * sum);
 	lanes i0 = patch_log(length, sum, down), i1 = r2 - r1;
@@ -205,12 +204,12 @@ static inline void patch_add_edge(const lanes *u1, lanes r1, const lanes *u2, la
 	o->weight += h * (c0 * i0 + c1 * i1);
 }
 
-// The corners, counterclockwise, and how many. A disc's first one lies on the slip's left.
+// Computes the corners, counterclockwise. Returns their number. A disc's first corner is on the left of the slip.
 static inline int patch_corners(const patch_load *p, const lanes *v, lanes (*at)[2])
 {
 	static const double c[PATCH_CORNERS] = { 1,  0.86602540378443865,  .5,  0, -.5, -0.86602540378443865,
 						 -1, -0.86602540378443865, -.5, 0, .5,  0.86602540378443865 };
-	const double out = 1.0231039; // of a polygon with the disc's second moment
+	const double out = 1.0231039; // relative radius of a polygon with the disc's second moment
 	for (int k = 0; k < 2; k++) {
 		at[0][k] = -p->e1[k] - p->e2[k];
 		at[1][k] = p->e1[k] - p->e2[k];
@@ -231,7 +230,7 @@ static inline int patch_corners(const patch_load *p, const lanes *v, lanes (*at)
 	return PATCH_CORNERS;
 }
 
-// The slip at a corner, and its magnitude.
+// Computes the slip u at a corner x. Returns its magnitude.
 static inline lanes patch_slip_of(const lanes *v, lanes w, const lanes *x, lanes *u)
 {
 	u[0] = v[0] - w * x[1];
@@ -239,7 +238,7 @@ static inline lanes patch_slip_of(const lanes *v, lanes w, const lanes *x, lanes
 	return lanes_sqrt(u[0] * u[0] + u[1] * u[1]);
 }
 
-// Integrals over the border, and twice the area.
+// Adds the integrals along the border. Returns twice the area.
 static inline lanes patch_sum_edges(const lanes (*corner)[2], int corners, const lanes *v, lanes w, lanes at,
 				    const lanes *slope, patch_sums *o)
 {
@@ -261,7 +260,7 @@ static inline lanes patch_add_all(lanes sum, lanes x)
 	return lanes_of(sum[0] + x[0] + x[1] + x[2] + x[3]);
 }
 
-// The same of lane l alone, with four edges side by side: the same sums in the same order.
+// As patch_sum_edges, for lane l alone, with four edges side by side: the same sums in the same order.
 static inline lanes patch_sum_edges_of(int l, const lanes (*corner)[2], int corners, const lanes *v, lanes w, lanes at,
 				       const lanes *slope, patch_sums *o)
 {
@@ -288,7 +287,7 @@ static inline lanes patch_sum_edges_of(int l, const lanes (*corner)[2], int corn
 	return area;
 }
 
-// The centre of rotation is not far away: w is not near 0. In the lanes asked for.
+// Computes D and its derivatives for a centre of rotation nearby: w is not near 0. asked: lanes to compute.
 static inline void patch_slip_near(const patch_load *p, unsigned asked, const lanes *v, lanes w, patch_slip *o)
 {
 	lanes corner[PATCH_CORNERS][2];
@@ -311,7 +310,7 @@ static inline void patch_slip_near(const patch_load *p, unsigned asked, const la
 		o->bound[i] = bound[i];
 }
 
-// The centre of rotation is far away: four nodes, exact for a cubic.
+// Computes them for a distant centre of rotation, by four nodes: exact for a cubic.
 static inline void patch_slip_far(const patch_load *p, const lanes *v, lanes w, patch_slip *o)
 {
 	const double at = 0.57735026918962576;
@@ -332,7 +331,7 @@ static inline void patch_slip_far(const patch_load *p, const lanes *v, lanes w, 
 	o->power = o->grad[0] * v[0] + o->grad[1] * v[1] + o->grad[2] * w;
 }
 
-// From the loaded part's centre to the patch's centroid.
+// Moves a matrix from the loaded part's centre to the patch's centroid.
 static inline void patch_move(const lanes *centre, lanes *m)
 {
 	lanes x = -centre[1], y = centre[0];
@@ -341,11 +340,10 @@ static inline void patch_move(const lanes *centre, lanes *m)
 	m[4] += x * m[1] + y * m[3];
 }
 
-// D and its derivatives at the slip d, which is scaled to be of the order of 1 (D is homogeneous), in the lanes asked
-// for.
+// Computes D and its derivatives at the slip d in the lanes "asked". Scales d to the order of 1 (D is homogeneous).
 static inline void patch_slip_at(const patch_load *p, lane_mask asked, lanes *d, patch_slip *o)
 {
-	const double far_share = .02; // of what moves, that turns
+	const double far_share = .02; // share of rotation in the slip
 	lanes size = lanes_abs(p->e1[0]) + lanes_abs(p->e1[1]) + lanes_abs(p->e2[0]) + lanes_abs(p->e2[1]);
 	lanes v[2] = { d[0] - d[2] * p->centre[1], d[1] + d[2] * p->centre[0] };
 	lanes moves = lanes_abs(v[0]) + lanes_abs(v[1]), turns = lanes_abs(d[2]) * size,
@@ -373,9 +371,9 @@ static inline void patch_slip_at(const patch_load *p, lane_mask asked, lanes *d,
 
 // ---- friction
 
-// The ellipsoid, about the centre of pressure, that touches C at its slip's wrench, with the same normal: as near to C
-// as a quadratic form comes there (D(u)^2 <= u Q u, equal along the slip). A dense heap can afford the integrals once
-// in a substep; in all sweeps and iterations of it this stands for C.
+// Makes the ellipsoid about the centre of pressure that touches C at the wrench of "slip", with the same normal. It is
+// as near to C as a quadratic form comes there (D(u)^2 <= u Q u, equal along the slip). A dense heap can afford the
+// integrals once in a substep; in all its sweeps and iterations the ellipsoid takes the place of C. to: lanes to set.
 static inline void patch_model_set(const patch_load *p, lane_mask to, const lanes *slip, ob_patch_model *o)
 {
 	lanes d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
@@ -401,32 +399,33 @@ static inline void patch_model_set(const patch_load *p, lane_mask to, const lane
 	o->known |= lanes_bits(to);
 }
 
-// What friction needs to know beyond the block, and where the search stands, from one sweep over it to the next.
+// Input of friction beyond the block, and state of the search from one sweep to the next.
 typedef struct patch_search {
-	lanes start[3]; // impulses that would undo the slip of the substep's start
-	lanes slip[3]; // that slip: m/s, rad/s
-	unsigned begun, slides; // lanes: start is known; friction is at its limit
+	lanes start[3]; // impulses that would undo the slip at the substep's start
+	lanes slip[3]; // slip at the substep's start: m/s, rad/s
+	unsigned begun, slides; // lanes with a known start; lanes with friction at its limit
 } patch_search;
 
-// The impulse within the limit surface that leaves the least slip: the projection of "hold", which leaves none, in the
-// metric of the masses. mass: inverse of the rows' A. Lanes that are not in "outside" stay as they are.
+// Finds the impulse within the limit surface that leaves the least slip: the projection of "hold", which leaves none,
+// in the metric of the masses. mass: inverse of A for these rows. Lanes that are not in "outside" keep theirs.
 //
-// A lane that slides has lambda = -grad D(w), where w is the mean of its slip before and after: so friction takes as
-// much energy as its work says, and the error is of second order. With D = sqrt(u Q u): (t A^-1 + Q) z = load,
-// lambda = -Q z, by Newton's method in 1/|lambda|, which is a straight line if A^-1 and Q are in proportion.
+// A lane that slides has lambda = -grad D(w), with w the mean of its slip before and after. So friction takes as much
+// energy as its work says, and the error is of second order. With D = sqrt(u Q u): (t A^-1 + Q) z = load, lambda = -Q
+// z. Newton's method in 1/|lambda| finds t; this function is a straight line if A^-1 and Q are in proportion.
 // Returns the lanes whose slip has left the direction in which the ellipsoid touches.
 static inline lane_mask patch_project(ob_patch_model *m, const lanes *pressure, lanes bound, const lanes *mass,
 				      lane_mask outside, patch_search *search, lanes *hold)
 {
 	enum { MOST = 8 };
-	const double turned = 1 - 4e-4, close = 1e-9; // cos^2 of some .02; of the bound, before the last step
+	const double turned = 1 - 4e-4, close = 1e-9; // cos^2 of some .02 rad; relative to the bound, before the last
+						      // step
 	lanes stay[3], load[3], y[3], against = lanes_of(0), b2 = bound * bound,
 				      ib = 1 / lanes_max(bound, lanes_of(1e-300));
 	for (int c = 0; c < 3; c++) {
 		stay[c] = -hold[c];
 		against += stay[c] * search->slip[c];
 	}
-	// The ellipsoid goes with the centre of pressure.
+	// Moves the ellipsoid with the centre of pressure.
 	const lanes here[3] = { stay[0], stay[1], stay[2] - pressure[0] * stay[1] + pressure[1] * stay[0] };
 	patch_mul(m->inverse, here, y);
 	lanes size2 = patch_dot(here, y), along = patch_dot(m->slip, here), surface[6];
@@ -465,9 +464,9 @@ static inline lane_mask patch_project(ob_patch_model *m, const lanes *pressure, 
 	return away | (slides & (along * along < turned * n2));
 }
 
-// Cheap, and never wrong: lanes whose friction is within the limit surface for sure, as elements with the same weights
-// all over the patch answer it: |force| + |twist about the centre of pressure| reach / spread <= bound. A root is saved
-// by a bound of it that is exact where it matters.
+// Returns lanes whose friction is certainly within the limit surface. Takes the same weight for all elements of the
+// patch: |force| + |twist about the centre of pressure| reach / spread <= bound. A bound on this, exact where it
+// matters, saves a root.
 static inline lane_mask patch_holds(const ob_batch *b, const lanes *x, lanes sum, lanes bound, const lanes *hold)
 {
 	const double kern = .28;
