@@ -9,15 +9,15 @@
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
-// How far two bodies that touch may turn (rad) and slide (of the smaller thickness) in a partial substep ..
+// Bound of the turn (rad) and slide (share of the smaller thickness) of two touching bodies in a partial substep.
 static const double max_motion = .03;
-static const double unnoticed = .5; // of the tolerance: .. or farther in a coarse run, which may be off by so much ..
-static const double fast_share = 1. / 10; // .. of all that, where they get farther than their thickness in a substep
-static const double touching_gap = 1e-3; // m: what is nearer touches, as a swept test takes it
-static const double max_partial_substeps = 1024; // of a substep
+static const double unnoticed = .5; // share of the tolerance that a turn may use in a coarse run
+static const double fast_share = 1. / 10; // least share of both bounds, for bodies that outrun their thickness
+static const double touching_gap = 1e-3; // m: a smaller gap counts as contact, as in a swept test
+static const double max_partial_substeps = 1024; // in a substep
 
-// For how long a contact's points and normal are where they are now (s), at the velocities in rows. A sphere's point
-// moves with its centre, and a plane is the same everywhere.
+// Time (s) for which a contact's points and normal stay valid, at the velocities in rows. Slide does not count for
+// planes, which are the same everywhere. A sphere's point moves with its centre.
 static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
@@ -27,27 +27,28 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 		slide = 0;
 	double thin = ob_min(a->thickness, b->thickness), distance = (slide + .5 * thin * turn) * w->substep;
 	const double share = ob_max(fast_share, ob_min(1, thin / distance)), allowed = w->tolerance / thin;
-	// What turns leaves its tangent by half the thickness times the square of the turn; what slides leaves what is
-	// under it by no more than it slides.
+	// Error of a turn: half the thickness times the square of the angle, by which the surface leaves its tangent.
+	// Error of a slide: at most the slide itself.
 	const double max_turn = ob_coarser(w, max_motion, sqrt(2 * unnoticed * allowed)),
 		     max_slide = ob_coarser(w, max_motion, allowed);
 	return ob_min(max_turn * share / turn, max_slide * share * thin / slide);
 }
 
-// False where the geometry certainly lasts for h (s).
+// False if the geometry certainly lasts for h (s).
 static bool may_outrun_geometry(const ob_island_work *w, const ob_contact *contact, double h)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	return ob_contact_speed(w, contact) * h > max_motion * ob_min(a->thickness, b->thickness);
 }
 
-// Whether a contact that does not touch has a lane depends on when it was looked at last: it means nothing here.
+// True if the contact touches now. A lane alone does not show it: without contact, it depends on when the narrow phase
+// ran last.
 static bool touches(const ob_island_work *w, const ob_contact *contact)
 {
 	return contact->lane != OB_NO_LANE && ob_contact_gap(w, contact) <= touching_gap * w->unit.length;
 }
 
-// False where the two certainly do not meet within h (s).
+// False if the two bodies certainly do not meet within h (s).
 static bool may_meet(const ob_island_work *w, const ob_contact *contact, double h)
 {
 	const double speed = ob_contact_speed(w, contact);
@@ -77,7 +78,7 @@ static double partial_length(ob_sim *s, double left)
 	return left - h < .5 * h && left < 1.5 * w->h_min ? left : h;
 }
 
-// Impulses are predicted to be in proportion to the length of the partial substep.
+// Sets the length of the partial substep (s), and scales the warm-start impulses in proportion.
 static void set_length(ob_island_work *w, double h)
 {
 	double factor = h / w->h;
@@ -104,7 +105,7 @@ bool ob_adaptive_shorten(ob_sim *s)
 		hit |= w->batch[i].impact != 0;
 	for (uint32_t i = 0; hit && i < w->contacts; i++)
 		h = ob_min(h, geometry_lifetime(w, w->u, &w->contact[i]));
-	h = ob_max(ob_max(h, w->h_min), w->last_impact); // past the impacts that were made in it
+	h = ob_max(ob_max(h, w->h_min), w->last_impact); // not before the last impact made in it
 	if (h > .6 * w->h)
 		return false;
 	ob_midpoint_undo(s);

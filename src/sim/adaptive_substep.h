@@ -1,16 +1,16 @@
-// Adaptive partial substeps: how much of a substep is solved at once. Where fast bodies touch, and the geometry of
-// their contact would not hold to the substep's end, the substep is divided; and a partial substep ends when a fast
-// body reaches another, so that the next begins with their contact as it is then.
+// Adaptive partial substeps: the share of a substep that is solved at once. A substep is divided if fast bodies touch
+// and the geometry of their contact would not last until its end. A partial substep also ends when a fast body reaches
+// another: the next one begins with their contact as it is then.
 #ifndef OB_SIM_ADAPTIVE_SUBSTEP_H
 #define OB_SIM_ADAPTIVE_SUBSTEP_H
 
 #include "sim/state.h"
 
-// Chooses the length of the next partial substep, at most "left" (s), sets it in the island (h, h_min), and scales to
-// it the impulses that are the warm start.
+// Chooses the length of the next partial substep, at most "left" (s). Sets it in the island (h, h_min), and scales the
+// warm-start impulses to it.
 void ob_adaptive_begin(ob_sim *s, double left);
-// After the iterations: true if something was hit so that it is too fast now for the partial substep. Then that is made
-// shorter, and everything is as before the iterations.
+// Shortens the partial substep after the iterations if an impact made a body too fast for it. Returns true if it did:
+// then the state is that before the iterations.
 bool ob_adaptive_shorten(ob_sim *s);
 
 #endif

@@ -6,14 +6,14 @@
 #include "sim/contact_solver.h"
 #include "sim/contacts.h"
 
-static const double sleep_delay = .5, sleep_interval = .5; // s: when it is asked first; again
-static const double unbalanced_share = 1e-5; // of the largest external acceleration, that may be frozen
-static const double own_speed = 1e-3; // m/s, that contacts leave, that may be frozen
-static const double slack = 1e-5; // m: what is nearer than this is taken to touch
-static const double converged_share = .01; // of what may be frozen: iterations that change less have ended
+static const double sleep_delay = .5, sleep_interval = .5; // s: rest time before the first test; interval of tests
+static const double unbalanced_share = 1e-5; // share of the largest external acceleration that may remain unbalanced
+static const double own_speed = 1e-3; // m/s: speed that may remain after contacts have stopped the bodies
+static const double slack = 1e-5; // m: a smaller gap counts as contact
+static const double converged_share = .01; // share of the bounds above: the solver ends once an iteration changes less
 static const uint32_t max_stop_iterations = 64, max_hold_iterations = 512;
 
-// Closes all points that are there by so much (m).
+// Reduces the gaps of all existing contact points by so much (m).
 static void close_gaps(ob_island_work *w, double by)
 {
 	for (uint32_t i = 0; i < w->batches; i++)
@@ -23,7 +23,7 @@ static void close_gaps(ob_island_work *w, double by)
 		}
 }
 
-// m/s, of any point of a body
+// Returns the largest speed (m/s) of any point of a body.
 static double fastest(const ob_island_work *w)
 {
 	double most = 0;
@@ -41,7 +41,7 @@ static void restore_impulses(ob_island_work *w)
 		memcpy(w->batch[i].impulse, w->batch[i].impulse_start, sizeof w->batch[i].impulse);
 }
 
-// True where contacts bring the bodies to rest, whatever they do now.
+// True if contacts bring the bodies to rest from their present velocities.
 static bool contacts_stop(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -51,13 +51,13 @@ static bool contacts_stop(ob_sim *s)
 	return fastest(w) <= own_speed * w->unit.speed;
 }
 
-// True where contacts hold the bodies, if they are at rest.
+// True if contacts hold the bodies at rest against the external accelerations.
 static bool contacts_hold(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	const double enough = unbalanced_share * w->max_acceleration * w->h; // m/s
 	ob_body_row *v = w->v;
-	w->v = w->drift; // not in use now
+	w->v = w->drift; // free as scratch memory here
 	memset(w->v, 0, w->rows * sizeof *w->v);
 	ob_bodies_predict_velocities(s);
 	ob_solver_converge(s, converged_share * enough, max_hold_iterations);
@@ -69,7 +69,7 @@ bool ob_balance_may_sleep(ob_sim *s, double rest_time)
 {
 	ob_island_work *w = &s->island;
 	const double step = s->settings->step_length;
-	// Asking costs as much as some steps: where these cost less, it is asked sooner.
+	// A test costs as much as several steps. It comes sooner in coarse runs, where steps cost less.
 	const double time = ob_coarse_time(w);
 	const long steps = lround(rest_time / step), delay = lround(sleep_delay * time / step),
 		   interval = lround(ob_max(1, sleep_interval * time / step));

@@ -8,13 +8,13 @@
 #include "sim/narrowphase.h"
 #include "sim/touches.h"
 
-static const double least_approach = 1e-6; // m/s: what is slower is left to the contact solver
-static const double points_margin = 1e-6; // m: points of the contact, of which those hit that are as near as the first
+static const double least_approach = 1e-6; // m/s: the contact solver treats slower approaches
+static const double points_margin = 1e-6; // m: contact points this close to the first one count as hit, too
 
-// Where the two touch.
+// First contact of the two bodies.
 typedef struct touch {
-	double time; // s; infinity: they do not
-	ob_manifold m; // then, and there
+	double time; // s; infinity: no contact
+	ob_manifold m; // at that time and place
 } touch;
 
 static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
@@ -33,8 +33,8 @@ static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
 			    .hull = ob_hull_of(s->u, p) };
 }
 
-// When the two first touch from where they have come to until an instant (s), as the second sees it. false: it could
-// not be found.
+// Finds the first contact between the present time of the courses and "until" (s), in the frame of the second body.
+// Returns false if the search failed.
 static bool find_touch(ob_sim *s, const ob_course c[2], double until, touch *x)
 {
 	const double since = c[0].since;
@@ -53,7 +53,8 @@ static bool find_touch(ob_sim *s, const ob_course c[2], double until, touch *x)
 	return true;
 }
 
-// What hits: points as near as the first, in one plane, as convex bodies touch.
+// Collects the points that are hit: those as near as the first, projected into one plane, as convex bodies touch in
+// one. Returns their number.
 static uint32_t points_of(const ob_sim *s, const ob_manifold *m, const ob_state at[2], double mu, double e,
 			  ob_impact_point *point)
 {
@@ -79,8 +80,7 @@ static uint32_t points_of(const ob_sim *s, const ob_manifold *m, const ob_state 
 	return n;
 }
 
-// Changes the velocities of both, where they have come to, by the impact of the points at which they touch. false: they
-// do not rebound.
+// Applies the impact at the contact points to the velocities of both bodies. Returns false if they do not rebound.
 static bool apply_impact(ob_sim *s, const ob_course c[2], const ob_manifold *m, ob_state at[2])
 {
 	const ob_passport *p[2] = { ob_passport_of(s->u, c[0].id), ob_passport_of(s->u, c[1].id) };
@@ -122,7 +122,8 @@ static bool rebound_from_plane(ob_sim *s, ob_course *c)
 	return true;
 }
 
-// From one impact to the next, until the step's end (s). impacts: how many there were.
+// Advances both bodies from impact to impact until the step's end (s). impacts: their number. Returns false if the
+// contact solver must treat the pair.
 static bool follow(ob_sim *s, ob_course c[2], double end, uint32_t *impacts)
 {
 	for (*impacts = 0;; ++*impacts) {

@@ -21,14 +21,14 @@ static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
 	r[3] += angular.x, r[4] += angular.y, r[5] += angular.z;
 }
 
-// For the pose that the body has.
+// Updates the inverse inertia (world frame) to the body's attitude.
 static void update_inertia(ob_body *body)
 {
 	if (body->inv_mass > 0)
 		ob_inverse_inertia(body->inertia, &body->r, body->inv_inertia);
 }
 
-// Of any point of the body, while it turns freely through a partial substep.
+// Bounds the speed (m/s) of any point of the body while it turns freely through a partial substep.
 static void set_speed_bound(ob_island_work *w, uint32_t row)
 {
 	ob_body *body = &w->body[row];
@@ -41,7 +41,7 @@ static void set_speed_bound(ob_island_work *w, uint32_t row)
 		body->speed += body->radius * ob_norm(rate);
 }
 
-// m/s, bound of how fast the body's surface moves: its points may do so faster, where a round body spins.
+// Returns a bound of the speed (m/s) of the body's surface as a set: points of a spinning round body may be faster.
 static double surface_speed(const ob_island_work *w, uint32_t row)
 {
 	return ob_norm(ob_row_linear(w->v[row])) + w->body[row].turning;
@@ -84,7 +84,7 @@ static void load_body(ob_sim *s, uint32_t row, uint32_t id, bool moves)
 	body->torque = ob_script_torque(s->data, id);
 	if (ob_norm2(body->torque) > 0) {
 		w->torques = true;
-		body->moved_freely = false; // no closed form holds it
+		body->moved_freely = false; // no closed form describes its motion
 	}
 	set_speed_bound(w, row);
 }
@@ -127,7 +127,7 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 	w->surfaces.count = 0;
 	w->error = w->new_error = 0;
 	w->bodies = is->members;
-	// Fixed bodies, once per pair at most, or two ghosts for a pair.
+	// Fixed bodies: at most one per pair, or two ghosts per pair.
 	const uint32_t most = 1 + is->members + (ob_ghosts_used(s) ? 2 : 1) * is->pairs;
 	reserve_rows(w, most);
 	clear_rows(w, 0, 1 + is->members);
@@ -160,13 +160,12 @@ void ob_bodies_load(ob_sim *s, const ob_island *is)
 
 // ---- attitudes
 
-// A body that contacts hold may turn this little (rad) in a partial substep before Euler's equations are solved for it
-// ..
+// Turn (rad) of a body in contact in a partial substep, below which Euler's equations are not solved for it.
 static const double unnoticed_turn = 1e-5;
-static const double deferred_turn = 1e-4; // .. and so much in all before its attitude is brought up to date
+static const double deferred_turn = 1e-4; // accumulated turn (rad) at which the attitude is updated
 static const double deferred_turn_isotropic = .02;
 
-// The gaps of the row's contacts follow its displacement, to first order.
+// Updates the gaps of the row's contacts by its displacement, to first order.
 static void update_gaps(ob_island_work *w, uint32_t row)
 {
 	const ob_body *body = &w->body[row];
@@ -206,8 +205,8 @@ void ob_body_place(ob_body *body, ob_vec3 p, ob_quat q)
 	set_attitude(body, q);
 }
 
-// The pose takes the displacement row. Where that turns a body whose rate is not free of its attitude, the rate turns
-// with it: so the energy stays.
+// Applies the displacement row to the pose. The angular velocity of an anisotropic body turns with its attitude: so its
+// energy stays.
 static void update_row_pose(ob_island_work *w, uint32_t row)
 {
 	ob_body *body = &w->body[row];
@@ -226,7 +225,7 @@ static void update_row_pose(ob_island_work *w, uint32_t row)
 	memset(d, 0, sizeof(ob_body_row));
 }
 
-// A ghost moves with the body that it stands for, and by as much.
+// Ghosts move with the body that they stand for, by the same displacement.
 void ob_body_update_pose(ob_island_work *w, uint32_t row)
 {
 	if (row >= w->first_ghost)
@@ -238,7 +237,8 @@ void ob_body_update_pose(ob_island_work *w, uint32_t row)
 	update_row_pose(w, row);
 }
 
-// The row's pose takes its displacement, and turns freely for h (s). held: contacts have changed its rate.
+// Applies the displacement row to the pose, and turns the body freely for h (s). held: contacts have changed its
+// angular velocity.
 static void drift_row(ob_island_work *w, uint32_t row, double h, bool held)
 {
 	ob_body *body = &w->body[row];
@@ -264,8 +264,8 @@ static void drift_body(ob_island_work *w, uint32_t row, double h, bool held)
 	drift_row(w, row, h, held);
 }
 
-// From the midpoint (sim/midpoint.h) to the partial substep's end. Where the velocity jumped, as if it had jumped at
-// the start.
+// Integrates from the midpoint (sim/midpoint.h) to the end of the partial substep. A jump of velocity counts as if it
+// had happened at the start.
 static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 {
 	ob_body *body = &w->body[row];
@@ -294,8 +294,9 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	ob_body_place(body, ob_add(body->p, way), q);
 }
 
-// Brings a body's attitude to the partial substep's end: at once where it turns noticeably or nothing holds it, so that
-// it turns as it would in free flight; else by the displacement row. held: contacts have changed its rate.
+// Advances a body's attitude to the end of the partial substep. Turns at once, as in free flight, if the turn is
+// noticeable or no contact holds the body; else adds to the displacement row. held: contacts have changed its angular
+// velocity.
 static void turn_body(ob_sim *s, uint32_t row, bool held)
 {
 	ob_island_work *w = &s->island;
@@ -356,7 +357,7 @@ void ob_bodies_predict_velocities(ob_sim *s)
 	ob_surfaces_predict_velocities(s);
 }
 
-// ODE's integrator instead of ours: the impulses of the partial substep go in as a force.
+// Integrates by ODE instead: the impulses of the partial substep enter as a force.
 static void integrate_by_ode(ob_sim *s, uint32_t row)
 {
 	ob_island_work *w = &s->island;
@@ -372,7 +373,7 @@ static void integrate_by_ode(ob_sim *s, uint32_t row)
 	ob_pose before = state.pose;
 	if (!ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, body->id), &state, j, l, w->h))
 		ob_step_fail(s->u, OB_STEP_ENGINE, body->id);
-	// The displacement row takes the step, so that the gaps follow; the turn is what ODE made of it.
+	// The displacement row takes ODE's step, so that the gaps follow.
 	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
 	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
 	double angle = 2 * ob_atan2(sin_half, turn.w), scale = sin_half > 1e-12 ? angle / sin_half : 2;
@@ -381,8 +382,8 @@ static void integrate_by_ode(ob_sim *s, uint32_t row)
 	add_row(w->u[row], state.v, state.w);
 }
 
-// By the trapezoidal rule where the velocity changed smoothly (exact in free flight), by the new velocity where it
-// jumped.
+// Integrates the position: by the trapezoidal rule after a smooth change of velocity (exact in free flight), by the new
+// velocity after a jump.
 static void integrate_exactly(ob_island_work *w, uint32_t row, double smooth)
 {
 	const double *v = w->v[row], *u = w->u[row];
@@ -473,7 +474,7 @@ void ob_bodies_publish(ob_sim *s, uint32_t rest)
 			mo.v = mo.w = ob_v3(0, 0, 0);
 		ob_state end = { { mo.p, mo.q }, mo.v, mo.w };
 		if (body->moved_freely &&
-		    run->integrator == OB_INTEGRATOR_EXACT) { // substeps only searched for impacts
+		    run->integrator == OB_INTEGRATOR_EXACT) { // the substeps only searched for impacts
 			ob_motion flight = ob_ballistic_flight(s, body->id);
 			end = ob_ballistic_state(s, body->id, &flight, mo.t0);
 			mo.t0 = flight.t0, mo.valid_until = flight.valid_until;

@@ -17,17 +17,17 @@
 
 // Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m.
 enum { LEVEL_ZERO = 33, LEVELS = 64 };
-enum { CELLS_AT_ONCE = 32 }; // whose buckets, and then objects, are asked for together
+enum { CELLS_AT_ONCE = 32 }; // cells whose buckets, and then objects, are prefetched together
 
 typedef struct cell {
 	int32_t level, x, y, z;
 } cell;
 
-// Cells have places, of which eight share a bucket; those that differ in x alone follow each other. So a row of them is
-// read at once, from a bit for each place (ob_step_data.occupied): most cells are empty.
+// Layout: each cell has a place; eight places share a bucket. Cells that differ in x alone have consecutive places. A
+// query reads a row of cells at once, from one bit per place (ob_step_data.occupied): most cells are empty.
 enum { PLACES_PER_BUCKET = 8 };
 
-// Of the cell of a row whose x is 0
+// Returns the place of the cell with x = 0 in a row of cells.
 static uint32_t place_of_row(int32_t level, int32_t y, int32_t z)
 {
 	uint64_t h = (uint64_t)(uint32_t)y * 0xC2B2AE3D27D4EB4Fu ^ (uint64_t)(uint32_t)z * 0x165667B19E3779F9u ^
@@ -42,13 +42,13 @@ static uint32_t place_of(cell c)
 	return place_of_row(c.level, c.y, c.z) + (uint32_t)c.x;
 }
 
-// Of places that differ by a multiple of the buckets
+// Returns the bucket of a place: places that differ by a multiple of data->buckets share it.
 static uint32_t bucket_of(const ob_step_data *data, uint32_t place)
 {
 	return place & (data->buckets - 1);
 }
 
-// A power of two
+// Returns the number of words of the bitmap "occupied": a power of two.
 static uint32_t occupied_words(const ob_step_data *data)
 {
 	return data->buckets / (64 / PLACES_PER_BUCKET);
@@ -64,7 +64,7 @@ static bool is_plane(const ob_universe *u, uint32_t id)
 	return ob_passport_of(u, id)->shape == OB_SHAPE_PLANE;
 }
 
-// per_metre: cells, a power of two
+// Returns the cell coordinate of x (m). per_metre: cells per metre, a power of two.
 static int32_t coordinate(double x, double per_metre)
 {
 	const double farthest = 1e9, there = x * per_metre,
@@ -75,7 +75,7 @@ static int32_t coordinate(double x, double per_metre)
 	return towards_zero - (c < towards_zero);
 }
 
-// 2^n, written into the exponent: ldexp is a call of the library.
+// Returns 2^n, written into the exponent: faster than ldexp, a library call.
 static double power_of_two(int n)
 {
 	const uint64_t bits = (uint64_t)(1023 + n) << 52;
@@ -88,7 +88,7 @@ static cell cell_of(const float *b)
 {
 	float e = fmaxf(b[3] - b[0], fmaxf(b[4] - b[1], b[5] - b[2]));
 	int level;
-	frexpf(e, &level); // e = f 2^level, f in [.5, 1): the cell's side 2^level is not below e
+	frexpf(e, &level); // e = f 2^level, f in [.5, 1): the cell's side 2^level is at least e
 	level += LEVEL_ZERO;
 	level = level < 1 ? 1 : level >= LEVELS ? LEVELS - 1 : level;
 	const double per_metre = power_of_two(LEVEL_ZERO - level);
@@ -102,7 +102,7 @@ static bool indexed(const ob_index_cell *c)
 	return c->level != 0;
 }
 
-// The range of cells of a class only grows, until the last object has left the class.
+// Extends the range of cells in use of a size class. It shrinks only when the last object leaves the class.
 static void extend_level(ob_step_data *data, cell to)
 {
 	const int32_t at[3] = { to.x, to.y, to.z };
@@ -114,7 +114,7 @@ static void extend_level(ob_step_data *data, cell to)
 	}
 }
 
-// One of the index's links, as id + 1, or 0: what leads out of it is damage.
+// Returns a link of the index, as id + 1, or 0. A link out of range is damage: fails the step, returns 0.
 static uint32_t checked_link(ob_step_data *data, uint32_t link)
 {
 	if (link <= data->objects_max)
@@ -129,7 +129,7 @@ static uint32_t place_of_object(const ob_step_data *data, uint32_t id)
 	return place_of((cell){ c->level, c->x, c->y, c->z });
 }
 
-// Whether any of those in the bucket has the same bit.
+// True if any object in the bucket has the same bit of the bitmap.
 static bool is_occupied(ob_step_data *data, uint32_t place)
 {
 	const uint32_t bits = PLACES_PER_BUCKET * data->buckets;
@@ -140,7 +140,7 @@ static bool is_occupied(ob_step_data *data, uint32_t place)
 	return false;
 }
 
-// The host calls it, too: links are followed no farther than there are objects.
+// Removes the object from the index. The host calls it, too: follows no more links than there are objects.
 static void unlink_object(ob_step_data *data, uint32_t id)
 {
 	ob_index_cell *c = &data->cell[id];
@@ -233,7 +233,7 @@ void ob_index_remove(ob_universe *u, uint32_t id)
 		unlink_object(data, id);
 }
 
-// Whether the object is in the bucket, once, and all that is there may be.
+// True if the bucket holds the object exactly once, and all its links are valid.
 static bool bucket_has(const ob_step_data *data, uint32_t bucket, uint32_t id)
 {
 	uint32_t times = 0, n = 0;
@@ -272,7 +272,7 @@ static bool below_plane(const ob_universe *u, uint32_t plane, const float *b)
 	return ob_dot(n, ob_sub(low, m->p)) <= 0;
 }
 
-// Four side by side, and whether all of them are true.
+// Four lanes, and a test that all four are true.
 typedef float quad __attribute__((vector_size(16)));
 typedef int32_t truths __attribute__((vector_size(16)));
 typedef int64_t halves __attribute__((vector_size(16)));
@@ -283,12 +283,12 @@ static bool are_all(truths a)
 	return (both[0] & both[1]) == -1;
 }
 
-// Ids of the objects whose boxes overlap the queried one; counts on when the array is full.
+// Ids of the objects whose boxes overlap the queried one. n goes on counting when the array is full.
 typedef struct overlaps {
 	uint32_t *id, n, max;
-	uint32_t load; // of each test of two boxes
+	uint32_t load; // synthetic load of each box test
 	uint64_t tests;
-	quad upper, lower; // corners of the queried box: and no limit; no limit, and
+	quad upper, lower; // corners of the queried box; the fourth component, INFINITY or -INFINITY, has no effect
 } overlaps;
 
 static bool test_overlap(overlaps *to, const float *b)
@@ -324,7 +324,7 @@ static truths place_in_space(const ob_index_cell *c)
 	return at;
 }
 
-// The objects of a cell that overlap, from the first link of its bucket on.
+// Appends the objects of a cell that overlap, from the first link of its bucket on.
 static void scan_cell(const ob_step_data *data, uint32_t id, truths at, uint32_t first, overlaps *a)
 {
 	for (uint32_t next = first; next; next = data->cell[next - 1].next) {
@@ -334,8 +334,8 @@ static void scan_cell(const ob_step_data *data, uint32_t id, truths at, uint32_t
 	}
 }
 
-// Cells that are occupied. Their buckets lie anywhere, and so do the objects in them: all are asked for before the
-// first is read.
+// Occupied cells to be scanned. Their buckets and objects are spread over memory: all are prefetched before the first
+// is read.
 typedef struct cells_ahead {
 	uint32_t n, bucket[CELLS_AT_ONCE];
 	truths at[CELLS_AT_ONCE];
@@ -356,7 +356,7 @@ static void scan_ahead(const ob_step_data *data, uint32_t id, cells_ahead *c, ov
 	c->n = 0;
 }
 
-// Of at most 64 cells in each row
+// Scans rows of at most 64 cells each.
 static void scan_rows(const ob_step_data *data, uint32_t id, const cell *lo, const cell *hi, cells_ahead *ahead,
 		      overlaps *a)
 {
@@ -381,11 +381,11 @@ static void scan_rows(const ob_step_data *data, uint32_t id, const cell *lo, con
 		}
 }
 
-// The cells of a class in which the centre of a box may lie that overlaps b; false: there are none.
+// Finds the cells of a size class that may hold the centre of a box that overlaps b. Returns false if there are none.
 static bool cells_around(const ob_step_data *data, const float *b, int level, cell *lo, cell *hi)
 {
 	const double per_metre = power_of_two(LEVEL_ZERO - level),
-		     h = power_of_two(level - LEVEL_ZERO - 1); // a centre lies at most half a side outside
+		     h = power_of_two(level - LEVEL_ZERO - 1); // a centre lies at most half a side outside b
 	const int32_t *low = data->count->level_low[level], *high = data->count->level_high[level];
 	int32_t from[3], to[3];
 	for (int c = 0; c < 3; c++) {
@@ -448,13 +448,13 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 
 // ---- fat AABBs
 
-static const double fat_aabb_steps = 2; // a new box lasts about so many steps
-static const double rest_margin = .04; // m: of an object at rest ..
-static const double rest_margin_share = .2; // .. but no more than this share of its radius, for heaps of small things
-static const double margin_limit = 1.5; // m: beyond it a fast object's box covers the next step alone
-static const double oversize_margins = 4; // a box larger by so many margins of a new one is replaced ..
-static const uint64_t oversize_check_steps = 16; // .. which is checked every so many steps
-static const double sweep_oversize = 2; // a box so many times as long as a flight's new one is replaced
+static const double fat_aabb_steps = 2; // steps for which a new box is meant to last
+static const double rest_margin = .04; // m: margin of an object at rest
+static const double rest_margin_share = .2; // its bound, as a share of the object's radius: for heaps of small bodies
+static const double margin_limit = 1.5; // m: above it, a fast object's box covers the next step alone
+static const double oversize_margins = 4; // a box larger than a new one by so many of its margins is replaced
+static const uint64_t oversize_check_steps = 16; // interval of the test for it
+static const double sweep_oversize = 2; // a box so many times as long as that of a new flight is replaced
 
 void ob_tight_aabb(const ob_universe *u, const ob_passport *p, ob_pose pose, double bounds[6])
 {
@@ -467,7 +467,7 @@ void ob_tight_aabb(const ob_universe *u, const ob_passport *p, ob_pose pose, dou
 
 double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s)
 {
-	if (ob_has_axis(shape) && inertia.x == inertia.y) // its axis turns at a rate that stays
+	if (ob_has_axis(shape) && inertia.x == inertia.y) // its axis turns at a constant rate
 		w.z = 0, s = 0;
 	double rate = shape == OB_SHAPE_SPHERE ? 0 : ob_drift_bound(w, inertia, s);
 	return rate == 0 ? 0 : rate * ob_shape_radius(shape, size);
@@ -506,10 +506,10 @@ double ob_fat_aabb_margin(const ob_run_settings *run, ob_shape shape, ob_vec3 si
 		      rest_margin_share * ob_shape_radius(shape, size));
 }
 
-// What a step leaves behind: the object was nowhere but between where it was and where it is, or no farther than
-// "bulge" (m) from there. path: m, of any of its points, in that step.
+// Region swept in the last step: the segment from the old position to the present one, and all points within "bulge"
+// (m) of it. path: bound of the distance (m) that any of the object's points moved in that step.
 typedef struct wake {
-	double back[3]; // m, from where it is to where it was
+	double back[3]; // m, from the present position to the old one
 	double bulge;
 } wake;
 
@@ -521,7 +521,7 @@ static wake wake_of(const ob_universe *u, uint32_t id, const ob_state *now, doub
 	return (wake){ { back.x, back.y, back.z }, more + .5 * sqrt(more * (path + straight)) };
 }
 
-// Makes the box hold itself moved by so much, and all between.
+// Extends the box by itself moved by times * by, and all positions between.
 static void sweep_box(double *box, const double *by, double times)
 {
 	for (int c = 0; c < 3; c++) {
@@ -530,8 +530,8 @@ static void sweep_box(double *box, const double *by, double times)
 	}
 }
 
-// The fat AABB for some steps: along the velocity the way of those steps, and on all sides what the object may gain by
-// turning and falling. If something throws it off its way, that step makes it a new one, which holds what it left
+// Predicts the fat AABB for some steps. It covers the distance flown at the present velocity, and on all sides the
+// motion by turning and falling. A body thrown off its path gets a new box in that step, which covers the path left
 // behind. Returns the margin on all sides (m); box: swept, without the margin.
 static double predict_fat_aabb(const ob_universe *u, const ob_passport *p, const ob_state *now, double reach,
 			       double *box)
@@ -541,7 +541,8 @@ static double predict_fat_aabb(const ob_universe *u, const ob_passport *p, const
 		     limit = margin_limit * ob_run_settings_units(run).length,
 		     way[3] = { h * now->v.x, h * now->v.y, h * now->v.z };
 	const double once = margin + reach, aside = ob_max(0, reach - h * ob_norm(now->v));
-	double more = reach > 0 ? ob_max(0, ob_min(fat_aabb_steps - 1, (limit - once) / reach)) : 0; // steps
+	// Steps beyond the first.
+	double more = reach > 0 ? ob_max(0, ob_min(fat_aabb_steps - 1, (limit - once) / reach)) : 0;
 	sweep_box(box, way, 1 + more);
 	return margin + (1 + more) * aside;
 }
@@ -568,8 +569,8 @@ void ob_fat_aabb_update(ob_universe *u, uint32_t id, const ob_state *now, double
 	sweep_box(ahead, way, 1);
 	bool held =
 		box_contains(box, behind, w.bulge) && box_contains(box, ahead, ob_max(0, reach - h * ob_norm(now->v)));
-	// A box made when the object was fast is replaced when it is slow; objects are checked in turn, not all at
-	// once.
+	// Replaces the box of an object that was fast and is slow now. Objects are checked in turn, not all in the same
+	// step.
 	if (held && (ob_step_count(u) + id) % oversize_check_steps)
 		return;
 	double margin = ob_max(predict_fat_aabb(u, p, now, reach, next), w.bulge);
@@ -606,5 +607,5 @@ void ob_broadphase_remove(ob_universe *u, uint32_t id)
 {
 	ob_index_remove(u, id);
 	ob_requery_drop(u, id);
-	ob_universe_step_data(u)->neighbours[id].count = 0; // none is pending
+	ob_universe_step_data(u)->neighbours[id].count = 0; // no query is pending
 }

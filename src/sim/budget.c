@@ -4,7 +4,7 @@
 
 enum { GRAIN = 1 << 12 };
 
-// For whatever is small and hard, and for each object of a large scene.
+// Work for small but hard scenes, and for each object of a large one.
 static const uint64_t base = UINT64_C(1) << 27, per_object = 1 << 15;
 
 static uint64_t work_so_far(const ob_sim *s)
@@ -35,8 +35,8 @@ bool ob_budget_add(ob_universe *u, uint64_t work, uint32_t object)
 	return true;
 }
 
-// Each share has a budget of its own, so that whether it exceeds it does not depend on what others do in the meantime,
-// and the same shares fail in every run.
+// Adds work to the share's own budget. Returns true if it is exceeded or the run was stopped. A budget of its own makes
+// the result independent of other workers: the same shares fail in every run.
 static bool spends_share(ob_sim *s, uint64_t work)
 {
 	s->budget.share += work;

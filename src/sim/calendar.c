@@ -21,8 +21,8 @@ static uint32_t urgency_of(uint64_t step)
 	return step < UINT32_MAX ? UINT32_MAX - (uint32_t)step : 0;
 }
 
-// Another worker may have raised of_64 and not yet of_4096, which it will before the phase ends: so who finds the one
-// high enough need not look at the other.
+// Another worker may have raised of_64 but not yet of_4096. It does so before the phase ends, so a worker that finds
+// of_64 high enough need not look at of_4096.
 void ob_calendar_set(const ob_calendar *c, uint32_t i, uint64_t step)
 {
 	const uint32_t urgency = urgency_of(step);
@@ -43,7 +43,7 @@ void ob_calendar_enter_due(const ob_universe *u, uint32_t id)
 		data->count->next_due = due;
 }
 
-// Four side by side; compared as signed numbers, which every processor can.
+// Four lanes, compared as signed numbers: every processor can do that.
 typedef int32_t quad __attribute__((vector_size(16)));
 typedef int64_t halves __attribute__((vector_size(16)));
 
@@ -80,7 +80,7 @@ static uint32_t most_of_64(const uint32_t *below)
 	return largest_of(most);
 }
 
-// A bit for each of four that is false.
+// Returns a bit for each of four lanes that is false.
 static uint64_t false_of(quad a)
 {
 	const halves both = (halves)~a;
@@ -88,7 +88,7 @@ static uint64_t false_of(quad a)
 	return (x & 1) | (x >> 62 & 2) | (y & 4) | (y >> 60 & 8);
 }
 
-// A bit for each of 64 that is at least so urgent. rest: the most urgent of the others
+// Returns a bit for each of 64 entries whose urgency is at least "least". rest: largest urgency of the others.
 static uint64_t due_of_64(const uint32_t *below, uint32_t least, uint32_t *rest)
 {
 	const int32_t low = as_signed(least), zero = as_signed(0);
@@ -110,11 +110,11 @@ static uint64_t due_of_64(const uint32_t *below, uint32_t least, uint32_t *rest)
 	return due;
 }
 
-// What is to become of the entries that are found.
+// Fate of the entries that are found.
 typedef enum found_entries { STAY, TAKEN } found_entries;
 
-// Those of 64 that are at least so urgent, behind the n that are listed; list NULL: whether there are any. Puts right
-// what the level above says of them: nothing that is too much while there are any that stay.
+// Appends the entries of a block of 64 that are at least so urgent to the list of n; returns the new n. list NULL: only
+// counts. Corrects the block's urgency in the level above, but not while due entries stay.
 static uint32_t list_64(const ob_calendar *c, uint32_t block, uint32_t least, uint32_t *list, uint32_t n, uint32_t most,
 			found_entries then)
 {
