@@ -13,10 +13,10 @@
 
 enum { NONE = UINT32_MAX };
 
-// A result whose acceleration is that of before the step, as it mostly is: without it.
+// Record of a result whose acceleration is unchanged, as it mostly is: the motion without it.
 enum { ACCELERATION = offsetof(ob_motion, a), BEHIND_IT = ACCELERATION + sizeof(ob_vec3) };
 typedef struct steady_record {
-	uint32_t id, state, due, reserved; // as ob_found_result
+	uint32_t id, state, due, reserved; // as in ob_found_result
 	unsigned char motion[sizeof(ob_motion) - sizeof(ob_vec3)];
 } steady_record;
 
@@ -29,20 +29,20 @@ typedef struct effort_record {
 	uint32_t island, share;
 } effort_record;
 
-// An object's number of neighbours, and a part of what they change (ob_step_data.neighbour_id): "count" of "total",
-// from "first" on.
+// Number of neighbours of an object, and a part of the changes to its pairs (ob_step_data.neighbour_id): "count" of
+// "total", from "first" on.
 typedef struct neighbours_record {
 	uint32_t id, neighbours, total, first, count, reserved;
 	uint32_t change[];
 } neighbours_record;
 
 typedef struct touch_record {
-	uint32_t id, other; // as ob_commit_touch
+	uint32_t id, other; // as in ob_commit_touch
 	double impulse;
 	ob_vec3 point;
 } touch_record;
 
-// What has come of a script, but for its outbox, of which parts follow; state: in whole words.
+// Result of a script's run without its outbox, which follows in parts. state: padded to whole words.
 typedef struct script_record {
 	uint32_t cell, flags, wake, asks, state_bytes, outbox_bytes, failed_step, reserved;
 	uint64_t random[4];
@@ -52,7 +52,7 @@ typedef struct script_record {
 	unsigned char state[];
 } script_record;
 
-// So many bytes of a cell's outbox, whole words, from "first" on.
+// Part of a cell's outbox: "bytes" of it, whole words, from "first" on.
 typedef struct posts_record {
 	uint32_t cell, first, bytes, reserved;
 	unsigned char part[];
@@ -99,7 +99,7 @@ static void write_effort(ob_universe *u, uint32_t island, uint32_t share)
 		data->effort[data->member[is->first_member + i]] = share;
 }
 
-// All of a contact but what is kept of it. The record for that; OB_NO_RECORD: it needs none.
+// Writes a contact without its warm-start state. Returns the record for that; OB_NO_RECORD: it needs none.
 static uint32_t write_contact_key(ob_universe *u, const ob_found_contact *c)
 {
 	ob_pair_key *k = &ob_universe_step_data(u)->pair[c->pair];
@@ -108,11 +108,11 @@ static uint32_t write_contact_key(ob_universe *u, const ob_found_contact *c)
 	if (!c->kept)
 		return OB_NO_RECORD;
 	if (k->record == OB_NO_RECORD)
-		k->record = ob_record_take(u); // none where there is no memory, and the step has failed
+		k->record = ob_record_take(u); // OB_NO_RECORD if memory is full; then the step has failed
 	return k->record;
 }
 
-// Returns the version.
+// Writes the warm-start state. Returns the version to which it was written.
 static int write_contact_state(ob_universe *u, const ob_found_contact *c, uint32_t record)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -156,7 +156,7 @@ static void write_touch(ob_universe *u, const touch_record *r)
 	c->touch[i].impulse += r->impulse;
 }
 
-// As the script's runner leaves them.
+// Writes the cell as the run of its script has left it.
 static void write_script(ob_universe *u, const script_record *r)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -187,7 +187,7 @@ static void write_check(ob_universe *u, const ob_check_record *c)
 	k->clear_as_of = c->clear_as_of;
 }
 
-// Room for so many changes in the arena; NULL: it is full, and the step has failed.
+// Reserves space for so many changes in the arena. Returns NULL if it is full; then the step has failed.
 static uint32_t *reserve_changes(ob_universe *u, uint32_t id, uint32_t neighbours, uint32_t total)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -200,7 +200,7 @@ static uint32_t *reserve_changes(ob_universe *u, uint32_t id, uint32_t neighbour
 	return data->neighbour_id + offset + 1;
 }
 
-// ---- by whoever has found it
+// ---- by the worker that found the result
 
 static void hand_over_result(ob_universe *u, const ob_found_result *r)
 {
@@ -244,7 +244,7 @@ void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share)
 		write_effort(s->u, island, r.share);
 }
 
-// What is handed over of it.
+// Returns the number of a contact's bytes that are handed over.
 static size_t contact_bytes(const ob_found_contact *c)
 {
 	return !c->kept       ? offsetof(ob_found_contact, state)
@@ -364,7 +364,7 @@ void ob_committer_destroy(ob_committer *c)
 	free(c);
 }
 
-// Whose task it is in the running phase.
+// Returns the worker that has the task in the running phase.
 static uint32_t owner_of_task(const ob_universe *u, uint32_t task)
 {
 	return ob_task_first(u) + ob_task_owner(task, ob_task_workers(u));
@@ -426,7 +426,7 @@ static bool is_sound(const ob_motion *m, const ob_universe *u)
 	       m->island < ob_universe_ids(u) && m->flags < OB_MOTION_SWINGS;
 }
 
-// The island that this simulator was given; NONE: it is none of those.
+// True if this simulator was given the island.
 static bool owns_island(const ob_committer *c, uint32_t worker, uint32_t island)
 {
 	return island < c->solved && c->island_owner[island] == worker;
@@ -453,8 +453,8 @@ const ob_found_result *ob_committer_result_of(const ob_universe *u, const ob_mai
 	return whole;
 }
 
-// Whether it was given the object's island: what other ranks' simulators were given those know, and here that it lives
-// there.
+// True if the worker was given the object's island. For simulators of other ranks, whose islands are unknown here, it
+// suffices that the object lives on their rank.
 static bool solves(const ob_committer *c, const ob_universe *u, uint32_t worker, uint32_t id)
 {
 	return ob_worker_is_here(u, worker) ? owns_island(c, worker, ob_universe_step_data(u)->result_island[id])
@@ -466,7 +466,8 @@ static bool was_given(ob_committer *c, const ob_universe *u, uint32_t worker, ui
 	return solves(c, u, worker, id) && !c->had[id]++;
 }
 
-// Of several ranks, which tell each other how many of theirs wake; a result that comes again counts from the first.
+// Counts the change in the number of bodies awake, for the exchange among ranks. A result that comes again counts
+// relative to the first one.
 static void count_woken(ob_committer *c, ob_universe *u, uint32_t id, uint32_t state)
 {
 	const uint32_t before = ob_universe_step_data(u)->schedule[id].state;
@@ -546,7 +547,7 @@ static bool is_sound_contact(const ob_found_contact *c, bool whole)
 	return isfinite(sum) && p->points <= OB_PAIR_POINTS && p->substep > 0;
 }
 
-// Of other ranks' simulators comes, as a rule, but that there is one.
+// False for contacts that arrive without their state: only their existence, as a rule, comes from other ranks.
 static bool is_whole(const ob_committer *c, const ob_universe *u, const ob_mail_record *from)
 {
 	return c->ranks < 2 || ob_universe_shares_contacts(u) || ob_worker_is_here(u, from->worker);
@@ -631,7 +632,7 @@ static const char *commit_script(ob_committer *c, ob_universe *u, const ob_mail_
 	return NULL;
 }
 
-// Each within the outbox, one behind the other, to its end.
+// True if the outbox consists of whole posts, one behind the other, to its end.
 static bool are_sound_posts(const ob_script_cell *c)
 {
 	uint32_t at = 0;
@@ -646,7 +647,7 @@ static bool are_sound_posts(const ob_script_cell *c)
 	return at == c->outbox_bytes;
 }
 
-// Parts come one after the other, behind what else has come of their script.
+// Commits a part of a script's outbox. Parts arrive in order, after the script's other results.
 static const char *commit_posts(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	static const char *const wrong = "has run a script that asks for what makes no sense";
@@ -667,7 +668,7 @@ static const char *commit_posts(ob_committer *c, ob_universe *u, const ob_mail_r
 	return NULL;
 }
 
-// What each rank has to check the others do not know.
+// True if the sender was given this check. Checks of other ranks are unknown here: it suffices that the pair exists.
 static bool was_given_check(const ob_universe *u, const ob_mail_record *from)
 {
 	const ob_check_record *r = from->data;
@@ -693,7 +694,7 @@ static const char *commit_check(ob_committer *c, ob_universe *u, const ob_mail_r
 	return NULL;
 }
 
-// Parts come one after the other, from the first on.
+// Commits a part of the changes to an object's neighbours. Parts arrive in order, from the first on.
 static const char *commit_neighbours(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	static const char *const wrong = "has found neighbours that make no sense";
@@ -736,7 +737,7 @@ static const char *commit_end(ob_universe *u, const ob_mail_record *from)
 	return NULL;
 }
 
-// NULL, or what is wrong with the record. Which kinds a phase brings follows from what was given away in it.
+// Commits a record. Returns NULL, or the error in it. Only kinds that fit the tasks of the phase are accepted.
 static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase, const ob_mail_record *r)
 {
 	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
@@ -795,7 +796,8 @@ static void note_end(ob_universe *u, const ob_mail_record *r)
 		ob_budget_add(u, end->work, end->worked_on);
 }
 
-// A simulator that fails says so in its last record: then what it has found is no longer a number, and not looked at.
+// Reads the last record of every simulator, which says if it has failed. Returns true if any has: then results may be
+// NaN, and are not read.
 static bool fails(ob_committer *c, ob_universe *u)
 {
 	ob_mail_record r;
@@ -824,7 +826,7 @@ bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
 	return ob_mail_collect(u, &c->mail);
 }
 
-// ---- records, some before they are wanted
+// ---- reading records, with prefetch
 
 static uint32_t first_word(const ob_mail_record *r)
 {
@@ -846,7 +848,7 @@ static void prefetch_body(const ob_committer *c, const ob_universe *u, uint32_t 
 		ob_prefetch_slot(u, id);
 }
 
-// What a record is about.
+// Prefetches the object or pair that a record is about.
 static void prefetch_subject(const ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool commits)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -859,7 +861,7 @@ static void prefetch_subject(const ob_committer *c, const ob_universe *u, const 
 		__builtin_prefetch(data->bounds[number], 1);
 }
 
-// Where what is kept of a contact is; UINT32_MAX: nowhere.
+// Returns the index of a contact's state; UINT32_MAX if it has none.
 static uint32_t record_of(const ob_universe *u, const ob_mail_record *r)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -879,7 +881,7 @@ static void prefetch_kept(const ob_committer *c, const ob_universe *u, const ob_
 		__builtin_prefetch(ob_universe_step_data(u)->record[record].stamp, 1);
 }
 
-// The version that will be written.
+// Prefetches the version of a contact's state that will be written.
 static void prefetch_version(const ob_universe *u, const ob_mail_record *r)
 {
 	enum { LINE = 64 };
@@ -908,7 +910,7 @@ bool ob_committer_next(const ob_committer *c, ob_universe *u, ob_record_reader *
 	return true;
 }
 
-// Of one rank. worker: whose the last was.
+// Commits the records of one rank. worker: set to the sender of the last one read.
 static bool commit_records(ob_committer *c, ob_universe *u, ob_phase phase, ob_mail m, uint32_t *worker)
 {
 	ob_record_reader from = { .mail = m, .commits = true };

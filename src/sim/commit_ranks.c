@@ -1,4 +1,4 @@
-// What arrangers of several ranks tell each other of what their simulators have handed over.
+// Exchange of simulators' results among the arrangers of several ranks.
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,7 +57,8 @@ void ob_committer_compare_before(ob_committer *c)
 	}
 }
 
-// Whether the others know of a contact what they will be told: that it touches, and which rank keeps the rest of it.
+// True if the others already know all that they would be sent of a contact: its existence, and the rank that keeps its
+// state.
 static bool is_known(const ob_committer *c, const ob_universe *u, const ob_found_contact *found)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -66,7 +67,8 @@ static bool is_known(const ob_committer *c, const ob_universe *u, const ob_found
 	       ob_holdings_here_alone(c->holdings, u, k->record);
 }
 
-// What the others get of a contact: no more than that it is there, unless what is kept of them is wanted everywhere.
+// Returns the bytes of a contact's record to send to the others. Only its existence is sent, unless its state is wanted
+// everywhere. 0: nothing new.
 static uint32_t contact_bytes_for_others(const ob_committer *c, const ob_universe *u, const ob_mail_record *r)
 {
 	if (ob_universe_shares_contacts(u) || r->bytes < offsetof(ob_found_contact, state))
@@ -74,18 +76,18 @@ static uint32_t contact_bytes_for_others(const ob_committer *c, const ob_univers
 	return is_known(c, u, r->data) ? 0 : (uint32_t)offsetof(ob_found_contact, state);
 }
 
-// all: everybody is told the motion; else those who have neighbours of the body.
+// Appends a result to the mails of other ranks. all: of every rank; else of those that have neighbours of the body.
 static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
 {
 	ob_found_result whole;
 	ob_mail_record restored = { .worker = r->worker, .kind = OB_RECORD_RESTORED, .bytes = sizeof whole };
-	const ob_found_result *found = r->data; // as far as its motion, whether that is whole or not
-	if (!ob_committer_is_result(u, r) || !ob_is_sound_state(found->state)) // who commits it finds out
+	const ob_found_result *found = r->data; // valid up to its motion, in both layouts
+	if (!ob_committer_is_result(u, r) || !ob_is_sound_state(found->state)) // the commit will report it
 		return true;
 	const bool restores = ob_halo_tell(c->halo, u, found->id, all, c->to);
 	if (restores)
 		restored.data = ob_committer_result_of(u, r, &whole);
-	bool fits = true, kept; // whether it is what it was this rank finds out when it commits it
+	bool fits = true, kept; // kept is not used: the commit here tests the motion itself
 	for (uint32_t to = 0; to < c->ranks; to++) {
 		if (to == c->rank || !c->to[to])
 			continue;
@@ -96,8 +98,8 @@ static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_reco
 	return fits;
 }
 
-// Who must know what has come of a check of two ranks' bodies: all, if it says that the pair links them, or did; else
-// who has one of them. Of others nobody must.
+// Finds the ranks that need the result of a check of two ranks' bodies: all, if the pair links them or did; else the
+// home ranks of both. No rank needs that of other checks.
 static void find_concerned(ob_committer *c, const ob_universe *u, const ob_mail_record *r)
 {
 	const ob_check_record *found = r->data;
@@ -117,7 +119,7 @@ static bool put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_re
 	bool fits = true;
 	if (r->kind == OB_RECORD_RESULT)
 		return put_result(c, u, r, all);
-	if (r->kind == OB_RECORD_EFFORT) // it is of an island, which nobody else has
+	if (r->kind == OB_RECORD_EFFORT) // it concerns an island, which no other rank has
 		return true;
 	if (r->kind == OB_RECORD_CHECK)
 		find_concerned(c, u, r);
@@ -131,10 +133,10 @@ static bool put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_re
 	return fits;
 }
 
-// To each what it needs: what is solved and checked concerns who is near.
+// Sends each rank the records that it needs: results and checks concern ranks nearby.
 static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers *p, ob_peers_head head)
 {
-	const bool all = p->look <= ob_step_count(u) + 1; // somebody looks at motions when the step is complete
+	const bool all = p->look <= ob_step_count(u) + 1; // a reader needs all motions after this step
 	const uint64_t nothing = 0;
 	ob_record_reader own = { .mail = ob_committer_mail_of(c, c->rank) };
 	ob_mail_record r;
@@ -213,8 +215,8 @@ static uint32_t pair_at(const ob_mail *list, size_t i)
 	return pair;
 }
 
-// Of the pairs that have linked two ranks' bodies, those that do: that have touched late, or else are expected to
-// touch.
+// Lists the pairs among links_across that still link two ranks' bodies: late contacts, or else pairs that are expected
+// to touch.
 static bool list_links_across(const ob_committer *c, const ob_universe *u, bool late, ob_mail *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -252,7 +254,7 @@ void ob_commit_involve_links_across(ob_committer *c, ob_universe *u)
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 		return;
 	}
-	const ob_mail those = c->links_across; // from now on all that there are
+	const ob_mail those = c->links_across; // from now on complete
 	c->links_across = c->linked;
 	c->linked = those;
 	for (size_t i = 0; i < c->links_across.used / sizeof(uint32_t); i++) {
@@ -263,8 +265,9 @@ void ob_commit_involve_links_across(ob_committer *c, ob_universe *u)
 	}
 }
 
-// Islands have been shared out: what is late is so no longer, and of what is one rank's now the others hear no more, so
-// what they know is void. If it is two ranks' again, it has been checked before, and all have heard.
+// Clears links between ranks after islands have been shared out. Late contacts are merged, so no longer late. A pair
+// that is now another rank's alone is no longer expected: this rank receives no more checks of it. If it becomes a pair
+// of two ranks again, its owner has checked it before, and sent the result to all.
 static void forget_links_across(const ob_committer *c, ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);

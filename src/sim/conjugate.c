@@ -28,7 +28,8 @@ void ob_conjugate_note(ob_island_work *w)
 		memcpy(w->conjugate.change[i], w->batch[i].impulse, sizeof *w->conjugate.change);
 }
 
-// J: the square of the iteration's change, which it leaves in place of the impulses before it.
+// Returns the square (J) of the iteration's change of impulses; leaves the change in place of the impulses noted
+// before.
 static double find_change(ob_island_work *w)
 {
 	lanes sum = lanes_of(0);

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-// How far apart the centres are, in terms of the bodies' radii; of a body and a plane: how high it is, in small
-// numbers, so that what stands on the ground comes first.
+// Returns the distance of the centres relative to the sum of the bodies' radii. For a plane: the other body's height
+// relative to its radius, times .1, so that bodies on the ground come first.
 static float relative_distance(const ob_body *a, const ob_body *b)
 {
 	const ob_body *plane = a->shape == OB_SHAPE_PLANE ? a : b, *other = a->shape == OB_SHAPE_PLANE ? b : a;
@@ -13,7 +13,8 @@ static float relative_distance(const ob_body *a, const ob_body *b)
 	return (float)(ob_norm(between) / (a->radius + b->radius));
 }
 
-// Sorts by the upper half, stable: the bits of numbers that are not negative are in their order.
+// Sorts by the upper half of the keys, stably. Bits of non-negative floats sort as their values do. other: memory for n
+// keys.
 static void sort_keys(uint64_t *key, uint64_t *other, uint32_t n)
 {
 	enum { FEW = 24, BITS = 8, DIGITS = 1 << BITS };

@@ -1,13 +1,13 @@
-// The order in which an island's contacts are loaded, and so coloured and solved: by what a pair is, never by its ids
-// or by where in the world it is. An iterative solution depends on the order; so a scene whose objects come in another
-// order, or that is turned or moved, has the same one.
+// Order in which an island's contacts are loaded, and so coloured and solved. It depends on the pairs' geometry, never
+// on ids or on the place in the world. An iterative solution depends on the order: so it is the same for a scene that
+// is turned, moved, or lists its objects in another order.
 #ifndef OB_SIM_CONTACT_ORDER_H
 #define OB_SIM_CONTACT_ORDER_H
 
 #include "sim/state.h"
 
-// order[is->pairs]: indices into the island's pairs, for bodies as they are loaded. Pairs that are alike keep the order
-// of the list. There must be room for 2 * is->pairs keys in contact_key.
+// Writes order[is->pairs]: indices into the island's pairs, for bodies as loaded. Equal pairs keep the order of the
+// list. contact_key must have space for 2 * is->pairs keys.
 void ob_contact_order(ob_sim *s, const ob_island *is, uint32_t *order);
 
 #endif

@@ -8,43 +8,43 @@
 #include "sim/few_contacts.h"
 #include "sim/ghost.h"
 
-// Iterations. A change of velocity above the wake threshold makes a body active: its contacts are solved again.
-static const double wake_threshold = 2e-3; // m/s ..
-static const double max_wake_threshold = 1e-2; // m/s: .. where a partial substep is short, and raises it ..
-static const double max_wake_rate = 1; // 1/s: .. and, times the tolerance, at most
-static const double coarse_wake_share = .05; // .. or, in a coarse run, so much of the largest speed in the island, ..
-static const double coarse_wake_way = .1; // .. unless that moves something farther than so much of the tolerance
-static const uint32_t max_extra_iterations = 8; // times the run's number; only for changes above ..
-static const double extra_iteration_threshold = .05; // m/s, with as many substeps as usual
+// Iterations. A change of velocity above the wake threshold activates a body: its contacts are solved again.
+static const double wake_threshold = 2e-3; // m/s
+static const double max_wake_threshold = 1e-2; // m/s: its upper bound where a short partial substep raises it
+static const double max_wake_rate = 1; // 1/s: its upper bound divided by the tolerance
+static const double coarse_wake_share = .05; // share of the largest speed in the island: wake threshold in a coarse run
+static const double coarse_wake_way = .1; // share of the tolerance that it may move a body in a partial substep
+static const uint32_t max_extra_iterations = 8; // times the run's number: for changes above the next threshold
+static const double extra_iteration_threshold = .05; // m/s, with the usual number of substeps
 static const int block_sweeps = 4;
-static const double block_tolerance = .01; // of the residual: a block need not be solved more finely in an iteration
-static const int fine_block_sweeps = 8; // where the solution is wanted to the end
-static const double converged = 1e-12; // m/s: a block whose sweep changes less is solved
+static const double block_tolerance = .01; // of the residual: accuracy to which an iteration solves a block
+static const int fine_block_sweeps = 8; // block sweeps for a converged solution
+static const double converged = 1e-12; // m/s: a block is solved once a sweep changes less
 
-// Bodies that stand.
-static const double settled = 1e-10, nearly_settled = 1e-6; // m/s: smaller changes are nothing; worth to go on
+// Bodies at rest.
+static const double settled = 1e-10, nearly_settled = 1e-6; // m/s: solved; nearly, so not given up
 static const int max_settling_rounds = 32; // in a partial substep
-static const uint32_t max_settling_iterations = 512, max_failures = 4; // .. and of direct solves
+static const uint32_t max_settling_iterations = 512, max_failures = 4; // iterations; failures of direct solves
 
-static const double resting_gap = 1e-7; // m: a point that presses keeps its distance from the surface, if that is less
-static const double turning_gap = 3e-6; // m: the same where the geometry turns
+static const double resting_gap = 1e-7; // m: a point that presses keeps its gap if that is smaller
+static const double turning_gap = 3e-6; // m: the same for contacts whose geometry turns
 
-// A few contacts that go on as they did are solved to the end, whatever the order in which they are taken: what is left
-// of each partial substep, else, is a force that nothing exerts. How many: OB_FEW_CONTACTS.
-static const double solved_few = 1e-12; // m/s: the wake threshold, unless the first iteration changes more than ..
-static const double smooth_change = .01; // m/s: .. this
-static const uint32_t iterations_before_steps = 2; // for all of them at once
+// Few contacts in smooth motion (OB_FEW_CONTACTS at most) are solved to the end, in any order of contacts. Otherwise,
+// the remainder of each partial substep would be a force that nothing exerts.
+static const double solved_few = 1e-12; // m/s: their wake threshold in smooth motion
+static const double smooth_change = .01; // m/s: motion is smooth if the first iteration changes no velocity by more
+static const uint32_t iterations_before_steps = 2; // before Newton steps on all these contacts
 
-static const double impact_threshold = .1; // m/s: faster changes are impacts and not extrapolated by the warm start
+static const double impact_threshold = .1; // m/s: faster changes are impacts; the warm start does not extrapolate them
 
-static const double slop = 1e-4, max_slop_share = 1. / 8; // m; of the tolerance
+static const double slop = 1e-4, max_slop_share = 1. / 8; // m; bound as a share of the tolerance
 
 static bool is_jacobi(const ob_sim *s)
 {
 	return s->settings->solver == OB_SOLVER_JACOBI;
 }
 
-// A threshold as usual, or smaller where the run's tolerance is.
+// Returns the usual threshold, or a smaller one in proportion to the run's tolerance.
 static double within_tolerance(const ob_sim *s, double usual, double of_tolerance)
 {
 	double tolerance = s->settings->tolerance;
@@ -76,7 +76,7 @@ void ob_solver_limit_prediction(ob_sim *s)
 		ob_batch_limit_prediction(&w->batch[i], cap, 2.5 * gained);
 }
 
-// The row's velocity has changed by more than the wake threshold in an iteration: its contacts are due in that one, if
+// Activates a body whose velocity changed by more than the wake threshold. Its contacts are due in this iteration, if
 // their turn is still to come, and in the next.
 static void activate_body(ob_island_work *w, uint32_t row, uint32_t iteration)
 {
@@ -101,16 +101,16 @@ static bool activate_bodies(ob_island_work *w, const ob_batch *b)
 	return b->active != 0;
 }
 
-// Ghosts are active when the bodies are that they stand for.
+// Activates ghosts of the bodies that are active.
 static void activate_ghosts(ob_island_work *w)
 {
 	for (uint32_t g = w->first_ghost; g < w->rows; g++)
 		activate_body(w, g, w->body[w->body[g].ghost_of].active_iteration);
 }
 
-// One iteration over the contacts of active bodies, colour by colour; over all in the first. Returns the largest change
-// of a velocity (m/s) after which another iteration may find something to do: not where a pair that touches nothing
-// else has been solved to the end. changed: the largest of all.
+// Runs one iteration over the contacts of active bodies, colour by colour; the first one runs over all. Returns the
+// largest change of a velocity (m/s) that another iteration may have to correct: isolated pairs, solved to the end, do
+// not count. changed: the largest change of all (m/s).
 static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bool *any_active, double *changed)
 {
 	ob_island_work *w = &s->island;
@@ -122,7 +122,7 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 		if (iteration->first ? !b->live : w->batch_due[i] < w->iteration)
 			continue;
 		unsigned pairs = lanes_count(b->live);
-		enum { SWEEP = 2, ISOLATED_SWEEP = 16 }; // work: of a patch, at most
+		enum { SWEEP = 2, ISOLATED_SWEEP = 16 }; // work of a patch, at most
 		s->counters.pair_solves += pairs;
 		s->counters.frictionless_solves += b->kind & OB_KIND_FRICTIONLESS ? pairs : 0;
 		ob_batch_solve(b, iteration, w->u, w->v, w->d, w->delta);
@@ -137,8 +137,8 @@ static double solve_contacts(ob_sim *s, const ob_solver_iteration *iteration, bo
 	return sqrt(residual);
 }
 
-// Conjugate iterations on u, over all contacts, until none changes a velocity by more than the wake threshold. Returns
-// the largest change (m/s) in the last.
+// Runs conjugate iterations on u, over all contacts, until none changes a velocity by more than the wake threshold.
+// Returns the largest change (m/s) of the last.
 static double converge(ob_sim *s, ob_solver_iteration *iteration, uint32_t max_iterations)
 {
 	ob_island_work *w = &s->island;
@@ -177,8 +177,8 @@ void ob_solver_converge(ob_sim *s, double enough, uint32_t max_iterations)
 	converge(s, &iteration, max_iterations);
 }
 
-// Bodies that stand, with cycles of contacts: direct solves, and where they do not lead down, more and more conjugate
-// iterations, until nothing is left to do. Given up, for this step, where that does not come into sight.
+// Solves cycles of contacts between bodies at rest. Alternates direct solves with conjugate iterations, more and more
+// of them if a direct solve does not reduce the residual. Gives up for this step if the end is not in sight.
 static void settle(ob_sim *s, const ob_solver_iteration *last)
 {
 	ob_solver_iteration iteration = *last;
@@ -203,7 +203,7 @@ static void settle(ob_sim *s, const ob_solver_iteration *last)
 	s->island.direct.gave_up = residual > nearly_settled * s->island.unit.speed;
 }
 
-// m/s, of any point of a body
+// Returns the largest speed (m/s) of any point of a body.
 static double largest_speed(const ob_island_work *w)
 {
 	double most = 0;
@@ -212,14 +212,14 @@ static double largest_speed(const ob_island_work *w)
 	return most;
 }
 
-// m/s. A coarse run leaves more where something moves, for the next partial substep finds it; but no more where all is
-// slow, for there it would creep.
+// Returns the wake threshold (m/s). A coarse run leaves larger changes to the next partial substep while something
+// moves. It does not if all is slow: then bodies would creep.
 static double wake_threshold_of(const ob_sim *s)
 {
 	const ob_island_work *w = &s->island;
 	const double wake = within_tolerance(s, wake_threshold * w->unit.speed, max_wake_rate / w->unit.time);
 	const double least = ob_min(max_wake_threshold * w->unit.speed,
-				    wake * w->substep / w->h); // what lasts shorter, moves less
+				    wake * w->substep / w->h); // a shorter partial substep moves less
 	if (w->coarseness == 1)
 		return least;
 	return ob_max(least, ob_min(coarse_wake_share * largest_speed(w), coarse_wake_way * w->tolerance / w->h));
@@ -239,8 +239,8 @@ static void activate_all(ob_island_work *w)
 		activate_body(w, i, w->iteration);
 }
 
-// By how many times as many substeps as usual: what iterations leave in each of them adds up over the step, and where a
-// step is solved again with more, it has to become less.
+// Returns the ratio of substeps to their usual number, at least 1. Remainders of all substeps add up over the step, so
+// thresholds fall when a step is solved again with more substeps.
 static double refinement(const ob_sim *s)
 {
 	return ob_max(1, (double)s->island.substeps / s->settings->substeps);
@@ -284,7 +284,7 @@ void ob_solver_iterate(ob_sim *s)
 		s->counters.solver_iterations++;
 		ob_ghosts_read(s, w->u, k);
 		activate_ghosts(w);
-		w->iteration += 1 + (k == 0); // a gap, so that no body is active from the last partial substep
+		w->iteration += 1 + (k == 0); // a gap of 1, so that no body is active from the last partial substep
 		residual = solve_contacts(s, &iteration, &any_active, &changed);
 		if (iteration.first) {
 			w->last_residual = changed;

@@ -16,7 +16,7 @@
 
 // ---- lanes and graph colouring
 
-// Impulses that go over from an old manifold to a new one (warm starting).
+// Impulses that a new manifold inherits from an old one (warm start).
 typedef struct saved_impulses {
 	double impulse[OB_PAIR_ROWS];
 	ob_vec3 arm[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS], friction, normal;
@@ -25,7 +25,7 @@ typedef struct saved_impulses {
 
 enum { ALL_LANES = (1 << OB_LANES) - 1, NO_BATCH = UINT32_MAX };
 
-// Batches with a free lane form a stack per colour and kind.
+// Batches with a free lane form a stack for each colour and kind.
 static void push_open_batch(ob_island_work *w, uint32_t batch)
 {
 	uint32_t *top = &w->open_batch[w->batch_colour[batch]][w->batch[batch].kind];
@@ -56,8 +56,8 @@ static uint32_t add_batch(ob_island_work *w, uint32_t colour, ob_batch_kind kind
 	return w->batches++;
 }
 
-// The first colour that neither body uses. Past the last colour each contact gets a batch of its own: those of a body
-// with so many contacts are solved one after the other.
+// Returns the first colour that neither body uses, or OB_COLOURS if there is none. Then each contact gets a batch of
+// its own: such contacts are solved one after the other.
 static uint32_t free_colour(const ob_island_work *w, const ob_contact *contact, bool jacobi)
 {
 	uint64_t used = w->body[contact->a].colours | w->body[contact->b].colours;
@@ -66,11 +66,11 @@ static uint32_t free_colour(const ob_island_work *w, const ob_contact *contact, 
 	return used == UINT64_MAX ? OB_COLOURS : (uint32_t)__builtin_ctzll(~used);
 }
 
-// The kind of batch that holds the contact, wherever its bodies are.
+// Returns the kind of batch for the contact, whatever the poses of its bodies.
 static ob_batch_kind kind_of(const ob_sim *s, const ob_contact *contact)
 {
 	const ob_island_work *w = &s->island;
-	bool aabb = s->settings->narrow_phase == OB_NARROW_AABB; // a sphere's box has four points
+	bool aabb = s->settings->narrow_phase == OB_NARROW_AABB; // the box of a sphere has four points
 	ob_shape a = w->body[contact->a].shape, b = w->body[contact->b].shape;
 	bool point = a == OB_SHAPE_SPHERE || b == OB_SHAPE_SPHERE;
 	return (point && !aabb ? OB_KIND_POINT : OB_KIND_FULL) |
@@ -95,7 +95,7 @@ static void take_lane(ob_sim *s, ob_contact *contact)
 	unsigned live = w->batch[batch].live;
 	uint32_t lane = (uint32_t)__builtin_ctz(~live);
 	if (colour < OB_COLOURS && (live | 1u << lane) == ALL_LANES)
-		w->open_batch[colour][kind] = w->next_open_batch[batch]; // it is the top, and full now
+		w->open_batch[colour][kind] = w->next_open_batch[batch]; // the top of the stack, full now
 	contact->colour = colour;
 	set_lane(w, contact, batch * OB_LANES + lane);
 	for (int side = 0; side < 2; side++) {
@@ -108,7 +108,7 @@ static void take_lane(ob_sim *s, ob_contact *contact)
 	w->counts_stale = true;
 }
 
-// Gives the lane back, and its impulses with it.
+// Returns the lane with its impulses.
 static void leave_lane(ob_island_work *w, ob_contact *contact)
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
@@ -128,7 +128,7 @@ static void leave_lane(ob_island_work *w, ob_contact *contact)
 	w->counts_stale = true;
 }
 
-// Writes the contact's geometry into its lane. gap: m, of each point.
+// Writes the contact's geometry into its lane. gap: gap of each point (m).
 static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, const double *gap)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
@@ -152,7 +152,7 @@ static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, co
 		     &contact->friction_b);
 }
 
-// Before the geometry changes.
+// Saves the contact's impulses before its geometry changes.
 static void save_impulses(ob_island_work *w, const ob_contact *contact, saved_impulses *old)
 {
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
@@ -167,11 +167,11 @@ static void save_impulses(ob_island_work *w, const ob_contact *contact, saved_im
 	old->friction = ob_add(ob_scale(t1, old->impulse[4]), ob_scale(t2, old->impulse[5]));
 }
 
-static const double same_place = .2; // of the smaller thickness: a point that has moved by less is the same
-static const double same_normal = .9; // cosine: where the normal has turned by more, no point is the same
-static const double same_rim = .5; // of the radius: so far may a rim roll on while the geometry is that of before
+static const double same_place = .2; // share of the smaller thickness: a point that has moved less is the same
+static const double same_normal = .9; // cosine: no point is the same if the normal has turned farther
+static const double same_rim = .5; // share of the radius: distance that a rim may roll on with the same geometry
 
-// The one old point that carries a load; -1: there is none, or several.
+// Returns the old point that carries load; -1 if there is none, or several.
 static int only_loaded(const saved_impulses *old)
 {
 	int found = -1;
@@ -184,7 +184,7 @@ static int only_loaded(const saved_impulses *old)
 	return found;
 }
 
-// moved: m, of the point, which is at "arm" now.
+// True if the point, at "arm" now, is on the rim on which it was. moved: m.
 static bool on_same_rim(const ob_body *body, ob_vec3 arm, ob_vec3 moved)
 {
 	const ob_vec3 axis = ob_column(&body->r, 2);
@@ -192,13 +192,13 @@ static bool on_same_rim(const ob_body *body, ob_vec3 arm, ob_vec3 moved)
 	       ob_norm(moved) < same_rim * body->size.x;
 }
 
-// Pairs points with old points, the nearest to each other first, so that the order of neither matters. A point is near
-// an old one if it is on either body. limit: m^2, of their distance. Returns a bit per old point that was found again.
+// Matches points with old ones, nearest pairs first, so that the order of neither matters. Points are near if they are
+// on either body. limit: bound of the squared distance (m^2). Returns a bit for each old point that was matched.
 static unsigned match_nearest(ob_contact *contact, const saved_impulses *old, double limit)
 {
 	double apart2[OB_PAIR_POINTS][OB_PAIR_POINTS];
 	unsigned taken = 0;
-	bool shared = false; // an old point is the nearest one of two points
+	bool shared = false; // an old point is nearest to two points
 	memset(contact->was, -1, sizeof contact->was);
 	for (uint32_t j = 0; j < contact->points; j++) {
 		double best = limit;
@@ -232,8 +232,8 @@ static unsigned match_nearest(ob_contact *contact, const saved_impulses *old, do
 	return taken;
 }
 
-// Which of the old points each point is: one near it. Where a body rolls on its rim, the point that carries it is a new
-// place of the rim each time: it is the lowest still, which comes first.
+// Matches each point with a near old one. The loaded point of a body that rolls on its rim moves along the rim: it is
+// matched as the lowest point, which comes first.
 static void match_points(const ob_island_work *w, ob_contact *contact, const saved_impulses *old)
 {
 	const ob_body *ma = &w->body[contact->a], *mb = &w->body[contact->b];
@@ -250,8 +250,8 @@ static void match_points(const ob_island_work *w, ob_contact *contact, const sav
 		contact->was[0] = (int8_t)k;
 }
 
-// Into the new geometry: points inherit the impulses of those that they were, the friction force keeps its direction in
-// the world.
+// Transfers impulses to the new geometry. Points inherit those of the points that they match; the friction force keeps
+// its direction in the world.
 static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const saved_impulses *old)
 {
 	const bool same = old->points > 0;
@@ -271,13 +271,13 @@ static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const 
 // ---- geometry
 
 static const double max_retest_share = 3; // of the tolerance
-static const double retest_path = .0015; // m: after which the geometry of a resting pair is tested again
-static const double coarse_share = .2; // of the tolerance: what a coarse run may miss of a new corner ..
-static const double coarse_thickness = .1; // .. and of the smaller thickness, at most
-static const double standing = 1e-5; // m/s: what is slower moves by less than that before it is faster
+static const double retest_path = .0015; // m: path after which the geometry of a resting pair is tested again
+static const double coarse_share = .2; // share of the tolerance by which a coarse run may miss a new corner
+static const double coarse_thickness = .1; // its bound, as a share of the smaller thickness
+static const double standing = 1e-5; // m/s: slower pairs count as at rest
 
-// m: path after which a pair is tested again. Corners that were no points of the contact come down by a share of the
-// path of the bodies; where many substeps did not reach the tolerance, that may be why.
+// Returns the path (m) after which a pair is tested again. Corners that were no contact points approach by a share of
+// the bodies' path. They may be the cause if many substeps did not reach the tolerance: then the path is shorter.
 static double retest_distance(const ob_sim *s)
 {
 	double tolerance = s->settings->tolerance;
@@ -286,11 +286,11 @@ static double retest_distance(const ob_sim *s)
 	return tolerance > 0 ? ob_min(usual, share * tolerance) : usual;
 }
 
-static const double same_distance = 1e-9; // share of a square: distances that differ by less do so by rounding
+static const double same_distance = 1e-9; // share of the squared distance: smaller differences are due to rounding
 
-// By how far the points are from the bodies' centres, which is the same however the scene is seen: a sweep over the
-// rows of a block takes them in turn. A plane without friction is the same everywhere. Points that are equally far, and
-// those of a rim, which have roles, come as they were found.
+// Sorts points by their distance from the bodies' centres, which does not depend on the frame: a sweep over the rows of
+// a block takes them in turn. Planes without friction do not count: they are the same everywhere. Equally distant
+// points, and those of a rim, which have roles, stay in the order in which they were found.
 static void order_points(const ob_island_work *w, ob_contact *contact, double *gap)
 {
 	double far[OB_PAIR_POINTS];
@@ -386,8 +386,8 @@ double ob_contact_gap(const ob_island_work *w, const ob_contact *contact)
 	return least;
 }
 
-// m/s, bound of the speed that the two may gain within the partial substep, on average over it. Bodies that touch are
-// expected to go on as they did: at rest they gain nothing.
+// Bounds the speed (m/s) that the two bodies may gain, on average over the partial substep. Touching bodies are
+// expected to go on as before: at rest they gain nothing.
 static double speed_gain(const ob_island_work *w, const ob_contact *contact)
 {
 	double free = w->max_acceleration * w->h;
@@ -408,17 +408,17 @@ bool ob_contact_in_reach(const ob_island_work *w, const ob_contact *contact)
 	return ob_contact_gap(w, contact) <= (ob_contact_speed(w, contact) + w->max_acceleration * w->h) * w->h;
 }
 
-// A body that all but balances on an edge is turned by what little its centre is beside that, which its way changes: so
-// a pair that touches nothing else that moves is found wherever it moves. Among others, iterations are no finer; and a
-// coarse run takes for balanced what its tolerance is wider than.
+// True if the pair moves and touches nothing else that moves; then it is tested in every partial substep. Reason: a
+// body that nearly balances on an edge is turned by the small offset of its centre, which each motion changes. Among
+// other contacts, iterations are no finer than that offset; a coarse run's tolerance is wider than it.
 static bool moves_alone(const ob_island_work *w, const ob_contact *contact, double speed)
 {
 	return w->coarseness == 1 && contact->lane != OB_NO_LANE && !w->body[contact->a].among_others &&
 	       !w->body[contact->b].among_others && speed > standing * w->unit.speed;
 }
 
-// True where it would be found again as it is: its bodies have not moved since, nor been hit, and points were looked
-// for as far. A ghost goes on to where its body is read next.
+// True if another test would find the same geometry: the bodies have not moved since, nor been hit, and points were
+// sought as far ahead. Never true with ghosts, which move on.
 static bool is_of_now(const ob_sim *s, const ob_contact *contact)
 {
 	const ob_island_work *w = &s->island;
@@ -426,7 +426,7 @@ static bool is_of_now(const ob_sim *s, const ob_contact *contact)
 	       !ob_contact_was_hit(w, contact);
 }
 
-// true: its geometry was found anew
+// Advances the contact's path, and tests its geometry if needed. Returns true if it was tested.
 static bool update_contact(ob_sim *s, ob_contact *contact, double since, double ahead)
 {
 	const ob_island_work *w = &s->island;
@@ -463,7 +463,7 @@ bool ob_contacts_update_hit(ob_sim *s, double ahead)
 	return any;
 }
 
-// By colour, and by age within a colour.
+// Sorts batches by colour, and by age within a colour.
 static void order_batches(ob_island_work *w)
 {
 	uint32_t next[OB_COLOURS + 2] = { 0 }, colours = 0;
@@ -479,7 +479,7 @@ static void order_batches(ob_island_work *w)
 	w->order_stale = false;
 }
 
-// Notes which pairs touch nothing else, and into each lane how many contacts its bodies have.
+// Marks the pairs that touch nothing else, and counts in each lane the contacts of its bodies.
 static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 {
 	b->isolated = b->hit = 0;
@@ -497,8 +497,8 @@ static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 	}
 }
 
-// How many contacts of each body may carry something in the partial substep: 0, 1 or more. Others have lanes, too, or
-// do not: that depends on when they were looked at last.
+// Counts the contacts of each body that may carry load in the partial substep: 0, 1 or more. Lanes do not show it: for
+// other contacts they depend on when the narrow phase ran last.
 static void count_in_reach(ob_island_work *w)
 {
 	for (uint32_t row = 0; row < w->rows; row++)
@@ -532,13 +532,13 @@ void ob_contacts_prepare(ob_sim *s)
 
 // ---- between the universe and the island
 
-// True of what the step before has left, not an earlier one.
+// True if the step before wrote the state, not an earlier one.
 static bool is_newest(const ob_universe *u, const ob_pair_record *r, const ob_pair_state *p)
 {
 	return r->stamp[p - r->version] == ob_step_count(u) + 1;
 }
 
-// The one that comes next, of which is known what it is between.
+// Loads the next contact, whose a and b are set.
 static void load_contact(ob_sim *s, const ob_pair_key *k)
 {
 	ob_island_work *w = &s->island;
@@ -572,7 +572,7 @@ static void load_contact(ob_sim *s, const ob_pair_key *k)
 			impulse[i] * (w->h / p->substep);
 }
 
-// Each side is solved for itself, against a ghost of the other.
+// Loads a pair twice: each side is solved for itself, against a ghost of the other.
 static void load_with_ghosts(ob_sim *s, const ob_pair_key *k)
 {
 	ob_contact *own = &s->island.contact[s->island.contacts], *mirror = own + 1;
@@ -642,7 +642,7 @@ void ob_contacts_load(ob_sim *s, const ob_island *is)
 	ob_surfaces_begin(s);
 }
 
-// The lane's impulses, or zeros if it has none.
+// Copies the lane's impulses, or zeros without a lane.
 static void store_impulses(const ob_island_work *w, const ob_contact *contact, double *impulse)
 {
 	for (int j = 0; j < OB_PAIR_ROWS; j++)
@@ -685,12 +685,12 @@ void ob_contacts_store(ob_sim *s)
 		found.pair = contact->key;
 		found.limit = contact->limit - path + w->body[contact->a].path + w->body[contact->b].path;
 		found.active = active;
-		found.kept = active || k->record != OB_NO_RECORD; // it may be of an earlier solution of the step
+		found.kept = active || k->record != OB_NO_RECORD; // the step may have been solved before
 		found.two_sided = ob_ghosts_used(s);
 		if (found.kept)
 			store_contact(w, contact, &found.state);
 		memset(found.impulse_b, 0,
-		       sizeof found.impulse_b); // where there is one side: not another pair's of before
+		       sizeof found.impulse_b); // zero with one side: not the impulses of an earlier pair
 		if (found.kept && mirror)
 			store_impulses(w, mirror, found.impulse_b);
 		ob_commit_contact(s, &found);

@@ -2,7 +2,7 @@
 
 #include "sim/island_builder.h"
 
-// Who is busy until when (ns).
+// Finish time (ns) of each simulated worker.
 typedef struct crew {
 	uint64_t until[OB_SIMULATED_WORKERS];
 	uint32_t count;
@@ -25,7 +25,7 @@ static void claim_tasks(crew *c, ob_universe *u, uint32_t per_worker)
 		claim(c, ob_task_take_time(u, i));
 }
 
-// The islands that were to be solved come first, the largest before all others.
+// Claims chunks of islands. Unsolved islands come first in the list, the largest ahead.
 static void claim_chunks(crew *c, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);

@@ -1,4 +1,4 @@
-// Digests of what ranks compare (peers.h, holdings.h): of whole words.
+// Digests of whole words, which ranks compare (peers.h, holdings.h).
 #ifndef OB_SIM_DIGEST_H
 #define OB_SIM_DIGEST_H
 
@@ -12,9 +12,9 @@ static inline uint64_t ob_digest_word(uint64_t sum, uint64_t word)
 	return sum ^ sum >> 29;
 }
 
-// bytes: a multiple of 8. The sum of products of two words each, by Black, Halevi, Krawczyk, Krovetz and Rogaway (UMAC:
-// fast and secure message authentication, 1999: NH), whose keys are multiples of a number: no product waits for
-// another.
+// Returns the digest of memory; bytes: a multiple of 8. It sums products of two words each: NH of Black, Halevi,
+// Krawczyk, Krovetz and Rogaway (UMAC: fast and secure message authentication, 1999). Keys are multiples of a number
+// here, so no product waits for another.
 static inline uint64_t ob_digest_words(const void *words, size_t bytes)
 {
 	const uint64_t step = 0x9e3779b97f4a7c15u, other = 0xd1b54a32d192ed03u;
