@@ -7,22 +7,22 @@
 #include "sim/budget.h"
 #include "sim/relative_speed.h"
 
-enum { ROOT = UINT32_MAX, UNREACHED = ROOT - 1 }; // in parent_contact[]
+enum { ROOT = UINT32_MAX, UNREACHED = ROOT - 1 }; // values of parent_contact[]
 
-static const double compliance = 1e-6; // of a row's own response
-static const double compliance_in_cycles = 1e-5; // .. where several rows may depend on each other
-static const uint32_t max_block_products = 64; // of the sparse factorisation, for each body ..
-static const uint32_t max_cyclic_bodies = 512; // .. of which there are no more
+static const double compliance = 1e-6; // share of a row's own response
+static const double compliance_in_cycles = 1e-5; // the same in cycles, where rows may depend on each other
+static const uint32_t max_block_products = 64; // products of blocks in the sparse factorisation, per body, at most
+static const uint32_t max_cyclic_bodies = 512; // bodies of an island with cycles, at most
 
-// When a direct solve is worth its cost.
+// Thresholds above which a direct solve is worth its cost.
 static const double residual_threshold = 1e-7; // m/s
-static const double residual_after_correction = 1e-8; // m/s, where the last partial substep was solved directly
+static const double residual_after_correction = 1e-8; // m/s, if the last partial substep was solved directly
 static const int max_solves = 4; // in a partial substep
-static const double creep_speed = 1e-4; // m/s: slower bodies whose contacts hold ought to stand
-static const double neutral_speed = 1e-9; // m/s: what neither presses nor opens holds
-static const double standing_speed = .02; // m/s: faster ones fall or slide
-static const double rest_speed = 1e-3, min_rest_time = .25; // m/s, s: what has come to rest ..
-static const double unmoved_path = 2e-4; // m: .. what has not moved yet
+static const double creep_speed = 1e-4; // m/s: slower bodies whose contacts hold should stand still
+static const double neutral_speed = 1e-9; // m/s: a point that opens more slowly holds, even if it does not press
+static const double standing_speed = .02; // m/s: faster bodies fall or slide
+static const double rest_speed = 1e-3, min_rest_time = .25; // m/s, s: a body rests that has been slower for longer
+static const double unmoved_path = 2e-4; // m: or that has moved less since its start
 
 static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
 {
@@ -39,9 +39,9 @@ static int lane_of(const ob_island_work *w, const ob_direct_contact *c)
 	return w->contact[c->contact].lane % OB_LANES;
 }
 
-// Four normals carry a load in many ways: n is the change of their impulses that changes nothing else (the null space
-// of J^T). On a plane its elements are the areas of the triangles between the other three points, in turn added and
-// taken away.
+// Finds the change n of four normal impulses that changes nothing else (null space of J^T): four points can share a
+// load in many ways. On a plane its elements are the areas of the triangles between the other three points, with
+// alternating signs. Returns false if the points lie on a line.
 static bool normal_null_space(const ob_batch *b, int l, double *n)
 {
 	double at[4][2], length2 = 0;
@@ -68,7 +68,8 @@ static bool has_four_normals(const ob_direct_contact *c)
 
 // ---- assembling
 
-// Rows that hold: normals that press or are about to, friction and twist within their bounds. Returns how many.
+// Lists the rows that hold: normals that press or are about to, friction and twist within their bounds. Returns their
+// number.
 static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double neutral, uint8_t *row)
 {
 	const double within = .999;
@@ -87,7 +88,7 @@ static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double
 	return n;
 }
 
-// One row for both bodies; a's and b's sides of a batch differ in sign.
+// Fills one row of the joint for both bodies. The sides a and b of a batch differ in sign.
 static void fill_row(const ob_batch *b, int l, int row, bool child_is_a, uint32_t r, ob_joint *j)
 {
 	static const lanes none[3];
@@ -117,7 +118,7 @@ static void fill_joint(const ob_island_work *w, ob_direct_contact *c)
 		j->parent[r][6] = -w->direct.velocity[b - w->batch][row][l];
 		j->compliance[r] = softness * b->diag[row][l];
 	}
-	// Four points on a plane have no response along the null space: that part is not asked for.
+	// Four points on a plane have no response along the null space: the velocity along it is removed.
 	if (!has_four_normals(c) || !normal_null_space(b, l, n))
 		return;
 	for (int r = 0; r < 4; r++)
@@ -140,7 +141,7 @@ static void fill_link(const ob_body *m, ob_link *k)
 	}
 }
 
-// Contact i takes part, if any of its rows holds.
+// Adds contact i if any of its rows holds; else returns NULL.
 static ob_direct_contact *add_contact(ob_island_work *w, uint32_t i, uint32_t child)
 {
 	ob_direct_solver *f = &w->direct;
@@ -196,7 +197,7 @@ static uint32_t find_children(ob_island_work *w, uint32_t at, uint32_t n)
 	return n;
 }
 
-// Every body stands in the order once, those that nothing holds as trees of their own.
+// Builds the trees. Every body enters the order once; bodies that nothing holds become trees of their own.
 static void build_trees(ob_island_work *w)
 {
 	ob_direct_solver *f = &w->direct;
@@ -216,7 +217,7 @@ static void build_trees(ob_island_work *w)
 	}
 }
 
-// All contacts of which some row holds.
+// Adds all contacts with a row that holds.
 static void add_all_contacts(ob_island_work *w)
 {
 	w->direct.contacts = 0;
@@ -263,7 +264,7 @@ static uint32_t sparse_index(const ob_island_work *w, uint32_t row)
 	return w->body[row].inv_mass > 0 ? row - 1 : OB_SPARSE_FIXED;
 }
 
-// false: it would cost too much.
+// Solves for all contacts that were added. Returns false if that would cost too much.
 static bool solve_sparse(ob_island_work *w)
 {
 	ob_direct_solver *f = &w->direct;
@@ -288,8 +289,8 @@ static bool solve_sparse(ob_island_work *w)
 	return true;
 }
 
-// A load on four points can be distributed so that none pulls, as long as it stands between them: x, the four impulses,
-// goes along the null space to the middle of what is allowed.
+// Distributes a load on four points so that none pulls, which is possible if the load lies between them. Moves x, the
+// four impulses, along the null space to the middle of the admissible range.
 static void distribute_load(const ob_batch *b, int l, double *x)
 {
 	double n[4], from = -INFINITY, to = INFINITY;
@@ -320,7 +321,7 @@ static void project_on_cone(const ob_batch *b, int l, double *x)
 	x[6] = ob_max(-bound * b->radius[l], ob_min(bound * b->radius[l], x[6]));
 }
 
-// The share alpha of the solution, projected: changes of the impulses, and of the velocities in w->delta.
+// Projects the share alpha of the solution on the cones: finds the changes of impulses, and of velocities in w->delta.
 static void project_solution(ob_island_work *w, double alpha)
 {
 	ob_direct_solver *f = &w->direct;
@@ -347,7 +348,7 @@ static void project_solution(ob_island_work *w, double alpha)
 		ob_batch_apply_impulses(&w->batch[i], f->impulse_change[i], w->delta);
 }
 
-// How far along the change the residual energy falls, 1 at most: it is slope t + curvature t^2 / 2.
+// Returns the share of the change, at most 1, that minimises the residual energy, slope t + curvature t^2 / 2.
 static double line_search(const ob_island_work *w)
 {
 	const ob_direct_solver *f = &w->direct;
@@ -384,14 +385,14 @@ bool ob_direct_solve(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
-	const double backtrack = .3, min_step = .5; // projection bends the direction: a smaller share is tried then
+	const double backtrack = .3, min_step = .5; // the projection bends the direction: then a smaller share is tried
 	const double min_alpha = f->shape == OB_DIRECT_CYCLIC ? backtrack : 1e-3;
 	double alpha = 1, t;
 	for (uint32_t i = 0; i < w->batches; i++)
 		ob_batch_prepare(&w->batch[i]);
 	find_row_velocities(w);
 	s->counters.direct_solves++;
-	enum { OF_TREES = 64, SPARSE = 640 }; // for each body, at most
+	enum { OF_TREES = 64, SPARSE = 640 }; // work for each body, at most
 	ob_budget_note(s, (uint64_t)(f->shape == OB_DIRECT_CYCLIC ? SPARSE : OF_TREES) * w->bodies);
 	if (!find_direction(w))
 		return false;
@@ -411,7 +412,7 @@ bool ob_direct_solve(ob_sim *s)
 	return true;
 }
 
-// ---- when a direct solve is worth its cost
+// ---- decision for a direct solve
 
 void ob_direct_begin(ob_direct_solver *f)
 {
@@ -457,8 +458,8 @@ static void reserve(ob_direct_solver *f, const ob_island_work *w)
 	}
 }
 
-// m/s, at the velocities in rows, of two bodies that touch, one's against the other's: the largest, and the sum of all.
-// How fast a body slides along a plane without friction does not matter.
+// Returns the largest relative speed (m/s) of touching bodies, at the velocities in rows. sum: sum over all contacts
+// (m/s). Sliding along a plane without friction does not count.
 static double fastest_contact(const ob_island_work *w, const ob_body_row *rows, double *sum)
 {
 	double most = 0;
@@ -483,7 +484,7 @@ static bool stands_still(const ob_island_work *w)
 	return fastest_contact(w, w->v, &sum) <= standing_speed * w->unit.speed;
 }
 
-// Where contacts close cycles, trees would ask one contact for what several carry.
+// True if contacts close cycles: trees would load one contact with what several carry.
 static bool closes_cycles(const ob_island_work *w)
 {
 	uint32_t touching = 0;
@@ -492,8 +493,8 @@ static bool closes_cycles(const ob_island_work *w)
 	return touching > w->bodies;
 }
 
-// True of a body that has been slow for some time, or has not moved yet. One that was hit is slow for a moment as often
-// as it turns back, and what it touches is not in equilibrium then.
+// True if a body has been slow for some time, or has not moved yet. A body that was hit is slow for a moment each time
+// it turns back; its contacts are not in equilibrium then.
 static bool rests(const ob_island_work *w, const ob_body *body)
 {
 	return body->speed <= rest_speed * w->unit.speed &&
@@ -508,8 +509,8 @@ static bool has_come_to_rest(const ob_island_work *w)
 	return true;
 }
 
-// True where bodies move that ought to stand. The residual does not show it: an island that sways as a whole changes
-// little from pair to pair. No body moves faster against the ground than all pairs together.
+// True if bodies creep that should stand still. The residual does not show it: in an island that sways as a whole it
+// changes little from pair to pair. The sum over all pairs does: no body moves faster against the ground.
 static bool creeps(const ob_island_work *w)
 {
 	double sum, fastest = fastest_contact(w, w->u, &sum);
@@ -521,8 +522,8 @@ static bool is_worthwhile(const ob_sim *s, double residual)
 	const ob_direct_solver *f = &s->island.direct;
 	if (f->gave_up || f->shape == OB_DIRECT_UNFIT || s->settings->solver != OB_SOLVER_COLOURED)
 		return false;
-	// After a direct solve the next partial substep is solved finely, too: the correction is a part of the impulses
-	// that its warm start repeats, and left alone it would go on for ever, to and fro.
+	// After a direct solve, the next partial substep is solved finely, too. The correction is part of the impulses
+	// that the warm start repeats; left alone, it would oscillate for ever.
 	const double enough =
 		f->used_last && f->shape != OB_DIRECT_CYCLIC ? residual_after_correction : residual_threshold;
 	return residual > enough * s->island.unit.speed || (!f->solves && creeps(&s->island));

@@ -2,9 +2,9 @@
 
 #include "sim/relative_speed.h"
 
-static const double steady_speed = 1e-3; // m/s, of any point of a body against what touches it
-static const double residual_threshold = 1e-7; // m/s: a first iteration that changes a velocity by more has work to do
-static const double min_rest_time = .1; // s; for which a coarse run does not wait as long
+static const double steady_speed = 1e-3; // m/s: relative speed of any point of a steady body and the bodies it touches
+static const double residual_threshold = 1e-7; // m/s: largest change of velocity by the first iteration in equilibrium
+static const double min_rest_time = .1; // s; shorter in a coarse run
 
 bool ob_equilibrium_likely(const ob_sim *s, const ob_island *is)
 {
@@ -46,7 +46,7 @@ bool ob_equilibrium_reached(const ob_island_work *w)
 bool ob_equilibrium_body_steady(const ob_island_work *w, uint32_t row)
 {
 	const ob_body *body = &w->body[row];
-	double speed = 0; // against what it touches: a structure may travel as a whole
+	double speed = 0; // relative to the touching bodies: a structure may travel as a whole
 	for (uint32_t k = 0; k < body->adjacent; k++) {
 		const ob_contact *contact = &w->contact[w->adjacency[body->first_adjacent + k]];
 		if (contact->lane != OB_NO_LANE)

@@ -5,9 +5,9 @@
 static const uint32_t max_substeps = OB_MAX_SUBSTEPS;
 static_assert(1 << (OB_SUBSTEP_CHOICES - 1) == OB_MAX_SUBSTEPS, "each number of substeps has its place");
 static const uint32_t max_substeps_for_creep = 64; // more do not help friction to hold
-static const double creep_time = 1; // s, for which slip is remembered
-static const double sticking_share = .999; // of its bound: a smaller friction impulse holds
-static const double error_ratio = 8; // by so much half as many substeps may multiply the error
+static const double creep_time = 1; // s: time for which slip is remembered
+static const double sticking_share = .999; // share of its bound: friction holds if its impulse is smaller
+static const double error_ratio = 8; // factor by which the error may grow with half as many substeps
 
 uint32_t ob_error_control_substeps(const ob_sim *s, const ob_island *is)
 {
@@ -48,7 +48,7 @@ void ob_error_control_note_depth(ob_sim *s, bool at_start)
 	}
 }
 
-// m/s, at the contact's centroid, as it was solved, if friction holds it
+// Returns the slip (m/s) at the contact's centroid in the solution, if friction holds it; else 0.
 static double slip_of(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
@@ -90,7 +90,7 @@ void ob_error_control_note_bounce(ob_sim *s)
 		const ob_contact *contact = &w->contact[i];
 		if (contact->lane == OB_NO_LANE || !(contact->e > 0))
 			continue;
-		// m/s: the approach that would rebound to the height of the tolerance, and the slowest that is resolved
+		// m/s: approach that would rebound to the height of the tolerance; slowest approach that is resolved
 		double tolerable = sqrt(2 * w->max_acceleration * tolerance) / contact->e,
 		       resolved = 4 * w->max_acceleration * w->substep;
 		ob_impact slow = { .h = w->h, .threshold = tolerable, .gain = INFINITY, .points = ~0u };
@@ -102,15 +102,15 @@ void ob_error_control_note_bounce(ob_sim *s)
 	w->new_error = ob_max(w->new_error, lost);
 }
 
-// ---- accepted, or solved again
+// ---- accepting a solution, or asking for another
 
-// Of what has slipped, in a step.
+// Returns the share of the accumulated slip that is forgotten in a step.
 static double fading_of(const ob_island_work *w, const ob_run_settings *run)
 {
 	return ob_min(1, run->step_length / (creep_time * ob_coarse_time(w)));
 }
 
-// What slipped fades over the creep time.
+// Accumulates slip. It fades over the creep time.
 static void note_creep(ob_sim *s)
 {
 	ob_island_work *w = &s->island;
@@ -126,13 +126,13 @@ static void note_creep(ob_sim *s)
 	}
 }
 
-// The substeps that a contact needs: more already before its error is too large, so that few islands are solved twice;
-// fewer where the error would stay tolerable.
+// Returns the number of substeps that a contact needs. It grows before the error is too large, so that few islands are
+// solved twice; it falls if the error would stay tolerable.
 static uint32_t substeps_for(const ob_island_work *w, const ob_contact *contact, const ob_run_settings *run)
 {
 	const double tolerance = run->tolerance, fading = fading_of(w, run);
 	double depth = contact->initial_depth + contact->depth_growth,
-	       creep = contact->slip / fading; // which slipping on like this adds up to
+	       creep = contact->slip / fading; // sum to which slip at this rate converges
 	double change = ob_max(depth, contact->creep) > .5 * tolerance ? ob_max(contact->depth_growth, creep)
 								       : contact->depth_growth;
 	uint32_t n = w->substeps;
@@ -143,7 +143,7 @@ static uint32_t substeps_for(const ob_island_work *w, const ob_contact *contact,
 	return n;
 }
 
-// Each body asks for what its own contacts need.
+// Sets each body's next substeps to the largest number that its contacts need.
 static void set_next_substeps(ob_sim *s)
 {
 	ob_island_work *w = &s->island;

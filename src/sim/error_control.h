@@ -2,30 +2,32 @@
 // nothing is written before the solution is stored: so it can be solved again, from the step's start, with more
 // substeps, until its error is below the run's tolerance.
 //
-//   load ── solve with the run's substeps ── error? ──> below: store, and tell the bodies how many will do next time
+//   load ── solve with the run's substeps ── error? ──> below: store, with each body's substeps for the next step
 //     ^                                        │
 //     └─────────── load again, 2 x, 4 x ───────┘ above
 //
-// The error of a solution, in metres, is the largest of
-//   depth   how deep two bodies penetrate at the end of any substep, where this step has brought them there
-//   creep   how far a contact that friction should hold has slipped in about a second
-//   bounce  how high a rebound would have gone that the substep was too long to resolve
-// All of it is a function of published state alone: the same for any worker, and after sleeping.
+// Error of a solution, in metres: the largest of
+//   depth   penetration of two bodies at the end of any substep, as far as this step has caused it
+//   creep   slip, within about a second, of a contact that friction should hold
+//   bounce  height of a rebound that the substep was too long to resolve
+// It is a function of published state alone: the same for any worker, and after sleeping.
 #ifndef OB_SIM_ERROR_CONTROL_H
 #define OB_SIM_ERROR_CONTROL_H
 
 #include "sim/state.h"
 
-// Substeps with which the island is solved first: what its bodies ask for, or the run's own number without tolerance.
+// Returns the number of substeps of an island's first solution: the largest that its bodies ask for; without a
+// tolerance, the run's own.
 uint32_t ob_error_control_substeps(const ob_sim *s, const ob_island *is);
 
-// Notes, each while the island is solved; all do nothing without a tolerance.
-// After the narrow phase. at_start: penetrations that are there now are not this step's error.
+// Note errors while the island is solved; without a tolerance they do nothing. ob_error_control_note_depth: after the
+// narrow phase. at_start: present penetrations are not this step's error.
 void ob_error_control_note_depth(ob_sim *s, bool at_start);
 void ob_error_control_note_slip(ob_sim *s); // after a partial substep
 void ob_error_control_note_bounce(ob_sim *s); // after impacts
 
-// After the last substep: true if the solution's error is tolerable; false: solve again with island.substeps.
+// Called after the last substep. Returns true if the solution's error is tolerable; false: solve again with
+// island.substeps.
 bool ob_error_control_accept(ob_sim *s);
 
 #endif

@@ -15,16 +15,16 @@
 
 enum { EXIT_CODE = 99, RANGES_MAX = 64, PAGE = 4096 };
 
-// ---- scribbling: where this process can write, whatever it was given
+// ---- scribbling on memory that this process can write
 
 typedef struct shared_range {
 	char *begin;
 	size_t pages, in_use;
-	unsigned char *resident; // [pages], bit 0; NULL = all are in use
+	unsigned char *resident; // [pages], bit 0; NULL: all are in use
 } shared_range;
 
-// Memory that it shares with others and may write, of which pages are in use. Whose universe is read-only may not ask the
-// system for that, but it knows.
+// Finds shared memory that this process may write, and its pages in use. A process with a read-only universe may not
+// ask the system: it has its own outbox alone.
 static size_t find_shared(const ob_universe *u, shared_range *out, size_t *in_use)
 {
 	if (ob_universe_contained(u) && ob_universe_harden(u) & 1 << OB_HARDEN_PAGES) {
@@ -70,7 +70,7 @@ static char *nth_page(const shared_range *r, size_t n)
 	return r->begin + i * PAGE;
 }
 
-// What bugs store: a bit too many, an index, a number, anything.
+// Returns a word as bugs store it: with a flipped bit, or an index, a special number, or random bits.
 static uint64_t spoilt(uint64_t word, uint64_t *random)
 {
 	static const double numbers[] = { 0, -1, 1e300, 1e-300, INFINITY, NAN };
@@ -137,14 +137,15 @@ static void fail(const ob_universe *u, ob_fault_kind kind, const ob_fault_plan *
 		break;
 	case OB_FAULT_ABORT:
 		say_and_abort();
-	case OB_FAULT_NOSPACE: // these two are not a simulator's
+	case OB_FAULT_NOSPACE: // these two do not concern simulators
 	case OB_FAULT_NOPAGES:
 	case OB_FAULT_KINDS:
 		break;
 	}
 }
 
-// The lives are part of what is drawn: or who begins again from a checkpoint would fail at the same place for ever.
+// Draws a chance to fail. Lives take part in the draw: otherwise a simulator restarted from a checkpoint would fail at
+// the same place for ever.
 void ob_fault_chance(ob_sim *s)
 {
 	enum { SIMULATORS = ~(1 << OB_FAULT_NOSPACE | 1 << OB_FAULT_NOPAGES) };

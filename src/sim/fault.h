@@ -1,11 +1,11 @@
-// Faults that are asked for (settings.h): a simulator fails as one might whose code has a bug, at chances that are the same
-// in each run of the same workers.
+// Injected faults (settings.h): a simulator fails as if its code had a bug, at chances that are the same in each run
+// with the same workers.
 #ifndef OB_SIM_FAULT_H
 #define OB_SIM_FAULT_H
 
 #include "sim/state.h"
 
-// A chance to fail. It does not return from some.
+// Draws a chance to fail, and fails if it hits. Some faults do not return.
 void ob_fault_chance(ob_sim *s);
 
 #endif

@@ -5,25 +5,25 @@
 
 enum { MOST_ROWS = OB_FEW_CONTACTS * OB_ROWS, NO_BODY = UINT32_MAX };
 
-static const double at_limit = 1 - 1e-9; // of its bound: a larger friction impulse slides
-// Of a row's own response, for rows of a face depend on each other; rounding grows by its inverse.
+static const double at_limit = 1 - 1e-9; // share of its bound: a larger friction impulse slides
+// Share of a row's own response. Rows of a face depend on each other; rounding errors grow by its inverse.
 static const double compliance = 1e-7;
 
-// A unit of one unknown: what it is on both bodies, and what it does to their velocities.
+// Unknown of the linear system: the effect of its unit on both bodies, and on their velocities.
 typedef struct unknown {
-	uint32_t contact; // of the few
-	int row; // of the batch; OB_POINTS: friction, across or along the first tangent
-	uint32_t a, b; // rows of bodies; NO_BODY: of what no impulse moves
-	bool brings; // friction
+	uint32_t contact; // index in few.lane
+	int row; // of the batch; OB_POINTS: friction, along or across the first tangent
+	uint32_t a, b; // rows of bodies; NO_BODY for one that does not move
+	bool brings; // its load brings friction
 	double of_a[6], of_b[6]; // J^T
 	double to_a[6], to_b[6]; // M^-1 J^T, with the friction that a load brings
-	double left, extra; // m/s or rad/s: its velocity; what is added to its response
-	double tangents[2]; // of friction
+	double left, extra; // m/s or rad/s: its velocity; addition to its response
+	double tangents[2]; // shares of friction's two tangents
 } unknown;
 
 typedef struct few {
 	uint32_t contacts, lane[OB_FEW_CONTACTS];
-	double brought[OB_FEW_CONTACTS][OB_ROWS]; // friction and twist, for a unit of load
+	double brought[OB_FEW_CONTACTS][OB_ROWS]; // friction and twist for a unit of load
 	uint32_t unknowns;
 	unknown unknown[MOST_ROWS];
 	double m[MOST_ROWS][MOST_ROWS + 1];
@@ -42,7 +42,7 @@ static void add_row(const ob_batch *b, uint32_t l, int row, double share, double
 	}
 }
 
-// false: it does not move.
+// Finds the change of velocity by an impulse. Returns false if the body does not move.
 static bool accelerate(double inv_mass, const lanes *inertia, uint32_t l, const double *impulse, double *to)
 {
 	if (!(inv_mass > 0))
@@ -64,7 +64,7 @@ static double dot6(const double *x, const double *y)
 	return sum;
 }
 
-// The unknown is so much of each tangent, or of the row.
+// Adds an unknown: a row, or friction in a direction (tangents: shares of the two).
 static unknown *add_unknown(const ob_island_work *w, few *f, uint32_t contact, int row, const double *tangents)
 {
 	const uint32_t l = f->lane[contact] % OB_LANES;
@@ -95,7 +95,7 @@ static unknown *add_unknown(const ob_island_work *w, few *f, uint32_t contact, i
 	return x;
 }
 
-// Slip along the two tangents, m/s
+// Finds the slip along the two tangents (m/s).
 static void slip_of(const ob_island_work *w, const ob_batch *b, uint32_t l, double *slip)
 {
 	for (int k = 0; k < 2; k++) {
@@ -151,7 +151,7 @@ static double response(const unknown *i, const unknown *j)
 	return sum;
 }
 
-// What no friction is brought to is symmetric.
+// Fills the matrix. It is symmetric except for loads that bring friction.
 static void fill_matrix(few *f)
 {
 	for (uint32_t i = 0; i < f->unknowns; i++) {
@@ -166,7 +166,7 @@ static void fill_matrix(few *f)
 	}
 }
 
-// By elimination without pivots; the last column becomes the solution.
+// Solves by elimination without pivots; the last column becomes the solution.
 static void solve(few *f)
 {
 	const uint32_t n = f->unknowns;
@@ -188,7 +188,7 @@ static void solve(few *f)
 	}
 }
 
-// Of the solution, until the first point lets go.
+// Returns the share of the solution up to the place where the first point's impulse reaches zero.
 static double share_of(const ob_island_work *w, const few *f)
 {
 	double share = 1;

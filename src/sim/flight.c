@@ -11,8 +11,8 @@
 
 // ---- impacts on planes
 
-static const double contact_approach = 1e-4; // m/s: a slower approach is left to the contact solver
-static const double on_plane_gap = 1e-9; // m, and more where coordinates are rounded: a point so near is on the plane
+static const double contact_approach = 1e-4; // m/s: the contact solver treats slower approaches
+static const double on_plane_gap = 1e-9; // m, and more if coordinates are rounded: a point this near is on the plane
 
 static ob_half_space half_space(const ob_universe *u, uint32_t plane)
 {
@@ -22,7 +22,8 @@ static ob_half_space half_space(const ob_universe *u, uint32_t plane)
 	return (ob_half_space){ n, ob_dot(n, m->p) };
 }
 
-// The flight as motion/flight.h takes it. Objects that touch as axis-aligned boxes reach beyond their bounding sphere.
+// Returns the flight in the form of motion/flight.h. Objects that touch as axis-aligned boxes reach beyond their
+// bounding sphere.
 static ob_flier landing_body(const ob_sim *s, const ob_course *c)
 {
 	const ob_passport *body = ob_passport_of(s->u, c->id);
@@ -39,7 +40,8 @@ static ob_flier landing_body(const ob_sim *s, const ob_course *c)
 
 enum { SUPPORT_POINTS = 8 };
 
-// The points by which a body can stand on a plane with this normal: arms (m, world) from its centre. Returns how many.
+// Finds the points by which a body can stand on a plane with this normal: arms (m, world) from its centre. Returns
+// their number.
 static int support_points(const ob_passport *body, ob_vec3 n, const ob_mat3 *r, ob_vec3 *arm)
 {
 	switch (body->shape) {
@@ -71,7 +73,7 @@ static int support_points(const ob_passport *body, ob_vec3 n, const ob_mat3 *r, 
 	}
 }
 
-// The same of a hull: no more than four of what may be many.
+// Finds the points of a hull on the plane: at most four, however many there are.
 static uint32_t corners_on_plane(ob_units unit, const ob_hull *hull, const ob_half_space *ground, const ob_state *s,
 				 double rounding, ob_impact_point *point)
 {
@@ -95,7 +97,8 @@ static uint32_t corners_on_plane(ob_units unit, const ob_hull *hull, const ob_ha
 	return m.separation <= rounding ? (uint32_t)m.points : 0;
 }
 
-// The points that are on the plane: those within rounding of it, and what touches at the same time with them.
+// Finds the points on the plane: those within rounding of it, and those that touch at the same time. Returns their
+// number.
 static uint32_t points_on_plane(ob_units unit, const ob_passport *body, const ob_hull *hull,
 				const ob_half_space *ground, const ob_state *s, ob_impact_point *point)
 {
@@ -118,7 +121,7 @@ static uint32_t points_on_plane(ob_units unit, const ob_passport *body, const ob
 	return lowest <= rounding ? found : 0;
 }
 
-// m/s, of the plane's surface, in the plane
+// Returns the velocity (m/s) of the plane's surface, in the plane.
 static ob_vec3 running_velocity(const ob_universe *u, uint32_t plane, const ob_half_space *ground)
 {
 	const ob_vec3 own = ob_passport_of(u, plane)->surface_velocity;
@@ -129,7 +132,7 @@ static ob_vec3 running_velocity(const ob_universe *u, uint32_t plane, const ob_h
 	return ob_madd(v, -ob_dot(v, ground->normal), ground->normal);
 }
 
-// Changes velocities by the impact of all points that are on the plane. false: it does not rebound here.
+// Applies the impact of all points on the plane to the velocities. Returns false if the object does not rebound here.
 static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
 {
 	const ob_passport *passport = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);
@@ -160,11 +163,11 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 
 // ---- flight
 
-enum { IMPACTS_PER_STEP = 5 }; // at most; a body that hits planes more often is left to the contact solver
+enum { IMPACTS_PER_STEP = 5 }; // at most; the contact solver treats bodies that hit planes more often
 
-static const double max_horizon = 2; // s: impacts are computed so far ahead at most ..
-static const double least_sweep = 8; // radii: .. and if a flight's fat AABB may be longer than that ..
-static const double most_neighbours = 32; // .. no farther than brings it so many neighbours
+static const double max_horizon = 2; // s: bound of the time for which impacts are computed ahead
+static const double least_sweep = 8; // radii: length of a flight's fat AABB that is always allowed
+static const double most_neighbours = 32; // neighbours that a longer one is expected to bring, at most
 
 ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id)
 {
@@ -184,7 +187,7 @@ ob_motion ob_ballistic_flight(const ob_sim *s, uint32_t id)
 	return m;
 }
 
-// How it turns, by the worker's cache; NULL: it does not, or is told how.
+// Returns the rotation from the worker's cache; NULL if the object does not rotate, or is kinematic.
 static ob_spin *cached_rotation(ob_sim *s, uint32_t id, const ob_motion *f, double time)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);
@@ -217,7 +220,7 @@ void ob_ballistic_prepare(ob_sim *s, const uint32_t *id, const ob_motion *const 
 		bool listed = false;
 		ob_spin *x = cached_rotation(s, id[k], f[k], time);
 		for (int i = 0; i < spins;
-		     i++) // a body of several pairs; of two bodies that have one place there the later
+		     i++) // a body may be in several pairs; two bodies may share a place, which the later has
 			listed |= spin[i] == x;
 		if (x && !listed)
 			at[spins] = time - f[k]->t0, spin[spins++] = x;
@@ -225,7 +228,7 @@ void ob_ballistic_prepare(ob_sim *s, const uint32_t *id, const ob_motion *const 
 	ob_spin_prepare(spin, at, spins);
 }
 
-// Bound of the speed of any point of the object between two instants of the flight (m/s).
+// Bounds the speed (m/s) of any point of the object between two instants (s) of the flight.
 static double flight_speed_bound(ob_sim *s, uint32_t id, const ob_motion *f, const ob_spin *spin, double from,
 				 double until)
 {
@@ -234,9 +237,9 @@ static double flight_speed_bound(ob_sim *s, uint32_t id, const ob_motion *f, con
 	return ob_max(begin, end) + (spin ? spin->fastest * ob_shape_radius(body->shape, body->size) : 0);
 }
 
-// Publishes the flight m that holds after the running step; m->path is that at the step's end. straight: it held from
-// the step's start on. Then its fat AABB need hold no more than the path, from that start to the end of the step that
-// visits it next: whatever throws it off its path makes a new one. After an impact it holds wherever the body was.
+// Publishes the flight m, valid after the running step; m->path: at the step's end. straight: it was valid from the
+// step's start. Then its fat AABB only has to hold the path from that start to the end of the next step that visits it:
+// a body thrown off its path gets a new one. After an impact the box holds all places where the body was.
 static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *spin, bool straight)
 {
 	const ob_run_settings *run = s->settings;
@@ -247,7 +250,7 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *
 	due -= (double)due * h > m->valid_until && due > step; // the quotient may have been rounded up
 	double last = (double)(due + 1) * h, reach = flight_speed_bound(s, id, m, spin, end, last) * h;
 	const double from = straight ? end - h : end;
-	// Of what turns the box is that of the bounding sphere, so its attitude need not be known.
+	// The box of a rotating object is that of its bounding sphere, so its attitude is not needed.
 	ob_motion rest = { .p = ob_centre_at(m, from), .q = m->q, .v = ob_velocity_at(m, from), .w = m->w, .a = m->a };
 	const ob_state now = { { ob_centre_at(m, end), m->q }, ob_velocity_at(m, end), m->w };
 	double box[6];
@@ -295,7 +298,7 @@ static ob_state state_by_ode(ob_sim *s, uint32_t id)
 	return now;
 }
 
-// ODE's stepper computes no impact ahead: one step.
+// Advances by one step with ODE's stepper, which computes no impacts ahead.
 static void step_by_ode(ob_sim *s, uint32_t id)
 {
 	const ob_run_settings *run = s->settings;
@@ -317,9 +320,9 @@ static void step_by_ode(ob_sim *s, uint32_t id)
 	ob_body_publish(s, id, &m, &end);
 }
 
-// For how long a flight is computed from this velocity on (s). Its fat AABB holds all of it, and overlaps that of
-// whatever is in its column: where many fly close together, as long as is expected to bring no more than the most
-// neighbours, judged by those that the object's box has now. What flies alone is computed far ahead.
+// Returns the time (s) for which a flight is computed from this velocity on. Its fat AABB holds all of the flight, and
+// overlaps those of all objects in its column. So its length is bounded by the expected number of neighbours, judged by
+// those of the present box. A lone object's flight is computed far ahead.
 static double flight_horizon(const ob_sim *s, uint32_t id, ob_vec3 v, ob_vec3 a)
 {
 	const ob_passport *body = ob_passport_of(s->u, id);
@@ -330,10 +333,10 @@ static double flight_horizon(const ob_sim *s, uint32_t id, ob_vec3 v, ob_vec3 a)
 	if (neighbours != UINT32_MAX)
 		length = ob_max(length, side * most_neighbours / ob_max(1, neighbours));
 	double speed = ob_norm(v), fall = sqrt(speed * speed + 2 * ob_norm(a) * length);
-	return ob_min(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // for which it moves so far
+	return ob_min(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // time to move so far
 }
 
-// How it turns, where that can be seen: by what the cache has of it, or from the beginning.
+// Takes the rotation of a visibly rotating object from the cache, or computes it anew.
 static void take_rotation(ob_sim *s, ob_course *c)
 {
 	const ob_passport *body = ob_passport_of(s->u, c->id);
@@ -408,7 +411,7 @@ ob_state ob_course_state(ob_sim *s, const ob_course *c)
 	const ob_motion *m = &c->m;
 	ob_state now = { { ob_centre_at(m, c->since), m->q }, ob_velocity_at(m, c->since), m->w };
 	ob_spin *spin = c->spin;
-	if (!spin && ob_norm2(m->w) > 0) // of a sphere
+	if (!spin && ob_norm2(m->w) > 0) // a sphere's rotation
 		spin = ob_rotation_cache_get(&s->rotations, c->id, m->q, m->w, ob_passport_of(s->u, c->id)->inertia);
 	if (spin)
 		ob_spin_at(spin, c->since - m->t0, &now.pose.q, &now.w);
@@ -434,14 +437,15 @@ bool ob_course_rebound(ob_sim *s, ob_course *c)
 
 void ob_course_publish(ob_sim *s, ob_course *c)
 {
-	// After one impact, what was published before holds up to it; not up to the last of several.
+	// After one impact, the motion published before is valid up to it; after several it is not valid up to the
+	// last.
 	c->m.flags = c->impacts < 2 ? OB_MOTION_FREE : 0;
 	publish_flight(s, c->id, &c->m, c->spin, c->impacts == 0);
 	if (c->spin)
 		ob_rotation_cache_put(&s->rotations, c->id, c->spin);
 }
 
-// Makes ready where they have come to.
+// Prepares the rotations for the present states of n courses.
 static void prepare_states(ob_course *const *c, uint32_t n)
 {
 	ob_spin *spin[OB_COURSES];
@@ -470,7 +474,7 @@ void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
 		return;
 	}
 	ob_courses_begin(s, id, c, n);
-	while (left) { // from one impact of each to the next
+	while (left) { // from impact to impact of each
 		uint32_t hit = 0, off = 0;
 		for (uint32_t k = 0; k < left; k++) {
 			ob_course_follow(s, on[k], ob_min(on[k]->m.valid_until, end));
@@ -487,7 +491,7 @@ void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
 		left = off;
 	}
 	for (uint32_t k = 0; k < n; k++) {
-		ob_budget_begin_share(s, id[k]); // of its own, so that the sum does not depend on who is beside it
+		ob_budget_begin_share(s, id[k]); // own share: the sum does not depend on the objects beside it
 		ob_budget_note(s, c[k].work);
 		ob_budget_spent(s);
 		if (done[k]) {

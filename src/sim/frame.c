@@ -6,21 +6,22 @@
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
-static const double same_share = 1e-9; // of an acceleration: another that differs by less is the same
+static const double same_share = 1e-9; // share of an acceleration: smaller differences do not count
 
 static bool is_slippery(const ob_body *body)
 {
 	return body->shape == OB_SHAPE_PLANE && body->friction == 0;
 }
 
-// m/s^2, of a against b, as it is felt on the body that has b: what goes along a plane without friction is not.
+// Returns the magnitude of a - b (m/s^2) as it acts on the body, whose acceleration is b. Its component along a plane
+// without friction does not count.
 static double felt_on(const ob_body *body, ob_vec3 a, ob_vec3 b)
 {
 	const ob_vec3 felt = ob_sub(a, b);
 	return is_slippery(body) ? fabs(ob_dot(felt, ob_column(&body->r, 2))) : ob_norm(felt);
 }
 
-// Of what moves itself: exactly that of each where all have the same.
+// Returns the mean acceleration of the moving bodies (m/s^2): exactly the common one if they share it.
 static ob_vec3 mean_acceleration(const ob_island_work *w)
 {
 	ob_vec3 sum = { 0, 0, 0 };
@@ -32,8 +33,8 @@ static ob_vec3 mean_acceleration(const ob_island_work *w)
 	return same ? w->body[1].acceleration : sum;
 }
 
-// The acceleration of what holds the bodies, which is one as long as all of it goes with it; of bodies that nothing
-// holds, their mean. 0: there is no such frame.
+// Returns the acceleration (m/s^2) of the bodies that hold the island, if they all share it; if nothing holds it, the
+// mean of its bodies. 0: no such frame exists.
 static ob_vec3 find_frame(const ob_island_work *w)
 {
 	const ob_vec3 none = { 0, 0, 0 };
@@ -57,8 +58,8 @@ static ob_vec3 find_frame(const ob_island_work *w)
 	return a;
 }
 
-// m/s^2, by a body, the largest on any of what holds it. What a surface that swings takes away when the step begins it
-// may give again before the end.
+// Returns the largest acceleration (m/s^2) that a body feels relative to those that hold it. A swinging surface may
+// take its acceleration away at the step's start and return it before the end: both cases count.
 static double felt_on_any(const ob_island_work *w, const ob_body *body)
 {
 	const ob_vec3 none = { 0, 0, 0 };
@@ -77,7 +78,7 @@ static double felt_on_any(const ob_island_work *w, const ob_body *body)
 	return most;
 }
 
-// m/s^2: the largest that is felt on what holds the bodies, and by one of them against the others.
+// Returns the largest acceleration (m/s^2) felt by a body relative to those that hold it, or to the other bodies.
 static double felt_acceleration(const ob_island_work *w)
 {
 	const ob_vec3 mean = mean_acceleration(w);
@@ -95,7 +96,7 @@ static double felt_acceleration(const ob_island_work *w)
 	return most;
 }
 
-// The row of the pair that is fixed or moves as it is told; 0: both move themselves.
+// Returns the row of the pair's body that is fixed or driven (sim/surfaces.h); 0: both bodies are dynamic.
 static uint32_t holding_row(const ob_sim *s, const ob_island *is, uint32_t pair)
 {
 	const ob_island_work *w = &s->island;
@@ -105,7 +106,7 @@ static uint32_t holding_row(const ob_sim *s, const ob_island *is, uint32_t pair)
 	return own ? own : a > w->bodies ? a : b > w->bodies ? b : 0;
 }
 
-// J, of the bodies' motion against their centre of mass
+// Returns the energy (J) of the bodies' motion relative to their centre of mass.
 static double inner_energy(const ob_island_work *w)
 {
 	ob_vec3 mean = { 0, 0, 0 };
@@ -121,7 +122,8 @@ static double inner_energy(const ob_island_work *w)
 	return sum;
 }
 
-// m/s, of any point of a body against the centre of mass: hits among the bodies give it no more.
+// Bounds the speed (m/s) of any point of a body relative to the centre of mass: impacts among the bodies cannot exceed
+// it. energy: J, inner.
 static double most_inner_speed(const ob_body *body, double energy)
 {
 	const ob_vec3 k = body->inertia;
@@ -129,8 +131,8 @@ static double most_inner_speed(const ob_body *body, double energy)
 	return sqrt(2 * energy / body->mass) + (least > 0 ? body->radius * sqrt(2 * energy / least) : 0);
 }
 
-// True where the pair may touch within the step, whatever hits before that do to b: the same however fast all of it
-// goes. energy: J, inner
+// True if the pair may touch within the step, whatever impacts before that do to b. Does not depend on the common
+// velocity. energy: J, inner.
 static bool comes_near(ob_sim *s, uint32_t a, uint32_t b, double energy)
 {
 	const ob_island_work *w = &s->island;
@@ -141,8 +143,9 @@ static bool comes_near(ob_sim *s, uint32_t a, uint32_t b, double energy)
 	return ob_narrowphase_distance(s, a, b, way) <= way;
 }
 
-// Bodies that touch each other in the air, unless they are solved as in a field, are held by what they come near in the
-// step. Of a single one it does not matter, and what carries a load is held.
+// Marks the bodies that hold the island. Bodies that touch each other in the air are held by those that they come near
+// in the step. Bodies solved in the field are held by all. So are a single body, and an island whose fixed contacts
+// carry load.
 static void find_what_holds(ob_sim *s, const ob_island *is)
 {
 	ob_island_work *w = &s->island;

@@ -1,15 +1,15 @@
-// The frame of reference that an island is solved in. What falls together feels nothing of it, and what stands on a
-// lift feels it as weight: an island is solved as seen by who speeds up with what holds it, and how far that has come
-// is added in the end.
+// Frame of reference in which an island is solved. Bodies that fall together do not feel their common acceleration;
+// bodies on a lift feel its acceleration as weight. So an island is solved in a frame that accelerates with the bodies
+// that hold it; the motion of the frame is added at the end.
 #ifndef OB_SIM_FRAME_H
 #define OB_SIM_FRAME_H
 
 #include "sim/state.h"
 
-// Bodies are loaded, as seen from the world: finds what holds them, and from then on accelerations are those of the
-// frame. Sets max_acceleration, which they feel.
+// Enters the frame. Bodies are loaded, in world coordinates: finds the bodies that hold them, and makes accelerations
+// relative to the frame. Sets max_acceleration (m/s^2), the largest one felt.
 void ob_frame_enter(ob_sim *s, const ob_island *is);
-// After the last substep: back to the world's.
+// Returns to the world frame, after the last substep.
 void ob_frame_leave(ob_sim *s);
 
 #endif
