@@ -9,7 +9,7 @@
 #include "sim/touches.h"
 
 static const double least_approach = 1e-6; // m/s: the contact solver treats slower approaches
-static const double points_margin = 1e-6; // m: contact points this close to the first one count as hit, too
+static const double points_margin = 1e-6; // m: margin of contact points; those of them as near as the first are hit
 
 // First contact of the two bodies.
 typedef struct touch {

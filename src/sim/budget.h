@@ -23,7 +23,7 @@ void ob_budget_begin_share(ob_sim *s, uint32_t object);
 // is.
 bool ob_budget_spent(ob_sim *s);
 
-// Adds work done elsewhere on this object. Returns false if the budget is spent; then the step has failed.
+// Adds work done elsewhere on this object. Returns true if the budget is spent; then the step has failed.
 bool ob_budget_add(ob_universe *u, uint64_t work, uint32_t object);
 
 // Notes work that the counters do not contain.
