@@ -1,5 +1,5 @@
-// Two boxes: which axis separates them, and where they touch along it. Three axes lie side by side, or four corners: no
-// lane sees another but where the largest of them is looked for. For contact/kernel.c.
+// Contact manifold of two boxes: the axis that separates them, and the contact points along it. Three axes or four
+// corners are computed side by side; lanes mix only in the search for the largest. For contact/kernel.c.
 #ifndef OB_CONTACT_BOXES_H
 #define OB_CONTACT_BOXES_H
 
@@ -9,48 +9,49 @@
 #include "contact/polytope.h"
 #include "elementary/lanes.h"
 
-// Everything that the axis tests need, in a's frame. Of the four lanes the last one is not in use.
+// Data of the axis tests, in a's frame. Lane 3 is unused.
 typedef struct frame_pair {
-	lanes a[3], b[3]; // components of a's axes in the world, and of b's
-	lanes c[3], q[3]; // those of b's axes in a's frame; their absolute values
-	lanes qt[3]; // .. turned over: those of a's axes in b's frame
-	lanes t, tb; // centre of b seen from a, a's frame; along b's axes
-	lanes ha, hb; // half extents
-	double thin; // the least thickness of both
-	double rest; // m: so deep they may be in each other at rest
-	double discount; // m: so much more must an edge's axis separate than a face's
+	lanes a[3], b[3]; // world components of a's axes, one axis a lane; of b's
+	lanes c[3], q[3]; // components of b's axes in a's frame; absolute values
+	lanes qt[3]; // transpose of q: a's axes in b's frame
+	lanes t, tb; // m: b's centre from a's, along a's axes; along b's
+	lanes ha, hb; // half extents, m
+	double thin; // m: least thickness of both
+	double rest; // m: penetration permitted at rest
+	double discount; // m: an axis of edges must separate by this much more than a face's
 } frame_pair;
 
-// How it changes with time.
+// Rates of c (1/s), t and tb (m/s) of a frame_pair.
 typedef struct frame_rates {
 	double c[3][3], t[3], tb[3];
 } frame_rates;
 
 enum { FACES = 6, AXES = 15 }; // axis 0..2: faces of a; 3..5: of b; 6 + 3 i + j: edge i of a across edge j of b
 
-// The separation along each axis (m), -infinity where edges are nearly parallel: there a face's axis says the same.
+// Separation along each axis (m). -infinity for nearly parallel edges: a face's axis gives the same.
 typedef struct axis_gaps {
 	lanes gap[AXES / 3]; // three axes each; -infinity in the last lane
 	double largest_face, largest_edge;
-	int face, edge; // whose they are
+	int face, edge; // axes of the largest gaps: faces 0 .. 5, edges 0 .. 8
 } axis_gaps;
 
-static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
-// An edge's axis must separate by so much more than a face's: of the thickness, and no more than two may be in each
-// other at rest, for so deep do they get before the edge holds them.
+static const double along_face = .99; // cosine: an axis of edges this near counts as a face's normal
+// Fraction of the thickness by which an axis of edges must separate more than a face's. The resting depth limits it:
+// bodies get that deep before the edge holds them.
 static const double prefer_face = 1e-3;
-static const double prefer_face_when_deep = .02; // of the depth, beside it
-static const double nearby = .05; // of the thickness: boxes farther apart than that need no axes of edges
-static const double parallel_edges = 1e-10; // sin^2 of their angle
-static const double same_axis = .99; // cosine
-static const double same_depth = 1e-4; // of the reference box's least half extent: points that count as equally deep
+static const double prefer_face_when_deep = .02; // fraction of the depth, in addition
+static const double nearby = .05; // fraction of the thickness: boxes farther apart need no axes of edges
+static const double parallel_edges = 1e-10; // sin^2 of the edges' angle
+static const double same_axis = .99; // cosine: axes that count as one
+static const double same_depth = 1e-4; // relative to the reference box's least half extent: points that count as
+				       // equally deep
 
 static inline lanes lanes_of_three(double x, double y, double z)
 {
 	return (lanes){ x, y, z, z };
 }
 
-// Of a bit for each axis, the first; the last one if there is none, as where nothing is a number.
+// Index of the first bit that is set; "last" if none is, as after a NaN.
 static inline int first_axis(unsigned bits, int last)
 {
 	return __builtin_ctz(bits | 1u << last);
@@ -81,7 +82,7 @@ static void frame_pair_init(frame_pair *f, const ob_placed *a, const ob_placed *
 	f->tb = f->t[0] * f->c[0] + f->t[1] * f->c[1] + f->t[2] * f->c[2];
 }
 
-// Both boxes move and turn: as a sees it, in its own frame.
+// Motion of b as seen from a, in a's frame. Both boxes move and turn.
 static void frame_rates_init(frame_rates *d, const frame_pair *f, const ob_placed *a, const ob_placed *b)
 {
 	ob_vec3 apart = ob_sub(b->p, a->p), v = ob_sub(ob_sub(b->v, a->v), ob_cross(a->w, apart));
@@ -135,13 +136,13 @@ static void find_edge_gaps(const frame_pair *f, axis_gaps *s)
 			     AXES - FACES - 1);
 }
 
-// d|c|/dt of b's axis j along a's axis i, at the most where it passes 0.
+// d|c|/dt of b's axis j along a's axis i; the larger of its two values if c passes 0.
 static double growth(const frame_pair *f, const frame_rates *d, int i, int j)
 {
 	return f->q[i][j] < 1e-9 ? fabs(d->c[i][j]) : f->c[i][j] > 0 ? d->c[i][j] : -d->c[i][j];
 }
 
-// m/s at which the gap along an axis opens
+// Rate (m/s) at which the gap along an axis opens.
 static double opening_rate(const frame_pair *f, const frame_rates *d, int axis)
 {
 	double rate = 0;
@@ -171,7 +172,7 @@ static double gap_along(const axis_gaps *s, int axis)
 	return s->gap[axis / 3][axis % 3];
 }
 
-// The cosine between the axes of two faces.
+// Cosine between the normals of two faces.
 static double face_cosine(const frame_pair *f, int k, int l)
 {
 	if (k / 3 == l / 3)
@@ -179,11 +180,11 @@ static double face_cosine(const frame_pair *f, int k, int l)
 	return k < 3 ? f->q[k][l - 3] : f->q[l][k - 3];
 }
 
-// Of several axes that separate the boxes, or along which they touch no deeper than at rest, the one that closes last
-// is the one along which they will meet: as long as one stays open, nothing is hit along the others. So what slides
-// over a seam of two coplanar faces is not hit by the side of the next one. Of those that do not close at all, axes of
-// faces that touch count first: something else holds the boxes there. -1: no axis separates; crossing is set where the
-// boxes touch along two axes of faces that do not close: edge to edge, they may go on along either.
+// Chooses an axis, among those that separate the boxes or along which they touch no deeper than at rest. The one that
+// closes last is the one along which they will meet: as long as one stays open, nothing is hit along the others. So a
+// box that slides over a seam of two coplanar faces does not hit the side of the next one. Among axes that never close,
+// those of touching faces come first: something else holds the boxes there. Returns -1 if no axis separates. crossing:
+// the boxes touch along two axes of faces that do not close; edge to edge, they may go on along either.
 static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair *f, const axis_gaps *s, bool *crossing)
 {
 	frame_rates d;
@@ -215,21 +216,21 @@ static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair
 	return touching >= 0 ? touching : best;
 }
 
-// From b to a, across a face of one of them.
+// Normal of a face of either box, from b to a.
 static ob_vec3 face_normal(const ob_placed *a, const ob_placed *b, int face)
 {
 	const ob_vec3 n = ob_column(face < 3 ? &a->r : &b->r, face % 3);
 	return ob_dot(n, ob_sub(a->p, b->p)) < 0 ? ob_scale(n, -1) : n;
 }
 
-// From b to a, across an edge of each.
+// Normal across an edge of each box, from b to a.
 static ob_vec3 edge_normal(const ob_placed *a, const ob_placed *b, int edge)
 {
 	const ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3)), d = ob_sub(b->p, a->p);
 	return ob_scale(n, (ob_dot(n, d) > 0 ? -1 : 1) / ob_norm(n));
 }
 
-// Two edges: the nearest points of the lines that carry them.
+// Manifold of two edges: one point, midway between their nearest points.
 static void edge_manifold(const ob_placed *a, const ob_placed *b, int edge, ob_manifold *m)
 {
 	int i = edge / 3, j = edge % 3;
@@ -255,10 +256,10 @@ static void edge_manifold(const ob_placed *a, const ob_placed *b, int edge, ob_m
 	m->at[0] = ob_scale(ob_add(xa, xb), .5);
 }
 
-// A convex polygon in the reference face's plane: of each corner u and w in the face, z above it.
+// Convex polygon over the plane of the reference face. A corner: u and w in the plane, z above it (m).
 enum { POLYGON_MAX = 8 };
 typedef struct polygon {
-	lanes corner[POLYGON_MAX + 1]; // with room for one that is not kept
+	lanes corner[POLYGON_MAX + 1]; // with room for one that is dropped
 	int n;
 } polygon;
 
@@ -268,10 +269,10 @@ static inline void polygon_put(polygon *p, lanes corner, bool keep)
 	p->n += keep && p->n < POLYGON_MAX;
 }
 
-// Cuts away what lies beyond limit on one side (sign) of one face axis (0 = u, 1 = w).
+// Clips the polygon at the limit on one side (sign) of one face axis (0 = u, 1 = w).
 static void clip(polygon *p, int axis, double sign, double limit)
 {
-	double f[POLYGON_MAX]; // beyond
+	double f[POLYGON_MAX]; // distance beyond the limit
 	unsigned above = 0, below = 0;
 	for (int k = 0; k < p->n; k++) {
 		f[k] = sign * p->corner[k][axis] - limit;
@@ -311,8 +312,8 @@ static void reduce_to_four(polygon *p, double tie)
 		polygon_put(p, p->corner[k], keep >> k & 1);
 }
 
-// The corners of the face of box "in" that looks most against n, as seen from the reference box; of: components of the
-// axes of "in"
+// Corners of the incident face: the face of box "in" that looks most against n. Corners are relative to the centre of
+// the reference box. of: components of the axes of "in".
 static void incident_face(const ob_placed *ref, const ob_placed *in, const lanes *of, ob_vec3 n, lanes corner[3])
 {
 	const lanes c = n.x * of[0] + n.y * of[1] + n.z * of[2], far = lanes_abs(c);
@@ -333,7 +334,7 @@ static lanes dot_along(const lanes *x, ob_vec3 along)
 	return x[0] * along.x + x[1] * along.y + x[2] * along.z;
 }
 
-// The face whose normal is nearest to that of two edges, if it is near enough: -1 otherwise.
+// Returns the face whose normal is nearest to the axis of two edges, if it is near enough; otherwise -1.
 static int face_along(const frame_pair *f, const ob_placed *a, const ob_placed *b, int edge)
 {
 	const ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3));
@@ -344,8 +345,8 @@ static int face_along(const frame_pair *f, const ob_placed *a, const ob_placed *
 	return first_axis(lanes_bits(of_a == most) | lanes_bits(of_b == most) << 3, FACES - 1);
 }
 
-// What lies over a face, as seen along its normal or, unless edge is -1, along that of two edges: then the place where
-// those cross is a corner of what is seen.
+// Manifold over a face: the incident face, projected and clipped. It is projected along the face's normal or, unless
+// edge is -1, along the axis of two edges; their crossing is then a corner of the projection.
 static void face_manifold(const frame_pair *f, const ob_placed *a, const ob_placed *b, int face, int edge,
 			  double margin, ob_manifold *m)
 {
@@ -420,9 +421,9 @@ static void boxes(const ob_placed *a, const ob_placed *b, double margin, ob_mani
 		axis = s.largest_edge > s.largest_face + more ? FACES + s.edge : s.face;
 	}
 	bool edge = axis >= FACES;
-	// Edges that meet nearly along a face's normal: with the place where they cross goes what else is about to meet
-	// over the face, all of it along the edges' axis. Along the face's normal that place would run over the edges
-	// as the boxes pass each other, and deeper in than its velocity says.
+	// An axis of edges near a face's normal: the crossing of the edges, and other points over the face that are
+	// about to touch, are all found along the edges' axis. Along the face's normal the crossing would run over the
+	// edges as the boxes pass each other, and penetrate deeper than its velocity says.
 	int face = edge ? face_along(&f, a, b, axis - FACES) : axis;
 	if (face >= 0)
 		face_manifold(&f, a, b, face, edge ? axis - FACES : -1, margin, out);

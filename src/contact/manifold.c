@@ -34,8 +34,8 @@ static void sphere_plane(const ob_placed *a, const ob_placed *plane, double marg
 	one_point(m, n, ob_madd(a->p, -(a->size.x + .5 * gap), n), gap, margin);
 }
 
-// Of the depth at rest: gaps that differ by less count as equal; path after which a sphere is looked at again that has
-// left a face.
+// Relative to the resting depth: gaps that differ by less count as equal; path after which a sphere that has left a
+// face is checked again.
 static const double same_gap = 1e-3, leaving_share = .1;
 
 static double clamp(double x, double limit)
@@ -43,10 +43,10 @@ static double clamp(double x, double limit)
 	return x < -limit ? -limit : x > limit ? limit : x;
 }
 
-// Sphere a against box b as b sees it: the direction in which it is outside, and how far.
+// Direction in which sphere a is outside box b, and the distance. In b's frame.
 typedef struct box_side {
-	ob_vec3 n, surface; // unit, and the point of the box's surface that it starts from: both in b's frame
-	double distance; // m, of the centre from there
+	ob_vec3 n, surface; // unit; the point of the box's surface where it begins
+	double distance; // m, of the sphere's centre from that point
 } box_side;
 
 static double *component(ob_vec3 *v, int i)
@@ -54,7 +54,7 @@ static double *component(ob_vec3 *v, int i)
 	return i == 0 ? &v->x : i == 1 ? &v->y : &v->z;
 }
 
-// Along the axis i of the box, on the plane that holds its face.
+// Side along axis i of the box, from the plane of its face.
 static box_side face_side(ob_vec3 l, ob_vec3 size, int i)
 {
 	box_side s = { .surface = l };
@@ -65,7 +65,7 @@ static box_side face_side(ob_vec3 l, ob_vec3 size, int i)
 	return s;
 }
 
-// The nearest point of the box; inside it the nearest face pushes out.
+// Side at the nearest point of the box; inside the box, at the nearest face.
 static box_side nearest_side(ob_vec3 l, ob_vec3 size)
 {
 	box_side s = { .surface = { clamp(l.x, size.x), clamp(l.y, size.y), clamp(l.z, size.z) } };
@@ -79,10 +79,11 @@ static box_side nearest_side(ob_vec3 l, ob_vec3 size)
 	return face_side(l, size, dx >= dy && dx >= dz ? 0 : dy >= dz ? 1 : 2);
 }
 
-// Beyond a face's border the sphere meets an edge, unless it touches the face's plane and does not close along the
-// face's normal before: it rolls from one coplanar face to the next, and the edge is not hit. So that the next face
-// bears the sphere as soon as it is over it, its plane goes on for "reach" (m) before it; behind it, as far as the edge
-// is no farther away than the plane. v: m/s, of the sphere as b sees it.
+// Finds the face on which a sphere rolls over a seam. Beyond a face's border the sphere meets an edge, unless it
+// touches the face's plane, and closes no sooner along the face's normal. Then it rolls from one coplanar face to the
+// next, and does not hit the edge. The next face bears the sphere as soon as the sphere is over it: its plane extends
+// ahead by "reach" (m). Behind, it extends as far as the edge is no farther away than the plane. v: m/s, of the sphere
+// as seen from b. leaving: the sphere leaves the face.
 static void find_plane_underfoot(const ob_placed *a, const ob_placed *b, ob_vec3 l, ob_vec3 v, double reach,
 				 box_side *side, bool *leaving)
 {
@@ -114,7 +115,7 @@ static void sphere_box(const ob_placed *a, const ob_placed *b, double margin, ob
 		ob_vec3 v = ob_rotate_back(&b->r, ob_sub(ob_sub(a->v, b->v), ob_cross(b->w, apart)));
 		bool leaving;
 		find_plane_underfoot(a, b, l, v, margin, &side, &leaving);
-		if (leaving) // and may fall off the edge yet
+		if (leaving) // it may still fall off the edge
 			m->valid_path = leaving_share * ob_min(a->rest_depth, b->rest_depth);
 	}
 	double gap = side.distance - a->size.x;
@@ -164,7 +165,7 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 
 typedef void pair_function(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
-// By the shapes of a and b; where there is none the other way round, if any.
+// By the shapes of a and b. A missing pair is found with a and b exchanged, if there is one.
 static pair_function *const pair_functions[OB_SHAPE_HULL + 1][OB_SHAPE_HULL + 1] = {
 	[OB_SHAPE_SPHERE] = { [OB_SHAPE_SPHERE] = sphere_sphere,
 			      [OB_SHAPE_PLANE] = sphere_plane,
@@ -204,21 +205,21 @@ bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_
 
 enum { MOST_TRIES = 256 };
 
-static const double longest_short_turn = .2; // rad: off by less than 1e-5 rad
+static const double longest_short_turn = .2; // rad: up to here the short formula errs by less than 1e-5 rad
 
-// A shape on its way: v is constant, and it turns freely.
+// Moving shape: v is constant, and it turns freely.
 typedef struct moving_shape {
 	const ob_placed *from; // at t = 0
 	ob_vec3 rate; // rad/s, in the frame of the shape
 	double speed; // rad/s
-	ob_spin spin; // from no attitude on
+	ob_spin spin; // from the identity
 } moving_shape;
 
 static void set_off(const ob_placed *x, moving_shape *o)
 {
 	o->from = x;
 	o->rate = ob_rotate_back(&x->r, x->w);
-	o->speed = x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w); // it looks the same however it is turned
+	o->speed = x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w); // a sphere looks the same in any attitude
 	ob_spin_plan(&o->spin, ob_quat_identity(), o->rate, x->inertia);
 }
 
@@ -233,7 +234,7 @@ static ob_mat3 turned_by(const ob_mat3 *r, ob_quat turn)
 	return out;
 }
 
-// rad/s, world, when it is at "now": its momentum stays.
+// Angular velocity (rad/s, world) at the attitude of "now": the angular momentum stays.
 static ob_vec3 rate_at(const moving_shape *x, const ob_placed *now)
 {
 	const ob_vec3 i = x->from->inertia, b = x->rate;
@@ -252,7 +253,7 @@ typedef struct followed_shape {
 	double t; // s
 } followed_shape;
 
-// In place: a rotation has room for much that is not known yet.
+// Begins at t = 0. Works in place, since an ob_spin is large.
 static void follow_from_start(const ob_placed *x, followed_shape *f)
 {
 	f->now = *x;
@@ -260,7 +261,7 @@ static void follow_from_start(const ob_placed *x, followed_shape *f)
 	set_off(x, &f->shape);
 }
 
-// As it is at t, turned from where it was at the start.
+// Attitude at t, turned from that at the start.
 static ob_mat3 turned_from_start(followed_shape *f, double t)
 {
 	const moving_shape *x = &f->shape;
@@ -273,7 +274,7 @@ static ob_mat3 turned_from_start(followed_shape *f, double t)
 	return turned_by(&x->from->r, turn);
 }
 
-// Whether it is turned from where it was last, to a later instant.
+// True if the shape reaches a later instant t by turning on from its last attitude.
 static bool turns_on(const followed_shape *f, double t)
 {
 	const moving_shape *x = &f->shape;
@@ -281,7 +282,7 @@ static bool turns_on(const followed_shape *f, double t)
 	return far && f->t > 0 && x->spin.fastest * (t - f->t) < longest_short_turn;
 }
 
-// To a later instant.
+// Moves the shape to a later instant t.
 static void follow_to(followed_shape *f, double t)
 {
 	const moving_shape *x = &f->shape;
@@ -298,7 +299,7 @@ static void follow_to(followed_shape *f, double t)
 	f->t = t;
 }
 
-// Whether its rotation is asked for at a later instant.
+// True if a later instant t needs the closed form of its rotation.
 static bool asks_for_rotation(const followed_shape *f, double t)
 {
 	const moving_shape *x = &f->shape;
@@ -313,7 +314,7 @@ static void follow_both_to(followed_shape *a, followed_shape *b, double t)
 	follow_to(b, t);
 }
 
-// m/s^2, of any point of a shape that turns at up to "fastest" (rad/s); of what has no end: infinity
+// Bound on the acceleration (m/s^2) of any point of a shape that turns at up to "fastest" (rad/s). Infinity: no end.
 static double bend_at(const ob_placed *x, double fastest)
 {
 	const double radius = ob_shape_radius(x->shape, x->size);
@@ -327,20 +328,21 @@ static double bend_of(const moving_shape *x)
 	return bend_at(x->from, x->speed > 0 ? x->spin.fastest : 0);
 }
 
-// Two shapes at an instant, seen along a direction n from b to a, which may turn: how far apart their centres are (m),
-// how fast that grows (m/s), how n turns as each of them sees it (1/s), and how much faster their points may come to
-// close (m/s^2).
+// Two shapes at an instant, as seen along a direction n from b to a, which may turn. centres: m, distance of their
+// centres along n; rate: m/s, its rate; turn_a, turn_b: 1/s, rate of n as seen from a and b; bend: m/s^2, bound on the
+// acceleration at which points may close besides.
 typedef struct seen_along {
 	const ob_placed *a, *b;
 	ob_vec3 n, turn_a, turn_b;
-	ob_vec3 apart, v; // m, m/s, of a from b
+	ob_vec3 apart, v; // m, m/s: position and velocity of a from b
 	double centres, rate, bend;
-	bool boxes; // both: then these are what n has of each half side of a and of b (m), and how fast that changes
+	bool boxes; // both are boxes; half: m, their half sides along n; turn: m/s, its rate
 	double half[6], turn[6];
 } seen_along;
 
-// How far apart the shapes are at t, at least (m). Seen from a shape that turns n turns the other way: to first order
-// that is where its points are along n, and what else turning does to them is bounded. A concave function of t.
+// Lower bound on the distance of the shapes at t (m): a concave function of t. As seen from a turning shape, n turns
+// the other way. To first order this gives the places of its points along n; "bend" bounds the remaining effect of
+// turning.
 static double apart_at(const seen_along *x, double t)
 {
 	if (x->boxes) {
@@ -353,7 +355,7 @@ static double apart_at(const seen_along *x, double t)
 	return x->centres + t * (x->rate - .5 * t * x->bend) - ob_reach(x->a, ob_scale(na, -1)) - ob_reach(x->b, nb);
 }
 
-// m/s, of the shape's points by turning
+// Speed of the shape's points by turning (m/s), at most.
 static double rim_speed(const ob_placed *x)
 {
 	return x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w) * ob_shape_radius(x->shape, x->size);
@@ -364,7 +366,7 @@ static ob_vec3 turn_seen_by(const ob_placed *x, ob_vec3 n)
 	return x->shape == OB_SHAPE_SPHERE ? ob_v3(0, 0, 0) : ob_cross(n, x->w);
 }
 
-// Along n, which stays. bend: m/s^2, of the points of both together
+// View along n, which is constant. bend: m/s^2, of both shapes together
 static seen_along look_along(const ob_placed *a, const ob_placed *b, ob_vec3 n, double bend)
 {
 	seen_along x;
@@ -386,7 +388,7 @@ static void project_sides(const ob_placed *x, ob_vec3 n, double out[3])
 	out[0] = x->size.x * along.x, out[1] = x->size.y * along.y, out[2] = x->size.z * along.z;
 }
 
-// For a forecast, which asks often and need not be exact: of two boxes, half sides along n.
+// Sets the half sides of two boxes along n, for a forecast: it is called often, and need not be exact.
 static void take_sides(seen_along *x)
 {
 	x->boxes = x->a->shape == OB_SHAPE_BOX && x->b->shape == OB_SHAPE_BOX;
@@ -398,7 +400,7 @@ static void take_sides(seen_along *x)
 	project_sides(x->b, x->turn_b, x->turn + 3);
 }
 
-// The same where n turns at "turn" (1/s, across n). h: s, for which it counts
+// Same view with n turning at "turn" (1/s, across n). h: s, duration for which it holds
 static seen_along look_turning(const seen_along *still, ob_vec3 turn, double h)
 {
 	seen_along x = *still;
@@ -415,7 +417,7 @@ static seen_along look_turning(const seen_along *still, ob_vec3 turn, double h)
 	return x;
 }
 
-// The axis of the shape that is most nearly across n: that of an edge which touches along n.
+// Axis of the shape that is most nearly across n: the direction of an edge that touches along n.
 static ob_vec3 axis_across(const ob_placed *x, ob_vec3 n)
 {
 	ob_vec3 best = ob_column(&x->r, 0);
@@ -425,7 +427,7 @@ static ob_vec3 axis_across(const ob_placed *x, ob_vec3 n)
 	return best;
 }
 
-// 1/s, at which n turns where it stays across an edge of each shape; 0 where these are nearly parallel.
+// Rate (1/s) of n if it stays across an edge of each shape; 0 for nearly parallel edges.
 static ob_vec3 turn_with_edges(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 {
 	const double least = .01;
@@ -437,11 +439,11 @@ static ob_vec3 turn_with_edges(const ob_placed *a, const ob_placed *b, ob_vec3 n
 	return ob_scale(ob_sub(ob_scale(ob_cross(v, n), along_u), ob_scale(ob_cross(u, n), along_v)), 1 / sine);
 }
 
-// Takes n for the direction *best if the shapes are farther apart along it than *most (m).
+// Takes n as *best if the shapes are farther apart along it than *most (m).
 static void try_direction(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_vec3 *best, double *most)
 {
 	const double least = 1e-6, length = ob_norm(n);
-	if (!(length > least)) // two axes are parallel, or there is none
+	if (!(length > least)) // parallel axes, or no direction
 		return;
 	n = ob_scale(n, (ob_dot(n, ob_sub(a->p, b->p)) < 0 ? -1 : 1) / length);
 	const double apart = ob_apart_along(a, b, n);
@@ -449,8 +451,9 @@ static void try_direction(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_
 		*most = apart, *best = n;
 }
 
-// A direction along which they are nearly as far apart as they are known to be (m), if there is one: that of before (or
-// 0), the axes of both, the line of their centres, what is across two axes. Returns how far they are along it.
+// Finds a direction along which the shapes are nearly as far apart as is known (m), if there is one. Tries the last one
+// (or 0), the axes of both, the line of their centres, and the directions across two axes. Returns the separation along
+// it.
 static double find_direction(const ob_placed *a, const ob_placed *b, double known, ob_vec3 *along)
 {
 	const double enough = .9 * known;
@@ -465,7 +468,8 @@ static double find_direction(const ob_placed *a, const ob_placed *b, double know
 	return most;
 }
 
-// For how long within h (s) the two, at least, stay farther apart than "near" (m); "certain" (s) of it is known.
+// Lower bound (s) on the time within h for which the shapes stay farther apart than "near" (m). certain: s, a known
+// bound.
 static double time_apart(const seen_along *x, double near, double certain, double h)
 {
 	enum { NARROW = 2 };
@@ -476,15 +480,15 @@ static double time_apart(const seen_along *x, double near, double certain, doubl
 	const double high = ob_min(h, farther * certain), at_high = apart_at(x, high) - near;
 	if (at_high >= 0)
 		return high;
-	for (int k = 0; k < NARROW && at_low > 0; k++) { // a chord is below it
+	for (int k = 0; k < NARROW && at_low > 0; k++) { // a chord lies below the function
 		low += (high - low) * (at_low / (at_low - at_high));
 		at_low = apart_at(x, low) - near;
 	}
 	return ob_max(certain, low);
 }
 
-// For how long within h (s) the two, which are apart now (m), stay so, at least: to the first zero of a function that
-// is concave, so that a chord ends early, and goes on late.
+// Lower bound (s) on the time within h until shapes that are "apart" (m) close: the first zero of a concave function. A
+// chord ends before it; an extended chord, after it.
 static double time_to_close(const seen_along *x, double apart, double h)
 {
 	enum { NARROW = 5 };
@@ -508,8 +512,8 @@ static double time_to_close(const seen_along *x, double apart, double h)
 	return low;
 }
 
-// For how long within h (s) two that touch now part, at least; 0: they do not. What a concave function loses at once it
-// never regains.
+// Lower bound (s) on the time within h for which touching shapes part; 0: they do not. A concave function never regains
+// what it loses at once.
 static double time_of_parting(const seen_along *x, double apart, double h)
 {
 	const double shorter = .25, shortest = 1e-8 * h, least = ob_max(apart, 0);
@@ -521,9 +525,10 @@ static double time_of_parting(const seen_along *x, double apart, double h)
 	return ob_max(t, shortest);
 }
 
-// For how long within h (s) the two stay apart, at least, or part if they touch: "apart" (m) along n, which stays in
-// the world, or turns with a face of one of them, or with edges of both, whichever tells most. What touches a face that
-// turns may part from it although it would not from a plane that stays. touch: they do. bend: m/s^2, of both
+// Lower bound (s) on the time within h for which the shapes stay apart, or part if they touch ("touch"). apart: m,
+// along n. n is constant in the world, or turns with a face of one of them, or with edges of both, whichever gives the
+// longest time. A shape may part from a turning face that it touches, although it would not part from a constant plane.
+// bend: m/s^2, of both.
 static double time_clear(const ob_placed *a, const ob_placed *b, ob_vec3 n, double apart, double bend, bool touch,
 			 double h)
 {
@@ -549,19 +554,19 @@ static double time_clear(const ob_placed *a, const ob_placed *b, ob_vec3 n, doub
 	return longest;
 }
 
-// m: what is so near touches, but for rounding.
+// Distance (m) that rounding cannot tell from contact.
 static double rounding_of(const ob_placed *x)
 {
 	return 8 * DBL_EPSILON * (ob_shape_radius(x->shape, x->size) + ob_norm(x->p));
 }
 
-// rad/s, at any time
+// Upper bound on the angular speed (rad/s), at any time.
 static double fastest_of(const ob_turning *x)
 {
 	return x->spin ? x->spin->fastest : 0;
 }
 
-// m/s, at which any points of the two close at most
+// Upper bound on the closing speed (m/s) of any points of the two.
 static double fastest_closing(const ob_placed *a, double turning_a, const ob_placed *b, double turning_b)
 {
 	double speed = ob_norm(ob_sub(a->v, b->v));
@@ -581,7 +586,7 @@ static void turn_to(const ob_turning *turning, double t, ob_placed *now)
 	now->r = ob_quat_matrix(q);
 }
 
-// Where the two are at t, to rounding: side by side where their rotations are long.
+// Places both shapes at t, to rounding. Long rotations are evaluated side by side.
 static void place_both(const ob_placed *a, const ob_placed *b, const ob_turning turning[2], double t, ob_placed now[2])
 {
 	if (turning[0].spin && turning[1].spin)
@@ -646,7 +651,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 	const double bend = bend_of(&at.shape) + bend_of(&bt.shape);
 	const bool by_direction = isfinite(bend) && !find.of_boxes;
 	ob_vec3 n = { 0, 0, 0 };
-	// A grazing flight takes many small advances; after so many, what is this near counts as touching.
+	// A grazing flight takes many small advances. After too many, shapes this near count as touching.
 	for (int tries = 0; tries < MOST_TRIES && t <= h; tries++) {
 		follow_both_to(&at, &bt, t);
 		out->normal = n;
@@ -679,7 +684,7 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 
 // ---- a forecast
 
-// Until when (s) the two may be nearer than this (m): then their bounding spheres have parted for good.
+// Time (s) until which the shapes may be nearer than "near" (m): then their bounding spheres have parted for good.
 static double time_of_passing(const ob_placed *a, const ob_placed *b, double near)
 {
 	const ob_vec3 apart = ob_sub(a->p, b->p), v = ob_sub(a->v, b->v);
@@ -691,7 +696,7 @@ static double time_of_passing(const ob_placed *a, const ob_placed *b, double nea
 	return d > 0 ? ob_max(0, (sqrt(d) - opening) / square) : 0;
 }
 
-// 1/s, at which n turns with what it is across: a face, or an edge of each.
+// Rate (1/s) of n if it turns with the features that it is across: a face, or an edge of each.
 static ob_vec3 turn_with_features(const ob_placed *a, const ob_placed *b, ob_vec3 n)
 {
 	const double same = 1 - 1e-9;
@@ -701,9 +706,10 @@ static ob_vec3 turn_with_features(const ob_placed *a, const ob_placed *b, ob_vec
 	return turn_with_edges(a, b, n);
 }
 
-// For how long within h (s) the two stay farther apart than "near" (m) along n, at least; "certain" (s) of it is known.
-// n stays, which tells more of what is far, or turns with what it is across, which tells more of what is close: there a
-// face comes nearer than its corners. Infinity: all of h, and farther than "far" (m).
+// Lower bound (s) on the time within h for which the shapes stay farther apart than "near" (m) along n. certain: s, a
+// known bound. A constant n gives more for distant shapes. An n that turns with its features gives more for close ones:
+// there the face is nearer than its corners. Returns infinity if the time is all of h, and they are then farther apart
+// than "far" (m).
 static double time_beyond(const ob_placed *a, const ob_placed *b, ob_vec3 n, double bend, double near, double far,
 			  double certain, double h)
 {
@@ -720,7 +726,7 @@ static double time_beyond(const ob_placed *a, const ob_placed *b, ob_vec3 n, dou
 	if (at_high >= 0)
 		return high;
 	at_low = apart_at(&x, 0) - near;
-	for (int k = 0; k < NARROW && at_low > 0; k++) { // a chord is below it
+	for (int k = 0; k < NARROW && at_low > 0; k++) { // a chord lies below the function
 		low += (high - low) * (at_low / (at_low - at_high));
 		at_low = apart_at(&x, low) - near;
 	}

@@ -76,7 +76,8 @@ double ob_time_of_impact(const ob_placed *a, const ob_placed *b, double speed, d
 double ob_time_of_nearing(const ob_placed *a, const ob_placed *b, double speed, double h, double soon, double near,
 			  ob_manifold_finder find, double *apart);
 
-// Rotation of a shape: that of "spin", "since" (s) after its start. NULL: the shape keeps its attitude, or looks as if.
+// Rotation of a shape, as "spin" has it "since" (s) after its start. NULL: the shape keeps its attitude, or looks as
+// if it did.
 typedef struct ob_turning {
 	ob_spin *spin;
 	double since;

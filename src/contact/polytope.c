@@ -4,19 +4,19 @@
 
 #include "elementary/elementary.h"
 
-static const double along_face = .99; // cosine: edges that close along a face's normal, or nearly
-// An edge's axis must separate by so much more than a face's: of the thickness, and no more than at rest.
+static const double along_face = .99; // cosine: an axis of edges this near counts as a face's normal
+// Fraction of the thickness, up to the resting depth, by which an axis of edges must separate more than a face's.
 static const double prefer_face = 1e-3;
-static const double prefer_face_when_deep = .02; // of the depth, beside it
-static const double nearby = .05; // of the thickness: shapes farther apart than that need no axes of edges
-static const double parallel_edges = 1e-10; // sin^2 of their angle
-static const double crossing_faces = .5; // cosine: faces that look so differently
-static const double as_low = 2e-9; // of the radius: corners that count as equally low
-static const double same_depth = 1e-4; // of half the thickness: points that count as equally deep
+static const double prefer_face_when_deep = .02; // fraction of the depth, in addition
+static const double nearby = .05; // fraction of the thickness: shapes farther apart need no axes of edges
+static const double parallel_edges = 1e-10; // sin^2 of the edges' angle
+static const double crossing_faces = .5; // cosine: faces with a smaller one cross
+static const double as_low = 2e-9; // relative to the radius: corners that count as equally low
+static const double same_depth = 1e-4; // relative to half the thickness: points that count as equally deep
 
 // ---- boxes and hulls alike
 
-// The topology of a box: corner k has the signs of the bits of k.
+// Topology of a box: corner k has the signs of the bits of k.
 static const ob_hull box_topology = {
 	.corners = 8,
 	.faces = 6,
@@ -38,13 +38,13 @@ static const ob_hull box_topology = {
 		  { 3, 7, 1, 3 } },
 };
 
-// A shape about an origin that both of a pair share, with the world's axes. Corners and faces stay in the shape's own
-// frame, and what they are compared with is turned into it: most of them are never asked for in the world.
+// Shape in world axes, from an origin that both of a pair share. Corners and faces stay in the shape's own frame;
+// vectors are turned into it for comparison, since most corners are never needed in the world.
 typedef struct polytope {
 	const ob_placed *placed;
-	const ob_hull *shape; // its topology and the normals of its faces
+	const ob_hull *shape; // topology, and normals of the faces
 	const ob_vec3 *corner; // m, from the centre
-	const double *offset; // m, of the face from the centre
+	const double *offset; // m, of each face from the centre
 	ob_vec3 centre;
 	double inner, radius, thin; // m: see ob_hull
 	ob_vec3 box_corner[8];
@@ -101,8 +101,8 @@ static ob_vec3 normal_of(const polytope *x, uint32_t face)
 	return to_world(x, x->shape->normal[face]);
 }
 
-// How far the lowest corner reaches along n, from the centre (m). n: in the shape's frame. Four minima side by side
-// wait less for each other than one.
+// Position along n of the lowest corner, from the centre (m). n: in the shape's frame. Four minima side by side wait
+// less for each other than one.
 static double lowest_along(const polytope *x, ob_vec3 n)
 {
 	const ob_vec3 *c = x->corner;
@@ -120,7 +120,7 @@ static double lowest_along(const polytope *x, ob_vec3 n)
 	return ob_min(ob_min(low[0], low[1]), ob_min(low[2], low[3]));
 }
 
-// The corner that is lowest along n; low: as lowest_along says.
+// Returns the corner that is lowest along n. low: result of lowest_along.
 static uint32_t lowest_corner(const polytope *x, ob_vec3 n, double low)
 {
 	uint32_t k = 0;
@@ -138,11 +138,11 @@ static ob_vec3 velocity_at(const polytope *x, ob_vec3 at)
 
 enum { OPEN_MAX = 32 };
 
-// An axis along which the shapes are apart, or overlap least.
+// Axis along which the shapes are apart, or overlap least.
 typedef struct axis {
 	double gap; // m
 	bool is_face;
-	bool of_b; // whose face it is
+	bool of_b; // the face is one of b's
 	uint32_t face;
 	uint32_t edge_a, edge_b;
 	ob_vec3 normal; // unit, from b to a
@@ -150,11 +150,11 @@ typedef struct axis {
 
 typedef struct axes {
 	axis face, edge; // the best of each kind
-	int open; // those that separate, or along which the shapes touch no deeper than at rest
+	int open; // number of axes that separate, or along which the shapes touch no deeper than at rest
 	axis list[OPEN_MAX];
 } axes;
 
-// Where there are more than are kept, those that are farthest open stay.
+// Adds an axis; a full list keeps those with the largest gaps.
 static void add_open(axes *s, const axis *x)
 {
 	if (s->open < OPEN_MAX) {
@@ -169,11 +169,11 @@ static void add_open(axes *s, const axis *x)
 		s->list[least] = *x;
 }
 
-// Of two points of the other shape, how high they are above the faces of one (m): along a face's normal no axis has a
-// larger gap than the point's height, nor than the centre's less the radius of the ball inside it.
+// Heights (m) of two points of one shape above the faces of the other. They bound the gap of an axis along a face's
+// normal: it is at most the point's height, and at most the centre's height less the radius of the ball inside.
 typedef struct heights {
 	double of_centre[OB_HULL_FACES_MAX];
-	double of_point[OB_HULL_FACES_MAX]; // of the corner that is lowest above the face that looks at the centre most
+	double of_point[OB_HULL_FACES_MAX]; // lowest corner above the face that looks most at the centre
 } heights;
 
 // Returns the face above which the point is highest. point: in the frame of the faces.
@@ -201,7 +201,7 @@ static void add_face(axes *s, const polytope *of, bool of_b, double rest, uint32
 		add_open(s, &x);
 }
 
-// The faces of one, first that which looks at the other's centre most.
+// Tries the faces of one shape, beginning with the one that looks most at the other's centre.
 static void try_faces(axes *s, const polytope *of, const polytope *other, bool of_b, double rest, heights *h)
 {
 	const ob_vec3 d = to_local(of, ob_sub(other->centre, of->centre));
@@ -221,15 +221,15 @@ static void try_faces(axes *s, const polytope *of, const polytope *other, bool o
 	}
 }
 
-// An edge whose arc of normals comes near enough to the other shape.
+// Edge with an arc of normals that comes near enough to the other shape.
 typedef struct near_edge {
 	uint32_t edge;
-	ob_vec3 from, way; // m
+	ob_vec3 from, way; // m: one end, and the vector to the other
 	ob_vec3 left, right; // normals of its faces
 } near_edge;
 
-// Is a point higher than "least" (m) above an edge along one of its arc of normals? left, right: its heights above the
-// edge's faces, which are those at the ends of the arc; in between they run as a cosine does. cosine: of the arc.
+// True if a point is higher than "least" (m) above an edge, along some normal of its arc. left, right: heights above
+// the edge's faces, at the ends of the arc. In between, the height runs as a cosine does. cosine: of the arc.
 static bool is_above_edge(double left, double right, double cosine, double least)
 {
 	if (left >= least || right >= least)
@@ -239,8 +239,8 @@ static bool is_above_edge(double left, double right, double cosine, double least
 		left * left + right * right - 2 * cosine * left * right >= least * least * (1 - cosine * cosine));
 }
 
-// Edges that may be part of an axis with a gap of "needed" (m). Above an edge between two faces of neither of which it
-// is in front, a point is nowhere.
+// Collects edges that may be part of an axis with a gap of "needed" (m). A point is not above an edge if it is in front
+// of neither of its faces.
 static uint32_t collect_edges(const polytope *x, const polytope *other, double needed, const heights *h, near_edge *out)
 {
 	enum { POINT = 1, CENTRE = 2 };
@@ -301,9 +301,9 @@ static void try_edges(axes *s, const polytope *a, const polytope *b, double need
 		}
 }
 
-// ---- which axis
+// ---- choice of the axis
 
-// m/s at which the gap of a face opens: of its lowest corners, the one that opens least.
+// Rate (m/s) at which the gap of a face opens: the least rate of the other shape's lowest corners.
 static double face_rate(const polytope *of, const polytope *other, ob_vec3 n)
 {
 	const ob_vec3 l = to_local(other, n);
@@ -318,7 +318,7 @@ static double face_rate(const polytope *of, const polytope *other, ob_vec3 n)
 	return rate;
 }
 
-// The lines that carry two edges: where they are nearest to each other; shares of the edges.
+// Finds the nearest points of the lines that carry two edges or, if limited, of the edges themselves.
 static void nearest_on_edges(const polytope *a, const polytope *b, const axis *x, bool limited, ob_vec3 *xa,
 			     ob_vec3 *xb)
 {
@@ -345,8 +345,8 @@ static double opening_rate(const polytope *a, const polytope *b, const axis *x)
 	return ob_dot(x->normal, ob_sub(velocity_at(a, xa), velocity_at(b, xb)));
 }
 
-// As between boxes: the axis that closes last; before it a face that touches and does not close. NULL: no axis
-// separates; crossing is set where the shapes touch along two faces that do not close.
+// Chooses an axis as between boxes: the one that closes last, but first a touching face that does not close. Returns
+// NULL if no axis separates. crossing: the shapes touch along two crossing faces that do not close.
 static const axis *closing_last(const polytope *a, const polytope *b, const axes *s, double rest, double discount,
 				bool *crossing)
 {
@@ -394,7 +394,7 @@ static double corner_area(const ob_polygon *p, int k)
 	return fabs((p->u[i] - p->u[k]) * (p->w[j] - p->w[k]) - (p->u[j] - p->u[k]) * (p->w[i] - p->w[k]));
 }
 
-// Of many points, those go first that span least; one that is deepest stays.
+// Reduces many points to eight: drops those that span least, but keeps one of the deepest.
 static void reduce_to_eight(ob_polygon *p, double tie)
 {
 	enum { FEW = 8 };
@@ -447,7 +447,7 @@ static void reduce_to_four(ob_polygon *p, double tie)
 			polygon_drop(p, k);
 }
 
-// Turns scattered points into the polygon round them, as far as their order about their middle makes one.
+// Orders scattered points by their angle about the middle: a polygon, as far as they make one.
 static void order_round_middle(ob_polygon *p)
 {
 	double mu = 0, mw = 0, angle[OB_POLYGON_MAX];
@@ -486,7 +486,7 @@ void ob_polygon_reduce(ob_polygon *p, double band)
 	reduce_to_four(p, band);
 }
 
-// The part of p on the inner side of the line through (u, w) across the outward direction (nu, nw).
+// Clips p: keeps the part on the inner side of the line through (u, w) across the outward direction (nu, nw).
 static void clip(ob_polygon *p, double u, double w, double nu, double nw)
 {
 	ob_polygon out;
@@ -514,7 +514,7 @@ static void clip(ob_polygon *p, double u, double w, double nu, double nw)
 	memcpy(p->z, out.z, (size_t)out.n * sizeof *p->z);
 }
 
-// Of the faces at its lowest corners, the one that looks most against n.
+// Returns the incident face: among those at the lowest corners along n, the one that looks most against n.
 static uint32_t incident_face(const polytope *in, ob_vec3 n)
 {
 	const ob_vec3 l = to_local(in, n);
@@ -535,15 +535,15 @@ static uint32_t incident_face(const polytope *in, ob_vec3 n)
 	return best;
 }
 
-// Of the two faces of an edge, the one that looks most against n.
+// Returns the face of an edge that looks most against n.
 static uint32_t incident_face_of_edge(const polytope *in, uint32_t edge, ob_vec3 n)
 {
 	const ob_hull_edge *e = &in->shape->edge[edge];
 	return ob_dot(normal_of(in, e->right), n) < ob_dot(normal_of(in, e->left), n) ? e->right : e->left;
 }
 
-// What lies over a face, as seen along the axis: along the face's normal, or along that of two edges, one of them of
-// this face. Then the place where those cross is a corner of what is seen.
+// Manifold over a face: the incident face, projected along the axis and clipped. The axis is the face's normal, or that
+// of two edges, one of this face; their crossing is then a corner of the projection.
 static void face_manifold(const polytope *ref, const polytope *in, const axis *x, uint32_t face, bool of_b,
 			  ob_vec3 origin, double margin, ob_manifold *m)
 {
@@ -595,7 +595,8 @@ static void edge_manifold(const polytope *a, const polytope *b, const axis *x, o
 	m->at[0] = ob_add(origin, ob_scale(ob_add(xa, xb), .5));
 }
 
-// The face whose normal is nearest to that of two edges, if it is near enough: one that has one of the edges.
+// Finds the face whose normal is nearest to the axis of two edges, among the faces of these edges. Returns false if
+// none is near enough.
 static bool face_along(const polytope *a, const polytope *b, const axis *x, uint32_t *face, bool *of_b)
 {
 	double best = along_face;
@@ -610,7 +611,8 @@ static bool face_along(const polytope *a, const polytope *b, const axis *x, uint
 	return found;
 }
 
-// The points of the axis' face, or of a face that looks along two edges; or else theirs.
+// Finds the points over the axis' face, or over a face that looks along an axis of edges; failing that, the edges'
+// point.
 static void manifold_along(const polytope *a, const polytope *b, const axis *x, ob_vec3 origin, double margin,
 			   ob_manifold *out)
 {
@@ -623,7 +625,7 @@ static void manifold_along(const polytope *a, const polytope *b, const axis *x, 
 		edge_manifold(a, b, x, origin, out);
 }
 
-// Is there a point as low as this (m)?
+// True if a point has a gap of at most "gap" (m).
 static bool is_proven(const ob_manifold *m, double gap)
 {
 	for (int k = 0; k < m->points; k++)
@@ -667,14 +669,14 @@ void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double marg
 	manifold_along(&a, &b, x, origin, margin, out);
 	if (is_proven(out, x->gap + rest + discount))
 		return;
-	// Another axis than the best, whose features do not lie over each other: it holds nothing.
+	// The features along this axis do not lie over each other, so it holds nothing: the best axis has the points.
 	out->points = 0;
 	const axis *best = s.edge.gap > s.face.gap ? &s.edge : &s.face;
 	if (best->is_face)
 		manifold_along(&a, &b, best, origin, margin, out);
 	else
 		edge_manifold(&a, &b, best, origin, out);
-	if (!out->points) // only shapes that are apart have none: looked at again before they can touch
+	if (!out->points) // only separate shapes have none: they are checked again before they can touch
 		out->valid_path = ob_max(rest, out->separation);
 }
 
