@@ -154,8 +154,9 @@ void ob_batch_solve(ob_batch *b, const ob_solver_iteration *iteration, ob_body_r
 // Position projection: moves penetrations beyond slop (m) apart by the fraction beta, in the displacements only;
 // velocities stay. Returns false if there were none.
 bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_row *d, ob_body_row *delta);
-// Keeps the next substep's warm start from repeating an impact. In lanes with one, limits the growth of an impulse in
-// this substep to cap_impulse (N s, per lane), or to what changes its row by cap_velocity (m/s), whichever is more.
+// Keeps the next substep's warm start from repeating an impact: limits the growth of impulses in this substep, in lanes
+// with an impact. The limit is cap_impulse (N s, per lane) or the impulse that changes the row by cap_velocity (m/s),
+// whichever is more.
 void ob_batch_limit_prediction(ob_batch *b, const double *cap_impulse, double cap_velocity);
 
 // J v: opening, sliding and spinning rates (m/s, rad/s) of the seven rows at these velocities.

@@ -2,13 +2,13 @@
 
 #include "contact/facets.h"
 
-static const double side_by_side = .99; // cosine: directions so near to each other are taken to run along each other
+static const double side_by_side = .99; // cosine: directions this near to each other run side by side
 static const double crossing =
-	1e-9; // of the radius: a segment so near to another shape's inside has no direction away from it
-static const double redundant = 1e-9; // of the line: a point that lies no deeper between two others
-static const double same_place = 1e-3; // of the radius: two points so near to each other are one
+	1e-9; // relative to the radius: a segment this near to another shape's inside has no direction away from it
+static const double redundant = 1e-9; // relative to the line: a point between two others must be deeper by this
+static const double same_place = 1e-3; // relative to the radius: points nearer to each other count as one
 static const double prefer_face =
-	5e-5; // of the radius: a face pushes a segment out rather than an edge that is as near
+	5e-5; // relative to the radius: a way out across an edge must be shorter by this than one across a face
 
 static double clamp(double x, double limit)
 {
@@ -46,7 +46,7 @@ static ob_vec3 point_on(const ob_placed *c, double s)
 	return ob_madd(c->p, s, ob_column(&c->r, 2));
 }
 
-// The axis of a placed shape's frame that is most across u: some direction across it that turns with the shape.
+// Unit vector across u, from the axis of the shape's frame that is most nearly across u: it turns with the shape.
 static ob_vec3 across(const ob_placed *x, ob_vec3 u)
 {
 	ob_vec3 best = { 0, 0, 1 };
@@ -96,7 +96,8 @@ void ob_manifold_capsule_sphere(const ob_placed *a, const ob_placed *b, double m
 
 // ---- capsule
 
-// Where the capsules a and b are s and t along their axes.
+// Contact point between the capsules a and b, at s and t along their axes (m). Sets normal, unless the axes cross
+// there.
 static ob_line_point between_at(const ob_placed *a, const ob_placed *b, double s, double t, ob_vec3 *normal)
 {
 	ob_vec3 x = point_on(a, s), y = point_on(b, t), d = ob_sub(x, y);
@@ -128,7 +129,7 @@ void ob_side_by_side(const ob_placed *a, const ob_placed *b, ob_vec3 n, double n
 	ob_vec3 u = ob_column(&a->r, 2), v = ob_column(&b->r, 2), w = ob_sub(a->p, b->p);
 	double la = a->size.y, lb = b->size.y, c = ob_dot(u, v), uw = ob_dot(u, w), vw = ob_dot(v, w);
 	for (int k = 0; k < 2 && fabs(c) > side_by_side; k++) {
-		// This end of a, or that of b which lies before it.
+		// the inner one of two ends: a's, or b's if it comes first
 		double sa = k ? la : -la, tb = (k ? lb : -lb) * (c < 0 ? -1 : 1), sb = c * tb - uw;
 		bool of_b = k ? sb < sa : sb > sa;
 		double at_s = of_b ? sb : sa, at_t = of_b ? tb : vw + c * sa;
@@ -155,7 +156,7 @@ void ob_manifold_capsules(const ob_placed *a, const ob_placed *b, double margin,
 
 // ---- box
 
-// The segment in the box's frame: l + s k for |s| <= length; h: half extents.
+// Segment in the box's frame: l + s k for |s| <= length; h: half extents. In m.
 typedef struct box_segment {
 	double l[3], k[3], h[3], length, radius;
 } box_segment;
@@ -165,7 +166,7 @@ static double along(const box_segment *x, int i, double s)
 	return x->l[i] + s * x->k[i];
 }
 
-// Half the derivative of the squared distance from the box along the segment.
+// Half the derivative, along the segment, of the squared distance from the box.
 static double slope(const box_segment *x, double s)
 {
 	double sum = 0;
@@ -176,12 +177,12 @@ static double slope(const box_segment *x, double s)
 	return sum;
 }
 
-// The middle of what is nearest to the box. The slope never falls, and is linear between the places where the segment
-// crosses a face's plane.
+// Position of the segment's point nearest to the box (m); the middle, if several are. The slope never falls, and is
+// linear between the places where the segment crosses a face's plane.
 static double nearest_to_box(const box_segment *x)
 {
 	double low = -x->length, high = x->length, at_low = slope(x, low), at_high = slope(x, high);
-	double level_from = INFINITY, level_to = -INFINITY; // where the slope is 0
+	double level_from = INFINITY, level_to = -INFINITY; // range of zero slope
 	if (at_low > 0 || at_high < 0)
 		return at_low > 0 ? low : high;
 	for (int i = 0; i < 8; i++) {
@@ -203,7 +204,7 @@ static double nearest_to_box(const box_segment *x)
 	return low + (high - low) * (at_low / (at_low - at_high));
 }
 
-// From the nearest point of the box to that of the segment (m, box's frame).
+// Vector from the nearest point of the box to the segment's point at s (m, box's frame).
 static void away(const box_segment *x, double s, double d[3])
 {
 	for (int i = 0; i < 3; i++) {
@@ -217,9 +218,8 @@ static double norm(const double d[3])
 	return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-// The segment goes through the box: the direction in which the way out is shortest, among the faces' normals and those
-// of the segment with each edge (Gottschalk et al. 1996). Returns how far the segment is in (m); axis:
-// 0 .. 2 faces, 3 .. edges.
+// Finds the shortest way out for a segment that goes through the box: along a face's normal, or across the segment and
+// an edge (Gottschalk et al. 1996). Returns the segment's depth (m). axis: 0 .. 2 faces, 3 .. 5 edges.
 static double way_out(const box_segment *x, double n[3], int *axis)
 {
 	double least = INFINITY;
@@ -252,7 +252,7 @@ static ob_vec3 to_world(const ob_placed *box, const double d[3])
 	return ob_rotate(&box->r, ob_v3(d[0], d[1], d[2]));
 }
 
-// What of the segment lies over the part of the box that is nearest at s: its face, or along its edge.
+// Range of the segment that runs along the part of the box nearest at s: over its face, or along its edge.
 static void side_by_side_range(const box_segment *x, double s, double *low, double *high)
 {
 	*low = -x->length, *high = x->length;
@@ -265,14 +265,15 @@ static void side_by_side_range(const box_segment *x, double s, double *low, doub
 	}
 }
 
-// The segment at s is "from" (m) away from the box along the unit vector n.
+// Contact point of the segment at s, which is "from" (m) away from the box along the unit vector n.
 static ob_line_point on_line(const ob_placed *a, const box_segment *x, double s, double from, ob_vec3 n)
 {
 	double gap = from - x->radius;
 	return (ob_line_point){ s, gap, ob_madd(point_on(a, s), -(x->radius + .5 * gap), n), true };
 }
 
-// The face of a box on which the capsule rolls or slides over a seam, where it is not nearest to the face.
+// Makes the manifold over the face on which the capsule rolls or slides across a seam, if n is not its normal. Returns
+// false if there is none.
 static bool on_face_underfoot(const ob_placed *a, const ob_placed *b, ob_vec3 n, double gap, double margin,
 			      ob_manifold *out)
 {
@@ -285,7 +286,7 @@ static bool on_face_underfoot(const ob_placed *a, const ob_placed *b, ob_vec3 n,
 	ob_spots_find(&wider, a, normal, margin, &spots);
 	ob_spots_put(&spots, 1, out);
 	out->separation = gap;
-	if (leaving) // and may fall off the edge yet
+	if (leaving) // it may still fall off the edge
 		out->valid_path = ob_leaving_path(a, b);
 	return true;
 }
@@ -314,7 +315,7 @@ static void outside_box(const ob_placed *a, const ob_placed *b, const box_segmen
 	ob_manifold_line(&nearest, end, margin, out);
 }
 
-// Where the segment is nearest to the edge along axis i that n points at.
+// Position on the segment nearest to the edge along axis i, on the side of n.
 static double nearest_to_edge(const box_segment *x, const double n[3], int i)
 {
 	double sum = 0, square = 0;

@@ -4,20 +4,19 @@
 #include "contact/facets.h"
 #include "contact/support.h"
 
-// Lengths, in terms of the thinner shape's thickness.
-static const double crossing = 1e-9; // a point so near to the surface from the inside has no direction away from it
-static const double as_deep = 3e-7; // points that lie no farther than this above the lowest prove a facet's normal best
-static const double noise = 3e-13; // a direction that is better by less is the same
+// Lengths, relative to the thickness of the thinner shape.
+static const double crossing = 1e-9; // a point inside, this near to the surface, has no direction away from it
+static const double as_deep = 3e-7; // a point at most this far above the lowest proves that a facet's normal is best
+static const double noise = 3e-13; // a direction that is better by less counts as the same
 static const double touching = 3e-6; // a direction with a smaller gap does not separate the shapes
-static const double near_enough = 3e-3; // of shapes that are farther apart the nearest direction may not be that of
-					// their impact
-static const double meet = 3e-10; // features that are so near to each other across the normal have a common point
-static const double far = .06; // beyond the margin: not looked at more closely
+static const double near_enough = 3e-3; // shapes farther apart may meet along another direction than the nearest one
+static const double meet = 3e-10; // features this near to each other across the normal have a common point
+static const double far = .06; // beyond the margin: shapes farther apart are not searched
 
-static const double along_facet = .99; // cosine: a normal so near to a facet's has the facet's other points, too
+static const double along_facet = .99; // cosine: a normal this near to a facet's takes the facet's other points, too
 static const double side_lean = .03; // cosine: a side that leans by more touches with its rim
-static const double level = 1e-9; // cosine: an edge so nearly across the normal is a feature as a whole
-static const double deep = .01; // of a shape's size: shapes that overlap by more are searched more widely
+static const double level = 1e-9; // cosine: an edge this nearly across the normal is a feature as a whole
+static const double deep = .01; // relative to a shape's size: deeper overlaps are searched more widely
 
 enum { STARTS = 5 };
 
@@ -46,7 +45,7 @@ void ob_manifold_cylinder_plane(const ob_placed *a, const ob_placed *b, double m
 	ob_spots_put(&s, 1, out);
 }
 
-// The point of the cylinder nearest to x and the unit direction from there to x; inside, the nearest way out. Returns
+// Finds the cylinder's point nearest to x, and the unit direction from there to x; inside, the nearest way out. Returns
 // the distance (m), < 0 inside.
 static double nearest_point(const ob_placed *c, ob_vec3 x, ob_vec3 *at, ob_vec3 *n)
 {
@@ -87,15 +86,15 @@ void ob_manifold_cylinder_sphere(const ob_placed *a, const ob_placed *b, double 
 
 // ---- directions
 
-// What has been tried so far.
+// Best directions so far.
 typedef struct search {
 	const ob_placed *a, *b;
-	double thickness; // m, of the thinner one
-	double gap; // m, the widest separation
+	double thickness; // m, of the thinner shape
+	double gap; // m, largest separation
 	ob_vec3 normal; // its direction, from b to a
-	bool is_facet; // it is that of a cap or a face
-	double time, last_gap; // s and m, of the direction that closes last; time < 0: none separates
-	ob_vec3 last; // that direction
+	bool is_facet; // normal is that of a cap or a face
+	double time, last_gap; // s and m: time and gap of the direction that closes last; time < 0: none separates
+	ob_vec3 last; // direction that closes last
 	bool last_is_facet;
 } search;
 
@@ -111,7 +110,7 @@ static void try_direction(search *s, ob_vec3 n, bool facet)
 	}
 }
 
-// Both ways along d: the one from b to a first, which alone can be best.
+// Tries d in the sense from b to a: the other sense cannot be best.
 static void try_along(search *s, ob_vec3 d, bool facet)
 {
 	try_direction(s, ob_dot(d, ob_sub(s->a->p, s->b->p)) < 0 ? ob_scale(d, -1) : d, facet);
@@ -123,16 +122,16 @@ static void try_facets(search *s, const ob_placed *x)
 		try_along(s, ob_column(&x->r, 2), true);
 	for (int i = 0; x->shape == OB_SHAPE_BOX && i < 3; i++)
 		try_along(s, ob_column(&x->r, i), true);
-	for (uint32_t f = 0; x->shape == OB_SHAPE_HULL && f < x->hull->faces; f++) { // it is b: its normals lead to a
+	for (uint32_t f = 0; x->shape == OB_SHAPE_HULL && f < x->hull->faces; f++) { // x is b: its normals point to a
 		const ob_vec3 n = ob_rotate(&x->r, x->hull->normal[f]);
 		if (ob_dot(n, ob_sub(s->a->p, s->b->p)) - x->hull->offset[f] > ob_min(s->gap, touching * s->thickness))
 			try_direction(s, n, true);
 	}
 }
 
-enum { EDGES_MAX = 24 }; // that are looked at of a shape: a hull may have more
+enum { EDGES_MAX = 24 }; // maximum of a shape's edges to try: a hull may have more
 
-// The directions of the hull's edges at the corner that lies farthest along n.
+// Finds the directions of the hull's edges at the corner farthest along n. Returns their number.
 static int edges_at_corner(const ob_placed *x, ob_vec3 n, ob_vec3 *edge)
 {
 	const ob_hull *h = x->hull;
@@ -150,8 +149,8 @@ static int edges_at_corner(const ob_placed *x, ob_vec3 n, ob_vec3 *edge)
 	return found;
 }
 
-// Axes and edges across which features of the shape look: the axis of what is round, the edges of a box. Of a hull
-// those where it is farthest along n.
+// Finds edges of the shape to search across: the axis of a round shape, the edges of a box, or a hull's edges at its
+// farthest corner along n. Returns their number.
 static int edges_of(const ob_placed *x, ob_vec3 n0, ob_vec3 edge[EDGES_MAX])
 {
 	if (x->shape == OB_SHAPE_HULL)
@@ -167,13 +166,13 @@ static bool is_deep(const search *s)
 	return s->gap < -deep * ob_min(s->a->size.x, ob_min(s->a->size.y, s->b->size.x));
 }
 
-// The part of a shape that lies farthest along n: a point, and the edges that lie across n as a whole.
+// Part of a shape that is farthest along n: a point, and the edges that lie across n as a whole.
 typedef struct feature {
 	ob_vec3 centre, edge[3]; // m: each edge runs from -edge to edge
 	int edges;
 } feature;
 
-// A hull's corner, or the edge of which both ends lie as far; of a face a corner.
+// Feature of a hull: a corner, or an edge if both of its ends are as far. A corner stands for a face.
 static feature hull_feature(const ob_placed *x, ob_vec3 n)
 {
 	const ob_hull *h = x->hull;
@@ -209,8 +208,8 @@ static feature feature_along(const ob_placed *x, ob_vec3 n)
 	return f;
 }
 
-// Where two features are nearest to each other across the normal: each edge's parameter in turn, which ends at once
-// where there is one, and soon where there are two.
+// Finds the nearest points of two features, across the normal. Adjusts each edge's parameter in turn: one edge takes
+// one round, two take few.
 static void nearest_on_features(const feature *f, const feature *g, ob_vec3 *x, ob_vec3 *y)
 {
 	enum { ROUNDS = 60 };
@@ -238,8 +237,8 @@ static void nearest_on_features(const feature *f, const feature *g, ob_vec3 *x, 
 			*y = ob_madd(*y, s[k], g->edge[k - f->edges]);
 }
 
-// Do the features along the best direction have a common point? Then no direction near it is better, and none at all
-// where the shapes are apart.
+// True if the features along the best direction have a common point. Then no direction near it is better, and none at
+// all if the shapes are apart.
 static bool is_proven(const search *s)
 {
 	feature of_a = feature_along(s->a, ob_scale(s->normal, -1)), of_b = feature_along(s->b, s->normal);
@@ -249,7 +248,7 @@ static bool is_proven(const search *s)
 	return ob_norm2(part_across(ob_sub(x, y), s->normal)) < near * near;
 }
 
-// Across the axis of one and an axis or edge of the other.
+// Tries the directions across the axis of one shape and an axis or edge of the other.
 static void try_crossed(search *s, const ob_vec3 *edge, int n)
 {
 	ob_vec3 d = ob_sub(s->a->p, s->b->p);
@@ -262,7 +261,7 @@ static void try_crossed(search *s, const ob_vec3 *edge, int n)
 	}
 }
 
-// Climbs across the edge that promises most, and so on, until none finds a better direction.
+// Climbs across the edge with the steepest slope, again and again, until no edge gives a better direction.
 static void climb(search *s, const ob_vec3 *edge, int n, double enough)
 {
 	enum { CLIMBS = 24 };
@@ -288,7 +287,7 @@ static void climb(search *s, const ob_vec3 *edge, int n, double enough)
 	}
 }
 
-// Shapes that overlap deeply have several hills.
+// Climbs from several starts, since the separation of shapes that overlap deeply has several maxima.
 static void climb_from_everywhere(search *s, const ob_vec3 *edge, int n)
 {
 	ob_vec3 d = ob_sub(s->a->p, s->b->p), start[STARTS];
@@ -305,7 +304,7 @@ static void climb_from_everywhere(search *s, const ob_vec3 *edge, int n)
 	}
 }
 
-// Directions across the axis and each edge of a hull that could be better than the best so far.
+// Tries directions across the axis and each edge of a hull that may be better than the best so far.
 static void try_hull_crossed(search *s, ob_vec3 axis)
 {
 	const ob_placed *b = s->b;
@@ -325,7 +324,7 @@ static void try_hull_crossed(search *s, ob_vec3 axis)
 	}
 }
 
-// Climbs across every edge of a hull whose side could be better than the best so far.
+// Climbs across every edge of a hull with a side that may be better than the best so far.
 static void climb_hull(search *s)
 {
 	const ob_placed *b = s->b;
@@ -340,7 +339,7 @@ static void climb_hull(search *s)
 	}
 }
 
-// The directions from corners of b.
+// Tries the directions from the corners of b to a.
 static void try_corners(search *s)
 {
 	const ob_placed *b = s->b;
@@ -356,8 +355,8 @@ static void try_corners(search *s)
 	}
 }
 
-// All directions in which other features than facets can touch, until one is proven to be best or separates the shapes
-// by more than "enough" (m).
+// Tries all directions along which features other than facets can touch. Ends when one is proven to be best, or
+// separates the shapes by more than "enough" (m).
 static void try_others(search *s, double enough)
 {
 	enum { CORNERS = 4 };
@@ -394,7 +393,7 @@ static void try_others(search *s, double enough)
 
 // ---- points
 
-// The outward normal of x's facet that looks along n best, if it is within the cosine of n.
+// Finds the outward normal of the facet of x that looks most along n. Returns false if none is within the cosine of n.
 static bool facet_near(const ob_placed *x, ob_vec3 n, double cosine, ob_vec3 *outward)
 {
 	bool near = false;
@@ -427,8 +426,8 @@ static bool hull_line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_pla
 	return true;
 }
 
-// A line with a radius that runs along a's axis and reaches farthest along n: the axis of what is round, or an edge of
-// a box.
+// Finds a line with a radius, as a capsule, that runs along a's axis and reaches farthest along n: the axis of a round
+// shape, or an edge. Returns false if there is none.
 static bool line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_placed *line)
 {
 	*line = *x;
@@ -454,8 +453,8 @@ static bool line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_placed *
 	return false;
 }
 
-// Along n, which is no facet's normal: the nearest points of two features, the ends of a side that lies along a side or
-// an edge, and what else is about to touch on facets whose normals are near n.
+// Makes the manifold along n, which is no facet's normal. Its points are the nearest ones of two features, and the ends
+// of a side that lies along a side or an edge. Points about to touch on facets with normals near n are added.
 static void other_points(const search *s, ob_vec3 n, double margin, ob_manifold *out)
 {
 	feature of_a = feature_along(s->a, ob_scale(n, -1)), of_b = feature_along(s->b, n);
@@ -486,7 +485,7 @@ static void other_points(const search *s, ob_vec3 n, double margin, ob_manifold 
 	ob_spots_put(&all, 1, out);
 }
 
-// Common points along n, a facet's normal.
+// Finds the common points along n, a facet's normal. sign: for ob_spots_put.
 static void facet_points(const search *s, ob_vec3 n, double margin, ob_spots *spots, double *sign)
 {
 	static const double same = 1 - 1e-12;
@@ -506,11 +505,11 @@ static bool proven_by(const search *s, const ob_spots *spots)
 	return false;
 }
 
-// The shapes overlap beyond a facet, but hardly more to the side: that a point proves the facet's normal best tells of
-// directions near it alone.
+// True if the shapes overlap beyond a facet, but hardly more to the side. A point then proves that the facet's normal
+// is better than directions near it, not than all.
 static bool is_overhanging(const search *s)
 {
-	static const double hardly = 2; // times as much
+	static const double hardly = 2; // ratio
 	const ob_placed *x[2] = { s->a, s->b };
 	const ob_vec3 d = ob_sub(s->a->p, s->b->p);
 	for (int k = 0; s->gap < 0 && k < 2; k++) {
@@ -522,7 +521,8 @@ static bool is_overhanging(const search *s)
 	return false;
 }
 
-// The face of a box on which the cylinder rolls or slides over a seam, where n is not its normal. false: there is none.
+// Makes the manifold over the face of a box on which the cylinder rolls or slides across a seam, if n is not its
+// normal. Returns false if there is none.
 static bool on_face_underfoot(const search *s, ob_vec3 n, double margin, ob_manifold *out)
 {
 	ob_placed wider;
@@ -534,14 +534,14 @@ static bool on_face_underfoot(const search *s, ob_vec3 n, double margin, ob_mani
 	ob_spots_find(&wider, s->a, normal, margin, &spots);
 	ob_spots_reduce(&spots);
 	ob_spots_put(&spots, 1, out);
-	if (leaving) // and may fall off the edge yet
+	if (leaving) // it may still fall off the edge
 		out->valid_path = ob_leaving_path(s->a, s->b);
 	return true;
 }
 
 void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
-	const bool sharp = b->shape != OB_SHAPE_CAPSULE; // what is round slips off: the nearest direction will do
+	const bool sharp = b->shape != OB_SHAPE_CAPSULE; // a round shape slips off: the nearest direction will do
 	const double thickness = ob_min(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
 	search s = { .a = a, .b = b, .thickness = thickness, .gap = -INFINITY, .time = -1 };
 	ob_spots spots;

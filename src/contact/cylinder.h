@@ -2,8 +2,7 @@
 // never polygons. Planes and spheres are in closed form. Against a box, a capsule, another cylinder or a hull, the
 // search tries the directions along which two features can touch: normals of caps and faces, and those across the axis
 // and an edge or another axis. Then it tries the best direction across each axis and each edge, along which an arc
-// meets a corner, an edge or an arc (contact/support.h), and that of two rims, by Newton's method. Pure functions,
-// thread-safe.
+// touches a corner, an edge or an arc (contact/support.h). Two rims take Newton's method. Pure functions, thread-safe.
 //
 // out: as for ob_manifold_find. The normal points to a, the cylinder. The separation is the distance if it is at most
 // the margin; for a rim beside a box's corner it is a lower bound. Among several separating directions the one that

@@ -3,12 +3,12 @@
 #include "contact/support.h"
 
 static const double steep_cap = .3, steep_side = .95; // cosines: a cap or side that leans by more has one point
-static const double steepest_face = .05; // cosine: a face that is steeper has nothing above the cap but its edges
-static const double upright = 1e-6; // rad: a cap that leans by less looks straight at the other facet
-static const double pressing = 1e-6; // of an acceleration: a smaller part along a facet presses nowhere
-static const double parallel = .99; // cosine, of caps whose rims are taken to lie in one plane
-static const double border = 1e-9; // of the facet's size: so far outside is inside
-static const double as_low = 1e-4; // of what counts as the same place: no lower
+static const double steepest_face = .05; // cosine: over a cap, a steeper face has nothing but its edges
+static const double upright = 1e-6; // rad: a cap that leans by less is level
+static const double pressing = 1e-6; // relative to an acceleration: a smaller part along a facet presses nowhere
+static const double parallel = .99; // cosine: caps with rims that count as in one plane
+static const double border = 1e-9; // relative to the facet's size: so far outside counts as inside
+static const double as_low = 1e-4; // relative to ob_spots' same: spots that are lower by less are not lower
 
 static ob_vec3 unit(ob_vec3 v)
 {
@@ -42,8 +42,8 @@ void ob_rim_directions(const ob_placed *cylinder, const ob_placed *other, ob_vec
 
 // ---- seams
 
-static const double same_gap = 1e-3; // of the depth at rest: gaps that differ by less count as equal
-static const double leaving_share = .1; // of the depth at rest
+static const double same_gap = 1e-3; // relative to the resting depth: gaps that differ by less are equal
+static const double leaving_share = .1; // relative to the resting depth, see ob_leaving_path
 
 static double rest_depth(const ob_placed *a, const ob_placed *b)
 {
@@ -55,7 +55,7 @@ double ob_leaving_path(const ob_placed *a, const ob_placed *b)
 	return leaving_share * rest_depth(a, b);
 }
 
-// s: until a is deeper than at rest along n; never more than the far future.
+// Time (s) until a is deeper along n than at rest; at most the far future.
 static double time_to_close(const ob_placed *a, const ob_placed *b, ob_vec3 n, double gap)
 {
 	ob_vec3 x = ob_support(a, ob_scale(n, -1)), va = ob_add(a->v, ob_cross(a->w, ob_sub(x, a->p)));
@@ -135,7 +135,7 @@ static uint32_t hull_face_towards(const ob_placed *x, ob_vec3 towards)
 	return face;
 }
 
-// Of a box or a hull.
+// Face of a box or a hull that looks most along "towards".
 static polygon face_of(const ob_placed *box, ob_vec3 towards)
 {
 	if (box->shape == OB_SHAPE_HULL)
@@ -158,7 +158,7 @@ static polygon face_of(const ob_placed *box, ob_vec3 towards)
 	return p;
 }
 
-// The line of a cylinder's side, or of a capsule, that reaches farthest along "towards".
+// Line on the side of a cylinder or a capsule that reaches farthest along "towards".
 static void line_of(const ob_placed *x, ob_vec3 towards, ob_vec3 end[2])
 {
 	ob_vec3 d = ob_column(&x->r, 2), out = part_across(towards, d);
@@ -169,7 +169,7 @@ static void line_of(const ob_placed *x, ob_vec3 towards, ob_vec3 end[2])
 	end[1] = ob_madd(middle, x->size.y, d);
 }
 
-// x moved along n into the plane through c across normal.
+// Moves x along n into the plane through c across normal.
 static ob_vec3 into_plane(ob_vec3 x, ob_vec3 n, ob_vec3 c, ob_vec3 normal)
 {
 	return ob_madd(x, ob_dot(normal, ob_sub(c, x)) / ob_dot(normal, n), n);
@@ -188,13 +188,13 @@ void ob_spots_add(ob_spots *s, ob_vec3 at, double gap)
 	s->gap[s->n++] = gap;
 }
 
-// on: in the facet; over: of the other shape, along the normal.
+// Adds a spot. on: its point in the facet; over: the other shape's point, along the normal.
 static void add(ob_spots *s, ob_vec3 on, ob_vec3 over)
 {
 	ob_spots_add(s, ob_scale(ob_add(on, over), .5), ob_dot(s->normal, ob_sub(over, on)));
 }
 
-// Is x, moved along n, inside the polygon?
+// True if x, moved along n, is inside the polygon.
 static bool inside_polygon(const polygon *p, ob_vec3 n, ob_vec3 x)
 {
 	double turn = ob_dot(p->normal, n) < 0 ? -1 : 1;
@@ -206,7 +206,7 @@ static bool inside_polygon(const polygon *p, ob_vec3 n, ob_vec3 x)
 	return true;
 }
 
-// What of the line from x to y is within radius of c: shares of the way. false: nothing.
+// Finds the part of the line from x to y within radius of c, in shares of the way. Returns false if there is none.
 static bool within_circle(ob_vec3 x, ob_vec3 y, ob_vec3 c, double radius, double share[2])
 {
 	ob_vec3 e = ob_sub(y, x), f = ob_sub(x, c);
@@ -223,10 +223,10 @@ static ob_vec3 between(ob_vec3 x, ob_vec3 y, double share)
 	return ob_madd(x, share, ob_sub(y, x));
 }
 
-// A polygon and a disc, one of which is the facet that the spots' normal belongs to.
+// Adds the common points of a polygon and a disc; the spots' normal is that of one of them.
 static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const ob_vec3 rim[4], bool polygon_is_on)
 {
-	ob_vec3 flat[OB_HULL_CORNERS_MAX]; // the corners in the disc's plane
+	ob_vec3 flat[OB_HULL_CORNERS_MAX]; // corners, moved into the disc's plane
 	int whole = 0;
 	for (int k = 0; k < 4; k++) {
 		ob_vec3 x = ob_madd(c->centre, c->radius, rim[k]);
@@ -259,8 +259,8 @@ static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const
 		s->disc_radius = c->radius;
 }
 
-// Where the rims of two discs cross, seen along the normal n, near x in the plane of the first: both quadratic
-// equations by Newton's method. false: they do not cross there.
+// Finds the crossing of two discs' rims near x, which is in the plane of the first, as seen along the normal n. Solves
+// both quadratic equations by Newton's method. Returns false if they do not cross there.
 static bool rims_cross(const disc *on, const disc *over, ob_vec3 n, ob_vec3 *x)
 {
 	enum { NEWTON = 12 };
@@ -304,7 +304,7 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 			add(s, y, into_plane(y, n, over->centre, over->normal));
 		}
 		s->disc_radius = s->n == 4 ? r : 0;
-	} else if (l < r + q) { // a lens: its corners, and where it is widest
+	} else if (l < r + q) { // a lens: its corners, and its points on the line of centres
 		ob_vec3 u = ob_scale(way, 1 / l), v = ob_cross(n, u);
 		const double x = .5 * (l + (r - q) * (r + q) / l), y = sqrt(ob_max(0, r * r - x * x));
 		ob_vec3 corner[2] = { ob_madd(ob_madd(on->centre, x, u), y, v),
@@ -323,7 +323,8 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 	}
 }
 
-// What of a line is inside the polygon, seen along its normal: shares of the way. false: nothing.
+// Finds the part of a line inside the polygon, as seen along its normal, in shares of the way. Returns false if there
+// is none.
 static bool within_polygon(const polygon *p, ob_vec3 x, ob_vec3 y, double share[2])
 {
 	share[0] = 0, share[1] = 1;
@@ -398,7 +399,8 @@ static double lowest(const ob_spots *s)
 	return least;
 }
 
-// The face that looks at the cap best; and the others at the box's lowest corner, if they come down lower over the cap.
+// Finds the spots of a box over a cap: those of the face that looks most at the cap, or of another face at the box's
+// lowest corner if they are lower.
 static void box_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 {
 	const ob_vec3 towards = ob_scale(s->normal, -1), first = face_of(over, towards).normal;
@@ -420,7 +422,7 @@ static void box_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 	}
 }
 
-// What of one face of the shape over the cap is over it, if it comes down lower than what is found already.
+// Takes the spots of one face over the cap if they are lower than those found already.
 static void face_over(ob_spots *s, const ob_placed *on, const ob_placed *over, const disc *cap, const polygon *p)
 {
 	ob_spots also = *s;
@@ -432,7 +434,7 @@ static void face_over(ob_spots *s, const ob_placed *on, const ob_placed *over, c
 		*s = also;
 }
 
-// The same of a hull: the face that looks at the cap best, then the others at its lowest corner.
+// As box_over, for a hull: the face that looks most at the cap, then others at its lowest corner.
 static void hull_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 {
 	const ob_vec3 towards = ob_scale(s->normal, -1), l = ob_rotate_back(&over->r, towards);

@@ -25,10 +25,10 @@ void ob_rim_directions(const ob_placed *cylinder, const ob_placed *other, ob_vec
 // box, a hull or a cylinder (its cap); over: a cylinder, a box, a hull or a capsule.
 void ob_spots_find(const ob_placed *on, const ob_placed *over, ob_vec3 n, double margin, ob_spots *out);
 
-// Finds the face of the box on which a rolls or slides over a seam of coplanar faces, so that it does not hit the edge.
-// The face is one that a touches, and that closes no sooner than their gap (m) in the direction n. wider: the box, with
-// that face extended by reach (m). leaving: neither closes, as a leaves the face; it is then extended as far as the
-// edge is no farther away than the face. Returns false if there is none.
+// Finds the face of the box on which a rolls or slides across a seam, so that it does not hit the edge. The face is one
+// that a touches, and that closes no sooner than their gap (m) in the direction n. wider: the box, with that face
+// extended by reach (m). leaving: neither closes, as a leaves the face; it is then extended as far as the edge is no
+// farther away than the face. Returns false if there is no such face.
 bool ob_face_underfoot(const ob_placed *a, const ob_placed *box, ob_vec3 n, double gap, double reach, ob_placed *wider,
 		       ob_vec3 *normal, bool *leaving);
 // Path (m) after which two shapes are checked again if one has left a face.

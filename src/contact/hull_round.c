@@ -3,14 +3,14 @@
 #include "contact/capsule.h"
 #include "contact/facets.h"
 
-static const double side_by_side = .99; // cosine: directions so near to each other are taken to run along each other
-static const double crossing = 1e-9; // m: a segment so near to the inside has no direction away from it
-static const double same_place = 1e-3; // of the radius: two points so near to each other are one
-static const double prefer_face = 1e-9; // m: by so much shorter must an edge's way out be than a face's
-static const double same_gap = 1e-3; // of the depth at rest: gaps that differ by less count as equal
-static const double face_like = 1e-9; // 1 - cosine: a direction so near to a face's normal is it
+static const double side_by_side = .99; // cosine: directions this near to each other run side by side
+static const double crossing = 1e-9; // m: a segment this near to the inside has no direction away from it
+static const double same_place = 1e-3; // relative to the radius: points nearer to each other count as one
+static const double prefer_face = 1e-9; // m: a way out across an edge must be shorter by this than a face's
+static const double same_gap = 1e-3; // relative to the resting depth: gaps that differ by less are equal
+static const double face_like = 1e-9; // 1 - cosine: a direction this near to a face's normal counts as it
 
-// The segment in the hull's frame: p + s k for |s| <= length; a sphere's length is 0.
+// Segment in the hull's frame: p + s k for |s| <= length (m); a sphere has length 0.
 typedef struct segment {
 	const ob_hull *hull;
 	ob_vec3 p, k;
@@ -37,7 +37,8 @@ static ob_vec3 corner_of(const ob_hull *h, uint32_t k)
 	return h->corner[h->loop[k]];
 }
 
-// Limits the range of s to what lies over the face, which goes on for reach (m) on all sides. false: nothing does.
+// Limits the range of s to the part over a face, which is extended by reach (m) on all sides. Returns false if it is
+// empty.
 static bool over_face(const segment *x, uint32_t f, double reach, double range[2])
 {
 	const ob_hull *h = x->hull;
@@ -56,7 +57,7 @@ static bool over_face(const segment *x, uint32_t f, double reach, double range[2
 	return range[0] <= range[1];
 }
 
-// What of the segment is inside the hull.
+// True if a part of the segment is inside the hull.
 static bool goes_through(const segment *x)
 {
 	double low = -x->length, high = x->length;
@@ -75,7 +76,7 @@ static bool goes_through(const segment *x)
 // ---- outside
 
 typedef struct nearest {
-	double s, distance; // m: along the segment; from the hull
+	double s, distance; // m: position along the segment; distance from the hull
 	ob_vec3 n; // unit, from the hull to the segment
 } nearest;
 
@@ -87,7 +88,7 @@ static void offer(nearest *best, const segment *x, double s, ob_vec3 on_hull)
 		*best = (nearest){ s, l, ob_scale(d, 1 / l) };
 }
 
-// An end and a face that it is over; what lies level is nearest in its middle.
+// Offers the nearest place over each face: an end of the segment, or the middle if it is level.
 static void offer_faces(nearest *best, const segment *x)
 {
 	const ob_hull *h = x->hull;
@@ -106,7 +107,8 @@ static void offer_faces(nearest *best, const segment *x)
 	}
 }
 
-// Edges of faces that some of the segment is over. A face's own nearest place is better by no less than rounding.
+// Offers the nearest place at each edge of the faces that a part of the segment is above. It wins only if it is nearer
+// than any place over a face.
 static void offer_edges(nearest *best, const segment *x)
 {
 	const ob_hull *h = x->hull;
@@ -137,7 +139,7 @@ static nearest find_nearest(const segment *x)
 	return best;
 }
 
-// The face whose normal is within the cosine of n, if there is one; -1.
+// Returns the face with the normal nearest to n, within the cosine; -1: none.
 static int face_towards(const ob_hull *h, ob_vec3 n, double cosine)
 {
 	int best = -1;
@@ -149,7 +151,7 @@ static int face_towards(const ob_hull *h, ob_vec3 n, double cosine)
 	return best;
 }
 
-// What of the segment lies side by side with the part of the hull that it is nearest to: over a face, or along an edge.
+// Range of the segment that runs along the part of the hull nearest to it: over a face, or along an edge.
 static void side_by_side_range(const segment *x, const nearest *near, double range[2])
 {
 	const ob_hull *h = x->hull;
@@ -178,7 +180,7 @@ static ob_vec3 to_world(const ob_placed *b, ob_vec3 n)
 	return ob_rotate(&b->r, n);
 }
 
-// The segment at s is "from" (m) away from the hull along the unit vector n (hull's frame).
+// Contact point of the segment at s, which is "from" (m) away from the hull along the unit vector n (hull's frame).
 static ob_line_point on_line(const ob_placed *b, const segment *x, double s, double from, ob_vec3 n)
 {
 	const double gap = from - x->radius;
@@ -186,7 +188,7 @@ static ob_line_point on_line(const ob_placed *b, const segment *x, double s, dou
 	return (ob_line_point){ s, gap, ob_add(b->p, ob_rotate(&b->r, local)), true };
 }
 
-// m/s at which a's point nearest to the plane across n (hull's frame) comes away from it.
+// Speed (m/s) at which a's point nearest to the plane across n (hull's frame) leaves the plane.
 static double opening(const ob_placed *a, const ob_placed *b, const segment *x, double s, ob_vec3 n)
 {
 	const ob_vec3 w = ob_rotate(&b->r, ob_madd(at(x, s), -x->radius, n)), normal = to_world(b, n);
@@ -194,8 +196,8 @@ static double opening(const ob_placed *a, const ob_placed *b, const segment *x, 
 	return ob_dot(normal, ob_sub(va, ob_add(b->v, ob_cross(b->w, w))));
 }
 
-// Seams, as of ob_face_underfoot: a face that a touches, and that does not close before the direction of the nearest
-// place, bears a. false: there is none.
+// Seams, as for ob_face_underfoot. Makes the manifold over a face that a touches, and that closes no sooner than the
+// direction of the nearest place. Returns false if there is none.
 static bool on_face_underfoot(const ob_placed *a, const ob_placed *b, const segment *x, const nearest *near,
 			      double margin, ob_manifold *out)
 {
@@ -220,7 +222,7 @@ static bool on_face_underfoot(const ob_placed *a, const ob_placed *b, const segm
 	const ob_vec3 n = x->hull->normal[face];
 	out->normal = to_world(b, n);
 	out->separation = gap;
-	if (leaving) // and may fall off the edge yet
+	if (leaving) // it may still fall off the edge
 		out->valid_path = ob_leaving_path(a, b);
 	if (!over_face(x, (uint32_t)face, reach, range))
 		return true;

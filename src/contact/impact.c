@@ -6,51 +6,51 @@
 #include "base/allocate.h"
 
 enum {
-	MAX_DENSE_ROWS = 3 * OB_IMPACT_MOST_POINTS, // of sets that are solved by Newton's method
-	MAX_CYCLES = 3, // of Newton's method ..
-	CYCLE_ITERATIONS = 60, // .. so many iterations before the second, and three times as many before the third
+	MAX_DENSE_ROWS = 3 * OB_IMPACT_MOST_POINTS, // maximum for Newton's method
+	MAX_CYCLES = 3, // attempts by Newton's method
+	CYCLE_ITERATIONS = 60, // iterations before the second attempt; three times as many before the third
 	MAX_NEWTON_STEPS = 10,
-	MAX_ITERATIONS = 4000, // of a set that is too large for Newton's method
-	WORK_OF_POINT = 4, // in an iteration
-	ELIMINATED_PER_WORK = 32, // of n^3, where n rows are eliminated
+	MAX_ITERATIONS = 4000, // for a set that is too large for Newton's method
+	WORK_OF_POINT = 4, // units of work for a point in an iteration
+	ELIMINATED_PER_WORK = 32, // n^3 per unit of work, for an elimination of n rows
 };
 
-static const double exact = 2e-15; // of the largest velocity: what rounding leaves
-static const double stalled = 1e-12; // of it: a solution that cannot be improved counts as one
-static const double same_residual = 1e-9; // of a residual: the method has been there before
-static const double proximity = 1e-7; // of a row's own coefficient: keeps rows that depend on each other solvable
+static const double exact = 2e-15; // relative to the largest velocity: error that rounding leaves
+static const double stalled = 1e-12; // relative to the largest velocity: residual of a solution that cannot be improved
+static const double same_residual = 1e-9; // relative to a residual: the method has been there before
+static const double proximity = 1e-7; // relative to a row's own coefficient: keeps dependent rows solvable
 
-// A point's rows: the normal, two tangents.
+// Rows of a point: the normal, two tangents.
 typedef struct point_rows {
 	uint32_t a, b;
 	ob_vec3 along[3]; // unit
 	ob_vec3 about_a[3], about_b[3]; // m: arm x along
-	ob_vec3 turn_a[3], turn_b[3]; // of about, by the inverse inertia
-	double mass_a, mass_b; // inverse
-	double before[3]; // J v, m/s
+	ob_vec3 turn_a[3], turn_b[3]; // about, times the inverse inertia
+	double mass_a, mass_b; // inverse masses
+	double before[3]; // J v before the impact, m/s
 	double mu, e;
-	double rate; // kg: by which an iteration turns a velocity into an impulse, small enough to converge
+	double rate; // kg: factor from a velocity to an impulse in an iteration, small enough to converge
 } point_rows;
 
 typedef struct change_of_velocity {
 	ob_vec3 v, w;
 } change_of_velocity;
 
-// J M^-1 J' of one point: of the normal, of both, of friction (11 12 22)
+// J M^-1 J' of one point: normal, normal with friction, friction (11 12 22)
 typedef struct point_matrix {
 	double nn, nt[2], tt[3];
 } point_matrix;
 
-// The set of points that approach.
+// Set of points that are solved together.
 typedef struct impact_set {
 	uint32_t bodies, points;
 	int dims; // rows of a point: 3, or 1 without friction
 	point_rows *point;
 	change_of_velocity *change; // [bodies]
-	double largest; // m/s, of the points
-	double share; // of e: 1, or 0 for the plastic impact
-	point_matrix one; // of a set of one point
-	const ob_impact_payer *payer; // or NULL
+	double largest; // m/s: largest velocity of the points
+	double share; // factor of e: 1, or 0 for the plastic impact
+	point_matrix one; // for a set of one point
+	const ob_impact_payer *payer; // NULL: no budget
 } impact_set;
 
 static ob_vec3 times(const double *s, ob_vec3 x)
@@ -112,7 +112,7 @@ static void point_rows_init(point_rows *r, const ob_impact_body *body, const ob_
 	}
 }
 
-// The same whichever body is a.
+// Symmetric in the two bodies.
 static point_matrix point_matrix_of(const point_rows *r)
 {
 	double a[3][3];
@@ -123,7 +123,8 @@ static point_matrix point_matrix_of(const point_rows *r)
 	return (point_matrix){ a[0][0], { a[1][0], a[2][0] }, { a[1][1], a[2][1], a[2][2] } };
 }
 
-// A body with k points is a k-th of itself in each: so no iteration does too much (mass splitting: Tonge et al. 2012).
+// Sets the rates. A body with k points counts as a k-th of itself in each, so that no iteration overshoots (mass
+// splitting: Tonge et al. 2012).
 static void set_rates(impact_set *s, uint32_t *count)
 {
 	memset(count, 0, s->bodies * sizeof *count);
@@ -140,7 +141,7 @@ static void set_rates(impact_set *s, uint32_t *count)
 	}
 }
 
-// Of a set of one point: its matrix, and the rate that comes of it.
+// Sets the matrix and the rate of a set of one point.
 static void set_matrix(impact_set *s)
 {
 	point_rows *r = s->point;
@@ -180,7 +181,8 @@ static void find_velocities_of_one(const impact_set *s, const double *x, double 
 	u[2] = r->before[2] + a->nt[1] * x[0] + a->tt[1] * x[1] + a->tt[2] * x[2];
 }
 
-// What all rows have to reach, u, with the impulses x: the normal velocities are in excess of the law's.
+// Computes the velocities u of all rows with the impulses x. A normal row has the excess over the law: 0 if the point
+// leaves at exactly -e times its approach.
 static void find_velocities(const impact_set *s, const double *x, double *u)
 {
 	if (s->points == 1) {
@@ -199,10 +201,10 @@ static void find_velocities(const impact_set *s, const double *x, double *u)
 	}
 }
 
-// Where an iteration would take a point's impulses, at the velocities u: onto its cone.
+// Impulses of a point after an iteration at the velocities u: projected onto its cone.
 typedef struct projection {
 	double x[3];
-	double z[2], length; // of friction, before it is bounded
+	double z[2], length; // friction before it is bounded, and its length
 	double bound;
 } projection;
 
@@ -219,7 +221,7 @@ static projection project(const impact_set *s, const point_rows *r, const double
 	return p;
 }
 
-// m/s: by how much an iteration would change something
+// Largest change that an iteration would make, as a velocity (m/s).
 static double residual(const impact_set *s, const double *x, const double *u)
 {
 	double most = 0;
@@ -232,14 +234,14 @@ static double residual(const impact_set *s, const double *x, const double *u)
 	return most;
 }
 
-// Of n iterations, and of an elimination of so many rows. true: no more.
+// Pays for n iterations and an elimination of so many rows. Returns true if the budget is spent.
 static bool pay(const impact_set *s, uint64_t iterations, uint64_t rows)
 {
 	const uint64_t work = WORK_OF_POINT * s->points * iterations + rows * rows * rows / ELIMINATED_PER_WORK;
 	return s->payer && s->payer->is_over(s->payer->with, work);
 }
 
-// All points at once, again and again.
+// Repeats iterations of all points at once.
 static void iterate(const impact_set *s, int iterations, double *x, double *u)
 {
 	double most = INFINITY;
@@ -263,7 +265,7 @@ typedef struct newton_system {
 	int n;
 	double a[MAX_DENSE_ROWS][MAX_DENSE_ROWS]; // J M^-1 J'
 	double m[MAX_DENSE_ROWS][MAX_DENSE_ROWS], step[MAX_DENSE_ROWS];
-	int open[MAX_DENSE_ROWS], opens; // rows of points that push: the others' impulses go to zero
+	int open[MAX_DENSE_ROWS], opens; // rows of points under load; the other points' impulses go to zero
 } newton_system;
 
 static double coupling(const point_rows *r, int i, const point_rows *q, int j)
@@ -290,7 +292,7 @@ static void fill_matrix(const impact_set *s, newton_system *y)
 				coupling(&s->point[i / s->dims], i % s->dims, &s->point[j / s->dims], j % s->dims);
 }
 
-// Elimination with row pivots of the first n rows and columns; false: singular.
+// Eliminates the first n rows and columns with row pivots. Returns false if they are singular.
 static bool eliminate(newton_system *y, int n)
 {
 	for (int k = 0; k < n; k++) {
@@ -323,7 +325,7 @@ static bool eliminate(newton_system *y, int n)
 	return true;
 }
 
-// Row "row" is to reach zero velocity.
+// Makes row "row" reach zero velocity.
 static void put_stop(newton_system *y, int row, double u)
 {
 	memcpy(y->m[row], y->a[row], (unsigned)y->n * sizeof **y->m);
@@ -331,7 +333,7 @@ static void put_stop(newton_system *y, int row, double u)
 	y->step[row] = -u;
 }
 
-// Rows "row" and the next: friction of magnitude mu x against z, which turns with the sliding velocity.
+// Makes row "row" and the next have friction of magnitude mu x against z, which turns with the sliding velocity.
 static void put_sliding(newton_system *y, int row, const point_rows *r, const projection *p, const double *x)
 {
 	const double k = p->bound / p->length, d[2] = { p->z[0] / p->length, p->z[1] / p->length };
@@ -351,7 +353,7 @@ static void put_sliding(newton_system *y, int row, const point_rows *r, const pr
 	}
 }
 
-// Open rows and columns alone, where the others' steps are known.
+// Eliminates open rows and columns alone: the steps of the others are known.
 static bool eliminate_open(newton_system *y, const double *x)
 {
 	double others[MAX_DENSE_ROWS];
@@ -401,9 +403,9 @@ static bool newton_step(const impact_set *s, newton_system *y, const double *x, 
 	return eliminate_open(y, x);
 }
 
-// A whole step may lead through worse places to the solution, as which points push and which slide is changed; shorter
-// ones lead downhill alone. true: solved to rounding; false as soon as it comes where it has been, too. x: from where,
-// and the solution.
+// Runs Newton's method from x; x is also the result. A whole step may lead through worse places to the solution, as it
+// changes the sets of points under load and of sliding ones. With "downhill", steps are shortened until the residual
+// falls. Returns true if solved to rounding; false also as soon as a residual is repeated.
 static bool newton(const impact_set *s, newton_system *y, bool downhill, double *x, double *u)
 {
 	double next[MAX_DENSE_ROWS], seen[MAX_NEWTON_STEPS], then = INFINITY;
@@ -425,7 +427,7 @@ static bool newton(const impact_set *s, newton_system *y, bool downhill, double 
 		if (!(then < now) && (downhill || now <= stalled * s->largest))
 			break;
 		for (int k = 0; k < n; k++)
-			if (fabs(then - seen[k]) <= same_residual * then) // it goes round
+			if (fabs(then - seen[k]) <= same_residual * then) // it cycles
 				return false;
 		memcpy(x, next, (unsigned)y->n * sizeof *x);
 		seen[n] = now = then;
@@ -433,8 +435,8 @@ static bool newton(const impact_set *s, newton_system *y, bool downhill, double 
 	return now <= stalled * s->largest;
 }
 
-// Newton's method needs to begin where it is already known which points slide; where it does not come to an end,
-// iterations go on from the last place that they had reached.
+// Alternates iterations and Newton's method. The latter must begin with nearly the right points sliding. If it fails,
+// iterations go on from their last result.
 static void solve_cycles(const impact_set *s, double *x, double *u)
 {
 	newton_system y;
@@ -443,7 +445,7 @@ static void solve_cycles(const impact_set *s, double *x, double *u)
 	for (int cycle = 0; cycle < MAX_CYCLES; cycle++) {
 		iterate(s, cycle == 0 ? 0 : cycle == 1 ? CYCLE_ITERATIONS : 3 * CYCLE_ITERATIONS, x, u);
 		memcpy(start, x, (unsigned)y.n * sizeof *x);
-		for (int downhill = 0; downhill <= (cycle + 1 == MAX_CYCLES); downhill++) { // which is seldom needed
+		for (int downhill = 0; downhill <= (cycle + 1 == MAX_CYCLES); downhill++) { // downhill is seldom needed
 			if (newton(s, &y, downhill, x, u))
 				return;
 			memcpy(x, start, (unsigned)y.n * sizeof *x);
@@ -453,11 +455,11 @@ static void solve_cycles(const impact_set *s, double *x, double *u)
 
 // ---- one point
 
-// The same for one point, of which nearly all sets are. Where friction cannot stop it, it slides afterwards in some
-// direction d, with friction against that: one unknown angle.
+// Solution for one point, the most frequent set by far. If friction cannot stop it, it slides afterwards in some
+// direction d, with friction against d: one unknown angle.
 typedef struct one_point {
 	point_matrix a;
-	double n, t[2]; // m/s: what is to be reached, without an impulse; the point's sliding
+	double n, t[2]; // m/s, without an impulse: normal velocity in excess of the law; sliding
 	double mu;
 } one_point;
 
@@ -474,10 +476,10 @@ static one_point one_point_of(const impact_set *s)
 	};
 }
 
-// The impulses that leave the point at rest along the plane. false: they are beyond its cone.
+// Computes the impulses that stop the point's sliding. Returns false if they are beyond its cone.
 static bool stop_point(const one_point *p, double *x)
 {
-	const double f[2] = { p->a.nt[0] / p->a.nn, p->a.nt[1] / p->a.nn }; // without the normal row
+	const double f[2] = { p->a.nt[0] / p->a.nn, p->a.nt[1] / p->a.nn }; // eliminates the normal row
 	const double a = p->a.tt[0] - f[0] * p->a.nt[0], b = p->a.tt[1] - f[0] * p->a.nt[1],
 		     c = p->a.tt[2] - f[1] * p->a.nt[1];
 	const double t0 = p->t[0] - f[0] * p->n, t1 = p->t[1] - f[1] * p->n, inverse = 1 / (a * c - b * b);
@@ -487,8 +489,8 @@ static bool stop_point(const one_point *p, double *x)
 	return x[0] > 0 && x[1] * x[1] + x[2] * x[2] <= p->mu * p->mu * x[0] * x[0];
 }
 
-// By how much d (unit) has to be turned (rad) to be the direction in which friction along it lets the point slide: a
-// step of Newton's method. free: the sliding without friction, times nn.
+// Angle (rad) by which d (unit) must turn to be the direction of sliding under friction along d: a step of Newton's
+// method. free: sliding without friction, times nn.
 static double turn_of_sliding(const one_point *p, const double *free, const double *d)
 {
 	const double across[2] = { -d[1], d[0] };
@@ -501,10 +503,10 @@ static double turn_of_sliding(const one_point *p, const double *free, const doub
 	return -miss / slope;
 }
 
-// Impulses that let it slide, from the direction that it would take without friction.
+// Computes the impulses of a sliding point. Starts with the direction that it would take without friction.
 static void let_point_slide(const one_point *p, double *x)
 {
-	enum { MOST = 12, FIRST = 4 }; // steps of Newton's method; that may lead anywhere
+	enum { MOST = 12, FIRST = 4 }; // steps of Newton's method; so many of them may diverge
 	const double rounding = 1e-16; // rad
 	const double free[2] = { p->t[0] * p->a.nn - p->n * p->a.nt[0], p->t[1] * p->a.nn - p->n * p->a.nt[1] };
 	const double size = sqrt(dot2(free, free));
@@ -523,7 +525,7 @@ static void let_point_slide(const one_point *p, double *x)
 	x[2] = -p->mu * x[0] * d[1];
 }
 
-// false: x, which may be no number, does not fulfil the law: that has no solution, or one that was not found.
+// Returns false if x does not obey the law, and may be NaN: there is no solution, or none was found.
 static bool solve_one_point(const impact_set *s, double *x, double *u)
 {
 	const one_point p = one_point_of(s);
@@ -535,7 +537,7 @@ static bool solve_one_point(const impact_set *s, double *x, double *u)
 	return residual(s, x, u) <= stalled * s->largest;
 }
 
-// The impulses x of the law.
+// Computes the impulses x of the law. share: factor of e.
 static void solve_law(const impact_set *s, double share, double *x, double *u)
 {
 	impact_set set = *s;
@@ -557,7 +559,7 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 
 // ---- energy
 
-// J: what impulses x do to the kinetic energy that part from u0 and end at u1
+// Kinetic energy (J) that impulses x add as they change the rows' velocities from u0 to u1.
 static double gain(uint32_t rows, const double *x, const double *u0, const double *u1)
 {
 	double sum = 0;
@@ -566,7 +568,7 @@ static double gain(uint32_t rows, const double *x, const double *u0, const doubl
 	return sum;
 }
 
-// Velocities of the rows themselves.
+// Computes the velocities of the rows, without the part of restitution.
 static void true_velocities(const impact_set *s, const double *x, double *u)
 {
 	impact_set set = *s;
@@ -574,7 +576,7 @@ static void true_velocities(const impact_set *s, const double *x, double *u)
 	find_velocities(&set, x, u);
 }
 
-// The largest share of the way from impulses p to x that gains no energy. The gain is a parabola over it, <= 0 at 0.
+// Largest share of the way from impulses p to x that gains no energy. The gain is a parabola over the share, <= 0 at 0.
 static double share_without_gain(uint32_t rows, const double *p, const double *x, const double *u0, const double *up,
 				 const double *ux)
 {
@@ -590,7 +592,7 @@ static double share_without_gain(uint32_t rows, const double *p, const double *x
 	return ob_min(1, c1 > 0 ? -2 * c0 / (c1 + root) : (root - c1) / (2 * c2));
 }
 
-// memory: for four times as many numbers as there are rows
+// Mixes in as much of the plastic impact as makes the gain of energy zero. memory: four numbers per row
 static void limit_energy(const impact_set *s, double *x, double *memory)
 {
 	const uint32_t rows = s->points * (unsigned)s->dims;
@@ -608,7 +610,7 @@ static void limit_energy(const impact_set *s, double *x, double *memory)
 	for (uint32_t i = 0; i < rows; i++)
 		x[i] = p[i] + share * (x[i] - p[i]);
 	true_velocities(s, x, ux);
-	double given = 0, spread = 0; // a long lever that jams has no solution: less of what there is
+	double given = 0, spread = 0; // a long lever that jams has no solution: its impulses shrink
 	for (uint32_t i = 0; i < rows; i++) {
 		given += x[i] * u0[i];
 		spread += x[i] * (ux[i] - u0[i]);
@@ -681,11 +683,11 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 bool ob_impact_part(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
 		    double approach)
 {
-	enum { REFLECTIONS = 32 }; // at an instant
-	const double rounding = 1e-12; // of the approach: so much that is left
+	enum { REFLECTIONS = 32 }; // maximum at an instant
+	const double rounding = 1e-12; // relative to the approach: remaining approach that counts as none
 	double left = approach;
 	for (int k = 0; k < REFLECTIONS && left > rounding * approach; k++) {
-		ob_impact_solve(body, bodies, point, points, NULL); // few points, few times
+		ob_impact_solve(body, bodies, point, points, NULL); // few points: no budget
 		left = ob_impact_approach(body, point, points);
 	}
 	return left <= rounding * approach;

@@ -23,8 +23,8 @@ typedef struct ob_polygon {
 // Keeps the four points that span the largest area, among those within "band" (m) of the lowest one, or else the four
 // lowest.
 void ob_polygon_reduce(ob_polygon *p, double band);
-// Returns a bit for each of the four points, of n (at most 32), that span the largest area with one of the deepest
-// among them. tie: m, difference of depth that counts as none.
+// Returns the four of n points (at most 32) that span the largest area and include one of the deepest: a bit for each.
+// tie: m, difference of depth that counts as none.
 unsigned ob_widest_four(const double *u, const double *w, const double *z, int n, double tie);
 
 #endif

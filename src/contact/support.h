@@ -17,8 +17,8 @@ ob_vec3 ob_support_between(const ob_placed *a, const ob_placed *b, ob_vec3 n);
 // Separation of the shapes along the unit direction n, from b to a (m): never more than their distance.
 double ob_apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n);
 
-// Climbs from "from" to the direction of largest separation across the unit vector e. The features that meet there, as
-// seen along e, are an arc of a circle or an ellipse, and a corner, an edge or another arc. If two convex shapes are
+// Climbs from "from" to the direction of largest separation across the unit vector e. As seen along e, the nearest
+// features there are an arc of a circle or an ellipse, and a corner, an edge or another arc. If two convex shapes are
 // apart, their separation has one maximum on the half circle. The zero of its derivative is bracketed, and found to
 // rounding.
 ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_vec3 from);
