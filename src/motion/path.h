@@ -4,8 +4,8 @@
 // Constant and swinging motions are one closed form for good. A spline is a sequence of parabolas, two between each two
 // points. Velocities are continuous; the object accelerates in the first half and decelerates in the second as a lift
 // does. Times are rounded to steps, so that a published motion holds throughout a step. If its points have attitudes,
-// it turns from each to the next by the shortest way at a constant rate, which changes at each point (Shoemake 1985,
-// SIGGRAPH: slerp).
+// it turns from each to the next by the shortest way (Shoemake 1985, SIGGRAPH: slerp). The rate is constant in between,
+// and changes at each point.
 #ifndef OB_MOTION_PATH_H
 #define OB_MOTION_PATH_H
 
@@ -22,7 +22,7 @@ typedef struct ob_path_point {
 typedef struct ob_path {
 	double frequency; // rad/s; 0: it does not swing
 	ob_vec3 a; // m/s^2, if it swings: at the first instant
-	uint32_t points; // of the spline, ascending by time, the first at 0; 0: no spline
+	uint32_t points; // number of points of the spline, ascending by time, the first at 0; 0: no spline
 	bool loop; // after the last point, at the place of the first, the spline begins again
 	bool turns; // its points have attitudes; neighbours are less than half a turn apart
 	ob_path_point *point; // [points]

@@ -72,8 +72,8 @@ void ob_spin_plan(ob_spin *spin, ob_quat q, ob_vec3 w, ob_vec3 inertia);
 // Bound on the angular speed (rad/s), at any time, of a free body with attitude q and rate w.
 double ob_spin_bound(ob_quat q, ob_vec3 w, ob_vec3 inertia);
 
-// Bounds on the curvature of a point's path, per metre from the centre, as the body turns freely at angular speeds of
-// up to w (rad/s).
+// Bounds on the curvature of a point's path, per metre from the centre. The body turns freely at angular speeds of up
+// to w (rad/s).
 typedef struct ob_bending {
 	ob_vec3 coupling; // c of Euler's equations b_i' = c_i b_j b_k, for the rate b in the frame of the body
 	double most, jerk; // 1/s^2, 1/s^3: second and third derivative of the arm

@@ -33,9 +33,9 @@ ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_st
 void ob_ode_body_destroy(ob_ode_body *b);
 // Writes the state back to the body (the closed form is authoritative, ODE's body follows it).
 void ob_ode_body_set(ob_ode_body *b, const ob_state *s);
-// Advances by ODE's own dWorldStep over h (s) under gravity and the impulse j (N s), angular impulse l (N m s, world
-// frame, about the centre), both spread evenly over h; state in, state out. Returns false if ODE gave up; the state is
-// then unchanged.
+// Advances a state by ODE's own dWorldStep over h (s), under gravity, the impulse j (N s) and the angular impulse l (N
+// m s, world frame, about the centre). Both impulses are spread evenly over h. Returns false if ODE gave up; the state
+// is then unchanged.
 bool ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h);
 
 #endif
