@@ -312,8 +312,8 @@ static void reduce_to_four(polygon *p, double tie)
 		polygon_put(p, p->corner[k], keep >> k & 1);
 }
 
-// Corners of the incident face: the face of box "in" that looks most against n. Corners are relative to the centre of
-// the reference box. of: components of the axes of "in".
+// Computes the corners of the incident face, the face of box "in" that looks most against n, from the centre of the
+// reference box. of: components of the axes of "in".
 static void incident_face(const ob_placed *ref, const ob_placed *in, const lanes *of, ob_vec3 n, lanes corner[3])
 {
 	const lanes c = n.x * of[0] + n.y * of[1] + n.z * of[2], far = lanes_abs(c);

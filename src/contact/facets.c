@@ -2,7 +2,7 @@
 
 #include "contact/support.h"
 
-static const double steep_cap = .3, steep_side = .95; // cosines: a cap or side that leans by more has one point
+static const double steep_cap = .3, steep_side = .95; // cosines: a cap with less, or a side with more, has one point
 static const double steepest_face = .05; // cosine: over a cap, a steeper face has nothing but its edges
 static const double upright = 1e-6; // rad: a cap that leans by less is level
 static const double pressing = 1e-6; // relative to an acceleration: a smaller part along a facet presses nowhere

@@ -10,14 +10,14 @@ enum {
 	MAX_CYCLES = 3, // attempts by Newton's method
 	CYCLE_ITERATIONS = 60, // iterations before the second attempt; three times as many before the third
 	MAX_NEWTON_STEPS = 10,
-	MAX_ITERATIONS = 4000, // for a set that is too large for Newton's method
+	MAX_ITERATIONS = 4000, // iterations of a set that is too large for Newton's method
 	WORK_OF_POINT = 4, // units of work for a point in an iteration
 	ELIMINATED_PER_WORK = 32, // n^3 per unit of work, for an elimination of n rows
 };
 
 static const double exact = 2e-15; // relative to the largest velocity: error that rounding leaves
 static const double stalled = 1e-12; // relative to the largest velocity: residual of a solution that cannot be improved
-static const double same_residual = 1e-9; // relative to a residual: the method has been there before
+static const double same_residual = 1e-9; // relative to a residual: one this near to an earlier one means a cycle
 static const double proximity = 1e-7; // relative to a row's own coefficient: keeps dependent rows solvable
 
 // Rows of a point: the normal, two tangents.
@@ -333,7 +333,7 @@ static void put_stop(newton_system *y, int row, double u)
 	y->step[row] = -u;
 }
 
-// Makes row "row" and the next have friction of magnitude mu x against z, which turns with the sliding velocity.
+// Makes "row" and the next row obey friction of magnitude mu x against z, which turns with the sliding velocity.
 static void put_sliding(newton_system *y, int row, const point_rows *r, const projection *p, const double *x)
 {
 	const double k = p->bound / p->length, d[2] = { p->z[0] / p->length, p->z[1] / p->length };

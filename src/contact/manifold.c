@@ -79,8 +79,8 @@ static box_side nearest_side(ob_vec3 l, ob_vec3 size)
 	return face_side(l, size, dx >= dy && dx >= dz ? 0 : dy >= dz ? 1 : 2);
 }
 
-// Finds the face on which a sphere rolls over a seam. Beyond a face's border the sphere meets an edge, unless it
-// touches the face's plane, and closes no sooner along the face's normal. Then it rolls from one coplanar face to the
+// Finds the face on which a sphere rolls across a seam. Beyond a face's border the sphere meets an edge, unless it
+// touches the face's plane, and the plane closes no sooner than the edge. Then it rolls from one coplanar face to the
 // next, and does not hit the edge. The next face bears the sphere as soon as the sphere is over it: its plane extends
 // ahead by "reach" (m). Behind, it extends as far as the edge is no farther away than the plane. v: m/s, of the sphere
 // as seen from b. leaving: the sphere leaves the face.
@@ -314,7 +314,8 @@ static void follow_both_to(followed_shape *a, followed_shape *b, double t)
 	follow_to(b, t);
 }
 
-// Bound on the acceleration (m/s^2) of any point of a shape that turns at up to "fastest" (rad/s). Infinity: no end.
+// Bound on the acceleration (m/s^2) of any point of a shape that turns at up to "fastest" (rad/s); infinity for a
+// plane.
 static double bend_at(const ob_placed *x, double fastest)
 {
 	const double radius = ob_shape_radius(x->shape, x->size);
@@ -330,13 +331,13 @@ static double bend_of(const moving_shape *x)
 
 // Two shapes at an instant, as seen along a direction n from b to a, which may turn. centres: m, distance of their
 // centres along n; rate: m/s, its rate; turn_a, turn_b: 1/s, rate of n as seen from a and b; bend: m/s^2, bound on the
-// acceleration at which points may close besides.
+// acceleration that brings points closer besides.
 typedef struct seen_along {
 	const ob_placed *a, *b;
 	ob_vec3 n, turn_a, turn_b;
 	ob_vec3 apart, v; // m, m/s: position and velocity of a from b
 	double centres, rate, bend;
-	bool boxes; // both are boxes; half: m, their half sides along n; turn: m/s, its rate
+	bool boxes; // both are boxes; half: m, half sides of a and b along n; turn: m/s, their rates
 	double half[6], turn[6];
 } seen_along;
 
@@ -488,7 +489,7 @@ static double time_apart(const seen_along *x, double near, double certain, doubl
 }
 
 // Lower bound (s) on the time within h until shapes that are "apart" (m) close: the first zero of a concave function. A
-// chord ends before it; an extended chord, after it.
+// chord reaches zero before it, the extension of a chord after it.
 static double time_to_close(const seen_along *x, double apart, double h)
 {
 	enum { NARROW = 5 };

@@ -101,8 +101,8 @@ static ob_vec3 normal_of(const polytope *x, uint32_t face)
 	return to_world(x, x->shape->normal[face]);
 }
 
-// Position along n of the lowest corner, from the centre (m). n: in the shape's frame. Four minima side by side wait
-// less for each other than one.
+// Position along n of the lowest corner, from the centre (m). n: in the shape's frame. Keeps four minima side by side;
+// a single one would wait for each comparison.
 static double lowest_along(const polytope *x, ob_vec3 n)
 {
 	const ob_vec3 *c = x->corner;
