@@ -100,13 +100,13 @@ static int work(void *shared, uint32_t worker)
 	board *b = shared;
 	ob_cpu_pin(worker);
 	ob_motion m = { .q = { 1, 0, 0, 0 } };
-	while (ob_gate_wait(b->u, worker) != OB_PHASE_STOP) {
+	while (ob_turn_wait(b->u, worker) != OB_PHASE_STOP) {
 		uint32_t object = worker;
 		if (!b->pool)
 			ob_publish_motion(b->u, object, &m);
 		while (b->pool && ob_task_claim(b->u, &object))
 			ob_publish_motion(b->u, object, &m);
-		if (!ob_gate_arrive(b->u, worker))
+		if (!ob_turn_arrive(b->u, worker))
 			continue;
 		if (--b->gates == 0)
 			ob_gate_pause(b->u);

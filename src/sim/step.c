@@ -765,7 +765,7 @@ static bool arrange(ob_sim *s, ob_phase phase)
 bool ob_step(ob_sim *s)
 {
 	ob_span_turn(s, OB_TRACE_WAIT);
-	ob_phase phase = ob_gate_wait(s->u, s->worker);
+	ob_phase phase = ob_turn_wait(s->u, s->worker);
 	if (phase == OB_PHASE_STOP) {
 		ob_span_turn(s, OB_TRACE_NONE);
 		return false;
@@ -781,7 +781,7 @@ bool ob_step(ob_sim *s)
 		ob_outbox_end_of(s->u)->counters = s->counters;
 	else
 		*ob_worker_counters(s->u, s->worker) = s->counters;
-	if (ob_gate_arrive(s->u, s->worker)) {
+	if (ob_turn_arrive(s->u, s->worker)) {
 		ob_span_turn(s, OB_TRACE_SCHEDULE);
 		phase = schedule(s, phase);
 		if (s->committer)

@@ -4,11 +4,6 @@
 
 #include "table/layout.h"
 
-ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker)
-{
-	return &u->worker[worker].counters;
-}
-
 const char *ob_profile_name(uint32_t section)
 {
 	static const char *const names[OB_PROFILE_SECTIONS] = {

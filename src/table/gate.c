@@ -7,7 +7,6 @@
 #include "base/cpu.h"
 #include "table/futex.h"
 #include "table/layout.h"
-#include "table/outbox.h"
 
 enum { SPIN_NS = 100000, SPINS_PER_CHECK = 32 };
 
@@ -60,15 +59,14 @@ static bool spin_for_turn(const ob_gate *g, const ob_gate_cell *cell, uint32_t d
 	return false;
 }
 
-ob_phase ob_gate_wait(ob_universe *u, uint32_t worker)
+ob_phase ob_gate_wait(ob_universe *u, uint32_t worker, uint32_t done, bool marks)
 {
 	ob_gate *g = u->gate;
 	const ob_gate_cell *cell = u->gate_cell + worker;
-	const uint32_t done = u->outbox ? ob_outbox_turns_done(u) : __atomic_load_n(&cell->done, __ATOMIC_RELAXED);
 	if (!has_turn(g, cell, done) && !(g->spin && spin_for_turn(g, cell, done))) {
 		ob_gate_half *half = u->gate_group[worker / 64].half + worker / 32 % 2;
 		uint32_t bit = UINT32_C(1) << worker % 32;
-		if (!u->outbox)
+		if (marks)
 			__atomic_fetch_or(&half->asleep, bit, __ATOMIC_SEQ_CST);
 		for (;;) {
 			uint32_t seen = load_acquire(&half->word);
@@ -76,22 +74,14 @@ ob_phase ob_gate_wait(ob_universe *u, uint32_t worker)
 				break;
 			ob_futex_wait(&half->word, seen, bit, NULL);
 		}
-		if (!u->outbox)
+		if (marks)
 			__atomic_fetch_and(&half->asleep, ~bit, __ATOMIC_SEQ_CST);
 	}
-	if (load_acquire(&g->stop))
-		return OB_PHASE_STOP;
-	if (u->outbox)
-		ob_outbox_begin(u);
-	return (ob_phase)__atomic_load_n(&g->phase, __ATOMIC_RELAXED);
+	return load_acquire(&g->stop) ? OB_PHASE_STOP : (ob_phase)__atomic_load_n(&g->phase, __ATOMIC_RELAXED);
 }
 
 bool ob_gate_arrive(ob_universe *u, uint32_t worker)
 {
-	if (u->outbox) {
-		ob_outbox_arrive(u);
-		return false;
-	}
 	ob_gate *g = u->gate;
 	ob_gate_group *group = u->gate_group + worker / 64;
 	ob_gate_cell *cell = u->gate_cell + worker;

@@ -205,8 +205,11 @@ typedef struct ob_layout_plan_of {
 void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p);
 // Makes this process's own trace ring writable; the rest of its mapping stays read-only. Returns false, and errno.
 bool ob_trace_unprotect(ob_universe *u, uint32_t ring);
-// Last turn of the gate at which this contained simulator has arrived.
-uint32_t ob_outbox_turns_done(const ob_universe *u);
+// Sleeps until the gate gives the worker a turn other than "done", the last at which it arrived; returns its phase. marks:
+// the worker can write the gate, and marks there that it sleeps. A contained simulator cannot.
+ob_phase ob_gate_wait(ob_universe *u, uint32_t worker, uint32_t done, bool marks);
+// Counts the worker off; returns true if it is the last.
+bool ob_gate_arrive(ob_universe *u, uint32_t worker);
 // Called by the host after a restart, together with the gate: outboxes are empty, and no simulator is busy. Simulators
 // may come to the gate when the arranger already waits there; it would otherwise take data left by their predecessors
 // for theirs.

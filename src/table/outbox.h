@@ -57,11 +57,13 @@ void ob_outbox_put(ob_universe *u, uint32_t kind, const void *record, size_t byt
 void *ob_outbox_own(const ob_universe *u, size_t *bytes);
 // Contents of its next ob_outbox_end.
 ob_outbox_end *ob_outbox_end_of(const ob_universe *u);
-// Called by the gate, when the simulator has its turn, and when it arrives.
+// Called when the simulator has its turn, and when it arrives at the gate (turn.c). turns_done: the last turn at which it
+// has arrived.
 void ob_outbox_begin(ob_universe *u);
 void ob_outbox_arrive(ob_universe *u);
-// Claims the next of this simulator's tasks (below).
-bool ob_outbox_claim(ob_universe *u, uint32_t *index);
+uint32_t ob_outbox_turns_done(const ob_universe *u);
+// Number of tasks that this simulator has claimed in the phase (ob_task_claim), before this one; and its own number.
+uint32_t ob_outbox_next_task(const ob_universe *u, uint32_t *worker);
 
 // ---- the arranger's side
 

@@ -1,10 +1,10 @@
+// Shared data of the workers in a step beside the slots: the clock, failures, the list of bodies to requery, records of
+// pairs, the arena of neighbours. Only the scheduler resets; the gate orders that.
 #include <stdio.h>
 
-// Shared data of the workers in a step beside the slots: the clock, tasks to claim, the list of bodies to requery, the
-// arena of neighbours, and the workers' own cells. Only the scheduler resets; the gate orders that.
 #include "base/clock.h"
 #include "table/layout.h"
-#include "table/outbox.h"
+#include "table/outbox_page.h"
 #include "table/pages.h"
 
 void ob_step_set_scheduler(ob_universe *u, uint32_t worker)
@@ -15,11 +15,6 @@ void ob_step_set_scheduler(ob_universe *u, uint32_t worker)
 uint32_t ob_step_scheduler(const ob_universe *u)
 {
 	return __atomic_load_n(&ob_universe_step_data(u)->count->scheduler, __ATOMIC_RELAXED);
-}
-
-uint64_t ob_step_count(const ob_universe *u)
-{
-	return __atomic_load_n(&u->control->step, __ATOMIC_ACQUIRE);
 }
 
 void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands)
@@ -55,7 +50,7 @@ static void raise_time(uint64_t *longest, uint64_t ns)
 void ob_phase_worked(ob_universe *u, uint64_t ns, uint64_t beside)
 {
 	if (u->outbox) {
-		ob_outbox_end_of(u)->worked_ns = ns;
+		u->outbox->end.worked_ns = ns;
 		return;
 	}
 	raise_time(&u->step_clock->longest_ns, ns);
@@ -93,72 +88,6 @@ uint64_t ob_critical_path(const ob_universe *u)
 uint64_t ob_simulated_path(const ob_universe *u)
 {
 	return __atomic_load_n(&u->step_clock->simulated_ns, __ATOMIC_RELAXED);
-}
-
-static uint32_t *time_of_task(const ob_universe *u, uint32_t task)
-{
-	return &u->step_data.task_ns[task % ob_universe_ids(u)];
-}
-
-void ob_task_took(ob_universe *u, uint32_t task, uint32_t ns)
-{
-	if (!u->outbox)
-		__atomic_fetch_add(time_of_task(u, task), ns, __ATOMIC_RELAXED);
-}
-
-uint32_t ob_task_take_time(ob_universe *u, uint32_t task)
-{
-	return __atomic_exchange_n(time_of_task(u, task), 0, __ATOMIC_RELAXED);
-}
-
-uint32_t ob_task_count(const ob_universe *u)
-{
-	return __atomic_load_n(&u->control->claim_total, __ATOMIC_RELAXED);
-}
-
-void ob_worker_announce(ob_universe *u, uint32_t worker, int32_t pid, int32_t tid, int32_t cpu)
-{
-	ob_worker_cell *w = u->worker + worker;
-	__atomic_store_n(&w->tid, tid, __ATOMIC_RELAXED);
-	__atomic_store_n(&w->cpu, cpu, __ATOMIC_RELAXED);
-	__atomic_store_n(&w->pid, pid, __ATOMIC_RELEASE); // last: a cell with a pid is complete
-}
-
-void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects)
-{
-	if (u->outbox) {
-		ob_outbox_end_of(u)->objects = objects;
-		return;
-	}
-	__atomic_store_n(&u->worker[worker].objects, objects, __ATOMIC_RELAXED);
-}
-
-void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns)
-{
-	__atomic_store_n(&u->worker[worker].cpu_ns, cpu_ns, __ATOMIC_RELAXED);
-}
-
-void ob_task_reset(ob_universe *u, uint32_t total, uint32_t workers)
-{
-	ob_task_reset_from(u, total, 0, workers);
-}
-
-void ob_task_reset_from(ob_universe *u, uint32_t total, uint32_t first, uint32_t workers)
-{
-	u->control->claim_first = first;
-	u->control->claim_workers = workers;
-	__atomic_store_n(&u->control->claim_total, total, __ATOMIC_RELAXED);
-	__atomic_store_n(&u->control->claim_next, 0, __ATOMIC_RELEASE);
-}
-
-bool ob_task_claim(ob_universe *u, uint32_t *index)
-{
-	if (u->outbox)
-		return ob_outbox_claim(u, index);
-	uint64_t total = __atomic_load_n(&u->control->claim_total, __ATOMIC_RELAXED);
-	uint64_t i = __atomic_fetch_add(&u->control->claim_next, 1, __ATOMIC_RELAXED);
-	*index = (uint32_t)i;
-	return i < total;
 }
 
 // The bits keep an id from being listed twice, so the list has room for all ids.
@@ -216,7 +145,7 @@ void ob_requery_reset(ob_universe *u)
 
 void ob_step_fail(ob_universe *u, ob_step_failure why, uint32_t object)
 {
-	uint64_t *first = u->outbox ? &ob_outbox_end_of(u)->failure : &u->step_data.count->failure,
+	uint64_t *first = u->outbox ? &u->outbox->end.failure : &u->step_data.count->failure,
 		 seen = __atomic_load_n(first, __ATOMIC_RELAXED);
 	const uint64_t failure = (uint64_t)object << 32 | why;
 	while ((seen == OB_STEP_OK || seen > failure) &&
@@ -228,7 +157,7 @@ ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object)
 {
 	uint64_t failure = __atomic_load_n(&u->step_data.count->failure, __ATOMIC_RELAXED);
 	if (u->outbox && !failure)
-		failure = ob_outbox_end_of(u)->failure;
+		failure = u->outbox->end.failure;
 	uint32_t blamed = (uint32_t)(failure >> 32);
 	if (failure && (!(failure & UINT32_MAX) || blamed >= u->header.sizes.capacity))
 		failure = OB_STEP_DAMAGED; // an invalid failure
@@ -240,7 +169,7 @@ ob_step_failure ob_step_failed(const ob_universe *u, uint32_t *object)
 uint64_t ob_step_work_add(ob_universe *u, uint64_t work)
 {
 	if (u->outbox) // others' work is added once all have arrived
-		return u->step_data.count->work + (ob_outbox_end_of(u)->work += work);
+		return u->step_data.count->work + (u->outbox->end.work += work);
 	return __atomic_add_fetch(&u->step_data.count->work, work, __ATOMIC_RELAXED);
 }
 
@@ -289,7 +218,7 @@ void ob_late_contacts_reset(ob_universe *u)
 void ob_late_contacts_note(ob_universe *u)
 {
 	if (u->outbox)
-		ob_outbox_end_of(u)->late = 1;
+		u->outbox->end.late = 1;
 	else
 		__atomic_store_n(&u->step_data.count->late, 1, __ATOMIC_RELAXED);
 }

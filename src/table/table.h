@@ -253,9 +253,9 @@ void ob_neighbours_reset(ob_universe *u);
 //
 // A phase ends when every participant has arrived; the last to arrive, the scheduler, prepares the next and opens the
 // gate. A worker waits until the gate opens with a phase in which it takes part.
-ob_phase ob_gate_wait(ob_universe *u, uint32_t worker);
+ob_phase ob_turn_wait(ob_universe *u, uint32_t worker);
 // Returns true if the caller is the last: all other workers wait; it must call ob_gate_open or ob_gate_pause.
-bool ob_gate_arrive(ob_universe *u, uint32_t worker);
+bool ob_turn_arrive(ob_universe *u, uint32_t worker);
 // participants: worker numbers, n of them; NULL = all. n >= 1 unless the phase is STOP. An invalid number is damage:
 // OB_STEP_DAMAGED.
 void ob_gate_open(ob_universe *u, ob_phase phase, const uint32_t *participants, uint32_t n);

@@ -29,8 +29,8 @@ static inline void pause_ms(int ms)
 static inline int idle_worker(ob_universe *u, uint32_t worker)
 {
 	ob_worker_announce(u, worker, getpid(), gettid(), -1);
-	while (ob_gate_wait(u, worker) != OB_PHASE_STOP) {
-		if (ob_gate_arrive(u, worker))
+	while (ob_turn_wait(u, worker) != OB_PHASE_STOP) {
+		if (ob_turn_arrive(u, worker))
 			ob_gate_pause(u);
 	}
 	return 0;

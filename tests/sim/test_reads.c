@@ -165,7 +165,7 @@ static bool *flags(uint32_t n)
 static bool step_blindly(ob_sim *s, ob_universe *u, uint32_t simulator, hidden what)
 {
 	const ob_step_data *data = &u->step_data;
-	if (ob_gate_wait(u, simulator) != OB_PHASE_ISLANDS || what == NOTHING)
+	if (ob_turn_wait(u, simulator) != OB_PHASE_ISLANDS || what == NOTHING)
 		return ob_step(s);
 	needed n = { flags(data->objects_max), flags(data->objects_max), flags(data->pairs_max), flags(data->pairs_max),
 		     flags(data->objects_max), flags(data->objects_max), flags(data->pairs_max) };

@@ -79,7 +79,7 @@ static void go_astray(ob_universe *u, unsigned seed)
 	ob_step_complete(u, 1, 2, 3);
 	ob_worker_announce(u, 1, 42, 42, 0);
 	ob_gate_open(u, OB_PHASE_ISLANDS, NULL, 0);
-	ob_gate_arrive(u, 2);
+	ob_turn_arrive(u, 2);
 	ob_gate_stop(u);
 }
 
@@ -99,8 +99,8 @@ static void check_as_taken(ob_universe *u, const char *bytes)
 	CHECK(ob_gate_host_wait(u, 0) && u->gate->stop == 0); // the host has the turn
 	ob_gate_open(u, OB_PHASE_BROADPHASE, NULL, 0);
 	for (uint32_t w = 0; w < WORKERS; w++) {
-		CHECK(ob_gate_wait(u, w) == OB_PHASE_BROADPHASE);
-		CHECK(ob_gate_arrive(u, w) == (w == WORKERS - 1));
+		CHECK(ob_turn_wait(u, w) == OB_PHASE_BROADPHASE);
+		CHECK(ob_turn_arrive(u, w) == (w == WORKERS - 1));
 	}
 }
 

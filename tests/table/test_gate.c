@@ -74,7 +74,7 @@ static int work(void *shared, uint32_t worker)
 {
 	board *b = shared;
 	for (;;) {
-		ob_phase phase = ob_gate_wait(b->u, worker);
+		ob_phase phase = ob_turn_wait(b->u, worker);
 		if (phase == OB_PHASE_STOP)
 			return 0;
 		bool invited = b->part_of[worker] == b->phase && b->ran_in[worker] != b->phase &&
@@ -83,7 +83,7 @@ static int work(void *shared, uint32_t worker)
 			__atomic_fetch_add(&b->uninvited, 1, __ATOMIC_RELAXED);
 		b->ran_in[worker] = b->phase;
 		b->runs[worker]++;
-		if (ob_gate_arrive(b->u, worker))
+		if (ob_turn_arrive(b->u, worker))
 			schedule(b);
 	}
 }
@@ -126,7 +126,7 @@ int main(int argc, char **argv)
 	CHECK(b->uninvited == 0);
 	CHECK(b->phase == b->phases);
 	CHECK(b->kinds == 15);
-	CHECK(ob_gate_wait(b->u, 0) == OB_PHASE_STOP); // for good
+	CHECK(ob_turn_wait(b->u, 0) == OB_PHASE_STOP); // for good
 	ob_universe_destroy(b->u, true);
 	return check_end();
 }

@@ -37,6 +37,7 @@ static void wake_sleepers(const uint32_t *word, uint32_t bits);
 #define ob_futex_wait(word, seen, bits, until) sleep_on(word, seen, bits, until)
 #define ob_futex_wake(word, bits) wake_sleepers(word, bits)
 #include "table/gate.c"
+#include "table/turn.c"
 #undef __atomic_load_n
 #undef __atomic_store_n
 #undef __atomic_fetch_or
@@ -273,14 +274,14 @@ static void work(uint32_t me)
 {
 	for (;;) {
 		threads[running].history = 0; // it has no pending state
-		const ob_phase phase = ob_gate_wait(&universe, scenario->id[me]);
+		const ob_phase phase = ob_turn_wait(&universe, scenario->id[me]);
 		if (phase == OB_PHASE_STOP)
 			return;
 		wrong += !(now.invited >> me & 1) || now.ran >> me & 1;
 		wrong += phase != (now.opened % 2 ? OB_PHASE_BROADPHASE : OB_PHASE_ISLANDS);
 		now.ran |= 1u << me;
 		now.arrived |= 1u << me;
-		if (ob_gate_arrive(&universe, scenario->id[me])) {
+		if (ob_turn_arrive(&universe, scenario->id[me])) {
 			wrong += now.scheduled || now.arrived != now.invited;
 			now.scheduled = true;
 			open_next();

@@ -18,12 +18,12 @@ typedef struct board {
 static int work(void *shared, uint32_t worker)
 {
 	board *b = shared;
-	if (ob_gate_wait(b->u, worker) != OB_PHASE_BROADPHASE)
+	if (ob_turn_wait(b->u, worker) != OB_PHASE_BROADPHASE)
 		return 1;
 	__atomic_fetch_add(&b->runs, 1, __ATOMIC_RELAXED);
-	if (worker != 0 && ob_gate_arrive(b->u, worker))
+	if (worker != 0 && ob_turn_arrive(b->u, worker))
 		return 2;
-	return worker != 0 && ob_gate_wait(b->u, worker) != OB_PHASE_STOP;
+	return worker != 0 && ob_turn_wait(b->u, worker) != OB_PHASE_STOP;
 }
 
 static void stop_in_phase(bool processes)
@@ -50,7 +50,7 @@ static void stop_in_phase(bool processes)
 	CHECK(ob_gate_host_wait(b->u, 0));
 	CHECK(worker_group_join(&g) == 0);
 	for (uint32_t i = 0; i < WORKERS; i++)
-		CHECK(ob_gate_wait(b->u, i) == OB_PHASE_STOP);
+		CHECK(ob_turn_wait(b->u, i) == OB_PHASE_STOP);
 	ob_universe_destroy(b->u, true);
 }
 
