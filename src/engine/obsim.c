@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "engine/engines.h"
-#include "sim/publish.h"
+#include "sim/now.h"
 #include "sim/sim.h"
 #include "table/table.h"
 

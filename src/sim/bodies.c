@@ -11,6 +11,7 @@
 #include "sim/flight.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
+#include "sim/now.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"

@@ -9,9 +9,10 @@
 
 #include "base/cpu.h"
 #include "motion/drift.h"
-#include "sim/commit.h"
+#include "sim/now.h"
 #include "sim/publish.h"
 #include "sim/relative_speed.h"
+#include "sim/results.h"
 
 // ---- spatial index
 

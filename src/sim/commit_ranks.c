@@ -41,22 +41,6 @@ void ob_committer_finish_shared(ob_committer *c)
 	free(c->heard);
 }
 
-uint64_t ob_committer_digest_before(const ob_committer *c, const ob_universe *u, uint32_t id, uint64_t sum, bool *whole)
-{
-	uint64_t digest;
-	*whole = ob_halo_digest(c->halo, u, id, &digest);
-	return ob_digest_word(sum + id, digest);
-}
-
-void ob_committer_compare_before(ob_committer *c)
-{
-	uint64_t told;
-	for (uint32_t rank = 0; rank < c->ranks; rank++) {
-		memcpy(&told, c->all + c->at[rank] + sizeof(ob_peers_head), sizeof told);
-		c->differs |= rank != c->rank && told != c->heard[rank];
-	}
-}
-
 // True if the others already know all that they would be sent of a contact: its existence, and the rank that keeps its
 // state.
 static bool is_known(const ob_committer *c, const ob_universe *u, const ob_found_contact *found)

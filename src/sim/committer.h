@@ -5,6 +5,7 @@
 
 #include "sim/commit.h"
 #include "sim/rank_islands.h"
+#include "sim/records.h"
 
 // Reader of a mail's records. It reads some ahead, to prefetch the scattered memory that they will be compared with or
 // written to.
@@ -15,30 +16,6 @@ typedef struct ob_record_reader {
 	ob_mail_record ahead[OB_RECORDS_AHEAD];
 	bool commits; // the records will be written
 } ob_record_reader;
-
-typedef enum ob_record_kind {
-	OB_RECORD_END = OB_OUTBOX_END,
-	OB_RECORD_RESULT,
-	OB_RECORD_BOUNDS,
-	OB_RECORD_EFFORT,
-	OB_RECORD_CONTACT,
-	OB_RECORD_CHECK,
-	OB_RECORD_NEIGHBOURS,
-	OB_RECORD_TOUCH,
-	OB_RECORD_SCRIPT,
-	OB_RECORD_POSTS,
-	// Sent by arrangers alone, in place of an OB_RECORD_RESULT: a whole ob_found_result, for ranks that may lack
-	// the motion before it.
-	OB_RECORD_RESTORED,
-} ob_record_kind;
-
-typedef struct ob_check_record {
-	uint32_t pair; // index
-	uint32_t check; // index in check[] of the rank that checks it
-	uint8_t expected, late, reserved[6];
-	uint32_t clear_until, clear_as_of;
-	double limit;
-} ob_check_record;
 
 struct ob_committer {
 	ob_mail mail; // from the local simulators
@@ -91,7 +68,5 @@ void ob_committer_finish_shared(ob_committer *c);
 // false if that motion has been damaged.
 uint64_t ob_committer_digest_before(const ob_committer *c, const ob_universe *u, uint32_t id, uint64_t sum,
 				    bool *whole);
-// Compares, after all results are committed, the digest that each rank has sent with the one computed here.
-void ob_committer_compare_before(ob_committer *c);
 
 #endif

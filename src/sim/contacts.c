@@ -6,12 +6,12 @@
 #include "base/allocate.h"
 #include "sim/bodies.h"
 #include "sim/broadphase.h"
-#include "sim/commit.h"
 #include "sim/contact_order.h"
 #include "sim/ghost.h"
 #include "sim/narrowphase.h"
 #include "sim/pairs.h"
 #include "sim/relative_speed.h"
+#include "sim/results.h"
 #include "sim/surfaces.h"
 
 // ---- lanes and graph colouring

@@ -6,6 +6,7 @@
 #include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
+#include "sim/now.h"
 #include "sim/publish.h"
 #include "sim/touches.h"
 

@@ -5,9 +5,8 @@
 #include "sim/adaptive_substep.h"
 #include "sim/balance.h"
 #include "sim/bodies.h"
-#include "sim/budget.h"
 #include "sim/broadphase.h"
-#include "sim/commit.h"
+#include "sim/budget.h"
 #include "sim/conjugate.h"
 #include "sim/contact_solver.h"
 #include "sim/contacts.h"
@@ -22,6 +21,7 @@
 #include "sim/pairs.h"
 #include "sim/profile.h"
 #include "sim/push_apart.h"
+#include "sim/results.h"
 #include "sim/surfaces.h"
 #include "sim/touches.h"
 

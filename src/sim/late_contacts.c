@@ -7,14 +7,14 @@
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/calendar.h"
-#include "sim/commit.h"
-#include "sim/prefetch.h"
 #include "sim/flight.h"
 #include "sim/narrowphase.h"
+#include "sim/now.h"
 #include "sim/pair_rank.h"
 #include "sim/pairs.h"
-#include "sim/publish.h"
+#include "sim/prefetch.h"
 #include "sim/relative_speed.h"
+#include "sim/results.h"
 
 static const double contact_gap = 2e-4; // m: a forecast takes bodies so near for touching ..
 static const double contact_gap_share = .05; // .. and no nearer than this share of the thinner one's thickness

@@ -9,7 +9,7 @@
 #ifndef OB_SIM_LATE_CONTACTS_H
 #define OB_SIM_LATE_CONTACTS_H
 
-#include "sim/commit.h"
+#include "sim/state.h"
 
 // By the scheduling worker, before pairs are checked: lists those whose turn it is (sim/calendar.h) in
 // ob_step_data.check, ascending. The pairs of objects that have been solved are among them: who has listed those of their

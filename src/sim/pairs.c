@@ -7,10 +7,10 @@
 #include "base/allocate.h"
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
-#include "sim/commit.h"
+#include "sim/now.h"
 #include "sim/pair_rank.h"
 #include "sim/prefetch.h"
-#include "sim/publish.h"
+#include "sim/results.h"
 #include "sim/sort_ids.h"
 
 // ---- lists

@@ -5,6 +5,7 @@
 #include "motion/flight.h"
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
+#include "sim/now.h"
 #include "sim/pairs.h"
 #include "sim/publish.h"
 #include "sim/sim.h"

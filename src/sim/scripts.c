@@ -5,11 +5,12 @@
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/calendar.h"
-#include "sim/commit.h"
+#include "sim/now.h"
 #include "sim/ode_baseline.h"
 #include "sim/pairs.h"
 #include "sim/profile.h"
 #include "sim/publish.h"
+#include "sim/results.h"
 
 // ---- who runs
 

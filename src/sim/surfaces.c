@@ -6,7 +6,6 @@
 #include "base/allocate.h"
 #include "motion/drift.h"
 #include "motion/flight.h"
-#include "sim/publish.h"
 #include "sim/relative_speed.h"
 
 static void set_row(double *row, ob_vec3 linear, ob_vec3 angular)

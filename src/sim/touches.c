@@ -1,6 +1,6 @@
 #include "sim/touches.h"
 
-#include "sim/commit.h"
+#include "sim/results.h"
 
 // Whether it is a body whose script has an on_contact.
 static bool feels(const ob_step_data *data, uint32_t id)

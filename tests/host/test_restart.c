@@ -8,7 +8,7 @@
 #include "host/host_state.h"
 #include "host/restart.h"
 #include "little_scene.h"
-#include "sim/publish.h"
+#include "sim/now.h"
 #include "workers.h"
 
 #ifdef __SANITIZE_THREAD__
