@@ -8,7 +8,7 @@
 #include "sim/pair_rank.h"
 #include "table/home.h"
 
-// The digest of a motion that was published as this version of the body's; version 0: none is known.
+// Digest of the motion published as this version of the body's; version 0: none is known.
 typedef struct known {
 	uint64_t version, digest;
 } known;
@@ -17,28 +17,29 @@ enum { MOTION = 1, BEFORE };
 
 struct ob_halo {
 	uint32_t rank, ranks;
-	bool partial; // some rank may lack some body's
-	uint8_t *owed; // [object], of this rank's: another may lack MOTION = it; BEFORE = what it was before this step
-	uint8_t *inland; // [object], of this rank's: 1 = when it was given to a simulator it had no neighbour elsewhere
-	uint64_t *told; // [object], of this rank's: 1 << r = rank r is known to have it, of the first 64
-	uint16_t *owner; // [object]: 1 + the rank where it lives; 0 = it is no body
-	uint32_t *heard; // bodies of other ranks whose motions have come in this step, to be published when it is over
+	bool partial; // some rank may lack the motion of some body
+	uint8_t *owed; // [object], own bodies: another rank may lack MOTION = the motion; BEFORE = the one before this
+		       // step
+	uint8_t *inland; // [object], own bodies: 1 = no neighbour was elsewhere when a simulator got it
+	uint64_t *told; // [object], own bodies: bit r = rank r has the motion, for the first 64 ranks
+	uint16_t *owner; // [object]: 1 + rank of its home; 0 = not a body
+	uint32_t *heard; // bodies of other ranks with motions received in this step, published at its end
 	uint32_t heard_count;
-	uint8_t *hears; // [object]: 1 = it is one of them
+	uint8_t *hears; // [object]: 1 = it is in heard
 	known *known; // [object]
-	uint64_t *staged; // [object]: digest of what is staged of it
-	ob_mail *out; // [ranks]: what goes to each
+	uint64_t *staged; // [object]: digest of its staged motion
+	ob_mail *out; // [ranks]: mail to each
 };
 
-// A body on its way: as of before the step, and, if it was solved in it, as of after it.
+// A body that is sent: its motion before the step, and after it, if it was solved in it.
 typedef struct body_parcel {
-	ob_parcel head; // of this, or up to "after"
+	ob_parcel head; // its bytes: all of this, or up to "after"
 	uint32_t id, home; // UINT32_MAX: it is not the sender's
 	ob_schedule schedule;
 	ob_motion before, after;
 } body_parcel;
 
-// What is known of one of its pairs.
+// State of one of the body's pairs.
 typedef struct pair_parcel {
 	ob_parcel head;
 	uint32_t pair, clear_until, clear_as_of, expected;
@@ -96,12 +97,12 @@ void ob_halo_settle(ob_halo *h, ob_universe *u)
 	const ob_step_data *data = ob_universe_step_data(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		if (h->known[id].version != ob_motion_version(u, id))
-			h->known[id].version = 0; // another was published, which is as good
+			h->known[id].version = 0; // another motion was published, which needs no digest
 		if (!is_dynamic(data, id))
 			h->owner[id] = 0;
 		if (h->owner[id] || !is_dynamic(data, id))
 			continue;
-		ob_home_set(u, id, ob_home_of(u, id)); // else it would change with the number of objects
+		ob_home_set(u, id, ob_home_of(u, id)); // keeps it when the number of objects changes
 		h->owner[id] = (uint16_t)(1 + ob_home_rank(u, id));
 	}
 }
@@ -144,7 +145,7 @@ bool ob_halo_take_heard(ob_halo *h, uint32_t *id)
 	while (h->heard_count) {
 		*id = h->heard[--h->heard_count];
 		h->hears[*id] = 0;
-		if (h->owner[*id] != 1 + h->rank) // else it has come here since, and was solved again
+		if (h->owner[*id] != 1 + h->rank) // else it moved here since, and was solved again
 			return true;
 	}
 	return false;
@@ -157,7 +158,7 @@ void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id)
 		h->owed[id] = 0;
 }
 
-// ---- who is told
+// ---- ranks that are sent a motion
 
 static uint64_t bit_of(uint32_t rank)
 {
@@ -190,7 +191,7 @@ void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at)
 bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint64_t told = data->count->merged ? h->told[id] : 0; // what is void
+	const uint64_t told = data->count->merged ? h->told[id] : 0; // void after a merge
 	ob_pair_place at;
 	for (uint32_t r = 0; r < h->ranks; r++)
 		to[r] = all || told & bit_of(r);
@@ -207,7 +208,7 @@ bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool 
 	for (uint32_t r = 0; r < h->ranks; r++) {
 		if (!to[r])
 			h->owed[id] = MOTION;
-		else if (!all || !h->owed[id]) // else it may lack what was before
+		else if (!all || !h->owed[id]) // else it may lack the motion before the step
 			note_told(h, id, r);
 	}
 	return all && h->owed[id];
@@ -215,13 +216,13 @@ bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool 
 
 // ---- parcels
 
-// In this step, by whichever rank, as far as it is known here.
+// True if a rank has solved the body in this step, as far as this rank knows.
 static bool was_solved(const ob_universe *u, uint32_t id)
 {
 	return ob_universe_step_data(u)->schedule[id].since > ob_step_count(u);
 }
 
-// after: what was found in this step goes with it
+// Packs a body; after: with the motion found in this step.
 static bool pack_body(ob_mail *to, const ob_universe *u, uint32_t id, bool after)
 {
 	body_parcel b = { .head = { OB_PARCEL_BODY, after ? sizeof b : offsetof(body_parcel, after) },
@@ -290,7 +291,7 @@ bool ob_halo_take(ob_halo *h, ob_universe *u, const char *parcel, const ob_parce
 					    : head->kind == OB_PARCEL_PAIR && take_pair(u, parcel, head->bytes);
 }
 
-// What the others have sent. false: the step has failed.
+// Takes what the other ranks have sent. false: the step has failed.
 static bool take_all(ob_halo *h, ob_universe *u, const ob_peers *p, const char *all, const size_t *at)
 {
 	const char *parcel;
@@ -307,7 +308,7 @@ static bool take_all(ob_halo *h, ob_universe *u, const ob_peers *p, const char *
 	return all && sound;
 }
 
-// ---- when
+// ---- exchanges
 
 bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 {
@@ -357,7 +358,7 @@ bool ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *
 	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
 		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
 		fits &= pack_pair(mail, u, at.pair);
-		data->pair[at.pair].late = 0; // islands are merged for it; else it would stay so here
+		data->pair[at.pair].late = 0; // islands were merged for it; without this it would stay late here
 		if (h->partial && ob_object_in_range(data, other) && is_dynamic(data, other) &&
 		    ob_home_rank(u, other) != to)
 			fits &= pack_body(mail, u, other, data->count->merged && was_solved(u, other));

@@ -11,16 +11,15 @@
 enum { ALL = 0 }; // a holder
 
 struct ob_holdings {
-	uint16_t *holder; // [record]: 1 + a rank, or ALL. Who is neither this one nor ALL may have given it to another
-			  // since
-	uint64_t (*digest)[2]; // [record], of each version that is here; 0 = it is not known
+	uint16_t *holder; // [record]: 1 + a rank, or ALL. A holder that is another rank may have passed it on since
+	uint64_t (*digest)[2]; // [record], of each version here; 0 = unknown
 	ob_mail out;
 };
 
-// A record on its way.
+// A record that is sent.
 typedef struct parcel {
 	ob_parcel head;
-	uint32_t pair, stamp; // index; as ob_pair_record.stamp
+	uint32_t pair, stamp; // index of the pair; as ob_pair_record.stamp
 	ob_pair_state state;
 	double impulse_b[OB_PAIR_ROWS];
 } parcel;
@@ -54,7 +53,7 @@ static uint64_t digest_of(const ob_pair_state *state)
 	return ob_digest_words(state, sizeof *state);
 }
 
-// What is here of it is void: readers and solvers find none.
+// Makes the contents here void: readers and solvers find none.
 static void give_away(const ob_universe *u, uint32_t record)
 {
 	uint32_t *stamp = ob_universe_step_data(u)->record[record].stamp;
@@ -83,9 +82,9 @@ bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t
 	return h->holder[record] == 1 + ob_universe_rank(u);
 }
 
-// ---- what lies where
+// ---- holders
 
-// One past the last island of a chunk that is to be solved, or less where the universe is damaged.
+// One past the last island of a chunk to be solved, or less where the universe is damaged.
 static uint32_t end_of_chunk(const ob_step_data *data, uint32_t chunk)
 {
 	const uint32_t end = data->chunk[chunk + 1];
@@ -102,7 +101,7 @@ static uint32_t owner_of(const ob_universe *u, uint32_t chunk)
 	return ob_task_first(u) + ob_task_owner(chunk, ob_task_workers(u));
 }
 
-// The k-th pair of an island, if its solver reads what it keeps; NULL: it does not, or the universe is damaged.
+// The k-th pair of an island, if its solver reads the pair's contents; NULL: it does not, or the universe is damaged.
 static const ob_pair_key *kept_pair(const ob_step_data *data, const ob_island *is, uint32_t k, uint32_t *pair)
 {
 	*pair = is->first_pair + k < data->pairs_max ? data->island_pair[is->first_pair + k] : UINT32_MAX;
@@ -112,13 +111,13 @@ static const ob_pair_key *kept_pair(const ob_step_data *data, const ob_island *i
 	return key->record < data->pairs_max && (key->active || data->count->merged) ? key : NULL;
 }
 
-// The version of before the step; -1: there is none.
+// Version of the contents before the step; -1: none.
 static int version_of(const ob_universe *u, uint32_t record)
 {
 	return ob_pair_newest(&ob_universe_step_data(u)->record[record], ob_step_count(u));
 }
 
-// A body of its own for each of two is the experiments' (ghost.h).
+// Bytes of a parcel. Experimental solvers alone (ghost.h) have impulses for each of the two sides.
 static size_t parcel_bytes(const ob_universe *u)
 {
 	const uint32_t solver = ob_universe_settings(u)->solver;
@@ -141,7 +140,7 @@ static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t reco
 	return ob_mail_append(to, &p, bytes);
 }
 
-// Writes what another rank has sent; rank: who has it from now on, or ALL.
+// Writes contents that another rank has sent; holder: 1 + the rank that holds them from now on, or ALL.
 static bool take(ob_holdings *h, const ob_universe *u, const char *from, size_t bytes, uint16_t holder)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -217,7 +216,7 @@ bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p)
 	return all && sound;
 }
 
-// What the pairs of an island keep is asked for in three steps: their keys, when what they keep was written, and it.
+// Contents of an island's pairs are prefetched in three steps: keys, stamps, contents.
 typedef enum asked_for { KEYS, STAMPS, CONTENTS } asked_for;
 
 static void prefetch_kept(const ob_holdings *h, const ob_universe *u, const ob_island *is, asked_for what)

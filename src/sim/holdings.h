@@ -1,16 +1,16 @@
-// Where what pairs keep between steps is, of several ranks (peers.h): a record's contents are with the rank that solved
-// its island last, and nowhere else.
+// Ranks that hold the contents of pairs' records between steps, of several ranks (peers.h): the rank that solved a
+// pair's island last, and no other.
 //
 //                          rank 0     rank 1     rank 2
-//   island A, solved last    x                              on all: that the record is there, and whether they touch
+//   island A, solved last    x                              all know: the record exists, and if the pair touches
 //   island B                            x
 //   B is rank 2's now                   x  ------->  x      before it is solved (give)
-//   all are wanted           x <------> x <------->  x      for a checkpoint, say (gather)
+//   all are wanted           x <------> x <------->  x      for a checkpoint, for example (gather)
 //
-// All ranks know where each object lives (table/home.h), and there is what its pairs keep. Who holds contents keeps
-// their digest beside them: in memory that simulators do not reach, so damage is found before it becomes a result.
+// All ranks know where each object lives (table/home.h); its pairs' contents are there. The holder of contents keeps
+// their digest beside them, in memory that simulators do not reach: so damage is found before it becomes a result.
 //
-// Thread-safety: the arranger's.
+// Thread-safety: the arranger alone calls these functions.
 #ifndef OB_SIM_HOLDINGS_H
 #define OB_SIM_HOLDINGS_H
 
@@ -18,29 +18,29 @@
 
 typedef struct ob_holdings ob_holdings;
 
-// At the start all ranks have all. NULL: no memory.
+// Creates the holdings; at the start all ranks hold all contents. NULL: no memory.
 ob_holdings *ob_holdings_create(const ob_universe *u);
 void ob_holdings_destroy(ob_holdings *h); // NULL is allowed
 
 enum { OB_ALL_RANKS = UINT32_MAX };
-// A record has new contents, of the rank whose simulator has found them, or of all. version: where they are here, and
-// state: what was written there; -1: they are not.
+// Notes new contents of a record, which `rank` holds, or all ranks. version: place of the contents here; state:
+// contents written there; version -1: they are not here.
 void ob_holdings_note(ob_holdings *h, const ob_universe *u, uint32_t record, int version, const ob_pair_state *state,
 		      uint32_t rank);
-// They will be soon, or it will be asked whether they are here.
+// Prefetches what ob_holdings_note and ob_holdings_here_alone need.
 void ob_holdings_prefetch(const ob_holdings *h, uint32_t record);
-// Whether it has them and no other rank does.
+// True if this rank alone has the contents.
 bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record);
 
-// The object was this rank's, and lives with another now: what its pairs keep goes there, and this rank lists them no
+// Packs the contents of the pairs of an object that moved from this rank to another; this rank lists the pairs no
 // longer. false: no memory.
 bool ob_holdings_give(ob_holdings *h, const ob_universe *u, uint32_t id, ob_mail *mail);
-// Of that, a parcel from another rank: false: it makes no sense.
+// Unpacks a parcel of it from another rank. false: it is malformed.
 bool ob_holdings_take(ob_holdings *h, const ob_universe *u, const char *parcel, size_t bytes);
-// Between two steps, by all ranks: all of them have all contents. false: the step has failed.
+// Exchanges contents, between two steps, by all ranks: then all have all. false: the step has failed.
 bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p);
-// One of the objects of a contact that a simulator of this rank is to solve, and whose contents are no longer what they
-// were; OB_NO_OBJECT: none is.
+// Returns an object of a contact that a simulator of this rank is to solve and whose contents do not fit their digest;
+// OB_NO_OBJECT: there is none.
 uint32_t ob_holdings_damaged(const ob_holdings *h, const ob_universe *u);
 
 #endif

@@ -1,14 +1,14 @@
-// Invariants of what simulators share: objects, lists of pairs, spatial index, calendars, records, scripts' cells.
+// Invariants of the data that simulators share: objects, lists of pairs, spatial index, calendars, records, scripts'
+// cells.
 //
 //   host changes objects ──(AT_RESUME)──> query, merge ──(AFTER_MERGE)──> .. solve ..> step complete ──(AFTER_STEP)
 //
-// The host checks before it resumes a run, the scheduling worker after each merge of pairs and each complete step. A
-// universe that was created with `checked` does so, and any in a build with a sanitizer; others pay nothing. Ids,
-// indices and links are compared with their ranges before they are followed, so a damaged universe ends in a message,
-// too.
+// The host checks before it resumes a run, the scheduling worker after each merge of pairs and each complete step. They
+// do so in a universe created with `checked`, and in any build with a sanitizer; others pay nothing. Ids, indices and
+// links are compared with their ranges before they are followed, so a damaged universe ends in a message, too.
 //
-// Thread-safety: by whoever alone may write the step's data (the scheduling worker, or the host at a pause). Allocates
-// for the call; without memory it checks nothing.
+// Thread-safety: the only writer of the step's data calls them (the scheduling worker, or the host at a pause).
+// Allocates for the call; without memory it checks nothing.
 #ifndef OB_SIM_INVARIANTS_H
 #define OB_SIM_INVARIANTS_H
 
@@ -22,9 +22,9 @@ typedef enum ob_invariant_moment {
 	OB_INVARIANTS_AFTER_STEP, // likewise, and no object is in an island
 } ob_invariant_moment;
 
-// True if all of them hold. false and e: names the object, and the list or record that is wrong.
+// Checks all of them. false and e: names the object, and the list or record that is wrong.
 bool ob_invariants_hold(const ob_universe *u, ob_invariant_moment when, ob_error *e);
-// Checks if the universe is to be checked. false: the step has failed with OB_STEP_BROKEN, and says why.
+// Checks if the universe is to be checked. false: the step has failed with OB_STEP_BROKEN and the reason.
 bool ob_invariants_check(ob_universe *u, ob_invariant_moment when);
 
 #endif

@@ -1,10 +1,9 @@
-// The working state of one island through one step, private to the worker that solves it. Plain data: the files that
-// solve an island (island_solver.c is their table of contents) share it, and say which part of it they write.
+// Working state of one island through one step, private to the worker that solves it. Plain data: the files that solve
+// an island (island_solver.c is their table of contents) share it, and say which part of it they write.
 //
-// Velocities lie in rows (contact/batch.h): v when the partial substep begins, dv the change that external acceleration
-// and the impulses of the last partial substep would bring where the contacts are now (the warm start), u = v + dv
-// solved to the partial substep's end, d the displacement since the poses were last brought up to date. Row 0 is
-// everything that does not move.
+// Velocities lie in rows (contact/batch.h). v: at the start of the partial substep. dv: change by external acceleration
+// and by the impulses of the last partial substep at the present contacts (the warm start). u = v + dv, solved to the
+// partial substep's end. d: displacement since the poses were last updated. Row 0 stands for all that does not move.
 #ifndef OB_SIM_ISLAND_H
 #define OB_SIM_ISLAND_H
 
@@ -24,76 +23,77 @@ enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
 typedef struct ob_body {
 	uint32_t id;
 	ob_shape shape;
-	const ob_hull *hull; // of a hull, in the universe
+	const ob_hull *hull; // shape of a hull, in the universe
 	ob_vec3 size, p;
 	ob_quat q;
 	ob_mat3 r;
 	double mass, inv_mass;
 	ob_vec3 inertia; // principal
-	ob_vec3 acceleration; // m/s^2, external, in the frame of the island
+	ob_vec3 acceleration; // m/s^2, external, in the island's frame
 	ob_vec3 torque; // N m, world, external
 	double inv_inertia[6]; // world
 	double friction, restitution, radius, thickness;
 	double rest_depth; // m, as ob_placed.rest_depth
 	double path, speed; // m, as ob_motion.path; m/s bound of any point
-	double turning; // m/s, what turning adds to the speed at which its surface moves
+	double turning; // m/s, part of the surface's speed that turning adds
 	float rest_time; // s, as ob_motion.rest_time
 	bool isotropic; // inertia is the same about all axes
-	bool moved_freely; // it touched nothing in this step, not for a moment
-	uint32_t contacts; // that touch
-	uint32_t in_reach; // of those, that may carry something in the running partial substep: 0, 1 or more
-	bool loaded; // its flights within the partial substep are those of the last one's contact forces, too
+	bool moved_freely; // it touched nothing at any time in this step
+	uint32_t contacts; // number of those that touch
+	uint32_t in_reach; // number that may carry load in the running partial substep: 0, 1 or more
+	bool loaded; // its free motion within the partial substep includes the last one's contact forces
 	double hit; // s into the partial substep: its last impact; 0: none
 	uint64_t colours; // bit per colour in use
-	uint32_t next_substeps; // that it asks for in the next step (sim/error_control.h)
-	uint32_t active_iteration; // the last that changed its velocity by more than the wake threshold
+	uint32_t next_substeps; // its request for the next step (sim/error_control.h)
+	uint32_t active_iteration; // last iteration that changed its velocity by more than the wake threshold
 	uint32_t first_adjacent, adjacent; // range in adjacency
-	uint32_t next_ghost; // chain of the rows that stand for it (sim/ghost.h); 0 ends
+	uint32_t next_ghost; // chain of its ghosts' rows (sim/ghost.h); 0 ends
 	uint32_t ghost_of; // of a ghost: the row that it stands for
-	bool holds; // of a row that is fixed or moves as it is told: what the island's bodies feel, they feel on it
-	uint32_t surface; // 1 + its place among the surfaces that move (sim/surfaces.h); 0: it is none
-	double carried; // N s, of all surfaces that carry it
-	bool among_others; // it touches bodies that move
+	bool holds; // fixed or driven row that holds the island: accelerations are felt relative to it (sim/frame.h)
+	uint32_t surface; // 1 + index into the kinematic surfaces (sim/surfaces.h); 0: none
+	double carried; // N s, sum over all surfaces that carry it
+	bool among_others; // it touches moving bodies
 	bool turns; // it has a contact whose geometry turns
-	bool halved; // it is at the midpoint of the partial substep (sim/midpoint.h), where it came by first_half ..
-	ob_body_row first_half; // m, rad
-	ob_vec3 start_p, start_w; // .. from this
+	bool halved; // it is at the midpoint of the partial substep (sim/midpoint.h)
+	ob_body_row first_half; // m, rad: displacement to the midpoint
+	ob_vec3 start_p, start_w; // state before that
 	ob_quat start_q;
 } ob_body;
 
-// A pair that touches, or may in this step.
+// A pair that touches, or may touch in this step.
 typedef struct ob_contact {
 	uint32_t key; // index into the universe's pairs
 	uint32_t a, b; // rows
-	uint32_t lane; // batch * OB_LANES + lane; OB_NO_LANE = apart
+	uint32_t lane; // batch * OB_LANES + lane; OB_NO_LANE = in no batch
 	uint32_t colour;
 	uint32_t points;
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
 	ob_vec3 friction_a, friction_b; // m: where friction acts
-	int8_t was[OB_PAIR_POINTS]; // of each point: which one it was when the geometry was found before; -1: none
+	int8_t was[OB_PAIR_POINTS]; // for each point: its index in the previous geometry; -1: none
 	double disc_radius; // m, of the manifold
-	double spin_lever_a, spin_lever_b; // m, of its points (sim/relative_speed.h); 0 while they are apart
+	double spin_lever_a, spin_lever_b; // m, of its points (sim/relative_speed.h); 0 while separated
 	double path,
-		limit; // m: how far the two have moved, one from the other, in this step; until when the geometry holds
-	double since; // s, from when the geometry was found to the partial substep's start; infinity: unknown
-	double found_for; // s: length of the partial substep for which it was
+		limit; // m: relative path in this step; bound up to which the geometry holds
+	double since; // s, from the time of the geometry to the partial substep's start; infinity: unknown
+	double found_for; // s: length of the partial substep for which the geometry was found
 	bool turns; // its geometry turns noticeably within the partial substep (sim/midpoint.h)
 	double mu, e; // coefficients of friction and of restitution
 	double initial_depth,
-		depth_growth; // m (sim/error_control.h): when the step began; that it has grown by in the step
-	double slip, creep; // m, in this step; in the last second
+		depth_growth; // m (sim/error_control.h): at the step's start; growth within the step
+	double slip, creep; // m: within this step; within the last second
 	uint32_t rebounds; // in the partial substep
-	bool left_to_solver; // its hits in the partial substep are those of too many points
-	bool misses; // what approaches fast has been followed through the partial substep, and does not close in it
+	bool left_to_solver; // its hits in the partial substep have too many points: the contact solver takes them
+	bool misses; // its bodies approach fast, but it does not close in the partial substep, as following them has
+		     // shown
 	bool as_of_instant; // its geometry is that of an instant in the running partial substep
-	bool began; // its bodies did not touch when the step began
-	bool mirror; // the second contact of a pair that is solved for each side apart: its own body is b
+	bool began; // its bodies did not touch at the step's start
+	bool mirror; // second contact of a pair that is solved for each side apart: its own body is b
 } ob_contact;
 
-// A contact that takes part in a direct solve. parent: row of a fixed body if it is an anchor.
+// A contact in a direct solve. parent: row of a fixed body if it is an anchor.
 typedef struct ob_direct_contact {
 	uint32_t contact, child, parent;
-	uint8_t row[OB_JOINT_ROWS]; // of the batch, for each row of the joint
+	uint8_t row[OB_JOINT_ROWS]; // row of the batch, for each row of the joint
 	ob_joint joint;
 } ob_direct_contact;
 
@@ -104,9 +104,9 @@ typedef struct ob_direct_solver {
 		OB_DIRECT_UNFIT,
 		OB_DIRECT_TREES,
 		OB_DIRECT_CYCLIC
-	} shape; // of the contacts in the running partial substep: moving too fast, trees, or with cycles
+	} shape; // class of the running partial substep's contacts: too fast, trees, or with cycles
 	bool used_last; // the last partial substep was solved directly
-	bool gave_up; // a solve of this step did not reduce the residual
+	bool gave_up; // a solve in this step did not reduce the residual
 	int solves; // in the running partial substep
 	uint32_t rows_max, contacts_max, batches_max;
 	ob_link *link; // [row]
@@ -115,23 +115,23 @@ typedef struct ob_direct_solver {
 	uint32_t contacts;
 	ob_direct_contact *contact;
 	ob_sparse_solver sparse;
-	lanes (*velocity)[OB_ROWS], (*impulse_change)[OB_ROWS]; // [batch]: of the rows
+	lanes (*velocity)[OB_ROWS], (*impulse_change)[OB_ROWS]; // [batch], per row
 } ob_direct_solver;
 
 // Working state of sim/conjugate.c; memory grown as needed, never shrunk.
 typedef struct ob_conjugate {
 	uint32_t batches_max;
-	lanes (*direction)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: of the impulses; the last iteration's own
-	double last; // J, the square of the change of the iteration before
+	lanes (*direction)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: of the impulses; by the last iteration
+	double last; // J, squared change in the previous iteration
 } ob_conjugate;
 
 // A contact that hits within the partial substep.
 typedef struct ob_impact_instant {
 	uint32_t contact;
 	double time, approach; // s into the partial substep; m/s
-	bool joined; // it takes part in the impact that is solved
-	uint32_t first_point, set_points; // of the set that it is solved with
-	ob_manifold m; // then
+	bool joined; // part of the impact that is solved
+	uint32_t first_point, set_points; // first point and number of points of its set
+	ob_manifold m; // geometry at that time
 } ob_impact_instant;
 
 // A body at an instant within the partial substep: m, m/s, rad/s.
@@ -143,16 +143,16 @@ typedef struct ob_body_at {
 
 // Working state of sim/impacts.c; memory grown as needed, never shrunk.
 typedef struct ob_impacts {
-	uint32_t count; // of pending impacts
+	uint32_t count; // number of pending impacts
 	uint32_t contacts_max, rows_max;
-	ob_impact_instant *pending; // [2 contacts]: what touches a hit, too
-	uint32_t *next; // [contacts]: chains of pending impacts that are one set
-	uint32_t *seen; // [contacts]: the round that has looked at it
+	ob_impact_instant *pending; // [2 contacts]: with the contacts that touch a hit
+	uint32_t *next; // [contacts]: chains of pending impacts of one set
+	uint32_t *seen; // [contacts]: last round that has checked it
 	uint32_t *set; // [contacts]: roots of the sets of a round
 	uint32_t *root, *head; // [rows]: union-find over bodies; first pending impact of a set
-	double *first; // [rows], s: of the body's pending impacts
+	double *first; // [rows], s: earliest of the body's pending impacts
 	uint32_t changes, *changed; // [rows]: bodies that were hit in a round
-	uint32_t *slot; // [rows]: place in the set that is solved
+	uint32_t *slot; // [rows]: index in the set that is solved
 	uint32_t bodies, points; // of that set
 	uint32_t *row; // [bodies]
 	ob_body_at *at; // [bodies]
@@ -160,12 +160,12 @@ typedef struct ob_impacts {
 	ob_impact_point *point;
 } ob_impacts;
 
-// A surface that moves as it is told (sim/surfaces.h).
+// A kinematic or running surface (sim/surfaces.h).
 typedef struct ob_surface {
-	uint32_t row, pair, contact; // its own; of the island's pairs; of the island's contacts
+	uint32_t row, pair, contact; // own row; index into the island's pairs; into its contacts
 	ob_motion motion;
 	ob_vec3 running; // m/s, frame of the body: as ob_passport.surface_velocity
-	ob_state begin, end; // of the running partial substep
+	ob_state begin, end; // states at the ends of the running partial substep
 	ob_vec3 now; // m/s, world: the running surface at the contact
 } ob_surface;
 
@@ -175,25 +175,25 @@ typedef struct ob_surfaces {
 	ob_surface *surface; // ascending by pair
 } ob_surfaces;
 
-// Memory grown as needed, never shrunk.
+// Scratch memory of an island's solve, grown as needed, never shrunk.
 typedef struct ob_island_work {
-	ob_units unit; // of the run, for thresholds
+	ob_units unit; // the run's units, for thresholds
 	double tolerance, run_coarseness; // m, of the run, or the default; ob_run_settings_coarseness()
-	double coarseness; // of the island's step: of one that takes more substeps less, or its error would not fall
+	double coarseness; // for the island's step: less with more substeps, else its error would not fall
 	uint32_t rows, rows_max; // bodies + fixed bodies + row 0
 	uint32_t bodies; // rows 1 .. bodies
-	uint32_t first_ghost; // rows from here on are ghosts
+	uint32_t first_ghost; // first row of the ghosts
 	ob_body_row *history; // velocities after the last iterations, for ghosts
 	uint32_t history_max;
 	ob_body *body; // [rows]
 	ob_body_row *v, *dv, *u, *d, *delta;
 	ob_body_row
-		*drift; // change of velocity in the partial substep as impacts see it: dv without the echo of an impact
+		*drift; // change of velocity in the partial substep as impacts use it: dv without the echo of an impact
 	uint32_t contacts, contacts_max;
 	ob_contact *contact;
-	uint32_t *contact_lane; // [contacts]: as they say themselves, side by side for who asks for nothing else
-	uint64_t *contact_key; // of sim/contact_order.c
-	uint32_t *contact_order; // indices of the island's pairs, as they are loaded
+	uint32_t *contact_lane; // [contacts]: copy of each contact's lane, contiguous for readers of nothing else
+	uint64_t *contact_key; // keys of sim/contact_order.c
+	uint32_t *contact_order; // indices of the island's pairs, in the order of loading
 	uint32_t *adjacency; // contacts of each body, touching or not
 	uint32_t batches, batches_max;
 	ob_batch *batch;
@@ -204,25 +204,27 @@ typedef struct ob_island_work {
 	uint32_t *batch_order; // [batches]: sorted by colour
 	bool order_stale, counts_stale;
 	bool elastic, plastic; // hits with restitution, and without, are solved at their instants (sim/impacts.h)
-	uint32_t iteration; // number of the running one, ever growing
-	double mass; // of all bodies, kg
-	double max_acceleration; // m/s^2, the largest external acceleration that a body feels
-	ob_vec3 frame; // m/s^2: the island is solved as seen by who speeds up like this
-	bool in_field; // bodies that fall together feel what moves them: a solution in which they float missed the
-		       // tolerance
-	bool feels; // a body's script is told of its contacts
+	uint32_t iteration; // number of the running iteration, ever growing
+	double mass; // kg, sum of all bodies
+	double max_acceleration; // m/s^2, the largest external acceleration of a body
+	ob_vec3 frame; // m/s^2: acceleration of the frame of reference in which the island is solved
+	bool in_field; // bodies that fall together feel external acceleration: a solution in a frame that falls with
+		       // them missed the tolerance
+	bool feels; // a body's script receives its contacts
 	bool torques; // a body has an external torque
 	uint32_t substeps; // of this step
-	double error, new_error; // m (sim/error_control.h): of the step; that the step itself has caused
-	double substep; // s, the whole
+	double error, new_error; // m (sim/error_control.h): of the step; caused by the step itself
+	double substep; // s, length of a whole substep
 	double time; // s, from the step's start to the running partial substep's
-	double h, h_min; // s (sim/adaptive_substep.h), of the running partial substep; of any but the last of a substep
-	double unpaced; // s: of which the contacts' paths do not know yet
-	double last_impact; // s into the partial substep: the last one's instant
+	double h, h_min; // s (sim/adaptive_substep.h): length of the running partial substep; the least one, but for
+			 // the last of a substep
+	double unpaced; // s: time not yet counted in the contacts' paths
+	double last_impact; // s into the partial substep: instant of its last impact
 	double residual,
-		last_residual; // m/s: the most that a first iteration has changed a velocity in this step; the last one
-	bool projected; // penetrations were pushed apart in this step
-	double recovered; // J, what position projection has added in this step
+		last_residual; // m/s: largest change of a velocity in a first iteration, in this step so far; in the
+			       // last one
+	bool projected; // position projection was applied in this step
+	double recovered; // J, energy that position projection has added in this step
 	uint32_t *row_of; // [object]: row in this island
 	ob_direct_solver direct;
 	ob_conjugate conjugate;
@@ -230,14 +232,14 @@ typedef struct ob_island_work {
 	ob_surfaces surfaces;
 } ob_island_work;
 
-// A threshold where the tolerance leaves room: as usual, and in a coarse run more, up to what the tolerance bounds, but
-// no more than the run is coarser. So at the default tolerance and below it is as usual.
+// Raises a threshold in a coarse run: `usual` times the coarseness, at most `bound`, which follows from the tolerance,
+// and at least `usual`. At the default tolerance and below it is `usual`.
 static inline double ob_coarser(const ob_island_work *w, double usual, double bound)
 {
 	return ob_max(usual, ob_min(w->coarseness * usual, bound));
 }
 
-// For a second of the default a coarse run waits, and remembers, so many s: its unit of time is longer, not its steps.
+// Returns the s that stand for one second of the default: a coarse run's unit of time is longer, its steps are not.
 static inline double ob_coarse_time(const ob_island_work *w)
 {
 	return w->unit.time / w->run_coarseness;
@@ -253,7 +255,7 @@ static inline ob_vec3 ob_row_angular(const double *row)
 	return ob_v3(row[3], row[4], row[5]);
 }
 
-// rad/s^2, by a torque (N m, world)
+// Angular acceleration, rad/s^2, by a torque (N m, world).
 static inline ob_vec3 ob_body_turned_by(const ob_body *body, ob_vec3 torque)
 {
 	const double *i = body->inv_inertia; // xx xy xz yy yz zz
@@ -262,7 +264,7 @@ static inline ob_vec3 ob_body_turned_by(const ob_body *body, ob_vec3 torque)
 		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
 }
 
-// In the running partial substep
+// True if a body of the contact was hit in the running partial substep.
 static inline bool ob_contact_was_hit(const ob_island_work *w, const ob_contact *c)
 {
 	return w->body[c->a].hit > 0 || w->body[c->b].hit > 0;

@@ -6,51 +6,51 @@
 #include "sim/halo.h"
 #include "sim/regions.h"
 
-enum { OB_ISLANDS_MANY = 256 }; // bodies that are due: for fewer the gate would cost more than other workers gain
-enum { OB_ISLANDS_AT_ONCE = 32 }; // of which something is listed, or published: some ten us
+enum { OB_ISLANDS_MANY = 256 }; // due bodies; with fewer the gate costs more than other workers gain
+enum { OB_ISLANDS_AT_ONCE = 32 }; // islands listed, or published, by one task: some ten us
 
-// Groups the objects that are due (ob_schedule.due), and those that they touch or are expected to, into islands, and
-// the islands into chunks of about equal work, largest first; of several ranks each does so with its own bodies, a
-// chunk for each of its simulators. Islands that an awake object touches, or is expected to, wake.
+// Groups the due objects (ob_schedule.due), and those that they touch or are expected to touch, into islands, and the
+// islands into chunks of about equal work, largest first. Each of several ranks does so with its own bodies, a chunk
+// for each of its simulators. Islands that an awake object touches, or is expected to touch, wake.
 //
 //   begin ──> link .. link ──> list members ──> list pairs .. list pairs ──> deal
 //             tasks, each once    ^             tasks, each once
 //                        merge ───┤
-//                                 └── of several ranks: whole islands go from one to another (rank_islands.h)
+//                                 └── of several ranks: whole islands move between ranks (rank_islands.h)
 //
-// By the scheduling worker. Tasks in any order; by several workers at the same time if each object is a root
-// (ob_step_counts.rooted), as it is where many are due. The islands are the same, and so are their orders of members
-// and pairs.
-void ob_islands_begin(ob_universe *u); // who is due
+// The scheduling worker calls them; tasks run in any order. Several workers run them at the same time if each object is
+// a root (ob_step_counts.rooted), as it is where many are due. Islands, and their orders of members and pairs, are the
+// same in any case.
+void ob_islands_begin(ob_universe *u); // finds the due bodies
 uint32_t ob_islands_link_tasks(const ob_universe *u);
-void ob_islands_link(ob_universe *u, uint32_t task); // whom they are linked to
+void ob_islands_link(ob_universe *u, uint32_t task); // finds the bodies that they are linked to
 void ob_islands_list_members(ob_universe *u);
 uint32_t ob_islands_list_tasks(const ob_universe *u);
 void ob_islands_list_pairs(ob_universe *u, uint32_t task);
-// regions: of several ranks; NULL: there is but one.
+// Deals the islands to workers. regions: of several ranks; NULL: there is but one.
 void ob_islands_deal(ob_universe *u, ob_regions *regions);
-// Of several ranks, after that, for there are no tasks that list pairs. halo: is told which bodies are at borders.
+// Lists the pairs after that, on several ranks, which have no tasks for it. halo: notes bodies at borders.
 void ob_islands_list_dealt_pairs(ob_universe *u, ob_halo *halo);
-// Within the step, after late contacts (sim/late_contacts.h): merges the islands that they join. The solutions of the
-// others stand, and so do their lists, and what is known of pairs that have nothing to do with those; the chunks hold
-// what must be solved again.
+// Merges the islands that late contacts join, within the step (sim/late_contacts.h). Other islands keep their
+// solutions, their lists, and the state of pairs that are not concerned. The chunks hold the islands to be solved
+// again.
 void ob_islands_merge(ob_universe *u);
 
-// ---- of several ranks, before members are listed
+// ---- several ranks: before members are listed
 
-// A body of this rank's is in an island, whether it is due or not: before those that it is linked to are found.
+// Adds a body of this rank's to the islands, due or not, before linked bodies are found.
 void ob_islands_involve(ob_universe *u, uint32_t id);
-// The bodies that are in islands, in no order; returns how many. root: [object], of these, the one that its island is
-// named by. Both hold until islands are dropped or joined.
+// Lists the bodies in islands, in no order; returns their number. root: [object], for these, the body that names its
+// island. Both hold until islands are dropped or joined.
 uint32_t ob_islands_bodies(ob_universe *u, const uint32_t **body, const uint32_t **root);
-// Islands that another rank solves. leaves: [object], not 0 = that of this name
+// Drops the islands that another rank solves. leaves: [object], not 0 = the island of this root
 void ob_islands_drop(ob_universe *u, const uint8_t *leaves);
-// Two bodies, which are this rank's, are of one island, or the same is of one.
+// Joins the islands of two bodies of this rank's; a == b: adds the body.
 void ob_islands_join(ob_universe *u, uint32_t a, uint32_t b);
-// So much work is a full share of all that so many have: beyond it others get what is too much.
+// Work of a full share when "count" simulators divide the total: others get the excess.
 uint64_t ob_islands_share(uint64_t total, uint32_t count);
 
-// A chunk of so much work is closed, where that is all the work that so many workers share.
+// Work at which a chunk is closed, when so many workers share the total.
 uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers);
 
 #endif

@@ -12,7 +12,7 @@
 #include "sim/late_contacts.h"
 #include "table/home.h"
 
-static const uint64_t LEAVING = UINT64_MAX; // a phase, too
+static const uint64_t LEAVING = UINT64_MAX; // in place of a phase
 
 static uint64_t motion_digest(const ob_motion *m)
 {
@@ -30,14 +30,15 @@ uint64_t ob_peers_digest(const ob_universe *u)
 	return sum;
 }
 
-// ---- where ranks differ
+// ---- ranks that differ
 
-// What a rank has of an object: its motion, since so many steps, which of those that it does not need may be long ago.
+// State of an object on a rank: digest of its motion, published at step "since". Motions that the rank does not need
+// may be old.
 typedef struct motion_seen {
 	uint64_t since, digest;
 } motion_seen;
 
-// A rank that has another motion of the object than that one, from the same step on; its own number: none has.
+// Returns a rank with another motion of the object, published at the same step; its own number: there is none.
 static uint32_t find_other(const ob_peers *p, const char *all, const size_t *at, uint32_t rank, size_t object)
 {
 	motion_seen own, other;
@@ -55,8 +56,8 @@ static void blame(const ob_peers *p, ob_universe *u, uint32_t rank, const char *
 	ob_step_blame(u, rank * (ob_universe_simulators(u) / p->ranks), text);
 }
 
-// All ranks come here together, for all have seen the same messages: each tells the others what it has of every object.
-// Names the first object.
+// Exchanges all ranks' digests of every object and names the first that differs. All ranks call it together, as all
+// have seen the same messages.
 static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 {
 	const uint32_t ids = ob_universe_ids(u);
@@ -84,7 +85,7 @@ static void blame_rank(const ob_peers *p, ob_universe *u, uint32_t rank)
 	blame(p, u, rank, text);
 }
 
-// What it has kept of a contact, or a motion, has changed since.
+// Reports a contact's contents, or a motion, that no longer fits its digest.
 static void blame_memory(const ob_peers *p, ob_universe *u, uint32_t rank, uint64_t damaged)
 {
 	const uint64_t object = (damaged & ~OB_PEERS_MOTION) - 1;
@@ -103,7 +104,7 @@ static ob_peers_head head_of(const char *all, const size_t *at, uint32_t rank)
 	return head;
 }
 
-// Whether all stand where rank 0 does; else the step has failed.
+// True if all ranks are at the same point as rank 0; else the step has failed.
 static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const size_t *at)
 {
 	const ob_peers_head first = head_of(all, at, 0);
@@ -122,8 +123,8 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 	}
 	for (uint32_t r = 0; r < p->ranks; r++) {
 		ob_peers_head other = head_of(all, at, r);
-		other.move = first.move; // rank 0 alone is asked
-		other.next_due = first.next_due; // each of its own
+		other.move = first.move; // requests go to rank 0 alone
+		other.next_due = first.next_due; // differs between ranks, as the next three
 		other.look = first.look;
 		other.islands = first.islands;
 		other.woken = first.woken;
@@ -137,7 +138,7 @@ static bool stand_together(ob_peers *p, ob_universe *u, const char *all, const s
 
 // ---- an exchange
 
-// The first of what some rank waits for, and what there is of all.
+// Notes the first step that some rank waits for, and the sums over all ranks.
 static void note_steps(ob_peers *p, ob_universe *u, const char *all, const size_t *at)
 {
 	uint64_t due = UINT32_MAX, look = UINT64_MAX;
@@ -154,7 +155,7 @@ static void note_steps(ob_peers *p, ob_universe *u, const char *all, const size_
 	p->look = look;
 }
 
-// A pause, as far as its step is known; or each step, where somebody may look at any time: scripts, readers, the trace.
+// Returns the step of the next pause, as far as it is known; 0: scripts, readers or the trace may read at each step.
 static uint64_t own_look(const ob_universe *u)
 {
 	const bool always = ob_universe_step_data(u)->script_counts || ob_universe_traced(u) ||
@@ -180,7 +181,7 @@ static void complete_head(const ob_peers *p, ob_universe *u, ob_peers_head *head
 	head->look = own_look(u);
 }
 
-// all: what has come, which is given if all is well.
+// Returns all, the mail of all ranks, if it is sound.
 static const char *take(ob_peers *p, ob_universe *u, const char *all, const size_t *at)
 {
 	if (!all) {
@@ -252,7 +253,7 @@ void ob_peers_leave(ob_peers *p)
 
 // ---- at the start
 
-// What must be the same on all ranks.
+// Facts that must be the same on all ranks.
 typedef struct introduction {
 	uint64_t version, workers, settings, objects, arithmetic;
 } introduction;
@@ -266,7 +267,7 @@ static uint64_t digest_bytes(const void *bytes, size_t n)
 	return sum;
 }
 
-// Passports and first motions.
+// Digest of passports and first motions.
 static uint64_t digest_objects(const ob_universe *u)
 {
 	uint64_t sum = ob_universe_capacity(u);
@@ -277,7 +278,7 @@ static uint64_t digest_objects(const ob_universe *u)
 	return sum;
 }
 
-// Of operations in which processors and compilers have been seen to differ.
+// Digest of results in which processors and compilers are known to differ.
 static uint64_t digest_arithmetic(void)
 {
 	uint64_t sum = 0;
